@@ -16,7 +16,7 @@ void ExecutionState::Release()
 bool ExecutionState::BoundsKey::operator==(const BoundsKey& other) const
 {
   return this->Inputs == other.Inputs && this->Volume == other.Volume &&
-    this->Scale == other.Scale && this->DisplacementScale == other.DisplacementScale &&
+    this->ToOutput == other.ToOutput && this->DisplacementScale == other.DisplacementScale &&
     this->Choice == other.Choice && this->OutsideMode == other.OutsideMode &&
     this->FadeDistance == other.FadeDistance;
 }
@@ -30,7 +30,7 @@ bool ExecutionState::ExtentKey::operator==(const ExtentKey& other) const
 bool ExecutionState::RegionsKey::operator==(const RegionsKey& other) const
 {
   return this->ShapeVersion == other.ShapeVersion && this->VectorsVersion == other.VectorsVersion &&
-    this->Volume == other.Volume && this->Scale == other.Scale &&
+    this->Volume == other.Volume && this->ToOutput == other.ToOutput &&
     this->Extrapolate == other.Extrapolate;
 }
 

@@ -41,7 +41,7 @@ struct ExecutionState
   {
     Stamp Inputs;
     ImageGeometry Volume;
-    glm::dvec3 Scale{ 0.0 };
+    OutputMap ToOutput;
     double DisplacementScale = 0.0;
     std::string Choice;
     int OutsideMode = -1;
@@ -79,7 +79,7 @@ struct ExecutionState
     std::uint64_t ShapeVersion = 0;
     std::uint64_t VectorsVersion = 0;
     ImageGeometry Volume;
-    glm::dvec3 Scale{ 0.0 };
+    OutputMap ToOutput;
     bool Extrapolate = false;
     bool operator==(const RegionsKey& other) const;
   };

@@ -24,7 +24,7 @@ vtkDeformVolumeFilter::vtkDeformVolumeFilter()
   : Internals(new vtkInternals(this))
 {
   deformvolume::UseVTKThreads();
-  this->SetNumberOfInputPorts(3);
+  this->SetNumberOfInputPorts(4);
   this->SetInputArrayToProcess(
     0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::VECTORS);
 }
@@ -54,6 +54,18 @@ void vtkDeformVolumeFilter::SetRestConnection(vtkAlgorithmOutput* output)
 void vtkDeformVolumeFilter::SetRestData(vtkDataObject* data)
 {
   this->SetInputDataInternal(2, data);
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::SetReferenceConnection(vtkAlgorithmOutput* output)
+{
+  this->SetInputConnection(3, output);
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::SetReferenceData(vtkDataObject* data)
+{
+  this->SetInputDataInternal(3, data);
 }
 
 //------------------------------------------------------------------------------
@@ -243,7 +255,7 @@ int vtkDeformVolumeFilter::FillInputPortInformation(int port, vtkInformation* in
   {
     info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   }
-  if (port == 0)
+  if (port == 0 || port == 3)
   {
     info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
     return 1;

@@ -50,28 +50,36 @@
  * @par Port 2, optional, the rest configuration:
  * A mesh, as on port 1, with the cells and the number of points of port 1.
  *
+ * @par Port 3, optional, the reference image:
+ * vtkImageData whose grid the output has: its whole extent, origin, spacing and direction, also
+ * where nothing is covered. Any rotation, mirror image and spacing is allowed, as between a fixed
+ * and a moving image of registration. Only what its source announces in its information is used; it
+ * is never asked for data. OutputBoundsMode, CustomBounds, Padding, BoundsGranularity and
+ * OutputSpacingMode then have no effect, and a warning names those that are set. SamplingFactor
+ * leaves voxels of the volume out, and none of the output.
+ *
  * @par Output:
- * vtkImageData with the volume's origin and direction matrix, and by default its spacing; only the
- * extent differs (see OutputBoundsMode). An undeformed volume therefore comes out bit for bit
- * equal. A point array "vtkValidPointMask" (char) is 1 where the deformed volume covers a voxel
- * and 0 elsewhere, where the other arrays hold BackgroundValue. Each covered voxel is written by
- * exactly one tetrahedron; positions are rounded to 1/256 of an output voxel. Where tetrahedra
- * overlap, upright ones win over inverted ones and then the lowest cell; the result is the same
- * from run to run.
+ * Without port 3: vtkImageData with the volume's origin and direction matrix, and by default its
+ * spacing; only the extent differs (see OutputBoundsMode). An undeformed volume therefore comes out
+ * bit for bit equal. A point array "vtkValidPointMask" (char) is 1 where the deformed volume covers
+ * a voxel and 0 elsewhere, where the other arrays hold BackgroundValue. Each covered voxel is
+ * written by exactly one tetrahedron; positions are rounded to 1/256 of an output voxel. Where
+ * tetrahedra overlap, upright ones win over inverted ones and then the lowest cell; the result is
+ * the same from run to run.
  *
  * @par Parts and ranks:
  * The filter makes any extent of its output, and under MPI each rank makes its piece; voxels are
- * the same to the last bit however the output is divided. Where a part is asked for, and with
- * CUSTOM_BOUNDS, the input is asked only for the voxels that can land there, provided that all
- * sources of the volume can make parts (they say so with CAN_PRODUCE_SUB_EXTENT), that the
- * resampler is EXACT or AUTOMATIC, that OutsideMode is DISCARD for a
- * mesh, and that the volume has no smooth cut or SamplingFactor is above 1. AUTOMATIC is then
- * EXACT, even if the whole would not have fit into memory. Else, and with FieldIsInverse, the input
- * is asked for whole. Of the deformation mesh each rank may have a piece, none, or the whole: it is
- * gathered through vtkMultiProcessController::GetGlobalController(). A displacement field every
- * rank must be given whole. All ranks have to update together; an error of one is told on all.
- * Counts of voxels, tetrahedra and bricks are summed over the ranks: what two of them have counts
- * twice.
+ * the same to the last bit however the output is divided. Where a part is asked for, with
+ * CUSTOM_BOUNDS, and with a reference image, the input is asked only for the voxels that can land
+ * there, provided that all sources of the volume can make parts (they say so with
+ * CAN_PRODUCE_SUB_EXTENT), that the resampler is EXACT or AUTOMATIC,
+ * that OutsideMode is DISCARD for a mesh, and that the volume has no smooth cut or SamplingFactor
+ * is above 1. AUTOMATIC is then EXACT, even if the whole would not have fit into memory. Else, and
+ * with FieldIsInverse, the input is asked for whole. Of the deformation mesh each rank may have a
+ * piece, none, or the whole: it is gathered through
+ * vtkMultiProcessController::GetGlobalController(). A displacement field every rank must be given
+ * whole. All ranks have to update together; an error of one is told on all. Counts of voxels,
+ * tetrahedra and bricks are summed over the ranks: what two of them have counts twice.
  *
  * @par Errors:
  * Each failure is one vtkErrorMacro, which says what is wrong and what to do, at each update that
@@ -117,6 +125,14 @@ public:
    */
   void SetRestConnection(vtkAlgorithmOutput* output);
   void SetRestData(vtkDataObject* data);
+  ///@}
+
+  ///@{
+  /**
+   * Connect the reference image, whose grid the output has (port 3, optional).
+   */
+  void SetReferenceConnection(vtkAlgorithmOutput* output);
+  void SetReferenceData(vtkDataObject* data);
   ///@}
 
   ///@{
@@ -562,6 +578,7 @@ protected:
 
   vtkTypeBool ProcessRequest(
     vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+  int ModifyRequest(vtkInformation* request, int when) override;
   int ComputePipelineMTime(vtkInformation* request, vtkInformationVector** input,
     vtkInformationVector* output, int requestFromOutputPort, vtkMTimeType* mtime) override;
   int FillInputPortInformation(int port, vtkInformation* info) override;

@@ -46,8 +46,7 @@ std::pair<std::uint64_t, std::uint64_t> vtkDeformVolumeFilter::vtkInternals::Get
 IndexBounds vtkDeformVolumeFilter::vtkInternals::ComputeBounds(
   const ImageGeometry& volume, const DeformationSource& source)
 {
-  const deformvolume::VoxelGrid voxelGrid{ volume.PointExtent,
-    { { source.Scale.x, source.Scale.y, source.Scale.z } } };
+  const deformvolume::VoxelGrid voxelGrid{ volume.PointExtent, source.ToOutput, {} };
   const bool extrapolate = this->Self->OutsideMode == EXTRAPOLATE;
   if (this->State->Deformation.IsField() && this->State->Deformation.GetDeviceVectors())
   {
@@ -131,7 +130,7 @@ void vtkDeformVolumeFilter::vtkInternals::UpdateBoundsOfMesh(
   const deformvolume::RestMesh& mesh = this->State->Deformation.GetRestMesh();
   std::optional<std::vector<deformvolume::TetrahedronChange>> changes;
   const bool isSameGrid = this->State->BoundsGrid.VertexExtent == voxelGrid.VertexExtent &&
-    this->State->BoundsGrid.Scale == voxelGrid.Scale;
+    this->State->BoundsGrid.ToOutput == voxelGrid.ToOutput;
   if (isSameGrid && this->State->BoundsShapeVersion == mesh.GetShapeVersion())
   {
     if (this->State->BoundsConnectivityVersion == mesh.GetConnectivityVersion())
@@ -188,7 +187,7 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::GetDeformedBounds(
   }
   key.Volume = volume;
   const DeformationSource source = this->MakeSource(volume, nullptr, nullptr);
-  key.Scale = source.Scale;
+  key.ToOutput = source.ToOutput;
   key.DisplacementScale = source.DisplacementScale;
   key.Choice = source.Choice;
   key.OutsideMode = this->Self->OutsideMode;
@@ -268,7 +267,7 @@ void vtkDeformVolumeFilter::vtkInternals::HoldTime(
   using Pipeline = vtkStreamingDemandDrivenPipeline;
   this->ExtentBefore.reset();
   const deformvolume::Ranks ranks;
-  const bool isNew = !this->InformationFailure && this->Self->OutputBoundsMode == DEFORMED_BOUNDS &&
+  const bool isNew = !this->InformationFailure && this->EndsWithVolume() &&
     output->Has(Pipeline::UPDATE_TIME_STEP()) &&
     this->State->TimesInBounds.count(output->Get(Pipeline::UPDATE_TIME_STEP())) == 0 &&
     !this->State->TimesInBounds.empty();
@@ -329,7 +328,7 @@ void vtkDeformVolumeFilter::vtkInternals::KeepInBounds(const deformvolume::Ranks
   const ImageGeometry& volume, const DeformationSource& source, vtkInformation* output)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
-  if (this->Self->OutputBoundsMode != DEFORMED_BOUNDS)
+  if (!this->EndsWithVolume())
   {
     return;
   }

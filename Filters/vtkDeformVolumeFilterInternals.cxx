@@ -6,6 +6,7 @@
 #include "FieldFolds.h"
 #include "InputUpdate.h"
 #include "MaskArray.h"
+#include "OutputExtent.h"
 #include "OutsideMode.h"
 #include "ResamplerChoice.h"
 #include "VectorChoice.h"
@@ -15,7 +16,9 @@
 #include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
+#include "vtkInformation.h"
 #include "vtkPointData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
 #include <cmath>
@@ -158,9 +161,66 @@ void vtkDeformVolumeFilter::vtkInternals::CheckOutside() const
 }
 
 //------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::ReadReference(vtkInformation* reference)
+{
+  const std::optional<ImageGeometry> last = this->Reference;
+  this->Reference.reset();
+  if (!reference)
+  {
+    return;
+  }
+  if (!reference->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
+  {
+    throw Error("The reference image on input port 3 announces no whole extent. Connect a "
+                "vtkImageData; from a composite dataset, extract one block.");
+  }
+  const ImageGeometry geometry = deformvolume::GetGeometry(reference);
+  if (deformvolume::GetNumberOfPoints(geometry.PointExtent) == 0)
+  {
+    throw Error("The reference image is empty: its extent is " +
+      deformvolume::DescribeExtent(geometry.PointExtent) + ". Connect a vtkImageData with voxels.");
+  }
+  deformvolume::CheckTransform(geometry, "the reference image");
+  deformvolume::GetPadded(geometry.PointExtent, 0); // checks its size
+  this->Reference = geometry;
+  if (this->Reference != last)
+  {
+    // Another grid wants other voxels, and none of those before.
+    for (auto& state : this->States)
+    {
+      state.second.LastShare = {};
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::WarnOfReference()
+{
+  std::string names;
+  const auto add = [&](bool isSet, const char* name)
+  { names += isSet && this->Reference ? (names.empty() ? "" : ", ") + std::string(name) : ""; };
+  add(this->Self->OutputBoundsMode != DEFORMED_BOUNDS, "OutputBoundsMode");
+  add(this->Self->Padding != 0, "Padding");
+  add(this->Self->BoundsGranularity > 1, "BoundsGranularity");
+  add(this->Self->OutputSpacingMode != VOLUME_SPACING, "OutputSpacingMode");
+  if (!names.empty() && names != this->WarnedOfSettings)
+  {
+    vtkWarningWithObjectMacro(this->Self,
+      "The output has the grid of the reference image on input port 3. These settings have no "
+      "effect: "
+        << names << ". Disconnect the reference image where they are wanted.");
+  }
+  this->WarnedOfSettings = names;
+}
+
+//------------------------------------------------------------------------------
 ImageGeometry vtkDeformVolumeFilter::vtkInternals::GetOutputGeometry(
   const ImageGeometry& volume) const
 {
+  if (this->Reference)
+  {
+    return *this->Reference;
+  }
   ImageGeometry output = volume;
   output.PointExtent = ImageGeometry().PointExtent;
   if (this->Self->OutputSpacingMode == CUSTOM_SPACING)
@@ -201,7 +261,7 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::MakeSource(
     throw Error("DisplacementScale is not finite. Set a finite one.");
   }
   source.Volume = volume;
-  source.Scale = volume.Spacing / this->GetOutputGeometry(volume).Spacing;
+  source.ToOutput = deformvolume::GetOutputMap(volume, this->GetOutputGeometry(volume));
   return source;
 }
 

@@ -10,6 +10,7 @@
 #include "Ranks.h"
 
 #include "vtkDeformVolumeFilter.h"
+#include "vtkInformation.h"
 #include "vtkSmartPointer.h"
 
 #include <exception>
@@ -52,7 +53,18 @@ public:
   /// Bytes that all states hold on the device.
   std::uint64_t GetDeviceMemory() const;
 
-  /// The output's spacing and whole extent, as far as settings and volume decide them.
+  /// Reads what the source of the reference image announces; null: there is none. Throws an Error
+  /// where it has no grid.
+  void ReadReference(vtkInformation* reference);
+  /// Warns where settings are without effect beside the reference image.
+  void WarnOfReference();
+  /// Whether the output ends where the deformed volume does.
+  bool EndsWithVolume() const
+  {
+    return this->Self->OutputBoundsMode == DEFORMED_BOUNDS && !this->Reference;
+  }
+
+  /// The output's origin, spacing and direction; with a reference image, its extent as well.
   deformvolume::ImageGeometry GetOutputGeometry(const deformvolume::ImageGeometry& volume) const;
 
   deformvolume::DeformationSource MakeSource(
@@ -161,6 +173,10 @@ public:
   bool HadCut = false;
 
   deformvolume::PipelineExecution Execution;
+  /// That of the reference image, while the executive must not find it.
+  vtkSmartPointer<vtkInformation> ReferenceInfo;
+  /// The grid of the reference image, with its whole extent.
+  std::optional<deformvolume::ImageGeometry> Reference;
   /// What the last request for information has thrown.
   std::exception_ptr InformationFailure;
   /// Whether the output was too small, so that the next update has to execute the filter.
@@ -217,6 +233,7 @@ private:
   std::pair<const void*, vtkMTimeType> CutStamp;
 
   std::set<std::string> WarnedOf;
+  std::string WarnedOfSettings;
 };
 
 #endif

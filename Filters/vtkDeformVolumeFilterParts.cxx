@@ -65,7 +65,7 @@ bool vtkDeformVolumeFilter::vtkInternals::WantsPart(vtkInformation* output) cons
 {
   Extent whole;
   output->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole.data());
-  return this->Self->OutputBoundsMode == CUSTOM_BOUNDS ||
+  return this->Self->OutputBoundsMode == CUSTOM_BOUNDS || this->Reference ||
     deformvolume::GetRequestedPart(output) != whole;
 }
 
@@ -92,14 +92,13 @@ const RestRegions& vtkDeformVolumeFilter::vtkInternals::GetRegions(
 {
   const deformvolume::ExecutionState::RegionsKey key{
     this->State->Deformation.GetRestMesh().GetShapeVersion(),
-    this->State->Deformation.GetVectorsVersion(), volume, source.Scale,
+    this->State->Deformation.GetVectorsVersion(), volume, source.ToOutput,
     this->Self->OutsideMode == EXTRAPOLATE
   };
   if (!this->State->Regions || !(this->State->KeyOfRegions == key))
   {
     this->State->Deformation.BringToHost();
-    const deformvolume::VoxelGrid voxelGrid{ volume.PointExtent,
-      { { source.Scale.x, source.Scale.y, source.Scale.z } }, {} };
+    const deformvolume::VoxelGrid voxelGrid{ volume.PointExtent, source.ToOutput, {} };
     this->State->Regions = this->State->Deformation.IsField()
       ? std::make_unique<RestRegions>(voxelGrid, this->State->Deformation.GetField(key.Extrapolate))
       : std::make_unique<RestRegions>(voxelGrid, this->State->Deformation.GetRestPoints(),
@@ -123,8 +122,9 @@ Extent vtkDeformVolumeFilter::vtkInternals::KeepNeeded(
   Extent whole;
   output->Get(Pipeline::UPDATE_EXTENT(), asked.data());
   output->Get(Pipeline::WHOLE_EXTENT(), whole.data());
-  // With CUSTOM_BOUNDS other bounds want other voxels, and none of those before.
-  if (asked != whole || this->Self->OutputBoundsMode == CUSTOM_BOUNDS)
+  // With CUSTOM_BOUNDS other bounds want other voxels, and none of those before; and so do other
+  // reference images.
+  if (asked != whole || this->Self->OutputBoundsMode == CUSTOM_BOUNDS || this->Reference)
   {
     share.Asked = asked;
   }

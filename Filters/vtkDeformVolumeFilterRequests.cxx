@@ -11,11 +11,14 @@
 #include "WorldBoxes.h"
 
 #include "vtkDataObject.h"
+#include "vtkDemandDrivenPipeline.h"
+#include "vtkExecutive.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkLogger.h"
+#include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
@@ -32,6 +35,9 @@ using deformvolume::ImageGeometry;
 
 namespace
 {
+
+// That of the reference image. The ports before it have data, and it has a grid only.
+constexpr int ReferencePort = 3;
 
 // The time asked for, or else that of the first input that has one.
 void SetTimeStep(
@@ -105,6 +111,7 @@ vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
   }
   // The executive goes on to the data pass all the same, and on the ranks whose inputs have failed
   // it gets no further than these.
+  // (The reference image is asked for nothing in any case.)
   for (int port = 0; port < 2 && request->Has(Pipeline::REQUEST_UPDATE_EXTENT()); ++port)
   {
     if (vtkInformation* info = input[port]->GetInformationObject(0))
@@ -121,6 +128,28 @@ vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
   this->Internals->State->Outputs.Forget();
   this->Internals->FactorOfOutput = 0;
   return result;
+}
+
+//------------------------------------------------------------------------------
+int vtkDeformVolumeFilter::ModifyRequest(vtkInformation* request, int when)
+{
+  // The executive would have the source of the reference image make its data, of an empty extent.
+  if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
+  {
+    vtkInformationVector* reference = this->GetExecutive()->GetInputInformation(ReferencePort);
+    if (when == vtkExecutive::BeforeForward && reference->GetNumberOfInformationObjects() > 0)
+    {
+      this->Internals->ReferenceInfo = reference->GetInformationObject(0);
+      const vtkNew<vtkInformation> withoutProducer;
+      reference->SetInformationObject(0, withoutProducer);
+    }
+    else if (when == vtkExecutive::AfterForward && this->Internals->ReferenceInfo)
+    {
+      reference->SetInformationObject(0, this->Internals->ReferenceInfo);
+      this->Internals->ReferenceInfo = nullptr;
+    }
+  }
+  return this->Superclass::ModifyRequest(request, when);
 }
 
 //------------------------------------------------------------------------------
@@ -146,6 +175,7 @@ int vtkDeformVolumeFilter::RequestInformation(
     [&]
     {
       this->Internals->SelectState();
+      this->Internals->ReadReference(input[ReferencePort]->GetInformationObject(0));
       if (!volumeInfo->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
       {
         throw Error("The volume on input port 0 announces no whole extent. Connect a "
@@ -162,10 +192,15 @@ int vtkDeformVolumeFilter::RequestInformation(
       // Here, since ParaView's views complain, too, where data fail that were announced.
       deformvolume::DeviceSession::CheckDevice(this->Device);
     });
-  deformvolume::MergeTimes(this, outInfo);
+  deformvolume::MergeTimes(this, ReferencePort, outInfo);
 
   Extent whole;
-  if (this->OutputBoundsMode == DEFORMED_BOUNDS)
+  if (this->Internals->Reference)
+  {
+    this->Internals->ForgetDeformedExtent();
+    whole = outputGeometry.PointExtent;
+  }
+  else if (this->OutputBoundsMode == DEFORMED_BOUNDS)
   {
     whole = this->Internals->GetDeformedExtent(ranks, volume, outInfo);
   }
@@ -199,7 +234,12 @@ int vtkDeformVolumeFilter::RequestUpdateExtent(
   }
   this->Internals->SelectState();
   const deformvolume::Ranks ranks;
-  for (int port = 1; port < this->GetNumberOfInputPorts(); ++port)
+  // First, as another port that has the same source asks it for more.
+  if (input[ReferencePort]->GetNumberOfInformationObjects() > 0)
+  {
+    deformvolume::RequestNothing(input[ReferencePort]->GetInformationObject(0));
+  }
+  for (int port = 1; port < ReferencePort; ++port)
   {
     if (input[port]->GetNumberOfInformationObjects() > 0)
     {
@@ -211,7 +251,7 @@ int vtkDeformVolumeFilter::RequestUpdateExtent(
     this->Internals->GetNeededExtent(ranks, volumeInfo, output->GetInformationObject(0)));
   if (ranks.AreMany())
   {
-    deformvolume::UpdateRequested(this, input, ranks);
+    deformvolume::UpdateRequested(this, ReferencePort, input, ranks);
   }
   return 1;
 }
@@ -249,6 +289,7 @@ int vtkDeformVolumeFilter::RequestData(
     });
   const ImageGeometry& geometry = mapped.Whole;
   this->Internals->WarnOfCut(outInfo);
+  this->Internals->WarnOfReference();
   const DeformationSource source = this->Internals->ReadDeformation(
     ranks, geometry, vtkDataObject::GetData(input[1]), vtkDataObject::GetData(input[2]));
   deformvolume::Deformation& deformation = state.Deformation;
@@ -285,8 +326,7 @@ int vtkDeformVolumeFilter::RequestData(
   {
     return 1;
   }
-  deformvolume::VoxelGrid voxelGrid{ mapped.Part,
-    { { source.Scale.x, source.Scale.y, source.Scale.z } }, geometry.PointExtent };
+  deformvolume::VoxelGrid voxelGrid{ mapped.Part, source.ToOutput, geometry.PointExtent };
   deformvolume::DeviceSession& device = state.Device;
   const std::vector<deformvolume::VolumeArray> described =
     deformvolume::MakeVolumeArrays(arrays, this->BackgroundValue);
@@ -412,8 +452,12 @@ int vtkDeformVolumeFilter::RequestData(
   if (report.NumberOfCoveredVoxels == 0 && whole == request.OutputExtent)
   {
     vtkWarningMacro("The deformed volume covers no voxel of the output: all of it is background. "
-                    "Check the output bounds, and that the deformation mesh holds neighbouring "
-                    "voxels of the volume.");
+                    "Check "
+      << (this->Internals->Reference
+             ? "that the reference image lies where the deformed volume does, in the same world "
+               "coordinates,"
+             : "the output bounds,")
+      << " and that the deformation mesh holds neighbouring voxels of the volume.");
   }
   SetTimeStep(image, outInfo, { vtkDataObject::GetData(input[1]), volume });
   return 1;

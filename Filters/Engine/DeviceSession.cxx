@@ -114,7 +114,7 @@ void DeviceSession::SetVolume(const VoxelGrid& voxelGrid, vtkImageData* volume,
   }
   if (this->SentGrid.VertexExtent != voxelGrid.VertexExtent ||
     this->SentGrid.WholeExtent != voxelGrid.WholeExtent ||
-    this->SentGrid.Scale != voxelGrid.Scale || this->SentWidth < widest ||
+    this->SentGrid.ToOutput != voxelGrid.ToOutput || this->SentWidth < widest ||
     this->SentForLinks != links)
   {
     this->Forget();

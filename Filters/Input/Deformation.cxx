@@ -21,10 +21,15 @@ namespace deformvolume
 
 glm::dmat3 GetToDisplacement(const DeformationSource& source, double factor)
 {
-  glm::dmat3 transform(source.Volume.GetWorldToIndex());
+  const glm::dmat3 toVolume(source.Volume.GetWorldToIndex());
+  const OutputMap& toOutput = source.ToOutput;
+  const glm::dvec3 scale(toOutput.Get(0, 0), toOutput.Get(1, 1), toOutput.Get(2, 2));
+  const OutputTransform map(toOutput);
+  glm::dmat3 transform;
   for (int column = 0; column < 3; ++column)
   {
-    transform[column] *= source.Scale * factor;
+    transform[column] = toOutput.IsDiagonal() ? toVolume[column] * (scale * factor)
+                                              : map.GetMatrix() * toVolume[column] * factor;
     for (int row = 0; row < 3; ++row)
     {
       transform[column][row] = RoundFactor(transform[column][row]);
@@ -167,7 +172,7 @@ bool Deformation::HasSameUnits(const DeformationSource& source) const
 {
   const DeformationSource& last = this->VectorsSource;
   return source.DisplacementScale == last.DisplacementScale && source.Volume == last.Volume &&
-    source.Scale == last.Scale;
+    source.ToOutput == last.ToOutput;
 }
 
 PointRanges Deformation::GetChanges(std::uint64_t version) const

@@ -56,8 +56,8 @@ struct DeformationSource
   /// The whole name of a device with memory of its own that takes vectors where they lie there;
   /// empty: there is none.
   std::string Device;
-  /// Output voxels per voxel of the volume, axis by axis.
-  glm::dvec3 Scale{ 1.0 };
+  /// From indices of the volume to those of the output.
+  OutputMap ToOutput;
 };
 
 /// Takes vectors, times a factor, to displacements in output voxels. Its elements are rounded

@@ -44,6 +44,26 @@ double DropRoundingError(double value)
   return std::round(value * grain) / grain;
 }
 
+// Makes what takes indices of the volume what takes those of the output.
+glm::dmat4 FromOutput(const glm::dmat4& fromVolume, const OutputMap& toOutput)
+{
+  const OutputTransform transform(toOutput);
+  glm::dmat4 fromOutput = fromVolume;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (toOutput.IsDiagonal())
+    {
+      fromOutput[axis] /= toOutput.Get(axis, axis);
+    }
+    else
+    {
+      fromOutput[axis] = fromVolume * glm::dvec4(transform.GetInverse()[axis], 0.0);
+    }
+  }
+  fromOutput[3] -= fromOutput * glm::dvec4(transform.GetShift(), 0.0);
+  return fromOutput;
+}
+
 // The values of an array of floats that lies in memory tuple by tuple; null for others, and where
 // they would have to come from a device.
 const float* FindFloats(vtkDataArray* array)
@@ -130,9 +150,9 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
   const auto lastIndexToField = this->IndexToField;
   image->GetDimensions(this->FieldDimensions.data());
   glm::dmat4 toField = geometry.GetWorldToIndex() * source.Volume.GetIndexToWorld();
-  for (int axis = 0; axis < 3 && source.FieldIsInverse; ++axis)
+  if (source.FieldIsInverse)
   {
-    toField[axis] /= source.Scale[axis];
+    toField = FromOutput(toField, source.ToOutput);
   }
   for (int row = 0; row < 3; ++row)
   {
@@ -310,8 +330,7 @@ bool Deformation::UseFieldInPlace(vtkDataArray* array, const DeformationSource& 
   {
     return false;
   }
-  const VoxelGrid voxelGrid{ source.Volume.PointExtent,
-    { { source.Scale.x, source.Scale.y, source.Scale.z } }, {} };
+  const VoxelGrid voxelGrid{ source.Volume.PointExtent, source.ToOutput, {} };
   DisplacementField field;
   field.Dimensions = this->FieldDimensions;
   field.Vectors = floats;

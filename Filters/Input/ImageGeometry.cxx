@@ -16,6 +16,7 @@
 #include <glm/matrix.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 
@@ -29,6 +30,16 @@ namespace
 glm::dmat3 MakeDirection(const double* rows)
 {
   return glm::transpose(glm::make_mat3(rows));
+}
+
+// Products of matrices and their inverses miss the simple numbers that are meant. What is dropped
+// is far below the 2^-16 voxel of the kernels, over 10,000 voxels as well.
+double DropRoundingError(double value)
+{
+  constexpr double grain = 4096.0;
+  constexpr double tolerance = 1e-10;
+  const double simple = std::round(value * grain) / grain;
+  return std::abs(value - simple) < tolerance ? simple : value;
 }
 
 } // namespace
@@ -75,6 +86,26 @@ bool AreSamePlaces(const ImageGeometry& first, const ImageGeometry& second, cons
     same = same && distance.x <= tolerance && distance.y <= tolerance && distance.z <= tolerance;
   }
   return same;
+}
+
+OutputMap GetOutputMap(const ImageGeometry& image, const ImageGeometry& output)
+{
+  const bool isParallel = image.Direction == output.Direction;
+  const glm::dvec3 scale = image.Spacing / output.Spacing;
+  OutputMap map(std::array<double, 3>{ { scale.x, scale.y, scale.z } });
+  const glm::dmat3 toOutput(output.GetWorldToIndex());
+  const glm::dmat3 matrix = toOutput * glm::dmat3(image.GetIndexToWorld());
+  const glm::dvec3 shift = toOutput * (image.Origin - output.Origin);
+  for (int row = 0; row < 3; ++row)
+  {
+    for (int column = 0; column < 3 && !isParallel; ++column)
+    {
+      map.Matrix[static_cast<std::size_t>(3 * row + column)] =
+        DropRoundingError(matrix[column][row]);
+    }
+    map.Shift[static_cast<std::size_t>(row)] = DropRoundingError(shift[row]);
+  }
+  return map;
 }
 
 std::string DescribeTransform(const ImageGeometry& geometry)

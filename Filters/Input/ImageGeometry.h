@@ -3,6 +3,7 @@
 #define DeformVolumeImageGeometry_h
 
 #include "Extent.h"
+#include "VoxelGrid.h"
 
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
@@ -36,6 +37,11 @@ struct ImageGeometry
 /// Whether the points of an extent lie at the same places in the world, to a thousandth of the
 /// distance between them. The second geometry must have a transform that can be inverted.
 bool AreSamePlaces(const ImageGeometry& first, const ImageGeometry& second, const Extent& extent);
+
+/// What takes indices of an image to indices of another one. Rounding errors are dropped: two
+/// images whose axes are parallel have a diagonal matrix, and grids that lie over each other whole
+/// numbers.
+OutputMap GetOutputMap(const ImageGeometry& image, const ImageGeometry& output);
 
 /// Origin, spacing and direction, in words for an error.
 std::string DescribeTransform(const ImageGeometry& geometry);

@@ -131,9 +131,10 @@ vtkDataObject* UpdateInputPart(
   return Update(filter, port, request, ranks);
 }
 
-void UpdateRequested(vtkAlgorithm* filter, vtkInformationVector** input, const Ranks& ranks)
+void UpdateRequested(
+  vtkAlgorithm* filter, int ports, vtkInformationVector** input, const Ranks& ranks)
 {
-  for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
+  for (int port = 0; port < ports; ++port)
   {
     if (input[port]->GetNumberOfInformationObjects() == 0)
     {
@@ -239,11 +240,11 @@ std::vector<double> GetTimes(vtkInformation* input)
   return {};
 }
 
-void MergeTimes(vtkAlgorithm* filter, vtkInformation* output)
+void MergeTimes(vtkAlgorithm* filter, int ports, vtkInformation* output)
 {
   std::set<double> steps;
   std::set<double> ends;
-  for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
+  for (int port = 0; port < ports; ++port)
   {
     if (filter->GetNumberOfInputConnections(port) == 0)
     {

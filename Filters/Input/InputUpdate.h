@@ -36,10 +36,11 @@ void RequestExtent(vtkInformation* input, const Extent& extent);
 /// at 0, an empty extent there would be an error of its own.
 void RequestNothing(vtkInformation* input);
 
-/// Brings all inputs up to date with what they have been asked for. The executive would do it, too;
-/// but where a source fails on one rank, the executive ends the data pass on that rank alone.
-/// Throws an Error, on all ranks. Collective.
-void UpdateRequested(vtkAlgorithm* filter, vtkInformationVector** input, const Ranks& ranks);
+/// Brings the inputs of the first ports up to date with what they have been asked for. The
+/// executive would do it, too; but where a source fails on one rank, the executive ends the data
+/// pass on that rank alone. Throws an Error, on all ranks. Collective.
+void UpdateRequested(
+  vtkAlgorithm* filter, int ports, vtkInformationVector** input, const Ranks& ranks);
 
 /// The part of the output that is asked for while requests go upstream: of the extent the piece,
 /// with its ghost levels.
@@ -63,8 +64,8 @@ vtkDataObject* UpdateInputPart(
 /// none for one that does not vary.
 std::vector<double> GetTimes(vtkInformation* input);
 
-/// Gives the output the time steps and the range of all inputs.
-void MergeTimes(vtkAlgorithm* filter, vtkInformation* output);
+/// Gives the output the time steps and the range of the inputs of the first ports.
+void MergeTimes(vtkAlgorithm* filter, int ports, vtkInformation* output);
 
 } // namespace deformvolume
 

@@ -57,10 +57,18 @@ typedef struct
   int HasActive;       // whether a mask of active tetrahedra is there
   int HasBlanked;      // whether a mask of blanked voxels is there
   int HasDistances;    // whether there are boundary distances
-  // Voxels of the volume an output voxel, as a sum of two floats.
-  float InverseScale[3];
-  float InverseScaleRest[3];
+  // What takes an output index to one of the volume: Inverse * index - Offset. Row-major 3 x 3,
+  // each element the sum of two floats. HasTurnedAxes: whether it is not diagonal.
+  float Inverse[9];
+  float InverseRest[9];
+  float Offset[3];
+  float OffsetRest[3];
+  int HasTurnedAxes;
 } RasterParameters;
+
+#define INVERSE_ELEMENT(p, row, column)                                                            \
+  ((REAL)(p)->Inverse[3 * (row) + (column)] + (REAL)(p)->InverseRest[3 * (row) + (column)])
+#define OFFSET_ELEMENT(p, row) ((REAL)(p)->Offset[row] + (REAL)(p)->OffsetRest[row])
 
 // A corner of a piece at the boundary of the deformation mesh (MeshBoundary).
 typedef struct

@@ -2,6 +2,7 @@
 #include "TetrahedronLists.h"
 
 #include "HostMemory.h"
+#include "IndexBounds.h" // for GetOutputTransform
 #include "WorkDevice.h"
 
 #include <algorithm>
@@ -36,17 +37,28 @@ RasterParameters MakeTiles(const Extent& slab, std::size_t numberOfTetrahedra)
   return p;
 }
 
-void SetInverseScale(const VoxelGrid& grid, RasterParameters& parameters)
+void SetInverse(const VoxelGrid& grid, RasterParameters& parameters)
 {
-  for (int axis = 0; axis < 3; ++axis)
+  const OutputTransform transform = GetOutputTransform(grid);
+  const auto split = [](double value, float& sum, float& rest)
   {
-    const double inverse = 1.0 / grid.Scale[axis];
-    // Volatile, as GCC 12 leaves out the rounding where it makes vectors of this loop: what misses
-    // is zero then.
-    const volatile float rounded = static_cast<float>(inverse);
-    parameters.InverseScale[axis] = rounded;
-    parameters.InverseScaleRest[axis] = static_cast<float>(inverse - rounded);
+    // Volatile, as GCC 12 leaves out the rounding where it makes vectors of a loop: what misses is
+    // zero then.
+    const volatile float rounded = static_cast<float>(value);
+    sum = rounded;
+    rest = static_cast<float>(value - rounded);
+  };
+  const glm::dvec3 offset = -transform.ToIndex(glm::dvec3(0.0));
+  for (int row = 0; row < 3; ++row)
+  {
+    for (int column = 0; column < 3; ++column)
+    {
+      split(transform.GetInverse()[column][row], parameters.Inverse[3 * row + column],
+        parameters.InverseRest[3 * row + column]);
+    }
+    split(offset[row], parameters.Offset[row], parameters.OffsetRest[row]);
   }
+  parameters.HasTurnedAxes = !grid.ToOutput.IsDiagonal();
 }
 
 TetrahedronLists::Counts TetrahedronLists::Make(WorkDevice& device, const cl::Buffer& tetrahedra,

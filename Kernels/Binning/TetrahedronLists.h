@@ -19,8 +19,8 @@ class WorkDevice;
 /// The tiles of a slab of the output, for so many tetrahedra.
 RasterParameters MakeTiles(const Extent& slab, std::size_t numberOfTetrahedra);
 
-/// Sets how many voxels of the volume an output voxel is long, as the sum of two floats.
-void SetInverseScale(const VoxelGrid& grid, RasterParameters& parameters);
+/// Sets what leads from the output to the volume.
+void SetInverse(const VoxelGrid& grid, RasterParameters& parameters);
 
 /// For each tile of the output the tetrahedra of the deformation mesh that may hold some of its
 /// voxels, upright ones first, then inverted ones, each in ascending order (TetrahedronBinning.cl).

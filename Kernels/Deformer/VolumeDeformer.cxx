@@ -27,10 +27,15 @@ void CheckGrid(const VoxelGrid& voxelGrid)
     {
       throw Error("A volume needs at least two voxels on each axis.");
     }
-    if (!(voxelGrid.Scale[axis] > 0.0) || !std::isfinite(voxelGrid.Scale[axis]))
-    {
-      throw Error("The ratio of the spacings must be greater than 0.");
-    }
+  }
+  const OutputMap& map = voxelGrid.ToOutput;
+  const auto isFinite = [](double element) { return std::isfinite(element); };
+  const double determinant = map.GetDeterminant();
+  if (!std::all_of(map.Matrix.begin(), map.Matrix.end(), isFinite) ||
+    !std::all_of(map.Shift.begin(), map.Shift.end(), isFinite) || !isFinite(determinant) ||
+    determinant == 0.0)
+  {
+    throw Error("The matrix from the volume to the output must be finite and have an inverse.");
   }
 }
 

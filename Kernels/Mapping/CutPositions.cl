@@ -184,15 +184,20 @@ __kernel void FindCutStencils(__global const uchar* state, __global const uchar*
   stencils[i] = (uint2)(heard[word], word);
 }
 
-static int3 RestOf(const Mapping* m, int3 at, const KernelParameters* p)
+static int3 WholeRestOf(const Mapping* m, int3 at, const KernelParameters* p)
 {
-  return (int3)(m->Rest[at.x].Whole, m->Rest[p->Size[0] + at.y].Whole, m->Rest[p->Size[0] + p->Size[1] + at.z].Whole);
+  const Rest rest = RestOf(m, at.x, at.y, at.z, p);
+#if HAS_TURNED_AXES
+  return rest.Whole.xyz + convert_int3_rte(rest.Fraction.xyz); // up to three in these
+#else
+  return rest.Whole.xyz;
+#endif
 }
 
 // How far a vertex is from where it rests, in 1/256 output voxel.
 static int3 StepsOf(const Mapping* m, int3 at, const KernelParameters* p)
 {
-  return PositionOf(m, at.x, at.y, at.z, p).xyz - RestOf(m, at, p);
+  return PositionOf(m, at.x, at.y, at.z, p).xyz - WholeRestOf(m, at, p);
 }
 
 // To the nearest whole number, upwards in the middle.
@@ -252,7 +257,7 @@ static int4 OtherPosition(const Mapping* m, int3 at, uint2 stencil, int3 own, co
   const int count = popcount(stencil.x);
   const int3 mean =
     (int3)(DivideRounded(sum.x, count), DivideRounded(sum.y, count), DivideRounded(sum.z, count));
-  const int3 other = RestOf(m, at, p) + mean;
+  const int3 other = WholeRestOf(m, at, p) + mean;
   const int isNear = all(abs_diff(other, own) <= (uint3)(DEFORMVOLUME_CLOSED_GAP));
   return isNear ? (int4)(own, 0) : (int4)(other, 1);
 }

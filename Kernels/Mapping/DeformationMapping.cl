@@ -16,8 +16,10 @@
 //   MAPPING_FIELD_IN_PLACE
 //                  vectors: three floats a point of the field, each voxel being one; a matrix takes
 //                  them to displacements in output voxels
-// and rest: for each index on x, then y, then z the undeformed position as a whole number of 1/256
-// output voxels and what misses to it.
+// and HAS_TURNED_AXES: whether axes of the volume are not those of the output.
+//
+// rest: for each index on x, then y, then z the undeformed position as a whole number of 1/256
+// output voxels and what misses to it (RestPosition, or RestVector where axes are turned).
 
 #pragma OPENCL FP_CONTRACT OFF
 
@@ -25,6 +27,12 @@
 #define MAPPING_RUNS 1
 #define MAPPING_FIELD 2
 #define MAPPING_FIELD_IN_PLACE 3
+
+#if HAS_TURNED_AXES
+typedef RestVector RestEntry;
+#else
+typedef RestPosition RestEntry;
+#endif
 
 typedef struct
 {
@@ -78,7 +86,7 @@ static float3 FieldIndex(const FieldParameters* field, int3 index)
 
 #define MAPPING_PARAMETERS                                                                         \
   __global const VertexLink *restrict links, __global const int4 *restrict tetrahedra,             \
-    __global const float4 *restrict nodes, __global const RestPosition *restrict rest
+    __global const float4 *restrict nodes, __global const RestEntry *restrict rest
 #define MAPPING_ARGUMENTS { links, tetrahedra, nodes, rest }
 
 typedef struct
@@ -86,7 +94,7 @@ typedef struct
   __global const VertexLink* Links;
   __global const int4* Tetrahedra;
   __global const float4* Nodes;
-  __global const RestPosition* Rest;
+  __global const RestEntry* Rest;
 } Mapping;
 
 // The displacement of a linked vertex.
@@ -117,7 +125,7 @@ static int IsMoved(const Mapping* m, int x, int y, int z, const KernelParameters
 
 #define MAPPING_PARAMETERS                                                                         \
   __global const VertexRun *restrict runs, __global const uint *restrict rowRanges,                \
-    __global const TetrahedronRecord *restrict records, __global const RestPosition *restrict rest
+    __global const TetrahedronRecord *restrict records, __global const RestEntry *restrict rest
 #define MAPPING_ARGUMENTS { runs, rowRanges, records, rest }
 
 typedef struct
@@ -125,7 +133,7 @@ typedef struct
   __global const VertexRun* Runs;
   __global const uint* RowRanges;
   __global const TetrahedronRecord* Records;
-  __global const RestPosition* Rest;
+  __global const RestEntry* Rest;
 } Mapping;
 
 // The runs of a row: the first one, and one past the last.
@@ -158,14 +166,14 @@ static int IsMoved(const Mapping* m, int x, int y, int z, const KernelParameters
 
 #define MAPPING_PARAMETERS                                                                         \
   __global const float *restrict vectors, const FieldParameters field,                             \
-    __global const RestPosition *restrict rest
+    __global const RestEntry *restrict rest
 #define MAPPING_ARGUMENTS { vectors, field, rest }
 
 typedef struct
 {
   __global const float* Vectors;
   FieldParameters Field;
-  __global const RestPosition* Rest;
+  __global const RestEntry* Rest;
 } Mapping;
 
 static size_t PointOf(const FieldParameters* field, int x, int y, int z)
@@ -210,14 +218,14 @@ static int IsMoved(const Mapping* m, int x, int y, int z, const KernelParameters
 
 #define MAPPING_PARAMETERS                                                                         \
   __global const float4 *restrict vectors, const FieldParameters field,                            \
-    __global const RestPosition *restrict rest
+    __global const RestEntry *restrict rest
 #define MAPPING_ARGUMENTS { vectors, field, rest }
 
 typedef struct
 {
   __global const float4* Vectors;
   FieldParameters Field;
-  __global const RestPosition* Rest;
+  __global const RestEntry* Rest;
 } Mapping;
 
 static float4 Displacement(const Mapping* m, int x, int y, int z, const KernelParameters* p)
@@ -249,14 +257,35 @@ static int IsMoved(const Mapping* m, int x, int y, int z, const KernelParameters
 
 #endif
 
+// Where a vertex is undeformed, in 1/256 of an output voxel: whole numbers, and what misses.
+typedef struct
+{
+  int4 Whole;
+  float4 Fraction;
+} Rest;
+
+static Rest RestOf(const Mapping* m, int x, int y, int z, const KernelParameters* p)
+{
+  const RestEntry rx = m->Rest[x];
+  const RestEntry ry = m->Rest[p->Size[0] + y];
+  const RestEntry rz = m->Rest[p->Size[0] + p->Size[1] + z];
+#if HAS_TURNED_AXES
+#define SUM_OF_REST(part, axis) (rx.part[axis] + (ry.part[axis] + rz.part[axis]))
+  const Rest rest = { (int4)(SUM_OF_REST(Whole, 0), SUM_OF_REST(Whole, 1), SUM_OF_REST(Whole, 2), 0),
+    (float4)(SUM_OF_REST(Fraction, 0), SUM_OF_REST(Fraction, 1), SUM_OF_REST(Fraction, 2), 0.0f) };
+#else
+  const Rest rest = { (int4)(rx.Whole, ry.Whole, rz.Whole, 0),
+    (float4)(rx.Fraction, ry.Fraction, rz.Fraction, 0.0f) };
+#endif
+  return rest;
+}
+
 // The position of a vertex that has one, in 1/256 of an output voxel.
 static int4 PositionOf(const Mapping* m, int x, int y, int z, const KernelParameters* p)
 {
-  const RestPosition rx = m->Rest[x];
-  const RestPosition ry = m->Rest[p->Size[0] + y];
-  const RestPosition rz = m->Rest[p->Size[0] + p->Size[1] + z];
+  const Rest rest = RestOf(m, x, y, z, p);
   // This product is not rounded.
-  const float4 steps = RoundSteps_float4(Displacement(m, x, y, z, p) * 256.0f +
-    (float4)(rx.Fraction, ry.Fraction, rz.Fraction, 0.0f), 1.0f);
-  return (int4)(rx.Whole, ry.Whole, rz.Whole, 0) + convert_int4(steps);
+  const float4 steps =
+    RoundSteps_float4(Displacement(m, x, y, z, p) * 256.0f + rest.Fraction, 1.0f);
+  return rest.Whole + convert_int4(steps);
 }

@@ -209,7 +209,7 @@ IndexBounds ComputeBoundsOfVoxels(
   const VoxelGrid& voxelGrid, const DisplacementField& field, const FieldGeometry& geometry)
 {
   const Extent& extent = voxelGrid.VertexExtent;
-  const glm::dvec3 scale = GetScale(voxelGrid);
+  const OutputTransform transform = GetOutputTransform(voxelGrid);
   return ComputeInParallel(GetSize(extent, 1) * GetSize(extent, 2),
     [&](std::int64_t row, IndexBounds& bounds)
     {
@@ -225,7 +225,7 @@ IndexBounds ComputeBoundsOfVoxels(
         {
           continue;
         }
-        const glm::dvec3 moved = scale * index + Interpolate(field, position);
+        const glm::dvec3 moved = transform.ToOutput(index) + Interpolate(field, position);
         if (IsFinite(moved))
         {
           bounds.Add(moved);
@@ -255,7 +255,7 @@ IndexBounds ComputeBoundsOfCells(
   reach.Min = glm::min(reach.Min, glm::dvec3(0.0)) - FieldTolerance;
   reach.Max = glm::max(reach.Max, geometry.Last) + FieldTolerance;
 
-  const glm::dvec3 scale = GetScale(voxelGrid);
+  const OutputTransform transform = GetOutputTransform(voxelGrid);
   std::int64_t cells[3];
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -303,8 +303,9 @@ IndexBounds ComputeBoundsOfCells(
       }
       if (!displacement.IsEmpty())
       {
-        bounds.Add(scale * rest.Min + displacement.Min);
-        bounds.Add(scale * rest.Max + displacement.Max);
+        const IndexBounds place = transform.ToOutput(rest);
+        bounds.Add(place.Min + displacement.Min);
+        bounds.Add(place.Max + displacement.Max);
       }
     });
 }
@@ -317,7 +318,7 @@ IndexBounds ComputeDeformedBounds(const VoxelGrid& voxelGrid, const std::vector<
   const Extent& extent = voxelGrid.VertexExtent;
   const std::int64_t size = GetSize(extent, 0);
   const std::int64_t rows = size > 0 ? GetSize(extent, 1) * GetSize(extent, 2) : 0;
-  const glm::dvec3 scale = GetScale(voxelGrid);
+  const OutputTransform transform = GetOutputTransform(voxelGrid);
   return ComputeInParallel(rows,
     [&](std::int64_t row, IndexBounds& bounds)
     {
@@ -341,7 +342,7 @@ IndexBounds ComputeDeformedBounds(const VoxelGrid& voxelGrid, const std::vector<
         }
         sum += last * GetVector(displacements, nodes[3]);
         index.x = static_cast<double>(extent[0] + x);
-        const glm::dvec3 moved = scale * index + sum;
+        const glm::dvec3 moved = transform.ToOutput(index) + sum;
         if (IsFinite(moved))
         {
           bounds.Add(moved);

@@ -3,6 +3,7 @@
 
 #include "Error.h"
 #include "FiveTetrahedra.h"
+#include "IndexBounds.h"
 #include "KernelText.h"
 #include "MappingProgram.h"
 #include "ParallelFor.h"
@@ -13,6 +14,60 @@
 
 namespace deformvolume
 {
+
+namespace
+{
+
+/// Of the output: 1/256 of it then fits into 32 bits, with differences.
+constexpr double MostIndex = 1 << 21;
+
+template <typename Entry>
+cl::Buffer MakeBuffer(const OpenCLContext& context, std::vector<Entry> entries)
+{
+  return cl::Buffer(context.GetContext(), CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR,
+    entries.size() * sizeof(Entry), entries.data());
+}
+
+/// For each index on x, then y, then z.
+std::vector<RestVector> MakeRestVectors(const VoxelGrid& grid, const OutputTransform& transform)
+{
+  // In 2^-16 voxel, as they are in the whole volume.
+  const auto getPart = [&](int axis, int index)
+  {
+    glm::dvec3 part = transform.GetMatrix()[axis] * static_cast<double>(index);
+    part += axis == 0 ? transform.GetShift() : glm::dvec3(0.0);
+    return glm::i64vec3(glm::round(65536.0 * part));
+  };
+  const auto getWhole = [](std::int64_t part) { return (part - (part & 255)) / 256; };
+  const Extent& extent = grid.VertexExtent;
+  std::vector<RestVector> vectors;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    for (int index = extent[2 * axis]; index <= extent[2 * axis + 1]; ++index)
+    {
+      RestVector vector;
+      for (int row = 0; row < 3; ++row)
+      {
+        const std::int64_t part = getPart(axis, index)[row];
+        std::int64_t whole = getWhole(part);
+        if (axis == 0)
+        {
+          whole += getWhole(getPart(1, extent[2])[row]) + getWhole(getPart(2, extent[4])[row]);
+        }
+        else
+        {
+          whole -= getWhole(getPart(axis, extent[2 * axis])[row]);
+        }
+        vector.Whole[row] = static_cast<std::int32_t>(whole);
+        vector.Fraction[row] = static_cast<float>(part & 255) / 256.0F;
+      }
+      vectors.push_back(vector);
+    }
+  }
+  return vectors;
+}
+
+} // namespace
 
 bool IsUsedInPlace(const OpenCLContext& context, const VolumeArray& array)
 {
@@ -86,25 +141,34 @@ DeviceVolume::DeviceVolume(OpenCLContext& context, const cl::CommandQueue& queue
 
 cl::Buffer DeviceVolume::MakeRestPositions() const
 {
+  const OutputTransform transform = GetOutputTransform(this->Shape);
+  const IndexBounds bounds = transform.ToOutput(GetBox(this->Shape));
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (!(std::abs(bounds.Min[axis]) <= MostIndex && std::abs(bounds.Max[axis]) <= MostIndex))
+    {
+      throw Error("The output would have indices beyond 2^21. Use a coarser output spacing, or a "
+                  "volume whose extent starts nearer to 0.");
+    }
+  }
+  if (this->HasTurnedAxes())
+  {
+    return MakeBuffer(this->Context, MakeRestVectors(this->Shape, transform));
+  }
   std::vector<RestPosition> positions;
   for (int axis = 0; axis < 3; ++axis)
   {
     for (int i = 0; i < this->GetSize(axis); ++i)
     {
-      const double position =
-        256.0 * this->Shape.Scale[axis] * (this->Shape.VertexExtent[2 * axis] + double(i));
+      const double position = 256.0 * transform.GetMatrix()[axis][axis] *
+          (this->Shape.VertexExtent[2 * axis] + double(i)) +
+        256.0 * transform.GetShift()[axis];
       const double whole = std::floor(position);
-      if (std::abs(whole) > 256.0 * (1 << 21))
-      {
-        throw Error("The output would have indices beyond 2^21. Use a coarser output spacing, or a "
-                    "volume whose extent starts nearer to 0.");
-      }
       positions.push_back(
         { static_cast<std::int32_t>(whole), static_cast<float>(position - whole) });
     }
   }
-  return cl::Buffer(this->Context.GetContext(), CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR,
-    positions.size() * sizeof(RestPosition), positions.data());
+  return MakeBuffer(this->Context, positions);
 }
 
 cl::Buffer DeviceVolume::Send(const void* data, std::size_t bytesPerElement,
@@ -499,7 +563,8 @@ std::vector<Extent> DeviceVolume::UpdateBridges(MappingForm mapping, const cl::B
   {
     return changes;
   }
-  const cl::Program program = GetBridgeProgram(this->Context, mapping, this->HasCut());
+  const cl::Program program =
+    GetBridgeProgram(this->Context, mapping, this->HasCut(), this->HasTurnedAxes());
   for (VolumeChunk& chunk : this->Chunks)
   {
     // Any buffer stands in for a missing one.
@@ -526,6 +591,7 @@ KernelParameters DeviceVolume::GetParameters(const VolumeChunk& chunk) const
     p.BrickOrigin[axis] = this->Bricks.Origin[axis];
     p.BrickCount[axis] = this->Bricks.Count[axis];
   }
+  p.IsMirrored = this->Shape.ToOutput.GetDeterminant() < 0.0;
   p.ChunkFirst = chunk.PlanesBegin;
   p.PlanesBegin = chunk.PlanesBegin;
   p.PlanesEnd = chunk.PlanesEnd;

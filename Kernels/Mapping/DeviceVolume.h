@@ -135,8 +135,11 @@ public:
   std::uint64_t GetRunBytes() const { return this->Mapping.GetRunBytes(); }
   const std::vector<VolumeChunk>& GetChunks() const { return this->Chunks; }
 
-  /// For each index on x, then y, then z the undeformed position (RestPosition in
-  /// DeformationMapping.cl).
+  /// Whether axes of the volume are not those of the output: HAS_TURNED_AXES in the programs that
+  /// read undeformed positions.
+  bool HasTurnedAxes() const { return !this->Shape.ToOutput.IsDiagonal(); }
+  /// For each index on x, then y, then z the undeformed position (RestPosition or RestVector in
+  /// KernelParameters.h).
   const cl::Buffer& GetRestPositions() const { return this->RestPositions; }
 
   /// Those that the runs refer to.

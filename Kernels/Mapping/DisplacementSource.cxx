@@ -490,8 +490,8 @@ cl_uint DisplacementSource::SetPointArguments(
 void DisplacementSource::PrepareMapping(
   std::vector<cl::Event>& events, const std::vector<cl_uint>* bricks)
 {
-  const cl::Program mapping =
-    GetMappingProgram(this->Device.GetContext(), this->GetMappingForm(), this->Volume.HasCut());
+  const cl::Program mapping = GetMappingProgram(this->Device.GetContext(), this->GetMappingForm(),
+    this->Volume.HasCut(), this->Volume.HasTurnedAxes());
   TetrahedronRecords& records = this->Volume.GetRecords();
   if (this->Volume.HasRuns() && !records.AreCurrent())
   {

@@ -291,12 +291,13 @@ void FadedLinks::FindBlocks(
 IndexBounds FadedLinks::ComputeBounds(const VoxelGrid& voxelGrid,
   const std::vector<Tetrahedron>& tetrahedra, const float* displacements) const
 {
-  const glm::dvec3 scale = GetScale(voxelGrid);
+  const OutputTransform transform = GetOutputTransform(voxelGrid);
   const auto move = [&](const Extent& voxels, double weight, const IndexBounds& displacement)
   {
-    IndexBounds moved;
-    moved.Add(scale * glm::dvec3(voxels[0], voxels[2], voxels[4]) + weight * displacement.Min);
-    moved.Add(scale * glm::dvec3(voxels[1], voxels[3], voxels[5]) + weight * displacement.Max);
+    IndexBounds moved = transform.ToOutput(IndexBounds{
+      glm::dvec3(voxels[0], voxels[2], voxels[4]), glm::dvec3(voxels[1], voxels[3], voxels[5]) });
+    moved.Min += weight * displacement.Min;
+    moved.Max += weight * displacement.Max;
     return moved;
   };
   const auto add = [&](const TetrahedronFace& face, IndexBounds& displacement)

@@ -32,6 +32,7 @@ public:
     : Field(field)
     , Factors(GetFactors(field))
   {
+    const OutputTransform transform = GetOutputTransform(voxelGrid);
     for (int axis = 0; axis < 3; ++axis)
     {
       const int offset = static_cast<int>(field.IndexToField[4 * axis + 3]);
@@ -39,7 +40,8 @@ public:
       this->End[axis] = voxelGrid.VertexExtent[2 * axis + 1] + offset + 1;
       for (int i = 0; i < field.Dimensions[axis]; ++i)
       {
-        this->Rest[axis].push_back(voxelGrid.Scale[axis] * (static_cast<double>(i) - offset));
+        this->Rest[axis].push_back(transform.GetMatrix()[axis] * (static_cast<double>(i) - offset) +
+          (axis == 0 ? transform.GetShift() : glm::dvec3(0.0)));
       }
     }
   }
@@ -105,7 +107,7 @@ private:
   }
   glm::dvec3 GetPlace(int x, int y, int z) const
   {
-    return glm::dvec3(this->Rest[0][x], this->Rest[1][y], this->Rest[2][z]);
+    return this->Rest[0][x] + this->Rest[1][y] + this->Rest[2][z];
   }
   // Whether a row has voxels, and not only other points of the field.
   bool HasVoxels(int y, int z) const
@@ -140,9 +142,11 @@ private:
     }
     if (areVoxels)
     {
-      box.Add(this->GetPlace(x, y, z) + glm::dvec3(range.Least[0], range.Least[1], range.Least[2]));
-      box.Add(this->GetPlace(end - 1, y, z) +
-        glm::dvec3(range.Greatest[0], range.Greatest[1], range.Greatest[2]));
+      IndexBounds places;
+      places.Add(this->GetPlace(x, y, z));
+      places.Add(this->GetPlace(end - 1, y, z));
+      box.Add(places.Min + glm::dvec3(range.Least[0], range.Least[1], range.Least[2]));
+      box.Add(places.Max + glm::dvec3(range.Greatest[0], range.Greatest[1], range.Greatest[2]));
     }
     return true;
   }
@@ -152,7 +156,8 @@ private:
   // The voxels, counted from the field's first point.
   std::array<int, 3> Begin;
   std::array<int, 3> End;
-  std::array<std::vector<double>, 3> Rest; // positions at each index of the field
+  // For each index on an axis of the field what it adds to the position of a voxel.
+  std::array<std::vector<glm::dvec3>, 3> Rest;
 };
 
 } // namespace

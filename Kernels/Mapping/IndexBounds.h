@@ -8,6 +8,7 @@
 
 #include <glm/common.hpp>
 #include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 #include <glm/vec3.hpp>
 
 #include <cmath>
@@ -53,9 +54,81 @@ inline IndexBounds GetBox(const VoxelGrid& voxelGrid)
   return box;
 }
 
-inline glm::dvec3 GetScale(const VoxelGrid& voxelGrid)
+/// VoxelGrid::ToOutput, for points, boxes and the way back.
+class OutputTransform
 {
-  return glm::dvec3(voxelGrid.Scale[0], voxelGrid.Scale[1], voxelGrid.Scale[2]);
+public:
+  explicit OutputTransform(const OutputMap& map)
+    : Shift(map.Shift[0], map.Shift[1], map.Shift[2])
+    , IsDiagonal(map.IsDiagonal())
+  {
+    for (int row = 0; row < 3; ++row)
+    {
+      for (int column = 0; column < 3; ++column)
+      {
+        this->Matrix[column][row] = map.Get(row, column);
+      }
+    }
+    this->Scale = glm::dvec3(this->Matrix[0].x, this->Matrix[1].y, this->Matrix[2].z);
+    if (this->IsDiagonal)
+    {
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        this->Inverse[axis][axis] = 1.0 / this->Scale[axis];
+      }
+    }
+    else
+    {
+      this->Inverse = glm::inverse(this->Matrix);
+    }
+  }
+
+  glm::dvec3 ToOutput(const glm::dvec3& index) const
+  {
+    return (this->IsDiagonal ? this->Scale * index : this->Matrix * index) + this->Shift;
+  }
+  glm::dvec3 ToIndex(const glm::dvec3& position) const
+  {
+    const glm::dvec3 moved = position - this->Shift;
+    return this->IsDiagonal ? moved / this->Scale : this->Inverse * moved;
+  }
+  /// What the places of a box lie between.
+  IndexBounds ToOutput(const IndexBounds& box) const
+  {
+    IndexBounds bounds;
+    bounds.Min = bounds.Max = this->Shift;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const glm::dvec3 first = this->Matrix[axis] * box.Min[axis];
+      const glm::dvec3 last = this->Matrix[axis] * box.Max[axis];
+      bounds.Min += glm::min(first, last);
+      bounds.Max += glm::max(first, last);
+    }
+    return bounds;
+  }
+  const glm::dmat3& GetMatrix() const { return this->Matrix; }
+  const glm::dmat3& GetInverse() const { return this->Inverse; }
+  const glm::dvec3& GetShift() const { return this->Shift; }
+  /// By how many voxels of the volume, on each of its axes, a place may be off where it is off by
+  /// some output voxels on each axis of the output; one at most.
+  glm::dvec3 GetTolerance(double ofOutput) const
+  {
+    const glm::dvec3 sum =
+      glm::abs(this->Inverse[0]) + glm::abs(this->Inverse[1]) + glm::abs(this->Inverse[2]);
+    return glm::min(glm::dvec3(1.0), sum * ofOutput);
+  }
+
+private:
+  glm::dmat3 Matrix{ 1.0 };
+  glm::dmat3 Inverse{ 1.0 };
+  glm::dvec3 Scale{ 1.0 };
+  glm::dvec3 Shift;
+  bool IsDiagonal;
+};
+
+inline OutputTransform GetOutputTransform(const VoxelGrid& voxelGrid)
+{
+  return OutputTransform(voxelGrid.ToOutput);
 }
 
 inline bool IsFinite(const glm::dvec3& v)

@@ -7,8 +7,10 @@
 
 namespace deformvolume
 {
+namespace
+{
 
-ProgramText GetMappingText(MappingForm mapping)
+ProgramText GetFormText(MappingForm mapping)
 {
   switch (mapping)
   {
@@ -25,19 +27,29 @@ ProgramText GetMappingText(MappingForm mapping)
   }
 }
 
-cl::Program GetMappingProgram(OpenCLContext& context, MappingForm mapping, bool withCut)
+} // namespace
+
+ProgramText GetMappingText(MappingForm mapping, bool hasTurnedAxes)
+{
+  return ProgramText("#define HAS_TURNED_AXES ") + (hasTurnedAxes ? "1\n" : "0\n") +
+    GetFormText(mapping);
+}
+
+cl::Program GetMappingProgram(
+  OpenCLContext& context, MappingForm mapping, bool withCut, bool hasTurnedAxes)
 {
   const char* const evaluation = mapping == MappingForm::Runs ? RunEvaluation_cl : "";
   const char* const positions = withCut ? CutPositions_cl : "";
   return context.GetProgram(ProgramText(GetReal(context)) + GetSamplingMeshText(withCut) +
-      GetMappingText(mapping) + VertexState_cl + positions + evaluation,
+      GetMappingText(mapping, hasTurnedAxes) + VertexState_cl + positions + evaluation,
     KernelOptions);
 }
 
-cl::Program GetBridgeProgram(OpenCLContext& context, MappingForm mapping, bool withCut)
+cl::Program GetBridgeProgram(
+  OpenCLContext& context, MappingForm mapping, bool withCut, bool hasTurnedAxes)
 {
   return context.GetProgram(ProgramText(GetReal(context)) + GetSamplingMeshText(withCut) +
-      GetMappingText(mapping) + VertexState_cl + BridgeMask_cl,
+      GetMappingText(mapping, hasTurnedAxes) + VertexState_cl + BridgeMask_cl,
     KernelOptions);
 }
 

@@ -19,11 +19,13 @@ enum class MappingForm
 };
 
 /// The deformation mapping (DeformationMapping.cl) and the state of vertices (VertexState.cl).
-/// withCut: there is a smooth cut (CutPositions.cl).
-cl::Program GetMappingProgram(OpenCLContext& context, MappingForm mapping, bool withCut = false);
+/// withCut: there is a smooth cut (CutPositions.cl). hasTurnedAxes: see DeviceVolume.
+cl::Program GetMappingProgram(
+  OpenCLContext& context, MappingForm mapping, bool withCut = false, bool hasTurnedAxes = false);
 
 /// What leaves out tetrahedra that bridge a gap (BridgeMask.cl), for links or runs.
-cl::Program GetBridgeProgram(OpenCLContext& context, MappingForm mapping, bool withCut = false);
+cl::Program GetBridgeProgram(
+  OpenCLContext& context, MappingForm mapping, bool withCut = false, bool hasTurnedAxes = false);
 
 /// What makes displacements of vectors (VectorConversion.cl), and finds bounds by them
 /// (VectorBounds.cl).
@@ -31,7 +33,7 @@ cl::Program GetConversionProgram(OpenCLContext& context);
 
 /// The text of a form of the mapping (DeformationMapping.cl). It expects GetSamplingMeshText
 /// before.
-ProgramText GetMappingText(MappingForm mapping);
+ProgramText GetMappingText(MappingForm mapping, bool hasTurnedAxes = false);
 
 } // namespace deformvolume
 

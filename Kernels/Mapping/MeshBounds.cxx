@@ -190,14 +190,14 @@ void MeshBounds::ChangeConnectivity(const std::vector<glm::dvec3>& restPoints,
 
 void MeshBounds::FindRestBounds(const std::vector<glm::dvec3>& restPoints, std::size_t block)
 {
-  const glm::dvec3 scale = GetScale(this->Shape);
+  const OutputTransform transform = GetOutputTransform(this->Shape);
   IndexBounds bounds;
   const std::size_t end = std::min((block + 1) * NodeBlock, this->Wanted.size());
   for (std::size_t node = block * NodeBlock; node < end; ++node)
   {
     if (this->Wanted[node])
     {
-      bounds.Add(scale * restPoints[node]);
+      bounds.Add(transform.ToOutput(restPoints[node]));
     }
   }
   this->RestBounds[block] = bounds;
@@ -208,7 +208,7 @@ IndexBounds MeshBounds::ComputeNodes(const std::vector<glm::dvec3>& restPoints,
 {
   const auto getEnd = [&](std::size_t block)
   { return std::min((block + 1) * NodeBlock, this->Wanted.size()); };
-  const glm::dvec3 scale = GetScale(this->Shape);
+  const OutputTransform transform = GetOutputTransform(this->Shape);
   return this->NodeBounds.Compute(
     changed,
     [&](std::size_t block)
@@ -230,8 +230,8 @@ IndexBounds MeshBounds::ComputeNodes(const std::vector<glm::dvec3>& restPoints,
       IndexBounds bounds;
       for (std::size_t node = block * NodeBlock; node < getEnd(block); ++node)
       {
-        const glm::dvec3 moved =
-          scale * restPoints[node] + GetVector(displacements, static_cast<std::int64_t>(node));
+        const glm::dvec3 moved = transform.ToOutput(restPoints[node]) +
+          GetVector(displacements, static_cast<std::int64_t>(node));
         if (this->Wanted[node] && IsFinite(moved))
         {
           bounds.Add(moved);
@@ -256,9 +256,9 @@ IndexBounds MeshBounds::Compute(const std::vector<glm::dvec3>& restPoints,
   }
   this->IsComputed = false; // half done, if this ends early
   const IndexBounds box = GetBox(this->Shape);
-  const glm::dvec3 scale = GetScale(this->Shape);
+  const OutputTransform transform = GetOutputTransform(this->Shape);
   const auto move = [&](std::int32_t node)
-  { return scale * restPoints[node] + GetVector(displacements, node); };
+  { return transform.ToOutput(restPoints[node]) + GetVector(displacements, node); };
   const auto addClipped = [&](const Tetrahedron& tetrahedron, IndexBounds& bounds)
   {
     std::array<MovedPoint, 4> nodes;

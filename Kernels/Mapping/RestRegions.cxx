@@ -29,7 +29,7 @@ constexpr std::int64_t MostRegions = std::int64_t{ 1 } << 17;
 
 RestRegions::RestRegions(const VoxelGrid& voxelGrid)
   : Volume(voxelGrid.VertexExtent)
-  , Scale(voxelGrid.Scale[0], voxelGrid.Scale[1], voxelGrid.Scale[2])
+  , Transform(GetOutputTransform(voxelGrid))
 {
   for (;; this->Size *= 2)
   {
@@ -86,7 +86,7 @@ void RestRegions::AddTetrahedron(const Tetrahedron& tetrahedron,
   for (int node = 0; node < 4; ++node)
   {
     const glm::dvec3& point = restPoints[tetrahedron[node]];
-    nodes[node] = this->Scale * point + GetVector(displacements, tetrahedron[node]);
+    nodes[node] = this->Transform.ToOutput(point) + GetVector(displacements, tetrahedron[node]);
     rest.Add(point);
     moved.Add(nodes[node]);
   }
@@ -212,8 +212,11 @@ RestRegions::RestRegions(const VoxelGrid& voxelGrid, const DisplacementField& fi
           }
         }
         IndexBounds& bounds = this->Bounds[region];
-        bounds.Add(this->Scale * glm::dvec3(voxels[0], voxels[2], voxels[4]) + displacement.Min);
-        bounds.Add(this->Scale * glm::dvec3(voxels[1], voxels[3], voxels[5]) + displacement.Max);
+        const IndexBounds rest =
+          this->Transform.ToOutput(IndexBounds{ glm::dvec3(voxels[0], voxels[2], voxels[4]),
+            glm::dvec3(voxels[1], voxels[3], voxels[5]) });
+        bounds.Add(rest.Min + displacement.Min);
+        bounds.Add(rest.Max + displacement.Max);
       }
     });
 }

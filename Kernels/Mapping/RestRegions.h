@@ -47,7 +47,7 @@ private:
     const float* displacements);
 
   const Extent Volume;
-  const glm::dvec3 Scale;
+  const OutputTransform Transform;
   int Size = 8; // cells of a region on an axis
   int Count[3] = { 0, 0, 0 };
   std::vector<IndexBounds> Bounds; // x varies fastest

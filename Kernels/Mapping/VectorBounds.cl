@@ -48,7 +48,7 @@ __kernel void FindBoxBounds(__global const float4* displacements, const int widt
 
 #if REAL_IS_DOUBLE
 
-// rest: where the voxels lie for each index on x, then y, then z. Sums are all that is rounded. bounds: six numbers a
+// rest: for each index on x, then y, then z the three numbers that it adds to where a voxel lies. bounds: six numbers a
 // work-group. A group takes every so many-th row of voxels, and its items every so many-th voxel of these. Voxels whose
 // displacement is not finite, or larger than the largest, are counted.
 __kernel void FindBounds(__global const float* vectors, const FieldParameters field,
@@ -72,13 +72,13 @@ __kernel void FindBounds(__global const float* vectors, const FieldParameters fi
       {
         atomic_inc(bad);
       }
-      const double place[3] = { rest[x] + convert_double(moved.x),
-        rest[p.Size[0] + y] + convert_double(moved.y),
-        rest[p.Size[0] + p.Size[1] + z] + convert_double(moved.z) };
+      const double3 place = vload3(x, rest) + vload3(p.Size[0] + y, rest) +
+        vload3(p.Size[0] + p.Size[1] + z, rest) + convert_double3(moved);
+      const double places[3] = { place.x, place.y, place.z };
       for (int axis = 0; axis < 3; ++axis)
       {
-        least[axis] = fmin(least[axis], place[axis]);
-        greatest[axis] = fmax(greatest[axis], place[axis]);
+        least[axis] = fmin(least[axis], places[axis]);
+        greatest[axis] = fmax(greatest[axis], places[axis]);
       }
     }
   }

@@ -22,16 +22,19 @@ using Bounds = std::array<double, 6>;
 
 constexpr std::size_t Groups = 256;
 
-// For each index on x, then y, then z, as the host has it.
+// For each index on x, then y, then z what it adds to the position of a voxel, as the host has it.
 std::vector<double> FindRestPositions(const VoxelGrid& voxelGrid)
 {
   const Extent& extent = voxelGrid.VertexExtent;
+  const OutputTransform transform = GetOutputTransform(voxelGrid);
   std::vector<double> rest;
   for (int axis = 0; axis < 3; ++axis)
   {
     for (int i = extent[2 * axis]; i <= extent[2 * axis + 1]; ++i)
     {
-      rest.push_back(voxelGrid.Scale[axis] * static_cast<double>(i));
+      const glm::dvec3 part = transform.GetMatrix()[axis] * static_cast<double>(i) +
+        (axis == 0 ? transform.GetShift() : glm::dvec3(0.0));
+      rest.insert(rest.end(), { part.x, part.y, part.z });
     }
   }
   return rest;

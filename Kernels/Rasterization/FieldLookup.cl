@@ -15,7 +15,7 @@ typedef struct
 {
   REAL Start[3];
   REAL Steps[3];
-  REAL Scale[3];
+  REAL Inverse[3][3]; // by axis, and by axis of the output
   REAL First[3];
 } LookupRow;
 
@@ -35,8 +35,12 @@ static LookupRow MakeLookupRow(const int* voxel, const LookupParameters* f, cons
         matrix[1], (REAL)voxel[1], MULTIPLY_ADD_REAL(matrix[0], (REAL)voxel[0], matrix[3])));
     row.Steps[axis] = matrix[0];
     const REAL one = (REAL)(1 << p->FractionBits[axis]);
-    row.Scale[axis] = ((REAL)p->InverseScale[axis] + (REAL)p->InverseScaleRest[axis]) * one;
-    row.First[axis] = (REAL)p->First[axis] * one;
+    for (int column = 0; column < 3; ++column)
+    {
+      row.Inverse[axis][column] =
+        column == axis || p->HasTurnedAxes ? INVERSE_ELEMENT(p, axis, column) * one : 0;
+    }
+    row.First[axis] = ((REAL)p->First[axis] + OFFSET_ELEMENT(p, axis)) * one;
   }
   return row;
 }
@@ -122,11 +126,22 @@ static int LookUpRest(__global const float* vectors, const LookupRow* row, const
     InterpolateField(vectors, position, vector, f);
   }
   inside = 1;
+  REAL at[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    at[axis] = (REAL)(voxel[axis] + (axis == 0 ? x : 0)) + vector[axis];
+  }
   int found[3];
   for (int axis = 0; axis < 3; ++axis)
   {
-    const REAL at = (REAL)(voxel[axis] + (axis == 0 ? x : 0)) + vector[axis];
-    const REAL inVolume = MULTIPLY_ADD_REAL(at, row->Scale[axis], -row->First[axis]);
+    REAL inVolume = MULTIPLY_ADD_REAL(at[axis], row->Inverse[axis][axis], -row->First[axis]);
+    if (p->HasTurnedAxes)
+    {
+      const int second = axis == 0 ? 1 : 0;
+      const int third = axis == 2 ? 1 : 2;
+      inVolume = MULTIPLY_ADD_REAL(at[second], row->Inverse[axis][second], inVolume);
+      inVolume = MULTIPLY_ADD_REAL(at[third], row->Inverse[axis][third], inVolume);
+    }
     const int most = (p->Size[axis] - 1) << p->FractionBits[axis];
     inside &= inVolume >= (REAL)-p->Tolerance[axis] &&
       inVolume <= (REAL)most + (REAL)p->Tolerance[axis];

@@ -29,7 +29,7 @@ class Lookup
 public:
   Lookup(const VoxelGrid& voxelGrid, const DisplacementField& field)
     : Field(field)
-    , Scale(GetScale(voxelGrid))
+    , Transform(GetOutputTransform(voxelGrid))
     , Volume(GetBox(voxelGrid))
   {
     this->ToField = GetVoxelsToField(field);
@@ -40,7 +40,7 @@ public:
     }
     this->FromField = glm::inverse(this->ToField);
     // As in the kernel: half of the rounding of positions to 1/256 output voxel.
-    const glm::dvec3 tolerance = glm::min(glm::dvec3(1.0), 1.0 / (256.0 * this->Scale));
+    const glm::dvec3 tolerance = this->Transform.GetTolerance(1.0 / 256.0);
     this->Volume.Min -= tolerance;
     this->Volume.Max += tolerance;
   }
@@ -86,8 +86,9 @@ public:
       box.Add(this->FromField * (point - this->Offset));
     }
     constexpr double rounding = 1e-6;
-    box.Min = glm::max(box.Min, this->Scale * this->Volume.Min - vectors.Max);
-    box.Max = glm::min(box.Max, this->Scale * this->Volume.Max - vectors.Min);
+    const IndexBounds volume = this->Transform.ToOutput(this->Volume);
+    box.Min = glm::max(box.Min, volume.Min - vectors.Max);
+    box.Max = glm::min(box.Max, volume.Max - vectors.Min);
     box.Min = glm::ceil(box.Min - rounding);
     box.Max = glm::floor(box.Max + rounding);
     return box;
@@ -110,7 +111,7 @@ public:
         glm::lessThanEqual(glm::abs(position - nearest), glm::dvec3(DEFORMVOLUME_LOOKUP_TOLERANCE));
       vector = this->Interpolate(glm::mix(position, nearest, isNear));
     }
-    const glm::dvec3 rest = (voxel + vector) / this->Scale;
+    const glm::dvec3 rest = this->Transform.ToIndex(voxel + vector);
     return glm::all(glm::greaterThanEqual(rest, this->Volume.Min)) &&
       glm::all(glm::lessThanEqual(rest, this->Volume.Max));
   }
@@ -130,7 +131,7 @@ private:
   }
 
   const DisplacementField& Field;
-  glm::dvec3 Scale;
+  OutputTransform Transform;
   IndexBounds Volume; // what rest positions may be, in indices of the volume
   glm::dmat3 ToField{ 1.0 };
   glm::dmat3 FromField{ 1.0 };

@@ -4,6 +4,7 @@
 #include "CompilationWatch.h"
 #include "DeviceVolume.h"
 #include "Error.h"
+#include "IndexBounds.h" // for GetOutputTransform
 #include "RasterTarget.h"
 #include "WorkDevice.h"
 
@@ -80,7 +81,10 @@ RasterParameters MakeParameters(
   const DeviceVolume& volume, const Extent& slab, std::size_t numberOfTetrahedra)
 {
   RasterParameters p = MakeTiles(slab, numberOfTetrahedra);
-  SetInverseScale(volume.GetVoxelGrid(), p);
+  SetInverse(volume.GetVoxelGrid(), p);
+  // Rounding to 1/256 output voxel moves a surface that is that of the volume by half of it at
+  // most on each axis.
+  const glm::dvec3 tolerance = GetOutputTransform(volume.GetVoxelGrid()).GetTolerance(1.0 / 256.0);
   for (int axis = 0; axis < 3; ++axis)
   {
     p.Size[axis] = volume.GetSize(axis);
@@ -92,11 +96,7 @@ RasterParameters MakeParameters(
       --bits;
     }
     p.FractionBits[axis] = bits;
-    const double inverse = 1.0 / volume.GetVoxelGrid().Scale[axis];
-    // Rounding to 1/256 output voxel moves a surface that is that of the volume by half of it at
-    // most on each axis.
-    p.Tolerance[axis] =
-      static_cast<int>(std::ldexp(std::min(1.0, inverse / 256.0), p.FractionBits[axis]));
+    p.Tolerance[axis] = static_cast<int>(std::ldexp(tolerance[axis], p.FractionBits[axis]));
   }
   p.HasActive = volume.HasActive();
   p.HasBlanked = volume.HasBlanked();
@@ -110,10 +110,12 @@ void MeshRasterizer::SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOf
   const double* restNodes, std::size_t numberOfNodes)
 {
   this->Clear();
+  const double sign = std::copysign(1.0, this->Volume->GetVoxelGrid().ToOutput.GetDeterminant());
   std::vector<Tetrahedron> oriented(tetrahedra, tetrahedra + numberOfTetrahedra);
   for (Tetrahedron& tetrahedron : oriented)
   {
-    const double volume = GetRestVolume(tetrahedron, restNodes);
+    // As it lies in the output.
+    const double volume = sign * GetRestVolume(tetrahedron, restNodes);
     if (volume < 0.0)
     {
       std::swap(tetrahedron[2], tetrahedron[3]);
@@ -131,18 +133,20 @@ void MeshRasterizer::SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOf
 
 void MeshRasterizer::SetDisplacements(const float* displacements)
 {
-  const std::array<double, 3>& scale = this->Volume->GetVoxelGrid().Scale;
+  const OutputTransform transform = GetOutputTransform(this->Volume->GetVoxelGrid());
   const std::size_t count = this->RestNodes.size() / 3;
   std::vector<std::int32_t> positions(4 * count);
   std::vector<float> padded(4 * count);
   this->FarthestPosition = 0.0;
   for (std::size_t node = 0; node < count; ++node)
   {
+    const double* rest = &this->RestNodes[3 * node];
+    const glm::dvec3 place = transform.ToOutput(glm::dvec3(rest[0], rest[1], rest[2]));
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
       const float displacement = displacements[3 * node + axis];
       const double position =
-        scale[axis] * this->RestNodes[3 * node + axis] + static_cast<double>(displacement);
+        place[static_cast<glm::length_t>(axis)] + static_cast<double>(displacement);
       const double distance =
         std::isnan(position) ? std::numeric_limits<double>::infinity() : std::abs(position);
       if (distance > this->FarthestPosition)

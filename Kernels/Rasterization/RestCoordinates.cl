@@ -22,7 +22,7 @@ typedef struct
 {
   REAL Last[3];         // displacement of the last node, in output voxels
   REAL Gradients[3][3]; // by edge function, by axis
-  REAL Scale[3];        // from output voxels
+  REAL Scale[3];        // from output voxels, along the same axis
   // In a tile: the rest coordinate of its first voxel, and its steps from voxel to voxel on x, y and
   // z, all by axis, with STEP_BITS more bits; and whether they fit.
   long Start[3];
@@ -34,6 +34,7 @@ typedef struct
 static void FindRest(OF_GROUP const RestMap* map, const long* edges, const int* voxel, REAL* rest,
   const RasterParameters* p)
 {
+  REAL moved[3]; // the voxel, without its displacement
   for (int axis = 0; axis < 3; ++axis)
   {
     REAL d = map->Last[axis];
@@ -41,8 +42,18 @@ static void FindRest(OF_GROUP const RestMap* map, const long* edges, const int* 
     {
       d = MULTIPLY_ADD_REAL((REAL)edges[k], map->Gradients[k][axis], d);
     }
-    rest[axis] = MULTIPLY_ADD_REAL((REAL)voxel[axis] - d, map->Scale[axis],
-      -(REAL)((long)p->First[axis] << p->FractionBits[axis]));
+    moved[axis] = (REAL)voxel[axis] - d;
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const REAL one = (REAL)(1 << p->FractionBits[axis]);
+    rest[axis] = MULTIPLY_ADD_REAL(moved[axis], map->Scale[axis],
+      -((REAL)((long)p->First[axis] << p->FractionBits[axis]) + OFFSET_ELEMENT(p, axis) * one));
+    for (int k = 0; p->HasTurnedAxes && k < 3; ++k)
+    {
+      const REAL element = k == axis ? 0 : INVERSE_ELEMENT(p, axis, k) * one;
+      rest[axis] = MULTIPLY_ADD_REAL(moved[k], element, rest[axis]);
+    }
   }
 }
 
@@ -73,8 +84,7 @@ static void SetRestMap(OF_GROUP const TileTetrahedron* t, int4 ofNodes, __global
   for (int axis = 0; axis < 3; ++axis)
   {
     map->Last[axis] = (REAL)lasts[axis];
-    map->Scale[axis] = ((REAL)p->InverseScale[axis] + (REAL)p->InverseScaleRest[axis]) *
-      (REAL)(1 << p->FractionBits[axis]);
+    map->Scale[axis] = INVERSE_ELEMENT(p, axis, axis) * (REAL)(1 << p->FractionBits[axis]);
   }
   REAL start[3];
   FindRest(map, edges, origin, start, p);
@@ -88,6 +98,13 @@ static void SetRestMap(OF_GROUP const TileTetrahedron* t, int4 ofNodes, __global
     {
       steps[direction] =
         ((direction == axis ? (REAL)1 : (REAL)0) - slopes[direction][axis]) * map->Scale[axis];
+      for (int k = 0; p->HasTurnedAxes && k < 3; ++k)
+      {
+        const REAL element =
+          k == axis ? 0 : INVERSE_ELEMENT(p, axis, k) * (REAL)(1 << p->FractionBits[axis]);
+        steps[direction] = MULTIPLY_ADD_REAL(
+          (direction == k ? (REAL)1 : (REAL)0) - slopes[direction][k], element, steps[direction]);
+      }
       range += 32 * fabs(steps[direction]);
     }
     if (!(range < LARGEST_REST * (REAL)(1 << p->FractionBits[axis])))

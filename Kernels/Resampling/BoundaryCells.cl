@@ -166,6 +166,7 @@ static int FindRest(const PieceMap* map, const TileTetrahedron* t, const int* vo
   const long4 all = FindEdges(t, voxel[0], voxel[1], voxel[2]);
   const long edges[3] = { all.x, all.y, all.z };
   int isInside = 1;
+  REAL moved[3]; // the voxel, without its displacement
   for (int axis = 0; axis < 3; ++axis)
   {
     REAL d = map->Last[axis];
@@ -173,10 +174,21 @@ static int FindRest(const PieceMap* map, const TileTetrahedron* t, const int* vo
     {
       d = MULTIPLY_ADD_REAL((REAL)edges[k], map->Gradients[k][axis], d);
     }
-    const REAL scale = (REAL)r->InverseScale[axis] + (REAL)r->InverseScaleRest[axis];
-    const REAL at = ((REAL)voxel[axis] - d) * scale;
+    moved[axis] = (REAL)voxel[axis] - d;
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const REAL scale = INVERSE_ELEMENT(r, axis, axis);
+    REAL at = MULTIPLY_ADD_REAL(moved[axis], scale, -OFFSET_ELEMENT(r, axis));
+    REAL reach = fabs(scale);
+    for (int k = 0; r->HasTurnedAxes && k < 3; ++k)
+    {
+      const REAL element = k == axis ? 0 : INVERSE_ELEMENT(r, axis, k);
+      at = MULTIPLY_ADD_REAL(moved[k], element, at);
+      reach += fabs(element);
+    }
     // Corners are rounded to 1/256 output voxel.
-    const REAL tolerance = min((REAL)1, scale / 256);
+    const REAL tolerance = min((REAL)1, reach / 256);
     isInside &= at >= (REAL)first[axis] - tolerance && at <= (REAL)last[axis] + tolerance;
     rest[axis] = convert_long_rte(clamp(at, (REAL)first[axis], (REAL)last[axis]) * (REAL)(1 << REST_BITS));
   }

@@ -7,6 +7,7 @@
 #include "DisplacementSource.h"
 #include "Error.h"
 #include "HostMemory.h"
+#include "IndexBounds.h" // for GetOutputTransform
 #include "KernelSources.h"
 #include "KernelText.h"
 #include "Launches.h"
@@ -91,7 +92,8 @@ void BoundaryCells::SetCorners(const Tetrahedron* tetrahedra)
   {
     return;
   }
-  const std::array<double, 3>& scale = this->Volume.GetVoxelGrid().Scale;
+  const OutputTransform transform = GetOutputTransform(this->Volume.GetVoxelGrid());
+  const bool isMirrored = this->Volume.GetVoxelGrid().ToOutput.GetDeterminant() < 0.0;
   std::vector<BoundaryCorner> corners;
   std::vector<cl_int4> pieces;
   std::unordered_map<std::int32_t, cl_int> found; // by nodes
@@ -115,10 +117,10 @@ void BoundaryCells::SetCorners(const Tetrahedron* tetrahedra)
         continue;
       }
       BoundaryCorner corner;
+      const glm::dvec3 place = 256.0 * transform.ToOutput(piece.Rest[k]);
       for (std::size_t axis = 0; axis < 3; ++axis)
       {
-        const double position =
-          256.0 * scale[axis] * piece.Rest[k][static_cast<glm::length_t>(axis)];
+        const double position = place[static_cast<glm::length_t>(axis)];
         // Beyond that nothing of it is in any output.
         const double whole = std::clamp(std::floor(position), -0x1p30, 0x1p30);
         corner.Whole[axis] = static_cast<cl_int>(whole);
@@ -128,6 +130,10 @@ void BoundaryCells::SetCorners(const Tetrahedron* tetrahedra)
       corner.Tetrahedron = piece.Tetrahedron;
       corner.Node = isNode ? static_cast<cl_int>(one) : -1;
       corners.push_back(corner);
+    }
+    if (isMirrored)
+    {
+      std::swap(numbers.s[2], numbers.s[3]); // upright ones stay so
     }
     pieces.push_back(numbers);
   }
@@ -227,7 +233,7 @@ void BoundaryCells::Run(
   }
   const cl::CommandQueue& queue = this->Device.GetQueue();
   RasterParameters r = MakeTiles(output.GetExtent(), this->Boundary.size());
-  SetInverseScale(this->Volume.GetVoxelGrid(), r);
+  SetInverse(this->Volume.GetVoxelGrid(), r);
   r.HasActive = this->Volume.HasOwnActive();
   r.HasBlanked = this->Volume.HasBlanked();
   r.HasDistances = this->Volume.HasDistances();

@@ -66,31 +66,55 @@ static ulong StatesOf(
     PREFETCH(source##index + row.Chunk + p->Size[0] + k)                                           \
   }
 
+// Undeformed vertices, as far as their x says. In whole numbers of 1/256 voxel, relative to the output, and what misses,
+// HALF_ROW each, for even and then for odd vertices: where axes of the volume are those of the output, x in voxels;
+// else for x, y and z what is to be added, the whole numbers as integers.
+#if HAS_TURNED_AXES
+#define REST_ODD (6 * HALF_ROW)
+#else
+#define REST_ODD (2 * HALF_ROW)
+#endif
+
 // A row of vertices that is being mapped.
 typedef struct
 {
   DisplacedRow Displaced;
   size_t Chunk; // where the row begins in the chunk
-  // Undeformed: whole steps relative to the output, and what misses.
   ROW_MEMORY const float* RestX;
+  // Undeformed, as far as y and z say: whole steps relative to the output, and what misses.
+#if HAS_TURNED_AXES
+  int Whole[3];
+  float Fraction[3];
+#else
   float WholeY, WholeZ;
   float FractionY, FractionZ;
+#endif
   ROW_MEMORY float* Places; // for positions and values
 } MappedRow;
+
+// Where a vertex at place i is undeformed: whole steps, in voxels, and what misses.
+#if HAS_TURNED_AXES
+#define REST_WHOLE(axis)                                                                           \
+  ((float)(((ROW_MEMORY const int*)rest)[2 * (axis)*HALF_ROW] + row->Whole[axis]) * STEP)
+#define REST_FRACTION(axis) (rest[(2 * (axis) + 1) * HALF_ROW] + row->Fraction[axis])
+#define REST_WHOLES (float4)(REST_WHOLE(0), REST_WHOLE(1), REST_WHOLE(2), 0.0f)
+#define REST_FRACTIONS (float4)(REST_FRACTION(0), REST_FRACTION(1), REST_FRACTION(2), 0.0f)
+#else
+#define REST_WHOLES (float4)(rest[0], row->WholeY, row->WholeZ, 0.0f)
+#define REST_FRACTIONS (float4)(rest[HALF_ROW], row->FractionY, row->FractionZ, 0.0f)
+#endif
 
 // The vertex x, at place i of the brick.
 static __attribute__((always_inline)) void MapOne(const MappedRow* row, int x, int i, int state,
   RowFlags* flags, const KernelParameters* p ARRAY_PARAMETERS)
 {
   ROW_MEMORY float* const place = row->Places + (i >> 1) + (i & 1 ? ODD : 0);
-  ROW_MEMORY const float* const rest = row->RestX + (i >> 1) + (i & 1 ? 2 * HALF_ROW : 0);
+  ROW_MEMORY const float* const rest = row->RestX + (i >> 1) + (i & 1 ? REST_ODD : 0);
   float4 position = (float4)(NO_SOURCE, 0.0f, 0.0f, 0.0f);
   if (state & DEFORMVOLUME_VERTEX_SOURCE)
   {
-    const float4 moved = DisplaceOne(&row->Displaced, x, i, p) +
-      (float4)(rest[HALF_ROW], row->FractionY, row->FractionZ, 0.0f);
-    position =
-      RoundSteps_float4(moved, STEP) + (float4)(rest[0], row->WholeY, row->WholeZ, 0.0f);
+    const float4 moved = DisplaceOne(&row->Displaced, x, i, p) + REST_FRACTIONS;
+    position = RoundSteps_float4(moved, STEP) + REST_WHOLES;
   }
   place[0] = position.x;
   place[HALF_ROW] = position.y;
@@ -116,20 +140,32 @@ static __attribute__((always_inline)) void MapSixteen(const MappedRow* row, int 
   ROW_MEMORY const float* const rest = row->RestX + (i >> 1);
   float16 dx, dy, dz;
   DisplaceSixteen(&row->Displaced, x, i, &dx, &dy, &dz, p);
-#define POSITIONS(d, OFFSET, WHOLE_EVEN, WHOLE_ODD, FRACTION_EVEN, FRACTION_ODD)                   \
+#define POSITIONS(d, OFFSET, WHOLE, FRACTION)                                                       \
   {                                                                                                \
-    const float16 moved = d + (float16)(FRACTION_EVEN, FRACTION_ODD);                              \
-    const float16 position =                                                                       \
-      RoundSteps_float16(moved, STEP) + (float16)(WHOLE_EVEN, WHOLE_ODD);                          \
+    const float16 moved = d + FRACTION;                                                            \
+    const float16 position = RoundSteps_float16(moved, STEP) + WHOLE;                              \
     STORE_EIGHT(position.lo, place + (OFFSET)*HALF_ROW)                                            \
     STORE_EIGHT(position.hi, place + ODD + (OFFSET)*HALF_ROW)                                      \
   }
-  POSITIONS(dx, 0, vload8(0, rest), vload8(0, rest + 2 * HALF_ROW), vload8(0, rest + HALF_ROW),
-    vload8(0, rest + 3 * HALF_ROW))
-  POSITIONS(dy, 1, (float8)row->WholeY, (float8)row->WholeY, (float8)row->FractionY,
-    (float8)row->FractionY)
-  POSITIONS(dz, 2, (float8)row->WholeZ, (float8)row->WholeZ, (float8)row->FractionZ,
-    (float8)row->FractionZ)
+#if HAS_TURNED_AXES
+#define POSITIONS_ALONG(d, AXIS)                                                                   \
+  {                                                                                                \
+    ROW_MEMORY const int* const whole = (ROW_MEMORY const int*)rest + 2 * AXIS * HALF_ROW;         \
+    const int16 steps = (int16)(vload8(0, whole), vload8(0, whole + REST_ODD)) + row->Whole[AXIS]; \
+    const float16 fraction = (float16)(vload8(0, rest + (2 * AXIS + 1) * HALF_ROW),                \
+                               vload8(0, rest + REST_ODD + (2 * AXIS + 1) * HALF_ROW)) +           \
+      row->Fraction[AXIS];                                                                         \
+    POSITIONS(d, AXIS, convert_float16(steps) * STEP, fraction)                                    \
+  }
+  POSITIONS_ALONG(dx, 0)
+  POSITIONS_ALONG(dy, 1)
+  POSITIONS_ALONG(dz, 2)
+#else
+  POSITIONS(dx, 0, (float16)(vload8(0, rest), vload8(0, rest + REST_ODD)),
+    (float16)(vload8(0, rest + HALF_ROW), vload8(0, rest + REST_ODD + HALF_ROW)))
+  POSITIONS(dy, 1, row->WholeY, row->FractionY)
+  POSITIONS(dz, 2, row->WholeZ, row->FractionZ)
+#endif
   if ((states & INTERIORS) != INTERIORS)
   {
     flags->Border |= FLAGS_TOGETHER << (i >> 3);
@@ -160,18 +196,28 @@ static RowFlags MapRow(const SamplingMesh* mesh, int x, int end, int i, int y, i
   ROW_MEMORY float* places, ROW_MEMORY const float* restX, ROW_MEMORY float* displaced,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
-  const RestPosition ry = mesh->Map.Rest[p->Size[0] + y];
-  const RestPosition rz = mesh->Map.Rest[p->Size[0] + p->Size[1] + z];
   MappedRow row;
   row.Displaced.Map = &mesh->Map;
   row.Displaced.Y = y;
   row.Displaced.Z = z;
   row.Chunk = VertexInChunk(0, y, z, p);
   row.RestX = restX;
+#if HAS_TURNED_AXES
+  const RestVector ry = mesh->Map.Rest[p->Size[0] + y];
+  const RestVector rz = mesh->Map.Rest[p->Size[0] + p->Size[1] + z];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    row.Whole[axis] = ry.Whole[axis] + rz.Whole[axis];
+    row.Fraction[axis] = (ry.Fraction[axis] + rz.Fraction[axis]) * STEP;
+  }
+#else
+  const RestPosition ry = mesh->Map.Rest[p->Size[0] + y];
+  const RestPosition rz = mesh->Map.Rest[p->Size[0] + p->Size[1] + z];
   row.WholeY = (ry.Whole - p->OutputFirst[1] * 256) * STEP;
   row.WholeZ = (rz.Whole - p->OutputFirst[2] * 256) * STEP;
   row.FractionY = ry.Fraction * STEP;
   row.FractionZ = rz.Fraction * STEP;
+#endif
   row.Places = places;
   BeginRow(&row.Displaced, x, end, i, displaced, p);
   LANE_ARRAYS(FETCH_NEXT_ROW)

@@ -155,8 +155,7 @@ static void FindCells(uint item, BrickCells* cells, const KernelParameters* p)
 // Where a work-item has the rows of a brick.
 typedef struct
 {
-  // The undeformed x of the brick's vertices, in voxels: for even, then odd ones, whole steps relative to the
-  // output, and what misses.
+  // What the x of the brick's vertices says of where they are undeformed, for even, then odd ones: see REST_FLOATS.
   ROW_MEMORY float* RestX;
   ROW_MEMORY float* Displaced; // for BeginRow
   ROW_MEMORY float* Planes; // two planes of vertices: the new one takes the place of the last but one
@@ -170,9 +169,18 @@ static void ClearBrick(
   for (int i = 0; i < 2 * HALF_ROW; ++i)
   {
     const int vertex = clamp(x + i, 0, p->Size[0] - 1);
-    ROW_MEMORY float* rest = memory->RestX + (i >> 1) + (i & 1 ? 2 * HALF_ROW : 0);
+    ROW_MEMORY float* rest = memory->RestX + (i >> 1) + (i & 1 ? REST_ODD : 0);
+#if HAS_TURNED_AXES
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      ((ROW_MEMORY int*)rest)[2 * axis * HALF_ROW] =
+        mesh->Map.Rest[vertex].Whole[axis] - p->OutputFirst[axis] * 256;
+      rest[(2 * axis + 1) * HALF_ROW] = mesh->Map.Rest[vertex].Fraction[axis] * STEP;
+    }
+#else
     rest[0] = (mesh->Map.Rest[vertex].Whole - p->OutputFirst[0] * 256) * STEP;
     rest[HALF_ROW] = mesh->Map.Rest[vertex].Fraction * STEP;
+#endif
   }
   for (int row = 0; row < 2 * ROWS; ++row)
   {
@@ -220,7 +228,7 @@ static void ResampleLayer(const SamplingMesh* mesh, const BrickCells* cells, int
     row.X = cells->X;
     row.Y = y;
     row.Z = z;
-    row.Odd = (p->First[1] + y + p->First[2] + z) & 1;
+    row.Odd = (p->First[1] + y + p->First[2] + z + p->IsMirrored) & 1;
     row.Borders = f[0]->Border | f[1]->Border | f[2]->Border | f[3]->Border;
 #if HAS_CUT
     row.Apart = f[0]->Apart | f[1]->Apart | f[2]->Apart | f[3]->Apart;
@@ -275,7 +283,7 @@ static void ResampleBrick(const SamplingMesh* mesh, uint item, int isAbove, cons
   }
 }
 
-#define BRICK_FLOATS (4 * HALF_ROW + 3 * ROW_PLACES + 2 * ROWS * ROW)
+#define BRICK_FLOATS (2 * REST_ODD + 3 * ROW_PLACES + 2 * ROWS * ROW)
 
 // Bricks of a list from p.ListBegin to p.ListEnd. taken: how many of these work-items have begun to work on; 0 at
 // first. rows: BRICK_FLOATS floats (GetBrickMemory), in global memory as many for each work-item.
@@ -291,7 +299,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(GIVE
   const SamplingMesh mesh = GIVEN_MESH;
   const Output empty = GIVEN_OUTPUT;
   RowFlags flags[2][ROWS];
-  ROW_MEMORY float* const displaced = rows + 4 * HALF_ROW;
+  ROW_MEMORY float* const displaced = rows + 2 * REST_ODD;
   const BrickMemory memory = { rows, displaced, displaced + 3 * ROW_PLACES, flags };
   for (uint begin = p.ListBegin + atomic_add(taken, p.Portion); begin < p.ListEnd;
        begin = p.ListBegin + atomic_add(taken, p.Portion))

@@ -39,15 +39,11 @@ static uint MapVertex(const SamplingMesh* mesh, int x, int y, int z, ROW_MEMORY 
   float4 position = (float4)(NO_SOURCE, 0.0f, 0.0f, 0.0f);
   if (state & DEFORMVOLUME_VERTEX_SOURCE)
   {
-    const RestPosition rx = mesh->Map.Rest[x];
-    const RestPosition ry = mesh->Map.Rest[p->Size[0] + y];
-    const RestPosition rz = mesh->Map.Rest[p->Size[0] + p->Size[1] + z];
-    const float4 moved = Displacement(&mesh->Map, x, y, z, p) +
-      (float4)(rx.Fraction * STEP, ry.Fraction * STEP, rz.Fraction * STEP, 0.0f);
-    position = RoundSteps_float4(moved, STEP) +
-      (float4)((rx.Whole - p->OutputFirst[0] * 256) * STEP,
-        (ry.Whole - p->OutputFirst[1] * 256) * STEP, (rz.Whole - p->OutputFirst[2] * 256) * STEP,
-        0.0f);
+    const Rest rest = RestOf(&mesh->Map, x, y, z, p);
+    const int4 first = (int4)(p->OutputFirst[0], p->OutputFirst[1], p->OutputFirst[2], 0);
+    const float4 moved = Displacement(&mesh->Map, x, y, z, p) + rest.Fraction * STEP;
+    position =
+      RoundSteps_float4(moved, STEP) + convert_float4(rest.Whole - first * 256) * STEP;
   }
   place[0] = position.x;
   place[HALF_ROW] = position.y;
@@ -264,7 +260,7 @@ static __attribute__((always_inline)) void MakeCellGroup(LocalRow row, int oddY,
   cell->X = x;
   cell->Y = y;
   cell->Z = z;
-  cell->Odd = (p->First[0] + x + p->First[1] + y + p->First[2] + z) & 1;
+  cell->Odd = IsTurned(x, y, z, p);
   cell->Border = (flags & FLAG_BORDER) != 0;
   cell->Apart = (flags & FLAG_APART) != 0;
 }

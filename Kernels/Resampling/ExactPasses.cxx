@@ -133,18 +133,20 @@ cl::Kernel ExactPasses::MakeKernel(
   if (form == ResamplingForm::Lanes)
   {
     Reserve(context, this->TakenBricks, sizeof(cl_uint));
-    if (!HasLocalBricks(context))
+    if (!HasLocalBricks(context, this->Volume.HasTurnedAxes()))
     {
       Reserve(context, this->BrickRows,
-        std::uint64_t{ context.GetNumberOfUnits() } * GetBrickMemory(context, arrays));
+        std::uint64_t{ context.GetNumberOfUnits() } *
+          GetBrickMemory(context, this->Volume.HasTurnedAxes(), arrays));
     }
   }
   const bool wideKeys = GetWinnerSize(this->Volume.GetVoxelGrid()) == 8;
-  return cl::Kernel(GetResamplingProgram(context, this->Source.GetMappingForm(), arrays,
-                      { form, wideKeys, output.HasCoverageBits(), this->Volume.HasCut(),
-                        (form == ResamplingForm::Columns || form == ResamplingForm::Left) &&
-                          pass == DEFORMVOLUME_PASS_DIRECT,
-                        request.Interpolation == Interpolation::Cubic }),
+  return cl::Kernel(
+    GetResamplingProgram(context, this->Source.GetMappingForm(), arrays,
+      { form, wideKeys, output.HasCoverageBits(), this->Volume.HasCut(),
+        (form == ResamplingForm::Columns || form == ResamplingForm::Left) &&
+          pass == DEFORMVOLUME_PASS_DIRECT,
+        request.Interpolation == Interpolation::Cubic, this->Volume.HasTurnedAxes() }),
     GetKernelName(form));
 }
 
@@ -173,10 +175,11 @@ void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
   if (form == ResamplingForm::Lanes)
   {
     kernel.setArg(i++, this->TakenBricks);
-    if (HasLocalBricks(this->Device.GetContext()))
+    if (HasLocalBricks(this->Device.GetContext(), this->Volume.HasTurnedAxes()))
     {
-      kernel.setArg(
-        i++, cl::Local(GetBrickMemory(this->Device.GetContext(), this->Volume.GetVolumeArrays())));
+      kernel.setArg(i++,
+        cl::Local(GetBrickMemory(this->Device.GetContext(), this->Volume.HasTurnedAxes(),
+          this->Volume.GetVolumeArrays())));
     }
     else
     {

@@ -2,6 +2,7 @@
 // Where IncrementalUpdate finds that sub-bricks lie in the output.
 #include "IncrementalUpdate.h"
 
+#include "IndexBounds.h"
 #include "ParallelFor.h"
 
 #include <algorithm>
@@ -75,6 +76,14 @@ IncrementalUpdate::Box IncrementalUpdate::MakeBox(
   {
     return nothing;
   }
+  IndexBounds voxels;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double first = this->Shape.VertexExtent[2 * axis];
+    voxels.Min[axis] = first + vertices[2 * axis];
+    voxels.Max[axis] = first + vertices[2 * axis + 1];
+  }
+  const IndexBounds rest = GetOutputTransform(this->Shape).ToOutput(voxels);
   Box box;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -94,11 +103,8 @@ IncrementalUpdate::Box IncrementalUpdate::MakeBox(
       low -= difference;
       high += difference;
     }
-    const double first = this->Shape.VertexExtent[2 * axis];
-    box.Min[axis] =
-      this->Shape.Scale[axis] * (first + vertices[2 * axis]) + low - this->OutputExtent[2 * axis];
-    box.Max[axis] = this->Shape.Scale[axis] * (first + vertices[2 * axis + 1]) + high -
-      this->OutputExtent[2 * axis];
+    box.Min[axis] = rest.Min[axis] + low - this->OutputExtent[2 * axis];
+    box.Max[axis] = rest.Max[axis] + high - this->OutputExtent[2 * axis];
     if (!std::isfinite(box.Min[axis]) || !std::isfinite(box.Max[axis]))
     {
       // Infinite weights times nothing.

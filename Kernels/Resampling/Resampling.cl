@@ -601,7 +601,7 @@ static OUTLINED int MakeCell(const SamplingMesh* mesh, int x, int y, int z, cons
   }
   const int mirror = Mirror(x, y, z, p);
   // Orientations, against the one that the parity of the cell asks for.
-  const int odd = (mirror ^ mirror >> 1 ^ mirror >> 2) & 1;
+  const int odd = IsTurned(x, y, z, p);
   cell->X = x;
   cell->Y = y;
   cell->Z = z;

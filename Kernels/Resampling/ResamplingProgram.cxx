@@ -19,12 +19,13 @@ namespace
 {
 
 /// Bytes that a work-item of the kernel ResampleBricks wants for so many arrays.
-std::size_t GetBrickMemory(const OpenCLContext& context, std::size_t slots)
+std::size_t GetBrickMemory(const OpenCLContext& context, bool hasTurnedAxes, std::size_t slots)
 {
   const std::size_t lanes = static_cast<std::size_t>(GetLanes(context));
   const std::size_t halfRow = (DEFORMVOLUME_BRICK_X / 2 / lanes + 1) * lanes;
   const std::size_t row = 2 * (3 + slots) * halfRow;
-  return (4 * halfRow + 3 * (DEFORMVOLUME_BRICK_X + 16) + 2 * (DEFORMVOLUME_BRICK_Y + 1) * row) *
+  return ((hasTurnedAxes ? 12 : 4) * halfRow + 3 * (DEFORMVOLUME_BRICK_X + 16) +
+           2 * (DEFORMVOLUME_BRICK_Y + 1) * row) *
     sizeof(cl_float);
 }
 
@@ -46,19 +47,19 @@ std::size_t GetLocalMemory(const OpenCLContext& context)
 
 /// For each array whether the kernel interpolates it in single precision: as many as the local
 /// memory holds, if it is used.
-std::vector<bool> FindLaneArrays(
-  const OpenCLContext& context, const std::vector<VolumeArray>& arrays, ResamplingForm form)
+std::vector<bool> FindLaneArrays(const OpenCLContext& context,
+  const std::vector<VolumeArray>& arrays, ResamplingForm form, bool hasTurnedAxes)
 {
   const bool lanes = form == ResamplingForm::Lanes;
-  const std::size_t memory = !lanes || HasLocalBricks(context)
+  const std::size_t memory = !lanes || HasLocalBricks(context, hasTurnedAxes)
     ? GetLocalMemory(context)
     : std::numeric_limits<std::size_t>::max();
   std::vector<bool> found;
   std::size_t slots = 0;
   for (const VolumeArray& array : arrays)
   {
-    const std::size_t needed =
-      lanes ? GetBrickMemory(context, slots + 1) : GetColumnMemory(slots + 1) + OtherColumnMemory;
+    const std::size_t needed = lanes ? GetBrickMemory(context, hasTurnedAxes, slots + 1)
+                                     : GetColumnMemory(slots + 1) + OtherColumnMemory;
     const bool fits = FitsFloat(array) && needed <= memory;
     found.push_back(fits);
     slots += fits;
@@ -66,10 +67,10 @@ std::vector<bool> FindLaneArrays(
   return found;
 }
 
-std::size_t CountSlots(
-  const OpenCLContext& context, const std::vector<VolumeArray>& arrays, ResamplingForm form)
+std::size_t CountSlots(const OpenCLContext& context, const std::vector<VolumeArray>& arrays,
+  ResamplingForm form, bool hasTurnedAxes)
 {
-  const std::vector<bool> found = FindLaneArrays(context, arrays, form);
+  const std::vector<bool> found = FindLaneArrays(context, arrays, form, hasTurnedAxes);
   return static_cast<std::size_t>(std::count(found.begin(), found.end(), true));
 }
 
@@ -79,7 +80,8 @@ std::string MakeLanePreamble(const OpenCLContext& context, const std::vector<Vol
   const ResamplingVariant& variant)
 {
   const ResamplingForm form = variant.Form;
-  const std::vector<bool> inLanes = FindLaneArrays(context, arrays, form);
+  const bool hasTurnedAxes = variant.HasTurnedAxes;
+  const std::vector<bool> inLanes = FindLaneArrays(context, arrays, form, hasTurnedAxes);
   std::string list;
   std::string others;
   int slots = 0;
@@ -95,7 +97,7 @@ std::string MakeLanePreamble(const OpenCLContext& context, const std::vector<Vol
       std::to_string(8 * GetElementSize(arrays[i].Type)) + ", " + std::to_string(slots++) + ")";
   }
   const bool lanes = form == ResamplingForm::Lanes;
-  const bool local = !lanes || HasLocalBricks(context);
+  const bool local = !lanes || HasLocalBricks(context, hasTurnedAxes);
   const std::string shape = lanes
     ? "#define ROW_CELLS DEFORMVOLUME_BRICK_X\n#define CELL_ROWS DEFORMVOLUME_BRICK_Y\n"
     : "#define ROW_CELLS DEFORMVOLUME_COLUMN\n#define CELL_ROWS (DEFORMVOLUME_BRICK_Y / 2)\n"
@@ -147,9 +149,9 @@ std::string GetFormOptions(const OpenCLContext& context, ResamplingForm form)
 
 } // namespace
 
-bool HasLocalBricks(const OpenCLContext& context)
+bool HasLocalBricks(const OpenCLContext& context, bool hasTurnedAxes)
 {
-  return GetBrickMemory(context, 0) <= GetLocalMemory(context);
+  return GetBrickMemory(context, hasTurnedAxes, 0) <= GetLocalMemory(context);
 }
 
 bool HasLocalColumns(const OpenCLContext& context)
@@ -186,7 +188,7 @@ cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
   key += variant.IsCubic ? "#define CUBIC 1\n" : "#define CUBIC 0\n";
   key += variant.CoverageBits ? "#define COVERAGE_IS_BITS 1\n" : "#define COVERAGE_IS_BITS 0\n";
   return context.GetProgram(GetSamplingMeshText(variant.WithCut) + MakeArrayText(context, arrays) +
-      key + GetMappingText(mapping) + "#define HAS_CELL_KERNEL " +
+      key + GetMappingText(mapping, variant.HasTurnedAxes) + "#define HAS_CELL_KERNEL " +
       (form == ResamplingForm::Cells ? "1\n" : "0\n") + "#define OUTLINED" +
       (form == ResamplingForm::Queue ? " __attribute__((noinline))\n" : "\n") + IntegerVectors_cl +
       CellVertices_cl + CutCells_cl + CellCoverage_cl +
@@ -195,16 +197,18 @@ cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
     std::string(KernelOptions) + GetFormOptions(context, form));
 }
 
-std::size_t GetBrickMemory(const OpenCLContext& context, const std::vector<VolumeArray>& arrays)
+std::size_t GetBrickMemory(
+  const OpenCLContext& context, bool hasTurnedAxes, const std::vector<VolumeArray>& arrays)
 {
-  return GetBrickMemory(context, CountSlots(context, arrays, ResamplingForm::Lanes));
+  return GetBrickMemory(
+    context, hasTurnedAxes, CountSlots(context, arrays, ResamplingForm::Lanes, hasTurnedAxes));
 }
 
 std::size_t GetColumnMemory(
   const OpenCLContext& context, const std::vector<VolumeArray>& arrays, ResamplingForm form)
 {
   return GetColumnMemory(
-    CountSlots(context, arrays, form), form == ResamplingForm::Columns ? 3 : 2);
+    CountSlots(context, arrays, form, false), form == ResamplingForm::Columns ? 3 : 2);
 }
 
 } // namespace deformvolume

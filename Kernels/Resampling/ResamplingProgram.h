@@ -43,6 +43,8 @@ struct ResamplingVariant
   bool IsDirect = false;
   /// Whether the interpolation is cubic where it can be; of the forms Cells and LargeCells.
   bool IsCubic = false;
+  /// See DeviceVolume::HasTurnedAxes.
+  bool HasTurnedAxes = false;
 };
 
 /// The exact resampling for arrays of these types. Throws Error where the device lacks what the
@@ -52,9 +54,10 @@ cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
 
 /// Whether the kernel ResampleBricks works in local memory: where there is enough. Else it does so
 /// in a buffer, which has room for each work-item.
-bool HasLocalBricks(const OpenCLContext& context);
+bool HasLocalBricks(const OpenCLContext& context, bool hasTurnedAxes);
 /// Bytes of that for a work-item.
-std::size_t GetBrickMemory(const OpenCLContext& context, const std::vector<VolumeArray>& arrays);
+std::size_t GetBrickMemory(
+  const OpenCLContext& context, bool hasTurnedAxes, const std::vector<VolumeArray>& arrays);
 
 /// Whether there is enough local memory for the kernel ResampleColumns.
 bool HasLocalColumns(const OpenCLContext& context);

@@ -16,6 +16,7 @@ typedef struct
 {
   int Size[3];     // voxels on each axis
   int First[3];    // structured index of the first voxel; its parity decides the 5T split
+  int IsMirrored;  // 1 where upright tetrahedra are mirror images of those of the volume, else 0
   int ChunkFirst;  // local z of the first vertex plane, and of the first cell layer, in the chunk
   int PlanesBegin; // local z of the first vertex plane to work on
   int PlanesEnd;   // and one past the last
@@ -62,6 +63,17 @@ typedef struct
   int Whole;
   float Fraction;
 } RestPosition;
+
+// The same where axes of the volume are not those of the output: what an index on an axis adds to
+// the position. Fractions are multiples of 1/256 below 1, so that all sums are exact, in any order,
+// and a voxel has the same position whatever it is a part of. An index on z or y adds the fraction
+// that it has in the whole volume, and counts whole numbers from the first one there is; those on x
+// have the rest.
+typedef struct
+{
+  int Whole[3];
+  float Fraction[3];
+} RestVector;
 
 // A displacement field. IndexToField: row-major 3 x 4, from an index counted from the first voxel
 // of the whole volume to a continuous index of the field.
@@ -208,6 +220,13 @@ typedef struct
 static int Mirror(int x, int y, int z, const KernelParameters* p)
 {
   return DEFORMVOLUME_MIRROR(p->First[0] + x, p->First[1] + y, p->First[2] + z);
+}
+
+// Whether tetrahedra of a cell, but for the central one, are mirror images of those of the cell at
+// index 0.
+static int IsTurned(int x, int y, int z, const KernelParameters* p)
+{
+  return (p->First[0] + x + p->First[1] + y + p->First[2] + z + p->IsMirrored) & 1;
 }
 
 // Places of a vertex, and of a cell, in what a chunk has of each.

@@ -29,13 +29,14 @@ VoxelGrid MakeVolume(const Extent& extent, const glm::dvec3& scale)
 {
   VoxelGrid voxelGrid;
   voxelGrid.VertexExtent = extent;
-  voxelGrid.Scale = { { scale.x, scale.y, scale.z } };
+  voxelGrid.ToOutput = std::array<double, 3>{ { scale.x, scale.y, scale.z } };
   return voxelGrid;
 }
 
 glm::dvec3 GetRatio(const VoxelGrid& voxelGrid)
 {
-  return glm::dvec3(voxelGrid.Scale[0], voxelGrid.Scale[1], voxelGrid.Scale[2]);
+  return glm::dvec3(
+    voxelGrid.ToOutput.Get(0, 0), voxelGrid.ToOutput.Get(1, 1), voxelGrid.ToOutput.Get(2, 2));
 }
 
 std::vector<float> MakeVectors(std::size_t count, double size, std::mt19937& random)

@@ -325,7 +325,7 @@ void TestBounds()
   const glm::dvec3 spacing(1.0, 0.9, 1.2);
   VoxelGrid grid;
   grid.VertexExtent = voxels;
-  grid.Scale = { { 1.5, 1.0, 0.75 } };
+  grid.ToOutput = std::array<double, 3>{ { 1.5, 1.0, 0.75 } };
   const Mesh mesh = MakeLattice(
     { 4, 4, 4 }, glm::dvec3(3.0, 10.0, 9.0), glm::dvec3(20.0, 22.0, 25.0), 0.2, 0.0, random);
   std::uniform_real_distribution<double> uniform(-6.0, 6.0);

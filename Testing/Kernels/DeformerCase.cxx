@@ -46,7 +46,11 @@ reference::Position GetRestPosition(const VoxelGrid& voxelGrid, int x, int y, in
   reference::Position position{};
   for (int axis = 0; axis < 3; ++axis)
   {
-    const double exact = 256.0 * voxelGrid.Scale[axis] * index[axis];
+    double exact = 256.0 * voxelGrid.ToOutput.Shift[axis];
+    for (int column = 0; column < 3; ++column)
+    {
+      exact += 256.0 * voxelGrid.ToOutput.Get(axis, column) * index[column];
+    }
     position[axis] = std::llround(exact);
     EXPECT_EQ(static_cast<double>(position[axis]), exact) << "a scale that makes the test inexact";
   }
@@ -202,12 +206,12 @@ void ExpectArrayEqualsReference(const reference::Result& reference, const Volume
 
 } // namespace
 
-DeformerCase MakeCase(const Extent& extent, const std::array<double, 3>& scale,
+DeformerCase MakeCase(const Extent& extent, const OutputMap& toOutput,
   const std::function<glm::dvec3(const glm::dvec3&)>& deformation, int margin)
 {
   DeformerCase made;
   made.VoxelGrid.VertexExtent = extent;
-  made.VoxelGrid.Scale = scale;
+  made.VoxelGrid.ToOutput = toOutput;
   made.Displacements.reserve(GetNumberOfPoints(extent));
   std::array<std::int64_t, 3> low{};
   std::array<std::int64_t, 3> high{};
@@ -302,6 +306,7 @@ reference::Result ResampleByReference(const DeformerCase& deformerCase)
   mesh.Crossed = deformerCase.Crossed;
   mesh.CutDistances = deformerCase.CutDistances;
   mesh.Displacements = deformerCase.Displacements;
+  mesh.IsMirrored = deformerCase.VoxelGrid.ToOutput.GetDeterminant() < 0.0;
   std::size_t voxel = 0;
   ForEachVoxel(mesh.Voxels,
     [&](int x, int y, int z)

@@ -56,7 +56,7 @@ struct DeformerCase
 
 /// The structured index of each voxel goes to a continuous output index, which is rounded to 1/256.
 /// The output becomes the bounds of the result and margin voxels more.
-DeformerCase MakeCase(const deformvolume::Extent& extent, const std::array<double, 3>& scale,
+DeformerCase MakeCase(const deformvolume::Extent& extent, const deformvolume::OutputMap& toOutput,
   const std::function<glm::dvec3(const glm::dvec3&)>& deformation, int margin = 1);
 
 /// Adds a smooth cut with distances of random sign; of the cells one in `every` has tetrahedra that

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RasterCase.h"
 
+#include "OutputPlace.h"
+
 #include "RasterReference.h"
 
 #include <gtest/gtest.h>
@@ -97,7 +99,6 @@ RasterCase MakeRasterCase(const VoxelGrid& voxelGrid, const glm::dvec3& low, con
 {
   RasterCase made;
   made.VoxelGrid = voxelGrid;
-  const glm::dvec3 scale(voxelGrid.Scale[0], voxelGrid.Scale[1], voxelGrid.Scale[2]);
   glm::dvec3 least(1e9);
   glm::dvec3 most(-1e9);
   const int nodes = cells + 1;
@@ -112,7 +113,8 @@ RasterCase MakeRasterCase(const VoxelGrid& voxelGrid, const glm::dvec3& low, con
         made.RestNodes.push_back(rest);
         for (int axis = 0; axis < 3; ++axis)
         {
-          made.Displacements.push_back(static_cast<float>((moved - scale * rest)[axis]));
+          made.Displacements.push_back(
+            static_cast<float>((moved - PlaceInOutput(voxelGrid.ToOutput, rest))[axis]));
         }
         least = glm::min(least, moved);
         most = glm::max(most, moved);
@@ -141,9 +143,9 @@ RasterCase MakeRasterCase(const VoxelGrid& voxelGrid, const glm::dvec3& low, con
 }
 
 RasterCase MakeRasterCase(
-  const Extent& extent, int cells, const Map& deformation, const std::array<double, 3>& scale)
+  const Extent& extent, int cells, const Map& deformation, const OutputMap& toOutput)
 {
-  return MakeRasterCase({ extent, scale }, glm::dvec3(extent[0], extent[2], extent[4]),
+  return MakeRasterCase({ extent, toOutput, {} }, glm::dvec3(extent[0], extent[2], extent[4]),
     glm::dvec3(extent[1], extent[3], extent[5]), cells, deformation);
 }
 

@@ -34,7 +34,7 @@ RasterCase MakeRasterCase(const deformvolume::VoxelGrid& voxelGrid, const glm::d
 /// The same with a mesh over just the volume.
 RasterCase MakeRasterCase(const deformvolume::Extent& extent, int cells,
   const std::function<glm::dvec3(const glm::dvec3&)>& deformation,
-  const std::array<double, 3>& scale = { { 1, 1, 1 } });
+  const deformvolume::OutputMap& toOutput = {});
 
 /// Sets the voxel grid, the arrays, the masks and the mesh.
 void Load(deformvolume::VolumeDeformer& deformer, const RasterCase& rasterCase,

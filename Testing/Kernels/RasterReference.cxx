@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RasterReference.h"
 
+#include "OutputPlace.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -35,7 +37,8 @@ Wide Determinant(const Point& a, const Point& b, const Point& c, const Point& d)
 int GetRestSign(const RasterCase& c, const Tetrahedron& t)
 {
   const glm::dvec3 a = c.RestNodes[t[0]];
-  const double volume =
+  // As it lies in the output.
+  const double volume = c.VoxelGrid.ToOutput.GetDeterminant() *
     glm::dot(c.RestNodes[t[1]] - a, glm::cross(c.RestNodes[t[2]] - a, c.RestNodes[t[3]] - a));
   return (volume > 0.0) - (volume < 0.0);
 }
@@ -131,7 +134,7 @@ void Take(const RasterCase& c, int tetrahedron, const std::array<long double, 3>
   for (int axis = 0; axis < 3; ++axis)
   {
     const long double most = static_cast<long double>(GetSize(c.VoxelGrid.VertexExtent, axis) - 1);
-    const long double tolerance = 1.0L / 256.0L / c.VoxelGrid.Scale[axis];
+    const long double tolerance = FindRestTolerance(c.VoxelGrid.ToOutput, axis);
     const long double outside = std::max(-rest[axis], rest[axis] - most) - tolerance;
     if (outside > Unsure)
     {
@@ -172,7 +175,7 @@ RasterResult Rasterize(const RasterCase& c, bool cubic)
     for (int axis = 0; axis < 3; ++axis)
     {
       position[axis] = static_cast<std::int64_t>(std::nearbyint(256.0 *
-        (c.VoxelGrid.Scale[axis] * c.RestNodes[node][axis] +
+        (PlaceInOutput(c.VoxelGrid.ToOutput, c.RestNodes[node])[axis] +
           double{ c.Displacements[3 * node + axis] })));
     }
     positions.push_back(position);
@@ -250,8 +253,12 @@ RasterResult Rasterize(const RasterCase& c, bool cubic)
               {
                 displacement += weights[k] * c.Displacements[3 * nodes[k] + axis];
               }
-              rest[axis] = (index[axis] - displacement) / c.VoxelGrid.Scale[axis] -
-                c.VoxelGrid.VertexExtent[2 * axis];
+              rest[axis] = index[axis] - displacement;
+            }
+            rest = FindRestIndex(c.VoxelGrid.ToOutput, rest);
+            for (int axis = 0; axis < 3; ++axis)
+            {
+              rest[axis] -= c.VoxelGrid.VertexExtent[2 * axis];
             }
             Take(c, static_cast<int>(t), rest, cubic, result.Voxels[voxel]);
           }

@@ -459,7 +459,7 @@ Result Resample(const SamplingMesh& mesh, const Box& output)
         ++result.NumberOfFlatTetrahedra;
         continue;
       }
-      candidate.Inverted = (volume > 0) != (GetVolume(rest) > 0);
+      candidate.Inverted = ((volume > 0) != (GetVolume(rest) > 0)) != mesh.IsMirrored;
       candidate.Denominator = std::abs(volume);
       inverted = inverted || candidate.Inverted;
       AddTetrahedron(candidate, isDivided, mesh, output, volume > 0 ? 1 : -1, result);

@@ -46,6 +46,8 @@ struct SamplingMesh
   /// smooth cuts.
   std::vector<float> CutDistances;
   std::vector<Position> Displacements;
+  /// Whether voxels that have not moved lie in the output as in a mirror.
+  bool IsMirrored = false;
 };
 
 /// A tetrahedron whose closed region contains an output voxel.

@@ -2,6 +2,7 @@
 // A linear function under affine maps, by mesh and by field: the value is known everywhere.
 #include "DeformerCase.h"
 #include "DeviceNeeds.h"
+#include "OutputPlace.h"
 
 #include <gtest/gtest.h>
 
@@ -25,18 +26,29 @@ struct AffineCase
   glm::dvec3 Gradient{ 0.0 };
   double Constant = 0.0;
 
-  glm::dvec3 GetScale() const
+  glm::dvec3 Place(const glm::dvec3& index) const
   {
-    const auto& scale = this->SamplingMesh.Scale;
-    return glm::dvec3(scale[0], scale[1], scale[2]);
+    return PlaceInOutput(this->SamplingMesh.ToOutput, index);
   }
   glm::dvec3 Move(const glm::dvec3& index) const
   {
-    return this->Matrix * (this->GetScale() * index) + this->Offset;
+    return this->Matrix * this->Place(index) + this->Offset;
+  }
+  /// From the output's steps to the volume's.
+  glm::dmat3 GetBack() const
+  {
+    glm::dmat3 steps;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      glm::dvec3 one(0.0);
+      one[axis] = 1.0;
+      steps[axis] = this->Move(one) - this->Move(glm::dvec3(0.0));
+    }
+    return glm::inverse(steps);
   }
   glm::dvec3 MoveBack(const glm::dvec3& sample) const
   {
-    return glm::inverse(this->Matrix) * (sample - this->Offset) / this->GetScale();
+    return this->GetBack() * (sample - this->Move(glm::dvec3(0.0)));
   }
   double GetValue(const glm::dvec3& index) const
   {
@@ -86,15 +98,14 @@ struct AffineCase
   void Check(const std::vector<double>& output, const std::vector<signed char>& coverage) const
   {
     const double snap = 3.0 / 512.0;
-    const glm::dmat3 back = glm::inverse(this->Matrix);
-    const glm::dvec3 gradient = (this->Gradient / this->GetScale()) * back;
+    const glm::dmat3 back = this->GetBack();
+    const glm::dvec3 gradient = this->Gradient * back;
     const double tolerance = glm::length(gradient) * snap;
     const Extent& e = this->SamplingMesh.VertexExtent;
     glm::dvec3 margin;
     for (int axis = 0; axis < 3; ++axis)
     {
-      margin[axis] = glm::length(glm::dvec3(back[0][axis], back[1][axis], back[2][axis])) * snap /
-        this->GetScale()[axis];
+      margin[axis] = glm::length(glm::dvec3(back[0][axis], back[1][axis], back[2][axis])) * snap;
     }
     const glm::dvec3 first(e[0], e[2], e[4]);
     const glm::dvec3 last(e[1], e[3], e[5]);
@@ -138,12 +149,32 @@ AffineCase MakeRandomAffineCase(unsigned int seed)
   made.SamplingMesh.VertexExtent = { { -4, 9, 3, 17, -20, -9 } };
   if (seed % 2 == 1)
   {
-    made.SamplingMesh.Scale = { { 1.1, 0.7, 1.3 } };
+    made.SamplingMesh.ToOutput = std::array<double, 3>{ { 1.1, 0.7, 1.3 } };
   }
   made.Matrix = MakeRandomMatrix(random);
   made.Offset = 20.0 * glm::dvec3(uniform(random), uniform(random), uniform(random));
   made.Gradient = 100.0 * glm::dvec3(uniform(random), uniform(random), uniform(random));
   made.Constant = 50.0 * uniform(random);
+  return made;
+}
+
+/// The same on a grid whose axes are not those of the volume, and in a mirror: neither turns a
+/// tetrahedron over.
+AffineCase MakeTurnedAffineCase(unsigned int seed)
+{
+  AffineCase made = MakeRandomAffineCase(seed);
+  std::mt19937 random(seed + 100);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const glm::dmat3 turn = MakeRandomMatrix(random);
+  const glm::dvec3 spacing(1.3, 0.6, seed % 2 == 0 ? 1.1 : -1.1);
+  for (int row = 0; row < 3; ++row)
+  {
+    for (int column = 0; column < 3; ++column)
+    {
+      made.SamplingMesh.ToOutput.Matrix[3 * row + column] = turn[column][row] * spacing[column];
+    }
+    made.SamplingMesh.ToOutput.Shift[row] = 50.0 * uniform(random);
+  }
   return made;
 }
 
@@ -158,7 +189,7 @@ void DeformByMesh(const AffineCase& affine, VolumeDeformer& deformer)
   std::vector<float> displacements;
   for (const glm::dvec3& node : nodes)
   {
-    const glm::dvec3 displacement = affine.Move(node) - affine.GetScale() * node;
+    const glm::dvec3 displacement = affine.Move(node) - affine.Place(node);
     for (int axis = 0; axis < 3; ++axis)
     {
       displacements.push_back(static_cast<float>(displacement[axis]));
@@ -218,7 +249,7 @@ void DeformByField(const AffineCase& affine, VolumeDeformer& deformer)
       for (int x = 0; x < field.Dimensions[0]; ++x)
       {
         const glm::dvec3 index = glm::inverse(axes) * (glm::dvec3(x, y, z) + low);
-        const glm::dvec3 displacement = affine.Move(index) - affine.GetScale() * index;
+        const glm::dvec3 displacement = affine.Move(index) - affine.Place(index);
         for (int axis = 0; axis < 3; ++axis)
         {
           vectors.push_back(static_cast<float>(displacement[axis]));
@@ -257,6 +288,16 @@ TEST(AffineMaps, LinearFunctionByMesh)
   {
     SCOPED_TRACE(seed);
     CheckAffine(MakeRandomAffineCase(seed), DeformByMesh);
+  }
+}
+
+TEST(AffineMaps, LinearFunctionOnATurnedGrid)
+{
+  SKIP_WITHOUT_DOUBLE_PRECISION()
+  for (unsigned int seed = 40; seed < 48; ++seed)
+  {
+    SCOPED_TRACE(seed);
+    CheckAffine(MakeTurnedAffineCase(seed), seed % 4 < 2 ? DeformByMesh : DeformByField);
   }
 }
 

@@ -209,6 +209,7 @@ TEST_F(Compilation, NoWarnings)
     for (const bool withCut : { false, true })
     {
       EXPECT_EQ(GetLog(GetMappingProgram(context, form, withCut)), "");
+      EXPECT_EQ(GetLog(GetMappingProgram(context, form, withCut, true)), "");
       for (const ResamplingForm kernel : { ResamplingForm::Lanes, ResamplingForm::Columns })
       {
         EXPECT_EQ(GetLog(GetResamplingProgram(

@@ -407,7 +407,7 @@ TEST(DeviceVectors, Bounds)
 {
   const Subject subject(Extent{ { 2, 21, -3, 18, -1, 17 } });
   VoxelGrid grid = subject.Case.VoxelGrid;
-  grid.Scale = { { 0.3, 1.7, 0.6 } };
+  grid.ToOutput = std::array<double, 3>{ { 0.3, 1.7, 0.6 } };
   DisplacementField field = subject.GetField();
   // Points beyond the voxels do not count.
   for (int axis = 0; axis < 3; ++axis)

@@ -244,7 +244,7 @@ TEST_P(TightMeshes, MovedAndTurned)
 TEST_P(TightMeshes, FinerOutput)
 {
   TightMesh mesh = MakeBall(2.3);
-  mesh.Grid.Scale = { { 1.5, 0.75, 2.0 } };
+  mesh.Grid.ToOutput = std::array<double, 3>{ { 1.5, 0.75, 2.0 } };
   mesh.Move([](const glm::dvec3&) { return glm::dvec3(0.4, 0.1, -0.3); });
   ExpectTight(mesh, this->LoadAndRun(mesh), GetBound(1.0 / 0.75));
 }

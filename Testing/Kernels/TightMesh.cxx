@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TightMesh.h"
 
+#include "OutputPlace.h"
+
 #include <glm/matrix.hpp>
 
 #include <gtest/gtest.h>
@@ -144,11 +146,10 @@ int FindSource(const TightMesh& mesh, const glm::dvec3& rest, TightVoxel& voxel)
 glm::dvec3 TightMesh::GetDeformed(std::int32_t node) const
 {
   const auto i = static_cast<std::size_t>(node);
-  glm::dvec3 place;
+  glm::dvec3 place = PlaceInOutput(this->Grid.ToOutput, this->Points[i]);
   for (int axis = 0; axis < 3; ++axis)
   {
-    place[axis] = this->Grid.Scale[static_cast<std::size_t>(axis)] * this->Points[i][axis] +
-      static_cast<double>(this->Displacements[3 * i + static_cast<std::size_t>(axis)]);
+    place[axis] += static_cast<double>(this->Displacements[3 * i + static_cast<std::size_t>(axis)]);
   }
   return place;
 }

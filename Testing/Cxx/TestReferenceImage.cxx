@@ -1,0 +1,495 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The output on the grid of a reference image, as registration needs it. A linear function of the
+// world position, carried by an affine map of the world, is the yardstick.
+#include "FilterTesting.h"
+
+#include <vtkDataObject.h>
+#include <vtkImageAlgorithm.h>
+#include <vtkInformation.h>
+#include <vtkInformationDoubleVectorKey.h>
+#include <vtkInformationVector.h>
+#include <vtkObjectFactory.h>
+#include <vtkPolyData.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <limits>
+
+using namespace filterTesting;
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+namespace
+{
+
+/// Announces the grid of an image. It gives the image as well, and counts how often.
+class CountingSource : public vtkImageAlgorithm
+{
+public:
+  static CountingSource* New();
+  vtkTypeMacro(CountingSource, vtkImageAlgorithm);
+
+  vtkSmartPointer<vtkImageData> Image;
+  int Executions = 0;
+
+protected:
+  CountingSource() { this->SetNumberOfInputPorts(0); }
+
+  int RequestInformation(
+    vtkInformation*, vtkInformationVector**, vtkInformationVector* output) override
+  {
+    vtkInformation* info = output->GetInformationObject(0);
+    info->Set(Pipeline::WHOLE_EXTENT(), this->Image->GetExtent(), 6);
+    info->Set(vtkDataObject::ORIGIN(), this->Image->GetOrigin(), 3);
+    info->Set(vtkDataObject::SPACING(), this->Image->GetSpacing(), 3);
+    info->Set(vtkDataObject::DIRECTION(), this->Image->GetDirectionMatrix()->GetData(), 9);
+    return 1;
+  }
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* output) override
+  {
+    ++this->Executions;
+    vtkImageData::GetData(output)->ShallowCopy(this->Image);
+    return 1;
+  }
+};
+vtkStandardNewMacro(CountingSource);
+
+const glm::dmat3 Matrix(1.1, 0.2, -0.1, -0.3, 0.9, 0.15, 0.1, -0.2, 1.2);
+const glm::dvec3 Offset(1.5, -0.7, 0.4);
+const glm::dvec3 Gradient(3.0, -2.0, 1.5);
+
+glm::dvec3 Move(const glm::dvec3& point)
+{
+  return Matrix * point + Offset;
+}
+glm::dvec3 MoveBack(const glm::dvec3& point)
+{
+  return glm::inverse(Matrix) * (point - Offset);
+}
+double GetValue(const glm::dvec3& rest)
+{
+  return glm::dot(Gradient, rest) + 7.0;
+}
+
+vtkSmartPointer<vtkImageData> MakeOblique()
+{
+  auto volume =
+    MakeImage({ { -7, 8, 3, 17, -20, -8 } }, glm::dvec3(0.7, 1.3, 1.1), glm::dvec3(4.0, -5.0, 2.5));
+  SetObliqueDirection(volume);
+  AddScalars<double>(volume, "value", GetValue);
+  return volume;
+}
+
+/// Round the moved volume, with axes of its own.
+vtkSmartPointer<vtkImageData> MakeReference(vtkImageData* volume, bool isMirrored)
+{
+  const double z = isMirrored ? -1.0 : 1.0;
+  auto reference = MakeImage({ { 5, 34, -2, 33, 10, 41 } }, glm::dvec3(0.9, 0.8, 1.1));
+  const double direction[9] = { 0.36, 0.48, -0.8 * z, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6 * z };
+  reference->SetDirectionMatrix(direction);
+  double middle[3];
+  volume->GetCenter(middle);
+  const glm::dvec3 wanted = Move(glm::dvec3(middle[0], middle[1], middle[2]));
+  double is[3];
+  reference->GetCenter(is);
+  reference->SetOrigin(wanted.x - is[0], wanted.y - is[1], wanted.z - is[2]);
+  return reference;
+}
+
+bool HasGridOf(vtkImageData* image, vtkImageData* reference)
+{
+  return GetExtent(image) == GetExtent(reference) &&
+    std::equal(image->GetOrigin(), image->GetOrigin() + 3, reference->GetOrigin()) &&
+    std::equal(image->GetSpacing(), image->GetSpacing() + 3, reference->GetSpacing()) &&
+    std::equal(image->GetDirectionMatrix()->GetData(), image->GetDirectionMatrix()->GetData() + 9,
+      reference->GetDirectionMatrix()->GetData());
+}
+
+/// Values within the slope over 3 x 2^-9 output voxels; coverage beyond that of the border.
+void CheckValues(Deformed& deformed, vtkImageData* volume, vtkImageData* reference)
+{
+  vtkImageData* output = deformed.Update();
+  VERIFY(HasGridOf(output, reference));
+  VERIFY_EQUAL(deformed.Filter->GetNumberOfInvertedTetrahedra(), 0);
+  const double tolerance = glm::length(Gradient * glm::inverse(Matrix)) * 1.1 * 3.0 / 512.0 + 1e-9;
+  const Extent extent = GetExtent(volume);
+  int wrong = 0;
+  int covered = 0;
+  for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
+  {
+    const glm::dvec3 rest = MoveBack(GetPoint(output, id));
+    glm::dvec3 index;
+    volume->TransformPhysicalPointToContinuousIndex(&rest.x, &index.x);
+    double inside = 1e9;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      inside =
+        std::min({ inside, index[axis] - extent[2 * axis], extent[2 * axis + 1] - index[axis] });
+    }
+    const bool isCovered = deformed.IsCovered(id);
+    const double value = deformed.GetValues()->GetComponent(id, 0);
+    covered += isCovered ? 1 : 0;
+    wrong += (inside > 0.05 && !isCovered) || (inside < -0.05 && isCovered) ? 1 : 0;
+    wrong += isCovered && !(std::abs(value - GetValue(rest)) <= tolerance) ? 1 : 0;
+    wrong += !isCovered && value != -1000.0 ? 1 : 0;
+  }
+  VERIFY_EQUAL(wrong, 0);
+  VERIFY(covered > 2000);
+  VERIFY(covered < output->GetNumberOfPoints());
+  VERIFY_EQUAL(static_cast<vtkIdType>(covered), deformed.Filter->GetNumberOfCoveredVoxels());
+}
+
+/// A filter with a reference image.
+struct OnReference : Deformed
+{
+  OnReference(vtkDataObject* volume, vtkDataObject* deformation, vtkImageData* reference)
+    : Deformed(volume, deformation)
+  {
+    this->Filter->SetReferenceData(reference);
+    this->Filter->SetBackgroundValue(-1000.0);
+  }
+};
+
+vtkSmartPointer<vtkUnstructuredGrid> MakeMoved(vtkImageData* volume, int nodes = 4)
+{
+  auto mesh = MakeMesh(volume, nodes);
+  SetDisplacements(mesh, Move);
+  return mesh;
+}
+
+/// Inverse or forward.
+vtkSmartPointer<vtkImageData> MakeField(vtkImageData* volume, bool isInverse)
+{
+  double bounds[6];
+  volume->GetBounds(bounds);
+  auto field = MakeImage({ { 0, 12, 0, 12, 0, 12 } });
+  // Far enough round both.
+  field->SetOrigin(bounds[0] - 15.0, bounds[2] - 15.0, bounds[4] - 15.0);
+  field->SetSpacing((bounds[1] - bounds[0] + 30.0) / 12.0, (bounds[3] - bounds[2] + 30.0) / 12.0,
+    (bounds[5] - bounds[4] + 30.0) / 12.0);
+  SetDisplacements(field, isInverse ? MoveBack : Move);
+  return field;
+}
+
+void TestOwnGrid()
+{
+  auto volume = MakeOblique();
+  auto mesh = MakeMesh(volume, 4);
+  SetDisplacements(mesh,
+    [](const glm::dvec3& p)
+    { return p + glm::dvec3(0.6 * std::sin(0.4 * p.y), 0.5 * std::cos(0.5 * p.z), 0.3); });
+  auto field = MakeField(volume, true);
+  for (const bool isInverse : { false, true })
+  {
+    Deformed plain(volume, isInverse ? static_cast<vtkDataObject*>(field) : mesh);
+    plain.Filter->SetFieldIsInverse(isInverse);
+    plain.Filter->SetBackgroundValue(-1000.0);
+    vtkImageData* expected = plain.Update();
+    vtkNew<vtkImageData> reference;
+    reference->CopyStructure(expected);
+    OnReference same(volume, isInverse ? static_cast<vtkDataObject*>(field) : mesh, reference);
+    same.Filter->SetFieldIsInverse(isInverse);
+    VERIFY(AreEqual(same.Update(), expected));
+    VERIFY(HasGridOf(same.Filter->GetOutput(), reference));
+    VERIFY(same.TakeWarning().empty());
+    // And back again.
+    same.Filter->SetInputConnection(3, nullptr);
+    VERIFY(AreEqual(same.Update(), expected));
+  }
+}
+
+void TestTurned()
+{
+  auto volume = MakeOblique();
+  for (const bool isMirrored : { false, true })
+  {
+    auto reference = MakeReference(volume, isMirrored);
+    OnReference byMesh(volume, MakeMoved(volume), reference);
+    CheckValues(byMesh, volume, reference);
+    byMesh.Filter->SetResamplerToMeshRasterization();
+    CheckValues(byMesh, volume, reference);
+    OnReference byField(volume, MakeField(volume, false), reference);
+    CheckValues(byField, volume, reference);
+    OnReference byInverse(volume, MakeField(volume, true), reference);
+    byInverse.Filter->FieldIsInverseOn();
+    CheckValues(byInverse, volume, reference);
+    // Every second voxel of the volume, all of the output. The yardstick is linear.
+    auto even = MakeImage(
+      { { -8, 8, 4, 18, -20, -8 } }, glm::dvec3(0.7, 1.3, 1.1), glm::dvec3(4.0, -5.0, 2.5));
+    SetObliqueDirection(even);
+    AddScalars<double>(even, "value", GetValue);
+    OnReference coarse(even, MakeMoved(even), reference);
+    coarse.Filter->SetSamplingFactor(2);
+    CheckValues(coarse, even, reference);
+  }
+}
+
+/// Without a deformation the volume itself is resampled.
+void TestAtRest()
+{
+  auto volume = MakeOblique();
+  for (const bool isMirrored : { false, true })
+  {
+    auto reference = MakeReference(volume, isMirrored);
+    OnReference deformed(volume, nullptr, reference);
+    vtkImageData* output = deformed.Update();
+    VERIFY(HasGridOf(output, reference));
+    int wrong = 0;
+    for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
+    {
+      const double value = deformed.GetValues()->GetComponent(id, 0);
+      const double wanted = GetValue(GetPoint(output, id));
+      wrong += deformed.IsCovered(id) &&
+          !(std::abs(value - wanted) <= glm::length(Gradient) * 1.1 * 3.0 / 512.0)
+        ? 1
+        : 0;
+    }
+    VERIFY_EQUAL(wrong, 0);
+    VERIFY(deformed.Filter->GetNumberOfCoveredVoxels() > 2000);
+    VERIFY_EQUAL(deformed.Filter->GetNumberOfInvertedTetrahedra(), 0);
+  }
+}
+
+/// A reference of opposite handedness has the same values at the same places.
+void TestMirrored()
+{
+  auto volume = MakeOblique();
+  auto mesh = MakeMoved(volume);
+  auto reference = MakeReference(volume, false);
+  vtkNew<vtkImageData> mirrored;
+  mirrored->CopyStructure(reference);
+  double direction[9];
+  std::copy_n(reference->GetDirectionMatrix()->GetData(), 9, direction);
+  for (int row = 0; row < 3; ++row)
+  {
+    direction[3 * row] = -direction[3 * row];
+  }
+  mirrored->SetDirectionMatrix(direction);
+  const Extent e = GetExtent(reference);
+  mirrored->SetExtent(-e[1], -e[0], e[2], e[3], e[4], e[5]);
+  OnReference one(volume, mesh, reference);
+  OnReference other(volume, mesh, mirrored);
+  one.Update();
+  vtkImageData* output = other.Update();
+  VERIFY_EQUAL(other.Filter->GetNumberOfInvertedTetrahedra(), 0);
+  VERIFY_EQUAL(other.Filter->GetNumberOfCoveredVoxels(), one.Filter->GetNumberOfCoveredVoxels());
+  int wrong = 0;
+  for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
+  {
+    int index[3];
+    index[0] = static_cast<int>(id % (e[1] - e[0] + 1));
+    const vtkIdType row = id / (e[1] - e[0] + 1);
+    const vtkIdType image = row * (e[1] - e[0] + 1) + e[1] - e[0] - index[0];
+    wrong += std::abs(one.GetValues()->GetComponent(id, 0) -
+               other.GetValues()->GetComponent(image, 0)) > 1e-9
+      ? 1
+      : 0;
+  }
+  VERIFY_EQUAL(wrong, 0);
+}
+
+void TestPartsAndUpdates()
+{
+  auto volume = MakeOblique();
+  auto mesh = MakeMoved(volume, 6);
+  auto reference = MakeReference(volume, true);
+  OnReference whole(volume, mesh, reference);
+  vtkNew<vtkImageData> expected;
+  expected->DeepCopy(whole.Update());
+  OnReference part(volume, mesh, reference);
+  for (const Extent& extent :
+    { Extent{ { 5, 20, -2, 33, 10, 24 } }, Extent{ { 18, 34, 12, 33, 20, 41 } } })
+  {
+    part.Filter->UpdateInformation();
+    part.Filter->UpdateExtent(extent.data());
+    vtkNew<vtkImageData> cut;
+    cut->DeepCopy(expected);
+    cut->Crop(extent.data());
+    VERIFY(AreEqual(part.Filter->GetOutput(), cut));
+  }
+  // A node moves.
+  auto* vectors = vtkFloatArray::SafeDownCast(mesh->GetPointData()->GetVectors());
+  const vtkIdType node = 3 * 36 + 3 * 6 + 2;
+  vectors->SetTypedComponent(node, 1, vectors->GetTypedComponent(node, 1) + 0.8F);
+  vectors->Modified();
+  mesh->Modified();
+  OnReference fresh(volume, mesh, reference);
+  VERIFY(AreEqual(whole.Update(), fresh.Update()));
+  VERIFY(!AreEqual(whole.Filter->GetOutput(), expected));
+  VERIFY(GetReported(whole.Filter, "Bricks resampled") > 0);
+  // Another grid of the same extent.
+  vtkNew<vtkImageData> shifted;
+  shifted->CopyStructure(reference);
+  double origin[3];
+  reference->GetOrigin(origin);
+  shifted->SetOrigin(origin[0] + 0.3, origin[1], origin[2] - 0.2);
+  whole.Filter->SetReferenceData(shifted);
+  OnReference elsewhere(volume, mesh, shifted);
+  VERIFY(AreEqual(whole.Update(), elsewhere.Update()));
+  VERIFY(!AreEqual(whole.Filter->GetOutput(), fresh.Filter->GetOutput()));
+  // A single layer.
+  vtkNew<vtkImageData> layer;
+  layer->CopyStructure(reference);
+  layer->SetExtent(5, 34, 15, 15, 10, 41);
+  OnReference thin(volume, mesh, layer);
+  vtkNew<vtkImageData> cut;
+  cut->DeepCopy(fresh.Filter->GetOutput());
+  const int extent[6] = { 5, 34, 15, 15, 10, 41 };
+  cut->Crop(extent);
+  VERIFY(AreEqual(thin.Update(), cut));
+}
+
+void TestDataAreNotRequested()
+{
+  auto volume = MakeOblique();
+  auto mesh = MakeMoved(volume);
+  vtkNew<CountingSource> source;
+  source->Image = MakeReference(volume, true);
+  Deformed deformed(volume, mesh);
+  deformed.Filter->SetBackgroundValue(-1000.0);
+  deformed.Filter->SetReferenceConnection(source->GetOutputPort());
+  CheckValues(deformed, volume, source->Image);
+  // A grid that changes in place, and an update of a part.
+  source->Image = MakeReference(volume, false);
+  source->Modified();
+  CheckValues(deformed, volume, source->Image);
+  int extent[6] = { 6, 20, 0, 20, 12, 30 };
+  source->Modified();
+  deformed.Filter->UpdateInformation();
+  deformed.Filter->UpdateExtent(extent);
+  VERIFY_EQUAL(deformed.TakeErrors(), 0);
+  VERIFY_EQUAL(source->Executions, 0);
+
+  // An inverse field on the grid of the reference, which is the field itself.
+  vtkNew<CountingSource> field;
+  field->Image = MakeField(volume, true);
+  Deformed own(volume, nullptr);
+  own.Filter->SetBackgroundValue(-1000.0);
+  own.Filter->SetDeformationConnection(field->GetOutputPort());
+  own.Filter->SetReferenceConnection(field->GetOutputPort());
+  own.Filter->FieldIsInverseOn();
+  vtkImageData* output = own.Update();
+  VERIFY(HasGridOf(output, field->Image));
+  VERIFY_EQUAL(field->Executions, 1);
+  VERIFY(own.Filter->GetNumberOfCoveredVoxels() > 10);
+}
+
+void TestWarnings()
+{
+  auto volume = MakeOblique();
+  auto mesh = MakeMoved(volume);
+  auto reference = MakeReference(volume, false);
+  OnReference deformed(volume, mesh, reference);
+  vtkNew<vtkImageData> expected;
+  expected->DeepCopy(deformed.Update());
+  VERIFY(deformed.TakeWarning().empty());
+  deformed.Filter->SetPadding(3);
+  deformed.Filter->SetBoundsGranularity(8);
+  deformed.Filter->SetOutputBoundsModeToCustomBounds();
+  deformed.Filter->SetOutputSpacingModeToCustomSpacing();
+  deformed.Filter->Update();
+  VERIFY(AreEqual(deformed.Filter->GetOutput(), expected));
+  const std::string warning = deformed.TakeWarning();
+  for (const char* name :
+    { "Padding", "BoundsGranularity", "OutputBoundsMode", "OutputSpacingMode" })
+  {
+    VERIFY(warning.find(name) != std::string::npos);
+  }
+  deformed.Filter->Modified();
+  deformed.Filter->Update();
+  VERIFY(deformed.TakeWarning().empty()); // it was said
+
+  // Far away.
+  vtkNew<vtkImageData> far;
+  far->CopyStructure(reference);
+  far->SetOrigin(300.0, 0.0, 0.0);
+  OnReference apart(volume, mesh, far);
+  apart.Filter->Update();
+  VERIFY(apart.TakeWarning().find("reference image") != std::string::npos);
+  VERIFY(HasGridOf(apart.Filter->GetOutput(), far));
+  VERIFY_EQUAL(apart.Filter->GetNumberOfCoveredVoxels(), 0);
+  double range[2];
+  apart.GetValues()->GetRange(range);
+  VERIFY_EQUAL(range[0], -1000.0);
+  VERIFY_EQUAL(range[1], -1000.0);
+}
+
+void TestMisuse()
+{
+  auto volume = MakeOblique();
+  auto mesh = MakeMoved(volume);
+  auto good = MakeReference(volume, false);
+  OnReference deformed(volume, mesh, good);
+  vtkNew<vtkImageData> expected;
+  expected->DeepCopy(deformed.Update());
+  const auto fails = [&](vtkImageData* reference, const std::string& words)
+  {
+    deformed.Filter->SetReferenceData(reference);
+    deformed.Filter->Update();
+    const int errors = deformed.TakeErrors();
+    if (errors != 1 || deformed.LastError.find(words) == std::string::npos)
+    {
+      ++GetNumberOfFailures();
+      std::cerr << errors << " errors, expected one with " << words << '\n'
+                << deformed.LastError << '\n';
+    }
+    VERIFY_EQUAL(deformed.Filter->GetOutput()->GetNumberOfPoints(), 0);
+    deformed.Filter->SetReferenceData(good);
+    VERIFY(AreEqual(deformed.Update(), expected));
+  };
+  const auto copy = [&]
+  {
+    auto image = vtkSmartPointer<vtkImageData>::New();
+    image->CopyStructure(good);
+    return image;
+  };
+  auto spoilt = copy();
+  spoilt->SetExtent(0, -1, 0, -1, 0, -1);
+  fails(spoilt, "empty");
+  spoilt = copy();
+  spoilt->SetSpacing(1.0, 0.0, 1.0);
+  fails(spoilt, "spacing of the reference image on axis y");
+  spoilt = copy();
+  spoilt->SetSpacing(1.0, 1.0, std::numeric_limits<double>::quiet_NaN());
+  fails(spoilt, "spacing of the reference image on axis z");
+  spoilt = copy();
+  spoilt->SetOrigin(0.0, std::numeric_limits<double>::infinity(), 0.0);
+  fails(spoilt, "origin of the reference image");
+  spoilt = copy();
+  const double singular[9] = { 1, 0, 0, 1, 0, 0, 0, 0, 1 };
+  spoilt->SetDirectionMatrix(singular);
+  fails(spoilt, "direction matrix of the reference image");
+  spoilt = copy();
+  spoilt->SetSpacing(1e-6, 1e-6, 1e-6);
+  fails(spoilt, "16,383");
+
+  // No image: one error, of the executive.
+  vtkNew<vtkPolyData> surface;
+  deformed.Filter->SetReferenceData(surface);
+  deformed.Filter->Update();
+  const std::string all =
+    deformed.Observer->GetErrorMessage() + deformed.ExecutiveObserver->GetErrorMessage();
+  VERIFY(all.find("ERROR: ") != std::string::npos);
+  VERIFY_EQUAL(all.find("ERROR: "), all.rfind("ERROR: "));
+  deformed.TakeErrors();
+  deformed.Filter->SetReferenceData(good);
+  VERIFY(AreEqual(deformed.Update(), expected));
+}
+
+} // namespace
+
+int TestReferenceImage(int, char*[])
+{
+  TestOwnGrid();
+  TestTurned();
+  TestAtRest();
+  TestMirrored();
+  TestPartsAndUpdates();
+  TestDataAreNotRequested();
+  TestWarnings();
+  TestMisuse();
+  return GetExitCode();
+}
