@@ -11,8 +11,8 @@ class Messages;
 
 struct ReadingOptions
 {
-  /// NIfTI: origin 0; MetaImage and NRRD: the file's origin; all: spacing of the file and no
-  /// direction, as VTK's and ParaView's readers have it.
+  /// NIfTI and DICOM: origin 0; MetaImage and NRRD: the file's origin; all: spacing of the file and
+  /// no direction, as VTK's and ParaView's readers have it.
   bool FileCoordinates = false;
   /// Which volume of a file with several in time, counted from 0.
   std::optional<int> Frame;
