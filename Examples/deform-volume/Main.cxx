@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // deform-volume: deforms a volume with a tetrahedral mesh from the command line.
 #include "Failure.h"
+#include "ImageAxes.h"
 #include "MeshMaking.h"
 #include "Messages.h"
 #include "Movie.h"
@@ -105,9 +106,10 @@ double FindBackground(const Options& options, vtkImageData* volume)
 }
 
 void SetUp(vtkDeformVolumeFilter* filter, const Options& options, vtkImageData* volume,
-  const Deformation& deformation)
+  vtkImageData* reference, const Deformation& deformation)
 {
   filter->SetInputData(volume);
+  filter->SetReferenceData(reference);
   filter->SetDeformationData(deformation.Data);
   filter->SetOpenSplits(options.CutsMesh());
   if (deformation.Rest)
@@ -122,8 +124,10 @@ void SetUp(vtkDeformVolumeFilter* filter, const Options& options, vtkImageData* 
   filter->SetDisplacementScale(options.Scale);
   filter->SetPointsAreDeformed(options.PointsAreDeformed);
   filter->SetFieldIsInverse(options.FieldIsInverse);
-  filter->SetOutsideMode(
-    options.Extrapolate ? vtkDeformVolumeFilter::EXTRAPOLATE : vtkDeformVolumeFilter::DISCARD);
+  filter->SetOutsideMode(options.KeepDistance ? vtkDeformVolumeFilter::KEEP
+      : options.Extrapolate                   ? vtkDeformVolumeFilter::EXTRAPOLATE
+                                              : vtkDeformVolumeFilter::DISCARD);
+  filter->SetFadeDistance(options.KeepDistance.value_or(0.0));
   filter->SetOutputBoundsMode(options.VolumeBounds ? vtkDeformVolumeFilter::VOLUME_BOUNDS
                                                    : vtkDeformVolumeFilter::DEFORMED_BOUNDS);
   filter->SetPadding(options.Padding);
@@ -222,6 +226,22 @@ void SetSpace(Volume& volume, const Options& options, Messages& messages)
   volume.Axes = said;
 }
 
+// The grid of the result, in the world of the volume.
+Volume ReadReference(const Options& options, const Volume& volume, Messages& messages)
+{
+  ReadingOptions reading;
+  reading.Frame = 0; // all frames have one grid
+  Volume reference = ReadVolume(options.Reference, reading, messages, !options.Quiet);
+  reference.Image->GetPointData()->Initialize();
+  reference.Image->GetCellData()->Initialize();
+  if (reference.Axes != volume.Axes && reference.Axes != WorldAxes::Unknown &&
+    volume.Axes != WorldAxes::Unknown)
+  {
+    FlipWorldAxes(reference.Image);
+  }
+  return reference;
+}
+
 // What each step needs of a volume.
 void CheckVolume(vtkImageData* image, const std::string& path)
 {
@@ -263,6 +283,11 @@ void DeformVolume(const Options& options, Messages& messages)
   {
     SetSpace(volume, options, messages);
   }
+  Volume reference;
+  if (!options.Reference.empty())
+  {
+    reference = ReadReference(options, volume, messages);
+  }
   timings.Add("read volume", reading.GetSeconds());
 
   const Stopwatch cutting;
@@ -278,7 +303,7 @@ void DeformVolume(const Options& options, Messages& messages)
   {
     if (!filter->GetInput())
     {
-      SetUp(filter, options, cut.Image, deformation);
+      SetUp(filter, options, cut.Image, reference.Image, deformation);
     }
     filter->SetDeformationData(deformation.Data);
     const ProgressBar bar(filter, "deforming", !options.Quiet);
@@ -302,7 +327,8 @@ void DeformVolume(const Options& options, Messages& messages)
     }
   };
   const Stopwatch meshing;
-  const Deformation deformation = MakeDeformation(options, cut, messages, takeFrame);
+  const Deformation deformation = MakeDeformation(
+    options, cut, reference.Image ? reference.Image : cut.Image, messages, takeFrame);
   if (movie)
   {
     movie->Finish(messages);
@@ -328,6 +354,10 @@ void DeformVolume(const Options& options, Messages& messages)
 
   Volume result = volume;
   result.Image = filter->GetOutput();
+  if (reference.Image)
+  {
+    result.Forms = reference.Forms;
+  }
   if (!options.Outputs.empty())
   {
     const Stopwatch writing;

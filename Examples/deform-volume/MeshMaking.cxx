@@ -164,8 +164,8 @@ void WriteMesh(vtkUnstructuredGrid* mesh, const std::string& path, Messages& mes
 }
 }
 
-Deformation MakeDeformation(
-  const Options& options, const Volume& volume, Messages& messages, const FrameTaker& takeFrame)
+Deformation MakeDeformation(const Options& options, const Volume& volume,
+  [[maybe_unused]] vtkImageData* grid, Messages& messages, const FrameTaker& takeFrame)
 {
   Deformation deformation;
   if (!options.Mesh.empty())
@@ -190,7 +190,7 @@ Deformation MakeDeformation(
 #ifdef DEFORMVOLUME_HAVE_ITK
   else if (!options.Transforms.empty())
   {
-    deformation.Data = ReadTransforms(options.Transforms, volume, messages, !options.Quiet);
+    deformation.Data = ReadTransforms(options.Transforms, volume, grid, messages, !options.Quiet);
     deformation.Displacement = FieldArrayName;
   }
 #endif

@@ -35,9 +35,10 @@ struct Deformation
   long long NumberOfCells = 0;
 };
 
-/// Reads or makes what the options ask for. takeFrame is called with each frame of a model, the
-/// last one included. Throws a Failure where it is impossible.
-Deformation MakeDeformation(
-  const Options& options, const Volume& volume, Messages& messages, const FrameTaker& takeFrame);
+/// Reads or makes what the options ask for. grid: the voxels of the result, for a --transform.
+/// takeFrame is called with each frame of a model, the last one included. Throws a Failure where it
+/// is impossible.
+Deformation MakeDeformation(const Options& options, const Volume& volume, vtkImageData* grid,
+  Messages& messages, const FrameTaker& takeFrame);
 
 #endif

@@ -42,7 +42,8 @@ void CheckOverwriting(const Options& options)
   outputs.push_back(options.MeshOutput);
   for (const std::string& output : outputs)
   {
-    std::vector<std::string> inputs{ options.Volume, options.Mesh, options.Rest, options.Field };
+    std::vector<std::string> inputs{ options.Volume, options.Mesh, options.Rest, options.Field,
+      options.Reference };
     inputs.insert(inputs.end(), options.Cuts.begin(), options.Cuts.end());
     for (const TransformFile& transform : options.Transforms)
     {

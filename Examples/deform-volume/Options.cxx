@@ -28,6 +28,7 @@ struct RawOptions
   double Isovalue = 0.0;
   double Threshold = 0.0;
   int Frame = 0;
+  double KeepDistance = 0.0;
   std::string Outside = "discard";
   std::string Bounds = "deformed";
   double Background = 0.0;
@@ -99,14 +100,18 @@ void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
   {
     options.Frame = raw.Frame;
   }
+  if (program.count("--keep"))
+  {
+    options.KeepDistance = raw.KeepDistance;
+  }
   options.Extrapolate = raw.Outside == "extrapolate";
   options.VolumeBounds = raw.Bounds == "volume" || !options.Transforms.empty();
   if (!options.Transforms.empty())
   {
     if (program.count("--bounds") && raw.Bounds != "volume")
     {
-      throw UsageError("--bounds deformed: a --transform is known on the grid of the volume, where "
-                       "the result lies");
+      throw UsageError("--bounds deformed: a --transform is known on the grid of the volume, or of "
+                       "the --reference, where the result lies");
     }
     options.FieldIsInverse = true;
   }
@@ -350,6 +355,11 @@ void AddDependencies(CLI::App& program)
   {
     program.get_option(option)->excludes(program.get_option("--file-coordinates"));
   }
+  for (const char* option : { "--bounds", "--padding", "--file-coordinates" })
+  {
+    program.get_option("--reference")->excludes(program.get_option(option));
+  }
+  program.get_option("--keep")->excludes(program.get_option("--outside"));
   program.get_option("--isovalue")->excludes(program.get_option("--labels"));
   for (const char* option : { "--mesh", "--field", "--transform" })
   {
@@ -366,6 +376,19 @@ void AddResampling(CLI::App& program, Options& options, RawOptions& raw)
     ->capture_default_str()
     ->check(CLI::IsMember({ "discard", "extrapolate" }))
     ->type_name("MODE")
+    ->group(group);
+  program
+    .add_option("--keep", raw.KeepDistance,
+      "Tissue outside the mesh stays where it is: what the nearest point of the mesh does fades to "
+      "nothing within DISTANCE (world units; 0: a hard edge)")
+    ->check(CLI::NonNegativeNumber)
+    ->type_name("DISTANCE")
+    ->group(group);
+  program
+    .add_option("--reference", options.Reference,
+      "An image, of the types of VOLUME, whose grid the result gets: its voxels, their spacing, "
+      "direction and place. Its values are not used. With --transform that is the fixed image")
+    ->type_name("FILE")
     ->group(group);
   program
     .add_option("--bounds", raw.Bounds,

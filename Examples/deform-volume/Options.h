@@ -56,7 +56,9 @@ struct Options
   std::vector<Carving> Carvings;
   bool SmoothCut = false;
 
+  std::string Reference;
   bool Extrapolate = false;
+  std::optional<double> KeepDistance;
   bool VolumeBounds = false;
   int Padding = 0;
   std::optional<double> Background;

@@ -229,7 +229,7 @@ std::unique_ptr<PointMap> ReadMap(
 }
 
 vtkSmartPointer<vtkImageData> ReadTransforms(const std::vector<TransformFile>& files,
-  const Volume& volume, Messages& messages, bool showProgress)
+  const Volume& volume, vtkImageData* grid, Messages& messages, bool showProgress)
 {
   if (volume.Axes == WorldAxes::Unknown)
   {
@@ -246,7 +246,7 @@ vtkSmartPointer<vtkImageData> ReadTransforms(const std::vector<TransformFile>& f
   std::reverse(maps.begin(), maps.end());
 
   auto field = vtkSmartPointer<vtkImageData>::New();
-  field->CopyStructure(volume.Image);
+  field->CopyStructure(grid);
   vtkNew<vtkFloatArray> vectors;
   vectors->SetName(FieldArrayName);
   vectors->SetNumberOfComponents(3);

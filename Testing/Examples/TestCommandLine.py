@@ -222,6 +222,16 @@ ball = read_vti(path("ball.vti"))
 mask = get_values(ball, "vtkValidPointMask")
 assert 0 < mask.sum() < mask.size
 assert get_values(ball, "Values")[mask == 1].max() >= 800
+# With --keep what lies outside stays.
+call(program, path("in.vti"), "--tetgen", "--isovalue", "400", "--edge-length", "5", "--push",
+     "9,20,25,0.8,0,0,15", "--quiet", "-o", path("kept.vti"), "--keep", "1.5", "--bounds", "volume")
+kept = read_vti(path("kept.vti"))
+assert (get_values(kept, "vtkValidPointMask") == 1).all()
+values = get_values(kept, "Values")
+assert (values[:2] == before[:2]).all() and not (values == before).all()
+fails(2, "excludes", path("in.vti"), *lattice, *push, "--keep", "3", "--outside", "discard", "-o", path("o.vti"))
+fails(2, "--keep", path("in.vti"), *lattice, *push, "--keep", "-1", "-o", path("o.vti"))
+
 # Labels are never mixed.
 call(program, path("in.vti"), *lattice, *push, "-o", path("labels.vti"), "--labels", "--padding",
      "2")

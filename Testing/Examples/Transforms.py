@@ -36,6 +36,23 @@ for name in ("moving.nii.gz", "moving.mha", "moving.nrrd"):
     sitk.WriteImage(moving, path(name))
 middle = moving.TransformContinuousIndexToPhysicalPoint([(n - 1) / 2 for n in size])
 
+
+def make_fixed(turned, spacing):
+    """A grid of another size about the same middle."""
+    image = sitk.Image([20, 24, 19], sitk.sitkInt16)
+    image.SetSpacing(spacing)
+    image.SetDirection(turned.ravel().tolist())
+    half = image.TransformContinuousIndexToPhysicalPoint([(n - 1) / 2 for n in image.GetSize()])
+    image.SetOrigin([m - h + 1.25 for m, h in zip(middle, half)])
+    return image
+
+
+fixed = {"fixed": make_fixed(turn(0, 35) @ turn(1, -20), (1.2, 0.9, 1.5)),
+         "mirrored": make_fixed(turn(2, 65) @ numpy.diag([1.0, -1.0, 1.0]), (1.1, 1.4, 0.8))}
+for name, image in fixed.items():
+    sitk.WriteImage(image, path(name + ".nii.gz"))
+    sitk.WriteImage(image, path(name + ".mha"))
+
 affine = sitk.AffineTransform(3)
 affine.SetMatrix((turn(1, 8) @ numpy.diag([1.05, 0.96, 1.02])).ravel().tolist())
 affine.SetCenter(middle)
@@ -109,4 +126,8 @@ def add(key, transform, grid):
 results = {}
 for name, transform in expected.items():
     add(name, transform, moving)
+for grid_name, grid in fixed.items():
+    for name in ("affine", "spline", "warp+affine"):
+        add(f"{name} on {grid_name}", expected[name], grid)
+    results["origin of " + grid_name] = numpy.array(grid.GetOrigin())
 numpy.savez(path("expected.npz"), **results)
