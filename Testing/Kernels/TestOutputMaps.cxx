@@ -210,7 +210,10 @@ TEST(OutputMaps, AMirrorImageHasTheSameValues)
   const Arrays values(plain.GetNumberOfVoxels());
   const Deformed one = LoadAndRun(plain, values.Get());
   const Deformed other = LoadAndRun(mirrored, values.Get());
-  EXPECT_EQ(other.Report.NumberOfInvertedTetrahedra, 0);
+  for (const Deformed& kernel : { other, *other.ByCell, *other.ByColumns })
+  {
+    EXPECT_EQ(kernel.Report.NumberOfInvertedTetrahedra, 0);
+  }
   EXPECT_GT(other.Report.NumberOfCoveredVoxels, 1000);
   EXPECT_EQ(other.Report.NumberOfCoveredVoxels, one.Report.NumberOfCoveredVoxels);
   const std::int64_t width = GetSize(plain.Output, 0);
