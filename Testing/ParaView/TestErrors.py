@@ -34,18 +34,24 @@ def main():
     mesh = bent_lattice(volume)
     bare = simple.TetrahedralLatticeOfVolume(Volume=volume)
 
-    # An input is missing.
-    for name, given, missing, port in (
-        ("Volume", volume, "Deformation", 1),
-        ("Deformation", mesh, "Volume", 0),
-    ):
-        simple.SetActiveSource(None)
-        with messages():
-            filter_ = simple.DeformVolume(**{name: given})
-        check_messages(update(filter_), [f"Input port {port}", "is not optional"])
-        check(filter_.GetDataInformation().GetNumberOfPoints() == 0, "An error and an output")
-        setattr(filter_, missing, volume if missing == "Volume" else mesh)
-        check_works(filter_)
+    # The volume is missing.
+    simple.SetActiveSource(None)
+    with messages():
+        filter_ = simple.DeformVolume(Deformation=mesh)
+    check_messages(update(filter_), ["Input port 0", "is not optional"])
+    check(filter_.GetDataInformation().GetNumberOfPoints() == 0, "An error and an output")
+    filter_.Volume = volume
+    check_works(filter_)
+
+    # Without a deformation the volume itself comes out.
+    simple.SetActiveSource(None)
+    filter_ = simple.DeformVolume(Volume=volume)
+    texts = update(filter_)
+    check(not texts, f"Without a deformation: {texts}")
+    points = volume.GetDataInformation().GetNumberOfPoints()
+    check(filter_.GetDataInformation().GetNumberOfPoints() == points, "Not the volume itself")
+    filter_.Deformation = mesh
+    check_works(filter_)
 
     # Arrays: none in the mesh, one that is not there, one with a single component. Nothing is wrong
     # before an update, as another array may be about to be chosen.

@@ -336,6 +336,8 @@ def check_limits(make):
         good, bad = [], []
         if hasattr(make().GetClientSideObject(), f"Get{name}MaxValue"):
             continue
+        if name == "FadeDistance":
+            continue  # is looked at with the outside mode Keep only
         if enumeration:
             good = [enumeration.GetEntryValue(i) for i in range(enumeration.GetNumberOfEntries())]
             bad = [max(good) + 1]

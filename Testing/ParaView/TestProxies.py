@@ -18,6 +18,7 @@ from PluginTesting import plugin_proxies
 WITHOUT_PROPERTY = {
     "SetDeformationData",
     "SetRestData",
+    "SetReferenceData",
     "SetSheetData",
     "SetSurfaceData",
     "GetNumberOfToolPositions",
