@@ -194,17 +194,17 @@ bool IsCubicCell(const DeformerCase& deformerCase, std::int64_t cell)
   const std::array<std::int64_t, 3> size = GetSizes(deformerCase.VoxelGrid.VertexExtent);
   const std::array<std::int64_t, 3> place =
     GetPlace(cell, { { size[0] - 1, size[1] - 1, size[2] - 1 } });
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (place[axis] < 1 || place[axis] + 2 >= size[axis])
+    {
+      return false;
+    }
+  }
   for (int i = 0; i < 64; ++i)
   {
     const std::array<std::int64_t, 3> at{ { place[0] + i % 4 - 1, place[1] + i / 4 % 4 - 1,
       place[2] + i / 16 - 1 } };
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      if (at[axis] < 0 || at[axis] >= size[axis])
-      {
-        return false;
-      }
-    }
     const auto voxel = static_cast<std::size_t>((at[2] * size[1] + at[1]) * size[0] + at[0]);
     if ((!deformerCase.Unlinked.empty() && deformerCase.Unlinked[voxel]) ||
       (!deformerCase.Blanked.empty() && deformerCase.Blanked[voxel]) ||
