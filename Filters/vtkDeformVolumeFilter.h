@@ -72,14 +72,14 @@
  * the same to the last bit however the output is divided. Where a part is asked for, with
  * CUSTOM_BOUNDS, and with a reference image, the input is asked only for the voxels that can land
  * there, provided that all sources of the volume can make parts (they say so with
- * CAN_PRODUCE_SUB_EXTENT), that the resampler is EXACT or AUTOMATIC,
- * that OutsideMode is DISCARD for a mesh, and that the volume has no smooth cut or SamplingFactor
- * is above 1. AUTOMATIC is then EXACT, even if the whole would not have fit into memory. Else, and
- * with FieldIsInverse, the input is asked for whole. Of the deformation mesh each rank may have a
- * piece, none, or the whole: it is gathered through
- * vtkMultiProcessController::GetGlobalController(). A displacement field every rank must be given
- * whole. All ranks have to update together; an error of one is told on all. Counts of voxels,
- * tetrahedra and bricks are summed over the ranks: what two of them have counts twice.
+ * CAN_PRODUCE_SUB_EXTENT), that the resampler is EXACT or AUTOMATIC, that OutsideMode is DISCARD
+ * for a mesh, and that the volume has no smooth cut or SamplingFactor is above 1. AUTOMATIC is then
+ * EXACT, even if the whole would not have fit into memory. Else, and with FieldIsInverse, the input
+ * is asked for whole. Of the deformation mesh each rank may have a piece, none, or the whole: it is
+ * gathered through vtkMultiProcessController::GetGlobalController(). A displacement field every
+ * rank must be given whole. All ranks have to update together; an error of one is told on all.
+ * Counts of voxels, tetrahedra and bricks are summed over the ranks: what two of them have counts
+ * twice.
  *
  * @par Errors:
  * Each failure is one vtkErrorMacro, which says what is wrong and what to do, at each update that
@@ -293,7 +293,7 @@ public:
   /**
    * What happens to the volume outside the deformation mesh or field.
    * - DISCARD: it is discarded, so that the deformed volume ends where the deformed mesh ends (up
-   * to 1/128 output voxel, as node positions are rounded).
+   *   to 1/128 output voxel, as node positions are rounded).
    * - EXTRAPOLATE: its voxels follow the nearest tetrahedron, whose affine map is extended (it is
    *   the tetrahedron of the nearest voxel inside the mesh; with a field, the displacement of the
    *   nearest point of the field).

@@ -150,8 +150,7 @@ void vtkDeformVolumeFilter::vtkInternals::CheckOutside() const
   }
   if (this->State->Deformation.IsField())
   {
-    throw Error("OutsideMode is KEEP, which needs a mesh, but the deformation is a displacement "
-                "field. Set OutsideMode to DISCARD or EXTRAPOLATE, or connect a mesh.");
+    deformvolume::CheckForField(this->GetOutside());
   }
   if (this->Self->OpenSplits)
   {

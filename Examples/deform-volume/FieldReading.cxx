@@ -2,6 +2,7 @@
 #include "FieldReading.h"
 
 #include "Failure.h"
+#include "FileSuffix.h"
 #include "ImageAxes.h"
 #include "Messages.h"
 #include "VolumeReading.h"
@@ -16,26 +17,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <vector>
 
 namespace
 {
 constexpr int IntentDisplacement = 1006;
 constexpr int IntentVector = 1007;
-
-bool HasSuffix(const std::string& path, std::initializer_list<const char*> suffixes)
-{
-  const std::string name = vtksys::SystemTools::LowerCase(path);
-  for (const char* suffix : suffixes)
-  {
-    if (vtksys::SystemTools::StringEndsWith(name, suffix))
-    {
-      return true;
-    }
-  }
-  return false;
-}
 
 std::string GetShapeText(vtkNIFTIImageHeader* header)
 {
@@ -77,7 +64,7 @@ std::string FindWrongShape(vtkNIFTIImageHeader* header)
 /// the file is no displacement field in millimetres.
 bool IsRightAnterior(vtkNIFTIImageHeader* header, const std::string& what)
 {
-  const int unit = header->GetXYZTUnits() & 7;
+  const int unit = header->GetXYZTUnits() & vtkNIFTIImageHeader::UnitsSpace;
   if (unit == vtkNIFTIImageHeader::UnitsMeter || unit == vtkNIFTIImageHeader::UnitsMicron)
   {
     throw Failure(what + ": its unit of length is " +
@@ -130,26 +117,26 @@ void CheckKind(const Volume& field, const std::string& path, bool isInverse, Mes
   }
 }
 
-/// Applies a matrix to vectors, which become float or double.
+/// Applies a matrix to vectors, which become float or double; none where that changes nothing.
 vtkSmartPointer<vtkDataArray> Turn(vtkDataArray* stored, vtkMatrix3x3* matrix)
 {
-  vtkSmartPointer<vtkDataArray> vectors = stored;
-  if (!matrix->IsIdentity())
+  if (matrix->IsIdentity())
   {
-    vectors = vtkSmartPointer<vtkDataArray>::Take(
-      vtkDataArray::CreateDataArray(stored->GetDataType() == VTK_FLOAT ? VTK_FLOAT : VTK_DOUBLE));
-    vectors->SetNumberOfComponents(3);
-    vectors->SetNumberOfTuples(stored->GetNumberOfTuples());
-    for (vtkIdType i = 0; i < stored->GetNumberOfTuples(); ++i)
-    {
-      double components[3];
-      stored->GetTuple(i, components);
-      double vector[3];
-      matrix->MultiplyPoint(components, vector);
-      vectors->SetTuple(i, vector);
-    }
+    return stored;
   }
+  const auto vectors = vtkSmartPointer<vtkDataArray>::Take(
+    vtkDataArray::CreateDataArray(stored->GetDataType() == VTK_FLOAT ? VTK_FLOAT : VTK_DOUBLE));
   vectors->SetName(stored->GetName());
+  vectors->SetNumberOfComponents(3);
+  vectors->SetNumberOfTuples(stored->GetNumberOfTuples());
+  for (vtkIdType i = 0; i < stored->GetNumberOfTuples(); ++i)
+  {
+    double components[3];
+    stored->GetTuple(i, components);
+    double vector[3];
+    matrix->MultiplyPoint(components, vector);
+    vectors->SetTuple(i, vector);
+  }
   return vectors;
 }
 

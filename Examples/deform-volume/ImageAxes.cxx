@@ -171,21 +171,13 @@ void FlipWorldAxes(vtkMatrix4x4* axes)
 
 void FlipWorldAxes(vtkImageData* image)
 {
-  vtkNew<vtkMatrix4x4> axes;
-  for (int row = 0; row < 3; ++row)
-  {
-    for (int column = 0; column < 3; ++column)
-    {
-      axes->SetElement(row, column, image->GetDirectionMatrix()->GetElement(row, column));
-    }
-    axes->SetElement(row, 3, image->GetOrigin()[row]);
-  }
-  FlipWorldAxes(axes);
   double direction[9];
-  for (int i = 0; i < 9; ++i)
+  std::copy_n(image->GetDirectionMatrix()->GetData(), 9, direction);
+  for (int i = 0; i < 6; ++i) // the rows of x and y
   {
-    direction[i] = axes->GetElement(i / 3, i % 3);
+    direction[i] = 0.0 - direction[i];
   }
   image->SetDirectionMatrix(direction);
-  image->SetOrigin(axes->GetElement(0, 3), axes->GetElement(1, 3), axes->GetElement(2, 3));
+  const double* const origin = image->GetOrigin();
+  image->SetOrigin(0.0 - origin[0], 0.0 - origin[1], origin[2]);
 }

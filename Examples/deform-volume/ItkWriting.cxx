@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ItkWriting.h"
 
+#include "FileSuffix.h"
 #include "ItkImage.h"
 
 #include <itkMetaImageIO.h>
@@ -9,17 +10,13 @@
 #include <vtkDataArray.h>
 #include <vtkImageData.h>
 #include <vtkPointData.h>
-#include <vtksys/SystemTools.hxx>
 
 #include <vector>
 
 void WriteByITK(vtkImageData* image, vtkMatrix4x4* axes, const std::string& path)
 {
-  const std::string name = vtksys::SystemTools::LowerCase(path);
-  const bool isNRRD = vtksys::SystemTools::StringEndsWith(name, ".nrrd") ||
-    vtksys::SystemTools::StringEndsWith(name, ".nhdr");
   itk::ImageIOBase::Pointer io;
-  if (isNRRD)
+  if (HasSuffix(path, { ".nrrd", ".nhdr" }))
   {
     io = itk::NrrdImageIO::New();
   }

@@ -11,6 +11,7 @@
 #include "TimingTable.h"
 #include "VolumeReading.h"
 #include "VolumeWriting.h"
+#include "WorldSpace.h"
 
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
@@ -211,21 +212,6 @@ void PrintSummary(vtkDeformVolumeFilter* filter, const Volume& volume,
   timings.Print(std::cout);
 }
 
-// What a file says of its own world counts.
-void SetSpace(Volume& volume, const Options& options, Messages& messages)
-{
-  const WorldAxes said = options.VolumeSpace == "ras" ? WorldAxes::RightAnteriorSuperior
-                                                      : WorldAxes::LeftPosteriorSuperior;
-  if (volume.Axes != WorldAxes::Unknown && volume.Axes != said)
-  {
-    messages.DisplayWarningText(("--volume-space " + options.VolumeSpace +
-      " is not used: " + options.Volume + " says itself that it is in the other one.")
-                                  .c_str());
-    return;
-  }
-  volume.Axes = said;
-}
-
 // The grid of the result, in the world of the volume.
 Volume ReadReference(const Options& options, const Volume& volume, Messages& messages)
 {
@@ -242,15 +228,9 @@ Volume ReadReference(const Options& options, const Volume& volume, Messages& mes
   return reference;
 }
 
-// What each step needs of a volume.
-void CheckVolume(vtkImageData* image, const std::string& path)
+// Values, and scalars among them, which each step needs.
+void CheckValues(vtkImageData* image, const std::string& path)
 {
-  const int* dimensions = image->GetDimensions();
-  if (*std::min_element(dimensions, dimensions + 3) < 2)
-  {
-    throw Failure("cannot use " + path + ": it has " + GetDimensionsText(image) +
-      " voxels, and a volume has two or more on each axis");
-  }
   vtkPointData* arrays = image->GetPointData();
   int first = 0;
   while (first < arrays->GetNumberOfArrays() && !arrays->GetArray(first))
@@ -278,11 +258,9 @@ void DeformVolume(const Options& options, Messages& messages)
   const Stopwatch reading;
   const ReadingOptions place{ options.FileCoordinates, options.Frame };
   Volume volume = ReadVolume(options.Volume, place, messages, !options.Quiet);
-  CheckVolume(volume.Image, options.Volume);
-  if (!options.VolumeSpace.empty())
-  {
-    SetSpace(volume, options, messages);
-  }
+  CheckValues(volume.Image, options.Volume);
+  volume.Axes =
+    HeedSpace("--volume-space", options.VolumeSpace, options.Volume, volume.Axes, messages);
   Volume reference;
   if (!options.Reference.empty())
   {

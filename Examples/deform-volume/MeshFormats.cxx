@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshFormats.h"
 
+#include "FileSuffix.h"
+
 #include <vtksys/SystemTools.hxx>
 
 namespace
@@ -21,19 +23,6 @@ std::string GetMeshioConversion(const std::string& path, const std::string& suff
   return "Convert it with meshio (pip install meshio): meshio convert " + GetName(path) + " " +
     GetName(path, suffix);
 }
-}
-
-bool HasSuffix(const std::string& path, std::initializer_list<const char*> suffixes)
-{
-  const std::string name = vtksys::SystemTools::LowerCase(path);
-  for (const char* suffix : suffixes)
-  {
-    if (vtksys::SystemTools::StringEndsWith(name, suffix))
-    {
-      return true;
-    }
-  }
-  return false;
 }
 
 std::string GetMeshSuffixes()

@@ -2,7 +2,6 @@
 #ifndef DeformVolumeMeshFormats_h
 #define DeformVolumeMeshFormats_h
 
-#include <initializer_list>
 #include <string>
 
 /// The formats of meshes (without those of displacement fields) and sheets: ".vtp, .stl, ...".
@@ -13,8 +12,5 @@ std::string GetSheetSuffixes();
 /// it.
 std::string GetMeshConversion(const std::string& path);
 std::string GetSheetConversion(const std::string& path);
-
-/// Whether a file's name ends in one of the suffixes, in upper or lower case.
-bool HasSuffix(const std::string& path, std::initializer_list<const char*> suffixes);
 
 #endif

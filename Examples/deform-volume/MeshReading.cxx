@@ -2,6 +2,7 @@
 #include "MeshReading.h"
 
 #include "Failure.h"
+#include "FileSuffix.h"
 #include "MeshContents.h"
 #include "MeshFormats.h"
 #include "MeshSpace.h"

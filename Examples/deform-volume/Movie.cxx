@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Movie.h"
 
-#include "Messages.h"
+#include "FileSuffix.h"
 
-#include <vtksys/SystemTools.hxx>
+#include "Messages.h"
 
 #ifdef DEFORMVOLUME_HAVE_THEORA
 #include <vtkOggTheoraWriter.h>
@@ -16,7 +16,7 @@ namespace
 {
 bool IsVideo(const std::string& path)
 {
-  return vtksys::SystemTools::StringEndsWith(vtksys::SystemTools::LowerCase(path), ".ogv");
+  return HasSuffix(path, { ".ogv" });
 }
 
 #ifdef DEFORMVOLUME_HAVE_THEORA
@@ -46,7 +46,7 @@ bool CanWriteMovie(const std::string& path)
     return true;
   }
 #endif
-  return vtksys::SystemTools::StringEndsWith(vtksys::SystemTools::LowerCase(path), ".png");
+  return HasSuffix(path, { ".png" });
 }
 
 std::string GetFramePath(const std::string& path, int frame)

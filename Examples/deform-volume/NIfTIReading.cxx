@@ -35,8 +35,7 @@ bool IsScaled(vtkNIFTIImageHeader* header)
 // Millimetres of the unit of length that a header names; 0 for one that is not known.
 double GetMillimetres(vtkNIFTIImageHeader* header)
 {
-  constexpr int lengths = 0x07;
-  switch (header->GetXYZTUnits() & lengths)
+  switch (header->GetXYZTUnits() & vtkNIFTIImageHeader::UnitsSpace)
   {
     case vtkNIFTIImageHeader::UnitsUnknown: // nearly all of these are in mm
     case vtkNIFTIImageHeader::UnitsMM:

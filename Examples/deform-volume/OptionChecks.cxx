@@ -3,6 +3,7 @@
 
 #include "Failure.h"
 #include "FieldReading.h"
+#include "FileSuffix.h"
 #include "Movie.h"
 #include "Options.h"
 #include "VolumeWriting.h"
@@ -243,16 +244,11 @@ void CheckOptions(const Options& options)
       throw UsageError("--output " + output + ": the name must end in " + WrittenFormats);
     }
   }
-  const auto endsIn = [](const std::string& path, const char* suffix)
-  {
-    return path.empty() ||
-      vtksys::SystemTools::StringEndsWith(vtksys::SystemTools::LowerCase(path), suffix);
-  };
-  if (!endsIn(options.Image, ".png"))
+  if (!options.Image.empty() && !HasSuffix(options.Image, { ".png" }))
   {
     throw UsageError("--image " + options.Image + ": the name must end in .png");
   }
-  if (!endsIn(options.MeshOutput, ".vtu"))
+  if (!options.MeshOutput.empty() && !HasSuffix(options.MeshOutput, { ".vtu" }))
   {
     throw UsageError("--write-mesh " + options.MeshOutput + ": the name must end in .vtu");
   }

@@ -25,13 +25,8 @@ struct RawOptions
   std::vector<std::string> Carvings;
   std::vector<std::string> Transforms;
   std::string View;
-  double Isovalue = 0.0;
-  double Threshold = 0.0;
-  int Frame = 0;
-  double KeepDistance = 0.0;
   std::string Outside = "discard";
   std::string Bounds = "deformed";
-  double Background = 0.0;
 };
 
 void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
@@ -88,22 +83,6 @@ void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
       throw UsageError("--view 0,0,0 is no direction");
     }
   }
-  if (program.count("--isovalue"))
-  {
-    options.Isovalue = raw.Isovalue;
-  }
-  if (program.count("--threshold"))
-  {
-    options.Threshold = raw.Threshold;
-  }
-  if (program.count("--frame"))
-  {
-    options.Frame = raw.Frame;
-  }
-  if (program.count("--keep"))
-  {
-    options.KeepDistance = raw.KeepDistance;
-  }
   options.Extrapolate = raw.Outside == "extrapolate";
   options.VolumeBounds = raw.Bounds == "volume" || !options.Transforms.empty();
   if (!options.Transforms.empty())
@@ -114,10 +93,6 @@ void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
                        "the --reference, where the result lies");
     }
     options.FieldIsInverse = true;
-  }
-  if (program.count("--background"))
-  {
-    options.Background = raw.Background;
   }
   CheckOptions(options);
 }
@@ -295,7 +270,7 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
 
   const char* tetgen = "Mesh of --tetgen";
   program
-    .add_option("--isovalue", raw.Isovalue,
+    .add_option("--isovalue", options.Isovalue,
       "Value from which on a voxel belongs to the body [chosen by the histogram]")
     ->type_name("NUMBER")
     ->group(tetgen);
@@ -378,7 +353,7 @@ void AddResampling(CLI::App& program, Options& options, RawOptions& raw)
     ->type_name("MODE")
     ->group(group);
   program
-    .add_option("--keep", raw.KeepDistance,
+    .add_option("--keep", options.KeepDistance,
       "Tissue outside the mesh stays where it is: what the nearest point of the mesh does fades to "
       "nothing within DISTANCE (world units; 0: a hard edge)")
     ->check(CLI::NonNegativeNumber)
@@ -403,7 +378,7 @@ void AddResampling(CLI::App& program, Options& options, RawOptions& raw)
     ->type_name("VOXELS")
     ->group(group);
   program
-    .add_option("--background", raw.Background,
+    .add_option("--background", options.Background,
       "Value of the voxels that the deformed volume does not cover [the least value where values "
       "can "
       "be negative, which is air in CT, else 0]")
@@ -477,7 +452,7 @@ void AddOutput(CLI::App& program, Options& options, RawOptions& raw)
     ->type_name("NUMBER")
     ->group(group);
   program
-    .add_option("--threshold", raw.Threshold,
+    .add_option("--threshold", options.Threshold,
       "Value from about which on the picture shows something [the isovalue of --tetgen, or a fifth "
       "of the range of values]")
     ->type_name("NUMBER")
@@ -519,7 +494,7 @@ std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)
       "slices of one DICOM series")
     ->type_name("FILE");
   program
-    .add_option("--frame", raw.Frame,
+    .add_option("--frame", options.Frame,
       "Which volume of a file with several in time, counted from 0 (NIfTI, MetaImage, NRRD)")
     ->check(CLI::NonNegativeNumber)
     ->type_name("NUMBER");

@@ -3,6 +3,7 @@
 
 #include "Failure.h"
 #include "FieldReading.h"
+#include "FileSuffix.h"
 #include "ImageAxes.h"
 #include "Messages.h"
 #include "ProgressBar.h"
@@ -89,11 +90,6 @@ private:
   vtkNew<vtkImageInterpolator> Interpolator;
 };
 
-bool HasSuffix(const std::string& path, const char* suffix)
-{
-  return vtksys::SystemTools::StringEndsWith(vtksys::SystemTools::LowerCase(path), suffix);
-}
-
 // How many numbers a text file has, up to a few more than a matrix; 0 where there is anything else.
 int CountNumbers(const std::string& path)
 {
@@ -109,16 +105,16 @@ int CountNumbers(const std::string& path)
 // What transforms of other programs are converted by.
 void CheckProgram(const std::string& path, const std::string& what)
 {
-  if (HasSuffix(path, ".lta") || HasSuffix(path, ".dat") || HasSuffix(path, ".xfm"))
+  if (HasSuffix(path, { ".lta", ".dat", ".xfm" }))
   {
     throw Failure(what + ": it is a transform of FreeSurfer. Convert it first: " +
-      (HasSuffix(path, ".lta")      ? "lta_convert --inlta "
-          : HasSuffix(path, ".dat") ? "lta_convert --inreg "
-                                    : "lta_convert --inmni ") +
+      (HasSuffix(path, { ".lta" })      ? "lta_convert --inlta "
+          : HasSuffix(path, { ".dat" }) ? "lta_convert --inreg "
+                                        : "lta_convert --inmni ") +
       path + " --outitk transform.txt" +
-      (HasSuffix(path, ".lta") ? "" : " --src MOVING.mgz --trg FIXED.mgz"));
+      (HasSuffix(path, { ".lta" }) ? "" : " --src MOVING.mgz --trg FIXED.mgz"));
   }
-  if (HasSuffix(path, ".m3z") || HasSuffix(path, ".mgz"))
+  if (HasSuffix(path, { ".m3z", ".mgz" }))
   {
     throw Failure(what +
       ": it is a warp of FreeSurfer. Convert it first: mri_warp_convert --inm3z " + path +
@@ -149,13 +145,11 @@ void CheckProgram(const std::string& path, const std::string& what)
 
 ItkTransform::Pointer ReadTransform(const TransformFile& file, const std::string& what)
 {
-  if (!HasSuffix(file.Path, ".h5") && !HasSuffix(file.Path, ".hdf5") &&
-    !HasSuffix(file.Path, ".tfm") && !HasSuffix(file.Path, ".txt") && !HasSuffix(file.Path, ".mat"))
+  if (!HasSuffix(file.Path, { ".h5", ".hdf5", ".tfm", ".txt", ".mat" }))
   {
     throw Failure(what +
       ": a transform is a .h5, .tfm, .txt or .mat file of ITK, ANTs or 3D Slicer, or a "
-      "displacement "
-      "field (.nii, .nii.gz, .mha, .mhd, .nrrd or .nhdr)");
+      "displacement field (.nii, .nii.gz, .mha, .mhd, .nrrd or .nhdr)");
   }
   static const bool areFormatsKnown = []
   {

@@ -42,7 +42,7 @@ struct Volume
   NIfTIForms Forms;
   /// Null for other formats.
   vtkSmartPointer<vtkNIFTIImageHeader> NIfTIHeader;
-  /// Further fields of a MetaImage or NRRD file's header, by their names.
+  /// The keys of an NRRD file's header.
   std::map<std::string, std::string> Fields;
   /// Of an NRRD file: from the components of vectors to the world. Null where there is none.
   vtkSmartPointer<vtkMatrix3x3> MeasurementFrame;

@@ -2,6 +2,7 @@
 #include "VolumeReading.h"
 
 #include "Failure.h"
+#include "FileSuffix.h"
 #include "Messages.h"
 #include "NIfTIReading.h"
 #include "ProgressBar.h"
@@ -70,15 +71,12 @@ Volume ReadFile(
   {
     throw Failure("cannot read " + path + ": there is no such file or folder");
   }
-  const std::string name = vtksys::SystemTools::LowerCase(path);
-  const auto endsWith = [&name](const char* suffix)
-  { return vtksys::SystemTools::StringEndsWith(name, suffix); };
   const bool isFolder = vtksys::SystemTools::FileIsDirectory(path);
-  if (!isFolder && (endsWith(".nii") || endsWith(".nii.gz")))
+  if (!isFolder && HasSuffix(path, { ".nii", ".nii.gz" }))
   {
     return ReadNIfTI(path, options, messages, showProgress);
   }
-  if (!isFolder && endsWith(".vti"))
+  if (!isFolder && HasSuffix(path, { ".vti" }))
   {
     ChooseFrame(path, 1, options);
     return ReadVTI(path, messages, showProgress);
@@ -89,11 +87,11 @@ Volume ReadFile(
     ChooseFrame(path, 1, options);
     return ReadDICOM(path, options, messages, showProgress);
   }
-  if (endsWith(".mhd") || endsWith(".mha"))
+  if (HasSuffix(path, { ".mhd", ".mha" }))
   {
     return ReadMetaImage(path, options, messages);
   }
-  if (endsWith(".nrrd") || endsWith(".nhdr"))
+  if (HasSuffix(path, { ".nrrd", ".nhdr" }))
   {
     return ReadNRRD(path, options, messages);
   }

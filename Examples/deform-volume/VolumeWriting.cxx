@@ -2,6 +2,7 @@
 #include "VolumeWriting.h"
 
 #include "Failure.h"
+#include "FileSuffix.h"
 #include "ImageAxes.h"
 #include "Messages.h"
 #include "ProgressBar.h"
@@ -23,21 +24,15 @@
 
 namespace
 {
-bool HasSuffix(const std::string& path, const char* suffix)
-{
-  return vtksys::SystemTools::StringEndsWith(vtksys::SystemTools::LowerCase(path), suffix);
-}
-
 bool IsNIfTI(const std::string& path)
 {
-  return HasSuffix(path, ".nii") || HasSuffix(path, ".nii.gz");
+  return HasSuffix(path, { ".nii", ".nii.gz" });
 }
 
 bool IsOfITK([[maybe_unused]] const std::string& path)
 {
 #ifdef DEFORMVOLUME_HAVE_ITK
-  return HasSuffix(path, ".mhd") || HasSuffix(path, ".mha") || HasSuffix(path, ".nrrd") ||
-    HasSuffix(path, ".nhdr");
+  return HasSuffix(path, { ".mhd", ".mha", ".nrrd", ".nhdr" });
 #else
   return false;
 #endif
@@ -144,7 +139,7 @@ void WriteNIfTI(
       ": its vectors of two components would be complex numbers in a NIfTI file. Write .nrrd or "
       ".mha");
   }
-  const bool isCompressed = HasSuffix(path, ".gz");
+  const bool isCompressed = HasSuffix(path, { ".gz" });
   const std::string plain = isCompressed ? path + ".part.nii" : path;
   const auto axes = GetAxesIn(volume, WorldAxes::RightAnteriorSuperior);
   const NIfTIForms& forms = volume.Forms;
@@ -206,7 +201,7 @@ void WriteVTI(const Volume& volume, const std::string& path, Messages& messages,
 
 bool CanWriteVolume(const std::string& path)
 {
-  return IsNIfTI(path) || HasSuffix(path, ".vti") || IsOfITK(path);
+  return IsNIfTI(path) || HasSuffix(path, { ".vti" }) || IsOfITK(path);
 }
 
 void WriteVolume(
@@ -216,7 +211,7 @@ void WriteVolume(
   {
     WriteNIfTI(volume, path, messages, showProgress);
   }
-  else if (HasSuffix(path, ".vti"))
+  else if (HasSuffix(path, { ".vti" }))
   {
     WriteVTI(volume, path, messages, showProgress);
   }

@@ -4,18 +4,12 @@
 #include "Failure.h"
 #include "Messages.h"
 
-WorldAxes ChooseSpace(const std::string& option, const std::string& said, const std::string& path,
-  WorldAxes ofFile, WorldAxes ofVolume, Messages& messages)
+WorldAxes HeedSpace(const std::string& option, const std::string& said, const std::string& path,
+  WorldAxes ofFile, Messages& messages)
 {
   if (said.empty())
   {
-    return ofFile != WorldAxes::Unknown ? ofFile : ofVolume;
-  }
-  if (ofVolume == WorldAxes::Unknown)
-  {
-    throw Failure(option + " " + said +
-      ": the file of the volume does not say whether its own world is lps or ras, so " + path +
-      " cannot be turned into it. Say it with --volume-space");
+    return ofFile;
   }
   const WorldAxes axes =
     said == "ras" ? WorldAxes::RightAnteriorSuperior : WorldAxes::LeftPosteriorSuperior;
@@ -27,4 +21,17 @@ WorldAxes ChooseSpace(const std::string& option, const std::string& said, const 
     return ofFile;
   }
   return axes;
+}
+
+WorldAxes ChooseSpace(const std::string& option, const std::string& said, const std::string& path,
+  WorldAxes ofFile, WorldAxes ofVolume, Messages& messages)
+{
+  if (!said.empty() && ofVolume == WorldAxes::Unknown)
+  {
+    throw Failure(option + " " + said +
+      ": the file of the volume does not say whether its own world is lps or ras, so " + path +
+      " cannot be turned into it. Say it with --volume-space");
+  }
+  const WorldAxes axes = HeedSpace(option, said, path, ofFile, messages);
+  return axes != WorldAxes::Unknown ? axes : ofVolume;
 }

@@ -4,6 +4,7 @@
 #include "DeformedPositions.h"
 #include "Error.h"
 #include "MaskArray.h"
+#include "OutsideMode.h"
 #include "WrittenTuples.h"
 
 #include "vtkArrayChanges.h"
@@ -167,13 +168,12 @@ const VertexPositions& VolumeEditor::GetPositions(
   source.RestParts = this->RestGrids.Find(source.Rest, source.RestIsMade);
   this->Deformation.Read(source);
   const bool isField = this->Deformation.IsField();
-  // The mapping of a part has whole rows, and is that of the whole volume to the last bit.
-  if (isField && outside.AreKept())
+  if (isField)
   {
-    throw Error("OutsideMode is KEEP, which needs a mesh, but the deformation is a displacement "
-                "field. Set OutsideMode to DISCARD or EXTRAPOLATE, or connect a mesh.");
+    CheckForField(outside);
   }
   const bool extrapolate = outside.AreExtrapolated();
+  // The mapping of a part has whole rows, and is that of the whole volume to the last bit.
   MappedVolume mapped{ this->Geometry, this->Geometry.PointExtent, outside };
   mapped.Whole.PointExtent = this->Whole;
   mapped.Part[0] = this->Whole[0];

@@ -25,4 +25,13 @@ OutsideVoxels MakeOutsideVoxels(int outsideMode, double fadeDistance)
   return { OutsideVoxels::Modes::Keep, fadeDistance };
 }
 
+void CheckForField(const OutsideVoxels& outside)
+{
+  if (outside.AreKept())
+  {
+    throw Error("OutsideMode is KEEP, which needs a mesh, but the deformation is a displacement "
+                "field. Set OutsideMode to DISCARD or EXTRAPOLATE, or connect a mesh.");
+  }
+}
+
 } // namespace deformvolume

@@ -11,6 +11,9 @@ namespace deformvolume
 /// distance counts and is none.
 OutsideVoxels MakeOutsideVoxels(int outsideMode, double fadeDistance);
 
+/// Throws an Error where a displacement field cannot do what is asked for.
+void CheckForField(const OutsideVoxels& outside);
+
 } // namespace deformvolume
 
 #endif

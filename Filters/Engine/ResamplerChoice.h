@@ -25,8 +25,8 @@ struct ResamplerWish
 ///
 /// Where the choice is free: Exact, because its values are those of the deformed sampling mesh,
 /// except where the memory does not suffice for Exact, whose sampling mesh takes some 20 bytes a
-/// voxel, but does for MeshRasterization, and that can do the deformation: a mesh, with
-/// what is outside discarded, and without a smooth cut.
+/// voxel, but does for MeshRasterization, and that can do the deformation: a mesh, with what is
+/// outside discarded, and without a smooth cut.
 Resampling ChooseResampler(const ResamplerWish& wish, const Deformation& deformation,
   const std::function<bool(Resampling)>& fits);
 

@@ -131,20 +131,19 @@ std::vector<std::int32_t> FindSolidTetrahedra(
   return numbers;
 }
 
-std::vector<TetrahedronFace> FindBoundaryFaces(
-  const std::vector<glm::dvec3>& points, const std::vector<Tetrahedron>& tetrahedra)
+std::vector<TetrahedronFace> FindBoundaryFaces(const std::vector<glm::dvec3>& points,
+  const std::vector<Tetrahedron>& tetrahedra, const std::vector<std::int32_t>& solid)
 {
-  const std::vector<std::int32_t> numbers = FindSolidTetrahedra(points, tetrahedra);
-  std::vector<Tetrahedron> solid;
-  solid.reserve(numbers.size());
-  for (const std::int32_t number : numbers)
+  std::vector<Tetrahedron> chosen;
+  chosen.reserve(solid.size());
+  for (const std::int32_t number : solid)
   {
-    solid.push_back(tetrahedra[static_cast<std::size_t>(number)]);
+    chosen.push_back(tetrahedra[static_cast<std::size_t>(number)]);
   }
   std::vector<TetrahedronFace> faces;
-  for (const std::uint32_t face : FindSingleFaces(points, solid))
+  for (const std::uint32_t face : FindSingleFaces(points, chosen))
   {
-    faces.push_back({ numbers[face / 4], static_cast<std::int32_t>(face % 4) });
+    faces.push_back({ solid[face / 4], static_cast<std::int32_t>(face % 4) });
   }
   return faces;
 }

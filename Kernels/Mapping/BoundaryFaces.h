@@ -30,9 +30,9 @@ struct TetrahedronFace
 
 /// The faces of a mesh that have tetrahedra on one side only, by their places at rest: where the
 /// mesh is split, or its parts were never joined, faces of different nodes in one place are inside
-/// it. Flat tetrahedra count as none. In ascending order of tetrahedra.
-std::vector<TetrahedronFace> FindBoundaryFaces(
-  const std::vector<glm::dvec3>& points, const std::vector<Tetrahedron>& tetrahedra);
+/// it. solid: FindSolidTetrahedra; others count as none. In ascending order of tetrahedra.
+std::vector<TetrahedronFace> FindBoundaryFaces(const std::vector<glm::dvec3>& points,
+  const std::vector<Tetrahedron>& tetrahedra, const std::vector<std::int32_t>& solid);
 
 /// The places of a face's nodes at rest, in ascending order. nodes: those of the tetrahedron.
 std::array<glm::dvec3, 3> GetPlaces(

@@ -25,8 +25,8 @@ double GetSquaredDistance(const glm::dvec3& point, const glm::dvec3& min, const 
   return glm::dot(offset, offset);
 }
 
-// The weights of the corners of a triangle in its point closest to another one: the region of the
-// triangle's plane that the point lies above tells whether that is a corner, on an edge or within.
+// The barycentric weights of the point of a triangle that is closest to another point. Signs of dot
+// products tell whether it is a corner, on an edge, or inside.
 glm::dvec3 FindWeights(const glm::dvec3& point, const ClosestFace::Triangle& triangle)
 {
   const glm::dvec3 ab = triangle[1] - triangle[0];

@@ -56,7 +56,8 @@ void FadedLinks::Link(const Extent& voxels, const glm::dvec3& spacing,
   this->FadeDistance = fadeDistance;
   if (fadeDistance > 0.0)
   {
-    this->Faces = FindBoundaryFaces(restPoints, tetrahedra);
+    this->Faces =
+      FindBoundaryFaces(restPoints, tetrahedra, FindSolidTetrahedra(restPoints, tetrahedra));
   }
   if (tetrahedra.size() + this->Faces.size() >=
     static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))

@@ -10,11 +10,11 @@ namespace deformvolume
 namespace
 {
 
-std::vector<Triangle> GetTriangles(
-  const std::vector<glm::dvec3>& points, const std::vector<Tetrahedron>& tetrahedra)
+std::vector<Triangle> GetTriangles(const std::vector<glm::dvec3>& points,
+  const std::vector<Tetrahedron>& tetrahedra, const std::vector<std::int32_t>& solid)
 {
   std::vector<Triangle> triangles;
-  for (const TetrahedronFace& face : FindBoundaryFaces(points, tetrahedra))
+  for (const TetrahedronFace& face : FindBoundaryFaces(points, tetrahedra, solid))
   {
     triangles.push_back(
       GetPlaces(face, points, tetrahedra[static_cast<std::size_t>(face.Tetrahedron)]));
@@ -28,7 +28,9 @@ bool HasMeshBoundary(const Extent& volume, const std::vector<glm::dvec3>& restPo
   const std::vector<Tetrahedron>& tetrahedra)
 {
   return GetNumberOfCells(volume) > 0 &&
-    BoundaryFinder(volume, volume).Cross(GetTriangles(restPoints, tetrahedra), 0.0);
+    BoundaryFinder(volume, volume)
+      .Cross(
+        GetTriangles(restPoints, tetrahedra, FindSolidTetrahedra(restPoints, tetrahedra)), 0.0);
 }
 
 MeshBoundary FindMeshBoundary(const Extent& part, const Extent& whole,
@@ -38,12 +40,12 @@ MeshBoundary FindMeshBoundary(const Extent& part, const Extent& whole,
   {
     return MeshBoundary();
   }
+  const std::vector<std::int32_t> numbers = FindSolidTetrahedra(restPoints, tetrahedra);
   BoundaryFinder finder(part, whole);
-  if (!finder.Cross(GetTriangles(restPoints, tetrahedra), 0.0))
+  if (!finder.Cross(GetTriangles(restPoints, tetrahedra, numbers), 0.0))
   {
     return MeshBoundary();
   }
-  const std::vector<std::int32_t> numbers = FindSolidTetrahedra(restPoints, tetrahedra);
   return finder.Collect(numbers.size(),
     [&](std::size_t i, const auto& add)
     {

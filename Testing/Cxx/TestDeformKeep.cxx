@@ -160,7 +160,7 @@ void TestMisuse()
       VERIFY_EQUAL(subject.Filter->GetOutput()->GetNumberOfPoints(), 0);
     }
   };
-  const auto mend = [&]
+  const auto restore = [&]
   {
     subject.Filter->SetFadeDistance(4.0);
     subject.Filter->SetResamplerToAutomatic();
@@ -173,22 +173,22 @@ void TestMisuse()
   {
     subject.Filter->SetFadeDistance(distance);
     refuse("FadeDistance is ");
-    mend();
+    restore();
   }
   subject.Filter->SetResamplerToMeshRasterization();
   refuse("the outside mode KEEP");
-  mend();
+  restore();
   subject.Filter->OpenSplitsOn();
   refuse("OpenSplits");
-  mend();
+  restore();
   const auto field = MakeImage({ { 2, 9, 2, 9, 2, 9 } });
   SetDisplacements(field, Shift(0.0, 0.0, 0.0));
   subject.Filter->SetDeformationData(field);
   refuse("displacement field");
-  mend();
+  restore();
   subject.Filter->SetDeformationData(MakeBox(glm::dvec3(105.2), glm::dvec3(111.7)));
   refuse("no voxel");
-  mend();
+  restore();
   // A distance that is not used is not looked at, and without a deformation there is no outside.
   subject.Filter->SetFadeDistance(-1.0);
   subject.Filter->SetOutsideModeToDiscard();

@@ -13,6 +13,7 @@ import numpy
 import pydicom
 import SimpleITK
 from pydicom import uid
+from Rotation import turn
 
 warnings.simplefilter("ignore")  # of pydicom, about values that these files have on purpose
 SimpleITK.ProcessObject.SetGlobalWarningDisplay(False)
@@ -24,14 +25,6 @@ cases, wrong = [], []
 
 def path(*names):
     return os.path.join(folder, *names)
-
-
-def turn(axis, degrees):
-    c, s = numpy.cos(numpy.radians(degrees)), numpy.sin(numpy.radians(degrees))
-    i, j = [other for other in range(3) if other != axis]
-    matrix = numpy.eye(3)
-    matrix[[i, j, i, j], [i, j, j, i]] = c, c, -s, s
-    return matrix
 
 
 straight, oblique = numpy.eye(3), turn(2, 30) @ turn(0, -20)

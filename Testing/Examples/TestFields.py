@@ -2,12 +2,12 @@
 """deform-volume reads displacement fields as registration programs write them, and turns them into
 the world of the volume. Usage: TestFields.py PROGRAM FOLDER"""
 import itertools
-import math
 import os
 import sys
 
 import numpy
 from FieldFiles import LPS, RAS, flip, write_meta, write_nifti, write_nrrd
+from Rotation import turn
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from Volumes import call, make_folder, read_vti, write_vti
@@ -18,15 +18,6 @@ folder = make_folder(sys.argv[2], "Fields")
 
 def path(name):
     return os.path.join(folder, name)
-
-
-def turn(axis, degrees):
-    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
-    i, j = [other for other in range(3) if other != axis]
-    matrix = numpy.eye(3)
-    matrix[i, i] = matrix[j, j] = c
-    matrix[i, j], matrix[j, i] = -s, s
-    return matrix
 
 
 def get_points(size, matrix):

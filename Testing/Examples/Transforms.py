@@ -6,20 +6,13 @@ import sys
 
 import numpy
 import SimpleITK as sitk
+from Rotation import turn
 
 folder = sys.argv[1]
 
 
 def path(name):
     return os.path.join(folder, name)
-
-
-def turn(axis, degrees):
-    c, s = numpy.cos(numpy.radians(degrees)), numpy.sin(numpy.radians(degrees))
-    i, j = [other for other in range(3) if other != axis]
-    matrix = numpy.eye(3)
-    matrix[[i, j, i, j], [i, j, j, i]] = c, c, -s, s
-    return matrix
 
 
 # A volume in general position, whose values show any exchange of axes.

@@ -10,6 +10,7 @@ import nibabel
 import nrrd
 import numpy
 import SimpleITK
+from Rotation import turn
 
 folder = sys.argv[1]
 data_path = os.path.join(os.path.dirname(nibabel.__file__), "tests", "data")
@@ -38,14 +39,6 @@ def make_values(kind, *shape):
 def make_colours(*shape):
     return numpy.frombuffer(make_values("uint8", *shape, 3).tobytes(),
                             [("R", "u1"), ("G", "u1"), ("B", "u1")]).reshape(shape)
-
-
-def turn(axis, degrees):
-    c, s = numpy.cos(numpy.radians(degrees)), numpy.sin(numpy.radians(degrees))
-    i, j = [other for other in range(3) if other != axis]
-    matrix = numpy.eye(3)
-    matrix[[i, j, i, j], [i, j, j, i]] = c, c, -s, s
-    return matrix
 
 
 def make_place(direction, spacing=(0.7, 1.5, 2.2), origin=(-31.5, 42.25, 13.0)):
