@@ -122,6 +122,7 @@ def main():
         fresh.SetInputData(image)
         fresh.SetDeformationData(meshes[step])
         fresh.SetInputArrayToProcess(0, 1, 0, 0, "U")
+        fresh.SetBackgroundValue(filter_.BackgroundValue)
         # The animation has one lattice for all steps, and so gets the fresh filter.
         fresh.SetOutputBoundsModeToCustomBounds()
         bounds = list(got.GetBounds())

@@ -49,6 +49,7 @@ def check_file(load, path, expected):
         simple.FindSource("Calculator1"),
         OutputBoundsMode="Custom Bounds",
         CustomBounds=[-6.0, 11.0, -8.0, 8.0, -8.0, 8.0],
+        BackgroundValue=0,  # that of version 0.1
     )
     expected_image = fetch(fresh)
     check(arrays_of(expected_image)["vtkValidPointMask"].sum() > 1000, "No voxels")

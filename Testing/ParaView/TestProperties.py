@@ -378,6 +378,34 @@ def check_shown(make):
     simple.Delete(proxy)
 
 
+def check_background(volume):
+    """The least value where the type of the scalars has negative numbers, else 0."""
+    shift = simple.Calculator(Input=volume, ResultArrayName="HU", Function="RTData-1100")
+    whole = simple.Calculator(Input=volume, ResultArrayName="Index", Function="coordsX-20")
+    whole.ResultArrayType = "Short"
+    bytes_ = simple.Calculator(Input=volume, ResultArrayName="Byte", Function="coordsX+20")
+    bytes_.ResultArrayType = "Unsigned Char"
+    vectors = simple.Calculator(Input=volume, ResultArrayName="V", Function="-1*coords")
+    for source in (shift, whole, bytes_, vectors):
+        source.UpdatePipeline()
+    least = shift.PointData["HU"].GetRange()[0]
+    check(least < -800, f"the least value is {least}")
+    # Vectors are not scalars: these are still those of the volume.
+    first = volume.PointData["RTData"].GetRange()[0]
+    for source, expected in ((shift, least), (whole, -26.0), (bytes_, 0.0), (vectors, first)):
+        filter_ = simple.DeformVolume(Volume=source)
+        name, got = source.ResultArrayName, filter_.BackgroundValue
+        check(got == expected, f"{name}: the background is {got}, not {expected}")
+        reached = filter_.GetClientSideObject().GetBackgroundValue()
+        check(reached == expected, f"{name}: the filter has {reached}")
+    for value in (0.0, 7.0):
+        filter_ = simple.DeformVolume(Volume=shift, BackgroundValue=value)
+        check(filter_.BackgroundValue == value, f"The background {value} is not kept")
+        filter_.Volume = whole
+        filter_.UpdatePipeline()
+        check(filter_.BackgroundValue == value, f"Another volume changes the background {value}")
+
+
 def check_defaults(volume):
     # The only vectors are found whatever their name, and whatever other arrays there are.
     mesh = bent_lattice(volume, array="u")
@@ -494,6 +522,7 @@ def main():
     lattice.NumberOfNodes = [2**31 - 1] * 3
     check(len(update(lattice)) == 1, "Too many nodes are no error")
     check_defaults(volume)
+    check_background(volume)
 
 
 main()
