@@ -31,7 +31,7 @@ bool ExecutionState::RegionsKey::operator==(const RegionsKey& other) const
 {
   return this->ShapeVersion == other.ShapeVersion && this->VectorsVersion == other.VectorsVersion &&
     this->Volume == other.Volume && this->ToOutput == other.ToOutput &&
-    this->Extrapolate == other.Extrapolate;
+    this->Outside == other.Outside;
 }
 
 bool ExecutionState::Share::operator==(const Share& other) const

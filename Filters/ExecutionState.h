@@ -80,7 +80,7 @@ struct ExecutionState
     std::uint64_t VectorsVersion = 0;
     ImageGeometry Volume;
     OutputMap ToOutput;
-    bool Extrapolate = false;
+    OutsideVoxels Outside;
     bool operator==(const RegionsKey& other) const;
   };
   RegionsKey KeyOfRegions;
@@ -100,6 +100,8 @@ struct ExecutionState
 
   // Mapping and displacements that were looked at for warnings of kept voxels.
   std::pair<std::uint64_t, std::uint64_t> VersionsOfFading;
+  // What was wrong with how a field fades.
+  std::string FaultOfFading;
 
   // For which displacements inverted tetrahedra of an inverse field were counted, and their number.
   std::uint64_t FoldsVersion = 0;

@@ -298,11 +298,12 @@ public:
    *   the tetrahedron of the nearest voxel inside the mesh; with a field, the displacement of the
    *   nearest point of the field).
    * - KEEP: it stays where it is, and the displacement fades to zero within FadeDistance. Cavities
-   *   of the mesh count as outside. Not for displacement fields, not with OpenSplits and not with
-   *   MESH_RASTERIZATION: errors.
+   *   of the mesh count as outside. With an inverse field it is the output outside the field that
+   *   shows the volume where it is at rest. Meshes with OpenSplits or MESH_RASTERIZATION are
+   *   errors.
    *
-   * EXTRAPOLATE and KEEP need 16 bytes a voxel for the mapping whatever the mesh, while DISCARD
-   * makes do with less where tetrahedra are large. Default: DISCARD.
+   * For meshes, EXTRAPOLATE and KEEP need 16 bytes a voxel for the mapping, while DISCARD makes do
+   * with less where tetrahedra are large. Default: DISCARD.
    */
   vtkSetClampMacro(OutsideMode, int, DISCARD, KEEP);
   vtkGetMacro(OutsideMode, int);
@@ -313,17 +314,18 @@ public:
 
   ///@{
   /**
-   * With OutsideMode KEEP, the distance from the mesh at rest within which the displacement fades
-   * to zero, in world units. A voxel at the distance d is displaced as the closest point of the
-   * mesh's boundary, times 1 - 3 s^2 + 2 s^3 with s = d / FadeDistance. Voxels farther away stay
-   * where they are to the last bit. A distance of at least twice the largest displacement keeps the
-   * volume from folding; less than 1.5 times that, and tetrahedra of the volume that are stretched
-   * over more than 2 output voxels where the closest point jumps (between two bodies, within a
-   * ring), are reported in one warning for each change of the deformation.
+   * With OutsideMode KEEP, the distance from the mesh at rest, or from the grid of the field,
+   * within which the displacement fades to zero, in world units. A voxel at the distance d is
+   * displaced as the closest point of the boundary, times 1 - 3 s^2 + 2 s^3 with s = d /
+   * FadeDistance. Voxels farther away stay where they are to the last bit. A distance of at least
+   * twice the largest displacement keeps the volume from folding; less than 1.5 times that, and
+   * tetrahedra of the volume that are stretched over more than 2 output voxels where the closest
+   * point of a mesh jumps (between two bodies, within a ring), are reported in one warning for each
+   * change of the deformation.
    *
-   * 0 is a hard edge: no voxel outside the mesh moves. Where the boundary of the mesh moves, the
-   * cells that it crosses are stretched or folded. Negative, infinite and NaN are errors at the
-   * next update. Default: 0.
+   * 0 is a hard edge: no voxel outside moves. Where the boundary moves, the cells that it crosses
+   * are stretched or folded. An inverse field is then zero outside its grid, as a displacement
+   * field of ITK is. Negative, infinite and NaN are errors at the next update. Default: 0.
    */
   vtkSetMacro(FadeDistance, double);
   vtkGetMacro(FadeDistance, double);

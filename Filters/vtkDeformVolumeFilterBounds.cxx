@@ -47,10 +47,10 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ComputeBounds(
   const ImageGeometry& volume, const DeformationSource& source)
 {
   const deformvolume::VoxelGrid voxelGrid{ volume.PointExtent, source.ToOutput, {} };
-  const bool extrapolate = this->Self->OutsideMode == EXTRAPOLATE;
+  const deformvolume::OutsideVoxels outside = this->GetOutside();
   if (this->State->Deformation.IsField() && this->State->Deformation.GetDeviceVectors())
   {
-    deformvolume::DisplacementField field = this->State->Deformation.GetField(extrapolate);
+    deformvolume::DisplacementField field = this->State->Deformation.GetField(outside);
     field.ToDisplacement = this->State->Deformation.GetDeviceMatrix();
     const std::optional<IndexBounds> bounds = deformvolume::FindDeformedBounds(
       voxelGrid, field, *this->State->Deformation.GetDeviceVectors());
@@ -62,7 +62,7 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ComputeBounds(
   this->State->Deformation.BringToHost();
   if (this->State->Deformation.IsField())
   {
-    const deformvolume::DisplacementField field = this->State->Deformation.GetField(extrapolate);
+    const deformvolume::DisplacementField field = this->State->Deformation.GetField(outside);
     const IndexBounds* known = this->State->Deformation.GetFieldBounds();
     const IndexBounds bounds = known ? *known
       : this->State->Deformation.IsInverseField()
@@ -76,14 +76,14 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ComputeBounds(
     }
     return bounds;
   }
-  if (extrapolate)
+  if (outside.AreExtrapolated())
   {
-    this->MakeLinks(voxelGrid, { volume, volume.PointExtent, extrapolate });
+    this->MakeLinks(voxelGrid, { volume, volume.PointExtent, outside });
     return deformvolume::ComputeDeformedBounds(voxelGrid, this->State->Mapping.GetLinks(),
       this->State->Deformation.GetTetrahedra(), this->State->Deformation.GetNodeDisplacements());
   }
   const deformvolume::Deformation& mesh = this->State->Deformation;
-  const deformvolume::MappedVolume mapped{ volume, volume.PointExtent, this->GetOutside() };
+  const deformvolume::MappedVolume mapped{ volume, volume.PointExtent, outside };
   if (mapped.Outside.AreKept() && !this->State->Mapping.IsCurrent(mesh, mapped))
   {
     this->MakeLinks(voxelGrid, mapped);

@@ -148,11 +148,7 @@ void vtkDeformVolumeFilter::vtkInternals::CheckOutside() const
   {
     return;
   }
-  if (this->State->Deformation.IsField())
-  {
-    deformvolume::CheckForField(this->GetOutside());
-  }
-  if (this->Self->OpenSplits)
+  if (!this->State->Deformation.IsField() && this->Self->OpenSplits)
   {
     throw Error("OutsideMode is KEEP and OpenSplits is on, but what is outside the mesh is on "
                 "neither side of a split. Set OpenSplits off, or OutsideMode to DISCARD.");
@@ -445,11 +441,20 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfIgnored(
 }
 
 //------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::vtkInternals::WarnOfFading(const deformvolume::MappedVolume& mapped)
+void vtkDeformVolumeFilter::vtkInternals::WarnOfFading(
+  const deformvolume::MappedVolume& mapped, const deformvolume::Extent& output)
 {
   const deformvolume::Deformation& mesh = this->State->Deformation;
+  if (mesh.IsField())
+  {
+    if (mapped.Outside.AreKept())
+    {
+      this->WarnOfFadingField(mapped, output);
+    }
+    return;
+  }
   const deformvolume::FadedLinks& links = this->State->Mapping.GetMapping().Faded;
-  if (mesh.IsField() || !links.AreThere() || !this->State->Mapping.IsCurrent(mesh, mapped))
+  if (!links.AreThere() || !this->State->Mapping.IsCurrent(mesh, mapped))
   {
     return;
   }
@@ -487,6 +492,23 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfFading(const deformvolume::Mappe
   {
     vtkWarningWithObjectMacro(this->Self, << text);
   }
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::WarnOfFadingField(
+  const deformvolume::MappedVolume& mapped, const deformvolume::Extent& output)
+{
+  const deformvolume::Deformation& deformation = this->State->Deformation;
+  const deformvolume::Extent& moved =
+    deformation.IsInverseField() ? output : mapped.Whole.PointExtent;
+  const std::string fault = deformvolume::FindFaultOfFading(deformation.GetField(mapped.Outside),
+    deformvolume::GetBox({ moved, {}, {} }),
+    glm::abs(this->GetOutputGeometry(mapped.Whole).Spacing), mapped.Outside.FadeDistance);
+  if (!fault.empty() && fault != this->State->FaultOfFading)
+  {
+    vtkWarningWithObjectMacro(this->Self, << fault);
+  }
+  this->State->FaultOfFading = fault;
 }
 
 //------------------------------------------------------------------------------

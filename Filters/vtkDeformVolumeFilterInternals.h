@@ -146,8 +146,10 @@ public:
   void WarnOfIgnored(vtkImageData* volume, const std::vector<std::string>& leftOut);
 
   /// Warns where voxels that are kept are torn or folded for certain, when the deformation has
-  /// changed.
-  void WarnOfFading(const deformvolume::MappedVolume& mapped);
+  /// changed. output: its whole extent.
+  void WarnOfFading(const deformvolume::MappedVolume& mapped, const deformvolume::Extent& output);
+  void WarnOfFadingField(
+    const deformvolume::MappedVolume& mapped, const deformvolume::Extent& output);
 
   /// A progress callback for the part of the execution between two fractions.
   std::function<bool(double)> GetProgress(double from, double to) const;

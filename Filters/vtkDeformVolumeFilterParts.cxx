@@ -92,15 +92,14 @@ const RestRegions& vtkDeformVolumeFilter::vtkInternals::GetRegions(
 {
   const deformvolume::ExecutionState::RegionsKey key{
     this->State->Deformation.GetRestMesh().GetShapeVersion(),
-    this->State->Deformation.GetVectorsVersion(), volume, source.ToOutput,
-    this->Self->OutsideMode == EXTRAPOLATE
+    this->State->Deformation.GetVectorsVersion(), volume, source.ToOutput, this->GetOutside()
   };
   if (!this->State->Regions || !(this->State->KeyOfRegions == key))
   {
     this->State->Deformation.BringToHost();
     const deformvolume::VoxelGrid voxelGrid{ volume.PointExtent, source.ToOutput, {} };
     this->State->Regions = this->State->Deformation.IsField()
-      ? std::make_unique<RestRegions>(voxelGrid, this->State->Deformation.GetField(key.Extrapolate))
+      ? std::make_unique<RestRegions>(voxelGrid, this->State->Deformation.GetField(key.Outside))
       : std::make_unique<RestRegions>(voxelGrid, this->State->Deformation.GetRestPoints(),
           this->State->Deformation.GetTetrahedra(),
           this->State->Deformation.GetNodeDisplacements());

@@ -383,15 +383,15 @@ int vtkDeformVolumeFilter::RequestData(
   const auto deform = [&]
   {
     checkMemory(request.OutputExtent, request.Method);
-    device.SetVolume(voxelGrid, worked, arrays, this->BackgroundValue, deformation,
-      mapped.Outside.AreExtrapolated(), request.Method);
+    device.SetVolume(voxelGrid, worked, arrays, this->BackgroundValue, deformation, mapped.Outside,
+      request.Method);
     if (request.Method == deformvolume::Resampling::MeshRasterization)
     {
       if (!deformation.IsField())
       {
         deformvolume::CheckBoxes(deformation, geometry);
       }
-      device.SetRestMesh(deformation, mapped.Outside.AreExtrapolated());
+      device.SetRestMesh(deformation, mapped.Outside);
     }
     else
     {
@@ -423,7 +423,7 @@ int vtkDeformVolumeFilter::RequestData(
   if (numberOfPoints > 0)
   {
     this->Internals->TakeReport(report, request.Method);
-    this->Internals->WarnOfFading(mapped);
+    this->Internals->WarnOfFading(mapped, whole);
   }
   this->Internals->AddUpCounts(ranks);
   if (numberOfPoints == 0)

@@ -4,7 +4,6 @@
 #include "DeformedPositions.h"
 #include "Error.h"
 #include "MaskArray.h"
-#include "OutsideMode.h"
 #include "WrittenTuples.h"
 
 #include "vtkArrayChanges.h"
@@ -168,11 +167,6 @@ const VertexPositions& VolumeEditor::GetPositions(
   source.RestParts = this->RestGrids.Find(source.Rest, source.RestIsMade);
   this->Deformation.Read(source);
   const bool isField = this->Deformation.IsField();
-  if (isField)
-  {
-    CheckForField(outside);
-  }
-  const bool extrapolate = outside.AreExtrapolated();
   // The mapping of a part has whole rows, and is that of the whole volume to the last bit.
   MappedVolume mapped{ this->Geometry, this->Geometry.PointExtent, outside };
   mapped.Whole.PointExtent = this->Whole;
@@ -183,8 +177,7 @@ const VertexPositions& VolumeEditor::GetPositions(
   {
     this->Mapping.Update(this->Deformation, mapped, {});
   }
-  const std::array<std::uint64_t, 3> mapping{ { isField ? 0 : this->Mapping.GetVersion(),
-    isField ? 1U : 0U, extrapolate ? 1U : 0U } };
+  const PositionsKey mapping{ isField ? 0 : this->Mapping.GetVersion(), isField, outside };
   const std::uint64_t vectors = this->Deformation.GetVectorsVersion();
   if (this->Deformed && mapping == this->DeformedMapping && vectors == this->DeformedVectors)
   {
@@ -207,12 +200,12 @@ const VertexPositions& VolumeEditor::GetPositions(
   else if (this->Deformed && mapping == this->DeformedMapping)
   {
     const PointRanges changes = this->Deformation.GetChanges(this->DeformedVectors);
-    this->Deformed->SetField(this->Deformation.GetField(extrapolate), &changes);
+    this->Deformed->SetField(this->Deformation.GetField(outside), &changes);
   }
   else if (isField)
   {
     this->Deformed = std::make_unique<DeformedPositions>(
-      this->Geometry.PointExtent, this->Deformation.GetField(extrapolate));
+      this->Geometry.PointExtent, this->Deformation.GetField(outside));
   }
   else
   {

@@ -109,8 +109,19 @@ private:
   MappingCache Mapping;
   FadedMesh Faded; // what the mapping is of, where voxels outside the mesh are kept
   std::unique_ptr<DeformedPositions> Deformed;
-  // What those are of: the version of the mapping, whether it is a field, whether it extrapolates.
-  std::array<std::uint64_t, 3> DeformedMapping{};
+  // What those are of.
+  struct PositionsKey
+  {
+    std::uint64_t Mapping = 0; // a version
+    bool IsField = false;
+    OutsideVoxels Outside;
+    bool operator==(const PositionsKey& other) const
+    {
+      return this->Mapping == other.Mapping && this->IsField == other.IsField &&
+        this->Outside == other.Outside;
+    }
+  };
+  PositionsKey DeformedMapping;
   std::uint64_t DeformedVectors = 0; // a version
 };
 

@@ -98,7 +98,7 @@ void DeviceSession::CheckMemory(const VoxelGrid& voxelGrid, const std::vector<Vo
 
 void DeviceSession::SetVolume(const VoxelGrid& voxelGrid, vtkImageData* volume,
   const std::vector<SourceArray>& arrays, double background, const Deformation& deformation,
-  bool extrapolate, Resampling method)
+  const OutsideVoxels& outside, Resampling method)
 {
   if (!this->Known)
   {
@@ -142,10 +142,11 @@ void DeviceSession::SetVolume(const VoxelGrid& voxelGrid, vtkImageData* volume,
   this->Deformer.SetArrayOptions(described);
 
   const Stamp masksStamp = GetMasksStamp(volume);
-  const std::pair<std::uint64_t, bool> undefined(deformation.GetUndefinedVersion(), extrapolate);
+  const std::pair<std::uint64_t, OutsideVoxels> undefined(
+    deformation.GetUndefinedVersion(), outside);
   const bool isDefined = undefined.first == 0 && this->SentUndefined.first == 0;
   if (!this->MasksAreSet || this->SentMasks != masksStamp ||
-    (!isDefined && this->SentUndefined != undefined))
+    (!isDefined && !(this->SentUndefined == undefined)))
   {
     VolumeMasks masks = ReadMasks(volume, this->MasksAreSet ? this->SentMasks : Stamp());
     const auto written = [](const std::optional<PointRanges>& ranges)
@@ -153,7 +154,7 @@ void DeviceSession::SetVolume(const VoxelGrid& voxelGrid, vtkImageData* volume,
     std::vector<unsigned char> blanked;
     if (undefined.first != 0)
     {
-      blanked = deformation.FindUndefinedVoxels(voxelGrid.VertexExtent, extrapolate);
+      blanked = deformation.FindUndefinedVoxels(voxelGrid.VertexExtent, outside);
       for (std::size_t i = 0; i < blanked.size() && masks.Blanked; ++i)
       {
         blanked[i] |= (masks.Blanked[i] & masks.BlankedBits) != 0 ? 1 : 0;
@@ -176,15 +177,14 @@ void DeviceSession::SetVolume(const VoxelGrid& voxelGrid, vtkImageData* volume,
 void DeviceSession::SetDeformation(const Deformation& deformation, MappingCache& mapping,
   const MappedVolume& volume, bool openSplits, const std::function<bool(double)>& progress)
 {
-  const bool extrapolate = volume.Outside.AreExtrapolated();
   const std::uint64_t vectors = deformation.GetVectorsVersion();
   if (deformation.IsField())
   {
-    if (!this->HasField || this->SentVectors != vectors || this->SentExtrapolate != extrapolate)
+    if (!this->HasField || this->SentVectors != vectors || !(this->SentOutside == volume.Outside))
     {
       const PointRanges changes = deformation.GetChanges(this->SentVectors);
       Transfer transfer(this);
-      DisplacementField field = deformation.GetField(extrapolate);
+      DisplacementField field = deformation.GetField(volume.Outside);
       if (deformation.GetDeviceVectors())
       {
         field.ToDisplacement = deformation.GetDeviceMatrix();
@@ -206,7 +206,7 @@ void DeviceSession::SetDeformation(const Deformation& deformation, MappingCache&
     this->HasField = this->HasRestMesh = this->HasInverseField = false;
   }
   this->SentVectors = vectors;
-  this->SentExtrapolate = extrapolate;
+  this->SentOutside = volume.Outside;
 }
 
 void DeviceSession::SetNodes(const Deformation& deformation, const PointRanges* changes)
@@ -326,23 +326,22 @@ void DeviceSession::SetMesh(const Deformation& deformation, MappingCache& mappin
   }
 }
 
-void DeviceSession::SetRestMesh(const Deformation& deformation, bool extrapolate)
+void DeviceSession::SetRestMesh(const Deformation& deformation, const OutsideVoxels& outside)
 {
   static_assert(sizeof(glm::dvec3) == 3 * sizeof(double), "as the deformer reads it");
   if (deformation.IsInverseField())
   {
     const std::uint64_t version = deformation.GetVectorsVersion();
-    if (!this->HasInverseField || this->SentVectors != version ||
-      this->SentExtrapolate != extrapolate)
+    if (!this->HasInverseField || this->SentVectors != version || !(this->SentOutside == outside))
     {
       Transfer transfer(this);
-      this->Deformer.SetInverseField(deformation.GetField(extrapolate));
+      this->Deformer.SetInverseField(deformation.GetField(outside));
       transfer.End();
     }
     this->HasInverseField = true;
     this->HasMesh = this->HasField = this->HasRestMesh = false;
     this->SentVectors = version;
-    this->SentExtrapolate = extrapolate;
+    this->SentOutside = outside;
     return;
   }
   // Which changes with the shape, too.

@@ -49,7 +49,7 @@ public:
   /// Voxels whose displacement is undefined count as blanked.
   void SetVolume(const VoxelGrid& voxelGrid, vtkImageData* volume,
     const std::vector<SourceArray>& arrays, double background, const Deformation& deformation,
-    bool extrapolate, Resampling method = Resampling::Exact);
+    const OutsideVoxels& outside, Resampling method = Resampling::Exact);
 
   /// Brings the mapping up to date, too, where it has to be sent. openSplits: whether gaps open
   /// where the mesh is split.
@@ -57,7 +57,7 @@ public:
     const MappedVolume& volume, bool openSplits, const std::function<bool(double)>& progress);
 
   /// A mesh, or an inverse field, for the method MeshRasterization: there is no mapping.
-  void SetRestMesh(const Deformation& deformation, bool extrapolate = false);
+  void SetRestMesh(const Deformation& deformation, const OutsideVoxels& outside);
 
   DeformReport Deform(const DeformRequest& request);
 
@@ -92,7 +92,7 @@ private:
   bool SentForLinks = false;
   Stamp SentArrays;
   Stamp SentMasks;
-  std::pair<std::uint64_t, bool> SentUndefined{ 0, false };
+  std::pair<std::uint64_t, OutsideVoxels> SentUndefined{ 0, OutsideVoxels() };
   bool MasksAreSet = false;
   bool HasMesh = false;
   bool HasFadedMesh = false;
@@ -104,7 +104,7 @@ private:
   bool PlacesAreSent = false;
   std::uint64_t SentMapping = 0;
   std::uint64_t SentVectors = 0;
-  bool SentExtrapolate = false;
+  OutsideVoxels SentOutside;
 
   std::int64_t NumberOfVolumeUploads = 0;
 };

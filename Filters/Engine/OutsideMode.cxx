@@ -5,8 +5,13 @@
 
 #include "vtkDeformVolumeFilter.h"
 
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
 #include <cmath>
-#include <string>
+#include <cstddef>
+#include <cstdint>
 
 namespace deformvolume
 {
@@ -20,18 +25,84 @@ OutsideVoxels MakeOutsideVoxels(int outsideMode, double fadeDistance)
   if (!std::isfinite(fadeDistance) || fadeDistance < 0.0)
   {
     throw Error("FadeDistance is " + std::to_string(fadeDistance) +
-      ". Set a distance in world units, or 0, with which no voxel outside the mesh moves.");
+      ". Set a distance in world units, or 0, with which no voxel outside the mesh or the field "
+      "moves.");
   }
   return { OutsideVoxels::Modes::Keep, fadeDistance };
 }
 
-void CheckForField(const OutsideVoxels& outside)
+namespace
 {
-  if (outside.AreKept())
+
+// The longest displacement of the points on the border of a field, in world units.
+double GetLongestOnBorder(const DisplacementField& field, const glm::dvec3& spacing)
+{
+  const std::array<int, 3>& size = field.Dimensions;
+  double longest = 0.0;
+  std::int64_t point = 0;
+  for (int z = 0; z < size[2]; ++z)
   {
-    throw Error("OutsideMode is KEEP, which needs a mesh, but the deformation is a displacement "
-                "field. Set OutsideMode to DISCARD or EXTRAPOLATE, or connect a mesh.");
+    for (int y = 0; y < size[1]; ++y)
+    {
+      const bool isOnBorder = z == 0 || z == size[2] - 1 || y == 0 || y == size[1] - 1;
+      const int step = isOnBorder ? 1 : std::max(size[0] - 1, 1);
+      for (int x = 0; x < size[0]; x += step)
+      {
+        const double length = glm::length(spacing * GetVector(field, point + x));
+        longest = length > longest ? length : longest; // undefined ones are not-a-number
+      }
+      point += size[0];
+    }
   }
+  return longest;
+}
+
+bool HoldsAll(const DisplacementField& field, const IndexBounds& box)
+{
+  const glm::dmat3 toField = GetVoxelsToField(field);
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    glm::dvec3 place;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      place[axis] = (corner >> axis & 1) != 0 ? box.Max[axis] : box.Min[axis];
+    }
+    place = toField * place;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      const double position = place[static_cast<int>(axis)] + field.IndexToField[4 * axis + 3];
+      constexpr double tolerance = 1e-3; // of a step between points, as in the kernels
+      if (position < -tolerance || position > field.Dimensions[axis] - 1 + tolerance)
+      {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+} // namespace
+
+std::string FindFaultOfFading(const DisplacementField& field, const IndexBounds& box,
+  const glm::dvec3& spacing, double fadeDistance)
+{
+  if (HoldsAll(field, box))
+  {
+    return "";
+  }
+  const double longest = GetLongestOnBorder(field, spacing);
+  // The slope of the weight is 1.5 at most. A hard edge folds or tears whatever is longer than the
+  // voxels that lie across it.
+  const double least = std::min({ spacing.x, spacing.y, spacing.z });
+  if (fadeDistance > 0.0 ? 1.5 * longest <= fadeDistance : longest <= 2.0 * least)
+  {
+    return "";
+  }
+  return "The border of the displacement field moves by up to " + std::to_string(longest) +
+    (fadeDistance > 0.0 ? ", more than two thirds of FadeDistance, " +
+          std::to_string(fadeDistance) + ": the volume outside may fold over."
+                        : ", and as FadeDistance is 0 the volume is stretched or folded there.") +
+    " Set FadeDistance to at least twice that displacement.";
 }
 
 } // namespace deformvolume

@@ -2,7 +2,13 @@
 #ifndef DeformVolumeOutsideMode_h
 #define DeformVolumeOutsideMode_h
 
+#include "DisplacementField.h"
+#include "IndexBounds.h"
 #include "OutsideVoxels.h"
+
+#include <glm/vec3.hpp>
+
+#include <string>
 
 namespace deformvolume
 {
@@ -11,8 +17,11 @@ namespace deformvolume
 /// distance counts and is none.
 OutsideVoxels MakeOutsideVoxels(int outsideMode, double fadeDistance);
 
-/// Throws an Error where a displacement field cannot do what is asked for.
-void CheckForField(const OutsideVoxels& outside);
+/// What is wrong with how a displacement fades outside a field: where the border of the field moves
+/// by too much for FadeDistance, and any of a box is outside; else empty. box: in the indices that
+/// the field takes. spacing: of the output.
+std::string FindFaultOfFading(const DisplacementField& field, const IndexBounds& box,
+  const glm::dvec3& spacing, double fadeDistance);
 
 } // namespace deformvolume
 

@@ -8,6 +8,7 @@
 #include "FieldScan.h"
 #include "ImageGeometry.h"
 #include "IndexBounds.h"
+#include "OutsideVoxels.h"
 #include "RestMesh.h"
 #include "Tetrahedron.h"
 #include "VectorArray.h"
@@ -88,7 +89,7 @@ public:
   /// A field (that of an inverse one takes indices of the output), and the bounds of the deformed
   /// volume where they were found with it, else null. Large fields over the voxels themselves are
   /// not copied (see DisplacementField::Owner).
-  DisplacementField GetField(bool extrapolate) const;
+  DisplacementField GetField(const OutsideVoxels& outside) const;
   const IndexBounds* GetFieldBounds() const
   {
     return this->FieldInPlace.Owner ? &this->FieldBounds : nullptr;
@@ -100,7 +101,8 @@ public:
   /// forward field that is undefined; and a version that differs between two such fields, which is
   /// 0 for all other deformations. (Vectors of undefined points of an inverse field are
   /// not-a-number.)
-  std::vector<unsigned char> FindUndefinedVoxels(const Extent& part, bool extrapolate) const;
+  std::vector<unsigned char> FindUndefinedVoxels(
+    const Extent& part, const OutsideVoxels& outside) const;
   std::uint64_t GetUndefinedVersion() const
   {
     return this->UndefinedPoints.empty() || !this->Field || this->IsInverseField()
@@ -172,6 +174,7 @@ private:
   NodeFaults Faults;                        // of the vectors, where they are read from a mesh
   std::array<int, 3> FieldDimensions{ { 0, 0, 0 } };
   std::array<double, 12> IndexToField{};
+  glm::dvec3 FieldSpacing{ 1.0 };             // in world units
   std::vector<unsigned char> UndefinedPoints; // of the field; empty: all are defined
   std::uint64_t UndefinedVersion = 0;
   DisplacementField FieldInPlace; // with an owner, or there is none

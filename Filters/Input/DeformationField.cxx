@@ -112,7 +112,7 @@ std::vector<unsigned char> FindHidden(vtkDataArray* ghosts)
 
 } // namespace
 
-DisplacementField Deformation::GetField(bool extrapolate) const
+DisplacementField Deformation::GetField(const OutsideVoxels& outside) const
 {
   DisplacementField field = this->FieldInPlace;
   if (!field.Owner)
@@ -121,7 +121,17 @@ DisplacementField Deformation::GetField(bool extrapolate) const
     field.Vectors = this->Vectors.data();
     field.IndexToField = this->IndexToField;
   }
-  field.Extrapolate = extrapolate;
+  field.Extrapolate = !outside.AreDiscarded();
+  if (outside.AreKept())
+  {
+    // The voxels that are nearest to the field, and not in it, stay where the distance is 0.
+    constexpr double most = 1e6;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      const double step = this->FieldSpacing[static_cast<int>(axis)] / outside.FadeDistance;
+      field.Fading[axis] = std::min(step, most);
+    }
+  }
   return field;
 }
 
@@ -149,6 +159,7 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
   const auto lastDimensions = this->FieldDimensions;
   const auto lastIndexToField = this->IndexToField;
   image->GetDimensions(this->FieldDimensions.data());
+  this->FieldSpacing = glm::abs(geometry.Spacing);
   glm::dmat4 toField = geometry.GetWorldToIndex() * source.Volume.GetIndexToWorld();
   if (source.FieldIsInverse)
   {
@@ -266,8 +277,9 @@ void Deformation::ReadDefined(vtkDataArray* array, const VectorTaker& take)
 }
 
 std::vector<unsigned char> Deformation::FindUndefinedVoxels(
-  const Extent& part, bool extrapolate) const
+  const Extent& part, const OutsideVoxels& outside) const
 {
+  const DisplacementField field = this->GetField(outside);
   // Weights below this are rounding errors of positions.
   constexpr double tolerance = 1e-5;
   const auto width = static_cast<std::size_t>(GetSize(part, 0));
@@ -278,17 +290,23 @@ std::vector<unsigned char> Deformation::FindUndefinedVoxels(
   {
     std::array<int, 3> low;
     std::array<int, 3> high;
+    glm::dvec3 position;
     for (int axis = 0; axis < 3; ++axis)
     {
       const int last = this->FieldDimensions[axis] - 1;
       double at = m[4 * axis] * x + m[4 * axis + 1] * y + m[4 * axis + 2] * z + m[4 * axis + 3];
-      if (!extrapolate && (at < -tolerance || at > last + tolerance))
+      position[axis] = at;
+      if (!field.Extrapolate && (at < -tolerance || at > last + tolerance))
       {
         return false; // it is outside
       }
       at = std::min(std::max(at, 0.0), static_cast<double>(last));
       low[axis] = static_cast<int>(at + tolerance);
       high[axis] = std::min(last, at - low[axis] > tolerance ? low[axis] + 1 : low[axis]);
+    }
+    if (IsFading(field) && GetWeightBeyond(field, position, tolerance) == 0.0)
+    {
+      return false; // it stays where it is
     }
     for (int corner = 0; corner < 8; ++corner)
     {

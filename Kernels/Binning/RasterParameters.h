@@ -96,6 +96,7 @@ typedef struct
   float OutputToFieldRest[12];
   int Dimensions[3];
   int Extrapolate; // whether voxels outside the field follow its border
+  float Fading[3]; // DisplacementField::Fading
 } LookupParameters;
 
 #ifndef __OPENCL_VERSION__

@@ -75,6 +75,7 @@ private:
 
 bool DeformedFieldVertices::Find(const glm::dvec3& vertex, glm::dvec3& displacement) const
 {
+  glm::dvec3 position;
   glm::dvec3 inside;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -85,10 +86,15 @@ bool DeformedFieldVertices::Find(const glm::dvec3& vertex, glm::dvec3& displacem
     {
       return false;
     }
+    position[axis] = place;
     inside[axis] = std::min(std::max(place, 0.0), last);
   }
   displacement = Interpolate(
     this->Field, inside, [this](std::int64_t point) { return GetVector(this->Field, point); });
+  if (IsFading(this->Field))
+  {
+    displacement *= GetWeightBeyond(this->Field, position, FieldTolerance);
+  }
   return true;
 }
 
@@ -107,6 +113,7 @@ DisplacementLimits DeformedFieldVertices::GetLimits(std::size_t brick) const
 {
   const Extent vertices = this->Bricks.GetVertices(brick);
   DisplacementLimits limits;
+  bool mayFade = false;
   std::array<std::int64_t, 6> points;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -125,6 +132,7 @@ DisplacementLimits DeformedFieldVertices::GetLimits(std::size_t brick) const
     {
       return limits;
     }
+    mayFade = mayFade || (IsFading(this->Field) && (low < 0.0 || high > last));
     points[2 * axis] = static_cast<std::int64_t>(std::clamp(low, 0.0, last));
     points[2 * axis + 1] = static_cast<std::int64_t>(std::ceil(std::clamp(high, 0.0, last)));
   }
@@ -146,6 +154,11 @@ DisplacementLimits DeformedFieldVertices::GetLimits(std::size_t brick) const
   {
     limits.Min[axis] = range.Least[static_cast<std::size_t>(axis)];
     limits.Max[axis] = range.Greatest[static_cast<std::size_t>(axis)];
+    if (mayFade)
+    {
+      limits.Min[axis] = std::min(limits.Min[axis], 0.0);
+      limits.Max[axis] = std::max(limits.Max[axis], 0.0);
+    }
   }
   return limits;
 }
@@ -158,7 +171,7 @@ std::vector<unsigned char> DeformedFieldVertices::SetField(
   const VoxelGrid vertices{ this->Bricks.GetVertices(), {}, {} };
   if (!changed || last.Dimensions != field.Dimensions || last.IndexToField != field.IndexToField ||
     last.ToDisplacement != field.ToDisplacement || last.Extrapolate != field.Extrapolate ||
-    !AreVoxelsPoints(vertices, field))
+    last.Fading != field.Fading || !AreVoxelsPoints(vertices, field))
   {
     return {};
   }

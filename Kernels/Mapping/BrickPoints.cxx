@@ -202,6 +202,7 @@ BrickPoints BrickPoints::FromField(
 {
   BrickPoints points;
   std::copy_n(field.Dimensions, 3, points.FieldSize.begin());
+  points.Fades = field.Fading[0] > 0.0F;
   for (std::size_t brick = 0; brick < grid.GetNumberOfBricks(); ++brick)
   {
     const Extent vertices = grid.GetVertices(brick, grid.Reach);

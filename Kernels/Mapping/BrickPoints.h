@@ -150,6 +150,10 @@ public:
     return this->Excess.empty() ? 0.0 : this->Excess[brick];
   }
 
+  /// Whether a brick may have vertices that move by less than all of its points: outside a field
+  /// whose displacement fades there.
+  bool IsFading() const { return this->Fades; }
+
 private:
   struct Needs;
   template <typename Visit>
@@ -174,6 +178,7 @@ private:
   std::size_t NumberOfAdded = 0;
   // Or, of a field, a box of points for each.
   std::vector<Extent> Boxes;
+  bool Fades = false;
   std::array<std::int64_t, 3> FieldSize{ { 0, 0, 0 } };
 };
 

@@ -240,8 +240,15 @@ static float4 Displacement(const Mapping* m, int x, int y, int z, const KernelPa
   }
   const int3 last =
     (int3)(field->Dimensions[0], field->Dimensions[1], field->Dimensions[2]) - 1;
-  const float3 f = clamp(FieldIndex(field, (int3)(x, y, z)), 0.0f, convert_float3(last));
-  return InterpolatePoints(m->Vectors, width, plane, f, last);
+  const float3 place = FieldIndex(field, (int3)(x, y, z));
+  const float3 f = clamp(place, 0.0f, convert_float3(last));
+  const float4 displacement = InterpolatePoints(m->Vectors, width, plane, f, last);
+  if (field->Fading[0] > 0.0f)
+  {
+    const float3 fading = (float3)(field->Fading[0], field->Fading[1], field->Fading[2]);
+    return displacement * WeightBeyond(fmax(fabs(place - f) - FIELD_TOLERANCE, 0.0f) * fading);
+  }
+  return displacement;
 }
 
 static int IsMoved(const Mapping* m, int x, int y, int z, const KernelParameters* p)

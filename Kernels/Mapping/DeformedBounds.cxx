@@ -51,6 +51,8 @@ IndexBounds ComputeInParallel(std::int64_t count, Body&& body)
 // How far outside the field, in its cells, a voxel may lie and still count: more than the device's
 // rounding.
 constexpr double FieldTolerance = 2e-3;
+// The same as DeformationMapping.cl has it.
+constexpr double KernelTolerance = 1e-3;
 // Positions this near to a voxel or to a point of the field are on it.
 constexpr double OnPoint = 1e-6;
 
@@ -193,18 +195,23 @@ bool EndsBetweenVoxels(
   return !field.Extrapolate && geometry.IsInvertible() && !geometry.IsOnGrid() && !holdsAll;
 }
 
-// The trilinear displacement at a place, whose border is that of the field.
+// The displacement at a place: trilinear, and outside what is left of that of the border.
 glm::dvec3 Interpolate(const DisplacementField& field, const glm::dvec3& position)
 {
   const glm::dvec3 last(field.Dimensions[0] - 1, field.Dimensions[1] - 1, field.Dimensions[2] - 1);
   const glm::dvec3 inside = glm::clamp(position, glm::dvec3(0.0), last);
   const glm::dvec3 nearest = glm::round(inside);
   const auto isOnPoint = glm::lessThan(glm::abs(inside - nearest), glm::dvec3(OnPoint));
-  return Interpolate(field, glm::mix(inside, nearest, isOnPoint),
-    [&](std::int64_t point) { return GetVector(field, point); });
+  const double weight = IsFading(field) ? GetWeightBeyond(field, position, KernelTolerance) : 1.0;
+  return weight > 0.0 ? weight *
+      Interpolate(field, glm::mix(inside, nearest, isOnPoint),
+        [&](std::int64_t point) { return GetVector(field, point); })
+                      : glm::dvec3(0.0);
 }
 
-// Bounds of the voxels themselves, for fields that are no coarser than the volume.
+// Bounds of the voxels themselves, for fields that are no coarser than the volume or that fade: the
+// bounds of cells would be far too wide where these reach from voxels that move to others that
+// stay.
 IndexBounds ComputeBoundsOfVoxels(
   const VoxelGrid& voxelGrid, const DisplacementField& field, const FieldGeometry& geometry)
 {
@@ -365,7 +372,7 @@ IndexBounds ComputeDeformedBounds(const VoxelGrid& voxelGrid, const Displacement
   const FieldGeometry geometry(field);
   // A field over the volume's own grid may cover a part of it only, and then has fewer points.
   const bool coLocated = geometry.IsOnGrid();
-  return coLocated ||
+  return coLocated || IsFading(field) ||
       (points >= GetNumberOfPoints(voxelGrid.VertexExtent) &&
         !EndsBetweenVoxels(voxelGrid, field, geometry))
     ? ComputeBoundsOfVoxels(voxelGrid, field, geometry)

@@ -35,7 +35,17 @@ struct DisplacementField
   /// True: voxels outside the field take the displacement of its nearest point on the border.
   /// False: they are discarded.
   bool Extrapolate = false;
+  /// How the displacement of the border fades with the distance from the field, where voxels
+  /// outside take it: what a step of one point on each axis adds to a distance that is 1 where the
+  /// displacement is zero. 0: it does not fade.
+  std::array<double, 3> Fading{ { 0.0, 0.0, 0.0 } };
 };
+
+/// Whether the displacement fades outside a field.
+inline bool IsFading(const DisplacementField& field)
+{
+  return field.Fading[0] > 0.0;
+}
 
 /// The points of a field; 0 where it has none on an axis.
 inline std::int64_t GetNumberOfPoints(const DisplacementField& field)

@@ -31,7 +31,8 @@ bool HasSameDimensions(const FieldParameters& a, const FieldParameters& b)
 bool IsSameMapping(const FieldParameters& a, const FieldParameters& b)
 {
   return std::equal(a.IndexToField, a.IndexToField + 12, b.IndexToField) &&
-    HasSameDimensions(a, b) && a.Extrapolate == b.Extrapolate;
+    HasSameDimensions(a, b) && a.Extrapolate == b.Extrapolate &&
+    std::equal(a.Fading, a.Fading + 3, b.Fading);
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include "ClosestFace.h"
 #include "Error.h"
 #include "FiveTetrahedra.h"
+#include "OutsideVoxels.h" // for GetFadedWeight
 #include "ParallelFor.h"
 
 #include <glm/common.hpp>
@@ -29,12 +30,6 @@ constexpr std::int64_t MostStretchable = 1 << 13;
 constexpr double StretchLimit = 2.0; // output voxels
 // Neighbours whose weights differ by more follow the boundary, and stay.
 constexpr double LargestStep = 0.5;
-
-double Fade(double distance, double fadeDistance)
-{
-  const double s = distance / fadeDistance;
-  return s < 1.0 ? (1.0 - s) * (1.0 - s) * (1.0 + 2.0 * s) : 0.0; // 1 - 3 s^2 + 2 s^3
-}
 
 glm::dvec3 GetPoint(const std::vector<glm::dvec3>& points, std::int32_t node)
 {
@@ -111,7 +106,7 @@ void FadedLinks::LinkRows(const Extent& voxels, const glm::dvec3& spacing,
       const ClosestFace::Result closest = search.Find(spacing * index, nearby);
       nearby = closest.Face;
       const double distance = std::sqrt(closest.SquaredDistance);
-      const double weight = Fade(distance, this->FadeDistance);
+      const double weight = GetFadedWeight(distance / this->FadeDistance);
       if (weight > 0.0)
       {
         *link = MakeLink(still + 1 + closest.Face, weight * closest.Weights);

@@ -78,6 +78,8 @@ FieldParameters MakeFieldParameters(const DisplacementField& field, const VoxelG
   }
   std::copy_n(field.Dimensions.begin(), 3, parameters.Dimensions);
   parameters.Extrapolate = field.Extrapolate;
+  std::transform(field.Fading.begin(), field.Fading.end(), parameters.Fading,
+    [](double step) { return static_cast<float>(step); });
   SetSameGrid(parameters, extent);
   return parameters;
 }

@@ -4,6 +4,7 @@
 
 #include "DisplacementField.h"
 #include "Extent.h"
+#include "OutsideVoxels.h" // for GetFadedWeight
 #include "VoxelGrid.h"
 
 #include <glm/common.hpp>
@@ -11,7 +12,9 @@
 #include <glm/matrix.hpp>
 #include <glm/vec3.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 namespace deformvolume
@@ -154,6 +157,22 @@ inline glm::dvec3 GetVector(const DisplacementField& field, std::int64_t point)
 {
   const std::array<float, 3> displacement = GetDisplacement(field, point);
   return glm::dvec3(displacement[0], displacement[1], displacement[2]);
+}
+
+/// What is left of the displacement of the border at a position outside a field, in indices of its
+/// points. tolerance: how far outside still counts as inside.
+inline double GetWeightBeyond(
+  const DisplacementField& field, const glm::dvec3& position, double tolerance)
+{
+  double square = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const auto i = static_cast<std::size_t>(axis);
+    const double beyond = std::max(-position[axis], position[axis] - (field.Dimensions[i] - 1));
+    const double distance = std::max(beyond - tolerance, 0.0) * field.Fading[i];
+    square += distance * distance;
+  }
+  return GetFadedWeight(std::sqrt(square));
 }
 
 /// The trilinear vector at a position within a field, in indices of its points. getVector returns

@@ -22,7 +22,7 @@ ProgramText GetFormText(MappingForm mapping)
     case MappingForm::FieldInPlace:
       return ProgramText("#define MAPPING 3\n") + MultiplyAdd_cl + DeformationMapping_cl;
     default:
-      return ProgramText("#define MAPPING 2\n") + MultiplyAdd_cl + FieldPoints_cl +
+      return ProgramText("#define MAPPING 2\n") + MultiplyAdd_cl + FieldPoints_cl + FieldFading_cl +
         DeformationMapping_cl;
   }
 }

@@ -5,14 +5,22 @@
 namespace deformvolume
 {
 
-/// What becomes of the voxels outside a deformation mesh.
+/// What is left of the displacement of the boundary outside a mesh or a field. distance: 1 is where
+/// nothing is left.
+inline double GetFadedWeight(double distance)
+{
+  return distance < 1.0 ? 1.0 - distance * distance * (3.0 - 2.0 * distance) : 0.0;
+}
+
+/// What becomes of the voxels outside a deformation mesh or field.
 struct OutsideVoxels
 {
   enum class Modes
   {
-    Discard,     // they have no place after the deformation
-    Extrapolate, // they follow the tetrahedron of the nearest voxel inside
-    Keep         // they stay where they are, but for those near the mesh
+    Discard, // they have no place after the deformation
+    // They follow the tetrahedron of the nearest voxel inside, or the nearest point of the field.
+    Extrapolate,
+    Keep // they stay where they are, but for those near the mesh or the field
   };
 
   OutsideVoxels(Modes mode, double fadeDistance = 0.0)
@@ -34,8 +42,8 @@ struct OutsideVoxels
   }
 
   Modes Mode;
-  /// Of Keep: how far from the mesh the displacement of its boundary fades to zero, in world units;
-  /// 0: no voxel outside moves.
+  /// Of Keep: how far from the mesh or the field the displacement of its boundary fades to zero, in
+  /// world units; 0: no voxel outside moves.
   double FadeDistance;
 };
 

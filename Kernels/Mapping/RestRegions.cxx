@@ -182,6 +182,7 @@ RestRegions::RestRegions(const VoxelGrid& voxelGrid, const DisplacementField& fi
         const Extent voxels = this->GetVoxels(place);
         std::int64_t low[3];
         std::int64_t high[3];
+        bool reachesOut = false;
         for (int axis = 0; axis < 3; ++axis)
         {
           const double* row = &field.IndexToField[4 * axis];
@@ -196,10 +197,15 @@ RestRegions::RestRegions(const VoxelGrid& voxelGrid, const DisplacementField& fi
           // cell off.
           constexpr double margin = 0.25;
           const double end = field.Dimensions[axis] - 1;
+          reachesOut = reachesOut || from < 0.0 || to > end;
           low[axis] = static_cast<std::int64_t>(glm::clamp(std::floor(from - margin), 0.0, end));
           high[axis] = static_cast<std::int64_t>(glm::clamp(std::ceil(to + margin), 0.0, end));
         }
         IndexBounds displacement;
+        if (reachesOut && IsFading(field))
+        {
+          displacement.Add(glm::dvec3(0.0));
+        }
         for (std::int64_t z = low[2]; z <= high[2]; ++z)
         {
           for (std::int64_t y = low[1]; y <= high[1]; ++y)

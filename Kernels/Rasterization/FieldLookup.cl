@@ -6,8 +6,8 @@
 // to the point of the volume at rest that is seen there. In local memory rest coordinates and bits of
 // covered voxels, as in MeshRasterization.cl.
 //
-// A work-group takes an output tile. This text comes after TetrahedronBinning.cl and RestSampling.cl,
-// and the host puts nothing more in front of it than of those.
+// A work-group takes an output tile. This text comes after TetrahedronBinning.cl, RestSampling.cl and
+// FieldFading.cl, and the host puts nothing more in front of it than of those.
 
 // What a row of a tile has in common: positions in the field of the tile's first voxel on x, their
 // steps from voxel to voxel, and what takes a position in the output to a rest coordinate.
@@ -99,6 +99,7 @@ static int LookUpRest(__global const float* vectors, const LookupRow* row, const
   __local int* rest, const LookupParameters* f, const RasterParameters* p)
 {
   REAL position[3];
+  float beyond[3];
   int inside = 1;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -107,13 +108,19 @@ static int LookUpRest(__global const float* vectors, const LookupRow* row, const
     inside &= here >= -(REAL)DEFORMVOLUME_LOOKUP_TOLERANCE &&
       here <= last + (REAL)DEFORMVOLUME_LOOKUP_TOLERANCE;
     position[axis] = clamp(here, (REAL)0, last);
+    const REAL outside = fmax(fabs(here - position[axis]) - (REAL)DEFORMVOLUME_LOOKUP_TOLERANCE, (REAL)0);
+    beyond[axis] = (float)outside * f->Fading[axis];
   }
   if (!inside && !f->Extrapolate)
   {
     return 0;
   }
-  REAL vector[3];
-  InterpolateField(vectors, position, vector, f);
+  const float weight = inside ? 1.0f : WeightBeyond((float3)(beyond[0], beyond[1], beyond[2]));
+  REAL vector[3] = { 0, 0, 0 };
+  if (weight > 0)
+  {
+    InterpolateField(vectors, position, vector, f);
+  }
   if (isnan(vector[0]))
   {
     // Rounding may have given an undefined point a weight.
@@ -129,7 +136,7 @@ static int LookUpRest(__global const float* vectors, const LookupRow* row, const
   REAL at[3];
   for (int axis = 0; axis < 3; ++axis)
   {
-    at[axis] = (REAL)(voxel[axis] + (axis == 0 ? x : 0)) + vector[axis];
+    at[axis] = MULTIPLY_ADD_REAL(vector[axis], (REAL)weight, (REAL)(voxel[axis] + (axis == 0 ? x : 0)));
   }
   int found[3];
   for (int axis = 0; axis < 3; ++axis)

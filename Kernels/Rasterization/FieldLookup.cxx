@@ -24,6 +24,8 @@ void MeshRasterizer::SetField(const DisplacementField& inverse)
   }
   std::copy_n(inverse.Dimensions.begin(), 3, this->Field.Dimensions);
   this->Field.Extrapolate = inverse.Extrapolate;
+  std::transform(inverse.Fading.begin(), inverse.Fading.end(), this->Field.Fading,
+    [](double step) { return static_cast<float>(step); });
   std::uint64_t bytes = 3 * sizeof(float);
   for (const int size : inverse.Dimensions)
   {

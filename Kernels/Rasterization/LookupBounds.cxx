@@ -70,6 +70,7 @@ public:
         }
       }
     }
+    bool reachesOut = false;
     IndexBounds box;
     for (int corner = 0; corner < 8; ++corner)
     {
@@ -82,8 +83,13 @@ public:
         const double reach =
           isBorder ? (this->Field.Extrapolate ? Infinity : DEFORMVOLUME_LOOKUP_TOLERANCE) : 0.0;
         point[axis] = place + (upper ? reach : -reach);
+        reachesOut = reachesOut || isBorder;
       }
       box.Add(this->FromField * (point - this->Offset));
+    }
+    if (reachesOut && IsFading(this->Field))
+    {
+      vectors.Add(glm::dvec3(0.0));
     }
     constexpr double rounding = 1e-6;
     const IndexBounds volume = this->Transform.ToOutput(this->Volume);
@@ -103,7 +109,8 @@ public:
     {
       return false;
     }
-    glm::dvec3 vector = this->Interpolate(position);
+    const double weight = GetWeightBeyond(this->Field, position, DEFORMVOLUME_LOOKUP_TOLERANCE);
+    glm::dvec3 vector = weight > 0.0 ? this->Interpolate(position) : glm::dvec3(0.0);
     if (!IsFinite(vector)) // as in the kernel
     {
       const glm::dvec3 nearest = glm::round(position);
@@ -111,7 +118,7 @@ public:
         glm::lessThanEqual(glm::abs(position - nearest), glm::dvec3(DEFORMVOLUME_LOOKUP_TOLERANCE));
       vector = this->Interpolate(glm::mix(position, nearest, isNear));
     }
-    const glm::dvec3 rest = this->Transform.ToIndex(voxel + vector);
+    const glm::dvec3 rest = this->Transform.ToIndex(voxel + weight * vector);
     return glm::all(glm::greaterThanEqual(rest, this->Volume.Min)) &&
       glm::all(glm::lessThanEqual(rest, this->Volume.Max));
   }

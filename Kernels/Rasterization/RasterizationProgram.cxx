@@ -44,7 +44,7 @@ cl::Program GetRasterizationProgram(OpenCLContext& context, const std::vector<Vo
       laneArrays + "\n#define TAP_ARRAYS(DO)" + tapArrays + "\n" + MultiplyAdd_cl +
       GetTileText(!processor) + PointInTetrahedron_cl + LaneVectors_cl + LaneSampling_cl +
       VoxelTaps_cl + RestSampling_cl +
-      (field ? ProgramText(FieldLookup_cl)
+      (field ? ProgramText(FieldFading_cl) + FieldLookup_cl
              : ProgramText(RestCoordinates_cl) + MeshRasterization_cl),
     KernelOptions);
 }

@@ -96,6 +96,11 @@ IncrementalUpdate::Box IncrementalUpdate::MakeBox(
     const double widening = excess * (double(greatest) - double(least)) + Margin;
     double low = std::min(least - widening, LargestMove);
     double high = std::max(greatest + widening, -LargestMove);
+    if (this->Points.IsFading())
+    {
+      low = std::min(low, -Margin);
+      high = std::max(high, Margin);
+    }
     if (!this->IsCut.empty() && this->IsCut[subBrick])
     {
       // One displacement and the difference of two others, at most (CutPositions.cl).

@@ -83,6 +83,7 @@ typedef struct
   int First[3]; // of the voxel grid, counted so
   int Dimensions[3];
   int Extrapolate; // whether voxels outside the field follow its border
+  float Fading[3]; // DisplacementField::Fading
   int SameGrid;    // whether voxels are points of the field, and all lie in it: the point of voxel
   int Offset[3];   // (i, j, k) is (i, j, k) + Offset
   int IsMapped;    // of vectors that are read where they lie: whether the matrix is to be applied

@@ -181,11 +181,6 @@ void TestMisuse()
   subject.Filter->OpenSplitsOn();
   refuse("OpenSplits");
   restore();
-  const auto field = MakeImage({ { 2, 9, 2, 9, 2, 9 } });
-  SetDisplacements(field, Shift(0.0, 0.0, 0.0));
-  subject.Filter->SetDeformationData(field);
-  refuse("displacement field");
-  restore();
   subject.Filter->SetDeformationData(MakeBox(glm::dvec3(105.2), glm::dvec3(111.7)));
   refuse("no voxel");
   restore();
@@ -572,11 +567,6 @@ void TestCut()
   VERIFY(errors->GetErrorMessage().find("FadeDistance is -2") != std::string::npos);
   errors->Clear();
   byMesh->SetFadeDistance(2.0);
-  byMesh->SetDeformationData(field);
-  renew();
-  byMesh->Update();
-  VERIFY(errors->GetErrorMessage().find("which needs a mesh") != std::string::npos);
-
   byMesh->SetDeformationData(nullptr);
   byMesh->SmoothCutOn();
   Kept subject(volume, mesh, 7.0);

@@ -1,0 +1,579 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// OutsideMode KEEP with displacement fields, forward and inverse: tissue beyond their grid stays
+// where it is, and the displacement of their border fades to zero within FadeDistance. What it has
+// to be is told by another field, which has the displacement of each voxel.
+#include "FilterTesting.h"
+
+#include "vtkCutVolume.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <vtkCellData.h>
+#include <vtkPlaneSource.h>
+#include <vtkRTAnalyticSource.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <algorithm>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+using namespace filterTesting;
+
+namespace
+{
+
+double Fade(double s)
+{
+  return s < 1.0 ? 1.0 - 3.0 * s * s + 2.0 * s * s * s : 0.0;
+}
+
+// The displacement of a field at a point in the world, in double precision.
+glm::dvec3 Displace(vtkImageData* field, double fadeDistance, const glm::dvec3& point)
+{
+  double index[3];
+  field->TransformPhysicalPointToContinuousIndex(&point.x, index);
+  const Extent extent = GetExtent(field);
+  int low[3];
+  double part[3];
+  double square = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double inside =
+      std::clamp(index[axis], double(extent[2 * axis]), double(extent[2 * axis + 1]));
+    const double beyond = (index[axis] - inside) * field->GetSpacing()[axis];
+    square += std::abs(index[axis] - inside) > 1e-3 ? beyond * beyond : 0.0;
+    low[axis] = std::min(static_cast<int>(std::floor(inside)), extent[2 * axis + 1] - 1);
+    part[axis] = inside - low[axis];
+  }
+  glm::dvec3 sum(0.0);
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    int place[3];
+    double weight = 1.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int upper = corner >> axis & 1;
+      place[axis] = low[axis] + upper;
+      weight *= upper ? part[axis] : 1.0 - part[axis];
+    }
+    glm::dvec3 vector;
+    field->GetPointData()->GetVectors()->GetTuple(field->ComputePointId(place), &vector.x);
+    sum += weight > 0.0 ? weight * vector : glm::dvec3(0.0);
+  }
+  const double distance = std::sqrt(square);
+  return distance > 0.0 ? (fadeDistance > 0.0 ? Fade(distance / fadeDistance) : 0.0) * sum : sum;
+}
+
+// The coordinates, by which one sees what lies where, and a rough array.
+vtkSmartPointer<vtkImageData> MakeTissue(vtkImageData* image)
+{
+  const char* const names[3] = { "x", "y", "z" };
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    AddScalars<double>(image, names[axis], [axis](const glm::dvec3& p) { return p[axis]; });
+    image->GetPointData()->SetActiveScalars(nullptr); // else they would be replaced
+  }
+  AddScalars<short>(image, "value",
+    [](const glm::dvec3& p)
+    { return 400.0 * std::sin(0.7 * p.x) + 300.0 * std::cos(0.9 * p.y + 0.2 * p.z); });
+  return image;
+}
+
+// A field with a bend that does not end at its border.
+void SetBend(vtkImageData* field, double size)
+{
+  SetDisplacements(field,
+    [size](const glm::dvec3& p)
+    {
+      return p +
+        size *
+        glm::dvec3(1.0 + 0.4 * std::sin(0.21 * p.y), -0.7 + 0.2 * std::cos(0.17 * p.z),
+          0.5 + 0.3 * std::sin(0.13 * p.x));
+    });
+}
+
+// The same displacements, one for each voxel of a grid.
+vtkSmartPointer<vtkImageData> MakeVoxelField(
+  vtkImageData* grid, vtkImageData* field, double fadeDistance)
+{
+  auto voxels = vtkSmartPointer<vtkImageData>::New();
+  voxels->CopyStructure(grid);
+  SetDisplacements(
+    voxels, [&](const glm::dvec3& p) { return p + Displace(field, fadeDistance, p); });
+  return voxels;
+}
+
+struct Kept : Deformed
+{
+  Kept(vtkDataObject* volume, vtkDataObject* field, double fadeDistance)
+    : Deformed(volume, field)
+  {
+    this->Filter->SetOutsideModeToKeep();
+    this->Filter->SetFadeDistance(fadeDistance);
+  }
+  /// Updates with a warning that holds some words, or with none.
+  vtkImageData* Expect(const std::string& words)
+  {
+    this->Observer->Clear();
+    this->Filter->Update();
+    const std::string warning = this->Observer->GetWarningMessage();
+    if (words.empty() ? !warning.empty() : warning.find(words) == std::string::npos)
+    {
+      ++GetNumberOfFailures();
+      std::cerr << "expected \"" << words << "\" in the warning \"" << warning << "\"\n";
+    }
+    VERIFY_EQUAL(this->TakeErrors(), 0);
+    return this->Filter->GetOutput();
+  }
+};
+
+// Where both cover a voxel they show places that lie within a length of each other.
+void VerifyAlike(vtkImageData* found, vtkImageData* expected, double tolerance)
+{
+  VERIFY_EQUAL(GetExtent(found), GetExtent(expected));
+  if (GetExtent(found) != GetExtent(expected))
+  {
+    return;
+  }
+  vtkIdType others = 0;
+  vtkIdType covered = 0;
+  double worst = 0.0;
+  for (vtkIdType id = 0; id < found->GetNumberOfPoints(); ++id)
+  {
+    const auto get = [id](vtkImageData* image, const char* name)
+    { return image->GetPointData()->GetArray(name)->GetComponent(id, 0); };
+    const bool isCovered = get(found, "vtkValidPointMask") != 0.0;
+    others += isCovered != (get(expected, "vtkValidPointMask") != 0.0);
+    if (isCovered)
+    {
+      ++covered;
+      for (const char* name : { "x", "y", "z" })
+      {
+        worst = std::max(worst, std::abs(get(found, name) - get(expected, name)));
+      }
+    }
+  }
+  VERIFY(covered > 5000);
+  // Those on the surface of the body, where positions are rounded.
+  VERIFY(others <= covered / 2000);
+  if (!(worst <= tolerance))
+  {
+    ++GetNumberOfFailures();
+    std::cerr << "places differ by " << worst << " instead of " << tolerance << '\n';
+  }
+}
+
+vtkSmartPointer<vtkImageData> MakeVolume(bool oblique)
+{
+  auto volume =
+    MakeImage({ { -2, 45, 3, 42, 0, 35 } }, glm::dvec3(0.9, 1.1, 1.4), glm::dvec3(5.0, -3.0, 2.0));
+  if (oblique)
+  {
+    SetObliqueDirection(volume);
+  }
+  return MakeTissue(volume);
+}
+
+// A coarse grid round the middle of a volume that ends well inside it.
+vtkSmartPointer<vtkImageData> MakeField(vtkImageData* volume, double size, bool oblique)
+{
+  auto field = MakeImage({ { 4, 9, -1, 4, 2, 6 } }, glm::dvec3(3.1, 3.3, 4.7));
+  double bounds[6];
+  volume->GetBounds(bounds);
+  if (oblique)
+  {
+    SetObliqueDirection(field);
+  }
+  double middle[3];
+  field->GetCenter(middle);
+  const double* origin = field->GetOrigin();
+  field->SetOrigin(origin[0] + 0.5 * (bounds[0] + bounds[1]) - middle[0],
+    origin[1] + 0.5 * (bounds[2] + bounds[3]) - middle[1],
+    origin[2] + 0.5 * (bounds[4] + bounds[5]) - middle[2]);
+  SetBend(field, size);
+  return field;
+}
+
+void TestMisuse()
+{
+  const auto volume = MakeVolume(false);
+  const auto field = MakeField(volume, 1.0, false);
+  Kept subject(volume, field, 6.0);
+  vtkNew<vtkImageData> expected;
+  expected->DeepCopy(subject.Expect(""));
+  for (const double distance :
+    { -1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity() })
+  {
+    for (const bool isInverse : { false, true })
+    {
+      subject.Filter->SetFieldIsInverse(isInverse);
+      subject.Filter->SetFadeDistance(distance);
+      subject.Filter->Update();
+      VERIFY_EQUAL(subject.TakeErrors(), 1);
+      VERIFY(subject.LastError.find("FadeDistance is ") != std::string::npos);
+      VERIFY_EQUAL(subject.Filter->GetOutput()->GetNumberOfPoints(), 0);
+    }
+  }
+  subject.Filter->FieldIsInverseOff();
+  subject.Filter->SetFadeDistance(6.0);
+  subject.Filter->SetResamplerToMeshRasterization();
+  subject.Filter->Update();
+  VERIFY_EQUAL(subject.TakeErrors(), 1);
+  VERIFY(subject.LastError.find("forward displacement fields") != std::string::npos);
+  subject.Filter->SetResamplerToAutomatic();
+  VERIFY(AreEqual(subject.Expect(""), expected));
+}
+
+// As by a field with the displacement of each voxel; all of the volume is there.
+void TestForward()
+{
+  for (const bool isOblique : { false, true })
+  {
+    const auto volume = MakeVolume(isOblique);
+    const auto field = MakeField(volume, 0.9, !isOblique);
+    for (const double distance : { 0.0, 4.0, 9.0, 1e5 })
+    {
+      Kept subject(volume, field, distance);
+      Deformed reference(volume, MakeVoxelField(volume, field, distance));
+      reference.Update();
+      // Positions are rounded to 1/512 voxel, and displacements are floats; where a step between
+      // voxels shrinks to a part, places differ by as many times that.
+      const double tolerance = 1.4 / 256.0 * (distance == 0.0 ? 8.0 : 3.0);
+      VerifyAlike(subject.Expect(""), reference.Filter->GetOutput(), tolerance);
+      VERIFY_EQUAL(subject.Filter->GetNumberOfInvertedTetrahedra(),
+        reference.Filter->GetNumberOfInvertedTetrahedra());
+      if (distance <= 4.0) // else the volume's border moves
+      {
+        VERIFY_EQUAL(subject.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
+      }
+    }
+  }
+}
+
+// Far from the field not a bit changes.
+void TestFar()
+{
+  const auto volume = MakeVolume(true);
+  const auto field = MakeField(volume, 0.9, true);
+  Kept subject(volume, field, 3.0);
+  vtkImageData* output = subject.Expect("");
+  VERIFY_EQUAL(GetExtent(output), GetExtent(volume));
+  vtkIdType far = 0;
+  for (vtkIdType id = 0; id < volume->GetNumberOfPoints(); ++id)
+  {
+    const glm::dvec3 p = GetPoint(volume, id);
+    double index[3];
+    field->TransformPhysicalPointToContinuousIndex(&p.x, index);
+    const Extent extent = GetExtent(field);
+    glm::dvec3 beyond;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      beyond[axis] = field->GetSpacing()[axis] *
+        (index[axis] -
+          std::clamp(index[axis], double(extent[2 * axis]), double(extent[2 * axis + 1])));
+    }
+    if (glm::length(beyond) > 8.0)
+    {
+      ++far;
+      for (const char* name : { "x", "value" })
+      {
+        VERIFY_EQUAL(output->GetPointData()->GetArray(name)->GetComponent(id, 0),
+          volume->GetPointData()->GetArray(name)->GetComponent(id, 0));
+      }
+    }
+  }
+  VERIFY(far > 5000);
+}
+
+// An inverse field, on the volume's grid and on that of a reference image.
+void TestInverse()
+{
+  for (const bool isOblique : { false, true })
+  {
+    const auto volume = MakeVolume(isOblique);
+    const auto field = MakeField(volume, 0.9, !isOblique);
+    const auto fixed =
+      MakeImage({ { 0, 30, 0, 30, 0, 30 } }, glm::dvec3(1.3), glm::dvec3(3.0, -5.0, 1.0));
+    for (const double distance : { 0.0, 5.0, 1e5 })
+    {
+      for (const bool hasReference : { false, true })
+      {
+        Kept subject(volume, field, distance);
+        subject.Filter->FieldIsInverseOn();
+        subject.Filter->SetOutputBoundsModeToVolumeBounds();
+        vtkImageData* grid = hasReference ? fixed : volume;
+        Deformed reference(volume, MakeVoxelField(grid, field, distance));
+        reference.Filter->FieldIsInverseOn();
+        reference.Filter->SetOutputBoundsModeToVolumeBounds();
+        if (hasReference)
+        {
+          for (auto* filter : { subject.Filter.Get(), reference.Filter.Get() })
+          {
+            filter->SetOutputBoundsModeToDeformedBounds();
+            filter->SetReferenceData(fixed);
+          }
+        }
+        reference.Update();
+        // Rest positions are rounded to 1/256 voxel.
+        VerifyAlike(subject.Expect(""), reference.Filter->GetOutput(), 1.4 / 256.0);
+        // The bounds hold what is covered, and are no wider.
+        if (!hasReference)
+        {
+          subject.Filter->SetOutputBoundsModeToDeformedBounds();
+          subject.Expect("");
+          Deformed whole(volume, nullptr);
+          vtkNew<vtkImageData> large;
+          large->CopyStructure(volume);
+          Extent extent = GetExtent(volume);
+          for (int i = 0; i < 6; ++i)
+          {
+            extent[i] += i % 2 == 0 ? -6 : 6;
+          }
+          large->SetExtent(extent.data());
+          whole.Filter->SetDeformationData(MakeVoxelField(large, field, distance));
+          whole.Filter->FieldIsInverseOn();
+          whole.Update();
+          VERIFY_EQUAL(
+            GetExtent(subject.Filter->GetOutput()), GetExtent(whole.Filter->GetOutput()));
+        }
+      }
+    }
+  }
+}
+
+// Some vectors move, masks change, another distance: as a new filter makes it.
+void TestIncremental()
+{
+  const auto volume = MakeVolume(false);
+  const auto field = MakeField(volume, 1.0, false);
+  vtkNew<vtkUnsignedCharArray> active;
+  active->SetName("ActiveTetrahedra");
+  active->SetNumberOfTuples(volume->GetNumberOfCells());
+  active->Fill(31);
+  volume->GetCellData()->AddArray(active);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-1.5, 1.5);
+  double distance = 7.0;
+  Kept subject(volume, field, distance);
+  subject.Filter->SetOutputBoundsModeToVolumeBounds();
+  subject.Filter->Update();
+  vtkIdType parts = 0;
+  for (int step = 0; step < 12; ++step)
+  {
+    vtkDataArray* vectors = field->GetPointData()->GetVectors();
+    const auto points = static_cast<unsigned int>(field->GetNumberOfPoints());
+    vectors->SetTuple3(
+      static_cast<vtkIdType>(random() % points), uniform(random), uniform(random), uniform(random));
+    vectors->Modified();
+    if (step % 4 == 1)
+    {
+      active->SetValue(
+        static_cast<vtkIdType>(random() % static_cast<unsigned int>(volume->GetNumberOfCells())),
+        static_cast<unsigned char>(random() % 31));
+      active->Modified();
+    }
+    if (step == 7)
+    {
+      distance = 5.0;
+      subject.Filter->SetFadeDistance(distance);
+    }
+    subject.Filter->Update();
+    VERIFY_EQUAL(subject.TakeErrors(), 0);
+    parts += GetReported(subject.Filter, "Bricks resampled") <
+      GetReported(subject.Filter, "Bricks of the volume");
+    Kept fresh(volume, field, distance);
+    fresh.Filter->SetOutputBoundsModeToVolumeBounds();
+    fresh.Filter->Update();
+    VERIFY_EQUAL(fresh.TakeErrors(), 0);
+    VERIFY(AreEqual(subject.Filter->GetOutput(), fresh.Filter->GetOutput()));
+  }
+  VERIFY(parts > 3);
+}
+
+// Pieces, and a source that reads only what they need, give what the whole has.
+void TestPieces()
+{
+  const auto volume = MakeVolume(false);
+  const auto field = MakeField(volume, 1.0, true);
+  for (const bool isInverse : { false, true })
+  {
+    Kept subject(volume, field, 6.0);
+    subject.Filter->SetFieldIsInverse(isInverse);
+    vtkNew<vtkImageData> whole;
+    whole->DeepCopy(subject.Expect(""));
+    Kept pieces(volume, field, 6.0);
+    pieces.Filter->SetFieldIsInverse(isInverse);
+    for (int piece = 0; piece < 4; ++piece)
+    {
+      pieces.Filter->UpdatePiece(piece, 4, 0);
+      vtkImageData* part = pieces.Filter->GetOutput();
+      VERIFY_EQUAL(pieces.TakeErrors(), 0);
+      VERIFY(
+        part->GetNumberOfPoints() > 0 && part->GetNumberOfPoints() < whole->GetNumberOfPoints());
+      for (vtkIdType id = 0; id < part->GetNumberOfPoints(); ++id)
+      {
+        const glm::dvec3 p = GetPoint(part, id);
+        const vtkIdType other = whole->FindPoint(p.x, p.y, p.z);
+        for (const char* name : { "x", "value", "vtkValidPointMask" })
+        {
+          VERIFY_EQUAL(part->GetPointData()->GetArray(name)->GetComponent(id, 0),
+            whole->GetPointData()->GetArray(name)->GetComponent(other, 0));
+        }
+      }
+    }
+  }
+}
+
+// A source that can make parts is asked for those voxels only that land in a piece, or may.
+void TestParts()
+{
+  vtkNew<vtkRTAnalyticSource> source;
+  source->SetWholeExtent(-20, 25, -15, 22, -11, 30);
+  const auto field = MakeImage({ { 0, 4, 0, 3, 0, 5 } }, glm::dvec3(3.3), glm::dvec3(-6.0));
+  SetBend(field, 2.0);
+  Kept subject(nullptr, field, 6.0);
+  subject.Filter->SetInputConnection(source->GetOutputPort());
+  vtkNew<vtkImageData> whole;
+  whole->DeepCopy(subject.Expect(""));
+  source->GetOutput()->ReleaseData();
+  Kept pieces(nullptr, field, 6.0);
+  pieces.Filter->SetInputConnection(source->GetOutputPort());
+  vtkIdType fewest = std::numeric_limits<vtkIdType>::max();
+  for (int piece = 0; piece < 12; ++piece)
+  {
+    source->Modified();
+    source->GetOutput()->ReleaseData();
+    pieces.Filter->UpdatePiece(piece, 12, 0);
+    VERIFY_EQUAL(pieces.TakeErrors(), 0);
+    fewest = std::min(fewest, source->GetOutput()->GetNumberOfPoints());
+    vtkImageData* part = pieces.Filter->GetOutput();
+    for (vtkIdType id = 0; id < part->GetNumberOfPoints(); ++id)
+    {
+      const glm::dvec3 p = GetPoint(part, id);
+      const vtkIdType other = whole->FindPoint(p.x, p.y, p.z);
+      for (const char* name : { "RTData", "vtkValidPointMask" })
+      {
+        VERIFY_EQUAL(part->GetPointData()->GetArray(name)->GetComponent(id, 0),
+          whole->GetPointData()->GetArray(name)->GetComponent(other, 0));
+      }
+    }
+  }
+  VERIFY(fewest < whole->GetNumberOfPoints() / 3);
+}
+
+// A cut through tissue that is kept.
+void TestCut()
+{
+  const auto volume = MakeVolume(false);
+  const auto field = MakeField(volume, 1.5, true);
+  const auto voxels = MakeVoxelField(volume, field, 7.0);
+  vtkNew<vtkPlaneSource> sheet;
+  sheet->SetOrigin(16.3, -9.0, -5.1);
+  sheet->SetPoint1(46.8, 59.0, -7.2);
+  sheet->SetPoint2(20.7, -4.0, 75.3);
+  const auto count = [&](vtkDataObject* deformation, bool keep)
+  {
+    vtkNew<vtkCutVolume> filter;
+    filter->SetInputData(volume);
+    filter->SetSheetConnection(sheet->GetOutputPort());
+    filter->SetDeformationData(deformation);
+    if (keep)
+    {
+      filter->SetOutsideModeToKeep();
+      filter->SetFadeDistance(7.0);
+    }
+    filter->Update();
+    auto active = vtkSmartPointer<vtkUnsignedCharArray>::New();
+    active->DeepCopy(filter->GetOutput()->GetCellData()->GetArray("ActiveTetrahedra"));
+    return active;
+  };
+  const auto found = count(field, true);
+  const auto expected = count(voxels, false);
+  vtkIdType cut = 0;
+  vtkIdType others = 0;
+  for (vtkIdType cell = 0; cell < found->GetNumberOfValues(); ++cell)
+  {
+    cut += found->GetValue(cell) != 31;
+    others += found->GetValue(cell) != expected->GetValue(cell);
+  }
+  VERIFY(cut > 1000);
+  VERIFY(others * 500 < cut); // vertices that are next to the sheet, as displacements are floats
+}
+
+// Tissue that stays does not ask for an undefined displacement of the border.
+void TestUndefined()
+{
+  const auto volume = MakeVolume(false);
+  const auto field = MakeField(volume, 1.0, false);
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  ghosts->SetNumberOfTuples(field->GetNumberOfPoints());
+  ghosts->Fill(0);
+  ghosts->SetValue(0, vtkDataSetAttributes::HIDDENPOINT);
+  field->GetPointData()->AddArray(ghosts);
+  for (const bool isInverse : { false, true })
+  {
+    Kept subject(volume, field, 4.0);
+    subject.Filter->SetFieldIsInverse(isInverse);
+    subject.Filter->SetOutputBoundsModeToVolumeBounds();
+    vtkImageData* output = subject.Expect("");
+    VERIFY(subject.IsCovered(0));
+    int last[3] = { 45, 42, 35 };
+    VERIFY(subject.IsCovered(output->ComputePointId(last)));
+    double corner[3];
+    field->GetPoint(0, corner);
+    VERIFY(!subject.IsCovered(output->FindPoint(corner)));
+    VERIFY(subject.Filter->GetNumberOfCoveredVoxels() > volume->GetNumberOfPoints() * 9 / 10);
+  }
+}
+
+// What folds for certain is said once, until it is something else.
+void TestWarnings()
+{
+  const auto volume = MakeVolume(false);
+  const auto field = MakeField(volume, 1.0, false);
+  const auto move = [&](double distance) { SetDisplacements(field, Shift(distance, 0.0, 0.0)); };
+  for (const bool isInverse : { false, true })
+  {
+    move(3.0);
+    Kept subject(volume, field, 4.6);
+    subject.Filter->SetFieldIsInverse(isInverse);
+    subject.Filter->SetOutputBoundsModeToVolumeBounds();
+    subject.Expect("");
+    move(3.25);
+    subject.Expect("moves by up to 3.25");
+    subject.Filter->SetPadding(1);
+    subject.Expect("");
+    subject.Filter->SetFadeDistance(5.0);
+    subject.Expect("");
+    subject.Filter->SetFadeDistance(0.0);
+    subject.Expect("as FadeDistance is 0");
+    move(1.5);
+    subject.Expect("");
+  }
+  // Nothing is outside.
+  const auto large = MakeImage({ { 0, 1, 0, 1, 0, 1 } }, glm::dvec3(500.0), glm::dvec3(-200.0));
+  SetDisplacements(large, Shift(30.0, 0.0, 0.0));
+  Kept covered(volume, large, 1.0);
+  covered.Expect("");
+}
+
+} // namespace
+
+int TestDeformKeepField(int, char*[])
+{
+  TestMisuse();
+  TestForward();
+  TestFar();
+  TestInverse();
+  TestIncremental();
+  TestPieces();
+  TestParts();
+  TestCut();
+  TestUndefined();
+  TestWarnings();
+  return GetExitCode();
+}
