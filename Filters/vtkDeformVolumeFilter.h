@@ -15,8 +15,8 @@
  * direction matrix; the source must announce in its information what it gives (an origin or a
  * spacing that is not announced is read from the data). All numeric point arrays go through, each
  * in its own type, with any number of components: interpolated linearly (integers rounded to
- * nearest), or, where the array is named with AddCategoricalArray(), taken from the nearest vertex,
- * so that label ids of 64 bits survive. Attributes keep their role, field data passes. Points that
+ * nearest), or, where the array is named with AddCategoricalArray(), taken from one vertex, so that
+ * label ids of 64 bits survive. Attributes keep their role, field data passes. Points that
  * vtkGhostType marks as hidden or duplicate are no source. A cell array "ActiveTetrahedra"
  * (unsigned char, one component; bit i stands for tetrahedron i of the cell) switches tetrahedra of
  * the sampling mesh off; hidden cells are off too. A point array "BoundaryDistance" (numeric, one
@@ -333,7 +333,10 @@ public:
 
   ///@{
   /**
-   * Names of point arrays that hold labels: they are taken from the nearest vertex and never mixed.
+   * Names of point arrays that hold labels: they are taken from one voxel and never mixed. With
+   * MESH_RASTERIZATION that is the nearest voxel. With EXACT it is the vertex that weighs most in
+   * the sampling tetrahedron that holds the output voxel: mostly the nearest voxel, and always one
+   * of its cell.
    */
   void AddCategoricalArray(const char* name);
   void RemoveCategoricalArray(const char* name);

@@ -4,6 +4,7 @@
 #include "AbortCheck.h"
 #include "FieldAtRest.h"
 #include "FieldFolds.h"
+#include "IndexBounds.h"
 #include "InputUpdate.h"
 #include "MaskArray.h"
 #include "OutputExtent.h"
@@ -22,11 +23,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <sstream>
 #include <thread>
 
 using deformvolume::DeformationSource;
 using deformvolume::Error;
 using deformvolume::ImageGeometry;
+using deformvolume::IndexBounds;
 
 //------------------------------------------------------------------------------
 void vtkDeformVolumeFilter::vtkInternals::SelectState()
@@ -176,7 +180,16 @@ void vtkDeformVolumeFilter::vtkInternals::ReadReference(vtkInformation* referenc
       deformvolume::DescribeExtent(geometry.PointExtent) + ". Connect a vtkImageData with voxels.");
   }
   deformvolume::CheckTransform(geometry, "the reference image");
-  deformvolume::GetPadded(geometry.PointExtent, 0); // checks its size
+  double voxels = 1.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    voxels *= static_cast<double>(deformvolume::GetSize(geometry.PointExtent, axis));
+  }
+  if (voxels > deformvolume::MostOutputVoxels)
+  {
+    throw Error("The reference image has more than 2^48 voxels: its extent is " +
+      deformvolume::DescribeExtent(geometry.PointExtent) + ". Connect a smaller one.");
+  }
   this->Reference = geometry;
   if (this->Reference != last)
   {
@@ -184,6 +197,64 @@ void vtkDeformVolumeFilter::vtkInternals::ReadReference(vtkInformation* referenc
     for (auto& state : this->States)
     {
       state.second.LastShare = {};
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::CheckReferenceOfRanks(
+  const deformvolume::Ranks& ranks) const
+{
+  if (!ranks.AreMany() || !ranks.IsAny(this->Reference.has_value()))
+  {
+    return;
+  }
+  const ImageGeometry grid = this->Reference.value_or(ImageGeometry());
+  std::vector<double> numbers(grid.PointExtent.begin(), grid.PointExtent.end());
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    numbers.insert(numbers.end(), { grid.Origin[axis], grid.Spacing[axis] });
+    for (int row = 0; row < 3; ++row)
+    {
+      numbers.push_back(grid.Direction[axis][row]);
+    }
+  }
+  bool areEqual = true;
+  for (const double number : numbers)
+  {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &number, sizeof(bits));
+    areEqual = ranks.AreEqual(bits) && areEqual;
+  }
+  if (!areEqual)
+  {
+    throw Error("The reference image on input port 3 has different grids on different ranks. "
+                "Connect a source that announces the same grid on all.");
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::CheckReach(const deformvolume::VoxelGrid& voxelGrid) const
+{
+  if (!this->Reference)
+  {
+    return;
+  }
+  const IndexBounds bounds =
+    deformvolume::GetOutputTransform(voxelGrid).ToOutput(deformvolume::GetBox(voxelGrid));
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double farthest = std::max(std::abs(bounds.Min[axis]), std::abs(bounds.Max[axis]));
+    if (!(farthest <= deformvolume::MostOutputIndex))
+    {
+      std::ostringstream text;
+      text << "The volume at rest reaches to the index " << farthest
+           << " in the grid of the reference image on axis "
+           << "xyz"[axis] << ", beyond 2^21. The reference image has "
+           << deformvolume::DescribeTransform(*this->Reference)
+           << ". Connect one that lies where the volume does, in the same world units, or whose "
+              "spacing is greater.";
+      throw Error(text.str());
     }
   }
 }
@@ -257,6 +328,7 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::MakeSource(
   }
   source.Volume = volume;
   source.ToOutput = deformvolume::GetOutputMap(volume, this->GetOutputGeometry(volume));
+  this->CheckReach({ volume.PointExtent, source.ToOutput, {} });
   return source;
 }
 
@@ -355,7 +427,9 @@ void vtkDeformVolumeFilter::vtkInternals::TakeReport(
       this->Self, << report.NumberOfOverstretchedCells
                   << " cells of the volume have a tetrahedron that is stretched over more than "
                      "4,000 output voxels; these tetrahedra are skipped. Check the deformation, "
-                     "or set a greater output spacing.");
+                     "or "
+                  << (this->Reference ? "connect a reference image of greater spacing."
+                                      : "set a greater output spacing."));
   }
 }
 
@@ -509,6 +583,30 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfFadingField(
     vtkWarningWithObjectMacro(this->Self, << fault);
   }
   this->State->FaultOfFading = fault;
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::WarnOfNothing() const
+{
+  std::string text;
+  if (this->Self->GetNumberOfInputConnections(1) > 0 && this->State->Deformation.IsInverseField())
+  {
+    text = "The inverse displacement field leads from no voxel of the output to the volume: all of "
+           "the output is background. Check that the field holds points of ";
+    text += this->Reference ? "the reference image" : "the output";
+    text += ", that its vectors lead from there to the volume, and that all are in the same world "
+            "coordinates.";
+  }
+  else
+  {
+    text = "The deformed volume covers no voxel of the output: all of it is background. Check ";
+    text += this->Reference
+      ? "that the reference image lies where the deformed volume does, in the same world "
+        "coordinates,"
+      : "the output bounds,";
+    text += " and that the deformation mesh holds neighbouring voxels of the volume.";
+  }
+  vtkWarningWithObjectMacro(this->Self, << text);
 }
 
 //------------------------------------------------------------------------------

@@ -56,8 +56,15 @@ public:
   /// Reads what the source of the reference image announces; null: there is none. Throws an Error
   /// where it has no grid.
   void ReadReference(vtkInformation* reference);
+  /// Throws an Error where the ranks have different ones. Collective.
+  void CheckReferenceOfRanks(const deformvolume::Ranks& ranks) const;
+  /// Throws an Error where a volume has indices in the grid of the reference image that the kernels
+  /// cannot have.
+  void CheckReach(const deformvolume::VoxelGrid& voxelGrid) const;
   /// Warns where settings are without effect beside the reference image.
   void WarnOfReference();
+  /// Warns that all of the output is background.
+  void WarnOfNothing() const;
   /// Whether the output ends where the deformed volume does.
   bool EndsWithVolume() const
   {

@@ -100,8 +100,11 @@ vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
   else
   {
     const int outcome = this->Internals->Execution.Run(this,
-      "The memory of this machine does not suffice for the deformed volume. Use a smaller volume, "
-      "a coarser output spacing or narrower output bounds.",
+      this->Internals->Reference
+        ? "The memory of this machine does not suffice for the deformed volume. Use a smaller "
+          "volume, or a reference image of fewer voxels."
+        : "The memory of this machine does not suffice for the deformed volume. Use a smaller "
+          "volume, a coarser output spacing or narrower output bounds.",
       process);
     result = done ? result : outcome;
   }
@@ -182,6 +185,7 @@ int vtkDeformVolumeFilter::RequestInformation(
                     "vtkImageData; from a composite dataset, extract one block.");
       }
     });
+  this->Internals->CheckReferenceOfRanks(ranks);
   volume = this->Internals->GetVolumeGeometry(ranks, volumeInfo, outInfo);
   ranks.Attempt(
     [&]
@@ -451,13 +455,7 @@ int vtkDeformVolumeFilter::RequestData(
   this->Internals->FactorOfOutput = this->SamplingFactor;
   if (report.NumberOfCoveredVoxels == 0 && whole == request.OutputExtent)
   {
-    vtkWarningMacro("The deformed volume covers no voxel of the output: all of it is background. "
-                    "Check "
-      << (this->Internals->Reference
-             ? "that the reference image lies where the deformed volume does, in the same world "
-               "coordinates,"
-             : "the output bounds,")
-      << " and that the deformation mesh holds neighbouring voxels of the volume.");
+    this->Internals->WarnOfNothing();
   }
   SetTimeStep(image, outInfo, { vtkDataObject::GetData(input[1]), volume });
   return 1;

@@ -139,9 +139,9 @@ void Deformation::ReadMesh(const DeformationSource& source)
 void Deformation::ThrowTooFar()
 {
   throw Error(
-    "The deformation moves the volume by more than 16,383 output voxels. Check "
-    "the scale of the displacements, the output spacing, and that displacements and volume are in "
-    "the same world units.");
+    "The deformation moves the volume by more than 16,383 output voxels. Check the scale of the "
+    "displacements, the spacing of the output or of its reference image, and that displacements "
+    "and volume are in the same world units.");
 }
 
 void Deformation::CheckFaults(const MeshParts& shape, const DeformationSource& source) const

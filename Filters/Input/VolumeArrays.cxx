@@ -137,6 +137,7 @@ std::vector<SourceArray> SelectArrays(
   int roles[vtkDataSetAttributes::NUM_ATTRIBUTES];
   pointData->GetAttributeIndices(roles);
   std::vector<SourceArray> arrays;
+  std::set<std::string> names;
   for (int i = 0; i < pointData->GetNumberOfArrays(); ++i)
   {
     vtkAbstractArray* abstract = pointData->GetAbstractArray(i);
@@ -162,6 +163,11 @@ std::vector<SourceArray> SelectArrays(
     if (array->GetNumberOfComponents() < 1)
     {
       continue;
+    }
+    if (array->GetName() && !names.insert(array->GetName()).second)
+    {
+      throw Error("The volume has several point arrays with the name " + GetLabel(array, i) +
+        ", and point data hold one array of each name. Rename one of them.");
     }
     const bool isId =
       roles[vtkDataSetAttributes::GLOBALIDS] == i || roles[vtkDataSetAttributes::PEDIGREEIDS] == i;

@@ -127,8 +127,7 @@ Extent GetPadded(const Extent& extent, int padding)
     padded[2 * axis + 1] = extent[2 * axis + 1] + padding;
     voxels *= static_cast<double>(GetSize(padded, axis));
   }
-  // Far below 2^63, so that no count of bytes can overflow.
-  if (voxels > 281474976710656.0)
+  if (voxels > MostOutputVoxels)
   {
     throw Error(
       "The output would have more than 2^48 voxels: " + std::to_string(GetSize(padded, 0)) + " x " +

@@ -8,6 +8,9 @@
 namespace deformvolume
 {
 
+/// Far below 2^63, so that no count of bytes can overflow.
+inline constexpr double MostOutputVoxels = 281474976710656.0; // 2^48
+
 /// The output voxels inside bounds, whose ends are rounded to 1/256 voxel as the kernels round
 /// positions. Throws an Error where there are none or more than an extent can count.
 Extent GetExtentInside(const IndexBounds& bounds);

@@ -18,9 +18,6 @@ namespace deformvolume
 namespace
 {
 
-/// Of the output: 1/256 of it then fits into 32 bits, with differences.
-constexpr double MostIndex = 1 << 21;
-
 template <typename Entry>
 cl::Buffer MakeBuffer(const OpenCLContext& context, std::vector<Entry> entries)
 {
@@ -145,7 +142,8 @@ cl::Buffer DeviceVolume::MakeRestPositions() const
   const IndexBounds bounds = transform.ToOutput(GetBox(this->Shape));
   for (int axis = 0; axis < 3; ++axis)
   {
-    if (!(std::abs(bounds.Min[axis]) <= MostIndex && std::abs(bounds.Max[axis]) <= MostIndex))
+    if (!(std::abs(bounds.Min[axis]) <= MostOutputIndex &&
+          std::abs(bounds.Max[axis]) <= MostOutputIndex))
     {
       throw Error("The output would have indices beyond 2^21. Use a coarser output spacing, or a "
                   "volume whose extent starts nearer to 0.");

@@ -47,6 +47,10 @@ struct IndexBounds
   }
 };
 
+/// Of a vertex at rest, on each axis of the output: 1/256 of it then fits into 32 bits, with
+/// differences.
+inline constexpr double MostOutputIndex = 1 << 21;
+
 /// The volume's box, in its continuous indices.
 inline IndexBounds GetBox(const VoxelGrid& voxelGrid)
 {

@@ -214,6 +214,21 @@ inline WorldMap Wind(vtkImageData* volume)
   };
 }
 
+/// A grid with axes and spacings of its own round the middle of a volume, which it cuts off at some
+/// sides. Mirrored: of the other handedness.
+inline vtkSmartPointer<vtkImageData> MakeReference(vtkImageData* volume, bool isMirrored)
+{
+  const auto reference =
+    MakeImage({ { 4, 61, -11, 29, -8, 33 } }, glm::dvec3(1.3, 0.9, isMirrored ? 1.05 : 1.1));
+  const double z = isMirrored ? -1.0 : 1.0;
+  const double direction[9] = { 0.96, 0.168, 0.224 * z, -0.28, 0.576, 0.768 * z, 0.0, -0.8,
+    0.6 * z };
+  reference->SetDirectionMatrix(direction);
+  const glm::dvec3 origin = GetCenter(volume) - GetCenter(reference) + glm::dvec3(0.3, -0.2, 0.1);
+  reference->SetOrigin(origin.x, origin.y, origin.z);
+  return reference;
+}
+
 inline std::vector<Case> MakeCases()
 {
   const Extent extent{ { -9, 62, 3, 29, -15, 18 } };
@@ -396,6 +411,59 @@ inline std::vector<Case> MakeCases()
     add("Cubic, field", few,
       deform(MakeImage(extent, glm::dvec3(1.0), glm::dvec3(3.0, -2.0, 1.0)), Bend(few)))
       .Set = setCubic;
+  }
+  {
+    // On the grid of a reference image. All divisions are oblique to the volume.
+    using Filter = vtkDeformVolumeFilter;
+    const auto addOn = [&](
+                         const std::string& name, bool isMirrored,
+                         const vtkSmartPointer<vtkImageData>& from,
+                         const vtkSmartPointer<vtkDataSet>& deformation,
+                         const std::function<void(Filter*)>& set = [](Filter*) {})
+    {
+      const auto reference = MakeReference(from, isMirrored);
+      add(name + (isMirrored ? ", mirrored reference" : ", turned reference"), from, deformation)
+        .Set = [=](Filter* filter)
+      {
+        set(filter);
+        filter->SetReferenceData(reference);
+        filter->SetBackgroundValue(7.0);
+        filter->AddCategoricalArray("label");
+      };
+    };
+    const auto runs = deform(MakeMesh(volume, 4), Bend(volume));
+    const auto smaller = deform(MakeMesh(volume, 5, -6.3), Bend(volume));
+    const auto field = deform(
+      MakeImage({ { 0, 9, 0, 6, 0, 5 } }, glm::dvec3(7.3, 5.9, 6.7), glm::dvec3(-4.1, 2.2, -15.3)),
+      Bend(volume));
+    for (const bool isMirrored : { false, true })
+    {
+      addOn("Runs", isMirrored, volume, runs);
+      addOn("Links and masks", isMirrored, masked, deform(MakeMesh(masked, 24), Bend(masked)));
+      addOn("Cubic", isMirrored, volume, smaller,
+        [](Filter* filter) { filter->SetInterpolationToCubicInterpolation(); });
+      addOn("Inverse field", isMirrored, volume, field,
+        [](Filter* filter) { filter->FieldIsInverseOn(); });
+    }
+    addOn("At rest", true, volume, nullptr);
+    addOn("Field", true, volume, field);
+    addOn("Nearest", false, volume, runs,
+      [](Filter* filter) { filter->SetInterpolationToNearestInterpolation(); });
+    addOn("Extrapolated mesh", false, volume, smaller,
+      [](Filter* filter) { filter->SetOutsideModeToExtrapolate(); });
+    addOn("Kept tissue", true, volume, smaller,
+      [](Filter* filter)
+      {
+        filter->SetOutsideModeToKeep();
+        filter->SetFadeDistance(9.0);
+      });
+    addOn("Cubic by mesh rasterisation", true, volume, runs,
+      [](Filter* filter)
+      {
+        filter->SetResamplerToMeshRasterization();
+        filter->SetInterpolationToCubicInterpolation();
+      });
+    addOn("Folded", true, volume, deform(MakeMesh(volume, 12), Fold(volume, 0.75)));
   }
   return cases;
 }

@@ -234,7 +234,7 @@ void TestAgainstHand()
       for (int axis = 0; axis < 3; ++axis)
       {
         VERIFY_EQUAL(output->GetSpacing()[axis], expected->GetSpacing()[axis]);
-        VERIFY_EQUAL(output->GetOrigin()[axis], from.Volume->GetOrigin()[axis]);
+        VERIFY_EQUAL(output->GetOrigin()[axis], expected->GetOrigin()[axis]);
       }
       // Where a quarter of the cells have a mask, hardly a coarse one is left.
       const bool hasMasks = from.Name.find("asks") != std::string::npos;

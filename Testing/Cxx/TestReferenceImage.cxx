@@ -4,20 +4,28 @@
 #include "FilterTesting.h"
 
 #include <vtkDataObject.h>
+#include <vtkDoubleArray.h>
 #include <vtkImageAlgorithm.h>
+#include <vtkImageInterpolator.h>
 #include <vtkInformation.h>
 #include <vtkInformationDoubleVectorKey.h>
 #include <vtkInformationVector.h>
 #include <vtkObjectFactory.h>
 #include <vtkPolyData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkTypeInt64Array.h>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <map>
+#include <utility>
+#include <vector>
 
 using namespace filterTesting;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -33,6 +41,8 @@ public:
   vtkTypeMacro(CountingSource, vtkImageAlgorithm);
 
   vtkSmartPointer<vtkImageData> Image;
+  /// Announced instead of the image's, where it is not empty.
+  Extent WholeExtent{ { 0, -1, 0, -1, 0, -1 } };
   int Executions = 0;
 
 protected:
@@ -42,7 +52,8 @@ protected:
     vtkInformation*, vtkInformationVector**, vtkInformationVector* output) override
   {
     vtkInformation* info = output->GetInformationObject(0);
-    info->Set(Pipeline::WHOLE_EXTENT(), this->Image->GetExtent(), 6);
+    info->Set(Pipeline::WHOLE_EXTENT(),
+      this->WholeExtent[1] > 0 ? this->WholeExtent.data() : this->Image->GetExtent(), 6);
     info->Set(vtkDataObject::ORIGIN(), this->Image->GetOrigin(), 3);
     info->Set(vtkDataObject::SPACING(), this->Image->GetSpacing(), 3);
     info->Set(vtkDataObject::DIRECTION(), this->Image->GetDirectionMatrix()->GetData(), 9);
@@ -291,6 +302,296 @@ void TestMirrored()
   VERIFY_EQUAL(wrong, 0);
 }
 
+/// The place in the volume, in continuous indices, that is seen at a point of the output.
+glm::dvec3 FindRestIndex(vtkImageData* volume, const glm::dvec3& point)
+{
+  const glm::dvec3 rest = MoveBack(point);
+  glm::dvec3 index;
+  volume->TransformPhysicalPointToContinuousIndex(&rest.x, &index.x);
+  return index;
+}
+
+/// How far the place may be off on each axis of the volume: vertices are rounded to 1/256 output
+/// voxel, and at rest to 2^-16.
+glm::dvec3 FindIndexError(vtkImageData* volume, vtkImageData* reference)
+{
+  glm::dvec3 error(1e-6); // displacements are floats
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    glm::dvec3 ends[2];
+    for (int end = 0; end < 2; ++end)
+    {
+      glm::dvec3 index(0.0);
+      index[axis] = end;
+      glm::dvec3 point;
+      reference->TransformContinuousIndexToPhysicalPoint(&index.x, &point.x);
+      ends[end] = FindRestIndex(volume, point);
+    }
+    error += glm::abs(ends[1] - ends[0]) * (1.0 / 512.0 + 1.0 / 65536.0);
+  }
+  return error;
+}
+
+/// By mesh, by its tetrahedra, by a forward and by an inverse field.
+std::vector<std::pair<std::string, std::function<void(OnReference&)>>> GetWays(vtkImageData* volume)
+{
+  return { { "mesh",
+             [=](OnReference& subject) { subject.Filter->SetDeformationData(MakeMoved(volume)); } },
+    { "mesh rasterization",
+      [=](OnReference& subject)
+      {
+        subject.Filter->SetDeformationData(MakeMoved(volume));
+        subject.Filter->SetResamplerToMeshRasterization();
+      } },
+    { "field",
+      [=](OnReference& subject) { subject.Filter->SetDeformationData(MakeField(volume, false)); } },
+    { "inverse field",
+      [=](OnReference& subject)
+      {
+        subject.Filter->SetDeformationData(MakeField(volume, true));
+        subject.Filter->FieldIsInverseOn();
+      } } };
+}
+
+/// The largest difference between neighbouring voxels on each axis.
+glm::dvec3 FindSteps(vtkImageData* volume)
+{
+  vtkDataArray* values = volume->GetPointData()->GetScalars();
+  int size[3];
+  volume->GetDimensions(size);
+  const int strides[3] = { 1, size[0], size[0] * size[1] };
+  glm::dvec3 steps(0.0);
+  for (vtkIdType id = 0; id < volume->GetNumberOfPoints(); ++id)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      if (id / strides[axis] % size[axis] + 1 < size[axis])
+      {
+        steps[axis] = std::max(steps[axis],
+          std::abs(values->GetComponent(id + strides[axis], 0) - values->GetComponent(id, 0)));
+      }
+    }
+  }
+  return steps;
+}
+
+/// Against VTK's own cubic interpolation of the voxels, as if these had axes of their own. Those of
+/// EXACT are linear in the outermost cells.
+void TestCubic()
+{
+  auto volume = MakeOblique();
+  vtkNew<vtkImageData> upright;
+  upright->SetExtent(volume->GetExtent());
+  AddScalars<double>(upright, "value",
+    [](const glm::dvec3& i)
+    { return 10.0 * std::sin(1.7 * i.x) + 8.0 * std::cos(1.9 * i.y + 0.8 * i.z) + 3.0 * i.z; });
+  volume->GetPointData()->SetScalars(upright->GetPointData()->GetScalars());
+  const glm::dvec3 steps = FindSteps(upright);
+  vtkNew<vtkImageInterpolator> cubic;
+  cubic->SetInterpolationModeToCubic();
+  cubic->Initialize(upright);
+  vtkNew<vtkImageInterpolator> linear;
+  linear->SetInterpolationModeToLinear();
+  linear->Initialize(upright);
+  const Extent extent = GetExtent(volume);
+  for (const bool isMirrored : { false, true })
+  {
+    auto reference = MakeReference(volume, isMirrored);
+    // The slope of Catmull-Rom is at most 1.5 times the largest difference, and on each of the two
+    // other axes the weights' absolute values add up to 1.25 at most.
+    const double tolerance =
+      glm::dot(steps, FindIndexError(volume, reference)) * 1.5 * 1.25 * 1.25 + 1e-9;
+    for (const auto& [name, set] : GetWays(volume))
+    {
+      OnReference subject(volume, nullptr, reference);
+      set(subject);
+      subject.Filter->SetInterpolationToCubicInterpolation();
+      vtkImageData* output = subject.Update();
+      VERIFY(HasGridOf(output, reference));
+      int wrong = 0;
+      int compared = 0;
+      int notLinear = 0;
+      for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
+      {
+        const glm::dvec3 index = FindRestIndex(volume, GetPoint(output, id));
+        double inside = 1e9;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          inside = std::min(
+            { inside, index[axis] - extent[2 * axis], extent[2 * axis + 1] - index[axis] });
+        }
+        if (inside > 1.05)
+        {
+          const double expected = cubic->Interpolate(index.x, index.y, index.z, 0);
+          const double value = subject.GetValues()->GetComponent(id, 0);
+          ++compared;
+          wrong += subject.IsCovered(id) && std::abs(value - expected) <= tolerance ? 0 : 1;
+          notLinear +=
+            std::abs(linear->Interpolate(index.x, index.y, index.z, 0) - expected) > 2.0 * tolerance
+            ? 1
+            : 0;
+        }
+      }
+      if (wrong > 0)
+      {
+        std::cerr << name << (isMirrored ? ", mirrored\n" : "\n");
+      }
+      VERIFY_EQUAL(wrong, 0);
+      VERIFY(compared > 1500);
+      VERIFY(notLinear > compared / 2);
+    }
+  }
+}
+
+/// What each vertex weighs at a place among the tetrahedra of a cell. Cells of odd index are mirror
+/// images of their neighbours.
+std::map<std::array<int, 3>, double> GetWeights(const glm::dvec3& index)
+{
+  const glm::dvec3 cell = glm::floor(index);
+  glm::dvec3 p = index - cell;
+  glm::dvec3 first = cell;
+  glm::dvec3 toSecond(1.0);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (glm::mod(cell[axis], 2.0) == 1.0)
+    {
+      first[axis] += 1.0;
+      toSecond[axis] = -1.0;
+      p[axis] = 1.0 - p[axis];
+    }
+  }
+  std::map<std::array<int, 3>, double> weights;
+  const auto set = [&](const glm::dvec3& corner, double weight)
+  {
+    const glm::dvec3 vertex = first + toSecond * corner;
+    weights[{ { int(vertex.x), int(vertex.y), int(vertex.z) } }] = weight;
+  };
+  // Corners with an odd sum of coordinates are cut off by the tetrahedron of the four others.
+  for (const glm::dvec3& corner : { glm::dvec3(1.0, 0.0, 0.0), glm::dvec3(0.0, 1.0, 0.0),
+         glm::dvec3(0.0, 0.0, 1.0), glm::dvec3(1.0, 1.0, 1.0) })
+  {
+    const glm::dvec3 distance = glm::abs(p - corner);
+    const double rest = 1.0 - distance.x - distance.y - distance.z;
+    if (rest >= 0.0)
+    {
+      set(corner, rest);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        glm::dvec3 neighbour = corner;
+        neighbour[axis] = 1.0 - neighbour[axis];
+        set(neighbour, distance[axis]);
+      }
+      return weights;
+    }
+  }
+  const double half = 0.5 * (p.x + p.y + p.z);
+  set({ 0.0, 0.0, 0.0 }, 1.0 - half);
+  set({ 0.0, 1.0, 1.0 }, half - p.x);
+  set({ 1.0, 0.0, 1.0 }, half - p.y);
+  set({ 1.0, 1.0, 0.0 }, half - p.z);
+  return weights;
+}
+
+/// Ids of 64 bits come from the vertex of the tetrahedron that weighs most, or, where the volume is
+/// looked up, from the nearest voxel.
+void TestNearest()
+{
+  auto volume = MakeOblique();
+  constexpr vtkTypeInt64 first = (vtkTypeInt64{ 1 } << 60) + 1;
+  vtkNew<vtkTypeInt64Array> labels;
+  labels->SetName("label");
+  vtkNew<vtkDoubleArray> values;
+  values->SetName("value");
+  for (vtkIdType id = 0; id < volume->GetNumberOfPoints(); ++id)
+  {
+    labels->InsertNextValue(first + id);
+    values->InsertNextValue(0.1 * static_cast<double>(id));
+  }
+  volume->GetPointData()->SetScalars(values);
+  volume->GetPointData()->AddArray(labels);
+  const Extent extent = GetExtent(volume);
+  int size[3];
+  volume->GetDimensions(size);
+  for (const bool isMirrored : { false, true })
+  {
+    auto reference = MakeReference(volume, isMirrored);
+    const glm::dvec3 error = FindIndexError(volume, reference);
+    for (const auto& [name, set] : GetWays(volume))
+    {
+      OnReference subject(volume, nullptr, reference);
+      set(subject);
+      subject.Filter->SetInterpolationToNearestInterpolation();
+      vtkImageData* output = subject.Update();
+      const bool isLookedUp =
+        subject.Filter->GetResamplerInUse() == vtkDeformVolumeFilter::MESH_RASTERIZATION;
+      const auto* given =
+        vtkTypeInt64Array::SafeDownCast(output->GetPointData()->GetArray("label"));
+      int wrong = 0;
+      int covered = 0;
+      int decided = 0;
+      for (vtkIdType id = 0; given && id < output->GetNumberOfPoints(); ++id)
+      {
+        if (!subject.IsCovered(id))
+        {
+          wrong += given->GetValue(id) != -1000 ? 1 : 0;
+          continue;
+        }
+        ++covered;
+        const vtkIdType from = given->GetValue(id) - first;
+        if (from < 0 || from >= volume->GetNumberOfPoints())
+        {
+          ++wrong;
+          continue;
+        }
+        wrong += subject.GetValues()->GetComponent(id, 0) != values->GetValue(from) ? 1 : 0;
+        const std::array<int, 3> vertex{ { extent[0] + static_cast<int>(from % size[0]),
+          extent[2] + static_cast<int>(from / size[0] % size[1]),
+          extent[4] + static_cast<int>(from / size[0] / size[1]) } };
+        glm::dvec3 index = FindRestIndex(volume, GetPoint(output, id));
+        if (isLookedUp)
+        {
+          for (int axis = 0; axis < 3; ++axis)
+          {
+            const double distance = std::abs(index[axis] - vertex[axis]);
+            wrong += distance > 0.5 + error[axis] ? 1 : 0;
+            decided += distance < 0.5 - error[axis] ? 1 : 0;
+          }
+          continue;
+        }
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          index[axis] = glm::clamp(
+            index[axis], double(extent[2 * axis]), extent[2 * axis + 1] - 1e-9); // rounded
+        }
+        const auto weights = GetWeights(index);
+        double most = 0.0;
+        for (const auto& entry : weights)
+        {
+          most = std::max(most, entry.second);
+        }
+        // A weight changes by at most the distance on all axes together.
+        const double tolerance = 2.0 * (error.x + error.y + error.z);
+        const auto found = weights.find(vertex);
+        const double weight = found == weights.end() ? 0.0 : found->second;
+        wrong += weight < most - tolerance ? 1 : 0;
+        int near = 0;
+        for (const auto& entry : weights)
+        {
+          near += entry.second >= most - tolerance ? 1 : 0;
+        }
+        decided += near == 1 ? 3 : 0;
+      }
+      if (wrong > 0)
+      {
+        std::cerr << name << (isMirrored ? ", mirrored\n" : "\n");
+      }
+      VERIFY_EQUAL(wrong, 0);
+      VERIFY(covered > 2000);
+      VERIFY(decided > 3 * covered * 9 / 10);
+    }
+  }
+}
+
 void TestPartsAndUpdates()
 {
   auto volume = MakeOblique();
@@ -330,16 +631,35 @@ void TestPartsAndUpdates()
   OnReference elsewhere(volume, mesh, shifted);
   VERIFY(AreEqual(whole.Update(), elsewhere.Update()));
   VERIFY(!AreEqual(whole.Filter->GetOutput(), fresh.Filter->GetOutput()));
-  // A single layer.
-  vtkNew<vtkImageData> layer;
-  layer->CopyStructure(reference);
-  layer->SetExtent(5, 34, 15, 15, 10, 41);
-  OnReference thin(volume, mesh, layer);
-  vtkNew<vtkImageData> cut;
-  cut->DeepCopy(fresh.Filter->GetOutput());
-  const int extent[6] = { 5, 34, 15, 15, 10, 41 };
-  cut->Crop(extent);
-  VERIFY(AreEqual(thin.Update(), cut));
+}
+
+/// A layer on each axis, a row and a voxel.
+void TestThinReferences()
+{
+  auto volume = MakeOblique();
+  auto reference = MakeReference(volume, true);
+  for (const auto& [name, set] : GetWays(volume))
+  {
+    OnReference whole(volume, nullptr, reference);
+    set(whole);
+    vtkImageData* expected = whole.Update();
+    for (const Extent& extent : { Extent{ { 18, 18, -2, 33, 10, 41 } },
+           Extent{ { 5, 34, 15, 15, 10, 41 } }, Extent{ { 5, 34, -2, 33, 25, 25 } },
+           Extent{ { 18, 18, -2, 33, 25, 25 } }, Extent{ { 19, 19, 15, 15, 25, 25 } } })
+    {
+      vtkNew<vtkImageData> layer;
+      layer->CopyStructure(reference);
+      layer->SetExtent(const_cast<int*>(extent.data()));
+      OnReference thin(volume, nullptr, layer);
+      set(thin);
+      vtkNew<vtkImageData> cut;
+      cut->DeepCopy(expected);
+      cut->Crop(extent.data());
+      VERIFY(AreEqual(thin.Update(), cut));
+      VERIFY(thin.TakeWarning().empty());
+      VERIFY(thin.Filter->GetNumberOfCoveredVoxels() > 0);
+    }
+  }
 }
 
 void TestDataAreNotRequested()
@@ -401,20 +721,51 @@ void TestWarnings()
   deformed.Filter->Modified();
   deformed.Filter->Update();
   VERIFY(deformed.TakeWarning().empty()); // it was said
+}
 
-  // Far away.
+/// Where nothing lands there is background, and one warning.
+void TestNothingCovered()
+{
+  auto volume = MakeOblique();
+  auto reference = MakeReference(volume, false);
   vtkNew<vtkImageData> far;
   far->CopyStructure(reference);
   far->SetOrigin(300.0, 0.0, 0.0);
-  OnReference apart(volume, mesh, far);
-  apart.Filter->Update();
-  VERIFY(apart.TakeWarning().find("reference image") != std::string::npos);
-  VERIFY(HasGridOf(apart.Filter->GetOutput(), far));
-  VERIFY_EQUAL(apart.Filter->GetNumberOfCoveredVoxels(), 0);
-  double range[2];
-  apart.GetValues()->GetRange(range);
-  VERIFY_EQUAL(range[0], -1000.0);
-  VERIFY_EQUAL(range[1], -1000.0);
+  const auto check = [&](const std::string& name, OnReference& apart, const std::string& words)
+  {
+    apart.Filter->Update();
+    const std::string warnings = apart.Observer->GetWarningMessage();
+    VERIFY_EQUAL(apart.TakeErrors(), 0);
+    const std::size_t at = warnings.find("Warning: ");
+    if (at == std::string::npos || warnings.find("Warning: ", at + 1) != std::string::npos ||
+      warnings.find(words) == std::string::npos)
+    {
+      ++GetNumberOfFailures();
+      std::cerr << name << ": expected one warning with " << words << ", not " << warnings << '\n';
+    }
+    VERIFY(HasGridOf(apart.Filter->GetOutput(), far));
+    VERIFY_EQUAL(apart.Filter->GetNumberOfCoveredVoxels(), 0);
+    double range[2];
+    apart.GetValues()->GetRange(range);
+    VERIFY_EQUAL(range[0], -1000.0);
+    VERIFY_EQUAL(range[1], -1000.0);
+  };
+  for (const auto& [name, set] : GetWays(volume))
+  {
+    // The grid of the inverse field does not reach the reference image either.
+    OnReference apart(volume, nullptr, far);
+    set(apart);
+    check(name, apart, name == "inverse field" ? "inverse displacement field" : "reference image");
+  }
+  OnReference atRest(volume, nullptr, far);
+  check("at rest", atRest, "reference image");
+  // The inverse field holds the reference image, and leads beside the volume.
+  auto field = MakeImage({ { 0, 4, 0, 4, 0, 4 } }, glm::dvec3(40.0));
+  field->SetOrigin(260.0, -80.0, -80.0);
+  SetDisplacements(field, Shift(90.0, 0.0, 0.0));
+  OnReference beside(volume, field, far);
+  beside.Filter->FieldIsInverseOn();
+  check("beside", beside, "inverse displacement field");
 }
 
 void TestMisuse()
@@ -425,9 +776,18 @@ void TestMisuse()
   OnReference deformed(volume, mesh, good);
   vtkNew<vtkImageData> expected;
   expected->DeepCopy(deformed.Update());
-  const auto fails = [&](vtkImageData* reference, const std::string& words)
+  const auto mend = [&]
   {
-    deformed.Filter->SetReferenceData(reference);
+    deformed.Filter->SetInputData(volume);
+    deformed.Filter->SetDeformationData(mesh);
+    deformed.Filter->SetReferenceData(good);
+    deformed.Filter->SetDisplacementScale(1.0);
+    deformed.Filter->SetOutsideModeToDiscard();
+    deformed.Filter->SetFadeDistance(0.0);
+    deformed.Filter->FieldIsInverseOff();
+  };
+  const auto expectError = [&](const std::string& words)
+  {
     deformed.Filter->Update();
     const int errors = deformed.TakeErrors();
     if (errors != 1 || deformed.LastError.find(words) == std::string::npos)
@@ -437,8 +797,14 @@ void TestMisuse()
                 << deformed.LastError << '\n';
     }
     VERIFY_EQUAL(deformed.Filter->GetOutput()->GetNumberOfPoints(), 0);
-    deformed.Filter->SetReferenceData(good);
+    mend();
     VERIFY(AreEqual(deformed.Update(), expected));
+    VERIFY(deformed.TakeWarning().empty());
+  };
+  const auto fails = [&](vtkImageData* reference, const std::string& words)
+  {
+    deformed.Filter->SetReferenceData(reference);
+    expectError(words);
   };
   const auto copy = [&]
   {
@@ -463,8 +829,71 @@ void TestMisuse()
   spoilt->SetDirectionMatrix(singular);
   fails(spoilt, "direction matrix of the reference image");
   spoilt = copy();
+  const double undefined[9] = { 1, 0, 0, 0, 1, 0, 0, 0, std::numeric_limits<double>::quiet_NaN() };
+  spoilt->SetDirectionMatrix(undefined);
+  fails(spoilt, "direction matrix of the reference image");
+  spoilt = copy();
   spoilt->SetSpacing(1e-6, 1e-6, 1e-6);
-  fails(spoilt, "16,383");
+  fails(spoilt, "grid of the reference image on axis x, beyond 2^21");
+  spoilt = copy();
+  spoilt->SetOrigin(0.0, 0.0, 4e6);
+  fails(spoilt, "beyond 2^21");
+  deformed.Filter->SetDisplacementScale(1e5);
+  expectError("spacing of the output or of its reference image");
+  vtkNew<CountingSource> large;
+  large->Image = copy();
+  large->WholeExtent = { { 0, 1 << 20, 0, 1 << 20, 0, 1 << 20 } };
+  deformed.Filter->SetReferenceConnection(large->GetOutputPort());
+  expectError("The reference image has more than 2^48 voxels");
+
+  // Of the volume, beside a reference image.
+  const auto failsWith = [&](const std::function<void(vtkImageData*)>& spoil, const char* words)
+  {
+    vtkNew<vtkImageData> spoiltVolume;
+    spoiltVolume->DeepCopy(volume);
+    spoil(spoiltVolume);
+    deformed.Filter->SetInputData(spoiltVolume);
+    expectError(words);
+  };
+  failsWith(
+    [&](vtkImageData* v) { v->SetDirectionMatrix(singular); }, "direction matrix of the volume");
+  failsWith([](vtkImageData* v) { v->SetSpacing(1.0, 1.0, 0.0); }, "spacing of the volume");
+  failsWith([](vtkImageData* v)
+    { v->SetSpacing(std::numeric_limits<double>::quiet_NaN(), 1.0, 1.0); },
+    "spacing of the volume");
+  failsWith(
+    [](vtkImageData* v)
+    {
+      vtkNew<vtkFloatArray> other;
+      other->SetNumberOfTuples(v->GetNumberOfPoints());
+      other->Fill(0.0);
+      v->GetPointData()->AddArray(other);
+      other->SetName("value"); // VTK does not notice
+    },
+    "several point arrays with the name \"value\"");
+
+  // Of the deformation.
+  vtkNew<vtkUnstructuredGrid> broken;
+  broken->DeepCopy(mesh);
+  broken->GetPointData()->GetVectors()->SetComponent(
+    21, 1, std::numeric_limits<double>::quiet_NaN());
+  deformed.Filter->SetDeformationData(broken);
+  expectError("not finite");
+  for (const double distance : { std::numeric_limits<double>::quiet_NaN(), -1.0 })
+  {
+    deformed.Filter->SetOutsideModeToKeep();
+    deformed.Filter->SetFadeDistance(distance);
+    expectError("FadeDistance is ");
+  }
+  for (const bool isInverse : { false, true })
+  {
+    auto field = MakeField(volume, isInverse);
+    field->GetPointData()->GetVectors()->SetComponent(
+      field->GetNumberOfPoints() / 2, 2, std::numeric_limits<double>::quiet_NaN());
+    deformed.Filter->SetDeformationData(field);
+    deformed.Filter->SetFieldIsInverse(isInverse);
+    expectError("not finite");
+  }
 
   // No image: one error, of the executive.
   vtkNew<vtkPolyData> surface;
@@ -487,9 +916,13 @@ int TestReferenceImage(int, char*[])
   TestTurned();
   TestAtRest();
   TestMirrored();
+  TestCubic();
+  TestNearest();
   TestPartsAndUpdates();
+  TestThinReferences();
   TestDataAreNotRequested();
   TestWarnings();
+  TestNothingCovered();
   TestMisuse();
   return GetExitCode();
 }

@@ -14,6 +14,7 @@
 #include <vtkTrivialProducer.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <thread>
 
@@ -33,6 +34,21 @@ int GetRanks()
   return Controller->GetNumberOfProcesses();
 }
 
+/// Gives all ranks the image of the first.
+void Broadcast(vtkImageData* image)
+{
+  Controller->Broadcast(image, 0);
+  // VTK writes origin and spacing as rounded decimals, and leaves the direction out.
+  std::array<double, 15> grid;
+  std::copy_n(image->GetOrigin(), 3, grid.data());
+  std::copy_n(image->GetSpacing(), 3, grid.data() + 3);
+  std::copy_n(image->GetDirectionMatrix()->GetData(), 9, grid.data() + 6);
+  Controller->Broadcast(grid.data(), 15, 0);
+  image->SetOrigin(grid.data());
+  image->SetSpacing(grid.data() + 3);
+  image->SetDirectionMatrix(grid.data() + 6);
+}
+
 /// What one process makes, on all ranks.
 vtkSmartPointer<vtkImageData> MakeWhole(const Case& from)
 {
@@ -45,7 +61,7 @@ vtkSmartPointer<vtkImageData> MakeWhole(const Case& from)
     image->ShallowCopy(whole.Update());
     vtkMultiProcessController::SetGlobalController(Controller);
   }
-  Controller->Broadcast(image, 0);
+  Broadcast(image);
   VERIFY(image->GetNumberOfPoints() > 0);
   return image;
 }
@@ -225,6 +241,44 @@ void TestError(const Case& from, vtkImageData* whole, const std::string& words,
   Check(parallel, whole, words);
 }
 
+/// Of the reference image on the last rank: one error on all ranks.
+void TestReferenceErrors(const Case& from, vtkImageData* whole)
+{
+  const auto good = MakeReference(from.Volume, true);
+  const auto mend = [&](Parallel& parallel)
+  {
+    parallel.Filter->SetReferenceData(good);
+    parallel.Filter->Modified(); // on all ranks
+  };
+  TestError(
+    from, whole, "spacing of the reference image on axis y",
+    [&](Parallel& parallel)
+    {
+      vtkNew<vtkImageData> flat;
+      flat->CopyStructure(good);
+      flat->SetSpacing(1.0, 0.0, 1.0);
+      parallel.Filter->SetReferenceData(flat);
+    },
+    mend);
+  if (GetRanks() == 1)
+  {
+    return;
+  }
+  TestError(
+    from, whole, "different grids on different ranks",
+    [](Parallel& parallel) { parallel.Filter->SetReferenceData(nullptr); }, mend);
+  TestError(
+    from, whole, "different grids on different ranks",
+    [&](Parallel& parallel)
+    {
+      vtkNew<vtkImageData> shifted;
+      shifted->CopyStructure(good);
+      shifted->SetOrigin(0.0, 1e-9, 0.0);
+      parallel.Filter->SetReferenceData(shifted);
+    },
+    mend);
+}
+
 void TestErrors(const Case& from, vtkImageData* whole)
 {
   const auto mesh = vtkUnstructuredGrid::SafeDownCast(from.Deformation);
@@ -337,7 +391,7 @@ void TestKeptExtent(const Case& from)
       image->ShallowCopy(whole.Update());
       vtkMultiProcessController::SetGlobalController(Controller);
     }
-    Controller->Broadcast(image, 0);
+    Broadcast(image);
     Check(moving, image, "Kept extent");
   }
 }
@@ -349,6 +403,13 @@ void TestAll()
     const auto whole = MakeWhole(from);
     Parallel parallel(from);
     Check(parallel, whole, from.Name);
+    if (from.Name == "Runs, mirrored reference")
+    {
+      Parallel ghosts(from);
+      Check(ghosts, whole, "Ghost levels, mirrored reference", 2);
+      TestSpread(from, whole);
+      TestReferenceErrors(from, whole);
+    }
     if (from.Name == "Runs")
     {
       Parallel ghosts(from);
