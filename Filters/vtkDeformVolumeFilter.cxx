@@ -5,6 +5,7 @@
 
 #include "Device.h"
 #include "VTKThreads.h"
+#include "VectorChoice.h"
 
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
@@ -251,25 +252,16 @@ void vtkDeformVolumeFilter::ReleaseDeviceMemory()
 //------------------------------------------------------------------------------
 int vtkDeformVolumeFilter::FillInputPortInformation(int port, vtkInformation* info)
 {
-  if (port > 0)
+  if (port == 1 || port == 2)
+  {
+    deformvolume::FillDeformationPort(port, info);
+    return 1;
+  }
+  if (port == 3)
   {
     info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   }
-  if (port == 0 || port == 3)
-  {
-    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
-    return 1;
-  }
-  // Composite datasets come first, or the executive would iterate over their leaves.
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
-  for (const char* grid : { "vtkUnstructuredGrid", "vtkStructuredGrid", "vtkRectilinearGrid" })
-  {
-    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), grid);
-  }
-  if (port == 1)
-  {
-    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
-  }
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
   return 1;
 }
 

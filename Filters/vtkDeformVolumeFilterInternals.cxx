@@ -311,21 +311,11 @@ ImageGeometry vtkDeformVolumeFilter::vtkInternals::GetOutputGeometry(
 DeformationSource vtkDeformVolumeFilter::vtkInternals::MakeSource(
   const ImageGeometry& volume, vtkDataObject* shape, vtkDataObject* rest) const
 {
-  DeformationSource source;
-  source.Shape = shape;
-  source.Rest = rest;
-  deformvolume::ChooseVectors(source, this->Self->GetInputArrayInformation(0),
-    [this](vtkDataSet* dataSet, int& association)
-    { return this->Self->GetInputArrayToProcess(0, dataSet, association); });
-  source.FieldIsInverse = this->Self->FieldIsInverse;
-  source.Choice += source.FieldIsInverse ? " inverse" : "";
-  source.PointsAreDeformed = this->Self->PointsAreDeformed;
-  source.Choice += source.PointsAreDeformed ? " deformed" : "";
-  source.DisplacementScale = this->Self->DisplacementScale;
-  if (!std::isfinite(source.DisplacementScale))
-  {
-    throw Error("DisplacementScale is not finite. Set a finite one.");
-  }
+  DeformationSource source =
+    deformvolume::ChooseDeformation(shape, rest, this->Self->GetInputArrayInformation(0),
+      [this](vtkDataSet* dataSet, int& association)
+      { return this->Self->GetInputArrayToProcess(0, dataSet, association); },
+      { this->Self->DisplacementScale, this->Self->PointsAreDeformed, this->Self->FieldIsInverse });
   source.Volume = volume;
   source.ToOutput = deformvolume::GetOutputMap(volume, this->GetOutputGeometry(volume));
   this->CheckReach({ volume.PointExtent, source.ToOutput, {} });
@@ -337,8 +327,7 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::MakeSourceAtRest(const Im
 {
   if (this->Self->GetNumberOfInputConnections(2) > 0)
   {
-    throw Error("There is a rest configuration on input port 2, but no deformation on input port "
-                "1. Connect the deformation, or disconnect the rest configuration.");
+    deformvolume::ThrowRestAlone();
   }
   if (!this->FieldAtRest || !(this->VolumeAtRest == volume))
   {
@@ -483,24 +472,10 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfIgnored(
         "deformation. Rotate them afterwards where their directions matter.");
     }
   }
-  const std::string& ignored = this->State->Deformation.GetRestMesh().GetIgnoredCells();
-  const std::string& cells = ignored.empty() ? this->Gathering.GetIgnoredCells() : ignored;
-  if (!this->State->Deformation.IsField() && !cells.empty())
+  if (!this->State->Deformation.IsField())
   {
-    warnings.insert(
-      "Cells of the deformation mesh that are not three-dimensional, or of a type that "
-      "cannot be split into tetrahedra, are ignored: " +
-      cells + ".");
-  }
-  const std::string& far = this->State->Deformation.GetRestMesh().GetFarMidSides();
-  const std::string& midSides = far.empty() ? this->Gathering.GetFarMidSides() : far;
-  if (!this->State->Deformation.IsField() && !midSides.empty())
-  {
-    warnings.insert(midSides +
-      " quadratic cells of the deformation mesh have a mid-side node that is farther from the "
-      "middle of its edge than 30 % of the length of the edge. Check that the nodes of the cells "
-      "are in VTK's "
-      "order.");
+    deformvolume::AddCellWarnings(
+      this->State->Deformation.GetRestMesh(), this->Gathering, warnings);
   }
   std::string news;
   for (const std::string& warning : warnings)

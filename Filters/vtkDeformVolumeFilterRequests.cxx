@@ -26,7 +26,6 @@
 #include <glm/matrix.hpp>
 
 #include <algorithm>
-#include <initializer_list>
 
 using deformvolume::DeformationSource;
 using deformvolume::Error;
@@ -38,28 +37,6 @@ namespace
 
 // That of the reference image. The ports before it have data, and it has a grid only.
 constexpr int ReferencePort = 3;
-
-// The time asked for, or else that of the first input that has one.
-void SetTimeStep(
-  vtkImageData* image, vtkInformation* output, std::initializer_list<vtkDataObject*> inputs)
-{
-  vtkInformation* info = image->GetInformation();
-  if (output->Has(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP()))
-  {
-    info->Set(vtkDataObject::DATA_TIME_STEP(),
-      output->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP()));
-    return;
-  }
-  for (vtkDataObject* data : inputs)
-  {
-    if (data && data->GetInformation()->Has(vtkDataObject::DATA_TIME_STEP()))
-    {
-      info->Set(vtkDataObject::DATA_TIME_STEP(),
-        data->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()));
-      return;
-    }
-  }
-}
 
 } // namespace
 
@@ -457,6 +434,6 @@ int vtkDeformVolumeFilter::RequestData(
   {
     this->Internals->WarnOfNothing();
   }
-  SetTimeStep(image, outInfo, { vtkDataObject::GetData(input[1]), volume });
+  deformvolume::SetTimeStep(image, outInfo, { vtkDataObject::GetData(input[1]), volume });
   return 1;
 }

@@ -38,7 +38,7 @@ glm::dmat3 GetToDisplacement(const DeformationSource& source, double factor)
   return transform;
 }
 
-void Deformation::Read(const DeformationSource& source)
+void CheckSource(const DeformationSource& source)
 {
   const bool isField = vtkImageData::SafeDownCast(source.Shape) != nullptr;
   if (source.PointsAreDeformed && (isField || source.Rest))
@@ -48,25 +48,17 @@ void Deformation::Read(const DeformationSource& source)
                : "there is a rest configuration, so that no displacements are read") +
       ". Set PointsAreDeformed off" + (isField ? "." : ", or disconnect the rest configuration."));
   }
-  if (const auto image = vtkImageData::SafeDownCast(source.Shape))
+  if (isField && source.Rest)
   {
-    if (source.Rest)
-    {
-      throw Error("There is a rest configuration, but the deformation is a displacement field, "
-                  "which needs none. Disconnect the rest configuration.");
-    }
-    this->ReadField(image, source);
+    throw Error("There is a rest configuration, but the deformation is a displacement field, "
+                "which needs none. Disconnect the rest configuration.");
   }
-  else
+  if (isField)
   {
-    this->ReadMesh(source);
+    return;
   }
-}
-
-void Deformation::ReadMesh(const DeformationSource& source)
-{
   const MeshParts& shape = source.ShapeParts;
-  const MeshParts& rest = source.Rest ? source.RestParts : shape;
+  const MeshParts& rest = source.GetRestParts();
   CheckParts(shape, source.Shape, MESH_NAME);
   if (source.Rest)
   {
@@ -78,6 +70,25 @@ void Deformation::ReadMesh(const DeformationSource& source)
       " points and the rest configuration has " + std::to_string(GetNumberOfNodes(rest)) +
       ". Use two configurations of one mesh.");
   }
+}
+
+void Deformation::Read(const DeformationSource& source)
+{
+  CheckSource(source);
+  if (const auto image = vtkImageData::SafeDownCast(source.Shape))
+  {
+    this->ReadField(image, source);
+  }
+  else
+  {
+    this->ReadMesh(source);
+  }
+}
+
+void Deformation::ReadMesh(const DeformationSource& source)
+{
+  const MeshParts& shape = source.ShapeParts;
+  const MeshParts& rest = source.GetRestParts();
   this->Mesh.Read(shape, rest, source);
   if (this->ConnectivityOfVectors != this->Mesh.GetConnectivityVersion())
   {

@@ -59,7 +59,13 @@ struct DeformationSource
   std::string Device;
   /// From indices of the volume to those of the output.
   OutputMap ToOutput;
+
+  /// The grids that have the rest positions.
+  const MeshParts& GetRestParts() const { return this->Rest ? this->RestParts : this->ShapeParts; }
 };
+
+/// Throws an Error where what is connected does not go together.
+void CheckSource(const DeformationSource& source);
 
 /// Takes vectors, times a factor, to displacements in output voxels. Its elements are rounded
 /// (RoundFactor), so that vectors become the same displacements wherever that is done.
@@ -133,8 +139,6 @@ public:
 private:
   void ReadMesh(const DeformationSource& source);
   void ReadField(vtkImageData* image, const DeformationSource& source);
-  /// Reads vectors of a field, of which those of undefined points count as zero.
-  void ReadDefined(vtkDataArray* array, const VectorTaker& take);
   /// False where the field is not one that can be used in place.
   bool UseFieldInPlace(vtkDataArray* array, const DeformationSource& source);
   /// Has vectors be read where they lie on a device. False where an array has none there.

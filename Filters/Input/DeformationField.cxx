@@ -3,23 +3,18 @@
 #include "Deformation.h"
 
 #include "CoarseVolume.h"
-#include "Error.h"
+#include "FieldReading.h"
 #include "FieldScan.h"
-#include "MaskArray.h"
 #include "ParallelFor.h"
 #include "VectorArray.h"
 #include "WrittenTuples.h"
 
-#include "vtkAOSDataArrayTemplate.h"
 #include "vtkDataArray.h"
-#include "vtkDataSetAttributes.h"
-#include "vtkDeviceVectorArray.h"
 #include "vtkImageData.h"
 #include "vtkPointData.h"
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -29,8 +24,6 @@ namespace deformvolume
 
 namespace
 {
-
-const char* const FIELD = "displacement field";
 
 // Fields of fewer points are converted and compared with what they were: that takes no time, and
 // then only what changed is made anew.
@@ -64,18 +57,6 @@ glm::dmat4 FromOutput(const glm::dmat4& fromVolume, const OutputMap& toOutput)
   return fromOutput;
 }
 
-// The values of an array of floats that lies in memory tuple by tuple; null for others, and where
-// they would have to come from a device.
-const float* FindFloats(vtkDataArray* array)
-{
-  if (auto* vectors = vtkDeviceVectorArray::SafeDownCast(array))
-  {
-    return vectors->IsOnDevice() ? nullptr : vectors->GetValues();
-  }
-  auto* floats = vtkAOSDataArrayTemplate<float>::FastDownCast(array);
-  return floats ? floats->GetPointer(0) : nullptr;
-}
-
 // Where all voxels are points of a field and there are others between them, how many points they
 // are apart, the same on each axis; else 1. indexToField: see DisplacementField.
 int GetStep(const Extent& voxels, const std::array<double, 12>& indexToField,
@@ -94,20 +75,6 @@ int GetStep(const Extent& voxels, const std::array<double, 12>& indexToField,
       step * voxels[2 * axis + 1] + row[3] < dimensions[axis];
   }
   return found ? static_cast<int>(step) : 1;
-}
-
-// The hidden points, one byte each; empty where there are none.
-std::vector<unsigned char> FindHidden(vtkDataArray* ghosts)
-{
-  std::vector<unsigned char> hidden;
-  bool any = false;
-  for (vtkIdType i = 0; ghosts && i < ghosts->GetNumberOfTuples(); ++i)
-  {
-    const auto kinds = static_cast<int>(ghosts->GetComponent(i, 0));
-    hidden.push_back((kinds & vtkDataSetAttributes::HIDDENPOINT) != 0 ? 1 : 0);
-    any = any || hidden.back() != 0;
-  }
-  return any ? hidden : std::vector<unsigned char>();
 }
 
 } // namespace
@@ -147,15 +114,8 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
   {
     return;
   }
-  if (image->GetNumberOfPoints() == 0)
-  {
-    throw Error("The displacement field is empty. Connect a vtkImageData with a "
-                "point array of three components.");
-  }
   const ImageGeometry geometry = GetGeometry(image);
-  CheckTransform(geometry, "the displacement field");
-  vtkDataArray* array =
-    FindVectors(image, source.Selector, source.Wanted, std::string("the ") + FIELD);
+  vtkDataArray* array = FindFieldVectors(image, source);
   const auto lastDimensions = this->FieldDimensions;
   const auto lastIndexToField = this->IndexToField;
   image->GetDimensions(this->FieldDimensions.data());
@@ -176,8 +136,7 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
   const int step = source.FieldIsInverse
     ? 1
     : GetStep(source.Volume.PointExtent, this->IndexToField, this->FieldDimensions);
-  vtkDataArray* ghosts = FindMask(pointData, vtkDataSetAttributes::GhostArrayName(),
-    image->GetNumberOfPoints(), "point", "displacement field");
+  vtkDataArray* ghosts = FindFieldGhosts(image);
   vtkSmartPointer<vtkDataArray> taken;
   vtkSmartPointer<vtkDataArray> takenGhosts;
   if (step > 1)
@@ -199,7 +158,7 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
     takenGhosts = ghosts ? TakeTuples(ghosts, points, voxels, step) : nullptr;
     ghosts = takenGhosts;
   }
-  std::vector<unsigned char> undefined = FindHidden(ghosts);
+  std::vector<unsigned char> undefined = FindHiddenPoints(ghosts);
   if (undefined != this->UndefinedPoints || lastDimensions != this->FieldDimensions ||
     lastIndexToField != this->IndexToField)
   {
@@ -221,14 +180,7 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
       static_cast<std::size_t>(array->GetNumberOfTuples()),
       [&](const VectorTaker& take)
       {
-        if (areDefined)
-        {
-          ReadVectors(array, take, "Vector", FIELD);
-        }
-        else
-        {
-          this->ReadDefined(array, take);
-        }
+        ReadFieldVectors(array, this->UndefinedPoints, take);
         if (this->Faults.MayHaveAny())
         {
           ThrowTooFar();
@@ -244,36 +196,6 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
     }
   }
   this->RememberVectors(stamp, source, true);
-}
-
-void Deformation::ReadDefined(vtkDataArray* array, const VectorTaker& take)
-{
-  std::atomic<vtkIdType> fault{ -1 };
-  ReadVectors(
-    array,
-    [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType count)
-    {
-      std::vector<glm::dvec3> defined(vectors, vectors + count);
-      for (vtkIdType i = 0; i < count; ++i)
-      {
-        defined[i] *= this->UndefinedPoints[first + i] ? 0.0 : 1.0;
-      }
-      take(first, defined.data(), count);
-    },
-    "Vector", FIELD, nullptr,
-    [&](vtkIdType point)
-    {
-      if (!this->UndefinedPoints[point])
-      {
-        fault = point;
-      }
-    });
-  if (fault >= 0)
-  {
-    throw Error("Vector " + std::to_string(fault) + " of the " + FIELD +
-      " is not finite. Remove NaN and infinity from it, or mark its point as hidden in " +
-      vtkDataSetAttributes::GhostArrayName() + ".");
-  }
 }
 
 std::vector<unsigned char> Deformation::FindUndefinedVoxels(

@@ -18,7 +18,6 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTrivialProducer.h"
 
-#include <initializer_list>
 #include <set>
 #include <string>
 
@@ -132,9 +131,9 @@ vtkDataObject* UpdateInputPart(
 }
 
 void UpdateRequested(
-  vtkAlgorithm* filter, int ports, vtkInformationVector** input, const Ranks& ranks)
+  vtkAlgorithm* filter, int ports, vtkInformationVector** input, const Ranks& ranks, int first)
 {
-  for (int port = 0; port < ports; ++port)
+  for (int port = first; port < ports; ++port)
   {
     if (input[port]->GetNumberOfInformationObjects() == 0)
     {
@@ -269,6 +268,26 @@ void MergeTimes(vtkAlgorithm* filter, int ports, vtkInformation* output)
   {
     const double range[2] = { *ends.begin(), *ends.rbegin() };
     output->Set(Pipeline::TIME_RANGE(), range, 2);
+  }
+}
+
+void SetTimeStep(
+  vtkDataObject* data, vtkInformation* output, std::initializer_list<vtkDataObject*> inputs)
+{
+  vtkInformation* info = data->GetInformation();
+  if (output->Has(Pipeline::UPDATE_TIME_STEP()))
+  {
+    info->Set(vtkDataObject::DATA_TIME_STEP(), output->Get(Pipeline::UPDATE_TIME_STEP()));
+    return;
+  }
+  for (vtkDataObject* input : inputs)
+  {
+    if (input && input->GetInformation()->Has(vtkDataObject::DATA_TIME_STEP()))
+    {
+      info->Set(vtkDataObject::DATA_TIME_STEP(),
+        input->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()));
+      return;
+    }
   }
 }
 

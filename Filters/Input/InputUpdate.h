@@ -7,6 +7,7 @@
 
 #include "vtkType.h"
 
+#include <initializer_list>
 #include <utility>
 #include <vector>
 
@@ -36,11 +37,11 @@ void RequestExtent(vtkInformation* input, const Extent& extent);
 /// at 0, an empty extent there would be an error of its own.
 void RequestNothing(vtkInformation* input);
 
-/// Brings the inputs of the first ports up to date with what they have been asked for. The
-/// executive would do it, too; but where a source fails on one rank, the executive ends the data
-/// pass on that rank alone. Throws an Error, on all ranks. Collective.
+/// Brings the inputs of the ports from first to ports - 1 up to date with what they have been asked
+/// for. The executive would do it, too; but where a source fails on one rank, the executive ends
+/// the data pass on that rank alone. Throws an Error, on all ranks. Collective.
 void UpdateRequested(
-  vtkAlgorithm* filter, int ports, vtkInformationVector** input, const Ranks& ranks);
+  vtkAlgorithm* filter, int ports, vtkInformationVector** input, const Ranks& ranks, int first = 0);
 
 /// The part of the output that is asked for while requests go upstream: of the extent the piece,
 /// with its ghost levels.
@@ -66,6 +67,11 @@ std::vector<double> GetTimes(vtkInformation* input);
 
 /// Gives the output the time steps and the range of the inputs of the first ports.
 void MergeTimes(vtkAlgorithm* filter, int ports, vtkInformation* output);
+
+/// Gives output data the time asked for, or else that of the first input that has one. Inputs may
+/// be null.
+void SetTimeStep(
+  vtkDataObject* data, vtkInformation* output, std::initializer_list<vtkDataObject*> inputs);
 
 } // namespace deformvolume
 

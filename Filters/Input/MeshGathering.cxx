@@ -268,4 +268,28 @@ DeformationSource MeshGathering::Gather(const Ranks& ranks, const DeformationSou
   return whole;
 }
 
+void AddCellWarnings(
+  const RestMesh& mesh, const MeshGathering& gathering, std::set<std::string>& warnings)
+{
+  const std::string& ignored = mesh.GetIgnoredCells();
+  const std::string& cells = ignored.empty() ? gathering.GetIgnoredCells() : ignored;
+  if (!cells.empty())
+  {
+    warnings.insert(
+      "Cells of the deformation mesh that are not three-dimensional, or of a type that "
+      "cannot be split into tetrahedra, are ignored: " +
+      cells + ".");
+  }
+  const std::string& far = mesh.GetFarMidSides();
+  const std::string& midSides = far.empty() ? gathering.GetFarMidSides() : far;
+  if (!midSides.empty())
+  {
+    warnings.insert(midSides +
+      " quadratic cells of the deformation mesh have a mid-side node that is farther from the "
+      "middle of its edge than 30 % of the length of the edge. Check that the nodes of the cells "
+      "are in VTK's "
+      "order.");
+  }
+}
+
 } // namespace deformvolume

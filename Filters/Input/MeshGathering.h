@@ -8,6 +8,7 @@
 
 #include "vtkSmartPointer.h"
 
+#include <set>
 #include <string>
 
 class vtkUnstructuredGrid;
@@ -45,6 +46,10 @@ private:
   std::string IgnoredCells;
   std::string FarMidSides;
 };
+
+/// Adds what there is to say of cells of a mesh that are ignored, or look wrong.
+void AddCellWarnings(
+  const RestMesh& mesh, const MeshGathering& gathering, std::set<std::string>& warnings);
 
 } // namespace deformvolume
 

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "VectorChoice.h"
 
+#include "Error.h"
 #include "VectorArray.h"
 
+#include "vtkAlgorithm.h"
 #include "vtkDataObject.h"
 #include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkInformation.h"
 
+#include <cmath>
 #include <string>
 
 namespace deformvolume
@@ -36,6 +39,46 @@ void ChooseVectors(DeformationSource& source, vtkInformation* choice, const Arra
   }
   source.Choice =
     source.Wanted + " " + std::to_string(choice->Get(vtkDataObject::FIELD_ASSOCIATION()));
+}
+
+DeformationSource ChooseDeformation(vtkDataObject* shape, vtkDataObject* rest,
+  vtkInformation* choice, const ArrayFinder& find, const DeformationSettings& settings)
+{
+  DeformationSource source;
+  source.Shape = shape;
+  source.Rest = rest;
+  ChooseVectors(source, choice, find);
+  source.FieldIsInverse = settings.FieldIsInverse;
+  source.Choice += source.FieldIsInverse ? " inverse" : "";
+  source.PointsAreDeformed = settings.PointsAreDeformed;
+  source.Choice += source.PointsAreDeformed ? " deformed" : "";
+  source.DisplacementScale = settings.DisplacementScale;
+  if (!std::isfinite(source.DisplacementScale))
+  {
+    throw Error("DisplacementScale is not finite. Set a finite one.");
+  }
+  return source;
+}
+
+void FillDeformationPort(int port, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  // Composite datasets come first, or the executive would iterate over their leaves.
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+  for (const char* grid : { "vtkUnstructuredGrid", "vtkStructuredGrid", "vtkRectilinearGrid" })
+  {
+    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), grid);
+  }
+  if (port == 1)
+  {
+    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  }
+}
+
+void ThrowRestAlone()
+{
+  throw Error("There is a rest configuration on input port 2, but no deformation on input port "
+              "1. Connect the deformation, or disconnect the rest configuration.");
 }
 
 } // namespace deformvolume

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FieldReading.h"
+
+#include "Deformation.h"
+#include "Error.h"
+#include "ImageGeometry.h"
+#include "MaskArray.h"
+
+#include "vtkAOSDataArrayTemplate.h"
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkDeviceVectorArray.h"
+#include "vtkImageData.h"
+#include "vtkPointData.h"
+
+#include <atomic>
+#include <string>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+const char* const FIELD = "displacement field";
+
+} // namespace
+
+vtkDataArray* FindFieldVectors(vtkImageData* image, const DeformationSource& source)
+{
+  if (image->GetNumberOfPoints() == 0)
+  {
+    throw Error("The displacement field is empty. Connect a vtkImageData with a "
+                "point array of three components.");
+  }
+  CheckTransform(GetGeometry(image), "the displacement field");
+  return FindVectors(image, source.Selector, source.Wanted, std::string("the ") + FIELD);
+}
+
+vtkDataArray* FindFieldGhosts(vtkImageData* image)
+{
+  return FindMask(image->GetPointData(), vtkDataSetAttributes::GhostArrayName(),
+    image->GetNumberOfPoints(), "point", FIELD);
+}
+
+std::vector<unsigned char> FindHiddenPoints(vtkDataArray* ghosts)
+{
+  std::vector<unsigned char> hidden;
+  bool any = false;
+  for (vtkIdType i = 0; ghosts && i < ghosts->GetNumberOfTuples(); ++i)
+  {
+    const auto kinds = static_cast<int>(ghosts->GetComponent(i, 0));
+    hidden.push_back((kinds & vtkDataSetAttributes::HIDDENPOINT) != 0 ? 1 : 0);
+    any = any || hidden.back() != 0;
+  }
+  return any ? hidden : std::vector<unsigned char>();
+}
+
+void ReadFieldVectors(
+  vtkDataArray* array, const std::vector<unsigned char>& undefined, const VectorTaker& take)
+{
+  if (undefined.empty())
+  {
+    ReadVectors(array, take, "Vector", FIELD);
+    return;
+  }
+  std::atomic<vtkIdType> fault{ -1 };
+  ReadVectors(
+    array,
+    [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType count)
+    {
+      std::vector<glm::dvec3> defined(vectors, vectors + count);
+      for (vtkIdType i = 0; i < count; ++i)
+      {
+        defined[i] *= undefined[first + i] ? 0.0 : 1.0;
+      }
+      take(first, defined.data(), count);
+    },
+    "Vector", FIELD, nullptr,
+    [&](vtkIdType point)
+    {
+      if (!undefined[point])
+      {
+        fault = point;
+      }
+    });
+  if (fault >= 0)
+  {
+    throw Error("Vector " + std::to_string(fault) + " of the " + FIELD +
+      " is not finite. Remove NaN and infinity from it, or mark its point as hidden in " +
+      vtkDataSetAttributes::GhostArrayName() + ".");
+  }
+}
+
+const float* FindFloats(vtkDataArray* array)
+{
+  if (auto* vectors = vtkDeviceVectorArray::SafeDownCast(array))
+  {
+    return vectors->IsOnDevice() ? nullptr : vectors->GetValues();
+  }
+  auto* floats = vtkAOSDataArrayTemplate<float>::FastDownCast(array);
+  return floats ? floats->GetPointer(0) : nullptr;
+}
+
+} // namespace deformvolume

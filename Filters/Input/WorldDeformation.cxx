@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "WorldDeformation.h"
+
+#include "FieldReading.h"
+#include "ImageGeometry.h"
+#include "NodeFaults.h"
+#include "PointDifferences.h"
+#include "VectorArray.h"
+
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkPointData.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <algorithm>
+
+namespace deformvolume
+{
+
+void WorldDeformation::Read(const DeformationSource& source)
+{
+  CheckSource(source);
+  if (const auto image = vtkImageData::SafeDownCast(source.Shape))
+  {
+    this->ReadField(image, source);
+  }
+  else
+  {
+    this->ReadMesh(source);
+  }
+}
+
+bool WorldDeformation::IsCurrent(const Stamp& stamp, const DeformationSource& source) const
+{
+  return !this->LastStamp.empty() && stamp == this->LastStamp &&
+    source.Choice == this->LastChoice && source.DisplacementScale == this->LastScale;
+}
+
+void WorldDeformation::Remember(const Stamp& stamp, const DeformationSource& source)
+{
+  this->LastStamp = stamp;
+  this->LastChoice = source.Choice;
+  this->LastScale = source.DisplacementScale;
+  ++this->Version;
+}
+
+void WorldDeformation::ReadMesh(const DeformationSource& source)
+{
+  const MeshParts& shape = source.ShapeParts;
+  const MeshParts& rest = source.GetRestParts();
+  this->Mesh.Read(shape, rest, source);
+  Stamp stamp = source.Rest ? GetPointsStamp(shape) : GetPointVectorsStamp(shape);
+  const Stamp restStamp = GetPointsStamp(rest);
+  stamp.insert(stamp.end(), restStamp.begin(), restStamp.end());
+  stamp.emplace_back(nullptr, source.Rest ? 1 : 0);
+  stamp.emplace_back(nullptr, static_cast<vtkMTimeType>(this->Mesh.GetConnectivityVersion()));
+  if (!this->Field && this->IsCurrent(stamp, source))
+  {
+    return;
+  }
+  this->LastStamp.clear();
+  this->Field = false;
+  const std::size_t nodes = GetNumberOfNodes(shape);
+  const DerivedNodes& derived = this->Mesh.GetDerivedNodes();
+  this->Displacements.resize(nodes + derived.GetCount());
+  NodeFaults faults;
+  faults.Resize(nodes);
+  const double factor = source.Rest ? 1.0 : source.DisplacementScale;
+  const VectorTaker take = [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType count)
+  {
+    std::transform(vectors, vectors + count, this->Displacements.begin() + first,
+      [factor](const glm::dvec3& vector) { return factor * vector; });
+  };
+  const std::vector<Tetrahedron>& tetrahedra = this->Mesh.GetTetrahedra();
+  if (source.Rest)
+  {
+    std::vector<VectorMemory> memories;
+    ReadPointDifferences(shape, rest, take, memories, faults);
+    CheckPoints(shape, MESH_NAME, faults, tetrahedra);
+  }
+  else
+  {
+    ReadPointVectors(shape, source.Selector, faults, take);
+    CheckPointVectors(shape, source.Selector, source.Wanted, MESH_NAME, faults, tetrahedra);
+  }
+  for (std::size_t i = 0; i < derived.GetCount(); ++i)
+  {
+    this->Displacements[nodes + i] = derived.Sum(
+      i, [&](std::int32_t node) { return this->Displacements[static_cast<std::size_t>(node)]; });
+  }
+  this->Remember(stamp, source);
+}
+
+void WorldDeformation::ReadField(vtkImageData* image, const DeformationSource& source)
+{
+  vtkDataArray* array = FindFieldVectors(image, source);
+  vtkDataArray* ghosts = FindFieldGhosts(image);
+  const float* floats = FindFloats(array);
+  const Stamp stamp{ { image, image->GetMTime() }, { array, array->GetMTime() },
+    { floats, static_cast<vtkMTimeType>(array->GetNumberOfValues()) },
+    { ghosts, ghosts ? ghosts->GetMTime() : 0 } };
+  if (this->Field && this->IsCurrent(stamp, source))
+  {
+    return;
+  }
+  this->LastStamp.clear();
+  this->Field = true;
+  this->Array = array;
+  this->Undefined = FindHiddenPoints(ghosts);
+  this->Converted.clear();
+  this->Converted.resize(floats ? 0 : static_cast<std::size_t>(array->GetNumberOfValues()));
+  // All are looked at, for those that are not finite.
+  ReadFieldVectors(array, this->Undefined,
+    [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType count)
+    {
+      for (vtkIdType i = 0; i < count && !floats; ++i)
+      {
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          this->Converted[static_cast<std::size_t>(3 * (first + i) + axis)] = vectors[i][axis];
+        }
+      }
+    });
+  const ImageGeometry geometry = GetGeometry(image);
+  this->Vectors = WorldField();
+  image->GetDimensions(this->Vectors.Dimensions.data());
+  const glm::dvec3 first(geometry.PointExtent[0], geometry.PointExtent[2], geometry.PointExtent[4]);
+  this->Vectors.IndexToWorld = glm::translate(geometry.GetIndexToWorld(), first);
+  this->Vectors.Floats = floats;
+  this->Vectors.Doubles = this->Converted.data();
+  this->Vectors.Scale = source.DisplacementScale;
+  this->Vectors.Tolerance = 1e-3; // that of the kernels that move voxels
+  this->Vectors.Undefined = this->Undefined.empty() ? nullptr : this->Undefined.data();
+  this->Remember(stamp, source);
+}
+
+} // namespace deformvolume

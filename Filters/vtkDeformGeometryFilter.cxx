@@ -1,0 +1,692 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkDeformGeometryFilter.h"
+
+#include "Error.h"
+#include "FieldPointMap.h"
+#include "InputUpdate.h"
+#include "MeshGathering.h"
+#include "MeshGrids.h"
+#include "MeshPointMap.h"
+#include "OutsideMode.h"
+#include "ParallelFor.h"
+#include "PipelineExecution.h"
+#include "PointOrder.h"
+#include "ProgressReport.h"
+#include "Ranks.h"
+#include "VTKThreads.h"
+#include "VectorArray.h"
+#include "VectorChoice.h"
+#include "WorldDeformation.h"
+
+#include "vtkCellData.h"
+#include "vtkCharArray.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataObject.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkFloatArray.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkPoints.h"
+#include "vtkSmartPointer.h"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <set>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+using deformvolume::PointMap;
+
+vtkStandardNewMacro(vtkDeformGeometryFilter);
+
+namespace
+{
+
+constexpr const char* MaskName = "vtkValidPointMask";
+constexpr std::size_t PointsPerPart = 512;
+constexpr std::size_t PointsPerReport = 64 * PointsPerPart; // of progress
+
+// An array of vectors that is written: of floats where another one is, else of doubles.
+class WrittenVectors
+{
+public:
+  WrittenVectors(vtkDataArray* like, vtkIdType count)
+  {
+    if (like->GetDataType() == VTK_FLOAT)
+    {
+      vtkNew<vtkFloatArray> floats;
+      this->Array = floats;
+    }
+    else
+    {
+      vtkNew<vtkDoubleArray> doubles;
+      this->Array = doubles;
+    }
+    this->Array->SetName(like->GetName());
+    this->Array->SetNumberOfComponents(3);
+    this->Array->CopyComponentNames(like);
+    this->Array->SetNumberOfTuples(count);
+    this->Floats = vtkArrayDownCast<vtkFloatArray>(this->Array);
+    this->Doubles = vtkArrayDownCast<vtkDoubleArray>(this->Array);
+  }
+
+  // May be called by several threads.
+  void Set(vtkIdType tuple, const glm::dvec3& vector) const
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      if (this->Floats)
+      {
+        this->Floats->SetValue(3 * tuple + axis, static_cast<float>(vector[axis]));
+      }
+      else
+      {
+        this->Doubles->SetValue(3 * tuple + axis, vector[axis]);
+      }
+    }
+  }
+
+  vtkDataArray* Get() const { return this->Array; }
+
+private:
+  vtkSmartPointer<vtkDataArray> Array;
+  vtkFloatArray* Floats;
+  vtkDoubleArray* Doubles;
+};
+
+glm::dvec3 TransformNormal(const glm::dmat3& gradient, const glm::dvec3& normal)
+{
+  // The inverse transpose times the determinant, which is there for singular gradients as well.
+  const glm::dmat3 cofactors(glm::cross(gradient[1], gradient[2]),
+    glm::cross(gradient[2], gradient[0]), glm::cross(gradient[0], gradient[1]));
+  const glm::dvec3 turned = cofactors * normal;
+  const double length = glm::length(turned);
+  const double sign = glm::determinant(gradient) < 0.0 ? -1.0 : 1.0;
+  return length > 0.0 ? sign / length * turned : turned;
+}
+
+// A point array of vectors or normals that follows the points.
+struct TransformedArray
+{
+  TransformedArray(vtkDataArray* source, int attribute, vtkIdType count)
+    : Source(source)
+    , Attribute(attribute)
+    , Output(source, count)
+  {
+  }
+
+  void Transform(vtkIdType point, const glm::dmat3& gradient, const glm::dvec3& vector) const
+  {
+    const bool isNormal = this->Attribute == vtkDataSetAttributes::NORMALS;
+    // Where nothing is deformed, normals keep their length.
+    this->Output.Set(point,
+      isNormal && gradient != glm::dmat3(1.0) ? TransformNormal(gradient, vector)
+                                              : gradient * vector);
+  }
+
+  vtkDataArray* Source;
+  int Attribute; // -1: none
+  WrittenVectors Output;
+};
+
+// The point arrays that are transformed.
+std::vector<TransformedArray> FindTransformed(vtkPointSet* points, bool allVectors)
+{
+  using Attributes = vtkDataSetAttributes;
+  vtkPointData* pointData = points->GetPointData();
+  std::vector<TransformedArray> found;
+  std::set<vtkDataArray*> others{ pointData->GetTCoords() };
+  for (const int attribute : { Attributes::NORMALS, Attributes::VECTORS })
+  {
+    vtkDataArray* array = pointData->GetAttribute(attribute);
+    if (array && others.insert(array).second)
+    {
+      found.emplace_back(array, attribute, points->GetNumberOfPoints());
+    }
+  }
+  for (int i = 0; allVectors && i < pointData->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = pointData->GetArray(i);
+    const bool isVector = array && array->GetNumberOfComponents() == 3 && array->GetName() &&
+      (array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE);
+    if (isVector && others.count(array) == 0)
+    {
+      found.emplace_back(array, -1, points->GetNumberOfPoints());
+    }
+  }
+  return found;
+}
+
+} // namespace
+
+//------------------------------------------------------------------------------
+/// What vtkDeformGeometryFilter keeps from one execution to the next.
+class vtkDeformGeometryFilter::vtkInternals
+{
+public:
+  explicit vtkInternals(vtkDeformGeometryFilter* self)
+    : Self(self)
+  {
+  }
+
+  /// Brings the map up to date with ports 1 and 2. Collective.
+  void ReadDeformation(const deformvolume::Ranks& ranks, vtkDataObject* shape, vtkDataObject* rest);
+  /// Moves a point set, or all of a composite dataset.
+  void MoveAll(vtkDataObject* input, vtkDataObject* output);
+
+  deformvolume::PipelineExecution Execution;
+
+private:
+  void MakeMap(const deformvolume::OutsideVoxels& outside);
+  void Move(vtkPointSet* input, vtkPointSet* output);
+  void WarnOfIgnored(const std::vector<vtkPointSet*>& inputs);
+  void WarnOfOutside();
+  /// Calls body(begin, end) for parts of a range, in parallel. Throws Aborted.
+  template <typename Body>
+  void RunInParts(std::size_t size, Body&& body);
+  /// False where the point is outside.
+  bool MovePoint(const glm::dvec3& point, PointMap::Image& image) const;
+
+  vtkDeformGeometryFilter* Self;
+  deformvolume::MeshGrids ShapeGrids;
+  deformvolume::MeshGrids RestGrids;
+  deformvolume::MeshGathering Gathering;
+  deformvolume::WorldDeformation Deformation;
+
+  // The map, and what it was made of.
+  using Key = std::tuple<std::uint64_t, deformvolume::OutsideVoxels::Modes, double, bool>;
+  std::unique_ptr<PointMap> Map; // null: points stay
+  bool MapIsOfMesh = false;
+  std::uint64_t ConnectivityOfMap = 0;
+  Key KeyOfMap;
+  bool IsInverted = false; // whether the map leads the other way
+
+  // Points of all blocks, and those that have been moved.
+  vtkIdType NumberOfPoints = 0;
+  vtkIdType NumberDone = 0;
+
+  std::set<std::string> WarnedOf;
+};
+
+//------------------------------------------------------------------------------
+void vtkDeformGeometryFilter::vtkInternals::ReadDeformation(
+  const deformvolume::Ranks& ranks, vtkDataObject* shape, vtkDataObject* rest)
+{
+  if (this->Self->GetNumberOfInputConnections(1) == 0)
+  {
+    if (this->Self->GetNumberOfInputConnections(2) > 0)
+    {
+      deformvolume::ThrowRestAlone();
+    }
+    this->Map = nullptr;
+    return;
+  }
+  deformvolume::DeformationSource source;
+  ranks.Attempt(
+    [&]
+    {
+      source = deformvolume::ChooseDeformation(shape, rest, this->Self->GetInputArrayInformation(0),
+        [this](vtkDataSet* dataSet, int& association)
+        { return this->Self->GetInputArrayToProcess(0, dataSet, association); },
+        { this->Self->DisplacementScale, this->Self->PointsAreDeformed,
+          this->Self->FieldIsInverse });
+      source.ShapeIsMade = !deformvolume::IsInMemory(this->Self, 1);
+      source.RestIsMade = !deformvolume::IsInMemory(this->Self, 2);
+      source.ShapeParts = this->ShapeGrids.Find(
+        shape, source.ShapeIsMade, source.PointsAreDeformed ? &source.Selector : nullptr);
+      source.RestParts = this->RestGrids.Find(rest, source.RestIsMade);
+    });
+  source = this->Gathering.Gather(ranks, source);
+  ranks.Attempt(
+    [&]
+    {
+      this->Deformation.Read(source);
+      this->MakeMap(
+        deformvolume::MakeOutsideVoxels(this->Self->OutsideMode, this->Self->FadeDistance));
+    });
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformGeometryFilter::vtkInternals::MakeMap(const deformvolume::OutsideVoxels& outside)
+{
+  const bool isField = this->Deformation.IsField();
+  this->IsInverted = this->Self->Inverse != (isField && this->Self->FieldIsInverse);
+  const Key key(
+    this->Deformation.GetVersion(), outside.Mode, outside.FadeDistance, this->IsInverted);
+  if (this->Map && key == this->KeyOfMap)
+  {
+    return;
+  }
+  if (isField)
+  {
+    this->Map = nullptr;
+    this->MapIsOfMesh = false;
+    this->Map = std::make_unique<deformvolume::FieldPointMap>(
+      this->Deformation.GetField(), outside, this->IsInverted);
+  }
+  else
+  {
+    const deformvolume::RestMesh& mesh = this->Deformation.GetRestMesh();
+    if (!this->Map || !this->MapIsOfMesh ||
+      this->ConnectivityOfMap != mesh.GetConnectivityVersion())
+    {
+      this->Map = nullptr;
+      this->Map =
+        std::make_unique<deformvolume::MeshPointMap>(mesh.GetPoints(), mesh.GetTetrahedra());
+      this->MapIsOfMesh = true;
+      this->ConnectivityOfMap = mesh.GetConnectivityVersion();
+    }
+    static_cast<deformvolume::MeshPointMap*>(this->Map.get())
+      ->Set(this->Deformation.GetDisplacements(), outside, this->IsInverted);
+  }
+  this->KeyOfMap = key;
+}
+
+//------------------------------------------------------------------------------
+bool vtkDeformGeometryFilter::vtkInternals::MovePoint(
+  const glm::dvec3& point, PointMap::Image& image) const
+{
+  if (this->Map &&
+    (this->IsInverted ? this->Map->Invert(point, image) : this->Map->Map(point, image)))
+  {
+    return true;
+  }
+  image.Point = point;
+  image.Gradient = glm::dmat3(1.0);
+  return !this->Map;
+}
+
+//------------------------------------------------------------------------------
+template <typename Body>
+void vtkDeformGeometryFilter::vtkInternals::RunInParts(std::size_t size, Body&& body)
+{
+  deformvolume::ProgressReport progress(this->Self);
+  for (std::size_t begin = 0; begin < size; begin += PointsPerReport)
+  {
+    const std::size_t some = std::min(PointsPerReport, size - begin);
+    if (!progress.Tell(
+          static_cast<double>(this->NumberDone) / static_cast<double>(this->NumberOfPoints)))
+    {
+      throw deformvolume::Aborted();
+    }
+    deformvolume::ParallelForParts(some, PointsPerPart,
+      [&](std::size_t from, std::size_t to) { body(begin + from, begin + to); });
+    this->NumberDone += static_cast<vtkIdType>(some);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformGeometryFilter::vtkInternals::Move(vtkPointSet* input, vtkPointSet* output)
+{
+  const vtkIdType count = input->GetNumberOfPoints();
+  vtkNew<vtkCharArray> mask;
+  mask->SetName(MaskName);
+  mask->SetNumberOfTuples(count);
+  if (count == 0)
+  {
+    output->ShallowCopy(input);
+    output->GetPointData()->AddArray(mask);
+    return;
+  }
+  std::vector<glm::dvec3> places(static_cast<std::size_t>(count));
+  vtkDataArray* inputPoints = input->GetPoints()->GetData();
+  deformvolume::ReadVectors(
+    inputPoints,
+    [&](vtkIdType first, const glm::dvec3* points, vtkIdType number)
+    { std::copy_n(points, number, places.begin() + first); },
+    "Point", "point set on input port 0");
+  const WrittenVectors moved(inputPoints, count);
+  const std::vector<TransformedArray> arrays =
+    FindTransformed(input, this->Self->TransformAllInputVectors);
+  std::vector<glm::dmat3> gradients(arrays.empty() ? 0 : places.size());
+  const std::vector<std::int64_t> order = deformvolume::SortBySpace(places);
+  std::atomic<vtkIdType> outside{ 0 };
+  this->RunInParts(places.size(),
+    [&](std::size_t begin, std::size_t end)
+    {
+      vtkIdType outsideHere = 0;
+      PointMap::Image image;
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        const std::int64_t point = order[i];
+        const bool isValid = this->MovePoint(places[static_cast<std::size_t>(point)], image);
+        outsideHere += isValid ? 0 : 1;
+        mask->SetValue(point, isValid ? 1 : 0);
+        moved.Set(point, image.Point);
+        if (!gradients.empty())
+        {
+          gradients[static_cast<std::size_t>(point)] = image.Gradient;
+        }
+      }
+      outside += outsideHere;
+    });
+  for (const TransformedArray& array : arrays)
+  {
+    deformvolume::ParallelForParts(places.size(), PointsPerPart,
+      [&, copy = deformvolume::MakeVectorCopier(array.Source)](std::size_t begin, std::size_t end)
+      {
+        std::array<glm::dvec3, PointsPerPart> vectors;
+        const auto first = static_cast<vtkIdType>(begin);
+        copy(first, static_cast<vtkIdType>(end - begin), vectors.data());
+        for (std::size_t i = begin; i < end; ++i)
+        {
+          array.Transform(static_cast<vtkIdType>(i), gradients[i], vectors[i - begin]);
+        }
+      });
+  }
+  output->ShallowCopy(input);
+  vtkNew<vtkPoints> points;
+  points->SetData(moved.Get());
+  output->SetPoints(points);
+  vtkPointData* pointData = output->GetPointData();
+  for (const TransformedArray& array : arrays)
+  {
+    if (array.Attribute < 0)
+    {
+      pointData->AddArray(array.Output.Get());
+    }
+    else
+    {
+      pointData->SetAttribute(array.Output.Get(), array.Attribute);
+    }
+  }
+  pointData->AddArray(mask);
+  this->Self->NumberOfOutsidePoints += outside;
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformGeometryFilter::vtkInternals::MoveAll(vtkDataObject* input, vtkDataObject* output)
+{
+  std::vector<vtkPointSet*> inputs;
+  auto* blocks = vtkCompositeDataSet::SafeDownCast(input);
+  vtkSmartPointer<vtkCompositeDataIterator> iterator;
+  if (blocks)
+  {
+    iterator.TakeReference(blocks->NewIterator());
+    for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
+    {
+      vtkDataObject* block = iterator->GetCurrentDataObject();
+      inputs.push_back(vtkPointSet::SafeDownCast(block));
+      if (!inputs.back())
+      {
+        throw deformvolume::Error("Block " + std::to_string(iterator->GetCurrentFlatIndex()) +
+          " of the composite dataset on input port 0 is a " + block->GetClassName() +
+          ", which has no points that can be moved. Extract the blocks that are point sets.");
+      }
+    }
+  }
+  else
+  {
+    inputs.push_back(vtkPointSet::SafeDownCast(input));
+  }
+  this->WarnOfIgnored(inputs);
+  this->NumberDone = this->NumberOfPoints = 0;
+  for (vtkPointSet* points : inputs)
+  {
+    this->NumberOfPoints += points->GetNumberOfPoints();
+  }
+  if (!blocks)
+  {
+    this->Move(inputs.front(), vtkPointSet::SafeDownCast(output));
+  }
+  else
+  {
+    // The output is complete, or empty.
+    std::vector<vtkSmartPointer<vtkPointSet>> moved;
+    for (vtkPointSet* points : inputs)
+    {
+      moved.push_back(vtkSmartPointer<vtkPointSet>::Take(points->NewInstance()));
+      this->Move(points, moved.back());
+    }
+    auto* movedBlocks = vtkCompositeDataSet::SafeDownCast(output);
+    movedBlocks->CopyStructure(blocks);
+    movedBlocks->GetFieldData()->PassData(blocks->GetFieldData());
+    auto next = moved.begin();
+    for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
+    {
+      movedBlocks->SetDataSet(iterator, *next++);
+    }
+  }
+  this->WarnOfOutside();
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformGeometryFilter::vtkInternals::WarnOfOutside()
+{
+  const vtkIdType outside = this->Self->NumberOfOutsidePoints;
+  if (outside == 0)
+  {
+    return;
+  }
+  const bool isField = this->Deformation.IsField();
+  const std::string where = this->IsInverted
+    ? (isField ? "are not where the displacement field moves anything to"
+               : "lie outside the deformed mesh")
+    : (isField ? "lie outside the displacement field" : "lie outside the deformation mesh");
+  vtkWarningWithObjectMacro(
+    this->Self, << outside << " of " << this->NumberOfPoints << " points " << where
+                << ". They stay where they are, and " << MaskName << " is 0 there."
+                << (this->Self->OutsideMode == DISCARD
+                       ? " Set OutsideMode to EXTRAPOLATE or KEEP for points outside."
+                       : ""));
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformGeometryFilter::vtkInternals::WarnOfIgnored(const std::vector<vtkPointSet*>& inputs)
+{
+  std::set<std::string> warnings;
+  vtkIdType points = 0;
+  for (vtkPointSet* input : inputs)
+  {
+    points += input->GetNumberOfPoints();
+    for (const auto& [array, kind] : { std::pair(input->GetCellData()->GetNormals(), "normals"),
+           std::pair(input->GetCellData()->GetVectors(), "vectors") })
+    {
+      if (array && this->Map)
+      {
+        warnings.insert(std::string("The active ") + kind + " \"" +
+          (array->GetName() ? array->GetName() : "") +
+          "\" of the cells on input port 0 are not transformed. Compute them again from the "
+          "output, or convert them to point arrays before.");
+      }
+    }
+  }
+  // A rank may have no points.
+  if (points == 0 && !deformvolume::Ranks().AreMany())
+  {
+    warnings.insert("The input on port 0 has no points, and neither has the output.");
+  }
+  if (this->Map && !this->Deformation.IsField())
+  {
+    deformvolume::AddCellWarnings(this->Deformation.GetRestMesh(), this->Gathering, warnings);
+  }
+  std::string news;
+  for (const std::string& warning : warnings)
+  {
+    news += this->WarnedOf.count(warning) > 0 ? "" : (news.empty() ? "" : " ") + warning;
+  }
+  if (!news.empty())
+  {
+    vtkWarningWithObjectMacro(this->Self, << news);
+  }
+  this->WarnedOf = warnings;
+}
+
+//------------------------------------------------------------------------------
+vtkDeformGeometryFilter::vtkDeformGeometryFilter()
+  : Internals(new vtkInternals(this))
+{
+  deformvolume::UseVTKThreads();
+  this->SetNumberOfInputPorts(3);
+  this->SetInputArrayToProcess(
+    0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::VECTORS);
+}
+
+//------------------------------------------------------------------------------
+vtkDeformGeometryFilter::~vtkDeformGeometryFilter() = default;
+
+//------------------------------------------------------------------------------
+void vtkDeformGeometryFilter::SetDeformationConnection(vtkAlgorithmOutput* output)
+{
+  this->SetInputConnection(1, output);
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformGeometryFilter::SetDeformationData(vtkDataObject* data)
+{
+  this->SetInputDataInternal(1, data);
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformGeometryFilter::SetRestConnection(vtkAlgorithmOutput* output)
+{
+  this->SetInputConnection(2, output);
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformGeometryFilter::SetRestData(vtkDataObject* data)
+{
+  this->SetInputDataInternal(2, data);
+}
+
+//------------------------------------------------------------------------------
+int vtkDeformGeometryFilter::FillInputPortInformation(int port, vtkInformation* info)
+{
+  if (port == 0)
+  {
+    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPointSet");
+    // The executive would iterate over the blocks, and ranks may have different numbers of these.
+    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+    return 1;
+  }
+  deformvolume::FillDeformationPort(port, info);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkDeformGeometryFilter::FillOutputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataObject");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkDeformGeometryFilter::RequestDataObject(
+  vtkInformation*, vtkInformationVector** input, vtkInformationVector* outputVector)
+{
+  vtkDataObject* points = vtkDataObject::GetData(input[0]);
+  vtkInformation* outInfo = outputVector->GetInformationObject(0);
+  vtkDataObject* output = vtkDataObject::GetData(outInfo);
+  if (!points)
+  {
+    return 0;
+  }
+  if (!output || std::string(output->GetClassName()) != points->GetClassName())
+  {
+    outInfo->Set(
+      vtkDataObject::DATA_OBJECT(), vtkSmartPointer<vtkDataObject>::Take(points->NewInstance()));
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkDeformGeometryFilter::ComputePipelineMTime(vtkInformation* request,
+  vtkInformationVector** input, vtkInformationVector* output, int requestFromOutputPort,
+  vtkMTimeType* mtime)
+{
+  this->Internals->Execution.Renew(this);
+  return this->Superclass::ComputePipelineMTime(
+    request, input, output, requestFromOutputPort, mtime);
+}
+
+//------------------------------------------------------------------------------
+int vtkDeformGeometryFilter::ExecuteInformation(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* output)
+{
+  deformvolume::MergeTimes(this, 3, output->GetInformationObject(0));
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkDeformGeometryFilter::ComputeInputUpdateExtent(
+  vtkInformation*, vtkInformationVector** input, vtkInformationVector*)
+{
+  const deformvolume::Ranks ranks;
+  for (int port = 1; port < 3; ++port)
+  {
+    if (vtkInformation* info = input[port]->GetInformationObject(0))
+    {
+      deformvolume::RequestInput(info, ranks);
+    }
+  }
+  if (!ranks.AreMany())
+  {
+    return 1;
+  }
+  // Here, since a rank whose source of port 0 fails gets no further.
+  return this->Internals->Execution.Run(this,
+    "There is not enough memory for the deformation. Use a coarser one, or free memory.",
+    [&]
+    {
+      deformvolume::UpdateRequested(this, 3, input, ranks, 1);
+      this->Internals->ReadDeformation(
+        ranks, this->GetInputDataObject(1, 0), this->GetInputDataObject(2, 0));
+    });
+}
+
+//------------------------------------------------------------------------------
+int vtkDeformGeometryFilter::RequestData(
+  vtkInformation*, vtkInformationVector** input, vtkInformationVector* outputVector)
+{
+  vtkInformation* outInfo = outputVector->GetInformationObject(0);
+  vtkDataObject* points = vtkDataObject::GetData(input[0]);
+  vtkDataObject* output = vtkDataObject::GetData(outInfo);
+  output->Initialize();
+  this->NumberOfOutsidePoints = 0;
+  if (this->Internals->Execution.HasFailed())
+  {
+    return 0; // the request for extents has failed, which the executive ignores
+  }
+  return this->Internals->Execution.Run(this,
+    "There is not enough memory for the points. Use a smaller point set, or free memory.",
+    [&]
+    {
+      const deformvolume::Ranks ranks;
+      vtkDataObject* shape = vtkDataObject::GetData(input[1]);
+      if (!ranks.AreMany())
+      {
+        this->Internals->ReadDeformation(ranks, shape, vtkDataObject::GetData(input[2]));
+      }
+      this->Internals->MoveAll(points, output);
+      deformvolume::SetTimeStep(output, outInfo, { shape, points });
+    });
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformGeometryFilter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Inverse: " << (this->Inverse ? "on" : "off") << "\n";
+  os << indent << "DisplacementScale: " << this->DisplacementScale << "\n";
+  os << indent << "PointsAreDeformed: " << (this->PointsAreDeformed ? "on" : "off") << "\n";
+  os << indent << "FieldIsInverse: " << (this->FieldIsInverse ? "on" : "off") << "\n";
+  os << indent << "OutsideMode: " << this->OutsideMode << "\n";
+  os << indent << "FadeDistance: " << this->FadeDistance << "\n";
+  os << indent << "TransformAllInputVectors: " << (this->TransformAllInputVectors ? "on" : "off")
+     << "\n";
+  os << indent << "NumberOfOutsidePoints: " << this->NumberOfOutsidePoints << "\n";
+}

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkDeformGeometryFilter
+ * @brief   move points as vtkDeformVolumeFilter moves a volume
+ *
+ * vtkDeformGeometryFilter moves surfaces, landmarks, streamlines and grids with the deformation
+ * that vtkDeformVolumeFilter applies to a volume: segmentations and measurements stay where they
+ * belong. It takes points at rest to their deformed places or, with Inverse, points of the deformed
+ * volume back to rest. All is computed on the processor, in double precision; no OpenCL device is
+ * needed.
+ *
+ * @par Port 0, the points:
+ * Any vtkPointSet: vtkPolyData, vtkUnstructuredGrid, vtkStructuredGrid, or a composite dataset of
+ * such. All points must be finite, whether cells use them or not.
+ *
+ * @par Port 1, the deformation, optional:
+ * A mesh with displacements or, with port 2, deformed points; or a vtkImageData with a displacement
+ * field, in world units: the same as port 1 of vtkDeformVolumeFilter. The displacements are chosen
+ * by SetInputArrayToProcess(0, 1, 0, POINTS, name), by default the active vectors; an empty name
+ * stands for the active vectors or else the only array of three components. Without it points stay
+ * where they are.
+ *
+ * @par Port 2, optional, the rest configuration:
+ * A mesh, as on port 1, with the cells and the number of points of port 1.
+ *
+ * @par Output:
+ * The same kind of data with moved points, of type float where the points of the input are, else
+ * double. Cells, cell arrays and field data pass. So do point arrays, but for these:
+ * - Active normals are multiplied by the inverse transpose of the deformation gradient and
+ *   normalised.
+ * - Active vectors are multiplied by the deformation gradient. See also TransformAllInputVectors.
+ *   They are displacements of the same mesh where port 0 and port 1 are connected to one source:
+ *   choose other active vectors where these are not to change.
+ * - "vtkValidPointMask" (char) is 1 for points that the deformation holds, and 0 for the others:
+ *   those stay where they are, with their normals and vectors, and a warning says how many they
+ * are.
+ *
+ * These arrays are of type float where the input's are, else double. The deformation gradient is
+ * the derivative of deformed by rest positions, with Inverse of rest by deformed ones. It is
+ * constant in each tetrahedron, and jumps between them. Active normals and vectors of cells are not
+ * transformed; a warning names them.
+ *
+ * @par The map:
+ * - Mesh: a point follows the tetrahedron that holds it, of several the one with the lowest number.
+ *   Points that are nearer to the mesh than 1e-6 of its size (the diagonal of its bounds plus its
+ *   largest coordinate) count as in it.
+ * - Field: trilinear between the points of the field. Points outside it by at most 1/1000 of a cell
+ *   count as on its border. Those whose interpolation needs a hidden point are outside.
+ * - With Inverse (or without, where FieldIsInverse is on) a point may have come from several
+ * places, where the deformation folds: tetrahedra that are upright win over inverted ones, and then
+ * the one with the lowest number. Cells of a field are solved by Newton's method, to 1e-6 of a
+ * cell. Where no place is found, the point is outside.
+ *
+ * A voxel center comes to where vtkDeformVolumeFilter moves the voxel, which rounds to 1/256 of an
+ * output voxel. Between voxels that filter interpolates along the tetrahedra of its voxels, and
+ * this filter follows the deformation itself.
+ *
+ * @par Ranks:
+ * Under MPI each rank moves its points. Of the deformation mesh each rank may have a piece, none,
+ * or the whole: it is gathered through vtkMultiProcessController::GetGlobalController(). A
+ * displacement field every rank must be given whole. All ranks have to update together.
+ *
+ * @par Errors:
+ * Each failure is one vtkErrorMacro, which says what is wrong and what to do, at each update that
+ * fails: points that are not finite, a mesh without tetrahedra, displacements that are missing or
+ * not finite. The output is then empty. An input without points is a warning, and gives an output
+ * without points.
+ *
+ * @sa vtkDeformVolumeFilter vtkTransformFilter vtkWarpVector
+ */
+#ifndef vtkDeformGeometryFilter_h
+#define vtkDeformGeometryFilter_h
+
+#include "vtkDeformVolumeModule.h" // for export macro
+#include "vtkPointSetAlgorithm.h"
+
+#include <memory> // for std::unique_ptr
+
+class VTKDEFORMVOLUME_EXPORT vtkDeformGeometryFilter : public vtkPointSetAlgorithm
+{
+public:
+  static vtkDeformGeometryFilter* New();
+  vtkTypeMacro(vtkDeformGeometryFilter, vtkPointSetAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * Connect the deformation (port 1, optional): a tetrahedral mesh or a displacement field.
+   */
+  void SetDeformationConnection(vtkAlgorithmOutput* output);
+  void SetDeformationData(vtkDataObject* data);
+  ///@}
+
+  ///@{
+  /**
+   * Connect the rest configuration of the deformation mesh (port 2, optional).
+   */
+  void SetRestConnection(vtkAlgorithmOutput* output);
+  void SetRestData(vtkDataObject* data);
+  ///@}
+
+  ///@{
+  /**
+   * Whether the points lie in the deformed volume, and are led back to rest. Default: off.
+   */
+  vtkSetMacro(Inverse, bool);
+  vtkGetMacro(Inverse, bool);
+  vtkBooleanMacro(Inverse, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Factor on the displacements of port 1, as in vtkWarpVector. Not used with port 2. Default 1.
+   */
+  vtkSetMacro(DisplacementScale, double);
+  vtkGetMacro(DisplacementScale, double);
+  ///@}
+
+  ///@{
+  /**
+   * Whether the points of the mesh on port 1 are deformed already, with the displacements that led
+   * there beside them. See vtkDeformVolumeFilter. Default: off.
+   */
+  vtkSetMacro(PointsAreDeformed, bool);
+  vtkGetMacro(PointsAreDeformed, bool);
+  vtkBooleanMacro(PointsAreDeformed, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Whether a displacement field on port 1 is inverse: it leads from a point of the deformed volume
+   * to the point at rest that is seen there, as registration programs write it. Points at rest then
+   * need the inverse of the field, which is solved for, and points of the deformed volume (Inverse)
+   * are looked up. Not used with a mesh. Default: off.
+   */
+  vtkSetMacro(FieldIsInverse, bool);
+  vtkGetMacro(FieldIsInverse, bool);
+  vtkBooleanMacro(FieldIsInverse, bool);
+  ///@}
+
+  enum OutsideModes
+  {
+    DISCARD = 0,
+    EXTRAPOLATE = 1,
+    KEEP = 2
+  };
+
+  ///@{
+  /**
+   * What happens to points outside the deformation mesh or field.
+   * - DISCARD: they are nowhere in the deformed volume. They stay where they are, and
+   *   vtkValidPointMask is 0 there.
+   * - EXTRAPOLATE: they follow the affine map of the tetrahedron with the closest face of the
+   * mesh's boundary; with a field, the displacement of the closest point of the field. (In
+   *   vtkDeformVolumeFilter it is the tetrahedron of the closest voxel inside the mesh: the two may
+   *   differ far from the mesh.)
+   * - KEEP: they stay where they are, and the displacement fades to zero within FadeDistance.
+   *
+   * With Inverse the outside is inverted by Newton's method, as far as it converges: where the
+   * closest point of the mesh jumps, there are points that nothing is moved to, which are outside
+   * (vtkValidPointMask is 0). Default: DISCARD.
+   */
+  vtkSetClampMacro(OutsideMode, int, DISCARD, KEEP);
+  vtkGetMacro(OutsideMode, int);
+  void SetOutsideModeToDiscard() { this->SetOutsideMode(DISCARD); }
+  void SetOutsideModeToExtrapolate() { this->SetOutsideMode(EXTRAPOLATE); }
+  void SetOutsideModeToKeep() { this->SetOutsideMode(KEEP); }
+  ///@}
+
+  ///@{
+  /**
+   * With OutsideMode KEEP, the distance from the mesh or the field within which the displacement
+   * fades to zero, in world units. A point at the distance d is displaced as the closest point of
+   * the boundary, times 1 - 3 s^2 + 2 s^3 with s = d / FadeDistance. 0: no point outside moves.
+   * Negative, infinite and NaN are errors at the next update. Default: 0.
+   */
+  vtkSetMacro(FadeDistance, double);
+  vtkGetMacro(FadeDistance, double);
+  ///@}
+
+  ///@{
+  /**
+   * Whether all point arrays of three components of type float or double are transformed as the
+   * active vectors are, but for normals and texture coordinates. Default: off.
+   */
+  vtkSetMacro(TransformAllInputVectors, bool);
+  vtkGetMacro(TransformAllInputVectors, bool);
+  vtkBooleanMacro(TransformAllInputVectors, bool);
+  ///@}
+
+  /**
+   * Points of the last update that were outside (vtkValidPointMask is 0), of all blocks, on this
+   * rank.
+   */
+  vtkGetMacro(NumberOfOutsidePoints, vtkIdType);
+
+protected:
+  vtkDeformGeometryFilter();
+  ~vtkDeformGeometryFilter() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int ComputePipelineMTime(vtkInformation* request, vtkInformationVector** input,
+    vtkInformationVector* output, int requestFromOutputPort, vtkMTimeType* mtime) override;
+  int RequestDataObject(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+  int ExecuteInformation(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+  int ComputeInputUpdateExtent(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+  int RequestData(
+    vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override;
+
+private:
+  vtkDeformGeometryFilter(const vtkDeformGeometryFilter&) = delete;
+  void operator=(const vtkDeformGeometryFilter&) = delete;
+
+  bool Inverse = false;
+  double DisplacementScale = 1.0;
+  bool PointsAreDeformed = false;
+  bool FieldIsInverse = false;
+  int OutsideMode = DISCARD;
+  double FadeDistance = 0.0;
+  bool TransformAllInputVectors = false;
+  vtkIdType NumberOfOutsidePoints = 0;
+
+  class vtkInternals;
+  std::unique_ptr<vtkInternals> Internals;
+};
+
+#endif

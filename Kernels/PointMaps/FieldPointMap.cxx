@@ -1,0 +1,428 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FieldPointMap.h"
+
+#include "BarycentricMap.h"
+#include "BoxPyramid.h"
+#include "FiveTetrahedra.h"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <vector>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+constexpr int BlockSize = 2;           // cells on an axis that have one box
+constexpr int MostCellSteps = 20;      // of Newton's method in a cell
+constexpr double LastCellStep = 1e-12; // cells
+constexpr double CellFaceTolerance =
+  1e-9; // cells; no rounding must lose points between two of them
+constexpr double CellSolutionTolerance = 1e-8; // cells
+// A point with a smaller weight is not needed: rounding errors of positions.
+constexpr double LeastWeight = 1e-5;
+
+/// The corners of a cell, that of its upper x, y and z in bits 0, 1 and 2 of their number.
+using Corners = std::array<glm::dvec3, 8>;
+
+/// What is trilinear between corners, at a place between 0 and 1, and its derivatives by that.
+glm::dvec3 Interpolate(const Corners& corners, const glm::dvec3& place, glm::dmat3& gradient)
+{
+  const auto mix = [](const glm::dvec3& a, const glm::dvec3& b, double t)
+  { return a + t * (b - a); };
+  std::array<glm::dvec3, 4> alongX;
+  std::array<glm::dvec3, 4> byX;
+  for (std::size_t i = 0; i < 4; ++i)
+  {
+    byX[i] = corners[2 * i + 1] - corners[2 * i];
+    alongX[i] = corners[2 * i] + place.x * byX[i];
+  }
+  const glm::dvec3 low = mix(alongX[0], alongX[1], place.y);
+  const glm::dvec3 high = mix(alongX[2], alongX[3], place.y);
+  gradient[0] = mix(mix(byX[0], byX[1], place.y), mix(byX[2], byX[3], place.y), place.z);
+  gradient[1] = mix(alongX[1] - alongX[0], alongX[3] - alongX[2], place.z);
+  gradient[2] = high - low;
+  return mix(low, high, place.z);
+}
+
+} // namespace
+
+class FieldPointMap::Internals
+{
+public:
+  Internals(const WorldField& field, const OutsideVoxels& outside)
+    : Field(field)
+    , Outside(outside)
+    , ToWorld(field.IndexToWorld)
+    , ToIndex(glm::inverse(field.IndexToWorld))
+  {
+    std::int64_t stride = 1;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int points = field.Dimensions[static_cast<std::size_t>(axis)];
+      this->Last[axis] = points - 1;
+      this->Cells[axis] = std::max(points - 1, 1);
+      this->Strides[axis] = stride;
+      stride *= points;
+    }
+    this->CellSize = std::min({ glm::length(this->ToWorld[0]), glm::length(this->ToWorld[1]),
+      glm::length(this->ToWorld[2]) });
+  }
+
+  glm::ivec3 GetCell(const glm::dvec3& index) const
+  {
+    return glm::min(glm::ivec3(index), this->Cells - 1);
+  }
+
+  std::int64_t GetNumber(const glm::ivec3& point) const
+  {
+    return point.x * this->Strides.x + point.y * this->Strides.y + point.z * this->Strides.z;
+  }
+
+  /// The vectors at the corners of a cell. On an axis with one point both sides have the same.
+  Corners GetVectors(const glm::ivec3& cell) const
+  {
+    Corners corners;
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      const glm::ivec3 offset(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
+      corners[static_cast<std::size_t>(corner)] =
+        this->Field.GetVector(this->GetNumber(glm::min(cell + offset, this->Last)));
+    }
+    return corners;
+  }
+
+  glm::dvec3 GetWorld(const glm::dvec3& index) const
+  {
+    return glm::dvec3(this->Field.IndexToWorld * glm::dvec4(index, 1.0));
+  }
+
+  /// Where the corners of a cell are moved to.
+  Corners GetMoved(const glm::ivec3& cell) const
+  {
+    Corners corners = this->GetVectors(cell);
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      const glm::ivec3 offset(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
+      corners[static_cast<std::size_t>(corner)] += this->GetWorld(glm::dvec3(cell + offset));
+    }
+    return corners;
+  }
+
+  /// Whether all vectors are known that a place in a cell needs.
+  bool IsDefined(const glm::ivec3& cell, const glm::dvec3& place) const
+  {
+    for (int corner = 0; this->Field.Undefined && corner < 8; ++corner)
+    {
+      const glm::ivec3 offset(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
+      bool isNeeded = true;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        isNeeded = isNeeded && (offset[axis] != 0 ? place[axis] : 1.0 - place[axis]) > LeastWeight;
+      }
+      if (isNeeded &&
+        this->Field.Undefined[this->GetNumber(glm::min(cell + offset, this->Last))] != 0)
+      {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  glm::ivec3 GetBlocks() const { return (this->Cells + BlockSize - 1) / BlockSize; }
+
+  template <typename Body>
+  void ForEachCell(std::size_t block, Body&& body) const
+  {
+    const glm::ivec3 blocks = this->GetBlocks();
+    const auto number = static_cast<std::int64_t>(block);
+    const glm::ivec3 first = BlockSize *
+      glm::ivec3(number % blocks.x, number / blocks.x % blocks.y,
+        number / (std::int64_t{ blocks.x } * blocks.y));
+    const glm::ivec3 end = glm::min(first + BlockSize, this->Cells);
+    glm::ivec3 cell;
+    for (cell.z = first.z; cell.z < end.z; ++cell.z)
+    {
+      for (cell.y = first.y; cell.y < end.y; ++cell.y)
+      {
+        for (cell.x = first.x; cell.x < end.x; ++cell.x)
+        {
+          body(cell);
+        }
+      }
+    }
+  }
+
+  /// The box of a cell that has been moved, wider by a tolerance.
+  BoxPyramid::Box GetBox(const Corners& moved) const
+  {
+    BoxPyramid::Box box;
+    for (const glm::dvec3& corner : moved)
+    {
+      box.Add(corner);
+    }
+    // Of a cell that is stretched the tolerance is a part of what it is now.
+    const glm::dvec3 margin =
+      2.0 * (this->Field.Tolerance + CellFaceTolerance) * (box.Max - box.Min);
+    box.Min -= margin;
+    box.Max += margin;
+    return box;
+  }
+
+  void MakeBoxes()
+  {
+    const glm::ivec3 blocks = this->GetBlocks();
+    const auto count = static_cast<std::size_t>(blocks.x) * static_cast<std::size_t>(blocks.y) *
+      static_cast<std::size_t>(blocks.z);
+    this->Boxes = BoxPyramid(count,
+      [&](std::size_t block)
+      {
+        BoxPyramid::Box box;
+        this->ForEachCell(block,
+          [&](const glm::ivec3& cell)
+          {
+            const BoxPyramid::Box one = this->GetBox(this->GetMoved(cell));
+            box.Add(one.Min);
+            box.Add(one.Max);
+          });
+        return box;
+      });
+  }
+
+  /// A place in a cell that is moved to a point.
+  struct Solution
+  {
+    std::int64_t Number = -1;
+    bool IsBeside = true; // by a tolerance
+    bool IsInverted = false;
+    glm::ivec3 Cell{ 0 };
+    glm::dvec3 Place{ 0.0 };
+    glm::dmat3 Gradient{ 1.0 };
+
+    bool IsBetterThan(const Solution& other) const
+    {
+      return this->Number >= 0 &&
+        (other.Number < 0 ||
+          std::make_tuple(this->IsBeside, this->IsInverted, this->Number) <
+            std::make_tuple(other.IsBeside, other.IsInverted, other.Number));
+    }
+  };
+
+  /// Newton's method from a start. No number where it leads out of the cell.
+  Solution Find(const glm::ivec3& cell, const Corners& moved, const glm::dvec3& point,
+    const glm::dvec3& start) const
+  {
+    Solution found;
+    found.Cell = cell;
+    found.Place = start;
+    bool isDone = false;
+    for (int i = 0; i < MostCellSteps && !isDone; ++i)
+    {
+      const glm::dvec3 miss = Interpolate(moved, found.Place, found.Gradient) - point;
+      const glm::dvec3 step = glm::inverse(found.Gradient) * miss;
+      found.Place -= step;
+      const glm::dvec3 away = glm::abs(found.Place - 0.5);
+      if (!(std::max({ away.x, away.y, away.z }) < 3.0))
+      {
+        return found;
+      }
+      isDone = glm::length(step) < LastCellStep;
+    }
+    if (!isDone)
+    {
+      return found;
+    }
+    found.IsBeside = false;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      // What is flat has no other side.
+      const double beyond = this->Last[axis] == 0
+        ? std::abs(found.Place[axis])
+        : std::max(-found.Place[axis], found.Place[axis] - 1.0);
+      if (beyond > std::max(this->Field.Tolerance, CellFaceTolerance))
+      {
+        return found;
+      }
+      found.IsBeside = found.IsBeside || beyond > CellFaceTolerance;
+    }
+    if (this->IsDefined(cell, found.Place))
+    {
+      Interpolate(moved, found.Place, found.Gradient);
+      found.IsInverted =
+        (glm::determinant(found.Gradient) > 0.0) != (glm::determinant(this->ToWorld) > 0.0);
+      found.Number = this->GetNumber(cell);
+    }
+    return found;
+  }
+
+  Solution FindInCell(const glm::ivec3& cell, const Corners& moved, const glm::dvec3& point) const
+  {
+    Solution best = this->Find(cell, moved, point, glm::dvec3(0.5));
+    if (best.Number >= 0 && !best.IsInverted && !best.IsBeside)
+    {
+      return best;
+    }
+    // Where the cell is bent or folded, from the places that its five tetrahedra have for the
+    // point.
+    static constexpr int split[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
+    constexpr double slack = 0.25;
+    const std::vector<glm::dvec3> points(moved.begin(), moved.end());
+    for (const auto& vertices : split)
+    {
+      Tetrahedron nodes;
+      for (std::size_t k = 0; k < 4; ++k)
+      {
+        // Bit 1 of a vertex is z there, and y here.
+        const int v = vertices[k];
+        nodes[k] = (v & 1) | (v >> 2 & 1) << 1 | (v >> 1 & 1) << 2;
+      }
+      BarycentricMap map;
+      if (!map.SetTetrahedron(nodes, points))
+      {
+        continue;
+      }
+      const glm::dvec4 weights = map.GetAllWeights(point);
+      if (std::min({ weights.x, weights.y, weights.z, weights.w }) < -slack)
+      {
+        continue;
+      }
+      glm::dvec3 start(0.0);
+      for (int k = 0; k < 4; ++k)
+      {
+        const std::int32_t node = nodes[static_cast<std::size_t>(k)];
+        start += weights[k] * glm::dvec3(node & 1, node >> 1 & 1, node >> 2 & 1);
+      }
+      const Solution found = this->Find(cell, moved, point, start);
+      best = found.IsBetterThan(best) ? found : best;
+    }
+    return best;
+  }
+
+  Solution FindInCells(const glm::dvec3& point) const
+  {
+    Solution best;
+    this->Boxes.Visit(point,
+      [&](std::size_t block)
+      {
+        this->ForEachCell(block,
+          [&](const glm::ivec3& cell)
+          {
+            if (best.Number >= 0 && !best.IsBeside && !best.IsInverted &&
+              this->GetNumber(cell) > best.Number)
+            {
+              return;
+            }
+            const Corners moved = this->GetMoved(cell);
+            const BoxPyramid::Box box = this->GetBox(moved);
+            if (glm::min(box.Min, point) == box.Min && glm::max(box.Max, point) == box.Max)
+            {
+              const Solution found = this->FindInCell(cell, moved, point);
+              best = found.IsBetterThan(best) ? found : best;
+            }
+          });
+      });
+    return best;
+  }
+
+  const WorldField Field;
+  const OutsideVoxels Outside;
+  const glm::dmat3 ToWorld;
+  const glm::dmat4 ToIndex;
+  glm::ivec3 Last{ 0 };  // point on each axis
+  glm::ivec3 Cells{ 1 }; // on each axis; one where all points lie in a plane
+  glm::i64vec3 Strides{ 1 };
+  double CellSize = 1.0;
+  BoxPyramid Boxes;
+};
+
+FieldPointMap::FieldPointMap(const WorldField& field, const OutsideVoxels& outside, bool isInverse)
+  : Inside(std::make_unique<Internals>(field, outside))
+{
+  if (isInverse)
+  {
+    this->Inside->MakeBoxes();
+  }
+}
+
+FieldPointMap::~FieldPointMap() = default;
+
+bool FieldPointMap::Map(const glm::dvec3& point, Image& image) const
+{
+  const Internals& inside = *this->Inside;
+  const glm::dvec3 index(inside.ToIndex * glm::dvec4(point, 1.0));
+  const glm::dvec3 nearest = glm::clamp(index, glm::dvec3(0.0), glm::dvec3(inside.Last));
+  bool isOutside = false;
+  glm::dmat3 clamped(1.0);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double beyond = std::abs(index[axis] - nearest[axis]);
+    isOutside = isOutside || beyond > inside.Field.Tolerance;
+    clamped[axis][axis] = beyond > 0.0 ? 0.0 : 1.0;
+  }
+  image.Point = point;
+  image.Gradient = glm::dmat3(1.0);
+  double weight = 1.0;
+  glm::dvec3 slope(0.0); // of the weight
+  if (isOutside && inside.Outside.AreDiscarded())
+  {
+    return false;
+  }
+  if (isOutside && inside.Outside.AreKept())
+  {
+    const glm::dvec3 offset = inside.ToWorld * (index - nearest);
+    const double distance = glm::length(offset);
+    if (!(distance < inside.Outside.FadeDistance))
+    {
+      return true;
+    }
+    const double s = distance / inside.Outside.FadeDistance;
+    weight = GetFadedWeight(s);
+    slope = 6.0 * s * (s - 1.0) / inside.Outside.FadeDistance * offset / distance;
+  }
+  const glm::ivec3 cell = inside.GetCell(nearest);
+  const glm::dvec3 place = nearest - glm::dvec3(cell);
+  if (!inside.IsDefined(cell, place))
+  {
+    return false;
+  }
+  glm::dmat3 gradient;
+  const glm::dvec3 displacement = Interpolate(inside.GetVectors(cell), place, gradient);
+  image.Point += weight * displacement;
+  image.Gradient += weight * gradient * clamped * glm::dmat3(inside.ToIndex) +
+    glm::outerProduct(displacement, slope);
+  return true;
+}
+
+bool FieldPointMap::Invert(const glm::dvec3& point, Image& image) const
+{
+  const Internals& inside = *this->Inside;
+  const Internals::Solution found = inside.FindInCells(point);
+  const double tolerance = CellSolutionTolerance * inside.CellSize;
+  if ((found.Number < 0 || found.IsInverted) && !inside.Outside.AreDiscarded() &&
+    this->SolveOutside(point, tolerance, image) &&
+    (found.Number < 0 || glm::determinant(image.Gradient) > 0.0))
+  {
+    return true;
+  }
+  if (found.Number < 0)
+  {
+    return false;
+  }
+  const glm::dvec3 place = inside.GetWorld(glm::dvec3(found.Cell) + found.Place);
+  // Beside the field it is its border that moves points.
+  if (found.IsBeside && this->Solve(point, place, tolerance, image))
+  {
+    return true;
+  }
+  image.Point = place;
+  image.Gradient = inside.ToWorld * glm::inverse(found.Gradient);
+  return true;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MeshPointMap.h"
+
+#include "BarycentricMap.h"
+#include "BoundaryFaces.h"
+#include "BoxPyramid.h"
+#include "ClosestFace.h"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+// Points so near to the mesh, of its size and of its largest coordinate, count as in it: points are
+// often stored as floats.
+constexpr double MeshBorderTolerance = 1e-6;
+// The same for points between two tetrahedra, which no rounding must lose.
+constexpr double MeshFaceTolerance = 1e-13;
+// What Newton's method leaves, of the same.
+constexpr double MeshSolutionTolerance = 1e-11;
+
+using Points = std::vector<glm::dvec3>;
+
+const glm::dvec3& At(const Points& points, std::int32_t node)
+{
+  return points[static_cast<std::size_t>(node)];
+}
+
+double GetVolume(const Tetrahedron& nodes, const Points& points)
+{
+  const glm::dvec3& last = At(points, nodes[3]);
+  return glm::dot(At(points, nodes[0]) - last,
+    glm::cross(At(points, nodes[1]) - last, At(points, nodes[2]) - last));
+}
+
+} // namespace
+
+class MeshPointMap::Internals
+{
+public:
+  Internals(const Points& points, const std::vector<Tetrahedron>& tetrahedra)
+    : Tetrahedra(tetrahedra)
+    , Rest(this->Search(points))
+  {
+  }
+
+  /// The nodes at some places, and where the tetrahedra then are.
+  struct Configuration
+  {
+    const Points* Places = nullptr;
+    double Size = 0.0; // what tolerances are a part of
+    BoxPyramid Boxes;  // by the tolerance wider
+  };
+
+  Configuration Search(const Points& places) const
+  {
+    Configuration configuration;
+    configuration.Places = &places;
+    BoxPyramid::Box all;
+    for (const Tetrahedron& nodes : this->Tetrahedra)
+    {
+      for (const std::int32_t node : nodes)
+      {
+        all.Add(At(places, node));
+      }
+    }
+    if (!all.IsEmpty())
+    {
+      const glm::dvec3 largest = glm::max(glm::abs(all.Min), glm::abs(all.Max));
+      configuration.Size =
+        glm::length(all.Max - all.Min) + std::max({ largest.x, largest.y, largest.z });
+    }
+    configuration.Boxes = BoxPyramid(this->Tetrahedra.size(),
+      [&](std::size_t number)
+      {
+        BoxPyramid::Box box;
+        BarycentricMap map;
+        if (map.SetTetrahedron(this->Tetrahedra[number], places))
+        {
+          for (const std::int32_t node : this->Tetrahedra[number])
+          {
+            box.Add(At(places, node));
+          }
+          box.Min -= configuration.Size * MeshBorderTolerance;
+          box.Max += configuration.Size * MeshBorderTolerance;
+        }
+        return box;
+      });
+    return configuration;
+  }
+
+  void FindBoundary()
+  {
+    this->HasBoundary = true;
+    const Points& rest = *this->Rest.Places;
+    this->Faces =
+      FindBoundaryFaces(rest, this->Tetrahedra, FindSolidTetrahedra(rest, this->Tetrahedra));
+    std::vector<ClosestFace::Triangle> triangles;
+    for (const TetrahedronFace& face : this->Faces)
+    {
+      const auto nodes = face.GetNodes(this->GetNodes(face.Tetrahedron));
+      triangles.push_back({ { At(rest, nodes[0]), At(rest, nodes[1]), At(rest, nodes[2]) } });
+    }
+    this->Boundary = std::make_unique<ClosestFace>(std::move(triangles));
+  }
+
+  /// A tetrahedron that holds a point.
+  struct Holder
+  {
+    std::int32_t Number = -1;
+    bool IsInverted = false;
+    BarycentricMap Map;
+  };
+
+  /// Of tetrahedra that were turned inside out others come first, and then those with low numbers.
+  Holder Find(const Configuration& configuration, const glm::dvec3& point) const
+  {
+    const bool isAtRest = &configuration == &this->Rest;
+    const Points& places = *configuration.Places;
+    Holder best;
+    bool isBestNear = true; // and does not hold the point
+    configuration.Boxes.Visit(point,
+      [&](std::size_t i)
+      {
+        const auto number = static_cast<std::int32_t>(i);
+        if (isAtRest && !isBestNear && number > best.Number)
+        {
+          return;
+        }
+        Holder found;
+        found.Number = number;
+        const Tetrahedron& nodes = this->Tetrahedra[i];
+        if (!found.Map.SetTetrahedron(nodes, places))
+        {
+          return;
+        }
+        const glm::dvec4 weights = found.Map.GetAllWeights(point);
+        bool holds = true;
+        for (int node = 0; node < 4; ++node)
+        {
+          if (weights[node] >= 0.0)
+          {
+            continue;
+          }
+          const glm::dvec3 gradient = found.Map.GetGradient(node);
+          const double distance = -weights[node] / glm::length(gradient);
+          holds = holds && distance <= configuration.Size * MeshFaceTolerance;
+          if (distance > configuration.Size * MeshBorderTolerance)
+          {
+            return;
+          }
+        }
+        found.IsInverted = !isAtRest &&
+          (GetVolume(nodes, places) > 0.0) != (GetVolume(nodes, *this->Rest.Places) > 0.0);
+        if (best.Number < 0 ||
+          std::make_tuple(!holds, found.IsInverted, found.Number) <
+            std::make_tuple(isBestNear, best.IsInverted, best.Number))
+        {
+          best = found;
+          isBestNear = !holds;
+        }
+      });
+    return best;
+  }
+
+  /// The displacement that a tetrahedron gives a point, and its derivatives by the place of that.
+  void Displace(const Holder& holder, const glm::dvec3& point, glm::dvec3& displacement,
+    glm::dmat3& gradient) const
+  {
+    const Tetrahedron& nodes = this->GetNodes(holder.Number);
+    const glm::dvec4 weights = holder.Map.GetAllWeights(point);
+    displacement = glm::dvec3(0.0);
+    gradient = glm::dmat3(0.0);
+    for (int node = 0; node < 4; ++node)
+    {
+      const glm::dvec3& vector = At(this->Displacements, nodes[static_cast<std::size_t>(node)]);
+      displacement += weights[node] * vector;
+      gradient += glm::outerProduct(vector, holder.Map.GetGradient(node));
+    }
+  }
+
+  void Extrapolate(const glm::dvec3& point, Image& image) const
+  {
+    const ClosestFace::Result closest = this->Boundary->Find(point);
+    Holder holder;
+    holder.Number = this->Faces[static_cast<std::size_t>(closest.Face)].Tetrahedron;
+    holder.Map.SetTetrahedron(this->GetNodes(holder.Number), *this->Rest.Places);
+    glm::dvec3 displacement;
+    glm::dmat3 gradient;
+    this->Displace(holder, point, displacement, gradient);
+    image.Point = point + displacement;
+    image.Gradient = glm::dmat3(1.0) + gradient;
+  }
+
+  void Keep(const glm::dvec3& point, Image& image) const
+  {
+    image.Point = point;
+    image.Gradient = glm::dmat3(1.0);
+    if (!(this->Outside.FadeDistance > 0.0))
+    {
+      return;
+    }
+    const ClosestFace::Result closest = this->Boundary->Find(point);
+    const double distance = std::sqrt(closest.SquaredDistance);
+    const double s = distance / this->Outside.FadeDistance;
+    if (s >= 1.0)
+    {
+      return;
+    }
+    const double weight = GetFadedWeight(s);
+    const TetrahedronFace& face = this->Faces[static_cast<std::size_t>(closest.Face)];
+    const auto corners = face.GetNodes(this->GetNodes(face.Tetrahedron));
+    Holder holder;
+    holder.Number = face.Tetrahedron;
+    holder.Map.SetTetrahedron(this->GetNodes(face.Tetrahedron), *this->Rest.Places);
+    glm::dvec3 place(0.0); // the closest point
+    // The corners of the face, the edge or the node that it is on.
+    std::array<glm::dvec3, 3> feature;
+    std::size_t featureSize = 0;
+    for (int k = 0; k < 3; ++k)
+    {
+      if (closest.Weights[k] > 0.0)
+      {
+        feature[featureSize] = At(*this->Rest.Places, corners[static_cast<std::size_t>(k)]);
+        place += closest.Weights[k] * feature[featureSize++];
+      }
+    }
+    // How the closest point moves with the point.
+    glm::dmat3 projection(0.0);
+    if (featureSize == 3)
+    {
+      const glm::dvec3 normal =
+        glm::normalize(glm::cross(feature[1] - feature[0], feature[2] - feature[0]));
+      projection = glm::dmat3(1.0) - glm::outerProduct(normal, normal);
+    }
+    else if (featureSize == 2)
+    {
+      const glm::dvec3 edge = glm::normalize(feature[1] - feature[0]);
+      projection = glm::outerProduct(edge, edge);
+    }
+    glm::dvec3 displacement;
+    glm::dmat3 gradient;
+    this->Displace(holder, place, displacement, gradient);
+    image.Point += weight * displacement;
+    image.Gradient += weight * gradient * projection;
+    if (distance > 0.0)
+    {
+      const double slope = 6.0 * s * (s - 1.0) / this->Outside.FadeDistance;
+      image.Gradient += glm::outerProduct(displacement, slope * (point - place) / distance);
+    }
+  }
+
+  const Tetrahedron& GetNodes(std::int32_t number) const
+  {
+    return this->Tetrahedra[static_cast<std::size_t>(number)];
+  }
+
+  const std::vector<Tetrahedron>& Tetrahedra;
+  const Configuration Rest;
+  bool HasBoundary = false;
+  std::vector<TetrahedronFace> Faces;
+  std::unique_ptr<ClosestFace> Boundary;
+  Points Displacements;
+  Points MovedPoints;
+  Configuration Moved;
+  OutsideVoxels Outside;
+};
+
+MeshPointMap::MeshPointMap(
+  const std::vector<glm::dvec3>& points, const std::vector<Tetrahedron>& tetrahedra)
+  : Inside(std::make_unique<Internals>(points, tetrahedra))
+{
+}
+
+MeshPointMap::~MeshPointMap() = default;
+
+void MeshPointMap::Set(
+  std::vector<glm::dvec3> displacements, const OutsideVoxels& outside, bool isInverse)
+{
+  Internals& inside = *this->Inside;
+  inside.Displacements = std::move(displacements);
+  inside.Outside = outside;
+  if (!outside.AreDiscarded() && !inside.HasBoundary)
+  {
+    inside.FindBoundary();
+  }
+  inside.MovedPoints.clear();
+  inside.Moved = {};
+  if (isInverse)
+  {
+    inside.MovedPoints = *inside.Rest.Places;
+    for (std::size_t i = 0; i < inside.MovedPoints.size(); ++i)
+    {
+      inside.MovedPoints[i] += inside.Displacements[i];
+    }
+    inside.Moved = inside.Search(inside.MovedPoints);
+  }
+}
+
+bool MeshPointMap::Map(const glm::dvec3& point, Image& image) const
+{
+  const Internals& inside = *this->Inside;
+  const Internals::Holder holder = inside.Find(inside.Rest, point);
+  if (holder.Number >= 0)
+  {
+    glm::dvec3 displacement;
+    glm::dmat3 gradient;
+    inside.Displace(holder, point, displacement, gradient);
+    image.Point = point + displacement;
+    image.Gradient = glm::dmat3(1.0) + gradient;
+    return true;
+  }
+  if (inside.Outside.AreDiscarded() || inside.Faces.empty())
+  {
+    return false;
+  }
+  if (inside.Outside.AreKept())
+  {
+    inside.Keep(point, image);
+  }
+  else
+  {
+    inside.Extrapolate(point, image);
+  }
+  return true;
+}
+
+bool MeshPointMap::Invert(const glm::dvec3& point, Image& image) const
+{
+  const Internals& inside = *this->Inside;
+  const Internals::Holder holder = inside.Find(inside.Moved, point);
+  const double size = std::max(inside.Rest.Size, inside.Moved.Size);
+  if ((holder.Number < 0 || holder.IsInverted) && !inside.Outside.AreDiscarded() &&
+    this->SolveOutside(point, size * MeshSolutionTolerance, image) &&
+    (holder.Number < 0 || glm::determinant(image.Gradient) > 0.0))
+  {
+    return true;
+  }
+  if (holder.Number < 0)
+  {
+    return false;
+  }
+  glm::dvec3 displacement;
+  glm::dmat3 gradient;
+  inside.Displace(holder, point, displacement, gradient);
+  image.Point = point - displacement;
+  image.Gradient = glm::dmat3(1.0) - gradient;
+  return true;
+}
+
+} // namespace deformvolume

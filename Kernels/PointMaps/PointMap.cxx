@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PointMap.h"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <cmath>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+constexpr int MostSteps = 60;
+constexpr double ShortestStep = 1.0 / 1024.0;
+// A map that shrinks a volume by more has no inverse there.
+constexpr double LeastDeterminant = 1e-12;
+
+} // namespace
+
+PointMap::~PointMap() = default;
+
+bool PointMap::Solve(
+  const glm::dvec3& point, const glm::dvec3& start, double tolerance, Image& image) const
+{
+  glm::dvec3 place = start;
+  Image here;
+  if (!this->Map(place, here))
+  {
+    return false;
+  }
+  glm::dvec3 miss = here.Point - point;
+  const auto tryStep = [&](const glm::dvec3& step)
+  {
+    Image there;
+    const bool isNearer =
+      this->Map(place - step, there) && glm::length(there.Point - point) < glm::length(miss);
+    if (isNearer)
+    {
+      place -= step;
+      here = there;
+      miss = here.Point - point;
+    }
+    return isNearer;
+  };
+  const auto isRegular = [&]
+  { return std::abs(glm::determinant(here.Gradient)) > LeastDeterminant; };
+  for (int i = 0; i < MostSteps && glm::length(miss) > tolerance; ++i)
+  {
+    bool done = false;
+    if (isRegular())
+    {
+      const glm::dvec3 step = glm::inverse(here.Gradient) * miss;
+      for (double part = 1.0; !done && part >= ShortestStep; part *= 0.5)
+      {
+        done = tryStep(part * step);
+      }
+    }
+    if (!done && !tryStep(miss) && !tryStep(0.5 * miss))
+    {
+      return false;
+    }
+  }
+  if (!(glm::length(miss) <= tolerance) || !isRegular())
+  {
+    return false;
+  }
+  image.Point = place;
+  image.Gradient = glm::inverse(here.Gradient);
+  return true;
+}
+
+bool PointMap::SolveOutside(const glm::dvec3& point, double tolerance, Image& image) const
+{
+  Image there;
+  return this->Solve(point, point, tolerance, image) ||
+    (this->Map(point, there) &&
+      this->Solve(point, point - (there.Point - point), tolerance, image));
+}
+
+} // namespace deformvolume

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumePointMap_h
+#define DeformVolumePointMap_h
+
+#include "DeformVolumeExport.h"
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+namespace deformvolume
+{
+
+/// A deformation of single points, in world coordinates and double precision. Functions that are
+/// const may be called by many threads.
+class DEFORMVOLUME_EXPORT PointMap
+{
+public:
+  /// Where a point goes, and the derivatives of that by where it was.
+  struct Image
+  {
+    glm::dvec3 Point{ 0.0 };
+    glm::dmat3 Gradient{ 1.0 };
+  };
+
+  PointMap() = default;
+  virtual ~PointMap();
+  PointMap(const PointMap&) = delete;
+  PointMap& operator=(const PointMap&) = delete;
+
+  /// False where the point is outside.
+  virtual bool Map(const glm::dvec3& point, Image& image) const = 0;
+  /// The point that is mapped to a point, and the derivatives of the inverse map. Where there are
+  /// several, one where the map does not turn space inside out, and of those the one in the lowest
+  /// tetrahedron or cell. False where there is none.
+  virtual bool Invert(const glm::dvec3& point, Image& image) const = 0;
+
+protected:
+  /// Inverts the map by Newton's method from a start; steps that do not come closer are shortened.
+  /// tolerance: the distance that is left. False where it does not converge.
+  bool Solve(
+    const glm::dvec3& point, const glm::dvec3& start, double tolerance, Image& image) const;
+  /// The same for points that the inverse map of a mesh or a field has no place for, but that may
+  /// come from outside it.
+  bool SolveOutside(const glm::dvec3& point, double tolerance, Image& image) const;
+};
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,1169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// vtkDeformGeometryFilter: points follow a deformation and are led back.
+#include "FilterTesting.h"
+
+#include "vtkDeformGeometryFilter.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include <vtkCallbackCommand.h>
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkFlyingEdges3D.h>
+#include <vtkGenericCell.h>
+#include <vtkIdList.h>
+#include <vtkIntArray.h>
+#include <vtkMultiBlockDataSet.h>
+#include <vtkPlaneSource.h>
+#include <vtkPolyData.h>
+#include <vtkStaticCellLocator.h>
+#include <vtkStructuredGrid.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+using namespace filterTesting;
+
+namespace
+{
+
+constexpr int Discard = vtkDeformGeometryFilter::DISCARD;
+constexpr int Extrapolate = vtkDeformGeometryFilter::EXTRAPOLATE;
+constexpr int Keep = vtkDeformGeometryFilter::KEEP;
+
+// The filter, with its errors and warnings caught.
+struct Subject
+{
+  Subject()
+  {
+    for (const unsigned long event : { vtkCommand::ErrorEvent, vtkCommand::WarningEvent })
+    {
+      this->Filter->AddObserver(event, this->Observer);
+      this->Filter->GetExecutive()->AddObserver(event, this->ExecutiveObserver);
+    }
+  }
+  Subject(vtkDataObject* points, vtkDataObject* deformation)
+    : Subject()
+  {
+    this->Filter->SetInputData(points);
+    this->Filter->SetDeformationData(deformation);
+  }
+
+  vtkPointSet* Update()
+  {
+    this->Filter->Update();
+    if (this->Observer->GetError())
+    {
+      ++GetNumberOfFailures();
+      std::cerr << this->Observer->GetErrorMessage() << '\n';
+    }
+    this->Warning = this->Observer->GetWarningMessage();
+    this->Observer->Clear();
+    this->ExecutiveObserver->Clear();
+    return this->Filter->GetOutput();
+  }
+  std::vector<glm::dvec3> GetPlaces()
+  {
+    vtkPointSet* output = this->Update();
+    std::vector<glm::dvec3> places;
+    for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
+    {
+      places.push_back(GetPoint(output, id));
+    }
+    return places;
+  }
+  bool IsValid(vtkIdType id)
+  {
+    vtkDataArray* mask = this->Filter->GetOutput()->GetPointData()->GetArray("vtkValidPointMask");
+    return mask && mask->GetDataType() == VTK_CHAR && mask->GetComponent(id, 0) != 0.0;
+  }
+
+  vtkNew<vtkDeformGeometryFilter> Filter;
+  vtkNew<vtkTest::ErrorObserver> Observer;
+  vtkNew<vtkTest::ErrorObserver> ExecutiveObserver;
+  std::string Warning;
+};
+
+vtkSmartPointer<vtkPolyData> MakePoints(
+  const std::vector<glm::dvec3>& places, int precision = VTK_DOUBLE)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataType(precision);
+  for (const glm::dvec3& place : places)
+  {
+    points->InsertNextPoint(&place.x);
+  }
+  auto made = vtkSmartPointer<vtkPolyData>::New();
+  made->SetPoints(points);
+  return made;
+}
+
+std::vector<glm::dvec3> MakePlaces(
+  int count, const glm::dvec3& min, const glm::dvec3& max, unsigned int seed)
+{
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> between(0.0, 1.0);
+  std::vector<glm::dvec3> places;
+  for (int i = 0; i < count; ++i)
+  {
+    glm::dvec3 part;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      part[axis] = between(random);
+    }
+    places.push_back(min + part * (max - min));
+  }
+  return places;
+}
+
+vtkDoubleArray* AddArray(vtkPointSet* points, const char* name, const WorldMap& map)
+{
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(name);
+  array->SetNumberOfComponents(3);
+  for (vtkIdType id = 0; id < points->GetNumberOfPoints(); ++id)
+  {
+    const glm::dvec3 vector = map(GetPoint(points, id));
+    array->InsertNextTuple(&vector.x);
+  }
+  points->GetPointData()->AddArray(array);
+  return array;
+}
+
+glm::dvec3 GetTuple(vtkDataArray* array, vtkIdType id)
+{
+  glm::dvec3 vector;
+  array->GetTuple(id, &vector.x);
+  return vector;
+}
+
+// A bend of about 3 units over 10 that folds nothing.
+glm::dvec3 Bend(const glm::dvec3& p)
+{
+  return p +
+    glm::dvec3(0.8 * std::sin(0.35 * p.y), 0.9 * std::cos(0.3 * p.z) - 0.9,
+      0.7 * std::sin(0.25 * p.x + 0.1 * p.y));
+}
+
+// A lattice on a box, its inner nodes moved at random.
+vtkSmartPointer<vtkUnstructuredGrid> MakeLattice(double side, int nodes, double jitter)
+{
+  vtkNew<vtkLatticeTetrahedraSource> source;
+  source->SetNumberOfNodes(nodes, nodes, nodes);
+  source->EqualSpacingOff();
+  source->SetBounds(0.0, side, 0.0, side, 0.0, side);
+  source->Update();
+  auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  mesh->DeepCopy(source->GetOutput());
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> between(-jitter, jitter);
+  for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
+  {
+    glm::dvec3 point = GetPoint(mesh, id);
+    const bool isInner = glm::all(glm::greaterThan(point, glm::dvec3(0.0))) &&
+      glm::all(glm::lessThan(point, glm::dvec3(side)));
+    for (int axis = 0; axis < 3 && isInner; ++axis)
+    {
+      point[axis] += between(random) * side / (nodes - 1);
+    }
+    mesh->GetPoints()->SetPoint(id, &point.x);
+  }
+  return mesh;
+}
+
+vtkSmartPointer<vtkImageData> MakeField(double side, int points, const WorldMap& map)
+{
+  auto field =
+    MakeImage({ { 0, points - 1, 0, points - 1, 0, points - 1 } }, glm::dvec3(side / (points - 1)));
+  SetDisplacements(field, map);
+  return field;
+}
+
+//------------------------------------------------------------------------------
+// One error at each update, an empty output, and a filter that works afterwards.
+class Misuse
+{
+public:
+  Misuse()
+  {
+    this->Points = MakePoints(MakePlaces(20, glm::dvec3(1.0), glm::dvec3(9.0), 1));
+    this->Mesh = MakeLattice(10.0, 3, 0.0);
+    SetDisplacements(this->Mesh, Shift(1.0, 2.0, 3.0));
+    this->Mend();
+    this->Tested.Update();
+  }
+
+  vtkDeformGeometryFilter* GetFilter() { return this->Tested.Filter; }
+  vtkSmartPointer<vtkUnstructuredGrid> CopyMesh()
+  {
+    auto copy = vtkSmartPointer<vtkUnstructuredGrid>::New();
+    copy->DeepCopy(this->Mesh);
+    return copy;
+  }
+
+  void Expect(const std::string& text)
+  {
+    for (int repeat = 0; repeat < 2; ++repeat) // nothing changes before the second update
+    {
+      VERIFY(!this->Tested.Filter->GetExecutive()->Update());
+      const std::string message = this->Tested.Observer->GetErrorMessage();
+      const std::size_t first = message.find("ERROR: ");
+      if (first == std::string::npos || message.find("ERROR: ", first + 1) != std::string::npos ||
+        message.find(text) == std::string::npos)
+      {
+        ++GetNumberOfFailures();
+        std::cerr << "expected one error with \"" << text << "\": " << message << '\n';
+      }
+      this->Tested.Observer->Clear();
+      this->Tested.ExecutiveObserver->Clear();
+      VERIFY_EQUAL(this->Tested.Filter->GetOutput()->GetNumberOfPoints(), 0);
+    }
+    this->Mend();
+    const glm::dvec3 moved = GetPoint(this->Tested.Update(), 3);
+    VERIFY(glm::length(moved - GetPoint(this->Points, 3) - glm::dvec3(1.0, 2.0, 3.0)) < 1e-6);
+  }
+
+private:
+  void Mend()
+  {
+    vtkDeformGeometryFilter* filter = this->GetFilter();
+    filter->SetInputData(this->Points);
+    filter->SetDeformationData(this->Mesh);
+    filter->SetInputConnection(2, nullptr);
+    filter->SetInputArrayToProcess(
+      0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::VECTORS);
+    filter->SetDisplacementScale(1.0);
+    filter->SetPointsAreDeformed(false);
+    filter->SetOutsideModeToDiscard();
+    filter->SetFadeDistance(0.0);
+  }
+
+  vtkSmartPointer<vtkPolyData> Points;
+  vtkSmartPointer<vtkUnstructuredGrid> Mesh;
+  Subject Tested;
+};
+
+void TestMisuse()
+{
+  Misuse misuse;
+  vtkDeformGeometryFilter* filter = misuse.GetFilter();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+
+  for (const double wrong : { nan, infinity })
+  {
+    std::vector<glm::dvec3> places(7, glm::dvec3(2.0));
+    places[5].y = wrong;
+    filter->SetInputData(MakePoints(places));
+    misuse.Expect("Point 5 of the point set on input port 0 is not finite");
+  }
+
+  vtkNew<vtkPlaneSource> plane;
+  plane->Update();
+  vtkNew<vtkUnstructuredGrid> triangles;
+  triangles->SetPoints(plane->GetOutput()->GetPoints());
+  triangles->SetCells(VTK_QUAD, plane->GetOutput()->GetPolys());
+  SetDisplacements(triangles, Shift(1.0, 0.0, 0.0));
+  filter->SetDeformationData(triangles);
+  misuse.Expect("no tetrahedra");
+
+  vtkNew<vtkUnstructuredGrid> empty;
+  filter->SetDeformationData(empty);
+  misuse.Expect("no points");
+
+  auto mesh = misuse.CopyMesh();
+  mesh->GetPointData()->GetVectors()->SetComponent(4, 1, nan);
+  filter->SetDeformationData(mesh);
+  misuse.Expect("Displacement 4 of the deformation mesh is not finite");
+
+  mesh = misuse.CopyMesh();
+  mesh->GetPoints()->GetData()->SetComponent(6, 2, infinity);
+  filter->SetDeformationData(mesh);
+  misuse.Expect("Point 6 of the deformation mesh is not finite");
+
+  filter->SetInputArrayToProcess(0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "none");
+  misuse.Expect("no point array \"none\"");
+
+  filter->SetRestData(misuse.CopyMesh());
+  filter->SetDeformationData(nullptr);
+  misuse.Expect("no deformation on input port 1");
+
+  filter->SetRestData(MakeLattice(10.0, 4, 0.0));
+  misuse.Expect("27 points and the rest configuration has 64");
+
+  filter->SetDisplacementScale(nan);
+  misuse.Expect("DisplacementScale is not finite");
+
+  for (const double wrong : { -1.0, nan, infinity })
+  {
+    filter->SetOutsideModeToKeep();
+    filter->SetFadeDistance(wrong);
+    misuse.Expect("FadeDistance is ");
+  }
+
+  auto field = MakeField(10.0, 4, Shift(1.0, 2.0, 3.0));
+  filter->SetDeformationData(field);
+  filter->SetPointsAreDeformed(true);
+  misuse.Expect("PointsAreDeformed is on");
+
+  vtkNew<vtkImageData> emptyField;
+  filter->SetDeformationData(emptyField);
+  misuse.Expect("field is empty");
+
+  field->GetPointData()->GetVectors()->SetComponent(9, 0, nan);
+  filter->SetDeformationData(field);
+  misuse.Expect("Vector 9 of the displacement field is not finite");
+}
+
+void TestMissing()
+{
+  // Without a deformation points stay to the last bit.
+  auto points = MakePoints(MakePlaces(50, glm::dvec3(-5.0), glm::dvec3(5.0), 2), VTK_FLOAT);
+  points->GetPointData()->SetNormals(
+    AddArray(points, "n", [](const glm::dvec3& p) { return 3.0 * p; }));
+  Subject still;
+  still.Filter->SetInputData(points);
+  vtkPointSet* output = still.Update();
+  VERIFY(still.Warning.empty());
+  VERIFY(HaveEqualBits(output->GetPoints()->GetData(), points->GetPoints()->GetData()));
+  VERIFY(HaveEqualBits(output->GetPointData()->GetNormals(), points->GetPointData()->GetNormals()));
+  VERIFY(still.IsValid(49));
+
+  // Nothing to move.
+  vtkNew<vtkPolyData> none;
+  auto mesh = MakeLattice(10.0, 3, 0.0);
+  SetDisplacements(mesh, Shift(1.0, 0.0, 0.0));
+  Subject empty(none, mesh);
+  VERIFY_EQUAL(empty.Update()->GetNumberOfPoints(), 0);
+  VERIFY(empty.Warning.find("no points") != std::string::npos);
+
+  // What no cell uses need not be finite.
+  vtkNew<vtkUnstructuredGrid> larger;
+  larger->DeepCopy(mesh);
+  const vtkIdType unused = larger->GetPoints()->InsertNextPoint(0.0, 0.0, 0.0);
+  larger->GetPointData()->GetVectors()->InsertNextTuple3(
+    std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0);
+  VERIFY_EQUAL(larger->GetNumberOfPoints(), unused + 1);
+  Subject moved(MakePoints({ glm::dvec3(5.0) }), larger);
+  VERIFY_EQUAL(moved.GetPlaces()[0].x, 6.0);
+}
+
+void TestAbort()
+{
+  auto points = MakePoints(MakePlaces(300000, glm::dvec3(1.0), glm::dvec3(9.0), 3));
+  auto mesh = MakeLattice(10.0, 3, 0.0);
+  SetDisplacements(mesh, Shift(1.0, 0.0, 0.0));
+  Subject aborted(points, mesh);
+  vtkNew<vtkCallbackCommand> command;
+  struct Calls
+  {
+    int Count = 0;
+    static void Abort(vtkObject* caller, unsigned long, void* calls, void*)
+    {
+      ++static_cast<Calls*>(calls)->Count;
+      static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1);
+    }
+  };
+  Calls calls;
+  command->SetClientData(&calls);
+  command->SetCallback(Calls::Abort);
+  const unsigned long tag = aborted.Filter->AddObserver(vtkCommand::ProgressEvent, command);
+  VERIFY_EQUAL(aborted.Update()->GetNumberOfPoints(), 0);
+  VERIFY(calls.Count > 0);
+  aborted.Filter->RemoveObserver(tag);
+  aborted.Filter->SetAbortExecute(0);
+  VERIFY_EQUAL(aborted.Update()->GetNumberOfPoints(), 300000);
+  VERIFY(aborted.IsValid(299999));
+}
+
+//------------------------------------------------------------------------------
+// The lowest tetrahedron that holds a point, found among all; nothing outside.
+std::optional<glm::dvec3> MoveByMesh(
+  vtkUnstructuredGrid* mesh, const WorldMap& displace, const glm::dvec3& point)
+{
+  vtkNew<vtkIdList> ids;
+  for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
+  {
+    mesh->GetCellPoints(cell, ids);
+    std::array<glm::dvec3, 4> nodes;
+    for (int k = 0; k < 4; ++k)
+    {
+      nodes[k] = GetPoint(mesh, ids->GetId(k));
+    }
+    const glm::dmat3 sides(nodes[0] - nodes[3], nodes[1] - nodes[3], nodes[2] - nodes[3]);
+    const glm::dvec3 w = glm::inverse(sides) * (point - nodes[3]);
+    const double last = 1.0 - w.x - w.y - w.z;
+    if (std::min({ w.x, w.y, w.z, last }) >= -1e-12)
+    {
+      return point + w.x * displace(nodes[0]) + w.y * displace(nodes[1]) +
+        w.z * displace(nodes[2]) + last * displace(nodes[3]);
+    }
+  }
+  return {};
+}
+
+void TestMesh()
+{
+  auto mesh = MakeLattice(10.0, 5, 0.3);
+  SetDisplacements(mesh, Bend);
+  // Rounded as the array rounds them.
+  const auto displace = [](const glm::dvec3& node)
+  { return glm::dvec3(glm::vec3(Bend(node) - node)); };
+  std::vector<glm::dvec3> places = MakePlaces(2000, glm::dvec3(-1.0), glm::dvec3(11.0), 4);
+  for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
+  {
+    places.push_back(GetPoint(mesh, id)); // shared by many tetrahedra
+  }
+  Subject subject(MakePoints(places), mesh);
+  const std::vector<glm::dvec3> moved = subject.GetPlaces();
+  vtkIdType outside = 0;
+  double worst = 0.0;
+  for (std::size_t i = 0; i < places.size(); ++i)
+  {
+    const std::optional<glm::dvec3> expected = MoveByMesh(mesh, displace, places[i]);
+    VERIFY_EQUAL(subject.IsValid(static_cast<vtkIdType>(i)), expected.has_value());
+    outside += expected ? 0 : 1;
+    worst = std::max(worst, glm::length(moved[i] - expected.value_or(places[i])));
+  }
+  VERIFY(worst < 1e-12);
+  VERIFY(outside > 500);
+  VERIFY_EQUAL(subject.Filter->GetNumberOfOutsidePoints(), outside);
+  VERIFY(subject.Warning.find(std::to_string(outside) + " of " + std::to_string(places.size())) !=
+    std::string::npos);
+
+  // The same with the deformed mesh on port 1, and with twice the displacement halved.
+  vtkNew<vtkUnstructuredGrid> deformed;
+  deformed->DeepCopy(mesh);
+  deformed->GetPoints()->SetDataTypeToDouble();
+  deformed->GetPoints()->SetNumberOfPoints(mesh->GetNumberOfPoints());
+  for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
+  {
+    const glm::dvec3 place = GetPoint(mesh, id) + displace(GetPoint(mesh, id));
+    deformed->GetPoints()->SetPoint(id, &place.x);
+  }
+  const auto expectSame = [&](double tolerance)
+  {
+    const std::vector<glm::dvec3> again = subject.GetPlaces();
+    double difference = 0.0;
+    for (std::size_t i = 0; i < places.size(); ++i)
+    {
+      difference = std::max(difference, glm::length(again[i] - moved[i]));
+    }
+    VERIFY(difference < tolerance);
+  };
+  subject.Filter->SetDeformationData(deformed);
+  subject.Filter->SetRestData(mesh);
+  expectSame(1e-12);
+  subject.Filter->SetInputConnection(2, nullptr);
+  subject.Filter->SetPointsAreDeformed(true);
+  expectSame(1e-12);
+  subject.Filter->SetPointsAreDeformed(false);
+  SetDisplacements(mesh, [&](const glm::dvec3& p) { return p + 2.0 * displace(p); });
+  subject.Filter->SetDeformationData(mesh);
+  subject.Filter->SetDisplacementScale(0.5);
+  expectSame(1e-12);
+
+  // Floats on the border of the mesh are in it.
+  subject.Filter->SetInputData(MakePoints({ { 10.0 * (1.0 + 1e-7), 3.3, 4.4 } }, VTK_FLOAT));
+  subject.Update();
+  VERIFY(subject.IsValid(0));
+  VERIFY_EQUAL(subject.Filter->GetOutput()->GetPoints()->GetDataType(), VTK_FLOAT);
+}
+
+//------------------------------------------------------------------------------
+// Vectors and normals against differences of places.
+void TestArraysOf(vtkDataObject* deformation, int mode, bool inverse, bool fieldIsInverse)
+{
+  constexpr double step = 1e-5;
+  const std::vector<glm::dvec3> places = MakePlaces(300, glm::dvec3(-2.0), glm::dvec3(12.0), 7);
+  const auto getDirection = [](const glm::dvec3& p)
+  { return glm::normalize(glm::dvec3(std::sin(3.0 * p.x), std::cos(5.0 * p.y), 0.3)); };
+  const auto getOther = [](const glm::dvec3& p)
+  { return glm::normalize(glm::dvec3(0.2, std::sin(4.0 * p.z), std::cos(2.0 * p.x))); };
+  std::vector<glm::dvec3> all;
+  for (const glm::dvec3& place : places)
+  {
+    const glm::dvec3 direction = getDirection(place);
+    const glm::dvec3 other = getOther(place);
+    for (const glm::dvec3& offset : { glm::dvec3(0.0), direction, -direction, other, -other })
+    {
+      all.push_back(place + step * offset);
+    }
+  }
+  auto points = MakePoints(all);
+  points->GetPointData()->SetVectors(AddArray(points, "vectors", getDirection));
+  points->GetPointData()->SetNormals(AddArray(points, "normals",
+    [&](const glm::dvec3& p) { return glm::normalize(glm::cross(getDirection(p), getOther(p))); }));
+  AddArray(points, "more", getOther);
+  Subject subject(points, deformation);
+  subject.Filter->SetOutsideMode(mode);
+  subject.Filter->SetFadeDistance(4.0);
+  subject.Filter->SetInverse(inverse);
+  subject.Filter->SetFieldIsInverse(fieldIsInverse);
+  subject.Filter->SetTransformAllInputVectors(true);
+  const std::vector<glm::dvec3> moved = subject.GetPlaces();
+  vtkPointData* output = subject.Filter->GetOutput()->GetPointData();
+  int compared = 0;
+  int wrong = 0;
+  for (std::size_t i = 0; i < places.size(); ++i)
+  {
+    const std::size_t at = 5 * i;
+    const auto id = static_cast<vtkIdType>(at);
+    bool isValid = true;
+    for (int k = 0; k < 5; ++k)
+    {
+      isValid = isValid && subject.IsValid(id + k);
+    }
+    if (!isValid)
+    {
+      continue;
+    }
+    // On both sides of a kink there is no derivative.
+    const glm::dvec3 before = (moved[at] - moved[at + 2]) / step;
+    const glm::dvec3 after = (moved[at + 1] - moved[at]) / step;
+    const glm::dvec3 beside = (moved[at] - moved[at + 4]) / step;
+    const glm::dvec3 otherSide = (moved[at + 3] - moved[at]) / step;
+    if (glm::length(after - before) > 1e-4 || glm::length(otherSide - beside) > 1e-4)
+    {
+      continue;
+    }
+    ++compared;
+    const glm::dvec3 along = 0.5 * (before + after);
+    const glm::dvec3 across = 0.5 * (beside + otherSide);
+    const glm::dvec3 normal = glm::normalize(glm::cross(along, across));
+    wrong += glm::length(GetTuple(output->GetVectors(), id) - along) < 1e-6 ? 0 : 1;
+    wrong += glm::length(GetTuple(output->GetArray("more"), id) - across) < 1e-6 ? 0 : 1;
+    wrong += glm::length(GetTuple(output->GetNormals(), id) - normal) < 1e-6 ? 0 : 1;
+  }
+  if (wrong > 0 || compared < 100)
+  {
+    ++GetNumberOfFailures();
+    std::cerr << "mode " << mode << ", inverse " << inverse << ", field is inverse "
+              << fieldIsInverse << ": " << wrong << " vectors of " << compared
+              << " points are wrong\n";
+  }
+}
+
+void TestArrays()
+{
+  auto mesh = MakeLattice(10.0, 4, 0.2);
+  SetDisplacements(mesh, Bend);
+  auto field = MakeField(10.0, 6, Bend);
+  for (const int mode : { Discard, Extrapolate, Keep })
+  {
+    for (const bool inverse : { false, true })
+    {
+      TestArraysOf(mesh, mode, inverse, false);
+      TestArraysOf(field, mode, inverse, false);
+      TestArraysOf(field, mode, inverse, true);
+    }
+  }
+
+  // Other arrays pass, and normals of cells are named.
+  auto points = MakePoints({ glm::dvec3(1.0), glm::dvec3(2.0) });
+  vtkNew<vtkIntArray> ids;
+  ids->SetName("ids");
+  ids->InsertNextValue(17);
+  ids->InsertNextValue(4);
+  points->GetPointData()->AddArray(ids);
+  vtkNew<vtkCellArray> lines;
+  const vtkIdType line[2] = { 0, 1 };
+  lines->InsertNextCell(2, line);
+  points->SetLines(lines);
+  vtkNew<vtkFloatArray> normals;
+  normals->SetName("cell normals");
+  normals->SetNumberOfComponents(3);
+  normals->InsertNextTuple3(1.0, 0.0, 0.0);
+  points->GetCellData()->SetNormals(normals);
+  const vtkSmartPointer<vtkDoubleArray> vectors = AddArray(points, "v", Shift(1.0, 0.0, 0.0));
+  Subject subject(points, mesh);
+  vtkPointSet* output = subject.Update();
+  VERIFY(output->GetPointData()->GetArray("ids") == ids);
+  VERIFY(output->GetPointData()->GetArray("v") == vectors); // not active
+  VERIFY_EQUAL(output->GetNumberOfCells(), 1);
+  VERIFY(subject.Warning.find("\"cell normals\"") != std::string::npos);
+}
+
+//------------------------------------------------------------------------------
+double Fade(double s)
+{
+  return s < 1.0 ? 1.0 - 3.0 * s * s + 2.0 * s * s * s : 0.0;
+}
+
+// Outside a box that is shifted, all is known in closed form.
+void TestOutside()
+{
+  const glm::dvec3 shift(0.5, -0.25, 0.75);
+  const double side = 8.0;
+  auto mesh = MakeLattice(side, 4, 0.2);
+  SetDisplacements(mesh, Shift(shift.x, shift.y, shift.z));
+  auto field = MakeField(side, 5, Shift(shift.x, shift.y, shift.z));
+  const std::vector<glm::dvec3> places = MakePlaces(3000, glm::dvec3(-8.0), glm::dvec3(16.0), 9);
+  for (vtkDataObject* deformation : std::initializer_list<vtkDataObject*>{ mesh, field })
+  {
+    for (const double distance : { 0.0, 3.0, 5.0 })
+    {
+      Subject subject(MakePoints(places), deformation);
+      subject.Filter->SetOutsideModeToKeep();
+      subject.Filter->SetFadeDistance(distance);
+      const std::vector<glm::dvec3> moved = subject.GetPlaces();
+      VERIFY(subject.Warning.empty());
+      double worst = 0.0;
+      int still = 0;
+      for (std::size_t i = 0; i < places.size(); ++i)
+      {
+        const double away =
+          glm::length(places[i] - glm::clamp(places[i], glm::dvec3(0.0), glm::dvec3(side)));
+        const double weight = away == 0.0 ? 1.0 : distance > 0.0 ? Fade(away / distance) : 0.0;
+        worst = std::max(worst, glm::length(moved[i] - places[i] - weight * shift));
+        still += weight == 0.0 && moved[i] == places[i] ? 1 : 0;
+        VERIFY(weight > 0.0 || moved[i] == places[i]);
+      }
+      VERIFY(worst < 1e-12);
+      VERIFY(still > 500);
+    }
+    Subject subject(MakePoints(places), deformation);
+    subject.Filter->SetOutsideModeToExtrapolate();
+    const std::vector<glm::dvec3> moved = subject.GetPlaces();
+    double worst = 0.0;
+    for (std::size_t i = 0; i < places.size(); ++i)
+    {
+      worst = std::max(worst, glm::length(moved[i] - places[i] - shift));
+    }
+    VERIFY(worst < 1e-12);
+  }
+
+  // An affine map goes on outside a mesh.
+  const glm::dmat3 matrix(1.1, 0.2, 0.0, -0.1, 0.9, 0.1, 0.05, 0.0, 1.2);
+  SetDisplacements(mesh, [&](const glm::dvec3& p) { return matrix * p; });
+  Subject affine(MakePoints(places), mesh);
+  affine.Filter->SetOutsideModeToExtrapolate();
+  const std::vector<glm::dvec3> moved = affine.GetPlaces();
+  double worst = 0.0;
+  for (std::size_t i = 0; i < places.size(); ++i)
+  {
+    worst = std::max(worst, glm::length(moved[i] - matrix * places[i]));
+  }
+  VERIFY(worst < 2e-5); // displacements are floats, and are extrapolated over up to 5 tetrahedra
+}
+
+//------------------------------------------------------------------------------
+// Trilinear, written down by itself.
+glm::dvec3 MoveByField(vtkImageData* field, const glm::dvec3& point)
+{
+  int dimensions[3];
+  field->GetDimensions(dimensions);
+  double spacing[3];
+  field->GetSpacing(spacing);
+  double origin[3];
+  field->GetOrigin(origin);
+  int low[3];
+  double t[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double index =
+      std::min(std::max((point[axis] - origin[axis]) / spacing[axis], 0.0), dimensions[axis] - 1.0);
+    low[axis] = std::min(static_cast<int>(index), dimensions[axis] - 2);
+    t[axis] = index - low[axis];
+  }
+  glm::dvec3 moved = point;
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    double weight = 1.0;
+    int at[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int upper = corner >> axis & 1;
+      weight *= upper ? t[axis] : 1.0 - t[axis];
+      at[axis] = low[axis] + upper;
+    }
+    moved += weight *
+      GetTuple(field->GetPointData()->GetVectors(),
+        (static_cast<vtkIdType>(at[2]) * dimensions[1] + at[1]) * dimensions[0] + at[0]);
+  }
+  return moved;
+}
+
+void TestField()
+{
+  const std::vector<glm::dvec3> places = MakePlaces(3000, glm::dvec3(-0.5), glm::dvec3(10.5), 11);
+  auto field = MakeField(10.0, 8, Bend);
+  Subject subject(MakePoints(places), field);
+  for (const int mode : { Discard, Extrapolate })
+  {
+    subject.Filter->SetOutsideMode(mode);
+    const std::vector<glm::dvec3> moved = subject.GetPlaces();
+    double worst = 0.0;
+    for (std::size_t i = 0; i < places.size(); ++i)
+    {
+      const bool isInside = glm::clamp(places[i], 0.0, 10.0) == places[i];
+      if (!isInside && glm::distance(glm::clamp(places[i], 0.0, 10.0), places[i]) < 0.01)
+      {
+        continue; // nearly inside, see below
+      }
+      const bool isMoved = isInside || mode == Extrapolate;
+      VERIFY_EQUAL(subject.IsValid(static_cast<vtkIdType>(i)), isMoved);
+      worst = std::max(
+        worst, glm::length(moved[i] - (isMoved ? MoveByField(field, places[i]) : places[i])));
+    }
+    VERIFY(worst < 1e-12);
+  }
+
+  // Its border has the tolerance of vtkDeformVolumeFilter, 1/1000 of a cell.
+  subject.Filter->SetOutsideModeToDiscard();
+  const double cell = 10.0 / 7.0;
+  subject.Filter->SetInputData(
+    MakePoints({ { -0.0009 * cell, 5.0, 5.0 }, { -0.0011 * cell, 5.0, 5.0 } }));
+  subject.Update();
+  VERIFY(subject.IsValid(0));
+  VERIFY(!subject.IsValid(1));
+
+  // Hidden points have no vector.
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  ghosts->SetNumberOfTuples(field->GetNumberOfPoints());
+  ghosts->Fill(0);
+  ghosts->SetValue(3 + 8 * (4 + 8 * 5), vtkDataSetAttributes::HIDDENPOINT);
+  field->GetPointData()->AddArray(ghosts);
+  field->GetPointData()->GetVectors()->SetComponent(
+    3 + 8 * (4 + 8 * 5), 0, std::numeric_limits<double>::quiet_NaN());
+  subject.Filter->SetInputData(
+    MakePoints({ cell * glm::dvec3(3.5, 4.0, 5.0), cell * glm::dvec3(4.0, 4.0, 5.0),
+      cell * glm::dvec3(3.5, 5.0, 5.0), cell * glm::dvec3(4.1, 4.2, 5.1) }));
+  subject.Update();
+  VERIFY(!subject.IsValid(0));
+  VERIFY(subject.IsValid(1));
+  VERIFY(subject.IsValid(2));
+  VERIFY(subject.IsValid(3));
+
+  // Oblique, with an extent that does not begin at 0, and doubles.
+  auto oblique = MakeImage({ { 2, 6, -3, 4, 5, 9 } }, { 1.5, 0.7, 2.0 }, { 3.0, 4.0, -5.0 });
+  SetObliqueDirection(oblique);
+  const glm::dmat3 matrix(1.1, 0.2, 0.0, -0.1, 0.9, 0.1, 0.05, 0.0, 1.2);
+  vtkNew<vtkDoubleArray> vectors;
+  vectors->SetNumberOfComponents(3);
+  for (vtkIdType id = 0; id < oblique->GetNumberOfPoints(); ++id)
+  {
+    const glm::dvec3 p = GetPoint(oblique, id);
+    const glm::dvec3 u = matrix * p - p;
+    vectors->InsertNextTuple(&u.x);
+  }
+  oblique->GetPointData()->SetVectors(vectors);
+  double center[3];
+  oblique->GetCenter(center);
+  const glm::dvec3 middle(center[0], center[1], center[2]);
+  std::vector<glm::dvec3> inner = MakePlaces(200, middle - 1.0, middle + 1.0, 13);
+  Subject affine(MakePoints(inner), oblique);
+  std::vector<glm::dvec3> moved = affine.GetPlaces();
+  double worst = 0.0;
+  for (std::size_t i = 0; i < inner.size(); ++i)
+  {
+    worst = std::max(worst, glm::length(moved[i] - matrix * inner[i]));
+  }
+  VERIFY(worst < 1e-12);
+  affine.Filter->SetInputData(MakePoints(moved));
+  affine.Filter->SetInverse(true);
+  moved = affine.GetPlaces();
+  worst = 0.0;
+  for (std::size_t i = 0; i < inner.size(); ++i)
+  {
+    worst = std::max(worst, glm::length(moved[i] - inner[i]));
+  }
+  VERIFY(worst < 1e-9);
+}
+
+//------------------------------------------------------------------------------
+// There and back, where nothing folds.
+void TestInverse()
+{
+  auto mesh = MakeLattice(10.0, 5, 0.2);
+  SetDisplacements(mesh, Bend);
+  auto field = MakeField(10.0, 12, Bend);
+  struct Case
+  {
+    vtkDataObject* Deformation;
+    bool FieldIsInverse;
+  };
+  for (const Case& one : { Case{ mesh, false }, Case{ field, false }, Case{ field, true } })
+  {
+    for (const int mode : { Discard, Extrapolate, Keep })
+    {
+      const double margin = mode == Discard ? 0.0 : 5.0;
+      const std::vector<glm::dvec3> places =
+        MakePlaces(5000, glm::dvec3(-margin), glm::dvec3(10.0 + margin), 17);
+      Subject back(MakePoints(places), one.Deformation);
+      back.Filter->SetFieldIsInverse(one.FieldIsInverse);
+      back.Filter->SetOutsideMode(mode);
+      back.Filter->SetFadeDistance(6.0);
+      back.Filter->SetInverse(true);
+      Subject forth(MakePoints(back.GetPlaces()), one.Deformation);
+      forth.Filter->SetFieldIsInverse(one.FieldIsInverse);
+      forth.Filter->SetOutsideMode(mode);
+      forth.Filter->SetFadeDistance(6.0);
+      const std::vector<glm::dvec3> again = forth.GetPlaces();
+      double worst = 0.0;
+      int compared = 0;
+      int lost = 0;
+      for (std::size_t i = 0; i < places.size(); ++i)
+      {
+        const auto id = static_cast<vtkIdType>(i);
+        if (back.IsValid(id))
+        {
+          ++compared;
+          lost += forth.IsValid(id) ? 0 : 1;
+          worst = std::max(worst, forth.IsValid(id) ? glm::length(again[i] - places[i]) : 0.0);
+        }
+      }
+      std::cout << "inverse and forward, " << (one.Deformation == mesh ? "mesh" : "field")
+                << (one.FieldIsInverse ? " that is inverse" : "") << ", mode " << mode << ": "
+                << compared << " points, at most " << worst << " away, " << lost << " lost\n";
+      VERIFY(worst < 1e-6);
+      VERIFY_EQUAL(lost, 0);
+      VERIFY(compared > (mode == Discard ? 3500 : 4900));
+    }
+  }
+}
+
+// Along x, piecewise linear: all places are known.
+double FoldAlongX(double x)
+{
+  return x + 2.5 * std::sin(x);
+}
+
+void TestFolds()
+{
+  constexpr int points = 41;
+  constexpr double step = 0.25;
+  const auto fold = [](const glm::dvec3& p) { return glm::dvec3(FoldAlongX(p.x), p.y, p.z); };
+  auto field = MakeImage({ { 0, points - 1, 0, 2, 0, 2 } }, { step, 2.0, 2.0 });
+  vtkNew<vtkDoubleArray> vectors;
+  vectors->SetNumberOfComponents(3);
+  for (vtkIdType id = 0; id < field->GetNumberOfPoints(); ++id)
+  {
+    const glm::dvec3 p = GetPoint(field, id);
+    const glm::dvec3 u = fold(p) - p;
+    vectors->InsertNextTuple(&u.x);
+  }
+  field->GetPointData()->SetVectors(vectors);
+  const std::vector<glm::dvec3> places =
+    MakePlaces(2000, { -0.5, 0.5, 0.5 }, { 10.0, 3.5, 3.5 }, 19);
+  Subject subject(MakePoints(places), field);
+  subject.Filter->SetInverse(true);
+  std::vector<glm::dvec3> found = subject.GetPlaces();
+  int folded = 0;
+  int outside = 0;
+  double worst = 0.0;
+  const auto check = [&](std::size_t i, bool lowestFirst)
+  {
+    std::vector<double> upright;
+    std::vector<double> inverted;
+    for (int cell = 0; cell + 1 < points; ++cell)
+    {
+      const double a = FoldAlongX(cell * step);
+      const double b = FoldAlongX((cell + 1) * step);
+      const double t = (places[i].x - a) / (b - a);
+      if (t >= 0.0 && t <= 1.0)
+      {
+        (b > a ? upright : inverted).push_back((cell + t) * step);
+      }
+    }
+    const bool isValid = subject.IsValid(static_cast<vtkIdType>(i));
+    VERIFY_EQUAL(isValid, !upright.empty() || !inverted.empty());
+    outside += isValid ? 0 : 1;
+    folded += upright.size() > 1 ? 1 : 0;
+    if (isValid && lowestFirst)
+    {
+      const double expected = upright.empty() ? inverted.front() : upright.front();
+      worst = std::max(worst, std::abs(found[i].x - expected));
+    }
+    else if (isValid && !upright.empty())
+    {
+      double nearest = 1e9;
+      for (const double one : upright)
+      {
+        nearest = std::min(nearest, std::abs(found[i].x - one));
+      }
+      worst = std::max(worst, nearest);
+    }
+    worst = std::max(worst,
+      isValid ? std::max(std::abs(found[i].y - places[i].y), std::abs(found[i].z - places[i].z))
+              : 0.0);
+  };
+  for (std::size_t i = 0; i < places.size(); ++i)
+  {
+    check(i, true);
+  }
+  VERIFY(worst < 1e-9);
+  VERIFY(folded > 300);
+  VERIFY(outside > 20);
+
+  // A mesh that folds in the same way.
+  vtkNew<vtkLatticeTetrahedraSource> source;
+  source->SetNumberOfNodes(points, 3, 3);
+  source->EqualSpacingOff();
+  source->SetBounds(0.0, (points - 1) * step, 0.0, 4.0, 0.0, 4.0);
+  source->Update();
+  vtkNew<vtkUnstructuredGrid> mesh;
+  mesh->DeepCopy(source->GetOutput());
+  mesh->GetPointData()->SetVectors(vectors);
+  subject.Filter->SetDeformationData(mesh);
+  found = subject.GetPlaces();
+  worst = 0.0;
+  for (std::size_t i = 0; i < places.size(); ++i)
+  {
+    check(i, false);
+  }
+  VERIFY(worst < 1e-9);
+}
+
+//------------------------------------------------------------------------------
+// With a node at each voxel, split as the voxels are, the volume holds the very map of the mesh.
+void TestAgainstVolume()
+{
+  const int size = 16;
+  auto volume = MakeImage({ { 0, size - 1, 0, size - 1, 0, size - 1 } });
+  const char* const names[3] = { "x", "y", "z" };
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    AddScalars<double>(volume, names[axis], [axis](const glm::dvec3& p) { return p[axis]; });
+    volume->GetPointData()->SetActiveScalars(nullptr); // the next one does not take its place
+  }
+  auto mesh = MakeLattice(size - 1.0, size, 0.0);
+  for (const double amplitude : { 1.0, 6.0 }) // the second one folds
+  {
+    SetDisplacements(mesh,
+      [&](const glm::dvec3& p)
+      {
+        const double s = 0.25;
+        return p +
+          amplitude *
+          glm::dvec3(std::sin(s * p.y + 0.2 * p.x), std::sin(s * p.z), std::cos(s * p.x));
+      });
+    Deformed deformed(volume, mesh);
+    deformed.Filter->SetBackgroundValue(-1000.0);
+    vtkImageData* output = deformed.Update();
+    std::vector<glm::dvec3> centers;
+    for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
+    {
+      centers.push_back(GetPoint(output, id));
+    }
+    Subject back(MakePoints(centers), mesh);
+    back.Filter->SetInverse(true);
+    const std::vector<glm::dvec3> rest = back.GetPlaces();
+    // Each rest position must be deformed to the voxel, up to how positions are rounded.
+    std::vector<glm::dvec3> seen;
+    std::vector<std::size_t> ids;
+    int onOneSide = 0;
+    int elsewhere = 0;
+    for (std::size_t i = 0; i < centers.size(); ++i)
+    {
+      const auto id = static_cast<vtkIdType>(i);
+      onOneSide += deformed.IsCovered(id) != back.IsValid(id) ? 1 : 0;
+      if (!deformed.IsCovered(id) || !back.IsValid(id))
+      {
+        continue;
+      }
+      glm::dvec3 place;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        place[axis] = output->GetPointData()->GetArray(names[axis])->GetComponent(id, 0);
+      }
+      seen.push_back(place);
+      ids.push_back(i);
+      elsewhere += glm::length(place - rest[i]) > 0.25 ? 1 : 0;
+    }
+    Subject forth(MakePoints(seen), mesh);
+    const std::vector<glm::dvec3> moved = forth.GetPlaces();
+    double worst = 0.0;
+    for (std::size_t i = 0; i < seen.size(); ++i)
+    {
+      const glm::dvec3 miss = glm::abs(moved[i] - centers[ids[i]]);
+      worst = std::max({ worst, miss.x, miss.y, miss.z });
+    }
+    std::cout << "amplitude " << amplitude << ": " << seen.size() << " voxels, at most " << worst
+              << " voxel away, " << onOneSide << " of only one filter, " << elsewhere
+              << " that another part wins\n";
+    VERIFY(worst <= 1.0 / 256.0);
+    VERIFY(seen.size() > 2000);
+    VERIFY(onOneSide <= 8);  // on the border, which positions rounded to 1/256 move
+    VERIFY(elsewhere <= 30); // likewise, between the parts of a fold
+  }
+}
+
+// The largest distance of a point of a surface from another one, away from the border of a box.
+double GetDistance(vtkPointSet* from, vtkPointSet* to, double min, double max, int& compared)
+{
+  vtkNew<vtkStaticCellLocator> locator;
+  locator->SetDataSet(to);
+  locator->BuildLocator();
+  vtkNew<vtkGenericCell> cell;
+  double worst = 0.0;
+  for (vtkIdType id = 0; id < from->GetNumberOfPoints(); ++id)
+  {
+    const glm::dvec3 point = GetPoint(from, id);
+    if (glm::clamp(point, min, max) != point)
+    {
+      continue;
+    }
+    double closest[3];
+    vtkIdType cellId = -1;
+    int subId = 0;
+    double squared = 0.0;
+    locator->FindClosestPoint(&point.x, closest, cell, cellId, subId, squared);
+    worst = std::max(worst, std::sqrt(squared));
+    ++compared;
+  }
+  return worst;
+}
+
+void TestIsosurface()
+{
+  const int size = 48;
+  auto volume = MakeImage({ { 0, size - 1, 0, size - 1, 0, size - 1 } });
+  AddScalars<float>(volume, "value",
+    [](const glm::dvec3& p)
+    {
+      const glm::dvec3 q = p - 23.5;
+      return 14.0 + 2.0 * std::sin(0.5 * q.x) * std::cos(0.4 * q.y) - glm::length(q);
+    });
+  const auto bend = [](const glm::dvec3& p)
+  {
+    return p +
+      glm::dvec3(
+        3.0 * std::sin(0.08 * p.y), 3.0 * std::sin(0.07 * p.z), 4.0 * std::sin(0.06 * p.x));
+  };
+  auto mesh = MakeLattice(size - 1.0, 7, 0.1);
+  SetDisplacements(mesh, bend);
+  auto field = MakeField(size - 1.0, 12, bend);
+  for (vtkDataObject* deformation : std::initializer_list<vtkDataObject*>{ mesh, field })
+  {
+    Deformed deformed(volume, deformation);
+    vtkNew<vtkFlyingEdges3D> after;
+    after->SetInputData(deformed.Update());
+    after->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "value");
+    after->SetValue(0, 0.5);
+    after->Update();
+    vtkNew<vtkFlyingEdges3D> before;
+    before->SetInputData(volume);
+    before->SetValue(0, 0.5);
+    Subject subject;
+    subject.Filter->SetInputConnection(before->GetOutputPort());
+    subject.Filter->SetDeformationData(deformation);
+    vtkPointSet* moved = subject.Update();
+    VERIFY(subject.Warning.empty());
+    int compared = 0;
+    const double there = GetDistance(moved, after->GetOutput(), 4.0, 46.0, compared);
+    const double back = GetDistance(after->GetOutput(), moved, 4.0, 46.0, compared);
+    std::cout << (deformation == mesh ? "mesh" : "field") << ": isosurfaces of " << compared
+              << " points are at most " << there << " and " << back << " voxels apart\n";
+    VERIFY(compared > 5000);
+    VERIFY(there < 0.5);
+    VERIFY(back < 0.5);
+  }
+}
+
+//------------------------------------------------------------------------------
+void TestKinds()
+{
+  auto mesh = MakeLattice(10.0, 3, 0.0);
+  SetDisplacements(mesh, Shift(1.0, 2.0, 3.0));
+
+  // A structured grid stays one.
+  vtkNew<vtkStructuredGrid> grid;
+  grid->SetExtent(2, 4, 0, 2, 5, 6);
+  vtkNew<vtkPoints> points;
+  for (int i = 0; i < 18; ++i)
+  {
+    points->InsertNextPoint(1.0 + i % 3, 1.0 + i / 3 % 3, 1.0 + i / 9);
+  }
+  grid->SetPoints(points);
+  Subject structured(grid, mesh);
+  auto* moved = vtkStructuredGrid::SafeDownCast(structured.Update());
+  VERIFY(moved != nullptr);
+  if (moved)
+  {
+    int extent[6];
+    moved->GetExtent(extent);
+    VERIFY_EQUAL(extent[5], 6);
+    VERIFY_EQUAL(GetPoint(moved, 17).z, 5.0);
+  }
+
+  // A mesh that is moved by itself.
+  Subject self(mesh, mesh);
+  VERIFY(vtkUnstructuredGrid::SafeDownCast(self.Update()) != nullptr);
+  VERIFY_EQUAL(GetPoint(self.Filter->GetOutput(), 0).y, 2.0);
+  VERIFY_EQUAL(self.Filter->GetOutput()->GetNumberOfCells(), mesh->GetNumberOfCells());
+
+  // The mesh is a composite dataset; then the points are.
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, mesh);
+  Subject composite(MakePoints({ glm::dvec3(4.0) }), blocks);
+  VERIFY_EQUAL(composite.GetPlaces()[0].z, 7.0);
+  vtkNew<vtkMultiBlockDataSet> surfaces;
+  surfaces->SetBlock(0, MakePoints({ glm::dvec3(4.0), glm::dvec3(-1.0) }));
+  surfaces->SetBlock(2, MakePoints({ glm::dvec3(5.0), glm::dvec3(20.0) }));
+  Subject each(surfaces, mesh);
+  each.Filter->Update();
+  auto* output = vtkMultiBlockDataSet::SafeDownCast(each.Filter->GetOutputDataObject(0));
+  VERIFY(output != nullptr);
+  if (output)
+  {
+    VERIFY_EQUAL(GetPoint(vtkDataSet::SafeDownCast(output->GetBlock(0)), 0).x, 5.0);
+    VERIFY_EQUAL(GetPoint(vtkDataSet::SafeDownCast(output->GetBlock(2)), 0).x, 6.0);
+  }
+  VERIFY_EQUAL(each.Filter->GetNumberOfOutsidePoints(), 2);
+  VERIFY(
+    std::string(each.Observer->GetWarningMessage()).find("2 of 4 points") != std::string::npos);
+  each.Observer->Clear();
+  surfaces->SetBlock(1, MakeVolume());
+  VERIFY(!each.Filter->GetExecutive()->Update());
+  VERIFY(std::string(each.Observer->GetErrorMessage()).find("vtkImageData") != std::string::npos);
+
+  // What changes is read again.
+  Subject live(MakePoints({ glm::dvec3(4.0) }), mesh);
+  VERIFY_EQUAL(live.GetPlaces()[0].x, 5.0);
+  SetDisplacements(mesh, Shift(2.0, 0.0, 0.0));
+  mesh->Modified();
+  VERIFY_EQUAL(live.GetPlaces()[0].x, 6.0);
+  mesh->GetPointData()->GetVectors()->Fill(0.5);
+  mesh->GetPointData()->GetVectors()->Modified();
+  VERIFY_EQUAL(live.GetPlaces()[0].x, 4.5);
+  live.Filter->SetInverse(true);
+  VERIFY_EQUAL(live.GetPlaces()[0].x, 3.5);
+  auto field = MakeField(10.0, 4, Shift(-1.0, 0.0, 0.0));
+  live.Filter->SetDeformationData(field);
+  VERIFY(std::abs(live.GetPlaces()[0].x - 5.0) < 1e-6);
+  live.Filter->SetFieldIsInverse(true);
+  VERIFY_EQUAL(live.GetPlaces()[0].x, 3.0);
+  live.Filter->SetDeformationData(mesh);
+  VERIFY_EQUAL(live.GetPlaces()[0].x, 3.5);
+}
+
+} // namespace
+
+int TestDeformGeometryFilter(int, char*[])
+{
+  TestMisuse();
+  TestMissing();
+  TestAbort();
+  TestMesh();
+  TestArrays();
+  TestOutside();
+  TestField();
+  TestInverse();
+  TestFolds();
+  TestAgainstVolume();
+  TestIsosurface();
+  TestKinds();
+  return GetExitCode();
+}
