@@ -34,6 +34,7 @@
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
+#include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 
 #include <glm/geometric.hpp>
@@ -591,14 +592,14 @@ int vtkDeformGeometryFilter::RequestDataObject(
   vtkDataObject* points = vtkDataObject::GetData(input[0]);
   vtkInformation* outInfo = outputVector->GetInformationObject(0);
   vtkDataObject* output = vtkDataObject::GetData(outInfo);
-  if (!points)
+  const bool isKnown =
+    vtkPointSet::SafeDownCast(points) || vtkCompositeDataSet::SafeDownCast(points);
+  const std::string type = isKnown ? points->GetClassName() : "vtkPolyData";
+  if (!output || output->GetClassName() != type)
   {
-    return 0;
-  }
-  if (!output || std::string(output->GetClassName()) != points->GetClassName())
-  {
-    outInfo->Set(
-      vtkDataObject::DATA_OBJECT(), vtkSmartPointer<vtkDataObject>::Take(points->NewInstance()));
+    vtkDataObject* made = isKnown ? points->NewInstance() : vtkPolyData::New();
+    outInfo->Set(vtkDataObject::DATA_OBJECT(), made);
+    made->Delete();
   }
   return 1;
 }
