@@ -19,12 +19,13 @@
  * label ids of 64 bits survive. Attributes keep their role, field data passes. Points that
  * vtkGhostType marks as hidden or duplicate are no source. A cell array "ActiveTetrahedra"
  * (unsigned char, one component; bit i stands for tetrahedron i of the cell) switches tetrahedra of
- * the sampling mesh off; hidden cells are off too. A point array "BoundaryDistance" (numeric, one
- * component, any unit) clips them: it is interpolated in each tetrahedron, and samples where it is
- * negative are left out; NaN is not negative. A cell array "CutTetrahedra" (unsigned char) and a
- * point array "CutDistance" (numeric) are a smooth cut, which divides tetrahedra between its two
- * sides (vtkCutVolume); resamplers other than EXACT do not know it: an error. Other cell arrays are
- * not resampled, and a warning names them.
+ * the sampling mesh off; hidden cells are off too, but for those that only an edit hides
+ * (vtkVolumeEditAlgorithm::BlankCells). A point array "BoundaryDistance" (numeric, one component,
+ * any unit) clips them: it is interpolated in each tetrahedron, and samples where it is negative
+ * are left out; NaN is not negative. A cell array "CutTetrahedra" (unsigned char) and a point array
+ * "CutDistance" (numeric) are a smooth cut, which divides tetrahedra between its two sides
+ * (vtkCutVolume); resamplers other than EXACT do not know it: an error. Other cell arrays are not
+ * resampled, and a warning names them.
  *
  * @par Port 1, the deformation, optional:
  * Without it the output is the volume itself, at rest: masks, cuts and carvings show. Otherwise one

@@ -5,12 +5,14 @@
 
 #include "Error.h"
 #include "ImageGeometry.h"
+#include "MaskArray.h"
 #include "OutsideMode.h"
 #include "PieceRequest.h"
 #include "ProgressReport.h"
 #include "VTKThreads.h"
 #include "VectorChoice.h"
 
+#include "vtkCellData.h"
 #include "vtkDataObject.h"
 #include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
@@ -19,7 +21,10 @@
 #include "vtkInformationDoubleVectorKey.h"
 #include "vtkInformationIntegerVectorKey.h"
 #include "vtkInformationVector.h"
+#include "vtkNew.h"
+#include "vtkSMPTools.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <cmath>
 
@@ -32,6 +37,42 @@ bool IsPartWithoutCells(vtkImageData* volume, vtkInformation* info)
 {
   return deformvolume::GetNumberOfCells(deformvolume::GetGeometry(volume).PointExtent) == 0 &&
     deformvolume::GetNumberOfCells(deformvolume::GetGeometry(info).PointExtent) > 0;
+}
+
+const unsigned char* FindBytes(vtkImageData* image, const char* name)
+{
+  auto* array = vtkArrayDownCast<deformvolume::ByteArray>(image->GetCellData()->GetArray(name));
+  return array && array->GetNumberOfValues() == image->GetNumberOfCells() ? array->GetPointer(0)
+                                                                          : nullptr;
+}
+
+// Hides the cells that have a tetrahedron that is switched off or divided, from views, not from
+// vtkDeformVolumeFilter.
+void HideEditedCells(vtkImageData* image)
+{
+  const char* ghostName = vtkDataSetAttributes::GhostArrayName();
+  const unsigned char* active = FindBytes(image, deformvolume::ActiveTetrahedraName);
+  const unsigned char* divided = FindBytes(image, deformvolume::CutTetrahedraName);
+  const unsigned char* before = FindBytes(image, ghostName);
+  vtkNew<vtkUnsignedCharArray> hidden;
+  hidden->SetName(ghostName);
+  hidden->SetNumberOfValues(image->GetNumberOfCells());
+  unsigned char* values = hidden->GetPointer(0);
+  vtkSMPTools::For(0, image->GetNumberOfCells(),
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      constexpr unsigned char All = 31; // five tetrahedra
+      for (vtkIdType i = begin; i < end; ++i)
+      {
+        constexpr unsigned char Hidden = vtkDataSetAttributes::HIDDENCELL;
+        const unsigned char value = before ? before[i] : 0;
+        const bool isEdited = (active[i] & All) != All || (divided && (divided[i] & All) != 0);
+        values[i] = isEdited && (value & Hidden) == 0
+          ? static_cast<unsigned char>(value | Hidden | deformvolume::HiddenByEdit)
+          : value;
+      }
+    });
+  image->GetCellData()->AddArray(hidden);
 }
 
 } // namespace
@@ -230,6 +271,10 @@ int vtkVolumeEditAlgorithm::RequestData(
       this->UpdateEdits(input);
       this->Edits->Tool.Finish();
       this->Edits->Editor.Write(volume, image);
+      if (this->BlankCells)
+      {
+        HideEditedCells(image);
+      }
     });
   this->Edits->Progress = nullptr;
   return result;
@@ -255,6 +300,7 @@ void vtkVolumeEditAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "PointsAreDeformed: " << (this->PointsAreDeformed ? "on" : "off") << "\n";
   os << indent << "OutsideMode: " << this->OutsideMode << "\n";
   os << indent << "FadeDistance: " << this->FadeDistance << "\n";
+  os << indent << "BlankCells: " << (this->BlankCells ? "on" : "off") << "\n";
   os << indent << "NumberOfSwitchedOffTetrahedra: " << this->GetNumberOfSwitchedOffTetrahedra()
      << "\n";
 }

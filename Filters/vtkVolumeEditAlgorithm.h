@@ -28,7 +28,7 @@
  *
  * @par Output:
  * The volume with its arrays, and "ActiveTetrahedra". The array is changed in place from update to
- * update, unless somebody else holds a reference to it.
+ * update, unless somebody else holds a reference to it. With BlankCells also vtkGhostType.
  *
  * @par Edits:
  * Undo() switches on again what the last edit has switched off, bit for bit, as far as no other
@@ -154,6 +154,19 @@ public:
   vtkGetMacro(FadeDistance, double);
   ///@}
 
+  ///@{
+  /**
+   * Whether the output's cell array vtkGhostType hides the cells that have a tetrahedron that is
+   * switched off or divided, in addition to those that the volume's array hides. Renderers and most
+   * filters leave hidden cells out, so that edits show in the volume itself, to within a cell.
+   * These cells have the bit 128 as well, by which vtkDeformVolumeFilter knows that they are not
+   * hidden from it. Default: off.
+   */
+  vtkSetMacro(BlankCells, bool);
+  vtkGetMacro(BlankCells, bool);
+  vtkBooleanMacro(BlankCells, bool);
+  ///@}
+
   /**
    * Tetrahedra that the edits have switched off and that were active in the volume.
    */
@@ -184,6 +197,7 @@ protected:
   bool PointsAreDeformed = false;
   int OutsideMode = DISCARD;
   double FadeDistance = 0.0;
+  bool BlankCells = false;
 
   class vtkEdits;
   std::unique_ptr<vtkEdits> Edits;

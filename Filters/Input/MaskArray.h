@@ -32,6 +32,10 @@ constexpr const char* CutTetrahedraName = "CutTetrahedra";
 constexpr const char* CutDistanceName = "CutDistance";
 ///@}
 
+/// The bit that vtkGhostType of a cell has beside HIDDENCELL where only an edit hides the cell, for
+/// views: the arrays above say what is left of it. VTK uses the first six bits.
+constexpr unsigned char HiddenByEdit = 128;
+
 /// Distances of the points of a volume.
 struct DistanceValues
 {

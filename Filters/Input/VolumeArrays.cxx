@@ -93,6 +93,13 @@ enum Mask
   NumberOfMasks
 };
 
+// Cells that only edits hide are no hidden cells.
+bool IsHidden(unsigned char value)
+{
+  constexpr unsigned char Hidden = vtkDataSetAttributes::HIDDENCELL;
+  return (value & (Hidden | HiddenByEdit)) == Hidden;
+}
+
 std::array<vtkAbstractArray*, NumberOfMasks> FindMasks(vtkImageData* volume)
 {
   const char* ghostName = vtkDataSetAttributes::GhostArrayName();
@@ -285,9 +292,7 @@ VolumeMasks ReadMasks(vtkImageData* volume, const Stamp& last)
   if (const auto ghosts = FindMask(volume->GetCellData(), ghostName, numberOfCells, "cell", VOLUME))
   {
     const unsigned char* values = ghosts->GetPointer(0);
-    const auto isHidden = [](unsigned char value)
-    { return (value & vtkDataSetAttributes::HIDDENCELL) != 0; };
-    if (std::any_of(values, values + numberOfCells, isHidden))
+    if (std::any_of(values, values + numberOfCells, IsHidden))
     {
       masks.Joined.assign(static_cast<std::size_t>(numberOfCells), DEFORMVOLUME_ALL_TETRAHEDRA);
       if (masks.Active)
@@ -296,7 +301,7 @@ VolumeMasks ReadMasks(vtkImageData* volume, const Stamp& last)
       }
       for (vtkIdType i = 0; i < numberOfCells; ++i)
       {
-        masks.Joined[i] = isHidden(values[i]) ? 0 : masks.Joined[i];
+        masks.Joined[i] = IsHidden(values[i]) ? 0 : masks.Joined[i];
       }
       masks.Active = masks.Joined.data();
     }

@@ -4,6 +4,7 @@
 #include "EditChecks.h"
 
 #include "vtkCarveVolume.h"
+#include "vtkCutVolume.h"
 
 #include <vtkBox.h>
 #include <vtkCubeSource.h>
@@ -278,10 +279,93 @@ void TestTool()
   filter.Filter->SetDeformationData(mesh);
   filter.Update();
   const vtkIdType holed = filter.Filter->GetNumberOfCoveredVoxels();
+  deformed.Filter->BlankCellsOn(); // which is not looked at
+  filter.Update();
+  VERIFY_EQUAL(filter.Filter->GetNumberOfCoveredVoxels(), holed);
   deformed.Filter->Reset();
   filter.Update();
   VERIFY(holed < filter.Filter->GetNumberOfCoveredVoxels());
   VERIFY_EQUAL(filter.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
+}
+
+// Cells that are cut or carved are hidden, beside those that the volume hides, which is not
+// changed.
+void TestBlankCells()
+{
+  auto volume = MakeVolume(Box);
+  auto ghosts = MakeArray<vtkUnsignedCharArray>("vtkGhostType", volume->GetNumberOfCells());
+  ghosts->FillValue(0);
+  ghosts->SetValue(3, vtkDataSetAttributes::DUPLICATECELL);
+  ghosts->SetValue(5, vtkDataSetAttributes::HIDDENCELL);
+  volume->GetCellData()->AddArray(ghosts);
+  Edited<vtkCutVolume> cut;
+  cut.Filter->SetInputData(volume);
+  cut.Filter->SetSheetData(MakePlaneX(volume, 4.5));
+  cut.Filter->SmoothCutOn();
+  Edited<vtkCarveVolume> carve;
+  carve.Filter->SetInputConnection(cut.Filter->GetOutputPort());
+  carve.Filter->AddToolPosition(9, 7, 8);
+  carve.Filter->SetToolRadius(3.0);
+  const auto bytes = [&carve](const char* name)
+  {
+    return vtkUnsignedCharArray::SafeDownCast(
+      carve.Filter->GetOutput()->GetCellData()->GetArray(name));
+  };
+  carve.Update();
+  VERIFY(bytes("vtkGhostType") == ghosts);
+  carve.Filter->BlankCellsOn();
+  carve.Update();
+  const auto *active = bytes("ActiveTetrahedra"), *divided = bytes("CutTetrahedra");
+  const auto* hidden = bytes("vtkGhostType");
+  VERIFY(active && divided && hidden && hidden != ghosts);
+  vtkIdType counts[2] = { 0, 0 };
+  for (vtkIdType i = 0; i < volume->GetNumberOfCells(); ++i)
+  {
+    const bool isCut = (divided->GetValue(i) & 31) != 0;
+    const bool isCarved = (active->GetValue(i) & 31) != 31;
+    counts[0] += isCut ? 1 : 0;
+    counts[1] += isCarved ? 1 : 0;
+    const int expected = (i == 3 ? vtkDataSetAttributes::DUPLICATECELL : 0) |
+      (i == 5                 ? 32
+          : isCut || isCarved ? 32 + 128
+                              : 0);
+    VERIFY_EQUAL(static_cast<int>(hidden->GetValue(i)), expected);
+  }
+  VERIFY_EQUAL(counts[0], 13 * 14); // one layer
+  VERIFY(counts[1] > 100);
+  VERIFY_EQUAL(static_cast<int>(ghosts->GetValue(5)), 32);
+
+  // Without edits nothing more is hidden.
+  carve.Filter->ClearToolPositions();
+  carve.Filter->Reset();
+  cut.Filter->Reset();
+  carve.Update();
+  for (vtkIdType i = 0; i < volume->GetNumberOfCells(); ++i)
+  {
+    VERIFY_EQUAL(bytes("vtkGhostType")->GetValue(i), ghosts->GetValue(i));
+  }
+}
+
+// A small edit that is hidden from views costs what it costs without that: not all is resampled.
+void TestBlankedUpdates()
+{
+  auto volume = MakeVolume({ { 0, 60, 0, 60, 0, 40 } });
+  for (const bool isBlank : { false, true })
+  {
+    Edited<vtkCarveVolume> carve;
+    carve.Filter->SetInputData(volume);
+    carve.Filter->SetBlankCells(isBlank);
+    carve.Filter->SetToolRadius(2.0);
+    carve.Filter->AddToolPosition(9, 9, 9);
+    Deformed filter;
+    filter.Filter->SetInputConnection(carve.Filter->GetOutputPort());
+    filter.Update();
+    carve.Filter->AddToolPosition(10, 9, 9);
+    filter.Update();
+    const int* changed = filter.Filter->GetChangedExtent();
+    VERIFY(changed[0] <= 10 && changed[1] >= 10);
+    VERIFY(changed[1] < 40);
+  }
 }
 
 } // namespace
@@ -293,6 +377,8 @@ int TestCarveVolume(int, char*[])
   TestSurfaces();
   TestLabels();
   TestTool();
+  TestBlankCells();
+  TestBlankedUpdates();
   for (const bool isSmooth : { false, true })
   {
     CheckAborts<vtkCarveVolume>(

@@ -35,7 +35,7 @@ def plugin_proxies():
                 elements.update({(group.get("name"), proxy.get("name")): proxy for proxy in group})
     result = []
     for (group, _), proxy in elements.items():
-        if group == "internal_filters":
+        if group.startswith("internal_"):
             continue
         base = proxy
         while base.get("base_proxyname"):

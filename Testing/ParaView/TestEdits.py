@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Cutting and carving in ParaView: by a sheet, by widgets' functions, by a surface and by a label, with
-undo and redo, and what Deform Volume makes of it."""
+undo and redo, what is hidden in views, and what Deform Volume makes of it."""
 
 from paraview import simple
 
@@ -73,12 +73,55 @@ def check_carve(volume):
         carve.Body = name
         check(off(active(carve)) > 0, f"{name} carves nothing")
     surface = simple.Sphere(Radius=5, ThetaResolution=40, PhiResolution=40)
-    by_surface = off(active(simple.CarveVolumeWithSurface(Volume=volume, Surface=surface)))
-    check(0.9 * large < by_surface <= large, f"the surface carves {by_surface}, not {large}")
+    by_surface = active(simple.CarveVolumeWithSurface(Volume=volume, Surface=surface))
+    count = off(by_surface)
+    check(0.9 * large < count <= large, f"the surface carves {count}, not {large}")
     labels = simple.Calculator(Input=volume, ResultArrayName="label", Function="floor(coordsX/4)")
-    by_label = simple.CarveVolumeLabel(Volume=labels, Labels="label", Label=1)
-    check(off(active(by_label)) > 0, "the label carves nothing")
+    labels.UpdatePipeline()
+    by_label = active(simple.CarveVolumeLabel(Volume=labels, Labels="label", Label=1))
+    check(off(by_label) > 0, "the label carves nothing")
+
+    # One filter does what took three.
+    one = simple.CarveVolume(Volume=labels)
+    check(one.Labels == "", f"the labels are at first {one.Labels}")
+    check(off(active(one)) > 0, "the body carves nothing at first")
+    one.Body = "None"
+    check(off(active(one)) == 0, "no body carves")
+    one.Surface = surface
+    check(active(one) == by_surface, "the surface carves something else")
+    one.Labels, one.Surface = "label", None
+    check(active(one) == by_label, "the label carves something else")
     return carve
+
+
+def check_hidden(volume):
+    """Views and filters leave out what is cut."""
+    cut = simple.CutVolumeWithPlane(Volume=volume)
+    middle = [list(cut.Plane.Center), list(cut.Plane.BoundingBox)]
+    check(middle == [[0, 0, 0], [-10, 10] * 3], f"the plane is put to {middle}")
+    cut.Plane.Center = [0, 0, 0.5]
+    check(off(active(cut)) == 5 * 20 * 20, f"the plane cuts {off(active(cut))}")
+    shown = simple.Threshold(
+        Input=cut, Scalars=["POINTS", "RTData"], LowerThreshold=0, UpperThreshold=1000
+    )
+
+    def count_cells():
+        return fetch(shown).GetNumberOfCells()
+
+    check(count_cells() == 20 * 20 * 19, f"{count_cells()} cells are shown")
+    cut.SmoothCut = 1
+    check(count_cells() == 20 * 20 * 19, f"a smooth cut shows {count_cells()} cells")
+    # Deform Volume leaves out tetrahedra of these cells, and not all of them.
+    cut.Plane.Normal = [1, 0.5, 0.25]
+    cut.SmoothCut = 0
+    covered = []
+    for is_blank in (1, 0):
+        cut.BlankCells = is_blank
+        deform = simple.DeformVolume(Volume=cut)
+        deform.UpdatePipeline()
+        covered.append(deform.GetPropertyValue("CoveredVoxels"))
+    check(0 < covered[0] == covered[1] < 21**3, f"{covered} voxels are left")
+    check(count_cells() == 20**3, "cells are still hidden")
 
 
 def main():
@@ -86,6 +129,8 @@ def main():
     with messages() as texts:
         volume = wavelet()
         check_smooth_cut(volume, 20)
+        volume.UpdatePipeline()
+        check_hidden(volume)
         cut = check_cut(volume, 20)
         carve = check_carve(volume)
         carve.Volume = cut

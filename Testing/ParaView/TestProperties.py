@@ -22,11 +22,13 @@ from PluginTesting import (
 )
 
 # Where ParaView has another default than the class. ParaView has a clock; other pipelines are asked
-# for times only by those who want them. A panel shows the name of a device.
+# for times only by those who want them. A panel shows the name of a device, and a view what is cut.
 OTHER_DEFAULTS = {
     ("vtkMassSpringDeformation", "EndTime"): [1.0],
     ("vtkCorotationalDeformation", "EndTime"): [1.0],
     ("vtkDeformVolumeFilter", "Device"): ["best"],
+    ("vtkCutVolume", "BlankCells"): [True],
+    ("vtkCarveVolume", "BlankCells"): [True],
 }
 # Of former versions: TestOldFiles.py sets them.
 REMOVED = {"StreamInput", "WorkGroupSize", "NumberOfTimeSamples"}
@@ -175,7 +177,8 @@ def check_reach(proxy, sources):
     properties = {
         name: smproperty
         for name, smproperty in properties_of(proxy).items()
-        if smproperty.GetClassName() != "vtkSMProperty"  # a button
+        # Neither a button nor an input that is for widgets only.
+        if smproperty.GetClassName() != "vtkSMProperty" and smproperty.GetCommand()
     }
 
     def read_all():
@@ -191,6 +194,10 @@ def check_reach(proxy, sources):
     for name, smproperty in properties.items():
         label = f"{proxy.GetXMLName()}.{name}"
         before = read_all()
+        if smproperty.FindDomain("vtkSMProxyListDomain") and smproperty.IsA("vtkSMInputProperty"):
+            made = proxy.GetProperty(name).GetData().GetClientSideObject()
+            check(comes_from(made)(before[name]), f"{label}: {before[name]}")
+            continue
         if smproperty.IsA("vtkSMInputProperty"):
             check(not before[name], f"{label}: there is an input")
             check_input(proxy, name, smproperty, sources, check_only, before)
@@ -222,27 +229,28 @@ def check_reach(proxy, sources):
         check(read_all() == before, f"{label}: the default does not come back")
 
 
+def comes_from(made):
+    """ParaView may put an algorithm of its own between."""
+    def is_right(producers):
+        if len(producers) != 1:
+            return False
+        producer = producers[0]
+        while producer is not made and producer.GetNumberOfInputConnections(0):
+            producer = producer.GetInputConnection(0, 0).GetProducer()
+        return producer is made
+    return is_right
+
+
 def check_input(proxy, name, smproperty, sources, check_only, before):
     label = f"{proxy.GetXMLName()}.{name}"
-
-    def comes_from(source):
-        """ParaView may put an algorithm of its own between."""
-        def is_right(producers):
-            if len(producers) != 1:
-                return False
-            producer, made = producers[0], source.GetClientSideObject()
-            while producer is not made and producer.GetNumberOfInputConnections(0):
-                producer = producer.GetInputConnection(0, 0).GetProducer()
-            return producer is made
-        return is_right
-
     accepted = 0
     for source in sources:
         smproperty.SetInputConnection(0, source.SMProxy, 0)
         if smproperty.IsInDomains():
             accepted += 1
             proxy.SMProxy.UpdateVTKObjects()
-            check_only(name, before, comes_from(source), f"{label} = {source.GetXMLName()}")
+            is_right = comes_from(source.GetClientSideObject())
+            check_only(name, before, is_right, f"{label} = {source.GetXMLName()}")
     check(accepted > 0, f"{label} accepts none of the sources")
     smproperty.RemoveAllProxies()
     proxy.SMProxy.UpdateVTKObjects()
@@ -406,6 +414,24 @@ def check_background(volume):
         check(filter_.BackgroundValue == value, f"Another volume changes the background {value}")
 
 
+def check_places():
+    """Widgets start in the data."""
+    volume = simple.Wavelet(WholeExtent=[0, 10, 0, 20, 0, 30])
+    volume.UpdatePipeline()
+    handle = simple.DeformationHandleInData(Data=volume)
+    plane = simple.CutVolumeWithPlane(Volume=volume).Plane
+    places = [handle.RestPosition, handle.Position, plane.Center]
+    carve = simple.CarveVolume(Volume=volume)
+    for name in ("Sphere", "Cylinder"):
+        carve.Body = name
+        places.append(carve.Body.Center)
+    carve.Body = "Plane"
+    places.append(carve.Body.Origin)
+    check(all(list(place) == [5, 10, 15] for place in places), f"{places}")
+    carve.Body = "Box"
+    check(list(carve.Body.Length) == [10, 20, 30], f"{list(carve.Body.Length)}")
+
+
 def check_defaults(volume):
     # The only vectors are found whatever their name, and whatever other arrays there are.
     mesh = bent_lattice(volume, array="u")
@@ -496,8 +522,10 @@ def main():
         "ChainMailDeformation": lambda: simple.ChainMailDeformation(Volume=volume, Handles=handle),
         "CorotationalDeformation": lambda: simple.CorotationalDeformation(**elastic),
         "CutVolume": lambda: simple.CutVolume(Sheet=plane, **edited),
+        "CutVolumeWithPlane": lambda: simple.CutVolumeWithPlane(**edited),
         "DeformVolume": deform,
         "DeformationHandle": simple.DeformationHandle,
+        "DeformationHandleInData": lambda: simple.DeformationHandleInData(Data=volume),
         "MassSpringDeformation": lambda: simple.MassSpringDeformation(**elastic),
         "MaterialFromVolume": lambda: simple.MaterialFromVolume(Mesh=wide, Volume=volume),
         "TetGenMesher": body,
@@ -523,6 +551,7 @@ def main():
     check(len(update(lattice)) == 1, "Too many nodes are no error")
     check_defaults(volume)
     check_background(volume)
+    check_places()
 
 
 main()

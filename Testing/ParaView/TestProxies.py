@@ -46,6 +46,10 @@ WITHOUT_PROPERTY = {
     # Behind SetFromState().
     "SetResampler",
 }
+# What Carve Volume does now: not in the menu, and there for state files and scripts.
+FORMER_PROXIES = {"CarveVolumeLabel", "CarveVolumeWithSurface"}
+# A panel has at most so many widgets before the user asks for advanced ones.
+MOST_WIDGETS = 8
 # Numbers of enumerators that there are no more.
 REMOVED_VALUES = {"PieceMode": {1}, "Resampler": {1}}
 
@@ -118,7 +122,11 @@ def check_words(proxy):
         check(documentation.get(attribute), f"{name}: no {attribute}")
     check((documentation.text or "").strip(), f"{name}: no description")
     menu = proxy.find("Hints/ShowInMenu")
-    check(menu is not None and menu.get("category") == "Deform Volume", f"{name}: not in the menu")
+    if name in FORMER_PROXIES:
+        check(menu is None, f"{name}: in the menu")
+    else:
+        right = menu is not None and menu.get("category") == "Deform Volume"
+        check(right, f"{name}: not in the menu")
     grouped = [entry.get("name") for entry in proxy.findall("PropertyGroup/Property")]
     names = [prop.get("name") for prop in properties_of(proxy)]
     check(len(set(grouped)) == len(grouped), f"{name}: a property in two groups")
@@ -133,6 +141,39 @@ def check_words(proxy):
         for required in prop.iter("RequiredProperties"):
             for entry in required:
                 check(entry.get("name") in names, f"{label}: requires {entry.get('name')}")
+
+
+def is_set_by_user(prop):
+    """Not information, a button, an input that is connected in the pipeline, or removed."""
+    is_connected = prop.tag == "InputProperty" and prop.find("ProxyListDomain") is None
+    return not (
+        is_connected
+        or prop.tag == "Property"
+        or prop.get("information_only")
+        or prop.get("panel_visibility") == "never"
+    )
+
+
+def is_widget(prop):
+    """Whether the default panel shows it: information only where that is asked for."""
+    if prop.tag == "InputProperty" and prop.find("ProxyListDomain") is None:
+        return False
+    default = "never" if prop.get("information_only") else "default"
+    return prop.get("panel_visibility", default) == "default"
+
+
+def check_panel(proxy):
+    name = proxy.get("name")
+    widgets = [prop.get("name") for prop in properties_of(proxy) if is_widget(prop)]
+    too_many = f"{name}: {len(widgets)} widgets. Make some of them advanced: {widgets}"
+    check(len(widgets) <= MOST_WIDGETS, too_many)
+    for prop in properties_of(proxy):
+        label = f"{name}.{prop.get('name')}"
+        if is_set_by_user(prop):
+            text = " ".join(prop.find("Documentation").text.split())
+            check("Default: " in text, f"{label}: the documentation does not say the default")
+        if re.search("Arrays?(Name)?$", prop.get("name")):
+            check(prop.find("ArrayListDomain") is not None, f"{label}: no list of arrays")
 
 
 def check_values(cls, proxy):
@@ -186,6 +227,7 @@ def main():
         check_complete(cls, proxies[name])
         for proxy in proxies[name]:
             check_words(proxy)
+            check_panel(proxy)
             check_values(cls, proxy)
     for failure in failures:
         print(failure)

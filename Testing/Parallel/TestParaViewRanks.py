@@ -98,7 +98,7 @@ def run(ranks):
 serial, serial_picture = run(1)
 deformed, edited, dragged = (serial[what][1] for what in ("", "-edited", "-dragged"))
 for arrays, names in ((deformed, ["RTData", "vtkValidPointMask"]),
-                      (edited, ["ActiveTetrahedra", "RTData"]),
+                      (edited, ["ActiveTetrahedra", "RTData", "vtkGhostType"]),
                       (dragged, ["RTData", "vtkValidPointMask"])):
     if sorted(arrays) != names:
         sys.exit(f"unexpected arrays {sorted(arrays)}")
