@@ -38,6 +38,8 @@ def check_session():
     mesh = bent_lattice(volume)
     filter_ = simple.DeformVolume(Volume=volume, Deformation=mesh)
     check(list(filter_.DisplacementArray) == ["POINTS", "Displacement"], "No array was found")
+    least = volume.PointData["RTData"].GetRange()[0]
+    check(filter_.BackgroundValue == least, f"The background is {filter_.BackgroundValue}")
     filter_.Device = "cpu"
     filter_.Padding = 1
     filter_.CategoricalArrays = ["RTData"]

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A state file and a Python script of version 0.1: what was removed is one warning each, the voxels come, and a
-state that is saved then loads silently: TestOldFiles.py FOLDER-OF-DATA."""
+"""State files and a Python script of version 0.1: what was removed is one warning each, the voxels come, and a
+state that is saved then loads silently. Filters that are not in the menu any more work as they did: TestOldFiles.py
+FOLDER-OF-DATA."""
 
 import os
 import sys
@@ -58,8 +59,27 @@ def check_file(load, path, expected):
     return loaded
 
 
+def check_edits(path):
+    """A volume that is cut by a sheet, and carved by a body, a surface and a label, one filter each."""
+    for source in reversed(list(simple.GetSources().values())):
+        simple.Delete(source)
+    with messages() as texts:
+        simple.LoadState(path)
+        image = fetch(simple.FindSource("CarveLabel"))
+        deform = simple.FindSource("Deform")
+        deform.UpdatePipeline()
+    check_silent(texts)
+    array = image.GetCellData().GetArray("ActiveTetrahedra")
+    values = [array.GetValue(i) & 31 for i in range(array.GetNumberOfTuples())]
+    off = sum(5 - bin(value).count("1") for value in values)
+    check(off == 7656, f"{off} tetrahedra are off; with version 0.1 there were 7656")
+    check(deform.BackgroundValue == 0.0, f"the background is {deform.BackgroundValue}")
+    check(simple.FindSource("Carve").Labels == "", "a label is carved that was not chosen")
+
+
 def main():
     load_plugin()
+    check_edits(os.path.join(sys.argv[1], "State-0.1-edits.pvsm"))
     state, script = (os.path.join(sys.argv[1], name) for name in ("State-0.1.pvsm", "Script-0.1.py"))
     check_file(run_script, script, WARNINGS)
     loaded = check_file(simple.LoadState, state, WARNINGS + ["Resampler is 1"])

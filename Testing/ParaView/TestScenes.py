@@ -88,6 +88,27 @@ def draw_edits(view, version):
     return [20.0, -80.0, 60.0], 36.0
 
 
+def draw_hidden(view, version):
+    """What a volume shows that is cut and carved, without Deform Volume. Spoiled: it is whole."""
+    shift = 1 if version == "shifted" else 0
+    is_blank = 0 if version == "spoiled" else 1
+    volume = wavelet()
+    volume.UpdatePipeline()
+    cut = simple.CutVolumeWithPlane(Volume=volume, BlankCells=is_blank)
+    cut.Plane.Center, cut.Plane.Normal = [-3.5 + shift, 0, 0], [1, 0.2, 0]
+    carve = simple.CarveVolume(Volume=cut, BlankCells=is_blank)
+    carve.Body.Center, carve.Body.Radius = [4 + shift, -10, 4], 5
+    shown = simple.Show(carve, view)
+    check(shown.Representation == "Volume", f"It is shown as {shown.Representation}")
+    simple.ColorBy(shown, ("POINTS", "RTData"))
+    colours = simple.GetColorTransferFunction("RTData")
+    colours.ColorSpace = "RGB"
+    colours.RGBPoints = [50, 0.1, 0.2, 0.5, 150, 0.95, 0.9, 0.7, 280, 0.6, 0.1, 0.1]
+    simple.GetOpacityTransferFunction("RTData").Points = [0, 0.7, 0.5, 0, 300, 0.9, 0.5, 0]
+    shown.SetScalarBarVisibility(view, False)
+    return [20.0, -80.0, 60.0], 32.0
+
+
 def draw_chain_mail(view, version):
     """A stiff middle is dragged in soft tissue. Spoiled: all of it is soft."""
     volume = wavelet()
@@ -107,6 +128,7 @@ SCENES = {
     "ParaViewSlice": (draw_slice, 2.5),
     "ParaViewContour": (draw_contour, 2.8),
     "ParaViewEdits": (draw_edits, 1.2),
+    "ParaViewHidden": (draw_hidden, 3.0),
     "ParaViewChainMail": (draw_chain_mail, 3.0),
 }
 
