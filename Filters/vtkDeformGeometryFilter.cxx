@@ -37,6 +37,7 @@
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -356,6 +357,8 @@ void vtkDeformGeometryFilter::vtkInternals::Move(vtkPointSet* input, vtkPointSet
   std::vector<glm::dmat3> gradients(arrays.empty() ? 0 : places.size());
   const std::vector<std::int64_t> order = deformvolume::SortBySpace(places);
   std::atomic<vtkIdType> outside{ 0 };
+  std::atomic<bool> isTooFar{ false };
+  const double farthest = moved.Get()->GetDataTypeMax();
   this->RunInParts(places.size(),
     [&](std::size_t begin, std::size_t end)
     {
@@ -366,6 +369,12 @@ void vtkDeformGeometryFilter::vtkInternals::Move(vtkPointSet* input, vtkPointSet
         const std::int64_t point = order[i];
         const bool isValid = this->MovePoint(places[static_cast<std::size_t>(point)], image);
         outsideHere += isValid ? 0 : 1;
+        const glm::dvec3 size = glm::abs(image.Point);
+        if (!(size.x <= farthest && size.y <= farthest && size.z <= farthest)) // not-a-number, too
+        {
+          isTooFar = true;
+          image.Point = glm::dvec3(0.0);
+        }
         mask->SetValue(point, isValid ? 1 : 0);
         moved.Set(point, image.Point);
         if (!gradients.empty())
@@ -375,6 +384,12 @@ void vtkDeformGeometryFilter::vtkInternals::Move(vtkPointSet* input, vtkPointSet
       }
       outside += outsideHere;
     });
+  if (isTooFar)
+  {
+    throw deformvolume::Error("The deformation moves points so far that their coordinates are no " +
+      std::string(moved.Get()->GetDataTypeAsString()) +
+      " numbers. Check the displacements and DisplacementScale.");
+  }
   for (const TransformedArray& array : arrays)
   {
     deformvolume::ParallelForParts(places.size(), PointsPerPart,

@@ -304,6 +304,10 @@ void TestMisuse()
   filter->SetDisplacementScale(nan);
   misuse.Expect("DisplacementScale is not finite");
 
+  filter->SetDisplacementScale(1e300);
+  filter->SetInputData(MakePoints({ glm::dvec3(5.0) }, VTK_FLOAT));
+  misuse.Expect("no float numbers");
+
   for (const double wrong : { -1.0, nan, infinity })
   {
     filter->SetOutsideModeToKeep();

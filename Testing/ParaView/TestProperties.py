@@ -523,6 +523,7 @@ def main():
         "CorotationalDeformation": lambda: simple.CorotationalDeformation(**elastic),
         "CutVolume": lambda: simple.CutVolume(Sheet=plane, **edited),
         "CutVolumeWithPlane": lambda: simple.CutVolumeWithPlane(**edited),
+        "DeformGeometry": lambda: simple.DeformGeometry(Input=surface, Deformation=mesh),
         "DeformVolume": deform,
         "DeformationHandle": simple.DeformationHandle,
         "DeformationHandleInData": lambda: simple.DeformationHandleInData(Data=volume),

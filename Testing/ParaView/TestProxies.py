@@ -43,6 +43,8 @@ WITHOUT_PROPERTY = {
     "GetStateMemory",
     # ParaView reads each output at once, for the ranges of its arrays.
     "SetOutputOnDevice",
+    # The warning of the update says it.
+    "GetNumberOfOutsidePoints",
     # Behind SetFromState().
     "SetResampler",
 }
