@@ -2,6 +2,7 @@
 // deform-volume: deforms a volume with a tetrahedral mesh from the command line.
 #include "Failure.h"
 #include "ImageAxes.h"
+#include "LabelVolume.h"
 #include "MeshMaking.h"
 #include "Messages.h"
 #include "Movie.h"
@@ -58,6 +59,7 @@ void ListDevices()
 void CheckOutputs(const Options& options)
 {
   std::vector<std::string> paths = options.Outputs;
+  paths.insert(paths.end(), options.LabelOutputs.begin(), options.LabelOutputs.end());
   paths.push_back(options.Image);
   paths.push_back(options.Movie);
   paths.push_back(options.MeshOutput);
@@ -107,9 +109,9 @@ double FindBackground(const Options& options, vtkImageData* volume)
 }
 
 void SetUp(vtkDeformVolumeFilter* filter, const Options& options, vtkImageData* volume,
-  vtkImageData* reference, const Deformation& deformation)
+  const LabelVolume& labels, vtkImageData* reference, const Deformation& deformation)
 {
-  filter->SetInputData(volume);
+  filter->SetInputData(labels.AddTo(volume, filter));
   filter->SetReferenceData(reference);
   filter->SetDeformationData(deformation.Data);
   filter->SetOpenSplits(options.CutsMesh());
@@ -174,13 +176,17 @@ PictureOptions GetPictureOptions(
   return picture;
 }
 
-void PrintSummary(vtkDeformVolumeFilter* filter, const Volume& volume,
+void PrintSummary(vtkDeformVolumeFilter* filter, const Volume& volume, const LabelVolume& labels,
   const Deformation& deformation, const std::vector<std::string>& tools, const TimingTable& timings)
 {
   vtkImageData* result = filter->GetOutput();
   vtkDataArray* scalars = volume.Image->GetPointData()->GetScalars();
   std::cout << "volume     " << GetDimensionsText(volume.Image) << " voxels, "
             << scalars->GetDataTypeAsString() << "\n";
+  if (labels.AreThere())
+  {
+    std::cout << "labels     " << labels.Describe() << "\n";
+  }
   if (deformation.Data)
   {
     std::cout << (vtkImageData::SafeDownCast(deformation.Data) ? "field      " : "mesh       ")
@@ -261,6 +267,7 @@ void DeformVolume(const Options& options, Messages& messages)
   CheckValues(volume.Image, options.Volume);
   volume.Axes =
     HeedSpace("--volume-space", options.VolumeSpace, options.Volume, volume.Axes, messages);
+  const LabelVolume labels(options, volume, messages);
   Volume reference;
   if (!options.Reference.empty())
   {
@@ -281,7 +288,7 @@ void DeformVolume(const Options& options, Messages& messages)
   {
     if (!filter->GetInput())
     {
-      SetUp(filter, options, cut.Image, reference.Image, deformation);
+      SetUp(filter, options, cut.Image, labels, reference.Image, deformation);
     }
     filter->SetDeformationData(deformation.Data);
     const ProgressBar bar(filter, "deforming", !options.Quiet);
@@ -336,13 +343,22 @@ void DeformVolume(const Options& options, Messages& messages)
   {
     result.Forms = reference.Forms;
   }
-  if (!options.Outputs.empty())
+  const Stopwatch writing;
+  if (labels.AreThere())
   {
-    const Stopwatch writing;
-    for (const std::string& output : options.Outputs)
+    Volume deformedLabels = result;
+    deformedLabels.Image = labels.TakeFrom(result.Image);
+    for (const std::string& output : options.LabelOutputs)
     {
-      WriteVolume(result, output, messages, !options.Quiet);
+      WriteVolume(deformedLabels, output, messages, !options.Quiet);
     }
+  }
+  for (const std::string& output : options.Outputs)
+  {
+    WriteVolume(result, output, messages, !options.Quiet);
+  }
+  if (!options.Outputs.empty() || labels.AreThere())
+  {
     timings.Add("write volume", writing.GetSeconds());
   }
   if (!options.Image.empty())
@@ -354,7 +370,7 @@ void DeformVolume(const Options& options, Messages& messages)
   }
   if (!options.Quiet)
   {
-    PrintSummary(filter, volume, deformation, tools, timings);
+    PrintSummary(filter, volume, labels, deformation, tools, timings);
   }
 }
 }

@@ -10,6 +10,7 @@
 
 #include <vtksys/SystemTools.hxx>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -38,13 +39,21 @@ void CheckNumbers(const Options& options)
 void CheckOverwriting(const Options& options)
 {
   std::vector<std::string> outputs = options.Outputs;
+  for (const std::string& labels : options.LabelOutputs)
+  {
+    if (std::count(outputs.begin(), outputs.end(), labels) > 0)
+    {
+      throw UsageError(labels + " is written twice: give --label-output another name");
+    }
+    outputs.push_back(labels);
+  }
   outputs.push_back(options.Image);
   outputs.push_back(options.Movie);
   outputs.push_back(options.MeshOutput);
   for (const std::string& output : outputs)
   {
-    std::vector<std::string> inputs{ options.Volume, options.Mesh, options.Rest, options.Field,
-      options.Reference };
+    std::vector<std::string> inputs{ options.Volume, options.LabelVolume, options.Mesh,
+      options.Rest, options.Field, options.Reference };
     inputs.insert(inputs.end(), options.Cuts.begin(), options.Cuts.end());
     for (const TransformFile& transform : options.Transforms)
     {
@@ -228,7 +237,8 @@ void CheckOptions(const Options& options)
   {
     throw UsageError("--mesh-space requires --mesh or --cut");
   }
-  if (options.Outputs.empty() && options.Image.empty() && options.Movie.empty())
+  if (options.Outputs.empty() && options.LabelOutputs.empty() && options.Image.empty() &&
+    options.Movie.empty())
   {
     throw UsageError("nothing to write: give --output, --image or --movie");
   }
@@ -237,13 +247,18 @@ void CheckOptions(const Options& options)
     throw UsageError("--movie " + options.Movie +
       ": the name must end in .png, or in .ogv where VTK has Ogg Theora");
   }
-  for (const std::string& output : options.Outputs)
+  const auto checkNames = [](const std::string& option, const std::vector<std::string>& names)
   {
-    if (!CanWriteVolume(output))
+    for (const std::string& name : names)
     {
-      throw UsageError("--output " + output + ": the name must end in " + WrittenFormats);
+      if (!CanWriteVolume(name))
+      {
+        throw UsageError(option + " " + name + ": the name must end in " + WrittenFormats);
+      }
     }
-  }
+  };
+  checkNames("--output", options.Outputs);
+  checkNames("--label-output", options.LabelOutputs);
   if (!options.Image.empty() && !HasSuffix(options.Image, { ".png" }))
   {
     throw UsageError("--image " + options.Image + ": the name must end in .png");

@@ -5,6 +5,8 @@
 #include "MeshFormats.h"
 #include "OptionChecks.h"
 #include "OptionTexts.h"
+#include "VolumeReading.h"
+#include "VolumeWriting.h"
 
 #include <CLI/CLI.hpp>
 
@@ -148,9 +150,11 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
   program
     .add_option("--field", options.Field,
       "Displacement field: .nii or .nii.gz of the shape (X,Y,Z,1,3) with the intent 1006 (vectors "
-      "right, anterior, superior) or 1007 (left, posterior, superior, as ITK and ANTs write them), "
-      ".mha, .mhd, .nrrd, .nhdr or .vti. It is forward: it leads from a point of the volume to "
-      "where that point goes, see --field-is-inverse")
+      "right, anterior, superior) or 1007 (left, posterior, superior, as ITK and ANTs write "
+      "them), " +
+        std::string(HasITK ? ".mha, .mhd, .nrrd, .nhdr " : "") +
+        "or .vti. It is forward: it leads from a point of the volume to where that point goes, see "
+        "--field-is-inverse")
     ->type_name("FILE")
     ->group(group);
   program
@@ -167,12 +171,14 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
     ->group(group);
   program
     .add_option("--transform", raw.Transforms,
-      "A registration's transform, from the result (the fixed image) to the volume (the moving "
-      "one), "
-      "as ITK, SimpleITK, ANTs and 3D Slicer write it: .h5, .tfm, .txt or .mat with a matrix, a "
-      "B-spline, a displacement field or a composition, or a displacement field as for --field. "
-      "With ,invert behind its name a matrix is inverted. May be given several times: points go "
-      "through the last one first, as with antsApplyTransforms")
+      HasITK
+        ? "A registration's transform, from the result (the fixed image) to the volume (the moving "
+          "one), as ITK, SimpleITK, ANTs and 3D Slicer write it: .h5, .tfm, .txt or .mat with a "
+          "matrix, a B-spline, a displacement field or a composition, or a displacement field as "
+          "for --field. With ,invert behind its name a matrix is inverted. May be given several "
+          "times: points go through the last one first, as with antsApplyTransforms"
+        : "A registration's transform, which a program reads that was built with ITK: this one was "
+          "not")
     ->type_name("FILE[,invert]")
     ->take_all()
     ->expected(1)
@@ -321,6 +327,8 @@ void AddDependencies(CLI::App& program)
   needs("--model",
     { "--pull", "--fix", "--gravity", "--material", "--young", "--poisson", "--density",
       "--duration", "--frames", "--movie" });
+  needs("--label-volume", { "--label-output" });
+  needs("--label-output", { "--label-volume" });
   needs("--movie", { "--frames" });
   needs("--frames", { "--movie" });
   needs("--cut", { "--smooth-cut" });
@@ -421,8 +429,19 @@ void AddOutput(CLI::App& program, Options& options, RawOptions& raw)
   const char* group = "What is written";
   program
     .add_option("-o,--output", options.Outputs,
-      "The deformed volume: .vti (all arrays), .nii, .nii.gz, .mhd, .mha, .nrrd or .nhdr (the "
-      "scalars). May be given several times")
+      std::string("The deformed volume: .vti (all arrays), ") + FormatsOfOneArray +
+        " (the scalars). May be given several times")
+    ->type_name("FILE")
+    ->take_all()
+    ->expected(1)
+    ->group(group);
+  program
+    .add_option("--label-output", options.LabelOutputs,
+      std::string(
+        "The deformed labels of --label-volume, in files of their own: .vti (all arrays), ") +
+        FormatsOfOneArray +
+        " (where there is one array). They are 0 where the deformed volume does not reach. May be "
+        "given several times")
     ->type_name("FILE")
     ->take_all()
     ->expected(1)
@@ -473,40 +492,47 @@ std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)
   CLI::App program("Deforms a volume with a tetrahedral mesh or a displacement field, at full "
                    "resolution, on an OpenCL device.\n",
     "deform-volume");
+  const std::string placed = HasITK
+    ? "s-form,\nor else their q-form (x to the right, y to the front, z to the head); DICOM "
+      "series, "
+      "MetaImage\nand NRRD files by origin and direction (x to the left, y to the back, z to the "
+      "head, unless an\nNRRD file says otherwise); .vti files as they are. "
+    : "s-form,\nor else their q-form (x to the right, y to the front, z to the head); .vti files "
+      "as "
+      "they are.\n";
   program.footer(
-    "World coordinates are those of the file, mostly in mm: NIfTI files are placed by their "
-    "s-form,\n"
-    "or else their q-form (x to the right, y to the front, z to the head); DICOM series, "
-    "MetaImage\n"
-    "and NRRD files by origin and direction (x to the left, y to the back, z to the head, unless "
-    "an\n"
-    "NRRD file says otherwise); .vti files as they are. All lengths are in these units. A --field "
-    "is\n"
+    "World coordinates are those of the file, mostly in mm: NIfTI files are placed by their " +
+    placed +
+    "All lengths are in these units. A --field is\n"
     "turned into the world of the volume, its vectors included.\n\n"
     "Exit codes: 0 success, 1 failure, 2 wrong usage.\n\n"
     "Example: dent a head to a depth of 15 mm\n"
     "  deform-volume head.nii.gz --tetgen --push 0,88,-50,0,-15,0,30 -o dented.nii.gz");
   options.RadiusEdgeRatio = 1.414;
   RawOptions raw;
-  program
-    .add_option("VOLUME", options.Volume,
-      "The volume: a .nii, .nii.gz, .mhd, .mha, .nrrd, .nhdr or .vti file, or a folder with the "
-      "slices of one DICOM series")
+  program.add_option("VOLUME", options.Volume, std::string("The volume: ") + ReadFormats)
     ->type_name("FILE");
   program
     .add_option("--frame", options.Frame,
-      "Which volume of a file with several in time, counted from 0 (NIfTI, MetaImage, NRRD)")
+      std::string("Which volume of a file with several in time, counted from 0 (NIfTI") +
+        (HasITK ? ", MetaImage, NRRD)" : ")"))
     ->check(CLI::NonNegativeNumber)
     ->type_name("NUMBER");
   program
     .add_option("--volume-space", options.VolumeSpace,
-      "The world of a volume whose file does not say it (.vti, some .nrrd): lps or ras, see "
-      "--field-space")
+      std::string("The world of a volume whose file does not say it (.vti") +
+        (HasITK ? ", some .nrrd" : "") + "): lps or ras, see --field-space")
     ->check(CLI::IsMember({ "lps", "ras" }))
     ->type_name("SPACE");
+  program
+    .add_option("--label-volume", options.LabelVolume,
+      "Labels of the voxels of VOLUME, on its grid, in a file of the same types: whole numbers, "
+      "which are deformed with it and never mixed")
+    ->type_name("FILE");
   program.add_flag("--file-coordinates", options.FileCoordinates,
-    "Do as VTK's and ParaView's readers do: no direction, and origin 0 for NIfTI files and DICOM "
-    "series");
+    std::string(
+      "Do as VTK's and ParaView's readers do: no direction, and origin 0 for NIfTI files") +
+      (HasITK ? " and DICOM series" : ""));
   program.add_flag(
     "--list-devices", options.ListDevices, "List the OpenCL devices, the best first, and end");
   AddDeformation(program, options, raw);

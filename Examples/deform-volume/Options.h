@@ -22,6 +22,7 @@ struct Options
   bool FileCoordinates = false;
   std::optional<int> Frame;
   std::string VolumeSpace;
+  std::string LabelVolume;
 
   std::string Mesh;
   std::string Displacement;
@@ -69,6 +70,7 @@ struct Options
   std::string Device;
 
   std::vector<std::string> Outputs;
+  std::vector<std::string> LabelOutputs;
   std::string MeshOutput;
   std::string Image;
   int Frames = 0;

@@ -21,15 +21,9 @@
 
 namespace
 {
-#ifdef DEFORMVOLUME_HAVE_ITK
-const char* const KnownFiles =
-  ": a volume is a .nii, .nii.gz, .mhd, .mha, .nrrd, .nhdr or .vti file, or a folder with the "
-  "slices of one DICOM series. Other programs convert into these, for example 3D Slicer, or "
-  "mri_convert for .mgz";
-#else
-const char* const KnownFiles =
-  ": this program was built without ITK, and reads .nii, .nii.gz and .vti files only";
-#endif
+const char* const OtherFiles = HasITK
+  ? ". Other programs convert into these, for example 3D Slicer, or mri_convert for .mgz"
+  : ". This program was built without ITK, which reads other formats";
 
 Volume ReadVTI(const std::string& path, Messages& messages, bool showProgress)
 {
@@ -58,8 +52,9 @@ int ChooseFrame(const std::string& path, int frames, const ReadingOptions& optio
   const std::string last = std::to_string(frames - 1);
   throw Failure("cannot read " + path + ": it holds " +
     (frames == 1 ? std::string("one frame, number 0")
-                 : std::to_string(frames) +
-          " frames in time. Choose one of them with --frame 0 to " + last));
+                 : std::to_string(frames) + " frames in time. " +
+          (options.CanChooseFrame ? "Choose one of them with --frame 0 to " + last
+                                  : "Write one of them to a file of its own")));
 }
 
 namespace
@@ -96,7 +91,7 @@ Volume ReadFile(
     return ReadNRRD(path, options, messages);
   }
 #endif
-  throw Failure("cannot read " + path + KnownFiles);
+  throw Failure("cannot read " + path + ": a volume is " + ReadFormats + OtherFiles);
 }
 }
 

@@ -16,7 +16,22 @@ struct ReadingOptions
   bool FileCoordinates = false;
   /// Which volume of a file with several in time, counted from 0.
   std::optional<int> Frame;
+  /// Whether the user has an option that says so.
+  bool CanChooseFrame = true;
 };
+
+/// Whether the program reads and writes the formats that ITK knows.
+#ifdef DEFORMVOLUME_HAVE_ITK
+inline constexpr bool HasITK = true;
+#else
+inline constexpr bool HasITK = false;
+#endif
+
+/// What ReadVolume reads, in words.
+inline constexpr const char* ReadFormats = HasITK
+  ? "a .nii, .nii.gz, .mhd, .mha, .nrrd, .nhdr or .vti file, or a folder with the slices of one "
+    "DICOM series"
+  : "a .nii, .nii.gz or .vti file";
 
 /// Reads a volume: .nii, .nii.gz, .vti and, where the program has ITK, .mhd, .mha, .nrrd, .nhdr, or
 /// a folder with the slices of one DICOM series. NIfTI volumes lie in a world right, anterior,

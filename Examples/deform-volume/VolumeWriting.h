@@ -3,18 +3,20 @@
 #define DeformVolumeVolumeWriting_h
 
 #include "Volume.h"
+#include "VolumeReading.h"
 
 #include <string>
 
 class Messages;
 
 /// How names end that WriteVolume accepts.
-#ifdef DEFORMVOLUME_HAVE_ITK
-inline constexpr const char* WrittenFormats = ".vti, .nii, .nii.gz, .mhd, .mha, .nrrd or .nhdr";
-#else
-inline constexpr const char* WrittenFormats =
-  ".vti, .nii or .nii.gz: this program was built without ITK";
-#endif
+inline constexpr const char* WrittenFormats = HasITK
+  ? ".vti, .nii, .nii.gz, .mhd, .mha, .nrrd or .nhdr"
+  : ".vti, .nii or .nii.gz: this program was built without ITK";
+
+/// Of these, those of one array.
+inline constexpr const char* FormatsOfOneArray =
+  HasITK ? ".nii, .nii.gz, .mhd, .mha, .nrrd or .nhdr" : ".nii or .nii.gz";
 
 /// Whether a name ends so.
 bool CanWriteVolume(const std::string& path);

@@ -2,6 +2,7 @@
 """deform-volume says clearly what is wrong, with the right exit code, and deforms as it is told.
 Usage: TestCommandLine.py PROGRAM FOLDER"""
 import os
+import re
 import sys
 
 import numpy
@@ -96,6 +97,28 @@ fails(2, "--padding", path("in.vti"), *lattice, *push, "--padding", "-1", "-o", 
 fails(2, "radius", path("in.vti"), *lattice, "--push", "1,2,3,4,5,6,-1", "-o", path("o.vti"))
 fails(2, "at least 2 nodes", path("in.vti"), "--lattice", "3,-3,3", *push, "-o", path("o.vti"))
 
+# The help names the formats that the program reads and writes, and no others.
+help_text, _ = call(program, "--help", quiet=True)
+
+
+def get_formats(begin):
+    line = [line for line in help_text.splitlines() if line.lstrip().startswith(begin)][0]
+    return set(re.findall(r"\.[a-z]+(?:\.gz)?", line.split("(the scalars)")[0])), line
+
+
+read, line = get_formats("VOLUME FILE")
+written, _ = get_formats("-o,--output")
+assert {".nii", ".nii.gz", ".vti"} <= read == written, (read, written)
+for suffix in read | {".nii", ".mhd", ".mha", ".nrrd", ".nhdr", ".mgz", ".img", ".tif"}:
+    with open(path("text" + suffix), "w", encoding="utf-8") as file:
+        file.write("no volume")
+    _, errors = call(program, path("text" + suffix), *lattice, *push, "-o", path("o.vti"), code=1)
+    assert ("a volume is a" in errors) == (suffix not in read), errors
+    _, errors = call(program, path("none.vti"), *lattice, *push, "-o", path("o" + suffix), code=None)
+    assert ("must end in" in errors) == (suffix not in written), errors
+_, errors = call(program, folder, *lattice, *push, "-o", path("o.vti"), code=1)
+assert ("DICOM" in line) == ("a volume is a" not in errors), errors
+
 # What is read is not overwritten, however it is called.
 with open(path("in.vti"), "rb") as file:
     content = file.read()
@@ -115,7 +138,7 @@ with open(path("text.nii"), "w", encoding="utf-8") as file:
 fails(1, "no NIfTI file", path("text.nii"), *lattice, *push, "-o", path("o.vti"))
 fails(1, "a volume is a", __file__, *lattice, *push, "-o", path("o.vti"))
 os.makedirs(path("empty"), exist_ok=True)
-fails(1, "DICOM", path("empty"), *lattice, *push, "-o", path("o.vti"))
+fails(1, "DICOM" if "DICOM" in line else "a volume is a", path("empty"), *lattice, *push, "-o", path("o.vti"))
 fails(1, "no folder", path("in.vti"), *lattice, *push, "-o", path("none/o.vti"))
 fails(1, "no such file", path("in.vti"), "--mesh", path("none.vtu"), "--displacement", "D", "-o",
       path("o.vti"))
