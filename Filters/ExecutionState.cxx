@@ -8,6 +8,7 @@ void ExecutionState::Release()
 {
   this->Device.ReleaseMemory();
   this->Outputs.Forget();
+  this->Extra.Forget();
   this->Mapping.ReleaseVoxels();
   this->Volume.Forget();
   this->ArraysInUse.clear();

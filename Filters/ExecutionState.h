@@ -5,6 +5,7 @@
 #include "CoarseVolume.h"
 #include "Deformation.h"
 #include "DeviceSession.h"
+#include "ExtraArrays.h"
 #include "ImageGeometry.h"
 #include "IndexBounds.h"
 #include "MappingCache.h"
@@ -31,6 +32,7 @@ struct ExecutionState
   MappingCache Mapping;
   DeviceSession Device;
   OutputArrays Outputs;
+  ExtraArrays Extra;
 
   /// Frees the memory of the device and all that is as large as a volume.
   void Release();

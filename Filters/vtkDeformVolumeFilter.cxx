@@ -114,6 +114,50 @@ const char* vtkDeformVolumeFilter::GetCategoricalArray(int index)
 }
 
 //------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::AddDensityArray(const char* name)
+{
+  if (name && this->Internals->DensityArrays.insert(name).second)
+  {
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::RemoveDensityArray(const char* name)
+{
+  if (name && this->Internals->DensityArrays.erase(name) > 0)
+  {
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::ClearDensityArrays()
+{
+  if (!this->Internals->DensityArrays.empty())
+  {
+    this->Internals->DensityArrays.clear();
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+int vtkDeformVolumeFilter::GetNumberOfDensityArrays()
+{
+  return static_cast<int>(this->Internals->DensityArrays.size());
+}
+
+//------------------------------------------------------------------------------
+const char* vtkDeformVolumeFilter::GetDensityArray(int index)
+{
+  if (index < 0 || index >= this->GetNumberOfDensityArrays())
+  {
+    return nullptr;
+  }
+  return std::next(this->Internals->DensityArrays.begin(), index)->c_str();
+}
+
+//------------------------------------------------------------------------------
 void vtkDeformVolumeFilter::SetResampler(int resampler)
 {
   if (resampler == 1)
@@ -309,6 +353,14 @@ void vtkDeformVolumeFilter::PrintSelf(ostream& os, vtkIndent indent)
     os << " \"" << name << "\"";
   }
   os << "\n";
+  os << indent << "DensityArrays:";
+  for (const std::string& name : this->Internals->DensityArrays)
+  {
+    os << " \"" << name << "\"";
+  }
+  os << "\n";
+  os << indent << "GenerateRestPositions: " << (this->GenerateRestPositions ? "on" : "off") << "\n";
+  os << indent << "GenerateJacobian: " << (this->GenerateJacobian ? "on" : "off") << "\n";
   os << indent << "Resampler: " << this->Resampler << "\n";
   os << indent << "Interpolation: " << this->Interpolation << "\n";
   os << indent << "ResamplerInUse: " << this->ResamplerInUse << "\n";

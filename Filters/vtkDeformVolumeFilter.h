@@ -346,6 +346,52 @@ public:
   const char* GetCategoricalArray(int index);
   ///@}
 
+  ///@{
+  /**
+   * Whether the output has a point array "RestPosition" (float, three components): where what a
+   * voxel shows lies at rest, in world coordinates, interpolated as the other arrays are. It is the
+   * inverse of the deformation: RestPosition minus the voxel's own position is the displacement
+   * field that resampling programs take. Takes 12 bytes a voxel of the volume and of the output.
+   * Default: off.
+   */
+  vtkSetMacro(GenerateRestPositions, bool);
+  vtkGetMacro(GenerateRestPositions, bool);
+  vtkBooleanMacro(GenerateRestPositions, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Whether the output has a point array "Jacobian" (float, one component): the determinant of the
+   * derivative of the deformed position with respect to the position at rest, which is how many
+   * times as large the deformation makes the volume there; less than 0 where it turns it inside
+   * out. It is found at each voxel of the volume, from displacements that no position rounds, and
+   * interpolated as the other arrays are: in a mesh that of the tetrahedron that holds the voxel,
+   * elsewhere from the differences of displacements half a voxel before and after it, and with
+   * FieldIsInverse at each voxel of the output. The volume is read whole. A mesh with
+   * MESH_RASTERIZATION is an error. Default: off.
+   */
+  vtkSetMacro(GenerateJacobian, bool);
+  vtkGetMacro(GenerateJacobian, bool);
+  vtkBooleanMacro(GenerateJacobian, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Names of point arrays that hold amounts for each unit of volume, such as a dose, an activity or
+   * a density: their values are divided by the Jacobian, so that their sum, times the volume of a
+   * voxel, stays that of the volume at rest. In the output they are of float, or stay double. Where
+   * the Jacobian is not greater than 0 they have BackgroundValue. Where the volume folds only one
+   * of the parts that lie in one place is seen: a warning tells the share that is lost, and how
+   * many voxels have no value. A name that no numeric array has, or that of a categorical array, is
+   * an error. What is said of the resampler and of reading in GenerateJacobian holds here, too.
+   */
+  void AddDensityArray(const char* name);
+  void RemoveDensityArray(const char* name);
+  void ClearDensityArrays();
+  int GetNumberOfDensityArrays();
+  const char* GetDensityArray(int index);
+  ///@}
+
   enum Resamplers
   {
     EXACT = 0,
@@ -614,6 +660,8 @@ private:
   double FadeDistance = 0.0;
   int Resampler = AUTOMATIC;
   int Interpolation = LINEAR_INTERPOLATION;
+  bool GenerateRestPositions = false;
+  bool GenerateJacobian = false;
   bool OpenSplits = false;
   bool Incremental = true;
   bool OutputOnDevice = false;

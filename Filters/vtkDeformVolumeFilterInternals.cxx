@@ -24,6 +24,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iomanip>
 #include <sstream>
 #include <thread>
 
@@ -363,6 +364,7 @@ deformvolume::Resampling vtkDeformVolumeFilter::vtkInternals::ChooseResampler(
   }
   wish.Outside = this->GetOutside();
   wish.HasSmoothCut = deformvolume::HasCut(volume);
+  wish.NeedsJacobian = this->GetExtraArrays().NeedsJacobian();
   if (wish.HasSmoothCut && this->Self->GetNumberOfInputConnections(1) == 0 &&
     this->State->Deformation.IsInverseField())
   {
@@ -487,6 +489,28 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfIgnored(
     vtkWarningWithObjectMacro(this->Self, << news);
   }
   this->WarnedOf = warnings;
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::WarnOfLoss(const deformvolume::ExtraArrays::Loss& loss)
+{
+  std::string text;
+  const auto hidden = static_cast<double>(this->Report.NumberOfHiddenSamples);
+  if (!this->DensityArrays.empty() && (hidden > 0.0 || loss.NumberOfVoxels > 0))
+  {
+    std::ostringstream share;
+    share << std::setprecision(2)
+          << 100.0 * hidden / (hidden + static_cast<double>(this->Report.NumberOfCoveredVoxels));
+    text = "The deformation folds the volume over. The sums of density arrays lack the " +
+      share.str() + " % of the deformed volume that other parts of it hide, and " +
+      std::to_string(loss.NumberOfVoxels) +
+      " voxels that show it inside out or pressed together to nothing, which have BackgroundValue.";
+  }
+  if (!text.empty() && text != this->WarnedOfLoss)
+  {
+    vtkWarningWithObjectMacro(this->Self, << text);
+  }
+  this->WarnedOfLoss = text;
 }
 
 //------------------------------------------------------------------------------

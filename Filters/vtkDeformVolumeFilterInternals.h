@@ -152,6 +152,14 @@ public:
   /// Warns where what is ignored changed since the last call.
   void WarnOfIgnored(vtkImageData* volume, const std::vector<std::string>& leftOut);
 
+  /// What arrays are wanted besides those of the volume.
+  deformvolume::ExtraArraysWish GetExtraArrays() const
+  {
+    return { this->Self->GenerateRestPositions, this->Self->GenerateJacobian, this->DensityArrays };
+  }
+  /// Warns where densities lack a part of the volume, and that has changed.
+  void WarnOfLoss(const deformvolume::ExtraArrays::Loss& loss);
+
   /// Warns where voxels that are kept are torn or folded for certain, when the deformation has
   /// changed. output: its whole extent.
   void WarnOfFading(const deformvolume::MappedVolume& mapped, const deformvolume::Extent& output);
@@ -169,6 +177,7 @@ public:
   double StaticMappingTime = 0.0;    // of that
 
   std::set<std::string> CategoricalArrays;
+  std::set<std::string> DensityArrays;
   deformvolume::MeshGrids ShapeGrids;
   deformvolume::MeshGrids RestGrids;
   deformvolume::MeshGathering Gathering;
@@ -243,6 +252,7 @@ private:
 
   std::set<std::string> WarnedOf;
   std::string WarnedOfSettings;
+  std::string WarnedOfLoss;
 };
 
 #endif

@@ -46,8 +46,9 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::ReadDeformation(
   ranks.Attempt(
     [&]
     {
-      // Those of kept voxels are sent from the host.
-      source.Device = ranks.AreMany() || this->Self->OutsideMode == KEEP
+      // Those of kept voxels are sent from the host, and Jacobians are found there.
+      source.Device =
+        ranks.AreMany() || this->Self->OutsideMode == KEEP || this->GetExtraArrays().NeedsJacobian()
         ? ""
         : deformvolume::DeviceSession::FindOwnMemory(this->Self->Device);
     });
@@ -81,8 +82,10 @@ bool vtkDeformVolumeFilter::vtkInternals::CanTakePart(vtkInformation* volumeInfo
   const bool exact = this->Self->Resampler != MESH_RASTERIZATION;
   const bool local = this->State->Deformation.IsField() ? !this->State->Deformation.IsInverseField()
                                                         : this->Self->OutsideMode == DISCARD;
+  // Voxels beside a mesh have the Jacobian of the nearest one in it.
+  const bool isDerived = this->GetExtraArrays().NeedsJacobian();
   // Data that are there already cost nothing.
-  return exact && local && !isCut && !deformvolume::IsInMemory(this->Self, 0) &&
+  return exact && local && !isDerived && !isCut && !deformvolume::IsInMemory(this->Self, 0) &&
     deformvolume::CanProduceParts(this->Self, 0);
 }
 

@@ -291,6 +291,9 @@ int vtkDeformVolumeFilter::RequestData(
       this->Internals->WarnOfIgnored(volume, leftOut);
       this->Internals->ReleaseOldVolumes(arrays);
       worked = state.Volume.Update(volume, this->SamplingFactor, arrays);
+      ImageGeometry part = mapped.Whole;
+      part.PointExtent = mapped.Part;
+      state.Extra.Select(this->Internals->GetExtraArrays(), part, deformation, arrays);
       this->Internals->HadCut = deformvolume::HasCut(worked);
       if (this->Internals->HadCut && !mapped.IsWhole())
       {
@@ -361,9 +364,11 @@ int vtkDeformVolumeFilter::RequestData(
     this->Internals->SetResamplerInUse(request.Method);
   }
   deformvolume::DeformReport report;
+  deformvolume::ExtraArrays::Loss loss;
   const auto deform = [&]
   {
     checkMemory(request.OutputExtent, request.Method);
+    state.Extra.Compute(deformation, state.Mapping, mapped, source.ToOutput, {});
     device.SetVolume(voxelGrid, worked, arrays, this->BackgroundValue, deformation, mapped.Outside,
       request.Method);
     if (request.Method == deformvolume::Resampling::MeshRasterization)
@@ -397,6 +402,7 @@ int vtkDeformVolumeFilter::RequestData(
     report = device.Deform(request);
     state.Outputs.Give(report, image);
     deformvolume::CopyRoles(volume->GetPointData(), image->GetPointData(), arrays);
+    loss = state.Extra.Finish(deformation, mapped.Outside, this->BackgroundValue, image);
   };
   this->Internals->RunInTurn(ranks,
     deformvolume::GetKernelKey(this->DeviceInUse, request, form, described), numberOfPoints > 0,
@@ -405,6 +411,7 @@ int vtkDeformVolumeFilter::RequestData(
   {
     this->Internals->TakeReport(report, request.Method);
     this->Internals->WarnOfFading(mapped, whole);
+    this->Internals->WarnOfLoss(loss);
   }
   this->Internals->AddUpCounts(ranks);
   if (numberOfPoints == 0)

@@ -33,7 +33,8 @@ Resampling ChooseResampler(const ResamplerWish& wish, const Deformation& deforma
     : wish.Outside.AreExtrapolated() ? "the outside mode EXTRAPOLATE. Set OutsideMode to DISCARD"
     : wish.Outside.AreKept()         ? "the outside mode KEEP. Set OutsideMode to DISCARD"
     : wish.HasSmoothCut              ? "smooth cuts. Set SmoothCut of vtkCutVolume to off"
-                                     : "";
+    : wish.NeedsJacobian ? "Jacobians of meshes. Set GenerateJacobian off and remove density arrays"
+                         : "";
   if (!obstacle.empty() && wish.Method == Resampling::MeshRasterization)
   {
     throw Error(

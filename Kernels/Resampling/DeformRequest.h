@@ -102,6 +102,9 @@ struct DeformReport
   /// True where tetrahedra overlap, so that a winner had to be chosen: upright before inverted,
   /// then the lowest cell and tetrahedron.
   bool Overlapping = false;
+  /// Samples of tetrahedra that others hide there: what the output lacks of the deformed volume.
+  /// Not counted in an incremental update.
+  std::int64_t NumberOfHiddenSamples = 0;
   /// Tetrahedra of the deformation mesh without volume at rest; counted by MeshRasterization only.
   std::int64_t NumberOfFlatTetrahedra = 0;
   /// Bricks of 192 x 16 x 16 cells of the volume, and how many of them were resampled: fewer only

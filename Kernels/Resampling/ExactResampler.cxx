@@ -110,6 +110,8 @@ void ExactResampler::MakeExact(
   if (!settled)
   {
     report.Overlapping |= first.Counts.Writes > first.Covered;
+    report.NumberOfHiddenSamples +=
+      static_cast<std::int64_t>(std::max(first.Counts.Writes, first.Covered) - first.Covered);
     const bool claimed = this->ChooseWinners(request, output, first, expected);
     if (this->Last != LastOutput::Unknown)
     {

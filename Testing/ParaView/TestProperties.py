@@ -86,6 +86,9 @@ READERS = {
     "CategoricalArrays": lambda made: [
         made.GetCategoricalArray(i) for i in range(made.GetNumberOfCategoricalArrays())
     ],
+    "DensityArrays": lambda made: [
+        made.GetDensityArray(i) for i in range(made.GetNumberOfDensityArrays())
+    ],
     "ToolPositions": lambda made: made.GetNumberOfToolPositions(),
     "DisplacementArray": read_array_choice,
     "Scalars": read_array_choice,

@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ExtraArrays.h"
+
+#include "Error.h"
+#include "ParallelFor.h"
+
+#include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkFloatArray.h"
+#include "vtkImageData.h"
+#include "vtkPointData.h"
+
+#include <algorithm>
+#include <atomic>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+const char* const POSITIONS = "RestPosition";
+const std::array<const char*, 3> POSITION_AXES{ { "RestPosition x", "RestPosition y",
+  "RestPosition z" } };
+const char* const JACOBIAN = "Jacobian";
+constexpr int NoIndex = -2; // no array of the volume, and no role that is not taken either
+
+bool HasName(vtkDataArray* array, const std::string& name)
+{
+  return array->GetName() && array->GetName() == name;
+}
+
+vtkSmartPointer<vtkFloatArray> MakeArray(const char* name, int components, vtkIdType tuples)
+{
+  auto array = vtkSmartPointer<vtkFloatArray>::New();
+  array->SetName(name);
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(tuples);
+  return array;
+}
+
+// Divides the tuples of an array. Where the Jacobian is not greater than 0 they are the background.
+// valid: which voxels are covered; all others stay as they are. Returns how many those were.
+template <typename T>
+std::int64_t Divide(const T* values, int components, const float* jacobians,
+  const signed char* valid, vtkIdType tuples, T background, T* divided)
+{
+  std::atomic<std::int64_t> count{ 0 };
+  ParallelForParts(static_cast<std::size_t>(tuples), 1 << 16,
+    [&](std::size_t begin, std::size_t end)
+    {
+      std::int64_t found = 0;
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        const float jacobian = valid[i] ? jacobians[i] : 1.0F;
+        const bool isLost = !(jacobian > 0.0F);
+        found += isLost ? 1 : 0;
+        for (std::size_t k = i * components; k < (i + 1) * components; ++k)
+        {
+          divided[k] = isLost ? background : values[k] / static_cast<T>(jacobian);
+        }
+      }
+      count += found;
+    });
+  return count;
+}
+
+} // namespace
+
+void ExtraArrays::Select(const ExtraArraysWish& wish, const ImageGeometry& volume,
+  const Deformation& deformation, std::vector<SourceArray>& arrays)
+{
+  this->Wish = wish;
+  this->Copies.erase(
+    std::remove_if(this->Copies.begin(), this->Copies.end(),
+      [&](const Copy& copy) { return wish.Densities.count(copy.Floats->GetName()) == 0; }),
+    this->Copies.end());
+  for (const std::string& name : wish.Densities)
+  {
+    const auto found = std::find_if(arrays.begin(), arrays.end(),
+      [&](const SourceArray& array) { return HasName(array.Array, name); });
+    if (found == arrays.end())
+    {
+      throw Error("The density array \"" + name +
+        "\" is not a numeric point array of the volume on input port 0. Remove it with "
+        "RemoveDensityArray(), or correct its name.");
+    }
+    if (found->Categorical)
+    {
+      throw Error("The density array \"" + name +
+        "\" is categorical, and labels cannot be divided by the Jacobian. Remove it from one of "
+        "the two lists, or set Interpolation to LINEAR_INTERPOLATION.");
+    }
+    found->Array = this->FindFloats(found->Array);
+  }
+  const auto checkName = [&](const char* name)
+  {
+    if (std::any_of(arrays.begin(), arrays.end(),
+          [&](const SourceArray& array) { return HasName(array.Array, name); }))
+    {
+      throw Error("The volume on input port 0 has a point array \"" + std::string(name) +
+        "\", the name of an array that is to be generated. Rename or remove it.");
+    }
+  };
+  if (wish.RestPositions)
+  {
+    checkName(POSITIONS);
+    this->UpdateRestPositions(volume);
+    for (const auto& positions : this->Positions)
+    {
+      arrays.push_back({ positions, NoIndex, false });
+    }
+  }
+  else
+  {
+    this->Positions = {};
+  }
+  if (wish.NeedsJacobian())
+  {
+    checkName(JACOBIAN);
+  }
+  const vtkIdType voxels = GetNumberOfPoints(volume.PointExtent);
+  if (!wish.NeedsJacobian() || deformation.IsInverseField())
+  {
+    this->Jacobians = nullptr;
+    this->OfMesh = VoxelJacobians();
+    this->MappingVersion = 0;
+  }
+  else
+  {
+    if (!this->Jacobians || this->Jacobians->GetNumberOfTuples() != voxels)
+    {
+      this->Jacobians = MakeArray(JACOBIAN, 1, voxels);
+      this->KeyOfJacobians = {};
+    }
+    arrays.push_back({ this->Jacobians, NoIndex, false });
+  }
+}
+
+void ExtraArrays::UpdateRestPositions(const ImageGeometry& volume)
+{
+  if (this->Positions[0] && this->PositionsGeometry == volume)
+  {
+    return;
+  }
+  const Extent& extent = volume.PointExtent;
+  const glm::dmat4 toWorld = volume.GetIndexToWorld();
+  const std::int64_t width = GetSize(extent, 0);
+  const std::int64_t height = GetSize(extent, 1);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    this->Positions[axis] = MakeArray(POSITION_AXES[axis], 1, GetNumberOfPoints(extent));
+    float* positions = this->Positions[axis]->GetPointer(0);
+    ParallelFor(0, height * GetSize(extent, 2), 64,
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        for (std::int64_t row = begin; row < end; ++row)
+        {
+          glm::dvec4 index(0.0, extent[2] + row % height, extent[4] + row / height, 1.0);
+          for (std::int64_t x = 0; x < width; ++x)
+          {
+            index.x = static_cast<double>(extent[0] + x);
+            positions[row * width + x] =
+              static_cast<float>((toWorld * index)[static_cast<int>(axis)]);
+          }
+        }
+      });
+  }
+  this->PositionsGeometry = volume;
+}
+
+vtkDataArray* ExtraArrays::FindFloats(vtkDataArray* density)
+{
+  if (density->GetDataType() == VTK_FLOAT || density->GetDataType() == VTK_DOUBLE)
+  {
+    return density;
+  }
+  const std::pair<const void*, vtkMTimeType> stamp(density, density->GetMTime());
+  const auto last = std::find_if(this->Copies.begin(), this->Copies.end(),
+    [&](const Copy& copy) { return HasName(copy.Floats, density->GetName()); });
+  Copy& copy = last != this->Copies.end() ? *last : this->Copies.emplace_back();
+  if (!copy.Floats || copy.Stamp != stamp)
+  {
+    copy.Floats = vtkSmartPointer<vtkFloatArray>::New();
+    copy.Floats->DeepCopy(density);
+    copy.Stamp = stamp;
+  }
+  return copy.Floats;
+}
+
+void ExtraArrays::Compute(const Deformation& deformation, MappingCache& mapping,
+  const MappedVolume& volume, const OutputMap& toOutput,
+  const std::function<bool(double)>& progress)
+{
+  if (!this->Jacobians)
+  {
+    return;
+  }
+  float* jacobians = this->Jacobians->GetPointer(0);
+  const JacobiansKey key{ deformation.IsField() ? 0 : mapping.GetVersion(),
+    deformation.GetVectorsVersion(), volume.Whole, toOutput, volume.Outside };
+  const bool hasMapping = deformation.IsField() ||
+    (this->MappingVersion == mapping.GetVersion() && mapping.IsCurrent(deformation, volume));
+  if (hasMapping && this->KeyOfJacobians == key)
+  {
+    return;
+  }
+  if (deformation.IsField())
+  {
+    ComputeFieldJacobians({ volume.Part, toOutput, volume.Whole.PointExtent },
+      deformation.GetField(volume.Outside), jacobians);
+  }
+  else
+  {
+    if (!hasMapping)
+    {
+      mapping.Update(deformation, volume, progress);
+      this->OfMesh.SetMapping(volume.Part, volume.Whole.Spacing, mapping.GetMapping(),
+        deformation.GetRestPoints(), deformation.GetTetrahedra());
+      this->MappingVersion = mapping.GetVersion();
+    }
+    this->OfMesh.Compute(toOutput, deformation.GetRestPoints(), deformation.GetTetrahedra(),
+      deformation.GetNodeDisplacements(), jacobians);
+  }
+  this->Jacobians->Modified();
+  this->KeyOfJacobians = key;
+  this->KeyOfJacobians.Mapping = deformation.IsField() ? 0 : mapping.GetVersion();
+}
+
+ExtraArrays::Loss ExtraArrays::Finish(const Deformation& deformation, const OutsideVoxels& outside,
+  double background, vtkImageData* output)
+{
+  if (this->Wish.RestPositions)
+  {
+    this->FinishRestPositions(output);
+  }
+  return this->Wish.NeedsJacobian()
+    ? this->FinishDensities(deformation, outside, background, output)
+    : Loss();
+}
+
+void ExtraArrays::FinishRestPositions(vtkImageData* output) const
+{
+  const vtkIdType voxels = output->GetNumberOfPoints();
+  auto positions = MakeArray(POSITIONS, 3, voxels);
+  float* joined = positions->GetPointer(0);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    const auto* values = static_cast<const float*>(
+      output->GetPointData()->GetArray(POSITION_AXES[axis])->GetVoidPointer(0));
+    ParallelForParts(static_cast<std::size_t>(voxels), 1 << 16,
+      [&](std::size_t begin, std::size_t end)
+      {
+        for (std::size_t i = begin; i < end; ++i)
+        {
+          joined[3 * i + axis] = values[i];
+        }
+      });
+  }
+  for (const char* name : POSITION_AXES)
+  {
+    output->GetPointData()->RemoveArray(name);
+  }
+  output->GetPointData()->AddArray(positions);
+}
+
+ExtraArrays::Loss ExtraArrays::FinishDensities(const Deformation& deformation,
+  const OutsideVoxels& outside, double background, vtkImageData* output)
+{
+  Loss loss;
+  vtkPointData* pointData = output->GetPointData();
+  const vtkIdType voxels = output->GetNumberOfPoints();
+  vtkDataArray* mask = pointData->GetArray("vtkValidPointMask");
+  const auto* valid = static_cast<const signed char*>(mask->GetVoidPointer(0));
+  vtkSmartPointer<vtkDataArray> jacobian = pointData->GetArray(JACOBIAN);
+  if (!this->Jacobians)
+  {
+    auto made = MakeArray(JACOBIAN, 1, voxels);
+    Extent extent;
+    output->GetExtent(extent.data());
+    ComputeInverseFieldJacobians(extent, deformation.GetField(outside), made->GetPointer(0));
+    for (vtkIdType i = 0; i < voxels; ++i)
+    {
+      if (!valid[i])
+      {
+        made->SetValue(i, static_cast<float>(background));
+      }
+    }
+    jacobian = made;
+    pointData->AddArray(made);
+  }
+  const auto* jacobians = static_cast<const float*>(jacobian->GetVoidPointer(0));
+  for (const std::string& name : this->Wish.Densities)
+  {
+    // The array that was resampled stays as it is: the next update may write a part of it only.
+    vtkDataArray* resampled = pointData->GetArray(name.c_str());
+    const auto divided = MakeLike(resampled, voxels);
+    const int components = resampled->GetNumberOfComponents();
+    const void* values = resampled->GetVoidPointer(0);
+    loss.NumberOfVoxels = resampled->GetDataType() == VTK_DOUBLE
+      ? Divide(static_cast<const double*>(values), components, jacobians, valid, voxels, background,
+          static_cast<double*>(divided->GetVoidPointer(0)))
+      : Divide(static_cast<const float*>(values), components, jacobians, valid, voxels,
+          static_cast<float>(background), static_cast<float*>(divided->GetVoidPointer(0)));
+    pointData->AddArray(divided);
+  }
+  if (!this->Wish.Jacobian)
+  {
+    pointData->RemoveArray(JACOBIAN);
+  }
+  return loss;
+}
+
+void ExtraArrays::Forget()
+{
+  *this = ExtraArrays();
+}
+
+} // namespace deformvolume

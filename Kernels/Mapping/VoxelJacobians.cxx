@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "VoxelJacobians.h"
+
+#include "BarycentricMap.h"
+#include "IndexBounds.h"
+#include "LinkExtrapolation.h"
+#include "ParallelFor.h"
+
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+constexpr double FieldTolerance = 1e-3; // as in DeformationMapping.cl
+
+glm::dmat3 OuterProduct(const glm::dvec3& column, const glm::dvec3& row)
+{
+  return glm::dmat3(column * row.x, column * row.y, column * row.z);
+}
+
+// Calls body(index, number) for the voxels of an extent, in parallel.
+template <typename Body>
+void ForEachVoxel(const Extent& voxels, Body&& body)
+{
+  const std::int64_t width = GetSize(voxels, 0);
+  const std::int64_t height = GetSize(voxels, 1);
+  ParallelFor(0, height * GetSize(voxels, 2), 16,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t row = begin; row < end; ++row)
+      {
+        glm::ivec3 index(voxels[0], voxels[2] + static_cast<int>(row % height),
+          voxels[4] + static_cast<int>(row / height));
+        for (std::int64_t x = 0; x < width; ++x, ++index.x)
+        {
+          body(index, row * width + x);
+        }
+      }
+    });
+}
+
+// A displacement field of which derivatives are taken.
+class DerivedField
+{
+public:
+  DerivedField(const DisplacementField& field, bool isMapped)
+    : Field(field)
+    , IsMapped(isMapped)
+    , ToField(GetVoxelsToField(field))
+    , Offset(field.IndexToField[3], field.IndexToField[7], field.IndexToField[11])
+    , Last(field.Dimensions[0] - 1, field.Dimensions[1] - 1, field.Dimensions[2] - 1)
+  {
+  }
+
+  // What a step of the indices that the field takes adds to the displacement there.
+  glm::dmat3 GetDerivative(const glm::dvec3& index) const
+  {
+    const glm::dvec3 position = this->ToField * index + this->Offset;
+    const glm::dvec3 beyond = glm::max(glm::max(-position, position - this->Last), glm::dvec3(0.0));
+    glm::dmat3 derivative(0.0);
+    if (this->Field.Extrapolate && std::max({ beyond.x, beyond.y, beyond.z }) > FieldTolerance)
+    {
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        glm::dvec3 step(0.0);
+        step[axis] = 0.5;
+        derivative[axis] = this->Displace(this->ToField * (index + step) + this->Offset) -
+          this->Displace(this->ToField * (index - step) + this->Offset);
+      }
+      return derivative;
+    }
+    // Along the axes of the field, so that no difference reaches beyond its border. Voxels outside
+    // that are discarded have what the nearest point of the border has: cells there are
+    // interpolated.
+    glm::dmat3 alongField(0.0);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double reach = 0.5 *
+        std::max({ std::abs(this->ToField[0][axis]), std::abs(this->ToField[1][axis]),
+          std::abs(this->ToField[2][axis]) });
+      glm::dvec3 low = glm::clamp(position, glm::dvec3(0.0), this->Last);
+      glm::dvec3 high = low;
+      low[axis] = std::max(low[axis] - reach, 0.0);
+      high[axis] = std::min(high[axis] + reach, this->Last[axis]);
+      if (high[axis] > low[axis])
+      {
+        alongField[axis] =
+          (this->Interpolate(high) - this->Interpolate(low)) / (high[axis] - low[axis]);
+      }
+    }
+    return alongField * this->ToField;
+  }
+
+private:
+  glm::dvec3 Interpolate(const glm::dvec3& position) const
+  {
+    return deformvolume::Interpolate(this->Field, position,
+      [this](std::int64_t point) {
+        return this->IsMapped ? GetVector(this->Field, point)
+                              : GetVector(this->Field.Vectors, point);
+      });
+  }
+  glm::dvec3 Displace(const glm::dvec3& position) const
+  {
+    return GetWeightBeyond(this->Field, position, FieldTolerance) *
+      this->Interpolate(glm::clamp(position, glm::dvec3(0.0), this->Last));
+  }
+
+  const DisplacementField& Field;
+  const bool IsMapped; // whether its matrix is applied to its vectors
+  const glm::dmat3 ToField;
+  const glm::dvec3 Offset;
+  const glm::dvec3 Last;
+};
+
+} // namespace
+
+void VoxelJacobians::SetMapping(const Extent& voxels, const glm::dvec3& spacing,
+  const StaticMapping& mapping, const std::vector<glm::dvec3>& restPoints,
+  const std::vector<Tetrahedron>& tetrahedra)
+{
+  this->Voxels = voxels;
+  this->Faded = mapping.Faded;
+  const auto count = static_cast<std::size_t>(GetNumberOfPoints(voxels));
+  std::vector<VertexLink> links = mapping.Links;
+  if (links.empty())
+  {
+    links.assign(count, MakeLink(-1, glm::dvec3(0.0)));
+    const std::int64_t width = GetSize(voxels, 0);
+    ParallelForParts(mapping.Runs.RowBegins.size() - 1, 64,
+      [&](std::size_t begin, std::size_t end)
+      {
+        for (std::size_t row = begin; row < end; ++row)
+        {
+          const std::uint32_t past = mapping.Runs.RowBegins[row + 1];
+          for (std::uint32_t i = mapping.Runs.RowBegins[row]; i < past; ++i)
+          {
+            const VertexRun& run = mapping.Runs.Runs[i];
+            const std::int64_t last = i + 1 < past ? mapping.Runs.Runs[i + 1].Begin : width;
+            for (std::int64_t x = run.Begin; run.Tetrahedron >= 0 && x < last; ++x)
+            {
+              links[row * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)]
+                .Tetrahedron =
+                mapping.Runs.Tetrahedra[static_cast<std::size_t>(run.Tetrahedron)].Tetrahedron;
+            }
+          }
+        }
+      });
+  }
+  if (!this->Faded.AreThere())
+  {
+    ExtrapolateLinks(voxels, spacing, restPoints, tetrahedra, links, [](double) {});
+  }
+  this->Owners.resize(count);
+  const auto mostTetrahedra = static_cast<std::int32_t>(tetrahedra.size());
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    this->Owners[i] = links[i].Tetrahedron < mostTetrahedra ? links[i].Tetrahedron : -1;
+  }
+  this->Links = this->Faded.AreThere() ? std::move(links) : std::vector<VertexLink>();
+}
+
+void VoxelJacobians::Compute(const OutputMap& toOutput, const std::vector<glm::dvec3>& restPoints,
+  const std::vector<Tetrahedron>& tetrahedra, const float* displacements, float* jacobians)
+{
+  const glm::dmat3 atRest = OutputTransform(toOutput).GetMatrix();
+  const double volume = glm::determinant(atRest);
+  std::vector<float> ofTetrahedra(tetrahedra.size());
+  ParallelForParts(tetrahedra.size(), 4096,
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        BarycentricMap map;
+        if (!map.SetTetrahedron(tetrahedra[i], restPoints))
+        {
+          continue; // no voxel is linked to it
+        }
+        glm::dmat3 derivative = atRest;
+        for (int node = 0; node < 4; ++node)
+        {
+          derivative +=
+            OuterProduct(GetVector(displacements, tetrahedra[i][static_cast<std::size_t>(node)]),
+              map.GetGradient(node));
+        }
+        ofTetrahedra[i] = static_cast<float>(glm::determinant(derivative) / volume);
+      }
+    });
+  ParallelForParts(this->Owners.size(), 1 << 16,
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        const std::int32_t owner = this->Owners[i];
+        jacobians[i] = owner >= 0 ? ofTetrahedra[static_cast<std::size_t>(owner)] : 1.0F;
+      }
+    });
+  if (this->Faded.AreThere())
+  {
+    this->Mesh.Set(this->Faded, tetrahedra, restPoints.size());
+    this->Mesh.Move(displacements, restPoints.size(), nullptr);
+    this->ComputeOutside(toOutput, tetrahedra, jacobians);
+  }
+}
+
+void VoxelJacobians::ComputeOutside(
+  const OutputMap& toOutput, const std::vector<Tetrahedron>& tetrahedra, float* jacobians) const
+{
+  const glm::dmat3 atRest = OutputTransform(toOutput).GetMatrix();
+  const double volume = glm::determinant(atRest);
+  const auto still = static_cast<std::int32_t>(tetrahedra.size());
+  const std::array<std::int64_t, 3> steps{ { 1, GetSize(this->Voxels, 0),
+    GetSize(this->Voxels, 0) * GetSize(this->Voxels, 1) } };
+  const auto displace = [&](std::int64_t voxel)
+  {
+    const VertexLink& link = this->Links[static_cast<std::size_t>(voxel)];
+    if (link.Tetrahedron == still)
+    {
+      return glm::dvec3(0.0);
+    }
+    const Tetrahedron& nodes =
+      this->Mesh.GetTetrahedra()[static_cast<std::size_t>(link.Tetrahedron)];
+    glm::dvec3 sum(0.0);
+    double last = 1.0;
+    for (std::size_t k = 0; k < 3; ++k)
+    {
+      sum += double{ link.Weights[k] } * GetVector(this->Mesh.GetDisplacements().data(), nodes[k]);
+      last -= double{ link.Weights[k] };
+    }
+    return sum + last * GetVector(this->Mesh.GetDisplacements().data(), nodes[3]);
+  };
+  ForEachVoxel(this->Voxels,
+    [&](const glm::ivec3& index, std::int64_t voxel)
+    {
+      if (this->Owners[static_cast<std::size_t>(voxel)] >= 0)
+      {
+        return;
+      }
+      glm::dmat3 derivative = atRest;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+      {
+        const int at = index[static_cast<int>(axis)];
+        const std::int64_t low = at > this->Voxels[2 * axis] ? voxel - steps[axis] : voxel;
+        const std::int64_t high = at < this->Voxels[2 * axis + 1] ? voxel + steps[axis] : voxel;
+        const glm::dvec3 change = displace(high) - displace(low);
+        derivative[static_cast<int>(axis)] +=
+          change / static_cast<double>(std::max<std::int64_t>(1, (high - low) / steps[axis]));
+      }
+      jacobians[voxel] = static_cast<float>(glm::determinant(derivative) / volume);
+    });
+}
+
+void ComputeFieldJacobians(
+  const VoxelGrid& voxelGrid, const DisplacementField& field, float* jacobians)
+{
+  const glm::dmat3 atRest = GetOutputTransform(voxelGrid).GetMatrix();
+  const double volume = glm::determinant(atRest);
+  const DerivedField derived(field, true);
+  ForEachVoxel(voxelGrid.VertexExtent,
+    [&](const glm::ivec3& index, std::int64_t voxel)
+    {
+      jacobians[voxel] = static_cast<float>(
+        glm::determinant(atRest + derived.GetDerivative(glm::dvec3(index))) / volume);
+    });
+}
+
+void ComputeInverseFieldJacobians(
+  const Extent& output, const DisplacementField& inverse, float* jacobians)
+{
+  const DerivedField derived(inverse, false);
+  ForEachVoxel(output,
+    [&](const glm::ivec3& index, std::int64_t voxel)
+    {
+      jacobians[voxel] = static_cast<float>(
+        1.0 / glm::determinant(glm::dmat3(1.0) + derived.GetDerivative(glm::dvec3(index))));
+    });
+}
+
+} // namespace deformvolume

@@ -1,0 +1,464 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What follows the deformation beside the volume's own values: rest positions, Jacobians, and
+// densities, whose sum stays.
+#include "FilterTesting.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include <vtkCellData.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <vector>
+
+using namespace filterTesting;
+
+namespace
+{
+
+// A blob that fades to nothing well inside the volume, as short and as double; and a linear
+// function.
+vtkSmartPointer<vtkImageData> MakeDose(const Extent& extent = { { 0, 39, 0, 37, 0, 35 } },
+  const glm::dvec3& spacing = glm::dvec3(1.0), bool isOblique = false)
+{
+  auto volume = MakeImage(extent, spacing, glm::dvec3(-7.0, 3.0, 11.0));
+  if (isOblique)
+  {
+    SetObliqueDirection(volume);
+  }
+  double middle[3];
+  volume->GetCenter(middle);
+  const auto blob = [=](const glm::dvec3& p)
+  {
+    const glm::dvec3 r = (p - glm::dvec3(middle[0], middle[1], middle[2])) / 9.0;
+    const double square = glm::dot(r, r);
+    return square < 1.0 ? 20000.0 * (1.0 - square) * (1.0 - square) : 0.0;
+  };
+  AddScalars<short>(volume, "dose", blob);
+  volume->GetPointData()->SetActiveScalars(nullptr); // else they would be replaced
+  AddScalars<double>(volume, "activity", blob);
+  volume->GetPointData()->SetActiveScalars(nullptr);
+  AddScalars<float>(
+    volume, "linear", [](const glm::dvec3& p) { return 0.3 * p.x - 0.7 * p.y + 1.1 * p.z; });
+  return volume;
+}
+
+double Sum(vtkImageData* image, const char* name)
+{
+  vtkDataArray* array = image->GetPointData()->GetArray(name);
+  double sum = 0.0;
+  for (vtkIdType id = 0; id < array->GetNumberOfTuples(); ++id)
+  {
+    sum += array->GetComponent(id, 0);
+  }
+  const double* spacing = image->GetSpacing();
+  return sum * std::abs(spacing[0] * spacing[1] * spacing[2]);
+}
+
+struct Derived : Deformed
+{
+  Derived(vtkDataObject* volume, vtkDataObject* deformation)
+    : Deformed(volume, deformation)
+  {
+    this->Filter->GenerateRestPositionsOn();
+    this->Filter->GenerateJacobianOn();
+    this->Filter->AddDensityArray("dose");
+    this->Filter->AddDensityArray("activity");
+  }
+  vtkDataArray* Get(const char* name)
+  {
+    return this->Filter->GetOutput()->GetPointData()->GetArray(name);
+  }
+  /// Updates with a warning that holds some words, or with none.
+  vtkImageData* Expect(const std::string& words)
+  {
+    this->Observer->Clear();
+    this->Filter->Update();
+    const std::string warning = this->Observer->GetWarningMessage();
+    if (words.empty() ? !warning.empty() : warning.find(words) == std::string::npos)
+    {
+      ++GetNumberOfFailures();
+      std::cerr << "expected \"" << words << "\" in the warning \"" << warning << "\"\n";
+    }
+    VERIFY_EQUAL(this->TakeErrors(), 0);
+    return this->Filter->GetOutput();
+  }
+};
+
+void TestMisuse()
+{
+  const auto volume = MakeDose();
+  const auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, Shift(0.5, 0.0, 0.0));
+  Derived subject(volume, mesh);
+  vtkDeformVolumeFilter* filter = subject.Filter;
+  VERIFY_EQUAL(filter->GetNumberOfDensityArrays(), 2);
+  VERIFY_EQUAL(std::string(filter->GetDensityArray(0)), "activity");
+  VERIFY(filter->GetDensityArray(2) == nullptr && filter->GetDensityArray(-1) == nullptr);
+  const vtkMTimeType before = filter->GetMTime();
+  filter->AddDensityArray(nullptr);
+  filter->AddDensityArray("dose");
+  filter->RemoveDensityArray("none");
+  VERIFY_EQUAL(filter->GetMTime(), before);
+  vtkNew<vtkImageData> expected;
+  expected->DeepCopy(subject.Expect(""));
+  const auto refuse = [&](const std::string& words)
+  {
+    for (int repeat = 0; repeat < 2; ++repeat)
+    {
+      filter->Update();
+      VERIFY_EQUAL(subject.TakeErrors(), 1);
+      if (subject.LastError.find(words) == std::string::npos)
+      {
+        ++GetNumberOfFailures();
+        std::cerr << words << " is not in " << subject.LastError << '\n';
+      }
+      VERIFY_EQUAL(filter->GetOutput()->GetNumberOfPoints(), 0);
+    }
+  };
+  filter->AddDensityArray("does");
+  refuse("\"does\" is not a numeric point array");
+  filter->RemoveDensityArray("does");
+  filter->AddCategoricalArray("dose");
+  refuse("\"dose\" is categorical");
+  filter->ClearCategoricalArrays();
+  filter->SetInterpolationToNearestInterpolation();
+  refuse("is categorical");
+  filter->SetInterpolationToLinearInterpolation();
+  filter->SetResamplerToMeshRasterization();
+  refuse("cannot do Jacobians of meshes");
+  filter->SetResamplerToAutomatic();
+  for (const char* name : { "Jacobian", "RestPosition" })
+  {
+    volume->GetPointData()->SetActiveScalars(nullptr); // else they would be replaced
+    AddScalars<float>(volume, name, [](const glm::dvec3& p) { return p.x; });
+    refuse("has a point array \"" + std::string(name) + "\"");
+    volume->GetPointData()->RemoveArray(name);
+  }
+  volume->GetPointData()->SetActiveScalars("linear");
+  VERIFY(AreEqual(subject.Expect(""), expected));
+  filter->ClearDensityArrays();
+  filter->GenerateJacobianOff();
+  filter->GenerateRestPositionsOff();
+  vtkImageData* output = subject.Expect("");
+  VERIFY_EQUAL(output->GetPointData()->GetNumberOfArrays(), 4);
+  VERIFY_EQUAL(output->GetPointData()->GetArray("dose")->GetDataType(), VTK_SHORT);
+}
+
+// At rest: Jacobian 1, each voxel in its place, the values as they were, integers as floats.
+void TestAtRest()
+{
+  const auto volume = MakeDose({ { -3, 20, 2, 18, 0, 16 } }, glm::dvec3(0.7, 1.1, 2.0), true);
+  for (const bool hasMesh : { false, true })
+  {
+    const auto mesh = MakeMesh(volume);
+    SetDisplacements(mesh, Shift(0.0, 0.0, 0.0));
+    Derived subject(volume, hasMesh ? mesh : nullptr);
+    vtkImageData* output = subject.Expect("");
+    VERIFY_EQUAL(GetExtent(output), GetExtent(volume));
+    VERIFY_EQUAL(subject.Get("dose")->GetDataType(), VTK_FLOAT);
+    VERIFY_EQUAL(subject.Get("activity")->GetDataType(), VTK_DOUBLE);
+    VERIFY(output->GetPointData()->GetScalars() == output->GetPointData()->GetArray("linear"));
+    for (vtkIdType id = 0; id < volume->GetNumberOfPoints(); ++id)
+    {
+      const glm::dvec3 p = GetPoint(volume, id);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        VERIFY_EQUAL(subject.Get("RestPosition")->GetComponent(id, axis),
+          static_cast<double>(static_cast<float>(p[axis])));
+      }
+      VERIFY_EQUAL(subject.Get("Jacobian")->GetComponent(id, 0), 1.0);
+      for (const char* name : { "dose", "activity", "linear" })
+      {
+        VERIFY_EQUAL(subject.Get(name)->GetComponent(id, 0),
+          volume->GetPointData()->GetArray(name)->GetComponent(id, 0));
+      }
+    }
+  }
+}
+
+// What an affine map has to give, of all kinds of deformations, on all kinds of grids.
+void TestAffine()
+{
+  const glm::dmat3 matrix(1.2, 0.1, -0.05, -0.15, 0.85, 0.1, 0.05, -0.1, 1.1);
+  const glm::dvec3 shift(1.5, -2.0, 0.75);
+  const double determinant = glm::determinant(matrix);
+  const glm::dmat3 inverse = glm::inverse(matrix);
+  const auto map = [&](const glm::dvec3& p) { return matrix * p + shift; };
+  const auto back = [&](const glm::dvec3& p) { return inverse * (p - shift); };
+  for (const bool isOblique : { false, true })
+  {
+    const auto volume =
+      MakeDose({ { 0, 29, -4, 22, 3, 27 } }, glm::dvec3(0.9, 1.1, 1.3), isOblique);
+    // The deformations end outside the volume, or within it.
+    const auto mesh = MakeMesh(volume, 4, 2.0);
+    SetDisplacements(mesh, map);
+    const auto tight = MakeMesh(volume, 5, -4.3);
+    SetDisplacements(tight, map);
+    const auto field = MakeImage({ { 0, 9, 0, 9, 0, 9 } }, glm::dvec3(9.0), glm::dvec3(-40.0));
+    SetDisplacements(field, map);
+    const auto backField = MakeImage({ { 0, 9, 0, 9, 0, 9 } }, glm::dvec3(9.0), glm::dvec3(-40.0));
+    SetDisplacements(backField, back);
+    const auto fixed = MakeImage(
+      { { 0, 40, 0, 40, 0, 40 } }, glm::dvec3(-1.1, 1.3, 1.2), glm::dvec3(20.0, -20.0, 5.0));
+    SetObliqueDirection(fixed);
+    const std::vector<vtkDataSet*> deformations{ mesh, tight, field, backField };
+    for (vtkDataSet* deformation : deformations)
+    {
+      for (const bool hasReference : { false, true })
+      {
+        Derived subject(volume, deformation);
+        subject.Filter->SetFieldIsInverse(deformation == backField);
+        subject.Filter->SetReferenceData(hasReference ? fixed : nullptr);
+        vtkImageData* output = subject.Expect("");
+        vtkIdType covered = 0;
+        double worst = 0.0;
+        double farthest = 0.0;
+        for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
+        {
+          if (!subject.IsCovered(id))
+          {
+            VERIFY_EQUAL(subject.Get("Jacobian")->GetComponent(id, 0), 0.0);
+            continue;
+          }
+          ++covered;
+          const double jacobian = subject.Get("Jacobian")->GetComponent(id, 0);
+          worst = std::max(worst, std::abs(jacobian - determinant));
+          glm::dvec3 rest;
+          subject.Get("RestPosition")->GetTuple(id, &rest.x);
+          farthest = std::max(farthest, glm::distance(rest, back(GetPoint(output, id))));
+          // Which has been interpolated in the same way.
+          VERIFY(std::abs(subject.Get("linear")->GetComponent(id, 0) -
+                   (0.3 * rest.x - 0.7 * rest.y + 1.1 * rest.z)) < 1e-4);
+        }
+        VERIFY(covered > 50);
+        VERIFY(worst < 1e-5 * determinant);
+        // Positions are rounded to 1/512 voxel of the output on each axis.
+        VERIFY(farthest < 1.3 * 1.8 / 256.0);
+        if (!(worst < 1e-5 * determinant) || !(farthest < 1.3 * 1.8 / 256.0))
+        {
+          std::cerr << worst << ' ' << farthest << ' ' << deformation->GetClassName() << '\n';
+        }
+      }
+    }
+  }
+}
+
+// Presses the middle together, to half the volume at the most, and stretches what lies round it.
+glm::dvec3 Press(const glm::dvec3& p, const glm::dvec3& middle)
+{
+  const glm::dvec3 r = p - middle;
+  const double square = glm::dot(r, r) / 256.0;
+  return square < 1.0 ? middle + r * (1.0 - 0.206 * (1.0 - square) * (1.0 - square)) : p;
+}
+
+// The sum of densities stays, in meshes and fields, whatever the output's grid.
+void TestSums()
+{
+  for (const bool isOblique : { false, true })
+  {
+    const auto volume =
+      MakeDose({ { 0, 91, 0, 81, 0, 73 } }, glm::dvec3(0.45, 0.5, 0.55), isOblique);
+    double center[3];
+    volume->GetCenter(center);
+    const glm::dvec3 middle(center[0], center[1], center[2]);
+    const auto press = [&](const glm::dvec3& p) { return Press(p, middle); };
+    const auto mesh = MakeMesh(volume, 15, 1.0);
+    SetDisplacements(mesh, press);
+    const auto field = MakeImage({ { 0, 23, 0, 23, 0, 23 } }, glm::dvec3(2.3), middle - 2.3 * 11.5);
+    SetDisplacements(field, press);
+    const auto voxels = MakeImage({ { 0, 0, 0, 0, 0, 0 } });
+    voxels->CopyStructure(volume);
+    SetDisplacements(voxels, press);
+    const std::vector<vtkDataSet*> deformations{ mesh, field, voxels };
+    for (vtkDataSet* deformation : deformations)
+    {
+      Derived subject(volume, deformation);
+      subject.Filter->SetOutsideModeToExtrapolate();
+      Deformed plain(volume, deformation);
+      plain.Filter->SetOutsideModeToExtrapolate();
+      for (const double spacing : { 0.0, 0.7 })
+      {
+        for (auto* filter : { subject.Filter.Get(), plain.Filter.Get() })
+        {
+          filter->SetOutputSpacingMode(spacing > 0.0 ? vtkDeformVolumeFilter::CUSTOM_SPACING
+                                                     : vtkDeformVolumeFilter::VOLUME_SPACING);
+          filter->SetCustomSpacing(spacing, spacing, spacing);
+        }
+        vtkImageData* output = subject.Expect("");
+        for (const char* name : { "dose", "activity" })
+        {
+          const double sum = Sum(volume, name);
+          const double ratio = Sum(output, name) / sum;
+          if (!(std::abs(ratio - 1.0) < 0.005))
+          {
+            ++GetNumberOfFailures();
+            std::cerr << "the sum of " << name << " is " << ratio << " times what it was, in a "
+                      << deformation->GetClassName() << '\n';
+          }
+          // Without the division it would not.
+          VERIFY(Sum(plain.Update(), name) < 0.8 * sum);
+        }
+        double least = 2.0;
+        for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
+        {
+          const double jacobian = subject.Get("Jacobian")->GetComponent(id, 0);
+          least = subject.IsCovered(id) ? std::min(least, jacobian) : least;
+        }
+        VERIFY(least > 0.49 && least < 0.6); // 0.5006 where the map is not made linear
+      }
+    }
+  }
+}
+
+// Tissue that is kept has Jacobians, too: what is pressed together beside a body that moves.
+void TestKept()
+{
+  const auto volume = MakeImage({ { 0, 49, 0, 39, 0, 35 } });
+  AddScalars<float>(volume, "dose", [](const glm::dvec3&) { return 2.0; });
+  volume->GetPointData()->SetActiveScalars(nullptr);
+  AddScalars<double>(volume, "activity", [](const glm::dvec3& p) { return 5.0 + 0.1 * p.x; });
+  vtkNew<vtkLatticeTetrahedraSource> source;
+  source->SetNumberOfNodes(4, 4, 4);
+  source->EqualSpacingOff();
+  source->SetBounds(18.2, 29.7, 15.1, 24.4, 13.3, 22.8);
+  source->Update();
+  vtkUnstructuredGrid* const mesh = source->GetOutput();
+  SetDisplacements(mesh, Shift(2.5, 0.0, 0.0));
+  const auto field =
+    MakeImage({ { 0, 1, 0, 1, 0, 1 } }, glm::dvec3(10.0), glm::dvec3(18.0, 15.0, 13.0));
+  SetDisplacements(field, Shift(2.5, 0.0, 0.0));
+  const std::vector<vtkDataSet*> deformations{ mesh, field };
+  for (vtkDataSet* deformation : deformations)
+  {
+    Derived subject(volume, deformation);
+    subject.Filter->SetOutsideModeToKeep();
+    subject.Filter->SetFadeDistance(9.0);
+    vtkImageData* output = subject.Expect("");
+    VERIFY_EQUAL(subject.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
+    for (const char* name : { "dose", "activity" })
+    {
+      VERIFY(std::abs(Sum(output, name) / Sum(volume, name) - 1.0) < 0.005);
+    }
+    double range[2];
+    subject.Get("Jacobian")->GetRange(range);
+    // 1.5 times 2.5 / 9 at the steepest.
+    VERIFY(range[0] > 0.55 && range[0] < 0.62 && range[1] > 1.38 && range[1] < 1.45);
+    // In the body nothing is pressed, and far away nothing moves.
+    int inside[3] = { 26, 20, 18 };
+    int far[3] = { 2, 3, 33 };
+    for (int* place : { inside, far })
+    {
+      VERIFY_EQUAL(subject.Get("Jacobian")->GetComponent(output->ComputePointId(place), 0), 1.0);
+    }
+  }
+}
+
+// A fold: one warning says what is lost, and what is inside out has no density.
+void TestFolds()
+{
+  const auto volume = MakeDose();
+  const auto mesh = MakeMesh(volume, 9, 0.5);
+  double center[3];
+  volume->GetCenter(center);
+  SetDisplacements(mesh,
+    [&](const glm::dvec3& p)
+    {
+      const double r = (p.x - center[0]) / 10.0;
+      return p -
+        glm::dvec3(std::abs(r) < 1.0 ? 30.0 * r * (1.0 - r * r) * (1.0 - r * r) : 0.0, 0.0, 0.0);
+    });
+  Derived subject(volume, mesh);
+  subject.Filter->SetBackgroundValue(-3.0);
+  vtkImageData* output =
+    subject.Expect("folds the volume over. The sums of density arrays lack the ");
+  VERIFY(subject.Filter->GetNumberOfInvertedTetrahedra() > 1000);
+  for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
+  {
+    const double jacobian = subject.Get("Jacobian")->GetComponent(id, 0);
+    VERIFY((jacobian > 0.0) == (subject.Get("dose")->GetComponent(id, 0) != -3.0));
+  }
+  // Upright parts win, but their values are not those of the others.
+  VERIFY(Sum(output, "activity") < 0.95 * Sum(volume, "activity"));
+  subject.Filter->SetPadding(1);
+  subject.Expect("");
+  SetDisplacements(mesh, Shift(1.0, 0.0, 0.0));
+  subject.Expect("");
+}
+
+// What changes a part of the output leaves nothing of before there: nodes, masks, values.
+void TestIncremental()
+{
+  const auto volume = MakeDose();
+  vtkNew<vtkUnsignedCharArray> active;
+  active->SetName("ActiveTetrahedra");
+  active->SetNumberOfTuples(volume->GetNumberOfCells());
+  active->Fill(31);
+  volume->GetCellData()->AddArray(active);
+  for (const bool keeps : { false, true })
+  {
+    const auto mesh = MakeMesh(volume, 7, keeps ? -7.2 : 0.5);
+    SetDisplacements(mesh, Shift(0.25, 0.0, 0.0));
+    Derived subject(volume, mesh);
+    const auto set = [&](vtkDeformVolumeFilter* filter)
+    {
+      filter->SetOutputBoundsModeToVolumeBounds();
+      filter->SetOutsideMode(keeps ? vtkDeformVolumeFilter::KEEP : vtkDeformVolumeFilter::DISCARD);
+      filter->SetFadeDistance(6.0);
+    };
+    set(subject.Filter);
+    subject.Expect("");
+    for (int step = 0; step < 6; ++step)
+    {
+      if (step % 3 == 0)
+      {
+        active->SetValue(20000 + 31 * step, 0);
+        active->Modified();
+      }
+      else if (step % 3 == 1)
+      {
+        mesh->GetPointData()->GetVectors()->SetTuple3(171, 0.5, 0.1 * step, 0.0);
+        mesh->GetPointData()->GetVectors()->Modified();
+      }
+      else
+      {
+        volume->GetPointData()->GetArray("dose")->SetComponent(27000 + step, 0, 777.0);
+        volume->GetPointData()->GetArray("dose")->Modified();
+      }
+      subject.Expect("");
+      Derived fresh(volume, mesh);
+      set(fresh.Filter);
+      fresh.Expect("");
+      VERIFY(AreEqual(subject.Filter->GetOutput(), fresh.Filter->GetOutput()));
+    }
+    VERIFY_EQUAL(GetReported(subject.Filter, "Static mappings made"), 1);
+    // Every second voxel, and back.
+    subject.Filter->SetSamplingFactor(2);
+    subject.Expect("");
+    VERIFY_EQUAL(subject.Get("Jacobian")->GetNumberOfTuples(), 20 * 19 * 18);
+    subject.Filter->SetSamplingFactor(1);
+    Derived fresh(volume, mesh);
+    set(fresh.Filter);
+    fresh.Expect("");
+    VERIFY(AreEqual(subject.Expect(""), fresh.Filter->GetOutput()));
+  }
+}
+
+} // namespace
+
+int TestExtraArrays(int, char*[])
+{
+  TestMisuse();
+  TestAtRest();
+  TestAffine();
+  TestSums();
+  TestKept();
+  TestFolds();
+  TestIncremental();
+  return GetExitCode();
+}
