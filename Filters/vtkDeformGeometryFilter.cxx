@@ -653,15 +653,9 @@ int vtkDeformGeometryFilter::ComputeInputUpdateExtent(
   {
     return 1;
   }
-  // Here, since a rank whose source of port 0 fails gets no further.
   return this->Internals->Execution.Run(this,
-    "There is not enough memory for the deformation. Use a coarser one, or free memory.",
-    [&]
-    {
-      deformvolume::UpdateRequested(this, 3, input, ranks, 1);
-      this->Internals->ReadDeformation(
-        ranks, this->GetInputDataObject(1, 0), this->GetInputDataObject(2, 0));
-    });
+    "There is not enough memory for the inputs. Use smaller ones, or free memory.",
+    [&] { deformvolume::UpdateRequested(this, 3, input, ranks); });
 }
 
 //------------------------------------------------------------------------------
@@ -683,11 +677,8 @@ int vtkDeformGeometryFilter::RequestData(
     {
       const deformvolume::Ranks ranks;
       vtkDataObject* shape = vtkDataObject::GetData(input[1]);
-      if (!ranks.AreMany())
-      {
-        this->Internals->ReadDeformation(ranks, shape, vtkDataObject::GetData(input[2]));
-      }
-      this->Internals->MoveAll(points, output);
+      this->Internals->ReadDeformation(ranks, shape, vtkDataObject::GetData(input[2]));
+      ranks.Attempt([&] { this->Internals->MoveAll(points, output); });
       deformvolume::SetTimeStep(output, outInfo, { shape, points });
     });
 }

@@ -58,7 +58,8 @@
  * @par Ranks:
  * Under MPI each rank moves its points. Of the deformation mesh each rank may have a piece, none,
  * or the whole: it is gathered through vtkMultiProcessController::GetGlobalController(). A
- * displacement field every rank must be given whole. All ranks have to update together.
+ * displacement field every rank must be given whole. All ranks have to update together; an error of
+ * one is reported on all.
  *
  * @par Errors:
  * Each failure is one vtkErrorMacro, which says what is wrong and what to do, at each update that

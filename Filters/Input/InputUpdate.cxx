@@ -54,7 +54,9 @@ void Request(vtkInformation* input, vtkInformation* request, const Ranks& ranks)
 // A source that fails on one rank fails on all: the ranks that go on would wait for it.
 vtkDataObject* Update(vtkAlgorithm* filter, int port, vtkInformation* request, const Ranks& ranks)
 {
-  static const char* const names[3] = { "volume", "deformation", "rest configuration" };
+  const bool isVolume = vtkImageData::SafeDownCast(filter->GetInputDataObject(0, 0)) != nullptr;
+  const char* const names[3] = { isVolume ? "volume" : "points", "deformation",
+    "rest configuration" };
   vtkAlgorithmOutput* source = filter->GetInputConnection(port, 0);
   vtkNew<vtkInformationVector> requests;
   requests->SetNumberOfInformationObjects(source->GetIndex() + 1);
@@ -131,9 +133,9 @@ vtkDataObject* UpdateInputPart(
 }
 
 void UpdateRequested(
-  vtkAlgorithm* filter, int ports, vtkInformationVector** input, const Ranks& ranks, int first)
+  vtkAlgorithm* filter, int ports, vtkInformationVector** input, const Ranks& ranks)
 {
-  for (int port = first; port < ports; ++port)
+  for (int port = 0; port < ports; ++port)
   {
     if (input[port]->GetNumberOfInformationObjects() == 0)
     {

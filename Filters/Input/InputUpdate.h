@@ -37,11 +37,11 @@ void RequestExtent(vtkInformation* input, const Extent& extent);
 /// at 0, an empty extent there would be an error of its own.
 void RequestNothing(vtkInformation* input);
 
-/// Brings the inputs of the ports from first to ports - 1 up to date with what they have been asked
-/// for. The executive would do it, too; but where a source fails on one rank, the executive ends
-/// the data pass on that rank alone. Throws an Error, on all ranks. Collective.
+/// Brings the inputs of the first ports up to date with what they have been asked for. The
+/// executive would do it, too; but where a source fails on one rank, the executive ends the data
+/// pass on that rank alone. Throws an Error, on all ranks. Collective.
 void UpdateRequested(
-  vtkAlgorithm* filter, int ports, vtkInformationVector** input, const Ranks& ranks, int first = 0);
+  vtkAlgorithm* filter, int ports, vtkInformationVector** input, const Ranks& ranks);
 
 /// The part of the output that is asked for while requests go upstream: of the extent the piece,
 /// with its ghost levels.

@@ -7,8 +7,12 @@
 #include "RankTesting.h"
 #include "TenNodeCells.h"
 
+#include "vtkDeformGeometryFilter.h"
+
 #include <vtkIdList.h>
 #include <vtkIdTypeArray.h>
+#include <vtkMultiBlockDataSet.h>
+#include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 #include <vtkStringArray.h>
 #include <vtkTrivialProducer.h>
@@ -396,6 +400,86 @@ void TestKeptExtent(const Case& from)
   }
 }
 
+/// Each rank moves its own points, as one process does, whoever has the mesh.
+void TestPoints(vtkUnstructuredGrid* mesh)
+{
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  for (int block = 0; block <= GetRank(); ++block) // different numbers
+  {
+    vtkNew<vtkPoints> points;
+    for (int i = 0; i < 100; ++i)
+    {
+      points->InsertNextPoint(0.1 * i, 0.07 * i + block, 0.06 * i + 0.5 * GetRank());
+    }
+    vtkNew<vtkPolyData> some;
+    some->SetPoints(points);
+    blocks->SetBlock(block, some);
+  }
+  vtkNew<vtkTest::ErrorObserver> observer; // points outside are a warning
+  const auto move = [&](vtkDeformGeometryFilter* filter, bool inverse)
+  {
+    filter->AddObserver(vtkCommand::ErrorEvent, observer);
+    filter->AddObserver(vtkCommand::WarningEvent, observer);
+    filter->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, observer);
+    filter->SetInputData(blocks);
+    filter->SetInverse(inverse);
+  };
+  const auto getBlock = [](vtkDeformGeometryFilter* filter, int block)
+  {
+    auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+    return vtkPointSet::SafeDownCast(output->GetBlock(block));
+  };
+  for (const bool inverse : { false, true })
+  {
+    vtkMultiProcessController::SetGlobalController(nullptr);
+    vtkNew<vtkDeformGeometryFilter> alone;
+    move(alone, inverse);
+    alone->SetDeformationData(mesh);
+    alone->Update();
+    vtkMultiProcessController::SetGlobalController(Controller);
+    VERIFY(alone->GetNumberOfOutsidePoints() < 60 * (GetRank() + 1));
+    for (const Spread spread :
+      { Spread::Everywhere, Spread::OnOne, Spread::Pieces, Spread::WithGhosts })
+    {
+      vtkNew<vtkDeformGeometryFilter> filter;
+      move(filter, inverse);
+      filter->SetDeformationData(Distribute(mesh, spread));
+      filter->UpdatePiece(GetRank(), GetRanks(), 0);
+      VERIFY_EQUAL(filter->GetNumberOfOutsidePoints(), alone->GetNumberOfOutsidePoints());
+      for (int block = 0; block <= GetRank(); ++block)
+      {
+        vtkPointSet* output = getBlock(filter, block);
+        VERIFY(output != nullptr);
+        for (vtkIdType id = 0; output && id < output->GetNumberOfPoints(); ++id)
+        {
+          // Pieces give tetrahedra other numbers, and points on their faces to other ones.
+          const glm::dvec3 miss = GetPoint(output, id) - GetPoint(getBlock(alone, block), id);
+          VERIFY(std::abs(miss.x) + std::abs(miss.y) + std::abs(miss.z) < 1e-5);
+        }
+      }
+      // Points of one rank, or of its piece of the mesh, are an error on all.
+      observer->Clear();
+      const double nan = std::numeric_limits<double>::quiet_NaN();
+      auto* first = vtkPointSet::SafeDownCast(blocks->GetBlock(0));
+      const glm::dvec3 before = GetPoint(first, 5);
+      if (GetRank() + 1 == GetRanks())
+      {
+        first->GetPoints()->SetPoint(5, nan, 0.0, 0.0);
+        first->GetPoints()->Modified();
+      }
+      filter->Modified();
+      filter->UpdatePiece(GetRank(), GetRanks(), 0);
+      VERIFY(observer->GetErrorMessage().find("Point 5") != std::string::npos);
+      observer->Clear();
+      first->GetPoints()->SetPoint(5, &before.x);
+      first->GetPoints()->Modified();
+      filter->UpdatePiece(GetRank(), GetRanks(), 0);
+      VERIFY(!observer->GetError());
+      VERIFY_EQUAL(filter->GetNumberOfOutsidePoints(), alone->GetNumberOfOutsidePoints());
+    }
+  }
+}
+
 void TestAll()
 {
   for (const Case& from : MakeCases())
@@ -420,6 +504,7 @@ void TestAll()
       TestErrors(from, whole);
       TestSmallAndMoving(from);
       TestKeptExtent(from);
+      TestPoints(vtkUnstructuredGrid::SafeDownCast(from.Deformation));
       // Cells with derived nodes.
       Case quadratic = from;
       const auto mesh = MakeTenNodes(vtkUnstructuredGrid::SafeDownCast(from.Deformation));
