@@ -261,7 +261,9 @@ public:
     return found;
   }
 
-  Solution FindInCell(const glm::ivec3& cell, const Corners& moved, const glm::dvec3& point) const
+  /// thorough: from more starts.
+  Solution FindInCell(
+    const glm::ivec3& cell, const Corners& moved, const glm::dvec3& point, bool thorough) const
   {
     Solution best = this->Find(cell, moved, point, glm::dvec3(0.5));
     if (best.Number >= 0 && !best.IsInverted && !best.IsBeside)
@@ -301,10 +303,23 @@ public:
       const Solution found = this->Find(cell, moved, point, start);
       best = found.IsBetterThan(best) ? found : best;
     }
+    for (int corner = 0; thorough && corner < 8; ++corner)
+    {
+      const glm::dvec3 offset(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
+      const Solution found = this->Find(cell, moved, point, 0.1 + 0.8 * offset);
+      best = found.IsBetterThan(best) ? found : best;
+    }
     return best;
   }
 
   Solution FindInCells(const glm::dvec3& point) const
+  {
+    const Solution found = this->FindInCells(point, false);
+    // Where a cell is folded the method may lead out of it from some starts.
+    return found.Number < 0 || found.IsInverted ? this->FindInCells(point, true) : found;
+  }
+
+  Solution FindInCells(const glm::dvec3& point, bool thorough) const
   {
     Solution best;
     this->Boxes.Visit(point,
@@ -322,7 +337,7 @@ public:
             const BoxPyramid::Box box = this->GetBox(moved);
             if (glm::min(box.Min, point) == box.Min && glm::max(box.Max, point) == box.Max)
             {
-              const Solution found = this->FindInCell(cell, moved, point);
+              const Solution found = this->FindInCell(cell, moved, point, thorough);
               best = found.IsBetterThan(best) ? found : best;
             }
           });
@@ -415,10 +430,10 @@ bool FieldPointMap::Invert(const glm::dvec3& point, Image& image) const
     return false;
   }
   const glm::dvec3 place = inside.GetWorld(glm::dvec3(found.Cell) + found.Place);
-  // Beside the field it is its border that moves points.
-  if (found.IsBeside && this->Solve(point, place, tolerance, image))
+  if (found.IsBeside)
   {
-    return true;
+    // There it is the border of the field that moves points.
+    return this->Solve(point, place, tolerance, image);
   }
   image.Point = place;
   image.Gradient = inside.ToWorld * glm::inverse(found.Gradient);
