@@ -67,13 +67,15 @@ def whole_image(proxy):
 
 
 def expected_output(mesh):
-    """By the class itself, in the client."""
+    """By the class itself, in the client, with the background that ParaView chooses from all ranks."""
     source = vtkRTAnalyticSource()
     source.SetWholeExtent(-9, 9, -9, 9, -9, 9)
+    source.Update()
     filter_ = deformvolume_vtk.vtkDeformVolumeFilter()
     filter_.SetInputConnection(source.GetOutputPort())
     filter_.SetDeformationData(mesh)
     filter_.SetInputArrayToProcess(0, 1, 0, 0, "Displacement")
+    filter_.SetBackgroundValue(source.GetOutput().GetScalarRange()[0])
     filter_.Update()
     return filter_.GetOutput()
 
