@@ -93,13 +93,17 @@ def check(volume, name, *files, reference=None):
     options = list(itertools.chain.from_iterable(("--transform", path(file)) for file in files))
     if reference:
         options += ["--reference", path(reference)]
-    call(program, path(volume), *options, "-q", "-o", path("out.vti"))
+    # In the other world, where there is one.
+    labels = path("labels.mha" if volume.endswith(".nii.gz") else "labels.nii.gz")
+    call(program, path(volume), *options, "-q", "-o", path("out.vti"), "--label-volume", labels,
+         "--label-output", path("labels.vti"))
     image = read_vti(path("out.vti"))
     values, covered = get_values(image), get_values(image, "vtkValidPointMask") != 0
+    parts = get_values(read_vti(path("labels.vti")))
     depth = expected["depth of " + name]
     if reference and reference.startswith("mirrored") and reference.endswith(".nii.gz"):
         # The reader of NIfTI files turns the order of slices.
-        values, covered = values[::-1], covered[::-1]
+        values, covered, parts = values[::-1], covered[::-1], parts[::-1]
     assert covered[depth > 0.001].all(), (name, "holes")
     assert not covered[depth < -0.01].any(), (name, "outside")
     assert (depth > 0.001).sum() > (2000 if reference else 5000), (name, (depth > 0.001).sum())
@@ -109,6 +113,11 @@ def check(volume, name, *files, reference=None):
     # 7 mm from voxel to voxel, and values by up to 7 in 1 mm.
     allowed = 2e-5 + (49 * 2.0 ** -16 if any(file.startswith("warp") for file in files) else 0)
     assert wrong < allowed, (volume, name, files, wrong)
+    # A label changes at once where a point moves by some 2^-16 voxel.
+    decided = inside & (expected["margin of " + name] > 0.001)
+    assert numpy.array_equal(parts[decided], expected["labels of " + name][decided]), (volume, name)
+    assert decided.sum() > 0.98 * inside.sum(), (name, decided.sum(), inside.sum())
+    assert not parts[~covered].any(), (volume, name)
 
 
 formats = ("h5", "tfm", "txt", "mat")

@@ -27,6 +27,11 @@ values = sitk.GetArrayViewFromImage(moving)
 assert max(numpy.abs(numpy.diff(values, axis=axis)).max() for axis in range(3)) < 7
 for name in ("moving.nii.gz", "moving.mha", "moving.nrrd"):
     sitk.WriteImage(moving, path(name))
+# A label for each voxel.
+labels = sitk.GetImageFromArray(random.permutation(values.size).astype(numpy.int32).reshape(values.shape) + 1)
+labels.CopyInformation(moving)
+for name in ("labels.nii.gz", "labels.mha"):
+    sitk.WriteImage(labels, path(name))
 middle = moving.TransformContinuousIndexToPhysicalPoint([(n - 1) / 2 for n in size])
 
 
@@ -114,6 +119,11 @@ def add(key, transform, grid):
         grid.TransformIndexToPhysicalPoint(voxel))) for voxel in index.reshape(-1, 3).tolist()])
     depth = numpy.minimum(reached, numpy.array(size) - 1 - reached).min(axis=-1)
     results["depth of " + key] = depth.reshape(grid.GetSize()).T
+    resampled = sitk.Resample(labels, grid, transform, sitk.sitkNearestNeighbor, 0)
+    results["labels of " + key] = sitk.GetArrayFromImage(resampled)
+    # How far each point is from where another voxel is the nearest.
+    margin = numpy.abs(reached - numpy.floor(reached) - 0.5).min(axis=-1)
+    results["margin of " + key] = margin.reshape(grid.GetSize()).T
 
 
 results = {}
