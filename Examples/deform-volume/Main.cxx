@@ -3,6 +3,7 @@
 #include "Failure.h"
 #include "ImageAxes.h"
 #include "LabelVolume.h"
+#include "MapWriting.h"
 #include "MeshMaking.h"
 #include "Messages.h"
 #include "Movie.h"
@@ -59,7 +60,10 @@ void ListDevices()
 void CheckOutputs(const Options& options)
 {
   std::vector<std::string> paths = options.Outputs;
-  paths.insert(paths.end(), options.LabelOutputs.begin(), options.LabelOutputs.end());
+  for (const auto* more : { &options.LabelOutputs, &options.Jacobians, &options.InverseFields })
+  {
+    paths.insert(paths.end(), more->begin(), more->end());
+  }
   paths.push_back(options.Image);
   paths.push_back(options.Movie);
   paths.push_back(options.MeshOutput);
@@ -146,7 +150,7 @@ void SetUp(vtkDeformVolumeFilter* filter, const Options& options, vtkImageData* 
   filter->SetInterpolation(interpolations.at(options.Interpolation));
   filter->SetDevice(options.Device);
   vtkPointData* arrays = volume->GetPointData();
-  for (const std::string& name : options.CategoricalArrays)
+  const auto check = [arrays](const char* option, const std::string& name)
   {
     if (!arrays->HasArray(name.c_str()))
     {
@@ -155,10 +159,20 @@ void SetUp(vtkDeformVolumeFilter* filter, const Options& options, vtkImageData* 
       {
         names += std::string(names.empty() ? "" : ", ") + arrays->GetArrayName(i);
       }
-      throw Failure("--categorical " + name + ": the volume has no such array; it has " + names);
+      throw Failure(option + (" " + name) + ": the volume has no such array; it has " + names);
     }
+  };
+  for (const std::string& name : options.CategoricalArrays)
+  {
+    check("--categorical", name);
     filter->AddCategoricalArray(name.c_str());
   }
+  for (const std::string& name : options.DensityArrays)
+  {
+    check("--density-array", name);
+    filter->AddDensityArray(name.c_str());
+  }
+  AskForMaps(options, filter);
   for (int i = 0; options.Labels && i < arrays->GetNumberOfArrays(); ++i)
   {
     filter->AddCategoricalArray(arrays->GetArrayName(i));
@@ -353,11 +367,13 @@ void DeformVolume(const Options& options, Messages& messages)
       WriteVolume(deformedLabels, output, messages, !options.Quiet);
     }
   }
+  WriteMaps(options, result, messages);
   for (const std::string& output : options.Outputs)
   {
     WriteVolume(result, output, messages, !options.Quiet);
   }
-  if (!options.Outputs.empty() || labels.AreThere())
+  if (!options.Outputs.empty() || !options.Jacobians.empty() || !options.InverseFields.empty() ||
+    labels.AreThere())
   {
     timings.Add("write volume", writing.GetSeconds());
   }

@@ -39,14 +39,20 @@ void CheckNumbers(const Options& options)
 void CheckOverwriting(const Options& options)
 {
   std::vector<std::string> outputs = options.Outputs;
-  for (const std::string& labels : options.LabelOutputs)
+  const auto add = [&](const char* option, const std::vector<std::string>& more)
   {
-    if (std::count(outputs.begin(), outputs.end(), labels) > 0)
+    for (const std::string& output : more)
     {
-      throw UsageError(labels + " is written twice: give --label-output another name");
+      if (std::count(outputs.begin(), outputs.end(), output) > 0)
+      {
+        throw UsageError(output + " is written twice: give " + option + " another name");
+      }
+      outputs.push_back(output);
     }
-    outputs.push_back(labels);
-  }
+  };
+  add("--label-output", options.LabelOutputs);
+  add("--jacobian", options.Jacobians);
+  add("--inverse-field", options.InverseFields);
   outputs.push_back(options.Image);
   outputs.push_back(options.Movie);
   outputs.push_back(options.MeshOutput);
@@ -237,8 +243,8 @@ void CheckOptions(const Options& options)
   {
     throw UsageError("--mesh-space requires --mesh or --cut");
   }
-  if (options.Outputs.empty() && options.LabelOutputs.empty() && options.Image.empty() &&
-    options.Movie.empty())
+  if (options.Outputs.empty() && options.LabelOutputs.empty() && options.Jacobians.empty() &&
+    options.InverseFields.empty() && options.Image.empty() && options.Movie.empty())
   {
     throw UsageError("nothing to write: give --output, --image or --movie");
   }
@@ -259,6 +265,8 @@ void CheckOptions(const Options& options)
   };
   checkNames("--output", options.Outputs);
   checkNames("--label-output", options.LabelOutputs);
+  checkNames("--jacobian", options.Jacobians);
+  checkNames("--inverse-field", options.InverseFields);
   if (!options.Image.empty() && !HasSuffix(options.Image, { ".png" }))
   {
     throw UsageError("--image " + options.Image + ": the name must end in .png");

@@ -401,6 +401,16 @@ void AddResampling(CLI::App& program, Options& options, RawOptions& raw)
     ->group(group);
   program.add_flag("--labels", options.Labels, "All arrays hold labels")->group(group);
   program
+    .add_option("--density-array", options.DensityArrays,
+      "Name of an array of amounts for each unit of volume, such as a dose or an activity: its "
+      "values "
+      "are divided by how many times as large the deformation makes the volume, so that their sum "
+      "stays. They become float, or stay double. May be given several times")
+    ->type_name("NAME")
+    ->take_all()
+    ->expected(1)
+    ->group(group);
+  program
     .add_option("--resampler", options.Resampler,
       "exact: deforms a mesh of the voxels; mesh-rasterization: looks the volume up from the "
       "deformation mesh, with less memory")
@@ -442,6 +452,27 @@ void AddOutput(CLI::App& program, Options& options, RawOptions& raw)
         FormatsOfOneArray +
         " (where there is one array). They are 0 where the deformed volume does not reach. May be "
         "given several times")
+    ->type_name("FILE")
+    ->take_all()
+    ->expected(1)
+    ->group(group);
+  program
+    .add_option("--jacobian", options.Jacobians,
+      std::string(
+        "How many times as large the deformation makes the volume at each voxel of the "
+        "result, less than 0 where it turns it inside out, and 0 where the deformed volume "
+        "does not reach: .vti, ") +
+        FormatsOfOneArray + ". May be given several times")
+    ->type_name("FILE")
+    ->take_all()
+    ->expected(1)
+    ->group(group);
+  program
+    .add_option("--inverse-field", options.InverseFields,
+      std::string(
+        "The displacement field from each voxel of the result to the point of the volume "
+        "that it shows, as ITK, ANTs and 3D Slicer read it (left, posterior, superior; mm): ") +
+        FormatsOfOneArray + "; or .vti, in the world of the volume. May be given several times")
     ->type_name("FILE")
     ->take_all()
     ->expected(1)

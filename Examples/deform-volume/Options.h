@@ -64,6 +64,7 @@ struct Options
   int Padding = 0;
   std::optional<double> Background;
   std::vector<std::string> CategoricalArrays;
+  std::vector<std::string> DensityArrays;
   bool Labels = false;
   std::string Resampler = "automatic";
   std::string Interpolation = "linear";
@@ -71,6 +72,8 @@ struct Options
 
   std::vector<std::string> Outputs;
   std::vector<std::string> LabelOutputs;
+  std::vector<std::string> Jacobians;
+  std::vector<std::string> InverseFields;
   std::string MeshOutput;
   std::string Image;
   int Frames = 0;

@@ -40,6 +40,8 @@ struct Volume
   WorldAxes Axes = WorldAxes::Unknown;
   /// Of a NIfTI file that says where it lies. The s-form is the place of the image.
   NIfTIForms Forms;
+  /// What the values of a NIfTI file mean that is to be written (NIFTI_INTENT); 0: nothing is said.
+  int IntentCode = 0;
   /// Null for other formats.
   vtkSmartPointer<vtkNIFTIImageHeader> NIfTIHeader;
   /// The keys of an NRRD file's header.

@@ -146,6 +146,7 @@ void WriteNIfTI(
   const bool keepsForms = forms.SFormCode != 0 || forms.QFormCode != 0;
   vtkNew<vtkNIFTIImageHeader> header;
   header->SetXYZTUnits(vtkNIFTIImageHeader::UnitsMM);
+  header->SetIntentCode(volume.IntentCode);
   vtkNew<vtkNIFTIImageWriter> writer;
   writer->SetInputData(image);
   writer->SetFileName(plain.c_str());

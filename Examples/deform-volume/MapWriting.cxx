@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MapWriting.h"
+
+#include "FileSuffix.h"
+#include "Messages.h"
+#include "Options.h"
+#include "VolumeWriting.h"
+
+#include <vtkDeformVolumeFilter.h>
+#include <vtkFloatArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+
+#include <string>
+
+namespace
+{
+constexpr int IntentVector = 1007; // of NIfTI, for vectors as ITK takes them
+
+bool IsCovered(vtkImageData* image, vtkIdType voxel)
+{
+  return image->GetPointData()->GetArray("vtkValidPointMask")->GetComponent(voxel, 0) != 0.0;
+}
+
+// An image on the grid of another one, with one array.
+vtkSmartPointer<vtkImageData> MakeImage(vtkImageData* grid, vtkDataArray* values)
+{
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->CopyStructure(grid);
+  image->GetPointData()->SetScalars(values);
+  return image;
+}
+
+void WriteJacobian(const Options& options, const Volume& deformed, Messages& messages)
+{
+  vtkDataArray* found = deformed.Image->GetPointData()->GetArray("Jacobian");
+  vtkNew<vtkFloatArray> values;
+  values->SetName("Jacobian");
+  values->SetNumberOfTuples(found->GetNumberOfTuples());
+  for (vtkIdType voxel = 0; voxel < found->GetNumberOfTuples(); ++voxel)
+  {
+    values->SetComponent(
+      voxel, 0, IsCovered(deformed.Image, voxel) ? found->GetComponent(voxel, 0) : 0.0);
+  }
+  Volume written = deformed;
+  written.Image = MakeImage(deformed.Image, values);
+  for (const std::string& path : options.Jacobians)
+  {
+    WriteVolume(written, path, messages, !options.Quiet);
+  }
+}
+
+// Vectors from the voxels to their places at rest, 0 where there is none. sign: of x and y.
+vtkSmartPointer<vtkFloatArray> MakeVectors(vtkImageData* image, double sign)
+{
+  vtkDataArray* places = image->GetPointData()->GetArray("RestPosition");
+  auto vectors = vtkSmartPointer<vtkFloatArray>::New();
+  vectors->SetName("Displacement");
+  vectors->SetNumberOfComponents(3);
+  vectors->SetNumberOfTuples(places->GetNumberOfTuples());
+  vectors->Fill(0.0);
+  for (vtkIdType voxel = 0; voxel < places->GetNumberOfTuples(); ++voxel)
+  {
+    if (IsCovered(image, voxel))
+    {
+      double here[3];
+      double rest[3];
+      image->GetPoint(voxel, here);
+      places->GetTuple(voxel, rest);
+      vectors->SetTuple3(
+        voxel, sign * (rest[0] - here[0]), sign * (rest[1] - here[1]), rest[2] - here[2]);
+    }
+  }
+  return vectors;
+}
+
+void WriteInverseField(const Options& options, const Volume& deformed, Messages& messages)
+{
+  vtkIdType uncovered = 0;
+  for (vtkIdType voxel = 0; voxel < deformed.Image->GetNumberOfPoints(); ++voxel)
+  {
+    uncovered += IsCovered(deformed.Image, voxel) ? 0 : 1;
+  }
+  if (uncovered > 0)
+  {
+    messages.DisplayWarningText(("The inverse field is 0 at " + std::to_string(uncovered) + " of " +
+      std::to_string(deformed.Image->GetNumberOfPoints()) +
+      " voxels, which the deformed volume does not cover.")
+                                  .c_str());
+  }
+  for (const std::string& path : options.InverseFields)
+  {
+    // NIfTI files lie in a world that points to the right, but ITK wants vectors to the left.
+    const bool pointsLeft = deformed.Axes == WorldAxes::LeftPosteriorSuperior ||
+      (deformed.Axes == WorldAxes::Unknown && !HasSuffix(path, { ".nii", ".nii.gz" }));
+    const double sign = pointsLeft || HasSuffix(path, { ".vti" }) ? 1.0 : -1.0;
+    Volume written = deformed;
+    written.Image = MakeImage(deformed.Image, MakeVectors(deformed.Image, sign));
+    written.IntentCode = IntentVector;
+    WriteVolume(written, path, messages, !options.Quiet);
+  }
+}
+}
+
+void AskForMaps(const Options& options, vtkDeformVolumeFilter* filter)
+{
+  filter->SetGenerateJacobian(!options.Jacobians.empty());
+  filter->SetGenerateRestPositions(!options.InverseFields.empty());
+}
+
+void WriteMaps(const Options& options, Volume& deformed, Messages& messages)
+{
+  if (!options.Jacobians.empty())
+  {
+    WriteJacobian(options, deformed, messages);
+  }
+  if (!options.InverseFields.empty())
+  {
+    WriteInverseField(options, deformed, messages);
+  }
+  vtkNew<vtkImageData> left;
+  left->ShallowCopy(deformed.Image);
+  for (const char* name : { "Jacobian", "RestPosition" })
+  {
+    left->GetPointData()->RemoveArray(name);
+  }
+  deformed.Image = left;
+}
