@@ -13,10 +13,12 @@ from PluginTesting import (
     bent_lattice,
     check,
     check_equal_images,
+    check_one_message,
     deformed,
     fetch,
     head_file,
     load_plugin,
+    messages,
     wavelet,
 )
 
@@ -138,10 +140,43 @@ def test_wavelet():
     )
 
 
+def test_geometry():
+    """Surfaces that follow the wavelet, and are led back."""
+    volume = wavelet(6)
+    mesh = bent_lattice(volume)
+    ball = simple.Sphere(Radius=4)
+    moved = simple.DeformGeometry(Input=ball, Deformation=mesh)
+    back = simple.DeformGeometry(Input=moved, Deformation=mesh, Inverse=True)
+    plain = deformvolume_vtk.vtkDeformGeometryFilter()
+    plain.SetInputData(fetch(ball))
+    plain.SetDeformationData(fetch(mesh))
+    plain.Update()
+
+    def points_of(data):
+        return numpy_support.vtk_to_numpy(data.GetPoints().GetData())
+
+    at_rest, expected = points_of(fetch(ball)), points_of(plain.GetOutput())
+    check(numpy.abs(expected - at_rest).max() > 0.5, "Nothing moves")
+    check(numpy.array_equal(points_of(fetch(moved)), expected), "The proxy moves otherwise")
+    check(numpy.abs(points_of(fetch(back)) - at_rest).max() < 1e-5, "Not led back")
+    normals = arrays_of(fetch(moved))["Normals"]
+    check(numpy.abs(normals - arrays_of(fetch(ball))["Normals"]).max() > 0.1, "Normals stay")
+    # Blocks, one of which is beside the mesh.
+    beside = simple.Sphere(Radius=1, Center=[30, 0, 0])
+    group = simple.GroupDatasets(Input=[ball, beside])
+    with messages() as texts:
+        blocks = fetch(simple.DeformGeometry(Input=group, Deformation=mesh))
+    count = fetch(beside).GetNumberOfPoints()
+    check_one_message(texts, [f"{count} of {count + len(at_rest)} points lie outside"])
+    check(numpy.array_equal(points_of(blocks.GetBlock(0)), expected), "Blocks move otherwise")
+    check(not arrays_of(blocks.GetBlock(1))["vtkValidPointMask"].any(), "What is beside is valid")
+
+
 def main():
     load_plugin()
     check(isinstance(fetch(wavelet(2)), vtkImageData), "A wavelet is no image")
     test_wavelet()
+    test_geometry()
     test_mri()
 
 
