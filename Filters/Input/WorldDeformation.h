@@ -48,7 +48,6 @@ private:
   bool Field = false;
   std::uint64_t Version = 0;
   RestMesh Mesh;
-  std::uint64_t ConnectivityVersion = 0; // of the mesh that the displacements are of
   std::vector<glm::dvec3> Displacements;
   WorldField Vectors;
   vtkSmartPointer<vtkDataArray> Array; // that of the field

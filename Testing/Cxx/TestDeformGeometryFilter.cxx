@@ -16,6 +16,7 @@
 #include <vtkFlyingEdges3D.h>
 #include <vtkGenericCell.h>
 #include <vtkIdList.h>
+#include <vtkInformation.h>
 #include <vtkIntArray.h>
 #include <vtkMultiBlockDataSet.h>
 #include <vtkPlaneSource.h>
@@ -1135,7 +1136,11 @@ void TestKinds()
 
   // What changes is read again.
   Subject live(MakePoints({ glm::dvec3(4.0) }), mesh);
+  mesh->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), 2.5);
   VERIFY_EQUAL(live.GetPlaces()[0].x, 5.0);
+  vtkInformation* time = live.Filter->GetOutput()->GetInformation();
+  VERIFY(time->Has(vtkDataObject::DATA_TIME_STEP()));
+  VERIFY_EQUAL(time->Get(vtkDataObject::DATA_TIME_STEP()), 2.5);
   SetDisplacements(mesh, Shift(2.0, 0.0, 0.0));
   mesh->Modified();
   VERIFY_EQUAL(live.GetPlaces()[0].x, 6.0);
