@@ -342,7 +342,7 @@ MUTATIONS = {
     "keep-far": ("Kernels/Mapping/FadedLinks.cxx", "farUntil = x +", "farUntil = x + 2 +", ["Cxx.TestFadedLinks"]),
     "keep-closest": ("Kernels/Mapping/ClosestFace.cxx", "if (!isTooFar(far.SquaredDistance))", "if (false)",
                      ["Cxx.TestFadedLinks"]),
-    "keep-jump": ("Kernels/Mapping/FadedLinks.cxx", "const bool isJump = ", "const bool isJump = false && ",
+    "keep-jump": ("Kernels/Mapping/StretchedTetrahedra.cxx", "const bool isJump = ", "const bool isJump = false && ",
                   ["Cxx.TestFadedLinks"]),
     "keep-bounds": ("Kernels/Mapping/FadedLinks.cxx", "bounds.Add(move(block.Voxels, block.GreatestWeight, displacement));",
                     "bounds.Add(move(block.Voxels, 0.0, displacement));", ["Cxx.TestFadedLinks"]),

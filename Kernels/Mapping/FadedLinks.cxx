@@ -4,7 +4,6 @@
 #include "BarycentricMap.h"
 #include "ClosestFace.h"
 #include "Error.h"
-#include "FiveTetrahedra.h"
 #include "OutsideVoxels.h" // for GetFadedWeight
 #include "ParallelFor.h"
 
@@ -25,11 +24,6 @@ namespace
 {
 
 constexpr int BlockSize = 8; // voxels on an axis
-// Tetrahedra that are looked at when the deformation changes: about a millisecond.
-constexpr std::int64_t MostStretchable = 1 << 13;
-constexpr double StretchLimit = 2.0; // output voxels
-// Neighbours whose weights differ by more follow the boundary, and stay.
-constexpr double LargestStep = 0.5;
 
 glm::dvec3 GetPoint(const std::vector<glm::dvec3>& points, std::int32_t node)
 {
@@ -65,7 +59,7 @@ void FadedLinks::Link(const Extent& voxels, const glm::dvec3& spacing,
   this->DropUnused(tetrahedra.size(), links);
   this->FindBlocks(voxels, tetrahedra.size(), links);
   progress(0.95);
-  this->FindStretchable(voxels, spacing, restPoints, tetrahedra, links);
+  this->Stretched.Find(voxels, spacing, restPoints, tetrahedra, this->Faces, links);
   progress(1.0);
 }
 
@@ -342,207 +336,10 @@ IndexBounds FadedLinks::ComputeBounds(const VoxelGrid& voxelGrid,
   return bounds;
 }
 
-// What a voxel follows: a place in the mesh, and how much.
-struct FadedLinks::Anchor
-{
-  glm::dvec3 Place{ 0.0 };
-  double Weight = 0.0;
-};
-
-FadedLinks::Anchor FadedLinks::GetAnchor(const VertexLink& link, const glm::dvec3& voxel,
-  const glm::dvec3& spacing, const std::vector<glm::dvec3>& restPoints,
-  const std::vector<Tetrahedron>& tetrahedra) const
-{
-  const auto number = static_cast<std::size_t>(link.Tetrahedron);
-  if (number < tetrahedra.size())
-  {
-    return { spacing * voxel, 1.0 };
-  }
-  if (number == tetrahedra.size())
-  {
-    return {};
-  }
-  const TetrahedronFace& face = this->Faces[number - tetrahedra.size() - 1];
-  const auto nodes = face.GetNodes(tetrahedra[static_cast<std::size_t>(face.Tetrahedron)]);
-  Anchor anchor;
-  for (std::size_t k = 0; k < 3; ++k)
-  {
-    anchor.Place += double{ link.Weights[k] } * (spacing * GetPoint(restPoints, nodes[k]));
-    anchor.Weight += double{ link.Weights[k] };
-  }
-  anchor.Place /= anchor.Weight;
-  return anchor;
-}
-
-void FadedLinks::FindStretchable(const Extent& voxels, const glm::dvec3& spacing,
-  const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra,
-  const std::vector<VertexLink>& links)
-{
-  static constexpr int split[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
-  const auto still = static_cast<std::int32_t>(tetrahedra.size());
-  const std::int64_t size = GetSize(voxels, 0);
-  const std::int64_t plane = GetPlane(voxels);
-  const std::int64_t layers = std::max<std::int64_t>(GetSize(voxels, 2) - 1, 0);
-  std::vector<std::vector<std::array<std::int64_t, 4>>> found(static_cast<std::size_t>(layers));
-  // Its vertices follow places that are farther apart than the mesh itself explains: what lies
-  // between the closest points of two voxels is at most as far as these, on a convex boundary.
-  const auto isStretchable = [&](const std::array<Anchor, 8>& anchors,
-                               const std::array<glm::dvec3, 8>& places, const int* vertices)
-  {
-    for (int i = 1; i < 4; ++i)
-    {
-      for (int j = 0; j < i; ++j)
-      {
-        const auto a = static_cast<std::size_t>(vertices[i]);
-        const auto b = static_cast<std::size_t>(vertices[j]);
-        const bool isStep = std::abs(anchors[a].Weight - anchors[b].Weight) > LargestStep;
-        const bool isJump = anchors[a].Weight > 0.0 && anchors[b].Weight > 0.0 &&
-          glm::distance(anchors[a].Place, anchors[b].Place) >
-            2.0 * (1.0 + 1e-6) * glm::distance(places[a], places[b]);
-        if (isStep || isJump)
-        {
-          return true;
-        }
-      }
-    }
-    return false;
-  };
-  ParallelFor(0, layers, 1,
-    [&](std::int64_t begin, std::int64_t end)
-    {
-      std::array<Anchor, 8> anchors;
-      std::array<glm::dvec3, 8> places;
-      std::array<std::int64_t, 8> numbers;
-      for (std::int64_t z = begin; z < end; ++z)
-      {
-        for (std::int64_t y = 0; y + 1 < GetSize(voxels, 1); ++y)
-        {
-          for (std::int64_t x = 0; x + 1 < size; ++x)
-          {
-            const std::int64_t first = z * plane + y * size + x;
-            bool anyOutside = false;
-            bool allStill = true;
-            for (int corner = 0; corner < 8; ++corner)
-            {
-              const std::int64_t number =
-                first + (corner & 1) + (corner >> 2 & 1) * size + (corner >> 1 & 1) * plane;
-              const std::int32_t tetrahedron = links[static_cast<std::size_t>(number)].Tetrahedron;
-              anyOutside = anyOutside || tetrahedron >= still;
-              allStill = allStill && tetrahedron == still;
-              numbers[static_cast<std::size_t>(corner)] = number;
-            }
-            if (!anyOutside || allStill)
-            {
-              continue;
-            }
-            for (int corner = 0; corner < 8; ++corner)
-            {
-              const auto at = static_cast<std::size_t>(corner);
-              const glm::dvec3 voxel(static_cast<double>(voxels[0] + x + (corner & 1)),
-                static_cast<double>(voxels[2] + y + (corner >> 2 & 1)),
-                static_cast<double>(voxels[4] + z + (corner >> 1 & 1)));
-              places[at] = spacing * voxel;
-              anchors[at] = this->GetAnchor(links[static_cast<std::size_t>(numbers[at])], voxel,
-                spacing, restPoints, tetrahedra);
-            }
-            const int mirror = DEFORMVOLUME_MIRROR(voxels[0] + x, voxels[2] + y, voxels[4] + z);
-            for (const auto& tetrahedron : split)
-            {
-              int vertices[4];
-              for (int k = 0; k < 4; ++k)
-              {
-                vertices[k] = tetrahedron[k] ^ mirror;
-              }
-              if (isStretchable(anchors, places, vertices))
-              {
-                std::array<std::int64_t, 4>& one =
-                  found[static_cast<std::size_t>(z)].emplace_back();
-                for (std::size_t k = 0; k < 4; ++k)
-                {
-                  one[k] = numbers[static_cast<std::size_t>(vertices[k])];
-                }
-              }
-            }
-          }
-        }
-      }
-    });
-  std::int64_t count = 0;
-  for (const auto& layer : found)
-  {
-    count += static_cast<std::int64_t>(layer.size());
-  }
-  this->Step = std::max<std::int64_t>(1, (count + MostStretchable - 1) / MostStretchable);
-  std::int64_t next = 0;
-  for (const auto& layer : found)
-  {
-    for (const auto& vertices : layer)
-    {
-      if (next++ % this->Step == 0)
-      {
-        std::array<VertexLink, 4>& one = this->Stretchable.emplace_back();
-        for (std::size_t k = 0; k < 4; ++k)
-        {
-          one[k] = links[static_cast<std::size_t>(vertices[k])];
-        }
-      }
-    }
-  }
-}
-
-glm::dvec3 FadedLinks::Displace(const VertexLink& link, const std::vector<Tetrahedron>& tetrahedra,
-  const float* displacements) const
-{
-  const auto number = static_cast<std::size_t>(link.Tetrahedron);
-  glm::dvec3 sum(0.0);
-  if (number == tetrahedra.size())
-  {
-    return sum;
-  }
-  const auto add = [&](double weight, std::int32_t node)
-  { sum += weight * GetVector(displacements, node); };
-  const bool isInside = number < tetrahedra.size();
-  const TetrahedronFace face =
-    isInside ? TetrahedronFace{ link.Tetrahedron, 3 } : this->Faces[number - tetrahedra.size() - 1];
-  const Tetrahedron& all = tetrahedra[static_cast<std::size_t>(face.Tetrahedron)];
-  const auto nodes = face.GetNodes(all);
-  double rest = 1.0;
-  for (std::size_t k = 0; k < 3; ++k)
-  {
-    add(double{ link.Weights[k] }, nodes[k]);
-    rest -= double{ link.Weights[k] };
-  }
-  if (isInside)
-  {
-    add(rest, all[3]);
-  }
-  return sum;
-}
-
 std::int64_t FadedLinks::CountStretched(
   const std::vector<Tetrahedron>& tetrahedra, const float* displacements) const
 {
-  std::atomic<std::int64_t> count{ 0 };
-  ParallelForParts(this->Stretchable.size(), 1024,
-    [&](std::size_t begin, std::size_t end)
-    {
-      std::int64_t some = 0;
-      for (std::size_t i = begin; i < end; ++i)
-      {
-        glm::dvec3 low(std::numeric_limits<double>::infinity());
-        glm::dvec3 high(-std::numeric_limits<double>::infinity());
-        for (const VertexLink& link : this->Stretchable[i])
-        {
-          const glm::dvec3 moved = this->Displace(link, tetrahedra, displacements);
-          low = glm::min(low, moved);
-          high = glm::max(high, moved);
-        }
-        const glm::dvec3 size = high - low;
-        some += std::max({ size.x, size.y, size.z }) > StretchLimit ? 1 : 0;
-      }
-      count += some;
-    });
-  return this->Step * count;
+  return this->Stretched.Count(tetrahedra, this->Faces, displacements);
 }
 
 double FadedLinks::GetLongestDisplacement(const std::vector<Tetrahedron>& tetrahedra,

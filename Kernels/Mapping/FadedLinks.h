@@ -6,13 +6,13 @@
 #include "DeformVolumeExport.h"
 #include "Extent.h"
 #include "IndexBounds.h"
+#include "StretchedTetrahedra.h"
 #include "Tetrahedron.h"
 #include "VertexLink.h"
 #include "VoxelGrid.h"
 
 #include <glm/vec3.hpp>
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -59,7 +59,7 @@ public:
   /// boundary. Where many are in question, the number is an estimate from some of them.
   std::int64_t CountStretched(
     const std::vector<Tetrahedron>& tetrahedra, const float* displacements) const;
-  bool IsCountEstimated() const { return this->Step > 1; }
+  bool IsCountEstimated() const { return this->Stretched.IsCountEstimated(); }
 
   /// The longest displacement of the nodes of faces. spacing: of the output.
   double GetLongestDisplacement(const std::vector<Tetrahedron>& tetrahedra,
@@ -73,7 +73,6 @@ private:
     double GreatestWeight;
     std::size_t FacesEnd; // of its faces in FacesOfBlocks; they begin where those of the last end
   };
-  struct Anchor;
 
   void LinkRows(const Extent& voxels, const glm::dvec3& spacing,
     const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra,
@@ -82,21 +81,13 @@ private:
   void DropUnused(std::size_t numberOfTetrahedra, std::vector<VertexLink>& links);
   void FindBlocks(
     const Extent& voxels, std::size_t numberOfTetrahedra, const std::vector<VertexLink>& links);
-  void FindStretchable(const Extent& voxels, const glm::dvec3& spacing,
-    const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra,
-    const std::vector<VertexLink>& links);
-  Anchor GetAnchor(const VertexLink& link, const glm::dvec3& voxel, const glm::dvec3& spacing,
-    const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra) const;
-  glm::dvec3 Displace(const VertexLink& link, const std::vector<Tetrahedron>& tetrahedra,
-    const float* displacements) const;
 
   double FadeDistance = -1.0; // none: there are no records
   std::vector<TetrahedronFace> Faces;
   std::vector<Block> Blocks;
   std::vector<std::int32_t> FacesOfBlocks;
-  Extent StillVoxels{ { 0, -1, 0, -1, 0, -1 } };      // a box of them
-  std::vector<std::array<VertexLink, 4>> Stretchable; // each Step-th of them
-  std::int64_t Step = 1;
+  Extent StillVoxels{ { 0, -1, 0, -1, 0, -1 } }; // a box of them
+  StretchedTetrahedra Stretched;
 };
 
 } // namespace deformvolume
