@@ -26,6 +26,7 @@
 #include <glm/matrix.hpp>
 
 #include <algorithm>
+#include <cstdint>
 
 using deformvolume::DeformationSource;
 using deformvolume::Error;
@@ -414,6 +415,7 @@ int vtkDeformVolumeFilter::RequestData(
     this->Internals->WarnOfLoss(loss);
   }
   this->Internals->AddUpCounts(ranks);
+  const std::uint64_t pointsOfRanks = ranks.GetSum(static_cast<std::uint64_t>(numberOfPoints));
   if (numberOfPoints == 0)
   {
     return 1;
@@ -437,7 +439,10 @@ int vtkDeformVolumeFilter::RequestData(
     std::copy(request.OutputExtent.begin(), request.OutputExtent.end(), this->ChangedExtent);
   }
   this->Internals->FactorOfOutput = this->SamplingFactor;
-  if (report.NumberOfCoveredVoxels == 0 && whole == request.OutputExtent)
+  // Pieces of ranks share planes, so that those of all have no fewer points than the whole.
+  const bool isWhole =
+    pointsOfRanks >= static_cast<std::uint64_t>(deformvolume::GetNumberOfPoints(whole));
+  if (this->NumberOfCoveredVoxels == 0 && isWhole)
   {
     this->Internals->WarnOfNothing();
   }

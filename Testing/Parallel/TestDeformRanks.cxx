@@ -283,6 +283,30 @@ void TestReferenceErrors(const Case& from, vtkImageData* whole)
     mend);
 }
 
+/// All ranks together make nothing but background: each that has a piece warns once.
+void TestNothingCovered(const Case& from)
+{
+  Parallel parallel(from);
+  const auto far = MakeReference(from.Volume, true);
+  far->SetOrigin(500.0, 0.0, 0.0);
+  parallel.Filter->SetReferenceData(far);
+  parallel.Filter->UpdatePiece(GetRank(), GetRanks(), 0);
+  const std::string warnings = parallel.Observer->GetWarningMessage();
+  VERIFY_EQUAL(parallel.TakeErrors(), 0);
+  const std::size_t at = warnings.find("covers no voxel of the output");
+  const bool hasPiece = parallel.Filter->GetOutput()->GetNumberOfPoints() > 0;
+  VERIFY_EQUAL(at != std::string::npos, hasPiece);
+  VERIFY_EQUAL(warnings.rfind("Warning: "), warnings.find("Warning: "));
+  // A rank whose piece the body does not reach has nothing to say where another one's is reached.
+  far->SetOrigin(MakeReference(from.Volume, true)->GetOrigin());
+  far->SetExtent(4, 200, -11, 29, -8, 33);
+  far->Modified();
+  parallel.Filter->UpdatePiece(GetRank(), GetRanks(), 0);
+  VERIFY_EQUAL(parallel.TakeErrors(), 0);
+  VERIFY(parallel.Filter->GetNumberOfCoveredVoxels() > 0);
+  VERIFY(parallel.TakeWarning().empty());
+}
+
 void TestErrors(const Case& from, vtkImageData* whole)
 {
   const auto mesh = vtkUnstructuredGrid::SafeDownCast(from.Deformation);
@@ -493,6 +517,7 @@ void TestAll()
       Check(ghosts, whole, "Ghost levels, mirrored reference", 2);
       TestSpread(from, whole);
       TestReferenceErrors(from, whole);
+      TestNothingCovered(from);
     }
     if (from.Name == "Runs")
     {
