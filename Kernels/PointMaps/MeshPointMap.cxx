@@ -127,6 +127,8 @@ public:
   {
     const bool isAtRest = &configuration == &this->Rest;
     const Points& places = *configuration.Places;
+    const double reach = configuration.Size * MeshBorderTolerance;
+    const double touching = configuration.Size * MeshFaceTolerance;
     Holder best;
     bool isBestNear = true; // and does not hold the point
     configuration.Boxes.Visit(point,
@@ -152,13 +154,14 @@ public:
           {
             continue;
           }
+          // A weight is the distance from a face times the length of its gradient.
           const glm::dvec3 gradient = found.Map.GetGradient(node);
-          const double distance = -weights[node] / glm::length(gradient);
-          holds = holds && distance <= configuration.Size * MeshFaceTolerance;
-          if (distance > configuration.Size * MeshBorderTolerance)
+          const double squared = weights[node] * weights[node] / glm::dot(gradient, gradient);
+          if (squared > reach * reach)
           {
             return;
           }
+          holds = holds && squared <= touching * touching;
         }
         found.IsInverted = !isAtRest &&
           (GetVolume(nodes, places) > 0.0) != (GetVolume(nodes, *this->Rest.Places) > 0.0);
