@@ -135,7 +135,7 @@ public:
       [&](std::size_t i)
       {
         const auto number = static_cast<std::int32_t>(i);
-        if (isAtRest && !isBestNear && number > best.Number)
+        if (!isBestNear && !best.IsInverted && number > best.Number)
         {
           return;
         }
