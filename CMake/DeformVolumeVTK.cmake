@@ -70,7 +70,7 @@ set(deformvolume_optional_vtk_components "")
 if (DEFORMVOLUME_BUILD_EXAMPLES)
   # ParaView's VTK has no ImagingMorphological.
   list(APPEND deformvolume_optional_vtk_components
-    ImagingMorphological hdf5 IOExodus IOHDF IOOggTheora)
+    ImagingMorphological hdf5 IOExodus IOHDF IOOggTheora jsoncpp)
 endif ()
 if (BUILD_TESTING AND NOT DEFORMVOLUME_SANITIZE)
   list(APPEND deformvolume_optional_vtk_components ParallelMPI)

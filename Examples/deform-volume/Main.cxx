@@ -9,6 +9,7 @@
 #include "Movie.h"
 #include "Options.h"
 #include "Picture.h"
+#include "PointsFile.h"
 #include "ProgressBar.h"
 #include "TimingTable.h"
 #include "VolumeReading.h"
@@ -60,7 +61,8 @@ void ListDevices()
 void CheckOutputs(const Options& options)
 {
   std::vector<std::string> paths = options.Outputs;
-  for (const auto* more : { &options.LabelOutputs, &options.Jacobians, &options.InverseFields })
+  for (const auto* more :
+    { &options.LabelOutputs, &options.Jacobians, &options.InverseFields, &options.PointsOutputs })
   {
     paths.insert(paths.end(), more->begin(), more->end());
   }
@@ -117,26 +119,12 @@ void SetUp(vtkDeformVolumeFilter* filter, const Options& options, vtkImageData* 
 {
   filter->SetInputData(labels.AddTo(volume, filter));
   filter->SetReferenceData(reference);
-  filter->SetDeformationData(deformation.Data);
+  SetDeformation(filter, options, deformation);
   filter->SetOpenSplits(options.CutsMesh());
-  if (deformation.Rest)
-  {
-    filter->SetRestData(deformation.Rest);
-  }
-  else
-  {
-    filter->SetInputArrayToProcess(
-      0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, deformation.Displacement.c_str());
-  }
-  filter->SetDisplacementScale(options.Scale);
-  filter->SetPointsAreDeformed(options.PointsAreDeformed);
-  filter->SetFieldIsInverse(options.FieldIsInverse);
-  filter->SetOutsideMode(options.KeepDistance ? vtkDeformVolumeFilter::KEEP
-      : options.Extrapolate                   ? vtkDeformVolumeFilter::EXTRAPOLATE
-                                              : vtkDeformVolumeFilter::DISCARD);
-  filter->SetFadeDistance(options.KeepDistance.value_or(0.0));
-  filter->SetOutputBoundsMode(options.VolumeBounds ? vtkDeformVolumeFilter::VOLUME_BOUNDS
-                                                   : vtkDeformVolumeFilter::DEFORMED_BOUNDS);
+  // A reference has the bounds, and the filter warns of a mode that it does not use.
+  filter->SetOutputBoundsMode(options.VolumeBounds && !reference
+      ? vtkDeformVolumeFilter::VOLUME_BOUNDS
+      : vtkDeformVolumeFilter::DEFORMED_BOUNDS);
   filter->SetPadding(options.Padding);
   filter->SetBackgroundValue(options.Background.value_or(FindBackground(options, volume)));
   const std::map<std::string, int> resamplers{ { "automatic", vtkDeformVolumeFilter::AUTOMATIC },
@@ -282,6 +270,7 @@ void DeformVolume(const Options& options, Messages& messages)
   volume.Axes =
     HeedSpace("--volume-space", options.VolumeSpace, options.Volume, volume.Axes, messages);
   const LabelVolume labels(options, volume, messages);
+  const std::vector<PointsFile> points = ReadPoints(options, volume, messages);
   Volume reference;
   if (!options.Reference.empty())
   {
@@ -376,6 +365,12 @@ void DeformVolume(const Options& options, Messages& messages)
     labels.AreThere())
   {
     timings.Add("write volume", writing.GetSeconds());
+  }
+  if (!points.empty())
+  {
+    const Stopwatch moving;
+    WriteDeformedPoints(points, options, deformation, messages);
+    timings.Add("move points", moving.GetSeconds());
   }
   if (!options.Image.empty())
   {

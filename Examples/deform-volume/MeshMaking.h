@@ -41,4 +41,28 @@ struct Deformation
 Deformation MakeDeformation(const Options& options, const Volume& volume, vtkImageData* grid,
   Messages& messages, const FrameTaker& takeFrame);
 
+/// Gives a vtkDeformVolumeFilter or vtkDeformGeometryFilter the deformation, and what the options
+/// say of it.
+template <typename Filter>
+void SetDeformation(Filter* filter, const Options& options, const Deformation& deformation)
+{
+  filter->SetDeformationData(deformation.Data);
+  if (deformation.Rest)
+  {
+    filter->SetRestData(deformation.Rest);
+  }
+  else
+  {
+    filter->SetInputArrayToProcess(
+      0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, deformation.Displacement.c_str());
+  }
+  filter->SetDisplacementScale(options.Scale);
+  filter->SetPointsAreDeformed(options.PointsAreDeformed);
+  filter->SetFieldIsInverse(options.FieldIsInverse);
+  filter->SetOutsideMode(options.KeepDistance ? Filter::KEEP
+      : options.Extrapolate                   ? Filter::EXTRAPOLATE
+                                              : Filter::DISCARD);
+  filter->SetFadeDistance(options.KeepDistance.value_or(0.0));
+}
+
 #endif

@@ -395,7 +395,7 @@ vtkSmartPointer<vtkDataObject> ReadMesh(const std::string& path, const std::stri
   const vtkSmartPointer<vtkDataObject> mesh =
     ReadMeshFile({ path, "reading mesh", messages, !options.Quiet });
   CheckMesh(mesh, displacement, path);
-  TurnIntoWorld(mesh, displacement, options.MeshSpace, path, volume.Axes, messages);
+  TurnIntoWorld(mesh, { displacement }, options.MeshSpace, path, volume.Axes, messages);
   return mesh;
 }
 
@@ -405,6 +405,21 @@ vtkSmartPointer<vtkPolyData> ReadSheet(
   const vtkSmartPointer<vtkDataObject> sheet =
     ReadSheetFile({ path, "reading sheet", messages, !options.Quiet });
   CheckSheet(sheet, path);
-  TurnIntoWorld(sheet, "", options.MeshSpace, path, volume.Axes, messages);
+  TurnIntoWorld(sheet, {}, options.MeshSpace, path, volume.Axes, messages);
   return vtkPolyData::SafeDownCast(sheet);
+}
+
+vtkSmartPointer<vtkPointSet> ReadGeometry(
+  const std::string& path, const Options& options, Messages& messages)
+{
+  CheckFile(path);
+  const vtkSmartPointer<vtkDataObject> object =
+    ReadXML({ path, "reading points", messages, !options.Quiet });
+  const bool isSurface = HasSuffix(path, { ".vtp" });
+  if (!object || !object->IsA(isSurface ? "vtkPolyData" : "vtkUnstructuredGrid"))
+  {
+    throw Failure("cannot read " + path + ": it does not hold " +
+      (isSurface ? "polygonal data, as .vtp files do" : "an unstructured grid, as .vtu files do"));
+  }
+  return vtkPointSet::SafeDownCast(object);
 }

@@ -3,6 +3,7 @@
 #define DeformVolumeMeshReading_h
 
 #include <vtkDataObject.h>
+#include <vtkPointSet.h>
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 
@@ -24,5 +25,9 @@ vtkSmartPointer<vtkDataObject> ReadMesh(const std::string& path, const std::stri
 /// Failure as well.
 vtkSmartPointer<vtkPolyData> ReadSheet(
   const std::string& path, const Options& options, const Volume& volume, Messages& messages);
+
+/// What a .vtp or .vtu file holds, in the world of the file. Throws a Failure as well.
+vtkSmartPointer<vtkPointSet> ReadGeometry(
+  const std::string& path, const Options& options, Messages& messages);
 
 #endif

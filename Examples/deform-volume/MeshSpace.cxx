@@ -52,7 +52,7 @@ WorldAxes Choose(const std::string& said, const std::string& path, WorldAxes ofF
   if (said.empty() && ofVolume == WorldAxes::Unknown && ofFile != ofVolume)
   {
     messages.DisplayWarningText(
-      (path + " says that it is " + (ofFile == WorldAxes::RightAnteriorSuperior ? "ras" : "lps") +
+      (path + " is " + (ofFile == WorldAxes::RightAnteriorSuperior ? "ras" : "lps") +
         ", which is not used, as the file of the volume does not say whether its own world is lps "
         "or ras.")
         .c_str());
@@ -77,10 +77,11 @@ vtkSmartPointer<vtkDataArray> Negate(vtkDataArray* array, int components)
   return negated;
 }
 
-/// Exchanges right-anterior-superior and left-posterior-superior. What points and vectors lie in
-/// may be shared with other data, and stays as it is.
-void Flip(vtkDataSet* data, const std::string& displacement)
+}
+
+void ExchangeWorlds(vtkDataSet* data, const std::vector<std::string>& vectors)
 {
+  // What points and vectors lie in may be shared with other data, and stays as it is.
   if (auto* image = vtkImageData::SafeDownCast(data))
   {
     FlipWorldAxes(image);
@@ -99,12 +100,14 @@ void Flip(vtkDataSet* data, const std::string& displacement)
       set->SetPoints(points);
     }
   }
-  vtkDataArray* vectors = data->GetPointData()->GetArray(displacement.c_str());
-  if (!displacement.empty() && vectors)
+  for (const std::string& name : vectors)
   {
-    data->GetPointData()->AddArray(Negate(vectors, std::min(2, vectors->GetNumberOfComponents())));
+    vtkDataArray* array = data->GetPointData()->GetArray(name.c_str());
+    if (!name.empty() && array)
+    {
+      data->GetPointData()->AddArray(Negate(array, std::min(2, array->GetNumberOfComponents())));
+    }
   }
-}
 }
 
 void KeepSpace(vtkDataObject* object, const char* header)
@@ -119,9 +122,10 @@ void KeepSpace(vtkDataObject* object, const char* header)
   }
 }
 
-void TurnIntoWorld(vtkDataObject* object, const std::string& displacement, const std::string& said,
-  const std::string& path, WorldAxes ofVolume, Messages& messages)
+bool TurnIntoWorld(vtkDataObject* object, const std::vector<std::string>& vectors,
+  const std::string& said, const std::string& path, WorldAxes ofVolume, Messages& messages)
 {
+  bool isTurned = false;
   const WorldAxes ofAll = GetSpace(object, path, messages);
   // What was chosen for parts whose files say one thing is chosen, and warned of, once.
   std::map<WorldAxes, WorldAxes> chosen;
@@ -135,7 +139,9 @@ void TurnIntoWorld(vtkDataObject* object, const std::string& displacement, const
     }
     if (chosen[ofFile] != ofVolume)
     {
-      Flip(part.Data, displacement);
+      ExchangeWorlds(part.Data, vectors);
+      isTurned = true;
     }
   }
+  return isTurned;
 }

@@ -6,6 +6,7 @@
 #include "FileSuffix.h"
 #include "Movie.h"
 #include "Options.h"
+#include "PointsFile.h"
 #include "VolumeWriting.h"
 
 #include <vtksys/SystemTools.hxx>
@@ -53,6 +54,7 @@ void CheckOverwriting(const Options& options)
   add("--label-output", options.LabelOutputs);
   add("--jacobian", options.Jacobians);
   add("--inverse-field", options.InverseFields);
+  add("--points-output", options.PointsOutputs);
   outputs.push_back(options.Image);
   outputs.push_back(options.Movie);
   outputs.push_back(options.MeshOutput);
@@ -61,6 +63,7 @@ void CheckOverwriting(const Options& options)
     std::vector<std::string> inputs{ options.Volume, options.LabelVolume, options.Mesh,
       options.Rest, options.Field, options.Reference };
     inputs.insert(inputs.end(), options.Cuts.begin(), options.Cuts.end());
+    inputs.insert(inputs.end(), options.Points.begin(), options.Points.end());
     for (const TransformFile& transform : options.Transforms)
     {
       inputs.push_back(transform.Path);
@@ -71,6 +74,30 @@ void CheckOverwriting(const Options& options)
       {
         throw UsageError(output + " is read and would be overwritten: give another name");
       }
+    }
+  }
+}
+
+/// Each file of points has one that is written, in the same format.
+void CheckPoints(const Options& options)
+{
+  if (options.Points.size() != options.PointsOutputs.size())
+  {
+    throw UsageError("--points is given " + std::to_string(options.Points.size()) +
+      " times and --points-output " + std::to_string(options.PointsOutputs.size()) +
+      " times: the first output belongs to the first file, the second one to the second");
+  }
+  for (std::size_t i = 0; i < options.Points.size(); ++i)
+  {
+    const std::string format = GetPointFormat(options.Points[i]);
+    if (format.empty())
+    {
+      throw UsageError("--points " + options.Points[i] + ": the name must end in " + PointFormats);
+    }
+    if (GetPointFormat(options.PointsOutputs[i]) != format)
+    {
+      throw UsageError("--points-output " + options.PointsOutputs[i] + ": the name must end in " +
+        format + ", as that of " + options.Points[i] + " does");
     }
   }
 }
@@ -239,12 +266,16 @@ void CheckOptions(const Options& options)
   }
   CheckDeformation(options);
   CheckResampler(options, !options.Field.empty() || options.Model == "chainmail");
-  if (!options.MeshSpace.empty() && options.Mesh.empty() && options.Cuts.empty())
+  CheckPoints(options);
+  if (!options.MeshSpace.empty() && options.Mesh.empty() && options.Cuts.empty() &&
+    std::all_of(options.Points.begin(), options.Points.end(), IsLandmarkFile))
   {
-    throw UsageError("--mesh-space requires --mesh or --cut");
+    throw UsageError(
+      "--mesh-space requires --mesh or --cut, or --points of the types .vtp or .vtu");
   }
   if (options.Outputs.empty() && options.LabelOutputs.empty() && options.Jacobians.empty() &&
-    options.InverseFields.empty() && options.Image.empty() && options.Movie.empty())
+    options.InverseFields.empty() && options.PointsOutputs.empty() && options.Image.empty() &&
+    options.Movie.empty())
   {
     throw UsageError("nothing to write: give --output, --image or --movie");
   }

@@ -5,6 +5,7 @@
 #include "MeshFormats.h"
 #include "OptionChecks.h"
 #include "OptionTexts.h"
+#include "PointsFile.h"
 #include "VolumeReading.h"
 #include "VolumeWriting.h"
 
@@ -196,7 +197,8 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
     ->group(group);
   program
     .add_option("--mesh-space", options.MeshSpace,
-      "The world of files of --mesh, --rest and --cut that do not say it themselves, as those of "
+      "The world of files of --mesh, --rest, --cut and --points (.vtp, .vtu) that do not say it "
+      "themselves, as those of "
       "3D "
       "Slicer do: lps (x to the left, y to the back, z to the head) or ras (x to the right, y to "
       "the front) [that of the volume]")
@@ -329,6 +331,8 @@ void AddDependencies(CLI::App& program)
       "--duration", "--frames", "--movie" });
   needs("--label-volume", { "--label-output" });
   needs("--label-output", { "--label-volume" });
+  needs("--points", { "--points-output" });
+  needs("--points-output", { "--points" });
   needs("--movie", { "--frames" });
   needs("--frames", { "--movie" });
   needs("--cut", { "--smooth-cut" });
@@ -478,6 +482,15 @@ void AddOutput(CLI::App& program, Options& options, RawOptions& raw)
     ->expected(1)
     ->group(group);
   program
+    .add_option("--points-output", options.PointsOutputs,
+      "The moved points of --points, in the format and the world of that file: the first one "
+      "belongs to the first --points, the second one to the second. Points outside the deformation "
+      "stay where they are")
+    ->type_name("FILE")
+    ->take_all()
+    ->expected(1)
+    ->group(group);
+  program
     .add_option("--write-mesh", options.MeshOutput,
       "The mesh of --tetgen or --lattice at rest, in the world of the volume, with the point array "
       "\"Displacement\" (.vtu)")
@@ -560,6 +573,17 @@ std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)
       "Labels of the voxels of VOLUME, on its grid, in a file of the same types: whole numbers, "
       "which are deformed with it and never mixed")
     ->type_name("FILE");
+  program
+    .add_option("--points", options.Points,
+      std::string("Points, surfaces or landmarks that belong to VOLUME, and move as its tissue "
+                  "does: from VOLUME (the moving image) to the result (the fixed one), which is "
+                  "the way of the volume, and the opposite of antsApplyTransformsToPoints: ") +
+        PointFormats +
+        ". .csv: the first line names the columns x,y,z and any others, and places are lps. May be "
+        "given several times")
+    ->type_name("FILE")
+    ->take_all()
+    ->expected(1);
   program.add_flag("--file-coordinates", options.FileCoordinates,
     std::string(
       "Do as VTK's and ParaView's readers do: no direction, and origin 0 for NIfTI files") +

@@ -23,6 +23,7 @@ struct Options
   std::optional<int> Frame;
   std::string VolumeSpace;
   std::string LabelVolume;
+  std::vector<std::string> Points;
 
   std::string Mesh;
   std::string Displacement;
@@ -74,6 +75,8 @@ struct Options
   std::vector<std::string> LabelOutputs;
   std::vector<std::string> Jacobians;
   std::vector<std::string> InverseFields;
+  /// One for each of Points.
+  std::vector<std::string> PointsOutputs;
   std::string MeshOutput;
   std::string Image;
   int Frames = 0;

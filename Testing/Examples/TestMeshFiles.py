@@ -496,7 +496,7 @@ def check_files_that_say_their_space():
     write(vtkXMLUnstructuredGridWriter(), state_space(make_unstructured(places, moves), "LPS"),
           path("stated.vtu"), **XML)
     check_same(expected, *as_mesh("stated.vtu"),
-               expected_warnings=["stated.vtu says that it is lps, which is not used"])
+               expected_warnings=["stated.vtu is lps, which is not used"])
     # Wrong usage.
     fails(2, "--mesh-space", *as_mesh("mesh.vtu"), "--mesh-space", "LAS")
     fails(2, "--mesh-space requires --mesh or --cut", "--carve", "sphere:9,20,25,5", "--mesh-space",

@@ -1,0 +1,364 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "LandmarkFile.h"
+
+#include "Failure.h"
+#include "FileSuffix.h"
+#include "MeshSpace.h"
+#include "Messages.h"
+
+#include <vtkDataArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtksys/SystemTools.hxx>
+
+#ifdef DEFORMVOLUME_HAVE_JSON
+#include <vtk_jsoncpp.h>
+#endif
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <locale>
+#include <memory>
+#include <sstream>
+
+namespace
+{
+using Range = std::pair<std::size_t, std::size_t>;
+
+std::string GetText(const std::string& text, const Range& range)
+{
+  return text.substr(range.first, range.second - range.first);
+}
+
+[[noreturn]] void Fail(const std::string& path, const std::string& words)
+{
+  throw Failure("cannot read " + path + ": " + words);
+}
+
+/// NaN where a text is no number.
+double GetNumber(const std::string& text)
+{
+  std::istringstream stream(text);
+  stream.imbue(std::locale::classic());
+  double number = 0.0;
+  const bool isNumber = stream >> number && (stream >> std::ws).eof();
+  return isNumber ? number : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// The shortest text that is read as the same number.
+std::string GetShortestText(double number)
+{
+  std::string text;
+  for (int digits = std::numeric_limits<double>::digits10;
+       digits <= std::numeric_limits<double>::max_digits10; ++digits)
+  {
+    std::ostringstream stream;
+    stream.imbue(std::locale::classic());
+    stream.precision(digits);
+    stream << number + 0.0; // no -0
+    text = stream.str();
+    if (GetNumber(text) == number)
+    {
+      break;
+    }
+  }
+  return text;
+}
+
+/// The columns of a line, without blanks round them. Commas in quotation marks divide nothing.
+std::vector<Range> FindColumns(const std::string& text, std::size_t begin, std::size_t end)
+{
+  std::vector<Range> columns;
+  bool isQuoted = false;
+  std::size_t first = begin;
+  for (std::size_t i = begin; i <= end; ++i)
+  {
+    isQuoted = isQuoted != (i < end && text[i] == '"');
+    if (i == end || (text[i] == ',' && !isQuoted))
+    {
+      Range column(first, i);
+      const auto isBlank = [&](std::size_t place)
+      { return std::string(" \t\r").find(text[place]) != std::string::npos; };
+      while (column.first < column.second && isBlank(column.first))
+      {
+        ++column.first;
+      }
+      while (column.first < column.second && isBlank(column.second - 1))
+      {
+        --column.second;
+      }
+      columns.push_back(column);
+      first = i + 1;
+    }
+  }
+  return columns;
+}
+
+/// The number of columns, from the line that names them.
+std::size_t ReadHeader(
+  const std::string& path, const std::string& text, const std::vector<Range>& columns)
+{
+  std::string names;
+  for (std::size_t i = 0; i < std::min<std::size_t>(columns.size(), 3); ++i)
+  {
+    names += vtksys::SystemTools::LowerCase(GetText(text, columns[i])) + ",";
+  }
+  names.erase(std::remove(names.begin(), names.end(), '"'), names.end());
+  if (names != "x,y,z,")
+  {
+    Fail(path,
+      "its first line is \"" + GetText(text, { columns.front().first, columns.back().second }) +
+        "\", and has to name the columns, of which the first three are x,y,z");
+  }
+  return columns.size();
+}
+
+void ReadTable(const std::string& path, LandmarkFile& file)
+{
+  const std::string& text = file.Text;
+  const std::string mark = "\xEF\xBB\xBF"; // of UTF-8, by spreadsheets
+  std::size_t begin = text.compare(0, mark.size(), mark) == 0 ? mark.size() : 0;
+  std::size_t expected = 0;
+  for (int line = 1; begin < text.size(); ++line)
+  {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::vector<Range> columns = FindColumns(text, begin, end);
+    begin = end + 1;
+    if (columns.size() == 1 && columns[0].first == columns[0].second)
+    {
+      continue;
+    }
+    if (expected == 0)
+    {
+      expected = ReadHeader(path, text, columns);
+      continue;
+    }
+    const std::string place = "its line " + std::to_string(line);
+    if (columns.size() != expected)
+    {
+      Fail(path,
+        place + " has " + std::to_string(columns.size()) + " columns, and its first line names " +
+          std::to_string(expected));
+    }
+    double point[3];
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      const std::string number = GetText(text, columns[axis]);
+      point[axis] = GetNumber(number);
+      if (!std::isfinite(point[axis]))
+      {
+        Fail(path, place + " has \"" + number + "\" as " + "xyz"[axis] + ", which is no number");
+      }
+      file.Numbers.push_back(columns[axis]);
+    }
+    file.Points->GetPoints()->InsertNextPoint(point);
+  }
+  KeepSpace(file.Points, "SPACE=LPS");
+}
+
+#ifdef DEFORMVOLUME_HAVE_JSON
+std::size_t GetLine(const std::string& text, const Json::Value& value)
+{
+  return static_cast<std::size_t>(
+           std::count(text.begin(), text.begin() + value.getOffsetStart(), '\n')) +
+    1;
+}
+
+Json::Value ParseJson(const std::string& path, const std::string& text)
+{
+  Json::CharReaderBuilder builder;
+  builder["collectComments"] = false;
+  builder["failIfExtra"] = true;
+  builder["rejectDupKeys"] = true;
+  const std::unique_ptr<Json::CharReader> reader(builder.newCharReader());
+  Json::Value root;
+  std::string errors;
+  bool isParsed = false;
+  try
+  {
+    isParsed = reader->parse(text.data(), text.data() + text.size(), &root, &errors);
+  }
+  catch (const Json::Exception&)
+  {
+    errors = "it is nested too deeply";
+  }
+  if (!isParsed)
+  {
+    // One line of the first error, which begins with a star.
+    std::istringstream words(errors.substr(0, errors.find("\n* ")));
+    std::string word;
+    std::string line;
+    while (words >> word)
+    {
+      line += word == "*" ? "" : (line.empty() ? "" : " ") + word;
+    }
+    Fail(path, "it is no JSON file, or it is damaged or cut off (" + line + ")");
+  }
+  return root;
+}
+
+/// "LPS" or "RAS". 3D Slicer also reads the numbers of its enumeration.
+std::string GetSpace(const std::string& path, const std::string& text, const Json::Value& markup)
+{
+  const Json::Value& space = markup["coordinateSystem"];
+  const std::string said = space.isString() || space.isInt() ? space.asString() : "";
+  if (space.isNull() || said == "LPS" || said == "1")
+  {
+    return "LPS"; // also where nothing is said, as 3D Slicer does
+  }
+  if (said != "RAS" && said != "0")
+  {
+    Fail(path,
+      "the coordinateSystem in its line " + std::to_string(GetLine(text, space)) + " is \"" + said +
+        "\", and neither LPS nor RAS");
+  }
+  return "RAS";
+}
+
+void CheckUnits(const std::string& path, const std::string& text, const Json::Value& markup)
+{
+  const Json::Value& units = markup["coordinateUnits"];
+  const Json::Value& unit = units.isArray() && !units.empty() ? units[0] : units;
+  if (!units.isNull() && !(unit.isString() && unit.asString() == "mm"))
+  {
+    Fail(path,
+      "the coordinateUnits in its line " + std::to_string(GetLine(text, units)) +
+        " are not mm. Load it into 3D Slicer, and save it in mm");
+  }
+}
+
+void ReadControlPoint(const std::string& path, const Json::Value& controlPoint, LandmarkFile& file)
+{
+  const std::string place =
+    "the control point in its line " + std::to_string(GetLine(file.Text, controlPoint));
+  if (!controlPoint.isObject())
+  {
+    Fail(path, place + " is no object");
+  }
+  const Json::Value& status = controlPoint["positionStatus"];
+  if (status.isString() && status.asString() != "defined")
+  {
+    return; // 3D Slicer writes an empty position
+  }
+  const Json::Value& position = controlPoint["position"];
+  double point[3];
+  bool isPoint = position.isArray() && position.size() == 3;
+  for (int axis = 0; axis < 3 && isPoint; ++axis)
+  {
+    isPoint = position[axis].isNumeric() && std::isfinite(position[axis].asDouble());
+    point[axis] = isPoint ? position[axis].asDouble() : 0.0;
+    file.Numbers.emplace_back(position[axis].getOffsetStart(), position[axis].getOffsetLimit());
+  }
+  if (!isPoint)
+  {
+    Fail(path, place + " has no position of three numbers");
+  }
+  file.Points->GetPoints()->InsertNextPoint(point);
+}
+
+void ReadMarkups(const std::string& path, LandmarkFile& file, Messages& messages)
+{
+  const Json::Value root = ParseJson(path, file.Text);
+  const Json::Value& markups = root.isObject() ? root["markups"] : Json::Value::nullSingleton();
+  if (!markups.isArray())
+  {
+    Fail(path, "it has no list of \"markups\", as files of 3D Slicer have");
+  }
+  std::string ofFile;
+  for (const Json::Value& markup : markups)
+  {
+    if (!markup.isObject())
+    {
+      Fail(path,
+        "the markup in its line " + std::to_string(GetLine(file.Text, markup)) + " is no object");
+    }
+    const std::string space = GetSpace(path, file.Text, markup);
+    if (!ofFile.empty() && space != ofFile)
+    {
+      Fail(path, "some of its markups are LPS, others RAS. Save them in files of their own");
+    }
+    ofFile = space;
+    CheckUnits(path, file.Text, markup);
+    const Json::Value& type = markup["type"];
+    if (type.isString() && (type.asString() == "ROI" || type.asString() == "Plane"))
+    {
+      messages.DisplayWarningText((path + " holds a markup of the type " + type.asString() +
+        ": its control points follow the deformation, its size and orientation and other center do "
+        "not.")
+                                    .c_str());
+    }
+    const Json::Value& controlPoints = markup["controlPoints"];
+    if (!controlPoints.isNull() && !controlPoints.isArray())
+    {
+      Fail(path,
+        "the controlPoints in its line " + std::to_string(GetLine(file.Text, controlPoints)) +
+          " are no list");
+    }
+    for (const Json::Value& controlPoint : controlPoints)
+    {
+      ReadControlPoint(path, controlPoint, file);
+    }
+  }
+  KeepSpace(file.Points, ("SPACE=" + ofFile).c_str());
+}
+#endif
+}
+
+bool IsLandmarkFile(const std::string& path)
+{
+  return HasSuffix(path, { ".csv", ".mrk.json" });
+}
+
+LandmarkFile ReadLandmarks(const std::string& path, [[maybe_unused]] Messages& messages)
+{
+  std::ifstream stream(path, std::ios::binary);
+  if (!vtksys::SystemTools::FileExists(path, true) || !stream)
+  {
+    Fail(path,
+      vtksys::SystemTools::FileExists(path, true) ? "the file may not be read"
+                                                  : "there is no such file");
+  }
+  LandmarkFile file;
+  file.Text.assign(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+  file.Points = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  file.Points->SetPoints(points);
+#ifdef DEFORMVOLUME_HAVE_JSON
+  if (!HasSuffix(path, { ".csv" }))
+  {
+    ReadMarkups(path, file, messages);
+    return file;
+  }
+#endif
+  ReadTable(path, file);
+  return file;
+}
+
+void WriteLandmarks(const LandmarkFile& file, vtkPointSet* moved, const std::string& path)
+{
+  vtkDataArray* mask = moved->GetPointData()->GetArray("vtkValidPointMask");
+  std::string text;
+  std::size_t copied = 0;
+  for (std::size_t i = 0; i < file.Numbers.size(); ++i)
+  {
+    const auto point = static_cast<vtkIdType>(i / 3);
+    if (!mask || mask->GetComponent(point, 0) != 0.0)
+    {
+      text.append(file.Text, copied, file.Numbers[i].first - copied);
+      text += GetShortestText(moved->GetPoint(point)[i % 3]);
+      copied = file.Numbers[i].second;
+    }
+  }
+  text.append(file.Text, copied, std::string::npos);
+  std::ofstream stream(path, std::ios::binary);
+  stream << text << std::flush;
+  if (!stream)
+  {
+    throw Failure("cannot write " + path);
+  }
+}

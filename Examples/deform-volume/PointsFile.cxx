@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PointsFile.h"
+
+#include "Failure.h"
+#include "FileSuffix.h"
+#include "MeshMaking.h"
+#include "MeshReading.h"
+#include "MeshSpace.h"
+#include "Messages.h"
+#include "Options.h"
+#include "ProgressBar.h"
+#include "Volume.h"
+
+#include <vtkCallbackCommand.h>
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkDeformGeometryFilter.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkXMLPolyDataWriter.h>
+#include <vtkXMLUnstructuredGridWriter.h>
+
+#include <cmath>
+#include <sstream>
+
+namespace
+{
+/// The arrays that the filter turns with the points.
+std::vector<std::string> GetTurnedArrays(vtkPointSet* points)
+{
+  std::vector<std::string> names;
+  for (vtkDataArray* array :
+    { points->GetPointData()->GetNormals(), points->GetPointData()->GetVectors() })
+  {
+    if (array && array->GetName())
+    {
+      names.emplace_back(array->GetName());
+    }
+  }
+  return names;
+}
+
+void CheckPoints(vtkPointSet* points, const std::string& path)
+{
+  if (points->GetNumberOfPoints() == 0)
+  {
+    throw Failure("cannot use " + path + ": it has no points");
+  }
+  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
+  {
+    const double* point = points->GetPoint(i);
+    if (!std::isfinite(point[0]) || !std::isfinite(point[1]) || !std::isfinite(point[2]))
+    {
+      std::ostringstream text;
+      text << "cannot use " << path << ": its point " << i << ", counted from 0, is " << point[0]
+           << ", " << point[1] << ", " << point[2] << ", and points must be finite";
+      throw Failure(text.str());
+    }
+  }
+}
+
+void WarnOfCellArrays(vtkPointSet* points, const std::string& path, Messages& messages)
+{
+  vtkCellData* arrays = points->GetCellData();
+  for (vtkDataArray* array : { arrays->GetNormals(), arrays->GetVectors() })
+  {
+    if (array)
+    {
+      messages.DisplayWarningText(("The array \"" +
+        std::string(array->GetName() ? array->GetName() : "") + "\" of the cells of " + path +
+        " stays as it is: normals and vectors of points follow the deformation only.")
+                                    .c_str());
+    }
+  }
+}
+
+vtkSmartPointer<vtkPointSet> Deform(const PointsFile& file, const Options& options,
+  const Deformation& deformation, Messages& messages)
+{
+  vtkNew<vtkDeformGeometryFilter> filter;
+  filter->SetInputData(file.Points);
+  SetDeformation(filter.Get(), options, deformation);
+  // Its warnings name properties; those below are for users, and those on the mesh were given when
+  // the volume was deformed.
+  const vtkNew<vtkCallbackCommand> ignored;
+  filter->AddObserver(vtkCommand::WarningEvent, ignored);
+  const ProgressBar bar(filter, "moving points", !options.Quiet);
+  filter->Update();
+  messages.Check("cannot move the points of " + file.Path);
+  if (filter->GetNumberOfOutsidePoints() > 0)
+  {
+    messages.DisplayWarningText((std::to_string(filter->GetNumberOfOutsidePoints()) + " of " +
+      std::to_string(file.Points->GetNumberOfPoints()) + " points of " + file.Path +
+      " lie outside the deformation. They stay where they are.")
+                                  .c_str());
+  }
+  return filter->GetOutput();
+}
+
+template <typename Writer>
+void WriteBy(vtkPointSet* points, const std::string& path, Messages& messages)
+{
+  vtkNew<Writer> writer;
+  // Not appended: with recent versions of libexpat, ParaView 5.11 cannot read appended data.
+  writer->SetDataModeToBinary();
+  writer->SetInputData(points);
+  writer->SetFileName(path.c_str());
+  const bool written = writer->Write() != 0;
+  messages.Check("cannot write " + path, written);
+}
+}
+
+std::string GetPointFormat(const std::string& path)
+{
+  for (const char* suffix : { ".vtp", ".vtu", ".csv", ".mrk.json" })
+  {
+    if (HasSuffix(path, { suffix }) && (HasJson || !HasSuffix(path, { ".mrk.json" })))
+    {
+      return suffix;
+    }
+  }
+  return "";
+}
+
+std::vector<PointsFile> ReadPoints(const Options& options, const Volume& volume, Messages& messages)
+{
+  std::vector<PointsFile> files;
+  for (const std::string& path : options.Points)
+  {
+    PointsFile file;
+    file.Path = path;
+    const bool saysSpace = IsLandmarkFile(path);
+    if (saysSpace)
+    {
+      file.Landmarks = ReadLandmarks(path, messages);
+      file.Points = file.Landmarks.Points;
+    }
+    else
+    {
+      file.Points = ReadGeometry(path, options, messages);
+      WarnOfCellArrays(file.Points, path, messages);
+    }
+    CheckPoints(file.Points, path);
+    file.IsTurned = TurnIntoWorld(file.Points, GetTurnedArrays(file.Points),
+      saysSpace ? "" : options.MeshSpace, path, volume.Axes, messages);
+    files.push_back(file);
+  }
+  return files;
+}
+
+void WriteDeformedPoints(const std::vector<PointsFile>& files, const Options& options,
+  const Deformation& deformation, Messages& messages)
+{
+  for (std::size_t i = 0; i < files.size(); ++i)
+  {
+    const std::string& output = options.PointsOutputs[i];
+    const vtkSmartPointer<vtkPointSet> moved = Deform(files[i], options, deformation, messages);
+    if (files[i].IsTurned)
+    {
+      ExchangeWorlds(moved, GetTurnedArrays(moved));
+    }
+    if (IsLandmarkFile(output))
+    {
+      WriteLandmarks(files[i].Landmarks, moved, output);
+    }
+    else if (HasSuffix(output, { ".vtp" }))
+    {
+      WriteBy<vtkXMLPolyDataWriter>(moved, output, messages);
+    }
+    else
+    {
+      WriteBy<vtkXMLUnstructuredGridWriter>(moved, output, messages);
+    }
+  }
+}
