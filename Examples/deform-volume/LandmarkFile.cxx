@@ -233,11 +233,14 @@ void CheckUnits(const std::string& path, const std::string& text, const Json::Va
 
 void ReadControlPoint(const std::string& path, const Json::Value& controlPoint, LandmarkFile& file)
 {
-  const std::string place =
-    "the control point in its line " + std::to_string(GetLine(file.Text, controlPoint));
+  const auto fail = [&](const std::string& words)
+  {
+    Fail(path,
+      "the control point in its line " + std::to_string(GetLine(file.Text, controlPoint)) + words);
+  };
   if (!controlPoint.isObject())
   {
-    Fail(path, place + " is no object");
+    fail(" is no object");
   }
   const Json::Value& status = controlPoint["positionStatus"];
   if (status.isString() && status.asString() != "defined")
@@ -255,7 +258,7 @@ void ReadControlPoint(const std::string& path, const Json::Value& controlPoint, 
   }
   if (!isPoint)
   {
-    Fail(path, place + " has no position of three numbers");
+    fail(" has no position of three numbers");
   }
   file.Points->GetPoints()->InsertNextPoint(point);
 }

@@ -270,13 +270,18 @@ void DeformVolume(const Options& options, Messages& messages)
   volume.Axes =
     HeedSpace("--volume-space", options.VolumeSpace, options.Volume, volume.Axes, messages);
   const LabelVolume labels(options, volume, messages);
-  const std::vector<PointsFile> points = ReadPoints(options, volume, messages);
   Volume reference;
   if (!options.Reference.empty())
   {
     reference = ReadReference(options, volume, messages);
   }
   timings.Add("read volume", reading.GetSeconds());
+  const Stopwatch readingPoints;
+  const std::vector<PointsFile> points = ReadPoints(options, volume, messages);
+  if (!points.empty())
+  {
+    timings.Add("read points", readingPoints.GetSeconds());
+  }
 
   const Stopwatch cutting;
   Volume cut = volume;

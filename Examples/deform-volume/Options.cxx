@@ -575,12 +575,11 @@ std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)
     ->type_name("FILE");
   program
     .add_option("--points", options.Points,
-      std::string("Points, surfaces or landmarks that belong to VOLUME, and move as its tissue "
-                  "does: from VOLUME (the moving image) to the result (the fixed one), which is "
-                  "the way of the volume, and the opposite of antsApplyTransformsToPoints: ") +
-        PointFormats +
-        ". .csv: the first line names the columns x,y,z and any others, and places are lps. May be "
-        "given several times")
+      std::string("Points, surfaces or landmarks that belong to VOLUME: ") + PointFormats +
+        ". They move with the tissue, from VOLUME (the moving image) to the result (the fixed "
+        "image). antsApplyTransformsToPoints leads points the opposite way by the same transforms. "
+        "The first line of a .csv file names its columns, which begin with x,y,z; its world is "
+        "lps. May be given several times")
     ->type_name("FILE")
     ->take_all()
     ->expected(1);

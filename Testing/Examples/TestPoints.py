@@ -347,3 +347,9 @@ check_middles("mesh", ("--mesh", path("mesh.vtu"), "--displacement", "Displaceme
 # Far away all is kept, and nothing is outside.
 move("moving.mha", ("--mesh", path("mesh.vtu"), "--displacement", "Displacement", "--keep", "5"), ["landmarks.csv"])
 assert (read_table("moved-landmarks.csv")[-1:] == outside).all()
+
+# ChainMail moves the voxel that is pulled as far as it is pulled.
+voxel = Readers.get_matrix(Readers.read_vti(path("moving.vti"))) @ [20, 18, 16, 1]
+write("voxel.csv", make_table([voxel[:3]]))
+move("moving.mha", ("--model", "chainmail", "--pull", ",".join(map(str, voxel[:3])) + ",3,0,2"), ["voxel.csv"])
+assert numpy.abs(read_table("moved-voxel.csv") - voxel[:3] - [3, 0, 2]).max() < 1e-5
