@@ -361,6 +361,7 @@ void vtkDeformVolumeFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << "\n";
   os << indent << "GenerateRestPositions: " << (this->GenerateRestPositions ? "on" : "off") << "\n";
   os << indent << "GenerateJacobian: " << (this->GenerateJacobian ? "on" : "off") << "\n";
+  os << indent << "GenerateFoldCount: " << (this->GenerateFoldCount ? "on" : "off") << "\n";
   os << indent << "Resampler: " << this->Resampler << "\n";
   os << indent << "Interpolation: " << this->Interpolation << "\n";
   os << indent << "ResamplerInUse: " << this->ResamplerInUse << "\n";

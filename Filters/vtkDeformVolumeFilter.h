@@ -377,6 +377,20 @@ public:
 
   ///@{
   /**
+   * Whether the output has a point array "FoldCount" (unsigned int): how many tetrahedra of the
+   * sampling mesh hold a voxel, of which the output shows one. 1 where nothing is folded, more
+   * where the volume lies over itself, and 0 where it covers nothing. Where cells at the boundary
+   * of the deformation mesh lie over others only these others are counted, and with FieldIsInverse
+   * each covered voxel has 1. All of the output is made anew at each update. A mesh with
+   * MESH_RASTERIZATION is an error. Default: off.
+   */
+  vtkSetMacro(GenerateFoldCount, bool);
+  vtkGetMacro(GenerateFoldCount, bool);
+  vtkBooleanMacro(GenerateFoldCount, bool);
+  ///@}
+
+  ///@{
+  /**
    * Names of point arrays that hold amounts for each unit of volume, such as a dose, an activity or
    * a density: their values are divided by the Jacobian, so that their sum, times the volume of a
    * voxel, stays that of the volume at rest. In the output they are of float, or stay double. Where
@@ -662,6 +676,7 @@ private:
   int Interpolation = LINEAR_INTERPOLATION;
   bool GenerateRestPositions = false;
   bool GenerateJacobian = false;
+  bool GenerateFoldCount = false;
   bool OpenSplits = false;
   bool Incremental = true;
   bool OutputOnDevice = false;

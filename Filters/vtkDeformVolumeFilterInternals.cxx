@@ -365,6 +365,7 @@ deformvolume::Resampling vtkDeformVolumeFilter::vtkInternals::ChooseResampler(
   wish.Outside = this->GetOutside();
   wish.HasSmoothCut = deformvolume::HasCut(volume);
   wish.NeedsJacobian = this->GetExtraArrays().NeedsJacobian();
+  wish.CountsFolds = this->Self->GenerateFoldCount;
   if (wish.HasSmoothCut && this->Self->GetNumberOfInputConnections(1) == 0 &&
     this->State->Deformation.IsInverseField())
   {

@@ -155,7 +155,8 @@ public:
   /// What arrays are wanted besides those of the volume.
   deformvolume::ExtraArraysWish GetExtraArrays() const
   {
-    return { this->Self->GenerateRestPositions, this->Self->GenerateJacobian, this->DensityArrays };
+    return { this->Self->GenerateRestPositions, this->Self->GenerateJacobian,
+      this->Self->GenerateFoldCount, this->DensityArrays };
   }
   /// Warns where densities lack a part of the volume, and that has changed.
   void WarnOfLoss(const deformvolume::ExtraArrays::Loss& loss);

@@ -397,7 +397,8 @@ int vtkDeformVolumeFilter::RequestData(
     deformvolume::SetTransform(image, outputGeometry);
     image->GetFieldData()->ShallowCopy(volume->GetFieldData());
     state.Outputs.Make(arrays, request);
-    request.Incremental = this->Incremental;
+    request.Incremental = this->Incremental && !this->GenerateFoldCount;
+    request.FoldCounts = state.Extra.MakeFoldCounts(numberOfPoints);
     request.MayStayOnDevice = this->OutputOnDevice;
 
     report = device.Deform(request);

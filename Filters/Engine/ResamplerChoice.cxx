@@ -34,6 +34,7 @@ Resampling ChooseResampler(const ResamplerWish& wish, const Deformation& deforma
     : wish.Outside.AreKept()         ? "the outside mode KEEP. Set OutsideMode to DISCARD"
     : wish.HasSmoothCut              ? "smooth cuts. Set SmoothCut of vtkCutVolume to off"
     : wish.NeedsJacobian ? "Jacobians of meshes. Set GenerateJacobian off and remove density arrays"
+    : wish.CountsFolds   ? "fold counts of meshes. Set GenerateFoldCount off"
                          : "";
   if (!obstacle.empty() && wish.Method == Resampling::MeshRasterization)
   {

@@ -19,6 +19,7 @@ struct ResamplerWish
   OutsideVoxels Outside;
   bool HasSmoothCut = false;  // of the volume, which Exact alone knows
   bool NeedsJacobian = false; // of the deformation, which a mesh has with Exact alone
+  bool CountsFolds = false;   // the same
 };
 
 /// The resampler for a deformation. fits tells whether the memory suffices for one. Throws an Error
@@ -27,7 +28,7 @@ struct ResamplerWish
 /// Where the choice is free: Exact, because its values are those of the deformed sampling mesh,
 /// except where the memory does not suffice for Exact, whose sampling mesh takes some 20 bytes a
 /// voxel, but does for MeshRasterization, and that can do the deformation: a mesh, with what is
-/// outside discarded, without a smooth cut and without Jacobians.
+/// outside discarded, without a smooth cut, Jacobians and fold counts.
 Resampling ChooseResampler(const ResamplerWish& wish, const Deformation& deformation,
   const std::function<bool(Resampling)>& fits);
 

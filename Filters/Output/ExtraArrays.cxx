@@ -9,6 +9,7 @@
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkPointData.h"
+#include "vtkUnsignedIntArray.h"
 
 #include <algorithm>
 #include <atomic>
@@ -23,6 +24,7 @@ const char* const POSITIONS = "RestPosition";
 const std::array<const char*, 3> POSITION_AXES{ { "RestPosition x", "RestPosition y",
   "RestPosition z" } };
 const char* const JACOBIAN = "Jacobian";
+const char* const FOLD_COUNT = "FoldCount";
 constexpr int NoIndex = -2; // no array of the volume, and no role that is not taken either
 
 bool HasName(vtkDataArray* array, const std::string& name)
@@ -118,6 +120,10 @@ void ExtraArrays::Select(const ExtraArraysWish& wish, const ImageGeometry& volum
   if (wish.NeedsJacobian())
   {
     checkName(JACOBIAN);
+  }
+  if (wish.FoldCount)
+  {
+    checkName(FOLD_COUNT);
   }
   const vtkIdType voxels = GetNumberOfPoints(volume.PointExtent);
   if (!wish.NeedsJacobian() || deformation.IsInverseField())
@@ -234,9 +240,40 @@ ExtraArrays::Loss ExtraArrays::Finish(const Deformation& deformation, const Outs
   {
     this->FinishRestPositions(output);
   }
+  if (this->Wish.FoldCount)
+  {
+    this->FinishFoldCounts(output);
+  }
   return this->Wish.NeedsJacobian()
     ? this->FinishDensities(deformation, outside, background, output)
     : Loss();
+}
+
+std::uint32_t* ExtraArrays::MakeFoldCounts(vtkIdType numberOfPoints)
+{
+  if (!this->Wish.FoldCount)
+  {
+    return nullptr;
+  }
+  this->FoldCounts = vtkSmartPointer<vtkUnsignedIntArray>::New();
+  this->FoldCounts->SetName(FOLD_COUNT);
+  this->FoldCounts->SetNumberOfTuples(numberOfPoints);
+  this->FoldCounts->Fill(0.0);
+  return this->FoldCounts->GetPointer(0);
+}
+
+void ExtraArrays::FinishFoldCounts(vtkImageData* output)
+{
+  // Where nothing overlaps nothing has been counted.
+  const auto* valid = static_cast<const signed char*>(
+    output->GetPointData()->GetArray("vtkValidPointMask")->GetVoidPointer(0));
+  std::uint32_t* counts = this->FoldCounts->GetPointer(0);
+  for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
+  {
+    counts[i] = std::max(counts[i], valid[i] ? 1U : 0U);
+  }
+  output->GetPointData()->AddArray(this->FoldCounts);
+  this->FoldCounts = nullptr;
 }
 
 void ExtraArrays::FinishRestPositions(vtkImageData* output) const

@@ -22,6 +22,7 @@
 class vtkDataArray;
 class vtkFloatArray;
 class vtkImageData;
+class vtkUnsignedIntArray;
 
 namespace deformvolume
 {
@@ -31,6 +32,7 @@ struct ExtraArraysWish
 {
   bool RestPositions = false;
   bool Jacobian = false;
+  bool FoldCount = false;
   /// Arrays whose values are divided by the Jacobian.
   std::set<std::string> Densities;
 
@@ -54,6 +56,9 @@ public:
   void Compute(const Deformation& deformation, MappingCache& mapping, const MappedVolume& volume,
     const OutputMap& toOutput, const std::function<bool(double)>& progress);
 
+  /// Room for the counts of an output of so many voxels; null where they are not wanted.
+  std::uint32_t* MakeFoldCounts(vtkIdType numberOfPoints);
+
   /// What is left out of the sums of densities.
   struct Loss
   {
@@ -68,6 +73,7 @@ public:
 private:
   void UpdateRestPositions(const ImageGeometry& volume);
   void FinishRestPositions(vtkImageData* output) const;
+  void FinishFoldCounts(vtkImageData* output);
   Loss FinishDensities(const Deformation& deformation, const OutsideVoxels& outside,
     double background, vtkImageData* output);
   vtkDataArray* FindFloats(vtkDataArray* density);
@@ -94,6 +100,7 @@ private:
     }
   };
   JacobiansKey KeyOfJacobians;
+  vtkSmartPointer<vtkUnsignedIntArray> FoldCounts;
   // Copies of densities of integers, and what they are of.
   struct Copy
   {

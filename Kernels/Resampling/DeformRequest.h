@@ -61,6 +61,10 @@ struct DeformRequest
   std::vector<void*> Outputs;
   /// Room for one byte a voxel: 1 where the deformed volume covers it, else 0.
   signed char* Coverage = nullptr;
+  /// With the exact methods, room for a number a voxel of OutputExtent that is 0 before: where
+  /// tetrahedra of the sampling mesh overlap, how many hold the voxel. Not incremental. Null: they
+  /// are not counted. Cells at the boundary of the mesh do not count.
+  std::uint32_t* FoldCounts = nullptr;
   /// The output may stay on the device until somebody wants it on the host: where that has memory
   /// of its own and makes the output in one piece, DeformReport::DeviceOutputs are it. Outputs and
   /// Coverage get the values when they are read.

@@ -68,7 +68,8 @@ ExactPasses::ExactPasses(
 {
 }
 
-ResamplingForm ExactPasses::ChooseForm(const DeformRequest& request, const OutputSlab& output)
+ResamplingForm ExactPasses::ChooseForm(
+  const DeformRequest& request, const OutputSlab& output, int pass)
 {
   const Resampling method = request.Method;
   const bool isCubic = request.Interpolation == Interpolation::Cubic;
@@ -97,7 +98,7 @@ ResamplingForm ExactPasses::ChooseForm(const DeformRequest& request, const Outpu
     throw Error("The resampling by columns needs more local memory than the device \"" +
       this->Device.GetDevice().Name + "\" has.");
   }
-  if (!fits || isCubic || method == Resampling::ExactByCell)
+  if (!fits || isCubic || method == Resampling::ExactByCell || pass == DEFORMVOLUME_PASS_COUNT)
   {
     return ResamplingForm::Cells;
   }
@@ -358,7 +359,7 @@ void ExactPasses::Run(const DeformRequest& request, const OutputSlab& output, in
     return;
   }
   const std::vector<cl_uint>& list = bricks ? *bricks : all;
-  const ResamplingForm form = this->ChooseForm(request, output);
+  const ResamplingForm form = this->ChooseForm(request, output, pass);
   cl::Kernel kernel = this->MakeKernel(request, form, output, pass);
   this->SendBricks(list);
   if (form == ResamplingForm::Columns)

@@ -32,7 +32,8 @@ public:
 
   /// The kernel for cells: Cells, Lanes or Columns. Throws an Error where the method demands one
   /// that it cannot be.
-  ResamplingForm ChooseForm(const DeformRequest& request, const OutputSlab& output);
+  ResamplingForm ChooseForm(
+    const DeformRequest& request, const OutputSlab& output, int pass = DEFORMVOLUME_PASS_DIRECT);
 
   /// Runs a pass (DEFORMVOLUME_PASS_DIRECT and so on). bricks: those to run
   /// (DEFORMVOLUME_BRICK_BITS), where the volume is one chunk; null: all. The mapping is up to date

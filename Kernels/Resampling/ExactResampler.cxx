@@ -121,6 +121,10 @@ void ExactResampler::MakeExact(
     covered = output.CountCovered(this->Device, this->Launched.GetResamplingEvents());
   }
   this->Boundary.Run(request, output);
+  if (request.FoldCounts && first.Counts.Writes > first.Covered)
+  {
+    this->CountFolds(request, output);
+  }
   output.Complete(this->Device.GetContext(), this->Volume.GetVolumeArrays(), false,
     this->Launched.GetResamplingEvents());
   report.NumberOfCoveredVoxels +=
@@ -172,6 +176,28 @@ void ExactResampler::WriteWinners(
   };
   run(DEFORMVOLUME_PASS_MARK, !someBricks || !claimed, DEFORMVOLUME_COUNT_TOUCHED);
   run(DEFORMVOLUME_PASS_WINNER, !someBricks, DEFORMVOLUME_COUNT_CANDIDATES);
+}
+
+void ExactResampler::CountFolds(const DeformRequest& request, OutputSlab& output)
+{
+  output.GetWinners().PrepareCounts(
+    this->Device.GetContext(), this->Launched.GetResamplingEvents());
+  this->RunPass(request, output, DEFORMVOLUME_PASS_COUNT, true);
+  const std::vector<std::uint32_t> counts = output.GetWinners().ReadCounts();
+  const Extent& slab = output.GetExtent();
+  const Extent& all = request.OutputExtent;
+  const auto width = static_cast<std::size_t>(GetSize(slab, 0));
+  std::size_t row = 0;
+  for (int z = slab[4]; z <= slab[5]; ++z)
+  {
+    for (int y = slab[2]; y <= slab[3]; ++y, ++row)
+    {
+      const std::int64_t place =
+        ((z - all[4]) * GetSize(all, 1) + y - all[2]) * GetSize(all, 0) + slab[0] - all[0];
+      std::copy_n(counts.data() + row * width, width, request.FoldCounts + place);
+    }
+  }
+  this->Last = LastOutput::Unknown;
 }
 
 void ExactResampler::Read(const DeformRequest& request, std::size_t target)

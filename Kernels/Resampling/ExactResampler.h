@@ -99,6 +99,9 @@ private:
   /// whether it is known what cells hold beside what they own.
   void WriteWinners(
     const DeformRequest& request, OutputSlab& output, bool hasLargeCells, bool claimed);
+  /// Counts the tetrahedra that hold each voxel of a slab, which is done and has room for winners.
+  /// These are lost.
+  void CountFolds(const DeformRequest& request, OutputSlab& output);
   /// Whether some tetrahedra are inverted, but not most of them, as they are in a mirror image.
   bool IsFolded(const OutputSlab::Counts& counts) const;
   void MakeExact(

@@ -88,6 +88,24 @@ void OutputWinners::PrepareAgain(OpenCLContext& context, const std::vector<std::
   }
 }
 
+void OutputWinners::PrepareCounts(OpenCLContext& context, std::vector<cl::Event>& events)
+{
+  Fill(context, this->Queue, this->Keys, ElementBytes::Of(cl_uchar{ 0 }), this->KeyBytes, events);
+}
+
+std::vector<std::uint32_t> OutputWinners::ReadCounts() const
+{
+  const std::size_t words = this->KeySize / sizeof(cl_uint);
+  std::vector<std::uint32_t> counts(static_cast<std::size_t>(this->KeyBytes / sizeof(cl_uint)));
+  this->Queue.enqueueReadBuffer(this->Keys, CL_TRUE, 0, this->KeyBytes, counts.data());
+  for (std::size_t i = 0; words > 1 && i < counts.size() / words; ++i)
+  {
+    counts[i] = counts[words * i];
+  }
+  counts.resize(counts.size() / words);
+  return counts;
+}
+
 bool OutputWinners::HasContested() const
 {
   const std::uint64_t all = this->CountPatches();

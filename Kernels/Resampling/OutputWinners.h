@@ -42,6 +42,12 @@ public:
   /// kept.
   bool HasContested() const;
 
+  ///@{
+  /// After Prepare, when winners are no longer needed: room for a count a voxel takes their place.
+  void PrepareCounts(OpenCLContext& context, std::vector<cl::Event>& events);
+  std::vector<std::uint32_t> ReadCounts() const;
+  ///@}
+
   /// Whether some patches of the output stay as they are.
   bool KeepsPatches() const { return this->IsAgain; }
   /// Null where there are none.

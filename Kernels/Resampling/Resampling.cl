@@ -168,6 +168,11 @@ static OUTLINED void Write(const SamplingMesh* mesh, const Cell* cell, int t, co
     return;
   }
   const size_t target = ((size_t)placeZ * p->OutputSize[1] + placeY) * p->OutputSize[0] + placeX;
+  if (p->Pass == DEFORMVOLUME_PASS_COUNT)
+  {
+    atomic_inc((volatile __global uint*)(output->Winners + target));
+    return;
+  }
   output->Writes++;
   if (p->Pass != DEFORMVOLUME_PASS_DIRECT)
   {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The output of a launch, and which cell wins a voxel that several cells write.
 //
-// Data: coverage 1 byte an output voxel, or 1 bit, in words of 32; winners 4 or 8 bytes an output voxel (only where tetrahedra overlap);
+// Data: coverage 1 byte an output voxel, or 1 bit, in words of 32; winners 4 or 8 bytes an output voxel (only where tetrahedra overlap; in the pass that counts, the number of tetrahedra in their first 4 bytes);
 // patches of the output 1 byte each.
 //
 // What the host puts in front of this text:
@@ -55,7 +55,8 @@ static void Cover(Output* output, size_t target)
 static void AddCount(
   int i, uint count, size_t section, __global uint* counters, const KernelParameters* p)
 {
-  if (count && (i == DEFORMVOLUME_COUNT_CANDIDATES || !DEFORMVOLUME_IS_CLOSED(p->Pass)))
+  const int countsAll = p->Pass == DEFORMVOLUME_PASS_DIRECT || p->Pass == DEFORMVOLUME_PASS_OWNERS;
+  if (count && (i == DEFORMVOLUME_COUNT_CANDIDATES || countsAll))
   {
     atomic_add(counters + section * DEFORMVOLUME_COUNTERS + i, count);
   }

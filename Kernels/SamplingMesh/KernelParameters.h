@@ -115,8 +115,10 @@ typedef struct
 #define DEFORMVOLUME_PASS_OWNERS 1 // the same, and find voxels that several cells write: who wins
 #define DEFORMVOLUME_PASS_MARK 2   // find who wins of those that only hold a voxel not settled
 #define DEFORMVOLUME_PASS_WINNER 3 // write where this tetrahedron is the winner
+#define DEFORMVOLUME_PASS_COUNT 4  // count the tetrahedra that write each voxel; write none
 // Whether every tetrahedron that holds a voxel takes part, and not only the one that writes it.
-#define DEFORMVOLUME_IS_CLOSED(pass) ((pass) >= DEFORMVOLUME_PASS_MARK)
+#define DEFORMVOLUME_IS_CLOSED(pass)                                                               \
+  ((pass) == DEFORMVOLUME_PASS_MARK || (pass) == DEFORMVOLUME_PASS_WINNER)
 // Whether values are written.
 #define DEFORMVOLUME_IS_WRITING(pass) ((pass) != DEFORMVOLUME_PASS_MARK)
 

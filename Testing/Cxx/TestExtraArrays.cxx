@@ -391,6 +391,100 @@ void TestFolds()
   subject.Expect("");
 }
 
+// How many times a map that folds along x leads somewhere, found from where it turns.
+void TestFoldCounts()
+{
+  const auto volume = MakeDose({ { 0, 60, 0, 12, 0, 11 } });
+  const auto map = [](double x)
+  {
+    const double r = (x - 23.0) / 15.0;
+    return x - (std::abs(r) < 1.0 ? 30.0 * r * (1.0 - r * r) * (1.0 - r * r) : 0.0);
+  };
+  // Linear from voxel to voxel, as the volume is moved.
+  const auto field = MakeImage({ { 0, 60, 0, 12, 0, 11 } });
+  field->CopyStructure(volume);
+  SetDisplacements(field, [&](const glm::dvec3& p) { return glm::dvec3(map(p.x), p.y, p.z); });
+  // The same in a mesh that the volume's cells divide, and one that ends within the volume.
+  vtkNew<vtkLatticeTetrahedraSource> source;
+  source->SetNumberOfNodes(62, 2, 2);
+  source->EqualSpacingOff();
+  source->SetBounds(-7.5, 53.5, 2.0, 16.0, 10.0, 23.0);
+  source->Update();
+  vtkUnstructuredGrid* const mesh = source->GetOutput();
+  SetDisplacements(mesh, [&](const glm::dvec3& p) { return glm::dvec3(map(p.x), p.y, p.z); });
+  for (const bool isCubic : { false, true })
+  {
+    Deformed subject(volume, field);
+    subject.Filter->GenerateFoldCountOn();
+    subject.Filter->SetInterpolation(isCubic ? vtkDeformVolumeFilter::CUBIC_INTERPOLATION
+                                             : vtkDeformVolumeFilter::LINEAR_INTERPOLATION);
+    for (int repeat = 0; repeat < 2; ++repeat)
+    {
+      vtkImageData* output = subject.Update();
+      vtkDataArray* counts = output->GetPointData()->GetArray("FoldCount");
+      VERIFY_EQUAL(counts->GetDataType(), VTK_UNSIGNED_INT);
+      vtkIdType folded = 0;
+      for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
+      {
+        const double x = GetPoint(output, id).x;
+        int expected = 0;
+        bool isClear = true;
+        for (int i = 0; i < 60; ++i)
+        {
+          const double a = std::round((map(-7.0 + i) + 7.0) * 256.0) / 256.0 - 7.0;
+          const double b = std::round((map(-6.0 + i) + 7.0) * 256.0) / 256.0 - 7.0;
+          expected += x > std::min(a, b) && x < std::max(a, b);
+          isClear = isClear && std::abs(x - a) > 1.0 / 128.0 && std::abs(x - b) > 1.0 / 128.0;
+        }
+        VERIFY((counts->GetComponent(id, 0) > 0.0) == subject.IsCovered(id));
+        if (isClear)
+        {
+          VERIFY_EQUAL(counts->GetComponent(id, 0), static_cast<double>(expected));
+          folded += expected == 3;
+        }
+      }
+      VERIFY(folded > 500);
+      // Another update, which is not made of the last one.
+      vtkDataArray* vectors = field->GetPointData()->GetVectors();
+      vectors->SetTuple3(0, 0.0, 0.0, 0.0);
+      vectors->Modified();
+    }
+    // In pieces, too.
+    vtkNew<vtkImageData> whole;
+    whole->DeepCopy(subject.Filter->GetOutput());
+    for (int piece = 0; piece < 3; ++piece)
+    {
+      subject.Filter->UpdatePiece(piece, 3, 0);
+      vtkImageData* part = subject.Filter->GetOutput();
+      VERIFY(
+        part->GetNumberOfPoints() > 0 && part->GetNumberOfPoints() < whole->GetNumberOfPoints());
+      for (vtkIdType id = 0; id < part->GetNumberOfPoints(); ++id)
+      {
+        const glm::dvec3 p = GetPoint(part, id);
+        VERIFY_EQUAL(part->GetPointData()->GetArray("FoldCount")->GetComponent(id, 0),
+          whole->GetPointData()
+            ->GetArray("FoldCount")
+            ->GetComponent(whole->FindPoint(p.x, p.y, p.z), 0));
+      }
+    }
+  }
+  Deformed subject(volume, mesh);
+  subject.Filter->GenerateFoldCountOn();
+  vtkImageData* output = subject.Update();
+  double range[2];
+  output->GetPointData()->GetArray("FoldCount")->GetRange(range);
+  VERIFY(range[0] <= 1.0 && range[1] == 3.0);
+  subject.Filter->SetResamplerToMeshRasterization();
+  subject.Filter->Update();
+  VERIFY_EQUAL(subject.TakeErrors(), 1);
+  VERIFY(subject.LastError.find("fold counts") != std::string::npos);
+  // Nothing lies over itself.
+  subject.Filter->SetResamplerToAutomatic();
+  SetDisplacements(mesh, Shift(1.0, 0.0, 0.0));
+  subject.Update()->GetPointData()->GetArray("FoldCount")->GetRange(range);
+  VERIFY_EQUAL(range[1], 1.0);
+}
+
 // What changes a part of the output leaves nothing of before there: nodes, masks, values.
 void TestIncremental()
 {
@@ -459,6 +553,7 @@ int TestExtraArrays(int, char*[])
   TestSums();
   TestKept();
   TestFolds();
+  TestFoldCounts();
   TestIncremental();
   return GetExitCode();
 }
