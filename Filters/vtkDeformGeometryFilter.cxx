@@ -10,7 +10,6 @@
 #include "OutsideMode.h"
 #include "ParallelFor.h"
 #include "PipelineExecution.h"
-#include "PointOrder.h"
 #include "ProgressReport.h"
 #include "Ranks.h"
 #include "VTKThreads.h"
@@ -22,11 +21,9 @@
 #include "vtkCharArray.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
-#include "vtkDataObject.h"
+#include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
-#include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
-#include "vtkFloatArray.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
@@ -42,7 +39,6 @@
 #include <glm/matrix.hpp>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
 #include <set>
@@ -62,53 +58,17 @@ constexpr const char* MaskName = "vtkValidPointMask";
 constexpr std::size_t PointsPerPart = 512;
 constexpr std::size_t PointsPerReport = 64 * PointsPerPart; // of progress
 
-// An array of vectors that is written: of floats where another one is, else of doubles.
-class WrittenVectors
+// An array of vectors: of floats where another one is, else of doubles.
+vtkSmartPointer<vtkDataArray> MakeVectors(vtkDataArray* like, vtkIdType count)
 {
-public:
-  WrittenVectors(vtkDataArray* like, vtkIdType count)
-  {
-    if (like->GetDataType() == VTK_FLOAT)
-    {
-      vtkNew<vtkFloatArray> floats;
-      this->Array = floats;
-    }
-    else
-    {
-      vtkNew<vtkDoubleArray> doubles;
-      this->Array = doubles;
-    }
-    this->Array->SetName(like->GetName());
-    this->Array->SetNumberOfComponents(3);
-    this->Array->CopyComponentNames(like);
-    this->Array->SetNumberOfTuples(count);
-    this->Floats = vtkArrayDownCast<vtkFloatArray>(this->Array);
-    this->Doubles = vtkArrayDownCast<vtkDoubleArray>(this->Array);
-  }
-
-  // May be called by several threads.
-  void Set(vtkIdType tuple, const glm::dvec3& vector) const
-  {
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      if (this->Floats)
-      {
-        this->Floats->SetValue(3 * tuple + axis, static_cast<float>(vector[axis]));
-      }
-      else
-      {
-        this->Doubles->SetValue(3 * tuple + axis, vector[axis]);
-      }
-    }
-  }
-
-  vtkDataArray* Get() const { return this->Array; }
-
-private:
-  vtkSmartPointer<vtkDataArray> Array;
-  vtkFloatArray* Floats;
-  vtkDoubleArray* Doubles;
-};
+  const int type = like->GetDataType() == VTK_FLOAT ? VTK_FLOAT : VTK_DOUBLE;
+  const auto array = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
+  array->SetName(like->GetName());
+  array->SetNumberOfComponents(3);
+  array->CopyComponentNames(like);
+  array->SetNumberOfTuples(count);
+  return array;
+}
 
 glm::dvec3 TransformNormal(const glm::dmat3& gradient, const glm::dvec3& normal)
 {
@@ -124,25 +84,25 @@ glm::dvec3 TransformNormal(const glm::dmat3& gradient, const glm::dvec3& normal)
 // A point array of vectors or normals that follows the points.
 struct TransformedArray
 {
-  TransformedArray(vtkDataArray* source, int attribute, vtkIdType count)
-    : Source(source)
-    , Attribute(attribute)
-    , Output(source, count)
-  {
-  }
-
-  void Transform(vtkIdType point, const glm::dmat3& gradient, const glm::dvec3& vector) const
-  {
-    const bool isNormal = this->Attribute == vtkDataSetAttributes::NORMALS;
-    // Where nothing is deformed, normals keep their length.
-    this->Output.Set(point,
-      isNormal && gradient != glm::dmat3(1.0) ? TransformNormal(gradient, vector)
-                                              : gradient * vector);
-  }
-
-  vtkDataArray* Source;
+  deformvolume::VectorCopier CopySource;
   int Attribute; // -1: none
-  WrittenVectors Output;
+  vtkSmartPointer<vtkDataArray> Output;
+
+  void Transform(vtkIdType first, const std::vector<PointMap::Image>& images) const
+  {
+    std::vector<glm::dvec3> vectors(images.size());
+    this->CopySource(first, static_cast<vtkIdType>(images.size()), vectors.data());
+    for (std::size_t i = 0; i < images.size(); ++i)
+    {
+      const glm::dmat3& gradient = images[i].Gradient;
+      // Where nothing is deformed, normals keep their length.
+      const bool isNormal =
+        this->Attribute == vtkDataSetAttributes::NORMALS && gradient != glm::dmat3(1.0);
+      const glm::dvec3 turned =
+        isNormal ? TransformNormal(gradient, vectors[i]) : gradient * vectors[i];
+      this->Output->SetTuple(first + static_cast<vtkIdType>(i), &turned.x);
+    }
+  }
 };
 
 // The point arrays that are transformed.
@@ -151,23 +111,33 @@ std::vector<TransformedArray> FindTransformed(vtkPointSet* points, bool allVecto
   using Attributes = vtkDataSetAttributes;
   vtkPointData* pointData = points->GetPointData();
   std::vector<TransformedArray> found;
-  std::set<vtkDataArray*> others{ pointData->GetTCoords() };
-  for (const int attribute : { Attributes::NORMALS, Attributes::VECTORS })
+  std::set<vtkDataArray*> others{ nullptr, pointData->GetTCoords() };
+  const auto add = [&](vtkDataArray* array, int attribute)
   {
-    vtkDataArray* array = pointData->GetAttribute(attribute);
-    if (array && others.insert(array).second)
+    if (!others.insert(array).second)
     {
-      found.emplace_back(array, attribute, points->GetNumberOfPoints());
+      return;
     }
-  }
+    const vtkIdType count = points->GetNumberOfPoints();
+    if (array->GetNumberOfTuples() != count)
+    {
+      throw deformvolume::Error("The point array \"" +
+        std::string(array->GetName() ? array->GetName() : "") + "\" on input port 0 has " +
+        std::to_string(array->GetNumberOfTuples()) + " tuples, but there are " +
+        std::to_string(count) + " points. Give each point one.");
+    }
+    found.push_back(
+      { deformvolume::MakeVectorCopier(array), attribute, MakeVectors(array, count) });
+  };
+  add(pointData->GetNormals(), Attributes::NORMALS);
+  add(pointData->GetVectors(), Attributes::VECTORS);
   for (int i = 0; allVectors && i < pointData->GetNumberOfArrays(); ++i)
   {
     vtkDataArray* array = pointData->GetArray(i);
-    const bool isVector = array && array->GetNumberOfComponents() == 3 && array->GetName() &&
-      (array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE);
-    if (isVector && others.count(array) == 0)
+    if (array && array->GetNumberOfComponents() == 3 && array->GetName() &&
+      (array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE))
     {
-      found.emplace_back(array, -1, points->GetNumberOfPoints());
+      add(array, -1);
     }
   }
   return found;
@@ -351,23 +321,22 @@ void vtkDeformGeometryFilter::vtkInternals::Move(vtkPointSet* input, vtkPointSet
     [&](vtkIdType first, const glm::dvec3* points, vtkIdType number)
     { std::copy_n(points, number, places.begin() + first); },
     "Point", "point set on input port 0");
-  const WrittenVectors moved(inputPoints, count);
+  const vtkSmartPointer<vtkDataArray> moved = MakeVectors(inputPoints, count);
   const std::vector<TransformedArray> arrays =
     FindTransformed(input, this->Self->TransformAllInputVectors);
-  std::vector<glm::dmat3> gradients(arrays.empty() ? 0 : places.size());
-  const std::vector<std::int64_t> order = deformvolume::SortBySpace(places);
   std::atomic<vtkIdType> outside{ 0 };
   std::atomic<bool> isTooFar{ false };
-  const double farthest = moved.Get()->GetDataTypeMax();
+  const double farthest = moved->GetDataTypeMax();
   this->RunInParts(places.size(),
     [&](std::size_t begin, std::size_t end)
     {
       vtkIdType outsideHere = 0;
-      PointMap::Image image;
+      std::vector<PointMap::Image> images(end - begin);
       for (std::size_t i = begin; i < end; ++i)
       {
-        const std::int64_t point = order[i];
-        const bool isValid = this->MovePoint(places[static_cast<std::size_t>(point)], image);
+        PointMap::Image& image = images[i - begin];
+        const auto point = static_cast<vtkIdType>(i);
+        const bool isValid = this->MovePoint(places[i], image);
         outsideHere += isValid ? 0 : 1;
         const glm::dvec3 size = glm::abs(image.Point);
         if (!(size.x <= farthest && size.y <= farthest && size.z <= farthest)) // not-a-number, too
@@ -376,48 +345,34 @@ void vtkDeformGeometryFilter::vtkInternals::Move(vtkPointSet* input, vtkPointSet
           image.Point = glm::dvec3(0.0);
         }
         mask->SetValue(point, isValid ? 1 : 0);
-        moved.Set(point, image.Point);
-        if (!gradients.empty())
-        {
-          gradients[static_cast<std::size_t>(point)] = image.Gradient;
-        }
+        moved->SetTuple(point, &image.Point.x);
+      }
+      for (const TransformedArray& array : arrays)
+      {
+        array.Transform(static_cast<vtkIdType>(begin), images);
       }
       outside += outsideHere;
     });
   if (isTooFar)
   {
     throw deformvolume::Error("The deformation moves points so far that their coordinates are no " +
-      std::string(moved.Get()->GetDataTypeAsString()) +
+      std::string(moved->GetDataTypeAsString()) +
       " numbers. Check the displacements and DisplacementScale.");
-  }
-  for (const TransformedArray& array : arrays)
-  {
-    deformvolume::ParallelForParts(places.size(), PointsPerPart,
-      [&, copy = deformvolume::MakeVectorCopier(array.Source)](std::size_t begin, std::size_t end)
-      {
-        std::array<glm::dvec3, PointsPerPart> vectors;
-        const auto first = static_cast<vtkIdType>(begin);
-        copy(first, static_cast<vtkIdType>(end - begin), vectors.data());
-        for (std::size_t i = begin; i < end; ++i)
-        {
-          array.Transform(static_cast<vtkIdType>(i), gradients[i], vectors[i - begin]);
-        }
-      });
   }
   output->ShallowCopy(input);
   vtkNew<vtkPoints> points;
-  points->SetData(moved.Get());
+  points->SetData(moved);
   output->SetPoints(points);
   vtkPointData* pointData = output->GetPointData();
   for (const TransformedArray& array : arrays)
   {
     if (array.Attribute < 0)
     {
-      pointData->AddArray(array.Output.Get());
+      pointData->AddArray(array.Output);
     }
     else
     {
-      pointData->SetAttribute(array.Output.Get(), array.Attribute);
+      pointData->SetAttribute(array.Output, array.Attribute);
     }
   }
   pointData->AddArray(mask);

@@ -269,6 +269,12 @@ void TestMisuse()
     misuse.Expect("Point 5 of the point set on input port 0 is not finite");
   }
 
+  auto shortNormals = MakePoints(std::vector<glm::dvec3>(7, glm::dvec3(2.0)));
+  shortNormals->GetPointData()->SetNormals(
+    AddArray(MakePoints({ glm::dvec3(1.0) }), "n", Shift(0.0, 0.0, 1.0)));
+  filter->SetInputData(shortNormals);
+  misuse.Expect("The point array \"n\" on input port 0 has 1 tuples, but there are 7 points");
+
   vtkNew<vtkPlaneSource> plane;
   plane->Update();
   vtkNew<vtkUnstructuredGrid> triangles;
