@@ -8,7 +8,8 @@
 #   library   to build the library and its Python package against VTK
 #   example   to build and run the programs in Examples
 #   test      to build and run the tests
-#   readers   to compare volumes and transforms with other programs: from PyPI into build/readers
+#   readers   to compare volumes and transforms with other programs, from PyPI into build/readers, and
+#             to run solvers whose results are read
 #   benchmark to measure and draw the results, besides test
 #   paraview  to build and test against ParaView's VTK on the same machine
 #   check     to check the style of the sources
@@ -23,7 +24,7 @@ declare -A packages=(
   [example]="libcli11-dev libinsighttoolkit5-dev mricron-data xvfb xauth"
   [test]="libgtest-dev libbenchmark-dev libopenmpi-dev openmpi-bin oclgrind python3-numpy python3-xlib
     mricron-data xvfb xauth"
-  [readers]="python3-venv"
+  [readers]="python3-venv calculix-ccx"
   [benchmark]="python3-matplotlib"
   [paraview]="paraview paraview-dev libopenmpi-dev libdouble-conversion-dev libutfcpp-dev
     liblz4-dev liblzma-dev libgl-dev libopengl-dev libx11-dev libglew-dev libfreetype-dev"
@@ -33,7 +34,7 @@ declare -A packages=(
   [gpu-compilers]="clang-15 libclc-15 llvm-spirv-15 spirv-tools rocm-device-libs oclgrind"
 )
 # Left out where the system has none: the tests that want them are skipped.
-optional="oclgrind"
+optional="oclgrind calculix-ccx"
 
 version() # of an installed package; empty where it is not installed
 {
@@ -143,12 +144,13 @@ paraview_prefix()
   echo "$wanted" >$prefix/version
 }
 
-# SimpleITK, nibabel, pydicom and pynrrd, which Debian has not or in other versions, with a Python of
-# their own.
+# SimpleITK, nibabel, pydicom, pynrrd and ccx2paraview, which Debian has not or in other versions, with
+# a Python of their own. ccx2paraview needs VTK beside it: PYTHONPATH has to name one.
 readers()
 {
   local folder=build/readers wanted
-  local programs=("SimpleITK>=2.5.2,<2.6" "nibabel>=5.3,<6" "pydicom>=3.0,<4" "pynrrd>=1.1,<2")
+  local programs=("SimpleITK>=2.5.2,<2.6" "nibabel>=5.3,<6" "pydicom>=3.0,<4" "pynrrd>=1.1,<2"
+    "ccx2paraview>=3.2,<4")
   wanted="$(/usr/bin/python3 --version) ${programs[*]}"
   [ "$(cat $folder/version 2>/dev/null)" = "$wanted" ] && return
   echo "Installing ${programs[*]} from PyPI in $folder"

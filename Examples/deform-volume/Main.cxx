@@ -178,10 +178,9 @@ PictureOptions GetPictureOptions(
   return picture;
 }
 
-void PrintSummary(vtkDeformVolumeFilter* filter, const Volume& volume, const LabelVolume& labels,
-  const Deformation& deformation, const std::vector<std::string>& tools, const TimingTable& timings)
+void PrintInputs(const Volume& volume, const LabelVolume& labels, const Deformation& deformation,
+  const std::vector<std::string>& tools)
 {
-  vtkImageData* result = filter->GetOutput();
   vtkDataArray* scalars = volume.Image->GetPointData()->GetScalars();
   std::cout << "volume     " << GetDimensionsText(volume.Image) << " voxels, "
             << scalars->GetDataTypeAsString() << "\n";
@@ -214,10 +213,13 @@ void PrintSummary(vtkDeformVolumeFilter* filter, const Volume& volume, const Lab
   {
     std::cout << "cut        " << tool << "\n";
   }
-  std::cout << "result     " << GetDimensionsText(result) << " voxels, background "
+}
+
+void PrintResult(vtkDeformVolumeFilter* filter)
+{
+  std::cout << "result     " << GetDimensionsText(filter->GetOutput()) << " voxels, background "
             << filter->GetBackgroundValue() << "\n\n"
             << filter->GetSummary() << "\n\n";
-  timings.Print(std::cout);
 }
 
 // The grid of the result, in the world of the volume.
@@ -335,6 +337,17 @@ void DeformVolume(const Options& options, Messages& messages)
                                      : "read mesh",
     meshing.GetSeconds() - movieTime);
 
+  if (!options.WritesResult())
+  {
+    if (!options.Quiet)
+    {
+      PrintInputs(volume, labels, deformation, tools);
+      std::cout << "\n";
+      timings.Print(std::cout);
+    }
+    return;
+  }
+
   const Stopwatch deforming;
   deform(deformation);
   if (options.FieldIsInverse && filter->GetNumberOfInvertedTetrahedra() > 0)
@@ -386,7 +399,9 @@ void DeformVolume(const Options& options, Messages& messages)
   }
   if (!options.Quiet)
   {
-    PrintSummary(filter, volume, labels, deformation, tools, timings);
+    PrintInputs(volume, labels, deformation, tools);
+    PrintResult(filter);
+    timings.Print(std::cout);
   }
 }
 }

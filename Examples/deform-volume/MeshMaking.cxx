@@ -75,7 +75,8 @@ vtkSmartPointer<vtkUnstructuredGrid> Mesh(
   deformation.Body = body.str();
   std::ostringstream edges;
   edges.precision(3);
-  edges << "about " << mesher->GetUsedTargetEdgeLength() << " away from pushes";
+  edges << "about " << mesher->GetUsedTargetEdgeLength()
+        << (options.Pushes.empty() ? "" : " away from pushes");
   deformation.Edges.push_back(edges.str());
   if (!options.Labels)
   {
@@ -116,7 +117,7 @@ void PushNodes(const Options& options, const vtkSmartPointer<vtkUnstructuredGrid
     }
     CheckEdges(push, mesh, messages, deformation);
   }
-  if (ApplyPushes(options.Pushes, mesh) == 0)
+  if (ApplyPushes(options.Pushes, mesh) == 0 && !options.Pushes.empty())
   {
     messages.DisplayWarningText("No node of the mesh lies within the radius of a push, so that "
                                 "nothing moves. Are the coordinates those of the file?");

@@ -160,6 +160,10 @@ void CheckDeformation(const Options& options)
     (options.Model == "chainmail");
   if (deformations == 0 && options.HasTools())
   {
+    if (!options.MeshOutput.empty())
+    {
+      throw UsageError("--write-mesh goes with --tetgen or --lattice");
+    }
     if (!options.Displacement.empty() || options.Scale != 1.0 || !options.Pushes.empty())
     {
       throw UsageError("--push, --displacement and --scale need a --mesh, --field, --tetgen or "
@@ -211,7 +215,8 @@ void CheckDeformation(const Options& options)
     throw UsageError(std::string(options.Scale != 1.0 ? "--scale" : "--displacement") +
       " requires --mesh or --field");
   }
-  else if (options.Transforms.empty() && options.Model.empty() && options.Pushes.empty())
+  else if (options.Transforms.empty() && options.Model.empty() && options.Pushes.empty() &&
+    (options.WritesResult() || options.MeshOutput.empty()))
   {
     throw UsageError("--tetgen and --lattice need at least one --push X,Y,Z,DX,DY,DZ,RADIUS, or "
                      "--model");
@@ -273,11 +278,9 @@ void CheckOptions(const Options& options)
     throw UsageError(
       "--mesh-space requires --mesh or --cut, or --points of the types .vtp or .vtu");
   }
-  if (options.Outputs.empty() && options.LabelOutputs.empty() && options.Jacobians.empty() &&
-    options.InverseFields.empty() && options.PointsOutputs.empty() && options.Image.empty() &&
-    options.Movie.empty())
+  if (!options.WritesResult() && options.MeshOutput.empty())
   {
-    throw UsageError("nothing to write: give --output, --image or --movie");
+    throw UsageError("nothing to write: give --output, --image, --movie or --write-mesh");
   }
   if (!options.Movie.empty() && !CanWriteMovie(options.Movie))
   {

@@ -493,7 +493,8 @@ void AddOutput(CLI::App& program, Options& options, RawOptions& raw)
   program
     .add_option("--write-mesh", options.MeshOutput,
       "The mesh of --tetgen or --lattice at rest, in the world of the volume, with the point array "
-      "\"Displacement\" (.vtu)")
+      "\"Displacement\" (.vtu). Without any other output and without --push it is the mesh for "
+      "another solver")
     ->type_name("FILE")
     ->group(group);
   program

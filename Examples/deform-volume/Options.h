@@ -85,6 +85,13 @@ struct Options
   std::optional<std::array<double, 3>> View;
   bool Quiet = false;
 
+  /// Whether the volume is deformed. Otherwise --write-mesh writes a mesh, and that is all.
+  bool WritesResult() const
+  {
+    return !this->Outputs.empty() || !this->LabelOutputs.empty() || !this->Jacobians.empty() ||
+      !this->InverseFields.empty() || !this->PointsOutputs.empty() || !this->Image.empty() ||
+      !this->Movie.empty();
+  }
   bool HasTools() const { return !this->Cuts.empty() || !this->Carvings.empty(); }
   /// Whether --cut cuts the mesh of a model, where the volume opens, and not the volume.
   bool CutsMesh() const { return !this->Cuts.empty() && this->HasElasticModel(); }

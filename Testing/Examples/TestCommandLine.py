@@ -49,6 +49,11 @@ fails(2, "radius", path("in.vti"), *lattice, "--push", "1,2,3,4,5,6,0", "-o", pa
 fails(2, "at least 2 nodes", path("in.vti"), "--lattice", "3,1,3", *push, "-o", path("o.vti"))
 fails(2, "three node counts", path("in.vti"), "--lattice", "3,3", *push, "-o", path("o.vti"))
 fails(2, "nothing to write", path("in.vti"), *lattice, *push)
+fails(2, "at least one --push", path("in.vti"), *lattice)
+fails(2, "at least one --push", path("in.vti"), *lattice, "-o", path("o.vti"), "--write-mesh",
+      path("m.vtu"))
+fails(2, "--write-mesh goes with --tetgen or --lattice", path("in.vti"), "--carve",
+      "sphere:9,20,25,5", "-o", path("o.vti"), "--write-mesh", path("m.vtu"))
 fails(2, "must end in .vti", path("in.vti"), *lattice, *push, "-o", path("o.jpg"))
 fails(2, "must end in .png", path("in.vti"), *lattice, *push, "--image", path("o.jpg"))
 fails(2, "--displacement", path("in.vti"), "--mesh", path("m.vtu"), "-o", path("o.vti"))
@@ -191,6 +196,16 @@ moves = vtk_to_numpy(mesh.GetPointData().GetArray("Displacement"))
 distance = numpy.linalg.norm(points - (9.0, 20.0, 25.0), axis=1) / 15.0
 profile = numpy.where(distance < 1, (1 - distance ** 2) ** 2, 0.0)
 assert numpy.allclose(moves, profile[:, None] * (3.0, 0.0, 0.0), atol=1e-12)
+
+# The mesh alone, for another solver.
+output, errors = call(program, path("in.vti"), *lattice, "--write-mesh", path("alone.vtu"))
+assert "504 nodes" in output and errors == "", (output, errors)
+reader = vtkXMLUnstructuredGridReader()
+reader.SetFileName(path("alone.vtu"))
+reader.Update()
+alone = reader.GetOutput()
+assert numpy.array_equal(vtk_to_numpy(alone.GetPoints().GetData()), points)
+assert not vtk_to_numpy(alone.GetPointData().GetArray("Displacement")).any()
 
 # The mesh that was written gives the same again, and so does the pair of rest and deformed mesh.
 call(program, path("in.vti"), "--mesh", path("mesh.vtu"), "--displacement", "Displacement", "-o",
