@@ -349,10 +349,10 @@ public:
   ///@{
   /**
    * Whether the output has a point array "RestPosition" (float, three components): where what a
-   * voxel shows lies at rest, in world coordinates, interpolated as the other arrays are. It is the
-   * inverse of the deformation: RestPosition minus the voxel's own position is the displacement
-   * field that resampling programs take. Takes 12 bytes a voxel of the volume and of the output.
-   * Default: off.
+   * voxel shows lies at rest, in world coordinates, interpolated as the other arrays are, but
+   * linearly with NEAREST_INTERPOLATION. It is the inverse of the deformation: RestPosition minus
+   * the voxel's own position is the displacement field that resampling programs take. Takes 12
+   * bytes a voxel of the volume and of the output. Default: off.
    */
   vtkSetMacro(GenerateRestPositions, bool);
   vtkGetMacro(GenerateRestPositions, bool);
@@ -381,7 +381,7 @@ public:
    * sampling mesh hold a voxel, of which the output shows one. 1 where nothing is folded, more
    * where the volume lies over itself, and 0 where it covers nothing. Where cells at the boundary
    * of the deformation mesh lie over others only these others are counted, and with FieldIsInverse
-   * each covered voxel has 1. All of the output is made anew at each update. A mesh with
+   * each covered voxel has 1. All of the output is resampled at each update. A mesh with
    * MESH_RASTERIZATION is an error. Default: off.
    */
   vtkSetMacro(GenerateFoldCount, bool);
@@ -394,10 +394,12 @@ public:
    * Names of point arrays that hold amounts for each unit of volume, such as a dose, an activity or
    * a density: their values are divided by the Jacobian, so that their sum, times the volume of a
    * voxel, stays that of the volume at rest. In the output they are of float, or stay double. Where
-   * the Jacobian is not greater than 0 they have BackgroundValue. Where the volume folds only one
-   * of the parts that lie in one place is seen: a warning tells the share that is lost, and how
-   * many voxels have no value. A name that no numeric array has, or that of a categorical array, is
-   * an error. What is said of the resampler and of reading in GenerateJacobian holds here, too.
+   * the Jacobian is not greater than 0 they have BackgroundValue. Where the volume folds, several
+   * parts of it lie in one place, and the output shows one of them. A warning gives the share of
+   * the volume that is hidden, and the number of voxels without a value. All of the output is
+   * resampled at each update. A name that no numeric array has, or that of a categorical array, is
+   * an error. As with GenerateJacobian, the volume is read whole, and a mesh with
+   * MESH_RASTERIZATION is an error.
    */
   void AddDensityArray(const char* name);
   void RemoveDensityArray(const char* name);

@@ -369,7 +369,8 @@ int vtkDeformVolumeFilter::RequestData(
   const auto deform = [&]
   {
     checkMemory(request.OutputExtent, request.Method);
-    state.Extra.Compute(deformation, state.Mapping, mapped, source.ToOutput, {});
+    state.Extra.Compute(
+      deformation, state.Mapping, mapped, source.ToOutput, this->Internals->GetProgress(0.0, 0.3));
     device.SetVolume(voxelGrid, worked, arrays, this->BackgroundValue, deformation, mapped.Outside,
       request.Method);
     if (request.Method == deformvolume::Resampling::MeshRasterization)
@@ -397,7 +398,9 @@ int vtkDeformVolumeFilter::RequestData(
     deformvolume::SetTransform(image, outputGeometry);
     image->GetFieldData()->ShallowCopy(volume->GetFieldData());
     state.Outputs.Make(arrays, request);
-    request.Incremental = this->Incremental && !this->GenerateFoldCount;
+    // What folds hide is counted in a whole pass only.
+    request.Incremental =
+      this->Incremental && !this->GenerateFoldCount && this->Internals->DensityArrays.empty();
     request.FoldCounts = state.Extra.MakeFoldCounts(numberOfPoints);
     request.MayStayOnDevice = this->OutputOnDevice;
 

@@ -109,6 +109,8 @@ public:
   /// not-a-number.)
   std::vector<unsigned char> FindUndefinedVoxels(
     const Extent& part, const OutsideVoxels& outside) const;
+  /// The undefined points of a field, one byte each; empty where there are none.
+  const std::vector<unsigned char>& GetUndefinedPoints() const { return this->UndefinedPoints; }
   std::uint64_t GetUndefinedVersion() const
   {
     return this->UndefinedPoints.empty() || !this->Field || this->IsInverseField()

@@ -107,6 +107,7 @@ void ExtraArrays::Select(const ExtraArraysWish& wish, const ImageGeometry& volum
   if (wish.RestPositions)
   {
     checkName(POSITIONS);
+    std::for_each(POSITION_AXES.begin(), POSITION_AXES.end(), checkName);
     this->UpdateRestPositions(volume);
     for (const auto& positions : this->Positions)
     {
@@ -204,7 +205,8 @@ void ExtraArrays::Compute(const Deformation& deformation, MappingCache& mapping,
   }
   float* jacobians = this->Jacobians->GetPointer(0);
   const JacobiansKey key{ deformation.IsField() ? 0 : mapping.GetVersion(),
-    deformation.GetVectorsVersion(), volume.Whole, toOutput, volume.Outside };
+    deformation.GetVectorsVersion(), deformation.GetUndefinedVersion(), volume.Whole, toOutput,
+    volume.Outside };
   const bool hasMapping = deformation.IsField() ||
     (this->MappingVersion == mapping.GetVersion() && mapping.IsCurrent(deformation, volume));
   if (hasMapping && this->KeyOfJacobians == key)
@@ -214,7 +216,7 @@ void ExtraArrays::Compute(const Deformation& deformation, MappingCache& mapping,
   if (deformation.IsField())
   {
     ComputeFieldJacobians({ volume.Part, toOutput, volume.Whole.PointExtent },
-      deformation.GetField(volume.Outside), jacobians);
+      deformation.GetField(volume.Outside), deformation.GetUndefinedPoints(), jacobians);
   }
   else
   {

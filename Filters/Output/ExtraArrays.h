@@ -89,14 +89,15 @@ private:
   {
     std::uint64_t Mapping = 0;
     std::uint64_t Vectors = 0;
+    std::uint64_t Undefined = 0;
     ImageGeometry Volume;
     OutputMap ToOutput;
     OutsideVoxels Outside;
     bool operator==(const JacobiansKey& other) const
     {
       return this->Mapping == other.Mapping && this->Vectors == other.Vectors &&
-        this->Volume == other.Volume && this->ToOutput == other.ToOutput &&
-        this->Outside == other.Outside;
+        this->Undefined == other.Undefined && this->Volume == other.Volume &&
+        this->ToOutput == other.ToOutput && this->Outside == other.Outside;
     }
   };
   JacobiansKey KeyOfJacobians;

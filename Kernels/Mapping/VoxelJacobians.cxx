@@ -47,13 +47,43 @@ void ForEachVoxel(const Extent& voxels, Body&& body)
     });
 }
 
+bool IsUndefined(const glm::dvec3& vector)
+{
+  return glm::any(glm::isnan(vector));
+}
+
+// The slope of a function between two places. An undefined value would make it not-a-number, so
+// the one in the middle takes its place; without two values the slope is 0.
+template <typename Function>
+glm::dvec3 GetSlope(double low, double middle, double high, const Function& getValue)
+{
+  glm::dvec3 before = getValue(low);
+  if (IsUndefined(before))
+  {
+    low = middle;
+    before = getValue(low);
+  }
+  glm::dvec3 after = getValue(high);
+  if (IsUndefined(after))
+  {
+    high = middle;
+    after = getValue(high);
+  }
+  return high > low && !IsUndefined(before) && !IsUndefined(after) ? (after - before) / (high - low)
+                                                                   : glm::dvec3(0.0);
+}
+
 // A displacement field of which derivatives are taken.
 class DerivedField
 {
 public:
-  DerivedField(const DisplacementField& field, bool isMapped)
+  // undefined: the points that have no vector, one byte each, besides those whose vector is
+  // not-a-number; empty: none.
+  DerivedField(
+    const DisplacementField& field, bool isMapped, const std::vector<unsigned char>& undefined = {})
     : Field(field)
     , IsMapped(isMapped)
+    , Undefined(undefined)
     , ToField(GetVoxelsToField(field))
     , Offset(field.IndexToField[3], field.IndexToField[7], field.IndexToField[11])
     , Last(field.Dimensions[0] - 1, field.Dimensions[1] - 1, field.Dimensions[2] - 1)
@@ -70,10 +100,13 @@ public:
     {
       for (int axis = 0; axis < 3; ++axis)
       {
-        glm::dvec3 step(0.0);
-        step[axis] = 0.5;
-        derivative[axis] = this->Displace(this->ToField * (index + step) + this->Offset) -
-          this->Displace(this->ToField * (index - step) + this->Offset);
+        derivative[axis] = GetSlope(index[axis] - 0.5, index[axis], index[axis] + 0.5,
+          [&](double place)
+          {
+            glm::dvec3 moved = index;
+            moved[axis] = place;
+            return this->Displace(this->ToField * moved + this->Offset);
+          });
       }
       return derivative;
     }
@@ -86,36 +119,54 @@ public:
       const double reach = 0.5 *
         std::max({ std::abs(this->ToField[0][axis]), std::abs(this->ToField[1][axis]),
           std::abs(this->ToField[2][axis]) });
-      glm::dvec3 low = glm::clamp(position, glm::dvec3(0.0), this->Last);
-      glm::dvec3 high = low;
-      low[axis] = std::max(low[axis] - reach, 0.0);
-      high[axis] = std::min(high[axis] + reach, this->Last[axis]);
-      if (high[axis] > low[axis])
-      {
-        alongField[axis] =
-          (this->Interpolate(high) - this->Interpolate(low)) / (high[axis] - low[axis]);
-      }
+      const glm::dvec3 middle = glm::clamp(position, glm::dvec3(0.0), this->Last);
+      alongField[axis] = GetSlope(std::max(middle[axis] - reach, 0.0), middle[axis],
+        std::min(middle[axis] + reach, this->Last[axis]),
+        [&](double place)
+        {
+          glm::dvec3 moved = middle;
+          moved[axis] = place;
+          return this->Interpolate(moved);
+        });
     }
     return alongField * this->ToField;
   }
 
 private:
+  glm::dvec3 GetPoint(std::int64_t point) const
+  {
+    if (!this->Undefined.empty() && this->Undefined[static_cast<std::size_t>(point)] != 0)
+    {
+      return glm::dvec3(std::numeric_limits<double>::quiet_NaN());
+    }
+    return this->IsMapped ? GetVector(this->Field, point) : GetVector(this->Field.Vectors, point);
+  }
+  // Not-a-number where an undefined point counts.
   glm::dvec3 Interpolate(const glm::dvec3& position) const
   {
-    return deformvolume::Interpolate(this->Field, position,
-      [this](std::int64_t point) {
-        return this->IsMapped ? GetVector(this->Field, point)
-                              : GetVector(this->Field.Vectors, point);
-      });
+    const auto getPoint = [this](std::int64_t point) { return this->GetPoint(point); };
+    const glm::dvec3 vector = deformvolume::Interpolate(this->Field, position, getPoint);
+    if (!IsUndefined(vector))
+    {
+      return vector;
+    }
+    // Rounding may have given an undefined point a weight.
+    const glm::dvec3 nearest = glm::round(position);
+    const auto isNear =
+      glm::lessThanEqual(glm::abs(position - nearest), glm::dvec3(FieldTolerance));
+    return deformvolume::Interpolate(this->Field, glm::mix(position, nearest, isNear), getPoint);
   }
   glm::dvec3 Displace(const glm::dvec3& position) const
   {
-    return GetWeightBeyond(this->Field, position, FieldTolerance) *
-      this->Interpolate(glm::clamp(position, glm::dvec3(0.0), this->Last));
+    const double weight = GetWeightBeyond(this->Field, position, FieldTolerance);
+    return weight > 0.0
+      ? weight * this->Interpolate(glm::clamp(position, glm::dvec3(0.0), this->Last))
+      : glm::dvec3(0.0); // whatever the point of the border is
   }
 
   const DisplacementField& Field;
   const bool IsMapped; // whether its matrix is applied to its vectors
+  const std::vector<unsigned char> Undefined;
   const glm::dmat3 ToField;
   const glm::dvec3 Offset;
   const glm::dvec3 Last;
@@ -258,12 +309,12 @@ void VoxelJacobians::ComputeOutside(
     });
 }
 
-void ComputeFieldJacobians(
-  const VoxelGrid& voxelGrid, const DisplacementField& field, float* jacobians)
+void ComputeFieldJacobians(const VoxelGrid& voxelGrid, const DisplacementField& field,
+  const std::vector<unsigned char>& undefined, float* jacobians)
 {
   const glm::dmat3 atRest = GetOutputTransform(voxelGrid).GetMatrix();
   const double volume = glm::determinant(atRest);
-  const DerivedField derived(field, true);
+  const DerivedField derived(field, true, undefined);
   ForEachVoxel(voxelGrid.VertexExtent,
     [&](const glm::ivec3& index, std::int64_t voxel)
     {

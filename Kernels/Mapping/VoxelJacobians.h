@@ -54,9 +54,10 @@ private:
 };
 
 /// The same of a forward displacement field, from the differences of displacements half a voxel
-/// before and after each voxel.
-DEFORMVOLUME_EXPORT void ComputeFieldJacobians(
-  const VoxelGrid& voxelGrid, const DisplacementField& field, float* jacobians);
+/// before and after each voxel, or on one side of it where the other is undefined. undefined: one
+/// byte a point of the field; empty: all are defined.
+DEFORMVOLUME_EXPORT void ComputeFieldJacobians(const VoxelGrid& voxelGrid,
+  const DisplacementField& field, const std::vector<unsigned char>& undefined, float* jacobians);
 
 /// The same at the voxels of an output, of an inverse field, which leads from them to the places at
 /// rest that are seen there. Infinite where it leads many of them to one place.

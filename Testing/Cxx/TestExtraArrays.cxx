@@ -133,7 +133,7 @@ void TestMisuse()
   filter->SetResamplerToMeshRasterization();
   refuse("cannot do Jacobians of meshes");
   filter->SetResamplerToAutomatic();
-  for (const char* name : { "Jacobian", "RestPosition" })
+  for (const char* name : { "Jacobian", "RestPosition", "RestPosition y" })
   {
     volume->GetPointData()->SetActiveScalars(nullptr); // else they would be replaced
     AddScalars<float>(volume, name, [](const glm::dvec3& p) { return p.x; });
@@ -359,10 +359,70 @@ void TestKept()
   }
 }
 
+// Beside undefined points of a field the Jacobian is that of the points that are defined.
+void TestHoles()
+{
+  const glm::dmat3 matrix(1.2, 0.1, -0.05, -0.15, 0.85, 0.1, 0.05, -0.1, 1.1);
+  const auto map = [&](const glm::dvec3& p) { return matrix * p + glm::dvec3(3.0, -2.0, 1.0); };
+  const auto back = [&](const glm::dvec3& p)
+  { return glm::inverse(matrix) * (p - glm::dvec3(3.0, -2.0, 1.0)); };
+  const auto volume = MakeDose({ { 0, 23, 0, 21, 0, 19 } });
+  for (const double spacing : { 1.0, 2.5 })
+  {
+    for (const bool isInverse : { false, true })
+    {
+      const auto field = MakeImage({ { 0, 40, 0, 40, 0, 40 } }, glm::dvec3(spacing),
+        glm::dvec3(-7.0, 3.0, 11.0) - 5.0 * spacing);
+      if (isInverse)
+      {
+        SetDisplacements(field, back);
+      }
+      else
+      {
+        SetDisplacements(field, map);
+      }
+      vtkNew<vtkUnsignedCharArray> ghosts;
+      ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+      ghosts->SetNumberOfTuples(field->GetNumberOfPoints());
+      ghosts->Fill(0.0);
+      Derived subject(volume, field);
+      subject.Filter->SetFieldIsInverse(isInverse);
+      subject.Expect("");
+      const std::int64_t covered = subject.Filter->GetNumberOfCoveredVoxels();
+      // Whose vectors are zero, so that nothing else of the field changes.
+      for (int z = 8; z < 11; ++z)
+      {
+        int hidden[3] = { 10, 9, z };
+        const vtkIdType id = field->ComputePointId(hidden);
+        field->GetPointData()->GetVectors()->SetTuple3(id, 0.0, 0.0, 0.0);
+        ghosts->SetValue(id, vtkDataSetAttributes::HIDDENPOINT);
+      }
+      field->GetPointData()->GetVectors()->Modified();
+      field->GetPointData()->AddArray(ghosts);
+      field->Modified();
+      vtkImageData* output = subject.Expect("");
+      VERIFY(subject.Filter->GetNumberOfCoveredVoxels() < covered);
+      double worst = 0.0;
+      for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
+      {
+        const double jacobian = subject.Get("Jacobian")->GetComponent(id, 0);
+        const double difference = std::abs(jacobian - glm::determinant(matrix));
+        worst = !subject.IsCovered(id) || difference <= worst ? worst : difference;
+      }
+      VERIFY(worst < 1e-5);
+    }
+  }
+}
+
 // A fold: one warning says what is lost, and what is inside out has no density.
 void TestFolds()
 {
   const auto volume = MakeDose();
+  vtkNew<vtkUnsignedCharArray> active;
+  active->SetName("ActiveTetrahedra");
+  active->SetNumberOfTuples(volume->GetNumberOfCells());
+  active->Fill(31);
+  volume->GetCellData()->AddArray(active);
   const auto mesh = MakeMesh(volume, 9, 0.5);
   double center[3];
   volume->GetCenter(center);
@@ -385,6 +445,10 @@ void TestFolds()
   }
   // Upright parts win, but their values are not those of the others.
   VERIFY(Sum(output, "activity") < 0.95 * Sum(volume, "activity"));
+  // The same share is lost where little changes.
+  active->SetValue(0, 0);
+  active->Modified();
+  subject.Expect("");
   subject.Filter->SetPadding(1);
   subject.Expect("");
   SetDisplacements(mesh, Shift(1.0, 0.0, 0.0));
@@ -494,8 +558,10 @@ void TestIncremental()
   active->SetNumberOfTuples(volume->GetNumberOfCells());
   active->Fill(31);
   volume->GetCellData()->AddArray(active);
-  for (const bool keeps : { false, true })
+  // Without densities the output is made of the last one.
+  for (const int kind : { 0, 1, 2, 3 })
   {
+    const bool keeps = kind % 2 == 1;
     const auto mesh = MakeMesh(volume, 7, keeps ? -7.2 : 0.5);
     SetDisplacements(mesh, Shift(0.25, 0.0, 0.0));
     Derived subject(volume, mesh);
@@ -504,6 +570,10 @@ void TestIncremental()
       filter->SetOutputBoundsModeToVolumeBounds();
       filter->SetOutsideMode(keeps ? vtkDeformVolumeFilter::KEEP : vtkDeformVolumeFilter::DISCARD);
       filter->SetFadeDistance(6.0);
+      if (kind > 1)
+      {
+        filter->ClearDensityArrays();
+      }
     };
     set(subject.Filter);
     subject.Expect("");
@@ -552,6 +622,7 @@ int TestExtraArrays(int, char*[])
   TestAffine();
   TestSums();
   TestKept();
+  TestHoles();
   TestFolds();
   TestFoldCounts();
   TestIncremental();
