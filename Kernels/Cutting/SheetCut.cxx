@@ -67,7 +67,7 @@ private:
 
   std::vector<SnappedTriangle> Triangles;
   std::vector<TriangleCrossing> Crossings;
-  BoxTree Tree;
+  BoxTree<SnappedBox> Tree;
 };
 
 // A vertex at the upper end of the box is moved out of it.

@@ -123,7 +123,7 @@ private:
   }
 
   std::vector<RayTriangle> Triangles;
-  BoxTree Tree;
+  BoxTree<SnappedBox> Tree;
 };
 
 } // namespace

@@ -11,6 +11,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +21,7 @@
 namespace deformvolume
 {
 
-/// A box in continuous output indices.
+/// A box, in continuous output indices where nothing else is said.
 struct IndexBounds
 {
   glm::dvec3 Min{ 1.0 };
@@ -44,6 +45,13 @@ struct IndexBounds
       this->Add(other.Min);
       this->Add(other.Max);
     }
+  }
+  /// False where one of them is empty.
+  bool Overlaps(const IndexBounds& other) const
+  {
+    return !this->IsEmpty() && !other.IsEmpty() &&
+      glm::all(glm::lessThanEqual(this->Min, other.Max)) &&
+      glm::all(glm::lessThanEqual(other.Min, this->Max));
   }
 };
 

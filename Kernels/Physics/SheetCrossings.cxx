@@ -75,8 +75,7 @@ MeshSteps::MeshSteps(const glm::dvec3& low, const glm::dvec3& high)
 
 SheetCrossings::SheetCrossings(const MeshSteps& steps, const std::vector<glm::dvec3>& points,
   const std::vector<Sheet::Triangle>& triangles, int depth)
-  : Tree({})
-  , Cells(std::int64_t{ 1 } << depth)
+  : Cells(std::int64_t{ 1 } << depth)
   , CellSize(MeshSteps::Length >> depth)
   , CellShift(0)
 {
@@ -94,7 +93,8 @@ SheetCrossings::SheetCrossings(const MeshSteps& steps, const std::vector<glm::dv
   {
     this->Crossings.emplace_back(triangle);
   }
-  this->Tree = BoxTree(divided, [](const SnappedTriangle& triangle) { return GetBox(triangle); });
+  this->Tree =
+    BoxTree<SnappedBox>(divided, [](const SnappedTriangle& triangle) { return GetBox(triangle); });
   this->Sums.assign(this->GetPlace(0, 0, this->Cells + 1), 0);
   std::vector<std::size_t> numbers(divided.size());
   std::iota(numbers.begin(), numbers.end(), std::size_t{ 0 });

@@ -76,7 +76,7 @@ private:
   }
 
   std::vector<TriangleCrossing> Crossings;
-  BoxTree Tree;
+  BoxTree<SnappedBox> Tree;
   std::int64_t Cells;    // an axis
   std::int64_t CellSize; // steps
   int CellShift;         // its logarithm: divisions would take most of the time

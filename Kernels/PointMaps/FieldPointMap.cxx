@@ -2,8 +2,9 @@
 #include "FieldPointMap.h"
 
 #include "BarycentricMap.h"
-#include "BoxPyramid.h"
+#include "BoxTree.h"
 #include "FiveTetrahedra.h"
+#include "IndexBounds.h"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -160,9 +161,9 @@ public:
   }
 
   /// The box of a cell that has been moved, wider by a tolerance.
-  BoxPyramid::Box GetBox(const Corners& moved) const
+  IndexBounds GetBox(const Corners& moved) const
   {
-    BoxPyramid::Box box;
+    IndexBounds box;
     for (const glm::dvec3& corner : moved)
     {
       box.Add(corner);
@@ -180,19 +181,13 @@ public:
     const glm::ivec3 blocks = this->GetBlocks();
     const auto count = static_cast<std::size_t>(blocks.x) * static_cast<std::size_t>(blocks.y) *
       static_cast<std::size_t>(blocks.z);
-    this->Boxes = BoxPyramid(count,
-      [&](std::size_t block)
-      {
-        BoxPyramid::Box box;
-        this->ForEachCell(block,
-          [&](const glm::ivec3& cell)
-          {
-            const BoxPyramid::Box one = this->GetBox(this->GetMoved(cell));
-            box.Add(one.Min);
-            box.Add(one.Max);
-          });
-        return box;
-      });
+    std::vector<IndexBounds> boxes(count);
+    for (std::size_t block = 0; block < count; ++block)
+    {
+      this->ForEachCell(block,
+        [&](const glm::ivec3& cell) { boxes[block].Add(this->GetBox(this->GetMoved(cell))); });
+    }
+    this->Boxes = BoxTree<IndexBounds>(std::move(boxes));
   }
 
   /// A place in a cell that is moved to a point.
@@ -322,7 +317,7 @@ public:
   Solution FindInCells(const glm::dvec3& point, bool thorough) const
   {
     Solution best;
-    this->Boxes.Visit(point,
+    this->Boxes.Visit({ point, point },
       [&](std::size_t block)
       {
         this->ForEachCell(block,
@@ -334,13 +329,14 @@ public:
               return;
             }
             const Corners moved = this->GetMoved(cell);
-            const BoxPyramid::Box box = this->GetBox(moved);
-            if (glm::min(box.Min, point) == box.Min && glm::max(box.Max, point) == box.Max)
+            const IndexBounds box = this->GetBox(moved);
+            if (box.Overlaps({ point, point }))
             {
               const Solution found = this->FindInCell(cell, moved, point, thorough);
               best = found.IsBetterThan(best) ? found : best;
             }
           });
+        return true;
       });
     return best;
   }
@@ -353,7 +349,7 @@ public:
   glm::ivec3 Cells{ 1 }; // on each axis; one where all points lie in a plane
   glm::i64vec3 Strides{ 1 };
   double CellSize = 1.0;
-  BoxPyramid Boxes;
+  BoxTree<IndexBounds> Boxes;
 };
 
 FieldPointMap::FieldPointMap(const WorldField& field, const OutsideVoxels& outside, bool isInverse)

@@ -3,8 +3,9 @@
 
 #include "BarycentricMap.h"
 #include "BoundaryFaces.h"
-#include "BoxPyramid.h"
+#include "BoxTree.h"
 #include "ClosestFace.h"
+#include "IndexBounds.h"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -58,44 +59,41 @@ public:
   struct Configuration
   {
     const Points* Places = nullptr;
-    double Size = 0.0; // what tolerances are a part of
-    BoxPyramid Boxes;  // by the tolerance wider
+    double Size = 0.0;          // what tolerances are a part of
+    BoxTree<IndexBounds> Boxes; // by the tolerance wider; empty where there is no volume
   };
 
   Configuration Search(const Points& places) const
   {
     Configuration configuration;
     configuration.Places = &places;
-    BoxPyramid::Box all;
-    for (const Tetrahedron& nodes : this->Tetrahedra)
+    IndexBounds all;
+    std::vector<IndexBounds> boxes(this->Tetrahedra.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i)
     {
-      for (const std::int32_t node : nodes)
+      for (const std::int32_t node : this->Tetrahedra[i])
       {
-        all.Add(At(places, node));
+        boxes[i].Add(At(places, node));
+      }
+      all.Add(boxes[i]);
+    }
+    const glm::dvec3 largest = glm::max(glm::abs(all.Min), glm::abs(all.Max));
+    configuration.Size =
+      glm::length(all.Max - all.Min) + std::max({ largest.x, largest.y, largest.z });
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+    {
+      if (std::isfinite(configuration.Size) &&
+        BarycentricMap().SetTetrahedron(this->Tetrahedra[i], places))
+      {
+        boxes[i].Min -= configuration.Size * MeshBorderTolerance;
+        boxes[i].Max += configuration.Size * MeshBorderTolerance;
+      }
+      else
+      {
+        boxes[i] = IndexBounds();
       }
     }
-    if (!all.IsEmpty())
-    {
-      const glm::dvec3 largest = glm::max(glm::abs(all.Min), glm::abs(all.Max));
-      configuration.Size =
-        glm::length(all.Max - all.Min) + std::max({ largest.x, largest.y, largest.z });
-    }
-    configuration.Boxes = BoxPyramid(this->Tetrahedra.size(),
-      [&](std::size_t number)
-      {
-        BoxPyramid::Box box;
-        BarycentricMap map;
-        if (map.SetTetrahedron(this->Tetrahedra[number], places))
-        {
-          for (const std::int32_t node : this->Tetrahedra[number])
-          {
-            box.Add(At(places, node));
-          }
-          box.Min -= configuration.Size * MeshBorderTolerance;
-          box.Max += configuration.Size * MeshBorderTolerance;
-        }
-        return box;
-      });
+    configuration.Boxes = BoxTree<IndexBounds>(std::move(boxes));
     return configuration;
   }
 
@@ -131,20 +129,20 @@ public:
     const double touching = configuration.Size * MeshFaceTolerance;
     Holder best;
     bool isBestNear = true; // and does not hold the point
-    configuration.Boxes.Visit(point,
+    configuration.Boxes.Visit({ point, point },
       [&](std::size_t i)
       {
         const auto number = static_cast<std::int32_t>(i);
         if (!isBestNear && !best.IsInverted && number > best.Number)
         {
-          return;
+          return true;
         }
         Holder found;
         found.Number = number;
         const Tetrahedron& nodes = this->Tetrahedra[i];
         if (!found.Map.SetTetrahedron(nodes, places))
         {
-          return;
+          return true;
         }
         const glm::dvec4 weights = found.Map.GetAllWeights(point);
         bool holds = true;
@@ -159,7 +157,7 @@ public:
           const double squared = weights[node] * weights[node] / glm::dot(gradient, gradient);
           if (squared > reach * reach)
           {
-            return;
+            return true;
           }
           holds = holds && squared <= touching * touching;
         }
@@ -172,6 +170,7 @@ public:
           best = found;
           isBestNear = !holds;
         }
+        return true;
       });
     return best;
   }
