@@ -3,6 +3,7 @@
 
 #include "Failure.h"
 
+#include <vtkBoundingBox.h>
 #include <vtkCell.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
@@ -258,6 +259,19 @@ void CheckField(vtkImageData* field, const std::string& displacement, const std:
                     : "name the array of displacements with --displacement") +
       "; " + DescribeArrays(arrays));
   }
+}
+
+double GetMeshLength(vtkDataObject* mesh)
+{
+  vtkBoundingBox box;
+  for (const MeshPart& part : FindParts(mesh))
+  {
+    if (vtkImageData::SafeDownCast(part.Data) || HasVolumeCells(part.Data))
+    {
+      box.AddBounds(part.Data->GetBounds());
+    }
+  }
+  return box.IsValid() ? box.GetMaxLength() : 0.0;
 }
 
 void CheckSheet(vtkDataObject* sheet, const std::string& path)

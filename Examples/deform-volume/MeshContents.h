@@ -28,6 +28,9 @@ bool HasVolumeCells(vtkDataSet* data);
 /// array of displacements. displacement: its name, or "" where none is needed.
 void CheckMesh(vtkDataObject* mesh, const std::string& displacement, const std::string& path);
 
+/// The longest side of the box of all parts that can deform a volume.
+double GetMeshLength(vtkDataObject* mesh);
+
 /// Throws a Failure where an image lacks the point array of displacements. Without a name that is
 /// the active vectors, or else the only array of three components.
 void CheckField(vtkImageData* field, const std::string& displacement, const std::string& path);

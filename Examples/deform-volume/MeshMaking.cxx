@@ -11,6 +11,7 @@
 #include "OptionChecks.h"
 #include "ProgressBar.h"
 
+#include <vtkBoundingBox.h>
 #include <vtkImageData.h>
 #include <vtkLatticeTetrahedraSource.h>
 #include <vtkNew.h>
@@ -153,6 +154,24 @@ void CheckMeshOptions(const Options& options, const Deformation& deformation)
   }
 }
 
+// Metres beside millimetres. Where both surround the origin, the mesh holds some voxels
+// nevertheless.
+void WarnOfUnits(
+  const Options& options, const Volume& volume, const Deformation& deformation, Messages& messages)
+{
+  const double mesh = GetMeshLength(deformation.Rest ? deformation.Rest : deformation.Data);
+  const double image = vtkBoundingBox(volume.Image->GetBounds()).GetMaxLength();
+  if (mesh > 100.0 * image || 100.0 * mesh < image)
+  {
+    std::ostringstream text;
+    text.precision(3);
+    text << (options.Rest.empty() ? options.Mesh : options.Rest) << " is " << mesh
+         << " long, and the volume " << image << ". If one of them is in metres and the other in "
+         << "millimetres, scale the points and the displacements of the mesh.";
+    messages.DisplayWarningText(text.str().c_str());
+  }
+}
+
 void WriteMesh(vtkUnstructuredGrid* mesh, const std::string& path, Messages& messages)
 {
   vtkNew<vtkXMLUnstructuredGridWriter> writer;
@@ -178,6 +197,7 @@ Deformation MakeDeformation(const Options& options, const Volume& volume,
       deformation.Rest = ReadMesh(options.Rest, "", options, volume, messages);
     }
     CheckMeshOptions(options, deformation);
+    WarnOfUnits(options, volume, deformation, messages);
   }
   else if (!options.Field.empty())
   {

@@ -53,6 +53,8 @@ struct Source
   const char* Label;
   Messages& Log;
   bool ShowProgress;
+  /// Whether displacements will be added to the points.
+  bool PointsAreAtRest = false;
 };
 
 void CheckReading(const Source& source, const std::string& format)
@@ -137,7 +139,16 @@ vtkSmartPointer<vtkDataObject> ReadLegacy(const Source& source)
   reader->ReadAllTCoordsOn();
   reader->ReadAllFieldsOn();
   const vtkSmartPointer<vtkDataObject> data = ReadBy(reader.Get(), source, "legacy file of VTK");
-  KeepSpace(data, reader->GetHeader());
+  const std::string header = reader->GetHeader() ? reader->GetHeader() : "";
+  KeepSpace(data, header.c_str());
+  // The first words are those of FEBio Studio. FEBio itself writes points at rest, and "time 0.5".
+  if (source.PointsAreAtRest && header.rfind("vtk output at time", 0) == 0)
+  {
+    source.Log.DisplayWarningText((source.Path +
+      " is an export of FEBio Studio, which writes deformed points. Give --points-are-deformed; "
+      "without it the displacements are added once more.")
+                                    .c_str());
+  }
   return data;
 }
 
@@ -274,7 +285,9 @@ vtkSmartPointer<vtkDataObject> ReadCollection(const Source& source)
       throw Failure("cannot read " + source.Path + ": it names another .pvd file, " + part);
     }
     const unsigned int block = blocks->GetNumberOfBlocks();
-    blocks->SetBlock(block, ReadMeshFile({ part, source.Label, source.Log, source.ShowProgress }));
+    blocks->SetBlock(block,
+      ReadMeshFile(
+        { part, source.Label, source.Log, source.ShowProgress, source.PointsAreAtRest }));
     blocks->GetMetaData(block)->Set(
       vtkCompositeDataSet::NAME(), vtksys::SystemTools::GetFilenameName(part).c_str());
   }
@@ -392,8 +405,8 @@ vtkSmartPointer<vtkDataObject> ReadSheetFile(const Source& source)
 vtkSmartPointer<vtkDataObject> ReadMesh(const std::string& path, const std::string& displacement,
   const Options& options, const Volume& volume, Messages& messages)
 {
-  const vtkSmartPointer<vtkDataObject> mesh =
-    ReadMeshFile({ path, "reading mesh", messages, !options.Quiet });
+  const vtkSmartPointer<vtkDataObject> mesh = ReadMeshFile({ path, "reading mesh", messages,
+    !options.Quiet, !displacement.empty() && !options.PointsAreDeformed });
   CheckMesh(mesh, displacement, path);
   TurnIntoWorld(mesh, { displacement }, options.MeshSpace, path, volume.Axes, messages);
   return mesh;
