@@ -8,7 +8,7 @@
 5. deform-volume deforms the volume with them: FOLDER/pressed.nii.gz and FOLDER/pressed.png.
 
 Made for ch2.nii.gz of the package mricron-data. Lengths are in mm, stresses in MPa and forces in N. On Debian:
-apt-get install calculix-ccx python3-vtk9; pip install ccx2paraview."""
+apt-get install calculix-ccx python3-vtk9; Documents/solvers.md says how to install ccx2paraview."""
 import argparse
 import os
 import re

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""deform-volume reads results as FEBio, FEBio Studio and SOFA write them, with the options that Documents/solvers.md gives for
-them, and says what is wrong with other options, other units and meshes that have changed.
+"""deform-volume reads results as FEBio, FEBio Studio and SOFA write them, with the options that Documents/solvers.md gives
+for them, and says what is wrong with other options, other units and meshes that have changed.
 Usage: TestSolvers.py PROGRAM FOLDER"""
 import os
 import sys
