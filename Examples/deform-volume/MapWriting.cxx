@@ -110,19 +110,18 @@ void AskForMaps(const Options& options, vtkDeformVolumeFilter* filter)
 
 void WriteMaps(const Options& options, Volume& deformed, Messages& messages)
 {
+  vtkNew<vtkImageData> left;
+  left->ShallowCopy(deformed.Image);
+  // An array of the volume may have the name of a map that is not written.
   if (!options.Jacobians.empty())
   {
     WriteJacobian(options, deformed, messages);
+    left->GetPointData()->RemoveArray("Jacobian");
   }
   if (!options.InverseFields.empty())
   {
     WriteInverseField(options, deformed, messages);
-  }
-  vtkNew<vtkImageData> left;
-  left->ShallowCopy(deformed.Image);
-  for (const char* name : { "Jacobian", "RestPosition" })
-  {
-    left->GetPointData()->RemoveArray(name);
+    left->GetPointData()->RemoveArray("RestPosition");
   }
   deformed.Image = left;
 }

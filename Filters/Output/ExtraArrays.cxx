@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ExtraArrays.h"
 
+#include "Background.h"
 #include "Error.h"
 #include "ParallelFor.h"
 
@@ -322,7 +323,7 @@ ExtraArrays::Loss ExtraArrays::FinishDensities(const Deformation& deformation,
     {
       if (!valid[i])
       {
-        made->SetValue(i, static_cast<float>(background));
+        made->SetValue(i, ClampTo<float>(background));
       }
     }
     jacobian = made;
@@ -340,7 +341,7 @@ ExtraArrays::Loss ExtraArrays::FinishDensities(const Deformation& deformation,
       ? Divide(static_cast<const double*>(values), components, jacobians, valid, voxels, background,
           static_cast<double*>(divided->GetVoidPointer(0)))
       : Divide(static_cast<const float*>(values), components, jacobians, valid, voxels,
-          static_cast<float>(background), static_cast<float*>(divided->GetVoidPointer(0)));
+          ClampTo<float>(background), static_cast<float*>(divided->GetVoidPointer(0)));
     pointData->AddArray(divided);
   }
   if (!this->Wish.Jacobian)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // OutsideMode KEEP with displacement fields, forward and inverse: tissue beyond their grid stays
-// where it is, and the displacement of their border fades to zero within FadeDistance. What it has
-// to be is told by another field, which has the displacement of each voxel.
+// where it is, and the displacement of their border fades to zero within FadeDistance. The
+// expected result is that of another field, which has the displacement of each voxel.
 #include "FilterTesting.h"
 
 #include "vtkCutVolume.h"

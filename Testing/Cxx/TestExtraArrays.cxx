@@ -445,6 +445,27 @@ void TestFolds()
   }
   // Upright parts win, but their values are not those of the others.
   VERIFY(Sum(output, "activity") < 0.95 * Sum(volume, "activity"));
+  // Where the upright parts are switched off, those that are inside out show. Their background is
+  // that of voxels that are not covered, also where a float cannot hold it.
+  for (vtkIdType id = 0; id < active->GetNumberOfTuples(); ++id)
+  {
+    const vtkIdType x = id % 39;
+    const bool isUpright = x < 14 || x > 24; // not near the middle
+    active->SetValue(id, isUpright && id / 39 % 37 < 12 ? 0 : 31);
+  }
+  active->Modified();
+  subject.Filter->SetBackgroundValue(1e300);
+  output = subject.Expect("which have BackgroundValue");
+  vtkIdType lost = 0;
+  for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
+  {
+    const double jacobian = subject.Get("Jacobian")->GetComponent(id, 0);
+    const double value = subject.Get("dose")->GetComponent(id, 0);
+    const bool isLost = subject.IsCovered(id) && !(jacobian > 0.0);
+    lost += isLost ? 1 : 0;
+    VERIFY((isLost || !subject.IsCovered(id)) == (value == std::numeric_limits<float>::max()));
+  }
+  VERIFY(lost > 500);
   // The same share is lost where little changes.
   active->SetValue(0, 0);
   active->Modified();

@@ -8,7 +8,7 @@ import sys
 
 import numpy
 import Readers
-from Volumes import call, get_values, make_folder, read_vti
+from Volumes import call, get_values, make_folder, read_vti, write_vti
 
 program = sys.argv[1]
 folder = make_folder(sys.argv[2], "Maps")
@@ -77,6 +77,21 @@ for k, j, i in indices.tolist():
     slopes = (values[low[2], low[1], low[0] + 1] - corner, values[low[2], low[1] + 1, low[0]] - corner,
               values[low[2] + 1, low[1], low[0]] - corner)
     assert abs(corner + numpy.dot(t, slopes) - get_values(result)[k, j, i]) < 2e-3
+
+# Arrays of the volume that have the names of maps come out where these are not asked for.
+for name in ("Jacobian", "RestPosition"):
+    array = rest.GetPointData().GetScalars().NewInstance()
+    array.DeepCopy(rest.GetPointData().GetScalars())
+    array.SetName(name)
+    rest.GetPointData().AddArray(array)
+write_vti(rest, path("named.vti"))
+call(program, path("named.vti"), *Readers.still, "-o", path("named-out.vti"))
+named = read_vti(path("named-out.vti"))
+for name in ("Jacobian", "RestPosition"):
+    assert numpy.array_equal(get_values(named, name), get_values(named)), name
+for name, option in (("Jacobian", "--jacobian"), ("RestPosition", "--inverse-field")):
+    _, errors = call(program, path("named.vti"), *Readers.still, option, path("a.vti"), code=1, quiet=True)
+    assert f'has a point array "{name}"' in errors, errors
 
 # The sum of a density stays where the volume is deformed inside only.
 call(program, path("moving.mha"), *forward, "--density-array", "MetaImage",
