@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FieldPointMap.h"
 
-#include "BarycentricMap.h"
 #include "BoxTree.h"
-#include "FiveTetrahedra.h"
 #include "IndexBounds.h"
 
 #include <glm/geometric.hpp>
@@ -261,47 +259,10 @@ public:
     const glm::ivec3& cell, const Corners& moved, const glm::dvec3& point, bool thorough) const
   {
     Solution best = this->Find(cell, moved, point, glm::dvec3(0.5));
-    if (best.Number >= 0 && !best.IsInverted && !best.IsBeside)
+    for (int start = 0; thorough && start < 27; ++start)
     {
-      return best;
-    }
-    // Where the cell is bent or folded, from the places that its five tetrahedra have for the
-    // point.
-    static constexpr int split[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
-    constexpr double slack = 0.25;
-    const std::vector<glm::dvec3> points(moved.begin(), moved.end());
-    for (const auto& vertices : split)
-    {
-      Tetrahedron nodes;
-      for (std::size_t k = 0; k < 4; ++k)
-      {
-        // Bit 1 of a vertex is z there, and y here.
-        const int v = vertices[k];
-        nodes[k] = (v & 1) | (v >> 2 & 1) << 1 | (v >> 1 & 1) << 2;
-      }
-      BarycentricMap map;
-      if (!map.SetTetrahedron(nodes, points))
-      {
-        continue;
-      }
-      const glm::dvec4 weights = map.GetAllWeights(point);
-      if (std::min({ weights.x, weights.y, weights.z, weights.w }) < -slack)
-      {
-        continue;
-      }
-      glm::dvec3 start(0.0);
-      for (int k = 0; k < 4; ++k)
-      {
-        const std::int32_t node = nodes[static_cast<std::size_t>(k)];
-        start += weights[k] * glm::dvec3(node & 1, node >> 1 & 1, node >> 2 & 1);
-      }
-      const Solution found = this->Find(cell, moved, point, start);
-      best = found.IsBetterThan(best) ? found : best;
-    }
-    for (int corner = 0; thorough && corner < 8; ++corner)
-    {
-      const glm::dvec3 offset(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
-      const Solution found = this->Find(cell, moved, point, 0.1 + 0.8 * offset);
+      const glm::dvec3 place(start % 3, start / 3 % 3, start / 9);
+      const Solution found = this->Find(cell, moved, point, 0.1 + 0.4 * place);
       best = found.IsBetterThan(best) ? found : best;
     }
     return best;
