@@ -190,6 +190,7 @@ private:
   // Points of all blocks, and those that have been moved.
   vtkIdType NumberOfPoints = 0;
   vtkIdType NumberDone = 0;
+  double LongestFading = 0.0; // see PointMap::Image
 
   std::set<std::string> WarnedOf;
 };
@@ -326,6 +327,7 @@ void vtkDeformGeometryFilter::vtkInternals::Move(vtkPointSet* input, vtkPointSet
     FindTransformed(input, this->Self->TransformAllInputVectors);
   std::atomic<vtkIdType> outside{ 0 };
   std::atomic<bool> isTooFar{ false };
+  std::atomic<double> leastFading{ 0.0 }; // displacement, negated
   const double farthest = moved->GetDataTypeMax();
   this->RunInParts(places.size(),
     [&](std::size_t begin, std::size_t end)
@@ -338,6 +340,7 @@ void vtkDeformGeometryFilter::vtkInternals::Move(vtkPointSet* input, vtkPointSet
         const auto point = static_cast<vtkIdType>(i);
         const bool isValid = this->MovePoint(places[i], image);
         outsideHere += isValid ? 0 : 1;
+        deformvolume::Lower(leastFading, -image.FadingDisplacement);
         const glm::dvec3 size = glm::abs(image.Point);
         if (!(size.x <= farthest && size.y <= farthest && size.z <= farthest)) // not-a-number, too
         {
@@ -377,6 +380,7 @@ void vtkDeformGeometryFilter::vtkInternals::Move(vtkPointSet* input, vtkPointSet
   }
   pointData->AddArray(mask);
   this->Self->NumberOfOutsidePoints += outside;
+  this->LongestFading = std::max(this->LongestFading, -leastFading.load());
 }
 
 //------------------------------------------------------------------------------
@@ -406,6 +410,7 @@ void vtkDeformGeometryFilter::vtkInternals::MoveAll(vtkDataObject* input, vtkDat
   }
   this->WarnOfIgnored(inputs);
   this->NumberDone = this->NumberOfPoints = 0;
+  this->LongestFading = 0.0;
   for (vtkPointSet* points : inputs)
   {
     this->NumberOfPoints += points->GetNumberOfPoints();
@@ -438,6 +443,12 @@ void vtkDeformGeometryFilter::vtkInternals::MoveAll(vtkDataObject* input, vtkDat
 //------------------------------------------------------------------------------
 void vtkDeformGeometryFilter::vtkInternals::WarnOfOutside()
 {
+  const std::string folds = deformvolume::FindFoldsOfFading(
+    "border of the deformation moves", this->LongestFading, this->Self->FadeDistance);
+  if (!folds.empty())
+  {
+    vtkWarningWithObjectMacro(this->Self, << folds);
+  }
   const vtkIdType outside = this->Self->NumberOfOutsidePoints;
   if (outside == 0)
   {

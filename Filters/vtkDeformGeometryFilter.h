@@ -31,9 +31,9 @@
  * - Active vectors are multiplied by the deformation gradient. See also TransformAllInputVectors.
  *   They are displacements of the same mesh where port 0 and port 1 are connected to one source:
  *   choose other active vectors where these are not to change.
- * - "vtkValidPointMask" (char) is 1 for points that the deformation holds, and 0 for the others:
- *   those stay where they are, with their normals and vectors, and a warning says how many they
- * are.
+ * - "vtkValidPointMask" (char) is 1 for points that the deformation moves, and 0 for points that it
+ *   has no place for (see OutsideMode). These keep their place, normals and vectors, and a warning
+ *   says how many there are.
  *
  * These arrays are of type float where the input's are, else double. The deformation gradient is
  * the derivative of deformed by rest positions, with Inverse of rest by deformed ones. It is
@@ -47,9 +47,10 @@
  * - Field: trilinear between the points of the field. Points outside it by at most 1/1000 of a cell
  *   count as on its border. Those whose interpolation needs a hidden point are outside.
  * - With Inverse (or without, where FieldIsInverse is on) a point may have come from several
- * places, where the deformation folds: tetrahedra that are upright win over inverted ones, and then
- * the one with the lowest number. Cells of a field are solved by Newton's method, to 1e-6 of a
- * cell. Where no place is found, the point is outside.
+ * places, where the deformation folds. Upright tetrahedra win over inverted ones, and then the one
+ * with the lowest number wins. Cells of a field are solved by Newton's method, to 1e-6 of a cell.
+ * Where a cell is folded within itself, the method may miss a place. Where it finds none, the point
+ * is outside.
  *
  * A voxel center comes to where vtkDeformVolumeFilter moves the voxel, which rounds to 1/256 of an
  * output voxel. Between voxels that filter interpolates along the tetrahedra of its voxels, and
@@ -57,15 +58,15 @@
  *
  * @par Ranks:
  * Under MPI each rank moves its points. Of the deformation mesh each rank may have a piece, none,
- * or the whole: it is gathered through vtkMultiProcessController::GetGlobalController(). A
- * displacement field every rank must be given whole. All ranks have to update together; an error of
- * one is reported on all.
+ * or the whole: it is gathered through vtkMultiProcessController::GetGlobalController(). Every rank
+ * needs the whole of a displacement field. All ranks have to update together. An error of one rank
+ * is reported on all ranks.
  *
  * @par Errors:
  * Each failure is one vtkErrorMacro, which says what is wrong and what to do, at each update that
  * fails: points that are not finite, a mesh without tetrahedra, displacements that are missing or
- * not finite. The output is then empty. An input without points is a warning, and gives an output
- * without points.
+ * not finite, a point array to transform that has too few tuples. The output is then empty. An
+ * input without points is a warning, and gives an output without points.
  *
  * @sa vtkDeformVolumeFilter vtkTransformFilter vtkWarpVector
  */
@@ -102,7 +103,7 @@ public:
 
   ///@{
   /**
-   * Whether the points lie in the deformed volume, and are led back to rest. Default: off.
+   * Set/Get whether the points lie in the deformed volume and are moved back to rest. Default: off.
    */
   vtkSetMacro(Inverse, bool);
   vtkGetMacro(Inverse, bool);
@@ -129,10 +130,10 @@ public:
 
   ///@{
   /**
-   * Whether a displacement field on port 1 is inverse: it leads from a point of the deformed volume
-   * to the point at rest that is seen there, as registration programs write it. Points at rest then
-   * need the inverse of the field, which is solved for, and points of the deformed volume (Inverse)
-   * are looked up. Not used with a mesh. Default: off.
+   * Set/Get whether a displacement field on port 1 is inverse: its vectors lead from points of the
+   * deformed volume to points at rest, as registration programs write them. With Inverse points are
+   * then moved by the vectors of the field, and without it by the inverse of the field. Not used
+   * with a mesh. Default: off.
    */
   vtkSetMacro(FieldIsInverse, bool);
   vtkGetMacro(FieldIsInverse, bool);
@@ -152,7 +153,7 @@ public:
    * - DISCARD: they are nowhere in the deformed volume. They stay where they are, and
    *   vtkValidPointMask is 0 there.
    * - EXTRAPOLATE: they follow the affine map of the tetrahedron with the closest face of the
-   * mesh's boundary; with a field, the displacement of the closest point of the field. (In
+   *   boundary of the mesh; with a field, the displacement of the closest point of the field. (In
    *   vtkDeformVolumeFilter it is the tetrahedron of the closest voxel inside the mesh: the two may
    *   differ far from the mesh.)
    * - KEEP: they stay where they are, and the displacement fades to zero within FadeDistance.
@@ -173,7 +174,8 @@ public:
    * With OutsideMode KEEP, the distance from the mesh or the field within which the displacement
    * fades to zero, in world units. A point at the distance d is displaced as the closest point of
    * the boundary, times 1 - 3 s^2 + 2 s^3 with s = d / FadeDistance. 0: no point outside moves.
-   * Negative, infinite and NaN are errors at the next update. Default: 0.
+   * Negative, infinite and NaN are errors at the next update. A warning says where points outside
+   * take a displacement of over two thirds of it, with which space may fold. Default: 0.
    */
   vtkSetMacro(FadeDistance, double);
   vtkGetMacro(FadeDistance, double);

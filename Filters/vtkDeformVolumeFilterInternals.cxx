@@ -555,13 +555,9 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfFading(
   }
   const double longest = links.GetLongestDisplacement(mesh.GetTetrahedra(),
     mesh.GetNodeDisplacements(), this->GetOutputGeometry(mapped.Whole).Spacing);
-  if (mapped.Outside.FadeDistance > 0.0 && 1.5 * longest > mapped.Outside.FadeDistance)
-  {
-    text += std::string(text.empty() ? "" : " ") +
-      "The boundary of the deformation mesh moves by " + std::to_string(longest) +
-      ", more than two thirds of FadeDistance, " + std::to_string(mapped.Outside.FadeDistance) +
-      ": the volume outside may fold over. Set FadeDistance to at least twice that displacement.";
-  }
+  const std::string folds = deformvolume::FindFoldsOfFading(
+    "boundary of the deformation mesh moves", longest, mapped.Outside.FadeDistance);
+  text += (text.empty() || folds.empty() ? "" : " ") + folds;
   if (!text.empty())
   {
     vtkWarningWithObjectMacro(this->Self, << text);

@@ -25,7 +25,7 @@ OutsideVoxels MakeOutsideVoxels(int outsideMode, double fadeDistance)
   if (!std::isfinite(fadeDistance) || fadeDistance < 0.0)
   {
     throw Error("FadeDistance is " + std::to_string(fadeDistance) +
-      ". Set a distance in world units, or 0, with which no voxel outside the mesh or the field "
+      ". Set a distance in world units, or 0, with which nothing outside the mesh or the field "
       "moves.");
   }
   return { OutsideVoxels::Modes::Keep, fadeDistance };
@@ -83,6 +83,18 @@ bool HoldsAll(const DisplacementField& field, const IndexBounds& box)
 
 } // namespace
 
+std::string FindFoldsOfFading(const std::string& border, double longest, double fadeDistance)
+{
+  // The slope of the weight is 1.5 at most.
+  if (!(fadeDistance > 0.0) || 1.5 * longest <= fadeDistance)
+  {
+    return "";
+  }
+  return "The " + border + " by up to " + std::to_string(longest) +
+    ", more than two thirds of FadeDistance, " + std::to_string(fadeDistance) +
+    ": what lies outside may fold over. Set FadeDistance to at least twice that displacement.";
+}
+
 std::string FindFaultOfFading(const DisplacementField& field, const IndexBounds& box,
   const glm::dvec3& spacing, double fadeDistance)
 {
@@ -91,18 +103,15 @@ std::string FindFaultOfFading(const DisplacementField& field, const IndexBounds&
     return "";
   }
   const double longest = GetLongestOnBorder(field, spacing);
-  // The slope of the weight is 1.5 at most. A hard edge folds or tears whatever is longer than the
-  // voxels that lie across it.
-  const double least = std::min({ spacing.x, spacing.y, spacing.z });
-  if (fadeDistance > 0.0 ? 1.5 * longest <= fadeDistance : longest <= 2.0 * least)
+  const std::string border = "border of the displacement field moves";
+  // A hard edge folds or tears whatever is longer than the voxels that lie across it.
+  if (fadeDistance == 0.0 && longest > 2.0 * std::min({ spacing.x, spacing.y, spacing.z }))
   {
-    return "";
+    return "The " + border + " by up to " + std::to_string(longest) +
+      ", and as FadeDistance is 0 the volume is stretched or folded there. Set FadeDistance to at "
+      "least twice that displacement.";
   }
-  return "The border of the displacement field moves by up to " + std::to_string(longest) +
-    (fadeDistance > 0.0 ? ", more than two thirds of FadeDistance, " +
-          std::to_string(fadeDistance) + ": the volume outside may fold over."
-                        : ", and as FadeDistance is 0 the volume is stretched or folded there.") +
-    " Set FadeDistance to at least twice that displacement.";
+  return FindFoldsOfFading(border, longest, fadeDistance);
 }
 
 } // namespace deformvolume

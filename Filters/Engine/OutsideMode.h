@@ -17,6 +17,10 @@ namespace deformvolume
 /// distance counts and is none.
 OutsideVoxels MakeOutsideVoxels(int outsideMode, double fadeDistance);
 
+/// Whether space folds where the displacement of a border fades within FadeDistance: a warning, or
+/// empty. border: what moves, in words, with the verb. longest: by how much.
+std::string FindFoldsOfFading(const std::string& border, double longest, double fadeDistance);
+
 /// What is wrong with how a displacement fades outside a field: where the border of the field moves
 /// by too much for FadeDistance, and any of a box is outside; else empty. box: in the indices that
 /// the field takes. spacing: of the output.

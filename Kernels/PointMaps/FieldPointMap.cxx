@@ -365,6 +365,7 @@ bool FieldPointMap::Map(const glm::dvec3& point, Image& image) const
   }
   glm::dmat3 gradient;
   const glm::dvec3 displacement = Interpolate(inside.GetVectors(cell), place, gradient);
+  image.FadingDisplacement = weight < 1.0 ? glm::length(displacement) : 0.0;
   image.Point += weight * displacement;
   image.Gradient += weight * gradient * clamped * glm::dmat3(inside.ToIndex) +
     glm::outerProduct(displacement, slope);

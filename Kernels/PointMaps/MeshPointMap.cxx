@@ -253,6 +253,7 @@ public:
     glm::dvec3 displacement;
     glm::dmat3 gradient;
     this->Displace(holder, place, displacement, gradient);
+    image.FadingDisplacement = glm::length(displacement);
     image.Point += weight * displacement;
     image.Gradient += weight * gradient * projection;
     if (distance > 0.0)

@@ -68,6 +68,7 @@ bool PointMap::Solve(
   }
   image.Point = place;
   image.Gradient = glm::inverse(here.Gradient);
+  image.FadingDisplacement = here.FadingDisplacement;
   return true;
 }
 

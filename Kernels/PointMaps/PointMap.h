@@ -20,6 +20,8 @@ public:
   {
     glm::dvec3 Point{ 0.0 };
     glm::dmat3 Gradient{ 1.0 };
+    /// Outside, how far the point of the border moves whose displacement fades there; else 0.
+    double FadingDisplacement = 0.0;
   };
 
   PointMap() = default;

@@ -643,6 +643,16 @@ void TestOutside()
       VERIFY(worst < 1e-12);
       VERIFY(still > 500);
     }
+    // The displacement is 0.94 long, and two thirds of 1.3 are 0.87.
+    Subject folded(MakePoints({ glm::dvec3(-0.5) }), deformation);
+    folded.Filter->SetOutsideModeToKeep();
+    folded.Filter->SetFadeDistance(1.3);
+    folded.Update();
+    VERIFY(folded.Warning.find("moves by up to 0.935") != std::string::npos);
+    folded.Filter->SetInputData(MakePoints({ glm::dvec3(1.0) }));
+    folded.Update();
+    VERIFY(folded.Warning.empty()); // no point is outside
+
     Subject subject(MakePoints(places), deformation);
     subject.Filter->SetOutsideModeToExtrapolate();
     const std::vector<glm::dvec3> moved = subject.GetPlaces();

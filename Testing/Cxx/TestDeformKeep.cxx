@@ -356,7 +356,7 @@ void TestWarnings()
   apart(3.5);
   subject.Expect("are stretched");
   subject.Filter->SetFadeDistance(2.5);
-  subject.Expect("moves by 3.5");
+  subject.Expect("moves by up to 3.5");
   apart(1.6);
   subject.Expect("");
   apart(1.7);
