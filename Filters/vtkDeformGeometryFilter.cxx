@@ -164,7 +164,7 @@ public:
 
 private:
   void MakeMap(const deformvolume::OutsideVoxels& outside);
-  void Move(vtkPointSet* input, vtkPointSet* output);
+  vtkSmartPointer<vtkPointSet> Move(vtkPointSet* input);
   void WarnOfIgnored(const std::vector<vtkPointSet*>& inputs);
   void WarnOfOutside();
   /// Calls body(begin, end) for parts of a range, in parallel. Throws Aborted.
@@ -303,17 +303,18 @@ void vtkDeformGeometryFilter::vtkInternals::RunInParts(std::size_t size, Body&& 
 }
 
 //------------------------------------------------------------------------------
-void vtkDeformGeometryFilter::vtkInternals::Move(vtkPointSet* input, vtkPointSet* output)
+vtkSmartPointer<vtkPointSet> vtkDeformGeometryFilter::vtkInternals::Move(vtkPointSet* input)
 {
+  const auto output = vtkSmartPointer<vtkPointSet>::Take(input->NewInstance());
+  output->ShallowCopy(input);
   const vtkIdType count = input->GetNumberOfPoints();
   vtkNew<vtkCharArray> mask;
   mask->SetName(MaskName);
   mask->SetNumberOfTuples(count);
+  output->GetPointData()->AddArray(mask);
   if (count == 0)
   {
-    output->ShallowCopy(input);
-    output->GetPointData()->AddArray(mask);
-    return;
+    return output;
   }
   std::vector<glm::dvec3> places(static_cast<std::size_t>(count));
   vtkDataArray* inputPoints = input->GetPoints()->GetData();
@@ -362,7 +363,6 @@ void vtkDeformGeometryFilter::vtkInternals::Move(vtkPointSet* input, vtkPointSet
       std::string(moved->GetDataTypeAsString()) +
       " numbers. Check the displacements and DisplacementScale.");
   }
-  output->ShallowCopy(input);
   vtkNew<vtkPoints> points;
   points->SetData(moved);
   output->SetPoints(points);
@@ -378,9 +378,9 @@ void vtkDeformGeometryFilter::vtkInternals::Move(vtkPointSet* input, vtkPointSet
       pointData->SetAttribute(array.Output, array.Attribute);
     }
   }
-  pointData->AddArray(mask);
   this->Self->NumberOfOutsidePoints += outside;
   this->LongestFading = std::max(this->LongestFading, -leastFading.load());
+  return output;
 }
 
 //------------------------------------------------------------------------------
@@ -415,19 +415,18 @@ void vtkDeformGeometryFilter::vtkInternals::MoveAll(vtkDataObject* input, vtkDat
   {
     this->NumberOfPoints += points->GetNumberOfPoints();
   }
+  // The output is complete, or empty.
+  std::vector<vtkSmartPointer<vtkPointSet>> moved;
+  for (vtkPointSet* points : inputs)
+  {
+    moved.push_back(this->Move(points));
+  }
   if (!blocks)
   {
-    this->Move(inputs.front(), vtkPointSet::SafeDownCast(output));
+    output->ShallowCopy(moved.front());
   }
   else
   {
-    // The output is complete, or empty.
-    std::vector<vtkSmartPointer<vtkPointSet>> moved;
-    for (vtkPointSet* points : inputs)
-    {
-      moved.push_back(vtkSmartPointer<vtkPointSet>::Take(points->NewInstance()));
-      this->Move(points, moved.back());
-    }
     auto* movedBlocks = vtkCompositeDataSet::SafeDownCast(output);
     movedBlocks->CopyStructure(blocks);
     movedBlocks->GetFieldData()->PassData(blocks->GetFieldData());

@@ -55,9 +55,8 @@ glm::dvec3 Interpolate(const Corners& corners, const glm::dvec3& place, glm::dma
 class FieldPointMap::Internals
 {
 public:
-  Internals(const WorldField& field, const OutsideVoxels& outside)
+  explicit Internals(const WorldField& field)
     : Field(field)
-    , Outside(outside)
     , ToWorld(field.IndexToWorld)
     , ToIndex(glm::inverse(field.IndexToWorld))
   {
@@ -70,8 +69,6 @@ public:
       this->Strides[axis] = stride;
       stride *= points;
     }
-    this->CellSize = std::min({ glm::length(this->ToWorld[0]), glm::length(this->ToWorld[1]),
-      glm::length(this->ToWorld[2]) });
   }
 
   glm::ivec3 GetCell(const glm::dvec3& index) const
@@ -303,19 +300,21 @@ public:
   }
 
   const WorldField Field;
-  const OutsideVoxels Outside;
   const glm::dmat3 ToWorld;
   const glm::dmat4 ToIndex;
   glm::ivec3 Last{ 0 };  // point on each axis
   glm::ivec3 Cells{ 1 }; // on each axis; one where all points lie in a plane
   glm::i64vec3 Strides{ 1 };
-  double CellSize = 1.0;
   BoxTree<IndexBounds> Boxes;
 };
 
 FieldPointMap::FieldPointMap(const WorldField& field, const OutsideVoxels& outside, bool isInverse)
-  : Inside(std::make_unique<Internals>(field, outside))
+  : Inside(std::make_unique<Internals>(field))
 {
+  this->Outside = outside;
+  const glm::dmat3& axes = this->Inside->ToWorld;
+  this->SolutionTolerance = CellSolutionTolerance *
+    std::min({ glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2]) });
   if (isInverse)
   {
     this->Inside->MakeBoxes();
@@ -341,21 +340,21 @@ bool FieldPointMap::Map(const glm::dvec3& point, Image& image) const
   image.Gradient = glm::dmat3(1.0);
   double weight = 1.0;
   glm::dvec3 slope(0.0); // of the weight
-  if (isOutside && inside.Outside.AreDiscarded())
+  if (isOutside && this->Outside.AreDiscarded())
   {
     return false;
   }
-  if (isOutside && inside.Outside.AreKept())
+  if (isOutside && this->Outside.AreKept())
   {
     const glm::dvec3 offset = inside.ToWorld * (index - nearest);
     const double distance = glm::length(offset);
-    if (!(distance < inside.Outside.FadeDistance))
+    if (!(distance < this->Outside.FadeDistance))
     {
       return true;
     }
-    const double s = distance / inside.Outside.FadeDistance;
+    const double s = distance / this->Outside.FadeDistance;
     weight = GetFadedWeight(s);
-    slope = 6.0 * s * (s - 1.0) / inside.Outside.FadeDistance * offset / distance;
+    slope = 6.0 * s * (s - 1.0) / this->Outside.FadeDistance * offset / distance;
   }
   const glm::ivec3 cell = inside.GetCell(nearest);
   const glm::dvec3 place = nearest - glm::dvec3(cell);
@@ -372,17 +371,10 @@ bool FieldPointMap::Map(const glm::dvec3& point, Image& image) const
   return true;
 }
 
-bool FieldPointMap::Invert(const glm::dvec3& point, Image& image) const
+bool FieldPointMap::InvertInside(const glm::dvec3& point, Image& image) const
 {
   const Internals& inside = *this->Inside;
   const Internals::Solution found = inside.FindInCells(point);
-  const double tolerance = CellSolutionTolerance * inside.CellSize;
-  if ((found.Number < 0 || found.IsInverted) && !inside.Outside.AreDiscarded() &&
-    this->SolveOutside(point, tolerance, image) &&
-    (found.Number < 0 || glm::determinant(image.Gradient) > 0.0))
-  {
-    return true;
-  }
   if (found.Number < 0)
   {
     return false;
@@ -391,7 +383,7 @@ bool FieldPointMap::Invert(const glm::dvec3& point, Image& image) const
   if (found.IsBeside)
   {
     // There it is the border of the field that moves points.
-    return this->Solve(point, place, tolerance, image);
+    return this->Solve(point, place, image);
   }
   image.Point = place;
   image.Gradient = inside.ToWorld * glm::inverse(found.Gradient);

@@ -52,10 +52,11 @@ public:
   /// Extrapolate: by the displacement of the closest point of the field's border; Keep: by that,
   /// faded.
   bool Map(const glm::dvec3& point, Image& image) const override;
-  /// Looks into all cells that may have come to the point.
-  bool Invert(const glm::dvec3& point, Image& image) const override;
 
 private:
+  /// Looks into all cells that may have come to the point.
+  bool InvertInside(const glm::dvec3& point, Image& image) const override;
+
   class Internals;
   std::unique_ptr<Internals> Inside;
 };

@@ -204,17 +204,17 @@ public:
     image.Gradient = glm::dmat3(1.0) + gradient;
   }
 
-  void Keep(const glm::dvec3& point, Image& image) const
+  void Keep(const glm::dvec3& point, double fadeDistance, Image& image) const
   {
     image.Point = point;
     image.Gradient = glm::dmat3(1.0);
-    if (!(this->Outside.FadeDistance > 0.0))
+    if (!(fadeDistance > 0.0))
     {
       return;
     }
     const ClosestFace::Result closest = this->Boundary->Find(point);
     const double distance = std::sqrt(closest.SquaredDistance);
-    const double s = distance / this->Outside.FadeDistance;
+    const double s = distance / fadeDistance;
     if (s >= 1.0)
     {
       return;
@@ -258,7 +258,7 @@ public:
     image.Gradient += weight * gradient * projection;
     if (distance > 0.0)
     {
-      const double slope = 6.0 * s * (s - 1.0) / this->Outside.FadeDistance;
+      const double slope = 6.0 * s * (s - 1.0) / fadeDistance;
       image.Gradient += glm::outerProduct(displacement, slope * (point - place) / distance);
     }
   }
@@ -276,7 +276,6 @@ public:
   Points Displacements;
   Points MovedPoints;
   Configuration Moved;
-  OutsideVoxels Outside;
 };
 
 MeshPointMap::MeshPointMap(
@@ -292,7 +291,7 @@ void MeshPointMap::Set(
 {
   Internals& inside = *this->Inside;
   inside.Displacements = std::move(displacements);
-  inside.Outside = outside;
+  this->Outside = outside;
   if (!outside.AreDiscarded() && !inside.HasBoundary)
   {
     inside.FindBoundary();
@@ -307,6 +306,7 @@ void MeshPointMap::Set(
       inside.MovedPoints[i] += inside.Displacements[i];
     }
     inside.Moved = inside.Search(inside.MovedPoints);
+    this->SolutionTolerance = std::max(inside.Rest.Size, inside.Moved.Size) * MeshSolutionTolerance;
   }
 }
 
@@ -323,13 +323,13 @@ bool MeshPointMap::Map(const glm::dvec3& point, Image& image) const
     image.Gradient = glm::dmat3(1.0) + gradient;
     return true;
   }
-  if (inside.Outside.AreDiscarded() || inside.Faces.empty())
+  if (this->Outside.AreDiscarded() || inside.Faces.empty())
   {
     return false;
   }
-  if (inside.Outside.AreKept())
+  if (this->Outside.AreKept())
   {
-    inside.Keep(point, image);
+    inside.Keep(point, this->Outside.FadeDistance, image);
   }
   else
   {
@@ -338,17 +338,10 @@ bool MeshPointMap::Map(const glm::dvec3& point, Image& image) const
   return true;
 }
 
-bool MeshPointMap::Invert(const glm::dvec3& point, Image& image) const
+bool MeshPointMap::InvertInside(const glm::dvec3& point, Image& image) const
 {
   const Internals& inside = *this->Inside;
   const Internals::Holder holder = inside.Find(inside.Moved, point);
-  const double size = std::max(inside.Rest.Size, inside.Moved.Size);
-  if ((holder.Number < 0 || holder.IsInverted) && !inside.Outside.AreDiscarded() &&
-    this->SolveOutside(point, size * MeshSolutionTolerance, image) &&
-    (holder.Number < 0 || glm::determinant(image.Gradient) > 0.0))
-  {
-    return true;
-  }
   if (holder.Number < 0)
   {
     return false;

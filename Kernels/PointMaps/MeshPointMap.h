@@ -28,9 +28,10 @@ public:
   /// Outside the mesh as OutsideVoxels says; Extrapolate: by the affine map of the tetrahedron with
   /// the closest face of the boundary.
   bool Map(const glm::dvec3& point, Image& image) const override;
-  bool Invert(const glm::dvec3& point, Image& image) const override;
 
 private:
+  bool InvertInside(const glm::dvec3& point, Image& image) const override;
+
   class Internals;
   std::unique_ptr<Internals> Inside;
 };

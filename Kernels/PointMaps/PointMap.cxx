@@ -21,8 +21,7 @@ constexpr double LeastDeterminant = 1e-12;
 
 PointMap::~PointMap() = default;
 
-bool PointMap::Solve(
-  const glm::dvec3& point, const glm::dvec3& start, double tolerance, Image& image) const
+bool PointMap::Solve(const glm::dvec3& point, const glm::dvec3& start, Image& image) const
 {
   glm::dvec3 place = start;
   Image here;
@@ -46,7 +45,7 @@ bool PointMap::Solve(
   };
   const auto isRegular = [&]
   { return std::abs(glm::determinant(here.Gradient)) > LeastDeterminant; };
-  for (int i = 0; i < MostSteps && glm::length(miss) > tolerance; ++i)
+  for (int i = 0; i < MostSteps && glm::length(miss) > this->SolutionTolerance; ++i)
   {
     bool done = false;
     if (isRegular())
@@ -62,7 +61,7 @@ bool PointMap::Solve(
       return false;
     }
   }
-  if (!(glm::length(miss) <= tolerance) || !isRegular())
+  if (!(glm::length(miss) <= this->SolutionTolerance) || !isRegular())
   {
     return false;
   }
@@ -72,12 +71,22 @@ bool PointMap::Solve(
   return true;
 }
 
-bool PointMap::SolveOutside(const glm::dvec3& point, double tolerance, Image& image) const
+bool PointMap::Invert(const glm::dvec3& point, Image& image) const
 {
+  const bool isFound = this->InvertInside(point, image);
+  if (this->Outside.AreDiscarded() || (isFound && glm::determinant(image.Gradient) > 0.0))
+  {
+    return isFound;
+  }
   Image there;
-  return this->Solve(point, point, tolerance, image) ||
-    (this->Map(point, there) &&
-      this->Solve(point, point - (there.Point - point), tolerance, image));
+  Image solved;
+  const bool isSolved = this->Solve(point, point, solved) ||
+    (this->Map(point, there) && this->Solve(point, point - (there.Point - point), solved));
+  if (isSolved && (!isFound || glm::determinant(solved.Gradient) > 0.0))
+  {
+    image = solved;
+  }
+  return isFound || isSolved;
 }
 
 } // namespace deformvolume

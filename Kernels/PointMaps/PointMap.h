@@ -3,6 +3,7 @@
 #define DeformVolumePointMap_h
 
 #include "DeformVolumeExport.h"
+#include "OutsideVoxels.h"
 
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
@@ -33,17 +34,18 @@ public:
   virtual bool Map(const glm::dvec3& point, Image& image) const = 0;
   /// The point that is mapped to a point, and the derivatives of the inverse map. Where there are
   /// several, one where the map does not turn space inside out, and of those the one in the lowest
-  /// tetrahedron or cell. False where there is none.
-  virtual bool Invert(const glm::dvec3& point, Image& image) const = 0;
+  /// tetrahedron or cell, or else one outside. False where there is none.
+  bool Invert(const glm::dvec3& point, Image& image) const;
 
 protected:
+  /// Invert for places in the mesh or the field.
+  virtual bool InvertInside(const glm::dvec3& point, Image& image) const = 0;
   /// Inverts the map by Newton's method from a start; steps that do not come closer are shortened.
-  /// tolerance: the distance that is left. False where it does not converge.
-  bool Solve(
-    const glm::dvec3& point, const glm::dvec3& start, double tolerance, Image& image) const;
-  /// The same for points that the inverse map of a mesh or a field has no place for, but that may
-  /// come from outside it.
-  bool SolveOutside(const glm::dvec3& point, double tolerance, Image& image) const;
+  /// False where it does not converge.
+  bool Solve(const glm::dvec3& point, const glm::dvec3& start, Image& image) const;
+
+  OutsideVoxels Outside;
+  double SolutionTolerance = 0.0; // the distance that Newton's method leaves
 };
 
 } // namespace deformvolume
