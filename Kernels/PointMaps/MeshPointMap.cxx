@@ -191,9 +191,8 @@ public:
     }
   }
 
-  void Extrapolate(const glm::dvec3& point, Image& image) const
+  void Extrapolate(const glm::dvec3& point, const ClosestFace::Result& closest, Image& image) const
   {
-    const ClosestFace::Result closest = this->Boundary->Find(point);
     Holder holder;
     holder.Number = this->Faces[static_cast<std::size_t>(closest.Face)].Tetrahedron;
     holder.Map.SetTetrahedron(this->GetNodes(holder.Number), *this->Rest.Places);
@@ -204,21 +203,17 @@ public:
     image.Gradient = glm::dmat3(1.0) + gradient;
   }
 
-  void Keep(const glm::dvec3& point, double fadeDistance, Image& image) const
+  void Keep(const glm::dvec3& point, const ClosestFace::Result& closest, double fadeDistance,
+    Image& image) const
   {
     image.Point = point;
     image.Gradient = glm::dmat3(1.0);
-    if (!(fadeDistance > 0.0))
-    {
-      return;
-    }
-    const ClosestFace::Result closest = this->Boundary->Find(point);
     const double distance = std::sqrt(closest.SquaredDistance);
-    const double s = distance / fadeDistance;
-    if (s >= 1.0)
+    if (!(distance < fadeDistance))
     {
       return;
     }
+    const double s = distance / fadeDistance;
     const double weight = GetFadedWeight(s);
     const TetrahedronFace& face = this->Faces[static_cast<std::size_t>(closest.Face)];
     const auto corners = face.GetNodes(this->GetNodes(face.Tetrahedron));
@@ -323,17 +318,22 @@ bool MeshPointMap::Map(const glm::dvec3& point, Image& image) const
     image.Gradient = glm::dmat3(1.0) + gradient;
     return true;
   }
-  if (this->Outside.AreDiscarded() || inside.Faces.empty())
+  if (this->Outside.AreDiscarded())
   {
     return false;
   }
+  const ClosestFace::Result closest = inside.Boundary->Find(point);
+  if (closest.Face < 0)
+  {
+    return false; // there are no faces, or the squares of distances are too large for numbers
+  }
   if (this->Outside.AreKept())
   {
-    inside.Keep(point, this->Outside.FadeDistance, image);
+    inside.Keep(point, closest, this->Outside.FadeDistance, image);
   }
   else
   {
-    inside.Extrapolate(point, image);
+    inside.Extrapolate(point, closest, image);
   }
   return true;
 }

@@ -653,6 +653,17 @@ void TestOutside()
     folded.Update();
     VERIFY(folded.Warning.empty()); // no point is outside
 
+    // So far away that the square of the distance is infinite.
+    for (const int mode : { Extrapolate, Keep })
+    {
+      Subject far(MakePoints({ glm::dvec3(1e200), glm::dvec3(4.0) }), deformation);
+      far.Filter->SetOutsideMode(mode);
+      VERIFY(glm::length(far.GetPlaces()[1] - 4.0 - shift) < 1e-12);
+      VERIFY_EQUAL(far.GetPlaces()[0].x, 1e200);
+      far.Filter->SetInverse(true);
+      VERIFY_EQUAL(far.GetPlaces()[0].x, 1e200);
+    }
+
     Subject subject(MakePoints(places), deformation);
     subject.Filter->SetOutsideModeToExtrapolate();
     const std::vector<glm::dvec3> moved = subject.GetPlaces();
