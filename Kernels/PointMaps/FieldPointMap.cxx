@@ -336,8 +336,7 @@ bool FieldPointMap::Map(const glm::dvec3& point, Image& image) const
     isOutside = isOutside || beyond > inside.Field.Tolerance;
     clamped[axis][axis] = beyond > 0.0 ? 0.0 : 1.0;
   }
-  image.Point = point;
-  image.Gradient = glm::dmat3(1.0);
+  image = { point };
   double weight = 1.0;
   glm::dvec3 slope(0.0); // of the weight
   if (isOutside && this->Outside.AreDiscarded())
@@ -385,8 +384,7 @@ bool FieldPointMap::InvertInside(const glm::dvec3& point, Image& image) const
     // There it is the border of the field that moves points.
     return this->Solve(point, place, image);
   }
-  image.Point = place;
-  image.Gradient = inside.ToWorld * glm::inverse(found.Gradient);
+  image = { place, inside.ToWorld * glm::inverse(found.Gradient) };
   return true;
 }
 

@@ -99,7 +99,6 @@ public:
 
   void FindBoundary()
   {
-    this->HasBoundary = true;
     const Points& rest = *this->Rest.Places;
     this->Faces =
       FindBoundaryFaces(rest, this->Tetrahedra, FindSolidTetrahedra(rest, this->Tetrahedra));
@@ -175,39 +174,40 @@ public:
     return best;
   }
 
-  /// The displacement that a tetrahedron gives a point, and its derivatives by the place of that.
-  void Displace(const Holder& holder, const glm::dvec3& point, glm::dvec3& displacement,
-    glm::dmat3& gradient) const
+  struct Displacement
   {
+    glm::dvec3 Vector{ 0.0 };
+    glm::dmat3 Gradient{ 0.0 };
+  };
+
+  /// The displacement that a tetrahedron gives a point, and its derivatives by the place of that.
+  Displacement Displace(const Holder& holder, const glm::dvec3& point) const
+  {
+    Displacement result;
     const Tetrahedron& nodes = this->GetNodes(holder.Number);
     const glm::dvec4 weights = holder.Map.GetAllWeights(point);
-    displacement = glm::dvec3(0.0);
-    gradient = glm::dmat3(0.0);
     for (int node = 0; node < 4; ++node)
     {
       const glm::dvec3& vector = At(this->Displacements, nodes[static_cast<std::size_t>(node)]);
-      displacement += weights[node] * vector;
-      gradient += glm::outerProduct(vector, holder.Map.GetGradient(node));
+      result.Vector += weights[node] * vector;
+      result.Gradient += glm::outerProduct(vector, holder.Map.GetGradient(node));
     }
+    return result;
   }
 
-  void Extrapolate(const glm::dvec3& point, const ClosestFace::Result& closest, Image& image) const
+  /// The tetrahedron of a face of the boundary.
+  Holder GetHolder(std::int32_t face) const
   {
     Holder holder;
-    holder.Number = this->Faces[static_cast<std::size_t>(closest.Face)].Tetrahedron;
+    holder.Number = this->Faces[static_cast<std::size_t>(face)].Tetrahedron;
     holder.Map.SetTetrahedron(this->GetNodes(holder.Number), *this->Rest.Places);
-    glm::dvec3 displacement;
-    glm::dmat3 gradient;
-    this->Displace(holder, point, displacement, gradient);
-    image.Point = point + displacement;
-    image.Gradient = glm::dmat3(1.0) + gradient;
+    return holder;
   }
 
   void Keep(const glm::dvec3& point, const ClosestFace::Result& closest, double fadeDistance,
     Image& image) const
   {
-    image.Point = point;
-    image.Gradient = glm::dmat3(1.0);
+    image = { point };
     const double distance = std::sqrt(closest.SquaredDistance);
     if (!(distance < fadeDistance))
     {
@@ -217,9 +217,6 @@ public:
     const double weight = GetFadedWeight(s);
     const TetrahedronFace& face = this->Faces[static_cast<std::size_t>(closest.Face)];
     const auto corners = face.GetNodes(this->GetNodes(face.Tetrahedron));
-    Holder holder;
-    holder.Number = face.Tetrahedron;
-    holder.Map.SetTetrahedron(this->GetNodes(face.Tetrahedron), *this->Rest.Places);
     glm::dvec3 place(0.0); // the closest point
     // The corners of the face, the edge or the node that it is on.
     std::array<glm::dvec3, 3> feature;
@@ -245,16 +242,14 @@ public:
       const glm::dvec3 edge = glm::normalize(feature[1] - feature[0]);
       projection = glm::outerProduct(edge, edge);
     }
-    glm::dvec3 displacement;
-    glm::dmat3 gradient;
-    this->Displace(holder, place, displacement, gradient);
-    image.FadingDisplacement = glm::length(displacement);
-    image.Point += weight * displacement;
-    image.Gradient += weight * gradient * projection;
+    const Displacement displacement = this->Displace(this->GetHolder(closest.Face), place);
+    image.FadingDisplacement = glm::length(displacement.Vector);
+    image.Point += weight * displacement.Vector;
+    image.Gradient += weight * displacement.Gradient * projection;
     if (distance > 0.0)
     {
       const double slope = 6.0 * s * (s - 1.0) / fadeDistance;
-      image.Gradient += glm::outerProduct(displacement, slope * (point - place) / distance);
+      image.Gradient += glm::outerProduct(displacement.Vector, slope * (point - place) / distance);
     }
   }
 
@@ -265,7 +260,6 @@ public:
 
   const std::vector<Tetrahedron>& Tetrahedra;
   const Configuration Rest;
-  bool HasBoundary = false;
   std::vector<TetrahedronFace> Faces;
   std::unique_ptr<ClosestFace> Boundary;
   Points Displacements;
@@ -287,7 +281,7 @@ void MeshPointMap::Set(
   Internals& inside = *this->Inside;
   inside.Displacements = std::move(displacements);
   this->Outside = outside;
-  if (!outside.AreDiscarded() && !inside.HasBoundary)
+  if (!outside.AreDiscarded() && !inside.Boundary)
   {
     inside.FindBoundary();
   }
@@ -308,33 +302,27 @@ void MeshPointMap::Set(
 bool MeshPointMap::Map(const glm::dvec3& point, Image& image) const
 {
   const Internals& inside = *this->Inside;
-  const Internals::Holder holder = inside.Find(inside.Rest, point);
-  if (holder.Number >= 0)
+  Internals::Holder holder = inside.Find(inside.Rest, point);
+  if (holder.Number < 0)
   {
-    glm::dvec3 displacement;
-    glm::dmat3 gradient;
-    inside.Displace(holder, point, displacement, gradient);
-    image.Point = point + displacement;
-    image.Gradient = glm::dmat3(1.0) + gradient;
-    return true;
+    if (this->Outside.AreDiscarded())
+    {
+      return false;
+    }
+    const ClosestFace::Result closest = inside.Boundary->Find(point);
+    if (closest.Face < 0)
+    {
+      return false; // there are no faces, or the squares of distances are too large for numbers
+    }
+    if (this->Outside.AreKept())
+    {
+      inside.Keep(point, closest, this->Outside.FadeDistance, image);
+      return true;
+    }
+    holder = inside.GetHolder(closest.Face);
   }
-  if (this->Outside.AreDiscarded())
-  {
-    return false;
-  }
-  const ClosestFace::Result closest = inside.Boundary->Find(point);
-  if (closest.Face < 0)
-  {
-    return false; // there are no faces, or the squares of distances are too large for numbers
-  }
-  if (this->Outside.AreKept())
-  {
-    inside.Keep(point, closest, this->Outside.FadeDistance, image);
-  }
-  else
-  {
-    inside.Extrapolate(point, closest, image);
-  }
+  const Internals::Displacement displacement = inside.Displace(holder, point);
+  image = { point + displacement.Vector, glm::dmat3(1.0) + displacement.Gradient };
   return true;
 }
 
@@ -346,11 +334,8 @@ bool MeshPointMap::InvertInside(const glm::dvec3& point, Image& image) const
   {
     return false;
   }
-  glm::dvec3 displacement;
-  glm::dmat3 gradient;
-  inside.Displace(holder, point, displacement, gradient);
-  image.Point = point - displacement;
-  image.Gradient = glm::dmat3(1.0) - gradient;
+  const Internals::Displacement displacement = inside.Displace(holder, point);
+  image = { point - displacement.Vector, glm::dmat3(1.0) - displacement.Gradient };
   return true;
 }
 
