@@ -124,7 +124,7 @@ std::vector<TransformedArray> FindTransformed(vtkPointSet* points, bool allVecto
       throw deformvolume::Error("The point array \"" +
         std::string(array->GetName() ? array->GetName() : "") + "\" on input port 0 has " +
         std::to_string(array->GetNumberOfTuples()) + " tuples, but there are " +
-        std::to_string(count) + " points. Give each point one.");
+        std::to_string(count) + " points. Give each point a tuple.");
     }
     found.push_back(
       { deformvolume::MakeVectorCopier(array), attribute, MakeVectors(array, count) });
@@ -244,6 +244,7 @@ void vtkDeformGeometryFilter::vtkInternals::MakeMap(const deformvolume::OutsideV
   {
     return;
   }
+  this->KeyOfMap = Key(); // of no map, until this one is complete
   if (isField)
   {
     this->Map = nullptr;
@@ -455,7 +456,7 @@ void vtkDeformGeometryFilter::vtkInternals::WarnOfOutside()
   }
   const bool isField = this->Deformation.IsField();
   const std::string where = this->IsInverted
-    ? (isField ? "are not where the displacement field moves anything to"
+    ? (isField ? "lie where the displacement field moves no point"
                : "lie outside the deformed mesh")
     : (isField ? "lie outside the displacement field" : "lie outside the deformation mesh");
   vtkWarningWithObjectMacro(
