@@ -6,20 +6,24 @@
 #include "Options.h"
 #include "VolumeWriting.h"
 
+#include <vtkCharArray.h>
 #include <vtkDeformVolumeFilter.h>
 #include <vtkFloatArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 
+#include <algorithm>
 #include <string>
 
 namespace
 {
 constexpr int IntentVector = 1007; // of NIfTI, for vectors as ITK takes them
 
-bool IsCovered(vtkImageData* image, vtkIdType voxel)
+// 1 where a deformed volume covers a voxel, else 0.
+const char* GetCoverage(vtkImageData* image)
 {
-  return image->GetPointData()->GetArray("vtkValidPointMask")->GetComponent(voxel, 0) != 0.0;
+  return vtkCharArray::SafeDownCast(image->GetPointData()->GetArray("vtkValidPointMask"))
+    ->GetPointer(0);
 }
 
 // An image on the grid of another one, with one array.
@@ -37,10 +41,10 @@ void WriteJacobian(const Options& options, const Volume& deformed, Messages& mes
   vtkNew<vtkFloatArray> values;
   values->SetName("Jacobian");
   values->SetNumberOfTuples(found->GetNumberOfTuples());
+  const char* covered = GetCoverage(deformed.Image);
   for (vtkIdType voxel = 0; voxel < found->GetNumberOfTuples(); ++voxel)
   {
-    values->SetComponent(
-      voxel, 0, IsCovered(deformed.Image, voxel) ? found->GetComponent(voxel, 0) : 0.0);
+    values->SetComponent(voxel, 0, covered[voxel] != 0 ? found->GetComponent(voxel, 0) : 0.0);
   }
   Volume written = deformed;
   written.Image = MakeImage(deformed.Image, values);
@@ -59,9 +63,10 @@ vtkSmartPointer<vtkFloatArray> MakeVectors(vtkImageData* image, double sign)
   vectors->SetNumberOfComponents(3);
   vectors->SetNumberOfTuples(places->GetNumberOfTuples());
   vectors->Fill(0.0);
+  const char* covered = GetCoverage(image);
   for (vtkIdType voxel = 0; voxel < places->GetNumberOfTuples(); ++voxel)
   {
-    if (IsCovered(image, voxel))
+    if (covered[voxel] != 0)
     {
       double here[3];
       double rest[3];
@@ -76,11 +81,9 @@ vtkSmartPointer<vtkFloatArray> MakeVectors(vtkImageData* image, double sign)
 
 void WriteInverseField(const Options& options, const Volume& deformed, Messages& messages)
 {
-  vtkIdType uncovered = 0;
-  for (vtkIdType voxel = 0; voxel < deformed.Image->GetNumberOfPoints(); ++voxel)
-  {
-    uncovered += IsCovered(deformed.Image, voxel) ? 0 : 1;
-  }
+  const char* covered = GetCoverage(deformed.Image);
+  const auto uncovered =
+    std::count(covered, covered + deformed.Image->GetNumberOfPoints(), static_cast<char>(0));
   if (uncovered > 0)
   {
     messages.DisplayWarningText(("The inverse field is 0 at " + std::to_string(uncovered) + " of " +
