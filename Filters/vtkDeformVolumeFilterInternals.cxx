@@ -497,15 +497,19 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfLoss(const deformvolume::ExtraAr
 {
   std::string text;
   const auto hidden = static_cast<double>(this->Report.NumberOfHiddenSamples);
-  if (!this->DensityArrays.empty() && (hidden > 0.0 || loss.NumberOfVoxels > 0))
+  if (!this->DensityArrays.empty() && hidden > 0.0)
   {
     std::ostringstream share;
     share << std::setprecision(2)
           << 100.0 * hidden / (hidden + static_cast<double>(this->Report.NumberOfCoveredVoxels));
     text = "The deformation folds the volume over. The sums of density arrays lack the " +
-      share.str() + " % of the deformed volume that other parts of it hide, and " +
-      std::to_string(loss.NumberOfVoxels) +
-      " voxels that show it inside out or pressed together to nothing, which have BackgroundValue.";
+      share.str() + " % of the deformed volume that other parts of it hide.";
+  }
+  if (loss.NumberOfVoxels > 0)
+  {
+    text += (text.empty() ? "" : " ") + std::to_string(loss.NumberOfVoxels) +
+      " voxels show the volume inside out, or pressed together to nothing: density arrays have "
+      "BackgroundValue there.";
   }
   if (!text.empty() && text != this->WarnedOfLoss)
   {

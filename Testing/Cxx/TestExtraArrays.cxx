@@ -453,7 +453,7 @@ void TestFolds()
   }
   active->Modified();
   subject.Filter->SetBackgroundValue(1e300);
-  output = subject.Expect("which have BackgroundValue");
+  output = subject.Expect("have BackgroundValue there.");
   vtkIdType lost = 0;
   for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
   {
@@ -472,6 +472,22 @@ void TestFolds()
   subject.Expect("");
   SetDisplacements(mesh, Shift(1.0, 0.0, 0.0));
   subject.Expect("");
+}
+
+// A mirror image is inside out, and hides nothing.
+void TestMirrored()
+{
+  const auto volume = MakeDose();
+  const auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, [](const glm::dvec3& p) { return glm::dvec3(-p.x, p.y, p.z); });
+  Derived subject(volume, mesh);
+  subject.Filter->Update();
+  const std::string warning = subject.TakeWarning();
+  VERIFY(warning.find("voxels show the volume inside out") != std::string::npos);
+  VERIFY(warning.find("folds") == std::string::npos);
+  double range[2];
+  subject.Get("Jacobian")->GetRange(range);
+  VERIFY(std::abs(range[0] + 1.0) < 1e-5);
 }
 
 // How many times a map that folds along x leads somewhere, found from where it turns.
@@ -643,6 +659,7 @@ int TestExtraArrays(int, char*[])
   TestKept();
   TestHoles();
   TestFolds();
+  TestMirrored();
   TestFoldCounts();
   TestIncremental();
   return GetExitCode();
