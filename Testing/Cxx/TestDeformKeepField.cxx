@@ -433,13 +433,14 @@ void TestParts()
   vtkNew<vtkRTAnalyticSource> source;
   source->SetWholeExtent(-20, 25, -15, 22, -11, 30);
   const auto field = MakeImage({ { 0, 4, 0, 3, 0, 5 } }, glm::dvec3(3.3), glm::dvec3(-6.0));
-  SetBend(field, 2.0);
-  Kept subject(nullptr, field, 6.0);
+  // Farther than a piece is thick: what stays is not where the border goes.
+  SetDisplacements(field, Shift(1.0, -0.5, 8.0));
+  Kept subject(nullptr, field, 17.0);
   subject.Filter->SetInputConnection(source->GetOutputPort());
   vtkNew<vtkImageData> whole;
   whole->DeepCopy(subject.Expect(""));
   source->GetOutput()->ReleaseData();
-  Kept pieces(nullptr, field, 6.0);
+  Kept pieces(nullptr, field, 17.0);
   pieces.Filter->SetInputConnection(source->GetOutputPort());
   vtkIdType fewest = std::numeric_limits<vtkIdType>::max();
   for (int piece = 0; piece < 12; ++piece)
