@@ -4,6 +4,7 @@
 #include "Error.h"
 #include "FieldPointMap.h"
 #include "InputUpdate.h"
+#include "MaskArray.h"
 #include "MeshGathering.h"
 #include "MeshGrids.h"
 #include "MeshPointMap.h"
@@ -54,7 +55,6 @@ vtkStandardNewMacro(vtkDeformGeometryFilter);
 namespace
 {
 
-constexpr const char* MaskName = "vtkValidPointMask";
 constexpr std::size_t PointsPerPart = 512;
 constexpr std::size_t PointsPerReport = 64 * PointsPerPart; // of progress
 
@@ -174,8 +174,7 @@ private:
   bool MovePoint(const glm::dvec3& point, PointMap::Image& image) const;
 
   vtkDeformGeometryFilter* Self;
-  deformvolume::MeshGrids ShapeGrids;
-  deformvolume::MeshGrids RestGrids;
+  deformvolume::DeformationGrids Grids;
   deformvolume::MeshGathering Gathering;
   deformvolume::WorldDeformation Deformation;
 
@@ -219,9 +218,7 @@ void vtkDeformGeometryFilter::vtkInternals::ReadDeformation(
           this->Self->FieldIsInverse });
       source.ShapeIsMade = !deformvolume::IsInMemory(this->Self, 1);
       source.RestIsMade = !deformvolume::IsInMemory(this->Self, 2);
-      source.ShapeParts = this->ShapeGrids.Find(
-        shape, source.ShapeIsMade, source.PointsAreDeformed ? &source.Selector : nullptr);
-      source.RestParts = this->RestGrids.Find(rest, source.RestIsMade);
+      this->Grids.Find(source);
     });
   source = this->Gathering.Gather(ranks, source);
   ranks.Attempt(
@@ -310,7 +307,7 @@ vtkSmartPointer<vtkPointSet> vtkDeformGeometryFilter::vtkInternals::Move(vtkPoin
   output->ShallowCopy(input);
   const vtkIdType count = input->GetNumberOfPoints();
   vtkNew<vtkCharArray> mask;
-  mask->SetName(MaskName);
+  mask->SetName(deformvolume::ValidPointMaskName);
   mask->SetNumberOfTuples(count);
   output->GetPointData()->AddArray(mask);
   if (count == 0)
@@ -335,6 +332,7 @@ vtkSmartPointer<vtkPointSet> vtkDeformGeometryFilter::vtkInternals::Move(vtkPoin
     [&](std::size_t begin, std::size_t end)
     {
       vtkIdType outsideHere = 0;
+      double fadingHere = 0.0;
       std::vector<PointMap::Image> images(end - begin);
       for (std::size_t i = begin; i < end; ++i)
       {
@@ -342,7 +340,7 @@ vtkSmartPointer<vtkPointSet> vtkDeformGeometryFilter::vtkInternals::Move(vtkPoin
         const auto point = static_cast<vtkIdType>(i);
         const bool isValid = this->MovePoint(places[i], image);
         outsideHere += isValid ? 0 : 1;
-        deformvolume::Lower(leastFading, -image.FadingDisplacement);
+        fadingHere = std::max(fadingHere, image.FadingDisplacement);
         const glm::dvec3 size = glm::abs(image.Point);
         if (!(size.x <= farthest && size.y <= farthest && size.z <= farthest)) // not-a-number, too
         {
@@ -357,6 +355,7 @@ vtkSmartPointer<vtkPointSet> vtkDeformGeometryFilter::vtkInternals::Move(vtkPoin
         array.Transform(static_cast<vtkIdType>(begin), images);
       }
       outside += outsideHere;
+      deformvolume::Lower(leastFading, -fadingHere);
     });
   if (isTooFar)
   {
@@ -459,12 +458,12 @@ void vtkDeformGeometryFilter::vtkInternals::WarnOfOutside()
     ? (isField ? "lie where the displacement field moves no point"
                : "lie outside the deformed mesh")
     : (isField ? "lie outside the displacement field" : "lie outside the deformation mesh");
-  vtkWarningWithObjectMacro(
-    this->Self, << outside << " of " << this->NumberOfPoints << " points " << where
-                << ". They stay where they are, and " << MaskName << " is 0 there."
-                << (this->Self->OutsideMode == DISCARD
-                       ? " Set OutsideMode to EXTRAPOLATE or KEEP for points outside."
-                       : ""));
+  vtkWarningWithObjectMacro(this->Self,
+    << outside << " of " << this->NumberOfPoints << " points " << where
+    << ". They stay where they are, and " << deformvolume::ValidPointMaskName << " is 0 there."
+    << (this->Self->OutsideMode == DISCARD
+           ? " Set OutsideMode to EXTRAPOLATE or KEEP for points outside."
+           : ""));
 }
 
 //------------------------------------------------------------------------------
@@ -555,7 +554,7 @@ int vtkDeformGeometryFilter::FillInputPortInformation(int port, vtkInformation* 
     info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
     return 1;
   }
-  deformvolume::FillDeformationPort(port, info);
+  deformvolume::FillDeformationPort(port == 2, info);
   return 1;
 }
 

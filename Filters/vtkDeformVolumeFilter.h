@@ -78,7 +78,7 @@
  * EXACT, even if the whole would not have fit into memory. Else, and with FieldIsInverse, the input
  * is asked for whole. Of the deformation mesh each rank may have a piece, none, or the whole: it is
  * gathered through vtkMultiProcessController::GetGlobalController(). A displacement field every
- * rank must be given whole. All ranks have to update together; an error of one is told on all.
+ * rank must be given whole. All ranks have to update together; an error on one is reported on all.
  * Counts of voxels, tetrahedra and bricks are summed over the ranks: what two of them have counts
  * twice.
  *

@@ -179,8 +179,7 @@ public:
 
   std::set<std::string> CategoricalArrays;
   std::set<std::string> DensityArrays;
-  deformvolume::MeshGrids ShapeGrids;
-  deformvolume::MeshGrids RestGrids;
+  deformvolume::DeformationGrids Grids;
   deformvolume::MeshGathering Gathering;
 
   // What is kept for each SamplingFactor, and for the one that is set.

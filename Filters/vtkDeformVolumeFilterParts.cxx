@@ -38,9 +38,7 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::ReadDeformation(
       source = this->MakeSource(volume, shape, rest);
       source.ShapeIsMade = !deformvolume::IsInMemory(this->Self, 1);
       source.RestIsMade = !deformvolume::IsInMemory(this->Self, 2);
-      source.ShapeParts = this->ShapeGrids.Find(
-        shape, source.ShapeIsMade, source.PointsAreDeformed ? &source.Selector : nullptr);
-      source.RestParts = this->RestGrids.Find(rest, source.RestIsMade);
+      this->Grids.Find(source);
     });
   source = this->Gathering.Gather(ranks, source);
   ranks.Attempt(

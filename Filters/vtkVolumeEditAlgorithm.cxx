@@ -3,7 +3,7 @@
 
 #include "vtkVolumeEditAlgorithmInternals.h"
 
-#include "Error.h"
+#include "FiveTetrahedra.h"
 #include "ImageGeometry.h"
 #include "MaskArray.h"
 #include "OutsideMode.h"
@@ -25,8 +25,6 @@
 #include "vtkSMPTools.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
-
-#include <cmath>
 
 namespace
 {
@@ -61,11 +59,11 @@ void HideEditedCells(vtkImageData* image)
   vtkSMPTools::For(0, image->GetNumberOfCells(),
     [&](vtkIdType begin, vtkIdType end)
     {
-      constexpr unsigned char All = 31; // five tetrahedra
       for (vtkIdType i = begin; i < end; ++i)
       {
         constexpr unsigned char Hidden = vtkDataSetAttributes::HIDDENCELL;
         const unsigned char value = before ? before[i] : 0;
+        constexpr unsigned char All = DEFORMVOLUME_ALL_TETRAHEDRA;
         const bool isEdited = (active[i] & All) != All || (divided && (divided[i] & All) != 0);
         values[i] = isEdited && (value & Hidden) == 0
           ? static_cast<unsigned char>(value | Hidden | deformvolume::HiddenByEdit)
@@ -93,15 +91,12 @@ bool vtkVolumeEditAlgorithm::vtkEdits::SetVolume(vtkInformationVector** input)
 const deformvolume::VertexPositions& vtkVolumeEditAlgorithm::vtkEdits::GetVertices(
   vtkInformationVector** input)
 {
-  deformvolume::DeformationSource source;
-  source.Shape = vtkDataObject::GetData(input[2]);
-  source.Rest = vtkDataObject::GetData(input[3]);
-  deformvolume::ChooseVectors(source, this->Self->GetInputArrayInformation(0),
-    [this](vtkDataSet* dataSet, int& association)
-    { return this->Self->GetInputArrayToProcess(0, dataSet, association); });
-  source.PointsAreDeformed = this->Self->PointsAreDeformed;
-  source.Choice += source.PointsAreDeformed ? " deformed" : "";
-  source.DisplacementScale = this->Self->DisplacementScale;
+  const deformvolume::DeformationSource source =
+    deformvolume::ChooseDeformation(vtkDataObject::GetData(input[2]),
+      vtkDataObject::GetData(input[3]), this->Self->GetInputArrayInformation(0),
+      [this](vtkDataSet* dataSet, int& association)
+      { return this->Self->GetInputArrayToProcess(0, dataSet, association); },
+      { this->Self->DisplacementScale, this->Self->PointsAreDeformed, false });
   return this->Editor.GetPositions(
     source, deformvolume::MakeOutsideVoxels(this->Self->OutsideMode, this->Self->FadeDistance));
 }
@@ -206,24 +201,18 @@ int vtkVolumeEditAlgorithm::RequestInformation(
 //------------------------------------------------------------------------------
 int vtkVolumeEditAlgorithm::FillInputPortInformation(int port, vtkInformation* info)
 {
-  if (port > 0)
+  switch (port)
   {
-    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
-  }
-  if (port < 2)
-  {
-    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkImageData" : "vtkPolyData");
-    return 1;
-  }
-  // Composite datasets come first, or the executive would iterate over their leaves.
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
-  for (const char* grid : { "vtkUnstructuredGrid", "vtkStructuredGrid", "vtkRectilinearGrid" })
-  {
-    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), grid);
-  }
-  if (port == 2)
-  {
-    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+    case 0:
+      info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+      break;
+    case 1:
+      info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+      info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+      break;
+    default:
+      deformvolume::FillDeformationPort(port == 3, info);
+      break;
   }
   return 1;
 }
@@ -264,10 +253,7 @@ int vtkVolumeEditAlgorithm::RequestData(
     "The memory of this machine does not suffice for the edits. Use a smaller volume.",
     [&]
     {
-      if (!std::isfinite(this->DisplacementScale))
-      {
-        throw deformvolume::Error("DisplacementScale is not finite. Set a finite one.");
-      }
+      deformvolume::CheckDisplacementScale(this->DisplacementScale);
       this->UpdateEdits(input);
       this->Edits->Tool.Finish();
       this->Edits->Editor.Write(volume, image);

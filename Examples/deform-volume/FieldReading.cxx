@@ -22,7 +22,6 @@
 namespace
 {
 constexpr int IntentDisplacement = 1006;
-constexpr int IntentVector = 1007;
 
 std::string GetShapeText(vtkNIFTIImageHeader* header)
 {
@@ -93,7 +92,7 @@ bool IsRightAnterior(vtkNIFTIImageHeader* header, const std::string& what)
     throw Failure(what + ": its shape is " + GetShapeText(header) +
       ", where a displacement field has (X, Y, Z, 1, 3): " + reason);
   }
-  if (intent != IntentDisplacement && intent != IntentVector)
+  if (intent != IntentDisplacement && intent != NIfTIIntentVector)
   {
     throw Failure(what + ": its intent is " + std::to_string(intent) +
       ", which does not say how its vectors point. Set intent_code to 1006 if they point right, "

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LabelVolume.h"
 
+#include "Coverage.h"
 #include "Failure.h"
 #include "FileSuffix.h"
 #include "ImageAxes.h"
@@ -55,7 +56,7 @@ void CheckWhole(Array* array, const std::string& name, const std::string& path)
   }
 }
 
-/// What tells two grids of one size apart.
+/// A number in which two grids of one size differ.
 struct GridDifference
 {
   std::string Name;
@@ -230,24 +231,12 @@ vtkSmartPointer<vtkImageData> LabelVolume::TakeFrom(vtkSmartPointer<vtkImageData
   labels->CopyStructure(deformed);
   auto others = vtkSmartPointer<vtkImageData>::New();
   others->ShallowCopy(deformed);
-  vtkDataArray* mask = deformed->GetPointData()->GetArray(Mask);
   for (std::size_t i = 0; i < this->Arrays.size(); ++i)
   {
     const std::string name = GetInnerName(i);
-    const auto values = vtkSmartPointer<vtkDataArray>::Take(this->Arrays[i].Values->NewInstance());
-    values->DeepCopy(deformed->GetPointData()->GetArray(name.c_str()));
+    // Its background is that of the volume.
+    const vtkSmartPointer<vtkDataArray> values = CopyCovered(deformed, name.c_str());
     values->SetName(this->Arrays[i].Name.c_str());
-    // The background is that of the volume.
-    for (vtkIdType id = 0; id < mask->GetNumberOfTuples(); ++id)
-    {
-      if (mask->GetComponent(id, 0) == 0.0)
-      {
-        for (int component = 0; component < values->GetNumberOfComponents(); ++component)
-        {
-          values->SetComponent(id, component, 0.0);
-        }
-      }
-    }
     labels->GetPointData()->AddArray(values);
     others->GetPointData()->RemoveArray(name.c_str());
   }

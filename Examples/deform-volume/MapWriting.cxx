@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MapWriting.h"
 
+#include "Coverage.h"
 #include "FileSuffix.h"
 #include "Messages.h"
 #include "Options.h"
 #include "VolumeWriting.h"
 
-#include <vtkCharArray.h>
 #include <vtkDeformVolumeFilter.h>
 #include <vtkFloatArray.h>
 #include <vtkNew.h>
@@ -17,15 +17,6 @@
 
 namespace
 {
-constexpr int IntentVector = 1007; // of NIfTI, for vectors as ITK takes them
-
-// 1 where a deformed volume covers a voxel, else 0.
-const char* GetCoverage(vtkImageData* image)
-{
-  return vtkCharArray::SafeDownCast(image->GetPointData()->GetArray("vtkValidPointMask"))
-    ->GetPointer(0);
-}
-
 // An image on the grid of another one, with one array.
 vtkSmartPointer<vtkImageData> MakeImage(vtkImageData* grid, vtkDataArray* values)
 {
@@ -37,17 +28,8 @@ vtkSmartPointer<vtkImageData> MakeImage(vtkImageData* grid, vtkDataArray* values
 
 void WriteJacobian(const Options& options, const Volume& deformed, Messages& messages)
 {
-  vtkDataArray* found = deformed.Image->GetPointData()->GetArray("Jacobian");
-  vtkNew<vtkFloatArray> values;
-  values->SetName("Jacobian");
-  values->SetNumberOfTuples(found->GetNumberOfTuples());
-  const char* covered = GetCoverage(deformed.Image);
-  for (vtkIdType voxel = 0; voxel < found->GetNumberOfTuples(); ++voxel)
-  {
-    values->SetComponent(voxel, 0, covered[voxel] != 0 ? found->GetComponent(voxel, 0) : 0.0);
-  }
   Volume written = deformed;
-  written.Image = MakeImage(deformed.Image, values);
+  written.Image = MakeImage(deformed.Image, CopyCovered(deformed.Image, "Jacobian"));
   for (const std::string& path : options.Jacobians)
   {
     WriteVolume(written, path, messages, !options.Quiet);
@@ -99,7 +81,7 @@ void WriteInverseField(const Options& options, const Volume& deformed, Messages&
     const double sign = pointsLeft || HasSuffix(path, { ".vti" }) ? 1.0 : -1.0;
     Volume written = deformed;
     written.Image = MakeImage(deformed.Image, MakeVectors(deformed.Image, sign));
-    written.IntentCode = IntentVector;
+    written.IntentCode = NIfTIIntentVector;
     WriteVolume(written, path, messages, !options.Quiet);
   }
 }

@@ -10,6 +10,7 @@
 #include "Messages.h"
 #include "OptionChecks.h"
 #include "ProgressBar.h"
+#include "XMLWriting.h"
 
 #include <vtkBoundingBox.h>
 #include <vtkImageData.h>
@@ -172,16 +173,6 @@ void WarnOfUnits(
   }
 }
 
-void WriteMesh(vtkUnstructuredGrid* mesh, const std::string& path, Messages& messages)
-{
-  vtkNew<vtkXMLUnstructuredGridWriter> writer;
-  // Not appended: with recent versions of libexpat, ParaView 5.11 cannot read appended data.
-  writer->SetDataModeToBinary();
-  writer->SetInputData(mesh);
-  writer->SetFileName(path.c_str());
-  const bool written = writer->Write() != 0;
-  messages.Check("cannot write " + path, written);
-}
 }
 
 Deformation MakeDeformation(const Options& options, const Volume& volume,
@@ -237,7 +228,8 @@ Deformation MakeDeformation(const Options& options, const Volume& volume,
     }
     if (!options.MeshOutput.empty())
     {
-      WriteMesh(vtkUnstructuredGrid::SafeDownCast(deformation.Data), options.MeshOutput, messages);
+      WriteXML(vtkNew<vtkXMLUnstructuredGridWriter>().Get(), deformation.Data, options.MeshOutput,
+        messages);
     }
   }
   deformation.NumberOfNodes = deformation.Data->GetNumberOfElements(vtkDataObject::POINT);

@@ -10,6 +10,7 @@
 #include "Options.h"
 #include "ProgressBar.h"
 #include "Volume.h"
+#include "XMLWriting.h"
 
 #include <vtkCallbackCommand.h>
 #include <vtkCellData.h>
@@ -97,17 +98,6 @@ vtkSmartPointer<vtkPointSet> Deform(const PointsFile& file, const Options& optio
   return filter->GetOutput();
 }
 
-template <typename Writer>
-void WriteBy(vtkPointSet* points, const std::string& path, Messages& messages)
-{
-  vtkNew<Writer> writer;
-  // Not appended: with recent versions of libexpat, ParaView 5.11 cannot read appended data.
-  writer->SetDataModeToBinary();
-  writer->SetInputData(points);
-  writer->SetFileName(path.c_str());
-  const bool written = writer->Write() != 0;
-  messages.Check("cannot write " + path, written);
-}
 }
 
 std::string GetPointFormat(const std::string& path)
@@ -165,11 +155,11 @@ void WriteDeformedPoints(const std::vector<PointsFile>& files, const Options& op
     }
     else if (HasSuffix(output, { ".vtp" }))
     {
-      WriteBy<vtkXMLPolyDataWriter>(moved, output, messages);
+      WriteXML(vtkNew<vtkXMLPolyDataWriter>().Get(), moved, output, messages);
     }
     else
     {
-      WriteBy<vtkXMLUnstructuredGridWriter>(moved, output, messages);
+      WriteXML(vtkNew<vtkXMLUnstructuredGridWriter>().Get(), moved, output, messages);
     }
   }
 }

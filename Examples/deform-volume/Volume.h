@@ -33,6 +33,9 @@ struct NIfTIForms
   double QSpacing[3] = { 1.0, 1.0, 1.0 };
 };
 
+/// What NIfTI files say of vectors that point as those of ITK do (NIFTI_INTENT_VECTOR).
+inline constexpr int NIfTIIntentVector = 1007;
+
 /// An image and what vtkImageData has no room for.
 struct Volume
 {

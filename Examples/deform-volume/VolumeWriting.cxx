@@ -6,6 +6,7 @@
 #include "ImageAxes.h"
 #include "Messages.h"
 #include "ProgressBar.h"
+#include "XMLWriting.h"
 #ifdef DEFORMVOLUME_HAVE_ITK
 #include "ItkWriting.h"
 #endif
@@ -186,17 +187,12 @@ void WriteNIfTI(
 void WriteVTI(const Volume& volume, const std::string& path, Messages& messages, bool showProgress)
 {
   vtkNew<vtkXMLImageDataWriter> writer;
-  // Not appended: with recent versions of libexpat, ParaView 5.11 cannot read appended data.
-  writer->SetDataModeToBinary();
-  writer->SetInputData(volume.Image);
-  writer->SetFileName(path.c_str());
   // zlib's fastest level: most of the size at a fraction of the time.
   writer->SetCompressorTypeToZLib();
   writer->SetCompressionLevel(1);
   writer->SetHeaderTypeToUInt64();
   const ProgressBar bar(writer, "writing", showProgress);
-  const bool written = writer->Write() != 0;
-  messages.Check("cannot write " + path, written);
+  WriteXML(writer.Get(), volume.Image, path, messages);
 }
 }
 

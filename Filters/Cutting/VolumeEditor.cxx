@@ -162,9 +162,7 @@ const VertexPositions& VolumeEditor::GetPositions(
     return *this->Rest;
   }
   source.Volume = this->Geometry;
-  source.ShapeParts = this->ShapeGrids.Find(
-    source.Shape, source.ShapeIsMade, source.PointsAreDeformed ? &source.Selector : nullptr);
-  source.RestParts = this->RestGrids.Find(source.Rest, source.RestIsMade);
+  this->Grids.Find(source);
   this->Deformation.Read(source);
   const bool isField = this->Deformation.IsField();
   // The mapping of a part has whole rows, and is that of the whole volume to the last bit.

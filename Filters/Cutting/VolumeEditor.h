@@ -103,8 +103,7 @@ private:
   vtkSmartPointer<vtkFloatArray> CutDistances;
 
   std::unique_ptr<RestPositions> Rest;
-  MeshGrids ShapeGrids;
-  MeshGrids RestGrids;
+  DeformationGrids Grids;
   deformvolume::Deformation Deformation;
   MappingCache Mapping;
   FadedMesh Faded; // what the mapping is of, where voxels outside the mesh are kept

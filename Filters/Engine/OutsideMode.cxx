@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 
 namespace deformvolume
@@ -57,30 +56,6 @@ double GetLongestOnBorder(const DisplacementField& field, const glm::dvec3& spac
   return longest;
 }
 
-bool HoldsAll(const DisplacementField& field, const IndexBounds& box)
-{
-  const glm::dmat3 toField = GetVoxelsToField(field);
-  for (int corner = 0; corner < 8; ++corner)
-  {
-    glm::dvec3 place;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      place[axis] = (corner >> axis & 1) != 0 ? box.Max[axis] : box.Min[axis];
-    }
-    place = toField * place;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-    {
-      const double position = place[static_cast<int>(axis)] + field.IndexToField[4 * axis + 3];
-      constexpr double tolerance = 1e-3; // of a step between points, as in the kernels
-      if (position < -tolerance || position > field.Dimensions[axis] - 1 + tolerance)
-      {
-        return false;
-      }
-    }
-  }
-  return true;
-}
-
 } // namespace
 
 std::string FindFoldsOfFading(const std::string& border, double longest, double fadeDistance)
@@ -98,7 +73,7 @@ std::string FindFoldsOfFading(const std::string& border, double longest, double 
 std::string FindFaultOfFading(const DisplacementField& field, const IndexBounds& box,
   const glm::dvec3& spacing, double fadeDistance)
 {
-  if (HoldsAll(field, box))
+  if (HoldsBox(field, box, FieldTolerance))
   {
     return "";
   }

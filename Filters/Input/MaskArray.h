@@ -32,6 +32,9 @@ constexpr const char* CutTetrahedraName = "CutTetrahedra";
 constexpr const char* CutDistanceName = "CutDistance";
 ///@}
 
+/// Which points of an output are deformed ones, as vtkProbeFilter names it.
+constexpr const char* ValidPointMaskName = "vtkValidPointMask";
+
 /// The bit that vtkGhostType of a cell has beside HIDDENCELL where only an edit hides the cell, for
 /// views: the arrays above say what is left of it. VTK uses the first six bits.
 constexpr unsigned char HiddenByEdit = 128;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshGrids.h"
 
+#include "Deformation.h"
 #include "MaskArray.h"
 #include "ParallelFor.h"
 
@@ -268,6 +269,13 @@ MeshParts MeshGrids::Find(vtkDataObject* object, bool made, const ArraySelector*
     parts.push_back(grid);
   }
   return parts;
+}
+
+void DeformationGrids::Find(DeformationSource& source)
+{
+  source.ShapeParts = this->Shape.Find(
+    source.Shape, source.ShapeIsMade, source.PointsAreDeformed ? &source.Selector : nullptr);
+  source.RestParts = this->Rest.Find(source.Rest, source.RestIsMade);
 }
 
 } // namespace deformvolume

@@ -44,6 +44,18 @@ private:
   std::vector<Conversion> Conversions; // one for each grid
 };
 
+struct DeformationSource;
+
+/// The grids of a deformation and of its rest configuration.
+struct DeformationGrids
+{
+  MeshGrids Shape;
+  MeshGrids Rest;
+
+  /// Gives a source its parts. They are valid until the next call.
+  void Find(DeformationSource& source);
+};
+
 } // namespace deformvolume
 
 #endif

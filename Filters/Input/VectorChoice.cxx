@@ -16,6 +16,10 @@
 namespace deformvolume
 {
 
+namespace
+{
+
+// Sets how a source finds its displacements.
 void ChooseVectors(DeformationSource& source, vtkInformation* choice, const ArrayFinder& find)
 {
   const char* name = choice->Get(vtkDataObject::FIELD_NAME());
@@ -41,6 +45,8 @@ void ChooseVectors(DeformationSource& source, vtkInformation* choice, const Arra
     source.Wanted + " " + std::to_string(choice->Get(vtkDataObject::FIELD_ASSOCIATION()));
 }
 
+} // namespace
+
 DeformationSource ChooseDeformation(vtkDataObject* shape, vtkDataObject* rest,
   vtkInformation* choice, const ArrayFinder& find, const DeformationSettings& settings)
 {
@@ -53,14 +59,19 @@ DeformationSource ChooseDeformation(vtkDataObject* shape, vtkDataObject* rest,
   source.PointsAreDeformed = settings.PointsAreDeformed;
   source.Choice += source.PointsAreDeformed ? " deformed" : "";
   source.DisplacementScale = settings.DisplacementScale;
-  if (!std::isfinite(source.DisplacementScale))
-  {
-    throw Error("DisplacementScale is not finite. Set a finite one.");
-  }
+  CheckDisplacementScale(source.DisplacementScale);
   return source;
 }
 
-void FillDeformationPort(int port, vtkInformation* info)
+void CheckDisplacementScale(double scale)
+{
+  if (!std::isfinite(scale))
+  {
+    throw Error("DisplacementScale is not finite. Set a finite one.");
+  }
+}
+
+void FillDeformationPort(bool isRest, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   // Composite datasets come first, or the executive would iterate over their leaves.
@@ -69,7 +80,7 @@ void FillDeformationPort(int port, vtkInformation* info)
   {
     info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), grid);
   }
-  if (port == 1)
+  if (!isRest)
   {
     info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
   }

@@ -26,7 +26,6 @@ namespace deformvolume
 namespace
 {
 
-const char* const MASK = "vtkValidPointMask";
 const char* const VOLUME = "volume"; // in errors
 
 // The element type of the same size and kind: VTK has several names for most of them.
@@ -148,7 +147,8 @@ std::vector<SourceArray> SelectArrays(
   for (int i = 0; i < pointData->GetNumberOfArrays(); ++i)
   {
     vtkAbstractArray* abstract = pointData->GetAbstractArray(i);
-    if (HasName(abstract, MASK) || HasName(abstract, vtkDataSetAttributes::GhostArrayName()) ||
+    if (HasName(abstract, ValidPointMaskName) ||
+      HasName(abstract, vtkDataSetAttributes::GhostArrayName()) ||
       HasName(abstract, BoundaryDistanceName) || HasName(abstract, CutDistanceName))
     {
       continue;

@@ -130,7 +130,7 @@ void WorldDeformation::ReadField(vtkImageData* image, const DeformationSource& s
   this->Vectors.Floats = floats;
   this->Vectors.Doubles = this->Converted.data();
   this->Vectors.Scale = source.DisplacementScale;
-  this->Vectors.Tolerance = 1e-3; // that of the kernels that move voxels
+  this->Vectors.Tolerance = FieldTolerance;
   this->Vectors.Undefined = this->Undefined.empty() ? nullptr : this->Undefined.data();
   this->Remember(stamp, source);
 }

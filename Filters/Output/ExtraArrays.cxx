@@ -42,6 +42,13 @@ vtkSmartPointer<vtkFloatArray> MakeArray(const char* name, int components, vtkId
   return array;
 }
 
+// 1 for each voxel of an output that is covered, else 0.
+const signed char* GetCoverage(vtkImageData* output)
+{
+  return static_cast<const signed char*>(
+    output->GetPointData()->GetArray(ValidPointMaskName)->GetVoidPointer(0));
+}
+
 // Divides the tuples of an array. Where the Jacobian is not greater than 0 they are the background.
 // valid: which voxels are covered; all others stay as they are. Returns how many those were.
 template <typename T>
@@ -155,25 +162,29 @@ void ExtraArrays::UpdateRestPositions(const ImageGeometry& volume)
   const glm::dmat4 toWorld = volume.GetIndexToWorld();
   const std::int64_t width = GetSize(extent, 0);
   const std::int64_t height = GetSize(extent, 1);
+  std::array<float*, 3> positions;
   for (std::size_t axis = 0; axis < 3; ++axis)
   {
     this->Positions[axis] = MakeArray(POSITION_AXES[axis], 1, GetNumberOfPoints(extent));
-    float* positions = this->Positions[axis]->GetPointer(0);
-    ParallelFor(0, height * GetSize(extent, 2), 64,
-      [&](std::int64_t begin, std::int64_t end)
+    positions[axis] = this->Positions[axis]->GetPointer(0);
+  }
+  ParallelFor(0, height * GetSize(extent, 2), 64,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t row = begin; row < end; ++row)
       {
-        for (std::int64_t row = begin; row < end; ++row)
+        glm::dvec4 index(0.0, extent[2] + row % height, extent[4] + row / height, 1.0);
+        for (std::int64_t x = 0; x < width; ++x)
         {
-          glm::dvec4 index(0.0, extent[2] + row % height, extent[4] + row / height, 1.0);
-          for (std::int64_t x = 0; x < width; ++x)
+          index.x = static_cast<double>(extent[0] + x);
+          const glm::dvec4 place = toWorld * index;
+          for (std::size_t axis = 0; axis < 3; ++axis)
           {
-            index.x = static_cast<double>(extent[0] + x);
-            positions[row * width + x] =
-              static_cast<float>((toWorld * index)[static_cast<int>(axis)]);
+            positions[axis][row * width + x] = static_cast<float>(place[static_cast<int>(axis)]);
           }
         }
-      });
-  }
+      }
+    });
   this->PositionsGeometry = volume;
 }
 
@@ -204,36 +215,34 @@ void ExtraArrays::Compute(const Deformation& deformation, MappingCache& mapping,
   {
     return;
   }
-  float* jacobians = this->Jacobians->GetPointer(0);
-  const JacobiansKey key{ deformation.IsField() ? 0 : mapping.GetVersion(),
-    deformation.GetVectorsVersion(), deformation.GetUndefinedVersion(), volume.Whole, toOutput,
-    volume.Outside };
-  const bool hasMapping = deformation.IsField() ||
-    (this->MappingVersion == mapping.GetVersion() && mapping.IsCurrent(deformation, volume));
-  if (hasMapping && this->KeyOfJacobians == key)
+  const bool isMesh = !deformation.IsField();
+  if (isMesh &&
+    !(this->MappingVersion == mapping.GetVersion() && mapping.IsCurrent(deformation, volume)))
+  {
+    mapping.Update(deformation, volume, progress);
+    this->OfMesh.SetMapping(volume.Part, volume.Whole.Spacing, mapping.GetMapping(),
+      deformation.GetRestPoints(), deformation.GetTetrahedra());
+    this->MappingVersion = mapping.GetVersion();
+  }
+  const JacobiansKey key{ isMesh ? mapping.GetVersion() : 0, deformation.GetVectorsVersion(),
+    deformation.GetUndefinedVersion(), volume.Whole, toOutput, volume.Outside };
+  if (this->KeyOfJacobians == key)
   {
     return;
   }
-  if (deformation.IsField())
+  float* jacobians = this->Jacobians->GetPointer(0);
+  if (isMesh)
+  {
+    this->OfMesh.Compute(toOutput, deformation.GetRestPoints(), deformation.GetTetrahedra(),
+      deformation.GetNodeDisplacements(), jacobians);
+  }
+  else
   {
     ComputeFieldJacobians({ volume.Part, toOutput, volume.Whole.PointExtent },
       deformation.GetField(volume.Outside), deformation.GetUndefinedPoints(), jacobians);
   }
-  else
-  {
-    if (!hasMapping)
-    {
-      mapping.Update(deformation, volume, progress);
-      this->OfMesh.SetMapping(volume.Part, volume.Whole.Spacing, mapping.GetMapping(),
-        deformation.GetRestPoints(), deformation.GetTetrahedra());
-      this->MappingVersion = mapping.GetVersion();
-    }
-    this->OfMesh.Compute(toOutput, deformation.GetRestPoints(), deformation.GetTetrahedra(),
-      deformation.GetNodeDisplacements(), jacobians);
-  }
   this->Jacobians->Modified();
   this->KeyOfJacobians = key;
-  this->KeyOfJacobians.Mapping = deformation.IsField() ? 0 : mapping.GetVersion();
 }
 
 ExtraArrays::Loss ExtraArrays::Finish(const Deformation& deformation, const OutsideVoxels& outside,
@@ -268,8 +277,7 @@ std::uint32_t* ExtraArrays::MakeFoldCounts(vtkIdType numberOfPoints)
 void ExtraArrays::FinishFoldCounts(vtkImageData* output)
 {
   // Where nothing overlaps nothing has been counted.
-  const auto* valid = static_cast<const signed char*>(
-    output->GetPointData()->GetArray("vtkValidPointMask")->GetVoidPointer(0));
+  const signed char* valid = GetCoverage(output);
   std::uint32_t* counts = this->FoldCounts->GetPointer(0);
   for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
   {
@@ -310,8 +318,7 @@ ExtraArrays::Loss ExtraArrays::FinishDensities(const Deformation& deformation,
   Loss loss;
   vtkPointData* pointData = output->GetPointData();
   const vtkIdType voxels = output->GetNumberOfPoints();
-  vtkDataArray* mask = pointData->GetArray("vtkValidPointMask");
-  const auto* valid = static_cast<const signed char*>(mask->GetVoidPointer(0));
+  const signed char* valid = GetCoverage(output);
   vtkSmartPointer<vtkDataArray> jacobian = pointData->GetArray(JACOBIAN);
   if (!this->Jacobians)
   {

@@ -23,7 +23,7 @@ namespace
 vtkSmartPointer<vtkDataArray> MakeMask(vtkIdType numberOfTuples)
 {
   const auto mask = vtkSmartPointer<vtkCharArray>::New();
-  mask->SetName("vtkValidPointMask");
+  mask->SetName(ValidPointMaskName);
   mask->SetNumberOfTuples(numberOfTuples);
   return mask;
 }

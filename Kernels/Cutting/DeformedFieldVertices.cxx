@@ -17,8 +17,6 @@ namespace deformvolume
 namespace
 {
 
-constexpr double FieldTolerance = 1e-3; // of a field cell, as in DeformationMapping.cl
-
 // What the components of vectors in short rows, all of one length, lie between. Each place of a row
 // has limits of its own, so that compilers compare several at a time.
 class ComponentsOfRows
@@ -91,10 +89,7 @@ bool DeformedFieldVertices::Find(const glm::dvec3& vertex, glm::dvec3& displacem
   }
   displacement = Interpolate(
     this->Field, inside, [this](std::int64_t point) { return GetVector(this->Field, point); });
-  if (IsFading(this->Field))
-  {
-    displacement *= GetWeightBeyond(this->Field, position, FieldTolerance);
-  }
+  displacement *= GetWeightBeyond(this->Field, position, FieldTolerance);
   return true;
 }
 

@@ -50,9 +50,7 @@ IndexBounds ComputeInParallel(std::int64_t count, Body&& body)
 
 // How far outside the field, in its cells, a voxel may lie and still count: more than the device's
 // rounding.
-constexpr double FieldTolerance = 2e-3;
-// The same as DeformationMapping.cl has it.
-constexpr double KernelTolerance = 1e-3;
+constexpr double BoundsTolerance = 2.0 * FieldTolerance;
 // Positions this near to a voxel or to a point of the field are on it.
 constexpr double OnPoint = 1e-6;
 
@@ -157,7 +155,7 @@ IndexBounds GetCoveredBox(
   {
     const glm::dvec3 upper(corner & 1, corner >> 2 & 1, corner >> 1 & 1);
     corners.push_back(
-      geometry.ToIndex(upper * last + (2.0 * upper - 1.0) * glm::dvec3(FieldTolerance)));
+      geometry.ToIndex(upper * last + (2.0 * upper - 1.0) * glm::dvec3(BoundsTolerance)));
   }
   IndexBounds bounds;
   for (const auto& tetrahedron : split)
@@ -183,16 +181,8 @@ IndexBounds GetCoveredBox(
 bool EndsBetweenVoxels(
   const VoxelGrid& voxelGrid, const DisplacementField& field, const FieldGeometry& geometry)
 {
-  const IndexBounds box = GetBox(voxelGrid);
-  bool holdsAll = true;
-  for (int corner = 0; corner < 8; ++corner)
-  {
-    const glm::dvec3 position = geometry.ToField(glm::dvec3(corner & 1 ? box.Max.x : box.Min.x,
-      corner & 2 ? box.Max.y : box.Min.y, corner & 4 ? box.Max.z : box.Min.z));
-    holdsAll = holdsAll && glm::all(glm::greaterThan(position, glm::dvec3(-FieldTolerance))) &&
-      glm::all(glm::lessThan(position, geometry.Last + FieldTolerance));
-  }
-  return !field.Extrapolate && geometry.IsInvertible() && !geometry.IsOnGrid() && !holdsAll;
+  return !field.Extrapolate && geometry.IsInvertible() && !geometry.IsOnGrid() &&
+    !HoldsBox(field, GetBox(voxelGrid), BoundsTolerance);
 }
 
 // The displacement at a place: trilinear, and outside what is left of that of the border.
@@ -202,7 +192,7 @@ glm::dvec3 Interpolate(const DisplacementField& field, const glm::dvec3& positio
   const glm::dvec3 inside = glm::clamp(position, glm::dvec3(0.0), last);
   const glm::dvec3 nearest = glm::round(inside);
   const auto isOnPoint = glm::lessThan(glm::abs(inside - nearest), glm::dvec3(OnPoint));
-  const double weight = IsFading(field) ? GetWeightBeyond(field, position, KernelTolerance) : 1.0;
+  const double weight = GetWeightBeyond(field, position, FieldTolerance);
   return weight > 0.0 ? weight *
       Interpolate(field, glm::mix(inside, nearest, isOnPoint),
         [&](std::int64_t point) { return GetVector(field, point); })
@@ -227,8 +217,8 @@ IndexBounds ComputeBoundsOfVoxels(
       {
         const glm::dvec3 position = geometry.ToField(index);
         if (!field.Extrapolate &&
-          (glm::any(glm::lessThan(position, glm::dvec3(-FieldTolerance))) ||
-            glm::any(glm::greaterThan(position, geometry.Last + FieldTolerance))))
+          (glm::any(glm::lessThan(position, glm::dvec3(-BoundsTolerance))) ||
+            glm::any(glm::greaterThan(position, geometry.Last + BoundsTolerance))))
         {
           continue;
         }
@@ -259,8 +249,8 @@ IndexBounds ComputeBoundsOfCells(
     reach.Min = glm::dvec3(0.0);
     reach.Max = geometry.Last;
   }
-  reach.Min = glm::min(reach.Min, glm::dvec3(0.0)) - FieldTolerance;
-  reach.Max = glm::max(reach.Max, geometry.Last) + FieldTolerance;
+  reach.Min = glm::min(reach.Min, glm::dvec3(0.0)) - BoundsTolerance;
+  reach.Max = glm::max(reach.Max, geometry.Last) + BoundsTolerance;
 
   const OutputTransform transform = GetOutputTransform(voxelGrid);
   std::int64_t cells[3];

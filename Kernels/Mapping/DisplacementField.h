@@ -13,6 +13,10 @@ namespace deformvolume
 /// Displacements over so many output voxels are refused: the kernels could not round them.
 constexpr double LargestDisplacement = 16383.0;
 
+/// Steps between points of a field by which a voxel may lie outside it and count as inside: that of
+/// DeformationMapping.cl.
+constexpr double FieldTolerance = 1e-3;
+
 /// A displacement field on a regular grid, trilinear between its points.
 struct DisplacementField
 {

@@ -336,10 +336,39 @@ IndexBounds FadedLinks::ComputeBounds(const VoxelGrid& voxelGrid,
   return bounds;
 }
 
+glm::dvec3 FadedLinks::Displace(const VertexLink& link, const std::vector<Tetrahedron>& tetrahedra,
+  const float* displacements) const
+{
+  const auto number = static_cast<std::size_t>(link.Tetrahedron);
+  glm::dvec3 sum(0.0);
+  if (number == tetrahedra.size())
+  {
+    return sum;
+  }
+  const auto add = [&](double weight, std::int32_t node)
+  { sum += weight * GetVector(displacements, node); };
+  const bool isInside = number < tetrahedra.size();
+  const TetrahedronFace face =
+    isInside ? TetrahedronFace{ link.Tetrahedron, 3 } : this->Faces[number - tetrahedra.size() - 1];
+  const Tetrahedron& all = tetrahedra[static_cast<std::size_t>(face.Tetrahedron)];
+  const auto nodes = face.GetNodes(all);
+  double rest = 1.0;
+  for (std::size_t k = 0; k < 3; ++k)
+  {
+    add(double{ link.Weights[k] }, nodes[k]);
+    rest -= double{ link.Weights[k] };
+  }
+  if (isInside)
+  {
+    add(rest, all[3]);
+  }
+  return sum;
+}
+
 std::int64_t FadedLinks::CountStretched(
   const std::vector<Tetrahedron>& tetrahedra, const float* displacements) const
 {
-  return this->Stretched.Count(tetrahedra, this->Faces, displacements);
+  return this->Stretched.Count(*this, tetrahedra, displacements);
 }
 
 double FadedLinks::GetLongestDisplacement(const std::vector<Tetrahedron>& tetrahedra,

@@ -49,6 +49,11 @@ public:
   Tetrahedron GetRecord(
     std::size_t record, const std::vector<Tetrahedron>& tetrahedra, std::int32_t still) const;
 
+  /// The displacement of a voxel with a link, by the tetrahedra as they are now. displacements: of
+  /// the nodes, three floats each.
+  glm::dvec3 Displace(const VertexLink& link, const std::vector<Tetrahedron>& tetrahedra,
+    const float* displacements) const;
+
   /// Bounds of the voxels outside after the deformation, not smaller than the truth.
   /// displacements: of the nodes, three floats each, in output voxels.
   IndexBounds ComputeBounds(const VoxelGrid& voxelGrid, const std::vector<Tetrahedron>& tetrahedra,

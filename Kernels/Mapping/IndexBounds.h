@@ -176,6 +176,10 @@ inline glm::dvec3 GetVector(const DisplacementField& field, std::int64_t point)
 inline double GetWeightBeyond(
   const DisplacementField& field, const glm::dvec3& position, double tolerance)
 {
+  if (!IsFading(field))
+  {
+    return 1.0;
+  }
   double square = 0.0;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -185,6 +189,27 @@ inline double GetWeightBeyond(
     square += distance * distance;
   }
   return GetFadedWeight(std::sqrt(square));
+}
+
+/// Whether a field holds all of a box in the indices that it takes, to within a tolerance, in steps
+/// between its points.
+inline bool HoldsBox(const DisplacementField& field, const IndexBounds& box, double tolerance)
+{
+  const auto& m = field.IndexToField;
+  const glm::dmat3 toField = GetVoxelsToField(field);
+  const glm::dvec3 last(field.Dimensions[0] - 1, field.Dimensions[1] - 1, field.Dimensions[2] - 1);
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    const glm::dvec3 place((corner & 1) != 0 ? box.Max.x : box.Min.x,
+      (corner & 2) != 0 ? box.Max.y : box.Min.y, (corner & 4) != 0 ? box.Max.z : box.Min.z);
+    const glm::dvec3 position = toField * place + glm::dvec3(m[3], m[7], m[11]);
+    if (!glm::all(glm::greaterThan(position, glm::dvec3(-tolerance))) ||
+      !glm::all(glm::lessThan(position, last + tolerance)))
+    {
+      return false;
+    }
+  }
+  return true;
 }
 
 /// The trilinear vector at a position within a field, in indices of its points. getVector returns

@@ -12,6 +12,12 @@ inline double GetFadedWeight(double distance)
   return distance < 1.0 ? 1.0 - distance * distance * (3.0 - 2.0 * distance) : 0.0;
 }
 
+/// Its derivative by the distance, for distances up to 1.
+inline double GetFadedSlope(double distance)
+{
+  return 6.0 * distance * (distance - 1.0);
+}
+
 /// What becomes of the voxels outside a deformation mesh or field.
 struct OutsideVoxels
 {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "StretchedTetrahedra.h"
 
+#include "FadedLinks.h"
 #include "FiveTetrahedra.h"
-#include "IndexBounds.h" // for GetVector
 #include "ParallelFor.h"
 
 #include <glm/common.hpp>
@@ -57,35 +57,6 @@ Anchor GetAnchor(const VertexLink& link, const glm::dvec3& voxel, const glm::dve
   }
   anchor.Place /= anchor.Weight;
   return anchor;
-}
-
-glm::dvec3 Displace(const VertexLink& link, const std::vector<Tetrahedron>& tetrahedra,
-  const std::vector<TetrahedronFace>& faces, const float* displacements)
-{
-  const auto number = static_cast<std::size_t>(link.Tetrahedron);
-  glm::dvec3 sum(0.0);
-  if (number == tetrahedra.size())
-  {
-    return sum;
-  }
-  const auto add = [&](double weight, std::int32_t node)
-  { sum += weight * GetVector(displacements, node); };
-  const bool isInside = number < tetrahedra.size();
-  const TetrahedronFace face =
-    isInside ? TetrahedronFace{ link.Tetrahedron, 3 } : faces[number - tetrahedra.size() - 1];
-  const Tetrahedron& all = tetrahedra[static_cast<std::size_t>(face.Tetrahedron)];
-  const auto nodes = face.GetNodes(all);
-  double rest = 1.0;
-  for (std::size_t k = 0; k < 3; ++k)
-  {
-    add(double{ link.Weights[k] }, nodes[k]);
-    rest -= double{ link.Weights[k] };
-  }
-  if (isInside)
-  {
-    add(rest, all[3]);
-  }
-  return sum;
 }
 
 } // namespace
@@ -207,8 +178,8 @@ void StretchedTetrahedra::Find(const Extent& voxels, const glm::dvec3& spacing,
   }
 }
 
-std::int64_t StretchedTetrahedra::Count(const std::vector<Tetrahedron>& tetrahedra,
-  const std::vector<TetrahedronFace>& faces, const float* displacements) const
+std::int64_t StretchedTetrahedra::Count(const FadedLinks& links,
+  const std::vector<Tetrahedron>& tetrahedra, const float* displacements) const
 {
   std::atomic<std::int64_t> count{ 0 };
   ParallelForParts(this->Stretchable.size(), 1024,
@@ -221,7 +192,7 @@ std::int64_t StretchedTetrahedra::Count(const std::vector<Tetrahedron>& tetrahed
         glm::dvec3 high(-std::numeric_limits<double>::infinity());
         for (const VertexLink& link : this->Stretchable[i])
         {
-          const glm::dvec3 moved = Displace(link, tetrahedra, faces, displacements);
+          const glm::dvec3 moved = links.Displace(link, tetrahedra, displacements);
           low = glm::min(low, moved);
           high = glm::max(high, moved);
         }

@@ -16,6 +16,8 @@
 namespace deformvolume
 {
 
+class FadedLinks;
+
 /// The tetrahedra of the sampling mesh, active or not, that a deformation may stretch because they
 /// reach from voxels to others that follow a distant part of the boundary of the deformation mesh.
 /// Links are those of FadedLinks, whose faces are given beside them.
@@ -29,8 +31,8 @@ public:
 
   /// Those that are stretched over more than 2 output voxels on an axis. displacements: of the
   /// nodes, three floats each, in output voxels.
-  std::int64_t Count(const std::vector<Tetrahedron>& tetrahedra,
-    const std::vector<TetrahedronFace>& faces, const float* displacements) const;
+  std::int64_t Count(const FadedLinks& links, const std::vector<Tetrahedron>& tetrahedra,
+    const float* displacements) const;
   /// Where many may be stretched, the number is an estimate from some of them.
   bool IsCountEstimated() const { return this->Step > 1; }
 

@@ -19,13 +19,6 @@ namespace deformvolume
 namespace
 {
 
-constexpr double FieldTolerance = 1e-3; // as in DeformationMapping.cl
-
-glm::dmat3 OuterProduct(const glm::dvec3& column, const glm::dvec3& row)
-{
-  return glm::dmat3(column * row.x, column * row.y, column * row.z);
-}
-
 // Calls body(index, number) for the voxels of an extent, in parallel.
 template <typename Body>
 void ForEachVoxel(const Extent& voxels, Body&& body)
@@ -238,9 +231,9 @@ void VoxelJacobians::Compute(const OutputMap& toOutput, const std::vector<glm::d
         glm::dmat3 derivative = atRest;
         for (int node = 0; node < 4; ++node)
         {
-          derivative +=
-            OuterProduct(GetVector(displacements, tetrahedra[i][static_cast<std::size_t>(node)]),
-              map.GetGradient(node));
+          derivative += glm::outerProduct(
+            GetVector(displacements, tetrahedra[i][static_cast<std::size_t>(node)]),
+            map.GetGradient(node));
         }
         ofTetrahedra[i] = static_cast<float>(glm::determinant(derivative) / volume);
       }
@@ -256,37 +249,21 @@ void VoxelJacobians::Compute(const OutputMap& toOutput, const std::vector<glm::d
     });
   if (this->Faded.AreThere())
   {
-    this->Mesh.Set(this->Faded, tetrahedra, restPoints.size());
-    this->Mesh.Move(displacements, restPoints.size(), nullptr);
-    this->ComputeOutside(toOutput, tetrahedra, jacobians);
+    this->ComputeOutside(toOutput, tetrahedra, displacements, jacobians);
   }
 }
 
-void VoxelJacobians::ComputeOutside(
-  const OutputMap& toOutput, const std::vector<Tetrahedron>& tetrahedra, float* jacobians) const
+void VoxelJacobians::ComputeOutside(const OutputMap& toOutput,
+  const std::vector<Tetrahedron>& tetrahedra, const float* displacements, float* jacobians) const
 {
   const glm::dmat3 atRest = OutputTransform(toOutput).GetMatrix();
   const double volume = glm::determinant(atRest);
-  const auto still = static_cast<std::int32_t>(tetrahedra.size());
   const std::array<std::int64_t, 3> steps{ { 1, GetSize(this->Voxels, 0),
     GetSize(this->Voxels, 0) * GetSize(this->Voxels, 1) } };
   const auto displace = [&](std::int64_t voxel)
   {
-    const VertexLink& link = this->Links[static_cast<std::size_t>(voxel)];
-    if (link.Tetrahedron == still)
-    {
-      return glm::dvec3(0.0);
-    }
-    const Tetrahedron& nodes =
-      this->Mesh.GetTetrahedra()[static_cast<std::size_t>(link.Tetrahedron)];
-    glm::dvec3 sum(0.0);
-    double last = 1.0;
-    for (std::size_t k = 0; k < 3; ++k)
-    {
-      sum += double{ link.Weights[k] } * GetVector(this->Mesh.GetDisplacements().data(), nodes[k]);
-      last -= double{ link.Weights[k] };
-    }
-    return sum + last * GetVector(this->Mesh.GetDisplacements().data(), nodes[3]);
+    return this->Faded.Displace(
+      this->Links[static_cast<std::size_t>(voxel)], tetrahedra, displacements);
   };
   ForEachVoxel(this->Voxels,
     [&](const glm::ivec3& index, std::int64_t voxel)

@@ -5,7 +5,6 @@
 #include "DeformVolumeExport.h"
 #include "DisplacementField.h"
 #include "Extent.h"
-#include "FadedMesh.h"
 #include "StaticMapping.h"
 #include "Tetrahedron.h"
 #include "VertexLink.h"
@@ -42,15 +41,14 @@ public:
     const std::vector<Tetrahedron>& tetrahedra, const float* displacements, float* jacobians);
 
 private:
-  void ComputeOutside(
-    const OutputMap& toOutput, const std::vector<Tetrahedron>& tetrahedra, float* jacobians) const;
+  void ComputeOutside(const OutputMap& toOutput, const std::vector<Tetrahedron>& tetrahedra,
+    const float* displacements, float* jacobians) const;
 
   Extent Voxels{ { 0, -1, 0, -1, 0, -1 } };
   std::vector<std::int32_t> Owners; // the tetrahedron of each voxel, or less than 0
   // Where voxels outside are kept:
   std::vector<VertexLink> Links;
   FadedLinks Faded;
-  FadedMesh Mesh;
 };
 
 /// The same of a forward displacement field, from the differences of displacements half a voxel

@@ -353,7 +353,7 @@ bool FieldPointMap::Map(const glm::dvec3& point, Image& image) const
     }
     const double s = distance / this->Outside.FadeDistance;
     weight = GetFadedWeight(s);
-    slope = 6.0 * s * (s - 1.0) / this->Outside.FadeDistance * offset / distance;
+    slope = GetFadedSlope(s) / this->Outside.FadeDistance * offset / distance;
   }
   const glm::ivec3 cell = inside.GetCell(nearest);
   const glm::dvec3 place = nearest - glm::dvec3(cell);

@@ -248,7 +248,7 @@ public:
     image.Gradient += weight * displacement.Gradient * projection;
     if (distance > 0.0)
     {
-      const double slope = 6.0 * s * (s - 1.0) / fadeDistance;
+      const double slope = GetFadedSlope(s) / fadeDistance;
       image.Gradient += glm::outerProduct(displacement.Vector, slope * (point - place) / distance);
     }
   }

@@ -11,6 +11,7 @@
 #include "vtkTestErrorObserver.h"
 
 #include <vtkAOSDataArrayTemplate.h>
+#include <vtkCellData.h>
 #include <vtkCommand.h>
 #include <vtkDataArray.h>
 #include <vtkDataArrayRange.h>
@@ -23,6 +24,7 @@
 #include <vtkPoints.h>
 #include <vtkSmartPointer.h>
 #include <vtkTypeTraits.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 
 #include <glm/vec3.hpp>
@@ -243,6 +245,20 @@ struct Deformed
     }
     return this->Filter->GetOutput();
   }
+  /// Updates with a warning that holds some words, or with none.
+  vtkImageData* Expect(const std::string& words)
+  {
+    this->Observer->Clear();
+    this->Filter->Update();
+    const std::string warning = this->Observer->GetWarningMessage();
+    if (words.empty() ? !warning.empty() : warning.find(words) == std::string::npos)
+    {
+      ++GetNumberOfFailures();
+      std::cerr << "expected \"" << words << "\" in the warning \"" << warning << "\"\n";
+    }
+    VERIFY_EQUAL(this->TakeErrors(), 0);
+    return this->Filter->GetOutput();
+  }
   vtkDataArray* GetValues() { return this->Filter->GetOutput()->GetPointData()->GetScalars(); }
   bool IsCovered(vtkIdType id)
   {
@@ -268,6 +284,38 @@ inline bool HaveEqualBits(vtkDataArray* first, vtkDataArray* second)
   const std::size_t bytes = static_cast<std::size_t>(first->GetNumberOfValues()) *
     static_cast<std::size_t>(first->GetDataTypeSize());
   return std::memcmp(first->GetVoidPointer(0), second->GetVoidPointer(0), bytes) == 0;
+}
+
+/// Adds a mask in which all tetrahedra are active.
+inline vtkSmartPointer<vtkUnsignedCharArray> AddActiveTetrahedra(vtkImageData* volume)
+{
+  auto active = vtkSmartPointer<vtkUnsignedCharArray>::New();
+  active->SetName("ActiveTetrahedra");
+  active->SetNumberOfTuples(volume->GetNumberOfCells());
+  active->Fill(31);
+  volume->GetCellData()->AddArray(active);
+  return active;
+}
+
+/// All arrays of a part of an output hold what the whole has there.
+inline void VerifyPart(vtkImageData* part, vtkImageData* whole)
+{
+  VERIFY(part->GetNumberOfPoints() == 0 ||
+    part->GetPointData()->GetNumberOfArrays() == whole->GetPointData()->GetNumberOfArrays());
+  for (vtkIdType id = 0; id < part->GetNumberOfPoints(); ++id)
+  {
+    const glm::dvec3 p = GetPoint(part, id);
+    const vtkIdType other = whole->FindPoint(p.x, p.y, p.z);
+    for (int i = 0; i < part->GetPointData()->GetNumberOfArrays(); ++i)
+    {
+      vtkDataArray* array = part->GetPointData()->GetArray(i);
+      vtkDataArray* ofWhole = whole->GetPointData()->GetArray(array->GetName());
+      for (int component = 0; component < array->GetNumberOfComponents(); ++component)
+      {
+        VERIFY_EQUAL(array->GetComponent(id, component), ofWhole->GetComponent(other, component));
+      }
+    }
+  }
 }
 
 /// Every point array, extent, origin, spacing and direction.

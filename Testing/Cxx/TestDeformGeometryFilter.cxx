@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vtkDeformGeometryFilter: points follow a deformation and are led back.
-#include "FilterTesting.h"
+#include "KeepTesting.h"
 
 #include "vtkDeformGeometryFilter.h"
 
@@ -603,12 +603,6 @@ void TestArrays()
   VERIFY(output->GetPointData()->GetArray("v") == vectors); // not active
   VERIFY_EQUAL(output->GetNumberOfCells(), 1);
   VERIFY(subject.Warning.find("\"cell normals\"") != std::string::npos);
-}
-
-//------------------------------------------------------------------------------
-double Fade(double s)
-{
-  return s < 1.0 ? 1.0 - 3.0 * s * s + 2.0 * s * s * s : 0.0;
 }
 
 // Outside a box that is shifted, all is known in closed form.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // OutsideMode KEEP: tissue outside the deformation mesh stays where it is, and the displacement
 // fades to zero within FadeDistance.
-#include "FilterTesting.h"
+#include "KeepTesting.h"
 
 #include "vtkCutVolume.h"
 
@@ -26,11 +26,6 @@ using namespace filterTesting;
 
 namespace
 {
-
-double Fade(double s)
-{
-  return s < 1.0 ? 1.0 - 3.0 * s * s + 2.0 * s * s * s : 0.0;
-}
 
 // A lattice of tetrahedra that fills a box.
 vtkSmartPointer<vtkUnstructuredGrid> MakeBox(
@@ -103,30 +98,6 @@ vtkSmartPointer<vtkImageData> MakeTissue(
     { return 400.0 * std::sin(0.7 * p.x) + 300.0 * std::cos(0.9 * p.y + 0.2 * p.z); });
   return volume;
 }
-
-struct Kept : Deformed
-{
-  Kept(vtkDataObject* volume, vtkDataObject* mesh, double fadeDistance)
-    : Deformed(volume, mesh)
-  {
-    this->Filter->SetOutsideModeToKeep();
-    this->Filter->SetFadeDistance(fadeDistance);
-  }
-  /// Updates with a warning that holds some words, or with none.
-  vtkImageData* Expect(const std::string& words)
-  {
-    this->Observer->Clear();
-    this->Filter->Update();
-    const std::string warning = this->Observer->GetWarningMessage();
-    if (words.empty() ? !warning.empty() : warning.find(words) == std::string::npos)
-    {
-      ++GetNumberOfFailures();
-      std::cerr << "expected \"" << words << "\" in the warning \"" << warning << "\"\n";
-    }
-    VERIFY_EQUAL(this->TakeErrors(), 0);
-    return this->Filter->GetOutput();
-  }
-};
 
 void TestMisuse()
 {
@@ -423,11 +394,7 @@ void TestIncremental()
     MakeBox(glm::dvec3(14.2, 9.1, 13.7), glm::dvec3(50.6, 30.3, 40.2), glm::ivec3(10, 8, 8));
   std::mt19937 random(4);
   std::uniform_real_distribution<double> uniform(-1.5, 1.5);
-  vtkNew<vtkUnsignedCharArray> active;
-  active->SetName("ActiveTetrahedra");
-  active->SetNumberOfTuples(volume->GetNumberOfCells());
-  active->Fill(31);
-  volume->GetCellData()->AddArray(active);
+  const auto active = AddActiveTetrahedra(volume);
   Kept subject(volume, mesh, 9.0);
   subject.Filter->SetOutputBoundsModeToVolumeBounds();
   subject.Filter->Update();
@@ -597,16 +564,7 @@ void TestOtherSettings()
     vtkImageData* part = pieces.Filter->GetOutput();
     VERIFY_EQUAL(pieces.TakeErrors(), 0);
     VERIFY(part->GetNumberOfPoints() > 0 && part->GetNumberOfPoints() < whole->GetNumberOfPoints());
-    for (vtkIdType id = 0; id < part->GetNumberOfPoints(); ++id)
-    {
-      const glm::dvec3 p = GetPoint(part, id);
-      const vtkIdType other = whole->FindPoint(p.x, p.y, p.z);
-      for (const char* name : { "value", "more", "vtkValidPointMask" })
-      {
-        VERIFY_EQUAL(part->GetPointData()->GetArray(name)->GetComponent(id, 0),
-          whole->GetPointData()->GetArray(name)->GetComponent(other, 0));
-      }
-    }
+    VerifyPart(part, whole);
   }
   subject.Filter->SetOutsideModeToDiscard();
   const vtkIdType all = subject.Filter->GetNumberOfCoveredVoxels();

@@ -2,7 +2,7 @@
 // OutsideMode KEEP with displacement fields, forward and inverse: tissue beyond their grid stays
 // where it is, and the displacement of their border fades to zero within FadeDistance. The
 // expected result is that of another field, which has the displacement of each voxel.
-#include "FilterTesting.h"
+#include "KeepTesting.h"
 
 #include "vtkCutVolume.h"
 
@@ -24,11 +24,6 @@ using namespace filterTesting;
 
 namespace
 {
-
-double Fade(double s)
-{
-  return s < 1.0 ? 1.0 - 3.0 * s * s + 2.0 * s * s * s : 0.0;
-}
 
 // The displacement of a field at a point in the world, in double precision.
 glm::dvec3 Displace(vtkImageData* field, double fadeDistance, const glm::dvec3& point)
@@ -105,30 +100,6 @@ vtkSmartPointer<vtkImageData> MakeVoxelField(
     voxels, [&](const glm::dvec3& p) { return p + Displace(field, fadeDistance, p); });
   return voxels;
 }
-
-struct Kept : Deformed
-{
-  Kept(vtkDataObject* volume, vtkDataObject* field, double fadeDistance)
-    : Deformed(volume, field)
-  {
-    this->Filter->SetOutsideModeToKeep();
-    this->Filter->SetFadeDistance(fadeDistance);
-  }
-  /// Updates with a warning that holds some words, or with none.
-  vtkImageData* Expect(const std::string& words)
-  {
-    this->Observer->Clear();
-    this->Filter->Update();
-    const std::string warning = this->Observer->GetWarningMessage();
-    if (words.empty() ? !warning.empty() : warning.find(words) == std::string::npos)
-    {
-      ++GetNumberOfFailures();
-      std::cerr << "expected \"" << words << "\" in the warning \"" << warning << "\"\n";
-    }
-    VERIFY_EQUAL(this->TakeErrors(), 0);
-    return this->Filter->GetOutput();
-  }
-};
 
 // Where both cover a voxel they show places that lie within a length of each other.
 void VerifyAlike(vtkImageData* found, vtkImageData* expected, double tolerance)
@@ -349,11 +320,7 @@ void TestIncremental()
 {
   const auto volume = MakeVolume(false);
   const auto field = MakeField(volume, 1.0, false);
-  vtkNew<vtkUnsignedCharArray> active;
-  active->SetName("ActiveTetrahedra");
-  active->SetNumberOfTuples(volume->GetNumberOfCells());
-  active->Fill(31);
-  volume->GetCellData()->AddArray(active);
+  const auto active = AddActiveTetrahedra(volume);
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(-1.5, 1.5);
   double distance = 7.0;
@@ -413,16 +380,7 @@ void TestPieces()
       VERIFY_EQUAL(pieces.TakeErrors(), 0);
       VERIFY(
         part->GetNumberOfPoints() > 0 && part->GetNumberOfPoints() < whole->GetNumberOfPoints());
-      for (vtkIdType id = 0; id < part->GetNumberOfPoints(); ++id)
-      {
-        const glm::dvec3 p = GetPoint(part, id);
-        const vtkIdType other = whole->FindPoint(p.x, p.y, p.z);
-        for (const char* name : { "x", "value", "vtkValidPointMask" })
-        {
-          VERIFY_EQUAL(part->GetPointData()->GetArray(name)->GetComponent(id, 0),
-            whole->GetPointData()->GetArray(name)->GetComponent(other, 0));
-        }
-      }
+      VerifyPart(part, whole);
     }
   }
 }
@@ -451,16 +409,7 @@ void TestParts()
     VERIFY_EQUAL(pieces.TakeErrors(), 0);
     fewest = std::min(fewest, source->GetOutput()->GetNumberOfPoints());
     vtkImageData* part = pieces.Filter->GetOutput();
-    for (vtkIdType id = 0; id < part->GetNumberOfPoints(); ++id)
-    {
-      const glm::dvec3 p = GetPoint(part, id);
-      const vtkIdType other = whole->FindPoint(p.x, p.y, p.z);
-      for (const char* name : { "RTData", "vtkValidPointMask" })
-      {
-        VERIFY_EQUAL(part->GetPointData()->GetArray(name)->GetComponent(id, 0),
-          whole->GetPointData()->GetArray(name)->GetComponent(other, 0));
-      }
-    }
+    VerifyPart(part, whole);
   }
   VERIFY(fewest < whole->GetNumberOfPoints() / 3);
 }

@@ -74,20 +74,6 @@ struct Derived : Deformed
   {
     return this->Filter->GetOutput()->GetPointData()->GetArray(name);
   }
-  /// Updates with a warning that holds some words, or with none.
-  vtkImageData* Expect(const std::string& words)
-  {
-    this->Observer->Clear();
-    this->Filter->Update();
-    const std::string warning = this->Observer->GetWarningMessage();
-    if (words.empty() ? !warning.empty() : warning.find(words) == std::string::npos)
-    {
-      ++GetNumberOfFailures();
-      std::cerr << "expected \"" << words << "\" in the warning \"" << warning << "\"\n";
-    }
-    VERIFY_EQUAL(this->TakeErrors(), 0);
-    return this->Filter->GetOutput();
-  }
 };
 
 void TestMisuse()
@@ -416,11 +402,7 @@ void TestHoles()
 void TestFolds()
 {
   const auto volume = MakeDose();
-  vtkNew<vtkUnsignedCharArray> active;
-  active->SetName("ActiveTetrahedra");
-  active->SetNumberOfTuples(volume->GetNumberOfCells());
-  active->Fill(31);
-  volume->GetCellData()->AddArray(active);
+  const auto active = AddActiveTetrahedra(volume);
   const auto mesh = MakeMesh(volume, 9, 0.5);
   double center[3];
   volume->GetCenter(center);
@@ -557,14 +539,7 @@ void TestFoldCounts()
       vtkImageData* part = subject.Filter->GetOutput();
       VERIFY(
         part->GetNumberOfPoints() > 0 && part->GetNumberOfPoints() < whole->GetNumberOfPoints());
-      for (vtkIdType id = 0; id < part->GetNumberOfPoints(); ++id)
-      {
-        const glm::dvec3 p = GetPoint(part, id);
-        VERIFY_EQUAL(part->GetPointData()->GetArray("FoldCount")->GetComponent(id, 0),
-          whole->GetPointData()
-            ->GetArray("FoldCount")
-            ->GetComponent(whole->FindPoint(p.x, p.y, p.z), 0));
-      }
+      VerifyPart(part, whole);
     }
   }
   Deformed subject(volume, mesh);
@@ -588,11 +563,7 @@ void TestFoldCounts()
 void TestIncremental()
 {
   const auto volume = MakeDose();
-  vtkNew<vtkUnsignedCharArray> active;
-  active->SetName("ActiveTetrahedra");
-  active->SetNumberOfTuples(volume->GetNumberOfCells());
-  active->Fill(31);
-  volume->GetCellData()->AddArray(active);
+  const auto active = AddActiveTetrahedra(volume);
   // Without densities the output is made of the last one.
   for (const int kind : { 0, 1, 2, 3 })
   {

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeXMLWriting_h
+#define DeformVolumeXMLWriting_h
+
+#include "Messages.h"
+
+#include <vtkDataObject.h>
+
+#include <string>
+
+/// Writes a file by one of VTK's writers of XML files. Throws a Failure where that fails.
+template <typename Writer>
+void WriteXML(Writer* writer, vtkDataObject* data, const std::string& path, Messages& messages)
+{
+  // Not appended: with recent versions of libexpat, ParaView 5.11 cannot read appended data.
+  writer->SetDataModeToBinary();
+  writer->SetInputDataObject(data);
+  writer->SetFileName(path.c_str());
+  const bool written = writer->Write() != 0;
+  messages.Check("cannot write " + path, written);
+}
+
+#endif
