@@ -61,7 +61,7 @@
  * cuts in the next execution that succeeds. After a failure of memory or of a device the body
  * starts again from rest.
  *
- * @sa vtkMassSpringDeformation vtkCorotationalDeformation vtkDeformVolumeFilter
+ * @sa vtkMassSpringDeformation vtkFiniteElementDeformation vtkDeformVolumeFilter
  */
 #ifndef vtkElasticDeformation_h
 #define vtkElasticDeformation_h

@@ -14,7 +14,7 @@
  * The stiffness of springs is derived from the Young modulus and the Poisson ratio. Springs are a
  * material on lattices of equal cubes only, of five tetrahedra each: those of
  * vtkLatticeTetrahedraSource with EqualSpacing, also with tetrahedra missing or cut apart. Edges
- * may differ by a thousandth. For other meshes use vtkCorotationalDeformation. Springs have a
+ * may differ by a thousandth. For other meshes use vtkFiniteElementDeformation. Springs have a
  * Poisson ratio of 0.25 by themselves, and the volumes make what is more. Less than that counts as
  * 0.25, with a warning.
  *
@@ -31,7 +31,7 @@
  * deformation of volumetric models"; Teschner et al. 2004 for the energy of volumes;
  * Documents/physics.md.
  *
- * @sa vtkElasticDeformation vtkCorotationalDeformation vtkDeformVolumeFilter
+ * @sa vtkElasticDeformation vtkFiniteElementDeformation vtkDeformVolumeFilter
  */
 #ifndef vtkMassSpringDeformation_h
 #define vtkMassSpringDeformation_h

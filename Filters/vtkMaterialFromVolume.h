@@ -34,7 +34,7 @@
  * modulus or a density of 0 or less, or a Poisson ratio of less than 0 or of 0.495 and more; cells
  * that are not tetrahedra; coordinates that are not finite.
  *
- * @sa vtkCorotationalDeformation vtkMassSpringDeformation vtkChainMailDeformation
+ * @sa vtkFiniteElementDeformation vtkMassSpringDeformation vtkChainMailDeformation
  */
 #ifndef vtkMaterialFromVolume_h
 #define vtkMaterialFromVolume_h

@@ -7,10 +7,10 @@
 #include "vtkCallbackCommand.h"
 #include "vtkCarveVolume.h"
 #include "vtkChainMailDeformation.h"
-#include "vtkCorotationalDeformation.h"
 #include "vtkCutVolume.h"
 #include "vtkDeformVolumeFilter.h"
 #include "vtkExecutive.h"
+#include "vtkFiniteElementDeformation.h"
 #include "vtkImageData.h"
 #include "vtkMassSpringDeformation.h"
 #include "vtkPoints.h"
@@ -83,7 +83,7 @@ SessionPipeline::SessionPipeline()
   for (vtkAlgorithm* filter :
     { static_cast<vtkAlgorithm*>(this->CutFilter), static_cast<vtkAlgorithm*>(this->CarveFilter),
       static_cast<vtkAlgorithm*>(this->ChainMail), static_cast<vtkAlgorithm*>(this->MassSpring),
-      static_cast<vtkAlgorithm*>(this->Corotational), static_cast<vtkAlgorithm*>(this->Resampler) })
+      static_cast<vtkAlgorithm*>(this->Elements), static_cast<vtkAlgorithm*>(this->Resampler) })
   {
     filter->AddObserver(vtkCommand::ErrorEvent, this->ErrorObserver);
     filter->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, this->ErrorObserver);
@@ -97,7 +97,7 @@ SessionPipeline::SessionPipeline()
   this->Resampler->SetInputConnection(this->CarveFilter->GetOutputPort());
   // So that the extent is always the same one, and outputs are updated in part.
   this->Resampler->SetOutputBoundsModeToVolumeBounds();
-  this->Corotational->SetModeToInteractive();
+  this->Elements->SetModeToInteractive();
 }
 
 SessionPipeline::~SessionPipeline() = default;
@@ -194,7 +194,7 @@ void SessionPipeline::Apply(const SessionEvent& event)
     case SessionEvent::RESET:
       return this->Reset();
     case SessionEvent::MODEL:
-      return this->SetModel(GetWhole(event, Session::NONE, Session::COROTATIONAL, "The model"));
+      return this->SetModel(GetWhole(event, Session::NONE, Session::FINITE_ELEMENTS, "The model"));
     case SessionEvent::HANDLE_RADIUS:
       if (!(event.Numbers[0] >= 0.0))
       {

@@ -18,7 +18,7 @@ class vtkAlgorithm;
 class vtkCallbackCommand;
 class vtkCarveVolume;
 class vtkChainMailDeformation;
-class vtkCorotationalDeformation;
+class vtkFiniteElementDeformation;
 class vtkCutVolume;
 class vtkDataSet;
 class vtkDeformVolumeFilter;
@@ -166,7 +166,7 @@ private:
   vtkNew<vtkCarveVolume> CarveFilter;
   vtkNew<vtkChainMailDeformation> ChainMail;
   vtkNew<vtkMassSpringDeformation> MassSpring;
-  vtkNew<vtkCorotationalDeformation> Corotational;
+  vtkNew<vtkFiniteElementDeformation> Elements;
   vtkNew<vtkDeformVolumeFilter> Resampler;
   vtkNew<vtkCallbackCommand> ErrorObserver;
   vtkNew<vtkCallbackCommand> WarningObserver;

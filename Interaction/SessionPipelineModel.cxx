@@ -6,10 +6,10 @@
 
 #include "vtkCarveVolume.h"
 #include "vtkChainMailDeformation.h"
-#include "vtkCorotationalDeformation.h"
 #include "vtkCutVolume.h"
 #include "vtkDeformVolumeFilter.h"
 #include "vtkDoubleArray.h"
+#include "vtkFiniteElementDeformation.h"
 #include "vtkFloatArray.h"
 #include "vtkIdList.h"
 #include "vtkImageData.h"
@@ -83,7 +83,7 @@ void SessionPipeline::TakeRestMesh()
     this->RestMesh = MakeLattice(this->Volume, this->NumberOfNodes);
   }
   this->MassSpring->SetInputData(this->RestMesh);
-  this->Corotational->SetInputData(this->RestMesh);
+  this->Elements->SetInputData(this->RestMesh);
   for (Actions* actions : { &this->Done, &this->Undone })
   {
     for (Action& action : *actions)
@@ -99,8 +99,8 @@ vtkElasticDeformation* SessionPipeline::GetElastic()
   {
     case Session::MASS_SPRING:
       return this->MassSpring;
-    case Session::COROTATIONAL:
-      return this->Corotational;
+    case Session::FINITE_ELEMENTS:
+      return this->Elements;
     default:
       return nullptr;
   }
@@ -125,7 +125,7 @@ vtkIdType SessionPipeline::GetNumberOfMovedVoxels()
 
 double SessionPipeline::GetRelativeResidual()
 {
-  return this->Model == Session::COROTATIONAL ? this->Corotational->GetRelativeResidual() : 0.0;
+  return this->Model == Session::FINITE_ELEMENTS ? this->Elements->GetRelativeResidual() : 0.0;
 }
 
 void SessionPipeline::SetModel(int model)

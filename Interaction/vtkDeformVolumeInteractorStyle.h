@@ -21,9 +21,9 @@
  *
  * @par Keys:
  * t g c v b m choose these tools; 1 2 3 4 the models NONE, CHAIN_MAIL, MASS_SPRING and
- * COROTATIONAL. p pins what is under the cursor, x releases the handle under the cursor. u is undo,
- * y redo, z undoes all. + and - are the wheel of CUT and CARVE. r resets the camera, h shows help,
- * q ends the interaction. Texts need VTK's module RenderingFreeType.
+ * FINITE_ELEMENTS. p pins what is under the cursor, x releases the handle under the cursor. u is
+ * undo, y redo, z undoes all. + and - are the wheel of CUT and CARVE. r resets the camera, h shows
+ * help, q ends the interaction. Texts need VTK's module RenderingFreeType.
  *
  * @par What is visible:
  * With PickMode OPACITY, the voxel along the ray where half of the light has been absorbed that all

@@ -776,7 +776,7 @@ bool vtkDeformVolumeSession::Save(const std::string& fileName, bool isMesh)
     if (!mesh || pipeline.GetModel() == NONE)
     {
       throw std::runtime_error(
-        "The model has no mesh. Choose MASS_SPRING or COROTATIONAL, or save the volume.");
+        "The model has no mesh. Choose MASS_SPRING or FINITE_ELEMENTS, or save the volume.");
     }
     vtkNew<vtkUnstructuredGrid> deformed;
     deformed->DeepCopy(mesh);

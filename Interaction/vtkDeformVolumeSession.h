@@ -26,8 +26,8 @@
  *
  * @par Models:
  * NONE does not deform. CHAIN_MAIL is vtkChainMailDeformation: tissue stays where a handle leaves
- * it, and relaxes. MASS_SPRING and COROTATIONAL are vtkMassSpringDeformation and
- * vtkCorotationalDeformation on the mesh that SetInputs() was given, or else on a
+ * it, and relaxes. MASS_SPRING and FINITE_ELEMENTS are vtkMassSpringDeformation and
+ * vtkFiniteElementDeformation on the mesh that SetInputs() was given, or else on a
  * vtkLatticeTetrahedraSource with the first layer of nodes fixed, in millimetres. MASS_SPRING
  * refuses meshes of other cells than equal cubes. A change of the model keeps handles, cuts and
  * carvings. Cuts split meshes along the faces of tetrahedra; those that were made with another
@@ -91,7 +91,7 @@ public:
     NONE = 0,
     CHAIN_MAIL = 1,
     MASS_SPRING = 2,
-    COROTATIONAL = 3
+    FINITE_ELEMENTS = 3
   };
 
   ///@{

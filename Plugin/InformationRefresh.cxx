@@ -83,7 +83,7 @@ void ObserveProxy(vtkSMProxy* proxy)
   if ((made == "vtkDeformVolumeFilter" || made == "vtkTetGenMesher" || made == "vtkCutVolume" ||
         made == "vtkCarveVolume" || made == "vtkChainMailDeformation" ||
         made == "vtkLatticeTetrahedraSource" || made == "vtkMassSpringDeformation" ||
-        made == "vtkCorotationalDeformation" || made == "vtkMaterialFromVolume") &&
+        made == "vtkFiniteElementDeformation" || made == "vtkMaterialFromVolume") &&
     !proxy->HasObserver(vtkCommand::UpdateDataEvent, fetch))
   {
     proxy->AddObserver(vtkCommand::UpdateDataEvent, fetch);

@@ -56,12 +56,12 @@ RELAXATION = ("TestChainMailRelaxation", "*")
 SEQUENCES = ("TestChainMailSequences", "*")
 VECTORS = ("TestDeviceVectors", "*")
 VECTORS_GRAPHICS = ("TestDeviceVectors,TestDeviceVectorsGraphics@gpu-like", "*")
-ELEMENTS = ("TestCorotationalElements", "*")
+ELEMENTS = ("TestElementMechanics", "*")
 SPRINGS = ("TestMassSpring", "*")
 SPRINGS_AT_REST = ("TestMassSpringStatics", "*")
 ABORTS = ("TestElasticAborts", "*")
 
-COROTATIONAL = ("TestCorotational", "*")
+FINITE_ELEMENTS = ("TestFiniteElements", "*")
 DEFORMED_CUTTING = ("TestDeformedCutting", "*")
 LISTS = ("TestTetrahedronLists", "*")
 BOUNDARY = ("TestMeshBoundary", "*")
@@ -231,10 +231,10 @@ MUTATIONS = {
                    "", [CUT_PARTS]),
     "cut-reach": ("Kernels/SamplingMesh/BrickGrid.h", "ReachOfCuts = 2;", "ReachOfCuts = 1;", [CUT_PARTS]),
     "fem-history": ("Kernels/FiniteElements/TangentSolver.cxx", "  this->History.ForgetProducts();\n", "",
-                    [COROTATIONAL]),
-    "fem-tangent": ("Kernels/FiniteElements/CorotationalSolver.cxx",
+                    [FINITE_ELEMENTS]),
+    "fem-tangent": ("Kernels/FiniteElements/EquilibriumSolver.cxx",
                     "if (before > 0.0 && residuals.Largest > leastGain * before)",
-                    "if (before > 1e300 && residuals.Largest > leastGain * before)", [COROTATIONAL]),
+                    "if (before > 1e300 && residuals.Largest > leastGain * before)", [FINITE_ELEMENTS]),
     "split-reach": ("Kernels/Physics/SplitRegion.cxx", "0.25 * std::max(", "0.0 * std::max(", [SPLIT_FACES]),
     "split-near": ("Kernels/Physics/MeshSplit.cxx", "(region.IsNear(face / 4) || ", "(region.IsNear(face / 4) && ",
                    [SPLIT_FACES]),
@@ -267,22 +267,22 @@ MUTATIONS = {
                      "if (any(fabs(moved) > largest))", [VECTORS_GRAPHICS]),
     "vectors-factor": ("Kernels/Mapping/DisplacementField.h", "constexpr std::uint64_t unit = 1 << 24;",
                        "constexpr std::uint64_t unit = 1 << 0;", [("TestContraction", "*")]),
-    "fem-untangle": ("Kernels/FiniteElements/CorotationalSolver.cxx", "if (state.Sums.Inverted > inverted)",
-                     "if (false)", [COROTATIONAL]),
+    "fem-untangle": ("Kernels/FiniteElements/EquilibriumSolver.cxx", "if (state.Sums.Inverted > inverted)",
+                     "if (false)", [FINITE_ELEMENTS]),
     "fem-sweeps": ("Kernels/FiniteElements/SingularValues.h", "sweeps = 4;", "sweeps = 2;", [ELEMENTS]),
     "fem-inverted": ("Kernels/FiniteElements/SingularValues.h", "result.Values[2] = Dot(U.Columns[2], b[2]);",
                      "result.Values[2] = Absolute(Dot(U.Columns[2], b[2]));", [ELEMENTS]),
     "fem-twists": ("Kernels/FiniteElements/ElementMechanics.h",
                    "Largest(MakeLanes(0.0), twiceMu + pull * (2.0 / sum))", "twiceMu + pull * (2.0 / sum)", [ELEMENTS]),
-    "fem-flat": ("Kernels/FiniteElements/CorotationalElements.cxx", "if (!IsFlat(result.Determinant))", "if (true)",
+    "fem-flat": ("Kernels/FiniteElements/FiniteElements.cxx", "if (!IsFlat(result.Determinant))", "if (true)",
                  [ELEMENTS]),
     "fem-colors": ("Kernels/FiniteElements/ElementBatches.cxx",
                    "forNodes([&](std::uint64_t& mask) { mask |= std::uint64_t(1) << color; });", "",
-                   [("TestCorotational", "*Threads")]),
+                   [("TestFiniteElements", "*Threads")]),
     "fem-fused": ("Kernels/FiniteElements/Lanes.h", '__attribute__((target("avx2")))',
-                  '__attribute__((target("avx2,fma"), optimize("fp-contract=fast")))', [("TestCorotationalLanes", "*")]),
+                  '__attribute__((target("avx2,fma"), optimize("fp-contract=fast")))', [("TestElementLanes", "*")]),
     "fem-singular": ("Kernels/FiniteElements/Aggregation.cxx", "result.Matrix.Blocks[block](i, i) = 1.0;", "",
-                     [COROTATIONAL]),
+                     [FINITE_ELEMENTS]),
     "springs-near": ("Kernels/MassSpring/MassSpringForces.cl",
                      "Dot(displacement, Plus(Plus(rest, rest), displacement)) / (length + restLength)",
                      "length - restLength", [SPRINGS, SPRINGS_AT_REST]),

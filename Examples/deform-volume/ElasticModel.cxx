@@ -11,7 +11,7 @@
 #include "Volume.h"
 
 #include <vtkAppendPolyData.h>
-#include <vtkCorotationalDeformation.h>
+#include <vtkFiniteElementDeformation.h>
 #include <vtkMassSpringDeformation.h>
 #include <vtkMaterialFromVolume.h>
 #include <vtkNew.h>
@@ -169,7 +169,7 @@ void DeformByElasticModel(const Options& options, const Volume& volume, vtkUnstr
   std::ostringstream text;
   if (options.Model == "fem")
   {
-    vtkNew<vtkCorotationalDeformation> model;
+    vtkNew<vtkFiniteElementDeformation> model;
     model->SetModeToConverged();
     run(model,
       [&](double part)

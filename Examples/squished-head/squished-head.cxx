@@ -7,9 +7,9 @@
 #include <vtkCamera.h>
 #include <vtkColorTransferFunction.h>
 #include <vtkConnectivityFilter.h>
-#include <vtkCorotationalDeformation.h>
 #include <vtkDeformVolumeFilter.h>
 #include <vtkDeformationHandleSource.h>
+#include <vtkFiniteElementDeformation.h>
 #include <vtkImageContinuousDilate3D.h>
 #include <vtkLatticeTetrahedraSource.h>
 #include <vtkMassSpringDeformation.h>
@@ -177,7 +177,7 @@ int main(int argc, char* argv[])
   reader->SetFileName(argv[1]);
   const auto mesh = MakeMesh(reader->GetOutputPort());
 
-  vtkNew<vtkCorotationalDeformation> elements;
+  vtkNew<vtkFiniteElementDeformation> elements;
   Hold(elements, mesh);
   elements->SetModeToConverged();
   vtkNew<vtkDeformationHandleSource> hook;

@@ -139,7 +139,7 @@ size = int(sys.argv[3]) if len(sys.argv) > 3 else 700
 reader = vtkNIFTIImageReader()
 reader.SetFileName(sys.argv[1])
 mesh = make_mesh(reader.GetOutputPort())
-elements = deformvolume_vtk.vtkCorotationalDeformation()
+elements = deformvolume_vtk.vtkFiniteElementDeformation()
 hold(elements, mesh)
 elements.SetModeToConverged()
 hook = deformvolume_vtk.vtkDeformationHandleSource()

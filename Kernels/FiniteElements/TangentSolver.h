@@ -4,7 +4,7 @@
 
 #include "BlockMatrix.h"
 #include "ConjugateGradients.h"
-#include "CorotationalElements.h"
+#include "FiniteElements.h"
 #include "Multigrid.h"
 #include "Preconditioner.h"
 #include "SolutionHistory.h"
@@ -25,7 +25,7 @@ class TangentSolver
 {
 public:
   /// points: of the body, at rest. Both have to stay.
-  TangentSolver(const std::vector<glm::dvec3>& points, const CorotationalElements& elements)
+  TangentSolver(const std::vector<glm::dvec3>& points, const FiniteElements& elements)
     : Points(points)
     , Elements(elements)
   {
@@ -63,7 +63,7 @@ private:
   void JudgeLevels(int iterations, double digits);
 
   const std::vector<glm::dvec3>& Points;
-  const CorotationalElements& Elements;
+  const FiniteElements& Elements;
   BlockMatrix Matrix;
   // The displacements that it is of.
   std::vector<glm::dvec3> Shape;

@@ -5,8 +5,8 @@
 #include "Timing.h"
 
 #include "../Reported.h"
-#include "vtkCorotationalDeformation.h"
 #include "vtkDeformationHandleSource.h"
+#include "vtkFiniteElementDeformation.h"
 #include "vtkLatticeTetrahedraSource.h"
 #include "vtkMassSpringDeformation.h"
 
@@ -101,7 +101,7 @@ struct SimulatedVolume
     this->Model->SetHandlesConnection(this->Simulated.Handle->GetOutputPort());
     this->Model->SetHandleRadius(this->Simulated.Radius);
     this->Model->SetLengthUnitToMillimetre();
-    if (auto* elements = vtkCorotationalDeformation::SafeDownCast(this->Model))
+    if (auto* elements = vtkFiniteElementDeformation::SafeDownCast(this->Model))
     {
       elements->SetModeToInteractive(); // as in a live session
     }
@@ -135,7 +135,7 @@ struct SimulatedVolume
 };
 
 using Springs = SimulatedVolume<vtkMassSpringDeformation>;
-using Elements = SimulatedVolume<vtkCorotationalDeformation>;
+using Elements = SimulatedVolume<vtkFiniteElementDeformation>;
 
 struct SpringFrames
 {

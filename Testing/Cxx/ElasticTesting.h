@@ -5,7 +5,7 @@
 
 #include "ChainMailTesting.h"
 
-#include "vtkCorotationalDeformation.h"
+#include "vtkFiniteElementDeformation.h"
 #include "vtkLatticeTetrahedraSource.h"
 #include "vtkMassSpringDeformation.h"
 

@@ -1006,7 +1006,7 @@ int TestDeformVolumeInteractorStyle(int argc, char* argv[])
   TestMisuse();
   TestVisible();
   TestTools(Session::CHAIN_MAIL, fileName);
-  TestTools(Session::COROTATIONAL, fileName);
+  TestTools(Session::FINITE_ELEMENTS, fileName);
   TestHandles(fileName);
   TestProbeAndMeasure();
   TestCamera();

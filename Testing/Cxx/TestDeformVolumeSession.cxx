@@ -621,7 +621,7 @@ void TestPadding(vtkImageData* volume)
 void TestFiles(vtkImageData* volume, const std::string& fileName)
 {
   Tested one(volume);
-  one.Object->ChangeModel(Session::COROTATIONAL);
+  one.Object->ChangeModel(Session::FINITE_ELEMENTS);
   const int handle = one.Object->BeginGrab(10, 10, 17);
   one.Object->MoveGrab(handle, 13, 10, 17);
   one.Finish();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cuts of the meshes of vtkMassSpringDeformation and vtkCorotationalDeformation.
+// Cuts of the meshes of vtkMassSpringDeformation and vtkFiniteElementDeformation.
 #include "ElasticTesting.h"
 
 #include <vtkCellArray.h>
@@ -118,7 +118,7 @@ void TestPieces()
   const auto fallen = springs.At(0.1);
   const double top = fallen->GetComponent(324, 2);
   VERIFY(std::abs(top - 0.5 * 9.81 * 0.01) < 0.01 * top);
-  Simulated<vtkCorotationalDeformation> elements(bar);
+  Simulated<vtkFiniteElementDeformation> elements(bar);
   elements.Object->SetSheetData(sheet);
   elements.Object->SetGravity(0.0, 0.0, 9.81);
   elements.Object->Update();
@@ -194,7 +194,7 @@ void TestFailedCuts()
 void TestFailedCutAfterOthers()
 {
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1e-3);
-  Simulated<vtkCorotationalDeformation> simulated(bar);
+  Simulated<vtkFiniteElementDeformation> simulated(bar);
   simulated.Object->SetLengthUnitToMillimetre();
   simulated.Object->SetHandleRadius(3.0);
   const auto handles =
@@ -259,17 +259,17 @@ int TestElasticCuts(int, char*[])
       simulated.Object->SetFrameTime(0.5);
       VERIFY_EQUAL(simulated.TryUpdate(), std::string());
     });
-  TestCut<vtkCorotationalDeformation>(
-    [](Simulated<vtkCorotationalDeformation>& simulated)
+  TestCut<vtkFiniteElementDeformation>(
+    [](Simulated<vtkFiniteElementDeformation>& simulated)
     {
       simulated.Object->SetModeToConverged();
       VERIFY_EQUAL(simulated.TryUpdate(), std::string());
     });
   TestPieces();
   TestCutsOfCuts<vtkMassSpringDeformation>();
-  TestCutsOfCuts<vtkCorotationalDeformation>();
+  TestCutsOfCuts<vtkFiniteElementDeformation>();
   TestFailedCuts<vtkMassSpringDeformation>();
-  TestFailedCuts<vtkCorotationalDeformation>();
+  TestFailedCuts<vtkFiniteElementDeformation>();
   TestFailedCutAfterOthers();
   return GetExitCode();
 }

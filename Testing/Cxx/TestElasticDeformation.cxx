@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vtkMassSpringDeformation and vtkCorotationalDeformation in a pipeline: misuse, closed forms in
+// vtkMassSpringDeformation and vtkFiniteElementDeformation in a pipeline: misuse, closed forms in
 // both units, times, what is kept, and the volume that they deform.
 #include "ElasticTesting.h"
 
@@ -141,7 +141,7 @@ void TestErrorsOfTheirOwn()
   VERIFY_EQUAL(springs.TryUpdate(), std::string());
   VERIFY_EQUAL(springs.Copy()->GetRange(-1)[1], 0.0);
 
-  Simulated<vtkCorotationalDeformation> elements(bar);
+  Simulated<vtkFiniteElementDeformation> elements(bar);
   bar->GetPointData()->RemoveArray("Fixed");
   VERIFY(Holds(elements.TryUpdate(), "nothing holds the body"));
 }
@@ -201,12 +201,12 @@ void TestWarningsOfTheirOwn()
   VERIFY_EQUAL(UpdateAndWarn(springs), std::string());
 
   // By default one execution ends in equilibrium.
-  Simulated<vtkCorotationalDeformation> elements(bar);
+  Simulated<vtkFiniteElementDeformation> elements(bar);
   elements.Object->SetGravity(0.0, -60.0, 0.0);
   VERIFY_EQUAL(elements.TryUpdate(), std::string());
   VERIFY(elements.Object->GetIsConverged());
   VERIFY(elements.Object->GetRelativeResidual() <= 1e-6);
-  Simulated<vtkCorotationalDeformation> live(bar);
+  Simulated<vtkFiniteElementDeformation> live(bar);
   live.Object->SetModeToInteractive();
   live.Object->SetGravity(0.0, -60.0, 0.0);
   VERIFY(Holds(UpdateAndWarn(live), "not in equilibrium after 2 steps"));
@@ -398,7 +398,7 @@ void TestAborted()
 void TestDeformedVolume()
 {
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1e-3);
-  Simulated<vtkCorotationalDeformation> elements(bar);
+  Simulated<vtkFiniteElementDeformation> elements(bar);
   Simulated<vtkMassSpringDeformation> springs(bar);
   const vtkSmartPointer<vtkPolyData> handles =
     MakeHandles({ { glm::dvec3(5.0, 5.0, 30.0), glm::dvec3(5.5, 5.0, 32.0) } });
@@ -476,10 +476,10 @@ void TestHeldNodes()
 int TestElasticDeformation(int, char*[])
 {
   TestMisuse<vtkMassSpringDeformation>();
-  TestMisuse<vtkCorotationalDeformation>();
+  TestMisuse<vtkFiniteElementDeformation>();
   TestErrorsOfTheirOwn();
   TestWarnings<vtkMassSpringDeformation>(0.008);
-  TestWarnings<vtkCorotationalDeformation>(0.02);
+  TestWarnings<vtkFiniteElementDeformation>(0.02);
   TestWarningsOfTheirOwn();
   TestHangingBar<vtkMassSpringDeformation>(
     [](Simulated<vtkMassSpringDeformation>& simulated)
@@ -488,18 +488,18 @@ int TestElasticDeformation(int, char*[])
       simulated.Object->SetPoissonRatio(0.4);
       simulated.At(2.0);
     });
-  TestHangingBar<vtkCorotationalDeformation>(
-    [](Simulated<vtkCorotationalDeformation>& simulated)
+  TestHangingBar<vtkFiniteElementDeformation>(
+    [](Simulated<vtkFiniteElementDeformation>& simulated)
     {
       simulated.Object->SetModeToConverged();
       simulated.Object->Update();
     });
   TestTimes();
   TestWhatIsKept<vtkMassSpringDeformation>();
-  TestWhatIsKept<vtkCorotationalDeformation>();
+  TestWhatIsKept<vtkFiniteElementDeformation>();
   TestAborted<vtkMassSpringDeformation>();
-  TestAborted<vtkCorotationalDeformation>();
-  TestHeldNodes<vtkCorotationalDeformation>();
+  TestAborted<vtkFiniteElementDeformation>();
+  TestHeldNodes<vtkFiniteElementDeformation>();
   TestHeldNodes<vtkMassSpringDeformation>();
   TestDeformedVolume();
   return GetExitCode();

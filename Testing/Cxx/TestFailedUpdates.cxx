@@ -5,8 +5,8 @@
 
 #include "vtkCarveVolume.h"
 #include "vtkChainMailDeformation.h"
-#include "vtkCorotationalDeformation.h"
 #include "vtkCutVolume.h"
+#include "vtkFiniteElementDeformation.h"
 #include "vtkMassSpringDeformation.h"
 #include "vtkMaterialFromVolume.h"
 #include "vtkTetGenMesher.h"
@@ -168,7 +168,7 @@ int TestFailedUpdates(int, char*[])
   TestRequiredInputs<vtkCarveVolume>(1);
   TestRequiredInputs<vtkChainMailDeformation>(1);
   TestRequiredInputs<vtkMassSpringDeformation>(1);
-  TestRequiredInputs<vtkCorotationalDeformation>(1);
+  TestRequiredInputs<vtkFiniteElementDeformation>(1);
   TestRequiredInputs<vtkMaterialFromVolume>(2);
   TestRequiredInputs<vtkTetGenMesher>(1);
   TestMessages(volume, mesh);

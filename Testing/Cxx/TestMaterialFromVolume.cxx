@@ -3,7 +3,7 @@
 // simulation that bends where the volume is soft.
 #include "ChainMailTesting.h"
 
-#include "vtkCorotationalDeformation.h"
+#include "vtkFiniteElementDeformation.h"
 #include "vtkMaterialFromVolume.h"
 
 #include <vtkCallbackCommand.h>
@@ -411,7 +411,7 @@ void TestInSimulation()
   tested.Filter->SetMaterial(1, 1e6, 0.0, 1000.0);
   tested.Filter->SetMaterial(7, 1e4, 0.0, 1000.0);
   tested.Filter->AddMaterialRange(5.0, 10.0, 7);
-  vtkNew<vtkCorotationalDeformation> body;
+  vtkNew<vtkFiniteElementDeformation> body;
   body->SetModeToConverged();
   body->SetInputConnection(tested.Filter->GetOutputPort());
   body->SetHandlesData(MakeHandles(handles));

@@ -140,7 +140,7 @@ def check_materials_and_cut():
     materials.SetMaterial(0, 2e4, 0.2, 900)
     materials.SetMaterial(1, 5000, 0.4, 1000)
     materials.AddMaterialRange(limit, 1e9, 0)
-    model = deformvolume_vtk.vtkCorotationalDeformation()
+    model = deformvolume_vtk.vtkFiniteElementDeformation()
     model.SetInputConnection(materials.GetOutputPort())
     model.SetModeToConverged()
     model.SetHandlesData(handles)
@@ -162,6 +162,6 @@ def check_materials_and_cut():
 
 
 check_materials_and_cut()
-check("fem", deformvolume_vtk.vtkCorotationalDeformation(), "to equilibrium, strain energy")
+check("fem", deformvolume_vtk.vtkFiniteElementDeformation(), "to equilibrium, strain energy")
 check("mass-spring", deformvolume_vtk.vtkMassSpringDeformation(), "0.1 s, in steps of", "--duration",
       "0.1")

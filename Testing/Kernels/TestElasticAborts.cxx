@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Bodies that are given up while they are taken over: soon, and with nothing half done.
-#include "CorotationalCase.h"
+#include "FiniteElementCase.h"
 #include "MassSpringModel.h"
 #include "ParallelFor.h"
 #include "TimeAllowance.h"
@@ -100,10 +100,10 @@ private:
 
 } // namespace
 
-TEST(ElasticAborts, CorotationalBodies)
+TEST(ElasticAborts, FiniteElementBodies)
 {
   const ElasticBody body = MakeBody({ 30, 30, 60 });
-  CorotationalModel model;
+  FiniteElementModel model;
   {
     Questions questions;
     model.SetBody(body, [&] { return questions.Ask(); });
@@ -111,7 +111,7 @@ TEST(ElasticAborts, CorotationalBodies)
     EXPECT_GT(questions.Number, 5);
   }
   // The first linear system builds the levels.
-  CorotationalRequest request = MakeConverged();
+  EquilibriumRequest request = MakeConverged();
   request.Loads.Gravity = glm::dvec3(0.0, -1.0, 0.0);
   request.Limits.NewtonSteps = 1;
   request.Limits.LinearIterations = 1;
@@ -124,12 +124,12 @@ TEST(ElasticAborts, CorotationalBodies)
   }
 }
 
-TEST(ElasticAborts, TheLastCorotationalBodyStays)
+TEST(ElasticAborts, TheLastFiniteElementBodyStays)
 {
   const ElasticBody body = MakeBody({ 12, 12, 12 });
   const ElasticBody other = MakeBody({ 30, 30, 30 });
-  CorotationalModel model;
-  CorotationalRequest request;
+  FiniteElementModel model;
+  EquilibriumRequest request;
   request.Loads.Gravity = glm::dvec3(0.0, -1.0, 0.0);
   EXPECT_THROW(model.SetBody(body, [] { return false; }), Aborted);
   EXPECT_EQ(GetError([&] { model.Solve(request); }), "There is no body. Call SetBody first.");
@@ -146,7 +146,7 @@ TEST(ElasticAborts, TheLastCorotationalBodyStays)
     EXPECT_EQ(model.GetDisplacements(), before);
   }
   // The next solution is the one that there would have been.
-  CorotationalModel fresh;
+  FiniteElementModel fresh;
   fresh.SetBody(body);
   fresh.Solve(request);
   fresh.Solve(request);
@@ -168,9 +168,9 @@ public:
   }
 
   // first: of the nodes that are pulled.
-  CorotationalRequest MakeRequest(int frame, std::int32_t first = 0) const
+  EquilibriumRequest MakeRequest(int frame, std::int32_t first = 0) const
   {
-    CorotationalRequest request;
+    EquilibriumRequest request;
     const auto nodes = static_cast<std::int32_t>(this->Body.Points.size());
     for (const std::int32_t node : { 1, 2, 5, 9 })
     {
@@ -188,12 +188,12 @@ public:
   }
 
   ElasticBody Body;
-  CorotationalModel Model;
+  FiniteElementModel Model;
 };
 
 // Each place where progress can be asked for is one where it is, as the answer takes longer than
 // the time between two questions. Returns whether the call was aborted.
-bool AbortAfter(int allowed, CorotationalModel& model, CorotationalRequest request)
+bool AbortAfter(int allowed, FiniteElementModel& model, EquilibriumRequest request)
 {
   request.Progress = [&]
   {
@@ -216,7 +216,7 @@ bool AbortAfter(int allowed, CorotationalModel& model, CorotationalRequest reque
 // A call that is given up leaves the displacements of before, and nothing else: the next ones find
 // to the last bit what a new model finds that begins there. With the inverses of the diagonal, and
 // with levels.
-TEST(ElasticAborts, OfACorotationalSolveTheLastDisplacementsStay)
+TEST(ElasticAborts, OfASolveTheLastDisplacementsStay)
 {
   for (const Place& nodes : { Place{ 6, 6, 7 }, Place{ 12, 12, 12 } })
   {
@@ -226,10 +226,10 @@ TEST(ElasticAborts, OfACorotationalSolveTheLastDisplacementsStay)
     fresh.Model.SetDisplacements(before);
     fresh.Solve(5, 7);
 
-    std::vector<CorotationalRequest> requests = { fresh.MakeRequest(5), fresh.MakeRequest(9),
+    std::vector<EquilibriumRequest> requests = { fresh.MakeRequest(5), fresh.MakeRequest(9),
       fresh.MakeRequest(5, 3), fresh.MakeRequest(5) };
     requests[1].Loads.Gravity *= 40.0;
-    requests[3].Mode = CorotationalMode::Converged;
+    requests[3].Mode = EquilibriumMode::Converged;
     requests[3].Limits.NewtonSteps = 3;
     for (std::size_t i = 0; i < requests.size(); ++i)
     {
@@ -247,7 +247,7 @@ TEST(ElasticAborts, OfACorotationalSolveTheLastDisplacementsStay)
     // Nor of one that fails.
     Frames frames(nodes);
     frames.Solve(1, 4);
-    CorotationalRequest request = fresh.MakeRequest(1);
+    EquilibriumRequest request = fresh.MakeRequest(1);
     request.Held.front().Displacement.x = 1e200;
     EXPECT_NE(GetError([&] { frames.Model.Solve(request); }).find("no numbers"), std::string::npos);
     frames.Solve(5, 7);
@@ -259,13 +259,13 @@ TEST(ElasticAborts, OfACorotationalSolveTheLastDisplacementsStay)
 // a call is given up.
 TEST(ElasticAborts, AfterAFarPull)
 {
-  for (const CorotationalMode mode : { CorotationalMode::Interactive, CorotationalMode::Converged })
+  for (const EquilibriumMode mode : { EquilibriumMode::Interactive, EquilibriumMode::Converged })
   {
     Frames frames({ 12, 12, 12 });
     frames.Solve(1, 1);
     for (const int frame : { 120, 300 })
     {
-      CorotationalRequest request = frames.MakeRequest(frame);
+      EquilibriumRequest request = frames.MakeRequest(frame);
       request.Mode = mode;
       for (const int steps : { 6, 1, 2 })
       {
@@ -288,12 +288,12 @@ TEST(ElasticAborts, AfterAFarPull)
 TEST(ElasticAborts, Levels)
 {
   const ElasticBody body = MakeBody({ 14, 14, 20 });
-  CorotationalRequest request = MakeConverged();
+  EquilibriumRequest request = MakeConverged();
   request.Loads.Gravity = glm::dvec3(0.0, -1.0, 0.0);
-  CorotationalModel fresh;
+  FiniteElementModel fresh;
   fresh.SetBody(body);
   fresh.Solve(request);
-  CorotationalModel model;
+  FiniteElementModel model;
   model.SetBody(body);
   bool isAborted = true;
   int aborts = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Guesses from the last solutions of a system.
-#include "CorotationalElements.h"
+#include "FiniteElements.h"
 #include "LatticeBody.h"
 #include "RowParts.h"
 #include "SolutionHistory.h"
@@ -64,7 +64,7 @@ struct System
 
   Watch Time{ nullptr };
   LatticeBody Lattice;
-  CorotationalElements Elements;
+  FiniteElements Elements;
   BlockMatrix Matrix;
   std::vector<unsigned char> IsFree;
 };

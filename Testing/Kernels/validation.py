@@ -18,8 +18,8 @@ DOCUMENT = pathlib.Path(__file__).resolve().parents[2] / "Documents" / "physics.
 TESTS = {
     "TestMassSpring": "*PeriodOfASpring:*FreeFall:*StableTimeStep:*NothingMovesAtRest",
     "TestMassSpringStatics": "*LatticesAreIsotropic",
-    "TestCorotational": "*Scramble",
-    "TestCorotationalBeams": "*",
+    "TestFiniteElements": "*Scramble",
+    "TestFiniteElementBeams": "*",
 }
 
 

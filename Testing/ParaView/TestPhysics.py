@@ -23,7 +23,7 @@ def largest(proxy):
 
 
 def check_elements(volume, mesh, handle):
-    fem = simple.CorotationalDeformation(RestMesh=mesh, Handles=handle)
+    fem = simple.FiniteElementDeformation(RestMesh=mesh, Handles=handle)
     fem.Mode = "Converged"
     fem.YoungModulus = 5000
     fem.ElementResults = 1

@@ -25,7 +25,7 @@ from PluginTesting import (
 # for times only by those who want them. A panel shows the name of a device, and a view what is cut.
 OTHER_DEFAULTS = {
     ("vtkMassSpringDeformation", "EndTime"): [1.0],
-    ("vtkCorotationalDeformation", "EndTime"): [1.0],
+    ("vtkFiniteElementDeformation", "EndTime"): [1.0],
     ("vtkDeformVolumeFilter", "Device"): ["best"],
     ("vtkCutVolume", "BlankCells"): [True],
     ("vtkCarveVolume", "BlankCells"): [True],
@@ -523,7 +523,7 @@ def main():
         "CarveVolumeLabel": lambda: simple.CarveVolumeLabel(Volume=labels, Labels="label"),
         "CarveVolumeWithSurface": lambda: simple.CarveVolumeWithSurface(Surface=surface, **edited),
         "ChainMailDeformation": lambda: simple.ChainMailDeformation(Volume=volume, Handles=handle),
-        "CorotationalDeformation": lambda: simple.CorotationalDeformation(**elastic),
+        "FiniteElementDeformation": lambda: simple.FiniteElementDeformation(**elastic),
         "CutVolume": lambda: simple.CutVolume(Sheet=plane, **edited),
         "CutVolumeWithPlane": lambda: simple.CutVolumeWithPlane(**edited),
         "DeformGeometry": lambda: simple.DeformGeometry(Input=surface, Deformation=mesh),

@@ -6,7 +6,7 @@
 #include "EditChecks.h"
 #include "RankTesting.h"
 
-#include <vtkCorotationalDeformation.h>
+#include <vtkFiniteElementDeformation.h>
 #include <vtkLatticeTetrahedraSource.h>
 #include <vtkMassSpringDeformation.h>
 #include <vtkUnstructuredGrid.h>
@@ -128,6 +128,6 @@ int main(int argc, char* argv[])
     {
       Controller = controller;
       TestSteps<vtkMassSpringDeformation>();
-      TestSteps<vtkCorotationalDeformation>();
+      TestSteps<vtkFiniteElementDeformation>();
     });
 }

@@ -162,7 +162,7 @@ void DrawSplit(vtkRenderWindow* window, Version version)
   vtkNew<vtkUnstructuredGrid> mesh;
   mesh->ShallowCopy(lattice->GetOutput());
   elasticTesting::FixPoints(mesh, [](const glm::dvec3& p) { return std::abs(p.x) > 20.0; });
-  vtkNew<vtkCorotationalDeformation> elastic;
+  vtkNew<vtkFiniteElementDeformation> elastic;
   elastic->SetInputData(mesh);
   elastic->SetSheetData(
     MakeLine(2, [](double t) { return glm::dvec3(0.0, -10.0, 21.0 * t - 10.0); }));

@@ -104,7 +104,7 @@ void DrawFiniteElements(vtkRenderWindow* window, Version version)
   vtkNew<vtkUnstructuredGrid> mesh;
   mesh->ShallowCopy(mesher->GetOutput());
   elasticTesting::FixPoints(mesh, [](const glm::dvec3& p) { return p.z < 1.0; });
-  vtkNew<vtkCorotationalDeformation> elastic;
+  vtkNew<vtkFiniteElementDeformation> elastic;
   elastic->SetInputData(mesh);
   elastic->SetGravity(60.0, 0.0, -10.0);
   elastic->SetYoungModulus(version == Version::SPOILED ? 12000.0 : 10000.0);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef DeformVolumeCorotationalElements_h
-#define DeformVolumeCorotationalElements_h
+#ifndef DeformVolumeFiniteElements_h
+#define DeformVolumeFiniteElements_h
 
 #include "BlockMatrix.h"
 #include "BodyPieces.h"
-#include "CorotationalTypes.h"
 #include "ElementBatches.h"
+#include "EquilibriumTypes.h"
 #include "Watch.h"
 
 #include <glm/vec3.hpp>
@@ -17,10 +17,10 @@ namespace deformvolume
 {
 
 /// The sums over all tetrahedra, which do not depend on the number of threads, to the last bit.
-class CorotationalElements
+class FiniteElements
 {
 public:
-  CorotationalElements(Watch& watch, const ElasticBody& body)
+  FiniteElements(Watch& watch, const ElasticBody& body)
     : Batches(MakeElementBatches(watch, body))
   {
   }

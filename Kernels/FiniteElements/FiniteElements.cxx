@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "CorotationalElements.h"
+#include "FiniteElements.h"
 
 #include "ElementMechanics.h"
 
@@ -27,7 +27,7 @@ struct ForceArguments
   ChunkRange Range;
   const double* Displacements;
   double* Forces;
-  CorotationalElements::Sums* Sums;
+  FiniteElements::Sums* Sums;
 };
 
 DEFORMVOLUME_ALWAYS_INLINE void AddForces(
@@ -222,7 +222,7 @@ std::array<double, 6> GetCauchyStress(
 
 } // namespace
 
-CorotationalElements::Sums CorotationalElements::FindForces(
+FiniteElements::Sums FiniteElements::FindForces(
   Watch& watch, const std::vector<glm::dvec3>& displacements, std::vector<glm::dvec3>& forces) const
 {
   forces.assign(displacements.size(), glm::dvec3(0.0));
@@ -242,8 +242,8 @@ CorotationalElements::Sums CorotationalElements::FindForces(
   return total;
 }
 
-void CorotationalElements::FindInvertedNodes(Watch& watch,
-  const std::vector<glm::dvec3>& displacements, std::vector<unsigned char>& isInverted) const
+void FiniteElements::FindInvertedNodes(Watch& watch, const std::vector<glm::dvec3>& displacements,
+  std::vector<unsigned char>& isInverted) const
 {
   isInverted.assign(displacements.size(), 0);
   ForChunks(watch, this->Batches,
@@ -267,7 +267,7 @@ void CorotationalElements::FindInvertedNodes(Watch& watch,
     });
 }
 
-void CorotationalElements::AssembleTangent(
+void FiniteElements::AssembleTangent(
   Watch& watch, const std::vector<glm::dvec3>& displacements, BlockMatrix& matrix) const
 {
   matrix.PutToZero(watch);
@@ -281,7 +281,7 @@ void CorotationalElements::AssembleTangent(
   matrix.Mirror(watch);
 }
 
-std::vector<ElementResults> CorotationalElements::GetResults(
+std::vector<ElementResults> FiniteElements::GetResults(
   const std::vector<glm::dvec3>& displacements) const
 {
   std::vector<ElementResults> results(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "CorotationalSolver.h"
+#include "EquilibriumSolver.h"
 
 #include "Error.h"
 #include "RowParts.h"
@@ -12,7 +12,7 @@
 
 namespace deformvolume
 {
-CorotationalSolver::CorotationalSolver(Watch& watch, const ElasticBody& body)
+EquilibriumSolver::EquilibriumSolver(Watch& watch, const ElasticBody& body)
   : Body(body)
   , Pieces(FindPieces(body, &watch))
   , ActivePieces(static_cast<std::size_t>(Pieces.NumberOfPieces), true)
@@ -25,7 +25,7 @@ CorotationalSolver::CorotationalSolver(Watch& watch, const ElasticBody& body)
   this->UpdateScale(watch);
 }
 
-void CorotationalSolver::UpdateScale(Watch& watch)
+void EquilibriumSolver::UpdateScale(Watch& watch)
 {
   watch.Ask();
   this->Volumes = GetVolumes(this->Body);
@@ -48,7 +48,7 @@ void CorotationalSolver::UpdateScale(Watch& watch)
   this->ForceScale = modulus * size * size;
 }
 
-void CorotationalSolver::SetMaterials(const std::vector<ElasticMaterial>& materials)
+void EquilibriumSolver::SetMaterials(const std::vector<ElasticMaterial>& materials)
 {
   this->Body.Materials = materials;
   this->Elements.SetMaterials(this->Body);
@@ -57,20 +57,20 @@ void CorotationalSolver::SetMaterials(const std::vector<ElasticMaterial>& materi
   this->Forget();
 }
 
-void CorotationalSolver::SetDisplacements(const std::vector<glm::dvec3>& displacements)
+void EquilibriumSolver::SetDisplacements(const std::vector<glm::dvec3>& displacements)
 {
   this->Last.Displacements = displacements;
   this->Forget();
 }
 
-void CorotationalSolver::Forget()
+void EquilibriumSolver::Forget()
 {
   this->HasForces = false;
   this->HasTangent = false;
   this->Tangent.Forget();
 }
 
-std::vector<glm::dvec3> CorotationalSolver::GetForces() const
+std::vector<glm::dvec3> EquilibriumSolver::GetForces() const
 {
   std::vector<glm::dvec3> forces;
   Watch watch(nullptr);
@@ -78,20 +78,20 @@ std::vector<glm::dvec3> CorotationalSolver::GetForces() const
   return forces;
 }
 
-std::vector<ElementResults> CorotationalSolver::GetElementResults() const
+std::vector<ElementResults> EquilibriumSolver::GetElementResults() const
 {
   return this->Elements.GetResults(this->Last.Displacements);
 }
 
-void CorotationalSolver::Evaluate(
-  Watch& watch, const CorotationalProblem& problem, State& state) const
+void EquilibriumSolver::Evaluate(
+  Watch& watch, const EquilibriumProblem& problem, State& state) const
 {
   state.Sums = this->Elements.FindForces(watch, state.Displacements, state.Forces);
   this->FindPotential(watch, problem, state);
 }
 
-void CorotationalSolver::FindPotential(
-  Watch& watch, const CorotationalProblem& problem, State& state) const
+void EquilibriumSolver::FindPotential(
+  Watch& watch, const EquilibriumProblem& problem, State& state) const
 {
   state.Potential = state.Sums.Energy -
     SumOfParts(watch, problem.Loads.size(),
@@ -106,8 +106,8 @@ void CorotationalSolver::FindPotential(
       });
 }
 
-void CorotationalSolver::UpdateTangent(
-  Watch& watch, const CorotationalProblem& problem, const State& state)
+void EquilibriumSolver::UpdateTangent(
+  Watch& watch, const EquilibriumProblem& problem, const State& state)
 {
   if (this->HasTangent && problem.IsInteractive)
   {
@@ -118,7 +118,7 @@ void CorotationalSolver::UpdateTangent(
   this->IsTangentOld = false;
 }
 
-void CorotationalSolver::Untangle(Watch& watch, const CorotationalProblem& problem, State& state)
+void EquilibriumSolver::Untangle(Watch& watch, const EquilibriumProblem& problem, State& state)
 {
   // The least fall of the energy, as a part of the strain energy, for which it goes on.
   constexpr double leastFall = 0.01;
@@ -158,15 +158,15 @@ void CorotationalSolver::Untangle(Watch& watch, const CorotationalProblem& probl
   }
 }
 
-double CorotationalSolver::ChooseTolerance(const CorotationalProblem& problem, double wanted)
+double EquilibriumSolver::ChooseTolerance(const EquilibriumProblem& problem, double wanted)
 {
   constexpr double share = 0.3;
   return problem.IsInteractive ? std::clamp(share * wanted, problem.Limits.LinearTolerance, share)
                                : problem.Limits.LinearTolerance;
 }
 
-void CorotationalSolver::SolveLinear(Watch& watch, const CorotationalProblem& problem,
-  const State& state, double tolerance, CorotationalReport& report)
+void EquilibriumSolver::SolveLinear(Watch& watch, const EquilibriumProblem& problem,
+  const State& state, double tolerance, EquilibriumReport& report)
 {
   for (std::size_t node = 0; node < problem.IsFree.size(); ++node)
   {
@@ -180,8 +180,8 @@ void CorotationalSolver::SolveLinear(Watch& watch, const CorotationalProblem& pr
   ++report.NewtonSteps;
 }
 
-bool CorotationalSolver::MoveHeldNodes(
-  Watch& watch, const CorotationalProblem& problem, State& state, CorotationalReport& report)
+bool EquilibriumSolver::MoveHeldNodes(
+  Watch& watch, const EquilibriumProblem& problem, State& state, EquilibriumReport& report)
 {
   const std::size_t nodes = problem.IsFree.size();
   std::vector<glm::dvec3> moves(nodes, glm::dvec3(0.0));
@@ -238,8 +238,8 @@ bool CorotationalSolver::MoveHeldNodes(
   return true;
 }
 
-bool CorotationalSolver::Step(Watch& watch, const CorotationalProblem& problem, double tolerance,
-  State& state, CorotationalReport& report)
+bool EquilibriumSolver::Step(Watch& watch, const EquilibriumProblem& problem, double tolerance,
+  State& state, EquilibriumReport& report)
 {
   constexpr int halvings = 30;
   constexpr double leastFall = 1e-4;
@@ -281,9 +281,9 @@ bool CorotationalSolver::Step(Watch& watch, const CorotationalProblem& problem, 
   return false;
 }
 
-CorotationalReport CorotationalSolver::Solve(const CorotationalRequest& request)
+EquilibriumReport EquilibriumSolver::Solve(const EquilibriumRequest& request)
 {
-  const CorotationalProblem problem =
+  const EquilibriumProblem problem =
     MakeProblem(request, this->Body, this->Pieces, this->Volumes, this->Masses);
   Watch watch(request.Progress);
   watch.Ask();
@@ -299,7 +299,7 @@ CorotationalReport CorotationalSolver::Solve(const CorotationalRequest& request)
   }
 }
 
-void CorotationalSolver::UseHeldPieces(const CorotationalProblem& problem)
+void EquilibriumSolver::UseHeldPieces(const EquilibriumProblem& problem)
 {
   if (this->ActivePieces == problem.Supports.IsHeld)
   {
@@ -310,7 +310,7 @@ void CorotationalSolver::UseHeldPieces(const CorotationalProblem& problem)
   this->Forget();
 }
 
-void CorotationalSolver::MoveFollowers(const CorotationalProblem& problem, State& state) const
+void EquilibriumSolver::MoveFollowers(const EquilibriumProblem& problem, State& state) const
 {
   if (problem.Supports.Following.empty())
   {
@@ -325,11 +325,11 @@ void CorotationalSolver::MoveFollowers(const CorotationalProblem& problem, State
     this->Body, this->Pieces, problem.Supports.Following, isPlaced, state.Displacements);
 }
 
-CorotationalReport CorotationalSolver::FindEquilibrium(
-  Watch& watch, const CorotationalRequest& request, const CorotationalProblem& problem)
+EquilibriumReport EquilibriumSolver::FindEquilibrium(
+  Watch& watch, const EquilibriumRequest& request, const EquilibriumProblem& problem)
 {
-  const CorotationalLimits& limits = problem.Limits;
-  CorotationalReport report;
+  const EquilibriumLimits& limits = problem.Limits;
+  EquilibriumReport report;
   const std::vector<bool>& isHeld = problem.Supports.IsHeld;
   report.NumberOfFrozenPieces =
     static_cast<std::int32_t>(std::count(isHeld.begin(), isHeld.end(), false));

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef DeformVolumeCorotationalSolver_h
-#define DeformVolumeCorotationalSolver_h
+#ifndef DeformVolumeEquilibriumSolver_h
+#define DeformVolumeEquilibriumSolver_h
 
-#include "CorotationalElements.h"
-#include "CorotationalProblem.h"
-#include "CorotationalTypes.h"
+#include "EquilibriumProblem.h"
+#include "EquilibriumTypes.h"
+#include "FiniteElements.h"
 #include "TangentSolver.h"
 #include "Watch.h"
 
@@ -16,13 +16,13 @@ namespace deformvolume
 {
 
 /// Newton's method for a body, with steps that become shorter until the energy falls enough.
-class CorotationalSolver
+class EquilibriumSolver
 {
 public:
-  CorotationalSolver(Watch& watch, const ElasticBody& body);
+  EquilibriumSolver(Watch& watch, const ElasticBody& body);
 
   void SetMaterials(const std::vector<ElasticMaterial>& materials);
-  CorotationalReport Solve(const CorotationalRequest& request);
+  EquilibriumReport Solve(const EquilibriumRequest& request);
 
   const ElasticBody& GetBody() const { return this->Body; }
   const std::vector<glm::dvec3>& GetDisplacements() const { return this->Last.Displacements; }
@@ -36,37 +36,37 @@ private:
   {
     std::vector<glm::dvec3> Displacements;
     std::vector<glm::dvec3> Forces;
-    CorotationalElements::Sums Sums;
+    FiniteElements::Sums Sums;
     double Potential = 0.0;
   };
   void UpdateScale(Watch& watch);
   // What the last calls have found serves no longer, but for the displacements.
   void Forget();
-  void UseHeldPieces(const CorotationalProblem& problem);
+  void UseHeldPieces(const EquilibriumProblem& problem);
   // Pieces that are not held go with what moves their nodes of support.
-  void MoveFollowers(const CorotationalProblem& problem, State& state) const;
-  CorotationalReport FindEquilibrium(
-    Watch& watch, const CorotationalRequest& request, const CorotationalProblem& problem);
-  void Evaluate(Watch& watch, const CorotationalProblem& problem, State& state) const;
-  void FindPotential(Watch& watch, const CorotationalProblem& problem, State& state) const;
+  void MoveFollowers(const EquilibriumProblem& problem, State& state) const;
+  EquilibriumReport FindEquilibrium(
+    Watch& watch, const EquilibriumRequest& request, const EquilibriumProblem& problem);
+  void Evaluate(Watch& watch, const EquilibriumProblem& problem, State& state) const;
+  void FindPotential(Watch& watch, const EquilibriumProblem& problem, State& state) const;
   // Finds the tangent of a state, unless the one that there is may serve.
-  void UpdateTangent(Watch& watch, const CorotationalProblem& problem, const State& state);
+  void UpdateTangent(Watch& watch, const EquilibriumProblem& problem, const State& state);
   // Moves the held nodes to their targets, and the others as the tangent says. Returns whether they
   // were elsewhere.
   bool MoveHeldNodes(
-    Watch& watch, const CorotationalProblem& problem, State& state, CorotationalReport& report);
+    Watch& watch, const EquilibriumProblem& problem, State& state, EquilibriumReport& report);
   // Moves the free nodes of tetrahedra that are inside out to the mean of their neighbours, as long
   // as the energy falls. Newton's method takes many steps to turn such tetrahedra: each in its own
   // way, which is rarely that of its neighbours.
-  void Untangle(Watch& watch, const CorotationalProblem& problem, State& state);
+  void Untangle(Watch& watch, const EquilibriumProblem& problem, State& state);
   // How well a linear system is to be solved where the residual is to become so much smaller.
-  static double ChooseTolerance(const CorotationalProblem& problem, double wanted);
+  static double ChooseTolerance(const EquilibriumProblem& problem, double wanted);
   // Solves for what the right-hand side and the forces that are left say.
-  void SolveLinear(Watch& watch, const CorotationalProblem& problem, const State& state,
-    double tolerance, CorotationalReport& report);
+  void SolveLinear(Watch& watch, const EquilibriumProblem& problem, const State& state,
+    double tolerance, EquilibriumReport& report);
   // False where no step makes the energy less.
-  bool Step(Watch& watch, const CorotationalProblem& problem, double tolerance, State& state,
-    CorotationalReport& report);
+  bool Step(Watch& watch, const EquilibriumProblem& problem, double tolerance, State& state,
+    EquilibriumReport& report);
 
   ElasticBody Body;
   BodyPieces Pieces;
@@ -76,7 +76,7 @@ private:
   std::vector<double> Masses;
   // E h^2, in N.
   double ForceScale = 0.0;
-  CorotationalElements Elements;
+  FiniteElements Elements;
   TangentSolver Tangent;
   // Whether there is a tangent that may serve, and whether it is that of another call.
   bool HasTangent = false;

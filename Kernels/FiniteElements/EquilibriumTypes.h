@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef DeformVolumeCorotationalTypes_h
-#define DeformVolumeCorotationalTypes_h
+#ifndef DeformVolumeEquilibriumTypes_h
+#define DeformVolumeEquilibriumTypes_h
 
 #include "ElasticBody.h"
 #include "ElementResults.h"
@@ -12,7 +12,7 @@
 namespace deformvolume
 {
 
-enum class CorotationalMode
+enum class EquilibriumMode
 {
   /// A frame of an animation: few steps, each as far as the next one needs it. What is left is
   /// reported, and the next call goes on from there.
@@ -22,7 +22,7 @@ enum class CorotationalMode
 };
 
 /// When to stop. What is 0 is chosen by the mode.
-struct CorotationalLimits
+struct EquilibriumLimits
 {
   /// Steps of Newton's method; 0: 2 when interactive, else 200.
   int NewtonSteps = 0;
@@ -40,18 +40,18 @@ struct CorotationalLimits
   double AbsoluteTolerance = 0.0;
 };
 
-struct CorotationalRequest
+struct EquilibriumRequest
 {
   /// Nodes that are moved, besides those of the body that are fixed at rest.
   std::vector<HeldNode> Held;
   BodyLoads Loads;
-  CorotationalMode Mode = CorotationalMode::Interactive;
-  CorotationalLimits Limits;
+  EquilibriumMode Mode = EquilibriumMode::Interactive;
+  EquilibriumLimits Limits;
   /// Called every few milliseconds, in the thread that called; returning false aborts.
   std::function<bool()> Progress;
 };
 
-struct CorotationalReport
+struct EquilibriumReport
 {
   /// Whether the residual is within the tolerances.
   bool IsConverged = false;

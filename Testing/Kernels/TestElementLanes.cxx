@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Code for processors with AVX2 finds what code for the least processor finds, to the last bit.
 #include "BlockMatrix.h"
-#include "CorotationalCase.h"
-#include "CorotationalElements.h"
+#include "FiniteElementCase.h"
+#include "FiniteElements.h"
 #include "Lanes.h"
 
 #include <gtest/gtest.h>
@@ -80,7 +80,7 @@ struct Sums
 Sums FindSums(const LatticeBody& lattice, const std::vector<glm::dvec3>& displacements)
 {
   Watch watch(nullptr);
-  CorotationalElements elements(watch, lattice.Body);
+  FiniteElements elements(watch, lattice.Body);
   BlockMatrix matrix;
   matrix.SetPattern(watch, MakeNodePattern(watch, lattice.Body));
   elements.SetPattern(watch, matrix.GetPattern());
@@ -94,11 +94,11 @@ Sums FindSums(const LatticeBody& lattice, const std::vector<glm::dvec3>& displac
   return sums;
 }
 
-std::vector<glm::dvec3> SolveFrames(const LatticeBody& lattice, CorotationalMode mode)
+std::vector<glm::dvec3> SolveFrames(const LatticeBody& lattice, EquilibriumMode mode)
 {
-  CorotationalModel model;
+  FiniteElementModel model;
   model.SetBody(lattice.Body);
-  CorotationalRequest request;
+  EquilibriumRequest request;
   request.Mode = mode;
   for (int frame = 1; frame <= 3; ++frame)
   {
@@ -139,8 +139,7 @@ TEST_F(WideLanes, Solutions)
   for (const Place& nodes : { Place{ 5, 5, 9 }, Place{ 12, 13, 14 } })
   {
     const LatticeBody lattice = MakeBar(nodes);
-    for (const CorotationalMode mode :
-      { CorotationalMode::Interactive, CorotationalMode::Converged })
+    for (const EquilibriumMode mode : { EquilibriumMode::Interactive, EquilibriumMode::Converged })
     {
       const std::vector<glm::dvec3> wide = SolveFrames(lattice, mode);
       EXPECT_GT(LargestOf(wide), 1e-3);

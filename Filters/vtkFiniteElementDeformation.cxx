@@ -1,76 +1,76 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vtkCorotationalDeformation.h"
+#include "vtkFiniteElementDeformation.h"
 
-#include "CorotationalSimulation.h"
+#include "FiniteElementSimulation.h"
 
 #include "vtkObjectFactory.h"
 
 #include <sstream>
 
-vtkStandardNewMacro(vtkCorotationalDeformation);
+vtkStandardNewMacro(vtkFiniteElementDeformation);
 
-class vtkCorotationalDeformation::vtkInternals
+class vtkFiniteElementDeformation::vtkInternals
 {
 public:
-  deformvolume::CorotationalSimulation Simulation;
+  deformvolume::FiniteElementSimulation Simulation;
 };
 
-vtkCorotationalDeformation::vtkCorotationalDeformation()
+vtkFiniteElementDeformation::vtkFiniteElementDeformation()
   : Internals(new vtkInternals)
 {
 }
 
-vtkCorotationalDeformation::~vtkCorotationalDeformation() = default;
+vtkFiniteElementDeformation::~vtkFiniteElementDeformation() = default;
 
-deformvolume::ElasticSimulation& vtkCorotationalDeformation::PrepareSimulation()
+deformvolume::ElasticSimulation& vtkFiniteElementDeformation::PrepareSimulation()
 {
   this->Internals->Simulation.Mode = this->Mode == CONVERGED
-    ? deformvolume::CorotationalMode::Converged
-    : deformvolume::CorotationalMode::Interactive;
+    ? deformvolume::EquilibriumMode::Converged
+    : deformvolume::EquilibriumMode::Interactive;
   return this->Internals->Simulation;
 }
 
-bool vtkCorotationalDeformation::GetIsConverged()
+bool vtkFiniteElementDeformation::GetIsConverged()
 {
   return this->Internals->Simulation.Report.IsConverged;
 }
 
-int vtkCorotationalDeformation::GetNumberOfNewtonSteps()
+int vtkFiniteElementDeformation::GetNumberOfNewtonSteps()
 {
   return this->Internals->Simulation.Report.NewtonSteps;
 }
 
-int vtkCorotationalDeformation::GetNumberOfLinearIterations()
+int vtkFiniteElementDeformation::GetNumberOfLinearIterations()
 {
   return this->Internals->Simulation.Report.LinearIterations;
 }
 
-double vtkCorotationalDeformation::GetResidual()
+double vtkFiniteElementDeformation::GetResidual()
 {
   return this->Internals->Simulation.Report.Residual;
 }
 
-double vtkCorotationalDeformation::GetRelativeResidual()
+double vtkFiniteElementDeformation::GetRelativeResidual()
 {
   return this->Internals->Simulation.Report.RelativeResidual;
 }
 
-double vtkCorotationalDeformation::GetStrainEnergy()
+double vtkFiniteElementDeformation::GetStrainEnergy()
 {
   return this->Internals->Simulation.Report.StrainEnergy;
 }
 
-vtkIdType vtkCorotationalDeformation::GetNumberOfFrozenPieces()
+vtkIdType vtkFiniteElementDeformation::GetNumberOfFrozenPieces()
 {
   return this->Internals->Simulation.Report.NumberOfFrozenPieces;
 }
 
-vtkIdType vtkCorotationalDeformation::GetNumberOfInvertedTetrahedra()
+vtkIdType vtkFiniteElementDeformation::GetNumberOfInvertedTetrahedra()
 {
   return static_cast<vtkIdType>(this->Internals->Simulation.Report.NumberOfInvertedTetrahedra);
 }
 
-std::string vtkCorotationalDeformation::GetSummary()
+std::string vtkFiniteElementDeformation::GetSummary()
 {
   std::string text = this->Superclass::GetSummary();
   if (!text.empty())
@@ -94,7 +94,7 @@ std::string vtkCorotationalDeformation::GetSummary()
   return text;
 }
 
-void vtkCorotationalDeformation::PrintSelf(ostream& os, vtkIndent indent)
+void vtkFiniteElementDeformation::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Mode: " << (this->Mode == CONVERGED ? "CONVERGED" : "INTERACTIVE") << "\n";

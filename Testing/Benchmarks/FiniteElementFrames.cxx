@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Warm frames of corotational finite elements: what they take, and what force they leave.
 //
-// Usage: CorotationalFrames [FRAMES [NEWTON [ITERATIONS [SCENE]]]]. Times are in milliseconds. The
+// Usage: FiniteElementFrames [FRAMES [NEWTON [ITERATIONS [SCENE]]]]. Times are in milliseconds. The
 // body is a block that is fixed at its lower end; in the middle of the other end a handle of 3 x 3
 // nodes goes along a circle, by 0.005 of the length in each frame, or the body bends under its
 // weight.
-#include "CorotationalModel.h"
+#include "FiniteElementModel.h"
 #include "LatticeBody.h"
 #include "Timing.h"
 
@@ -43,17 +43,17 @@ double GetMedian(std::vector<double> values)
   return values[values.size() / 2];
 }
 
-void RunScene(const Scene& scene, int frames, const CorotationalLimits& limits)
+void RunScene(const Scene& scene, int frames, const EquilibriumLimits& limits)
 {
   ElasticMaterial material;
   material.PoissonRatio = scene.PoissonRatio;
   const double spacing = 0.01;
   LatticeBody lattice(scene.Nodes, spacing, material);
   lattice.Fix([](const LatticeBody::Place& place) { return place[2] == 0; });
-  CorotationalModel model;
+  FiniteElementModel model;
   const double setTime = 1e3 * Time([&] { model.SetBody(lattice.Body); });
   const double length = spacing * (scene.Nodes[2] - 1);
-  CorotationalRequest request;
+  EquilibriumRequest request;
   request.Limits = limits;
   std::vector<double> times;
   std::vector<double> processorTimes;
@@ -61,7 +61,7 @@ void RunScene(const Scene& scene, int frames, const CorotationalLimits& limits)
   int newton = 0;
   int iterations = 0;
   double residual = 0.0;
-  CorotationalReport report;
+  EquilibriumReport report;
   for (int frame = 0; frame <= frames; ++frame)
   {
     request.Held.clear();
@@ -116,7 +116,7 @@ int main(int argc, char* argv[])
   try
   {
     const int frames = argc > 1 ? std::atoi(argv[1]) : 20;
-    CorotationalLimits limits;
+    EquilibriumLimits limits;
     limits.NewtonSteps = argc > 2 ? std::atoi(argv[2]) : 0;
     limits.LinearIterations = argc > 3 ? std::atoi(argv[3]) : 0;
     const int wanted = argc > 4 ? std::atoi(argv[4]) : -1;

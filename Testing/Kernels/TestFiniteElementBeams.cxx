@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Corotational finite elements beside closed forms: rigid motions, affine maps, bars and beams.
-#include "CorotationalCase.h"
+#include "FiniteElementCase.h"
 #include "Measured.h"
 
 #include <gtest/gtest.h>
@@ -85,7 +85,7 @@ std::vector<glm::dvec3> PressEnd(const LatticeBody& beam, const glm::dvec3& pres
 }
 
 // The mean displacement of the end.
-glm::dvec3 GetTip(const LatticeBody& beam, const CorotationalModel& model)
+glm::dvec3 GetTip(const LatticeBody& beam, const FiniteElementModel& model)
 {
   glm::dvec3 sum(0.0);
   double number = 0.0;
@@ -105,10 +105,10 @@ glm::dvec3 GetTip(const LatticeBody& beam, const CorotationalModel& model)
 double GetDeflection(std::int32_t cells, double poissonRatio)
 {
   const LatticeBody beam = MakeBeam(cells, poissonRatio);
-  CorotationalModel model;
+  FiniteElementModel model;
   model.SetBody(beam.Body);
   constexpr double force = 1e-3;
-  CorotationalRequest request = MakeConverged();
+  EquilibriumRequest request = MakeConverged();
   request.Loads.Forces = LoadEnd(beam, glm::dvec3(force, 0.0, 0.0));
   EXPECT_TRUE(model.Solve(request).IsConverged);
   return GetTip(beam, model).x / (force * 1000.0 / (3.0 * 1e6 / 12.0));
@@ -116,11 +116,11 @@ double GetDeflection(std::int32_t cells, double poissonRatio)
 
 } // namespace
 
-TEST(CorotationalBeams, RigidMotion)
+TEST(FiniteElementBeams, RigidMotion)
 {
   // E h^2 = 2800 N.
   const LatticeBody lattice({ 5, 5, 5 }, 0.1, MakeMaterial(2.8e5, 0.3));
-  CorotationalModel model;
+  FiniteElementModel model;
   model.SetBody(lattice.Body);
   model.SetDisplacements(
     MapPoints(lattice.Body, MakeRotation(2.0, { 1.0, 2.0, -0.5 }), glm::dvec3(0.7, -0.3, 1.1)));
@@ -130,7 +130,7 @@ TEST(CorotationalBeams, RigidMotion)
   EXPECT_LT(force, 5e-11);
 }
 
-TEST(CorotationalBeams, Patch)
+TEST(FiniteElementBeams, Patch)
 {
   LatticeBody lattice({ 5, 5, 5 }, 0.25, MakeMaterial(1e4, 0.3));
   std::mt19937 random(1);
@@ -147,7 +147,7 @@ TEST(CorotationalBeams, Patch)
   const glm::dmat3 stretch(1.2, 0.05, 0.0, 0.1, 0.9, 0.03, -0.04, 0.02, 1.1);
   const std::vector<glm::dvec3> wanted = MapPoints(
     lattice.Body, MakeRotation(1.0, { 1.0, -1.0, 0.3 }) * stretch, glm::dvec3(0.2, 0.1, -0.3));
-  CorotationalRequest request = MakeConverged();
+  EquilibriumRequest request = MakeConverged();
   lattice.ForNodes(
     [&](const Place& place, std::int32_t node)
     {
@@ -156,7 +156,7 @@ TEST(CorotationalBeams, Patch)
         request.Held.push_back({ node, wanted[static_cast<std::size_t>(node)] });
       }
     });
-  CorotationalModel model;
+  FiniteElementModel model;
   model.SetBody(lattice.Body);
   EXPECT_TRUE(model.Solve(request).IsConverged);
   const double error = LargestDifference(model.GetDisplacements(), wanted);
@@ -166,14 +166,14 @@ TEST(CorotationalBeams, Patch)
 
 // A bar of 1 x 1 x 2 m that is pulled by a fifth of its length: the stress is E / 5 everywhere, and
 // it becomes thinner by nu / 5.
-TEST(CorotationalBeams, Uniaxial)
+TEST(FiniteElementBeams, Uniaxial)
 {
   const double poissonRatio = 0.3;
   LatticeBody bar({ 5, 5, 9 }, 0.25, MakeMaterial(1e5, poissonRatio));
   const double thinner = 1.0 - 0.2 * poissonRatio;
   const std::vector<glm::dvec3> wanted =
     MapPoints(bar.Body, glm::dmat3(thinner, 0, 0, 0, thinner, 0, 0, 0, 1.2), glm::dvec3(0.0));
-  CorotationalRequest request = MakeConverged();
+  EquilibriumRequest request = MakeConverged();
   request.Limits.LinearTolerance = 1e-13;
   bar.ForNodes(
     [&](const Place& place, std::int32_t node)
@@ -183,9 +183,9 @@ TEST(CorotationalBeams, Uniaxial)
         request.Held.push_back({ node, wanted[static_cast<std::size_t>(node)] });
       }
     });
-  CorotationalModel model;
+  FiniteElementModel model;
   model.SetBody(bar.Body);
-  const CorotationalReport report = model.Solve(request);
+  const EquilibriumReport report = model.Solve(request);
   EXPECT_TRUE(report.IsConverged);
   EXPECT_EQ(report.NewtonSteps, 1);
   EXPECT_LT(LargestDifference(model.GetDisplacements(), wanted), 1e-12);
@@ -207,7 +207,7 @@ TEST(CorotationalBeams, Uniaxial)
 
 // A pressure on the end of a bar, for each area at rest: linear elasticity as long as nothing
 // turns, so that strains are p / E and -nu p / E exactly, however large they are.
-TEST(CorotationalBeams, Pressure)
+TEST(FiniteElementBeams, Pressure)
 {
   double largest = 0.0;
   for (const double youngModulus : { 1.0, 2.0 })
@@ -221,7 +221,7 @@ TEST(CorotationalBeams, Pressure)
         const double radial = 1.0 - poissonRatio * pressure / youngModulus;
         const std::vector<glm::dvec3> wanted =
           MapPoints(bar.Body, glm::dmat3(radial, 0, 0, 0, radial, 0, 0, 0, axial), glm::dvec3(0.0));
-        CorotationalRequest request = MakeConverged();
+        EquilibriumRequest request = MakeConverged();
         bar.ForNodes(
           [&](const Place& place, std::int32_t node)
           {
@@ -231,7 +231,7 @@ TEST(CorotationalBeams, Pressure)
             }
           });
         request.Loads.Forces = PressEnd(bar, glm::dvec3(0.0, 0.0, pressure));
-        CorotationalModel model;
+        FiniteElementModel model;
         model.SetBody(bar.Body);
         EXPECT_TRUE(model.Solve(request).IsConverged);
         const double error = LargestDifference(model.GetDisplacements(), wanted);
@@ -246,15 +246,15 @@ TEST(CorotationalBeams, Pressure)
 
 // Under its own weight a bar becomes longer by rho g L^2 / 2E. Where it becomes thinner, too, its
 // end that is held cannot, which matters the less the longer it is.
-TEST(CorotationalBeams, HangingBar)
+TEST(FiniteElementBeams, HangingBar)
 {
   for (const double poissonRatio : { 0.0, 0.3 })
   {
     LatticeBody bar({ 3, 3, 81 }, 0.125, MakeMaterial(1e6, poissonRatio));
     bar.Fix([](const Place& place) { return place[2] == 0; });
-    CorotationalRequest request = MakeConverged();
+    EquilibriumRequest request = MakeConverged();
     request.Loads.Gravity = glm::dvec3(0.0, 0.0, 9.81);
-    CorotationalModel model;
+    FiniteElementModel model;
     model.SetBody(bar.Body);
     EXPECT_TRUE(model.Solve(request).IsConverged);
     const double wanted = 1000.0 * 9.81 * 100.0 / (2.0 * 1e6);
@@ -265,7 +265,7 @@ TEST(CorotationalBeams, HangingBar)
 }
 
 // A straight beam that bends under its weight does not go sideways.
-TEST(CorotationalBeams, NoDrift)
+TEST(FiniteElementBeams, NoDrift)
 {
   struct Case
   {
@@ -276,13 +276,13 @@ TEST(CorotationalBeams, NoDrift)
   for (const Case& beamCase : { Case{ 2, 1e-10 }, Case{ 4, 1e-10 }, Case{ 3, 1e-3 } })
   {
     LatticeBody beam = MakeBeam(beamCase.Cells, 0.3);
-    CorotationalRequest request = MakeConverged();
+    EquilibriumRequest request = MakeConverged();
     request.Loads.Gravity = glm::dvec3(-1.0, 0.0, 0.0);
     request.Limits.RelativeTolerance = 1e-12;
     request.Limits.LinearTolerance = 1e-10;
-    CorotationalModel model;
+    FiniteElementModel model;
     model.SetBody(beam.Body);
-    const CorotationalReport report = model.Solve(request);
+    const EquilibriumReport report = model.Solve(request);
     const glm::dvec3 tip = GetTip(beam, model);
     RecordMeasured("drift, " + std::to_string(beamCase.Cells), std::abs(tip.y) / 10.0);
     EXPECT_LT(report.RelativeResidual, 1e-9);
@@ -305,7 +305,7 @@ void ExpectCantilever(double poissonRatio, double converged, std::int32_t cells,
   EXPECT_NEAR(100.0 * (deflection / converged - 1.0), error, 0.55) << name.str();
 }
 
-TEST(CorotationalBeams, Cantilever)
+TEST(FiniteElementBeams, Cantilever)
 {
   ExpectCantilever(0.3, 1.0010, 1, -64.0);
   ExpectCantilever(0.3, 1.0010, 2, -32.0);
@@ -315,7 +315,7 @@ TEST(CorotationalBeams, Cantilever)
   ExpectCantilever(0.49, 0.9895, 4, -15.0);
 }
 
-TEST(CorotationalBeams, CantileverOfEightCells)
+TEST(FiniteElementBeams, CantileverOfEightCells)
 {
   ExpectCantilever(0.3, 1.0010, 8, -3.0);
   ExpectCantilever(0.49, 0.9895, 8, -5.0);
@@ -325,7 +325,7 @@ TEST(CorotationalBeams, CantileverOfEightCells)
 // shorter it becomes, by its length, and the errors of four cells across beside the exact solution
 // of a thin beam, in percent. It is too stiff, least of all where it is nearly straight again. The
 // errors are those of this element, found with it: they show that it changes, not that it is right.
-TEST(CorotationalBeams, Elastica)
+TEST(FiniteElementBeams, Elastica)
 {
   struct Row
   {
@@ -339,11 +339,11 @@ TEST(CorotationalBeams, Elastica)
          Row{ 10.0, { 0.81061, 0.55500 }, { -0.2, -4.4 } } })
   {
     const LatticeBody beam = MakeBeam(4, 0.0);
-    CorotationalRequest request = MakeConverged();
+    EquilibriumRequest request = MakeConverged();
     request.Loads.Forces = LoadEnd(beam, glm::dvec3(row.Load * 1e6 / 12.0 / 100.0, 0.0, 0.0));
-    CorotationalModel model;
+    FiniteElementModel model;
     model.SetBody(beam.Body);
-    const CorotationalReport report = model.Solve(request);
+    const EquilibriumReport report = model.Solve(request);
     EXPECT_TRUE(report.IsConverged);
     const glm::dvec3 tip = GetTip(beam, model) / 10.0;
     const std::string load = std::to_string(static_cast<int>(row.Load));

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef DeformVolumeCorotationalModel_h
-#define DeformVolumeCorotationalModel_h
+#ifndef DeformVolumeFiniteElementModel_h
+#define DeformVolumeFiniteElementModel_h
 
-#include "CorotationalTypes.h"
 #include "DeformVolumeExport.h"
 #include "ElasticBody.h"
+#include "EquilibriumTypes.h"
 #include "Error.h"
 
 #include <glm/vec3.hpp>
@@ -28,13 +28,13 @@ namespace deformvolume
 /// displacements. Every failure is an Error; the body, its materials and its displacements are then
 /// as before the call.
 /// Results do not depend on the number of threads, to the last bit.
-class DEFORMVOLUME_EXPORT CorotationalModel
+class DEFORMVOLUME_EXPORT FiniteElementModel
 {
 public:
-  CorotationalModel();
-  ~CorotationalModel();
-  CorotationalModel(const CorotationalModel&) = delete;
-  CorotationalModel& operator=(const CorotationalModel&) = delete;
+  FiniteElementModel();
+  ~FiniteElementModel();
+  FiniteElementModel(const FiniteElementModel&) = delete;
+  FiniteElementModel& operator=(const FiniteElementModel&) = delete;
 
   /// The body, at rest. An Error where CheckBody finds one; the last body stays then. progress:
   /// called every few milliseconds, in the thread that called; returning false aborts, and the last
@@ -47,7 +47,7 @@ public:
   /// Moves the held nodes to where they are to be, and the others towards equilibrium. An Error
   /// where CheckLoads or CheckHeldNodes find one, where no piece of the body is held, and where the
   /// forces are no numbers any more.
-  CorotationalReport Solve(const CorotationalRequest& request);
+  EquilibriumReport Solve(const EquilibriumRequest& request);
 
   /// Puts all displacements to 0, and forgets what the last calls of Solve have left for the next.
   void Reset();

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef DeformVolumeCorotationalSimulation_h
-#define DeformVolumeCorotationalSimulation_h
+#ifndef DeformVolumeFiniteElementSimulation_h
+#define DeformVolumeFiniteElementSimulation_h
 
-#include "CorotationalModel.h"
 #include "ElasticSimulation.h"
+#include "FiniteElementModel.h"
 
 #include "vtkFloatArray.h"
 #include "vtkSmartPointer.h"
@@ -11,13 +11,13 @@
 namespace deformvolume
 {
 
-/// A CorotationalModel with its output.
-class CorotationalSimulation : public ElasticSimulation
+/// A FiniteElementModel with its output.
+class FiniteElementSimulation : public ElasticSimulation
 {
 public:
-  CorotationalMode Mode = CorotationalMode::Interactive;
+  EquilibriumMode Mode = EquilibriumMode::Interactive;
   /// Of the last frame.
-  CorotationalReport Report;
+  EquilibriumReport Report;
 
   void SetBody(
     const ElasticBody& body, bool keepsState, const std::function<bool()>& progress) override;
@@ -35,9 +35,9 @@ public:
   vtkDataArray* WriteOutput(double factor) override;
 
 private:
-  void Warn(const CorotationalReport& last);
+  void Warn(const EquilibriumReport& last);
 
-  CorotationalModel Model;
+  FiniteElementModel Model;
   bool HasWarnedOfResidual = false;
   vtkSmartPointer<vtkFloatArray> Output;
 };

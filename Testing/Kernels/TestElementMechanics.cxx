@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Corotational tetrahedra: rotations, forces and stiffness.
 #include "BlockMatrix.h"
-#include "CorotationalCase.h"
-#include "CorotationalElements.h"
+#include "FiniteElementCase.h"
+#include "FiniteElements.h"
 #include "SingularValues.h"
 
 #include <glm/gtc/matrix_access.hpp>
@@ -102,7 +102,7 @@ struct Stretched
 
 } // namespace
 
-TEST(CorotationalElements, SingularValues)
+TEST(ElementMechanics, SingularValues)
 {
   CheckDecomposition(glm::dmat3(1.0));
   CheckDecomposition(glm::dmat3(0.0));
@@ -127,17 +127,17 @@ TEST(CorotationalElements, SingularValues)
   }
 }
 
-TEST(CorotationalElements, RotationOfInverted)
+TEST(ElementMechanics, RotationOfInverted)
 {
   const Decomposition d = Decompose(glm::dmat3(1, 0, 0, 0, 1, 0, 0, 0, -0.5));
   EXPECT_LT(LargestOfMatrix(d.U * glm::transpose(d.V) - glm::dmat3(1.0)), 1e-15);
   EXPECT_EQ(d.Values[2], -0.5);
 }
 
-TEST(CorotationalElements, ForcesAreThoseOfTheEnergy)
+TEST(ElementMechanics, ForcesAreThoseOfTheEnergy)
 {
   Stretched stretched;
-  CorotationalModel model;
+  FiniteElementModel model;
   model.SetBody(stretched.Lattice.Body);
   model.SetDisplacements(stretched.Displacements);
   const std::vector<glm::dvec3> forces = model.GetForces();
@@ -169,12 +169,12 @@ TEST(CorotationalElements, ForcesAreThoseOfTheEnergy)
   }
 }
 
-TEST(CorotationalElements, TangentIsThatOfTheForces)
+TEST(ElementMechanics, TangentIsThatOfTheForces)
 {
   Stretched stretched;
   const ElasticBody& body = stretched.Lattice.Body;
   Watch watch(nullptr);
-  CorotationalElements elements(watch, body);
+  FiniteElements elements(watch, body);
   BlockMatrix matrix;
   matrix.SetPattern(watch, MakeNodePattern(watch, body));
   elements.SetPattern(watch, matrix.GetPattern());
@@ -210,11 +210,11 @@ TEST(CorotationalElements, TangentIsThatOfTheForces)
   }
 }
 
-TEST(CorotationalElements, TangentIsNeverNegative)
+TEST(ElementMechanics, TangentIsNeverNegative)
 {
   LatticeBody lattice({ 3, 3, 3 }, 0.1, MakeMaterial(1e4, 0.45));
   Watch watch(nullptr);
-  CorotationalElements elements(watch, lattice.Body);
+  FiniteElements elements(watch, lattice.Body);
   BlockMatrix matrix;
   matrix.SetPattern(watch, MakeNodePattern(watch, lattice.Body));
   elements.SetPattern(watch, matrix.GetPattern());
@@ -255,14 +255,14 @@ TEST(CorotationalElements, TangentIsNeverNegative)
 
 // The stress of a tetrahedron is what its nodes pull at, by its volume: the forces by the
 // positions.
-TEST(CorotationalElements, StressIsThatOfTheForces)
+TEST(ElementMechanics, StressIsThatOfTheForces)
 {
   ElasticBody body;
   body.Points = { { 0, 0, 0 }, { 0.1, 0, 0 }, { 0.02, 0.1, 0 }, { 0.03, 0.01, 0.1 } };
   body.Tetrahedra = { { 0, 1, 2, 3 } };
   body.Materials = { MakeMaterial(1e4, 0.3) };
   const double volume = GetVolumes(body).front();
-  CorotationalModel model;
+  FiniteElementModel model;
   model.SetBody(body);
   const glm::dmat3 rotation = MakeRotation(0.7, { 1.0, 2.0, -0.5 });
   // Larger, smaller and inside out.
@@ -286,10 +286,10 @@ TEST(CorotationalElements, StressIsThatOfTheForces)
   }
 }
 
-TEST(CorotationalElements, FlatTetrahedraHaveNoStress)
+TEST(ElementMechanics, FlatTetrahedraHaveNoStress)
 {
   const LatticeBody lattice({ 3, 3, 3 }, 0.1, MakeMaterial(1e4, 0.3));
-  CorotationalModel model;
+  FiniteElementModel model;
   model.SetBody(lattice.Body);
   const glm::dmat3 rotation = MakeRotation(0.7, { 1.0, 2.0, -0.5 });
   // Exactly, and but for rounding; to a plane, a line and a point.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Corotational finite elements: misuse, and what stays of a call.
-#include "CorotationalCase.h"
+#include "FiniteElementCase.h"
 #include "Measured.h"
 #include "ParallelFor.h"
 
@@ -71,9 +71,9 @@ LatticeBody MakeTwoPieces()
 
 } // namespace
 
-TEST(Corotational, Misuse)
+TEST(FiniteElements, Misuse)
 {
-  CorotationalModel model;
+  FiniteElementModel model;
   EXPECT_EQ(GetError([&] { model.Solve({}); }), "There is no body. Call SetBody first.");
   EXPECT_EQ(GetError([&] { model.Reset(); }), "There is no body. Call SetBody first.");
   EXPECT_EQ(GetError([&] { model.SetBody({}); }), "The rest mesh has no tetrahedra.");
@@ -88,7 +88,7 @@ TEST(Corotational, Misuse)
   // Two nodes, and three on a line, do not hold it either.
   for (const int number : { 1, 2, 3 })
   {
-    CorotationalRequest request;
+    EquilibriumRequest request;
     for (int i = 0; i < number; ++i)
     {
       request.Held.push_back({ i, glm::dvec3(0.0) });
@@ -96,7 +96,7 @@ TEST(Corotational, Misuse)
     EXPECT_NE(GetError([&] { model.Solve(request); }).find("No constraints"), std::string::npos);
   }
   model.SetBody(lattice.Body);
-  CorotationalRequest request;
+  EquilibriumRequest request;
   request.Held = { { 26, glm::dvec3(NoNumber, 0.0, 0.0) } };
   EXPECT_EQ(GetError([&] { model.Solve(request); }), "The displacement of a handle is not finite.");
   request.Held = { { 27, glm::dvec3(0.0) } };
@@ -121,22 +121,22 @@ TEST(Corotational, Misuse)
   EXPECT_EQ(LargestOf(model.GetDisplacements()), 0.0);
 }
 
-TEST(Corotational, AtRest)
+TEST(FiniteElements, AtRest)
 {
   const LatticeBody lattice = MakeBlock({ 3, 3, 3 });
-  CorotationalModel model;
+  FiniteElementModel model;
   model.SetBody(lattice.Body);
-  const CorotationalReport report = model.Solve({});
+  const EquilibriumReport report = model.Solve({});
   EXPECT_TRUE(report.IsConverged);
   EXPECT_EQ(report.NewtonSteps, 0);
   EXPECT_EQ(report.NumberOfFrozenPieces, 0);
   EXPECT_EQ(LargestOf(model.GetDisplacements()), 0.0);
 }
 
-TEST(Corotational, FrozenPiece)
+TEST(FiniteElements, FrozenPiece)
 {
   const LatticeBody lattice = MakeTwoPieces();
-  CorotationalModel model;
+  FiniteElementModel model;
   model.SetBody(lattice.Body);
   std::vector<glm::dvec3> displacements(lattice.Body.Points.size(), glm::dvec3(0.0));
   for (std::size_t node = 27; node < 54; ++node)
@@ -144,9 +144,9 @@ TEST(Corotational, FrozenPiece)
     displacements[node] = glm::dvec3(0.001 * static_cast<double>(node), 0.0, 0.0);
   }
   model.SetDisplacements(displacements);
-  CorotationalRequest request = MakeConverged();
+  EquilibriumRequest request = MakeConverged();
   request.Loads.Gravity = glm::dvec3(0.0, -9.81, 0.0);
-  const CorotationalReport report = model.Solve(request);
+  const EquilibriumReport report = model.Solve(request);
   EXPECT_TRUE(report.IsConverged);
   EXPECT_EQ(report.NumberOfFrozenPieces, 1);
   EXPECT_LT(model.GetDisplacements()[26].y, 0.0);
@@ -167,7 +167,7 @@ namespace
 {
 
 // Rest lengths and lengths of the edges of a tetrahedron agree: it has moved like a rigid body.
-void ExpectRigid(const CorotationalModel& model, const ElasticBody& body, std::size_t tetrahedron)
+void ExpectRigid(const FiniteElementModel& model, const ElasticBody& body, std::size_t tetrahedron)
 {
   const Tetrahedron& nodes = body.Tetrahedra[tetrahedron];
   for (std::size_t i = 0; i < 4; ++i)
@@ -211,12 +211,12 @@ void AttachTetrahedron(LatticeBody& lattice, const std::vector<std::int32_t>& no
 
 // A tetrahedron that hangs on a node, or on an edge, of a body: the body bends as without it, and
 // it goes with what it hangs on. Another one that hangs on the first does, too.
-TEST(Corotational, PiecesThatHang)
+TEST(FiniteElements, PiecesThatHang)
 {
   const LatticeBody alone = MakeBlock({ 3, 3, 5 });
-  CorotationalModel model;
+  FiniteElementModel model;
   model.SetBody(alone.Body);
-  CorotationalRequest request = MakeConverged();
+  EquilibriumRequest request = MakeConverged();
   request.Held = PullEnd(alone, glm::dvec3(0.003, -0.002, 0.001));
   model.Solve(request);
   const std::size_t nodes = alone.Body.Points.size();
@@ -229,9 +229,9 @@ TEST(Corotational, PiecesThatHang)
     AttachTetrahedron(lattice, shared);
     AttachTetrahedron(lattice, { static_cast<std::int32_t>(nodes) });
     const std::size_t first = alone.Body.Tetrahedra.size();
-    CorotationalModel other;
+    FiniteElementModel other;
     other.SetBody(lattice.Body);
-    const CorotationalReport report = other.Solve(request);
+    const EquilibriumReport report = other.Solve(request);
     EXPECT_TRUE(report.IsConverged);
     EXPECT_EQ(report.NumberOfFrozenPieces, 2);
     EXPECT_EQ(report.NumberOfFollowingPieces, 2);
@@ -251,17 +251,17 @@ TEST(Corotational, PiecesThatHang)
     // With loads and live it is the same.
     request.Loads.Gravity = glm::dvec3(0.0, -9.81, 0.0);
     EXPECT_TRUE(other.Solve(request).IsConverged);
-    request.Mode = CorotationalMode::Interactive;
+    request.Mode = EquilibriumMode::Interactive;
     other.Solve(request);
     EXPECT_LT(LargestOf(other.GetDisplacements()), 0.01);
     request.Loads.Gravity = glm::dvec3(0.0);
-    request.Mode = CorotationalMode::Converged;
+    request.Mode = EquilibriumMode::Converged;
   }
 }
 
 // Two blocks with an edge in common: a hinge. The second one turns with a handle on it, without a
 // force; without the handle it keeps its shape.
-TEST(Corotational, HingeWithAHandle)
+TEST(FiniteElements, HingeWithAHandle)
 {
   LatticeBody lattice = MakeBlock({ 3, 3, 3 });
   ElasticBody& body = lattice.Body;
@@ -294,11 +294,11 @@ TEST(Corotational, HingeWithAHandle)
     }
     body.Tetrahedra.push_back(tetrahedron);
   }
-  CorotationalModel model;
+  FiniteElementModel model;
   model.SetBody(body);
-  CorotationalRequest request = MakeConverged();
+  EquilibriumRequest request = MakeConverged();
   request.Loads.Gravity = glm::dvec3(0.0, -9.81, 0.0);
-  CorotationalReport report = model.Solve(request);
+  EquilibriumReport report = model.Solve(request);
   EXPECT_TRUE(report.IsConverged);
   EXPECT_EQ(report.NumberOfFrozenPieces, 1);
   EXPECT_EQ(report.NumberOfFollowingPieces, 1);
@@ -324,7 +324,7 @@ TEST(Corotational, HingeWithAHandle)
 }
 
 // More pieces than the coarsest level has groups, held by the nodes of one side each.
-TEST(Corotational, ManyPieces)
+TEST(FiniteElements, ManyPieces)
 {
   LatticeBody lattice = MakeBlock({ 3, 3, 3 });
   ElasticBody body = lattice.Body;
@@ -347,12 +347,12 @@ TEST(Corotational, ManyPieces)
       body.Tetrahedra.push_back(tetrahedron);
     }
   }
-  CorotationalRequest request = MakeConverged();
+  EquilibriumRequest request = MakeConverged();
   request.Loads.Gravity = glm::dvec3(0.0, -1.0, 0.0);
-  CorotationalModel model;
+  FiniteElementModel model;
   model.SetBody(body);
   EXPECT_TRUE(model.Solve(request).IsConverged);
-  CorotationalModel single;
+  FiniteElementModel single;
   single.SetBody(lattice.Body);
   EXPECT_TRUE(single.Solve(request).IsConverged);
   for (std::size_t node = 0; node < body.Points.size(); ++node)
@@ -363,7 +363,7 @@ TEST(Corotational, ManyPieces)
 }
 
 // Free nodes that are connected with none: each is a group that cannot turn.
-TEST(Corotational, FreeNodesOfTheirOwn)
+TEST(FiniteElements, FreeNodesOfTheirOwn)
 {
   ElasticBody body;
   constexpr int pieces = 1100;
@@ -378,15 +378,15 @@ TEST(Corotational, FreeNodesOfTheirOwn)
     }
     body.Tetrahedra.push_back({ 4 * piece, 4 * piece + 1, 4 * piece + 2, 4 * piece + 3 });
   }
-  CorotationalRequest request = MakeConverged();
+  EquilibriumRequest request = MakeConverged();
   request.Loads.Gravity = glm::dvec3(0.0, -10.0, 0.0);
-  CorotationalModel model;
+  FiniteElementModel model;
   model.SetBody(body);
   EXPECT_TRUE(model.Solve(request).IsConverged);
   body.Points.resize(4);
   body.Fixed.resize(4);
   body.Tetrahedra.resize(1);
-  CorotationalModel single;
+  FiniteElementModel single;
   single.SetBody(body);
   EXPECT_TRUE(single.Solve(request).IsConverged);
   EXPECT_LT(single.GetDisplacements()[3].y, 0.0);
@@ -397,12 +397,12 @@ TEST(Corotational, FreeNodesOfTheirOwn)
   }
 }
 
-TEST(Corotational, Divergence)
+TEST(FiniteElements, Divergence)
 {
   const LatticeBody lattice = MakeBlock({ 4, 4, 4 });
-  CorotationalModel model;
+  FiniteElementModel model;
   model.SetBody(lattice.Body);
-  CorotationalRequest request;
+  EquilibriumRequest request;
   request.Held = PullEnd(lattice, glm::dvec3(0.005, 0.0, 0.0));
   model.Solve(request);
   const std::vector<glm::dvec3> before = model.GetDisplacements();
@@ -410,24 +410,24 @@ TEST(Corotational, Divergence)
   EXPECT_NE(GetError([&] { model.Solve(request); }).find("no numbers"), std::string::npos);
   EXPECT_EQ(model.GetDisplacements(), before);
   // It goes on from there, as a body does that begins there.
-  CorotationalModel other;
+  FiniteElementModel other;
   other.SetBody(lattice.Body);
   other.SetDisplacements(before);
   request.Held = PullEnd(lattice, glm::dvec3(0.006, 0.0, 0.0));
-  const CorotationalReport report = model.Solve(request);
-  const CorotationalReport wanted = other.Solve(request);
+  const EquilibriumReport report = model.Solve(request);
+  const EquilibriumReport wanted = other.Solve(request);
   EXPECT_EQ(report.NewtonSteps, wanted.NewtonSteps);
   EXPECT_EQ(report.LinearIterations, wanted.LinearIterations);
   EXPECT_EQ(model.GetDisplacements(), other.GetDisplacements());
   EXPECT_TRUE(model.Solve(request).IsConverged);
 }
 
-TEST(Corotational, Abort)
+TEST(FiniteElements, Abort)
 {
   const LatticeBody lattice = MakeBlock({ 16, 16, 31 });
-  CorotationalModel model;
+  FiniteElementModel model;
   model.SetBody(lattice.Body);
-  CorotationalRequest request = MakeConverged();
+  EquilibriumRequest request = MakeConverged();
   request.Loads.Gravity = glm::dvec3(0.0, -0.5, 0.0);
   for (const int allowed : { 0, 1, 3, 10 })
   {
@@ -483,9 +483,9 @@ void RunBackwards(
 std::vector<glm::dvec3> RunFrames(const LatticeBody& lattice, ParallelLoop loop)
 {
   SetParallelLoop(loop);
-  CorotationalModel model;
+  FiniteElementModel model;
   model.SetBody(lattice.Body);
-  CorotationalRequest request;
+  EquilibriumRequest request;
   for (int frame = 1; frame <= 3; ++frame)
   {
     request.Held = PullEnd(lattice, glm::dvec3(0.002 * frame, 0.001 * frame, 0.0));
@@ -498,7 +498,7 @@ std::vector<glm::dvec3> RunFrames(const LatticeBody& lattice, ParallelLoop loop)
 
 } // namespace
 
-TEST(Corotational, Threads)
+TEST(FiniteElements, Threads)
 {
   // The second one is large enough for several levels.
   for (const Place& nodes : { Place{ 5, 5, 5 }, Place{ 12, 13, 14 } })
@@ -512,24 +512,24 @@ TEST(Corotational, Threads)
   }
 }
 
-TEST(Corotational, WarmFramesReachWhatAColdSolveFinds)
+TEST(FiniteElements, WarmFramesReachWhatAColdSolveFinds)
 {
   for (const Place& nodes : { Place{ 5, 5, 9 }, Place{ 10, 10, 14 } })
   {
     const LatticeBody lattice = MakeBlock(nodes);
     const double length = 0.01 * (nodes[2] - 1);
-    CorotationalModel warm;
+    FiniteElementModel warm;
     warm.SetBody(lattice.Body);
-    CorotationalRequest request;
+    EquilibriumRequest request;
     for (int frame = 1; frame <= 20; ++frame)
     {
       request.Held = PullEnd(lattice, glm::dvec3(0.01 * length * frame, 0.0, 0.0));
-      const CorotationalReport report = warm.Solve(request);
+      const EquilibriumReport report = warm.Solve(request);
       EXPECT_LT(report.RelativeResidual, 1e-2);
       EXPECT_LE(report.NewtonSteps, 2);
     }
-    request.Mode = CorotationalMode::Converged;
-    CorotationalModel cold;
+    request.Mode = EquilibriumMode::Converged;
+    FiniteElementModel cold;
     cold.SetBody(lattice.Body);
     EXPECT_TRUE(cold.Solve(request).IsConverged);
     // The frames leave a hundredth of the force.
@@ -541,14 +541,14 @@ TEST(Corotational, WarmFramesReachWhatAColdSolveFinds)
 
 // A handle that turns and jumps: frames leave no more than they say, and those without a motion
 // after it come nearer.
-TEST(Corotational, FramesOfAHandleThatJumps)
+TEST(FiniteElements, FramesOfAHandleThatJumps)
 {
   const Place nodes{ 10, 10, 14 };
   const LatticeBody lattice = MakeBlock(nodes, 0.45);
   const double length = 0.01 * (nodes[2] - 1);
-  CorotationalModel model;
+  FiniteElementModel model;
   model.SetBody(lattice.Body);
-  CorotationalRequest request;
+  EquilibriumRequest request;
   std::mt19937 random(4);
   std::uniform_real_distribution<double> jump(-0.1 * length, 0.1 * length);
   glm::dvec3 place(0.0);
@@ -559,7 +559,7 @@ TEST(Corotational, FramesOfAHandleThatJumps)
     place = jumps ? glm::dvec3(jump(random), jump(random), jump(random))
                   : place + 0.05 * glm::dvec3(jump(random), jump(random), jump(random));
     request.Held = PullEnd(lattice, place);
-    CorotationalReport report = model.Solve(request);
+    EquilibriumReport report = model.Solve(request);
     EXPECT_EQ(report.IsConverged, report.RelativeResidual <= 1e-2);
     for (int rest = 0; rest < 4 && !(report.RelativeResidual <= 1e-3); ++rest)
     {
@@ -569,18 +569,18 @@ TEST(Corotational, FramesOfAHandleThatJumps)
     EXPECT_TRUE(report.IsConverged);
   }
   const std::vector<glm::dvec3> frames = model.GetDisplacements();
-  request.Mode = CorotationalMode::Converged;
+  request.Mode = EquilibriumMode::Converged;
   EXPECT_TRUE(model.Solve(request).IsConverged);
   EXPECT_LT(LargestDifference(frames, model.GetDisplacements()), 1e-3 * length);
 }
 
 // Where the body bends far the tangent of the step before does not serve.
-TEST(Corotational, FramesOfABodyThatBends)
+TEST(FiniteElements, FramesOfABodyThatBends)
 {
   const LatticeBody lattice = MakeBlock({ 5, 5, 40 });
-  CorotationalModel model;
+  FiniteElementModel model;
   model.SetBody(lattice.Body);
-  CorotationalRequest request;
+  EquilibriumRequest request;
   request.Loads.Gravity = glm::dvec3(0.5, 0.0, 0.0);
   int frames = 0;
   while (++frames < 50 && !model.Solve(request).IsConverged)
@@ -591,14 +591,14 @@ TEST(Corotational, FramesOfABodyThatBends)
 }
 
 // What has moved a handle before says where it goes now: hardly anything is left to solve.
-TEST(Corotational, FramesOfAHandleThatGoesOn)
+TEST(FiniteElements, FramesOfAHandleThatGoesOn)
 {
   const Place nodes{ 10, 10, 14 };
   const LatticeBody lattice = MakeBlock(nodes, 0.45);
   const double length = 0.01 * (nodes[2] - 1);
-  CorotationalModel model;
+  FiniteElementModel model;
   model.SetBody(lattice.Body);
-  CorotationalRequest request;
+  EquilibriumRequest request;
   int iterations = 0;
   for (int frame = 0; frame < 30; ++frame)
   {
@@ -606,7 +606,7 @@ TEST(Corotational, FramesOfAHandleThatGoesOn)
     const double angle = 0.05 * frame;
     request.Held =
       PullEnd(lattice, 0.1 * length * glm::dvec3(std::sin(angle), 1.0 - std::cos(angle), 0.0));
-    const CorotationalReport report = model.Solve(request);
+    const EquilibriumReport report = model.Solve(request);
     EXPECT_LE(report.RelativeResidual, 1.2e-2);
     iterations += frame >= 10 ? report.LinearIterations : 0;
   }
@@ -614,12 +614,12 @@ TEST(Corotational, FramesOfAHandleThatGoesOn)
   EXPECT_LT(iterations / 20.0, 6.0);
 }
 
-TEST(Corotational, Materials)
+TEST(FiniteElements, Materials)
 {
   LatticeBody lattice = MakeBlock({ 5, 5, 9 });
-  CorotationalRequest request = MakeConverged();
+  EquilibriumRequest request = MakeConverged();
   request.Loads.Gravity = glm::dvec3(0.0, -1.0, 0.0);
-  CorotationalModel model;
+  FiniteElementModel model;
   model.SetBody(lattice.Body);
   model.Solve(request);
   // A stiff half, and then one body of it from the beginning.
@@ -631,7 +631,7 @@ TEST(Corotational, Materials)
   model.SetMaterials(materials);
   EXPECT_TRUE(model.Solve(request).IsConverged);
   lattice.Body.Materials = materials;
-  CorotationalModel other;
+  FiniteElementModel other;
   other.SetBody(lattice.Body);
   EXPECT_TRUE(other.Solve(request).IsConverged);
   EXPECT_LT(LargestDifference(model.GetDisplacements(), other.GetDisplacements()), 1e-6);
@@ -641,7 +641,7 @@ namespace
 {
 
 // Puts the free nodes of a block anywhere within 0.6 of its thickness from where they are.
-void Scramble(const LatticeBody& lattice, std::uint32_t seed, CorotationalModel& model)
+void Scramble(const LatticeBody& lattice, std::uint32_t seed, FiniteElementModel& model)
 {
   const double largest = 0.6 * lattice.Spacing * (lattice.Nodes[0] - 1);
   std::mt19937 random(seed);
@@ -657,7 +657,7 @@ void Scramble(const LatticeBody& lattice, std::uint32_t seed, CorotationalModel&
   model.SetDisplacements(displacements);
 }
 
-std::int64_t CountInverted(const CorotationalModel& model)
+std::int64_t CountInverted(const FiniteElementModel& model)
 {
   std::int64_t inverted = 0;
   for (const ElementResults& result : model.GetElementResults())
@@ -670,7 +670,7 @@ std::int64_t CountInverted(const CorotationalModel& model)
 } // namespace
 
 // Nearly half of the tetrahedra are inside out.
-TEST(Corotational, Scramble)
+TEST(FiniteElements, Scramble)
 {
   const LatticeBody lattice = MakeBlock({ 5, 5, 5 });
   std::int64_t fewestInverted = std::numeric_limits<std::int64_t>::max();
@@ -679,11 +679,11 @@ TEST(Corotational, Scramble)
   for (std::uint32_t seed = 1; seed <= 100; ++seed)
   {
     SCOPED_TRACE(seed);
-    CorotationalModel model;
+    FiniteElementModel model;
     model.SetBody(lattice.Body);
     Scramble(lattice, seed, model);
     fewestInverted = std::min(fewestInverted, CountInverted(model));
-    const CorotationalReport report = model.Solve(MakeConverged());
+    const EquilibriumReport report = model.Solve(MakeConverged());
     const double error = LargestOf(model.GetDisplacements());
     mostSteps = std::max(mostSteps, report.NewtonSteps);
     largestError = std::max(largestError, error);
@@ -699,12 +699,12 @@ TEST(Corotational, Scramble)
 }
 
 // Back to where the body is in equilibrium, which is bent here, with its end turned by 90 degrees.
-TEST(Corotational, ScrambleOfABentBody)
+TEST(FiniteElements, ScrambleOfABentBody)
 {
   const LatticeBody lattice = MakeBlock({ 5, 5, 9 });
   const glm::dmat3 rotation = MakeRotation(1.5707963, { 1.0, 0.0, 0.0 });
   const glm::dvec3 center(0.02, 0.02, 0.08);
-  CorotationalRequest request = MakeConverged();
+  EquilibriumRequest request = MakeConverged();
   lattice.ForNodes(
     [&](const Place& place, std::int32_t node)
     {
@@ -715,9 +715,9 @@ TEST(Corotational, ScrambleOfABentBody)
           { node, rotation * (point - center) + center + glm::dvec3(0.0, -0.04, -0.032) - point });
       }
     });
-  CorotationalModel model;
+  FiniteElementModel model;
   model.SetBody(lattice.Body);
-  const CorotationalReport wanted = model.Solve(request);
+  const EquilibriumReport wanted = model.Solve(request);
   EXPECT_TRUE(wanted.IsConverged);
   EXPECT_EQ(wanted.NumberOfInvertedTetrahedra, 0);
   const std::vector<glm::dvec3> displacements = model.GetDisplacements();
@@ -727,7 +727,7 @@ TEST(Corotational, ScrambleOfABentBody)
     model.SetDisplacements(displacements);
     Scramble(lattice, seed, model);
     EXPECT_GT(CountInverted(model), 200);
-    const CorotationalReport report = model.Solve(request);
+    const EquilibriumReport report = model.Solve(request);
     EXPECT_TRUE(report.IsConverged);
     EXPECT_EQ(report.NumberOfInvertedTetrahedra, 0);
     EXPECT_NEAR(report.StrainEnergy, wanted.StrainEnergy, 1e-6 * wanted.StrainEnergy);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef DeformVolumeCorotationalProblem_h
-#define DeformVolumeCorotationalProblem_h
+#ifndef DeformVolumeEquilibriumProblem_h
+#define DeformVolumeEquilibriumProblem_h
 
 #include "BodyPieces.h"
-#include "CorotationalTypes.h"
 #include "ElasticBody.h"
+#include "EquilibriumTypes.h"
 
 #include <glm/vec3.hpp>
 
@@ -15,7 +15,7 @@ namespace deformvolume
 {
 
 /// What does not change during a call of Solve.
-struct CorotationalProblem
+struct EquilibriumProblem
 {
   /// Nodes of pieces that are held, but for those that are fixed or held by a handle.
   std::vector<unsigned char> IsFree;
@@ -27,13 +27,13 @@ struct CorotationalProblem
   std::vector<glm::dvec3> Loads;
   PieceSupports Supports;
   /// None of them 0.
-  CorotationalLimits Limits;
+  EquilibriumLimits Limits;
   bool IsInteractive = false;
 };
 
 /// volumes: of tetrahedra; masses: of nodes. Throws an Error where nothing holds the body, and
 /// where limits or loads make no sense.
-CorotationalProblem MakeProblem(const CorotationalRequest& request, const ElasticBody& body,
+EquilibriumProblem MakeProblem(const EquilibriumRequest& request, const ElasticBody& body,
   const BodyPieces& pieces, const std::vector<double>& volumes, std::vector<double> masses);
 
 /// Components of forces: the largest of those that are left on free nodes, and of those that are
@@ -45,7 +45,7 @@ struct Residuals
 };
 
 /// forces: what the strains exert on nodes.
-Residuals FindResiduals(const CorotationalProblem& problem, const std::vector<glm::dvec3>& forces);
+Residuals FindResiduals(const EquilibriumProblem& problem, const std::vector<glm::dvec3>& forces);
 
 /// The absolute value of the largest component.
 double LargestComponent(const glm::dvec3& vector);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "CorotationalProblem.h"
+#include "EquilibriumProblem.h"
 
 #include "Error.h"
 
@@ -15,9 +15,9 @@ namespace
 {
 
 // What is 0 in the limits of a request is chosen by the mode.
-CorotationalLimits ChooseLimits(const CorotationalRequest& request)
+EquilibriumLimits ChooseLimits(const EquilibriumRequest& request)
 {
-  CorotationalLimits limits = request.Limits;
+  EquilibriumLimits limits = request.Limits;
   const auto choose = [&](auto& value, auto interactive, auto converged)
   {
     if (!(value >= 0 && std::isfinite(static_cast<double>(value))))
@@ -26,7 +26,7 @@ CorotationalLimits ChooseLimits(const CorotationalRequest& request)
     }
     if (value == 0)
     {
-      value = request.Mode == CorotationalMode::Interactive ? interactive : converged;
+      value = request.Mode == EquilibriumMode::Interactive ? interactive : converged;
     }
   };
   choose(limits.NewtonSteps, 2, 200);
@@ -45,7 +45,7 @@ double LargestComponent(const glm::dvec3& vector)
   return std::max({ sizes.x, sizes.y, sizes.z });
 }
 
-CorotationalProblem MakeProblem(const CorotationalRequest& request, const ElasticBody& body,
+EquilibriumProblem MakeProblem(const EquilibriumRequest& request, const ElasticBody& body,
   const BodyPieces& pieces, const std::vector<double>& volumes, std::vector<double> masses)
 {
   CheckLoads(body, request.Loads);
@@ -59,9 +59,9 @@ CorotationalProblem MakeProblem(const CorotationalRequest& request, const Elasti
     isNotFree[static_cast<std::size_t>(held.Node)] = 1;
     targets[static_cast<std::size_t>(held.Node)] = held.Displacement;
   }
-  CorotationalProblem problem;
+  EquilibriumProblem problem;
   problem.Limits = ChooseLimits(request);
-  problem.IsInteractive = request.Mode == CorotationalMode::Interactive;
+  problem.IsInteractive = request.Mode == EquilibriumMode::Interactive;
   problem.Supports = FindSupports(body, pieces, isNotFree);
   const std::vector<bool>& isHeld = problem.Supports.IsHeld;
   if (std::count(isHeld.begin(), isHeld.end(), true) == 0)
@@ -115,7 +115,7 @@ CorotationalProblem MakeProblem(const CorotationalRequest& request, const Elasti
   return problem;
 }
 
-Residuals FindResiduals(const CorotationalProblem& problem, const std::vector<glm::dvec3>& forces)
+Residuals FindResiduals(const EquilibriumProblem& problem, const std::vector<glm::dvec3>& forces)
 {
   Residuals residuals;
   for (std::size_t node = 0; node < problem.IsFree.size(); ++node)

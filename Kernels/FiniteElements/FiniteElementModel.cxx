@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "CorotationalModel.h"
+#include "FiniteElementModel.h"
 
-#include "CorotationalSolver.h"
+#include "EquilibriumSolver.h"
 #include "IndexBounds.h"
 
 #include <algorithm>
@@ -10,10 +10,10 @@
 namespace deformvolume
 {
 
-class CorotationalModel::Internals
+class FiniteElementModel::Internals
 {
 public:
-  CorotationalSolver& GetSolver()
+  EquilibriumSolver& GetSolver()
   {
     if (!this->Solver)
     {
@@ -22,50 +22,50 @@ public:
     return *this->Solver;
   }
 
-  std::unique_ptr<CorotationalSolver> Solver;
+  std::unique_ptr<EquilibriumSolver> Solver;
 };
 
-CorotationalModel::CorotationalModel()
+FiniteElementModel::FiniteElementModel()
   : Impl(std::make_unique<Internals>())
 {
 }
 
-CorotationalModel::~CorotationalModel() = default;
+FiniteElementModel::~FiniteElementModel() = default;
 
-void CorotationalModel::SetBody(const ElasticBody& body, const std::function<bool()>& progress)
+void FiniteElementModel::SetBody(const ElasticBody& body, const std::function<bool()>& progress)
 {
   Watch watch(progress);
   watch.Ask();
   CheckBody(body, &watch);
-  this->Impl->Solver = std::make_unique<CorotationalSolver>(watch, body);
+  this->Impl->Solver = std::make_unique<EquilibriumSolver>(watch, body);
 }
 
-void CorotationalModel::SetMaterials(const std::vector<ElasticMaterial>& materials)
+void FiniteElementModel::SetMaterials(const std::vector<ElasticMaterial>& materials)
 {
-  CorotationalSolver& solver = this->Impl->GetSolver();
+  EquilibriumSolver& solver = this->Impl->GetSolver();
   CheckMaterials(solver.GetBody(), materials);
   solver.SetMaterials(materials);
 }
 
-CorotationalReport CorotationalModel::Solve(const CorotationalRequest& request)
+EquilibriumReport FiniteElementModel::Solve(const EquilibriumRequest& request)
 {
   return this->Impl->GetSolver().Solve(request);
 }
 
-void CorotationalModel::Reset()
+void FiniteElementModel::Reset()
 {
-  CorotationalSolver& solver = this->Impl->GetSolver();
+  EquilibriumSolver& solver = this->Impl->GetSolver();
   solver.SetDisplacements(std::vector<glm::dvec3>(solver.GetBody().Points.size(), glm::dvec3(0.0)));
 }
 
-const std::vector<glm::dvec3>& CorotationalModel::GetDisplacements() const
+const std::vector<glm::dvec3>& FiniteElementModel::GetDisplacements() const
 {
   return this->Impl->GetSolver().GetDisplacements();
 }
 
-void CorotationalModel::SetDisplacements(const std::vector<glm::dvec3>& displacements)
+void FiniteElementModel::SetDisplacements(const std::vector<glm::dvec3>& displacements)
 {
-  CorotationalSolver& solver = this->Impl->GetSolver();
+  EquilibriumSolver& solver = this->Impl->GetSolver();
   const std::size_t nodes = solver.GetBody().Points.size();
   if (displacements.size() != nodes)
   {
@@ -82,12 +82,12 @@ void CorotationalModel::SetDisplacements(const std::vector<glm::dvec3>& displace
   solver.SetDisplacements(displacements);
 }
 
-std::vector<glm::dvec3> CorotationalModel::GetForces() const
+std::vector<glm::dvec3> FiniteElementModel::GetForces() const
 {
   return this->Impl->GetSolver().GetForces();
 }
 
-std::vector<ElementResults> CorotationalModel::GetElementResults() const
+std::vector<ElementResults> FiniteElementModel::GetElementResults() const
 {
   return this->Impl->GetSolver().GetElementResults();
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the tests of corotational finite elements have in common.
-#ifndef CorotationalCase_h
-#define CorotationalCase_h
+#ifndef FiniteElementCase_h
+#define FiniteElementCase_h
 
-#include "CorotationalModel.h"
+#include "FiniteElementModel.h"
 #include "LatticeBody.h"
 
 #include <glm/common.hpp>
@@ -83,10 +83,10 @@ inline std::vector<glm::dvec3> MapPoints(
   return displacements;
 }
 
-inline deformvolume::CorotationalRequest MakeConverged()
+inline deformvolume::EquilibriumRequest MakeConverged()
 {
-  deformvolume::CorotationalRequest request;
-  request.Mode = deformvolume::CorotationalMode::Converged;
+  deformvolume::EquilibriumRequest request;
+  request.Mode = deformvolume::EquilibriumMode::Converged;
   return request;
 }
 

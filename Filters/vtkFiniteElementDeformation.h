@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @class   vtkCorotationalDeformation
+ * @class   vtkFiniteElementDeformation
  * @brief   deform an elastic body to equilibrium by corotational finite elements
  *
- * vtkCorotationalDeformation finds where the nodes of a mesh come to rest under what holds and
+ * vtkFiniteElementDeformation finds where the nodes of a mesh come to rest under what holds and
  * loads them: linear elasticity in a frame that turns with each tetrahedron, so that large
  * rotations are right. There is no inertia: what comes out depends on the handles and loads of now,
  * and on where the body was where there are several equilibria. It works on the processor, in
@@ -35,8 +35,8 @@
  *
  * @sa vtkElasticDeformation vtkMassSpringDeformation vtkDeformVolumeFilter
  */
-#ifndef vtkCorotationalDeformation_h
-#define vtkCorotationalDeformation_h
+#ifndef vtkFiniteElementDeformation_h
+#define vtkFiniteElementDeformation_h
 
 #include "vtkDeformVolumeModule.h" // for export macro
 #include "vtkElasticDeformation.h"
@@ -44,11 +44,11 @@
 #include <memory> // for std::unique_ptr
 #include <string> // for std::string
 
-class VTKDEFORMVOLUME_EXPORT vtkCorotationalDeformation : public vtkElasticDeformation
+class VTKDEFORMVOLUME_EXPORT vtkFiniteElementDeformation : public vtkElasticDeformation
 {
 public:
-  static vtkCorotationalDeformation* New();
-  vtkTypeMacro(vtkCorotationalDeformation, vtkElasticDeformation);
+  static vtkFiniteElementDeformation* New();
+  vtkTypeMacro(vtkFiniteElementDeformation, vtkElasticDeformation);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
@@ -92,8 +92,8 @@ public:
   std::string GetSummary() override;
 
 protected:
-  vtkCorotationalDeformation();
-  ~vtkCorotationalDeformation() override;
+  vtkFiniteElementDeformation();
+  ~vtkFiniteElementDeformation() override;
 
 #ifndef __VTK_WRAP__
   deformvolume::ElasticSimulation& PrepareSimulation() override;
@@ -104,8 +104,8 @@ protected:
 #endif
 
 private:
-  vtkCorotationalDeformation(const vtkCorotationalDeformation&) = delete;
-  void operator=(const vtkCorotationalDeformation&) = delete;
+  vtkFiniteElementDeformation(const vtkFiniteElementDeformation&) = delete;
+  void operator=(const vtkFiniteElementDeformation&) = delete;
 
   int Mode = CONVERGED;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "CorotationalSimulation.h"
+#include "FiniteElementSimulation.h"
 
 #include <new>
 #include <sstream>
@@ -7,7 +7,7 @@
 namespace deformvolume
 {
 
-void CorotationalSimulation::SetBody(
+void FiniteElementSimulation::SetBody(
   const ElasticBody& body, bool keepsState, const std::function<bool()>& progress)
 {
   if (keepsState)
@@ -18,11 +18,11 @@ void CorotationalSimulation::SetBody(
     return;
   }
   this->Model.SetBody(body, progress);
-  this->Report = CorotationalReport();
+  this->Report = EquilibriumReport();
   this->HasWarnedOfResidual = false;
 }
 
-void CorotationalSimulation::SplitNodes(
+void FiniteElementSimulation::SplitNodes(
   const ElasticBody& body, const std::vector<std::int32_t>& origins)
 {
   std::vector<glm::dvec3> displacements = this->Model.GetDisplacements();
@@ -34,28 +34,28 @@ void CorotationalSimulation::SplitNodes(
   this->Model.SetDisplacements(displacements);
 }
 
-void CorotationalSimulation::Return(const ElasticBody& body, const State& state)
+void FiniteElementSimulation::Return(const ElasticBody& body, const State& state)
 {
   this->Model.SetBody(body);
   this->Model.SetDisplacements(state.Displacements);
 }
 
-void CorotationalSimulation::Advance(const Frame& frame)
+void FiniteElementSimulation::Advance(const Frame& frame)
 {
   constexpr double someProgress = 0.5; // nobody knows how much there is to do
-  CorotationalRequest request;
+  EquilibriumRequest request;
   request.Held = frame.Held;
   request.Loads = frame.Loads;
   request.Mode = this->Mode;
   request.Progress = [&] { return frame.Progress(someProgress); };
-  const CorotationalReport last = this->Report;
+  const EquilibriumReport last = this->Report;
   this->Report = this->Model.Solve(request);
   this->Warn(last);
 }
 
-void CorotationalSimulation::Warn(const CorotationalReport& last)
+void FiniteElementSimulation::Warn(const EquilibriumReport& last)
 {
-  const CorotationalReport& now = this->Report;
+  const EquilibriumReport& now = this->Report;
   std::ostringstream text;
   if (now.NumberOfFrozenPieces != last.NumberOfFrozenPieces && now.NumberOfFrozenPieces > 0)
   {
@@ -70,7 +70,7 @@ void CorotationalSimulation::Warn(const CorotationalReport& last)
     text.str("");
   }
   // Live, what is left is less in each frame: once is enough.
-  const bool isLive = this->Mode == CorotationalMode::Interactive;
+  const bool isLive = this->Mode == EquilibriumMode::Interactive;
   if (!now.IsConverged && !(isLive && this->HasWarnedOfResidual))
   {
     text << "The body is not in equilibrium after " << now.NewtonSteps
@@ -91,7 +91,7 @@ void CorotationalSimulation::Warn(const CorotationalReport& last)
   }
 }
 
-vtkDataArray* CorotationalSimulation::WriteOutput(double factor)
+vtkDataArray* FiniteElementSimulation::WriteOutput(double factor)
 {
   constexpr int components = 3;
   const std::vector<glm::dvec3>& displacements = this->Model.GetDisplacements();
