@@ -69,12 +69,8 @@ BlockPattern MakeNodePattern(Watch& watch, const ElasticBody& body)
   const std::size_t nodes = body.Points.size();
   std::vector<std::size_t> starts(nodes + 1, 0);
   ForItems(watch, body.Tetrahedra.size(),
-    [&](std::size_t t)
-    {
-      for (const std::int32_t node : body.Tetrahedra[t])
-      {
-        ++starts[static_cast<std::size_t>(node) + 1];
-      }
+    [&](std::size_t t) {
+      body.ForNodes(t, [&](std::int32_t node) { ++starts[static_cast<std::size_t>(node) + 1]; });
     });
   for (std::size_t node = 0; node < nodes; ++node)
   {
@@ -85,10 +81,9 @@ BlockPattern MakeNodePattern(Watch& watch, const ElasticBody& body)
   ForItems(watch, body.Tetrahedra.size(),
     [&](std::size_t t)
     {
-      for (const std::int32_t node : body.Tetrahedra[t])
-      {
-        tetrahedra[next[static_cast<std::size_t>(node)]++] = static_cast<std::int32_t>(t);
-      }
+      body.ForNodes(t,
+        [&](std::int32_t node)
+        { tetrahedra[next[static_cast<std::size_t>(node)]++] = static_cast<std::int32_t>(t); });
     });
 
   BlockPattern pattern;
@@ -101,8 +96,8 @@ BlockPattern MakeNodePattern(Watch& watch, const ElasticBody& body)
       columns.assign(1, static_cast<std::int32_t>(node));
       for (std::size_t i = starts[node]; i < starts[node + 1]; ++i)
       {
-        const Tetrahedron& tetrahedron = body.Tetrahedra[static_cast<std::size_t>(tetrahedra[i])];
-        columns.insert(columns.end(), tetrahedron.begin(), tetrahedron.end());
+        body.ForNodes(static_cast<std::size_t>(tetrahedra[i]),
+          [&](std::int32_t other) { columns.push_back(other); });
       }
       std::sort(columns.begin(), columns.end());
       columns.erase(std::unique(columns.begin(), columns.end()), columns.end());

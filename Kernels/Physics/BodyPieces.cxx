@@ -26,17 +26,18 @@ void FindNodes(const ElasticBody& body, BodyPieces& pieces)
   pieces.PieceOfNode.assign(body.Points.size(), -1);
   for (std::size_t t = 0; t < body.Tetrahedra.size(); ++t)
   {
-    for (const std::int32_t node : body.Tetrahedra[t])
-    {
-      const std::int32_t here = pieces.PieceOfTetrahedron[t];
-      std::int32_t& piece = pieces.PieceOfNode[static_cast<std::size_t>(node)];
-      if (piece >= 0 && piece != here)
+    const std::int32_t here = pieces.PieceOfTetrahedron[t];
+    body.ForNodes(t,
+      [&](std::int32_t node)
       {
-        pieces.SharedNodes.emplace_back(node, piece);
-        pieces.SharedNodes.emplace_back(node, here);
-      }
-      piece = piece < 0 ? here : std::min(piece, here);
-    }
+        std::int32_t& piece = pieces.PieceOfNode[static_cast<std::size_t>(node)];
+        if (piece >= 0 && piece != here)
+        {
+          pieces.SharedNodes.emplace_back(node, piece);
+          pieces.SharedNodes.emplace_back(node, here);
+        }
+        piece = piece < 0 ? here : std::min(piece, here);
+      });
   }
   std::vector<std::pair<std::int32_t, std::int32_t>>& shared = pieces.SharedNodes;
   std::sort(shared.begin(), shared.end());
@@ -242,17 +243,17 @@ void MoveFollowing(const ElasticBody& body, const BodyPieces& pieces,
     const auto piece = static_cast<std::size_t>(follower.Piece);
     for (std::size_t i = pieces.Begins[piece]; i < pieces.Begins[piece + 1]; ++i)
     {
-      for (const std::int32_t corner :
-        body.Tetrahedra[static_cast<std::size_t>(pieces.Tetrahedra[i])])
-      {
-        const auto node = static_cast<std::size_t>(corner);
-        if (isPlaced[node] == 0)
+      body.ForNodes(static_cast<std::size_t>(pieces.Tetrahedra[i]),
+        [&](std::int32_t number)
         {
-          isPlaced[node] = 1;
-          displacements[node] =
-            moved + TurnBetween(from, to, body.Points[node] - origin) - body.Points[node];
-        }
-      }
+          const auto node = static_cast<std::size_t>(number);
+          if (isPlaced[node] == 0)
+          {
+            isPlaced[node] = 1;
+            displacements[node] =
+              moved + TurnBetween(from, to, body.Points[node] - origin) - body.Points[node];
+          }
+        });
     }
   }
 }

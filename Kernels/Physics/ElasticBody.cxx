@@ -3,6 +3,7 @@
 
 #include "Error.h"
 #include "IndexBounds.h"
+#include "QuadraticTetrahedron.h"
 #include "Watch.h"
 
 #include <glm/common.hpp>
@@ -48,21 +49,43 @@ void CheckNodes(Watch& watch, const ElasticBody& body)
   ForItems(watch, body.Tetrahedra.size(),
     [&](std::size_t t)
     {
-      for (const std::int32_t node : body.Tetrahedra[t])
-      {
-        if (node < 0 || static_cast<std::size_t>(node) >= body.Points.size())
+      body.ForNodes(t,
+        [&](std::int32_t node)
         {
-          throw Error("Tetrahedron " + std::to_string(t) + " has the node " + std::to_string(node) +
-            ", but the mesh has " + std::to_string(body.Points.size()) + " nodes.");
-        }
-      }
+          if (node < 0 || static_cast<std::size_t>(node) >= body.Points.size())
+          {
+            throw Error("Tetrahedron " + std::to_string(t) + " has the node " +
+              std::to_string(node) + ", but the mesh has " + std::to_string(body.Points.size()) +
+              " nodes.");
+          }
+        });
     });
 }
 
+// How many tetrahedra there are of a kind, and the first of them.
+struct Counted
+{
+  std::size_t Number = 0;
+  std::size_t First = 0;
+
+  void Add(std::size_t tetrahedron)
+  {
+    this->First = this->Number == 0 ? tetrahedron : this->First;
+    ++this->Number;
+  }
+  // Such as "3 of 20 tetrahedra of the rest mesh are flat, the first one being number 7. ".
+  void Throw(const ElasticBody& body, const std::string& what, const std::string& advice) const
+  {
+    throw Error(std::to_string(this->Number) + " of " + std::to_string(body.Tetrahedra.size()) +
+      " tetrahedra of the rest mesh " + what + ", the first one being number " +
+      std::to_string(this->First) + ". " + advice);
+  }
+};
+
 void CheckShapes(Watch& watch, const ElasticBody& body)
 {
-  std::size_t inverted = 0;
-  std::size_t firstInverted = 0;
+  Counted inverted;
+  Counted flat;
   ForItems(watch, body.Tetrahedra.size(),
     [&](std::size_t t)
     {
@@ -76,22 +99,73 @@ void CheckShapes(Watch& watch, const ElasticBody& body)
       }
       if (!(std::abs(determinant) > LeastHeight * longest * longest * longest))
       {
-        throw Error("Tetrahedron " + std::to_string(t) +
-          " of the rest mesh is flat. Remove such cells, or make a better mesh.");
+        flat.Add(t);
       }
-      if (determinant < 0.0)
+      else if (determinant < 0.0)
       {
-        firstInverted = inverted == 0 ? t : firstInverted;
-        ++inverted;
+        inverted.Add(t);
       }
     });
-  if (inverted > 0 && inverted < body.Tetrahedra.size())
+  if (flat.Number > 0)
   {
-    throw Error(std::to_string(inverted) + " of " + std::to_string(body.Tetrahedra.size()) +
-      " tetrahedra of the rest mesh are inside out, the first one being number " +
-      std::to_string(firstInverted) +
-      ". If only the order of their nodes is wrong, exchange two nodes of each of them; "
-      "otherwise make a better mesh.");
+    flat.Throw(body, "are flat", "Remove such cells, or make a better mesh.");
+  }
+  if (inverted.Number > 0 && inverted.Number < body.Tetrahedra.size())
+  {
+    inverted.Throw(body, "are inside out",
+      "If only the order of their nodes is wrong, exchange two nodes of each of them; otherwise "
+      "make a better mesh.");
+  }
+}
+
+// Whether a tetrahedron with these nodes overlaps itself: somewhere it has no volume, or one of the
+// other sign.
+bool IsFolded(const std::array<glm::dvec3, QuadraticTetrahedron::NumberOfNodes>& points)
+{
+  // The determinant of straight edges is the same everywhere.
+  constexpr double leastPart = 1e-3;
+  const double corners = glm::determinant(
+    glm::dmat3(points[1] - points[0], points[2] - points[0], points[3] - points[0]));
+  const auto isBad = [&](const glm::dvec4& place)
+  {
+    return !(
+      glm::determinant(QuadraticTetrahedron::GetJacobian(points, place)) / corners > leastPart);
+  };
+  for (std::size_t i = 0; i < 4; ++i)
+  {
+    glm::dvec4 corner(0.0);
+    corner[static_cast<int>(i)] = 1.0;
+    if (isBad(corner) || isBad(QuadraticTetrahedron::GetGaussPoint(i)))
+    {
+      return true;
+    }
+  }
+  return std::any_of(std::begin(TetrahedronEdges), std::end(TetrahedronEdges),
+    [&](const std::size_t(&ends)[2])
+    {
+      glm::dvec4 middle(0.0);
+      middle[static_cast<int>(ends[0])] = 0.5;
+      middle[static_cast<int>(ends[1])] = 0.5;
+      return isBad(middle);
+    });
+}
+
+void CheckMidSides(Watch& watch, const ElasticBody& body)
+{
+  Counted folded;
+  ForItems(watch, body.MidSides.size(),
+    [&](std::size_t t)
+    {
+      if (IsFolded(QuadraticTetrahedron::GetPoints(body, t)))
+      {
+        folded.Add(t);
+      }
+    });
+  if (folded.Number > 0)
+  {
+    folded.Throw(body, "overlap themselves, as mid-side nodes are misplaced",
+      "Each must lie near the middle of its edge, and the order of nodes must be that of "
+      "vtkQuadraticTetra.");
   }
 }
 
@@ -101,6 +175,32 @@ void CheckLength(std::size_t length, std::size_t wanted, const std::string& what
   {
     throw Error("There are " + std::to_string(length) + " " + what + ", but " +
       std::to_string(wanted) + " are needed.");
+  }
+}
+
+void CheckSliding(const ElasticBody& body)
+{
+  std::size_t contradictory = 0;
+  std::size_t first = 0;
+  for (std::size_t node = 0; node < body.SlidingNormals.size(); ++node)
+  {
+    const glm::dvec3& normal = body.SlidingNormals[node];
+    if (!IsFinite(normal))
+    {
+      throw Error("The sliding normal of node " + std::to_string(node) + " is not finite.");
+    }
+    if (normal != glm::dvec3(0.0) && body.IsFixed(node))
+    {
+      first = contradictory == 0 ? node : first;
+      ++contradictory;
+    }
+  }
+  if (contradictory > 0)
+  {
+    throw Error(std::to_string(contradictory) +
+      " nodes have contradictory conditions: they are fixed, and have a sliding normal. The first "
+      "of them is node " +
+      std::to_string(first) + ". Set one of the two to 0.");
   }
 }
 
@@ -118,9 +218,19 @@ void CheckBody(const ElasticBody& body, Watch* watch)
   {
     CheckLength(body.Fixed.size(), body.Points.size(), "marks of fixed nodes");
   }
+  if (!body.MidSides.empty())
+  {
+    CheckLength(body.MidSides.size(), body.Tetrahedra.size(), "tetrahedra with mid-side nodes");
+  }
+  if (!body.SlidingNormals.empty())
+  {
+    CheckLength(body.SlidingNormals.size(), body.Points.size(), "normals of sliding nodes");
+  }
   CheckPoints(body);
   CheckNodes(asked, body);
   CheckShapes(asked, body);
+  CheckMidSides(asked, body);
+  CheckSliding(body);
   CheckMaterials(body, body.Materials);
 }
 
@@ -164,17 +274,22 @@ void CheckLoads(const ElasticBody& body, const BodyLoads& loads)
   {
     throw Error("The gravity is not finite.");
   }
-  if (loads.Forces.empty())
+  const auto check = [&](const std::vector<glm::dvec3>& vectors, const char* all, const char* one)
   {
-    return;
-  }
-  CheckLength(loads.Forces.size(), body.Points.size(), "forces on nodes");
-  const auto bad = std::find_if_not(loads.Forces.begin(), loads.Forces.end(), IsFinite);
-  if (bad != loads.Forces.end())
-  {
-    throw Error(
-      "The force on node " + std::to_string(bad - loads.Forces.begin()) + " is not finite.");
-  }
+    if (vectors.empty())
+    {
+      return;
+    }
+    CheckLength(vectors.size(), body.Points.size(), all);
+    const auto bad = std::find_if_not(vectors.begin(), vectors.end(), IsFinite);
+    if (bad != vectors.end())
+    {
+      throw Error(std::string("The ") + one + " node " + std::to_string(bad - vectors.begin()) +
+        " is not finite.");
+    }
+  };
+  check(loads.Forces, "forces on nodes", "force on");
+  check(loads.FixedDisplacements, "displacements of fixed nodes", "prescribed displacement of");
 }
 
 void CheckHeldNodes(const ElasticBody& body, const std::vector<HeldNode>& held)

@@ -3,6 +3,7 @@
 #define DeformVolumeElasticBody_h
 
 #include "DeformVolumeExport.h"
+#include "MidSideNodes.h"
 #include "Tetrahedron.h"
 
 #include <glm/vec3.hpp>
@@ -42,24 +43,47 @@ struct ElasticMaterial
   ///@}
 };
 
-/// A mesh of linear tetrahedra at rest, with what the physical models need to know of it.
+/// A mesh of tetrahedra at rest, with what the physical models need to know of it.
 struct ElasticBody
 {
   /// In metres.
   std::vector<glm::dvec3> Points;
-  /// All with the fourth node on the side to which the normal of the first three points, or all on
-  /// the other side.
+  /// The corners of tetrahedra. All with the fourth node on the side to which the normal of the
+  /// first three points, or all on the other side.
   std::vector<Tetrahedron> Tetrahedra;
+  /// Of each tetrahedron the nodes in the middle of its edges (AddMidSideNodes); empty: the
+  /// tetrahedra are linear.
+  std::vector<MidSideNodes> MidSides;
   /// One for the whole body, or one a tetrahedron.
   std::vector<ElasticMaterial> Materials = std::vector<ElasticMaterial>(1);
-  /// One byte a node, not 0 where it is held at rest; empty: no node is.
+  /// One byte a node, not 0 where it is held, at rest or where BodyLoads say; empty: no node is.
   std::vector<unsigned char> Fixed;
+  /// Of each node the normal, of any length, of the plane in which it slides without friction: the
+  /// one that it lies in at rest. 0: it does not slide; empty: no node does.
+  std::vector<glm::dvec3> SlidingNormals;
 
   const ElasticMaterial& GetMaterial(std::size_t tetrahedron) const
   {
     return this->Materials[this->Materials.size() == 1 ? 0 : tetrahedron];
   }
   bool IsFixed(std::size_t node) const { return !this->Fixed.empty() && this->Fixed[node] != 0; }
+
+  /// Calls take(node) for all nodes of a tetrahedron, first the corners.
+  template <typename Take>
+  void ForNodes(std::size_t tetrahedron, Take&& take) const
+  {
+    for (const std::int32_t node : this->Tetrahedra[tetrahedron])
+    {
+      take(node);
+    }
+    if (!this->MidSides.empty())
+    {
+      for (const std::int32_t node : this->MidSides[tetrahedron])
+      {
+        take(node);
+      }
+    }
+  }
 };
 
 /// A node that is moved by a handle.
@@ -77,11 +101,14 @@ struct BodyLoads
   glm::dvec3 Gravity{ 0.0 };
   /// Of each node, in N; empty: none.
   std::vector<glm::dvec3> Forces;
+  /// Where fixed nodes are displaced to, of each node, in metres; empty: they stay at rest.
+  std::vector<glm::dvec3> FixedDisplacements;
 };
 
 /// Throws an Error where a body cannot be simulated: no tetrahedra, nodes that are not there,
-/// coordinates that are not finite, tetrahedra that are flat or turned inside out, a material out
-/// of its range, or arrays of another length. watch: of the engine; asked now and then.
+/// coordinates that are not finite, tetrahedra that are flat or turned inside out, mid-side nodes
+/// so far from the middle of their edge that the tetrahedron overlaps itself, a material out of its
+/// range, or arrays of another length. watch: of the engine; asked now and then.
 DEFORMVOLUME_EXPORT void CheckBody(const ElasticBody& body, Watch* watch = nullptr);
 
 /// Throws an Error where a number of a material is out of its range; where: of which, in words.
@@ -98,10 +125,12 @@ DEFORMVOLUME_EXPORT void CheckLoads(const ElasticBody& body, const BodyLoads& lo
 /// not finite.
 DEFORMVOLUME_EXPORT void CheckHeldNodes(const ElasticBody& body, const std::vector<HeldNode>& held);
 
-/// Volumes of the tetrahedra, in m^3, all of them greater than 0 whichever way the nodes go round.
+/// Volumes of linear tetrahedra with these corners, in m^3, all of them greater than 0 whichever
+/// way the nodes go round.
 DEFORMVOLUME_EXPORT std::vector<double> GetVolumes(const ElasticBody& body);
 
-/// Mass of each node, in kg: a quarter of that of each of its tetrahedra. 0 for a node without any.
+/// Mass of each node of linear tetrahedra, in kg: a quarter of that of each of its tetrahedra. 0
+/// for a node without any.
 DEFORMVOLUME_EXPORT std::vector<double> GetNodeMasses(
   const ElasticBody& body, const std::vector<double>& volumes);
 

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MidSideNodes.h"
+
+#include "ElasticBody.h"
+#include "Error.h"
+
+#include <algorithm>
+#include <string>
+#include <unordered_map>
+#include <utility>
+
+namespace deformvolume
+{
+namespace
+{
+
+// Numbers an edge by its ends, the lower one first.
+std::uint64_t GetKey(const Tetrahedron& corners, std::size_t edge)
+{
+  const auto [least, most] =
+    std::minmax(corners[TetrahedronEdges[edge][0]], corners[TetrahedronEdges[edge][1]]);
+  return static_cast<std::uint64_t>(least) << 32 | static_cast<std::uint64_t>(most);
+}
+
+struct Edge
+{
+  std::uint64_t Key;
+  std::int32_t Node;
+};
+
+// Calls take(tetrahedron, edge) for all edges of all tetrahedra.
+template <typename Take>
+void ForEdges(std::size_t tetrahedra, Take&& take)
+{
+  for (std::size_t t = 0; t < tetrahedra; ++t)
+  {
+    for (std::size_t edge = 0; edge < 6; ++edge)
+    {
+      take(t, edge);
+    }
+  }
+}
+
+// Each edge once, by rising keys, with the node in its middle; -1: none.
+std::vector<Edge> FindEdges(const ElasticBody& body)
+{
+  std::vector<Edge> edges;
+  edges.reserve(6 * body.Tetrahedra.size());
+  ForEdges(body.Tetrahedra.size(),
+    [&](std::size_t t, std::size_t edge) {
+      edges.push_back({ GetKey(body.Tetrahedra[t], edge), body.MidSides[t][edge] });
+    });
+  std::sort(edges.begin(), edges.end(),
+    [](const Edge& a, const Edge& b) { return a.Key != b.Key ? a.Key < b.Key : a.Node > b.Node; });
+  std::size_t withTwo = 0;
+  std::uint64_t first = 0;
+  for (std::size_t i = 1; i < edges.size(); ++i)
+  {
+    if (edges[i].Key == edges[i - 1].Key && edges[i].Node != edges[i - 1].Node &&
+      edges[i].Node >= 0)
+    {
+      first = withTwo == 0 ? edges[i].Key : first;
+      ++withTwo;
+    }
+  }
+  if (withTwo > 0)
+  {
+    throw Error(std::to_string(withTwo) +
+      " edges of the rest mesh have different nodes in their middle in different tetrahedra, the "
+      "first one being that between the nodes " +
+      std::to_string(first >> 32) + " and " + std::to_string(first & 0xffffffffu) +
+      ". Merge the mid-side nodes of each edge.");
+  }
+  edges.erase(std::unique(edges.begin(), edges.end(),
+                [](const Edge& a, const Edge& b) { return a.Key == b.Key; }),
+    edges.end());
+  return edges;
+}
+
+} // namespace
+
+std::vector<std::array<std::int32_t, 2>> AddMidSideNodes(ElasticBody& body)
+{
+  body.MidSides.resize(body.Tetrahedra.size(), { { -1, -1, -1, -1, -1, -1 } });
+  std::vector<Edge> edges = FindEdges(body);
+  std::vector<std::array<std::int32_t, 2>> ends;
+  for (Edge& edge : edges)
+  {
+    if (edge.Node >= 0)
+    {
+      continue;
+    }
+    const auto a = static_cast<std::size_t>(edge.Key >> 32);
+    const auto b = static_cast<std::size_t>(edge.Key & 0xffffffffu);
+    edge.Node = static_cast<std::int32_t>(body.Points.size());
+    body.Points.push_back(0.5 * (body.Points[a] + body.Points[b]));
+    if (!body.Fixed.empty())
+    {
+      body.Fixed.push_back(body.Fixed[a] != 0 && body.Fixed[b] != 0 ? 1 : 0);
+    }
+    ends.push_back({ { static_cast<std::int32_t>(a), static_cast<std::int32_t>(b) } });
+  }
+  ForEdges(body.Tetrahedra.size(),
+    [&](std::size_t t, std::size_t edge)
+    {
+      body.MidSides[t][edge] = std::lower_bound(edges.begin(), edges.end(),
+        GetKey(body.Tetrahedra[t], edge),
+        [](const Edge& a, std::uint64_t key)
+        { return a.Key < key; })->Node;
+    });
+  return ends;
+}
+
+std::vector<std::int32_t> SplitMidSides(const std::vector<Tetrahedron>& tetrahedra,
+  std::int32_t numberOfNodes, std::vector<MidSideNodes>& midSides)
+{
+  std::vector<std::int32_t> origins;
+  std::unordered_map<std::uint64_t, std::int32_t> nodeOfEdge;
+  nodeOfEdge.reserve(2 * tetrahedra.size());
+  std::vector<bool> isTaken(static_cast<std::size_t>(numberOfNodes), false);
+  ForEdges(tetrahedra.size(),
+    [&](std::size_t t, std::size_t edge)
+    {
+      std::int32_t& node = midSides[t][edge];
+      const auto [found, isNew] = nodeOfEdge.try_emplace(GetKey(tetrahedra[t], edge), node);
+      if (isNew && isTaken[static_cast<std::size_t>(node)])
+      {
+        found->second = numberOfNodes + static_cast<std::int32_t>(origins.size());
+        origins.push_back(node);
+      }
+      isTaken[static_cast<std::size_t>(node)] = true;
+      node = found->second;
+    });
+  return origins;
+}
+
+} // namespace deformvolume

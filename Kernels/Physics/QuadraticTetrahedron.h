@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The shape of a tetrahedron with ten nodes, and how it is integrated: four Gauss points.
+#ifndef DeformVolumeQuadraticTetrahedron_h
+#define DeformVolumeQuadraticTetrahedron_h
+
+#include "ElasticBody.h"
+#include "MidSideNodes.h"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace deformvolume
+{
+
+/// The quadratic tetrahedron of ten nodes: first the corners, then the nodes in the middle of the
+/// edges, in the order of TetrahedronEdges. Places in it are barycentric coordinates: how much of
+/// each corner there is.
+struct QuadraticTetrahedron
+{
+  static constexpr std::size_t NumberOfNodes = 10;
+  static constexpr std::size_t NumberOfGaussPoints = 4;
+
+  /// The coordinates of Gauss point i: NearCoordinate of corner i, FarCoordinate of the others. It
+  /// has a quarter of the volume.
+  static constexpr double NearCoordinate = 0.58541019662496845446; // (5 + 3 sqrt 5) / 20
+  static constexpr double FarCoordinate = 0.13819660112501051518;  // (5 - sqrt 5) / 20
+  static glm::dvec4 GetGaussPoint(std::size_t i)
+  {
+    glm::dvec4 place(FarCoordinate);
+    place[static_cast<int>(i)] = NearCoordinate;
+    return place;
+  }
+
+  static std::array<glm::dvec3, NumberOfNodes> GetPoints(
+    const ElasticBody& body, std::size_t tetrahedron)
+  {
+    std::array<glm::dvec3, NumberOfNodes> points;
+    std::size_t i = 0;
+    body.ForNodes(tetrahedron,
+      [&](std::int32_t node) { points[i++] = body.Points[static_cast<std::size_t>(node)]; });
+    return points;
+  }
+
+  /// How the place of a point changes with the coordinates of the corners 1, 2 and 3, where that of
+  /// corner 0 is what is left: three columns. Its determinant is six times the volume where no edge
+  /// is curved.
+  static glm::dmat3 GetJacobian(
+    const std::array<glm::dvec3, NumberOfNodes>& points, const glm::dvec4& place)
+  {
+    std::array<glm::dvec3, 4> slopes; // by each of the four coordinates
+    for (std::size_t i = 0; i < 4; ++i)
+    {
+      slopes[i] = (4.0 * place[static_cast<int>(i)] - 1.0) * points[i];
+    }
+    for (std::size_t edge = 0; edge < 6; ++edge)
+    {
+      const std::size_t a = TetrahedronEdges[edge][0];
+      const std::size_t b = TetrahedronEdges[edge][1];
+      slopes[a] += 4.0 * place[static_cast<int>(b)] * points[4 + edge];
+      slopes[b] += 4.0 * place[static_cast<int>(a)] * points[4 + edge];
+    }
+    return { slopes[1] - slopes[0], slopes[2] - slopes[0], slopes[3] - slopes[0] };
+  }
+
+  /// The volume of each Gauss point, in m^3.
+  static std::array<double, NumberOfGaussPoints> GetGaussVolumes(
+    const ElasticBody& body, std::size_t tetrahedron)
+  {
+    constexpr double ofDeterminant = 1.0 / 24.0;
+    const std::array<glm::dvec3, NumberOfNodes> points = GetPoints(body, tetrahedron);
+    std::array<double, NumberOfGaussPoints> volumes;
+    for (std::size_t i = 0; i < NumberOfGaussPoints; ++i)
+    {
+      volumes[i] =
+        ofDeterminant * std::abs(glm::determinant(GetJacobian(points, GetGaussPoint(i))));
+    }
+    return volumes;
+  }
+
+  /// What part each node bears of a force that acts on the volume of Gauss point i.
+  static std::array<double, NumberOfNodes> GetShares(std::size_t i)
+  {
+    const glm::dvec4 place = GetGaussPoint(i);
+    std::array<double, NumberOfNodes> shares;
+    for (std::size_t a = 0; a < 4; ++a)
+    {
+      const double coordinate = place[static_cast<int>(a)];
+      shares[a] = coordinate * (2.0 * coordinate - 1.0);
+    }
+    for (std::size_t edge = 0; edge < 6; ++edge)
+    {
+      shares[4 + edge] = 4.0 * place[static_cast<int>(TetrahedronEdges[edge][0])] *
+        place[static_cast<int>(TetrahedronEdges[edge][1])];
+    }
+    return shares;
+  }
+};
+
+} // namespace deformvolume
+
+#endif
