@@ -231,6 +231,7 @@ void vtkElasticDeformation::Execute(
   settings.Material = { this->YoungModulus, this->PoissonRatio, this->Density };
   settings.UnitLength = this->LengthUnit == MILLIMETRE ? 1e-3 : 1.0;
   ElasticSimulation& simulation = this->PrepareSimulation();
+  settings.IsQuadratic = simulation.IsQuadratic();
   deformvolume::ProgressReport progress(this);
   if (session.Update(simulation, grid, settings, [&] { return progress.Tell(0.0); }))
   {
@@ -295,6 +296,7 @@ void vtkElasticDeformation::Advance(ElasticSimulation& simulation, vtkPointSet* 
     handles, this->HandleRadius, session.GetMesh(), session.GetSettings());
   frame.Loads.Gravity = { this->Gravity[0], this->Gravity[1], this->Gravity[2] };
   frame.Loads.Forces = session.GetMesh().Forces;
+  frame.Loads.FixedDisplacements = session.GetMesh().PrescribedDisplacements;
 
   double end = session.Time;
   if (internals.IsToReset)

@@ -153,7 +153,7 @@ void vtkMaterialFromVolume::Execute(
     array, image->GetNumberOfPoints(), table.Ranges, this->DefaultMaterial, table.Exists);
   volume.Ghosts = deformvolume::FindPointGhosts(image);
 
-  const deformvolume::GridTetrahedra read = deformvolume::ReadTetrahedra(mesh);
+  const deformvolume::GridTetrahedra read = deformvolume::ReadTetrahedra(mesh, true);
   const std::vector<glm::dvec3> points = mesh->GetNumberOfPoints() > 0
     ? deformvolume::ReadPoints({ mesh }, "mesh on input port 0", read.Tetrahedra)
     : std::vector<glm::dvec3>();

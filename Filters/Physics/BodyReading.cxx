@@ -19,9 +19,12 @@
 #include "vtkSmartPointer.h"
 #include "vtkUnstructuredGrid.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <string>
@@ -32,8 +35,6 @@ namespace deformvolume
 namespace
 {
 
-constexpr const char* FIXED = "Fixed";
-constexpr const char* FORCE = "Force";
 constexpr const char* MESH = "rest mesh on input port 0";
 
 vtkDataArray* FindMeshArray(
@@ -96,15 +97,197 @@ void FindUsed(BodyMesh& mesh)
 {
   mesh.IsUsed.assign(mesh.Body.Points.size(), 0);
   IndexBounds box;
-  for (const Tetrahedron& tetrahedron : mesh.Body.Tetrahedra)
+  for (std::size_t t = 0; t < mesh.Body.Tetrahedra.size(); ++t)
+  {
+    mesh.Body.ForNodes(t,
+      [&](std::int32_t node)
+      {
+        mesh.IsUsed[static_cast<std::size_t>(node)] = 1;
+        box.Add(mesh.Body.Points[static_cast<std::size_t>(node)]);
+      });
+  }
+  mesh.Size = glm::distance(box.Min, box.Max);
+}
+
+void ReadPointArrays(vtkUnstructuredGrid* grid, const BodySettings& settings, BodyMesh& mesh)
+{
+  const vtkIdType points = grid->GetNumberOfPoints();
+  vtkDataArray* fixed = FindMeshArray(grid->GetPointData(), FixedName, 1, points);
+  if (fixed)
+  {
+    mesh.Body.Fixed.resize(mesh.Body.Points.size());
+    for (vtkIdType i = 0; i < points; ++i)
+    {
+      mesh.Body.Fixed[static_cast<std::size_t>(i)] = fixed->GetComponent(i, 0) != 0.0 ? 1 : 0;
+    }
+  }
+  const auto read = [&](const char* name, double factor)
+  {
+    vtkDataArray* array = FindMeshArray(grid->GetPointData(), name, 3, points);
+    return array ? ReadAll(array, factor, name) : std::vector<glm::dvec3>();
+  };
+  mesh.Forces = read(ForceName, 1.0);
+  mesh.Body.SlidingNormals = read(SlidingNormalName, 1.0);
+  mesh.PrescribedDisplacements = read(PrescribedDisplacementName, settings.UnitLength);
+  if (!mesh.PrescribedDisplacements.empty() && !fixed)
+  {
+    throw Error(std::string("The ") + MESH + " has the point array \"" +
+      PrescribedDisplacementName + "\", but none named \"" + FixedName +
+      "\", without which no node is displaced. Add it, not 0 where nodes have displacements.");
+  }
+}
+
+// How many nodes there are of a kind, and the first of them.
+struct CountedNodes
+{
+  std::size_t Number = 0;
+  std::size_t First = 0;
+
+  void Add(std::size_t node)
+  {
+    this->First = this->Number == 0 ? node : this->First;
+    ++this->Number;
+  }
+  // Such as "3 nodes of the rest mesh slide, the first one being number 7. ".
+  void ThrowIfAny(const std::string& what, const std::string& advice) const
+  {
+    if (this->Number > 0)
+    {
+      throw Error(std::to_string(this->Number) + " nodes of the " + MESH + " " + what +
+        ", the first one being number " + std::to_string(this->First) + ". " + advice);
+    }
+  }
+};
+
+// Springs can neither displace fixed nodes nor have nodes slide.
+void CheckForSprings(const BodyMesh& mesh)
+{
+  CountedNodes displaced;
+  CountedNodes sliding;
+  for (std::size_t node = 0; node < mesh.Body.Points.size(); ++node)
+  {
+    const auto has = [&](const std::vector<glm::dvec3>& vectors)
+    { return !vectors.empty() && vectors[node] != glm::dvec3(0.0) && mesh.IsUsed[node] != 0; };
+    if (has(mesh.PrescribedDisplacements) && mesh.Body.IsFixed(node))
+    {
+      displaced.Add(node);
+    }
+    if (has(mesh.Body.SlidingNormals))
+    {
+      sliding.Add(node);
+    }
+  }
+  const auto getAdvice = [](const char* name)
+  {
+    return std::string("Springs cannot do that: use vtkFiniteElementDeformation, or remove the "
+                       "point array \"") +
+      name + "\".";
+  };
+  displaced.ThrowIfAny(
+    "are fixed and have a prescribed displacement", getAdvice(PrescribedDisplacementName));
+  sliding.ThrowIfAny("have a sliding normal", getAdvice(SlidingNormalName));
+}
+
+// Each mid-side node of the cells is in the middle of one edge, and no corner.
+void CheckMidSides(const ElasticBody& body)
+{
+  constexpr std::uint64_t none = ~std::uint64_t{ 0 };
+  constexpr std::uint64_t corner = none - 1;
+  std::vector<std::uint64_t> uses(body.Points.size(), none);
+  for (const Tetrahedron& tetrahedron : body.Tetrahedra)
   {
     for (const std::int32_t node : tetrahedron)
     {
-      mesh.IsUsed[static_cast<std::size_t>(node)] = 1;
-      box.Add(mesh.Body.Points[static_cast<std::size_t>(node)]);
+      uses[static_cast<std::size_t>(node)] = corner;
     }
   }
-  mesh.Size = glm::distance(box.Min, box.Max);
+  std::vector<unsigned char> isBad(body.Points.size(), 0);
+  for (std::size_t t = 0; t < body.Tetrahedra.size(); ++t)
+  {
+    for (std::size_t edge = 0; edge < std::size(TetrahedronEdges); ++edge)
+    {
+      if (body.MidSides[t][edge] >= 0)
+      {
+        const auto node = static_cast<std::size_t>(body.MidSides[t][edge]);
+        const auto [low, high] = std::minmax(body.Tetrahedra[t][TetrahedronEdges[edge][0]],
+          body.Tetrahedra[t][TetrahedronEdges[edge][1]]);
+        const std::uint64_t use =
+          static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint64_t>(high);
+        isBad[node] |= uses[node] != none && uses[node] != use ? 1 : 0;
+        uses[node] = uses[node] == none ? use : uses[node];
+      }
+    }
+  }
+  CountedNodes bad;
+  for (std::size_t node = 0; node < isBad.size(); ++node)
+  {
+    if (isBad[node] != 0)
+    {
+      bad.Add(node);
+    }
+  }
+  bad.ThrowIfAny("are in the middle of an edge, and also a corner or in the middle of another edge",
+    "Give each edge a node of its own; the order of nodes must be that of vtkQuadraticTetra.");
+}
+
+glm::dvec3 Normalize(const glm::dvec3& vector)
+{
+  const glm::dvec3 sizes = glm::abs(vector);
+  return glm::normalize(vector / std::max({ sizes.x, sizes.y, sizes.z })); // also where it is tiny
+}
+
+// In which plane the middle of an edge slides; 0: it does not.
+glm::dvec3 GetSlidingNormal(const ElasticBody& body, std::size_t a, std::size_t b)
+{
+  // The sine of the largest angle between what counts as parallel: coordinates may be floats.
+  constexpr double parallel = 1e-3;
+  const glm::dvec3 none(0.0);
+  const bool slides[2] = { body.SlidingNormals[a] != none, body.SlidingNormals[b] != none };
+  if (!(slides[0] || slides[1]) || !(slides[0] || body.IsFixed(a)) ||
+    !(slides[1] || body.IsFixed(b)))
+  {
+    return none;
+  }
+  glm::dvec3 normal = Normalize(body.SlidingNormals[slides[0] ? a : b]);
+  if (slides[0] && slides[1])
+  {
+    const glm::dvec3 other = Normalize(body.SlidingNormals[b]);
+    if (glm::length(glm::cross(normal, other)) > parallel)
+    {
+      return none;
+    }
+    normal = Normalize(normal + (glm::dot(normal, other) < 0.0 ? -other : other));
+  }
+  const glm::dvec3 edge = body.Points[b] - body.Points[a];
+  return std::abs(glm::dot(edge, normal)) > parallel * glm::length(edge) ? none : normal;
+}
+
+void AddMidSides(std::vector<MidSideNodes>&& ofCells, BodyMesh& mesh)
+{
+  ElasticBody& body = mesh.Body;
+  body.MidSides = std::move(ofCells);
+  CheckMidSides(body);
+  mesh.HasNodesOfCells = std::all_of(body.MidSides.begin(), body.MidSides.end(),
+    [](const MidSideNodes& nodes) { return nodes[0] >= 0; });
+  mesh.MidSideEnds = AddMidSideNodes(body);
+  if (!mesh.Forces.empty())
+  {
+    mesh.Forces.resize(body.Points.size(), glm::dvec3(0.0));
+  }
+  for (const std::array<std::int32_t, 2>& ends : mesh.MidSideEnds)
+  {
+    const auto a = static_cast<std::size_t>(ends[0]);
+    const auto b = static_cast<std::size_t>(ends[1]);
+    if (!mesh.PrescribedDisplacements.empty())
+    {
+      mesh.PrescribedDisplacements.push_back(
+        0.5 * (mesh.PrescribedDisplacements[a] + mesh.PrescribedDisplacements[b]));
+    }
+    if (!body.SlidingNormals.empty())
+    {
+      body.SlidingNormals.push_back(GetSlidingNormal(body, a, b));
+    }
+  }
 }
 
 // Adds the nodes that a place holds. isTaken: by another handle.
@@ -166,14 +349,14 @@ Stamp GetBodyStamp(vtkUnstructuredGrid* grid)
   {
     add(grid->GetCellData()->GetAbstractArray(name));
   }
-  for (const char* name : { FIXED, FORCE })
+  for (const char* name : { FixedName, ForceName, PrescribedDisplacementName, SlidingNormalName })
   {
     add(grid->GetPointData()->GetAbstractArray(name));
   }
   return stamp;
 }
 
-GridTetrahedra ReadTetrahedra(vtkUnstructuredGrid* grid)
+GridTetrahedra ReadTetrahedra(vtkUnstructuredGrid* grid, bool takesQuadratic)
 {
   GridTetrahedra read;
   vtkDataArray* types = GetCellTypes(grid);
@@ -186,7 +369,8 @@ GridTetrahedra ReadTetrahedra(vtkUnstructuredGrid* grid)
   for (vtkIdType cell = 0; cell < count; ++cell)
   {
     const int type = grid->GetCellType(cell);
-    if (type != VTK_TETRA)
+    const bool isQuadratic = type == VTK_QUADRATIC_TETRA && takesQuadratic;
+    if (type != VTK_TETRA && !isQuadratic)
     {
       ++others[type];
       continue;
@@ -194,17 +378,24 @@ GridTetrahedra ReadTetrahedra(vtkUnstructuredGrid* grid)
     vtkIdType size = 0;
     const vtkIdType* points = nullptr;
     grid->GetCells()->GetCellAtId(cell, size, points);
-    Tetrahedron tetrahedron{};
-    for (std::size_t i = 0; i < 4; ++i)
+    if (size != (isQuadratic ? 10 : 4) ||
+      std::any_of(points, points + size,
+        [&](vtkIdType point) { return point < 0 || point >= grid->GetNumberOfPoints(); }))
     {
-      if (size != 4 || points[i] < 0 || points[i] >= grid->GetNumberOfPoints())
-      {
-        throw Error("Cell " + std::to_string(cell) + " of the " + MESH +
-          " is a tetrahedron without four points of the mesh.");
-      }
-      tetrahedron[i] = static_cast<std::int32_t>(points[i]);
+      throw Error("Cell " + std::to_string(cell) + " of the " + MESH + " is a " +
+        (isQuadratic ? "quadratic tetrahedron without ten" : "tetrahedron without four") +
+        " points of the mesh.");
     }
-    read.Tetrahedra.push_back(tetrahedron);
+    const auto getPoint = [&](std::size_t i) { return static_cast<std::int32_t>(points[i]); };
+    read.Tetrahedra.push_back({ { getPoint(0), getPoint(1), getPoint(2), getPoint(3) } });
+    if (takesQuadratic)
+    {
+      read.MidSides.push_back({ { -1, -1, -1, -1, -1, -1 } });
+      for (std::size_t edge = 0; isQuadratic && edge < read.MidSides.back().size(); ++edge)
+      {
+        read.MidSides.back()[edge] = getPoint(4 + edge);
+      }
+    }
     read.Cells.push_back(cell);
   }
   for (const auto& [type, number] : others)
@@ -231,24 +422,21 @@ BodyMesh ReadBody(vtkUnstructuredGrid* grid, const BodySettings& settings)
   {
     mesh.Body.Points = ReadAll(grid->GetPoints()->GetData(), settings.UnitLength, "Point");
   }
-  GridTetrahedra read = ReadTetrahedra(grid);
+  GridTetrahedra read = ReadTetrahedra(grid, settings.IsQuadratic);
   mesh.Body.Tetrahedra = std::move(read.Tetrahedra);
   mesh.Cells = std::move(read.Cells);
   ReadMaterials(grid, settings, mesh);
-  if (vtkDataArray* fixed = FindMeshArray(grid->GetPointData(), FIXED, 1, points))
+  ReadPointArrays(grid, settings, mesh);
+  if (settings.IsQuadratic)
   {
-    mesh.Body.Fixed.resize(mesh.Body.Points.size());
-    for (vtkIdType i = 0; i < points; ++i)
-    {
-      mesh.Body.Fixed[static_cast<std::size_t>(i)] = fixed->GetComponent(i, 0) != 0.0 ? 1 : 0;
-    }
-  }
-  if (vtkDataArray* force = FindMeshArray(grid->GetPointData(), FORCE, 3, points))
-  {
-    mesh.Forces = ReadAll(force, 1.0, FORCE);
+    AddMidSides(std::move(read.MidSides), mesh);
   }
   CheckBody(mesh.Body);
   FindUsed(mesh);
+  if (!settings.IsQuadratic)
+  {
+    CheckForSprings(mesh);
+  }
   return mesh;
 }
 

@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ElasticSession.h"
 
+#include "CellTypes.h"
+#include "MidSideNodes.h"
+
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkCellType.h"
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
+#include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <utility>
 
@@ -25,12 +32,12 @@ bool IsSame(const ElasticMaterial& a, const ElasticMaterial& b)
 
 bool HasSameMesh(const ElasticBody& a, const ElasticBody& b)
 {
-  return a.Points == b.Points && a.Tetrahedra == b.Tetrahedra;
+  return a.Points == b.Points && a.Tetrahedra == b.Tetrahedra && a.MidSides == b.MidSides;
 }
 
 bool IsSame(const ElasticBody& a, const ElasticBody& b)
 {
-  return HasSameMesh(a, b) && a.Fixed == b.Fixed &&
+  return HasSameMesh(a, b) && a.Fixed == b.Fixed && a.SlidingNormals == b.SlidingNormals &&
     std::equal(a.Materials.begin(), a.Materials.end(), b.Materials.begin(), b.Materials.end(),
       [](const auto& one, const auto& other) { return IsSame(one, other); });
 }
@@ -49,12 +56,35 @@ void AppendCopies(std::vector<Value>& values, const std::vector<std::int32_t>& o
   }
 }
 
+Stamp GetMeshStamp(vtkUnstructuredGrid* grid)
+{
+  vtkDataArray* types = GetCellTypes(grid);
+  return { { grid->GetPoints(), grid->GetPoints()->GetMTime() },
+    { grid->GetCells(), grid->GetCells()->GetMTime() }, { types, types ? types->GetMTime() : 0 } };
+}
+
 Stamp GetDataStamp(vtkUnstructuredGrid* grid)
 {
-  return { { grid->GetPoints(), grid->GetPoints()->GetMTime() },
-    { grid->GetCells(), grid->GetCells()->GetMTime() },
-    { grid->GetPointData(), grid->GetPointData()->GetMTime() },
-    { grid->GetCellData(), grid->GetCellData()->GetMTime() } };
+  return { { grid->GetPointData(), grid->GetPointData()->GetMTime() },
+    { grid->GetCellData(), grid->GetCellData()->GetMTime() },
+    { grid->GetFieldData(), grid->GetFieldData()->GetMTime() } };
+}
+
+// Point data of a node in the middle of an edge. A ghost or a hidden point is one where both ends
+// are.
+void InterpolateInMiddle(
+  vtkPointData* from, const std::array<std::int32_t, 2>& ends, vtkPointData* to, vtkIdType node)
+{
+  constexpr double middle = 0.5;
+  to->InterpolateEdge(from, node, ends[0], ends[1], middle);
+  const char* ghosts = vtkDataSetAttributes::GhostArrayName();
+  auto* array = vtkArrayDownCast<vtkUnsignedCharArray>(from->GetAbstractArray(ghosts));
+  auto* made = vtkArrayDownCast<vtkUnsignedCharArray>(to->GetAbstractArray(ghosts));
+  if (array && made)
+  {
+    made->SetValue(
+      node, static_cast<unsigned char>(array->GetValue(ends[0]) & array->GetValue(ends[1])));
+  }
 }
 
 } // namespace
@@ -90,7 +120,7 @@ bool ElasticSession::Update(ElasticSimulation& simulation, vtkUnstructuredGrid* 
   if (!keepsState)
   {
     this->Cuts.clear();
-    ++this->CutsVersion;
+    ++this->MeshVersion;
     this->Sheet = WorldSheet();
     this->Time = 0.0;
     this->HasMoved = false;
@@ -112,9 +142,12 @@ BodyMesh ElasticSession::WithCuts(const BodyMesh& whole) const
   {
     const AppliedCut& cut = this->Cuts.back();
     mesh.Body.Tetrahedra = cut.Tetrahedra;
+    mesh.Body.MidSides = cut.MidSides;
     AppendCopies(mesh.Body.Points, cut.Origins);
     AppendCopies(mesh.Body.Fixed, cut.Origins);
+    AppendCopies(mesh.Body.SlidingNormals, cut.Origins);
     AppendCopies(mesh.Forces, cut.Origins);
+    AppendCopies(mesh.PrescribedDisplacements, cut.Origins);
     AppendCopies(mesh.IsUsed, cut.Origins);
   }
   return mesh;
@@ -143,7 +176,14 @@ void ElasticSession::Cut(const WorldSheet& sheet)
     if (split.NumberOfFaces > 0)
     {
       AppliedCut cut;
-      const std::vector<std::int32_t> appended = split.Origins;
+      std::vector<std::int32_t> appended = split.Origins;
+      cut.MidSides = this->Mesh.Body.MidSides;
+      if (!cut.MidSides.empty())
+      {
+        const std::vector<std::int32_t> copies = SplitMidSides(split.Tetrahedra,
+          static_cast<std::int32_t>(positions.size() + appended.size()), cut.MidSides);
+        appended.insert(appended.end(), copies.begin(), copies.end());
+      }
       cut.Origins = this->Cuts.empty() ? std::vector<std::int32_t>() : this->Cuts.back().Origins;
       cut.Origins.insert(cut.Origins.end(), appended.begin(), appended.end());
       cut.Tetrahedra = std::move(split.Tetrahedra);
@@ -151,7 +191,7 @@ void ElasticSession::Cut(const WorldSheet& sheet)
       cut.NumberOfFaces = split.NumberOfFaces;
       cut.Before = std::move(before);
       this->Cuts.push_back(std::move(cut));
-      ++this->CutsVersion;
+      ++this->MeshVersion;
       try
       {
         BodyMesh mesh = this->WithCuts(this->Whole);
@@ -189,7 +229,7 @@ void ElasticSession::RemoveCuts(std::size_t left)
   {
     const ElasticSimulation::State before = std::move(this->Cuts[left].Before);
     this->Cuts.resize(left);
-    ++this->CutsVersion;
+    ++this->MeshVersion;
     this->Mesh = this->WithCuts(this->Whole);
     this->Simulation->Return(this->Mesh.Body, before);
   }
@@ -211,65 +251,147 @@ void ElasticSession::Reset()
   this->HasMoved = false;
 }
 
-vtkUnstructuredGrid* ElasticSession::GetGrid(vtkUnstructuredGrid* grid)
+std::size_t ElasticSession::GetOrigin(std::size_t node) const
 {
-  if (this->Cuts.empty())
+  const std::size_t whole = this->Whole.Body.Points.size();
+  while (node >= whole) // a copy, perhaps of one that an earlier cut has made
   {
-    this->CutGrid = nullptr;
-    return grid;
+    node = static_cast<std::size_t>(this->Cuts.back().Origins[node - whole]);
   }
-  const Stamp stamp = GetDataStamp(grid);
-  if (this->CutGrid && stamp == this->CutGridStamp && this->CutsOfGrid == this->CutsVersion)
-  {
-    return this->CutGrid;
-  }
-  // Appended nodes are copies of others in all that the grid tells of them.
-  const std::vector<std::int32_t>& origins = this->Cuts.back().Origins;
-  const vtkIdType before = grid->GetNumberOfPoints();
-  const auto after = before + static_cast<vtkIdType>(origins.size());
-  const auto getOrigin = [&](vtkIdType node)
-  {
-    while (node >= before) // a copy, perhaps of one that an earlier cut has made
-    {
-      node = origins[static_cast<std::size_t>(node - before)];
-    }
-    return node;
-  };
-  auto made = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  return node;
+}
+
+void ElasticSession::FillMesh(vtkUnstructuredGrid* grid, vtkUnstructuredGrid* made) const
+{
+  const auto before = static_cast<std::size_t>(grid->GetNumberOfPoints());
+  const std::size_t after = this->Mesh.Body.Points.size();
   vtkNew<vtkPoints> points;
   points->SetDataType(grid->GetPoints()->GetDataType());
-  points->SetNumberOfPoints(after);
-  made->GetPointData()->CopyAllOn();
-  made->GetPointData()->CopyAllocate(grid->GetPointData(), after);
-  for (vtkIdType node = 0; node < after; ++node)
+  points->SetNumberOfPoints(static_cast<vtkIdType>(after));
+  const auto getPoint = [&](std::size_t point)
   {
-    points->SetPoint(node, grid->GetPoint(getOrigin(node)));
-    made->GetPointData()->CopyData(grid->GetPointData(), getOrigin(node), node);
-  }
-  made->SetPoints(points);
-  made->Allocate(grid->GetNumberOfCells());
-  std::size_t tetrahedron = 0;
-  for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
+    glm::dvec3 place;
+    grid->GetPoint(static_cast<vtkIdType>(point), &place.x);
+    return place;
+  };
+  for (std::size_t node = 0; node < after; ++node)
   {
-    vtkIdType size = 0;
-    const vtkIdType* ids = nullptr;
-    grid->GetCells()->GetCellAtId(cell, size, ids);
-    if (grid->GetCellType(cell) == VTK_TETRA)
+    const std::size_t origin = this->GetOrigin(node);
+    glm::dvec3 place;
+    if (origin < before)
     {
-      const Tetrahedron& nodes = this->Mesh.Body.Tetrahedra[tetrahedron++];
-      const vtkIdType cut[4] = { nodes[0], nodes[1], nodes[2], nodes[3] };
-      made->InsertNextCell(VTK_TETRA, 4, cut);
+      place = getPoint(origin);
     }
     else
     {
+      const std::array<std::int32_t, 2>& ends = this->Whole.MidSideEnds[origin - before];
+      place = 0.5 *
+        (getPoint(static_cast<std::size_t>(ends[0])) + getPoint(static_cast<std::size_t>(ends[1])));
+    }
+    points->SetPoint(static_cast<vtkIdType>(node), &place.x);
+  }
+  made->SetPoints(points);
+  made->Allocate(grid->GetNumberOfCells());
+  const int type = this->Mesh.Body.MidSides.empty() ? VTK_TETRA : VTK_QUADRATIC_TETRA;
+  std::vector<vtkIdType> nodes;
+  std::size_t tetrahedron = 0;
+  for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
+  {
+    if (tetrahedron < this->Mesh.Cells.size() && cell == this->Mesh.Cells[tetrahedron])
+    {
+      nodes.clear();
+      this->Mesh.Body.ForNodes(tetrahedron++, [&](std::int32_t node) { nodes.push_back(node); });
+      made->InsertNextCell(type, static_cast<vtkIdType>(nodes.size()), nodes.data());
+    }
+    else
+    {
+      vtkIdType size = 0;
+      const vtkIdType* ids = nullptr;
+      grid->GetCells()->GetCellAtId(cell, size, ids);
       made->InsertNextCell(grid->GetCellType(cell), size, ids);
     }
   }
+}
+
+void ElasticSession::FillPointData(vtkUnstructuredGrid* grid, vtkUnstructuredGrid* made) const
+{
+  const auto before = static_cast<std::size_t>(grid->GetNumberOfPoints());
+  const BodyMesh& mesh = this->Mesh;
+  vtkPointData* from = grid->GetPointData();
+  vtkPointData* to = made->GetPointData();
+  if (mesh.MidSideEnds.empty())
+  {
+    to->CopyAllOn();
+    to->CopyAllocate(from, made->GetNumberOfPoints());
+  }
+  else
+  {
+    to->InterpolateAllocate(from, made->GetNumberOfPoints()); // without ids of points
+  }
+  for (vtkIdType node = 0; node < made->GetNumberOfPoints(); ++node)
+  {
+    const std::size_t origin = this->GetOrigin(static_cast<std::size_t>(node));
+    if (origin < before)
+    {
+      to->CopyData(from, static_cast<vtkIdType>(origin), node);
+    }
+    else
+    {
+      InterpolateInMiddle(from, mesh.MidSideEnds[origin - before], to, node);
+    }
+  }
+  // What the body has there is no mean of the ends.
+  const auto overwrite = [&](const char* name, const auto& getValue)
+  {
+    auto* array = vtkArrayDownCast<vtkDataArray>(to->GetAbstractArray(name));
+    for (vtkIdType node = grid->GetNumberOfPoints(); array && node < array->GetNumberOfTuples();
+         ++node)
+    {
+      const std::size_t origin = this->GetOrigin(static_cast<std::size_t>(node));
+      for (int i = 0; origin >= before && i < array->GetNumberOfComponents(); ++i)
+      {
+        array->SetComponent(node, i, getValue(origin, i));
+      }
+    }
+  };
+  const ElasticBody& body = this->Whole.Body;
+  overwrite(FixedName, [&](std::size_t node, int) { return body.IsFixed(node) ? 1.0 : 0.0; });
+  overwrite(ForceName, [](std::size_t, int) { return 0.0; });
+  overwrite(
+    SlidingNormalName, [&](std::size_t node, int i) { return body.SlidingNormals[node][i]; });
+}
+
+vtkUnstructuredGrid* ElasticSession::GetGrid(vtkUnstructuredGrid* grid)
+{
+  if (this->Cuts.empty() && this->Mesh.HasNodesOfCells)
+  {
+    this->MadeGrid = nullptr;
+    return grid;
+  }
+  const Stamp mesh = GetMeshStamp(grid);
+  const Stamp data = GetDataStamp(grid);
+  const bool keepsMesh =
+    this->MadeGrid && mesh == this->MadeMeshStamp && this->MadeVersion == this->MeshVersion;
+  if (keepsMesh && data == this->MadeDataStamp)
+  {
+    return this->MadeGrid;
+  }
+  auto made = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  if (keepsMesh)
+  {
+    made->CopyStructure(this->MadeGrid);
+  }
+  else
+  {
+    this->FillMesh(grid, made);
+  }
+  this->FillPointData(grid, made);
   made->GetCellData()->ShallowCopy(grid->GetCellData());
   made->GetFieldData()->ShallowCopy(grid->GetFieldData());
-  this->CutGrid = made;
-  this->CutGridStamp = stamp;
-  this->CutsOfGrid = this->CutsVersion;
+  this->MadeGrid = made;
+  this->MadeMeshStamp = mesh;
+  this->MadeDataStamp = data;
+  this->MadeVersion = this->MeshVersion;
   return made;
 }
 

@@ -49,7 +49,8 @@ public:
   const BodyMesh& GetMesh() const { return this->Mesh; }
   const BodySettings& GetSettings() const { return this->Settings; }
 
-  /// The grid as it is cut: the grid itself where it is not.
+  /// The grid with the nodes that mid-sides and cuts have appended: the grid itself where there are
+  /// none. It has the same points and cells as long as the mesh is unchanged.
   vtkUnstructuredGrid* GetGrid(vtkUnstructuredGrid* grid);
 
   double Time = 0.0;     // in s
@@ -59,7 +60,8 @@ private:
   struct AppliedCut
   {
     std::vector<Tetrahedron> Tetrahedra;
-    std::vector<std::int32_t> Origins; // of all appended nodes
+    std::vector<MidSideNodes> MidSides; // empty: the body is not quadratic
+    std::vector<std::int32_t> Origins;  // of all copies of nodes
     std::vector<TetrahedronPair> Unparted;
     std::int64_t NumberOfFaces = 0;
     ElasticSimulation::State Before;
@@ -67,6 +69,10 @@ private:
 
   /// A body with the cuts that there are.
   BodyMesh WithCuts(const BodyMesh& whole) const;
+  /// The node of the body without cuts that a node is, or is a copy of.
+  std::size_t GetOrigin(std::size_t node) const;
+  void FillMesh(vtkUnstructuredGrid* grid, vtkUnstructuredGrid* made) const;
+  void FillPointData(vtkUnstructuredGrid* grid, vtkUnstructuredGrid* made) const;
 
   bool Exists = false;
   bool WasLost = false;                    // what was simulated, in a call that has failed
@@ -77,10 +83,11 @@ private:
   BodyMesh Mesh;
   std::vector<AppliedCut> Cuts;
   WorldSheet Sheet; // the last one
-  vtkSmartPointer<vtkUnstructuredGrid> CutGrid;
-  Stamp CutGridStamp;
-  std::uint64_t CutsVersion = 0; // changes with them
-  std::uint64_t CutsOfGrid = 0;  // a version
+  vtkSmartPointer<vtkUnstructuredGrid> MadeGrid;
+  Stamp MadeMeshStamp;           // of the points and cells that it was made of
+  Stamp MadeDataStamp;           // of the arrays
+  std::uint64_t MeshVersion = 0; // changes with the nodes and tetrahedra of the body
+  std::uint64_t MadeVersion = 0; // that of the grid
 };
 
 } // namespace deformvolume

@@ -22,6 +22,9 @@ class ElasticSimulation
 public:
   virtual ~ElasticSimulation() = default;
 
+  /// Whether the body is one of ten-node tetrahedra.
+  virtual bool IsQuadratic() const { return false; }
+
   /// Where the body goes in a frame.
   struct Frame
   {

@@ -31,6 +31,22 @@ void FixPoints(vtkUnstructuredGrid* mesh, IsFixed&& isFixed)
   mesh->GetPointData()->AddArray(fixed);
 }
 
+// Gives a mesh a point array of vectors.
+template <typename GetVector>
+vtkDoubleArray* AddPointVectors(vtkUnstructuredGrid* mesh, const char* name, GetVector&& getVector)
+{
+  vtkNew<vtkDoubleArray> vectors;
+  vectors->SetName(name);
+  vectors->SetNumberOfComponents(3);
+  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+  {
+    const glm::dvec3 vector = getVector(GetPoint(mesh, i));
+    vectors->InsertNextTuple(&vector.x);
+  }
+  mesh->GetPointData()->AddArray(vectors);
+  return vectors;
+}
+
 // A bar of 4 x 4 x 12 cells, held at z = 0. Lengths are in units of so many metres.
 inline vtkSmartPointer<vtkUnstructuredGrid> MakeBar(double unit)
 {

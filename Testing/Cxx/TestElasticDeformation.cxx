@@ -141,6 +141,25 @@ void TestErrorsOfTheirOwn()
   VERIFY_EQUAL(springs.TryUpdate(), std::string());
   VERIFY_EQUAL(springs.Copy()->GetRange(-1)[1], 0.0);
 
+  // What only finite elements can do. Nodes without tetrahedra do not count.
+  bar->GetPoints()->InsertNextPoint(0.0, 0.0, 1.0);
+  bar->GetPointData()->GetArray("Fixed")->InsertNextTuple1(1.0);
+  const auto pushTop = [](const glm::dvec3& p) { return glm::dvec3(0.0, 0.0, p.z > 0.01); };
+  AddPointVectors(bar, "PrescribedDisplacement", pushTop);
+  VERIFY_EQUAL(springs.TryUpdate(), std::string());
+  AddPointVectors(bar, "PrescribedDisplacement",
+    [](const glm::dvec3& p) { return glm::dvec3(0.0, 0.0, p.x == 0.0 && p.z == 0.0); });
+  VERIFY(Holds(springs.TryUpdate(), "5 nodes of the rest mesh on input port 0 are fixed and have"));
+  bar->GetPointData()->RemoveArray("PrescribedDisplacement");
+  bar->GetPointData()->GetArray("Fixed")->SetTuple1(325, 0.0);
+  AddPointVectors(bar, "SlidingNormal", [](const glm::dvec3& p) { return glm::dvec3(p.z > 0.03); });
+  VERIFY_EQUAL(springs.TryUpdate(), std::string());
+  AddPointVectors(
+    bar, "SlidingNormal", [](const glm::dvec3& p) { return glm::dvec3(p.z == 0.03, 0.0, 0.0); });
+  VERIFY(Holds(springs.TryUpdate(), "25 nodes of the rest mesh on input port 0 have a sliding"));
+  bar->GetPointData()->RemoveArray("SlidingNormal");
+  VERIFY_EQUAL(springs.TryUpdate(), std::string());
+
   Simulated<vtkFiniteElementDeformation> elements(bar);
   bar->GetPointData()->RemoveArray("Fixed");
   VERIFY(Holds(elements.TryUpdate(), "nothing holds the body"));
