@@ -5,6 +5,7 @@
 #include "ElasticSession.h"
 #include "ElasticSimulation.h"
 #include "Error.h"
+#include "MaterialPresets.h"
 #include "PieceRequest.h"
 #include "PipelineExecution.h"
 #include "ProgressReport.h"
@@ -145,6 +146,31 @@ double vtkElasticDeformation::GetTime()
   return this->Internals->IsToReset ? 0.0 : this->Internals->Session.Time;
 }
 
+const char* vtkElasticDeformation::GetMaterialPresetName(int preset)
+{
+  const auto* found = deformvolume::FindMaterialPreset(preset);
+  return found ? found->Name : (preset == CUSTOM ? "Custom" : nullptr);
+}
+
+const char* vtkElasticDeformation::GetMaterialPresetSource(int preset)
+{
+  const auto* found = deformvolume::FindMaterialPreset(preset);
+  return found ? found->Source : nullptr;
+}
+
+bool vtkElasticDeformation::GetMaterialPresetValues(int preset, double values[3])
+{
+  const auto* found = deformvolume::FindMaterialPreset(preset);
+  if (!found)
+  {
+    return false;
+  }
+  values[0] = found->Material.YoungModulus;
+  values[1] = found->Material.PoissonRatio;
+  values[2] = found->Material.Density;
+  return true;
+}
+
 int vtkElasticDeformation::FillInputPortInformation(int port, vtkInformation* info)
 {
   constexpr const char* types[3] = { "vtkUnstructuredGrid", "vtkPointSet", "vtkPolyData" };
@@ -228,7 +254,10 @@ void vtkElasticDeformation::Execute(
   vtkInternals& internals = *this->Internals;
   deformvolume::ElasticSession& session = internals.Session;
   deformvolume::BodySettings settings;
-  settings.Material = { this->YoungModulus, this->PoissonRatio, this->Density };
+  const auto* preset = deformvolume::FindMaterialPreset(this->MaterialPreset);
+  settings.Material = preset
+    ? preset->Material
+    : deformvolume::ElasticMaterial{ this->YoungModulus, this->PoissonRatio, this->Density };
   settings.UnitLength = this->LengthUnit == MILLIMETRE ? 1e-3 : 1.0;
   ElasticSimulation& simulation = this->PrepareSimulation();
   settings.IsQuadratic = simulation.IsQuadratic();
@@ -403,6 +432,7 @@ void vtkElasticDeformation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "YoungModulus: " << this->YoungModulus << "\n";
   os << indent << "PoissonRatio: " << this->PoissonRatio << "\n";
   os << indent << "Density: " << this->Density << "\n";
+  os << indent << "MaterialPreset: " << GetMaterialPresetName(this->MaterialPreset) << "\n";
   os << indent << "LengthUnit: " << (this->LengthUnit == METRE ? "METRE" : "MILLIMETRE") << "\n";
   os << indent << "SweepVector: " << this->SweepVector[0] << " " << this->SweepVector[1] << " "
      << this->SweepVector[2] << "\n";

@@ -15,7 +15,7 @@
  * - the point array "Fixed", one component: nodes where it is not 0 stay where they are;
  * - the point array "Force", three components: a force on each node, in N;
  * - the cell arrays "YoungModulus" (Pa), "PoissonRatio" and "Density" (kg/m^3), one component: the
- *   material of each tetrahedron, in place of the properties of these names.
+ *   material of each tetrahedron, in place of the properties of these names and of MaterialPreset.
  *
  * @par Port 1, optional, the handles:
  * vtkPointSet. A point is where a handle is now. A point array "RestPosition" of three components
@@ -173,6 +173,54 @@ public:
   ///@}
 
   /**
+   * Tissues whose materials are known. CUSTOM: none of them.
+   */
+  enum MaterialPresetType
+  {
+    CUSTOM,
+    BRAIN,
+    LIVER,
+    FAT,
+    MUSCLE,
+    SKIN,
+    CARTILAGE,
+    BONE
+  };
+
+  ///@{
+  /**
+   * Set/Get the tissue whose Young modulus (Pa), Poisson ratio and density (kg/m^3) are used in
+   * place of the properties of these names, which keep their values. Cell arrays still come first.
+   * CUSTOM: the properties are used. Default CUSTOM.
+   *
+   * The Young moduli are means of measurements at small strains. They differ between people, and
+   * between methods of measurement, by a factor of several: Documents/physics.md has the sources
+   * and ranges. BONE is cortical bone. Time steps of springs become very short with it.
+   */
+  vtkSetClampMacro(MaterialPreset, int, CUSTOM, BONE);
+  vtkGetMacro(MaterialPreset, int);
+  void SetMaterialPresetToCustom() { this->SetMaterialPreset(CUSTOM); }
+  void SetMaterialPresetToBrain() { this->SetMaterialPreset(BRAIN); }
+  void SetMaterialPresetToLiver() { this->SetMaterialPreset(LIVER); }
+  void SetMaterialPresetToFat() { this->SetMaterialPreset(FAT); }
+  void SetMaterialPresetToMuscle() { this->SetMaterialPreset(MUSCLE); }
+  void SetMaterialPresetToSkin() { this->SetMaterialPreset(SKIN); }
+  void SetMaterialPresetToCartilage() { this->SetMaterialPreset(CARTILAGE); }
+  void SetMaterialPresetToBone() { this->SetMaterialPreset(BONE); }
+  ///@}
+
+  ///@{
+  /**
+   * The table of presets: the name of a preset, such as "Liver"; the source of its Young modulus,
+   * authors and year; and its Young modulus (Pa), Poisson ratio and density (kg/m^3), in this
+   * order. CUSTOM has the name "Custom" only. Null, or false and no change, where there is none.
+   */
+  static const char* GetMaterialPresetName(int preset);
+  static const char* GetMaterialPresetSource(int preset);
+  static bool GetMaterialPresetValues(int preset, double values[3]);
+  ///@}
+
+  /**
    * The units of points.
    */
   enum LengthUnitType
@@ -284,6 +332,7 @@ private:
   double YoungModulus = 1e4;
   double PoissonRatio = 0.3;
   double Density = 1000.0;
+  int MaterialPreset = CUSTOM;
   double SweepVector[3] = { 0.0, 0.0, 0.0 };
   int LengthUnit = MILLIMETRE;
   double FrameTime = 1.0 / 60.0;

@@ -5,6 +5,7 @@
 #include "DeformationMesh.h"
 #include "Error.h"
 #include "MaskArray.h"
+#include "MaterialPresets.h"
 #include "MaterialTable.h"
 #include "PieceRequest.h"
 #include "PipelineExecution.h"
@@ -14,6 +15,7 @@
 
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
+#include "vtkElasticDeformation.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -22,6 +24,8 @@
 #include "vtkPointData.h"
 #include "vtkUnstructuredGrid.h"
 
+#include <algorithm>
+#include <array>
 #include <vector>
 
 vtkStandardNewMacro(vtkMaterialFromVolume);
@@ -31,7 +35,23 @@ using deformvolume::ElasticMaterial;
 class vtkMaterialFromVolume::vtkInternals
 {
 public:
-  deformvolume::MaterialTable<ElasticMaterial> Table;
+  // Materials of presets take the place of those that were set.
+  deformvolume::MaterialTable<ElasticMaterial> GetTable() const
+  {
+    deformvolume::MaterialTable<ElasticMaterial> table = this->Table;
+    for (std::size_t i = 0; i < this->Presets.size(); ++i)
+    {
+      if (const auto* preset = deformvolume::FindMaterialPreset(this->Presets[i]))
+      {
+        table.Materials[i] = preset->Material;
+        table.Exists[i] = true;
+      }
+    }
+    return table;
+  }
+
+  deformvolume::MaterialTable<ElasticMaterial> Table; // without the presets
+  std::array<int, 256> Presets{};                     // of all indices; most are CUSTOM
   deformvolume::PipelineExecution Execution;
 };
 
@@ -79,6 +99,52 @@ void vtkMaterialFromVolume::ClearMaterials()
 int vtkMaterialFromVolume::GetNumberOfMaterials()
 {
   return this->Internals->Table.GetNumber();
+}
+
+void vtkMaterialFromVolume::SetMaterialPreset(int index, int preset)
+{
+  if (!deformvolume::IsMaterialIndex(index))
+  {
+    vtkErrorMacro("There is no material " << index << ". Give it a whole number from 0 to 255.");
+    return;
+  }
+  if (!vtkElasticDeformation::GetMaterialPresetName(preset))
+  {
+    vtkErrorMacro("Material " << index << " cannot have the preset " << preset
+                              << ". Give it one of vtkElasticDeformation::MaterialPresetType, from "
+                              << vtkElasticDeformation::CUSTOM << " to "
+                              << vtkElasticDeformation::BONE << ".");
+    return;
+  }
+  int& last = this->Internals->Presets[static_cast<std::size_t>(index)];
+  if (last != preset)
+  {
+    last = preset;
+    this->Modified();
+  }
+}
+
+int vtkMaterialFromVolume::GetMaterialPreset(int index)
+{
+  return deformvolume::IsMaterialIndex(index)
+    ? this->Internals->Presets[static_cast<std::size_t>(index)]
+    : vtkElasticDeformation::CUSTOM;
+}
+
+void vtkMaterialFromVolume::ClearMaterialPresets()
+{
+  if (this->GetNumberOfMaterialPresets() > 0)
+  {
+    this->Internals->Presets.fill(vtkElasticDeformation::CUSTOM);
+    this->Modified();
+  }
+}
+
+int vtkMaterialFromVolume::GetNumberOfMaterialPresets()
+{
+  const auto& presets = this->Internals->Presets;
+  return static_cast<int>(std::count_if(presets.begin(), presets.end(),
+    [](int preset) { return preset != vtkElasticDeformation::CUSTOM; }));
 }
 
 void vtkMaterialFromVolume::AddMaterialRange(double minimum, double maximum, double index)
@@ -134,7 +200,7 @@ void vtkMaterialFromVolume::Execute(
 {
   vtkUnstructuredGrid* mesh = vtkUnstructuredGrid::GetData(input[0]);
   vtkImageData* image = vtkImageData::GetData(input[1]);
-  const deformvolume::MaterialTable<ElasticMaterial>& table = this->Internals->Table;
+  const deformvolume::MaterialTable<ElasticMaterial> table = this->Internals->GetTable();
   for (int i = 0; i < static_cast<int>(table.Materials.size()); ++i)
   {
     if (const ElasticMaterial* material = table.Find(i))
@@ -188,6 +254,15 @@ void vtkMaterialFromVolume::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MaterialArrayName: " << this->MaterialArrayName << "\n";
   os << indent << "DefaultMaterial: " << this->DefaultMaterial << "\n";
   this->Internals->Table.Print(os, indent);
+  os << indent << "MaterialPresets:\n";
+  for (int i = 0; i < static_cast<int>(this->Internals->Presets.size()); ++i)
+  {
+    if (const int preset = this->GetMaterialPreset(i))
+    {
+      os << indent.GetNextIndent() << i << ": "
+         << vtkElasticDeformation::GetMaterialPresetName(preset) << "\n";
+    }
+  }
   os << indent << "NumberOfTetrahedraWithoutVoxels: " << this->NumberOfTetrahedraWithoutVoxels
      << "\n";
   os << indent << "NumberOfTetrahedraOutside: " << this->NumberOfTetrahedraOutside << "\n";

@@ -78,10 +78,32 @@ public:
    */
   bool GetMaterialValues(int index, double values[3]);
   /**
-   * Remove all materials, the default ones included.
+   * Remove all materials that SetMaterial() has set, the default ones included.
    */
   void ClearMaterials();
   int GetNumberOfMaterials();
+  ///@}
+
+  ///@{
+  /**
+   * Set/Get the tissue that an index stands for: an index from 0 to 255, and a value of
+   * vtkElasticDeformation::MaterialPresetType, such as vtkElasticDeformation::LIVER. Its Young
+   * modulus, Poisson ratio and density are used in place of those of SetMaterial(), whichever is
+   * called first. Others are an error, and change nothing. CUSTOM, the default of all indices:
+   * those of SetMaterial() are used.
+   *
+   * vtkElasticDeformation::GetMaterialPresetValues() has the numbers, and tells of their limits.
+   */
+  void SetMaterialPreset(int index, int preset);
+  int GetMaterialPreset(int index);
+  /**
+   * Set all indices to CUSTOM.
+   */
+  void ClearMaterialPresets();
+  /**
+   * The number of indices that stand for a tissue.
+   */
+  int GetNumberOfMaterialPresets();
   ///@}
 
   ///@{

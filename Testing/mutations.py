@@ -315,6 +315,8 @@ MUTATIONS = {
                        ["Cxx.TestMaterialFromVolume", "Cxx.TestChainMailDeformation"]),
     "material-number": ("Filters/Input/MaterialArray.cxx", "static_cast<T>(static_cast<int>(value)) == value", "true",
                         ["Cxx.TestMaterialFromVolume", "Cxx.TestChainMailMisuse"]),
+    "material-preset": ("Filters/vtkMaterialFromVolume.cxx", "table.Exists[i] = true;", "",
+                        ["Cxx.TestMaterialFromVolume"]),
     "categories": ("Filters/Input/VolumeArrays.cxx", "isId || (array->GetName()", "(array->GetName()",
                    ["Cxx.TestDeformArrays"]),
     "cell-diagonal": ("Filters/Input/CellSplit.cxx", "lowest = node(face, i) < node(face, lowest) ? i : lowest;", "",

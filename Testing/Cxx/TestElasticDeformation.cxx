@@ -413,6 +413,85 @@ void TestAborted()
   VERIFY(AreEqual(simulated.Copy(), wanted.Copy()));
 }
 
+void TestMisuseOfPresets()
+{
+  vtkNew<vtkFiniteElementDeformation> fresh;
+  VERIFY_EQUAL(fresh->GetMaterialPreset(), static_cast<int>(vtkElasticDeformation::CUSTOM));
+  fresh->SetMaterialPreset(-1);
+  VERIFY_EQUAL(fresh->GetMaterialPreset(), static_cast<int>(vtkElasticDeformation::CUSTOM));
+  fresh->SetMaterialPreset(8);
+  VERIFY_EQUAL(fresh->GetMaterialPreset(), static_cast<int>(vtkElasticDeformation::BONE));
+  for (const int preset : { -1, 0, 8, std::numeric_limits<int>::max() })
+  {
+    double values[3] = { 1.0, 2.0, 3.0 };
+    VERIFY(!vtkElasticDeformation::GetMaterialPresetValues(preset, values));
+    VERIFY(values[0] == 1.0 && values[1] == 2.0 && values[2] == 3.0);
+    VERIFY(!vtkElasticDeformation::GetMaterialPresetSource(preset));
+    VERIFY_EQUAL(vtkElasticDeformation::GetMaterialPresetName(preset) != nullptr, preset == 0);
+  }
+  VERIFY_EQUAL(vtkElasticDeformation::GetMaterialPresetName(vtkElasticDeformation::LIVER),
+    std::string("Liver"));
+
+  // Numbers that a preset replaces are not read, and are still there.
+  Simulated<vtkFiniteElementDeformation> simulated(MakeBar(1.0));
+  simulated.Object->SetDensity(-1.0);
+  VERIFY(Holds(simulated.TryUpdate(), "density"));
+  simulated.Object->SetMaterialPresetToLiver();
+  VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+  VERIFY_EQUAL(simulated.Object->GetDensity(), -1.0);
+  simulated.Object->SetMaterialPresetToCustom();
+  VERIFY(Holds(simulated.TryUpdate(), "density"));
+}
+
+// A preset is the same as its three numbers, to the last bit, and cell arrays come first.
+template <typename Filter>
+void TestMaterialPresets()
+{
+  vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
+  const auto simulate = [&](const auto& change)
+  {
+    Simulated<Filter> simulated(bar);
+    simulated.Object->SetGravity(1.0, 0.0, 2.0);
+    simulated.Object->SetFrameTime(1e-3);
+    change(simulated.Object.Get());
+    simulated.Object->UpdateTimeStep(2e-3);
+    VERIFY(!simulated.Observer->GetError());
+    VERIFY(!simulated.Observer->GetWarning());
+    return simulated.Copy();
+  };
+  const auto byNumbers = [&](double youngModulus, double poissonRatio, double density)
+  {
+    return simulate(
+      [&](Filter* filter)
+      {
+        filter->SetYoungModulus(youngModulus);
+        filter->SetPoissonRatio(poissonRatio);
+        filter->SetDensity(density);
+      });
+  };
+  const auto plain = simulate([](Filter*) {});
+  for (int preset = Filter::BRAIN; preset <= Filter::BONE; ++preset)
+  {
+    double values[3];
+    VERIFY(Filter::GetMaterialPresetValues(preset, values));
+    const auto moved = simulate([&](Filter* filter) { filter->SetMaterialPreset(preset); });
+    VERIFY(moved->GetRange(-1)[1] > 0.0);
+    VERIFY(!AreEqual(moved, plain));
+    VERIFY(AreEqual(moved, byNumbers(values[0], values[1], values[2])));
+  }
+  VERIFY(AreEqual(simulate([](Filter* filter) { filter->SetMaterialPresetToLiver(); }),
+    byNumbers(5500.0, 0.49, 1060.0)));
+
+  vtkNew<vtkDoubleArray> stiffness;
+  stiffness->SetName("YoungModulus");
+  stiffness->SetNumberOfTuples(bar->GetNumberOfCells());
+  stiffness->Fill(3e4);
+  bar->GetCellData()->AddArray(stiffness);
+  const auto moved = simulate([](Filter* filter) { filter->SetMaterialPresetToLiver(); });
+  bar->GetCellData()->RemoveArray("YoungModulus");
+  VERIFY(AreEqual(moved, byNumbers(3e4, 0.49, 1060.0)));
+}
+
 // Both models agree where deformations are small, and deform a volume.
 void TestDeformedVolume()
 {
@@ -500,6 +579,9 @@ int TestElasticDeformation(int, char*[])
   TestWarnings<vtkMassSpringDeformation>(0.008);
   TestWarnings<vtkFiniteElementDeformation>(0.02);
   TestWarningsOfTheirOwn();
+  TestMisuseOfPresets();
+  TestMaterialPresets<vtkMassSpringDeformation>();
+  TestMaterialPresets<vtkFiniteElementDeformation>();
   TestHangingBar<vtkMassSpringDeformation>(
     [](Simulated<vtkMassSpringDeformation>& simulated)
     {

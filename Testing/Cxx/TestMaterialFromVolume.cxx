@@ -354,6 +354,85 @@ void TestRanges()
   }
 }
 
+// Tissues by their names: errors that change nothing, and the same means as of their numbers.
+void TestPresets()
+{
+  vtkSmartPointer<vtkImageData> volume = MakeVolume();
+  vtkSmartPointer<vtkUnstructuredGrid> mesh = MakeMesh(volume, 5);
+  Tested tested(mesh, volume);
+  vtkMaterialFromVolume* filter = tested.Filter;
+  const auto fails = [&](int index, int preset, const std::string& words)
+  {
+    const vtkMTimeType time = filter->GetMTime();
+    filter->SetMaterialPreset(index, preset);
+    const std::string errors = tested.Observer->GetErrorMessage();
+    tested.Observer->Clear();
+    return Holds(errors, words) && filter->GetMTime() == time &&
+      filter->GetNumberOfMaterialPresets() == 0;
+  };
+  VERIFY(fails(256, vtkElasticDeformation::LIVER, "no material 256"));
+  VERIFY(fails(-1, vtkElasticDeformation::LIVER, "no material -1"));
+  VERIFY(fails(4, 8, "Material 4 cannot have the preset 8"));
+  VERIFY(fails(4, -1, "Material 4 cannot have the preset -1"));
+  for (const int index : { -1, 0, 256 })
+  {
+    VERIFY_EQUAL(filter->GetMaterialPreset(index), static_cast<int>(vtkElasticDeformation::CUSTOM));
+  }
+
+  using Means = std::vector<double>;
+  const auto find = [&](Tested& one)
+  {
+    VERIFY_EQUAL(one.TryUpdate(), std::string());
+    Means means;
+    for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
+    {
+      for (int name = 0; name < 3; ++name)
+      {
+        means.push_back(one.Get(name, cell));
+      }
+    }
+    return means;
+  };
+  const Means before = find(tested);
+  Tested wanted(mesh, volume);
+  wanted.Filter->SetMaterial(1, 1600.0, 0.49, 1040.0);
+  wanted.Filter->SetMaterial(4, 18.6e9, 0.3, 1920.0);
+  // Whether numbers are set before or after.
+  filter->SetMaterialPreset(1, vtkElasticDeformation::BRAIN);
+  filter->SetMaterialPreset(4, vtkElasticDeformation::BONE);
+  filter->SetMaterial(1, -1.0, 0.3, 1000.0);
+  VERIFY_EQUAL(filter->GetNumberOfMaterialPresets(), 2);
+  VERIFY_EQUAL(filter->GetMaterialPreset(4), static_cast<int>(vtkElasticDeformation::BONE));
+  const Means means = find(tested);
+  VERIFY(means != before);
+  VERIFY(means == find(wanted));
+  std::ostringstream printed;
+  filter->Print(printed);
+  VERIFY(Holds(printed.str(), "4: Bone"));
+  // The numbers are still there.
+  filter->SetMaterialPreset(1, vtkElasticDeformation::CUSTOM);
+  VERIFY(Holds(tested.TryUpdate(), "Young modulus of material 1"));
+  filter->SetMaterial(1, 1e4, 0.3, 1000.0);
+  filter->ClearMaterialPresets();
+  VERIFY_EQUAL(filter->GetNumberOfMaterialPresets(), 0);
+  VERIFY(find(tested) == before);
+
+  // An index needs no other material than that of its preset.
+  filter->ClearMaterials();
+  for (int index = 0; index < 5; ++index)
+  {
+    filter->SetMaterialPreset(index, vtkElasticDeformation::FAT);
+  }
+  VERIFY_EQUAL(filter->GetNumberOfMaterials(), 0);
+  const Means fat = find(tested);
+  for (std::size_t i = 0; i < fat.size(); i += 3)
+  {
+    VERIFY(std::abs(fat[i] - 3250.0) < 1e-9 * 3250.0);
+    VERIFY(std::abs(fat[i + 1] - 0.49) < 1e-12);
+    VERIFY(std::abs(fat[i + 2] - 950.0) < 1e-9 * 950.0);
+  }
+}
+
 void TestAbort()
 {
   vtkSmartPointer<vtkImageData> volume = MakeVolume();
@@ -441,6 +520,7 @@ int TestMaterialFromVolume(int, char*[])
   TestMeans(false);
   TestMeans(true);
   TestRanges();
+  TestPresets();
   TestAbort();
   TestInSimulation();
   return GetExitCode();

@@ -36,6 +36,7 @@ REMOVED = {"StreamInput", "WorkGroupSize", "NumberOfTimeSamples"}
 LISTS = {
     ("vtkChainMailDeformation", "Materials"): [3, 0.5, 1.5, 0.25, 7, 0.25, 2.5, 0.125],
     ("vtkMaterialFromVolume", "Materials"): [3, 2000.5, 0.25, 900, 7, 500, 0.125, 1100],
+    ("vtkMaterialFromVolume", "MaterialPresets"): [3, 7, 4, 2],
 }
 
 
@@ -49,6 +50,14 @@ def read_materials(instance):
             result += [index, *values]
     check(len(result) == 4 * instance.GetNumberOfMaterials(), "Not all materials are found")
     return result
+
+
+def read_presets(instance):
+    """Index and preset of each material that has one."""
+    presets = [(index, instance.GetMaterialPreset(index)) for index in range(256)]
+    found = [number for pair in presets if pair[1] for number in pair]
+    check(len(found) == 2 * instance.GetNumberOfMaterialPresets(), f"{found} are presets")
+    return found
 
 
 def read_ranges(instance):
@@ -80,6 +89,7 @@ def read_array_choice(instance):
 # positions of tools there are; where they cut is in TestEdits.py.
 READERS = {
     "Materials": read_materials,
+    "MaterialPresets": read_presets,
     "MaterialRanges": read_ranges,
     "RefinementSpheres": read_spheres,
     "Labels": lambda made: [made.GetLabel(i) for i in range(made.GetNumberOfLabels())],

@@ -39,6 +39,11 @@ WITHOUT_PROPERTY = {
     "GetMaterialValues",
     "GetNumberOfMaterials",
     "GetNumberOfMaterialRanges",
+    "GetNumberOfMaterialPresets",
+    # The table of presets.
+    "GetMaterialPresetName",
+    "GetMaterialPresetSource",
+    "GetMaterialPresetValues",
     "SaveState",
     "RestoreState",
     "RemoveState",
@@ -190,6 +195,8 @@ def check_values(cls, proxy):
             continue
         if prop.tag == "ProxyProperty":
             continue  # an object, of which ParaView makes the first of a list
+        if prop.get("repeat_command"):
+            continue  # a list, whose getter wants an index
         value = getattr(instance, "Get" + attribute)()
         if hasattr(instance, f"Get{attribute}MaxValue"):
             low = getattr(instance, f"Get{attribute}MinValue")()
