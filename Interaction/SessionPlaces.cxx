@@ -16,8 +16,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <mutex>
+#include <vector>
 
 namespace
 {
@@ -138,17 +140,62 @@ bool SearchField(vtkImageData* field, const glm::dvec3& deformed, glm::dvec3& re
   return false;
 }
 
-struct Tetrahedron
+// The nodes of a tetrahedron of four or ten nodes, at rest and deformed. That of ten gets one in
+// its middle, as in vtkDeformVolumeFilter.
+struct CellNodes
 {
-  std::array<glm::dvec3, 4> Rest;
-  std::array<glm::dvec3, 4> Deformed;
+  std::vector<glm::dvec3> Rest;
+  std::vector<glm::dvec3> Deformed;
 };
 
-using Corners = std::array<glm::dvec3, 4>;
+using Places = std::vector<glm::dvec3>;
+using Corners = std::array<std::size_t, 4>;
 
-// The tetrahedron that holds a place, or is nearest by its least barycentric coordinate.
+constexpr std::size_t LinearNodes = 4;
+constexpr std::size_t QuadraticNodes = 10;
+
+// The tetrahedra that a cell is split into.
+const std::vector<Corners>& GetParts(std::size_t numberOfNodes)
+{
+  static const std::vector<Corners> none;
+  static const std::vector<Corners> linear = { { { 0, 1, 2, 3 } } };
+  // Those at the corners, and those round the middle.
+  static const std::vector<Corners> quadratic = { { { 0, 4, 6, 7 } }, { { 1, 4, 5, 8 } },
+    { { 2, 5, 6, 9 } }, { { 3, 7, 8, 9 } }, { { 10, 4, 6, 7 } }, { { 10, 4, 5, 8 } },
+    { { 10, 5, 6, 9 } }, { { 10, 7, 8, 9 } }, { { 10, 4, 5, 6 } }, { { 10, 4, 8, 7 } },
+    { { 10, 5, 9, 8 } }, { { 10, 6, 9, 7 } } };
+  return numberOfNodes == LinearNodes ? linear : numberOfNodes == QuadraticNodes ? quadratic : none;
+}
+
+void AddMiddle(Places& places)
+{
+  glm::dvec3 middle(0.0);
+  for (std::size_t i = 0; i < QuadraticNodes; ++i)
+  {
+    middle += (i < LinearNodes ? -0.125 : 0.25) * places[i];
+  }
+  places.push_back(middle);
+}
+
+CellNodes ReadCell(vtkDataSet* mesh, vtkDataArray* vectors, vtkIdList* ids)
+{
+  CellNodes nodes;
+  for (const vtkIdType id : *ids)
+  {
+    nodes.Rest.push_back(GetPlace(mesh, id));
+    nodes.Deformed.push_back(nodes.Rest.back() + GetVector(vectors, id));
+  }
+  if (nodes.Rest.size() == QuadraticNodes)
+  {
+    AddMiddle(nodes.Rest);
+    AddMiddle(nodes.Deformed);
+  }
+  return nodes;
+}
+
+// In the tetrahedron that holds a place, or is nearest by its least barycentric coordinate.
 glm::dvec3 MapInMesh(
-  vtkDataSet* mesh, const glm::dvec3& place, Corners Tetrahedron::*from, Corners Tetrahedron::*to)
+  vtkDataSet* mesh, const glm::dvec3& place, Places CellNodes::*from, Places CellNodes::*to)
 {
   vtkDataArray* vectors = mesh->GetPointData()->GetVectors();
   double best = -std::numeric_limits<double>::infinity();
@@ -157,27 +204,23 @@ glm::dvec3 MapInMesh(
   for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells() && best < 0.0; ++cell)
   {
     mesh->GetCellPoints(cell, ids);
-    if (ids->GetNumberOfIds() != 4)
+    const std::vector<Corners>& parts = GetParts(static_cast<std::size_t>(ids->GetNumberOfIds()));
+    const CellNodes nodes = parts.empty() ? CellNodes() : ReadCell(mesh, vectors, ids);
+    for (const Corners& part : parts)
     {
-      continue;
-    }
-    Tetrahedron tetrahedron;
-    for (int i = 0; i < 4; ++i)
-    {
-      tetrahedron.Rest[i] = GetPlace(mesh, ids->GetId(i));
-      tetrahedron.Deformed[i] = tetrahedron.Rest[i] + GetVector(vectors, ids->GetId(i));
-    }
-    const Corners& source = tetrahedron.*from;
-    const Corners& target = tetrahedron.*to;
-    const glm::dmat3 edges(source[1] - source[0], source[2] - source[0], source[3] - source[0]);
-    const glm::dvec3 weights = glm::inverse(edges) * (place - source[0]);
-    const double least =
-      std::min({ weights.x, weights.y, weights.z, 1.0 - weights.x - weights.y - weights.z });
-    if (least > best) // not where the tetrahedron is flat
-    {
-      best = least;
-      found = target[0] + weights.x * (target[1] - target[0]) +
-        weights.y * (target[2] - target[0]) + weights.z * (target[3] - target[0]);
+      const auto get = [&](Places CellNodes::*places, std::size_t i) -> const glm::dvec3&
+      { return (nodes.*places)[part[i]]; };
+      const glm::dvec3& origin = get(from, 0);
+      const glm::dmat3 edges(get(from, 1) - origin, get(from, 2) - origin, get(from, 3) - origin);
+      const glm::dvec3 weights = glm::inverse(edges) * (place - origin);
+      const double least =
+        std::min({ weights.x, weights.y, weights.z, 1.0 - weights.x - weights.y - weights.z });
+      if (least > best) // not where the tetrahedron is flat
+      {
+        best = least;
+        found = get(to, 0) + weights.x * (get(to, 1) - get(to, 0)) +
+          weights.y * (get(to, 2) - get(to, 0)) + weights.z * (get(to, 3) - get(to, 0));
+      }
     }
   }
   return found;
@@ -193,7 +236,7 @@ glm::dvec3 deformvolume::EstimateRestPlace(vtkDataSet* deformation, const glm::d
     SearchField(field, deformed, rest);
     return rest;
   }
-  return MapInMesh(deformation, deformed, &Tetrahedron::Deformed, &Tetrahedron::Rest);
+  return MapInMesh(deformation, deformed, &CellNodes::Deformed, &CellNodes::Rest);
 }
 
 glm::dvec3 deformvolume::FindRestPlace(vtkDataSet* deformation, const glm::dvec3& deformed)
@@ -213,5 +256,5 @@ glm::dvec3 deformvolume::FindDeformedPlace(vtkDataSet* deformation, const glm::d
   {
     return rest + Interpolate(field, rest);
   }
-  return MapInMesh(deformation, rest, &Tetrahedron::Rest, &Tetrahedron::Deformed);
+  return MapInMesh(deformation, rest, &CellNodes::Rest, &CellNodes::Deformed);
 }
