@@ -124,7 +124,7 @@ void CheckModel(const Options& options)
         "--push moves nodes without a model; give --pull to --model " + options.Model);
     }
   }
-  else if (!options.Fixations.empty() || !options.Materials.empty())
+  else if (!options.Fixations.empty() || !options.Materials.empty() || !options.Tissue.empty())
   {
     throw UsageError(std::string(options.Fixations.empty() ? "--material" : "--fix") +
       " requires --model fem or --model mass-spring");

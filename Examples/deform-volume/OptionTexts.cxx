@@ -1,7 +1,51 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "OptionTexts.h"
 
+#include <vtkElasticDeformation.h>
+
 #include <algorithm>
+#include <cctype>
+#include <vector>
+
+namespace
+{
+/// The presets of vtkElasticDeformation, in lower case.
+std::vector<std::string> GetTissueNames()
+{
+  std::vector<std::string> names;
+  for (int preset = vtkElasticDeformation::BRAIN; preset <= vtkElasticDeformation::BONE; ++preset)
+  {
+    std::string name = vtkElasticDeformation::GetMaterialPresetName(preset);
+    std::transform(name.begin(), name.end(), name.begin(),
+      [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+    names.push_back(name);
+  }
+  return names;
+}
+}
+
+std::optional<std::array<double, 3>> FindTissue(const std::string& name)
+{
+  const std::vector<std::string> names = GetTissueNames();
+  const auto found = std::find(names.begin(), names.end(), name);
+  std::array<double, 3> values{};
+  const auto preset = static_cast<int>(found - names.begin()) + vtkElasticDeformation::BRAIN;
+  if (!vtkElasticDeformation::GetMaterialPresetValues(preset, values.data()))
+  {
+    return std::nullopt;
+  }
+  return values;
+}
+
+std::string GetTissues()
+{
+  std::string all;
+  for (const std::string& name : GetTissueNames())
+  {
+    all += (all.empty() ? "" : ", ") + name;
+  }
+  return all;
+}
 
 Push ParsePush(const std::string& text)
 {
@@ -82,7 +126,9 @@ MaterialOfValues ParseMaterial(const std::string& text)
 {
   const std::size_t colon = std::min(text.find(':'), text.size());
   const std::size_t equals = std::min(text.find('=', colon), text.size());
-  const std::string shape = "MINIMUM:MAXIMUM=E[,NU[,DENSITY]]";
+  const std::string shape = "TISSUE, MINIMUM:MAXIMUM=TISSUE or MINIMUM:MAXIMUM=E[,NU[,DENSITY]], "
+                            "where TISSUE is one of " +
+    GetTissues();
   if (equals == text.size())
   {
     throw UsageError("--material " + text + ": expected " + shape);
@@ -95,6 +141,13 @@ MaterialOfValues ParseMaterial(const std::string& text)
   if (!(material.Minimum < material.Maximum))
   {
     throw UsageError("--material " + text + ": the minimum must be less than the maximum");
+  }
+  if (const auto tissue = FindTissue(text.substr(equals + 1)))
+  {
+    material.YoungModulus = (*tissue)[0];
+    material.PoissonRatio = (*tissue)[1];
+    material.Density = (*tissue)[2];
+    return material;
   }
   std::istringstream values(text.substr(equals + 1));
   std::string part;

@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <sstream>
 #include <string>
 
@@ -44,5 +45,11 @@ Carving ParseCarving(const std::string& text);
 MaterialOfValues ParseMaterial(const std::string& text);
 TransformFile ParseTransform(const std::string& text);
 ///@}
+
+/// The Young modulus, Poisson ratio and density of a tissue (vtkElasticDeformation); none where no
+/// tissue has the name, in lower case.
+std::optional<std::array<double, 3>> FindTissue(const std::string& name);
+/// The names of all tissues, with commas between them.
+std::string GetTissues();
 
 #endif

@@ -32,6 +32,30 @@ struct RawOptions
   std::string Bounds = "deformed";
 };
 
+/// What no range holds is of a tissue.
+void SetTissue(const CLI::App& program, const std::string& tissue, Options& options)
+{
+  if (!options.Tissue.empty())
+  {
+    throw UsageError("--material " + tissue + ": the body is already of --material " +
+      options.Tissue + ". Give one of them a range of values, MINIMUM:MAXIMUM=TISSUE");
+  }
+  for (const char* option : { "--young", "--poisson", "--density" })
+  {
+    if (program.count(option))
+    {
+      throw UsageError("--material " + tissue + " sets what " + option +
+        " sets. Leave one of them out, or give the tissue a range of values, "
+        "MINIMUM:MAXIMUM=TISSUE");
+    }
+  }
+  options.Tissue = tissue;
+  const std::array<double, 3> values = *FindTissue(tissue);
+  options.YoungModulus = values[0];
+  options.PoissonRatio = values[1];
+  options.Density = values[2];
+}
+
 void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
 {
   if (!raw.Lattice.empty())
@@ -60,7 +84,14 @@ void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
   }
   for (const std::string& text : raw.Materials)
   {
-    options.Materials.push_back(ParseMaterial(text));
+    if (FindTissue(text))
+    {
+      SetTissue(program, text, options);
+    }
+    else
+    {
+      options.Materials.push_back(ParseMaterial(text));
+    }
   }
   options.Gravity = ParseNumbers<double, 3>(
     "--gravity", raw.Gravity, "three numbers X,Y,Z with commas between them");
@@ -122,11 +153,13 @@ void AddElasticModel(CLI::App& program, Options& options, RawOptions& raw)
   program
     .add_option("--material", raw.Materials,
       "Voxels with values from MINIMUM on, less than MAXIMUM, have the Young modulus E (Pa), the "
-      "Poisson ratio NU and the DENSITY, and each tetrahedron has the mean of its voxels. The "
-      "first "
-      "range that holds a value counts; what none holds has --young, --poisson and --density. May "
-      "be given several times")
-    ->type_name("MINIMUM:MAXIMUM=E[,NU[,DENSITY]]")
+      "Poisson ratio NU and the DENSITY, or those of a TISSUE, and each tetrahedron has the mean "
+      "of "
+      "its voxels. The first range that holds a value counts; what none holds is of the TISSUE "
+      "that "
+      "is given without a range, or else has --young, --poisson and --density. Tissues: " +
+        GetTissues() + ". May be given several times")
+    ->type_name("TISSUE|MINIMUM:MAXIMUM=TISSUE|MINIMUM:MAXIMUM=E[,NU[,DENSITY]]")
     ->take_all()
     ->expected(1)
     ->group(group);

@@ -52,6 +52,7 @@ struct Options
   double PoissonRatio = 0.3;
   double Density = 1000.0;
   double Duration = 1.0;
+  std::string Tissue; // what the three are of; "": they are numbers of their own
   std::vector<MaterialOfValues> Materials;
 
   std::vector<std::string> Cuts;

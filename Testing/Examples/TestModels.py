@@ -57,6 +57,14 @@ fails(2, "--young requires --model", *lattice, "--push", "9,20,25,3,0,0,15", "--
 for text in ("5=1", "1:2", "1:2=", "1:2=3,", "1:2=3,0.3,1,4", "2:1=3", "a:2=3"):
     fails(2, f"--material {text}" if text[0] in "25" else "--material", "--model", "fem", *lattice, *fix,
           "--material", text)
+for text in ("kidney", "Liver", "1:2=kidney", "1:2=liver,0.3"):
+    fails(2, "brain, liver, fat, muscle, skin, cartilage, bone", "--model", "fem", *lattice, *fix, "--material", text)
+fails(2, "--material liver sets what --young sets", "--model", "fem", *lattice, *fix, "--material", "liver",
+      "--young", "5000")
+fails(2, "--material fat: the body is already of --material liver", "--model", "fem", *lattice, *fix,
+      "--material", "liver", "--material", "fat")
+fails(2, "--material requires", "--model", "chainmail", *pull, "--material", "liver")
+fails(2, "--material requires --model", *lattice, "--push", "9,20,25,3,0,0,15", "--material", "liver")
 fails(1, "Young modulus of material 0", "--model", "fem", *lattice, *fix, "--material", "0:9=-1")
 fails(2, "--material requires", "--model", "chainmail", *pull, "--material", "0:9=1")
 fails(1, "no such file", "--model", "fem", *lattice, *fix, "--cut", path("none.vtp"))
@@ -121,6 +129,26 @@ def check(name, model, words, *arguments):
     assert os.path.exists(path(f"{name}.vtu"))
 
 
+def check_tissues():
+    """A tissue is the same as its numbers, of the body and of a range."""
+    low, high = volume.GetPointData().GetScalars().GetRange()
+    limit = 0.5 * (low + high)
+
+    def deformed(name, *arguments):
+        call(program, path("in.vti"), "--model", "fem", *lattice, *fix, *pull, "--gravity", "0,0,-2", *arguments,
+             "-o", path(name))
+        return get_values(read_vti(path(name)))
+
+    numbers_of_body = ("--young", "5500", "--poisson", "0.49", "--density", "1060")
+    by_numbers = deformed("numbers.vti", *numbers_of_body)
+    assert (by_numbers != deformed("soft.vti")).any()
+    numpy.testing.assert_array_equal(deformed("liver.vti", "--material", "liver"), by_numbers)
+    both = deformed("both.vti", "--material", "liver", "--material", f"{limit}:1e9=muscle")
+    assert (both != by_numbers).any()
+    numpy.testing.assert_array_equal(
+        both, deformed("ranges.vti", *numbers_of_body, "--material", f"{limit}:1e9=11100,0.49,1050"))
+
+
 def check_materials_and_cut():
     """The upper half is stiffer, and a plane parts the mesh."""
     plane = vtkPlaneSource()
@@ -162,6 +190,7 @@ def check_materials_and_cut():
 
 
 check_materials_and_cut()
+check_tissues()
 check("fem", deformvolume_vtk.vtkFiniteElementDeformation(), "to equilibrium, strain energy")
 check("mass-spring", deformvolume_vtk.vtkMassSpringDeformation(), "0.1 s, in steps of", "--duration",
       "0.1")
