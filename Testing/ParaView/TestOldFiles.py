@@ -77,8 +77,39 @@ def check_edits(path):
     check(simple.FindSource("Carve").Labels == "", "a label is carved that was not chosen")
 
 
+def check_elements():
+    """A state with the former name of Finite Element Deformation, and a script with it."""
+    for source in reversed(list(simple.GetSources().values())):
+        simple.Delete(source)
+    lattice = simple.TetrahedralLattice(NumberOfNodes=[3, 3, 3])
+    handle = simple.DeformationHandle(RestPosition=[1, 1, 1], Position=[1, 1, 2])
+    simple.FiniteElementDeformation(
+        registrationName="Elements", RestMesh=lattice, Handles=handle, HandleRadius=10, YoungModulus=5000
+    )
+    path = os.path.join(OUTPUT, "TestOldFilesElements.pvsm")
+    simple.SaveState(path)
+    with open(path, encoding="utf-8") as file:
+        text = file.read()
+    check(text.count('type="FiniteElementDeformation"') == 1, "no filter in the state")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text.replace('type="FiniteElementDeformation"', 'type="CorotationalDeformation"'))
+    for source in reversed(list(simple.GetSources().values())):
+        simple.Delete(source)
+    with messages() as texts:
+        simple.LoadState(path)
+        loaded = simple.FindSource("Elements")
+        loaded.UpdatePipeline()
+    check_silent(texts)
+    check(loaded.SMProxy.GetXMLName() == "CorotationalDeformation", loaded.SMProxy.GetXMLName())
+    check(loaded.YoungModulus == 5000, f"the Young modulus is {loaded.YoungModulus}")
+    check(loaded.HeldNodes >= 27, f"{loaded.HeldNodes} nodes are held")
+    written = simple.CorotationalDeformation(RestMesh=simple.FindSource("TetrahedralLattice1"))
+    check(written.Mode == "Converged", f"the mode is {written.Mode}")
+
+
 def main():
     load_plugin()
+    check_elements()
     check_edits(os.path.join(sys.argv[1], "State-0.1-edits.pvsm"))
     state, script = (os.path.join(sys.argv[1], name) for name in ("State-0.1.pvsm", "Script-0.1.py"))
     check_file(run_script, script, WARNINGS)

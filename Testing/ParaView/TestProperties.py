@@ -533,6 +533,7 @@ def main():
         "CarveVolumeLabel": lambda: simple.CarveVolumeLabel(Volume=labels, Labels="label"),
         "CarveVolumeWithSurface": lambda: simple.CarveVolumeWithSurface(Surface=surface, **edited),
         "ChainMailDeformation": lambda: simple.ChainMailDeformation(Volume=volume, Handles=handle),
+        "CorotationalDeformation": lambda: simple.CorotationalDeformation(**elastic),
         "FiniteElementDeformation": lambda: simple.FiniteElementDeformation(**elastic),
         "CutVolume": lambda: simple.CutVolume(Sheet=plane, **edited),
         "CutVolumeWithPlane": lambda: simple.CutVolumeWithPlane(**edited),

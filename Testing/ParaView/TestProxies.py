@@ -56,8 +56,9 @@ WITHOUT_PROPERTY = {
     # Behind SetFromState().
     "SetResampler",
 }
-# What Carve Volume does now: not in the menu, and there for state files and scripts.
-FORMER_PROXIES = {"CarveVolumeLabel", "CarveVolumeWithSurface"}
+# What Carve Volume and Finite Element Deformation do now: not in the menu, and there for state files and
+# scripts.
+FORMER_PROXIES = {"CarveVolumeLabel", "CarveVolumeWithSurface", "CorotationalDeformation"}
 # A panel has at most so many widgets before the user asks for advanced ones.
 MOST_WIDGETS = 8
 # Numbers of enumerators that there are no more.
