@@ -118,25 +118,39 @@ BlockPattern MakeNodePattern(Watch& watch, const ElasticBody& body)
   return pattern;
 }
 
+std::int32_t BlockPattern::Find(std::int32_t row, std::int32_t column) const
+{
+  const auto begin = this->Columns.begin() + this->Rows[static_cast<std::size_t>(row)];
+  const auto end = this->Columns.begin() + this->Rows[static_cast<std::size_t>(row) + 1];
+  return static_cast<std::int32_t>(std::lower_bound(begin, end, column) - this->Columns.begin());
+}
+
 std::vector<BatchPositions> FindPositions(
   Watch& watch, const ElementBatches& batches, const BlockPattern& pattern)
 {
-  constexpr int pairs[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 2 }, { 1, 3 }, { 2, 3 } };
   std::vector<BatchPositions> positions;
   Grow(watch, positions, batches.Batches.size());
-  ForItemsInParallel(watch, positions.size(),
-    [&](std::size_t batch)
+  constexpr std::size_t atOnce = 256;
+  ForParts(watch, (positions.size() + atOnce - 1) / atOnce, 8,
+    [&](std::size_t part)
     {
-      for (int pair = 0; pair < 6; ++pair)
+      const std::size_t end = std::min(positions.size(), (part + 1) * atOnce);
+      for (std::size_t batch = part * atOnce; batch < end; ++batch)
       {
-        for (int lane = 0; lane < NumberOfLanes; ++lane)
+        const auto& nodes = batches.Batches[batch].Nodes;
+        int pair = 0;
+        for (int a = 0; a < ElementBatch::NumberOfNodes; ++a)
         {
-          const auto& nodes = batches.Batches[batch].Nodes;
-          const auto row = static_cast<std::size_t>(nodes[pairs[pair][0]][lane]);
-          const auto begin = pattern.Columns.begin() + pattern.Rows[row];
-          const auto end = pattern.Columns.begin() + pattern.Rows[row + 1];
-          positions[batch].Blocks[pair][lane] = static_cast<std::int32_t>(
-            std::lower_bound(begin, end, nodes[pairs[pair][1]][lane]) - pattern.Columns.begin());
+          for (int b = a + 1; b < ElementBatch::NumberOfNodes; ++b, ++pair)
+          {
+            for (int lane = 0; lane < NumberOfLanes; ++lane)
+            {
+              const bool isRising = nodes[a][lane] < nodes[b][lane];
+              const std::int32_t block = pattern.Find(isRising ? nodes[a][lane] : nodes[b][lane],
+                isRising ? nodes[b][lane] : nodes[a][lane]);
+              positions[batch].Blocks[pair][lane] = isRising ? block : ~block;
+            }
+          }
         }
       }
     });

@@ -27,6 +27,8 @@ struct BlockPattern
   /// Of each block the one on the other side of the diagonal.
   std::vector<std::int32_t> Mirrored;
 
+  /// The block of a row and a column that have one.
+  std::int32_t Find(std::int32_t row, std::int32_t column) const;
   std::size_t GetNumberOfRows() const { return this->Diagonal.size(); }
   std::size_t GetNumberOfBlocks() const { return this->Columns.size(); }
 };
@@ -34,11 +36,15 @@ struct BlockPattern
 /// The pattern in which nodes that have a tetrahedron in common are connected.
 BlockPattern MakeNodePattern(Watch& watch, const ElasticBody& body);
 
-/// Where six blocks above the diagonal of each tetrahedron lie: those of nodes 0 1, 0 2, 0 3, 1 2,
-/// 1 3, 2 3 of a batch.
+/// Where the blocks above the diagonal of each tetrahedron lie: those of nodes 0 1, 0 2, ..., 0 9,
+/// 1 2, ..., 8 9 of a batch. Where the second node has the lower number, what lies above the
+/// diagonal is the block transposed, and this is ~position.
 struct BatchPositions
 {
-  std::int32_t Blocks[6][NumberOfLanes];
+  static constexpr int NumberOfPairs =
+    ElementBatch::NumberOfNodes * (ElementBatch::NumberOfNodes - 1) / 2;
+
+  std::int32_t Blocks[NumberOfPairs][NumberOfLanes];
 };
 std::vector<BatchPositions> FindPositions(
   Watch& watch, const ElementBatches& batches, const BlockPattern& pattern);

@@ -10,7 +10,7 @@
 
 namespace deformvolume
 {
-int ConjugateGradients::Solve(Watch& watch, const BlockMatrix& matrix,
+ConjugateGradients::Result ConjugateGradients::Solve(Watch& watch, const BlockMatrix& matrix,
   const std::vector<unsigned char>& isFree, Preconditioner& preconditioner, const Limits& limits,
   std::vector<glm::dvec3>& solution, std::vector<glm::dvec3>& residual)
 {
@@ -20,13 +20,15 @@ int ConjugateGradients::Solve(Watch& watch, const BlockMatrix& matrix,
   this->Product.resize(rows);
   double squared = SumOfProducts(watch, residual, residual);
   double last = 0.0;
-  int iteration = 0;
+  Result result;
+  int& iteration = result.Iterations;
   for (; squared > limits.SquaredResidual && iteration < limits.Iterations; ++iteration)
   {
     preconditioner.Apply(watch, residual, std::sqrt(squared), this->Preconditioned);
     const double product = SumOfProducts(watch, residual, this->Preconditioned);
     if (!(product > 0.0))
     {
+      result.IsIndefinite = true;
       break;
     }
     const double ratio = iteration == 0 ? 0.0 : product / last;
@@ -54,6 +56,7 @@ int ConjugateGradients::Solve(Watch& watch, const BlockMatrix& matrix,
     // Along a direction without stiffness there is no minimum.
     if (!(curvature > 0.0))
     {
+      result.IsIndefinite = true;
       break;
     }
     const double length = product / curvature;
@@ -70,7 +73,7 @@ int ConjugateGradients::Solve(Watch& watch, const BlockMatrix& matrix,
         return sum;
       });
   }
-  return iteration;
+  return result;
 }
 
 } // namespace deformvolume

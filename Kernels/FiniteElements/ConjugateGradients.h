@@ -25,9 +25,16 @@ public:
     double SquaredResidual = 0.0;
   };
 
-  /// Makes a solution better whose residual is given, which is 0 where nodes are not free. Returns
-  /// the number of iterations.
-  int Solve(Watch& watch, const BlockMatrix& matrix, const std::vector<unsigned char>& isFree,
+  struct Result
+  {
+    int Iterations = 0;
+    /// The matrix, or the preconditioner, is not positive definite. The solution is what it was
+    /// before that was found.
+    bool IsIndefinite = false;
+  };
+
+  /// Makes a solution better whose residual is given, which is 0 where nodes are not free.
+  Result Solve(Watch& watch, const BlockMatrix& matrix, const std::vector<unsigned char>& isFree,
     Preconditioner& preconditioner, const Limits& limits, std::vector<glm::dvec3>& solution,
     std::vector<glm::dvec3>& residual);
 

@@ -3,6 +3,7 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <array>
@@ -82,26 +83,71 @@ std::vector<std::int32_t> OrderTetrahedra(Watch& watch, const ElasticBody& body)
   return order;
 }
 
+// The nodes of a tetrahedron in the order of those of a batch.
+std::array<std::int32_t, ElementBatch::NumberOfNodes> GetNodes(
+  const ElasticBody& body, std::size_t tetrahedron)
+{
+  const Tetrahedron& corners = body.Tetrahedra[tetrahedron];
+  std::array<std::size_t, 4> order{ { 0, 1, 2, 3 } };
+  std::sort(order.begin(), order.end(),
+    [&](std::size_t a, std::size_t b) { return corners[a] < corners[b]; });
+  std::array<std::int32_t, ElementBatch::NumberOfNodes> nodes;
+  std::transform(
+    order.begin(), order.end(), nodes.begin(), [&](std::size_t corner) { return corners[corner]; });
+  for (std::size_t edge = 0; edge < 6; ++edge)
+  {
+    const std::size_t first = order[static_cast<std::size_t>(BatchEdges[edge][0])];
+    const std::size_t second = order[static_cast<std::size_t>(BatchEdges[edge][1])];
+    std::size_t own = 0;
+    while (
+      std::minmax(TetrahedronEdges[own][0], TetrahedronEdges[own][1]) != std::minmax(first, second))
+    {
+      ++own;
+    }
+    nodes[4 + edge] = body.MidSides[tetrahedron][own];
+  }
+  return nodes;
+}
+
 void SetLane(
   ElementBatch& batch, int lane, const ElasticBody& body, std::int32_t number, bool hasVolume)
 {
-  Tetrahedron nodes = body.Tetrahedra[static_cast<std::size_t>(number)];
-  std::sort(nodes.begin(), nodes.end());
-  const auto point = [&](std::size_t i) { return body.Points[static_cast<std::size_t>(nodes[i])]; };
-  const glm::dvec3 edges[3] = { point(1) - point(0), point(2) - point(0), point(3) - point(0) };
-  const double determinant = glm::dot(glm::cross(edges[0], edges[1]), edges[2]);
-  for (int i = 0; i < 3; ++i)
-  {
-    const glm::dvec3 gradient = glm::cross(edges[(i + 1) % 3], edges[(i + 2) % 3]) / determinant;
-    batch.Gradients[i].X[lane] = gradient.x;
-    batch.Gradients[i].Y[lane] = gradient.y;
-    batch.Gradients[i].Z[lane] = gradient.z;
-  }
-  for (std::size_t i = 0; i < 4; ++i)
+  constexpr std::size_t numberOfNodes = QuadraticTetrahedron::NumberOfNodes;
+  const auto nodes = GetNodes(body, static_cast<std::size_t>(number));
+  std::array<glm::dvec3, numberOfNodes> points{};
+  for (std::size_t i = 0; i < numberOfNodes; ++i)
   {
     batch.Nodes[i][lane] = nodes[i];
   }
-  batch.Volume[lane] = hasVolume ? std::abs(determinant) / 6.0 : 0.0;
+  // The order of QuadraticTetrahedron.
+  for (std::size_t i = 0; i < 4; ++i)
+  {
+    points[i] = body.Points[static_cast<std::size_t>(nodes[i])];
+  }
+  constexpr std::size_t places[6] = { 0, 2, 3, 1, 4, 5 };
+  for (std::size_t edge = 0; edge < 6; ++edge)
+  {
+    points[4 + places[edge]] = body.Points[static_cast<std::size_t>(nodes[4 + edge])];
+  }
+  double volume = 0.0;
+  for (std::size_t point = 0; point < QuadraticTetrahedron::NumberOfGaussPoints; ++point)
+  {
+    const glm::dmat3 jacobian =
+      QuadraticTetrahedron::GetJacobian(points, QuadraticTetrahedron::GetGaussPoint(point));
+    const double determinant = glm::determinant(jacobian);
+    for (int i = 0; i < 3; ++i)
+    {
+      const glm::dvec3 gradient =
+        glm::cross(jacobian[(i + 1) % 3], jacobian[(i + 2) % 3]) / determinant;
+      batch.Gradients[point][i].X[lane] = gradient.x;
+      batch.Gradients[point][i].Y[lane] = gradient.y;
+      batch.Gradients[point][i].Z[lane] = gradient.z;
+    }
+    batch.Volumes[point][lane] =
+      hasVolume ? QuadraticTetrahedron::GetGaussVolume(determinant) : 0.0;
+    volume += batch.Volumes[point][lane];
+  }
+  batch.InverseVolume[lane] = hasVolume ? 1.0 / volume : 0.0;
 }
 
 // Gives each chunk the first color that no chunk has with which it has a node in common.
@@ -200,7 +246,11 @@ void SetMaterials(ElementBatches& batches, const ElasticBody& body)
     ElementBatch& batch = batches.Batches[i / NumberOfLanes];
     const auto lane = static_cast<int>(i % NumberOfLanes);
     batch.Mu[lane] = material.GetShearModulus();
-    batch.Lambda[lane] = material.GetLambda();
+    // That of a Poisson ratio of 0.4.
+    constexpr double largestOfPoints = 4.0;
+    const double lambda = material.GetLambda();
+    batch.Lambda[lane] = std::min(lambda, largestOfPoints * material.GetShearModulus());
+    batch.MeanLambda[lane] = lambda - batch.Lambda[lane];
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include "ElasticBody.h"
 #include "Lanes.h"
+#include "QuadraticTetrahedron.h"
 #include "Watch.h"
 
 #include <cstddef>
@@ -13,20 +14,30 @@
 namespace deformvolume
 {
 
-/// As many tetrahedra as there are lanes. Where a lane has none, it repeats another one without a
-/// volume.
+/// The ends of the edges of a tetrahedron of a batch, in the order of its mid-side nodes.
+constexpr int BatchEdges[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 2 }, { 1, 3 }, { 2, 3 } };
+
+/// As many ten-node tetrahedra as there are lanes. Where a lane has none, it repeats another one
+/// without a volume.
 struct ElementBatch
 {
-  /// In rising order, so that a block of a matrix that belongs to two of them, the first one before
-  /// the second one, is above the diagonal.
-  std::int32_t Nodes[4][NumberOfLanes];
-  /// By how much the weights of the last three nodes change with the place at rest, in 1/m.
-  LaneVector Gradients[3];
-  /// In m^3.
-  Lanes Volume;
-  /// In Pa.
+  static constexpr int NumberOfNodes = QuadraticTetrahedron::NumberOfNodes;
+  static constexpr int NumberOfGaussPoints = QuadraticTetrahedron::NumberOfGaussPoints;
+
+  /// First the corners in rising order, then the nodes in the middle of BatchEdges.
+  std::int32_t Nodes[NumberOfNodes][NumberOfLanes];
+  /// By how much the coordinates of the last three corners change with the place at rest, at each
+  /// Gauss point, in 1/m.
+  LaneVector Gradients[NumberOfGaussPoints][3];
+  /// Of each Gauss point, in m^3.
+  Lanes Volumes[NumberOfGaussPoints];
+  /// 1 by their sum; 0 where there is no volume.
+  Lanes InverseVolume;
+  /// In Pa. What of lambda is more than 4 mu, as for Poisson ratios of more than 0.4, acts on the
+  /// mean dilatation of the tetrahedron only: otherwise it hardly bends any more.
   Lanes Mu;
   Lanes Lambda;
+  Lanes MeanLambda;
 };
 
 /// The tetrahedra of a body in batches, and which of these may be worked on side by side: batches
@@ -35,7 +46,7 @@ struct ElementBatch
 struct ElementBatches
 {
   /// Batches of a chunk, but for the last one.
-  static constexpr std::size_t ChunkSize = 32;
+  static constexpr std::size_t ChunkSize = 8;
 
   std::vector<ElementBatch> Batches;
   /// The tetrahedron in each lane of each batch; -1: none.
@@ -49,6 +60,7 @@ struct ElementBatches
   }
 };
 
+/// The body needs mid-side nodes.
 ElementBatches MakeElementBatches(Watch& watch, const ElasticBody& body);
 
 /// Leaves out the tetrahedra of some pieces of a body: they exert no forces, and do not count as

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a batch of tetrahedra does when it is deformed, for functions of lanes.
+// What a batch of ten-node tetrahedra does when it is deformed, for functions of lanes.
 #ifndef DeformVolumeElementMechanics_h
 #define DeformVolumeElementMechanics_h
 
 #include "ElementBatches.h"
+#include "EquilibriumTypes.h"
 #include "Lanes.h"
 #include "SingularValues.h"
 
@@ -25,83 +26,32 @@ DEFORMVOLUME_ALWAYS_INLINE LaneVector GatherNode(const std::int32_t* nodes, cons
   return result;
 }
 
-/// F, from displacements: what is small in them is not lost beside the positions.
-DEFORMVOLUME_ALWAYS_INLINE LaneMatrix FindDeformationGradient(
-  const ElementBatch& batch, const double* displacements)
+/// The node of a batch in the middle of the edge between two corners.
+constexpr int BatchMiddle[4][4] = { { -1, 4, 5, 6 }, { 4, -1, 7, 8 }, { 5, 7, -1, 9 },
+  { 6, 8, 9, -1 } };
+
+/// The coordinate of a corner at a Gauss point.
+constexpr double GetGaussCoordinate(int point, int corner)
 {
-  const LaneVector origin = GatherNode(batch.Nodes[0], displacements);
-  const LaneVector edges[3] = { Subtract(GatherNode(batch.Nodes[1], displacements), origin),
-    Subtract(GatherNode(batch.Nodes[2], displacements), origin),
-    Subtract(GatherNode(batch.Nodes[3], displacements), origin) };
-  const LaneVector* g = batch.Gradients;
-  LaneMatrix F;
-  F.Columns[0] =
-    Add(Add(Scale(edges[0], g[0].X), Scale(edges[1], g[1].X)), Scale(edges[2], g[2].X));
-  F.Columns[1] =
-    Add(Add(Scale(edges[0], g[0].Y), Scale(edges[1], g[1].Y)), Scale(edges[2], g[2].Y));
-  F.Columns[2] =
-    Add(Add(Scale(edges[0], g[0].Z), Scale(edges[1], g[1].Z)), Scale(edges[2], g[2].Z));
-  F.Columns[0].X = F.Columns[0].X + 1.0;
-  F.Columns[1].Y = F.Columns[1].Y + 1.0;
-  F.Columns[2].Z = F.Columns[2].Z + 1.0;
-  return F;
+  return point == corner ? QuadraticTetrahedron::NearCoordinate
+                         : QuadraticTetrahedron::FarCoordinate;
 }
 
-/// The first Piola-Kirchhoff stress, and the strain energy for each volume at rest.
-struct LaneStress
+constexpr double FarFactor = 4.0 * QuadraticTetrahedron::FarCoordinate;
+constexpr double NearFactor =
+  4.0 * (QuadraticTetrahedron::NearCoordinate - QuadraticTetrahedron::FarCoordinate);
+
+/// What a batch is like at one of its Gauss points.
+struct LanePoint
 {
-  LaneMatrix Piola;
-  Lanes EnergyDensity;
+  /// F - 1: what is small in it is not lost beside 1.
+  LaneMatrix Gradient;
+  /// The cofactors of F, which are the derivatives of its determinant, without 1 as well.
+  LaneMatrix Cofactors;
+  /// det F - 1, and what of it is not linear in F - 1.
+  Lanes Dilatation;
+  Lanes NonlinearDilatation;
 };
-
-DEFORMVOLUME_ALWAYS_INLINE LaneStress FindStress(
-  const ElementBatch& batch, const LaneMatrix& F, const SingularValues& values)
-{
-  const Lanes trace =
-    (values.Values[0] - 1.0) + (values.Values[1] - 1.0) + (values.Values[2] - 1.0);
-  const Lanes spherical = batch.Lambda * trace;
-  const Lanes twiceMu = 2.0 * batch.Mu;
-  const LaneMatrix& U = values.U;
-  const LaneMatrix& V = values.V;
-  // The columns of V^T.
-  const LaneVector rows[3] = { { V.Columns[0].X, V.Columns[1].X, V.Columns[2].X },
-    { V.Columns[0].Y, V.Columns[1].Y, V.Columns[2].Y },
-    { V.Columns[0].Z, V.Columns[1].Z, V.Columns[2].Z } };
-  LaneStress result;
-  Lanes squared = MakeLanes(0.0);
-  for (int j = 0; j < 3; ++j)
-  {
-    const LaneVector rotation = Multiply(U, rows[j]);
-    const LaneVector stretch = Subtract(F.Columns[j], rotation);
-    squared = squared + Dot(stretch, stretch);
-    result.Piola.Columns[j] = Add(Scale(stretch, twiceMu), Scale(rotation, spherical));
-  }
-  result.EnergyDensity = batch.Mu * squared + 0.5 * spherical * trace;
-  return result;
-}
-
-/// The blocks of the tangent of a batch: those of nodes 0 1, 0 2, 0 3, 1 2, 1 3, 2 3, by columns,
-/// and those of each node with itself.
-struct LaneTangent
-{
-  LaneMatrix Mixed[6];
-  LaneMatrix Own[4];
-};
-
-DEFORMVOLUME_ALWAYS_INLINE void AddProduct(
-  LaneMatrix& sum, const LaneVector& a, const LaneVector& b, const Lanes& factor)
-{
-  const LaneVector scaled = Scale(a, factor);
-  sum.Columns[0] = Add(sum.Columns[0], Scale(scaled, b.X));
-  sum.Columns[1] = Add(sum.Columns[1], Scale(scaled, b.Y));
-  sum.Columns[2] = Add(sum.Columns[2], Scale(scaled, b.Z));
-}
-
-DEFORMVOLUME_ALWAYS_INLINE LaneMatrix AddMatrices(const LaneMatrix& a, const LaneMatrix& b)
-{
-  return { { Add(a.Columns[0], b.Columns[0]), Add(a.Columns[1], b.Columns[1]),
-    Add(a.Columns[2], b.Columns[2]) } };
-}
 
 DEFORMVOLUME_ALWAYS_INLINE LaneMatrix Transpose(const LaneMatrix& a)
 {
@@ -110,80 +60,497 @@ DEFORMVOLUME_ALWAYS_INLINE LaneMatrix Transpose(const LaneMatrix& a)
     { a.Columns[0].Z, a.Columns[1].Z, a.Columns[2].Z } } };
 }
 
-DEFORMVOLUME_ALWAYS_INLINE LaneMatrix Negate(const LaneMatrix& a)
+/// A matrix plus a multiple of 1.
+DEFORMVOLUME_ALWAYS_INLINE LaneMatrix AddToDiagonal(const LaneMatrix& a, const Lanes& value)
 {
-  const Lanes minus = MakeLanes(-1.0);
-  return { { Scale(a.Columns[0], minus), Scale(a.Columns[1], minus), Scale(a.Columns[2], minus) } };
+  return { { { a.Columns[0].X + value, a.Columns[0].Y, a.Columns[0].Z },
+    { a.Columns[1].X, a.Columns[1].Y + value, a.Columns[1].Z },
+    { a.Columns[2].X, a.Columns[2].Y, a.Columns[2].Z + value } } };
 }
 
-/// The second derivatives of the strain energy by the positions of the nodes, whose eigenvalues are
-/// made 0 where they are less. In the frames of the singular values those of the energy density by
-/// F are known: 2 mu, but for the three twists, and for the dilatation, which lambda adds.
-DEFORMVOLUME_ALWAYS_INLINE void FindTangent(
-  const ElementBatch& batch, const SingularValues& values, LaneTangent& tangent)
+DEFORMVOLUME_ALWAYS_INLINE LanePoint MakePoint(const LaneMatrix& gradient)
 {
-  const Lanes* s = values.Values;
-  const Lanes twiceMu = 2.0 * batch.Mu * batch.Volume;
-  const Lanes lambda = batch.Lambda * batch.Volume;
-  const Lanes pull = lambda * ((s[0] - 1.0) + (s[1] - 1.0) + (s[2] - 1.0)) - twiceMu;
-  constexpr int first[3] = { 1, 2, 0 };
-  constexpr int second[3] = { 2, 0, 1 };
-  Lanes twists[3];
+  const LaneVector* const c = gradient.Columns;
+  const LaneMatrix cofactors = { { Cross(c[1], c[2]), Cross(c[2], c[0]), Cross(c[0], c[1]) } };
+  const Lanes trace = c[0].X + c[1].Y + c[2].Z;
+  const LaneMatrix transposed = Transpose(gradient);
+  LanePoint point;
+  point.Gradient = gradient;
+  for (int j = 0; j < 3; ++j)
+  {
+    point.Cofactors.Columns[j] = Subtract(cofactors.Columns[j], transposed.Columns[j]);
+  }
+  point.Cofactors = AddToDiagonal(point.Cofactors, trace);
+  point.NonlinearDilatation = cofactors.Columns[0].X + cofactors.Columns[1].Y +
+    cofactors.Columns[2].Z + Dot(c[0], cofactors.Columns[0]);
+  point.Dilatation = trace + point.NonlinearDilatation;
+  return point;
+}
+
+/// What a batch is like in a state.
+struct LaneElement
+{
+  LanePoint Points[ElementBatch::NumberOfGaussPoints];
+  /// The mean of det F - 1 over the volume at rest, and the pressure, outwards, that it causes.
+  Lanes MeanDilatation;
+  Lanes MeanPressure;
+};
+
+DEFORMVOLUME_ALWAYS_INLINE void FindElement(
+  const ElementBatch& batch, const double* displacements, LaneElement& element)
+{
+  constexpr int points = ElementBatch::NumberOfGaussPoints;
+  LaneVector u[ElementBatch::NumberOfNodes];
+  for (int a = 0; a < ElementBatch::NumberOfNodes; ++a)
+  {
+    u[a] = GatherNode(batch.Nodes[a], displacements);
+  }
+  // The derivative by the coordinate of corner i is linear in the coordinates: that of corner q is
+  // a factor of the difference of two neighbouring nodes. Gauss points have two different
+  // coordinates.
+  LaneVector slopes[points][3];
+  for (int i = 1; i < 4; ++i)
+  {
+    LaneVector differences[4];
+    for (int q = 0; q < 4; ++q)
+    {
+      const int ahead = q == i ? i : BatchMiddle[i][q];
+      const int behind = q == 0 ? 0 : BatchMiddle[0][q];
+      differences[q] = Subtract(u[ahead], u[behind]);
+    }
+    const LaneVector sum =
+      Add(Add(differences[0], differences[1]), Add(differences[2], differences[3]));
+    const LaneVector base = Add(Subtract(u[0], u[i]), Scale(sum, MakeLanes(FarFactor)));
+    for (int point = 0; point < points; ++point)
+    {
+      slopes[point][i - 1] = Add(base, Scale(differences[point], MakeLanes(NearFactor)));
+    }
+  }
+  Lanes dilatation = MakeLanes(0.0);
+  for (int point = 0; point < points; ++point)
+  {
+    const LaneVector* const g = batch.Gradients[point];
+    const LaneVector* const s = slopes[point];
+    LaneMatrix H;
+    H.Columns[0] = Add(Add(Scale(s[0], g[0].X), Scale(s[1], g[1].X)), Scale(s[2], g[2].X));
+    H.Columns[1] = Add(Add(Scale(s[0], g[0].Y), Scale(s[1], g[1].Y)), Scale(s[2], g[2].Y));
+    H.Columns[2] = Add(Add(Scale(s[0], g[0].Z), Scale(s[1], g[1].Z)), Scale(s[2], g[2].Z));
+    element.Points[point] = MakePoint(H);
+    dilatation = dilatation + batch.Volumes[point] * element.Points[point].Dilatation;
+  }
+  element.MeanDilatation = dilatation * batch.InverseVolume;
+  element.MeanPressure = batch.MeanLambda * element.MeanDilatation;
+}
+
+/// The first Piola-Kirchhoff stress at a Gauss point, and the strain energy there for each volume
+/// at rest, but for that of the mean dilatation.
+struct LaneStress
+{
+  LaneMatrix Piola;
+  Lanes EnergyDensity;
+};
+
+/// With the stable neo-Hookean law without a logarithm, whose energy is
+/// mu/2 (|F|^2 - 3) - mu (J - 1) + (lambda + mu)/2 (J - 1)^2.
+DEFORMVOLUME_ALWAYS_INLINE LaneStress FindNeoHookeanStress(
+  const ElementBatch& batch, const LanePoint& point, const Lanes& meanPressure)
+{
+  const Lanes stiffness = batch.Lambda + batch.Mu;
+  const Lanes pressure = stiffness * point.Dilatation + meanPressure;
+  LaneStress result;
+  Lanes squared = MakeLanes(0.0);
+  for (int j = 0; j < 3; ++j)
+  {
+    const LaneVector& h = point.Gradient.Columns[j];
+    const LaneVector& c = point.Cofactors.Columns[j];
+    squared = squared + Dot(h, h);
+    result.Piola.Columns[j] = Add(Scale(Subtract(h, c), batch.Mu), Scale(c, pressure));
+  }
+  result.Piola = AddToDiagonal(result.Piola, pressure);
+  result.EnergyDensity = batch.Mu * (0.5 * squared - point.NonlinearDilatation) +
+    0.5 * stiffness * point.Dilatation * point.Dilatation;
+  return result;
+}
+
+/// With the corotational law, whose energy is mu |F - R|^2 + lambda/2 tr(S - 1)^2 for F = R S.
+DEFORMVOLUME_ALWAYS_INLINE LaneStress FindCorotationalStress(
+  const ElementBatch& batch, const LanePoint& point, const Lanes& meanPressure)
+{
+  const LaneMatrix F = AddToDiagonal(point.Gradient, MakeLanes(1.0));
+  const SingularValues values = FindSingularValues(F);
+  const Lanes trace =
+    (values.Values[0] - 1.0) + (values.Values[1] - 1.0) + (values.Values[2] - 1.0);
+  const Lanes spherical = batch.Lambda * trace;
+  const Lanes twiceMu = 2.0 * batch.Mu;
+  const LaneMatrix rows = Transpose(values.V);
+  LaneStress result;
+  Lanes squared = MakeLanes(0.0);
+  for (int j = 0; j < 3; ++j)
+  {
+    const LaneVector rotation = Multiply(values.U, rows.Columns[j]);
+    const LaneVector stretch = Subtract(F.Columns[j], rotation);
+    squared = squared + Dot(stretch, stretch);
+    result.Piola.Columns[j] = Add(Add(Scale(stretch, twiceMu), Scale(rotation, spherical)),
+      Scale(point.Cofactors.Columns[j], meanPressure));
+  }
+  result.Piola = AddToDiagonal(result.Piola, meanPressure);
+  result.EnergyDensity = batch.Mu * squared + 0.5 * spherical * trace;
+  return result;
+}
+
+template <MaterialModel Model>
+DEFORMVOLUME_ALWAYS_INLINE LaneStress FindStress(
+  const ElementBatch& batch, const LanePoint& point, const Lanes& meanPressure)
+{
+  if constexpr (Model == MaterialModel::Corotational)
+  {
+    return FindCorotationalStress(batch, point, meanPressure);
+  }
+  return FindNeoHookeanStress(batch, point, meanPressure);
+}
+
+/// The forces on the nodes of a batch, by the stresses at its Gauss points: what FindElement does
+/// to displacements, the other way round.
+DEFORMVOLUME_ALWAYS_INLINE void FindNodeForces(const ElementBatch& batch,
+  const LaneMatrix (&stresses)[ElementBatch::NumberOfGaussPoints],
+  LaneVector (&forces)[ElementBatch::NumberOfNodes])
+{
+  constexpr int points = ElementBatch::NumberOfGaussPoints;
+  const Lanes zero = MakeLanes(0.0);
+  for (LaneVector& force : forces)
+  {
+    force = { zero, zero, zero };
+  }
+  for (int i = 1; i < 4; ++i)
+  {
+    LaneVector pulls[points];
+    LaneVector sum = { zero, zero, zero };
+    for (int point = 0; point < points; ++point)
+    {
+      pulls[point] =
+        Scale(Multiply(stresses[point], batch.Gradients[point][i - 1]), batch.Volumes[point]);
+      sum = Add(sum, pulls[point]);
+    }
+    forces[0] = Add(forces[0], sum);
+    forces[i] = Subtract(forces[i], sum);
+    for (int q = 0; q < 4; ++q)
+    {
+      const int ahead = q == i ? i : BatchMiddle[i][q];
+      const int behind = q == 0 ? 0 : BatchMiddle[0][q];
+      const LaneVector pull =
+        Add(Scale(sum, MakeLanes(FarFactor)), Scale(pulls[q], MakeLanes(NearFactor)));
+      forces[ahead] = Add(forces[ahead], pull);
+      forces[behind] = Subtract(forces[behind], pull);
+    }
+  }
+}
+
+/// The blocks of the tangent of a batch, by columns: those of nodes 0 0, 0 1, ..., 0 9, 1 1, 1 2,
+/// ..., 9 9.
+struct LaneTangent
+{
+  static constexpr int NumberOfBlocks =
+    ElementBatch::NumberOfNodes * (ElementBatch::NumberOfNodes + 1) / 2;
+  LaneMatrix Blocks[NumberOfBlocks];
+};
+
+DEFORMVOLUME_ALWAYS_INLINE void AddProduct(
+  LaneMatrix& sum, const LaneVector& scaled, const LaneVector& b)
+{
+  sum.Columns[0] = Add(sum.Columns[0], Scale(scaled, b.X));
+  sum.Columns[1] = Add(sum.Columns[1], Scale(scaled, b.Y));
+  sum.Columns[2] = Add(sum.Columns[2], Scale(scaled, b.Z));
+}
+
+/// A vector for each node of a batch.
+struct LaneNodes
+{
+  LaneVector Vectors[ElementBatch::NumberOfNodes];
+};
+
+/// Adds a factor times the products of vectors of nodes.
+DEFORMVOLUME_ALWAYS_INLINE void AddProducts(
+  LaneTangent& tangent, const LaneNodes& nodes, const Lanes& factor)
+{
+  LaneMatrix* block = tangent.Blocks;
+  for (int a = 0; a < ElementBatch::NumberOfNodes; ++a)
+  {
+    const LaneVector scaled = Scale(nodes.Vectors[a], factor);
+    for (int b = a; b < ElementBatch::NumberOfNodes; ++b, ++block)
+    {
+      AddProduct(*block, scaled, nodes.Vectors[b]);
+    }
+  }
+}
+
+/// The gradients of the shape functions of the nodes at a Gauss point.
+DEFORMVOLUME_ALWAYS_INLINE LaneNodes FindShapeGradients(const ElementBatch& batch, int point)
+{
+  const LaneVector* const g = batch.Gradients[point];
+  const LaneVector corners[4] = { Scale(Add(Add(g[0], g[1]), g[2]), MakeLanes(-1.0)), g[0], g[1],
+    g[2] };
+  LaneNodes result;
+  for (int a = 0; a < 4; ++a)
+  {
+    result.Vectors[a] = Scale(corners[a], MakeLanes(4.0 * GetGaussCoordinate(point, a) - 1.0));
+  }
+  for (int edge = 0; edge < 6; ++edge)
+  {
+    const int a = BatchEdges[edge][0];
+    const int b = BatchEdges[edge][1];
+    result.Vectors[4 + edge] = Add(Scale(corners[a], MakeLanes(4.0 * GetGaussCoordinate(point, b))),
+      Scale(corners[b], MakeLanes(4.0 * GetGaussCoordinate(point, a))));
+  }
+  return result;
+}
+
+DEFORMVOLUME_ALWAYS_INLINE LaneNodes MultiplyNodes(const LaneMatrix& matrix, const LaneNodes& nodes)
+{
+  LaneNodes result;
+  for (int a = 0; a < ElementBatch::NumberOfNodes; ++a)
+  {
+    result.Vectors[a] = Multiply(matrix, nodes.Vectors[a]);
+  }
+  return result;
+}
+
+/// Adds the second derivatives of same/2 |F|^2 + cross det F + outer/2 (det F - 1)^2, the last ones
+/// without what they have of those of det F. cofactors: of F, times the gradients.
+DEFORMVOLUME_ALWAYS_INLINE void AddInvariants(LaneTangent& tangent, const LaneNodes& gradients,
+  const LaneMatrix& F, const LaneNodes& cofactors, const Lanes& same, const Lanes& cross,
+  const Lanes& outer)
+{
+  LaneMatrix* block = tangent.Blocks;
+  for (int a = 0; a < ElementBatch::NumberOfNodes; ++a)
+  {
+    const LaneVector scaled = Scale(cofactors.Vectors[a], outer);
+    const LaneVector& g = gradients.Vectors[a];
+    for (int b = a; b < ElementBatch::NumberOfNodes; ++b, ++block)
+    {
+      LaneMatrix sum = *block;
+      AddProduct(sum, scaled, cofactors.Vectors[b]);
+      const Lanes diagonal = same * Dot(g, gradients.Vectors[b]);
+      const LaneVector v = Scale(Multiply(F, Cross(g, gradients.Vectors[b])), cross);
+      sum.Columns[0] = { sum.Columns[0].X + diagonal, sum.Columns[0].Y - v.Z,
+        sum.Columns[0].Z + v.Y };
+      sum.Columns[1] = { sum.Columns[1].X + v.Z, sum.Columns[1].Y + diagonal,
+        sum.Columns[1].Z - v.X };
+      sum.Columns[2] = { sum.Columns[2].X - v.Y, sum.Columns[2].Y + v.X,
+        sum.Columns[2].Z + diagonal };
+      *block = sum;
+    }
+  }
+}
+
+DEFORMVOLUME_ALWAYS_INLINE bool HasPositive(const Lanes& a)
+{
+  return a[0] > 0.0 || a[1] > 0.0 || a[2] > 0.0 || a[3] > 0.0;
+}
+
+/// What is missing to make a value 0 where it is less.
+DEFORMVOLUME_ALWAYS_INLINE Lanes MissingToZero(const Lanes& value)
+{
+  return Largest(MakeLanes(0.0), -value);
+}
+
+/// The second derivatives of the energy density by F, in the frames of its singular values: of
+/// twists and shears in three planes, and between stretches along three axes.
+struct LaneEigenvalues
+{
+  Lanes Twists[3];
+  Lanes Shears[3];
+  Lanes Stretches[3]; // each with itself
+  Lanes Mixed[3];     // of the two others
+};
+
+// The two axes of a plane across each axis.
+constexpr int FirstOfPlane[3] = { 1, 2, 0 };
+constexpr int SecondOfPlane[3] = { 2, 0, 1 };
+
+/// The twist, or the shear, of a plane that each node makes.
+DEFORMVOLUME_ALWAYS_INLINE LaneNodes FindPlaneModes(
+  const LaneMatrix& U, const LaneNodes& gradientsInFrame, int plane, double sign)
+{
+  LaneNodes result;
+  const LaneVector& first = U.Columns[FirstOfPlane[plane]];
+  const LaneVector& second = U.Columns[SecondOfPlane[plane]];
+  for (int a = 0; a < ElementBatch::NumberOfNodes; ++a)
+  {
+    const LaneVector& g = gradientsInFrame.Vectors[a];
+    const Lanes components[3] = { g.X, g.Y, g.Z };
+    result.Vectors[a] = Add(Scale(first, components[SecondOfPlane[plane]]),
+      Scale(second, sign * components[FirstOfPlane[plane]]));
+  }
+  return result;
+}
+
+/// Adds what makes negative eigenvalues 0, times a volume.
+DEFORMVOLUME_ALWAYS_INLINE void AddMissing(LaneTangent& tangent, const SingularValues& values,
+  const LaneNodes& gradientsInFrame, const LaneEigenvalues& e, const Lanes& volume)
+{
   for (int k = 0; k < 3; ++k)
   {
-    const Lanes sum = Largest(s[first[k]] + s[second[k]], MakeLanes(1e-3));
-    const Lanes eigenvalue = Largest(MakeLanes(0.0), twiceMu + pull * (2.0 / sum));
-    twists[k] = 0.5 * (eigenvalue - twiceMu);
-  }
-  // Of nodes 1 to 3: the gradients turned with the tetrahedron, and what the twists make of them.
-  LaneVector turned[3];
-  LaneVector twisted[3][3];
-  for (int a = 0; a < 3; ++a)
-  {
-    const LaneVector g = MultiplyTransposed(values.V, batch.Gradients[a]);
-    const Lanes components[3] = { g.X, g.Y, g.Z };
-    turned[a] = Multiply(values.U, g);
-    for (int k = 0; k < 3; ++k)
+    const Lanes twist = MissingToZero(e.Twists[k]);
+    if (HasPositive(twist))
     {
-      twisted[a][k] = Subtract(Scale(values.U.Columns[first[k]], components[second[k]]),
-        Scale(values.U.Columns[second[k]], components[first[k]]));
+      AddProducts(
+        tangent, FindPlaneModes(values.U, gradientsInFrame, k, -1.0), 0.5 * volume * twist);
+    }
+    const Lanes shear = MissingToZero(e.Shears[k]);
+    if (HasPositive(shear))
+    {
+      AddProducts(
+        tangent, FindPlaneModes(values.U, gradientsInFrame, k, 1.0), 0.5 * volume * shear);
     }
   }
+  // Jacobi's method, as for singular values.
+  constexpr int sweeps = 4;
   const Lanes zero = MakeLanes(0.0);
-  LaneMatrix blocks[3][3];
-  for (int a = 0; a < 3; ++a)
+  const Lanes one = MakeLanes(1.0);
+  LaneProducts s = { e.Stretches[0], e.Stretches[1], e.Stretches[2], e.Mixed[2], e.Mixed[0],
+    e.Mixed[1] };
+  LaneMatrix axes = { { { one, zero, zero }, { zero, one, zero }, { zero, zero, one } } };
+  for (int sweep = 0; sweep < sweeps; ++sweep)
   {
-    for (int b = a; b < 3; ++b)
+    RotateColumns(s.XX, s.YY, s.XY, s.XZ, s.YZ, axes.Columns[0], axes.Columns[1]);
+    RotateColumns(s.YY, s.ZZ, s.YZ, s.XY, s.XZ, axes.Columns[1], axes.Columns[2]);
+    RotateColumns(s.XX, s.ZZ, s.XZ, s.XY, s.YZ, axes.Columns[0], axes.Columns[2]);
+  }
+  const Lanes stretches[3] = { s.XX, s.YY, s.ZZ };
+  for (int k = 0; k < 3; ++k)
+  {
+    const Lanes stretch = MissingToZero(stretches[k]);
+    if (HasPositive(stretch))
     {
-      const Lanes same = twiceMu * Dot(batch.Gradients[a], batch.Gradients[b]);
-      LaneMatrix& block = blocks[a][b];
-      block = { { { same, zero, zero }, { zero, same, zero }, { zero, zero, same } } };
-      AddProduct(block, turned[a], turned[b], lambda);
-      for (int k = 0; k < 3; ++k)
+      LaneNodes modes;
+      const LaneVector& axis = axes.Columns[k];
+      for (int a = 0; a < ElementBatch::NumberOfNodes; ++a)
       {
-        AddProduct(block, twisted[a][k], twisted[b][k], twists[k]);
+        const LaneVector& g = gradientsInFrame.Vectors[a];
+        modes.Vectors[a] = Multiply(values.U, { axis.X * g.X, axis.Y * g.Y, axis.Z * g.Z });
       }
+      AddProducts(tangent, modes, volume * stretch);
     }
   }
-  // A translation causes no force: what belongs to node 0 is minus the sum of the others.
-  for (int b = 0; b < 3; ++b)
+}
+
+DEFORMVOLUME_ALWAYS_INLINE LaneNodes TurnIntoFrame(
+  const SingularValues& values, const LaneNodes& gradients)
+{
+  LaneNodes result;
+  for (int a = 0; a < ElementBatch::NumberOfNodes; ++a)
   {
-    LaneMatrix sum = blocks[b][b];
-    for (int a = 0; a < 3; ++a)
-    {
-      if (a != b)
-      {
-        sum = AddMatrices(sum, a < b ? blocks[a][b] : Transpose(blocks[b][a]));
-      }
-    }
-    tangent.Mixed[b] = Negate(sum);
-    tangent.Own[b + 1] = blocks[b][b];
+    result.Vectors[a] = MultiplyTransposed(values.V, gradients.Vectors[a]);
   }
-  tangent.Mixed[3] = blocks[0][1];
-  tangent.Mixed[4] = blocks[0][2];
-  tangent.Mixed[5] = blocks[1][2];
-  tangent.Own[0] =
-    Negate(AddMatrices(AddMatrices(tangent.Mixed[0], tangent.Mixed[1]), tangent.Mixed[2]));
+  return result;
+}
+
+/// The eigenvalues of same/2 |F|^2 + cross det F + outer/2 (det F - 1)^2, the last one as in
+/// AddInvariants.
+DEFORMVOLUME_ALWAYS_INLINE LaneEigenvalues FindInvariantEigenvalues(
+  const SingularValues& values, const Lanes& same, const Lanes& cross, const Lanes& outer)
+{
+  const Lanes* s = values.Values;
+  LaneEigenvalues e;
+  const Lanes products[3] = { s[1] * s[2], s[2] * s[0], s[0] * s[1] };
+  for (int k = 0; k < 3; ++k)
+  {
+    e.Twists[k] = same + cross * s[k];
+    e.Shears[k] = same - cross * s[k];
+    e.Stretches[k] = same + outer * products[k] * products[k];
+    e.Mixed[k] = cross * s[k] + outer * products[FirstOfPlane[k]] * products[SecondOfPlane[k]];
+  }
+  return e;
+}
+
+DEFORMVOLUME_ALWAYS_INLINE void AddNeoHookeanPoint(LaneTangent& tangent, const ElementBatch& batch,
+  const LanePoint& point, const LaneNodes& gradients, const LaneNodes& cofactors,
+  const Lanes& volume, const Lanes& meanPressure, bool isClamped)
+{
+  const LaneMatrix F = AddToDiagonal(point.Gradient, MakeLanes(1.0));
+  const Lanes outer = batch.Lambda + batch.Mu;
+  const Lanes cross = outer * point.Dilatation + meanPressure - batch.Mu;
+  AddInvariants(
+    tangent, gradients, F, cofactors, volume * batch.Mu, volume * cross, volume * outer);
+  if (isClamped)
+  {
+    const SingularValues values = FindSingularValues(F);
+    AddMissing(tangent, values, TurnIntoFrame(values, gradients),
+      FindInvariantEigenvalues(values, batch.Mu, cross, outer), volume);
+  }
+}
+
+DEFORMVOLUME_ALWAYS_INLINE void AddCorotationalPoint(LaneTangent& tangent,
+  const ElementBatch& batch, const LanePoint& point, const LaneNodes& gradients,
+  const LaneNodes& cofactors, const Lanes& volume, const Lanes& meanPressure, bool isClamped)
+{
+  const LaneMatrix F = AddToDiagonal(point.Gradient, MakeLanes(1.0));
+  const SingularValues values = FindSingularValues(F);
+  const LaneNodes inFrame = TurnIntoFrame(values, gradients);
+  const Lanes twiceMu = 2.0 * batch.Mu;
+  AddInvariants(
+    tangent, gradients, F, cofactors, volume * twiceMu, volume * meanPressure, MakeLanes(0.0));
+  AddProducts(tangent, MultiplyNodes(values.U, inFrame), volume * batch.Lambda);
+  const Lanes* s = values.Values;
+  const Lanes pull = batch.Lambda * ((s[0] - 1.0) + (s[1] - 1.0) + (s[2] - 1.0)) - twiceMu;
+  LaneEigenvalues e = FindInvariantEigenvalues(values, twiceMu, meanPressure, MakeLanes(0.0));
+  for (int k = 0; k < 3; ++k)
+  {
+    // Rotations of what is nearly flat, or inside out, turn without bounds: less than 0 is too
+    // much.
+    const Lanes sum = Largest(s[FirstOfPlane[k]] + s[SecondOfPlane[k]], MakeLanes(1e-3));
+    const Lanes more = Largest(-twiceMu, pull * (2.0 / sum));
+    AddProducts(tangent, FindPlaneModes(values.U, inFrame, k, -1.0), 0.5 * volume * more);
+    e.Twists[k] = e.Twists[k] + more;
+    e.Stretches[k] = e.Stretches[k] + batch.Lambda;
+    e.Mixed[k] = e.Mixed[k] + batch.Lambda;
+  }
+  if (isClamped)
+  {
+    AddMissing(tangent, values, inFrame, e, volume);
+  }
+}
+
+/// The second derivatives of the strain energy by the positions of the nodes. isClamped: at each
+/// Gauss point, eigenvalues are made 0 where they are less (Smith, de Goes and Kim 2019), so that
+/// the tangent has no negative ones.
+template <MaterialModel Model>
+DEFORMVOLUME_ALWAYS_INLINE void FindTangent(
+  const ElementBatch& batch, const LaneElement& element, bool isClamped, LaneTangent& tangent)
+{
+  const Lanes zero = MakeLanes(0.0);
+  for (LaneMatrix& block : tangent.Blocks)
+  {
+    block = { { { zero, zero, zero }, { zero, zero, zero }, { zero, zero, zero } } };
+  }
+  LaneNodes dilatation; // the derivatives of the mean dilatation, times the volume
+  for (LaneVector& vector : dilatation.Vectors)
+  {
+    vector = { zero, zero, zero };
+  }
+  for (int i = 0; i < ElementBatch::NumberOfGaussPoints; ++i)
+  {
+    const LanePoint& point = element.Points[i];
+    const LaneNodes gradients = FindShapeGradients(batch, i);
+    const LaneNodes cofactors =
+      MultiplyNodes(AddToDiagonal(point.Cofactors, MakeLanes(1.0)), gradients);
+    for (int a = 0; a < ElementBatch::NumberOfNodes; ++a)
+    {
+      dilatation.Vectors[a] =
+        Add(dilatation.Vectors[a], Scale(cofactors.Vectors[a], batch.Volumes[i]));
+    }
+    if constexpr (Model == MaterialModel::Corotational)
+    {
+      AddCorotationalPoint(tangent, batch, point, gradients, cofactors, batch.Volumes[i],
+        element.MeanPressure, isClamped);
+    }
+    else
+    {
+      AddNeoHookeanPoint(tangent, batch, point, gradients, cofactors, batch.Volumes[i],
+        element.MeanPressure, isClamped);
+    }
+  }
+  AddProducts(tangent, dilatation, batch.MeanLambda * batch.InverseVolume);
 }
 
 } // namespace deformvolume

@@ -5,9 +5,12 @@
 #include "BodyPieces.h"
 #include "ElasticBody.h"
 #include "EquilibriumTypes.h"
+#include "QuadraticTetrahedron.h"
+#include "SlidingNodes.h"
 
 #include <glm/vec3.hpp>
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -31,10 +34,12 @@ struct EquilibriumProblem
   bool IsInteractive = false;
 };
 
-/// volumes: of tetrahedra; masses: of nodes. Throws an Error where nothing holds the body, and
-/// where limits or loads make no sense.
+/// The volumes of the Gauss points of each tetrahedron.
+using GaussVolumes = std::vector<std::array<double, QuadraticTetrahedron::NumberOfGaussPoints>>;
+
+/// Throws an Error where nothing holds the body, and where limits or loads make no sense.
 EquilibriumProblem MakeProblem(const EquilibriumRequest& request, const ElasticBody& body,
-  const BodyPieces& pieces, const std::vector<double>& volumes, std::vector<double> masses);
+  const BodyPieces& pieces, const GaussVolumes& volumes, const SlidingNodes& sliding);
 
 /// Components of forces: the largest of those that are left on free nodes, and of those that are
 /// applied or hold a node.
@@ -44,8 +49,10 @@ struct Residuals
   double Reference = 0.0;
 };
 
-/// forces: what the strains exert on nodes.
-Residuals FindResiduals(const EquilibriumProblem& problem, const std::vector<glm::dvec3>& forces);
+/// forces: what the strains exert on nodes. What acts along the normal of a node that slides counts
+/// as what holds it.
+Residuals FindResiduals(const EquilibriumProblem& problem, const SlidingNodes& sliding,
+  const std::vector<glm::dvec3>& forces);
 
 /// The absolute value of the largest component.
 double LargestComponent(const glm::dvec3& vector);

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 
 namespace deformvolume
 {
@@ -16,8 +17,9 @@ EquilibriumSolver::EquilibriumSolver(Watch& watch, const ElasticBody& body)
   : Body(body)
   , Pieces(FindPieces(body, &watch))
   , ActivePieces(static_cast<std::size_t>(Pieces.NumberOfPieces), true)
+  , Sliding(body)
   , Elements(watch, body)
-  , Tangent(this->Body.Points, this->Elements)
+  , Tangent(this->Body.Points, this->Elements, this->Sliding)
 {
   this->Last.Displacements.assign(body.Points.size(), glm::dvec3(0.0));
   this->Tangent.SetPattern(watch, MakeNodePattern(watch, body));
@@ -27,14 +29,14 @@ EquilibriumSolver::EquilibriumSolver(Watch& watch, const ElasticBody& body)
 
 void EquilibriumSolver::UpdateScale(Watch& watch)
 {
-  watch.Ask();
-  this->Volumes = GetVolumes(this->Body);
-  watch.Ask();
-  this->Masses = GetNodeMasses(this->Body, this->Volumes);
+  this->Volumes.resize(this->Body.Tetrahedra.size());
+  ForItemsInParallel(watch, this->Volumes.size(),
+    [&](std::size_t t)
+    { this->Volumes[t] = QuadraticTetrahedron::GetGaussVolumes(this->Body, t); });
   double total = 0.0;
-  for (const double volume : this->Volumes)
+  for (const auto& volumes : this->Volumes)
   {
-    total += volume;
+    total = std::accumulate(volumes.begin(), volumes.end(), total);
   }
   // A cell of as many tetrahedra as a node has on average of its own.
   constexpr double tetrahedraOfCell = 6.0;
@@ -57,6 +59,15 @@ void EquilibriumSolver::SetMaterials(const std::vector<ElasticMaterial>& materia
   this->Forget();
 }
 
+void EquilibriumSolver::SetMaterialModel(MaterialModel model)
+{
+  if (model != this->Elements.GetMaterialModel())
+  {
+    this->Elements.SetMaterialModel(model);
+    this->Forget();
+  }
+}
+
 void EquilibriumSolver::SetDisplacements(const std::vector<glm::dvec3>& displacements)
 {
   this->Last.Displacements = displacements;
@@ -67,6 +78,7 @@ void EquilibriumSolver::Forget()
 {
   this->HasForces = false;
   this->HasTangent = false;
+  this->ClampedSteps = 0;
   this->Tangent.Forget();
 }
 
@@ -113,7 +125,7 @@ void EquilibriumSolver::UpdateTangent(
   {
     return;
   }
-  this->Tangent.Update(watch, state.Displacements);
+  this->Tangent.Update(watch, state.Displacements, this->ClampedSteps > 0);
   this->HasTangent = true;
   this->IsTangentOld = false;
 }
@@ -145,7 +157,8 @@ void EquilibriumSolver::Untangle(Watch& watch, const EquilibriumProblem& problem
           }
           // Of the others in the row.
           const double neighbours = pattern.Rows[node + 1] - pattern.Rows[node] - 1;
-          this->Trial.Displacements[node] = (sum - state.Displacements[node]) / neighbours;
+          this->Trial.Displacements[node] =
+            this->Sliding.Project(node, (sum - state.Displacements[node]) / neighbours);
         }
       });
     this->Evaluate(watch, problem, this->Trial);
@@ -165,7 +178,7 @@ double EquilibriumSolver::ChooseTolerance(const EquilibriumProblem& problem, dou
                                : problem.Limits.LinearTolerance;
 }
 
-void EquilibriumSolver::SolveLinear(Watch& watch, const EquilibriumProblem& problem,
+bool EquilibriumSolver::SolveLinear(Watch& watch, const EquilibriumProblem& problem,
   const State& state, double tolerance, EquilibriumReport& report)
 {
   for (std::size_t node = 0; node < problem.IsFree.size(); ++node)
@@ -175,9 +188,22 @@ void EquilibriumSolver::SolveLinear(Watch& watch, const EquilibriumProblem& prob
       ? this->RightHandSide[node] + problem.Loads[node] - state.Forces[node]
       : glm::dvec3(0.0);
   }
-  report.LinearIterations += this->Tangent.Solve(watch, problem.IsFree, this->RightHandSide,
-    { problem.Limits.LinearIterations, tolerance }, report.NewtonSteps == 0, this->Direction);
+  this->Sliding.Project(this->RightHandSide);
+  const ConjugateGradients::Result result =
+    this->Tangent.Solve(watch, problem.IsFree, this->RightHandSide,
+      { problem.Limits.LinearIterations, tolerance }, report.NewtonSteps == 0, this->Direction);
+  report.LinearIterations += result.Iterations;
   ++report.NewtonSteps;
+  return !result.IsIndefinite;
+}
+
+bool EquilibriumSolver::Clamp()
+{
+  constexpr int steps = 3;
+  const bool wasClamped = this->ClampedSteps > 0;
+  this->ClampedSteps = steps;
+  this->HasTangent = this->HasTangent && wasClamped;
+  return !wasClamped;
 }
 
 bool EquilibriumSolver::MoveHeldNodes(
@@ -196,18 +222,22 @@ bool EquilibriumSolver::MoveHeldNodes(
   {
     return false;
   }
-  this->UpdateTangent(watch, problem, state);
-  ForRows(watch, nodes,
-    [&](std::size_t begin, std::size_t end)
-    {
-      this->Tangent.GetMatrix().Multiply(
-        begin, end, problem.IsFree.data(), moves.data(), this->RightHandSide.data());
-      for (std::size_t node = begin; node < end; ++node)
+  bool isPositive = false;
+  do
+  {
+    this->UpdateTangent(watch, problem, state);
+    ForRows(watch, nodes,
+      [&](std::size_t begin, std::size_t end)
       {
-        this->RightHandSide[node] = -this->RightHandSide[node];
-      }
-    });
-  this->SolveLinear(watch, problem, state, problem.Limits.LinearTolerance, report);
+        this->Tangent.GetMatrix().Multiply(
+          begin, end, problem.IsFree.data(), moves.data(), this->RightHandSide.data());
+        for (std::size_t node = begin; node < end; ++node)
+        {
+          this->RightHandSide[node] = -this->RightHandSide[node];
+        }
+      });
+    isPositive = this->SolveLinear(watch, problem, state, problem.Limits.LinearTolerance, report);
+  } while (!isPositive && this->Clamp());
   State guess;
   guess.Displacements = state.Displacements;
   for (std::size_t node = 0; node < nodes; ++node)
@@ -238,24 +268,22 @@ bool EquilibriumSolver::MoveHeldNodes(
   return true;
 }
 
-bool EquilibriumSolver::Step(Watch& watch, const EquilibriumProblem& problem, double tolerance,
-  State& state, EquilibriumReport& report)
+bool EquilibriumSolver::Search(Watch& watch, const EquilibriumProblem& problem, State& state)
 {
   constexpr int halvings = 30;
   constexpr double leastFall = 1e-4;
   // What rounding does to the sums of energies.
   constexpr double rounding = 1e-13;
+  constexpr double roundingOfTerms = 1e-15;
   const std::size_t nodes = problem.IsFree.size();
-  this->UpdateTangent(watch, problem, state);
-  this->RightHandSide.assign(nodes, glm::dvec3(0.0));
-  this->SolveLinear(watch, problem, state, tolerance, report);
   double slope = 0.0;
   for (std::size_t node = 0; node < nodes; ++node)
   {
     slope -= glm::dot(this->RightHandSide[node], this->Direction[node]);
   }
-  const double slack = rounding * (state.Sums.Energy + std::abs(state.Potential));
-  const double residual = FindResiduals(problem, state.Forces).Largest;
+  const double slack = rounding * (state.Sums.Energy + std::abs(state.Potential)) +
+    roundingOfTerms * state.Sums.Rounded;
+  const double residual = FindResiduals(problem, this->Sliding, state.Forces).Largest;
   double length = 1.0;
   for (int halving = 0; halving < halvings; ++halving, length *= 0.5)
   {
@@ -271,7 +299,7 @@ bool EquilibriumSolver::Step(Watch& watch, const EquilibriumProblem& problem, do
     }
     // Where rounding hides whether the energy falls, the forces tell.
     if (-slope * length <= slack &&
-      !(FindResiduals(problem, this->Trial.Forces).Largest < residual))
+      !(FindResiduals(problem, this->Sliding, this->Trial.Forces).Largest < residual))
     {
       return false;
     }
@@ -281,10 +309,27 @@ bool EquilibriumSolver::Step(Watch& watch, const EquilibriumProblem& problem, do
   return false;
 }
 
+bool EquilibriumSolver::Step(Watch& watch, const EquilibriumProblem& problem, double tolerance,
+  State& state, EquilibriumReport& report)
+{
+  do
+  {
+    this->UpdateTangent(watch, problem, state);
+    this->RightHandSide.assign(problem.IsFree.size(), glm::dvec3(0.0));
+    const bool isPositive = this->SolveLinear(watch, problem, state, tolerance, report);
+    if ((isPositive || this->ClampedSteps > 0) && this->Search(watch, problem, state))
+    {
+      this->ClampedSteps = std::max(0, this->ClampedSteps - 1);
+      return true;
+    }
+  } while (this->Clamp());
+  return false;
+}
+
 EquilibriumReport EquilibriumSolver::Solve(const EquilibriumRequest& request)
 {
   const EquilibriumProblem problem =
-    MakeProblem(request, this->Body, this->Pieces, this->Volumes, this->Masses);
+    MakeProblem(request, this->Body, this->Pieces, this->Volumes, this->Sliding);
   Watch watch(request.Progress);
   watch.Ask();
   this->UseHeldPieces(problem);
@@ -366,7 +411,7 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
   double before = 0.0;
   for (;;)
   {
-    const Residuals residuals = FindResiduals(problem, state.Forces);
+    const Residuals residuals = FindResiduals(problem, this->Sliding, state.Forces);
     if (!std::isfinite(residuals.Largest) || !std::isfinite(state.Potential))
     {
       throw Error("The forces in the body are no numbers any more: a load or the displacement of a "
@@ -400,7 +445,7 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
   this->IsTangentOld = true;
   this->MoveFollowers(problem, state);
   report.StrainEnergy = state.Sums.Energy;
-  report.NumberOfInvertedTetrahedra = state.Sums.Inverted;
+  report.NumberOfInvertedTetrahedra = CountInvertedSplits(watch, this->Body, state.Displacements);
   std::swap(this->Last, state);
   this->HasForces = true;
   return report;

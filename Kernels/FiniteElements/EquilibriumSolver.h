@@ -5,6 +5,7 @@
 #include "EquilibriumProblem.h"
 #include "EquilibriumTypes.h"
 #include "FiniteElements.h"
+#include "SlidingNodes.h"
 #include "TangentSolver.h"
 #include "Watch.h"
 
@@ -22,6 +23,7 @@ public:
   EquilibriumSolver(Watch& watch, const ElasticBody& body);
 
   void SetMaterials(const std::vector<ElasticMaterial>& materials);
+  void SetMaterialModel(MaterialModel model);
   EquilibriumReport Solve(const EquilibriumRequest& request);
 
   const ElasticBody& GetBody() const { return this->Body; }
@@ -49,7 +51,8 @@ private:
     Watch& watch, const EquilibriumRequest& request, const EquilibriumProblem& problem);
   void Evaluate(Watch& watch, const EquilibriumProblem& problem, State& state) const;
   void FindPotential(Watch& watch, const EquilibriumProblem& problem, State& state) const;
-  // Finds the tangent of a state, unless the one that there is may serve.
+  // Finds the tangent of a state, unless the one that there is may serve. It is the true one, and
+  // clamped where that one has turned out to be negative or not to lead to less energy.
   void UpdateTangent(Watch& watch, const EquilibriumProblem& problem, const State& state);
   // Moves the held nodes to their targets, and the others as the tangent says. Returns whether they
   // were elsewhere.
@@ -61,9 +64,14 @@ private:
   void Untangle(Watch& watch, const EquilibriumProblem& problem, State& state);
   // How well a linear system is to be solved where the residual is to become so much smaller.
   static double ChooseTolerance(const EquilibriumProblem& problem, double wanted);
-  // Solves for what the right-hand side and the forces that are left say.
-  void SolveLinear(Watch& watch, const EquilibriumProblem& problem, const State& state,
+  // Solves for what the right-hand side and the forces that are left say. False where the tangent
+  // is not positive.
+  bool SolveLinear(Watch& watch, const EquilibriumProblem& problem, const State& state,
     double tolerance, EquilibriumReport& report);
+  // Takes clamped tangents from now on, for some steps. False where it does so already.
+  bool Clamp();
+  // Goes along the direction until the energy is less. False where it never is.
+  bool Search(Watch& watch, const EquilibriumProblem& problem, State& state);
   // False where no step makes the energy less.
   bool Step(Watch& watch, const EquilibriumProblem& problem, double tolerance, State& state,
     EquilibriumReport& report);
@@ -72,8 +80,8 @@ private:
   BodyPieces Pieces;
   // Which of these the elements are of: those that are held.
   std::vector<bool> ActivePieces;
-  std::vector<double> Volumes;
-  std::vector<double> Masses;
+  SlidingNodes Sliding;
+  GaussVolumes Volumes;
   // E h^2, in N.
   double ForceScale = 0.0;
   FiniteElements Elements;
@@ -81,6 +89,8 @@ private:
   // Whether there is a tangent that may serve, and whether it is that of another call.
   bool HasTangent = false;
   bool IsTangentOld = false;
+  // For how many steps tangents are still to be clamped.
+  int ClampedSteps = 0;
   std::vector<glm::dvec3> RightHandSide;
   std::vector<glm::dvec3> Direction;
   State Trial;

@@ -12,6 +12,18 @@
 namespace deformvolume
 {
 
+/// How the strain energy follows from the deformation gradient F. Small strains of both are linear
+/// elasticity.
+enum class MaterialModel
+{
+  /// Stable, without a logarithm: mu/2 (|F|^2 - 3) - mu (J - 1) + (lambda + mu)/2 (J - 1)^2, where
+  /// J is the determinant of F. For soft tissue.
+  StableNeoHookean,
+  /// mu |F - R|^2 + lambda/2 tr(S - 1)^2, where F = R S and R is a rotation: linear elasticity in
+  /// the frame that turns with the material. Large strains do not keep the volume.
+  Corotational
+};
+
 enum class EquilibriumMode
 {
   /// A frame of an animation: few steps, each as far as the next one needs it. What is left is
@@ -72,7 +84,8 @@ struct EquilibriumReport
   /// Those of them that have gone like rigid bodies with nodes that hold or that they share with
   /// others; the rest has stayed where it was.
   std::int32_t NumberOfFollowingPieces = 0;
-  /// Tetrahedra that are inside out now.
+  /// Tetrahedra that are inside out now, somewhere: split into twelve linear ones, as
+  /// vtkDeformVolumeFilter does it, one of these is inside out.
   std::int64_t NumberOfInvertedTetrahedra = 0;
 };
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 namespace deformvolume
 {
@@ -23,6 +24,7 @@ public:
   }
 
   std::unique_ptr<EquilibriumSolver> Solver;
+  MaterialModel Model = MaterialModel::StableNeoHookean;
 };
 
 FiniteElementModel::FiniteElementModel()
@@ -37,7 +39,22 @@ void FiniteElementModel::SetBody(const ElasticBody& body, const std::function<bo
   Watch watch(progress);
   watch.Ask();
   CheckBody(body, &watch);
-  this->Impl->Solver = std::make_unique<EquilibriumSolver>(watch, body);
+  if (body.MidSides.empty())
+  {
+    throw Error("The tetrahedra of the body have no mid-side nodes. Call AddMidSideNodes first.");
+  }
+  auto solver = std::make_unique<EquilibriumSolver>(watch, body);
+  solver->SetMaterialModel(this->Impl->Model);
+  this->Impl->Solver = std::move(solver);
+}
+
+void FiniteElementModel::SetMaterialModel(MaterialModel model)
+{
+  this->Impl->Model = model;
+  if (this->Impl->Solver)
+  {
+    this->Impl->Solver->SetMaterialModel(model);
+  }
 }
 
 void FiniteElementModel::SetMaterials(const std::vector<ElasticMaterial>& materials)

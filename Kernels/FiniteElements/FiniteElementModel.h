@@ -16,13 +16,10 @@
 namespace deformvolume
 {
 
-/// Equilibrium of an elastic body by corotational linear tetrahedra: linear elasticity in the frame
-/// that turns with each tetrahedron, so that large rotations cost nothing and cause no force. The
-/// strain energy of a tetrahedron is mu |F - R|^2 + lambda / 2 tr(S - I)^2 for a deformation
-/// gradient F = R S, of which R is a rotation even where the tetrahedron is inside out.
-///
-/// Linear tetrahedra are too stiff in bending: a body that is to bend needs four or more of them
-/// across its thickness.
+/// Equilibrium of an elastic body by tetrahedra of ten nodes with four Gauss points. They bend as
+/// they should with one of them across, also where the material is nearly incompressible: the part
+/// of lambda that is more than 4 mu acts on the mean dilatation of each tetrahedron only (selective
+/// mean dilatation). The body needs mid-side nodes (AddMidSideNodes).
 ///
 /// Order of calls: SetBody, then Solve, as often as wanted. Solve begins with the last
 /// displacements. Every failure is an Error; the body, its materials and its displacements are then
@@ -36,13 +33,18 @@ public:
   FiniteElementModel(const FiniteElementModel&) = delete;
   FiniteElementModel& operator=(const FiniteElementModel&) = delete;
 
-  /// The body, at rest. An Error where CheckBody finds one; the last body stays then. progress:
+  /// The body, at rest. An Error where CheckBody finds one, or it has no mid-side nodes; the last
+  /// body stays then. progress:
   /// called every few milliseconds, in the thread that called; returning false aborts, and the last
   /// body stays, too.
   void SetBody(const ElasticBody& body, const std::function<bool()>& progress = nullptr);
 
   /// One material for the body that is set, or one a tetrahedron. Displacements stay.
   void SetMaterials(const std::vector<ElasticMaterial>& materials);
+
+  /// The strain energy of a material, now and of bodies that follow. Displacements stay. Default:
+  /// stable neo-Hookean.
+  void SetMaterialModel(MaterialModel model);
 
   /// Moves the held nodes to where they are to be, and the others towards equilibrium. An Error
   /// where CheckLoads or CheckHeldNodes find one, where no piece of the body is held, and where the

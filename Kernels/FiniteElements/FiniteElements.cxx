@@ -3,9 +3,13 @@
 
 #include "ElementMechanics.h"
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstring>
+#include <numeric>
 
 namespace deformvolume
 {
@@ -31,9 +35,9 @@ struct ForceArguments
 };
 
 DEFORMVOLUME_ALWAYS_INLINE void AddForces(
-  const ElementBatch& batch, const LaneVector (&forces)[4], double* sums)
+  const ElementBatch& batch, const LaneVector (&forces)[ElementBatch::NumberOfNodes], double* sums)
 {
-  for (int node = 0; node < 4; ++node)
+  for (int node = 0; node < ElementBatch::NumberOfNodes; ++node)
   {
     for (int lane = 0; lane < NumberOfLanes; ++lane)
     {
@@ -45,30 +49,53 @@ DEFORMVOLUME_ALWAYS_INLINE void AddForces(
   }
 }
 
+// Whether the tetrahedron in a lane is inside out at a Gauss point.
+DEFORMVOLUME_ALWAYS_INLINE bool IsInverted(
+  const ElementBatch& batch, const LaneElement& element, int lane)
+{
+  bool isInverted = false;
+  for (const LanePoint& point : element.Points)
+  {
+    isInverted = isInverted || point.Dilatation[lane] < -1.0;
+  }
+  return isInverted && batch.InverseVolume[lane] > 0.0;
+}
+
+template <MaterialModel Model>
 DEFORMVOLUME_ALWAYS_INLINE void FindForcesOfChunk(const ForceArguments& arguments)
 {
   Lanes energy = MakeLanes(0.0);
+  Lanes rounded = MakeLanes(0.0);
   std::int64_t inverted = 0;
   for (std::size_t i = arguments.Range.Begin; i < arguments.Range.End; ++i)
   {
     const ElementBatch& batch = arguments.Batches[i];
-    const LaneMatrix F = FindDeformationGradient(batch, arguments.Displacements);
-    const SingularValues values = FindSingularValues(F);
-    const LaneStress stress = FindStress(batch, F, values);
-    energy = energy + batch.Volume * stress.EnergyDensity;
-    LaneVector forces[4];
-    for (int a = 0; a < 3; ++a)
+    LaneElement element;
+    FindElement(batch, arguments.Displacements, element);
+    LaneMatrix stresses[ElementBatch::NumberOfGaussPoints];
+    Lanes volume = MakeLanes(0.0);
+    for (int p = 0; p < ElementBatch::NumberOfGaussPoints; ++p)
     {
-      forces[a + 1] = Scale(Multiply(stress.Piola, batch.Gradients[a]), batch.Volume);
+      const LanePoint& point = element.Points[p];
+      const LaneStress stress = FindStress<Model>(batch, point, element.MeanPressure);
+      stresses[p] = stress.Piola;
+      volume = volume + batch.Volumes[p];
+      energy = energy + batch.Volumes[p] * stress.EnergyDensity;
+      const LaneVector* const h = point.Gradient.Columns;
+      rounded = rounded +
+        batch.Volumes[p] * batch.Mu * (Dot(h[0], h[0]) + Dot(h[1], h[1]) + Dot(h[2], h[2]));
     }
-    forces[0] = Scale(Add(Add(forces[1], forces[2]), forces[3]), MakeLanes(-1.0));
+    energy = energy + 0.5 * volume * element.MeanPressure * element.MeanDilatation;
+    LaneVector forces[ElementBatch::NumberOfNodes];
+    FindNodeForces(batch, stresses, forces);
     AddForces(batch, forces, arguments.Forces);
     for (int lane = 0; lane < NumberOfLanes; ++lane)
     {
-      inverted += values.Values[2][lane] < 0.0 && batch.Volume[lane] > 0.0 ? 1 : 0;
+      inverted += IsInverted(batch, element, lane) ? 1 : 0;
     }
   }
   arguments.Sums->Energy = SumOfLanes(energy);
+  arguments.Sums->Rounded = SumOfLanes(rounded);
   arguments.Sums->Inverted = inverted;
 }
 
@@ -79,6 +106,7 @@ struct TangentArguments
   const std::int32_t* Diagonal;
   ChunkRange Range;
   const double* Displacements;
+  bool IsClamped;
   BlockMatrix* Matrix;
 };
 
@@ -104,9 +132,10 @@ DEFORMVOLUME_ALWAYS_INLINE void AddLanes(double* sums, const Lanes& lanes)
   std::memcpy(sums, &sum, sizeof(sum));
 }
 
-// Adds the matrix of each lane to its block. Blocks of two lanes may be the same.
+// Adds the matrix of each lane to its block; where the position is ~block, transposed. Blocks of
+// two lanes may be the same.
 DEFORMVOLUME_ALWAYS_INLINE void AddBlocks(
-  double* const (&blocks)[NumberOfLanes], const LaneMatrix& matrix)
+  BlockMatrix& target, const std::int32_t* positions, const LaneMatrix& matrix)
 {
   const LaneVector* const columns = matrix.Columns;
   Lanes first[NumberOfLanes];
@@ -115,74 +144,101 @@ DEFORMVOLUME_ALWAYS_INLINE void AddBlocks(
   TransposeLanes(columns[1].Y, columns[1].Z, columns[2].X, columns[2].Y, second);
   for (int lane = 0; lane < NumberOfLanes; ++lane)
   {
-    AddLanes(blocks[lane], first[lane]);
-    AddLanes(blocks[lane] + 4, second[lane]);
-    blocks[lane][8] += columns[2].Z[lane];
+    if (positions[lane] >= 0)
+    {
+      double* const block = target.GetBlock(positions[lane]);
+      AddLanes(block, first[lane]);
+      AddLanes(block + 4, second[lane]);
+      block[8] += columns[2].Z[lane];
+      continue;
+    }
+    double* const block = target.GetBlock(~positions[lane]);
+    for (int i = 0; i < 3; ++i)
+    {
+      block[3 * 0 + i] += columns[i].X[lane];
+      block[3 * 1 + i] += columns[i].Y[lane];
+      block[3 * 2 + i] += columns[i].Z[lane];
+    }
   }
 }
 
+template <MaterialModel Model>
 DEFORMVOLUME_ALWAYS_INLINE void AddTangentsOfChunk(const TangentArguments& arguments)
 {
   for (std::size_t i = arguments.Range.Begin; i < arguments.Range.End; ++i)
   {
     const ElementBatch& batch = arguments.Batches[i];
     const BatchPositions& positions = arguments.Positions[i];
-    const LaneMatrix F = FindDeformationGradient(batch, arguments.Displacements);
+    LaneElement element;
+    FindElement(batch, arguments.Displacements, element);
     LaneTangent tangent;
-    FindTangent(batch, FindSingularValues(F), tangent);
-    for (int pair = 0; pair < 6; ++pair)
+    FindTangent<Model>(batch, element, arguments.IsClamped, tangent);
+    const LaneMatrix* block = tangent.Blocks;
+    int pair = 0;
+    for (int a = 0; a < ElementBatch::NumberOfNodes; ++a)
     {
-      const std::int32_t* const p = positions.Blocks[pair];
-      BlockMatrix& matrix = *arguments.Matrix;
-      AddBlocks({ matrix.GetBlock(p[0]), matrix.GetBlock(p[1]), matrix.GetBlock(p[2]),
-                  matrix.GetBlock(p[3]) },
-        tangent.Mixed[pair]);
-    }
-    for (int node = 0; node < 4; ++node)
-    {
-      const std::int32_t* const n = batch.Nodes[node];
-      const auto block = [&](int lane) __attribute__((always_inline))
+      std::int32_t own[NumberOfLanes];
+      for (int lane = 0; lane < NumberOfLanes; ++lane)
       {
-        return arguments.Matrix->GetBlock(arguments.Diagonal[n[lane]]);
-      };
-      AddBlocks({ block(0), block(1), block(2), block(3) }, tangent.Own[node]);
+        own[lane] = arguments.Diagonal[batch.Nodes[a][lane]];
+      }
+      AddBlocks(*arguments.Matrix, own, *block++);
+      for (int b = a + 1; b < ElementBatch::NumberOfNodes; ++b)
+      {
+        AddBlocks(*arguments.Matrix, positions.Blocks[pair++], *block++);
+      }
     }
   }
 }
 
-#if DEFORMVOLUME_HAS_AVX2_CODE
-DEFORMVOLUME_FOR_AVX2 void FindForcesOfChunkWide(const ForceArguments& arguments)
+template <MaterialModel Model>
+void RunPlain(const ForceArguments& arguments)
 {
-  FindForcesOfChunk(arguments);
+  FindForcesOfChunk<Model>(arguments);
 }
-DEFORMVOLUME_FOR_AVX2 void AddTangentsOfChunkWide(const TangentArguments& arguments)
+template <MaterialModel Model>
+void RunPlain(const TangentArguments& arguments)
 {
-  AddTangentsOfChunk(arguments);
+  AddTangentsOfChunk<Model>(arguments);
+}
+
+#if DEFORMVOLUME_HAS_AVX2_CODE
+template <MaterialModel Model>
+DEFORMVOLUME_FOR_AVX2 void RunWide(const ForceArguments& arguments)
+{
+  FindForcesOfChunk<Model>(arguments);
+}
+template <MaterialModel Model>
+DEFORMVOLUME_FOR_AVX2 void RunWide(const TangentArguments& arguments)
+{
+  AddTangentsOfChunk<Model>(arguments);
 }
 #endif
 
-void RunChunk(const ForceArguments& arguments)
+template <MaterialModel Model, typename Arguments>
+void RunChunkOf(const Arguments& arguments)
 {
 #if DEFORMVOLUME_HAS_AVX2_CODE
   if (HasWideLanes())
   {
-    FindForcesOfChunkWide(arguments);
+    RunWide<Model>(arguments);
     return;
   }
 #endif
-  FindForcesOfChunk(arguments);
+  RunPlain<Model>(arguments);
 }
 
-void RunChunk(const TangentArguments& arguments)
+template <typename Arguments>
+void RunChunk(MaterialModel model, const Arguments& arguments)
 {
-#if DEFORMVOLUME_HAS_AVX2_CODE
-  if (HasWideLanes())
+  if (model == MaterialModel::Corotational)
   {
-    AddTangentsOfChunkWide(arguments);
-    return;
+    RunChunkOf<MaterialModel::Corotational>(arguments);
   }
-#endif
-  AddTangentsOfChunk(arguments);
+  else
+  {
+    RunChunkOf<MaterialModel::StableNeoHookean>(arguments);
+  }
 }
 
 ChunkRange GetRange(const ElementBatches& batches, std::size_t chunk)
@@ -202,25 +258,131 @@ void ForChunks(Watch& watch, const ElementBatches& batches, Body&& body)
   }
 }
 
-// J sigma = P F^T, of which the six components are those that differ.
-std::array<double, 6> GetCauchyStress(
-  const LaneMatrix& piola, const LaneMatrix& F, int lane, double determinant)
+// Adds J sigma = P F^T times a volume, of which the six components are those that differ.
+void AddKirchhoffStress(const LaneMatrix& piola, const LaneMatrix& F, int lane, double volume,
+  std::array<double, 6>& stress)
 {
-  const auto sum = [&](Lanes LaneVector::*row, Lanes LaneVector::*column)
+  const auto product = [&](Lanes LaneVector::*row, Lanes LaneVector::*column)
   {
     double result = 0.0;
     for (int k = 0; k < 3; ++k)
     {
       result += (piola.Columns[k].*row)[lane] * (F.Columns[k].*column)[lane];
     }
-    return result / determinant;
+    return volume * result;
   };
-  return { sum(&LaneVector::X, &LaneVector::X), sum(&LaneVector::Y, &LaneVector::Y),
-    sum(&LaneVector::Z, &LaneVector::Z), sum(&LaneVector::X, &LaneVector::Y),
-    sum(&LaneVector::Y, &LaneVector::Z), sum(&LaneVector::X, &LaneVector::Z) };
+  stress[0] += product(&LaneVector::X, &LaneVector::X);
+  stress[1] += product(&LaneVector::Y, &LaneVector::Y);
+  stress[2] += product(&LaneVector::Z, &LaneVector::Z);
+  stress[3] += product(&LaneVector::X, &LaneVector::Y);
+  stress[4] += product(&LaneVector::Y, &LaneVector::Z);
+  stress[5] += product(&LaneVector::X, &LaneVector::Z);
+}
+
+// Means over the tetrahedron in a lane: of the stress over its volume now, of the others over its
+// volume at rest.
+ElementResults GetLaneResults(const ElementBatch& batch, const LaneElement& element,
+  const LaneStress (&stresses)[ElementBatch::NumberOfGaussPoints], int lane)
+{
+  ElementResults result;
+  double volume = 0.0;
+  for (int p = 0; p < ElementBatch::NumberOfGaussPoints; ++p)
+  {
+    const double part = batch.Volumes[p][lane];
+    volume += part;
+    result.StrainEnergyDensity += part * stresses[p].EnergyDensity[lane];
+    AddKirchhoffStress(stresses[p].Piola, AddToDiagonal(element.Points[p].Gradient, MakeLanes(1.0)),
+      lane, part, result.Stress);
+  }
+  result.Determinant = 1.0 + element.MeanDilatation[lane];
+  result.StrainEnergyDensity = result.StrainEnergyDensity / volume +
+    0.5 * element.MeanPressure[lane] * element.MeanDilatation[lane];
+  for (double& component : result.Stress)
+  {
+    component = IsFlat(result.Determinant) ? 0.0 : component / (volume * result.Determinant);
+  }
+  return result;
+}
+
+template <MaterialModel Model>
+void FindBatchResults(const ElementBatch& batch, const double* displacements,
+  const std::int32_t* tetrahedra, std::vector<ElementResults>& results)
+{
+  LaneElement element;
+  FindElement(batch, displacements, element);
+  LaneStress stresses[ElementBatch::NumberOfGaussPoints];
+  for (int p = 0; p < ElementBatch::NumberOfGaussPoints; ++p)
+  {
+    stresses[p] = FindStress<Model>(batch, element.Points[p], element.MeanPressure);
+  }
+  for (int lane = 0; lane < NumberOfLanes; ++lane)
+  {
+    if (tetrahedra[lane] >= 0 && batch.InverseVolume[lane] > 0.0)
+    {
+      results[static_cast<std::size_t>(tetrahedra[lane])] =
+        GetLaneResults(batch, element, stresses, lane);
+    }
+  }
+}
+
+// The determinant of three edges from the first of four points.
+double GetDeterminant(
+  const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d)
+{
+  return glm::dot(glm::cross(b - a, c - a), d - a);
+}
+
+bool IsSplitInverted(const std::array<glm::dvec3, QuadraticTetrahedron::NumberOfNodes>& p)
+{
+  // The corners, with what cuts them off; the triangles between these on the faces, inwards.
+  constexpr std::size_t corners[4][4] = { { 0, 4, 6, 7 }, { 1, 5, 4, 8 }, { 2, 6, 5, 9 },
+    { 3, 8, 7, 9 } };
+  constexpr std::size_t faces[4][3] = { { 4, 5, 6 }, { 4, 7, 8 }, { 5, 8, 9 }, { 6, 9, 7 } };
+  const glm::dvec3 center =
+    0.25 * (p[4] + p[5] + p[6] + p[7] + p[8] + p[9]) - 0.125 * (p[0] + p[1] + p[2] + p[3]);
+  return std::any_of(std::begin(corners), std::end(corners),
+           [&](const std::size_t(&c)[4])
+           {
+             return GetDeterminant(p[c[0]], p[c[1]], p[c[2]], p[c[3]]) < 0.0 ||
+               GetDeterminant(p[c[1]], p[c[2]], p[c[3]], center) < 0.0;
+           }) ||
+    std::any_of(std::begin(faces), std::end(faces),
+      [&](const std::size_t(&f)[3])
+      { return GetDeterminant(p[f[0]], p[f[1]], p[f[2]], center) < 0.0; });
 }
 
 } // namespace
+
+std::int64_t CountInvertedSplits(
+  Watch& watch, const ElasticBody& body, const std::vector<glm::dvec3>& displacements)
+{
+  constexpr std::size_t size = 1024;
+  const std::size_t parts = (body.Tetrahedra.size() + size - 1) / size;
+  std::vector<std::int64_t> numbers(parts, 0);
+  ForParts(watch, parts, ChunksAtOnce,
+    [&](std::size_t part)
+    {
+      const std::size_t end = std::min(body.Tetrahedra.size(), (part + 1) * size);
+      for (std::size_t t = part * size; t < end; ++t)
+      {
+        std::array<glm::dvec3, QuadraticTetrahedron::NumberOfNodes> points{};
+        const Tetrahedron& c = body.Tetrahedra[t];
+        const auto at = [&](std::size_t i) { return body.Points[static_cast<std::size_t>(c[i])]; };
+        const bool isMirrored = GetDeterminant(at(0), at(1), at(2), at(3)) < 0.0;
+        std::size_t i = 0;
+        body.ForNodes(t,
+          [&](std::int32_t node)
+          {
+            glm::dvec3& point = points[i++];
+            point = body.Points[static_cast<std::size_t>(node)] +
+              displacements[static_cast<std::size_t>(node)];
+            point.x = isMirrored ? -point.x : point.x;
+          });
+        numbers[part] += IsSplitInverted(points) ? 1 : 0;
+      }
+    });
+  return std::accumulate(numbers.begin(), numbers.end(), std::int64_t{ 0 });
+}
 
 FiniteElements::Sums FiniteElements::FindForces(
   Watch& watch, const std::vector<glm::dvec3>& displacements, std::vector<glm::dvec3>& forces) const
@@ -230,13 +392,15 @@ FiniteElements::Sums FiniteElements::FindForces(
   ForChunks(watch, this->Batches,
     [&](std::size_t chunk)
     {
-      RunChunk(ForceArguments{ this->Batches.Batches.data(), GetRange(this->Batches, chunk),
-        &displacements.front().x, &forces.front().x, &sums[chunk] });
+      RunChunk(this->Model,
+        ForceArguments{ this->Batches.Batches.data(), GetRange(this->Batches, chunk),
+          &displacements.front().x, &forces.front().x, &sums[chunk] });
     });
   Sums total;
   for (const Sums& sum : sums)
   {
     total.Energy += sum.Energy;
+    total.Rounded += sum.Rounded;
     total.Inverted += sum.Inverted;
   }
   return total;
@@ -253,11 +417,11 @@ void FiniteElements::FindInvertedNodes(Watch& watch, const std::vector<glm::dvec
       for (std::size_t i = range.Begin; i < range.End; ++i)
       {
         const ElementBatch& batch = this->Batches.Batches[i];
-        const LaneMatrix F = FindDeformationGradient(batch, &displacements.front().x);
-        const Lanes determinant = Dot(F.Columns[0], Cross(F.Columns[1], F.Columns[2]));
+        LaneElement element;
+        FindElement(batch, &displacements.front().x, element);
         for (int lane = 0; lane < NumberOfLanes; ++lane)
         {
-          for (int node = 0; node < 4 && determinant[lane] < 0.0 && batch.Volume[lane] > 0.0;
+          for (int node = 0; node < ElementBatch::NumberOfNodes && IsInverted(batch, element, lane);
                ++node)
           {
             isInverted[static_cast<std::size_t>(batch.Nodes[node][lane])] = 1;
@@ -267,16 +431,17 @@ void FiniteElements::FindInvertedNodes(Watch& watch, const std::vector<glm::dvec
     });
 }
 
-void FiniteElements::AssembleTangent(
-  Watch& watch, const std::vector<glm::dvec3>& displacements, BlockMatrix& matrix) const
+void FiniteElements::AssembleTangent(Watch& watch, const std::vector<glm::dvec3>& displacements,
+  bool isClamped, BlockMatrix& matrix) const
 {
   matrix.PutToZero(watch);
   ForChunks(watch, this->Batches,
     [&](std::size_t chunk)
     {
-      RunChunk(TangentArguments{ this->Batches.Batches.data(), this->Positions.data(),
-        matrix.GetPattern().Diagonal.data(), GetRange(this->Batches, chunk),
-        &displacements.front().x, &matrix });
+      RunChunk(this->Model,
+        TangentArguments{ this->Batches.Batches.data(), this->Positions.data(),
+          matrix.GetPattern().Diagonal.data(), GetRange(this->Batches, chunk),
+          &displacements.front().x, isClamped, &matrix });
     });
   matrix.Mirror(watch);
 }
@@ -295,25 +460,16 @@ std::vector<ElementResults> FiniteElements::GetResults(
       for (std::size_t i = begin; i < end; ++i)
       {
         const ElementBatch& batch = this->Batches.Batches[i];
-        const LaneMatrix F = FindDeformationGradient(batch, &displacements.front().x);
-        const SingularValues values = FindSingularValues(F);
-        const LaneStress stress = FindStress(batch, F, values);
-        for (int lane = 0; lane < NumberOfLanes; ++lane)
+        const std::int32_t* const tetrahedra = &this->Batches.Tetrahedra[i * NumberOfLanes];
+        if (this->Model == MaterialModel::Corotational)
         {
-          const std::int32_t tetrahedron =
-            this->Batches.Tetrahedra[i * NumberOfLanes + static_cast<std::size_t>(lane)];
-          if (tetrahedron < 0)
-          {
-            continue;
-          }
-          ElementResults& result = results[static_cast<std::size_t>(tetrahedron)];
-          const Lanes* s = values.Values;
-          result.Determinant = s[0][lane] * s[1][lane] * s[2][lane];
-          result.StrainEnergyDensity = stress.EnergyDensity[lane];
-          if (!IsFlat(result.Determinant))
-          {
-            result.Stress = GetCauchyStress(stress.Piola, F, lane, result.Determinant);
-          }
+          FindBatchResults<MaterialModel::Corotational>(
+            batch, &displacements.front().x, tetrahedra, results);
+        }
+        else
+        {
+          FindBatchResults<MaterialModel::StableNeoHookean>(
+            batch, &displacements.front().x, tetrahedra, results);
         }
       }
     });

@@ -26,6 +26,8 @@ public:
   }
 
   void SetMaterials(const ElasticBody& body) { deformvolume::SetMaterials(this->Batches, body); }
+  void SetMaterialModel(MaterialModel model) { this->Model = model; }
+  MaterialModel GetMaterialModel() const { return this->Model; }
 
   /// See SetActivePieces of ElementBatches.
   void SetActivePieces(
@@ -43,6 +45,9 @@ public:
   struct Sums
   {
     double Energy = 0.0;
+    /// What the energy is the difference of: it is rounded to 1e-16 of this.
+    double Rounded = 0.0;
+    /// Tetrahedra that are inside out at a Gauss point.
     std::int64_t Inverted = 0;
   };
 
@@ -50,20 +55,26 @@ public:
   Sums FindForces(Watch& watch, const std::vector<glm::dvec3>& displacements,
     std::vector<glm::dvec3>& forces) const;
 
-  /// Which nodes belong to tetrahedra that are inside out.
+  /// Which nodes belong to tetrahedra that are inside out at a Gauss point.
   void FindInvertedNodes(Watch& watch, const std::vector<glm::dvec3>& displacements,
     std::vector<unsigned char>& isInverted) const;
 
-  /// The second derivatives; see FindTangent.
-  void AssembleTangent(
-    Watch& watch, const std::vector<glm::dvec3>& displacements, BlockMatrix& matrix) const;
+  /// The second derivatives; isClamped: without negative eigenvalues, see FindTangent.
+  void AssembleTangent(Watch& watch, const std::vector<glm::dvec3>& displacements, bool isClamped,
+    BlockMatrix& matrix) const;
 
   std::vector<ElementResults> GetResults(const std::vector<glm::dvec3>& displacements) const;
 
 private:
   ElementBatches Batches;
+  MaterialModel Model = MaterialModel::StableNeoHookean;
   std::vector<BatchPositions> Positions;
 };
+
+/// Of how many tetrahedra a part is inside out, where each is split into twelve linear ones: its
+/// corners, and eight around its middle (see EquilibriumReport).
+std::int64_t CountInvertedSplits(
+  Watch& watch, const ElasticBody& body, const std::vector<glm::dvec3>& displacements);
 
 } // namespace deformvolume
 

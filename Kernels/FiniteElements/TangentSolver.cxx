@@ -24,11 +24,14 @@ void TangentSolver::Forget()
   this->History.Clear();
 }
 
-void TangentSolver::Update(Watch& watch, const std::vector<glm::dvec3>& displacements)
+void TangentSolver::Update(
+  Watch& watch, const std::vector<glm::dvec3>& displacements, bool isClamped)
 {
   this->IsPreconditioned = false;
+  this->AreLevelsNew = false;
   this->History.ForgetProducts();
-  this->Elements.AssembleTangent(watch, displacements, this->Matrix);
+  this->Elements.AssembleTangent(watch, displacements, isClamped, this->Matrix);
+  this->Sliding.Constrain(this->Matrix);
   this->Shape = displacements;
 }
 
@@ -50,6 +53,7 @@ Preconditioner& TangentSolver::Precondition(Watch& watch, const std::vector<unsi
   {
     this->Levels.Build(watch, this->Matrix, isFree, this->FindPositions());
     this->CostOfLevels = 0.0;
+    this->AreLevelsNew = true;
   }
   if (isNew || !this->IsPreconditioned)
   {
@@ -87,9 +91,9 @@ void TangentSolver::JudgeLevels(int iterations, double digits)
   }
 }
 
-int TangentSolver::Solve(Watch& watch, const std::vector<unsigned char>& isFree,
-  const std::vector<glm::dvec3>& rightHandSide, const Limits& limits, bool repeats,
-  std::vector<glm::dvec3>& solution)
+ConjugateGradients::Result TangentSolver::Solve(Watch& watch,
+  const std::vector<unsigned char>& isFree, const std::vector<glm::dvec3>& rightHandSide,
+  const Limits& limits, bool repeats, std::vector<glm::dvec3>& solution)
 {
   const double squared = SumOfProducts(watch, rightHandSide, rightHandSide);
   const double wanted = limits.Tolerance * limits.Tolerance * squared;
@@ -110,15 +114,24 @@ int TangentSolver::Solve(Watch& watch, const std::vector<unsigned char>& isFree,
     this->Residual = rightHandSide;
     begin = squared;
   }
-  const int iterations = this->Gradients.Solve(watch, this->Matrix, isFree, preconditioner,
-    { limits.Iterations, wanted }, solution, this->Residual);
+  const ConjugateGradients::Result result = this->Gradients.Solve(watch, this->Matrix, isFree,
+    preconditioner, { limits.Iterations, wanted }, solution, this->Residual);
+  this->Sliding.Project(solution);
+  if (result.IsIndefinite)
+  {
+    if (this->AreLevelsNew)
+    {
+      this->IsFree.clear(); // they are to be built from a better matrix
+    }
+    return result;
+  }
   if (repeats)
   {
     this->History.Add(solution, rightHandSide, this->Residual);
   }
   this->JudgeLevels(
-    iterations, begin > 0.0 && wanted > 0.0 ? 0.5 * std::log10(begin / wanted) : 0.0);
-  return iterations;
+    result.Iterations, begin > 0.0 && wanted > 0.0 ? 0.5 * std::log10(begin / wanted) : 0.0);
+  return result;
 }
 
 } // namespace deformvolume

@@ -7,6 +7,7 @@
 #include "FiniteElements.h"
 #include "Multigrid.h"
 #include "Preconditioner.h"
+#include "SlidingNodes.h"
 #include "SolutionHistory.h"
 #include "Watch.h"
 
@@ -24,10 +25,12 @@ namespace deformvolume
 class TangentSolver
 {
 public:
-  /// points: of the body, at rest. Both have to stay.
-  TangentSolver(const std::vector<glm::dvec3>& points, const FiniteElements& elements)
+  /// points: of the body, at rest. All of them have to stay.
+  TangentSolver(const std::vector<glm::dvec3>& points, const FiniteElements& elements,
+    const SlidingNodes& sliding)
     : Points(points)
     , Elements(elements)
+    , Sliding(sliding)
   {
   }
 
@@ -44,15 +47,15 @@ public:
   }
   const BlockMatrix& GetMatrix() const { return this->Matrix; }
 
-  /// Makes the matrix for displacements.
-  void Update(Watch& watch, const std::vector<glm::dvec3>& displacements);
+  /// Makes the matrix for displacements; isClamped: without negative eigenvalues, see FindTangent.
+  void Update(Watch& watch, const std::vector<glm::dvec3>& displacements, bool isClamped);
 
   /// Nothing of what was solved before has to do with what follows.
   void Forget();
 
   /// Solves for the free nodes; the right-hand side is 0 elsewhere. repeats: it is much like one of
-  /// those before that were said to repeat. Returns the number of iterations.
-  int Solve(Watch& watch, const std::vector<unsigned char>& isFree,
+  /// those before that were said to repeat.
+  ConjugateGradients::Result Solve(Watch& watch, const std::vector<unsigned char>& isFree,
     const std::vector<glm::dvec3>& rightHandSide, const Limits& limits, bool repeats,
     std::vector<glm::dvec3>& solution);
 
@@ -64,6 +67,7 @@ private:
 
   const std::vector<glm::dvec3>& Points;
   const FiniteElements& Elements;
+  const SlidingNodes& Sliding;
   BlockMatrix Matrix;
   // The displacements that it is of.
   std::vector<glm::dvec3> Shape;
@@ -75,6 +79,8 @@ private:
   double CostOfLevels = 0.0;
   // Whether the preconditioner is for this matrix.
   bool IsPreconditioned = false;
+  // Whether the levels were built from this matrix.
+  bool AreLevelsNew = false;
   // Whether that is the levels.
   bool HasLevels = false;
   ConjugateGradients Gradients;

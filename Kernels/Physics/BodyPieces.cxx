@@ -6,6 +6,9 @@
 #include "FaceNeighbours.h"
 #include "Watch.h"
 
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -76,13 +79,65 @@ void ForPairs(
   }
 }
 
+// What planes through points leave of the six motions of a rigid body: of each plane, where it
+// keeps a point from going along its normal.
+class PlaneSupport
+{
+public:
+  void Add(const glm::dvec3& point, const glm::dvec3& normal)
+  {
+    this->Origin = this->IsEmpty ? point : this->Origin;
+    this->IsEmpty = false;
+    const glm::dvec3 turn = glm::cross(point - this->Origin, normal);
+    Eigen::Matrix<double, 6, 1> row;
+    row << normal.x, normal.y, normal.z, turn.x, turn.y, turn.z;
+    this->Products += row * row.transpose();
+  }
+
+  // Whether no motion is left. Lengths have no unit here: each row is taken by its own size.
+  bool Holds() const
+  {
+    constexpr double least = 1e-8;
+    if (!(this->Products.diagonal().minCoeff() > 0.0))
+    {
+      return false;
+    }
+    const Eigen::Matrix<double, 6, 1> sizes = this->Products.diagonal().cwiseSqrt().cwiseInverse();
+    return Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>>(
+             sizes.asDiagonal() * this->Products * sizes.asDiagonal())
+             .eigenvalues()
+             .minCoeff() > least;
+  }
+
+private:
+  bool IsEmpty = true;
+  glm::dvec3 Origin{ 0.0 };
+  Eigen::Matrix<double, 6, 6> Products = Eigen::Matrix<double, 6, 6>::Zero();
+};
+
 // Nodes that support a piece, as far as they are needed.
 class Support
 {
 public:
+  // A node that slides. All of them come before those that are held.
+  void AddSliding(const glm::dvec3& point, const glm::dvec3& normal)
+  {
+    this->Slides = true;
+    this->Planes.Add(point, glm::normalize(normal));
+  }
+
   void Add(const std::vector<glm::dvec3>& points, std::int32_t node)
   {
     const auto place = [&](std::int32_t i) { return points[static_cast<std::size_t>(i)]; };
+    if (this->Slides)
+    {
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        glm::dvec3 normal(0.0);
+        normal[axis] = 1.0;
+        this->Planes.Add(place(node), normal);
+      }
+    }
     if (this->Nodes[0] < 0)
     {
       this->Nodes[0] = node;
@@ -95,12 +150,18 @@ public:
       return;
     }
     const glm::dvec3 along = place(this->Nodes[1]) - place(this->Nodes[0]);
-    this->Holds =
-      this->Holds || glm::length(glm::cross(offset, along)) > LeastArea * glm::dot(along, along);
+    this->IsStiff =
+      this->IsStiff || glm::length(glm::cross(offset, along)) > LeastArea * glm::dot(along, along);
   }
 
+  bool Holds() const { return this->IsStiff || (this->Slides && this->Planes.Holds()); }
+
   std::array<std::int32_t, 2> Nodes{ { -1, -1 } };
-  bool Holds = false;
+
+private:
+  bool IsStiff = false;
+  bool Slides = false;
+  PlaneSupport Planes;
 };
 
 // Turns a vector as one direction is turned into another, on the shortest way.
@@ -160,6 +221,25 @@ PieceSupports FindSupports(
 {
   const auto number = static_cast<std::size_t>(pieces.NumberOfPieces);
   std::vector<Support> supports(number);
+  for (std::size_t node = 0; node < body.SlidingNormals.size(); ++node)
+  {
+    const glm::dvec3& normal = body.SlidingNormals[node];
+    const auto slide = [&](std::int32_t piece)
+    { supports[static_cast<std::size_t>(piece)].AddSliding(body.Points[node], normal); };
+    if (normal == glm::dvec3(0.0) || isNotFree[node] != 0 || pieces.PieceOfNode[node] < 0)
+    {
+      continue;
+    }
+    slide(pieces.PieceOfNode[node]);
+    ForPairs(pieces.SharedNodes, static_cast<std::int32_t>(node),
+      [&](std::int32_t piece)
+      {
+        if (piece != pieces.PieceOfNode[node])
+        {
+          slide(piece);
+        }
+      });
+  }
   for (std::size_t node = 0; node < body.Points.size(); ++node)
   {
     if (isNotFree[node] != 0 && pieces.PieceOfNode[node] >= 0)
@@ -211,7 +291,7 @@ PieceSupports FindSupports(
     }
   };
   PieceSupports result;
-  spread([](const Support& support) { return support.Holds; }, [](std::int32_t) {});
+  spread([](const Support& support) { return support.Holds(); }, [](std::int32_t) {});
   result.IsHeld = isTaken;
   spread([](const Support& support) { return support.Nodes[0] >= 0; },
     [&](std::int32_t piece)

@@ -48,7 +48,8 @@ struct FollowingPiece
 struct PieceSupports
 {
   /// Of each piece whether fixed nodes, those of handles and those that it shares with a held piece
-  /// hold it: at least three of them that lie on no common line.
+  /// hold it: at least three of them that lie on no common line, or together with nodes that slide
+  /// what leaves it no motion of a rigid body.
   std::vector<bool> IsHeld;
   /// Of the others those that follow, each after what it follows. What is neither held nor follows
   /// has no such node.

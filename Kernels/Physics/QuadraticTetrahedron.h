@@ -40,7 +40,7 @@ struct QuadraticTetrahedron
   static std::array<glm::dvec3, NumberOfNodes> GetPoints(
     const ElasticBody& body, std::size_t tetrahedron)
   {
-    std::array<glm::dvec3, NumberOfNodes> points;
+    std::array<glm::dvec3, NumberOfNodes> points{};
     std::size_t i = 0;
     body.ForNodes(tetrahedron,
       [&](std::int32_t node) { points[i++] = body.Points[static_cast<std::size_t>(node)]; });
@@ -68,17 +68,22 @@ struct QuadraticTetrahedron
     return { slopes[1] - slopes[0], slopes[2] - slopes[0], slopes[3] - slopes[0] };
   }
 
+  /// The volume of a Gauss point, by the determinant of GetJacobian there.
+  static double GetGaussVolume(double determinant)
+  {
+    constexpr double ofDeterminant = 1.0 / 24.0;
+    return ofDeterminant * std::abs(determinant);
+  }
+
   /// The volume of each Gauss point, in m^3.
   static std::array<double, NumberOfGaussPoints> GetGaussVolumes(
     const ElasticBody& body, std::size_t tetrahedron)
   {
-    constexpr double ofDeterminant = 1.0 / 24.0;
     const std::array<glm::dvec3, NumberOfNodes> points = GetPoints(body, tetrahedron);
     std::array<double, NumberOfGaussPoints> volumes;
     for (std::size_t i = 0; i < NumberOfGaussPoints; ++i)
     {
-      volumes[i] =
-        ofDeterminant * std::abs(glm::determinant(GetJacobian(points, GetGaussPoint(i))));
+      volumes[i] = GetGaussVolume(glm::determinant(GetJacobian(points, GetGaussPoint(i))));
     }
     return volumes;
   }

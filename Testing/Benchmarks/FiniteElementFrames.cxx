@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Warm frames of corotational finite elements: what they take, and what force they leave.
+// Warm frames of finite elements: what they take, and what force they leave.
 //
-// Usage: FiniteElementFrames [FRAMES [NEWTON [ITERATIONS [SCENE]]]]. Times are in milliseconds. The
-// body is a block that is fixed at its lower end; in the middle of the other end a handle of 3 x 3
-// nodes goes along a circle, by 0.005 of the length in each frame, or the body bends under its
-// weight.
+// Usage: FiniteElementFrames [FRAMES [NEWTON [ITERATIONS [SCENE [MODEL]]]]]. Times are in
+// milliseconds. The body is a block that is fixed at its lower end; in the middle of the other end
+// a handle of 2 x 2 cm, or as large as one cell, goes along a circle, by 0.005 of the length in
+// each frame, or the body bends under its weight. MODEL: 0 stable neo-Hookean, 1 corotational.
 #include "FiniteElementModel.h"
 #include "LatticeBody.h"
 #include "Timing.h"
@@ -24,7 +24,7 @@ namespace
 
 struct Scene
 {
-  LatticeBody::Place Nodes;
+  LatticeBody::Place Corners;
   double PoissonRatio;
   bool HasHandle;
 };
@@ -43,16 +43,19 @@ double GetMedian(std::vector<double> values)
   return values[values.size() / 2];
 }
 
-void RunScene(const Scene& scene, int frames, const EquilibriumLimits& limits)
+void RunScene(
+  const Scene& scene, int frames, const EquilibriumLimits& limits, MaterialModel materialModel)
 {
   ElasticMaterial material;
   material.PoissonRatio = scene.PoissonRatio;
-  const double spacing = 0.01;
-  LatticeBody lattice(scene.Nodes, spacing, material);
+  const double spacing = 0.02;
+  LatticeBody lattice(scene.Corners, spacing, material);
   lattice.Fix([](const LatticeBody::Place& place) { return place[2] == 0; });
+  AddMidSideNodes(lattice.Body);
   FiniteElementModel model;
+  model.SetMaterialModel(materialModel);
   const double setTime = 1e3 * Time([&] { model.SetBody(lattice.Body); });
-  const double length = spacing * (scene.Nodes[2] - 1);
+  const double length = spacing * (scene.Corners[2] - 1);
   EquilibriumRequest request;
   request.Limits = limits;
   std::vector<double> times;
@@ -67,13 +70,16 @@ void RunScene(const Scene& scene, int frames, const EquilibriumLimits& limits)
     request.Held.clear();
     if (scene.HasHandle)
     {
-      for (int j = -1; j <= 1; ++j)
+      const glm::dvec3 middle =
+        0.5 * spacing * glm::dvec3(scene.Corners[0] - 1, scene.Corners[1] - 1, 0.0);
+      const double radius = 0.505 * spacing;
+      for (std::size_t node = 0; node < lattice.Body.Points.size(); ++node)
       {
-        for (int i = -1; i <= 1; ++i)
+        const glm::dvec3 place = lattice.Body.Points[node] - middle;
+        if (std::abs(place.x) < radius && std::abs(place.y) < radius && place.z > length - 1e-9)
         {
-          request.Held.push_back({ lattice.GetNode({ scene.Nodes[0] / 2 + i, scene.Nodes[1] / 2 + j,
-                                     scene.Nodes[2] - 1 }),
-            length * GetHandlePlace(frame) });
+          request.Held.push_back(
+            { static_cast<std::int32_t>(node), length * GetHandlePlace(frame) });
         }
       }
     }
@@ -120,14 +126,16 @@ int main(int argc, char* argv[])
     limits.NewtonSteps = argc > 2 ? std::atoi(argv[2]) : 0;
     limits.LinearIterations = argc > 3 ? std::atoi(argv[3]) : 0;
     const int wanted = argc > 4 ? std::atoi(argv[4]) : -1;
+    const auto model = argc > 5 && std::atoi(argv[5]) == 1 ? MaterialModel::Corotational
+                                                           : MaterialModel::StableNeoHookean;
     int number = 0;
-    for (const Scene& scene : { Scene{ { 5, 5, 5 }, 0.45, true },
-           Scene{ { 10, 16, 20 }, 0.45, true }, Scene{ { 10, 16, 20 }, 0.45, false },
-           Scene{ { 16, 16, 76 }, 0.3, true }, Scene{ { 16, 16, 76 }, 0.3, false } })
+    for (const Scene& scene : { Scene{ { 3, 3, 3 }, 0.45, true }, Scene{ { 6, 8, 10 }, 0.45, true },
+           Scene{ { 6, 8, 10 }, 0.45, false }, Scene{ { 8, 8, 39 }, 0.3, true },
+           Scene{ { 8, 8, 39 }, 0.3, false } })
     {
       if (wanted < 0 || number == wanted)
       {
-        RunScene(scene, frames, limits);
+        RunScene(scene, frames, limits, model);
       }
       ++number;
     }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the tests of corotational finite elements have in common.
+// What the tests of finite elements have in common.
 #ifndef FiniteElementCase_h
 #define FiniteElementCase_h
 
 #include "FiniteElementModel.h"
 #include "LatticeBody.h"
+#include "MidSideNodes.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -14,6 +15,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -81,6 +84,86 @@ inline std::vector<glm::dvec3> MapPoints(
     displacements.push_back(matrix * point + offset - point);
   }
   return displacements;
+}
+
+/// A lattice of ten-node tetrahedra; isFixed: which corners are held.
+struct QuadraticLattice : LatticeBody
+{
+  QuadraticLattice(const Place& nodes, double spacing,
+    const deformvolume::ElasticMaterial& material,
+    const std::function<bool(const Place&)>& isFixed = nullptr)
+    : LatticeBody(nodes, spacing, material)
+  {
+    if (isFixed)
+    {
+      this->Fix(isFixed);
+    }
+    deformvolume::AddMidSideNodes(this->Body);
+  }
+};
+
+/// The nodes of which a function of the place is true.
+template <typename Choose>
+std::vector<std::int32_t> FindNodes(const deformvolume::ElasticBody& body, Choose&& isChosen)
+{
+  std::vector<std::int32_t> nodes;
+  for (std::size_t node = 0; node < body.Points.size(); ++node)
+  {
+    if (isChosen(body.Points[node]))
+    {
+      nodes.push_back(static_cast<std::int32_t>(node));
+    }
+  }
+  return nodes;
+}
+
+/// The forces of a traction, in N/m^2, on the faces whose corners lie where a function is true: all
+/// of it at the middles of edges, where they are straight.
+template <typename Choose>
+std::vector<glm::dvec3> LoadFaces(
+  const deformvolume::ElasticBody& body, Choose&& isOnFace, const glm::dvec3& traction)
+{
+  std::vector<glm::dvec3> forces(body.Points.size(), glm::dvec3(0.0));
+  for (std::size_t t = 0; t < body.Tetrahedra.size(); ++t)
+  {
+    const auto at = [&](std::size_t i) -> const glm::dvec3&
+    { return body.Points[static_cast<std::size_t>(body.Tetrahedra[t][i])]; };
+    for (std::size_t apex = 0; apex < 4; ++apex)
+    {
+      const std::size_t a = (apex + 1) % 4;
+      const std::size_t b = (apex + 2) % 4;
+      const std::size_t c = (apex + 3) % 4;
+      if (!isOnFace(at(a)) || !isOnFace(at(b)) || !isOnFace(at(c)))
+      {
+        continue;
+      }
+      const double area = 0.5 * glm::length(glm::cross(at(b) - at(a), at(c) - at(a)));
+      for (std::size_t edge = 0; edge < 6; ++edge)
+      {
+        const auto& ends = deformvolume::TetrahedronEdges[edge];
+        if (ends[0] != apex && ends[1] != apex)
+        {
+          forces[static_cast<std::size_t>(body.MidSides[t][edge])] += traction * area / 3.0;
+        }
+      }
+    }
+  }
+  return forces;
+}
+
+/// The mean of displacements, each node by its share of the load.
+inline glm::dvec3 GetLoadedMean(
+  const std::vector<glm::dvec3>& forces, const std::vector<glm::dvec3>& displacements)
+{
+  glm::dvec3 sum(0.0);
+  double weights = 0.0;
+  for (std::size_t node = 0; node < forces.size(); ++node)
+  {
+    const double weight = glm::length(forces[node]);
+    sum += weight * displacements[node];
+    weights += weight;
+  }
+  return sum / weights;
 }
 
 inline deformvolume::EquilibriumRequest MakeConverged()

@@ -38,7 +38,7 @@ constexpr int Shrinking = 1;
 ElasticBody MakeBody(const Place& nodes)
 {
   // As many as levels need, where there are so many.
-  constexpr std::int32_t least = 11;
+  constexpr std::int32_t least = 7;
   Place fewer = nodes;
   for (std::int32_t& count : fewer)
   {
@@ -52,6 +52,7 @@ ElasticBody MakeBody(const Place& nodes)
   {
     point += glm::dvec3(jitter(random), jitter(random), jitter(random));
   }
+  AddMidSideNodes(lattice.Body);
   return lattice.Body;
 }
 
@@ -102,7 +103,7 @@ private:
 
 TEST(ElasticAborts, FiniteElementBodies)
 {
-  const ElasticBody body = MakeBody({ 30, 30, 60 });
+  const ElasticBody body = MakeBody({ 16, 16, 31 });
   FiniteElementModel model;
   {
     Questions questions;
@@ -126,8 +127,8 @@ TEST(ElasticAborts, FiniteElementBodies)
 
 TEST(ElasticAborts, TheLastFiniteElementBodyStays)
 {
-  const ElasticBody body = MakeBody({ 12, 12, 12 });
-  const ElasticBody other = MakeBody({ 30, 30, 30 });
+  const ElasticBody body = MakeBody({ 7, 7, 7 });
+  const ElasticBody other = MakeBody({ 16, 16, 16 });
   FiniteElementModel model;
   EquilibriumRequest request;
   request.Loads.Gravity = glm::dvec3(0.0, -1.0, 0.0);
@@ -218,7 +219,7 @@ bool AbortAfter(int allowed, FiniteElementModel& model, EquilibriumRequest reque
 // with levels.
 TEST(ElasticAborts, OfASolveTheLastDisplacementsStay)
 {
-  for (const Place& nodes : { Place{ 6, 6, 7 }, Place{ 12, 12, 12 } })
+  for (const Place& nodes : { Place{ 4, 4, 4 }, Place{ 7, 7, 7 } })
   {
     Frames fresh(nodes);
     fresh.Solve(1, 4);
@@ -261,7 +262,7 @@ TEST(ElasticAborts, AfterAFarPull)
 {
   for (const EquilibriumMode mode : { EquilibriumMode::Interactive, EquilibriumMode::Converged })
   {
-    Frames frames({ 12, 12, 12 });
+    Frames frames({ 7, 7, 7 });
     frames.Solve(1, 1);
     for (const int frame : { 120, 300 })
     {
@@ -275,7 +276,7 @@ TEST(ElasticAborts, AfterAFarPull)
         EXPECT_TRUE(AbortAfter(40, frames.Model, frames.MakeRequest(1)));
       }
     }
-    Frames fresh({ 12, 12, 12 });
+    Frames fresh({ 7, 7, 7 });
     fresh.Model.SetDisplacements(frames.Model.GetDisplacements());
     EXPECT_TRUE(AbortAfter(3, frames.Model, frames.MakeRequest(1)));
     frames.Solve(100, 101);
@@ -287,7 +288,7 @@ TEST(ElasticAborts, AfterAFarPull)
 // Levels that were given up are built anew.
 TEST(ElasticAborts, Levels)
 {
-  const ElasticBody body = MakeBody({ 14, 14, 20 });
+  const ElasticBody body = MakeBody({ 8, 8, 10 });
   EquilibriumRequest request = MakeConverged();
   request.Loads.Gravity = glm::dvec3(0.0, -1.0, 0.0);
   FiniteElementModel fresh;

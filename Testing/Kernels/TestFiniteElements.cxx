@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Corotational finite elements: misuse, and what stays of a call.
+// Finite elements: misuse, and what stays of a call.
 #include "FiniteElementCase.h"
+#include "FiniteElements.h"
 #include "Measured.h"
 #include "ParallelFor.h"
 
@@ -22,33 +23,41 @@ using Place = LatticeBody::Place;
 
 constexpr double NoNumber = std::numeric_limits<double>::quiet_NaN();
 
-// A block that is held at one end, of so many nodes.
-LatticeBody MakeBlock(const Place& nodes, double poissonRatio = 0.3)
+// The corners of a block that is held at one end, so many of them.
+LatticeBody MakeLinearBlock(const Place& nodes, double poissonRatio = 0.3)
 {
   LatticeBody lattice(nodes, 0.01, MakeMaterial(1e4, poissonRatio));
   lattice.Fix([](const Place& place) { return place[2] == 0; });
   return lattice;
 }
 
+// The block.
+LatticeBody MakeBlock(const Place& nodes, double poissonRatio = 0.3)
+{
+  LatticeBody lattice = MakeLinearBlock(nodes, poissonRatio);
+  AddMidSideNodes(lattice.Body);
+  return lattice;
+}
+
 // Handles at the other end.
 std::vector<HeldNode> PullEnd(const LatticeBody& lattice, const glm::dvec3& displacement)
 {
+  const double end = lattice.Spacing * (lattice.Nodes[2] - 1);
+  const double width = 1.001 * lattice.Spacing;
   std::vector<HeldNode> held;
-  lattice.ForNodes(
-    [&](const Place& place, std::int32_t node)
-    {
-      if (place[2] == lattice.Nodes[2] - 1 && place[0] < 3 && place[1] < 3)
-      {
-        held.push_back({ node, displacement });
-      }
-    });
+  for (const std::int32_t node : FindNodes(lattice.Body,
+         [&](const glm::dvec3& point)
+         { return point.z > end - 1e-9 && point.x < width && point.y < width; }))
+  {
+    held.push_back({ node, displacement });
+  }
   return held;
 }
 
 // Two blocks of 3 x 3 x 3 nodes that touch nowhere, of which the first is held.
 LatticeBody MakeTwoPieces()
 {
-  LatticeBody lattice = MakeBlock({ 3, 3, 3 });
+  LatticeBody lattice = MakeLinearBlock({ 3, 3, 3 });
   ElasticBody& body = lattice.Body;
   const std::size_t nodes = body.Points.size();
   const std::size_t tetrahedra = body.Tetrahedra.size();
@@ -66,6 +75,7 @@ LatticeBody MakeTwoPieces()
     }
     body.Tetrahedra.push_back(tetrahedron);
   }
+  AddMidSideNodes(body);
   return lattice;
 }
 
@@ -77,7 +87,14 @@ TEST(FiniteElements, Misuse)
   EXPECT_EQ(GetError([&] { model.Solve({}); }), "There is no body. Call SetBody first.");
   EXPECT_EQ(GetError([&] { model.Reset(); }), "There is no body. Call SetBody first.");
   EXPECT_EQ(GetError([&] { model.SetBody({}); }), "The rest mesh has no tetrahedra.");
+  EXPECT_EQ(GetError(
+              [&] {
+                model.SetBody(MakeLinearBlock({ 3, 3, 3 }).Body);
+              }),
+    "The tetrahedra of the body have no mid-side nodes. Call AddMidSideNodes first.");
   const LatticeBody lattice = MakeBlock({ 3, 3, 3 });
+  const auto nodes = static_cast<std::int32_t>(lattice.Body.Points.size());
+  const std::string needed = std::to_string(nodes) + " are needed";
   ElasticBody bad = lattice.Body;
   bad.Materials[0].PoissonRatio = 0.495;
   EXPECT_NE(GetError([&] { model.SetBody(bad); }).find("Poisson"), std::string::npos);
@@ -99,8 +116,8 @@ TEST(FiniteElements, Misuse)
   EquilibriumRequest request;
   request.Held = { { 26, glm::dvec3(NoNumber, 0.0, 0.0) } };
   EXPECT_EQ(GetError([&] { model.Solve(request); }), "The displacement of a handle is not finite.");
-  request.Held = { { 27, glm::dvec3(0.0) } };
-  EXPECT_NE(GetError([&] { model.Solve(request); }).find("27"), std::string::npos);
+  request.Held = { { nodes, glm::dvec3(0.0) } };
+  EXPECT_NE(GetError([&] { model.Solve(request); }).find(std::to_string(nodes)), std::string::npos);
   request.Held = { { 0, glm::dvec3(0.0) } };
   EXPECT_NE(GetError([&] { model.Solve(request); }).find("fixed"), std::string::npos);
   request.Held.clear();
@@ -108,13 +125,13 @@ TEST(FiniteElements, Misuse)
   EXPECT_EQ(GetError([&] { model.Solve(request); }), "The gravity is not finite.");
   request.Loads = {};
   request.Loads.Forces.resize(3);
-  EXPECT_NE(GetError([&] { model.Solve(request); }).find("27 are needed"), std::string::npos);
+  EXPECT_NE(GetError([&] { model.Solve(request); }).find(needed), std::string::npos);
   request.Loads = {};
   request.Limits.LinearTolerance = -1.0;
   EXPECT_NE(GetError([&] { model.Solve(request); }).find("limit"), std::string::npos);
   EXPECT_NE(GetError([&] { model.SetMaterials({}); }).find("materials"), std::string::npos);
-  EXPECT_NE(GetError([&] { model.SetDisplacements({}); }).find("27"), std::string::npos);
-  std::vector<glm::dvec3> displacements(27, glm::dvec3(0.0));
+  EXPECT_NE(GetError([&] { model.SetDisplacements({}); }).find(needed), std::string::npos);
+  std::vector<glm::dvec3> displacements(lattice.Body.Points.size(), glm::dvec3(0.0));
   displacements[5].z = NoNumber;
   EXPECT_EQ(
     GetError([&] { model.SetDisplacements(displacements); }), "A displacement is not finite.");
@@ -139,19 +156,23 @@ TEST(FiniteElements, FrozenPiece)
   FiniteElementModel model;
   model.SetBody(lattice.Body);
   std::vector<glm::dvec3> displacements(lattice.Body.Points.size(), glm::dvec3(0.0));
-  for (std::size_t node = 27; node < 54; ++node)
+  const std::vector<std::int32_t> second =
+    FindNodes(lattice.Body, [](const glm::dvec3& point) { return point.x > 0.5; });
+  for (const std::int32_t node : second)
   {
-    displacements[node] = glm::dvec3(0.001 * static_cast<double>(node), 0.0, 0.0);
+    const glm::dvec3& point = lattice.Body.Points[static_cast<std::size_t>(node)];
+    displacements[static_cast<std::size_t>(node)] = glm::dvec3(0.03 + point.y, 0.0, 0.0);
   }
   model.SetDisplacements(displacements);
   EquilibriumRequest request = MakeConverged();
-  request.Loads.Gravity = glm::dvec3(0.0, -9.81, 0.0);
+  request.Loads.Gravity = glm::dvec3(0.0, -1.0, 0.0);
   const EquilibriumReport report = model.Solve(request);
   EXPECT_TRUE(report.IsConverged);
   EXPECT_EQ(report.NumberOfFrozenPieces, 1);
   EXPECT_LT(model.GetDisplacements()[26].y, 0.0);
-  for (std::size_t node = 27; node < 54; ++node)
+  for (const std::int32_t number : second)
   {
+    const auto node = static_cast<std::size_t>(number);
     EXPECT_EQ(model.GetDisplacements()[node], displacements[node]);
   }
   // Held by three nodes it moves.
@@ -213,9 +234,9 @@ void AttachTetrahedron(LatticeBody& lattice, const std::vector<std::int32_t>& no
 // it goes with what it hangs on. Another one that hangs on the first does, too.
 TEST(FiniteElements, PiecesThatHang)
 {
-  const LatticeBody alone = MakeBlock({ 3, 3, 5 });
+  const LatticeBody alone = MakeLinearBlock({ 3, 3, 5 });
   FiniteElementModel model;
-  model.SetBody(alone.Body);
+  model.SetBody(MakeBlock({ 3, 3, 5 }).Body);
   EquilibriumRequest request = MakeConverged();
   request.Held = PullEnd(alone, glm::dvec3(0.003, -0.002, 0.001));
   model.Solve(request);
@@ -228,6 +249,7 @@ TEST(FiniteElements, PiecesThatHang)
     LatticeBody lattice = alone;
     AttachTetrahedron(lattice, shared);
     AttachTetrahedron(lattice, { static_cast<std::int32_t>(nodes) });
+    AddMidSideNodes(lattice.Body);
     const std::size_t first = alone.Body.Tetrahedra.size();
     FiniteElementModel other;
     other.SetBody(lattice.Body);
@@ -263,7 +285,7 @@ TEST(FiniteElements, PiecesThatHang)
 // force; without the handle it keeps its shape.
 TEST(FiniteElements, HingeWithAHandle)
 {
-  LatticeBody lattice = MakeBlock({ 3, 3, 3 });
+  LatticeBody lattice = MakeLinearBlock({ 3, 3, 3 });
   ElasticBody& body = lattice.Body;
   const std::size_t nodes = body.Points.size();
   const std::size_t tetrahedra = body.Tetrahedra.size();
@@ -294,6 +316,8 @@ TEST(FiniteElements, HingeWithAHandle)
     }
     body.Tetrahedra.push_back(tetrahedron);
   }
+  const auto held = static_cast<std::int32_t>(body.Points.size() - 1);
+  AddMidSideNodes(body);
   FiniteElementModel model;
   model.SetBody(body);
   EquilibriumRequest request = MakeConverged();
@@ -307,7 +331,6 @@ TEST(FiniteElements, HingeWithAHandle)
   // The line of the hinge stays nearly where it is: the far edge goes round it.
   request.Loads.Gravity = glm::dvec3(0.0);
   model.Reset();
-  const auto held = static_cast<std::int32_t>(body.Points.size() - 1);
   const glm::dvec3 hinge = body.Points[nodes - 1];
   const glm::dvec3 arm = body.Points[static_cast<std::size_t>(held)] - hinge;
   const glm::dmat3 turn = MakeRotation(0.1, glm::dvec3(1.0, 0.0, 0.0));
@@ -326,7 +349,7 @@ TEST(FiniteElements, HingeWithAHandle)
 // More pieces than the coarsest level has groups, held by the nodes of one side each.
 TEST(FiniteElements, ManyPieces)
 {
-  LatticeBody lattice = MakeBlock({ 3, 3, 3 });
+  LatticeBody lattice = MakeLinearBlock({ 3, 3, 3 });
   ElasticBody body = lattice.Body;
   constexpr std::size_t pieces = 120;
   const std::size_t nodes = lattice.Body.Points.size();
@@ -350,12 +373,15 @@ TEST(FiniteElements, ManyPieces)
   EquilibriumRequest request = MakeConverged();
   request.Loads.Gravity = glm::dvec3(0.0, -1.0, 0.0);
   FiniteElementModel model;
+  const std::size_t corners = body.Points.size();
+  AddMidSideNodes(body);
   model.SetBody(body);
   EXPECT_TRUE(model.Solve(request).IsConverged);
   FiniteElementModel single;
+  AddMidSideNodes(lattice.Body);
   single.SetBody(lattice.Body);
   EXPECT_TRUE(single.Solve(request).IsConverged);
-  for (std::size_t node = 0; node < body.Points.size(); ++node)
+  for (std::size_t node = 0; node < corners; ++node)
   {
     EXPECT_LT(
       LargestOf(model.GetDisplacements()[node] - single.GetDisplacements()[node % nodes]), 1e-8);
@@ -380,14 +406,17 @@ TEST(FiniteElements, FreeNodesOfTheirOwn)
   }
   EquilibriumRequest request = MakeConverged();
   request.Loads.Gravity = glm::dvec3(0.0, -10.0, 0.0);
+  ElasticBody one = body;
+  one.Points.resize(4);
+  one.Fixed.resize(4);
+  one.Tetrahedra.resize(1);
   FiniteElementModel model;
+  AddMidSideNodes(body);
   model.SetBody(body);
   EXPECT_TRUE(model.Solve(request).IsConverged);
-  body.Points.resize(4);
-  body.Fixed.resize(4);
-  body.Tetrahedra.resize(1);
   FiniteElementModel single;
-  single.SetBody(body);
+  AddMidSideNodes(one);
+  single.SetBody(one);
   EXPECT_TRUE(single.Solve(request).IsConverged);
   EXPECT_LT(single.GetDisplacements()[3].y, 0.0);
   for (std::size_t piece = 0; piece < pieces; ++piece)
@@ -424,7 +453,7 @@ TEST(FiniteElements, Divergence)
 
 TEST(FiniteElements, Abort)
 {
-  const LatticeBody lattice = MakeBlock({ 16, 16, 31 });
+  const LatticeBody lattice = MakeBlock({ 8, 8, 16 });
   FiniteElementModel model;
   model.SetBody(lattice.Body);
   EquilibriumRequest request = MakeConverged();
@@ -501,7 +530,7 @@ std::vector<glm::dvec3> RunFrames(const LatticeBody& lattice, ParallelLoop loop)
 TEST(FiniteElements, Threads)
 {
   // The second one is large enough for several levels.
-  for (const Place& nodes : { Place{ 5, 5, 5 }, Place{ 12, 13, 14 } })
+  for (const Place& nodes : { Place{ 3, 3, 3 }, Place{ 6, 7, 8 } })
   {
     const LatticeBody lattice = MakeBlock(nodes, 0.45);
     const std::vector<glm::dvec3> wanted = RunFrames(lattice, RunOnThreads<1>);
@@ -514,7 +543,7 @@ TEST(FiniteElements, Threads)
 
 TEST(FiniteElements, WarmFramesReachWhatAColdSolveFinds)
 {
-  for (const Place& nodes : { Place{ 5, 5, 9 }, Place{ 10, 10, 14 } })
+  for (const Place& nodes : { Place{ 3, 3, 5 }, Place{ 6, 6, 8 } })
   {
     const LatticeBody lattice = MakeBlock(nodes);
     const double length = 0.01 * (nodes[2] - 1);
@@ -543,7 +572,7 @@ TEST(FiniteElements, WarmFramesReachWhatAColdSolveFinds)
 // after it come nearer.
 TEST(FiniteElements, FramesOfAHandleThatJumps)
 {
-  const Place nodes{ 10, 10, 14 };
+  const Place nodes{ 6, 6, 8 };
   const LatticeBody lattice = MakeBlock(nodes, 0.45);
   const double length = 0.01 * (nodes[2] - 1);
   FiniteElementModel model;
@@ -577,7 +606,7 @@ TEST(FiniteElements, FramesOfAHandleThatJumps)
 // Where the body bends far the tangent of the step before does not serve.
 TEST(FiniteElements, FramesOfABodyThatBends)
 {
-  const LatticeBody lattice = MakeBlock({ 5, 5, 40 });
+  const LatticeBody lattice = MakeBlock({ 3, 3, 20 });
   FiniteElementModel model;
   model.SetBody(lattice.Body);
   EquilibriumRequest request;
@@ -593,7 +622,7 @@ TEST(FiniteElements, FramesOfABodyThatBends)
 // What has moved a handle before says where it goes now: hardly anything is left to solve.
 TEST(FiniteElements, FramesOfAHandleThatGoesOn)
 {
-  const Place nodes{ 10, 10, 14 };
+  const Place nodes{ 6, 6, 8 };
   const LatticeBody lattice = MakeBlock(nodes, 0.45);
   const double length = 0.01 * (nodes[2] - 1);
   FiniteElementModel model;
@@ -616,7 +645,7 @@ TEST(FiniteElements, FramesOfAHandleThatGoesOn)
 
 TEST(FiniteElements, Materials)
 {
-  LatticeBody lattice = MakeBlock({ 5, 5, 9 });
+  LatticeBody lattice = MakeBlock({ 3, 3, 5 });
   EquilibriumRequest request = MakeConverged();
   request.Loads.Gravity = glm::dvec3(0.0, -1.0, 0.0);
   FiniteElementModel model;
@@ -657,22 +686,18 @@ void Scramble(const LatticeBody& lattice, std::uint32_t seed, FiniteElementModel
   model.SetDisplacements(displacements);
 }
 
-std::int64_t CountInverted(const FiniteElementModel& model)
+std::int64_t CountInverted(const LatticeBody& lattice, const FiniteElementModel& model)
 {
-  std::int64_t inverted = 0;
-  for (const ElementResults& result : model.GetElementResults())
-  {
-    inverted += result.Determinant < 0.0 ? 1 : 0;
-  }
-  return inverted;
+  Watch watch(nullptr);
+  return CountInvertedSplits(watch, lattice.Body, model.GetDisplacements());
 }
 
 } // namespace
 
-// Nearly half of the tetrahedra are inside out.
+// Nearly all tetrahedra are inside out somewhere.
 TEST(FiniteElements, Scramble)
 {
-  const LatticeBody lattice = MakeBlock({ 5, 5, 5 });
+  const LatticeBody lattice = MakeBlock({ 3, 3, 3 });
   std::int64_t fewestInverted = std::numeric_limits<std::int64_t>::max();
   int mostSteps = 0;
   double largestError = 0.0;
@@ -682,7 +707,7 @@ TEST(FiniteElements, Scramble)
     FiniteElementModel model;
     model.SetBody(lattice.Body);
     Scramble(lattice, seed, model);
-    fewestInverted = std::min(fewestInverted, CountInverted(model));
+    fewestInverted = std::min(fewestInverted, CountInverted(lattice, model));
     const EquilibriumReport report = model.Solve(MakeConverged());
     const double error = LargestOf(model.GetDisplacements());
     mostSteps = std::max(mostSteps, report.NewtonSteps);
@@ -692,29 +717,27 @@ TEST(FiniteElements, Scramble)
     EXPECT_EQ(report.NumberOfInvertedTetrahedra, 0);
     EXPECT_LT(error, 1e-8 * 0.04);
   }
-  EXPECT_GT(fewestInverted, 100);
+  std::cout << fewestInverted << " inverted, " << mostSteps << " steps\n";
+  EXPECT_GT(fewestInverted, 30);
   RecordMeasured("fewest inverted", static_cast<double>(fewestInverted));
   RecordMeasured("most steps", mostSteps);
   RecordMeasured("error", largestError);
 }
 
-// Back to where the body is in equilibrium, which is bent here, with its end turned by 90 degrees.
+// Back to where the body is in equilibrium, which is bent here, with its end turned by 57 degrees.
 TEST(FiniteElements, ScrambleOfABentBody)
 {
-  const LatticeBody lattice = MakeBlock({ 5, 5, 9 });
-  const glm::dmat3 rotation = MakeRotation(1.5707963, { 1.0, 0.0, 0.0 });
-  const glm::dvec3 center(0.02, 0.02, 0.08);
+  const LatticeBody lattice = MakeBlock({ 3, 3, 5 });
+  const glm::dmat3 rotation = MakeRotation(1.0, { 1.0, 0.0, 0.0 });
+  const glm::dvec3 center(0.01, 0.01, 0.04);
   EquilibriumRequest request = MakeConverged();
-  lattice.ForNodes(
-    [&](const Place& place, std::int32_t node)
-    {
-      const glm::dvec3& point = lattice.Body.Points[static_cast<std::size_t>(node)];
-      if (place[2] == 8)
-      {
-        request.Held.push_back(
-          { node, rotation * (point - center) + center + glm::dvec3(0.0, -0.04, -0.032) - point });
-      }
-    });
+  for (const std::int32_t node :
+    FindNodes(lattice.Body, [](const glm::dvec3& point) { return point.z > 0.0399; }))
+  {
+    const glm::dvec3& point = lattice.Body.Points[static_cast<std::size_t>(node)];
+    request.Held.push_back(
+      { node, rotation * (point - center) + center + glm::dvec3(0.0, -0.0184, -0.0063) - point });
+  }
   FiniteElementModel model;
   model.SetBody(lattice.Body);
   const EquilibriumReport wanted = model.Solve(request);
@@ -726,7 +749,7 @@ TEST(FiniteElements, ScrambleOfABentBody)
     SCOPED_TRACE(seed);
     model.SetDisplacements(displacements);
     Scramble(lattice, seed, model);
-    EXPECT_GT(CountInverted(model), 200);
+    EXPECT_GT(CountInverted(lattice, model), 60);
     const EquilibriumReport report = model.Solve(request);
     EXPECT_TRUE(report.IsConverged);
     EXPECT_EQ(report.NumberOfInvertedTetrahedra, 0);

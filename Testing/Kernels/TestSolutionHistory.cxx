@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Guesses from the last solutions of a system.
+#include "FiniteElementCase.h"
 #include "FiniteElements.h"
-#include "LatticeBody.h"
 #include "RowParts.h"
 #include "SolutionHistory.h"
 
@@ -22,13 +22,14 @@ using Vectors = std::vector<glm::dvec3>;
 struct System
 {
   explicit System(double modulus = 1e4)
-    : Lattice({ 4, 4, 5 }, 0.01, ElasticMaterial{ modulus, 0.3, 1000.0 })
+    : Lattice({ 3, 3, 4 }, 0.01, ElasticMaterial{ modulus, 0.3, 1000.0 })
     , Elements(this->Time, this->Lattice.Body)
   {
     this->Matrix.SetPattern(this->Time, MakeNodePattern(this->Time, this->Lattice.Body));
     this->Elements.SetPattern(this->Time, this->Matrix.GetPattern());
     const std::size_t nodes = this->Lattice.Body.Points.size();
-    this->Elements.AssembleTangent(this->Time, Vectors(nodes, glm::dvec3(0.0)), this->Matrix);
+    this->Elements.AssembleTangent(
+      this->Time, Vectors(nodes, glm::dvec3(0.0)), false, this->Matrix);
     for (const glm::dvec3& point : this->Lattice.Body.Points)
     {
       this->IsFree.push_back(point.z > 0.0 ? 1 : 0);
@@ -63,7 +64,7 @@ struct System
   }
 
   Watch Time{ nullptr };
-  LatticeBody Lattice;
+  QuadraticLattice Lattice;
   FiniteElements Elements;
   BlockMatrix Matrix;
   std::vector<unsigned char> IsFree;
