@@ -27,6 +27,9 @@ deformvolume::ElasticSimulation& vtkFiniteElementDeformation::PrepareSimulation(
   this->Internals->Simulation.Mode = this->Mode == CONVERGED
     ? deformvolume::EquilibriumMode::Converged
     : deformvolume::EquilibriumMode::Interactive;
+  this->Internals->Simulation.Material = this->MaterialModel == COROTATIONAL
+    ? deformvolume::MaterialModel::Corotational
+    : deformvolume::MaterialModel::StableNeoHookean;
   return this->Internals->Simulation;
 }
 
@@ -97,6 +100,8 @@ std::string vtkFiniteElementDeformation::GetSummary()
 void vtkFiniteElementDeformation::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "MaterialModel: "
+     << (this->MaterialModel == COROTATIONAL ? "COROTATIONAL" : "STABLE_NEO_HOOKEAN") << "\n";
   os << indent << "Mode: " << (this->Mode == CONVERGED ? "CONVERGED" : "INTERACTIVE") << "\n";
   os << indent << "IsConverged: " << (this->GetIsConverged() ? "yes" : "no") << "\n";
   os << indent << "NumberOfNewtonSteps: " << this->GetNumberOfNewtonSteps() << "\n";

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkFiniteElementDeformation
- * @brief   deform an elastic body to equilibrium by corotational finite elements
+ * @brief   deform an elastic body to equilibrium by finite elements
  *
  * vtkFiniteElementDeformation finds where the nodes of a mesh come to rest under what holds and
- * loads them: linear elasticity in a frame that turns with each tetrahedron, so that large
- * rotations are right. There is no inertia: what comes out depends on the handles and loads of now,
- * and on where the body was where there are several equilibria. It works on the processor, in
- * double precision. Ports, arrays, units and times are those of vtkElasticDeformation.
+ * loads them. Its elements are tetrahedra of ten nodes with four Gauss points. They bend right with
+ * one of them across what bends, and do not lock where the material is nearly incompressible.
+ * There is no inertia: what comes out depends on the handles and loads of now, and on where the
+ * body was where there are several equilibria. It works on the processor, in double precision.
+ * Ports, arrays, units and times are those of vtkElasticDeformation.
  *
  * Every execution solves once, and begins where the last one has ended; times only say when.
- *
- * Linear tetrahedra are too stiff in bending. Use four or more of them across what is to bend:
- * Documents/physics.md has numbers.
  *
  * @par Pieces:
  * A piece of the mesh is what holds together by faces of tetrahedra. It is held by three nodes that
@@ -30,8 +28,9 @@
  * Those of vtkElasticDeformation; no piece that is held; forces that are no numbers any more. The
  * body is then as it was.
  *
- * Sources: Mueller and Gross 2004 for corotational elements; Smith, de Goes and Kim 2019 for the
- * stiffness that is never negative; Documents/physics.md.
+ * Sources: Smith, de Goes and Kim 2018 for the stable neo-Hookean law, here without its logarithm,
+ * and 2019 for the stiffness that is never negative; Mueller and Gross 2004 for the corotational
+ * law; Documents/physics.md.
  *
  * @sa vtkElasticDeformation vtkMassSpringDeformation vtkDeformVolumeFilter
  */
@@ -50,6 +49,29 @@ public:
   static vtkFiniteElementDeformation* New();
   vtkTypeMacro(vtkFiniteElementDeformation, vtkElasticDeformation);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /**
+   * How stress follows from strain.
+   */
+  enum MaterialModelType
+  {
+    STABLE_NEO_HOOKEAN,
+    COROTATIONAL
+  };
+
+  ///@{
+  /**
+   * The strain energy. STABLE_NEO_HOOKEAN (default): for soft tissue. It keeps volumes at large
+   * strain, and comes back from where elements are inside out. COROTATIONAL: linear elasticity in a
+   * frame that turns with the material, as published; at large strain it does not keep volumes,
+   * such as 2.5 times the shear stress of STABLE_NEO_HOOKEAN in a shear of 0.5 at a Poisson ratio
+   * of 0.49. Small strains of both are those of linear elasticity.
+   */
+  vtkSetClampMacro(MaterialModel, int, STABLE_NEO_HOOKEAN, COROTATIONAL);
+  vtkGetMacro(MaterialModel, int);
+  void SetMaterialModelToStableNeoHookean() { this->SetMaterialModel(STABLE_NEO_HOOKEAN); }
+  void SetMaterialModelToCorotational() { this->SetMaterialModel(COROTATIONAL); }
+  ///@}
 
   /**
    * How far an execution goes.
@@ -107,6 +129,7 @@ private:
   vtkFiniteElementDeformation(const vtkFiniteElementDeformation&) = delete;
   void operator=(const vtkFiniteElementDeformation&) = delete;
 
+  int MaterialModel = STABLE_NEO_HOOKEAN;
   int Mode = CONVERGED;
 
   class vtkInternals;

@@ -49,6 +49,7 @@ void FiniteElementSimulation::Advance(const Frame& frame)
   request.Mode = this->Mode;
   request.Progress = [&] { return frame.Progress(someProgress); };
   const EquilibriumReport last = this->Report;
+  this->Model.SetMaterialModel(this->Material);
   this->Report = this->Model.Solve(request);
   this->Warn(last);
 }

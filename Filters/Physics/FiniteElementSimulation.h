@@ -16,6 +16,7 @@ class FiniteElementSimulation : public ElasticSimulation
 {
 public:
   EquilibriumMode Mode = EquilibriumMode::Interactive;
+  MaterialModel Material = MaterialModel::StableNeoHookean;
   /// Of the last frame.
   EquilibriumReport Report;
 
@@ -26,6 +27,7 @@ public:
   void Return(const ElasticBody& body, const State& state) override;
   void Advance(const Frame& frame) override;
   bool HasFrames() const override { return false; }
+  bool IsQuadratic() const override { return true; }
   void Reset() override { this->Model.Reset(); }
   bool HasBody() const override { return !this->Model.GetDisplacements().empty(); }
   std::vector<ElementResults> GetElementResults() override
