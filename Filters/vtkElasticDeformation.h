@@ -9,19 +9,28 @@
  * kept from one execution to the next.
  *
  * @par Port 0, the rest mesh:
- * vtkUnstructuredGrid of vtkTetra cells, all of them with the fourth point on the same side of the
- * first three. Cells of fewer than three dimensions are left out. These arrays are used, all of
- * them optional:
- * - the point array "Fixed", one component: nodes where it is not 0 stay where they are;
+ * vtkUnstructuredGrid of vtkTetra cells, and with vtkFiniteElementDeformation of vtkQuadraticTetra
+ * cells as well, all of them with the fourth point on the same side of the first three. Cells of
+ * fewer than three dimensions are left out. These arrays are used, all of them optional:
+ * - the point array "Fixed", one component: nodes where it is not 0 are held where they are;
+ * - the point array "PrescribedDisplacement", three components, in the units of the mesh: where
+ *   these nodes are displaced to. Its values at other nodes are not used;
+ * - the point array "SlidingNormal", three components: nodes where it is not 0 slide without
+ *   friction in the plane through their rest position to which it is normal, whatever its length
+ *   and sign;
  * - the point array "Force", three components: a force on each node, in N;
  * - the cell arrays "YoungModulus" (Pa), "PoissonRatio" and "Density" (kg/m^3), one component: the
  *   material of each tetrahedron, in place of the properties of these names and of MaterialPreset.
+ *
+ * vtkMassSpringDeformation has neither prescribed displacements nor nodes that slide: it reports an
+ * error where an array says otherwise.
  *
  * @par Port 1, optional, the handles:
  * vtkPointSet. A point is where a handle is now. A point array "RestPosition" of three components
  * says which place of the mesh at rest it holds: the nodes within HandleRadius of it, or the
  * nearest node where that is 0. Points that no tetrahedron uses do not count. Where several handles
- * hold a node the first one counts, and nodes that are fixed stay.
+ * hold a node the first one counts, and nodes that are fixed stay. A handle moves a node that
+ * slides within its plane only.
  *
  * @par Port 2, optional, the sheet:
  * vtkPolyData in world coordinates: triangles, polygons and triangle strips; polylines where
@@ -35,7 +44,8 @@
  * the points), which is also the active vectors: a vtkFloatArray on a processor, and on a device
  * with memory of its own a vtkDeviceVectorArray. It is the same object, in the same memory, in all
  * executions for one mesh: who needs it as it was makes a deep copy. With ElementResults there are
- * cell arrays besides. The first piece is the whole mesh, all others are empty.
+ * cell arrays besides. The first piece is the whole mesh, all others are empty. Points that are
+ * appended, those of vtkFiniteElementDeformation and the copies of cuts, follow those of the input.
  *
  * @par Time:
  * Where a time is asked for (UpdateTimeStep(), ParaView's play button), the simulation goes on to
@@ -46,7 +56,7 @@
  *
  * @par Changes:
  * Where the rest mesh gets other points or cells, the simulation starts anew, with a warning. With
- * other materials or fixed nodes it goes on.
+ * other materials, fixed or sliding nodes, forces or prescribed displacements it goes on.
  *
  * @par Abort:
  * An execution that is aborted ends within some 50 ms, with an empty output; what was simulated is
@@ -56,8 +66,9 @@
  * Each is one vtkErrorMacro that says what is wrong and what to do: no tetrahedra or other
  * three-dimensional cells; tetrahedra that are flat, or some of them inside out; coordinates and
  * numbers that are not finite; a Young modulus or a density of 0 or less, a Poisson ratio of less
- * than 0 or of 0.495 and more; arrays of another shape; a handle that holds no node; a sheet that
- * vtkCutVolume would refuse. The output is then empty, what was simulated is kept, and a new sheet
+ * than 0 or of 0.495 and more; arrays of another shape; nodes that are fixed and slide; prescribed
+ * displacements without the array "Fixed"; a handle that holds no node; a sheet that vtkCutVolume
+ * would refuse. The output is then empty, what was simulated is kept, and a new sheet
  * cuts in the next execution that succeeds. After a failure of memory or of a device the body
  * starts again from rest.
  *

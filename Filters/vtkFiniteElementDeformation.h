@@ -12,6 +12,24 @@
  *
  * Every execution solves once, and begins where the last one has ended; times only say when.
  *
+ * @par Nodes:
+ * Tetrahedra have ten nodes: their corners, and one in the middle of each edge. vtkTetra cells get
+ * nodes in the middle of their edges; vtkQuadraticTetra cells have them, each near the middle of
+ * its edge, which may be curved. A mesh may have cells of both types. "Force" acts on nodes as it
+ * is given. A node that is made has no force of its own. It is fixed where both ends of its edge
+ * are, and displaced by the mean of their displacements. It slides where its edge lies, within a
+ * thousandth, in the plane in which one end slides, and the other end is fixed or slides in the
+ * same plane. Where other nodes are to be fixed or to slide, as on curved surfaces, give
+ * vtkQuadraticTetra cells with these arrays. For as many nodes as linear tetrahedra have, edges are
+ * twice as long.
+ *
+ * @par Output:
+ * Cells of vtkQuadraticTetra. The points of the input come first, then the nodes that were made in
+ * the middle of edges, then the copies of nodes that cuts have made. Points that are made have the
+ * mean of both ends in all point arrays but those that are named above, and are ghosts where both
+ * ends are. Where points are made, global ids and pedigree ids are left out. The points and cells
+ * are the same objects in all executions for one mesh.
+ *
  * @par Pieces:
  * A piece of the mesh is what holds together by faces of tetrahedra. It is held by three nodes that
  * lie on no common line and are fixed, held by handles, or shared with a piece that is held. Other
@@ -25,8 +43,10 @@
  * INTERACTIVE once); tetrahedra that are inside out, with their number.
  *
  * @par Errors:
- * Those of vtkElasticDeformation; no piece that is held; forces that are no numbers any more. The
- * body is then as it was.
+ * Those of vtkElasticDeformation; tetrahedra that overlap themselves, as nodes are far from the
+ * middle of their edges or in another order than VTK's; an edge with two different nodes in its
+ * middle, or a node in the middle of several edges; no piece that is held; forces that are no
+ * numbers any more. The body is then as it was.
  *
  * Sources: Smith, de Goes and Kim 2018 for the stable neo-Hookean law, here without its logarithm,
  * and 2019 for the stiffness that is never negative; Mueller and Gross 2004 for the corotational

@@ -13,8 +13,9 @@
  * the default material.
  *
  * @par Port 0, the mesh:
- * vtkUnstructuredGrid of vtkTetra cells in the world coordinates of the volume. Cells of fewer than
- * three dimensions have the default material.
+ * vtkUnstructuredGrid of vtkTetra or vtkQuadraticTetra cells in the world coordinates of the
+ * volume. Edges of the latter count as straight. Cells of fewer than three dimensions have the
+ * default material.
  *
  * @par Port 1, the volume:
  * vtkImageData of at least two voxels on each axis: any extent, origin, spacing and direction

@@ -243,8 +243,8 @@ glm::dvec3 GetSlidingNormal(const ElasticBody& body, std::size_t a, std::size_t 
   constexpr double parallel = 1e-3;
   const glm::dvec3 none(0.0);
   const bool slides[2] = { body.SlidingNormals[a] != none, body.SlidingNormals[b] != none };
-  if (!(slides[0] || slides[1]) || !(slides[0] || body.IsFixed(a)) ||
-    !(slides[1] || body.IsFixed(b)))
+  const bool isFixed[2] = { body.IsFixed(a), body.IsFixed(b) };
+  if (!(slides[0] || isFixed[0]) || !(slides[1] || isFixed[1]) || (isFixed[0] && isFixed[1]))
   {
     return none;
   }

@@ -12,6 +12,8 @@
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 
+#include <type_traits>
+
 namespace elasticTesting
 {
 
@@ -60,6 +62,15 @@ inline vtkSmartPointer<vtkUnstructuredGrid> MakeBar(double unit)
   FixPoints(bar, [](const glm::dvec3& p) { return p.z == 0.0; });
   return bar;
 }
+
+// Finite elements have nodes in the middle of edges.
+template <typename Filter>
+constexpr bool HasMidSides = std::is_same_v<Filter, vtkFiniteElementDeformation>;
+
+// Those of MakeBar: its cells have one for each corner of a lattice twice as fine, but for their
+// centres.
+template <typename Filter>
+constexpr vtkIdType NodesOfBar = HasMidSides<Filter> ? 9 * 9 * 25 - 4 * 4 * 12 : 5 * 5 * 13;
 
 template <typename Filter>
 struct Simulated

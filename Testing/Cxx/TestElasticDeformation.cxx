@@ -272,9 +272,11 @@ void TestHangingBar(const Settle& settle)
       energy += volume * cells->GetArray("StrainEnergyDensity")->GetComponent(cell, 0);
       vtkNew<vtkIdList> nodes;
       simulated.Object->GetOutput()->GetCellPoints(cell, nodes);
-      for (vtkIdType i = 0; i < 4; ++i)
+      for (vtkIdType i = 0; i < nodes->GetNumberOfIds(); ++i)
       {
-        work += 0.25 * volume * 1000.0 * 2.0 * unit * moved->GetComponent(nodes->GetId(i), 2);
+        // What part of its weight a node of a tetrahedron bears.
+        const double part = !HasMidSides<Filter> ? 0.25 : i < 4 ? -0.05 : 0.2;
+        work += part * volume * 1000.0 * 2.0 * unit * moved->GetComponent(nodes->GetId(i), 2);
       }
     }
     std::cout << "energy by half the work: " << energy / (0.5 * work) << "\n";
@@ -331,10 +333,11 @@ void TestWhatIsKept()
   VERIFY_EQUAL(simulated.TryUpdate(), std::string());
   vtkDataArray* array = simulated.Object->GetOutput()->GetPointData()->GetVectors();
   VERIFY_EQUAL(std::string(array->GetName()), std::string("Displacement"));
-  // Shared, not copied.
-  VERIFY(simulated.Object->GetOutput()->GetPoints() == bar->GetPoints());
-  VERIFY(simulated.Object->GetOutput()->GetPointData()->GetArray("Fixed") ==
-    bar->GetPointData()->GetArray("Fixed"));
+  // Shared, not copied, where no points are appended.
+  VERIFY(HasMidSides<Filter> || simulated.Object->GetOutput()->GetPoints() == bar->GetPoints());
+  VERIFY(HasMidSides<Filter> ||
+    simulated.Object->GetOutput()->GetPointData()->GetArray("Fixed") ==
+      bar->GetPointData()->GetArray("Fixed"));
   const double before = simulated.Copy()->GetRange(-1)[1];
   VERIFY(before > 0.0);
   simulated.Object->SetGravity(0.0, 0.0, 0.0);
@@ -358,7 +361,8 @@ void TestWhatIsKept()
   }();
   VERIFY(Holds(warning, "starts anew"));
   VERIFY_EQUAL(simulated.Copy()->GetRange(-1)[1], 0.0);
-  VERIFY(Holds(simulated.Object->GetSummary(), "Nodes: 325"));
+  VERIFY(
+    Holds(simulated.Object->GetSummary(), "Nodes: " + std::to_string(NodesOfBar<Filter>) + "\n"));
 }
 
 // Updates with an abort at so many events of progress. Returns the words of a warning of the next

@@ -1,0 +1,663 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The ten-node tetrahedra of vtkFiniteElementDeformation: misuse, nodes that are made, conditions
+// on nodes, cuts, and closed forms.
+#include "ElasticTesting.h"
+#include "TenNodeCells.h"
+
+#include <vtkCellArray.h>
+#include <vtkDoubleArray.h>
+#include <vtkIdTypeArray.h>
+#include <vtkIntArray.h>
+#include <vtkStringArray.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <map>
+#include <set>
+
+using namespace elasticTesting;
+
+namespace
+{
+
+using Elements = Simulated<vtkFiniteElementDeformation>;
+
+constexpr int CornersOfCube = 27; // of 2 x 2 x 2 cells
+constexpr int NodesOfCube = 117;  // with those in the middle of edges
+constexpr double Edge = 0.03;
+
+// A cube of linear tetrahedra, held at z = 0, in metres.
+vtkSmartPointer<vtkUnstructuredGrid> MakeCube()
+{
+  vtkNew<vtkLatticeTetrahedraSource> lattice;
+  lattice->SetNumberOfNodes(3, 3, 3);
+  lattice->SetBounds(0.0, Edge, 0.0, Edge, 0.0, Edge);
+  lattice->Update();
+  auto cube = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  cube->DeepCopy(lattice->GetOutput());
+  FixPoints(cube, [](const glm::dvec3& p) { return p.z == 0.0; });
+  return cube;
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> MakeTenNodeCube(bool separated = false)
+{
+  vtkSmartPointer<vtkUnstructuredGrid> cube = MakeTenNodes(MakeCube(), separated);
+  FixPoints(cube, [](const glm::dvec3& p) { return p.z == 0.0; });
+  return cube;
+}
+
+std::vector<vtkIdType> GetIds(vtkUnstructuredGrid* mesh, vtkIdType cell)
+{
+  vtkNew<vtkIdList> ids;
+  mesh->GetCellPoints(cell, ids);
+  return { ids->begin(), ids->end() };
+}
+
+// Gives some cells other points.
+void ReplaceCells(
+  vtkUnstructuredGrid* mesh, const std::function<void(vtkIdType, std::vector<vtkIdType>&)>& change)
+{
+  vtkNew<vtkUnstructuredGrid> changed;
+  for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
+  {
+    std::vector<vtkIdType> ids = GetIds(mesh, cell);
+    change(cell, ids);
+    changed->InsertNextCell(
+      mesh->GetCellType(cell), static_cast<vtkIdType>(ids.size()), ids.data());
+  }
+  mesh->SetCells(changed->GetCellTypesArray(), changed->GetCells());
+}
+
+// How many cells use a point.
+int CountUsers(vtkUnstructuredGrid* mesh, vtkIdType point)
+{
+  int users = 0;
+  for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
+  {
+    const std::vector<vtkIdType> ids = GetIds(mesh, cell);
+    users += std::count(ids.begin(), ids.end(), point) > 0 ? 1 : 0;
+  }
+  return users;
+}
+
+std::string TryMesh(vtkUnstructuredGrid* mesh)
+{
+  Elements elements(mesh);
+  return elements.TryUpdate();
+}
+
+void TestMisplacedNodes()
+{
+  VERIFY_EQUAL(TryMesh(MakeTenNodeCube()), std::string());
+  // A mid-side node near the end of its edge.
+  auto cube = MakeTenNodeCube();
+  const std::vector<vtkIdType> first = GetIds(cube, 0);
+  const glm::dvec3 moved =
+    GetPoint(cube, first[0]) + 0.2 * (GetPoint(cube, first[1]) - GetPoint(cube, first[0]));
+  cube->GetPoints()->SetPoint(first[4], &moved.x);
+  VERIFY(Holds(TryMesh(cube),
+    std::to_string(CountUsers(cube, first[4])) +
+      " of 40 tetrahedra of the rest mesh overlap themselves"));
+  // Somewhat away from the middle is right.
+  const glm::dvec3 curved = 0.45 * GetPoint(cube, first[0]) + 0.55 * GetPoint(cube, first[1]);
+  cube->GetPoints()->SetPoint(first[4], &curved.x);
+  VERIFY_EQUAL(TryMesh(cube), std::string());
+
+  // Another order of the nodes, where cells share nodes and where they do not.
+  const auto swapTwo = [](vtkIdType, std::vector<vtkIdType>& ids) { std::swap(ids[4], ids[9]); };
+  for (const bool separated : { false, true })
+  {
+    cube = MakeTenNodeCube(separated);
+    ReplaceCells(cube, swapTwo);
+    VERIFY(Holds(TryMesh(cube), separated ? "40 of 40 tetrahedra" : "of another edge"));
+  }
+}
+
+void TestWrongCells()
+{
+  auto cube = MakeTenNodeCube();
+  const auto changeFirst = [&](std::size_t i, vtkIdType id) {
+    return [=](vtkIdType cell, std::vector<vtkIdType>& ids) { ids[i] = cell == 0 ? id : ids[i]; };
+  };
+  // Two nodes in the middle of an edge.
+  const std::vector<vtkIdType> ids = GetIds(cube, 0);
+  std::size_t shared = 4;
+  while (CountUsers(cube, ids[shared]) == 1)
+  {
+    ++shared;
+  }
+  const glm::dvec3 middle = GetPoint(cube, ids[shared]);
+  const vtkIdType second = cube->GetPoints()->InsertNextPoint(&middle.x);
+  cube->GetPointData()->GetArray("Fixed")->InsertNextTuple1(0.0);
+  ReplaceCells(cube, changeFirst(shared, second));
+  VERIFY(Holds(TryMesh(cube), "1 edges of the rest mesh have different nodes in their middle"));
+  // One that is a corner.
+  cube = MakeTenNodeCube();
+  ReplaceCells(cube, changeFirst(4, GetIds(cube, 0)[2]));
+  VERIFY(Holds(TryMesh(cube), "1 nodes of the rest mesh on input port 0 are in the middle"));
+  // Too few, and none.
+  cube = MakeTenNodeCube();
+  ReplaceCells(
+    cube, [](vtkIdType cell, std::vector<vtkIdType>& ids) { ids.resize(cell == 3 ? 9 : 10); });
+  VERIFY(Holds(TryMesh(cube), "Cell 3 of the rest mesh on input port 0 is a quadratic"));
+  cube = MakeTenNodeCube();
+  ReplaceCells(cube, changeFirst(7, cube->GetNumberOfPoints()));
+  VERIFY(Holds(TryMesh(cube), "without ten points"));
+  // Springs are linear.
+  Simulated<vtkMassSpringDeformation> springs(MakeTenNodeCube());
+  VERIFY(Holds(springs.TryUpdate(), "40 cells of the type "));
+}
+
+void TestWrongConditions()
+{
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const bool isTenNode : { false, true })
+  {
+    const auto make = [&] { return isTenNode ? MakeTenNodeCube() : MakeCube(); };
+    // Nodes that are fixed and slide; those in the middle of edges are no mistakes of their own.
+    auto cube = make();
+    AddPointVectors(cube, "SlidingNormal", [](const glm::dvec3&) { return glm::dvec3(0, 0, 2); });
+    VERIFY(Holds(TryMesh(cube),
+      (isTenNode ? "25" : "9") + std::string(" nodes have contradictory conditions")));
+    for (const char* name : { "SlidingNormal", "PrescribedDisplacement" })
+    {
+      cube = make();
+      AddPointVectors(cube, name, [](const glm::dvec3&) { return glm::dvec3(0.0); })
+        ->SetComponent(8, 1, nan);
+      VERIFY(Holds(TryMesh(cube), std::string(name) + " 8 of the rest mesh"));
+      cube = make();
+      AddPointVectors(cube, name, [](const glm::dvec3&) { return glm::dvec3(0.0); })
+        ->SetNumberOfTuples(5);
+      VERIFY(Holds(TryMesh(cube), std::string("\"") + name + "\""));
+    }
+    cube = make();
+    cube->GetPointData()->RemoveArray("Fixed");
+    AddPointVectors(
+      cube, "PrescribedDisplacement", [](const glm::dvec3&) { return glm::dvec3(1e-3); });
+    VERIFY(Holds(TryMesh(cube), "but none named \"Fixed\""));
+  }
+}
+
+// What becomes of points, cells and arrays.
+void TestOutput()
+{
+  auto cube = MakeCube();
+  const vtkIdType triangle[3] = { 0, 1, 3 };
+  cube->InsertNextCell(VTK_TRIANGLE, 3, triangle);
+  cube->GetPoints()->InsertNextPoint(1.0, 1.0, 1.0); // of no cell
+  cube->GetPointData()->GetArray("Fixed")->InsertNextTuple1(1.0);
+  AddPointVectors(cube, "Force", [](const glm::dvec3&) { return glm::dvec3(1e-3, 0.0, 0.0); });
+  vtkNew<vtkDoubleArray> heights;
+  heights->SetName("Height");
+  vtkNew<vtkIntArray> numbers;
+  numbers->SetName("Number");
+  vtkNew<vtkStringArray> names;
+  names->SetName("Name");
+  vtkNew<vtkIdTypeArray> ids;
+  ids->SetName("Id");
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  const vtkIdType before = cube->GetNumberOfPoints();
+  for (vtkIdType i = 0; i < before; ++i)
+  {
+    const double z = GetPoint(cube, i).z;
+    heights->InsertNextValue(z);
+    numbers->InsertNextValue(static_cast<int>(i));
+    names->InsertNextValue("node");
+    ids->InsertNextValue(i);
+    ghosts->InsertNextValue(z < 0.01 ? vtkDataSetAttributes::DUPLICATEPOINT : 0);
+  }
+  for (vtkAbstractArray* array :
+    std::initializer_list<vtkAbstractArray*>{ heights, numbers, names, ghosts })
+  {
+    cube->GetPointData()->AddArray(array);
+  }
+  cube->GetPointData()->SetGlobalIds(ids);
+  vtkNew<vtkDoubleArray> ofCells;
+  ofCells->SetName("OfCells");
+  ofCells->SetNumberOfTuples(cube->GetNumberOfCells());
+  cube->GetCellData()->AddArray(ofCells);
+
+  Elements elements(cube);
+  elements.Object->ElementResultsOn();
+  VERIFY_EQUAL(elements.TryUpdate(), std::string());
+  vtkUnstructuredGrid* output = elements.Object->GetOutput();
+  VERIFY_EQUAL(output->GetNumberOfPoints(), vtkIdType{ NodesOfCube + 1 });
+  VERIFY_EQUAL(output->GetNumberOfCells(), cube->GetNumberOfCells());
+  VERIFY_EQUAL(output->GetCellType(40), static_cast<int>(VTK_TRIANGLE));
+  VERIFY(output->GetCellData()->GetArray("OfCells") == ofCells);
+  VERIFY_EQUAL(output->GetCellData()->GetArray("Stress")->GetNumberOfTuples(), vtkIdType{ 41 });
+  VERIFY(!output->GetPointData()->GetArray("Id"));
+  const auto get = [&](const char* name, vtkIdType node, int component = 0)
+  { return output->GetPointData()->GetArray(name)->GetComponent(node, component); };
+  int wrong = 0;
+  for (vtkIdType i = 0; i < before; ++i)
+  {
+    wrong += GetPoint(output, i) != GetPoint(cube, i) || get("Number", i) != double(i) ||
+      get("Force", i) != 1e-3;
+  }
+  VERIFY_EQUAL(wrong, 0);
+  int edges = 0;
+  for (vtkIdType cell = 0; cell < 40; ++cell)
+  {
+    VERIFY_EQUAL(output->GetCellType(cell), static_cast<int>(VTK_QUADRATIC_TETRA));
+    const std::vector<vtkIdType> nodes = GetIds(output, cell);
+    const std::vector<vtkIdType> corners = GetIds(cube, cell);
+    VERIFY(std::equal(corners.begin(), corners.end(), nodes.begin()));
+    constexpr int ends[6][2] = { { 0, 1 }, { 1, 2 }, { 2, 0 }, { 0, 3 }, { 1, 3 }, { 2, 3 } };
+    for (std::size_t edge = 0; edge < 6; ++edge)
+    {
+      const vtkIdType node = nodes[4 + edge];
+      const vtkIdType a = corners[static_cast<std::size_t>(ends[edge][0])];
+      const vtkIdType b = corners[static_cast<std::size_t>(ends[edge][1])];
+      const glm::dvec3 middle = 0.5 * (GetPoint(cube, a) + GetPoint(cube, b));
+      VERIFY(node >= before && GetPoint(output, node) == middle);
+      VERIFY_EQUAL(get("Height", node), middle.z);
+      VERIFY(std::abs(get("Number", node) - 0.5 * double(a + b)) <= 0.5);
+      VERIFY_EQUAL(get("Fixed", node), middle.z == 0.0 ? 1.0 : 0.0);
+      VERIFY_EQUAL(get("Force", node), 0.0);
+      VERIFY_EQUAL(get(vtkDataSetAttributes::GhostArrayName(), node), middle.z == 0.0 ? 1.0 : 0.0);
+      ++edges;
+    }
+  }
+  VERIFY_EQUAL(edges, 240);
+  auto* made = vtkArrayDownCast<vtkStringArray>(output->GetPointData()->GetAbstractArray("Name"));
+  VERIFY(made && made->GetValue(NodesOfCube) == "node");
+  VERIFY_EQUAL(get("Displacement", before - 1), 0.0); // the point of no cell
+
+  // The points and the cells are the same objects as long as the mesh is.
+  vtkPoints* points = output->GetPoints();
+  vtkCellArray* cells = output->GetCells();
+  elements.Object->SetGravity(0.0, 0.0, 1.0);
+  VERIFY_EQUAL(elements.TryUpdate(), std::string());
+  vtkDataArray* madeHeights = output->GetPointData()->GetArray("Height");
+  VERIFY(output->GetPoints() == points && output->GetCells() == cells);
+  elements.Object->SetGravity(0.0, 0.0, 2.0);
+  VERIFY_EQUAL(elements.TryUpdate(), std::string());
+  VERIFY(output->GetPointData()->GetArray("Height") == madeHeights);
+  cube->GetPointData()->GetArray("Force")->Fill(2e-3);
+  cube->GetPointData()->GetArray("Force")->Modified();
+  VERIFY_EQUAL(elements.TryUpdate(), std::string());
+  VERIFY(output->GetPoints() == points && output->GetCells() == cells);
+  VERIFY_EQUAL(get("Force", 3), 2e-3);
+  VERIFY_EQUAL(get("Force", NodesOfCube), 0.0);
+
+  // What has all nodes is passed on, and what was made can be simulated.
+  vtkNew<vtkUnstructuredGrid> again;
+  again->DeepCopy(output);
+  again->GetPointData()->RemoveArray("Displacement");
+  Elements second(again);
+  second.Object->SetGravity(0.0, 0.0, 2.0);
+  VERIFY_EQUAL(second.TryUpdate(), std::string());
+  VERIFY(second.Object->GetOutput()->GetPoints() == again->GetPoints());
+  VERIFY(second.Object->GetOutput()->GetCells() == again->GetCells());
+}
+
+// Linear and ten-node cells in one mesh: an edge of both has the node of the one.
+void TestMixedCells()
+{
+  auto cube = MakeTenNodeCube();
+  ReplaceCells(cube, [](vtkIdType, std::vector<vtkIdType>&) {});
+  vtkNew<vtkUnstructuredGrid> mixed;
+  mixed->SetPoints(cube->GetPoints());
+  for (vtkIdType cell = 0; cell < cube->GetNumberOfCells(); ++cell)
+  {
+    const std::vector<vtkIdType> ids = GetIds(cube, cell);
+    const bool isLinear = cell % 2 == 1;
+    mixed->InsertNextCell(
+      isLinear ? VTK_TETRA : VTK_QUADRATIC_TETRA, isLinear ? 4 : 10, ids.data());
+  }
+  FixPoints(mixed, [](const glm::dvec3& p) { return p.z == 0.0; });
+  Elements elements(mixed);
+  elements.Object->SetGravity(0.0, 0.0, 2.0);
+  VERIFY_EQUAL(elements.TryUpdate(), std::string());
+  vtkUnstructuredGrid* output = elements.Object->GetOutput();
+  std::set<std::vector<double>> places;
+  std::set<vtkIdType> used;
+  for (vtkIdType cell = 0; cell < output->GetNumberOfCells(); ++cell)
+  {
+    VERIFY_EQUAL(output->GetCellType(cell), static_cast<int>(VTK_QUADRATIC_TETRA));
+    for (const vtkIdType id : GetIds(output, cell))
+    {
+      const glm::dvec3 place = GetPoint(output, id);
+      places.insert({ place.x, place.y, place.z });
+      used.insert(id);
+    }
+  }
+  VERIFY_EQUAL(places.size(), std::size_t{ NodesOfCube });
+  VERIFY_EQUAL(used.size(), std::size_t{ NodesOfCube });
+}
+
+// Displacements by the place at rest.
+using Found = std::map<std::array<double, 3>, glm::dvec3>;
+Found FindDisplacements(Elements& elements)
+{
+  Found found;
+  vtkUnstructuredGrid* output = elements.Object->GetOutput();
+  vtkDataArray* vectors = output->GetPointData()->GetVectors();
+  for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
+  {
+    const glm::dvec3 place = GetPoint(output, i);
+    glm::dvec3 vector;
+    vectors->GetTuple(i, &vector.x);
+    found[{ { place.x, place.y, place.z } }] = vector;
+  }
+  return found;
+}
+
+// A mesh with its own mid-side nodes deforms like that of its corners.
+void TestSameMesh()
+{
+  vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
+  vtkSmartPointer<vtkUnstructuredGrid> tenNodes = MakeTenNodes(bar);
+  FixPoints(tenNodes, [](const glm::dvec3& p) { return p.z == 0.0; });
+  Elements one(bar);
+  Elements other(tenNodes);
+  for (Elements* elements : { &one, &other })
+  {
+    elements->Object->SetGravity(0.0, -2.0, 0.0);
+    VERIFY_EQUAL(elements->TryUpdate(), std::string());
+    VERIFY(elements->Object->GetIsConverged());
+  }
+  const Found expected = FindDisplacements(one);
+  const Found found = FindDisplacements(other);
+  VERIFY_EQUAL(found.size(), expected.size());
+  double largest = 0.0;
+  double worst = 0.0;
+  for (const auto& [place, displacement] : expected)
+  {
+    largest = std::max(largest, glm::length(displacement));
+    const auto same = found.find(place);
+    worst = same == found.end() ? 1.0 : std::max(worst, glm::distance(displacement, same->second));
+  }
+  std::cout << "two forms of a mesh differ by " << worst / largest
+            << " of the largest displacement\n";
+  VERIFY(largest > 1e-3);
+  // Forces are in equilibrium to 1e-6 of the largest one.
+  VERIFY(worst < 1e-5 * largest);
+}
+
+const glm::dmat3 Turn = []
+{
+  // By 0.7 rad about (1, 2, 2) / 3.
+  const glm::dvec3 axis(1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0);
+  const double c = std::cos(0.7);
+  const double s = std::sin(0.7);
+  glm::dmat3 turn(0.0);
+  for (int i = 0; i < 3; ++i)
+  {
+    glm::dvec3 unit(0.0);
+    unit[i] = 1.0;
+    turn[i] = c * unit + s * glm::cross(axis, unit) + (1.0 - c) * glm::dot(axis, unit) * axis;
+  }
+  return turn;
+}();
+
+void TurnPoints(vtkUnstructuredGrid* mesh)
+{
+  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+  {
+    const glm::dvec3 place = Turn * GetPoint(mesh, i);
+    mesh->GetPoints()->SetPoint(i, &place.x);
+  }
+}
+
+bool IsOnBoundary(const glm::dvec3& place)
+{
+  bool isOn = false;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    isOn |= place[axis] == 0.0 || place[axis] == Edge;
+  }
+  return isOn;
+}
+
+double GetWorst(Elements& elements, const std::function<glm::dvec3(const glm::dvec3&)>& expected)
+{
+  double worst = 0.0;
+  for (const auto& [place, displacement] : FindDisplacements(elements))
+  {
+    worst = std::max(
+      worst, glm::distance(displacement, expected(glm::dvec3(place[0], place[1], place[2]))));
+  }
+  return worst;
+}
+
+// Nodes that are displaced on the boundary by an affine map displace those inside by it; and
+// without a new start by another one.
+void TestPrescribed()
+{
+  const glm::dmat3 first(0.1, 0.02, -0.03, 0.05, -0.08, 0.01, -0.02, 0.04, 0.06);
+  const glm::dmat3 second(-0.05, 0.03, 0.0, 0.0, 0.04, 0.02, 0.06, -0.03, 0.02);
+  for (const bool isTenNode : { false, true })
+  {
+    auto cube = isTenNode ? MakeTenNodeCube() : MakeCube();
+    FixPoints(cube, IsOnBoundary);
+    const auto prescribe = [&](const glm::dmat3& map)
+    {
+      AddPointVectors(cube, "PrescribedDisplacement",
+        [&](const glm::dvec3& p) { return IsOnBoundary(p) ? 1e3 * (map * p) : glm::dvec3(7.0); });
+    };
+    prescribe(first);
+    // In millimetres.
+    vtkNew<vtkUnstructuredGrid> scaled;
+    scaled->DeepCopy(cube);
+    for (vtkIdType i = 0; i < scaled->GetNumberOfPoints(); ++i)
+    {
+      const glm::dvec3 place = 1e3 * GetPoint(cube, i);
+      scaled->GetPoints()->SetPoint(i, &place.x);
+    }
+    Elements elements(scaled);
+    elements.Object->SetLengthUnitToMillimetre();
+    VERIFY_EQUAL(elements.TryUpdate(), std::string());
+    const double worst = GetWorst(elements, [&](const glm::dvec3& p) { return first * p; });
+    std::cout << "affine map: off by " << worst << " of 30 mm\n";
+    // Forces are in equilibrium to 1e-6 of the largest one, and nodes go by up to 6 mm.
+    VERIFY(worst < 1e-5);
+    prescribe(second);
+    scaled->GetPointData()->AddArray(cube->GetPointData()->GetArray("PrescribedDisplacement"));
+    elements.Object->Modified();
+    elements.Object->Update();
+    VERIFY_EQUAL(elements.Observer->GetWarningMessage(), std::string());
+    VERIFY(GetWorst(elements, [&](const glm::dvec3& p) { return second * p; }) < 1e-5);
+    scaled->GetPointData()->RemoveArray("PrescribedDisplacement");
+    VERIFY_EQUAL(elements.TryUpdate(), std::string());
+    VERIFY(GetWorst(elements, [](const glm::dvec3&) { return glm::dvec3(0.0); }) < 1e-5);
+  }
+}
+
+// A cube whose bottom slides while the other sides are displaced by a map of their own axes: there
+// is no shear at the bottom, so it goes with the map. In a plane that lies obliquely.
+void TestSliding()
+{
+  const glm::dmat3 map(-0.06, 0.0, 0.0, 0.0, 0.04, 0.0, 0.0, 0.0, -0.1);
+  for (const bool isTenNode : { false, true })
+  {
+    auto cube = isTenNode ? MakeTenNodeCube() : MakeCube();
+    const auto isSide = [](const glm::dvec3& p)
+    { return p.x == 0.0 || p.x == Edge || p.y == 0.0 || p.y == Edge || p.z == Edge; };
+    FixPoints(cube, isSide);
+    AddPointVectors(
+      cube, "PrescribedDisplacement", [&](const glm::dvec3& p) { return Turn * map * p; });
+    // Normals of any length, to either side.
+    AddPointVectors(cube, "SlidingNormal",
+      [&](const glm::dvec3& p)
+      {
+        const bool slides = p.z == 0.0 && !isSide(p);
+        return slides ? (p.x < 0.5 * Edge ? -3.0 : 1e-9) * (Turn * glm::dvec3(0.0, 0.0, 1.0))
+                      : glm::dvec3(0.0);
+      });
+    TurnPoints(cube);
+    Elements elements(cube);
+    VERIFY_EQUAL(elements.TryUpdate(), std::string());
+    const double worst = GetWorst(
+      elements, [&](const glm::dvec3& p) { return Turn * map * glm::transpose(Turn) * p; });
+    std::cout << "sliding: off by " << worst << " of " << Edge << " m\n";
+    VERIFY(worst < 1e-8); // the same of 3 mm
+    // Which nodes slide: at the bottom, inside.
+    vtkUnstructuredGrid* output = elements.Object->GetOutput();
+    vtkDataArray* normals = output->GetPointData()->GetArray("SlidingNormal");
+    int sliding = 0;
+    for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
+    {
+      const glm::dvec3 place = glm::transpose(Turn) * GetPoint(output, i);
+      glm::dvec3 normal;
+      normals->GetTuple(i, &normal.x);
+      if (normal != glm::dvec3(0.0))
+      {
+        ++sliding;
+        constexpr double roundOff = 1e-9;
+        VERIFY(std::abs(place.z) < roundOff && place.x > roundOff && place.x < Edge - roundOff &&
+          place.y > roundOff && place.y < Edge - roundOff);
+        VERIFY(glm::length(glm::cross(normal, Turn * glm::dvec3(0.0, 0.0, 1.0))) < 1e-9);
+      }
+    }
+    // One corner, and the middles of the edges that meet there.
+    VERIFY(sliding == 9 || sliding == 5);
+  }
+}
+
+// A handle moves a node that slides within its plane.
+void TestHandleOnSliding()
+{
+  auto cube = MakeCube();
+  FixPoints(cube, [](const glm::dvec3& p) { return p.z == Edge; });
+  AddPointVectors(
+    cube, "SlidingNormal", [](const glm::dvec3& p) { return glm::dvec3(0.0, 0.0, p.z == 0.0); });
+  Elements elements(cube);
+  const glm::dvec3 held(0.5 * Edge, 0.5 * Edge, 0.0);
+  elements.Object->SetHandlesData(MakeHandles({ { held, held + glm::dvec3(1e-3, 0.0, 2e-3) } }));
+  VERIFY_EQUAL(elements.TryUpdate(), std::string());
+  const Found found = FindDisplacements(elements);
+  VERIFY(
+    glm::distance(found.at({ { held.x, held.y, held.z } }), glm::dvec3(1e-3, 0.0, 0.0)) < 1e-9);
+  double out = 0.0;
+  for (const auto& [place, displacement] : found)
+  {
+    out = std::max(out, place[2] == 0.0 ? std::abs(displacement.z) : 0.0);
+  }
+  VERIFY(out < 1e-9);
+}
+
+vtkSmartPointer<vtkPolyData> MakeSheet(double z)
+{
+  auto sheet = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  points->InsertNextPoint(-1.0, -1.0, z);
+  points->InsertNextPoint(1.0, -1.0, z);
+  points->InsertNextPoint(0.0, 2.0, z);
+  vtkNew<vtkCellArray> triangles;
+  triangles->InsertNextCell({ 0, 1, 2 });
+  sheet->SetPoints(points);
+  sheet->SetPolys(triangles);
+  return sheet;
+}
+
+// A cut through the whole bar: both sides have nodes of their own, with what they had before, and
+// undone it is the bar that it was, to the last bit.
+void TestCut()
+{
+  for (const bool isTenNode : { false, true })
+  {
+    vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
+    bar = isTenNode ? MakeTenNodes(bar) : bar;
+    FixPoints(bar, [](const glm::dvec3& p) { return p.z == 0.0 || p.z == 0.03; });
+    AddPointVectors(bar, "PrescribedDisplacement",
+      [](const glm::dvec3& p) { return glm::dvec3(0.0, 0.0, p.z == 0.03 ? 1e-3 : 0.0); });
+    AddPointVectors(bar, "SlidingNormal",
+      [](const glm::dvec3& p)
+      { return glm::dvec3(p.x == 0.0 && p.z > 0.0 && p.z < 0.03, 0.0, 0.0); });
+    AddPointVectors(
+      bar, "Force", [](const glm::dvec3& p) { return glm::dvec3(0.0, 1e-4 * p.x, 0.0); });
+    Elements elements(bar);
+    VERIFY_EQUAL(elements.TryUpdate(), std::string());
+    vtkNew<vtkUnstructuredGrid> whole;
+    whole->DeepCopy(elements.Object->GetOutput());
+    VERIFY(elements.Object->GetIsConverged());
+    elements.Object->SetSheetData(MakeSheet(0.0151));
+    VERIFY_EQUAL(elements.TryUpdate(), std::string());
+    VERIFY_EQUAL(elements.Object->GetNumberOfFrozenPieces(), vtkIdType{ 0 });
+    vtkUnstructuredGrid* cut = elements.Object->GetOutput();
+    // 25 corners, and 16 cells with four edges and one diagonal of their own, and eight of others.
+    VERIFY_EQUAL(cut->GetNumberOfPoints(), whole->GetNumberOfPoints() + 25 + 40 + 16);
+    std::set<vtkIdType> sides[2];
+    int different = 0;
+    for (vtkIdType cell = 0; cell < cut->GetNumberOfCells(); ++cell)
+    {
+      const std::vector<vtkIdType> ids = GetIds(cut, cell);
+      const std::vector<vtkIdType> before = GetIds(whole, cell);
+      double height = 0.0;
+      for (std::size_t i = 0; i < ids.size(); ++i)
+      {
+        height += GetPoint(cut, ids[i]).z / 10.0;
+        different += GetPoint(cut, ids[i]) != GetPoint(whole, before[i]);
+        for (const char* name : { "Fixed", "SlidingNormal", "PrescribedDisplacement", "Force" })
+        {
+          vtkDataArray* array = cut->GetPointData()->GetArray(name);
+          for (int k = 0; k < array->GetNumberOfComponents(); ++k)
+          {
+            different += array->GetComponent(ids[i], k) !=
+              whole->GetPointData()->GetArray(name)->GetComponent(before[i], k);
+          }
+        }
+      }
+      sides[height > 0.015 ? 1 : 0].insert(ids.begin(), ids.end());
+    }
+    VERIFY_EQUAL(different, 0);
+    std::vector<vtkIdType> common;
+    std::set_intersection(sides[0].begin(), sides[0].end(), sides[1].begin(), sides[1].end(),
+      std::back_inserter(common));
+    VERIFY_EQUAL(common.size(), std::size_t{ 0 });
+    // The upper half goes up as a whole, but for what the weak forces bend.
+    double least = 1.0;
+    for (const vtkIdType node : sides[1])
+    {
+      least = std::min(least, cut->GetPointData()->GetVectors()->GetComponent(node, 2));
+    }
+    std::cout << "the upper half goes up by " << least << " m\n";
+    VERIFY(least > 0.9e-3);
+
+    elements.Object->UndoCut();
+    VERIFY_EQUAL(elements.TryUpdate(), std::string());
+    vtkUnstructuredGrid* joined = elements.Object->GetOutput();
+    VERIFY_EQUAL(joined->GetNumberOfPoints(), whole->GetNumberOfPoints());
+    different = 0;
+    for (vtkIdType cell = 0; cell < joined->GetNumberOfCells(); ++cell)
+    {
+      different += GetIds(joined, cell) != GetIds(whole, cell);
+    }
+    for (vtkIdType i = 0; i < joined->GetNumberOfPoints(); ++i)
+    {
+      different += GetPoint(joined, i) != GetPoint(whole, i);
+      for (int k = 0; k < 3; ++k)
+      {
+        different += joined->GetPointData()->GetVectors()->GetComponent(i, k) !=
+          whole->GetPointData()->GetVectors()->GetComponent(i, k);
+      }
+    }
+    VERIFY_EQUAL(different, 0);
+  }
+}
+
+} // namespace
+
+int TestTenNodeElements(int, char*[])
+{
+  TestMisplacedNodes();
+  TestWrongCells();
+  TestWrongConditions();
+  TestOutput();
+  TestMixedCells();
+  TestSameMesh();
+  TestPrescribed();
+  TestSliding();
+  TestHandleOnSliding();
+  TestCut();
+  return GetExitCode();
+}
