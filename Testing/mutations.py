@@ -62,6 +62,8 @@ SPRINGS_AT_REST = ("TestMassSpringStatics", "*")
 ABORTS = ("TestElasticAborts", "*")
 
 FINITE_ELEMENTS = ("TestFiniteElements", "*")
+BEAMS = ("TestFiniteElementBeams", "*")
+CONDITIONS = ("TestElementConditions", "*")
 DEFORMED_CUTTING = ("TestDeformedCutting", "*")
 LISTS = ("TestTetrahedronLists", "*")
 BOUNDARY = ("TestMeshBoundary", "*")
@@ -272,10 +274,24 @@ MUTATIONS = {
     "fem-sweeps": ("Kernels/FiniteElements/SingularValues.h", "sweeps = 4;", "sweeps = 2;", [ELEMENTS]),
     "fem-inverted": ("Kernels/FiniteElements/SingularValues.h", "result.Values[2] = Dot(U.Columns[2], b[2]);",
                      "result.Values[2] = Absolute(Dot(U.Columns[2], b[2]));", [ELEMENTS]),
-    "fem-twists": ("Kernels/FiniteElements/ElementMechanics.h",
-                   "Largest(MakeLanes(0.0), twiceMu + pull * (2.0 / sum))", "twiceMu + pull * (2.0 / sum)", [ELEMENTS]),
-    "fem-flat": ("Kernels/FiniteElements/FiniteElements.cxx", "if (!IsFlat(result.Determinant))", "if (true)",
-                 [ELEMENTS]),
+    "fem-clamp": ("Kernels/FiniteElements/ElementMechanics.h", "return Largest(MakeLanes(0.0), -value);",
+                  "return MakeLanes(0.0) * value;", [ELEMENTS]),
+    "fem-flat": ("Kernels/FiniteElements/FiniteElements.cxx", "component = IsFlat(result.Determinant) ?",
+                 "component = false ?", [ELEMENTS]),
+    "fem-mean": ("Kernels/FiniteElements/ElementBatches.cxx", "constexpr double largestOfPoints = 4.0;",
+                 "constexpr double largestOfPoints = 400.0;", [BEAMS]),
+    "fem-transposed": ("Kernels/FiniteElements/BlockMatrix.cxx", "isRising ? block : ~block", "block", [ELEMENTS]),
+    "fem-steps": ("Kernels/FiniteElements/EquilibriumSolver.cxx", "  } while (this->Clamp());\n  return false;",
+                  "  } while (false);\n  return false;", [FINITE_ELEMENTS, BEAMS]),
+    "fem-sliding": ("Kernels/FiniteElements/TangentSolver.cxx", "  this->Sliding.Constrain(this->Matrix);\n", "",
+                    [CONDITIONS]),
+    "fem-planes": ("Kernels/Physics/BodyPieces.cxx", ".minCoeff() > least;", ".minCoeff() > -1.0;", [CONDITIONS]),
+    "fem-weight": ("Kernels/FiniteElements/EquilibriumProblem.cxx",
+                   "volume += shares[point][i] * volumes[t][point];", "volume += 0.1 * volumes[t][point];", [BEAMS]),
+    "fem-middle": ("Kernels/Physics/MidSideNodes.cxx", "if (isNew && isTaken[static_cast<std::size_t>(node)])",
+                   "if (false)", [("TestMidSideNodes", "*")]),
+    "fem-curved": ("Kernels/Physics/ElasticBody.cxx", "constexpr double leastPart = 1e-3;",
+                   "constexpr double leastPart = -1e3;", [("TestMidSideNodes", "*")]),
     "fem-colors": ("Kernels/FiniteElements/ElementBatches.cxx",
                    "forNodes([&](std::uint64_t& mask) { mask |= std::uint64_t(1) << color; });", "",
                    [("TestFiniteElements", "*Threads")]),

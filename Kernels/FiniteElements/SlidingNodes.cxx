@@ -12,51 +12,67 @@ namespace deformvolume
 
 SlidingNodes::SlidingNodes(const ElasticBody& body)
 {
-  for (std::size_t node = 0; node < body.SlidingNormals.size(); ++node)
+  const auto getNormal = [](const std::vector<glm::dvec3>& normals, std::size_t node)
   {
-    const glm::dvec3& normal = body.SlidingNormals[node];
-    if (normal != glm::dvec3(0.0))
+    const glm::dvec3 normal = normals.empty() ? glm::dvec3(0.0) : normals[node];
+    return normal == glm::dvec3(0.0) ? normal : glm::normalize(normal);
+  };
+  const auto square = [](const glm::dvec3& normal) { return glm::outerProduct(normal, normal); };
+  const bool isEmpty = body.SlidingNormals.empty() && body.SecondSlidingNormals.empty();
+  for (std::size_t node = 0; node < body.Points.size() && !isEmpty; ++node)
+  {
+    const glm::dvec3 first = getNormal(body.SlidingNormals, node);
+    const glm::dvec3 second = getNormal(body.SecondSlidingNormals, node);
+    glm::dmat3 projection = glm::dmat3(1.0) - square(first);
+    // What is less of the second one is rounding of the first.
+    constexpr double leastSine = 1e-6;
+    const glm::dvec3 across = projection * second;
+    if (glm::length(across) > leastSine)
     {
-      this->Normals.resize(body.Points.size(), glm::dvec3(0.0));
-      this->Normals[node] = glm::normalize(normal);
-      this->Nodes.push_back(static_cast<std::int32_t>(node));
+      projection -= square(glm::normalize(across));
+    }
+    if (first != glm::dvec3(0.0) || second != glm::dvec3(0.0))
+    {
+      this->Places.resize(body.Points.size(), -1);
+      this->Places[node] = static_cast<std::int32_t>(this->Nodes.size());
+      this->Nodes.push_back(node);
+      this->Projections.push_back(projection);
     }
   }
 }
 
 void SlidingNodes::Project(std::vector<glm::dvec3>& vectors) const
 {
-  for (const std::int32_t number : this->Nodes)
+  for (std::size_t i = 0; i < this->Nodes.size(); ++i)
   {
-    const auto node = static_cast<std::size_t>(number);
-    vectors[node] = this->Project(node, vectors[node]);
+    glm::dvec3& vector = vectors[this->Nodes[i]];
+    vector = this->Projections[i] * vector;
   }
 }
 
 void SlidingNodes::Constrain(BlockMatrix& matrix) const
 {
   const BlockPattern& pattern = matrix.GetPattern();
-  for (const std::int32_t number : this->Nodes)
+  const auto get = [&](std::int32_t block) -> glm::dmat3
+  { return glm::make_mat3(matrix.GetBlock(block)); };
+  const auto set = [&](std::int32_t block, const glm::dmat3& value)
+  { std::copy_n(glm::value_ptr(value), BlockMatrix::BlockSize, matrix.GetBlock(block)); };
+  for (std::size_t i = 0; i < this->Nodes.size(); ++i)
   {
-    const auto node = static_cast<std::size_t>(number);
-    const glm::dvec3& normal = this->Normals[node];
-    const glm::dmat3 projection = glm::dmat3(1.0) - glm::outerProduct(normal, normal);
+    const std::size_t node = this->Nodes[i];
+    const glm::dmat3& projection = this->Projections[i];
     for (std::int32_t block = pattern.Rows[node]; block < pattern.Rows[node + 1]; ++block)
     {
-      const glm::dmat3 own = glm::make_mat3(matrix.GetBlock(block));
-      glm::dmat3 result = projection * own;
-      if (block == pattern.Diagonal[node])
-      {
-        const double mean = (own[0][0] + own[1][1] + own[2][2]) / 3.0;
-        result = result * projection + mean * glm::outerProduct(normal, normal);
-      }
-      else
+      if (block != pattern.Diagonal[node])
       {
         const std::int32_t mirrored = pattern.Mirrored[static_cast<std::size_t>(block)];
-        const glm::dmat3 other = glm::dmat3(glm::make_mat3(matrix.GetBlock(mirrored))) * projection;
-        std::copy_n(glm::value_ptr(other), BlockMatrix::BlockSize, matrix.GetBlock(mirrored));
+        set(block, projection * get(block));
+        set(mirrored, get(mirrored) * projection);
+        continue;
       }
-      std::copy_n(glm::value_ptr(result), BlockMatrix::BlockSize, matrix.GetBlock(block));
+      const glm::dmat3 own = get(block);
+      const double mean = (own[0][0] + own[1][1] + own[2][2]) / 3.0;
+      set(block, projection * own * projection + mean * (glm::dmat3(1.0) - projection));
     }
   }
 }

@@ -221,24 +221,27 @@ PieceSupports FindSupports(
 {
   const auto number = static_cast<std::size_t>(pieces.NumberOfPieces);
   std::vector<Support> supports(number);
-  for (std::size_t node = 0; node < body.SlidingNormals.size(); ++node)
+  for (const auto* normals : { &body.SlidingNormals, &body.SecondSlidingNormals })
   {
-    const glm::dvec3& normal = body.SlidingNormals[node];
-    const auto slide = [&](std::int32_t piece)
-    { supports[static_cast<std::size_t>(piece)].AddSliding(body.Points[node], normal); };
-    if (normal == glm::dvec3(0.0) || isNotFree[node] != 0 || pieces.PieceOfNode[node] < 0)
+    for (std::size_t node = 0; node < normals->size(); ++node)
     {
-      continue;
-    }
-    slide(pieces.PieceOfNode[node]);
-    ForPairs(pieces.SharedNodes, static_cast<std::int32_t>(node),
-      [&](std::int32_t piece)
+      const glm::dvec3& normal = (*normals)[node];
+      const auto slide = [&](std::int32_t piece)
+      { supports[static_cast<std::size_t>(piece)].AddSliding(body.Points[node], normal); };
+      if (normal == glm::dvec3(0.0) || isNotFree[node] != 0 || pieces.PieceOfNode[node] < 0)
       {
-        if (piece != pieces.PieceOfNode[node])
+        continue;
+      }
+      slide(pieces.PieceOfNode[node]);
+      ForPairs(pieces.SharedNodes, static_cast<std::int32_t>(node),
+        [&](std::int32_t piece)
         {
-          slide(piece);
-        }
-      });
+          if (piece != pieces.PieceOfNode[node])
+          {
+            slide(piece);
+          }
+        });
+    }
   }
   for (std::size_t node = 0; node < body.Points.size(); ++node)
   {

@@ -182,17 +182,24 @@ void CheckSliding(const ElasticBody& body)
 {
   std::size_t contradictory = 0;
   std::size_t first = 0;
-  for (std::size_t node = 0; node < body.SlidingNormals.size(); ++node)
+  for (const auto* normals : { &body.SlidingNormals, &body.SecondSlidingNormals })
   {
-    const glm::dvec3& normal = body.SlidingNormals[node];
-    if (!IsFinite(normal))
+    if (!normals->empty())
     {
-      throw Error("The sliding normal of node " + std::to_string(node) + " is not finite.");
+      CheckLength(normals->size(), body.Points.size(), "normals of sliding nodes");
     }
-    if (normal != glm::dvec3(0.0) && body.IsFixed(node))
+    for (std::size_t node = 0; node < normals->size(); ++node)
     {
-      first = contradictory == 0 ? node : first;
-      ++contradictory;
+      const glm::dvec3& normal = (*normals)[node];
+      if (!IsFinite(normal))
+      {
+        throw Error("The sliding normal of node " + std::to_string(node) + " is not finite.");
+      }
+      if (normal != glm::dvec3(0.0) && body.IsFixed(node))
+      {
+        first = contradictory == 0 ? node : first;
+        ++contradictory;
+      }
     }
   }
   if (contradictory > 0)
@@ -221,10 +228,6 @@ void CheckBody(const ElasticBody& body, Watch* watch)
   if (!body.MidSides.empty())
   {
     CheckLength(body.MidSides.size(), body.Tetrahedra.size(), "tetrahedra with mid-side nodes");
-  }
-  if (!body.SlidingNormals.empty())
-  {
-    CheckLength(body.SlidingNormals.size(), body.Points.size(), "normals of sliding nodes");
   }
   CheckPoints(body);
   CheckNodes(asked, body);

@@ -10,7 +10,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 
 using namespace deformvolume;
@@ -93,6 +95,37 @@ struct Stretched
     for (glm::dvec3& displacement : this->Displacements)
     {
       displacement += glm::dvec3(jitter(random), jitter(random), jitter(random));
+    }
+  }
+
+  // Gives the nodes other numbers, so that those in the middle of edges come before their ends.
+  void NumberAnew()
+  {
+    ElasticBody& body = this->Lattice.Body;
+    const std::size_t nodes = body.Points.size();
+    std::vector<std::int32_t> numbers(nodes);
+    std::iota(numbers.begin(), numbers.end(), 0);
+    std::shuffle(numbers.begin(), numbers.end(), std::mt19937(2));
+    const auto move = [&](std::vector<glm::dvec3>& vectors)
+    {
+      const std::vector<glm::dvec3> before = vectors;
+      for (std::size_t node = 0; node < nodes; ++node)
+      {
+        vectors[static_cast<std::size_t>(numbers[node])] = before[node];
+      }
+    };
+    move(body.Points);
+    move(this->Displacements);
+    for (std::size_t t = 0; t < body.Tetrahedra.size(); ++t)
+    {
+      for (std::int32_t& node : body.Tetrahedra[t])
+      {
+        node = numbers[static_cast<std::size_t>(node)];
+      }
+      for (std::int32_t& node : body.MidSides[t])
+      {
+        node = numbers[static_cast<std::size_t>(node)];
+      }
     }
   }
 
@@ -180,6 +213,7 @@ TEST_P(ElementModels, ForcesAreThoseOfTheEnergy)
 TEST_P(ElementModels, TangentIsThatOfTheForces)
 {
   Stretched stretched;
+  stretched.NumberAnew();
   const ElasticBody& body = stretched.Lattice.Body;
   Watch watch(nullptr);
   FiniteElements elements(watch, body);

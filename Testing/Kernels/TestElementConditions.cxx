@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where finite elements are held: displaced nodes, planes in which nodes slide, and what is enough.
+#include "Error.h"
+#include "FiniteElementCase.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace deformvolume;
+
+namespace
+{
+
+using Place = LatticeBody::Place;
+
+constexpr double NoNumber = std::numeric_limits<double>::quiet_NaN();
+
+// A cube of size 1 m.
+QuadraticLattice MakeCube(const std::function<bool(const Place&)>& isFixed = nullptr)
+{
+  return QuadraticLattice({ 3, 3, 3 }, 0.5, MakeMaterial(1e4, 0.45), isFixed);
+}
+
+// The nodes of a face slide; those of two faces along their edge.
+void SlideFace(ElasticBody& body, int axis)
+{
+  body.SlidingNormals.resize(body.Points.size(), glm::dvec3(0.0));
+  body.SecondSlidingNormals.resize(body.Points.size(), glm::dvec3(0.0));
+  for (std::size_t node = 0; node < body.Points.size(); ++node)
+  {
+    const bool isFirst = body.SlidingNormals[node] == glm::dvec3(0.0);
+    if (body.Points[node][axis] == 0.0)
+    {
+      (isFirst ? body.SlidingNormals : body.SecondSlidingNormals)[node][axis] = -3.0;
+    }
+  }
+}
+
+} // namespace
+
+TEST(ElementConditions, Misuse)
+{
+  ElasticBody body = MakeCube([](const Place& place) { return place[2] == 0; }).Body;
+  const auto getError = [&] { return GetError([&] { CheckBody(body); }); };
+  body.SlidingNormals.resize(5);
+  EXPECT_NE(getError().find("5 normals of sliding nodes, but "), std::string::npos);
+  body.SlidingNormals.assign(body.Points.size(), glm::dvec3(0.0));
+  body.SlidingNormals[26].y = NoNumber;
+  EXPECT_EQ(getError(), "The sliding normal of node 26 is not finite.");
+  body.SlidingNormals[26].y = 1.0;
+  EXPECT_EQ(getError(), "");
+  body.SlidingNormals[3].x = 1.0;
+  body.SlidingNormals[4].x = 1.0;
+  EXPECT_EQ(getError(),
+    "2 nodes have contradictory conditions: they are fixed, and have a sliding normal. The first "
+    "of "
+    "them is node 3. Set one of the two to 0.");
+
+  body.SlidingNormals.clear();
+  FiniteElementModel model;
+  model.SetBody(body);
+  EquilibriumRequest request = MakeConverged();
+  request.Loads.FixedDisplacements.resize(3);
+  EXPECT_NE(GetError([&] { model.Solve(request); }).find("displacements of fixed nodes, but "),
+    std::string::npos);
+  request.Loads.FixedDisplacements.assign(body.Points.size(), glm::dvec3(0.0));
+  request.Loads.FixedDisplacements[7].z = NoNumber;
+  EXPECT_EQ(GetError([&] { model.Solve(request); }),
+    "The prescribed displacement of node 7 is not finite.");
+}
+
+// Fixed nodes go where they are told, and back.
+TEST(ElementConditions, FixedNodesAreDisplaced)
+{
+  ElasticBody body = MakeCube().Body;
+  body.Fixed.assign(body.Points.size(), 0);
+  for (std::size_t node = 0; node < body.Points.size(); ++node)
+  {
+    const glm::dvec3& p = body.Points[node];
+    body.Fixed[node] = std::min({ p.x, p.y, p.z, 1 - p.x, 1 - p.y, 1 - p.z }) < 1e-9 ? 1 : 0;
+  }
+  const std::vector<glm::dvec3> wanted =
+    MapPoints(body, glm::dmat3(1.2, 0.1, 0, 0, 0.9, 0.1, 0, 0, 1.1), glm::dvec3(0.5, 0.0, 0.0));
+  FiniteElementModel model;
+  model.SetBody(body);
+  EquilibriumRequest request = MakeConverged();
+  request.Limits.RelativeTolerance = 1e-11;
+  request.Loads.FixedDisplacements = wanted;
+  EXPECT_TRUE(model.Solve(request).IsConverged);
+  EXPECT_LT(LargestDifference(model.GetDisplacements(), wanted), 1e-10);
+  request.Loads.FixedDisplacements.clear();
+  EXPECT_TRUE(model.Solve(request).IsConverged);
+  EXPECT_LT(LargestOf(model.GetDisplacements()), 1e-10);
+}
+
+// Three planes hold a body of which no node is fixed; two do not.
+TEST(ElementConditions, ThreePlanesHoldABody)
+{
+  QuadraticLattice cube = MakeCube();
+  ElasticBody& body = cube.Body;
+  SlideFace(body, 0);
+  SlideFace(body, 1);
+  FiniteElementModel model;
+  model.SetBody(body);
+  EXPECT_NE(GetError([&] { model.Solve({}); }).find("No constraints"), std::string::npos);
+  SlideFace(body, 2);
+  model.SetBody(body);
+  EquilibriumRequest request = MakeConverged();
+  request.Limits.RelativeTolerance = 1e-10;
+  // Uniaxial tension of 1000 Pa, small enough that E and nu tell what comes.
+  request.Loads.Forces = LoadFaces(
+    body, [](const glm::dvec3& point) { return point.z > 1.0 - 1e-9; }, glm::dvec3(0, 0, 1e-3));
+  const EquilibriumReport report = model.Solve(request);
+  EXPECT_TRUE(report.IsConverged);
+  EXPECT_EQ(report.NumberOfFrozenPieces, 0);
+  const std::vector<glm::dvec3> wanted = MapPoints(
+    body, glm::dmat3(1 - 0.45e-7, 0, 0, 0, 1 - 0.45e-7, 0, 0, 0, 1 + 1e-7), glm::dvec3(0.0));
+  EXPECT_LT(LargestDifference(model.GetDisplacements(), wanted), 1e-7 * 1e-5);
+  // Planes take forces along their normals only: those of the load.
+  glm::dvec3 sum(0.0);
+  double friction = 0.0;
+  const std::vector<glm::dvec3> forces = model.GetForces();
+  for (std::size_t node = 0; node < forces.size(); ++node)
+  {
+    const glm::dvec3 reaction = forces[node] - request.Loads.Forces[node];
+    sum += reaction;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      friction =
+        body.Points[node][axis] != 0.0 ? std::max(friction, std::abs(reaction[axis])) : friction;
+    }
+  }
+  EXPECT_LT(friction, 1e-9);
+  EXPECT_LT(LargestOf(sum - glm::dvec3(0, 0, -1e-3)), 1e-9);
+}
+
+// In an oblique plane, at large strain: nodes stay in it, a handle moves them within it, and no
+// force but along the normal holds them. With levels, which know nothing of planes.
+TEST(ElementConditions, NodesSlideInAnObliquePlane)
+{
+  for (const std::int32_t cells : { 2, 6 })
+  {
+    const double spacing = 1.0 / cells;
+    QuadraticLattice cube({ cells + 1, cells + 1, cells + 1 }, spacing, MakeMaterial(1e4, 0.3),
+      [&](const Place& place) { return place[2] == cells; });
+    ElasticBody& body = cube.Body;
+    const glm::dmat3 turn = MakeRotation(0.6, { 1.0, 0.4, 0.2 });
+    const glm::dvec3 normal = turn[2];
+    body.SlidingNormals.assign(body.Points.size(), glm::dvec3(0.0));
+    std::int32_t handle = -1;
+    for (std::size_t node = 0; node < body.Points.size(); ++node)
+    {
+      glm::dvec3& point = body.Points[node];
+      body.SlidingNormals[node] = point.z == 0.0 ? normal : glm::dvec3(0.0);
+      handle = point == glm::dvec3(0.0) ? static_cast<std::int32_t>(node) : handle;
+      point = turn * point;
+    }
+    EquilibriumRequest request = MakeConverged();
+    const glm::dvec3 pull = turn * glm::dvec3(-0.1, 0.05, 0.3);
+    request.Held = { { handle, pull } };
+    request.Loads.Gravity = turn * glm::dvec3(0.5, 0.0, 0.0);
+    FiniteElementModel model;
+    model.SetBody(body);
+    EXPECT_TRUE(model.Solve(request).IsConverged);
+    const std::vector<glm::dvec3>& displacements = model.GetDisplacements();
+    const std::vector<glm::dvec3> forces = model.GetForces();
+    const glm::dvec3 within = pull - glm::dot(pull, normal) * normal;
+    EXPECT_LT(LargestOf(displacements[static_cast<std::size_t>(handle)] - within), 1e-12);
+    double largest = 0.0;
+    for (std::size_t node = 0; node < forces.size(); ++node)
+    {
+      if (body.SlidingNormals[node] == glm::dvec3(0.0))
+      {
+        continue;
+      }
+      EXPECT_NEAR(glm::dot(displacements[node], normal), 0.0, 1e-12);
+      largest = std::max(largest, glm::length(displacements[node]));
+    }
+    EXPECT_GT(largest, 0.09);
+  }
+}
+
+// A body of two pieces, of which one is held by planes and the other by nothing.
+TEST(ElementConditions, PiecesThatSlide)
+{
+  QuadraticLattice cube = MakeCube();
+  ElasticBody body = cube.Body;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    SlideFace(body, axis);
+  }
+  const std::size_t nodes = cube.Body.Points.size();
+  for (const glm::dvec3& point : cube.Body.Points)
+  {
+    body.Points.push_back(point + glm::dvec3(2.0, 0.0, 0.0));
+    body.SlidingNormals.push_back(glm::dvec3(0.0, 0.0, point.z == 0.0 ? 1.0 : 0.0));
+    body.SecondSlidingNormals.push_back(glm::dvec3(0.0));
+  }
+  const std::size_t tetrahedra = cube.Body.Tetrahedra.size();
+  const auto add = [&](auto all)
+  {
+    for (std::int32_t& node : all)
+    {
+      node += static_cast<std::int32_t>(nodes);
+    }
+    return all;
+  };
+  for (std::size_t t = 0; t < tetrahedra; ++t)
+  {
+    body.Tetrahedra.push_back(add(cube.Body.Tetrahedra[t]));
+    body.MidSides.push_back(add(cube.Body.MidSides[t]));
+  }
+  FiniteElementModel model;
+  model.SetBody(body);
+  EquilibriumRequest request = MakeConverged();
+  request.Loads.Gravity = glm::dvec3(0.0, 0.0, -1.0);
+  const EquilibriumReport report = model.Solve(request);
+  EXPECT_TRUE(report.IsConverged);
+  EXPECT_EQ(report.NumberOfFrozenPieces, 1);
+  EXPECT_EQ(report.FirstFrozenTetrahedron, static_cast<std::int32_t>(tetrahedra));
+  EXPECT_GT(LargestOf(model.GetDisplacements()), 0.01);
+}
