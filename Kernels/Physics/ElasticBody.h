@@ -61,8 +61,9 @@ struct ElasticBody
   /// Of each node the normal, of any length, of the plane in which it slides without friction: the
   /// one that it lies in at rest. 0: it does not slide; empty: no node does.
   std::vector<glm::dvec3> SlidingNormals;
-  /// The same of a second plane: nodes in two planes slide along the line in both, such as where two
-  /// planes of symmetry meet. Where they are parallel there is one plane. Empty: no node has one.
+  /// The same of a second plane: nodes in two planes slide along the line in both, such as where
+  /// two planes of symmetry meet. Where they are parallel there is one plane. Empty: no node has
+  /// one.
   std::vector<glm::dvec3> SecondSlidingNormals;
 
   const ElasticMaterial& GetMaterial(std::size_t tetrahedron) const
