@@ -17,7 +17,8 @@
  *   these nodes are displaced to. Its values at other nodes are not used;
  * - the point array "SlidingNormal", three components: nodes where it is not 0 slide without
  *   friction in the plane through their rest position to which it is normal, whatever its length
- *   and sign;
+ *   and sign; "SecondSlidingNormal", of the same kind: nodes that have both slide along the line in
+ *   both planes, such as where two planes of symmetry meet;
  * - the point array "Force", three components: a force on each node, in N;
  * - the cell arrays "YoungModulus" (Pa), "PoissonRatio" and "Density" (kg/m^3), one component: the
  *   material of each tetrahedron, in place of the properties of these names and of MaterialPreset.

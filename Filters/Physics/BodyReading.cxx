@@ -128,6 +128,7 @@ void ReadPointArrays(vtkUnstructuredGrid* grid, const BodySettings& settings, Bo
   };
   mesh.Forces = read(ForceName, 1.0);
   mesh.Body.SlidingNormals = read(SlidingNormalName, 1.0);
+  mesh.Body.SecondSlidingNormals = read(SecondSlidingNormalName, 1.0);
   mesh.PrescribedDisplacements = read(PrescribedDisplacementName, settings.UnitLength);
   if (!mesh.PrescribedDisplacements.empty() && !fixed)
   {
@@ -172,7 +173,7 @@ void CheckForSprings(const BodyMesh& mesh)
     {
       displaced.Add(node);
     }
-    if (has(mesh.Body.SlidingNormals))
+    if (has(mesh.Body.SlidingNormals) || has(mesh.Body.SecondSlidingNormals))
     {
       sliding.Add(node);
     }
@@ -185,7 +186,8 @@ void CheckForSprings(const BodyMesh& mesh)
   };
   displaced.ThrowIfAny(
     "are fixed and have a prescribed displacement", getAdvice(PrescribedDisplacementName));
-  sliding.ThrowIfAny("have a sliding normal", getAdvice(SlidingNormalName));
+  sliding.ThrowIfAny("have a sliding normal",
+    getAdvice(mesh.Body.SlidingNormals.empty() ? SecondSlidingNormalName : SlidingNormalName));
 }
 
 // Each mid-side node of the cells is in the middle of one edge, and no corner.
@@ -230,36 +232,70 @@ void CheckMidSides(const ElasticBody& body)
     "Give each edge a node of its own; the order of nodes must be that of vtkQuadraticTetra.");
 }
 
+// The sine of the largest angle between what counts as parallel: coordinates may be floats.
+constexpr double LargestSine = 1e-3;
+
 glm::dvec3 Normalize(const glm::dvec3& vector)
 {
   const glm::dvec3 sizes = glm::abs(vector);
   return glm::normalize(vector / std::max({ sizes.x, sizes.y, sizes.z })); // also where it is tiny
 }
 
-// In which plane the middle of an edge slides; 0: it does not.
-glm::dvec3 GetSlidingNormal(const ElasticBody& body, std::size_t a, std::size_t b)
+// The normals of the planes in which a node slides, of length 1.
+std::vector<glm::dvec3> GetSlidingNormals(const ElasticBody& body, std::size_t node)
 {
-  // The sine of the largest angle between what counts as parallel: coordinates may be floats.
-  constexpr double parallel = 1e-3;
-  const glm::dvec3 none(0.0);
-  const bool slides[2] = { body.SlidingNormals[a] != none, body.SlidingNormals[b] != none };
-  const bool isFixed[2] = { body.IsFixed(a), body.IsFixed(b) };
-  if (!(slides[0] || isFixed[0]) || !(slides[1] || isFixed[1]) || (isFixed[0] && isFixed[1]))
+  std::vector<glm::dvec3> result;
+  for (const auto* normals : { &body.SlidingNormals, &body.SecondSlidingNormals })
   {
-    return none;
-  }
-  glm::dvec3 normal = Normalize(body.SlidingNormals[slides[0] ? a : b]);
-  if (slides[0] && slides[1])
-  {
-    const glm::dvec3 other = Normalize(body.SlidingNormals[b]);
-    if (glm::length(glm::cross(normal, other)) > parallel)
+    if (!normals->empty() && (*normals)[node] != glm::dvec3(0.0))
     {
-      return none;
+      result.push_back(Normalize((*normals)[node]));
     }
-    normal = Normalize(normal + (glm::dot(normal, other) < 0.0 ? -other : other));
   }
-  const glm::dvec3 edge = body.Points[b] - body.Points[a];
-  return std::abs(glm::dot(edge, normal)) > parallel * glm::length(edge) ? none : normal;
+  return result;
+}
+
+// Whether a node cannot move along a normal.
+bool IsHeldAlong(const ElasticBody& body, std::size_t node, const glm::dvec3& normal)
+{
+  glm::dvec3 rest = body.IsFixed(node) ? glm::dvec3(0.0) : normal;
+  glm::dvec3 first(0.0);
+  for (const glm::dvec3& own : GetSlidingNormals(body, node))
+  {
+    const glm::dvec3 across = own - glm::dot(own, first) * first;
+    if (glm::length(across) > LargestSine)
+    {
+      first = glm::normalize(across);
+      rest -= glm::dot(rest, first) * first;
+    }
+  }
+  return glm::length(rest) <= LargestSine;
+}
+
+// The planes in which the middle of an edge slides: those of its ends in which the edge lies and
+// both ends stay; 0: none.
+std::array<glm::dvec3, 2> GetMiddleNormals(const ElasticBody& body, std::size_t a, std::size_t b)
+{
+  std::array<glm::dvec3, 2> result{ { glm::dvec3(0.0), glm::dvec3(0.0) } };
+  if (body.IsFixed(a) && body.IsFixed(b))
+  {
+    return result;
+  }
+  const glm::dvec3 edge = glm::normalize(body.Points[b] - body.Points[a]);
+  std::size_t number = 0;
+  for (const std::size_t end : { a, b })
+  {
+    for (const glm::dvec3& normal : GetSlidingNormals(body, end))
+    {
+      const bool isNew = number == 0 || glm::length(glm::cross(result[0], normal)) > LargestSine;
+      if (number < result.size() && isNew && std::abs(glm::dot(edge, normal)) <= LargestSine &&
+        IsHeldAlong(body, a, normal) && IsHeldAlong(body, b, normal))
+      {
+        result[number++] = normal;
+      }
+    }
+  }
+  return result;
 }
 
 void AddMidSides(std::vector<MidSideNodes>&& ofCells, BodyMesh& mesh)
@@ -283,9 +319,14 @@ void AddMidSides(std::vector<MidSideNodes>&& ofCells, BodyMesh& mesh)
       mesh.PrescribedDisplacements.push_back(
         0.5 * (mesh.PrescribedDisplacements[a] + mesh.PrescribedDisplacements[b]));
     }
+    const std::array<glm::dvec3, 2> normals = GetMiddleNormals(body, a, b);
     if (!body.SlidingNormals.empty())
     {
-      body.SlidingNormals.push_back(GetSlidingNormal(body, a, b));
+      body.SlidingNormals.push_back(normals[0]);
+    }
+    if (!body.SecondSlidingNormals.empty())
+    {
+      body.SecondSlidingNormals.push_back(normals[1]);
     }
   }
 }
@@ -349,7 +390,8 @@ Stamp GetBodyStamp(vtkUnstructuredGrid* grid)
   {
     add(grid->GetCellData()->GetAbstractArray(name));
   }
-  for (const char* name : { FixedName, ForceName, PrescribedDisplacementName, SlidingNormalName })
+  for (const char* name : { FixedName, ForceName, PrescribedDisplacementName, SlidingNormalName,
+         SecondSlidingNormalName })
   {
     add(grid->GetPointData()->GetAbstractArray(name));
   }

@@ -32,6 +32,7 @@ constexpr const char* FixedName = "Fixed";
 constexpr const char* ForceName = "Force";
 constexpr const char* PrescribedDisplacementName = "PrescribedDisplacement";
 constexpr const char* SlidingNormalName = "SlidingNormal";
+constexpr const char* SecondSlidingNormalName = "SecondSlidingNormal";
 ///@}
 
 /// The tetrahedra of a grid, and the cell that each of them is.

@@ -38,6 +38,7 @@ bool HasSameMesh(const ElasticBody& a, const ElasticBody& b)
 bool IsSame(const ElasticBody& a, const ElasticBody& b)
 {
   return HasSameMesh(a, b) && a.Fixed == b.Fixed && a.SlidingNormals == b.SlidingNormals &&
+    a.SecondSlidingNormals == b.SecondSlidingNormals &&
     std::equal(a.Materials.begin(), a.Materials.end(), b.Materials.begin(), b.Materials.end(),
       [](const auto& one, const auto& other) { return IsSame(one, other); });
 }
@@ -146,6 +147,7 @@ BodyMesh ElasticSession::WithCuts(const BodyMesh& whole) const
     AppendCopies(mesh.Body.Points, cut.Origins);
     AppendCopies(mesh.Body.Fixed, cut.Origins);
     AppendCopies(mesh.Body.SlidingNormals, cut.Origins);
+    AppendCopies(mesh.Body.SecondSlidingNormals, cut.Origins);
     AppendCopies(mesh.Forces, cut.Origins);
     AppendCopies(mesh.PrescribedDisplacements, cut.Origins);
     AppendCopies(mesh.IsUsed, cut.Origins);
@@ -359,6 +361,8 @@ void ElasticSession::FillPointData(vtkUnstructuredGrid* grid, vtkUnstructuredGri
   overwrite(ForceName, [](std::size_t, int) { return 0.0; });
   overwrite(
     SlidingNormalName, [&](std::size_t node, int i) { return body.SlidingNormals[node][i]; });
+  overwrite(SecondSlidingNormalName,
+    [&](std::size_t node, int i) { return body.SecondSlidingNormals[node][i]; });
 }
 
 vtkUnstructuredGrid* ElasticSession::GetGrid(vtkUnstructuredGrid* grid)

@@ -165,7 +165,7 @@ void TestWrongConditions()
     AddPointVectors(cube, "SlidingNormal", [](const glm::dvec3&) { return glm::dvec3(0, 0, 2); });
     VERIFY(Holds(TryMesh(cube),
       (isTenNode ? "25" : "9") + std::string(" nodes have contradictory conditions")));
-    for (const char* name : { "SlidingNormal", "PrescribedDisplacement" })
+    for (const char* name : { "SlidingNormal", "SecondSlidingNormal", "PrescribedDisplacement" })
     {
       cube = make();
       AddPointVectors(cube, name, [](const glm::dvec3&) { return glm::dvec3(0.0); })
@@ -523,6 +523,46 @@ void TestSliding()
   }
 }
 
+// An eighth of a cube whose outer sides are displaced by an affine map: nodes in two of its planes
+// of symmetry slide along the line in both, and so do those that are made there.
+void TestSlidingAlongLines()
+{
+  const glm::dmat3 map(0.9, 0, 0, 0, 0.95, 0, 0, 0, 1.2);
+  auto cube = MakeCube();
+  const auto isOutside = [](const glm::dvec3& p)
+  { return p.x == Edge || p.y == Edge || p.z == Edge; };
+  const auto isFixed = [&](const glm::dvec3& p) { return isOutside(p) || p == glm::dvec3(0.0); };
+  FixPoints(cube, isFixed);
+  AddPointVectors(cube, "PrescribedDisplacement", [&](const glm::dvec3& p) { return map * p - p; });
+  // The normals of the planes that a point lies in, one after the other.
+  const auto getNormal = [&](const glm::dvec3& p, int number)
+  {
+    glm::dvec3 normal(0.0);
+    for (int axis = 0; axis < 3 && !isFixed(p); ++axis)
+    {
+      if (p[axis] == 0.0 && number-- == 0)
+      {
+        normal[axis] = 1.0;
+      }
+    }
+    return normal;
+  };
+  AddPointVectors(cube, "SlidingNormal", [&](const glm::dvec3& p) { return getNormal(p, 0); });
+  const auto wanted = [&](const glm::dvec3& p) { return map * p - p; };
+  {
+    Elements one(cube);
+    VERIFY_EQUAL(one.TryUpdate(), std::string());
+    VERIFY(GetWorst(one, wanted) > 1e-5);
+  }
+  AddPointVectors(
+    cube, "SecondSlidingNormal", [&](const glm::dvec3& p) { return getNormal(p, 1); });
+  Elements both(cube);
+  VERIFY_EQUAL(both.TryUpdate(), std::string());
+  const double worst = GetWorst(both, wanted);
+  std::cout << "sliding along lines: off by " << worst << " of " << Edge << " m\n";
+  VERIFY(worst < 1e-8);
+}
+
 // A handle moves a node that slides within its plane.
 void TestHandleOnSliding()
 {
@@ -657,6 +697,7 @@ int TestTenNodeElements(int, char*[])
   TestSameMesh();
   TestPrescribed();
   TestSliding();
+  TestSlidingAlongLines();
   TestHandleOnSliding();
   TestCut();
   return GetExitCode();
