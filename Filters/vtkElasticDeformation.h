@@ -31,7 +31,7 @@
  * says which place of the mesh at rest it holds: the nodes within HandleRadius of it, or the
  * nearest node where that is 0. Points that no tetrahedron uses do not count. Where several handles
  * hold a node the first one counts, and nodes that are fixed stay. A handle moves a node that
- * slides within its plane only.
+ * slides within its plane, or along its line, only.
  *
  * @par Port 2, optional, the sheet:
  * vtkPolyData in world coordinates: triangles, polygons and triangle strips; polylines where
@@ -68,10 +68,10 @@
  * three-dimensional cells; tetrahedra that are flat, or some of them inside out; coordinates and
  * numbers that are not finite; a Young modulus or a density of 0 or less, a Poisson ratio of less
  * than 0 or of 0.495 and more; arrays of another shape; nodes that are fixed and slide; prescribed
- * displacements without the array "Fixed"; a handle that holds no node; a sheet that vtkCutVolume
- * would refuse. The output is then empty, what was simulated is kept, and a new sheet
- * cuts in the next execution that succeeds. After a failure of memory or of a device the body
- * starts again from rest.
+ * displacements without the array "Fixed", and second normals without first ones; a handle that
+ * holds no node; a sheet that vtkCutVolume would refuse. The output is then empty, what was
+ * simulated is kept, and a new sheet cuts in the next execution that succeeds. After a failure of
+ * memory or of a device the body starts again from rest.
  *
  * @sa vtkMassSpringDeformation vtkFiniteElementDeformation vtkDeformVolumeFilter
  */

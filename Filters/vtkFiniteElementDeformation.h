@@ -18,8 +18,8 @@
  * its edge, which may be curved. A mesh may have cells of both types. "Force" acts on nodes as it
  * is given. A node that is made has no force of its own. It is fixed where both ends of its edge
  * are, and displaced by the mean of their displacements. It slides where its edge lies, within a
- * thousandth, in the plane in which one end slides, and the other end is fixed or slides in the
- * same plane. Where other nodes are to be fixed or to slide, as on curved surfaces, give
+ * thousandth, in a plane in which one end slides, and the other end is fixed or slides in the same
+ * plane. Where other nodes are to be fixed or to slide, as on curved surfaces, give
  * vtkQuadraticTetra cells with these arrays. For as many nodes as linear tetrahedra have, edges are
  * twice as long.
  *

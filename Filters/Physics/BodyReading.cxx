@@ -130,12 +130,18 @@ void ReadPointArrays(vtkUnstructuredGrid* grid, const BodySettings& settings, Bo
   mesh.Body.SlidingNormals = read(SlidingNormalName, 1.0);
   mesh.Body.SecondSlidingNormals = read(SecondSlidingNormalName, 1.0);
   mesh.PrescribedDisplacements = read(PrescribedDisplacementName, settings.UnitLength);
-  if (!mesh.PrescribedDisplacements.empty() && !fixed)
+  const auto need = [](bool isThere, const char* needed, const char* name, const char* advice)
   {
-    throw Error(std::string("The ") + MESH + " has the point array \"" +
-      PrescribedDisplacementName + "\", but none named \"" + FixedName +
-      "\", without which no node is displaced. Add it, not 0 where nodes have displacements.");
-  }
+    if (!isThere)
+    {
+      throw Error(std::string("The ") + MESH + " has the point array \"" + name +
+        "\", but none named \"" + needed + "\". " + advice);
+    }
+  };
+  need(fixed || mesh.PrescribedDisplacements.empty(), FixedName, PrescribedDisplacementName,
+    "Add it, not 0 where nodes are displaced.");
+  need(!mesh.Body.SlidingNormals.empty() || mesh.Body.SecondSlidingNormals.empty(),
+    SlidingNormalName, SecondSlidingNormalName, "Rename the array.");
 }
 
 // How many nodes there are of a kind, and the first of them.
@@ -186,8 +192,7 @@ void CheckForSprings(const BodyMesh& mesh)
   };
   displaced.ThrowIfAny(
     "are fixed and have a prescribed displacement", getAdvice(PrescribedDisplacementName));
-  sliding.ThrowIfAny("have a sliding normal",
-    getAdvice(mesh.Body.SlidingNormals.empty() ? SecondSlidingNormalName : SlidingNormalName));
+  sliding.ThrowIfAny("have a sliding normal", getAdvice(SlidingNormalName));
 }
 
 // Each mid-side node of the cells is in the middle of one edge, and no corner.

@@ -165,6 +165,9 @@ void TestWrongConditions()
     AddPointVectors(cube, "SlidingNormal", [](const glm::dvec3&) { return glm::dvec3(0, 0, 2); });
     VERIFY(Holds(TryMesh(cube),
       (isTenNode ? "25" : "9") + std::string(" nodes have contradictory conditions")));
+    cube = make();
+    AddPointVectors(cube, "SecondSlidingNormal", [](const glm::dvec3&) { return glm::dvec3(1.0); });
+    VERIFY(Holds(TryMesh(cube), "but none named \"SlidingNormal\""));
     for (const char* name : { "SlidingNormal", "SecondSlidingNormal", "PrescribedDisplacement" })
     {
       cube = make();
