@@ -156,7 +156,7 @@ void DrawSplit(vtkRenderWindow* window, Version version)
   const auto beam = MakeBlock({ { -22, 22, -7, 7, -2, 17 } });
   vtkNew<vtkLatticeTetrahedraSource> lattice;
   lattice->SetInputData(beam);
-  lattice->SetNumberOfNodes(25, 25, 25);
+  lattice->SetNumberOfNodes(13, 13, 13);
   lattice->SetMargin(0.5);
   lattice->Update();
   vtkNew<vtkUnstructuredGrid> mesh;

@@ -121,6 +121,7 @@ void DrawFiniteElements(vtkRenderWindow* window, Version version)
   warp->SetInputData(deformation);
   vtkNew<vtkDataSetSurfaceFilter> surface;
   surface->SetInputConnection(warp->GetOutputPort());
+  surface->SetNonlinearSubdivisionLevel(0); // straight edges between corners
   AddPolyData(renderer, surface->GetOutputPort(), glm::dvec3(0.6, 0.85, 1.0), true);
 }
 
