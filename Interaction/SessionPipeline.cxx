@@ -114,6 +114,7 @@ void SessionPipeline::SetInputs(vtkImageData* volume, vtkUnstructuredGrid* mesh)
     actions->clear();
   }
   this->MakeStill();
+  this->Model = Session::NONE;
   this->TakeRestMesh();
   this->IsStroke = false;
   this->Refused.clear();
@@ -124,7 +125,6 @@ void SessionPipeline::SetInputs(vtkImageData* volume, vtkUnstructuredGrid* mesh)
   this->CarveFilter->ClearToolPositions();
   this->CutFilter->Reset();
   this->CarveFilter->Reset();
-  this->Model = Session::NONE;
   this->Rebuild();
 }
 

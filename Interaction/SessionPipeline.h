@@ -161,6 +161,7 @@ private:
   vtkSmartPointer<vtkImageData> Volume;
   vtkSmartPointer<vtkUnstructuredGrid> Mesh; // that was given, or null
   vtkSmartPointer<vtkUnstructuredGrid> RestMesh;
+  bool IsMeshOfElements = false;              // whether the rest mesh is that of finite elements
   vtkSmartPointer<vtkUnstructuredGrid> Still; // the deformation that does not deform
   vtkNew<vtkCutVolume> CutFilter;
   vtkNew<vtkCarveVolume> CarveFilter;

@@ -5,6 +5,7 @@
 #include "vtkDeformVolumeSession.h"
 
 #include "vtkCarveVolume.h"
+#include "vtkCellType.h"
 #include "vtkChainMailDeformation.h"
 #include "vtkCutVolume.h"
 #include "vtkDeformVolumeFilter.h"
@@ -74,14 +75,12 @@ void SessionPipeline::MakeStill()
 
 void SessionPipeline::TakeRestMesh()
 {
-  if (this->Mesh)
-  {
-    this->RestMesh = this->Mesh;
-  }
-  else
-  {
-    this->RestMesh = MakeLattice(this->Volume, this->NumberOfNodes);
-  }
+  this->IsMeshOfElements = this->Model == Session::FINITE_ELEMENTS;
+  // Finite elements have nodes in the middle of edges besides.
+  this->RestMesh = this->Mesh
+    ? this->Mesh
+    : MakeLattice(this->Volume,
+        this->IsMeshOfElements ? std::max(2, (this->NumberOfNodes + 1) / 2) : this->NumberOfNodes);
   this->MassSpring->SetInputData(this->RestMesh);
   this->Elements->SetInputData(this->RestMesh);
   for (Actions* actions : { &this->Done, &this->Undone })
@@ -184,6 +183,10 @@ void SessionPipeline::SetLattice(int nodes)
 
 void SessionPipeline::Connect()
 {
+  if (this->IsMeshOfElements != (this->Model == Session::FINITE_ELEMENTS))
+  {
+    this->TakeRestMesh();
+  }
   vtkElasticDeformation* elastic = this->GetElastic();
   this->Resampler->SetOpenSplits(elastic != nullptr);
   // A body that is a mesh opens where the mesh is split. The mask of a cut would be a second gap
@@ -251,17 +254,47 @@ glm::dvec3 SessionPipeline::FindWayToNode(const glm::dvec3& rest)
   vtkDataArray* fixed = this->RestMesh->GetPointData()->GetArray("Fixed");
   glm::dvec3 nearest(0.0); // no way where no node can move
   double least = std::numeric_limits<double>::infinity();
-  for (vtkIdType id = 0; id < this->RestMesh->GetNumberOfPoints(); ++id)
+  const auto take = [&](const glm::dvec3& place)
   {
-    double place[3];
-    this->RestMesh->GetPoint(id, place);
-    const glm::dvec3 way = glm::dvec3(place[0], place[1], place[2]) - rest;
+    const glm::dvec3 way = place - rest;
     const double square = glm::dot(way, way);
-    // Points that no cell uses are no nodes.
-    if (square < least && !(fixed && fixed->GetComponent(id, 0) != 0.0) && this->IsUsed(id))
+    if (square < least)
     {
       least = square;
       nearest = way;
+    }
+  };
+  const auto getPlace = [&](vtkIdType id)
+  {
+    glm::dvec3 place;
+    this->RestMesh->GetPoint(id, &place.x);
+    return place;
+  };
+  const auto isFixed = [&](vtkIdType id) { return fixed && fixed->GetComponent(id, 0) != 0.0; };
+  for (vtkIdType id = 0; id < this->RestMesh->GetNumberOfPoints(); ++id)
+  {
+    // Points that no cell uses are no nodes.
+    if (!isFixed(id) && this->IsUsed(id))
+    {
+      take(getPlace(id));
+    }
+  }
+  // The nodes that finite elements have in the middle of edges.
+  vtkNew<vtkIdList> ids;
+  for (vtkIdType cell = 0; this->IsMeshOfElements && cell < this->RestMesh->GetNumberOfCells();
+       ++cell)
+  {
+    this->RestMesh->GetCellPoints(cell, ids);
+    const vtkIdType corners = this->RestMesh->GetCellType(cell) == VTK_TETRA ? 4 : 0;
+    for (vtkIdType i = 0; i < corners; ++i)
+    {
+      for (vtkIdType k = 0; k < i; ++k)
+      {
+        if (!(isFixed(ids->GetId(i)) && isFixed(ids->GetId(k))))
+        {
+          take(0.5 * (getPlace(ids->GetId(i)) + getPlace(ids->GetId(k))));
+        }
+      }
     }
   }
   return nearest;

@@ -167,8 +167,9 @@ public:
   /**
    * Settings, which are events but cannot be undone: how far round its place a handle holds voxels
    * or nodes, in world units (initially 0); sweeps of relaxation in a step of ChainMail, 0 to 10000
-   * (initially 5); the most nodes of the lattice on an axis, 2 to 100 (initially 7); bytes that may
-   * be kept of where ChainMail had voxels before actions (initially 1 GiB).
+   * (initially 5); the most nodes of the lattice on an axis, 2 to 100 (initially 7), with those in
+   * the middle of edges that finite elements have, but at least 3 there; bytes that may be kept of
+   * where ChainMail had voxels before actions (initially 1 GiB).
    */
   void ChangeHandleRadius(double radius);
   void ChangeRelaxationSweeps(int sweeps);

@@ -151,8 +151,8 @@ void RegisterSession(const EvaluationSize& size)
   for (const Case& one :
     { Case{ "at-rest", Session::NONE, 7, 0.0 }, Case{ "chain-mail", Session::CHAIN_MAIL, 7, 6.0 },
       Case{ "springs-343", Session::MASS_SPRING, 7, 0.0 },
-      Case{ "elements-125", Session::FINITE_ELEMENTS, 5, 0.0 },
-      Case{ "elements-729", Session::FINITE_ELEMENTS, 9, 0.0 } })
+      Case{ "elements-117", Session::FINITE_ELEMENTS, 5, 0.0 },
+      Case{ "elements-665", Session::FINITE_ELEMENTS, 9, 0.0 } })
   {
     std::vector<Contestant<LiveBody>> contestants;
     if (one.Model != Session::NONE)

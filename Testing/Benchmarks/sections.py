@@ -18,7 +18,7 @@ PAPER_CARVING = 8.0
 
 # Frames a second that SOFA's developers measured on a processor of a laptop, its rendering
 # included: springs of 4,000 nodes, and tetrahedral elements of 19,456.
-SOFA_RATES = {"springs-4096": 108.0, "elements-19456": 9.2}
+SOFA_RATES = {"springs-4096": 108.0, "elements-19307": 9.2}
 
 # 6.6 and 13.2 million voxels.
 INTERACTIVE_SIZES = tuple(PAPER_FRAMES)
@@ -429,8 +429,8 @@ PHYSICS = (
     ("springs-2431", "springs, a step"), ("springs-507584", "springs, a step"),
     ("springs-2197-60Hz", "springs, all steps of 1/60 s"),
     ("springs-2197-60Hz-half", "the same, SamplingFactor 2"),
-    ("elements-125", "finite elements"), ("elements-3200", "finite elements"),
-    ("elements-19456", "finite elements"))
+    ("elements-117", "finite elements"), ("elements-3193", "finite elements"),
+    ("elements-19307", "finite elements"))
 
 
 def physics(results, _pictures, _kind):
@@ -456,7 +456,7 @@ def physics(results, _pictures, _kind):
                      "device memory of the filter, MiB"], rows)
     rows = []
     for body, words in (("springs-2197", "springs in a cube"), ("springs-4096", "springs in a cube"),
-                        ("springs-512000", "springs in a cube"), ("elements-19456", "finite elements")):
+                        ("springs-512000", "springs in a cube"), ("elements-19307", "finite elements")):
         name = f"Physics/{body}/frame"
         seconds = results.median(name, "simulation")
         if seconds:
@@ -470,7 +470,7 @@ def physics(results, _pictures, _kind):
 
 SESSIONS = (
     ("at-rest", "at rest"), ("chain-mail", "ChainMail"), ("springs-343", "springs, 343 nodes"),
-    ("elements-125", "finite elements, 125 nodes"), ("elements-729", "finite elements, 729 nodes"))
+    ("elements-117", "finite elements, 117 nodes"), ("elements-665", "finite elements, 665 nodes"))
 
 
 def session(results, _pictures, _kind):

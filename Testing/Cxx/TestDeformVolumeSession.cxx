@@ -7,12 +7,15 @@
 
 #include "vtkCarveVolume.h"
 #include "vtkCutVolume.h"
+#include "vtkDeformGeometryFilter.h"
 #include "vtkDeformVolumeSession.h"
 
+#include <vtkCellType.h>
 #include <vtkPlaneSource.h>
 #include <vtkSmartPointer.h>
 #include <vtkTriangleFilter.h>
 #include <vtkUnsignedCharArray.h>
+#include <vtkXMLUnstructuredGridReader.h>
 #include <vtksys/SystemTools.hxx>
 
 #include <glm/geometric.hpp>
@@ -713,6 +716,75 @@ void TestFiles(vtkImageData* volume, const std::string& fileName)
   VERIFY(AreEqual(before, one.Step()));
 }
 
+// Finite elements have a lattice of half as many cells, with nodes in the middle of edges, and a
+// place is led back to rest as vtkDeformGeometryFilter leads it there.
+void TestTenNodeElements(vtkImageData* volume, const std::string& fileName)
+{
+  Tested one(volume);
+  one.Object->ChangeModel(Session::FINITE_ELEMENTS);
+  const int handle = one.Object->BeginGrab(10, 10, 17);
+  one.Object->MoveGrab(handle, 14, 11, 18);
+  one.Finish();
+  VERIFY(one.Object->SaveMesh(fileName));
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  reader->SetFileName(fileName.c_str());
+  reader->Update();
+  vtkNew<vtkUnstructuredGrid> mesh; // at rest
+  mesh->DeepCopy(reader->GetOutput());
+  vtkDataArray* vectors = mesh->GetPointData()->GetArray("Displacement");
+  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+  {
+    double by[3];
+    vectors->GetTuple(i, by);
+    const glm::dvec3 rest = GetPoint(mesh, i) - glm::dvec3(by[0], by[1], by[2]);
+    mesh->GetPoints()->SetPoint(i, &rest.x);
+  }
+  // A lattice of at most seven nodes on each axis, less those in the middle of its cubes.
+  vtkNew<vtkLatticeTetrahedraSource> lattice;
+  lattice->SetInputData(volume);
+  lattice->SetNumberOfNodes(4, 4, 4);
+  lattice->Update();
+  const int* dimensions = lattice->GetDimensions();
+  vtkIdType nodes = 1;
+  vtkIdType cubes = 1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    nodes *= 2 * dimensions[axis] - 1;
+    cubes *= dimensions[axis] - 1;
+  }
+  VERIFY_EQUAL(mesh->GetNumberOfPoints(), nodes - cubes);
+  VERIFY_EQUAL(mesh->GetCellType(0), static_cast<int>(VTK_QUADRATIC_TETRA));
+
+  vtkNew<vtkPoints> points;
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> place(2.0, 15.0);
+  for (int i = 0; i < 50; ++i)
+  {
+    points->InsertNextPoint(place(random), place(random), place(random));
+  }
+  vtkNew<vtkPolyData> geometry;
+  geometry->SetPoints(points);
+  vtkNew<vtkDeformGeometryFilter> deform;
+  deform->SetInputData(geometry);
+  deform->SetDeformationData(mesh);
+  deform->SetInputArrayToProcess(0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Displacement");
+  deform->Update();
+  double most = 0.0;
+  double worst = 0.0;
+  for (vtkIdType i = 0; i < 50; ++i)
+  {
+    const glm::dvec3 rest = GetPoint(geometry, i);
+    const glm::dvec3 now = GetPoint(deform->GetOutput(), i);
+    most = std::max(most, glm::distance(rest, now));
+    VERIFY(one.Object->Probe(now.x, now.y, now.z));
+    double found[3];
+    one.Object->GetProbedRestPosition(found);
+    worst = std::max(worst, glm::distance(rest, glm::dvec3(found[0], found[1], found[2])));
+  }
+  std::cout << "places that moved by up to " << most << " are led back within " << worst << "\n";
+  VERIFY(most > 1.0 && worst < 1e-5); // points and vectors are floats
+}
+
 // A file that version 0.1 has written, with events of all kinds.
 void TestOldFile(const std::string& data, const std::string& fileName)
 {
@@ -822,6 +894,7 @@ int TestDeformVolumeSession(int argc, char* argv[])
   TestPadding(volume);
   TestFiles(volume, fileName);
   TestOldFile(data, fileName);
+  TestTenNodeElements(volume, fileName + ".vtu");
   TestThread(volume, fileName);
   TestRandom(volume, events, static_cast<unsigned>(seed), fileName);
   return GetExitCode();
