@@ -21,10 +21,29 @@
 #include <vtkXMLUnstructuredGridWriter.h>
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 namespace
 {
+// In world units; 0: what the mesher takes. Finite elements have nodes in the middle of edges, so
+// that edges twice as long give as many nodes.
+double GetEdgeLength(const Options& options, vtkImageData* volume)
+{
+  if (options.EdgeLength != 0.0 || !options.HasMidSideNodes())
+  {
+    return options.EdgeLength;
+  }
+  constexpr double partOfDiagonal = 0.1; // that of the mesher: half of it
+  double square = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double length = (volume->GetDimensions()[axis] - 1) * volume->GetSpacing()[axis];
+    square += length * length;
+  }
+  return partOfDiagonal * std::sqrt(square);
+}
+
 vtkSmartPointer<vtkUnstructuredGrid> Mesh(
   const Options& options, vtkImageData* volume, Messages& messages, Deformation& deformation)
 {
@@ -51,7 +70,7 @@ vtkSmartPointer<vtkUnstructuredGrid> Mesh(
   }
   mesher->SetPieceMode(
     options.Pieces == "largest" ? vtkTetGenMesher::LARGEST_PIECE : vtkTetGenMesher::ALL_PIECES);
-  mesher->SetTargetEdgeLength(options.EdgeLength);
+  mesher->SetTargetEdgeLength(GetEdgeLength(options, volume));
   for (const Push& push : options.Pushes)
   {
     mesher->AddRefinementSphere(
@@ -61,8 +80,9 @@ vtkSmartPointer<vtkUnstructuredGrid> Mesh(
   {
     if (pull.Radius > 0.0)
     {
+      const double edgeLength = Push{ {}, {}, pull.Radius }.GetEdgeLength();
       mesher->AddRefinementSphere(pull.Point[0], pull.Point[1], pull.Point[2], pull.Radius,
-        Push{ {}, {}, pull.Radius }.GetEdgeLength());
+        options.HasMidSideNodes() ? 2.0 * edgeLength : edgeLength);
     }
   }
   mesher->SetRadiusEdgeRatio(options.RadiusEdgeRatio);

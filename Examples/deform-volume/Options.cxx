@@ -326,7 +326,8 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
   program
     .add_option("--edge-length", options.EdgeLength,
       "Length of the tetrahedra's edges, in world units; 0: a twentieth of the diagonal of the "
-      "volume. Within a --push, edges are at most a sixth of its radius")
+      "volume, and a tenth with --model fem, which has nodes in the middle of edges as well. "
+      "Within a --push, edges are at most a sixth of its radius")
     ->capture_default_str()
     ->check(CLI::NonNegativeNumber)
     ->type_name("NUMBER")

@@ -97,6 +97,8 @@ struct Options
   /// Whether --cut cuts the mesh of a model, where the volume opens, and not the volume.
   bool CutsMesh() const { return !this->Cuts.empty() && this->HasElasticModel(); }
   bool HasLattice() const { return this->Lattice[0] > 0; }
+  /// Whether the tetrahedra of the mesh get nodes in the middle of their edges.
+  bool HasMidSideNodes() const { return this->Model == "fem"; }
   /// Whether a model moves the nodes of a mesh.
   bool HasElasticModel() const { return this->Model == "fem" || this->Model == "mass-spring"; }
 };

@@ -33,12 +33,12 @@ AIR, SOFT, BONE = range(3)
 AIR_DENSITY = 100.0
 
 
-def make_mesh(volume):
-    """Cubes of 9 mm, each of five tetrahedra, as stiff as the voxels in them. Tetrahedra of air
-    alone are left out, and a speck of noise in a corner."""
+def make_mesh(volume, cells):
+    """Cubes, each of five tetrahedra, as stiff as the voxels in them; cells: along the width of the
+    head. Tetrahedra of air alone are left out, and a speck of noise in a corner."""
     lattice = deformvolume_vtk.vtkLatticeTetrahedraSource()
     lattice.SetInputConnection(volume)
-    lattice.SetNumberOfNodes(21, 25, 21)
+    lattice.SetNumberOfNodes(cells + 1, cells // 5 * 6 + 1, cells + 1)
     # Bone is as dark as the outermost voxels of the skin, but thicker: these get the value of a
     # neighbour.
     brighter = vtkImageContinuousDilate3D()
@@ -126,10 +126,14 @@ def make_renderer(volume, column):
 
 
 def find_largest_difference(first, second):
-    """How far the results of two models are apart, in mm, at the node where they are most."""
-    places = [vtk_to_numpy(body.GetOutput().GetPointData().GetArray("Displacement")).astype(float)
-              for body in (first, second)]
-    return numpy.linalg.norm(places[0] - places[1], axis=1).max()
+    """How far the results of two models are apart, in mm, at the node of both where they are most."""
+    found = []
+    for body in (first, second):
+        points = vtk_to_numpy(body.GetOutput().GetPoints().GetData())
+        vectors = vtk_to_numpy(body.GetOutput().GetPointData().GetArray("Displacement")).astype(float)
+        found.append(dict(zip(map(tuple, points.round(3)), vectors)))
+    common = found[0].keys() & found[1].keys()
+    return max(numpy.linalg.norm(found[0][place] - found[1][place]) for place in common)
 
 
 if len(sys.argv) not in (3, 4):
@@ -138,7 +142,9 @@ size = int(sys.argv[3]) if len(sys.argv) > 3 else 700
 
 reader = vtkNIFTIImageReader()
 reader.SetFileName(sys.argv[1])
-mesh = make_mesh(reader.GetOutputPort())
+# Cubes of 12 mm and of 9 mm: finite elements have nodes in the middle of edges as well.
+mesh = make_mesh(reader.GetOutputPort(), 15)
+fine_mesh = make_mesh(reader.GetOutputPort(), 20)
 elements = deformvolume_vtk.vtkFiniteElementDeformation()
 hold(elements, mesh)
 elements.SetModeToConverged()
@@ -147,7 +153,7 @@ move_hook(hook, 1.0)
 elements.SetHandlesConnection(hook.GetOutputPort())
 elements.Update()
 springs = deformvolume_vtk.vtkMassSpringDeformation()
-hold(springs, mesh)
+hold(springs, fine_mesh)
 slow_hook = deformvolume_vtk.vtkDeformationHandleSource()
 springs.SetHandlesConnection(slow_hook.GetOutputPort())
 for frame in range(1, FRAMES + 1):
