@@ -491,9 +491,10 @@ public:
    * have a place at rest in common name different nodes there, as after a cut. Tetrahedra of the
    * sampling mesh with vertices on both sides are left out then, a layer as thick as a cell;
    * otherwise they are stretched over the gap. Which sides there are is told by nodes with one rest
-   * position, so that a mesh of several parts opens between these, too. The deformation mesh should
-   * not be finer than the volume: a cell sees the split by the tetrahedra that its vertices lie in.
-   * MESH_RASTERIZATION leaves gaps by itself. Default: off.
+   * position, so that a mesh of several parts opens between these, too. The deformation mesh, or
+   * what its cells are split into, should not be finer than the volume: a cell sees the split by
+   * the tetrahedra that its vertices lie in. MESH_RASTERIZATION leaves gaps by itself. Default:
+   * off.
    */
   vtkSetMacro(OpenSplits, bool);
   vtkGetMacro(OpenSplits, bool);

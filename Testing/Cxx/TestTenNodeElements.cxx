@@ -4,6 +4,8 @@
 #include "ElasticTesting.h"
 #include "TenNodeCells.h"
 
+#include "vtkDeformGeometryFilter.h"
+
 #include <vtkCellArray.h>
 #include <vtkDoubleArray.h>
 #include <vtkIdTypeArray.h>
@@ -588,6 +590,44 @@ void TestHandleOnSliding()
   VERIFY(out < 1e-9);
 }
 
+// The filters behind it: while the body moves no mapping of the volume is made, and geometry
+// follows the nodes, those in the middle of edges as well.
+void TestFiltersBehind()
+{
+  Elements elements(MakeCube());
+  vtkSmartPointer<vtkImageData> volume = MakeImage({ { 0, 30, 0, 30, 0, 30 } }, glm::dvec3(1e-3));
+  AddScalars<short>(volume, "value", [](const glm::dvec3& p) { return 1e5 * p.x; });
+  vtkNew<vtkDeformVolumeFilter> deform;
+  deform->SetInputData(volume);
+  deform->SetDeformationConnection(elements.Object->GetOutputPort());
+  for (int step = 1; step <= 3; ++step)
+  {
+    elements.Object->SetGravity(0.0, -1.0 * step, 0.0);
+    deform->Update();
+    VERIFY_EQUAL(GetReported(deform, "Static mappings made"), vtkIdType{ 1 });
+  }
+  VERIFY_EQUAL(elements.Object->GetOutput()->GetNumberOfPoints(), vtkIdType{ NodesOfCube });
+  vtkNew<vtkPolyData> nodes;
+  nodes->SetPoints(elements.Object->GetOutput()->GetPoints());
+  vtkNew<vtkDeformGeometryFilter> geometry;
+  geometry->SetInputData(nodes);
+  geometry->SetDeformationConnection(elements.Object->GetOutputPort());
+  geometry->Update();
+  vtkDataArray* vectors = elements.Object->GetOutput()->GetPointData()->GetVectors();
+  double worst = 0.0;
+  double largest = 0.0;
+  for (vtkIdType i = 0; i < nodes->GetNumberOfPoints(); ++i)
+  {
+    glm::dvec3 vector;
+    vectors->GetTuple(i, &vector.x);
+    const glm::dvec3 moved = GetPoint(geometry->GetOutput(), i) - GetPoint(nodes, i);
+    worst = std::max(worst, glm::distance(moved, vector));
+    largest = std::max(largest, glm::length(vector));
+  }
+  std::cout << "geometry follows nodes within " << worst << " of " << largest << " m\n";
+  VERIFY(largest > 5e-4 && worst < 1e-9); // the rounding of floats
+}
+
 vtkSmartPointer<vtkPolyData> MakeSheet(double z)
 {
   auto sheet = vtkSmartPointer<vtkPolyData>::New();
@@ -702,6 +742,7 @@ int TestTenNodeElements(int, char*[])
   TestSliding();
   TestSlidingAlongLines();
   TestHandleOnSliding();
+  TestFiltersBehind();
   TestCut();
   return GetExitCode();
 }
