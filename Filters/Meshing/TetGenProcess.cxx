@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TetGenProcess.h"
 
+#include "ElasticBody.h"
+
 #include "vtkCellArray.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkUnstructuredGrid.h"
 #include "vtksys/Process.h"
 
+#include <glm/vec3.hpp>
+
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -222,15 +227,21 @@ vtkSmartPointer<vtkUnstructuredGrid> ReadMesh(const std::filesystem::path& folde
       [&](std::istream& line)
       {
         vtkIdType ids[4];
-        for (vtkIdType& id : ids)
+        std::array<glm::dvec3, 4> corners{};
+        for (std::size_t i = 0; i < corners.size(); ++i)
         {
-          line >> id;
-          if (id < 0 || id >= points->GetNumberOfPoints())
+          line >> ids[i];
+          if (ids[i] < 0 || ids[i] >= points->GetNumberOfPoints())
           {
             line.setstate(std::ios::failbit);
           }
+          points->GetPoint(ids[i], &corners[i].x);
         }
-        cells->InsertNextCell(4, ids);
+        // TetGen makes flat ones where points of the surface lie in a plane, but for rounding.
+        if (!IsFlat(corners))
+        {
+          cells->InsertNextCell(4, ids);
+        }
       });
   }
   catch (const std::ios::failure&)

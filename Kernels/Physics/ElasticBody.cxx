@@ -18,9 +18,6 @@ namespace deformvolume
 namespace
 {
 
-// A tetrahedron is flat where its height is less than this part of its longest edge.
-constexpr double LeastHeight = 1e-6;
-
 std::array<glm::dvec3, 3> GetEdges(const ElasticBody& body, const Tetrahedron& tetrahedron)
 {
   const auto point = [&](std::size_t i) -> const glm::dvec3&
@@ -89,19 +86,14 @@ void CheckShapes(Watch& watch, const ElasticBody& body)
   ForItems(watch, body.Tetrahedra.size(),
     [&](std::size_t t)
     {
-      const std::array<glm::dvec3, 3> edges = GetEdges(body, body.Tetrahedra[t]);
-      const double determinant = GetDeterminant(edges);
-      double longest = 0.0;
-      for (const glm::dvec3& edge : { edges[0], edges[1], edges[2], edges[1] - edges[0],
-             edges[2] - edges[0], edges[2] - edges[1] })
-      {
-        longest = std::max(longest, glm::length(edge));
-      }
-      if (!(std::abs(determinant) > LeastHeight * longest * longest * longest))
+      std::array<glm::dvec3, 4> points{};
+      std::transform(body.Tetrahedra[t].begin(), body.Tetrahedra[t].end(), points.begin(),
+        [&](std::int32_t node) { return body.Points[static_cast<std::size_t>(node)]; });
+      if (IsFlat(points))
       {
         flat.Add(t);
       }
-      else if (determinant < 0.0)
+      else if (GetDeterminant(GetEdges(body, body.Tetrahedra[t])) < 0.0)
       {
         inverted.Add(t);
       }
@@ -212,6 +204,22 @@ void CheckSliding(const ElasticBody& body)
 }
 
 } // namespace
+
+bool IsFlat(const std::array<glm::dvec3, 4>& points)
+{
+  constexpr double leastHeight = 1e-6;
+  double longest = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    for (std::size_t j = 0; j < i; ++j)
+    {
+      longest = std::max(longest, glm::distance(points[i], points[j]));
+    }
+  }
+  const double determinant =
+    GetDeterminant({ points[1] - points[0], points[2] - points[0], points[3] - points[0] });
+  return !(std::abs(determinant) > leastHeight * longest * longest * longest);
+}
 
 void CheckBody(const ElasticBody& body, Watch* watch)
 {

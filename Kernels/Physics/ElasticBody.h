@@ -109,6 +109,10 @@ struct BodyLoads
   std::vector<glm::dvec3> FixedDisplacements;
 };
 
+/// Whether a tetrahedron has hardly any volume: its height is less than a millionth of its longest
+/// edge.
+DEFORMVOLUME_EXPORT bool IsFlat(const std::array<glm::dvec3, 4>& points);
+
 /// Throws an Error where a body cannot be simulated: no tetrahedra, nodes that are not there,
 /// coordinates that are not finite, tetrahedra that are flat or turned inside out, mid-side nodes
 /// so far from the middle of their edge that the tetrahedron overlaps itself, a material out of its

@@ -188,6 +188,14 @@ void TestMisuseOfTheProgram(const std::filesystem::path& folder)
     "d=$(dirname $2); printf '1 3 0 0\\n0 0 0 0\\n' > $d/surface.1.node; "
     "printf '1 4 0\\n0 0 1 2 3\\n' > $d/surface.1.ele"));
   check.Fails("result cannot be read");
+  // TetGen makes flat tetrahedra where points of a surface lie in a plane but for rounding: without
+  // a volume they are of no use, and finite elements refuse them.
+  mesher->SetTetGenExecutable(WriteScript(folder, "flat",
+    "d=$(dirname $2); printf '5 3 0 0\\n0 0 0 0\\n1 1 0 0\\n2 0 1 0\\n3 1 1 1e-15\\n4 0 0 1\\n' > "
+    "$d/surface.1.node; printf '2 4 0\\n0 0 1 2 3\\n1 0 1 2 4\\n' > $d/surface.1.ele"));
+  check.Succeeds();
+  VERIFY(mesher->GetOutput()->GetNumberOfCells() == 1);
+  VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume, 1.0 / 6.0, 1e-12);
 
   const std::string slow = WriteScript(folder, "slow", "sleep 100; exit 0");
   mesher->SetTetGenExecutable(slow);
