@@ -207,7 +207,7 @@ def check_values(cls, proxy):
                 numbers = set(range(low, high + 1)) - REMOVED_VALUES.get(attribute, set())
                 check(set(entries) == numbers, f"{label}: entries {entries}")
                 for number, text in entries.items():
-                    setter = f"Set{attribute}To{text.replace(' ', '')}"
+                    setter = f"Set{attribute}To{re.sub('[ -]', '', text)}"
                     setter = setter if hasattr(instance, setter) else setter + attribute
                     if not hasattr(instance, setter):
                         check(False, f"{label}: no {setter}")
