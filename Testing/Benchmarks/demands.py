@@ -139,7 +139,7 @@ DEMANDS = [
            lambda r: r.milliseconds("Physics/elements-19307/frame", "simulation"), "ms"),
     Demand("a move of the mouse in a session, ChainMail moves 50,000 of 7.1 million voxels", 100.0,
            lambda r: r.median("Session/chain-mail/drag"), "ms"),
-    Demand("a move of the mouse in a session, finite elements of 125 nodes", 100.0,
+    Demand("a move of the mouse in a session, finite elements of 117 nodes", 100.0,
            lambda r: r.median("Session/elements-117/drag"), "ms"),
     Demand("a move of the mouse in a session, finite elements of 665 nodes", 100.0,
            lambda r: r.median("Session/elements-665/drag"), "ms"),
