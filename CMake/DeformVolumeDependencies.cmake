@@ -18,11 +18,22 @@ find_program(DEFORMVOLUME_TETGEN_EXECUTABLE tetgen
 
 # The system's OpenCL loader is asked for before those that GPU toolkits put elsewhere: theirs may
 # be older and know fewer vendors.
-find_library(OpenCL_LIBRARY OpenCL
-  PATHS "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}" /usr/lib64 /usr/lib
-  NO_DEFAULT_PATH)
-find_path(OpenCL_INCLUDE_DIR CL/cl.h PATHS /usr/include NO_DEFAULT_PATH)
-find_package(OpenCL 1.2 REQUIRED)
+if (DEFORMVOLUME_USE_OPENCL_LOADER)
+  find_library(OpenCL_LIBRARY OpenCL
+    PATHS "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}" /usr/lib64 /usr/lib
+    NO_DEFAULT_PATH)
+  find_path(OpenCL_INCLUDE_DIR CL/cl.h PATHS /usr/include NO_DEFAULT_PATH)
+  find_package(OpenCL 1.2 REQUIRED)
+  set(deformvolume_opencl OpenCL::OpenCL)
+else ()
+  # The engine loads the drivers itself, and needs headers only.
+  find_path(OpenCL_INCLUDE_DIR CL/cl_icd.h REQUIRED)
+  mark_as_advanced(OpenCL_INCLUDE_DIR)
+  add_library(DeformVolumeOpenCLHeaders INTERFACE)
+  target_include_directories(DeformVolumeOpenCLHeaders SYSTEM INTERFACE "${OpenCL_INCLUDE_DIR}")
+  target_link_libraries(DeformVolumeOpenCLHeaders INTERFACE ${CMAKE_DL_LIBS})
+  set(deformvolume_opencl $<BUILD_INTERFACE:DeformVolumeOpenCLHeaders>)
+endif ()
 find_path(OpenCL_CXX_INCLUDE_DIR CL/opencl.hpp HINTS "${OpenCL_INCLUDE_DIR}")
 mark_as_advanced(OpenCL_CXX_INCLUDE_DIR)
 if (NOT OpenCL_CXX_INCLUDE_DIR)

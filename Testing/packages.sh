@@ -5,6 +5,7 @@
 #
 # Usage: packages.sh [--upgrade] SET...
 #   --upgrade first brings the sets and all that they depend on up to date, as users have them
+#   engine    to build the engine, which needs no VTK
 #   library   to build the library and its Python package against VTK
 #   example   to build and run the programs in Examples
 #   test      to build and run the tests
@@ -19,6 +20,8 @@
 set -euo pipefail
 
 declare -A packages=(
+  [engine]="g++ cmake ninja-build ccache libglm-dev libeigen3-dev
+    opencl-headers opencl-clhpp-headers ocl-icd-opencl-dev pocl-opencl-icd"
   [library]="g++ cmake ninja-build ccache libvtk9-dev python3-vtk9 libglm-dev libeigen3-dev
     opencl-headers opencl-clhpp-headers ocl-icd-opencl-dev pocl-opencl-icd tetgen"
   [example]="libcli11-dev libinsighttoolkit5-dev mricron-data xvfb xauth"

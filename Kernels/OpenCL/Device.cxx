@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Device.h"
 
+#include "AddedDrivers.h"
 #include "DeviceThreads.h"
 #include "OpenCLContext.h"
 #include "Processors.h"
@@ -16,6 +17,22 @@ std::vector<std::string> GetDeviceNames()
     names.push_back(device.Name);
   }
   return names;
+}
+
+void AddDriver(const std::string& path)
+{
+  AddedDrivers::Get().Add(path);
+}
+
+std::vector<DeviceSummary> GetDevices()
+{
+  std::vector<DeviceSummary> devices;
+  for (const OpenCLDevice& device : FindDevices())
+  {
+    devices.push_back({ device.Name, device.IsProcessor, IsEmulated(device.Description),
+      device.Description.HasDouble });
+  }
+  return devices;
 }
 
 std::string ResolveDevice(const std::string& request)

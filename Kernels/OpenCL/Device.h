@@ -22,6 +22,25 @@ namespace deformvolume
 /// Empty where there is no OpenCL platform; never throws for that.
 DEFORMVOLUME_EXPORT std::vector<std::string> GetDeviceNames();
 
+/// Adds an OpenCL driver that the system does not list. path: the absolute path of its library,
+/// which is loaded at once and stays loaded; the same path again does nothing. Devices of drivers
+/// that were added come before equal ones of the system. Throws Error where the path is not
+/// absolute, where the library cannot be loaded, and where it is no OpenCL driver.
+DEFORMVOLUME_EXPORT void AddDriver(const std::string& path);
+
+/// What a driver says of a device.
+struct DeviceSummary
+{
+  std::string Name; // as GetDeviceNames() has it
+  bool IsProcessor = false;
+  /// By a renderer in software, or by an interpreter: such devices are slow.
+  bool IsEmulated = false;
+  bool DoublePrecision = false;
+};
+
+/// The devices of GetDeviceNames(), in the same order.
+DEFORMVOLUME_EXPORT std::vector<DeviceSummary> GetDevices();
+
 /// The name of the device that a request resolves to, with the rules of vtkDeformVolumeFilter::
 /// SetDevice: "" is the value of the environment variable DEFORMVOLUME_DEVICE where that is set
 /// and otherwise the best device; "cpu" and "gpu" are the best device of that kind; everything

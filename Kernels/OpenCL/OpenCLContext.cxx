@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "OpenCLContext.h"
 
+#include "AddedDrivers.h"
 #include "CompilationWatch.h"
 #include "DeviceRank.h"
 #include "DeviceThreads.h"
@@ -10,7 +11,9 @@
 #include "StagedCopies.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdlib>
+#include <iterator>
 
 namespace deformvolume
 {
@@ -67,20 +70,41 @@ double GetSeconds(const cl::Event& event)
       event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
 }
 
+/// Those of drivers that were added, and then those of the system. A driver that is both is there
+/// once: drivers hand out one pointer for a platform.
+std::vector<cl::Platform> ListPlatforms()
+{
+  std::vector<cl::Platform> system;
+  try
+  {
+    cl::Platform::get(&system);
+  }
+  catch (const cl::Error&)
+  {
+    system.clear(); // the loader answers with an error where there is no platform
+  }
+  std::vector<cl::Platform> platforms;
+  for (cl_platform_id platform : AddedDrivers::Get().GetPlatforms())
+  {
+    platforms.emplace_back(platform);
+  }
+  const auto added = static_cast<std::ptrdiff_t>(platforms.size());
+  std::copy_if(system.begin(), system.end(), std::back_inserter(platforms),
+    [&](const cl::Platform& platform)
+    {
+      const auto end = platforms.begin() + added;
+      return std::none_of(
+        platforms.begin(), end, [&](const cl::Platform& other) { return other() == platform(); });
+    });
+  return platforms;
+}
+
 // Asks all drivers.
 std::vector<OpenCLDevice> ListDevices()
 {
   const FloatingPointTrapGuard guard;
   std::vector<OpenCLDevice> found;
-  std::vector<cl::Platform> platforms;
-  try
-  {
-    cl::Platform::get(&platforms);
-  }
-  catch (const cl::Error&)
-  {
-    return found; // the loader answers with an error where there is no platform
-  }
+  const std::vector<cl::Platform> platforms = ListPlatforms();
   for (const cl::Platform& platform : platforms)
   {
     std::vector<cl::Device> devices;
@@ -154,12 +178,15 @@ std::vector<OpenCLDevice> FindDevices()
   // the list to the system in the end (destructors may call drivers that are gone).
   static std::mutex mutex;
   static auto* const devices = new std::vector<OpenCLDevice>;
+  static std::size_t listed = 0; // how many drivers had been added
   const std::lock_guard<std::mutex> lock(mutex);
-  if (devices->empty())
+  const std::size_t added = AddedDrivers::Get().GetCount();
+  if (devices->empty() || added != listed)
   {
     PrepareKernelCache();
     LimitDeviceThreads();
     *devices = ListDevices();
+    listed = added;
   }
   return *devices;
 }
@@ -180,7 +207,8 @@ OpenCLDevice FindDevice(const std::string& request)
     CheckKernelCache(); // the likelier reason, where there is one
     throw Error(
       "There is no OpenCL device. Install an OpenCL driver (on Debian the package "
-      "pocl-opencl-icd runs on every processor), and check OCL_ICD_VENDORS if it is set.");
+      "pocl-opencl-icd runs on every processor; in Python \"pip install pocl-binary-distribution\" "
+      "does, on Linux), and check OCL_ICD_VENDORS if it is set.");
   }
   const std::string wanted = ToLower(words);
   for (const OpenCLDevice& device : devices)

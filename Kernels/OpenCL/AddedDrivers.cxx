@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "AddedDrivers.h"
+
+#include "DeviceThreads.h"
+#include "Error.h"
+#include "KernelCache.h"
+
+#include <algorithm>
+#include <filesystem>
+
+namespace deformvolume
+{
+
+AddedDrivers& AddedDrivers::Get()
+{
+  static auto* const drivers = new AddedDrivers; // lives as long as the process
+  return *drivers;
+}
+
+void AddedDrivers::Add(const std::string& path)
+{
+  if (path.empty() || path[0] != '/')
+  {
+    throw Error("The path of an OpenCL driver has to be absolute, and \"" + path + "\" is not.");
+  }
+  std::error_code error;
+  const std::string library = std::filesystem::canonical(path, error).string();
+  if (error)
+  {
+    throw Error("The OpenCL driver \"" + path + "\" cannot be loaded: " + error.message() + ".");
+  }
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  if (std::find(this->Libraries.begin(), this->Libraries.end(), library) != this->Libraries.end())
+  {
+    return;
+  }
+  // Drivers read these when they start.
+  PrepareKernelCache();
+  LimitDeviceThreads();
+  std::string problem;
+  const std::vector<cl_platform_id> platforms = LoadPlatforms(library, problem);
+  if (platforms.empty())
+  {
+    throw Error("\"" + path + "\" is no OpenCL driver that can be used: " + problem + ".");
+  }
+  this->Libraries.push_back(library);
+  this->Platforms.insert(this->Platforms.end(), platforms.begin(), platforms.end());
+}
+
+std::vector<cl_platform_id> AddedDrivers::GetPlatforms()
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  return this->Platforms;
+}
+
+std::size_t AddedDrivers::GetCount()
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  return this->Libraries.size();
+}
+
+bool AddedDrivers::Has(cl_platform_id platform)
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  return std::find(this->Platforms.begin(), this->Platforms.end(), platform) !=
+    this->Platforms.end();
+}
+
+} // namespace deformvolume
