@@ -3,6 +3,7 @@
 #include "vtkCarveVolumeInternals.h"
 
 #include "Error.h"
+#include "PipelineGeometry.h"
 #include "SurfaceInterior.h"
 #include "WorldTool.h"
 

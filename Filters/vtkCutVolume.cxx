@@ -3,6 +3,7 @@
 
 #include "vtkVolumeEditAlgorithmInternals.h"
 
+#include "PipelineGeometry.h"
 #include "SheetCut.h"
 #include "SheetReading.h"
 

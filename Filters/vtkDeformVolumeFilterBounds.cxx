@@ -6,6 +6,7 @@
 #include "InputUpdate.h"
 #include "LookupBounds.h"
 #include "OutputExtent.h"
+#include "PipelineGeometry.h"
 #include "VectorBounds.h"
 #include "WorldBoxes.h"
 
@@ -84,7 +85,7 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ComputeBounds(
   }
   const deformvolume::Deformation& mesh = this->State->Deformation;
   const deformvolume::MappedVolume mapped{ volume, volume.PointExtent, outside };
-  if (mapped.Outside.AreKept() && !this->State->Mapping.IsCurrent(mesh, mapped))
+  if (mapped.Outside.AreKept() && !this->State->Mapping.IsCurrent(mesh.GetMeshAtRest(), mapped))
   {
     this->MakeLinks(voxelGrid, mapped);
   }
@@ -101,7 +102,7 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ComputeBounds(
   if (bounds.IsEmpty())
   {
     // Tells what is wrong.
-    this->State->Mapping.Update(this->State->Deformation, mapped, {});
+    this->State->Mapping.Update(mesh.GetMeshAtRest(), mapped, {});
     throw Error("The deformed volume has no bounds. Check the deformation mesh.");
   }
   return bounds;
@@ -118,9 +119,9 @@ void vtkDeformVolumeFilter::vtkInternals::MakeLinks(
     [&]
     {
       this->State->Device.CheckMemory(voxelGrid, {}, { { 0, -1, 0, -1, 0, -1 } }, 0, mesh,
-        this->State->Mapping.GetRunBytes(mesh, mapped));
+        this->State->Mapping.GetRunBytes(mesh.GetMeshAtRest(), mapped));
     });
-  this->State->Mapping.Update(mesh, mapped, {});
+  this->State->Mapping.Update(mesh.GetMeshAtRest(), mapped, {});
 }
 
 //------------------------------------------------------------------------------

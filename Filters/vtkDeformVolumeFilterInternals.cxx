@@ -9,6 +9,7 @@
 #include "MaskArray.h"
 #include "OutputExtent.h"
 #include "OutsideMode.h"
+#include "PipelineGeometry.h"
 #include "ResamplerChoice.h"
 #include "VectorChoice.h"
 #include "VolumeArrays.h"
@@ -532,7 +533,7 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfFading(
     return;
   }
   const deformvolume::FadedLinks& links = this->State->Mapping.GetMapping().Faded;
-  if (!links.AreThere() || !this->State->Mapping.IsCurrent(mesh, mapped))
+  if (!links.AreThere() || !this->State->Mapping.IsCurrent(mesh.GetMeshAtRest(), mapped))
   {
     return;
   }

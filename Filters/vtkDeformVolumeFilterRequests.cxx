@@ -7,6 +7,7 @@
 #include "InputUpdate.h"
 #include "MaskArray.h"
 #include "OutputExtent.h"
+#include "PipelineGeometry.h"
 #include "VolumeArrays.h"
 #include "WorldBoxes.h"
 
@@ -325,12 +326,13 @@ int vtkDeformVolumeFilter::RequestData(
   const std::function<void(const Extent&, deformvolume::Resampling)> checkMemory =
     [&](const Extent& extent, deformvolume::Resampling method)
   {
-    const bool isMapped = method != deformvolume::Resampling::MeshRasterization;
+    const bool isMapped =
+      !deformation.IsField() && method != deformvolume::Resampling::MeshRasterization;
     this->Internals->CheckWithRoom(
       [&]
       {
         device.CheckMemory(voxelGrid, described, extent, heldBytes, deformation,
-          isMapped ? state.Mapping.GetRunBytes(deformation, mapped) : 0, method);
+          isMapped ? state.Mapping.GetRunBytes(deformation.GetMeshAtRest(), mapped) : 0, method);
       });
   };
   std::string form = "field";
@@ -355,7 +357,8 @@ int vtkDeformVolumeFilter::RequestData(
         });
       if (!deformation.IsField() && request.Method != deformvolume::Resampling::MeshRasterization)
       {
-        form = state.Mapping.GetRunBytes(deformation, mapped) > 0 ? "runs" : "links";
+        form =
+          state.Mapping.GetRunBytes(deformation.GetMeshAtRest(), mapped) > 0 ? "runs" : "links";
       }
       form += deformvolume::HasCut(worked) ? " cut" : "";
     });
@@ -377,7 +380,7 @@ int vtkDeformVolumeFilter::RequestData(
     {
       if (!deformation.IsField())
       {
-        deformvolume::CheckBoxes(deformation, geometry);
+        deformvolume::CheckBoxes(deformation.GetMeshAtRest(), geometry);
       }
       device.SetRestMesh(deformation, mapped.Outside);
     }

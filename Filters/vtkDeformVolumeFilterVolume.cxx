@@ -3,6 +3,7 @@
 #include "vtkDeformVolumeFilterInternals.h"
 
 #include "InputUpdate.h"
+#include "PipelineGeometry.h"
 
 #include "vtkAbstractArray.h"
 #include "vtkCellData.h"

@@ -9,6 +9,7 @@
 #include "MaterialTable.h"
 #include "PieceRequest.h"
 #include "PipelineExecution.h"
+#include "PipelineGeometry.h"
 #include "ProgressReport.h"
 #include "VTKThreads.h"
 #include "VolumeMaterials.h"

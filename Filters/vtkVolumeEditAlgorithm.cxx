@@ -4,10 +4,10 @@
 #include "vtkVolumeEditAlgorithmInternals.h"
 
 #include "FiveTetrahedra.h"
-#include "ImageGeometry.h"
 #include "MaskArray.h"
 #include "OutsideMode.h"
 #include "PieceRequest.h"
+#include "PipelineGeometry.h"
 #include "ProgressReport.h"
 #include "VTKThreads.h"
 #include "VectorChoice.h"

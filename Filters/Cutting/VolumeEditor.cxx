@@ -4,6 +4,7 @@
 #include "DeformedPositions.h"
 #include "Error.h"
 #include "MaskArray.h"
+#include "PipelineGeometry.h"
 #include "WrittenTuples.h"
 
 #include "vtkArrayChanges.h"
@@ -173,7 +174,7 @@ const VertexPositions& VolumeEditor::GetPositions(
   mapped.Part = outside.AreDiscarded() ? mapped.Part : this->Whole;
   if (!isField)
   {
-    this->Mapping.Update(this->Deformation, mapped, {});
+    this->Mapping.Update(this->Deformation.GetMeshAtRest(), mapped, {});
   }
   const PositionsKey mapping{ isField ? 0 : this->Mapping.GetVersion(), isField, outside };
   const std::uint64_t vectors = this->Deformation.GetVectorsVersion();

@@ -3,6 +3,7 @@
 
 #include "ExtentRanges.h"
 #include "HandlePlaces.h"
+#include "PipelineGeometry.h"
 #include "ShapedArray.h"
 #include "VolumeArrays.h"
 

@@ -282,11 +282,11 @@ void DeviceSession::SetMesh(const Deformation& deformation, MappingCache& mappin
   const RestMesh& mesh = deformation.GetRestMesh();
   const std::uint64_t connectivity = mesh.GetConnectivityVersion();
   const bool isCurrent = this->HasMesh && this->SentMapping == mapping.GetVersion() &&
-    mapping.IsCurrent(deformation, volume) && this->CanFollow(mesh);
+    mapping.IsCurrent(deformation.GetMeshAtRest(), volume) && this->CanFollow(mesh);
   const bool hasSplit = isCurrent && this->SentConnectivity != connectivity;
   if (!isCurrent)
   {
-    mapping.Update(deformation, volume, progress);
+    mapping.Update(deformation.GetMeshAtRest(), volume, progress);
     Transfer transfer(this);
     this->SendMesh(mesh, mapping.GetMapping(), mapping.IsByRuns());
     transfer.End();

@@ -2,13 +2,7 @@
 #ifndef DeformVolumeOutsideMode_h
 #define DeformVolumeOutsideMode_h
 
-#include "DisplacementField.h"
-#include "IndexBounds.h"
-#include "OutsideVoxels.h"
-
-#include <glm/vec3.hpp>
-
-#include <string>
+#include "Fading.h"
 
 namespace deformvolume
 {
@@ -16,16 +10,6 @@ namespace deformvolume
 /// What an OutsideMode of the filters and a FadeDistance ask for. Throws an Error where the
 /// distance counts and is none.
 OutsideVoxels MakeOutsideVoxels(int outsideMode, double fadeDistance);
-
-/// Whether space folds where the displacement of a border fades within FadeDistance: a warning, or
-/// empty. border: what moves, in words, with the verb. longest: by how much.
-std::string FindFoldsOfFading(const std::string& border, double longest, double fadeDistance);
-
-/// What is wrong with how a displacement fades outside a field: where the border of the field moves
-/// by too much for FadeDistance, and any of a box is outside; else empty. box: in the indices that
-/// the field takes. spacing: of the output.
-std::string FindFaultOfFading(const DisplacementField& field, const IndexBounds& box,
-  const glm::dvec3& spacing, double fadeDistance);
 
 } // namespace deformvolume
 

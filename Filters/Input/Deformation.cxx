@@ -21,21 +21,7 @@ namespace deformvolume
 
 glm::dmat3 GetToDisplacement(const DeformationSource& source, double factor)
 {
-  const glm::dmat3 toVolume(source.Volume.GetWorldToIndex());
-  const OutputMap& toOutput = source.ToOutput;
-  const glm::dvec3 scale(toOutput.Get(0, 0), toOutput.Get(1, 1), toOutput.Get(2, 2));
-  const OutputTransform map(toOutput);
-  glm::dmat3 transform;
-  for (int column = 0; column < 3; ++column)
-  {
-    transform[column] = toOutput.IsDiagonal() ? toVolume[column] * (scale * factor)
-                                              : map.GetMatrix() * toVolume[column] * factor;
-    for (int row = 0; row < 3; ++row)
-    {
-      transform[column][row] = RoundFactor(transform[column][row]);
-    }
-  }
-  return transform;
+  return GetToDisplacement(source.Volume, source.ToOutput, factor);
 }
 
 void CheckSource(const DeformationSource& source)
@@ -145,14 +131,6 @@ void Deformation::ReadMesh(const DeformationSource& source)
     },
     ofPoints ? 1.0 : source.DisplacementScale, source, &derived);
   this->RememberVectors(stamp, source, false);
-}
-
-void Deformation::ThrowTooFar()
-{
-  throw Error(
-    "The deformation moves the volume by more than 16,383 output voxels. Check the scale of the "
-    "displacements, the spacing of the output or of its reference image, and that displacements "
-    "and volume are in the same world units.");
 }
 
 void Deformation::CheckFaults(const MeshParts& shape, const DeformationSource& source) const

@@ -8,6 +8,7 @@
 #include "FieldScan.h"
 #include "ImageGeometry.h"
 #include "IndexBounds.h"
+#include "MeshAtRest.h"
 #include "OutsideVoxels.h"
 #include "RestMesh.h"
 #include "Tetrahedron.h"
@@ -67,8 +68,7 @@ struct DeformationSource
 /// Throws an Error where what is connected does not go together.
 void CheckSource(const DeformationSource& source);
 
-/// Takes vectors, times a factor, to displacements in output voxels. Its elements are rounded
-/// (RoundFactor), so that vectors become the same displacements wherever that is done.
+/// See VectorConversion.h.
 glm::dmat3 GetToDisplacement(const DeformationSource& source, double factor);
 
 /// The deformation in the units of the kernels. Keeps what it has read, and reads again only what
@@ -89,6 +89,10 @@ public:
   const std::vector<Tetrahedron>& GetTetrahedra() const { return this->Mesh.GetTetrahedra(); }
   const std::vector<glm::dvec3>& GetRestPoints() const { return this->Mesh.GetPoints(); }
   const float* GetNodeDisplacements() const { return this->Vectors.data(); }
+  MeshAtRest GetMeshAtRest() const
+  {
+    return { this->GetTetrahedra(), this->GetRestPoints(), this, this->Mesh.GetShapeVersion() };
+  }
   ///@}
 
   ///@{
@@ -165,7 +169,6 @@ private:
   void UpdateDerived(
     const DerivedNodes& derived, std::size_t count, std::vector<std::atomic<bool>>& changed);
 
-  [[noreturn]] static void ThrowTooFar();
   /// Throws an Error where tetrahedra use a vector that cannot be used.
   void CheckFaults(const MeshParts& shape, const DeformationSource& source) const;
   /// There are so many vectors now, in so many blocks.

@@ -3,10 +3,13 @@
 #include "Deformation.h"
 
 #include "CoarseVolume.h"
+#include "FieldGeometry.h"
 #include "FieldReading.h"
 #include "FieldScan.h"
 #include "ParallelFor.h"
+#include "PipelineGeometry.h"
 #include "VectorArray.h"
+#include "VectorConversion.h"
 #include "WrittenTuples.h"
 
 #include "vtkDataArray.h"
@@ -29,54 +32,6 @@ namespace
 // then only what changed is made anew.
 constexpr vtkIdType LeastPointsInPlace = vtkIdType{ 1 } << 18;
 
-// Products of matrices and their inverses miss the simple numbers that are meant, and then the
-// last row of voxels is outside a field of the same extent. The grain is far below a voxel.
-double DropRoundingError(double value)
-{
-  constexpr double grain = 4294967296.0;
-  return std::round(value * grain) / grain;
-}
-
-// Makes what takes indices of the volume what takes those of the output.
-glm::dmat4 FromOutput(const glm::dmat4& fromVolume, const OutputMap& toOutput)
-{
-  const OutputTransform transform(toOutput);
-  glm::dmat4 fromOutput = fromVolume;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    if (toOutput.IsDiagonal())
-    {
-      fromOutput[axis] /= toOutput.Get(axis, axis);
-    }
-    else
-    {
-      fromOutput[axis] = fromVolume * glm::dvec4(transform.GetInverse()[axis], 0.0);
-    }
-  }
-  fromOutput[3] -= fromOutput * glm::dvec4(transform.GetShift(), 0.0);
-  return fromOutput;
-}
-
-// Where all voxels are points of a field and there are others between them, how many points they
-// are apart, the same on each axis; else 1. indexToField: see DisplacementField.
-int GetStep(const Extent& voxels, const std::array<double, 12>& indexToField,
-  const std::array<int, 3>& dimensions)
-{
-  const double step = indexToField[0];
-  bool found = step > 1.0 && step == std::floor(step) && step < dimensions[0];
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const double* row = &indexToField[4 * axis];
-    for (int k = 0; k < 3; ++k)
-    {
-      found = found && row[k] == (axis == k ? step : 0.0);
-    }
-    found = found && row[3] == std::floor(row[3]) && step * voxels[2 * axis] + row[3] >= 0.0 &&
-      step * voxels[2 * axis + 1] + row[3] < dimensions[axis];
-  }
-  return found ? static_cast<int>(step) : 1;
-}
-
 } // namespace
 
 DisplacementField Deformation::GetField(const OutsideVoxels& outside) const
@@ -88,17 +43,7 @@ DisplacementField Deformation::GetField(const OutsideVoxels& outside) const
     field.Vectors = this->Vectors.data();
     field.IndexToField = this->IndexToField;
   }
-  field.Extrapolate = !outside.AreDiscarded();
-  if (outside.AreKept())
-  {
-    // The voxels that are nearest to the field, and not in it, stay where the distance is 0.
-    constexpr double most = 1e6;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-    {
-      const double step = this->FieldSpacing[static_cast<int>(axis)] / outside.FadeDistance;
-      field.Fading[axis] = std::min(step, most);
-    }
-  }
+  SetOutside(outside, this->FieldSpacing, field);
   return field;
 }
 
@@ -120,19 +65,8 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
   const auto lastIndexToField = this->IndexToField;
   image->GetDimensions(this->FieldDimensions.data());
   this->FieldSpacing = glm::abs(geometry.Spacing);
-  glm::dmat4 toField = geometry.GetWorldToIndex() * source.Volume.GetIndexToWorld();
-  if (source.FieldIsInverse)
-  {
-    toField = FromOutput(toField, source.ToOutput);
-  }
-  for (int row = 0; row < 3; ++row)
-  {
-    for (int column = 0; column < 4; ++column)
-    {
-      const double first = column == 3 ? geometry.PointExtent[2 * row] : 0.0;
-      this->IndexToField[4 * row + column] = DropRoundingError(toField[column][row] - first);
-    }
-  }
+  this->IndexToField =
+    GetIndexToField(geometry, source.Volume, source.FieldIsInverse ? &source.ToOutput : nullptr);
   const int step = source.FieldIsInverse
     ? 1
     : GetStep(source.Volume.PointExtent, this->IndexToField, this->FieldDimensions);

@@ -2,6 +2,8 @@
 // What Deformation does with vectors that lie on a device.
 #include "Deformation.h"
 
+#include "VectorConversion.h"
+
 #include "vtkDeviceVectorArray.h"
 
 #include <utility>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FieldAtRest.h"
 
+#include "PipelineGeometry.h"
+
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkNew.h"

@@ -3,8 +3,8 @@
 
 #include "Deformation.h"
 #include "Error.h"
-#include "ImageGeometry.h"
 #include "MaskArray.h"
+#include "PipelineGeometry.h"
 
 #include "vtkAOSDataArrayTemplate.h"
 #include "vtkDataArray.h"

@@ -2,8 +2,8 @@
 #include "WorldDeformation.h"
 
 #include "FieldReading.h"
-#include "ImageGeometry.h"
 #include "NodeFaults.h"
+#include "PipelineGeometry.h"
 #include "PointDifferences.h"
 #include "VectorArray.h"
 

@@ -217,9 +217,10 @@ void ExtraArrays::Compute(const Deformation& deformation, MappingCache& mapping,
   }
   const bool isMesh = !deformation.IsField();
   if (isMesh &&
-    !(this->MappingVersion == mapping.GetVersion() && mapping.IsCurrent(deformation, volume)))
+    !(this->MappingVersion == mapping.GetVersion() &&
+      mapping.IsCurrent(deformation.GetMeshAtRest(), volume)))
   {
-    mapping.Update(deformation, volume, progress);
+    mapping.Update(deformation.GetMeshAtRest(), volume, progress);
     this->OfMesh.SetMapping(volume.Part, volume.Whole.Spacing, mapping.GetMapping(),
       deformation.GetRestPoints(), deformation.GetTetrahedra());
     this->MappingVersion = mapping.GetVersion();

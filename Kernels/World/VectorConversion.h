@@ -2,6 +2,10 @@
 #ifndef DeformVolumeVectorConversion_h
 #define DeformVolumeVectorConversion_h
 
+#include "DeformVolumeExport.h"
+#include "ImageGeometry.h"
+#include "VoxelGrid.h"
+
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
@@ -10,8 +14,16 @@
 namespace deformvolume
 {
 
+/// Takes vectors in world units, times a factor, to displacements in output voxels. Its elements
+/// are rounded (RoundFactor), so that vectors become the same displacements wherever that is done.
+DEFORMVOLUME_EXPORT glm::dmat3 GetToDisplacement(
+  const ImageGeometry& volume, const OutputMap& toOutput, double factor);
+
+/// Throws an Error that says that a displacement is over LargestDisplacement.
+[[noreturn]] DEFORMVOLUME_EXPORT void ThrowTooFar();
+
 /// Makes displacements of vectors, by a matrix that takes these to them.
-class VectorConversion
+class DEFORMVOLUME_EXPORT VectorConversion
 {
 public:
   explicit VectorConversion(const glm::dmat3& toDisplacement);

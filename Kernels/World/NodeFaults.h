@@ -4,10 +4,10 @@
 
 #include "Tetrahedron.h"
 
-#include "vtkType.h"
-
 #include <algorithm>
 #include <atomic>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace deformvolume
@@ -32,13 +32,13 @@ public:
     this->Kinds.clear();
     this->Any = false;
   }
-  void Mark(vtkIdType node, Kind kind)
+  void Mark(std::int64_t node, Kind kind)
   {
     this->Kinds[static_cast<std::size_t>(node)] = kind;
     this->Any.store(true, std::memory_order_relaxed);
   }
   /// Nodes are about to be read again.
-  void Clear(vtkIdType first, vtkIdType count)
+  void Clear(std::int64_t first, std::int64_t count)
   {
     if (this->Any.load(std::memory_order_relaxed))
     {
@@ -46,15 +46,15 @@ public:
     }
   }
   bool MayHaveAny() const { return this->Any; }
-  Kind Get(vtkIdType node) const
+  Kind Get(std::int64_t node) const
   {
     return static_cast<Kind>(this->Kinds[static_cast<std::size_t>(node)]);
   }
 
   /// The first faulty node that some tetrahedra use, or -1.
-  vtkIdType FindUsed(const std::vector<Tetrahedron>& tetrahedra) const
+  std::int64_t FindUsed(const std::vector<Tetrahedron>& tetrahedra) const
   {
-    vtkIdType found = -1;
+    std::int64_t found = -1;
     for (const Tetrahedron& tetrahedron : tetrahedra)
     {
       if (!this->Any)

@@ -49,21 +49,19 @@ std::uint64_t EstimateRunBytes(const StaticMappingBuilder& builder, const Mapped
 }
 
 // Whether a mesh ends within the volume.
-bool EndsWithin(const Deformation& deformation, const MappedVolume& volume)
+bool EndsWithin(const MeshAtRest& mesh, const MappedVolume& volume)
 {
-  return HasMeshBoundary(
-    volume.Whole.PointExtent, deformation.GetRestPoints(), deformation.GetTetrahedra());
+  return HasMeshBoundary(volume.Whole.PointExtent, mesh.Points, mesh.Tetrahedra);
 }
 
 } // namespace
 
-bool MappingCache::IsCurrent(const Deformation& deformation, const MappedVolume& volume) const
+bool MappingCache::IsCurrent(const MeshAtRest& mesh, const MappedVolume& volume) const
 {
-  return this->MappingKey ==
-    Key{ &deformation, deformation.GetRestMesh().GetShapeVersion(), volume };
+  return this->MappingKey == Key{ mesh.Owner, mesh.ShapeVersion, volume };
 }
 
-StaticMappingBuilder& MappingCache::GetBuilder(const Deformation& deformation, const Key& key)
+StaticMappingBuilder& MappingCache::GetBuilder(const MeshAtRest& mesh, const Key& key)
 {
   Key wholeKey = key;
   wholeKey.Volume.Part = key.Volume.Whole.PointExtent;
@@ -71,37 +69,33 @@ StaticMappingBuilder& MappingCache::GetBuilder(const Deformation& deformation, c
   {
     this->Builder.reset();
     const ImageGeometry& whole = key.Volume.Whole;
-    this->Builder = std::make_unique<StaticMappingBuilder>(whole.PointExtent, whole.Spacing,
-      deformation.GetRestPoints(), deformation.GetTetrahedra(), key.Volume.Outside);
+    this->Builder = std::make_unique<StaticMappingBuilder>(
+      whole.PointExtent, whole.Spacing, mesh.Points, mesh.Tetrahedra, key.Volume.Outside);
     this->BuilderKey = wholeKey;
   }
   return *this->Builder;
 }
 
-std::uint64_t MappingCache::GetRunBytes(const Deformation& deformation, const MappedVolume& volume)
+std::uint64_t MappingCache::GetRunBytes(const MeshAtRest& mesh, const MappedVolume& volume)
 {
-  if (deformation.IsField())
-  {
-    return 0;
-  }
-  if (this->IsCurrent(deformation, volume))
+  if (this->IsCurrent(mesh, volume))
   {
     return this->RunBytes;
   }
   const Stopwatch stopwatch(this->Time);
-  const Key key{ &deformation, deformation.GetRestMesh().GetShapeVersion(), volume };
-  return EstimateRunBytes(this->GetBuilder(deformation, key), volume);
+  const Key key{ mesh.Owner, mesh.ShapeVersion, volume };
+  return EstimateRunBytes(this->GetBuilder(mesh, key), volume);
 }
 
-void MappingCache::Update(const Deformation& deformation, const MappedVolume& volume,
-  const std::function<bool(double)>& progress)
+void MappingCache::Update(
+  const MeshAtRest& mesh, const MappedVolume& volume, const std::function<bool(double)>& progress)
 {
-  if (this->HasVoxels() && this->IsCurrent(deformation, volume))
+  if (this->HasVoxels() && this->IsCurrent(mesh, volume))
   {
     return;
   }
   const Stopwatch stopwatch(this->Time);
-  const std::vector<Tetrahedron>& tetrahedra = deformation.GetTetrahedra();
+  const std::vector<Tetrahedron>& tetrahedra = mesh.Tetrahedra;
   if (progress && !progress(0.0))
   {
     throw Aborted();
@@ -109,14 +103,14 @@ void MappingCache::Update(const Deformation& deformation, const MappedVolume& vo
   // The old links go first, so that two sets never stand in memory.
   this->Mapping = StaticMapping();
   this->MappingKey = Key();
-  const Key key{ &deformation, deformation.GetRestMesh().GetShapeVersion(), volume };
-  const StaticMappingBuilder& builder = this->GetBuilder(deformation, key);
+  const Key key{ mesh.Owner, mesh.ShapeVersion, volume };
+  const StaticMappingBuilder& builder = this->GetBuilder(mesh, key);
   StaticMapping mapping = builder.Build(volume.Part, progress);
   const std::uint64_t runBytes = EstimateRunBytes(builder, volume);
   // The same for any part that the volume is read in.
   const bool holdsVoxels = mapping.NumberOfInnerVoxels > 0 || !mapping.Boundary.IsEmpty() ||
-    (!volume.IsWhole() && (builder.HoldsVoxels() || EndsWithin(deformation, volume))) ||
-    (volume.Outside.AreKept() && EndsWithin(deformation, volume));
+    (!volume.IsWhole() && (builder.HoldsVoxels() || EndsWithin(mesh, volume))) ||
+    (volume.Outside.AreKept() && EndsWithin(mesh, volume));
   if (volume.IsWhole())
   {
     this->Builder.reset();
@@ -124,11 +118,11 @@ void MappingCache::Update(const Deformation& deformation, const MappedVolume& vo
   if (mapping.NumberOfFlatTetrahedra == static_cast<std::int64_t>(tetrahedra.size()))
   {
     throw Error("All " + std::to_string(tetrahedra.size()) +
-      " tetrahedra of the deformation mesh are flat at rest. Use a mesh with volume.");
+      " tetrahedra of the mesh mesh are flat at rest. Use a mesh with volume.");
   }
   if (!holdsVoxels)
   {
-    throw Error(DescribeMiss(deformation, volume.Whole));
+    throw Error(DescribeMiss(mesh, volume.Whole));
   }
   this->Mapping = std::move(mapping);
   this->RunBytes = runBytes;

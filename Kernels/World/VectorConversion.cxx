@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "VectorConversion.h"
 
-#include "DisplacementField.h" // for LargestDisplacement
+#include "DisplacementField.h"
+#include "Error.h"
+#include "IndexBounds.h" // for OutputTransform
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -69,6 +71,32 @@ bool ScaleVectors(
 }
 
 } // namespace
+
+glm::dmat3 GetToDisplacement(const ImageGeometry& volume, const OutputMap& toOutput, double factor)
+{
+  const glm::dmat3 toVolume(volume.GetWorldToIndex());
+  const glm::dvec3 scale(toOutput.Get(0, 0), toOutput.Get(1, 1), toOutput.Get(2, 2));
+  const OutputTransform map(toOutput);
+  glm::dmat3 transform;
+  for (int column = 0; column < 3; ++column)
+  {
+    transform[column] = toOutput.IsDiagonal() ? toVolume[column] * (scale * factor)
+                                              : map.GetMatrix() * toVolume[column] * factor;
+    for (int row = 0; row < 3; ++row)
+    {
+      transform[column][row] = RoundFactor(transform[column][row]);
+    }
+  }
+  return transform;
+}
+
+void ThrowTooFar()
+{
+  throw Error(
+    "The deformation moves the volume by more than 16,383 output voxels. Check the scale of the "
+    "displacements, the spacing of the output or of its reference image, and that displacements "
+    "and volume are in the same world units.");
+}
 
 VectorConversion::VectorConversion(const glm::dmat3& toDisplacement)
   : Matrix(toDisplacement)

@@ -3,14 +3,6 @@
 
 #include "Error.h"
 
-#include "vtkDataObject.h"
-#include "vtkImageData.h"
-#include "vtkInformation.h"
-#include "vtkInformationDoubleVectorKey.h"
-#include "vtkInformationIntegerVectorKey.h"
-#include "vtkMatrix3x3.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
-
 #include <glm/common.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
@@ -26,12 +18,6 @@ namespace deformvolume
 namespace
 {
 
-// VTK stores matrices row by row, GLM column by column.
-glm::dmat3 MakeDirection(const double* rows)
-{
-  return glm::transpose(glm::make_mat3(rows));
-}
-
 // Products of matrices and their inverses miss the simple numbers that are meant. What is dropped
 // is far below the 2^-16 voxel of the kernels, over 10,000 voxels as well.
 double DropRoundingError(double value)
@@ -43,6 +29,12 @@ double DropRoundingError(double value)
 }
 
 } // namespace
+
+// GLM stores matrices column by column.
+glm::dmat3 MakeDirection(const double* rows)
+{
+  return glm::transpose(glm::make_mat3(rows));
+}
 
 glm::dmat4 ImageGeometry::GetIndexToWorld() const
 {
@@ -140,46 +132,6 @@ bool Contains(const Extent& extent, const Extent& other)
       extent[2 * axis + 1] >= other[2 * axis + 1];
   }
   return contains;
-}
-
-ImageGeometry GetGeometry(vtkImageData* image)
-{
-  ImageGeometry geometry;
-  std::copy_n(image->GetExtent(), 6, geometry.PointExtent.begin());
-  geometry.Origin = glm::make_vec3(image->GetOrigin());
-  geometry.Spacing = glm::make_vec3(image->GetSpacing());
-  geometry.Direction = MakeDirection(image->GetDirectionMatrix()->GetData());
-  return geometry;
-}
-
-void SetTransform(vtkImageData* image, const ImageGeometry& geometry)
-{
-  const glm::dmat3 rows = glm::transpose(geometry.Direction);
-  image->SetOrigin(glm::value_ptr(geometry.Origin));
-  image->SetSpacing(glm::value_ptr(geometry.Spacing));
-  image->SetDirectionMatrix(glm::value_ptr(rows));
-}
-
-ImageGeometry GetGeometry(vtkInformation* info)
-{
-  ImageGeometry geometry;
-  if (info->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
-  {
-    info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), geometry.PointExtent.data());
-  }
-  if (info->Has(vtkDataObject::ORIGIN()))
-  {
-    geometry.Origin = glm::make_vec3(info->Get(vtkDataObject::ORIGIN()));
-  }
-  if (info->Has(vtkDataObject::SPACING()))
-  {
-    geometry.Spacing = glm::make_vec3(info->Get(vtkDataObject::SPACING()));
-  }
-  if (info->Has(vtkDataObject::DIRECTION()))
-  {
-    geometry.Direction = MakeDirection(info->Get(vtkDataObject::DIRECTION()));
-  }
-  return geometry;
 }
 
 void CheckTransform(const ImageGeometry& geometry, const std::string& what)

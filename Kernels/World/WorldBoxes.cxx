@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "WorldBoxes.h"
 
-#include "Deformation.h"
 #include "Error.h"
 #include "ImageGeometry.h"
+#include "MeshAtRest.h"
 
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
@@ -55,14 +55,14 @@ Box GetWorldBox(const ImageGeometry& geometry)
 
 // Of the nodes that tetrahedra use, which are in indices of a volume.
 template <typename Function>
-Box FindBox(const Deformation& mesh, const Function& transform)
+Box FindBox(const MeshAtRest& mesh, const Function& transform)
 {
   Box box;
-  for (const Tetrahedron& tetrahedron : mesh.GetTetrahedra())
+  for (const Tetrahedron& tetrahedron : mesh.Tetrahedra)
   {
     for (const std::int32_t node : tetrahedron)
     {
-      box.Add(transform(mesh.GetRestPoints()[static_cast<std::size_t>(node)]));
+      box.Add(transform(mesh.Points[static_cast<std::size_t>(node)]));
     }
   }
   return box;
@@ -94,7 +94,7 @@ std::string DescribeBoxes(const ImageGeometry& field, const ImageGeometry& volum
   return Describe("field", GetWorldBox(field), volume);
 }
 
-void CheckBoxes(const Deformation& mesh, const ImageGeometry& volume)
+void CheckBoxes(const MeshAtRest& mesh, const ImageGeometry& volume)
 {
   const Box box = FindBox(mesh, [](const glm::dvec3& point) { return point; });
   const Box voxels = GetIndexBox(volume.PointExtent);
@@ -107,7 +107,7 @@ void CheckBoxes(const Deformation& mesh, const ImageGeometry& volume)
   }
 }
 
-std::string DescribeMiss(const Deformation& mesh, const ImageGeometry& volume)
+std::string DescribeMiss(const MeshAtRest& mesh, const ImageGeometry& volume)
 {
   const glm::dmat4 toWorld = volume.GetIndexToWorld();
   const Box box = FindBox(

@@ -2,6 +2,7 @@
 #ifndef DeformVolumeImageGeometry_h
 #define DeformVolumeImageGeometry_h
 
+#include "DeformVolumeExport.h"
 #include "Extent.h"
 #include "VoxelGrid.h"
 
@@ -11,16 +12,13 @@
 
 #include <string>
 
-class vtkImageData;
-class vtkInformation;
-
 namespace deformvolume
 {
 
-/// Where the points of a vtkImageData lie. The transform goes between world coordinates and
+/// Where the points of an image lie. The transform goes between world coordinates and
 /// continuous structured indices: index (0, 0, 0) is at Origin, whether the extent holds it or
 /// not.
-struct ImageGeometry
+struct DEFORMVOLUME_EXPORT ImageGeometry
 {
   Extent PointExtent{ { 0, -1, 0, -1, 0, -1 } };
   glm::dvec3 Origin{ 0.0 };
@@ -34,37 +32,34 @@ struct ImageGeometry
   bool operator!=(const ImageGeometry& other) const { return !(*this == other); }
 };
 
+/// A direction matrix from its nine elements, row by row.
+DEFORMVOLUME_EXPORT glm::dmat3 MakeDirection(const double* rows);
+
 /// Whether the points of an extent lie at the same places in the world, to a thousandth of the
 /// distance between them. The second geometry must have a transform that can be inverted.
-bool AreSamePlaces(const ImageGeometry& first, const ImageGeometry& second, const Extent& extent);
+DEFORMVOLUME_EXPORT bool AreSamePlaces(
+  const ImageGeometry& first, const ImageGeometry& second, const Extent& extent);
 
 /// What takes indices of an image to indices of another one. Rounding errors are dropped: two
 /// images whose axes are parallel have a diagonal matrix, and grids that lie over each other whole
 /// numbers.
-OutputMap GetOutputMap(const ImageGeometry& image, const ImageGeometry& output);
+DEFORMVOLUME_EXPORT OutputMap GetOutputMap(const ImageGeometry& image, const ImageGeometry& output);
 
 /// Origin, spacing and direction, in words for an error.
-std::string DescribeTransform(const ImageGeometry& geometry);
+DEFORMVOLUME_EXPORT std::string DescribeTransform(const ImageGeometry& geometry);
 
 /// An extent in words for an error.
-std::string DescribeExtent(const Extent& extent);
+DEFORMVOLUME_EXPORT std::string DescribeExtent(const Extent& extent);
 
 /// Whether an extent holds all of another one.
-bool Contains(const Extent& extent, const Extent& other);
-
-ImageGeometry GetGeometry(vtkImageData* image);
-/// Sets the origin, the spacing and the direction of an image.
-void SetTransform(vtkImageData* image, const ImageGeometry& geometry);
-
-/// The geometry that pipeline information announces, with the whole extent.
-ImageGeometry GetGeometry(vtkInformation* info);
+DEFORMVOLUME_EXPORT bool Contains(const Extent& extent, const Extent& other);
 
 /// Throws an Error that speaks of the image as `what` where its transform cannot be inverted.
-void CheckTransform(const ImageGeometry& geometry, const std::string& what);
+DEFORMVOLUME_EXPORT void CheckTransform(const ImageGeometry& geometry, const std::string& what);
 
 /// Throws an Error unless the volume has two voxels or more on each axis and a transform that can
 /// be inverted.
-void CheckVolume(const ImageGeometry& volume);
+DEFORMVOLUME_EXPORT void CheckVolume(const ImageGeometry& volume);
 
 } // namespace deformvolume
 

@@ -2,8 +2,10 @@
 #ifndef DeformVolumeMappingCache_h
 #define DeformVolumeMappingCache_h
 
-#include "Deformation.h"
+#include "DeformVolumeExport.h"
 #include "ImageGeometry.h"
+#include "MeshAtRest.h"
+#include "OutsideVoxels.h"
 #include "StaticMapping.h"
 
 #include <cstdint>
@@ -32,21 +34,21 @@ struct MappedVolume
 
 /// Keeps the static mapping of a volume into a deformation mesh for as long as it serves. What all
 /// parts of a volume have in common is found once.
-class MappingCache
+class DEFORMVOLUME_EXPORT MappingCache
 {
 public:
   /// Bytes that the runs of the mapping of a volume and a mesh take, about; 0 where it has links.
   /// The same before and after Update, so that what is chosen by it does not depend on what came
   /// before.
-  std::uint64_t GetRunBytes(const Deformation& deformation, const MappedVolume& volume);
+  std::uint64_t GetRunBytes(const MeshAtRest& mesh, const MappedVolume& volume);
 
   /// Makes the mapping that of a volume and a mesh, with its links or runs. Throws an Error where
   /// the mesh holds no voxel of the whole volume, and Aborted where progress asked for an end.
-  void Update(const Deformation& deformation, const MappedVolume& volume,
+  void Update(const MeshAtRest& mesh, const MappedVolume& volume,
     const std::function<bool(double)>& progress);
 
   /// Whether the mapping is that of a volume and a mesh, with or without its links or runs.
-  bool IsCurrent(const Deformation& deformation, const MappedVolume& volume) const;
+  bool IsCurrent(const MeshAtRest& mesh, const MappedVolume& volume) const;
 
   const StaticMapping& GetMapping() const { return this->Mapping; }
   const std::vector<VertexLink>& GetLinks() const { return this->Mapping.Links; }
@@ -72,21 +74,21 @@ private:
   // What a mapping depends on.
   struct Key
   {
-    const Deformation* Source = nullptr;
+    const void* Owner = nullptr;
     std::uint64_t ShapeVersion = 0;
     MappedVolume Volume;
     bool operator==(const Key& other) const
     {
-      return this->Source == other.Source && this->ShapeVersion == other.ShapeVersion &&
+      return this->Owner == other.Owner && this->ShapeVersion == other.ShapeVersion &&
         this->Volume == other.Volume;
     }
   };
 
   /// The builder for a key, made ahead by GetRunBytes or now.
-  StaticMappingBuilder& GetBuilder(const Deformation& deformation, const Key& key);
+  StaticMappingBuilder& GetBuilder(const MeshAtRest& mesh, const Key& key);
 
   StaticMapping Mapping;
-  Key MappingKey; // without a source: there is no mapping
+  Key MappingKey; // without an owner: there is no mapping
   std::uint64_t RunBytes = 0;
   std::unique_ptr<StaticMappingBuilder> Builder;
   Key BuilderKey; // that of the whole volume

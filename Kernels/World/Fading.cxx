@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Fading.h"
+
+#include "Error.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+namespace deformvolume
+{
+
+OutsideVoxels MakeKeptVoxels(double fadeDistance)
+{
+  if (!std::isfinite(fadeDistance) || fadeDistance < 0.0)
+  {
+    throw Error("FadeDistance is " + std::to_string(fadeDistance) +
+      ". Set a distance in world units, or 0, with which nothing outside the mesh or the field "
+      "moves.");
+  }
+  return { OutsideVoxels::Modes::Keep, fadeDistance };
+}
+
+namespace
+{
+
+// The longest displacement of the points on the border of a field, in world units.
+double GetLongestOnBorder(const DisplacementField& field, const glm::dvec3& spacing)
+{
+  const std::array<int, 3>& size = field.Dimensions;
+  double longest = 0.0;
+  std::int64_t point = 0;
+  for (int z = 0; z < size[2]; ++z)
+  {
+    for (int y = 0; y < size[1]; ++y)
+    {
+      const bool isOnBorder = z == 0 || z == size[2] - 1 || y == 0 || y == size[1] - 1;
+      const int step = isOnBorder ? 1 : std::max(size[0] - 1, 1);
+      for (int x = 0; x < size[0]; x += step)
+      {
+        const double length = glm::length(spacing * GetVector(field, point + x));
+        longest = length > longest ? length : longest; // undefined ones are not-a-number
+      }
+      point += size[0];
+    }
+  }
+  return longest;
+}
+
+} // namespace
+
+std::string FindFoldsOfFading(const std::string& border, double longest, double fadeDistance)
+{
+  // The slope of the weight is 1.5 at most.
+  if (!(fadeDistance > 0.0) || 1.5 * longest <= fadeDistance)
+  {
+    return "";
+  }
+  return "The " + border + " by up to " + std::to_string(longest) +
+    ", more than two thirds of FadeDistance, " + std::to_string(fadeDistance) +
+    ": what lies outside may fold over. Set FadeDistance to at least twice that displacement.";
+}
+
+std::string FindFaultOfFading(const DisplacementField& field, const IndexBounds& box,
+  const glm::dvec3& spacing, double fadeDistance)
+{
+  if (HoldsBox(field, box, FieldTolerance))
+  {
+    return "";
+  }
+  const double longest = GetLongestOnBorder(field, spacing);
+  const std::string border = "border of the displacement field moves";
+  // A hard edge folds or tears whatever is longer than the voxels that lie across it.
+  if (fadeDistance == 0.0 && longest > 2.0 * std::min({ spacing.x, spacing.y, spacing.z }))
+  {
+    return "The " + border + " by up to " + std::to_string(longest) +
+      ", and as FadeDistance is 0 the volume is stretched or folded there. Set FadeDistance to at "
+      "least twice that displacement.";
+  }
+  return FindFoldsOfFading(border, longest, fadeDistance);
+}
+
+} // namespace deformvolume

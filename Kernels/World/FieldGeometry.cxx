@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FieldGeometry.h"
+
+#include "IndexBounds.h" // for OutputTransform
+
+#include <glm/mat4x4.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+// Products of matrices and their inverses miss the simple numbers that are meant, and then the
+// last row of voxels is outside a field of the same extent. The grain is far below a voxel.
+double RoundToGrain(double value)
+{
+  constexpr double grain = 4294967296.0;
+  return std::round(value * grain) / grain;
+}
+
+// Makes what takes indices of the volume what takes those of the output.
+glm::dmat4 FromOutput(const glm::dmat4& fromVolume, const OutputMap& toOutput)
+{
+  const OutputTransform transform(toOutput);
+  glm::dmat4 fromOutput = fromVolume;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (toOutput.IsDiagonal())
+    {
+      fromOutput[axis] /= toOutput.Get(axis, axis);
+    }
+    else
+    {
+      fromOutput[axis] = fromVolume * glm::dvec4(transform.GetInverse()[axis], 0.0);
+    }
+  }
+  fromOutput[3] -= fromOutput * glm::dvec4(transform.GetShift(), 0.0);
+  return fromOutput;
+}
+
+} // namespace
+
+std::array<double, 12> GetIndexToField(
+  const ImageGeometry& field, const ImageGeometry& volume, const OutputMap* toOutput)
+{
+  glm::dmat4 toField = field.GetWorldToIndex() * volume.GetIndexToWorld();
+  if (toOutput)
+  {
+    toField = FromOutput(toField, *toOutput);
+  }
+  std::array<double, 12> indexToField{};
+  for (int row = 0; row < 3; ++row)
+  {
+    for (int column = 0; column < 4; ++column)
+    {
+      const double first = column == 3 ? field.PointExtent[2 * row] : 0.0;
+      indexToField[4 * row + column] = RoundToGrain(toField[column][row] - first);
+    }
+  }
+  return indexToField;
+}
+
+int GetStep(const Extent& voxels, const std::array<double, 12>& indexToField,
+  const std::array<int, 3>& dimensions)
+{
+  const double step = indexToField[0];
+  bool found = step > 1.0 && step == std::floor(step) && step < dimensions[0];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double* row = &indexToField[4 * axis];
+    for (int k = 0; k < 3; ++k)
+    {
+      found = found && row[k] == (axis == k ? step : 0.0);
+    }
+    found = found && row[3] == std::floor(row[3]) && step * voxels[2 * axis] + row[3] >= 0.0 &&
+      step * voxels[2 * axis + 1] + row[3] < dimensions[axis];
+  }
+  return found ? static_cast<int>(step) : 1;
+}
+
+void SetOutside(const OutsideVoxels& outside, const glm::dvec3& spacing, DisplacementField& field)
+{
+  field.Extrapolate = !outside.AreDiscarded();
+  if (outside.AreKept())
+  {
+    // The voxels that are nearest to the field, and not in it, stay where the distance is 0.
+    constexpr double most = 1e6;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      const double step = spacing[static_cast<int>(axis)] / outside.FadeDistance;
+      field.Fading[axis] = std::min(step, most);
+    }
+  }
+}
+
+} // namespace deformvolume
