@@ -237,42 +237,15 @@ void CheckMidSides(const ElasticBody& body)
     "Give each edge a node of its own; the order of nodes must be that of vtkQuadraticTetra.");
 }
 
-// The sine of the largest angle between what counts as parallel: coordinates may be floats.
-constexpr double LargestSine = 1e-3;
-
-glm::dvec3 Normalize(const glm::dvec3& vector)
-{
-  const glm::dvec3 sizes = glm::abs(vector);
-  return glm::normalize(vector / std::max({ sizes.x, sizes.y, sizes.z })); // also where it is tiny
-}
-
-// The normals of the planes in which a node slides, of length 1.
-std::vector<glm::dvec3> GetSlidingNormals(const ElasticBody& body, std::size_t node)
-{
-  std::vector<glm::dvec3> result;
-  for (const auto* normals : { &body.SlidingNormals, &body.SecondSlidingNormals })
-  {
-    if (!normals->empty() && (*normals)[node] != glm::dvec3(0.0))
-    {
-      result.push_back(Normalize((*normals)[node]));
-    }
-  }
-  return result;
-}
+constexpr double LargestSine = ElasticBody::LargestSine;
 
 // Whether a node cannot move along a normal.
 bool IsHeldAlong(const ElasticBody& body, std::size_t node, const glm::dvec3& normal)
 {
   glm::dvec3 rest = body.IsFixed(node) ? glm::dvec3(0.0) : normal;
-  glm::dvec3 first(0.0);
   for (const glm::dvec3& own : GetSlidingNormals(body, node))
   {
-    const glm::dvec3 across = own - glm::dot(own, first) * first;
-    if (glm::length(across) > LargestSine)
-    {
-      first = glm::normalize(across);
-      rest -= glm::dot(rest, first) * first;
-    }
+    rest -= glm::dot(rest, own) * own;
   }
   return glm::length(rest) <= LargestSine;
 }
@@ -290,11 +263,13 @@ std::array<glm::dvec3, 2> GetMiddleNormals(const ElasticBody& body, std::size_t 
   std::size_t number = 0;
   for (const std::size_t end : { a, b })
   {
-    for (const glm::dvec3& normal : GetSlidingNormals(body, end))
+    for (const auto* normals : { &body.SlidingNormals, &body.SecondSlidingNormals })
     {
+      const glm::dvec3 normal = normals->empty() ? glm::dvec3(0.0) : GetUnitVector((*normals)[end]);
       const bool isNew = number == 0 || glm::length(glm::cross(result[0], normal)) > LargestSine;
-      if (number < result.size() && isNew && std::abs(glm::dot(edge, normal)) <= LargestSine &&
-        IsHeldAlong(body, a, normal) && IsHeldAlong(body, b, normal))
+      if (number < result.size() && normal != glm::dvec3(0.0) && isNew &&
+        std::abs(glm::dot(edge, normal)) <= LargestSine && IsHeldAlong(body, a, normal) &&
+        IsHeldAlong(body, b, normal))
       {
         result[number++] = normal;
       }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SlidingNodes.h"
 
-#include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 
 #include <algorithm>
 
@@ -12,31 +12,17 @@ namespace deformvolume
 
 SlidingNodes::SlidingNodes(const ElasticBody& body)
 {
-  const auto getNormal = [](const std::vector<glm::dvec3>& normals, std::size_t node)
-  {
-    const glm::dvec3 normal = normals.empty() ? glm::dvec3(0.0) : normals[node];
-    return normal == glm::dvec3(0.0) ? normal : glm::normalize(normal);
-  };
-  const auto square = [](const glm::dvec3& normal) { return glm::outerProduct(normal, normal); };
   const bool isEmpty = body.SlidingNormals.empty() && body.SecondSlidingNormals.empty();
   for (std::size_t node = 0; node < body.Points.size() && !isEmpty; ++node)
   {
-    const glm::dvec3 first = getNormal(body.SlidingNormals, node);
-    const glm::dvec3 second = getNormal(body.SecondSlidingNormals, node);
-    glm::dmat3 projection = glm::dmat3(1.0) - square(first);
-    // What is less of the second one is rounding of the first.
-    constexpr double leastSine = 1e-6;
-    const glm::dvec3 across = projection * second;
-    if (glm::length(across) > leastSine)
-    {
-      projection -= square(glm::normalize(across));
-    }
+    const auto [first, second] = GetSlidingNormals(body, node);
     if (first != glm::dvec3(0.0) || second != glm::dvec3(0.0))
     {
       this->Places.resize(body.Points.size(), -1);
       this->Places[node] = static_cast<std::int32_t>(this->Nodes.size());
       this->Nodes.push_back(node);
-      this->Projections.push_back(projection);
+      this->Projections.push_back(
+        glm::dmat3(1.0) - glm::outerProduct(first, first) - glm::outerProduct(second, second));
     }
   }
 }

@@ -123,7 +123,7 @@ public:
   void AddSliding(const glm::dvec3& point, const glm::dvec3& normal)
   {
     this->Slides = true;
-    this->Planes.Add(point, glm::normalize(normal));
+    this->Planes.Add(point, normal);
   }
 
   void Add(const std::vector<glm::dvec3>& points, std::int32_t node)
@@ -221,14 +221,18 @@ PieceSupports FindSupports(
 {
   const auto number = static_cast<std::size_t>(pieces.NumberOfPieces);
   std::vector<Support> supports(number);
-  for (const auto* normals : { &body.SlidingNormals, &body.SecondSlidingNormals })
+  const bool slides = !body.SlidingNormals.empty() || !body.SecondSlidingNormals.empty();
+  for (std::size_t node = 0; node < body.Points.size() && slides; ++node)
   {
-    for (std::size_t node = 0; node < normals->size(); ++node)
+    if (isNotFree[node] != 0 || pieces.PieceOfNode[node] < 0)
     {
-      const glm::dvec3& normal = (*normals)[node];
+      continue;
+    }
+    for (const glm::dvec3& normal : GetSlidingNormals(body, node))
+    {
       const auto slide = [&](std::int32_t piece)
       { supports[static_cast<std::size_t>(piece)].AddSliding(body.Points[node], normal); };
-      if (normal == glm::dvec3(0.0) || isNotFree[node] != 0 || pieces.PieceOfNode[node] < 0)
+      if (normal == glm::dvec3(0.0))
       {
         continue;
       }

@@ -205,6 +205,25 @@ void CheckSliding(const ElasticBody& body)
 
 } // namespace
 
+glm::dvec3 GetUnitVector(const glm::dvec3& vector)
+{
+  const glm::dvec3 sizes = glm::abs(vector);
+  const double largest = std::max({ sizes.x, sizes.y, sizes.z });
+  // Squares of tiny and of huge components are 0 or infinite.
+  return largest > 0.0 ? glm::normalize(vector / largest) : vector;
+}
+
+std::array<glm::dvec3, 2> GetSlidingNormals(const ElasticBody& body, std::size_t node)
+{
+  const auto get = [&](const std::vector<glm::dvec3>& normals)
+  { return normals.empty() ? glm::dvec3(0.0) : GetUnitVector(normals[node]); };
+  const glm::dvec3 first = get(body.SlidingNormals);
+  const glm::dvec3 second = get(body.SecondSlidingNormals);
+  const glm::dvec3 across = second - glm::dot(second, first) * first;
+  return { first,
+    glm::length(across) > ElasticBody::LargestSine ? glm::normalize(across) : glm::dvec3(0.0) };
+}
+
 bool IsFlat(const std::array<glm::dvec3, 4>& points)
 {
   constexpr double leastHeight = 1e-6;

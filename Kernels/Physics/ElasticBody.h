@@ -62,9 +62,12 @@ struct ElasticBody
   /// one that it lies in at rest. 0: it does not slide; empty: no node does.
   std::vector<glm::dvec3> SlidingNormals;
   /// The same of a second plane: nodes in two planes slide along the line in both, such as where
-  /// two planes of symmetry meet. Where they are parallel there is one plane. Empty: no node has
-  /// one.
+  /// two planes of symmetry meet. Where they are parallel (GetSlidingNormals) there is one plane.
+  /// Empty: no node has one.
   std::vector<glm::dvec3> SecondSlidingNormals;
+
+  /// The sine of the largest angle between what counts as parallel: coordinates may be floats.
+  static constexpr double LargestSine = 1e-3;
 
   const ElasticMaterial& GetMaterial(std::size_t tetrahedron) const
   {
@@ -108,6 +111,14 @@ struct BodyLoads
   /// Where fixed nodes are displaced to, of each node, in metres; empty: they stay at rest.
   std::vector<glm::dvec3> FixedDisplacements;
 };
+
+/// Of length 1, in the direction of a vector of any length; 0 for 0.
+DEFORMVOLUME_EXPORT glm::dvec3 GetUnitVector(const glm::dvec3& vector);
+
+/// The directions in which a node that slides cannot go: of length 1, and normal to each other. 0:
+/// none. The second plane counts where it is not parallel to the first, within a thousandth.
+DEFORMVOLUME_EXPORT std::array<glm::dvec3, 2> GetSlidingNormals(
+  const ElasticBody& body, std::size_t node);
 
 /// Whether a tetrahedron has hardly any volume: its height is less than a millionth of its longest
 /// edge.

@@ -137,6 +137,39 @@ TEST(ElementConditions, ThreePlanesHoldABody)
   EXPECT_LT(LargestOf(sum - glm::dvec3(0, 0, -1e-3)), 1e-9);
 }
 
+// Planes are the same whatever the length of their normals.
+TEST(ElementConditions, NormalsOfAnyLength)
+{
+  QuadraticLattice cube = MakeCube();
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    SlideFace(cube.Body, axis);
+  }
+  EquilibriumRequest request = MakeConverged();
+  request.Loads.Gravity = glm::dvec3(-1.0, -2.0, -3.0);
+  FiniteElementModel model;
+  model.SetBody(cube.Body);
+  EXPECT_TRUE(model.Solve(request).IsConverged);
+  const std::vector<glm::dvec3> wanted = model.GetDisplacements();
+  EXPECT_GT(LargestOf(wanted), 0.01);
+  // The squares of these are 0, or overflow.
+  for (const double length : { std::numeric_limits<double>::denorm_min(), 1e-200, -1e200, 1e308 })
+  {
+    SCOPED_TRACE(length);
+    ElasticBody body = cube.Body;
+    for (auto* normals : { &body.SlidingNormals, &body.SecondSlidingNormals })
+    {
+      for (glm::dvec3& normal : *normals)
+      {
+        normal = glm::sign(normal) * length;
+      }
+    }
+    model.SetBody(body);
+    EXPECT_EQ(GetError([&] { EXPECT_TRUE(model.Solve(request).IsConverged); }), "");
+    EXPECT_LT(LargestDifference(model.GetDisplacements(), wanted), 1e-12);
+  }
+}
+
 // In an oblique plane, at large strain: nodes stay in it, a handle moves them within it, and no
 // force but along the normal holds them. With levels, which know nothing of planes.
 TEST(ElementConditions, NodesSlideInAnObliquePlane)
