@@ -393,6 +393,14 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
   }
   else
   {
+    // Where displacements, or the planes, are others than before.
+    for (std::size_t node = 0; node < problem.IsFree.size(); ++node)
+    {
+      if (problem.IsFree[node] != 0)
+      {
+        state.Displacements[node] = this->Sliding.Project(node, state.Displacements[node]);
+      }
+    }
     this->Evaluate(watch, problem, state);
   }
   // What the last call has left so has had its turn.

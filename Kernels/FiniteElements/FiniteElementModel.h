@@ -57,7 +57,8 @@ public:
   /// Of each node, in metres.
   const std::vector<glm::dvec3>& GetDisplacements() const;
 
-  /// Where the next call of Solve begins, such as a state that was saved.
+  /// Where the next call of Solve begins, such as a state that was saved. Nodes that slide begin at
+  /// the nearest place in their plane, or on their line.
   void SetDisplacements(const std::vector<glm::dvec3>& displacements);
 
   /// The force with which each node resists its displacement, in N: for a free node that of the

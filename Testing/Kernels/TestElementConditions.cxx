@@ -170,6 +170,36 @@ TEST(ElementConditions, NormalsOfAnyLength)
   }
 }
 
+// Nodes that have left a plane before they slide in it return to it.
+TEST(ElementConditions, PlanesThatComeLater)
+{
+  const auto isFixed = [](const Place& place) { return place[2] == 0; };
+  QuadraticLattice cube = MakeCube(isFixed);
+  EquilibriumRequest request = MakeConverged();
+  request.Loads.Gravity = glm::dvec3(0.4, 0.0, -0.4);
+  FiniteElementModel model;
+  model.SetBody(cube.Body);
+  EXPECT_TRUE(model.Solve(request).IsConverged);
+  const std::vector<glm::dvec3> without = model.GetDisplacements();
+  ElasticBody body = cube.Body;
+  SlideFace(body, 0);
+  for (std::size_t node = 0; node < body.Points.size(); ++node)
+  {
+    body.SlidingNormals[node] *= body.IsFixed(node) ? 0.0 : 1.0;
+  }
+  model.SetBody(body);
+  EXPECT_TRUE(model.Solve(request).IsConverged);
+  const std::vector<glm::dvec3> wanted = model.GetDisplacements();
+  EXPECT_GT(LargestDifference(wanted, without), 0.005);
+  model.SetDisplacements(without);
+  EXPECT_TRUE(model.Solve(request).IsConverged);
+  EXPECT_LT(LargestDifference(model.GetDisplacements(), wanted), 1e-5);
+  for (std::size_t node = 0; node < body.Points.size(); ++node)
+  {
+    EXPECT_LT(std::abs(glm::dot(model.GetDisplacements()[node], body.SlidingNormals[node])), 1e-12);
+  }
+}
+
 // In an oblique plane, at large strain: nodes stay in it, a handle moves them within it, and no
 // force but along the normal holds them. With levels, which know nothing of planes.
 TEST(ElementConditions, NodesSlideInAnObliquePlane)
