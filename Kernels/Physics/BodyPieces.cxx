@@ -21,8 +21,9 @@ namespace deformvolume
 namespace
 {
 
-// Points lie on a line where the area between them is less than this part of a square.
-constexpr double LeastArea = 1e-6;
+// Points lie on a line where the area between them is less than this part of a square. Nodes in the
+// middle of edges do so, but for the rounding of floats far from 0.
+constexpr double LeastArea = ElasticBody::LargestSine;
 
 void FindNodes(const ElasticBody& body, BodyPieces& pieces)
 {
