@@ -285,7 +285,7 @@ MUTATIONS = {
                   "  } while (false);\n  return false;", [FINITE_ELEMENTS, BEAMS]),
     "fem-sliding": ("Kernels/FiniteElements/TangentSolver.cxx", "  this->Sliding.Constrain(this->Matrix);\n", "",
                     [CONDITIONS]),
-    "fem-planes": ("Kernels/Physics/BodyPieces.cxx", ".minCoeff() > least;", ".minCoeff() > -1.0;", [CONDITIONS]),
+    "fem-planes": ("Kernels/Physics/BodyPieces.cxx", ".minCoeff() > least;", ".minCoeff() > least - 1.0;", [CONDITIONS]),
     "fem-weight": ("Kernels/FiniteElements/EquilibriumProblem.cxx",
                    "volume += shares[point][i] * volumes[t][point];", "volume += 0.1 * volumes[t][point];", [BEAMS]),
     "fem-middle": ("Kernels/Physics/MidSideNodes.cxx", "if (isNew && isTaken[static_cast<std::size_t>(node)])",
