@@ -83,9 +83,10 @@ public:
   /**
    * The strain energy. STABLE_NEO_HOOKEAN (default): for soft tissue. It keeps volumes at large
    * strain, and comes back from where elements are inside out. COROTATIONAL: linear elasticity in a
-   * frame that turns with the material, as published; at large strain it does not keep volumes,
-   * such as 2.5 times the shear stress of STABLE_NEO_HOOKEAN in a shear of 0.5 at a Poisson ratio
-   * of 0.49. Small strains of both are those of linear elasticity.
+   * frame that turns with the material, as published where the Poisson ratio is at most 0.4. Above,
+   * the part of lambda that is more than 4 mu acts on the volume, as in STABLE_NEO_HOOKEAN. The
+   * rest does not keep volumes at large strain. Small strains of both are those of linear
+   * elasticity.
    */
   vtkSetClampMacro(MaterialModel, int, STABLE_NEO_HOOKEAN, COROTATIONAL);
   vtkGetMacro(MaterialModel, int);

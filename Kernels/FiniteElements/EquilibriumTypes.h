@@ -20,7 +20,8 @@ enum class MaterialModel
   /// J is the determinant of F. For soft tissue.
   StableNeoHookean,
   /// mu |F - R|^2 + lambda/2 tr(S - 1)^2, where F = R S and R is a rotation: linear elasticity in
-  /// the frame that turns with the material. Large strains do not keep the volume.
+  /// the frame that turns with the material. Large strains do not keep the volume. The part of
+  /// lambda that is more than 4 mu acts on the mean of J - 1, as in the other model.
   Corotational
 };
 
