@@ -32,7 +32,8 @@
  *
  * @par Pieces:
  * A piece of the mesh is what holds together by faces of tetrahedra. It is held by three nodes that
- * lie on no common line and are fixed, held by handles, or shared with a piece that is held. Other
+ * lie on no common line and are fixed, held by handles, or shared with a piece that is held; or by
+ * such nodes and nodes that slide, where no motion of a rigid body is left to it. Other
  * pieces bear no load and exert no force: those with a node or two that are shared, fixed or held
  * by handles go with these like rigid bodies, turned on the shortest way; the rest stays where it
  * was. A warning tells their number (GetNumberOfFrozenPieces()). Where no piece is held there is an

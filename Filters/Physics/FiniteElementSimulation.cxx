@@ -63,7 +63,8 @@ void FiniteElementSimulation::Warn(const EquilibriumReport& last)
     text << now.NumberOfFrozenPieces
          << " pieces of the mesh are not held: tetrahedra that are connected by their faces need "
             "three nodes that lie on no common line and are fixed, held by handles, or shared with "
-            "a piece that is held. One of them has tetrahedron "
+            "a piece that is held, or nodes that slide in planes of three directions. One of them "
+            "has tetrahedron "
          << now.FirstFrozenTetrahedron << ". They bear no load; " << now.NumberOfFollowingPieces
          << " of them go with nodes that they share, or that are held, the others stay where they "
             "were. Fix nodes of them, or connect them by faces.";

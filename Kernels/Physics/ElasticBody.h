@@ -29,7 +29,7 @@ struct ElasticMaterial
   /// In kg/m^3, greater than 0.
   double Density = 1000.0;
 
-  /// Linear tetrahedra do not deform any more where the ratio comes near 0.5.
+  /// Lambda grows without bounds where the ratio comes near 0.5.
   static constexpr double LargestPoissonRatio = 0.495;
 
   ///@{
