@@ -363,6 +363,11 @@ deformvolume::Resampling vtkDeformVolumeFilter::vtkInternals::ChooseResampler(
     default:
       break;
   }
+  const deformvolume::Deformation& deformation = this->State->Deformation;
+  using Kinds = deformvolume::ResamplerWish::Kinds;
+  wish.Deformation = deformation.IsInverseField() ? Kinds::InverseField
+    : deformation.IsField()                       ? Kinds::ForwardField
+                                                  : Kinds::Mesh;
   wish.Outside = this->GetOutside();
   wish.HasSmoothCut = deformvolume::HasCut(volume);
   wish.NeedsJacobian = this->GetExtraArrays().NeedsJacobian();
@@ -373,20 +378,19 @@ deformvolume::Resampling vtkDeformVolumeFilter::vtkInternals::ChooseResampler(
     throw Error("The resampler MESH_RASTERIZATION cannot do smooth cuts. Set SmoothCut of "
                 "vtkCutVolume to off, or Resampler to EXACT.");
   }
-  const deformvolume::Resampling method =
-    deformvolume::ChooseResampler(wish, this->State->Deformation,
-      [&](deformvolume::Resampling tried)
+  const deformvolume::Resampling method = deformvolume::ChooseResampler(wish,
+    [&](deformvolume::Resampling tried)
+    {
+      try
       {
-        try
-        {
-          checkMemory(tried);
-          return true;
-        }
-        catch (const Error&)
-        {
-          return false;
-        }
-      });
+        checkMemory(tried);
+        return true;
+      }
+      catch (const Error&)
+      {
+        return false;
+      }
+    });
   this->SetResamplerInUse(method);
   return method;
 }
@@ -544,25 +548,9 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfFading(
     return;
   }
   this->State->VersionsOfFading = versions;
-  std::string text;
-  const std::int64_t stretched =
-    links.CountStretched(mesh.GetTetrahedra(), mesh.GetNodeDisplacements());
-  if (stretched > 0)
-  {
-    text = (links.IsCountEstimated() ? "About " : "") + std::to_string(stretched) +
-      " tetrahedra of the volume outside the deformation mesh are stretched over more than 2 "
-      "output voxels, ";
-    text += mapped.Outside.FadeDistance > 0.0
-      ? "where the closest point of the mesh jumps, as between two bodies that move apart. Mesh "
-        "what lies between, or set a smaller FadeDistance."
-      : "as FadeDistance is 0 and the boundary of the mesh moves. Set a FadeDistance of at least "
-        "twice its displacement.";
-  }
-  const double longest = links.GetLongestDisplacement(mesh.GetTetrahedra(),
-    mesh.GetNodeDisplacements(), this->GetOutputGeometry(mapped.Whole).Spacing);
-  const std::string folds = deformvolume::FindFoldsOfFading(
-    "boundary of the deformation mesh moves", longest, mapped.Outside.FadeDistance);
-  text += (text.empty() || folds.empty() ? "" : " ") + folds;
+  const std::string text =
+    deformvolume::FindFaultOfFading(links, mesh.GetTetrahedra(), mesh.GetNodeDisplacements(),
+      this->GetOutputGeometry(mapped.Whole).Spacing, mapped.Outside.FadeDistance);
   if (!text.empty())
   {
     vtkWarningWithObjectMacro(this->Self, << text);

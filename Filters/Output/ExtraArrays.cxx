@@ -159,32 +159,13 @@ void ExtraArrays::UpdateRestPositions(const ImageGeometry& volume)
     return;
   }
   const Extent& extent = volume.PointExtent;
-  const glm::dmat4 toWorld = volume.GetIndexToWorld();
-  const std::int64_t width = GetSize(extent, 0);
-  const std::int64_t height = GetSize(extent, 1);
   std::array<float*, 3> positions;
   for (std::size_t axis = 0; axis < 3; ++axis)
   {
     this->Positions[axis] = MakeArray(POSITION_AXES[axis], 1, GetNumberOfPoints(extent));
     positions[axis] = this->Positions[axis]->GetPointer(0);
   }
-  ParallelFor(0, height * GetSize(extent, 2), 64,
-    [&](std::int64_t begin, std::int64_t end)
-    {
-      for (std::int64_t row = begin; row < end; ++row)
-      {
-        glm::dvec4 index(0.0, extent[2] + row % height, extent[4] + row / height, 1.0);
-        for (std::int64_t x = 0; x < width; ++x)
-        {
-          index.x = static_cast<double>(extent[0] + x);
-          const glm::dvec4 place = toWorld * index;
-          for (std::size_t axis = 0; axis < 3; ++axis)
-          {
-            positions[axis][row * width + x] = static_cast<float>(place[static_cast<int>(axis)]);
-          }
-        }
-      }
-    });
+  ComputeWorldPositions(volume, positions);
   this->PositionsGeometry = volume;
 }
 

@@ -64,6 +64,28 @@ std::string FindFoldsOfFading(const std::string& border, double longest, double 
     ": what lies outside may fold over. Set FadeDistance to at least twice that displacement.";
 }
 
+std::string FindFaultOfFading(const FadedLinks& links, const std::vector<Tetrahedron>& tetrahedra,
+  const float* displacements, const glm::dvec3& spacing, double fadeDistance)
+{
+  std::string text;
+  const std::int64_t stretched = links.CountStretched(tetrahedra, displacements);
+  if (stretched > 0)
+  {
+    text = (links.IsCountEstimated() ? "About " : "") + std::to_string(stretched) +
+      " tetrahedra of the volume outside the deformation mesh are stretched over more than 2 "
+      "output voxels, ";
+    text += fadeDistance > 0.0
+      ? "where the closest point of the mesh jumps, as between two bodies that move apart. Mesh "
+        "what lies between, or set a smaller FadeDistance."
+      : "as FadeDistance is 0 and the boundary of the mesh moves. Set a FadeDistance of at least "
+        "twice its displacement.";
+  }
+  const double longest = links.GetLongestDisplacement(tetrahedra, displacements, spacing);
+  const std::string folds =
+    FindFoldsOfFading("boundary of the deformation mesh moves", longest, fadeDistance);
+  return text + (text.empty() || folds.empty() ? "" : " ") + folds;
+}
+
 std::string FindFaultOfFading(const DisplacementField& field, const IndexBounds& box,
   const glm::dvec3& spacing, double fadeDistance)
 {

@@ -4,12 +4,15 @@
 
 #include "DeformVolumeExport.h"
 #include "DisplacementField.h"
+#include "FadedLinks.h"
 #include "IndexBounds.h"
 #include "OutsideVoxels.h"
+#include "Tetrahedron.h"
 
 #include <glm/vec3.hpp>
 
 #include <string>
+#include <vector>
 
 namespace deformvolume
 {
@@ -22,6 +25,13 @@ DEFORMVOLUME_EXPORT OutsideVoxels MakeKeptVoxels(double fadeDistance);
 /// empty. border: what moves, in words, with the verb. longest: by how much.
 DEFORMVOLUME_EXPORT std::string FindFoldsOfFading(
   const std::string& border, double longest, double fadeDistance);
+
+/// What is wrong with how the displacement of a mesh fades outside it: tetrahedra between voxels
+/// that follow distant parts of the boundary, and folds; else empty. displacements: of the nodes,
+/// three floats each, in output voxels. spacing: of the output.
+DEFORMVOLUME_EXPORT std::string FindFaultOfFading(const FadedLinks& links,
+  const std::vector<Tetrahedron>& tetrahedra, const float* displacements, const glm::dvec3& spacing,
+  double fadeDistance);
 
 /// What is wrong with how a displacement fades outside a field: where the border of the field moves
 /// by too much for FadeDistance, and any of a box is outside; else empty. box: in the indices that

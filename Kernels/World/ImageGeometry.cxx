@@ -2,6 +2,7 @@
 #include "ImageGeometry.h"
 
 #include "Error.h"
+#include "ParallelFor.h"
 
 #include <glm/common.hpp>
 #include <glm/gtc/type_ptr.hpp>
@@ -98,6 +99,31 @@ OutputMap GetOutputMap(const ImageGeometry& image, const ImageGeometry& output)
     map.Shift[static_cast<std::size_t>(row)] = DropRoundingError(shift[row]);
   }
   return map;
+}
+
+void ComputeWorldPositions(const ImageGeometry& image, const std::array<float*, 3>& positions)
+{
+  const Extent& extent = image.PointExtent;
+  const glm::dmat4 toWorld = image.GetIndexToWorld();
+  const std::int64_t width = GetSize(extent, 0);
+  const std::int64_t height = GetSize(extent, 1);
+  ParallelFor(0, height * GetSize(extent, 2), 64,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t row = begin; row < end; ++row)
+      {
+        glm::dvec4 index(0.0, extent[2] + row % height, extent[4] + row / height, 1.0);
+        for (std::int64_t x = 0; x < width; ++x)
+        {
+          index.x = static_cast<double>(extent[0] + x);
+          const glm::dvec4 place = toWorld * index;
+          for (std::size_t axis = 0; axis < 3; ++axis)
+          {
+            positions[axis][row * width + x] = static_cast<float>(place[static_cast<int>(axis)]);
+          }
+        }
+      }
+    });
 }
 
 std::string DescribeTransform(const ImageGeometry& geometry)

@@ -10,6 +10,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
+#include <array>
 #include <string>
 
 namespace deformvolume
@@ -44,6 +45,10 @@ DEFORMVOLUME_EXPORT bool AreSamePlaces(
 /// images whose axes are parallel have a diagonal matrix, and grids that lie over each other whole
 /// numbers.
 DEFORMVOLUME_EXPORT OutputMap GetOutputMap(const ImageGeometry& image, const ImageGeometry& output);
+
+/// The world positions of the points, x varying fastest, by axes: room for a float a point each.
+DEFORMVOLUME_EXPORT void ComputeWorldPositions(
+  const ImageGeometry& image, const std::array<float*, 3>& positions);
 
 /// Origin, spacing and direction, in words for an error.
 DEFORMVOLUME_EXPORT std::string DescribeTransform(const ImageGeometry& geometry);

@@ -3,7 +3,7 @@
 #define DeformVolumeResamplerChoice_h
 
 #include "DeformRequest.h"
-#include "Deformation.h"
+#include "DeformVolumeExport.h"
 #include "OutsideVoxels.h"
 
 #include <functional>
@@ -15,6 +15,13 @@ namespace deformvolume
 /// What is asked for.
 struct ResamplerWish
 {
+  enum class Kinds
+  {
+    Mesh,
+    ForwardField,
+    InverseField
+  };
+  Kinds Deformation = Kinds::Mesh;
   std::optional<Resampling> Method; // none: the choice is free
   OutsideVoxels Outside;
   bool HasSmoothCut = false;  // of the volume, which Exact alone knows
@@ -29,8 +36,8 @@ struct ResamplerWish
 /// except where the memory does not suffice for Exact, whose sampling mesh takes some 20 bytes a
 /// voxel, but does for MeshRasterization, and that can do the deformation: a mesh, with what is
 /// outside discarded, without a smooth cut, Jacobians and fold counts.
-Resampling ChooseResampler(const ResamplerWish& wish, const Deformation& deformation,
-  const std::function<bool(Resampling)>& fits);
+DEFORMVOLUME_EXPORT Resampling ChooseResampler(
+  const ResamplerWish& wish, const std::function<bool(Resampling)>& fits);
 
 } // namespace deformvolume
 

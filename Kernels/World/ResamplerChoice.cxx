@@ -8,10 +8,9 @@
 namespace deformvolume
 {
 
-Resampling ChooseResampler(const ResamplerWish& wish, const Deformation& deformation,
-  const std::function<bool(Resampling)>& fits)
+Resampling ChooseResampler(const ResamplerWish& wish, const std::function<bool(Resampling)>& fits)
 {
-  if (deformation.IsInverseField())
+  if (wish.Deformation == ResamplerWish::Kinds::InverseField)
   {
     if (wish.Method && *wish.Method != Resampling::MeshRasterization)
     {
@@ -28,7 +27,7 @@ Resampling ChooseResampler(const ResamplerWish& wish, const Deformation& deforma
     }
     return Resampling::MeshRasterization;
   }
-  const std::string obstacle = deformation.IsField()
+  const std::string obstacle = wish.Deformation == ResamplerWish::Kinds::ForwardField
     ? "forward displacement fields. Connect a tetrahedral mesh to input port 1"
     : wish.Outside.AreExtrapolated() ? "the outside mode EXTRAPOLATE. Set OutsideMode to DISCARD"
     : wish.Outside.AreKept()         ? "the outside mode KEEP. Set OutsideMode to DISCARD"

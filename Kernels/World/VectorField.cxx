@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "VectorField.h"
+
+#include "Error.h"
+#include "FieldGeometry.h"
+#include "ParallelFor.h"
+#include "VectorConversion.h"
+
+#include <glm/common.hpp>
+
+#include <atomic>
+#include <limits>
+
+namespace deformvolume
+{
+
+void VectorField::Set(const ImageGeometry& grid, const VectorView& vectors, bool isInverse)
+{
+  const std::int64_t points = GetNumberOfPoints(grid.PointExtent);
+  if (points == 0)
+  {
+    throw Error("The displacement field is empty: its extent is " +
+      DescribeExtent(grid.PointExtent) + ". Give at least one point on each axis.");
+  }
+  CheckTransform(grid, "the displacement field");
+  if (vectors.Count != static_cast<std::size_t>(points))
+  {
+    throw Error("The displacement field has " + std::to_string(points) + " points, but " +
+      std::to_string(vectors.Count) + " vectors. Give one vector for each point.");
+  }
+  this->Grid = grid;
+  this->Vectors = vectors;
+  this->Inverse = isInverse;
+  this->IsOld = true;
+}
+
+void VectorField::Update(const ImageGeometry& volume, const OutputMap& toOutput)
+{
+  if (!this->IsOld && volume == this->Volume && toOutput == this->ToOutput)
+  {
+    return;
+  }
+  this->IsOld = true; // where it fails
+  this->Convert(volume, toOutput);
+  this->IsOld = false;
+  this->Volume = volume;
+  this->ToOutput = toOutput;
+  ++this->Version;
+}
+
+void VectorField::Convert(const ImageGeometry& volume, const OutputMap& toOutput)
+{
+  const Extent& points = this->Grid.PointExtent;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    this->Dimensions[static_cast<std::size_t>(axis)] = static_cast<int>(GetSize(points, axis));
+  }
+  this->IndexToField = GetIndexToField(this->Grid, volume, this->Inverse ? &toOutput : nullptr);
+  std::vector<std::size_t> taken;
+  if (!this->Inverse)
+  {
+    taken = this->TakeVoxels(volume.PointExtent);
+  }
+  const std::size_t count = taken.empty() ? this->Vectors.Count : taken.size();
+  const VectorConversion conversion(GetToDisplacement(volume, toOutput, 1.0));
+  this->Displacements.resize(3 * count);
+  constexpr std::size_t some = 512;
+  std::atomic<std::size_t> notFinite{ std::numeric_limits<std::size_t>::max() };
+  std::atomic<bool> tooFar{ false };
+  ParallelForParts(count, some,
+    [&](std::size_t begin, std::size_t end)
+    {
+      std::array<glm::dvec3, some> vectors;
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        const std::size_t point = taken.empty() ? i : taken[i];
+        vectors[i - begin] = this->Vectors.Get(point);
+        if (!IsFiniteVector(vectors[i - begin]))
+        {
+          Lower(notFinite, point);
+        }
+      }
+      if (!conversion.Convert(vectors.data(), end - begin, &this->Displacements[3 * begin]))
+      {
+        tooFar = true;
+      }
+    });
+  if (notFinite < this->Vectors.Count)
+  {
+    throw Error("Vector " + std::to_string(notFinite) +
+      " of the displacement field is not finite. Remove NaN and infinity from it.");
+  }
+  if (tooFar)
+  {
+    ThrowTooFar();
+  }
+}
+
+std::vector<std::size_t> VectorField::TakeVoxels(const Extent& voxels)
+{
+  std::vector<std::size_t> taken;
+  const int step = GetStep(voxels, this->IndexToField, this->Dimensions);
+  if (step == 1)
+  {
+    return taken;
+  }
+  std::array<std::int64_t, 3> first{};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    first[axis] = static_cast<std::int64_t>(this->IndexToField[4 * axis + 3]);
+  }
+  taken.reserve(static_cast<std::size_t>(GetNumberOfPoints(voxels)));
+  for (std::int64_t z = voxels[4]; z <= voxels[5]; ++z)
+  {
+    for (std::int64_t y = voxels[2]; y <= voxels[3]; ++y)
+    {
+      const std::int64_t row =
+        ((step * z + first[2]) * this->Dimensions[1] + step * y + first[1]) * this->Dimensions[0];
+      for (std::int64_t x = voxels[0]; x <= voxels[1]; ++x)
+      {
+        taken.push_back(static_cast<std::size_t>(row + step * x + first[0]));
+      }
+    }
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    this->Dimensions[axis] = static_cast<int>(GetSize(voxels, static_cast<int>(axis)));
+    this->IndexToField[5 * axis] = 1.0;
+    this->IndexToField[4 * axis + 3] = -voxels[2 * axis];
+  }
+  return taken;
+}
+
+DisplacementField VectorField::Get(const OutsideVoxels& outside) const
+{
+  DisplacementField field;
+  field.Dimensions = this->Dimensions;
+  field.Vectors = this->Displacements.data();
+  field.IndexToField = this->IndexToField;
+  SetOutside(outside, glm::abs(this->Grid.Spacing), field);
+  return field;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "WorldDeformer.h"
+
+#include "DeformedBounds.h"
+#include "Error.h"
+#include "LookupBounds.h"
+#include "MeshBounds.h"
+#include "OutputExtent.h"
+#include "WorldBoxes.h"
+#include "WorldDeformerInternals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace deformvolume
+{
+
+WorldDeformer::WorldDeformer()
+  : Impl(std::make_unique<Internals>())
+{
+}
+
+WorldDeformer::~WorldDeformer() = default;
+
+std::string WorldDeformer::SetDevice(const std::string& request)
+{
+  const std::string name = this->Impl->Deformer.SetDevice(request);
+  this->Impl->DeviceRequest = request;
+  return name;
+}
+
+void WorldDeformer::SetMemoryLimit(std::uint64_t bytes)
+{
+  this->Impl->Deformer.SetMemoryLimit(bytes);
+}
+
+void WorldDeformer::SetVolume(const ImageGeometry& volume)
+{
+  CheckVolume(volume);
+  GetPadded(volume.PointExtent, 0); // which checks its size
+  if (this->Impl->Volume != volume)
+  {
+    this->Impl->Volume = volume;
+    this->SetArrays({});
+    this->SetMasks({});
+  }
+}
+
+void WorldDeformer::SetArrays(const std::vector<VolumeArray>& arrays)
+{
+  this->Impl->Arrays = arrays;
+  ++this->Impl->ArraysVersion;
+}
+
+void WorldDeformer::SetMasks(const WorldMasks& masks)
+{
+  this->Impl->Masks = masks;
+  ++this->Impl->MasksVersion;
+}
+
+void WorldDeformer::SetMesh(const VectorView& points, MeshTetrahedra&& tetrahedra)
+{
+  this->Impl->Mesh.Set(points, std::move(tetrahedra));
+  this->Impl->Deformation = Internals::Deformations::Mesh;
+}
+
+void WorldDeformer::SetNodeVectors(const VectorView& vectors)
+{
+  if (this->Impl->Deformation != Internals::Deformations::Mesh)
+  {
+    throw Error("There is no deformation mesh. Set one before its displacements.");
+  }
+  this->Impl->Mesh.SetVectors(vectors);
+}
+
+void WorldDeformer::SetField(const ImageGeometry& grid, const VectorView& vectors, bool isInverse)
+{
+  this->Impl->Field.Set(grid, vectors, isInverse);
+  this->Impl->Deformation = Internals::Deformations::Field;
+}
+
+void WorldDeformer::SetOutside(const OutsideVoxels& outside)
+{
+  this->Impl->Outside = outside;
+}
+
+void WorldDeformer::SetReference(const std::optional<ImageGeometry>& reference)
+{
+  if (reference)
+  {
+    if (GetNumberOfPoints(reference->PointExtent) == 0)
+    {
+      throw Error("The reference grid is empty: its extent is " +
+        DescribeExtent(reference->PointExtent) + ". Give one with voxels.");
+    }
+    CheckTransform(*reference, "the reference grid");
+    GetPadded(reference->PointExtent, 0); // which checks its size
+  }
+  this->Impl->Reference = reference;
+}
+
+void WorldDeformer::SetOutput(const OutputSettings& settings)
+{
+  for (int axis = 0; axis < 3 && settings.Spacing; ++axis)
+  {
+    const double spacing = (*settings.Spacing)[axis];
+    if (!std::isfinite(spacing) || spacing <= 0.0)
+    {
+      throw Error(std::string("The output spacing is ") + std::to_string(spacing) + " on axis " +
+        "xyz"[axis] + ". Set a spacing greater than 0.");
+    }
+  }
+  constexpr int mostPadding = 1 << 20;
+  if (settings.Padding < -mostPadding || settings.Padding > mostPadding)
+  {
+    throw Error("The padding is " + std::to_string(settings.Padding) +
+      " voxels. Set one between -2^20 and 2^20.");
+  }
+  this->Impl->Settings = settings;
+}
+
+ImageGeometry WorldDeformer::FindOutput()
+{
+  this->Impl->UpdateDeformation();
+  ImageGeometry output = this->Impl->GetOutputGrid();
+  output.PointExtent = this->Impl->FindWholeExtent();
+  return output;
+}
+
+WorldReport WorldDeformer::Deform(const WorldRequest& request)
+{
+  return this->Impl->Deform(request);
+}
+
+std::uint64_t WorldDeformer::GetDeviceMemory() const
+{
+  return this->Impl->Deformer.GetDeviceMemory();
+}
+
+void WorldDeformer::ReleaseMemory()
+{
+  this->Impl->Deformer.ReleaseMemory();
+  this->Impl->Forget();
+}
+
+ImageGeometry WorldDeformer::Internals::GetOutputGrid() const
+{
+  if (this->Reference)
+  {
+    return *this->Reference;
+  }
+  ImageGeometry output = *this->Volume;
+  output.PointExtent = ImageGeometry().PointExtent;
+  for (int axis = 0; axis < 3 && this->Settings.Spacing; ++axis)
+  {
+    // A volume with negative spacing keeps its sense.
+    output.Spacing[axis] =
+      std::copysign((*this->Settings.Spacing)[axis], this->Volume->Spacing[axis]);
+  }
+  return output;
+}
+
+void WorldDeformer::Internals::CheckReach() const
+{
+  if (!this->Reference)
+  {
+    return;
+  }
+  const VoxelGrid voxelGrid = this->GetVoxelGrid();
+  const IndexBounds bounds = GetOutputTransform(voxelGrid).ToOutput(GetBox(voxelGrid));
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double farthest = std::max(std::abs(bounds.Min[axis]), std::abs(bounds.Max[axis]));
+    if (!(farthest <= MostOutputIndex))
+    {
+      std::ostringstream text;
+      text << "The volume at rest reaches to the index " << farthest
+           << " in the reference grid on axis "
+           << "xyz"[axis] << ", beyond 2^21. The reference grid has "
+           << DescribeTransform(*this->Reference)
+           << ". Give one that lies where the volume does, in the same world units, or whose "
+              "spacing is greater.";
+      throw Error(text.str());
+    }
+  }
+}
+
+void WorldDeformer::Internals::UpdateDeformation()
+{
+  if (!this->Volume)
+  {
+    throw Error("There is no volume. Set one first.");
+  }
+  if (this->Deformation == Deformations::None)
+  {
+    throw Error("There is no deformation. Set a mesh with displacements, or a field.");
+  }
+  this->ToOutput = GetOutputMap(*this->Volume, this->GetOutputGrid());
+  this->CheckReach();
+  if (!this->IsMesh())
+  {
+    this->Field.Update(*this->Volume, this->ToOutput);
+    return;
+  }
+  if (!this->Mesh.HasVectors())
+  {
+    throw Error("The deformation mesh has no displacements. Set one for each of its points.");
+  }
+  this->Mesh.Update(*this->Volume, this->ToOutput);
+}
+
+IndexBounds WorldDeformer::Internals::FindBounds()
+{
+  const VoxelGrid voxelGrid{ this->Volume->PointExtent, this->ToOutput, {} };
+  if (!this->IsMesh())
+  {
+    const DisplacementField field = this->Field.Get(this->Outside);
+    IndexBounds bounds = this->Field.IsInverse() ? ComputeLookupBounds(voxelGrid, field)
+                                                 : ComputeDeformedBounds(voxelGrid, field);
+    if (bounds.IsEmpty())
+    {
+      throw Error("The displacement field holds no voxel of the volume. " +
+        DescribeBoxes(this->Field.GetGrid(), *this->Volume));
+    }
+    return bounds;
+  }
+  const MeshAtRest mesh = this->Mesh.GetAtRest();
+  const float* displacements = this->Mesh.GetDisplacements().data();
+  const MappedVolume mapped = this->GetMapped();
+  if (this->Outside.AreExtrapolated())
+  {
+    this->Mapping.Update(mesh, mapped, {});
+    return ComputeDeformedBounds(
+      voxelGrid, this->Mapping.GetLinks(), mesh.Tetrahedra, displacements);
+  }
+  if (this->Outside.AreKept() && !this->Mapping.IsCurrent(mesh, mapped))
+  {
+    this->Mapping.Update(mesh, mapped, {});
+  }
+  IndexBounds bounds =
+    ComputeDeformedBounds(voxelGrid, mesh.Points, mesh.Tetrahedra, displacements);
+  if (this->Outside.AreKept())
+  {
+    bounds.Add(
+      this->Mapping.GetMapping().Faded.ComputeBounds(voxelGrid, mesh.Tetrahedra, displacements));
+  }
+  if (bounds.IsEmpty())
+  {
+    this->Mapping.Update(mesh, mapped, {}); // which says what is wrong
+    throw Error("The deformed volume has no bounds. Check the deformation mesh.");
+  }
+  return bounds;
+}
+
+Extent WorldDeformer::Internals::FindWholeExtent()
+{
+  if (this->Reference)
+  {
+    return this->Reference->PointExtent;
+  }
+  const ImageGeometry grid = this->GetOutputGrid();
+  switch (this->Settings.Bounds)
+  {
+    case OutputSettings::BoundsModes::Volume:
+      return GetPadded(
+        GetExtentAround(GetVolumeBounds(*this->Volume, this->Volume->Spacing / grid.Spacing)),
+        this->Settings.Padding);
+    case OutputSettings::BoundsModes::Custom:
+      return GetPadded(GetExtentAround(GetWorldBoxBounds(this->Settings.CustomBounds.data(), grid)),
+        this->Settings.Padding);
+    default:
+      return GetPadded(GetExtentInside(this->FindBounds()), this->Settings.Padding);
+  }
+}
+
+} // namespace deformvolume

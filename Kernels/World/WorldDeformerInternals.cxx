@@ -1,0 +1,517 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "WorldDeformerInternals.h"
+
+#include "Background.h"
+#include "Error.h"
+#include "Fading.h"
+#include "FieldFolds.h"
+#include "ParallelFor.h"
+#include "ResamplerChoice.h"
+#include "WorldBoxes.h"
+
+#include <algorithm>
+#include <atomic>
+#include <memory>
+#include <thread>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+// The part of a progress between two fractions, told in the thread that calls this only. Other
+// threads learn whether an end was asked for.
+std::function<bool(double)> GetPart(
+  const std::function<bool(double)>& progress, double from, double to)
+{
+  if (!progress)
+  {
+    return {};
+  }
+  const std::thread::id thread = std::this_thread::get_id();
+  const auto aborted = std::make_shared<std::atomic<bool>>(false);
+  return [=](double done)
+  {
+    if (std::this_thread::get_id() == thread && !*aborted && !progress(from + (to - from) * done))
+    {
+      *aborted = true;
+    }
+    return !*aborted;
+  };
+}
+
+bool AreSame(const std::vector<VolumeArray>& first, const std::vector<VolumeArray>& second)
+{
+  return std::equal(first.begin(), first.end(), second.begin(), second.end(),
+    [](const VolumeArray& a, const VolumeArray& b)
+    { return a.Data == b.Data && a.Type == b.Type && a.Components == b.Components; });
+}
+
+// The data are borrowed: who gave them keeps them.
+VolumeArray MakeFloatArray(const std::vector<float>& values, double background)
+{
+  VolumeArray array;
+  array.Data = values.data();
+  array.Owner = std::shared_ptr<const void>(array.Data, [](const void*) {});
+  array.Type = ElementType::Float32;
+  array.Background = background;
+  return array;
+}
+
+} // namespace
+
+void WorldDeformer::Internals::Forget()
+{
+  this->SentGrid = VoxelGrid();
+  this->SentWidth = 0;
+  this->SentArrays.clear();
+  this->SentArraysVersion = 0;
+  this->SentMasksVersion = 0;
+  this->SentDeformation = Deformations::None;
+  this->LastOutputs.clear();
+  this->LastCoverage = nullptr;
+}
+
+void WorldDeformer::Internals::UpdateRestPositions()
+{
+  if (this->PositionsVolume == this->Volume)
+  {
+    return;
+  }
+  std::array<float*, 3> positions;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+  {
+    this->Positions[axis].resize(
+      static_cast<std::size_t>(GetNumberOfPoints(this->Volume->PointExtent)));
+    positions[axis] = this->Positions[axis].data();
+  }
+  ComputeWorldPositions(*this->Volume, positions);
+  this->PositionsVolume = this->Volume;
+}
+
+void WorldDeformer::Internals::UpdateJacobians(const std::function<bool(double)>& progress)
+{
+  this->Jacobians.resize(static_cast<std::size_t>(GetNumberOfPoints(this->Volume->PointExtent)));
+  if (!this->IsMesh())
+  {
+    ComputeFieldJacobians(
+      this->GetVoxelGrid(), this->Field.Get(this->Outside), {}, this->Jacobians.data());
+    return;
+  }
+  const MeshAtRest mesh = this->Mesh.GetAtRest();
+  const MappedVolume mapped = this->GetMapped();
+  if (this->OfMeshVersion != this->Mapping.GetVersion() || !this->Mapping.IsCurrent(mesh, mapped))
+  {
+    this->Mapping.Update(mesh, mapped, progress);
+    this->OfMesh.SetMapping(
+      mapped.Part, mapped.Whole.Spacing, this->Mapping.GetMapping(), mesh.Points, mesh.Tetrahedra);
+    this->OfMeshVersion = this->Mapping.GetVersion();
+  }
+  this->OfMesh.Compute(this->ToOutput, mesh.Points, mesh.Tetrahedra,
+    this->Mesh.GetDisplacements().data(), this->Jacobians.data());
+}
+
+std::vector<VolumeArray> WorldDeformer::Internals::MakeArrays(
+  const WorldRequest& request, const std::function<bool(double)>& progress)
+{
+  std::vector<VolumeArray> arrays = this->Arrays;
+  if (request.RestPositions)
+  {
+    this->UpdateRestPositions();
+    for (const std::vector<float>& positions : this->Positions)
+    {
+      arrays.push_back(MakeFloatArray(positions, request.Background));
+    }
+  }
+  if (request.Jacobians && !this->IsInverse())
+  {
+    this->UpdateJacobians(progress);
+    arrays.push_back(MakeFloatArray(this->Jacobians, request.Background));
+    ++this->ArraysVersion; // its values are others
+  }
+  for (VolumeArray& array : arrays)
+  {
+    // Only the arrays of the volume may be labels.
+    const auto place = static_cast<std::size_t>(&array - arrays.data());
+    array.Categorical |= request.IsNearest && place < this->Arrays.size();
+  }
+  return arrays;
+}
+
+void WorldDeformer::Internals::CheckMemory(
+  const std::vector<VolumeArray>& arrays, const Extent& extent, Resampling method)
+{
+  const VoxelGrid voxelGrid = this->GetVoxelGrid();
+  const bool isMesh = this->IsMesh();
+  const std::size_t tetrahedra = isMesh ? this->Mesh.GetAtRest().Tetrahedra.size() : 0;
+  const std::size_t nodes = isMesh
+    ? this->Mesh.GetAtRest().Points.size()
+    : static_cast<std::size_t>(GetNumberOfPoints(this->Field.Get(this->Outside)));
+  // The memory of the output is there already.
+  std::uint64_t heldBytes = 0;
+  for (const VolumeArray& array : arrays)
+  {
+    heldBytes += GetTupleSize(array);
+  }
+  heldBytes = (heldBytes + 1) * static_cast<std::uint64_t>(GetNumberOfPoints(extent));
+  if (method == Resampling::MeshRasterization)
+  {
+    this->Deformer.CheckRasterizationMemory(
+      voxelGrid, arrays, extent, nodes, tetrahedra, heldBytes);
+    return;
+  }
+  const std::uint64_t runBytes =
+    isMesh ? this->Mapping.GetRunBytes(this->Mesh.GetAtRest(), this->GetMapped()) : 0;
+  this->Deformer.CheckMemory(
+    voxelGrid, arrays, extent, nodes, tetrahedra, !isMesh, runBytes, heldBytes);
+}
+
+Resampling WorldDeformer::Internals::ChooseMethod(
+  const WorldRequest& request, const std::vector<VolumeArray>& arrays, const Extent& whole)
+{
+  ResamplerWish wish;
+  using Kinds = ResamplerWish::Kinds;
+  wish.Deformation = this->IsMesh() ? Kinds::Mesh
+    : this->Field.IsInverse()       ? Kinds::InverseField
+                                    : Kinds::ForwardField;
+  wish.Outside = this->Outside;
+  wish.HasSmoothCut = this->Masks.CutTetrahedra != nullptr;
+  wish.NeedsJacobian = request.Jacobians != nullptr;
+  wish.CountsFolds = request.FoldCounts != nullptr;
+  return ChooseResampler(wish,
+    [&](Resampling method)
+    {
+      try
+      {
+        this->CheckMemory(arrays, whole, method);
+        return true;
+      }
+      catch (const Error&)
+      {
+        return false;
+      }
+    });
+}
+
+void WorldDeformer::Internals::SendVolume(const std::vector<VolumeArray>& arrays, Resampling method)
+{
+  const bool links = method != Resampling::MeshRasterization;
+  std::size_t widest = 0;
+  for (const VolumeArray& array : arrays)
+  {
+    widest = std::max(widest, GetTupleSize(array));
+  }
+  const VoxelGrid voxelGrid = this->GetVoxelGrid();
+  if (this->SentGrid.VertexExtent != voxelGrid.VertexExtent ||
+    this->SentGrid.ToOutput != voxelGrid.ToOutput || this->SentWidth < widest ||
+    this->SentForLinks != links)
+  {
+    this->Forget();
+    this->Deformer.SetVoxelGrid(voxelGrid, widest, links);
+    this->SentGrid = voxelGrid;
+    this->SentWidth = widest;
+    this->SentForLinks = links;
+  }
+  if (this->SentArraysVersion != this->ArraysVersion || !AreSame(this->SentArrays, arrays))
+  {
+    this->Deformer.SetArrays(arrays);
+    this->SentArrays = arrays;
+    this->SentArraysVersion = this->ArraysVersion;
+    this->LastOutputs.clear();
+  }
+  this->Deformer.SetArrayOptions(arrays);
+  if (this->SentMasksVersion != this->MasksVersion)
+  {
+    this->Deformer.SetBlanked(this->Masks.Blanked);
+    this->Deformer.SetActiveTetrahedra(this->Masks.ActiveTetrahedra);
+    this->Deformer.SetBoundaryDistances(this->Masks.BoundaryDistances);
+    this->Deformer.SetCut(this->Masks.CutTetrahedra, this->Masks.CutDistances);
+    this->SentMasksVersion = this->MasksVersion;
+  }
+}
+
+void WorldDeformer::Internals::SendMesh(const std::function<bool(double)>& progress)
+{
+  const MeshAtRest mesh = this->Mesh.GetAtRest();
+  const MappedVolume mapped = this->GetMapped();
+  const bool isSent = this->SentDeformation == Deformations::Mesh && !this->SentForRasterization &&
+    this->SentShape == this->Mapping.GetVersion() && this->Mapping.IsCurrent(mesh, mapped);
+  if (!isSent)
+  {
+    this->Mapping.Update(mesh, mapped, progress);
+    const StaticMapping& mapping = this->Mapping.GetMapping();
+    const std::vector<Tetrahedron>* tetrahedra = &mesh.Tetrahedra;
+    std::size_t nodes = mesh.Points.size();
+    this->HasFadedMesh = mapping.Faded.AreThere();
+    if (this->HasFadedMesh)
+    {
+      this->Faded.Set(mapping.Faded, *tetrahedra, nodes);
+      tetrahedra = &this->Faded.GetTetrahedra();
+      nodes = this->Faded.GetNumberOfNodes();
+    }
+    if (this->Mapping.IsByRuns())
+    {
+      this->Deformer.SetMesh(
+        tetrahedra->data(), tetrahedra->size(), nodes, mapping.Runs, &mapping.Boundary);
+    }
+    else
+    {
+      this->Deformer.SetMesh(
+        tetrahedra->data(), tetrahedra->size(), nodes, mapping.Links.data(), &mapping.Boundary);
+    }
+    this->SentShape = this->Mapping.GetVersion();
+  }
+  if (!this->Outside.AreExtrapolated())
+  {
+    // Only the bounds of an extrapolated deformation need them again.
+    this->Mapping.ReleaseVoxels();
+  }
+  if (!isSent || this->SentVectors != this->Mesh.GetVectorsVersion())
+  {
+    const float* displacements = this->Mesh.GetDisplacements().data();
+    if (this->HasFadedMesh)
+    {
+      this->Faded.Move(displacements, mesh.Points.size(), nullptr);
+      displacements = this->Faded.GetDisplacements().data();
+    }
+    this->Deformer.SetNodeDisplacements(displacements, nullptr, true);
+  }
+  this->SentVectors = this->Mesh.GetVectorsVersion();
+  this->SentDeformation = Deformations::Mesh;
+  this->SentForRasterization = false;
+}
+
+void WorldDeformer::Internals::SendRestMesh()
+{
+  const MeshAtRest mesh = this->Mesh.GetAtRest();
+  CheckBoxes(mesh, *this->Volume);
+  const bool isSent = this->SentDeformation == Deformations::Mesh && this->SentForRasterization &&
+    this->SentShape == mesh.ShapeVersion;
+  if (!isSent)
+  {
+    this->Deformer.SetRestMesh(
+      mesh.Tetrahedra.data(), mesh.Tetrahedra.size(), mesh.Points.size(), &mesh.Points.front().x);
+  }
+  if (!isSent || this->SentVectors != this->Mesh.GetVectorsVersion())
+  {
+    this->Deformer.SetNodeDisplacements(this->Mesh.GetDisplacements().data(), nullptr, true);
+  }
+  this->SentShape = mesh.ShapeVersion;
+  this->SentVectors = this->Mesh.GetVectorsVersion();
+  this->SentDeformation = Deformations::Mesh;
+  this->SentForRasterization = true;
+}
+
+void WorldDeformer::Internals::SendField()
+{
+  if (this->SentDeformation == Deformations::Field &&
+    this->SentVectors == this->Field.GetVersion() && this->SentOutside == this->Outside)
+  {
+    return;
+  }
+  const DisplacementField field = this->Field.Get(this->Outside);
+  if (this->Field.IsInverse())
+  {
+    this->Deformer.SetInverseField(field);
+  }
+  else
+  {
+    this->Deformer.SetDisplacementField(field);
+  }
+  this->SentDeformation = Deformations::Field;
+  this->SentVectors = this->Field.GetVersion();
+  this->SentOutside = this->Outside;
+}
+
+DeformRequest WorldDeformer::Internals::MakeRequest(
+  const WorldRequest& request, const Extent& whole, Resampling method)
+{
+  DeformRequest made;
+  made.Method = method;
+  made.Interpolation = request.Interpolation;
+  made.OutputExtent = GetNumberOfPoints(request.OutputExtent) > 0 ? request.OutputExtent : whole;
+  made.WholeOutputExtent = whole;
+  if (!Contains(whole, made.OutputExtent))
+  {
+    throw Error("The extent " + DescribeExtent(made.OutputExtent) +
+      " was asked for, which is not within that of the output, " + DescribeExtent(whole) + ".");
+  }
+  made.Outputs = request.Outputs;
+  made.Coverage = request.Coverage;
+  const auto voxels = static_cast<std::size_t>(GetNumberOfPoints(made.OutputExtent));
+  for (std::size_t axis = 0; axis < 3 && request.RestPositions; ++axis)
+  {
+    this->PositionsOutput[axis].resize(voxels);
+    made.Outputs.push_back(this->PositionsOutput[axis].data());
+  }
+  if (request.Jacobians && !this->IsInverse())
+  {
+    made.Outputs.push_back(request.Jacobians);
+  }
+  if (request.FoldCounts)
+  {
+    std::fill_n(request.FoldCounts, voxels, 0U);
+    made.FoldCounts = request.FoldCounts;
+  }
+  made.Incremental = request.IsIncremental;
+  if (request.IsIncremental && this->LastOutputs == request.Outputs &&
+    this->LastCoverage == request.Coverage && this->LastExtent == made.OutputExtent)
+  {
+    made.LastOutputs.assign(request.Outputs.begin(), request.Outputs.end());
+    made.LastCoverage = request.Coverage;
+  }
+  made.Progress = GetPart(request.Progress, 0.3, 1.0);
+  return made;
+}
+
+WorldReport WorldDeformer::Internals::Deform(const WorldRequest& request)
+{
+  if (this->Arrays.empty() && !request.RestPositions && !request.Jacobians)
+  {
+    throw Error("The volume has no arrays. Set at least one.");
+  }
+  if (request.Outputs.size() != this->Arrays.size())
+  {
+    throw Error("There is room for " + std::to_string(request.Outputs.size()) +
+      " arrays of the output, but the volume has " + std::to_string(this->Arrays.size()) +
+      ". Give room for each.");
+  }
+  if (request.IsIncremental && (request.RestPositions || request.Jacobians || request.FoldCounts))
+  {
+    throw Error("Rest positions, Jacobians and fold counts are made of the whole output. Ask for "
+                "them, or for an incremental update.");
+  }
+  WorldReport report;
+  report.Device = this->Deformer.SetDevice(this->DeviceRequest);
+  if (!this->Known || report.Device != this->Device)
+  {
+    this->Forget();
+  }
+  this->Device = report.Device;
+  this->Known = false; // unless all ends well
+  this->UpdateDeformation();
+  const Extent whole = this->FindWholeExtent();
+  const auto progress = GetPart(request.Progress, 0.0, 0.3);
+  const std::vector<VolumeArray> arrays = this->MakeArrays(request, progress);
+  report.Method = this->ChooseMethod(request, arrays, whole);
+  DeformRequest made = this->MakeRequest(request, whole, report.Method);
+  this->CheckMemory(arrays, made.OutputExtent, report.Method);
+  this->SendVolume(arrays, report.Method);
+  if (!this->IsMesh())
+  {
+    this->SendField();
+  }
+  else if (report.Method == Resampling::MeshRasterization)
+  {
+    this->SendRestMesh();
+  }
+  else
+  {
+    this->SendMesh(progress);
+  }
+  if (made.Progress && !made.Progress(0.0))
+  {
+    this->Known = true; // it has all that was sent
+    throw Aborted();
+  }
+  this->LastOutputs.clear();
+  static_cast<DeformReport&>(report) = this->Deformer.Deform(made);
+  this->Known = true;
+  if (request.IsIncremental)
+  {
+    this->LastOutputs = request.Outputs;
+    this->LastCoverage = request.Coverage;
+    this->LastExtent = made.OutputExtent;
+  }
+  this->Finish(request, made.OutputExtent);
+  this->Describe(request, whole, report);
+  return report;
+}
+
+void WorldDeformer::Internals::Finish(const WorldRequest& request, const Extent& extent)
+{
+  const auto voxels = static_cast<std::size_t>(GetNumberOfPoints(extent));
+  for (std::size_t axis = 0; axis < 3 && request.RestPositions; ++axis)
+  {
+    std::vector<float>& values = this->PositionsOutput[axis];
+    for (std::size_t i = 0; i < voxels; ++i)
+    {
+      request.RestPositions[3 * i + axis] = values[i];
+    }
+    std::vector<float>().swap(values);
+  }
+  if (request.Jacobians && this->IsInverse())
+  {
+    ComputeInverseFieldJacobians(extent, this->Field.Get(this->Outside), request.Jacobians);
+    for (std::size_t i = 0; i < voxels; ++i)
+    {
+      request.Jacobians[i] =
+        request.Coverage[i] ? request.Jacobians[i] : ClampTo<float>(request.Background);
+    }
+  }
+  for (std::size_t i = 0; i < voxels && request.FoldCounts; ++i)
+  {
+    // Where nothing overlaps nothing has been counted.
+    request.FoldCounts[i] = std::max(request.FoldCounts[i], request.Coverage[i] ? 1U : 0U);
+  }
+}
+
+void WorldDeformer::Internals::Describe(
+  const WorldRequest& request, const Extent& whole, WorldReport& report)
+{
+  const bool isRasterized = report.Method == Resampling::MeshRasterization;
+  if (this->IsInverse())
+  {
+    report.NumberOfInvertedTetrahedra = CountInvertedTetrahedra(this->Field.Get(false));
+  }
+  if (!isRasterized)
+  {
+    report.NumberOfFlatTetrahedra = this->IsMesh() ? this->Mapping.GetNumberOfFlatTetrahedra() : 0;
+  }
+  const auto warn = [&](const std::string& warning)
+  {
+    if (!warning.empty())
+    {
+      report.Warnings += (report.Warnings.empty() ? "" : " ") + warning;
+    }
+  };
+  if (report.NumberOfOverstretchedCells > 0)
+  {
+    warn(std::to_string(report.NumberOfOverstretchedCells) +
+      " cells of the volume have a tetrahedron that is stretched over more than 4,000 output "
+      "voxels; these tetrahedra are skipped. Check the deformation, or set a greater output "
+      "spacing.");
+  }
+  if (this->IsMesh())
+  {
+    warn(this->Mesh.GetWarnings());
+    const MeshAtRest mesh = this->Mesh.GetAtRest();
+    const FadedLinks& links = this->Mapping.GetMapping().Faded;
+    if (links.AreThere() && this->Mapping.IsCurrent(mesh, this->GetMapped()))
+    {
+      warn(FindFaultOfFading(links, mesh.Tetrahedra, this->Mesh.GetDisplacements().data(),
+        this->GetOutputGrid().Spacing, this->Outside.FadeDistance));
+    }
+  }
+  else if (this->Outside.AreKept())
+  {
+    const Extent& moved = this->Field.IsInverse() ? whole : this->Volume->PointExtent;
+    warn(FindFaultOfFading(this->Field.Get(this->Outside), GetBox({ moved, {}, {} }),
+      glm::abs(this->GetOutputGrid().Spacing), this->Outside.FadeDistance));
+  }
+  const bool isWhole =
+    GetNumberOfPoints(request.OutputExtent) == 0 || request.OutputExtent == whole;
+  if (report.NumberOfCoveredVoxels == 0 && isWhole)
+  {
+    warn(this->IsInverse()
+        ? "The inverse displacement field leads from no voxel of the output to the volume: all of "
+          "the output is background. Check that the field holds points of the output, that its "
+          "vectors lead from there to the volume, and that all are in the same world coordinates."
+        : "The deformed volume covers no voxel of the output: all of it is background. Check the "
+          "grid of the output, and that the deformation mesh holds neighbouring voxels of the "
+          "volume.");
+  }
+}
+
+} // namespace deformvolume

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "WorldMesh.h"
+
+#include "DisplacementField.h" // for LargestDisplacement
+#include "Error.h"
+#include "ParallelFor.h"
+#include "VectorConversion.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+constexpr std::size_t NodesAtATime = 512;
+
+// Copies vectors. Those that are not finite are marked, and become zeros.
+void CopyVectors(const VectorView& from, std::vector<glm::dvec3>& to, NodeFaults& faults)
+{
+  to.resize(from.Count);
+  faults.Reset();
+  faults.Resize(from.Count);
+  ParallelForParts(from.Count, NodesAtATime,
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        to[i] = from.Get(i);
+        if (!IsFiniteVector(to[i]))
+        {
+          to[i] = glm::dvec3(0.0);
+          faults.Mark(static_cast<std::int64_t>(i), NodeFaults::NotFinite);
+        }
+      }
+    });
+}
+
+void CheckFaults(
+  const NodeFaults& faults, const std::vector<Tetrahedron>& tetrahedra, const std::string& kind)
+{
+  const std::int64_t node = faults.FindUsed(tetrahedra);
+  if (node < 0)
+  {
+    return;
+  }
+  if (faults.Get(node) == NodeFaults::TooFar)
+  {
+    ThrowTooFar();
+  }
+  throw Error(kind + " " + std::to_string(node) +
+    " of the deformation mesh is not finite, and cells use it. Remove NaN and infinity from it.");
+}
+
+} // namespace
+
+void WorldMesh::Set(const VectorView& points, MeshTetrahedra&& tetrahedra)
+{
+  CopyVectors(points, this->WorldPoints, this->PointFaults);
+  this->Cells = std::move(tetrahedra);
+  this->WorldVectors.clear();
+  this->VectorsAreSet = false;
+  this->PointsAreOld = true;
+  this->DisplacementsAreOld = true;
+}
+
+void WorldMesh::SetVectors(const VectorView& vectors)
+{
+  if (vectors.Count != this->WorldPoints.size())
+  {
+    throw Error("There are " + std::to_string(vectors.Count) +
+      " displacements, but the deformation mesh has " + std::to_string(this->WorldPoints.size()) +
+      " points. Give one displacement for each point.");
+  }
+  CopyVectors(vectors, this->WorldVectors, this->VectorFaults);
+  this->VectorsAreSet = true;
+  this->DisplacementsAreOld = true;
+}
+
+void WorldMesh::Update(const ImageGeometry& volume, const OutputMap& toOutput)
+{
+  if (this->PointsAreOld || volume != this->Volume)
+  {
+    this->UpdatePoints(volume);
+    this->PointsAreOld = false;
+    this->DisplacementsAreOld = true;
+    this->Volume = volume;
+  }
+  if (this->DisplacementsAreOld || toOutput != this->ToOutput)
+  {
+    this->DisplacementsAreOld = true; // where it fails
+    this->UpdateDisplacements(toOutput);
+    this->DisplacementsAreOld = false;
+    this->ToOutput = toOutput;
+  }
+}
+
+void WorldMesh::UpdatePoints(const ImageGeometry& volume)
+{
+  this->PointsAreOld = true;
+  CheckFaults(this->PointFaults, this->Cells.Tetrahedra, "Point");
+  const std::size_t nodes = this->WorldPoints.size();
+  this->Points.resize(nodes + this->Cells.Derived.GetCount());
+  const glm::dmat4 transform = volume.GetWorldToIndex();
+  ParallelForParts(nodes, NodesAtATime,
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        this->Points[i] = glm::dvec3(transform * glm::dvec4(this->WorldPoints[i], 1.0));
+      }
+    });
+  for (std::size_t i = 0; i < this->Cells.Derived.GetCount(); ++i)
+  {
+    this->Points[nodes + i] = this->Cells.Derived.Sum(
+      i, [&](std::int32_t node) { return this->Points[static_cast<std::size_t>(node)]; });
+  }
+  ++this->ShapeVersion;
+}
+
+void WorldMesh::UpdateDisplacements(const OutputMap& toOutput)
+{
+  ++this->VectorsVersion;
+  const std::size_t nodes = this->WorldVectors.size();
+  const DerivedNodes& derived = this->Cells.Derived;
+  this->Displacements.resize(3 * (nodes + derived.GetCount()));
+  NodeFaults faults = NodeFaults();
+  faults.Resize(nodes);
+  const VectorConversion conversion(GetToDisplacement(this->Volume, toOutput, 1.0));
+  ParallelForParts(nodes, NodesAtATime,
+    [&](std::size_t begin, std::size_t end)
+    {
+      float* to = this->Displacements.data() + 3 * begin;
+      const bool areNear = conversion.Convert(&this->WorldVectors[begin], end - begin, to);
+      for (std::size_t i = begin; i < end && !areNear; ++i)
+      {
+        if (!conversion.Convert(&this->WorldVectors[i], 1, &this->Displacements[3 * i]))
+        {
+          std::fill_n(&this->Displacements[3 * i], 3, 0.0F);
+          faults.Mark(static_cast<std::int64_t>(i), NodeFaults::TooFar);
+        }
+      }
+    });
+  CheckFaults(this->VectorFaults, this->Cells.Tetrahedra, "Displacement");
+  CheckFaults(faults, this->Cells.Tetrahedra, "Displacement");
+  for (std::size_t i = 0; i < derived.GetCount(); ++i)
+  {
+    const glm::vec3 sum(derived.Sum(i,
+      [&](std::int32_t node)
+      {
+        const float* vector = &this->Displacements[3 * static_cast<std::size_t>(node)];
+        return glm::dvec3(vector[0], vector[1], vector[2]);
+      }));
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      if (!(std::abs(sum[axis]) <= LargestDisplacement))
+      {
+        ThrowTooFar();
+      }
+      this->Displacements[3 * (nodes + i) + static_cast<std::size_t>(axis)] = sum[axis];
+    }
+  }
+}
+
+} // namespace deformvolume
