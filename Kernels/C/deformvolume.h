@@ -87,6 +87,253 @@ extern "C"
   /* What a device is: a sum of DV_DEVICE_... -1, with an error, where there is no such device. */
   DV_EXPORT int32_t dv_device_flags(int32_t index);
 
+  /* ---- Deforming a volume ---- */
+
+  /*
+   * A deformer has one volume, its arrays, one deformation and the settings of the output. What has
+   * been set stays until it is set again, so that a program sets only what changes, and dv_deform()
+   * works anew only on what follows from that.
+   *
+   *   dv_create, dv_set_volume, dv_set_arrays, dv_set_mesh, dv_set_displacements,
+   *   dv_output_grid, dv_deform, dv_destroy
+   *
+   * Coordinates. All points and vectors are in world coordinates, and all lengths in one unit, for
+   * instance mm. A grid says where its points lie.
+   *
+   * Memory. Pointers are read during the call only, unless it is said that they are borrowed:
+   * memory that is borrowed must be there, unchanged, until the same function is called again with
+   * other memory, until dv_set_volume() with another grid, or until dv_destroy(). Where its values
+   * have changed, the function is called again. Memory is aligned as its type wants it.
+   *
+   * Structures begin with struct_size, their size in bytes as the program knows them: set it to
+   * sizeof the structure. Members that are not set must be 0. Of lists of structures struct_size of
+   * the first one counts.
+   *
+   * Errors. A function that fails leaves the deformer as it was, but for dv_deform(): then the
+   * contents of the output are undefined. The deformer can be used again in any case.
+   */
+  typedef struct dv_deformer dv_deformer;
+
+  /* Types of elements. */
+  enum
+  {
+    DV_INT8 = 0,
+    DV_UINT8 = 1,
+    DV_INT16 = 2,
+    DV_UINT16 = 3,
+    DV_INT32 = 4,
+    DV_UINT32 = 5,
+    DV_INT64 = 6,
+    DV_UINT64 = 7,
+    DV_FLOAT32 = 8,
+    DV_FLOAT64 = 9
+  };
+
+  /* A grid of points. The point with the index (i, j, k) lies at
+   *   origin + direction * (spacing[0] * i, spacing[1] * j, spacing[2] * k). */
+  typedef struct dv_grid
+  {
+    size_t struct_size;
+    int32_t extent[6]; /* first and last index on x, y and z: the grid has all between them */
+    double origin[3];  /* where the index (0, 0, 0) lies, whether the extent has it or not */
+    double spacing[3]; /* not 0; negative ones are allowed */
+    double
+      direction[9]; /* 3 x 3, row by row; its columns are the axes. Any matrix with an inverse */
+  } dv_grid;
+
+  /* An array over the points of a volume: tuples of components elements, x varying fastest, then y,
+   * then z. */
+  typedef struct dv_array
+  {
+    size_t struct_size;
+    const void* data;
+    int32_t type;       /* DV_INT8 ... DV_FLOAT64 */
+    int32_t components; /* 1 or more */
+    int32_t
+      categorical;    /* not 0: labels, which are never mixed: the nearest voxel's value is taken */
+    int32_t reserved; /* 0 */
+    double background; /* what output voxels get that the deformed volume does not cover; rounded
+                          and clamped to the type */
+  } dv_array;
+
+  /* Makes a deformer, to be destroyed with dv_destroy(). */
+  DV_EXPORT int32_t dv_create(dv_deformer** deformer);
+  /* Null is allowed. */
+  DV_EXPORT void dv_destroy(dv_deformer* deformer);
+
+  /* Chooses the device: a name as dv_device_name() has it or a part of one, "cpu", "gpu", or null
+   * or
+   * "" for the best one. Fails where no device answers to that. Without a call it is the best one.
+   */
+  DV_EXPORT int32_t dv_set_device(dv_deformer* deformer, const char* name);
+
+  /* How many bytes may be used on the device; 0: what it has available. */
+  DV_EXPORT int32_t dv_set_memory_limit(dv_deformer* deformer, uint64_t bytes);
+
+  /* The grid of the volume at rest: two points or more on each axis. With another grid than before
+   * arrays and masks are forgotten. */
+  DV_EXPORT int32_t dv_set_volume(dv_deformer* deformer, const dv_grid* grid);
+
+  /* The arrays of the volume. Their data are borrowed. count may be 0: then only the arrays that
+   * dv_request names can be made. */
+  DV_EXPORT int32_t dv_set_arrays(dv_deformer* deformer, int32_t count, const dv_array* arrays);
+
+  /* Which voxels of the volume there are: one byte a voxel, not 0 where the voxel is left out.
+   * Null: all are there. Borrowed. */
+  DV_EXPORT int32_t dv_set_blanked(dv_deformer* deformer, const uint8_t* blanked);
+
+  /* A deformation mesh at rest. */
+  typedef struct dv_mesh
+  {
+    size_t struct_size;
+    int64_t number_of_points;
+    const void* points; /* three numbers a point, in world coordinates */
+    int32_t point_type; /* DV_FLOAT32 or DV_FLOAT64 */
+    int32_t reserved;   /* 0 */
+    int64_t number_of_cells;
+    const int64_t* connectivity; /* the numbers of the points of each cell, one after the other */
+    const uint8_t* types;   /* null: all cells are tetrahedra. Else the type of each cell, as VTK
+                               numbers them: 10 is a tetrahedron */
+    const int64_t* offsets; /* null with tetrahedra alone. Else number_of_cells + 1: where the
+                               points of each cell begin in connectivity, and where the last
+                               ones end */
+  } dv_mesh;
+
+  /* The deformation mesh, in place of the field or mesh before. It has no displacements then. */
+  DV_EXPORT int32_t dv_set_mesh(dv_deformer* deformer, const dv_mesh* mesh);
+
+  /* How far the points of the mesh have moved: count vectors of three numbers, one for each point,
+   * in world coordinates. type: DV_FLOAT32 or DV_FLOAT64. A vector that is not finite is an error
+   * of dv_deform(), where a cell uses its point; so is one that is longer than 16,383 output
+   * voxels. */
+  DV_EXPORT int32_t dv_set_displacements(
+    dv_deformer* deformer, int32_t type, int64_t count, const void* displacements);
+
+  /* A displacement field: one vector for each point of a grid of its own, linear between them. */
+  typedef struct dv_field
+  {
+    size_t struct_size;
+    const dv_grid* grid;
+    const void*
+      vectors;       /* three numbers a point, in world coordinates, x varying fastest. Borrowed */
+    int32_t type;    /* DV_FLOAT32 or DV_FLOAT64 */
+    int32_t inverse; /* 0: from a point of the volume to where it goes. Else: from a point of the
+                        output to the point of the volume that is seen there */
+  } dv_field;
+
+  /* The displacement field, in place of the mesh or field before. */
+  DV_EXPORT int32_t dv_set_field(dv_deformer* deformer, const dv_field* field);
+
+  /* What becomes of voxels outside the mesh or the field. */
+  enum
+  {
+    DV_OUTSIDE_DISCARD = 0,     /* they are left out */
+    DV_OUTSIDE_EXTRAPOLATE = 1, /* they follow the nearest part of the mesh or of the field */
+    DV_OUTSIDE_KEEP = 2 /* they stay; within fade_distance they follow the boundary in part */
+  };
+
+  /* fade_distance: in world units, 0 or more; it counts with DV_OUTSIDE_KEEP only. The default is
+   * DV_OUTSIDE_DISCARD. */
+  DV_EXPORT int32_t dv_set_outside(dv_deformer* deformer, int32_t mode, double fade_distance);
+
+  /* The grid of the output, such as that of the fixed image of a registration: any extent, spacing
+   * and direction, turned or mirrored. Null, the default: the output has the origin, the direction
+   * and the spacing of the volume, and what dv_set_output() says. */
+  DV_EXPORT int32_t dv_set_reference(dv_deformer* deformer, const dv_grid* grid);
+
+  /* How large the output is without a reference grid. */
+  enum
+  {
+    DV_BOUNDS_DEFORMED = 0, /* as large as the deformed volume */
+    DV_BOUNDS_VOLUME = 1,   /* as large as the volume at rest */
+    DV_BOUNDS_CUSTOM = 2
+  };
+
+  typedef struct dv_output
+  {
+    size_t struct_size;
+    int32_t bounds_mode;
+    int32_t padding;         /* so many voxels more on each side; negative: less */
+    double custom_bounds[6]; /* x min, x max, y min, y max, z min, z max, in world coordinates */
+    double spacing[3];       /* all 0: that of the volume; else greater than 0 */
+  } dv_output;
+
+  /* Null: DV_BOUNDS_DEFORMED, no padding, the spacing of the volume: the defaults. */
+  DV_EXPORT int32_t dv_set_output(dv_deformer* deformer, const dv_output* output);
+
+  /* The grid of the output with its whole extent, for what has been set: how much memory
+   * dv_deform() needs. grid->struct_size is set by the program. Fails where the volume or the
+   * deformation is missing, and where the deformed volume covers no output voxel. */
+  DV_EXPORT int32_t dv_output_grid(dv_deformer* deformer, dv_grid* grid);
+
+  /* How values are interpolated. */
+  enum
+  {
+    DV_LINEAR = 0,
+    DV_CUBIC = 1,
+    DV_NEAREST = 2
+  };
+
+  /* Is told what fraction is done, 0 to 1, in the thread that called dv_deform(). Another result
+   * than 0 aborts: dv_deform() then returns DV_ABORTED. It must neither throw nor call functions
+   * for the same deformer. */
+  typedef int32_t (*dv_progress)(double fraction, void* user);
+
+  /* What dv_deform() is to do, and the memory for it, which is written during the call. */
+  typedef struct dv_request
+  {
+    size_t struct_size;
+    int32_t extent[6];         /* a part of the whole extent of the output, in its indices */
+    int32_t use_extent;        /* 0: the whole output */
+    int32_t interpolation;     /* DV_LINEAR, DV_CUBIC or DV_NEAREST */
+    int32_t number_of_outputs; /* that of the arrays */
+    int32_t incremental;       /* see below */
+    void* const* outputs;      /* room for each array: components elements of its type a voxel */
+    int8_t* coverage;          /* room for a byte a voxel: 1 where the deformed volume covers it */
+    float* rest_positions;     /* null, or room for three floats a voxel: where in the world the
+                                  tissue was at rest that is seen there */
+    float* jacobian;           /* null, or room for a float a voxel: how many times as large the
+                                  deformation makes the volume there; negative: inside out */
+    uint32_t* fold_count;      /* null, or room for an integer a voxel: how many tetrahedra of
+                                  neighbouring voxels cover it; more than 1 in folds. Not with
+                                  inverse fields */
+    double extra_background;   /* of rest_positions and jacobian where nothing is covered */
+    dv_progress progress;      /* null: nobody is told */
+    void* user;                /* given to progress */
+  } dv_request;
+
+  /* incremental: not 0 where the next call may begin with what this one wrote. If the next call is
+   * incremental, too, and has the same extent and memory, then that memory must still hold what
+   * this call wrote: only what has changed is written. The result is the same to the last bit. Not
+   * together with rest_positions, jacobian and fold_count. */
+
+  /* What dv_deform() tells. */
+  typedef struct dv_report
+  {
+    size_t struct_size;                    /* set by the program */
+    int64_t number_of_covered_voxels;      /* of the output */
+    int64_t number_of_inverted_tetrahedra; /* that the deformation turns inside out, of
+                                              neighbouring voxels or of the grid of the field */
+    int64_t number_of_flat_tetrahedra;     /* of the mesh, without volume at rest */
+    int64_t number_of_overstretched_cells; /* of the volume, over more than 4,000 output voxels:
+                                              tetrahedra of them are left out */
+    int64_t number_of_hidden_samples;      /* that other parts of a folded volume hide */
+    int32_t changed_extent[6];             /* holds all output voxels that may have changed since
+                                              the last call; first > last: none has */
+    const char* device;                    /* its name */
+    const char* warnings;                  /* "" where there is none */
+    /* Both texts belong to the deformer, and stay until its next dv_deform() or dv_destroy(). */
+  } dv_report;
+
+  /* Deforms the volume into the memory of the request. report may be null. */
+  DV_EXPORT int32_t dv_deform(dv_deformer* deformer, const dv_request* request, dv_report* report);
+
+  /* Bytes that the deformer holds on the device. */
+  DV_EXPORT int32_t dv_device_memory(const dv_deformer* deformer, uint64_t* bytes);
+
+  /* Frees what the deformer holds on the device. The next dv_deform() sends it again. */
+  DV_EXPORT int32_t dv_release_memory(dv_deformer* deformer);
+
 #ifdef __cplusplus
 }
 #endif

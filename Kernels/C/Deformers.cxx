@@ -1,0 +1,468 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// dv_deformer: checks what comes from C, and hands it to a WorldDeformer.
+#include "Call.h"
+#include "Fading.h"
+#include "Structs.h"
+#include "WorldDeformer.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+using namespace deformvolume;
+
+struct dv_deformer
+{
+  WorldDeformer Deformer;
+  ImageGeometry Volume;
+  WorldMasks Masks;
+  std::string Device;
+  std::string Warnings;
+};
+
+namespace
+{
+
+static_assert(static_cast<int>(ElementType::Int8) == DV_INT8 &&
+    static_cast<int>(ElementType::Float64) == DV_FLOAT64,
+  "types are numbered alike");
+
+WorldDeformer& Get(dv_deformer* deformer)
+{
+  CheckPointer(deformer, "The deformer");
+  return deformer->Deformer;
+}
+
+std::size_t GetProduct(std::int64_t count, std::size_t factor, const char* what)
+{
+  if (count < 0 ||
+    static_cast<std::uint64_t>(count) > std::numeric_limits<std::size_t>::max() / factor)
+  {
+    throw Error(std::string("The number of ") + what + " is " + std::to_string(count) + ".");
+  }
+  return static_cast<std::size_t>(count);
+}
+
+ImageGeometry MakeGeometry(const dv_grid* given, const char* name)
+{
+  const dv_grid grid = ReadStruct(given, name);
+  ImageGeometry geometry;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int first = grid.extent[2 * axis];
+    const int last = grid.extent[2 * axis + 1];
+    // As for outputs (OutputExtent.h), sizes can then be counted.
+    constexpr int most = 1 << 29;
+    if (first < -most || last > most || first > last)
+    {
+      throw Error("The extent of " + std::string(name) + " on axis " + "xyz"[axis] + " is " +
+        std::to_string(first) + " to " + std::to_string(last) +
+        ". Give the first and the last index, within 2^29.");
+    }
+    geometry.PointExtent[2 * axis] = first;
+    geometry.PointExtent[2 * axis + 1] = last;
+    geometry.Origin[axis] = grid.origin[axis];
+    geometry.Spacing[axis] = grid.spacing[axis];
+  }
+  geometry.Direction = MakeDirection(grid.direction);
+  CheckTransform(geometry, name);
+  return geometry;
+}
+
+VectorView MakeView(const void* data, std::int32_t type, std::int64_t count, const char* what)
+{
+  if (type != DV_FLOAT32 && type != DV_FLOAT64)
+  {
+    throw Error(std::string("The type of the ") + what + " is " + std::to_string(type) +
+      ". Give floats (DV_FLOAT32) or doubles (DV_FLOAT64).");
+  }
+  VectorView view;
+  view.Count = GetProduct(count, 3 * sizeof(double), what);
+  if (count > 0)
+  {
+    CheckPointer(data, what);
+  }
+  view.Data = data;
+  view.AreDoubles = type == DV_FLOAT64;
+  return view;
+}
+
+VolumeArray MakeArray(const dv_array& given, std::int32_t number)
+{
+  const std::string name = "Array " + std::to_string(number);
+  if (!given.data)
+  {
+    throw Error(name + " has no data.");
+  }
+  if (given.type < DV_INT8 || given.type > DV_FLOAT64)
+  {
+    throw Error(name + " has the type " + std::to_string(given.type) +
+      ". Give one from DV_INT8 to DV_FLOAT64.");
+  }
+  if (given.components < 1)
+  {
+    throw Error(name + " has " + std::to_string(given.components) + " components. Give 1 or more.");
+  }
+  VolumeArray array;
+  array.Data = given.data;
+  // The program keeps them.
+  array.Owner = std::shared_ptr<const void>(given.data, [](const void*) {});
+  array.Type = static_cast<ElementType>(given.type);
+  array.Components = given.components;
+  array.Categorical = given.categorical != 0;
+  array.Background = given.background;
+  return array;
+}
+
+MeshTetrahedra MakeTetrahedra(const dv_mesh& mesh)
+{
+  const std::size_t cells = GetProduct(mesh.number_of_cells, 4 * sizeof(std::int64_t), "cells");
+  if (cells == 0)
+  {
+    throw Error("The deformation mesh has no cells. Give one of three-dimensional cells.");
+  }
+  CheckPointer(mesh.connectivity, "The connectivity of the mesh");
+  MeshTetrahedra made;
+  made.Tetrahedra.resize(cells);
+  for (std::size_t cell = 0; cell < cells; ++cell)
+  {
+    if (mesh.types && mesh.types[cell] != 10)
+    {
+      throw Error("Cell " + std::to_string(cell) + " of the deformation mesh has the type " +
+        std::to_string(mesh.types[cell]) + ". Give tetrahedra (10).");
+    }
+    std::size_t begin = 4 * cell;
+    if (mesh.offsets)
+    {
+      if (mesh.offsets[cell + 1] - mesh.offsets[cell] != 4 || mesh.offsets[cell] < 0)
+      {
+        throw Error("Cell " + std::to_string(cell) + " of the deformation mesh begins at " +
+          std::to_string(mesh.offsets[cell]) + " and ends at " +
+          std::to_string(mesh.offsets[cell + 1]) + ". A tetrahedron has 4 points.");
+      }
+      begin = static_cast<std::size_t>(mesh.offsets[cell]);
+    }
+    for (std::size_t corner = 0; corner < 4; ++corner)
+    {
+      const std::int64_t point = mesh.connectivity[begin + corner];
+      if (point < 0 || point >= mesh.number_of_points)
+      {
+        throw Error("Cell " + std::to_string(cell) + " of the deformation mesh uses point " +
+          std::to_string(point) + ", and there are only " + std::to_string(mesh.number_of_points) +
+          " points. Correct the cells of the mesh.");
+      }
+      made.Tetrahedra[cell][corner] = static_cast<std::int32_t>(point);
+    }
+  }
+  return made;
+}
+
+WorldRequest MakeRequest(const dv_request& given)
+{
+  WorldRequest request;
+  for (std::size_t i = 0; i < 6 && given.use_extent; ++i)
+  {
+    request.OutputExtent[i] = given.extent[i];
+  }
+  for (int axis = 0; axis < 3 && given.use_extent; ++axis)
+  {
+    if (given.extent[2 * axis] > given.extent[2 * axis + 1])
+    {
+      throw Error("The extent of the request, " + DescribeExtent(request.OutputExtent) +
+        ", is empty. Set use_extent to 0 for the whole output.");
+    }
+  }
+  if (given.interpolation < DV_LINEAR || given.interpolation > DV_NEAREST)
+  {
+    throw Error("The interpolation is " + std::to_string(given.interpolation) +
+      ". Set DV_LINEAR, DV_CUBIC or DV_NEAREST.");
+  }
+  request.Interpolation =
+    given.interpolation == DV_CUBIC ? Interpolation::Cubic : Interpolation::Linear;
+  request.IsNearest = given.interpolation == DV_NEAREST;
+  request.IsIncremental = given.incremental != 0;
+  GetProduct(given.number_of_outputs, sizeof(void*), "outputs");
+  if (given.number_of_outputs > 0)
+  {
+    CheckPointer(given.outputs, "The list of outputs");
+  }
+  for (std::int32_t i = 0; i < given.number_of_outputs; ++i)
+  {
+    CheckPointer(given.outputs[i], ("Output " + std::to_string(i)).c_str());
+    request.Outputs.push_back(given.outputs[i]);
+  }
+  CheckPointer(given.coverage, "The memory for the coverage");
+  request.Coverage = reinterpret_cast<signed char*>(given.coverage);
+  request.RestPositions = given.rest_positions;
+  request.Jacobians = given.jacobian;
+  request.FoldCounts = given.fold_count;
+  request.Background = given.extra_background;
+  if (given.progress)
+  {
+    const dv_progress progress = given.progress;
+    void* const user = given.user;
+    request.Progress = [=](double fraction) { return progress(fraction, user) == 0; };
+  }
+  return request;
+}
+
+} // namespace
+
+std::int32_t dv_create(dv_deformer** deformer)
+{
+  return Call(
+    [&]
+    {
+      CheckPointer(deformer, "The place for the deformer");
+      *deformer = nullptr;
+      *deformer = std::make_unique<dv_deformer>().release();
+    });
+}
+
+void dv_destroy(dv_deformer* deformer)
+{
+  Call([&] { delete deformer; });
+}
+
+std::int32_t dv_set_device(dv_deformer* deformer, const char* name)
+{
+  return Call([&] { Get(deformer).SetDevice(name ? name : ""); });
+}
+
+std::int32_t dv_set_memory_limit(dv_deformer* deformer, std::uint64_t bytes)
+{
+  return Call([&] { Get(deformer).SetMemoryLimit(bytes); });
+}
+
+std::int32_t dv_set_volume(dv_deformer* deformer, const dv_grid* grid)
+{
+  return Call(
+    [&]
+    {
+      WorldDeformer& world = Get(deformer);
+      const ImageGeometry volume = MakeGeometry(grid, "the volume");
+      world.SetVolume(volume);
+      if (volume != deformer->Volume)
+      {
+        deformer->Volume = volume;
+        deformer->Masks = WorldMasks();
+      }
+    });
+}
+
+std::int32_t dv_set_arrays(dv_deformer* deformer, std::int32_t count, const dv_array* arrays)
+{
+  return Call(
+    [&]
+    {
+      WorldDeformer& world = Get(deformer);
+      GetProduct(count, sizeof(dv_array), "arrays");
+      std::vector<VolumeArray> made;
+      if (count > 0)
+      {
+        const std::size_t step = CheckStruct(arrays, "the array");
+        const auto* bytes = reinterpret_cast<const unsigned char*>(arrays);
+        for (std::int32_t i = 0; i < count; ++i)
+        {
+          dv_array array{};
+          std::memcpy(
+            &array, bytes + static_cast<std::size_t>(i) * step, std::min(step, sizeof(dv_array)));
+          made.push_back(MakeArray(array, i));
+        }
+      }
+      if (GetNumberOfPoints(deformer->Volume.PointExtent) == 0)
+      {
+        throw Error("There is no volume. Set one before its arrays.");
+      }
+      world.SetArrays(made);
+    });
+}
+
+std::int32_t dv_set_blanked(dv_deformer* deformer, const std::uint8_t* blanked)
+{
+  return Call(
+    [&]
+    {
+      WorldDeformer& world = Get(deformer);
+      if (blanked && GetNumberOfPoints(deformer->Volume.PointExtent) == 0)
+      {
+        throw Error("There is no volume. Set one before its masks.");
+      }
+      deformer->Masks.Blanked = blanked;
+      world.SetMasks(deformer->Masks);
+    });
+}
+
+std::int32_t dv_set_mesh(dv_deformer* deformer, const dv_mesh* given)
+{
+  return Call(
+    [&]
+    {
+      WorldDeformer& world = Get(deformer);
+      const dv_mesh mesh = ReadStruct(given, "the mesh");
+      if (mesh.number_of_points < 1 ||
+        mesh.number_of_points > std::numeric_limits<std::int32_t>::max())
+      {
+        throw Error("The deformation mesh has " + std::to_string(mesh.number_of_points) +
+          " points. Give 1 to 2,147,483,647.");
+      }
+      const VectorView points =
+        MakeView(mesh.points, mesh.point_type, mesh.number_of_points, "points of the mesh");
+      world.SetMesh(points, MakeTetrahedra(mesh));
+    });
+}
+
+std::int32_t dv_set_displacements(
+  dv_deformer* deformer, std::int32_t type, std::int64_t count, const void* displacements)
+{
+  return Call(
+    [&] { Get(deformer).SetNodeVectors(MakeView(displacements, type, count, "displacements")); });
+}
+
+std::int32_t dv_set_field(dv_deformer* deformer, const dv_field* given)
+{
+  return Call(
+    [&]
+    {
+      WorldDeformer& world = Get(deformer);
+      const dv_field field = ReadStruct(given, "the field");
+      const ImageGeometry grid = MakeGeometry(field.grid, "the grid of the field");
+      world.SetField(grid,
+        MakeView(
+          field.vectors, field.type, GetNumberOfPoints(grid.PointExtent), "vectors of the field"),
+        field.inverse != 0);
+    });
+}
+
+std::int32_t dv_set_outside(dv_deformer* deformer, std::int32_t mode, double fade_distance)
+{
+  return Call(
+    [&]
+    {
+      WorldDeformer& world = Get(deformer);
+      if (mode < DV_OUTSIDE_DISCARD || mode > DV_OUTSIDE_KEEP)
+      {
+        throw Error("The outside mode is " + std::to_string(mode) +
+          ". Set DV_OUTSIDE_DISCARD, DV_OUTSIDE_EXTRAPOLATE or DV_OUTSIDE_KEEP.");
+      }
+      world.SetOutside(mode == DV_OUTSIDE_KEEP ? MakeKeptVoxels(fade_distance)
+                                               : OutsideVoxels(mode == DV_OUTSIDE_EXTRAPOLATE));
+    });
+}
+
+std::int32_t dv_set_reference(dv_deformer* deformer, const dv_grid* grid)
+{
+  return Call(
+    [&]
+    {
+      WorldDeformer& world = Get(deformer);
+      std::optional<ImageGeometry> reference;
+      if (grid)
+      {
+        reference = MakeGeometry(grid, "the reference grid");
+      }
+      world.SetReference(reference);
+    });
+}
+
+std::int32_t dv_set_output(dv_deformer* deformer, const dv_output* given)
+{
+  return Call(
+    [&]
+    {
+      WorldDeformer& world = Get(deformer);
+      OutputSettings settings;
+      if (given)
+      {
+        const dv_output output = ReadStruct(given, "the output");
+        if (output.bounds_mode < DV_BOUNDS_DEFORMED || output.bounds_mode > DV_BOUNDS_CUSTOM)
+        {
+          throw Error("The bounds mode is " + std::to_string(output.bounds_mode) +
+            ". Set DV_BOUNDS_DEFORMED, DV_BOUNDS_VOLUME or DV_BOUNDS_CUSTOM.");
+        }
+        settings.Bounds = static_cast<OutputSettings::BoundsModes>(output.bounds_mode);
+        settings.Padding = output.padding;
+        std::copy_n(output.custom_bounds, 6, settings.CustomBounds.begin());
+        const glm::dvec3 spacing(output.spacing[0], output.spacing[1], output.spacing[2]);
+        if (spacing != glm::dvec3(0.0))
+        {
+          settings.Spacing = spacing;
+        }
+      }
+      world.SetOutput(settings);
+    });
+}
+
+std::int32_t dv_output_grid(dv_deformer* deformer, dv_grid* grid)
+{
+  return Call(
+    [&]
+    {
+      WorldDeformer& world = Get(deformer);
+      CheckStruct(grid, "the grid");
+      const ImageGeometry output = world.FindOutput();
+      dv_grid made = {};
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        made.extent[2 * axis] = output.PointExtent[2 * axis];
+        made.extent[2 * axis + 1] = output.PointExtent[2 * axis + 1];
+        made.origin[axis] = output.Origin[axis];
+        made.spacing[axis] = output.Spacing[axis];
+        for (int column = 0; column < 3; ++column)
+        {
+          made.direction[3 * axis + column] = output.Direction[column][axis];
+        }
+      }
+      WriteStruct(made, grid, "the grid");
+    });
+}
+
+std::int32_t dv_deform(dv_deformer* deformer, const dv_request* given, dv_report* report)
+{
+  return Call(
+    [&]
+    {
+      WorldDeformer& world = Get(deformer);
+      const WorldRequest request = MakeRequest(ReadStruct(given, "the request"));
+      if (report)
+      {
+        CheckStruct(report, "the report");
+      }
+      deformer->Warnings.clear();
+      const WorldReport done = world.Deform(request);
+      deformer->Device = done.Device;
+      deformer->Warnings = done.Warnings;
+      if (report)
+      {
+        dv_report made = {};
+        made.number_of_covered_voxels = done.NumberOfCoveredVoxels;
+        made.number_of_inverted_tetrahedra = done.NumberOfInvertedTetrahedra;
+        made.number_of_flat_tetrahedra = done.NumberOfFlatTetrahedra;
+        made.number_of_overstretched_cells = done.NumberOfOverstretchedCells;
+        made.number_of_hidden_samples = done.NumberOfHiddenSamples;
+        std::copy_n(done.ChangedExtent.begin(), 6, made.changed_extent);
+        made.device = deformer->Device.c_str();
+        made.warnings = deformer->Warnings.c_str();
+        WriteStruct(made, report, "the report");
+      }
+    });
+}
+
+std::int32_t dv_device_memory(const dv_deformer* deformer, std::uint64_t* bytes)
+{
+  return Call(
+    [&]
+    {
+      CheckPointer(deformer, "The deformer");
+      CheckPointer(bytes, "The place for the number of bytes");
+      *bytes = deformer->Deformer.GetDeviceMemory();
+    });
+}
+
+std::int32_t dv_release_memory(dv_deformer* deformer)
+{
+  return Call([&] { Get(deformer).ReleaseMemory(); });
+}

@@ -1,0 +1,487 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/*
+ * Deformers in C: what is refused, and why; progress and abort; parts of the output.
+ * Examples/minimal-c has the ordinary case, and Testing/Cxx/TestCInterface.cxx the numbers.
+ */
+#include "deformvolume.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int Failures = 0;
+
+#define CHECK(condition)                                                                           \
+  do                                                                                               \
+  {                                                                                                \
+    if (!(condition))                                                                              \
+    {                                                                                              \
+      printf("line %d: %s is false. Last error: %s\n", __LINE__, #condition, dv_last_error());     \
+      ++Failures;                                                                                  \
+    }                                                                                              \
+  } while (0)
+
+/* A call that fails with an error that holds some words. */
+#define REFUSED(call, words)                                                                       \
+  do                                                                                               \
+  {                                                                                                \
+    CHECK((call) == DV_ERROR);                                                                     \
+    CHECK(strstr(dv_last_error(), words) != NULL);                                                 \
+  } while (0)
+
+enum
+{
+  SIZE = 12,
+  VOXELS = SIZE * SIZE * SIZE
+};
+
+static int16_t Values[VOXELS];
+static int16_t Output[VOXELS];
+static int8_t Coverage[VOXELS];
+static void* Outputs[1];
+static double Corners[8][3];
+static float Displacements[8][3];
+static int64_t Tetrahedra[5][4] = { { 0, 1, 2, 4 }, { 3, 2, 1, 7 }, { 5, 4, 7, 1 }, { 6, 7, 4, 2 },
+  { 1, 2, 4, 7 } };
+
+static dv_grid MakeGrid(void)
+{
+  dv_grid grid;
+  int axis = 0;
+  memset(&grid, 0, sizeof(grid));
+  grid.struct_size = sizeof(grid);
+  for (axis = 0; axis < 3; ++axis)
+  {
+    grid.extent[2 * axis + 1] = SIZE - 1;
+    grid.spacing[axis] = 2.0;
+    grid.direction[4 * axis] = 1.0;
+  }
+  return grid;
+}
+
+static dv_array MakeArray(void)
+{
+  dv_array array;
+  memset(&array, 0, sizeof(array));
+  array.struct_size = sizeof(array);
+  array.data = Values;
+  array.type = DV_INT16;
+  array.components = 1;
+  array.background = -5.0;
+  return array;
+}
+
+static dv_mesh MakeMesh(void)
+{
+  dv_mesh mesh;
+  memset(&mesh, 0, sizeof(mesh));
+  mesh.struct_size = sizeof(mesh);
+  mesh.number_of_points = 8;
+  mesh.points = Corners;
+  mesh.point_type = DV_FLOAT64;
+  mesh.number_of_cells = 5;
+  mesh.connectivity = Tetrahedra[0];
+  return mesh;
+}
+
+static dv_request MakeRequest(void)
+{
+  dv_request request;
+  memset(&request, 0, sizeof(request));
+  request.struct_size = sizeof(request);
+  request.number_of_outputs = 1;
+  request.outputs = Outputs;
+  request.coverage = Coverage;
+  return request;
+}
+
+/* A deformer with all that is needed. The output is as large as the volume. */
+static dv_deformer* MakeDeformer(void)
+{
+  dv_deformer* deformer = NULL;
+  const dv_grid grid = MakeGrid();
+  const dv_array array = MakeArray();
+  const dv_mesh mesh = MakeMesh();
+  dv_output output;
+  memset(&output, 0, sizeof(output));
+  output.struct_size = sizeof(output);
+  output.bounds_mode = DV_BOUNDS_VOLUME;
+  CHECK(dv_create(&deformer) == DV_OK);
+  CHECK(dv_set_volume(deformer, &grid) == DV_OK);
+  CHECK(dv_set_arrays(deformer, 1, &array) == DV_OK);
+  CHECK(dv_set_mesh(deformer, &mesh) == DV_OK);
+  CHECK(dv_set_displacements(deformer, DV_FLOAT32, 8, Displacements) == DV_OK);
+  CHECK(dv_set_output(deformer, &output) == DV_OK);
+  return deformer;
+}
+
+static void TestNull(void)
+{
+  dv_deformer* deformer = NULL;
+  dv_grid grid = MakeGrid();
+  const dv_request request = MakeRequest();
+  uint64_t bytes = 0;
+  REFUSED(dv_create(NULL), "null");
+  REFUSED(dv_set_device(NULL, ""), "deformer is null");
+  REFUSED(dv_set_memory_limit(NULL, 0), "deformer is null");
+  REFUSED(dv_set_volume(NULL, &grid), "deformer is null");
+  REFUSED(dv_set_arrays(NULL, 0, NULL), "deformer is null");
+  REFUSED(dv_set_blanked(NULL, NULL), "deformer is null");
+  REFUSED(dv_set_mesh(NULL, NULL), "deformer is null");
+  REFUSED(dv_set_displacements(NULL, DV_FLOAT32, 8, Displacements), "deformer is null");
+  REFUSED(dv_set_field(NULL, NULL), "deformer is null");
+  REFUSED(dv_set_outside(NULL, DV_OUTSIDE_DISCARD, 0.0), "deformer is null");
+  REFUSED(dv_set_reference(NULL, NULL), "deformer is null");
+  REFUSED(dv_set_output(NULL, NULL), "deformer is null");
+  REFUSED(dv_output_grid(NULL, &grid), "deformer is null");
+  REFUSED(dv_deform(NULL, &request, NULL), "deformer is null");
+  REFUSED(dv_device_memory(NULL, &bytes), "deformer is null");
+  REFUSED(dv_release_memory(NULL), "deformer is null");
+  dv_destroy(NULL);
+
+  CHECK(dv_create(&deformer) == DV_OK);
+  REFUSED(dv_set_volume(deformer, NULL), "the volume is null");
+  REFUSED(dv_set_arrays(deformer, 1, NULL), "the array is null");
+  REFUSED(dv_set_mesh(deformer, NULL), "the mesh is null");
+  REFUSED(dv_set_field(deformer, NULL), "the field is null");
+  REFUSED(dv_output_grid(deformer, NULL), "the grid is null");
+  REFUSED(dv_deform(deformer, NULL, NULL), "the request is null");
+  REFUSED(dv_device_memory(deformer, NULL), "null");
+  REFUSED(dv_set_device(deformer, "no such device"), "no such device");
+  dv_destroy(deformer);
+}
+
+static void TestMissing(void)
+{
+  dv_deformer* deformer = NULL;
+  dv_grid grid = MakeGrid();
+  const dv_array array = MakeArray();
+  const dv_mesh mesh = MakeMesh();
+  const dv_request request = MakeRequest();
+  CHECK(dv_create(&deformer) == DV_OK);
+  REFUSED(dv_set_arrays(deformer, 1, &array), "no volume");
+  REFUSED(dv_set_blanked(deformer, (const uint8_t*)Coverage), "no volume");
+  REFUSED(dv_output_grid(deformer, &grid), "no volume");
+  CHECK(dv_set_volume(deformer, &grid) == DV_OK);
+  REFUSED(dv_set_displacements(deformer, DV_FLOAT32, 8, Displacements), "no deformation mesh");
+  REFUSED(dv_output_grid(deformer, &grid), "no deformation");
+  REFUSED(dv_deform(deformer, &request, NULL), "no arrays");
+  CHECK(dv_set_arrays(deformer, 1, &array) == DV_OK);
+  REFUSED(dv_deform(deformer, &request, NULL), "no deformation");
+  CHECK(dv_set_mesh(deformer, &mesh) == DV_OK);
+  REFUSED(dv_deform(deformer, &request, NULL), "no displacements");
+  dv_destroy(deformer);
+}
+
+static void TestWrong(void)
+{
+  const double infinity = HUGE_VAL;
+  dv_deformer* deformer = MakeDeformer();
+  dv_grid grid = MakeGrid();
+  dv_array array = MakeArray();
+  dv_mesh mesh = MakeMesh();
+  dv_request request = MakeRequest();
+  dv_report report;
+  dv_output output;
+  dv_field field;
+  void* nothing[1] = { NULL };
+  int64_t offsets[6] = { 0, 4, 8, 12, 16, 20 };
+  uint8_t types[5] = { 10, 10, 10, 10, 10 };
+
+  /* Sizes of structures. */
+  grid.struct_size = 8;
+  REFUSED(dv_set_volume(deformer, &grid), "struct_size of the volume is 8");
+  REFUSED(dv_set_reference(deformer, &grid), "struct_size");
+  REFUSED(dv_output_grid(deformer, &grid), "struct_size");
+  array.struct_size = 0;
+  REFUSED(dv_set_arrays(deformer, 1, &array), "struct_size of the array is 0");
+  mesh.struct_size = 0;
+  REFUSED(dv_set_mesh(deformer, &mesh), "struct_size");
+  request.struct_size = 0;
+  REFUSED(dv_deform(deformer, &request, NULL), "struct_size of the request");
+  request = MakeRequest();
+  report.struct_size = 0;
+  REFUSED(dv_deform(deformer, &request, &report), "struct_size of the report");
+
+  /* Grids. */
+  grid = MakeGrid();
+  grid.extent[3] = -1;
+  REFUSED(dv_set_volume(deformer, &grid), "on axis y is 0 to -1");
+  grid.extent[3] = 2147483647;
+  REFUSED(dv_set_volume(deformer, &grid), "2^29");
+  grid = MakeGrid();
+  grid.extent[5] = 0;
+  REFUSED(dv_set_volume(deformer, &grid), "one voxel only on axis z");
+  grid.extent[1] = grid.extent[3] = grid.extent[5] = 500000000;
+  REFUSED(dv_set_volume(deformer, &grid), "2^48");
+  grid = MakeGrid();
+  grid.origin[1] = infinity;
+  REFUSED(dv_set_volume(deformer, &grid), "origin");
+  REFUSED(dv_set_reference(deformer, &grid), "origin of the reference grid");
+  grid = MakeGrid();
+  grid.spacing[2] = 0.0;
+  REFUSED(dv_set_volume(deformer, &grid), "spacing of the volume on axis z is 0");
+  grid.spacing[2] = infinity - infinity;
+  REFUSED(dv_set_volume(deformer, &grid), "spacing");
+  grid = MakeGrid();
+  grid.direction[4] = 0.0;
+  REFUSED(dv_set_volume(deformer, &grid), "no inverse");
+  grid.direction[4] = infinity - infinity;
+  REFUSED(dv_set_volume(deformer, &grid), "no inverse");
+
+  /* Arrays. */
+  array = MakeArray();
+  array.data = NULL;
+  REFUSED(dv_set_arrays(deformer, 1, &array), "Array 0 has no data");
+  array = MakeArray();
+  array.type = 10;
+  REFUSED(dv_set_arrays(deformer, 1, &array), "type 10");
+  array = MakeArray();
+  array.components = 0;
+  REFUSED(dv_set_arrays(deformer, 1, &array), "0 components");
+  REFUSED(dv_set_arrays(deformer, -1, &array), "-1");
+
+  /* Meshes. */
+  mesh = MakeMesh();
+  mesh.number_of_points = 0;
+  REFUSED(dv_set_mesh(deformer, &mesh), "0 points");
+  mesh = MakeMesh();
+  mesh.points = NULL;
+  REFUSED(dv_set_mesh(deformer, &mesh), "null");
+  mesh = MakeMesh();
+  mesh.point_type = DV_INT16;
+  REFUSED(dv_set_mesh(deformer, &mesh), "DV_FLOAT64");
+  mesh = MakeMesh();
+  mesh.number_of_cells = 0;
+  REFUSED(dv_set_mesh(deformer, &mesh), "no cells");
+  mesh.number_of_cells = -3;
+  REFUSED(dv_set_mesh(deformer, &mesh), "-3");
+  mesh = MakeMesh();
+  mesh.connectivity = NULL;
+  REFUSED(dv_set_mesh(deformer, &mesh), "null");
+  mesh = MakeMesh();
+  Tetrahedra[3][2] = 8;
+  REFUSED(dv_set_mesh(deformer, &mesh), "Cell 3 of the deformation mesh uses point 8");
+  Tetrahedra[3][2] = -1;
+  REFUSED(dv_set_mesh(deformer, &mesh), "uses point -1");
+  Tetrahedra[3][2] = 4;
+  mesh.offsets = offsets;
+  mesh.types = types;
+  CHECK(dv_set_mesh(deformer, &mesh) == DV_OK);
+  offsets[2] = 7;
+  REFUSED(dv_set_mesh(deformer, &mesh), "Cell 1");
+  offsets[2] = -8;
+  REFUSED(dv_set_mesh(deformer, &mesh), "Cell 1");
+  REFUSED(dv_set_displacements(deformer, DV_FLOAT32, 7, Displacements), "8 points");
+  REFUSED(dv_set_displacements(deformer, DV_FLOAT32, -1, Displacements), "-1");
+  REFUSED(dv_set_displacements(deformer, DV_FLOAT32, 8, NULL), "null");
+  REFUSED(dv_set_displacements(deformer, DV_UINT8, 8, Displacements), "DV_FLOAT32");
+
+  /* What is not finite, or too far, where the deformation is used. */
+  Displacements[6][1] = (float)(infinity - infinity);
+  CHECK(dv_set_displacements(deformer, DV_FLOAT32, 8, Displacements) == DV_OK);
+  REFUSED(dv_deform(deformer, &request, NULL), "Displacement 6");
+  Displacements[6][1] = 1e9F;
+  CHECK(dv_set_displacements(deformer, DV_FLOAT32, 8, Displacements) == DV_OK);
+  REFUSED(dv_deform(deformer, &request, NULL), "16,383");
+  Displacements[6][1] = 0.0F;
+  CHECK(dv_set_displacements(deformer, DV_FLOAT32, 8, Displacements) == DV_OK);
+  CHECK(dv_deform(deformer, &request, NULL) == DV_OK);
+  mesh = MakeMesh();
+  Corners[4][0] = infinity;
+  CHECK(dv_set_mesh(deformer, &mesh) == DV_OK);
+  CHECK(dv_set_displacements(deformer, DV_FLOAT32, 8, Displacements) == DV_OK);
+  REFUSED(dv_deform(deformer, &request, NULL), "Point 4");
+  Corners[4][0] = 0.0;
+  CHECK(dv_set_mesh(deformer, &mesh) == DV_OK);
+  CHECK(dv_set_displacements(deformer, DV_FLOAT32, 8, Displacements) == DV_OK);
+
+  /* Fields. */
+  grid = MakeGrid();
+  memset(&field, 0, sizeof(field));
+  REFUSED(dv_set_field(deformer, &field), "struct_size");
+  field.struct_size = sizeof(field);
+  field.type = DV_FLOAT32;
+  REFUSED(dv_set_field(deformer, &field), "grid of the field is null");
+  field.grid = &grid;
+  REFUSED(dv_set_field(deformer, &field), "vectors of the field is null");
+  field.vectors = Values;
+  field.type = DV_INT16;
+  REFUSED(dv_set_field(deformer, &field), "DV_FLOAT32");
+  CHECK(dv_deform(deformer, &request, NULL) == DV_OK); /* by the mesh */
+
+  /* Settings. */
+  REFUSED(dv_set_outside(deformer, 3, 0.0), "outside mode is 3");
+  REFUSED(dv_set_outside(deformer, DV_OUTSIDE_KEEP, -1.0), "-1");
+  REFUSED(dv_set_outside(deformer, DV_OUTSIDE_KEEP, infinity - infinity), "FadeDistance");
+  memset(&output, 0, sizeof(output));
+  REFUSED(dv_set_output(deformer, &output), "struct_size");
+  output.struct_size = sizeof(output);
+  output.bounds_mode = 3;
+  REFUSED(dv_set_output(deformer, &output), "bounds mode is 3");
+  output.bounds_mode = DV_BOUNDS_VOLUME;
+  output.spacing[0] = 1.0;
+  REFUSED(dv_set_output(deformer, &output), "output spacing");
+  output.spacing[0] = 0.0;
+  output.padding = 2147483647;
+  REFUSED(dv_set_output(deformer, &output), "padding");
+  output.padding = 0;
+  output.bounds_mode = DV_BOUNDS_CUSTOM;
+  output.custom_bounds[0] = 1.0;
+  CHECK(dv_set_output(deformer, &output) == DV_OK);
+  REFUSED(dv_deform(deformer, &request, NULL), "no box on axis x");
+  output.bounds_mode = DV_BOUNDS_VOLUME;
+  CHECK(dv_set_output(deformer, &output) == DV_OK);
+
+  /* Requests. */
+  request.number_of_outputs = 0;
+  REFUSED(dv_deform(deformer, &request, NULL), "room for 0 arrays");
+  request.number_of_outputs = -1;
+  REFUSED(dv_deform(deformer, &request, NULL), "-1");
+  request = MakeRequest();
+  request.outputs = NULL;
+  REFUSED(dv_deform(deformer, &request, NULL), "null");
+  request.outputs = nothing;
+  REFUSED(dv_deform(deformer, &request, NULL), "Output 0 is null");
+  request = MakeRequest();
+  request.coverage = NULL;
+  REFUSED(dv_deform(deformer, &request, NULL), "coverage is null");
+  request = MakeRequest();
+  request.interpolation = 3;
+  REFUSED(dv_deform(deformer, &request, NULL), "interpolation is 3");
+  request = MakeRequest();
+  request.use_extent = 1;
+  request.extent[0] = 1;
+  REFUSED(dv_deform(deformer, &request, NULL), "is empty");
+  request.extent[0] = 0;
+  request.extent[5] = SIZE;
+  REFUSED(dv_deform(deformer, &request, NULL), "not within that of the output");
+  request = MakeRequest();
+  request.incremental = 1;
+  request.fold_count = (uint32_t*)malloc(sizeof(uint32_t) * VOXELS);
+  REFUSED(dv_deform(deformer, &request, NULL), "incremental");
+  free(request.fold_count);
+  request = MakeRequest();
+  CHECK(dv_set_memory_limit(deformer, 1) == DV_OK);
+  REFUSED(dv_deform(deformer, &request, NULL), "memory");
+  CHECK(dv_set_memory_limit(deformer, 0) == DV_OK);
+  CHECK(dv_deform(deformer, &request, NULL) == DV_OK);
+  dv_destroy(deformer);
+}
+
+/* Aborts at the call with some number; -1: never. */
+struct Progress
+{
+  int Calls;
+  int AbortAt;
+  double Last;
+};
+
+static int32_t TakeProgress(double fraction, void* user)
+{
+  struct Progress* progress = (struct Progress*)user;
+  CHECK(fraction >= progress->Last && fraction <= 1.0);
+  progress->Last = fraction;
+  return progress->Calls++ == progress->AbortAt;
+}
+
+static void TestProgress(void)
+{
+  dv_deformer* deformer = MakeDeformer();
+  dv_request request = MakeRequest();
+  struct Progress progress = { 0, -1, 0.0 };
+  int calls = 0;
+  int i = 0;
+  int16_t expected[VOXELS];
+  request.progress = TakeProgress;
+  request.user = &progress;
+  CHECK(dv_deform(deformer, &request, NULL) == DV_OK);
+  CHECK(progress.Last == 1.0);
+  memcpy(expected, Output, sizeof(expected));
+  calls = progress.Calls;
+  for (i = 0; i < calls - 1; ++i)
+  {
+    dv_deformer* other = MakeDeformer();
+    progress.Calls = 0;
+    progress.AbortAt = i;
+    progress.Last = 0.0;
+    CHECK(dv_deform(other, &request, NULL) == DV_ABORTED);
+    CHECK(progress.Calls == i + 1);
+    /* Then as if nothing had been. */
+    progress.AbortAt = -1;
+    progress.Last = 0.0;
+    memset(Output, 0, sizeof(Output));
+    CHECK(dv_deform(other, &request, NULL) == DV_OK);
+    CHECK(memcmp(Output, expected, sizeof(Output)) == 0);
+    dv_destroy(other);
+  }
+  dv_destroy(deformer);
+}
+
+/* Parts of the output hold what the whole has there, and memory of the device can be freed. */
+static void TestParts(void)
+{
+  dv_deformer* deformer = MakeDeformer();
+  dv_request request = MakeRequest();
+  dv_report report;
+  int16_t whole[VOXELS];
+  uint64_t bytes = 0;
+  int x = 0;
+  int y = 0;
+  int z = 0;
+  report.struct_size = sizeof(report);
+  CHECK(dv_deform(deformer, &request, &report) == DV_OK);
+  CHECK(report.number_of_covered_voxels > 0 && report.number_of_covered_voxels < VOXELS);
+  CHECK(report.number_of_inverted_tetrahedra == 0);
+  CHECK(strcmp(report.warnings, "") == 0 && strchr(report.device, '(') != NULL);
+  memcpy(whole, Output, sizeof(whole));
+  CHECK(dv_device_memory(deformer, &bytes) == DV_OK && bytes > 0);
+  CHECK(dv_release_memory(deformer) == DV_OK);
+  CHECK(dv_device_memory(deformer, &bytes) == DV_OK && bytes == 0);
+  request.use_extent = 1;
+  request.extent[0] = 3;
+  request.extent[1] = 7;
+  request.extent[2] = 1;
+  request.extent[3] = 11;
+  request.extent[4] = 5;
+  request.extent[5] = 6;
+  CHECK(dv_deform(deformer, &request, &report) == DV_OK);
+  for (z = 0; z < 2; ++z)
+  {
+    for (y = 0; y < 11; ++y)
+    {
+      for (x = 0; x < 5; ++x)
+      {
+        CHECK(Output[(z * 11 + y) * 5 + x] == whole[((z + 5) * SIZE + y + 1) * SIZE + x + 3]);
+      }
+    }
+  }
+  dv_destroy(deformer);
+}
+
+int main(void)
+{
+  int i = 0;
+  int axis = 0;
+  Outputs[0] = Output;
+  for (i = 0; i < VOXELS; ++i)
+  {
+    Values[i] = (int16_t)(i * 37 % 1000);
+  }
+  for (i = 0; i < 8; ++i)
+  {
+    for (axis = 0; axis < 3; ++axis)
+    {
+      Corners[i][axis] = 2.0 * (SIZE - 1) * (i >> axis & 1);
+    }
+    Displacements[i][0] = i >= 4 ? 5.0F : 0.0F;
+  }
+  TestNull();
+  TestMissing();
+  TestWrong();
+  TestProgress();
+  TestParts();
+  printf("%d failures\n", Failures);
+  return Failures != 0;
+}

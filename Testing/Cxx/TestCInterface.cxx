@@ -1,0 +1,567 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The interface for C gives what vtkDeformVolumeFilter gives, to the last bit.
+#include "FilterTesting.h"
+
+#include "deformvolume.h"
+
+#include <vtkDoubleArray.h>
+
+#include <glm/common.hpp>
+#include <glm/trigonometric.hpp>
+
+#include <algorithm>
+#include <map>
+#include <random>
+#include <set>
+#include <vector>
+
+using namespace filterTesting;
+
+namespace
+{
+
+const std::map<int, std::int32_t> Types{ { VTK_SIGNED_CHAR, DV_INT8 },
+  { VTK_UNSIGNED_CHAR, DV_UINT8 }, { VTK_SHORT, DV_INT16 }, { VTK_UNSIGNED_SHORT, DV_UINT16 },
+  { VTK_INT, DV_INT32 }, { VTK_UNSIGNED_INT, DV_UINT32 }, { VTK_LONG_LONG, DV_INT64 },
+  { VTK_UNSIGNED_LONG_LONG, DV_UINT64 }, { VTK_FLOAT, DV_FLOAT32 }, { VTK_DOUBLE, DV_FLOAT64 } };
+
+void Check(std::int32_t status)
+{
+  VERIFY_EQUAL(status, std::int32_t(DV_OK));
+  if (status != DV_OK)
+  {
+    std::cerr << dv_last_error() << '\n';
+  }
+}
+
+dv_grid MakeGrid(vtkImageData* image)
+{
+  dv_grid grid = {};
+  grid.struct_size = sizeof(grid);
+  std::copy_n(image->GetExtent(), 6, grid.extent);
+  std::copy_n(image->GetOrigin(), 3, grid.origin);
+  std::copy_n(image->GetSpacing(), 3, grid.spacing);
+  std::copy_n(image->GetDirectionMatrix()->GetData(), 9, grid.direction);
+  return grid;
+}
+
+/// A deformer of C with all that a filter has.
+class InC
+{
+public:
+  InC() { Check(dv_create(&this->Deformer)); }
+  ~InC() { dv_destroy(this->Deformer); }
+  InC(const InC&) = delete;
+  InC& operator=(const InC&) = delete;
+
+  void SetVolume(
+    vtkImageData* volume, double background, const std::set<std::string>& categorical = {})
+  {
+    const dv_grid grid = MakeGrid(volume);
+    Check(dv_set_volume(this->Deformer, &grid));
+    std::vector<dv_array> arrays;
+    this->Sizes.clear();
+    vtkDataArray* blanked = nullptr;
+    for (int i = 0; i < volume->GetPointData()->GetNumberOfArrays(); ++i)
+    {
+      vtkDataArray* values = volume->GetPointData()->GetArray(i);
+      if (std::string(values->GetName()) == "vtkGhostType")
+      {
+        blanked = values;
+        continue;
+      }
+      dv_array array = {};
+      array.struct_size = sizeof(array);
+      array.data = values->GetVoidPointer(0);
+      array.type = Types.at(values->GetDataType());
+      array.components = values->GetNumberOfComponents();
+      array.categorical = categorical.count(values->GetName()) > 0 ? 1 : 0;
+      array.background = background;
+      arrays.push_back(array);
+      this->Names.emplace_back(values->GetName());
+      this->Sizes.push_back(static_cast<std::size_t>(values->GetDataTypeSize()) *
+        static_cast<std::size_t>(array.components));
+    }
+    Check(dv_set_arrays(this->Deformer, static_cast<std::int32_t>(arrays.size()), arrays.data()));
+    Check(dv_set_blanked(this->Deformer,
+      blanked ? static_cast<const std::uint8_t*>(blanked->GetVoidPointer(0)) : nullptr));
+    this->Background = background;
+  }
+
+  void SetMesh(vtkUnstructuredGrid* grid)
+  {
+    std::vector<std::int64_t> offsets{ 0 };
+    std::vector<std::int64_t> connectivity;
+    std::vector<std::uint8_t> types;
+    bool areTetrahedra = true;
+    for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
+    {
+      vtkIdType count = 0;
+      const vtkIdType* points = nullptr;
+      grid->GetCellPoints(cell, count, points);
+      connectivity.insert(connectivity.end(), points, points + count);
+      offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
+      types.push_back(static_cast<std::uint8_t>(grid->GetCellType(cell)));
+      areTetrahedra = areTetrahedra && types.back() == VTK_TETRA;
+    }
+    dv_mesh mesh = {};
+    mesh.struct_size = sizeof(mesh);
+    mesh.number_of_points = grid->GetNumberOfPoints();
+    mesh.points = grid->GetPoints()->GetVoidPointer(0);
+    mesh.point_type = Types.at(grid->GetPoints()->GetDataType());
+    mesh.number_of_cells = grid->GetNumberOfCells();
+    mesh.connectivity = connectivity.data();
+    mesh.types = areTetrahedra ? nullptr : types.data();
+    mesh.offsets = areTetrahedra ? nullptr : offsets.data();
+    Check(dv_set_mesh(this->Deformer, &mesh));
+    this->SetDisplacements(grid);
+  }
+
+  void SetDisplacements(vtkDataSet* mesh)
+  {
+    vtkDataArray* vectors = mesh->GetPointData()->GetVectors();
+    Check(dv_set_displacements(this->Deformer, Types.at(vectors->GetDataType()),
+      vectors->GetNumberOfTuples(), vectors->GetVoidPointer(0)));
+  }
+
+  void SetField(vtkImageData* image, bool isInverse)
+  {
+    vtkDataArray* vectors = image->GetPointData()->GetVectors();
+    const dv_grid grid = MakeGrid(image);
+    dv_field field = {};
+    field.struct_size = sizeof(field);
+    field.grid = &grid;
+    field.vectors = vectors->GetVoidPointer(0);
+    field.type = Types.at(vectors->GetDataType());
+    field.inverse = isInverse ? 1 : 0;
+    Check(dv_set_field(this->Deformer, &field));
+  }
+
+  void SetReference(vtkImageData* image)
+  {
+    const dv_grid grid = MakeGrid(image);
+    Check(dv_set_reference(this->Deformer, &grid));
+  }
+
+  /// What is wanted besides the arrays of the volume.
+  bool WithExtra = false;
+  bool WithFolds = false;
+  bool IsIncremental = false;
+  std::int32_t Interpolation = DV_LINEAR;
+
+  void Deform()
+  {
+    dv_grid grid = {};
+    grid.struct_size = sizeof(grid);
+    Check(dv_output_grid(this->Deformer, &grid));
+    this->Grid = grid;
+    std::size_t voxels = 1;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      voxels *= static_cast<std::size_t>(grid.extent[2 * axis + 1] - grid.extent[2 * axis] + 1);
+    }
+    dv_request request = {};
+    request.struct_size = sizeof(request);
+    std::vector<void*> outputs;
+    this->Outputs.resize(this->Sizes.size());
+    for (std::size_t i = 0; i < this->Sizes.size(); ++i)
+    {
+      this->Outputs[i].resize(voxels * this->Sizes[i]);
+      outputs.push_back(this->Outputs[i].data());
+    }
+    this->Coverage.resize(voxels);
+    request.number_of_outputs = static_cast<std::int32_t>(outputs.size());
+    request.outputs = outputs.data();
+    request.coverage = this->Coverage.data();
+    request.interpolation = this->Interpolation;
+    request.incremental = this->IsIncremental ? 1 : 0;
+    if (this->WithExtra)
+    {
+      this->RestPositions.resize(3 * voxels);
+      this->Jacobian.resize(voxels);
+      request.rest_positions = this->RestPositions.data();
+      request.jacobian = this->Jacobian.data();
+      request.extra_background = this->Background;
+    }
+    if (this->WithFolds)
+    {
+      this->FoldCount.resize(voxels);
+      request.fold_count = this->FoldCount.data();
+    }
+    this->Report.struct_size = sizeof(this->Report);
+    Check(dv_deform(this->Deformer, &request, &this->Report));
+  }
+
+  /// Whether some bytes are those of an array of an image.
+  template <typename T>
+  static bool AreBits(const std::vector<T>& made, vtkImageData* image, const char* name)
+  {
+    vtkDataArray* array = image->GetPointData()->GetArray(name);
+    const std::size_t bytes = made.size() * sizeof(T);
+    return array &&
+      bytes ==
+      static_cast<std::size_t>(array->GetNumberOfValues()) *
+        static_cast<std::size_t>(array->GetDataTypeSize()) &&
+      std::memcmp(made.data(), array->GetVoidPointer(0), bytes) == 0;
+  }
+
+  /// Deforms, and compares with what a filter makes.
+  void Compare(Deformed& deformed, const std::string& warning = "")
+  {
+    vtkImageData* wanted = deformed.Expect(warning);
+    this->Deform();
+    const dv_grid grid = MakeGrid(wanted);
+    VERIFY(std::equal(grid.extent, grid.extent + 6, this->Grid.extent));
+    VERIFY(std::equal(grid.origin, grid.origin + 3, this->Grid.origin));
+    VERIFY(std::equal(grid.spacing, grid.spacing + 3, this->Grid.spacing));
+    VERIFY(std::equal(grid.direction, grid.direction + 9, this->Grid.direction));
+    for (std::size_t i = 0; i < this->Outputs.size(); ++i)
+    {
+      VERIFY(AreBits(this->Outputs[i], wanted, this->Names[i].c_str()));
+    }
+    VERIFY(AreBits(this->Coverage, wanted, "vtkValidPointMask"));
+    VERIFY(!this->WithExtra || AreBits(this->RestPositions, wanted, "RestPosition"));
+    VERIFY(!this->WithExtra || AreBits(this->Jacobian, wanted, "Jacobian"));
+    VERIFY(!this->WithFolds || AreBits(this->FoldCount, wanted, "FoldCount"));
+    VERIFY_EQUAL(
+      this->Report.number_of_covered_voxels, deformed.Filter->GetNumberOfCoveredVoxels());
+    VERIFY(this->Report.number_of_covered_voxels > 100);
+    VERIFY_EQUAL(
+      this->Report.number_of_inverted_tetrahedra, deformed.Filter->GetNumberOfInvertedTetrahedra());
+    VERIFY_EQUAL(
+      this->Report.number_of_flat_tetrahedra, deformed.Filter->GetNumberOfFlatTetrahedra());
+    VERIFY_EQUAL(std::string(this->Report.device), deformed.Filter->GetDeviceInUse());
+    VERIFY(warning.empty() ? std::string(this->Report.warnings).empty()
+                           : std::string(this->Report.warnings).find(warning) != std::string::npos);
+  }
+
+  dv_deformer* Deformer = nullptr;
+  dv_report Report = {};
+  dv_grid Grid = {};
+
+private:
+  double Background = 0.0;
+  std::vector<std::string> Names;
+  std::vector<std::size_t> Sizes; // bytes of a voxel
+  std::vector<std::vector<unsigned char>> Outputs;
+  std::vector<std::int8_t> Coverage;
+  std::vector<float> RestPositions;
+  std::vector<float> Jacobian;
+  std::vector<std::uint32_t> FoldCount;
+};
+
+glm::dvec3 Bend(const glm::dvec3& p)
+{
+  return p + glm::dvec3(0.02 * p.z * p.z, 1.5 * std::sin(0.3 * p.x), 0.05 * p.x * p.y);
+}
+
+/// Values, labels, vectors and colors on an oblique grid.
+vtkSmartPointer<vtkImageData> MakeManyArrays()
+{
+  auto volume =
+    MakeImage({ { -7, 12, 3, 20, -9, 8 } }, glm::dvec3(0.7, -1.1, 0.9), glm::dvec3(3.0, -4.0, 2.0));
+  SetObliqueDirection(volume);
+  const WorldFunction wave = [](const glm::dvec3& p)
+  { return 60.0 * std::sin(0.7 * p.x) + 40.0 * std::cos(0.9 * p.y) + 5.0 * p.z; };
+  AddScalars<signed char>(volume, "int8", wave);
+  AddScalars<unsigned short>(
+    volume, "uint16", [&](const glm::dvec3& p) { return 200.0 * (wave(p) + 150.0); });
+  AddScalars<int>(volume, "int32", wave);
+  AddScalars<long long>(volume, "int64", [&](const glm::dvec3& p) { return 1e10 * wave(p); });
+  AddScalars<double>(volume, "double", wave);
+  AddScalars<unsigned char>(
+    volume, "labels", [&](const glm::dvec3& p) { return std::fmod(std::abs(wave(p)), 7.0); });
+  vtkNew<vtkFloatArray> vectors;
+  vectors->SetName("vectors");
+  vectors->SetNumberOfComponents(2);
+  vectors->SetNumberOfTuples(volume->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < vectors->GetNumberOfValues(); ++i)
+  {
+    vectors->SetValue(i, static_cast<float>(std::sin(0.37 * static_cast<double>(i))));
+  }
+  volume->GetPointData()->AddArray(vectors);
+  return volume;
+}
+
+/// Tetrahedra without order, as a mesher makes them: nodes moved and renumbered.
+vtkSmartPointer<vtkUnstructuredGrid> MakeIrregularMesh(vtkImageData* volume, double margin)
+{
+  auto lattice = MakeMesh(volume, 6, margin);
+  std::mt19937 random(7);
+  std::vector<vtkIdType> places(static_cast<std::size_t>(lattice->GetNumberOfPoints()));
+  for (std::size_t i = 0; i < places.size(); ++i)
+  {
+    places[i] = static_cast<vtkIdType>(i);
+  }
+  std::shuffle(places.begin(), places.end(), random);
+  std::uniform_real_distribution<double> between(-0.3, 0.3);
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(lattice->GetNumberOfPoints());
+  for (std::size_t i = 0; i < places.size(); ++i)
+  {
+    const glm::dvec3 point = GetPoint(lattice, static_cast<vtkIdType>(i)) +
+      glm::dvec3(between(random), between(random), between(random));
+    points->SetPoint(places[i], &point.x);
+  }
+  auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  mesh->SetPoints(points);
+  mesh->Allocate(lattice->GetNumberOfCells());
+  for (vtkIdType cell = 0; cell < lattice->GetNumberOfCells(); ++cell)
+  {
+    vtkIdType count = 0;
+    const vtkIdType* nodes = nullptr;
+    lattice->GetCellPoints(cell, count, nodes);
+    vtkIdType renumbered[4];
+    for (int i = 0; i < 4; ++i)
+    {
+      renumbered[i] = places[static_cast<std::size_t>(nodes[i])];
+    }
+    mesh->InsertNextCell(VTK_TETRA, 4, renumbered);
+  }
+  return mesh;
+}
+
+vtkSmartPointer<vtkImageData> MakeReference(bool isMirrored)
+{
+  const double z = isMirrored ? -1.0 : 1.0;
+  auto reference = MakeImage(
+    { { 5, 44, -2, 43, 10, 51 } }, glm::dvec3(0.9, 0.8, 1.1), glm::dvec3(-24.0, -12.0, -34.0 * z));
+  const double direction[9] = { 0.96, 0.28, 0.0, -0.28, 0.96, 0.0, 0.0, 0.0, z };
+  reference->SetDirectionMatrix(direction);
+  return reference;
+}
+
+void TestMeshes()
+{
+  const auto volume = MakeManyArrays();
+  for (const bool isIrregular : { false, true })
+  {
+    // The second one ends within the volume.
+    auto mesh = isIrregular ? MakeIrregularMesh(volume, -2.0) : MakeMesh(volume, 4);
+    SetDisplacements(mesh, Bend);
+    Deformed deformed(volume, mesh);
+    deformed.Filter->SetBackgroundValue(-7.4);
+    deformed.Filter->AddCategoricalArray("labels");
+    InC inC;
+    inC.SetVolume(volume, -7.4, { "labels" });
+    inC.SetMesh(mesh);
+    inC.Compare(deformed);
+    // Interpolations.
+    deformed.Filter->SetInterpolation(vtkDeformVolumeFilter::CUBIC_INTERPOLATION);
+    inC.Interpolation = DV_CUBIC;
+    inC.Compare(deformed);
+    deformed.Filter->SetInterpolation(vtkDeformVolumeFilter::NEAREST_INTERPOLATION);
+    inC.Interpolation = DV_NEAREST;
+    inC.Compare(deformed);
+    deformed.Filter->SetInterpolation(vtkDeformVolumeFilter::LINEAR_INTERPOLATION);
+    inC.Interpolation = DV_LINEAR;
+    // Other displacements, in doubles.
+    SetDisplacements(mesh, Shift(1.25, -2.5, 0.3));
+    vtkNew<vtkDoubleArray> doubles;
+    doubles->DeepCopy(mesh->GetPointData()->GetVectors());
+    mesh->GetPointData()->SetVectors(doubles);
+    mesh->Modified();
+    inC.SetDisplacements(mesh);
+    inC.Compare(deformed);
+    // Voxels outside.
+    SetDisplacements(mesh, Bend);
+    mesh->Modified();
+    inC.SetDisplacements(mesh);
+    deformed.Filter->SetOutsideMode(vtkDeformVolumeFilter::EXTRAPOLATE);
+    Check(dv_set_outside(inC.Deformer, DV_OUTSIDE_EXTRAPOLATE, 0.0));
+    inC.Compare(deformed);
+    deformed.Filter->SetOutsideMode(vtkDeformVolumeFilter::KEEP);
+    deformed.Filter->SetFadeDistance(3.5);
+    Check(dv_set_outside(inC.Deformer, DV_OUTSIDE_KEEP, 3.5));
+    inC.Compare(deformed, isIrregular ? "FadeDistance" : "");
+  }
+}
+
+void TestGrids()
+{
+  const auto volume = MakeManyArrays();
+  auto mesh = MakeIrregularMesh(volume, 1.0);
+  SetDisplacements(mesh, Bend);
+  Deformed deformed(volume, mesh);
+  InC inC;
+  inC.SetVolume(volume, 0.0);
+  inC.SetMesh(mesh);
+  // Bounds and spacings.
+  dv_output output = {};
+  output.struct_size = sizeof(output);
+  output.bounds_mode = DV_BOUNDS_VOLUME;
+  output.padding = 2;
+  deformed.Filter->SetOutputBoundsMode(vtkDeformVolumeFilter::VOLUME_BOUNDS);
+  deformed.Filter->SetPadding(2);
+  Check(dv_set_output(inC.Deformer, &output));
+  inC.Compare(deformed);
+  const double spacing[3] = { 1.3, 0.8, 0.45 };
+  std::copy_n(spacing, 3, output.spacing);
+  deformed.Filter->SetOutputSpacingMode(vtkDeformVolumeFilter::CUSTOM_SPACING);
+  deformed.Filter->SetCustomSpacing(1.3, 0.8, 0.45);
+  Check(dv_set_output(inC.Deformer, &output));
+  inC.Compare(deformed);
+  output.bounds_mode = DV_BOUNDS_CUSTOM;
+  const double box[6] = { -5.0, 9.0, -20.0, 3.0, -20.0, 12.0 };
+  std::copy_n(box, 6, output.custom_bounds);
+  deformed.Filter->SetOutputBoundsMode(vtkDeformVolumeFilter::CUSTOM_BOUNDS);
+  deformed.Filter->SetCustomBounds(box);
+  Check(dv_set_output(inC.Deformer, &output));
+  inC.Compare(deformed);
+  output.bounds_mode = DV_BOUNDS_DEFORMED;
+  deformed.Filter->SetOutputBoundsMode(vtkDeformVolumeFilter::DEFORMED_BOUNDS);
+  Check(dv_set_output(inC.Deformer, &output));
+  inC.Compare(deformed);
+  Check(dv_set_output(inC.Deformer, nullptr));
+  deformed.Filter->SetOutputSpacingMode(vtkDeformVolumeFilter::VOLUME_SPACING);
+  deformed.Filter->SetPadding(0);
+  inC.Compare(deformed);
+  // Reference grids: turned, and mirrored.
+  for (const bool isMirrored : { false, true })
+  {
+    const auto reference = MakeReference(isMirrored);
+    deformed.Filter->SetReferenceData(reference);
+    inC.SetReference(reference);
+    inC.Compare(deformed);
+  }
+  deformed.Filter->SetInterpolation(vtkDeformVolumeFilter::CUBIC_INTERPOLATION);
+  inC.Interpolation = DV_CUBIC;
+  inC.Compare(deformed);
+}
+
+void TestFields()
+{
+  const auto volume = MakeManyArrays();
+  // On a grid of its own; on the voxels; on twice as many points as voxels.
+  for (int kind = 0; kind < 3; ++kind)
+  {
+    vtkSmartPointer<vtkImageData> field;
+    if (kind == 0)
+    {
+      field = MakeImage(
+        { { 2, 14, -3, 12, 0, 11 } }, glm::dvec3(3.1, 2.9, 3.3), glm::dvec3(-20.0, -10.0, -28.0));
+    }
+    else
+    {
+      field = vtkSmartPointer<vtkImageData>::New();
+      field->CopyStructure(volume);
+      if (kind == 2)
+      {
+        int extent[6];
+        volume->GetExtent(extent);
+        std::for_each(extent, extent + 6, [](int& index) { index *= 2; });
+        double steps[3];
+        volume->GetSpacing(steps);
+        field->SetExtent(extent);
+        field->SetSpacing(0.5 * steps[0], 0.5 * steps[1], 0.5 * steps[2]);
+      }
+    }
+    SetDisplacements(field, Bend);
+    for (const bool isInverse : { false, true })
+    {
+      Deformed deformed(volume, field);
+      deformed.Filter->SetFieldIsInverse(isInverse);
+      InC inC;
+      inC.SetVolume(volume, 0.0);
+      inC.SetField(field, isInverse);
+      inC.Compare(deformed);
+      deformed.Filter->SetOutsideMode(vtkDeformVolumeFilter::EXTRAPOLATE);
+      deformed.Filter->SetOutputBoundsMode(vtkDeformVolumeFilter::VOLUME_BOUNDS);
+      dv_output output = {};
+      output.struct_size = sizeof(output);
+      output.bounds_mode = DV_BOUNDS_VOLUME;
+      Check(dv_set_output(inC.Deformer, &output));
+      Check(dv_set_outside(inC.Deformer, DV_OUTSIDE_EXTRAPOLATE, 0.0));
+      inC.Compare(deformed);
+      deformed.Filter->SetOutsideMode(vtkDeformVolumeFilter::KEEP);
+      deformed.Filter->SetFadeDistance(60.0);
+      Check(dv_set_outside(inC.Deformer, DV_OUTSIDE_KEEP, 60.0));
+      inC.Compare(deformed);
+      const auto reference = MakeReference(true);
+      deformed.Filter->SetReferenceData(reference);
+      deformed.Filter->SetOutputBoundsMode(vtkDeformVolumeFilter::DEFORMED_BOUNDS);
+      inC.SetReference(reference);
+      inC.Compare(deformed);
+    }
+  }
+}
+
+void TestExtraAndMasks()
+{
+  auto volume = MakeManyArrays();
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName("vtkGhostType");
+  ghosts->SetNumberOfTuples(volume->GetNumberOfPoints());
+  ghosts->Fill(0);
+  for (vtkIdType i = 0; i < ghosts->GetNumberOfTuples(); i += 37)
+  {
+    ghosts->SetValue(i, 2);
+  }
+  volume->GetPointData()->AddArray(ghosts);
+  auto mesh = MakeIrregularMesh(volume, 1.0);
+  SetDisplacements(
+    mesh, [](const glm::dvec3& p) { return Bend(p) + glm::dvec3(0.0, 0.0, 4.0 * std::sin(p.x)); });
+  Deformed deformed(volume, mesh);
+  deformed.Filter->SetBackgroundValue(-3.0);
+  InC inC;
+  inC.SetVolume(volume, -3.0);
+  inC.SetMesh(mesh);
+  inC.Compare(deformed);
+  deformed.Filter->GenerateRestPositionsOn();
+  deformed.Filter->GenerateJacobianOn();
+  deformed.Filter->GenerateFoldCountOn();
+  inC.WithExtra = inC.WithFolds = true;
+  inC.Compare(deformed);
+  VERIFY(inC.Report.number_of_inverted_tetrahedra > 0);
+  // Fields.
+  auto field = vtkSmartPointer<vtkImageData>::New();
+  field->CopyStructure(volume);
+  SetDisplacements(field, Bend);
+  deformed.Filter->SetDeformationData(field);
+  inC.SetField(field, false);
+  inC.Compare(deformed);
+  deformed.Filter->GenerateFoldCountOff();
+  deformed.Filter->FieldIsInverseOn();
+  inC.WithFolds = false;
+  inC.SetField(field, true);
+  inC.Compare(deformed);
+}
+
+/// Live: what changes is written alone, and the result is that of a new deformer.
+void TestIncremental()
+{
+  const auto volume = MakeManyArrays();
+  auto mesh = MakeMesh(volume, 5);
+  SetDisplacements(mesh, Bend);
+  Deformed deformed(volume, mesh);
+  deformed.Filter->SetOutputBoundsMode(vtkDeformVolumeFilter::VOLUME_BOUNDS);
+  InC inC;
+  inC.IsIncremental = true;
+  inC.SetVolume(volume, 0.0);
+  inC.SetMesh(mesh);
+  dv_output output = {};
+  output.struct_size = sizeof(output);
+  output.bounds_mode = DV_BOUNDS_VOLUME;
+  Check(dv_set_output(inC.Deformer, &output));
+  for (int step = 0; step < 4; ++step)
+  {
+    vtkDataArray* vectors = mesh->GetPointData()->GetVectors();
+    vectors->SetComponent(62, 0, 0.5 * step);
+    vectors->Modified();
+    inC.SetDisplacements(mesh);
+    inC.Compare(deformed);
+  }
+}
+
+} // namespace
+
+int TestCInterface(int, char*[])
+{
+  TestMeshes();
+  TestGrids();
+  TestFields();
+  TestExtraAndMasks();
+  TestIncremental();
+  return GetExitCode();
+}
