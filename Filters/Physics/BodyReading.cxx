@@ -250,8 +250,8 @@ bool IsHeldAlong(const ElasticBody& body, std::size_t node, const glm::dvec3& no
   return glm::length(rest) <= LargestSine;
 }
 
-// The planes in which the middle of an edge slides: those of its ends in which the edge lies and
-// both ends stay; 0: none.
+// The normals, as they are given, of the planes in which the middle of an edge slides: those of its
+// ends in which the edge lies and both ends stay; 0: none.
 std::array<glm::dvec3, 2> GetMiddleNormals(const ElasticBody& body, std::size_t a, std::size_t b)
 {
   std::array<glm::dvec3, 2> result{ { glm::dvec3(0.0), glm::dvec3(0.0) } };
@@ -265,13 +265,15 @@ std::array<glm::dvec3, 2> GetMiddleNormals(const ElasticBody& body, std::size_t 
   {
     for (const auto* normals : { &body.SlidingNormals, &body.SecondSlidingNormals })
     {
-      const glm::dvec3 normal = normals->empty() ? glm::dvec3(0.0) : GetUnitVector((*normals)[end]);
-      const bool isNew = number == 0 || glm::length(glm::cross(result[0], normal)) > LargestSine;
+      const glm::dvec3 given = normals->empty() ? glm::dvec3(0.0) : (*normals)[end];
+      const glm::dvec3 normal = GetUnitVector(given);
+      const bool isNew =
+        number == 0 || glm::length(glm::cross(GetUnitVector(result[0]), normal)) > LargestSine;
       if (number < result.size() && normal != glm::dvec3(0.0) && isNew &&
         std::abs(glm::dot(edge, normal)) <= LargestSine && IsHeldAlong(body, a, normal) &&
         IsHeldAlong(body, b, normal))
       {
-        result[number++] = normal;
+        result[number++] = given;
       }
     }
   }

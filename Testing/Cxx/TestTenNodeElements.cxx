@@ -568,6 +568,36 @@ void TestSlidingAlongLines()
   VERIFY(worst < 1e-8);
 }
 
+// Nodes that are made have the normals of the ends of their edges, also where these are integers.
+void TestIntegerNormals()
+{
+  auto cube = MakeCube();
+  FixPoints(cube, [](const glm::dvec3& p) { return p.z == Edge; });
+  vtkNew<vtkIntArray> normals;
+  normals->SetName("SlidingNormal");
+  normals->SetNumberOfComponents(3);
+  for (vtkIdType i = 0; i < cube->GetNumberOfPoints(); ++i)
+  {
+    const int isBottom = GetPoint(cube, i).z == 0.0 ? 1 : 0;
+    const double normal[3] = { 0.0, 2.0 * isBottom, -1.0 * isBottom };
+    normals->InsertNextTuple(normal);
+  }
+  cube->GetPointData()->AddArray(normals);
+  Elements elements(cube);
+  VERIFY_EQUAL(elements.TryUpdate(), std::string());
+  vtkUnstructuredGrid* output = elements.Object->GetOutput();
+  vtkDataArray* made = output->GetPointData()->GetArray("SlidingNormal");
+  int sliding = 0;
+  for (vtkIdType i = CornersOfCube; i < output->GetNumberOfPoints(); ++i)
+  {
+    glm::dvec3 normal;
+    made->GetTuple(i, &normal.x);
+    sliding += normal == glm::dvec3(0.0, 2.0, -1.0);
+    VERIFY(normal == glm::dvec3(0.0) || normal == glm::dvec3(0.0, 2.0, -1.0));
+  }
+  VERIFY_EQUAL(sliding, 6); // edges along x, the others lead out of the plane
+}
+
 // A handle moves a node that slides within its plane.
 void TestHandleOnSliding()
 {
@@ -741,6 +771,7 @@ int TestTenNodeElements(int, char*[])
   TestPrescribed();
   TestSliding();
   TestSlidingAlongLines();
+  TestIntegerNormals();
   TestHandleOnSliding();
   TestFiltersBehind();
   TestCut();

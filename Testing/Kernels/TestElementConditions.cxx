@@ -170,6 +170,31 @@ TEST(ElementConditions, NormalsOfAnyLength)
   }
 }
 
+// Two planes that are parallel, but for what coordinates are rounded, are one.
+TEST(ElementConditions, NearlyParallelPlanes)
+{
+  QuadraticLattice cube = MakeCube([](const Place& place) { return place[2] == 0; });
+  ElasticBody& body = cube.Body;
+  for (std::size_t node = 0; node < body.Points.size(); ++node)
+  {
+    const bool slides = body.Points[node].x == 0.0 && !body.IsFixed(node);
+    body.SlidingNormals.push_back(glm::dvec3(slides, 0.0, 0.0));
+  }
+  EquilibriumRequest request = MakeConverged();
+  request.Loads.Gravity = glm::dvec3(0.0, 0.4, 0.0);
+  FiniteElementModel model;
+  model.SetBody(body);
+  EXPECT_TRUE(model.Solve(request).IsConverged);
+  const std::vector<glm::dvec3> wanted = model.GetDisplacements();
+  for (const glm::dvec3& normal : body.SlidingNormals)
+  {
+    body.SecondSlidingNormals.push_back(normal + glm::dvec3(0.0, 1e-5 * normal.x, 0.0));
+  }
+  model.SetBody(body);
+  EXPECT_TRUE(model.Solve(request).IsConverged);
+  EXPECT_LT(LargestDifference(model.GetDisplacements(), wanted), 1e-12);
+}
+
 // Nodes that have left a plane before they slide in it return to it.
 TEST(ElementConditions, PlanesThatComeLater)
 {
