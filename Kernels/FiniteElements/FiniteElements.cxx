@@ -3,8 +3,6 @@
 
 #include "ElementMechanics.h"
 
-#include <glm/geometric.hpp>
-
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -325,32 +323,6 @@ void FindBatchResults(const ElementBatch& batch, const double* displacements,
   }
 }
 
-// The determinant of three edges from the first of four points.
-double GetDeterminant(
-  const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d)
-{
-  return glm::dot(glm::cross(b - a, c - a), d - a);
-}
-
-bool IsSplitInverted(const std::array<glm::dvec3, QuadraticTetrahedron::NumberOfNodes>& p)
-{
-  // The corners, with what cuts them off; the triangles between these on the faces, inwards.
-  constexpr std::size_t corners[4][4] = { { 0, 4, 6, 7 }, { 1, 5, 4, 8 }, { 2, 6, 5, 9 },
-    { 3, 8, 7, 9 } };
-  constexpr std::size_t faces[4][3] = { { 4, 5, 6 }, { 4, 7, 8 }, { 5, 8, 9 }, { 6, 9, 7 } };
-  const glm::dvec3 center =
-    0.25 * (p[4] + p[5] + p[6] + p[7] + p[8] + p[9]) - 0.125 * (p[0] + p[1] + p[2] + p[3]);
-  return std::any_of(std::begin(corners), std::end(corners),
-           [&](const std::size_t(&c)[4])
-           {
-             return GetDeterminant(p[c[0]], p[c[1]], p[c[2]], p[c[3]]) < 0.0 ||
-               GetDeterminant(p[c[1]], p[c[2]], p[c[3]], center) < 0.0;
-           }) ||
-    std::any_of(std::begin(faces), std::end(faces),
-      [&](const std::size_t(&f)[3])
-      { return GetDeterminant(p[f[0]], p[f[1]], p[f[2]], center) < 0.0; });
-}
-
 } // namespace
 
 std::int64_t CountInvertedSplits(
@@ -366,19 +338,16 @@ std::int64_t CountInvertedSplits(
       for (std::size_t t = part * size; t < end; ++t)
       {
         std::array<glm::dvec3, QuadraticTetrahedron::NumberOfNodes> points{};
-        const Tetrahedron& c = body.Tetrahedra[t];
-        const auto at = [&](std::size_t i) { return body.Points[static_cast<std::size_t>(c[i])]; };
-        const bool isMirrored = GetDeterminant(at(0), at(1), at(2), at(3)) < 0.0;
+        const bool isMirrored =
+          QuadraticTetrahedron::IsMirrored(QuadraticTetrahedron::GetPoints(body, t));
         std::size_t i = 0;
         body.ForNodes(t,
           [&](std::int32_t node)
           {
-            glm::dvec3& point = points[i++];
-            point = body.Points[static_cast<std::size_t>(node)] +
+            points[i++] = body.Points[static_cast<std::size_t>(node)] +
               displacements[static_cast<std::size_t>(node)];
-            point.x = isMirrored ? -point.x : point.x;
           });
-        numbers[part] += IsSplitInverted(points) ? 1 : 0;
+        numbers[part] += QuadraticTetrahedron::IsSplitInverted(points, isMirrored) ? 1 : 0;
       }
     });
   return std::accumulate(numbers.begin(), numbers.end(), std::int64_t{ 0 });

@@ -110,8 +110,8 @@ void CheckShapes(Watch& watch, const ElasticBody& body)
   }
 }
 
-// Whether a tetrahedron with these nodes overlaps itself: somewhere it has no volume, or one of the
-// other sign.
+// Whether a tetrahedron with these nodes overlaps itself, or the linear ones do into which it is
+// split: somewhere it has no volume, or one of the other sign.
 bool IsFolded(const std::array<glm::dvec3, QuadraticTetrahedron::NumberOfNodes>& points)
 {
   // The determinant of straight edges is the same everywhere.
@@ -132,14 +132,15 @@ bool IsFolded(const std::array<glm::dvec3, QuadraticTetrahedron::NumberOfNodes>&
       return true;
     }
   }
-  return std::any_of(std::begin(TetrahedronEdges), std::end(TetrahedronEdges),
-    [&](const std::size_t(&ends)[2])
-    {
-      glm::dvec4 middle(0.0);
-      middle[static_cast<int>(ends[0])] = 0.5;
-      middle[static_cast<int>(ends[1])] = 0.5;
-      return isBad(middle);
-    });
+  return QuadraticTetrahedron::IsSplitInverted(points, corners < 0.0) ||
+    std::any_of(std::begin(TetrahedronEdges), std::end(TetrahedronEdges),
+      [&](const std::size_t(&ends)[2])
+      {
+        glm::dvec4 middle(0.0);
+        middle[static_cast<int>(ends[0])] = 0.5;
+        middle[static_cast<int>(ends[1])] = 0.5;
+        return isBad(middle);
+      });
 }
 
 void CheckMidSides(Watch& watch, const ElasticBody& body)

@@ -126,8 +126,9 @@ DEFORMVOLUME_EXPORT bool IsFlat(const std::array<glm::dvec3, 4>& points);
 
 /// Throws an Error where a body cannot be simulated: no tetrahedra, nodes that are not there,
 /// coordinates that are not finite, tetrahedra that are flat or turned inside out, mid-side nodes
-/// so far from the middle of their edge that the tetrahedron overlaps itself, a material out of its
-/// range, or arrays of another length. watch: of the engine; asked now and then.
+/// so far from the middle of their edge that the tetrahedron overlaps itself, or the linear ones do
+/// into which it is split (QuadraticTetrahedron::IsSplitInverted), a material out of its range, or
+/// arrays of another length. watch: of the engine; asked now and then.
 DEFORMVOLUME_EXPORT void CheckBody(const ElasticBody& body, Watch* watch = nullptr);
 
 /// Throws an Error where a number of a material is out of its range; where: of which, in words.

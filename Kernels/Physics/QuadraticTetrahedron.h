@@ -88,6 +88,42 @@ struct QuadraticTetrahedron
     return volumes;
   }
 
+  /// Whether the corners go round the other way.
+  static bool IsMirrored(const std::array<glm::dvec3, NumberOfNodes>& points)
+  {
+    return GetDeterminant(points[0], points[1], points[2], points[3]) < 0.0;
+  }
+
+  /// Whether one of the twelve linear tetrahedra is inside out into which vtkDeformVolumeFilter
+  /// splits it: its corners, and eight around its middle. isMirrored: of it at rest.
+  static bool IsSplitInverted(const std::array<glm::dvec3, NumberOfNodes>& p, bool isMirrored)
+  {
+    // The corners, with what cuts them off; the triangles between these on the faces, inwards.
+    constexpr std::size_t corners[4][4] = { { 0, 4, 6, 7 }, { 1, 5, 4, 8 }, { 2, 6, 5, 9 },
+      { 3, 8, 7, 9 } };
+    constexpr std::size_t faces[4][3] = { { 4, 5, 6 }, { 4, 7, 8 }, { 5, 8, 9 }, { 6, 9, 7 } };
+    const glm::dvec3 center =
+      0.25 * (p[4] + p[5] + p[6] + p[7] + p[8] + p[9]) - 0.125 * (p[0] + p[1] + p[2] + p[3]);
+    const auto isBad =
+      [&](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d)
+    { return (isMirrored ? -1.0 : 1.0) * GetDeterminant(a, b, c, d) < 0.0; };
+    for (const std::size_t(&c)[4] : corners)
+    {
+      if (isBad(p[c[0]], p[c[1]], p[c[2]], p[c[3]]) || isBad(p[c[1]], p[c[2]], p[c[3]], center))
+      {
+        return true;
+      }
+    }
+    for (const std::size_t(&f)[3] : faces)
+    {
+      if (isBad(p[f[0]], p[f[1]], p[f[2]], center))
+      {
+        return true;
+      }
+    }
+    return false;
+  }
+
   /// What part each node bears of a force that acts on the volume of Gauss point i.
   static std::array<double, NumberOfNodes> GetShares(std::size_t i)
   {
@@ -104,6 +140,14 @@ struct QuadraticTetrahedron
         place[static_cast<int>(TetrahedronEdges[edge][1])];
     }
     return shares;
+  }
+
+private:
+  // Of three edges from the first of four points.
+  static double GetDeterminant(
+    const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d)
+  {
+    return glm::dot(glm::cross(b - a, c - a), d - a);
   }
 };
 

@@ -165,6 +165,27 @@ TEST(MidSideNodes, Misuse)
     getError(body), "2 of 40 tetrahedra of the rest mesh are flat, the first one being number 4.");
 }
 
+// Where it is split into linear tetrahedra one of them is inside out, though its determinant is
+// nowhere near 0 where it is looked at: volumes cannot be deformed by it.
+TEST(MidSideNodes, SplitInsideOut)
+{
+  for (const bool isMirrored : { false, true })
+  {
+    ElasticBody body;
+    body.Points = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, isMirrored ? -1 : 1 } };
+    body.Tetrahedra = { { 0, 1, 2, 3 } };
+    AddMidSideNodes(body);
+    glm::dvec3& node = body.Points[static_cast<std::size_t>(body.MidSides[0][4])];
+    const glm::dvec3 middle = node;
+    const glm::dvec3 aside(-0.2, -0.3, isMirrored ? 0.2 : -0.2);
+    node = middle + 0.8 * aside;
+    EXPECT_EQ(GetError([&] { CheckBody(body); }), "");
+    node = middle + aside;
+    EXPECT_NE(GetError([&] { CheckBody(body); }).find("1 of 1 tetrahedra of the rest mesh overlap"),
+      std::string::npos);
+  }
+}
+
 // A curved edge is no reason for an error, nor for a strain where there is none.
 TEST(MidSideNodes, MayLieBesideTheMiddle)
 {
