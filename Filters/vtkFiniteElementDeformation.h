@@ -4,11 +4,11 @@
  * @brief   deform an elastic body to equilibrium by finite elements
  *
  * vtkFiniteElementDeformation finds where the nodes of a mesh come to rest under what holds and
- * loads them. Its elements are tetrahedra of ten nodes with four Gauss points. They bend right with
- * one of them across what bends, and do not lock where the material is nearly incompressible.
- * There is no inertia: what comes out depends on the handles and loads of now, and on where the
- * body was where there are several equilibria. It works on the processor, in double precision.
- * Ports, arrays, units and times are those of vtkElasticDeformation.
+ * loads them. Its elements are tetrahedra of ten nodes with four Gauss points. One layer of them is
+ * enough for a beam to bend as it should, and they do not lock where the material is nearly
+ * incompressible. There is no inertia: what comes out depends on the handles and loads of now, and
+ * on where the body was where there are several equilibria. It works on the processor, in double
+ * precision. Ports, arrays, units and times are those of vtkElasticDeformation.
  *
  * Every execution solves once, and begins where the last one has ended; times only say when.
  *
@@ -20,8 +20,8 @@
  * are, and displaced by the mean of their displacements. It slides where its edge lies, within a
  * thousandth, in a plane in which one end slides, and the other end is fixed or slides in the same
  * plane. Where other nodes are to be fixed or to slide, as on curved surfaces, give
- * vtkQuadraticTetra cells with these arrays. For as many nodes as linear tetrahedra have, edges are
- * twice as long.
+ * vtkQuadraticTetra cells with these arrays. A mesh has as many nodes as one of linear tetrahedra
+ * whose edges are half as long.
  *
  * @par Output:
  * Cells of vtkQuadraticTetra. The points of the input come first, then the nodes that were made in
@@ -33,21 +33,20 @@
  * @par Pieces:
  * A piece of the mesh is what holds together by faces of tetrahedra. It is held by three nodes that
  * lie on no common line and are fixed, held by handles, or shared with a piece that is held; or by
- * such nodes and nodes that slide, where no motion of a rigid body is left to it. Other
- * pieces bear no load and exert no force: those with a node or two that are shared, fixed or held
- * by handles go with these like rigid bodies, turned on the shortest way; the rest stays where it
- * was. A warning tells their number (GetNumberOfFrozenPieces()). Where no piece is held there is an
- * error.
+ * such nodes and nodes that slide, where no motion of a rigid body is left to it. Other pieces bear
+ * no load and exert no force: those with a node or two that are shared, fixed or held by handles go
+ * with these like rigid bodies, turned on the shortest way; the rest stays where it was. A warning
+ * has their number (GetNumberOfFrozenPieces()). Where no piece is held there is an error.
  *
  * @par Warnings:
  * Pieces that are not held; a body that is not in equilibrium, with what is left (in the mode
  * INTERACTIVE once); tetrahedra that are inside out, with their number.
  *
  * @par Errors:
- * Those of vtkElasticDeformation; tetrahedra that overlap themselves, as nodes are far from the
- * middle of their edges or in another order than VTK's; an edge with two different nodes in its
- * middle, or a node in the middle of several edges; no piece that is held; forces that are no
- * numbers any more. The body is then as it was.
+ * Those of vtkElasticDeformation; tetrahedra that overlap themselves, or do so split into linear
+ * ones, as nodes are far from the middle of their edges or in another order than VTK's; an edge
+ * with two different nodes in its middle, or a node in the middle of several edges; no piece that
+ * is held; forces that are no numbers any more. The body is then as it was.
  *
  * Sources: Smith, de Goes and Kim 2018 for the stable neo-Hookean law, here without its logarithm,
  * and 2019 for the stiffness that is never negative; Mueller and Gross 2004 for the corotational

@@ -93,7 +93,8 @@ public:
    * called first. Others are an error, and change nothing. CUSTOM, the default of all indices:
    * those of SetMaterial() are used.
    *
-   * vtkElasticDeformation::GetMaterialPresetValues() has the numbers, and tells of their limits.
+   * The numbers are those of vtkElasticDeformation::GetMaterialPresetValues(); their limits are in
+   * Documents/physics.md.
    */
   void SetMaterialPreset(int index, int preset);
   int GetMaterialPreset(int index);

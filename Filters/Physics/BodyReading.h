@@ -51,7 +51,7 @@ GridTetrahedra ReadTetrahedra(vtkUnstructuredGrid* grid, bool takesQuadratic);
 /// What says how a body is read.
 struct BodySettings
 {
-  /// Of tetrahedra that cell arrays tell nothing of.
+  /// Of tetrahedra that have none in cell arrays.
   ElasticMaterial Material;
   /// Metres of a unit of the mesh.
   double UnitLength = 1.0;

@@ -183,7 +183,7 @@ bool EquilibriumSolver::SolveLinear(Watch& watch, const EquilibriumProblem& prob
 {
   for (std::size_t node = 0; node < problem.IsFree.size(); ++node)
   {
-    // Of frozen and held nodes the residual is none of our business.
+    // Frozen and held nodes do not move: their residual does not count.
     this->RightHandSide[node] = problem.IsFree[node] != 0
       ? this->RightHandSide[node] + problem.Loads[node] - state.Forces[node]
       : glm::dvec3(0.0);
@@ -297,7 +297,7 @@ bool EquilibriumSolver::Search(Watch& watch, const EquilibriumProblem& problem, 
     {
       continue;
     }
-    // Where rounding hides whether the energy falls, the forces tell.
+    // Where rounding hides whether the energy falls, the forces decide.
     if (-slope * length <= slack &&
       !(FindResiduals(problem, this->Sliding, this->Trial.Forces).Largest < residual))
     {
@@ -403,7 +403,7 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
     }
     this->Evaluate(watch, problem, state);
   }
-  // What the last call has left so has had its turn.
+  // Do not untangle tetrahedra that were already inverted after the last call.
   const std::int64_t inverted = this->HasForces ? state.Sums.Inverted : 0;
   const bool isMoved = this->MoveHeldNodes(watch, problem, state, report);
   if (state.Sums.Inverted > inverted)

@@ -34,9 +34,8 @@ public:
   FiniteElementModel& operator=(const FiniteElementModel&) = delete;
 
   /// The body, at rest. An Error where CheckBody finds one, or it has no mid-side nodes; the last
-  /// body stays then. progress:
-  /// called every few milliseconds, in the thread that called; returning false aborts, and the last
-  /// body stays, too.
+  /// body stays then. progress: called every few milliseconds, in the thread that called; returning
+  /// false aborts, and the last body stays, too.
   void SetBody(const ElasticBody& body, const std::function<bool()>& progress = nullptr);
 
   /// One material for the body that is set, or one a tetrahedron. Displacements stay.
