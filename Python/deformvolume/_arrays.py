@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What numpy arrays the library takes, and how they get there."""
+
+from typing import Sequence, Tuple
+
+import numpy
+
+_KINDS = {
+    "int8": 0,
+    "uint8": 1,
+    "int16": 2,
+    "uint16": 3,
+    "int32": 4,
+    "uint32": 5,
+    "int64": 6,
+    "uint64": 7,
+    "float32": 8,
+    "float64": 9,
+}
+
+
+def native(array, what: str) -> numpy.ndarray:
+    """An array of a type that the library knows: bool counts as uint8, and other byte orders are converted."""
+    array = numpy.asarray(array)
+    if array.dtype == numpy.bool_:
+        array = array.view(numpy.uint8)
+    if not array.dtype.isnative:
+        array = array.astype(array.dtype.newbyteorder("="))
+    if array.dtype.name not in _KINDS:
+        raise TypeError(f"{what} has the type {array.dtype}. Give integers of 8 to 64 bits, float32, float64 or bool.")
+    return array
+
+
+def image(array, what: str, components: Tuple[int, ...] = ()) -> numpy.ndarray:
+    """The same values in the order that the library reads: x fastest of the axes, and the components of a voxel
+    side by side. The result has the axes z, y, x and then that of components, if any.
+
+    An array in Fortran order, as nibabel's, and the transposed view of an array with the axes z, y, x are used as they
+    are; other arrays are copied once.
+
+    components: how many there must be; empty: any number, or no axis for them.
+    """
+    array = native(array, what)
+    if array.ndim not in ((4,) if components else (3, 4)):
+        axes = "x, y, z and components" if components else "x, y, z and perhaps components"
+        raise ValueError(f"{what} has the shape {array.shape}. Its axes must be {axes}.")
+    if components and array.shape[3] not in components:
+        wanted = " or ".join(map(str, components))
+        raise ValueError(f"{what} has {array.shape[3]} components. It must have {wanted}.")
+    if 0 in array.shape:
+        raise ValueError(f"{what} is empty: its shape is {array.shape}.")
+    return numpy.ascontiguousarray(array.transpose((2, 1, 0, 3)[: array.ndim]))
+
+
+def from_image(array: numpy.ndarray) -> numpy.ndarray:
+    """The inverse of image(): a view with the axes x, y, z and then that of components."""
+    return array.transpose((2, 1, 0, 3)[: array.ndim])
+
+
+def vectors(array, number, what: str) -> numpy.ndarray:
+    """Rows of three float32 or float64, side by side. number: of rows that there must be; None: any."""
+    array = native(array, what)
+    if array.ndim != 2 or array.shape[1] != 3 or (number is not None and array.shape[0] != number):
+        wanted = f"({'n' if number is None else number}, 3)"
+        raise ValueError(f"{what} has the shape {array.shape}. It must be {wanted}.")
+    if array.dtype not in (numpy.float32, numpy.float64):
+        array = array.astype(numpy.float64)
+    return numpy.ascontiguousarray(array)
+
+
+def affine(matrix, what: str) -> numpy.ndarray:
+    """A matrix of 4 x 4 that takes indices of voxels to world coordinates."""
+    matrix = numpy.asarray(matrix, dtype=numpy.float64)
+    if matrix.shape != (4, 4) or not numpy.array_equal(matrix[3], (0, 0, 0, 1)):
+        raise ValueError(f"{what} must be a matrix of 4 x 4 whose last row is 0, 0, 0, 1.")
+    return matrix
+
+
+def split_affine(matrix: numpy.ndarray) -> Tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray]:
+    """Origin, spacing and direction (columns are the axes) of an affine matrix."""
+    axes = matrix[:3, :3]
+    spacing = numpy.sqrt((axes * axes).sum(axis=0))
+    # Columns without a length are an error of the library, which names it.
+    direction = axes / numpy.where(spacing > 0, spacing, 1.0)
+    return matrix[:3, 3].copy(), spacing, direction
+
+
+def join_affine(origin: Sequence[float], spacing: Sequence[float], direction) -> numpy.ndarray:
+    """The affine matrix of an origin, a spacing and a direction."""
+    matrix = numpy.eye(4)
+    matrix[:3, :3] = numpy.asarray(direction, dtype=numpy.float64).reshape(3, 3) * numpy.asarray(spacing)
+    matrix[:3, 3] = origin
+    return matrix

@@ -1,0 +1,550 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The class Deformer, which keeps a volume on a device, and the function deform()."""
+
+import ctypes
+import os
+import threading
+import warnings as python_warnings
+import weakref
+from dataclasses import dataclass, field
+from typing import Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
+
+import numpy
+
+from . import _arrays, _driver, _native, _structs
+
+
+class DeformationWarning(UserWarning):
+    """What a result lacks, or what of the input had no effect."""
+
+
+class Grid(NamedTuple):
+    """A grid of voxels, such as that of an image."""
+
+    shape: Tuple[int, int, int]
+    """how many voxels there are on x, y and z"""
+    affine: numpy.ndarray
+    """4 x 4: takes the index (i, j, k, 1) of a voxel to its world coordinates"""
+
+
+@dataclass
+class Mesh:
+    """A deformation mesh: points at rest, cells, and how far the points have moved.
+
+    Attributes:
+        points: shape (n, 3), world coordinates at rest; float32 or float64, other types become float64.
+        cells: tetrahedra, shape (m, 4), numbers of points; or a pair (types, cells) of VTK's numbers of cell types
+            and a list of the point numbers of each cell, such as hexahedra (12) and quadratic tetrahedra (24).
+        displacements: shape (n, 3), in world units; None: set later by Deformer.set_displacements().
+    """
+
+    points: numpy.ndarray
+    cells: object
+    displacements: Optional[numpy.ndarray] = None
+
+
+@dataclass
+class Field:
+    """A displacement field: a vector at each point of a grid of its own, linear between them.
+
+    Attributes:
+        vectors: shape (nx, ny, nz, 3), in world units; float32 or float64.
+        affine: 4 x 4, takes an index of the field to world coordinates.
+        inverse: False: from where tissue is at rest to where it goes, as a simulation computes it. True: from a place
+            of the output to the place that is seen there, as a registration computes it ("resampling field").
+    """
+
+    vectors: numpy.ndarray
+    affine: numpy.ndarray
+    inverse: bool = False
+
+
+@dataclass
+class Deformed:
+    """What deform() returns.
+
+    Attributes:
+        arrays: of each array of the volume the deformed one, axes x, y, z and then that of components, if any; in
+            Fortran order.
+        affine: 4 x 4, takes an index of the output to world coordinates.
+        coverage: bool, axes x, y, z: where the deformed volume covers the output.
+        rest_positions, jacobian, fold_count: as asked for, else None. (nx, ny, nz, 3) float32: where the tissue was
+            at rest that is seen there, world coordinates. float32: how many times as large the deformation makes
+            the volume there. uint32: how many tetrahedra of the sampling mesh cover the voxel.
+        counts: numbers of covered voxels, inverted tetrahedra and so on, by their names in deformvolume.h.
+        device: the name of the device.
+    """
+
+    arrays: List[numpy.ndarray]
+    affine: numpy.ndarray
+    coverage: numpy.ndarray
+    rest_positions: Optional[numpy.ndarray] = None
+    jacobian: Optional[numpy.ndarray] = None
+    fold_count: Optional[numpy.ndarray] = None
+    counts: Dict[str, int] = field(default_factory=dict)
+    device: str = ""
+
+    @property
+    def array(self) -> numpy.ndarray:
+        """The first array."""
+        return self.arrays[0]
+
+
+def _choose(value: str, choices: Dict[str, int], what: str) -> int:
+    if value not in choices:
+        raise ValueError(f'{what} is "{value}". Choose one of {", ".join(choices)}.')
+    return choices[value]
+
+
+def make_grid(extent, origin, spacing, direction) -> _structs.Grid:
+    """A grid as the library has it; direction: nine numbers, row by row."""
+    return _structs.Grid(
+        extent=(ctypes.c_int32 * 6)(*map(int, extent)),
+        origin=(ctypes.c_double * 3)(*map(float, origin)),
+        spacing=(ctypes.c_double * 3)(*map(float, spacing)),
+        direction=(ctypes.c_double * 9)(*map(float, numpy.asarray(direction).reshape(9))),
+    )
+
+
+def _grid_of(shape: Sequence[int], matrix, what: str) -> _structs.Grid:
+    origin, spacing, direction = _arrays.split_affine(_arrays.affine(matrix, what))
+    extent = [0, shape[0] - 1, 0, shape[1] - 1, 0, shape[2] - 1]
+    return make_grid(extent, origin, spacing, direction)
+
+
+def _cells(cells):
+    """Connectivity, types and offsets; the last two are None for tetrahedra."""
+    if isinstance(cells, tuple) and len(cells) == 2:
+        types, lists = cells
+        types = numpy.ascontiguousarray(types, dtype=numpy.uint8)
+        lengths = [len(points) for points in lists]
+        if types.ndim != 1 or len(types) != len(lengths):
+            raise ValueError(f"There are {types.size} types of cells, but {len(lengths)} cells.")
+        offsets = numpy.concatenate(([0], numpy.cumsum(lengths, dtype=numpy.int64))).astype(numpy.int64)
+        flat = [numpy.asarray(points, dtype=numpy.int64) for points in lists]
+        return numpy.concatenate(flat) if flat else numpy.zeros(0, numpy.int64), types, offsets
+    cells = numpy.asarray(cells)
+    if cells.ndim != 2 or cells.shape[1] != 4 or cells.dtype.kind not in "iu":
+        raise ValueError(
+            f"The cells have the shape {cells.shape} and the type {cells.dtype}. Give integers of the shape (m, 4) for "
+            "tetrahedra, or a pair (types, cells)."
+        )
+    return numpy.ascontiguousarray(cells, dtype=numpy.int64), None, None
+
+
+class Deformer:
+    """Keeps a volume on a device, and deforms it as often as wanted: only what has changed is sent and computed again.
+
+    Each method raises Error where the library refuses something, ValueError and TypeError for arrays of a wrong
+    shape or type. The deformer can be used again after that. One deformer must not be used by two threads at once: a second
+    call waits for the first one. It cannot be used in a process that was forked after it was made.
+
+    Args:
+        device: a name of devices(), a part of one, "cpu", "gpu", or "": the best one.
+
+    >>> import numpy as np, deformvolume as dv
+    >>> deformer = dv.Deformer()
+    >>> deformer.set_volume(np.random.rand(20, 20, 20).astype("float32"), np.eye(4))
+    >>> deformer.set_deformation(dv.Field(np.full((2, 2, 2, 3), 0.5), np.diag([20.0, 20.0, 20.0, 1.0])))
+    >>> deformer.deform().array.shape
+    (19, 19, 19)
+    """
+
+    def __init__(self, device: str = ""):
+        _driver.prepare()
+        self._lock = threading.RLock()
+        self._process = os.getpid()
+        self._borrowed: Dict[str, object] = {}
+        self._arrays: List[numpy.ndarray] = []
+        self._is_4d: List[bool] = []
+        self._shape: Optional[Tuple[int, int, int]] = None
+        self._points = 0
+        handle = ctypes.c_void_p()
+        _native.check(_native.library.dv_create(ctypes.byref(handle)))
+        self._handle = handle
+        self._finalizer = weakref.finalize(self, _destroy, handle.value, os.getpid())
+        self._call("dv_set_device", device.encode())
+
+    def _call(self, name: str, *arguments) -> None:
+        if os.getpid() != self._process:
+            raise _native.Error(
+                "The deformer belongs to another process: OpenCL does not survive a fork. Make a deformer in each "
+                'process, or start processes by "spawn".'
+            )
+        with self._lock:
+            _native.check(getattr(_native.library, name)(self._handle, *arguments))
+
+    def set_volume(
+        self,
+        arrays: Union[numpy.ndarray, Sequence[numpy.ndarray]],
+        affine,
+        *,
+        categorical: Union[bool, Sequence[bool]] = False,
+        background: Union[float, Sequence[float]] = 0.0,
+    ) -> None:
+        """The volume at rest.
+
+        Args:
+            arrays: one array or several of the same grid: axes x, y, z, and then that of components, if any. All
+                integer types, float32, float64 and bool. Arrays in Fortran order are used where they are, and must
+                not change until others are set; others are copied. An array with the axes z, y, x, such as
+                SimpleITK's, is given as array.T.
+            affine: 4 x 4, takes the index (i, j, k, 1) of a voxel to world coordinates.
+            categorical: whether an array has labels, which are never mixed; for all arrays, or one for each.
+            background: what voxels of the output get that nothing covers; for all arrays, or one for each.
+        """
+        listed = list(arrays) if isinstance(arrays, (list, tuple)) else [arrays]
+        images = [_arrays.image(array, f"Array {number} of the volume") for number, array in enumerate(listed)]
+        if not images:
+            raise ValueError("The volume has no arrays.")
+        shape = images[0].shape[2::-1]
+        for number, image in enumerate(images):
+            if image.shape[2::-1] != shape:
+                raise ValueError(
+                    f"Array {number} of the volume has {image.shape[2::-1]} voxels, but array 0 has {shape}."
+                )
+        self.set_volume_grid(_grid_of(shape, affine, "The affine of the volume"), images, categorical, background)
+
+    def set_volume_grid(
+        self, grid: _structs.Grid, images: List[numpy.ndarray], categorical=False, background=0.0
+    ) -> None:
+        """The same with a grid of the library and arrays with the axes z, y, x."""
+
+        def each(value, what):
+            values = list(value) if isinstance(value, (list, tuple, numpy.ndarray)) else [value] * len(images)
+            if len(values) != len(images):
+                raise ValueError(f"There are {len(values)} values of {what}, but {len(images)} arrays.")
+            return values
+
+        labels = each(categorical, "categorical")
+        backgrounds = each(background, "background")
+        structs = (_structs.Array * max(1, len(images)))()
+        for struct, image, is_label, value in zip(structs, images, labels, backgrounds):
+            struct.struct_size = ctypes.sizeof(_structs.Array)
+            struct.data = image.ctypes.data
+            struct.type = _structs.type_of(image)
+            struct.components = image.shape[3] if image.ndim == 4 else 1
+            struct.categorical = int(bool(is_label))
+            struct.background = float(value)
+        with self._lock:
+            self._call("dv_set_volume", ctypes.byref(grid))
+            self._call("dv_set_arrays", len(images), structs)
+            self._borrowed["arrays"] = images
+            self._arrays = images
+            extent = grid.extent
+            self._shape = tuple(extent[2 * axis + 1] - extent[2 * axis] + 1 for axis in range(3))
+
+    def set_blanked(self, blanked: Optional[numpy.ndarray]) -> None:
+        """Which voxels are no source: True where a voxel is left out; one value for each voxel, x varying fastest.
+        None: none is."""
+        if blanked is not None:
+            blanked = numpy.ascontiguousarray(blanked, dtype=numpy.uint8).reshape(-1)
+            if self._shape is None or blanked.size != numpy.prod(self._shape, dtype=numpy.int64):
+                raise ValueError(
+                    f"There are {blanked.size} blanked voxels, but the volume has the shape {self._shape}."
+                )
+        with self._lock:
+            pointer = None if blanked is None else blanked.ctypes.data_as(ctypes.POINTER(ctypes.c_uint8))
+            self._call("dv_set_blanked", pointer)
+            self._borrowed["blanked"] = blanked
+
+    def set_deformation(self, deformation: Union[Mesh, Field]) -> None:
+        """The mesh or the field that deforms the volume, in place of the one before."""
+        if isinstance(deformation, Mesh):
+            self._set_mesh(deformation)
+        elif isinstance(deformation, Field):
+            self._set_field(deformation)
+        else:
+            raise TypeError(f"The deformation is a {type(deformation).__name__}. Give a Mesh or a Field.")
+
+    def _set_mesh(self, mesh: Mesh) -> None:
+        points = _arrays.vectors(mesh.points, None, "The points of the mesh")
+        displacements = mesh.displacements
+        if displacements is not None:
+            displacements = _arrays.vectors(displacements, len(points), "The displacements of the mesh")
+        with self._lock:
+            self.set_mesh_arrays(points, *_cells(mesh.cells))
+            if displacements is not None:
+                self.set_displacements(displacements)
+
+    def set_mesh_arrays(self, points, connectivity, types=None, offsets=None) -> None:
+        """A mesh as the library takes it: cells one after the other, and where they begin; types and offsets are None
+        where all are tetrahedra."""
+        points = _arrays.vectors(points, None, "The points of the mesh")
+        struct = _structs.Mesh(
+            number_of_points=len(points),
+            points=points.ctypes.data,
+            point_type=_structs.type_of(points),
+            number_of_cells=len(types) if types is not None else len(connectivity),
+            connectivity=connectivity.ctypes.data,
+            types=types.ctypes.data if types is not None else None,
+            offsets=offsets.ctypes.data if offsets is not None else None,
+        )
+        with self._lock:
+            self._call("dv_set_mesh", ctypes.byref(struct))
+            self._points = len(points)
+            self._borrowed.pop("field", None)
+
+    def set_displacements(self, displacements) -> None:
+        """How far the points of the mesh have moved: shape (n, 3), in world units. The mesh stays."""
+        vectors = _arrays.vectors(displacements, self._points, "The displacements of the mesh")
+        self._call("dv_set_displacements", _structs.type_of(vectors), len(vectors), _structs.address(vectors))
+
+    def _set_field(self, deformation: Field) -> None:
+        vectors = _arrays.image(deformation.vectors, "The field", (3,))
+        if vectors.dtype not in (numpy.float32, numpy.float64):
+            vectors = vectors.astype(numpy.float64)
+        grid = _grid_of(vectors.shape[2::-1], deformation.affine, "The affine of the field")
+        self.set_field_grid(grid, vectors, deformation.inverse)
+
+    def set_field_grid(self, grid: _structs.Grid, vectors: numpy.ndarray, inverse: bool) -> None:
+        """A field with a grid of the library and vectors with the axes z, y, x and that of components."""
+        struct = _structs.Field(
+            grid=ctypes.pointer(grid), vectors=vectors.ctypes.data, type=_structs.type_of(vectors), inverse=int(bool(inverse))
+        )
+        with self._lock:
+            self._call("dv_set_field", ctypes.byref(struct))
+            self._points = 0
+            self._borrowed["field"] = vectors
+
+    def set_outside(self, mode: str = "discard", fade_distance: float = 0.0) -> None:
+        """What becomes of voxels outside the mesh or the field.
+
+        Args:
+            mode: "discard": they are left out. "extrapolate": they follow the nearest part. "keep": they stay, and
+                within fade_distance they follow the boundary in part.
+            fade_distance: in world units, 0 or more; 0 is a hard edge.
+        """
+        self._call("dv_set_outside", _choose(mode, _structs.OUTSIDE, "outside"), float(fade_distance))
+
+    def set_reference(self, reference: Optional[Grid]) -> None:
+        """The grid of the output, such as that of the fixed image of a registration. None: see set_output()."""
+        if reference is None:
+            self._call("dv_set_reference", None)
+            return
+        shape, matrix = reference
+        if len(shape) != 3 or min(shape) < 1:
+            raise ValueError(f"The shape of the reference is {tuple(shape)}. It must have three numbers, 1 or more.")
+        self.set_reference_grid(_grid_of(shape, matrix, "The affine of the reference"))
+
+    def set_reference_grid(self, grid: _structs.Grid) -> None:
+        """The same with a grid of the library."""
+        self._call("dv_set_reference", ctypes.byref(grid))
+
+    def set_output(
+        self,
+        bounds: Union[str, Sequence[float]] = "deformed",
+        *,
+        padding: int = 0,
+        spacing: Optional[Sequence[float]] = None,
+    ) -> None:
+        """How large the output is without a reference. It has the axes of the volume.
+
+        Args:
+            bounds: "deformed": as large as the deformed volume. "volume": as large as the volume at rest. Six
+                numbers: x min, x max, y min, y max, z min, z max, in world coordinates.
+            padding: so many voxels more on each side.
+            spacing: three numbers in world units; None: that of the volume.
+        """
+        struct = _structs.Output(padding=int(padding))
+        if isinstance(bounds, str):
+            names = {name: _structs.BOUNDS[name] for name in ("deformed", "volume")}
+            struct.bounds_mode = _choose(bounds, names, "bounds")
+        else:
+            if len(bounds) != 6:
+                raise ValueError(f"There are {len(bounds)} bounds. Give six, or a name.")
+            struct.bounds_mode = _structs.BOUNDS["custom"]
+            struct.custom_bounds[:] = [float(bound) for bound in bounds]
+        if spacing is not None:
+            if len(spacing) != 3:
+                raise ValueError(f"The spacing has {len(spacing)} numbers. Give three.")
+            struct.spacing[:] = [float(value) for value in spacing]
+        self._call("dv_set_output", ctypes.byref(struct))
+
+    def find_output_grid(self) -> _structs.Grid:
+        """The grid of the output, as the library has it."""
+        grid = _structs.Grid()
+        self._call("dv_output_grid", ctypes.byref(grid))
+        return grid
+
+    def deform(
+        self,
+        *,
+        interpolation: str = "linear",
+        rest_positions: bool = False,
+        jacobian: bool = False,
+        fold_count: bool = False,
+        extra_background: float = 0.0,
+        progress: Optional[Callable[[float], object]] = None,
+    ) -> Deformed:
+        """Deforms the volume into new arrays.
+
+        Args:
+            interpolation: "linear", "cubic" (Catmull-Rom) or "nearest". Categorical arrays always take the nearest
+                voxel's value.
+            rest_positions, jacobian, fold_count: whether to make these arrays, see Deformed.
+            extra_background: of rest_positions and jacobian where nothing is covered.
+            progress: called with the fraction done. Where it returns False, or raises, nothing more is done: the
+                first raises KeyboardInterrupt, as Ctrl-C does.
+
+        Warns:
+            DeformationWarning: folds, tissue that is left out, settings without an effect.
+        """
+        with self._lock:
+            grid = self.find_output_grid()
+            shape = tuple(grid.extent[2 * axis + 1] - grid.extent[2 * axis] + 1 for axis in range(3))
+            outputs = [
+                numpy.empty(shape[::-1] + array.shape[3:], array.dtype) for array in self._arrays
+            ]
+            coverage = numpy.empty(shape[::-1], numpy.int8)
+            extra = {
+                "rest_positions": numpy.empty(shape[::-1] + (3,), numpy.float32) if rest_positions else None,
+                "jacobian": numpy.empty(shape[::-1], numpy.float32) if jacobian else None,
+                "fold_count": numpy.zeros(shape[::-1], numpy.uint32) if fold_count else None,
+            }
+            report = self.run(
+                outputs,
+                coverage,
+                interpolation=interpolation,
+                extra={name: array for name, array in extra.items() if array is not None},
+                extra_background=extra_background,
+                progress=progress,
+            )
+            text = report.warnings.decode("utf-8", "replace") if report.warnings else ""
+            device = report.device.decode("utf-8", "replace") if report.device else ""
+        if text:
+            python_warnings.warn(text, DeformationWarning, stacklevel=2)
+        origin = numpy.asarray(grid.origin[:])
+        direction = numpy.asarray(grid.direction[:]).reshape(3, 3)
+        first = numpy.asarray(grid.spacing[:]) * numpy.asarray(grid.extent[0::2])
+        return Deformed(
+            arrays=[_arrays.from_image(output) for output in outputs],
+            affine=_arrays.join_affine(origin + direction @ first, grid.spacing[:], direction),
+            coverage=_arrays.from_image(coverage).view(numpy.bool_),
+            counts={
+                name: getattr(report, name) for name, _ in _structs.Report._fields_ if name.startswith("number_of_")
+            },
+            device=device,
+            **{name: None if array is None else _arrays.from_image(array) for name, array in extra.items()},
+        )
+
+    def run(
+        self,
+        outputs,
+        coverage,
+        *,
+        interpolation="linear",
+        extra=None,
+        extra_background=0.0,
+        progress=None,
+        incremental=False,
+    ) -> _structs.Report:
+        """Deforms the volume into arrays that are there, with the axes z, y, x."""
+        extra = extra or {}
+        failure = []
+
+        def tell(fraction, _):
+            # The callback also lets Python look for Ctrl-C.
+            try:
+                return 1 if progress is not None and progress(fraction) is False else 0
+            except BaseException as error:  # pylint: disable=broad-except
+                failure.append(error)
+                return 1
+
+        addresses = (ctypes.c_void_p * max(1, len(outputs)))(*[output.ctypes.data for output in outputs])
+        request = _structs.Request(
+            interpolation=_choose(interpolation, _structs.INTERPOLATION, "interpolation"),
+            number_of_outputs=len(outputs),
+            incremental=int(incremental),
+            outputs=ctypes.cast(addresses, ctypes.POINTER(ctypes.c_void_p)),
+            coverage=coverage.ctypes.data_as(ctypes.POINTER(ctypes.c_int8)),
+            extra_background=float(extra_background),
+            progress=_structs.PROGRESS(tell),
+        )
+        kinds = {"rest_positions": ctypes.c_float, "jacobian": ctypes.c_float, "fold_count": ctypes.c_uint32}
+        for name, array in extra.items():
+            setattr(request, name, array.ctypes.data_as(ctypes.POINTER(kinds[name])))
+        report = _structs.Report()
+        try:
+            self._call("dv_deform", ctypes.byref(request), ctypes.byref(report))
+        except KeyboardInterrupt:
+            if failure:
+                raise failure[0]  # pylint: disable=raise-missing-from
+            raise
+        return report
+
+    def release_memory(self) -> None:
+        """Frees what is held on the device. The next deform() sends it again."""
+        self._call("dv_release_memory")
+
+
+def _destroy(handle: int, process: int) -> None:
+    # A forked process has copies of objects of OpenCL that do not work, also not to be freed.
+    if os.getpid() == process:
+        _native.library.dv_destroy(handle)
+
+
+def deform(
+    volume: Union[numpy.ndarray, Sequence[numpy.ndarray]],
+    deformation: Union[Mesh, Field],
+    affine=None,
+    *,
+    reference: Optional[Grid] = None,
+    categorical: Union[bool, Sequence[bool]] = False,
+    background: Union[float, Sequence[float]] = 0.0,
+    outside: str = "discard",
+    fade_distance: float = 0.0,
+    interpolation: str = "linear",
+    bounds: Union[str, Sequence[float]] = "deformed",
+    padding: int = 0,
+    spacing: Optional[Sequence[float]] = None,
+    rest_positions: bool = False,
+    jacobian: bool = False,
+    fold_count: bool = False,
+    device: str = "",
+    progress: Optional[Callable[[float], object]] = None,
+) -> Deformed:
+    """Deforms a volume by a mesh or a field.
+
+    Args:
+        volume: an array with the axes x, y, z (and components), or several; see Deformer.set_volume().
+        deformation: a Mesh or a Field.
+        affine: 4 x 4, takes the index of a voxel to world coordinates; None: the index itself.
+        reference: the grid of the output; None: bounds, padding and spacing say it. See Deformer.set_output().
+        categorical, background: see Deformer.set_volume().
+        outside, fade_distance: see Deformer.set_outside().
+        interpolation, rest_positions, jacobian, fold_count, progress: see Deformer.deform().
+        device: see Deformer.
+
+    Returns:
+        the deformed arrays with their affine.
+
+    A scan that is shifted by 5 mm along x:
+
+    >>> import numpy as np, deformvolume as dv
+    >>> scan = np.zeros((40, 40, 40), "int16")
+    >>> scan[10:20, 10:20, 10:20] = 1000
+    >>> affine = np.diag([2.0, 2.0, 2.0, 1.0])
+    >>> field = dv.Field(np.tile([5.0, 0.0, 0.0], (2, 2, 2, 1)), np.diag([78.0, 78.0, 78.0, 1.0]))
+    >>> result = dv.deform(scan, field, affine, bounds="volume")
+    >>> result.array.shape, int(result.array[13, 15, 15])
+    ((40, 40, 40), 1000)
+    """
+    deformer = Deformer(device)
+    deformer.set_volume(
+        volume, numpy.eye(4) if affine is None else affine, categorical=categorical, background=background
+    )
+    deformer.set_deformation(deformation)
+    deformer.set_outside(outside, fade_distance)
+    deformer.set_reference(reference)
+    if reference is None:
+        deformer.set_output(bounds, padding=padding, spacing=spacing)
+    elif bounds != "deformed" or padding != 0 or spacing is not None:
+        raise ValueError("The reference says the grid of the output. Leave out bounds, padding and spacing.")
+    return deformer.deform(
+        interpolation=interpolation,
+        rest_positions=rest_positions,
+        jacobian=jacobian,
+        fold_count=fold_count,
+        progress=progress,
+    )

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`image.deformvolume.deform(mesh)` for pyvista's images. Importing this module registers it."""
+
+import pyvista
+
+from .vtk import DeformVolume
+
+
+@pyvista.register_dataset_accessor("deformvolume", pyvista.ImageData) if hasattr(
+    pyvista, "register_dataset_accessor"
+) else (lambda accessor: accessor)
+class DeformVolumeAccessor:
+    """Deforms the image: see deform()."""
+
+    def __init__(self, image):
+        self._image = image
+
+    def deform(self, deformation, *, vectors=None, rest=None, reference=None, categorical=(), **properties):
+        """Deforms the image by a mesh or a displacement field.
+
+        Args:
+            deformation: pyvista.UnstructuredGrid with displacements of its points, or pyvista.ImageData with vectors.
+            vectors: the name of the array; None: the active vectors, or the only array of three components.
+            rest: the mesh at rest, where the points of the deformation are the deformed ones.
+            reference: an image whose grid the output has.
+            categorical: names of arrays with labels.
+            properties: properties of DeformVolume, such as OutsideMode=DeformVolume.KEEP.
+
+        Returns:
+            pyvista.ImageData.
+        """
+        return deform(
+            self._image,
+            deformation,
+            vectors=vectors,
+            rest=rest,
+            reference=reference,
+            categorical=categorical,
+            **properties,
+        )
+
+
+def deform(image, deformation, *, vectors=None, rest=None, reference=None, categorical=(), **properties):
+    """The same as a function, for versions of pyvista without accessors; see DeformVolumeAccessor.deform()."""
+    deformer = DeformVolume()
+    deformer.SetInputDataObject(0, image)
+    deformer.SetDeformationData(deformation)
+    if vectors is not None:
+        deformer.SetInputArrayToProcess(0, 1, 0, 0, vectors)
+    if rest is not None:
+        deformer.SetRestData(rest)
+    if reference is not None:
+        deformer.SetReferenceData(reference)
+    for name in categorical:
+        deformer.AddCategoricalArray(name)
+    for name, value in properties.items():
+        getattr(deformer, f"Set{name}")(value)
+    deformer.Update()
+    return pyvista.wrap(deformer.GetOutputDataObject(0))

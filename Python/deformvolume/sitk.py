@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Volumes and displacement fields of SimpleITK."""
+
+import numpy
+import SimpleITK
+
+from . import _deformer
+
+
+def _grid_of(image) -> "_deformer._structs.Grid":
+    size = image.GetSize()
+    if len(size) != 3:
+        raise ValueError(f"The image has {len(size)} dimensions. It must have 3.")
+    extent = [0, size[0] - 1, 0, size[1] - 1, 0, size[2] - 1]
+    return _deformer.make_grid(extent, image.GetOrigin(), image.GetSpacing(), image.GetDirection())
+
+
+def deform(
+    image: "SimpleITK.Image",
+    deformation,
+    *,
+    reference: "SimpleITK.Image" = None,
+    categorical: bool = False,
+    background: float = 0.0,
+    outside: str = "discard",
+    fade_distance: float = 0.0,
+    interpolation: str = "linear",
+    device: str = "",
+    inverse: bool = True,
+) -> "SimpleITK.Image":
+    """Deforms an image of SimpleITK.
+
+    Args:
+        image: three dimensions, pixels of any number type, scalars or vectors.
+        deformation: a SimpleITK image of vectors of three components, or a DisplacementFieldTransform, in mm; a
+            deformvolume.Mesh or Field, in the world coordinates of the image (LPS).
+        inverse: of fields of SimpleITK: True (default), as registrations and SimpleITK.Resample use them: from a place
+            of the output to the place of the image that is seen there. False: from the image to where it goes.
+        reference: an image whose grid the output has; None: with an inverse field the grid of the image, else one
+            that holds the deformed image.
+        categorical, background, outside, fade_distance, interpolation, device: see deformvolume.deform().
+
+    Returns:
+        an image of the type of the first one.
+    """
+    deformer = _deformer.Deformer(device)
+    pixels = numpy.ascontiguousarray(SimpleITK.GetArrayViewFromImage(image))
+    deformer.set_volume_grid(_grid_of(image), [pixels], categorical, background)
+    if isinstance(deformation, SimpleITK.Transform):
+        deformation = SimpleITK.DisplacementFieldTransform(deformation).GetDisplacementField()
+    is_inverse = False
+    if isinstance(deformation, SimpleITK.Image):
+        vectors = numpy.ascontiguousarray(SimpleITK.GetArrayViewFromImage(deformation))
+        if vectors.ndim != 4 or vectors.shape[3] != 3:
+            raise ValueError("The displacement field must have three dimensions and vectors of three components.")
+        if vectors.dtype not in (numpy.float32, numpy.float64):
+            vectors = vectors.astype(numpy.float64)
+        is_inverse = bool(inverse)
+        deformer.set_field_grid(_grid_of(deformation), vectors, is_inverse)
+    else:
+        deformer.set_deformation(deformation)
+    deformer.set_outside(outside, fade_distance)
+    if reference is not None:
+        deformer.set_reference_grid(_grid_of(reference))
+    elif is_inverse:
+        deformer.set_reference_grid(_grid_of(image))
+    deformed = deformer.deform(interpolation=interpolation)
+    array = deformed.array.transpose((2, 1, 0, 3)[: deformed.array.ndim])
+    result = SimpleITK.GetImageFromArray(array, isVector=array.ndim == 4)
+    grid = deformer.find_output_grid()
+    first = numpy.asarray(grid.spacing[:]) * numpy.asarray(grid.extent[0::2])
+    direction = numpy.asarray(grid.direction[:]).reshape(3, 3)
+    result.SetOrigin((numpy.asarray(grid.origin[:]) + direction @ first).tolist())
+    result.SetSpacing(grid.spacing[:])
+    result.SetDirection(grid.direction[:])
+    return result

@@ -1,0 +1,418 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""DeformVolume, a filter for VTK pipelines in Python, with any vtk from 9.1 on.
+
+It has the names and the results, to the last bit, of vtkDeformVolumeFilter, a C++ class that has to be compiled for
+one version of VTK, but only the properties that are listed in DeformVolume. Others raise AttributeError.
+"""
+
+import numpy
+from vtkmodules.util.numpy_support import get_vtk_array_type, vtk_to_numpy
+from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
+from vtkmodules.vtkCommonCore import VTK_CHAR, vtkDataArray, vtkOutputWindow
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSetAttributes, vtkImageData, vtkUnstructuredGrid
+from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm, vtkStreamingDemandDrivenPipeline
+
+from . import _deformer, _native
+
+_OUTSIDE = ("discard", "extrapolate", "keep")
+_INTERPOLATION = ("linear", "cubic", "nearest")
+_BOUNDS = ("deformed", "volume")
+_TETRAHEDRON = 10
+_NO_SOURCE = vtkDataSetAttributes.DUPLICATEPOINT | vtkDataSetAttributes.HIDDENPOINT
+_EDITS = (
+    ("cell", "ActiveTetrahedra"),
+    ("point", "BoundaryDistance"),
+    ("cell", "CutTetrahedra"),
+    ("point", "CutDistance"),
+)
+
+
+def _direction(image):
+    matrix = image.GetDirectionMatrix()
+    return [matrix.GetElement(row, column) for row in range(3) for column in range(3)]
+
+
+def _grid_of(image):
+    return _deformer.make_grid(image.GetExtent(), image.GetOrigin(), image.GetSpacing(), _direction(image))
+
+
+def _view(array, shape):
+    """A numpy view of a VTK array over a grid: the axes z, y, x, and that of components where there are several."""
+    components = array.GetNumberOfComponents()
+    return vtk_to_numpy(array).reshape(tuple(shape) + ((components,) if components > 1 else ()))
+
+
+def _stamp(*objects):
+    return tuple((id(one), one.GetMTime() if one is not None else 0) for one in objects)
+
+
+class DeformVolume(VTKPythonAlgorithmBase):
+    """Deforms a volume by a tetrahedral mesh or a displacement field.
+
+    Ports:
+        0: vtkImageData, the volume.
+        1: vtkUnstructuredGrid with displacements of its points; or vtkImageData with vectors, a displacement field.
+            SetInputArrayToProcess(0, 1, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, name) chooses the array of three
+            components, in world units. By default it is the active vectors, or else the only such array.
+        2, optional: vtkUnstructuredGrid, the mesh at rest. The points of port 1 are then the deformed ones.
+        3, optional: vtkImageData, whose grid the output has.
+
+    Properties, each with Set and Get:
+        OutsideMode: DISCARD (default), EXTRAPOLATE or KEEP voxels outside the mesh or the field.
+        FadeDistance: with KEEP, in world units; 0 (default) is a hard edge.
+        Interpolation: LINEAR_INTERPOLATION (default), CUBIC_INTERPOLATION or NEAREST_INTERPOLATION.
+        BackgroundValue: of voxels that nothing covers; 0 by default.
+        FieldIsInverse: whether a field leads from the output to the volume; off by default.
+        OutputBoundsMode: DEFORMED_BOUNDS (default) or VOLUME_BOUNDS.
+        GenerateRestPositions, GenerateJacobian, GenerateFoldCount: whether the output has the arrays RestPosition,
+            Jacobian and FoldCount; off by default.
+        Device: a name of deformvolume.devices(), a part of one, "cpu", "gpu", or "" (default): the best one.
+    And AddCategoricalArray(name), ClearCategoricalArrays().
+
+    The output is vtkImageData with the arrays of the volume and "vtkValidPointMask": 1 where the deformed volume
+    covers a voxel. Updates read the inputs whole, at one time. Update() raises what went wrong; where a filter behind
+    this one is updated, VTK prints it.
+    """
+
+    DISCARD, EXTRAPOLATE, KEEP = range(3)
+    LINEAR_INTERPOLATION, CUBIC_INTERPOLATION, NEAREST_INTERPOLATION = range(3)
+    DEFORMED_BOUNDS, VOLUME_BOUNDS = range(2)
+
+    def __init__(self):
+        VTKPythonAlgorithmBase.__init__(self, nInputPorts=4, nOutputPorts=1, outputType="vtkImageData")
+        self._settings = {
+            "OutsideMode": 0,
+            "FadeDistance": 0.0,
+            "Interpolation": 0,
+            "BackgroundValue": 0.0,
+            "FieldIsInverse": False,
+            "OutputBoundsMode": 0,
+            "GenerateRestPositions": False,
+            "GenerateJacobian": False,
+            "GenerateFoldCount": False,
+            "Device": "",
+        }
+        self._categorical = set()
+        self._deformer = None
+        self._stamps = {}
+        self._error = None
+
+    # ---- Properties
+
+    def __getattr__(self, name):
+        settings = self.__dict__.get("_settings", {})
+        if name[:3] == "Get" and name[3:] in settings:
+            return lambda: settings[name[3:]]
+        if name[:3] == "Set" and name[3:] in settings:
+            return lambda value: self._set(name[3:], value)
+        for ending, value in (("On", True), ("Off", False)):
+            stem = name[: -len(ending)]
+            if name.endswith(ending) and isinstance(settings.get(stem), bool):
+                return lambda: self._set(stem, value)
+        raise AttributeError(
+            f"DeformVolume has no {name}. The C++ class vtkDeformVolumeFilter, in the Python package deformvolume_vtk, "
+            "may have it; it is built from source."
+        )
+
+    def _set(self, name, value):
+        before = self._settings[name]
+        value = type(before)(value)
+        largest = {"OutsideMode": 2, "Interpolation": 2, "OutputBoundsMode": 1}
+        if name in largest:
+            value = min(max(value, 0), largest[name])
+        if value != before:
+            self._settings[name] = value
+            if name == "Device":
+                self._deformer = None
+            self.Modified()
+
+    def AddCategoricalArray(self, name):
+        """Has the array of this name taken as labels, which are never mixed."""
+        if name not in self._categorical:
+            self._categorical.add(name)
+            self.Modified()
+
+    def ClearCategoricalArrays(self):
+        """Has no array taken as labels."""
+        if self._categorical:
+            self._categorical.clear()
+            self.Modified()
+
+    def SetDeformationConnection(self, output):
+        """Connects port 1."""
+        self.SetInputConnection(1, output)
+
+    def SetDeformationData(self, data):
+        """Connects data to port 1."""
+        self.SetInputDataObject(1, data)
+
+    def SetRestConnection(self, output):
+        """Connects port 2."""
+        self.SetInputConnection(2, output)
+
+    def SetRestData(self, data):
+        """Connects data to port 2."""
+        self.SetInputDataObject(2, data)
+
+    def SetReferenceConnection(self, output):
+        """Connects port 3."""
+        self.SetInputConnection(3, output)
+
+    def SetReferenceData(self, data):
+        """Connects data to port 3."""
+        self.SetInputDataObject(3, data)
+
+    # ---- Pipeline
+
+    def Update(self, *arguments):
+        """Updates the output. Raises what went wrong."""
+        self._error = None
+        super().Update(*arguments)
+        if self._error is not None:
+            raise self._error
+
+    def FillInputPortInformation(self, port, info):
+        """The type of each port."""
+        types = ("vtkImageData", "vtkDataSet", "vtkUnstructuredGrid", "vtkImageData")
+        info.Set(vtkAlgorithm.INPUT_REQUIRED_DATA_TYPE(), types[port])
+        if port > 0:
+            info.Set(vtkAlgorithm.INPUT_IS_OPTIONAL(), 1)
+        return 1
+
+    def RequestInformation(self, request, inInfo, outInfo):
+        """The grid of the output; that of a deformed volume is known once the inputs are there."""
+        return self._guard(lambda: self._announce(outInfo.GetInformationObject(0)))
+
+    def RequestUpdateExtent(self, request, inInfo, outInfo):
+        """All of the inputs, and of the reference image one voxel: its values are not used."""
+        pipeline = vtkStreamingDemandDrivenPipeline
+        for port in range(4):
+            for number in range(inInfo[port].GetNumberOfInformationObjects()):
+                info = inInfo[port].GetInformationObject(number)
+                if info.Has(pipeline.WHOLE_EXTENT()):
+                    extent = list(info.Get(pipeline.WHOLE_EXTENT()))
+                    if port == 3:
+                        extent[1::2] = extent[0::2]
+                    info.Set(pipeline.UPDATE_EXTENT(), extent, 6)
+        return 1
+
+    def RequestData(self, request, inInfo, outInfo):
+        """The output."""
+        output = vtkDataObject.GetData(outInfo.GetInformationObject(0))
+        output.Initialize()
+        return self._guard(lambda: self._deform(output))
+
+    def _guard(self, work):
+        try:
+            work()
+        except Exception as error:  # pylint: disable=broad-except
+            # Through VTK no exception passes.
+            if self._error is None:
+                vtkOutputWindow.GetInstance().DisplayErrorText(f"ERROR: DeformVolume: {error}\n")
+            self._error = error
+            return 0
+        return 1
+
+    def _input(self, port):
+        return self.GetInputDataObject(port, 0) if self.GetNumberOfInputConnections(port) > 0 else None
+
+    def _announce(self, info):
+        for port in (0, 1, 2):
+            if self.GetNumberOfInputConnections(port) > 0:
+                connection = self.GetInputConnection(port, 0)
+                connection.GetProducer().Update(connection.GetIndex())
+        self._prepare()
+        grid = self._deformer.find_output_grid()
+        info.Set(vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT(), grid.extent[:], 6)
+        info.Set(vtkDataObject.ORIGIN(), grid.origin[:], 3)
+        info.Set(vtkDataObject.SPACING(), grid.spacing[:], 3)
+        info.Set(vtkDataObject.DIRECTION(), grid.direction[:], 9)
+
+    def _prepare(self):
+        """Hands to the deformer what has changed."""
+        if self._deformer is None:
+            self._deformer = _deformer.Deformer(self._settings["Device"])
+            self._stamps = {}
+        self._prepare_volume(self._input(0))
+        self._prepare_deformation(self._input(1), self._input(2))
+        settings = self._settings
+        self._deformer.set_outside(_OUTSIDE[settings["OutsideMode"]], settings["FadeDistance"])
+        if self.GetNumberOfInputConnections(3) > 0:
+            info = self.GetInputInformation(3, 0)
+            extent = info.Get(vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT())
+            image = self._input(3)
+            get = lambda key, value: info.Get(key) if info.Has(key) else value  # noqa: E731
+            self._deformer.set_reference_grid(
+                _deformer.make_grid(
+                    extent,
+                    get(vtkDataObject.ORIGIN(), image.GetOrigin()),
+                    get(vtkDataObject.SPACING(), image.GetSpacing()),
+                    get(vtkDataObject.DIRECTION(), _direction(image)),
+                )
+            )
+        else:
+            self._deformer.set_reference(None)
+            self._deformer.set_output(_BOUNDS[settings["OutputBoundsMode"]])
+
+    def _changed(self, name, *stamp):
+        if self._stamps.get(name) == stamp:
+            return False
+        self._stamps[name] = stamp
+        return True
+
+    def _prepare_volume(self, image):
+        if image is None:
+            raise ValueError("There is no volume on port 0.")
+        for kind, name in _EDITS:
+            data = image.GetCellData() if kind == "cell" else image.GetPointData()
+            if data.HasArray(name):
+                raise _native.Error(
+                    f"The volume has the {kind} array {name}, an edit that DeformVolume of the Python package does not "
+                    "know. Use the C++ class vtkDeformVolumeFilter, or remove the array."
+                )
+        data = image.GetPointData()
+        arrays = [data.GetArray(number) for number in range(data.GetNumberOfArrays())]
+        # Ghosts, and what is neither numbers nor a vector a voxel, are not resampled.
+        arrays = [array for array in arrays if array is not None and array.GetName() != "vtkGhostType"]
+        for number, array in enumerate(arrays):
+            if any(other.GetName() == array.GetName() for other in arrays[:number]):
+                raise ValueError(f'Two arrays of the volume are named "{array.GetName()}". Rename one of them.')
+        ghosts = data.GetArray("vtkGhostType")
+        labels = [array.GetName() in self._categorical for array in arrays]
+        background = self._settings["BackgroundValue"]
+        if not self._changed("volume", _stamp(image, *arrays, ghosts), tuple(labels), background):
+            return
+        self._stamps.pop("deformation", None)
+        self._names = [array.GetName() for array in arrays]
+        shape = image.GetDimensions()[::-1]
+        self._deformer.set_volume_grid(
+            _grid_of(image), [numpy.ascontiguousarray(_view(array, shape)) for array in arrays], labels, background
+        )
+        self._deformer.set_blanked(None if ghosts is None else (vtk_to_numpy(ghosts) & _NO_SOURCE) != 0)
+
+    def _find_vectors(self, data):
+        info = self.GetInputArrayInformation(0)
+        name = info.Get(vtkDataObject.FIELD_NAME()) if info.Has(vtkDataObject.FIELD_NAME()) else None
+        points = data.GetPointData()
+        if name:
+            array = points.GetArray(name)
+            if array is None:
+                raise ValueError(f'The deformation on port 1 has no point array "{name}".')
+        else:
+            array = points.GetVectors()
+            found = [points.GetArray(i) for i in range(points.GetNumberOfArrays())]
+            found = [one for one in found if one is not None and one.GetNumberOfComponents() == 3]
+            if array is None and len(found) == 1:
+                array = found[0]
+            if array is None:
+                raise ValueError(
+                    f"The deformation on port 1 has no active vectors, and {len(found)} point arrays of three "
+                    "components. Choose one with SetInputArrayToProcess()."
+                )
+        if array.GetNumberOfComponents() != 3:
+            raise ValueError(
+                f'The array "{array.GetName()}" on port 1 has {array.GetNumberOfComponents()} components. '
+                "Displacements have 3."
+            )
+        return array
+
+    def _prepare_deformation(self, data, rest):
+        if data is None:
+            raise ValueError("There is no deformation on port 1.")
+        if isinstance(data, vtkImageData):
+            self._prepare_field(data, rest)
+        elif isinstance(data, vtkUnstructuredGrid):
+            self._prepare_mesh(data, rest)
+        else:
+            raise TypeError(
+                f"The deformation on port 1 is a {data.GetClassName()}. Give vtkUnstructuredGrid or vtkImageData."
+            )
+
+    def _prepare_field(self, data, rest):
+        if rest is not None:
+            raise ValueError("A displacement field on port 1 has no rest configuration. Disconnect port 2.")
+        array = self._find_vectors(data)
+        inverse = self._settings["FieldIsInverse"]
+        if self._changed("deformation", _stamp(data, array), inverse):
+            vectors = _view(array, data.GetDimensions()[::-1])
+            if vectors.dtype not in (numpy.float32, numpy.float64):
+                vectors = vectors.astype(numpy.float64)
+            self._deformer.set_field_grid(_grid_of(data), numpy.ascontiguousarray(vectors), inverse)
+
+    def _prepare_mesh(self, data, rest):
+        mesh = data if rest is None else rest
+        if mesh.GetPoints() is None or mesh.GetNumberOfCells() == 0:
+            raise ValueError("The deformation mesh has no cells.")
+        points = vtk_to_numpy(mesh.GetPoints().GetData())
+        if self._changed("deformation", _stamp(mesh.GetPoints(), mesh.GetCells()), "mesh"):
+            self._stamps.pop("displacements", None)
+            types = numpy.ascontiguousarray(vtk_to_numpy(mesh.GetCellTypesArray()))
+            connectivity = numpy.ascontiguousarray(
+                vtk_to_numpy(mesh.GetCells().GetConnectivityArray()), dtype=numpy.int64
+            )
+            offsets = numpy.ascontiguousarray(vtk_to_numpy(mesh.GetCells().GetOffsetsArray()), dtype=numpy.int64)
+            self._deformer.set_mesh_arrays(points, connectivity, types, offsets)
+        if rest is None:
+            array = self._find_vectors(data)
+            if self._changed("displacements", _stamp(array)):
+                self._deformer.set_displacements(vtk_to_numpy(array))
+        elif self._changed("displacements", _stamp(data.GetPoints(), mesh.GetPoints())):
+            if data.GetNumberOfPoints() != len(points):
+                raise ValueError(
+                    f"The mesh on port 1 has {data.GetNumberOfPoints()} points, but that on port 2 has {len(points)}."
+                )
+            moved = vtk_to_numpy(data.GetPoints().GetData()).astype(numpy.float64)
+            self._deformer.set_displacements(moved - points)
+
+    def _deform(self, output):
+        self._prepare()
+        grid = self._deformer.find_output_grid()
+        output.SetExtent(grid.extent[:])
+        output.SetOrigin(grid.origin[:])
+        output.SetSpacing(grid.spacing[:])
+        output.SetDirectionMatrix(grid.direction[:])
+        shape = output.GetDimensions()[::-1]
+        volume = self._input(0)
+
+        def add(name, dtype, components=1, vtk_type=None):
+            array = vtkDataArray.CreateDataArray(vtk_type or get_vtk_array_type(dtype))
+            array.SetName(name)
+            array.SetNumberOfComponents(components)
+            array.SetNumberOfTuples(shape[0] * shape[1] * shape[2])
+            output.GetPointData().AddArray(array)
+            return _view(array, shape)
+
+        data = volume.GetPointData()
+        outputs = []
+        for name in self._names:
+            source = data.GetArray(name)
+            outputs.append(add(name, None, source.GetNumberOfComponents(), source.GetDataType()))
+        mask = add("vtkValidPointMask", None, vtk_type=VTK_CHAR)
+        extra = {}
+        if self._settings["GenerateRestPositions"]:
+            extra["rest_positions"] = add("RestPosition", numpy.float32, 3)
+        if self._settings["GenerateJacobian"]:
+            extra["jacobian"] = add("Jacobian", numpy.float32)
+        if self._settings["GenerateFoldCount"]:
+            extra["fold_count"] = add("FoldCount", numpy.uint32)
+            extra["fold_count"][...] = 0
+        report = self._deformer.run(
+            outputs,
+            mask,
+            interpolation=_INTERPOLATION[self._settings["Interpolation"]],
+            extra=extra,
+            extra_background=self._settings["BackgroundValue"],
+            progress=self._tell,
+        )
+        for role in range(vtkDataSetAttributes.NUM_ATTRIBUTES):
+            array = data.GetAbstractAttribute(role)
+            if array is not None and array.GetName() in self._names:
+                output.GetPointData().SetActiveAttribute(array.GetName(), role)
+        output.SetFieldData(volume.GetFieldData())
+        if report.warnings:
+            text = report.warnings.decode("utf-8", "replace")
+            vtkOutputWindow.GetInstance().DisplayWarningText(f"Warning: DeformVolume: {text}\n")
+
+    def _tell(self, fraction):
+        self.UpdateProgress(fraction)
+        return not self.GetAbortExecute()

@@ -1,0 +1,324 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The package deformvolume: misuse first, then the bits of vtkDeformVolumeFilter, by numpy arrays and in pipelines.
+
+    TestPackage.py FOLDER
+
+FOLDER has the package, with its library."""
+
+import doctest
+import os
+import sys
+import threading
+import warnings
+
+import numpy as np
+
+sys.path.insert(0, sys.argv[1])
+
+import deformvolume as dv  # noqa: E402
+from deformvolume.vtk import DeformVolume  # noqa: E402
+import deformvolume_vtk  # noqa: E402
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy  # noqa: E402
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkUnstructuredGrid  # noqa: E402
+
+from lattice import make_mesh  # noqa: E402
+
+Filter = deformvolume_vtk.vtkDeformVolumeFilter
+random = np.random.default_rng(3)
+TURNED = np.array([[0.8, -0.6, 0.0], [0.6, 0.8, 0.0], [0.0, 0.0, 1.0]])
+
+
+def expect(kind, text, call):
+    """call() raises an exception of this kind whose message has this text."""
+    try:
+        call()
+    except kind as error:
+        assert text in str(error), f'"{text}" is not in "{error}"'
+        return
+    raise AssertionError(f'nothing was raised that says "{text}"')
+
+
+def make_image(first=3, size=(30, 25, 20), spacing=(1.5, 2.0, 2.5), direction=TURNED):
+    image = vtkImageData()
+    image.SetExtent(first, first + size[0] - 1, 0, size[1] - 1, -4, size[2] - 5)
+    image.SetOrigin(-7.0, 11.0, 5.0)
+    image.SetSpacing(*spacing)
+    image.SetDirectionMatrix(*direction.ravel())
+    for name, values in (
+        ("values", random.normal(size=size[::-1]).astype(np.float32)),
+        ("labels", random.integers(0, 5, size[::-1]).astype(np.uint8)),
+        ("colors", random.integers(0, 65536, size[::-1] + (3,)).astype(np.uint16)),
+    ):
+        flat = values.reshape(-1, 3) if values.ndim == 4 else values.ravel()
+        made = numpy_to_vtk(flat, deep=True)
+        made.SetName(name)
+        image.GetPointData().AddArray(made)
+    image.GetPointData().SetActiveScalars("values")
+    return image
+
+
+def bend(mesh, amount=0.2):
+    points = vtk_to_numpy(mesh.GetPoints().GetData()).astype(float)
+    low, high = points.min(axis=0), points.max(axis=0)
+    s = (points - low) / (high - low)
+    moved = amount * (high - low) * np.stack([np.sin(3 * s[:, 2]), s[:, 0] * s[:, 1], 0.5 * s[:, 0] ** 2], axis=1)
+    made = numpy_to_vtk(moved.astype(np.float32), deep=True)
+    made.SetName("displacement")
+    mesh.GetPointData().SetVectors(made)
+    return mesh
+
+
+def make_field(image, size, amount=4.0):
+    field = vtkImageData()
+    field.SetDimensions(size, size, size)
+    bounds = image.GetBounds()
+    field.SetOrigin(*bounds[::2])
+    field.SetSpacing(*[(bounds[2 * i + 1] - bounds[2 * i]) / (size - 1) for i in range(3)])
+    made = numpy_to_vtk(amount * random.normal(size=(size**3, 3)), deep=True)
+    made.SetName("vectors")
+    field.GetPointData().SetVectors(made)
+    return field
+
+
+def make_reference():
+    reference = vtkImageData()
+    reference.SetExtent(-2, 30, 5, 29, 0, 21)
+    reference.SetOrigin(20.0, 0.0, -30.0)
+    reference.SetSpacing(1.7, 1.9, 2.3)
+    reference.SetDirectionMatrix(-1, 0, 0, 0, 0, 1, 0, 1, 0)
+    return reference
+
+
+def compare(name, image, deformation, rest=None, reference=None, **properties):
+    """The filter of the package and that of C++ make the same."""
+    outputs = []
+    for kind in (DeformVolume, Filter):
+        made = kind()
+        made.SetInputDataObject(0, image)
+        made.SetDeformationData(deformation)
+        made.AddCategoricalArray("labels")
+        made.SetBackgroundValue(-3.0)
+        if rest is not None:
+            made.SetRestData(rest)
+        if reference is not None:
+            made.SetReferenceData(reference)
+        for key, value in properties.items():
+            getattr(made, "Set" + key)(value)
+        made.Update()
+        outputs.append(made.GetOutputDataObject(0))
+    ours, theirs = outputs
+    assert ours.GetExtent() == theirs.GetExtent(), (name, ours.GetExtent(), theirs.GetExtent())
+    assert ours.GetOrigin() == theirs.GetOrigin() and ours.GetSpacing() == theirs.GetSpacing(), name
+    names = [ours.GetPointData().GetArrayName(i) for i in range(ours.GetPointData().GetNumberOfArrays())]
+    wanted = [theirs.GetPointData().GetArrayName(i) for i in range(theirs.GetPointData().GetNumberOfArrays())]
+    assert sorted(names) == sorted(wanted), (name, names, wanted)
+    for array in names:
+        a = vtk_to_numpy(ours.GetPointData().GetArray(array))
+        b = vtk_to_numpy(theirs.GetPointData().GetArray(array))
+        assert a.dtype == b.dtype and a.tobytes() == b.tobytes(), f"{name}: {array} differs"
+    mask = vtk_to_numpy(ours.GetPointData().GetArray("vtkValidPointMask"))
+    assert 0 < mask.sum(), name
+    assert ours.GetPointData().GetScalars().GetName() == "values"
+    return ours
+
+
+def test_misuse():
+    volume, affine = np.zeros((5, 6, 7), np.float32), np.eye(4)
+    mesh = dv.Mesh(np.eye(4, 3), np.array([[0, 1, 2, 3]]), np.zeros((4, 3)))
+    for kind, text, call in (
+        (ValueError, "shape (5, 6)", lambda: dv.deform(volume[:, :, 0], mesh)),
+        (ValueError, "empty", lambda: dv.deform(volume[:0], mesh)),
+        (TypeError, "complex128", lambda: dv.deform(volume.astype(complex), mesh)),
+        (TypeError, "object", lambda: dv.deform(volume.astype(object), mesh)),
+        (TypeError, "Give a Mesh or a Field", lambda: dv.deform(volume, volume)),
+        (ValueError, "4 x 4", lambda: dv.deform(volume, mesh, np.eye(3))),
+        (dv.Error, "spacing", lambda: dv.deform(volume, mesh, np.diag([1.0, 1.0, 0.0, 1.0]))),
+        (dv.Error, "", lambda: dv.deform(volume, mesh, np.diag([1.0, np.nan, 1.0, 1.0]))),
+        (ValueError, "(4, 3)", lambda: dv.deform(volume, dv.Mesh(mesh.points, mesh.cells, np.zeros((3, 3))))),
+        (ValueError, "(n, 3)", lambda: dv.deform(volume, dv.Mesh(mesh.points[:, :2], mesh.cells, None))),
+        (ValueError, "(m, 4)", lambda: dv.deform(volume, dv.Mesh(mesh.points, mesh.cells[:, :3], None))),
+        (ValueError, "(m, 4)", lambda: dv.deform(volume, dv.Mesh(mesh.points, mesh.cells.astype(float), None))),
+        (dv.Error, "4", lambda: dv.deform(volume, dv.Mesh(mesh.points, mesh.cells + 1, mesh.displacements))),
+        (dv.Error, "finite", lambda: dv.deform(volume, dv.Mesh(mesh.points, mesh.cells, mesh.displacements + np.nan))),
+        (dv.Error, "", lambda: dv.deform(volume, dv.Mesh(mesh.points, mesh.cells))),
+        (ValueError, "2 components", lambda: dv.deform(volume, dv.Field(np.zeros((2, 2, 2, 2)), affine))),
+        (ValueError, "outside", lambda: dv.deform(volume, mesh, outside="drop")),
+        (ValueError, "interpolation", lambda: dv.deform(volume, mesh, interpolation="spline")),
+        (ValueError, "bounds", lambda: dv.deform(volume, mesh, bounds="all")),
+        (dv.Error, "ade", lambda: dv.deform(volume, mesh, outside="keep", fade_distance=float("nan"))),
+        (ValueError, "background", lambda: dv.deform([volume, volume], mesh, background=[0.0])),
+        (ValueError, "voxels", lambda: dv.deform([volume, volume[1:]], mesh)),
+        (ValueError, "reference", lambda: dv.deform(volume, mesh, reference=dv.Grid((2, 2, 2), affine), padding=1)),
+        (dv.Error, "", lambda: dv.deform(volume, mesh, device="no such device")),
+        (AttributeError, "vtkDeformVolumeFilter", lambda: DeformVolume().SetSamplingFactor(2)),
+        (ValueError, "no volume", lambda: DeformVolume()._prepare()),
+    ):
+        expect(kind, text, call)
+    # After errors all is well.
+    assert dv.deform(volume, mesh, bounds="volume").array.shape == (5, 6, 7)
+
+
+def test_pipelines():
+    image = make_image()
+    mesh = bend(make_mesh(image, 5))
+    compare("mesh", image, mesh)
+    compare("cubic", image, mesh, Interpolation=1)
+    compare("nearest", image, mesh, Interpolation=2)
+    compare("bounds", image, mesh, OutputBoundsMode=1)
+    compare("reference", image, mesh, reference=make_reference())
+    compare("extras", image, mesh, GenerateRestPositions=True, GenerateJacobian=True, GenerateFoldCount=True)
+    # A mesh in the middle of the volume.
+    small = vtkUnstructuredGrid()
+    small.DeepCopy(mesh)
+    points = vtk_to_numpy(small.GetPoints().GetData())
+    points[:] = points.mean(axis=0) + 0.5 * (points - points.mean(axis=0))
+    for mode in range(3):
+        compare(f"outside {mode}", image, small, OutsideMode=mode, FadeDistance=6.0)
+        reference = make_reference()
+        compare(f"outside {mode}, reference", image, small, reference=reference, OutsideMode=mode, FadeDistance=9.0)
+    moved = vtkUnstructuredGrid()
+    moved.DeepCopy(mesh)
+    places = vtk_to_numpy(moved.GetPoints().GetData())
+    places += vtk_to_numpy(mesh.GetPointData().GetVectors())
+    compare("rest", image, moved, rest=mesh)
+    compare("field", image, make_field(image, 6))
+    compare("field, keep", image, make_field(image, 6), OutsideMode=2, FadeDistance=8.0)
+    compare("inverse", image, make_field(image, 6), reference=make_reference(), FieldIsInverse=True)
+    # Updates that follow each other.
+    both = [DeformVolume(), Filter()]
+    for one in both:
+        one.SetInputDataObject(0, image)
+        one.SetDeformationData(mesh)
+    for amount in (0.1, 0.3, 0.3, 0.0):
+        bend(mesh, amount)
+        bits = []
+        for one in both:
+            one.Update()
+            bits.append(vtk_to_numpy(one.GetOutputDataObject(0).GetPointData().GetArray("colors")).tobytes())
+        assert bits[0] == bits[1], amount
+
+
+def test_arrays():
+    # Indices of numpy begin at 0; the split of voxels into tetrahedra is that of even indices.
+    image = make_image(first=2)
+    mesh = bend(make_mesh(image, 5))
+    deformer = Filter()
+    deformer.SetInputData(image)
+    deformer.SetDeformationData(mesh)
+    deformer.AddCategoricalArray("labels")
+    deformer.GenerateJacobianOn()
+    deformer.Update()
+    wanted = deformer.GetOutput()
+
+    shape = image.GetDimensions()
+    arrays = []
+    for name in ("values", "labels", "colors"):
+        array = vtk_to_numpy(image.GetPointData().GetArray(name))
+        arrays.append(array.reshape(shape[::-1] + array.shape[1:]).transpose((2, 1, 0, 3)[: array.ndim + 2]))
+    affine = np.eye(4)
+    affine[:3, :3] = TURNED * image.GetSpacing()
+    affine[:3, 3] = image.GetOrigin() + affine[:3, :3] @ image.GetExtent()[::2]
+    deformation = dv.Mesh(
+        vtk_to_numpy(mesh.GetPoints().GetData()),
+        vtk_to_numpy(mesh.GetCells().GetConnectivityArray()).reshape(-1, 4),
+        vtk_to_numpy(mesh.GetPointData().GetVectors()),
+    )
+    result = dv.deform(arrays, deformation, affine, categorical=[False, True, False], jacobian=True)
+    assert result.array.shape == wanted.GetDimensions(), (result.array.shape, wanted.GetDimensions())
+    assert result.counts["number_of_covered_voxels"] == result.coverage.sum() > 1000 and result.device
+    origin = np.array(wanted.GetOrigin()) + TURNED @ (np.array(wanted.GetSpacing()) * wanted.GetExtent()[::2])
+    assert np.allclose(result.affine[:3, 3], origin, rtol=0, atol=1e-10)
+    for name, array in zip(("values", "labels", "colors"), result.arrays):
+        theirs = vtk_to_numpy(wanted.GetPointData().GetArray(name))
+        ours = array.transpose((2, 1, 0, 3)[: array.ndim]).reshape(theirs.shape)
+        # The affine rounds the origin.
+        assert (ours == theirs).mean() > 0.99 and ours.dtype == theirs.dtype, (name, (ours == theirs).mean())
+
+    # However an array lies in memory, the result is the same; what can be used where it is, is not copied.
+    first = arrays[0]
+    assert np.shares_memory(dv._arrays.image(first, ""), first)
+    for other in (
+        np.ascontiguousarray(first),
+        np.asfortranarray(first),
+        np.ascontiguousarray(first[::-1])[::-1],
+        first.astype(first.dtype.newbyteorder()),
+    ):
+        other.flags.writeable = False
+        again = dv.deform(other, deformation, affine)
+        assert again.array.tobytes() == result.arrays[0].tobytes()
+    mask = arrays[1] > 2
+    assert dv.deform(mask, deformation, affine, categorical=True).array.dtype == np.uint8
+    # Integers, doubles and other types of points.
+    for points, cells in ((deformation.points.astype(float), deformation.cells.astype(np.int32)),):
+        again = dv.deform(first, dv.Mesh(points, cells, deformation.displacements.astype(float)), affine)
+        assert again.array.tobytes() == result.arrays[0].tobytes()
+
+
+def test_progress_and_warnings():
+    big = np.zeros((120, 120, 120), np.float32)
+    field = dv.Field(random.normal(size=(4, 4, 4, 3)), np.diag([40.0, 40.0, 40.0, 1.0]))
+    told = []
+    dv.deform(big, field, progress=told.append)
+    assert told and all(0.0 <= fraction <= 1.0 for fraction in told)
+    expect(KeyboardInterrupt, "", lambda: dv.deform(big, field, progress=lambda fraction: False))
+
+    def fail(fraction):
+        raise OverflowError("in the callback")
+
+    expect(OverflowError, "in the callback", lambda: dv.deform(big, field, progress=fail))
+    # A reference that the volume does not reach.
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        far = np.eye(4)
+        far[:3, 3] = 1e4
+        result = dv.deform(big, field, reference=dv.Grid((5, 5, 5), far), background=7.0)
+    assert (result.array == 7.0).all() and not result.coverage.any()
+    assert any(issubclass(one.category, dv.DeformationWarning) for one in caught)
+
+
+def test_threads_and_processes():
+    volume = random.normal(size=(40, 40, 40)).astype(np.float32)
+    field = dv.Field(random.normal(size=(5, 5, 5, 3)), np.diag([10.0, 10.0, 10.0, 1.0]))
+    wanted = dv.deform(volume, field).array.tobytes()
+    shared = dv.Deformer()
+    shared.set_volume(volume, np.eye(4))
+    shared.set_deformation(field)
+    found = []
+
+    def work(deform):
+        for _ in range(3):
+            found.append(deform().array.tobytes() == wanted)
+
+    for deform in (lambda: dv.deform(volume, field), shared.deform):
+        threads = [threading.Thread(target=work, args=(deform,)) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+    assert len(found) == 24 and all(found)
+
+    child = os.fork()
+    if child == 0:
+        try:
+            shared.deform()
+        except dv.Error as error:
+            os._exit(0 if "fork" in str(error) else 2)
+        os._exit(3)
+    assert os.waitpid(child, 0)[1] == 0
+    assert shared.deform().array.tobytes() == wanted
+
+
+def test_examples():
+    for module in (dv, dv._deformer):
+        failed, tried = doctest.testmod(module)
+        assert failed == 0
+    assert tried > 0
+
+
+test_misuse()
+test_pipelines()
+test_arrays()
+test_progress_and_warnings()
+test_threads_and_processes()
+test_examples()
+print("all tests passed")
