@@ -339,7 +339,7 @@ MUTATIONS = {
                         ["Cxx.TestMaterialFromVolume"]),
     "categories": ("Filters/Input/VolumeArrays.cxx", "isId || (array->GetName()", "(array->GetName()",
                    ["Cxx.TestDeformArrays"]),
-    "cell-diagonal": ("Filters/Input/CellSplit.cxx", "lowest = node(face, i) < node(face, lowest) ? i : lowest;", "",
+    "cell-diagonal": ("Kernels/Cells/CellSplit.cxx", "lowest = node(face, i) < node(face, lowest) ? i : lowest;", "",
                       ["Cxx.TestDeformCells", "Cxx.TestHigherOrderCells"]),
     "editor-held": ("Filters/Cutting/VolumeEditor.cxx", "array && array->GetReferenceCount() == 1", "array",
                     ["Cxx.TestCutVolume", "Cxx.TestCarveVolume"]),

@@ -2,28 +2,11 @@
 #ifndef DeformVolumeMeshCells_h
 #define DeformVolumeMeshCells_h
 
+#include "CellReader.h"      // for MeshCells
 #include "DeformationMesh.h" // for MeshParts
-#include "DerivedNodes.h"
-#include "Tetrahedron.h"
-
-#include <string>
-#include <vector>
 
 namespace deformvolume
 {
-
-struct MeshCells
-{
-  std::vector<Tetrahedron> Tetrahedra;
-  /// Nodes that some tetrahedra have besides those of the grids, numbered behind these.
-  DerivedNodes Derived;
-  /// Cells that are not three-dimensional, or of a type that is not known, in words for a warning;
-  /// "" without such.
-  std::string Ignored;
-  /// Quadratic cells with a node that is far from the middle of its edge, in words for a warning;
-  /// "" without such.
-  std::string FarMidSides;
-};
 
 /// The tetrahedra of a mesh, and those that its other three-dimensional cells are split into: the
 /// nodes of quadratic and Lagrange cells all become nodes of tetrahedra. Cells that vtkGhostType

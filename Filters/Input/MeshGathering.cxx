@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshGathering.h"
 
+#include "CellReader.h"
 #include "MeshCells.h"
 #include "MeshStamp.h"
 
@@ -273,22 +274,11 @@ void AddCellWarnings(
 {
   const std::string& ignored = mesh.GetIgnoredCells();
   const std::string& cells = ignored.empty() ? gathering.GetIgnoredCells() : ignored;
-  if (!cells.empty())
-  {
-    warnings.insert(
-      "Cells of the deformation mesh that are not three-dimensional, or of a type that "
-      "cannot be split into tetrahedra, are ignored: " +
-      cells + ".");
-  }
   const std::string& far = mesh.GetFarMidSides();
   const std::string& midSides = far.empty() ? gathering.GetFarMidSides() : far;
-  if (!midSides.empty())
+  for (const std::string& warning : GetCellWarnings(cells, midSides))
   {
-    warnings.insert(midSides +
-      " quadratic cells of the deformation mesh have a mid-side node that is farther from the "
-      "middle of its edge than 30 % of the length of the edge. Check that the nodes of the cells "
-      "are in VTK's "
-      "order.");
+    warnings.insert(warning);
   }
 }
 

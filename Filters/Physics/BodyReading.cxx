@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BodyReading.h"
 
+#include "CellNumbers.h"
 #include "CellTypes.h"
 #include "Error.h"
 #include "HandlePlaces.h"

@@ -2,19 +2,13 @@
 #ifndef DeformVolumeCellTypes_h
 #define DeformVolumeCellTypes_h
 
-#include "vtkCell.h"
 #include "vtkDataArray.h"
-#include "vtkGenericCell.h"
-#include "vtkSmartPointer.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 
 #if __has_include("vtkConstantArray.h")
 #include "vtkConstantArray.h"
 #endif
-
-#include <cctype>
-#include <string>
 
 namespace deformvolume
 {
@@ -52,22 +46,6 @@ inline int GetCommonCellType(vtkUnstructuredGrid* grid)
   static_cast<void>(grid);
   return -1;
 #endif
-}
-
-/// The name of a type of cells, such as "quadratic hexahedron" for vtkQuadraticHexahedron. VTK's
-/// class of such names changed in VTK 9.6.
-inline std::string GetCellName(int type)
-{
-  const auto cell = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(type));
-  std::string name;
-  for (const char letter :
-    std::string(cell ? cell->GetClassName() : "vtkCellOfUnknownType").substr(3))
-  {
-    const bool beginsWord = std::isupper(static_cast<unsigned char>(letter)) != 0;
-    name += std::string(beginsWord && !name.empty() ? " " : "") +
-      static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-  }
-  return name;
 }
 
 } // namespace deformvolume

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // dv_deformer: checks what comes from C, and hands it to a WorldDeformer.
 #include "Call.h"
+#include "CellNumbers.h"
+#include "CellReader.h"
 #include "Fading.h"
 #include "Structs.h"
 #include "WorldDeformer.h"
@@ -117,7 +119,8 @@ VolumeArray MakeArray(const dv_array& given, std::int32_t number)
   return array;
 }
 
-MeshTetrahedra MakeTetrahedra(const dv_mesh& mesh)
+// points: that are there.
+MeshCells ReadCells(const dv_mesh& mesh, const VectorView& points)
 {
   const std::size_t cells = GetProduct(mesh.number_of_cells, 4 * sizeof(std::int64_t), "cells");
   if (cells == 0)
@@ -125,37 +128,56 @@ MeshTetrahedra MakeTetrahedra(const dv_mesh& mesh)
     throw Error("The deformation mesh has no cells. Give one of three-dimensional cells.");
   }
   CheckPointer(mesh.connectivity, "The connectivity of the mesh");
-  MeshTetrahedra made;
-  made.Tetrahedra.resize(cells);
+  if (mesh.types && !mesh.offsets)
+  {
+    throw Error("The deformation mesh has types of cells, but no offsets. Give both, or none.");
+  }
+  CellReader reader(
+    static_cast<std::int32_t>(points.Count),
+    [&points](std::int32_t node) { return points.Get(static_cast<std::size_t>(node)); },
+    points.AreDoubles ? static_cast<double>(std::numeric_limits<double>::epsilon())
+                      : static_cast<double>(std::numeric_limits<float>::epsilon()));
+  reader.Reserve(cells);
+  std::vector<std::int32_t> nodes;
   for (std::size_t cell = 0; cell < cells; ++cell)
   {
-    if (mesh.types && mesh.types[cell] != 10)
+    const auto number = static_cast<std::int64_t>(cell);
+    const int type = mesh.types ? mesh.types[cell] : static_cast<int>(cellNumbers::Tetrahedron);
+    const std::int64_t begin = mesh.offsets ? mesh.offsets[cell] : 4 * number;
+    const std::int64_t end = mesh.offsets ? mesh.offsets[cell + 1] : begin + 4;
+    if (begin < 0 || end < begin || (cell == 0 && begin != 0))
     {
-      throw Error("Cell " + std::to_string(cell) + " of the deformation mesh has the type " +
-        std::to_string(mesh.types[cell]) + ". Give tetrahedra (10).");
+      throw Error("Cell " + std::to_string(cell) + " of the deformation mesh begins at " +
+        std::to_string(begin) + " and ends at " + std::to_string(end) +
+        ". Give offsets that begin with 0 and do not decrease.");
     }
-    std::size_t begin = 4 * cell;
-    if (mesh.offsets)
+    CellReader::CheckSize(number, type, end - begin);
+    nodes.clear();
+    for (std::int64_t i = begin; i < end; ++i)
     {
-      if (mesh.offsets[cell + 1] - mesh.offsets[cell] != 4 || mesh.offsets[cell] < 0)
-      {
-        throw Error("Cell " + std::to_string(cell) + " of the deformation mesh begins at " +
-          std::to_string(mesh.offsets[cell]) + " and ends at " +
-          std::to_string(mesh.offsets[cell + 1]) + ". A tetrahedron has 4 points.");
-      }
-      begin = static_cast<std::size_t>(mesh.offsets[cell]);
+      const std::int64_t point = mesh.connectivity[i];
+      CheckCellPoint(point, mesh.number_of_points, number);
+      nodes.push_back(static_cast<std::int32_t>(point));
     }
-    for (std::size_t corner = 0; corner < 4; ++corner)
+    if (type == cellNumbers::Polyhedron)
     {
-      const std::int64_t point = mesh.connectivity[begin + corner];
-      if (point < 0 || point >= mesh.number_of_points)
-      {
-        throw Error("Cell " + std::to_string(cell) + " of the deformation mesh uses point " +
-          std::to_string(point) + ", and there are only " + std::to_string(mesh.number_of_points) +
-          " points. Correct the cells of the mesh.");
-      }
-      made.Tetrahedra[cell][corner] = static_cast<std::int32_t>(point);
+      throw Error("Cell " + std::to_string(cell) +
+        " of the deformation mesh is a polyhedron, whose faces cannot be given here. Divide it "
+        "into other cells.");
     }
+    std::array<int, 3> degrees{ { 0, 0, 0 } };
+    for (std::size_t axis = 0; axis < 3 && mesh.degrees; ++axis)
+    {
+      const std::int32_t degree = mesh.degrees[3 * cell + axis];
+      degrees[axis] = degree >= 1 && degree < 1000000 ? degree : 0;
+    }
+    reader.Add(number, type, nodes, mesh.degrees ? &degrees : nullptr);
+  }
+  MeshCells made = reader.Finish();
+  if (made.Tetrahedra.empty())
+  {
+    throw Error("The deformation mesh has no tetrahedra, but " + made.Ignored +
+      ". Use a mesh of three-dimensional cells that can be split into tetrahedra.");
   }
   return made;
 }
@@ -207,6 +229,22 @@ WorldRequest MakeRequest(const dv_request& given)
     request.Progress = [=](double fraction) { return progress(fraction, user) == 0; };
   }
   return request;
+}
+
+template <typename Change>
+std::int32_t SetMasks(dv_deformer* deformer, const Change& change)
+{
+  return Call(
+    [&]
+    {
+      WorldDeformer& world = Get(deformer);
+      if (GetNumberOfPoints(deformer->Volume.PointExtent) == 0)
+      {
+        throw Error("There is no volume. Set one before its masks.");
+      }
+      change(deformer->Masks);
+      world.SetMasks(deformer->Masks);
+    });
 }
 
 } // namespace
@@ -283,16 +321,31 @@ std::int32_t dv_set_arrays(dv_deformer* deformer, std::int32_t count, const dv_a
 
 std::int32_t dv_set_blanked(dv_deformer* deformer, const std::uint8_t* blanked)
 {
-  return Call(
-    [&]
+  return SetMasks(deformer, [&](WorldMasks& masks) { masks.Blanked = blanked; });
+}
+
+std::int32_t dv_set_active_tetrahedra(dv_deformer* deformer, const std::uint8_t* active)
+{
+  return SetMasks(deformer, [&](WorldMasks& masks) { masks.ActiveTetrahedra = active; });
+}
+
+std::int32_t dv_set_boundary_distances(dv_deformer* deformer, const float* distances)
+{
+  return SetMasks(deformer, [&](WorldMasks& masks) { masks.BoundaryDistances = distances; });
+}
+
+std::int32_t dv_set_smooth_cut(
+  dv_deformer* deformer, const std::uint8_t* crossed, const float* distances)
+{
+  return SetMasks(deformer,
+    [&](WorldMasks& masks)
     {
-      WorldDeformer& world = Get(deformer);
-      if (blanked && GetNumberOfPoints(deformer->Volume.PointExtent) == 0)
+      if ((crossed == nullptr) != (distances == nullptr))
       {
-        throw Error("There is no volume. Set one before its masks.");
+        throw Error("A smooth cut has crossed tetrahedra and distances. Give both, or none.");
       }
-      deformer->Masks.Blanked = blanked;
-      world.SetMasks(deformer->Masks);
+      masks.CutTetrahedra = crossed;
+      masks.CutDistances = distances;
     });
 }
 
@@ -311,7 +364,7 @@ std::int32_t dv_set_mesh(dv_deformer* deformer, const dv_mesh* given)
       }
       const VectorView points =
         MakeView(mesh.points, mesh.point_type, mesh.number_of_points, "points of the mesh");
-      world.SetMesh(points, MakeTetrahedra(mesh));
+      world.SetMesh(points, ReadCells(mesh, points));
     });
 }
 

@@ -182,7 +182,29 @@ extern "C"
    * Null: all are there. Borrowed. */
   DV_EXPORT int32_t dv_set_blanked(dv_deformer* deformer, const uint8_t* blanked);
 
-  /* A deformation mesh at rest. */
+  /* Cuts and carvings. Tetrahedra are those of the implicit mesh between the voxels: five for each
+   * cell of eight neighbouring voxels (Documents/glossary.md). Arrays of cells have one tuple a
+   * cell, one cell less than voxels on each axis, x varying fastest. vtkCutVolume and
+   * vtkCarveVolume make these arrays. All are borrowed; null: there is no such mask. */
+
+  /* One byte a cell: bit i is set where tetrahedron i is active. Null: all are. */
+  DV_EXPORT int32_t dv_set_active_tetrahedra(dv_deformer* deformer, const uint8_t* active);
+
+  /* One float a voxel: its signed distance to the boundary of what has been carved out, negative
+   * there, in any unit. Samples where it is negative are left out. */
+  DV_EXPORT int32_t dv_set_boundary_distances(dv_deformer* deformer, const float* distances);
+
+  /* A smooth cut. crossed: one byte a cell, bit i is set where the sheet crosses tetrahedron i.
+   * distances: one float a voxel, its signed distance from the sheet. Both or none. Not with
+   * inverse fields. */
+  DV_EXPORT int32_t dv_set_smooth_cut(
+    dv_deformer* deformer, const uint8_t* crossed, const float* distances);
+
+  /* A deformation mesh at rest. Types of cells and the order of their points are VTK's: tetrahedra
+   * (10), voxels (11), hexahedra (12), wedges (13), pyramids (14), prisms (15, 16), quadratic cells
+   * (24 to 27, 29, 31 to 33, 37) and Lagrange cells (71 to 73). All are split into tetrahedra
+   * between their points. Polyhedra (42) and Bezier cells are an error; cells of other types are
+   * ignored, with a warning. */
   typedef struct dv_mesh
   {
     size_t struct_size;
@@ -192,11 +214,12 @@ extern "C"
     int32_t reserved;   /* 0 */
     int64_t number_of_cells;
     const int64_t* connectivity; /* the numbers of the points of each cell, one after the other */
-    const uint8_t* types;   /* null: all cells are tetrahedra. Else the type of each cell, as VTK
-                               numbers them: 10 is a tetrahedron */
-    const int64_t* offsets; /* null with tetrahedra alone. Else number_of_cells + 1: where the
-                               points of each cell begin in connectivity, and where the last
-                               ones end */
+    /* The rest is null where all cells are tetrahedra. */
+    const uint8_t* types;   /* the type of each cell, as VTK numbers them */
+    const int64_t* offsets; /* number_of_cells + 1: where the points of each cell begin in
+                               connectivity, and where the last ones end */
+    const int32_t* degrees; /* null, or three numbers a cell: the degrees of Lagrange cells along
+                               their axes, of which others ignore theirs */
   } dv_mesh;
 
   /* The deformation mesh, in place of the field or mesh before. It has no displacements then. */

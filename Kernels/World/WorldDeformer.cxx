@@ -59,9 +59,9 @@ void WorldDeformer::SetMasks(const WorldMasks& masks)
   ++this->Impl->MasksVersion;
 }
 
-void WorldDeformer::SetMesh(const VectorView& points, MeshTetrahedra&& tetrahedra)
+void WorldDeformer::SetMesh(const VectorView& points, MeshCells&& cells)
 {
-  this->Impl->Mesh.Set(points, std::move(tetrahedra));
+  this->Impl->Mesh.Set(points, std::move(cells));
   this->Impl->Deformation = Internals::Deformations::Mesh;
 }
 

@@ -109,7 +109,7 @@ public:
   ///@{
   /// A mesh with displacements, or a field: the last one that was set counts. See WorldMesh and
   /// VectorField.
-  void SetMesh(const VectorView& points, MeshTetrahedra&& tetrahedra);
+  void SetMesh(const VectorView& points, MeshCells&& cells);
   void SetNodeVectors(const VectorView& vectors);
   void SetField(const ImageGeometry& grid, const VectorView& vectors, bool isInverse);
   ///@}

@@ -485,7 +485,11 @@ void WorldDeformer::Internals::Describe(
   }
   if (this->IsMesh())
   {
-    warn(this->Mesh.GetWarnings());
+    const MeshCells& cells = this->Mesh.GetCells();
+    for (const std::string& warning : GetCellWarnings(cells.Ignored, cells.FarMidSides))
+    {
+      warn(warning);
+    }
     const MeshAtRest mesh = this->Mesh.GetAtRest();
     const FadedLinks& links = this->Mapping.GetMapping().Faded;
     if (links.AreThere() && this->Mapping.IsCurrent(mesh, this->GetMapped()))

@@ -57,10 +57,10 @@ void CheckFaults(
 
 } // namespace
 
-void WorldMesh::Set(const VectorView& points, MeshTetrahedra&& tetrahedra)
+void WorldMesh::Set(const VectorView& points, MeshCells&& cells)
 {
   CopyVectors(points, this->WorldPoints, this->PointFaults);
-  this->Cells = std::move(tetrahedra);
+  this->Cells = std::move(cells);
   this->WorldVectors.clear();
   this->VectorsAreSet = false;
   this->PointsAreOld = true;

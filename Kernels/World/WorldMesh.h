@@ -2,7 +2,7 @@
 #ifndef DeformVolumeWorldMesh_h
 #define DeformVolumeWorldMesh_h
 
-#include "DerivedNodes.h"
+#include "CellReader.h"
 #include "ImageGeometry.h"
 #include "MeshAtRest.h"
 #include "NodeFaults.h"
@@ -20,23 +20,13 @@
 namespace deformvolume
 {
 
-/// Tetrahedra of a deformation mesh, and what is said of the cells that they were made from.
-struct MeshTetrahedra
-{
-  std::vector<Tetrahedron> Tetrahedra;
-  /// Nodes that some tetrahedra have besides those of the mesh, numbered behind these.
-  DerivedNodes Derived;
-  /// Warnings; "" without such.
-  std::string Warnings;
-};
-
 /// A deformation mesh and its displacements, given in world coordinates, in the units of the
 /// kernels.
 class WorldMesh
 {
 public:
   /// points: at rest; they are copied. There are no displacements then.
-  void Set(const VectorView& points, MeshTetrahedra&& tetrahedra);
+  void Set(const VectorView& points, MeshCells&& cells);
   /// One vector for each node; they are copied. Throws an Error where their number is another one.
   void SetVectors(const VectorView& vectors);
 
@@ -46,7 +36,7 @@ public:
 
   bool HasVectors() const { return this->VectorsAreSet; }
   std::size_t GetNumberOfNodes() const { return this->WorldPoints.size(); }
-  const std::string& GetWarnings() const { return this->Cells.Warnings; }
+  const MeshCells& GetCells() const { return this->Cells; }
 
   ///@{
   /// After Update. Points and displacements are those of the nodes, and then of the derived ones.
@@ -64,7 +54,7 @@ private:
   void UpdatePoints(const ImageGeometry& volume);
   void UpdateDisplacements(const OutputMap& toOutput);
 
-  MeshTetrahedra Cells;
+  MeshCells Cells;
   std::vector<glm::dvec3> WorldPoints;
   std::vector<glm::dvec3> WorldVectors;
   bool VectorsAreSet = false;

@@ -128,6 +128,9 @@ static void TestNull(void)
   REFUSED(dv_set_volume(NULL, &grid), "deformer is null");
   REFUSED(dv_set_arrays(NULL, 0, NULL), "deformer is null");
   REFUSED(dv_set_blanked(NULL, NULL), "deformer is null");
+  REFUSED(dv_set_active_tetrahedra(NULL, NULL), "deformer is null");
+  REFUSED(dv_set_boundary_distances(NULL, NULL), "deformer is null");
+  REFUSED(dv_set_smooth_cut(NULL, NULL, NULL), "deformer is null");
   REFUSED(dv_set_mesh(NULL, NULL), "deformer is null");
   REFUSED(dv_set_displacements(NULL, DV_FLOAT32, 8, Displacements), "deformer is null");
   REFUSED(dv_set_field(NULL, NULL), "deformer is null");
@@ -269,6 +272,18 @@ static void TestWrong(void)
   mesh.offsets = offsets;
   mesh.types = types;
   CHECK(dv_set_mesh(deformer, &mesh) == DV_OK);
+  mesh.offsets = NULL;
+  REFUSED(dv_set_mesh(deformer, &mesh), "no offsets");
+  mesh.offsets = offsets;
+  types[1] = 12;
+  REFUSED(dv_set_mesh(deformer, &mesh), "hexahedron with 4 points instead of 8");
+  types[1] = 42;
+  REFUSED(dv_set_mesh(deformer, &mesh), "polyhedron");
+  types[1] = 78;
+  REFUSED(dv_set_mesh(deformer, &mesh), "Bezier");
+  types[0] = types[1] = types[2] = types[3] = types[4] = 9;
+  REFUSED(dv_set_mesh(deformer, &mesh), "no tetrahedra, but 5 quad");
+  types[0] = types[1] = types[2] = types[3] = types[4] = 10;
   offsets[2] = 7;
   REFUSED(dv_set_mesh(deformer, &mesh), "Cell 1");
   offsets[2] = -8;
@@ -310,6 +325,9 @@ static void TestWrong(void)
   field.type = DV_INT16;
   REFUSED(dv_set_field(deformer, &field), "DV_FLOAT32");
   CHECK(dv_deform(deformer, &request, NULL) == DV_OK); /* by the mesh */
+
+  /* Masks. */
+  REFUSED(dv_set_smooth_cut(deformer, (const uint8_t*)Coverage, NULL), "both, or none");
 
   /* Settings. */
   REFUSED(dv_set_outside(deformer, 3, 0.0), "outside mode is 3");

@@ -4,7 +4,17 @@
 
 #include "deformvolume.h"
 
+#include "vtkCarveVolume.h"
+#include "vtkCutVolume.h"
+
+#include <vtkAlgorithm.h>
+#include <vtkCellType.h>
+#include <vtkCellTypeSource.h>
+#include <vtkDataSetAttributes.h>
 #include <vtkDoubleArray.h>
+#include <vtkPlaneSource.h>
+#include <vtkPolyData.h>
+#include <vtkSphere.h>
 
 #include <glm/common.hpp>
 #include <glm/trigonometric.hpp>
@@ -13,6 +23,7 @@
 #include <map>
 #include <random>
 #include <set>
+#include <thread>
 #include <vector>
 
 using namespace filterTesting;
@@ -65,9 +76,13 @@ public:
     for (int i = 0; i < volume->GetPointData()->GetNumberOfArrays(); ++i)
     {
       vtkDataArray* values = volume->GetPointData()->GetArray(i);
-      if (std::string(values->GetName()) == "vtkGhostType")
+      const std::string name = values->GetName();
+      if (name == "vtkGhostType")
       {
         blanked = values;
+      }
+      if (name == "vtkGhostType" || name == "CutDistance" || name == "BoundaryDistance")
+      {
         continue;
       }
       dv_array array = {};
@@ -86,6 +101,20 @@ public:
     Check(dv_set_blanked(this->Deformer,
       blanked ? static_cast<const std::uint8_t*>(blanked->GetVoidPointer(0)) : nullptr));
     this->Background = background;
+    const auto find = [](vtkDataSetAttributes* attributes, const char* name)
+    {
+      vtkDataArray* array = attributes->GetArray(name);
+      return array ? array->GetVoidPointer(0) : nullptr;
+    };
+    vtkCellData* cells = volume->GetCellData();
+    vtkPointData* points = volume->GetPointData();
+    Check(dv_set_active_tetrahedra(
+      this->Deformer, static_cast<const std::uint8_t*>(find(cells, "ActiveTetrahedra"))));
+    Check(dv_set_boundary_distances(
+      this->Deformer, static_cast<const float*>(find(points, "BoundaryDistance"))));
+    Check(dv_set_smooth_cut(this->Deformer,
+      static_cast<const std::uint8_t*>(find(cells, "CutTetrahedra")),
+      static_cast<const float*>(find(points, "CutDistance"))));
   }
 
   void SetMesh(vtkUnstructuredGrid* grid)
@@ -528,6 +557,151 @@ void TestExtraAndMasks()
   inC.Compare(deformed);
 }
 
+/// All types of cells that are split. In one mesh: the cells of each type fill the volume.
+void TestCells()
+{
+  const auto volume = MakeManyArrays();
+  double bounds[6];
+  volume->GetBounds(bounds);
+  for (const int type : { VTK_TETRA, VTK_HEXAHEDRON, VTK_VOXEL, VTK_WEDGE, VTK_PYRAMID,
+         VTK_PENTAGONAL_PRISM, VTK_HEXAGONAL_PRISM, VTK_QUADRATIC_TETRA, VTK_QUADRATIC_HEXAHEDRON,
+         VTK_QUADRATIC_WEDGE, VTK_QUADRATIC_PYRAMID, VTK_TRIQUADRATIC_HEXAHEDRON,
+         VTK_LAGRANGE_TETRAHEDRON, VTK_LAGRANGE_HEXAHEDRON, VTK_LAGRANGE_WEDGE })
+  {
+    vtkNew<vtkCellTypeSource> source;
+    source->SetCellType(type);
+    source->SetCellOrder(3);
+    source->SetBlocksDimensions(2, 2, 2);
+    source->SetOutputPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+    source->Update();
+    auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
+    mesh->ShallowCopy(source->GetOutput());
+    // Over the volume, and some beyond.
+    double box[6];
+    mesh->GetBounds(box);
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    points->SetNumberOfPoints(mesh->GetNumberOfPoints());
+    for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
+    {
+      glm::dvec3 point = GetPoint(mesh, id);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const double size = bounds[2 * axis + 1] - bounds[2 * axis];
+        point[axis] = bounds[2 * axis] - 0.05 * size +
+          1.1 * size * (point[axis] - box[2 * axis]) / (box[2 * axis + 1] - box[2 * axis]);
+      }
+      points->SetPoint(id, &point.x);
+    }
+    mesh->SetPoints(points);
+    SetDisplacements(mesh, Bend);
+    Deformed deformed(volume, mesh);
+    InC inC;
+    inC.SetVolume(volume, 0.0);
+    inC.SetMesh(mesh);
+    inC.Compare(deformed);
+    if (GetNumberOfFailures() > 0)
+    {
+      std::cerr << "with cells of the type " << type << '\n';
+    }
+  }
+  // Cells that are ignored, and a node that is far from the middle of its edge.
+  auto mesh = MakeMesh(volume, 3);
+  const vtkIdType corners[10] = { 0, 1, 3, 9, 20, 21, 22, 23, 24, 25 };
+  mesh->InsertNextCell(VTK_TRIANGLE, 3, corners);
+  mesh->InsertNextCell(VTK_QUADRATIC_TETRA, 10, corners);
+  SetDisplacements(mesh, Bend);
+  for (const char* words : { "are ignored: 1 triangle.", "1 of 1 quadratic cells" })
+  {
+    Deformed deformed(volume, mesh);
+    InC inC;
+    inC.SetVolume(volume, 0.0);
+    inC.SetMesh(mesh);
+    inC.Compare(deformed, words);
+  }
+}
+
+/// Cuts and carvings: along voxels and between them.
+void TestEdits()
+{
+  const auto volume = MakeManyArrays();
+  double center[3];
+  volume->GetCenter(center);
+  vtkNew<vtkPlaneSource> sheet;
+  sheet->SetOrigin(center[0] - 20.0, center[1] - 20.0, center[2] - 9.0);
+  sheet->SetPoint1(center[0] + 20.0, center[1] - 20.0, center[2] + 9.0);
+  sheet->SetPoint2(center[0] - 20.0, center[1] + 1.0, center[2] - 9.0);
+  sheet->Update();
+  vtkNew<vtkSphere> tool;
+  tool->SetCenter(center[0] + 3.0, center[1] + 4.0, center[2]);
+  tool->SetRadius(3.3);
+  auto mesh = MakeMesh(volume, 4);
+  SetDisplacements(mesh, Bend);
+  for (const bool isSmooth : { false, true })
+  {
+    vtkNew<vtkCutVolume> cut;
+    cut->SetInputData(volume);
+    cut->SetSheetData(sheet->GetOutput());
+    cut->SetSmoothCut(isSmooth);
+    vtkNew<vtkCarveVolume> carve;
+    carve->SetInputConnection(cut->GetOutputPort());
+    carve->SetImplicitFunction(tool);
+    carve->SetSmoothBoundary(isSmooth);
+    carve->Update();
+    vtkImageData* edited = carve->GetOutput();
+    VERIFY(edited->GetCellData()->GetArray("ActiveTetrahedra") != nullptr);
+    VERIFY_EQUAL(edited->GetCellData()->GetArray("CutTetrahedra") != nullptr, isSmooth);
+    VERIFY_EQUAL(edited->GetPointData()->GetArray("BoundaryDistance") != nullptr, isSmooth);
+    Deformed deformed(edited, mesh);
+    InC inC;
+    inC.SetVolume(edited, 0.0);
+    inC.SetMesh(mesh);
+    inC.Compare(deformed);
+  }
+}
+
+/// Two threads with a deformer each, which begin at the same time.
+void TestTwoThreads()
+{
+  const auto volume = MakeManyArrays();
+  auto mesh = MakeMesh(volume, 4);
+  SetDisplacements(mesh, Bend);
+  Deformed deformed(volume, mesh);
+  deformed.Update();
+  std::array<InC, 2> inC;
+  for (InC& one : inC)
+  {
+    one.SetVolume(volume, 0.0);
+    one.SetMesh(mesh);
+  }
+  std::array<std::string, 2> errors;
+  std::array<std::thread, 2> threads;
+  for (std::size_t i = 0; i < 2; ++i)
+  {
+    threads[i] = std::thread(
+      [&inC, &errors, i]
+      {
+        for (int time = 0; time < 3; ++time)
+        {
+          inC[i].Deform();
+        }
+        // Errors are those of the thread.
+        dv_set_outside(inC[i].Deformer, i == 0 ? 8 : 9, 0.0);
+        errors[i] = dv_last_error();
+      });
+  }
+  for (std::thread& thread : threads)
+  {
+    thread.join();
+  }
+  VERIFY(errors[0].find("is 8") != std::string::npos);
+  VERIFY(errors[1].find("is 9") != std::string::npos);
+  for (InC& one : inC)
+  {
+    one.Compare(deformed);
+  }
+}
+
 /// Live: what changes is written alone, and the result is that of a new deformer.
 void TestIncremental()
 {
@@ -562,6 +736,9 @@ int TestCInterface(int, char*[])
   TestGrids();
   TestFields();
   TestExtraAndMasks();
+  TestCells();
+  TestEdits();
+  TestTwoThreads();
   TestIncremental();
   return GetExitCode();
 }

@@ -5,14 +5,20 @@
 #include "FilterTesting.h"
 #include "MeshCells.h"
 
+#include "CellLattices.h"
+#include "CellNumbers.h"
 #include "Error.h"
 
 #include <vtkCell.h>
+#include <vtkCell3D.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
 #include <vtkCellTypeSource.h>
 #include <vtkDoubleArray.h>
 #include <vtkGenericCell.h>
+#include <vtkHigherOrderHexahedron.h>
+#include <vtkHigherOrderTetra.h>
+#include <vtkHigherOrderWedge.h>
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -837,10 +843,121 @@ void TestConcaveVolume()
   }
 }
 
+// The engine's tables are VTK's.
+void TestTables()
+{
+  const std::set<int> linear{ VTK_HEXAHEDRON, VTK_WEDGE, VTK_PYRAMID, VTK_PENTAGONAL_PRISM,
+    VTK_HEXAGONAL_PRISM };
+  int found = 0;
+  for (int type = 0; type < 256; ++type)
+  {
+    const auto cell = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(type));
+    const deformvolume::CellFaces* faces = deformvolume::GetCellFaces(type);
+    VERIFY_EQUAL(faces != nullptr, linear.count(type) > 0);
+    if (faces)
+    {
+      auto* solid = vtkCell3D::SafeDownCast(cell);
+      VERIFY_EQUAL(static_cast<int>(faces->size()), solid->GetNumberOfFaces());
+      for (std::size_t face = 0; face < faces->size(); ++face)
+      {
+        const vtkIdType* points = nullptr;
+        const vtkIdType count = solid->GetFacePoints(static_cast<vtkIdType>(face), points);
+        VERIFY(std::vector<int>(points, points + count) == (*faces)[face]);
+      }
+    }
+    const int size = deformvolume::GetNumberOfCellPoints(type);
+    VERIFY(size == 0 || (cell && size == cell->GetNumberOfPoints()));
+    found += size > 0 ? 1 : 0;
+    std::vector<std::array<int, 3>> edges;
+    for (vtkIdType i = 0; size > 0 && i < cell->GetNumberOfPoints(); ++i)
+    {
+      cell->PointIds->SetId(i, i);
+    }
+    for (int edge = 0; size > 0 && edge < cell->GetNumberOfEdges(); ++edge)
+    {
+      vtkIdList* ids = cell->GetEdge(edge)->GetPointIds();
+      if (ids->GetNumberOfIds() == 3)
+      {
+        edges.push_back({ { static_cast<int>(ids->GetId(0)), static_cast<int>(ids->GetId(1)),
+          static_cast<int>(ids->GetId(2)) } });
+      }
+    }
+    VERIFY(edges == deformvolume::HigherOrderCells::GetMidSides(type));
+    VERIFY(!cell || deformvolume::GetCellName(type) != "cell of unknown type");
+  }
+  VERIFY_EQUAL(found, 16);
+}
+
+// So is the order of the nodes of lattices.
+void TestLattices()
+{
+  int wrong = 0;
+  int nodes = 0;
+  const auto check = [&](const deformvolume::NodeAt& at, int i, int j, int k, vtkIdType expected)
+  {
+    wrong += at(i, j, k) == expected ? 0 : 1;
+    ++nodes;
+  };
+  for (int x = 1; x <= 5; ++x)
+  {
+    for (int y = 1; y <= 4; ++y)
+    {
+      for (int z = 1; z <= 4; ++z)
+      {
+        const deformvolume::NodeAt at = deformvolume::NumberHexahedron({ { x, y, z } });
+        const int order[4] = { x, y, z, (x + 1) * (y + 1) * (z + 1) };
+        for (int node = 0; node < order[3]; ++node)
+        {
+          const int i = node % (x + 1);
+          const int j = node / (x + 1) % (y + 1);
+          const int k = node / (x + 1) / (y + 1);
+          check(at, i, j, k, vtkHigherOrderHexahedron::PointIndexFromIJK(i, j, k, order));
+        }
+      }
+    }
+  }
+  for (int degree = 1; degree <= 8; ++degree)
+  {
+    const deformvolume::NodeAt inTetrahedron = deformvolume::NumberTetrahedron(degree);
+    for (int k = 0; k <= degree; ++k)
+    {
+      for (int j = 0; j + k <= degree; ++j)
+      {
+        for (int i = 0; i + j + k <= degree; ++i)
+        {
+          const vtkIdType place[4] = { i, j, k, degree - i - j - k };
+          check(inTetrahedron, i, j, k, vtkHigherOrderTetra::Index(place, degree));
+        }
+      }
+    }
+    for (int layers = 1; layers <= 4; ++layers)
+    {
+      const deformvolume::NodeAt inWedge = deformvolume::NumberWedge(degree, layers);
+      const int order[4] = { degree, degree, layers,
+        (degree + 1) * (degree + 2) / 2 * (layers + 1) };
+      // VTK takes 21 nodes for another cell.
+      for (int k = 0; k <= layers && order[3] != 21; ++k)
+      {
+        for (int j = 0; j <= degree; ++j)
+        {
+          for (int i = 0; i + j <= degree; ++i)
+          {
+            check(inWedge, i, j, k, vtkHigherOrderWedge::PointIndexFromIJK(i, j, k, order));
+          }
+        }
+      }
+    }
+  }
+  VERIFY_EQUAL(wrong, 0);
+  VERIFY(nodes > 5000);
+}
+
 } // namespace
 
 int TestHigherOrderCells(int, char*[])
 {
+  TestTables();
+  TestLattices();
   TestErrors();
   TestNeighbours();
   TestBlocks();

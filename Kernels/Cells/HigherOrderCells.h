@@ -3,10 +3,10 @@
 #define DeformVolumeHigherOrderCells_h
 
 #include "CellParts.h"
-
-#include "vtkType.h"
+#include "DeformVolumeExport.h"
 
 #include <array>
+#include <cstdint>
 #include <map>
 #include <utility>
 
@@ -15,7 +15,7 @@ namespace deformvolume
 
 /// The parts of quadratic and Lagrange cells. Keeps those of each type, number of points and
 /// degree.
-class HigherOrderCells
+class DEFORMVOLUME_EXPORT HigherOrderCells
 {
 public:
   /// Whether a type is that of a three-dimensional quadratic or Lagrange cell.
@@ -29,15 +29,14 @@ public:
   /// three axes; null: one degree, which follows from the number of points. Empty where a cell of
   /// that type and degree does not have so many points. Valid as long as this object.
   const CellParts& GetParts(
-    int cellType, vtkIdType numberOfPoints, const std::array<int, 3>* degrees);
+    int cellType, std::int64_t numberOfPoints, const std::array<int, 3>* degrees);
 
   /// The edges of a quadratic type of fixed shape that have a node in their middle: two corners,
-  /// then that node, by positions in the cell's list of points. Valid as long as this object.
-  const std::vector<std::array<int, 3>>& GetMidSides(int cellType);
+  /// then that node, by positions in the cell's list of points.
+  static const std::vector<std::array<int, 3>>& GetMidSides(int cellType);
 
 private:
-  std::map<int, std::vector<std::array<int, 3>>> MidSides;
-  using Key = std::pair<std::pair<int, vtkIdType>, std::array<int, 3>>;
+  using Key = std::pair<std::pair<int, std::int64_t>, std::array<int, 3>>;
   std::map<Key, CellParts> Known;
 };
 

@@ -2,9 +2,8 @@
 #ifndef DeformVolumeCellSplit_h
 #define DeformVolumeCellSplit_h
 
+#include "DeformVolumeExport.h"
 #include "Tetrahedron.h"
-
-#include "vtkType.h"
 
 #include <cstdint>
 #include <vector>
@@ -15,14 +14,14 @@ namespace deformvolume
 /// The faces of a cell, each by positions in the cell's list of points, in order round the face.
 using CellFaces = std::vector<std::vector<int>>;
 
-/// The faces of a linear three-dimensional VTK cell type of fixed shape other than VTK_TETRA and
-/// VTK_VOXEL (whose points, once 2 and 3, and 6 and 7 are swapped, are those of VTK_HEXAHEDRON);
-/// null for all other types.
-const CellFaces* GetCellFaces(int cellType);
+/// The faces of a linear three-dimensional type of cells (cellNumbers) of fixed shape other than
+/// tetrahedra and voxels (whose points, once 2 and 3, and 6 and 7 are swapped, are those of
+/// hexahedra); null for all other types.
+DEFORMVOLUME_EXPORT const CellFaces* GetCellFaces(int cellType);
 
-/// How many points a cell of a linear or quadratic three-dimensional VTK type of fixed shape has;
+/// How many points a cell of a linear or quadratic three-dimensional type of fixed shape has;
 /// 0 for all other types.
-int GetNumberOfCellPoints(int cellType);
+DEFORMVOLUME_EXPORT int GetNumberOfCellPoints(int cellType);
 
 /// Splits a convex cell into tetrahedra between its own points and appends them.
 ///

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "CellLattices.h"
+
+#include <cstddef>
+#include <map>
+#include <memory>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+using Place = std::array<int, 3>;
+
+// Nodes with their places in a lattice, in the order in which they are added.
+class Lattice
+{
+public:
+  void Add(const Place& place) { this->Nodes.emplace(place, static_cast<int>(this->Nodes.size())); }
+
+  // The nodes between two places that are so many steps apart.
+  void AddBetween(const Place& first, const Place& last, int steps)
+  {
+    for (int step = 1; step < steps; ++step)
+    {
+      this->Add(Mix<2>({ { first, last } }, { { steps - step, step } }, steps));
+    }
+  }
+
+  // All nodes of a triangle with so many steps along its edges.
+  void AddTriangle(const std::array<Place, 3>& corners, int steps)
+  {
+    if (steps == 0)
+    {
+      this->Add(corners[0]);
+      return;
+    }
+    for (const Place& corner : corners)
+    {
+      this->Add(corner);
+    }
+    for (std::size_t edge = 0; edge < 3; ++edge)
+    {
+      this->AddBetween(corners[edge], corners[(edge + 1) % 3], steps);
+    }
+    this->AddWithin(corners, steps);
+  }
+
+  // Those that are not on its edges, which are a triangle again.
+  void AddWithin(const std::array<Place, 3>& corners, int steps)
+  {
+    if (steps >= 3)
+    {
+      std::array<Place, 3> inner;
+      for (std::size_t i = 0; i < 3; ++i)
+      {
+        std::array<int, 3> weights{ { 1, 1, 1 } };
+        weights[i] = steps - 2;
+        inner[i] = Mix(corners, weights, steps);
+      }
+      this->AddTriangle(inner, steps - 3);
+    }
+  }
+
+  void AddTetrahedron(const std::array<Place, 4>& corners, int steps)
+  {
+    if (steps == 0)
+    {
+      this->Add(corners[0]);
+      return;
+    }
+    for (const Place& corner : corners)
+    {
+      this->Add(corner);
+    }
+    static const std::size_t edges[6][2] = { { 0, 1 }, { 1, 2 }, { 2, 0 }, { 0, 3 }, { 1, 3 },
+      { 2, 3 } };
+    for (const auto& edge : edges)
+    {
+      this->AddBetween(corners[edge[0]], corners[edge[1]], steps);
+    }
+    static const std::size_t faces[4][3] = { { 0, 1, 3 }, { 2, 3, 1 }, { 0, 3, 2 }, { 0, 2, 1 } };
+    for (const auto& face : faces)
+    {
+      this->AddWithin({ { corners[face[0]], corners[face[1]], corners[face[2]] } }, steps);
+    }
+    if (steps >= 4)
+    {
+      std::array<Place, 4> inner;
+      for (std::size_t i = 0; i < 4; ++i)
+      {
+        std::array<int, 4> weights{ { 1, 1, 1, 1 } };
+        weights[i] = steps - 3;
+        inner[i] = Mix(corners, weights, steps);
+      }
+      this->AddTetrahedron(inner, steps - 4);
+    }
+  }
+
+  // -1: there is no node.
+  int Get(const Place& place) const
+  {
+    const auto found = this->Nodes.find(place);
+    return found == this->Nodes.end() ? -1 : found->second;
+  }
+
+private:
+  // The mean of places of a lattice, with weights that add up to a sum and give such a place.
+  template <std::size_t Count>
+  static Place Mix(
+    const std::array<Place, Count>& places, const std::array<int, Count>& weights, int sum)
+  {
+    Place mixed{ { 0, 0, 0 } };
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      for (std::size_t i = 0; i < Count; ++i)
+      {
+        mixed[axis] += weights[i] * places[i][axis];
+      }
+      mixed[axis] /= sum;
+    }
+    return mixed;
+  }
+
+  std::map<Place, int> Nodes;
+};
+
+NodeAt MakeNodeAt(const std::shared_ptr<Lattice>& lattice)
+{
+  return [lattice](int i, int j, int k) { return lattice->Get({ { i, j, k } }); };
+}
+
+} // namespace
+
+NodeAt NumberHexahedron(const std::array<int, 3>& degrees)
+{
+  const auto lattice = std::make_shared<Lattice>();
+  const auto [x, y, z] = degrees;
+  const std::array<std::array<int, 2>, 4> ring{ { { { 0, 0 } }, { { x, 0 } }, { { x, y } },
+    { { 0, y } } } };
+  for (const int k : { 0, z })
+  {
+    for (const auto& corner : ring)
+    {
+      lattice->Add({ { corner[0], corner[1], k } });
+    }
+  }
+  for (const int k : { 0, z })
+  {
+    // All in the direction of their axis.
+    lattice->AddBetween({ { 0, 0, k } }, { { x, 0, k } }, x);
+    lattice->AddBetween({ { x, 0, k } }, { { x, y, k } }, y);
+    lattice->AddBetween({ { 0, y, k } }, { { x, y, k } }, x);
+    lattice->AddBetween({ { 0, 0, k } }, { { 0, y, k } }, y);
+  }
+  for (const auto& corner : ring)
+  {
+    lattice->AddBetween({ { corner[0], corner[1], 0 } }, { { corner[0], corner[1], z } }, z);
+  }
+  for (const int i : { 0, x })
+  {
+    for (int k = 1; k < z; ++k)
+    {
+      lattice->AddBetween({ { i, 0, k } }, { { i, y, k } }, y);
+    }
+  }
+  for (const int j : { 0, y })
+  {
+    for (int k = 1; k < z; ++k)
+    {
+      lattice->AddBetween({ { 0, j, k } }, { { x, j, k } }, x);
+    }
+  }
+  for (const int k : { 0, z })
+  {
+    for (int j = 1; j < y; ++j)
+    {
+      lattice->AddBetween({ { 0, j, k } }, { { x, j, k } }, x);
+    }
+  }
+  for (int k = 1; k < z; ++k)
+  {
+    for (int j = 1; j < y; ++j)
+    {
+      lattice->AddBetween({ { 0, j, k } }, { { x, j, k } }, x);
+    }
+  }
+  return MakeNodeAt(lattice);
+}
+
+NodeAt NumberWedge(int degree, int layers)
+{
+  const auto lattice = std::make_shared<Lattice>();
+  const int n = degree;
+  const std::array<std::array<int, 2>, 3> ring{ { { { 0, 0 } }, { { n, 0 } }, { { 0, n } } } };
+  const auto at = [&](std::size_t corner, int k) -> Place {
+    return { { ring[corner % 3][0], ring[corner % 3][1], k } };
+  };
+  // Of a triangle, without its edges.
+  const auto addTriangle = [&](int k)
+  {
+    for (int j = 1; j < n; ++j)
+    {
+      lattice->AddBetween({ { 0, j, k } }, { { n - j, j, k } }, n - j);
+    }
+  };
+  for (const int k : { 0, layers })
+  {
+    for (std::size_t corner = 0; corner < 3; ++corner)
+    {
+      lattice->Add(at(corner, k));
+    }
+  }
+  for (const int k : { 0, layers })
+  {
+    for (std::size_t corner = 0; corner < 3; ++corner)
+    {
+      lattice->AddBetween(at(corner, k), at(corner + 1, k), n);
+    }
+  }
+  for (std::size_t corner = 0; corner < 3; ++corner)
+  {
+    lattice->AddBetween(at(corner, 0), at(corner, layers), layers);
+  }
+  addTriangle(0);
+  addTriangle(layers);
+  for (std::size_t corner = 0; corner < 3; ++corner)
+  {
+    for (int k = 1; k < layers; ++k)
+    {
+      lattice->AddBetween(at(corner, k), at(corner + 1, k), n);
+    }
+  }
+  for (int k = 1; k < layers; ++k)
+  {
+    addTriangle(k);
+  }
+  return MakeNodeAt(lattice);
+}
+
+NodeAt NumberTetrahedron(int degree)
+{
+  const auto lattice = std::make_shared<Lattice>();
+  lattice->AddTetrahedron(
+    { { { { 0, 0, 0 } }, { { degree, 0, 0 } }, { { 0, degree, 0 } }, { { 0, 0, degree } } } },
+    degree);
+  return MakeNodeAt(lattice);
+}
+
+} // namespace deformvolume

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "CellReader.h"
+
+#include "CellNumbers.h"
+#include "CellParts.h"
+#include "Error.h"
+#include "PolyhedronSplit.h"
+
+#include <glm/geometric.hpp>
+
+#include <limits>
+#include <utility>
+
+namespace deformvolume
+{
+
+std::vector<std::string> GetCellWarnings(const std::string& ignored, const std::string& farMidSides)
+{
+  std::vector<std::string> warnings;
+  if (!ignored.empty())
+  {
+    warnings.push_back(
+      "Cells of the deformation mesh that are not three-dimensional, or of a type that "
+      "cannot be split into tetrahedra, are ignored: " +
+      ignored + ".");
+  }
+  if (!farMidSides.empty())
+  {
+    warnings.push_back(farMidSides +
+      " quadratic cells of the deformation mesh have a mid-side node that is farther from the "
+      "middle of its edge than 30 % of the length of the edge. Check that the nodes of the cells "
+      "are in VTK's "
+      "order.");
+  }
+  return warnings;
+}
+
+void ThrowBadCell(std::int64_t cell, int type, std::int64_t count, const std::string& complaint)
+{
+  throw Error("Cell " + std::to_string(cell) + " of the deformation mesh is a " +
+    GetCellName(type) + " with " + std::to_string(count) + " points" + complaint +
+    ". Correct the cells of the mesh.");
+}
+
+void CheckCellPoint(std::int64_t point, std::int64_t numberOfPoints, std::int64_t cell)
+{
+  if (point < 0 || point >= numberOfPoints)
+  {
+    throw Error("Cell " + std::to_string(cell) + " of the deformation mesh uses point " +
+      std::to_string(point) + ", and there are only " + std::to_string(numberOfPoints) +
+      " points. Correct the cells of the mesh.");
+  }
+}
+
+CellReader::CellReader(std::int32_t numberOfNodes, Positions positions, double rounding)
+  : NumberOfNodes(numberOfNodes)
+  , GetPosition(std::move(positions))
+  , Rounding(rounding)
+{
+}
+
+void CellReader::CheckSize(std::int64_t cell, int type, std::int64_t count)
+{
+  const int needed = GetNumberOfCellPoints(type);
+  if (needed > 0 && count != needed)
+  {
+    ThrowBadCell(cell, type, count, " instead of " + std::to_string(needed));
+  }
+}
+
+// Returns the number of a new node.
+std::int32_t CellReader::AddNode(
+  const std::vector<std::int32_t>& nodes, const std::vector<double>& weights)
+{
+  const std::size_t number =
+    static_cast<std::size_t>(this->NumberOfNodes) + this->Cells.Derived.GetCount();
+  if (number >= static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
+  {
+    throw Error("The deformation mesh has more than 2,147,483,647 nodes, with those in the "
+                "middle of its cells. Use a coarser one.");
+  }
+  this->Cells.Derived.Add(nodes, weights);
+  return static_cast<std::int32_t>(number);
+}
+
+void CellReader::AddPolyhedron(
+  std::int64_t cell, const std::vector<std::int32_t>& nodes, const CellFaces& faces)
+{
+  std::vector<glm::dvec3> points;
+  for (const std::int32_t node : nodes)
+  {
+    points.push_back(this->GetPosition(node));
+  }
+  PolyhedronSplit split;
+  if (!SplitPolyhedron(nodes, faces, points, this->Rounding, split))
+  {
+    throw Error("Cell " + std::to_string(cell) + " of the deformation mesh is a concave " +
+      GetCellName(cellNumbers::Polyhedron) + " with " + std::to_string(nodes.size()) +
+      " points, and no point inside sees all of its faces. Divide it into convex or star-shaped "
+      "cells.");
+  }
+  std::vector<Tetrahedron>& tetrahedra = this->Cells.Tetrahedra;
+  tetrahedra.insert(tetrahedra.end(), split.Tetrahedra.begin(), split.Tetrahedra.end());
+  if (!split.CenterWeights.empty())
+  {
+    const std::int32_t center = this->AddNode(nodes, split.CenterWeights);
+    for (const std::array<std::int32_t, 3>& triangle : split.Triangles)
+    {
+      tetrahedra.push_back({ { center, triangle[0], triangle[1], triangle[2] } });
+    }
+  }
+}
+
+// Whether all nodes in the middle of edges are about there. The middle of an arc of 120 degrees is
+// farther by 0.29 of the length between its ends, a quarter point is by 0.25, and the middle of
+// another edge is by 0.5 where all edges have one length.
+bool CellReader::HasNearMidSides(int type, const std::vector<std::int32_t>& nodes) const
+{
+  constexpr double most = 0.3;
+  for (const std::array<int, 3>& edge : HigherOrderCells::GetMidSides(type))
+  {
+    const auto at = [&](std::size_t i)
+    { return this->GetPosition(nodes[static_cast<std::size_t>(edge[i])]); };
+    const glm::dvec3 first = at(0);
+    const glm::dvec3 second = at(1);
+    if (glm::distance(at(2), 0.5 * (first + second)) > most * glm::distance(first, second))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+void CellReader::AddHigherOrder(std::int64_t cell, int type, const std::vector<std::int32_t>& nodes,
+  const std::array<int, 3>* degrees)
+{
+  const auto count = static_cast<std::int64_t>(nodes.size());
+  const CellParts& parts = this->HigherOrder.GetParts(type, count, degrees);
+  if (parts.empty())
+  {
+    ThrowBadCell(cell, type, count, ", which does not fit its degree");
+  }
+  std::vector<Tetrahedron>& tetrahedra = this->Cells.Tetrahedra;
+  std::vector<std::int32_t> some;
+  for (const CellPart& part : parts)
+  {
+    some.clear();
+    for (const int node : part.Nodes)
+    {
+      some.push_back(nodes[static_cast<std::size_t>(node)]);
+    }
+    if (part.CenterWeights.empty())
+    {
+      SplitCell(some, part.Faces, tetrahedra);
+      continue;
+    }
+    const std::int32_t center = this->AddNode(nodes, part.CenterWeights);
+    for (const std::vector<int>& face : part.Faces)
+    {
+      tetrahedra.push_back({ { center, some[static_cast<std::size_t>(face[0])],
+        some[static_cast<std::size_t>(face[1])], some[static_cast<std::size_t>(face[2])] } });
+    }
+  }
+  this->NumberOfQuadraticCells += HigherOrderCells::GetMidSides(type).empty() ? 0 : 1;
+  this->NumberOfFarMidSides += this->HasNearMidSides(type, nodes) ? 0 : 1;
+}
+
+void CellReader::Add(std::int64_t cell, int type, const std::vector<std::int32_t>& nodes,
+  const std::array<int, 3>* degrees)
+{
+  const auto count = static_cast<std::int64_t>(nodes.size());
+  CheckSize(cell, type, count);
+  if (type == cellNumbers::Tetrahedron)
+  {
+    this->AddTetrahedron({ { nodes[0], nodes[1], nodes[2], nodes[3] } });
+  }
+  else if (type == cellNumbers::Voxel)
+  {
+    std::vector<std::int32_t> swapped = nodes;
+    std::swap(swapped[2], swapped[3]);
+    std::swap(swapped[6], swapped[7]);
+    SplitCell(swapped, *GetCellFaces(cellNumbers::Hexahedron), this->Cells.Tetrahedra);
+  }
+  else if (const CellFaces* faces = GetCellFaces(type))
+  {
+    SplitCell(nodes, *faces, this->Cells.Tetrahedra);
+  }
+  else if (HigherOrderCells::Contain(type))
+  {
+    this->AddHigherOrder(cell, type, nodes, degrees);
+  }
+  else if (HigherOrderCells::IsBezier(type))
+  {
+    ThrowBadCell(cell, type, count,
+      ". The points of Bezier cells control their shape and do not lie on it: convert the mesh "
+      "to Lagrange or to linear cells");
+  }
+  else
+  {
+    ++this->Ignored[type];
+  }
+}
+
+MeshCells CellReader::Finish()
+{
+  for (const auto& entry : this->Ignored)
+  {
+    this->Cells.Ignored += (this->Cells.Ignored.empty() ? "" : ", ") +
+      std::to_string(entry.second) + " " + GetCellName(entry.first);
+  }
+  if (this->NumberOfFarMidSides > 0)
+  {
+    this->Cells.FarMidSides = std::to_string(this->NumberOfFarMidSides) + " of " +
+      std::to_string(this->NumberOfQuadraticCells);
+  }
+  return std::move(this->Cells);
+}
+
+} // namespace deformvolume
