@@ -3,6 +3,7 @@
 #define DeformVolumeStructs_h
 
 #include "Error.h"
+#include "deformvolume.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -24,7 +25,9 @@ inline void CheckPointer(const void* pointer, const char* name)
 /// The size of a structure in the first version of the interface that has it: what programs know at
 /// least. Where one grows, a specialisation has the old size.
 template <typename T>
-constexpr std::size_t FirstSize = sizeof(T);
+inline constexpr std::size_t FirstSize = sizeof(T);
+template <>
+inline constexpr std::size_t FirstSize<dv_mesh> = offsetof(dv_mesh, degrees);
 
 /// Throws an Error where a structure is smaller than it ever was.
 template <typename T>

@@ -272,6 +272,13 @@ static void TestWrong(void)
   mesh.offsets = offsets;
   mesh.types = types;
   CHECK(dv_set_mesh(deformer, &mesh) == DV_OK);
+  /* A program that knows fewer members: what is behind them is not read. */
+  mesh.struct_size = offsetof(dv_mesh, degrees);
+  mesh.degrees = (const int32_t*)(size_t)8;
+  CHECK(dv_set_mesh(deformer, &mesh) == DV_OK);
+  mesh = MakeMesh();
+  mesh.offsets = offsets;
+  mesh.types = types;
   mesh.offsets = NULL;
   REFUSED(dv_set_mesh(deformer, &mesh), "no offsets");
   mesh.offsets = offsets;
