@@ -81,6 +81,19 @@ std::int32_t dv_add_driver(const char* path)
     });
 }
 
+std::int32_t dv_set_linker(const char* folder)
+{
+  return deformvolume::Call(
+    [&]
+    {
+      if (!folder)
+      {
+        throw deformvolume::Error("dv_set_linker: the folder is null.");
+      }
+      deformvolume::SetKernelLinker(folder);
+    });
+}
+
 std::int32_t dv_device_count(void)
 {
   std::int32_t count = 0;

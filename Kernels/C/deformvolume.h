@@ -75,6 +75,14 @@ extern "C"
    * OpenCL driver. */
   DV_EXPORT int32_t dv_add_driver(const char* path);
 
+  /* The folder of a program "ld", with which PoCL links kernels where it is a driver of
+   * dv_add_driver(), and the "ld" on the PATH does not work: without one it would end the process.
+   * To be called before a device is used. The environment variable DEFORMVOLUME_LINKER changes
+   * that: "system" never takes the program, "own" always does for such drivers. While kernels are
+   * compiled, the folder is in the environment variable COMPILER_PATH of this process.
+   * Fails where the path is not absolute. */
+  DV_EXPORT int32_t dv_set_linker(const char* folder);
+
   /* The number of OpenCL devices, the best first; 0 where there is none. The first call starts the
    * drivers, which may take some tenths of a second. */
   DV_EXPORT int32_t dv_device_count(void);

@@ -4,6 +4,8 @@
 #include "DeviceThreads.h"
 #include "Error.h"
 #include "KernelCache.h"
+#include "KernelProcessor.h"
+#include "OpenCLContext.h" // for FloatingPointTrapGuard
 
 #include <algorithm>
 #include <filesystem>
@@ -37,6 +39,7 @@ void AddedDrivers::Add(const std::string& path)
   // Drivers read these when they start.
   PrepareKernelCache();
   LimitDeviceThreads();
+  const FloatingPointTrapGuard guard;
   std::string problem;
   const std::vector<cl_platform_id> platforms = LoadPlatforms(library, problem);
   if (platforms.empty())
@@ -45,6 +48,22 @@ void AddedDrivers::Add(const std::string& path)
   }
   this->Libraries.push_back(library);
   this->Platforms.insert(this->Platforms.end(), platforms.begin(), platforms.end());
+  for (cl_platform_id platform : platforms)
+  {
+    std::vector<cl::Device> devices;
+    try
+    {
+      cl::Platform(platform).getDevices(CL_DEVICE_TYPE_ALL, &devices);
+      for (const cl::Device& device : devices)
+      {
+        this->Processors[device()] = SetKernelProcessor(library, device);
+      }
+    }
+    catch (const cl::Error&)
+    {
+      continue; // a platform without devices
+    }
+  }
 }
 
 std::vector<cl_platform_id> AddedDrivers::GetPlatforms()
@@ -64,6 +83,13 @@ bool AddedDrivers::Has(cl_platform_id platform)
   const std::lock_guard<std::mutex> lock(this->Mutex);
   return std::find(this->Platforms.begin(), this->Platforms.end(), platform) !=
     this->Platforms.end();
+}
+
+std::string AddedDrivers::GetProcessor(cl_device_id device)
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  const auto found = this->Processors.find(device);
+  return found != this->Processors.end() ? found->second : "";
 }
 
 } // namespace deformvolume

@@ -5,6 +5,7 @@
 #include "DriverLibrary.h"
 
 #include <cstddef>
+#include <map>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -24,11 +25,14 @@ public:
   std::vector<cl_platform_id> GetPlatforms();
   std::size_t GetCount(); // of drivers
   bool Has(cl_platform_id platform);
+  /// For which processor kernels are compiled (SetKernelProcessor); empty where the driver chooses.
+  std::string GetProcessor(cl_device_id device);
 
 private:
   std::mutex Mutex;
   std::vector<std::string> Libraries;
   std::vector<cl_platform_id> Platforms;
+  std::map<cl_device_id, std::string> Processors;
 };
 
 } // namespace deformvolume

@@ -28,6 +28,14 @@ DEFORMVOLUME_EXPORT std::vector<std::string> GetDeviceNames();
 /// absolute, where the library cannot be loaded, and where it is no OpenCL driver.
 DEFORMVOLUME_EXPORT void AddDriver(const std::string& path);
 
+/// The folder of a program "ld", with which PoCL links kernels where it is a driver of AddDriver(),
+/// and the "ld" on the PATH does not work: without one it would end the process. To be called
+/// before a device is used. The environment variable DEFORMVOLUME_LINKER changes that: "system"
+/// never takes the program, "own" always does for such drivers. While kernels are compiled, the
+/// folder is in the environment variable COMPILER_PATH of this process. Throws Error where the path
+/// is not absolute.
+DEFORMVOLUME_EXPORT void SetKernelLinker(const std::string& folder);
+
 /// What a driver says of a device.
 struct DeviceSummary
 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "KernelLinker.h"
 
+#include "Device.h"
 #include "DeviceRank.h" // for ToLower
 #include "Error.h"
 
@@ -9,6 +10,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <mutex>
 #include <system_error>
@@ -131,36 +133,158 @@ std::string Run(const std::vector<std::string>& command)
   return words.empty() ? "it fails without a word" : words.substr(words.rfind('\n') + 1);
 }
 
+/// Links nothing with a program: what is wrong, or nothing.
+std::string Try(const std::string& program)
+{
+  std::vector<std::string> command{ program, "-shared", "-o", "/dev/null" };
+  for (const std::string& path : FindLibraries())
+  {
+    command.push_back(path);
+  }
+  for (const char* const library :
+    { "-lm", "-lgcc", "--as-needed", "-lgcc_s", "--no-as-needed", "-lc" })
+  {
+    command.emplace_back(library);
+  }
+  return Run(command);
+}
+
+/// The program of SetKernelLinker(), and the environment variable that leads to it.
+struct OwnLinker
+{
+  std::mutex Mutex;
+  std::string Folder;
+  bool IsTried = false;
+  std::string Problem;
+  int Users = 0;
+  char* Entry = nullptr;  // of the environment, which it belongs to
+  char* Before = nullptr; // the entry of the user; null where there was none
+};
+
+OwnLinker& GetOwnLinker()
+{
+  static auto* const linker = new OwnLinker; // lives as long as the process
+  return *linker;
+}
+
+const char* const PathVariable = "COMPILER_PATH";
+
+char* MakeEntry(const std::string& value)
+{
+  return strdup((std::string(PathVariable) + "=" + value).c_str());
+}
+
 } // namespace
 
-void CheckKernelLinker(const std::string& version)
+void SetKernelLinker(const std::string& folder)
+{
+  if (folder.empty() || folder[0] != '/')
+  {
+    throw Error("The folder of a linker has to be absolute, and \"" + folder + "\" is not.");
+  }
+  OwnLinker& own = GetOwnLinker();
+  const std::lock_guard<std::mutex> lock(own.Mutex);
+  if (!own.IsTried) // kernels may have been linked with it
+  {
+    own.Folder = folder;
+  }
+}
+
+bool CheckKernelLinker(const std::string& version, bool isAdded)
 {
   if (!RunsLinker(version))
   {
-    return;
+    return false;
+  }
+  const char* const variable = std::getenv("DEFORMVOLUME_LINKER");
+  const std::string choice = variable ? variable : "";
+  if (!choice.empty() && choice != "auto" && choice != "system" && choice != "own")
+  {
+    throw Error("The environment variable DEFORMVOLUME_LINKER is \"" + choice +
+      "\". Set it to auto, system or own.");
   }
   static std::once_flag isChecked;
   static auto* const problem = new std::string;
-  std::call_once(isChecked,
-    []
-    {
-      std::vector<std::string> command{ "ld", "-shared", "-o", "/dev/null" };
-      for (const std::string& path : FindLibraries())
-      {
-        command.push_back(path);
-      }
-      for (const char* const library :
-        { "-lm", "-lgcc", "--as-needed", "-lgcc_s", "--no-as-needed", "-lc" })
-      {
-        command.emplace_back(library);
-      }
-      *problem = Run(command);
-    });
-  if (!problem->empty())
+  std::call_once(isChecked, [] { *problem = Try("ld"); });
+  std::string words = *problem;
+  if (words.empty() && choice != "own")
   {
-    throw Error("The kernels cannot be compiled: PoCL needs the linker \"ld\" on the PATH, with "
-                "the libraries of a C compiler, but: " +
-      *problem + ". Install a C compiler (on Debian the package gcc), or PoCL 7.2 or later.");
+    return false;
+  }
+  OwnLinker& own = GetOwnLinker();
+  const std::lock_guard<std::mutex> lock(own.Mutex);
+  if (isAdded && choice != "system" && !own.Folder.empty())
+  {
+    if (!own.IsTried)
+    {
+      own.IsTried = true;
+      own.Problem = Try(own.Folder + "/ld");
+    }
+    if (own.Problem.empty())
+    {
+      return true;
+    }
+    words += (words.empty() ? "" : "; and of \"" + own.Folder + "/ld\": ") + own.Problem;
+  }
+  else if (words.empty())
+  {
+    return false;
+  }
+  throw Error("The kernels cannot be compiled: PoCL needs the linker \"ld\" on the PATH, with "
+              "the libraries of a C compiler, but: " +
+    words + ". Install a C compiler (on Debian the package gcc), or PoCL 7.2 or later.");
+}
+
+KernelLinkerScope::KernelLinkerScope(bool isUsed)
+  : IsUsed(isUsed)
+{
+  if (!isUsed)
+  {
+    return;
+  }
+  OwnLinker& own = GetOwnLinker();
+  const std::lock_guard<std::mutex> lock(own.Mutex);
+  if (own.Users++ > 0)
+  {
+    return;
+  }
+  if (!own.Entry)
+  {
+    const char* const before = std::getenv(PathVariable);
+    own.Before = before ? MakeEntry(before) : nullptr;
+    own.Entry = MakeEntry(own.Folder + (before ? ":" + std::string(before) : ""));
+    putenv(own.Entry);
+  }
+  else if (own.Before)
+  {
+    putenv(own.Entry); // in place of that of the user
+  }
+  else
+  {
+    __atomic_store_n(own.Entry, PathVariable[0], __ATOMIC_SEQ_CST);
+  }
+}
+
+KernelLinkerScope::~KernelLinkerScope()
+{
+  if (!this->IsUsed)
+  {
+    return;
+  }
+  OwnLinker& own = GetOwnLinker();
+  const std::lock_guard<std::mutex> lock(own.Mutex);
+  if (--own.Users > 0)
+  {
+    return;
+  }
+  if (own.Before)
+  {
+    putenv(own.Before);
+  }
+  else
+  {
+    // A variable of another name. Without its entry all entries behind it would move.
+    __atomic_store_n(own.Entry, '_', __ATOMIC_SEQ_CST);
   }
 }
 

@@ -260,7 +260,8 @@ OpenCLContext::OpenCLContext(const OpenCLDevice& device)
     if (device.IsProcessor) // others of PoCL's devices do not link
     {
       const cl::Platform platform(device.Device.getInfo<CL_DEVICE_PLATFORM>());
-      CheckKernelLinker(platform.getInfo<CL_PLATFORM_VERSION>());
+      this->OwnLinker = CheckKernelLinker(
+        platform.getInfo<CL_PLATFORM_VERSION>(), AddedDrivers::Get().Has(platform()));
     }
   }
   const FloatingPointTrapGuard guard;
@@ -321,9 +322,15 @@ OpenCLContext::BuiltProgram& OpenCLContext::FindProgram(
 cl::Program OpenCLContext::Build(const std::string& source, const std::string& options) const
 {
   cl::Program program(this->Context, source);
+  // The driver does not know of this processor: its cache would give what was compiled for another.
+  std::string processor = AddedDrivers::Get().GetProcessor(this->Device.Device());
+  if (!processor.empty())
+  {
+    processor = " -DDEFORMVOLUME_PROCESSOR=" + processor;
+  }
   try
   {
-    program.build({ this->Device.Device }, options.c_str());
+    program.build({ this->Device.Device }, (options + processor).c_str());
   }
   catch (const cl::BuildError&)
   {
@@ -334,12 +341,19 @@ cl::Program OpenCLContext::Build(const std::string& source, const std::string& o
   return program;
 }
 
-bool OpenCLContext::IsNew(const cl::Kernel& kernel, const cl::NDRange& group)
+bool OpenCLContext::IsNew(
+  const cl::Kernel& kernel, const cl::NDRange& items, const cl::NDRange& group)
 {
   std::string name = kernel.getInfo<CL_KERNEL_FUNCTION_NAME>();
   for (cl::size_type axis = 0; axis < group.dimensions(); ++axis)
   {
     name += " " + std::to_string(group[axis]);
+  }
+  // PoCL compiles kernels for small numbers of work-groups once more, too. What it then takes
+  // hardly counts, but the linker has to be there.
+  for (cl::size_type axis = 0; this->OwnLinker && axis < items.dimensions(); ++axis)
+  {
+    name += " of " + std::to_string(items[axis]);
   }
   const std::lock_guard<std::mutex> lock(this->Mutex);
   return this->Launched.insert({ kernel.getInfo<CL_KERNEL_PROGRAM>()(), name }).second;
@@ -349,12 +363,13 @@ cl::Event OpenCLContext::Launch(const cl::CommandQueue& queue, const cl::Kernel&
   const cl::NDRange& items, const cl::NDRange& group)
 {
   cl::Event event;
-  if (!this->IsNew(kernel, group))
+  if (!this->IsNew(kernel, items, group))
   {
     queue.enqueueNDRangeKernel(kernel, cl::NullRange, items, group, nullptr, &event);
     return event;
   }
   queue.finish(); // what is waited for is this launch alone
+  const KernelLinkerScope linker(this->OwnLinker);
   CompilationWatch::Compilation compilation;
   queue.enqueueNDRangeKernel(kernel, cl::NullRange, items, group, nullptr, &event);
   event.wait();
@@ -365,9 +380,10 @@ cl::Event OpenCLContext::Launch(const cl::CommandQueue& queue, const cl::Kernel&
 void OpenCLContext::Prepare(
   const cl::CommandQueue& queue, const cl::Kernel& kernel, const cl::NDRange& group)
 {
-  if (this->IsNew(kernel, group))
+  if (this->IsNew(kernel, group, group))
   {
     queue.finish();
+    const KernelLinkerScope linker(this->OwnLinker);
     const CompilationWatch::Compilation compilation;
     queue.enqueueNDRangeKernel(kernel, cl::NullRange, group, group);
     queue.finish();

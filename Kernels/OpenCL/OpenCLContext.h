@@ -54,6 +54,8 @@ public:
 
   const OpenCLDevice& GetDevice() const { return this->Device; }
   const cl::Context& GetContext() const { return this->Context; }
+  /// Whether what may compile kernels has to be done, and to end, within a KernelLinkerScope.
+  bool UsesOwnLinker() const { return this->OwnLinker; }
   bool HasExtension(const std::string& name) const;
   cl_uint GetNumberOfUnits() const { return this->NumberOfUnits; }
   /// Whether a buffer over memory of the host (CL_MEM_USE_HOST_PTR) is that memory, wherever it
@@ -90,10 +92,11 @@ private:
   BuiltProgram& FindProgram(const ProgramText& source, const std::string& options);
   cl::Program Build(const std::string& source, const std::string& options) const;
   /// Whether it is the first time that this is asked for such launches.
-  bool IsNew(const cl::Kernel& kernel, const cl::NDRange& group);
+  bool IsNew(const cl::Kernel& kernel, const cl::NDRange& items, const cl::NDRange& group);
 
   OpenCLDevice Device;
   cl::Context Context;
+  bool OwnLinker = false;
   std::string Extensions;
   cl_uint NumberOfUnits;
   std::mutex Mutex;

@@ -2,6 +2,7 @@
 #include "OutputRange.h"
 
 #include "ArrayText.h"
+#include "KernelLinker.h"
 #include "KernelSources.h"
 #include "KernelText.h"
 
@@ -73,6 +74,7 @@ DeviceOutput::Range Find(const cl::CommandQueue& queue, const cl::Buffer& buffer
   kernel.setArg(5, found);
   kernel.setArg(6, counter);
   kernel.setArg(7, cl::Local(2 * group * sizeof(T)));
+  const KernelLinkerScope linker(context->UsesOwnLinker());
   // Not by OpenCLContext::Launch: queues that read take no times.
   queue.enqueueNDRangeKernel(
     kernel, cl::NullRange, cl::NDRange(groups * group), cl::NDRange(group));

@@ -11,6 +11,11 @@ DEFORMVOLUME_DRIVER, an environment variable that is read when devices are first
     pypi            the one from PyPI is added in any case
     /path/lib.so    this driver is added in any case, and the one from PyPI is not
 
+PoCL of the versions before 7.2 runs the program ld to link what it has compiled. Where that does not work, as
+without a C compiler, the program linker/ld of this package does it, for the driver that was added only.
+DEFORMVOLUME_LINKER changes that: system never takes it, own always does. While kernels are compiled, and
+at no other time, its folder is in the environment variable COMPILER_PATH of the process.
+
 OCL_ICD_VENDORS and OCL_ICD_FILENAMES say, as for other programs, which drivers the system lists. Whoever
 sets one of them has chosen: unless DEFORMVOLUME_DRIVER says otherwise, no driver is added then.
 """
@@ -75,6 +80,10 @@ def _list() -> List[Device]:
 
 
 def _add(path: str) -> None:
+    # PoCL needs a linker, and ends the process where it finds none that works.
+    folder = os.path.join(os.path.dirname(os.path.abspath(__file__)), "linker")
+    if os.path.isfile(os.path.join(folder, "ld")):
+        _native.check(_native.library.dv_set_linker(os.fsencode(folder)))
     _native.check(_native.library.dv_add_driver(os.fsencode(path)))
 
 

@@ -20,6 +20,7 @@ _SIGNATURES = {
     "dv_version": (ctypes.c_char_p, []),
     "dv_last_error": (ctypes.c_char_p, []),
     "dv_add_driver": (ctypes.c_int32, [ctypes.c_char_p]),
+    "dv_set_linker": (ctypes.c_int32, [ctypes.c_char_p]),
     "dv_device_count": (ctypes.c_int32, []),
     "dv_device_name": (ctypes.c_char_p, [ctypes.c_int32]),
     "dv_device_flags": (ctypes.c_int32, [ctypes.c_int32]),

@@ -49,6 +49,9 @@ int main(int argc, char* argv[])
   RefuseDriver("/", "is no OpenCL driver");
   RefuseDriver("/etc/passwd", "invalid ELF header");
 
+  CHECK(dv_set_linker(NULL) == DV_ERROR && strstr(dv_last_error(), "null") != NULL);
+  CHECK(dv_set_linker("linker") == DV_ERROR && strstr(dv_last_error(), "absolute") != NULL);
+
   count = dv_device_count();
   CHECK(has_none ? count == 0 : count > 0);
   CHECK(dv_device_name(-1) == NULL);

@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A volume is deformed, with the driver from PyPI."""
+
+import unittest
+
+import numpy
+
+from interface import deform
+
+
+class Deform(unittest.TestCase):
+    def test_at_rest(self):
+        volume, output, coverage = deform()
+        numpy.testing.assert_array_equal(output, volume)
+        self.assertTrue((coverage == 1).all())
+
+    # The arrays have the axes z, y, x.
+    def test_whole_voxels(self):
+        volume, output, coverage = deform(shift=(3.0, -2.0, 1.0))
+        numpy.testing.assert_array_equal(output[1:, :-2, 3:], volume[:-1, 2:, :-3])
+        covered = numpy.zeros(volume.shape, numpy.int8)
+        covered[1:, :-2, 3:] = 1
+        numpy.testing.assert_array_equal(coverage, covered)
+        self.assertTrue((output[covered == 0] == -1).all())
+
+
+if __name__ == "__main__":
+    unittest.main()

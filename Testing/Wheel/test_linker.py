@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""PoCL links what it compiles, where no linker works: with that of the package, and only with it, and no
+failure ends the process. Each case in a process of its own, with an empty kernel cache."""
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+FOLDER = os.path.dirname(os.path.abspath(__file__))
+
+PROGRAM = """
+import ctypes, sys
+sys.path.insert(0, {folder!r})
+import numpy
+getenv = ctypes.CDLL(None).getenv
+getenv.restype = ctypes.c_char_p
+before = getenv(b"COMPILER_PATH")
+import deformvolume
+from interface import deform
+try:
+    volume, output, coverage = deform()
+except deformvolume.Error as error:
+    print("Error:", error)
+else:
+    numpy.testing.assert_array_equal(output, volume)
+    print("deformed")
+assert getenv(b"COMPILER_PATH") == before
+"""
+
+
+class Linker(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.mkdtemp()
+
+    def tearDown(self):
+        shutil.rmtree(self.folder)
+
+    def write_program(self, name, text):
+        path = os.path.join(self.folder, name)
+        with open(path, "w") as file:
+            file.write(text)
+        os.chmod(path, 0o755)
+
+    def run_program(self, **variables):
+        environment = dict(os.environ, POCL_CACHE_DIR=os.path.join(self.folder, "cache"))
+        environment["DEFORMVOLUME_DRIVER"] = "pypi"
+        environment.update(variables)
+        done = subprocess.run(
+            [sys.executable, "-c", PROGRAM.format(folder=FOLDER)],
+            env=environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            universal_newlines=True,
+            check=False,
+        )
+        self.assertEqual(done.returncode, 0, done.stdout)
+        return done.stdout
+
+    def test_unknown_word(self):
+        self.assertRegex(
+            self.run_program(DEFORMVOLUME_LINKER="ld"), 'Error: .*DEFORMVOLUME_LINKER is "ld"'
+        )
+
+    def test_no_linker(self):
+        output = self.run_program(DEFORMVOLUME_LINKER="system", PATH=self.folder)
+        self.assertRegex(output, 'Error: The kernels cannot be compiled: .*"ld".*cannot be run')
+
+    # It is there, but it does not link.
+    def test_linker_that_fails(self):
+        self.write_program("ld", "#!/bin/sh\necho ld: cannot find -lgcc >&2\nexit 1\n")
+        output = self.run_program(DEFORMVOLUME_LINKER="system", PATH=self.folder)
+        self.assertRegex(output, "Error: The kernels cannot be compiled: .*cannot find -lgcc")
+
+    def test_own_linker(self):
+        self.assertEqual(self.run_program(PATH=self.folder), "deformed\n")
+        # What was linked serves later processes.
+        self.assertEqual(self.run_program(PATH=self.folder), "deformed\n")
+
+    def test_own_linker_in_place_of_one_that_fails(self):
+        self.write_program("ld", "#!/bin/sh\nexit 1\n")
+        self.assertEqual(self.run_program(PATH=self.folder), "deformed\n")
+
+    def test_own_linker_with_a_path_of_the_user(self):
+        self.assertEqual(
+            self.run_program(PATH=self.folder, COMPILER_PATH="/nowhere"), "deformed\n"
+        )
+
+    def test_own_linker_on_demand(self):
+        self.assertEqual(self.run_program(DEFORMVOLUME_LINKER="own"), "deformed\n")
+
+
+if __name__ == "__main__":
+    unittest.main()
