@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""deformvolume.sitk beside SimpleITK.Resample. Run with the Python of "Testing/packages.sh readers":
+TestSimpleITK.py FOLDER, where FOLDER has the package."""
+import sys
+
+import numpy as np
+import SimpleITK as sitk
+
+sys.path.insert(0, sys.argv[1])
+
+import deformvolume as dv  # noqa: E402
+import deformvolume.sitk as ds  # noqa: E402
+
+random = np.random.default_rng(1)
+TURNED = (0.8, -0.6, 0, 0.6, 0.8, 0, 0, 0, 1)
+
+
+def make_image(values, origin, spacing, direction=TURNED, is_vector=False):
+    image = sitk.GetImageFromArray(values, isVector=is_vector)
+    image.SetOrigin(origin)
+    image.SetSpacing(spacing)
+    image.SetDirection(direction)
+    return image
+
+
+def expect(kind, text, call):
+    try:
+        call()
+    except kind as error:
+        assert text in str(error), error
+        return
+    raise AssertionError(f'nothing was raised that says "{text}"')
+
+
+image = make_image(random.normal(size=(20, 25, 30)).astype("f4"), (-5, 7, 3), (1.5, 2.0, 2.5))
+# It reaches beyond the image on all sides.
+field = make_image(0.7 * random.normal(size=(8, 9, 10, 3)), (-20, -10, -20), (12.0, 13.0, 14.0), is_vector=True)
+fixed = make_image(np.zeros((22, 27, 18), "u1"), (-30, 56, 7), (1.9, 2.1, 1.8), (0, 1, 0, -1, 0, 0, 0, 0, 1))
+
+expect(ValueError, "2 dimensions", lambda: ds.deform(sitk.Image(4, 4, sitk.sitkUInt8), field))
+expect(ValueError, "three components", lambda: ds.deform(image, image))
+expect(TypeError, "Give a Mesh or a Field", lambda: ds.deform(image, "field"))
+
+for reference in (None, fixed):
+    for interpolation, wanted in (("linear", sitk.sitkLinear), ("nearest", sitk.sitkNearestNeighbor)):
+        transform = sitk.DisplacementFieldTransform(sitk.Image(field))
+        theirs = sitk.Resample(image, reference or image, transform, wanted, -9.0)
+        ours = ds.deform(image, field, reference=reference, interpolation=interpolation, background=-9.0)
+        assert ours.GetSize() == theirs.GetSize() and ours.GetPixelID() == theirs.GetPixelID()
+        for get in ("GetOrigin", "GetSpacing", "GetDirection"):
+            assert np.allclose(getattr(ours, get)(), getattr(theirs, get)(), rtol=0, atol=1e-12), get
+        a, b = sitk.GetArrayFromImage(ours), sitk.GetArrayFromImage(theirs)
+        # SimpleITK also takes points up to half a voxel outside the image.
+        inside = (a != -9.0) & (b != -9.0)
+        assert inside.sum() > 1000 and not ((a != -9.0) & (b == -9.0)).any()
+        error = abs(a - b)[inside]
+        print(interpolation, "reference" if reference else "image", inside.sum(), error.max(), (error > 1e-4).mean())
+        if interpolation == "linear":
+            assert error.max() < 1e-4
+        else:
+            # Where two voxels are equally near.
+            assert (error > 0).mean() < 1e-3
+
+# Forward: a shift moves the image.
+shift = np.tile([3.0, 0.0, 0.0], (2, 2, 2, 1))
+box = sitk.GetImageFromArray(np.pad(np.full((4, 4, 4), 200, "u1"), 8))
+moved = ds.deform(box, dv.Field(shift, np.diag([19.0, 19.0, 19.0, 1.0])))
+x = moved.TransformPhysicalPointToIndex((12.0, 10.0, 10.0))
+assert moved[x] == 200 and moved.GetPixelID() == sitk.sitkUInt8
+colors = sitk.Compose(box, box, box)
+assert ds.deform(colors, dv.Field(shift, np.diag([19.0, 19.0, 19.0, 1.0])))[x] == (200, 200, 200)
+print("all tests passed")
