@@ -235,18 +235,38 @@ class Deformer:
             self._shape = tuple(extent[2 * axis + 1] - extent[2 * axis] + 1 for axis in range(3))
 
     def set_blanked(self, blanked: Optional[numpy.ndarray]) -> None:
-        """Which voxels are no source: True where a voxel is left out; one value for each voxel, x varying fastest.
-        None: none is."""
-        if blanked is not None:
-            blanked = numpy.ascontiguousarray(blanked, dtype=numpy.uint8).reshape(-1)
-            if self._shape is None or blanked.size != numpy.prod(self._shape, dtype=numpy.int64):
-                raise ValueError(
-                    f"There are {blanked.size} blanked voxels, but the volume has the shape {self._shape}."
-                )
+        """Which voxels are no source: True where a voxel is left out; axes x, y, z. None: none is."""
+        self.set_masks(blanked=None if blanked is None else _arrays.image(blanked, "The mask of blanked voxels"))
+
+    def set_masks(self, *, blanked=None, active=None, boundary=None, cut=None, cut_distances=None) -> None:
+        """Masks with the axes z, y, x, of voxels or of cells of eight voxels: which voxels are left out; which of the
+        five tetrahedra of each cell are active (bits); signed distances to the boundary of what has been carved out;
+        which tetrahedra a smooth cut crosses (bits), and signed distances from its sheet. None: there is none."""
+        voxels = self._shape or (0, 0, 0)
+        cells = tuple(max(0, number - 1) for number in voxels)
+
+        def take(array, shape, dtype, what):
+            if array is None:
+                return None
+            array = numpy.ascontiguousarray(array, dtype=dtype)
+            if array.shape != shape[::-1]:
+                raise ValueError(f"The mask of {what} has the shape {array.shape[::-1]}. It must have {shape}.")
+            return array
+
+        masks = (
+            take(blanked, voxels, numpy.uint8, "blanked voxels"),
+            take(active, cells, numpy.uint8, "active tetrahedra"),
+            take(boundary, voxels, numpy.float32, "boundary distances"),
+            take(cut, cells, numpy.uint8, "cut tetrahedra"),
+            take(cut_distances, voxels, numpy.float32, "cut distances"),
+        )
+        pointers = [None if mask is None else _structs.address(mask) for mask in masks]
         with self._lock:
-            pointer = None if blanked is None else blanked.ctypes.data_as(ctypes.POINTER(ctypes.c_uint8))
-            self._call("dv_set_blanked", pointer)
-            self._borrowed["blanked"] = blanked
+            self._call("dv_set_blanked", pointers[0])
+            self._call("dv_set_active_tetrahedra", pointers[1])
+            self._call("dv_set_boundary_distances", pointers[2])
+            self._call("dv_set_smooth_cut", pointers[3], pointers[4])
+            self._borrowed["masks"] = masks
 
     def set_deformation(self, deformation: Union[Mesh, Field]) -> None:
         """The mesh or the field that deforms the volume, in place of the one before."""

@@ -51,6 +51,7 @@ class Mesh(_Structure):
         ("connectivity", c_void_p),
         ("types", c_void_p),
         ("offsets", c_void_p),
+        ("degrees", c_void_p),
     ]
 
 
@@ -115,7 +116,10 @@ _native.declare(
         "dv_set_device": (_status, [_deformer, c_char_p]),
         "dv_set_volume": (_status, [_deformer, POINTER(Grid)]),
         "dv_set_arrays": (_status, [_deformer, c_int32, POINTER(Array)]),
-        "dv_set_blanked": (_status, [_deformer, POINTER(c_uint8)]),
+        "dv_set_blanked": (_status, [_deformer, c_void_p]),
+        "dv_set_active_tetrahedra": (_status, [_deformer, c_void_p]),
+        "dv_set_boundary_distances": (_status, [_deformer, c_void_p]),
+        "dv_set_smooth_cut": (_status, [_deformer, c_void_p, c_void_p]),
         "dv_set_mesh": (_status, [_deformer, POINTER(Mesh)]),
         "dv_set_displacements": (_status, [_deformer, c_int32, c_int64, c_void_p]),
         "dv_set_field": (_status, [_deformer, POINTER(Field)]),

@@ -17,14 +17,9 @@ from . import _deformer, _native
 _OUTSIDE = ("discard", "extrapolate", "keep")
 _INTERPOLATION = ("linear", "cubic", "nearest")
 _BOUNDS = ("deformed", "volume")
-_TETRAHEDRON = 10
+_ALL_TETRAHEDRA = 31
+_HIDDEN_BY_EDIT = 128  # of vtkVolumeEditAlgorithm::BlankCells
 _NO_SOURCE = vtkDataSetAttributes.DUPLICATEPOINT | vtkDataSetAttributes.HIDDENPOINT
-_EDITS = (
-    ("cell", "ActiveTetrahedra"),
-    ("point", "BoundaryDistance"),
-    ("cell", "CutTetrahedra"),
-    ("point", "CutDistance"),
-)
 
 
 def _direction(image):
@@ -50,7 +45,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
     """Deforms a volume by a tetrahedral mesh or a displacement field.
 
     Ports:
-        0: vtkImageData, the volume.
+        0: vtkImageData, the volume. Ghost points, and what vtkCutVolume and vtkCarveVolume have left out, are left out.
         1: vtkUnstructuredGrid with displacements of its points; or vtkImageData with vectors, a displacement field.
             SetInputArrayToProcess(0, 1, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, name) chooses the array of three
             components, in world units. By default it is the active vectors, or else the only such array.
@@ -263,24 +258,20 @@ class DeformVolume(VTKPythonAlgorithmBase):
     def _prepare_volume(self, image):
         if image is None:
             raise ValueError("There is no volume on port 0.")
-        for kind, name in _EDITS:
-            data = image.GetCellData() if kind == "cell" else image.GetPointData()
-            if data.HasArray(name):
-                raise _native.Error(
-                    f"The volume has the {kind} array {name}, an edit that DeformVolume of the Python package does not "
-                    "know. Use the C++ class vtkDeformVolumeFilter, or remove the array."
-                )
         data = image.GetPointData()
         arrays = [data.GetArray(number) for number in range(data.GetNumberOfArrays())]
-        # Ghosts, and what is neither numbers nor a vector a voxel, are not resampled.
-        arrays = [array for array in arrays if array is not None and array.GetName() != "vtkGhostType"]
+        # Ghosts and edits say what there is of the volume; they are not resampled.
+        masks = ("vtkGhostType", "BoundaryDistance", "CutDistance")
+        arrays = [array for array in arrays if array is not None and array.GetName() not in masks]
         for number, array in enumerate(arrays):
             if any(other.GetName() == array.GetName() for other in arrays[:number]):
                 raise ValueError(f'Two arrays of the volume are named "{array.GetName()}". Rename one of them.')
-        ghosts = data.GetArray("vtkGhostType")
+        edits = [data.GetArray(name) for name in masks]
+        cells = image.GetCellData()
+        edits += [cells.GetArray(name) for name in ("ActiveTetrahedra", "CutTetrahedra", "vtkGhostType")]
         labels = [array.GetName() in self._categorical for array in arrays]
         background = self._settings["BackgroundValue"]
-        if not self._changed("volume", _stamp(image, *arrays, ghosts), tuple(labels), background):
+        if not self._changed("volume", _stamp(image, *arrays, *edits), tuple(labels), background):
             return
         self._stamps.pop("deformation", None)
         self._names = [array.GetName() for array in arrays]
@@ -288,7 +279,29 @@ class DeformVolume(VTKPythonAlgorithmBase):
         self._deformer.set_volume_grid(
             _grid_of(image), [numpy.ascontiguousarray(_view(array, shape)) for array in arrays], labels, background
         )
-        self._deformer.set_blanked(None if ghosts is None else (vtk_to_numpy(ghosts) & _NO_SOURCE) != 0)
+        self._prepare_masks(shape, *edits)
+
+    def _prepare_masks(self, shape, ghosts, boundary, cut_distances, active, cut, cell_ghosts):
+        cells = tuple(number - 1 for number in shape)
+
+        def view(array, over):
+            return None if array is None else _view(array, over)
+
+        if cell_ghosts is not None:
+            # Hidden cells are off, but for those that only an edit hides, which has a bit of its own.
+            both = vtkDataSetAttributes.HIDDENCELL | _HIDDEN_BY_EDIT
+            hidden = (_view(cell_ghosts, cells) & both) == vtkDataSetAttributes.HIDDENCELL
+            tetrahedra = numpy.full(cells, _ALL_TETRAHEDRA, numpy.uint8) if active is None else _view(active, cells)
+            tetrahedra = numpy.where(hidden, 0, tetrahedra)
+        else:
+            tetrahedra = view(active, cells)
+        self._deformer.set_masks(
+            blanked=None if ghosts is None else (_view(ghosts, shape) & _NO_SOURCE) != 0,
+            active=tetrahedra,
+            boundary=view(boundary, shape),
+            cut=view(cut, cells),
+            cut_distances=view(cut_distances, shape),
+        )
 
     def _find_vectors(self, data):
         info = self.GetInputArrayInformation(0)

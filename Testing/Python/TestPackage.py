@@ -20,6 +20,7 @@ from deformvolume.vtk import DeformVolume  # noqa: E402
 import deformvolume_vtk  # noqa: E402
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy  # noqa: E402
 from vtkmodules.vtkCommonDataModel import vtkImageData, vtkUnstructuredGrid  # noqa: E402
+from vtkmodules.vtkFiltersSources import vtkPlaneSource, vtkSphereSource  # noqa: E402
 
 from lattice import make_mesh  # noqa: E402
 
@@ -184,6 +185,45 @@ def test_pipelines():
     compare("field", image, make_field(image, 6))
     compare("field, keep", image, make_field(image, 6), OutsideMode=2, FadeDistance=8.0)
     compare("inverse", image, make_field(image, 6), reference=make_reference(), FieldIsInverse=True)
+    body = deformvolume_vtk.vtkFiniteElementDeformation()
+    fixed = numpy_to_vtk((vtk_to_numpy(mesh.GetPoints().GetData())[:, 2] < 0).astype(np.uint8), deep=True)
+    fixed.SetName("Fixed")
+    mesh.GetPointData().AddArray(fixed)
+    body.SetInputData(mesh)
+    body.SetGravity(0.5, 0.0, 0.0)
+    body.Update()
+    compare("quadratic tetrahedra", image, body.GetOutput())
+
+    # What cuts and carvings leave out.
+    tool = vtkSphereSource()
+    tool.SetRadius(9.0)
+    tool.SetCenter(*image.GetCenter())
+    for smooth in (False, True):
+        carve = deformvolume_vtk.vtkCarveVolume()
+        carve.SetInputData(image)
+        carve.SetSurfaceConnection(tool.GetOutputPort())
+        carve.BlankCellsOn()
+        carve.SetSmoothBoundary(smooth)
+        sheet = vtkPlaneSource()
+        sheet.SetOrigin(-100.0, -100.0, image.GetCenter()[2])
+        sheet.SetPoint1(100.0, -100.0, image.GetCenter()[2] + 3)
+        sheet.SetPoint2(-100.0, image.GetCenter()[1], image.GetCenter()[2])
+        cut = deformvolume_vtk.vtkCutVolume()
+        cut.SetInputConnection(carve.GetOutputPort())
+        cut.SetSheetConnection(sheet.GetOutputPort())
+        cut.SetSmoothCut(smooth)
+        cut.Update()
+        edited = cut.GetOutput()
+        assert cut.GetOutput().GetCellData().HasArray("ActiveTetrahedra")
+        compare(f"edits {smooth}", edited, mesh)
+    ghosts = vtkImageData()
+    ghosts.DeepCopy(image)
+    ghosts.AllocatePointGhostArray()
+    ghosts.GetPointGhostArray().SetValue(5000, 2)
+    ghosts.AllocateCellGhostArray()
+    ghosts.GetCellGhostArray().SetValue(7000, 32)
+    compare("ghosts", ghosts, mesh)
+
     # Updates that follow each other.
     both = [DeformVolume(), Filter()]
     for one in both:
@@ -252,6 +292,12 @@ def test_arrays():
     for points, cells in ((deformation.points.astype(float), deformation.cells.astype(np.int32)),):
         again = dv.deform(first, dv.Mesh(points, cells, deformation.displacements.astype(float)), affine)
         assert again.array.tobytes() == result.arrays[0].tobytes()
+    # Other cells: a hexahedron that does not move.
+    corners = np.array([[x, y, z] for z in (0, 1) for y, x in ((0, 0), (0, 1), (1, 1), (1, 0))], float)
+    box = corners * [9.0, 9.0, 9.0]
+    cube = random.normal(size=(10, 10, 10))
+    still = dv.deform(cube, dv.Mesh(box, ([12], [list(range(8))]), np.zeros((8, 3))))
+    assert np.array_equal(still.array, cube)
 
 
 def test_progress_and_warnings():
