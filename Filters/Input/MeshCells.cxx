@@ -19,7 +19,6 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <map>
 #include <utility>
 
 namespace deformvolume
@@ -90,37 +89,23 @@ private:
   double Rounding = std::numeric_limits<double>::epsilon();
 };
 
-// A polyhedron brings its own faces. Its points may be listed in any order, so positions are
-// looked up by id.
 void ReadPolyhedron(vtkUnstructuredGrid* grid, vtkIdType cell, vtkIdType count,
   std::int32_t firstNode, CellReader& reader)
 {
-  PolyhedronFaces faces;
-  bool complete = ReadPolyhedronFaces(grid, cell, faces) && faces.size() >= 4;
-  std::vector<std::int32_t> nodes;
-  CellFaces positionsOfFaces;
-  std::map<vtkIdType, int> positions;
-  for (const std::vector<vtkIdType>& points : faces)
+  PolyhedronFaces read;
+  const bool complete = ReadPolyhedronFaces(grid, cell, read);
+  CellReader::PolyhedronFaces faces;
+  for (const std::vector<vtkIdType>& points : read)
   {
-    complete &= points.size() >= 3;
-    std::vector<int> face;
+    std::vector<std::int32_t> face;
     for (const vtkIdType point : points)
     {
       CheckCellPoint(point, grid->GetNumberOfPoints(), cell);
-      const auto inserted = positions.emplace(point, static_cast<int>(nodes.size()));
-      if (inserted.second)
-      {
-        nodes.push_back(firstNode + static_cast<std::int32_t>(point));
-      }
-      face.push_back(inserted.first->second);
+      face.push_back(firstNode + static_cast<std::int32_t>(point));
     }
-    positionsOfFaces.push_back(face);
+    faces.push_back(face);
   }
-  if (!complete)
-  {
-    ThrowBadCell(cell, VTK_POLYHEDRON, count, " and incomplete faces");
-  }
-  reader.AddPolyhedron(cell, nodes, positionsOfFaces);
+  reader.AddPolyhedron(cell, count, faces, complete);
 }
 
 // The degrees of Lagrange cells along their axes, one tuple for each cell of the mesh; null where

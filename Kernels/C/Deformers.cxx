@@ -119,6 +119,62 @@ VolumeArray MakeArray(const dv_array& given, std::int32_t number)
   return array;
 }
 
+// Reads the faces of polyhedra, one after the other.
+class FaceStream
+{
+public:
+  explicit FaceStream(const dv_mesh& mesh)
+    : Mesh(mesh)
+    , Left(mesh.faces ? mesh.number_of_face_values : 0)
+    , Next(mesh.faces)
+  {
+  }
+
+  // False where the numbers end before the faces do.
+  bool Read(std::int64_t cell, CellReader::PolyhedronFaces& faces)
+  {
+    std::int64_t numberOfFaces = 0;
+    if (!this->Take(numberOfFaces))
+    {
+      return false;
+    }
+    for (; numberOfFaces > 0; --numberOfFaces)
+    {
+      std::int64_t size = 0;
+      if (!this->Take(size) || size < 0 || size > this->Left)
+      {
+        return false;
+      }
+      std::vector<std::int32_t> face;
+      for (; size > 0; --size)
+      {
+        std::int64_t point = 0;
+        this->Take(point);
+        CheckCellPoint(point, this->Mesh.number_of_points, cell);
+        face.push_back(static_cast<std::int32_t>(point));
+      }
+      faces.push_back(face);
+    }
+    return true;
+  }
+
+private:
+  bool Take(std::int64_t& value)
+  {
+    if (this->Left <= 0)
+    {
+      return false;
+    }
+    --this->Left;
+    value = *this->Next++;
+    return true;
+  }
+
+  const dv_mesh& Mesh;
+  std::int64_t Left;
+  const std::int64_t* Next;
+};
+
 // points: that are there.
 MeshCells ReadCells(const dv_mesh& mesh, const VectorView& points)
 {
@@ -138,6 +194,7 @@ MeshCells ReadCells(const dv_mesh& mesh, const VectorView& points)
     points.AreDoubles ? static_cast<double>(std::numeric_limits<double>::epsilon())
                       : static_cast<double>(std::numeric_limits<float>::epsilon()));
   reader.Reserve(cells);
+  FaceStream faces(mesh);
   std::vector<std::int32_t> nodes;
   for (std::size_t cell = 0; cell < cells; ++cell)
   {
@@ -161,9 +218,10 @@ MeshCells ReadCells(const dv_mesh& mesh, const VectorView& points)
     }
     if (type == cellNumbers::Polyhedron)
     {
-      throw Error("Cell " + std::to_string(cell) +
-        " of the deformation mesh is a polyhedron, whose faces cannot be given here. Divide it "
-        "into other cells.");
+      CellReader::PolyhedronFaces read;
+      const bool areComplete = faces.Read(number, read);
+      reader.AddPolyhedron(number, end - begin, read, areComplete);
+      continue;
     }
     std::array<int, 3> degrees{ { 0, 0, 0 } };
     for (std::size_t axis = 0; axis < 3 && mesh.degrees; ++axis)

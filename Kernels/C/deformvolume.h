@@ -102,6 +102,8 @@ extern "C"
    * been set stays until it is set again, so that a program sets only what changes, and dv_deform()
    * works anew only on what follows from that.
    *
+   * Without a deformation all of the volume stays where it is, which resamples it on another grid.
+   *
    *   dv_create, dv_set_volume, dv_set_arrays, dv_set_mesh, dv_set_displacements,
    *   dv_output_grid, dv_deform, dv_destroy
    *
@@ -211,8 +213,8 @@ extern "C"
   /* A deformation mesh at rest. Types of cells and the order of their points are VTK's: tetrahedra
    * (10), voxels (11), hexahedra (12), wedges (13), pyramids (14), prisms (15, 16), quadratic cells
    * (24 to 27, 29, 31 to 33, 37) and Lagrange cells (71 to 73). All are split into tetrahedra
-   * between their points. Polyhedra (42) and Bezier cells are an error; cells of other types are
-   * ignored, with a warning. */
+   * between their points, and polyhedra (42), where that does not fill them, round a point of their
+   * own. Bezier cells are an error; cells of other types are ignored, with a warning. */
   typedef struct dv_mesh
   {
     size_t struct_size;
@@ -228,6 +230,11 @@ extern "C"
                                connectivity, and where the last ones end */
     const int32_t* degrees; /* null, or three numbers a cell: the degrees of Lagrange cells along
                                their axes, of which others ignore theirs */
+    /* The faces of polyhedra, one polyhedron after the other, in the order of the cells: the number
+     * of its faces, and for each the number of its points, and these in order round it. Null where
+     * there are no polyhedra. */
+    const int64_t* faces;
+    int64_t number_of_face_values; /* all numbers in faces */
   } dv_mesh;
 
   /* The deformation mesh, in place of the field or mesh before. It has no displacements then. */
@@ -293,8 +300,9 @@ extern "C"
   DV_EXPORT int32_t dv_set_output(dv_deformer* deformer, const dv_output* output);
 
   /* The grid of the output with its whole extent, for what has been set: how much memory
-   * dv_deform() needs. grid->struct_size is set by the program. Fails where the volume or the
-   * deformation is missing, and where the deformed volume covers no output voxel. */
+   * dv_deform() needs. grid->struct_size is set by the program. Fails where the volume or
+   * the displacements of a mesh are missing, and where the deformed volume covers no output voxel.
+   */
   DV_EXPORT int32_t dv_output_grid(dv_deformer* deformer, dv_grid* grid);
 
   /* How values are interpolated. */

@@ -84,15 +84,38 @@ std::int32_t CellReader::AddNode(
 }
 
 void CellReader::AddPolyhedron(
-  std::int64_t cell, const std::vector<std::int32_t>& nodes, const CellFaces& faces)
+  std::int64_t cell, std::int64_t count, const PolyhedronFaces& faces, bool areComplete)
 {
+  bool complete = areComplete && faces.size() >= 4;
+  std::vector<std::int32_t> nodes;
+  CellFaces positionsOfFaces;
+  std::map<std::int32_t, int> positions;
+  for (const std::vector<std::int32_t>& points : faces)
+  {
+    complete &= points.size() >= 3;
+    std::vector<int> face;
+    for (const std::int32_t node : points)
+    {
+      const auto inserted = positions.emplace(node, static_cast<int>(nodes.size()));
+      if (inserted.second)
+      {
+        nodes.push_back(node);
+      }
+      face.push_back(inserted.first->second);
+    }
+    positionsOfFaces.push_back(face);
+  }
+  if (!complete)
+  {
+    ThrowBadCell(cell, cellNumbers::Polyhedron, count, " and incomplete faces");
+  }
   std::vector<glm::dvec3> points;
   for (const std::int32_t node : nodes)
   {
     points.push_back(this->GetPosition(node));
   }
   PolyhedronSplit split;
-  if (!SplitPolyhedron(nodes, faces, points, this->Rounding, split))
+  if (!SplitPolyhedron(nodes, positionsOfFaces, points, this->Rounding, split))
   {
     throw Error("Cell " + std::to_string(cell) + " of the deformation mesh is a concave " +
       GetCellName(cellNumbers::Polyhedron) + " with " + std::to_string(nodes.size()) +

@@ -75,9 +75,13 @@ public:
   /// where it has a wrong number of nodes, and where it is a Bezier cell.
   void Add(std::int64_t cell, int type, const std::vector<std::int32_t>& nodes,
     const std::array<int, 3>* degrees);
-  /// faces: by positions in the list of nodes. Throws an Error where it cannot be split.
+  /// The nodes of each face, in order round it.
+  using PolyhedronFaces = std::vector<std::vector<std::int32_t>>;
+  /// A polyhedron, which brings its own faces. count: of its points, for errors. areComplete:
+  /// whether all faces could be read. Throws an Error where some are missing, and where it cannot
+  /// be split.
   void AddPolyhedron(
-    std::int64_t cell, const std::vector<std::int32_t>& nodes, const CellFaces& faces);
+    std::int64_t cell, std::int64_t count, const PolyhedronFaces& faces, bool areComplete);
 
   /// All that has been made. The reader is not used any more then.
   MeshCells Finish();

@@ -82,6 +82,22 @@ int GetStep(const Extent& voxels, const std::array<double, 12>& indexToField,
   return found ? static_cast<int>(step) : 1;
 }
 
+ImageGeometry GetGridAtRest(const ImageGeometry& volume)
+{
+  // A single cell, from one voxel before the first to one past the last: all voxels lie within it,
+  // whatever is rounded.
+  glm::dvec3 before;
+  ImageGeometry geometry = volume;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    before[axis] = volume.PointExtent[2 * axis] - 1.0;
+    geometry.Spacing[axis] *= volume.PointExtent[2 * axis + 1] + 1.0 - before[axis];
+  }
+  geometry.Origin = glm::dvec3(volume.GetIndexToWorld() * glm::dvec4(before, 1.0));
+  geometry.PointExtent = { { 0, 1, 0, 1, 0, 1 } };
+  return geometry;
+}
+
 void SetOutside(const OutsideVoxels& outside, const glm::dvec3& spacing, DisplacementField& field)
 {
   field.Extrapolate = !outside.AreDiscarded();

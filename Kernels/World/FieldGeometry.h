@@ -26,6 +26,10 @@ DEFORMVOLUME_EXPORT std::array<double, 12> GetIndexToField(
 DEFORMVOLUME_EXPORT int GetStep(const Extent& voxels, const std::array<double, 12>& indexToField,
   const std::array<int, 3>& dimensions);
 
+/// A grid of 2 x 2 x 2 points that holds all of a volume: of the field of zeros that stands in for
+/// a deformation where there is none.
+DEFORMVOLUME_EXPORT ImageGeometry GetGridAtRest(const ImageGeometry& volume);
+
 /// Tells a field what becomes of voxels outside it. spacing: of its points, in world units.
 DEFORMVOLUME_EXPORT void SetOutside(
   const OutsideVoxels& outside, const glm::dvec3& spacing, DisplacementField& field);

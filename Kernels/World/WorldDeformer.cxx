@@ -3,6 +3,7 @@
 
 #include "DeformedBounds.h"
 #include "Error.h"
+#include "FieldGeometry.h"
 #include "LookupBounds.h"
 #include "MeshBounds.h"
 #include "OutputExtent.h"
@@ -192,9 +193,11 @@ void WorldDeformer::Internals::UpdateDeformation()
   {
     throw Error("There is no volume. Set one first.");
   }
-  if (this->Deformation == Deformations::None)
+  if (this->Deformation == Deformations::None && this->VolumeAtRest != this->Volume)
   {
-    throw Error("There is no deformation. Set a mesh with displacements, or a field.");
+    static const std::array<float, 24> zeros{};
+    this->Field.Set(GetGridAtRest(*this->Volume), { zeros.data(), false, 8 }, false);
+    this->VolumeAtRest = this->Volume;
   }
   this->ToOutput = GetOutputMap(*this->Volume, this->GetOutputGrid());
   this->CheckReach();

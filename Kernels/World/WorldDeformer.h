@@ -107,8 +107,8 @@ public:
   void SetMasks(const WorldMasks& masks);
 
   ///@{
-  /// A mesh with displacements, or a field: the last one that was set counts. See WorldMesh and
-  /// VectorField.
+  /// A mesh with displacements, or a field: the last one that was set counts. Without one all of
+  /// the volume stays where it is. See WorldMesh and VectorField.
   void SetMesh(const VectorView& points, MeshCells&& cells);
   void SetNodeVectors(const VectorView& vectors);
   void SetField(const ImageGeometry& grid, const VectorView& vectors, bool isInverse);

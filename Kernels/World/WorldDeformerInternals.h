@@ -47,6 +47,8 @@ public:
   WorldMesh Mesh;
   VectorField Field;
   Deformations Deformation = Deformations::None;
+  /// For which the field has stood in for a deformation, where there is none.
+  std::optional<ImageGeometry> VolumeAtRest;
   OutsideVoxels Outside;
   std::optional<ImageGeometry> Reference;
   OutputSettings Settings;

@@ -8,10 +8,12 @@
 #include "vtkCutVolume.h"
 
 #include <vtkAlgorithm.h>
+#include <vtkCell.h>
 #include <vtkCellType.h>
 #include <vtkCellTypeSource.h>
 #include <vtkDataSetAttributes.h>
 #include <vtkDoubleArray.h>
+#include <vtkIdList.h>
 #include <vtkPlaneSource.h>
 #include <vtkPolyData.h>
 #include <vtkSphere.h>
@@ -122,6 +124,7 @@ public:
     std::vector<std::int64_t> offsets{ 0 };
     std::vector<std::int64_t> connectivity;
     std::vector<std::uint8_t> types;
+    std::vector<std::int64_t> faces;
     bool areTetrahedra = true;
     for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
     {
@@ -132,6 +135,12 @@ public:
       offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
       types.push_back(static_cast<std::uint8_t>(grid->GetCellType(cell)));
       areTetrahedra = areTetrahedra && types.back() == VTK_TETRA;
+      if (types.back() == VTK_POLYHEDRON)
+      {
+        vtkNew<vtkIdList> stream;
+        grid->GetFaceStream(cell, stream);
+        faces.insert(faces.end(), stream->begin(), stream->end());
+      }
     }
     dv_mesh mesh = {};
     mesh.struct_size = sizeof(mesh);
@@ -142,6 +151,8 @@ public:
     mesh.connectivity = connectivity.data();
     mesh.types = areTetrahedra ? nullptr : types.data();
     mesh.offsets = areTetrahedra ? nullptr : offsets.data();
+    mesh.faces = faces.data();
+    mesh.number_of_face_values = static_cast<std::int64_t>(faces.size());
     Check(dv_set_mesh(this->Deformer, &mesh));
     this->SetDisplacements(grid);
   }
@@ -557,6 +568,30 @@ void TestExtraAndMasks()
   inC.Compare(deformed);
 }
 
+/// The hexahedra of a mesh as polyhedra.
+vtkSmartPointer<vtkUnstructuredGrid> MakePolyhedra(vtkUnstructuredGrid* hexahedra)
+{
+  auto polyhedra = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  polyhedra->SetPoints(hexahedra->GetPoints());
+  for (vtkIdType cell = 0; cell < hexahedra->GetNumberOfCells(); ++cell)
+  {
+    vtkCell* hexahedron = hexahedra->GetCell(cell);
+    vtkNew<vtkIdList> stream;
+    stream->InsertNextId(hexahedron->GetNumberOfFaces());
+    for (int face = 0; face < hexahedron->GetNumberOfFaces(); ++face)
+    {
+      vtkIdList* ids = hexahedron->GetFace(face)->GetPointIds();
+      stream->InsertNextId(ids->GetNumberOfIds());
+      for (const vtkIdType id : *ids)
+      {
+        stream->InsertNextId(id);
+      }
+    }
+    polyhedra->InsertNextCell(VTK_POLYHEDRON, stream);
+  }
+  return polyhedra;
+}
+
 /// All types of cells that are split. In one mesh: the cells of each type fill the volume.
 void TestCells()
 {
@@ -566,10 +601,10 @@ void TestCells()
   for (const int type : { VTK_TETRA, VTK_HEXAHEDRON, VTK_VOXEL, VTK_WEDGE, VTK_PYRAMID,
          VTK_PENTAGONAL_PRISM, VTK_HEXAGONAL_PRISM, VTK_QUADRATIC_TETRA, VTK_QUADRATIC_HEXAHEDRON,
          VTK_QUADRATIC_WEDGE, VTK_QUADRATIC_PYRAMID, VTK_TRIQUADRATIC_HEXAHEDRON,
-         VTK_LAGRANGE_TETRAHEDRON, VTK_LAGRANGE_HEXAHEDRON, VTK_LAGRANGE_WEDGE })
+         VTK_LAGRANGE_TETRAHEDRON, VTK_LAGRANGE_HEXAHEDRON, VTK_LAGRANGE_WEDGE, VTK_POLYHEDRON })
   {
     vtkNew<vtkCellTypeSource> source;
-    source->SetCellType(type);
+    source->SetCellType(type == VTK_POLYHEDRON ? VTK_HEXAHEDRON : type);
     source->SetCellOrder(3);
     source->SetBlocksDimensions(2, 2, 2);
     source->SetOutputPrecision(vtkAlgorithm::DOUBLE_PRECISION);
@@ -594,6 +629,10 @@ void TestCells()
       points->SetPoint(id, &point.x);
     }
     mesh->SetPoints(points);
+    if (type == VTK_POLYHEDRON)
+    {
+      mesh = MakePolyhedra(mesh);
+    }
     SetDisplacements(mesh, Bend);
     Deformed deformed(volume, mesh);
     InC inC;
@@ -619,6 +658,24 @@ void TestCells()
     inC.SetMesh(mesh);
     inC.Compare(deformed, words);
   }
+}
+
+/// Without a deformation: the volume on other grids.
+void TestAtRest()
+{
+  const auto volume = MakeManyArrays();
+  Deformed deformed;
+  deformed.Filter->SetInputData(volume);
+  InC inC;
+  inC.SetVolume(volume, 0.0);
+  inC.Compare(deformed);
+  const auto reference = MakeReference(false);
+  deformed.Filter->SetReferenceData(reference);
+  inC.SetReference(reference);
+  inC.Compare(deformed);
+  inC.Interpolation = DV_CUBIC;
+  deformed.Filter->SetInterpolation(vtkDeformVolumeFilter::CUBIC_INTERPOLATION);
+  inC.Compare(deformed);
 }
 
 /// Cuts and carvings: along voxels and between them.
@@ -737,6 +794,7 @@ int TestCInterface(int, char*[])
   TestFields();
   TestExtraAndMasks();
   TestCells();
+  TestAtRest();
   TestEdits();
   TestTwoThreads();
   TestIncremental();
