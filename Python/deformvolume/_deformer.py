@@ -291,6 +291,13 @@ class Deformer:
         """A mesh as the library takes it: cells one after the other, and where they begin; types and offsets are None
         where all are tetrahedra."""
         points = _arrays.vectors(points, None, "The points of the mesh")
+        if offsets is not None and (
+            len(offsets) != len(types) + 1
+            or offsets[0] != 0
+            or offsets[-1] != len(connectivity)
+            or (numpy.diff(offsets) < 0).any()
+        ):
+            raise ValueError("The offsets of the cells do not lead through their connectivity.")
         struct = _structs.Mesh(
             number_of_points=len(points),
             points=points.ctypes.data,

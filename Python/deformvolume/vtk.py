@@ -46,7 +46,8 @@ class DeformVolume(VTKPythonAlgorithmBase):
 
     Ports:
         0: vtkImageData, the volume. Ghost points, and what vtkCutVolume and vtkCarveVolume have left out, are left out.
-        1: vtkUnstructuredGrid with displacements of its points; or vtkImageData with vectors, a displacement field.
+        1, optional: vtkUnstructuredGrid with displacements of its points; or vtkImageData with vectors, a displacement
+            field. Without it the output is the volume itself.
             SetInputArrayToProcess(0, 1, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, name) chooses the array of three
             components, in world units. By default it is the active vectors, or else the only such array.
         2, optional: vtkUnstructuredGrid, the mesh at rest. The points of port 1 are then the deformed ones.
@@ -225,7 +226,8 @@ class DeformVolume(VTKPythonAlgorithmBase):
 
     def _prepare(self):
         """Hands to the deformer what has changed."""
-        if self._deformer is None:
+        is_deformed = self._input(1) is not None
+        if self._deformer is None or ("deformation" in self._stamps and not is_deformed):
             self._deformer = _deformer.Deformer(self._settings["Device"])
             self._stamps = {}
         self._prepare_volume(self._input(0))
@@ -331,7 +333,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
 
     def _prepare_deformation(self, data, rest):
         if data is None:
-            raise ValueError("There is no deformation on port 1.")
+            return
         if isinstance(data, vtkImageData):
             self._prepare_field(data, rest)
         elif isinstance(data, vtkUnstructuredGrid):

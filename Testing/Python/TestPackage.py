@@ -96,7 +96,8 @@ def compare(name, image, deformation, rest=None, reference=None, **properties):
     for kind in (DeformVolume, Filter):
         made = kind()
         made.SetInputDataObject(0, image)
-        made.SetDeformationData(deformation)
+        if deformation is not None:
+            made.SetDeformationData(deformation)
         made.AddCategoricalArray("labels")
         made.SetBackgroundValue(-3.0)
         if rest is not None:
@@ -152,6 +153,7 @@ def test_misuse():
         (ValueError, "reference", lambda: dv.deform(volume, mesh, reference=dv.Grid((2, 2, 2), affine), padding=1)),
         (dv.Error, "", lambda: dv.deform(volume, mesh, device="no such device")),
         (AttributeError, "vtkDeformVolumeFilter", lambda: DeformVolume().SetSamplingFactor(2)),
+        (ValueError, "types of cells", lambda: dv.deform(volume, dv.Mesh(mesh.points, ([10, 10], [[0, 1, 2, 3]])))),
         (ValueError, "no volume", lambda: DeformVolume()._prepare()),
     ):
         expect(kind, text, call)
@@ -223,6 +225,8 @@ def test_pipelines():
     ghosts.AllocateCellGhostArray()
     ghosts.GetCellGhostArray().SetValue(7000, 32)
     compare("ghosts", ghosts, mesh)
+    compare("nothing", image, None)
+    compare("nothing, reference", image, None, reference=make_reference())
 
     # Updates that follow each other.
     both = [DeformVolume(), Filter()]
