@@ -24,6 +24,8 @@ print(os.path.join(os.path.dirname(ziglang.__file__), "zig"))')
 export DEFORMVOLUME_ZIG
 export DEFORMVOLUME_ZIG_PREFIX=$folder/prefix/usr
 export ZIG_GLOBAL_CACHE_DIR=$folder/zig-cache
+# For ccache a compiler that has been installed again is the same.
+export CCACHE_COMPILERCHECK="string:$wanted"
 rm -rf "$folder/prefix"
 mkdir -p "$folder/prefix"
 dpkg -L libglm-dev libeigen3-dev opencl-c-headers opencl-clhpp-headers | sort -u |

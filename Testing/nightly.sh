@@ -3,8 +3,8 @@
 # What takes too long for each change: all tests of the VTK classes against ParaView's VTK and with
 # the sanitizers, all tests with Clang and with static libraries, the quick tests without optimization
 # and with the thread sanitizer, those with Oclgrind that take minutes, edits by cell as on a graphics
-# card, edits and random pipelines with new seeds, all mutations, and Examples/run.sh and
-# Testing/run.sh --all on other Debian systems. Takes hours; logs are in build.
+# card, edits and random pipelines with new seeds, all mutations, the wheel of the Python package with
+# several versions of Python and VTK, and Examples/run.sh and Testing/run.sh --all on other Debian systems. Takes hours; logs are in build.
 #
 # Usage: nightly.sh [--seconds SECONDS]
 #   --seconds  how long random pipelines run, 3600 by default
@@ -56,6 +56,8 @@ run "edits from seed $((seed % 99999))" build/vtk/bin/DeformVolumeEngineTests --
 run "random pipelines from seed $seed" build/vtk/bin/DeformVolumeFuzz --seed "$seed" \
   --seconds "$seconds" --keep-going
 run "mutations" python3 Testing/mutations.py
+run "wheel" bash Testing/Wheel/pristine.sh
+run "wheel with versions of Python and VTK" bash Testing/Wheel/versions.sh
 run "platforms" platforms
 
 if [ ${#failed[@]} -gt 0 ]; then

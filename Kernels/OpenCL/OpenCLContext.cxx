@@ -334,9 +334,16 @@ cl::Program OpenCLContext::Build(const std::string& source, const std::string& o
   }
   catch (const cl::BuildError&)
   {
+    const std::string log = program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(this->Device.Device);
+    if (log.find("unknown target CPU") != std::string::npos)
+    {
+      throw Error("The OpenCL driver of \"" + this->Device.Name +
+        "\" is older than this processor, and compiles nothing for it (" + Trim(log) +
+        "). Install a later version of the driver, such as that of the system (on Debian the "
+        "package pocl-opencl-icd).");
+    }
     throw Error("The OpenCL compiler of \"" + this->Device.Name +
-      "\" refuses the kernels. Its words: " +
-      program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(this->Device.Device));
+      "\" refuses the kernels. Its words: " + log);
   }
   return program;
 }

@@ -100,7 +100,8 @@ def _make(kind, **members):
 def deform(size=16, shift=(0.0, 0.0, 0.0), repeat=1, clock=None):
     """A volume of size^3 random int16 of which a cube of tetrahedra, all of the volume, moves by shift, in
     voxels: the volume, the deformed volume on the same grid (background -1), and its coverage."""
-    library = _native.library
+    # Without the types of arguments that the package has declared for it.
+    library = ctypes.CDLL(_native.library._name)
     _driver.prepare()
     volume = numpy.random.RandomState(1).randint(0, 1000, (size, size, size)).astype(numpy.int16)
     output = numpy.zeros_like(volume)

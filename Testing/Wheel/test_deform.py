@@ -23,6 +23,17 @@ class Deform(unittest.TestCase):
         numpy.testing.assert_array_equal(coverage, covered)
         self.assertTrue((output[covered == 0] == -1).all())
 
+    # Both load drivers, and PyPI's PoCL lies in pyopencl's folder: neither disturbs the other.
+    def test_beside_pyopencl(self):
+        try:
+            from pyopencl import get_platforms
+        except ImportError:
+            self.skipTest("there is no pyopencl")
+        before = [platform.name for platform in get_platforms()]
+        volume, output, _ = deform()
+        numpy.testing.assert_array_equal(output, volume)
+        self.assertEqual([platform.name for platform in get_platforms()], before)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -27,7 +27,7 @@ def run(**variables):
     environment = {
         name: value
         for name, value in os.environ.items()
-        if not name.startswith(("OCL_", "OPENCL_", "DEFORMVOLUME_"))
+        if not name.startswith(("OCL_", "DEFORMVOLUME_"))
     }
     environment.update(variables)
     done = subprocess.run(

@@ -1,0 +1,63 @@
+#!/bin/bash
+# SPDX-License-Identifier: BSD-3-Clause
+# The wheel in build/wheel (Python/wheel.sh), with each version of Python that is here, with several of
+# VTK, and beside pyopencl. Packages come from PyPI into a folder of each, which is removed where its
+# tests pass. Prints a table.
+#
+# Usage: versions.sh [PYTHON]...    (default: all of Python 3.9 and later on the PATH and in ~/.pyenv)
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+folder=$PWD/build/wheel
+wheel=$(ls "$folder"/deformvolume-*.whl)
+
+pythons=("$@")
+if [ ${#pythons[@]} -eq 0 ]; then
+  for minor in 9 10 11 12 13 14; do
+    # The newest one of each.
+    for python in "/usr/bin/python3.$minor" \
+      $(printf '%s\n' ~/.pyenv/versions/3."$minor".*/bin/python | sort -rV); do
+      if [ -x "$python" ]; then
+        pythons+=("$python")
+        break
+      fi
+    done
+  done
+fi
+
+failed=0
+rows=()
+try() # python, further packages: those that cannot be had for a version of Python are reported
+{
+  local python=$1 venv=$folder/versions result
+  rm -rf "$venv"
+  "$python" -m venv "$venv"
+  if ! "$venv/bin/pip" install --quiet --disable-pip-version-check --only-binary=:all: \
+    "$wheel" "${@:2}" >"$venv.log" 2>&1; then
+    result="not to be had"
+  else
+    result=passed
+    local test
+    for test in Testing/Wheel/test_devices.py Testing/Wheel/test_deform.py; do
+      # What this system has for drivers is not looked for.
+      env -u OCL_ICD_VENDORS -u OCL_ICD_FILENAMES OPENCL_VENDOR_PATH=/nowhere \
+        "$venv/bin/python" "$test" >>"$venv.log" 2>&1 || result=failed
+    done
+    if [ $result = failed ]; then
+      failed=1
+      tail -40 "$venv.log"
+    fi
+  fi
+  rows+=("| $("$python" --version) | ${*:2} | $result |")
+  echo "${rows[-1]}"
+  [ "$result" = failed ] || rm -rf "$venv"
+}
+
+for python in "${pythons[@]}"; do
+  for packages in "" "vtk==9.3.1" "vtk==9.6.2" "vtk==9.7.2" "pyopencl"; do
+    # shellcheck disable=SC2086 # none or one
+    try "$python" $packages
+  done
+done
+printf '\n| Python | Besides | Result |\n|---|---|---|\n'
+printf '%s\n' "${rows[@]}"
+exit $failed
