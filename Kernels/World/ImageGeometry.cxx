@@ -184,9 +184,13 @@ void CheckTransform(const ImageGeometry& geometry, const std::string& what)
 
 void CheckVolume(const ImageGeometry& volume)
 {
-  if (GetNumberOfPoints(volume.PointExtent) == 0)
+  // Of each axis: the product of an extent that makes no sense may be no number.
+  for (int axis = 0; axis < 3; ++axis)
   {
-    throw Error("The volume is empty. Connect a vtkImageData with voxels.");
+    if (GetSize(volume.PointExtent, axis) == 0)
+    {
+      throw Error("The volume is empty. Connect a vtkImageData with voxels.");
+    }
   }
   for (int axis = 0; axis < 3; ++axis)
   {

@@ -103,7 +103,6 @@ private:
   VoxelJacobians OfMesh;
   std::uint64_t OfMeshVersion = 0; // of the mapping
   std::vector<float> Jacobians;
-  std::array<std::uint64_t, 2> JacobiansVersions{ { 0, 0 } };
   OutsideVoxels JacobiansOutside;
 
   // What the device has. A call that throws leaves it unknown, and then everything is sent again.
