@@ -13,7 +13,7 @@ namespace
 {
 
 // With fewer free nodes the inverses of the diagonal are enough.
-constexpr std::ptrdiff_t LeastNumberForLevels = 1000;
+constexpr std::ptrdiff_t LeastNumberForLevels = 300;
 
 } // namespace
 
