@@ -106,6 +106,18 @@ TEST(ElementConditions, ThreePlanesHoldABody)
   FiniteElementModel model;
   model.SetBody(body);
   EXPECT_NE(GetError([&] { model.Solve({}); }).find("No constraints"), std::string::npos);
+  // Nor where the motion that is left lies along no axis.
+  ElasticBody turned = body;
+  const glm::dmat3 turn = MakeRotation(0.7, { 1.0, 0.5, -0.8 });
+  for (auto* vectors : { &turned.Points, &turned.SlidingNormals, &turned.SecondSlidingNormals })
+  {
+    for (glm::dvec3& vector : *vectors)
+    {
+      vector = turn * vector;
+    }
+  }
+  model.SetBody(turned);
+  EXPECT_NE(GetError([&] { model.Solve({}); }).find("No constraints"), std::string::npos);
   SlideFace(body, 2);
   model.SetBody(body);
   EquilibriumRequest request = MakeConverged();
