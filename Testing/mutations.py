@@ -297,8 +297,6 @@ MUTATIONS = {
                    [("TestFiniteElements", "*Threads")]),
     "fem-fused": ("Kernels/FiniteElements/Lanes.h", '__attribute__((target("avx2")))',
                   '__attribute__((target("avx2,fma"), optimize("fp-contract=fast")))', [("TestElementLanes", "*")]),
-    "fem-singular": ("Kernels/FiniteElements/Aggregation.cxx", "result.Matrix.Blocks[block](i, i) = 1.0;", "",
-                     [FINITE_ELEMENTS]),
     "springs-near": ("Kernels/MassSpring/MassSpringForces.cl",
                      "Dot(displacement, Plus(Plus(rest, rest), displacement)) / (length + restLength)",
                      "length - restLength", [SPRINGS, SPRINGS_AT_REST]),
