@@ -5,18 +5,7 @@ from typing import Sequence, Tuple
 
 import numpy
 
-_KINDS = {
-    "int8": 0,
-    "uint8": 1,
-    "int16": 2,
-    "uint16": 3,
-    "int32": 4,
-    "uint32": 5,
-    "int64": 6,
-    "uint64": 7,
-    "float32": 8,
-    "float64": 9,
-}
+from . import _structs
 
 
 def native(array, what: str) -> numpy.ndarray:
@@ -26,7 +15,7 @@ def native(array, what: str) -> numpy.ndarray:
         array = array.view(numpy.uint8)
     if not array.dtype.isnative:
         array = array.astype(array.dtype.newbyteorder("="))
-    if array.dtype.name not in _KINDS:
+    if array.dtype.name not in _structs.TYPES:
         raise TypeError(f"{what} has the type {array.dtype}. Give integers of 8 to 64 bits, float32, float64 or bool.")
     return array
 

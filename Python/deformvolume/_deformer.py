@@ -464,7 +464,6 @@ class Deformer:
         extra=None,
         extra_background=0.0,
         progress=None,
-        incremental=False,
     ) -> _structs.Report:
         """Deforms the volume into arrays that are there, with the axes z, y, x."""
         extra = extra or {}
@@ -482,7 +481,6 @@ class Deformer:
         request = _structs.Request(
             interpolation=_choose(interpolation, _structs.INTERPOLATION, "interpolation"),
             number_of_outputs=len(outputs),
-            incremental=int(incremental),
             outputs=ctypes.cast(addresses, ctypes.POINTER(ctypes.c_void_p)),
             coverage=coverage.ctypes.data_as(ctypes.POINTER(ctypes.c_int8)),
             extra_background=float(extra_background),

@@ -262,7 +262,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
             raise ValueError("There is no volume on port 0.")
         data = image.GetPointData()
         arrays = [data.GetArray(number) for number in range(data.GetNumberOfArrays())]
-        # Ghosts and edits say what there is of the volume; they are not resampled.
+        # Ghost and edit arrays are masks of the volume, which are not resampled.
         masks = ("vtkGhostType", "BoundaryDistance", "CutDistance")
         arrays = [array for array in arrays if array is not None and array.GetName() not in masks]
         for number, array in enumerate(arrays):

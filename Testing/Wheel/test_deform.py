@@ -5,7 +5,7 @@ import unittest
 
 import numpy
 
-from interface import deform
+from moving_cube import deform
 
 
 class Deform(unittest.TestCase):

@@ -19,7 +19,7 @@ getenv = ctypes.CDLL(None).getenv
 getenv.restype = ctypes.c_char_p
 before = getenv(b"COMPILER_PATH")
 import deformvolume
-from interface import deform
+from moving_cube import deform
 try:
     volume, output, coverage = deform()
 except deformvolume.Error as error:
