@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -92,19 +93,17 @@ std::array<std::int32_t, ElementBatch::NumberOfNodes> GetNodes(
   std::sort(order.begin(), order.end(),
     [&](std::size_t a, std::size_t b) { return corners[a] < corners[b]; });
   std::array<std::int32_t, ElementBatch::NumberOfNodes> nodes;
-  std::transform(
-    order.begin(), order.end(), nodes.begin(), [&](std::size_t corner) { return corners[corner]; });
-  for (std::size_t edge = 0; edge < 6; ++edge)
+  std::array<std::size_t, 4> ranks;
+  for (std::size_t rank = 0; rank < order.size(); ++rank)
   {
-    const std::size_t first = order[static_cast<std::size_t>(BatchEdges[edge][0])];
-    const std::size_t second = order[static_cast<std::size_t>(BatchEdges[edge][1])];
-    std::size_t own = 0;
-    while (
-      std::minmax(TetrahedronEdges[own][0], TetrahedronEdges[own][1]) != std::minmax(first, second))
-    {
-      ++own;
-    }
-    nodes[4 + edge] = body.MidSides[tetrahedron][own];
+    nodes[rank] = corners[order[rank]];
+    ranks[order[rank]] = rank;
+  }
+  for (std::size_t edge = 0; edge < std::size(TetrahedronEdges); ++edge)
+  {
+    const auto& ends = TetrahedronEdges[edge];
+    const int place = BatchMiddle[ranks[ends[0]]][ranks[ends[1]]];
+    nodes[static_cast<std::size_t>(place)] = body.MidSides[tetrahedron][edge];
   }
   return nodes;
 }
@@ -124,10 +123,11 @@ void SetLane(
   {
     points[i] = body.Points[static_cast<std::size_t>(nodes[i])];
   }
-  constexpr std::size_t places[6] = { 0, 2, 3, 1, 4, 5 };
-  for (std::size_t edge = 0; edge < 6; ++edge)
+  for (std::size_t edge = 0; edge < std::size(TetrahedronEdges); ++edge)
   {
-    points[4 + places[edge]] = body.Points[static_cast<std::size_t>(nodes[4 + edge])];
+    const auto& ends = TetrahedronEdges[edge];
+    const auto middle = static_cast<std::size_t>(BatchMiddle[ends[0]][ends[1]]);
+    points[4 + edge] = body.Points[static_cast<std::size_t>(nodes[middle])];
   }
   double volume = 0.0;
   for (std::size_t point = 0; point < QuadraticTetrahedron::NumberOfGaussPoints; ++point)

@@ -17,6 +17,10 @@ namespace deformvolume
 /// The ends of the edges of a tetrahedron of a batch, in the order of its mid-side nodes.
 constexpr int BatchEdges[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 2 }, { 1, 3 }, { 2, 3 } };
 
+/// The node of a batch in the middle of the edge between two corners.
+constexpr int BatchMiddle[4][4] = { { -1, 4, 5, 6 }, { 4, -1, 7, 8 }, { 5, 7, -1, 9 },
+  { 6, 8, 9, -1 } };
+
 /// As many ten-node tetrahedra as there are lanes. Where a lane has none, it repeats another one
 /// without a volume.
 struct ElementBatch

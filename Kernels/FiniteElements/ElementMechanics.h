@@ -26,10 +26,6 @@ DEFORMVOLUME_ALWAYS_INLINE LaneVector GatherNode(const std::int32_t* nodes, cons
   return result;
 }
 
-/// The node of a batch in the middle of the edge between two corners.
-constexpr int BatchMiddle[4][4] = { { -1, 4, 5, 6 }, { 4, -1, 7, 8 }, { 5, 7, -1, 9 },
-  { 6, 8, 9, -1 } };
-
 /// The coordinate of a corner at a Gauss point.
 constexpr double GetGaussCoordinate(int point, int corner)
 {

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstring>
 #include <numeric>
+#include <type_traits>
 
 namespace deformvolume
 {
@@ -226,17 +227,24 @@ void RunChunkOf(const Arguments& arguments)
   RunPlain<Model>(arguments);
 }
 
-template <typename Arguments>
-void RunChunk(MaterialModel model, const Arguments& arguments)
+// Calls call(model) with a material model that is known to the compiler, as decltype(model)::value.
+template <typename Call>
+void WithModel(MaterialModel model, Call&& call)
 {
   if (model == MaterialModel::Corotational)
   {
-    RunChunkOf<MaterialModel::Corotational>(arguments);
+    call(std::integral_constant<MaterialModel, MaterialModel::Corotational>());
   }
   else
   {
-    RunChunkOf<MaterialModel::StableNeoHookean>(arguments);
+    call(std::integral_constant<MaterialModel, MaterialModel::StableNeoHookean>());
   }
+}
+
+template <typename Arguments>
+void RunChunk(MaterialModel model, const Arguments& arguments)
+{
+  WithModel(model, [&](auto known) { RunChunkOf<decltype(known)::value>(arguments); });
 }
 
 ChunkRange GetRange(const ElementBatches& batches, std::size_t chunk)
@@ -430,16 +438,12 @@ std::vector<ElementResults> FiniteElements::GetResults(
       {
         const ElementBatch& batch = this->Batches.Batches[i];
         const std::int32_t* const tetrahedra = &this->Batches.Tetrahedra[i * NumberOfLanes];
-        if (this->Model == MaterialModel::Corotational)
-        {
-          FindBatchResults<MaterialModel::Corotational>(
-            batch, &displacements.front().x, tetrahedra, results);
-        }
-        else
-        {
-          FindBatchResults<MaterialModel::StableNeoHookean>(
-            batch, &displacements.front().x, tetrahedra, results);
-        }
+        WithModel(this->Model,
+          [&](auto known)
+          {
+            FindBatchResults<decltype(known)::value>(
+              batch, &displacements.front().x, tetrahedra, results);
+          });
       }
     });
   return results;
