@@ -59,15 +59,15 @@ void CheckNodes(Watch& watch, const ElasticBody& body)
     });
 }
 
-// How many tetrahedra there are of a kind, and the first of them.
+// How many tetrahedra, or nodes, there are of a kind, and the first of them.
 struct Counted
 {
   std::size_t Number = 0;
   std::size_t First = 0;
 
-  void Add(std::size_t tetrahedron)
+  void Add(std::size_t number)
   {
-    this->First = this->Number == 0 ? tetrahedron : this->First;
+    this->First = this->Number == 0 ? number : this->First;
     ++this->Number;
   }
   // Such as "3 of 20 tetrahedra of the rest mesh are flat, the first one being number 7. ".
@@ -173,8 +173,7 @@ void CheckLength(std::size_t length, std::size_t wanted, const std::string& what
 
 void CheckSliding(const ElasticBody& body)
 {
-  std::size_t contradictory = 0;
-  std::size_t first = 0;
+  std::vector<bool> slides(body.Points.size(), false);
   for (const auto* normals : { &body.SlidingNormals, &body.SecondSlidingNormals })
   {
     if (!normals->empty())
@@ -188,19 +187,23 @@ void CheckSliding(const ElasticBody& body)
       {
         throw Error("The sliding normal of node " + std::to_string(node) + " is not finite.");
       }
-      if (normal != glm::dvec3(0.0) && body.IsFixed(node))
-      {
-        first = contradictory == 0 ? node : first;
-        ++contradictory;
-      }
+      slides[node] = slides[node] || normal != glm::dvec3(0.0);
     }
   }
-  if (contradictory > 0)
+  Counted contradictory;
+  for (std::size_t node = 0; node < slides.size(); ++node)
   {
-    throw Error(std::to_string(contradictory) +
+    if (slides[node] && body.IsFixed(node))
+    {
+      contradictory.Add(node);
+    }
+  }
+  if (contradictory.Number > 0)
+  {
+    throw Error(std::to_string(contradictory.Number) +
       " nodes have contradictory conditions: they are fixed, and have a sliding normal. The first "
       "of them is node " +
-      std::to_string(first) + ". Set one of the two to 0.");
+      std::to_string(contradictory.First) + ". Set one of the two to 0.");
   }
 }
 

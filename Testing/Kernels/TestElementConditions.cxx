@@ -56,8 +56,14 @@ TEST(ElementConditions, Misuse)
   body.SlidingNormals[4].x = 1.0;
   EXPECT_EQ(getError(),
     "2 nodes have contradictory conditions: they are fixed, and have a sliding normal. The first "
-    "of "
-    "them is node 3. Set one of the two to 0.");
+    "of them is node 3. Set one of the two to 0.");
+  // A node with two normals is one node.
+  body.SecondSlidingNormals.assign(body.Points.size(), glm::dvec3(0.0));
+  body.SecondSlidingNormals[2].y = 1.0;
+  body.SecondSlidingNormals[4].y = 1.0;
+  EXPECT_EQ(getError().rfind("3 nodes have contradictory conditions", 0), 0u);
+  EXPECT_NE(getError().find("them is node 2."), std::string::npos);
+  body.SecondSlidingNormals.clear();
 
   body.SlidingNormals.clear();
   FiniteElementModel model;
