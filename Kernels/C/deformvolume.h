@@ -100,7 +100,7 @@ extern "C"
   /*
    * A deformer has one volume, its arrays, one deformation and the settings of the output. What has
    * been set stays until it is set again, so that a program sets only what changes, and dv_deform()
-   * works anew only on what follows from that.
+   * computes again only what depends on it.
    *
    * Without a deformation all of the volume stays where it is, which resamples it on another grid.
    *
@@ -313,7 +313,7 @@ extern "C"
     DV_NEAREST = 2
   };
 
-  /* Is told what fraction is done, 0 to 1, in the thread that called dv_deform(). Another result
+  /* Gets the fraction that is done, 0 to 1, in the thread that called dv_deform(). Another result
    * than 0 aborts: dv_deform() then returns DV_ABORTED. It must neither throw nor call functions
    * for the same deformer. */
   typedef int32_t (*dv_progress)(double fraction, void* user);
@@ -337,7 +337,7 @@ extern "C"
                                   neighbouring voxels cover it; more than 1 in folds. Not with
                                   inverse fields */
     double extra_background;   /* of rest_positions and jacobian where nothing is covered */
-    dv_progress progress;      /* null: nobody is told */
+    dv_progress progress;      /* null: no callback */
     void* user;                /* given to progress */
   } dv_request;
 
@@ -346,7 +346,7 @@ extern "C"
    * this call wrote: only what has changed is written. The result is the same to the last bit. Not
    * together with rest_positions, jacobian and fold_count. */
 
-  /* What dv_deform() tells. */
+  /* The results of dv_deform() besides the output. */
   typedef struct dv_report
   {
     size_t struct_size;                    /* set by the program */

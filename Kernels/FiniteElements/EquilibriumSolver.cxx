@@ -393,7 +393,7 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
   }
   else
   {
-    // Where displacements, or the planes, are others than before.
+    // Where the displacements, or the planes, differ from those of the last call.
     for (std::size_t node = 0; node < problem.IsFree.size(); ++node)
     {
       if (problem.IsFree[node] != 0)

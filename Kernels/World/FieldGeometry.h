@@ -30,7 +30,7 @@ DEFORMVOLUME_EXPORT int GetStep(const Extent& voxels, const std::array<double, 1
 /// a deformation where there is none.
 DEFORMVOLUME_EXPORT ImageGeometry GetGridAtRest(const ImageGeometry& volume);
 
-/// Tells a field what becomes of voxels outside it. spacing: of its points, in world units.
+/// Sets how a field treats voxels outside it. spacing: of its points, in world units.
 DEFORMVOLUME_EXPORT void SetOutside(
   const OutsideVoxels& outside, const glm::dvec3& spacing, DisplacementField& field);
 

@@ -20,7 +20,7 @@ namespace deformvolume
 namespace
 {
 
-// The part of a progress between two fractions, told in the thread that calls this only. Other
+// The part of a progress between two fractions, reported in the calling thread only. Other
 // threads learn whether an end was asked for.
 std::function<bool(double)> GetPart(
   const std::function<bool(double)>& progress, double from, double to)

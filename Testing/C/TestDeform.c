@@ -3,24 +3,12 @@
  * Deformers in C: what is refused, and why; progress and abort; parts of the output.
  * Examples/minimal-c has the ordinary case, and Testing/Cxx/TestCInterface.cxx the numbers.
  */
-#include "deformvolume.h"
+#include "Check.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static int Failures = 0;
-
-#define CHECK(condition)                                                                           \
-  do                                                                                               \
-  {                                                                                                \
-    if (!(condition))                                                                              \
-    {                                                                                              \
-      printf("line %d: %s is false. Last error: %s\n", __LINE__, #condition, dv_last_error());     \
-      ++Failures;                                                                                  \
-    }                                                                                              \
-  } while (0)
 
 /* A call that fails with an error that holds some words. */
 #define REFUSED(call, words)                                                                       \

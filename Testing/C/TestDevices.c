@@ -5,22 +5,10 @@
  * Usage: TestDevices [--none]
  *   --none  the system has no driver
  */
-#include "deformvolume.h"
+#include "Check.h"
 
 #include <stdio.h>
 #include <string.h>
-
-static int Failures = 0;
-
-#define CHECK(condition)                                                                           \
-  do                                                                                               \
-  {                                                                                                \
-    if (!(condition))                                                                              \
-    {                                                                                              \
-      printf("line %d: %s is false. Last error: %s\n", __LINE__, #condition, dv_last_error());     \
-      ++Failures;                                                                                  \
-    }                                                                                              \
-  } while (0)
 
 /* A driver that is refused, and why. */
 static void RefuseDriver(const char* path, const char* reason)
