@@ -68,9 +68,7 @@ def deform(
     array = deformed.array.transpose((2, 1, 0, 3)[: deformed.array.ndim])
     result = SimpleITK.GetImageFromArray(array, isVector=array.ndim == 4)
     grid = deformer.find_output_grid()
-    first = numpy.asarray(grid.spacing[:]) * numpy.asarray(grid.extent[0::2])
-    direction = numpy.asarray(grid.direction[:]).reshape(3, 3)
-    result.SetOrigin((numpy.asarray(grid.origin[:]) + direction @ first).tolist())
+    result.SetOrigin(deformed.affine[:3, 3].tolist())
     result.SetSpacing(grid.spacing[:])
     result.SetDirection(grid.direction[:])
     return result
