@@ -3,9 +3,9 @@
 #define DeformVolumeChainMailSession_h
 
 #include "ChainMailModel.h"
-#include "DeformationMesh.h" // for Stamp
 #include "ImageGeometry.h"
 #include "MaterialTable.h"
+#include "Stamp.h"
 #include "VectorOutput.h"
 
 #include <cstdint>

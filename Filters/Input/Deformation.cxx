@@ -24,40 +24,6 @@ glm::dmat3 GetToDisplacement(const DeformationSource& source, double factor)
   return GetToDisplacement(source.Volume, source.ToOutput, factor);
 }
 
-void CheckSource(const DeformationSource& source)
-{
-  const bool isField = vtkImageData::SafeDownCast(source.Shape) != nullptr;
-  if (source.PointsAreDeformed && (isField || source.Rest))
-  {
-    throw Error(std::string("PointsAreDeformed is on, but ") +
-      (isField ? "the deformation is a displacement field, whose points are at rest"
-               : "there is a rest configuration, so that no displacements are read") +
-      ". Set PointsAreDeformed off" + (isField ? "." : ", or disconnect the rest configuration."));
-  }
-  if (isField && source.Rest)
-  {
-    throw Error("There is a rest configuration, but the deformation is a displacement field, "
-                "which needs none. Disconnect the rest configuration.");
-  }
-  if (isField)
-  {
-    return;
-  }
-  const MeshParts& shape = source.ShapeParts;
-  const MeshParts& rest = source.GetRestParts();
-  CheckParts(shape, source.Shape, MESH_NAME);
-  if (source.Rest)
-  {
-    CheckParts(rest, source.Rest, REST_NAME);
-  }
-  if (GetNumberOfNodes(shape) != GetNumberOfNodes(rest))
-  {
-    throw Error("The deformation mesh has " + std::to_string(GetNumberOfNodes(shape)) +
-      " points and the rest configuration has " + std::to_string(GetNumberOfNodes(rest)) +
-      ". Use two configurations of one mesh.");
-  }
-}
-
 void Deformation::Read(const DeformationSource& source)
 {
   CheckSource(source);

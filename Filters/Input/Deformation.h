@@ -2,11 +2,10 @@
 #ifndef DeformVolumeDeformation_h
 #define DeformVolumeDeformation_h
 
-#include "DeformationMesh.h"
+#include "DeformationSource.h"
 #include "DeviceVectors.h"
 #include "DisplacementField.h"
 #include "FieldScan.h"
-#include "ImageGeometry.h"
 #include "IndexBounds.h"
 #include "MeshAtRest.h"
 #include "OutsideVoxels.h"
@@ -23,50 +22,12 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <string>
 #include <vector>
 
 class vtkImageData;
 
 namespace deformvolume
 {
-
-/// Where a deformation comes from, and where it is wanted.
-struct DeformationSource
-{
-  /// What is connected to port 1, and to port 2 or null.
-  vtkDataObject* Shape = nullptr;
-  vtkDataObject* Rest = nullptr;
-  /// Their grids, where they are meshes.
-  MeshParts ShapeParts;
-  MeshParts RestParts;
-  /// Derived nodes that their cells name already (see ReadCells), or null.
-  const DerivedNodes* Derived = nullptr;
-  /// Whether a filter makes these, and they are not data that somebody holds (see MeshStamp).
-  bool ShapeIsMade = false;
-  bool RestIsMade = false;
-  /// Finds the displacements; Wanted names them in words, Choice tells two choices apart.
-  ArraySelector Selector;
-  std::string Wanted;
-  std::string Choice;
-  double DisplacementScale = 1.0;
-  /// Whether the mesh is given by its deformed points; the grids above are at rest all the same.
-  bool PointsAreDeformed = false;
-  /// Whether a field leads from the output to the volume at rest.
-  bool FieldIsInverse = false;
-  ImageGeometry Volume;
-  /// The whole name of a device with memory of its own that takes vectors where they lie there;
-  /// empty: there is none.
-  std::string Device;
-  /// From indices of the volume to those of the output.
-  OutputMap ToOutput;
-
-  /// The grids that have the rest positions.
-  const MeshParts& GetRestParts() const { return this->Rest ? this->RestParts : this->ShapeParts; }
-};
-
-/// Throws an Error where what is connected does not go together.
-void CheckSource(const DeformationSource& source);
 
 /// See VectorConversion.h.
 glm::dmat3 GetToDisplacement(const DeformationSource& source, double factor);

@@ -3,6 +3,7 @@
 #define DeformVolumeDeformationMesh_h
 
 #include "NodeFaults.h"
+#include "Stamp.h"
 #include "VectorArray.h"
 
 #include "vtkType.h"
@@ -37,9 +38,6 @@ struct MeshParts : std::vector<vtkUnstructuredGrid*>
 
 /// What errors call a part of the mesh that they call by `name`.
 std::string DescribePart(const MeshParts& parts, std::size_t part, const std::string& name);
-
-/// Tells two states of VTK objects apart: addresses and modification times.
-using Stamp = std::vector<std::pair<const void*, vtkMTimeType>>;
 
 /// Throws an Error, which calls the mesh by `name`, where there is no part, or no point in all of
 /// them. object: where the parts were found (see MeshGrids).

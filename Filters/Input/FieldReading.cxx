@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FieldReading.h"
 
-#include "Deformation.h"
+#include "DeformationSource.h"
 #include "Error.h"
 #include "MaskArray.h"
 #include "PipelineGeometry.h"

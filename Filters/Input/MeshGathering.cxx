@@ -4,6 +4,7 @@
 #include "CellReader.h"
 #include "MeshCells.h"
 #include "MeshStamp.h"
+#include "RestMesh.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellType.h"

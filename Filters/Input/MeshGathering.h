@@ -2,7 +2,7 @@
 #ifndef DeformVolumeMeshGathering_h
 #define DeformVolumeMeshGathering_h
 
-#include "Deformation.h"
+#include "DeformationSource.h"
 #include "DerivedNodes.h"
 #include "Ranks.h"
 
@@ -15,6 +15,8 @@ class vtkUnstructuredGrid;
 
 namespace deformvolume
 {
+
+class RestMesh;
 
 /// Makes a deformation mesh of which each rank has a piece whole on every rank: pieces one after
 /// the other in the order of ranks, ghost cells left out. A mesh that every rank has whole is taken

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshGrids.h"
 
-#include "Deformation.h"
+#include "DeformationSource.h"
 #include "MaskArray.h"
 #include "ParallelFor.h"
 

@@ -2,7 +2,7 @@
 #include "RestMesh.h"
 
 #include "CellComparison.h"
-#include "Deformation.h"
+#include "DeformationSource.h"
 #include "Error.h"
 #include "MeshCells.h"
 #include "ParallelFor.h"

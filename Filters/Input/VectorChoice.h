@@ -2,7 +2,7 @@
 #ifndef DeformVolumeVectorChoice_h
 #define DeformVolumeVectorChoice_h
 
-#include "Deformation.h"
+#include "DeformationSource.h"
 
 #include <functional>
 

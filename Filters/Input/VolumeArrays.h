@@ -2,9 +2,9 @@
 #ifndef DeformVolumeVolumeArrays_h
 #define DeformVolumeVolumeArrays_h
 
-#include "DeformationMesh.h" // for Stamp
 #include "MaskArray.h"
 #include "PointRanges.h"
+#include "Stamp.h"
 #include "VolumeArray.h"
 
 #include "vtkSmartPointer.h"

@@ -2,9 +2,9 @@
 #ifndef DeformVolumeBodyReading_h
 #define DeformVolumeBodyReading_h
 
-#include "DeformationMesh.h" // for Stamp
 #include "ElasticBody.h"
 #include "MidSideNodes.h"
+#include "Stamp.h"
 
 #include "vtkType.h"
 

@@ -3,10 +3,10 @@
 #define DeformVolumeElasticSession_h
 
 #include "BodyReading.h"
-#include "DeformationMesh.h" // for Stamp
 #include "ElasticSimulation.h"
 #include "MeshSplit.h"
 #include "SheetReading.h"
+#include "Stamp.h"
 
 #include "vtkSmartPointer.h"
 
