@@ -48,9 +48,14 @@ class vtkInformationObjectBaseKey;
 class VTKDEFORMVOLUME_EXPORT vtkArrayChanges : public vtkObject
 {
 public:
+  ///@{
+  /**
+   * Standard methods for instantiation, type information and printing.
+   */
   static vtkArrayChanges* New();
   vtkTypeMacro(vtkArrayChanges, vtkObject);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  ///@}
 
   /**
    * The key under which the information of an array holds its log.

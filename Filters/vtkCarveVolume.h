@@ -51,9 +51,14 @@ class vtkImplicitFunction;
 class VTKDEFORMVOLUME_EXPORT vtkCarveVolume : public vtkVolumeEditAlgorithm
 {
 public:
+  ///@{
+  /**
+   * Standard methods for instantiation, type information and printing.
+   */
   static vtkCarveVolume* New();
   vtkTypeMacro(vtkCarveVolume, vtkVolumeEditAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  ///@}
 
   /**
    * That of the filter or of the implicit function, whichever was changed last.
@@ -90,6 +95,9 @@ public:
   vtkGetMacro(Label, double);
   ///@}
 
+  /**
+   * Which tetrahedra are inside the body, see SetRule().
+   */
   enum Rules
   {
     CENTROID = 0,

@@ -75,9 +75,14 @@
 class VTKDEFORMVOLUME_EXPORT vtkChainMailDeformation : public vtkImageAlgorithm
 {
 public:
+  ///@{
+  /**
+   * Standard methods for instantiation, type information and printing.
+   */
   static vtkChainMailDeformation* New();
   vtkTypeMacro(vtkChainMailDeformation, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  ///@}
 
   ///@{
   /**
@@ -237,11 +242,13 @@ public:
   vtkGetMacro(NumberOfReleasedHandles, int);
   ///@}
 
+  ///@{
   /**
    * The extent of the output, in structured indices, in which displacements may not be what they
    * were before the last execution; (0, -1, 0, -1, 0, -1) where nothing changed.
    */
   vtkGetVector6Macro(ChangedExtent, int);
+  ///@}
 
   /**
    * Name of the device of the last execution; "" before the first.

@@ -52,9 +52,14 @@
 class VTKDEFORMVOLUME_EXPORT vtkCutVolume : public vtkVolumeEditAlgorithm
 {
 public:
+  ///@{
+  /**
+   * Standard methods for instantiation, type information and printing.
+   */
   static vtkCutVolume* New();
   vtkTypeMacro(vtkCutVolume, vtkVolumeEditAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  ///@}
 
   ///@{
   /**

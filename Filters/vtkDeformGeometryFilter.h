@@ -81,9 +81,14 @@
 class VTKDEFORMVOLUME_EXPORT vtkDeformGeometryFilter : public vtkPointSetAlgorithm
 {
 public:
+  ///@{
+  /**
+   * Standard methods for instantiation, type information and printing.
+   */
   static vtkDeformGeometryFilter* New();
   vtkTypeMacro(vtkDeformGeometryFilter, vtkPointSetAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  ///@}
 
   ///@{
   /**
@@ -140,6 +145,9 @@ public:
   vtkBooleanMacro(FieldIsInverse, bool);
   ///@}
 
+  /**
+   * What becomes of points outside the deformation, see SetOutsideMode().
+   */
   enum OutsideModes
   {
     DISCARD = 0,

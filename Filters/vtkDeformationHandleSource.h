@@ -25,9 +25,14 @@
 class VTKDEFORMVOLUME_EXPORT vtkDeformationHandleSource : public vtkPolyDataAlgorithm
 {
 public:
+  ///@{
+  /**
+   * Standard methods for instantiation, type information and printing.
+   */
   static vtkDeformationHandleSource* New();
   vtkTypeMacro(vtkDeformationHandleSource, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  ///@}
 
   ///@{
   /**

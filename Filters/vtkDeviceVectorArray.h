@@ -53,9 +53,14 @@ using vtkDeviceVectorArrayBase = vtkGenericDataArray<vtkDeviceVectorArray, float
 class VTKDEFORMVOLUME_EXPORT vtkDeviceVectorArray : public vtkDeviceVectorArrayBase
 {
 public:
+  ///@{
+  /**
+   * Standard methods for instantiation, type information and printing.
+   */
   static vtkDeviceVectorArray* New();
   vtkTypeMacro(vtkDeviceVectorArray, vtkDeviceVectorArrayBase);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  ///@}
 
   ///@{
   /**
@@ -81,6 +86,9 @@ public:
   vtkGetMacro(NumberOfDownloads, vtkIdType);
   ///@}
 
+  /**
+   * Mark the values as changed, after they were written through a pointer or on the device.
+   */
   void Modified() override;
 
 #ifndef __VTK_WRAP__

@@ -96,8 +96,13 @@ class vtkPolyData;
 class VTKDEFORMVOLUME_EXPORT vtkElasticDeformation : public vtkUnstructuredGridAlgorithm
 {
 public:
+  ///@{
+  /**
+   * Standard methods for type information and printing.
+   */
   vtkTypeMacro(vtkElasticDeformation, vtkUnstructuredGridAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  ///@}
 
   ///@{
   /**

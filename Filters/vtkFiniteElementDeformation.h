@@ -66,9 +66,14 @@
 class VTKDEFORMVOLUME_EXPORT vtkFiniteElementDeformation : public vtkElasticDeformation
 {
 public:
+  ///@{
+  /**
+   * Standard methods for instantiation, type information and printing.
+   */
   static vtkFiniteElementDeformation* New();
   vtkTypeMacro(vtkFiniteElementDeformation, vtkElasticDeformation);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  ///@}
 
   /**
    * How stress follows from strain.

@@ -35,9 +35,14 @@
 class VTKDEFORMVOLUME_EXPORT vtkLatticeTetrahedraSource : public vtkUnstructuredGridAlgorithm
 {
 public:
+  ///@{
+  /**
+   * Standard methods for instantiation, type information and printing.
+   */
   static vtkLatticeTetrahedraSource* New();
   vtkTypeMacro(vtkLatticeTetrahedraSource, vtkUnstructuredGridAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  ///@}
 
   ///@{
   /**
@@ -61,10 +66,12 @@ public:
   vtkBooleanMacro(EqualSpacing, bool);
   ///@}
 
+  ///@{
   /**
    * Nodes on each axis of the last output; 0, 0, 0 where that is empty.
    */
   vtkGetVector3Macro(Dimensions, int);
+  ///@}
 
   ///@{
   /**

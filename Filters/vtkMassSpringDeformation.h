@@ -45,9 +45,14 @@
 class VTKDEFORMVOLUME_EXPORT vtkMassSpringDeformation : public vtkElasticDeformation
 {
 public:
+  ///@{
+  /**
+   * Standard methods for instantiation, type information and printing.
+   */
   static vtkMassSpringDeformation* New();
   vtkTypeMacro(vtkMassSpringDeformation, vtkElasticDeformation);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  ///@}
 
   ///@{
   /**

@@ -49,9 +49,14 @@
 class VTKDEFORMVOLUME_EXPORT vtkMaterialFromVolume : public vtkUnstructuredGridAlgorithm
 {
 public:
+  ///@{
+  /**
+   * Standard methods for instantiation, type information and printing.
+   */
   static vtkMaterialFromVolume* New();
   vtkTypeMacro(vtkMaterialFromVolume, vtkUnstructuredGridAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  ///@}
 
   ///@{
   /**

@@ -71,16 +71,27 @@ struct UncoveredVoxels;
 class VTKDEFORMVOLUME_EXPORT vtkTetGenMesher : public vtkUnstructuredGridAlgorithm
 {
 public:
+  ///@{
+  /**
+   * Standard methods for instantiation, type information and printing.
+   */
   static vtkTetGenMesher* New();
   vtkTypeMacro(vtkTetGenMesher, vtkUnstructuredGridAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  ///@}
 
+  /**
+   * What the body of a volume is, see SetBodyMode().
+   */
   enum BodyModes
   {
     ISOSURFACE = 0,
     LABELS = 1
   };
 
+  /**
+   * Which pieces of the body are meshed, see SetPieceMode().
+   */
   enum PieceModes
   {
     ALL_PIECES = 0,

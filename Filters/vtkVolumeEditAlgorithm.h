@@ -60,8 +60,13 @@
 class VTKDEFORMVOLUME_EXPORT vtkVolumeEditAlgorithm : public vtkImageAlgorithm
 {
 public:
+  ///@{
+  /**
+   * Standard methods for type information and printing.
+   */
   vtkAbstractTypeMacro(vtkVolumeEditAlgorithm, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  ///@}
 
   ///@{
   /**
@@ -125,6 +130,9 @@ public:
   vtkBooleanMacro(PointsAreDeformed, bool);
   ///@}
 
+  /**
+   * What becomes of voxels outside the deformation, see SetOutsideMode().
+   */
   enum OutsideModes
   {
     DISCARD = 0,

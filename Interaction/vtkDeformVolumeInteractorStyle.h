@@ -59,9 +59,14 @@ class VTKDEFORMVOLUMEINTERACTION_EXPORT vtkDeformVolumeInteractorStyle
   : public vtkInteractorStyleTrackballCamera
 {
 public:
+  ///@{
+  /**
+   * Standard methods for instantiation, type information and printing.
+   */
   static vtkDeformVolumeInteractorStyle* New();
   vtkTypeMacro(vtkDeformVolumeInteractorStyle, vtkInteractorStyleTrackballCamera);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  ///@}
 
   ///@{
   /**
@@ -97,6 +102,9 @@ public:
    */
   bool Poll();
 
+  /**
+   * What the left button does, see SetTool().
+   */
   enum Tools
   {
     TURN = 0,
@@ -126,6 +134,9 @@ public:
   vtkGetMacro(CarveRadius, double);
   ///@}
 
+  /**
+   * What counts as visible, see SetPickMode().
+   */
   enum PickModes
   {
     OPACITY = 0,

@@ -74,9 +74,14 @@ class vtkUnstructuredGrid;
 class VTKDEFORMVOLUMEINTERACTION_EXPORT vtkDeformVolumeSession : public vtkObject
 {
 public:
+  ///@{
+  /**
+   * Standard methods for instantiation, type information and printing.
+   */
   static vtkDeformVolumeSession* New();
   vtkTypeMacro(vtkDeformVolumeSession, vtkObject);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  ///@}
 
   /**
    * Begin with a volume at rest, of at least two voxels on each axis, and, if it is not null, with
@@ -86,6 +91,9 @@ public:
    */
   bool SetInputs(vtkImageData* volume, vtkUnstructuredGrid* mesh = nullptr);
 
+  /**
+   * The models of the tissue, see ChangeModel().
+   */
   enum Models
   {
     NONE = 0,

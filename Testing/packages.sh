@@ -27,7 +27,7 @@ declare -A packages=(
     opencl-headers opencl-clhpp-headers ocl-icd-opencl-dev pocl-opencl-icd tetgen"
   [example]="libcli11-dev libinsighttoolkit5-dev mricron-data xvfb xauth"
   [test]="libgtest-dev libbenchmark-dev libopenmpi-dev openmpi-bin oclgrind python3-numpy python3-xlib
-    mricron-data xvfb xauth"
+    mricron-data xvfb xauth doxygen"
   [readers]="python3-venv calculix-ccx"
   [benchmark]="python3-matplotlib"
   [paraview]="paraview paraview-dev libopenmpi-dev libdouble-conversion-dev libutfcpp-dev

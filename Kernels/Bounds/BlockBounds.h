@@ -26,6 +26,7 @@ public:
     this->Bounds.resize(blocks);
     this->IsExact.resize(blocks);
   }
+  /// How many blocks there are.
   std::size_t GetNumberOfBlocks() const { return this->Bounds.size(); }
 
   /// Finds the bounds of all blocks. changed: nonzero for those that are not as they were.

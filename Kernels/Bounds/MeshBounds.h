@@ -29,6 +29,7 @@ namespace deformvolume
 class DEFORMVOLUME_EXPORT MeshBounds
 {
 public:
+  /// Another mesh or another voxel grid: everything is computed again.
   void SetMesh(const VoxelGrid& voxelGrid, const std::vector<glm::dvec3>& restPoints,
     const std::vector<Tetrahedron>& tetrahedra);
 

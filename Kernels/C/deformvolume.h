@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/*
+/**
+ * @file
  * DeformVolume in C: what other languages call. The library is libdeformvolume.so, and all of its
  * names begin with dv_.
  *
@@ -22,6 +23,8 @@ extern "C"
 {
 #endif
 
+/** @def DV_EXPORT
+ * Marks a function that the library exports. */
 #if defined(_WIN32)
 #define DV_EXPORT __declspec(dllexport)
 #elif defined(__GNUC__)
@@ -32,42 +35,48 @@ extern "C"
 
 /* ---- Versions and errors ---- */
 
-/* The version of this interface. It grows with every change that programs which were compiled
+/** The version of this interface. It grows with every change that programs which were compiled
  * before do not survive. A change that only adds functions, or members at the end of structures
  * that begin with their size, leaves it. */
 #define DV_ABI_VERSION 1
 
-  /* The DV_ABI_VERSION that the library was built with. Programs that load the library at run time
+  /** The DV_ABI_VERSION that the library was built with. Programs that load the library at run time
    * compare it with their own before they call anything else. */
   DV_EXPORT int32_t dv_abi_version(void);
 
-  /* The version of DeformVolume, such as "0.2.0". The text lives as long as the process. */
+  /** The version of DeformVolume, such as "0.2.0". The text lives as long as the process. */
   DV_EXPORT const char* dv_version(void);
 
-  /* What functions return. */
+  /** What functions return. */
   enum
   {
+    /** All went well. */
     DV_OK = 0,
-    DV_ERROR = 1,  /* dv_last_error() has the reason */
-    DV_ABORTED = 2 /* a progress callback asked for the end */
+    /** dv_last_error() has the reason. */
+    DV_ERROR = 1,
+    /** A progress callback asked for the end. */
+    DV_ABORTED = 2
   };
 
-  /* Why the last function of this thread that returned DV_ERROR failed. Empty where none has
+  /** Why the last function of this thread that returned DV_ERROR failed. Empty where none has
    * failed. The text belongs to the library, and stays until the next function of this thread
    * fails. */
   DV_EXPORT const char* dv_last_error(void);
 
   /* ---- Devices and drivers ---- */
 
-  /* Of dv_device_flags(). */
+  /** What dv_device_flags() is a sum of. */
   enum
   {
-    DV_DEVICE_PROCESSOR = 1, /* a processor, by a driver for processors */
-    DV_DEVICE_EMULATED = 2,  /* a renderer in software, or an interpreter: slow */
-    DV_DEVICE_DOUBLE = 4     /* has double precision */
+    /** A processor, by a driver for processors. */
+    DV_DEVICE_PROCESSOR = 1,
+    /** A renderer in software, or an interpreter: slow. */
+    DV_DEVICE_EMULATED = 2,
+    /** A device with double precision. */
+    DV_DEVICE_DOUBLE = 4
   };
 
-  /* Adds an OpenCL driver that the system does not list, such as PoCL from a Python package. path:
+  /** Adds an OpenCL driver that the system does not list, such as PoCL from a Python package. path:
    * the absolute path of the driver's library, which is loaded and stays loaded. The same path
    * again does nothing. Devices of drivers that were added come before equal ones of the system.
    * Indices of devices may change. Environment variables are neither read nor written for that.
@@ -75,7 +84,7 @@ extern "C"
    * OpenCL driver. */
   DV_EXPORT int32_t dv_add_driver(const char* path);
 
-  /* The folder of a program "ld", with which PoCL links kernels where it is a driver of
+  /** The folder of a program "ld", with which PoCL links kernels where it is a driver of
    * dv_add_driver(), and the "ld" on the PATH does not work: without one it would end the process.
    * To be called before a device is used. The environment variable DEFORMVOLUME_LINKER changes
    * that: "system" never takes the program, "own" always does for such drivers. While kernels are
@@ -83,21 +92,21 @@ extern "C"
    * Fails where the path is not absolute. */
   DV_EXPORT int32_t dv_set_linker(const char* folder);
 
-  /* The number of OpenCL devices, the best first; 0 where there is none. The first call starts the
+  /** The number of OpenCL devices, the best first; 0 where there is none. The first call starts the
    * drivers, which may take some tenths of a second. */
   DV_EXPORT int32_t dv_device_count(void);
 
-  /* The name of a device, "device (platform)", 0 <= index < dv_device_count(). Null, with an error,
-   * where there is no such device. The text belongs to the library, and stays until the next call
-   * of this function from this thread. */
+  /** The name of a device, "device (platform)", 0 <= index < dv_device_count(). Null, with an
+   * error, where there is no such device. The text belongs to the library, and stays until the next
+   * call of this function from this thread. */
   DV_EXPORT const char* dv_device_name(int32_t index);
 
-  /* What a device is: a sum of DV_DEVICE_... -1, with an error, where there is no such device. */
+  /** What a device is: a sum of DV_DEVICE_... -1, with an error, where there is no such device. */
   DV_EXPORT int32_t dv_device_flags(int32_t index);
 
   /* ---- Deforming a volume ---- */
 
-  /*
+  /**
    * A deformer has one volume, its arrays, one deformation and the settings of the output. What has
    * been set stays until it is set again, so that a program sets only what changes, and dv_deform()
    * computes again only what depends on it.
@@ -124,71 +133,80 @@ extern "C"
    */
   typedef struct dv_deformer dv_deformer;
 
-  /* Types of elements. */
+  /** Types of elements. */
   enum
   {
-    DV_INT8 = 0,
-    DV_UINT8 = 1,
-    DV_INT16 = 2,
-    DV_UINT16 = 3,
-    DV_INT32 = 4,
-    DV_UINT32 = 5,
-    DV_INT64 = 6,
-    DV_UINT64 = 7,
-    DV_FLOAT32 = 8,
-    DV_FLOAT64 = 9
+    DV_INT8 = 0,    /**< int8_t */
+    DV_UINT8 = 1,   /**< uint8_t */
+    DV_INT16 = 2,   /**< int16_t */
+    DV_UINT16 = 3,  /**< uint16_t */
+    DV_INT32 = 4,   /**< int32_t */
+    DV_UINT32 = 5,  /**< uint32_t */
+    DV_INT64 = 6,   /**< int64_t */
+    DV_UINT64 = 7,  /**< uint64_t */
+    DV_FLOAT32 = 8, /**< float */
+    DV_FLOAT64 = 9  /**< double */
   };
 
-  /* A grid of points. The point with the index (i, j, k) lies at
+  /** A grid of points. The point with the index (i, j, k) lies at
    *   origin + direction * (spacing[0] * i, spacing[1] * j, spacing[2] * k). */
   typedef struct dv_grid
   {
+    /** The size of the structure in bytes, set by the program. */
     size_t struct_size;
-    int32_t extent[6]; /* first and last index on x, y and z: the grid has all between them */
-    double origin[3];  /* where the index (0, 0, 0) lies, whether the extent has it or not */
-    double spacing[3]; /* not 0; negative ones are allowed */
-    double
-      direction[9]; /* 3 x 3, row by row; its columns are the axes. Any matrix with an inverse */
+    /** First and last index on x, y and z: the grid has these and all between them. */
+    int32_t extent[6];
+    /** Where the index (0, 0, 0) lies, whether the extent has it or not. */
+    double origin[3];
+    /** The step from index to index on each axis, not 0. Negative steps are allowed. */
+    double spacing[3];
+    /** A 3 x 3 matrix, row by row. Its columns are the axes. It must have an inverse. */
+    double direction[9];
   } dv_grid;
 
-  /* An array over the points of a volume: tuples of components elements, x varying fastest, then y,
-   * then z. */
+  /** An array over the points of a volume: tuples of components elements, x varying fastest, then
+   * y, then z. */
   typedef struct dv_array
   {
+    /** The size of the structure in bytes, set by the program. */
     size_t struct_size;
+    /** The values. Borrowed. */
     const void* data;
-    int32_t type;       /* DV_INT8 ... DV_FLOAT64 */
-    int32_t components; /* 1 or more */
-    int32_t
-      categorical;    /* not 0: labels, which are never mixed: the nearest voxel's value is taken */
-    int32_t reserved; /* 0 */
-    double background; /* what output voxels get that the deformed volume does not cover; rounded
-                          and clamped to the type */
+    /** The type of the elements, DV_INT8 to DV_FLOAT64. */
+    int32_t type;
+    /** Elements of a tuple, 1 or more. */
+    int32_t components;
+    /** Not 0: the values are labels. They are never mixed: each comes from one voxel. */
+    int32_t categorical;
+    /** Must be 0. */
+    int32_t reserved;
+    /** The value of output voxels that the deformed volume does not cover, rounded and clamped to
+     * the range of the type. */
+    double background;
   } dv_array;
 
-  /* Makes a deformer, to be destroyed with dv_destroy(). */
+  /** Makes a deformer, to be destroyed with dv_destroy(). */
   DV_EXPORT int32_t dv_create(dv_deformer** deformer);
-  /* Null is allowed. */
+  /** Destroys a deformer. Null is allowed. */
   DV_EXPORT void dv_destroy(dv_deformer* deformer);
 
-  /* Chooses the device: a name as dv_device_name() has it or a part of one, "cpu", "gpu", or null
-   * or
-   * "" for the best one. Fails where no device answers to that. Without a call it is the best one.
-   */
+  /** Chooses the device. name: that of a device as dv_device_name() has it, or a part of one;
+   * "cpu" or "gpu"; null or "" for the best device, which is the default. Fails where there is no
+   * such device. */
   DV_EXPORT int32_t dv_set_device(dv_deformer* deformer, const char* name);
 
-  /* How many bytes may be used on the device; 0: what it has available. */
+  /** How many bytes may be used on the device; 0: what it has available. */
   DV_EXPORT int32_t dv_set_memory_limit(dv_deformer* deformer, uint64_t bytes);
 
-  /* The grid of the volume at rest: two points or more on each axis. With another grid than before
+  /** The grid of the volume at rest: two points or more on each axis. With another grid than before
    * arrays and masks are forgotten. */
   DV_EXPORT int32_t dv_set_volume(dv_deformer* deformer, const dv_grid* grid);
 
-  /* The arrays of the volume. Their data are borrowed. count may be 0: then only the arrays that
+  /** The arrays of the volume. Their data are borrowed. count may be 0: then only the arrays that
    * dv_request names can be made. */
   DV_EXPORT int32_t dv_set_arrays(dv_deformer* deformer, int32_t count, const dv_array* arrays);
 
-  /* Which voxels of the volume there are: one byte a voxel, not 0 where the voxel is left out.
+  /** Which voxels of the volume there are: one byte a voxel, not 0 where the voxel is left out.
    * Null: all are there. Borrowed. */
   DV_EXPORT int32_t dv_set_blanked(dv_deformer* deformer, const uint8_t* blanked);
 
@@ -197,180 +215,231 @@ extern "C"
    * cell, one cell less than voxels on each axis, x varying fastest. vtkCutVolume and
    * vtkCarveVolume make these arrays. All are borrowed; null: there is no such mask. */
 
-  /* One byte a cell: bit i is set where tetrahedron i is active. Null: all are. */
+  /** The active tetrahedra. active: one byte a cell, bit i is set where tetrahedron i is active.
+   * Null: all are. */
   DV_EXPORT int32_t dv_set_active_tetrahedra(dv_deformer* deformer, const uint8_t* active);
 
-  /* One float a voxel: its signed distance to the boundary of what has been carved out, negative
-   * there, in any unit. Samples where it is negative are left out. */
+  /** A carved volume with a smooth boundary. distances: one float a voxel, its signed distance to
+   * the boundary of what has been carved out, negative inside it, in any unit. Samples where it is
+   * negative are left out. */
   DV_EXPORT int32_t dv_set_boundary_distances(dv_deformer* deformer, const float* distances);
 
-  /* A smooth cut. crossed: one byte a cell, bit i is set where the sheet crosses tetrahedron i.
+  /** A smooth cut. crossed: one byte a cell, bit i is set where the sheet crosses tetrahedron i.
    * distances: one float a voxel, its signed distance from the sheet. Both or none. Not with
    * inverse fields. */
   DV_EXPORT int32_t dv_set_smooth_cut(
     dv_deformer* deformer, const uint8_t* crossed, const float* distances);
 
-  /* A deformation mesh at rest. Types of cells and the order of their points are VTK's: tetrahedra
+  /** A deformation mesh at rest. Types of cells and the order of their points are VTK's: tetrahedra
    * (10), voxels (11), hexahedra (12), wedges (13), pyramids (14), prisms (15, 16), quadratic cells
    * (24 to 27, 29, 31 to 33, 37) and Lagrange cells (71 to 73). All are split into tetrahedra
    * between their points, and polyhedra (42), where that does not fill them, round a point of their
    * own. Bezier cells are an error; cells of other types are ignored, with a warning. */
   typedef struct dv_mesh
   {
+    /** The size of the structure in bytes, set by the program. */
     size_t struct_size;
+    /** Points of the mesh. */
     int64_t number_of_points;
-    const void* points; /* three numbers a point, in world coordinates */
-    int32_t point_type; /* DV_FLOAT32 or DV_FLOAT64 */
-    int32_t reserved;   /* 0 */
+    /** Three numbers a point, in world coordinates. */
+    const void* points;
+    /** The type of points: DV_FLOAT32 or DV_FLOAT64. */
+    int32_t point_type;
+    /** Must be 0. */
+    int32_t reserved;
+    /** Cells of the mesh. */
     int64_t number_of_cells;
-    const int64_t* connectivity; /* the numbers of the points of each cell, one after the other */
-    /* The rest is null where all cells are tetrahedra. */
-    const uint8_t* types;   /* the type of each cell, as VTK numbers them */
-    const int64_t* offsets; /* number_of_cells + 1: where the points of each cell begin in
-                               connectivity, and where the last ones end */
-    const int32_t* degrees; /* null, or three numbers a cell: the degrees of Lagrange cells along
-                               their axes, of which others ignore theirs */
-    /* The faces of polyhedra, one polyhedron after the other, in the order of the cells: the number
-     * of its faces, and for each the number of its points, and these in order round it. Null where
-     * there are no polyhedra. */
+    /** The numbers of the points of each cell, one after the other. */
+    const int64_t* connectivity;
+    /** The type of each cell, as VTK numbers them. Null: all cells are tetrahedra. The members
+     * below are null then, too. */
+    const uint8_t* types;
+    /** number_of_cells + 1 numbers: where the points of each cell begin in connectivity, and where
+     * the last ones end. */
+    const int64_t* offsets;
+    /** Null, or three numbers a cell: the degrees of Lagrange cells along their axes. The numbers
+     * of other cells are ignored. */
+    const int32_t* degrees;
+    /** The faces of polyhedra, one polyhedron after the other, in the order of the cells: the
+     * number of its faces, and for each face the number of its points, and the points in order
+     * round it. Null where there are no polyhedra. */
     const int64_t* faces;
-    int64_t number_of_face_values; /* all numbers in faces */
+    /** How many numbers faces has. */
+    int64_t number_of_face_values;
   } dv_mesh;
 
-  /* The deformation mesh, in place of the field or mesh before. It has no displacements then. */
+  /** The deformation mesh, in place of the field or mesh before. It has no displacements then. */
   DV_EXPORT int32_t dv_set_mesh(dv_deformer* deformer, const dv_mesh* mesh);
 
-  /* How far the points of the mesh have moved: count vectors of three numbers, one for each point,
+  /** How far the points of the mesh have moved: count vectors of three numbers, one for each point,
    * in world coordinates. type: DV_FLOAT32 or DV_FLOAT64. A vector that is not finite is an error
    * of dv_deform(), where a cell uses its point; so is one that is longer than 16,383 output
    * voxels. */
   DV_EXPORT int32_t dv_set_displacements(
     dv_deformer* deformer, int32_t type, int64_t count, const void* displacements);
 
-  /* A displacement field: one vector for each point of a grid of its own, linear between them. */
+  /** A displacement field: one vector for each point of a grid of its own, linear between them. */
   typedef struct dv_field
   {
+    /** The size of the structure in bytes, set by the program. */
     size_t struct_size;
+    /** The grid of the field. */
     const dv_grid* grid;
-    const void*
-      vectors;       /* three numbers a point, in world coordinates, x varying fastest. Borrowed */
-    int32_t type;    /* DV_FLOAT32 or DV_FLOAT64 */
-    int32_t inverse; /* 0: from a point of the volume to where it goes. Else: from a point of the
-                        output to the point of the volume that is seen there */
+    /** Three numbers a point, in world coordinates, x varying fastest. Borrowed. */
+    const void* vectors;
+    /** The type of vectors: DV_FLOAT32 or DV_FLOAT64. */
+    int32_t type;
+    /** 0: a vector leads from a point of the volume to where it goes. Else it leads from a point of
+     * the output to the point of the volume that is seen there. */
+    int32_t inverse;
   } dv_field;
 
-  /* The displacement field, in place of the mesh or field before. */
+  /** The displacement field, in place of the mesh or field before. */
   DV_EXPORT int32_t dv_set_field(dv_deformer* deformer, const dv_field* field);
 
-  /* What becomes of voxels outside the mesh or the field. */
+  /** What becomes of voxels outside the mesh or the field. */
   enum
   {
-    DV_OUTSIDE_DISCARD = 0,     /* they are left out */
-    DV_OUTSIDE_EXTRAPOLATE = 1, /* they follow the nearest part of the mesh or of the field */
-    DV_OUTSIDE_KEEP = 2 /* they stay; within fade_distance they follow the boundary in part */
+    /** They are left out. */
+    DV_OUTSIDE_DISCARD = 0,
+    /** They follow the nearest part of the mesh or of the field. */
+    DV_OUTSIDE_EXTRAPOLATE = 1,
+    /** They stay; within fade_distance they follow the boundary in part. */
+    DV_OUTSIDE_KEEP = 2
   };
 
-  /* fade_distance: in world units, 0 or more; it counts with DV_OUTSIDE_KEEP only. The default is
-   * DV_OUTSIDE_DISCARD. */
+  /** What becomes of voxels outside. mode: DV_OUTSIDE_DISCARD, the default, and so on.
+   * fade_distance: in world units, 0 or more; it counts with DV_OUTSIDE_KEEP only. */
   DV_EXPORT int32_t dv_set_outside(dv_deformer* deformer, int32_t mode, double fade_distance);
 
-  /* The grid of the output, such as that of the fixed image of a registration: any extent, spacing
+  /** The grid of the output, such as that of the fixed image of a registration: any extent, spacing
    * and direction, turned or mirrored. Null, the default: the output has the origin, the direction
    * and the spacing of the volume, and what dv_set_output() says. */
   DV_EXPORT int32_t dv_set_reference(dv_deformer* deformer, const dv_grid* grid);
 
-  /* How large the output is without a reference grid. */
+  /** How large the output is without a reference grid. */
   enum
   {
-    DV_BOUNDS_DEFORMED = 0, /* as large as the deformed volume */
-    DV_BOUNDS_VOLUME = 1,   /* as large as the volume at rest */
+    /** As large as the deformed volume. */
+    DV_BOUNDS_DEFORMED = 0,
+    /** As large as the volume at rest. */
+    DV_BOUNDS_VOLUME = 1,
+    /** As large as dv_output::custom_bounds. */
     DV_BOUNDS_CUSTOM = 2
   };
 
+  /** How large the output is without a reference grid, and its spacing. */
   typedef struct dv_output
   {
+    /** The size of the structure in bytes, set by the program. */
     size_t struct_size;
+    /** DV_BOUNDS_DEFORMED, DV_BOUNDS_VOLUME or DV_BOUNDS_CUSTOM. */
     int32_t bounds_mode;
-    int32_t padding;         /* so many voxels more on each side; negative: less */
-    double custom_bounds[6]; /* x min, x max, y min, y max, z min, z max, in world coordinates */
-    double spacing[3];       /* all 0: that of the volume; else greater than 0 */
+    /** How many voxels the output has more on each side; negative: less. */
+    int32_t padding;
+    /** The bounds in world coordinates: x min, x max, y min, y max, z min, z max. */
+    double custom_bounds[6];
+    /** The spacing, greater than 0. All 0: that of the volume. */
+    double spacing[3];
   } dv_output;
 
-  /* Null: DV_BOUNDS_DEFORMED, no padding, the spacing of the volume: the defaults. */
+  /** Sets how large the output is. Null, the default: DV_BOUNDS_DEFORMED, no padding, the spacing
+   * of the volume. */
   DV_EXPORT int32_t dv_set_output(dv_deformer* deformer, const dv_output* output);
 
-  /* The grid of the output with its whole extent, for what has been set: how much memory
+  /** The grid of the output with its whole extent, for what has been set: how much memory
    * dv_deform() needs. grid->struct_size is set by the program. Fails where the volume or
    * the displacements of a mesh are missing, and where the deformed volume covers no output voxel.
    */
   DV_EXPORT int32_t dv_output_grid(dv_deformer* deformer, dv_grid* grid);
 
-  /* How values are interpolated. */
+  /** How values are interpolated. */
   enum
   {
-    DV_LINEAR = 0,
-    DV_CUBIC = 1,
-    DV_NEAREST = 2
+    DV_LINEAR = 0, /**< linearly in each tetrahedron */
+    DV_CUBIC = 1, /**< by Catmull-Rom splines over four voxels on each axis, where they are there */
+    DV_NEAREST = 2 /**< not at all: all arrays count as categorical */
   };
 
-  /* Gets the fraction that is done, 0 to 1, in the thread that called dv_deform(). Another result
-   * than 0 aborts: dv_deform() then returns DV_ABORTED. It must neither throw nor call functions
-   * for the same deformer. */
+  /** A progress callback. It gets the fraction that is done, 0 to 1, in the thread that called
+   * dv_deform(). If it does not return 0, dv_deform() aborts and returns DV_ABORTED. It must
+   * neither throw nor call functions for the same deformer. */
   typedef int32_t (*dv_progress)(double fraction, void* user);
 
-  /* What dv_deform() is to do, and the memory for it, which is written during the call. */
+  /** What dv_deform() is to do, and the memory for it, which is written during the call. */
   typedef struct dv_request
   {
+    /** The size of the structure in bytes, set by the program. */
     size_t struct_size;
-    int32_t extent[6];         /* a part of the whole extent of the output, in its indices */
-    int32_t use_extent;        /* 0: the whole output */
-    int32_t interpolation;     /* DV_LINEAR, DV_CUBIC or DV_NEAREST */
-    int32_t number_of_outputs; /* that of the arrays */
-    int32_t incremental;       /* see below */
-    void* const* outputs;      /* room for each array: components elements of its type a voxel */
-    int8_t* coverage;          /* room for a byte a voxel: 1 where the deformed volume covers it */
-    float* rest_positions;     /* null, or room for three floats a voxel: where in the world the
-                                  tissue was at rest that is seen there */
-    float* jacobian;           /* null, or room for a float a voxel: how many times as large the
-                                  deformation makes the volume there; negative: inside out */
-    uint32_t* fold_count;      /* null, or room for an integer a voxel: how many tetrahedra of
-                                  neighbouring voxels cover it; more than 1 in folds. Not with
-                                  inverse fields */
-    double extra_background;   /* of rest_positions and jacobian where nothing is covered */
-    dv_progress progress;      /* null: no callback */
-    void* user;                /* given to progress */
+    /** A part of the whole extent of the output, in its indices. */
+    int32_t extent[6];
+    /** 0: extent is not used, and the whole output is made. */
+    int32_t use_extent;
+    /** DV_LINEAR, DV_CUBIC or DV_NEAREST. */
+    int32_t interpolation;
+    /** The number of arrays of dv_set_arrays(). */
+    int32_t number_of_outputs;
+    /** Not 0: the next call may begin with what this one wrote. If the next call is incremental,
+     * too, and has the same extent and memory, then that memory must still hold what this call
+     * wrote: only what has changed is written. The result is the same to the last bit. Not together
+     * with rest_positions, jacobian and fold_count. */
+    int32_t incremental;
+    /** For each array, room for its components of its type for each voxel. */
+    void* const* outputs;
+    /** Room for a byte a voxel: 1 where the deformed volume covers it, else 0. */
+    int8_t* coverage;
+    /** Null, or room for three floats a voxel: the world coordinates at rest of the tissue that is
+     * seen there. */
+    float* rest_positions;
+    /** Null, or room for a float a voxel: how many times as large the deformation makes the volume
+     * there; negative: inside out. */
+    float* jacobian;
+    /** Null, or room for an integer a voxel: how many tetrahedra of the sampling mesh hold it; more
+     * than 1 in folds. Not with inverse fields. */
+    uint32_t* fold_count;
+    /** The value of rest_positions and jacobian where nothing is covered. */
+    double extra_background;
+    /** The progress callback; null: none. */
+    dv_progress progress;
+    /** What progress gets as its argument user. */
+    void* user;
   } dv_request;
 
-  /* incremental: not 0 where the next call may begin with what this one wrote. If the next call is
-   * incremental, too, and has the same extent and memory, then that memory must still hold what
-   * this call wrote: only what has changed is written. The result is the same to the last bit. Not
-   * together with rest_positions, jacobian and fold_count. */
-
-  /* The results of dv_deform() besides the output. */
+  /** The results of dv_deform() besides the output. */
   typedef struct dv_report
   {
-    size_t struct_size;                    /* set by the program */
-    int64_t number_of_covered_voxels;      /* of the output */
-    int64_t number_of_inverted_tetrahedra; /* that the deformation turns inside out, of
-                                              neighbouring voxels or of the grid of the field */
-    int64_t number_of_flat_tetrahedra;     /* of the mesh, without volume at rest */
-    int64_t number_of_overstretched_cells; /* of the volume, over more than 4,000 output voxels:
-                                              tetrahedra of them are left out */
-    int64_t number_of_hidden_samples;      /* that other parts of a folded volume hide */
-    int32_t changed_extent[6];             /* holds all output voxels that may have changed since
-                                              the last call; first > last: none has */
-    const char* device;                    /* its name */
-    const char* warnings;                  /* "" where there is none */
-    /* Both texts belong to the deformer, and stay until its next dv_deform() or dv_destroy(). */
+    /** The size of the structure in bytes, set by the program. */
+    size_t struct_size;
+    /** Voxels of the output that the deformed volume covers. */
+    int64_t number_of_covered_voxels;
+    /** Tetrahedra that the deformation turns inside out: of the sampling mesh or, with an inverse
+     * field, of the grid of the field. */
+    int64_t number_of_inverted_tetrahedra;
+    /** Tetrahedra of the mesh without volume at rest. */
+    int64_t number_of_flat_tetrahedra;
+    /** Cells of the volume that are stretched over more than 4,000 output voxels. Tetrahedra of
+     * them are left out. */
+    int64_t number_of_overstretched_cells;
+    /** Samples that other parts of a folded volume hide. */
+    int64_t number_of_hidden_samples;
+    /** An extent that holds all output voxels that may have changed since the last call. First >
+     * last: none has. */
+    int32_t changed_extent[6];
+    /** The name of the device. The text belongs to the deformer, and stays until its next
+     * dv_deform() or dv_destroy(). */
+    const char* device;
+    /** The warnings; "" where there is none. The text belongs to the deformer like that of device.
+     */
+    const char* warnings;
   } dv_report;
 
-  /* Deforms the volume into the memory of the request. report may be null. */
+  /** Deforms the volume into the memory of the request. report may be null. */
   DV_EXPORT int32_t dv_deform(dv_deformer* deformer, const dv_request* request, dv_report* report);
 
-  /* Bytes that the deformer holds on the device. */
+  /** Bytes that the deformer holds on the device. */
   DV_EXPORT int32_t dv_device_memory(const dv_deformer* deformer, uint64_t* bytes);
 
-  /* Frees what the deformer holds on the device. The next dv_deform() sends it again. */
+  /** Frees what the deformer holds on the device. The next dv_deform() sends it again. */
   DV_EXPORT int32_t dv_release_memory(dv_deformer* deformer);
 
 #ifdef __cplusplus

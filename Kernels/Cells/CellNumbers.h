@@ -13,6 +13,7 @@ namespace deformvolume
 /// points of these is VTK's as well.
 namespace cellNumbers
 {
+/// Types of cells.
 enum Types : int
 {
   Tetrahedron = 10,

@@ -15,12 +15,15 @@ namespace deformvolume
 /// positions among these nodes.
 struct CellPart
 {
+  /// The nodes, by their positions in the cell's list of points.
   std::vector<int> Nodes;
+  /// The faces, by positions in Nodes.
   CellFaces Faces;
   /// Where the part is split round a node that the cell does not have: the weights of the cell's
   /// nodes there. The faces are triangles then.
   std::vector<double> CenterWeights;
 };
+/// The parts of a cell.
 using CellParts = std::vector<CellPart>;
 
 /// The position in a cell's list of points of the node at a point of the cell's lattice.

@@ -24,6 +24,7 @@ namespace deformvolume
 /// The tetrahedra of a deformation mesh, and what is said of the cells that they were made from.
 struct MeshCells
 {
+  /// The tetrahedra, cell after cell.
   std::vector<Tetrahedron> Tetrahedra;
   /// Nodes that some tetrahedra have besides those of the mesh, numbered behind these.
   DerivedNodes Derived;
@@ -59,6 +60,7 @@ public:
   /// rounding: the relative error of positions.
   CellReader(std::int32_t numberOfNodes, Positions positions, double rounding);
 
+  /// Reserves memory for so many tetrahedra.
   void Reserve(std::size_t numberOfTetrahedra)
   {
     this->Cells.Tetrahedra.reserve(numberOfTetrahedra);
@@ -69,6 +71,7 @@ public:
   /// Throws an Error where a cell of this type has another number of points.
   static void CheckSize(std::int64_t cell, int type, std::int64_t count);
 
+  /// Adds a tetrahedron as it is.
   void AddTetrahedron(const Tetrahedron& nodes) { this->Cells.Tetrahedra.push_back(nodes); }
   /// A cell of another type than Polyhedron. nodes: of the mesh, in the order of the cell. degrees:
   /// of a Lagrange cell along its axes; null: they follow from the number of nodes. Throws an Error

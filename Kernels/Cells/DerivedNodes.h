@@ -18,11 +18,15 @@ struct DerivedNodes
 {
   /// Of each the end of its nodes and their weights in the lists of all.
   std::vector<std::uint64_t> Ends;
+  /// The nodes of all sums, one derived node after the other.
   std::vector<std::int32_t> Nodes;
+  /// Their weights.
   std::vector<double> Weights;
 
+  /// How many derived nodes there are.
   std::size_t GetCount() const { return this->Ends.size(); }
 
+  /// Adds a derived node: the weighted sum of these nodes.
   void Add(const std::vector<std::int32_t>& nodes, const std::vector<double>& weights)
   {
     this->Nodes.insert(this->Nodes.end(), nodes.begin(), nodes.end());
@@ -42,6 +46,7 @@ struct DerivedNodes
     return sum;
   }
 
+  /// Whether all sums are equal.
   bool operator==(const DerivedNodes& other) const
   {
     return this->Ends == other.Ends && this->Nodes == other.Nodes && this->Weights == other.Weights;

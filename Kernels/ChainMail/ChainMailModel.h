@@ -91,6 +91,7 @@ public:
 
   /// What SetMaterials and Step would refuse of these: they throw the same.
   static void CheckMaterials(const std::vector<ChainMailMaterial>& table);
+  /// The same of a request for the voxels of an extent.
   static void CheckRequest(const Extent& extent, const ChainMailRequest& request);
 
   /// Moves the handles, and relaxes.

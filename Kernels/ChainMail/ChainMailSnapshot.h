@@ -17,11 +17,16 @@ namespace deformvolume
 /// are not at rest, 6 KiB each; one that is as in an earlier snapshot is shared with it.
 struct ChainMailSnapshot
 {
+  /// Voxels of a block.
   static constexpr std::size_t VoxelsPerBlock = 512;
+  /// Three displacements a voxel, in 1/65536 of the spacing.
   using Block = std::array<std::int32_t, 3 * VoxelsPerBlock>;
 
-  Extent Voxels{ { 0, -1, 0, -1, 0, -1 } }; // structured indices of the volume
-  std::vector<std::uint32_t> Numbers;       // of the blocks, ascending
+  /// Structured indices of the volume.
+  Extent Voxels{ { 0, -1, 0, -1, 0, -1 } };
+  /// The numbers of the blocks, ascending.
+  std::vector<std::uint32_t> Numbers;
+  /// The blocks of these numbers.
   std::vector<std::shared_ptr<const Block>> Blocks;
 };
 

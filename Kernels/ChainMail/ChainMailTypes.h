@@ -35,6 +35,7 @@ struct ChainMailHandle
   std::array<double, 3> Displacement{ { 0, 0, 0 } };
 };
 
+/// What a step of a ChainMailModel is to do.
 struct ChainMailRequest
 {
   /// The first ones come first where handles contradict each other.
@@ -49,6 +50,7 @@ struct ChainMailRequest
   std::function<bool()> Progress;
 };
 
+/// What has become of a handle in a step.
 struct ChainMailHandleReport
 {
   /// Voxels that are held: elements that are neither pinned nor held by a handle before this one.
@@ -60,6 +62,7 @@ struct ChainMailHandleReport
   bool IsHeld = true;
 };
 
+/// What a step of a ChainMailModel has done.
 struct ChainMailReport
 {
   /// Rounds over the active blocks until no bound changed, and sweeps of relaxation.
@@ -68,6 +71,7 @@ struct ChainMailReport
   std::int64_t NumberOfMovedVoxels = 0;
   /// The largest violation of a limit by a moved voxel, as a fraction of the spacing.
   double LargestViolation = 0.0;
+  /// One for each handle of the request, in the same order.
   std::vector<ChainMailHandleReport> Handles;
   /// Whether all displacements were put to 0 since the last step: by Reset(), or because links or
   /// materials were set that they would violate.
@@ -75,6 +79,7 @@ struct ChainMailReport
   /// Blocks of 8 x 8 x 8 voxels, or rows of these, in which the output was changed since the last
   /// step, as structured indices; and what holds all of them, empty if there are none.
   std::vector<Extent> Changes;
+  /// Holds all of Changes, in structured indices; empty if there are none.
   Extent ChangedExtent{ { 0, -1, 0, -1, 0, -1 } };
 };
 

@@ -22,6 +22,7 @@ namespace deformvolume
   X(Float32, float, "float")                                                                       \
   X(Float64, double, "double")
 
+/// The types of the elements of arrays.
 enum class ElementType
 {
 #define DEFORMVOLUME_ENUMERATOR(name, type, cl) name,

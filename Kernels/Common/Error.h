@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+/// The engine: deforms arrays on OpenCL devices. It has no type of VTK or of OpenCL in its
+/// interface.
 namespace deformvolume
 {
 
@@ -22,6 +24,7 @@ public:
 class DEFORMVOLUME_EXPORT Aborted : public std::exception
 {
 public:
+  /// Says "aborted".
   const char* what() const noexcept override { return "aborted"; }
 };
 

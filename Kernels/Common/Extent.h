@@ -17,10 +17,12 @@ inline std::int64_t GetSize(const Extent& extent, int axis)
   const std::int64_t size = static_cast<std::int64_t>(extent[2 * axis + 1]) - extent[2 * axis] + 1;
   return size > 0 ? size : 0;
 }
+/// Points of an extent; 0 where it is empty.
 inline std::int64_t GetNumberOfPoints(const Extent& extent)
 {
   return GetSize(extent, 0) * GetSize(extent, 1) * GetSize(extent, 2);
 }
+/// Cells of an extent; 0 where it has less than two points on an axis.
 inline std::int64_t GetNumberOfCells(const Extent& extent)
 {
   std::int64_t cells = 1;

@@ -23,7 +23,9 @@ public:
   /// vertices: structured indices of the voxels. far: the distance where there is no boundary.
   BoundaryDistances(const Extent& vertices, float far);
 
+  /// The distance where there is no boundary.
   float GetFar() const { return this->Far; }
+  /// The bricks of the vertices.
   const CellBricks& GetBricks() const { return this->Bricks; }
 
   /// Other distances before all edits, one a vertex; null: there is no boundary. sets: of the

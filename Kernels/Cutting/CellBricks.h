@@ -17,8 +17,10 @@ namespace deformvolume
 class CellBricks
 {
 public:
+  /// Cells of a whole brick on each axis.
   static constexpr int Length = 8;
-  static constexpr std::size_t Cells = 512; // of a brick that is whole
+  /// Cells of a whole brick.
+  static constexpr std::size_t Cells = 512;
 
   /// vertices: structured indices of the voxels of the volume.
   explicit CellBricks(const Extent& vertices)
@@ -33,11 +35,14 @@ public:
     }
   }
 
+  /// Structured indices of the voxels of the volume.
   const Extent& GetVertices() const { return this->Vertices; }
   /// Cells on each axis.
   const std::array<int, 3>& GetSize() const { return this->Size; }
 
+  /// Cells of the volume.
   std::size_t GetNumberOfCells() const { return Multiply(this->Size); }
+  /// Bricks of the volume, those that are not whole included.
   std::size_t GetNumberOfBricks() const { return Multiply(this->Count); }
 
   /// The brick of a cell, by its local indices.

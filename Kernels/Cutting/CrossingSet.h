@@ -22,9 +22,12 @@ struct CrossingSet
   /// What crosses the five tetrahedra of a cell. Two edits' crossings are joined by Join().
   struct Cell
   {
-    std::uint32_t Edges = 0;      // bit 6 t + k: edge k of tetrahedron t, in the order of Ends
-    std::uint32_t IsMultiple = 0; // bit t: an edge of it is crossed more than once
+    /// Crossed edges: bit 6 t + k is edge k of tetrahedron t, in the order of Ends.
+    std::uint32_t Edges = 0;
+    /// Bit t: an edge of tetrahedron t is crossed more than once.
+    std::uint32_t IsMultiple = 0;
 
+    /// Adds the crossings of another edit.
     void Join(const Cell& other)
     {
       const std::uint32_t both = this->Edges & other.Edges;
@@ -36,17 +39,21 @@ struct CrossingSet
       this->Edges |= other.Edges;
     }
   };
+  /// The two vertices of each edge of a tetrahedron.
   static constexpr int Ends[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 2 }, { 1, 3 }, { 2, 3 } };
 
+  /// One for each cell of a brick, at the number that TetrahedronSet::GetPlace() gives it.
   using Block = std::array<Cell, CellBricks::Cells>;
 
   /// Bricks of cells with crossed edges, in ascending order, and as many blocks.
   std::vector<std::size_t> Bricks;
+  /// The block of each of these bricks.
   std::vector<Block> Blocks;
   /// The signed distances of the ends of edges from the sheet: infinite for all other vertices, 0
   /// for those that are on both sides of it.
   DistanceSet Distances;
 
+  /// Whether no edge is crossed.
   bool IsEmpty() const { return this->Bricks.empty(); }
 };
 

@@ -22,8 +22,10 @@ struct DistanceSet
 
   /// Bricks with vertices of the set, in ascending order, and as many blocks.
   std::vector<std::size_t> Bricks;
+  /// The block of each of these bricks.
   std::vector<Block> Blocks;
 
+  /// Whether no vertex is in it.
   bool IsEmpty() const { return this->Bricks.empty(); }
 };
 

@@ -18,7 +18,9 @@ template <typename Block>
 class JoinedBlocks
 {
 public:
+  /// An element of a block.
   using Value = typename Block::value_type;
+  /// Joins a value with another one.
   using Join = void (*)(Value& value, const Value& other);
 
   /// empty: what joins with any value to that value.
@@ -28,6 +30,7 @@ public:
     this->Empty.fill(empty);
   }
 
+  /// Joins a block of an edit with what its brick has.
   void Add(std::size_t brick, const Block& block)
   {
     Block& joined = this->Blocks.emplace(brick, this->Empty).first->second;
@@ -37,6 +40,7 @@ public:
     }
     ++this->NumberOfJoins;
   }
+  /// Joins all blocks of an edit.
   void Add(const std::vector<std::size_t>& bricks, const std::vector<Block>& blocks)
   {
     for (std::size_t i = 0; i < bricks.size(); ++i)
@@ -44,6 +48,7 @@ public:
       this->Add(bricks[i], blocks[i]);
     }
   }
+  /// Forgets what some bricks have.
   void Forget(const std::vector<std::size_t>& bricks)
   {
     for (const std::size_t brick : bricks)
@@ -63,6 +68,7 @@ public:
       }
     }
   }
+  /// Forgets everything.
   void Clear() { this->Blocks.clear(); }
 
   /// Null where no edit has a block.
@@ -74,6 +80,7 @@ public:
 
   /// Blocks of edits that were joined: what edits cost.
   std::uint64_t GetNumberOfJoins() const { return this->NumberOfJoins; }
+  /// Bytes that the blocks take.
   std::uint64_t GetMemory() const
   {
     return this->Blocks.size() * (sizeof(Block) + sizeof(std::size_t));

@@ -42,6 +42,7 @@ public:
   /// axis.
   explicit MaskEditor(const Extent& vertices, float far = std::numeric_limits<float>::max());
 
+  /// The bricks of the cells.
   const CellBricks& GetBricks() const { return this->Bricks; }
 
   /// Another mask before all edits, one byte a cell; null: all are active. The edits stay. changes:
@@ -69,7 +70,9 @@ public:
   /// Removes all edits: the mask is the base.
   void Reset();
 
+  /// Edits that are not undone.
   std::size_t GetNumberOfEdits() const { return this->Edits.size(); }
+  /// Edits that Redo() can make again.
   std::size_t GetNumberOfUndoneEdits() const { return this->Undone.size(); }
 
   /// The mask, one byte a cell, x varying fastest.
@@ -84,11 +87,14 @@ public:
   bool HasSmoothCuts() const;
   /// What is divided, where an edit or the cut before all edits does so.
   SmoothCrossings& GetSmoothCrossings() { return this->Crossings; }
+  /// The same, to be read only.
   const SmoothCrossings& GetSmoothCrossings() const { return this->Crossings; }
 
   /// Whether an edit has boundary distances.
   bool HasDistanceEdits() const;
+  /// The boundary distance where there is no boundary.
   float GetFarDistance() const { return this->Distances.GetFar(); }
+  /// The bricks of the vertices.
   const CellBricks& GetVertexBricks() const { return this->Distances.GetBricks(); }
   /// The boundary distances, one a vertex, where there are some.
   const std::vector<float>& GetDistances() const { return this->Distances.Get(); }

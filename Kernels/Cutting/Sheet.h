@@ -30,6 +30,7 @@ public:
 
   /// The triangles after rounding, those without area included.
   const std::vector<SnappedTriangle>& GetTriangles() const { return this->Triangles; }
+  /// The box of all triangles; empty where there are none.
   const SnappedBox& GetBox() const { return this->Box; }
 
   /// Whether each edge is one of an even number of triangles, points in one place being one: such

@@ -29,7 +29,9 @@ public:
   /// vertices: structured indices of the voxels.
   explicit SmoothCrossings(const Extent& vertices);
 
+  /// The bricks of the cells.
   const CellBricks& GetBricks() const { return this->Bricks; }
+  /// The bricks of the vertices.
   const CellBricks& GetVertexBricks() const { return this->VertexBricks; }
 
   /// Another cut before all edits, as GetCrossed() and GetDistances() have it; null: there is none.
@@ -69,6 +71,7 @@ public:
   std::vector<std::size_t> TakeChangedVertexBricks();
   ///@}
 
+  /// Bytes of memory.
   std::uint64_t GetMemory() const;
 
 private:

@@ -18,6 +18,7 @@ constexpr std::int64_t StepsPerVoxel = 256;
 
 /// A position in steps of 1/256 voxel, in structured indices of the volume.
 using SnappedPoint = glm::i64vec3;
+/// The corners of a triangle.
 using SnappedTriangle = std::array<SnappedPoint, 3>;
 
 /// The nearest snapped point to a continuous index, which is finite.
@@ -37,16 +38,21 @@ inline glm::dvec3 GetIndex(const SnappedPoint& point)
 /// A box with its faces; empty until something is added.
 struct SnappedBox
 {
+  /// The lowest coordinate on each axis.
   SnappedPoint Min{ 1 };
+  /// The highest coordinate on each axis.
   SnappedPoint Max{ -1 };
 
+  /// Whether nothing has been added.
   bool IsEmpty() const { return this->Min.x > this->Max.x; }
+  /// Makes the box hold a point.
   void Add(const SnappedPoint& point)
   {
     const bool isEmpty = this->IsEmpty();
     this->Min = isEmpty ? point : glm::min(this->Min, point);
     this->Max = isEmpty ? point : glm::max(this->Max, point);
   }
+  /// Makes the box hold another one.
   void Add(const SnappedBox& other)
   {
     if (!other.IsEmpty())
@@ -70,6 +76,7 @@ struct SnappedBox
   }
 };
 
+/// The box of the corners of a triangle.
 inline SnappedBox GetBox(const SnappedTriangle& triangle)
 {
   SnappedBox box;

@@ -18,6 +18,7 @@ struct TetrahedronSet
   /// the brick is number (z * 8 + y) * 8 + x.
   using Block = std::array<unsigned char, CellBricks::Cells>;
 
+  /// The number of a cell in the block of its brick.
   static std::size_t GetPlace(int x, int y, int z)
   {
     return static_cast<std::size_t>((z * CellBricks::Length + y) * CellBricks::Length + x);
@@ -25,8 +26,10 @@ struct TetrahedronSet
 
   /// Bricks with tetrahedra of the set, in ascending order, and as many blocks.
   std::vector<std::size_t> Bricks;
+  /// The block of each of these bricks.
   std::vector<Block> Blocks;
 
+  /// Whether there are no tetrahedra in it.
   bool IsEmpty() const { return this->Bricks.empty(); }
 };
 

@@ -27,6 +27,7 @@ public:
   VertexPositions(const VertexPositions&) = delete;
   VertexPositions& operator=(const VertexPositions&) = delete;
 
+  /// The bricks of the cells.
   const CellBricks& GetBricks() const { return this->Bricks; }
 
   /// A box that holds all vertices of a brick; empty where none has a position.

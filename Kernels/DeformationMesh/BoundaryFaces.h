@@ -16,7 +16,9 @@ namespace deformvolume
 /// A face of a tetrahedron: the one opposite to one of its nodes.
 struct TetrahedronFace
 {
+  /// The number of the tetrahedron.
   std::int32_t Tetrahedron = 0;
+  /// Which of its nodes is opposite to the face, 0 to 3.
   std::int32_t Opposite = 0;
 
   /// Its nodes, in the order in which the tetrahedron has them.

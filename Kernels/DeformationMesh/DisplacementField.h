@@ -20,6 +20,7 @@ constexpr double FieldTolerance = 1e-3;
 /// A displacement field on a regular grid, trilinear between its points.
 struct DisplacementField
 {
+  /// Points on each axis.
   std::array<int, 3> Dimensions{ { 0, 0, 0 } };
   /// Three floats a point, x varying fastest.
   const float* Vectors = nullptr;

@@ -24,9 +24,13 @@ namespace deformvolume
 /// A box, in continuous output indices where nothing else is said.
 struct IndexBounds
 {
+  /// The lowest coordinate on each axis.
   glm::dvec3 Min{ 1.0 };
+  /// The highest coordinate on each axis.
   glm::dvec3 Max{ -1.0 };
+  /// Whether nothing has been added.
   bool IsEmpty() const { return this->Min.x > this->Max.x; }
+  /// Makes the box hold a point.
   void Add(const glm::dvec3& point)
   {
     if (this->IsEmpty())
@@ -38,6 +42,7 @@ struct IndexBounds
     this->Min = glm::min(this->Min, point);
     this->Max = glm::max(this->Max, point);
   }
+  /// Makes the box hold another one.
   void Add(const IndexBounds& other)
   {
     if (!other.IsEmpty())
@@ -73,6 +78,7 @@ inline IndexBounds GetBox(const VoxelGrid& voxelGrid)
 class OutputTransform
 {
 public:
+  /// The transform of a map, which has an inverse.
   explicit OutputTransform(const OutputMap& map)
     : Shift(map.Shift[0], map.Shift[1], map.Shift[2])
     , IsDiagonal(map.IsDiagonal())
@@ -98,10 +104,12 @@ public:
     }
   }
 
+  /// The continuous index in the output of a continuous index of the volume.
   glm::dvec3 ToOutput(const glm::dvec3& index) const
   {
     return (this->IsDiagonal ? this->Scale * index : this->Matrix * index) + this->Shift;
   }
+  /// The continuous index in the volume of a continuous index of the output.
   glm::dvec3 ToIndex(const glm::dvec3& position) const
   {
     const glm::dvec3 moved = position - this->Shift;
@@ -121,8 +129,11 @@ public:
     }
     return bounds;
   }
+  /// The step in the output from voxel to voxel: column by column the axes of the volume.
   const glm::dmat3& GetMatrix() const { return this->Matrix; }
+  /// The inverse of GetMatrix().
   const glm::dmat3& GetInverse() const { return this->Inverse; }
+  /// Where the index (0, 0, 0) of the volume lies in the output.
   const glm::dvec3& GetShift() const { return this->Shift; }
   /// By how many voxels of the volume, on each of its axes, a place may be off where it is off by
   /// some output voxels on each axis of the output; one at most.
@@ -141,11 +152,13 @@ private:
   bool IsDiagonal;
 };
 
+/// The transform of a voxel grid.
 inline OutputTransform GetOutputTransform(const VoxelGrid& voxelGrid)
 {
   return OutputTransform(voxelGrid.ToOutput);
 }
 
+/// Whether no coordinate is infinite or not-a-number.
 inline bool IsFinite(const glm::dvec3& v)
 {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);

@@ -40,9 +40,11 @@ struct MeshBoundary
   /// (z * (cells on y) + y) * (cells on x) + x counted from the first cell of the volume, in
   /// ascending order.
   std::vector<std::int64_t> Crossed;
+  /// These cells and their neighbours, numbered alike, in ascending order.
   std::vector<std::int64_t> Near;
   /// What meets cells of Near.
   std::vector<Piece> Pieces;
+  /// Whether the boundary crosses no cell.
   bool IsEmpty() const { return this->Near.empty(); }
 };
 

@@ -21,6 +21,7 @@ inline double GetFadedSlope(double distance)
 /// What becomes of the voxels outside a deformation mesh or field.
 struct OutsideVoxels
 {
+  /// What becomes of them.
   enum class Modes
   {
     Discard, // they have no place after the deformation
@@ -29,24 +30,31 @@ struct OutsideVoxels
     Keep // they stay where they are, but for those near the mesh or the field
   };
 
+  /// fadeDistance counts with Keep only.
   OutsideVoxels(Modes mode, double fadeDistance = 0.0)
     : Mode(mode)
     , FadeDistance(mode == Modes::Keep ? fadeDistance : 0.0)
   {
   }
+  /// True: Extrapolate, false: Discard.
   OutsideVoxels(bool extrapolate = false)
     : OutsideVoxels(extrapolate ? Modes::Extrapolate : Modes::Discard)
   {
   }
 
+  /// Whether the mode is Discard.
   bool AreDiscarded() const { return this->Mode == Modes::Discard; }
+  /// Whether the mode is Extrapolate.
   bool AreExtrapolated() const { return this->Mode == Modes::Extrapolate; }
+  /// Whether the mode is Keep.
   bool AreKept() const { return this->Mode == Modes::Keep; }
+  /// Whether mode and distance are equal.
   bool operator==(const OutsideVoxels& other) const
   {
     return this->Mode == other.Mode && this->FadeDistance == other.FadeDistance;
   }
 
+  /// What becomes of them.
   Modes Mode;
   /// Of Keep: how far from the mesh or the field the displacement of its boundary fades to zero, in
   /// world units; 0: no voxel outside moves.

@@ -16,8 +16,11 @@ using Tetrahedron = std::array<std::int32_t, 4>;
 /// A tetrahedron that has got other nodes.
 struct TetrahedronChange
 {
+  /// The number of the tetrahedron.
   std::int32_t Number = 0;
+  /// Its nodes before.
   Tetrahedron Before{};
+  /// Its nodes now.
   Tetrahedron After{};
 };
 

@@ -11,13 +11,17 @@ namespace deformvolume
 
 /// Positions are rounded to this fraction of a voxel, so that the edge functions are exact.
 constexpr int RasterBits = 8;
+/// Raster units of a voxel.
 constexpr std::int64_t RasterUnit = std::int64_t{ 1 } << RasterBits;
 
 /// A box of voxels, both ends included.
 struct VoxelBox
 {
+  /// The first voxel on each axis.
   std::array<std::int64_t, 3> Min{ { 0, 0, 0 } };
+  /// The last voxel on each axis.
   std::array<std::int64_t, 3> Max{ { -1, -1, -1 } };
+  /// Whether there is no voxel in it.
   bool IsEmpty() const
   {
     return this->Min[0] > this->Max[0] || this->Min[1] > this->Max[1] ||
@@ -28,6 +32,7 @@ struct VoxelBox
 /// A position in raster units.
 using RasterPoint = std::array<std::int64_t, 3>;
 
+/// The nearest multiple of a raster unit to a continuous index, in raster units.
 inline std::int64_t RoundToRaster(double index)
 {
   const double scaled = index * static_cast<double>(RasterUnit);

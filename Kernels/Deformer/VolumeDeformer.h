@@ -79,6 +79,8 @@ public:
   /// needs the volume whole.
   void SetVoxelGrid(
     const VoxelGrid& voxelGrid, std::size_t bytesPerVoxel = 16, bool withLinks = true);
+  /// The arrays of the volume, in the order of DeformRequest::Outputs. Types and components decide
+  /// which kernels are compiled.
   void SetArrays(const std::vector<VolumeArray>& arrays);
 
   /// Changes which arrays are categorical and their background, and sends nothing: of arrays of the
@@ -171,6 +173,8 @@ public:
   void SetDisplacementField(
     const DisplacementField& field, const std::shared_ptr<DeviceVectors>& vectors);
 
+  /// Deforms the volume into the memory of the request. Throws Aborted where the progress callback
+  /// asked for an end.
   DeformReport Deform(const DeformRequest& request);
 
   /// Bytes allocated on the device.

@@ -25,6 +25,7 @@ enum class MaterialModel
   Corotational
 };
 
+/// How far a solution goes.
 enum class EquilibriumMode
 {
   /// A frame of an animation: few steps, each as far as the next one needs it. What is left is
@@ -53,17 +54,22 @@ struct EquilibriumLimits
   double AbsoluteTolerance = 0.0;
 };
 
+/// What FiniteElementModel::Solve() is to do.
 struct EquilibriumRequest
 {
   /// Nodes that are moved, besides those of the body that are fixed at rest.
   std::vector<HeldNode> Held;
+  /// Forces, gravity and the displacements of fixed nodes.
   BodyLoads Loads;
+  /// Whether to go all the way to equilibrium.
   EquilibriumMode Mode = EquilibriumMode::Interactive;
+  /// When to stop; by default the mode says it.
   EquilibriumLimits Limits;
   /// Called every few milliseconds, in the thread that called; returning false aborts.
   std::function<bool()> Progress;
 };
 
+/// What FiniteElementModel::Solve() has done.
 struct EquilibriumReport
 {
   /// Whether the residual is within the tolerances.
@@ -81,6 +87,7 @@ struct EquilibriumReport
   /// Pieces of the body (BodyPieces) that are not held by three nodes that lie on no common line,
   /// and a tetrahedron of the first of them. They bear no loads, and exert no forces.
   std::int32_t NumberOfFrozenPieces = 0;
+  /// A tetrahedron of the first frozen piece, for a message; -1 where no piece is frozen.
   std::int32_t FirstFrozenTetrahedron = -1;
   /// Those of them that have gone like rigid bodies with nodes that hold or that they share with
   /// others; the rest has stayed where it was.

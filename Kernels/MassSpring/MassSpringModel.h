@@ -17,6 +17,7 @@
 namespace deformvolume
 {
 
+/// What MassSpringModel::Advance() is to do.
 struct MassSpringRequest
 {
   /// Time to go on by, in s; 0 or more.
@@ -29,15 +30,19 @@ struct MassSpringRequest
   /// Nodes that handles move. They go in straight lines to where they are wanted, within the
   /// duration.
   std::vector<HeldNode> Held;
+  /// Forces and gravity.
   BodyLoads Loads;
   /// Called now and then with how much of the duration is behind, 0 to 1; returning false aborts.
   std::function<bool(double)> Progress;
 };
 
+/// What MassSpringModel::Advance() has done.
 struct MassSpringReport
 {
+  /// Time steps that were made.
   std::int64_t NumberOfSteps = 0;
-  double TimeStep = 0.0; // that was used, in s
+  /// The time step that was used, in s.
+  double TimeStep = 0.0;
   /// Tetrahedra that are inside out at the end. Springs may keep them so.
   std::int64_t NumberOfInvertedTetrahedra = 0;
 };

@@ -39,10 +39,13 @@ DEFORMVOLUME_EXPORT void SetKernelLinker(const std::string& folder);
 /// What a driver says of a device.
 struct DeviceSummary
 {
-  std::string Name; // as GetDeviceNames() has it
+  /// The name, as GetDeviceNames() has it.
+  std::string Name;
+  /// Whether it is a processor, which works in the memory of the host.
   bool IsProcessor = false;
   /// By a renderer in software, or by an interpreter: such devices are slow.
   bool IsEmulated = false;
+  /// Whether it has double precision.
   bool DoublePrecision = false;
 };
 

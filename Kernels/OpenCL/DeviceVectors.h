@@ -37,6 +37,7 @@ public:
   const std::string& GetDevice() const;
   /// Whether it has them in the memory of the host.
   bool AreInHostMemory() const;
+  /// How many vectors there are.
   std::size_t GetNumberOfPoints() const;
   /// Bytes allocated on the device.
   std::uint64_t GetDeviceMemory() const;
@@ -58,6 +59,7 @@ public:
 
   /// For objects of this library that work on the device.
   class DEFORMVOLUME_NO_EXPORT Internals;
+  /// For objects of this library.
   Internals& GetInternals() { return *this->Impl; }
 
 private:

@@ -13,6 +13,7 @@
 namespace deformvolume
 {
 
+/// How an output is made.
 enum class Resampling
 {
   /// The exact fill rule: every covered voxel is written by exactly one tetrahedron. The kernel is
@@ -46,9 +47,12 @@ enum class Interpolation
   Cubic
 };
 
+/// What VolumeDeformer::Deform() is to do, and the memory for it.
 struct DeformRequest
 {
+  /// The resampler.
   Resampling Method = Resampling::Exact;
+  /// How arrays that are not categorical are interpolated.
   deformvolume::Interpolation Interpolation = deformvolume::Interpolation::Linear;
   /// Structured indices of the output voxels.
   Extent OutputExtent{ { 0, -1, 0, -1, 0, -1 } };
@@ -82,6 +86,7 @@ struct DeformRequest
   /// from which it is copied, whatever the device. Empty and null where there is none. An output
   /// that stays on the device needs neither.
   std::vector<const void*> LastOutputs;
+  /// As LastOutputs, of Coverage.
   const signed char* LastCoverage = nullptr;
   /// DeformReport::Revision of the output that Outputs and Coverage hold, where these are other
   /// memory than that of the last output, and unchanged; 0: they hold nothing of use. Where it is
@@ -94,8 +99,10 @@ struct DeformRequest
   std::function<void(bool)> Compiling;
 };
 
+/// What VolumeDeformer::Deform() has done.
 struct DeformReport
 {
+  /// Voxels of the output that the deformed volume covers.
   std::int64_t NumberOfCoveredVoxels = 0;
   /// Active tetrahedra of the sampling mesh that the deformation turns inside out; with
   /// MeshRasterization tetrahedra of the deformation mesh.
@@ -114,6 +121,7 @@ struct DeformReport
   /// Bricks of 192 x 16 x 16 cells of the volume, and how many of them were resampled: fewer only
   /// in an incremental update. 0 for MeshRasterization.
   std::int64_t NumberOfBricks = 0;
+  /// The bricks that were resampled.
   std::int64_t NumberOfResampledBricks = 0;
   /// What tells this output from others that this deformer has made; 0: nothing is kept of it.
   std::uint64_t Revision = 0;
@@ -126,7 +134,9 @@ struct DeformReport
   /// Seconds. The exact kernels map and resample in one: their MappingTime is 0. With
   /// MeshRasterization the mapping is the listing of the tetrahedra of each part of the output.
   double MappingTime = 0.0;
+  /// Seconds for the resampling.
   double ResamplingTime = 0.0;
+  /// Seconds for copies to and from the device.
   double TransferTime = 0.0;
   /// The compilation of kernels; it is part of no other time.
   double CompilationTime = 0.0;

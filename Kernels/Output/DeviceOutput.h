@@ -36,9 +36,12 @@ public:
   /// What a component holds: from the least to the largest of the values that are finite.
   struct Range
   {
+    /// The least finite value.
     double Least = 0.0;
+    /// The largest finite value.
     double Largest = 0.0;
-    bool AllFinite = false; // no value is infinite or no number
+    /// Whether no value is infinite or not-a-number.
+    bool AllFinite = false;
   };
   /// Found on the device, as nobody reads the values for that. Nothing where they are not there,
   /// where there is no such component, where none is finite, or where they are integers of 64 bits,
@@ -52,7 +55,9 @@ public:
 
   /// For objects of this library.
   class DEFORMVOLUME_NO_EXPORT Internals;
+  /// For objects of this library.
   DEFORMVOLUME_NO_EXPORT explicit DeviceOutput(std::shared_ptr<Internals> internals);
+  /// For objects of this library.
   const std::shared_ptr<Internals>& GetInternals() const { return this->Impl; }
 
 private:

@@ -20,17 +20,21 @@ class Watch;
 /// in common: one, or two at a hinge, or more.
 struct BodyPieces
 {
+  /// The piece of each tetrahedron.
   std::vector<std::int32_t> PieceOfTetrahedron;
   /// The tetrahedra of one piece after the other, and where those of each begin; one more is the
   /// end.
   std::vector<std::int32_t> Tetrahedra;
+  /// Where the tetrahedra of each piece begin in Tetrahedra; one more is the end.
   std::vector<std::size_t> Begins;
   /// Of each node the lowest of its pieces; -1 for a node without a tetrahedron.
   std::vector<std::int32_t> PieceOfNode;
   /// Nodes with several pieces, each with one of these, the lowest included: sorted by nodes, and
   /// the other way round by pieces.
   std::vector<std::pair<std::int32_t, std::int32_t>> SharedNodes;
+  /// Pairs of a piece and a node that it shares, sorted by pieces.
   std::vector<std::pair<std::int32_t, std::int32_t>> SharedByPieces;
+  /// How many pieces there are.
   std::int32_t NumberOfPieces = 0;
 };
 /// watch: of the engine; asked now and then.
@@ -40,11 +44,15 @@ DEFORMVOLUME_EXPORT BodyPieces FindPieces(const ElasticBody& body, Watch* watch 
 /// those of handles, and those that it shares with a piece that is held, or that follows itself.
 struct FollowingPiece
 {
+  /// The number of the piece.
   std::int32_t Piece;
+  /// A node of the piece that others move.
   std::int32_t First;
-  std::int32_t Second; // -1: no second one
+  /// Another such node; -1: there is none.
+  std::int32_t Second;
 };
 
+/// Which pieces of a body are held, and which follow others.
 struct PieceSupports
 {
   /// Of each piece whether fixed nodes, those of handles and those that it shares with a held piece

@@ -69,10 +69,12 @@ struct ElasticBody
   /// The sine of the largest angle between what counts as parallel: coordinates may be floats.
   static constexpr double LargestSine = 1e-3;
 
+  /// The material of a tetrahedron.
   const ElasticMaterial& GetMaterial(std::size_t tetrahedron) const
   {
     return this->Materials[this->Materials.size() == 1 ? 0 : tetrahedron];
   }
+  /// Whether a node is fixed.
   bool IsFixed(std::size_t node) const { return !this->Fixed.empty() && this->Fixed[node] != 0; }
 
   /// Calls take(node) for all nodes of a tetrahedron, first the corners.
@@ -96,6 +98,7 @@ struct ElasticBody
 /// A node that is moved by a handle.
 struct HeldNode
 {
+  /// The number of the node.
   std::int32_t Node = 0;
   /// Where it is displaced to, in metres.
   glm::dvec3 Displacement{ 0.0 };

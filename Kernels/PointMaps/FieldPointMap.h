@@ -19,18 +19,22 @@ namespace deformvolume
 /// outlive what uses it.
 struct WorldField
 {
+  /// Points on each axis.
   std::array<int, 3> Dimensions{ { 0, 0, 0 } };
   /// From indices, 0 being the first point, to world coordinates.
   glm::dmat4 IndexToWorld{ 1.0 };
   /// Three values a point, x varying fastest, of which one pointer is set; and a factor on them.
   const float* Floats = nullptr;
+  /// As Floats, in double precision.
   const double* Doubles = nullptr;
+  /// A factor on the vectors.
   double Scale = 1.0;
   /// One byte a point, 1: its vector is not known; null: all are.
   const unsigned char* Undefined = nullptr;
   /// Cells by which a point may be outside and count as inside.
   double Tolerance = 0.0;
 
+  /// The vector of a point, times Scale, in world units.
   glm::dvec3 GetVector(std::int64_t point) const
   {
     const std::int64_t first = 3 * point;

@@ -19,7 +19,9 @@ public:
   /// Where a point goes, and the derivatives of that by where it was.
   struct Image
   {
+    /// Where the point goes.
     glm::dvec3 Point{ 0.0 };
+    /// The derivatives of Point by where the point was: column k by coordinate k.
     glm::dmat3 Gradient{ 1.0 };
     /// Outside, how far the point of the border moves whose displacement fades there; else 0.
     double FadingDisplacement = 0.0;

@@ -26,6 +26,7 @@ struct OutputMap
   {
   }
 
+  /// An element of Matrix.
   double Get(int row, int column) const
   {
     return this->Matrix[static_cast<std::size_t>(3 * row + column)];
@@ -47,10 +48,12 @@ struct OutputMap
     return m[0] * (m[4] * m[8] - m[5] * m[7]) + m[1] * (m[5] * m[6] - m[3] * m[8]) +
       m[2] * (m[3] * m[7] - m[4] * m[6]);
   }
+  /// Whether matrix and shift are equal.
   bool operator==(const OutputMap& other) const
   {
     return this->Matrix == other.Matrix && this->Shift == other.Shift;
   }
+  /// Whether one of them differs.
   bool operator!=(const OutputMap& other) const { return !(*this == other); }
 };
 

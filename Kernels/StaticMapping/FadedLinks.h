@@ -43,6 +43,7 @@ public:
   bool AreThere() const { return this->FadeDistance >= 0.0; }
   /// In ascending order of tetrahedra.
   const std::vector<TetrahedronFace>& GetFaces() const { return this->Faces; }
+  /// How many records there are behind the tetrahedra of the mesh.
   std::size_t GetNumberOfRecords() const { return this->AreThere() ? 1 + this->Faces.size() : 0; }
   /// The nodes of a record. still: the node that never moves. tetrahedra: of the mesh, as they are
   /// now.
@@ -64,6 +65,7 @@ public:
   /// boundary. Where many are in question, the number is an estimate from some of them.
   std::int64_t CountStretched(
     const std::vector<Tetrahedron>& tetrahedra, const float* displacements) const;
+  /// Whether the number of the last CountStretched() is an estimate.
   bool IsCountEstimated() const { return this->Stretched.IsCountEstimated(); }
 
   /// The longest displacement of the nodes of faces. spacing: of the output.

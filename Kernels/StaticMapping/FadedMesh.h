@@ -31,9 +31,11 @@ public:
   /// changes: all others are those of the last call; null: any may have changed.
   void Move(const float* displacements, std::size_t numberOfNodes, const PointRanges* changes);
 
+  /// The tetrahedra of the mesh, and then the records.
   const std::vector<Tetrahedron>& GetTetrahedra() const { return this->Tetrahedra; }
   /// The one that never moves is the last.
   std::size_t GetNumberOfNodes() const { return this->NumberOfNodes; }
+  /// Three floats a node, in output voxels.
   const std::vector<float>& GetDisplacements() const { return this->Displacements; }
 
 private:

@@ -30,7 +30,9 @@ struct RestTetrahedron
 {
   /// Local index of a voxel in the tetrahedron.
   std::array<double, 3> Origin{ { 0.0, 0.0, 0.0 } };
+  /// The first three weights at Origin.
   std::array<double, 3> Weights{ { 0.0, 0.0, 0.0 } };
+  /// How each of these weights changes along the axes, for each voxel.
   std::array<std::array<double, 3>, 3> Gradients{};
   /// Index of the tetrahedron in the deformation mesh.
   std::int32_t Tetrahedron = 0;
@@ -39,6 +41,7 @@ struct RestTetrahedron
 /// The static mapping where many voxels lie in each tetrahedron: runs instead of a link a voxel.
 struct VertexRuns
 {
+  /// The runs of all rows, one row after the other.
   std::vector<VertexRun> Runs;
   /// The runs of row r = z * (voxels on y) + y, in local indices, are those from RowBegins[r] to
   /// RowBegins[r + 1].
@@ -71,6 +74,7 @@ constexpr std::int64_t LargestRunSize = 1 << 24;
 /// Bytes of a mapping by so many runs, rows and records, on the device; the host has about as many.
 DEFORMVOLUME_EXPORT std::uint64_t GetRunBytes(
   std::uint64_t runs, std::uint64_t rows, std::uint64_t records);
+/// The same of some runs.
 DEFORMVOLUME_EXPORT std::uint64_t GetBytes(const VertexRuns& runs);
 
 /// Throws Error unless there is a row of runs for each row of voxels, begins ascend from 0 within

@@ -21,15 +21,23 @@ namespace deformvolume
 /// not.
 struct DEFORMVOLUME_EXPORT ImageGeometry
 {
+  /// Structured indices of the points.
   Extent PointExtent{ { 0, -1, 0, -1, 0, -1 } };
+  /// World coordinates of the index (0, 0, 0).
   glm::dvec3 Origin{ 0.0 };
+  /// The distance of neighbouring points on each axis, in world units.
   glm::dvec3 Spacing{ 1.0 };
+  /// The axes in the world, as columns.
   glm::dmat3 Direction{ 1.0 };
 
+  /// Takes structured indices to world coordinates.
   glm::dmat4 GetIndexToWorld() const;
+  /// Takes world coordinates to continuous structured indices.
   glm::dmat4 GetWorldToIndex() const;
 
+  /// Whether extent, origin, spacing and direction are equal.
   bool operator==(const ImageGeometry& other) const;
+  /// Whether one of them differs.
   bool operator!=(const ImageGeometry& other) const { return !(*this == other); }
 };
 

@@ -19,13 +19,17 @@ namespace deformvolume
 /// What a static mapping is made for.
 struct MappedVolume
 {
+  /// The whole volume.
   ImageGeometry Whole;
   /// The voxels to map: all of them, or a part with whole rows where voxels outside the mesh are
   /// discarded.
   Extent Part{ { 0, -1, 0, -1, 0, -1 } };
+  /// What becomes of voxels outside the mesh.
   OutsideVoxels Outside;
 
+  /// Whether the whole volume is mapped.
   bool IsWhole() const { return this->Part == this->Whole.PointExtent; }
+  /// Whether the same voxels are mapped in the same way.
   bool operator==(const MappedVolume& other) const
   {
     return this->Whole == other.Whole && this->Part == other.Part && this->Outside == other.Outside;
@@ -50,11 +54,15 @@ public:
   /// Whether the mapping is that of a volume and a mesh, with or without its links or runs.
   bool IsCurrent(const MeshAtRest& mesh, const MappedVolume& volume) const;
 
+  /// The mapping of the last Update().
   const StaticMapping& GetMapping() const { return this->Mapping; }
+  /// Its links; empty where it has runs.
   const std::vector<VertexLink>& GetLinks() const { return this->Mapping.Links; }
+  /// Its runs; empty where it has links.
   const VertexRuns& GetRuns() const { return this->Mapping.Runs; }
   /// Whether it has runs, and not links.
   bool IsByRuns() const { return this->RunBytes > 0; }
+  /// Whether the mapping has its links or runs: not after ReleaseVoxels().
   bool HasVoxels() const
   {
     return !this->Mapping.Links.empty() || !this->Mapping.Runs.Runs.empty();
@@ -64,7 +72,9 @@ public:
 
   /// Changes with the mapping.
   std::uint64_t GetVersion() const { return this->Version; }
+  /// Tetrahedra of the mesh without volume at rest.
   std::int64_t GetNumberOfFlatTetrahedra() const { return this->Mapping.NumberOfFlatTetrahedra; }
+  /// How many mappings Update() has made.
   std::int64_t GetNumberOfBuilds() const { return this->NumberOfBuilds; }
 
   /// Seconds spent since the last call.

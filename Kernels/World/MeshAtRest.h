@@ -15,6 +15,7 @@ namespace deformvolume
 /// A deformation mesh at rest, which somebody else holds.
 struct MeshAtRest
 {
+  /// The tetrahedra of the mesh.
   const std::vector<Tetrahedron>& Tetrahedra;
   /// The nodes in continuous indices of the volume.
   const std::vector<glm::dvec3>& Points;

@@ -18,6 +18,7 @@ namespace deformvolume
 class NodeFaults
 {
 public:
+  /// What is wrong with a node.
   enum Kind : unsigned char
   {
     None,
@@ -26,12 +27,15 @@ public:
     Missing
   };
 
+  /// There are so many nodes; new ones have no fault.
   void Resize(std::size_t count) { this->Kinds.resize(count, None); }
+  /// There are no nodes.
   void Reset()
   {
     this->Kinds.clear();
     this->Any = false;
   }
+  /// A node has a fault.
   void Mark(std::int64_t node, Kind kind)
   {
     this->Kinds[static_cast<std::size_t>(node)] = kind;
@@ -45,7 +49,9 @@ public:
       std::fill_n(this->Kinds.begin() + first, count, None);
     }
   }
+  /// False: no node has a fault.
   bool MayHaveAny() const { return this->Any; }
+  /// The fault of a node, or None.
   Kind Get(std::int64_t node) const
   {
     return static_cast<Kind>(this->Kinds[static_cast<std::size_t>(node)]);

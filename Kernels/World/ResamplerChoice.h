@@ -15,18 +15,25 @@ namespace deformvolume
 /// What is asked for.
 struct ResamplerWish
 {
+  /// What deforms the volume.
   enum class Kinds
   {
     Mesh,
     ForwardField,
     InverseField
   };
+  /// What deforms the volume.
   Kinds Deformation = Kinds::Mesh;
-  std::optional<Resampling> Method; // none: the choice is free
+  /// The resampler that is asked for; none: the choice is free.
+  std::optional<Resampling> Method;
+  /// What becomes of voxels outside.
   OutsideVoxels Outside;
-  bool HasSmoothCut = false;  // of the volume, which Exact alone knows
-  bool NeedsJacobian = false; // of the deformation, which a mesh has with Exact alone
-  bool CountsFolds = false;   // the same
+  /// Whether the volume has a smooth cut, which Exact alone knows.
+  bool HasSmoothCut = false;
+  /// Whether the Jacobian is asked for, which a mesh has with Exact alone.
+  bool NeedsJacobian = false;
+  /// Whether folds are counted, which a mesh has with Exact alone.
+  bool CountsFolds = false;
 };
 
 /// The resampler for a deformation. fits tells whether the memory suffices for one. Throws an Error

@@ -26,6 +26,7 @@ DEFORMVOLUME_EXPORT glm::dmat3 GetToDisplacement(
 class DEFORMVOLUME_EXPORT VectorConversion
 {
 public:
+  /// toDisplacement: GetToDisplacement() of the volume.
   explicit VectorConversion(const glm::dmat3& toDisplacement);
 
   /// displacements: three floats each. Returns false where one is not finite, or over
