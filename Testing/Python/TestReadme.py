@@ -1,18 +1,24 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The lines of Python in README.md, and in that of the package, as they stand there: TestReadme.py SOURCE PACKAGE, where
-PACKAGE is the folder that has the package deformvolume."""
+"""The documents: links lead somewhere, commands have options that exist, and the Python in them runs as it stands there.
+TestReadme.py SOURCE PACKAGE, where PACKAGE is the folder that has the package deformvolume."""
+import pathlib
 import re
 import sys
 import types
 
 import numpy
 
+source = pathlib.Path(sys.argv[1])
 sys.path.insert(0, sys.argv[2])
 
 
-def read_blocks(name):
-    text = open(f"{sys.argv[1]}/{name}", encoding="utf-8").read()
-    return re.findall(r"^```python\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
+def read(path):
+    return path.read_text(encoding="utf-8")
+
+
+def read_blocks(name, language):
+    pattern = rf"^```{language}\n(.*?)^```$"
+    return re.findall(pattern, read(source / name), re.MULTILINE | re.DOTALL)
 
 
 def run(block):
@@ -21,25 +27,64 @@ def run(block):
     return names
 
 
+# Links, and the headings that they name as GitHub does. Pages of the web are not visited.
+documents = sorted([*source.glob("*.md"), *source.glob("Documents/*.md"), *source.glob("Python/*.md")])
+assert len(documents) > 15, documents
+
+
+def anchors(path):
+    text = re.sub(r"^```.*?^```$", "", read(path), flags=re.MULTILINE | re.DOTALL)
+    headings = re.findall(r"^#+ (.*)$", text, re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+broken = []
+for document in documents:
+    text = re.sub(r"^```.*?^```$", "", read(document), flags=re.MULTILINE | re.DOTALL)
+    links = re.findall(r"\]\(([^()\s]+(?:\([^()\s]*\))?)\)", re.sub(r"`[^`]*`", "", text))
+    for link in links:
+        if re.match(r"https?://", link):
+            continue
+        file, _, anchor = link.partition("#")
+        target = (document.parent / file).resolve() if file else document
+        if not target.exists() or (anchor and anchor not in anchors(target)):
+            broken.append(f"{document.relative_to(source)}: {link}")
+assert not broken, "\n".join(broken)
+pages = {page.name for page in source.glob("Documents/*.md")} - {"README.md"}
+unlisted = [page for page in sorted(pages) if f"({page})" not in read(source / "Documents/README.md")]
+assert not unlisted, f"Documents/README.md does not list {unlisted}"
+
+# Options of deform-volume in commands.
+program = "".join(read(path) for path in source.glob("Examples/deform-volume/*.cxx"))
+for document in documents:
+    for block in read_blocks(document.relative_to(source), "sh"):
+        for command in re.findall(r"^deform-volume (?:.*\\\n)*.*$", block, re.MULTILINE):
+            for option in re.findall(r"(?<=\s)--[a-z-]+", command):
+                assert re.search(rf'{option}[",]', program), f"{document}: {option} in {command}"
+
 # The package, with a head in place of a file.
 saved = []
 nibabel = types.ModuleType("nibabel")
 nibabel.load = lambda name: types.SimpleNamespace(
-    dataobj=numpy.ones((181, 217, 181), numpy.uint8), affine=numpy.diag([-1.0, 1.0, 1.0, 1.0])
+    shape=(181, 217, 181),
+    dataobj=numpy.ones((181, 217, 181), numpy.uint8),
+    affine=numpy.diag([-1.0, 1.0, 1.0, 1.0]),
 )
 nibabel.Nifti1Image = lambda array, affine: (array, affine)
 nibabel.save = lambda image, name: saved.append(image)
 sys.modules["nibabel"] = nibabel
-of_package, of_classes = read_blocks("README.md")
+(of_package,) = read_blocks("README.md", "python")
 result = run(of_package)["result"]
 ((array, affine),) = saved
 assert array is result.array and array.dtype == numpy.uint8
 # The front has gone back by 20 voxels in the middle, and by nothing at the sides.
 front = result.coverage[90, :, 90].nonzero()[0].max(), result.coverage[1, :, 1].nonzero()[0].max()
 assert front[0] in range(195, 198) and front[1] in range(214, 217), front
-(of_readme,) = read_blocks("Python/README.md")
+(of_readme,) = read_blocks("Python/README.md", "python")
 assert run(of_readme)["result"].coverage.sum() > 60**3
 
+# The C++ classes.
+(of_classes,) = (block for block in read_blocks("Documents/deformation.md", "python") if "import " in block)
 names = run(of_classes)
 rest = names["volume"].GetOutput()
 result = names["result"]
