@@ -3,9 +3,8 @@
 #include "vtkCarveVolumeInternals.h"
 
 #include "Error.h"
+#include "ImplicitTool.h"
 #include "PipelineGeometry.h"
-#include "SurfaceInterior.h"
-#include "WorldTool.h"
 
 #include "vtkDataArray.h"
 #include "vtkDataArrayRange.h"
@@ -20,16 +19,18 @@
 #include <utility>
 
 using deformvolume::Error;
-using deformvolume::SmoothCarving;
+using deformvolume::VolumeEdit;
 
 namespace
 {
 
-bool HasLabel(vtkDataArray* labels, double label)
+deformvolume::LabelReader MakeLabelReader(vtkDataArray* labels)
 {
-  const auto values = vtk::DataArrayValueRange<1>(labels);
-  return std::any_of(
-    values.begin(), values.end(), [label](double value) { return value == label; });
+  return [labels](std::int64_t voxel, std::int64_t count, double* read)
+  {
+    const auto values = vtk::DataArrayValueRange<1>(labels, voxel, voxel + count);
+    std::copy(values.begin(), values.end(), read);
+  };
 }
 
 } // namespace
@@ -78,67 +79,15 @@ vtkDataArray* vtkCarveVolume::vtkInternals::FindLabels(vtkImageData* volume) con
 }
 
 //------------------------------------------------------------------------------
-SmoothCarving vtkCarveVolume::vtkInternals::CarveLabel(vtkDataArray* labels) const
-{
-  const auto values = vtk::DataArrayValueRange<1>(labels);
-  const double label = this->Self->Label;
-  const deformvolume::Extent& all = this->Self->Edits->Editor.GetGeometry().PointExtent;
-  const auto find = [&](const deformvolume::Extent& vertices, double* found)
-  {
-    for (int z = vertices[4]; z <= vertices[5]; ++z)
-    {
-      for (int y = vertices[2]; y <= vertices[3]; ++y)
-      {
-        vtkIdType voxel = ((z - all[4]) * deformvolume::GetSize(all, 1) + y - all[2]) *
-            deformvolume::GetSize(all, 0) +
-          vertices[0] - all[0];
-        for (int x = vertices[0]; x <= vertices[1]; ++x, ++voxel)
-        {
-          *found++ = static_cast<double>(values[voxel]) == label ? -1.0 : 1.0;
-        }
-      }
-    }
-  };
-  const deformvolume::VolumeEditor& editor = this->Self->Edits->Editor;
-  if (this->Self->SmoothBoundary)
-  {
-    // The same for all voxels: the surface lies halfway between them.
-    const glm::dvec3& spacing = editor.GetGeometry().Spacing;
-    const double half =
-      0.5 * std::min({ std::abs(spacing.x), std::abs(spacing.y), std::abs(spacing.z) });
-    return deformvolume::FindSmoothCarving(
-      editor.GetBricks(), find, half, editor.GetFarDistance(), this->Self->Edits->Progress);
-  }
-  return { deformvolume::FindCarvedTetrahedra(
-             editor.GetBricks(), find, this->GetRule(), this->Self->Edits->Progress),
-    {} };
-}
-
-//------------------------------------------------------------------------------
-SmoothCarving vtkCarveVolume::vtkInternals::Carve(
-  vtkInformationVector** input, const deformvolume::CarvingTool& tool) const
-{
-  vtkEdits& edits = *this->Self->Edits;
-  const deformvolume::VertexPositions& vertices = edits.GetVertices(input);
-  if (this->Self->SmoothBoundary)
-  {
-    return deformvolume::FindSmoothCarving(
-      vertices, tool, edits.Editor.GetFarDistance(), edits.Progress);
-  }
-  return { deformvolume::FindCarvedTetrahedra(vertices, tool, this->GetRule(), edits.Progress),
-    {} };
-}
-
-//------------------------------------------------------------------------------
 void vtkCarveVolume::vtkInternals::Find(Body& body, Body::Key&& next,
-  const std::function<SmoothCarving()>& carve, std::vector<Change>& changes)
+  const std::function<VolumeEdit()>& carve, std::vector<Change>& changes)
 {
   if (next == body.Carved)
   {
     return;
   }
   const bool isThere = next != Body::Key();
-  changes.push_back({ &body, std::move(next), isThere ? carve() : SmoothCarving() });
+  changes.push_back({ &body, std::move(next), isThere ? carve() : VolumeEdit() });
 }
 
 //------------------------------------------------------------------------------
@@ -153,7 +102,9 @@ void vtkCarveVolume::vtkInternals::Execute(vtkInformationVector** input)
   vtkDataArray* labels = this->FindLabels(vtkImageData::GetData(input[0]));
   deformvolume::WorldSheet sheet = deformvolume::ReadSheet(
     vtkPolyData::GetData(input[1]), glm::dvec3(0.0), "surface on input port 1");
-  const deformvolume::ImageGeometry& geometry = edits.Editor.GetGeometry();
+  deformvolume::EditFinder finder = edits.MakeFinder(input);
+  finder.IsSmooth = this->Self->SmoothBoundary;
+  finder.Rule = this->GetRule();
   const double sheetVersion = this->SheetVersion + (sheet == this->Sheet ? 0.0 : 1.0);
   constexpr double smooth = -1.0; // in place of a rule
   const double rule = this->Self->SmoothBoundary ? smooth : this->Self->Rule;
@@ -163,45 +114,30 @@ void vtkCarveVolume::vtkInternals::Execute(vtkInformationVector** input)
   this->Find(
     this->Function,
     function ? Body::Key{ { { function, function->GetMTime() } }, { rule } } : Body::Key(),
-    [&]
-    {
-      return this->Carve(
-        input, deformvolume::GetInIndices(deformvolume::MakeWorldTool(function), geometry));
-    },
-    changes);
+    [&] { return finder.Carve(deformvolume::MakeImplicitTool(function)); }, changes);
   this->Find(
     this->Surface, sheet.IsEmpty() ? Body::Key() : Body::Key{ {}, { rule, sheetVersion } },
-    [&]
-    {
-      deformvolume::CarvingTool tool = deformvolume::MakeSurfaceInterior(
-        sheet.GetSheet(geometry), edits.GetVertices(input).GetBox());
-      if (this->Self->SmoothBoundary)
-      {
-        tool.Distance = deformvolume::MakeDistance(sheet, geometry);
-      }
-      return this->Carve(input, tool);
-    },
-    changes);
+    [&] { return finder.CarveSurface(sheet); }, changes);
   const std::size_t beforeLabel = changes.size();
+  const deformvolume::LabelReader readLabels = MakeLabelReader(labels);
   this->Find(
     this->Label,
     labels ? Body::Key{ { { labels, labels->GetMTime() } }, { rule, this->Self->Label } }
            : Body::Key(),
-    [&] { return this->CarveLabel(labels); }, changes);
+    [&] { return finder.CarveLabel(readLabels, this->Self->Label); }, changes);
   std::vector<glm::dvec3> stroke;
   for (const deformvolume::ToolPath::Position& position : edits.Tool.GetStroke())
   {
     stroke.push_back(position[0]);
   }
-  SmoothCarving byTool;
+  VolumeEdit byTool;
   if (!stroke.empty())
   {
-    byTool = this->Carve(input,
-      deformvolume::GetInIndices(
-        deformvolume::MakeSweptSphere(stroke, glm::dvec3(this->Self->ToolRadius)), geometry));
+    byTool = finder.CarveSweptSphere(stroke, this->Self->ToolRadius);
   }
 
-  if (labels && changes.size() > beforeLabel && !HasLabel(labels, this->Self->Label))
+  if (labels && changes.size() > beforeLabel &&
+    !deformvolume::HasLabel(finder.Volume.PointExtent, readLabels, this->Self->Label))
   {
     vtkWarningWithObjectMacro(this->Self,
       << "No voxel has the label " << this->Self->Label << " in \"" << this->Self->LabelArrayName
@@ -212,7 +148,7 @@ void vtkCarveVolume::vtkInternals::Execute(vtkInformationVector** input)
     Body& body = *change.Changed;
     if (change.Next != Body::Key())
     {
-      edits.Editor.Put(body.Edit, std::move(change.Carved), this->Self->Accumulate);
+      edits.Editor.Put(body.Edit, std::move(change.Edit), this->Self->Accumulate);
     }
     else if (!this->Self->Accumulate)
     {

@@ -4,6 +4,7 @@
 
 #include "Carving.h"
 #include "SheetReading.h"
+#include "VolumeEdit.h"
 
 #include "vtkCarveVolume.h"
 #include "vtkVolumeEditAlgorithmInternals.h"
@@ -42,19 +43,15 @@ private:
   {
     Body* Changed;
     Body::Key Next; // empty: there is no body
-    deformvolume::SmoothCarving Carved;
+    deformvolume::VolumeEdit Edit;
   };
 
   void Check() const;
   deformvolume::CarvingRule GetRule() const;
   vtkDataArray* FindLabels(vtkImageData* volume) const;
   /// Appends a change where a body is another one. carve: finds what it carves out.
-  void Find(Body& body, Body::Key&& next, const std::function<deformvolume::SmoothCarving()>& carve,
+  void Find(Body& body, Body::Key&& next, const std::function<deformvolume::VolumeEdit()>& carve,
     std::vector<Change>& changes);
-  /// What a tool carves out, by Rule or with a smooth boundary.
-  deformvolume::SmoothCarving Carve(
-    vtkInformationVector** input, const deformvolume::CarvingTool& tool) const;
-  deformvolume::SmoothCarving CarveLabel(vtkDataArray* labels) const;
 
   vtkCarveVolume* Self;
   Body Function;

@@ -4,7 +4,6 @@
 #include "vtkVolumeEditAlgorithmInternals.h"
 
 #include "PipelineGeometry.h"
-#include "SheetCut.h"
 #include "SheetReading.h"
 
 #include "vtkInformationVector.h"
@@ -23,13 +22,6 @@ vtkStandardNewMacro(vtkCutVolume);
 class vtkCutVolume::vtkInternals
 {
 public:
-  // What a sheet does, one or the other.
-  struct Cut
-  {
-    deformvolume::TetrahedronSet SwitchedOff;
-    deformvolume::CrossingSet Divided;
-  };
-
   deformvolume::WorldSheet Sheet; // that has cut
   std::uint64_t SheetEdit = 0;
   bool IsSmooth = false; // whether it has divided what it crosses
@@ -88,47 +80,22 @@ void vtkCutVolume::UpdateEdits(vtkInformationVector** input)
   {
     stroke.AddSweep(positions[i - 1][0], positions[i - 1][1], positions[i][0], positions[i][1]);
   }
-  const auto cut = [&](const deformvolume::WorldSheet& world)
-  {
-    const deformvolume::Sheet triangles = world.GetSheet(editor.GetGeometry());
-    const deformvolume::VertexPositions& vertices = this->Edits->GetVertices(input);
-    vtkInternals::Cut made;
-    if (this->SmoothCut)
-    {
-      made.Divided = deformvolume::FindSheetCrossings(vertices, triangles, this->Edits->Progress);
-    }
-    else
-    {
-      made.SwitchedOff =
-        deformvolume::FindCrossedTetrahedra(vertices, triangles, this->Edits->Progress);
-    }
-    return made;
-  };
-  const auto put = [&](std::uint64_t& edit, vtkInternals::Cut&& made, bool keep)
-  {
-    if (this->SmoothCut)
-    {
-      editor.Put(edit, std::move(made.Divided), keep);
-    }
-    else
-    {
-      editor.Put(edit, { std::move(made.SwitchedOff), {} }, keep);
-    }
-  };
-  vtkInternals::Cut bySheet;
-  vtkInternals::Cut byTool;
+  deformvolume::EditFinder finder = this->Edits->MakeFinder(input);
+  finder.IsSmooth = this->SmoothCut;
+  deformvolume::VolumeEdit bySheet;
+  deformvolume::VolumeEdit byTool;
   if (isNew && !sheet.IsEmpty())
   {
-    bySheet = cut(sheet);
+    bySheet = finder.Cut(sheet);
   }
   if (!stroke.IsEmpty())
   {
-    byTool = cut(stroke);
+    byTool = finder.Cut(stroke);
   }
 
   if (isNew && !sheet.IsEmpty())
   {
-    put(last.SheetEdit, std::move(bySheet), this->Accumulate);
+    editor.Put(last.SheetEdit, std::move(bySheet), this->Accumulate);
   }
   else if (isNew && !this->Accumulate)
   {
@@ -139,7 +106,7 @@ void vtkCutVolume::UpdateEdits(vtkInformationVector** input)
   if (!stroke.IsEmpty())
   {
     std::uint64_t edit = 0;
-    put(edit, std::move(byTool), true);
+    editor.Put(edit, std::move(byTool), true);
   }
 }
 

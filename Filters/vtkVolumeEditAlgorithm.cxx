@@ -88,6 +88,18 @@ bool vtkVolumeEditAlgorithm::vtkEdits::SetVolume(vtkInformationVector** input)
 }
 
 //------------------------------------------------------------------------------
+deformvolume::EditFinder vtkVolumeEditAlgorithm::vtkEdits::MakeFinder(vtkInformationVector** input)
+{
+  deformvolume::EditFinder finder;
+  finder.Volume = this->Editor.GetGeometry();
+  finder.GetVertices = [this, input]() -> const deformvolume::VertexPositions&
+  { return this->GetVertices(input); };
+  finder.FarDistance = this->Editor.GetFarDistance();
+  finder.Progress = this->Progress;
+  return finder;
+}
+
+//------------------------------------------------------------------------------
 const deformvolume::VertexPositions& vtkVolumeEditAlgorithm::vtkEdits::GetVertices(
   vtkInformationVector** input)
 {

@@ -5,7 +5,7 @@
 #include "EditProgress.h"
 #include "PipelineExecution.h"
 #include "ToolPath.h"
-#include "VertexPositions.h"
+#include "VolumeEdit.h"
 #include "VolumeEditor.h"
 
 #include "vtkVolumeEditAlgorithm.h"
@@ -21,8 +21,9 @@ public:
 
   /// Takes the volume on port 0; see VolumeEditor::SetVolume().
   bool SetVolume(vtkInformationVector** input);
-  /// Where its vertices are, by ports 2 and 3; see VolumeEditor::GetPositions().
-  const deformvolume::VertexPositions& GetVertices(vtkInformationVector** input);
+  /// What finds edits of the volume, as it is deformed by ports 2 and 3, without options. It is
+  /// valid during this execution.
+  deformvolume::EditFinder MakeFinder(vtkInformationVector** input);
 
   deformvolume::VolumeEditor Editor;
   deformvolume::ToolPath Tool;
@@ -30,6 +31,9 @@ public:
   deformvolume::PipelineExecution Execution;
 
 private:
+  /// Where its vertices are, by ports 2 and 3; see VolumeEditor::GetPositions().
+  const deformvolume::VertexPositions& GetVertices(vtkInformationVector** input);
+
   vtkVolumeEditAlgorithm* Self;
 };
 

@@ -10,9 +10,6 @@
 #include "vtkSmartPointer.h"
 #include "vtkTriangleFilter.h"
 
-#include <glm/mat4x4.hpp>
-#include <glm/vec4.hpp>
-
 namespace deformvolume
 {
 namespace
@@ -79,27 +76,6 @@ void AddLines(vtkPolyData* data, const glm::dvec3& sweepVector, WorldSheet& shee
 }
 
 } // namespace
-
-void WorldSheet::AddSweep(
-  const glm::dvec3& fromA, const glm::dvec3& fromB, const glm::dvec3& toA, const glm::dvec3& toB)
-{
-  const auto first = static_cast<std::int64_t>(this->Points.size());
-  this->Points.insert(this->Points.end(), { fromA, fromB, toA, toB });
-  this->Triangles.push_back({ { first, first + 1, first + 3 } });
-  this->Triangles.push_back({ { first, first + 3, first + 2 } });
-}
-
-Sheet WorldSheet::GetSheet(const ImageGeometry& volume) const
-{
-  const glm::dmat4 toIndex = volume.GetWorldToIndex();
-  std::vector<glm::dvec3> indices;
-  indices.reserve(this->Points.size());
-  for (const glm::dvec3& point : this->Points)
-  {
-    indices.emplace_back(toIndex * glm::dvec4(point, 1.0));
-  }
-  return Sheet(indices, this->Triangles);
-}
 
 WorldSheet ReadSheet(vtkPolyData* data, const glm::dvec3& sweepVector, const std::string& name)
 {

@@ -15,8 +15,6 @@
 #include "vtkPointData.h"
 #include "vtkUnsignedCharArray.h"
 
-#include <glm/geometric.hpp>
-
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -25,16 +23,6 @@ namespace deformvolume
 {
 namespace
 {
-
-float GetDiagonal(const Extent& extent, const glm::dvec3& spacing)
-{
-  glm::dvec3 size;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    size[axis] = static_cast<double>(GetSize(extent, axis)) * spacing[axis];
-  }
-  return static_cast<float>(glm::length(size));
-}
 
 // Makes an array of the output anew, with all values, where there is none, or somebody else holds
 // it and wants it as it is: the last output has let it go. Returns whether it has.
@@ -129,7 +117,7 @@ bool VolumeEditor::SetVolume(vtkImageData* volume, vtkInformation* info)
   if (isNew)
   {
     this->Mask = std::make_unique<MaskEditor>(
-      geometry.PointExtent, GetDiagonal(this->Whole, geometry.Spacing));
+      geometry.PointExtent, deformvolume::GetFarDistance(this->Whole, geometry.Spacing));
     this->Rest = std::make_unique<RestPositions>(geometry.PointExtent);
     this->Deformed.reset();
     this->Active = nullptr;
@@ -217,22 +205,14 @@ const VertexPositions& VolumeEditor::GetPositions(
   return *this->Deformed;
 }
 
-void VolumeEditor::Put(std::uint64_t& edit, SmoothCarving&& carving, bool keep)
+void VolumeEditor::Put(std::uint64_t& edit, VolumeEdit&& next, bool keep)
 {
   if (!keep)
   {
     this->Mask->Remove(edit);
   }
-  edit = this->Mask->Add(std::move(carving.Tetrahedra), std::move(carving.Distances));
-}
-
-void VolumeEditor::Put(std::uint64_t& edit, CrossingSet&& crossings, bool keep)
-{
-  if (!keep)
-  {
-    this->Mask->Remove(edit);
-  }
-  edit = this->Mask->Add({}, {}, std::move(crossings));
+  edit = this->Mask->Add(
+    std::move(next.Tetrahedra), std::move(next.Distances), std::move(next.Crossings));
 }
 
 void VolumeEditor::Drop(std::uint64_t& edit)

@@ -2,8 +2,6 @@
 #ifndef DeformVolumeVolumeEditor_h
 #define DeformVolumeVolumeEditor_h
 
-#include "Carving.h"
-#include "CellBricks.h"
 #include "Deformation.h"
 #include "DeformedPositions.h"
 #include "FadedMesh.h"
@@ -12,6 +10,7 @@
 #include "MaskEditor.h"
 #include "MeshGrids.h"
 #include "VertexPositions.h"
+#include "VolumeEdit.h"
 
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
@@ -40,7 +39,6 @@ public:
   /// be used.
   bool SetVolume(vtkImageData* volume, vtkInformation* info);
   const ImageGeometry& GetGeometry() const { return this->Geometry; }
-  const CellBricks& GetBricks() const { return this->Mask->GetBricks(); }
 
   /// Where the vertices of the volume are: at rest, or with a Shape where the deformation has moved
   /// them. The source's volume is set here. Throws Error; ports have the numbers that they have in
@@ -49,9 +47,7 @@ public:
 
   /// Makes an edit in the place of another one, of which the number is known; 0: of none. keep: the
   /// other one stays, too.
-  void Put(std::uint64_t& edit, SmoothCarving&& carving, bool keep);
-  /// The same for an edit that divides tetrahedra.
-  void Put(std::uint64_t& edit, CrossingSet&& crossings, bool keep);
+  void Put(std::uint64_t& edit, VolumeEdit&& next, bool keep);
   /// Removes an edit.
   void Drop(std::uint64_t& edit);
 
@@ -75,8 +71,7 @@ public:
       : 0;
   }
 
-  /// The boundary distance of what is far from any boundary: the diagonal of the whole volume, in
-  /// world units.
+  /// See deformvolume::GetFarDistance(): of the whole volume.
   float GetFarDistance() const { return this->Mask->GetFarDistance(); }
 
   /// Makes an output the volume with its arrays, the active tetrahedra that are left, and the
