@@ -3,9 +3,10 @@
 #include "Call.h"
 #include "CellNumbers.h"
 #include "CellReader.h"
+#include "Conversions.h"
+#include "Deformer.h"
 #include "Fading.h"
 #include "Structs.h"
-#include "WorldDeformer.h"
 
 #include <array>
 #include <cmath>
@@ -16,108 +17,8 @@
 
 using namespace deformvolume;
 
-struct dv_deformer
-{
-  WorldDeformer Deformer;
-  ImageGeometry Volume;
-  WorldMasks Masks;
-  std::string Device;
-  std::string Warnings;
-};
-
 namespace
 {
-
-static_assert(static_cast<int>(ElementType::Int8) == DV_INT8 &&
-    static_cast<int>(ElementType::Float64) == DV_FLOAT64,
-  "types are numbered alike");
-
-WorldDeformer& Get(dv_deformer* deformer)
-{
-  CheckPointer(deformer, "The deformer");
-  return deformer->Deformer;
-}
-
-std::size_t GetProduct(std::int64_t count, std::size_t factor, const char* what)
-{
-  if (count < 0 ||
-    static_cast<std::uint64_t>(count) > std::numeric_limits<std::size_t>::max() / factor)
-  {
-    throw Error(std::string("The number of ") + what + " is " + std::to_string(count) + ".");
-  }
-  return static_cast<std::size_t>(count);
-}
-
-ImageGeometry MakeGeometry(const dv_grid* given, const char* name)
-{
-  const dv_grid grid = ReadStruct(given, name);
-  ImageGeometry geometry;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const int first = grid.extent[2 * axis];
-    const int last = grid.extent[2 * axis + 1];
-    // As for outputs (OutputExtent.h), sizes can then be counted.
-    constexpr int most = 1 << 29;
-    if (first < -most || last > most || first > last)
-    {
-      throw Error("The extent of " + std::string(name) + " on axis " + "xyz"[axis] + " is " +
-        std::to_string(first) + " to " + std::to_string(last) +
-        ". Give the first and the last index, within 2^29.");
-    }
-    geometry.PointExtent[2 * axis] = first;
-    geometry.PointExtent[2 * axis + 1] = last;
-    geometry.Origin[axis] = grid.origin[axis];
-    geometry.Spacing[axis] = grid.spacing[axis];
-  }
-  geometry.Direction = MakeDirection(grid.direction);
-  CheckTransform(geometry, name);
-  return geometry;
-}
-
-VectorView MakeView(const void* data, std::int32_t type, std::int64_t count, const char* what)
-{
-  if (type != DV_FLOAT32 && type != DV_FLOAT64)
-  {
-    throw Error(std::string("The type of the ") + what + " is " + std::to_string(type) +
-      ". Give floats (DV_FLOAT32) or doubles (DV_FLOAT64).");
-  }
-  VectorView view;
-  view.Count = GetProduct(count, 3 * sizeof(double), what);
-  if (count > 0)
-  {
-    CheckPointer(data, what);
-  }
-  view.Data = data;
-  view.AreDoubles = type == DV_FLOAT64;
-  return view;
-}
-
-VolumeArray MakeArray(const dv_array& given, std::int32_t number)
-{
-  const std::string name = "Array " + std::to_string(number);
-  if (!given.data)
-  {
-    throw Error(name + " has no data.");
-  }
-  if (given.type < DV_INT8 || given.type > DV_FLOAT64)
-  {
-    throw Error(name + " has the type " + std::to_string(given.type) +
-      ". Give one from DV_INT8 to DV_FLOAT64.");
-  }
-  if (given.components < 1)
-  {
-    throw Error(name + " has " + std::to_string(given.components) + " components. Give 1 or more.");
-  }
-  VolumeArray array;
-  array.Data = given.data;
-  // The program keeps them.
-  array.Owner = std::shared_ptr<const void>(given.data, [](const void*) {});
-  array.Type = static_cast<ElementType>(given.type);
-  array.Components = given.components;
-  array.Categorical = given.categorical != 0;
-  array.Background = given.background;
-  return array;
-}
 
 // Reads the faces of polyhedra, one after the other.
 class FaceStream
@@ -280,12 +181,7 @@ WorldRequest MakeRequest(const dv_request& given)
   request.Jacobians = given.jacobian;
   request.FoldCounts = given.fold_count;
   request.Background = given.extra_background;
-  if (given.progress)
-  {
-    const dv_progress progress = given.progress;
-    void* const user = given.user;
-    request.Progress = [=](double fraction) { return progress(fraction, user) == 0; };
-  }
+  request.Progress = MakeProgress(given.progress, given.user);
   return request;
 }
 
@@ -295,13 +191,19 @@ std::int32_t SetMasks(dv_deformer* deformer, const Change& change)
   return Call(
     [&]
     {
-      WorldDeformer& world = Get(deformer);
+      WorldDeformer& world = GetDeformer(deformer);
       if (GetNumberOfPoints(deformer->Volume.PointExtent) == 0)
       {
         throw Error("There is no volume. Set one before its masks.");
       }
-      change(deformer->Masks);
-      world.SetMasks(deformer->Masks);
+      WorldMasks masks = deformer->Masks;
+      change(masks);
+      if (deformer->Edits)
+      {
+        deformer->Edits->SetBase(masks);
+      }
+      deformer->Masks = masks;
+      world.SetMasks(GetMasks(*deformer));
     });
 }
 
@@ -325,12 +227,12 @@ void dv_destroy(dv_deformer* deformer)
 
 std::int32_t dv_set_device(dv_deformer* deformer, const char* name)
 {
-  return Call([&] { Get(deformer).SetDevice(name ? name : ""); });
+  return Call([&] { GetDeformer(deformer).SetDevice(name ? name : ""); });
 }
 
 std::int32_t dv_set_memory_limit(dv_deformer* deformer, std::uint64_t bytes)
 {
-  return Call([&] { Get(deformer).SetMemoryLimit(bytes); });
+  return Call([&] { GetDeformer(deformer).SetMemoryLimit(bytes); });
 }
 
 std::int32_t dv_set_volume(dv_deformer* deformer, const dv_grid* grid)
@@ -338,13 +240,14 @@ std::int32_t dv_set_volume(dv_deformer* deformer, const dv_grid* grid)
   return Call(
     [&]
     {
-      WorldDeformer& world = Get(deformer);
+      WorldDeformer& world = GetDeformer(deformer);
       const ImageGeometry volume = MakeGeometry(grid, "the volume");
       world.SetVolume(volume);
       if (volume != deformer->Volume)
       {
         deformer->Volume = volume;
         deformer->Masks = WorldMasks();
+        deformer->Edits.reset();
       }
     });
 }
@@ -354,7 +257,7 @@ std::int32_t dv_set_arrays(dv_deformer* deformer, std::int32_t count, const dv_a
   return Call(
     [&]
     {
-      WorldDeformer& world = Get(deformer);
+      WorldDeformer& world = GetDeformer(deformer);
       GetProduct(count, sizeof(dv_array), "arrays");
       std::vector<VolumeArray> made;
       if (count > 0)
@@ -366,7 +269,7 @@ std::int32_t dv_set_arrays(dv_deformer* deformer, std::int32_t count, const dv_a
           dv_array array{};
           std::memcpy(
             &array, bytes + static_cast<std::size_t>(i) * step, std::min(step, sizeof(dv_array)));
-          made.push_back(MakeArray(array, i));
+          made.push_back(MakeArray(array, "Array " + std::to_string(i)));
         }
       }
       if (GetNumberOfPoints(deformer->Volume.PointExtent) == 0)
@@ -412,7 +315,7 @@ std::int32_t dv_set_mesh(dv_deformer* deformer, const dv_mesh* given)
   return Call(
     [&]
     {
-      WorldDeformer& world = Get(deformer);
+      WorldDeformer& world = GetDeformer(deformer);
       const dv_mesh mesh = ReadStruct(given, "the mesh");
       if (mesh.number_of_points < 1 ||
         mesh.number_of_points > std::numeric_limits<std::int32_t>::max())
@@ -430,7 +333,9 @@ std::int32_t dv_set_displacements(
   dv_deformer* deformer, std::int32_t type, std::int64_t count, const void* displacements)
 {
   return Call(
-    [&] { Get(deformer).SetNodeVectors(MakeView(displacements, type, count, "displacements")); });
+    [&] {
+      GetDeformer(deformer).SetNodeVectors(MakeView(displacements, type, count, "displacements"));
+    });
 }
 
 std::int32_t dv_set_field(dv_deformer* deformer, const dv_field* given)
@@ -438,7 +343,7 @@ std::int32_t dv_set_field(dv_deformer* deformer, const dv_field* given)
   return Call(
     [&]
     {
-      WorldDeformer& world = Get(deformer);
+      WorldDeformer& world = GetDeformer(deformer);
       const dv_field field = ReadStruct(given, "the field");
       const ImageGeometry grid = MakeGeometry(field.grid, "the grid of the field");
       world.SetField(grid,
@@ -453,7 +358,7 @@ std::int32_t dv_set_outside(dv_deformer* deformer, std::int32_t mode, double fad
   return Call(
     [&]
     {
-      WorldDeformer& world = Get(deformer);
+      WorldDeformer& world = GetDeformer(deformer);
       if (mode < DV_OUTSIDE_DISCARD || mode > DV_OUTSIDE_KEEP)
       {
         throw Error("The outside mode is " + std::to_string(mode) +
@@ -469,7 +374,7 @@ std::int32_t dv_set_reference(dv_deformer* deformer, const dv_grid* grid)
   return Call(
     [&]
     {
-      WorldDeformer& world = Get(deformer);
+      WorldDeformer& world = GetDeformer(deformer);
       std::optional<ImageGeometry> reference;
       if (grid)
       {
@@ -484,7 +389,7 @@ std::int32_t dv_set_output(dv_deformer* deformer, const dv_output* given)
   return Call(
     [&]
     {
-      WorldDeformer& world = Get(deformer);
+      WorldDeformer& world = GetDeformer(deformer);
       OutputSettings settings;
       if (given)
       {
@@ -512,7 +417,7 @@ std::int32_t dv_output_grid(dv_deformer* deformer, dv_grid* grid)
   return Call(
     [&]
     {
-      WorldDeformer& world = Get(deformer);
+      WorldDeformer& world = GetDeformer(deformer);
       CheckStruct(grid, "the grid");
       const ImageGeometry output = world.FindOutput();
       dv_grid made = {};
@@ -536,7 +441,7 @@ std::int32_t dv_deform(dv_deformer* deformer, const dv_request* given, dv_report
   return Call(
     [&]
     {
-      WorldDeformer& world = Get(deformer);
+      WorldDeformer& world = GetDeformer(deformer);
       const WorldRequest request = MakeRequest(ReadStruct(given, "the request"));
       if (report)
       {
@@ -575,5 +480,5 @@ std::int32_t dv_device_memory(const dv_deformer* deformer, std::uint64_t* bytes)
 
 std::int32_t dv_release_memory(dv_deformer* deformer)
 {
-  return Call([&] { Get(deformer).ReleaseMemory(); });
+  return Call([&] { GetDeformer(deformer).ReleaseMemory(); });
 }

@@ -212,8 +212,9 @@ extern "C"
 
   /* Cuts and carvings. Tetrahedra are those of the implicit mesh between the voxels: five for each
    * cell of eight neighbouring voxels (Documents/glossary.md). Arrays of cells have one tuple a
-   * cell, one cell less than voxels on each axis, x varying fastest. vtkCutVolume and
-   * vtkCarveVolume make these arrays. All are borrowed; null: there is no such mask. */
+   * cell, one cell less than voxels on each axis, x varying fastest. vtkCutVolume, vtkCarveVolume
+   * and the functions under 'Cutting and carving' make these arrays. All are borrowed; null: there
+   * is no such mask. */
 
   /** The active tetrahedra. active: one byte a cell, bit i is set where tetrahedron i is active.
    * Null: all are. */
@@ -361,9 +362,9 @@ extern "C"
     DV_NEAREST = 2 /**< not at all: all arrays count as categorical */
   };
 
-  /** A progress callback. It gets the fraction that is done, 0 to 1, in the thread that called
-   * dv_deform(). If it does not return 0, dv_deform() aborts and returns DV_ABORTED. It must
-   * neither throw nor call functions for the same deformer. */
+  /** A progress callback. It gets the fraction that is done, 0 to 1, in the thread that called the
+   * function which works. If it does not return 0, that function aborts and returns DV_ABORTED. It
+   * must neither throw nor call functions for the same object. */
   typedef int32_t (*dv_progress)(double fraction, void* user);
 
   /** What dv_deform() is to do, and the memory for it, which is written during the call. */
@@ -441,6 +442,171 @@ extern "C"
 
   /** Frees what the deformer holds on the device. The next dv_deform() sends it again. */
   DV_EXPORT int32_t dv_release_memory(dv_deformer* deformer);
+
+  /* ---- Cutting and carving ---- */
+
+  /*
+   * An edit takes tetrahedra out of the volume of a deformer, or divides them. It changes what the
+   * next dv_deform() draws. Edits are those of vtkCutVolume and vtkCarveVolume, with the same bits.
+   *
+   *   dv_cut, dv_carve_surface, dv_carve_sphere, dv_carve_label, dv_carve_function,
+   *   dv_undo_edit, dv_redo_edit, dv_reset_edits, dv_get_masks
+   *
+   * The volume is edited at rest, whatever its deformation is: sheets and bodies are given in world
+   * coordinates where the volume lies before it is deformed. What is cut then moves as the tissue
+   * does. vtkCutVolume and vtkCarveVolume can edit the deformed volume, too.
+   *
+   * Edits add up, and their order does not matter. They come on top of the masks that
+   * dv_set_active_tetrahedra(), dv_set_boundary_distances() and dv_set_smooth_cut() set: these stay
+   * as they are, and may be set before and after edits. dv_set_volume() with another grid forgets
+   * all edits.
+   *
+   * What is given is read during the call only. The volume must be set first. A function that fails
+   * or is aborted leaves the edits as they were.
+   */
+
+  /** Triangles: a sheet to cut with, or a closed surface to carve with. */
+  typedef struct dv_surface
+  {
+    /** The size of the structure in bytes, set by the program. */
+    size_t struct_size;
+    /** How many points there are. */
+    int64_t number_of_points;
+    /** Three numbers a point, in world coordinates. */
+    const void* points;
+    /** The type of these numbers, DV_FLOAT32 or DV_FLOAT64. */
+    int32_t point_type;
+    /** 0. */
+    int32_t reserved;
+    /** How many triangles there are, 1 or more. */
+    int64_t number_of_triangles;
+    /** The numbers of three points for each triangle, in any orientation. */
+    const int64_t* triangles;
+  } dv_surface;
+
+  /** Which tetrahedra are inside a body. */
+  enum
+  {
+    /** Those with their centroid inside: as large as the body. */
+    DV_CARVE_CENTROID = 0,
+    /** Those with any vertex inside: nothing of the body is left. */
+    DV_CARVE_CONSERVATIVE = 1,
+    /** Those with all vertices inside: nothing but the body is taken. */
+    DV_CARVE_MINIMAL = 2
+  };
+
+  /** How an edit is made. Functions take a null pointer as one of zeros. */
+  typedef struct dv_edit
+  {
+    /** The size of the structure in bytes, set by the program. */
+    size_t struct_size;
+    /** Not 0: a sheet divides the tetrahedra that it crosses in place of switching them off; a body
+     * is carved out with a boundary between the voxels, which switches tetrahedra off that have all
+     * vertices inside, whatever the rule is, and leaves out samples of others. */
+    int32_t smooth;
+    /** DV_CARVE_CENTROID, ...: which tetrahedra a body takes where smooth is 0. */
+    int32_t rule;
+    /** The progress callback; null: none. */
+    dv_progress progress;
+    /** What progress gets as its argument user. */
+    void* user;
+  } dv_edit;
+
+  /** Cuts with a sheet, which may be open, fold and cross itself: the tetrahedra that it crosses,
+   * decided exactly on positions that are rounded to 1/256 voxel. A sheet that misses the volume
+   * cuts nothing, which is no error. Fails where there are no triangles, and where a triangle has a
+   * point that does not exist, is not finite or is more than 2^31 voxels away. */
+  DV_EXPORT int32_t dv_cut(dv_deformer* deformer, const dv_surface* sheet, const dv_edit* edit);
+
+  /** Carves out what a closed surface encloses, such as a box of twelve triangles: the points from
+   * which a ray crosses the surface an odd number of times. Points in one place, to 1/256 voxel,
+   * are one. Fails as dv_cut() does, and where the surface is open. */
+  DV_EXPORT int32_t dv_carve_surface(
+    dv_deformer* deformer, const dv_surface* surface, const dv_edit* edit);
+
+  /** Carves out what a sphere sweeps along straight lines from center to center. centers: count
+   * points of three numbers, in world coordinates; one point is the sphere itself. Fails where
+   * there is no center, one is not finite, or the radius is not finite and greater than 0. */
+  DV_EXPORT int32_t dv_carve_sphere(dv_deformer* deformer, int64_t count, const double* centers,
+    double radius, const dv_edit* edit);
+
+  /** Carves out where voxels have a label. labels: an array over the points of the volume, of one
+   * component. They are compared as doubles: whole numbers up to 2^53. By DV_CARVE_CENTROID three
+   * of the four vertices of a tetrahedron have the label; a smooth boundary lies halfway between
+   * voxels. Fails where no voxel has the label. */
+  DV_EXPORT int32_t dv_carve_label(
+    dv_deformer* deformer, const dv_array* labels, double label, const dv_edit* edit);
+
+  /** Finds numbers for some points. points: three numbers each, in world coordinates. It is called
+   * while the function works that it was given to, in threads of the library. It must neither throw
+   * nor call functions for the same object. */
+  typedef void (*dv_point_function)(
+    int64_t count, const double* points, double* values, void* user);
+
+  /** A body by a function that is negative inside. */
+  typedef struct dv_body
+  {
+    /** The size of the structure in bytes, set by the program. */
+    size_t struct_size;
+    /** The function, one number a point. Values that are no numbers are outside. */
+    dv_point_function values;
+    /** The gradients of the function, three numbers a point, for smooth edits: the distance of a
+     * point from the boundary is the value by the length of the gradient. Null: the values are
+     * distances, in world units. */
+    dv_point_function gradients;
+    /** What both get as their argument user. */
+    void* user;
+    /** Not 0: several threads may call both at once. 0: one at a time does. */
+    int32_t is_thread_safe;
+    /** 0. */
+    int32_t reserved;
+    /** x min, x max, y min, y max, z min, z max, in world coordinates: nothing is inside the body
+     * beyond them, nor looked at there. All 0: all of the volume is looked at. */
+    double bounds[6];
+  } dv_body;
+
+  /** Carves out a body. Fails where it has no function, or bounds that are not finite or not in
+   * ascending order. */
+  DV_EXPORT int32_t dv_carve_function(
+    dv_deformer* deformer, const dv_body* body, const dv_edit* edit);
+
+  /** Undoes the last edit, bit for bit. Fails where there is none. */
+  DV_EXPORT int32_t dv_undo_edit(dv_deformer* deformer);
+  /** Makes the edit again that was undone last. Fails where there is none, as after another edit.
+   */
+  DV_EXPORT int32_t dv_redo_edit(dv_deformer* deformer);
+  /** Forgets all edits. */
+  DV_EXPORT int32_t dv_reset_edits(dv_deformer* deformer);
+
+  /** The masks of a volume with its edits, in the shapes that dv_set_active_tetrahedra(),
+   * dv_set_boundary_distances() and dv_set_smooth_cut() take. Null: there is no such mask. What no
+   * edit has changed is the memory that the program has given. All else belongs to the deformer,
+   * and stays until the next function that edits or sets a mask, dv_set_volume() or dv_destroy().
+   */
+  typedef struct dv_masks
+  {
+    /** The size of the structure in bytes, set by the program. */
+    size_t struct_size;
+    /** The active tetrahedra, a byte a cell. */
+    const uint8_t* active;
+    /** The distances to a smooth boundary, a float a voxel; those of edits in world units. */
+    const float* boundary_distances;
+    /** The tetrahedra that smooth cuts divide, a byte a cell. */
+    const uint8_t* crossed;
+    /** The distances from the sheets, a float a voxel; those of edits in voxels. */
+    const float* cut_distances;
+    /** Tetrahedra that edits have switched off, and that were active before. */
+    int64_t number_of_switched_off_tetrahedra;
+    /** Tetrahedra that edits have divided, and that were whole before. */
+    int64_t number_of_divided_tetrahedra;
+    /** Edits, without those that are undone. */
+    int32_t number_of_edits;
+    /** Edits that are undone, and can be redone. */
+    int32_t number_of_undone_edits;
+  } dv_masks;
+
+  /** Gets the masks of the volume. */
+  DV_EXPORT int32_t dv_get_masks(dv_deformer* deformer, dv_masks* masks);
 
 #ifdef __cplusplus
 }

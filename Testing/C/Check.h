@@ -6,6 +6,7 @@
 #include "deformvolume.h"
 
 #include <stdio.h>
+#include <string.h>
 
 static int Failures = 0;
 
@@ -17,6 +18,14 @@ static int Failures = 0;
       printf("line %d: %s is false. Last error: %s\n", __LINE__, #condition, dv_last_error());     \
       ++Failures;                                                                                  \
     }                                                                                              \
+  } while (0)
+
+/* A call that fails with an error that holds some words. */
+#define REFUSED(call, words)                                                                       \
+  do                                                                                               \
+  {                                                                                                \
+    CHECK((call) == DV_ERROR);                                                                     \
+    CHECK(strstr(dv_last_error(), words) != NULL);                                                 \
   } while (0)
 
 #endif

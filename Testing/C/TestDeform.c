@@ -10,14 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A call that fails with an error that holds some words. */
-#define REFUSED(call, words)                                                                       \
-  do                                                                                               \
-  {                                                                                                \
-    CHECK((call) == DV_ERROR);                                                                     \
-    CHECK(strstr(dv_last_error(), words) != NULL);                                                 \
-  } while (0)
-
 enum
 {
   SIZE = 12,

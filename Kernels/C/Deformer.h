@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeDeformer_h
+#define DeformVolumeDeformer_h
+
+#include "Structs.h"
+#include "WorldDeformer.h"
+#include "WorldEdits.h"
+#include "deformvolume.h"
+
+#include <memory>
+#include <string>
+
+struct dv_deformer
+{
+  deformvolume::WorldDeformer Deformer;
+  deformvolume::ImageGeometry Volume;
+  deformvolume::WorldMasks Masks;                  // that the program has set
+  std::unique_ptr<deformvolume::WorldEdits> Edits; // null before there is one
+  std::string Device;
+  std::string Warnings;
+};
+
+namespace deformvolume
+{
+
+inline WorldDeformer& GetDeformer(dv_deformer* deformer)
+{
+  CheckPointer(deformer, "The deformer");
+  return deformer->Deformer;
+}
+
+/// The masks of the deformer, with its edits.
+inline WorldMasks GetMasks(const dv_deformer& deformer)
+{
+  return deformer.Edits ? deformer.Edits->GetMasks() : deformer.Masks;
+}
+
+} // namespace deformvolume
+
+#endif

@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the tests of the interface for C have in common: a deformer of C beside a filter.
+#ifndef CTesting_h
+#define CTesting_h
+
+#include "FilterTesting.h"
+
+#include "deformvolume.h"
+
+#include <vtkDataSetAttributes.h>
+#include <vtkIdList.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace filterTesting
+{
+
+inline const std::map<int, std::int32_t> Types{ { VTK_SIGNED_CHAR, DV_INT8 },
+  { VTK_UNSIGNED_CHAR, DV_UINT8 }, { VTK_SHORT, DV_INT16 }, { VTK_UNSIGNED_SHORT, DV_UINT16 },
+  { VTK_INT, DV_INT32 }, { VTK_UNSIGNED_INT, DV_UINT32 }, { VTK_LONG_LONG, DV_INT64 },
+  { VTK_UNSIGNED_LONG_LONG, DV_UINT64 }, { VTK_FLOAT, DV_FLOAT32 }, { VTK_DOUBLE, DV_FLOAT64 } };
+
+inline void Check(std::int32_t status)
+{
+  VERIFY_EQUAL(status, std::int32_t(DV_OK));
+  if (status != DV_OK)
+  {
+    std::cerr << dv_last_error() << '\n';
+  }
+}
+
+inline dv_grid MakeGrid(vtkImageData* image)
+{
+  dv_grid grid = {};
+  grid.struct_size = sizeof(grid);
+  std::copy_n(image->GetExtent(), 6, grid.extent);
+  std::copy_n(image->GetOrigin(), 3, grid.origin);
+  std::copy_n(image->GetSpacing(), 3, grid.spacing);
+  std::copy_n(image->GetDirectionMatrix()->GetData(), 9, grid.direction);
+  return grid;
+}
+
+/// A deformer of C with all that a filter has.
+class InC
+{
+public:
+  InC() { Check(dv_create(&this->Deformer)); }
+  ~InC() { dv_destroy(this->Deformer); }
+  InC(const InC&) = delete;
+  InC& operator=(const InC&) = delete;
+
+  void SetVolume(
+    vtkImageData* volume, double background, const std::set<std::string>& categorical = {})
+  {
+    const dv_grid grid = MakeGrid(volume);
+    Check(dv_set_volume(this->Deformer, &grid));
+    std::vector<dv_array> arrays;
+    this->Sizes.clear();
+    vtkDataArray* blanked = nullptr;
+    for (int i = 0; i < volume->GetPointData()->GetNumberOfArrays(); ++i)
+    {
+      vtkDataArray* values = volume->GetPointData()->GetArray(i);
+      const std::string name = values->GetName();
+      if (name == "vtkGhostType")
+      {
+        blanked = values;
+      }
+      if (name == "vtkGhostType" || name == "CutDistance" || name == "BoundaryDistance")
+      {
+        continue;
+      }
+      dv_array array = {};
+      array.struct_size = sizeof(array);
+      array.data = values->GetVoidPointer(0);
+      array.type = Types.at(values->GetDataType());
+      array.components = values->GetNumberOfComponents();
+      array.categorical = categorical.count(values->GetName()) > 0 ? 1 : 0;
+      array.background = background;
+      arrays.push_back(array);
+      this->Names.emplace_back(values->GetName());
+      this->Sizes.push_back(static_cast<std::size_t>(values->GetDataTypeSize()) *
+        static_cast<std::size_t>(array.components));
+    }
+    Check(dv_set_arrays(this->Deformer, static_cast<std::int32_t>(arrays.size()), arrays.data()));
+    Check(dv_set_blanked(this->Deformer,
+      blanked ? static_cast<const std::uint8_t*>(blanked->GetVoidPointer(0)) : nullptr));
+    this->Background = background;
+    const auto find = [](vtkDataSetAttributes* attributes, const char* name)
+    {
+      vtkDataArray* array = attributes->GetArray(name);
+      return array ? array->GetVoidPointer(0) : nullptr;
+    };
+    vtkCellData* cells = volume->GetCellData();
+    vtkPointData* points = volume->GetPointData();
+    Check(dv_set_active_tetrahedra(
+      this->Deformer, static_cast<const std::uint8_t*>(find(cells, "ActiveTetrahedra"))));
+    Check(dv_set_boundary_distances(
+      this->Deformer, static_cast<const float*>(find(points, "BoundaryDistance"))));
+    Check(dv_set_smooth_cut(this->Deformer,
+      static_cast<const std::uint8_t*>(find(cells, "CutTetrahedra")),
+      static_cast<const float*>(find(points, "CutDistance"))));
+  }
+
+  void SetMesh(vtkUnstructuredGrid* grid)
+  {
+    std::vector<std::int64_t> offsets{ 0 };
+    std::vector<std::int64_t> connectivity;
+    std::vector<std::uint8_t> types;
+    std::vector<std::int64_t> faces;
+    bool areTetrahedra = true;
+    for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
+    {
+      vtkIdType count = 0;
+      const vtkIdType* points = nullptr;
+      grid->GetCellPoints(cell, count, points);
+      connectivity.insert(connectivity.end(), points, points + count);
+      offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
+      types.push_back(static_cast<std::uint8_t>(grid->GetCellType(cell)));
+      areTetrahedra = areTetrahedra && types.back() == VTK_TETRA;
+      if (types.back() == VTK_POLYHEDRON)
+      {
+        vtkNew<vtkIdList> stream;
+        grid->GetFaceStream(cell, stream);
+        faces.insert(faces.end(), stream->begin(), stream->end());
+      }
+    }
+    dv_mesh mesh = {};
+    mesh.struct_size = sizeof(mesh);
+    mesh.number_of_points = grid->GetNumberOfPoints();
+    mesh.points = grid->GetPoints()->GetVoidPointer(0);
+    mesh.point_type = Types.at(grid->GetPoints()->GetDataType());
+    mesh.number_of_cells = grid->GetNumberOfCells();
+    mesh.connectivity = connectivity.data();
+    mesh.types = areTetrahedra ? nullptr : types.data();
+    mesh.offsets = areTetrahedra ? nullptr : offsets.data();
+    mesh.faces = faces.data();
+    mesh.number_of_face_values = static_cast<std::int64_t>(faces.size());
+    Check(dv_set_mesh(this->Deformer, &mesh));
+    this->SetDisplacements(grid);
+  }
+
+  void SetDisplacements(vtkDataSet* mesh)
+  {
+    vtkDataArray* vectors = mesh->GetPointData()->GetVectors();
+    Check(dv_set_displacements(this->Deformer, Types.at(vectors->GetDataType()),
+      vectors->GetNumberOfTuples(), vectors->GetVoidPointer(0)));
+  }
+
+  void SetField(vtkImageData* image, bool isInverse)
+  {
+    vtkDataArray* vectors = image->GetPointData()->GetVectors();
+    const dv_grid grid = MakeGrid(image);
+    dv_field field = {};
+    field.struct_size = sizeof(field);
+    field.grid = &grid;
+    field.vectors = vectors->GetVoidPointer(0);
+    field.type = Types.at(vectors->GetDataType());
+    field.inverse = isInverse ? 1 : 0;
+    Check(dv_set_field(this->Deformer, &field));
+  }
+
+  void SetReference(vtkImageData* image)
+  {
+    const dv_grid grid = MakeGrid(image);
+    Check(dv_set_reference(this->Deformer, &grid));
+  }
+
+  /// What is wanted besides the arrays of the volume.
+  bool WithExtra = false;
+  bool WithFolds = false;
+  bool IsIncremental = false;
+  std::int32_t Interpolation = DV_LINEAR;
+
+  void Deform()
+  {
+    dv_grid grid = {};
+    grid.struct_size = sizeof(grid);
+    Check(dv_output_grid(this->Deformer, &grid));
+    this->Grid = grid;
+    std::size_t voxels = 1;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      voxels *= static_cast<std::size_t>(grid.extent[2 * axis + 1] - grid.extent[2 * axis] + 1);
+    }
+    dv_request request = {};
+    request.struct_size = sizeof(request);
+    std::vector<void*> outputs;
+    this->Outputs.resize(this->Sizes.size());
+    for (std::size_t i = 0; i < this->Sizes.size(); ++i)
+    {
+      this->Outputs[i].resize(voxels * this->Sizes[i]);
+      outputs.push_back(this->Outputs[i].data());
+    }
+    this->Coverage.resize(voxels);
+    request.number_of_outputs = static_cast<std::int32_t>(outputs.size());
+    request.outputs = outputs.data();
+    request.coverage = this->Coverage.data();
+    request.interpolation = this->Interpolation;
+    request.incremental = this->IsIncremental ? 1 : 0;
+    if (this->WithExtra)
+    {
+      this->RestPositions.resize(3 * voxels);
+      this->Jacobian.resize(voxels);
+      request.rest_positions = this->RestPositions.data();
+      request.jacobian = this->Jacobian.data();
+      request.extra_background = this->Background;
+    }
+    if (this->WithFolds)
+    {
+      this->FoldCount.resize(voxels);
+      request.fold_count = this->FoldCount.data();
+    }
+    this->Report.struct_size = sizeof(this->Report);
+    Check(dv_deform(this->Deformer, &request, &this->Report));
+  }
+
+  /// Whether some bytes are those of an array of an image.
+  template <typename T>
+  static bool AreBits(const std::vector<T>& made, vtkImageData* image, const char* name)
+  {
+    vtkDataArray* array = image->GetPointData()->GetArray(name);
+    const std::size_t bytes = made.size() * sizeof(T);
+    return array &&
+      bytes ==
+      static_cast<std::size_t>(array->GetNumberOfValues()) *
+        static_cast<std::size_t>(array->GetDataTypeSize()) &&
+      std::memcmp(made.data(), array->GetVoidPointer(0), bytes) == 0;
+  }
+
+  /// Deforms, and compares with what a filter makes.
+  void Compare(Deformed& deformed, const std::string& warning = "")
+  {
+    vtkImageData* wanted = deformed.Expect(warning);
+    this->Deform();
+    const dv_grid grid = MakeGrid(wanted);
+    VERIFY(std::equal(grid.extent, grid.extent + 6, this->Grid.extent));
+    VERIFY(std::equal(grid.origin, grid.origin + 3, this->Grid.origin));
+    VERIFY(std::equal(grid.spacing, grid.spacing + 3, this->Grid.spacing));
+    VERIFY(std::equal(grid.direction, grid.direction + 9, this->Grid.direction));
+    for (std::size_t i = 0; i < this->Outputs.size(); ++i)
+    {
+      VERIFY(AreBits(this->Outputs[i], wanted, this->Names[i].c_str()));
+    }
+    VERIFY(AreBits(this->Coverage, wanted, "vtkValidPointMask"));
+    VERIFY(!this->WithExtra || AreBits(this->RestPositions, wanted, "RestPosition"));
+    VERIFY(!this->WithExtra || AreBits(this->Jacobian, wanted, "Jacobian"));
+    VERIFY(!this->WithFolds || AreBits(this->FoldCount, wanted, "FoldCount"));
+    VERIFY_EQUAL(
+      this->Report.number_of_covered_voxels, deformed.Filter->GetNumberOfCoveredVoxels());
+    VERIFY(this->Report.number_of_covered_voxels > 100);
+    VERIFY_EQUAL(
+      this->Report.number_of_inverted_tetrahedra, deformed.Filter->GetNumberOfInvertedTetrahedra());
+    VERIFY_EQUAL(
+      this->Report.number_of_flat_tetrahedra, deformed.Filter->GetNumberOfFlatTetrahedra());
+    VERIFY_EQUAL(std::string(this->Report.device), deformed.Filter->GetDeviceInUse());
+    VERIFY(warning.empty() ? std::string(this->Report.warnings).empty()
+                           : std::string(this->Report.warnings).find(warning) != std::string::npos);
+  }
+
+  dv_deformer* Deformer = nullptr;
+  dv_report Report = {};
+  dv_grid Grid = {};
+
+private:
+  double Background = 0.0;
+  std::vector<std::string> Names;
+  std::vector<std::size_t> Sizes; // bytes of a voxel
+  std::vector<std::vector<unsigned char>> Outputs;
+  std::vector<std::int8_t> Coverage;
+  std::vector<float> RestPositions;
+  std::vector<float> Jacobian;
+  std::vector<std::uint32_t> FoldCount;
+};
+
+inline glm::dvec3 Bend(const glm::dvec3& p)
+{
+  return p + glm::dvec3(0.02 * p.z * p.z, 1.5 * std::sin(0.3 * p.x), 0.05 * p.x * p.y);
+}
+
+/// Values, labels, vectors and colors on an oblique grid.
+inline vtkSmartPointer<vtkImageData> MakeManyArrays()
+{
+  auto volume =
+    MakeImage({ { -7, 12, 3, 20, -9, 8 } }, glm::dvec3(0.7, -1.1, 0.9), glm::dvec3(3.0, -4.0, 2.0));
+  SetObliqueDirection(volume);
+  const WorldFunction wave = [](const glm::dvec3& p)
+  { return 60.0 * std::sin(0.7 * p.x) + 40.0 * std::cos(0.9 * p.y) + 5.0 * p.z; };
+  AddScalars<signed char>(volume, "int8", wave);
+  AddScalars<unsigned short>(
+    volume, "uint16", [&](const glm::dvec3& p) { return 200.0 * (wave(p) + 150.0); });
+  AddScalars<int>(volume, "int32", wave);
+  AddScalars<long long>(volume, "int64", [&](const glm::dvec3& p) { return 1e10 * wave(p); });
+  AddScalars<double>(volume, "double", wave);
+  AddScalars<unsigned char>(
+    volume, "labels", [&](const glm::dvec3& p) { return std::fmod(std::abs(wave(p)), 7.0); });
+  vtkNew<vtkFloatArray> vectors;
+  vectors->SetName("vectors");
+  vectors->SetNumberOfComponents(2);
+  vectors->SetNumberOfTuples(volume->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < vectors->GetNumberOfValues(); ++i)
+  {
+    vectors->SetValue(i, static_cast<float>(std::sin(0.37 * static_cast<double>(i))));
+  }
+  volume->GetPointData()->AddArray(vectors);
+  return volume;
+}
+
+} // namespace filterTesting
+
+#endif
