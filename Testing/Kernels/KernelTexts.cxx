@@ -1,27 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Writes the OpenCL programs that this library builds for a graphics card into a folder, each kind
-// of them once, for Testing/gpu-compilers.sh: whatever is built while volumes are deformed in the
-// ways that there are, on any device, which appears to be a graphics card.
+// Writes the OpenCL programs that this library builds into a folder, each kind of them once, for
+// Testing/gpu-compilers.sh: whatever is built while volumes are deformed in the ways that there
+// are, on any device, which appears to be a graphics card.
 //
-// Usage: KernelTexts FOLDER (double | single) [texts]
-//   single   the card has no double precision
-//   texts    no kernel is run, which saves their compilation: those that depend on what others have
-//            found are written for few kinds of arrays only, and no launches are known
+// Usage: KernelTexts FOLDER (double | single | processor) [texts | linked DRIVER LINKER]
+//   double     the device appears to be a graphics card with double precision
+//   single     to be one without double precision
+//   processor  it is a processor, as it is
+//   texts      no kernel is run, which saves their compilation: those that depend on what others
+//              have found are written for few kinds of arrays only, and no launches are known
+//   linked     the same, with all types of arrays in one program in place of several programs; and
+//              the OpenCL driver of this path compiles and links all kernels, by the program ld in
+//              the folder LINKER: see Testing/Wheel/link_kernels.py
 //
 // The folder gets a file NAME.cl for each program, NAME.options, NAME.nvidia with the options that
 // only NVIDIA's drivers have, and the list kernels.txt with a line for each kernel: the name of the
 // program, that of the kernel, and of its launches the most work-items of a group and the most
 // bytes of local memory in arguments; 0 and 0 where it was not launched.
 #include "ChainMailSubject.h"
+#include "Device.h"
 #include "FakeDriver.h"
 #include "LatticeBody.h"
 #include "MassSpringModel.h"
 #include "OpenCLContext.h"
 #include "RasterCase.h"
 #include "ResamplingProgram.h"
+#include "VectorBounds.h"
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <map>
 #include <numeric>
@@ -32,11 +40,37 @@ using namespace deformvolume;
 namespace
 {
 
+/// What is built, and for which device.
+struct Plan
+{
+  std::string Folder;
+  bool IsProcessor = false;
+  bool HasDouble = true;
+  bool IsRun = true;
+  std::string Driver; // that links all kernels; empty: none does
+  std::string Linker;
+};
+
+/// Has the driver compile and link all kernels of a program: PoCL does so where it is asked for the
+/// binary.
+void LinkProgram(const std::string& text, const std::string& options)
+{
+  const OpenCLContext& context = OpenCLContext::Get(FindDevice(""));
+  const cl::Program program(context.GetContext(), text);
+  program.build({ context.GetDevice().Device }, options.c_str());
+  const auto binaries = program.getInfo<CL_PROGRAM_BINARIES>();
+  if (binaries.size() != 1 || binaries[0].empty())
+  {
+    throw Error("The driver has no binary of a program.");
+  }
+}
+
 class Recorder
 {
 public:
-  explicit Recorder(const std::string& folder)
-    : Folder(folder)
+  explicit Recorder(const Plan& plan)
+    : Folder(plan.Folder)
+    , IsLinking(!plan.Driver.empty())
   {
     FakeDriver& driver = FakeDriver::Get();
     driver.OnBuild = [this](const std::string& text, const std::string& options,
@@ -86,6 +120,10 @@ private:
     name = kernels.substr(kernels.rfind(';') + 1) + "-" + this->Purpose;
     const int count = ++this->Counts[name];
     name += count > 1 ? "-" + std::to_string(count) : "";
+    if (this->IsLinking)
+    {
+      LinkProgram(text, options);
+    }
     std::ofstream(this->Folder + "/" + name + ".cl") << text;
     const std::size_t others = std::min(options.find(" -cl-nv-"), options.size());
     std::ofstream(this->Folder + "/" + name + ".options") << options.substr(0, others) << "\n";
@@ -99,6 +137,7 @@ private:
   }
 
   std::string Folder;
+  bool IsLinking;
   std::string Purpose;
   std::map<std::string, std::string> Names; // of the programs, by their text
   std::map<std::string, int> Counts;        // of the programs with a name
@@ -133,7 +172,11 @@ void Deform(VolumeDeformer& deformer, const DeformerCase& deformerCase,
   }
   std::vector<signed char> coverage(voxels);
   request.Coverage = coverage.data();
-  deformer.Deform(request);
+  request.MayStayOnDevice = true;
+  for (const auto& output : deformer.Deform(request).DeviceOutputs)
+  {
+    output->FindRange(0);
+  }
 }
 
 /// Values for arrays of all kinds: their bits do not matter here.
@@ -150,6 +193,25 @@ VolumeArray MakeArray(ElementType type, int components = 1, bool categorical = f
 }
 
 const std::vector<VolumeArray> OneArray{ MakeArray(ElementType::Int16) };
+
+/// Arrays of all types, and labels of all types.
+std::vector<VolumeArray> MakeAllArrays(const Plan& plan)
+{
+  std::vector<VolumeArray> arrays;
+  for (const bool categorical : { false, true })
+  {
+#define ADD(name, type, cl)                                                                        \
+  if (plan.HasDouble || GetElementSize(ElementType::name) < 4 ||                                   \
+    ElementType::name == ElementType::Float32)                                                     \
+  {                                                                                                \
+    arrays.push_back(MakeArray(ElementType::name, 1, categorical));                                \
+  }
+    DEFORMVOLUME_ELEMENT_TYPES(ADD)
+#undef ADD
+  }
+  arrays.push_back(MakeArray(ElementType::UInt8, 3));
+  return arrays;
+}
 
 void DeformEach(Recorder& recorder, const std::string& purpose, const DeformerCase& deformerCase)
 {
@@ -172,10 +234,12 @@ void DeformEach(Recorder& recorder, const std::string& purpose, const DeformerCa
   }
 }
 
-void DeformArrays(Recorder& recorder, bool single)
+using ArrayKinds = std::vector<std::pair<std::string, std::vector<VolumeArray>>>;
+
+void DeformArrays(Recorder& recorder, const Plan& plan)
 {
   const DeformerCase folded = MakeFolded();
-  std::vector<std::pair<std::string, std::vector<VolumeArray>>> kinds{
+  ArrayKinds kinds{
     { "uint8", { MakeArray(ElementType::UInt8) } },
     { "float", { MakeArray(ElementType::Float32) } },
     { "uint8x3", { MakeArray(ElementType::UInt8, 3) } },
@@ -184,11 +248,15 @@ void DeformArrays(Recorder& recorder, bool single)
       { MakeArray(ElementType::Int16), MakeArray(ElementType::UInt8, 1, true),
         MakeArray(ElementType::Float32, 3) } },
   };
-  if (!single)
+  if (plan.HasDouble)
   {
     kinds.push_back({ "double", { MakeArray(ElementType::Float64) } });
     kinds.push_back({ "int32", { MakeArray(ElementType::Int32) } });
     kinds.push_back({ "int64", { MakeArray(ElementType::Int64) } });
+  }
+  if (!plan.Driver.empty())
+  {
+    kinds = { { "all", MakeAllArrays(plan) } };
   }
   for (const auto& [name, arrays] : kinds)
   {
@@ -199,7 +267,7 @@ void DeformArrays(Recorder& recorder, bool single)
   }
 }
 
-void DeformByDeviceVectors(Recorder& recorder, bool single)
+void DeformByDeviceVectors(Recorder& recorder, const Plan& plan)
 {
   const DeformerCase folded = MakeFolded();
   const auto vectors =
@@ -211,7 +279,7 @@ void DeformByDeviceVectors(Recorder& recorder, bool single)
   {
     field.Dimensions[axis] = static_cast<int>(GetSize(folded.VoxelGrid.VertexExtent, axis));
   }
-  if (!single)
+  if (plan.HasDouble)
   {
     field.ToDisplacement = { { 0.5, 0, 0, 0, 1, 0, 0, 0, 1 } };
   }
@@ -224,6 +292,7 @@ void DeformByDeviceVectors(Recorder& recorder, bool single)
   Load(deformer, folded, OneArray, Route::Field);
   deformer.SetDisplacementField(field, vectors);
   Deform(deformer, folded, OneArray);
+  FindDeformedBounds(folded.VoxelGrid, field, *vectors);
 }
 
 void DeformCut(Recorder& recorder)
@@ -238,16 +307,36 @@ void DeformCut(Recorder& recorder)
   DeformEach(recorder, "-int16-cut", cut);
 }
 
-void Rasterize(Recorder& recorder, bool single)
+/// A field that ends between the voxels of the volume.
+void DeformPart(Recorder& recorder)
+{
+  DeformerCase deformerCase = MakeFolded();
+  DisplacementField field;
+  field.Dimensions = { { 3, 3, 3 } };
+  const std::vector<float> vectors(81, 0.25F);
+  field.Vectors = vectors.data();
+  field.IndexToField = { { 1, 0, 0, -1.5, 0, 1, 0, -1.5, 0, 0, 1, -1.5 } };
+  recorder.SetPurpose("boundary-int16");
+  VolumeDeformer deformer;
+  Load(deformer, deformerCase, OneArray, Route::Field);
+  deformer.SetDisplacementField(field);
+  Deform(deformer, deformerCase, OneArray);
+}
+
+void Rasterize(Recorder& recorder, const Plan& plan)
 {
   const RasterCase mesh = MakeRasterCase(
     { { 0, 9, 0, 8, 0, 7 } }, 2, [](const glm::dvec3& index) { return index * 1.1; });
-  std::vector<std::pair<std::string, std::vector<VolumeArray>>> kinds{ { "int16", OneArray },
+  ArrayKinds kinds{ { "int16", OneArray },
     { "float-labels8",
       { MakeArray(ElementType::Float32), MakeArray(ElementType::UInt8, 1, true) } } };
-  if (!single)
+  if (plan.HasDouble)
   {
     kinds.push_back({ "double", { MakeArray(ElementType::Float64) } });
+  }
+  if (!plan.Driver.empty())
+  {
+    kinds = { { "all", MakeAllArrays(plan) } };
   }
   for (const auto& [name, arrays] : kinds)
   {
@@ -328,35 +417,67 @@ void BuildOthers(Recorder& recorder)
   }
 }
 
+void Build(const Plan& plan)
+{
+  FakeDriver& driver = FakeDriver::Get();
+  if (!plan.Driver.empty())
+  {
+    setenv("COMPILER_PATH", plan.Linker.c_str(), 1);
+    AddDriver(plan.Driver); // while its device is still a processor
+  }
+  driver.SkipsLaunches = !plan.IsRun;
+  driver.IsGraphics = !plan.IsProcessor;
+  driver.HasDouble = plan.HasDouble;
+  driver.HasNVIDIAOptions = !plan.IsProcessor && plan.Driver.empty();
+  Recorder recorder(plan);
+  DeformArrays(recorder, plan);
+  DeformByDeviceVectors(recorder, plan);
+  DeformPart(recorder);
+  // A driver that links them gets once what a graphics card has in common with a processor.
+  if (plan.Driver.empty() || plan.IsProcessor)
+  {
+    DeformEach(recorder, "-int16", MakeFolded());
+    DeformCut(recorder);
+    Rasterize(recorder, plan);
+    MoveBodies(recorder);
+  }
+  if (plan.Driver.empty() || !plan.IsProcessor)
+  {
+    BuildOthers(recorder);
+  }
+  recorder.WriteKernels();
+}
+
 } // namespace
 
 int main(int argc, char* argv[])
 {
-  const std::string precision = argc >= 3 ? argv[2] : "";
-  const bool single = precision == "single";
-  const bool texts = argc == 4 && std::string(argv[3]) == "texts";
-  if ((!single && precision != "double") || argc != (texts ? 4 : 3))
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
+  const std::string device = arguments.size() >= 2 ? arguments[1] : "";
+  const std::string way = arguments.size() >= 3 ? arguments[2] : "";
+  const std::size_t count = way == "linked" ? 5 : way == "texts" ? 3 : 2;
+  if ((device != "double" && device != "single" && device != "processor") ||
+    arguments.size() != count)
   {
-    std::fprintf(stderr, "usage: KernelTexts FOLDER (double | single) [texts]\n");
+    std::fprintf(stderr,
+      "usage: KernelTexts FOLDER (double | single | processor) [texts | linked DRIVER LINKER]\n");
     return 2;
   }
-  FakeDriver::Get().SkipsLaunches = texts;
-  FakeDriver::Get().IsGraphics = true;
-  FakeDriver::Get().HasDouble = !single;
-  FakeDriver::Get().HasNVIDIAOptions = true;
+  Plan plan;
+  plan.Folder = arguments[0];
+  plan.IsProcessor = device == "processor";
+  plan.HasDouble = device != "single";
+  plan.IsRun = way.empty();
+  if (way == "linked")
+  {
+    plan.Driver = arguments[3];
+    plan.Linker = arguments[4];
+  }
   try
   {
-    Recorder recorder(argv[1]);
-    DeformEach(recorder, "-int16", MakeFolded());
-    DeformArrays(recorder, single);
-    DeformByDeviceVectors(recorder, single);
-    DeformCut(recorder);
-    Rasterize(recorder, single);
-    MoveBodies(recorder);
-    BuildOthers(recorder);
-    recorder.WriteKernels();
+    Build(plan);
   }
-  catch (const Error& error)
+  catch (const std::exception& error)
   {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;
