@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdlib>
-#include <iterator>
 
 namespace deformvolume
 {
@@ -70,10 +69,24 @@ double GetSeconds(const cl::Event& event)
       event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
 }
 
-/// Those of drivers that were added, and then those of the system. A driver that is both is there
-/// once: drivers hand out one pointer for a platform.
+/// Those of drivers that were added, and then those of the system, each once: a driver may be added
+/// that the system has as well, and be named by two files of the system. It hands out one pointer
+/// for a platform.
 std::vector<cl::Platform> ListPlatforms()
 {
+  std::vector<cl::Platform> platforms;
+  const auto add = [&](const cl::Platform& platform)
+  {
+    if (std::none_of(platforms.begin(), platforms.end(),
+          [&](const cl::Platform& other) { return other() == platform(); }))
+    {
+      platforms.push_back(platform);
+    }
+  };
+  for (cl_platform_id platform : AddedDrivers::Get().GetPlatforms())
+  {
+    add(cl::Platform(platform));
+  }
   std::vector<cl::Platform> system;
   try
   {
@@ -83,19 +96,7 @@ std::vector<cl::Platform> ListPlatforms()
   {
     system.clear(); // the loader answers with an error where there is no platform
   }
-  std::vector<cl::Platform> platforms;
-  for (cl_platform_id platform : AddedDrivers::Get().GetPlatforms())
-  {
-    platforms.emplace_back(platform);
-  }
-  const auto added = static_cast<std::ptrdiff_t>(platforms.size());
-  std::copy_if(system.begin(), system.end(), std::back_inserter(platforms),
-    [&](const cl::Platform& platform)
-    {
-      const auto end = platforms.begin() + added;
-      return std::none_of(
-        platforms.begin(), end, [&](const cl::Platform& other) { return other() == platform(); });
-    });
+  std::for_each(system.begin(), system.end(), add);
   return platforms;
 }
 

@@ -90,6 +90,7 @@ class Devices(unittest.TestCase):
         self.expect_pocl(OCL_ICD_VENDORS=find_driver())
         self.expect_pocl(OCL_ICD_VENDORS=find_driver(), DEFORMVOLUME_DRIVER="pypi")
         self.expect_pocl(OCL_ICD_FILENAMES=find_driver(), DEFORMVOLUME_DRIVER="system")
+        self.expect_pocl(OCL_ICD_FILENAMES=f"{find_driver()}:{find_driver()}", DEFORMVOLUME_DRIVER="system")
 
 
 if __name__ == "__main__":
