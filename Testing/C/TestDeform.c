@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /*
  * Deformers in C: what is refused, and why; progress and abort; parts of the output.
- * Examples/minimal-c has the ordinary case, and Testing/Cxx/TestCInterface.cxx the numbers.
+ * Examples/minimal-c has the ordinary case, and Testing/Cxx/C/TestCInterface.cxx the numbers.
  */
 #include "Check.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /*
  * Cutting and carving in C: what is refused, and why; abort; counts of tetrahedra that follow from
- * the grid alone; undo. Testing/Cxx/TestCEdits.cxx has the bits of the filters.
+ * the grid alone; undo. Testing/Cxx/C/TestCEdits.cxx has the bits of the filters.
  */
 #include "Check.h"
 

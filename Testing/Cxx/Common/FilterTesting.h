@@ -4,7 +4,7 @@
 #ifndef FilterTesting_h
 #define FilterTesting_h
 
-#include "../Reported.h"
+#include "../../Reported.h"
 
 #include "vtkDeformVolumeFilter.h"
 #include "vtkLatticeTetrahedraSource.h"
