@@ -50,16 +50,16 @@ static __attribute__((always_inline)) void ResampleCells(GroupCandidates* c, int
   {
     LeaveSpecials(c);
   }
-  Doubts doubts;
-  const Outcome outcome = ResampleByFloats(c, mesh, output, found, &doubts, p ARRAY_ARGUMENTS);
-  uint again = outcome.Unsure;
-  if (outcome.Doubtful)
+  UndecidedSamples undecidedSamples;
+  const Outcome outcome = ResampleByFloats(c, mesh, output, found, &undecidedSamples, p ARRAY_ARGUMENTS);
+  uint again = outcome.NeedsInt64;
+  if (outcome.SamplesNeedInt64)
   {
-    ResampleDoubts(c, &doubts, outcome.Doubtful, beginX, endX, mesh, output, p ARRAY_ARGUMENTS);
+    ResampleUndecided(c, &undecidedSamples, outcome.SamplesNeedInt64, beginX, endX, mesh, output, p ARRAY_ARGUMENTS);
   }
-  if (outcome.Ambiguous)
+  if (outcome.NeedsInt32)
   {
-    again |= ResampleByIntegers(c, outcome.Ambiguous, mesh, output, found, p ARRAY_ARGUMENTS);
+    again |= ResampleByIntegers(c, outcome.NeedsInt32, mesh, output, found, p ARRAY_ARGUMENTS);
   }
   if (again)
   {

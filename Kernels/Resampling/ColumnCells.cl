@@ -104,18 +104,17 @@ static float DecisiveWeight(const GroupCandidates* c, const GroupFrame* frame)
   return c->HasBoxes && c->Box ? -INFINITY : frame->Bound;
 }
 
-// The weights of a sample, and whether floats leave it undecided. Returns whether the cell holds it, as far as they
-// decide.
+// The weights of a sample. Returns whether the cell holds it, as far as floats decide that.
 static __attribute__((always_inline)) uint WeighCandidate(const GroupCandidates* c,
   const GroupFrame* frame, const GroupScales* scales, const Walk* at, SampleWeights* weights,
-  uint* undecided)
+  uint* undecidedByFloats)
 {
   WeighSamples(frame, scales, at->X, at->Y, at->Z, weights);
-  return DecideByFloats(weights, 1, DecisiveWeight(c, frame), frame->Bound, undecided);
+  return DecideByFloats(weights, 1, DecisiveWeight(c, frame), frame->Bound, undecidedByFloats);
 }
 
-// Whether a box beside what is missing has its samples on vertices decided by DecideOnVertices: where others are
-// undecided, too, integers decide all of them, as they do for groups (GroupResampling.cl).
+// Whether a box beside what is missing has its samples on vertices decided by DecideOnVertices: where floats do not decide
+// others either, integers decide all of them, as they do for groups (GroupResampling.cl).
 static int IsDecidedOnVertices(const GroupCandidates* c, const GroupFrame* frame,
   const GroupScales* scales, const KernelParameters* p)
 {
@@ -125,18 +124,18 @@ static int IsDecidedOnVertices(const GroupCandidates* c, const GroupFrame* frame
   for (int i = 0; i < c->Number && decided && c->Extent < MAXIMUM_EXACT_EXTENT; ++i)
   {
     SampleWeights weights;
-    uint undecided;
-    WeighCandidate(c, frame, scales, &at, &weights, &undecided);
-    decided = !undecided || IsOnVertex(frame, &at);
+    uint undecidedByFloats;
+    WeighCandidate(c, frame, scales, &at, &weights, &undecidedByFloats);
+    decided = !undecidedByFloats || IsOnVertex(frame, &at);
     Advance(&at);
   }
   return decided;
 }
 
-// The samples of a cell whose frame is nice. mesh, isComplete, onlyUndecided: as for ResampleColumnCell. Returns what is
+// The samples of a cell whose frame is nice. mesh, isComplete, onlyUndecidedByFloats: as for ResampleColumnCell. Returns what is
 // still to be done: CELL_DONE or QUEUE_...
 static __attribute__((always_inline)) int TakeSamples(const GroupCandidates* c,
-  const GroupFrame* frame, const SamplingMesh* mesh, int isComplete, int onlyUndecided,
+  const GroupFrame* frame, const SamplingMesh* mesh, int isComplete, int onlyUndecidedByFloats,
   Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   const Group* const group = &c->Cells;
@@ -157,33 +156,33 @@ static __attribute__((always_inline)) int TakeSamples(const GroupCandidates* c,
   const int beginsOnVertex = box && IsOnVertex(frame, &at);
   const int beside = mesh && IsDecidedOnVertices(c, frame, &scales, p);
   uint writes = 0;
-  uint left = 0;      // whether floats have left samples undecided
-  uint ambiguous = 0; // whether integers have
+  uint isUndecided = 0; // whether floats do not decide some sample, and no integers of 32 bits were asked
+  uint needsInt64 = 0;  // whether integers of 32 bits do not decide some sample
   for (int i = 0; i < c->Number; ++i)
   {
     SampleWeights weights;
-    uint undecided;
-    uint held = WeighCandidate(c, frame, &scales, &at, &weights, &undecided);
+    uint undecidedByFloats;
+    uint held = WeighCandidate(c, frame, &scales, &at, &weights, &undecidedByFloats);
     int onVertex = i == 0 ? beginsOnVertex : mayReachEnds && box && IsOnVertex(frame, &at);
     if (beside && IsOnVertex(frame, &at))
     {
-      undecided = 0;
+      undecidedByFloats = 0;
       held = DecideOnVertices(group, 1, VerticesAt(frame, &at), &c->State, at.X + frame->X0,
         at.Y + frame->Y0, at.Z + frame->Z0, mesh, output, p);
       onVertex = 1;
     }
-    held = onlyUndecided ? 0 : held;
-    if (isComplete && undecided && isSmall && !DEFORMVOLUME_IS_CLOSED(p->Pass))
+    held = onlyUndecidedByFloats ? 0 : held;
+    if (isComplete && undecidedByFloats && isSmall && !DEFORMVOLUME_IS_CLOSED(p->Pass))
     {
       const float sample[3] = { at.X, at.Y, at.Z };
       int isVertex;
       held = DecideByIntegers(
-        group, 1, sample, frame->Inverted, &state, &isVertex, &ambiguous, output, p);
+        group, 1, sample, frame->Inverted, &state, &isVertex, &needsInt64, output, p);
       onVertex |= isVertex;
     }
     else
     {
-      left |= undecided;
+      isUndecided |= undecidedByFloats;
     }
     if (c->IsBeyond)
     {
@@ -200,27 +199,27 @@ static __attribute__((always_inline)) int TakeSamples(const GroupCandidates* c,
     }
     Advance(&at);
   }
-  // What is looked at again as a whole must not count twice. Cells too large for these integers leave the samples in
-  // question only: they have many, and hardly one is.
-  if (left && !isComplete && group->Border)
+  // What is looked at again as a whole must not count twice. Cells too large for these integers leave these samples only:
+  // they have many, and floats decide nearly all of them.
+  if (isUndecided && !isComplete && group->Border)
   {
     return QUEUE_FLOATS;
   }
-  if ((left && isSmall && DEFORMVOLUME_IS_CLOSED(p->Pass)) || ambiguous)
+  if ((isUndecided && isSmall && DEFORMVOLUME_IS_CLOSED(p->Pass)) || needsInt64)
   {
     return QUEUE_UNSURE;
   }
   output->Writes += writes;
-  output->Inverted += frame->Inverted && !onlyUndecided ? 5 : 0;
-  return !left ? CELL_DONE : isSmall ? QUEUE_INTEGERS : QUEUE_DOUBTS;
+  output->Inverted += frame->Inverted && !onlyUndecidedByFloats ? 5 : 0;
+  return !isUndecided ? CELL_DONE : isSmall ? QUEUE_INTEGERS : QUEUE_DOUBTS;
 }
 
 // A cell, as far as floats take it, or integers of 32 bits. mesh: null where vertices have no state, or it does not matter.
 // isComplete: whether integers decide what floats do not, at once, and cells on the border are told from others; else
-// they must be whole. onlyUndecided: of all samples those only. most: of its candidates. Returns what is still to be done:
+// they must be whole. onlyUndecidedByFloats: of all samples those only. most: of its candidates. Returns what is still to be done:
 // CELL_DONE or QUEUE_...
 static __attribute__((always_inline)) int ResampleColumnCell(GroupCandidates* c, int most,
-  const SamplingMesh* mesh, GroupFrame* frame, int isComplete, int onlyUndecided, Output* output,
+  const SamplingMesh* mesh, GroupFrame* frame, int isComplete, int onlyUndecidedByFloats, Output* output,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   Bounds bounds;
@@ -242,11 +241,11 @@ static __attribute__((always_inline)) int ResampleColumnCell(GroupCandidates* c,
   }
   if (!c->Some)
   {
-    output->Inverted += frame->Inverted && !onlyUndecided ? 5 : 0;
+    output->Inverted += frame->Inverted && !onlyUndecidedByFloats ? 5 : 0;
     return CELL_DONE;
   }
   return TakeSamples(
-    c, frame, mesh, isComplete, onlyUndecided, output, p ARRAY_ARGUMENTS);
+    c, frame, mesh, isComplete, onlyUndecidedByFloats, output, p ARRAY_ARGUMENTS);
 }
 
 // A cell whose vertices lie in rows. row: the place of its vertices in the row of even y and z.

@@ -11,7 +11,7 @@
 // these. Cells that are bent or large, that a cut divides, or of which tetrahedra may be missing, go into a queue for
 // ResampleQueued (QueuedResampling.cl), as does what ResampleLeft cannot do.
 //
-// Why undecided samples do not go into a list that the group takes after each layer: some eight of 256 cells have one,
+// Why samples that floats do not decide do not go into a list that the group takes after each layer: some eight of 256 cells have one,
 // one warp has all of them, and the others wait.
 
 // Of cells with more candidates each takes all lanes as long as the longest of them: they are left for later.

@@ -284,11 +284,11 @@ static __attribute__((always_inline)) INTS OwnByIndex(
     (((simplex & LOW_SIDE(2, mirror)) != 0) | isLastY);
 }
 
-// Returns which of the undecided cells, as bits, own their sample. state: of the group, where it is on the border of
-// the mesh. onVertex: lanes whose sample is a vertex. ambiguous: cells for ResampleCell are added to it. All else is
+// Returns which cells of undecidedByFloats, as bits, own their sample. state: of the group, where it is on the border of
+// the mesh. onVertex: lanes whose sample is a vertex. needsInt64: cells for ResampleCell are added to it. All else is
 // as for HoldSample.
-static __attribute__((always_inline)) uint DecideByIntegers(const Group* group, uint undecided,
-  const FLOATS* sample, INTS inverted, const GroupState* state, INTS* onVertex, uint* ambiguous,
+static __attribute__((always_inline)) uint DecideByIntegers(const Group* group, uint undecidedByFloats,
+  const FLOATS* sample, INTS inverted, const GroupState* state, INTS* onVertex, uint* needsInt64,
   Output* output, const KernelParameters* p)
 {
   INTS simplex;
@@ -300,21 +300,21 @@ static __attribute__((always_inline)) uint DecideByIntegers(const Group* group, 
     const INTS regular = (simplex & ~state->Regular) == 0;
     held = outer ? OwnByIndex(group, simplex, Mirror(group->X, group->Y, group->Z, p), p) & regular
                  : held;
-    *ambiguous |= undecided & LaneBits(outer & ~regular);
-    output->Assumed |= (undecided & LaneBits(outer)) != 0;
+    *needsInt64 |= undecidedByFloats & LaneBits(outer & ~regular);
+    output->Assumed |= (undecidedByFloats & LaneBits(outer)) != 0;
   }
   if (p->Pass == DEFORMVOLUME_PASS_OWNERS)
   {
-    TouchHeld(undecided & LaneBits(~held & (simplex != 0)), sample[0] + VERTEX(0, 0),
+    TouchHeld(undecidedByFloats & LaneBits(~held & (simplex != 0)), sample[0] + VERTEX(0, 0),
       sample[1] + VERTEX(0, 1), sample[2] + VERTEX(0, 2), output, p);
   }
 #if LANES > 1
-  *onVertex = LanesOf(undecided) & ((simplex & (simplex - 1)) == 0);
+  *onVertex = LanesOf(undecidedByFloats) & ((simplex & (simplex - 1)) == 0);
 #else
   // Oclgrind lacks a function for what its compiler makes of the above.
-  *onVertex = undecided && popcount(simplex) < 2;
+  *onVertex = undecidedByFloats && popcount(simplex) < 2;
 #endif
-  return undecided & LaneBits(held);
+  return undecidedByFloats & LaneBits(held);
 }
 
 // Whether a box that has all its tetrahedra, and whose coordinates grow with the indices, owns a sample on one of its

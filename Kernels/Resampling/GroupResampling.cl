@@ -2,34 +2,34 @@
 // The samples that a group of cells holds, with their values (BrickResampling.cl): by floats where the sign of a
 // coordinate is certain (GroupWeights.cl), by integers where it is not (GroupCoverage.cl).
 //
-// Cells with an undecided sample are repeated: with edge functions in integers, LANES cells at once again; where
-// they are bent, or what surrounds them is not all there, by ResampleCell. Of cells that are too large for integers
-// of 32 bits only these samples are left to it: they have many samples, and hardly one of them is undecided.
+// Cells with a sample that floats do not decide are repeated with edge functions in integers of 32 bits, LANES cells at
+// once again (NeedsInt32). Where cells are bent, or what surrounds them is not all there, ResampleCell takes them with
+// integers of 64 bits (NeedsInt64). Cells that are too large for integers of 32 bits leave only these samples to it
+// (SamplesNeedInt64): they have many samples, and floats decide nearly all of them.
 
 // What became of LANES cells, as bits.
 typedef struct
 {
-  uint Ambiguous; // repeat them with integers
-  uint Unsure;    // leave them to ResampleCell
-  uint Doubtful;  // leave some samples of theirs to it
+  uint NeedsInt32;       // repeat them with integers of 32 bits
+  uint NeedsInt64;       // leave them to ResampleCell, which has integers of 64 bits
+  uint SamplesNeedInt64; // leave some of their samples to ResampleSamples
 } Outcome;
 
-// The samples that floats have not decided: of each round that had some its number, and in the lower 16 bits the
-// cells.
+// The samples that floats do not decide: for each round that has some its number, and in the lower 16 bits the cells.
 typedef struct
 {
   uint Rounds[MAXIMUM_CANDIDATES];
   uint Count;
-} Doubts;
+} UndecidedSamples;
 
 // Decides samples on the four lines that hold a cell's edges along an axis, where these are parallel to it (ParallelEdges),
 // inside the mesh. Planes bound such a cell on the other two axes, so that the shifts along these lead out of it from its
 // high sides and into it from the low ones: of the four edges it owns what lies between the ends of the lowest one. At an
 // end of an edge along x the shift along x decides, which comes first. Where edges lie along another axis, the face at
-// the end may be bent as seen from there, and the sample stays undecided. x, y, z: the samples, in voxels of the output.
-// Returns which cells own theirs, and takes what is decided from undecided.
+// the end may be bent as seen from there, and the sample is not decided. x, y, z: the samples, in voxels of the output.
+// Returns which cells own theirs, and removes the decided ones from undecidedByFloats.
 static __attribute__((noinline)) uint DecideOnEdges(const Group* group, const GroupFrame* f,
-  const ParallelEdges* edges, FLOATS x, FLOATS y, FLOATS z, uint* undecided, INTS* onVertex,
+  const ParallelEdges* edges, FLOATS x, FLOATS y, FLOATS z, uint* undecidedByFloats, INTS* onVertex,
   const KernelParameters* p)
 {
   const int mirror = Mirror(group->X, group->Y, group->Z, p);
@@ -48,8 +48,8 @@ static __attribute__((noinline)) uint DecideOnEdges(const Group* group, const Gr
   const INTS endsZ = lowestZ & ((z == FROM(2)) | (z == VERTEX(mirror ^ 2, 2)));
   const INTS ownsZ = lowestZ & (z > FROM(2)) & (z < VERTEX(mirror ^ 2, 2));
   const uint decided =
-    *undecided & LaneBits((alongX | alongY | alongZ) & ~endsY & ~endsZ);
-  *undecided &= ~decided;
+    *undecidedByFloats & LaneBits((alongX | alongY | alongZ) & ~endsY & ~endsZ);
+  *undecidedByFloats &= ~decided;
   *onVertex |= ownsX & (x == FROM(0)) & LanesOf(decided);
 #undef FROM
   return decided & LaneBits(ownsX | ownsY | ownsZ);
@@ -60,8 +60,8 @@ typedef struct
 {
   uint Count;
   uint Writes;    // samples that were found
-  uint Ambiguous; // cells, as bits, with one that is still undecided
-  uint Doubts;    // how many rounds doubts has
+  uint NeedsNextStep;   // cells, as bits, with a sample that this step of the exactness chain does not decide
+  uint UndecidedRounds; // how many rounds undecidedSamples has
 } Rounds;
 
 // Whether cells inside the mesh have edges of which DecideOnEdges knows, and which.
@@ -86,7 +86,7 @@ static __attribute__((noinline)) int LookForEdges(const Group* group, const Grou
 // is as for ResampleGroup.
 static __attribute__((always_inline)) void TakeRounds(const GroupCandidates* c,
   const GroupFrame* frame, uint some, const GroupState* state, const SamplingMesh* mesh, Output* output,
-  Found* found, Doubts* doubts, ushort* hits, Rounds* rounds, const KernelParameters* p ARRAY_PARAMETERS)
+  Found* found, UndecidedSamples* undecidedSamples, ushort* hits, Rounds* rounds, const KernelParameters* p ARRAY_PARAMETERS)
 {
   const Group* const group = &c->Cells;
   // Boxes take all their candidates, whatever the second smallest weight is, from which it is told that a sample is
@@ -110,8 +110,8 @@ static __attribute__((always_inline)) void TakeRounds(const GroupCandidates* c,
   {
     SampleWeights weights;
     WeighSamples(frame, &scales, at.X, at.Y, at.Z, &weights);
-    uint undecided;
-    uint held = DecideByFloats(&weights, some, decisive, frame->Bound, &undecided);
+    uint undecidedByFloats;
+    uint held = DecideByFloats(&weights, some, decisive, frame->Bound, &undecidedByFloats);
     INTS onVertex = 0;
     if (c->HasBeside && !state)
     {
@@ -119,14 +119,14 @@ static __attribute__((always_inline)) void TakeRounds(const GroupCandidates* c,
       const uint decided = LaneBits(beside);
       if (decided)
       {
-        undecided &= ~decided;
+        undecidedByFloats &= ~decided;
         held = (held & ~decided) |
           DecideOnVertices(group, decided, VerticesAt(frame, &at), &c->State, at.X + frame->X0,
             at.Y + frame->Y0, at.Z + frame->Z0, mesh, output, p);
         onVertex = beside;
       }
     }
-    if (undecided && hasEdges)
+    if (undecidedByFloats && hasEdges)
     {
       if (hasEdges < 0)
       {
@@ -135,19 +135,19 @@ static __attribute__((always_inline)) void TakeRounds(const GroupCandidates* c,
       if (hasEdges)
       {
         held |= DecideOnEdges(group, frame, &edges, at.X + frame->X0, at.Y + frame->Y0,
-          at.Z + frame->Z0, &undecided, &onVertex, p);
+          at.Z + frame->Z0, &undecidedByFloats, &onVertex, p);
       }
     }
-    if (undecided && state)
+    if (undecidedByFloats && state)
     {
       const FLOATS sample[3] = { at.X, at.Y, at.Z };
       held |= DecideByIntegers(
-        group, undecided, sample, frame->Inverted, state, &onVertex, &rounds->Ambiguous, output, p);
+        group, undecidedByFloats, sample, frame->Inverted, state, &onVertex, &rounds->NeedsNextStep, output, p);
     }
-    else if (undecided)
+    else if (undecidedByFloats)
     {
-      rounds->Ambiguous |= undecided;
-      doubts->Rounds[rounds->Doubts++] = rounds->Count << 16 | undecided;
+      rounds->NeedsNextStep |= undecidedByFloats;
+      undecidedSamples->Rounds[rounds->UndecidedRounds++] = rounds->Count << 16 | undecidedByFloats;
     }
     if (c->IsBeyond)
     {
@@ -180,39 +180,39 @@ static __attribute__((always_inline)) void TakeRounds(const GroupCandidates* c,
 }
 
 // The samples of a group of cells. mesh: where state is null. state: where the group is on the border, if samples that
-// floats do not decide are to be decided by integers: those of the cells in only, as bits. Else null, and doubts takes
+// floats do not decide are to be decided by integers: those of the cells in only, as bits. Else null, and undecidedSamples takes
 // these samples. What cells that must be repeated have written is not counted.
 static __attribute__((always_inline)) void ResampleGroup(
   const GroupCandidates* c, uint only, const GroupState* state, const SamplingMesh* mesh,
-  Output* output, Found* found, Doubts* doubts, Outcome* outcome,
+  Output* output, Found* found, UndecidedSamples* undecidedSamples, Outcome* outcome,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   const int exact = state != 0;
   const uint there = exact ? c->There & only : c->There;
   GroupFrame frame;
   MakeGroupFrame(c, c->Fit & there, &frame);
-  const uint unsure = there & ~frame.Nice;
+  const uint bent = there & ~frame.Nice;
   ushort hits[MAXIMUM_CANDIDATES];
   Rounds rounds = { 0, 0, 0, 0 };
   const uint some = c->Some & frame.Nice;
   if (some)
   {
     TakeRounds(
-      c, &frame, some, state, mesh, output, found, doubts, hits, &rounds, p ARRAY_ARGUMENTS);
+      c, &frame, some, state, mesh, output, found, undecidedSamples, hits, &rounds, p ARRAY_ARGUMENTS);
   }
-  uint ambiguous = rounds.Ambiguous;
-  outcome->Doubtful = 0;
-  if (!exact && ambiguous)
+  uint needsNextStep = rounds.NeedsNextStep;
+  outcome->SamplesNeedInt64 = 0;
+  if (!exact && needsNextStep)
   {
-    doubts->Count = rounds.Doubts;
-    outcome->Doubtful = ambiguous & ~LaneBits(c->Extent < MAXIMUM_EXACT_EXTENT);
-    ambiguous ^= outcome->Doubtful;
+    undecidedSamples->Count = rounds.UndecidedRounds;
+    outcome->SamplesNeedInt64 = needsNextStep & ~LaneBits(c->Extent < MAXIMUM_EXACT_EXTENT);
+    needsNextStep ^= outcome->SamplesNeedInt64;
   }
-  output->Inverted += 5 * popcount(frame.Turned & frame.Nice & ~ambiguous);
-  const uint again = unsure | ambiguous;
+  output->Inverted += 5 * popcount(frame.Turned & frame.Nice & ~needsNextStep);
+  const uint again = bent | needsNextStep;
   if (again)
   {
-    // What an undecided cell wrote so far is written again with it, and must not count twice.
+    // What these cells wrote so far is written again with them, and must not count twice.
     for (uint i = 0; i < rounds.Count; ++i)
     {
       rounds.Writes -= popcount(hits[i] & again);
@@ -220,16 +220,16 @@ static __attribute__((always_inline)) void ResampleGroup(
   }
   output->Writes += rounds.Writes;
   // Integers of 32 bits decide who owns a sample.
-  outcome->Ambiguous = exact || DEFORMVOLUME_IS_CLOSED(p->Pass) ? 0 : ambiguous;
-  outcome->Unsure = again & ~outcome->Ambiguous;
+  outcome->NeedsInt32 = exact || DEFORMVOLUME_IS_CLOSED(p->Pass) ? 0 : needsNextStep;
+  outcome->NeedsInt64 = again & ~outcome->NeedsInt32;
 }
 
 static __attribute__((noinline)) Outcome ResampleByFloats(
-  const GroupCandidates* c, const SamplingMesh* mesh, Output* output, Found* found, Doubts* doubts,
+  const GroupCandidates* c, const SamplingMesh* mesh, Output* output, Found* found, UndecidedSamples* undecidedSamples,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   Outcome outcome;
-  ResampleGroup(c, 0, 0, mesh, output, found, doubts, &outcome, p ARRAY_ARGUMENTS);
+  ResampleGroup(c, 0, 0, mesh, output, found, undecidedSamples, &outcome, p ARRAY_ARGUMENTS);
   return outcome;
 }
 
@@ -245,11 +245,11 @@ static __attribute__((noinline)) uint ResampleByIntegers(
   }
   Outcome outcome;
   ResampleGroup(c, only, &state, 0, output, found, 0, &outcome, p ARRAY_ARGUMENTS);
-  return outcome.Unsure;
+  return outcome.NeedsInt64;
 }
 
-// The samples in doubt of some cells, as bits, from beginX to endX.
-static __attribute__((noinline)) void ResampleDoubts(const GroupCandidates* c, const Doubts* doubts,
+// The samples of some cells, as bits, from beginX to endX, that floats do not decide.
+static __attribute__((noinline)) void ResampleUndecided(const GroupCandidates* c, const UndecidedSamples* undecidedSamples,
   uint wanted, int beginX, int endX, const SamplingMesh* mesh, Output* output,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
@@ -267,10 +267,10 @@ static __attribute__((noinline)) void ResampleDoubts(const GroupCandidates* c, c
   uint made = 0;  // of these, those that may have samples
   // It is counted already which cells are inverted.
   const uint inverted = output->Inverted;
-  for (uint i = 0; i < doubts->Count; ++i)
+  for (uint i = 0; i < undecidedSamples->Count; ++i)
   {
-    const int round = doubts->Rounds[i] >> 16;
-    uint here = doubts->Rounds[i] & wanted;
+    const int round = undecidedSamples->Rounds[i] >> 16;
+    uint here = undecidedSamples->Rounds[i] & wanted;
     FOR_EACH_LANE(lane, here)
     {
       const int cell = c->Cells.X + 2 * lane;

@@ -27,7 +27,7 @@
 // bent, M is at most (0.3 - bi) / -bi < 1.72. So d = 3.2e-5 k, or 6.5e-6 k, which is more by 5 %. The 1-norm is
 // at most the sum of the areas of the box's three faces, as each component of a normal is twice the area of a
 // triangle in such a face. When three of the tj exceed d, the sample is inside; when one is under -d, outside.
-// What is in between is undecided.
+// Floats do not decide what is in between.
 //
 // In cells over 8 voxels the normals have rounding errors, too: of a product, at most as large as the face of the
 // box, and of the difference. That adds 2 e k to each product with a normal, 5 e k instead of 3, and makes the
@@ -209,10 +209,10 @@ static __attribute__((always_inline)) void WeighSamples(const GroupFrame* f,
   w->Scale = scales->Central;
 }
 
-// Returns which of some cells, as bits, hold their sample. undecided: those that may hold it. A cell holds it where
+// Returns which of some cells, as bits, hold their sample. undecidedByFloats: those that may hold it. A cell holds it where
 // three weights exceed decisive, and does not where one is under -bound.
 static __attribute__((always_inline)) uint DecideByFloats(
-  const SampleWeights* w, uint some, FLOATS decisive, FLOATS bound, uint* undecided)
+  const SampleWeights* w, uint some, FLOATS decisive, FLOATS bound, uint* undecidedByFloats)
 {
   const FLOATS lowA = Least(w->T3, w->T5), highA = Most(w->T3, w->T5);
   const FLOATS lowB = Least(w->T6, w->T0), highB = Most(w->T6, w->T0);
@@ -220,7 +220,7 @@ static __attribute__((always_inline)) uint DecideByFloats(
   // The second smallest weight decides: that opposite the corner may be 0.
   const FLOATS second = Least(Most(lowA, lowB), Least(highA, highB));
   const uint held = maybe & LaneBits(second > decisive);
-  *undecided = maybe & ~held;
+  *undecidedByFloats = maybe & ~held;
   return held;
 }
 

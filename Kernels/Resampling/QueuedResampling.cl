@@ -3,7 +3,7 @@
 // divides, or of which tetrahedra may be missing.
 
 // The samples of a cell that floats do not decide.
-static void ResampleDoubts(const GroupCandidates* c, const GroupFrame* frame,
+static void ResampleUndecided(const GroupCandidates* c, const GroupFrame* frame,
   const SamplingMesh* mesh, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   const Group* const group = &c->Cells;
@@ -21,10 +21,10 @@ static void ResampleDoubts(const GroupCandidates* c, const GroupFrame* frame,
   for (int i = 0; i < c->Number; ++i, Advance(&at))
   {
     SampleWeights weights;
-    uint undecided;
-    WeighCandidate(c, frame, &scales, &at, &weights, &undecided);
+    uint undecidedByFloats;
+    WeighCandidate(c, frame, &scales, &at, &weights, &undecidedByFloats);
     const float x = at.X + frame->X0, y = at.Y + frame->Y0, z = at.Z + frame->Z0;
-    if (!undecided || !InOutput(x, y, z, p) ||
+    if (!undecidedByFloats || !InOutput(x, y, z, p) ||
       (c->HasBeside && c->Beside && IsOnVertex(frame, &at)))
     {
       continue;
@@ -61,7 +61,7 @@ static void ResampleQueuedCell(const SamplingMesh* mesh, int x, int y, int z, in
       &c, MAXIMUM_CANDIDATES, mesh, &frame, 1, what != QUEUE_FLOATS, output, p ARRAY_ARGUMENTS);
     if (what == QUEUE_DOUBTS)
     {
-      ResampleDoubts(&c, &frame, mesh, output, p ARRAY_ARGUMENTS);
+      ResampleUndecided(&c, &frame, mesh, output, p ARRAY_ARGUMENTS);
       return;
     }
     if (what == CELL_DONE)

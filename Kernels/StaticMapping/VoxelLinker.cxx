@@ -198,7 +198,7 @@ template <typename Element>
 std::int64_t VoxelLinker::LinkTile(
   std::int64_t tile, const VoxelBox& part, const VoxelTarget<Element>& target) const
 {
-  std::vector<glm::i64vec3> doubtful;
+  std::vector<glm::i64vec3> heldByRounding;
   std::int64_t linked = 0;
   for (const std::int32_t id : this->Tiles.GetTetrahedra(tile))
   {
@@ -207,20 +207,20 @@ std::int64_t VoxelLinker::LinkTile(
     if (!box.IsEmpty())
     {
       linked += FitsInt64(nodes)
-        ? this->LinkTetrahedron<std::int64_t>(id, nodes, box, target, doubtful)
-        : this->LinkTetrahedron<WideInteger>(id, nodes, box, target, doubtful);
+        ? this->LinkTetrahedron<std::int64_t>(id, nodes, box, target, heldByRounding)
+        : this->LinkTetrahedron<WideInteger>(id, nodes, box, target, heldByRounding);
     }
   }
-  for (const glm::i64vec3& voxel : doubtful)
+  for (const glm::i64vec3& voxel : heldByRounding)
   {
-    linked += this->LinkDoubtful(tile, voxel, target.At(voxel.x, voxel.y, voxel.z)) ? 1 : 0;
+    linked += this->LinkHeldByRounding(tile, voxel, target.At(voxel.x, voxel.y, voxel.z)) ? 1 : 0;
   }
   return linked;
 }
 
 template <typename Integer, typename Element>
 std::int64_t VoxelLinker::LinkTetrahedron(std::int32_t id, const Nodes& nodes, const VoxelBox& box,
-  const VoxelTarget<Element>& target, std::vector<glm::i64vec3>& doubtful) const
+  const VoxelTarget<Element>& target, std::vector<glm::i64vec3>& heldByRounding) const
 {
   TetrahedronRaster<Integer> raster;
   if (!raster.SetTetrahedron(nodes, box))
@@ -253,13 +253,13 @@ std::int64_t VoxelLinker::LinkTetrahedron(std::int32_t id, const Nodes& nodes, c
           continue;
         }
         const glm::dvec4 weights = flat ? glm::dvec4(-1.0) : map.GetAllWeights(glm::dvec3(x, y, z));
-        const bool doubted =
+        const bool byRounding =
           std::min({ weights.x, weights.y, weights.z, weights.w }) < LeastThinWeight;
-        if (doubted && free)
+        if (byRounding && free)
         {
-          doubtful.emplace_back(x, y, z);
+          heldByRounding.emplace_back(x, y, z);
         }
-        if (!doubted)
+        if (!byRounding)
         {
           Link(*element, id, glm::dvec3(weights));
           linked += free ? 1 : 0;
@@ -273,7 +273,8 @@ std::int64_t VoxelLinker::LinkTetrahedron(std::int32_t id, const Nodes& nodes, c
 // rounding its true neighbours may have missed the voxel, so the one that holds it best before
 // rounding takes it, if any is as near as rounding explains.
 template <typename Element>
-bool VoxelLinker::LinkDoubtful(std::int64_t tile, const glm::i64vec3& voxel, Element& element) const
+bool VoxelLinker::LinkHeldByRounding(
+  std::int64_t tile, const glm::i64vec3& voxel, Element& element) const
 {
   if (IsLinked(element))
   {

@@ -97,9 +97,9 @@ private:
   static bool FindVoxel(const Nodes& nodes, const VoxelBox& box, glm::i64vec3& voxel);
   template <typename Integer, typename Element>
   std::int64_t LinkTetrahedron(std::int32_t id, const Nodes& nodes, const VoxelBox& box,
-    const VoxelTarget<Element>& target, std::vector<glm::i64vec3>& doubtful) const;
+    const VoxelTarget<Element>& target, std::vector<glm::i64vec3>& heldByRounding) const;
   template <typename Element>
-  bool LinkDoubtful(std::int64_t tile, const glm::i64vec3& voxel, Element& element) const;
+  bool LinkHeldByRounding(std::int64_t tile, const glm::i64vec3& voxel, Element& element) const;
   std::int64_t LinkRow(std::int32_t id, const BarycentricMap& map, const glm::i64vec3& first,
     std::int64_t count, VertexLink* links) const;
   std::int64_t LinkRow(std::int32_t id, const BarycentricMap& map, const glm::i64vec3& first,

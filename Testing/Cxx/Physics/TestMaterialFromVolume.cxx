@@ -225,7 +225,7 @@ void TestMeans(bool hides)
   vtkIdType held = 0;
   vtkIdType nearest = 0;
   vtkIdType outside = 0;
-  vtkIdType doubtful = 0;
+  vtkIdType nearBorder = 0;
   double worst = 0.0;
   for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
   {
@@ -240,7 +240,7 @@ void TestMeans(bool hides)
     const glm::dmat3 inverse = glm::inverse(glm::dmat3(p[1] - p[0], p[2] - p[0], p[3] - p[0]));
     double sums[3] = { 0.0, 0.0, 0.0 };
     int voxels = 0;
-    bool isDoubtful = false;
+    bool isNearBorder = false;
     const auto add = [&](vtkIdType voxel)
     {
       double values[3];
@@ -260,15 +260,15 @@ void TestMeans(bool hides)
       const glm::dvec3 w = inverse * (place - p[0]);
       constexpr double margin = 0.02;
       const double least = std::min({ w.x, w.y, w.z, 1.0 - w.x - w.y - w.z });
-      isDoubtful |= std::abs(least) < margin;
+      isNearBorder |= std::abs(least) < margin;
       if (least >= 0.0 && !(hides && voxel % 3 == 0))
       {
         add(voxel);
       }
     }
-    if (isDoubtful)
+    if (isNearBorder)
     {
-      ++doubtful;
+      ++nearBorder;
       continue;
     }
     held += voxels > 0 ? 1 : 0;
@@ -307,12 +307,12 @@ void TestMeans(bool hides)
     }
   }
   std::cout << held << " tetrahedra hold voxels, " << nearest << " have the nearest, " << outside
-            << " none, " << doubtful << " are left out; largest relative error " << worst << "\n";
+            << " none, " << nearBorder << " are left out; largest relative error " << worst << "\n";
   VERIFY(worst < 1e-12);
   VERIFY(held > 1000 && nearest > 100 && outside > 100);
-  VERIFY(doubtful < mesh->GetNumberOfCells() / 4);
+  VERIFY(nearBorder < mesh->GetNumberOfCells() / 4);
   const auto differs = [&](vtkIdType count, vtkIdType wanted)
-  { return count < wanted || count > wanted + doubtful; };
+  { return count < wanted || count > wanted + nearBorder; };
   VERIFY(!differs(tested.Filter->GetNumberOfTetrahedraWithoutVoxels(), nearest));
   VERIFY(!differs(tested.Filter->GetNumberOfTetrahedraOutside(), outside));
 

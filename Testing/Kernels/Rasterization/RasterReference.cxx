@@ -18,7 +18,7 @@ using Point = std::array<std::int64_t, 3>;
 
 // Decisions on rest coordinates nearer than this, in voxels, are left open: the kernels know them
 // to 2^-22 voxel or so.
-constexpr long double Unsure = 1e-5L;
+constexpr long double Margin = 1e-5L;
 
 Wide Determinant(const Point& a, const Point& b, const Point& c, const Point& d)
 {
@@ -47,7 +47,7 @@ enum class Answer
 {
   No,
   Yes,
-  Unsure
+  Undecided
 };
 
 Answer IsBlanked(const RasterCase& c, const std::array<long double, 3>& rest, bool cubic)
@@ -57,11 +57,11 @@ Answer IsBlanked(const RasterCase& c, const std::array<long double, 3>& rest, bo
   {
     if (c.Blanked[weight.first] != 0 && weight.second != 0.0L)
     {
-      if (std::fabs(weight.second) > Unsure)
+      if (std::fabs(weight.second) > Margin)
       {
         return Answer::Yes;
       }
-      answer = Answer::Unsure;
+      answer = Answer::Undecided;
     }
   }
   return answer;
@@ -93,7 +93,7 @@ Answer IsActive(const RasterCase& c, const std::array<long double, 3>& rest)
             local[axis] = 1.0L - local[axis];
           }
         }
-        if (depth < -Unsure)
+        if (depth < -Margin)
         {
           continue;
         }
@@ -121,9 +121,9 @@ Answer IsActive(const RasterCase& c, const std::array<long double, 3>& rest)
     }
   }
   // Exactly on a face is inside; by a hair only is open.
-  return best >= 0.0L && (best == 0.0L || best > Unsure) ? Answer::Yes
-    : best < -Unsure                                     ? Answer::No
-                                                         : Answer::Unsure;
+  return best >= 0.0L && (best == 0.0L || best > Margin) ? Answer::Yes
+    : best < -Margin                                     ? Answer::No
+                                                         : Answer::Undecided;
 }
 
 void Take(const RasterCase& c, int tetrahedron, const std::array<long double, 3>& rest, bool cubic,
@@ -136,24 +136,24 @@ void Take(const RasterCase& c, int tetrahedron, const std::array<long double, 3>
     const long double most = static_cast<long double>(GetSize(c.VoxelGrid.VertexExtent, axis) - 1);
     const long double tolerance = FindRestTolerance(c.VoxelGrid.ToOutput, axis);
     const long double outside = std::max(-rest[axis], rest[axis] - most) - tolerance;
-    if (outside > Unsure)
+    if (outside > Margin)
     {
       return;
     }
-    open |= outside > -Unsure;
+    open |= outside > -Margin;
     clamped[axis] = std::min(std::max(rest[axis], 0.0L), most);
   }
   for (const Answer answer : { c.Active.empty() ? Answer::Yes : IsActive(c, clamped),
-         c.Blanked.empty()                                  ? Answer::Yes
-           : IsBlanked(c, clamped, cubic) == Answer::Unsure ? Answer::Unsure
-           : IsBlanked(c, clamped, cubic) == Answer::Yes    ? Answer::No
-                                                            : Answer::Yes })
+         c.Blanked.empty()                                     ? Answer::Yes
+           : IsBlanked(c, clamped, cubic) == Answer::Undecided ? Answer::Undecided
+           : IsBlanked(c, clamped, cubic) == Answer::Yes       ? Answer::No
+                                                               : Answer::Yes })
   {
     if (answer == Answer::No)
     {
       return;
     }
-    open |= answer == Answer::Unsure;
+    open |= answer == Answer::Undecided;
   }
   voxel.Uncertain |= open;
   voxel.Covered = true;
