@@ -102,7 +102,7 @@ MUTATIONS = {
                     "    FillPatches(context, this->Queue, this->Keys,\n"
                     "      ElementBytes::Of(std::numeric_limits<cl_uint>::max()), this->KeySize / sizeof(cl_uint), list,\n"
                     "      patches.size(), parameters, events);\n", "", [FOLDS]),
-    "counts-of-cuboids": ("Kernels/Resampling/Resampling.cl", "AddCounts(&output, section + column,",
+    "counts-of-cuboids": ("Kernels/Resampling/Resampling.cl", "AddCounts(&output, section + span,",
                           "AddCounts(&output, section,", [BY_CELL]),
     "output-elsewhere": ("Kernels/Output/OutputSlab.cxx",
                          "deformvolume::GetMemory(buffer) == voxels * tupleSize;", "true;", [ALIGNED]),

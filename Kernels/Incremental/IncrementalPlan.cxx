@@ -12,27 +12,27 @@ namespace deformvolume
 namespace
 {
 
-constexpr std::uint32_t AllColumns = (1U << DEFORMVOLUME_COLUMNS) - 1;
+constexpr std::uint32_t AllSpans = (1U << DEFORMVOLUME_SPANS) - 1;
 
-// The bits of a brick's sections, and those of the columns between the lowest and the highest one.
-std::uint32_t JoinColumns(std::uint32_t bits)
+// The bits of a brick's sections, and those of the spans between the lowest and the highest one.
+std::uint32_t JoinSpans(std::uint32_t bits)
 {
-  const std::uint32_t columns = bits & AllColumns;
-  std::uint32_t upToHighest = columns;
-  for (int shift = 1; shift < DEFORMVOLUME_COLUMNS; shift *= 2)
+  const std::uint32_t spans = bits & AllSpans;
+  std::uint32_t upToHighest = spans;
+  for (int shift = 1; shift < DEFORMVOLUME_SPANS; shift *= 2)
   {
     upToHighest |= upToHighest >> shift;
   }
-  const std::uint32_t belowLowest = (columns & (~columns + 1)) - 1;
-  return bits | (columns ? upToHighest & ~belowLowest : 0);
+  const std::uint32_t belowLowest = (spans & (~spans + 1)) - 1;
+  return bits | (spans ? upToHighest & ~belowLowest : 0);
 }
 
 // How many sections of a brick are run with these.
 std::size_t CountSections(std::uint32_t bits)
 {
   const auto count = [](std::uint32_t v) { return std::bitset<32>(v).count(); };
-  const std::uint32_t halves = bits >> DEFORMVOLUME_COLUMNS;
-  return count(JoinColumns(bits) & AllColumns) * count(halves & 3) * count(halves >> 2);
+  const std::uint32_t halves = bits >> DEFORMVOLUME_SPANS;
+  return count(JoinSpans(bits) & AllSpans) * count(halves & 3) * count(halves >> 2);
 }
 
 // How many of all points, sections or patches may change: where more do, it is faster to make all
@@ -226,7 +226,7 @@ bool IncrementalUpdate::MakePlan(bool inside, Plan& plan)
     if (run[brick])
     {
       plan.Bricks.push_back(
-        static_cast<std::uint32_t>(brick | JoinColumns(run[brick]) << DEFORMVOLUME_BRICK_BITS));
+        static_cast<std::uint32_t>(brick | JoinSpans(run[brick]) << DEFORMVOLUME_BRICK_BITS));
     }
   }
   return true;

@@ -151,11 +151,11 @@ static void MarkSection(ulong cell, CellRun* run, __global uint* counters, const
   const int x = cell - row * width;
   const int z = row / (p->Size[1] - 1);
   const int y = row - (ulong)z * (p->Size[1] - 1);
-  const int inColumn = (x - p->BrickOrigin[0]) % DEFORMVOLUME_COLUMN;
+  const int inSpan = (x - p->BrickOrigin[0]) % DEFORMVOLUME_SPAN;
   const size_t section = SectionOf(x, y, z, p);
   counters[section * DEFORMVOLUME_COUNTERS + DEFORMVOLUME_COUNT_CANDIDATES] = 1;
-  run->Begin = cell - min(x, inColumn);
-  run->End = cell + min((int)width - x, DEFORMVOLUME_COLUMN - inColumn);
+  run->Begin = cell - min(x, inSpan);
+  run->End = cell + min((int)width - x, DEFORMVOLUME_SPAN - inSpan);
 }
 
 // After a pass that finds the voxels that several cells write, as their keys say: marks patches with voxels that

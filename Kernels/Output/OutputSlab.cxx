@@ -21,9 +21,8 @@ namespace
 /// The bits of a section of a brick, as DEFORMVOLUME_BRICK_BITS says.
 cl_uint GetSectionBits(std::size_t section)
 {
-  const std::size_t halves = section / DEFORMVOLUME_COLUMNS;
-  return MakeSectionBits(
-           static_cast<cl_uint>(section % DEFORMVOLUME_COLUMNS), halves & 1, halves & 2)
+  const std::size_t halves = section / DEFORMVOLUME_SPANS;
+  return MakeSectionBits(static_cast<cl_uint>(section % DEFORMVOLUME_SPANS), halves & 1, halves & 2)
     << DEFORMVOLUME_BRICK_BITS;
 }
 

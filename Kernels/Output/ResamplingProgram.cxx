@@ -33,7 +33,7 @@ std::size_t GetBrickMemory(const OpenCLContext& context, bool hasTurnedAxes, std
 /// so many planes of vertices.
 std::size_t GetColumnMemory(std::size_t slots, std::size_t planes = 3)
 {
-  const std::size_t row = 2 * (3 + slots) * (DEFORMVOLUME_COLUMN / 2 + 1);
+  const std::size_t row = 2 * (3 + slots) * (DEFORMVOLUME_SPAN / 2 + 1);
   return planes * (DEFORMVOLUME_BRICK_Y / 2 + 1) * row * sizeof(cl_float);
 }
 
@@ -100,7 +100,7 @@ std::string MakeLanePreamble(const OpenCLContext& context, const std::vector<Vol
   const bool local = !lanes || HasLocalBricks(context, hasTurnedAxes);
   const std::string shape = lanes
     ? "#define ROW_CELLS DEFORMVOLUME_BRICK_X\n#define CELL_ROWS DEFORMVOLUME_BRICK_Y\n"
-    : "#define ROW_CELLS DEFORMVOLUME_COLUMN\n#define CELL_ROWS (DEFORMVOLUME_BRICK_Y / 2)\n"
+    : "#define ROW_CELLS DEFORMVOLUME_SPAN\n#define CELL_ROWS (DEFORMVOLUME_BRICK_Y / 2)\n"
       "#define CELL_LAYERS (DEFORMVOLUME_BRICK_Z / 2)\n";
   return "#define LANES " + std::to_string(lanes ? GetLanes(context) : 1) +
     "\n#define ROW_MEMORY " + (local ? "__local" : "__global") + "\n#define ROWS_ARE_GLOBAL " +

@@ -319,14 +319,14 @@ __kernel void ResampleBoundary(__global const int4* tetrahedra, __global const i
       VoxelBox near = FindVoxels(min(min(a, b), min(c, d)), max(max(a, b), max(c, d)), &r);
       near.Low = max(near.Low, box.Low);
       near.High = min(near.High, box.High);
-      const uint columns = BitsBetween(near.Low.x - origin[0], near.High.x - origin[0]);
+      const uint voxelsOfRow = BitsBetween(near.Low.x - origin[0], near.High.x - origin[0]);
       uint wanted = 0;
       for (int z = near.Low.z; z <= near.High.z; ++z)
       {
         for (int y = near.Low.y; y <= near.High.y; ++y)
         {
           const int row = ((z - origin[2]) << DEFORMVOLUME_TILE_BITS_Y) + y - origin[1] - begin;
-          wanted |= row >= 0 && row < ROWS_AT_ONCE ? open[row] & columns : 0;
+          wanted |= row >= 0 && row < ROWS_AT_ONCE ? open[row] & voxelsOfRow : 0;
         }
       }
       TileTetrahedron t;
@@ -346,7 +346,7 @@ __kernel void ResampleBoundary(__global const int4* tetrahedra, __global const i
         for (int y = t.Box.Low.y; y <= t.Box.High.y; ++y)
         {
           const int row = ((z - origin[2]) << DEFORMVOLUME_TILE_BITS_Y) + y - origin[1] - begin;
-          const uint here = row >= 0 && row < ROWS_AT_ONCE ? open[row] & columns : 0;
+          const uint here = row >= 0 && row < ROWS_AT_ONCE ? open[row] & voxelsOfRow : 0;
           for (uint left = here ? here & FindInside(&t, origin[0], y, z) : 0; left; left &= left - 1)
           {
             const int x = popcount((left & -left) - 1);

@@ -80,19 +80,19 @@ static __attribute__((always_inline)) void ResampleCells(GroupCandidates* c, int
 }
 
 // The groups of a row of cells from place begin on up to one that begins at end. beginX, endX: its cells.
-// specials: as RowFlags. outputs: of the columns of the brick.
+// specials: as RowFlags. outputs: of the spans of the brick.
 static void ResampleRow(const RowOfCells* row, int begin, int end, int beginX, int endX,
   uint specials, const SamplingMesh* mesh, Output* outputs, Found* found,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   GroupCandidates candidates[2][2]; // of a place and the next one
   Bounds even;
-  BoundColumns(row->Rows, begin, &even);
-  FindPairCandidates(row, begin, &even, mesh, OUTPUT_OF_COLUMN(outputs, begin), candidates[0],
+  BoundQuads(row->Rows, begin, &even);
+  FindPairCandidates(row, begin, &even, mesh, OUTPUT_OF_SPAN(outputs, begin), candidates[0],
     p ARRAY_ARGUMENTS);
   for (int k = begin, place = 0; k < end; k += LANES, place ^= 1)
   {
-    Output* const output = OUTPUT_OF_COLUMN(outputs, k);
+    Output* const output = OUTPUT_OF_SPAN(outputs, k);
     const int special = (specials & GROUP_FLAGS(k)) != 0;
     GroupCandidates* const here = candidates[place];
     FetchOutput(here + 1, output ARRAY_ARGUMENTS);
@@ -100,7 +100,7 @@ static void ResampleRow(const RowOfCells* row, int begin, int end, int beginX, i
     const int next = k + LANES;
     if (next < end)
     {
-      FindPairCandidates(row, next, &even, mesh, OUTPUT_OF_COLUMN(outputs, next), candidates[!place],
+      FindPairCandidates(row, next, &even, mesh, OUTPUT_OF_SPAN(outputs, next), candidates[!place],
         p ARRAY_ARGUMENTS);
       FetchOutput(candidates[!place], output ARRAY_ARGUMENTS);
     }
@@ -136,16 +136,16 @@ static void FindCells(uint item, BrickCells* cells, const KernelParameters* p)
   const int x = first.x;
   const int y = first.y;
   const int z = first.z;
-  const uint columns = item >> DEFORMVOLUME_BRICK_BITS & ((1u << DEFORMVOLUME_COLUMNS) - 1);
-  const int firstColumn = 31 - clz(columns & -columns);
-  const int endColumn = 32 - clz(columns);
-  const int halvesY = DEFORMVOLUME_BRICK_BITS + DEFORMVOLUME_COLUMNS;
+  const uint spans = item >> DEFORMVOLUME_BRICK_BITS & ((1u << DEFORMVOLUME_SPANS) - 1);
+  const int firstSpan = 31 - clz(spans & -spans);
+  const int endSpan = 32 - clz(spans);
+  const int halvesY = DEFORMVOLUME_BRICK_BITS + DEFORMVOLUME_SPANS;
   const int halvesZ = halvesY + 2;
   cells->X = x;
   cells->Y = y;
   cells->Z = z;
-  cells->BeginX = max(x + firstColumn * DEFORMVOLUME_COLUMN, 0);
-  cells->EndX = min(x + endColumn * DEFORMVOLUME_COLUMN, p->Size[0] - 1);
+  cells->BeginX = max(x + firstSpan * DEFORMVOLUME_SPAN, 0);
+  cells->EndX = min(x + endSpan * DEFORMVOLUME_SPAN, p->Size[0] - 1);
   cells->BeginY = max(y + BeginIn(item, halvesY, DEFORMVOLUME_BRICK_Y), 0);
   cells->EndY = min(y + EndIn(item, halvesY, DEFORMVOLUME_BRICK_Y), p->Size[1] - 1);
   cells->BeginZ = max(z + BeginIn(item, halvesZ, DEFORMVOLUME_BRICK_Z), p->LayersBegin);
@@ -239,7 +239,7 @@ static void ResampleLayer(const SamplingMesh* mesh, const BrickCells* cells, int
     const int quarter =
       (low >= DEFORMVOLUME_BRICK_Y / 2) + 2 * (z - cells->Z >= DEFORMVOLUME_BRICK_Z / 2);
     ResampleRow(&row, begin, end, cells->BeginX, cells->EndX, specials, mesh,
-      outputs + quarter * DEFORMVOLUME_COLUMNS, found, p ARRAY_ARGUMENTS);
+      outputs + quarter * DEFORMVOLUME_SPANS, found, p ARRAY_ARGUMENTS);
   }
 }
 

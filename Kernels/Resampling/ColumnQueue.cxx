@@ -23,7 +23,7 @@ constexpr std::uint64_t PartOfMemory = 64;
 constexpr std::size_t GroupsPerUnit = 16;
 // Work-items of a group that have places in its local memory: see ResampleQueued.
 constexpr std::size_t LargestQueueGroup =
-  std::size_t{ DEFORMVOLUME_COLUMN / 2 } * ((DEFORMVOLUME_BRICK_Y / 2 + 1) / 2);
+  std::size_t{ DEFORMVOLUME_SPAN / 2 } * ((DEFORMVOLUME_BRICK_Y / 2 + 1) / 2);
 
 /// For launches of so many bricks.
 std::uint64_t CountBytes(std::uint64_t bricks)

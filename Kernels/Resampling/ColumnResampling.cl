@@ -35,20 +35,20 @@ static void AddToGroup(const Output* output, __local uint* counts)
 // launch. What can be found from the number of the group is not kept in registers.
 static uint BrickOfGroup(__global const uint* bricks, const KernelParameters* p)
 {
-  const int place = p->ListBegin + (int)(get_group_id(0) / DEFORMVOLUME_COLUMNS);
+  const int place = p->ListBegin + (int)(get_group_id(0) / DEFORMVOLUME_SPANS);
   return place < p->ListEnd ? bricks[place] : 0;
 }
 
 static size_t SectionOfGroup(uint brick)
 {
   return DEFORMVOLUME_SECTIONS * (size_t)(brick & ((1u << DEFORMVOLUME_BRICK_BITS) - 1)) +
-    (get_group_id(2) * 2 + get_group_id(1)) * DEFORMVOLUME_COLUMNS +
-    get_group_id(0) % DEFORMVOLUME_COLUMNS;
+    (get_group_id(2) * 2 + get_group_id(1)) * DEFORMVOLUME_SPANS +
+    get_group_id(0) % DEFORMVOLUME_SPANS;
 }
 
 static int3 FirstInBrick()
 {
-  return (int3)((int)(get_group_id(0) % DEFORMVOLUME_COLUMNS) * ROW_CELLS,
+  return (int3)((int)(get_group_id(0) % DEFORMVOLUME_SPANS) * ROW_CELLS,
     (int)get_group_id(1) * CELL_ROWS, (int)get_group_id(2) * CELL_LAYERS);
 }
 
@@ -56,7 +56,7 @@ static int3 FirstInBrick()
 static uint NumberInLaunch(int cell, int layer)
 {
   const int3 first = FirstInBrick();
-  return get_group_id(0) / DEFORMVOLUME_COLUMNS * CELLS_OF_BRICK +
+  return get_group_id(0) / DEFORMVOLUME_SPANS * CELLS_OF_BRICK +
     ((first.z + layer) * DEFORMVOLUME_BRICK_Y + first.y + cell / ROW_CELLS) * DEFORMVOLUME_BRICK_X +
     first.x + cell % ROW_CELLS;
 }
@@ -93,7 +93,7 @@ static int SortCell(uint any, uint lowest)
                                                                            : SORT_BY_FLOATS;
 }
 
-// Bricks of a list from p.ListBegin to p.ListEnd, a group a section: on x the columns of one brick after the other, on y
+// Bricks of a list from p.ListBegin to p.ListEnd, a group a section: on x the spans of one brick after the other, on y
 // and z the halves.
 __kernel void ResampleColumns(GIVEN_PARAMETERS, __global const uint* bricks, __global uint* queue,
   __local float* rows, const KernelParameters parameters ARRAY_PARAMETERS)

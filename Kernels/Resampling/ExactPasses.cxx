@@ -17,11 +17,11 @@
 namespace deformvolume
 {
 
-static_assert(DEFORMVOLUME_CUBOID_X % DEFORMVOLUME_COLUMN == 0 &&
+static_assert(DEFORMVOLUME_CUBOID_X % DEFORMVOLUME_SPAN == 0 &&
     DEFORMVOLUME_BRICK_X % DEFORMVOLUME_CUBOID_X == 0 &&
     DEFORMVOLUME_BRICK_Y / 2 % DEFORMVOLUME_CUBOID_Y == 0 &&
     DEFORMVOLUME_BRICK_Z / 2 % DEFORMVOLUME_CUBOID_Z == 0,
-  "bricks are made of cuboids, and these of columns in one half of a brick on y and z");
+  "bricks are made of cuboids, and these of spans in one half of a brick on y and z");
 
 namespace
 {
@@ -241,7 +241,7 @@ void ExactPasses::PrepareKernel(cl::Kernel& kernel, const VolumeChunk& chunk,
 
 std::size_t ExactPasses::GetColumnGroup(const cl::Kernel& kernel)
 {
-  return this->Device.GetBusyGroupSize(kernel, DEFORMVOLUME_COLUMN * DEFORMVOLUME_BRICK_Y / 2);
+  return this->Device.GetBusyGroupSize(kernel, DEFORMVOLUME_SPAN * DEFORMVOLUME_BRICK_Y / 2);
 }
 
 std::vector<ExactPasses::PlannedLaunch> ExactPasses::PlanAll(
@@ -315,7 +315,7 @@ void ExactPasses::Launch(
   {
     this->Queue.Clear();
     const std::size_t group = this->GetColumnGroup(kernel);
-    this->Launched.Run(request, kernel, cl::NDRange(group * DEFORMVOLUME_COLUMNS * bricks, 2, 2),
+    this->Launched.Run(request, kernel, cl::NDRange(group * DEFORMVOLUME_SPANS * bricks, 2, 2),
       cl::NDRange(group, 1, 1));
     return;
   }

@@ -5,7 +5,7 @@
 // the processor guesses it wrong. It finds that out at once where the numbers lie in memory, and only after all
 // that precedes if they have just been computed. And there is time to fetch the output. Not for all groups of a
 // row: what is known of these would take the innermost cache. Neighbours share vertices, so that the bounds of a
-// row's columns of vertices are found once.
+// row's quads of vertices are found once: the four vertices at one x.
 
 #define MAXIMUM_EXTENT 64.0f // voxels; WeighOrigin (GroupSamples.cl) counts on it
 #define MAXIMUM_CANDIDATES 4096 // of a cell
@@ -44,10 +44,10 @@ typedef struct
 // Functions that are inlined give no structures back: Oclgrind does not know what compilers make of that.
 
 #if LANES > 1
-// Bounds of the columns of four vertices at a place of the rows.
-static __attribute__((always_inline)) void BoundColumns(const LocalRow* rows, int place, Bounds* b)
+// Bounds of the quads of four vertices at a place of the rows.
+static __attribute__((always_inline)) void BoundQuads(const LocalRow* rows, int place, Bounds* b)
 {
-#define BOUND_COLUMNS(C, slot)                                                                     \
+#define BOUND_QUADS(C, slot)                                                                     \
   {                                                                                                \
     const FLOATS c0 = LOAD(rows[0] + place + (slot)*HALF_ROW);                                     \
     const FLOATS c1 = LOAD(rows[1] + place + (slot)*HALF_ROW);                                     \
@@ -56,9 +56,9 @@ static __attribute__((always_inline)) void BoundColumns(const LocalRow* rows, in
     b->Low##C = Least(Least(c0, c1), Least(c2, c3));                                               \
     b->High##C = Most(Most(c0, c1), Most(c2, c3));                                                 \
   }
-  BOUND_COLUMNS(X, 0)
-  BOUND_COLUMNS(Y, 1)
-  BOUND_COLUMNS(Z, 2)
+  BOUND_QUADS(X, 0)
+  BOUND_QUADS(Y, 1)
+  BOUND_QUADS(Z, 2)
 }
 
 static __attribute__((always_inline)) void Join(const Bounds* a, const Bounds* b, Bounds* joined)
@@ -385,15 +385,15 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
 
 #if LANES > 1
 // For the two groups at place k of a row of cells, for even and for odd x: cells of the second begin at the odd
-// vertices. even: the bounds of the columns of even x at this place, and then at the next one. output: of the
-// column of the brick.
+// vertices. even: the bounds of the quads of even x at this place, and then at the next one. output: of the
+// span of the brick.
 static SELDOM void FindPairCandidates(const RowOfCells* row, int k, Bounds* even,
   const SamplingMesh* mesh, Output* output, GroupCandidates* candidates,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   Bounds odd, behind, cells;
-  BoundColumns(row->Rows, k + ODD, &odd);
-  BoundColumns(row->Rows, k + LANES, &behind);
+  BoundQuads(row->Rows, k + ODD, &odd);
+  BoundQuads(row->Rows, k + LANES, &behind);
   MakeGroup(row, k, 0, &candidates[0].Cells);
   Join(even, &odd, &cells);
   FindGroupCandidates(&cells, mesh, 1, output, candidates, p ARRAY_ARGUMENTS);

@@ -69,7 +69,7 @@ typedef struct
 #define GROUP_FLAGS(k) (((2u << (2 * LANES / 8)) - 1) << ((k) >> 2))
 
 // Where the groups at place k are counted.
-#define OUTPUT_OF_COLUMN(outputs, k) ((outputs) + 2 * (k) / DEFORMVOLUME_COLUMN)
+#define OUTPUT_OF_SPAN(outputs, k) ((outputs) + 2 * (k) / DEFORMVOLUME_SPAN)
 
 static __attribute__((always_inline)) void MakeGroup(
   const RowOfCells* row, int k, int side, Group* group)

@@ -713,7 +713,7 @@ static void AddCounts(
 
 #if HAS_CELL_KERNEL
 #define CUBOIDS_X (DEFORMVOLUME_BRICK_X / DEFORMVOLUME_CUBOID_X)
-#define COLUMNS_OF_CUBOID (DEFORMVOLUME_CUBOID_X / DEFORMVOLUME_COLUMN)
+#define SPANS_OF_CUBOID (DEFORMVOLUME_CUBOID_X / DEFORMVOLUME_SPAN)
 
 // Whether there are cells of a launch in a cuboid with this first cell.
 static int HasCells(int3 first, const KernelParameters* p)
@@ -724,7 +724,7 @@ static int HasCells(int3 first, const KernelParameters* p)
 }
 
 // Bricks of a list from p.ListBegin to p.ListEnd (DEFORMVOLUME_BRICK_BITS). A work-group takes a
-// cuboid of cells of a brick, column by column, since counts are those of sections. On x there are
+// cuboid of cells of a brick, span by span, since counts are those of sections. On x there are
 // the groups of one brick after the other. positions: room for three ints a vertex of the cuboid.
 __kernel void Resample(GIVEN_PARAMETERS, __global const uint* bricks, __local int* positions,
   const KernelParameters p ARRAY_PARAMETERS)
@@ -734,17 +734,17 @@ __kernel void Resample(GIVEN_PARAMETERS, __global const uint* bricks, __local in
   const int3 first = FirstOfBrick(brick, &p) +
     (int3)((int)get_group_id(0) % CUBOIDS_X * DEFORMVOLUME_CUBOID_X,
       (int)get_group_id(1) * DEFORMVOLUME_CUBOID_Y, (int)get_group_id(2) * DEFORMVOLUME_CUBOID_Z);
-  // That of the first column; the next columns follow.
+  // That of the first span; the next spans follow.
   const size_t section = SectionOf(first.x, first.y, first.z, &p);
-  int columns = 0; // those that are run, as bits
-  for (int column = 0; column < COLUMNS_OF_CUBOID && HasCells(first, &p); ++column)
+  int spans = 0; // those that are run, as bits
+  for (int span = 0; span < SPANS_OF_CUBOID && HasCells(first, &p); ++span)
   {
-    columns |= IsSectionRun(brick, section + column) << column;
+    spans |= IsSectionRun(brick, section + span) << span;
   }
   const SamplingMesh unmapped = GIVEN_MESH;
   const int width = DEFORMVOLUME_CUBOID_X + 1;
   const int height = DEFORMVOLUME_CUBOID_Y + 1;
-  const int vertices = columns ? DEFORMVOLUME_CUBOID_VERTICES : 0;
+  const int vertices = spans ? DEFORMVOLUME_CUBOID_VERTICES : 0;
   for (int i = get_local_id(0); i < vertices; i += get_local_size(0))
   {
     const int x = first.x + i % width;
@@ -768,24 +768,24 @@ __kernel void Resample(GIVEN_PARAMETERS, __global const uint* bricks, __local in
   mesh.CuboidFirst[1] = first.y;
   mesh.CuboidFirst[2] = first.z;
   const Candidates all = AllCandidates(&p);
-  for (int column = 0; column < COLUMNS_OF_CUBOID; ++column)
+  for (int span = 0; span < SPANS_OF_CUBOID; ++span)
   {
-    const int cells = columns >> column & 1
-      ? DEFORMVOLUME_COLUMN * DEFORMVOLUME_CUBOID_Y * DEFORMVOLUME_CUBOID_Z
+    const int cells = spans >> span & 1
+      ? DEFORMVOLUME_SPAN * DEFORMVOLUME_CUBOID_Y * DEFORMVOLUME_CUBOID_Z
       : 0;
     Output output = GIVEN_OUTPUT;
     for (int i = get_local_id(0); i < cells; i += get_local_size(0))
     {
-      const int x = first.x + column * DEFORMVOLUME_COLUMN + i % DEFORMVOLUME_COLUMN;
-      const int y = first.y + i / DEFORMVOLUME_COLUMN % DEFORMVOLUME_CUBOID_Y;
-      const int z = first.z + i / (DEFORMVOLUME_COLUMN * DEFORMVOLUME_CUBOID_Y);
+      const int x = first.x + span * DEFORMVOLUME_SPAN + i % DEFORMVOLUME_SPAN;
+      const int y = first.y + i / DEFORMVOLUME_SPAN % DEFORMVOLUME_CUBOID_Y;
+      const int z = first.z + i / (DEFORMVOLUME_SPAN * DEFORMVOLUME_CUBOID_Y);
       if (x >= 0 && y >= 0 && z >= p.LayersBegin && x < p.Size[0] - 1 && y < p.Size[1] - 1 &&
         z < p.LayersEnd)
       {
         ResampleCell(&mesh, x, y, z, &all, &output, &p ARRAY_ARGUMENTS);
       }
     }
-    AddCounts(&output, section + column, counters, &p);
+    AddCounts(&output, section + span, counters, &p);
   }
 }
 #endif

@@ -11,7 +11,7 @@ namespace
 constexpr int BrickStep[3] = DEFORMVOLUME_BRICK_STEPS;
 
 constexpr int SubBrickSize[3] = { 16, 8, 8 };
-static_assert(DEFORMVOLUME_COLUMN % SubBrickSize[0] == 0 &&
+static_assert(DEFORMVOLUME_SPAN % SubBrickSize[0] == 0 &&
     DEFORMVOLUME_BRICK_Y / 2 % SubBrickSize[1] == 0 &&
     DEFORMVOLUME_BRICK_Z / 2 % SubBrickSize[2] == 0,
   "bricks are made of sub-bricks");
@@ -38,11 +38,11 @@ void BrickGrid::AppendBricks(
   const int end = (layersEnd - 1 - this->Origin[2]) / this->Cells[2] + 1;
   for (int z = (layersBegin - this->Origin[2]) / this->Cells[2]; z < end; z += BricksInTurn)
   {
-    for (int column = 0; column < layer; ++column)
+    for (int inLayer = 0; inLayer < layer; ++inLayer)
     {
       for (int i = z; i < std::min(z + BricksInTurn, end); ++i)
       {
-        bricks.push_back(static_cast<std::uint32_t>(i * layer + column) | whole);
+        bricks.push_back(static_cast<std::uint32_t>(i * layer + inLayer) | whole);
       }
     }
   }
@@ -75,7 +75,7 @@ std::pair<std::size_t, std::uint32_t> BrickGrid::GetBrick(
     stride *= static_cast<std::size_t>(this->Count[axis]);
   }
   return { brick,
-    MakeSectionBits(static_cast<std::uint32_t>(place[0] / DEFORMVOLUME_COLUMN),
+    MakeSectionBits(static_cast<std::uint32_t>(place[0] / DEFORMVOLUME_SPAN),
       place[1] >= this->Cells[1] / 2, place[2] >= this->Cells[2] / 2) };
 }
 

@@ -15,10 +15,10 @@ namespace deformvolume
 {
 
 /// The bits that a section of a brick is run by, from the lowest one on (DEFORMVOLUME_BRICK_BITS).
-inline std::uint32_t MakeSectionBits(std::uint32_t column, bool upperY, bool upperZ)
+inline std::uint32_t MakeSectionBits(std::uint32_t span, bool upperY, bool upperZ)
 {
-  return 1U << column | (upperY ? 2U : 1U) << DEFORMVOLUME_COLUMNS |
-    (upperZ ? 2U : 1U) << (DEFORMVOLUME_COLUMNS + 2);
+  return 1U << span | (upperY ? 2U : 1U) << DEFORMVOLUME_SPANS |
+    (upperZ ? 2U : 1U) << (DEFORMVOLUME_SPANS + 2);
 }
 
 /// The bricks of cells that a voxel grid is worked on in, or the sub-bricks of these. Their

@@ -132,17 +132,17 @@ typedef struct
   {                                                                                                \
     2, DEFORMVOLUME_BRICK_Y, DEFORMVOLUME_BRICK_Z                                                  \
   }
-// What can be run of a brick by itself: columns of so many cells on x, and halves on y and z.
-#define DEFORMVOLUME_COLUMN 32
-#define DEFORMVOLUME_COLUMNS (DEFORMVOLUME_BRICK_X / DEFORMVOLUME_COLUMN)
-#define DEFORMVOLUME_SECTIONS (4 * DEFORMVOLUME_COLUMNS)
+// What can be run of a brick by itself: spans of so many cells on x, and halves on y and z.
+#define DEFORMVOLUME_SPAN 32
+#define DEFORMVOLUME_SPANS (DEFORMVOLUME_BRICK_X / DEFORMVOLUME_SPAN)
+#define DEFORMVOLUME_SECTIONS (4 * DEFORMVOLUME_SPANS)
 
 // What a work-item of the kernel ResampleBricks takes, and some work-groups of the kernels Resample
 // and ResampleColumns:
-// the number of a brick, and above that a bit for each column, and for y and z a bit for the lower
-// half and one for the upper half. ResampleBricks takes all columns from the lowest to the highest.
+// the number of a brick, and above that a bit for each span, and for y and z a bit for the lower
+// half and one for the upper half. ResampleBricks takes all spans from the lowest to the highest.
 #define DEFORMVOLUME_BRICK_BITS 22
-#define DEFORMVOLUME_WHOLE_BRICK ((1 << (DEFORMVOLUME_COLUMNS + 4)) - 1)
+#define DEFORMVOLUME_WHOLE_BRICK ((1 << (DEFORMVOLUME_SPANS + 4)) - 1)
 
 // Cells of a cuboid, whose vertices a work-group of the kernel Resample maps into local memory.
 #define DEFORMVOLUME_CUBOID_X 64
@@ -152,8 +152,8 @@ typedef struct
 #define DEFORMVOLUME_CUBOID_VERTICES                                                               \
   ((DEFORMVOLUME_CUBOID_X + 1) * (DEFORMVOLUME_CUBOID_Y + 1) * (DEFORMVOLUME_CUBOID_Z + 1))
 
-// Counters of a section of a brick: number (brick * 4 + 2 (upper z) + (upper y)) * COLUMNS +
-// column.
+// Counters of a section of a brick: number (brick * 4 + 2 (upper z) + (upper y)) * SPANS +
+// span.
 #define DEFORMVOLUME_COUNT_WRITES 0
 #define DEFORMVOLUME_COUNT_INVERTED 1
 #define DEFORMVOLUME_COUNT_OVERSTRETCHED 2
@@ -298,11 +298,11 @@ static int3 FirstOfBrick(uint item, const KernelParameters* p)
 static int IsSectionRun(uint item, size_t section)
 {
   const uint inBrick = section % DEFORMVOLUME_SECTIONS;
-  const uint halves = inBrick / DEFORMVOLUME_COLUMNS;
-  const uint columns = item >> DEFORMVOLUME_BRICK_BITS;
-  const uint halvesY = columns >> DEFORMVOLUME_COLUMNS;
+  const uint halves = inBrick / DEFORMVOLUME_SPANS;
+  const uint spans = item >> DEFORMVOLUME_BRICK_BITS;
+  const uint halvesY = spans >> DEFORMVOLUME_SPANS;
   const uint halvesZ = halvesY >> 2;
-  return columns >> inBrick % DEFORMVOLUME_COLUMNS & halvesY >> (halves & 1) &
+  return spans >> inBrick % DEFORMVOLUME_SPANS & halvesY >> (halves & 1) &
     halvesZ >> (halves >> 1) & 1;
 }
 
@@ -316,8 +316,8 @@ static size_t SectionOf(int x, int y, int z, const KernelParameters* p)
     inBricks[0] / DEFORMVOLUME_BRICK_X;
   const int halves = inBricks[1] % DEFORMVOLUME_BRICK_Y / (DEFORMVOLUME_BRICK_Y / 2) +
     inBricks[2] % DEFORMVOLUME_BRICK_Z / (DEFORMVOLUME_BRICK_Z / 2) * 2;
-  return DEFORMVOLUME_SECTIONS * brick + halves * DEFORMVOLUME_COLUMNS +
-    inBricks[0] / DEFORMVOLUME_COLUMN % DEFORMVOLUME_COLUMNS;
+  return DEFORMVOLUME_SECTIONS * brick + halves * DEFORMVOLUME_SPANS +
+    inBricks[0] / DEFORMVOLUME_SPAN % DEFORMVOLUME_SPANS;
 }
 
 #else

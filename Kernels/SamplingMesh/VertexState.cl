@@ -75,7 +75,7 @@ static int IsWhole(int active)
 #define ALL_ACTIVE 4        // the four cells from x on, round the row, have all their tetrahedra
 #define CELL_ACTIVE 8       // the one from y and z on has them
 
-static int MarkColumnAtBorder(__global const uchar* state, __global const uchar* active, int x, int y, int z,
+static int MarkCrossSectionAtBorder(__global const uchar* state, __global const uchar* active, int x, int y, int z,
   const KernelParameters* p)
 {
   int round = 1;
@@ -100,7 +100,7 @@ static int MarkColumnAtBorder(__global const uchar* state, __global const uchar*
   return round * ALL_SOURCES | cell * CELL_OF_SOURCES | activeRound * ALL_ACTIVE | activeHere * CELL_ACTIVE;
 }
 
-static int MarkColumn(__global const uchar* state, __global const uchar* active, int x, int y, int z,
+static int MarkCrossSection(__global const uchar* state, __global const uchar* active, int x, int y, int z,
   const KernelParameters* p)
 {
   if (x < 0 || x >= p->Size[0])
@@ -109,7 +109,7 @@ static int MarkColumn(__global const uchar* state, __global const uchar* active,
   }
   if (y == 0 || z == 0 || y == p->Size[1] - 1 || z == p->Size[2] - 1)
   {
-    return MarkColumnAtBorder(state, active, x, y, z, p);
+    return MarkCrossSectionAtBorder(state, active, x, y, z, p);
   }
   __global const uchar* s = state + VertexInChunk(x, y, z, p);
   const long row = p->Size[0];
@@ -219,11 +219,11 @@ static void MarkRow(__global const uchar* state, __global const uchar* active, _
     }
     return;
   }
-  int before = MarkColumn(state, active, begin - 1, y, z, p);
-  int here = MarkColumn(state, active, begin, y, z, p);
+  int before = MarkCrossSection(state, active, begin - 1, y, z, p);
+  int here = MarkCrossSection(state, active, begin, y, z, p);
   for (int x = begin; x < endX; x += step)
   {
-    const int after = MarkColumn(state, active, x + 1, y, z, p);
+    const int after = MarkCrossSection(state, active, x + 1, y, z, p);
     int bits = SourceBits(state, x, y, z, p);
     if (bits)
     {
@@ -243,8 +243,8 @@ static void MarkRow(__global const uchar* state, __global const uchar* active, _
       bits |= IsCrossed(cutRows, cutVertices, x, y, z, p) ? 0 : DEFORMVOLUME_CELL_UNCROSSED;
     }
     marked[PlaceInList(first, x, y, z)] = bits;
-    before = step == 1 ? here : MarkColumn(state, active, x + step - 1, y, z, p);
-    here = step == 1 ? after : MarkColumn(state, active, x + step, y, z, p);
+    before = step == 1 ? here : MarkCrossSection(state, active, x + step - 1, y, z, p);
+    here = step == 1 ? after : MarkCrossSection(state, active, x + step, y, z, p);
   }
 }
 

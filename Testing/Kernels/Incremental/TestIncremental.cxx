@@ -427,25 +427,25 @@ TEST_P(IncrementalFolds, AnEditElsewhereRunsFewBricks)
   EXPECT_TRUE(this->Both.IsPart());
 }
 
-// Inverted tetrahedra are counted by columns of cells: those that an update runs again are counted
-// again, and no others. A column is folded, which is the second one of its cuboid; an edit of the
+// Inverted tetrahedra are counted by spans of cells: those that an update runs again are counted
+// again, and no others. A span is folded, which is the second one of its cuboid; an edit of the
 // next one runs it, and the first one not.
 TEST_P(IncrementalFolds, InvertedTetrahedraAreCountedOnce)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
-  static_assert(DEFORMVOLUME_CUBOID_X == 2 * DEFORMVOLUME_COLUMN, "columns of a cuboid");
+  static_assert(DEFORMVOLUME_CUBOID_X == 2 * DEFORMVOLUME_SPAN, "spans of a cuboid");
   EditedVolume& edited = this->Edited;
   edited = MakeVolume(Extent{ { -5, 140, 0, 74, 3, 40 } });
-  const auto getInColumn = [&](int column) -> float&
+  const auto getInSpan = [&](int span) -> float&
   {
-    const int node = (2 * column + 1) * DEFORMVOLUME_COLUMN / 2 / EditedVolume::Step;
+    const int node = (2 * span + 1) * DEFORMVOLUME_SPAN / 2 / EditedVolume::Step;
     return edited.Displacements[3 * edited.GetNode({ { node, 3, 3 } }) + 1];
   };
   this->Both.SendAll(edited, GetRoute());
-  getInColumn(1) = 14.0F;
+  getInSpan(1) = 14.0F;
   ASSERT_NO_FATAL_FAILURE(this->Deform());
   EXPECT_TRUE(this->IsFolded());
-  getInColumn(2) = 0.5F;
+  getInSpan(2) = 0.5F;
   ASSERT_NO_FATAL_FAILURE(this->Deform());
   EXPECT_TRUE(this->Both.IsPart());
 }
