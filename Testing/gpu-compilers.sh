@@ -16,7 +16,7 @@
 #   oclgrind  no compiler: instructions of the resampling kernels for a small volume, counted
 # Default: all of them. What is not installed is skipped.
 # All but ptxas and ocloc come with bash Testing/packages.sh gpu-compilers.
-#   --only    programs whose name holds a pattern of grep -E, such as 'ResampleLeft-links'
+#   --only    programs whose name holds a pattern of grep -E, such as 'ResampleDeferredInt32-links'
 #
 # From the build of preset vtk; DEFORMVOLUME_BUILD: another build directory. All that is made is in
 # build/gpu-compilers. CUDA is looked for in CUDA_HOME, by default /usr/local/cuda.

@@ -2,7 +2,7 @@
 #include "MemoryNeeds.h"
 
 #include "BrickGrid.h"
-#include "ColumnQueue.h"
+#include "DeferredCells.h"
 #include "DeviceVolume.h"
 #include "MemoryBudget.h"
 #include "MeshRasterizer.h"
@@ -47,7 +47,7 @@ std::uint64_t CountDeviceMemory(
   }
   // The queue of the kernel for graphics cards, and coverage as bits.
   const std::uint64_t queue =
-    ColumnQueue::GetMemory(device, BrickGrid(size.Grid).GetNumberOfBricks());
+    DeferredCells::GetMemory(device, BrickGrid(size.Grid).GetNumberOfBricks());
   const std::uint64_t bits = queue > 0 ? OutputSlab::CountWords(outputVoxels) * 4 : 0;
   // Arrays, state, active tetrahedra and blanking; links or runs of a mesh; arrays and coverage of
   // the output; the deformation itself.

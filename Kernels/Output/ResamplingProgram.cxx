@@ -105,7 +105,7 @@ std::string MakeLanePreamble(const OpenCLContext& context, const std::vector<Vol
   return "#define LANES " + std::to_string(lanes ? GetLanes(context) : 1) +
     "\n#define ROW_MEMORY " + (local ? "__local" : "__global") + "\n#define ROWS_ARE_GLOBAL " +
     (local ? "0\n" : "1\n") + shape + "#define HAS_COLUMN_KERNEL " +
-    (form == ResamplingForm::Queue ? "0" : "1") + "\n#define PASS_IS_DIRECT " +
+    (form == ResamplingForm::DeferredInt64 ? "0" : "1") + "\n#define PASS_IS_DIRECT " +
     (variant.IsDirect ? "1" : "0") + "\n#define LANE_SLOTS " + std::to_string(slots) +
     "\n#define LANE_ARRAYS(DO)" + list + "\n#define HAS_OTHER_ARRAYS " +
     (others.empty() ? "0" : "1") + "\n#define STORE_OTHER_ARRAYS " + others + "\n";
@@ -123,12 +123,13 @@ ProgramText GetFormText(const OpenCLContext& context, const std::vector<VolumeAr
         GroupSamples_cl + GroupCoverage_cl + GroupCandidates_cl + GroupWeights_cl + GroupWalk_cl +
         GroupResampling_cl + BrickResampling_cl;
     case ResamplingForm::Columns:
-    case ResamplingForm::Left:
-    case ResamplingForm::Queue:
+    case ResamplingForm::DeferredInt32:
+    case ResamplingForm::DeferredInt64:
       return ProgramText(MakeLanePreamble(context, arrays, variant)) + LaneVectors_cl +
         GroupVertices_cl + GroupValues_cl + GroupCoverage_cl + GroupCandidates_cl +
         GroupWeights_cl + GroupWalk_cl + ColumnCells_cl +
-        (variant.Form == ResamplingForm::Queue ? QueuedResampling_cl : ColumnResampling_cl);
+        (variant.Form == ResamplingForm::DeferredInt64 ? DeferredResampling_cl
+                                                       : ColumnResampling_cl);
     case ResamplingForm::LargeCells:
       return LargeCells_cl;
     case ResamplingForm::Cells:
@@ -142,7 +143,7 @@ ProgramText GetFormText(const OpenCLContext& context, const std::vector<VolumeAr
 /// work-item keeps do not find registers (Documents/resampling.md, GPUs).
 std::string GetFormOptions(const OpenCLContext& context, ResamplingForm form)
 {
-  const bool isColumns = form == ResamplingForm::Columns || form == ResamplingForm::Left;
+  const bool isColumns = form == ResamplingForm::Columns || form == ResamplingForm::DeferredInt32;
   return isColumns && context.HasExtension("cl_nv_compiler_options") ? " -cl-nv-maxrregcount=64"
                                                                      : "";
 }
@@ -190,8 +191,8 @@ cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
   return context.GetProgram(GetSamplingMeshText(variant.WithCut) + MakeArrayText(context, arrays) +
       key + GetMappingText(mapping, variant.HasTurnedAxes) + "#define HAS_CELL_KERNEL " +
       (form == ResamplingForm::Cells ? "1\n" : "0\n") + "#define OUTLINED" +
-      (form == ResamplingForm::Queue ? " __attribute__((noinline))\n" : "\n") + IntegerVectors_cl +
-      CellVertices_cl + CutCells_cl + CellCoverage_cl +
+      (form == ResamplingForm::DeferredInt64 ? " __attribute__((noinline))\n" : "\n") +
+      IntegerVectors_cl + CellVertices_cl + CutCells_cl + CellCoverage_cl +
       (variant.IsCubic ? ProgramText(VoxelTaps_cl) : ProgramText()) + SampleStoring_cl +
       VoxelWinners_cl + Resampling_cl + GetFormText(context, arrays, variant),
     std::string(KernelOptions) + GetFormOptions(context, form));

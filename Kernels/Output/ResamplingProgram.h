@@ -21,10 +21,12 @@ enum class ResamplingForm
   Lanes,
   /// By columns: ResampleColumns in ColumnResampling.cl.
   Columns,
-  /// What these leave for later: ResampleLeft in ColumnResampling.cl.
-  Left,
-  /// What both leave in a queue: ResampleQueued in QueuedResampling.cl.
-  Queue,
+  /// Cells that these defer, by floats and integers of 32 bits: ResampleDeferredInt32 in
+  /// ColumnResampling.cl.
+  DeferredInt32,
+  /// Cells that both defer, by integers of 64 bits as well: ResampleDeferredInt64 in
+  /// DeferredResampling.cl.
+  DeferredInt64,
   /// What all of them put off: ResampleLargeCells in LargeCells.cl.
   LargeCells
 };

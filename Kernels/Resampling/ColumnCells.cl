@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A cell a work-item, for devices whose work-items are lanes, such as graphics cards: what the kernels that take columns
-// of cells and those that take cells from a queue share (ColumnResampling.cl, QueuedResampling.cl). Decisions by floats
+// of cells and those that take deferred cells share (ColumnResampling.cl, DeferredResampling.cl). Decisions by floats
 // and by integers of 32 bits are those of the kernels for processors (BrickResampling.cl).
 //
 // What the host puts in front of this text:
-//   HAS_COLUMN_KERNEL  1 for ResampleColumns and ResampleLeft, 0 for ResampleQueued
+//   HAS_COLUMN_KERNEL  1 for ResampleColumns and ResampleDeferredInt32, 0 for ResampleDeferredInt64
 //   PASS_IS_DIRECT     1 where the pass of the first two is known to be the direct one, which costs fewer registers
 //
 // Data: as BrickResampling.cl. It comes after GroupWalk.cl. rows: ROW floats for each row of three planes, or of two in
-// the kernels for what is left. queue: the number of cells for ResampleQueued, and of those for ResampleLeft; then room
-// for all cells of the launch. The former fill it from its begin, the latter from its end.
+// the kernels for deferred cells. deferred: the number of cells for ResampleDeferredInt64, and of those for
+// ResampleDeferredInt32; then room for all cells of the launch. The former fill it from its begin, the latter from its
+// end.
 
 #define PLANE_VERTICES ((ROW_CELLS + 1) * ROWS)
 #define FLAG_BORDER 1  // a vertex that is not interior
@@ -18,16 +19,16 @@
 #define FLAG_OUTSIDE 8 // a place beyond the volume
 #define FLAG_WHOLE 16  // the cell that begins at the vertex has all its tetrahedra
 
-// An entry of the queue: the place in the launch's part of the list of bricks, times the cells of a brick, plus the
-// cell in the brick, and above that what is to be done.
+// An entry of a deferred cell: the place in the launch's part of the list of bricks, times the cells of a brick, plus the
+// cell in the brick, and above that the step of the exactness chain that comes next.
 #define CELLS_OF_BRICK (DEFORMVOLUME_BRICK_X * DEFORMVOLUME_BRICK_Y * DEFORMVOLUME_BRICK_Z)
-#define QUEUE_BITS 30
-#define QUEUE_FLOATS 0   // the cell is resampled as a group is
-#define QUEUE_INTEGERS 1 // it has been, but for samples that floats do not decide: these, by integers of 32 bits; then
-                         // nothing: ResampleQueued never gets this
-#define QUEUE_DOUBTS 2   // by ResampleSamples
-#define QUEUE_UNSURE 3   // the cell, by ResampleCell
-// What becomes of a cell with which nothing is left to be done.
+#define DEFERRED_BITS 30
+#define DEFERRED_FLOATS 0        // the cell is resampled as a group is
+#define DEFERRED_INT32 1         // it has been, but for samples that floats do not decide: these, by integers of 32 bits;
+                                 // then nothing: ResampleDeferredInt64 never gets this
+#define DEFERRED_SAMPLES_INT64 2 // such samples, by ResampleSamples
+#define DEFERRED_CELL_INT64 3    // the cell, by ResampleCell
+// The step after the last one.
 #define CELL_DONE -1
 
 // Maps a vertex into a place of the rows, with the values of the arrays. Returns its flags. The operations are those
@@ -132,8 +133,8 @@ static int IsDecidedOnVertices(const GroupCandidates* c, const GroupFrame* frame
   return decided;
 }
 
-// The samples of a cell whose frame is nice. mesh, isComplete, onlyUndecidedByFloats: as for ResampleColumnCell. Returns what is
-// still to be done: CELL_DONE or QUEUE_...
+// The samples of a cell whose frame is nice. mesh, isComplete, onlyUndecidedByFloats: as for ResampleColumnCell. Returns the
+// next step: CELL_DONE or DEFERRED_...
 static __attribute__((always_inline)) int TakeSamples(const GroupCandidates* c,
   const GroupFrame* frame, const SamplingMesh* mesh, int isComplete, int onlyUndecidedByFloats,
   Output* output, const KernelParameters* p ARRAY_PARAMETERS)
@@ -203,21 +204,21 @@ static __attribute__((always_inline)) int TakeSamples(const GroupCandidates* c,
   // they have many, and floats decide nearly all of them.
   if (isUndecided && !isComplete && group->Border)
   {
-    return QUEUE_FLOATS;
+    return DEFERRED_FLOATS;
   }
   if ((isUndecided && isSmall && DEFORMVOLUME_IS_CLOSED(p->Pass)) || needsInt64)
   {
-    return QUEUE_UNSURE;
+    return DEFERRED_CELL_INT64;
   }
   output->Writes += writes;
   output->Inverted += frame->Inverted && !onlyUndecidedByFloats ? 5 : 0;
-  return !isUndecided ? CELL_DONE : isSmall ? QUEUE_INTEGERS : QUEUE_DOUBTS;
+  return !isUndecided ? CELL_DONE : isSmall ? DEFERRED_INT32 : DEFERRED_SAMPLES_INT64;
 }
 
 // A cell, as far as floats take it, or integers of 32 bits. mesh: null where vertices have no state, or it does not matter.
 // isComplete: whether integers decide what floats do not, at once, and cells on the border are told from others; else
-// they must be whole. onlyUndecidedByFloats: of all samples those only. most: of its candidates. Returns what is still to be done:
-// CELL_DONE or QUEUE_...
+// they must be whole. onlyUndecidedByFloats: of all samples those only. most: of its candidates. Returns the next step:
+// CELL_DONE or DEFERRED_...
 static __attribute__((always_inline)) int ResampleColumnCell(GroupCandidates* c, int most,
   const SamplingMesh* mesh, GroupFrame* frame, int isComplete, int onlyUndecidedByFloats, Output* output,
   const KernelParameters* p ARRAY_PARAMETERS)
@@ -232,12 +233,12 @@ static __attribute__((always_inline)) int ResampleColumnCell(GroupCandidates* c,
   // Boxes on the border own what depends on the cells round them.
   if ((c->Some && c->Number > most) || (!isComplete && c->Cells.Border && c->HasBoxes))
   {
-    return QUEUE_FLOATS;
+    return DEFERRED_FLOATS;
   }
   MakeGroupFrame(c, c->Fit, frame);
   if (!frame->Nice)
   {
-    return QUEUE_UNSURE;
+    return DEFERRED_CELL_INT64;
   }
   if (!c->Some)
   {
@@ -264,7 +265,7 @@ static __attribute__((always_inline)) void MakeCellGroup(LocalRow row, int oddY,
   cell->Apart = (flags & FLAG_APART) != 0;
 }
 
-// Cells of the queue have their vertices in places of the rows that are a work-item's own. Groups have at most as many
+// Deferred cells have their vertices in places of the rows that are a work-item's own. Groups have at most as many
 // items as there are such places, two in each plane.
 static ROW_MEMORY float* PlaceOfItem(ROW_MEMORY float* rows)
 {
@@ -293,12 +294,12 @@ static void MapCell(const SamplingMesh* mesh, int x, int y, int z, ROW_MEMORY fl
 
 static uint MakeEntry(uint cell, int what)
 {
-  return cell | (uint)what << QUEUE_BITS;
+  return cell | (uint)what << DEFERRED_BITS;
 }
 
 static uint CellOf(uint entry)
 {
-  return entry & ((1u << QUEUE_BITS) - 1);
+  return entry & ((1u << DEFERRED_BITS) - 1);
 }
 
 // The place of the cell of an entry in the volume.
@@ -312,7 +313,7 @@ static int3 CellOfEntry(uint entry, __global const uint* bricks, const KernelPar
   return FirstOfBrick(bricks[p->ListBegin + cell / CELLS_OF_BRICK], p) + inside;
 }
 
-#define QUEUE_ENTRIES(queue) ((queue) + 2)
-// The entry of ResampleLeft with a number.
-#define LEFT_ENTRY(queue, number, p)                                                               \
-  QUEUE_ENTRIES(queue)[(uint)((p)->ListEnd - (p)->ListBegin) * CELLS_OF_BRICK - 1 - (number)]
+#define ENTRIES_INT64(deferred) ((deferred) + 2)
+// The entry of ResampleDeferredInt32 with a number.
+#define ENTRY_INT32(deferred, number, p)                                                               \
+  ENTRIES_INT64(deferred)[(uint)((p)->ListEnd - (p)->ListBegin) * CELLS_OF_BRICK - 1 - (number)]

@@ -6,15 +6,15 @@
 // in local memory, and a third one, so that some items may map the next plane while others still read these. Neighbours
 // along x write voxels that mostly lie side by side. Most cells have a sample or none. Cells that are boxes, as where
 // nothing is deformed, own what is within their bounds.
-// What few cells need would keep registers from all others, and most of a group waiting: so cells are left for later
-// that have samples which floats do not decide, or very many, and boxes on the border of the mesh. ResampleLeft takes
-// these. Cells that are bent or large, that a cut divides, or of which tetrahedra may be missing, go into a queue for
-// ResampleQueued (QueuedResampling.cl), as does what ResampleLeft cannot do.
+// What few cells need would keep registers from all others, and most of a group waiting: so cells are deferred
+// that have samples which floats do not decide, or very many, and boxes on the border of the mesh. ResampleDeferredInt32 takes
+// these. Cells that are bent or large, that a cut divides, or of which tetrahedra may be missing, are deferred to
+// ResampleDeferredInt64 (DeferredResampling.cl), as does what ResampleDeferredInt32 cannot do.
 //
 // Why samples that floats do not decide do not go into a list that the group takes after each layer: some eight of 256 cells have one,
 // one warp has all of them, and the others wait.
 
-// Of cells with more candidates each takes all lanes as long as the longest of them: they are left for later.
+// Of cells with more candidates each takes all lanes as long as the longest of them: they are deferred.
 #define MOST_CANDIDATES_IN_COLUMN 64
 
 // Adds the counts of a work-item to those of its group.
@@ -52,7 +52,7 @@ static int3 FirstInBrick()
     (int)get_group_id(1) * CELL_ROWS, (int)get_group_id(2) * CELL_LAYERS);
 }
 
-// A cell of a group as the queue numbers it. cell: its place in a layer.
+// The number of a cell of a group among deferred ones. cell: its place in a layer.
 static uint NumberInLaunch(int cell, int layer)
 {
   const int3 first = FirstInBrick();
@@ -61,17 +61,17 @@ static uint NumberInLaunch(int cell, int layer)
     first.x + cell % ROW_CELLS;
 }
 
-// left: what is still to be done with a cell that columns have looked at, or that they must not.
-static void LeaveForLater(__global uint* queue, uint cell, int left, const KernelParameters* p)
+// step: the next one for a cell that columns have looked at, or that they must not.
+static void Defer(__global uint* deferred, uint cell, int step, const KernelParameters* p)
 {
-  const uint entry = MakeEntry(cell, left);
-  if (left == QUEUE_INTEGERS || (left == QUEUE_FLOATS && !p->HasState))
+  const uint entry = MakeEntry(cell, step);
+  if (step == DEFERRED_INT32 || (step == DEFERRED_FLOATS && !p->HasState))
   {
-    LEFT_ENTRY(queue, atomic_inc(queue + 1), p) = entry;
+    ENTRY_INT32(deferred, atomic_inc(deferred + 1), p) = entry;
   }
   else
   {
-    QUEUE_ENTRIES(queue)[atomic_inc(queue)] = entry;
+    ENTRIES_INT64(deferred)[atomic_inc(deferred)] = entry;
   }
 }
 
@@ -87,15 +87,15 @@ static int SortCell(uint any, uint lowest)
   }
   if (any & FLAG_SPECIAL)
   {
-    return QUEUE_UNSURE;
+    return DEFERRED_CELL_INT64;
   }
-  return any & FLAG_APART || (any & FLAG_BORDER && !(lowest & FLAG_WHOLE)) ? QUEUE_FLOATS
+  return any & FLAG_APART || (any & FLAG_BORDER && !(lowest & FLAG_WHOLE)) ? DEFERRED_FLOATS
                                                                            : SORT_BY_FLOATS;
 }
 
 // Bricks of a list from p.ListBegin to p.ListEnd, a group a section: on x the spans of one brick after the other, on y
 // and z the halves.
-__kernel void ResampleColumns(GIVEN_PARAMETERS, __global const uint* bricks, __global uint* queue,
+__kernel void ResampleColumns(GIVEN_PARAMETERS, __global const uint* bricks, __global uint* deferred,
   __local float* rows, const KernelParameters parameters ARRAY_PARAMETERS)
 {
   KernelParameters p = parameters;
@@ -141,20 +141,20 @@ __kernel void ResampleColumns(GIVEN_PARAMETERS, __global const uint* bricks, __g
       __local const uchar* const g = f + (high - low) * PLANE_VERTICES;
       const int up = ROW_CELLS + 1;
       const uint any = f[0] | f[1] | f[up] | f[up + 1] | g[0] | g[1] | g[up] | g[up + 1];
-      int left = SortCell(any, f[0]);
-      if (left == SORT_BY_FLOATS)
+      int step = SortCell(any, f[0]);
+      if (step == SORT_BY_FLOATS)
       {
         GroupCandidates c;
         MakeCellGroup(rows + (even * ROWS + inY + (inY & 1)) * ROW + (inX >> 1),
           inY & 1 ? -ROW : ROW, toOdd, inX & 1, first.x + inX, first.y + inY, z - 1, any, &c.Cells,
           &p);
         GroupFrame frame;
-        left = ResampleColumnCell(
+        step = ResampleColumnCell(
           &c, MOST_CANDIDATES_IN_COLUMN, 0, &frame, 0, 0, &output, &p ARRAY_ARGUMENTS);
       }
-      if (left != CELL_DONE)
+      if (step != CELL_DONE)
       {
-        LeaveForLater(queue, NumberInLaunch(i, z - 1 - first.z), left, &p);
+        Defer(deferred, NumberInLaunch(i, z - 1 - first.z), step, &p);
       }
     }
     low = high;
@@ -168,9 +168,9 @@ __kernel void ResampleColumns(GIVEN_PARAMETERS, __global const uint* bricks, __g
   }
 }
 
-// What columns leave of cells that are not for ResampleQueued, a cell a work-item. The host does not know how many there
+// Deferred cells that are not for ResampleDeferredInt64, a cell a work-item. The host does not know how many there
 // are.
-__kernel void ResampleLeft(GIVEN_PARAMETERS, __global const uint* bricks, __global uint* queue,
+__kernel void ResampleDeferredInt32(GIVEN_PARAMETERS, __global const uint* bricks, __global uint* deferred,
   __local float* rows, const KernelParameters parameters ARRAY_PARAMETERS)
 {
   KernelParameters p = parameters;
@@ -178,19 +178,19 @@ __kernel void ResampleLeft(GIVEN_PARAMETERS, __global const uint* bricks, __glob
   p.Pass = DEFORMVOLUME_PASS_DIRECT;
 #endif
   const SamplingMesh mesh = GIVEN_MESH;
-  const uint entries = queue[1];
+  const uint entries = deferred[1];
   for (uint i = get_global_id(0); i < entries; i += get_global_size(0))
   {
-    const uint entry = LEFT_ENTRY(queue, i, &p);
+    const uint entry = ENTRY_INT32(deferred, i, &p);
     const int3 cell = CellOfEntry(entry, bricks, &p);
     GroupCandidates c;
     MapCell(&mesh, cell.x, cell.y, cell.z, PlaceOfItem(rows), &c.Cells, &p ARRAY_ARGUMENTS);
     Output output = GIVEN_OUTPUT;
     GroupFrame frame;
-    const int left = ResampleColumnCell(&c, MAXIMUM_CANDIDATES, 0, &frame, 1,
-      entry >> QUEUE_BITS == QUEUE_INTEGERS, &output, &p ARRAY_ARGUMENTS);
-    LEFT_ENTRY(queue, i, &p) =
-      MakeEntry(CellOf(entry), left == CELL_DONE ? QUEUE_INTEGERS : left);
+    const int step = ResampleColumnCell(&c, MAXIMUM_CANDIDATES, 0, &frame, 1,
+      entry >> DEFERRED_BITS == DEFERRED_INT32, &output, &p ARRAY_ARGUMENTS);
+    ENTRY_INT32(deferred, i, &p) =
+      MakeEntry(CellOf(entry), step == CELL_DONE ? DEFERRED_INT32 : step);
     AddCounts(&output, SectionOf(cell.x, cell.y, cell.z, &p), counters, &p);
   }
 }

@@ -40,10 +40,10 @@ const char* GetKernelName(ResamplingForm form)
       return "ResampleBricks";
     case ResamplingForm::Columns:
       return "ResampleColumns";
-    case ResamplingForm::Left:
-      return "ResampleLeft";
-    case ResamplingForm::Queue:
-      return "ResampleQueued";
+    case ResamplingForm::DeferredInt32:
+      return "ResampleDeferredInt32";
+    case ResamplingForm::DeferredInt64:
+      return "ResampleDeferredInt64";
     case ResamplingForm::LargeCells:
       return "ResampleLargeCells";
   }
@@ -52,8 +52,8 @@ const char* GetKernelName(ResamplingForm form)
 
 bool IsByColumns(ResamplingForm form)
 {
-  return form == ResamplingForm::Columns || form == ResamplingForm::Left ||
-    form == ResamplingForm::Queue;
+  return form == ResamplingForm::Columns || form == ResamplingForm::DeferredInt32 ||
+    form == ResamplingForm::DeferredInt64;
 }
 
 } // namespace
@@ -64,7 +64,7 @@ ExactPasses::ExactPasses(
   , Volume(volume)
   , Source(source)
   , Launched(launches)
-  , Queue(device)
+  , Deferred(device)
 {
 }
 
@@ -145,7 +145,7 @@ cl::Kernel ExactPasses::MakeKernel(
   return cl::Kernel(
     GetResamplingProgram(context, this->Source.GetMappingForm(), arrays,
       { form, wideKeys, output.HasCoverageBits(), this->Volume.HasCut(),
-        (form == ResamplingForm::Columns || form == ResamplingForm::Left) &&
+        (form == ResamplingForm::Columns || form == ResamplingForm::DeferredInt32) &&
           pass == DEFORMVOLUME_PASS_DIRECT,
         request.Interpolation == Interpolation::Cubic, this->Volume.HasTurnedAxes() }),
     GetKernelName(form));
@@ -189,7 +189,7 @@ void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
   }
   else if (IsByColumns(form))
   {
-    kernel.setArg(i++, this->Queue.GetBuffer());
+    kernel.setArg(i++, this->Deferred.GetBuffer());
     kernel.setArg(i++,
       cl::Local(GetColumnMemory(this->Device.GetContext(), this->Volume.GetVolumeArrays(), form)));
   }
@@ -228,9 +228,9 @@ void ExactPasses::PrepareKernel(cl::Kernel& kernel, const VolumeChunk& chunk,
         return cl::NDRange(1);
       case ResamplingForm::Columns:
         return cl::NDRange(this->GetColumnGroup(kernel), 1, 1);
-      case ResamplingForm::Left:
-      case ResamplingForm::Queue:
-        return cl::NDRange(this->Queue.GetGroup(kernel));
+      case ResamplingForm::DeferredInt32:
+      case ResamplingForm::DeferredInt64:
+        return cl::NDRange(this->Deferred.GetGroup(kernel));
       case ResamplingForm::LargeCells:
         break;
     }
@@ -313,7 +313,7 @@ void ExactPasses::Launch(
   }
   if (form == ResamplingForm::Columns)
   {
-    this->Queue.Clear();
+    this->Deferred.Clear();
     const std::size_t group = this->GetColumnGroup(kernel);
     this->Launched.Run(request, kernel, cl::NDRange(group * DEFORMVOLUME_SPANS * bricks, 2, 2),
       cl::NDRange(group, 1, 1));
@@ -321,10 +321,10 @@ void ExactPasses::Launch(
   }
   if (IsByColumns(form))
   {
-    const std::size_t group = this->Queue.GetGroup(kernel);
+    const std::size_t group = this->Deferred.GetGroup(kernel);
     this->Launched.GetResamplingEvents().push_back(
       this->Device.GetContext().Launch(this->Device.GetQueue(), kernel,
-        cl::NDRange(this->Queue.GetItems(group)), cl::NDRange(group)));
+        cl::NDRange(this->Deferred.GetItems(group)), cl::NDRange(group)));
     return;
   }
   const std::size_t group = this->Device.GetBusyGroupSize(kernel);
@@ -378,19 +378,21 @@ void ExactPasses::Run(const DeformRequest& request, const OutputSlab& output, in
 void ExactPasses::RunColumns(const DeformRequest& request, const OutputSlab& output,
   cl::Kernel& columns, const std::vector<PlannedLaunch>& launches)
 {
-  const auto most = static_cast<int>(this->Queue.GetMostBricks());
+  const auto most = static_cast<int>(this->Deferred.GetMostBricks());
   int used = 0;
   for (const PlannedLaunch& launch : launches)
   {
     used = std::max(used, launch.Parameters.ListEnd - launch.Parameters.ListBegin);
   }
-  this->Queue.Reserve(static_cast<std::uint64_t>(used));
+  this->Deferred.Reserve(static_cast<std::uint64_t>(used));
   const PlannedLaunch& first = launches.front();
   const int pass = first.Parameters.Pass;
   std::array<std::pair<ResamplingForm, cl::Kernel>, 3> kernels{ {
     { ResamplingForm::Columns, columns },
-    { ResamplingForm::Left, this->MakeKernel(request, ResamplingForm::Left, output, pass) },
-    { ResamplingForm::Queue, this->MakeKernel(request, ResamplingForm::Queue, output, pass) },
+    { ResamplingForm::DeferredInt32,
+      this->MakeKernel(request, ResamplingForm::DeferredInt32, output, pass) },
+    { ResamplingForm::DeferredInt64,
+      this->MakeKernel(request, ResamplingForm::DeferredInt64, output, pass) },
   } };
   for (auto& [form, kernel] : kernels)
   {
@@ -468,7 +470,7 @@ void ExactPasses::RunLargeCells(const DeformRequest& request, const OutputSlab& 
 std::uint64_t ExactPasses::GetMemory() const
 {
   return deformvolume::GetMemory(this->BrickRows) +
-    deformvolume::GetMemory(this->Queue.GetBuffer());
+    deformvolume::GetMemory(this->Deferred.GetBuffer());
 }
 
 } // namespace deformvolume

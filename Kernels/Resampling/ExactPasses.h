@@ -2,7 +2,7 @@
 #ifndef DeformVolumeExactPasses_h
 #define DeformVolumeExactPasses_h
 
-#include "ColumnQueue.h"
+#include "DeferredCells.h"
 #include "DeformRequest.h"
 #include "KernelParameters.h"
 #include "OpenCLContext.h"
@@ -93,7 +93,7 @@ private:
   std::vector<cl_uint> SentBricks; // what it has
   cl::Buffer BrickRows;            // what these need, where local memory is too small
   cl::Buffer TakenBricks;          // how many of these the launch that runs has taken
-  ColumnQueue Queue;               // cells that columns leave for later
+  DeferredCells Deferred;          // of a launch by columns
   cl::Buffer Pieces;               // of large cells, to work on
 };
 

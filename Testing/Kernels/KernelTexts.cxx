@@ -394,7 +394,7 @@ void BuildOthers(Recorder& recorder)
 {
   recorder.SetPurpose("links-int16-wide");
   OpenCLContext& context = OpenCLContext::Get(FindDevice(""));
-  for (const ResamplingForm form : { ResamplingForm::Columns, ResamplingForm::Queue,
+  for (const ResamplingForm form : { ResamplingForm::Columns, ResamplingForm::DeferredInt64,
          ResamplingForm::Cells, ResamplingForm::LargeCells })
   {
     const bool bits = form != ResamplingForm::Cells;

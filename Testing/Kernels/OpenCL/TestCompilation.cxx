@@ -88,11 +88,11 @@ std::vector<ElementType> GetAllTypes()
 }
 
 const ResamplingForm AllForms[] = { ResamplingForm::Cells, ResamplingForm::Lanes,
-  ResamplingForm::Columns, ResamplingForm::Queue, ResamplingForm::LargeCells };
+  ResamplingForm::Columns, ResamplingForm::DeferredInt64, ResamplingForm::LargeCells };
 
 bool HasBits(ResamplingForm form)
 {
-  return form == ResamplingForm::Columns || form == ResamplingForm::Queue;
+  return form == ResamplingForm::Columns || form == ResamplingForm::DeferredInt64;
 }
 
 struct Compiled
@@ -263,8 +263,8 @@ TEST_F(Compilation, KernelsThatAreNotUsedAreNotCompiled)
   for (const auto& [form, name] : { std::make_pair(ResamplingForm::Cells, "Resample"),
          std::make_pair(ResamplingForm::Lanes, "ResampleBricks"),
          std::make_pair(
-           ResamplingForm::Columns, "ResampleColumns;ResampleLeft"), // one after the other
-         std::make_pair(ResamplingForm::Queue, "ResampleQueued"),
+           ResamplingForm::Columns, "ResampleColumns;ResampleDeferredInt32"), // one after the other
+         std::make_pair(ResamplingForm::DeferredInt64, "ResampleDeferredInt64"),
          std::make_pair(ResamplingForm::LargeCells, "ResampleLargeCells") })
   {
     const std::string names = GetResamplingProgram(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ColumnQueue.h"
+#include "DeferredCells.h"
 
 #include "HostMemory.h"
 #include "KernelParameters.h"
@@ -21,8 +21,8 @@ constexpr std::uint64_t MostBricks = 704;
 constexpr std::uint64_t PartOfMemory = 64;
 // A launch of what is in the list, whose length the host does not know.
 constexpr std::size_t GroupsPerUnit = 16;
-// Work-items of a group that have places in its local memory: see ResampleQueued.
-constexpr std::size_t LargestQueueGroup =
+// Work-items of a group that have places in its local memory: see ResampleDeferredInt64.
+constexpr std::size_t LargestDeferredGroup =
   std::size_t{ DEFORMVOLUME_SPAN / 2 } * ((DEFORMVOLUME_BRICK_Y / 2 + 1) / 2);
 
 /// For launches of so many bricks.
@@ -42,19 +42,19 @@ std::uint64_t CountMostBricks(WorkDevice& device)
 
 } // namespace
 
-std::uint64_t ColumnQueue::GetMemory(WorkDevice& device, std::uint64_t bricks)
+std::uint64_t DeferredCells::GetMemory(WorkDevice& device, std::uint64_t bricks)
 {
   return device.GetDevice().HasVectors || !HasLocalColumns(device.GetContext())
     ? 0
     : CountBytes(std::min(bricks, CountMostBricks(device)));
 }
 
-std::uint64_t ColumnQueue::GetMostBricks()
+std::uint64_t DeferredCells::GetMostBricks()
 {
   return CountMostBricks(this->Device);
 }
 
-void ColumnQueue::Reserve(std::uint64_t bricks)
+void DeferredCells::Reserve(std::uint64_t bricks)
 {
   const std::uint64_t bytes = CountBytes(std::min(bricks, this->GetMostBricks()));
   if (deformvolume::GetMemory(this->Buffer) < bytes) // a longer one serves as well
@@ -64,17 +64,17 @@ void ColumnQueue::Reserve(std::uint64_t bricks)
   this->Clear();
 }
 
-void ColumnQueue::Clear()
+void DeferredCells::Clear()
 {
   this->Device.GetQueue().enqueueFillBuffer(this->Buffer, cl_uint{ 0 }, 0, 2 * sizeof(cl_uint));
 }
 
-std::size_t ColumnQueue::GetGroup(const cl::Kernel& kernel)
+std::size_t DeferredCells::GetGroup(const cl::Kernel& kernel)
 {
-  return std::min(this->Device.GetBusyGroupSize(kernel), LargestQueueGroup);
+  return std::min(this->Device.GetBusyGroupSize(kernel), LargestDeferredGroup);
 }
 
-std::size_t ColumnQueue::GetItems(std::size_t group)
+std::size_t DeferredCells::GetItems(std::size_t group)
 {
   return GroupsPerUnit * this->Device.GetContext().GetNumberOfUnits() * group;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef DeformVolumeColumnQueue_h
-#define DeformVolumeColumnQueue_h
+#ifndef DeformVolumeDeferredCells_h
+#define DeformVolumeDeferredCells_h
 
 #include "OpenCLContext.h"
 
@@ -12,12 +12,12 @@ namespace deformvolume
 
 class WorkDevice;
 
-/// The cells that the kernel for columns leaves for those that follow, in a list on the device. The
+/// The cells that the kernel for columns defers to those that follow, in a list on the device. The
 /// host does not know how many there are: the list has room for all cells of a launch.
-class ColumnQueue
+class DeferredCells
 {
 public:
-  explicit ColumnQueue(WorkDevice& device)
+  explicit DeferredCells(WorkDevice& device)
     : Device(device)
   {
   }
@@ -34,8 +34,8 @@ public:
 
   const cl::Buffer& GetBuffer() const { return this->Buffer; }
 
-  /// Work-items of a group of the kernels that drain the list (ResampleLeft, ResampleQueued), and
-  /// of a launch with groups of that size.
+  /// Work-items of a group of the kernels that drain the list (ResampleDeferredInt32,
+  /// ResampleDeferredInt64), and of a launch with groups of that size.
   std::size_t GetGroup(const cl::Kernel& kernel);
   std::size_t GetItems(std::size_t group);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cells that the kernels for columns leave in the queue (ColumnResampling.cl): those that are bent or large, that a cut
+// Cells that the kernels for columns defer (ColumnResampling.cl): those that are bent or large, that a cut
 // divides, or of which tetrahedra may be missing.
 
 // The samples of a cell that floats do not decide.
@@ -48,18 +48,18 @@ static void ResampleUndecided(const GroupCandidates* c, const GroupFrame* frame,
   output->Inverted = inverted;
 }
 
-// A cell of the queue by itself. place: for its vertices.
-static void ResampleQueuedCell(const SamplingMesh* mesh, int x, int y, int z, int what,
+// A deferred cell by itself. place: for its vertices.
+static void ResampleDeferredCell(const SamplingMesh* mesh, int x, int y, int z, int what,
   ROW_MEMORY float* place, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
-  if (what != QUEUE_UNSURE)
+  if (what != DEFERRED_CELL_INT64)
   {
     GroupCandidates c;
     GroupFrame frame;
     MapCell(mesh, x, y, z, place, &c.Cells, p ARRAY_ARGUMENTS);
     what = ResampleColumnCell(
-      &c, MAXIMUM_CANDIDATES, mesh, &frame, 1, what != QUEUE_FLOATS, output, p ARRAY_ARGUMENTS);
-    if (what == QUEUE_DOUBTS)
+      &c, MAXIMUM_CANDIDATES, mesh, &frame, 1, what != DEFERRED_FLOATS, output, p ARRAY_ARGUMENTS);
+    if (what == DEFERRED_SAMPLES_INT64)
     {
       ResampleUndecided(&c, &frame, mesh, output, p ARRAY_ARGUMENTS);
       return;
@@ -75,23 +75,23 @@ static void ResampleQueuedCell(const SamplingMesh* mesh, int x, int y, int z, in
   ResampleCell(&keeping, x, y, z, &all, output, p ARRAY_ARGUMENTS);
 }
 
-// An entry of the queue a work-item, and of what ResampleLeft has had, unless that is done. The host does not know how
+// A deferred cell a work-item, those that ResampleDeferredInt32 has not finished included. The host does not know how
 // many there are.
-__kernel void ResampleQueued(GIVEN_PARAMETERS, __global const uint* bricks, __global uint* queue,
+__kernel void ResampleDeferredInt64(GIVEN_PARAMETERS, __global const uint* bricks, __global uint* deferred,
   __local float* rows, const KernelParameters p ARRAY_PARAMETERS)
 {
   const SamplingMesh mesh = GIVEN_MESH;
-  const uint queued = queue[0], entries = queued + queue[1];
+  const uint countInt64 = deferred[0], entries = countInt64 + deferred[1];
   for (uint i = get_global_id(0); i < entries; i += get_global_size(0))
   {
-    const uint entry = i < queued ? QUEUE_ENTRIES(queue)[i] : LEFT_ENTRY(queue, i - queued, &p);
-    if (entry >> QUEUE_BITS == QUEUE_INTEGERS)
+    const uint entry = i < countInt64 ? ENTRIES_INT64(deferred)[i] : ENTRY_INT32(deferred, i - countInt64, &p);
+    if (entry >> DEFERRED_BITS == DEFERRED_INT32)
     {
       continue;
     }
     const int3 cell = CellOfEntry(entry, bricks, &p);
     Output output = GIVEN_OUTPUT;
-    ResampleQueuedCell(&mesh, cell.x, cell.y, cell.z, entry >> QUEUE_BITS, PlaceOfItem(rows),
+    ResampleDeferredCell(&mesh, cell.x, cell.y, cell.z, entry >> DEFERRED_BITS, PlaceOfItem(rows),
       &output, &p ARRAY_ARGUMENTS);
     AddCounts(&output, SectionOf(cell.x, cell.y, cell.z, &p), counters, &p);
   }
