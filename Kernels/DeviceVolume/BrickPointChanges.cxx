@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How BrickPoints follow changes of the mesh, and what groups of bricks have.
+// How BrickPoints follow changes of the mesh, and what sets of bricks have.
 #include "BrickPoints.h"
 
 #include "ParallelFor.h"
@@ -130,13 +130,13 @@ std::size_t BrickPoints::AddPoints(
   return added.size() - before;
 }
 
-BrickPoints BrickPoints::Join(const std::vector<std::vector<std::size_t>>& groups) const
+BrickPoints BrickPoints::Join(const std::vector<std::vector<std::size_t>>& sets) const
 {
   BrickPoints joined;
   if (!this->Boxes.empty())
   {
     joined.FieldSize = this->FieldSize;
-    for (const std::vector<std::size_t>& bricks : groups)
+    for (const std::vector<std::size_t>& bricks : sets)
     {
       Extent all{ { 0, -1, 0, -1, 0, -1 } };
       for (const std::size_t brick : bricks)
@@ -154,7 +154,7 @@ BrickPoints BrickPoints::Join(const std::vector<std::vector<std::size_t>>& group
     }
     return joined;
   }
-  for (const std::vector<std::size_t>& bricks : groups)
+  for (const std::vector<std::size_t>& bricks : sets)
   {
     std::vector<Range> all;
     for (const std::size_t brick : bricks)

@@ -50,8 +50,8 @@ public:
   /// boundary of the field in it, maybe empty; or none at all.
   static BrickPoints FromField(
     const BrickGrid& grid, const FieldParameters& field, const std::vector<Extent>& boundary);
-  /// Of groups of bricks: the points that any of a group has. They are for AnyOf and IsApart only.
-  BrickPoints Join(const std::vector<std::vector<std::size_t>>& groups) const;
+  /// Of sets of bricks: the points that any of a set has. They are for AnyOf and IsApart only.
+  BrickPoints Join(const std::vector<std::vector<std::size_t>>& sets) const;
 
   bool IsEmpty() const { return this->Begins.empty() && this->Boxes.empty(); }
 

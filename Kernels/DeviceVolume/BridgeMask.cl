@@ -74,12 +74,12 @@ static int FindBridges(
   const int* owners, int2 cut, __global const int4* tetrahedra, __global const int* placesAtRest)
 {
   uchar split[8]; // of each vertex, the ones that are on another side, as bits
-  int group[8];   // the lowest vertex that each belongs together with
+  int component[8];   // the lowest vertex of the connected component that each is in
   int any = 0;
   for (int v = 0; v < 8; ++v)
   {
     split[v] = 0;
-    group[v] = v;
+    component[v] = v;
   }
   for (int v = 1; v < 8; ++v)
   {
@@ -100,11 +100,11 @@ static int FindBridges(
       }
       else if (found)
       {
-        const int low = min(group[v], group[w]);
-        const int high = max(group[v], group[w]);
+        const int low = min(component[v], component[w]);
+        const int high = max(component[v], component[w]);
         for (int u = 0; u < 8; ++u)
         {
-          group[u] = group[u] == high ? low : group[u];
+          component[u] = component[u] == high ? low : component[u];
         }
       }
     }
@@ -118,7 +118,7 @@ static int FindBridges(
       {
         const int v = Tetrahedra[t][i], w = Tetrahedra[t][j];
         const int isParted = (cut.x >> t & 1) && ((cut.y >> v ^ cut.y >> w) & 1);
-        bridges |= !isParted && ((split[v] >> w & 1) || group[v] != group[w]) ? 1 << t : 0;
+        bridges |= !isParted && ((split[v] >> w & 1) || component[v] != component[w]) ? 1 << t : 0;
       }
     }
   }

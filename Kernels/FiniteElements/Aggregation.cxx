@@ -19,8 +19,8 @@ Aggregates MakeAggregates(
 {
   const std::size_t rows = starts.size() - 1;
   Aggregates result;
-  std::vector<std::int32_t>& groups = result.GroupOfRow;
-  groups.assign(rows, -1);
+  std::vector<std::int32_t>& aggregateOfRow = result.AggregateOfRow;
+  aggregateOfRow.assign(rows, -1);
   const auto forNeighbors = [&](std::size_t row, auto&& visit)
   {
     for (auto i = static_cast<std::size_t>(starts[row]);
@@ -29,8 +29,8 @@ Aggregates MakeAggregates(
       visit(static_cast<std::size_t>(columns[i]));
     }
   };
-  // Those all of whose neighbors are free make a group with them: the more there are, the earlier,
-  // since large groups make a small coarse level.
+  // Those all of whose neighbors are free make an aggregate with them: the more there are, the
+  // earlier, since large aggregates make a small coarse level.
   std::vector<std::size_t> order(rows);
   std::iota(order.begin(), order.end(), std::size_t(0));
   std::stable_sort(order.begin(), order.end(),
@@ -41,24 +41,24 @@ Aggregates MakeAggregates(
     {
       const std::size_t row = order[item];
       bool isAlone = true;
-      forNeighbors(row, [&](std::size_t other) { isAlone = isAlone && groups[other] < 0; });
+      forNeighbors(row, [&](std::size_t other) { isAlone = isAlone && aggregateOfRow[other] < 0; });
       if (isAlone)
       {
-        const std::int32_t group = result.NumberOfGroups++;
-        groups[row] = group;
-        forNeighbors(row, [&](std::size_t other) { groups[other] = group; });
+        const std::int32_t aggregate = result.NumberOfAggregates++;
+        aggregateOfRow[row] = aggregate;
+        forNeighbors(row, [&](std::size_t other) { aggregateOfRow[other] = aggregate; });
       }
     });
-  // The others join the smallest group beside them.
-  std::vector<std::int32_t> sizes(static_cast<std::size_t>(result.NumberOfGroups), 0);
-  for (const std::int32_t group : groups)
+  // The others join the smallest aggregate beside them.
+  std::vector<std::int32_t> sizes(static_cast<std::size_t>(result.NumberOfAggregates), 0);
+  for (const std::int32_t aggregate : aggregateOfRow)
   {
-    if (group >= 0)
+    if (aggregate >= 0)
     {
-      ++sizes[static_cast<std::size_t>(group)];
+      ++sizes[static_cast<std::size_t>(aggregate)];
     }
   }
-  const std::vector<std::int32_t> first = groups;
+  const std::vector<std::int32_t> first = aggregateOfRow;
   ForItems(watch, rows,
     [&](std::size_t row)
     {
@@ -70,16 +70,16 @@ Aggregates MakeAggregates(
       forNeighbors(row,
         [&](std::size_t other)
         {
-          const std::int32_t group = first[other];
-          if (group >= 0 &&
+          const std::int32_t aggregate = first[other];
+          if (aggregate >= 0 &&
             (best < 0 ||
-              sizes[static_cast<std::size_t>(group)] < sizes[static_cast<std::size_t>(best)]))
+              sizes[static_cast<std::size_t>(aggregate)] < sizes[static_cast<std::size_t>(best)]))
           {
-            best = group;
+            best = aggregate;
           }
         });
-      // A row without neighbors in the first groups cannot be: it would be in one.
-      groups[row] = best;
+      // A row without neighbors in the first aggregates cannot be: it would be in one.
+      aggregateOfRow[row] = best;
       ++sizes[static_cast<std::size_t>(best)];
     });
   return result;
@@ -173,37 +173,37 @@ double FindLargestEigenvalue(Watch& watch, const SparseBlocks<Size, Size>& matri
 namespace
 {
 
-// What a group moves as its six unknowns say: the near null space, made orthogonal in each group.
-// Motions that a group of few rows does not have stay 0. What they were made of becomes the near
-// null space of the groups.
+// What an aggregate moves as its six unknowns say: the near null space, made orthogonal in each
+// aggregate. Motions that an aggregate of few rows does not have stay 0. What they were made of
+// becomes the near null space of the aggregates.
 template <int Size>
 void Orthogonalize(Watch& watch, const Aggregates& aggregates, const NearNullSpace<Size>& modes,
   SparseBlocks<Size, RigidModes>& prolongation, NearNullSpace<RigidModes>& coarse)
 {
   constexpr double least = 1e-7;
-  prolongation.NumberOfColumns = aggregates.NumberOfGroups;
-  prolongation.ColumnOfBlock = aggregates.GroupOfRow;
+  prolongation.NumberOfColumns = aggregates.NumberOfAggregates;
+  prolongation.ColumnOfBlock = aggregates.AggregateOfRow;
   prolongation.Blocks = modes;
   prolongation.Starts.resize(modes.size() + 1);
   for (std::size_t row = 0; row <= modes.size(); ++row)
   {
     prolongation.Starts[row] = static_cast<std::int32_t>(row);
   }
-  std::vector<std::vector<std::int32_t>> rowsOfGroup(
-    static_cast<std::size_t>(aggregates.NumberOfGroups));
+  std::vector<std::vector<std::int32_t>> rowsOfAggregate(
+    static_cast<std::size_t>(aggregates.NumberOfAggregates));
   for (std::size_t row = 0; row < modes.size(); ++row)
   {
-    rowsOfGroup[static_cast<std::size_t>(aggregates.GroupOfRow[row])].push_back(
+    rowsOfAggregate[static_cast<std::size_t>(aggregates.AggregateOfRow[row])].push_back(
       static_cast<std::int32_t>(row));
   }
-  coarse.assign(rowsOfGroup.size(), Eigen::Matrix<double, RigidModes, RigidModes>::Zero());
-  for (std::size_t group = 0; group < rowsOfGroup.size(); ++group)
+  coarse.assign(rowsOfAggregate.size(), Eigen::Matrix<double, RigidModes, RigidModes>::Zero());
+  for (std::size_t aggregate = 0; aggregate < rowsOfAggregate.size(); ++aggregate)
   {
     watch.Ask();
     const auto dot = [&](int i, int j)
     {
       double sum = 0.0;
-      for (const std::int32_t row : rowsOfGroup[group])
+      for (const std::int32_t row : rowsOfAggregate[aggregate])
       {
         const auto& block = prolongation.Blocks[static_cast<std::size_t>(row)];
         sum += block.col(i).dot(block.col(j));
@@ -217,8 +217,8 @@ void Orthogonalize(Watch& watch, const Aggregates& aggregates, const NearNullSpa
       for (int i = 0; i < 2 * j; ++i)
       {
         const double part = dot(i % j, j);
-        coarse[group](i % j, j) += part;
-        for (const std::int32_t row : rowsOfGroup[group])
+        coarse[aggregate](i % j, j) += part;
+        for (const std::int32_t row : rowsOfAggregate[aggregate])
         {
           auto& block = prolongation.Blocks[static_cast<std::size_t>(row)];
           block.col(j) -= part * block.col(i % j);
@@ -226,8 +226,8 @@ void Orthogonalize(Watch& watch, const Aggregates& aggregates, const NearNullSpa
       }
       const double length = std::sqrt(dot(j, j));
       const bool isThere = length > least * before;
-      coarse[group](j, j) = isThere ? length : 0.0;
-      for (const std::int32_t row : rowsOfGroup[group])
+      coarse[aggregate](j, j) = isThere ? length : 0.0;
+      for (const std::int32_t row : rowsOfAggregate[aggregate])
       {
         auto column = prolongation.Blocks[static_cast<std::size_t>(row)].col(j);
         column *= isThere ? 1.0 / length : 0.0;
@@ -258,7 +258,7 @@ Coarsening<Size> Coarsen(Watch& watch, const SparseBlocks<Size, Size>& matrix,
       {
         auto& value = result.Prolongation.Blocks[block];
         value = -damping * inverses[r] * value;
-        if (result.Prolongation.ColumnOfBlock[block] == aggregates.GroupOfRow[r])
+        if (result.Prolongation.ColumnOfBlock[block] == aggregates.AggregateOfRow[r])
         {
           value += tentative.Blocks[r];
         }

@@ -18,22 +18,22 @@ constexpr int RigidModes = 6;
 template <int Size>
 using NearNullSpace = std::vector<Eigen::Matrix<double, Size, RigidModes>>;
 
-/// Of each row of a sparse matrix the number of its group: a row with those that it is connected
-/// with, as far as they are in no other group.
+/// Of each row of a sparse matrix the number of its aggregate: a row with those that it is
+/// connected with, as far as they are in no other aggregate.
 struct Aggregates
 {
-  std::vector<std::int32_t> GroupOfRow;
-  std::int32_t NumberOfGroups = 0;
+  std::vector<std::int32_t> AggregateOfRow;
+  std::int32_t NumberOfAggregates = 0;
 };
 Aggregates MakeAggregates(
   Watch& watch, const std::vector<std::int32_t>& starts, const std::vector<std::int32_t>& columns);
 
-/// The next coarser level of a matrix: six unknowns for each group of rows, which move the group as
-/// the near null space says.
+/// The next coarser level of a matrix: six unknowns for each aggregate of rows, which move the
+/// aggregate as the near null space says.
 template <int Size>
 struct Coarsening
 {
-  /// From groups to rows.
+  /// From aggregates to rows.
   SparseBlocks<Size, RigidModes> Prolongation;
   SparseBlocks<RigidModes, RigidModes> Matrix;
   NearNullSpace<RigidModes> Modes;

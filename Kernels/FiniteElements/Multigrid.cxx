@@ -17,8 +17,8 @@ namespace
 {
 
 constexpr std::size_t PartsAtOnce = BlockMatrix::PartsAtOnce;
-// Groups of the coarsest level, which is solved exactly.
-constexpr std::int32_t CoarsestGroups = 100;
+// Aggregates of the coarsest level, which is solved exactly.
+constexpr std::int32_t CoarsestAggregates = 100;
 constexpr Eigen::Index ColumnsAtOnce = 48;
 
 // The rows and columns of free nodes.
@@ -253,13 +253,13 @@ void Multigrid::Build(Watch& watch, const BlockMatrix& matrix,
     MakeRigidModes(positions, this->FreeNodes), this->Fine);
   SparseBlocks<6, 6> coarse = std::move(first.Matrix);
   NearNullSpace<6> modes = std::move(first.Modes);
-  while (coarse.GetNumberOfRows() > CoarsestGroups)
+  while (coarse.GetNumberOfRows() > CoarsestAggregates)
   {
     this->Coarse.emplace_back();
     Coarsening<6> next = MakeLevel(watch, coarse, modes, this->Coarse.back());
     if (next.Matrix.GetNumberOfRows() == coarse.GetNumberOfRows())
     {
-      // As many pieces of the body, of which each has become a group.
+      // As many pieces of the body, of which each has become an aggregate.
       this->Coarse.pop_back();
       break;
     }
@@ -267,7 +267,7 @@ void Multigrid::Build(Watch& watch, const BlockMatrix& matrix,
     modes = std::move(next.Modes);
   }
   this->Inverse =
-    coarse.GetNumberOfRows() <= CoarsestGroups ? Invert(watch, coarse) : std::vector<float>();
+    coarse.GetNumberOfRows() <= CoarsestAggregates ? Invert(watch, coarse) : std::vector<float>();
   // The coarsest level has vectors only.
   this->Coarse.emplace_back();
   const std::size_t length = static_cast<std::size_t>(coarse.GetNumberOfRows()) * PaddedSize<6>;
@@ -288,14 +288,14 @@ void Multigrid::SetPositions(
 void Multigrid::SolveCoarsest(
   Watch& watch, const std::vector<float>& right, std::vector<float>& solution)
 {
-  const std::size_t groups = right.size() / PaddedSize<6>;
-  const std::size_t size = 6 * groups;
+  const std::size_t aggregates = right.size() / PaddedSize<6>;
+  const std::size_t size = 6 * aggregates;
   std::vector<float> packed(size);
   for (std::size_t i = 0; i < size; ++i)
   {
     packed[i] = right[i / 6 * PaddedSize<6> + i % 6];
   }
-  ForParts(watch, (groups + 31) / 32, PartsAtOnce,
+  ForParts(watch, (aggregates + 31) / 32, PartsAtOnce,
     [&](std::size_t part)
     {
       for (std::size_t i = part * 192; i < std::min(size, (part + 1) * 192); ++i)

@@ -31,7 +31,7 @@ struct MultigridLevel
   std::vector<float> Work;
 };
 
-/// A cycle of the multigrid method over groups of nodes that move like rigid bodies, smoothed.
+/// A cycle of the multigrid method over aggregates of nodes that move like rigid bodies, smoothed.
 /// It is built from a matrix once and used for others of the same body: the stiffness at a node is
 /// about what it was, turned with what is around the node.
 class Multigrid : public Preconditioner

@@ -2,7 +2,7 @@
 // Forces of tetrahedra whose edges are springs and whose volume has an energy, on each of their nodes. What the
 // host puts in front of this text:
 //   LANES  tetrahedra that a work-item has: 16, 8 or 4 on processors, with LaneVectors.cl, and 1 elsewhere
-// Tetrahedra lie in groups of LANES: of a group first all first numbers, then all second ones, and so on.
+// Tetrahedra lie in packets of LANES: of a packet first all first numbers, then all second ones, and so on.
 
 #if LANES == 1
 #define FLOATS float
@@ -106,10 +106,10 @@ static FLOATS Determinant(Vectors a, Vectors b, Vectors c)
 
 // Counts the tetrahedra that are inside out.
 __kernel void CountInverted(__global const INTS* tetrahedra, __global const float* restPoints,
-  __global const float* displacements, __global int* count, uint numberOfGroups)
+  __global const float* displacements, __global int* count, uint numberOfPackets)
 {
-  const size_t group = get_global_id(0);
-  if (group >= numberOfGroups)
+  const size_t packet = get_global_id(0);
+  if (packet >= numberOfPackets)
   {
     return;
   }
@@ -117,8 +117,8 @@ __kernel void CountInverted(__global const INTS* tetrahedra, __global const floa
   Vectors now[4];
   for (int i = 0; i < 4; ++i)
   {
-    rest[i] = GetVectors(restPoints, tetrahedra[4 * group + i]);
-    now[i] = Plus(rest[i], GetVectors(displacements, tetrahedra[4 * group + i]));
+    rest[i] = GetVectors(restPoints, tetrahedra[4 * packet + i]);
+    now[i] = Plus(rest[i], GetVectors(displacements, tetrahedra[4 * packet + i]));
   }
   const FLOATS product =
     Determinant(Minus(now[1], now[0]), Minus(now[2], now[0]), Minus(now[3], now[0])) *
@@ -138,18 +138,18 @@ __kernel void CountInverted(__global const INTS* tetrahedra, __global const floa
 // tetrahedra: the four nodes, times 3; materials: the stiffness of each edge, in N/m, and the modulus of the
 // volume, in Pa; forces: of the four nodes, in N.
 __kernel void ComputeForces(__global const INTS* tetrahedra, __global const FLOATS* materials,
-  __global const float* restPoints, __global const float* displacements, __global FLOATS* forces, uint numberOfGroups)
+  __global const float* restPoints, __global const float* displacements, __global FLOATS* forces, uint numberOfPackets)
 {
-  const size_t group = get_global_id(0);
-  if (group >= numberOfGroups)
+  const size_t packet = get_global_id(0);
+  if (packet >= numberOfPackets)
   {
     return;
   }
-  const INTS n0 = tetrahedra[4 * group];
-  const INTS n1 = tetrahedra[4 * group + 1];
-  const INTS n2 = tetrahedra[4 * group + 2];
-  const INTS n3 = tetrahedra[4 * group + 3];
-  const FLOATS stiffness = materials[2 * group];
+  const INTS n0 = tetrahedra[4 * packet];
+  const INTS n1 = tetrahedra[4 * packet + 1];
+  const INTS n2 = tetrahedra[4 * packet + 2];
+  const INTS n3 = tetrahedra[4 * packet + 3];
+  const FLOATS stiffness = materials[2 * packet];
   const Vectors origin = GetVectors(restPoints, n0);
   const Vectors a1 = Minus(GetVectors(restPoints, n1), origin);
   const Vectors a2 = Minus(GetVectors(restPoints, n2), origin);
@@ -169,7 +169,7 @@ __kernel void ComputeForces(__global const INTS* tetrahedra, __global const FLOA
   const FLOATS restDeterminant = Determinant(a1, a2, a3);
   const FLOATS growth = Dot(e1, area1) + Dot(a1, Plus(Cross(e2, b3), Cross(a2, e3)));
   const FLOATS ratio = growth / restDeterminant;
-  const FLOATS pressure = copysign(materials[2 * group + 1] * (1.0f / 6.0f), restDeterminant) * -ratio;
+  const FLOATS pressure = copysign(materials[2 * packet + 1] * (1.0f / 6.0f), restDeterminant) * -ratio;
   Vectors f1 = Times(area1, pressure);
   Vectors f2 = Times(area2, pressure);
   Vectors f3 = Times(area3, pressure);
@@ -194,8 +194,8 @@ __kernel void ComputeForces(__global const INTS* tetrahedra, __global const FLOA
   f2 = Plus(f2, spring);
   f3 = Minus(f3, spring);
 
-  StoreForce(f0, forces + 12 * group);
-  StoreForce(f1, forces + 12 * group + 3);
-  StoreForce(f2, forces + 12 * group + 6);
-  StoreForce(f3, forces + 12 * group + 9);
+  StoreForce(f0, forces + 12 * packet);
+  StoreForce(f1, forces + 12 * packet + 3);
+  StoreForce(f2, forces + 12 * packet + 6);
+  StoreForce(f3, forces + 12 * packet + 9);
 }

@@ -56,10 +56,10 @@ SpringStiffness GetSpringStiffness(
 MassSpringNetwork::MassSpringNetwork(
   Watch& watch, const ElasticBody& body, int lanes, double cubeEdge)
   : Lanes(lanes)
-  , NumberOfGroups((body.Tetrahedra.size() + static_cast<std::size_t>(lanes) - 1) /
+  , NumberOfPackets((body.Tetrahedra.size() + static_cast<std::size_t>(lanes) - 1) /
       static_cast<std::size_t>(lanes))
-  , Tetrahedra(this->NumberOfGroups * 4 * static_cast<std::size_t>(lanes), 0)
-  , Materials(this->NumberOfGroups * 2 * static_cast<std::size_t>(lanes), 0.0F)
+  , Tetrahedra(this->NumberOfPackets * 4 * static_cast<std::size_t>(lanes), 0)
+  , Materials(this->NumberOfPackets * 2 * static_cast<std::size_t>(lanes), 0.0F)
   , RestPoints(body.Points.size() * 3)
   , Mobilities(body.Points.size(), 0.0F)
   , StableTimeStep(FindStableTimeStep(body, cubeEdge))
@@ -99,13 +99,13 @@ MassSpringNetwork::MassSpringNetwork(
       {
         const SpringStiffness stiffness =
           GetSpringStiffness(body.GetMaterial(t), volumes[t], cubeEdge);
-        const std::size_t group = t / width;
+        const std::size_t packet = t / width;
         const std::size_t lane = t % width;
-        this->Materials[group * 2 * width + lane] = stiffness.Edge;
-        this->Materials[(group * 2 + 1) * width + lane] = stiffness.Volume;
+        this->Materials[packet * 2 * width + lane] = stiffness.Edge;
+        this->Materials[(packet * 2 + 1) * width + lane] = stiffness.Volume;
         for (std::size_t i = 0; i < 4; ++i)
         {
-          this->Tetrahedra[(group * 4 + i) * width + lane] = body.Tetrahedra[t][i] * 3;
+          this->Tetrahedra[(packet * 4 + i) * width + lane] = body.Tetrahedra[t][i] * 3;
         }
       }
     });

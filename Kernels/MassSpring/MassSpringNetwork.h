@@ -31,15 +31,15 @@ ElasticMaterial GetSpringMaterial(const ElasticMaterial& material);
 SpringStiffness GetSpringStiffness(
   const ElasticMaterial& material, double restVolume, double cubeEdge);
 
-/// A body as the kernels have it. Tetrahedra lie in groups of so many lanes, the last one filled up
-/// with tetrahedra that no node knows; see MassSpringForces.cl and MassSpringMotion.cl.
+/// A body as the kernels have it. Tetrahedra lie in packets of so many lanes, the last one filled
+/// up with tetrahedra that no node knows; see MassSpringForces.cl and MassSpringMotion.cl.
 struct MassSpringNetwork
 {
   /// cubeEdge: see FindCubeEdge.
   MassSpringNetwork(Watch& watch, const ElasticBody& body, int lanes, double cubeEdge);
 
   int Lanes;
-  std::size_t NumberOfGroups;
+  std::size_t NumberOfPackets;
   std::vector<std::int32_t> Tetrahedra; // nodes, times 3
   std::vector<float> Materials;
   std::vector<float> RestPoints; // from the middle of the body

@@ -49,7 +49,7 @@ MassSpringState::MassSpringState(
   WorkDevice& device, const MassSpringNetwork& network, std::size_t workGroupSize)
   : Device(device)
   , NumberOfNodes(network.Masses.size())
-  , NumberOfGroups(network.NumberOfGroups)
+  , NumberOfPackets(network.NumberOfPackets)
   , WorkGroupSize(workGroupSize ? workGroupSize : ItemsOfGroup)
 {
   OpenCLContext& context = device.GetContext();
@@ -75,14 +75,14 @@ MassSpringState::MassSpringState(
   this->HasDiverged = this->Fill(&none, sizeof(none));
   this->Inverted = this->Fill(&none, sizeof(none));
   Reserve(context, this->Forces,
-    this->NumberOfGroups * 12 * static_cast<std::size_t>(network.Lanes) * sizeof(float));
+    this->NumberOfPackets * 12 * static_cast<std::size_t>(network.Lanes) * sizeof(float));
   const auto nodes = static_cast<cl_uint>(this->NumberOfNodes);
   this->ComputeForcesKernel =
     MakeKernel(this->Program, "ComputeForces", this->Tetrahedra, this->Materials, this->RestPoints,
-      this->Displacements, this->Forces, static_cast<cl_uint>(this->NumberOfGroups));
+      this->Displacements, this->Forces, static_cast<cl_uint>(this->NumberOfPackets));
   this->CountInvertedKernel =
     MakeKernel(this->Program, "CountInverted", this->Tetrahedra, this->RestPoints,
-      this->Displacements, this->Inverted, static_cast<cl_uint>(this->NumberOfGroups));
+      this->Displacements, this->Inverted, static_cast<cl_uint>(this->NumberOfPackets));
   this->AddForcesKernel = MakeKernel(
     this->Program, "AddForces", this->Begins, this->Places, this->Forces, this->Sums, nodes);
   // What is set later stands for itself for now.
@@ -172,7 +172,7 @@ void MassSpringState::Launch(const cl::Kernel& kernel, std::size_t items)
 
 void MassSpringState::EnqueueForces()
 {
-  this->Launch(this->ComputeForcesKernel, this->NumberOfGroups);
+  this->Launch(this->ComputeForcesKernel, this->NumberOfPackets);
 }
 
 std::vector<float> MassSpringState::ComputeForces()
@@ -214,7 +214,7 @@ std::int64_t MassSpringState::CountInverted()
 {
   cl_int count = 0;
   this->Write(this->Inverted, &count, sizeof(count));
-  this->Launch(this->CountInvertedKernel, this->NumberOfGroups);
+  this->Launch(this->CountInvertedKernel, this->NumberOfPackets);
   this->Device.GetQueue().enqueueReadBuffer(this->Inverted, CL_TRUE, 0, sizeof(count), &count);
   return count;
 }

@@ -78,7 +78,7 @@ private:
 
   WorkDevice& Device;
   std::size_t NumberOfNodes;
-  std::size_t NumberOfGroups;
+  std::size_t NumberOfPackets;
   std::size_t WorkGroupSize;
   cl::Program Program;
   cl::Kernel ComputeForcesKernel, AddForcesKernel, MoveNodesKernel, MoveHandlesKernel,

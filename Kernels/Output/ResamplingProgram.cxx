@@ -119,15 +119,15 @@ ProgramText GetFormText(const OpenCLContext& context, const std::vector<VolumeAr
   {
     case ResamplingForm::Lanes:
       return ProgramText(MakeLanePreamble(context, arrays, variant)) + LaneVectors_cl +
-        GroupVertices_cl + RowDisplacements_cl + BrickMapping_cl + GroupValues_cl +
-        GroupSamples_cl + GroupCoverage_cl + GroupCandidates_cl + GroupWeights_cl + GroupWalk_cl +
-        GroupResampling_cl + BrickResampling_cl;
+        PacketVertices_cl + RowDisplacements_cl + BrickMapping_cl + PacketValues_cl +
+        PacketSamples_cl + PacketCoverage_cl + PacketCandidates_cl + PacketWeights_cl +
+        PacketWalk_cl + PacketResampling_cl + BrickResampling_cl;
     case ResamplingForm::Columns:
     case ResamplingForm::DeferredInt32:
     case ResamplingForm::DeferredInt64:
       return ProgramText(MakeLanePreamble(context, arrays, variant)) + LaneVectors_cl +
-        GroupVertices_cl + GroupValues_cl + GroupCoverage_cl + GroupCandidates_cl +
-        GroupWeights_cl + GroupWalk_cl + ColumnCells_cl +
+        PacketVertices_cl + PacketValues_cl + PacketCoverage_cl + PacketCandidates_cl +
+        PacketWeights_cl + PacketWalk_cl + ColumnCells_cl +
         (variant.Form == ResamplingForm::DeferredInt64 ? DeferredResampling_cl
                                                        : ColumnResampling_cl);
     case ResamplingForm::LargeCells:

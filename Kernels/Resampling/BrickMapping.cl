@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The rows of vertices that ResampleBricks (BrickResampling.cl) works on: finds the positions of a row and puts
-// them into memory (GroupVertices.cl), with the values of the arrays.
+// them into memory (PacketVertices.cl), with the values of the arrays.
 //
 // Vertices come sixteen at a time, with the operations of PositionOf (DeformationMapping.cl) in the same order;
 // where one of these is missing, one at a time. The last ones of a row come with some before them, which then

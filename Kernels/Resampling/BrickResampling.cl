@@ -13,16 +13,16 @@
 // the other, until the last lane has none left.
 //
 // Data: links 16 bytes a voxel (or runs, or a field), state 1 byte, the arrays in their own types; rows of
-// vertices as BrickMapping.cl has them. It comes after GroupResampling.cl.
+// vertices as BrickMapping.cl has them. It comes after PacketResampling.cl.
 //
 // What the host puts in front of this text, besides that of Resampling.cl:
-//   ROWS_ARE_GLOBAL      0 or 1: what ROW_MEMORY is (GroupVertices.cl)
+//   ROWS_ARE_GLOBAL      0 or 1: what ROW_MEMORY is (PacketVertices.cl)
 
-// Leaves the cells of a group that have a value which sums of products do not give back to ResampleCell: these only. The
+// Leaves the cells of a packet that have a value which sums of products do not give back to ResampleCell: these only. The
 // flags of rows tell of many vertices at once, and of which depends on where what is mapped of a row begins and ends.
-static SELDOM void LeaveSpecials(GroupCandidates* c)
+static SELDOM void LeaveSpecials(PacketCandidates* c)
 {
-  const Group* const group = &c->Cells;
+  const Packet* const packet = &c->Cells;
   INTS special = 0;
 #define FIND_SPECIALS(index, TYPE, BITS, SLOT)                                                     \
   for (int v = 0; BITS == 32 && v < 8; ++v)                                                        \
@@ -36,9 +36,9 @@ static SELDOM void LeaveSpecials(GroupCandidates* c)
   c->Some &= others;
 }
 
-// A group of a row whose cells from beginX to endX are wanted. special: whether such a value may be among those of
-// the group, or near it.
-static __attribute__((always_inline)) void ResampleCells(GroupCandidates* c, int special,
+// A packet of a row whose cells from beginX to endX are wanted. special: whether such a value may be among those of
+// the packet, or near it.
+static __attribute__((always_inline)) void ResampleCells(PacketCandidates* c, int special,
   int beginX, int endX, const SamplingMesh* mesh, Output* output, Found* found,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
@@ -79,13 +79,13 @@ static __attribute__((always_inline)) void ResampleCells(GroupCandidates* c, int
   }
 }
 
-// The groups of a row of cells from place begin on up to one that begins at end. beginX, endX: its cells.
+// The packets of a row of cells from place begin on up to one that begins at end. beginX, endX: its cells.
 // specials: as RowFlags. outputs: of the spans of the brick.
 static void ResampleRow(const RowOfCells* row, int begin, int end, int beginX, int endX,
   uint specials, const SamplingMesh* mesh, Output* outputs, Found* found,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
-  GroupCandidates candidates[2][2]; // of a place and the next one
+  PacketCandidates candidates[2][2]; // of a place and the next one
   Bounds even;
   BoundQuads(row->Rows, begin, &even);
   FindPairCandidates(row, begin, &even, mesh, OUTPUT_OF_SPAN(outputs, begin), candidates[0],
@@ -93,8 +93,8 @@ static void ResampleRow(const RowOfCells* row, int begin, int end, int beginX, i
   for (int k = begin, place = 0; k < end; k += LANES, place ^= 1)
   {
     Output* const output = OUTPUT_OF_SPAN(outputs, k);
-    const int special = (specials & GROUP_FLAGS(k)) != 0;
-    GroupCandidates* const here = candidates[place];
+    const int special = (specials & PACKET_FLAGS(k)) != 0;
+    PacketCandidates* const here = candidates[place];
     FetchOutput(here + 1, output ARRAY_ARGUMENTS);
     ResampleCells(here, special, beginX, endX, mesh, output, found, p ARRAY_ARGUMENTS);
     const int next = k + LANES;

@@ -7,7 +7,7 @@
 //   HAS_COLUMN_KERNEL  1 for ResampleColumns and ResampleDeferredInt32, 0 for ResampleDeferredInt64
 //   PASS_IS_DIRECT     1 where the pass of the first two is known to be the direct one, which costs fewer registers
 //
-// Data: as BrickResampling.cl. It comes after GroupWalk.cl. rows: ROW floats for each row of three planes, or of two in
+// Data: as BrickResampling.cl. It comes after PacketWalk.cl. rows: ROW floats for each row of three planes, or of two in
 // the kernels for deferred cells. deferred: the number of cells for ResampleDeferredInt64, and of those for
 // ResampleDeferredInt32; then room for all cells of the launch. The former fill it from its begin, the latter from its
 // end.
@@ -23,7 +23,7 @@
 // cell in the brick, and above that the step of the exactness chain that comes next.
 #define CELLS_OF_BRICK (DEFORMVOLUME_BRICK_X * DEFORMVOLUME_BRICK_Y * DEFORMVOLUME_BRICK_Z)
 #define DEFERRED_BITS 30
-#define DEFERRED_FLOATS 0        // the cell is resampled as a group is
+#define DEFERRED_FLOATS 0        // the cell is resampled as a packet is
 #define DEFERRED_INT32 1         // it has been, but for samples that floats do not decide: these, by integers of 32 bits;
                                  // then nothing: ResampleDeferredInt64 never gets this
 #define DEFERRED_SAMPLES_INT64 2 // such samples, by ResampleSamples
@@ -64,7 +64,7 @@ static uint MapVertex(const SamplingMesh* mesh, int x, int y, int z, ROW_MEMORY 
   return flags;
 }
 
-static __attribute__((always_inline)) void BoundCell(const Group* group, Bounds* b)
+static __attribute__((always_inline)) void BoundCell(const Packet* packet, Bounds* b)
 {
   LOAD_VERTICES
 #define BOUND_CELL(C)                                                                              \
@@ -78,11 +78,11 @@ static __attribute__((always_inline)) void BoundCell(const Group* group, Bounds*
 }
 
 // A sample that the cell owns.
-static __attribute__((always_inline)) void StoreSample(const Group* group, uint place, int inverted,
+static __attribute__((always_inline)) void StoreSample(const Packet* packet, uint place, int inverted,
   const SampleWeights* weights, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   if (p->Pass != DEFORMVOLUME_PASS_DIRECT &&
-    !TakesPlace(output, place, MakeKey(group->X, group->Y, group->Z, inverted, p), p))
+    !TakesPlace(output, place, MakeKey(packet->X, packet->Y, packet->Z, inverted, p), p))
   {
     return;
   }
@@ -94,20 +94,20 @@ static __attribute__((always_inline)) void StoreSample(const Group* group, uint 
   }
   LANE_ARRAYS(STORE_COLUMN_VALUE)
 #if HAS_OTHER_ARRAYS
-  StoreOtherArrays(group, 0, place, p ARRAY_ARGUMENTS);
+  StoreOtherArrays(packet, 0, place, p ARRAY_ARGUMENTS);
 #endif
 }
 
 // What a weight has to exceed for a sample to be inside. Boxes take all their candidates, whatever the second smallest
 // weight is, from which that is told.
-static float DecisiveWeight(const GroupCandidates* c, const GroupFrame* frame)
+static float DecisiveWeight(const PacketCandidates* c, const PacketFrame* frame)
 {
   return c->HasBoxes && c->Box ? -INFINITY : frame->Bound;
 }
 
 // The weights of a sample. Returns whether the cell holds it, as far as floats decide that.
-static __attribute__((always_inline)) uint WeighCandidate(const GroupCandidates* c,
-  const GroupFrame* frame, const GroupScales* scales, const Walk* at, SampleWeights* weights,
+static __attribute__((always_inline)) uint WeighCandidate(const PacketCandidates* c,
+  const PacketFrame* frame, const PacketScales* scales, const Walk* at, SampleWeights* weights,
   uint* undecidedByFloats)
 {
   WeighSamples(frame, scales, at->X, at->Y, at->Z, weights);
@@ -115,9 +115,9 @@ static __attribute__((always_inline)) uint WeighCandidate(const GroupCandidates*
 }
 
 // Whether a box beside what is missing has its samples on vertices decided by DecideOnVertices: where floats do not decide
-// others either, integers decide all of them, as they do for groups (GroupResampling.cl).
-static int IsDecidedOnVertices(const GroupCandidates* c, const GroupFrame* frame,
-  const GroupScales* scales, const KernelParameters* p)
+// others either, integers decide all of them, as they do for packets (PacketResampling.cl).
+static int IsDecidedOnVertices(const PacketCandidates* c, const PacketFrame* frame,
+  const PacketScales* scales, const KernelParameters* p)
 {
   int decided = c->HasBeside && c->Beside;
   Walk at;
@@ -135,19 +135,19 @@ static int IsDecidedOnVertices(const GroupCandidates* c, const GroupFrame* frame
 
 // The samples of a cell whose frame is nice. mesh, isComplete, onlyUndecidedByFloats: as for ResampleColumnCell. Returns the
 // next step: CELL_DONE or DEFERRED_...
-static __attribute__((always_inline)) int TakeSamples(const GroupCandidates* c,
-  const GroupFrame* frame, const SamplingMesh* mesh, int isComplete, int onlyUndecidedByFloats,
+static __attribute__((always_inline)) int TakeSamples(const PacketCandidates* c,
+  const PacketFrame* frame, const SamplingMesh* mesh, int isComplete, int onlyUndecidedByFloats,
   Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
-  const Group* const group = &c->Cells;
+  const Packet* const packet = &c->Cells;
   const int box = c->HasBoxes && c->Box;
   const int isSmall = c->Extent < MAXIMUM_EXACT_EXTENT; // integers of 32 bits can decide who owns a sample
-  GroupState state;
-  if (isComplete && group->Border)
+  PacketState state;
+  if (isComplete && packet->Border)
   {
-    StatesOfGroup(mesh, group->X, group->Y, group->Z, &state, p);
+    StatesOfPacket(mesh, packet->X, packet->Y, packet->Z, &state, p);
   }
-  GroupScales scales;
+  PacketScales scales;
   FindScales(frame, &scales);
   Walk at;
   BeginWalk(c, frame, &at, p);
@@ -168,7 +168,7 @@ static __attribute__((always_inline)) int TakeSamples(const GroupCandidates* c,
     if (beside && IsOnVertex(frame, &at))
     {
       undecidedByFloats = 0;
-      held = DecideOnVertices(group, 1, VerticesAt(frame, &at), &c->State, at.X + frame->X0,
+      held = DecideOnVertices(packet, 1, VerticesAt(frame, &at), &c->State, at.X + frame->X0,
         at.Y + frame->Y0, at.Z + frame->Z0, mesh, output, p);
       onVertex = 1;
     }
@@ -178,7 +178,7 @@ static __attribute__((always_inline)) int TakeSamples(const GroupCandidates* c,
       const float sample[3] = { at.X, at.Y, at.Z };
       int isVertex;
       held = DecideByIntegers(
-        group, 1, sample, frame->Inverted, &state, &isVertex, &needsInt64, output, p);
+        packet, 1, sample, frame->Inverted, &state, &isVertex, &needsInt64, output, p);
       onVertex |= isVertex;
     }
     else
@@ -196,13 +196,13 @@ static __attribute__((always_inline)) int TakeSamples(const GroupCandidates* c,
       {
         SnapWeights(1, frame, &weights);
       }
-      StoreSample(group, at.Place, frame->Inverted, &weights, output, p ARRAY_ARGUMENTS);
+      StoreSample(packet, at.Place, frame->Inverted, &weights, output, p ARRAY_ARGUMENTS);
     }
     Advance(&at);
   }
   // What is looked at again as a whole must not count twice. Cells too large for these integers leave these samples only:
   // they have many, and floats decide nearly all of them.
-  if (isUndecided && !isComplete && group->Border)
+  if (isUndecided && !isComplete && packet->Border)
   {
     return DEFERRED_FLOATS;
   }
@@ -219,13 +219,13 @@ static __attribute__((always_inline)) int TakeSamples(const GroupCandidates* c,
 // isComplete: whether integers decide what floats do not, at once, and cells on the border are told from others; else
 // they must be whole. onlyUndecidedByFloats: of all samples those only. most: of its candidates. Returns the next step:
 // CELL_DONE or DEFERRED_...
-static __attribute__((always_inline)) int ResampleColumnCell(GroupCandidates* c, int most,
-  const SamplingMesh* mesh, GroupFrame* frame, int isComplete, int onlyUndecidedByFloats, Output* output,
+static __attribute__((always_inline)) int ResampleColumnCell(PacketCandidates* c, int most,
+  const SamplingMesh* mesh, PacketFrame* frame, int isComplete, int onlyUndecidedByFloats, Output* output,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   Bounds bounds;
   BoundCell(&c->Cells, &bounds);
-  FindGroupCandidates(&bounds, mesh, isComplete, output, c, p ARRAY_ARGUMENTS);
+  FindPacketCandidates(&bounds, mesh, isComplete, output, c, p ARRAY_ARGUMENTS);
   if (!c->There || c->Skip)
   {
     return CELL_DONE;
@@ -235,7 +235,7 @@ static __attribute__((always_inline)) int ResampleColumnCell(GroupCandidates* c,
   {
     return DEFERRED_FLOATS;
   }
-  MakeGroupFrame(c, c->Fit, frame);
+  MakePacketFrame(c, c->Fit, frame);
   if (!frame->Nice)
   {
     return DEFERRED_CELL_INT64;
@@ -250,8 +250,8 @@ static __attribute__((always_inline)) int ResampleColumnCell(GroupCandidates* c,
 }
 
 // A cell whose vertices lie in rows. row: the place of its vertices in the row of even y and z.
-static __attribute__((always_inline)) void MakeCellGroup(LocalRow row, int oddY, int oddZ, int side,
-  int x, int y, int z, uint flags, Group* cell, const KernelParameters* p)
+static __attribute__((always_inline)) void MakeCellPacket(LocalRow row, int oddY, int oddZ, int side,
+  int x, int y, int z, uint flags, Packet* cell, const KernelParameters* p)
 {
   cell->Row = row;
   cell->OddY = oddY;
@@ -265,7 +265,7 @@ static __attribute__((always_inline)) void MakeCellGroup(LocalRow row, int oddY,
   cell->Apart = (flags & FLAG_APART) != 0;
 }
 
-// Deferred cells have their vertices in places of the rows that are a work-item's own. Groups have at most as many
+// Deferred cells have their vertices in places of the rows that are a work-item's own. Work-groups have at most as many
 // items as there are such places, two in each plane.
 static ROW_MEMORY float* PlaceOfItem(ROW_MEMORY float* rows)
 {
@@ -274,7 +274,7 @@ static ROW_MEMORY float* PlaceOfItem(ROW_MEMORY float* rows)
 }
 
 static void MapCell(const SamplingMesh* mesh, int x, int y, int z, ROW_MEMORY float* place,
-  Group* cell, const KernelParameters* p ARRAY_PARAMETERS)
+  Packet* cell, const KernelParameters* p ARRAY_PARAMETERS)
 {
   const int mirror = Mirror(x, y, z, p);
   uint flags = 0;
@@ -289,7 +289,7 @@ static void MapCell(const SamplingMesh* mesh, int x, int y, int z, ROW_MEMORY fl
     flags |= MapVertex(mesh, x + (o & 1), y + (o >> 2), z + (o >> 1 & 1),
       place + (v >> 1 & 1) * (ROWS * ROW) + (v >> 2) * ROW + (v & 1 ? ODD : 0), p ARRAY_ARGUMENTS);
   }
-  MakeCellGroup(place, ROW, ROWS * ROW, 0, x, y, z, flags, cell, p);
+  MakeCellPacket(place, ROW, ROWS * ROW, 0, x, y, z, flags, cell, p);
 }
 
 static uint MakeEntry(uint cell, int what)

@@ -144,11 +144,11 @@ __kernel void ResampleColumns(GIVEN_PARAMETERS, __global const uint* bricks, __g
       int step = SortCell(any, f[0]);
       if (step == SORT_BY_FLOATS)
       {
-        GroupCandidates c;
-        MakeCellGroup(rows + (even * ROWS + inY + (inY & 1)) * ROW + (inX >> 1),
+        PacketCandidates c;
+        MakeCellPacket(rows + (even * ROWS + inY + (inY & 1)) * ROW + (inX >> 1),
           inY & 1 ? -ROW : ROW, toOdd, inX & 1, first.x + inX, first.y + inY, z - 1, any, &c.Cells,
           &p);
-        GroupFrame frame;
+        PacketFrame frame;
         step = ResampleColumnCell(
           &c, MOST_CANDIDATES_IN_COLUMN, 0, &frame, 0, 0, &output, &p ARRAY_ARGUMENTS);
       }
@@ -183,10 +183,10 @@ __kernel void ResampleDeferredInt32(GIVEN_PARAMETERS, __global const uint* brick
   {
     const uint entry = ENTRY_INT32(deferred, i, &p);
     const int3 cell = CellOfEntry(entry, bricks, &p);
-    GroupCandidates c;
+    PacketCandidates c;
     MapCell(&mesh, cell.x, cell.y, cell.z, PlaceOfItem(rows), &c.Cells, &p ARRAY_ARGUMENTS);
     Output output = GIVEN_OUTPUT;
-    GroupFrame frame;
+    PacketFrame frame;
     const int step = ResampleColumnCell(&c, MAXIMUM_CANDIDATES, 0, &frame, 1,
       entry >> DEFERRED_BITS == DEFERRED_INT32, &output, &p ARRAY_ARGUMENTS);
     ENTRY_INT32(deferred, i, &p) =

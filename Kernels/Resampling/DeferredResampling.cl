@@ -3,18 +3,18 @@
 // divides, or of which tetrahedra may be missing.
 
 // The samples of a cell that floats do not decide.
-static void ResampleUndecided(const GroupCandidates* c, const GroupFrame* frame,
+static void ResampleUndecided(const PacketCandidates* c, const PacketFrame* frame,
   const SamplingMesh* mesh, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
-  const Group* const group = &c->Cells;
+  const Packet* const packet = &c->Cells;
   const Candidates all = AllCandidates(p);
   Neighbours near;
-  const SamplingMesh keeping = KeepNeighbours(mesh, group->X, group->Y, group->Z, &near);
+  const SamplingMesh keeping = KeepNeighbours(mesh, packet->X, packet->Y, packet->Z, &near);
   Cell cell;
   int isMade = -1; // -1: not known
   // It is counted already whether the cell is inverted.
   const uint inverted = output->Inverted;
-  GroupScales scales;
+  PacketScales scales;
   FindScales(frame, &scales);
   Walk at;
   BeginWalk(c, frame, &at, p);
@@ -36,7 +36,7 @@ static void ResampleUndecided(const GroupCandidates* c, const GroupFrame* frame,
     if (isMade < 0 || DEFORMVOLUME_IS_CLOSED(p->Pass))
     {
       // No whole cell is divided: there are no views of it.
-      isMade = MakeCell(&keeping, group->X, group->Y, group->Z,
+      isMade = MakeCell(&keeping, packet->X, packet->Y, packet->Z,
                  DEFORMVOLUME_IS_CLOSED(p->Pass) ? &only : &all, &cell, 0, output, p) &&
         !IsPutOff(&cell, &only, output, p);
     }
@@ -54,8 +54,8 @@ static void ResampleDeferredCell(const SamplingMesh* mesh, int x, int y, int z, 
 {
   if (what != DEFERRED_CELL_INT64)
   {
-    GroupCandidates c;
-    GroupFrame frame;
+    PacketCandidates c;
+    PacketFrame frame;
     MapCell(mesh, x, y, z, place, &c.Cells, p ARRAY_ARGUMENTS);
     what = ResampleColumnCell(
       &c, MAXIMUM_CANDIDATES, mesh, &frame, 1, what != DEFERRED_FLOATS, output, p ARRAY_ARGUMENTS);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A group of cells: LANES of a row, of equal parity (BrickResampling.cl, ColumnResampling.cl). Where its vertices lie.
+// A packet of cells: LANES of a row, of equal parity (BrickResampling.cl, ColumnResampling.cl). Where its vertices lie.
 //
 // Data: in ROW_MEMORY, a row of vertices: for even, then for odd ones the position in output voxels relative to the
 // first output voxel (x, y, z; float, exact multiples of 1/256), then the values of the arrays that are
@@ -62,35 +62,35 @@ typedef struct
   int Odd;
   int Border;
   int Apart;
-} Group;
+} Packet;
 
 #if LANES > 1
-// The flags of the vertices of a group's cells.
-#define GROUP_FLAGS(k) (((2u << (2 * LANES / 8)) - 1) << ((k) >> 2))
+// The flags of the vertices of a packet's cells.
+#define PACKET_FLAGS(k) (((2u << (2 * LANES / 8)) - 1) << ((k) >> 2))
 
-// Where the groups at place k are counted.
+// Where the packets at place k are counted.
 #define OUTPUT_OF_SPAN(outputs, k) ((outputs) + 2 * (k) / DEFORMVOLUME_SPAN)
 
-static __attribute__((always_inline)) void MakeGroup(
-  const RowOfCells* row, int k, int side, Group* group)
+static __attribute__((always_inline)) void MakePacket(
+  const RowOfCells* row, int k, int side, Packet* packet)
 {
-  const Group made = { { row->Rows[0] + k, row->Rows[1] + k, row->Rows[2] + k, row->Rows[3] + k },
+  const Packet made = { { row->Rows[0] + k, row->Rows[1] + k, row->Rows[2] + k, row->Rows[3] + k },
     side, row->X + 2 * k + side, row->Y, row->Z, row->Odd ^ side,
-    (row->Borders & GROUP_FLAGS(k)) != 0, (row->Apart & GROUP_FLAGS(k)) != 0 };
-  *group = made;
+    (row->Borders & PACKET_FLAGS(k)) != 0, (row->Apart & PACKET_FLAGS(k)) != 0 };
+  *packet = made;
 }
 #endif
 
-// The row of a vertex of a group's cells, and the place of that in it.
+// The row of a vertex of a packet's cells, and the place of that in it.
 #if LANES > 1
-#define ROW_OF(group, v) ((group)->Rows[(v) >> 1])
+#define ROW_OF(packet, v) ((packet)->Rows[(v) >> 1])
 #else
-#define ROW_OF(group, v)                                                                           \
-  ((group)->Row + ((v) >> 1 & 1) * (group)->OddZ + ((v) >> 2) * (group)->OddY)
+#define ROW_OF(packet, v)                                                                           \
+  ((packet)->Row + ((v) >> 1 & 1) * (packet)->OddZ + ((v) >> 2) * (packet)->OddY)
 #endif
-#define PLACE_OF(group, v) (ROW_OF(group, v) + ((v)&1 ? ODD : (group)->Side))
+#define PLACE_OF(packet, v) (ROW_OF(packet, v) + ((v)&1 ? ODD : (packet)->Side))
 
-#define VERTEX(v, slot) LOAD(PLACE_OF(group, v) + (slot)*HALF_ROW)
+#define VERTEX(v, slot) LOAD(PLACE_OF(packet, v) + (slot)*HALF_ROW)
 #define LOAD_VERTEX(v)                                                                             \
   const FLOATS X##v = VERTEX(v, 0), Y##v = VERTEX(v, 1), Z##v = VERTEX(v, 2);
 #define LOAD_VERTICES                                                                              \

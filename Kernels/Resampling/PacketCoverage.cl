@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fill rule of CellCoverage.cl for a group of cells side by side, in integers of 32 bits: for the samples that
+// The fill rule of CellCoverage.cl for a packet of cells side by side, in integers of 32 bits: for the samples that
 // floats do not decide (BrickResampling.cl).
 
 #define MAXIMUM_EXACT_EXTENT 3.99f // voxels: edge functions of larger cells need more than 32 bits
 
-// What lies round the cells of a group on the border of the mesh.
+// What lies round the cells of a packet on the border of the mesh.
 typedef struct
 {
   INTS Whole;    // all five tetrahedra are active and have positions
   INTS Interior; // as CellState
   INTS Regular;
-} GroupState;
+} PacketState;
 
-// The states of the vertices of a row that a group's cells have: of the lower x in the lowest byte, of the upper one in
+// The states of the vertices of a row that a packet's cells have: of the lower x in the lowest byte, of the upper one in
 // the next.
 static INTS LoadStates(__global const uchar* row)
 {
@@ -27,7 +27,7 @@ static INTS LoadStates(__global const uchar* row)
 #endif
 }
 
-// Where the states of a group's vertices begin; null where some would lie beyond all states. Those of cells beyond the
+// Where the states of a packet's vertices begin; null where some would lie beyond all states. Those of cells beyond the
 // volume are others' then.
 static __global const uchar* BeginStates(const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
 {
@@ -40,7 +40,7 @@ static __global const uchar* BeginStates(const SamplingMesh* mesh, int x, int y,
 }
 
 // Adds the vertices of a row to masks as CellState has them. o: the number of the lower one where nothing is mirrored.
-static void AddStates(INTS row, int o, int mirror, GroupState* states)
+static void AddStates(INTS row, int o, int mirror, PacketState* states)
 {
   const int low = 1 << (o ^ mirror);
   const int high = 1 << ((o | 1) ^ mirror);
@@ -52,7 +52,7 @@ static void AddStates(INTS row, int o, int mirror, GroupState* states)
 
 // The same vertex by vertex: what lies beyond the states must not be read.
 static void StatesOfLanes(
-  const SamplingMesh* mesh, int x, int y, int z, INTS inVolume, GroupState* states, const KernelParameters* p)
+  const SamplingMesh* mesh, int x, int y, int z, INTS inVolume, PacketState* states, const KernelParameters* p)
 {
   Lanes whole, interior, regular;
   whole.Vector = inVolume;
@@ -74,8 +74,8 @@ static void StatesOfLanes(
   states->Regular = regular.Vector;
 }
 
-static SELDOM void StatesOfGroup(const SamplingMesh* mesh, int x, int y, int z,
-  GroupState* states, const KernelParameters* p)
+static SELDOM void StatesOfPacket(const SamplingMesh* mesh, int x, int y, int z,
+  PacketState* states, const KernelParameters* p)
 {
   const INTS cellX = x + 2 * LANE_INDEX;
   const INTS inVolume = (cellX >= 0) & (cellX < p->Size[0] - 1);
@@ -138,7 +138,7 @@ static uint FindDividedLanes(
   return divided;
 }
 
-// The cells of a group, as bits, that a smooth cut may divide (CutCells.cl): one that it crosses, with a vertex that lies
+// The cells of a packet, as bits, that a smooth cut may divide (CutCells.cl): one that it crosses, with a vertex that lies
 // elsewhere as seen from the other side.
 static SELDOM uint FindDivided(
   const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
@@ -163,7 +163,7 @@ static SELDOM uint FindDivided(
 // products cost less. sample: in voxels relative to vertex 0 of the cell. inverted: lanes whose tetrahedra are.
 // simplex: the vertices of the simplex that the sample lies in, 0 where that is not in the cell.
 static SELDOM INTS HoldSample(
-  const Group* group, const FLOATS* sample, int odd, INTS inverted, INTS* simplex)
+  const Packet* packet, const FLOATS* sample, int odd, INTS inverted, INTS* simplex)
 {
 #if LANES > 1
   FLOATS q[8][3];
@@ -274,31 +274,31 @@ static SELDOM void TouchHeld(
 
 // The lanes whose cell owns a simplex on the border of the volume, where all cells are there, as IsOwnerByIndex.
 static __attribute__((always_inline)) INTS OwnByIndex(
-  const Group* group, INTS simplex, int mirror, const KernelParameters* p)
+  const Packet* packet, INTS simplex, int mirror, const KernelParameters* p)
 {
-  const INTS isLastX = group->X + 2 * LANE_INDEX == p->Size[0] - 2;
-  const INTS isLastY = group->Y == p->Size[1] - 2 ? -1 : 0;
-  const INTS isLastZ = group->Z == p->Size[2] - 2 ? -1 : 0;
+  const INTS isLastX = packet->X + 2 * LANE_INDEX == p->Size[0] - 2;
+  const INTS isLastY = packet->Y == p->Size[1] - 2 ? -1 : 0;
+  const INTS isLastZ = packet->Z == p->Size[2] - 2 ? -1 : 0;
   return (((simplex & LOW_SIDE(0, mirror)) != 0) | isLastX) &
     (((simplex & LOW_SIDE(1, mirror)) != 0) | isLastZ) &
     (((simplex & LOW_SIDE(2, mirror)) != 0) | isLastY);
 }
 
-// Returns which cells of undecidedByFloats, as bits, own their sample. state: of the group, where it is on the border of
+// Returns which cells of undecidedByFloats, as bits, own their sample. state: of the packet, where it is on the border of
 // the mesh. onVertex: lanes whose sample is a vertex. needsInt64: cells for ResampleCell are added to it. All else is
 // as for HoldSample.
-static __attribute__((always_inline)) uint DecideByIntegers(const Group* group, uint undecidedByFloats,
-  const FLOATS* sample, INTS inverted, const GroupState* state, INTS* onVertex, uint* needsInt64,
+static __attribute__((always_inline)) uint DecideByIntegers(const Packet* packet, uint undecidedByFloats,
+  const FLOATS* sample, INTS inverted, const PacketState* state, INTS* onVertex, uint* needsInt64,
   Output* output, const KernelParameters* p)
 {
   INTS simplex;
-  INTS held = HoldSample(group, sample, group->Odd, inverted, &simplex);
-  if (group->Border)
+  INTS held = HoldSample(packet, sample, packet->Odd, inverted, &simplex);
+  if (packet->Border)
   {
     // As RoleOf.
     const INTS outer = (simplex != 0) & ((simplex & state->Interior) == 0);
     const INTS regular = (simplex & ~state->Regular) == 0;
-    held = outer ? OwnByIndex(group, simplex, Mirror(group->X, group->Y, group->Z, p), p) & regular
+    held = outer ? OwnByIndex(packet, simplex, Mirror(packet->X, packet->Y, packet->Z, p), p) & regular
                  : held;
     *needsInt64 |= undecidedByFloats & LaneBits(outer & ~regular);
     output->Assumed |= (undecidedByFloats & LaneBits(outer)) != 0;
@@ -348,16 +348,16 @@ static SELDOM int OwnsVertex(
 
 // Returns which of some cells, as bits, own their sample. The cells are as for OwnsVertex. simplex: the vertex that
 // the sample is, as a mask. x, y, z: the sample, in voxels of the output.
-static SELDOM uint DecideOnVertices(const Group* group, uint some, INTS simplex,
-  const GroupState* state, FLOATS x, FLOATS y, FLOATS z, const SamplingMesh* mesh, Output* output,
+static SELDOM uint DecideOnVertices(const Packet* packet, uint some, INTS simplex,
+  const PacketState* state, FLOATS x, FLOATS y, FLOATS z, const SamplingMesh* mesh, Output* output,
   const KernelParameters* p)
 {
-  const int mirror = Mirror(group->X, group->Y, group->Z, p);
+  const int mirror = Mirror(packet->X, packet->Y, packet->Z, p);
   const INTS lowest = simplex == 1 << mirror;
   const INTS outer = (simplex & state->Interior) == 0;
   const INTS regular = (simplex & state->Regular) != 0;
   // The shift +++ leads from its lowest vertex into a cell.
-  uint held = some & LaneBits((outer & regular) ? OwnByIndex(group, simplex, mirror, p) : lowest);
+  uint held = some & LaneBits((outer & regular) ? OwnByIndex(packet, simplex, mirror, p) : lowest);
   output->Assumed |= (some & LaneBits(outer)) != 0;
   uint open = some & LaneBits(outer & ~regular & ~lowest);
   Lanes vertices;
@@ -365,7 +365,7 @@ static SELDOM uint DecideOnVertices(const Group* group, uint some, INTS simplex,
   FOR_EACH_LANE(lane, open)
   {
     const int vertex = 31 - clz((uint)vertices.Lanes[lane]);
-    held |= (uint)OwnsVertex(mesh, group->X + 2 * lane, group->Y, group->Z, vertex, p) << lane;
+    held |= (uint)OwnsVertex(mesh, packet->X + 2 * lane, packet->Y, packet->Z, vertex, p) << lane;
   }
   if (p->Pass == DEFORMVOLUME_PASS_OWNERS)
   {

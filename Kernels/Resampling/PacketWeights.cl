@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The weights of a cell's vertices at a sample, for a group of cells, and which samples these decide
-// (GroupResampling.cl). In floats.
+// The weights of a cell's vertices at a sample, for a packet of cells, and which samples these decide
+// (PacketResampling.cl). In floats.
 //
 // The method. The central tetrahedron has the vertices 0, 3, 5, 6 of the cell; l0, l3, l5, l6 are a
 // sample's barycentric coordinates in it. The corner tetrahedra replace one of them by the vertex
@@ -36,7 +36,7 @@
 // Cells that are flatter are left out: d / D, which weights are off by at most, is 1.5e-3 or 7.4e-3 in others.
 #define MOST_REACH 4.35e-3f
 
-// The central tetrahedra of a group's cells.
+// The central tetrahedra of a packet's cells.
 typedef struct
 {
   // Vertex 0, to which samples are relative, and the opposite one.
@@ -50,12 +50,12 @@ typedef struct
   INTS Inverted; // cells that are mirror images: all their tetrahedra are inverted
   uint Turned;   // the same as bits, of cells that fit only
   uint Nice;     // cells of which floats decide the samples
-} GroupFrame;
+} PacketFrame;
 
-// A group's normals and determinants, as if no cell were inverted.
-static __attribute__((always_inline)) void FindNormals(const GroupCandidates* c, GroupFrame* f)
+// A packet's normals and determinants, as if no cell were inverted.
+static __attribute__((always_inline)) void FindNormals(const PacketCandidates* c, PacketFrame* f)
 {
-  const Group* const group = &c->Cells;
+  const Packet* const packet = &c->Cells;
   LOAD_VERTEX(0)
   LOAD_VERTEX(3)
   LOAD_VERTEX(5)
@@ -72,10 +72,10 @@ static __attribute__((always_inline)) void FindNormals(const GroupCandidates* c,
   f->n##y = fma(a##z, b##x, -(a##x * b##z));                                                       \
   f->n##z = fma(a##x, b##y, -(a##y * b##x));
 #if LANES > 1
-  const int turned = group->Odd;
+  const int turned = packet->Odd;
 #else
   // Every second work-item has an odd cell: a branch would be two ways for all. Signs do where normals are exact.
-  const int turned = group->Odd && c->Extent > EXACT_NORMALS_EXTENT;
+  const int turned = packet->Odd && c->Extent > EXACT_NORMALS_EXTENT;
 #endif
   if (turned)
   {
@@ -89,7 +89,7 @@ static __attribute__((always_inline)) void FindNormals(const GroupCandidates* c,
     NORMAL(N5, e6, e3)
     NORMAL(N6, e3, e5)
 #if LANES == 1
-    const float sign = group->Odd ? -1.0f : 1.0f;
+    const float sign = packet->Odd ? -1.0f : 1.0f;
 #define SIGN(v) f->v *= sign;
     SIGN(N3x) SIGN(N3y) SIGN(N3z) SIGN(N5x) SIGN(N5y) SIGN(N5z) SIGN(N6x) SIGN(N6y) SIGN(N6z)
 #endif
@@ -99,7 +99,7 @@ static __attribute__((always_inline)) void FindNormals(const GroupCandidates* c,
 
 // Coordinates do not tell a cell from its mirror image, all of whose tetrahedra are inverted. Its normals are turned.
 // fit: the cells that count. Lanes without a cell hold anything.
-static __attribute__((always_inline)) void TurnInverted(uint fit, GroupFrame* f)
+static __attribute__((always_inline)) void TurnInverted(uint fit, PacketFrame* f)
 {
   f->Inverted = 0;
   f->Turned = LaneBits(f->Determinant < 0.0f) & fit;
@@ -114,7 +114,7 @@ static __attribute__((always_inline)) void TurnInverted(uint fit, GroupFrame* f)
 }
 
 // The coordinates of the corners' vertices.
-static __attribute__((always_inline)) void FindCoordinates(const Group* group, GroupFrame* f)
+static __attribute__((always_inline)) void FindCoordinates(const Packet* packet, PacketFrame* f)
 {
   LOAD_VERTEX(1)
   LOAD_VERTEX(2)
@@ -141,7 +141,7 @@ static __attribute__((always_inline)) void FindCoordinates(const Group* group, G
 
 // The bounds of the errors, and the cells that are not too bent for these, of those that fit.
 static __attribute__((always_inline)) void BoundErrors(
-  const GroupCandidates* c, uint fit, GroupFrame* f)
+  const PacketCandidates* c, uint fit, PacketFrame* f)
 {
   const FLOATS leastOther = Least(Least(Least(Least(f->B13, f->B15), Least(f->B10, f->B45)),
                                     Least(Least(f->B46, f->B40), Least(f->B23, f->B26))),
@@ -157,8 +157,8 @@ static __attribute__((always_inline)) void BoundErrors(
 }
 
 // fit: the cells that are small and complete, as bits.
-static __attribute__((always_inline)) void MakeGroupFrame(
-  const GroupCandidates* c, uint fit, GroupFrame* frame)
+static __attribute__((always_inline)) void MakePacketFrame(
+  const PacketCandidates* c, uint fit, PacketFrame* frame)
 {
   FindNormals(c, frame);
   TurnInverted(fit, frame);
@@ -171,9 +171,9 @@ typedef struct
 {
   FLOATS Corner1, Corner2, Corner4, Corner7; // 1 / bi of each corner
   FLOATS Central;                            // 1 / D
-} GroupScales;
+} PacketScales;
 
-static __attribute__((always_inline)) void FindScales(const GroupFrame* f, GroupScales* scales)
+static __attribute__((always_inline)) void FindScales(const PacketFrame* f, PacketScales* scales)
 {
   scales->Central = INVERSE(f->Determinant);
   // One division for four.
@@ -187,8 +187,8 @@ static __attribute__((always_inline)) void FindScales(const GroupFrame* f, Group
 }
 
 // The weights at samples. rx, ry, rz: these, relative to vertex 0.
-static __attribute__((always_inline)) void WeighSamples(const GroupFrame* f,
-  const GroupScales* scales, FLOATS rx, FLOATS ry, FLOATS rz, SampleWeights* w)
+static __attribute__((always_inline)) void WeighSamples(const PacketFrame* f,
+  const PacketScales* scales, FLOATS rx, FLOATS ry, FLOATS rz, SampleWeights* w)
 {
   const FLOATS l3 = fma(rx, f->N3x, fma(ry, f->N3y, rz * f->N3z));
   const FLOATS l5 = fma(rx, f->N5x, fma(ry, f->N5y, rz * f->N5z));
@@ -227,7 +227,7 @@ static __attribute__((always_inline)) uint DecideByFloats(
 // Where a vertex lies on a sample its value is taken bit for bit: the weights, which rounding may have touched, are
 // made 0 and 1. All other lanes keep their bits, whatever their neighbours are.
 static __attribute__((always_inline)) void SnapWeights(
-  INTS onVertex, const GroupFrame* f, SampleWeights* w)
+  INTS onVertex, const PacketFrame* f, SampleWeights* w)
 {
   const FLOATS middle = f->Determinant * 0.5f;
 #define SNAP(weight, least)                                                                        \

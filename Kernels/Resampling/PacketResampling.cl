@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The samples that a group of cells holds, with their values (BrickResampling.cl): by floats where the sign of a
-// coordinate is certain (GroupWeights.cl), by integers where it is not (GroupCoverage.cl).
+// The samples that a packet of cells holds, with their values (BrickResampling.cl): by floats where the sign of a
+// coordinate is certain (PacketWeights.cl), by integers where it is not (PacketCoverage.cl).
 //
 // Cells with a sample that floats do not decide are repeated with edge functions in integers of 32 bits, LANES cells at
 // once again (NeedsInt32). Where cells are bent, or what surrounds them is not all there, ResampleCell takes them with
@@ -28,11 +28,11 @@ typedef struct
 // end of an edge along x the shift along x decides, which comes first. Where edges lie along another axis, the face at
 // the end may be bent as seen from there, and the sample is not decided. x, y, z: the samples, in voxels of the output.
 // Returns which cells own theirs, and removes the decided ones from undecidedByFloats.
-static __attribute__((noinline)) uint DecideOnEdges(const Group* group, const GroupFrame* f,
+static __attribute__((noinline)) uint DecideOnEdges(const Packet* packet, const PacketFrame* f,
   const ParallelEdges* edges, FLOATS x, FLOATS y, FLOATS z, uint* undecidedByFloats, INTS* onVertex,
   const KernelParameters* p)
 {
-  const int mirror = Mirror(group->X, group->Y, group->Z, p);
+  const int mirror = Mirror(packet->X, packet->Y, packet->Z, p);
   const INTS lowX = x == Least(f->X0, f->X7), onX = lowX | (x == Most(f->X0, f->X7));
   const INTS lowY = y == Least(f->Y0, f->Y7), onY = lowY | (y == Most(f->Y0, f->Y7));
   const INTS lowZ = z == Least(f->Z0, f->Z7), onZ = lowZ | (z == Most(f->Z0, f->Z7));
@@ -55,7 +55,7 @@ static __attribute__((noinline)) uint DecideOnEdges(const Group* group, const Gr
   return decided & LaneBits(ownsX | ownsY | ownsZ);
 }
 
-// What became of a group's candidates. In a round each lane takes one of its own.
+// What became of a packet's candidates. In a round each lane takes one of its own.
 typedef struct
 {
   uint Count;
@@ -65,17 +65,17 @@ typedef struct
 } Rounds;
 
 // Whether cells inside the mesh have edges of which DecideOnEdges knows, and which.
-static __attribute__((noinline)) int LookForEdges(const Group* group, const GroupFrame* frame,
+static __attribute__((noinline)) int LookForEdges(const Packet* packet, const PacketFrame* frame,
   const SamplingMesh* mesh, ParallelEdges* edges, const KernelParameters* p)
 {
   INTS inside = LanesOf(frame->Nice) & ~frame->Inverted;
-  if (group->Border)
+  if (packet->Border)
   {
-    GroupState state;
-    StatesOfGroup(mesh, group->X, group->Y, group->Z, &state, p);
+    PacketState state;
+    StatesOfPacket(mesh, packet->X, packet->Y, packet->Z, &state, p);
     inside &= state.Interior == 255;
   }
-  FindParallelEdges(group, Mirror(group->X, group->Y, group->Z, p), edges);
+  FindParallelEdges(packet, Mirror(packet->X, packet->Y, packet->Z, p), edges);
   edges->X &= inside;
   edges->Y &= inside;
   edges->Z &= inside;
@@ -83,12 +83,12 @@ static __attribute__((noinline)) int LookForEdges(const Group* group, const Grou
 }
 
 // Takes the candidates of some cells, as bits. hits: of each round the cells that it has found a sample in. All else
-// is as for ResampleGroup.
-static __attribute__((always_inline)) void TakeRounds(const GroupCandidates* c,
-  const GroupFrame* frame, uint some, const GroupState* state, const SamplingMesh* mesh, Output* output,
+// is as for ResamplePacket.
+static __attribute__((always_inline)) void TakeRounds(const PacketCandidates* c,
+  const PacketFrame* frame, uint some, const PacketState* state, const SamplingMesh* mesh, Output* output,
   Found* found, UndecidedSamples* undecidedSamples, ushort* hits, Rounds* rounds, const KernelParameters* p ARRAY_PARAMETERS)
 {
-  const Group* const group = &c->Cells;
+  const Packet* const packet = &c->Cells;
   // Boxes take all their candidates, whatever the second smallest weight is, from which it is told that a sample is
   // inside.
   const int hasBoxes = c->HasBoxes;
@@ -99,7 +99,7 @@ static __attribute__((always_inline)) void TakeRounds(const GroupCandidates* c,
     box = LanesOf(frame->Nice) & c->Box;
     decisive = box ? (FLOATS)(-INFINITY) : frame->Bound;
   }
-  GroupScales scales;
+  PacketScales scales;
   FindScales(frame, &scales);
   Walk at;
   BeginWalk(c, frame, &at, p);
@@ -121,7 +121,7 @@ static __attribute__((always_inline)) void TakeRounds(const GroupCandidates* c,
       {
         undecidedByFloats &= ~decided;
         held = (held & ~decided) |
-          DecideOnVertices(group, decided, VerticesAt(frame, &at), &c->State, at.X + frame->X0,
+          DecideOnVertices(packet, decided, VerticesAt(frame, &at), &c->State, at.X + frame->X0,
             at.Y + frame->Y0, at.Z + frame->Z0, mesh, output, p);
         onVertex = beside;
       }
@@ -130,11 +130,11 @@ static __attribute__((always_inline)) void TakeRounds(const GroupCandidates* c,
     {
       if (hasEdges < 0)
       {
-        hasEdges = LookForEdges(group, frame, mesh, &edges, p);
+        hasEdges = LookForEdges(packet, frame, mesh, &edges, p);
       }
       if (hasEdges)
       {
-        held |= DecideOnEdges(group, frame, &edges, at.X + frame->X0, at.Y + frame->Y0,
+        held |= DecideOnEdges(packet, frame, &edges, at.X + frame->X0, at.Y + frame->Y0,
           at.Z + frame->Z0, &undecidedByFloats, &onVertex, p);
       }
     }
@@ -142,7 +142,7 @@ static __attribute__((always_inline)) void TakeRounds(const GroupCandidates* c,
     {
       const FLOATS sample[3] = { at.X, at.Y, at.Z };
       held |= DecideByIntegers(
-        group, undecidedByFloats, sample, frame->Inverted, state, &onVertex, &rounds->NeedsNextStep, output, p);
+        packet, undecidedByFloats, sample, frame->Inverted, state, &onVertex, &rounds->NeedsNextStep, output, p);
     }
     else if (undecidedByFloats)
     {
@@ -163,7 +163,7 @@ static __attribute__((always_inline)) void TakeRounds(const GroupCandidates* c,
     }
     hits[rounds->Count] = held;
     rounds->Writes += popcount(held);
-    KeepSamples(group, held, at.Place, frame->Inverted, &weights, found, &kept, output,
+    KeepSamples(packet, held, at.Place, frame->Inverted, &weights, found, &kept, output,
       p ARRAY_ARGUMENTS);
     some &= LaneBits(c->Number > (int)++rounds->Count);
     if (!some)
@@ -173,24 +173,24 @@ static __attribute__((always_inline)) void TakeRounds(const GroupCandidates* c,
     Advance(&at);
   }
   found->Count = kept;
-  if (KEEPS_GROUP(p))
+  if (KEEPS_PACKET(p))
   {
-    StoreFound(found, group, output, p ARRAY_ARGUMENTS);
+    StoreFound(found, packet, output, p ARRAY_ARGUMENTS);
   }
 }
 
-// The samples of a group of cells. mesh: where state is null. state: where the group is on the border, if samples that
+// The samples of a packet of cells. mesh: where state is null. state: where the packet is on the border, if samples that
 // floats do not decide are to be decided by integers: those of the cells in only, as bits. Else null, and undecidedSamples takes
 // these samples. What cells that must be repeated have written is not counted.
-static __attribute__((always_inline)) void ResampleGroup(
-  const GroupCandidates* c, uint only, const GroupState* state, const SamplingMesh* mesh,
+static __attribute__((always_inline)) void ResamplePacket(
+  const PacketCandidates* c, uint only, const PacketState* state, const SamplingMesh* mesh,
   Output* output, Found* found, UndecidedSamples* undecidedSamples, Outcome* outcome,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   const int exact = state != 0;
   const uint there = exact ? c->There & only : c->There;
-  GroupFrame frame;
-  MakeGroupFrame(c, c->Fit & there, &frame);
+  PacketFrame frame;
+  MakePacketFrame(c, c->Fit & there, &frame);
   const uint bent = there & ~frame.Nice;
   ushort hits[MAXIMUM_CANDIDATES];
   Rounds rounds = { 0, 0, 0, 0 };
@@ -225,31 +225,31 @@ static __attribute__((always_inline)) void ResampleGroup(
 }
 
 static __attribute__((noinline)) Outcome ResampleByFloats(
-  const GroupCandidates* c, const SamplingMesh* mesh, Output* output, Found* found, UndecidedSamples* undecidedSamples,
+  const PacketCandidates* c, const SamplingMesh* mesh, Output* output, Found* found, UndecidedSamples* undecidedSamples,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   Outcome outcome;
-  ResampleGroup(c, 0, 0, mesh, output, found, undecidedSamples, &outcome, p ARRAY_ARGUMENTS);
+  ResamplePacket(c, 0, 0, mesh, output, found, undecidedSamples, &outcome, p ARRAY_ARGUMENTS);
   return outcome;
 }
 
 // Returns the cells that are left to ResampleCell.
 static __attribute__((noinline)) uint ResampleByIntegers(
-  const GroupCandidates* c, uint only, const SamplingMesh* mesh, Output* output, Found* found,
+  const PacketCandidates* c, uint only, const SamplingMesh* mesh, Output* output, Found* found,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
-  GroupState state;
+  PacketState state;
   if (c->Cells.Border)
   {
-    StatesOfGroup(mesh, c->Cells.X, c->Cells.Y, c->Cells.Z, &state, p);
+    StatesOfPacket(mesh, c->Cells.X, c->Cells.Y, c->Cells.Z, &state, p);
   }
   Outcome outcome;
-  ResampleGroup(c, only, &state, 0, output, found, 0, &outcome, p ARRAY_ARGUMENTS);
+  ResamplePacket(c, only, &state, 0, output, found, 0, &outcome, p ARRAY_ARGUMENTS);
   return outcome.NeedsInt64;
 }
 
 // The samples of some cells, as bits, from beginX to endX, that floats do not decide.
-static __attribute__((noinline)) void ResampleUndecided(const GroupCandidates* c, const UndecidedSamples* undecidedSamples,
+static __attribute__((noinline)) void ResampleUndecided(const PacketCandidates* c, const UndecidedSamples* undecidedSamples,
   uint wanted, int beginX, int endX, const SamplingMesh* mesh, Output* output,
   const KernelParameters* p ARRAY_PARAMETERS)
 {

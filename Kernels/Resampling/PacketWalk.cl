@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The way of the lanes through the candidates of their cells (GroupCandidates.cl), one after the other.
+// The way of the lanes through the candidates of their cells (PacketCandidates.cl), one after the other.
 
 // Where the lanes are among the candidates of their cells.
 typedef struct
@@ -12,7 +12,7 @@ typedef struct
 } Walk;
 
 static __attribute__((always_inline)) void BeginWalk(
-  const GroupCandidates* c, const GroupFrame* f, Walk* at, const KernelParameters* p)
+  const PacketCandidates* c, const PacketFrame* f, Walk* at, const KernelParameters* p)
 {
   at->StartX = TO_FLOATS(c->First[0]) - f->X0;
   at->StartY = TO_FLOATS(c->First[1]) - f->Y0;
@@ -40,7 +40,7 @@ static __attribute__((always_inline)) void Advance(Walk* at)
 }
 
 // The lanes whose candidate is a vertex of their cell, if that is a box.
-static __attribute__((always_inline)) INTS IsOnVertex(const GroupFrame* f, const Walk* at)
+static __attribute__((always_inline)) INTS IsOnVertex(const PacketFrame* f, const Walk* at)
 {
   const FLOATS x = at->X + f->X0, y = at->Y + f->Y0, z = at->Z + f->Z0;
   return ((x == f->X0) | (x == f->X7)) & ((y == f->Y0) | (y == f->Y7)) &
@@ -48,7 +48,7 @@ static __attribute__((always_inline)) INTS IsOnVertex(const GroupFrame* f, const
 }
 
 // The vertices of their cells that samples are, where IsOnVertex, as masks.
-static __attribute__((always_inline)) INTS VerticesAt(const GroupFrame* f, const Walk* at)
+static __attribute__((always_inline)) INTS VerticesAt(const PacketFrame* f, const Walk* at)
 {
   INTS vertices = at->X + f->X0 == f->X7 ? (INTS)(2) : (INTS)(1);
   vertices = at->Z + f->Z0 == f->Z7 ? vertices << 2 : vertices;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The values at samples of groups of cells (GroupVertices.cl): how they are interpolated.
+// The values at samples of packets of cells (PacketVertices.cl): how they are interpolated.
 //
 // What the host puts in front of this text:
 //   STORE_OTHER_ARRAYS   statements that store the arrays at a sample that are not LANE_ARRAYS; HAS_OTHER_ARRAYS
@@ -46,7 +46,7 @@ static __attribute__((always_inline)) void WeighOrigin(
 // A sample that is in a cell, for the arrays that want its weights as they are: which of the cell's
 // tetrahedra holds it is found out again, in whole numbers.
 static SELDOM void StoreOtherArrays(
-  const Group* group, int lane, uint place, const KernelParameters* p ARRAY_PARAMETERS)
+  const Packet* packet, int lane, uint place, const KernelParameters* p ARRAY_PARAMETERS)
 {
   const uint width = p->OutputSize[0];
   const uint plane = width * p->OutputSize[1];
@@ -58,7 +58,7 @@ static SELDOM void StoreOtherArrays(
 #pragma unroll
   for (int v = 0; v < 8; ++v)
   {
-    LocalRow vertex = PLACE_OF(group, v) + lane;
+    LocalRow vertex = PLACE_OF(packet, v) + lane;
     x[v] = (EXACT)((vertex[0] - sample[0]) * 256.0f);
     y[v] = (EXACT)((vertex[HALF_ROW] - sample[1]) * 256.0f);
     z[v] = (EXACT)((vertex[2 * HALF_ROW] - sample[2]) * 256.0f);
@@ -76,14 +76,14 @@ static SELDOM void StoreOtherArrays(
     WeighOrigin(x, y, z, t, weights, &volume);
   }
   Sample made;
-  BeginSamples(&made, group->X + 2 * lane, group->Y, group->Z, t, volume, p);
+  BeginSamples(&made, packet->X + 2 * lane, packet->Y, packet->Z, t, volume, p);
   PlaceSample(&made, weights, place);
   const Sample* s = &made;
   STORE_OTHER_ARRAYS
 }
 #endif
 
-// The weights of the cells' vertices at samples (GroupWeights.cl).
+// The weights of the cells' vertices at samples (PacketWeights.cl).
 typedef struct
 {
   FLOATS T0, T3, T5, T6; // of the central tetrahedron, still to be multiplied by Scale

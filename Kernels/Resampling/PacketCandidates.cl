@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The candidates of groups of cells: the samples in the box of each cell (BrickResampling.cl).
+// The candidates of packets of cells: the samples in the box of each cell (BrickResampling.cl).
 //
-// Why they are found a group before this is looked at: how many rounds a group takes is no two times the same, and
+// Why they are found a packet before this is looked at: how many rounds a packet takes is no two times the same, and
 // the processor guesses it wrong. It finds that out at once where the numbers lie in memory, and only after all
-// that precedes if they have just been computed. And there is time to fetch the output. Not for all groups of a
+// that precedes if they have just been computed. And there is time to fetch the output. Not for all packets of a
 // row: what is known of these would take the innermost cache. Neighbours share vertices, so that the bounds of a
 // row's quads of vertices are found once: the four vertices at one x.
 
-#define MAXIMUM_EXTENT 64.0f // voxels; WeighOrigin (GroupSamples.cl) counts on it
+#define MAXIMUM_EXTENT 64.0f // voxels; WeighOrigin (PacketSamples.cl) counts on it
 #define MAXIMUM_CANDIDATES 4096 // of a cell
 #define EXACT_NORMALS_EXTENT 7.99f // voxels: the normals of larger cells are not exact in float
-#define INEXACT_NORMALS 1.35f // by how much more coordinates in these are off (GroupWeights.cl)
+#define INEXACT_NORMALS 1.35f // by how much more coordinates in these are off (PacketWeights.cl)
 #define ALMOST_ONE (255.0f / 256.0f) // ceil(v) = trunc(v + ALMOST_ONE) for multiples of 1/256
 
 typedef struct
 {
-  Group Cells;
+  Packet Cells;
   uint There;       // cells that have a vertex with a position, and none beyond the volume, as bits
   uint Fit;         // of these the small ones all of whose tetrahedra are active and have positions
   uint Some;        // of these the ones that have candidates
@@ -28,11 +28,11 @@ typedef struct
   int IsBeyond;     // whether some may lie beyond the part of the output that is made
   INTS Box;         // cells that are boxes, if HasBoxes
   INTS Beside;      // boxes where something is missing round a vertex (DecideOnVertices), if HasBeside
-  GroupState State; // if HasBeside
+  PacketState State; // if HasBeside
   int HasBoxes;
   int HasBeside;
   int Skip; // no cell touches a voxel to be won
-} GroupCandidates;
+} PacketCandidates;
 
 // Bounds of vertices or of cells.
 typedef struct
@@ -85,7 +85,7 @@ static __attribute__((always_inline)) void Shift(const Bounds* a, const Bounds* 
 
 // The cells, as bits, whose edge from vertex 0 to another one is parallel to an axis: two coordinates of its ends
 // are the same, and one is not.
-static __attribute__((always_inline)) uint FindAxialEdges(const Group* group, int to)
+static __attribute__((always_inline)) uint FindAxialEdges(const Packet* packet, int to)
 {
 #define IS_SAME(slot) LaneBits(VERTEX(0, slot) == VERTEX(to, slot))
   const uint x = IS_SAME(0), y = IS_SAME(1), z = IS_SAME(2);
@@ -94,7 +94,7 @@ static __attribute__((always_inline)) uint FindAxialEdges(const Group* group, in
 
 // Cells that are boxes, as in an undeformed, shifted, axis-wise scaled or right-angled turned volume: each
 // coordinate varies along one axis of the voxel grid only. rises: those whose coordinates grow with the indices.
-static SELDOM INTS FindBoxes(const Group* group, int mirror, INTS* rises)
+static SELDOM INTS FindBoxes(const Packet* packet, int mirror, INTS* rises)
 {
   LOAD_VERTICES
 #define SAME(C, a, b) (C##a == C##b)
@@ -116,7 +116,7 @@ typedef struct
 } ParallelEdges;
 
 static SELDOM void FindParallelEdges(
-  const Group* group, int mirror, ParallelEdges* edges)
+  const Packet* packet, int mirror, ParallelEdges* edges)
 {
   LOAD_VERTICES
   const INTS x = ALONG_Y(X) & ALONG_Z(X) & RISES(X, 1);
@@ -166,10 +166,10 @@ static SELDOM void TouchBoxes(
 }
 
 #if LANES > 1
-// Has the processor fetch the output where the candidates of some lanes of a group begin, long before it is written:
+// Has the processor fetch the output where the candidates of some lanes of a packet begin, long before it is written:
 // FetchFound reaches the caches in time, and memory only where this has begun.
 static __attribute__((always_inline)) void FetchOutput(
-  const GroupCandidates* c, const Output* output ARRAY_PARAMETERS)
+  const PacketCandidates* c, const Output* output ARRAY_PARAMETERS)
 {
   const uint* const places = (const uint*)&c->Place;
 #pragma unroll
@@ -183,7 +183,7 @@ static __attribute__((always_inline)) void FetchOutput(
 #endif
 
 // How large cells with these bounds are.
-static __attribute__((always_inline)) void MeasureCells(const Bounds* b, GroupCandidates* c)
+static __attribute__((always_inline)) void MeasureCells(const Bounds* b, PacketCandidates* c)
 {
   const FLOATS sizeX = b->HighX - b->LowX, sizeY = b->HighY - b->LowY, sizeZ = b->HighZ - b->LowZ;
   const FLOATS extent = Most(sizeX, Most(sizeY, sizeZ));
@@ -199,22 +199,22 @@ static __attribute__((always_inline)) void MeasureCells(const Bounds* b, GroupCa
 
 // Whether cells are boxes, and which. rises: as for FindBoxes.
 static __attribute__((always_inline)) void LookForBoxes(
-  GroupCandidates* c, INTS* box, INTS* rises, const KernelParameters* p)
+  PacketCandidates* c, INTS* box, INTS* rises, const KernelParameters* p)
 {
-  const Group* const group = &c->Cells;
+  const Packet* const packet = &c->Cells;
   *box = 0;
   *rises = 0;
   // If two edges of no cell are parallel to axes, no need to look for boxes. Lanes that hold no cell hold anything,
   // and must not decide.
-  uint boxes = c->There & FindAxialEdges(group, 1);
+  uint boxes = c->There & FindAxialEdges(packet, 1);
   if (boxes)
   {
-    boxes &= FindAxialEdges(group, 2);
+    boxes &= FindAxialEdges(packet, 2);
   }
   c->HasBoxes = boxes != 0;
   if (c->HasBoxes)
   {
-    *box = FindBoxes(group, Mirror(group->X, group->Y, group->Z, p), rises);
+    *box = FindBoxes(packet, Mirror(packet->X, packet->Y, packet->Z, p), rises);
     c->HasBoxes = (c->There & LaneBits(*box)) != 0;
   }
 }
@@ -225,18 +225,18 @@ typedef struct
   FLOATS X, Y, Z;
 } ToEnds;
 
-// For a group on the border: the whole cells, as bits, those that may be taken for boxes, and what is added to the
+// For a packet on the border: the whole cells, as bits, those that may be taken for boxes, and what is added to the
 // high sides of these; boxes beside what is missing.
-static __attribute__((always_inline)) void EndOnBorder(GroupCandidates* c, INTS rises,
+static __attribute__((always_inline)) void EndOnBorder(PacketCandidates* c, INTS rises,
   const SamplingMesh* mesh, uint* whole, INTS* box, ToEnds* toEnds, Output* output,
   const KernelParameters* p)
 {
-  const Group* const group = &c->Cells;
-  GroupState* const state = &c->State;
+  const Packet* const packet = &c->Cells;
+  PacketState* const state = &c->State;
   // Without states all that is there is whole.
   if (p->HasState || c->HasBoxes)
   {
-    StatesOfGroup(mesh, group->X, group->Y, group->Z, state, p);
+    StatesOfPacket(mesh, packet->X, packet->Y, packet->Z, state, p);
     *whole = c->There & LaneBits(state->Whole);
   }
   // Boxes on the border leave what is on their high sides to the next cells, if there are any. That the
@@ -249,10 +249,10 @@ static __attribute__((always_inline)) void EndOnBorder(GroupCandidates* c, INTS 
     c->Beside = all & ~*box & rises;
     c->HasBeside = LaneBits(c->Beside) != 0;
     output->Assumed |= LaneBits(*box & ~inner) != 0;
-    const INTS isLastX = group->X + 2 * LANE_INDEX == p->Size[0] - 2;
+    const INTS isLastX = packet->X + 2 * LANE_INDEX == p->Size[0] - 2;
     toEnds->X = (*box & ~isLastX) ? ALMOST_ONE : toEnds->X;
-    toEnds->Y = (*box & (INTS)(group->Y != p->Size[1] - 2 ? -1 : 0)) ? ALMOST_ONE : toEnds->Y;
-    toEnds->Z = (*box & (INTS)(group->Z != p->Size[2] - 2 ? -1 : 0)) ? ALMOST_ONE : toEnds->Z;
+    toEnds->Y = (*box & (INTS)(packet->Y != p->Size[1] - 2 ? -1 : 0)) ? ALMOST_ONE : toEnds->Y;
+    toEnds->Z = (*box & (INTS)(packet->Z != p->Size[2] - 2 ? -1 : 0)) ? ALMOST_ONE : toEnds->Z;
   }
 }
 
@@ -298,7 +298,7 @@ static __attribute__((always_inline)) void FindSamplesOfWhole(
 
 // The samples within the bounds of cells as their candidates. inPart: those in the buffers.
 static __attribute__((always_inline)) void SetCandidates(const Bounds* b, const ToEnds* toEnds,
-  const SamplesInBounds* inPart, GroupCandidates* c, const KernelParameters* p)
+  const SamplesInBounds* inPart, PacketCandidates* c, const KernelParameters* p)
 {
   // What lies in the part has the same samples in the whole.
   c->IsBeyond = p->IsPart &&
@@ -335,8 +335,8 @@ static __attribute__((always_inline)) int IsSettled(
 
 // b: the bounds of the cells. mesh: null where vertices have no state. withBorder: whether cells on the border are to
 // be told from others; else they must be whole, and if there are boxes among them, nothing holds but that there are.
-static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
-  const SamplingMesh* mesh, int withBorder, Output* output, GroupCandidates* c,
+static __attribute__((always_inline)) void FindPacketCandidates(const Bounds* b,
+  const SamplingMesh* mesh, int withBorder, Output* output, PacketCandidates* c,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   MeasureCells(b, c);
@@ -384,23 +384,23 @@ static __attribute__((always_inline)) void FindGroupCandidates(const Bounds* b,
 }
 
 #if LANES > 1
-// For the two groups at place k of a row of cells, for even and for odd x: cells of the second begin at the odd
+// For the two packets at place k of a row of cells, for even and for odd x: cells of the second begin at the odd
 // vertices. even: the bounds of the quads of even x at this place, and then at the next one. output: of the
 // span of the brick.
 static SELDOM void FindPairCandidates(const RowOfCells* row, int k, Bounds* even,
-  const SamplingMesh* mesh, Output* output, GroupCandidates* candidates,
+  const SamplingMesh* mesh, Output* output, PacketCandidates* candidates,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   Bounds odd, behind, cells;
   BoundQuads(row->Rows, k + ODD, &odd);
   BoundQuads(row->Rows, k + LANES, &behind);
-  MakeGroup(row, k, 0, &candidates[0].Cells);
+  MakePacket(row, k, 0, &candidates[0].Cells);
   Join(even, &odd, &cells);
-  FindGroupCandidates(&cells, mesh, 1, output, candidates, p ARRAY_ARGUMENTS);
-  MakeGroup(row, k, 1, &candidates[1].Cells);
+  FindPacketCandidates(&cells, mesh, 1, output, candidates, p ARRAY_ARGUMENTS);
+  MakePacket(row, k, 1, &candidates[1].Cells);
   Shift(even, &behind, &cells);
   Join(&cells, &odd, &cells);
-  FindGroupCandidates(&cells, mesh, 1, output, candidates + 1, p ARRAY_ARGUMENTS);
+  FindPacketCandidates(&cells, mesh, 1, output, candidates + 1, p ARRAY_ARGUMENTS);
   *even = behind;
 }
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The samples that have been found in groups of cells (GroupVertices.cl): how they are kept and stored.
+// The samples that have been found in packets of cells (PacketVertices.cl): how they are kept and stored.
 
 #define LANE_STORE(index, TYPE, BITS, SLOT)                                                        \
   target##index[place] = LANE_CONVERT_##BITS(TYPE, found->Values##index[i]);
@@ -25,9 +25,9 @@ typedef ulong __attribute__((may_alias)) TwoInts;
 
 // Whether samples are kept with their winner's key; else with the lane of their cell.
 #define KEEPS_KEYS (!HAS_OTHER_ARRAYS && sizeof(KEY) == sizeof(int))
-// Whether the group matters when samples are stored, so that this happens group by group: where their weights
+// Whether the packet matters when samples are stored, so that this happens packet by packet: where their weights
 // are found again, keys are too long, or it is counted where voxels are won.
-#define KEEPS_GROUP(p)                                                                             \
+#define KEEPS_PACKET(p)                                                                             \
   (HAS_OTHER_ARRAYS || (!KEEPS_KEYS && (p)->Pass != DEFORMVOLUME_PASS_DIRECT) ||                   \
     (p)->Pass == DEFORMVOLUME_PASS_MARK)
 
@@ -92,7 +92,7 @@ static __attribute__((always_inline)) void FetchFound(
 }
 
 // Stores the samples and forgets them.
-static void StoreFound(Found* found, const Group* group, Output* output,
+static void StoreFound(Found* found, const Packet* packet, Output* output,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   const int pass = p->Pass;
@@ -136,7 +136,7 @@ static void StoreFound(Found* found, const Group* group, Output* output,
       const int cell = found->Cells[i];
       const KEY key = KEEPS_KEYS
         ? (KEY)(uint)cell
-        : MakeKey(group->X + 2 * (cell & (INVERTED_LANE - 1)), group->Y, group->Z,
+        : MakeKey(packet->X + 2 * (cell & (INVERTED_LANE - 1)), packet->Y, packet->Z,
           cell & INVERTED_LANE, p);
       if (!TakesPlace(output, place, key, p))
       {
@@ -146,7 +146,7 @@ static void StoreFound(Found* found, const Group* group, Output* output,
     coverage[place] = 1;
     LANE_ARRAYS(LANE_STORE)
 #if HAS_OTHER_ARRAYS
-    StoreOtherArrays(group, found->Cells[i] & (INVERTED_LANE - 1), place, p ARRAY_ARGUMENTS);
+    StoreOtherArrays(packet, found->Cells[i] & (INVERTED_LANE - 1), place, p ARRAY_ARGUMENTS);
 #endif
   }
   found->Count = 0;
@@ -154,7 +154,7 @@ static void StoreFound(Found* found, const Group* group, Output* output,
 
 // Keeps the samples of some cells, as bits. places: in the output. inverted: lanes whose tetrahedra are. kept: how
 // many are kept, in place of found->Count, which memory holds. All are stored where these are too many.
-static __attribute__((always_inline)) void KeepSamples(const Group* group, uint bits, INTS places,
+static __attribute__((always_inline)) void KeepSamples(const Packet* packet, uint bits, INTS places,
   INTS inverted, const SampleWeights* weights, Found* found, uint* kept, Output* output,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
@@ -165,8 +165,8 @@ static __attribute__((always_inline)) void KeepSamples(const Group* group, uint 
   Append(places, bits, found->Places + *kept);
   if (KEEPS_KEYS && p->Pass != DEFORMVOLUME_PASS_DIRECT)
   {
-    // The first cell of the row, as the first one of the group may lie before the volume.
-    const INTS keys = (int)MakeKey(0, group->Y, group->Z, 0, p) + (group->X + 2 * LANE_INDEX);
+    // The first cell of the row, as the first one of the packet may lie before the volume.
+    const INTS keys = (int)MakeKey(0, packet->Y, packet->Z, 0, p) + (packet->X + 2 * LANE_INDEX);
     Append(keys | (inverted & (int)MakeKey(0, 0, 0, 1, p)), bits, found->Cells + *kept);
   }
   else if (HAS_OTHER_ARRAYS || p->Pass != DEFORMVOLUME_PASS_DIRECT)
@@ -178,6 +178,6 @@ static __attribute__((always_inline)) void KeepSamples(const Group* group, uint 
   {
     found->Count = *kept;
     *kept = 0;
-    StoreFound(found, group, output, p ARRAY_ARGUMENTS);
+    StoreFound(found, packet, output, p ARRAY_ARGUMENTS);
   }
 }
