@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which tetrahedra of the sampling mesh are resampled by their vertices: those that are active, bridge no gap where the
-// deformation mesh has been split, and are in no cell that the boundary of the mesh crosses. It comes after VertexState.cl.
+// deformation mesh has been split, and are in no cell that the boundary of the mesh crosses. It comes after
+// VertexState.cl.
 //
 // Where a node is split, tetrahedra on both sides of the split name different nodes in the same place at rest. A
 // tetrahedron of the sampling mesh with vertices in two such tetrahedra would be stretched over the gap that opens
@@ -11,8 +12,8 @@
 // A tetrahedron that a smooth cut crosses is there once for each side, and bridges a gap only between vertices of one
 // side.
 //
-// Data: tetrahedra int4, the places of nodes (DEFORMVOLUME_NODE_PLACES); placesAtRest: 4 bytes a node, a number that all
-// nodes with one place at rest share; boundary: a byte a cell, the tetrahedra that the boundary leaves, and
+// Data: tetrahedra int4, the places of nodes (DEFORMVOLUME_NODE_PLACES); placesAtRest: 4 bytes a node, a number that
+// all nodes with one place at rest share; boundary: a byte a cell, the tetrahedra that the boundary leaves, and
 // DEFORMVOLUME_CELL_AT_BOUNDARY and DEFORMVOLUME_CELL_CROSSED.
 
 #if MAPPING == MAPPING_RUNS

@@ -263,8 +263,8 @@ static void StoreSample(const RestPlace* place, const int* voxel, const RasterPa
   StoreArrays(&s ARRAY_ARGUMENTS);
 }
 
-// orientation: of the pieces that take part: 1: upright, 2: inverted, or 3: both. first, last: structured indices of the
-// first and the last voxel of the whole volume. counts: the voxels that are taken in each patch.
+// orientation: of the pieces that take part: 1: upright, 2: inverted, or 3: both. first, last: structured indices of
+// the first and the last voxel of the whole volume. counts: the voxels that are taken in each patch.
 __kernel void ResampleBoundary(__global const int4* tetrahedra, __global const int4* positions,
   __global const float4* displacements, __global const uint* listBegins, __global const int* lists,
   __global const uint* tiles, __global const uchar* cells, __global const uchar* active,

@@ -66,9 +66,9 @@ static ulong StatesOf(
     PREFETCH(source##index + row.Chunk + p->Size[0] + k)                                           \
   }
 
-// Undeformed vertices, as far as their x says. In whole numbers of 1/256 voxel, relative to the output, and what misses,
-// HALF_ROW each, for even and then for odd vertices: where axes of the volume are those of the output, x in voxels;
-// else for x, y and z what is to be added, the whole numbers as integers.
+// Undeformed vertices, as far as their x says. In whole numbers of 1/256 voxel, relative to the output, and what
+// misses, HALF_ROW each, for even and then for odd vertices: where axes of the volume are those of the output, x in
+// voxels; else for x, y and z what is to be added, the whole numbers as integers.
 #if HAS_TURNED_AXES
 #define REST_ODD (6 * HALF_ROW)
 #else

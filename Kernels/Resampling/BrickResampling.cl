@@ -18,8 +18,9 @@
 // What the host puts in front of this text, besides that of Resampling.cl:
 //   ROWS_ARE_GLOBAL      0 or 1: what ROW_MEMORY is (PacketVertices.cl)
 
-// Leaves the cells of a packet that have a value which sums of products do not give back to ResampleCell: these only. The
-// flags of rows tell of many vertices at once, and of which depends on where what is mapped of a row begins and ends.
+// Leaves the cells of a packet that have a value which sums of products do not give back to ResampleCell: these only.
+// The flags of rows tell of many vertices at once, and of which depends on where what is mapped of a row begins and
+// ends.
 static SELDOM void LeaveSpecials(PacketCandidates* c)
 {
   const Packet* const packet = &c->Cells;

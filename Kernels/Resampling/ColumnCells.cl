@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A cell a work-item, for devices whose work-items are lanes, such as graphics cards: what the kernels that take columns
-// of cells and those that take deferred cells share (ColumnResampling.cl, DeferredResampling.cl). Decisions by floats
-// and by integers of 32 bits are those of the kernels for processors (BrickResampling.cl).
+// A cell a work-item, for devices whose work-items are lanes, such as graphics cards: what the kernels that take
+// columns of cells and those that take deferred cells share (ColumnResampling.cl, DeferredResampling.cl). Decisions by
+// floats and by integers of 32 bits are those of the kernels for processors (BrickResampling.cl).
 //
 // What the host puts in front of this text:
 //   HAS_COLUMN_KERNEL  1 for ResampleColumns and ResampleDeferredInt32, 0 for ResampleDeferredInt64
 //   PASS_IS_DIRECT     1 where the pass of the first two is known to be the direct one, which costs fewer registers
 //
-// Data: as BrickResampling.cl. It comes after PacketWalk.cl. rows: ROW floats for each row of three planes, or of two in
-// the kernels for deferred cells. deferred: the number of cells for ResampleDeferredInt64, and of those for
+// Data: as BrickResampling.cl. It comes after PacketWalk.cl. rows: ROW floats for each row of three planes, or of two
+// in the kernels for deferred cells. deferred: the number of cells for ResampleDeferredInt64, and of those for
 // ResampleDeferredInt32; then room for all cells of the launch. The former fill it from its begin, the latter from its
 // end.
 
@@ -19,13 +19,13 @@
 #define FLAG_OUTSIDE 8 // a place beyond the volume
 #define FLAG_WHOLE 16  // the cell that begins at the vertex has all its tetrahedra
 
-// An entry of a deferred cell: the place in the launch's part of the list of bricks, times the cells of a brick, plus the
-// cell in the brick, and above that the step of the exactness chain that comes next.
+// An entry of a deferred cell: the place in the launch's part of the list of bricks, times the cells of a brick, plus
+// the cell in the brick, and above that the step of the exactness chain that comes next.
 #define CELLS_OF_BRICK (DEFORMVOLUME_BRICK_X * DEFORMVOLUME_BRICK_Y * DEFORMVOLUME_BRICK_Z)
 #define DEFERRED_BITS 30
 #define DEFERRED_FLOATS 0        // the cell is resampled as a packet is
-#define DEFERRED_INT32 1         // it has been, but for samples that floats do not decide: these, by integers of 32 bits;
-                                 // then nothing: ResampleDeferredInt64 never gets this
+#define DEFERRED_INT32 1         // it has been, but for samples that floats do not decide: these, by integers of 32
+                                 // bits; then nothing: ResampleDeferredInt64 never gets this
 #define DEFERRED_SAMPLES_INT64 2 // such samples, by ResampleSamples
 #define DEFERRED_CELL_INT64 3    // the cell, by ResampleCell
 // The step after the last one.
@@ -98,11 +98,11 @@ static __attribute__((always_inline)) void StoreSample(const Packet* packet, uin
 #endif
 }
 
-// What a weight has to exceed for a sample to be inside. Boxes take all their candidates, whatever the second smallest
-// weight is, from which that is told.
+// What a weight has to exceed for a sample to be inside. Aligned cells take all their candidates, whatever the second
+// smallest weight is, from which that is told.
 static float DecisiveWeight(const PacketCandidates* c, const PacketFrame* frame)
 {
-  return c->HasBoxes && c->Box ? -INFINITY : frame->Bound;
+  return c->HasAligned && c->Aligned ? -INFINITY : frame->Bound;
 }
 
 // The weights of a sample. Returns whether the cell holds it, as far as floats decide that.
@@ -114,8 +114,8 @@ static __attribute__((always_inline)) uint WeighCandidate(const PacketCandidates
   return DecideByFloats(weights, 1, DecisiveWeight(c, frame), frame->Bound, undecidedByFloats);
 }
 
-// Whether a box beside what is missing has its samples on vertices decided by DecideOnVertices: where floats do not decide
-// others either, integers decide all of them, as they do for packets (PacketResampling.cl).
+// Whether an aligned cell beside what is missing has its samples on vertices decided by DecideOnVertices: where floats
+// do not decide others either, integers decide all of them, as they do for packets (PacketResampling.cl).
 static int IsDecidedOnVertices(const PacketCandidates* c, const PacketFrame* frame,
   const PacketScales* scales, const KernelParameters* p)
 {
@@ -133,14 +133,14 @@ static int IsDecidedOnVertices(const PacketCandidates* c, const PacketFrame* fra
   return decided;
 }
 
-// The samples of a cell whose frame is nice. mesh, isComplete, onlyUndecidedByFloats: as for ResampleColumnCell. Returns the
-// next step: CELL_DONE or DEFERRED_...
+// The samples of a cell whose frame is nice. mesh, isComplete, onlyUndecidedByFloats: as for ResampleColumnCell.
+// Returns the next step: CELL_DONE or DEFERRED_...
 static __attribute__((always_inline)) int TakeSamples(const PacketCandidates* c,
   const PacketFrame* frame, const SamplingMesh* mesh, int isComplete, int onlyUndecidedByFloats,
   Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   const Packet* const packet = &c->Cells;
-  const int box = c->HasBoxes && c->Box;
+  const int aligned = c->HasAligned && c->Aligned;
   const int isSmall = c->Extent < MAXIMUM_EXACT_EXTENT; // integers of 32 bits can decide who owns a sample
   PacketState state;
   if (isComplete && packet->Border)
@@ -151,10 +151,10 @@ static __attribute__((always_inline)) int TakeSamples(const PacketCandidates* c,
   FindScales(frame, &scales);
   Walk at;
   BeginWalk(c, frame, &at, p);
-  // The only vertex that may be among the candidates of a box inside the mesh is its lowest one, the first candidate; but
-  // not so in passes for all cells that hold a voxel.
+  // The only vertex that may be among the candidates of an aligned cell inside the mesh is its lowest one, the first
+  // candidate; but not so in passes for all cells that hold a voxel.
   const int mayReachEnds = isComplete || DEFORMVOLUME_IS_CLOSED(p->Pass);
-  const int beginsOnVertex = box && IsOnVertex(frame, &at);
+  const int beginsOnVertex = aligned && IsOnVertex(frame, &at);
   const int beside = mesh && IsDecidedOnVertices(c, frame, &scales, p);
   uint writes = 0;
   uint isUndecided = 0; // whether floats do not decide some sample, and no integers of 32 bits were asked
@@ -164,7 +164,7 @@ static __attribute__((always_inline)) int TakeSamples(const PacketCandidates* c,
     SampleWeights weights;
     uint undecidedByFloats;
     uint held = WeighCandidate(c, frame, &scales, &at, &weights, &undecidedByFloats);
-    int onVertex = i == 0 ? beginsOnVertex : mayReachEnds && box && IsOnVertex(frame, &at);
+    int onVertex = i == 0 ? beginsOnVertex : mayReachEnds && aligned && IsOnVertex(frame, &at);
     if (beside && IsOnVertex(frame, &at))
     {
       undecidedByFloats = 0;
@@ -200,8 +200,8 @@ static __attribute__((always_inline)) int TakeSamples(const PacketCandidates* c,
     }
     Advance(&at);
   }
-  // What is looked at again as a whole must not count twice. Cells too large for these integers leave these samples only:
-  // they have many, and floats decide nearly all of them.
+  // What is looked at again as a whole must not count twice. Cells too large for these integers leave these samples
+  // only: they have many, and floats decide nearly all of them.
   if (isUndecided && !isComplete && packet->Border)
   {
     return DEFERRED_FLOATS;
@@ -215,10 +215,10 @@ static __attribute__((always_inline)) int TakeSamples(const PacketCandidates* c,
   return !isUndecided ? CELL_DONE : isSmall ? DEFERRED_INT32 : DEFERRED_SAMPLES_INT64;
 }
 
-// A cell, as far as floats take it, or integers of 32 bits. mesh: null where vertices have no state, or it does not matter.
-// isComplete: whether integers decide what floats do not, at once, and cells on the border are told from others; else
-// they must be whole. onlyUndecidedByFloats: of all samples those only. most: of its candidates. Returns the next step:
-// CELL_DONE or DEFERRED_...
+// A cell, as far as floats take it, or integers of 32 bits. mesh: null where vertices have no state, or it does not
+// matter. isComplete: whether integers decide what floats do not, at once, and cells on the border are told from
+// others; else they must be whole. onlyUndecidedByFloats: of all samples those only. most: of its candidates. Returns
+// the next step: CELL_DONE or DEFERRED_...
 static __attribute__((always_inline)) int ResampleColumnCell(PacketCandidates* c, int most,
   const SamplingMesh* mesh, PacketFrame* frame, int isComplete, int onlyUndecidedByFloats, Output* output,
   const KernelParameters* p ARRAY_PARAMETERS)
@@ -230,8 +230,8 @@ static __attribute__((always_inline)) int ResampleColumnCell(PacketCandidates* c
   {
     return CELL_DONE;
   }
-  // Boxes on the border own what depends on the cells round them.
-  if ((c->Some && c->Number > most) || (!isComplete && c->Cells.Border && c->HasBoxes))
+  // Aligned cells on the border own what depends on the cells round them.
+  if ((c->Some && c->Number > most) || (!isComplete && c->Cells.Border && c->HasAligned))
   {
     return DEFERRED_FLOATS;
   }

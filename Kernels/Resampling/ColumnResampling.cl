@@ -4,15 +4,15 @@
 //
 // A work-group takes a section of a brick, layer by layer, an item a column of cells of it. Two planes of vertices are
 // in local memory, and a third one, so that some items may map the next plane while others still read these. Neighbours
-// along x write voxels that mostly lie side by side. Most cells have a sample or none. Cells that are boxes, as where
+// along x write voxels that mostly lie side by side. Most cells have a sample or none. Aligned cells, as where
 // nothing is deformed, own what is within their bounds.
 // What few cells need would keep registers from all others, and most of a group waiting: so cells are deferred
-// that have samples which floats do not decide, or very many, and boxes on the border of the mesh. ResampleDeferredInt32 takes
-// these. Cells that are bent or large, that a cut divides, or of which tetrahedra may be missing, are deferred to
-// ResampleDeferredInt64 (DeferredResampling.cl), as does what ResampleDeferredInt32 cannot do.
+// that have samples which floats do not decide, or very many, and aligned cells on the border of the mesh.
+// ResampleDeferredInt32 takes these. Cells that are bent or large, that a cut divides, or of which tetrahedra may be
+// missing, are deferred to ResampleDeferredInt64 (DeferredResampling.cl), as does what ResampleDeferredInt32 cannot do.
 //
-// Why samples that floats do not decide do not go into a list that the group takes after each layer: some eight of 256 cells have one,
-// one warp has all of them, and the others wait.
+// Why samples that floats do not decide do not go into a list that the group takes after each layer: some eight of 256
+// cells have one, one warp has all of them, and the others wait.
 
 // Of cells with more candidates each takes all lanes as long as the longest of them: they are deferred.
 #define MOST_CANDIDATES_IN_COLUMN 64

@@ -26,10 +26,10 @@ typedef struct
   INTS Place;       // of the first one in the output
   INTS Number;      // how many in all, in cells that have some
   int IsBeyond;     // whether some may lie beyond the part of the output that is made
-  INTS Box;         // cells that are boxes, if HasBoxes
-  INTS Beside;      // boxes where something is missing round a vertex (DecideOnVertices), if HasBeside
+  INTS Aligned;     // cells whose edges are parallel to the axes of the output, if HasAligned
+  INTS Beside;      // aligned cells where something is missing round a vertex (DecideOnVertices), if HasBeside
   PacketState State; // if HasBeside
-  int HasBoxes;
+  int HasAligned;
   int HasBeside;
   int Skip; // no cell touches a voxel to be won
 } PacketCandidates;
@@ -92,9 +92,9 @@ static __attribute__((always_inline)) uint FindAxialEdges(const Packet* packet, 
   return ((x & y) | ((x ^ y) & z)) & ~(x & y & z);
 }
 
-// Cells that are boxes, as in an undeformed, shifted, axis-wise scaled or right-angled turned volume: each
+// Aligned cells, as in an undeformed, shifted, axis-wise scaled or right-angled turned volume: each
 // coordinate varies along one axis of the voxel grid only. rises: those whose coordinates grow with the indices.
-static SELDOM INTS FindBoxes(const Packet* packet, int mirror, INTS* rises)
+static SELDOM INTS FindAligned(const Packet* packet, int mirror, INTS* rises)
 {
   LOAD_VERTICES
 #define SAME(C, a, b) (C##a == C##b)
@@ -134,9 +134,10 @@ static SELDOM void FindParallelEdges(
 #define FIRST_OF(low) TO_INTS(Most(low, 0.0f) + ALMOST_ONE)
 #define END_OF(high, toEnd, size) TO_INTS(Least((high) + toEnd, (float)(size)))
 
-// Boxes do not look at their high sides, nor at whether they own a sample: all samples in them count as touched.
-static SELDOM void TouchBoxes(
-  INTS box, const Bounds* b, Output* output, const KernelParameters* p)
+// Aligned cells do not look at their high sides, nor at whether they own a sample: all samples in them count as
+// touched.
+static SELDOM void TouchAligned(
+  INTS aligned, const Bounds* b, Output* output, const KernelParameters* p)
 {
   const INTS firstX = FIRST_OF(b->LowX);
   const INTS firstY = FIRST_OF(b->LowY);
@@ -144,7 +145,7 @@ static SELDOM void TouchBoxes(
   const INTS endX = END_OF(b->HighX, 1.0f, p->OutputSize[0]);
   const INTS endY = END_OF(b->HighY, 1.0f, p->OutputSize[1]);
   const INTS endZ = END_OF(b->HighZ, 1.0f, p->OutputSize[2]);
-  const INTS some = box & (firstX < endX) & (firstY < endY) & (firstZ < endZ);
+  const INTS some = aligned & (firstX < endX) & (firstY < endY) & (firstZ < endZ);
   if (!LaneBits(some))
   {
     return;
@@ -197,25 +198,25 @@ static __attribute__((always_inline)) void MeasureCells(const Bounds* b, PacketC
   }
 }
 
-// Whether cells are boxes, and which. rises: as for FindBoxes.
-static __attribute__((always_inline)) void LookForBoxes(
-  PacketCandidates* c, INTS* box, INTS* rises, const KernelParameters* p)
+// Whether cells are aligned, and which. rises: as for FindAligned.
+static __attribute__((always_inline)) void LookForAligned(
+  PacketCandidates* c, INTS* aligned, INTS* rises, const KernelParameters* p)
 {
   const Packet* const packet = &c->Cells;
-  *box = 0;
+  *aligned = 0;
   *rises = 0;
-  // If two edges of no cell are parallel to axes, no need to look for boxes. Lanes that hold no cell hold anything,
-  // and must not decide.
-  uint boxes = c->There & FindAxialEdges(packet, 1);
-  if (boxes)
+  // If two edges of no cell are parallel to axes, no need to look for aligned cells. Lanes that hold no cell hold
+  // anything, and must not decide.
+  uint alignedCells = c->There & FindAxialEdges(packet, 1);
+  if (alignedCells)
   {
-    boxes &= FindAxialEdges(packet, 2);
+    alignedCells &= FindAxialEdges(packet, 2);
   }
-  c->HasBoxes = boxes != 0;
-  if (c->HasBoxes)
+  c->HasAligned = alignedCells != 0;
+  if (c->HasAligned)
   {
-    *box = FindBoxes(packet, Mirror(packet->X, packet->Y, packet->Z, p), rises);
-    c->HasBoxes = (c->There & LaneBits(*box)) != 0;
+    *aligned = FindAligned(packet, Mirror(packet->X, packet->Y, packet->Z, p), rises);
+    c->HasAligned = (c->There & LaneBits(*aligned)) != 0;
   }
 }
 
@@ -225,34 +226,34 @@ typedef struct
   FLOATS X, Y, Z;
 } ToEnds;
 
-// For a packet on the border: the whole cells, as bits, those that may be taken for boxes, and what is added to the
-// high sides of these; boxes beside what is missing.
+// For a packet on the border: the whole cells, as bits, those that may be taken for aligned ones, and what is added to
+// the high sides of these; aligned cells beside what is missing.
 static __attribute__((always_inline)) void EndOnBorder(PacketCandidates* c, INTS rises,
-  const SamplingMesh* mesh, uint* whole, INTS* box, ToEnds* toEnds, Output* output,
+  const SamplingMesh* mesh, uint* whole, INTS* aligned, ToEnds* toEnds, Output* output,
   const KernelParameters* p)
 {
   const Packet* const packet = &c->Cells;
   PacketState* const state = &c->State;
   // Without states all that is there is whole.
-  if (p->HasState || c->HasBoxes)
+  if (p->HasState || c->HasAligned)
   {
     StatesOfPacket(mesh, packet->X, packet->Y, packet->Z, state, p);
     *whole = c->There & LaneBits(state->Whole);
   }
-  // Boxes on the border leave what is on their high sides to the next cells, if there are any. That the
+  // Aligned cells on the border leave what is on their high sides to the next cells, if there are any. That the
   // high sides are the upper ones is wanted for that.
-  if (!DEFORMVOLUME_IS_CLOSED(p->Pass) && c->HasBoxes)
+  if (!DEFORMVOLUME_IS_CLOSED(p->Pass) && c->HasAligned)
   {
     const INTS inner = state->Interior == 255;
-    const INTS all = *box & LanesOf(c->There);
-    *box = all & (inner | ((state->Regular == 255) & rises));
-    c->Beside = all & ~*box & rises;
+    const INTS all = *aligned & LanesOf(c->There);
+    *aligned = all & (inner | ((state->Regular == 255) & rises));
+    c->Beside = all & ~*aligned & rises;
     c->HasBeside = LaneBits(c->Beside) != 0;
-    output->Assumed |= LaneBits(*box & ~inner) != 0;
+    output->Assumed |= LaneBits(*aligned & ~inner) != 0;
     const INTS isLastX = packet->X + 2 * LANE_INDEX == p->Size[0] - 2;
-    toEnds->X = (*box & ~isLastX) ? ALMOST_ONE : toEnds->X;
-    toEnds->Y = (*box & (INTS)(packet->Y != p->Size[1] - 2 ? -1 : 0)) ? ALMOST_ONE : toEnds->Y;
-    toEnds->Z = (*box & (INTS)(packet->Z != p->Size[2] - 2 ? -1 : 0)) ? ALMOST_ONE : toEnds->Z;
+    toEnds->X = (*aligned & ~isLastX) ? ALMOST_ONE : toEnds->X;
+    toEnds->Y = (*aligned & (INTS)(packet->Y != p->Size[1] - 2 ? -1 : 0)) ? ALMOST_ONE : toEnds->Y;
+    toEnds->Z = (*aligned & (INTS)(packet->Z != p->Size[2] - 2 ? -1 : 0)) ? ALMOST_ONE : toEnds->Z;
   }
 }
 
@@ -334,14 +335,15 @@ static __attribute__((always_inline)) int IsSettled(
 }
 
 // b: the bounds of the cells. mesh: null where vertices have no state. withBorder: whether cells on the border are to
-// be told from others; else they must be whole, and if there are boxes among them, nothing holds but that there are.
+// be told from others; else they must be whole, and if there are aligned cells among them, nothing holds but that there
+// are.
 static __attribute__((always_inline)) void FindPacketCandidates(const Bounds* b,
   const SamplingMesh* mesh, int withBorder, Output* output, PacketCandidates* c,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   MeasureCells(b, c);
-  INTS box, rises;
-  LookForBoxes(c, &box, &rises, p);
+  INTS aligned, rises;
+  LookForAligned(c, &aligned, &rises, p);
 
   // Candidates are half-open inside the mesh: by the fill rule no sample on the upper side is taken.
   const int border = c->Cells.Border;
@@ -351,7 +353,7 @@ static __attribute__((always_inline)) void FindPacketCandidates(const Bounds* b,
   ToEnds toEnds = { toEnd, toEnd, toEnd };
   if (border && withBorder)
   {
-    EndOnBorder(c, rises, mesh, &whole, &box, &toEnds, output, p);
+    EndOnBorder(c, rises, mesh, &whole, &aligned, &toEnds, output, p);
   }
 #if HAS_CUT
   if (c->Cells.Apart)
@@ -359,16 +361,16 @@ static __attribute__((always_inline)) void FindPacketCandidates(const Bounds* b,
     whole &= ~FindDivided(mesh, c->Cells.X, c->Cells.Y, c->Cells.Z, p);
   }
 #endif
-  if (c->HasBoxes && (!border || withBorder))
+  if (c->HasAligned && (!border || withBorder))
   {
-    c->Box = box;
+    c->Aligned = aligned;
     if (p->Pass == DEFORMVOLUME_PASS_OWNERS)
     {
       if (!border)
       {
-        toEnds.X = toEnds.Y = toEnds.Z = box ? (FLOATS)(ALMOST_ONE) : (FLOATS)(1.0f);
+        toEnds.X = toEnds.Y = toEnds.Z = aligned ? (FLOATS)(ALMOST_ONE) : (FLOATS)(1.0f);
       }
-      TouchBoxes(LanesOf(c->There) & box, b, output, p);
+      TouchAligned(LanesOf(c->There) & aligned, b, output, p);
     }
   }
   SamplesInBounds s;

@@ -12,8 +12,8 @@ typedef struct
   INTS Regular;
 } PacketState;
 
-// The states of the vertices of a row that a packet's cells have: of the lower x in the lowest byte, of the upper one in
-// the next.
+// The states of the vertices of a row that a packet's cells have: of the lower x in the lowest byte, of the upper one
+// in the next.
 static INTS LoadStates(__global const uchar* row)
 {
 #if LANES == 16
@@ -138,8 +138,8 @@ static uint FindDividedLanes(
   return divided;
 }
 
-// The cells of a packet, as bits, that a smooth cut may divide (CutCells.cl): one that it crosses, with a vertex that lies
-// elsewhere as seen from the other side.
+// The cells of a packet, as bits, that a smooth cut may divide (CutCells.cl): one that it crosses, with a vertex that
+// lies elsewhere as seen from the other side.
 static SELDOM uint FindDivided(
   const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
 {
@@ -284,9 +284,9 @@ static __attribute__((always_inline)) INTS OwnByIndex(
     (((simplex & LOW_SIDE(2, mirror)) != 0) | isLastY);
 }
 
-// Returns which cells of undecidedByFloats, as bits, own their sample. state: of the packet, where it is on the border of
-// the mesh. onVertex: lanes whose sample is a vertex. needsInt64: cells for ResampleCell are added to it. All else is
-// as for HoldSample.
+// Returns which cells of undecidedByFloats, as bits, own their sample. state: of the packet, where it is on the border
+// of the mesh. onVertex: lanes whose sample is a vertex. needsInt64: cells for ResampleCell are added to it. All else
+// is as for HoldSample.
 static __attribute__((always_inline)) uint DecideByIntegers(const Packet* packet, uint undecidedByFloats,
   const FLOATS* sample, INTS inverted, const PacketState* state, INTS* onVertex, uint* needsInt64,
   Output* output, const KernelParameters* p)
@@ -317,9 +317,9 @@ static __attribute__((always_inline)) uint DecideByIntegers(const Packet* packet
   return undecidedByFloats & LaneBits(held);
 }
 
-// Whether a box that has all its tetrahedra, and whose coordinates grow with the indices, owns a sample on one of its
-// vertices, which is on the border of the mesh. Of its tetrahedra that share the vertex it is the one at the edge along
-// x that a shift away from the vertex leads into.
+// Whether an aligned cell that has all its tetrahedra, and whose coordinates grow with the indices, owns a sample on
+// one of its vertices, which is on the border of the mesh. Of its tetrahedra that share the vertex it is the one at the
+// edge along x that a shift away from the vertex leads into.
 static SELDOM int OwnsVertex(
   const SamplingMesh* mesh, int x, int y, int z, int vertex, const KernelParameters* p)
 {

@@ -22,12 +22,13 @@ typedef struct
   uint Count;
 } UndecidedSamples;
 
-// Decides samples on the four lines that hold a cell's edges along an axis, where these are parallel to it (ParallelEdges),
-// inside the mesh. Planes bound such a cell on the other two axes, so that the shifts along these lead out of it from its
-// high sides and into it from the low ones: of the four edges it owns what lies between the ends of the lowest one. At an
-// end of an edge along x the shift along x decides, which comes first. Where edges lie along another axis, the face at
-// the end may be bent as seen from there, and the sample is not decided. x, y, z: the samples, in voxels of the output.
-// Returns which cells own theirs, and removes the decided ones from undecidedByFloats.
+// Decides samples on the four lines that hold a cell's edges along an axis, where these are parallel to it
+// (ParallelEdges), inside the mesh. Planes bound such a cell on the other two axes, so that the shifts along these lead
+// out of it from its high sides and into it from the low ones: of the four edges it owns what lies between the ends of
+// the lowest one. At an end of an edge along x the shift along x decides, which comes first. Where edges lie along
+// another axis, the face at the end may be bent as seen from there, and the sample is not decided. x, y, z: the
+// samples, in voxels of the output. Returns which cells own theirs, and removes the decided ones from
+// undecidedByFloats.
 static __attribute__((noinline)) uint DecideOnEdges(const Packet* packet, const PacketFrame* f,
   const ParallelEdges* edges, FLOATS x, FLOATS y, FLOATS z, uint* undecidedByFloats, INTS* onVertex,
   const KernelParameters* p)
@@ -86,18 +87,19 @@ static __attribute__((noinline)) int LookForEdges(const Packet* packet, const Pa
 // is as for ResamplePacket.
 static __attribute__((always_inline)) void TakeRounds(const PacketCandidates* c,
   const PacketFrame* frame, uint some, const PacketState* state, const SamplingMesh* mesh, Output* output,
-  Found* found, UndecidedSamples* undecidedSamples, ushort* hits, Rounds* rounds, const KernelParameters* p ARRAY_PARAMETERS)
+  Found* found, UndecidedSamples* undecidedSamples, ushort* hits, Rounds* rounds,
+  const KernelParameters* p ARRAY_PARAMETERS)
 {
   const Packet* const packet = &c->Cells;
-  // Boxes take all their candidates, whatever the second smallest weight is, from which it is told that a sample is
-  // inside.
-  const int hasBoxes = c->HasBoxes;
+  // Aligned cells take all their candidates, whatever the second smallest weight is, from which it is told that a
+  // sample is inside.
+  const int hasAligned = c->HasAligned;
   FLOATS decisive = frame->Bound;
-  INTS box = 0;
-  if (hasBoxes)
+  INTS aligned = 0;
+  if (hasAligned)
   {
-    box = LanesOf(frame->Nice) & c->Box;
-    decisive = box ? (FLOATS)(-INFINITY) : frame->Bound;
+    aligned = LanesOf(frame->Nice) & c->Aligned;
+    decisive = aligned ? (FLOATS)(-INFINITY) : frame->Bound;
   }
   PacketScales scales;
   FindScales(frame, &scales);
@@ -153,11 +155,11 @@ static __attribute__((always_inline)) void TakeRounds(const PacketCandidates* c,
     {
       held &= InOutput(at.X + frame->X0, at.Y + frame->Y0, at.Z + frame->Z0, p);
     }
-    if (hasBoxes)
+    if (hasAligned)
     {
-      onVertex |= box & IsOnVertex(frame, &at);
+      onVertex |= aligned & IsOnVertex(frame, &at);
     }
-    if (hasBoxes || state || hasEdges > 0)
+    if (hasAligned || state || hasEdges > 0)
     {
       SnapWeights(onVertex, frame, &weights);
     }
@@ -179,9 +181,9 @@ static __attribute__((always_inline)) void TakeRounds(const PacketCandidates* c,
   }
 }
 
-// The samples of a packet of cells. mesh: where state is null. state: where the packet is on the border, if samples that
-// floats do not decide are to be decided by integers: those of the cells in only, as bits. Else null, and undecidedSamples takes
-// these samples. What cells that must be repeated have written is not counted.
+// The samples of a packet of cells. mesh: where state is null. state: where the packet is on the border, if samples
+// that floats do not decide are to be decided by integers: those of the cells in only, as bits. Else null, and
+// undecidedSamples takes these samples. What cells that must be repeated have written is not counted.
 static __attribute__((always_inline)) void ResamplePacket(
   const PacketCandidates* c, uint only, const PacketState* state, const SamplingMesh* mesh,
   Output* output, Found* found, UndecidedSamples* undecidedSamples, Outcome* outcome,
@@ -249,8 +251,8 @@ static __attribute__((noinline)) uint ResampleByIntegers(
 }
 
 // The samples of some cells, as bits, from beginX to endX, that floats do not decide.
-static __attribute__((noinline)) void ResampleUndecided(const PacketCandidates* c, const UndecidedSamples* undecidedSamples,
-  uint wanted, int beginX, int endX, const SamplingMesh* mesh, Output* output,
+static __attribute__((noinline)) void ResampleUndecided(const PacketCandidates* c,
+  const UndecidedSamples* undecidedSamples, uint wanted, int beginX, int endX, const SamplingMesh* mesh, Output* output,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   Lanes first[3], count[3];

@@ -39,7 +39,7 @@ static __attribute__((always_inline)) void Advance(Walk* at)
   at->Place += 1 + WHERE(rowDone, at->ToNextRow) + WHERE(planeDone, at->ToNextPlane);
 }
 
-// The lanes whose candidate is a vertex of their cell, if that is a box.
+// The lanes whose candidate is a vertex of their cell, if that is aligned.
 static __attribute__((always_inline)) INTS IsOnVertex(const PacketFrame* f, const Walk* at)
 {
   const FLOATS x = at->X + f->X0, y = at->Y + f->Y0, z = at->Z + f->Z0;

@@ -209,8 +209,8 @@ static __attribute__((always_inline)) void WeighSamples(const PacketFrame* f,
   w->Scale = scales->Central;
 }
 
-// Returns which of some cells, as bits, hold their sample. undecidedByFloats: those that may hold it. A cell holds it where
-// three weights exceed decisive, and does not where one is under -bound.
+// Returns which of some cells, as bits, hold their sample. undecidedByFloats: those that may hold it. A cell holds it
+// where three weights exceed decisive, and does not where one is under -bound.
 static __attribute__((always_inline)) uint DecideByFloats(
   const SampleWeights* w, uint some, FLOATS decisive, FLOATS bound, uint* undecidedByFloats)
 {
