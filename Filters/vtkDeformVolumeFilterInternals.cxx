@@ -236,7 +236,8 @@ void vtkDeformVolumeFilter::vtkInternals::CheckReferenceOfRanks(
 }
 
 //------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::vtkInternals::CheckReach(const deformvolume::VoxelGrid& voxelGrid) const
+void vtkDeformVolumeFilter::vtkInternals::CheckOutputIndices(
+  const deformvolume::VoxelGrid& voxelGrid) const
 {
   if (!this->Reference)
   {
@@ -320,7 +321,7 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::MakeSource(
       { this->Self->DisplacementScale, this->Self->PointsAreDeformed, this->Self->FieldIsInverse });
   source.Volume = volume;
   source.ToOutput = deformvolume::GetOutputMap(volume, this->GetOutputGeometry(volume));
-  this->CheckReach({ volume.PointExtent, source.ToOutput, {} });
+  this->CheckOutputIndices({ volume.PointExtent, source.ToOutput, {} });
   return source;
 }
 

@@ -60,7 +60,7 @@ public:
   void CheckReferenceOfRanks(const deformvolume::Ranks& ranks) const;
   /// Throws an Error where a volume has indices in the grid of the reference image that the kernels
   /// cannot have.
-  void CheckReach(const deformvolume::VoxelGrid& voxelGrid) const;
+  void CheckOutputIndices(const deformvolume::VoxelGrid& voxelGrid) const;
   /// Warns where settings are without effect beside the reference image.
   void WarnOfReference();
   /// Warns that all of the output is background.

@@ -97,7 +97,7 @@ MUTATIONS = {
                     "this->NumberOfSwitchedOff -= CountBits(this->Base[cell] ^ this->Mask[cell]);", "",
                     [("TestMaskEditor", "*")]),
     "filter-bent": ("Kernels/Resampling/PacketWeights.cl", "(FLOATS)(3.2e-5f)", "(FLOATS)(3.2e-7f)", [NARROW]),
-    "mask-reach": ("Kernels/Incremental/IncrementalChanges.cxx", "MaskReach = 1;", "MaskReach = 0;", [MASKS]),
+    "mask-halo": ("Kernels/Incremental/IncrementalChanges.cxx", "MaskHalo = 1;", "MaskHalo = 0;", [MASKS]),
     "old-winners": ("Kernels/Output/OutputWinners.cxx",
                     "    FillPatches(context, this->Queue, this->Keys,\n"
                     "      ElementBytes::Of(std::numeric_limits<cl_uint>::max()), this->KeySize / sizeof(cl_uint), list,\n"
@@ -231,7 +231,7 @@ MUTATIONS = {
                      "isDivision && isClear", [CROSSINGS]),
     "cut-copies": ("Kernels/Incremental/IncrementalBoxes.cxx", "      low -= difference;\n      high += difference;\n",
                    "", [CUT_PARTS]),
-    "cut-reach": ("Kernels/SamplingMesh/BrickGrid.h", "ReachOfCuts = 2;", "ReachOfCuts = 1;", [CUT_PARTS]),
+    "cut-halo": ("Kernels/SamplingMesh/BrickGrid.h", "HaloOfCuts = 2;", "HaloOfCuts = 1;", [CUT_PARTS]),
     "fem-history": ("Kernels/FiniteElements/TangentSolver.cxx", "  this->History.ForgetProducts();\n", "",
                     [FINITE_ELEMENTS]),
     "fem-tangent": ("Kernels/FiniteElements/EquilibriumSolver.cxx",

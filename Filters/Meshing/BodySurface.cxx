@@ -292,7 +292,7 @@ vtkSmartPointer<vtkPolyData> MakeBodySurface(
 }
 
 void GrowAround(
-  vtkPolyData* surface, const std::vector<glm::dvec3>& outside, double beyond, double reach)
+  vtkPolyData* surface, const std::vector<glm::dvec3>& outside, double beyond, double limit)
 {
   const vtkSmartPointer<vtkPolyData> normals = FindNormals(surface);
   vtkDataArray* outwards = normals->GetCellData()->GetNormals();
@@ -312,7 +312,7 @@ void GrowAround(
     double square = 0.0;
     double query[3] = { voxel.x, voxel.y, voxel.z };
     locator->FindClosestPoint(query, &closest.x, cell, triangle, part, square);
-    if (!(square <= reach * reach))
+    if (!(square <= limit * limit))
     {
       throw SurfaceRejected("A part of the body lies too far outside the surface.");
     }

@@ -33,9 +33,9 @@ vtkSmartPointer<vtkPolyData> MakeBodySurface(
 
 /// Moves vertices of a surface outwards, so that it comes closer to enclosing these positions,
 /// which lie outside. After enough calls they lie inside, at the distance `beyond`. Throws
-/// SurfaceRejected where one is farther away than `reach`.
+/// SurfaceRejected where one is farther away than `limit`.
 void GrowAround(
-  vtkPolyData* surface, const std::vector<glm::dvec3>& outside, double beyond, double reach);
+  vtkPolyData* surface, const std::vector<glm::dvec3>& outside, double beyond, double limit);
 
 /// The same surface with each vertex so far inwards.
 vtkSmartPointer<vtkPolyData> Shrink(vtkPolyData* surface, double distance);

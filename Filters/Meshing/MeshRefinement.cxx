@@ -285,13 +285,13 @@ std::vector<glm::dvec3> MakePoints(
     // no edge is longer than the lattice constant.
     const RefinementSphere& sphere = spheres[index];
     const double constant = LatticeShare * sphere.EdgeLength;
-    const double reach = sphere.Radius + constant;
+    const double radius = sphere.Radius + constant;
     int first[3];
     int last[3];
     for (int axis = 0; axis < 3; ++axis)
     {
-      const double low = std::max(bounds[2 * axis], sphere.Center[axis] - reach);
-      const double high = std::min(bounds[2 * axis + 1], sphere.Center[axis] + reach);
+      const double low = std::max(bounds[2 * axis], sphere.Center[axis] - radius);
+      const double high = std::min(bounds[2 * axis + 1], sphere.Center[axis] + radius);
       first[axis] = static_cast<int>(std::ceil((low - sphere.Center[axis]) / constant * 2.0));
       last[axis] = static_cast<int>(std::floor((high - sphere.Center[axis]) / constant * 2.0));
     }
@@ -307,7 +307,7 @@ std::vector<glm::dvec3> MakePoints(
           }
           const glm::dvec3 offset = 0.5 * constant * glm::dvec3(i, j, k);
           const glm::dvec3 point = sphere.Center + offset;
-          if (glm::length(offset) > reach || IsTaken(point, spheres, index))
+          if (glm::length(offset) > radius || IsTaken(point, spheres, index))
           {
             continue;
           }

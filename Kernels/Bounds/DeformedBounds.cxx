@@ -118,11 +118,11 @@ private:
   static IndexBounds Surround(
     const glm::dvec3& center, const glm::dmat3& matrix, const glm::dvec3& half)
   {
-    const glm::dvec3 reach =
+    const glm::dvec3 extended =
       glm::abs(matrix[0]) * half.x + glm::abs(matrix[1]) * half.y + glm::abs(matrix[2]) * half.z;
     IndexBounds bounds;
-    bounds.Add(center - reach);
-    bounds.Add(center + reach);
+    bounds.Add(center - extended);
+    bounds.Add(center + extended);
     return bounds;
   }
 
@@ -243,14 +243,14 @@ IndexBounds ComputeBoundsOfCells(
     return IndexBounds();
   }
   // Cells at the field's border reach as far as it counts.
-  IndexBounds reach = geometry.ToField(box);
+  IndexBounds extended = geometry.ToField(box);
   if (!field.Extrapolate)
   {
-    reach.Min = glm::dvec3(0.0);
-    reach.Max = geometry.Last;
+    extended.Min = glm::dvec3(0.0);
+    extended.Max = geometry.Last;
   }
-  reach.Min = glm::min(reach.Min, glm::dvec3(0.0)) - BoundsTolerance;
-  reach.Max = glm::max(reach.Max, geometry.Last) + BoundsTolerance;
+  extended.Min = glm::min(extended.Min, glm::dvec3(0.0)) - BoundsTolerance;
+  extended.Max = glm::max(extended.Max, geometry.Last) + BoundsTolerance;
 
   const OutputTransform transform = GetOutputTransform(voxelGrid);
   std::int64_t cells[3];
@@ -270,8 +270,8 @@ IndexBounds ComputeBoundsOfCells(
         for (int axis = 0; axis < 3; ++axis)
         {
           const double low = static_cast<double>(index[axis]);
-          cellBox.Min[axis] = index[axis] == 0 ? reach.Min[axis] : low;
-          cellBox.Max[axis] = index[axis] == cells[axis] - 1 ? reach.Max[axis] : low + 1.0;
+          cellBox.Min[axis] = index[axis] == 0 ? extended.Min[axis] : low;
+          cellBox.Max[axis] = index[axis] == cells[axis] - 1 ? extended.Max[axis] : low + 1.0;
         }
         rest = geometry.ToIndex(cellBox);
         rest.Min = glm::max(rest.Min, covered.Min);

@@ -89,10 +89,10 @@ void ChainMailHandles::Select(const ChainMailBlocks& blocks, const std::array<do
     const int last = blocks.GetSize()[axis] - 1;
     at[axis] = handle.RestPosition[axis] - blocks.GetExtent()[2 * axis];
     nearest[axis] = std::clamp(static_cast<int>(std::lround(at[axis])), 0, last);
-    const double reach = handle.Radius / spacing[axis];
-    box[2 * axis] = static_cast<int>(std::clamp(std::ceil(at[axis] - reach), 0.0, last + 1.0));
+    const double radius = handle.Radius / spacing[axis];
+    box[2 * axis] = static_cast<int>(std::clamp(std::ceil(at[axis] - radius), 0.0, last + 1.0));
     box[2 * axis + 1] =
-      static_cast<int>(std::clamp(std::floor(at[axis] + reach), -1.0, 0.0 + last));
+      static_cast<int>(std::clamp(std::floor(at[axis] + radius), -1.0, 0.0 + last));
   }
   this->Voxels.push_back({ blocks.GetPlace(nearest[0], nearest[1], nearest[2]), number });
   const double limit = handle.Radius * handle.Radius;

@@ -2,7 +2,7 @@
 #include "Carving.h"
 
 #include "BrickEdit.h"
-#include "CarvingReach.h"
+#include "CarvingContainment.h"
 #include "Error.h"
 
 #include <glm/geometric.hpp>
@@ -176,13 +176,13 @@ TetrahedronSet FindCarvedTetrahedra(const VertexPositions& positions, const Carv
     positions.GetBricks().GetNumberOfBricks(),
     [&](std::size_t brick, BrickEdit& edit)
     {
-      const CarvingReach reach = FindReach(positions.GetBox(brick), tool);
-      if (reach == CarvingReach::Nothing)
+      const CarvingContainment containment = FindContainment(positions.GetBox(brick), tool);
+      if (containment == CarvingContainment::Nothing)
       {
         return;
       }
       edit.Set(positions, brick);
-      if (reach == CarvingReach::All)
+      if (containment == CarvingContainment::All)
       {
         CarveAll(edit);
         return;

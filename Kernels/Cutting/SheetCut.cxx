@@ -48,9 +48,9 @@ public:
   {
     this->Tree.Find(box, numbers);
   }
-  bool MayReach(std::size_t triangle, const SnappedBox& box) const
+  bool MayIntersect(std::size_t triangle, const SnappedBox& box) const
   {
-    return this->Crossings[triangle].MayReach(box);
+    return this->Crossings[triangle].MayIntersect(box);
   }
   // Calls function(place of a cell, tetrahedron, its vertices, which of them are above the plane of
   // the triangle) for the tetrahedra of a brick that a triangle may cross.
@@ -143,7 +143,7 @@ std::vector<std::size_t> FindNear(const SheetTriangles& triangles, const VertexP
                 "cross out to more than 2,048 voxels. Cut before it is deformed so far.");
   }
   near.erase(std::remove_if(near.begin(), near.end(),
-               [&](std::size_t triangle) { return !triangles.MayReach(triangle, box); }),
+               [&](std::size_t triangle) { return !triangles.MayIntersect(triangle, box); }),
     near.end());
   if (!near.empty())
   {
@@ -186,7 +186,7 @@ void Cross(
   const SheetTriangles& triangles, std::size_t triangle, BrickEdit& edit, BrickCrossings& crossings)
 {
   const TriangleCrossing& crossing = triangles.GetCrossing(triangle);
-  const auto reach = [&](std::size_t vertex, bool isAbove)
+  const auto join = [&](std::size_t vertex, bool isAbove)
   {
     const auto far =
       static_cast<float>(std::max(crossing.GetDistance(edit.GetPosition(vertex)), LeastDistance));
@@ -205,8 +205,8 @@ void Cross(
           crossing.CrossesEdge(edit.GetPosition(v[a]), edit.GetPosition(v[b])))
         {
           crossed.Edges |= 1U << (6U * static_cast<unsigned int>(t) + k);
-          reach(v[a], isAbove[a]);
-          reach(v[b], isAbove[b]);
+          join(v[a], isAbove[a]);
+          join(v[b], isAbove[b]);
         }
       }
       if (crossed.Edges != 0)

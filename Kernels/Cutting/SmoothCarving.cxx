@@ -2,7 +2,7 @@
 // Carving with a boundary that passes through tetrahedra.
 #include "BrickEdit.h"
 #include "Carving.h"
-#include "CarvingReach.h"
+#include "CarvingContainment.h"
 #include "DistanceGatherer.h"
 
 #include <algorithm>
@@ -138,7 +138,7 @@ SmoothCarving FindSmoothCarving(const VertexPositions& positions, const CarvingT
     positions.GetBricks().GetNumberOfBricks(),
     [&](std::size_t brick, BrickEdit& edit)
     {
-      if (FindReach(positions.GetBox(brick), tool) == CarvingReach::Nothing)
+      if (FindContainment(positions.GetBox(brick), tool) == CarvingContainment::Nothing)
       {
         return;
       }

@@ -137,10 +137,10 @@ CarvingTool MakeSurfaceInterior(const Sheet& surface, const SnappedBox& within)
                 "or cut with it as a sheet.");
   }
   // What rays from the box can cross.
-  SnappedBox reach = within;
-  reach.Max.x = Beyond;
+  SnappedBox swept = within;
+  swept.Max.x = Beyond;
   std::vector<RayTriangle> triangles;
-  for (const SnappedTriangle& triangle : surface.Divide(reach))
+  for (const SnappedTriangle& triangle : surface.Divide(swept))
   {
     triangles.emplace_back(triangle);
   }

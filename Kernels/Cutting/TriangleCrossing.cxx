@@ -26,7 +26,7 @@ bool TriangleCrossing::AreApart(const SnappedBox& box, const SnappedPoint& direc
     boxHigh < std::min(std::int64_t{ 0 }, std::min(second, third));
 }
 
-bool TriangleCrossing::MayReach(const SnappedBox& box) const
+bool TriangleCrossing::MayIntersect(const SnappedBox& box) const
 {
   if (this->AreApart(box, this->Normal))
   {

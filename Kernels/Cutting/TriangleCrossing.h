@@ -39,7 +39,7 @@ public:
   static constexpr std::int64_t LargestBox = std::int64_t{ 1 } << 19;
 
   /// False only where the triangle and a box are apart.
-  bool MayReach(const SnappedBox& box) const;
+  bool MayIntersect(const SnappedBox& box) const;
 
   /// Whether a vertex lies above the plane of the triangle.
   bool IsAbove(const SnappedPoint& vertex) const

@@ -103,9 +103,9 @@ void RestRegions::AddTetrahedron(const Tetrahedron& tetrahedron,
       steps[axis] += gradient[axis] * nodes[node];
     }
   }
-  const glm::dvec3 reach = outside * (moved.Max - moved.Min);
-  moved.Min -= reach;
-  moved.Max += reach;
+  const glm::dvec3 widening = outside * (moved.Max - moved.Min);
+  moved.Min -= widening;
+  moved.Max += widening;
   rest.Min -= LinkTolerance;
   rest.Max += LinkTolerance;
 
@@ -182,7 +182,7 @@ RestRegions::RestRegions(const VoxelGrid& voxelGrid, const DisplacementField& fi
         const Extent voxels = this->GetVoxels(place);
         std::int64_t low[3];
         std::int64_t high[3];
-        bool reachesOut = false;
+        bool hasOutside = false;
         for (int axis = 0; axis < 3; ++axis)
         {
           const double* row = &field.IndexToField[4 * axis];
@@ -197,12 +197,12 @@ RestRegions::RestRegions(const VoxelGrid& voxelGrid, const DisplacementField& fi
           // cell off.
           constexpr double margin = 0.25;
           const double end = field.Dimensions[axis] - 1;
-          reachesOut = reachesOut || from < 0.0 || to > end;
+          hasOutside = hasOutside || from < 0.0 || to > end;
           low[axis] = static_cast<std::int64_t>(glm::clamp(std::floor(from - margin), 0.0, end));
           high[axis] = static_cast<std::int64_t>(glm::clamp(std::ceil(to + margin), 0.0, end));
         }
         IndexBounds displacement;
-        if (reachesOut && IsFading(field))
+        if (hasOutside && IsFading(field))
         {
           displacement.Add(glm::dvec3(0.0));
         }

@@ -207,11 +207,11 @@ void VolumeDeformer::SetCut(const unsigned char* crossed, const float* distances
   this->Impl->Send(
     [&](Internals::Parts& parts)
     {
-      const int reach = parts.Volume.GetBricks().Reach;
+      const int halo = parts.Volume.GetBricks().Halo;
       const std::vector<Extent> changes = parts.Volume.SetCut(crossed, distances);
-      if (reach != parts.Volume.GetBricks().Reach)
+      if (halo != parts.Volume.GetBricks().Halo)
       {
-        parts.Source.ChangeReach();
+        parts.Source.ChangeHalo();
       }
       parts.Incremental.ChangeCut(changes);
     });

@@ -113,7 +113,7 @@ void BrickPoints::Collect(const BrickGrid& grid, const Mesh& mesh, Visit&& visit
             });
         }
       };
-      visit(grid.GetVertices(brick, grid.Reach), need, add);
+      visit(grid.GetVertices(brick, grid.Halo), need, add);
       if (!mesh.Boundary.empty())
       {
         std::for_each(mesh.Boundary[brick].begin(), mesh.Boundary[brick].end(), add);
@@ -205,7 +205,7 @@ BrickPoints BrickPoints::FromField(
   points.Fades = field.Fading[0] > 0.0F;
   for (std::size_t brick = 0; brick < grid.GetNumberOfBricks(); ++brick)
   {
-    const Extent vertices = grid.GetVertices(brick, grid.Reach);
+    const Extent vertices = grid.GetVertices(brick, grid.Halo);
     Extent box;
     for (int axis = 0; axis < 3; ++axis)
     {

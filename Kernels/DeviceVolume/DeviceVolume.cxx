@@ -404,7 +404,7 @@ std::vector<Extent> DeviceVolume::SetCut(const unsigned char* crossed, const flo
     this->Cut.Set(this->Context, this->Queue, this->Shape, crossed, distances);
   if (this->HasCut())
   {
-    this->Bricks.Reach = BrickGrid::ReachOfCuts; // from now on, as another cut may follow
+    this->Bricks.Halo = BrickGrid::HaloOfCuts; // from now on, as another cut may follow
   }
   this->States.ChangeSources(changes);
   this->Bridges.ChangeVertices(changes);

@@ -34,7 +34,7 @@ std::vector<cl_uint> VertexCuboids::GetAll() const
   return all;
 }
 
-std::vector<cl_uint> VertexCuboids::Find(const std::vector<Extent>& boxes, int reach) const
+std::vector<cl_uint> VertexCuboids::Find(const std::vector<Extent>& boxes, int halo) const
 {
   std::vector<cl_uint> cuboids;
   for (const Extent& box : boxes)
@@ -42,8 +42,8 @@ std::vector<cl_uint> VertexCuboids::Find(const std::vector<Extent>& boxes, int r
     std::array<std::int64_t, 6> touched; // first and last cuboid on each axis
     for (int axis = 0; axis < 3; ++axis)
     {
-      const int first = std::max(box[2 * axis] - reach, this->First[axis]) - this->First[axis];
-      const int last = std::min(box[2 * axis + 1] + reach, this->End[axis] - 1) - this->First[axis];
+      const int first = std::max(box[2 * axis] - halo, this->First[axis]) - this->First[axis];
+      const int last = std::min(box[2 * axis + 1] + halo, this->End[axis] - 1) - this->First[axis];
       touched[2 * axis] = first / Sizes[axis];
       touched[2 * axis + 1] = last < first ? touched[2 * axis] - 1 : last / Sizes[axis];
     }

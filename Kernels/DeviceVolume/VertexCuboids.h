@@ -28,7 +28,7 @@ public:
 
   std::vector<cl_uint> GetAll() const;
   /// Those with a vertex in some boxes, or so many beyond them; in ascending order.
-  std::vector<cl_uint> Find(const std::vector<Extent>& boxes, int reach) const;
+  std::vector<cl_uint> Find(const std::vector<Extent>& boxes, int halo) const;
   /// Local indices of the cells whose first vertex a cuboid has.
   Extent GetCells(cl_uint cuboid) const;
 

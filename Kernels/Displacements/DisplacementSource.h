@@ -93,8 +93,8 @@ public:
 
   /// Which points move the sub-bricks of the volume, where that is one chunk.
   BrickPoints MakeBrickPoints() const;
-  /// Bricks look further or less far than before (BrickGrid::Reach).
-  void ChangeReach() { this->BoundsOfSubBricks.clear(); }
+  /// Bricks look further or less far than before (BrickGrid::Halo).
+  void ChangeHalo() { this->BoundsOfSubBricks.clear(); }
   /// Calls a function with the displacements as they are now, or with what is known of them, and
   /// how many they are.
   void Visit(const std::function<void(const Displacements&, std::size_t)>& visit) const;

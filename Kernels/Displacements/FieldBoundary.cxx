@@ -91,12 +91,12 @@ MeshBoundary FindFieldBoundary(
     [&](std::int64_t x, std::int64_t y, std::int64_t z)
     {
       const glm::dvec3 middle = (toField * (glm::dvec3(x, y, z) + 0.5) + offset) / step;
-      const glm::dvec3 reach = (0.5 + BoundaryTolerance) *
+      const glm::dvec3 margin = (0.5 + BoundaryTolerance) *
         (glm::abs(toField[0]) + glm::abs(toField[1]) + glm::abs(toField[2])) / step;
       const glm::i64vec3 first(
-        glm::clamp(glm::floor(middle - reach), glm::dvec3(0.0), glm::dvec3(cells)));
+        glm::clamp(glm::floor(middle - margin), glm::dvec3(0.0), glm::dvec3(cells)));
       const glm::i64vec3 end(
-        glm::clamp(glm::floor(middle + reach) + 1.0, glm::dvec3(0.0), glm::dvec3(cells)));
+        glm::clamp(glm::floor(middle + margin) + 1.0, glm::dvec3(0.0), glm::dvec3(cells)));
       for (std::int64_t k = first.z; k < end.z; ++k)
       {
         for (std::int64_t j = first.y; j < end.y; ++j)

@@ -120,16 +120,16 @@ IncrementalUpdate::Box IncrementalUpdate::MakeBox(
   return box;
 }
 
-IncrementalUpdate::Box IncrementalUpdate::GetReach() const
+IncrementalUpdate::Box IncrementalUpdate::GetDirtyBox() const
 {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  Box reach{ { { infinity, infinity, infinity } }, { { -infinity, -infinity, -infinity } } };
+  Box dirtyBox{ { { infinity, infinity, infinity } }, { { -infinity, -infinity, -infinity } } };
   const auto add = [&](const Box& box)
   {
     for (int axis = 0; axis < 3 && box.Min[0] <= box.Max[0]; ++axis)
     {
-      reach.Min[axis] = std::min(reach.Min[axis], box.Min[axis] - DEFORMVOLUME_PATCH);
-      reach.Max[axis] = std::max(reach.Max[axis], box.Max[axis] + DEFORMVOLUME_PATCH);
+      dirtyBox.Min[axis] = std::min(dirtyBox.Min[axis], box.Min[axis] - DEFORMVOLUME_PATCH);
+      dirtyBox.Max[axis] = std::max(dirtyBox.Max[axis], box.Max[axis] + DEFORMVOLUME_PATCH);
     }
   };
   for (std::size_t subBrick = 0; subBrick < this->Moved.size(); ++subBrick)
@@ -143,7 +143,7 @@ IncrementalUpdate::Box IncrementalUpdate::GetReach() const
       }
     }
   }
-  return reach;
+  return dirtyBox;
 }
 
 bool IncrementalUpdate::TouchesPatches(
@@ -206,9 +206,9 @@ void IncrementalUpdate::FindBoxes(const Displacements& displacements, std::size_
     this->AllBounds = this->ComputeAllBounds(displacements, numberOfPoints);
   }
   this->FindChangedBoxes(displacements);
-  const Box reach = this->GetReach();
+  const Box dirtyBox = this->GetDirtyBox();
   this->FindBoxesOf([&](std::size_t subBrick)
-    { return !IsApart(this->MakeBox(subBrick, *this->AllBounds), reach); },
+    { return !IsApart(this->MakeBox(subBrick, *this->AllBounds), dirtyBox); },
     displacements);
   this->BoxesKnown = true;
 }

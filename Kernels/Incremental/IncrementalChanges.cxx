@@ -17,15 +17,15 @@ namespace
 // on the vertices and the cells that share a cell with it. So a vertex or a cell that is masked
 // matters to cells that have one of their vertices in a cell with it, or in it: it lies at most one
 // voxel beyond their vertices.
-constexpr int MaskReach = 1;
+constexpr int MaskHalo = 1;
 
 } // namespace
 
-void IncrementalUpdate::SetReach(int reach)
+void IncrementalUpdate::SetHalo(int halo)
 {
-  if (this->Grid.Reach != reach)
+  if (this->Grid.Halo != halo)
   {
-    this->Bricks.Reach = this->Grid.Reach = reach;
+    this->Bricks.Halo = this->Grid.Halo = halo;
     this->Points = this->PointsOfBricks = BrickPoints(); // there may be more of them
   }
 }
@@ -170,7 +170,7 @@ void IncrementalUpdate::AddMoved(const DisplacementBounds& after)
 }
 
 template <typename Body>
-void IncrementalUpdate::ForSubBricks(const Extent& box, int more, int reach, Body&& body) const
+void IncrementalUpdate::ForSubBricks(const Extent& box, int more, int halo, Body&& body) const
 {
   std::array<int, 6> subBricks; // first and last one on each axis that may be near
   for (int axis = 0; axis < 3; ++axis)
@@ -180,8 +180,8 @@ void IncrementalUpdate::ForSubBricks(const Extent& box, int more, int reach, Bod
       const int place = (vertex - this->Grid.Origin[axis]) / this->Grid.Cells[axis];
       return std::min(std::max(place, 0), this->Grid.Count[axis] - 1);
     };
-    subBricks[2 * axis] = find(box[2 * axis] - reach - 1);
-    subBricks[2 * axis + 1] = find(box[2 * axis + 1] + more + reach);
+    subBricks[2 * axis] = find(box[2 * axis] - halo - 1);
+    subBricks[2 * axis + 1] = find(box[2 * axis + 1] + more + halo);
   }
   for (int z = subBricks[4]; z <= subBricks[5]; ++z)
   {
@@ -194,7 +194,7 @@ void IncrementalUpdate::ForSubBricks(const Extent& box, int more, int reach, Bod
             static_cast<std::size_t>(y)) *
             static_cast<std::size_t>(this->Grid.Count[0]) +
           static_cast<std::size_t>(x);
-        const Extent region = this->Grid.GetVertices(subBrick, reach);
+        const Extent region = this->Grid.GetVertices(subBrick, halo);
         bool touches = true;
         for (int axis = 0; axis < 3; ++axis)
         {
@@ -217,12 +217,12 @@ void IncrementalUpdate::ChangeMask(const std::vector<Extent>& changes, bool ofCe
     return;
   }
   // A smooth cut looks at the states of the vertices that it moves others by.
-  const bool hasCuts = this->Grid.Reach != BrickGrid::LeastReach;
-  const int reach = MaskReach + (hasCuts ? BrickGrid::ReachOfCuts : 0);
+  const bool hasCuts = this->Grid.Halo != BrickGrid::LeastHalo;
+  const int halo = MaskHalo + (hasCuts ? BrickGrid::HaloOfCuts : 0);
   for (const Extent& box : changes)
   {
     // A cell reaches to the next vertices.
-    this->ForSubBricks(box, ofCells ? 1 : 0, reach,
+    this->ForSubBricks(box, ofCells ? 1 : 0, halo,
       [&](std::size_t subBrick) { this->Masked[subBrick] |= this->HasCells(subBrick) ? 1 : 0; });
   }
   if (!changes.empty())

@@ -89,7 +89,7 @@ void IncrementalOutput::ChangeCut(const std::vector<Extent>& boxes)
     return;
   }
   this->CutIsKnown = false;
-  this->Changes.SetReach(this->Volume.GetBricks().Reach);
+  this->Changes.SetHalo(this->Volume.GetBricks().Halo);
   if (this->Changes.IsTracking())
   {
     this->Changes.AddCut(this->Volume.GetCutVertices());

@@ -173,11 +173,11 @@ void IncrementalUpdate::PlanPatches(const std::vector<std::size_t>& changed,
   {
     this->MarkChangedPatches(subBrick, dirty);
   }
-  const Box reach = this->GetReach();
+  const Box dirtyBox = this->GetDirtyBox();
   for (std::size_t subBrick = 0; subBrick < this->Places.size(); ++subBrick)
   {
     const auto [brick, bits] = this->Places[subBrick];
-    if (this->Known[subBrick] && !IsApart(this->Boxes[subBrick], reach) &&
+    if (this->Known[subBrick] && !IsApart(this->Boxes[subBrick], dirtyBox) &&
       (run[brick] & bits) != bits && this->TouchesPatches(this->Boxes[subBrick], dirty))
     {
       run[brick] |= bits;

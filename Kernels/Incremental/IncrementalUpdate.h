@@ -44,8 +44,8 @@ public:
 
   /// An output of this extent was made, wholly, of what is set now.
   void Start(const BrickGrid& bricks, const VoxelGrid& voxelGrid, const Extent& output);
-  /// How far bricks look from now on (BrickGrid::Reach).
-  void SetReach(int reach);
+  /// How far bricks look from now on (BrickGrid::Halo).
+  void SetHalo(int halo);
   /// The vertices of cells that a smooth cut crosses, since there is another one: after Start.
   void SetCut(const std::vector<CutVertex>& vertices);
   /// The same while it is tracked what changes: the last output still is that with the cut before.
@@ -116,7 +116,7 @@ private:
   /// Calls body(sub-brick) for those that have vertices of a box, or with more = 1 of cells of it,
   /// or so many voxels beyond.
   template <typename Body>
-  void ForSubBricks(const Extent& box, int more, int reach, Body&& body) const;
+  void ForSubBricks(const Extent& box, int more, int halo, Body&& body) const;
   /// A sub-brick is about to change by its points.
   void Move(std::size_t subBrick, const float* last);
   DisplacementBounds ComputeBounds(std::size_t subBrick, const Displacements& displacements) const;
@@ -141,7 +141,7 @@ private:
   }
   /// A box round the patches that the boxes of changed sub-bricks touch, before or after the
   /// change.
-  Box GetReach() const;
+  Box GetDirtyBox() const;
   static bool IsApart(const Box& a, const Box& b);
   bool HasOnlyInterior(std::size_t subBrick, const unsigned char* state, const Extent& box) const;
   Patches GetPatches(const Box& box) const;

@@ -108,21 +108,22 @@ void SheetCrossings::MarkCells(
   SnappedBox box;
   box.Add(firstCell * this->CellSize);
   box.Add((firstCell + (std::int64_t{ 1 } << level)) * this->CellSize);
-  const auto reaches = [&](std::size_t number)
+  const auto intersects = [&](std::size_t number)
   {
     const SnappedBox& other = this->Tree.GetBox(number);
-    return other.Overlaps(box) && (Contains(box, other) || this->Crossings[number].MayReach(box));
+    return other.Overlaps(box) &&
+      (Contains(box, other) || this->Crossings[number].MayIntersect(box));
   };
   if (level == 0)
   {
-    if (std::any_of(numbers.begin(), numbers.end(), reaches))
+    if (std::any_of(numbers.begin(), numbers.end(), intersects))
     {
       this->Sums[this->GetPlace(firstCell.x + 1, firstCell.y + 1, firstCell.z + 1)] = 1;
     }
     return;
   }
   std::vector<std::size_t> near;
-  std::copy_if(numbers.begin(), numbers.end(), std::back_inserter(near), reaches);
+  std::copy_if(numbers.begin(), numbers.end(), std::back_inserter(near), intersects);
   for (int child = 0; child < 8 && !near.empty(); ++child)
   {
     const SnappedPoint offset(child & 1, child >> 1 & 1, child >> 2);
@@ -166,7 +167,7 @@ bool SheetCrossings::HasMarkedCells(const SnappedBox& box) const
   return ofLayers(high.z) != ofLayers(low.z);
 }
 
-bool SheetCrossings::MayReach(const SnappedBox& box, std::vector<std::size_t>& scratch) const
+bool SheetCrossings::MayIntersect(const SnappedBox& box, std::vector<std::size_t>& scratch) const
 {
   if (!this->HasMarkedCells(box))
   {
@@ -175,7 +176,7 @@ bool SheetCrossings::MayReach(const SnappedBox& box, std::vector<std::size_t>& s
   scratch.clear();
   this->Tree.Find(box, scratch);
   return std::any_of(scratch.begin(), scratch.end(),
-    [&](std::size_t number) { return this->Crossings[number].MayReach(box); });
+    [&](std::size_t number) { return this->Crossings[number].MayIntersect(box); });
 }
 
 bool SheetCrossings::IsCrossedOddly(

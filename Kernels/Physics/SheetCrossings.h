@@ -52,7 +52,7 @@ public:
 
   /// False only where the sheet does not reach a box, which lies within that of the mesh. This and
   /// the next one may not be called where IsEmpty().
-  bool MayReach(const SnappedBox& box, std::vector<std::size_t>& scratch) const;
+  bool MayIntersect(const SnappedBox& box, std::vector<std::size_t>& scratch) const;
 
   /// Whether the sheet crosses the segment between two points of the mesh an odd number of times.
   /// The points count as moved, see TriangleCrossing: no segment meets an edge of the sheet. So a

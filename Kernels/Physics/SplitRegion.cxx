@@ -25,7 +25,7 @@ SnappedPoint Round(const glm::dvec3& point)
 // g + t (a - g) / 4, which lies in the first tetrahedron, and (1 - t) (b - g) / 4 away from there.
 // So it lies in the box of the tetrahedron where a is farther from g than b, made wider by a
 // quarter of its longest side. The steps are for what is rounded.
-SnappedBox GetReach(
+SnappedBox GetEnlargedBox(
   const std::vector<glm::dvec3>& positions, const Tetrahedron& tetrahedron, const MeshSteps& steps)
 {
   constexpr double rounding = 2.0;
@@ -80,7 +80,7 @@ SplitRegion::SplitRegion(const std::vector<glm::dvec3>& positions,
     [&]
     {
       return [&, scratch = std::vector<std::size_t>()](std::size_t t) mutable
-      { return crossings.MayReach(GetReach(positions, tetrahedra[t], steps), scratch); };
+      { return crossings.MayIntersect(GetEnlargedBox(positions, tetrahedra[t], steps), scratch); };
     });
   std::vector<unsigned char> isNodeOfNear(positions.size(), 0);
   for (const std::size_t t : near)

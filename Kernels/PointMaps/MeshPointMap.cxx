@@ -124,7 +124,7 @@ public:
   {
     const bool isAtRest = &configuration == &this->Rest;
     const Points& places = *configuration.Places;
-    const double reach = configuration.Size * MeshBorderTolerance;
+    const double tolerance = configuration.Size * MeshBorderTolerance;
     const double touching = configuration.Size * MeshFaceTolerance;
     Holder best;
     bool isBestNear = true; // and does not hold the point
@@ -154,7 +154,7 @@ public:
           // A weight is the distance from a face times the length of its gradient.
           const glm::dvec3 gradient = found.Map.GetGradient(node);
           const double squared = weights[node] * weights[node] / glm::dot(gradient, gradient);
-          if (squared > reach * reach)
+          if (squared > tolerance * tolerance)
           {
             return true;
           }

@@ -70,7 +70,7 @@ public:
         }
       }
     }
-    bool reachesOut = false;
+    bool hasBorder = false;
     IndexBounds box;
     for (int corner = 0; corner < 8; ++corner)
     {
@@ -80,14 +80,14 @@ public:
         const bool upper = (corner >> axis & 1) != 0;
         const int place = upper ? last[axis] : first[axis];
         const bool isBorder = place == (upper ? static_cast<int>(this->Last[axis]) : 0);
-        const double reach =
+        const double margin =
           isBorder ? (this->Field.Extrapolate ? Infinity : DEFORMVOLUME_LOOKUP_TOLERANCE) : 0.0;
-        point[axis] = place + (upper ? reach : -reach);
-        reachesOut = reachesOut || isBorder;
+        point[axis] = place + (upper ? margin : -margin);
+        hasBorder = hasBorder || isBorder;
       }
       box.Add(this->FromField * (point - this->Offset));
     }
-    if (reachesOut && IsFading(this->Field))
+    if (hasBorder && IsFading(this->Field))
     {
       vectors.Add(glm::dvec3(0.0));
     }

@@ -180,15 +180,15 @@ static int FindRest(const PieceMap* map, const TileTetrahedron* t, const int* vo
   {
     const REAL scale = INVERSE_ELEMENT(r, axis, axis);
     REAL at = MULTIPLY_ADD_REAL(moved[axis], scale, -OFFSET_ELEMENT(r, axis));
-    REAL reach = fabs(scale);
+    REAL absoluteSum = fabs(scale);
     for (int k = 0; r->HasTurnedAxes && k < 3; ++k)
     {
       const REAL element = k == axis ? 0 : INVERSE_ELEMENT(r, axis, k);
       at = MULTIPLY_ADD_REAL(moved[k], element, at);
-      reach += fabs(element);
+      absoluteSum += fabs(element);
     }
     // Corners are rounded to 1/256 output voxel.
-    const REAL tolerance = min((REAL)1, reach / 256);
+    const REAL tolerance = min((REAL)1, absoluteSum / 256);
     isInside &= at >= (REAL)first[axis] - tolerance && at <= (REAL)last[axis] + tolerance;
     rest[axis] = convert_long_rte(clamp(at, (REAL)first[axis], (REAL)last[axis]) * (REAL)(1 << REST_BITS));
   }

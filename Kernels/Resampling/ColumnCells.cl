@@ -153,7 +153,7 @@ static __attribute__((always_inline)) int TakeSamples(const PacketCandidates* c,
   BeginWalk(c, frame, &at, p);
   // The only vertex that may be among the candidates of an aligned cell inside the mesh is its lowest one, the first
   // candidate; but not so in passes for all cells that hold a voxel.
-  const int mayReachEnds = isComplete || DEFORMVOLUME_IS_CLOSED(p->Pass);
+  const int mayHoldEnds = isComplete || DEFORMVOLUME_IS_CLOSED(p->Pass);
   const int beginsOnVertex = aligned && IsOnVertex(frame, &at);
   const int beside = mesh && IsDecidedOnVertices(c, frame, &scales, p);
   uint writes = 0;
@@ -164,7 +164,7 @@ static __attribute__((always_inline)) int TakeSamples(const PacketCandidates* c,
     SampleWeights weights;
     uint undecidedByFloats;
     uint held = WeighCandidate(c, frame, &scales, &at, &weights, &undecidedByFloats);
-    int onVertex = i == 0 ? beginsOnVertex : mayReachEnds && aligned && IsOnVertex(frame, &at);
+    int onVertex = i == 0 ? beginsOnVertex : mayHoldEnds && aligned && IsOnVertex(frame, &at);
     if (beside && IsOnVertex(frame, &at))
     {
       undecidedByFloats = 0;

@@ -20,7 +20,7 @@ typedef struct
   uint Fit;         // of these the small ones all of whose tetrahedra are active and have positions
   uint Some;        // of these the ones that have candidates
   FLOATS Extent;    // the longest edge of the box
-  FLOATS Reach;     // the extent times the sum of the box's three faces, and more where normals are not exact
+  FLOATS BoundScale;     // the extent times the sum of the box's three faces, and more where normals are not exact
   INTS First[3];    // the first candidate, in voxels of the output
   INTS Count[3];    // how many on each axis
   INTS Place;       // of the first one in the output
@@ -191,10 +191,10 @@ static __attribute__((always_inline)) void MeasureCells(const Bounds* b, PacketC
   const uint there = LaneBits((b->LowX > 0.5f * NOT_THERE) & (b->LowX < 0.5f * NO_SOURCE));
   c->There = there;
   c->Extent = extent;
-  c->Reach = extent * fma(sizeX, sizeY, sizeZ * (sizeX + sizeY));
+  c->BoundScale = extent * fma(sizeX, sizeY, sizeZ * (sizeX + sizeY));
   if (LaneBits(extent > EXACT_NORMALS_EXTENT) & there)
   {
-    c->Reach *= extent > EXACT_NORMALS_EXTENT ? (FLOATS)(INEXACT_NORMALS) : (FLOATS)(1.0f);
+    c->BoundScale *= extent > EXACT_NORMALS_EXTENT ? (FLOATS)(INEXACT_NORMALS) : (FLOATS)(1.0f);
   }
 }
 

@@ -34,7 +34,7 @@
 // above 28 e k instead of 20, (13 + 73 M) e k instead of (9 + 53 M), and d more by a third (INEXACT_NORMALS).
 
 // Cells that are flatter are left out: d / D, which weights are off by at most, is 1.5e-3 or 7.4e-3 in others.
-#define MOST_REACH 4.35e-3f
+#define MOST_BOUND_SCALE 4.35e-3f
 
 // The central tetrahedra of a packet's cells.
 typedef struct
@@ -150,10 +150,10 @@ static __attribute__((always_inline)) void BoundErrors(
   const FLOATS leastOwn = Least(Least(f->B16, f->B43), Least(f->B25, f->B70));
   const INTS tame =
     (mostOwn <= f->Determinant * -0.42f) & (leastOther >= f->Determinant * 0.35f);
-  f->Bound = (tame ? (FLOATS)(6.5e-6f) : (FLOATS)(3.2e-5f)) * c->Reach;
+  f->Bound = (tame ? (FLOATS)(6.5e-6f) : (FLOATS)(3.2e-5f)) * c->BoundScale;
   f->Nice = fit &
     LaneBits((leastOther >= f->Determinant * 0.015625f) & (mostOwn <= f->Determinant * -0.125f) &
-      (leastOwn >= f->Determinant * -2.0f) & (c->Reach * MOST_REACH < f->Determinant));
+      (leastOwn >= f->Determinant * -2.0f) & (c->BoundScale * MOST_BOUND_SCALE < f->Determinant));
 }
 
 // fit: the cells that are small and complete, as bits.

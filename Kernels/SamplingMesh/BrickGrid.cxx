@@ -79,7 +79,7 @@ std::pair<std::size_t, std::uint32_t> BrickGrid::GetBrick(
       place[1] >= this->Cells[1] / 2, place[2] >= this->Cells[2] / 2) };
 }
 
-Extent BrickGrid::GetVertices(std::size_t brick, int reach) const
+Extent BrickGrid::GetVertices(std::size_t brick, int halo) const
 {
   const std::size_t index[3] = { brick % this->Count[0], brick / this->Count[0] % this->Count[1],
     brick / this->Count[0] / this->Count[1] };
@@ -87,8 +87,8 @@ Extent BrickGrid::GetVertices(std::size_t brick, int reach) const
   for (int axis = 0; axis < 3; ++axis)
   {
     const int begin = this->Origin[axis] + static_cast<int>(index[axis]) * this->Cells[axis];
-    vertices[2 * axis] = std::max(begin - reach, 0);
-    vertices[2 * axis + 1] = std::min(begin + this->Cells[axis] + reach, this->Size[axis] - 1);
+    vertices[2 * axis] = std::max(begin - halo, 0);
+    vertices[2 * axis + 1] = std::min(begin + this->Cells[axis] + halo, this->Size[axis] - 1);
   }
   return vertices;
 }

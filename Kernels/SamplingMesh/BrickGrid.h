@@ -34,12 +34,12 @@ struct BrickGrid
   std::array<int, 3> Cells{ { DEFORMVOLUME_BRICK_X, DEFORMVOLUME_BRICK_Y,
     DEFORMVOLUME_BRICK_Z } }; // of a brick
   /// How far a brick looks beyond its vertices: the fill rule asks the cells round a vertex.
-  static constexpr int LeastReach = 1;
+  static constexpr int LeastHalo = 1;
   /// Or where there is a smooth cut: it moves vertices by others that are so many voxels away
   /// (CutPositions.cl). The cells round a vertex add nothing: what a cut changes of those that are
   /// in another brick, that brick has changed, and the vertex lies in both.
-  static constexpr int ReachOfCuts = 2;
-  int Reach = LeastReach;
+  static constexpr int HaloOfCuts = 2;
+  int Halo = LeastHalo;
 
   std::size_t GetNumberOfBricks() const
   {
@@ -63,7 +63,7 @@ struct BrickGrid
 
   /// Local indices of the vertices of a brick, and so many beyond them on each side, within the
   /// voxel grid.
-  Extent GetVertices(std::size_t brick, int reach) const;
+  Extent GetVertices(std::size_t brick, int halo) const;
 };
 
 } // namespace deformvolume

@@ -36,7 +36,7 @@ struct TileSample
   std::int64_t Rows = 0;
   /// Runs in these rows.
   std::int64_t Runs = 0;
-  /// Those of them that are in slivers (LargestRunReach).
+  /// Those of them that are in slivers (LargestWeightVariation).
   std::int64_t RunsOfSlivers = 0;
 };
 

@@ -123,7 +123,7 @@ bool RunBuilder::IsSliver(std::int32_t tetrahedron) const
   map.SetTetrahedron(nodes, this->RestPoints);
   for (int node = 0; node < 3; ++node)
   {
-    if (!(glm::dot(glm::abs(map.GetGradient(node)), extent) <= LargestRunReach))
+    if (!(glm::dot(glm::abs(map.GetGradient(node)), extent) <= LargestWeightVariation))
     {
       return true;
     }

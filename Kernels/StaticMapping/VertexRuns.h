@@ -60,13 +60,13 @@ struct VertexRuns
 // That is less than 1/1024 output voxel for displacements under 8,192 voxels as long as S is under
 // 2,048, and less than 1/512 up to the limit of 16,383. S is bounded by what the tetrahedron's
 // nodes move against each other times the greatest value of the sum of |gradient component| times
-// extent, which LargestRunReach limits.
+// extent, which LargestWeightVariation limits.
 
 /// A tetrahedron has one record for all its runs where, for each of its first three weights, the
 /// sum over the axes of the size of the weight's derivative times the extent of the tetrahedron
 /// within the volume is at most this. Else it is a sliver, and each of its runs gets a record with
 /// an origin of its own: along a run weights change by 1 at most.
-constexpr double LargestRunReach = 32.0;
+constexpr double LargestWeightVariation = 32.0;
 
 /// The kernels form differences of indices in floats: no more voxels on an axis.
 constexpr std::int64_t LargestRunSize = 1 << 24;

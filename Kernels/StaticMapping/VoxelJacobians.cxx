@@ -109,12 +109,12 @@ public:
     glm::dmat3 alongField(0.0);
     for (int axis = 0; axis < 3; ++axis)
     {
-      const double reach = 0.5 *
+      const double halfStep = 0.5 *
         std::max({ std::abs(this->ToField[0][axis]), std::abs(this->ToField[1][axis]),
           std::abs(this->ToField[2][axis]) });
       const glm::dvec3 middle = glm::clamp(position, glm::dvec3(0.0), this->Last);
-      alongField[axis] = GetSlope(std::max(middle[axis] - reach, 0.0), middle[axis],
-        std::min(middle[axis] + reach, this->Last[axis]),
+      alongField[axis] = GetSlope(std::max(middle[axis] - halfStep, 0.0), middle[axis],
+        std::min(middle[axis] + halfStep, this->Last[axis]),
         [&](double place)
         {
           glm::dvec3 moved = middle;

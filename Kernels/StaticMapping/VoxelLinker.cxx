@@ -12,7 +12,7 @@ namespace
 
 // Rounding moves a node by up to 2^-9 voxel on each axis, and with it a voxel by this far out of
 // its tetrahedron, with room to spare.
-constexpr double RoundingDistance = VoxelLinker::Reach;
+constexpr double RoundingDistance = VoxelLinker::Margin;
 // A tetrahedron this thin can be distorted by rounding until its weights leave 0 to 1 noticeably.
 constexpr double ThinHeight = 1.0 / 16.0;
 constexpr double LeastThinWeight = -1.0 / 8.0;
@@ -48,7 +48,7 @@ VoxelLinker::VoxelLinker(const Extent& voxels, const std::vector<glm::dvec3>& re
   : RestPoints(restPoints)
   , Tetrahedra(tetrahedra)
   , Voxels(MakeVoxelBox(voxels))
-  , Tiles(voxels, restPoints, tetrahedra, Reach)
+  , Tiles(voxels, restPoints, tetrahedra, Margin)
 {
 }
 

@@ -70,7 +70,7 @@ public:
   VoxelLinker(const Extent& voxels, const std::vector<glm::dvec3>& restPoints,
     const std::vector<Tetrahedron>& tetrahedra);
   /// What a voxel gets depends only on the tetrahedra whose boxes, widened by so much, hold it.
-  static constexpr double Reach = 1.0 / 128.0;
+  static constexpr double Margin = 1.0 / 128.0;
 
   const TetrahedronTiles& GetTiles() const { return this->Tiles; }
 

@@ -162,7 +162,7 @@ ImageGeometry WorldDeformer::Internals::GetOutputGrid() const
   return output;
 }
 
-void WorldDeformer::Internals::CheckReach() const
+void WorldDeformer::Internals::CheckOutputIndices() const
 {
   if (!this->Reference)
   {
@@ -200,7 +200,7 @@ void WorldDeformer::Internals::UpdateDeformation()
     this->VolumeAtRest = this->Volume;
   }
   this->ToOutput = GetOutputMap(*this->Volume, this->GetOutputGrid());
-  this->CheckReach();
+  this->CheckOutputIndices();
   if (!this->IsMesh())
   {
     this->Field.Update(*this->Volume, this->ToOutput);

@@ -76,7 +76,7 @@ private:
   {
     return { this->Volume->PointExtent, this->ToOutput, this->Volume->PointExtent };
   }
-  void CheckReach() const;
+  void CheckOutputIndices() const;
   IndexBounds FindBounds();
 
   /// The arrays that are resampled: those of the volume, and those that are made of the request.

@@ -40,9 +40,9 @@ bool IsRefused(const std::function<void()>& function, const std::string& words)
 }
 
 // The sum that decides whether a tetrahedron is a sliver, from the definition in VertexRuns.h.
-double GetReach(const RestTetrahedron& rest, const Mesh& mesh, const Extent& voxels)
+double GetWeightVariation(const RestTetrahedron& rest, const Mesh& mesh, const Extent& voxels)
 {
-  double reach = 0.0;
+  double variation = 0.0;
   for (int k = 0; k < 3; ++k)
   {
     double sum = 0.0;
@@ -58,9 +58,9 @@ double GetReach(const RestTetrahedron& rest, const Mesh& mesh, const Extent& vox
       sum += std::abs(rest.Gradients[k][axis]) *
         (std::min<double>(max, voxels[2 * axis + 1]) - std::max<double>(min, voxels[2 * axis]));
     }
-    reach = std::max(reach, sum);
+    variation = std::max(variation, sum);
   }
-  return reach;
+  return variation;
 }
 
 // The origin is a voxel in the tetrahedron, whose nodes are rounded by up to 1/512 voxel on an
@@ -68,22 +68,22 @@ double GetReach(const RestTetrahedron& rest, const Mesh& mesh, const Extent& vox
 void CheckOrigin(const RestTetrahedron& rest, const Extent& voxels)
 {
   double last = 1.0;
-  double lastReach = 0.0;
+  double lastVariation = 0.0;
   for (int k = 0; k < 3; ++k)
   {
-    double reach = 0.0;
+    double variation = 0.0;
     for (int axis = 0; axis < 3; ++axis)
     {
       const double origin = rest.Origin[axis];
       CHECK(origin == std::floor(origin) && origin >= 0.0 &&
         origin < static_cast<double>(GetSize(voxels, axis)));
-      reach += std::abs(rest.Gradients[k][axis]) / 128.0;
+      variation += std::abs(rest.Gradients[k][axis]) / 128.0;
     }
-    CHECK(rest.Weights[k] >= -reach && rest.Weights[k] <= 1.0 + reach);
+    CHECK(rest.Weights[k] >= -variation && rest.Weights[k] <= 1.0 + variation);
     last -= rest.Weights[k];
-    lastReach += reach;
+    lastVariation += variation;
   }
-  CHECK(last >= -lastReach && last <= 1.0 + lastReach);
+  CHECK(last >= -lastVariation && last <= 1.0 + lastVariation);
 }
 
 // What displaces a voxel, bit for bit: counted from index 0 and not from the first voxel.
@@ -237,7 +237,7 @@ void Compare(const Mesh& mesh, const Extent& voxels)
       CHECK(last || record >= 0 || runs.Runs[i + 1].Tetrahedron >= 0);
       if (record >= 0)
       {
-        const bool sliver = GetReach(rest, mesh, voxels) > LargestRunReach;
+        const bool sliver = GetWeightVariation(rest, mesh, voxels) > LargestWeightVariation;
         const bool first = used.insert(record).second;
         CHECK(!sliver || first);
         // Records come in the order of the voxels; those of slivers lie where they are used.
@@ -251,7 +251,8 @@ void Compare(const Mesh& mesh, const Extent& voxels)
   std::set<std::int32_t> owners;
   for (const RestTetrahedron& rest : runs.Tetrahedra)
   {
-    CHECK(owners.insert(rest.Tetrahedron).second || GetReach(rest, mesh, voxels) > LargestRunReach);
+    CHECK(owners.insert(rest.Tetrahedron).second ||
+      GetWeightVariation(rest, mesh, voxels) > LargestWeightVariation);
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "CarvingReach.h"
+#include "CarvingContainment.h"
 
 #include "Carving.h"
 
@@ -22,15 +22,15 @@ bool AreSeparate(const SnappedBox& box, const IndexBounds& bounds)
 
 } // namespace
 
-CarvingReach FindReach(const SnappedBox& box, const CarvingTool& tool)
+CarvingContainment FindContainment(const SnappedBox& box, const CarvingTool& tool)
 {
   if (box.IsEmpty() || AreSeparate(box, tool.Bounds))
   {
-    return CarvingReach::Nothing;
+    return CarvingContainment::Nothing;
   }
   if (!tool.IsLinear)
   {
-    return CarvingReach::Some;
+    return CarvingContainment::Some;
   }
   constexpr double rounding = 1e-9; // of the largest value
   std::array<glm::dvec3, 8> corners;
@@ -43,9 +43,9 @@ CarvingReach FindReach(const SnappedBox& box, const CarvingTool& tool)
   tool.Function(corners.data(), corners.size(), values.data());
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
   const double near = rounding * std::max(std::abs(*least), std::abs(*most));
-  return *most < -near ? CarvingReach::All
-    : *least > near    ? CarvingReach::Nothing
-                       : CarvingReach::Some;
+  return *most < -near ? CarvingContainment::All
+    : *least > near    ? CarvingContainment::Nothing
+                       : CarvingContainment::Some;
 }
 
 } // namespace deformvolume

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef DeformVolumeCarvingReach_h
-#define DeformVolumeCarvingReach_h
+#ifndef DeformVolumeCarvingContainment_h
+#define DeformVolumeCarvingContainment_h
 
 #include "SnappedPoint.h"
 
@@ -10,14 +10,14 @@ namespace deformvolume
 struct CarvingTool;
 
 /// How much of a box a tool may hold.
-enum class CarvingReach
+enum class CarvingContainment
 {
   Nothing,
   Some,
   All // only told of linear tools
 };
 
-CarvingReach FindReach(const SnappedBox& box, const CarvingTool& tool);
+CarvingContainment FindContainment(const SnappedBox& box, const CarvingTool& tool);
 
 } // namespace deformvolume
 
