@@ -423,7 +423,7 @@ MUTATIONS = {
         "if (false)", ["Cxx.TestDeformGeometryFilter"]),
     "points-beside": ("Kernels/PointMaps/FieldPointMap.cxx", "if (found.IsBeside)\n",
         "if (false)\n", ["Cxx.TestDeformGeometryFilter"]),
-    "points-normals": ("Filters/vtkDeformGeometryFilter.cxx", "return length > 0.0 ? sign / length * turned : turned;",
+    "points-normals": ("Filters/Output/TransformedArrays.cxx", "return length > 0.0 ? sign / length * turned : turned;",
         "return length > 0.0 ? sign / length * (gradient * normal) : turned;", ["Cxx.TestDeformGeometryFilter"]),
     "points-current": ("Filters/Displacements/WorldDeformation.cxx", "source.DisplacementScale == this->LastScale",
         "true", ["Cxx.TestDeformGeometryFilter"]),
