@@ -4,35 +4,25 @@
 #include "AbortCheck.h"
 #include "FieldAtRest.h"
 #include "FieldFolds.h"
-#include "IndexBounds.h"
 #include "InputUpdate.h"
 #include "MaskArray.h"
-#include "OutputExtent.h"
 #include "OutsideMode.h"
-#include "PipelineGeometry.h"
 #include "ResamplerChoice.h"
 #include "VectorChoice.h"
 #include "VolumeArrays.h"
 
 #include "vtkDataObject.h"
 #include "vtkDataSet.h"
-#include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkPointData.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <iomanip>
-#include <sstream>
 #include <thread>
 
 using deformvolume::DeformationSource;
 using deformvolume::Error;
 using deformvolume::ImageGeometry;
-using deformvolume::IndexBounds;
 
 //------------------------------------------------------------------------------
 void vtkDeformVolumeFilter::vtkInternals::SelectState()
@@ -159,155 +149,6 @@ void vtkDeformVolumeFilter::vtkInternals::CheckOutside() const
     throw Error("OutsideMode is KEEP and OpenSplits is on, but what is outside the mesh is on "
                 "neither side of a split. Set OpenSplits off, or OutsideMode to DISCARD.");
   }
-}
-
-//------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::vtkInternals::ReadReference(vtkInformation* reference)
-{
-  const std::optional<ImageGeometry> last = this->Reference;
-  this->Reference.reset();
-  if (!reference)
-  {
-    return;
-  }
-  if (!reference->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
-  {
-    throw Error("The reference image on input port 3 announces no whole extent. Connect a "
-                "vtkImageData; from a composite dataset, extract one block.");
-  }
-  const ImageGeometry geometry = deformvolume::GetGeometry(reference);
-  if (deformvolume::GetNumberOfPoints(geometry.PointExtent) == 0)
-  {
-    throw Error("The reference image is empty: its extent is " +
-      deformvolume::DescribeExtent(geometry.PointExtent) + ". Connect a vtkImageData with voxels.");
-  }
-  deformvolume::CheckTransform(geometry, "the reference image");
-  double voxels = 1.0;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    voxels *= static_cast<double>(deformvolume::GetSize(geometry.PointExtent, axis));
-  }
-  if (voxels > deformvolume::MostOutputVoxels)
-  {
-    throw Error("The reference image has more than 2^48 voxels: its extent is " +
-      deformvolume::DescribeExtent(geometry.PointExtent) + ". Connect a smaller one.");
-  }
-  this->Reference = geometry;
-  if (this->Reference != last)
-  {
-    // Another grid wants other voxels, and none of those before.
-    for (auto& state : this->States)
-    {
-      state.second.LastShare = {};
-    }
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::vtkInternals::CheckReferenceOfRanks(
-  const deformvolume::Ranks& ranks) const
-{
-  if (!ranks.AreMany() || !ranks.IsAny(this->Reference.has_value()))
-  {
-    return;
-  }
-  const ImageGeometry grid = this->Reference.value_or(ImageGeometry());
-  std::vector<double> numbers(grid.PointExtent.begin(), grid.PointExtent.end());
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    numbers.insert(numbers.end(), { grid.Origin[axis], grid.Spacing[axis] });
-    for (int row = 0; row < 3; ++row)
-    {
-      numbers.push_back(grid.Direction[axis][row]);
-    }
-  }
-  bool areEqual = true;
-  for (const double number : numbers)
-  {
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, &number, sizeof(bits));
-    areEqual = ranks.AreEqual(bits) && areEqual;
-  }
-  if (!areEqual)
-  {
-    throw Error("The reference image on input port 3 has different grids on different ranks. "
-                "Connect a source that announces the same grid on all.");
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::vtkInternals::CheckOutputIndices(
-  const deformvolume::VoxelGrid& voxelGrid) const
-{
-  if (!this->Reference)
-  {
-    return;
-  }
-  const IndexBounds bounds =
-    deformvolume::GetOutputTransform(voxelGrid).ToOutput(deformvolume::GetBox(voxelGrid));
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const double farthest = std::max(std::abs(bounds.Min[axis]), std::abs(bounds.Max[axis]));
-    if (!(farthest <= deformvolume::MostOutputIndex))
-    {
-      std::ostringstream text;
-      text << "The volume at rest reaches to the index " << farthest
-           << " in the grid of the reference image on axis "
-           << "xyz"[axis] << ", beyond 2^21. The reference image has "
-           << deformvolume::DescribeTransform(*this->Reference)
-           << ". Connect one that lies where the volume does, in the same world units, or whose "
-              "spacing is greater.";
-      throw Error(text.str());
-    }
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::vtkInternals::WarnOfReference()
-{
-  std::string names;
-  const auto add = [&](bool isSet, const char* name)
-  { names += isSet && this->Reference ? (names.empty() ? "" : ", ") + std::string(name) : ""; };
-  add(this->Self->OutputBoundsMode != DEFORMED_BOUNDS, "OutputBoundsMode");
-  add(this->Self->Padding != 0, "Padding");
-  add(this->Self->BoundsGranularity > 1, "BoundsGranularity");
-  add(this->Self->OutputSpacingMode != VOLUME_SPACING, "OutputSpacingMode");
-  if (!names.empty() && names != this->WarnedOfSettings)
-  {
-    vtkWarningWithObjectMacro(this->Self,
-      "The output has the grid of the reference image on input port 3. These settings have no "
-      "effect: "
-        << names << ". Disconnect the reference image where they are wanted.");
-  }
-  this->WarnedOfSettings = names;
-}
-
-//------------------------------------------------------------------------------
-ImageGeometry vtkDeformVolumeFilter::vtkInternals::GetOutputGeometry(
-  const ImageGeometry& volume) const
-{
-  if (this->Reference)
-  {
-    return *this->Reference;
-  }
-  ImageGeometry output = volume;
-  output.PointExtent = ImageGeometry().PointExtent;
-  if (this->Self->OutputSpacingMode == CUSTOM_SPACING)
-  {
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const double spacing = this->Self->CustomSpacing[axis];
-      if (!std::isfinite(spacing) || spacing <= 0.0)
-      {
-        throw Error(std::string("CustomSpacing is ") + std::to_string(spacing) + " on axis " +
-          "xyz"[axis] + ". Set a spacing greater than 0.");
-      }
-      // A volume with negative spacing keeps its sense.
-      output.Spacing[axis] =
-        std::copysign(this->Self->SamplingFactor * spacing, volume.Spacing[axis]);
-    }
-  }
-  return output;
 }
 
 //------------------------------------------------------------------------------
@@ -442,161 +283,6 @@ vtkIdType vtkDeformVolumeFilter::vtkInternals::GetNumberOfFolds()
     this->State->FoldsVersion = version;
   }
   return static_cast<vtkIdType>(this->State->NumberOfFolds);
-}
-
-//------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::vtkInternals::WarnOfIgnored(
-  vtkImageData* volume, const std::vector<std::string>& leftOut)
-{
-  const auto list = [](const std::vector<std::string>& names)
-  {
-    std::string text;
-    for (const std::string& name : names)
-    {
-      text += (text.empty() ? "" : ", ") + name;
-    }
-    return text;
-  };
-  std::set<std::string> warnings;
-  const std::string cellArrays = list(deformvolume::GetUnusedCellArrays(volume));
-  if (!cellArrays.empty())
-  {
-    warnings.insert("Cell arrays of the volume are not resampled: " + cellArrays +
-      ". Convert them to point arrays where they are wanted.");
-  }
-  if (!leftOut.empty())
-  {
-    warnings.insert("Point arrays of the volume of a type that cannot be resampled are left out: " +
-      list(leftOut) + ".");
-  }
-  using Attributes = vtkDataSetAttributes;
-  for (const auto& [role, kind] : { std::pair(Attributes::VECTORS, "vectors"),
-         std::pair(Attributes::NORMALS, "normals"), std::pair(Attributes::TENSORS, "tensors") })
-  {
-    if (vtkDataArray* array = volume->GetPointData()->GetAttribute(role))
-    {
-      warnings.insert(std::string("The active ") + kind + " \"" +
-        (array->GetName() ? array->GetName() : "") +
-        "\" of the volume are interpolated component by component, and not rotated with the "
-        "deformation. Rotate them afterwards where their directions matter.");
-    }
-  }
-  if (!this->State->Deformation.IsField())
-  {
-    deformvolume::AddCellWarnings(
-      this->State->Deformation.GetRestMesh(), this->Gathering, warnings);
-  }
-  std::string news;
-  for (const std::string& warning : warnings)
-  {
-    news += this->WarnedOf.count(warning) > 0 ? "" : (news.empty() ? "" : " ") + warning;
-  }
-  if (!news.empty())
-  {
-    vtkWarningWithObjectMacro(this->Self, << news);
-  }
-  this->WarnedOf = warnings;
-}
-
-//------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::vtkInternals::WarnOfLoss(const deformvolume::ExtraArrays::Loss& loss)
-{
-  std::string text;
-  const auto hidden = static_cast<double>(this->Report.NumberOfHiddenSamples);
-  if (!this->DensityArrays.empty() && hidden > 0.0)
-  {
-    std::ostringstream share;
-    share << std::setprecision(2)
-          << 100.0 * hidden / (hidden + static_cast<double>(this->Report.NumberOfCoveredVoxels));
-    text = "The deformation folds the volume over. The sums of density arrays lack the " +
-      share.str() + " % of the deformed volume that other parts of it hide.";
-  }
-  if (loss.NumberOfVoxels > 0)
-  {
-    text += (text.empty() ? "" : " ") + std::to_string(loss.NumberOfVoxels) +
-      " voxels show the volume inside out, or pressed together to nothing: density arrays have "
-      "BackgroundValue there.";
-  }
-  if (!text.empty() && text != this->WarnedOfLoss)
-  {
-    vtkWarningWithObjectMacro(this->Self, << text);
-  }
-  this->WarnedOfLoss = text;
-}
-
-//------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::vtkInternals::WarnOfFading(
-  const deformvolume::MappedVolume& mapped, const deformvolume::Extent& output)
-{
-  const deformvolume::Deformation& mesh = this->State->Deformation;
-  if (mesh.IsField())
-  {
-    if (mapped.Outside.AreKept())
-    {
-      this->WarnOfFadingField(mapped, output);
-    }
-    return;
-  }
-  const deformvolume::FadedLinks& links = this->State->Mapping.GetMapping().Faded;
-  if (!links.AreThere() || !this->State->Mapping.IsCurrent(mesh.GetMeshAtRest(), mapped))
-  {
-    return;
-  }
-  const std::pair<std::uint64_t, std::uint64_t> versions(
-    this->State->Mapping.GetVersion(), mesh.GetVectorsVersion());
-  if (this->State->VersionsOfFading == versions)
-  {
-    return;
-  }
-  this->State->VersionsOfFading = versions;
-  const std::string text =
-    deformvolume::FindFaultOfFading(links, mesh.GetTetrahedra(), mesh.GetNodeDisplacements(),
-      this->GetOutputGeometry(mapped.Whole).Spacing, mapped.Outside.FadeDistance);
-  if (!text.empty())
-  {
-    vtkWarningWithObjectMacro(this->Self, << text);
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::vtkInternals::WarnOfFadingField(
-  const deformvolume::MappedVolume& mapped, const deformvolume::Extent& output)
-{
-  const deformvolume::Deformation& deformation = this->State->Deformation;
-  const deformvolume::Extent& moved =
-    deformation.IsInverseField() ? output : mapped.Whole.PointExtent;
-  const std::string fault = deformvolume::FindFaultOfFading(deformation.GetField(mapped.Outside),
-    deformvolume::GetBox({ moved, {}, {} }),
-    glm::abs(this->GetOutputGeometry(mapped.Whole).Spacing), mapped.Outside.FadeDistance);
-  if (!fault.empty() && fault != this->State->FaultOfFading)
-  {
-    vtkWarningWithObjectMacro(this->Self, << fault);
-  }
-  this->State->FaultOfFading = fault;
-}
-
-//------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::vtkInternals::WarnOfNothing() const
-{
-  std::string text;
-  if (this->Self->GetNumberOfInputConnections(1) > 0 && this->State->Deformation.IsInverseField())
-  {
-    text = "The inverse displacement field leads from no voxel of the output to the volume: all of "
-           "the output is background. Check that the field holds points of ";
-    text += this->Reference ? "the reference image" : "the output";
-    text += ", that its vectors lead from there to the volume, and that all are in the same world "
-            "coordinates.";
-  }
-  else
-  {
-    text = "The deformed volume covers no voxel of the output: all of it is background. Check ";
-    text += this->Reference
-      ? "that the reference image lies where the deformed volume does, in the same world "
-        "coordinates,"
-      : "the output bounds,";
-    text += " and that the deformation mesh holds neighbouring voxels of the volume.";
-  }
-  vtkWarningWithObjectMacro(this->Self, << text);
 }
 
 //------------------------------------------------------------------------------

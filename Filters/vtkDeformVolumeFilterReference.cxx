@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The grid of the output: that of the reference image, or that of the volume.
+#include "vtkDeformVolumeFilterInternals.h"
+
+#include "IndexBounds.h"
+#include "OutputExtent.h"
+#include "PipelineGeometry.h"
+
+#include "vtkInformation.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <sstream>
+
+using deformvolume::Error;
+using deformvolume::ImageGeometry;
+using deformvolume::IndexBounds;
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::ReadReference(vtkInformation* reference)
+{
+  const std::optional<ImageGeometry> last = this->Reference;
+  this->Reference.reset();
+  if (!reference)
+  {
+    return;
+  }
+  if (!reference->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
+  {
+    throw Error("The reference image on input port 3 announces no whole extent. Connect a "
+                "vtkImageData; from a composite dataset, extract one block.");
+  }
+  const ImageGeometry geometry = deformvolume::GetGeometry(reference);
+  if (deformvolume::GetNumberOfPoints(geometry.PointExtent) == 0)
+  {
+    throw Error("The reference image is empty: its extent is " +
+      deformvolume::DescribeExtent(geometry.PointExtent) + ". Connect a vtkImageData with voxels.");
+  }
+  deformvolume::CheckTransform(geometry, "the reference image");
+  double voxels = 1.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    voxels *= static_cast<double>(deformvolume::GetSize(geometry.PointExtent, axis));
+  }
+  if (voxels > deformvolume::MostOutputVoxels)
+  {
+    throw Error("The reference image has more than 2^48 voxels: its extent is " +
+      deformvolume::DescribeExtent(geometry.PointExtent) + ". Connect a smaller one.");
+  }
+  this->Reference = geometry;
+  if (this->Reference != last)
+  {
+    // Another grid wants other voxels, and none of those before.
+    for (auto& state : this->States)
+    {
+      state.second.LastShare = {};
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::CheckReferenceOfRanks(
+  const deformvolume::Ranks& ranks) const
+{
+  if (!ranks.AreMany() || !ranks.IsAny(this->Reference.has_value()))
+  {
+    return;
+  }
+  const ImageGeometry grid = this->Reference.value_or(ImageGeometry());
+  std::vector<double> numbers(grid.PointExtent.begin(), grid.PointExtent.end());
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    numbers.insert(numbers.end(), { grid.Origin[axis], grid.Spacing[axis] });
+    for (int row = 0; row < 3; ++row)
+    {
+      numbers.push_back(grid.Direction[axis][row]);
+    }
+  }
+  bool areEqual = true;
+  for (const double number : numbers)
+  {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &number, sizeof(bits));
+    areEqual = ranks.AreEqual(bits) && areEqual;
+  }
+  if (!areEqual)
+  {
+    throw Error("The reference image on input port 3 has different grids on different ranks. "
+                "Connect a source that announces the same grid on all.");
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::CheckOutputIndices(
+  const deformvolume::VoxelGrid& voxelGrid) const
+{
+  if (!this->Reference)
+  {
+    return;
+  }
+  const IndexBounds bounds =
+    deformvolume::GetOutputTransform(voxelGrid).ToOutput(deformvolume::GetBox(voxelGrid));
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double farthest = std::max(std::abs(bounds.Min[axis]), std::abs(bounds.Max[axis]));
+    if (!(farthest <= deformvolume::MostOutputIndex))
+    {
+      std::ostringstream text;
+      text << "The volume at rest reaches to the index " << farthest
+           << " in the grid of the reference image on axis "
+           << "xyz"[axis] << ", beyond 2^21. The reference image has "
+           << deformvolume::DescribeTransform(*this->Reference)
+           << ". Connect one that lies where the volume does, in the same world units, or whose "
+              "spacing is greater.";
+      throw Error(text.str());
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::WarnOfReference()
+{
+  std::string names;
+  const auto add = [&](bool isSet, const char* name)
+  { names += isSet && this->Reference ? (names.empty() ? "" : ", ") + std::string(name) : ""; };
+  add(this->Self->OutputBoundsMode != DEFORMED_BOUNDS, "OutputBoundsMode");
+  add(this->Self->Padding != 0, "Padding");
+  add(this->Self->BoundsGranularity > 1, "BoundsGranularity");
+  add(this->Self->OutputSpacingMode != VOLUME_SPACING, "OutputSpacingMode");
+  if (!names.empty() && names != this->WarnedOfSettings)
+  {
+    vtkWarningWithObjectMacro(this->Self,
+      "The output has the grid of the reference image on input port 3. These settings have no "
+      "effect: "
+        << names << ". Disconnect the reference image where they are wanted.");
+  }
+  this->WarnedOfSettings = names;
+}
+
+//------------------------------------------------------------------------------
+ImageGeometry vtkDeformVolumeFilter::vtkInternals::GetOutputGeometry(
+  const ImageGeometry& volume) const
+{
+  if (this->Reference)
+  {
+    return *this->Reference;
+  }
+  ImageGeometry output = volume;
+  output.PointExtent = ImageGeometry().PointExtent;
+  if (this->Self->OutputSpacingMode == CUSTOM_SPACING)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double spacing = this->Self->CustomSpacing[axis];
+      if (!std::isfinite(spacing) || spacing <= 0.0)
+      {
+        throw Error(std::string("CustomSpacing is ") + std::to_string(spacing) + " on axis " +
+          "xyz"[axis] + ". Set a spacing greater than 0.");
+      }
+      // A volume with negative spacing keeps its sense.
+      output.Spacing[axis] =
+        std::copysign(this->Self->SamplingFactor * spacing, volume.Spacing[axis]);
+    }
+  }
+  return output;
+}

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What vtkDeformVolumeFilter warns of after it has made an output.
+#include "vtkDeformVolumeFilterInternals.h"
+
+#include "Fading.h"
+#include "IndexBounds.h"
+#include "VolumeArrays.h"
+
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkImageData.h"
+#include "vtkPointData.h"
+
+#include <glm/common.hpp>
+
+#include <iomanip>
+#include <sstream>
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::WarnOfIgnored(
+  vtkImageData* volume, const std::vector<std::string>& leftOut)
+{
+  const auto list = [](const std::vector<std::string>& names)
+  {
+    std::string text;
+    for (const std::string& name : names)
+    {
+      text += (text.empty() ? "" : ", ") + name;
+    }
+    return text;
+  };
+  std::set<std::string> warnings;
+  const std::string cellArrays = list(deformvolume::GetUnusedCellArrays(volume));
+  if (!cellArrays.empty())
+  {
+    warnings.insert("Cell arrays of the volume are not resampled: " + cellArrays +
+      ". Convert them to point arrays where they are wanted.");
+  }
+  if (!leftOut.empty())
+  {
+    warnings.insert("Point arrays of the volume of a type that cannot be resampled are left out: " +
+      list(leftOut) + ".");
+  }
+  using Attributes = vtkDataSetAttributes;
+  for (const auto& [role, kind] : { std::pair(Attributes::VECTORS, "vectors"),
+         std::pair(Attributes::NORMALS, "normals"), std::pair(Attributes::TENSORS, "tensors") })
+  {
+    if (vtkDataArray* array = volume->GetPointData()->GetAttribute(role))
+    {
+      warnings.insert(std::string("The active ") + kind + " \"" +
+        (array->GetName() ? array->GetName() : "") +
+        "\" of the volume are interpolated component by component, and not rotated with the "
+        "deformation. Rotate them afterwards where their directions matter.");
+    }
+  }
+  if (!this->State->Deformation.IsField())
+  {
+    deformvolume::AddCellWarnings(
+      this->State->Deformation.GetRestMesh(), this->Gathering, warnings);
+  }
+  std::string news;
+  for (const std::string& warning : warnings)
+  {
+    news += this->WarnedOf.count(warning) > 0 ? "" : (news.empty() ? "" : " ") + warning;
+  }
+  if (!news.empty())
+  {
+    vtkWarningWithObjectMacro(this->Self, << news);
+  }
+  this->WarnedOf = warnings;
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::WarnOfLoss(const deformvolume::ExtraArrays::Loss& loss)
+{
+  std::string text;
+  const auto hidden = static_cast<double>(this->Report.NumberOfHiddenSamples);
+  if (!this->DensityArrays.empty() && hidden > 0.0)
+  {
+    std::ostringstream share;
+    share << std::setprecision(2)
+          << 100.0 * hidden / (hidden + static_cast<double>(this->Report.NumberOfCoveredVoxels));
+    text = "The deformation folds the volume over. The sums of density arrays lack the " +
+      share.str() + " % of the deformed volume that other parts of it hide.";
+  }
+  if (loss.NumberOfVoxels > 0)
+  {
+    text += (text.empty() ? "" : " ") + std::to_string(loss.NumberOfVoxels) +
+      " voxels show the volume inside out, or pressed together to nothing: density arrays have "
+      "BackgroundValue there.";
+  }
+  if (!text.empty() && text != this->WarnedOfLoss)
+  {
+    vtkWarningWithObjectMacro(this->Self, << text);
+  }
+  this->WarnedOfLoss = text;
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::WarnOfFading(
+  const deformvolume::MappedVolume& mapped, const deformvolume::Extent& output)
+{
+  const deformvolume::Deformation& mesh = this->State->Deformation;
+  if (mesh.IsField())
+  {
+    if (mapped.Outside.AreKept())
+    {
+      this->WarnOfFadingField(mapped, output);
+    }
+    return;
+  }
+  const deformvolume::FadedLinks& links = this->State->Mapping.GetMapping().Faded;
+  if (!links.AreThere() || !this->State->Mapping.IsCurrent(mesh.GetMeshAtRest(), mapped))
+  {
+    return;
+  }
+  const std::pair<std::uint64_t, std::uint64_t> versions(
+    this->State->Mapping.GetVersion(), mesh.GetVectorsVersion());
+  if (this->State->VersionsOfFading == versions)
+  {
+    return;
+  }
+  this->State->VersionsOfFading = versions;
+  const std::string text =
+    deformvolume::FindFaultOfFading(links, mesh.GetTetrahedra(), mesh.GetNodeDisplacements(),
+      this->GetOutputGeometry(mapped.Whole).Spacing, mapped.Outside.FadeDistance);
+  if (!text.empty())
+  {
+    vtkWarningWithObjectMacro(this->Self, << text);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::WarnOfFadingField(
+  const deformvolume::MappedVolume& mapped, const deformvolume::Extent& output)
+{
+  const deformvolume::Deformation& deformation = this->State->Deformation;
+  const deformvolume::Extent& moved =
+    deformation.IsInverseField() ? output : mapped.Whole.PointExtent;
+  const std::string fault = deformvolume::FindFaultOfFading(deformation.GetField(mapped.Outside),
+    deformvolume::GetBox({ moved, {}, {} }),
+    glm::abs(this->GetOutputGeometry(mapped.Whole).Spacing), mapped.Outside.FadeDistance);
+  if (!fault.empty() && fault != this->State->FaultOfFading)
+  {
+    vtkWarningWithObjectMacro(this->Self, << fault);
+  }
+  this->State->FaultOfFading = fault;
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::WarnOfNothing() const
+{
+  std::string text;
+  if (this->Self->GetNumberOfInputConnections(1) > 0 && this->State->Deformation.IsInverseField())
+  {
+    text = "The inverse displacement field leads from no voxel of the output to the volume: all of "
+           "the output is background. Check that the field holds points of ";
+    text += this->Reference ? "the reference image" : "the output";
+    text += ", that its vectors lead from there to the volume, and that all are in the same world "
+            "coordinates.";
+  }
+  else
+  {
+    text = "The deformed volume covers no voxel of the output: all of it is background. Check ";
+    text += this->Reference
+      ? "that the reference image lies where the deformed volume does, in the same world "
+        "coordinates,"
+      : "the output bounds,";
+    text += " and that the deformation mesh holds neighbouring voxels of the volume.";
+  }
+  vtkWarningWithObjectMacro(this->Self, << text);
+}
