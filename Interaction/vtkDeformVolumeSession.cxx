@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDeformVolumeSession.h"
 
-#include "SessionEvents.h"
-#include "SessionPipeline.h"
 #include "SessionPlaces.h"
+#include "vtkDeformVolumeSessionInternals.h"
 
-#include "vtkCallbackCommand.h"
-#include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
-#include "vtkExecutive.h"
 #include "vtkImageData.h"
 #include "vtkIntArray.h"
 #include "vtkNew.h"
@@ -19,16 +15,11 @@
 #include "vtkPolyData.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
-#include "vtkXMLImageDataWriter.h"
-#include "vtkXMLUnstructuredGridWriter.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <condition_variable>
 #include <exception>
 #include <mutex>
-#include <stdexcept>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -37,246 +28,6 @@ using deformvolume::SessionEvent;
 using deformvolume::SessionEvents;
 
 vtkStandardNewMacro(vtkDeformVolumeSession);
-
-namespace
-{
-
-double GetSeconds()
-{
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-// What the caller may ask for while a step is made.
-struct PublishedState
-{
-  int Model = vtkDeformVolumeSession::NONE;
-  std::size_t Actions = 0;
-  std::size_t UndoneActions = 0;
-  vtkIdType Steps = 0;
-  vtkIdType MovedVoxels = 0;
-  double RelativeResidual = 0.0;
-  double SimulationTime = 0.0;
-  double ResamplingTime = 0.0;
-  std::vector<deformvolume::SessionPipeline::Handle> Handles;
-};
-
-} // namespace
-
-class vtkDeformVolumeSession::vtkInternals
-{
-public:
-  // The pipeline and the record: for a whole step.
-  std::mutex PipelineMutex;
-  deformvolume::SessionPipeline Pipeline;
-  SessionEvents Record;
-  bool IsMoving = false;
-  std::string InputHash; // "" until it is wanted
-  vtkIdType Steps = 0;
-
-  // The rest: for moments only. It is locked after PipelineMutex where both are.
-  std::mutex QueueMutex;
-  std::condition_variable Wake;
-  SessionEvents Queue;
-  std::vector<std::string> Errors;
-  std::vector<std::string> Warnings;
-  vtkSmartPointer<vtkImageData> NewOutput;
-  PublishedState State;
-  bool IsBusy = false; // something moves, or events are being made
-  bool IsToStop = false;
-  int Waiting = 0;                                  // callers that wait for the pipeline
-  deformvolume::SessionPipeline::Sampling Sampling; // where something moves
-  std::thread Worker;
-  int LastHandle = -1;
-
-  deformvolume::SessionPipeline::Sampling GetFullSampling()
-  {
-    const std::lock_guard<std::mutex> lock(this->QueueMutex);
-    deformvolume::SessionPipeline::Sampling sampling = this->Sampling;
-    sampling.Factor = 1;
-    return sampling;
-  }
-
-  // For files only: all of the volume is read.
-  const std::string& GetInputHash()
-  {
-    if (this->InputHash.empty())
-    {
-      this->InputHash = deformvolume::HashInputs(this->Inputs.first, this->Inputs.second);
-    }
-    return this->InputHash;
-  }
-
-  void Enqueue(SessionEvent::KindType kind, std::vector<double> numbers)
-  {
-    const std::lock_guard<std::mutex> lock(this->QueueMutex);
-    // A handle goes to where it was moved last; what lies between is not seen.
-    if (kind == SessionEvent::MOVE_GRAB && !this->Queue.empty() &&
-      this->Queue.back().Kind == kind && this->Queue.back().Numbers[0] == numbers[0])
-    {
-      this->Queue.back().Numbers = std::move(numbers);
-    }
-    else
-    {
-      this->Queue.push_back({ kind, std::move(numbers) });
-    }
-    this->Wake.notify_all();
-  }
-
-  // The events that wait and one step. PipelineMutex is locked.
-  bool RunOnce()
-  {
-    SessionEvents events;
-    deformvolume::SessionPipeline::Sampling sampling;
-    {
-      const std::lock_guard<std::mutex> lock(this->QueueMutex);
-      events.swap(this->Queue);
-      this->IsBusy = true;
-      sampling = this->Sampling;
-    }
-    PublishedState state;
-    std::vector<std::string> errors;
-    double begin = GetSeconds();
-    for (SessionEvent& event : events)
-    {
-      this->Make(std::move(event), errors);
-    }
-    this->Make({ SessionEvent::STEP, {} }, errors);
-    if (sampling.Factor != 1 && sampling.Factor != 2 && sampling.Factor != 4)
-    {
-      errors.emplace_back("MovingSamplingFactor is not 1, 2 or 4. Set one of these.");
-      sampling.Factor = 1;
-    }
-    sampling.Factor = this->IsMoving ? sampling.Factor : 1;
-    state.SimulationTime = GetSeconds() - begin;
-
-    vtkSmartPointer<vtkImageData> output;
-    try
-    {
-      begin = GetSeconds();
-      vtkImageData* resampled = this->Pipeline.Resample(sampling);
-      state.ResamplingTime = GetSeconds() - begin;
-      // The filter writes to no array that somebody else holds.
-      output = vtkSmartPointer<vtkImageData>::New();
-      output->ShallowCopy(resampled);
-    }
-    catch (const std::exception& error)
-    {
-      output = nullptr;
-      errors.emplace_back(error.what());
-    }
-    state.Model = this->Pipeline.GetModel();
-    state.Actions = this->Pipeline.GetNumberOfActions();
-    state.UndoneActions = this->Pipeline.GetNumberOfUndoneActions();
-    state.Steps = this->Steps;
-    state.MovedVoxels = this->Pipeline.GetNumberOfMovedVoxels();
-    state.RelativeResidual = this->Pipeline.GetRelativeResidual();
-    state.Handles = this->Pipeline.GetHandles();
-    const std::lock_guard<std::mutex> lock(this->QueueMutex);
-    this->Errors.insert(this->Errors.end(), errors.begin(), errors.end());
-    const std::vector<std::string> warnings = this->Pipeline.TakeWarnings();
-    this->Warnings.insert(this->Warnings.end(), warnings.begin(), warnings.end());
-    this->NewOutput = output ? output : this->NewOutput;
-    this->State = state;
-    this->IsBusy = this->IsMoving;
-    return this->IsMoving;
-  }
-
-  // What fails is recorded, too: a step that has failed has put handles back, and all fails again
-  // in a replay.
-  void Make(SessionEvent event, std::vector<std::string>& errors)
-  {
-    try
-    {
-      if (event.Kind == SessionEvent::STEP)
-      {
-        ++this->Steps;
-        this->IsMoving = false;
-        this->IsMoving = this->Pipeline.Step();
-      }
-      else
-      {
-        this->Pipeline.Apply(event);
-      }
-    }
-    catch (const std::exception& error)
-    {
-      errors.emplace_back(error.what());
-    }
-    this->Record.push_back(std::move(event));
-  }
-
-  void Begin(vtkImageData* volume, vtkUnstructuredGrid* mesh)
-  {
-    this->Pipeline.SetInputs(volume, mesh);
-    this->Record = this->Pipeline.GetSettings();
-    this->Steps = 0;
-    this->IsMoving = false;
-  }
-
-  template <typename ProgressT>
-  void Replay(const SessionEvents& events, const ProgressT& progress)
-  {
-    this->Begin(this->Inputs.first, this->Inputs.second);
-    this->Record.clear();
-    std::vector<std::string> errors; // they were reported when the events were made first
-    for (std::size_t i = 0; i < events.size(); ++i)
-    {
-      this->Make(events[i], errors);
-      progress(static_cast<double>(i + 1) / static_cast<double>(events.size()));
-    }
-  }
-
-  void Work()
-  {
-    for (;;)
-    {
-      {
-        std::unique_lock<std::mutex> lock(this->QueueMutex);
-        this->Wake.wait(lock,
-          [this] {
-            return this->IsToStop || (this->Waiting == 0 && (!this->Queue.empty() || this->IsBusy));
-          });
-        if (this->IsToStop)
-        {
-          return;
-        }
-      }
-      const std::lock_guard<std::mutex> lock(this->PipelineMutex);
-      this->RunOnce();
-    }
-  }
-
-  // Holds the pipeline between two steps of the thread, which would otherwise take it at once
-  // again.
-  class Access
-  {
-  public:
-    explicit Access(vtkInternals& internals)
-      : Internals(internals)
-    {
-      this->Count(1);
-      this->Internals.PipelineMutex.lock();
-    }
-    ~Access()
-    {
-      this->Internals.PipelineMutex.unlock();
-      this->Count(-1);
-    }
-    Access(const Access&) = delete;
-    void operator=(const Access&) = delete;
-
-  private:
-    void Count(int change)
-    {
-      const std::lock_guard<std::mutex> lock(this->Internals.QueueMutex);
-      this->Internals.Waiting += change;
-      this->Internals.Wake.notify_all();
-    }
-    vtkInternals& Internals;
-  };
-
-  std::pair<vtkSmartPointer<vtkImageData>, vtkSmartPointer<vtkUnstructuredGrid>> Inputs;
-};
 
 vtkDeformVolumeSession::vtkDeformVolumeSession()
   : Internals(new vtkInternals)
@@ -341,7 +92,7 @@ bool vtkDeformVolumeSession::SetInputs(vtkImageData* volume, vtkUnstructuredGrid
     const std::lock_guard<std::mutex> lock(internals.QueueMutex);
     internals.Queue.clear();
     internals.NewOutput = nullptr;
-    internals.State = PublishedState();
+    internals.State = vtkInternals::PublishedState();
     internals.Sampling.BackgroundValue =
       std::min(volume->GetPointData()->GetScalars()->GetRange(0)[0], 0.0);
     internals.IsBusy = true; // for the first output
@@ -650,163 +401,6 @@ bool vtkDeformVolumeSession::Probe(double x, double y, double z)
     this->Report(error.what());
     return false;
   }
-}
-
-bool vtkDeformVolumeSession::SaveSession(const std::string& fileName)
-{
-  if (!this->CheckInputs())
-  {
-    return false;
-  }
-  const vtkInternals::Access access(*this->Internals);
-  try
-  {
-    if (!this->Internals->Queue.empty())
-    {
-      this->Internals->RunOnce();
-    }
-    deformvolume::WriteEvents(fileName, this->Internals->GetInputHash(), this->Internals->Record);
-    return true;
-  }
-  catch (const std::exception& error)
-  {
-    this->Report(error.what());
-    return false;
-  }
-}
-
-bool vtkDeformVolumeSession::LoadSession(const std::string& fileName)
-{
-  if (!this->CheckInputs())
-  {
-    return false;
-  }
-  vtkInternals& internals = *this->Internals;
-  SessionEvents events;
-  try
-  {
-    events = deformvolume::ReadEvents(fileName, internals.GetInputHash());
-  }
-  catch (const std::exception& error)
-  {
-    this->Report(error.what());
-    return false;
-  }
-  const bool wasRunning = this->GetIsRunning();
-  this->Stop();
-  const SessionEvents record = internals.Record;
-  bool isLoaded = true;
-  try
-  {
-    internals.Replay(
-      events, [this](double part) { this->InvokeEvent(vtkCommand::ProgressEvent, &part); });
-    for (const SessionEvent& event : events)
-    {
-      if (event.Kind == SessionEvent::BEGIN_GRAB)
-      {
-        internals.LastHandle = std::max(internals.LastHandle, static_cast<int>(event.Numbers[0]));
-      }
-    }
-  }
-  catch (const std::exception& error) // too little memory
-  {
-    this->Report("The session " + fileName + " cannot be replayed: " + error.what());
-    internals.Replay(record, [](double) {});
-    isLoaded = false;
-  }
-  {
-    const std::lock_guard<std::mutex> lock(internals.QueueMutex);
-    internals.IsBusy = true; // for an output
-    internals.Queue.clear(); // of the session that was before
-  }
-  if (wasRunning)
-  {
-    this->Start();
-  }
-  return isLoaded;
-}
-
-namespace
-{
-
-template <typename WriterT>
-void WriteData(vtkDataObject* data, const std::string& fileName)
-{
-  deformvolume::WriteAndRename(fileName,
-    [&](const std::string& name)
-    {
-      bool hasFailed = false;
-      vtkNew<vtkCallbackCommand> observer;
-      observer->SetClientData(&hasFailed);
-      observer->SetCallback(
-        [](vtkObject*, unsigned long, void* failed, void*) { *static_cast<bool*>(failed) = true; });
-      vtkNew<WriterT> writer;
-      writer->AddObserver(vtkCommand::ErrorEvent, observer);
-      writer->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, observer);
-      writer->SetFileName(name.c_str());
-      writer->SetDataModeToBinary(); // raw appended data confuse the parser of some versions
-      writer->SetInputData(data);
-      if (writer->Write() == 0 || hasFailed || writer->GetErrorCode() != 0)
-      {
-        throw std::runtime_error("The file " + fileName +
-          " cannot be written. Choose a folder that can be written and has space.");
-      }
-    });
-}
-
-} // namespace
-
-bool vtkDeformVolumeSession::Save(const std::string& fileName, bool isMesh)
-{
-  if (!this->CheckInputs())
-  {
-    return false;
-  }
-  const vtkInternals::Access access(*this->Internals);
-  try
-  {
-    deformvolume::SessionPipeline& pipeline = this->Internals->Pipeline;
-    if (!isMesh)
-    {
-      WriteData<vtkXMLImageDataWriter>(
-        pipeline.Resample(this->Internals->GetFullSampling()), fileName);
-      return true;
-    }
-    auto* mesh = vtkUnstructuredGrid::SafeDownCast(pipeline.GetDeformation());
-    if (!mesh || pipeline.GetModel() == NONE)
-    {
-      throw std::runtime_error(
-        "The model has no mesh. Choose MASS_SPRING or FINITE_ELEMENTS, or save the volume.");
-    }
-    vtkNew<vtkUnstructuredGrid> deformed;
-    deformed->DeepCopy(mesh);
-    vtkDataArray* vectors = mesh->GetPointData()->GetVectors();
-    for (vtkIdType id = 0; id < deformed->GetNumberOfPoints(); ++id)
-    {
-      double place[3];
-      double by[3];
-      mesh->GetPoint(id, place);
-      vectors->GetTuple(id, by);
-      deformed->GetPoints()->SetPoint(id, place[0] + by[0], place[1] + by[1], place[2] + by[2]);
-    }
-    WriteData<vtkXMLUnstructuredGridWriter>(deformed, fileName);
-    return true;
-  }
-  catch (const std::exception& error)
-  {
-    this->Report(error.what());
-    return false;
-  }
-}
-
-bool vtkDeformVolumeSession::SaveVolume(const std::string& fileName)
-{
-  return this->Save(fileName, false);
-}
-
-bool vtkDeformVolumeSession::SaveMesh(const std::string& fileName)
-{
-  return this->Save(fileName, true);
 }
 
 void vtkDeformVolumeSession::GetHandles(vtkPolyData* handles)

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The files of vtkDeformVolumeSession: sessions, volumes and meshes.
+#include "vtkDeformVolumeSessionInternals.h"
+
+#include "vtkCallbackCommand.h"
+#include "vtkCommand.h"
+#include "vtkDataArray.h"
+#include "vtkExecutive.h"
+#include "vtkImageData.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkUnstructuredGrid.h"
+#include "vtkXMLImageDataWriter.h"
+#include "vtkXMLUnstructuredGridWriter.h"
+
+#include <algorithm>
+#include <exception>
+#include <mutex>
+#include <stdexcept>
+
+using deformvolume::SessionEvent;
+using deformvolume::SessionEvents;
+
+namespace
+{
+
+template <typename WriterT>
+void WriteData(vtkDataObject* data, const std::string& fileName)
+{
+  deformvolume::WriteAndRename(fileName,
+    [&](const std::string& name)
+    {
+      bool hasFailed = false;
+      vtkNew<vtkCallbackCommand> observer;
+      observer->SetClientData(&hasFailed);
+      observer->SetCallback(
+        [](vtkObject*, unsigned long, void* failed, void*) { *static_cast<bool*>(failed) = true; });
+      vtkNew<WriterT> writer;
+      writer->AddObserver(vtkCommand::ErrorEvent, observer);
+      writer->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, observer);
+      writer->SetFileName(name.c_str());
+      writer->SetDataModeToBinary(); // raw appended data confuse the parser of some versions
+      writer->SetInputData(data);
+      if (writer->Write() == 0 || hasFailed || writer->GetErrorCode() != 0)
+      {
+        throw std::runtime_error("The file " + fileName +
+          " cannot be written. Choose a folder that can be written and has space.");
+      }
+    });
+}
+
+} // namespace
+
+bool vtkDeformVolumeSession::SaveSession(const std::string& fileName)
+{
+  if (!this->CheckInputs())
+  {
+    return false;
+  }
+  const vtkInternals::Access access(*this->Internals);
+  try
+  {
+    if (!this->Internals->Queue.empty())
+    {
+      this->Internals->RunOnce();
+    }
+    deformvolume::WriteEvents(fileName, this->Internals->GetInputHash(), this->Internals->Record);
+    return true;
+  }
+  catch (const std::exception& error)
+  {
+    this->Report(error.what());
+    return false;
+  }
+}
+
+bool vtkDeformVolumeSession::LoadSession(const std::string& fileName)
+{
+  if (!this->CheckInputs())
+  {
+    return false;
+  }
+  vtkInternals& internals = *this->Internals;
+  SessionEvents events;
+  try
+  {
+    events = deformvolume::ReadEvents(fileName, internals.GetInputHash());
+  }
+  catch (const std::exception& error)
+  {
+    this->Report(error.what());
+    return false;
+  }
+  const bool wasRunning = this->GetIsRunning();
+  this->Stop();
+  const SessionEvents record = internals.Record;
+  bool isLoaded = true;
+  try
+  {
+    internals.Replay(
+      events, [this](double part) { this->InvokeEvent(vtkCommand::ProgressEvent, &part); });
+    for (const SessionEvent& event : events)
+    {
+      if (event.Kind == SessionEvent::BEGIN_GRAB)
+      {
+        internals.LastHandle = std::max(internals.LastHandle, static_cast<int>(event.Numbers[0]));
+      }
+    }
+  }
+  catch (const std::exception& error) // too little memory
+  {
+    this->Report("The session " + fileName + " cannot be replayed: " + error.what());
+    internals.Replay(record, [](double) {});
+    isLoaded = false;
+  }
+  {
+    const std::lock_guard<std::mutex> lock(internals.QueueMutex);
+    internals.IsBusy = true; // for an output
+    internals.Queue.clear(); // of the session that was before
+  }
+  if (wasRunning)
+  {
+    this->Start();
+  }
+  return isLoaded;
+}
+
+bool vtkDeformVolumeSession::Save(const std::string& fileName, bool isMesh)
+{
+  if (!this->CheckInputs())
+  {
+    return false;
+  }
+  const vtkInternals::Access access(*this->Internals);
+  try
+  {
+    deformvolume::SessionPipeline& pipeline = this->Internals->Pipeline;
+    if (!isMesh)
+    {
+      WriteData<vtkXMLImageDataWriter>(
+        pipeline.Resample(this->Internals->GetFullSampling()), fileName);
+      return true;
+    }
+    auto* mesh = vtkUnstructuredGrid::SafeDownCast(pipeline.GetDeformation());
+    if (!mesh || pipeline.GetModel() == NONE)
+    {
+      throw std::runtime_error(
+        "The model has no mesh. Choose MASS_SPRING or FINITE_ELEMENTS, or save the volume.");
+    }
+    vtkNew<vtkUnstructuredGrid> deformed;
+    deformed->DeepCopy(mesh);
+    vtkDataArray* vectors = mesh->GetPointData()->GetVectors();
+    for (vtkIdType id = 0; id < deformed->GetNumberOfPoints(); ++id)
+    {
+      double place[3];
+      double by[3];
+      mesh->GetPoint(id, place);
+      vectors->GetTuple(id, by);
+      deformed->GetPoints()->SetPoint(id, place[0] + by[0], place[1] + by[1], place[2] + by[2]);
+    }
+    WriteData<vtkXMLUnstructuredGridWriter>(deformed, fileName);
+    return true;
+  }
+  catch (const std::exception& error)
+  {
+    this->Report(error.what());
+    return false;
+  }
+}
+
+bool vtkDeformVolumeSession::SaveVolume(const std::string& fileName)
+{
+  return this->Save(fileName, false);
+}
+
+bool vtkDeformVolumeSession::SaveMesh(const std::string& fileName)
+{
+  return this->Save(fileName, true);
+}

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The thread of vtkDeformVolumeSession: events, steps and the record of them.
+#include "vtkDeformVolumeSessionInternals.h"
+
+#include <chrono>
+#include <exception>
+
+using deformvolume::SessionEvent;
+using deformvolume::SessionEvents;
+
+namespace
+{
+
+double GetSeconds()
+{
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+} // namespace
+
+deformvolume::SessionPipeline::Sampling vtkDeformVolumeSession::vtkInternals::GetFullSampling()
+{
+  const std::lock_guard<std::mutex> lock(this->QueueMutex);
+  deformvolume::SessionPipeline::Sampling sampling = this->Sampling;
+  sampling.Factor = 1;
+  return sampling;
+}
+
+const std::string& vtkDeformVolumeSession::vtkInternals::GetInputHash()
+{
+  if (this->InputHash.empty())
+  {
+    this->InputHash = deformvolume::HashInputs(this->Inputs.first, this->Inputs.second);
+  }
+  return this->InputHash;
+}
+
+void vtkDeformVolumeSession::vtkInternals::Enqueue(
+  SessionEvent::KindType kind, std::vector<double> numbers)
+{
+  const std::lock_guard<std::mutex> lock(this->QueueMutex);
+  // A handle goes to where it was moved last; what lies between is not seen.
+  if (kind == SessionEvent::MOVE_GRAB && !this->Queue.empty() && this->Queue.back().Kind == kind &&
+    this->Queue.back().Numbers[0] == numbers[0])
+  {
+    this->Queue.back().Numbers = std::move(numbers);
+  }
+  else
+  {
+    this->Queue.push_back({ kind, std::move(numbers) });
+  }
+  this->Wake.notify_all();
+}
+
+bool vtkDeformVolumeSession::vtkInternals::RunOnce()
+{
+  SessionEvents events;
+  deformvolume::SessionPipeline::Sampling sampling;
+  {
+    const std::lock_guard<std::mutex> lock(this->QueueMutex);
+    events.swap(this->Queue);
+    this->IsBusy = true;
+    sampling = this->Sampling;
+  }
+  PublishedState state;
+  std::vector<std::string> errors;
+  double begin = GetSeconds();
+  for (SessionEvent& event : events)
+  {
+    this->Make(std::move(event), errors);
+  }
+  this->Make({ SessionEvent::STEP, {} }, errors);
+  if (sampling.Factor != 1 && sampling.Factor != 2 && sampling.Factor != 4)
+  {
+    errors.emplace_back("MovingSamplingFactor is not 1, 2 or 4. Set one of these.");
+    sampling.Factor = 1;
+  }
+  sampling.Factor = this->IsMoving ? sampling.Factor : 1;
+  state.SimulationTime = GetSeconds() - begin;
+
+  vtkSmartPointer<vtkImageData> output;
+  try
+  {
+    begin = GetSeconds();
+    vtkImageData* resampled = this->Pipeline.Resample(sampling);
+    state.ResamplingTime = GetSeconds() - begin;
+    // The filter writes to no array that somebody else holds.
+    output = vtkSmartPointer<vtkImageData>::New();
+    output->ShallowCopy(resampled);
+  }
+  catch (const std::exception& error)
+  {
+    output = nullptr;
+    errors.emplace_back(error.what());
+  }
+  state.Model = this->Pipeline.GetModel();
+  state.Actions = this->Pipeline.GetNumberOfActions();
+  state.UndoneActions = this->Pipeline.GetNumberOfUndoneActions();
+  state.Steps = this->Steps;
+  state.MovedVoxels = this->Pipeline.GetNumberOfMovedVoxels();
+  state.RelativeResidual = this->Pipeline.GetRelativeResidual();
+  state.Handles = this->Pipeline.GetHandles();
+  const std::lock_guard<std::mutex> lock(this->QueueMutex);
+  this->Errors.insert(this->Errors.end(), errors.begin(), errors.end());
+  const std::vector<std::string> warnings = this->Pipeline.TakeWarnings();
+  this->Warnings.insert(this->Warnings.end(), warnings.begin(), warnings.end());
+  this->NewOutput = output ? output : this->NewOutput;
+  this->State = state;
+  this->IsBusy = this->IsMoving;
+  return this->IsMoving;
+}
+
+void vtkDeformVolumeSession::vtkInternals::Make(
+  SessionEvent event, std::vector<std::string>& errors)
+{
+  try
+  {
+    if (event.Kind == SessionEvent::STEP)
+    {
+      ++this->Steps;
+      this->IsMoving = false;
+      this->IsMoving = this->Pipeline.Step();
+    }
+    else
+    {
+      this->Pipeline.Apply(event);
+    }
+  }
+  catch (const std::exception& error)
+  {
+    errors.emplace_back(error.what());
+  }
+  this->Record.push_back(std::move(event));
+}
+
+void vtkDeformVolumeSession::vtkInternals::Begin(vtkImageData* volume, vtkUnstructuredGrid* mesh)
+{
+  this->Pipeline.SetInputs(volume, mesh);
+  this->Record = this->Pipeline.GetSettings();
+  this->Steps = 0;
+  this->IsMoving = false;
+}
+
+void vtkDeformVolumeSession::vtkInternals::Work()
+{
+  for (;;)
+  {
+    {
+      std::unique_lock<std::mutex> lock(this->QueueMutex);
+      this->Wake.wait(lock,
+        [this] {
+          return this->IsToStop || (this->Waiting == 0 && (!this->Queue.empty() || this->IsBusy));
+        });
+      if (this->IsToStop)
+      {
+        return;
+      }
+    }
+    const std::lock_guard<std::mutex> lock(this->PipelineMutex);
+    this->RunOnce();
+  }
+}
