@@ -2,24 +2,18 @@
 #include "Viewer.h"
 
 #include "Failure.h"
-#include "Messages.h"
-#include "Picture.h"
-#include "VolumeReading.h"
 
 #include <vtkCamera.h>
 #include <vtkCommand.h>
-#include <vtkDataArray.h>
 #include <vtkDeformVolumeInteractorStyle.h>
 #include <vtkDeformVolumeSession.h>
 #include <vtkInteractorEventRecorder.h>
-#include <vtkPointData.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderWindowInteractor.h>
 #include <vtkRenderer.h>
 #include <vtkStringArray.h>
 #include <vtkTextActor.h>
 #include <vtkTextProperty.h>
-#include <vtkWindowToImageFilter.h>
 #include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
@@ -29,11 +23,8 @@
 namespace
 {
 const char* const HeadPath = "/usr/share/mricron/templates/ch2.nii.gz";
-const char* const RecordPath = "deform-interactive.log";
 
-constexpr float BeforeStyle = 10.0F;     // priority of observers
-constexpr float BeforeObservers = 20.0F; // the recorder misses nothing
-constexpr vtkIdType ManyVoxels = 1000000;
+constexpr float BeforeStyle = 10.0F; // priority of observers
 
 constexpr const char* ProgramKeys =
   "d volume, isosurface, slices    PageUp PageDown move the slice\n"
@@ -59,11 +50,6 @@ void SetUpText(vtkTextActor* actor, double x, double y, bool isRight)
     property->SetJustificationToRight();
     property->SetVerticalJustificationToTop();
   }
-}
-
-std::string GetEnding(const std::string& path)
-{
-  return vtksys::SystemTools::LowerCase(vtksys::SystemTools::GetFilenameLastExtension(path));
 }
 }
 
@@ -176,191 +162,12 @@ void Viewer::Announce(const std::string& message)
   this->Interactor->Render();
 }
 
-void Viewer::OpenVolume(const std::string& path)
-{
-  this->Announce("Reading " + path);
-  const Volume volume = ReadVolume(path, this->Asked.Reading, this->Reports, true);
-  vtkPointData* arrays = volume.Image->GetPointData();
-  if (!arrays->GetScalars() && arrays->GetNumberOfArrays() > 0)
-  {
-    arrays->SetActiveScalars(arrays->GetArrayName(0));
-  }
-  this->Style->StopSession();
-  if (!this->Session->SetInputs(volume.Image))
-  {
-    throw Failure(this->Session->GetErrorMessage());
-  }
-  this->Session->SetMovingSamplingFactor(volume.Image->GetNumberOfPoints() > ManyVoxels ? 2 : 1);
-  this->Style->Forget();
-  this->Values = std::make_unique<Histogram>(volume.Image);
-  this->FileName = vtksys::SystemTools::GetFilenameWithoutExtension(path) + "-deformed";
-  this->ChoosePreset(Transfer::AUTOMATIC);
-  double bounds[6];
-  volume.Image->GetBounds(bounds);
-  this->Diagonal = volume.Image->GetLength();
-  this->Session->ChangeHandleRadius(this->HandleRadiusPart * this->Diagonal);
-  this->AimCamera(GetFaceView(volume.Axes).data());
-  this->Renderer->ResetCamera(bounds);
-  this->Renderer->GetActiveCamera()->Zoom(1.15);
-  this->Style->ShowMessage("2 chooses ChainMail, g grabs, h shows all keys");
-  this->Style->Poll(); // draws it
-}
-
 void Viewer::AimCamera(const double view[3])
 {
   vtkCamera* camera = this->Renderer->GetActiveCamera();
   camera->SetFocalPoint(0.0, 0.0, 0.0);
   camera->SetPosition(view);
   camera->SetViewUp(0.0, 0.0, 1.0);
-}
-
-void Viewer::LoadSession(const std::string& path)
-{
-  this->Announce("Replaying " + path);
-  if (this->Session->LoadSession(path))
-  {
-    this->Style->Forget();
-    this->Style->ShowMessage("The session " + path + " is loaded.");
-  }
-}
-
-// What can go wrong here is shown, and what was open stays.
-void Viewer::Open(const std::string& path)
-{
-  try
-  {
-    const std::string ending = GetEnding(path);
-    if (ending == ".xml")
-    {
-      this->LoadSession(path);
-    }
-    else if (ending == ".log")
-    {
-      this->Replay(path);
-    }
-    else
-    {
-      this->OpenVolume(path);
-    }
-    this->Reports.Check("cannot open " + path);
-  }
-  catch (const Failure& failure)
-  {
-    this->Style->ShowMessage(failure.what());
-  }
-  if (this->Values && !this->IsReplaying)
-  {
-    this->Style->StartSession();
-  }
-}
-
-std::string Viewer::TrySave(const std::string& path)
-{
-  const std::string ending = GetEnding(path);
-  if (!this->Values)
-  {
-    return "There is no volume. Open one first.";
-  }
-  bool isSaved = false;
-  if (ending == ".vti")
-  {
-    isSaved = this->Session->SaveVolume(path);
-  }
-  else if (ending == ".vtu")
-  {
-    isSaved = this->Session->SaveMesh(path);
-  }
-  else if (ending == ".xml")
-  {
-    isSaved = this->Session->SaveSession(path);
-  }
-  else if (ending == ".png")
-  {
-    this->Interactor->Render();
-    this->SavePicture(path);
-    isSaved = true;
-  }
-  else
-  {
-    return "The name " + path + " ends in none of .vti, .vtu, .xml and .png.";
-  }
-  return isSaved ? "" : this->Session->GetErrorMessage();
-}
-
-void Viewer::Save(const std::string& path)
-{
-  try
-  {
-    this->Announce("Saving " + path);
-    const std::string error = this->TrySave(path);
-    this->Style->ShowMessage(error.empty() ? path + " is saved." : error);
-  }
-  catch (const Failure& failure)
-  {
-    this->Style->ShowMessage(failure.what());
-  }
-}
-
-void Viewer::SavePicture(const std::string& path)
-{
-  vtkNew<vtkWindowToImageFilter> grab;
-  grab->SetInput(this->Window);
-  grab->SetInputBufferTypeToRGB();
-  grab->ReadFrontBufferOff();
-  grab->ShouldRerenderOff();
-  grab->Update();
-  WritePNG(grab->GetOutput(), path, this->Reports);
-}
-
-void Viewer::StartRecording(const std::string& path)
-{
-  this->Recorder = vtkSmartPointer<vtkInteractorEventRecorder>::New();
-  this->Recorder->SetPriority(BeforeObservers);
-  this->Recorder->SetKeyPressActivation(0);
-  this->Recorder->SetInteractor(this->Interactor);
-  this->Recorder->SetFileName(path.c_str());
-  this->Recorder->EnabledOn();
-  this->Recorder->Record();
-  this->Style->ShowMessage("Events are recorded to " + path + ", j stops it");
-}
-
-void Viewer::ToggleRecording()
-{
-  if (!this->Recorder)
-  {
-    this->StartRecording(RecordPath);
-    return;
-  }
-  this->Recorder->Stop();
-  this->Recorder->EnabledOff();
-  this->Style->ShowMessage(
-    std::string("Recorded: ") + this->Recorder->GetFileName() + ", open it to replay it");
-  this->Recorder = nullptr;
-}
-
-// Without the thread of the session: each timer event of the recording is one step, so that the
-// same recording gives the same volume.
-void Viewer::Replay(const std::string& path)
-{
-  if (!vtksys::SystemTools::FileExists(path, true))
-  {
-    throw Failure("cannot replay " + path + ": there is no such file");
-  }
-  if (this->IsReplaying)
-  {
-    return;
-  }
-  this->Style->StopSession();
-  this->IsReplaying = true;
-  vtkNew<vtkInteractorEventRecorder> recorder;
-  recorder->SetKeyPressActivation(0);
-  recorder->SetInteractor(this->Interactor);
-  recorder->SetFileName(path.c_str());
-  recorder->EnabledOn();
-  recorder->Play();
-  recorder->EnabledOff();
-  this->IsReplaying = false;
-  this->Interactor->Render();
 }
 
 bool Viewer::OnKeyPress(vtkObject*, unsigned long, void*)
