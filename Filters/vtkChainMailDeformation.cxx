@@ -36,11 +36,11 @@ vtkChainMailDeformation::vtkChainMailDeformation()
 {
   deformvolume::UseVTKThreads();
   this->SetNumberOfInputPorts(2);
-  constexpr double defaults[5][3] = { { 0.1, 2.0, 1.0 }, { 0.5, 1.5, 0.5 }, { 0.8, 1.2, 0.2 },
-    { 0.95, 1.05, 0.05 }, { 0.99, 1.01, 0.01 } };
-  for (int i = 0; i < 5; ++i)
+  for (std::size_t i = 0; i < deformvolume::DefaultChainMailMaterials.size(); ++i)
   {
-    this->SetMaterial(i, defaults[i][0], defaults[i][1], defaults[i][2]);
+    const deformvolume::ChainMailMaterial& material = deformvolume::DefaultChainMailMaterials[i];
+    this->SetMaterial(
+      static_cast<double>(i), material.MinimumStretch, material.MaximumStretch, material.Shear);
   }
 }
 
@@ -217,15 +217,8 @@ int vtkChainMailDeformation::RequestData(
       this->NumberOfSweeps = report.NumberOfSweeps;
       this->NumberOfMovedVoxels = report.NumberOfMovedVoxels;
       std::copy(report.ChangedExtent.begin(), report.ChangedExtent.end(), this->ChangedExtent);
-      this->NumberOfReducedHandles = 0;
-      this->NumberOfReleasedHandles = 0;
-      for (const deformvolume::ChainMailHandleReport& handle : report.Handles)
-      {
-        const auto isReduced = [](double reduction) { return reduction != 0.0; };
-        this->NumberOfReleasedHandles += handle.IsHeld ? 0 : 1;
-        this->NumberOfReducedHandles +=
-          std::any_of(handle.Reduction.begin(), handle.Reduction.end(), isReduced) ? 1 : 0;
-      }
+      this->NumberOfReducedHandles = report.CountReducedHandles();
+      this->NumberOfReleasedHandles = report.CountReleasedHandles();
       this->Internals->Session.GiveOutput(output);
     });
 }

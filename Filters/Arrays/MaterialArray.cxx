@@ -45,15 +45,6 @@ void ForValues(vtkDataArray* array, const Function& function)
   }
 }
 
-// -1 for values that are no index.
-template <typename T>
-int ToIndex(T value)
-{
-  const bool isIndex = value >= static_cast<T>(0) && static_cast<double>(value) <= 255.0 &&
-    static_cast<T>(static_cast<int>(value)) == value;
-  return isIndex ? static_cast<int>(value) : -1;
-}
-
 std::string GetText(vtkDataArray* array, vtkIdType tuple)
 {
   std::ostringstream text;
@@ -103,30 +94,16 @@ std::vector<unsigned char> ReadMaterials(vtkDataArray* array, vtkIdType voxels,
   {
     return materials;
   }
+  const MaterialRule rule{ ranges, fallback, exists };
   std::atomic<vtkIdType> firstWithout{ NoTuple };
   ForValues(array,
     [&](vtkIdType first, const auto& values)
     {
-      using Value = typename std::decay_t<decltype(values)>::ValueType;
-      vtkIdType tuple = first;
-      for (const Value value : values)
+      const std::int64_t without =
+        WriteMaterials(values, rule, &materials[static_cast<std::size_t>(first)]);
+      if (without >= 0)
       {
-        int index = ranges.empty() ? ToIndex(value) : fallback;
-        for (const MaterialRange& range : ranges)
-        {
-          const auto number = static_cast<double>(value);
-          if (number >= range.Minimum && number < range.Maximum)
-          {
-            index = range.Index;
-            break;
-          }
-        }
-        if (index < 0 || !exists[static_cast<std::size_t>(index)])
-        {
-          Lower(firstWithout, tuple);
-        }
-        materials[static_cast<std::size_t>(tuple)] = static_cast<unsigned char>(index);
-        ++tuple;
+        Lower(firstWithout, first + static_cast<vtkIdType>(without));
       }
     });
   if (firstWithout != NoTuple)

@@ -2,6 +2,8 @@
 #ifndef DeformVolumeMaterialArray_h
 #define DeformVolumeMaterialArray_h
 
+#include "VoxelMaterials.h"
+
 #include "vtkType.h"
 
 #include <array>
@@ -13,14 +15,6 @@ class vtkImageData;
 
 namespace deformvolume
 {
-
-/// Values from Minimum on, less than Maximum, have a material.
-struct MaterialRange
-{
-  double Minimum;
-  double Maximum;
-  int Index;
-};
 
 /// The point array of a volume that tells materials: the one of a name, or, where that is "" and
 /// there are ranges, the active scalars; else null. Throws an Error where it is not there, or has

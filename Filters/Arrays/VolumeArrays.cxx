@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "VolumeArrays.h"
 
+#include "CrossedTetrahedra.h"
 #include "Error.h"
 #include "FiveTetrahedra.h"
 #include "MaskArray.h"
@@ -324,13 +325,7 @@ void SwitchOffCut(VolumeMasks& masks, std::size_t numberOfCells)
   {
     return;
   }
-  std::vector<unsigned char> left(numberOfCells, DEFORMVOLUME_ALL_TETRAHEDRA);
-  for (std::size_t i = 0; i < numberOfCells; ++i)
-  {
-    left[i] = static_cast<unsigned char>(
-      (masks.Active ? masks.Active[i] : left[i]) & ~masks.Cut.Crossed[i]);
-  }
-  masks.Joined.swap(left);
+  masks.Joined = SwitchOffCrossed(masks.Active, masks.Cut.Crossed, numberOfCells);
   masks.Active = masks.Joined.data();
   masks.WrittenActive.reset();
   masks.Cut = {};

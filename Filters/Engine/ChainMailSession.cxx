@@ -6,14 +6,13 @@
 #include "PipelineGeometry.h"
 #include "ShapedArray.h"
 #include "VolumeArrays.h"
+#include "WorldHandles.h"
 
 #include "vtkArrayChanges.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
-
-#include <glm/glm.hpp>
 
 #include <array>
 #include <optional>
@@ -42,20 +41,7 @@ std::vector<ChainMailHandle> ReadHandles(
   vtkPointSet* handles, const ImageGeometry& geometry, double radius)
 {
   const HandlePlaces places = ReadHandlePlaces(handles, "volume");
-  const glm::dmat4 toIndex = geometry.GetWorldToIndex();
-  std::vector<ChainMailHandle> read(places.Rest.size());
-  for (std::size_t i = 0; i < read.size(); ++i)
-  {
-    const glm::dvec3 index(toIndex * glm::dvec4(places.Rest[i], 1.0));
-    const glm::dvec3 displacement = glm::dmat3(toIndex) * (places.Now[i] - places.Rest[i]);
-    read[i].Radius = radius;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      read[i].RestPosition[static_cast<std::size_t>(axis)] = index[axis];
-      read[i].Displacement[static_cast<std::size_t>(axis)] = displacement[axis];
-    }
-  }
-  return read;
+  return MakeHandles(geometry, places.Rest, places.Now, radius);
 }
 
 // The masks as links see them: what a smooth cut crosses holds nothing together.
@@ -92,13 +78,7 @@ void ChainMailSession::SetVolume(const ImageGeometry& geometry, const ChainMailS
     return;
   }
   this->Forget();
-  const glm::dmat4 toWorld = geometry.GetIndexToWorld();
-  std::array<double, 9> matrix;
-  for (int i = 0; i < 9; ++i)
-  {
-    matrix[static_cast<std::size_t>(i)] = toWorld[i % 3][i / 3];
-  }
-  this->Model.SetVoxelGrid(geometry.PointExtent, matrix);
+  this->Model.SetVoxelGrid(geometry.PointExtent, GetVoxelMatrix(geometry));
   this->Device = device;
   this->MakeOutput(GetNumberOfPoints(geometry.PointExtent));
   this->Geometry = geometry;

@@ -4,6 +4,7 @@
 
 #include "Extent.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -23,6 +24,12 @@ struct ChainMailMaterial
   /// How far its ends may move past each other across its axis, 0 to 1000.
   double Shear = 0.5;
 };
+
+/// The materials of vtkChainMailDeformation by default: air, soft tissue, muscle, cartilage, bone.
+inline constexpr std::array<ChainMailMaterial, 5> DefaultChainMailMaterials{ { { 0.1, 2.0, 1.0 },
+  { 0.5, 1.5, 0.5 }, { 0.8, 1.2, 0.2 }, { 0.95, 1.05, 0.05 }, { 0.99, 1.01, 0.01 } } };
+/// The one of voxels for which nothing else tells one: soft tissue.
+constexpr int DefaultChainMailMaterial = 1;
 
 /// Voxels that are held together, and where.
 struct ChainMailHandle
@@ -81,6 +88,23 @@ struct ChainMailReport
   std::vector<Extent> Changes;
   /// Holds all of Changes, in structured indices; empty if there are none.
   Extent ChangedExtent{ { 0, -1, 0, -1, 0, -1 } };
+
+  /// Handles whose displacement was reduced.
+  int CountReducedHandles() const
+  {
+    return static_cast<int>(std::count_if(this->Handles.begin(), this->Handles.end(),
+      [](const ChainMailHandleReport& handle)
+      {
+        return std::any_of(handle.Reduction.begin(), handle.Reduction.end(),
+          [](double reduction) { return reduction != 0.0; });
+      }));
+  }
+  /// Handles that were released.
+  int CountReleasedHandles() const
+  {
+    return static_cast<int>(std::count_if(this->Handles.begin(), this->Handles.end(),
+      [](const ChainMailHandleReport& handle) { return !handle.IsHeld; }));
+  }
 };
 
 } // namespace deformvolume

@@ -4,6 +4,7 @@
 #include "Error.h"
 #include "FieldGeometry.h"
 #include "ParallelFor.h"
+#include "VectorBounds.h"
 #include "VectorConversion.h"
 
 #include <glm/common.hpp>
@@ -14,7 +15,8 @@
 namespace deformvolume
 {
 
-void VectorField::Set(const ImageGeometry& grid, const VectorView& vectors, bool isInverse)
+void VectorField::Replace(const ImageGeometry& grid, const VectorView& vectors, bool isInverse,
+  const std::shared_ptr<DeviceVectors>& shared)
 {
   const std::int64_t points = GetNumberOfPoints(grid.PointExtent);
   if (points == 0)
@@ -31,24 +33,48 @@ void VectorField::Set(const ImageGeometry& grid, const VectorView& vectors, bool
   this->Grid = grid;
   this->Vectors = vectors;
   this->Inverse = isInverse;
+  this->Shared = shared;
   this->IsOld = true;
+}
+
+void VectorField::Set(const ImageGeometry& grid, const VectorView& vectors, bool isInverse)
+{
+  this->Replace(grid, vectors, isInverse, nullptr);
+}
+
+void VectorField::Set(const ImageGeometry& grid, const std::shared_ptr<DeviceVectors>& vectors)
+{
+  if (this->Shared != vectors || this->Grid != grid)
+  {
+    this->Replace(grid, { nullptr, false, vectors->GetNumberOfPoints() }, false, vectors);
+  }
 }
 
 void VectorField::Update(const ImageGeometry& volume, const OutputMap& toOutput)
 {
-  if (!this->IsOld && volume == this->Volume && toOutput == this->ToOutput)
+  const bool isSame = !this->IsOld && volume == this->Volume && toOutput == this->ToOutput;
+  const std::uint64_t revision = this->Shared ? this->Shared->GetRevision() : 0;
+  if (isSame && revision == this->Revision)
   {
     return;
   }
   this->IsOld = true; // where it fails
-  this->Convert(volume, toOutput);
+  if (!isSame || !this->InPlace)
+  {
+    this->Place(volume, toOutput);
+  }
+  if (!this->InPlace)
+  {
+    this->Convert(volume, toOutput);
+  }
   this->IsOld = false;
   this->Volume = volume;
   this->ToOutput = toOutput;
+  this->Revision = revision;
   ++this->Version;
 }
 
-void VectorField::Convert(const ImageGeometry& volume, const OutputMap& toOutput)
+void VectorField::Place(const ImageGeometry& volume, const OutputMap& toOutput)
 {
   const Extent& points = this->Grid.PointExtent;
   for (int axis = 0; axis < 3; ++axis)
@@ -56,6 +82,26 @@ void VectorField::Convert(const ImageGeometry& volume, const OutputMap& toOutput
     this->Dimensions[static_cast<std::size_t>(axis)] = static_cast<int>(GetSize(points, axis));
   }
   this->IndexToField = GetIndexToField(this->Grid, volume, this->Inverse ? &toOutput : nullptr);
+  this->InPlace.reset();
+  this->ScannedRevision = 0;
+  if (this->Shared && GetStep(volume.PointExtent, this->IndexToField, this->Dimensions) == 1)
+  {
+    const glm::dmat3 transform = GetToDisplacement(volume, toOutput, 1.0);
+    for (std::size_t i = 0; i < 9; ++i)
+    {
+      this->ToDisplacement[i] = transform[static_cast<int>(i % 3)][static_cast<int>(i / 3)];
+    }
+    this->InPlace = this->Shared;
+    std::vector<float>().swap(this->Displacements);
+  }
+}
+
+void VectorField::Convert(const ImageGeometry& volume, const OutputMap& toOutput)
+{
+  if (this->Shared)
+  {
+    this->Vectors.Data = this->Shared->Read();
+  }
   std::vector<std::size_t> taken;
   if (!this->Inverse)
   {
@@ -131,14 +177,46 @@ std::vector<std::size_t> VectorField::TakeVoxels(const Extent& voxels)
   return taken;
 }
 
-DisplacementField VectorField::Get(const OutsideVoxels& outside) const
+DisplacementField VectorField::GetShape(const OutsideVoxels& outside) const
 {
   DisplacementField field;
   field.Dimensions = this->Dimensions;
-  field.Vectors = this->Displacements.data();
   field.IndexToField = this->IndexToField;
+  if (this->InPlace)
+  {
+    field.ToDisplacement = this->ToDisplacement;
+  }
   SetOutside(outside, glm::abs(this->Grid.Spacing), field);
   return field;
+}
+
+DisplacementField VectorField::Get(const OutsideVoxels& outside) const
+{
+  DisplacementField field = this->GetShape(outside);
+  field.Vectors = this->InPlace ? this->InPlace->Read() : this->Displacements.data();
+  return field;
+}
+
+std::optional<IndexBounds> VectorField::FindSharedBounds(const OutsideVoxels& outside)
+{
+  const VoxelGrid voxelGrid{ this->Volume.PointExtent, this->ToOutput, {} };
+  if (!this->InPlace || !AreVoxelsPoints(voxelGrid, this->GetShape(outside)))
+  {
+    return {};
+  }
+  if (!this->InPlace->AreInHostMemory())
+  {
+    return FindDeformedBounds(voxelGrid, this->GetShape(outside), *this->InPlace);
+  }
+  std::optional<PointRanges> changes;
+  if (this->ScannedRevision != 0)
+  {
+    changes = this->InPlace->GetChanges(this->ScannedRevision);
+  }
+  const FieldState state =
+    this->Scan.Look(voxelGrid, this->Get(outside), changes ? &*changes : nullptr);
+  this->ScannedRevision = this->Revision;
+  return state.IsUsable ? std::optional<IndexBounds>(state.Bounds) : std::nullopt;
 }
 
 } // namespace deformvolume

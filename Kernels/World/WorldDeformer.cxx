@@ -81,6 +81,13 @@ void WorldDeformer::SetField(const ImageGeometry& grid, const VectorView& vector
   this->Impl->Deformation = Internals::Deformations::Field;
 }
 
+void WorldDeformer::SetField(
+  const ImageGeometry& grid, const std::shared_ptr<DeviceVectors>& vectors)
+{
+  this->Impl->Field.Set(grid, vectors);
+  this->Impl->Deformation = Internals::Deformations::Field;
+}
+
 void WorldDeformer::SetOutside(const OutsideVoxels& outside)
 {
   this->Impl->Outside = outside;
@@ -218,6 +225,11 @@ IndexBounds WorldDeformer::Internals::FindBounds()
   const VoxelGrid voxelGrid{ this->Volume->PointExtent, this->ToOutput, {} };
   if (!this->IsMesh())
   {
+    const std::optional<IndexBounds> known = this->Field.FindSharedBounds(this->Outside);
+    if (known && !known->IsEmpty())
+    {
+      return *known;
+    }
     const DisplacementField field = this->Field.Get(this->Outside);
     IndexBounds bounds = this->Field.IsInverse() ? ComputeLookupBounds(voxelGrid, field)
                                                  : ComputeDeformedBounds(voxelGrid, field);

@@ -4,6 +4,7 @@
 
 #include "DeformRequest.h"
 #include "DeformVolumeExport.h"
+#include "DeviceVectors.h"
 #include "ImageGeometry.h"
 #include "OutsideVoxels.h"
 #include "VectorView.h"
@@ -112,6 +113,7 @@ public:
   void SetMesh(const VectorView& points, MeshCells&& cells);
   void SetNodeVectors(const VectorView& vectors);
   void SetField(const ImageGeometry& grid, const VectorView& vectors, bool isInverse);
+  void SetField(const ImageGeometry& grid, const std::shared_ptr<DeviceVectors>& vectors);
   ///@}
 
   void SetOutside(const OutsideVoxels& outside);

@@ -147,7 +147,7 @@ void WorldDeformer::Internals::CheckMemory(
   const std::size_t tetrahedra = isMesh ? this->Mesh.GetAtRest().Tetrahedra.size() : 0;
   const std::size_t nodes = isMesh
     ? this->Mesh.GetAtRest().Points.size()
-    : static_cast<std::size_t>(GetNumberOfPoints(this->Field.Get(this->Outside)));
+    : static_cast<std::size_t>(GetNumberOfPoints(this->Field.GetShape(this->Outside)));
   // The memory of the output is there already.
   std::uint64_t heldBytes = 0;
   for (const VolumeArray& array : arrays)
@@ -310,14 +310,18 @@ void WorldDeformer::Internals::SendField()
   {
     return;
   }
-  const DisplacementField field = this->Field.Get(this->Outside);
-  if (this->Field.IsInverse())
+  const std::shared_ptr<DeviceVectors>& shared = this->Field.GetShared();
+  if (shared && shared->GetDevice() == this->Device)
   {
-    this->Deformer.SetInverseField(field);
+    this->Deformer.SetDisplacementField(this->Field.GetShape(this->Outside), shared);
+  }
+  else if (this->Field.IsInverse())
+  {
+    this->Deformer.SetInverseField(this->Field.Get(this->Outside));
   }
   else
   {
-    this->Deformer.SetDisplacementField(field);
+    this->Deformer.SetDisplacementField(this->Field.Get(this->Outside));
   }
   this->SentDeformation = Deformations::Field;
   this->SentVectors = this->Field.GetVersion();
