@@ -608,6 +608,164 @@ extern "C"
   /** Gets the masks of the volume. */
   DV_EXPORT int32_t dv_get_masks(dv_deformer* deformer, dv_masks* masks);
 
+  /* ---- ChainMail ---- */
+
+  /**
+   * The tissue of a volume that is dragged by handles, with a stiffness that follows the image:
+   * what vtkChainMailDeformation does, with the same bits. Each voxel is linked to its six
+   * neighbours. A link may be stretched, compressed and sheared within the limits of the materials
+   * at its ends. Handles hold voxels and move them; others follow, each by as little as possible,
+   * and relaxation evens out the displacements (Documents/chainmail.md).
+   *
+   *   dv_chainmail_create, dv_chainmail_set_materials, dv_chainmail_set_pinned,
+   *   dv_chainmail_set_active_tetrahedra, dv_chainmail_step, dv_chainmail_reset,
+   *   dv_chainmail_displacements, dv_set_chainmail, dv_chainmail_destroy
+   *
+   * Displacements are kept from step to step, so that a drag goes on. All memory that is given is
+   * read during the call only. A function that fails or is aborted leaves the displacements as they
+   * were, but for failures of the device: then only dv_chainmail_destroy() is left to be called.
+   *
+   * It takes 15 bytes a voxel on the device, in blocks of 8 x 8 x 8 voxels, and the displacements
+   * 12 bytes.
+   */
+  typedef struct dv_chainmail dv_chainmail;
+
+  /** Makes a ChainMail, to be destroyed with dv_chainmail_destroy(). grid: that of the volume at
+   * rest, two points or more on each axis. device: as for dv_set_device(). memory_limit: how many
+   * bytes may be used on the device; 0: what it has available. All voxels are at rest, and soft
+   * tissue. */
+  DV_EXPORT int32_t dv_chainmail_create(
+    const dv_grid* grid, const char* device, uint64_t memory_limit, dv_chainmail** chainmail);
+  /** Null is allowed. Deformers that use the displacements keep what they need of them. */
+  DV_EXPORT void dv_chainmail_destroy(dv_chainmail* chainmail);
+
+  /** The name of the device. Null, with an error, where there is no ChainMail. The text belongs to
+   * the ChainMail. */
+  DV_EXPORT const char* dv_chainmail_device(const dv_chainmail* chainmail);
+
+  /** The materials of the voxels. */
+  typedef struct dv_chainmail_materials
+  {
+    /** The size of the structure in bytes, set by the program. */
+    size_t struct_size;
+    /** The limits of the materials from 0 on, three numbers each, as fractions of the spacing: the
+     * shortest that a link may be along its axis, 0 to 1; the longest, 1 to 1000; and how far its
+     * ends may move past each other across it, 0 to 1000. A link between two materials has the mean
+     * of their limits. Null: 0 is air (0.1, 2, 1), 1 soft tissue (0.5, 1.5, 0.5), 2 muscle (0.8,
+     * 1.2, 0.2), 3 cartilage (0.95, 1.05, 0.05), 4 bone (0.99, 1.01, 0.01). */
+    const double* table;
+    /** How many materials the table has, 1 to 256. */
+    int32_t number_of_materials;
+    /** The number of the material of voxels for which nothing else tells one. */
+    int32_t default_material;
+    /** What tells the material of each voxel: an array of one component over the volume. Without
+     * ranges its values are numbers of materials. Null: all voxels have the default material. */
+    const dv_array* values;
+    /** Three numbers each: voxels with a value of the first one or more, and less than the second
+     * one, have the material with the third one as its number. The first range that holds a value
+     * counts. */
+    const double* ranges;
+    /** How many ranges there are. */
+    int64_t number_of_ranges;
+  } dv_chainmail_materials;
+
+  /** Sets the materials. Where displacements exceed the new limits, all are put to 0. Fails where a
+   * voxel has no material, and where a limit is out of its range. */
+  DV_EXPORT int32_t dv_chainmail_set_materials(
+    dv_chainmail* chainmail, const dv_chainmail_materials* materials);
+
+  /** Which voxels do not move. pinned: one byte a voxel, not 0 where the voxel is pinned. Null:
+   * none is. */
+  DV_EXPORT int32_t dv_chainmail_set_pinned(dv_chainmail* chainmail, const uint8_t* pinned);
+
+  /** Where the tissue is cut or carved, in the shapes of dv_set_active_tetrahedra() and
+   * dv_set_smooth_cut(), such as dv_get_masks() gives them. A link is there if one of the up to
+   * four tetrahedra that have it as an edge is active, and not crossed. Null: all are active, none
+   * is crossed. Where links come back that the displacements exceed, all are put to 0. */
+  DV_EXPORT int32_t dv_chainmail_set_active_tetrahedra(
+    dv_chainmail* chainmail, const uint8_t* active, const uint8_t* crossed);
+
+  /** What a step is to do. */
+  typedef struct dv_chainmail_request
+  {
+    /** The size of the structure in bytes, set by the program. */
+    size_t struct_size;
+    /** How many handles there are; 0 to relax only. */
+    int64_t number_of_handles;
+    /** The place in the volume at rest that each handle holds: three numbers, in world
+     * coordinates. */
+    const double* rest_positions;
+    /** Where each handle is now: three numbers, in world coordinates. It displaces its voxels by
+     * the difference, at most 4095 voxels on each axis. */
+    const double* positions;
+    /** How far round its rest position a handle holds voxels, in world units, 0 or more; at least
+     * the nearest voxel is held. */
+    double handle_radius;
+    /** How much of the way to the weighted mean of its neighbours a voxel moves in a sweep of
+     * relaxation, 0 to 1. 1 in vtkChainMailDeformation by default. */
+    double elasticity;
+    /** Voxels that are nearer to that mean than this fraction of the spacing stay where they are,
+     * on each axis by itself, 0 or more. */
+    double plasticity_threshold;
+    /** Sweeps of relaxation, over the blocks that were moved in the last 30 steps, 0 or more. 5 in
+     * vtkChainMailDeformation by default. */
+    int32_t relaxation_sweeps;
+    /** 0. */
+    int32_t reserved;
+    /** The progress callback; null: none. It gets 0 each time: how long a step takes is not known
+     * before. */
+    dv_progress progress;
+    /** What progress gets as its argument user. */
+    void* user;
+  } dv_chainmail_request;
+
+  /** What a step has done. */
+  typedef struct dv_chainmail_report
+  {
+    /** The size of the structure in bytes, set by the program. */
+    size_t struct_size;
+    /** Rounds over the blocks that move, and sweeps of relaxation. */
+    int64_t number_of_sweeps;
+    /** Voxels whose displacement is not what it was before the step. */
+    int64_t number_of_moved_voxels;
+    /** The largest violation of a limit by a voxel that moved, as a fraction of the spacing: 0
+     * unless something is wrong. */
+    double largest_violation;
+    /** Handles whose displacement was reduced so that pinned voxels and handles before them stay.
+     */
+    int32_t number_of_reduced_handles;
+    /** Handles that were released, since no displacement of their voxels would do. */
+    int32_t number_of_released_handles;
+    /** Not 0: all displacements were put to 0 since the last step. */
+    int32_t was_reset;
+    /** An extent that holds all voxels whose displacement has changed since the last step. First >
+     * last: none has. */
+    int32_t changed_extent[6];
+  } dv_chainmail_report;
+
+  /** Moves the handles, and relaxes. report may be null. Fails where a handle is outside the
+   * volume, is moved too far, or has a coordinate that is not finite. */
+  DV_EXPORT int32_t dv_chainmail_step(
+    dv_chainmail* chainmail, const dv_chainmail_request* request, dv_chainmail_report* report);
+
+  /** Puts all voxels to rest. */
+  DV_EXPORT int32_t dv_chainmail_reset(dv_chainmail* chainmail);
+
+  /** The displacements of all voxels: three floats each, in world units, x varying fastest. The
+   * memory belongs to the ChainMail, and stays the same. On a device with memory of its own, this
+   * call brings it up to date; on a processor each step does. */
+  DV_EXPORT int32_t dv_chainmail_displacements(
+    dv_chainmail* chainmail, const float** displacements);
+
+  /** Bytes that the ChainMail and its displacements hold on the device. */
+  DV_EXPORT int32_t dv_chainmail_device_memory(const dv_chainmail* chainmail, uint64_t* bytes);
+
+  /** The displacements of a ChainMail, in place of the mesh or field before. They are used where
+   * they lie, and dv_deform() follows each step without another call. Where the deformer has the
+   * same device, nothing passes through the host. While dv_deform() and dv_output_grid() run, no
+   * other thread may use the ChainMail. */
+  DV_EXPORT int32_t dv_set_chainmail(dv_deformer* deformer, const dv_chainmail* chainmail);
+
 #ifdef __cplusplus
 }
 #endif

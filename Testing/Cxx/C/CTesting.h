@@ -289,14 +289,22 @@ inline vtkSmartPointer<vtkImageData> MakeManyArrays()
   SetObliqueDirection(volume);
   const WorldFunction wave = [](const glm::dvec3& p)
   { return 60.0 * std::sin(0.7 * p.x) + 40.0 * std::cos(0.9 * p.y) + 5.0 * p.z; };
-  AddScalars<signed char>(volume, "int8", wave);
-  AddScalars<unsigned short>(
-    volume, "uint16", [&](const glm::dvec3& p) { return 200.0 * (wave(p) + 150.0); });
-  AddScalars<int>(volume, "int32", wave);
-  AddScalars<long long>(volume, "int64", [&](const glm::dvec3& p) { return 1e10 * wave(p); });
-  AddScalars<double>(volume, "double", wave);
-  AddScalars<unsigned char>(
-    volume, "labels", [&](const glm::dvec3& p) { return std::fmod(std::abs(wave(p)), 7.0); });
+  const auto add = [&](auto type, const char* name, const WorldFunction& function)
+  {
+    AddScalars<decltype(type)>(volume, name, function);
+    // Else the next ones would take its place.
+    volume->GetPointData()->SetActiveAttribute(-1, vtkDataSetAttributes::SCALARS);
+  };
+  using SignedChar = signed char;
+  add(SignedChar{}, "int8", wave);
+  using Unsigned = unsigned short;
+  add(Unsigned{}, "uint16", [&](const glm::dvec3& p) { return 200.0 * (wave(p) + 150.0); });
+  add(int{}, "int32", wave);
+  using Long = long long;
+  add(Long{}, "int64", [&](const glm::dvec3& p) { return 1e10 * wave(p); });
+  add(double{}, "double", wave);
+  using Byte = unsigned char;
+  add(Byte{}, "labels", [&](const glm::dvec3& p) { return std::fmod(std::abs(wave(p)), 7.0); });
   vtkNew<vtkFloatArray> vectors;
   vectors->SetName("vectors");
   vectors->SetNumberOfComponents(2);
