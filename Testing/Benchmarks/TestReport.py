@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The report on results of which parts are missing, have failed or are cut off, with made-up numbers under the
-names that DeformVolumeBenchmarks lists: TestReport.py DeformVolumeBenchmarks."""
+"""Makes reports of results with missing, failed and truncated parts. Numbers are made up, for the names that
+DeformVolumeBenchmarks lists: TestReport.py DeformVolumeBenchmarks."""
 import contextlib
 import io
 import json
@@ -29,7 +29,7 @@ OTHER_NAMES = (
     + [f"Render/gpu-ray-cast/700x700/shaded/{what}" for what in ("undeformed", "deformed")]
     + [f"GpuPeer/{pose}/{peer}" for pose in sections.POSES for peer in sections.GPU_PEERS]
     + ["GpuPeer/copy/torch", "GpuPeer/copy/cupy", "Device/copy"]
-    # Not there with ParaView's VTK.
+    # DeformVolumeBenchmarks does not have these with ParaView's VTK.
     + [f"Session/at-rest/{event}" for event in ("drag", "cut", "carve")])
 DRAWN = []
 
@@ -80,7 +80,7 @@ def missing_sections(text):
 
 
 def check_parts(names):
-    """Each measurement has a place in the report, and a report without it says so."""
+    """Each measurement appears in the report, and a report without a section says so."""
     everything = set(sections.ON_GPUS | sections.ALL)
     runs = make_runs(names)
     text = report_on(runs)
@@ -91,7 +91,7 @@ def check_parts(names):
         its_runs = [run for run in runs if run["name"].split("/iterations:")[0] == name]
         others = [run for run in runs if run not in its_runs]
         assert report_on(others) != text, f"{name} is nowhere in the report"
-        # Whatever lacks what it is compared with.
+        # The benchmarks that it is compared with are missing.
         report_on(its_runs)
 
 
@@ -131,7 +131,7 @@ def check_document(names):
         except SystemExit as error:
             assert "no results of a GPU" in str(error)
         else:
-            raise AssertionError("a document of no GPU")
+            raise AssertionError("a document without a GPU was written")
         write(results, "gpu", make_runs(names))
         DRAWN.clear()
         make_report(results, documents / "gpu.md")

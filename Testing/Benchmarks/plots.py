@@ -13,14 +13,14 @@ STYLES = {
 
 
 class Pictures:
-    """The folder of the plots, and how the text that shows them calls it."""
+    """The folder of the plots, and its name in the text that shows them."""
 
     def __init__(self, folder, prefix=""):
         self.folder = folder
         self.prefix = prefix
 
     def show(self, name, words):
-        """What shows a plot in the text."""
+        """The Markdown that shows a plot."""
         return f"![{words}]({self.prefix}{name})\n"
 
 
@@ -57,7 +57,7 @@ def plot_curves(path, title, labels, curves, band=None):
 
 
 def plot_bars(path, title, label, bars):
-    """bars: (name, value, true for what is ours)."""
+    """bars: (name, value, whether it is DeformVolume)."""
     _, axes = plt.subplots(figsize=(9, 0.36 * len(bars) + 1.3))
     names = [name for name, _, _ in bars]
     values = [value for _, value, _ in bars]

@@ -1,18 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Prints the section "Measured" of README.md, from what Testing/Benchmarks/run.sh measured, and draws the plot of
+"""Prints the section "Measured" of README.md from the results of Testing/Benchmarks/run.sh, and draws the plot of
 Documents/benchmarks.md: readme.py [FOLDER [PICTURE]]. FOLDER is build/benchmarks by default; without PICTURE
 nothing is drawn."""
-import datetime
 import pathlib
 import sys
 
 from plots import plot_bars
-from results import Results
+from results import Results, format_date
 from sections import PEERS, table
 
 POSE = "near"
 OURS = f"Deform/{POSE}/2197/exact"
-# The rows of the table, and their words there; the plot has all.
+# Rows of the table, with their labels. The plot has more.
 IN_TABLE = {
     OURS: "DeformVolume, mesh of 2,197 nodes",
     f"Deform/{POSE}/512000/exact": "DeformVolume, mesh of 512,000 nodes",
@@ -20,7 +19,7 @@ IN_TABLE = {
     f"Deform/{POSE}/reslice-grid": "vtkImageReslice with vtkGridTransform, inverse field given",
     f"Deform/{POSE}/reslice-grid-solved": "vtkImageReslice with vtkGridTransform, forward field given",
 }
-# Name, what it is on the plot, what it is compared with.
+# Name of the benchmark, label in the plot, name of the benchmark that it is compared with.
 ROWS = [
     (OURS, "DeformVolume, 2,197 nodes", OURS),
     (f"Deform/{POSE}/512000/exact", "DeformVolume, 512,000 nodes", OURS),
@@ -31,7 +30,7 @@ ROWS = [
 
 
 def measured(results):
-    """(name, label of the plot, milliseconds, times as long as DeformVolume in the same rounds)."""
+    """(name, label in the plot, milliseconds, time relative to DeformVolume in the same rounds)."""
     for name, short, ours in ROWS:
         if results.median(name):
             yield name, short, results.median(name), results.ratio(name, ours)
@@ -41,9 +40,8 @@ def section(devices, picture):
     yield "## Measured\n"
     for results in devices:
         machine = results.processors if results.is_processor else results.device
-        day = datetime.datetime.fromisoformat(results.context["date"])
         yield (f"Time of one `Update()` after the mesh has moved by up to 12 voxels. The volume has 189 x 305 x 229 "
-               f"voxels (13.2 million)\nof 16 bits. Machine: {machine}; {day.day} {day:%B %Y}.\n")
+               f"voxels (13.2 million)\nof 16 bits. Machine: {machine}; {format_date(results.context["date"])}.\n")
         yield table(["", "ms", "relative"],
                     [[IN_TABLE[name], milliseconds, ratio if ratio != 1 else "1"]
                      for name, _, milliseconds, ratio in measured(results) if name in IN_TABLE])
@@ -63,5 +61,5 @@ if __name__ == "__main__":
     RESULTS = [results for path in sorted(FOLDER.iterdir()) if path.is_dir()
                for results in [Results(path)] if results.median(OURS)]
     if not RESULTS:
-        sys.exit(f"readme.py: {FOLDER} holds no results of {OURS}")
+        sys.exit(f"readme.py: {FOLDER} contains no results of {OURS}")
     print("\n".join(section(RESULTS, pathlib.Path(sys.argv[2]) if len(sys.argv) > 2 else None)))

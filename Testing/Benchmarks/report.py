@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes a report in Markdown, with plots, of what the benchmark programs wrote: report.py FOLDER [DOCUMENT].
-FOLDER holds a folder of JSON files for each device; report.md and the plots are written to it. With
-DOCUMENT the report is of the GPUs only and is written to that file, its plots to images/ beside it. Fails where a demand is not met."""
+"""Makes a report in Markdown, with plots, of the results of the benchmark programs: report.py FOLDER [DOCUMENT].
+FOLDER contains a folder of JSON files for each device; report.md and the plots are written to FOLDER. With
+DOCUMENT the report is about GPUs only and is written to that file, its plots to images/ beside it. Returns an error
+if a limit is exceeded."""
 import pathlib
 import sys
 
 import sections
 from demands import DEMANDS
 from plots import Pictures
-from results import Results
+from results import Results, format_date
 from sections import cell, table
 
 
@@ -24,7 +25,7 @@ def describe(results):
 
 
 def demands(devices):
-    """What is measured in a table, the rest in a line for each device."""
+    """A table of the limits, and a line for each device with those that were not measured."""
     rows = []
     missing = {kind: [] for kind in devices}
     for demand in DEMANDS:
@@ -36,9 +37,9 @@ def demands(devices):
                 missing[kind].append(demand.words)
                 continue
             rows.append([demand.words, f"{cell(demand.limit, 3)} {demand.unit}".strip(), cell(value, 3),
-                         "met" if value <= demand.limit else "**not met**", kind])
+                         "yes" if value <= demand.limit else "**no**", kind])
     if rows:
-        yield table(["demand", "at most", "measured", "", "device"], rows)
+        yield table(["subject", "limit", "measured", "within the limit", "device"], rows)
     for kind, words in missing.items():
         if words:
             yield f"Not measured on {kind}: {'; '.join(words)}.\n"
@@ -56,21 +57,21 @@ def device_report(results, pictures, kind):
         yield f"Not measured: {', '.join(missing)}.\n"
     errors = results.errors()
     if errors:
-        yield "## What failed\n"
+        yield "## Failed measurements\n"
         yield table(["measurement", "message"],
                     [[name, " ".join(words.split())] for name, words in errors])
 
 
 def report(devices, pictures, title, manual):
-    """manual: what the text calls Documents/benchmarks.md."""
+    """manual: the link to Documents/benchmarks.md."""
     yield f"# {title}\n"
-    dates = {results.context["date"] for results in devices.values()}
-    yield f"Measured on {min(dates)}. What each table means: {manual}.\n"
-    yield table(["device", "what it is"],
+    date = min(results.context["date"] for results in devices.values())
+    yield f"Measured on {format_date(date)}. {manual} describes the tables.\n"
+    yield table(["device", "description"],
                 [[kind, describe(results)] for kind, results in devices.items()])
-    yield "## Demands\n"
-    yield ("Each number is a median over the rounds of one run, ratios are medians of ratios within "
-           "rounds, and all are from the device in the last column.\n")
+    yield "## Limits\n"
+    yield ("The numbers are medians over the rounds of one run; ratios are medians of ratios within "
+           "rounds.\n")
     yield from demands(devices)
     for kind, results in devices.items():
         yield from device_report(results, pictures, kind)
@@ -78,12 +79,12 @@ def report(devices, pictures, title, manual):
 
 def main(folder, document=None):
     if not folder.is_dir():
-        sys.exit(f"report.py: {folder} is no folder")
+        sys.exit(f"report.py: {folder} is not a folder")
     devices = {path.name: Results(path) for path in sorted(folder.iterdir()) if path.is_dir()}
     devices = {kind: results for kind, results in devices.items()
                if results.runs and not (document and results.is_processor)}
     if not devices:
-        sys.exit(f"report.py: {folder} holds no results" + (" of a GPU" if document else ""))
+        sys.exit(f"report.py: {folder} contains no results" + (" of a GPU" if document else ""))
     if document:
         pictures = Pictures(document.parent / "images", "images/")
         pictures.folder.mkdir(exist_ok=True)
@@ -101,5 +102,5 @@ def main(folder, document=None):
 if __name__ == "__main__":
     if len(sys.argv) not in (2, 3):
         sys.exit(__doc__)
-    if "| **not met** |" in main(*map(pathlib.Path, sys.argv[1:])):
-        sys.exit("report.py: a demand is not met")
+    if "| **no** |" in main(*map(pathlib.Path, sys.argv[1:])):
+        sys.exit("report.py: a limit is exceeded")

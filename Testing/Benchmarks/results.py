@@ -1,12 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reads what the benchmark programs wrote for one device."""
+"""Reads the results of the benchmark programs for one device."""
 import collections
+import datetime
 import json
 import pathlib
 import statistics
 
-# Google Benchmark appends how a run was done.
+# Google Benchmark appends this to names.
 SUFFIX = "/iterations:"
+
+
+def format_date(text):
+    """27 November 2026 for a date of Google Benchmark."""
+    day = datetime.datetime.fromisoformat(text)
+    return f"{day.day} {day:%B %Y}"
 
 
 class Results:
@@ -29,7 +36,7 @@ class Results:
 
     @property
     def device(self):
-        """What DeformVolumeDevice calls the device."""
+        """Name of the device, by DeformVolumeDevice."""
         return self.context.get("device", "a device that was not described")
 
     @property
@@ -38,7 +45,7 @@ class Results:
 
     @property
     def processors(self):
-        """What machine.py says of the processors."""
+        """Description of the CPUs, by machine.py."""
         return self.context.get("processors", "unknown processors")
 
     def names(self, prefix):
@@ -46,17 +53,17 @@ class Results:
         return [name for name in self.runs if name.startswith(prefix)]
 
     def errors(self):
-        """(name, message) of each measurement that failed, and of each file that cannot be read."""
+        """(name, message) of each failed measurement, and of each file that cannot be read."""
         return self.unreadable + [(name, runs[0]["error_message"]) for name, runs in self.runs.items()
                                   if runs[0].get("error_occurred")]
 
     def values(self, name, key="real_time"):
-        """One value for each round; None where it failed."""
+        """One value for each round; None for a failed one."""
         return [None if run.get("error_occurred") else run.get(key)
                 for run in self.runs.get(name, [])]
 
     def median(self, name, key="real_time"):
-        """Median over the rounds; None where there is no value."""
+        """Median over the rounds; None if there is no value."""
         values = [value for value in self.values(name, key) if value is not None]
         return statistics.median(values) if values else None
 

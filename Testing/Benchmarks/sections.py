@@ -1,41 +1,42 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The sections of the report on one device. Each yields Markdown, nothing where nothing was
-measured, and may draw plots: see Pictures."""
+"""The sections of the report on one device. Each function yields Markdown, or nothing if nothing was
+measured, and may draw plots (Pictures)."""
 from plots import STYLES, plot_bars, plot_curves
 
 # The method's authors measured these on a Radeon R9 270X: Rodriguez, Leon, Martin and Otaduy,
-# "A parallel resampling method for interactive deformation of volumetric models"; the frames were cast with 500 samples a ray.
+# "A parallel resampling method for interactive deformation of volumetric models". Their ray casting took 500 samples
+# a ray.
 PAPER_RESAMPLING = {"undeformed": 14.6, "rotated-45": 23.6, "scale-1.5": 51.2}  # ms
 PAPER_RENDERING = {("700x700", "unshaded"): 7.4, ("700x700", "shaded"): 24.1,
                    ("1920x1080", "unshaded"): 40.3, ("1920x1080", "shaded"): 107.7}  # ms
 
-# Milliseconds: of ChainMail, mapping, resampling and a frame of them; of edits, which take less.
+# Milliseconds of a step of ChainMail, mapping, resampling, and a whole frame. Edits: upper limits.
 PAPER_FRAMES = {"150x242x182": (None, None, None, 16.0), "189x305x229": (11.0, 0.5, 23.5, 35.0)}
 # Simulation, mapping and resampling of a mass-spring network of 2.5 million tetrahedra.
 PAPER_SPRINGS = (19.0, 5.3, 21.4)
 PAPER_CUT = 21.0
 PAPER_CARVING = 8.0
 
-# Frames a second that SOFA's developers measured on a processor of a laptop, its rendering
-# included: springs of 4,000 nodes, and tetrahedral elements of 19,456.
+# Frames a second that SOFA's developers measured on the CPU of a laptop, rendering included:
+# springs of 4,000 nodes, and tetrahedral elements of 19,456.
 SOFA_RATES = {"springs-4096": 108.0, "elements-19307": 9.2}
 
 # 6.6 and 13.2 million voxels.
 INTERACTIVE_SIZES = tuple(PAPER_FRAMES)
 
 POSES = {"near": "near identity", "general": "general pose"}
-# What they are called in tables and in plots.
+# Labels in tables and in plots.
 PEERS = {
     "reslice-affine": ("vtkImageReslice, affine (it rotates instead)", "reslice, affine"),
-    "reslice-grid": ("vtkImageReslice, vtkGridTransform, backward vectors given",
-                     "reslice, grid given backward"),
-    "reslice-grid-solved": ("vtkImageReslice, vtkGridTransform, inverse solved",
-                            "reslice, grid inverted"),
+    "reslice-grid": ("vtkImageReslice, vtkGridTransform, inverse field given",
+                     "reslice, inverse field given"),
+    "reslice-grid-solved": ("vtkImageReslice, vtkGridTransform, forward field given and inverted",
+                            "reslice, field inverted"),
     "probe": ("vtkProbeFilter of the mesh, then of the volume", "probe chain"),
 }
 
 
-# What users of GPUs have where the inverse deformation is known.
+# Peers on the GPU. They need the inverse deformation.
 GPU_PEERS = {
     "torch/nearest/float32": "torch, grid_sample, nearest",
     "torch/linear/float32": "torch, grid_sample, bilinear",
@@ -43,13 +44,13 @@ GPU_PEERS = {
     "cupy/nearest/float32": "cupy, map_coordinates, order 0",
     "cupy/linear/float32": "cupy, map_coordinates, order 1",
 }
-# What is deformed, in the names of results.
+# Labels of deformations, by the names of results.
 DEFORMATIONS = {"2197/exact": "2,197 nodes", "512000/exact": "512,000 nodes", "field/exact": "dense field",
                 "inverse/automatic": "inverse field"}
 
 
 def cell(value, digits=1):
-    """A number in a table: with so many significant digits, at least all before the point."""
+    """Formats a number of a table with `digits` significant digits, and all before the point."""
     if value is None:
         return "-"
     if isinstance(value, str):
@@ -78,20 +79,19 @@ def device(results, _pictures, _kind):
     yield "## Memory bandwidth\n"
     yield (f"A kernel that copies 256 MiB reads and writes {rate / 1e9:.1f} GB/s together. For "
            "189 x 305 x 229 voxels of 16 bits, reading the volume and writing the result and its "
-           f"mask (5 bytes per voxel) takes {5e3 * voxels / rate:.2f} ms at that rate, with a static "
-           f"map of 16 bytes per voxel {21e3 * voxels / rate:.2f} ms: no resampling is faster.\n")
+           f"mask (5 bytes per voxel) takes {5e3 * voxels / rate:.2f} ms at that rate, and "
+           f"{21e3 * voxels / rate:.2f} ms with links of 16 bytes per voxel. No resampling can be faster.\n")
 
 
 def _least_milliseconds(results, name):
-    """The time in which DeformVolumeDevice copies as many bytes as must be moved: the volume is read, the
-    result and its mask are written."""
+    """Time in which the device copies the bytes that must be moved: the volume is read, the result and its
+    mask are written."""
     rate = results.median("Device/copy", "bytes_per_second")
     voxels, output = (results.median(name, key) for key in ("voxels", "output_voxels"))
     return 1e3 * (2.0 * voxels + 3.0 * output) / rate if rate and voxels and output else None
 
 
 def gpu(results, _pictures, _kind):
-    """What a GPU is bought for: the kernels."""
     rows = []
     for pose, words in POSES.items():
         for deformation, what in DEFORMATIONS.items():
@@ -105,10 +105,10 @@ def gpu(results, _pictures, _kind):
                          results.median(name)])
     if rows:
         yield "## GPU: mapping and resampling of 189 x 305 x 229 voxels of 16 bits\n"
-        yield ("Ratios to 2,197 nodes are medians of ratios within rounds. No resampling takes less than it takes to "
-               "copy the bytes that it reads and writes: the volume once, the result and its mask once.\n")
-        yield table(["pose", "deformation", "mapping + resampling, ms", "by 2,197 nodes",
-                     "copy of its bytes, ms", "by that", "transfer, ms", "Update(), ms"], rows)
+        yield ("The copy moves the bytes that any resampling has to read and write: the volume once, the result and "
+               "its mask once.\n")
+        yield table(["pose", "deformation", "mapping + resampling, ms", "relative to 2,197 nodes",
+                     "copy, ms", "relative to the copy", "transfer, ms", "Update(), ms"], rows)
 
 
 def gpu_peers(results, pictures, kind):
@@ -117,13 +117,13 @@ def gpu_peers(results, pictures, kind):
     yield "## Peers on the GPU\n"
     copies = [f"{name.split('/')[-1]} {1e-9 * rate:,.0f} GB/s" for name in results.names("GpuPeer/copy/")
               for rate in [results.median(name, "bytes_per_second")] if rate]
-    yield (f"Measured with {results.context['gpu_peers']}. They get the inverse deformation, as a position for "
-           "each voxel of the output that lies on the GPU already. They read and write values of 32 bits, and no "
-           "mask; with half, values and positions have 16 bits, so that a position is off by a tenth of a voxel "
-           "or more. DeformVolume gets the forward deformation, but for the inverse field, and reads and writes "
-           "16 bits and a mask. It ran in another process: the last columns are quotients of medians, its mapping "
-           "and resampling by the time of the peer, both for a voxel of the output, of which an inverse field "
-           "gives as many as it has vectors."
+    yield (f"Measured with {results.context['gpu_peers']}. The peers get the inverse deformation: a position for each "
+           "voxel of the output, which is on the GPU already. They read and write values of 32 bits, and no mask. "
+           "With \"half\", values and positions have 16 bits, so a position is wrong by a tenth of a voxel or more. "
+           "DeformVolume gets the forward deformation (except with the inverse field), and reads and writes 16 bits "
+           "and a mask. The last columns are its mapping and resampling relative to the peer, per voxel of the "
+           "output; they are quotients of medians, as it ran in another process. With an inverse field the output "
+           "has as many voxels as the field has vectors."
            + (f" A copy on the device reads and writes, together: {', '.join(copies)}." if copies else "")
            + "\n")
     for pose, words in POSES.items():
@@ -152,7 +152,7 @@ def gpu_peers(results, pictures, kind):
             continue
         yield f"{words[0].upper()}{words[1:]}:\n"
         yield table(["peer", "million voxels of the output", "ms", "GB/s at least"]
-                    + [f"DeformVolume, {what}, by it" for what in ours], rows)
+                    + [f"DeformVolume, {what}, relative" for what in ours], rows)
         image = f"{kind}-kernels-{pose}.png"
         plot_bars(pictures.folder / image, f"Mapping and resampling, 13.2 million voxels, {words}\n"
                   f"{results.device}", "ms", bars)
@@ -180,8 +180,8 @@ def comparison(results, pictures, kind):
             continue
         yield f"## Table 1: 189 x 305 x 229 voxels of 16 bits, {words}\n"
         yield table(["deformation", "resampler", "Update(), ms", "mapping, ms", "resampling, ms",
-                     "transfer, ms", "Update() by affine vtkImageReslice", "device bytes per voxel",
-                     "mappings built", "uploads of the volume"], rows)
+                     "transfer, ms", "Update() relative to affine vtkImageReslice", "device bytes per voxel",
+                     "static mappings built", "uploads of the volume"], rows)
         rows = []
         for peer, (what, short) in PEERS.items():
             group = "Probe" if peer == "probe" else "Deform"
@@ -192,7 +192,7 @@ def comparison(results, pictures, kind):
                 bars.append((short, results.median(name), False))
         if rows:
             yield f"Peers over the same output, {words}, 2,197 nodes:\n"
-            yield table(["peer", "Update(), ms", "ours by peer"], rows)
+            yield table(["peer", "Update(), ms", "DeformVolume, relative"], rows)
         if not bars:
             continue
         image = f"{kind}-peers-{pose}.png"
@@ -209,9 +209,9 @@ def published(results, _pictures, _kind):
             if names[0] in results.runs]
     if rows:
         yield "## The published method: 189 x 305 x 229 voxels of 16 bits, 2,197 nodes\n"
-        yield ("Mapping and resampling on the device. The published method maps all vertices, and then resamples "
-               "all cells, one work-item each.\n")
-        yield table(["pose", "mapping + resampling, ms", "published, ms", "by published"], rows)
+        yield ("Mapping and resampling on the device. The published method first maps all vertices, and then resamples "
+               "all cells, with one work-item for each.\n")
+        yield table(["pose", "mapping + resampling, ms", "published, ms", "relative"], rows)
 
 
 def poses(results, _pictures, _kind):
@@ -237,7 +237,7 @@ def poses(results, _pictures, _kind):
     if rows:
         yield "## Poses: 189 x 305 x 229 voxels of 16 bits, 2,197 nodes\n"
         yield table(["pose", "mapping + resampling, ms", "Update(), ms",
-                     "mapping + resampling by near identity"], rows)
+                     "relative to near identity"], rows)
 
 
 def nodes(results, _pictures, _kind):
@@ -249,7 +249,7 @@ def nodes(results, _pictures, _kind):
     if rows:
         yield "## Nodes: 189 x 305 x 229 voxels of 16 bits\n"
         yield table(["pose", "nodes", "mapping + resampling, ms", "Update(), ms",
-                     "mapping + resampling by 2197"], rows)
+                     "relative to 2197"], rows)
 
 
 def tight_meshes(results, _pictures, _kind):
@@ -262,13 +262,13 @@ def tight_meshes(results, _pictures, _kind):
                          results.ratio(name, without)])
     if rows:
         yield "## Meshes as large as a body of 100 x 100 x 100 voxels\n"
-        yield ("An update in which all nodes move, with and without the cells that the boundary of the mesh "
+        yield ("Update() in which all nodes move, with and without the cells that the boundary of the mesh "
                "crosses.\n")
-        yield table(["nodes", "update, ms", "without these cells, ms", "ratio"], rows)
+        yield table(["nodes", "Update(), ms", "without these cells, ms", "ratio"], rows)
 
 
 def _chosen(results, name):
-    """What the filter chose by itself: vtkDeformVolumeFilter::Resamplers."""
+    """What SetResamplerToAutomatic() has chosen: vtkDeformVolumeFilter::Resamplers."""
     return {0: "Exact", 2: "MeshRasterization"}.get(results.median(name, "resampler_in_use"), "-")
 
 
@@ -288,17 +288,17 @@ def tetrahedra(results, pictures, kind):
         rows.append(row + [_chosen(results, f"Tetrahedra/{count}/automatic")])
     if not rows:
         return
-    yield "## Figure 7: time against the tetrahedra of the deformation mesh\n"
+    yield "## Figure 7: time by the number of tetrahedra of the deformation mesh\n"
     yield table(["tetrahedra"] + [f"{name}: {what}" for name, _, _ in STYLES.values()
                                   for what in ("mapping + resampling, ms", "Update(), ms")]
-                + ["Automatic takes"], rows)
+                + ["choice of Automatic"], rows)
     if not curves:
         return
     image = f"{kind}-tetrahedra.png"
     plot_curves(pictures.folder / image, "189 x 305 x 229 voxels, near identity\n"
                 + results.device,
                 ("tetrahedra of the deformation mesh", "mapping + resampling, ms"), curves)
-    yield pictures.show(image, "Time against tetrahedra")
+    yield pictures.show(image, "Time by the number of tetrahedra")
 
 
 def voxels(results, pictures, kind):
@@ -317,7 +317,7 @@ def voxels(results, pictures, kind):
         y.append(time)
     if not rows:
         return
-    yield "## Figure 8: time against voxels, near identity, 2,197 nodes\n"
+    yield "## Figure 8: time by the number of voxels, near identity, 2,197 nodes\n"
     yield table(["dimensions", "million voxels", "resampler", "mapping + resampling, ms",
                  "mapping + resampling, ns per voxel", "Update(), ns per voxel"], rows)
     image = f"{kind}-voxels.png"
@@ -326,7 +326,7 @@ def voxels(results, pictures, kind):
     plot_curves(pictures.folder / image, "Near identity, 2,197 nodes\n" + results.device,
                 ("million voxels", "mapping + resampling, ns per voxel"), curves,
                 (0.8 * middle, 1.2 * middle) if middle else None)
-    yield pictures.show(image, "Time per voxel")
+    yield pictures.show(image, "Time per voxel by the number of voxels")
 
 
 def preprocessing(results, _pictures, _kind):
@@ -355,25 +355,25 @@ def incremental(results, _pictures, _kind):
     rows = [[words, results.median(name), results.milliseconds(name, "kernels"),
              results.ratio(name, "Incremental/near")]
             for name, words in (("Incremental/near", "all"),
-                                ("Incremental/local-edit", "a box that touches 5 % of the blocks"),
-                                ("Incremental/local-edit-at-side", "one on a side of the volume"))
+                                ("Incremental/local-edit", "those in a box that touches 5 % of the blocks"),
+                                ("Incremental/local-edit-at-side", "such a box on a side of the volume"))
             if name in results.runs]
     if rows:
-        yield "## Edits: what moves of 512,000 nodes, 189 x 305 x 229 voxels\n"
-        yield table(["what moves", "Update(), ms", "mapping + resampling, ms", "by all"], rows)
+        yield "## Edits: a part of 512,000 nodes moves, 189 x 305 x 229 voxels\n"
+        yield table(["nodes that move", "Update(), ms", "mapping + resampling, ms", "Update() relative to all"], rows)
 
 
 def readback(results, _pictures, _kind):
     rows = [[moves, words, results.median(name), results.milliseconds(name, "kernels"),
              results.milliseconds(name, "transfer"), results.milliseconds(name, "reading")]
-            for pose, moves in (("near", "all"), ("local-edit", "a box that touches 5 % of the blocks"))
+            for pose, moves in (("near", "all"), ("local-edit", "those in a box that touches 5 % of the blocks"))
             for way, words in (("at-once", "is copied in the update"),
-                               ("unread", "stays on the device, and nobody reads it"),
+                               ("unread", "stays on the device, and is not read"),
                                ("later", "stays on the device, and is read after the update"))
             for name in [f"Readback/{pose}/{way}"] if name in results.runs]
     if rows:
-        yield "## Where the output lies: 189 x 305 x 229 voxels of 16 bits, 2,197 nodes\n"
-        yield table(["what moves", "the output", "Update() and reading, ms", "mapping + resampling, ms",
+        yield "## OutputOnDevice: 189 x 305 x 229 voxels of 16 bits, 2,197 nodes\n"
+        yield table(["nodes that move", "output", "Update() and reading, ms", "mapping + resampling, ms",
                      "transfer in Update(), ms", "reading, ms"], rows)
 
 
@@ -385,25 +385,25 @@ def live(results, _pictures, _kind):
                 ("Live/some-move", "the nodes in a box of 1/100 of the volume move"),
                 ("Live/some-move-logged", "the same, logged"),
                 ("Live/few-move", "nodes move in 14 of 285 bricks"),
-                ("Live/nothing", "nothing, but that the mesh is marked as modified"),
+                ("Live/nothing", "nothing; the mesh is marked as modified"),
                 ("Live/split", "2,000 tetrahedra get 1,000 new nodes"),
                 ("Live/split-logged", "the same, logged"),
-                ("Live/masks", "tetrahedra in 2 x 30 x 30 cells are switched off, others on"),
+                ("Live/masks", "tetrahedra in 2 x 30 x 30 cells are switched off, as many others on"),
                 ("Live/masks-logged", "the same, logged"),
-                ("Live/split-and-masks", "both of these"),
-                ("Live/split-and-masks-logged", "both of these, logged"),
-                ("Live/another-mesh", "a node moves at rest: all is made anew"))
+                ("Live/split-and-masks", "new nodes and masks together"),
+                ("Live/split-and-masks-logged", "the same, logged"),
+                ("Live/another-mesh", "a rest position: the static mapping is rebuilt"))
             if name in results.runs]
     if rows:
-        yield "## Live: what changes between two frames, 512,000 nodes, 189 x 305 x 229 voxels\n"
+        yield "## Live: changes between two frames, 512,000 nodes, 189 x 305 x 229 voxels\n"
         yield table(["what changes", "Update(), ms", "mapping + resampling, ms",
-                     "Update() by that where all move"], rows)
+                     "Update() relative to all move"], rows)
 
 
 def chain_mail(results, _pictures, _kind):
     rows = []
     for dimensions in INTERACTIVE_SIZES:
-        for part, words in (("part", "what has moved"), ("whole", "all of it")):
+        for part, words in (("part", "what has moved"), ("whole", "the whole volume")):
             name = f"ChainMail/{dimensions}/{part}"
             if name in results.runs:
                 rows.append([dimensions, _count(results.median(name, "moved")),
@@ -412,11 +412,11 @@ def chain_mail(results, _pictures, _kind):
                              results.milliseconds(name, "resampling"), results.median(name)])
         if rows and rows[-1][0] == dimensions:
             step, mapping, resampling, frame = PAPER_FRAMES[dimensions]
-            rows.append([f"{dimensions}, published", None, step, "all of it", mapping, resampling,
+            rows.append([f"{dimensions}, published", None, step, "the whole volume", mapping, resampling,
                          frame])
     if rows:
         yield "## ChainMail: frames of a drag\n"
-        yield table(["voxels", "voxels moved", "step, ms", "deformed anew", "mapping, ms",
+        yield table(["voxels", "voxels moved", "step, ms", "resampled", "mapping, ms",
                      "resampling, ms", "frame: step and Update(), ms"], rows)
     rows = [[_count(results.median(name, "moved")), results.median(name)]
             for name in results.names("ChainMailStep/")]
@@ -427,7 +427,7 @@ def chain_mail(results, _pictures, _kind):
 
 PHYSICS = (
     ("springs-2431", "springs, a step"), ("springs-507584", "springs, a step"),
-    ("springs-2197-60Hz", "springs, all steps of 1/60 s"),
+    ("springs-2197-60Hz", "springs, the steps of 1/60 s"),
     ("springs-2197-60Hz-half", "the same, SamplingFactor 2"),
     ("elements-117", "finite elements"), ("elements-3193", "finite elements"),
     ("elements-19307", "finite elements"))
@@ -464,8 +464,8 @@ def physics(results, _pictures, _kind):
             rows.append([words, _count(results.median(name, "nodes")), 1e3 * seconds, 1.0 / seconds, published,
                          published and 1.0 / seconds / published])
     if rows:
-        yield "Simulations by themselves:\n"
-        yield table(["simulation", "nodes", "step, ms", "steps a second", "SOFA's, published", "by that"], rows)
+        yield "Simulations alone:\n"
+        yield table(["simulation", "nodes", "step, ms", "steps a second", "SOFA, published", "relative to SOFA"], rows)
 
 
 SESSIONS = (
@@ -480,18 +480,18 @@ def session(results, _pictures, _kind):
             for body, words in SESSIONS for event in ("drag", "cut", "carve")
             if f"Session/{body}/{event}" in results.runs]
     if rows:
-        yield "## Sessions: from an event to the output, 181 x 217 x 181 voxels\n"
+        yield "## Sessions: time from an event to the output, 181 x 217 x 181 voxels\n"
         yield table(["body", "event", "voxels moved by ChainMail", "event and step, ms", "resampling, ms",
-                     "in all, ms"], rows)
+                     "total, ms"], rows)
 
 
 def edits(results, _pictures, _kind):
     rows = [[dimensions, words, results.median(f"Edit/{dimensions}/{name}"), paper]
             for dimensions in INTERACTIVE_SIZES
             for name, words, paper in (
-                ("sheet", "a cut by a sheet of 200 triangles through all of the volume", PAPER_CUT),
+                ("sheet", "a cut by a sheet of 200 triangles through the whole volume", PAPER_CUT),
                 ("tool", "a cut by a step of a tool that touches 1 % of the bricks", None),
-                ("sphere", "a sphere of a radius of 20 voxels is carved out", PAPER_CARVING),
+                ("sphere", "a sphere with a radius of 20 voxels is carved out", PAPER_CARVING),
                 ("nothing", "nothing", None))
             if f"Edit/{dimensions}/{name}" in results.runs]
     if rows:
@@ -504,16 +504,16 @@ def masks(results, _pictures, _kind):
              results.milliseconds(name, "transfer")]
             for group, mask in (("active", "active tetrahedra, 13.1 MB"), ("blanked", "blanked points, 13.2 MB"))
             for change, words in (
-                ("first", "the first mask: a ball of a radius of 20 is off"),
-                ("ball", "a ball of a radius of 20, from one place to another"),
-                ("box", "a ball is on again, and a box of 20 x 20 x 20 is off"),
-                ("noise", "everything: half is off, as noise"),
-                ("nothing", "nothing, but it is modified"))
+                ("first", "the first mask: a ball with a radius of 20 voxels is off"),
+                ("ball", "the ball is at another place"),
+                ("box", "the ball is on again, and a box of 20 x 20 x 20 is off"),
+                ("noise", "everything: a random half is off"),
+                ("nothing", "nothing; the array is marked as modified"))
             for name in [f"Masks/{group}/{change}"] if name in results.runs]
     if rows:
-        yield "## Masks of 189 x 305 x 229 voxels, while 2,197 nodes rest\n"
-        yield ("The output stays on the device, so that what is transferred is the mask. On a processor that is no "
-               "transfer, but a comparison.\n")
+        yield "## Masks of 189 x 305 x 229 voxels; 2,197 nodes do not move\n"
+        yield ("The output stays on the device, so the transfer is that of the mask and includes its comparison with "
+               "the last one. On a CPU there is only the comparison.\n")
         yield table(["mask", "what changes", "Update(), ms", "mapping + resampling, ms", "transfer, ms"], rows)
 
 
@@ -523,13 +523,13 @@ def given(results, _pictures, _kind):
             for name, words in (
                 ("Given/same-grid", "the same grid, other displacements"),
                 ("Given/shared-arrays", "another grid that shares its arrays"),
-                ("Given/two-meshes", "a deformed mesh, modified, and one at rest"),
+                ("Given/two-meshes", "a deformed mesh, modified, and a mesh at rest"),
                 ("Given/dense-field", "no mesh: a displacement for each voxel"))
             if name in results.runs]
     if rows:
-        yield "## What is given: 512,000 nodes, 189 x 305 x 229 voxels, near identity\n"
-        yield table(["given", "Update(), ms", "mapping + resampling, ms",
-                     "Update() beyond that with the same grid, ms"], rows)
+        yield "## Forms of the deformation: 512,000 nodes, 189 x 305 x 229 voxels, near identity\n"
+        yield table(["input", "Update(), ms", "mapping + resampling, ms",
+                     "Update() minus that with the same grid, ms"], rows)
 
 
 def rendering(results, pictures, kind):
@@ -546,13 +546,13 @@ def rendering(results, pictures, kind):
         return
     yield "## Viewports: frames of VTK's mappers, the head of ch2 (181 x 217 x 181 voxels)\n"
     yield table(["mapper", "viewport", "gradients", "undeformed, ms", "deformed, ms",
-                 "deformed by undeformed", "update of the filter before the frame, ms",
+                 "deformed relative to undeformed", "update of the filter before the frame, ms",
                  "ray casting in the paper (Radeon R9 270X), ms"], rows)
     for path in sorted((pictures.folder / kind).glob("head-*.png")):
         yield pictures.show(f"{kind}/{path.name}", path.stem)
 
 
-# What each shows, in a few words, for the report to say what was not measured.
+# Names of the sections, for the list of what was not measured.
 ALL = {
     "the memory bandwidth": device,
     "table 1": comparison,
@@ -571,12 +571,12 @@ ALL = {
     "sessions": session,
     "cutting and carving": edits,
     "masks": masks,
-    "what is given": given,
+    "forms of the deformation": given,
     "viewports": rendering,
 }
-# On GPUs, before these.
+# Additional sections for GPUs, before the others.
 ON_GPUS = {
     "kernels on the GPU": gpu,
     "peers on the GPU": gpu_peers,
-    "where the output lies": readback,
+    "OutputOnDevice": readback,
 }
