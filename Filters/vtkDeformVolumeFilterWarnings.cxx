@@ -2,6 +2,7 @@
 // What vtkDeformVolumeFilter warns of after it has made an output.
 #include "vtkDeformVolumeFilterInternals.h"
 
+#include "Densities.h"
 #include "Fading.h"
 #include "IndexBounds.h"
 #include "VolumeArrays.h"
@@ -12,9 +13,6 @@
 #include "vtkPointData.h"
 
 #include <glm/common.hpp>
-
-#include <iomanip>
-#include <sstream>
 
 //------------------------------------------------------------------------------
 void vtkDeformVolumeFilter::vtkInternals::WarnOfIgnored(
@@ -73,22 +71,9 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfIgnored(
 //------------------------------------------------------------------------------
 void vtkDeformVolumeFilter::vtkInternals::WarnOfLoss(const deformvolume::ExtraArrays::Loss& loss)
 {
-  std::string text;
-  const auto hidden = static_cast<double>(this->Report.NumberOfHiddenSamples);
-  if (!this->DensityArrays.empty() && hidden > 0.0)
-  {
-    std::ostringstream share;
-    share << std::setprecision(2)
-          << 100.0 * hidden / (hidden + static_cast<double>(this->Report.NumberOfCoveredVoxels));
-    text = "The deformation folds the volume over. The sums of density arrays lack the " +
-      share.str() + " % of the deformed volume that other parts of it hide.";
-  }
-  if (loss.NumberOfVoxels > 0)
-  {
-    text += (text.empty() ? "" : " ") + std::to_string(loss.NumberOfVoxels) +
-      " voxels show the volume inside out, or pressed together to nothing: density arrays have "
-      "BackgroundValue there.";
-  }
+  const std::string text =
+    deformvolume::DescribeLoss(this->DensityArrays.empty() ? 0 : this->Report.NumberOfHiddenSamples,
+      this->Report.NumberOfCoveredVoxels, loss.NumberOfVoxels, "BackgroundValue");
   if (!text.empty() && text != this->WarnedOfLoss)
   {
     vtkWarningWithObjectMacro(this->Self, << text);

@@ -2,6 +2,7 @@
 #include "ExtraArrays.h"
 
 #include "Background.h"
+#include "Densities.h"
 #include "Error.h"
 #include "ParallelFor.h"
 
@@ -13,7 +14,6 @@
 #include "vtkUnsignedIntArray.h"
 
 #include <algorithm>
-#include <atomic>
 
 namespace deformvolume
 {
@@ -47,32 +47,6 @@ const signed char* GetCoverage(vtkImageData* output)
 {
   return static_cast<const signed char*>(
     output->GetPointData()->GetArray(ValidPointMaskName)->GetVoidPointer(0));
-}
-
-// Divides the tuples of an array. Where the Jacobian is not greater than 0 they are the background.
-// valid: which voxels are covered; all others stay as they are. Returns how many those were.
-template <typename T>
-std::int64_t Divide(const T* values, int components, const float* jacobians,
-  const signed char* valid, vtkIdType tuples, T background, T* divided)
-{
-  std::atomic<std::int64_t> count{ 0 };
-  ParallelForParts(static_cast<std::size_t>(tuples), 1 << 16,
-    [&](std::size_t begin, std::size_t end)
-    {
-      std::int64_t found = 0;
-      for (std::size_t i = begin; i < end; ++i)
-      {
-        const float jacobian = valid[i] ? jacobians[i] : 1.0F;
-        const bool isLost = !(jacobian > 0.0F);
-        found += isLost ? 1 : 0;
-        for (std::size_t k = i * components; k < (i + 1) * components; ++k)
-        {
-          divided[k] = isLost ? background : values[k] / static_cast<T>(jacobian);
-        }
-      }
-      count += found;
-    });
-  return count;
 }
 
 } // namespace
@@ -327,9 +301,9 @@ ExtraArrays::Loss ExtraArrays::FinishDensities(const Deformation& deformation,
     const int components = resampled->GetNumberOfComponents();
     const void* values = resampled->GetVoidPointer(0);
     loss.NumberOfVoxels = resampled->GetDataType() == VTK_DOUBLE
-      ? Divide(static_cast<const double*>(values), components, jacobians, valid, voxels, background,
-          static_cast<double*>(divided->GetVoidPointer(0)))
-      : Divide(static_cast<const float*>(values), components, jacobians, valid, voxels,
+      ? DivideByJacobian(static_cast<const double*>(values), components, jacobians, valid, voxels,
+          background, static_cast<double*>(divided->GetVoidPointer(0)))
+      : DivideByJacobian(static_cast<const float*>(values), components, jacobians, valid, voxels,
           ClampTo<float>(background), static_cast<float*>(divided->GetVoidPointer(0)));
     pointData->AddArray(divided);
   }

@@ -259,7 +259,7 @@ std::int32_t dv_set_arrays(dv_deformer* deformer, std::int32_t count, const dv_a
     {
       WorldDeformer& world = GetDeformer(deformer);
       GetProduct(count, sizeof(dv_array), "arrays");
-      std::vector<VolumeArray> made;
+      std::vector<WorldArray> made;
       if (count > 0)
       {
         const std::size_t step = CheckStruct(arrays, "the array");
@@ -269,7 +269,7 @@ std::int32_t dv_set_arrays(dv_deformer* deformer, std::int32_t count, const dv_a
           dv_array array{};
           std::memcpy(
             &array, bytes + static_cast<std::size_t>(i) * step, std::min(step, sizeof(dv_array)));
-          made.push_back(MakeArray(array, "Array " + std::to_string(i)));
+          made.push_back({ MakeArray(array, "Array " + std::to_string(i)), array.density != 0 });
         }
       }
       if (GetNumberOfPoints(deformer->Volume.PointExtent) == 0)

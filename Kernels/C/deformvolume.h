@@ -178,10 +178,14 @@ extern "C"
     int32_t components;
     /** Not 0: the values are labels. They are never mixed: each comes from one voxel. */
     int32_t categorical;
-    /** Must be 0. */
-    int32_t reserved;
+    /** Not 0: the values are amounts per unit of volume, such as a dose or an activity. Those of
+     * the output are divided by the Jacobian, so that their sum times the volume of a voxel is
+     * kept. They are floats, or doubles where the type is DV_FLOAT64. Voxels that show the volume
+     * inside out have the background. What folds hide is missing from the sum. The warnings of
+     * dv_report tell how much that is. Not with labels, DV_NEAREST or incremental. */
+    int32_t density;
     /** The value of output voxels that the deformed volume does not cover, rounded and clamped to
-     * the range of the type. */
+     * the range of the type of the output. */
     double background;
   } dv_array;
 
@@ -383,9 +387,10 @@ extern "C"
     /** Not 0: the next call may begin with what this one wrote. If the next call is incremental,
      * too, and has the same extent and memory, then that memory must still hold what this call
      * wrote: only what has changed is written. The result is the same to the last bit. Not together
-     * with rest_positions, jacobian and fold_count. */
+     * with rest_positions, jacobian, fold_count and densities. */
     int32_t incremental;
-    /** For each array, room for its components of its type for each voxel. */
+    /** For each array, room for its components of its type for each voxel, and for a density of
+     * floats or doubles. */
     void* const* outputs;
     /** Room for a byte a voxel: 1 where the deformed volume covers it, else 0. */
     int8_t* coverage;

@@ -48,9 +48,19 @@ void WorldDeformer::SetVolume(const ImageGeometry& volume)
   }
 }
 
-void WorldDeformer::SetArrays(const std::vector<VolumeArray>& arrays)
+void WorldDeformer::SetArrays(const std::vector<WorldArray>& arrays)
 {
+  for (const WorldArray& array : arrays)
+  {
+    if (array.IsDensity && array.Categorical)
+    {
+      throw Error("Array " + std::to_string(&array - arrays.data()) +
+        " is a density and categorical, and labels cannot be divided by the Jacobian. Give it as "
+        "one of both.");
+    }
+  }
   this->Impl->Arrays = arrays;
+  this->Impl->DensityCopies.clear();
   ++this->Impl->ArraysVersion;
 }
 

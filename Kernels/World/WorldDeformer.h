@@ -50,6 +50,14 @@ struct OutputSettings
   std::optional<glm::dvec3> Spacing;
 };
 
+/// An array of a volume.
+struct WorldArray : VolumeArray
+{
+  /// The values are amounts for each unit of volume: they are divided by the Jacobian, and become
+  /// floats, or stay doubles. Not for labels.
+  bool IsDensity = false;
+};
+
 struct WorldRequest
 {
   /// Empty: the whole output.
@@ -60,8 +68,8 @@ struct WorldRequest
   /// Keeps what is needed to write only what changes until the next call. Where that has the same
   /// memory again, it must still hold what this call wrote. Not together with the arrays below.
   bool IsIncremental = false;
-  /// Room for the output of each array, and for one byte a voxel: 1 where the deformed volume
-  /// covers it, else 0.
+  /// Room for the output of each array, of doubles or floats for a density, and for one byte a
+  /// voxel: 1 where the deformed volume covers it, else 0.
   std::vector<void*> Outputs;
   signed char* Coverage = nullptr;
   ///@{
@@ -103,7 +111,7 @@ public:
   /// Forgets arrays and masks where it is another geometry.
   void SetVolume(const ImageGeometry& volume);
   /// The data are borrowed until other arrays are set. They have changed, as far as is known.
-  void SetArrays(const std::vector<VolumeArray>& arrays);
+  void SetArrays(const std::vector<WorldArray>& arrays);
   /// Borrowed as well.
   void SetMasks(const WorldMasks& masks);
 

@@ -2,6 +2,7 @@
 #include "WorldDeformerInternals.h"
 
 #include "Background.h"
+#include "Densities.h"
 #include "Error.h"
 #include "Fading.h"
 #include "FieldFolds.h"
@@ -13,6 +14,7 @@
 #include <atomic>
 #include <memory>
 #include <thread>
+#include <type_traits>
 
 namespace deformvolume
 {
@@ -112,10 +114,52 @@ void WorldDeformer::Internals::UpdateJacobians(const std::function<bool(double)>
     this->Mesh.GetDisplacements().data(), this->Jacobians.data());
 }
 
+bool WorldDeformer::Internals::HasDensities() const
+{
+  return std::any_of(this->Arrays.begin(), this->Arrays.end(),
+    [](const WorldArray& array) { return array.IsDensity; });
+}
+
+VolumeArray WorldDeformer::Internals::GetSource(std::size_t array)
+{
+  VolumeArray source = this->Arrays[array];
+  if (!this->Arrays[array].IsDensity || source.Type == ElementType::Float32 ||
+    source.Type == ElementType::Float64)
+  {
+    return source;
+  }
+  this->DensityCopies.resize(this->Arrays.size());
+  std::vector<float>& copy = this->DensityCopies[array];
+  if (copy.empty())
+  {
+    const auto values = static_cast<std::size_t>(GetNumberOfPoints(this->Volume->PointExtent)) *
+      static_cast<std::size_t>(source.Components);
+    copy.resize(values);
+    switch (source.Type)
+    {
+#define DEFORMVOLUME_CASE(name, type, cl)                                                          \
+  case ElementType::name:                                                                          \
+    std::transform(static_cast<const type*>(source.Data),                                          \
+      static_cast<const type*>(source.Data) + values, copy.begin(),                                \
+      [](type value) { return static_cast<float>(value); });                                       \
+    break;
+      DEFORMVOLUME_ELEMENT_TYPES(DEFORMVOLUME_CASE)
+#undef DEFORMVOLUME_CASE
+    }
+  }
+  VolumeArray floats = MakeFloatArray(copy, source.Background);
+  floats.Components = source.Components;
+  return floats;
+}
+
 std::vector<VolumeArray> WorldDeformer::Internals::MakeArrays(
   const WorldRequest& request, const std::function<bool(double)>& progress)
 {
-  std::vector<VolumeArray> arrays = this->Arrays;
+  std::vector<VolumeArray> arrays;
+  for (std::size_t i = 0; i < this->Arrays.size(); ++i)
+  {
+    arrays.push_back(this->GetSource(i));
+  }
   if (request.RestPositions)
   {
     this->UpdateRestPositions();
@@ -124,7 +168,7 @@ std::vector<VolumeArray> WorldDeformer::Internals::MakeArrays(
       arrays.push_back(MakeFloatArray(positions, request.Background));
     }
   }
-  if (request.Jacobians && !this->IsInverse())
+  if (this->ResamplesJacobians(request))
   {
     this->UpdateJacobians(progress);
     arrays.push_back(MakeFloatArray(this->Jacobians, request.Background));
@@ -177,7 +221,7 @@ Resampling WorldDeformer::Internals::ChooseMethod(
                                     : Kinds::ForwardField;
   wish.Outside = this->Outside;
   wish.HasSmoothCut = this->Masks.CutTetrahedra != nullptr;
-  wish.NeedsJacobian = request.Jacobians != nullptr;
+  wish.NeedsJacobian = request.Jacobians != nullptr || this->HasDensities();
   wish.CountsFolds = request.FoldCounts != nullptr;
   return ChooseResampler(wish,
     [&](Resampling method)
@@ -349,9 +393,13 @@ DeformRequest WorldDeformer::Internals::MakeRequest(
     this->PositionsOutput[axis].resize(voxels);
     made.Outputs.push_back(this->PositionsOutput[axis].data());
   }
-  if (request.Jacobians && !this->IsInverse())
+  if (this->HasDensities() && !request.Jacobians)
   {
-    made.Outputs.push_back(request.Jacobians);
+    this->JacobiansOutput.resize(voxels);
+  }
+  if (this->ResamplesJacobians(request))
+  {
+    made.Outputs.push_back(request.Jacobians ? request.Jacobians : this->JacobiansOutput.data());
   }
   if (request.FoldCounts)
   {
@@ -381,10 +429,17 @@ WorldReport WorldDeformer::Internals::Deform(const WorldRequest& request)
       " arrays of the output, but the volume has " + std::to_string(this->Arrays.size()) +
       ". Give room for each.");
   }
-  if (request.IsIncremental && (request.RestPositions || request.Jacobians || request.FoldCounts))
+  const bool hasDensities = this->HasDensities();
+  if (request.IsIncremental &&
+    (request.RestPositions || request.Jacobians || request.FoldCounts || hasDensities))
   {
-    throw Error("Rest positions, Jacobians and fold counts are made of the whole output. Ask for "
-                "them, or for an incremental update.");
+    throw Error("Rest positions, Jacobians, fold counts and densities are made of the whole "
+                "output. Ask for them, or for an incremental update.");
+  }
+  if (request.IsNearest && hasDensities)
+  {
+    throw Error("With the nearest voxel's value all arrays count as categorical, and labels cannot "
+                "be divided by the Jacobian. Choose another interpolation, or give no densities.");
   }
   WorldReport report;
   report.Device = this->Deformer.SetDevice(this->DeviceRequest);
@@ -445,19 +500,49 @@ void WorldDeformer::Internals::Finish(const WorldRequest& request, const Extent&
     }
     std::vector<float>().swap(values);
   }
-  if (request.Jacobians && this->IsInverse())
+  const bool hasDensities = this->HasDensities();
+  float* const jacobians = request.Jacobians ? request.Jacobians : this->JacobiansOutput.data();
+  if ((request.Jacobians || hasDensities) && this->IsInverse())
   {
-    ComputeInverseFieldJacobians(extent, this->Field.Get(this->Outside), request.Jacobians);
+    ComputeInverseFieldJacobians(extent, this->Field.Get(this->Outside), jacobians);
     for (std::size_t i = 0; i < voxels; ++i)
     {
-      request.Jacobians[i] =
-        request.Coverage[i] ? request.Jacobians[i] : ClampTo<float>(request.Background);
+      jacobians[i] = request.Coverage[i] ? jacobians[i] : ClampTo<float>(request.Background);
     }
+  }
+  this->NumberOfLostVoxels = 0;
+  if (hasDensities)
+  {
+    this->DivideDensities(request, jacobians, static_cast<std::int64_t>(voxels));
+    std::vector<float>().swap(this->JacobiansOutput);
   }
   for (std::size_t i = 0; i < voxels && request.FoldCounts; ++i)
   {
     // Where nothing overlaps nothing has been counted.
     request.FoldCounts[i] = std::max(request.FoldCounts[i], request.Coverage[i] ? 1U : 0U);
+  }
+}
+
+void WorldDeformer::Internals::DivideDensities(
+  const WorldRequest& request, const float* jacobians, std::int64_t voxels)
+{
+  for (std::size_t i = 0; i < this->Arrays.size(); ++i)
+  {
+    const WorldArray& array = this->Arrays[i];
+    const auto divide = [&](auto* values)
+    {
+      using Value = std::remove_pointer_t<decltype(values)>;
+      this->NumberOfLostVoxels = DivideByJacobian(values, array.Components, jacobians,
+        request.Coverage, voxels, ClampTo<Value>(array.Background), values);
+    };
+    if (array.IsDensity && array.Type == ElementType::Float64)
+    {
+      divide(static_cast<double*>(request.Outputs[i]));
+    }
+    else if (array.IsDensity)
+    {
+      divide(static_cast<float*>(request.Outputs[i]));
+    }
   }
 }
 
@@ -507,6 +592,11 @@ void WorldDeformer::Internals::Describe(
     const Extent& moved = this->Field.IsInverse() ? whole : this->Volume->PointExtent;
     warn(FindFaultOfFading(this->Field.Get(this->Outside), GetBox({ moved, {}, {} }),
       glm::abs(this->GetOutputGrid().Spacing), this->Outside.FadeDistance));
+  }
+  if (this->HasDensities())
+  {
+    warn(DescribeLoss(report.NumberOfHiddenSamples, report.NumberOfCoveredVoxels,
+      this->NumberOfLostVoxels, "their background"));
   }
   const bool isWhole =
     GetNumberOfPoints(request.OutputExtent) == 0 || request.OutputExtent == whole;

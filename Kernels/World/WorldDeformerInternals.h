@@ -42,7 +42,9 @@ public:
   VolumeDeformer Deformer;
   std::string DeviceRequest;
   std::optional<ImageGeometry> Volume;
-  std::vector<VolumeArray> Arrays;
+  std::vector<WorldArray> Arrays;
+  /// Of densities of integers, as floats; empty: they have not been made, or there are none.
+  std::vector<std::vector<float>> DensityCopies;
   WorldMasks Masks;
   WorldMesh Mesh;
   VectorField Field;
@@ -79,6 +81,14 @@ private:
   void CheckOutputIndices() const;
   IndexBounds FindBounds();
 
+  bool HasDensities() const;
+  /// Whether Jacobians are resampled, which are arrays of the volume.
+  bool ResamplesJacobians(const WorldRequest& request) const
+  {
+    return (request.Jacobians || this->HasDensities()) && !this->IsInverse();
+  }
+  /// An array as it is resampled.
+  VolumeArray GetSource(std::size_t array);
   /// The arrays that are resampled: those of the volume, and those that are made of the request.
   std::vector<VolumeArray> MakeArrays(
     const WorldRequest& request, const std::function<bool(double)>& progress);
@@ -94,6 +104,7 @@ private:
   DeformRequest MakeRequest(const WorldRequest& request, const Extent& whole, Resampling method);
   /// Completes the arrays that are not those of the volume.
   void Finish(const WorldRequest& request, const Extent& extent);
+  void DivideDensities(const WorldRequest& request, const float* jacobians, std::int64_t voxels);
   void Describe(const WorldRequest& request, const Extent& whole, WorldReport& report);
 
   // What is resampled besides the arrays of the volume, and what it is of.
@@ -104,6 +115,8 @@ private:
   std::uint64_t OfMeshVersion = 0; // of the mapping
   std::vector<float> Jacobians;
   OutsideVoxels JacobiansOutside;
+  std::vector<float> JacobiansOutput;  // where only densities need them
+  std::int64_t NumberOfLostVoxels = 0; // of densities, in the last output
 
   // What the device has. A call that throws leaves it unknown, and then everything is sent again.
   bool Known = false;

@@ -35,7 +35,7 @@ class Array(_Structure):
         ("type", c_int32),
         ("components", c_int32),
         ("categorical", c_int32),
-        ("reserved", c_int32),
+        ("density", c_int32),
         ("background", c_double),
     ]
 

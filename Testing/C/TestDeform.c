@@ -225,6 +225,9 @@ static void TestWrong(void)
   array.components = 0;
   REFUSED(dv_set_arrays(deformer, 1, &array), "0 components");
   REFUSED(dv_set_arrays(deformer, -1, &array), "-1");
+  array = MakeArray();
+  array.categorical = array.density = 1;
+  REFUSED(dv_set_arrays(deformer, 1, &array), "Array 0 is a density and categorical");
 
   /* Meshes. */
   mesh = MakeMesh();
@@ -438,6 +441,84 @@ static void TestProgress(void)
   dv_destroy(deformer);
 }
 
+/* A volume that becomes twice as large has half the density; one pressed flat has none. */
+static void TestDensity(void)
+{
+  dv_deformer* deformer = MakeDeformer();
+  dv_array array = MakeArray();
+  dv_request request = MakeRequest();
+  dv_report report;
+  float displacements[8][3];
+  static float densities[VOXELS];
+  static float values[VOXELS];
+  static double doubles[VOXELS];
+  void* outputs[2];
+  dv_array both[2];
+  int i = 0;
+  for (i = 0; i < 8; ++i)
+  {
+    /* Twice as long along x, to the left, so that voxel 11 stays. */
+    displacements[i][0] = i & 1 ? 0.0F : -2.0F * (SIZE - 1);
+    displacements[i][1] = displacements[i][2] = 0.0F;
+  }
+  for (i = 0; i < VOXELS; ++i)
+  {
+    doubles[i] = 3.0;
+  }
+  both[0] = both[1] = array;
+  both[0].density = 1;
+  both[1].data = doubles;
+  both[1].type = DV_FLOAT64;
+  both[1].density = 1;
+  outputs[0] = densities;
+  outputs[1] = malloc(sizeof(double) * VOXELS);
+  request.number_of_outputs = 2;
+  request.outputs = outputs;
+  request.incremental = 1;
+  report.struct_size = sizeof(report);
+  CHECK(dv_set_displacements(deformer, DV_FLOAT32, 8, displacements) == DV_OK);
+  CHECK(dv_set_arrays(deformer, 2, both) == DV_OK);
+  REFUSED(dv_deform(deformer, &request, NULL), "densities are made of the whole output");
+  request.incremental = 0;
+  request.interpolation = DV_NEAREST;
+  REFUSED(dv_deform(deformer, &request, NULL), "nearest");
+  request.interpolation = DV_LINEAR;
+  CHECK(dv_deform(deformer, &request, &report) == DV_OK);
+  CHECK(report.number_of_covered_voxels > 0 && strcmp(report.warnings, "") == 0);
+  for (i = 0; i < VOXELS; ++i)
+  {
+    CHECK(!Coverage[i] || ((double*)outputs[1])[i] == 1.5);
+    CHECK(Coverage[i] || densities[i] == -5.0F);
+  }
+  /* The same as floats that are not divided. */
+  array.type = DV_FLOAT32;
+  array.data = values;
+  for (i = 0; i < VOXELS; ++i)
+  {
+    values[i] = (float)Values[i];
+  }
+  both[0] = array;
+  outputs[0] = malloc(sizeof(float) * VOXELS);
+  CHECK(dv_set_arrays(deformer, 2, both) == DV_OK);
+  CHECK(dv_deform(deformer, &request, &report) == DV_OK);
+  for (i = 0; i < VOXELS; ++i)
+  {
+    CHECK(!Coverage[i] || densities[i] == 0.5F * ((float*)outputs[0])[i]);
+  }
+  /* Inside out. */
+  for (i = 0; i < 8; ++i)
+  {
+    displacements[i][0] = i & 1 ? -2.0F * (SIZE - 1) : 2.0F * (SIZE - 1);
+  }
+  CHECK(dv_set_displacements(deformer, DV_FLOAT32, 8, displacements) == DV_OK);
+  CHECK(dv_deform(deformer, &request, &report) == DV_OK);
+  CHECK(strstr(report.warnings, "density arrays have their background there") != NULL);
+  CHECK(report.number_of_covered_voxels > 0 && ((double*)outputs[1])[VOXELS / 2] == -5.0);
+  free(outputs[0]);
+  free(outputs[1]);
+  dv_destroy(deformer);
+}
+
 /* Parts of the output hold what the whole has there, and memory of the device can be freed. */
 static void TestParts(void)
 {
@@ -500,6 +581,7 @@ int main(void)
   TestMissing();
   TestWrong();
   TestProgress();
+  TestDensity();
   TestParts();
   printf("%d failures\n", Failures);
   return Failures != 0;

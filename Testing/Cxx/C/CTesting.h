@@ -80,9 +80,12 @@ public:
       array.components = values->GetNumberOfComponents();
       array.categorical = categorical.count(values->GetName()) > 0 ? 1 : 0;
       array.background = background;
+      array.density = this->Densities.count(values->GetName()) > 0 ? 1 : 0;
       arrays.push_back(array);
       this->Names.emplace_back(values->GetName());
-      this->Sizes.push_back(static_cast<std::size_t>(values->GetDataTypeSize()) *
+      const bool isFloats = array.density != 0 && array.type != DV_FLOAT64;
+      this->Sizes.push_back(
+        (isFloats ? sizeof(float) : static_cast<std::size_t>(values->GetDataTypeSize())) *
         static_cast<std::size_t>(array.components));
     }
     Check(dv_set_arrays(this->Deformer, static_cast<std::int32_t>(arrays.size()), arrays.data()));
@@ -169,6 +172,8 @@ public:
     Check(dv_set_reference(this->Deformer, &grid));
   }
 
+  /// Which arrays are densities. To be set before the volume.
+  std::set<std::string> Densities;
   /// What is wanted besides the arrays of the volume.
   bool WithExtra = false;
   bool WithFolds = false;

@@ -289,6 +289,85 @@ void TestExtraAndMasks()
   inC.Compare(deformed);
 }
 
+/// Values divided by the Jacobian: of all types, in meshes and fields of all kinds, with folds.
+void TestDensities()
+{
+  const auto volume = MakeManyArrays();
+  // Labels and an array of its own remain.
+  const std::set<std::string> densities{ "int8", "uint16", "int64", "double", "vectors" };
+  auto mesh = MakeIrregularMesh(volume, 1.0);
+  SetDisplacements(mesh, Bend);
+  Deformed deformed(volume, mesh);
+  deformed.Filter->SetBackgroundValue(-2.6);
+  for (const std::string& name : densities)
+  {
+    deformed.Filter->AddDensityArray(name.c_str());
+  }
+  InC inC;
+  inC.Densities = densities;
+  inC.SetVolume(volume, -2.6);
+  inC.SetMesh(mesh);
+  inC.Compare(deformed);
+  VERIFY(deformed.Update()->GetPointData()->GetArray("uint16")->GetDataType() == VTK_FLOAT);
+  // With the Jacobian itself, and again.
+  deformed.Filter->GenerateJacobianOn();
+  deformed.Filter->GenerateRestPositionsOn();
+  inC.WithExtra = true;
+  inC.Compare(deformed);
+  inC.Compare(deformed);
+  deformed.Filter->SetInterpolation(vtkDeformVolumeFilter::CUBIC_INTERPOLATION);
+  inC.Interpolation = DV_CUBIC;
+  inC.Compare(deformed);
+  deformed.Filter->SetInterpolation(vtkDeformVolumeFilter::LINEAR_INTERPOLATION);
+  inC.Interpolation = DV_LINEAR;
+  deformed.Filter->GenerateJacobianOff();
+  deformed.Filter->GenerateRestPositionsOff();
+  inC.WithExtra = false;
+  // Other displacements.
+  SetDisplacements(mesh, [](const glm::dvec3& p) { return p * glm::dvec3(0.8, 1.1, 0.9); });
+  inC.SetDisplacements(mesh);
+  inC.Compare(deformed);
+  // Folds: what is hidden and what is inside out.
+  double center[3];
+  volume->GetCenter(center);
+  SetDisplacements(mesh,
+    [&](const glm::dvec3& p)
+    {
+      const double r = (p.x - center[0]) / 8.0;
+      const double within = std::abs(r) < 1.0 ? 1.0 - r * r : 0.0;
+      return p - glm::dvec3(24.0 * r * within * within, 0.0, 0.0);
+    });
+  inC.SetDisplacements(mesh);
+  inC.Compare(deformed, "The sums of density arrays lack the ");
+  VERIFY(inC.Report.number_of_inverted_tetrahedra > 0);
+  const auto reference = MakeReference(true);
+  deformed.Filter->SetReferenceData(reference);
+  inC.SetReference(reference);
+  SetDisplacements(mesh, Bend);
+  inC.SetDisplacements(mesh);
+  inC.Compare(deformed);
+  // Fields.
+  auto field = vtkSmartPointer<vtkImageData>::New();
+  field->CopyStructure(volume);
+  SetDisplacements(field, Bend);
+  deformed.Filter->SetDeformationData(field);
+  inC.SetField(field, false);
+  inC.Compare(deformed);
+  deformed.Filter->FieldIsInverseOn();
+  inC.SetField(field, true);
+  inC.Compare(deformed);
+  // Other values in the same memory, and no densities any more.
+  vtkDataArray* values = volume->GetPointData()->GetArray("uint16");
+  values->SetComponent(values->GetNumberOfTuples() / 2, 0, 60000.0);
+  values->Modified();
+  inC.SetVolume(volume, -2.6);
+  inC.Compare(deformed);
+  deformed.Filter->ClearDensityArrays();
+  inC.Densities.clear();
+  inC.SetVolume(volume, -2.6);
+  inC.Compare(deformed);
+}
+
 /// The hexahedra of a mesh as polyhedra.
 vtkSmartPointer<vtkUnstructuredGrid> MakePolyhedra(vtkUnstructuredGrid* hexahedra)
 {
@@ -514,6 +593,7 @@ int TestCInterface(int, char*[])
   TestGrids();
   TestFields();
   TestExtraAndMasks();
+  TestDensities();
   TestCells();
   TestAtRest();
   TestEdits();
