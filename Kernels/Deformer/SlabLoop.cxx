@@ -16,7 +16,7 @@ void MakeSlabs(SlabResampler& resampler, WorkDevice& device, const DeviceVolume&
   const DeformRequest& request, std::uint64_t spare, DeformReport& report)
 {
   using Clock = std::chrono::steady_clock;
-  const std::vector<VolumeArray>& arrays = volume.GetVolumeArrays();
+  const std::vector<VolumeArray>& arrays = volume.GetArrays().Get();
   SlabPlan plan;
   plan.Slabs = OutputSlab::Split(
     request.OutputExtent, arrays, volume.GetVoxelGrid(), device.GetAllocationLimit());

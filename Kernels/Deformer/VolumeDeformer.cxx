@@ -164,14 +164,14 @@ void VolumeDeformer::SetArrays(const std::vector<VolumeArray>& arrays)
     [&](Internals::Parts& parts)
     {
       parts.Incremental.Forget();
-      parts.Volume.SetArrays(arrays, parts.Source.GetFieldInPlace());
+      parts.Volume.GetArrays().Set(arrays, parts.Source.GetFieldInPlace());
     });
 }
 
 void VolumeDeformer::SetArrayOptions(const std::vector<VolumeArray>& arrays)
 {
   Internals::Parts& parts = this->Impl->GetParts();
-  if (parts.Volume.SetArrayOptions(arrays))
+  if (parts.Volume.GetArrays().SetOptions(arrays))
   {
     parts.Incremental.Forget();
   }
@@ -180,21 +180,27 @@ void VolumeDeformer::SetArrayOptions(const std::vector<VolumeArray>& arrays)
 void VolumeDeformer::SetBlanked(
   const unsigned char* blanked, unsigned char bits, const PointRanges* written)
 {
-  this->Impl->Send([&](Internals::Parts& parts)
-    { parts.Incremental.ChangeMask(parts.Volume.SetBlanked(blanked, bits, written), false); });
+  this->Impl->Send(
+    [&](Internals::Parts& parts)
+    {
+      parts.Incremental.ChangeMask(
+        parts.Volume.GetMasks().SetBlanked(blanked, bits, written), false);
+    });
 }
 
 void VolumeDeformer::SetActiveTetrahedra(const unsigned char* active, const PointRanges* written)
 {
   this->Impl->Send([&](Internals::Parts& parts)
-    { parts.Incremental.ChangeMask(parts.Volume.SetActive(active, written), true); });
+    { parts.Incremental.ChangeMask(parts.Volume.GetMasks().SetActive(active, written), true); });
 }
 
 void VolumeDeformer::SetBoundaryDistances(const float* distances, const PointRanges* written)
 {
   this->Impl->Send(
-    [&](Internals::Parts& parts) {
-      parts.Incremental.ChangeMask(parts.Volume.SetBoundaryDistances(distances, written), false);
+    [&](Internals::Parts& parts)
+    {
+      parts.Incremental.ChangeMask(
+        parts.Volume.GetMasks().SetBoundaryDistances(distances, written), false);
     });
 }
 
@@ -254,9 +260,9 @@ void VolumeDeformer::SetNodePlaces(const std::int32_t* places)
   this->Impl->Send(
     [&](Internals::Parts& parts)
     {
-      const bool wasOn = parts.Volume.LeavesOutBridges();
+      const bool wasOn = parts.Volume.GetMasks().GetBridges().HasPlaces();
       parts.Source.SetNodePlaces(places);
-      if (wasOn != parts.Volume.LeavesOutBridges())
+      if (wasOn != parts.Volume.GetMasks().GetBridges().HasPlaces())
       {
         parts.Incremental.Forget();
       }

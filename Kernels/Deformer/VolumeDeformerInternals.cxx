@@ -87,13 +87,13 @@ void VolumeDeformer::Internals::Parts::SetNodeDisplacements(
 
 void VolumeDeformer::Internals::Parts::CheckRequest(const DeformRequest& request) const
 {
-  const std::vector<VolumeArray>& arrays = this->Volume.GetVolumeArrays();
+  const std::vector<VolumeArray>& arrays = this->Volume.GetArrays().Get();
   const bool rasterized = request.Method == Resampling::MeshRasterization;
   if (arrays.empty())
   {
     throw Error("No arrays are set: call SetArrays first.");
   }
-  if (rasterized && this->Volume.HasCut())
+  if (rasterized && this->Volume.GetMasks().HasCut())
   {
     throw Error("The resampler MeshRasterization knows no smooth cuts, since it looks at the "
                 "deformation mesh only. Use the resampler Exact, or call SetCut with null.");
@@ -124,30 +124,30 @@ void VolumeDeformer::Internals::Parts::CheckRequest(const DeformRequest& request
 DeformationSize VolumeDeformer::Internals::Parts::GetSize(const DeformRequest& request) const
 {
   const VoxelGrid& grid = this->Volume.GetVoxelGrid();
-  const std::vector<VolumeArray>& arrays = this->Volume.GetVolumeArrays();
+  const std::vector<VolumeArray>& arrays = this->Volume.GetArrays().Get();
   const std::uint64_t boundary = this->Exact.GetBoundary().GetMemory() +
-    (this->Volume.HasBoundary()
+    (this->Volume.GetMasks().HasBoundary()
         ? 2 * static_cast<std::uint64_t>(GetNumberOfCells(grid.VertexExtent))
         : 0);
   if (request.Method == Resampling::MeshRasterization)
   {
     return { grid, arrays, request.OutputExtent, this->Rasterizer.GetNumberOfNodes(),
-      this->Rasterizer.GetNumberOfTetrahedra(), 0, true, this->Volume.HasDistances() };
+      this->Rasterizer.GetNumberOfTetrahedra(), 0, true, this->Volume.GetMasks().HasDistances() };
   }
   return { grid, arrays, request.OutputExtent, this->Source.GetNumberOfNodes(),
     this->Source.GetNumberOfTetrahedra(),
     boundary + GetMappingBytes(grid, !this->Volume.HasMesh(), this->Volume.GetRunBytes()), false,
-    this->Volume.HasDistances() };
+    this->Volume.GetMasks().HasDistances() };
 }
 
 DeformReport VolumeDeformer::Internals::Parts::Deform(const DeformRequest& request)
 {
   this->BringOutput(); // its memory is that of the next one
-  this->Volume.ReadArraysAgain();
+  this->Volume.GetArrays().ReadAgain();
   this->Source.ReadFieldAgain();
   const std::uint64_t spare = CheckDeviceMemory(this->Device, this->Budget, this->GetSize(request),
     OutputSlab::GetBytesPerVoxel(
-      this->Device.GetContext(), this->Volume.GetVolumeArrays(), request));
+      this->Device.GetContext(), this->Volume.GetArrays().Get(), request));
   const bool isRasterized = request.Method == Resampling::MeshRasterization;
   DeformReport report =
     isRasterized ? this->Rasterize(request, spare) : this->Resample(request, spare);

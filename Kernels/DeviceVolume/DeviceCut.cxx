@@ -295,6 +295,14 @@ void DeviceCut::Update(OpenCLContext& context, const cl::CommandQueue& queue,
   context.Launch(queue, kernel, items, cl::NDRange(group));
 }
 
+cl_uint DeviceCut::SetArguments(cl::Kernel& kernel, cl_uint argument) const
+{
+  kernel.setArg(argument++, this->Rows);
+  kernel.setArg(argument++, this->Vertices);
+  kernel.setArg(argument++, this->Positions);
+  return argument;
+}
+
 std::uint64_t DeviceCut::GetMemory() const
 {
   return deformvolume::GetMemory(this->Rows) + deformvolume::GetMemory(this->Vertices) +

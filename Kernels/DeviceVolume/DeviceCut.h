@@ -54,6 +54,9 @@ public:
   const cl::Buffer& GetVertices() const { return this->Vertices; }
   const cl::Buffer& GetPositions() const { return this->Positions; }
   ///@}
+  /// Sets the arguments of a kernel that stand for the cut (CUT_PARAMETERS), from a number on;
+  /// returns the number of the next argument.
+  cl_uint SetArguments(cl::Kernel& kernel, cl_uint argument) const;
 
   std::uint64_t GetMemory() const;
 

@@ -4,6 +4,8 @@
 
 #include "OpenCLContext.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace deformvolume
@@ -26,8 +28,23 @@ struct VolumeChunk
   cl::Buffer Distances;           // to the boundary, a float a voxel
   cl::Buffer Boundary;            // where that of the deformation mesh is (BridgeMask.cl), or none
   cl::Buffer Joined;              // the active tetrahedra that are resampled (BridgeMask), or none
-  std::vector<cl::Buffer> Arrays; // see DeviceVolume::GetArrays
+  std::vector<cl::Buffer> Arrays; // see DeviceArrays::GetBuffers
 };
+
+/// Layers of an array of the host: planes of voxels or of cells.
+struct HostLayers
+{
+  const void* Data;
+  std::size_t BytesPerElement;
+  std::int64_t ElementsPerLayer;
+  std::int64_t Begin; // the first layer, and one past the last
+  std::int64_t End;
+};
+
+/// Sends layers to a buffer: to the previous one if that has their size. The data must stay until
+/// the queue has finished.
+cl::Buffer SendLayers(const OpenCLContext& context, const cl::CommandQueue& queue,
+  std::uint64_t allocationLimit, const HostLayers& layers, const cl::Buffer& previous);
 
 } // namespace deformvolume
 

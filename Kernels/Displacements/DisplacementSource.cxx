@@ -103,7 +103,7 @@ void DisplacementSource::SetNodePlaces(const std::int32_t* places)
     all.assign(places, places + this->NumberOfNodes);
     all.resize(this->MostNodes, -1);
   }
-  this->Volume.SetNodePlaces(all);
+  this->Volume.GetMasks().SetNodePlaces(all);
 }
 
 std::vector<Extent> DisplacementSource::UpdateBridges()
@@ -316,7 +316,8 @@ bool DisplacementSource::CanReadInPlace(
     return false;
   }
   // It may be an array of the volume, too, and lies in one piece.
-  const BufferInPlace array = this->Volume.FindOverlapping(field.Vectors, GetBytes(field));
+  const BufferInPlace array =
+    this->Volume.GetArrays().FindOverlapping(field.Vectors, GetBytes(field));
   return array.Bytes == 0 ||
     (array.IsOver(field.Vectors, GetBytes(field)) && this->Volume.GetChunks().size() == 1);
 }
@@ -380,7 +381,8 @@ void DisplacementSource::SetFieldInPlace(const DisplacementField& field)
   this->Observer.MoveAll({});
   this->LastSent = false;
   this->FieldVectors.Clear();
-  const BufferInPlace array = this->Volume.FindOverlapping(field.Vectors, GetBytes(field));
+  const BufferInPlace array =
+    this->Volume.GetArrays().FindOverlapping(field.Vectors, GetBytes(field));
   this->VectorsInPlace = array.Buffer; // that of before may lie over the same memory
   if (!array.Buffer())
   {
@@ -492,7 +494,7 @@ void DisplacementSource::PrepareMapping(
   std::vector<cl::Event>& events, const std::vector<cl_uint>* bricks)
 {
   const cl::Program mapping = GetMappingProgram(this->Device.GetContext(), this->GetMappingForm(),
-    this->Volume.HasCut(), this->Volume.HasTurnedAxes());
+    this->Volume.GetMasks().HasCut(), this->Volume.HasTurnedAxes());
   TetrahedronRecords& records = this->Volume.GetRecords();
   if (this->Volume.HasRuns() && !records.AreCurrent())
   {

@@ -113,11 +113,11 @@ void DisplacementSource::ChangeConnectivity(const Tetrahedron* tetrahedra,
   this->SendChanges(*changes);
   if (boxes)
   {
-    this->Volume.ChangeOwners(*boxes);
+    this->Volume.GetMasks().GetBridges().ChangeVertices(*boxes);
   }
   else
   {
-    this->Volume.ForgetBridges();
+    this->Volume.GetMasks().GetBridges().Forget();
   }
   this->Volume.GetRecords().Forget();
 }

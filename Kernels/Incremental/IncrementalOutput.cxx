@@ -92,7 +92,7 @@ void IncrementalOutput::ChangeCut(const std::vector<Extent>& boxes)
   this->Changes.SetHalo(this->Volume.GetBricks().Halo);
   if (this->Changes.IsTracking())
   {
-    this->Changes.AddCut(this->Volume.GetCutVertices());
+    this->Changes.AddCut(this->Volume.GetMasks().GetCut().GetList());
     this->Changes.ChangeMask(boxes, false);
   }
 }
@@ -101,7 +101,7 @@ void IncrementalOutput::FindCut()
 {
   if (!this->CutIsKnown)
   {
-    this->Changes.SetCut(this->Volume.GetCutVertices());
+    this->Changes.SetCut(this->Volume.GetMasks().GetCut().GetList());
     this->CutIsKnown = true;
   }
 }
@@ -147,7 +147,7 @@ bool IncrementalOutput::CanUpdate(const DeformRequest& request, ExactResampler& 
 
 void IncrementalOutput::CopyLastOutput(const DeformRequest& request) const
 {
-  const std::vector<VolumeArray>& arrays = this->Volume.GetVolumeArrays();
+  const std::vector<VolumeArray>& arrays = this->Volume.GetArrays().Get();
   if (request.OutputRevision != 0 && request.OutputRevision == this->RevisionBefore)
   {
     CopyPatches(request, arrays, this->LastPatches);

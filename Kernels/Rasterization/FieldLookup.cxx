@@ -55,9 +55,9 @@ std::size_t MeshRasterizer::GetNumberOfNodes() const
 
 cl::Kernel MeshRasterizer::MakeKernel(Interpolation interpolation) const
 {
-  return cl::Kernel(
-    GetRasterizationProgram(this->Device->GetContext(), this->Volume->GetVolumeArrays(),
-      this->Volume->GetVoxelGrid(), interpolation, this->HasField(), this->Volume->HasMasks()),
+  return cl::Kernel(GetRasterizationProgram(this->Device->GetContext(),
+                      this->Volume->GetArrays().Get(), this->Volume->GetVoxelGrid(), interpolation,
+                      this->HasField(), this->Volume->GetMasks().HasAny()),
     this->HasField() ? "LookUpField" : "RasterizeMesh");
 }
 

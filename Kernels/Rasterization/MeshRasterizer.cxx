@@ -98,9 +98,9 @@ RasterParameters MakeParameters(
     p.FractionBits[axis] = bits;
     p.Tolerance[axis] = static_cast<int>(std::ldexp(tolerance[axis], p.FractionBits[axis]));
   }
-  p.HasActive = volume.HasActive();
-  p.HasBlanked = volume.HasBlanked();
-  p.HasDistances = volume.HasDistances();
+  p.HasActive = volume.GetMasks().HasActive();
+  p.HasBlanked = volume.GetMasks().HasBlanked();
+  p.HasDistances = volume.GetMasks().HasDistances();
   return p;
 }
 
@@ -184,7 +184,8 @@ cl_uint MeshRasterizer::SetArguments(
   // Any buffer stands in for a missing one: not all drivers take a null pointer.
   this->Kernel.setArg(i++, p.HasActive ? chunk.Active : target.GetCoverage());
   this->Kernel.setArg(i++, p.HasBlanked ? chunk.Blanked : target.GetCoverage());
-  this->Kernel.setArg(i++, this->Volume->GetDistances(chunk));
+  this->Kernel.setArg(
+    i++, this->Volume->GetMasks().GetDistances(chunk, this->Volume->GetRestPositions()));
   this->Kernel.setArg(i++, target.GetBackgrounds());
   this->Kernel.setArg(i++, target.GetCoverage());
   this->Kernel.setArg(i++, counters);
@@ -284,7 +285,7 @@ void MeshRasterizer::Make(
 
   watch = Stopwatch();
   target = std::make_unique<RasterTarget>(
-    this->Device->GetContext(), this->Volume->GetVolumeArrays(), request, plan.Slabs[slab]);
+    this->Device->GetContext(), this->Volume->GetArrays().Get(), request, plan.Slabs[slab]);
   const auto slabs = static_cast<double>(plan.Slabs.size());
   this->RunTiles(
     p, *target,

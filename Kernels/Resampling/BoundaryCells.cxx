@@ -234,9 +234,9 @@ void BoundaryCells::Run(
   const cl::CommandQueue& queue = this->Device.GetQueue();
   RasterParameters r = MakeTiles(output.GetExtent(), this->Boundary.size());
   SetInverse(this->Volume.GetVoxelGrid(), r);
-  r.HasActive = this->Volume.HasOwnActive();
-  r.HasBlanked = this->Volume.HasBlanked();
-  r.HasDistances = this->Volume.HasDistances();
+  r.HasActive = this->Volume.GetMasks().HasGivenActive();
+  r.HasBlanked = this->Volume.GetMasks().HasBlanked();
+  r.HasDistances = this->Volume.GetMasks().HasDistances();
 
   std::size_t numberOfPatches = 1;
   for (int axis = 0; axis < 3; ++axis)
@@ -277,7 +277,7 @@ void BoundaryCells::Run(
 void BoundaryCells::RunTiles(const DeformRequest& request, const OutputSlab& output,
   const RasterParameters& r, std::size_t numberOfTiles)
 {
-  const std::vector<VolumeArray>& arrays = this->Volume.GetVolumeArrays();
+  const std::vector<VolumeArray>& arrays = this->Volume.GetArrays().Get();
   cl::Kernel kernel(GetBoundaryProgram(this->Device.GetContext(), arrays, output.HasCoverageBits(),
                       this->Device.HasSerialGroups()),
     "ResampleBoundary");
@@ -299,10 +299,11 @@ void BoundaryCells::RunTiles(const DeformRequest& request, const OutputSlab& out
       kernel.setArg(i++, this->Lists.GetBegins());
       kernel.setArg(i++, this->Lists.GetLists());
       kernel.setArg(i++, this->Tiles);
-      kernel.setArg(i++, this->Volume.GetActive(chunk));
+      kernel.setArg(i++, this->Volume.GetMasks().GetActive(chunk, this->Volume.GetRestPositions()));
       kernel.setArg(i++, r.HasActive ? chunk.Active : other);
       kernel.setArg(i++, r.HasBlanked ? chunk.Blanked : other);
-      kernel.setArg(i++, this->Volume.GetDistances(chunk));
+      kernel.setArg(
+        i++, this->Volume.GetMasks().GetDistances(chunk, this->Volume.GetRestPositions()));
       kernel.setArg(i++, output.GetCoverageTarget());
       kernel.setArg(i++, this->PatchCounts);
       kernel.setArg(i++, MakeInt4(whole[0], whole[2], whole[4]));
@@ -310,7 +311,7 @@ void BoundaryCells::RunTiles(const DeformRequest& request, const OutputSlab& out
       kernel.setArg(i++, cl_int{ orientation });
       kernel.setArg(i++, r);
       kernel.setArg(i++, p);
-      const std::vector<cl::Buffer>& sources = this->Volume.GetArrays(chunk);
+      const std::vector<cl::Buffer>& sources = this->Volume.GetArrays().GetBuffers(chunk);
       for (std::size_t a = 0; a < sources.size(); ++a)
       {
         kernel.setArg(i++, sources[a]);

@@ -130,7 +130,7 @@ cl::Kernel ExactPasses::MakeKernel(
   const DeformRequest& request, ResamplingForm form, const OutputSlab& output, int pass)
 {
   OpenCLContext& context = this->Device.GetContext();
-  const std::vector<VolumeArray>& arrays = this->Volume.GetVolumeArrays();
+  const std::vector<VolumeArray>& arrays = this->Volume.GetArrays().Get();
   if (form == ResamplingForm::Lanes)
   {
     Reserve(context, this->TakenBricks, sizeof(cl_uint));
@@ -144,7 +144,7 @@ cl::Kernel ExactPasses::MakeKernel(
   const bool wideKeys = GetWinnerSize(this->Volume.GetVoxelGrid()) == 8;
   return cl::Kernel(
     GetResamplingProgram(context, this->Source.GetMappingForm(), arrays,
-      { form, wideKeys, output.HasCoverageBits(), this->Volume.HasCut(),
+      { form, wideKeys, output.HasCoverageBits(), this->Volume.GetMasks().HasCut(),
         (form == ResamplingForm::Columns || form == ResamplingForm::DeferredInt32) &&
           pass == DEFORMVOLUME_PASS_DIRECT,
         request.Interpolation == Interpolation::Cubic, this->Volume.HasTurnedAxes() }),
@@ -156,8 +156,8 @@ void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
 {
   cl_uint i = this->Source.SetMappingArguments(kernel, chunk);
   kernel.setArg(i++, this->Volume.GetState(chunk));
-  kernel.setArg(i++, this->Volume.GetActive(chunk));
-  kernel.setArg(i++, this->Volume.GetDistances(chunk));
+  kernel.setArg(i++, this->Volume.GetMasks().GetActive(chunk, this->Volume.GetRestPositions()));
+  kernel.setArg(i++, this->Volume.GetMasks().GetDistances(chunk, this->Volume.GetRestPositions()));
   kernel.setArg(i++, output.GetCoverageTarget());
   // A null pointer is not something that all drivers take: any buffer stands in for a missing one.
   const OutputWinners& winners = output.GetWinners();
@@ -165,9 +165,9 @@ void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
   kernel.setArg(i++, winners.GetPatches()() ? winners.GetPatches() : output.GetCoverageTarget());
   kernel.setArg(i++, output.GetLargeCells());
   kernel.setArg(i++, output.GetCounters());
-  if (this->Volume.HasCut())
+  if (this->Volume.GetMasks().HasCut())
   {
-    i = this->Volume.SetCutArguments(kernel, i);
+    i = this->Volume.GetMasks().GetCut().SetArguments(kernel, i);
   }
   if (form != ResamplingForm::LargeCells)
   {
@@ -180,7 +180,7 @@ void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
     {
       kernel.setArg(i++,
         cl::Local(GetBrickMemory(this->Device.GetContext(), this->Volume.HasTurnedAxes(),
-          this->Volume.GetVolumeArrays())));
+          this->Volume.GetArrays().Get())));
     }
     else
     {
@@ -191,7 +191,7 @@ void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
   {
     kernel.setArg(i++, this->Deferred.GetBuffer());
     kernel.setArg(i++,
-      cl::Local(GetColumnMemory(this->Device.GetContext(), this->Volume.GetVolumeArrays(), form)));
+      cl::Local(GetColumnMemory(this->Device.GetContext(), this->Volume.GetArrays().Get(), form)));
   }
   else if (form == ResamplingForm::Cells)
   {
@@ -202,7 +202,7 @@ void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
     kernel.setArg(i++, this->Pieces);
   }
   kernel.setArg(i++, p);
-  const std::vector<cl::Buffer>& arrays = this->Volume.GetArrays(chunk);
+  const std::vector<cl::Buffer>& arrays = this->Volume.GetArrays().GetBuffers(chunk);
   for (std::size_t a = 0; a < arrays.size(); ++a)
   {
     kernel.setArg(i++, arrays[a]);

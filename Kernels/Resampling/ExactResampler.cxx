@@ -40,9 +40,9 @@ void ExactResampler::Make(
   this->Launched.Expect((plan.Slabs.size() - slab) *
     (this->Exact.GetNumberOfLaunches() + this->Boundary.GetNumberOfLaunches()));
   target.Place(this->Device.GetContext(), this->Device.GetQueue(), plan.Slabs[slab], request,
-    this->Volume.GetVolumeArrays(), this->Volume.GetVoxelGrid(),
+    this->Volume.GetArrays().Get(), this->Volume.GetVoxelGrid(),
     this->Volume.GetBricks().GetNumberOfBricks(), this->Launched.GetResamplingEvents());
-  target.Clear(this->Device.GetContext(), this->Volume.GetVolumeArrays(),
+  target.Clear(this->Device.GetContext(), this->Volume.GetArrays().Get(),
     this->Exact.ChooseForm(request, target) == ResamplingForm::Columns,
     this->Launched.GetResamplingEvents());
   this->MakeExact(request, target, slab == 0, report);
@@ -125,7 +125,7 @@ void ExactResampler::MakeExact(
   {
     this->CountFolds(request, output);
   }
-  output.Complete(this->Device.GetContext(), this->Volume.GetVolumeArrays(), false,
+  output.Complete(this->Device.GetContext(), this->Volume.GetArrays().Get(), false,
     this->Launched.GetResamplingEvents());
   report.NumberOfCoveredVoxels +=
     static_cast<std::int64_t>(covered + this->Boundary.GetNumberOfCovered());
@@ -210,7 +210,7 @@ std::vector<std::shared_ptr<DeviceOutput>> ExactResampler::Leave(
   const DeformRequest& request, std::size_t target)
 {
   const OutputSlab& output = this->Targets[target];
-  return output.Leave(this->Device.GetReadQueue(), request, this->Volume.GetVolumeArrays(),
+  return output.Leave(this->Device.GetReadQueue(), request, this->Volume.GetArrays().Get(),
     std::vector<Extent>(request.Outputs.size() + 1, output.GetExtent()));
 }
 
@@ -218,7 +218,7 @@ std::vector<std::shared_ptr<DeviceOutput>> ExactResampler::LeaveParts(
   const DeformRequest& request, const std::vector<Extent>& parts)
 {
   return this->Targets[0].Leave(
-    this->Device.GetReadQueue(), request, this->Volume.GetVolumeArrays(), parts);
+    this->Device.GetReadQueue(), request, this->Volume.GetArrays().Get(), parts);
 }
 
 std::uint64_t ExactResampler::CountCovered(const std::vector<std::uint32_t>& patches)
@@ -252,7 +252,7 @@ bool ExactResampler::HoldsLastOutput(const DeformRequest& request)
 {
   return this->CanMakeAgain() &&
     this->Targets[0].HoldsLastOutput(
-      this->Device.GetContext(), request, this->Volume.GetVolumeArrays());
+      this->Device.GetContext(), request, this->Volume.GetArrays().Get());
 }
 
 std::optional<ExactResampler::Again> ExactResampler::MakeAgain(const DeformRequest& request,
@@ -263,7 +263,7 @@ std::optional<ExactResampler::Again> ExactResampler::MakeAgain(const DeformReque
   const int pass = won ? DEFORMVOLUME_PASS_OWNERS : DEFORMVOLUME_PASS_DIRECT;
   const cl::Buffer list = bricks.empty() ? cl::Buffer() : this->Exact.SendBricks(bricks);
   output.PrepareAgain(this->Device.GetContext(), this->Device.GetQueue(), request,
-    this->Volume.GetVolumeArrays(), { bricks, list, patches, won },
+    this->Volume.GetArrays().Get(), { bricks, list, patches, won },
     this->Launched.GetResamplingEvents());
   this->Source.PrepareMapping(this->Launched.GetMappingEvents(), &bricks);
   this->RunPass(request, output, pass, false, &bricks);
@@ -281,7 +281,7 @@ std::optional<ExactResampler::Again> ExactResampler::MakeAgain(const DeformReque
     {
       this->Boundary.Run(request, output, &patches);
     }
-    output.Complete(this->Device.GetContext(), this->Volume.GetVolumeArrays(), true,
+    output.Complete(this->Device.GetContext(), this->Volume.GetArrays().Get(), true,
       this->Launched.GetResamplingEvents());
     this->Device.GetQueue().finish(); // it is read in another queue
   };

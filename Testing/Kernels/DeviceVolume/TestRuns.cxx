@@ -189,7 +189,7 @@ public:
 
   Mapped Map(bool byRuns, const std::vector<float>& displacements, const unsigned char* blanked)
   {
-    this->Mesh.SetBlanked(blanked, 255, nullptr);
+    this->Mesh.GetMasks().SetBlanked(blanked, 255, nullptr);
     const cl::Buffer tetrahedra =
       this->Send(NameNodePlaces(this->Case.Tetrahedra.data(), this->Case.Tetrahedra.size()));
     std::vector<float> padded;

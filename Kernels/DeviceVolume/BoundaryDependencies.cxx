@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BoundaryDependencies.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace deformvolume
+{
+
+BoundaryDependencies FindBoundaryDependencies(
+  const MeshBoundary& boundary, bool isField, const Extent& vertices, const BrickGrid& subBricks)
+{
+  BoundaryDependencies found;
+  if (boundary.IsEmpty())
+  {
+    return found;
+  }
+  const auto getPlace = [&](int axis, double cell)
+  {
+    return std::clamp((static_cast<int>(std::clamp(cell, 0.0, GetSize(vertices, axis) - 2.0)) -
+                        subBricks.Origin[axis]) /
+        subBricks.Cells[axis],
+      0, subBricks.Count[axis] - 1);
+  };
+  const auto getNumber = [&](int x, int y, int z)
+  {
+    return (static_cast<std::size_t>(z) * static_cast<std::size_t>(subBricks.Count[1]) +
+             static_cast<std::size_t>(y)) *
+      static_cast<std::size_t>(subBricks.Count[0]) +
+      static_cast<std::size_t>(x);
+  };
+  std::vector<unsigned char> isNear(subBricks.GetNumberOfBricks());
+  for (const std::int64_t cell : boundary.Near)
+  {
+    const std::int64_t size[2] = { GetSize(vertices, 0) - 1, GetSize(vertices, 1) - 1 };
+    isNear[getNumber(getPlace(0, static_cast<double>(cell % size[0])),
+      getPlace(1, static_cast<double>(cell / size[0] % size[1])),
+      getPlace(2, static_cast<double>(cell / size[0] / size[1])))] = 1;
+  }
+  found.Tetrahedra.resize(isField ? 0 : isNear.size());
+  found.FieldPoints.resize(isField ? isNear.size() : 0, { { 0, -1, 0, -1, 0, -1 } });
+  for (const MeshBoundary::Piece& piece : boundary.Pieces)
+  {
+    int first[3];
+    int last[3];
+    Extent points;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      const auto getEnds = [](const auto& corners, auto k) {
+        return std::minmax({ corners[0][k], corners[1][k], corners[2][k], corners[3][k] });
+      };
+      const auto rest = getEnds(piece.Rest, static_cast<glm::length_t>(axis));
+      const int begin = vertices[2 * axis];
+      // Nodes are rounded before samples are looked for. And a piece that moves a cell moves the
+      // crossed one beside it, too: so no change of pieces is inside (IncrementalUpdate::IsInside).
+      first[axis] = getPlace(static_cast<int>(axis), std::floor(rest.first - begin) - 1.0);
+      last[axis] = getPlace(static_cast<int>(axis), std::floor(rest.second - begin) + 1.0);
+      const auto indices = getEnds(piece.Weights, axis);
+      points[2 * axis] = static_cast<int>(std::floor(indices.first));
+      points[2 * axis + 1] = static_cast<int>(std::ceil(indices.second));
+    }
+    for (int z = first[2]; z <= last[2]; ++z)
+    {
+      for (int y = first[1]; y <= last[1]; ++y)
+      {
+        for (int x = first[0]; x <= last[0]; ++x)
+        {
+          const std::size_t subBrick = getNumber(x, y, z);
+          if (!isNear[subBrick])
+          {
+            continue;
+          }
+          if (isField)
+          {
+            Include(found.FieldPoints[subBrick], points);
+            continue;
+          }
+          std::vector<std::int32_t>& list = found.Tetrahedra[subBrick];
+          if (list.empty() || list.back() != piece.Tetrahedron)
+          {
+            list.push_back(piece.Tetrahedron);
+          }
+        }
+      }
+    }
+  }
+  return found;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DeviceArrays.h"
+
+#include "Error.h"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace deformvolume
+{
+
+bool IsUsedInPlace(const OpenCLContext& context, const VolumeArray& array)
+{
+  return array.Owner && CanWorkInPlace(context, array.Data, GetElementSize(array.Type));
+}
+
+DeviceArrays::DeviceArrays(const OpenCLContext& context, const cl::CommandQueue& queue,
+  const std::array<int, 3>& size, std::uint64_t allocationLimit, std::vector<VolumeChunk>& chunks)
+  : Context(context)
+  , Queue(queue)
+  , Size(size)
+  , AllocationLimit(allocationLimit)
+  , Chunks(chunks)
+{
+}
+
+void DeviceArrays::Leave()
+{
+  if (this->ChunkInPlace)
+  {
+    this->Queue.finish();
+    for (std::size_t i = 0; i < this->Places.size(); ++i)
+    {
+      if (this->IsInPlace(i))
+      {
+        this->ChunkInPlace->Arrays[i] = cl::Buffer();
+        this->Places[i].Buffer = cl::Buffer();
+      }
+    }
+    this->ChunkInPlace = nullptr;
+  }
+}
+
+BufferInPlace DeviceArrays::FindOverlapping(const void* data, std::uint64_t bytes) const
+{
+  const auto found = std::find_if(this->Places.begin(), this->Places.end(),
+    [&](const BufferInPlace& one) { return one.Overlaps(data, bytes); });
+  return found != this->Places.end() ? *found : BufferInPlace();
+}
+
+void DeviceArrays::Set(const std::vector<VolumeArray>& arrays, const BufferInPlace& field)
+{
+  const QueueGuard guard(this->Queue);
+  this->Leave();
+  this->Places.assign(arrays.size(), BufferInPlace());
+  this->Described.clear(); // there are none if this fails
+  const std::int64_t plane = static_cast<std::int64_t>(this->Size[0]) * this->Size[1];
+  const bool whole = this->Chunks.size() == 1;
+  for (std::size_t i = 0; i < arrays.size(); ++i)
+  {
+    const VolumeArray& array = arrays[i];
+    const std::uint64_t bytes =
+      static_cast<std::uint64_t>(plane * this->Size[2]) * GetTupleSize(array);
+    const BufferInPlace other = this->FindOverlapping(array.Data, bytes);
+    // The field lies in one piece.
+    const bool free = other.Bytes == 0 || other.IsOver(array.Data, bytes);
+    const bool freeOfField =
+      !field.Overlaps(array.Data, bytes) || (whole && field.IsOver(array.Data, bytes));
+    if (IsUsedInPlace(this->Context, array) && free && freeOfField)
+    {
+      this->Places[i].Data = array.Data;
+      this->Places[i].Bytes = bytes;
+    }
+  }
+  for (VolumeChunk& chunk : this->Chunks)
+  {
+    chunk.Arrays.resize(arrays.size());
+    for (std::size_t i = 0; i < arrays.size(); ++i)
+    {
+      chunk.Arrays[i] = this->IsInPlace(i)
+        ? cl::Buffer()
+        : SendLayers(this->Context, this->Queue, this->AllocationLimit,
+            { arrays[i].Data, GetTupleSize(arrays[i]), plane, chunk.PlanesBegin, chunk.PlanesEnd },
+            chunk.Arrays[i]);
+    }
+  }
+  if (whole)
+  {
+    for (std::size_t i = 0; i < arrays.size(); ++i)
+    {
+      BufferInPlace& place = this->Places[i];
+      place.Buffer = field.IsOver(place.Data, place.Bytes) ? field.Buffer : cl::Buffer();
+    }
+    this->GetBuffers(this->Chunks.front());
+  }
+  this->Described = arrays;
+  for (std::size_t i = 0; i < arrays.size(); ++i)
+  {
+    if (!this->IsInPlace(i))
+    {
+      this->Described[i].Owner.reset(); // the data were copied
+    }
+  }
+}
+
+bool DeviceArrays::SetOptions(const std::vector<VolumeArray>& arrays)
+{
+  const bool alike =
+    std::equal(arrays.begin(), arrays.end(), this->Described.begin(), this->Described.end(),
+      [](const VolumeArray& a, const VolumeArray& b)
+      { return a.Type == b.Type && a.Components == b.Components; });
+  if (!alike)
+  {
+    throw Error("The options are those of other arrays than are set: call SetArrays first.");
+  }
+  bool changed = false;
+  for (std::size_t i = 0; i < arrays.size(); ++i)
+  {
+    VolumeArray& set = this->Described[i];
+    // Not-a-number never counts as the same.
+    changed = changed || set.Categorical != arrays[i].Categorical ||
+      !(set.Background == arrays[i].Background);
+    set.Categorical = arrays[i].Categorical;
+    set.Background = arrays[i].Background;
+  }
+  return changed;
+}
+
+void DeviceArrays::ReadAgain() const
+{
+  // The buffers of several chunks are made whenever it is the chunk's turn.
+  if (this->Chunks.size() == 1)
+  {
+    for (const BufferInPlace& place : this->Places)
+    {
+      TellOfWrites(this->Context, this->Queue, place);
+    }
+  }
+}
+
+const std::vector<cl::Buffer>& DeviceArrays::GetBuffers(const VolumeChunk& chunk)
+{
+  if (&chunk == this->ChunkInPlace)
+  {
+    return chunk.Arrays;
+  }
+  this->Leave();
+  VolumeChunk& placed = this->Chunks[static_cast<std::size_t>(&chunk - this->Chunks.data())];
+  this->ChunkInPlace = &placed;
+  for (std::size_t i = 0; i < this->Places.size(); ++i)
+  {
+    BufferInPlace& place = this->Places[i];
+    if (place.Bytes == 0)
+    {
+      continue;
+    }
+    const auto same = std::find_if(this->Places.begin(), this->Places.end(),
+      [&](const BufferInPlace& one) { return one.IsOver(place.Data, place.Bytes); });
+    if (!same->Buffer())
+    {
+      const std::uint64_t bytesPerPlane = place.Bytes / static_cast<std::uint64_t>(this->Size[2]);
+      // The kernels only read it.
+      same->Buffer = MakeBufferOver(this->Context, CL_MEM_READ_ONLY,
+        static_cast<char*>(const_cast<void*>(place.Data)) +
+          bytesPerPlane * static_cast<std::uint64_t>(chunk.PlanesBegin),
+        bytesPerPlane * static_cast<std::uint64_t>(chunk.PlanesEnd - chunk.PlanesBegin));
+    }
+    place.Buffer = same->Buffer;
+    placed.Arrays[i] = place.Buffer;
+  }
+  return chunk.Arrays;
+}
+
+} // namespace deformvolume

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeDeviceMasks_h
+#define DeformVolumeDeviceMasks_h
+
+#include "BridgeMask.h"
+#include "DeviceCut.h"
+#include "DeviceMask.h"
+#include "Extent.h"
+#include "MeshBoundary.h"
+#include "OpenCLContext.h"
+#include "VertexStates.h"
+#include "VolumeChunk.h"
+#include "VoxelGrid.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace deformvolume
+{
+
+/// The masks of a volume on the device: blanked voxels, active tetrahedra, distances to a boundary,
+/// a smooth cut, and the tetrahedra that BridgeMask leaves out.
+class DeviceMasks
+{
+public:
+  /// chunks, states: those of the volume. This object sets the buffers of masks in chunks, and says
+  /// which states have changed. bricks: get a larger Halo where there is a cut.
+  DeviceMasks(OpenCLContext& context, const cl::CommandQueue& queue, const VoxelGrid& grid,
+    std::uint64_t allocationLimit, BrickGrid& bricks, std::vector<VolumeChunk>& chunks,
+    VertexStates& states);
+
+  ///@{
+  /// Sets a mask of the vertices or of the cells; null: no mask. Compares it with the last one,
+  /// sends what has changed, and returns the boxes of that (DeviceMask::Set). bits: the bits of a
+  /// byte that blank a voxel. Where BridgeMask is on, DeviceVolume::UpdateBridges() finds the
+  /// changed cells.
+  std::vector<Extent> SetBlanked(
+    const unsigned char* blanked, unsigned char bits, const PointRanges* written);
+  std::vector<Extent> SetActive(const unsigned char* active, const PointRanges* written);
+  std::vector<Extent> SetBoundaryDistances(const float* distances, const PointRanges* written);
+  ///@}
+  /// Sets a smooth cut (DeviceCut::Set). hasRoom: whether chunks have the planes that it needs.
+  /// Returns the boxes of vertices that the cut lists differently than before.
+  std::vector<Extent> SetCut(const unsigned char* crossed, const float* distances, bool hasRoom);
+  /// Leaves out the tetrahedra that would bridge the gap where the mesh is split. places: see
+  /// BridgeMask; empty: leaves out none.
+  void SetNodePlaces(const std::vector<std::int32_t>& places);
+  /// Leaves out the cells that the boundary of the deformation mesh, or of the field, crosses.
+  void SetBoundary(const MeshBoundary& boundary);
+
+  /// Whether any voxel is blanked, any tetrahedron is not active or left out, or there are
+  /// distances.
+  bool HasAny() const { return this->HasActive() || this->HasBlanked() || this->HasDistances(); }
+  /// Whether there is a mask of active tetrahedra, given or made by BridgeMask.
+  bool HasActive() const { return this->HasGivenActive() || this->Bridges.IsOn(); }
+  bool HasGivenActive() const { return this->Active.HasBuffers(); }
+  bool HasBlanked() const { return this->Blanked.HasBuffers(); }
+  bool HasDistances() const { return this->Distances.HasBuffers(); }
+  bool HasCut() const { return this->Cut.IsOn(); }
+  bool HasBoundary() const { return this->Bridges.HasBoundary(); }
+  ///@{
+  /// Masks of a chunk as an argument of kernels. other: what kernels get where there is no mask, as
+  /// not all drivers take null.
+  const cl::Buffer& GetActive(const VolumeChunk& chunk, const cl::Buffer& other) const
+  {
+    return this->Bridges.IsOn() ? chunk.Joined : this->GetGivenActive(chunk, other);
+  }
+  const cl::Buffer& GetGivenActive(const VolumeChunk& chunk, const cl::Buffer& other) const
+  {
+    return this->HasGivenActive() ? chunk.Active : other;
+  }
+  const cl::Buffer& GetBlanked(const VolumeChunk& chunk, const cl::Buffer& other) const
+  {
+    return this->HasBlanked() ? chunk.Blanked : other;
+  }
+  const cl::Buffer& GetDistances(const VolumeChunk& chunk, const cl::Buffer& other) const
+  {
+    return this->HasDistances() ? chunk.Distances : other;
+  }
+  ///@}
+  DeviceCut& GetCut() { return this->Cut; }
+  const DeviceCut& GetCut() const { return this->Cut; }
+  BridgeMask& GetBridges() { return this->Bridges; }
+  const BridgeMask& GetBridges() const { return this->Bridges; }
+
+private:
+  OpenCLContext& Context;
+  cl::CommandQueue Queue;
+  const VoxelGrid& Grid;
+  std::array<int, 3> Size; // vertices on each axis
+  std::uint64_t AllocationLimit;
+  BrickGrid& Bricks;
+  std::vector<VolumeChunk>& Chunks;
+  VertexStates& States;
+  DeviceMask Blanked{ DeviceMask::Kind::BlankedVertices };
+  DeviceMask Active{ DeviceMask::Kind::ActiveTetrahedra };
+  DeviceMask Distances{ DeviceMask::Kind::BoundaryDistances };
+  DeviceCut Cut;
+  BridgeMask Bridges;
+};
+
+} // namespace deformvolume
+
+#endif
