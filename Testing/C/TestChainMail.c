@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /*
  * ChainMail in C: what is refused, and why; displacements in closed form; abort; a deformer that
- * follows. Testing/Cxx/TestCChainMail.cxx has the bits of vtkChainMailDeformation.
+ * follows. Testing/Cxx/C/TestCChainMail.cxx has the bits of vtkChainMailDeformation.
  */
 #include "Check.h"
 
