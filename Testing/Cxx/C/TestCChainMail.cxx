@@ -14,6 +14,7 @@
 
 #include <glm/glm.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <set>
@@ -281,6 +282,22 @@ void TestDeformer()
         mail.Compare(dragged, MakeDrag(grid, by));
         inC.Compare(deformed);
       }
+      // A corner is pulled out, which makes the output larger, and smaller again.
+      glm::dvec3 corner;
+      grid->GetPoint(0, &corner.x);
+      for (const double by : { 0.4, 0.8, 0.1 })
+      {
+        mail.Compare(dragged, { { corner, corner + by * (corner - GetCenter(grid)) } });
+        inC.Compare(deformed);
+      }
+      // Other output voxels.
+      std::fill_n(output.spacing, 3, 1.3);
+      deformed.Filter->SetCustomSpacing(1.3, 1.3, 1.3);
+      deformed.Filter->SetOutputSpacingModeToCustomSpacing();
+      Check(dv_set_output(inC.Deformer, &output));
+      inC.Compare(deformed);
+      mail.Compare(dragged, { { corner, corner + 0.6 * (corner - GetCenter(grid)) } });
+      inC.Compare(deformed);
       // Nothing has changed.
       inC.Deform();
       VERIFY(!inC.IsIncremental || inC.Report.changed_extent[0] > inC.Report.changed_extent[1]);
@@ -290,9 +307,9 @@ void TestDeformer()
       inC.WithExtra = true;
       inC.IsIncremental = false;
       inC.Compare(deformed);
-      Check(dv_set_outside(inC.Deformer, DV_OUTSIDE_KEEP, 5.0));
+      Check(dv_set_outside(inC.Deformer, DV_OUTSIDE_KEEP, 60.0));
       deformed.Filter->SetOutsideMode(vtkDeformVolumeFilter::KEEP);
-      deformed.Filter->SetFadeDistance(5.0);
+      deformed.Filter->SetFadeDistance(60.0);
       inC.Compare(deformed);
       // Another deformation and back.
       auto mesh = MakeMesh(volume, 4);
