@@ -19,14 +19,14 @@ namespace deformvolume
 namespace
 {
 
-// ParaView makes an object of this class for the XML element of the name without vtkSM.
+// ParaView creates an object of this class for the XML element BackgroundDomain.
 class vtkSMBackgroundDomain : public vtkSMDoubleRangeDomain
 {
 public:
   static vtkSMBackgroundDomain* New();
   vtkTypeMacro(vtkSMBackgroundDomain, vtkSMDoubleRangeDomain);
 
-  // ParaView calls this for new proxies, and not for those of state files.
+  // ParaView calls this for new proxies, not for proxies that are loaded from state files.
   int SetDefaultValues(vtkSMProperty* property, bool useUnchecked) override
   {
     vtkSMPropertyHelper helper(property);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Chooses the first value of Background Value in ParaView, by the rule of the program
- * deform-volume. Where values of the volume can be negative, as those of CT, 0 is tissue.
+ * Default of the property Background Value in ParaView, by the same rule as in the program
+ * deform-volume. Where values of the volume can be negative, as in CT, 0 would show as tissue.
  */
 #ifndef BackgroundDomain_h
 #define BackgroundDomain_h
@@ -10,10 +10,10 @@ namespace deformvolume
 {
 
 /**
- * Makes the element BackgroundDomain known to the XML of proxies. It is a DoubleRangeDomain whose
- * default value is the least value of the active scalars, or of the first point array, of the
- * required property Input. The default is 0 where there is no such array, where its type has no
- * negative numbers, and where it has several components.
+ * Registers the XML element BackgroundDomain. BackgroundDomain is a DoubleRangeDomain. Its default
+ * value is the minimum of the active scalars of the required property Input, or of the first point
+ * array if there are no active scalars. The default value is 0 if there is no array, if the type of
+ * the array has no negative numbers, or if the array has several components.
  */
 void RegisterBackgroundDomain();
 

@@ -23,8 +23,8 @@ namespace deformvolume
 namespace
 {
 
-// ParaView 5.11 does not mark a representation as modified again after an update that has failed,
-// so that its view would never show the output of the corrected pipeline.
+// After a failed update, ParaView 5.11 does not mark a representation as modified again. Its view
+// would never show the output of the corrected pipeline.
 void EndUpdate(vtkObject* view, unsigned long, void*, void*)
 {
   auto* proxy = static_cast<vtkSMProxy*>(view);
@@ -37,15 +37,15 @@ void EndUpdate(vtkObject* view, unsigned long, void*, void*)
   }
 }
 
-// What a filter has warned of, and set nothing by (vtkDeformVolumeFilter::SetFromState()), would be
-// saved again.
-void ForgetRemoved(vtkSMProxy* proxy)
+// Otherwise state files would save the values of removed properties again, although the filter
+// ignores them with a warning (vtkDeformVolumeFilter::SetFromState()).
+void ResetRemovedProperties(vtkSMProxy* proxy)
 {
   for (const char* name :
     { "StreamInput", "WorkGroupSize", "NumberOfTimeSamples", "Resampler", "PieceMode" })
   {
     vtkSMProperty* property = proxy->GetProperty(name);
-    // Of the last two only the value 1 was removed.
+    // Of Resampler and PieceMode, only the value 1 was removed.
     const bool isRemoved = std::string(name) != "Resampler" && std::string(name) != "PieceMode";
     if (property && !property->IsValueDefault() &&
       (isRemoved || vtkSMPropertyHelper(proxy, name, true).GetAsInt() == 1))
@@ -59,7 +59,7 @@ void ForgetRemoved(vtkSMProxy* proxy)
 void Fetch(vtkObject* object, unsigned long, void*, void*)
 {
   auto* proxy = static_cast<vtkSMProxy*>(object);
-  ForgetRemoved(proxy);
+  ResetRemovedProperties(proxy);
   proxy->UpdatePropertyInformation();
 }
 
@@ -78,7 +78,7 @@ void ObserveProxy(vtkSMProxy* proxy)
   const std::string made = name ? name : "";
   if (made == "vtkDeformVolumeFilter" || made == "vtkTetGenMesher")
   {
-    ForgetRemoved(proxy);
+    ResetRemovedProperties(proxy);
   }
   if ((made == "vtkDeformVolumeFilter" || made == "vtkTetGenMesher" || made == "vtkCutVolume" ||
         made == "vtkCarveVolume" || made == "vtkChainMailDeformation" ||

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Keeps what the panels tell of the last update up to date. ParaView fetches properties of
- * information when a panel is opened and before Apply updates the pipeline, but not after an
- * update: device, counts and times would be those of the update before. Views show what changes
- * after an update that has failed. Proxies forget properties of former versions that state files
- * and scripts have set.
+ * Updates information properties, such as Summary, after each update of a filter. ParaView reads
+ * them when a panel is opened and before Apply updates the pipeline, but not after an update.
+ * Panels would therefore show device, counts and times of the previous update.
+ *
+ * Besides, views show new output after a failed update, and properties that state files and scripts
+ * of former versions set are reset to their defaults.
  */
 #ifndef InformationRefresh_h
 #define InformationRefresh_h
@@ -13,8 +14,8 @@ namespace deformvolume
 {
 
 /**
- * From now on, proxies of this plugin's classes fetch their information after each update, and
- * views end each update, in all sessions of this client. A second call changes nothing.
+ * Adds the observers that do this to the proxies and views of all present and future sessions of
+ * this client. A second call has no effect.
  */
 void RefreshInformation();
 

@@ -7,7 +7,7 @@
 
 #include <string>
 
-// The test of this check has another one.
+// A test defines another version.
 #ifndef DEFORMVOLUME_PARAVIEW_VERSION
 #define DEFORMVOLUME_PARAVIEW_VERSION                                                              \
   PARAVIEW_VERSION_MAJOR, PARAVIEW_VERSION_MINOR, PARAVIEW_VERSION_PATCH

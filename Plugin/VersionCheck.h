@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Tells the user when the running ParaView is not the one that this plugin was built for. ParaView
- * does not look by itself. Where the two differ so much that the plugin's libraries are not even
- * found, the loader of libraries says so, and this is never reached.
+ * Checks whether the plugin was built for the version of the running ParaView, which ParaView
+ * itself does not check. If the versions differ so much that the libraries of the plugin cannot be
+ * loaded, the dynamic loader reports an error, and this check does not run.
  */
 #ifndef VersionCheck_h
 #define VersionCheck_h
@@ -11,7 +11,8 @@ namespace deformvolume
 {
 
 /**
- * One error when the major or minor version differs, one warning when only the patch does.
+ * Reports an error if the major or minor version differs, and a warning if only the patch version
+ * differs.
  */
 void CheckParaViewVersion();
 
