@@ -79,9 +79,12 @@ extern "C"
   /** Adds an OpenCL driver that the system does not list, such as PoCL from a Python package. path:
    * the absolute path of the driver's library, which is loaded and stays loaded. The same path
    * again does nothing. Devices of drivers that were added come before equal ones of the system.
-   * Indices of devices may change. Environment variables are neither read nor written for that.
-   * Fails where the path is not absolute, where the library cannot be loaded, or where it is no
-   * OpenCL driver. */
+   * Indices of devices may change. PoCL 3.0 of the Python package pocl-binary-distribution chooses
+   * processors for its kernels that do not fit its built-in functions: its choice is set right, in
+   * its own memory. It is left alone where the environment variable DEFORMVOLUME_KERNEL_PROCESSOR
+   * is "driver".
+   * Fails where the path is not absolute, where the library cannot be loaded, where it is no
+   * OpenCL driver, or where the variable has a value other than "auto" and "driver". */
   DV_EXPORT int32_t dv_add_driver(const char* path);
 
   /** The folder of a program "ld", with which PoCL links kernels where it is a driver of

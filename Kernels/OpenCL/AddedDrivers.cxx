@@ -4,7 +4,6 @@
 #include "DeviceThreads.h"
 #include "Error.h"
 #include "KernelCache.h"
-#include "KernelProcessor.h"
 #include "OpenCLContext.h" // for FloatingPointTrapGuard
 
 #include <algorithm>
@@ -36,6 +35,7 @@ void AddedDrivers::Add(const std::string& path)
   {
     return;
   }
+  const bool maySetProcessor = MaySetKernelProcessor();
   // Drivers read these when they start.
   PrepareKernelCache();
   LimitDeviceThreads();
@@ -56,7 +56,7 @@ void AddedDrivers::Add(const std::string& path)
       cl::Platform(platform).getDevices(CL_DEVICE_TYPE_ALL, &devices);
       for (const cl::Device& device : devices)
       {
-        this->Processors[device()] = SetKernelProcessor(library, device);
+        this->Processors[device()] = SetKernelProcessor(library, device, maySetProcessor);
       }
     }
     catch (const cl::Error&)
@@ -85,11 +85,11 @@ bool AddedDrivers::Has(cl_platform_id platform)
     this->Platforms.end();
 }
 
-std::string AddedDrivers::GetProcessor(cl_device_id device)
+KernelProcessor AddedDrivers::GetProcessor(cl_device_id device)
 {
   const std::lock_guard<std::mutex> lock(this->Mutex);
   const auto found = this->Processors.find(device);
-  return found != this->Processors.end() ? found->second : "";
+  return found != this->Processors.end() ? found->second : KernelProcessor();
 }
 
 } // namespace deformvolume

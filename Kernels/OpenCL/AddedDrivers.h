@@ -3,6 +3,7 @@
 #define DeformVolumeAddedDrivers_h
 
 #include "DriverLibrary.h"
+#include "KernelProcessor.h"
 
 #include <cstddef>
 #include <map>
@@ -25,14 +26,14 @@ public:
   std::vector<cl_platform_id> GetPlatforms();
   std::size_t GetCount(); // of drivers
   bool Has(cl_platform_id platform);
-  /// For which processor kernels are compiled (SetKernelProcessor); empty where the driver chooses.
-  std::string GetProcessor(cl_device_id device);
+  /// What kernels are compiled for on a device.
+  KernelProcessor GetProcessor(cl_device_id device);
 
 private:
   std::mutex Mutex;
   std::vector<std::string> Libraries;
   std::vector<cl_platform_id> Platforms;
-  std::map<cl_device_id, std::string> Processors;
+  std::map<cl_device_id, KernelProcessor> Processors;
 };
 
 } // namespace deformvolume

@@ -25,7 +25,9 @@ DEFORMVOLUME_EXPORT std::vector<std::string> GetDeviceNames();
 /// Adds an OpenCL driver that the system does not list. path: the absolute path of its library,
 /// which is loaded at once and stays loaded; the same path again does nothing. Devices of drivers
 /// that were added come before equal ones of the system. Throws Error where the path is not
-/// absolute, where the library cannot be loaded, and where it is no OpenCL driver.
+/// absolute, where the library cannot be loaded, and where it is no OpenCL driver. What PoCL 3.0 of
+/// the Python package pocl-binary-distribution compiles kernels for is set right, unless the
+/// environment variable DEFORMVOLUME_KERNEL_PROCESSOR is "driver" (KernelProcessor.h).
 DEFORMVOLUME_EXPORT void AddDriver(const std::string& path);
 
 /// The folder of a program "ld", with which PoCL links kernels where it is a driver of AddDriver(),

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "KernelProcessor.h"
 
+#include "Error.h"
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -12,7 +14,9 @@
 #include <cpuid.h>
 #endif
 #include <dlfcn.h>
+#include <elf.h>
 #include <fcntl.h>
+#include <link.h>
 #include <unistd.h>
 
 namespace deformvolume
@@ -83,12 +87,92 @@ const char* GetProcessor()
 }
 #endif
 
-bool IsThatDriver(const cl::Device& device)
+/// Whether built-in functions with AVX-512 fit kernels that are compiled for a processor, of those
+/// that LLVM 14 recognizes. Where they do not, LLVM ends the process.
+bool HasAVX512(const std::string& recognized)
+{
+  const std::array<const char*, 9> names{ { "skylake-avx512", "cascadelake", "cooperlake",
+    "cannonlake", "icelake-client", "icelake-server", "rocketlake", "tigerlake",
+    "sapphirerapids" } };
+  return std::find(names.begin(), names.end(), recognized) != names.end();
+}
+
+// PoCL 3.0-rc2 of pocl-binary-distribution 3.0. The build ID is that of the library: its linker has
+// computed it from all that the library has.
+const char* const KnownVersion =
+  "OpenCL 3.0 PoCL 3.0-rc2  Linux, Release, RELOC, LLVM 14.0.6, SLEEF, DISTRO, POCL_DEBUG";
+using BuildID = std::array<unsigned char, 20>;
+const BuildID KnownBuild{ { 0x96, 0x68, 0xb5, 0xf6, 0xec, 0x1f, 0xe9, 0x49, 0xd5, 0x47, 0xa5, 0x49,
+  0x02, 0x97, 0x89, 0x18, 0x83, 0x40, 0xbe, 0xb7 } };
+
+struct BuildSearch
+{
+  std::uintptr_t Address; // in the library
+  BuildID Found{};
+};
+
+/// The build ID in notes of a library; false where there is none.
+bool FindBuildID(const char* notes, std::size_t size, BuildID& found)
+{
+  const auto round = [](std::size_t bytes) { return (bytes + 3) / 4 * 4; };
+  ElfW(Nhdr) note;
+  for (std::size_t at = 0; at + sizeof(note) <= size;)
+  {
+    std::memcpy(&note, notes + at, sizeof(note));
+    const std::size_t name = at + sizeof(note);
+    const std::size_t value = name + round(note.n_namesz);
+    at = value + round(note.n_descsz);
+    if (note.n_type == NT_GNU_BUILD_ID && note.n_namesz == sizeof(ELF_NOTE_GNU) &&
+      note.n_descsz == found.size() && at <= size &&
+      std::memcmp(notes + name, ELF_NOTE_GNU, sizeof(ELF_NOTE_GNU)) == 0)
+    {
+      std::memcpy(found.data(), notes + value, found.size());
+      return true;
+    }
+  }
+  return false;
+}
+
+int SearchLibrary(dl_phdr_info* library, std::size_t /*size*/, void* data)
+{
+  auto& search = *static_cast<BuildSearch*>(data);
+  const ElfW(Phdr)* const begin = library->dlpi_phdr;
+  const ElfW(Phdr)* const end = begin + library->dlpi_phnum;
+  const auto holdsAddress = [&](const ElfW(Phdr) & segment)
+  {
+    const std::uintptr_t first = library->dlpi_addr + segment.p_vaddr;
+    return segment.p_type == PT_LOAD && search.Address >= first &&
+      search.Address - first < segment.p_memsz;
+  };
+  if (std::none_of(begin, end, holdsAddress))
+  {
+    return 0;
+  }
+  for (const ElfW(Phdr)* segment = begin; segment != end; ++segment)
+  {
+    if (segment->p_type == PT_NOTE &&
+      FindBuildID(reinterpret_cast<const char*>(library->dlpi_addr + segment->p_vaddr),
+        segment->p_memsz, search.Found))
+    {
+      break;
+    }
+  }
+  return 1;
+}
+
+bool IsKnownVersion(const cl::Device& device)
 {
   const cl::Platform platform(device.getInfo<CL_DEVICE_PLATFORM>());
   const std::string version = platform.getInfo<CL_PLATFORM_VERSION>();
-  return version.find("PoCL 3.0") != std::string::npos &&
-    version.find(", DISTRO") != std::string::npos;
+  return std::string(version.c_str()) == KnownVersion;
+}
+
+/// function: one of the library.
+bool IsKnownBuild(const void* function)
+{
+  BuildSearch search{ reinterpret_cast<std::uintptr_t>(function) };
+  dl_iterate_phdr(SearchLibrary, &search);
+  return search.Found == KnownBuild;
 }
 
 /// Memory of this process that need not be there.
@@ -150,42 +234,60 @@ const char** FindText(void* structure, const std::string& text)
 
 } // namespace
 
-std::string SetKernelProcessor(const std::string& library, const cl::Device& device)
+bool MaySetKernelProcessor()
 {
+  const char* const variable = std::getenv("DEFORMVOLUME_KERNEL_PROCESSOR");
+  const std::string choice = variable ? variable : "";
+  if (!choice.empty() && choice != "auto" && choice != "driver")
+  {
+    throw Error("The environment variable DEFORMVOLUME_KERNEL_PROCESSOR is \"" + choice +
+      "\". Set it to auto or driver.");
+  }
+  return choice != "driver";
+}
+
+KernelProcessor SetKernelProcessor(
+  const std::string& library, const cl::Device& device, bool maySet)
+{
+  KernelProcessor kernels;
   const char* const processor = GetProcessor();
   if (!processor || !(device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) ||
-    !IsThatDriver(device))
+    !IsKnownVersion(device))
   {
-    return "";
+    return kernels;
   }
   void* const handle = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NOLOAD);
   if (!handle)
   {
-    return "";
+    return kernels;
   }
   void* const function = dlsym(handle, "pocl_get_llvm_cpu_name");
   dlclose(handle); // it stays loaded
   if (!function)
   {
-    return "";
+    return kernels;
   }
   char* const name = reinterpret_cast<char* (*)()>(function)();
   const std::string recognized = name ? name : "";
   std::free(name);
-  if (recognized.empty())
+  if (recognized == processor)
   {
-    return "";
+    kernels.Name = processor;
+    return kernels;
   }
-  if (recognized != processor)
+  const char** const member = maySet && !recognized.empty() && IsKnownBuild(function)
+    ? FindText(device(), recognized)
+    : nullptr;
+  if (member)
   {
-    const char** const member = FindText(device(), recognized);
-    if (!member)
-    {
-      return "";
-    }
     *member = processor;
+    kernels.Name = processor;
+    return kernels;
   }
-  return processor;
+  // For "generic" the driver answers with an error.
+  kernels.EndsProcess = std::strcmp(processor, "skylake-avx512") == 0 && recognized != "generic" &&
+    !HasAVX512(recognized);
+  return kernels;
 }
 
 } // namespace deformvolume

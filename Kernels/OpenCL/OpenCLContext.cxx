@@ -265,6 +265,14 @@ OpenCLContext::OpenCLContext(const OpenCLDevice& device)
         platform.getInfo<CL_PLATFORM_VERSION>(), AddedDrivers::Get().Has(platform()));
     }
   }
+  if (AddedDrivers::Get().GetProcessor(device.Device()).EndsProcess)
+  {
+    throw Error("The OpenCL driver of \"" + device.Name +
+      "\", PoCL 3.0, would end the process when it compiles a kernel for this processor. Unset the "
+      "environment variable DEFORMVOLUME_KERNEL_PROCESSOR where it is \"driver\"; else install a "
+      "later version of the driver, such as that of the system (on Debian the package "
+      "pocl-opencl-icd).");
+  }
   const FloatingPointTrapGuard guard;
   this->Context = cl::Context(device.Device);
   this->Extensions = " " + device.Device.getInfo<CL_DEVICE_EXTENSIONS>() + " ";
@@ -324,7 +332,7 @@ cl::Program OpenCLContext::Build(const std::string& source, const std::string& o
 {
   cl::Program program(this->Context, source);
   // The driver does not know of this processor: its cache would give what was compiled for another.
-  std::string processor = AddedDrivers::Get().GetProcessor(this->Device.Device());
+  std::string processor = AddedDrivers::Get().GetProcessor(this->Device.Device()).Name;
   if (!processor.empty())
   {
     processor = " -DDEFORMVOLUME_PROCESSOR=" + processor;

@@ -16,6 +16,13 @@ without a C compiler, the program linker/ld of this package does it, for the dri
 DEFORMVOLUME_LINKER changes that: system never takes it, own always does. While kernels are compiled, and
 at no other time, its folder is in the environment variable COMPILER_PATH of the process.
 
+PoCL 3.0 of the package pocl-binary-distribution compiles its built-in functions and kernels for processors that do not
+fit together, and no option changes that: a member of its own structure, which says what kernels are compiled for, is
+set in memory before anything is compiled. That is done for this build of the driver only (its version and the build
+ID of its library are compared), where it was added by this package. DEFORMVOLUME_KERNEL_PROCESSOR changes that: auto
+is the same as no value, driver leaves the driver alone. Kernels are then slower, or an error says that the driver cannot
+compile them for this processor.
+
 OCL_ICD_VENDORS and OCL_ICD_FILENAMES say, as for other programs, which drivers the system lists. Whoever
 sets one of them has chosen: unless DEFORMVOLUME_DRIVER says otherwise, no driver is added then.
 """

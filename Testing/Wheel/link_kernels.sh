@@ -16,11 +16,11 @@ for program in KernelTexts deformvolume-ld; do
   }
 done
 
-package=$(find "$folder/packages" -name 'pocl_binary_distribution-*.whl' 2>/dev/null || true)
+package=$(find "$folder/packages" -name 'pocl_binary_distribution-*.whl' -print -quit 2>/dev/null || true)
 if [ -z "$package" ]; then
   python3 -m pip download --quiet --disable-pip-version-check --no-deps --dest "$folder/packages" \
     pocl-binary-distribution
-  package=$(find "$folder/packages" -name 'pocl_binary_distribution-*.whl')
+  package=$(find "$folder/packages" -name 'pocl_binary_distribution-*.whl' -print -quit)
 fi
 rm -rf "$folder/kernels"
 mkdir -p "$folder/kernels/linker"

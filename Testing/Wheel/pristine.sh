@@ -1,14 +1,27 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Builds the wheel of the Python package and runs it in a pristine Debian 11 (glibc 2.31, Python 3.9), as
-# a user without rights, without OpenCL, a compiler, a linker or a network. As root, on Debian; that
-# system and the packages of the wheel come from the archives that this system uses, once.
+# Builds the wheel of the Python package and runs it in a pristine Debian, as a user without rights,
+# without OpenCL, a compiler, a linker or a network, with VTK from PyPI, alone and without libraries for
+# windows. As root, on Debian; that system and the packages of the wheel come from the archives that
+# this system uses, once.
 #
-# Usage: pristine.sh [FOLDER]    (default: build/wheel)
+# Usage: pristine.sh [--wheel FILE] [SUITE [VTK]]
+#   SUITE   a release of Debian: bullseye (the default), with the oldest versions of glibc, Python and VTK
+#           that the package supports: 2.31, 3.9 and 9.3.0
+#   VTK     a version of VTK on PyPI, for other releases: the newest one
+#   --wheel has this wheel tried, and builds none
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-folder=$(realpath -m "${1-build/wheel}")
-root=$folder/bullseye
+wheel=
+if [ "${1-}" = --wheel ]; then
+  wheel=$(realpath "$2")
+  shift 2
+fi
+suite=${1-bullseye}
+vtk=${2-}
+[ -n "$vtk" ] || [ "$suite" != bullseye ] || vtk=9.3.0
+folder=$PWD/build/wheel
+root=$folder/$suite
 unshare --mount --net --pid --fork true || {
   echo "Skipped: this system does not let root mount"
   exit 125
@@ -26,29 +39,32 @@ make_system()
     return 1
   }
   rm -rf --one-file-system "$root"
-  debootstrap --variant=minbase --include=python3-venv bullseye "$root" "$archive" \
+  debootstrap --variant=minbase --include=python3-venv "$suite" "$root" "$archive" \
     /usr/share/debootstrap/scripts/sid
   chroot "$root" useradd --create-home user
   touch "$root.made"
 }
 
-download_packages() # those that the wheel depends on, for Python 3.9
+download() # options and packages of pip, for the Python of that system
 {
   python3 -m pip download --quiet --disable-pip-version-check --only-binary=:all: \
-    --python-version 3.9 --platform manylinux_2_28_x86_64 --platform manylinux2014_x86_64 \
-    --dest "$folder/packages" numpy pocl-binary-distribution
+    --python-version "$python" --platform manylinux_2_28_x86_64 --platform manylinux2014_x86_64 \
+    --dest "$folder/packages/$python" "$@"
 }
 
-make_system >"$folder/bullseye.log" 2>&1 &
+make_system >"$root.log" 2>&1 &
 system=$!
-download_packages &
-download=$!
-bash Python/wheel.sh "$folder"
+if [ -z "$wheel" ]; then
+  bash Python/wheel.sh "$folder"
+  wheel=$(ls "$folder"/deformvolume-*.whl)
+fi
 wait $system || {
-  tail -20 "$folder/bullseye.log"
+  tail -20 "$root.log"
   exit 1
 }
-wait $download
+python=$(chroot "$root" python3 -c 'import sys; print("%d.%d" % sys.version_info[:2])')
+download numpy pocl-binary-distribution
+download --no-deps "vtk${vtk:+==$vtk}"
 
 # Nothing of this system's environment, user or network.
 inside() # command...
@@ -76,7 +92,7 @@ mkdir -p "$root/dev/shm"
 rm -rf "$root/wheels" "$root/home/user" "$root/tests"
 install -d -o 1000 -g 1000 "$root/home/user"
 mkdir "$root/wheels" "$root/tests"
-cp "$folder"/*.whl "$folder"/packages/*.whl "$root/wheels"
+cp "$wheel" "$folder/packages/$python"/*.whl "$root/wheels"
 cp Testing/Wheel/*.py "$root/tests"
 inside bash -c '
   set -e
@@ -84,8 +100,15 @@ inside bash -c '
     ! command -v $program || { echo "there is a $program"; exit 1; }
   done
   python3 -m venv venv
-  venv/bin/pip install --quiet --no-index --find-links /wheels deformvolume
+  pip="venv/bin/pip install --quiet --no-index --find-links /wheels"
+  $pip deformvolume
+  # What VTK wants besides, it wants to draw.
+  $pip --no-deps --no-compile "vtk$0"
   for test in /tests/test_*.py; do
     echo "== $test"
     venv/bin/python "$test"
-  done'
+  done
+  venv/bin/python -c "import platform, numpy, deformvolume.vtk
+from vtkmodules.vtkCommonCore import vtkVersion
+print(\"passed: Python\", platform.python_version() + \", numpy\", numpy.__version__ + \", vtk\",
+      vtkVersion.GetVTKVersion())"' "${vtk:+==$vtk}"

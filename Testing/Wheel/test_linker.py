@@ -1,63 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """PoCL links what it compiles, where no linker works: with that of the package, and only with it, and no
-failure ends the process. Each case in a process of its own, with an empty kernel cache."""
+failure ends the process."""
 
 import os
-import shutil
-import subprocess
-import sys
-import tempfile
 import unittest
 
-FOLDER = os.path.dirname(os.path.abspath(__file__))
-
-PROGRAM = """
-import ctypes, sys
-sys.path.insert(0, {folder!r})
-import numpy
-getenv = ctypes.CDLL(None).getenv
-getenv.restype = ctypes.c_char_p
-before = getenv(b"COMPILER_PATH")
-import deformvolume
-from moving_cube import deform
-try:
-    volume, output, coverage = deform()
-except deformvolume.Error as error:
-    print("Error:", error)
-else:
-    numpy.testing.assert_array_equal(output, volume)
-    print("deformed")
-assert getenv(b"COMPILER_PATH") == before
-"""
+from own_process import OwnProcess
 
 
-class Linker(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.mkdtemp()
-
-    def tearDown(self):
-        shutil.rmtree(self.folder)
-
+class Linker(OwnProcess):
     def write_program(self, name, text):
         path = os.path.join(self.folder, name)
         with open(path, "w") as file:
             file.write(text)
         os.chmod(path, 0o755)
-
-    def run_program(self, **variables):
-        environment = dict(os.environ, POCL_CACHE_DIR=os.path.join(self.folder, "cache"))
-        environment["DEFORMVOLUME_DRIVER"] = "pypi"
-        environment.update(variables)
-        done = subprocess.run(
-            [sys.executable, "-c", PROGRAM.format(folder=FOLDER)],
-            env=environment,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            universal_newlines=True,
-            check=False,
-        )
-        self.assertEqual(done.returncode, 0, done.stdout)
-        return done.stdout
 
     def test_unknown_word(self):
         self.assertRegex(

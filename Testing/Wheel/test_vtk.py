@@ -11,44 +11,111 @@ except ImportError:
     vtkRTAnalyticSource = None
 
 
-@unittest.skipIf(vtkRTAnalyticSource is None, "there is no VTK")
-class Pipeline(unittest.TestCase):
-    def test_shift(self):
-        from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-        from vtkmodules.vtkCommonDataModel import vtkImageData
-        from vtkmodules.vtkImagingCore import vtkImageFlip
+def values(image):
+    from vtkmodules.util.numpy_support import vtk_to_numpy
 
+    return vtk_to_numpy(image.GetPointData().GetScalars()).reshape(image.GetDimensions()[::-1])
+
+
+def add_vectors(data, vectors):
+    from vtkmodules.util.numpy_support import numpy_to_vtk
+
+    array = numpy_to_vtk(numpy.asarray(vectors, dtype=float), deep=True)
+    array.SetName("vectors")
+    data.GetPointData().SetVectors(array)
+    return data
+
+
+def make_field(shift):
+    from vtkmodules.vtkCommonDataModel import vtkImageData
+
+    field = vtkImageData()
+    field.SetDimensions(2, 2, 2)
+    field.SetOrigin(-10, -10, -10)
+    field.SetSpacing(20, 20, 20)
+    return add_vectors(field, numpy.tile(shift, (8, 1)))
+
+
+def make_mesh(shift, kind=None):
+    """A box of the volume's size, as one cell."""
+    from vtkmodules.util.numpy_support import numpy_to_vtk
+    from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints
+    from vtkmodules.vtkCommonDataModel import VTK_HEXAHEDRON, vtkUnstructuredGrid
+
+    corners = [(x, y, z) for z in (-10, 10) for x, y in ((-10, -10), (10, -10), (10, 10), (-10, 10))]
+    points = vtkPoints()
+    points.SetData(numpy_to_vtk(numpy.array(corners, dtype=float), deep=True))
+    numbers = vtkIdList()
+    for number in range(8):
+        numbers.InsertNextId(number)
+    mesh = vtkUnstructuredGrid()
+    mesh.SetPoints(points)
+    mesh.InsertNextCell(VTK_HEXAHEDRON if kind is None else kind, numbers)
+    return add_vectors(mesh, numpy.tile(shift, (8, 1)))
+
+
+class Pipeline(unittest.TestCase):
+    SHIFT = [3.0, -2.0, 1.0]
+
+    def setUp(self):
+        # Not the whole class: Python 3.12.1 takes a program without tests for one that failed.
+        if vtkRTAnalyticSource is None:
+            self.skipTest("there is no VTK")
         from deformvolume.vtk import DeformVolume
 
-        source = vtkRTAnalyticSource()
-        field = vtkImageData()
-        field.SetDimensions(2, 2, 2)
-        field.SetOrigin(-10, -10, -10)
-        field.SetSpacing(20, 20, 20)
-        vectors = numpy_to_vtk(numpy.tile([3.0, -2.0, 1.0], (8, 1)), deep=True)
-        vectors.SetName("vectors")
-        field.GetPointData().SetVectors(vectors)
-        filter_ = DeformVolume()
-        filter_.SetInputConnection(source.GetOutputPort())
-        filter_.SetDeformationData(field)
-        filter_.SetOutputBoundsMode(DeformVolume.VOLUME_BOUNDS)
+        self.source = vtkRTAnalyticSource()
+        self.filter = DeformVolume()
+        self.filter.SetInputConnection(self.source.GetOutputPort())
+        self.filter.SetOutputBoundsMode(DeformVolume.VOLUME_BOUNDS)
+
+    def expect_shift(self):
+        volume, output = values(self.source.GetOutput()), values(self.filter.GetOutputDataObject(0))
+        numpy.testing.assert_array_equal(output[1:, :-2, 3:], volume[:-1, 2:, :-3])
+
+    def test_field(self):
+        from vtkmodules.vtkImagingCore import vtkImageFlip
+
+        self.filter.SetDeformationData(make_field(self.SHIFT))
         # A filter behind it, so that VTK asks for information, extents and data.
         flip = vtkImageFlip()
-        flip.SetInputConnection(filter_.GetOutputPort())
+        flip.SetInputConnection(self.filter.GetOutputPort())
         flip.Update()
-        source.Update()
-
-        def values(image):
-            return vtk_to_numpy(image.GetPointData().GetScalars()).reshape(image.GetDimensions()[::-1])
-
-        volume, output = values(source.GetOutput()), values(filter_.GetOutputDataObject(0))
-        numpy.testing.assert_array_equal(output[1:, :-2, 3:], volume[:-1, 2:, :-3])
+        self.expect_shift()
+        output = values(self.filter.GetOutputDataObject(0))
         numpy.testing.assert_array_equal(values(flip.GetOutput())[:, :, ::-1], output)
-        with self.assertRaises(AttributeError):
-            filter_.SetSamplingFactor(2)
-        filter_.SetDeformationData(vtkImageData())
-        with self.assertRaises(Exception):
-            filter_.Update()
+
+    def test_mesh(self):
+        self.filter.SetDeformationData(make_mesh(self.SHIFT))
+        self.filter.Update()
+        self.expect_shift()
+        # It moves on.
+        self.filter.SetDeformationData(make_mesh([0.0, 0.0, 0.0]))
+        self.filter.Update()
+        numpy.testing.assert_array_equal(values(self.filter.GetOutputDataObject(0)), values(self.source.GetOutput()))
+
+    def expect_error(self, words, deformation):
+        self.filter.SetDeformationData(deformation)
+        with self.assertRaisesRegex(Exception, words):
+            self.filter.Update()
+
+    # VTK prints its own lines of each, too.
+    def test_misuse(self):
+        from vtkmodules.vtkCommonDataModel import VTK_TRIANGLE_STRIP, vtkImageData, vtkPolyData, vtkUnstructuredGrid
+
+        with self.assertRaisesRegex(AttributeError, "has no SetSamplingFactor"):
+            self.filter.SetSamplingFactor(2)
+        self.expect_error("no active vectors", vtkImageData())
+        self.expect_error("no cells", vtkUnstructuredGrid())
+        self.expect_error("vtkPolyData", vtkPolyData())
+        self.expect_error("is not finite", make_mesh([numpy.nan, 0.0, 0.0]))
+        self.expect_error("no tetrahedra, but 1 triangle strip", make_mesh(self.SHIFT, VTK_TRIANGLE_STRIP))
+        mesh = make_mesh(self.SHIFT)
+        mesh.GetPointData().Initialize()
+        self.expect_error("no active vectors", mesh)
+        # And then as if nothing had been.
+        self.filter.SetDeformationData(make_mesh(self.SHIFT))
+        self.filter.Update()
+        self.expect_shift()
 
 
 if __name__ == "__main__":

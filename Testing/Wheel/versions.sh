@@ -2,16 +2,27 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The wheel in build/wheel (Python/wheel.sh), with each version of Python that is here, with several of
 # VTK, and beside pyopencl. Packages come from PyPI into a folder of each, which is removed where its
-# tests pass. Prints a table.
+# tests pass. And with the Python and the newest VTK of later releases of Debian, each made for it by
+# pristine.sh and removed where its tests pass. Prints a table.
 #
-# Usage: versions.sh [PYTHON]...    (default: all of Python 3.9 and later on the PATH and in ~/.pyenv)
+# Usage: versions.sh [PYTHON | SUITE]...    (default: all of Python 3.9 and later on the PATH and in
+#                                           ~/.pyenv, trixie and forky)
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 folder=$PWD/build/wheel
 wheel=$(ls "$folder"/deformvolume-*.whl)
 
-pythons=("$@")
-if [ ${#pythons[@]} -eq 0 ]; then
+pythons=()
+suites=()
+for argument in "$@"; do
+  if [ -x "$argument" ]; then
+    pythons+=("$argument")
+  else
+    suites+=("$argument")
+  fi
+done
+if [ $# -eq 0 ]; then
+  suites=(trixie forky)
   for minor in 9 10 11 12 13 14; do
     # The newest one of each.
     for python in "/usr/bin/python3.$minor" \
@@ -57,6 +68,26 @@ for python in "${pythons[@]}"; do
     # shellcheck disable=SC2086 # none or one
     try "$python" $packages
   done
+done
+for suite in ${suites[@]+"${suites[@]}"}; do
+  log=$folder/versions-$suite.log
+  status=0
+  bash Testing/Wheel/pristine.sh --wheel "$wheel" "$suite" >"$log" 2>&1 || status=$?
+  found=$(sed -n 's/^passed: //p' "$log")
+  case $status in
+    0)
+      result=passed
+      rm -rf --one-file-system "$folder/$suite" "$folder/$suite.made" "$folder/$suite.log"
+      ;;
+    125) result="skipped: root cannot mount" ;;
+    *)
+      result=failed
+      failed=1
+      tail -40 "$log"
+      ;;
+  esac
+  rows+=("| ${found%%,*}, Debian $suite | ${found#*, } | $result |")
+  echo "${rows[-1]}"
 done
 printf '\n| Python | Besides | Result |\n|---|---|---|\n'
 printf '%s\n' "${rows[@]}"
