@@ -21,8 +21,9 @@ namespace deformvolume
 namespace
 {
 
-// Points lie on a line where the area between them is less than this part of a square. Nodes in the
-// middle of edges do so, but for the rounding of floats far from 0.
+// Three points count as collinear if the area between them is less than this part of the square of
+// an edge. Mid-side nodes are collinear with the ends of their edge only up to the rounding of
+// floats.
 constexpr double LeastArea = ElasticBody::LargestSine;
 
 void FindNodes(const ElasticBody& body, BodyPieces& pieces)
@@ -67,7 +68,7 @@ void SortTetrahedra(BodyPieces& pieces)
     pieces.Begins, pieces.Tetrahedra);
 }
 
-// Calls take(second) for all pairs with a number as the first one.
+// Calls take(second) for all pairs whose first number is `first`.
 template <typename Take>
 void ForPairs(
   const std::vector<std::pair<std::int32_t, std::int32_t>>& pairs, std::int32_t first, Take&& take)
@@ -80,8 +81,8 @@ void ForPairs(
   }
 }
 
-// What planes through points leave of the six motions of a rigid body: of each plane, where it
-// keeps a point from going along its normal.
+// Finds whether planes prevent all six rigid-body motions. A plane prevents its point from moving
+// along its normal.
 class PlaneSupport
 {
 public:
@@ -95,7 +96,8 @@ public:
     this->Products += row * row.transpose();
   }
 
-  // Whether no motion is left. Lengths have no unit here: each row is taken by its own size.
+  // Whether all motions are prevented. Each row and column is scaled by its diagonal, as
+  // translations and rotations have different units.
   bool Holds() const
   {
     constexpr double least = 1e-8;
@@ -116,11 +118,11 @@ private:
   Eigen::Matrix<double, 6, 6> Products = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
-// Nodes that support a piece, as far as they are needed.
+// The supporting nodes of a piece: the first two, and whether they hold the piece.
 class Support
 {
 public:
-  // A node that slides. All of them come before those that are held.
+  // Adds a sliding node. Add all sliding nodes before the supporting nodes.
   void AddSliding(const glm::dvec3& point, const glm::dvec3& normal)
   {
     this->Slides = true;
@@ -165,7 +167,7 @@ private:
   PlaneSupport Planes;
 };
 
-// Turns a vector as one direction is turned into another, on the shortest way.
+// Rotates a vector by the smallest rotation that turns the unit vector `from` into `to`.
 glm::dvec3 TurnBetween(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& vector)
 {
   const glm::dvec3 axis = glm::cross(from, to);
@@ -176,7 +178,7 @@ glm::dvec3 TurnBetween(const glm::dvec3& from, const glm::dvec3& to, const glm::
     return vector + glm::cross(axis, vector) +
       glm::cross(axis, glm::cross(axis, vector)) / (1.0 + cosine);
   }
-  // Half a turn, about any direction across.
+  // Opposite directions: rotate by 180 degrees about any axis normal to `from`.
   const glm::dvec3 other = std::abs(from.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
   const glm::dvec3 across = glm::normalize(glm::cross(from, other));
   return 2.0 * glm::dot(across, vector) * across - vector;
@@ -204,7 +206,7 @@ BodyPieces FindPieces(const ElasticBody& body, Watch* watch)
   pieces.PieceOfTetrahedron.resize(body.Tetrahedra.size());
   for (std::size_t t = 0; t < body.Tetrahedra.size(); ++t)
   {
-    // The lowest of a piece comes first.
+    // The root of a set is its lowest tetrahedron.
     const auto root = static_cast<std::size_t>(sets.Find(static_cast<std::int32_t>(t)));
     pieces.PieceOfTetrahedron[t] =
       root == t ? pieces.NumberOfPieces++ : pieces.PieceOfTetrahedron[root];
@@ -263,8 +265,8 @@ PieceSupports FindSupports(
       supports[static_cast<std::size_t>(piece)].Add(body.Points, node);
     }
   }
-  // What has been placed supports what shares nodes with it. Calls take for all pieces that a
-  // condition is true for, then or when others have been taken.
+  // Takes all pieces whose support satisfies isNext, and calls take for each of them. The shared
+  // nodes of a taken piece then support its neighbors, which are tried again.
   std::vector<bool> isTaken(number, false);
   std::vector<bool> isPlaced(body.Points.size(), false);
   const auto spread = [&](auto&& isNext, auto&& take)

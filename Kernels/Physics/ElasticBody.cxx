@@ -25,7 +25,7 @@ std::array<glm::dvec3, 3> GetEdges(const ElasticBody& body, const Tetrahedron& t
   return { point(1) - point(0), point(2) - point(0), point(3) - point(0) };
 }
 
-// Six times the volume; less than 0 where the nodes go round the other way.
+// Six times the signed volume. Negative if the order of nodes is reversed.
 double GetDeterminant(const std::array<glm::dvec3, 3>& edges)
 {
   return glm::dot(glm::cross(edges[0], edges[1]), edges[2]);
@@ -59,7 +59,7 @@ void CheckNodes(Watch& watch, const ElasticBody& body)
     });
 }
 
-// How many tetrahedra, or nodes, there are of a kind, and the first of them.
+// The number of faulty items, and the first of them.
 struct Counted
 {
   std::size_t Number = 0;
@@ -110,11 +110,11 @@ void CheckShapes(Watch& watch, const ElasticBody& body)
   }
 }
 
-// Whether a tetrahedron with these nodes overlaps itself, or the linear ones do into which it is
-// split: somewhere it has no volume, or one of the other sign.
+// Whether a ten-node tetrahedron overlaps itself: its Jacobian vanishes or changes its sign. Also
+// true if one of the linear tetrahedra into which it is split is inverted.
 bool IsFolded(const std::array<glm::dvec3, QuadraticTetrahedron::NumberOfNodes>& points)
 {
-  // The determinant of straight edges is the same everywhere.
+  // With straight edges the determinant is the same everywhere.
   constexpr double leastPart = 1e-3;
   const double corners = glm::determinant(
     glm::dmat3(points[1] - points[0], points[2] - points[0], points[3] - points[0]));
@@ -213,7 +213,7 @@ glm::dvec3 GetUnitVector(const glm::dvec3& vector)
 {
   const glm::dvec3 sizes = glm::abs(vector);
   const double largest = std::max({ sizes.x, sizes.y, sizes.z });
-  // Squares of tiny and of huge components are 0 or infinite.
+  // Scale first: squares of tiny components are 0, those of huge components infinite.
   return largest > 0.0 ? glm::normalize(vector / largest) : vector;
 }
 

@@ -29,11 +29,11 @@ struct ElasticMaterial
   /// In kg/m^3, greater than 0.
   double Density = 1000.0;
 
-  /// Lambda grows without bounds where the ratio comes near 0.5.
+  /// Lambda tends to infinity as the ratio tends to 0.5.
   static constexpr double LargestPoissonRatio = 0.495;
 
   ///@{
-  /// The constants of Lame, in Pa.
+  /// The Lame parameters, in Pa.
   double GetShearModulus() const { return this->YoungModulus / (2.0 * (1.0 + this->PoissonRatio)); }
   double GetLambda() const
   {
@@ -43,41 +43,40 @@ struct ElasticMaterial
   ///@}
 };
 
-/// A mesh of tetrahedra at rest, with what the physical models need to know of it.
+/// A tetrahedral mesh at rest with the properties that all physical models need.
 struct ElasticBody
 {
-  /// In metres.
+  /// Positions of the nodes at rest, in metres.
   std::vector<glm::dvec3> Points;
-  /// The corners of tetrahedra. All with the fourth node on the side to which the normal of the
-  /// first three points, or all on the other side.
+  /// The corners of each tetrahedron. In all tetrahedra the fourth node lies on the side to which
+  /// the normal of the first three nodes points, or in all of them on the opposite side.
   std::vector<Tetrahedron> Tetrahedra;
-  /// Of each tetrahedron the nodes in the middle of its edges (AddMidSideNodes); empty: the
-  /// tetrahedra are linear.
+  /// The mid-side nodes of each tetrahedron (AddMidSideNodes). Empty: the tetrahedra are linear.
   std::vector<MidSideNodes> MidSides;
-  /// One for the whole body, or one a tetrahedron.
+  /// One material for the whole body, or one for each tetrahedron.
   std::vector<ElasticMaterial> Materials = std::vector<ElasticMaterial>(1);
-  /// One byte a node, not 0 where it is held, at rest or where BodyLoads say; empty: no node is.
+  /// One byte for each node, not 0 if the node is fixed: at rest, or at
+  /// BodyLoads::FixedDisplacements. Empty: no node is fixed.
   std::vector<unsigned char> Fixed;
-  /// Of each node the normal, of any length, of the plane in which it slides without friction: the
-  /// one that it lies in at rest. 0: it does not slide; empty: no node does.
+  /// The normal, of any length, of the plane in which each node slides without friction. The plane
+  /// contains the position of the node at rest. 0: the node does not slide. Empty: no node slides.
   std::vector<glm::dvec3> SlidingNormals;
-  /// The same of a second plane: nodes in two planes slide along the line in both, such as where
-  /// two planes of symmetry meet. Where they are parallel (GetSlidingNormals) there is one plane.
-  /// Empty: no node has one.
+  /// The normal of a second plane of each node. A node with two planes slides along their line of
+  /// intersection, for example where two planes of symmetry meet. The second plane is ignored if it
+  /// is parallel to the first one (GetSlidingNormals). Empty: no node has a second plane.
   std::vector<glm::dvec3> SecondSlidingNormals;
 
-  /// The sine of the largest angle between what counts as parallel: coordinates may be floats.
+  /// Directions count as parallel if the sine of the angle between them is at most this number:
+  /// coordinates may come from floats.
   static constexpr double LargestSine = 1e-3;
 
-  /// The material of a tetrahedron.
   const ElasticMaterial& GetMaterial(std::size_t tetrahedron) const
   {
     return this->Materials[this->Materials.size() == 1 ? 0 : tetrahedron];
   }
-  /// Whether a node is fixed.
   bool IsFixed(std::size_t node) const { return !this->Fixed.empty() && this->Fixed[node] != 0; }
 
-  /// Calls take(node) for all nodes of a tetrahedron, first the corners.
+  /// Calls take(node) for all nodes of a tetrahedron: the corners first, then the mid-side nodes.
   template <typename Take>
   void ForNodes(std::size_t tetrahedron, Take&& take) const
   {
@@ -95,65 +94,68 @@ struct ElasticBody
   }
 };
 
-/// A node that is moved by a handle.
+/// A node that a handle moves.
 struct HeldNode
 {
-  /// The number of the node.
   std::int32_t Node = 0;
-  /// Where it is displaced to, in metres.
+  /// The prescribed displacement of the node, in metres.
   glm::dvec3 Displacement{ 0.0 };
 };
 
-/// What acts on the nodes of a body.
+/// The loads and prescribed displacements of the nodes of a body.
 struct BodyLoads
 {
   /// In m/s^2.
   glm::dvec3 Gravity{ 0.0 };
-  /// Of each node, in N; empty: none.
+  /// The force on each node, in N. Empty: no forces.
   std::vector<glm::dvec3> Forces;
-  /// Where fixed nodes are displaced to, of each node, in metres; empty: they stay at rest.
+  /// The prescribed displacement of each fixed node, in metres. Empty: fixed nodes stay at rest.
   std::vector<glm::dvec3> FixedDisplacements;
 };
 
-/// Of length 1, in the direction of a vector of any length; 0 for 0.
+/// Returns the vector scaled to length 1; 0 for 0.
 DEFORMVOLUME_EXPORT glm::dvec3 GetUnitVector(const glm::dvec3& vector);
 
-/// The directions in which a node that slides cannot go: of length 1, and normal to each other. 0:
-/// none. The second plane counts where it is not parallel to the first, within a thousandth.
+/// The directions in which a sliding node cannot move: of length 1, and normal to each other. 0:
+/// there is no such direction. The second direction is 0 if the two planes are parallel within
+/// ElasticBody::LargestSine.
 DEFORMVOLUME_EXPORT std::array<glm::dvec3, 2> GetSlidingNormals(
   const ElasticBody& body, std::size_t node);
 
-/// Whether a tetrahedron has hardly any volume: its height is less than a millionth of its longest
-/// edge.
+/// Whether a tetrahedron has almost no volume: its determinant is at most 1e-6 of the cube of its
+/// longest edge.
 DEFORMVOLUME_EXPORT bool IsFlat(const std::array<glm::dvec3, 4>& points);
 
-/// Throws an Error where a body cannot be simulated: no tetrahedra, nodes that are not there,
-/// coordinates that are not finite, tetrahedra that are flat or turned inside out, mid-side nodes
-/// so far from the middle of their edge that the tetrahedron overlaps itself, or the linear ones do
-/// into which it is split (QuadraticTetrahedron::IsSplitInverted), a material out of its range, or
-/// arrays of another length. watch: of the engine; asked now and then.
+/// Throws an Error if a body cannot be simulated: it has no tetrahedra, an unknown node, a
+/// coordinate that is not finite, a flat or inverted tetrahedron, a material out of range, or an
+/// array of the wrong length. Also throws if mid-side nodes are so far from the middle of their
+/// edges that a ten-node tetrahedron overlaps itself, or that one of the linear tetrahedra into
+/// which it is split is inverted (QuadraticTetrahedron::IsSplitInverted). `watch` of the engine is
+/// polled for cancellation.
 DEFORMVOLUME_EXPORT void CheckBody(const ElasticBody& body, Watch* watch = nullptr);
 
-/// Throws an Error where a number of a material is out of its range; where: of which, in words.
+/// Throws an Error if a property of a material is out of range. where: names the material in the
+/// message, such as " of tetrahedron 7".
 DEFORMVOLUME_EXPORT void CheckMaterial(const ElasticMaterial& material, const std::string& where);
 
-/// Throws an Error where other materials are not for this body, or out of their range.
+/// Throws an Error if the number of materials does not fit the body, or one of them is out of
+/// range.
 DEFORMVOLUME_EXPORT void CheckMaterials(
   const ElasticBody& body, const std::vector<ElasticMaterial>& materials);
 
-/// Throws an Error where a load is not finite or not for this body.
+/// Throws an Error if a load is not finite, or the number of values does not fit the body.
 DEFORMVOLUME_EXPORT void CheckLoads(const ElasticBody& body, const BodyLoads& loads);
 
-/// Throws an Error where a held node is not there, is fixed or held twice, or its displacement is
-/// not finite.
+/// Throws an Error if a held node does not exist, is fixed, is held twice, or has a displacement
+/// that is not finite.
 DEFORMVOLUME_EXPORT void CheckHeldNodes(const ElasticBody& body, const std::vector<HeldNode>& held);
 
-/// Volumes of linear tetrahedra with these corners, in m^3, all of them greater than 0 whichever
-/// way the nodes go round.
+/// The volume of each linear tetrahedron, in m^3. The volumes are positive for either order of
+/// nodes.
 DEFORMVOLUME_EXPORT std::vector<double> GetVolumes(const ElasticBody& body);
 
-/// Mass of each node of linear tetrahedra, in kg: a quarter of that of each of its tetrahedra. 0
-/// for a node without any.
+/// The mass of each node of linear tetrahedra, in kg: a quarter of the mass of each of its
+/// tetrahedra. 0 for a node without a tetrahedron.
 DEFORMVOLUME_EXPORT std::vector<double> GetNodeMasses(
   const ElasticBody& body, const std::vector<double>& volumes);
 

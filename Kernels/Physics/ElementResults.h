@@ -8,21 +8,22 @@
 namespace deformvolume
 {
 
-/// What a tetrahedron undergoes.
+/// The stress and deformation of a tetrahedron.
 struct ElementResults
 {
-  /// Cauchy stress in Pa: xx yy zz xy yz xz. The one of the forces by the determinant, with its
-  /// sign where the tetrahedron is inside out; 0 where it IsFlat.
+  /// Cauchy stress in Pa: xx yy zz xy yz xz. It is derived from the elastic forces divided by the
+  /// determinant, with the sign of the determinant if the tetrahedron is inverted. 0 if
+  /// IsFlat(Determinant).
   std::array<double, 6> Stress{ { 0, 0, 0, 0, 0, 0 } };
-  /// In J/m^3 of the volume at rest.
+  /// Strain energy per volume at rest, in J/m^3.
   double StrainEnergyDensity = 0.0;
-  /// How many times the volume at rest it has; less than 0 where it is inside out.
+  /// The volume divided by the volume at rest. Negative if the tetrahedron is inverted.
   double Determinant = 1.0;
 };
 
-/// Whether a tetrahedron of this determinant has no volume, but for rounding. Its forces are
-/// finite, and no stress causes them: of nearly flat ones the stress grows beyond all bounds,
-/// either way.
+/// Whether a tetrahedron with this determinant has no volume, up to rounding. Its forces are
+/// finite, but its stress is undefined: the stress of tetrahedra that become flat tends to
+/// infinity.
 inline bool IsFlat(double determinant)
 {
   return std::abs(determinant) < 1e-12;

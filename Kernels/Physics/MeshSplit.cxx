@@ -64,7 +64,7 @@ void CheckPairs(const std::vector<TetrahedronPair>& pairs, std::size_t numberOfT
   }
 }
 
-// Checks the mesh on the way. Nodes without tetrahedra do not count.
+// Finds the bounding box of the nodes of tetrahedra, and checks the mesh in the same pass.
 MeshSteps FindSteps(
   const std::vector<glm::dvec3>& positions, const std::vector<Tetrahedron>& tetrahedra)
 {
@@ -84,7 +84,8 @@ MeshSteps FindSteps(
         for (const std::int32_t node : tetrahedra[t])
         {
           const glm::dvec3& position = positions[static_cast<std::size_t>(node)];
-          // Not-a-number times 0 is none either, and so is infinity.
+          // Adding and multiplying is a quick test: the product is 0 only for finite coordinates.
+          // Sums can overflow, hence the second test.
           if (!((position.x + position.y + position.z) * 0.0 == 0.0) && !IsFinite(position))
           {
             throw Error("The position of node " + std::to_string(node) +
@@ -105,7 +106,8 @@ MeshSteps FindSteps(
   return MeshSteps(all.Low, all.High);
 }
 
-// As many cells an axis as a lattice of so many tetrahedra has; what is finer helps little.
+// About as many cells on each axis as a lattice of this number of tetrahedra has. A finer grid was
+// hardly faster.
 int GetDepth(std::size_t numberOfTetrahedra)
 {
   constexpr int greatest = 6;
@@ -117,7 +119,6 @@ int GetDepth(std::size_t numberOfTetrahedra)
   return depth;
 }
 
-// What is known of a face.
 enum SplitState : unsigned char
 {
   Whole = 0,
@@ -149,7 +150,7 @@ std::vector<unsigned char> FindSplitFaces(const SplitRegion& region,
       std::vector<std::size_t> scratch;
       for (std::size_t face = begin; face < end; ++face)
       {
-        // Each pair once: what is written is that of this thread alone.
+        // Handle each pair of faces once, so that no two threads write to the same state.
         const std::size_t next = neighbours.GetNext(face);
         if (next > face && neighbours.IsShared(face) && states[face] == Whole &&
           (region.IsNear(face / 4) || region.IsNear(next / 4)) &&
@@ -178,11 +179,11 @@ std::vector<unsigned char> MarkNodesOfSplitFaces(
   return marks;
 }
 
-// Gives parts their nodes.
+// Copies the nodes of parts, and gives the copies to the tetrahedra of these parts.
 void SplitNodes(
   const SplitRegion& region, const NodeParts& parts, std::size_t numberOfNodes, MeshSplit& split)
 {
-  // Of each node of the region: what its first copy would be, were there one before it.
+  // For each node of the region, the number of its first copy minus 1. Part p gets the copy at + p.
   std::vector<std::size_t> copies(region.GetNumberOfNodes());
   for (std::size_t node = 0; node < copies.size(); ++node)
   {
@@ -223,7 +224,7 @@ bool HaveCommonFace(const Tetrahedron& a, const Tetrahedron& b)
            [&](std::int32_t node) { return std::find(b.begin(), b.end(), node) != b.end(); }) >= 3;
 }
 
-// Keeps what has not parted.
+// Keeps the pairs whose tetrahedra still share a face.
 std::vector<TetrahedronPair> FindUnparted(
   std::vector<TetrahedronPair> pairs, const std::vector<Tetrahedron>& tetrahedra)
 {
@@ -266,7 +267,7 @@ void SplitNear(const SplitRegion& region, const SheetCrossings& crossings,
 
 void CheckCount(std::size_t numberOfTetrahedra)
 {
-  // Numbers of faces have 32 bits.
+  // FaceNeighbours numbers faces with 32 bits, four for each tetrahedron.
   if (numberOfTetrahedra > std::size_t{ 1 } << 30)
   {
     throw Error("The mesh has " + std::to_string(numberOfTetrahedra) +

@@ -15,58 +15,59 @@
 namespace deformvolume
 {
 
-/// Two tetrahedra by their numbers, the lower one first.
+/// The numbers of two tetrahedra, in ascending order.
 using TetrahedronPair = std::array<std::int32_t, 2>;
 
-/// A deformation mesh after a cut along faces of its tetrahedra.
+/// A deformation mesh that was cut along faces of its tetrahedra.
 struct MeshSplit
 {
-  /// As many as before, in the same order.
+  /// All tetrahedra, in their old order, with their new nodes.
   std::vector<Tetrahedron> Tetrahedra;
-  /// Of each node that has been appended the node that it is a copy of.
+  /// For each copied node, the node that it is a copy of. Copies are appended to the old nodes.
   std::vector<std::int32_t> Origins;
-  /// The tetrahedra that have got other nodes, ascending.
+  /// The tetrahedra that have a new node, in ascending order.
   std::vector<std::size_t> Changed;
-  /// The faces that this cut has split.
+  /// The number of faces that this cut split.
   std::int64_t NumberOfFaces = 0;
-  /// The pairs of tetrahedra whose common face has been split, by this cut or an earlier one, but
-  /// which still have its three nodes in common: where a cut ends, there is nothing yet that could
-  /// part. Ascending; for the next cut of the mesh.
+  /// The pairs of tetrahedra whose common face was split, by this cut or an earlier one, but which
+  /// still share all three nodes of that face. They lie where a cut ends. Ascending; pass them to
+  /// the next cut of the mesh.
   std::vector<TetrahedronPair> Unparted;
 };
 
-/// Cuts a deformation mesh along its own faces, as near to a sheet as they are.
+/// Cuts a deformation mesh along those of its faces that are nearest to a sheet.
 ///
-/// A face between two tetrahedra is split where the sheet crosses the segment between the centroids
-/// of the two an odd number of times. So the sheet may be open, fold and cross itself; where it
-/// has both sides of the mesh apart, the split faces have them apart too. It is decided exactly,
-/// after positions have been rounded to 2^-19 of the longest side of the mesh: also for a sheet
-/// that passes through centroids or nodes, or along faces. Neither the order of the triangles nor
-/// their orientation matters.
+/// A face between two tetrahedra is split if the sheet crosses the segment between the centroids of
+/// the two an odd number of times. The sheet may be open, folded and self-intersecting. If the
+/// sheet separates two parts of the mesh, the split faces separate them as well. Positions are
+/// rounded to 2^-19 of the longest side of the mesh. Crossings of rounded positions are decided
+/// exactly, also if the sheet passes through centroids or nodes, or along faces. The order and the
+/// orientation of the triangles do not matter.
 ///
-/// A node of a split face gets a copy for each part of its tetrahedra that holds together by faces
-/// which are not split: the part with the lowest tetrahedron keeps the node, the others get copies,
-/// in the order of the nodes, then of the lowest tetrahedron of each part. Where the sheet ends
-/// inside the mesh, all tetrahedra of a node still hold together around that end, and the node
-/// remains one. Tetrahedra that touch at such a node or at an edge only, having had no faces to
-/// hold them together there before, part as well: otherwise they could hold both sides of a cut
-/// together. Other nodes remain as they are.
+/// The tetrahedra around a node of a split face form parts, which are connected through faces that
+/// are not split. The part with the lowest tetrahedron keeps the node, and each other part gets a
+/// copy. Copies are numbered by nodes, then by the lowest tetrahedron of each part. Where the sheet
+/// ends inside the mesh, the tetrahedra around a node are still connected, so the node is not
+/// copied. Tetrahedra that shared only such a node or an edge, and no face, before the cut are
+/// separated as well: otherwise they could connect the two sides of the cut. Other nodes do not
+/// change.
 ///
-/// A split face of which the two tetrahedra still have all three nodes in common is listed in
-/// Unparted. Give that list to the next cut, so that a cut which goes on where another ended,
-/// however short both are, opens such faces too. As positions are rounded anew for each cut, sheets
-/// of cuts that go on should overlap a little.
+/// A split face whose two tetrahedra still share all three nodes is listed in Unparted. Pass that
+/// list to the next cut: a cut that continues an earlier one then opens these faces too, however
+/// short both cuts are. Positions are rounded independently for each cut, so the sheets of two such
+/// cuts should overlap slightly.
 ///
-/// positions: of all nodes, where the sheet is, for example the deformed ones. sheetTriangles:
-/// three numbers of points each; those without area split nothing. unparted: of earlier cuts of
-/// this mesh.
+/// positions: of all nodes, in the state that the sheet refers to, for example the deformed one.
+/// sheetTriangles: three point numbers each; triangles without area split nothing. unparted: from
+/// earlier cuts of this mesh.
 ///
-/// Throws an Error where a tetrahedron has a node that is none, a node of it has no finite
-/// position, a triangle has a point that is none or is not finite or is more than a million times
-/// as far away as the mesh is long, or an unparted pair has a tetrahedron that is none.
+/// Throws an Error if a tetrahedron refers to a node that does not exist or has a position that is
+/// not finite; if a triangle refers to a point that does not exist, is not finite, or is farther
+/// away than a million lengths of the mesh; or if an unparted pair refers to a tetrahedron that
+/// does not exist.
 ///
-/// It takes a few passes over the tetrahedra, and work for those near the sheet. Faces of more than
-/// two tetrahedra are not split.
+/// The run time is that of a few passes over all tetrahedra, and of tests of those near the sheet.
+/// Faces of more than two tetrahedra are not split.
 DEFORMVOLUME_EXPORT MeshSplit SplitMesh(const std::vector<glm::dvec3>& positions,
   const std::vector<Tetrahedron>& tetrahedra, const std::vector<glm::dvec3>& sheetPoints,
   const std::vector<std::array<std::int64_t, 3>>& sheetTriangles,

@@ -14,7 +14,7 @@ namespace deformvolume
 namespace
 {
 
-// Numbers an edge by its ends, the lower one first.
+// Identifies an edge by its ends, the lower one first.
 std::uint64_t GetKey(const Tetrahedron& corners, std::size_t edge)
 {
   const auto [least, most] =
@@ -41,7 +41,7 @@ void ForEdges(std::size_t tetrahedra, Take&& take)
   }
 }
 
-// Each edge once, by rising keys, with the node in its middle; -1: none.
+// Lists each edge once, sorted by keys, with its mid-side node or -1.
 std::vector<Edge> FindEdges(const ElasticBody& body)
 {
   std::vector<Edge> edges;

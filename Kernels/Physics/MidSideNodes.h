@@ -15,29 +15,29 @@ namespace deformvolume
 
 struct ElasticBody;
 
-/// The nodes in the middle of the edges of a ten-node tetrahedron, in the order of
-/// TetrahedronEdges, which is that of vtkQuadraticTetra.
+/// The mid-side nodes of a ten-node tetrahedron, in the order of TetrahedronEdges.
+/// vtkQuadraticTetra has the same order.
 using MidSideNodes = std::array<std::int32_t, 6>;
 
-/// The corners at the ends of the edges of a tetrahedron.
+/// The corners at the two ends of each edge of a tetrahedron.
 constexpr std::size_t TetrahedronEdges[6][2] = { { 0, 1 }, { 1, 2 }, { 2, 0 }, { 0, 3 }, { 1, 3 },
   { 2, 3 } };
 
-/// Makes ten-node tetrahedra of those of a body: appends a node in the middle of each edge that has
-/// none. Nodes that the body has in MidSides stay; there, -1 is an edge without one. New nodes are
-/// fixed where both ends are. Returns the ends of the edge of each new node.
+/// Makes ten-node tetrahedra: appends a node in the middle of each edge that has no mid-side node.
+/// An existing mid-side node is kept; -1 in MidSides stands for a missing one. A new node is fixed
+/// if both ends of its edge are fixed. Returns the ends of the edge of each new node.
 ///
-/// The new nodes are numbered by the ends of their edges, the lower one first.
+/// New nodes are numbered by the lower end of their edge, then by the other end.
 ///
-/// Throws an Error where an edge has two different nodes in its middle.
+/// Throws an Error if tetrahedra have different mid-side nodes for one edge.
 DEFORMVOLUME_EXPORT std::vector<std::array<std::int32_t, 2>> AddMidSideNodes(ElasticBody& body);
 
-/// After a cut has given tetrahedra other corners (SplitMesh): edges between the same two corners
-/// have one node in their middle, and what was one edge before gets copies of its node. The first
-/// tetrahedron with a node keeps it. Returns of each copy the node that it is a copy of; copies are
-/// numbered from a number of nodes on.
+/// Splits mid-side nodes after a cut (SplitMesh). Tetrahedra that still share an edge share its
+/// mid-side node. Where one edge became several, the first tetrahedron keeps the node, and the
+/// other edges get copies. Returns for each copy the node that it is a copy of. The first copy has
+/// the number numberOfNodes.
 ///
-/// tetrahedra: with their new corners. midSides: as before the cut; changed.
+/// tetrahedra: with their new corners. midSides: input as before the cut; output as after it.
 DEFORMVOLUME_EXPORT std::vector<std::int32_t> SplitMidSides(
   const std::vector<Tetrahedron>& tetrahedra, std::int32_t numberOfNodes,
   std::vector<MidSideNodes>& midSides);

@@ -14,7 +14,6 @@ namespace
 
 constexpr std::size_t NodesOfPart = 1024;
 
-// Finds the parts of one node after another.
 class PartFinder
 {
 public:
@@ -26,7 +25,8 @@ public:
   {
   }
 
-  // Sets the part of each corner, from begin to before end, of a node. Returns the number of parts.
+  // Sets partOfCorner for the corners [begin, end), which are all corners at one node, in ascending
+  // order. Returns the number of parts.
   std::int32_t Find(const std::size_t* begin, const std::size_t* end, std::int32_t* partOfCorner)
   {
     const auto count = static_cast<std::size_t>(end - begin);
@@ -35,7 +35,7 @@ public:
     {
       this->JoinNeighbours(begin, end, i);
     }
-    // The lowest of a part comes first.
+    // The root of a set is its lowest corner.
     std::int32_t parts = 0;
     for (std::size_t i = 0; i < count; ++i)
     {
@@ -75,7 +75,7 @@ NodeParts FindNodeParts(const std::vector<Tetrahedron>& tetrahedra,
   const FaceNeighbours& neighbours, const std::vector<unsigned char>& isSplit,
   const std::vector<unsigned char>& isWanted)
 {
-  // Of each wanted node its corners of tetrahedra, ascending.
+  // The corners at each wanted node, in ascending order.
   std::vector<std::size_t> begins;
   std::vector<std::size_t> corners;
   MakeLists(

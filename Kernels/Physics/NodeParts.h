@@ -12,18 +12,20 @@
 namespace deformvolume
 {
 
-/// The parts into which the tetrahedra of nodes fall, each of which needs a node of its own.
+/// The parts into which a cut divides the tetrahedra around each node. Each part needs a node of
+/// its own.
 struct NodeParts
 {
-  /// The part that corner k of tetrahedron t, at 4 t + k, belongs to of those of its node: 0 for
-  /// the part with the lowest tetrahedron, and so on.
+  /// The part of each corner of each tetrahedron: item 4 t + k is for corner k of tetrahedron t.
+  /// The parts of a node are numbered from 0, in the order of the lowest tetrahedron of each part.
   std::vector<std::int32_t> PartOfCorner;
-  /// Of each node how many parts there are besides the first.
+  /// The number of parts of each node minus 1.
   std::vector<std::int32_t> NumberOfCopies;
 };
 
-/// The parts that hold together by faces which are not split. isSplit: of each face. isWanted: of
-/// each node; others stay in one part. All tetrahedra of wanted nodes have to be there.
+/// Finds the parts that are connected through faces which are not split. isSplit: for each face.
+/// isWanted: for each node; other nodes have one part. `tetrahedra` must include all tetrahedra of
+/// the wanted nodes.
 NodeParts FindNodeParts(const std::vector<Tetrahedron>& tetrahedra,
   const FaceNeighbours& neighbours, const std::vector<unsigned char>& isSplit,
   const std::vector<unsigned char>& isWanted);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The shape of a tetrahedron with ten nodes, and how it is integrated: four Gauss points.
+// Shape functions and four-point Gauss integration of the ten-node tetrahedron.
 #ifndef DeformVolumeQuadraticTetrahedron_h
 #define DeformVolumeQuadraticTetrahedron_h
 
@@ -18,16 +18,15 @@
 namespace deformvolume
 {
 
-/// The quadratic tetrahedron of ten nodes: first the corners, then the nodes in the middle of the
-/// edges, in the order of TetrahedronEdges. Places in it are barycentric coordinates: how much of
-/// each corner there is.
+/// The quadratic tetrahedron of ten nodes: four corners, then the mid-side nodes in the order of
+/// TetrahedronEdges. Positions inside it (`place`) are four barycentric coordinates.
 struct QuadraticTetrahedron
 {
   static constexpr std::size_t NumberOfNodes = 10;
   static constexpr std::size_t NumberOfGaussPoints = 4;
 
-  /// The coordinates of Gauss point i: NearCoordinate of corner i, FarCoordinate of the others. It
-  /// has a quarter of the volume.
+  /// The barycentric coordinates of Gauss point i: NearCoordinate for corner i, FarCoordinate for
+  /// the other corners. Each of the four points has a quarter of the weight.
   static constexpr double NearCoordinate = 0.58541019662496845446; // (5 + 3 sqrt 5) / 20
   static constexpr double FarCoordinate = 0.13819660112501051518;  // (5 - sqrt 5) / 20
   static glm::dvec4 GetGaussPoint(std::size_t i)
@@ -47,13 +46,13 @@ struct QuadraticTetrahedron
     return points;
   }
 
-  /// How the place of a point changes with the coordinates of the corners 1, 2 and 3, where that of
-  /// corner 0 is what is left: three columns. Its determinant is six times the volume where no edge
-  /// is curved.
+  /// The derivatives of the position by the barycentric coordinates of corners 1, 2 and 3, as three
+  /// columns; the coordinate of corner 0 is 1 minus the others. With straight edges the determinant
+  /// is six times the volume.
   static glm::dmat3 GetJacobian(
     const std::array<glm::dvec3, NumberOfNodes>& points, const glm::dvec4& place)
   {
-    std::array<glm::dvec3, 4> slopes; // by each of the four coordinates
+    std::array<glm::dvec3, 4> slopes; // derivatives by each coordinate
     for (std::size_t i = 0; i < 4; ++i)
     {
       slopes[i] = (4.0 * place[static_cast<int>(i)] - 1.0) * points[i];
@@ -68,14 +67,15 @@ struct QuadraticTetrahedron
     return { slopes[1] - slopes[0], slopes[2] - slopes[0], slopes[3] - slopes[0] };
   }
 
-  /// The volume of a Gauss point, by the determinant of GetJacobian there.
+  /// The part of the volume that a Gauss point stands for, from the determinant of GetJacobian
+  /// there.
   static double GetGaussVolume(double determinant)
   {
     constexpr double ofDeterminant = 1.0 / 24.0;
     return ofDeterminant * std::abs(determinant);
   }
 
-  /// The volume of each Gauss point, in m^3.
+  /// The part of the volume that each Gauss point stands for, in m^3.
   static std::array<double, NumberOfGaussPoints> GetGaussVolumes(
     const ElasticBody& body, std::size_t tetrahedron)
   {
@@ -88,17 +88,19 @@ struct QuadraticTetrahedron
     return volumes;
   }
 
-  /// Whether the corners go round the other way.
+  /// Whether the order of the corners is reversed, so that the signed volume is negative.
   static bool IsMirrored(const std::array<glm::dvec3, NumberOfNodes>& points)
   {
     return GetDeterminant(points[0], points[1], points[2], points[3]) < 0.0;
   }
 
-  /// Whether one of the twelve linear tetrahedra is inside out into which vtkDeformVolumeFilter
-  /// splits it: its corners, and eight around its middle. isMirrored: of it at rest.
+  /// Whether one of the twelve linear tetrahedra into which vtkDeformVolumeFilter splits this one
+  /// is inverted. Four of them lie at the corners, eight around the center. isMirrored: whether the
+  /// tetrahedron at rest IsMirrored.
   static bool IsSplitInverted(const std::array<glm::dvec3, NumberOfNodes>& p, bool isMirrored)
   {
-    // The corners, with what cuts them off; the triangles between these on the faces, inwards.
+    // Each corner with the three mid-side nodes next to it; and the triangles between mid-side
+    // nodes on the faces, oriented inwards.
     constexpr std::size_t corners[4][4] = { { 0, 4, 6, 7 }, { 1, 5, 4, 8 }, { 2, 6, 5, 9 },
       { 3, 8, 7, 9 } };
     constexpr std::size_t faces[4][3] = { { 4, 5, 6 }, { 4, 7, 8 }, { 5, 8, 9 }, { 6, 9, 7 } };
@@ -124,7 +126,7 @@ struct QuadraticTetrahedron
     return false;
   }
 
-  /// What part each node bears of a force that acts on the volume of Gauss point i.
+  /// The shape functions at Gauss point i: the part of a force there that each node takes.
   static std::array<double, NumberOfNodes> GetShares(std::size_t i)
   {
     const glm::dvec4 place = GetGaussPoint(i);
@@ -143,7 +145,7 @@ struct QuadraticTetrahedron
   }
 
 private:
-  // Of three edges from the first of four points.
+  // The determinant of the edges from a to b, c and d.
   static double GetDeterminant(
     const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d)
   {

@@ -16,7 +16,7 @@ namespace deformvolume
 namespace
 {
 
-// The mesh, in steps.
+// The box of the mesh, in steps.
 SnappedBox GetMeshBox()
 {
   SnappedBox box;
@@ -25,10 +25,10 @@ SnappedBox GetMeshBox()
   return box;
 }
 
-// In lengths of the mesh: somewhat less than what Sheet can hold, 2^20.
+// In lengths of the mesh: somewhat less than 2^20, the limit of Sheet.
 constexpr double FarthestPoint = 1e6;
 
-// Sheet takes voxels.
+// Sheet takes its points in voxels.
 std::vector<SnappedTriangle> SnapSheet(const MeshSteps& steps,
   const std::vector<glm::dvec3>& points, const std::vector<Sheet::Triangle>& triangles)
 {

@@ -17,20 +17,21 @@
 namespace deformvolume
 {
 
-/// Where a mesh lies, in numbers that cutting can be decided with exactly.
+/// Maps positions in a mesh to steps, the integer unit in which crossings are decided exactly.
 class MeshSteps
 {
 public:
-  /// How many steps its longest side has: predicates are exact for all that lies within the mesh.
+  /// The number of steps of the longest side of the mesh. Predicates are exact for positions in the
+  /// mesh.
   static constexpr std::int64_t Length = TriangleCrossing::LargestBox;
 
-  /// The corners of a box, which is not empty, around the mesh.
+  /// low, high: the bounding box of the mesh, which must not be empty.
   MeshSteps(const glm::dvec3& low, const glm::dvec3& high);
 
-  /// Whether the mesh has a size.
+  /// Whether the bounding box has a finite size greater than 0.
   bool IsValid() const { return this->Scale > 0.0; }
 
-  /// In steps, not rounded.
+  /// Returns a position in steps, not rounded.
   glm::dvec3 Get(const glm::dvec3& position) const { return (position - this->Low) * this->Scale; }
 
 private:
@@ -38,34 +39,35 @@ private:
   double Scale;
 };
 
-/// Counts how often a sheet crosses segments within a mesh.
+/// Finds whether a sheet crosses segments within a mesh an odd number of times.
 class SheetCrossings
 {
 public:
-  /// depth: places near the sheet are known as well as 2^depth parts of the mesh's longest side
-  /// can tell them. Throws Error as Sheet does.
+  /// depth: a grid of 2^depth cells on each axis of the mesh stores which cells the sheet
+  /// intersects. Throws an Error as Sheet does.
   SheetCrossings(const MeshSteps& steps, const std::vector<glm::dvec3>& points,
     const std::vector<Sheet::Triangle>& triangles, int depth);
 
-  /// No triangle is near the mesh.
+  /// Whether no triangle is near the mesh.
   bool IsEmpty() const { return this->Crossings.empty(); }
 
-  /// False only where the sheet does not reach a box, which lies within that of the mesh. This and
-  /// the next one may not be called where IsEmpty().
+  /// Whether the sheet may intersect a box that lies within the mesh. False is exact, true is not.
+  /// Do not call this function or IsCrossedOddly() if IsEmpty().
   bool MayIntersect(const SnappedBox& box, std::vector<std::size_t>& scratch) const;
 
   /// Whether the sheet crosses the segment between two points of the mesh an odd number of times.
-  /// The points count as moved, see TriangleCrossing: no segment meets an edge of the sheet. So a
-  /// closed sheet has an inside and an outside for any points.
+  /// The points are perturbed symbolically (see TriangleCrossing), so that no segment meets an edge
+  /// of the sheet. Any two points are therefore on definite sides of a closed sheet.
   bool IsCrossedOddly(
     const SnappedPoint& p, const SnappedPoint& q, std::vector<std::size_t>& scratch) const;
 
 private:
-  /// Counts the cells of a block that triangles reach, of 2^level cells an axis.
+  /// Marks the cells that triangles intersect, in a cube of 2^level cells on each axis.
   void MarkCells(const SnappedPoint& firstCell, int level, const std::vector<std::size_t>& numbers);
   void SumCells();
   bool HasMarkedCells(const SnappedBox& box) const;
-  /// The cell that a coordinate of the mesh lies in; at the upper end it is the last one.
+  /// The cell that contains a coordinate in steps. The upper end of the mesh belongs to the last
+  /// cell.
   std::int64_t GetCell(std::int64_t steps) const
   {
     return std::min(this->Cells - 1, steps >> this->CellShift);
@@ -77,10 +79,10 @@ private:
 
   std::vector<TriangleCrossing> Crossings;
   BoxTree<SnappedBox> Tree;
-  std::int64_t Cells;    // an axis
-  std::int64_t CellSize; // steps
-  int CellShift;         // its logarithm: divisions would take most of the time
-  /// Of each corner of a cell: how many marked cells there are below it on all axes.
+  std::int64_t Cells;    // on each axis
+  std::int64_t CellSize; // in steps
+  int CellShift;         // log2(CellSize): shifts are faster than divisions
+  /// A summed-volume table: for each cell corner, the number of marked cells below it on all axes.
   std::vector<std::int32_t> Sums;
 };
 

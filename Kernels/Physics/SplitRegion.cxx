@@ -20,11 +20,12 @@ SnappedPoint Round(const glm::dvec3& point)
   return SnappedPoint(std::llround(point.x), std::llround(point.y), std::llround(point.z));
 }
 
-// Let g be the centroid of a face, and a and b the nodes opposite to it of its two tetrahedra.
-// Their centroids are g + (a - g) / 4 and g + (b - g) / 4. A point of the segment between these is
-// g + t (a - g) / 4, which lies in the first tetrahedron, and (1 - t) (b - g) / 4 away from there.
-// So it lies in the box of the tetrahedron where a is farther from g than b, made wider by a
-// quarter of its longest side. The steps are for what is rounded.
+// Let g be the centroid of a face, and a and b the nodes opposite to this face in its two
+// tetrahedra. The centroids of the tetrahedra are g + (a - g) / 4 and g + (b - g) / 4. A point of
+// the segment between them is g + t (a - g) / 4, which lies in the first tetrahedron, plus (1 - t)
+// (b - g) / 4. Of the two tetrahedra take the one whose opposite node is farther from g. The point
+// lies in the box of this tetrahedron, enlarged by a quarter of its longest side. Two more steps
+// allow for rounding.
 SnappedBox GetEnlargedBox(
   const std::vector<glm::dvec3>& positions, const Tetrahedron& tetrahedron, const MeshSteps& steps)
 {
@@ -37,14 +38,15 @@ SnappedBox GetEnlargedBox(
     steps.Get(glm::max(glm::max(corner(0), corner(1)), glm::max(corner(2), corner(3))));
   const glm::dvec3 size = high - low;
   const double margin = 0.25 * std::max(size.x, std::max(size.y, size.z)) + rounding;
-  // All points of the segment lie within the mesh.
+  // All points of the segment lie within the mesh, so the box is clamped to the mesh.
   SnappedBox box;
   box.Min = SnappedPoint(glm::max(low - margin, 0.0));
   box.Max = SnappedPoint(glm::min(high + margin, static_cast<double>(MeshSteps::Length)));
   return box;
 }
 
-// The numbers of tetrahedra that a function chooses, ascending. start(): a function for one thread.
+// Returns the tetrahedra that a predicate chooses, in ascending order. start() returns the
+// predicate for one thread.
 template <typename Start>
 std::vector<std::size_t> Choose(std::size_t count, Start&& start)
 {

@@ -15,9 +15,9 @@
 namespace deformvolume
 {
 
-/// The tetrahedra that a cut along a sheet has to do with: those near it, and all that have a node
-/// of these. They and their nodes have numbers of their own here, in the order of those of the
-/// mesh.
+/// The tetrahedra that a cut along a sheet can affect: those near the sheet, and all others that
+/// share a node with them. These tetrahedra and their nodes are numbered here from 0, in the order
+/// of the mesh.
 class SplitRegion
 {
 public:
@@ -27,18 +27,17 @@ public:
   std::size_t GetNumberOfTetrahedra() const { return this->Numbers.size(); }
   std::size_t GetNumberOfNodes() const { return this->Nodes.size(); }
 
-  /// With the nodes of the region.
+  /// The tetrahedra, with node numbers of the region.
   const std::vector<Tetrahedron>& GetTetrahedra() const { return this->Tetrahedra; }
-  /// What number a tetrahedron has in the mesh.
+  /// The number of a tetrahedron in the mesh.
   std::size_t GetNumber(std::size_t tetrahedron) const { return this->Numbers[tetrahedron]; }
-  /// The tetrahedron of a number of the mesh; GetNumberOfTetrahedra() where it is not in the
-  /// region.
+  /// The tetrahedron with a number of the mesh; GetNumberOfTetrahedra() if it is not in the region.
   std::size_t Find(std::size_t number) const;
-  /// What number a node has in the mesh.
+  /// The number of a node in the mesh.
   std::int32_t GetNode(std::size_t node) const { return this->Nodes[node]; }
 
-  /// Of two tetrahedra that share a face, the segment between the centroids of which the sheet
-  /// crosses, one is near at least.
+  /// Whether a tetrahedron is near the sheet. If the sheet crosses the segment between the
+  /// centroids of two tetrahedra with a common face, at least one of the two is near.
   bool IsNear(std::size_t tetrahedron) const { return this->Near[tetrahedron] != 0; }
   const SnappedPoint& GetCentroid(std::size_t tetrahedron) const
   {
