@@ -29,8 +29,8 @@ Aggregates MakeAggregates(
       visit(static_cast<std::size_t>(columns[i]));
     }
   };
-  // Those all of whose neighbors are free make an aggregate with them: the more there are, the
-  // earlier, since large aggregates make a small coarse level.
+  // A row whose neighbors are all without an aggregate starts one with them. Rows with many
+  // neighbors come first: large aggregates give a small coarse level.
   std::vector<std::size_t> order(rows);
   std::iota(order.begin(), order.end(), std::size_t(0));
   std::stable_sort(order.begin(), order.end(),
@@ -49,7 +49,7 @@ Aggregates MakeAggregates(
         forNeighbors(row, [&](std::size_t other) { aggregateOfRow[other] = aggregate; });
       }
     });
-  // The others join the smallest aggregate beside them.
+  // Each remaining row joins the smallest aggregate next to it.
   std::vector<std::int32_t> sizes(static_cast<std::size_t>(result.NumberOfAggregates), 0);
   for (const std::int32_t aggregate : aggregateOfRow)
   {
@@ -78,7 +78,7 @@ Aggregates MakeAggregates(
             best = aggregate;
           }
         });
-      // A row without neighbors in the first aggregates cannot be: it would be in one.
+      // Such an aggregate exists: otherwise the row would have started one itself.
       aggregateOfRow[row] = best;
       ++sizes[static_cast<std::size_t>(best)];
     });
@@ -99,7 +99,8 @@ std::vector<Eigen::Matrix<double, Size, Size>> InvertDiagonal(
       {
         if (matrix.ColumnOfBlock[block] == row)
         {
-          // Of a block that is not positive definite, as far as rounding tells, its size does.
+          // A block that is not positive definite, for example through rounding, is replaced by its
+          // norm.
           const Block& own = matrix.Blocks[block];
           const Eigen::LLT<Block> factor(own);
           const Block identity = Block::Identity();
@@ -117,13 +118,13 @@ double FindLargestEigenvalue(Watch& watch, const SparseBlocks<Size, Size>& matri
   const std::vector<Eigen::Matrix<double, Size, Size>>& inverses)
 {
   constexpr int iterations = 12;
-  // What the method may be short of after so many of them.
+  // The power method underestimates the eigenvalue after so few iterations.
   constexpr double margin = 1.1;
   using Vector = Eigen::Matrix<double, Size, 1>;
   const std::int32_t rows = matrix.GetNumberOfRows();
   std::vector<Vector> vector(static_cast<std::size_t>(rows));
   std::vector<Vector> product(vector.size());
-  // As rough as can be, and without a pattern.
+  // Start with a rough vector without a pattern: it contains all eigenvectors.
   unsigned int random = 1;
   for (Vector& value : vector)
   {
@@ -173,9 +174,9 @@ double FindLargestEigenvalue(Watch& watch, const SparseBlocks<Size, Size>& matri
 namespace
 {
 
-// What an aggregate moves as its six unknowns say: the near null space, made orthogonal in each
-// aggregate. Motions that an aggregate of few rows does not have stay 0. What they were made of
-// becomes the near null space of the aggregates.
+// Makes the near null space orthonormal within each aggregate (QR decomposition). Q becomes the
+// tentative prolongation, R the near null space of the coarse level. Modes that an aggregate of few
+// rows does not have become 0.
 template <int Size>
 void Orthogonalize(Watch& watch, const Aggregates& aggregates, const NearNullSpace<Size>& modes,
   SparseBlocks<Size, RigidModes>& prolongation, NearNullSpace<RigidModes>& coarse)
@@ -213,7 +214,7 @@ void Orthogonalize(Watch& watch, const Aggregates& aggregates, const NearNullSpa
     for (int j = 0; j < RigidModes; ++j)
     {
       const double before = std::sqrt(dot(j, j));
-      // Twice is enough against rounding.
+      // Orthogonalize twice: this is enough against rounding.
       for (int i = 0; i < 2 * j; ++i)
       {
         const double part = dot(i % j, j);
@@ -268,7 +269,7 @@ Coarsening<Size> Coarsen(Watch& watch, const SparseBlocks<Size, Size>& matrix,
   const auto restriction = Transpose(watch, result.Prolongation);
   result.Matrix = Multiply(watch, restriction, product);
   product = {};
-  // Unknowns that move nothing would make it singular.
+  // Unknowns of modes that were set to 0 would make the matrix singular.
   ForItems(watch, result.Modes.size(),
     [&](std::size_t item)
     {

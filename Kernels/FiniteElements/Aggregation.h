@@ -13,13 +13,13 @@
 namespace deformvolume
 {
 
-/// The translations and rotations of a body, as small motions: six columns.
+/// The number of rigid-body modes: three translations and three small rotations.
 constexpr int RigidModes = 6;
 template <int Size>
 using NearNullSpace = std::vector<Eigen::Matrix<double, Size, RigidModes>>;
 
-/// Of each row of a sparse matrix the number of its aggregate: a row with those that it is
-/// connected with, as far as they are in no other aggregate.
+/// The aggregate of each row of a sparse matrix. An aggregate is a row together with those of its
+/// neighbors that are in no other aggregate.
 struct Aggregates
 {
   std::vector<std::int32_t> AggregateOfRow;
@@ -28,24 +28,24 @@ struct Aggregates
 Aggregates MakeAggregates(
   Watch& watch, const std::vector<std::int32_t>& starts, const std::vector<std::int32_t>& columns);
 
-/// The next coarser level of a matrix: six unknowns for each aggregate of rows, which move the
-/// aggregate as the near null space says.
+/// The next coarser level of a matrix. Each aggregate of rows has six unknowns there, the
+/// amplitudes of its near-null-space modes.
 template <int Size>
 struct Coarsening
 {
-  /// From aggregates to rows.
+  /// Maps unknowns of aggregates to unknowns of rows.
   SparseBlocks<Size, RigidModes> Prolongation;
   SparseBlocks<RigidModes, RigidModes> Matrix;
   NearNullSpace<RigidModes> Modes;
 };
 
-/// The largest eigenvalue of a matrix whose rows are multiplied with the inverses of the blocks on
-/// the diagonal, or little more.
+/// Returns the largest eigenvalue of the product of the inverse diagonal blocks and the matrix, or
+/// a slightly larger value.
 template <int Size>
 double FindLargestEigenvalue(Watch& watch, const SparseBlocks<Size, Size>& matrix,
   const std::vector<Eigen::Matrix<double, Size, Size>>& inverses);
 
-/// Inverses of the blocks on the diagonal.
+/// Returns the inverses of the diagonal blocks.
 template <int Size>
 std::vector<Eigen::Matrix<double, Size, Size>> InvertDiagonal(
   Watch& watch, const SparseBlocks<Size, Size>& matrix);

@@ -14,31 +14,32 @@
 namespace deformvolume
 {
 
-/// Where the blocks of a symmetric matrix lie: those of a row by rising columns, its own among
-/// them.
+/// The sparsity pattern of a symmetric matrix of blocks. The blocks of a row are sorted by columns
+/// and include the diagonal block.
 struct BlockPattern
 {
-  /// Of each row the first block, and the number of blocks.
+  /// The first block of each row, followed by the number of blocks.
   std::vector<std::int32_t> Rows;
-  /// Of each block.
+  /// The column of each block.
   std::vector<std::int32_t> Columns;
-  /// Of each row the block on the diagonal.
+  /// The diagonal block of each row.
   std::vector<std::int32_t> Diagonal;
-  /// Of each block the one on the other side of the diagonal.
+  /// The block at the transposed position of each block.
   std::vector<std::int32_t> Mirrored;
 
-  /// The block of a row and a column that have one.
+  /// Returns the block of a row and a column. The block must exist.
   std::int32_t Find(std::int32_t row, std::int32_t column) const;
   std::size_t GetNumberOfRows() const { return this->Diagonal.size(); }
   std::size_t GetNumberOfBlocks() const { return this->Columns.size(); }
 };
 
-/// The pattern in which nodes that have a tetrahedron in common are connected.
+/// Makes the pattern in which two nodes are connected if they have a tetrahedron in common.
 BlockPattern MakeNodePattern(Watch& watch, const ElasticBody& body);
 
-/// Where the blocks above the diagonal of each tetrahedron lie: those of nodes 0 1, 0 2, ..., 0 9,
-/// 1 2, ..., 8 9 of a batch. Where the second node has the lower number, what lies above the
-/// diagonal is the block transposed, and this is ~position.
+/// The matrix blocks of the pairs of nodes of each tetrahedron of a batch. Pairs are ordered 0 1, 0
+/// 2, ..., 0 9, 1 2, ..., 8 9. Only blocks above the diagonal are stored. If the second node of a
+/// pair has the lower number, the transposed block lies above the diagonal, and the entry is
+/// ~block.
 struct BatchPositions
 {
   static constexpr int NumberOfPairs =
@@ -49,12 +50,13 @@ struct BatchPositions
 std::vector<BatchPositions> FindPositions(
   Watch& watch, const ElementBatches& batches, const BlockPattern& pattern);
 
-/// A symmetric matrix of blocks of 3 x 3, each by its columns.
+/// A symmetric matrix of blocks of 3 x 3 values, each block by columns.
 class BlockMatrix
 {
 public:
   static constexpr std::size_t BlockSize = 9;
-  /// Rows that are worked on together. Sums are added for so many rows, and then in their order.
+  /// The number of rows that a thread handles at a time. Sums are formed over these rows, then in
+  /// the order of the rows, so that they do not depend on the number of threads.
   static constexpr std::size_t RowsOfPart = 512;
   static constexpr std::size_t PartsAtOnce = 512;
 
@@ -76,10 +78,11 @@ public:
 
   void PutToZero(Watch& watch);
 
-  /// Copies the blocks above the diagonal to below it.
+  /// Copies the blocks above the diagonal to the transposed positions below it.
   void Mirror(Watch& watch);
 
-  /// The rows from begin to one before end of the product, where rows are free; elsewhere 0.
+  /// Sets the rows [begin, end) of the product of the matrix and a vector: free rows to their
+  /// product, other rows to 0.
   void Multiply(std::size_t begin, std::size_t end, const unsigned char* isFree,
     const glm::dvec3* vector, glm::dvec3* product) const;
 

@@ -33,7 +33,8 @@ ConjugateGradients::Result ConjugateGradients::Solve(Watch& watch, const BlockMa
     }
     const double ratio = iteration == 0 ? 0.0 : product / last;
     last = product;
-    // Each part reads directions of others: all of them are there before the first product.
+    // All directions must be updated before the first product: the rows of one part use directions
+    // of other parts.
     ForRows(watch, rows,
       [&](std::size_t begin, std::size_t end)
       {
@@ -53,7 +54,7 @@ ConjugateGradients::Result ConjugateGradients::Solve(Watch& watch, const BlockMa
         }
         return sum;
       });
-    // Along a direction without stiffness there is no minimum.
+    // There is no minimum along a direction of zero or negative curvature.
     if (!(curvature > 0.0))
     {
       result.IsIndefinite = true;

@@ -13,7 +13,7 @@
 namespace deformvolume
 {
 
-/// Preconditioned conjugate gradients for the free rows of a matrix. Sums do not depend on the
+/// Preconditioned conjugate gradients for the free rows of a matrix. Results do not depend on the
 /// number of threads.
 class ConjugateGradients
 {
@@ -21,19 +21,19 @@ public:
   struct Limits
   {
     int Iterations = 500;
-    /// The square of the length that the residual is to have at most.
+    /// The iteration ends when the squared length of the residual is at most this value.
     double SquaredResidual = 0.0;
   };
 
   struct Result
   {
     int Iterations = 0;
-    /// The matrix, or the preconditioner, is not positive definite. The solution is what it was
-    /// before that was found.
+    /// Whether the matrix or the preconditioner turned out not to be positive definite. The
+    /// solution is the one of the iteration before.
     bool IsIndefinite = false;
   };
 
-  /// Makes a solution better whose residual is given, which is 0 where nodes are not free.
+  /// Improves a solution. residual: of that solution, 0 at nodes that are not free; updated.
   Result Solve(Watch& watch, const BlockMatrix& matrix, const std::vector<unsigned char>& isFree,
     Preconditioner& preconditioner, const Limits& limits, std::vector<glm::dvec3>& solution,
     std::vector<glm::dvec3>& residual);

@@ -17,7 +17,7 @@ namespace deformvolume
 namespace
 {
 
-// The bits of a number, each followed by two zeros.
+// Puts two zero bits after each bit of a number.
 std::uint64_t SpreadBits(std::uint64_t value)
 {
   std::uint64_t spread = 0;
@@ -28,10 +28,10 @@ std::uint64_t SpreadBits(std::uint64_t value)
   return spread;
 }
 
-// Where a tetrahedron lies on a curve that fills space, and its number.
+// The position of a tetrahedron on a space-filling (Morton) curve, and its number.
 using CurvePlace = std::pair<std::uint64_t, std::int32_t>;
 
-// Sorts parts, and merges two and two of them: one sort would be too long for the watch.
+// Sorts parts and merges them in pairs: a single sort would not poll the watch for too long.
 void Sort(Watch& watch, std::vector<CurvePlace>& places)
 {
   constexpr std::size_t partsAtOnce = 16;
@@ -51,7 +51,7 @@ void Sort(Watch& watch, std::vector<CurvePlace>& places)
   }
 }
 
-// Tetrahedra along a curve that fills space, so that those of a chunk are near each other.
+// Orders tetrahedra along a Morton curve, so that those of a chunk are near each other.
 std::vector<std::int32_t> OrderTetrahedra(Watch& watch, const ElasticBody& body)
 {
   glm::dvec3 lower(std::numeric_limits<double>::max());
@@ -84,7 +84,7 @@ std::vector<std::int32_t> OrderTetrahedra(Watch& watch, const ElasticBody& body)
   return order;
 }
 
-// The nodes of a tetrahedron in the order of those of a batch.
+// The nodes of a tetrahedron, in the order of ElementBatch::Nodes.
 std::array<std::int32_t, ElementBatch::NumberOfNodes> GetNodes(
   const ElasticBody& body, std::size_t tetrahedron)
 {
@@ -118,7 +118,7 @@ void SetLane(
   {
     batch.Nodes[i][lane] = nodes[i];
   }
-  // The order of QuadraticTetrahedron.
+  // QuadraticTetrahedron expects its own order of mid-side nodes.
   for (std::size_t i = 0; i < 4; ++i)
   {
     points[i] = body.Points[static_cast<std::size_t>(nodes[i])];
@@ -150,7 +150,7 @@ void SetLane(
   batch.InverseVolume[lane] = hasVolume ? 1.0 / volume : 0.0;
 }
 
-// Gives each chunk the first color that no chunk has with which it has a node in common.
+// Gives each chunk the first color that no chunk with a common node has.
 std::vector<std::vector<std::uint32_t>> ColorChunks(
   Watch& watch, const ElementBatches& batches, std::size_t nodes)
 {
@@ -246,7 +246,7 @@ void SetMaterials(ElementBatches& batches, const ElasticBody& body)
     ElementBatch& batch = batches.Batches[i / NumberOfLanes];
     const auto lane = static_cast<int>(i % NumberOfLanes);
     batch.Mu[lane] = material.GetShearModulus();
-    // That of a Poisson ratio of 0.4.
+    // Lambda / mu for a Poisson ratio of 0.4.
     constexpr double largestOfPoints = 4.0;
     const double lambda = material.GetLambda();
     batch.Lambda[lane] = std::min(lambda, largestOfPoints * material.GetShearModulus());

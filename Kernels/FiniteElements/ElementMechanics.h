@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a batch of ten-node tetrahedra does when it is deformed, for functions of lanes.
+// Elasticity of batches of ten-node tetrahedra, as inline functions of lanes (Lanes.h).
 #ifndef DeformVolumeElementMechanics_h
 #define DeformVolumeElementMechanics_h
 
@@ -26,7 +26,7 @@ DEFORMVOLUME_ALWAYS_INLINE LaneVector GatherNode(const std::int32_t* nodes, cons
   return result;
 }
 
-/// The coordinate of a corner at a Gauss point.
+/// The barycentric coordinate of a corner at a Gauss point.
 constexpr double GetGaussCoordinate(int point, int corner)
 {
   return point == corner ? QuadraticTetrahedron::NearCoordinate
@@ -37,14 +37,15 @@ constexpr double FarFactor = 4.0 * QuadraticTetrahedron::FarCoordinate;
 constexpr double NearFactor =
   4.0 * (QuadraticTetrahedron::NearCoordinate - QuadraticTetrahedron::FarCoordinate);
 
-/// What a batch is like at one of its Gauss points.
+/// The deformation of a batch at one Gauss point.
 struct LanePoint
 {
-  /// F - 1: what is small in it is not lost beside 1.
+  /// F - 1, where F is the deformation gradient. Storing F itself would lose small displacements to
+  /// rounding.
   LaneMatrix Gradient;
-  /// The cofactors of F, which are the derivatives of its determinant, without 1 as well.
+  /// The cofactors of F minus 1. The cofactors are the derivatives of det F.
   LaneMatrix Cofactors;
-  /// det F - 1, and what of it is not linear in F - 1.
+  /// det F - 1, and the part of it that is not linear in F - 1.
   Lanes Dilatation;
   Lanes NonlinearDilatation;
 };
@@ -56,7 +57,7 @@ DEFORMVOLUME_ALWAYS_INLINE LaneMatrix Transpose(const LaneMatrix& a)
     { a.Columns[0].Z, a.Columns[1].Z, a.Columns[2].Z } } };
 }
 
-/// A matrix plus a multiple of 1.
+/// Adds a multiple of the identity to a matrix.
 DEFORMVOLUME_ALWAYS_INLINE LaneMatrix AddToDiagonal(const LaneMatrix& a, const Lanes& value)
 {
   return { { { a.Columns[0].X + value, a.Columns[0].Y, a.Columns[0].Z },
@@ -83,11 +84,11 @@ DEFORMVOLUME_ALWAYS_INLINE LanePoint MakePoint(const LaneMatrix& gradient)
   return point;
 }
 
-/// What a batch is like in a state.
+/// The deformation of a batch at all of its Gauss points.
 struct LaneElement
 {
   LanePoint Points[ElementBatch::NumberOfGaussPoints];
-  /// The mean of det F - 1 over the volume at rest, and the pressure, outwards, that it causes.
+  /// The mean of det F - 1 over the volume at rest, and MeanLambda times this mean.
   Lanes MeanDilatation;
   Lanes MeanPressure;
 };
@@ -101,9 +102,10 @@ DEFORMVOLUME_ALWAYS_INLINE void FindElement(
   {
     u[a] = GatherNode(batch.Nodes[a], displacements);
   }
-  // The derivative by the coordinate of corner i is linear in the coordinates: that of corner q is
-  // a factor of the difference of two neighbouring nodes. Gauss points have two different
-  // coordinates.
+  // The derivative of the displacement by the coordinate of corner i is linear in the barycentric
+  // coordinates. The coefficient of coordinate q is proportional to the difference of two
+  // neighboring nodes. Each coordinate has one of two values at the Gauss points, so all
+  // derivatives follow from one sum and these differences.
   LaneVector slopes[points][3];
   for (int i = 1; i < 4; ++i)
   {
@@ -138,16 +140,17 @@ DEFORMVOLUME_ALWAYS_INLINE void FindElement(
   element.MeanPressure = batch.MeanLambda * element.MeanDilatation;
 }
 
-/// The first Piola-Kirchhoff stress at a Gauss point, and the strain energy there for each volume
-/// at rest, but for that of the mean dilatation.
+/// The first Piola-Kirchhoff stress at a Gauss point, and the strain energy per volume at rest,
+/// without the energy of the mean dilatation.
 struct LaneStress
 {
   LaneMatrix Piola;
   Lanes EnergyDensity;
 };
 
-/// With the stable neo-Hookean law without a logarithm, whose energy is
-/// mu/2 (|F|^2 - 3) - mu (J - 1) + (lambda + mu)/2 (J - 1)^2.
+/// The stable neo-Hookean model without a logarithmic term. Its energy density is
+///
+/// mu/2 (|F|^2 - 3) - mu (J - 1) + (lambda + mu)/2 (J - 1)^2, where J = det F.
 DEFORMVOLUME_ALWAYS_INLINE LaneStress FindNeoHookeanStress(
   const ElementBatch& batch, const LanePoint& point, const Lanes& meanPressure)
 {
@@ -168,7 +171,8 @@ DEFORMVOLUME_ALWAYS_INLINE LaneStress FindNeoHookeanStress(
   return result;
 }
 
-/// With the corotational law, whose energy is mu |F - R|^2 + lambda/2 tr(S - 1)^2 for F = R S.
+/// The corotational model. Its energy density is mu |F - R|^2 + lambda/2 tr(S - 1)^2, where F = R
+/// S.
 DEFORMVOLUME_ALWAYS_INLINE LaneStress FindCorotationalStress(
   const ElementBatch& batch, const LanePoint& point, const Lanes& meanPressure)
 {
@@ -205,8 +209,8 @@ DEFORMVOLUME_ALWAYS_INLINE LaneStress FindStress(
   return FindNeoHookeanStress(batch, point, meanPressure);
 }
 
-/// The forces on the nodes of a batch, by the stresses at its Gauss points: what FindElement does
-/// to displacements, the other way round.
+/// Computes the forces on the nodes of a batch from the stresses at its Gauss points. This is the
+/// transpose of the linear map from displacements to F - 1 in FindElement.
 DEFORMVOLUME_ALWAYS_INLINE void FindNodeForces(const ElementBatch& batch,
   const LaneMatrix (&stresses)[ElementBatch::NumberOfGaussPoints],
   LaneVector (&forces)[ElementBatch::NumberOfNodes])
@@ -241,8 +245,8 @@ DEFORMVOLUME_ALWAYS_INLINE void FindNodeForces(const ElementBatch& batch,
   }
 }
 
-/// The blocks of the tangent of a batch, by columns: those of nodes 0 0, 0 1, ..., 0 9, 1 1, 1 2,
-/// ..., 9 9.
+/// The blocks of the tangent matrix of a batch, each by columns, in the order of node pairs 0 0, 0
+/// 1, ..., 0 9, 1 1, 1 2, ..., 9 9.
 struct LaneTangent
 {
   static constexpr int NumberOfBlocks =
@@ -264,7 +268,7 @@ struct LaneNodes
   LaneVector Vectors[ElementBatch::NumberOfNodes];
 };
 
-/// Adds a factor times the products of vectors of nodes.
+/// Adds factor * v_a v_b^T to the block of each pair of nodes a and b.
 DEFORMVOLUME_ALWAYS_INLINE void AddProducts(
   LaneTangent& tangent, const LaneNodes& nodes, const Lanes& factor)
 {
@@ -279,7 +283,7 @@ DEFORMVOLUME_ALWAYS_INLINE void AddProducts(
   }
 }
 
-/// The gradients of the shape functions of the nodes at a Gauss point.
+/// Returns the gradients of the shape functions of all nodes at a Gauss point.
 DEFORMVOLUME_ALWAYS_INLINE LaneNodes FindShapeGradients(const ElementBatch& batch, int point)
 {
   const LaneVector* const g = batch.Gradients[point];
@@ -310,8 +314,9 @@ DEFORMVOLUME_ALWAYS_INLINE LaneNodes MultiplyNodes(const LaneMatrix& matrix, con
   return result;
 }
 
-/// Adds the second derivatives of same/2 |F|^2 + cross det F + outer/2 (det F - 1)^2, the last ones
-/// without what they have of those of det F. cofactors: of F, times the gradients.
+/// Adds the second derivatives of same/2 |F|^2 + cross det F + outer/2 (det F - 1)^2. For the last
+/// term, only the product of first derivatives of det F is added; `cross` must include the rest.
+/// cofactors: the cofactors of F times the gradients.
 DEFORMVOLUME_ALWAYS_INLINE void AddInvariants(LaneTangent& tangent, const LaneNodes& gradients,
   const LaneMatrix& F, const LaneNodes& cofactors, const Lanes& same, const Lanes& cross,
   const Lanes& outer)
@@ -343,27 +348,27 @@ DEFORMVOLUME_ALWAYS_INLINE bool HasPositive(const Lanes& a)
   return a[0] > 0.0 || a[1] > 0.0 || a[2] > 0.0 || a[3] > 0.0;
 }
 
-/// What is missing to make a value 0 where it is less.
+/// What must be added to a value to make it at least 0.
 DEFORMVOLUME_ALWAYS_INLINE Lanes MissingToZero(const Lanes& value)
 {
   return Largest(MakeLanes(0.0), -value);
 }
 
-/// The second derivatives of the energy density by F, in the frames of its singular values: of
-/// twists and shears in three planes, and between stretches along three axes.
+/// The second derivatives of the energy density by F, in the basis of the singular vectors of F:
+/// twists and shears in three planes, and stretches along three axes.
 struct LaneEigenvalues
 {
   Lanes Twists[3];
   Lanes Shears[3];
-  Lanes Stretches[3]; // each with itself
-  Lanes Mixed[3];     // of the two others
+  Lanes Stretches[3]; // second derivatives by one stretch
+  Lanes Mixed[3];     // mixed second derivatives by the two other stretches
 };
 
-// The two axes of a plane across each axis.
+// The two axes that span the plane normal to each axis.
 constexpr int FirstOfPlane[3] = { 1, 2, 0 };
 constexpr int SecondOfPlane[3] = { 2, 0, 1 };
 
-/// The twist, or the shear, of a plane that each node makes.
+/// Returns the twist (sign -1) or shear (sign 1) mode of a plane for each node.
 DEFORMVOLUME_ALWAYS_INLINE LaneNodes FindPlaneModes(
   const LaneMatrix& U, const LaneNodes& gradientsInFrame, int plane, double sign)
 {
@@ -380,7 +385,7 @@ DEFORMVOLUME_ALWAYS_INLINE LaneNodes FindPlaneModes(
   return result;
 }
 
-/// Adds what makes negative eigenvalues 0, times a volume.
+/// Adds a volume times the terms that raise negative eigenvalues to 0.
 DEFORMVOLUME_ALWAYS_INLINE void AddMissing(LaneTangent& tangent, const SingularValues& values,
   const LaneNodes& gradientsInFrame, const LaneEigenvalues& e, const Lanes& volume)
 {
@@ -399,7 +404,7 @@ DEFORMVOLUME_ALWAYS_INLINE void AddMissing(LaneTangent& tangent, const SingularV
         tangent, FindPlaneModes(values.U, gradientsInFrame, k, 1.0), 0.5 * volume * shear);
     }
   }
-  // Jacobi's method, as for singular values.
+  // Diagonalize the 3 x 3 matrix of stretches by Jacobi rotations, as in FindSingularValues.
   constexpr int sweeps = 4;
   const Lanes zero = MakeLanes(0.0);
   const Lanes one = MakeLanes(1.0);
@@ -441,8 +446,8 @@ DEFORMVOLUME_ALWAYS_INLINE LaneNodes TurnIntoFrame(
   return result;
 }
 
-/// The eigenvalues of same/2 |F|^2 + cross det F + outer/2 (det F - 1)^2, the last one as in
-/// AddInvariants.
+/// The eigenvalues for same/2 |F|^2 + cross det F + outer/2 (det F - 1)^2, with the last term
+/// treated as in AddInvariants.
 DEFORMVOLUME_ALWAYS_INLINE LaneEigenvalues FindInvariantEigenvalues(
   const SingularValues& values, const Lanes& same, const Lanes& cross, const Lanes& outer)
 {
@@ -492,8 +497,8 @@ DEFORMVOLUME_ALWAYS_INLINE void AddCorotationalPoint(LaneTangent& tangent,
   LaneEigenvalues e = FindInvariantEigenvalues(values, twiceMu, meanPressure, MakeLanes(0.0));
   for (int k = 0; k < 3; ++k)
   {
-    // Rotations of what is nearly flat, or inside out, turn without bounds: less than 0 is too
-    // much.
+    // The rotation R changes without bounds as two singular values approach opposite values, in
+    // nearly flat or inverted tetrahedra. The denominator and the result are limited.
     const Lanes sum = Largest(s[FirstOfPlane[k]] + s[SecondOfPlane[k]], MakeLanes(1e-3));
     const Lanes more = Largest(-twiceMu, pull * (2.0 / sum));
     AddProducts(tangent, FindPlaneModes(values.U, inFrame, k, -1.0), 0.5 * volume * more);
@@ -507,9 +512,9 @@ DEFORMVOLUME_ALWAYS_INLINE void AddCorotationalPoint(LaneTangent& tangent,
   }
 }
 
-/// The second derivatives of the strain energy by the positions of the nodes. isClamped: at each
-/// Gauss point, eigenvalues are made 0 where they are less (Smith, de Goes and Kim 2019), so that
-/// the tangent has no negative ones.
+/// Computes the second derivatives of the strain energy by the positions of the nodes. isClamped:
+/// at each Gauss point, negative eigenvalues are replaced by 0 (Smith, de Goes and Kim 2019), so
+/// that the tangent has no negative eigenvalues.
 template <MaterialModel Model>
 DEFORMVOLUME_ALWAYS_INLINE void FindTangent(
   const ElementBatch& batch, const LaneElement& element, bool isClamped, LaneTangent& tangent)
@@ -519,7 +524,7 @@ DEFORMVOLUME_ALWAYS_INLINE void FindTangent(
   {
     block = { { { zero, zero, zero }, { zero, zero, zero }, { zero, zero, zero } } };
   }
-  LaneNodes dilatation; // the derivatives of the mean dilatation, times the volume
+  LaneNodes dilatation; // derivatives of the mean dilatation, times the volume
   for (LaneVector& vector : dilatation.Vectors)
   {
     vector = { zero, zero, zero };

@@ -14,7 +14,7 @@ namespace deformvolume
 namespace
 {
 
-// What is 0 in the limits of a request is chosen by the mode.
+// Replaces limits that are 0 by the defaults of the mode.
 EquilibriumLimits ChooseLimits(const EquilibriumRequest& request)
 {
   EquilibriumLimits limits = request.Limits;
@@ -37,8 +37,8 @@ EquilibriumLimits ChooseLimits(const EquilibriumRequest& request)
   return limits;
 }
 
-// Adds the weight of the tetrahedra of pieces that are held, by the shape functions of their nodes:
-// corners bear a twentieth less than nothing, and the middles of edges a fifth each.
+// Adds the weight of the tetrahedra of held pieces. It is distributed by the shape functions: each
+// corner takes -1/20 of the weight of a straight tetrahedron, and each mid-side node 1/5.
 void AddGravity(const glm::dvec3& gravity, const ElasticBody& body, const BodyPieces& pieces,
   const std::vector<bool>& isHeld, const GaussVolumes& volumes, std::vector<glm::dvec3>& loads)
 {
@@ -52,7 +52,7 @@ void AddGravity(const glm::dvec3& gravity, const ElasticBody& body, const BodyPi
   {
     if (!isHeld[static_cast<std::size_t>(pieces.PieceOfTetrahedron[t])])
     {
-      continue; // what is not held bears no load, also at the nodes that it shares
+      continue; // pieces that are not held bear no load, not even at shared nodes
     }
     const double density = body.GetMaterial(t).Density;
     std::size_t i = 0;

@@ -17,19 +17,19 @@
 namespace deformvolume
 {
 
-/// What does not change during a call of Solve.
+/// The data that do not change during one call of Solve.
 struct EquilibriumProblem
 {
-  /// Nodes of pieces that are held, but for those that are fixed or held by a handle.
+  /// Nodes of held pieces that are neither fixed nor held by a handle.
   std::vector<unsigned char> IsFree;
   /// Nodes that are fixed or held by a handle.
   std::vector<std::int32_t> HeldNodes;
-  /// Where these are to be.
+  /// The prescribed displacements of HeldNodes.
   std::vector<glm::dvec3> Targets;
-  /// On the nodes of pieces that are held.
+  /// The loads on nodes of held pieces, in N; 0 at other nodes.
   std::vector<glm::dvec3> Loads;
   PieceSupports Supports;
-  /// None of them 0.
+  /// The limits of the request, with defaults filled in.
   EquilibriumLimits Limits;
   bool IsInteractive = false;
 };
@@ -37,20 +37,20 @@ struct EquilibriumProblem
 /// The volumes of the Gauss points of each tetrahedron.
 using GaussVolumes = std::vector<std::array<double, QuadraticTetrahedron::NumberOfGaussPoints>>;
 
-/// Throws an Error where nothing holds the body, and where limits or loads make no sense.
+/// Throws an Error if no piece of the body is held, or if limits, loads or handles are invalid.
 EquilibriumProblem MakeProblem(const EquilibriumRequest& request, const ElasticBody& body,
   const BodyPieces& pieces, const GaussVolumes& volumes, const SlidingNodes& sliding);
 
-/// Components of forces: the largest of those that are left on free nodes, and of those that are
-/// applied or hold a node.
+/// The largest component of the unbalanced forces on free nodes, and the largest component of
+/// applied forces and reactions, in N.
 struct Residuals
 {
   double Largest = 0.0;
   double Reference = 0.0;
 };
 
-/// forces: what the strains exert on nodes. What acts along the normal of a node that slides counts
-/// as what holds it.
+/// forces: the elastic forces on nodes. The component normal to the plane of a sliding node is a
+/// reaction.
 Residuals FindResiduals(const EquilibriumProblem& problem, const SlidingNodes& sliding,
   const std::vector<glm::dvec3>& forces);
 

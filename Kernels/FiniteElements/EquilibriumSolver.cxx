@@ -38,7 +38,7 @@ void EquilibriumSolver::UpdateScale(Watch& watch)
   {
     total = std::accumulate(volumes.begin(), volumes.end(), total);
   }
-  // A cell of as many tetrahedra as a node has on average of its own.
+  // A node has about six tetrahedra of its own: h is the side of a cube of their mean volume.
   constexpr double tetrahedraOfCell = 6.0;
   const double size =
     std::cbrt(tetrahedraOfCell * total / static_cast<double>(this->Volumes.size()));
@@ -132,7 +132,7 @@ void EquilibriumSolver::UpdateTangent(
 
 void EquilibriumSolver::Untangle(Watch& watch, const EquilibriumProblem& problem, State& state)
 {
-  // The least fall of the energy, as a part of the strain energy, for which it goes on.
+  // Continue only while the energy falls by at least this part of the strain energy.
   constexpr double leastFall = 0.01;
   const BlockPattern& pattern = this->Tangent.GetMatrix().GetPattern();
   std::vector<unsigned char> isInverted;
@@ -155,7 +155,7 @@ void EquilibriumSolver::Untangle(Watch& watch, const EquilibriumProblem& problem
             sum += state.Displacements[static_cast<std::size_t>(
               pattern.Columns[static_cast<std::size_t>(block)])];
           }
-          // Of the others in the row.
+          // The node itself is in the row as well.
           const double neighbours = pattern.Rows[node + 1] - pattern.Rows[node] - 1;
           this->Trial.Displacements[node] =
             this->Sliding.Project(node, (sum - state.Displacements[node]) / neighbours);
@@ -183,7 +183,7 @@ bool EquilibriumSolver::SolveLinear(Watch& watch, const EquilibriumProblem& prob
 {
   for (std::size_t node = 0; node < problem.IsFree.size(); ++node)
   {
-    // Frozen and held nodes do not move: their residual does not count.
+    // Held nodes and nodes of frozen pieces do not move, so their residual is 0.
     this->RightHandSide[node] = problem.IsFree[node] != 0
       ? this->RightHandSide[node] + problem.Loads[node] - state.Forces[node]
       : glm::dvec3(0.0);
@@ -245,7 +245,7 @@ bool EquilibriumSolver::MoveHeldNodes(
     state.Displacements[node] += moves[node];
     guess.Displacements[node] += moves[node] + this->Direction[node];
   }
-  // Exactly where they are to be.
+  // Set the prescribed displacements exactly, without rounding.
   for (std::size_t i = 0; i < problem.HeldNodes.size(); ++i)
   {
     const auto node = static_cast<std::size_t>(problem.HeldNodes[i]);
@@ -256,7 +256,7 @@ bool EquilibriumSolver::MoveHeldNodes(
   this->Evaluate(watch, problem, guess);
   if (guess.Sums.Inverted > inverted || !std::isfinite(guess.Potential))
   {
-    // The guess went too far; perhaps that the others stay is better.
+    // The linear response inverts tetrahedra. Moving only the held nodes may give a lower energy.
     this->Evaluate(watch, problem, state);
     if (state.Potential <= guess.Potential || !std::isfinite(guess.Potential))
     {
@@ -272,7 +272,7 @@ bool EquilibriumSolver::Search(Watch& watch, const EquilibriumProblem& problem, 
 {
   constexpr int halvings = 30;
   constexpr double leastFall = 1e-4;
-  // What rounding does to the sums of energies.
+  // The rounding errors of sums of energies.
   constexpr double rounding = 1e-13;
   constexpr double roundingOfTerms = 1e-15;
   const std::size_t nodes = problem.IsFree.size();
@@ -297,7 +297,7 @@ bool EquilibriumSolver::Search(Watch& watch, const EquilibriumProblem& problem, 
     {
       continue;
     }
-    // Where rounding hides whether the energy falls, the forces decide.
+    // If rounding hides whether the energy falls, compare the unbalanced forces instead.
     if (-slope * length <= slack &&
       !(FindResiduals(problem, this->Sliding, this->Trial.Forces).Largest < residual))
     {
@@ -393,7 +393,7 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
   }
   else
   {
-    // Where the displacements, or the planes, differ from those of the last call.
+    // The displacements were set, or the planes differ from those of the last call.
     for (std::size_t node = 0; node < problem.IsFree.size(); ++node)
     {
       if (problem.IsFree[node] != 0)
@@ -410,7 +410,7 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
   {
     this->Untangle(watch, problem, state);
   }
-  // What is moved live is nearer to equilibrium in the frames that follow.
+  // Frames of an animation follow each other, so a moving frame need not be solved accurately.
   constexpr double toleranceOfFrames = 1e-2;
   const double tolerance =
     problem.IsInteractive && isMoved && request.Limits.RelativeTolerance == 0.0
@@ -431,7 +431,7 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
     const double wanted =
       std::max(tolerance * residuals.Reference, limits.AbsoluteTolerance * this->ForceScale);
     report.IsConverged = residuals.Largest <= wanted;
-    // A tangent of another state serves as long as it makes forces much less.
+    // Reuse a tangent of another state only while it reduces the residual by at least this factor.
     constexpr double leastGain = 0.2;
     if (before > 0.0 && residuals.Largest > leastGain * before)
     {
@@ -447,7 +447,7 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
   }
   if (report.NewtonSteps > 1 && this->IsTangentOld)
   {
-    // It costs more to do without another one.
+    // An old tangent took several steps: a new one is cheaper next time.
     this->HasTangent = false;
   }
   this->IsTangentOld = true;

@@ -16,7 +16,7 @@
 namespace deformvolume
 {
 
-/// Newton's method for a body, with steps that become shorter until the energy falls enough.
+/// Finds the equilibrium of a body by Newton's method with backtracking line search.
 class EquilibriumSolver
 {
 public:
@@ -33,7 +33,7 @@ public:
   std::vector<ElementResults> GetElementResults() const;
 
 private:
-  // Displacements, and what they cause.
+  // Displacements, and the forces and energies that follow from them.
   struct State
   {
     std::vector<glm::dvec3> Displacements;
@@ -42,60 +42,61 @@ private:
     double Potential = 0.0;
   };
   void UpdateScale(Watch& watch);
-  // What the last calls have found serves no longer, but for the displacements.
+  // Discards what earlier calls found, except for the displacements.
   void Forget();
   void UseHeldPieces(const EquilibriumProblem& problem);
-  // Pieces that are not held go with what moves their nodes of support.
+  // Moves pieces that are not held with their supporting nodes.
   void MoveFollowers(const EquilibriumProblem& problem, State& state) const;
   EquilibriumReport FindEquilibrium(
     Watch& watch, const EquilibriumRequest& request, const EquilibriumProblem& problem);
   void Evaluate(Watch& watch, const EquilibriumProblem& problem, State& state) const;
   void FindPotential(Watch& watch, const EquilibriumProblem& problem, State& state) const;
-  // Finds the tangent of a state, unless the one that there is may serve. It is the true one, and
-  // clamped where that one has turned out to be negative or not to lead to less energy.
+  // Computes the tangent of a state unless the existing one can be reused. The tangent is clamped
+  // (see FindTangent) for some steps after the exact one was indefinite, or its direction did not
+  // reduce the energy.
   void UpdateTangent(Watch& watch, const EquilibriumProblem& problem, const State& state);
-  // Moves the held nodes to their targets, and the others as the tangent says. Returns whether they
-  // were elsewhere.
+  // Moves the held nodes to their targets, and the other nodes by the linear response. Returns
+  // whether any held node moved.
   bool MoveHeldNodes(
     Watch& watch, const EquilibriumProblem& problem, State& state, EquilibriumReport& report);
-  // Moves the free nodes of tetrahedra that are inside out to the mean of their neighbours, as long
-  // as the energy falls. Newton's method takes many steps to turn such tetrahedra: each in its own
-  // way, which is rarely that of its neighbours.
+  // Moves the free nodes of inverted tetrahedra to the mean of their neighbors, as long as this
+  // reduces the energy. Newton's method alone would take many steps: it turns each inverted
+  // tetrahedron independently of its neighbors.
   void Untangle(Watch& watch, const EquilibriumProblem& problem, State& state);
-  // How well a linear system is to be solved where the residual is to become so much smaller.
+  // The tolerance for a linear system if the residual is to be reduced by the factor `wanted`.
   static double ChooseTolerance(const EquilibriumProblem& problem, double wanted);
-  // Solves for what the right-hand side and the forces that are left say. False where the tangent
-  // is not positive.
+  // Solves for the right-hand side plus the unbalanced forces. Returns false if the tangent is not
+  // positive definite.
   bool SolveLinear(Watch& watch, const EquilibriumProblem& problem, const State& state,
     double tolerance, EquilibriumReport& report);
-  // Takes clamped tangents from now on, for some steps. False where it does so already.
+  // Switches to clamped tangents for some steps. Returns false if they are already in use.
   bool Clamp();
-  // Goes along the direction until the energy is less. False where it never is.
+  // Line search along the direction. Returns false if no step length reduces the energy.
   bool Search(Watch& watch, const EquilibriumProblem& problem, State& state);
-  // False where no step makes the energy less.
+  // One Newton step. Returns false if no step reduces the energy.
   bool Step(Watch& watch, const EquilibriumProblem& problem, double tolerance, State& state,
     EquilibriumReport& report);
 
   ElasticBody Body;
   BodyPieces Pieces;
-  // Which of these the elements are of: those that are held.
+  // The pieces whose tetrahedra Elements contains: those that are held.
   std::vector<bool> ActivePieces;
   SlidingNodes Sliding;
   GaussVolumes Volumes;
-  // E h^2, in N.
+  // E h^2, in N: E is the least Young modulus, h the mean distance of nodes. The unit of
+  // EquilibriumLimits::AbsoluteTolerance.
   double ForceScale = 0.0;
   FiniteElements Elements;
   TangentSolver Tangent;
-  // Whether there is a tangent that may serve, and whether it is that of another call.
+  // HasTangent: a tangent exists that may be reused. IsTangentOld: it is from an earlier call.
   bool HasTangent = false;
   bool IsTangentOld = false;
-  // For how many steps tangents are still to be clamped.
+  // The number of further steps with clamped tangents.
   int ClampedSteps = 0;
   std::vector<glm::dvec3> RightHandSide;
   std::vector<glm::dvec3> Direction;
   State Trial;
-  // Where the last call has left the body. Its forces need not be found again, unless something has
-  // been changed since.
+  // The state after the last call. Its forces are still valid if HasForces.
   State Last;
   bool HasForces = false;
 };

@@ -12,88 +12,92 @@
 namespace deformvolume
 {
 
-/// How the strain energy follows from the deformation gradient F. Small strains of both are linear
-/// elasticity.
+/// How the strain energy depends on the deformation gradient F. For small strains both models equal
+/// linear elasticity.
 enum class MaterialModel
 {
-  /// Stable, without a logarithm: mu/2 (|F|^2 - 3) - mu (J - 1) + (lambda + mu)/2 (J - 1)^2, where
-  /// J is the determinant of F. For soft tissue.
+  /// Stable neo-Hookean model without a logarithmic term: mu/2 (|F|^2 - 3) - mu (J - 1) + (lambda +
+  /// mu)/2 (J - 1)^2, where J is the determinant of F. For soft tissue.
   StableNeoHookean,
-  /// mu |F - R|^2 + lambda/2 tr(S - 1)^2, where F = R S and R is a rotation: linear elasticity in
-  /// the frame that turns with the material. Large strains do not keep the volume. The part of
-  /// lambda that is more than 4 mu acts on the mean of J - 1, as in the other model.
+  /// Corotational model: mu |F - R|^2 + lambda/2 tr(S - 1)^2, where F = R S and R is a rotation.
+  /// This is linear elasticity in a frame that rotates with the material. It does not preserve the
+  /// volume at large strains. As in the other model, the part of lambda above 4 mu acts on the mean
+  /// of J - 1.
   Corotational
 };
 
-/// How far a solution goes.
+/// How accurately Solve() finds the equilibrium.
 enum class EquilibriumMode
 {
-  /// A frame of an animation: few steps, each as far as the next one needs it. What is left is
-  /// reported, and the next call goes on from there.
+  /// For a frame of an animation: few Newton steps. The report has the remaining residual, and the
+  /// next call continues from there.
   Interactive,
-  /// Equilibrium, as far as the limits below say.
+  /// Iterates until the limits below are met.
   Converged
 };
 
-/// When to stop. What is 0 is chosen by the mode.
+/// When to stop. A value of 0 selects the default of the mode.
 struct EquilibriumLimits
 {
-  /// Steps of Newton's method; 0: 2 when interactive, else 200.
+  /// Largest number of Newton steps; 0: 2 in mode Interactive, otherwise 200.
   int NewtonSteps = 0;
-  /// Iterations of conjugate gradients in each step; 0: 500 when interactive, else 5000.
+  /// Largest number of conjugate gradient iterations in each Newton step; 0: 500 in mode
+  /// Interactive, otherwise 5000.
   int LinearIterations = 0;
-  /// By how much these make the residual of the linear system smaller; 0: at least 3e-3 when
-  /// interactive, and no more than the tolerances need, else 1e-6.
+  /// The factor by which the iterations reduce the residual of the linear system. 0: 1e-6 in mode
+  /// Converged. In mode Interactive the factor is chosen between 3e-3 and 0.3, as the tolerances
+  /// below require.
   double LinearTolerance = 0.0;
-  /// A body is in equilibrium where no component of a force on a free node is larger than this part
-  /// of the largest force that is applied or that holds a node; 0: 1e-3 when interactive, and 1e-2
-  /// where held nodes have moved, else 1e-6.
+  /// The body is in equilibrium if no component of the residual force on a free node exceeds this
+  /// part of the largest applied force or reaction. 0: 1e-6 in mode Converged; 1e-3 in mode
+  /// Interactive, and 1e-2 if held nodes moved.
   double RelativeTolerance = 0.0;
-  /// Or than this part of E h^2, the force that a stress as large as the Young modulus exerts on a
-  /// tetrahedron of mean size; 0: 1e-6 when interactive, else 1e-11.
+  /// The body is also in equilibrium if no component exceeds this part of E h^2. This is the force
+  /// that a stress of the size of the Young modulus exerts on a tetrahedron of mean size. 0: 1e-6
+  /// in mode Interactive, otherwise 1e-11.
   double AbsoluteTolerance = 0.0;
 };
 
-/// What FiniteElementModel::Solve() is to do.
+/// The input of FiniteElementModel::Solve().
 struct EquilibriumRequest
 {
-  /// Nodes that are moved, besides those of the body that are fixed at rest.
+  /// Nodes that handles move, in addition to the fixed nodes of the body.
   std::vector<HeldNode> Held;
-  /// Forces, gravity and the displacements of fixed nodes.
+  /// Forces, gravity and the prescribed displacements of fixed nodes.
   BodyLoads Loads;
-  /// Whether to go all the way to equilibrium.
+  /// How accurately to solve. Default: Interactive.
   EquilibriumMode Mode = EquilibriumMode::Interactive;
-  /// When to stop; by default the mode says it.
+  /// When to stop. Default: as the mode says.
   EquilibriumLimits Limits;
-  /// Called every few milliseconds, in the thread that called; returning false aborts.
+  /// Called every few milliseconds in the calling thread. Return false to abort.
   std::function<bool()> Progress;
 };
 
-/// What FiniteElementModel::Solve() has done.
+/// The output of FiniteElementModel::Solve().
 struct EquilibriumReport
 {
   /// Whether the residual is within the tolerances.
   bool IsConverged = false;
-  /// Linear systems that were solved.
+  /// The number of linear systems that were solved.
   int NewtonSteps = 0;
-  /// Iterations of conjugate gradients in all of them.
+  /// The number of conjugate gradient iterations in all of them.
   int LinearIterations = 0;
-  /// The largest component of what is left of the force on a free node, in N.
+  /// The largest component of the residual force on a free node, in N.
   double Residual = 0.0;
-  /// The same as a part of the largest force that is applied or holds a node; 0 without forces.
+  /// The residual divided by the largest applied force or reaction; 0 if there are no forces.
   double RelativeResidual = 0.0;
   /// The strain energy, in J.
   double StrainEnergy = 0.0;
-  /// Pieces of the body (BodyPieces) that are not held by three nodes that lie on no common line,
-  /// and a tetrahedron of the first of them. They bear no loads, and exert no forces.
+  /// The number of pieces of the body (BodyPieces) that are not held (PieceSupports). Such frozen
+  /// pieces bear no loads and exert no forces.
   std::int32_t NumberOfFrozenPieces = 0;
-  /// A tetrahedron of the first frozen piece, for a message; -1 where no piece is frozen.
+  /// A tetrahedron of the first frozen piece, for messages; -1 if no piece is frozen.
   std::int32_t FirstFrozenTetrahedron = -1;
-  /// Those of them that have gone like rigid bodies with nodes that hold or that they share with
-  /// others; the rest has stayed where it was.
+  /// The number of frozen pieces that moved like rigid bodies with their supporting nodes. The
+  /// other frozen pieces did not move.
   std::int32_t NumberOfFollowingPieces = 0;
-  /// Tetrahedra that are inside out now, somewhere: split into twelve linear ones, as
-  /// vtkDeformVolumeFilter does it, one of these is inside out.
+  /// The number of tetrahedra that are partly inverted: one of the twelve linear tetrahedra into
+  /// which vtkDeformVolumeFilter splits each of them is inverted.
   std::int64_t NumberOfInvertedTetrahedra = 0;
 };
 

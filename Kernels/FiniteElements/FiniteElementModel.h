@@ -16,15 +16,14 @@
 namespace deformvolume
 {
 
-/// Equilibrium of an elastic body by tetrahedra of ten nodes with four Gauss points. They bend as
-/// they should with one of them across, also where the material is nearly incompressible: the part
-/// of lambda that is more than 4 mu acts on the mean dilatation of each tetrahedron only (selective
-/// mean dilatation). The body needs mid-side nodes (AddMidSideNodes).
+/// Computes the equilibrium of an elastic body with ten-node tetrahedra and four Gauss points. The
+/// body needs mid-side nodes (AddMidSideNodes). To avoid volumetric locking of nearly
+/// incompressible material, the part of lambda above 4 mu acts on the mean dilatation of each
+/// tetrahedron only (selective mean dilatation).
 ///
-/// Order of calls: SetBody, then Solve, as often as wanted. Solve begins with the last
-/// displacements. Every failure is an Error; the body, its materials and its displacements are then
-/// as before the call.
-/// Results do not depend on the number of threads, to the last bit.
+/// Call SetBody first, then Solve any number of times. Solve starts from the last displacements.
+/// Every failure throws an Error; the body, its materials and its displacements are then unchanged.
+/// Results are bit for bit the same for any number of threads.
 class DEFORMVOLUME_EXPORT FiniteElementModel
 {
 public:
@@ -33,38 +32,38 @@ public:
   FiniteElementModel(const FiniteElementModel&) = delete;
   FiniteElementModel& operator=(const FiniteElementModel&) = delete;
 
-  /// The body, at rest. An Error where CheckBody finds one, or it has no mid-side nodes; the last
-  /// body stays then. progress: called every few milliseconds, in the thread that called; returning
-  /// false aborts, and the last body stays, too.
+  /// Sets the body at rest. Throws an Error if CheckBody does, or if the body has no mid-side
+  /// nodes. progress: called every few milliseconds in the calling thread; return false to abort.
+  /// After an error or an abort the previous body is kept.
   void SetBody(const ElasticBody& body, const std::function<bool()>& progress = nullptr);
 
-  /// One material for the body that is set, or one a tetrahedron. Displacements stay.
+  /// Sets one material for the body, or one for each tetrahedron. Displacements do not change.
   void SetMaterials(const std::vector<ElasticMaterial>& materials);
 
-  /// The strain energy of a material, now and of bodies that follow. Displacements stay. Default:
-  /// stable neo-Hookean.
+  /// Sets the strain energy model, for this body and those set later. Displacements do not change.
+  /// Default: stable neo-Hookean.
   void SetMaterialModel(MaterialModel model);
 
-  /// Moves the held nodes to where they are to be, and the others towards equilibrium. An Error
-  /// where CheckLoads or CheckHeldNodes find one, where no piece of the body is held, and where the
-  /// forces are no numbers any more.
+  /// Moves the held nodes to their prescribed displacements, and the other nodes towards
+  /// equilibrium. Throws an Error if CheckLoads or CheckHeldNodes does, if no piece of the body is
+  /// held, or if forces become infinite or not a number.
   EquilibriumReport Solve(const EquilibriumRequest& request);
 
-  /// Puts all displacements to 0, and forgets what the last calls of Solve have left for the next.
+  /// Sets all displacements to 0, and discards what earlier calls of Solve left for the next one.
   void Reset();
 
-  /// Of each node, in metres.
+  /// The displacement of each node, in metres.
   const std::vector<glm::dvec3>& GetDisplacements() const;
 
-  /// Where the next call of Solve begins, such as a state that was saved. Nodes that slide begin at
-  /// the nearest place in their plane, or on their line.
+  /// Sets the displacements from which the next call of Solve starts, such as a saved state.
+  /// Displacements of sliding nodes are projected to their plane or line.
   void SetDisplacements(const std::vector<glm::dvec3>& displacements);
 
-  /// The force with which each node resists its displacement, in N: for a free node that of the
-  /// loads when in equilibrium, for a held one its reaction to them as well.
+  /// The elastic force of each node, in N. In equilibrium, the force of a free node equals its
+  /// load. The force of a held node equals its load plus the reaction of the support.
   std::vector<glm::dvec3> GetForces() const;
 
-  /// Of each tetrahedron.
+  /// The stress and deformation of each tetrahedron.
   std::vector<ElementResults> GetElementResults() const;
 
 private:

@@ -17,7 +17,7 @@ namespace
 
 constexpr std::size_t ChunksAtOnce = 512;
 
-// The batches of a chunk.
+// The range of batches of a chunk.
 struct ChunkRange
 {
   std::size_t Begin;
@@ -48,7 +48,7 @@ DEFORMVOLUME_ALWAYS_INLINE void AddForces(
   }
 }
 
-// Whether the tetrahedron in a lane is inside out at a Gauss point.
+// Whether the tetrahedron in a lane is inverted at a Gauss point.
 DEFORMVOLUME_ALWAYS_INLINE bool IsInverted(
   const ElementBatch& batch, const LaneElement& element, int lane)
 {
@@ -109,7 +109,7 @@ struct TangentArguments
   BlockMatrix* Matrix;
 };
 
-// Four numbers of each lane, lane by lane.
+// Transposes four values of four lanes each.
 DEFORMVOLUME_ALWAYS_INLINE void TransposeLanes(
   const Lanes& a, const Lanes& b, const Lanes& c, const Lanes& d, Lanes (&result)[NumberOfLanes])
 {
@@ -131,8 +131,8 @@ DEFORMVOLUME_ALWAYS_INLINE void AddLanes(double* sums, const Lanes& lanes)
   std::memcpy(sums, &sum, sizeof(sum));
 }
 
-// Adds the matrix of each lane to its block; where the position is ~block, transposed. Blocks of
-// two lanes may be the same.
+// Adds the matrix of each lane to its block. A negative position ~block stands for the transposed
+// block. Two lanes may have the same block, so they are added one after the other.
 DEFORMVOLUME_ALWAYS_INLINE void AddBlocks(
   BlockMatrix& target, const std::int32_t* positions, const LaneMatrix& matrix)
 {
@@ -227,7 +227,7 @@ void RunChunkOf(const Arguments& arguments)
   RunPlain<Model>(arguments);
 }
 
-// Calls call(model) with a material model that is known to the compiler, as decltype(model)::value.
+// Calls call(model) with the material model as a compile-time constant, decltype(model)::value.
 template <typename Call>
 void WithModel(MaterialModel model, Call&& call)
 {
@@ -253,8 +253,8 @@ ChunkRange GetRange(const ElementBatches& batches, std::size_t chunk)
     std::min(batches.Batches.size(), (chunk + 1) * ElementBatches::ChunkSize) };
 }
 
-// Calls body(chunk) for all chunks, so that those that have a node in common come one after the
-// other, in an order that is always the same.
+// Calls body(chunk) for all chunks, one color after the other. Chunks with a common node are never
+// handled in parallel, and always in the same order.
 template <typename Body>
 void ForChunks(Watch& watch, const ElementBatches& batches, Body&& body)
 {
@@ -264,7 +264,7 @@ void ForChunks(Watch& watch, const ElementBatches& batches, Body&& body)
   }
 }
 
-// Adds J sigma = P F^T times a volume, of which the six components are those that differ.
+// Adds the six components of the Kirchhoff stress J sigma = P F^T times a volume.
 void AddKirchhoffStress(const LaneMatrix& piola, const LaneMatrix& F, int lane, double volume,
   std::array<double, 6>& stress)
 {
@@ -285,8 +285,8 @@ void AddKirchhoffStress(const LaneMatrix& piola, const LaneMatrix& F, int lane, 
   stress[5] += product(&LaneVector::X, &LaneVector::Z);
 }
 
-// Means over the tetrahedron in a lane: of the stress over its volume now, of the others over its
-// volume at rest.
+// Computes means over the tetrahedron in a lane: of the stress over the deformed volume, of the
+// energy density over the volume at rest.
 ElementResults GetLaneResults(const ElementBatch& batch, const LaneElement& element,
   const LaneStress (&stresses)[ElementBatch::NumberOfGaussPoints], int lane)
 {

@@ -16,7 +16,8 @@
 namespace deformvolume
 {
 
-/// The sums over all tetrahedra, which do not depend on the number of threads, to the last bit.
+/// Sums of forces, energies and tangents over all tetrahedra. The sums are bit for bit the same for
+/// any number of threads.
 class FiniteElements
 {
 public:
@@ -29,14 +30,14 @@ public:
   void SetMaterialModel(MaterialModel model) { this->Model = model; }
   MaterialModel GetMaterialModel() const { return this->Model; }
 
-  /// See SetActivePieces of ElementBatches.
+  /// See SetActivePieces() in ElementBatches.h.
   void SetActivePieces(
     const ElasticBody& body, const BodyPieces& pieces, const std::vector<bool>& isActive)
   {
     deformvolume::SetActivePieces(this->Batches, body, pieces.PieceOfTetrahedron, isActive);
   }
 
-  /// What is needed to assemble matrices of this pattern.
+  /// Prepares AssembleTangent() for matrices of this pattern.
   void SetPattern(Watch& watch, const BlockPattern& pattern)
   {
     this->Positions = FindPositions(watch, this->Batches, pattern);
@@ -45,21 +46,22 @@ public:
   struct Sums
   {
     double Energy = 0.0;
-    /// What the energy is the difference of: it is rounded to 1e-16 of this.
+    /// The size of the terms whose difference the energy is. Rounding errors of the energy are
+    /// about 1e-16 of this value.
     double Rounded = 0.0;
-    /// Tetrahedra that are inside out at a Gauss point.
+    /// The number of tetrahedra that are inverted at a Gauss point.
     std::int64_t Inverted = 0;
   };
 
-  /// The strain energy and its derivatives by the displacements of the nodes.
+  /// Computes the strain energy and its derivatives by the displacements of the nodes.
   Sums FindForces(Watch& watch, const std::vector<glm::dvec3>& displacements,
     std::vector<glm::dvec3>& forces) const;
 
-  /// Which nodes belong to tetrahedra that are inside out at a Gauss point.
+  /// Marks the nodes of tetrahedra that are inverted at a Gauss point.
   void FindInvertedNodes(Watch& watch, const std::vector<glm::dvec3>& displacements,
     std::vector<unsigned char>& isInverted) const;
 
-  /// The second derivatives; isClamped: without negative eigenvalues, see FindTangent.
+  /// Computes the second derivatives. isClamped: without negative eigenvalues, see FindTangent.
   void AssembleTangent(Watch& watch, const std::vector<glm::dvec3>& displacements, bool isClamped,
     BlockMatrix& matrix) const;
 
@@ -71,8 +73,8 @@ private:
   std::vector<BatchPositions> Positions;
 };
 
-/// Of how many tetrahedra a part is inside out, where each is split into twelve linear ones: its
-/// corners, and eight around its middle (see EquilibriumReport).
+/// Counts tetrahedra of which one of twelve linear parts is inverted (see
+/// EquilibriumReport::NumberOfInvertedTetrahedra).
 std::int64_t CountInvertedSplits(
   Watch& watch, const ElasticBody& body, const std::vector<glm::dvec3>& displacements);
 

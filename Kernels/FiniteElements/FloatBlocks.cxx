@@ -10,7 +10,7 @@ namespace deformvolume
 namespace
 {
 
-// GCC takes no size of a vector that depends on the argument of a template.
+// GCC does not accept a vector_size that depends on a template parameter.
 template <std::size_t Size>
 struct FloatLanes;
 template <>
@@ -61,7 +61,7 @@ DEFORMVOLUME_ALWAYS_INLINE void MultiplyRows(const FloatProduct& arguments)
       const float* const values = arguments.Values + block * (Rows * Columns);
       for (int j = 0; j < Columns; ++j)
       {
-        // Lanes behind the last row are not used.
+        // Lanes after the last row of the block are ignored.
         Lane column;
         std::memcpy(&column, values + j * Rows, sizeof(column));
         sums[j % 2] = sums[j % 2] + column * vector[j];
@@ -119,7 +119,7 @@ FloatBlocks<Rows, Columns>::FloatBlocks(Watch& watch, const SparseBlocks<Rows, C
   , ColumnOfBlock(matrix.ColumnOfBlock)
 {
   constexpr std::size_t size = Rows * Columns;
-  // The last column is read as if it had as many rows as there are lanes.
+  // Padding: the last column is read with as many values as there are lanes.
   this->Values.resize(matrix.Blocks.size() * size + PaddedSize<Rows>, 0.0f);
   ForItemsInParallel(watch, matrix.Blocks.size(),
     [&](std::size_t block)

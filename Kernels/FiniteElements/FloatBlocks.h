@@ -11,13 +11,13 @@
 namespace deformvolume
 {
 
-/// How many numbers a vector of the multigrid method has for each row, of which those behind the
-/// third or the sixth are not used.
+/// The number of floats that a row of a multigrid vector takes. Those after the third or sixth are
+/// padding.
 template <int Rows>
 constexpr std::size_t PaddedSize = Rows <= 4 ? 4 : 8;
 
-/// A sparse matrix of blocks in single precision, each by its columns: a preconditioner needs no
-/// more.
+/// A sparse matrix of blocks in single precision, which is accurate enough for a preconditioner.
+/// Each block is stored by columns.
 template <int Rows, int Columns>
 class FloatBlocks
 {
@@ -27,13 +27,13 @@ public:
 
   std::size_t GetNumberOfRows() const { return this->Starts.size() - 1; }
 
-  /// The rows from begin to one before end: result = right - matrix * vector. May be called side by
-  /// side.
+  /// Sets the rows [begin, end) of result = right - matrix * vector. May be called in parallel for
+  /// different rows.
   void Subtract(std::size_t begin, std::size_t end, const float* right, const float* vector,
     float* result) const;
 
-  /// result = vector + diagonal * (right - matrix * vector), of which the diagonal has a block for
-  /// each row.
+  /// result = vector + diagonal * (right - matrix * vector), where `diagonal` has a block for each
+  /// row.
   void Smooth(std::size_t begin, std::size_t end, const std::vector<float>& diagonal,
     const float* right, const float* vector, float* result) const;
 

@@ -8,10 +8,9 @@
 #include <emmintrin.h>
 #endif
 
-// Functions of lanes have to become part of the function that is compiled for a processor: each of
-// them exists for the least one and, on x86, for those with AVX2. Neither fuses products with sums,
-// so that both give the same bits.
-// None of them is ever called, so that it does not matter how lanes would be passed.
+// Functions of lanes must be inlined into a function that is compiled for one instruction set: the
+// baseline or, on x86, AVX2. Neither fuses multiplications and additions, so both give the same
+// bits. As they are always inlined, the ABI of vector arguments (-Wpsabi) does not matter.
 #if defined(__GNUC__) || defined(__clang__)
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
@@ -26,17 +25,17 @@
 namespace deformvolume
 {
 
-/// Numbers of elements that are worked on side by side.
+/// The number of tetrahedra that one set of vector registers handles.
 constexpr int NumberOfLanes = 4;
-// Code for AVX2 takes this alignment for granted, which is not that of the type for other
-// processors.
+// State the alignment: code for AVX2 relies on it, and other instruction sets have a smaller
+// default.
 using Lanes = double __attribute__((
   vector_size(NumberOfLanes * sizeof(double)), aligned(NumberOfLanes * sizeof(double))));
 
-/// Whether the processor has AVX2, and code for it is used.
+/// Whether the processor has AVX2 and the AVX2 code is in use.
 bool HasWideLanes();
 
-/// Whether such code is used where the processor has it, from now on: so by default. For tests.
+/// Sets whether AVX2 code is used where the processor has it. Default: true. For tests.
 void UseWideLanes(bool areUsed);
 
 DEFORMVOLUME_ALWAYS_INLINE Lanes MakeLanes(double value)
@@ -70,7 +69,7 @@ DEFORMVOLUME_ALWAYS_INLINE double SumOfLanes(const Lanes& a)
   return (a[0] + a[1]) + (a[2] + a[3]);
 }
 
-/// A vector of three, in each lane.
+/// A vector of three components in each lane.
 struct LaneVector
 {
   Lanes X;
@@ -103,7 +102,7 @@ DEFORMVOLUME_ALWAYS_INLINE LaneVector Subtract(const LaneVector& a, const LaneVe
   return { a.X - b.X, a.Y - b.Y, a.Z - b.Z };
 }
 
-/// A matrix of 3 x 3 in each lane, by its columns.
+/// A 3 x 3 matrix in each lane, by columns.
 struct LaneMatrix
 {
   LaneVector Columns[3];

@@ -17,11 +17,11 @@ namespace
 {
 
 constexpr std::size_t PartsAtOnce = BlockMatrix::PartsAtOnce;
-// Aggregates of the coarsest level, which is solved exactly.
+// The largest number of aggregates of the coarsest level, which is solved exactly.
 constexpr std::int32_t CoarsestAggregates = 100;
 constexpr Eigen::Index ColumnsAtOnce = 48;
 
-// The rows and columns of free nodes.
+// Extracts the rows and columns of free nodes.
 SparseBlocks<3, 3> ExtractFree(Watch& watch, const BlockMatrix& matrix,
   const std::vector<unsigned char>& isFree, const std::vector<std::int32_t>& freeNodes)
 {
@@ -80,7 +80,7 @@ std::vector<float> MakeSmoother(
   Watch& watch, const std::vector<Eigen::Matrix<double, Size, Size>>& inverses, double damping)
 {
   constexpr std::size_t size = Size * Size;
-  // The last column is read as if it had as many rows as there are lanes.
+  // Padding: the last column is read with as many values as there are lanes.
   std::vector<float> result(inverses.size() * size + PaddedSize<Size>, 0.0f);
   ForItemsInParallel(watch, inverses.size(),
     [&](std::size_t row)
@@ -93,7 +93,7 @@ std::vector<float> MakeSmoother(
   return result;
 }
 
-// Makes a level of a matrix, and returns what is coarser.
+// Sets up a level for a matrix, and returns the next coarser one.
 template <int Size>
 Coarsening<Size> MakeLevel(Watch& watch, const SparseBlocks<Size, Size>& matrix,
   const NearNullSpace<Size>& modes, MultigridLevel<Size>& level)
@@ -112,7 +112,7 @@ Coarsening<Size> MakeLevel(Watch& watch, const SparseBlocks<Size, Size>& matrix,
   return coarsening;
 }
 
-// A step of the smoother from 0.
+// One smoothing step that starts from 0.
 template <int Size>
 void ApplySmoother(MultigridLevel<Size>& level, std::size_t begin, std::size_t end)
 {
@@ -133,7 +133,7 @@ void ApplySmoother(MultigridLevel<Size>& level, std::size_t begin, std::size_t e
   }
 }
 
-// The same, and what is left of the right-hand side.
+// Pre-smoothing, and the residual.
 template <int Size>
 void SmoothFirst(Watch& watch, MultigridLevel<Size>& level)
 {
@@ -148,7 +148,7 @@ void SmoothFirst(Watch& watch, MultigridLevel<Size>& level)
     });
 }
 
-// What the coarser level has found, and another step of the smoother.
+// Adds the correction of the coarser level, then post-smoothing.
 template <int Size>
 void SmoothLast(Watch& watch, MultigridLevel<Size>& level, const std::vector<float>& coarse)
 {
@@ -165,7 +165,7 @@ void SmoothLast(Watch& watch, MultigridLevel<Size>& level, const std::vector<flo
   level.Solution.swap(level.Work);
 }
 
-// The right-hand side of the coarser level.
+// Restricts the residual to the right-hand side of the coarser level.
 template <int Size>
 void Restrict(Watch& watch, const MultigridLevel<Size>& level, std::vector<float>& coarse)
 {
@@ -178,8 +178,8 @@ void Restrict(Watch& watch, const MultigridLevel<Size>& level, std::vector<float
     });
 }
 
-// The method of Cholesky, by columns that take some milliseconds together: below the diagonal.
-// Returns whether the matrix is positive definite, as far as rounding tells.
+// Cholesky factorization below the diagonal, in groups of columns that take a few milliseconds
+// each. Returns whether the matrix is positive definite up to rounding.
 bool Factorize(Watch& watch, Eigen::MatrixXd& matrix)
 {
   const Eigen::Index size = matrix.rows();
@@ -202,7 +202,7 @@ bool Factorize(Watch& watch, Eigen::MatrixXd& matrix)
   return true;
 }
 
-// The inverse of a matrix, by rows; empty where it is not positive definite.
+// Returns the inverse of a matrix, by rows; empty if the matrix is not positive definite.
 std::vector<float> Invert(Watch& watch, const SparseBlocks<6, 6>& matrix)
 {
   const Eigen::Index size = 6 * static_cast<Eigen::Index>(matrix.GetNumberOfRows());
@@ -259,7 +259,7 @@ void Multigrid::Build(Watch& watch, const BlockMatrix& matrix,
     Coarsening<6> next = MakeLevel(watch, coarse, modes, this->Coarse.back());
     if (next.Matrix.GetNumberOfRows() == coarse.GetNumberOfRows())
     {
-      // As many pieces of the body, of which each has become an aggregate.
+      // Each aggregate is a disconnected part of the body, so coarsening cannot continue.
       this->Coarse.pop_back();
       break;
     }
@@ -268,7 +268,7 @@ void Multigrid::Build(Watch& watch, const BlockMatrix& matrix,
   }
   this->Inverse =
     coarse.GetNumberOfRows() <= CoarsestAggregates ? Invert(watch, coarse) : std::vector<float>();
-  // The coarsest level has vectors only.
+  // The coarsest level needs its vectors only.
   this->Coarse.emplace_back();
   const std::size_t length = static_cast<std::size_t>(coarse.GetNumberOfRows()) * PaddedSize<6>;
   if (this->Inverse.empty())
@@ -348,7 +348,7 @@ void Multigrid::SolveCoarse(Watch& watch, std::size_t level)
 void Multigrid::Apply(
   Watch& watch, const std::vector<glm::dvec3>& vector, double size, std::vector<glm::dvec3>& result)
 {
-  // Single precision knows no numbers that are as small as residuals become.
+  // Scale the vector: residuals become smaller than the smallest float.
   const double scale = 1.0 / size;
   std::fill(result.begin(), result.end(), glm::dvec3(0.0));
   const std::size_t rows = this->FreeNodes.size();
@@ -357,7 +357,7 @@ void Multigrid::Apply(
     {
       for (std::size_t row = begin; row < end; ++row)
       {
-        // A vector times a matrix is the transposed matrix times the vector.
+        // glm: v * M is the transposed matrix times the vector.
         const glm::vec3 value =
           glm::vec3(scale * vector[static_cast<std::size_t>(this->FreeNodes[row])]) *
           this->Rotations[row];

@@ -17,12 +17,12 @@
 namespace deformvolume
 {
 
-/// A level of the multigrid method in single precision, and how it is coarsened.
+/// A level of the multigrid hierarchy in single precision.
 template <int Size>
 struct MultigridLevel
 {
   FloatBlocks<Size, Size> Matrix;
-  /// Damped inverses of the blocks on the diagonal.
+  /// Damped inverses of the diagonal blocks.
   std::vector<float> Smoother;
   FloatBlocks<Size, 6> Prolongation;
   FloatBlocks<6, Size> Restriction;
@@ -31,17 +31,17 @@ struct MultigridLevel
   std::vector<float> Work;
 };
 
-/// A cycle of the multigrid method over aggregates of nodes that move like rigid bodies, smoothed.
-/// It is built from a matrix once and used for others of the same body: the stiffness at a node is
-/// about what it was, turned with what is around the node.
+/// One V-cycle of smoothed aggregation multigrid, with rigid-body modes as near null space. The
+/// hierarchy is built from one matrix and reused for later matrices of the same body. The stiffness
+/// around a node is assumed to rotate with the body (SetPositions).
 class Multigrid : public Preconditioner
 {
 public:
-  /// Where the nodes are now: what was built is turned with them.
+  /// Sets the current positions of the nodes, by which the hierarchy is rotated.
   void SetPositions(
     Watch& watch, const BlockPattern& pattern, const std::vector<glm::dvec3>& positions);
 
-  /// positions: of the nodes, as they are deformed now.
+  /// positions: the deformed positions of the nodes, for which the matrix was computed.
   void Build(Watch& watch, const BlockMatrix& matrix, const std::vector<unsigned char>& isFree,
     const std::vector<glm::dvec3>& positions);
   void Apply(Watch& watch, const std::vector<glm::dvec3>& vector, double size,
@@ -52,12 +52,13 @@ private:
   void SolveCoarsest(Watch& watch, const std::vector<float>& right, std::vector<float>& solution);
 
   std::vector<std::int32_t> FreeNodes;
-  // Where the nodes were when the levels were built, and how they have turned since.
+  // The positions of the nodes at Build(), and the rotations of their neighborhoods since then.
   std::vector<glm::dvec3> Positions;
   std::vector<glm::mat3> Rotations;
   MultigridLevel<3> Fine;
   std::vector<MultigridLevel<6>> Coarse;
-  // The inverse of the coarsest matrix, by rows; empty where that is the one of its diagonal.
+  // The inverse of the coarsest matrix, by rows. Empty if the coarsest level uses only its inverse
+  // diagonal blocks (Smoother).
   std::vector<float> Inverse;
 };
 

@@ -19,12 +19,12 @@ class Preconditioner
 {
 public:
   virtual ~Preconditioner() = default;
-  /// size: about how large the vector is.
+  /// size: the approximate length of the vector, for scaling.
   virtual void Apply(Watch& watch, const std::vector<glm::dvec3>& vector, double size,
     std::vector<glm::dvec3>& result) = 0;
 };
 
-/// The inverses of the blocks on the diagonal.
+/// Block Jacobi: the inverses of the diagonal blocks.
 class BlockJacobi : public Preconditioner
 {
 public:

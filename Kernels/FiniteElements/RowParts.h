@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Work on the rows of vectors, part by part, and sums that do not depend on the number of threads.
+// Loops over rows of vectors in parallel, and sums that do not depend on the number of threads.
 #ifndef DeformVolumeRowParts_h
 #define DeformVolumeRowParts_h
 
@@ -16,7 +16,7 @@
 namespace deformvolume
 {
 
-/// Calls body(begin, end) for parts of the rows in parallel.
+/// Calls body(begin, end) for ranges of rows in parallel.
 template <typename Body>
 void ForRows(Watch& watch, std::size_t rows, Body&& body)
 {
@@ -25,7 +25,7 @@ void ForRows(Watch& watch, std::size_t rows, Body&& body)
     [&](std::size_t part) { body(part * size, std::min(rows, (part + 1) * size)); });
 }
 
-/// The sum of what body(begin, end) returns for parts of the rows, which are added in their order.
+/// Adds what body(begin, end) returns for ranges of rows, in the order of the rows.
 template <typename Body>
 double SumOfParts(Watch& watch, std::size_t rows, Body&& body)
 {

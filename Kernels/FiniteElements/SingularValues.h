@@ -7,8 +7,9 @@
 namespace deformvolume
 {
 
-/// F = U diag(Values) V^T, of which U and V are rotations. The values fall; the last one has the
-/// sign of the determinant of F, so that U V^T is the rotation nearest to F whatever F is.
+/// The singular value decomposition F = U diag(Values) V^T, where U and V are rotations. The values
+/// are in descending order. The last one has the sign of det F, so that U V^T is the rotation
+/// nearest to F.
 struct SingularValues
 {
   LaneMatrix U;
@@ -16,20 +17,21 @@ struct SingularValues
   Lanes Values[3];
 };
 
-/// The products of the columns of a matrix, which Jacobi's rotations make those of a diagonal one.
+/// The scalar products of the columns of a matrix.
 struct LaneProducts
 {
   Lanes XX, YY, ZZ, XY, YZ, XZ;
 };
 
-/// Turns the columns p and q so that their product is 0: the angle is at most 45 degrees.
+/// A Jacobi rotation of the columns p and q that makes their product 0. The angle is at most 45
+/// degrees.
 DEFORMVOLUME_ALWAYS_INLINE void RotateColumns(
   Lanes& pp, Lanes& qq, Lanes& pq, Lanes& pr, Lanes& qr, LaneVector& p, LaneVector& q)
 {
   const Lanes difference = qq - pp;
   const Lanes twice = 2.0 * pq;
   const Lanes root = SquareRoot(difference * difference + twice * twice);
-  // Where both are 0 there is nothing to turn.
+  // If both are 0, nothing is rotated, and the denominator must not be 0.
   const Lanes denominator = Largest(Absolute(difference) + root, MakeLanes(1e-300));
   const Lanes tangent = (difference < 0.0 ? -twice : twice) / denominator;
   const Lanes cosine = 1.0 / SquareRoot(1.0 + tangent * tangent);
@@ -52,8 +54,8 @@ DEFORMVOLUME_ALWAYS_INLINE LaneVector Choose(
     a < b ? whereLess.Z : otherwise.Z };
 }
 
-/// Exchanges two columns where the first is shorter, of which one changes its sign: V stays a
-/// rotation.
+/// Exchanges two columns if the first one is shorter. One of the two changes its sign, so that V
+/// stays a rotation.
 DEFORMVOLUME_ALWAYS_INLINE void SortColumns(
   Lanes& a, Lanes& b, LaneVector& p, LaneVector& q, LaneVector& v, LaneVector& w)
 {
@@ -72,8 +74,8 @@ DEFORMVOLUME_ALWAYS_INLINE void SortColumns(
 
 DEFORMVOLUME_ALWAYS_INLINE SingularValues FindSingularValues(const LaneMatrix& matrix)
 {
-  // Jacobi's method turns off-diagonal elements to 0 ever faster: after four sweeps they are less
-  // than rounding, whatever they were, and mostly earlier.
+  // Jacobi's method converges quadratically: after four sweeps, often earlier, the off-diagonal
+  // elements are below rounding.
   constexpr int sweeps = 4;
   constexpr double rounding = 1e-33;
   SingularValues result;
@@ -105,7 +107,7 @@ DEFORMVOLUME_ALWAYS_INLINE SingularValues FindSingularValues(const LaneMatrix& m
   SortColumns(n[0], n[2], b[0], b[2], V.Columns[0], V.Columns[2]);
   SortColumns(n[1], n[2], b[1], b[2], V.Columns[1], V.Columns[2]);
 
-  // U by the method of Gram and Schmidt, and the direction that is left.
+  // U by Gram-Schmidt orthogonalization; its last column by the cross product.
   LaneMatrix& U = result.U;
   const Lanes least = MakeLanes(1e-290);
   result.Values[0] = SquareRoot(n[0]);
@@ -114,7 +116,7 @@ DEFORMVOLUME_ALWAYS_INLINE SingularValues FindSingularValues(const LaneMatrix& m
   LaneVector second = Subtract(b[1], Scale(U.Columns[0], Dot(U.Columns[0], b[1])));
   second = Subtract(second, Scale(U.Columns[0], Dot(U.Columns[0], second)));
   const Lanes squared = Dot(second, second);
-  // What is less than rounding of the first has no direction: any across the first will do.
+  // A second column that is mere rounding has no direction: take any one normal to the first.
   const LaneVector& u = U.Columns[0];
   const LaneVector across = Choose(
     Absolute(u.X), MakeLanes(0.6), LaneVector{ zero, -u.Z, u.Y }, LaneVector{ u.Z, zero, -u.X });

@@ -15,14 +15,15 @@
 namespace deformvolume
 {
 
-/// The nodes of a body that slide in a plane, or along the line where two meet, and what that does
-/// to vectors and matrices.
+/// The sliding nodes of a body, and the projections of vectors and matrices to their planes and
+/// lines.
 class SlidingNodes
 {
 public:
   explicit SlidingNodes(const ElasticBody& body);
 
-  /// The part of a vector at a node that it can follow: all of it where the node does not slide.
+  /// Projects a vector at a node to its plane or line. Does not change vectors at nodes that do not
+  /// slide.
   glm::dvec3 Project(std::size_t node, const glm::dvec3& vector) const
   {
     const std::int32_t place = this->Places.empty() ? -1 : this->Places[node];
@@ -30,12 +31,12 @@ public:
   }
   void Project(std::vector<glm::dvec3>& vectors) const;
 
-  /// Leaves of a matrix what acts where nodes can go. Along the normals it has the mean stiffness
-  /// of the node, so that it has an inverse.
+  /// Projects a matrix on both sides. Along the normals it gets the mean stiffness of the node, so
+  /// that it stays invertible.
   void Constrain(BlockMatrix& matrix) const;
 
 private:
-  // Of each node its place below; -1: it does not slide. Empty: none does.
+  // The index of each node in Nodes and Projections; -1: it does not slide. Empty: no node slides.
   std::vector<std::int32_t> Places;
   std::vector<std::size_t> Nodes;
   std::vector<glm::dmat3> Projections;

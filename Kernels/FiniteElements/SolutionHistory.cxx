@@ -39,8 +39,8 @@ void SolutionHistory::Guess(Watch& watch, const BlockMatrix& matrix,
     });
 }
 
-// The energy is least where the residual is orthogonal to all solutions: a symmetric system, which
-// is solved by elimination. A solution that is nearly a combination of those before it is left out.
+// The energy is least if the residual is orthogonal to all solutions. This gives a small symmetric
+// system, solved by elimination. A solution that nearly depends on those before it is skipped.
 SolutionHistory::Factors SolutionHistory::FindFactors(
   Watch& watch, const std::vector<glm::dvec3>& rightHandSide) const
 {

@@ -14,26 +14,27 @@
 namespace deformvolume
 {
 
-/// The last solutions of linear systems that follow each other: what moves a handle now is mostly a
-/// combination of what has moved it before (Fischer, "Projection techniques for iterative solution
-/// of Ax = b with successive right-hand sides", 1998). Sums do not depend on the number of threads.
+/// Recent solutions of a sequence of similar linear systems, for initial guesses. The response to a
+/// moving handle is mostly a combination of earlier responses. Source: Fischer, "Projection
+/// techniques for iterative solution of Ax = b with successive right-hand sides", 1998. Results do
+/// not depend on the number of threads.
 class SolutionHistory
 {
 public:
-  /// As many as a handle has directions.
+  /// The number of stored solutions: a handle moves in three directions.
   static constexpr std::size_t Length = 3;
 
   void Clear() { this->Number = 0; }
-  /// The matrix is another one.
+  /// Call this when the matrix changed.
   void ForgetProducts() { this->HasProducts = false; }
 
-  /// The combination of them that is nearest to the solution, by its energy, and the residual of
-  /// that; 0 and the right-hand side where there are none.
+  /// Finds the combination of stored solutions with the least energy, and its residual. Without
+  /// stored solutions these are 0 and the right-hand side.
   void Guess(Watch& watch, const BlockMatrix& matrix, const std::vector<unsigned char>& isFree,
     const std::vector<glm::dvec3>& rightHandSide, std::vector<glm::dvec3>& solution,
     std::vector<glm::dvec3>& residual);
 
-  /// Takes up a solution, as it was found for the matrix of the last guess, in place of the oldest.
+  /// Stores a solution for the matrix of the last guess, in place of the oldest one.
   void Add(const std::vector<glm::dvec3>& solution, const std::vector<glm::dvec3>& rightHandSide,
     const std::vector<glm::dvec3>& residual);
 
@@ -47,7 +48,7 @@ private:
 
   Factors FindFactors(Watch& watch, const std::vector<glm::dvec3>& rightHandSide) const;
 
-  // Those that were taken up last come first.
+  // The latest solution comes first.
   std::array<Entry, Length> Entries;
   std::size_t Number = 0;
   bool HasProducts = false;

@@ -14,13 +14,13 @@
 namespace deformvolume
 {
 
-/// A sparse matrix of blocks of so many rows and columns, by rows.
+/// A sparse matrix of dense blocks of a fixed size, by rows.
 template <int Rows, int Columns>
 struct SparseBlocks
 {
   using Block = Eigen::Matrix<double, Rows, Columns>;
 
-  /// Of each row the first block; one more than there are rows.
+  /// The first block of each row, followed by the number of blocks.
   std::vector<std::int32_t> Starts{ 0 };
   std::vector<std::int32_t> ColumnOfBlock;
   std::vector<Block> Blocks;
@@ -68,12 +68,12 @@ SparseBlocks<Columns, Rows> Transpose(Watch& watch, const SparseBlocks<Rows, Col
   return result;
 }
 
-/// The product of two matrices. The columns of each row rise.
+/// Multiplies two matrices. The columns of each row of the product are sorted.
 template <int Rows, int Inner, int Columns>
 SparseBlocks<Rows, Columns> Multiply(
   Watch& watch, const SparseBlocks<Rows, Inner>& a, const SparseBlocks<Inner, Columns>& b)
 {
-  // Rows of coarse levels have far more to do: of nodes and of what they are connected with.
+  // Rows of coarse levels take more time, as they have more and larger blocks.
   constexpr std::int32_t rowsOfPart = Rows > 3 ? 32 : 256;
   constexpr std::size_t partsAtOnce = 16;
   using Result = SparseBlocks<Rows, Columns>;
@@ -147,7 +147,7 @@ SparseBlocks<Rows, Columns> Multiply(
     result.ColumnOfBlock.insert(
       result.ColumnOfBlock.end(), part.ColumnOfBlock.begin(), part.ColumnOfBlock.end());
     result.Blocks.insert(result.Blocks.end(), part.Blocks.begin(), part.Blocks.end());
-    part = Result(); // to give back all memory at once takes long
+    part = Result(); // frees memory step by step: all at once would take long
   }
   return result;
 }

@@ -12,7 +12,7 @@ namespace deformvolume
 namespace
 {
 
-// With fewer free nodes the inverses of the diagonal are enough.
+// With fewer free nodes, block Jacobi is enough.
 constexpr std::ptrdiff_t LeastNumberForLevels = 300;
 
 } // namespace
@@ -73,7 +73,7 @@ Preconditioner& TangentSolver::Precondition(Watch& watch, const std::vector<unsi
 
 void TangentSolver::JudgeLevels(int iterations, double digits)
 {
-  // It takes about as long to build them as some tens of iterations.
+  // Building the hierarchy takes about as long as some tens of iterations.
   constexpr int fewIterations = 30;
   constexpr double manyTimes = 2.5;
   const double cost = iterations / std::max(0.1, digits);
@@ -99,7 +99,7 @@ ConjugateGradients::Result TangentSolver::Solve(Watch& watch,
   const double wanted = limits.Tolerance * limits.Tolerance * squared;
   if (this->IsFree != isFree)
   {
-    this->History.Clear(); // of other nodes
+    this->History.Clear(); // stored solutions are for other free nodes
   }
   Preconditioner& preconditioner = this->Precondition(watch, isFree);
   double begin = squared;
@@ -121,7 +121,7 @@ ConjugateGradients::Result TangentSolver::Solve(Watch& watch,
   {
     if (this->AreLevelsNew)
     {
-      this->IsFree.clear(); // they are to be built from a better matrix
+      this->IsFree.clear(); // rebuild the hierarchy from a positive definite matrix
     }
     return result;
   }

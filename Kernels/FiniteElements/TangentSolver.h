@@ -19,13 +19,13 @@
 namespace deformvolume
 {
 
-/// The tangent of a body, and what solves linear systems with it: conjugate gradients, with the
-/// inverses of the diagonal for few nodes, and levels for many, which are kept while they serve.
-/// After an exception it has to Forget.
+/// Solves linear systems with the tangent of a body by preconditioned conjugate gradients. The
+/// preconditioner is block Jacobi for few free nodes, otherwise a multigrid hierarchy that is kept
+/// while it converges well. Call Forget() after an exception.
 class TangentSolver
 {
 public:
-  /// points: of the body, at rest. All of them have to stay.
+  /// points: the rest positions of the body. The object keeps references to all three arguments.
   TangentSolver(const std::vector<glm::dvec3>& points, const FiniteElements& elements,
     const SlidingNodes& sliding)
     : Points(points)
@@ -37,7 +37,7 @@ public:
   struct Limits
   {
     int Iterations = 500;
-    /// By how much the length of the residual is made smaller, from that of the right-hand side.
+    /// The factor by which the residual must become shorter than the right-hand side.
     double Tolerance = 1e-2;
   };
 
@@ -47,14 +47,15 @@ public:
   }
   const BlockMatrix& GetMatrix() const { return this->Matrix; }
 
-  /// Makes the matrix for displacements; isClamped: without negative eigenvalues, see FindTangent.
+  /// Assembles the matrix for displacements. isClamped: without negative eigenvalues, see
+  /// FindTangent.
   void Update(Watch& watch, const std::vector<glm::dvec3>& displacements, bool isClamped);
 
-  /// Nothing of what was solved before has to do with what follows.
+  /// Discards the preconditioner and all earlier solutions.
   void Forget();
 
-  /// Solves for the free nodes; the right-hand side is 0 elsewhere. repeats: it is much like one of
-  /// those before that were said to repeat.
+  /// Solves for the free nodes. The right-hand side must be 0 at other nodes. repeats: the system
+  /// resembles earlier ones that were solved with `repeats`, so start from their solutions.
   ConjugateGradients::Result Solve(Watch& watch, const std::vector<unsigned char>& isFree,
     const std::vector<glm::dvec3>& rightHandSide, const Limits& limits, bool repeats,
     std::vector<glm::dvec3>& solution);
@@ -62,26 +63,26 @@ public:
 private:
   std::vector<glm::dvec3> FindPositions() const;
   Preconditioner& Precondition(Watch& watch, const std::vector<unsigned char>& isFree);
-  // Has the levels built anew where they have become unlike the matrix.
+  // Lets the hierarchy be rebuilt if it converges much slower than when it was new.
   void JudgeLevels(int iterations, double digits);
 
   const std::vector<glm::dvec3>& Points;
   const FiniteElements& Elements;
   const SlidingNodes& Sliding;
   BlockMatrix Matrix;
-  // The displacements that it is of.
+  // The displacements for which Matrix was assembled.
   std::vector<glm::dvec3> Shape;
   BlockJacobi Jacobi;
   Multigrid Levels;
-  // The nodes that the preconditioner is for; empty: it is to be built.
+  // The free nodes of the preconditioner; empty: it must be built.
   std::vector<unsigned char> IsFree;
-  // Iterations for each digit, when the levels were new.
+  // Iterations per decimal digit when the hierarchy was new.
   double CostOfLevels = 0.0;
-  // Whether the preconditioner is for this matrix.
+  // Whether the preconditioner was updated for the current matrix.
   bool IsPreconditioned = false;
-  // Whether the levels were built from this matrix.
+  // Whether the hierarchy was built from the current matrix.
   bool AreLevelsNew = false;
-  // Whether that is the levels.
+  // Whether the preconditioner is the multigrid hierarchy.
   bool HasLevels = false;
   ConjugateGradients Gradients;
   std::vector<glm::dvec3> Residual;
