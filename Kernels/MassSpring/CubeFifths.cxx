@@ -30,7 +30,8 @@ bool IsAbout(double length, double wanted)
   return std::abs(length - wanted) <= Tolerance * wanted;
 }
 
-// Whether the edges from one corner have a length, and those between the others another one.
+// Whether the edges from one corner have the length `from`, and the other edges the length
+// `between`.
 bool HasEdges(const Corners& corners, std::size_t corner, double from, double between)
 {
   for (std::size_t i = 0; i < 4; ++i)
@@ -63,7 +64,7 @@ bool IsFifth(const Corners& corners, double edge)
 double FindCubeEdge(Watch& watch, const ElasticBody& body)
 {
   const Corners first = GetCorners(body, body.Tetrahedra.front());
-  // The longest edge of both kinds is a diagonal of a face of the cube.
+  // Both kinds of tetrahedra have a face diagonal as their longest edge.
   double longest = 0.0;
   for (std::size_t i = 1; i < 4; ++i)
   {

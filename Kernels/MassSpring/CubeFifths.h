@@ -8,9 +8,9 @@
 namespace deformvolume
 {
 
-/// The edge of the cubes, in m, of a mesh whose tetrahedra are all fifths of equal cubes: a corner
-/// with three edges of the cube, or the middle of six diagonals of its faces. Edges may differ by a
-/// thousandth. Otherwise an Error names the first other tetrahedron.
+/// Returns the cube edge, in m, of a mesh whose tetrahedra are the five tetrahedra of equal cubes.
+/// Each of them has either three edges of the cube at a corner, or six face diagonals. Edge lengths
+/// may differ by a thousandth. Throws an Error with the number of the first other tetrahedron.
 double FindCubeEdge(Watch& watch, const ElasticBody& body);
 
 } // namespace deformvolume

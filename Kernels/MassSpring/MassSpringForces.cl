@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Forces of tetrahedra whose edges are springs and whose volume has an energy, on each of their nodes. What the
-// host puts in front of this text:
-//   LANES  tetrahedra that a work-item has: 16, 8 or 4 on processors, with LaneVectors.cl, and 1 elsewhere
-// Tetrahedra lie in packets of LANES: of a packet first all first numbers, then all second ones, and so on.
+// The forces of tetrahedra on their nodes. Their edges are springs, and their volume has an energy. The host defines
+// before this text:
+//
+//   LANES  tetrahedra of a work-item: 16, 8 or 4 on CPUs, with LaneVectors.cl; otherwise 1
+//
+// Tetrahedra are stored in packets of LANES. A packet has the first values of all of its tetrahedra, then the second
+// values, and so on.
 
 #if LANES == 1
 #define FLOATS float
@@ -14,7 +17,7 @@ typedef struct
   FLOATS X, Y, Z;
 } Vectors;
 
-// Numbers from places in memory.
+// Gathers p[i] for an index i in each lane.
 #if LANES == 16 && defined(__AVX512F__)
 #define GATHER(p, i)                                                                               \
   as_float16(__builtin_ia32_gathersiv16sf((FLOATS)0.0f, (const void*)(size_t)(p), i, (ushort)0xffff, 4))
@@ -31,7 +34,7 @@ typedef struct
 #define GATHER(p, i) p[i]
 #endif
 
-// The vectors of some nodes, by where they begin.
+// The vectors that begin at given indices.
 static Vectors GetVectors(__global const float* p, INTS begin)
 {
   Vectors v;
@@ -79,13 +82,13 @@ static Vectors Cross(Vectors a, Vectors b)
   return c;
 }
 
-// The force of a spring on its first end. It is found from the displacement, which may be far smaller than the
-// coordinates, so that it is exactly 0 at rest and precise near it.
+// The force of a spring on its first end. It is computed from the displacement, which can be far smaller than the
+// coordinates. So the force is exactly 0 at rest, and accurate near it.
 static Vectors SpringForce(Vectors rest, Vectors displacement, FLOATS stiffness)
 {
   const Vectors now = Plus(rest, displacement);
   const FLOATS restLength = sqrt(Dot(rest, rest));
-  // A spring of no length has no direction and gives no force.
+  // A spring of length 0 has no direction and exerts no force.
   const FLOATS length = sqrt(Dot(now, now)) + 1e-30f;
   const FLOATS lengthening = Dot(displacement, Plus(Plus(rest, rest), displacement)) / (length + restLength);
   return Times(now, stiffness * lengthening / length);
@@ -98,13 +101,13 @@ static void StoreForce(Vectors force, __global FLOATS* place)
   place[2] = force.Z;
 }
 
-// Six times the volume of a tetrahedron; less than 0 where its nodes go round the other way.
+// Six times the signed volume of a tetrahedron; negative if the order of nodes is reversed.
 static FLOATS Determinant(Vectors a, Vectors b, Vectors c)
 {
   return Dot(a, Cross(b, c));
 }
 
-// Counts the tetrahedra that are inside out.
+// Counts the inverted tetrahedra.
 __kernel void CountInverted(__global const INTS* tetrahedra, __global const float* restPoints,
   __global const float* displacements, __global int* count, uint numberOfPackets)
 {
@@ -135,8 +138,8 @@ __kernel void CountInverted(__global const INTS* tetrahedra, __global const floa
   }
 }
 
-// tetrahedra: the four nodes, times 3; materials: the stiffness of each edge, in N/m, and the modulus of the
-// volume, in Pa; forces: of the four nodes, in N.
+// Computes the forces of each tetrahedron on its four nodes, in N. tetrahedra: the numbers of the nodes, times 3.
+// materials: the stiffness of each edge, in N/m, and the modulus of the volume, in Pa.
 __kernel void ComputeForces(__global const INTS* tetrahedra, __global const FLOATS* materials,
   __global const float* restPoints, __global const float* displacements, __global FLOATS* forces, uint numberOfPackets)
 {
@@ -159,7 +162,7 @@ __kernel void ComputeForces(__global const INTS* tetrahedra, __global const FLOA
   const Vectors e2 = Minus(GetVectors(displacements, n2), moved);
   const Vectors e3 = Minus(GetVectors(displacements, n3), moved);
 
-  // The volume: how much larger it is, as a fraction, and how it grows with each node.
+  // The relative change of the volume, and the gradients of the volume by the nodes.
   const Vectors b1 = Plus(a1, e1);
   const Vectors b2 = Plus(a2, e2);
   const Vectors b3 = Plus(a3, e3);

@@ -19,12 +19,12 @@ namespace deformvolume
 namespace
 {
 
-// Displacements beyond so many times the size of the body are none of a simulation.
+// Larger displacements, in sizes of the body, mean that the simulation diverged.
 constexpr double LargestDisplacementBySize = 1e4;
-// The time step by the stable one, where it is not given: tetrahedra that are compressed vibrate
-// faster than at rest.
+// The default time step, as a part of the stable one: compressed tetrahedra vibrate faster than
+// tetrahedra at rest.
 constexpr double PartOfStable = 0.75;
-// Steps are waited for when they have taken about so long, to see whether to go on.
+// Wait for the device, and call the progress function, about this often.
 constexpr std::chrono::milliseconds Batch(20);
 
 void CheckTimes(const MassSpringRequest& request)
@@ -109,8 +109,8 @@ void MassSpringModel::Internals::Make(Watch& watch, const ElasticBody& body, dou
   auto network = std::make_unique<MassSpringNetwork>(
     watch, body, MassSpringState::GetLanes(this->Device), cubeEdge);
   watch.Ask();
-  // There is no abort from here on: there is this body in the end, or none where memory is short.
-  this->Forget(); // memory of the last body goes first
+  // From here on the body is set without an abort. If memory is short, there is no body afterwards.
+  this->Forget(); // frees the memory of the previous body first
   this->Budget.CheckRoomFor(
     MassSpringState::GetNeededMemory(body.Points.size(), body.Tetrahedra.size()), "on the device");
   this->Body = body;
@@ -245,8 +245,8 @@ void MassSpringModel::SplitNodes(const ElasticBody& body, const std::vector<std:
     std::any_of(origins.begin(), origins.end(),
       [&](std::int32_t node) { return node < 0 || static_cast<std::size_t>(node) >= before; }))
   {
-    throw Error("Nodes can only be split where the tetrahedra stay, and where each appended node "
-                "is a copy of one there was.");
+    throw Error("Nodes can only be split if the number of tetrahedra stays the same, and if each "
+                "appended node is a copy of an old node.");
   }
   impl.Guard(
     [&]
@@ -276,7 +276,7 @@ void MassSpringModel::SetOutput(float* output, double factor)
   impl.CheckIsSet();
   if (!output)
   {
-    throw Error("The output of the springs has no memory.");
+    throw Error("The output of the mass-spring simulation is null.");
   }
   impl.Guard(
     [&]
@@ -326,7 +326,7 @@ MassSpringReport MassSpringModel::Advance(const MassSpringRequest& request)
         }
         const double longest =
           request.TimeStep > 0.0 ? request.TimeStep : PartOfStable * impl.Network->StableTimeStep;
-        // A hair more than a whole number of steps is that number.
+        // The duration may exceed a whole number of steps by a rounding error.
         constexpr double hair = 1e-9;
         const double steps = std::max(1.0, std::ceil(request.Duration / longest * (1.0 - hair)));
         report.NumberOfSteps = static_cast<std::int64_t>(steps);
@@ -406,8 +406,8 @@ void MassSpringModel::SetState(
     !std::all_of(displacements.begin(), displacements.end(), isFinite) ||
     !std::all_of(velocities.begin(), velocities.end(), isFinite))
   {
-    throw Error("The state of the springs needs three finite displacements and velocities for "
-                "each node.");
+    throw Error("The state of the springs needs three finite components of the displacement and of "
+                "the velocity of each node.");
   }
   impl.Guard(
     [&]

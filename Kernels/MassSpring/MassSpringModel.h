@@ -17,53 +17,54 @@
 namespace deformvolume
 {
 
-/// What MassSpringModel::Advance() is to do.
+/// The input of MassSpringModel::Advance().
 struct MassSpringRequest
 {
-  /// Time to go on by, in s; 0 or more.
+  /// The simulated time, in s; 0 or more.
   double Duration = 0.0;
-  /// The longest time step, in s: as many equal steps are made as are needed. 0: three
-  /// quarters of the stable one.
+  /// The longest time step, in s. The duration is divided into equal steps that are not longer. 0:
+  /// three quarters of GetStableTimeStep().
   double TimeStep = 0.0;
-  /// How fast velocities die away, in 1/s; 0 or more.
+  /// The rate at which velocities decay, in 1/s; 0 or more. Default: 2.
   double Damping = 2.0;
-  /// Nodes that handles move. They go in straight lines to where they are wanted, within the
-  /// duration.
+  /// Nodes that handles move. They move on straight lines, and reach their displacement at the end
+  /// of the duration.
   std::vector<HeldNode> Held;
   /// Forces and gravity.
   BodyLoads Loads;
-  /// Called now and then with how much of the duration is behind, 0 to 1; returning false aborts.
+  /// Called repeatedly with the completed part of the duration, 0 to 1. Return false to abort.
   std::function<bool(double)> Progress;
 };
 
-/// What MassSpringModel::Advance() has done.
+/// The output of MassSpringModel::Advance().
 struct MassSpringReport
 {
-  /// Time steps that were made.
+  /// The number of time steps.
   std::int64_t NumberOfSteps = 0;
   /// The time step that was used, in s.
   double TimeStep = 0.0;
-  /// Tetrahedra that are inside out at the end. Springs may keep them so.
+  /// The number of inverted tetrahedra at the end. Springs can stay inverted.
   std::int64_t NumberOfInvertedTetrahedra = 0;
 };
 
-/// Dynamics of an elastic body whose tetrahedra have springs for edges and an energy for their
-/// volume, on an OpenCL device. Steps are explicit (Verlet), in single precision; forces are
-/// exactly 0 at rest. Results depend neither on the size of work-groups nor on the number of
-/// threads, to the last bit.
+/// Simulates the dynamics of an elastic body on an OpenCL device. The edges of its tetrahedra are
+/// springs, and their volume has an energy. Time steps are explicit (Verlet, in leapfrog form), in
+/// single precision. Forces are exactly 0 at rest. Results are bit for bit the same for any size of
+/// work-groups and any number of threads.
 ///
-/// Order of calls: SetDevice, SetBody, SetOutput, then Advance, as often as wanted. SetBody forgets
-/// everything that was set after it. Every failure is an Error; the body is then as it was, but for
-/// failures of the device, after which SetBody has to be called again.
+/// Call SetDevice, SetBody and SetOutput, then Advance any number of times. SetBody discards what
+/// was set after it. Every failure throws an Error. The body is then unchanged, except after
+/// failures of the device, which require a new call of SetBody.
 ///
-/// Memory on the device: 80 bytes a node and 88 a tetrahedron.
+/// Memory on the device: 80 bytes per node and 88 per tetrahedron.
 ///
 /// Sources: Teschner et al. 2004 for the energy of the volume; Georgii and Westermann 2005 for
-/// gathering by nodes; Documents/physics.md for the stiffness of springs.
+/// adding forces by nodes; Documents/physics.md for the stiffness of springs.
 class DEFORMVOLUME_EXPORT MassSpringModel
 {
 public:
-  /// Springs have at least this Poisson ratio; less counts as this.
+  /// The least Poisson ratio of springs. Materials with a smaller ratio are simulated with this
+  /// one.
   static constexpr double LeastPoissonRatio = 0.25;
 
   MassSpringModel();
@@ -71,58 +72,61 @@ public:
   MassSpringModel(const MassSpringModel&) = delete;
   MassSpringModel& operator=(const MassSpringModel&) = delete;
 
-  /// Chooses the device (see ResolveDevice) and returns its name. A change of device forgets all
-  /// that was set.
+  /// Sets the device (see ResolveDevice) and returns its name. A change of device discards all that
+  /// was set.
   std::string SetDevice(const std::string& request);
 
-  /// Bytes that may be used on the device; 0: what it has available.
+  /// Set the memory that may be used on the device, in bytes. Default 0: all that is available.
   void SetMemoryLimit(std::uint64_t bytes);
 
-  /// Work-items in a work-group; 0: chosen by device. To be called before SetBody.
+  /// Set the number of work-items in a work-group. Default 0: chosen for the device. Call it before
+  /// SetBody.
   void SetWorkGroupSize(std::size_t size);
 
-  /// A body at rest, all of whose tetrahedra are fifths of equal cubes (see FindCubeEdge).
-  /// progress: called every few milliseconds, in the thread that called; returning false aborts,
-  /// and the last body stays.
+  /// Sets the body at rest. Its tetrahedra must be the five tetrahedra of equal cubes (see
+  /// FindCubeEdge). progress: called every few milliseconds in the calling thread; return false to
+  /// abort. The previous body is kept then.
   void SetBody(const ElasticBody& body, const std::function<bool()>& progress = nullptr);
 
-  /// The same body, in the same places, with other nodes in some tetrahedra: nodes have been
-  /// appended, each a copy of one there was. origins: of each appended node. They are where their
-  /// origins are, and as fast. Without origins the last nodes may be gone, as where a split is
-  /// undone.
+  /// Changes the nodes of some tetrahedra after a cut. The body has the same tetrahedra and rest
+  /// positions, and appended nodes that are copies of old ones. origins: the old node of each
+  /// appended node, whose displacement and velocity it gets. If origins is empty, the body may have
+  /// fewer nodes than before, for example when a split is undone.
   void SplitNodes(const ElasticBody& body, const std::vector<std::int32_t>& origins);
 
-  /// Where the displacements go, three floats a node, times a factor; written by each Advance.
+  /// Sets where Advance writes the displacements: three floats per node, multiplied by a factor.
   ///@{
   void SetOutput(float* output, double factor = 1.0);
   void SetOutput(const std::shared_ptr<DeviceVectors>& output, double factor = 1.0);
   ///@}
 
-  /// A time step, in s, with which the body is stable near rest: h sqrt(rho / 6 lambda), for the
-  /// least of its materials. The longest one is up to 1.6 times that.
+  /// Returns a time step, in s, with which the body is stable near rest: h sqrt(rho / 6 lambda),
+  /// the least value of all materials. The longest stable time step is at most 1.6 times this
+  /// value.
   double GetStableTimeStep() const;
 
-  /// Goes on in time. Where the simulation diverges, the body is put back to what it was, and an
-  /// Error says so. Throws Aborted where the progress asks for an end; the body is put back, too.
+  /// Advances the simulation. If it diverges, the previous state is restored, and an Error is
+  /// thrown. If Progress returns false, the previous state is restored, and Aborted is thrown.
   MassSpringReport Advance(const MassSpringRequest& request);
 
-  /// Puts the body to rest.
+  /// Sets all displacements and velocities to 0.
   void Reset();
 
-  /// Displacements, in m, or velocities, in m/s, of the nodes, three floats each.
+  /// Get the displacements, in m, or the velocities, in m/s: three floats per node. SetState sets
+  /// both.
   ///@{
   std::vector<float> GetDisplacements();
   std::vector<float> GetVelocities();
   void SetState(const std::vector<float>& displacements, const std::vector<float>& velocities);
   ///@}
 
-  /// The forces of springs and volumes on the nodes where these are now, in N, three floats each.
+  /// Returns the current forces of springs and volumes on the nodes, in N: three floats per node.
   std::vector<float> GetForces();
 
-  /// What the tetrahedra undergo now.
+  /// Returns the current stress and deformation of each tetrahedron.
   std::vector<ElementResults> GetElementResults();
 
-  /// Bytes allocated on the device, without the output.
+  /// Returns the memory allocated on the device, in bytes, without the output.
   std::uint64_t GetDeviceMemory() const;
 
 private:

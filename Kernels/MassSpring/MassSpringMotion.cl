@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Nodes move by the forces of their tetrahedra. Each adds these up itself, always in the same order, so that sums do
-// not depend on the work-groups. What the host puts in front of this text: LANES, see MassSpringForces.cl.
+// Moves the nodes by the forces of their tetrahedra. Each node adds up its forces in a fixed order, so that sums do
+// not depend on work-groups. The host defines LANES before this text, see MassSpringForces.cl.
 
-// The force of the tetrahedra on a node. begins: where the places of each node begin; places: of the first numbers
-// of forces.
+// The sum of the forces of the tetrahedra of a node. begins: for each node, the first index in places. places: index
+// of the first component of each force.
 static float3 GatherForce(
   __global const uint* begins, __global const uint* places, __global const float* forces, size_t node)
 {
@@ -27,8 +27,8 @@ __kernel void AddForces(__global const uint* begins, __global const uint* places
   }
 }
 
-// A step of Verlet's method. mobilities: 1 / mass, 0 for nodes that do not move. loads: forces from outside.
-// hasDiverged: set where a displacement is not finite, or beyond the limit.
+// A step of the Verlet (leapfrog) method. mobilities: 1 / mass; 0 for nodes that do not move. loads: external forces.
+// hasDiverged: set if a displacement is not finite or exceeds the limit.
 __kernel void MoveNodes(__global const uint* begins, __global const uint* places, __global const float* forces,
   __global const float* mobilities, __global const float* loads, __global float* velocities,
   __global float* displacements, __global int* hasDiverged, MassSpringStep step, int hasLoads)
@@ -61,7 +61,7 @@ __kernel void MoveNodes(__global const uint* begins, __global const uint* places
   }
 }
 
-// Handles move their nodes in straight lines. fraction: of the way that is behind them; rate: 1 / how long it takes.
+// Moves the nodes of handles on straight lines. fraction: the completed part of the way. rate: 1 / duration.
 __kernel void MoveHandles(__global const MassSpringHandle* handles, __global float* velocities,
   __global float* displacements, float fraction, float rate, uint numberOfHandles)
 {
@@ -78,7 +78,7 @@ __kernel void MoveHandles(__global const MassSpringHandle* handles, __global flo
   vstore3(fraction < 1.0f ? begin + way * fraction : end, handle.Node, displacements);
 }
 
-// The displacements in the units of the output.
+// Writes the displacements times a factor.
 __kernel void WriteOutput(
   __global const float* displacements, __global float* output, float factor, uint numberOfValues)
 {

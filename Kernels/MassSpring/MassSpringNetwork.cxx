@@ -18,9 +18,10 @@ namespace
 constexpr std::size_t TetrahedraOfPart = 4096;
 constexpr std::size_t PartsAtOnce = 8;
 
-// No body vibrates faster than the fastest of its tetrahedra alone, with the masses that it gives
-// to its nodes. For a corner of a cube that is sqrt(24 lambda / rho) / h at most, where springs
-// make sqrt(24 mu / rho) / h and the volume what is more; the middle of a cube is slower.
+// The largest frequency of a body is at most that of its fastest tetrahedron alone, with the part
+// of the mass that this tetrahedron gives to its nodes. For a tetrahedron at a cube corner the
+// angular frequency is at most sqrt(24 lambda / rho) / h: sqrt(24 mu / rho) / h from the springs,
+// and the rest from the volume. The tetrahedron in the middle of a cube is slower.
 double FindStableTimeStep(const ElasticBody& body, double cubeEdge)
 {
   double fastest = 0.0;
@@ -46,8 +47,9 @@ SpringStiffness GetSpringStiffness(
   const ElasticMaterial possible = GetSpringMaterial(material);
   const double mu = possible.GetShearModulus();
   SpringStiffness stiffness;
-  // A quarter of mu h for a corner, half of it for the middle: each edge of a cube belongs to four
-  // corners, and each diagonal to two cubes with two corners and a middle each.
+  // mu h / 4 for a tetrahedron at a corner, mu h / 2 for the one in the middle. A cube edge is
+  // shared by four corner tetrahedra. A face diagonal is shared by two cubes, with two corner
+  // tetrahedra and a middle one each.
   stiffness.Edge = static_cast<float>(1.5 * mu * restVolume / (cubeEdge * cubeEdge));
   stiffness.Volume = static_cast<float>(possible.GetLambda() - mu);
   return stiffness;

@@ -11,28 +11,30 @@
 namespace deformvolume
 {
 
-/// How stiff the springs and the volume of a tetrahedron are.
+/// The stiffness of the springs and of the volume of a tetrahedron.
 struct SpringStiffness
 {
-  /// Of each edge, in N/m. An edge of several tetrahedra has the sum.
+  /// The stiffness of each edge, in N/m. An edge that several tetrahedra share has the sum of
+  /// theirs.
   float Edge = 0.0F;
-  /// In Pa: the energy of the volume is half of this, times the volume at rest, times the square of
-  /// how much the volume has grown as a fraction.
+  /// The modulus of the volume, in Pa. The energy is Volume / 2 times the volume at rest times the
+  /// square of the relative change of the volume.
   float Volume = 0.0F;
 };
 
-/// The material that springs can be of: Poisson ratios below 1/4 would need a volume that pushes
-/// outwards, which is unstable. They count as 1/4, with the same Young modulus.
+/// Returns a material with a Poisson ratio of at least 1/4 and the same Young modulus. A smaller
+/// ratio would need a negative modulus of the volume, which is unstable.
 ElasticMaterial GetSpringMaterial(const ElasticMaterial& material);
 
-/// The stiffness of a fifth of a cube of a material (GetSpringMaterial). In a lattice, edges of
-/// cubes then have springs of mu h and diagonals of 2 mu h, which is the only isotropic choice;
-/// their Poisson ratio is 1/4, and the volume makes the rest of it.
+/// Returns the stiffness of one of the five tetrahedra of a cube. In a lattice, the springs along
+/// cube edges then have mu h in total, and those along face diagonals 2 mu h. This is the only
+/// isotropic choice. Springs alone have a Poisson ratio of 1/4; the modulus of the volume adds the
+/// rest.
 SpringStiffness GetSpringStiffness(
   const ElasticMaterial& material, double restVolume, double cubeEdge);
 
-/// A body as the kernels have it. Tetrahedra lie in packets of so many lanes, the last one filled
-/// up with tetrahedra that no node knows; see MassSpringForces.cl and MassSpringMotion.cl.
+/// A body in the memory layout of the kernels (see MassSpringForces.cl and MassSpringMotion.cl).
+/// The last packet is filled up with tetrahedra of which no node takes forces.
 struct MassSpringNetwork
 {
   /// cubeEdge: see FindCubeEdge.
@@ -40,16 +42,16 @@ struct MassSpringNetwork
 
   int Lanes;
   std::size_t NumberOfPackets;
-  std::vector<std::int32_t> Tetrahedra; // nodes, times 3
+  std::vector<std::int32_t> Tetrahedra; // numbers of nodes, times 3
   std::vector<float> Materials;
-  std::vector<float> RestPoints; // from the middle of the body
+  std::vector<float> RestPoints; // relative to the center of the body
   std::vector<std::uint32_t> Begins;
   std::vector<std::uint32_t> Places;
   std::vector<double> Masses; // in kg
   std::vector<float> Mobilities;
-  double Size = 0.0; // the diagonal of the body, in m
-  /// A time step with which the body is stable near rest, in s: 2 by a bound of its largest angular
-  /// frequency.
+  double Size = 0.0; // the diagonal of the bounding box, in m
+  /// A time step with which the body is stable near rest, in s: 2 divided by an upper bound of its
+  /// largest angular frequency.
   double StableTimeStep = 0.0;
 };
 

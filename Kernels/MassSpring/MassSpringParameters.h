@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the kernels of mass-spring dynamics work on. Shared by the C++ code and the kernels:
-// four-byte numbers only, so that both sides lay it out alike.
+// Parameters of the mass-spring kernels, shared by C++ and OpenCL. All members have four bytes, so
+// that both sides have the same layout.
 #ifndef DeformVolumeMassSpringParameters_h
 #define DeformVolumeMassSpringParameters_h
 
 typedef struct
 {
   float TimeStep;
-  float Retained;   // of the velocity in a step, by damping
+  float Retained;   // the factor of the velocity in a step, by damping
   float Gravity[3]; // m/s^2
-  float Limit;      // displacements beyond this mean that the simulation has diverged
+  float Limit;      // larger displacements mean that the simulation diverged
   int NumberOfNodes;
 } MassSpringStep;
 

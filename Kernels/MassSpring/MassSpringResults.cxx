@@ -22,7 +22,8 @@ double GetSignedVolume(const std::array<glm::dvec3, 4>& corners)
     6.0;
 }
 
-// The stress of springs is that of their forces times their lengths, over the volume.
+// The stress of springs is the sum of force times edge vector (virial stress), divided by the
+// volume.
 ElementResults FindResults(const std::array<glm::dvec3, 4>& rest,
   const std::array<glm::dvec3, 4>& now, const ElasticMaterial& material, double cubeEdge)
 {

@@ -10,8 +10,8 @@
 namespace deformvolume
 {
 
-/// What the tetrahedra of a body of springs undergo. displacements: three floats a node, in m;
-/// cubeEdge: see FindCubeEdge.
+/// Computes the stress and deformation of the tetrahedra of a mass-spring body. displacements:
+/// three floats per node, in m. cubeEdge: see FindCubeEdge.
 std::vector<ElementResults> ComputeMassSpringResults(
   const ElasticBody& body, const std::vector<float>& displacements, double cubeEdge);
 

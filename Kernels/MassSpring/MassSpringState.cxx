@@ -17,7 +17,7 @@ namespace
 
 constexpr std::size_t ItemsOfGroup = 64;
 constexpr std::uint64_t BytesOfNode = 10 * sizeof(float) + sizeof(cl_uint);
-constexpr std::uint64_t BytesOfNodeSaved = 9 * sizeof(float); // with sums of forces
+constexpr std::uint64_t BytesOfNodeSaved = 9 * sizeof(float); // saved state and sums of forces
 constexpr std::uint64_t BytesOfTetrahedron = (4 + 4) * sizeof(cl_int) + (2 + 4 * 3) * sizeof(float);
 
 } // namespace
@@ -85,7 +85,7 @@ MassSpringState::MassSpringState(
       this->Displacements, this->Inverted, static_cast<cl_uint>(this->NumberOfPackets));
   this->AddForcesKernel = MakeKernel(
     this->Program, "AddForces", this->Begins, this->Places, this->Forces, this->Sums, nodes);
-  // What is set later stands for itself for now.
+  // There are no loads yet: pass another buffer in their place.
   this->MoveNodesKernel = MakeKernel(this->Program, "MoveNodes", this->Begins, this->Places,
     this->Forces, this->Mobilities, this->Velocities, this->Velocities, this->Displacements,
     this->HasDiverged, MassSpringStep{}, cl_int{ 0 });

@@ -20,12 +20,12 @@ namespace deformvolume
 class MassSpringState
 {
 public:
-  /// device: it stays where it is. workGroupSize: 0: chosen by device.
+  /// device: must outlive this object. workGroupSize: 0 to choose it for the device.
   MassSpringState(WorkDevice& device, const MassSpringNetwork& network, std::size_t workGroupSize);
 
-  /// Tetrahedra that a work-item of a device has.
+  /// The number of tetrahedra that a work-item of a device handles.
   static int GetLanes(WorkDevice& device);
-  /// Bytes that such a body needs on the device, without an output.
+  /// The memory that a body needs on the device, in bytes, without an output.
   static std::uint64_t GetNeededMemory(std::size_t nodes, std::size_t tetrahedra);
   std::uint64_t GetMemory() const;
 
@@ -36,33 +36,33 @@ public:
   void SetHandles(const std::vector<MassSpringHandle>& handles);
 
   ///@{
-  /// Three floats a node.
+  /// Three floats per node.
   std::vector<float> GetDisplacements() { return this->Read(this->Displacements); }
   std::vector<float> GetVelocities() { return this->Read(this->Velocities); }
   void SetDisplacements(const std::vector<float>& values);
   void SetVelocities(const std::vector<float>& values);
   ///@}
 
-  /// The forces of the tetrahedra on the nodes.
+  /// Returns the forces of the tetrahedra on the nodes.
   std::vector<float> ComputeForces();
 
-  /// Enqueues a step. fraction: of the way of the handles that is then behind them; rate: 1 / how
-  /// long that takes.
+  /// Enqueues a step. fraction: the part of the way that handles have completed after it. rate: 1 /
+  /// the duration of the whole way.
   void EnqueueStep(const MassSpringStep& step, float fraction, float rate);
   void Finish() { this->Device.GetQueue().finish(); }
-  /// Whether a step since the last call has diverged.
+  /// Whether a step since the last call diverged.
   bool TakeDivergence();
-  /// Tetrahedra that are inside out now.
+  /// Returns the current number of inverted tetrahedra.
   std::int64_t CountInverted();
 
   ///@{
-  /// Keeps the displacements and velocities, and brings them back.
+  /// Saves the displacements and velocities, and restores them.
   void Save();
   void Restore();
   ///@}
 
   ///@{
-  /// Where the output goes, and what makes its values of displacements.
+  /// Sets where the output goes, and the factor of the displacements.
   void PlaceOutput(float* output, float factor);
   void PlaceOutput(const std::shared_ptr<DeviceVectors>& output, float factor);
   ///@}
