@@ -15,7 +15,7 @@ namespace deformvolume
 namespace
 {
 
-// The output is worked on in slabs, one after the other in the same buffers.
+// All slabs of the output use the same buffers, so the first slab counts.
 std::uint64_t CountVoxelsOfSlab(WorkDevice& device, const DeformationSize& size)
 {
   if (GetNumberOfPoints(size.OutputExtent) == 0)
@@ -40,17 +40,17 @@ std::uint64_t CountDeviceMemory(
   const std::uint64_t outputVoxels = CountVoxelsOfSlab(device, size);
   if (size.IsRasterized)
   {
-    // Arrays and both masks.
+    // Arrays, and both masks.
     return voxels * (sent + 2) +
       MeshRasterizer::GetMemoryNeeded(
         device, outputVoxels, outputBytesPerVoxel, size.NumberOfNodes, size.NumberOfTetrahedra);
   }
-  // The queue of the kernel for graphics cards, and coverage as bits.
+  // The queue of deferred cells (GPUs), and coverage as bits.
   const std::uint64_t queue =
     DeferredCells::GetMemory(device, BrickGrid(size.Grid).GetNumberOfBricks());
   const std::uint64_t bits = queue > 0 ? OutputSlab::CountWords(outputVoxels) * 4 : 0;
-  // Arrays, state, active tetrahedra and blanking; links or runs of a mesh; arrays and coverage of
-  // the output; the deformation itself.
+  // Arrays, states, active tetrahedra and blanking; links or runs of a mesh; arrays and coverage of
+  // the output; displacements and tetrahedra.
   return voxels * (sent + 3) + size.MappingBytes + outputVoxels * outputBytesPerVoxel + queue +
     bits + (size.NumberOfNodes + size.NumberOfTetrahedra) * 16;
 }
@@ -82,12 +82,12 @@ void CheckMemory(
   {
     tuple += GetTupleSize(array);
   }
-  // A processor works in the memory of the output.
+  // A CPU device works in the memory of the output.
   const bool shared = device.GetDevice().IsProcessor;
   const std::uint64_t outputBytesPerVoxel = shared ? 0 : tuple + 1;
   CheckDeviceMemory(device, budget, size, outputBytesPerVoxel);
-  // What the caller holds, in the memory of the system, which a processor shares with its device.
-  // Of displacements that are sent to another device there is a copy (DisplacementBuffer).
+  // Host memory that the caller holds; a CPU device shares it. For other devices, there is a copy
+  // of the displacements (DisplacementBuffer).
   const std::uint64_t copied = shared || size.IsRasterized ? 0 : size.NumberOfNodes * 16;
   const std::uint64_t host = size.MappingBytes + copied +
     static_cast<std::uint64_t>(GetNumberOfPoints(size.OutputExtent)) * (tuple + 1);

@@ -16,30 +16,30 @@ namespace deformvolume
 class MemoryBudget;
 class WorkDevice;
 
-/// What a deformation needs memory for, as far as that is known before anything is allocated.
-/// Winners of the output are counted when it turns out that the volume is folded (ExactResampler).
+/// The input for memory estimates before anything is allocated. Winners of overlaps are not
+/// included: ExactResampler counts them when a folded volume needs them.
 struct DeformationSize
 {
   const VoxelGrid& Grid;
-  const std::vector<VolumeArray>& Arrays; // their values are not read
+  const std::vector<VolumeArray>& Arrays; // the values are not read
   const Extent& OutputExtent;
   std::size_t NumberOfNodes; // of the mesh, or points of a field
   std::size_t NumberOfTetrahedra;
-  std::uint64_t MappingBytes; // see GetMappingBytes; with what the boundary of a mesh takes
-  bool IsRasterized;          // by MeshRasterization
-  bool HasDistances = false;  // to the boundary
+  std::uint64_t MappingBytes; // GetMappingBytes() and the boundary of a mesh
+  bool IsRasterized;          // with Resampling::MeshRasterization
+  bool HasDistances = false;  // boundary distances
 };
 
-/// Bytes of the static mapping: of runs where there are some, else of a link a voxel; a field has
-/// none.
+/// Returns the bytes of the static mapping: of runs if runBytes is not 0, else of one link per
+/// voxel. A field has no static mapping.
 std::uint64_t GetMappingBytes(const VoxelGrid& grid, bool field, std::uint64_t runBytes);
 
-/// Throws an Error where the device has too little memory. outputBytesPerVoxel: of the output
-/// there. Returns how many bytes are left.
+/// Throws an Error if the device has too little memory; otherwise returns the remaining bytes.
+/// outputBytesPerVoxel: of the output on the device.
 std::uint64_t CheckDeviceMemory(WorkDevice& device, MemoryBudget& budget,
   const DeformationSize& size, std::uint64_t outputBytesPerVoxel);
 
-/// The same for the device and for the system. heldBytes: see VolumeDeformer::CheckMemory.
+/// The same check for the device and for the system. heldBytes: see VolumeDeformer::CheckMemory.
 void CheckMemory(
   WorkDevice& device, MemoryBudget& budget, const DeformationSize& size, std::uint64_t heldBytes);
 

@@ -24,10 +24,10 @@ void MakeSlabs(SlabResampler& resampler, WorkDevice& device, const DeviceVolume&
     static_cast<std::uint64_t>(GetNumberOfPoints(plan.Slabs.front()));
   const bool stays =
     request.MayStayOnDevice && !device.GetDevice().IsProcessor && plan.Slabs.size() == 1;
-  // Staged copies are made when they are waited for.
+  // Staged copies are finished by the host, so they cannot overlap with the next slab.
   plan.Overlapped =
     bytes > 0 && plan.Slabs.size() > 1 && spare >= bytes && !device.GetContext().GetStagedCopies();
-  // However this ends, the memory of the request is left alone afterwards.
+  // Also after an exception, nothing may write to the memory of the request any more.
   const SlabResampler::FinishGuard finish(resampler);
   const QueueGuard reads(device.GetReadQueue());
   resampler.Begin(request, plan, report);

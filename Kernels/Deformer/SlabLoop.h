@@ -13,9 +13,9 @@ class DeviceVolume;
 class SlabResampler;
 class WorkDevice;
 
-/// Makes the whole output of a request, slab by slab as the device can allocate them, and brings it
-/// to the memory of the request, unless it may stay on the device and is there in one slab. spare:
-/// bytes of device memory that may be used beyond those of one slab.
+/// Makes the whole output of a request, in slabs that the device can allocate. Copies them to the
+/// memory of the request, unless the output may stay on the device and has a single slab. spare:
+/// device memory, in bytes, that may be used in addition to one slab.
 void MakeSlabs(SlabResampler& resampler, WorkDevice& device, const DeviceVolume& volume,
   const DeformRequest& request, std::uint64_t spare, DeformReport& report);
 

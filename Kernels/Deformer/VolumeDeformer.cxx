@@ -35,7 +35,7 @@ void CheckGrid(const VoxelGrid& voxelGrid)
     !std::all_of(map.Shift.begin(), map.Shift.end(), isFinite) || !isFinite(determinant) ||
     determinant == 0.0)
   {
-    throw Error("The matrix from the volume to the output must be finite and have an inverse.");
+    throw Error("The matrix from the volume to the output must be finite and invertible.");
   }
 }
 
@@ -54,7 +54,7 @@ void CheckArrays(const std::vector<VolumeArray>& arrays)
   }
 }
 
-// Vectors of undefined points are not-a-number on all axes, others finite and not too large.
+// Undefined points have not-a-number on all axes. Other vectors must be finite and not too large.
 void CheckInverseVectors(const DisplacementField& field)
 {
   const auto count = static_cast<std::size_t>(CountPoints(field));
@@ -151,7 +151,7 @@ void VolumeDeformer::SetVoxelGrid(
   impl.Guard(
     [&]
     {
-      impl.Forget(); // its memory is free for the next one
+      impl.Forget(); // frees the memory of the previous grid first
       impl.All = std::make_unique<Internals::Parts>(
         impl.Device, impl.Budget, voxelGrid, bytesPerVoxel, withLinks);
     });
@@ -284,7 +284,7 @@ void VolumeDeformer::SetRestMesh(const Tetrahedron* tetrahedra, std::size_t numb
 
 void VolumeDeformer::SetInverseField(const DisplacementField& field)
 {
-  CountPoints(field); // throws where there are none
+  CountPoints(field); // throws if there are no points
   this->Impl->Send(
     [&](Internals::Parts& parts)
     {
@@ -305,7 +305,7 @@ void VolumeDeformer::SetNodeDisplacements(
 void VolumeDeformer::SetDisplacementField(
   const DisplacementField& field, const PointRanges* changes)
 {
-  CountPoints(field); // throws where there are none
+  CountPoints(field); // throws if there are no points
   this->Impl->Send(
     [&](Internals::Parts& parts)
     {
@@ -327,7 +327,7 @@ void VolumeDeformer::SetNodeDisplacements(
         parts.Source.SetNodeDisplacements(vectors, toDisplacement);
         return;
       }
-      // The nodes of a rasterised mesh come from the host.
+      // Mesh rasterization takes its nodes from the host.
       DisplacementField field;
       field.ToDisplacement = toDisplacement;
       VectorReading reading(this->Impl->Device);

@@ -34,7 +34,7 @@ void VolumeDeformer::Internals::Parts::SetBoundary(
   catch (...)
   {
     this->Exact.GetBoundary().Clear();
-    this->Source.Forget(); // without its boundary the deformation would lack a layer
+    this->Source.Forget(); // without a boundary the outermost layer would be missing
     throw;
   }
 }
@@ -54,7 +54,7 @@ void VolumeDeformer::Internals::Parts::UpdateFieldBoundary(const DisplacementFie
     boundary = FindFieldBoundary(grid.VertexExtent, GetWholeExtent(grid), field);
   }
   this->SetBoundary(boundary, nullptr);
-  // Other points move the bricks at the boundary.
+  // The new boundary has other points, so bricks at the boundary change.
   this->Incremental.GetObserver().ForgetMapping();
   last.Dimensions = field.Dimensions;
   last.IndexToField = field.IndexToField;
@@ -95,8 +95,8 @@ void VolumeDeformer::Internals::Parts::CheckRequest(const DeformRequest& request
   }
   if (rasterized && this->Volume.GetMasks().HasCut())
   {
-    throw Error("The resampler MeshRasterization knows no smooth cuts, since it looks at the "
-                "deformation mesh only. Use the resampler Exact, or call SetCut with null.");
+    throw Error("The resampler MeshRasterization does not support smooth cuts. Use the resampler "
+                "Exact, or call SetCut with null.");
   }
   if (rasterized && !this->Rasterizer.IsReady())
   {
@@ -111,13 +111,15 @@ void VolumeDeformer::Internals::Parts::CheckRequest(const DeformRequest& request
   }
   if (!request.HeldRevisions.empty() && request.HeldRevisions.size() != arrays.size() + 1)
   {
-    throw Error("The request must tell the held revision of each array and of the coverage, or of "
-                "none.");
+    throw Error("HeldRevisions has " + std::to_string(request.HeldRevisions.size()) +
+      " values, but must have " + std::to_string(arrays.size() + 1) +
+      ": one for each array and one for the coverage, or none.");
   }
   if (request.Outputs.size() != arrays.size() || !request.Coverage ||
     std::count(request.Outputs.begin(), request.Outputs.end(), nullptr))
   {
-    throw Error("The request must have room for each array of the volume and for the coverage.");
+    throw Error(
+      "Outputs must have a pointer for each array of the volume, and Coverage a pointer.");
   }
 }
 
@@ -142,7 +144,7 @@ DeformationSize VolumeDeformer::Internals::Parts::GetSize(const DeformRequest& r
 
 DeformReport VolumeDeformer::Internals::Parts::Deform(const DeformRequest& request)
 {
-  this->BringOutput(); // its memory is that of the next one
+  this->BringOutput(); // the next output uses the same memory
   this->Volume.GetArrays().ReadAgain();
   this->Source.ReadFieldAgain();
   const std::uint64_t spare = CheckDeviceMemory(this->Device, this->Budget, this->GetSize(request),
@@ -159,7 +161,7 @@ DeformReport VolumeDeformer::Internals::Parts::Resample(
   const DeformRequest& request, std::uint64_t spare)
 {
   this->Exact.Start();
-  // Before anything is planned that depends on masks.
+  // Update the bridges before planning, which depends on all masks.
   this->Incremental.ChangeMask(this->Source.UpdateBridges(), true);
   DeformReport report;
   report.NumberOfBricks = static_cast<std::int64_t>(this->Volume.GetBricks().GetNumberOfBricks());
@@ -182,7 +184,7 @@ DeformReport VolumeDeformer::Internals::Parts::Rasterize(
 {
   this->Incremental.Forget();
   DeformReport report;
-  // As much again for lists of tetrahedra that are longer than was foreseen.
+  // Leave the other half for lists of tetrahedra that become longer than estimated.
   MakeSlabs(this->Rasterizer, this->Device, this->Volume, request, spare / 2, report);
   report.ChangedExtent = request.OutputExtent;
   return report;

@@ -27,9 +27,8 @@ namespace deformvolume
 class VolumeDeformer::Internals
 {
 public:
-  /// A volume on the device with the deformation that is set, by the sampling mesh or by mesh
-  /// rasterisation, and what makes outputs of both: what SetVoxelGrid forgets. Where cl::Error is
-  /// thrown, what is on the device may be half done.
+  /// A volume on the device, its deformation, and both resamplers: all that SetVoxelGrid discards.
+  /// After a cl::Error the data on the device may be incomplete.
   struct Parts
   {
     Parts(WorkDevice& device, MemoryBudget& budget, const VoxelGrid& voxelGrid,
@@ -37,9 +36,9 @@ public:
 
     /// tetrahedra: those of the mesh; null for a field.
     void SetBoundary(const MeshBoundary& boundary, const Tetrahedron* tetrahedra);
-    /// Finds the boundary of a field, where its mapping is another one than before.
+    /// Finds the boundary of a field, if the mapping of the field changed.
     void UpdateFieldBoundary(const DisplacementField& field);
-    /// A mesh that was checked (CheckMesh). Mapping: links or runs.
+    /// Sets a mesh that CheckMesh accepted. Mapping: links or runs.
     template <typename Mapping>
     void SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
       std::size_t numberOfNodes, const Mapping& mapping, const MeshBoundary* boundary)
@@ -52,20 +51,20 @@ public:
       }
       this->Rasterizer.Clear();
     }
-    /// Throws an Error where there is no deformation mesh.
+    /// Throws an Error if there is no deformation mesh.
     void CheckMesh() const;
     void SetNodeDisplacements(
       const float* displacements, const PointRanges* changes, bool areChecked);
 
-    /// Throws an Error where something is not set that a request needs.
+    /// Throws an Error if something that a request needs is not set.
     void CheckRequest(const DeformRequest& request) const;
     DeformationSize GetSize(const DeformRequest& request) const;
     DeformReport Deform(const DeformRequest& request);
-    /// Brings to the host what can still be read of the last output and is on the device. Throws
-    /// nothing.
+    /// Copies the last output to the host, as far as it is on the device and can still be read.
+    /// Does not throw.
     void BringOutput() { this->Unread.Bring(); }
 
-    /// Bytes on the device.
+    /// The memory allocated on the device, in bytes.
     std::uint64_t GetMemory() const;
 
     WorkDevice& Device;
@@ -76,7 +75,7 @@ public:
     ExactResampler Exact;
     MeshRasterizer Rasterizer;
     UnreadOutputs Unread;
-    DisplacementField BoundaryField; // the one that the boundary was found of, without its vectors
+    DisplacementField BoundaryField; // the field of the current boundary, without its vectors
 
   private:
     DeformReport Resample(const DeformRequest& request, std::uint64_t spare);
@@ -88,15 +87,14 @@ public:
   {
   }
 
-  /// As CallGuarded does. After an error of OpenCL the volume is forgotten.
+  /// Calls a function as CallGuarded does. After an OpenCL error the volume is discarded.
   template <typename Function>
   auto Guard(Function&& function)
   {
     return CallGuarded(function, [this] { this->Forget(); });
   }
 
-  /// Like Guard, for functions that send data to the parts: their time belongs to the next
-  /// deformation.
+  /// Like Guard, for functions that send data. Their time is reported by the next deformation.
   template <typename Function>
   void Send(Function&& function)
   {
@@ -106,7 +104,7 @@ public:
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   }
 
-  /// Throws an Error where no volume is set.
+  /// Throws an Error if no volume is set.
   Parts& GetParts() const
   {
     if (!this->All)
@@ -120,12 +118,11 @@ public:
   {
     if (this->All)
     {
-      this->All->BringOutput(); // or it would keep its memory of the device
+      this->All->BringOutput(); // otherwise it would keep device memory
       this->All.reset();
     }
   }
 
-  /// Bytes allocated on the device.
   std::uint64_t GetMemory() const { return this->All ? this->All->GetMemory() : 0; }
 
   WorkDevice Device;
