@@ -149,7 +149,6 @@ struct LaneStress
 };
 
 /// The stable neo-Hookean model without a logarithmic term. Its energy density is
-///
 /// mu/2 (|F|^2 - 3) - mu (J - 1) + (lambda + mu)/2 (J - 1)^2, where J = det F.
 DEFORMVOLUME_ALWAYS_INLINE LaneStress FindNeoHookeanStress(
   const ElementBatch& batch, const LanePoint& point, const Lanes& meanPressure)

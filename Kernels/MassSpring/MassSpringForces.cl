@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The forces of tetrahedra on their nodes. Their edges are springs, and their volume has an energy. The host defines
 // before this text:
-//
 //   LANES  tetrahedra of a work-item: 16, 8 or 4 on CPUs, with LaneVectors.cl; otherwise 1
-//
 // Tetrahedra are stored in packets of LANES. A packet has the first values of all of its tetrahedra, then the second
 // values, and so on.
 
