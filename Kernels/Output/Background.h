@@ -10,8 +10,8 @@
 namespace deformvolume
 {
 
-/// What a background becomes in the type of an array: rounded to the nearest integer where that is
-/// one, and clamped to its range.
+/// Converts a background value to the type of an array: rounded to the nearest integer for integer
+/// types, and clamped to the range of the type.
 template <typename T>
 T ClampTo(double value)
 {
@@ -21,7 +21,7 @@ T ClampTo(double value)
     {
       return 0;
     }
-    // As doubles the ends of the range may round outwards, hence >= and <=.
+    // Converting the limits of 64-bit integers to double can round them outwards, hence >= and <=.
     if (value >= static_cast<double>(std::numeric_limits<T>::max()))
     {
       return std::numeric_limits<T>::max();
@@ -32,7 +32,7 @@ T ClampTo(double value)
     }
     return static_cast<T>(std::nearbyint(value));
   }
-  // A finite value stays finite.
+  // Finite values stay finite.
   const double largest = static_cast<double>(std::numeric_limits<T>::max());
   return static_cast<T>(
     std::isfinite(value) ? std::min(std::max(value, -largest), largest) : value);

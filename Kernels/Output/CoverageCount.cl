@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Passes over all voxels of the output, or over all counters. It comes after GroupReduction.cl.
+// Sums over all output voxels, and over all counters. GroupReduction.cl comes before this text.
 
-// Counts the voxels that are covered, a partial sum a work-item. voxelsOfItem: that it takes.
+// Counts covered voxels: one partial sum for each work-item, which takes voxelsOfItem voxels.
 __kernel void CountCovered(__global const char* coverage, const ulong numberOfVoxels,
   const uint voxelsOfItem, __global uint* sums)
 {
@@ -10,7 +10,7 @@ __kernel void CountCovered(__global const char* coverage, const ulong numberOfVo
   const size_t end = min(begin + voxelsOfItem, (size_t)numberOfVoxels);
   if (begin >= end)
   {
-    return; // an item that only fills its group
+    return; // padding of the last work-group
   }
   uint sum = 0;
   for (size_t i = begin; i < end; ++i)
@@ -22,13 +22,13 @@ __kernel void CountCovered(__global const char* coverage, const ulong numberOfVo
 
 #define ADD(row, a, b) ((a) + (b))
 
-// The covered voxels among words of bits, as far as a work-item sees them.
+// Counts the covered voxels of this work-item in words of bits.
 static uint CountBits(__global const uint* bits, ulong words)
 {
   const size_t step = get_global_size(0);
   uint sum = 0;
   size_t i = get_global_id(0);
-  for (; i + 3 * step < words; i += 4 * step) // memory is asked for all of them at once
+  for (; i + 3 * step < words; i += 4 * step) // four independent loads
   {
     const uint4 some = (uint4)(bits[i], bits[i + step], bits[i + 2 * step], bits[i + 3 * step]);
     const uint4 counts = popcount(some);
@@ -41,9 +41,9 @@ static uint CountBits(__global const uint* bits, ulong words)
   return sum;
 }
 
-// Adds up the counters of all sections, and the voxels that are covered where coverage is bits: DEFORMVOLUME_SUMMED
-// partial sums a work-group, of as many groups as DEFORMVOLUME_PARTS says. words: of bits, 0 where these do not matter;
-// rows: room for as many sums a work-item.
+// Adds up the counters of all sections, and the covered voxels if coverage is bits. Each of DEFORMVOLUME_PARTS
+// work-groups writes DEFORMVOLUME_SUMMED partial sums. words: number of words of `bits`; 0 if bits are not to be
+// counted. rows: DEFORMVOLUME_SUMMED values for each work-item.
 __kernel void SumParts(__global const uint* counters, const uint sections,
   __global const uint* bits, const ulong words, __global ulong* parts, __local ulong* rows)
 {
@@ -74,7 +74,7 @@ __kernel void SumParts(__global const uint* counters, const uint sections,
   }
 }
 
-// What the parts add up to (DEFORMVOLUME_SUMMARY_WORDS), in one work-group.
+// Adds up the partial sums into DEFORMVOLUME_SUMMARY_WORDS words, in one work-group.
 __kernel void Summarize(__global const ulong* parts, __global uint* summary, __local ulong* rows)
 {
   const size_t item = get_local_id(0);
@@ -107,11 +107,11 @@ __kernel void Summarize(__global const ulong* parts, __global uint* summary, __l
   }
 }
 
-// The counters of the sections of a list of bricks that are to be run are 0 again: an item a section.
+// Clears the counters of those sections of listed bricks that will be run. One work-item per section.
 __kernel void ClearSections(__global uint* counters, __global const uint* bricks, const uint sections)
 {
   const size_t i = get_global_id(0);
-  const uint brick = i < sections ? bricks[i / DEFORMVOLUME_SECTIONS] : 0; // no section of it
+  const uint brick = i < sections ? bricks[i / DEFORMVOLUME_SECTIONS] : 0; // 0: a brick without sections
   const size_t section =
     DEFORMVOLUME_SECTIONS * (size_t)(brick & ((1u << DEFORMVOLUME_BRICK_BITS) - 1)) +
     i % DEFORMVOLUME_SECTIONS;
@@ -121,7 +121,7 @@ __kernel void ClearSections(__global uint* counters, __global const uint* bricks
   }
 }
 
-// Those counters of all sections are 0 again that tell the passes which choose winners where there is work.
+// Clears those counters of all sections that tell the passes for winners where they have work.
 __kernel void ClearWork(__global uint* counters, const uint sections)
 {
   const size_t i = get_global_id(0);
@@ -132,11 +132,11 @@ __kernel void ClearWork(__global uint* counters, const uint sections)
   }
 }
 
-// Sections of bricks that hold the winners of voxels: counts in them are set where there is one. Voxels side by
-// side mostly have winners side by side, and only cells outside a run are looked for.
+// Marks the sections of bricks that contain winners. Neighboring voxels mostly have winners in the same section, so
+// the cells of the last section are kept as a run.
 typedef struct
 {
-  ulong Begin; // cells of a row in one section
+  ulong Begin; // a range of cells of a row in one section
   ulong End;
 } CellRun;
 
@@ -158,13 +158,12 @@ static void MarkSection(ulong cell, CellRun* run, __global uint* counters, const
   run->End = cell + min((int)width - x, DEFORMVOLUME_SPAN - inSpan);
 }
 
-// After a pass that finds the voxels that several cells write, as their keys say: marks patches with voxels that
-// are not settled, and the sections of bricks that hold winners so far. Where that pass was not made, as no voxel
-// is written twice, claimed is 0: those that are covered are settled then. words: uints of a key; patches: what is
-// known of them, in which voxels that are not covered can be won where cells touch them, and then, of as many, which
-// have contested voxels. Patches that are kept are left out.
-// patchesOfItem: those side by side that an item takes. An item has its patches alone, as it also writes what is
-// known of them.
+// Runs after the pass in which cells claim voxels. Marks the patches that have unsettled voxels, and the sections
+// that contain current winners. Patches that are kept are skipped. claimed: 0 if no voxel is written twice, so that
+// this pass was skipped; covered voxels then count as settled. words: number of uints of a key. patches: first the
+// state of each patch, then for each patch whether it has contested voxels. Uncovered voxels of touched patches can
+// still be won.
+// patchesOfItem: neighboring patches that a work-item takes. No other work-item writes to these.
 __kernel void Settle(__global const char* coverage, __global uint* winners, const uint words,
   const int claimed, __global char* patches, __global uint* counters, const uint patchesOfItem,
   const KernelParameters p)
@@ -177,7 +176,7 @@ __kernel void Settle(__global const char* coverage, __global uint* winners, cons
   const size_t last = min(first + patchesOfItem, width);
   const size_t height = DEFORMVOLUME_PATCHES(p.OutputSize[1]);
   const int firstZ = row / height * DEFORMVOLUME_PATCH;
-  const int lastZ = min(firstZ + DEFORMVOLUME_PATCH, p.OutputSize[2]); // none for items that only fill their group
+  const int lastZ = min(firstZ + DEFORMVOLUME_PATCH, p.OutputSize[2]); // empty for the padding of the last work-group
   const int firstY = row % height * DEFORMVOLUME_PATCH;
   const int lastY = min(firstY + DEFORMVOLUME_PATCH, p.OutputSize[1]);
   __global char* contestedPatches = patches + PatchRow(0, PatchedPlanes(&p), &p);
@@ -213,7 +212,7 @@ __kernel void Settle(__global const char* coverage, __global uint* winners, cons
           else if (high & contested)
           {
             some = 1;
-            const uint part = high & (contested >> 1) - 1; // without the two bits that tell of keys
+            const uint part = high & (contested >> 1) - 1; // without the two flag bits
             MarkSection(words == 1 ? part : (ulong)part << 32 | key[0], &run, counters, &p);
           }
         }

@@ -13,26 +13,26 @@
 namespace deformvolume
 {
 
-/// How an output is made.
+/// The method that computes an output.
 enum class Resampling
 {
-  /// The exact fill rule: every covered voxel is written by exactly one tetrahedron. The kernel is
-  /// chosen by device and arrays.
+  /// Every covered voxel is written by exactly one tetrahedron of the sampling mesh. The kernel is
+  /// chosen for the device and the arrays.
   Exact,
-  /// The same with the kernel that takes one cell after the other: any arrays, any device.
+  /// Exact, with the kernel that handles one cell at a time. For any arrays and any device.
   ExactByCell,
-  /// The same with the kernel for processors, several cells in the lanes of vector registers: any
-  /// arrays; an Error where the output is over 32,768 voxels on an axis, or 2^31 altogether, and on
-  /// devices whose work-items have no vector registers for themselves. Linear
-  /// arrays of one component, of float or integers of 8 or 16 bits, are interpolated in single
-  /// precision.
+  /// Exact, with the CPU kernel that handles several cells in the lanes of vector registers. For
+  /// any arrays. Linear arrays of one component, of type float or 8- or 16-bit integer, are
+  /// interpolated in single precision. An Error if the output has more than 32,768 voxels on an
+  /// axis or 2^31 voxels in total, or if work-items of the device have no vector registers of their
+  /// own.
   ExactByLanes,
-  /// The same with the kernel for graphics cards, whose work-items are lanes, each a column of
-  /// cells: arrays as above, outputs as above, any device with local memory for it, else an Error.
+  /// Exact, with the GPU kernel in which each work-item is a lane and handles a column of cells.
+  /// Arrays and outputs as above. An Error if the device has too little local memory.
   ExactByColumns,
-  /// The tetrahedra of the deformation mesh themselves are rasterised, and the volume is looked up
-  /// at the interpolated rest coordinate (MeshRasterizer.h). Goes with SetRestMesh, and with
-  /// SetInverseField, where the field says the rest coordinate.
+  /// Rasterizes the tetrahedra of the deformation mesh, and samples the volume at the interpolated
+  /// rest coordinate (MeshRasterizer.h). Needs SetRestMesh, or SetInverseField, whose field gives
+  /// the rest coordinate.
   MeshRasterization
 };
 
@@ -40,105 +40,105 @@ enum class Resampling
 enum class Interpolation
 {
   Linear,
-  /// Catmull-Rom, over four voxels on each axis, clamped to the range of integer types. With the
-  /// exact methods at the rest coordinate that a sample has in its tetrahedron, where all 64 voxels
-  /// are there and no cut or boundary passes between them, and linear elsewhere; not with
-  /// ExactByLanes and ExactByColumns.
+  /// Catmull-Rom interpolation over four voxels on each axis, clamped to the range of integer
+  /// types. With the exact methods it takes place at the rest coordinate of a sample in its
+  /// tetrahedron, if all 64 voxels exist and no cut or boundary lies between them; otherwise
+  /// interpolation is linear. Not supported by ExactByLanes and ExactByColumns.
   Cubic
 };
 
-/// What VolumeDeformer::Deform() is to do, and the memory for it.
+/// The input of VolumeDeformer::Deform(), and the memory for its output.
 struct DeformRequest
 {
-  /// The resampler.
+  /// The resampling method. Default: Exact.
   Resampling Method = Resampling::Exact;
-  /// How arrays that are not categorical are interpolated.
+  /// The interpolation of arrays that are not categorical. Default: Linear.
   deformvolume::Interpolation Interpolation = deformvolume::Interpolation::Linear;
-  /// Structured indices of the output voxels.
+  /// The structured extent of the output voxels.
   Extent OutputExtent{ { 0, -1, 0, -1, 0, -1 } };
-  /// The output that these are a part of; empty: they are all of it. What a voxel gets with the
-  /// methods Exact, ExactByCell, ExactByLanes and ExactByColumns depends on this one alone, to the
-  /// last bit.
+  /// The whole output, if OutputExtent is a part of it; empty: OutputExtent is the whole. With the
+  /// exact methods, the value of a voxel depends on this extent only, bit for bit.
   Extent WholeOutputExtent{ { 0, -1, 0, -1, 0, -1 } };
-  /// For each array of the volume, room for Components elements a voxel of OutputExtent. A device
-  /// that is a processor works there; after a failure the contents are undefined.
+  /// For each array of the volume, memory for Components elements per voxel of OutputExtent. A CPU
+  /// device works directly in this memory. After a failure the contents are undefined.
   std::vector<void*> Outputs;
-  /// Room for one byte a voxel: 1 where the deformed volume covers it, else 0.
+  /// Memory for one byte per voxel: 1 if the deformed volume covers the voxel, otherwise 0.
   signed char* Coverage = nullptr;
-  /// With the exact methods, room for a number a voxel of OutputExtent that is 0 before: where
-  /// tetrahedra of the sampling mesh overlap, how many hold the voxel. Not incremental. Null: they
-  /// are not counted. Cells at the boundary of the mesh do not count.
+  /// Memory for one number per voxel of OutputExtent, initially 0: the number of tetrahedra of the
+  /// sampling mesh that hold the voxel where several overlap. Cells at the boundary of the mesh are
+  /// not counted. Only with the exact methods, and not incremental. Null: not counted.
   std::uint32_t* FoldCounts = nullptr;
-  /// The output may stay on the device until somebody wants it on the host: where that has memory
-  /// of its own and makes the output in one piece, DeformReport::DeviceOutputs are it. Outputs and
-  /// Coverage get the values when they are read.
+  /// Whether the output may stay on the device until it is needed on the host. This requires a
+  /// device with its own memory that makes the output in one slab. DeformReport::DeviceOutputs then
+  /// has the output, and Outputs and Coverage get their values when it is read.
   bool MayStayOnDevice = false;
-  /// For such outputs: DeformReport::Revision of what the memory of each of Outputs, and then that
-  /// of Coverage, holds unchanged, 0: nothing of use. In an update of a part only what has changed
-  /// since is then copied there. Empty: they hold nothing.
+  /// For outputs that stay on the device: the DeformReport::Revision that the memory of each of
+  /// Outputs, then that of Coverage, still holds unchanged; 0: none. After an incremental update
+  /// only later changes are then copied to that memory. Empty: none.
   std::vector<std::uint64_t> HeldRevisions;
-  /// Keeps what is needed to write only what changes until the next call. That call needs the
-  /// output of this one in LastOutputs and LastCoverage. Where that is not faster or not possible,
-  /// all is written; the result is the same to the last bit. For volumes and outputs within the
-  /// allocation limit, and methods Exact, ExactByCell, ExactByLanes and ExactByColumns.
+  /// Whether to keep what the next call needs to write only the voxels that change. That call needs
+  /// this output in LastOutputs and LastCoverage. If an incremental update is not possible or not
+  /// faster, all voxels are written; the result is the same bit for bit. Supported by the exact
+  /// methods, for volumes and outputs within the allocation limit.
   bool Incremental = false;
-  /// What the last call wrote, unchanged: the same memory as Outputs and Coverage, or other memory,
-  /// from which it is copied, whatever the device. Empty and null where there is none. An output
-  /// that stays on the device needs neither.
+  /// The output of the last call, unchanged: the same memory as Outputs and Coverage, or other
+  /// memory, which is then copied. Empty and null if there is none. Not needed for an output that
+  /// stays on the device.
   std::vector<const void*> LastOutputs;
-  /// As LastOutputs, of Coverage.
+  /// Like LastOutputs, for Coverage.
   const signed char* LastCoverage = nullptr;
-  /// DeformReport::Revision of the output that Outputs and Coverage hold, where these are other
-  /// memory than that of the last output, and unchanged; 0: they hold nothing of use. Where it is
-  /// the output before the last one, as when two take turns, only what is different is copied.
+  /// The DeformReport::Revision that Outputs and Coverage still hold unchanged, if this is not the
+  /// memory of the last output; 0: none. With two alternating output buffers, this is the output
+  /// before the last one, and only differences are copied.
   std::uint64_t OutputRevision = 0;
-  /// Called between launches with the fraction done, 0 to 1; returning false aborts the work.
+  /// Called between launches with the completed fraction, 0 to 1. Return false to abort.
   std::function<bool(double)> Progress;
-  /// Called with true before kernels are compiled, which may take many seconds, and with false
-  /// after. In the thread that called Deform().
+  /// Called with true before kernels are compiled, which can take many seconds, and with false
+  /// afterwards. Runs in the thread that called Deform().
   std::function<void(bool)> Compiling;
 };
 
-/// What VolumeDeformer::Deform() has done.
+/// The result of VolumeDeformer::Deform().
 struct DeformReport
 {
-  /// Voxels of the output that the deformed volume covers.
+  /// The number of output voxels that the deformed volume covers.
   std::int64_t NumberOfCoveredVoxels = 0;
-  /// Active tetrahedra of the sampling mesh that the deformation turns inside out; with
-  /// MeshRasterization tetrahedra of the deformation mesh.
+  /// The number of active tetrahedra of the sampling mesh that the deformation inverts; with
+  /// MeshRasterization, of tetrahedra of the deformation mesh.
   std::int64_t NumberOfInvertedTetrahedra = 0;
-  /// Cells with a tetrahedron that is stretched over more than 4,000 output voxels; such tetrahedra
-  /// are skipped.
+  /// The number of cells with a tetrahedron that extends over more than 4,000 output voxels. Such
+  /// tetrahedra are skipped.
   std::int64_t NumberOfOverstretchedCells = 0;
-  /// True where tetrahedra overlap, so that a winner had to be chosen: upright before inverted,
-  /// then the lowest cell and tetrahedron.
+  /// Whether tetrahedra overlap. The winner of a voxel is then an upright tetrahedron before an
+  /// inverted one, then the one with the lowest cell and number.
   bool Overlapping = false;
-  /// Samples of tetrahedra that others hide there: what the output lacks of the deformed volume.
+  /// The number of samples that are hidden by winners of overlaps, and so missing in the output.
   /// Not counted in an incremental update.
   std::int64_t NumberOfHiddenSamples = 0;
-  /// Tetrahedra of the deformation mesh without volume at rest; counted by MeshRasterization only.
+  /// The number of tetrahedra of the deformation mesh without volume at rest. Only for
+  /// MeshRasterization.
   std::int64_t NumberOfFlatTetrahedra = 0;
-  /// Bricks of 192 x 16 x 16 cells of the volume, and how many of them were resampled: fewer only
-  /// in an incremental update. 0 for MeshRasterization.
+  /// The number of bricks of 192 x 16 x 16 cells of the volume; 0 for MeshRasterization.
   std::int64_t NumberOfBricks = 0;
-  /// The bricks that were resampled.
+  /// The number of bricks that were resampled; less than NumberOfBricks in an incremental update.
   std::int64_t NumberOfResampledBricks = 0;
-  /// What tells this output from others that this deformer has made; 0: nothing is kept of it.
+  /// Identifies this output among those of this deformer; 0: nothing of it is kept.
   std::uint64_t Revision = 0;
-  /// The output where it has stayed on the device: that of each array, and then the coverage. Empty
-  /// where the memory of the request has it. TransferTime does not count when that is read.
+  /// The output if it stayed on the device: one object for each array, then one for the coverage.
+  /// Empty if the output is in the memory of the request. TransferTime does not include reading
+  /// these.
   std::vector<std::shared_ptr<DeviceOutput>> DeviceOutputs;
-  /// Holds all output voxels that may differ from the last output: OutputExtent where all was made,
-  /// less in an incremental update, empty where nothing changed.
+  /// A box of all output voxels that may differ from the last output: OutputExtent after a full
+  /// update; smaller after an incremental update; empty if nothing changed.
   Extent ChangedExtent{ { 0, -1, 0, -1, 0, -1 } };
-  /// Seconds. The exact kernels map and resample in one: their MappingTime is 0. With
-  /// MeshRasterization the mapping is the listing of the tetrahedra of each part of the output.
+  /// The time of the mapping, in seconds. 0 for the exact methods, whose kernels map and resample
+  /// together. With MeshRasterization, the time to list the tetrahedra of each part of the output.
   double MappingTime = 0.0;
-  /// Seconds for the resampling.
+  /// The time of the resampling, in seconds.
   double ResamplingTime = 0.0;
-  /// Seconds for copies to and from the device.
+  /// The time of copies to and from the device, in seconds.
   double TransferTime = 0.0;
-  /// The compilation of kernels; it is part of no other time.
+  /// The time of compiling kernels, in seconds. Not included in the other times.
   double CompilationTime = 0.0;
 };
 

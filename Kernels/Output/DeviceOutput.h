@@ -11,11 +11,10 @@
 namespace deformvolume
 {
 
-/// An array of an output, or its coverage, that is still on the device (DeformRequest::
-/// MayStayOnDevice). It goes to the memory of the request when somebody asks for it, and before
-/// that by itself where the deformer needs the memory of the device: for its next output, for
-/// another volume, and when it is to release its memory. The memory of the request has to be there
-/// until then, or until Drop(); the deformer need not.
+/// An output array, or the coverage, that stayed on the device (DeformRequest::MayStayOnDevice).
+/// Read() copies it to the memory of the request. The deformer copies it by itself before it needs
+/// the device memory: for its next output, for another volume, or to release its memory. The memory
+/// of the request must exist until then, or until Drop(). The deformer may be deleted earlier.
 class DEFORMVOLUME_EXPORT DeviceOutput
 {
 public:
@@ -23,17 +22,17 @@ public:
   DeviceOutput(const DeviceOutput&) = delete;
   DeviceOutput& operator=(const DeviceOutput&) = delete;
 
-  /// Whether nobody has asked for the values yet, and somebody still may.
+  /// Whether the values are on the device, neither read nor dropped.
   bool IsOnDevice() const;
-  /// Whether they have been brought to the memory of the request.
+  /// Whether the values are in the memory of the request.
   bool IsRead() const;
 
-  /// Brings the values to the memory of the request, unless they are there. Threads may call this
-  /// at once: the first one copies, and the others wait. Throws an Error where they could not be
-  /// copied, now or by another call; the memory then holds the background.
+  /// Copies the values to the memory of the request, unless they are there. Thread-safe: the first
+  /// thread copies, others wait. Throws an Error if the copy failed in this or an earlier call; the
+  /// memory then holds the background.
   void Read();
 
-  /// What a component holds: from the least to the largest of the values that are finite.
+  /// The range of the finite values of a component.
   struct Range
   {
     /// The least finite value.
@@ -43,21 +42,20 @@ public:
     /// Whether no value is infinite or not-a-number.
     bool AllFinite = false;
   };
-  /// Found on the device, as nobody reads the values for that. Nothing where they are not there,
-  /// where there is no such component, where none is finite, or where they are integers of 64 bits,
-  /// which a double does not hold.
-  /// Throws an Error where the device fails.
+  /// Finds the range on the device, without copying the values. Returns nothing if the values are
+  /// not on the device, if the component does not exist, if no value is finite, or for 64-bit
+  /// integers, which a double cannot hold. Throws an Error if the device fails.
   std::optional<Range> FindRange(int component);
 
-  /// Nobody wants the values, and the memory of the request may go. Waits for a copy that is under
-  /// way. The destructor does so, too.
+  /// Discards the values, and allows the memory of the request to be freed. Waits for a copy in
+  /// progress. The destructor does the same.
   void Drop();
 
-  /// For objects of this library.
+  /// For use inside this library.
   class DEFORMVOLUME_NO_EXPORT Internals;
-  /// For objects of this library.
+  /// For use inside this library.
   DEFORMVOLUME_NO_EXPORT explicit DeviceOutput(std::shared_ptr<Internals> internals);
-  /// For objects of this library.
+  /// For use inside this library.
   const std::shared_ptr<Internals>& GetInternals() const { return this->Impl; }
 
 private:

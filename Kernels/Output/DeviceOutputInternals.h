@@ -20,12 +20,12 @@
 namespace deformvolume
 {
 
-/// What a DeviceOutput is about, as the deformer sees it.
+/// The device buffer of a DeviceOutput, and the host memory that it is for.
 class DeviceOutput::Internals
 {
 public:
-  /// What there is to copy: of the voxels of an output, with so many bytes each, a part. The others
-  /// are there. The buffer has all of them.
+  /// The values to copy: those of Part, with Bytes for each voxel. Voxels outside Part are already
+  /// on the host. The buffer has all voxels of Whole.
   struct Voxels
   {
     Extent Whole;
@@ -34,26 +34,25 @@ public:
     std::size_t Bytes;
   };
 
-  /// The buffer is written, and nobody writes to it before Bring() was called. background: what all
-  /// of the memory gets where the values cannot be copied.
+  /// The buffer must be complete, and must not be written before Bring() was called. background:
+  /// the value for all of the memory if copying fails.
   Internals(const cl::CommandQueue& queue, const cl::Buffer& buffer, const Voxels& voxels,
     void* memory, const ElementBytes& background);
 
   bool IsOnDevice() const { return this->State == Place::Device; }
   bool IsRead() const { return this->State == Place::Host; }
 
-  /// Brings the values to the memory, unless that is done, and lets go of the buffer. Throws
-  /// nothing.
+  /// Copies the values to the host unless that is done, and releases the buffer. Does not throw.
   void Bring() noexcept;
-  /// What went wrong then; "" where nothing did.
+  /// The message of a failure in Bring(); empty if there was none.
   std::string GetMessage();
-  /// Nobody wants the values, and the memory may go. Waits for a copy that is under way.
+  /// See DeviceOutput::Drop().
   void Drop() noexcept;
 
   /// See DeviceOutput.
   std::optional<Range> FindRange(int component);
 
-  /// Bytes of the device.
+  /// The memory on the device, in bytes.
   std::uint64_t GetMemory();
 
 private:
@@ -78,16 +77,16 @@ private:
   std::string Message;
 };
 
-/// The arrays of the last output that may still be on the device. What can still be read of them
-/// has to be brought to the host before their buffers are written again.
+/// The arrays of the last output that may still be on the device. Call Bring() before their buffers
+/// are written again.
 class UnreadOutputs
 {
 public:
-  /// ownBuffers: whether nobody else counts the memory of these.
+  /// ownBuffers: whether GetMemory() is to count these buffers, as no other object does.
   void Set(const std::vector<std::shared_ptr<DeviceOutput>>& outputs, bool ownBuffers);
-  /// Failures are told to those who read. Throws nothing.
+  /// Copies the arrays to the host. Failures are reported to those who read them. Does not throw.
   void Bring() noexcept;
-  /// Bytes of the device that nobody else counts.
+  /// The device memory that no other object counts, in bytes.
   std::uint64_t GetMemory() const;
 
 private:

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Gives output voxels what those hold that the deformed volume does not cover. Elements are moved as bits of their
-// size, whatever their type.
+// Fills voxels that the deformed volume does not cover with their background. Elements are handled as unsigned
+// integers of their size, whatever their type.
 //
-// Why not clEnqueueFillBuffer: some drivers for processors fill with one thread, and the first
-// touch of fresh memory costs more than all else. On an H200 it took 13 to 28 microseconds to clear the bits and the
-// counters of 13 million voxels, each, where a kernel takes about 13.
+// clEnqueueFillBuffer is not used: some CPU drivers fill with one thread, and the first access to new memory is slow.
+// On an H200, clearing the bits or the counters of 13 million voxels took it 13 to 28 microseconds each; a kernel
+// takes about 13.
 
-// A work-item fills as many bytes as DEFORMVOLUME_FILLED_BYTES says; size: elements.
+// Each work-item fills DEFORMVOLUME_FILLED_BYTES bytes. size: number of elements.
 #define FILL(NAME, TYPE, VECTOR)                                                                   \
   __kernel void NAME(__global TYPE* restrict target, const ulong size, const TYPE value)           \
   {                                                                                                \
@@ -23,8 +23,7 @@
     }                                                                                              \
   }
 
-// Bytes, and values whose bytes are alike: most of what is filled. The C library sets memory without reading it
-// before, where the processor can.
+// Most fills have equal bytes. memset can use instructions that do not read the memory first.
 #ifdef __x86_64__
 __kernel void Fill1(__global uchar* restrict target, const ulong size, const uchar value)
 {
@@ -39,10 +38,10 @@ FILL(Fill2, ushort, ushort16)
 FILL(Fill4, uint, uint16)
 FILL(Fill8, ulong, ulong16)
 
-// Whether a pointer and what is a multiple of as many bytes behind it can be stored to at once.
+// Whether a pointer is aligned for 16-byte stores.
 #define IS_ALIGNED(target) (((size_t)(target) & (sizeof(uint4) - 1)) == 0)
 
-// For devices whose work-items are lanes: neighbours take 16 bytes each, side by side, which are those of a pattern.
+// For devices whose work-items are lanes: neighboring work-items store 16 neighboring bytes of a pattern each.
 __kernel void FillWide(__global uchar* restrict target, const ulong bytes, const uint4 pattern)
 {
   const size_t whole = IS_ALIGNED(target) ? bytes / sizeof(uint4) : 0;
@@ -57,8 +56,7 @@ __kernel void FillWide(__global uchar* restrict target, const ulong bytes, const
   }
 }
 
-// The rows of a patch that a work-item takes: the voxels from a first one to an end, which has the value of the first
-// where the row is not in the output.
+// A row of voxels of a patch, [First, End). Empty if the row is outside the output.
 typedef struct
 {
   size_t First, End;
@@ -81,7 +79,7 @@ static VoxelRow RowOfPatch(size_t patch, size_t i, const KernelParameters* p)
 
 #define ROWS_OF_PATCH (DEFORMVOLUME_PATCH * DEFORMVOLUME_PATCH)
 
-// The patches of a list: a work-group takes one. elements: of a voxel.
+// Fills listed patches, one for each work-group. elements: number of elements of a voxel.
 #define FILL_PATCHES(NAME, TYPE)                                                                   \
   __kernel void NAME(__global TYPE* restrict target, const uint elements, const TYPE value,        \
     __global const uint* patches, const KernelParameters p)                                        \
@@ -101,14 +99,14 @@ FILL_PATCHES(FillPatches2, ushort)
 FILL_PATCHES(FillPatches4, uint)
 FILL_PATCHES(FillPatches8, ulong)
 
-// The voxels that are covered in the patches of a list, an item a patch.
+// Counts the covered voxels of listed patches, one patch for each work-item.
 __kernel void CountCoveredInPatches(__global const uchar* coverage, __global const uint* patches, const uint count,
   __global uint* sums, const KernelParameters p)
 {
   const size_t item = get_global_id(0);
   if (item >= count)
   {
-    return; // an item that only fills its group
+    return; // padding of the last work-group
   }
   uint sum = 0;
   for (size_t i = 0; i < ROWS_OF_PATCH; ++i)
@@ -122,26 +120,27 @@ __kernel void CountCoveredInPatches(__global const uchar* coverage, __global con
   sums[item] = sum;
 }
 
-// The rest is for coverage that is bits, in words of 32.
+// The following functions are for coverage that is stored as bits, in words of 32.
 
 static uint IsCovered(__global const uint* bits, size_t voxel)
 {
   return bits[voxel >> 5] >> (voxel & 31) & 1;
 }
 
-// Neighbours take DEFORMVOLUME_EXPANDED voxels each, as many bytes as are stored at once, side by side.
+// The bits of DEFORMVOLUME_EXPANDED voxels, as many as are stored at once. Neighboring work-items take neighboring
+// voxels.
 static uint CoveredOf(__global const uint* bits, size_t first)
 {
   return bits[first >> 5] >> (first & 31) & 0xffff;
 }
 
-// Four bits as bytes.
+// Expands four bits to four bytes.
 static uint BytesOf(uint bits)
 {
   return (bits & 15) * 0x00204081 & 0x01010101;
 }
 
-// The same as bytes.
+// Expands the bits of all voxels to bytes.
 __kernel void ExpandCoverage(__global const uint* bits, __global uchar* coverage, const ulong voxels)
 {
   const size_t whole = IS_ALIGNED(coverage) ? voxels / DEFORMVOLUME_EXPANDED : 0;
@@ -159,9 +158,9 @@ __kernel void ExpandCoverage(__global const uint* bits, __global uchar* coverage
   }
 }
 
-// Elements of voxels that are not covered: so each element of an output is written once only. An item asks memory for
-// some at once. Neighbours take neighbours: most of what is stored lies on the border of what is covered, where wide
-// stores are not possible, and single ones of an item are as many writes.
+// Fills the elements of voxels that are not covered, so that each element of an output is written only once. Each
+// work-item loads several bits before it stores. Neighboring work-items take neighboring voxels: most stores lie at
+// the border of covered voxels, where stores cannot be combined within a work-item.
 #define FILLED_AT_ONCE 8
 #define FILL_UNCOVERED(NAME, TYPE)                                                                 \
   __kernel void NAME(__global TYPE* restrict target, const ulong voxels, const TYPE value,         \
@@ -193,13 +192,13 @@ FILL_UNCOVERED(FillUncovered2, ushort)
 FILL_UNCOVERED(FillUncovered4, uint)
 FILL_UNCOVERED(FillUncovered8, ulong)
 
-// The patches of a list, a work-group each: clears their bits, or makes bytes of them.
+// Clears the bits of listed patches; ExpandPatches expands them to bytes. One patch for each work-group.
 __kernel void ClearPatchBits(
   __global uint* bits, __global const uint* patches, const KernelParameters p)
 {
   for (size_t i = get_local_id(0); i < ROWS_OF_PATCH; i += get_local_size(0))
   {
-    // A row is shorter than a word, and may end in the next one.
+    // A row has fewer voxels than a word has bits, but can continue in the next word.
     const VoxelRow row = RowOfPatch(patches[get_group_id(0)], i, &p);
     const ulong mask = ((1ul << (row.End - row.First)) - 1) << (row.First & 31);
     const uint low = mask, high = mask >> 32;

@@ -17,7 +17,7 @@ cl::Kernel MakeKernel(OpenCLContext& context, const std::string& name, const Ele
   return cl::Kernel(GetOutputProgram(context), (name + std::to_string(value.Size)).c_str());
 }
 
-/// A group for each patch of a list, an item for each row of it.
+/// Launches a work-group for each listed patch, with a work-item for each of its rows.
 void LaunchPatches(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Kernel& kernel,
   std::size_t count, std::vector<cl::Event>& events)
 {
@@ -25,8 +25,8 @@ void LaunchPatches(OpenCLContext& context, const cl::CommandQueue& queue, const 
   events.push_back(context.Launch(queue, kernel, cl::NDRange(group * count), cl::NDRange(group)));
 }
 
-/// For kernels that go through memory in portions, with a stride: no more items than a device runs
-/// at once, as to start one takes longer than a portion.
+/// Launches a kernel that strides through memory in portions. There are no more work-items than a
+/// device runs at once, as starting one takes longer than a portion.
 void LaunchPortions(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Kernel& kernel,
   std::uint64_t size, std::uint64_t portion, std::vector<cl::Event>& events)
 {

@@ -15,15 +15,15 @@ namespace deformvolume
 namespace
 {
 
-// Patches that follow each other on x.
+// Consecutive patches along x.
 struct PatchRow
 {
   std::uint32_t First;
   std::uint32_t Count;
 };
 
-// Calls body(voxel, voxels) for the rows of such patches along x: the number of the first voxel in
-// the output, and how many there are.
+// Calls body(voxel, voxels) for each row of voxels of the patches: the index of the first voxel in
+// the output, and the number of voxels.
 template <typename Body>
 void ForRows(const Extent& output, const PatchRow& patches, Body&& body)
 {
@@ -54,7 +54,8 @@ std::uint64_t CountCovered(const DeformRequest& request, const PatchRow& patches
     [&](std::int64_t voxel, std::int64_t voxels)
     {
       const signed char* row = request.Coverage + voxel;
-      // Eight at once: the product adds up the bytes, which are 0 or 1, in its highest one.
+      // Eight bytes at a time: the product adds up the bytes, which are 0 or 1, in its highest
+      // byte.
       for (; voxels >= 8; voxels -= 8, row += 8)
       {
         std::uint64_t eight;
@@ -90,7 +91,7 @@ void ClearArray(
   }
 }
 
-// patches: their numbers, in ascending order.
+// Joins consecutive patches of a row. patches: their numbers, in ascending order.
 std::vector<PatchRow> FindRows(const Extent& output, const std::vector<std::uint32_t>& patches)
 {
   const auto width = static_cast<std::uint32_t>(DEFORMVOLUME_PATCHES(GetSize(output, 0)));
@@ -109,7 +110,7 @@ std::vector<PatchRow> FindRows(const Extent& output, const std::vector<std::uint
   return rows;
 }
 
-// Calls body(row) for rows of patches.
+// Calls body(row) for all rows of patches in parallel.
 template <typename Body>
 void ForPatches(const Extent& output, const std::vector<std::uint32_t>& patches, Body&& body)
 {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The range of what a component of an output holds. In front of this text: TYPE, TYPE_LEAST and TYPE_MOST, of which all
-// values of the type lie between, and IS_FINITE(value); and GroupReduction.cl.
+// The range of a component of an output. The host defines before this text: TYPE; TYPE_LEAST and TYPE_MOST, the ends
+// of the range of that type; IS_FINITE(value). GroupReduction.cl comes before, too.
 
-// The least values, and the largest ones.
+// Joins two least values (row 0), or two largest values.
 #define JOIN_ENDS(row, a, b) ((row) == 0 ? ((b) < (a) ? (b) : (a)) : ((b) > (a) ? (b) : (a)))
 
-// A work-group leaves its least and its largest finite value side by side, those that are TYPE_MOST and TYPE_LEAST
-// where there is none, and adds 1 to others where it has met other values. run: tuples in a row that an item takes,
-// before those of the other items follow. ends: two values an item.
+// Each work-group writes its least and its largest finite value; TYPE_MOST and TYPE_LEAST if there is none.
+// Work-items with values that are not finite increment `others`. run: number of consecutive tuples of a work-item,
+// before those of the next one. ends: local memory for two values per work-item.
 __kernel void FindRange(__global const TYPE* values, const ulong tuples, const uint components, const uint component,
   const uint run, __global TYPE* found, __global uint* others, __local TYPE* ends)
 {

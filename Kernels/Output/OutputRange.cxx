@@ -18,7 +18,7 @@ namespace deformvolume
 namespace
 {
 
-/// What stands in front of OutputRange.cl.
+/// Defines the macros of OutputRange.cl.
 template <typename T>
 std::string MakePreamble(ElementType type)
 {
@@ -28,7 +28,7 @@ std::string MakePreamble(ElementType type)
   std::string most = isReal ? "INFINITY" : std::to_string(std::numeric_limits<T>::max());
   if (std::is_same<T, std::int64_t>::value)
   {
-    least = "LONG_MIN"; // whose digits alone are no literal
+    least = "LONG_MIN"; // the digits alone are not a valid literal
   }
   if (std::is_same<T, std::uint64_t>::value)
   {
@@ -52,8 +52,8 @@ DeviceOutput::Range Find(const cl::CommandQueue& queue, const cl::Buffer& buffer
                         GroupReduction_cl + OutputRange_cl,
                       KernelOptions),
     "FindRange");
-  // Where an item has a thread for itself it goes through memory in a row, elsewhere all of them
-  // do together.
+  // If a work-item has a thread of its own, it takes consecutive tuples; otherwise neighboring
+  // work-items take neighboring tuples.
   const bool hasThread = context->GetDevice().HasVectors;
   const cl_uint run = hasThread ? 65536 : 1;
   const std::size_t group = hasThread ? 1 : 64;
@@ -75,7 +75,7 @@ DeviceOutput::Range Find(const cl::CommandQueue& queue, const cl::Buffer& buffer
   kernel.setArg(6, counter);
   kernel.setArg(7, cl::Local(2 * group * sizeof(T)));
   const KernelLinkerScope linker(context->UsesOwnLinker());
-  // Not by OpenCLContext::Launch: queues that read take no times.
+  // OpenCLContext::Launch would measure times, but this queue has no profiling.
   queue.enqueueNDRangeKernel(
     kernel, cl::NullRange, cl::NDRange(groups * group), cl::NDRange(group));
   queue.enqueueReadBuffer(found, CL_TRUE, 0, ranges.size() * sizeof(T), ranges.data());

@@ -12,9 +12,9 @@
 namespace deformvolume
 {
 
-/// Finds the range of a component of an array on a device: of so many tuples of so many components
-/// in a buffer, which nobody writes to. Empty where that has no finite value. Waits for the queue.
-/// Throws cl::Error, or an Error.
+/// Finds the range of a component of an array on a device. The buffer holds `tuples` tuples of
+/// `components` components and must not be written meanwhile. Returns an empty range if no value is
+/// finite. Waits for the queue. Throws cl::Error or Error.
 DeviceOutput::Range FindRange(const cl::CommandQueue& queue, const cl::Buffer& buffer,
   ElementType type, std::uint64_t tuples, std::size_t components, std::size_t component);
 

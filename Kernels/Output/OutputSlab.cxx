@@ -18,7 +18,7 @@ namespace deformvolume
 namespace
 {
 
-/// The bits of a section of a brick, as DEFORMVOLUME_BRICK_BITS says.
+/// The bits of a section of a brick, in the format of DEFORMVOLUME_BRICK_BITS.
 cl_uint GetSectionBits(std::size_t section)
 {
   const std::size_t halves = section / DEFORMVOLUME_SPANS;
@@ -26,7 +26,7 @@ cl_uint GetSectionBits(std::size_t section)
     << DEFORMVOLUME_BRICK_BITS;
 }
 
-/// The sum of what a kernel writes for each of its work-items.
+/// Adds up the values that a kernel writes for each of its work-items.
 std::uint64_t ReadSum(const cl::CommandQueue& queue, const cl::Buffer& sums, std::size_t items)
 {
   std::vector<cl_uint> counts(items);
@@ -34,7 +34,7 @@ std::uint64_t ReadSum(const cl::CommandQueue& queue, const cl::Buffer& sums, std
   return std::accumulate(counts.begin(), counts.end(), std::uint64_t{ 0 });
 }
 
-/// Lets go of memory of the host.
+/// Releases a buffer that uses host memory in place.
 void Release(cl::Buffer& buffer)
 {
   if (IsInPlace(buffer))
@@ -120,7 +120,7 @@ bool OutputSlab::HoldsLastOutput(const OpenCLContext& context, const DeformReque
   const std::vector<VolumeArray>& arrays) const
 {
   const auto voxels = static_cast<std::uint64_t>(GetNumberOfPoints(request.OutputExtent));
-  // What lies in the memory of the host is there in any case.
+  // Arrays in host memory are always available.
   const auto holds = [&](const cl::Buffer& buffer, const void* memory, std::size_t elementSize,
                        std::size_t tupleSize)
   {
@@ -147,7 +147,7 @@ void OutputSlab::PrepareAgain(OpenCLContext& context, const cl::CommandQueue& qu
   const bool onHost = GetBytesPerVoxel(context, arrays, request) == 0;
   if (onHost)
   {
-    // Before the memory becomes that of buffers, and after the device has given it back.
+    // Clear patches while the memory belongs to the host, before it is given to buffers.
     ClearPatches(request, arrays, part.Patches);
   }
   this->PlaceArrays(context, request, arrays);
@@ -291,7 +291,7 @@ void OutputSlab::Complete(OpenCLContext& context, const std::vector<VolumeArray>
       this->NumberOfVoxels, static_cast<std::size_t>(arrays[i].Components), this->CoverageBits,
       events);
   }
-  this->Queue.finish(); // it is read in another queue
+  this->Queue.finish(); // the output is read in another queue
 }
 
 void OutputSlab::ClearCounters(OpenCLContext& context, std::vector<cl::Event>& events)
@@ -408,7 +408,7 @@ OutputSlab::Counts OutputSlab::ReadCounts(
     events.push_back(
       context.Launch(this->Queue, kernel, cl::NDRange(group * groups), cl::NDRange(group)));
   };
-  // A null pointer is not something that all drivers take.
+  // Some drivers do not accept a null buffer, so pass another one.
   run("SumParts", DEFORMVOLUME_PARTS, this->Counters, static_cast<cl_uint>(this->NumberOfSections),
     withBits ? this->CoverageBits : this->Counters,
     cl_ulong{ withBits ? CountWords(this->NumberOfVoxels) : 0 }, this->Parts);
@@ -428,8 +428,8 @@ OutputSlab::Counts OutputSlab::ReadCounts(
 
 bool OutputSlab::FitsLanes() const
 {
-  // Positions in 1/256 voxel are exact in float up to 2^24. Relative to the output they fit 32 bits
-  // where that begins within 2^22 voxels: those at rest lie within 2^21.
+  // Positions in 1/256 voxel are exact in float up to 2^24. Relative positions fit 32 bits if the
+  // output begins within 2^22 voxels: positions at rest lie within 2^21.
   constexpr int farthest = 1 << 22;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -516,7 +516,7 @@ void OutputSlab::Finish()
 {
   if (this->Queue())
   {
-    clFinish(this->Queue()); // throws nothing: this is also called after a failure
+    clFinish(this->Queue()); // does not throw: this is also called after a failure
   }
   this->Reads.Drop();
   for (cl::Buffer& array : this->Arrays)

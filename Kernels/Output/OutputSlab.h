@@ -19,8 +19,8 @@ namespace deformvolume
 
 class WorkDevice;
 
-/// What the device holds of the output: a range of planes of all arrays, their coverage, the
-/// winners where tetrahedra overlap, and the counters of the bricks of cells.
+/// A slab of the output on the device: a range of planes of all arrays, their coverage, the winners
+/// of overlaps, and the counters of the bricks of cells.
 class OutputSlab
 {
 public:
@@ -29,13 +29,14 @@ public:
     std::uint64_t Writes = 0;
     std::uint64_t Inverted = 0;
     std::uint64_t Overstretched = 0;
-    std::uint64_t Covered = 0; // where coverage is bits, after a pass over all cells
-    bool HasLarge = false;     // cells
-    /// On the border of the mesh, tetrahedra that cover nothing, where the kernel took them to.
+    std::uint64_t Covered = 0; // only if coverage is bits, after a pass over all cells
+    bool HasLarge = false;     // whether there are large cells
+    /// Whether tetrahedra at the border of the mesh do not cover samples that the kernel assumed
+    /// they cover.
     bool MissingWhereAssumed = false;
 
-    /// Every covered voxel was written once, unless tetrahedra overlap; where the mesh is folded,
-    /// voxels on the crease may also be missing.
+    /// Whether winners must be chosen. Without overlaps every covered voxel is written once. Where
+    /// the mesh is folded, voxels on the crease may also be missing.
     bool NeedWinners(std::uint64_t covered) const
     {
       return this->Writes > covered || this->Inverted > 0 || this->Overstretched > 0 ||
@@ -43,60 +44,60 @@ public:
     }
   };
 
-  /// Splits an output into slabs that the device can allocate. Throws Error where not even one
+  /// Splits an output into slabs that the device can allocate. Throws an Error if not even one
   /// plane fits.
   static std::vector<Extent> Split(const Extent& output, const std::vector<VolumeArray>& arrays,
     const VoxelGrid& voxelGrid, std::uint64_t allocationLimit);
 
-  /// Words of 32 that coverage as bits takes.
+  /// Returns the number of 32-bit words of coverage stored as bits.
   static std::uint64_t CountWords(std::uint64_t voxels);
-  /// Bytes of a voxel of the request's output that need memory of the device: those of the arrays
-  /// and the coverage that are not worked on in place.
+  /// Returns the device memory per output voxel of the request, in bytes: of the arrays and the
+  /// coverage that are not written in place.
   static std::uint64_t GetBytesPerVoxel(const OpenCLContext& context,
     const std::vector<VolumeArray>& arrays, const DeformRequest& request);
 
-  /// Makes room for a slab of the request's output, or uses what is there, or the memory of the
-  /// request. Events of launches are added to a list.
+  /// Allocates memory for a slab of the request's output, reuses existing buffers, or uses the
+  /// memory of the request in place. Adds events of launches to a list.
   void Place(OpenCLContext& context, const cl::CommandQueue& queue, const Extent& extent,
     const DeformRequest& request, const std::vector<VolumeArray>& arrays,
     const VoxelGrid& voxelGrid, std::size_t numberOfBricks, std::vector<cl::Event>& events);
-  /// After that: nothing is covered. Fills the arrays with the background, or leaves that to
-  /// Complete where coverage is bits.
+  /// After Place: sets the coverage to 0, and fills the arrays with the background. If coverage is
+  /// bits, Complete fills them instead.
   void Clear(OpenCLContext& context, const std::vector<VolumeArray>& arrays, bool coverageBits,
     std::vector<cl::Event>& events);
-  /// Where coverage is bits: makes bytes of them, and voxels that are not covered background.
-  /// again: where only the patches have changed that PrepareAgain has cleared.
+  /// If coverage is bits: expands them to bytes, and fills voxels that are not covered with the
+  /// background. again: only the patches that PrepareAgain cleared have changed.
   void Complete(OpenCLContext& context, const std::vector<VolumeArray>& arrays, bool again,
     std::vector<cl::Event>& events);
 
-  /// Whether the last output, of a request for the same extent, is at hand: in the memory of this
-  /// request, as far as that is worked on in place, and on the device.
+  /// Whether the last output, for the same extent, is available: in the memory of this request for
+  /// arrays that are written in place, otherwise on the device.
   bool HoldsLastOutput(const OpenCLContext& context, const DeformRequest& request,
     const std::vector<VolumeArray>& arrays) const;
-  /// What is made anew of an output (see IncrementalUpdate).
+  /// The parts of an output that an incremental update makes again (see IncrementalUpdate).
   struct PartToMake
   {
     const std::vector<cl_uint>& Bricks;
-    const cl::Buffer& BrickList; // the same on the device, where there are some
+    const cl::Buffer& BrickList; // Bricks on the device, unless empty
     const std::vector<std::uint32_t>& Patches;
-    bool WithWinners; // whether winners were chosen in the last output
+    bool WithWinners; // whether the last output chose winners
   };
-  /// The same as Place and Clear where the last output is at hand, and the counters are those of
-  /// it: clears the patches, the counters of the bricks, and those of work for the passes that
-  /// choose winners. Patches that are left keep their winners.
+  /// Replaces Place and Clear for an incremental update. The last output and its counters must be
+  /// available. Clears the patches, the counters of the bricks, and the counters that tell the
+  /// passes for winners where they have work. Other patches keep their winners.
   void PrepareAgain(OpenCLContext& context, const cl::CommandQueue& queue,
     const DeformRequest& request, const std::vector<VolumeArray>& arrays, const PartToMake& part,
     std::vector<cl::Event>& events);
 
   OutputWinners& GetWinners() { return this->Winners; }
   const OutputWinners& GetWinners() const { return this->Winners; }
-  /// The counters are 0 again: a pass that counts is run once more.
+  /// Sets all counters to 0, before a counting pass is run again.
   void ClearCounters(OpenCLContext& context, std::vector<cl::Event>& events);
   /// See OutputWinners. parameters: of the mesh.
   void Settle(OpenCLContext& context, bool claimed, const KernelParameters& parameters,
     std::vector<cl::Event>& events);
 
-  /// The list of large cells (DEFORMVOLUME_PIECE), as the launches of a pass leave it.
+  /// The list of large cells (DEFORMVOLUME_PIECE) that the launches of a pass have found.
   struct LargeCell
   {
     std::array<cl_int, 3> Cell; // local index
@@ -106,27 +107,27 @@ public:
   std::vector<LargeCell> ReadLargeCells() const;
 
   std::uint64_t CountCovered(WorkDevice& device, std::vector<cl::Event>& events);
-  /// Of some patches, after Complete.
+  /// Counts the covered voxels of some patches, after Complete.
   std::uint64_t CountCovered(OpenCLContext& context, const std::vector<std::uint32_t>& patches,
     std::vector<cl::Event>& events);
-  /// covered: whether Counts.Covered is wanted; known only where coverage is bits.
+  /// covered: whether to find Counts.Covered, which requires that coverage is bits.
   Counts ReadCounts(WorkDevice& device, bool covered, std::vector<cl::Event>& events);
 
-  /// Whether the kernel for processors, with positions in float and indices of 31 bits, can write
-  /// the slab.
+  /// Whether the slab fits the CPU kernel, which uses float positions and 31-bit indices.
   bool FitsLanes() const;
 
-  /// The bricks with sections of which a counter is not 0, as DEFORMVOLUME_BRICK_BITS says.
+  /// Returns the bricks with sections that have a counter other than 0, in the format of
+  /// DEFORMVOLUME_BRICK_BITS.
   std::vector<cl_uint> FindBricks(int counter);
 
-  /// Puts the output extent into the parameters of a launch.
+  /// Sets the output extent in the parameters of a launch.
   void SetParameters(KernelParameters& parameters) const;
 
   const Extent& GetExtent() const { return this->SlabExtent; }
   const cl::Buffer& GetArray(std::size_t index) const { return this->Arrays[index]; }
   const cl::Buffer& GetCoverage() const { return this->Coverage; }
   bool HasCoverageBits() const { return this->BitsUsed; }
-  /// What kernels that resample write: bits, or bytes.
+  /// The buffer that resampling kernels write: bits or bytes.
   const cl::Buffer& GetCoverageTarget() const
   {
     return this->BitsUsed ? this->CoverageBits : this->Coverage;
@@ -134,18 +135,18 @@ public:
   const cl::Buffer& GetLargeCells() const { return this->LargeCells; }
   const cl::Buffer& GetCounters() const { return this->Counters; }
 
-  /// Begins to copy a part of the slab, which is done, to its place in the request's memory, in a
-  /// queue of its own.
+  /// Begins to copy a part of the finished slab to the memory of the request, in a separate queue.
   void Read(const cl::CommandQueue& queue, const DeformRequest& request, const Extent& part);
-  /// Leaves the slab, which is done and is the whole output, where it is. It has to be brought to
-  /// the host before another one is placed here or made of it. The queue is for that. parts: of
-  /// each array, and of the coverage, what the request's memory has not.
+  /// Leaves the finished slab, which must be the whole output, on the device. It must be copied to
+  /// the host before the slab is placed or made again. queue: for that copy. parts: for each array
+  /// and the coverage, the part that the memory of the request lacks.
   std::vector<std::shared_ptr<DeviceOutput>> Leave(const cl::CommandQueue& queue,
     const DeformRequest& request, const std::vector<VolumeArray>& arrays,
     const std::vector<Extent>& parts) const;
-  /// Waits until the slab is in the request's memory. Throws cl::Error where it did not get there.
+  /// Waits until the slab is in the memory of the request. Throws cl::Error if a copy failed.
   void FinishReading() { this->Reads.Check(); }
-  /// Waits, whatever has happened, and lets go of the request's memory. Throws nothing.
+  /// Waits in any case, also after a failure, and releases the memory of the request. Does not
+  /// throw.
   void Finish();
 
   std::uint64_t GetMemory() const;
@@ -168,17 +169,16 @@ private:
   cl::Buffer CoverageBits;
   bool BitsUsed = false;
   OutputWinners Winners;
-  cl::Buffer PatchList; // those that an update clears
+  cl::Buffer PatchList; // patches that an update clears
   std::size_t NumberOfListedPatches = 0;
   cl::Buffer Counters;
-  cl::Buffer Parts;   // partial sums of these
-  cl::Buffer Summary; // of them
-  cl::Buffer
-    LargeCells; // at most a megabyte, which GetMemory leaves out as it does all lists of work
+  cl::Buffer Parts;      // partial sums of Counters
+  cl::Buffer Summary;    // sums of Parts
+  cl::Buffer LargeCells; // at most 1 MB; like all work lists not included in GetMemory()
   std::size_t MostLargeCells = 0;
-  std::size_t NumberOfSections = 0; // of bricks
+  std::size_t NumberOfSections = 0; // sections of bricks
   std::uint64_t NumberOfVoxels = 0;
-  PendingCopies Reads; // last: they end before the buffers do
+  PendingCopies Reads; // last member: copies end before buffers are deleted
 };
 
 } // namespace deformvolume

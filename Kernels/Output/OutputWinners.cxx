@@ -44,7 +44,7 @@ std::uint64_t OutputWinners::CountPatches() const
 
 bool OutputWinners::HasBuffers() const
 {
-  // Those of a somewhat larger output serve as well: to touch fresh memory takes longer than to
+  // Buffers of a slightly larger output are reused: first access to new memory takes longer than to
   // fill it.
   const std::uint64_t held = deformvolume::GetMemory(this->Keys);
   return held >= this->KeyBytes && held - this->KeyBytes <= this->KeyBytes / 4 &&
@@ -119,12 +119,13 @@ void OutputWinners::Settle(OpenCLContext& context, bool claimed, const cl::Buffe
 {
   if (!claimed)
   {
-    // Nor is it known what cells hold beside what they own.
+    // Without the claiming pass, samples outside a cell's own ones are unknown: assume all are
+    // touched.
     Fill(context, this->Queue, this->Patches,
       ElementBytes::Of(static_cast<cl_uchar>(DEFORMVOLUME_PATCH_TOUCHED)), this->CountPatches(),
       events);
   }
-  // Where an item has a thread for itself, it takes many patches side by side.
+  // If a work-item has a thread of its own, it takes many neighboring patches.
   const cl_uint patchesOfItem = context.GetDevice().HasVectors ? 32 : 1;
   cl::Kernel kernel(GetOutputProgram(context), "Settle");
   kernel.setArg(0, coverage);

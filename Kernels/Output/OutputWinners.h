@@ -14,43 +14,44 @@
 namespace deformvolume
 {
 
-/// Bytes of a winner's key: four hold a cell of up to 2^30, and two bits, for inverted
-/// tetrahedra and for voxels that are still to be won.
+/// Returns the bytes of a winner's key. Four bytes hold a cell number up to 2^30 and two flag bits,
+/// for inverted tetrahedra and for contested voxels.
 std::size_t GetWinnerSize(const VoxelGrid& voxelGrid);
 
-/// Who wins the voxels of an output where tetrahedra overlap, and what is known of its patches: on
-/// the device, made when it is needed first.
+/// The winners of output voxels where tetrahedra overlap, and the states of patches, on the device.
+/// The buffers are allocated when they are first needed.
 class OutputWinners
 {
 public:
-  /// An output of this extent is about to be made. Lets go of what does not serve for that.
+  /// Starts an output of this extent. Releases buffers that do not fit it.
   void Start(const cl::CommandQueue& queue, const Extent& output, const VoxelGrid& voxelGrid);
 
-  /// Bytes that Prepare will allocate.
+  /// Returns the bytes that Prepare will allocate.
   std::uint64_t GetMissingMemory() const;
-  /// No voxel has a winner.
+  /// Allocates the buffers if needed, and resets all winners.
   void Prepare(OpenCLContext& context, std::vector<cl::Event>& events);
-  /// The same where the last output had winners, for some patches of it. All others are kept.
-  /// list: their numbers on the device; parameters: with the extent of the output.
+  /// Resets the winners of some patches; other patches keep those of the last output. list: the
+  /// patch numbers on the device. parameters: with the extent of the output.
   void PrepareAgain(OpenCLContext& context, const std::vector<std::uint32_t>& patches,
     const cl::Buffer& list, const KernelParameters& parameters, std::vector<cl::Event>& events);
-  /// After the pass in which cells claim voxels, or without it where none is contested: finds those
-  /// to be won, and those that nobody has written. coverage, counters: of the output.
+  /// Finds the voxels that are still to be won, and those that no cell has written. Runs after the
+  /// pass in which cells claim voxels, or without that pass if no voxel is contested. coverage,
+  /// counters: of the output.
   void Settle(OpenCLContext& context, bool claimed, const cl::Buffer& coverage,
     const cl::Buffer& counters, const KernelParameters& parameters, std::vector<cl::Event>& events);
-  /// Whether Settle has found voxels that several tetrahedra write, now or in patches that are
+  /// Whether Settle found voxels that several tetrahedra write, now or earlier in patches that are
   /// kept.
   bool HasContested() const;
 
   ///@{
-  /// After Prepare, when winners are no longer needed: room for a count a voxel takes their place.
+  /// Use the memory of the winners for one count per voxel, after winners are no longer needed.
   void PrepareCounts(OpenCLContext& context, std::vector<cl::Event>& events);
   std::vector<std::uint32_t> ReadCounts() const;
   ///@}
 
-  /// Whether some patches of the output stay as they are.
+  /// Whether some patches of the output keep their values.
   bool KeepsPatches() const { return this->IsAgain; }
-  /// Null where there are none.
+  /// The buffers; null if not allocated.
   const cl::Buffer& GetKeys() const { return this->Keys; }
   const cl::Buffer& GetPatches() const { return this->Patches; }
 
@@ -62,10 +63,10 @@ private:
 
   cl::CommandQueue Queue;
   Extent Output{ { 0, -1, 0, -1, 0, -1 } };
-  std::uint64_t KeyBytes = 0; // of all voxels
+  std::uint64_t KeyBytes = 0; // bytes for all voxels
   std::size_t KeySize = 4;
   cl::Buffer Keys;
-  cl::Buffer Patches; // a byte for what is known of each, and another where it has contested voxels
+  cl::Buffer Patches; // a state for each, then whether each has contested voxels
   bool IsAgain = false;
 };
 

@@ -18,7 +18,7 @@ namespace deformvolume
 namespace
 {
 
-/// Bytes that a work-item of the kernel ResampleBricks wants for so many arrays.
+/// The memory of a work-item of the kernel ResampleBricks for `slots` arrays, in bytes.
 std::size_t GetBrickMemory(const OpenCLContext& context, bool hasTurnedAxes, std::size_t slots)
 {
   const std::size_t lanes = static_cast<std::size_t>(GetLanes(context));
@@ -29,15 +29,15 @@ std::size_t GetBrickMemory(const OpenCLContext& context, bool hasTurnedAxes, std
     sizeof(cl_float);
 }
 
-/// The same for a work-group of the kernel ResampleColumns, or of those that take what it leaves:
-/// so many planes of vertices.
+/// The same for a work-group of the kernel ResampleColumns, or of the kernels for deferred cells.
+/// planes: number of planes of vertices.
 std::size_t GetColumnMemory(std::size_t slots, std::size_t planes = 3)
 {
   const std::size_t row = 2 * (3 + slots) * (DEFORMVOLUME_SPAN / 2 + 1);
   return planes * (DEFORMVOLUME_BRICK_Y / 2 + 1) * row * sizeof(cl_float);
 }
 
-/// What that has besides: flags of the vertices, and counts.
+/// Additional local memory of these kernels: flags of the vertices, and counts.
 constexpr std::size_t OtherColumnMemory = 1024;
 
 std::size_t GetLocalMemory(const OpenCLContext& context)
@@ -45,8 +45,8 @@ std::size_t GetLocalMemory(const OpenCLContext& context)
   return context.GetDevice().Device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
 }
 
-/// For each array whether the kernel interpolates it in single precision: as many as the local
-/// memory holds, if it is used.
+/// Whether the kernel interpolates each array in single precision: as many as fit into local
+/// memory, if that is used.
 std::vector<bool> FindLaneArrays(const OpenCLContext& context,
   const std::vector<VolumeArray>& arrays, ResamplingForm form, bool hasTurnedAxes)
 {
@@ -74,8 +74,7 @@ std::size_t CountSlots(const OpenCLContext& context, const std::vector<VolumeArr
   return static_cast<std::size_t>(std::count(found.begin(), found.end(), true));
 }
 
-/// What the texts from LaneVectors.cl to BrickResampling.cl, or to ColumnCells.cl, expect in front
-/// of them.
+/// Defines the macros of the texts from LaneVectors.cl to BrickResampling.cl or ColumnCells.cl.
 std::string MakeLanePreamble(const OpenCLContext& context, const std::vector<VolumeArray>& arrays,
   const ResamplingVariant& variant)
 {
@@ -111,7 +110,7 @@ std::string MakeLanePreamble(const OpenCLContext& context, const std::vector<Vol
     (others.empty() ? "0" : "1") + "\n#define STORE_OTHER_ARRAYS " + others + "\n";
 }
 
-/// The texts of a form, besides those that all have.
+/// Returns the texts of a form, without those that all forms have.
 ProgramText GetFormText(const OpenCLContext& context, const std::vector<VolumeArray>& arrays,
   const ResamplingVariant& variant)
 {
@@ -138,9 +137,9 @@ ProgramText GetFormText(const OpenCLContext& context, const std::vector<VolumeAr
   return {};
 }
 
-/// Options besides those of all kernels. The kernels for columns wait for memory more than they
-/// compute: four groups on a multiprocessor are faster than two, although some of the values that a
-/// work-item keeps do not find registers (Documents/resampling.md, GPUs).
+/// Additional compiler options of a form. The kernels for columns wait for memory more than they
+/// compute. Four work-groups on a multiprocessor are faster than two, although some values then do
+/// not fit into registers (Documents/resampling.md, GPUs).
 std::string GetFormOptions(const OpenCLContext& context, ResamplingForm form)
 {
   const bool isColumns = form == ResamplingForm::Columns || form == ResamplingForm::DeferredInt32;

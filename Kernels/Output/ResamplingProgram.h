@@ -12,62 +12,62 @@
 namespace deformvolume
 {
 
-/// The kernels of the exact resampling.
+/// The kernels of exact resampling.
 enum class ResamplingForm
 {
-  /// Cell by cell: Resample in Resampling.cl.
+  /// One cell at a time: Resample in Resampling.cl.
   Cells,
-  /// By lanes: ResampleBricks in BrickResampling.cl.
+  /// Cells in lanes (CPUs): ResampleBricks in BrickResampling.cl.
   Lanes,
-  /// By columns: ResampleColumns in ColumnResampling.cl.
+  /// Columns of cells (GPUs): ResampleColumns in ColumnResampling.cl.
   Columns,
-  /// Cells that these defer, by floats and integers of 32 bits: ResampleDeferredInt32 in
+  /// Cells that Columns defers, decided by floats and 32-bit integers: ResampleDeferredInt32 in
   /// ColumnResampling.cl.
   DeferredInt32,
-  /// Cells that both defer, by integers of 64 bits as well: ResampleDeferredInt64 in
-  /// DeferredResampling.cl.
+  /// Cells that Columns and DeferredInt32 defer, decided also by 64-bit integers:
+  /// ResampleDeferredInt64 in DeferredResampling.cl.
   DeferredInt64,
-  /// What all of them put off: ResampleLargeCells in LargeCells.cl.
+  /// Large cells that the other kernels skip: ResampleLargeCells in LargeCells.cl.
   LargeCells
 };
 
-/// What a program of the exact resampling is made for.
+/// The options of a resampling program.
 struct ResamplingVariant
 {
   ResamplingForm Form;
-  /// Whether cells are too many for the 30 bits of a narrow winner's key.
+  /// Whether there are too many cells for the 30 bits of a four-byte winner's key.
   bool WideKeys;
-  /// Whether coverage is bits (VoxelWinners.cl): where columns are resampled.
+  /// Whether coverage is stored as bits (VoxelWinners.cl), for columns.
   bool CoverageBits;
   /// Whether there is a smooth cut (CutCells.cl).
   bool WithCut;
-  /// Whether columns are resampled in the direct pass only.
+  /// Whether columns are only resampled in the direct pass.
   bool IsDirect = false;
-  /// Whether the interpolation is cubic where it can be; of the forms Cells and LargeCells.
+  /// Whether interpolation is cubic where possible. Only for the forms Cells and LargeCells.
   bool IsCubic = false;
   /// See DeviceVolume::HasTurnedAxes.
   bool HasTurnedAxes = false;
 };
 
-/// The exact resampling for arrays of these types. Throws Error where the device lacks what the
-/// arrays need.
+/// Returns the program of a variant for arrays of these types. Throws an Error if the device lacks
+/// a feature that the arrays need.
 cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
   const std::vector<VolumeArray>& arrays, const ResamplingVariant& variant);
 
-/// Whether the kernel ResampleBricks works in local memory: where there is enough. Else it does so
-/// in a buffer, which has room for each work-item.
+/// Whether the kernel ResampleBricks works in local memory, because there is enough of it.
+/// Otherwise it works in a global buffer with a section for each work-item.
 bool HasLocalBricks(const OpenCLContext& context, bool hasTurnedAxes);
-/// Bytes of that for a work-item.
+/// Returns the bytes of that memory for a work-item.
 std::size_t GetBrickMemory(
   const OpenCLContext& context, bool hasTurnedAxes, const std::vector<VolumeArray>& arrays);
 
-/// Whether there is enough local memory for the kernel ResampleColumns.
+/// Whether the device has enough local memory for the kernel ResampleColumns.
 bool HasLocalColumns(const OpenCLContext& context);
-/// Bytes of that for a work-group of one of the kernels for columns and for what these leave.
+/// Returns the local memory of a work-group, in bytes, of a kernel for columns or deferred cells.
 std::size_t GetColumnMemory(
   const OpenCLContext& context, const std::vector<VolumeArray>& arrays, ResamplingForm form);
 
-/// What is done with the output besides resampling (CoverageCount.cl, OutputClearing.cl).
+/// Returns the program of the other kernels on the output (CoverageCount.cl, OutputClearing.cl).
 cl::Program GetOutputProgram(OpenCLContext& context);
 
 } // namespace deformvolume

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The output of a launch, and which cell wins a voxel that several cells write.
+// The output of a launch, and the choice of the cell that wins a voxel which several cells write.
 //
-// Data: coverage 1 byte an output voxel, or 1 bit, in words of 32; winners 4 or 8 bytes an output voxel (only where tetrahedra overlap; in the pass that counts, the number of tetrahedra in their first 4 bytes);
-// patches of the output 1 byte each.
+// Data:
+//   coverage: 1 byte per output voxel, or 1 bit, in words of 32
+//   winners: 4 or 8 bytes per output voxel, only where tetrahedra overlap; in the counting pass, the first 4 bytes
+//     are the number of tetrahedra
+//   patches: 1 byte per patch of the output
 //
-// What the host puts in front of this text:
+// The host defines before this text:
 //   KEY, ATOMIC_MIN,     type of the winner's key, and its minimum and conditional exchange
 //   ATOMIC_CMPXCHG
 //   COVERAGE_IS_BITS     0 or 1
@@ -13,20 +16,21 @@ typedef struct
 {
   __global char* Coverage;
   __global KEY* Winners;
-  __global char* Patches; // what is known of them; then for each 1 where cells have contested a voxel
-  __global uint* LargeCells; // their number and three integers that are not used; then the list
+  __global char* Patches; // states, then for each patch 1 if it has contested voxels
+  __global uint* LargeCells; // their number, three unused integers, then the list
   // Counts of this work-item.
   uint Writes;
   uint Inverted;
   uint Overstretched;
-  uint Missing; // cells on the border with a tetrahedron that is flat or left out
-  uint Assumed; // whether cells on the border left samples to the next cells without looking at these
-  uint Candidates; // voxels that were won, as far as others had marked them by then
-  uint Touched; // nonzero where samples are held that others write, or none
-  uint Large; // cells that were put into the list
+  uint Missing; // cells at the border with a flat or absent tetrahedron
+  uint Assumed; // whether cells at the border left samples to neighbors without checking these
+  uint Candidates; // voxels whose winner this work-item has replaced
+  uint Touched; // nonzero if samples are held that this cell does not own
+  uint Large; // cells that were added to LargeCells
 } Output;
 
-// What each of these kernels is given first (ExactPasses::SetArguments), and the mesh and the output made of it.
+// The first parameters of each of these kernels (ExactPasses::SetArguments), and the mesh and the output made from
+// them.
 #define GIVEN_PARAMETERS                                                                           \
   MAPPING_PARAMETERS, __global const uchar *state, __global const uchar *active,                   \
     __global const float *distances, __global char *coverage, __global KEY *winners,               \
@@ -34,7 +38,7 @@ typedef struct
 #define GIVEN_MESH { MAPPING_ARGUMENTS, state, active, distances CUT_ARGUMENTS, 0, { 0, 0, 0 } }
 #define GIVEN_OUTPUT { coverage, winners, patches, largeCells, 0, 0, 0, 0, 0, 0, 0, 0 }
 
-// A voxel is covered. What a bit was before is not asked for: items would wait for the answer.
+// Marks a voxel as covered. The old value of a bit is not used: work-items would wait for it.
 static void Cover(Output* output, size_t target)
 {
 #if COVERAGE_IS_BITS
@@ -44,14 +48,14 @@ static void Cover(Output* output, size_t target)
 #endif
 }
 
-// The counts in the order of the counters of a section.
+// The counts, in the order of the counters of a section.
 #define COUNTS_OF(output)                                                                          \
   {                                                                                                \
     (output)->Writes, (output)->Inverted, (output)->Overstretched, (output)->Missing,              \
       (output)->Assumed, (output)->Candidates, (output)->Touched, (output)->Large                  \
   }
 
-// Adds to a counter of a section. The passes that come later count nothing again.
+// Adds to a counter of a section. Only the first pass counts everything.
 static void AddCount(
   int i, uint count, size_t section, __global uint* counters, const KernelParameters* p)
 {
@@ -62,9 +66,9 @@ static void AddCount(
   }
 }
 
-// Of overlapping tetrahedra upright ones win, then the lowest cell. Within a cell the order of
-// writing decides, the lowest tetrahedron last. The key of a voxel that is contested has the highest bit: so it is
-// more than those of settled voxels.
+// The winner of overlapping tetrahedra is an upright one before an inverted one, then the one in the lowest cell.
+// Within a cell the lowest tetrahedron is written last. A contested voxel has the highest bit of its key set, so its
+// key is greater than those of settled voxels.
 #define CONTESTED ((KEY)1 << (sizeof(KEY) * 8 - 1))
 
 static KEY MakeKey(int x, int y, int z, int inverted, const KernelParameters* p)
@@ -74,9 +78,9 @@ static KEY MakeKey(int x, int y, int z, int inverted, const KernelParameters* p)
     (DEFORMVOLUME_IS_CLOSED(p->Pass) ? CONTESTED : 0);
 }
 
-// A cell that writes a voxel leaves its key there: the first one, or the lowest, which has the voxel then
-// contested. Returns whether the voxel is the cell's so far. What is contested is written by its winner, later: so
-// cells that write again what they wrote for the last output leave it alone.
+// A cell that writes a voxel stores its key there. If there is a key already, the lower one stays, and the voxel is
+// marked as contested. Returns whether the voxel belongs to this cell so far. A contested voxel is written later by
+// its winner. So in an incremental update a cell that finds its own contested key does not write the voxel.
 static int Claim(__global KEY* winner, KEY key)
 {
   const KEY none = (KEY)-1;
@@ -97,13 +101,14 @@ static int Claim(__global KEY* winner, KEY key)
   }
 }
 
-// Several tetrahedra of a cell write a voxel, which is the cell's so far: others that hold it may win.
+// Marks a voxel of this cell as contested, because several tetrahedra of the cell write it: tetrahedra of other cells
+// that hold the voxel may win.
 static void Contest(__global KEY* winner, KEY key)
 {
   ATOMIC_CMPXCHG(winner, key, CONTESTED | key);
 }
 
-// Whether a voxel lies in a patch that stays as it is.
+// Whether a voxel lies in a patch that keeps its values.
 static int IsKept(const Output* output, size_t target, const KernelParameters* p)
 {
   const size_t row = target / p->OutputSize[0];
@@ -113,14 +118,14 @@ static int IsKept(const Output* output, size_t target, const KernelParameters* p
   return output->Patches[PatchRow(y, z, p) + x / DEFORMVOLUME_PATCH] == DEFORMVOLUME_PATCH_KEPT;
 }
 
-// What passes but the first do with a voxel that a cell writes. Returns whether values are to follow.
+// Handles a voxel that a cell writes, in all passes but the first. Returns whether values must be written.
 static int TakesPlace(Output* output, size_t target, KEY key, const KernelParameters* p)
 {
   __global KEY* winner = output->Winners + target;
   const KEY found = *winner;
   if (p->Pass == DEFORMVOLUME_PASS_WINNER)
   {
-    // What has won a voxel that stays need not have all of its samples looked at in this pass.
+    // The winner of a voxel that is kept is not written again: this pass need not visit all of its samples.
     return found == key && !(p->KeepsPatches && IsKept(output, target, p));
   }
   if (p->Pass == DEFORMVOLUME_PASS_MARK)
@@ -135,11 +140,11 @@ static int TakesPlace(Output* output, size_t target, KEY key, const KernelParame
   return Claim(winner, key);
 }
 
-// Whether in one of the patches that hold the voxels of the output from first to last there is work for a pass.
+// Whether a patch with voxels from first to last (inclusive) has work for the current pass.
 static int AnyUnsettled(
   __global const char* patches, const int* first, const int* last, const KernelParameters* p)
 {
-  // What cells own has been claimed before.
+  // Owned samples were claimed before; the pass MARK needs patches with other samples, too.
   const char wanted = DEFORMVOLUME_PATCH_UNSETTLED |
     (p->Pass == DEFORMVOLUME_PASS_MARK ? DEFORMVOLUME_PATCH_TOUCHED : 0);
   for (int z = first[2] / DEFORMVOLUME_PATCH; z <= last[2] / DEFORMVOLUME_PATCH; ++z)
@@ -159,7 +164,7 @@ static int AnyUnsettled(
   return 0;
 }
 
-// A cell holds a voxel of the output that it does not own. If there turns out to be a winner, it may be this cell.
+// Notes that a cell holds a voxel that it does not own, and so may win it.
 static OUTLINED void Touch(int x, int y, int z, Output* output, const KernelParameters* p)
 {
   __global char* patch = output->Patches + PatchRow(y, z, p) + x / DEFORMVOLUME_PATCH;
