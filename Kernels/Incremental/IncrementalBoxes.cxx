@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where IncrementalUpdate finds that sub-bricks lie in the output.
+// IncrementalUpdate: the boxes of sub-bricks in the output.
 #include "IncrementalUpdate.h"
 
 #include "IndexBounds.h"
@@ -14,8 +14,8 @@ namespace deformvolume
 namespace
 {
 
-// In output voxels: positions are rounded to 1/256, and displacements, of at most 2^14 voxels, are
-// summed up in floats, with errors of some 2^-10.
+// In output voxels. Positions are rounded to 1/256 voxel. Displacements of at most 2^14 voxels are
+// added up in floats, with errors of about 2^-10.
 constexpr double Margin = 1.0 / 16.0;
 
 // The kernels clamp displacements to 2^22 - 1 steps of 1/256 voxel.
@@ -89,7 +89,7 @@ IncrementalUpdate::Box IncrementalUpdate::MakeBox(
   {
     const float least = bounds.Least[axis];
     const float greatest = bounds.Greatest[axis];
-    if (!(least <= greatest)) // no vertex has a place
+    if (!(least <= greatest)) // no vertex has a position
     {
       return nothing;
     }
@@ -103,7 +103,7 @@ IncrementalUpdate::Box IncrementalUpdate::MakeBox(
     }
     if (!this->IsCut.empty() && this->IsCut[subBrick])
     {
-      // One displacement and the difference of two others, at most (CutPositions.cl).
+      // A cut adds at most the difference of two other displacements (CutPositions.cl).
       const double difference = high - low;
       low -= difference;
       high += difference;
@@ -112,7 +112,7 @@ IncrementalUpdate::Box IncrementalUpdate::MakeBox(
     box.Max[axis] = rest.Max[axis] + high - this->OutputExtent[2 * axis];
     if (!std::isfinite(box.Min[axis]) || !std::isfinite(box.Max[axis]))
     {
-      // Infinite weights times nothing.
+      // Overflow, or not-a-number from infinity times 0: the sub-brick may lie anywhere.
       box.Min[axis] = 0.0;
       box.Max[axis] = static_cast<double>(GetSize(this->OutputExtent, axis));
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How IncrementalUpdate finds the sub-bricks that a change of the deformation or of masks concerns.
+// IncrementalUpdate: the sub-bricks that a change of the deformation or of masks affects.
 #include "IncrementalUpdate.h"
 
 #include "ParallelFor.h"
@@ -12,11 +12,10 @@ namespace deformvolume
 namespace
 {
 
-// In voxels from a sub-brick. What a cell does depends on its own vertices, on their states and, on
-// the border of the mesh, on the cells that share vertices with it; the state of a vertex depends
-// on the vertices and the cells that share a cell with it. So a vertex or a cell that is masked
-// matters to cells that have one of their vertices in a cell with it, or in it: it lies at most one
-// voxel beyond their vertices.
+// In voxels around a sub-brick. A cell depends on its own vertices, on their states and, at the
+// border of the mesh, on cells that share vertices with it. The state of a vertex depends on the
+// vertices and cells that share a cell with it. So a change of a mask affects cells up to one voxel
+// away.
 constexpr int MaskHalo = 1;
 
 } // namespace
@@ -26,7 +25,7 @@ void IncrementalUpdate::SetHalo(int halo)
   if (this->Grid.Halo != halo)
   {
     this->Bricks.Halo = this->Grid.Halo = halo;
-    this->Points = this->PointsOfBricks = BrickPoints(); // there may be more of them
+    this->Points = this->PointsOfBricks = BrickPoints(); // a wider halo has more points
   }
 }
 
@@ -51,7 +50,7 @@ std::vector<unsigned char> IncrementalUpdate::AddCut(const std::vector<CutVertex
     if (found[subBrick] && !this->IsCut[subBrick])
     {
       this->IsCut[subBrick] = 1;
-      this->Known[subBrick] = 0; // the box is wider
+      this->Known[subBrick] = 0; // the box becomes wider
     }
   }
   this->BoxesKnown = false;
@@ -60,7 +59,7 @@ std::vector<unsigned char> IncrementalUpdate::AddCut(const std::vector<CutVertex
 
 void IncrementalUpdate::SetCut(const std::vector<CutVertex>& vertices)
 {
-  this->IsCut = this->AddCut(vertices); // boxes of others may be wider than they need be
+  this->IsCut = this->AddCut(vertices); // other boxes may stay wider than needed
 }
 
 void IncrementalUpdate::SetPoints(BrickPoints&& points)
@@ -85,7 +84,7 @@ void IncrementalUpdate::MovePoints(const PointSet& changed, const float* last)
       points.AnyOf(
         brick, [&](std::size_t begin, std::size_t end) { return changed.HasAnyOf(begin, end); });
   };
-  // Most bricks are nowhere near.
+  // Test bricks first: most of them have no changed points.
   std::vector<unsigned char> near(this->Bricks.GetNumberOfBricks());
   ParallelForParts(near.size(), StepSize,
     [&](std::size_t begin, std::size_t end)
@@ -152,7 +151,7 @@ std::optional<std::vector<Extent>> IncrementalUpdate::ChangeTetrahedra(
     boxes.push_back(this->Grid.GetVertices(subBrick.first, 0));
     if (this->Tracking)
     {
-      this->Move(subBrick.first, last); // by the nodes that it has had
+      this->Move(subBrick.first, last); // the last box is that of the old nodes
     }
     this->Known[subBrick.first] = 0;
   }
@@ -172,7 +171,7 @@ void IncrementalUpdate::AddMoved(const DisplacementBounds& after)
 template <typename Body>
 void IncrementalUpdate::ForSubBricks(const Extent& box, int more, int halo, Body&& body) const
 {
-  std::array<int, 6> subBricks; // first and last one on each axis that may be near
+  std::array<int, 6> subBricks; // first and last on each axis that may touch the box
   for (int axis = 0; axis < 3; ++axis)
   {
     const auto find = [&](int vertex)
@@ -216,18 +215,18 @@ void IncrementalUpdate::ChangeMask(const std::vector<Extent>& changes, bool ofCe
   {
     return;
   }
-  // A smooth cut looks at the states of the vertices that it moves others by.
+  // A smooth cut also depends on the states of the vertices whose displacements it continues.
   const bool hasCuts = this->Grid.Halo != BrickGrid::LeastHalo;
   const int halo = MaskHalo + (hasCuts ? BrickGrid::HaloOfCuts : 0);
   for (const Extent& box : changes)
   {
-    // A cell reaches to the next vertices.
+    // The vertices of a cell extend one voxel beyond its index.
     this->ForSubBricks(box, ofCells ? 1 : 0, halo,
       [&](std::size_t subBrick) { this->Masked[subBrick] |= this->HasCells(subBrick) ? 1 : 0; });
   }
   if (!changes.empty())
   {
-    this->BoxesKnown = false; // of sub-bricks that have changed now
+    this->BoxesKnown = false; // more sub-bricks have changed
   }
 }
 

@@ -29,7 +29,7 @@ double GetSecondsSince(const Clock::time_point& begin)
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-// Different for all outputs of a process: other objects take the place of those that made them.
+// Unique among all outputs of a process: an object can be replaced by another one.
 std::uint64_t MakeRevision()
 {
   static std::atomic<std::uint64_t> last{ 0 };
@@ -70,7 +70,7 @@ void IncrementalOutput::Start(
   report.Revision = this->Revision;
   if (source.IsWrittenInPart())
   {
-    // Where its points were will not be known when they have moved.
+    // Find all boxes now: the old positions of the points will be overwritten.
     const auto begin = Clock::now();
     if (!this->Changes.HasPoints())
     {
@@ -114,7 +114,7 @@ bool IncrementalOutput::IsChangeInside() const
   {
     return this->Changes.IsInside(nullptr, moved);
   }
-  // As it was for the last output: where a mask has changed, the change is not inside.
+  // The states are those of the last output: if a mask changed, the change is not inside.
   const std::array<int, 3>& size = this->Volume.GetBricks().Size;
   const Extent all{ { 0, size[0] - 1, 0, size[1] - 1, 0, size[2] - 1 } };
   const cl::CommandQueue& queue = this->Device.GetQueue();
@@ -224,7 +224,7 @@ bool IncrementalOutput::TryUpdate(const DeformRequest& request, const Displaceme
   {
     this->Changes.SetPoints(source.MakeBrickPoints());
   }
-  // Who owns a voxel where cells overlap, or beside such places, is not seen from the counts.
+  // Counts of writes do not show who owns a voxel where cells overlap.
   const bool won = resampler.HasWinners();
   const bool inside = !won && this->IsChangeInside();
   if (!inside && !this->Changes.HasBoxes())
@@ -242,7 +242,7 @@ bool IncrementalOutput::TryUpdate(const DeformRequest& request, const Displaceme
     source.Visit([this](const Displacements& displacements, std::size_t)
       { this->Changes.FindChangedBoxes(displacements); });
   }
-  // However this ends, the memory of the request is left alone afterwards.
+  // Also after an exception, nothing may write to the memory of the request any more.
   const SlabResampler::FinishGuard finish(resampler);
   const QueueGuard reads(this->Device.GetReadQueue());
   const bool stays = this->StaysOnDevice(request);

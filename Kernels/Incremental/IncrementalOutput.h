@@ -19,67 +19,66 @@ class DisplacementSource;
 class ExactResampler;
 class WorkDevice;
 
-/// The last output, as far as it can be brought up to date where only some of what it was made of
-/// changes, in place of making it anew.
+/// The last output, and its incremental update after a change of the deformation or the masks.
 class IncrementalOutput
 {
 public:
   IncrementalOutput(WorkDevice& device, DeviceVolume& volume);
 
-  /// What has to be told of all changes of the displacements.
+  /// The observer that must be notified of all changes of the displacements.
   DisplacementObserver& GetObserver() { return this->Changes; }
-  /// A mask of the volume has changed, that of cells or that of vertices, in some boxes.
+  /// Notes that a mask of cells or of vertices changed in some boxes.
   void ChangeMask(const std::vector<Extent>& boxes, bool ofCells)
   {
     this->Changes.ChangeMask(boxes, ofCells);
   }
-  /// The smooth cut is another one round vertices in some boxes.
+  /// Notes that the smooth cut changed near vertices in some boxes.
   void ChangeCut(const std::vector<Extent>& boxes);
-  /// The last output is of no use any more.
+  /// Discards the last output.
   void Forget() { this->Changes.Forget(); }
 
-  /// The output of a request was made, wholly, of what is set now; the resampler can make bricks of
-  /// it anew. Adds its revision to the report.
+  /// Notes that the whole output of a request was made, and that the resampler can make parts of it
+  /// again. Sets the revision in the report.
   void Start(const DeformRequest& request, const DisplacementSource& source, DeformReport& report);
 
-  /// Makes the output of a request of the last one, and adds what was done to the report. False
-  /// where the whole output has to be made.
+  /// Makes the output of a request by updating the last one, and fills the report. Returns false if
+  /// the whole output must be made.
   bool Update(const DeformRequest& request, const DisplacementSource& source,
     ExactResampler& resampler, DeformReport& report);
 
 private:
-  /// Whether the output is left on the device.
+  /// Whether the output is to be left on the device.
   bool StaysOnDevice(const DeformRequest& request) const;
   bool CanUpdate(const DeformRequest& request, ExactResampler& resampler);
-  /// The same as Update, but that after a failure it is not forgotten that there is a last output.
+  /// Like Update, but does not discard the last output after a failure.
   bool TryUpdate(const DeformRequest& request, const DisplacementSource& source,
     ExactResampler& resampler, DeformReport& report);
-  /// What has to be copied to memory that holds the output of a revision, for it to hold the last
-  /// one.
+  /// Returns the part of the last output that memory with the output of revision `held` lacks.
   Extent GetMissing(std::uint64_t held) const;
-  /// The last output where it is left on the device, in an update of a part.
+  /// Leaves the updated output on the device.
   std::vector<std::shared_ptr<DeviceOutput>> Leave(
     const DeformRequest& request, ExactResampler& resampler) const;
   /// See IncrementalUpdate::IsInside.
   bool IsChangeInside() const;
-  /// Finds out where the smooth cut passes, once the last output is that with it.
+  /// Passes the vertices of the current smooth cut to Changes, once the last output includes that
+  /// cut.
   void FindCut();
-  /// Makes the request's memory that of the last output.
+  /// Copies the last output to the memory of the request.
   void CopyLastOutput(const DeformRequest& request) const;
 
   WorkDevice& Device;
   DeviceVolume& Volume;
   IncrementalUpdate Changes;
-  bool CutIsKnown = true; // where it passes, and nowhere else
+  bool CutIsKnown = true; // whether Changes has the vertices of the current cut only
   Resampling LastMethod = Resampling::Exact;
   Interpolation LastInterpolation = Interpolation::Linear;
   Extent LastWholeExtent{ { 0, -1, 0, -1, 0, -1 } };
   std::uint64_t LastCovered = 0;
   std::uint64_t Revision = 0; // of the last output
-  // Of the one before it, and the patches that are different in that; 0: that is not known.
+  // The revision before the last one, and the patches that differ between these two; 0: unknown.
   std::uint64_t RevisionBefore = 0;
   std::vector<std::uint32_t> LastPatches;
-  // What has changed in the last updates of parts: from the revision before each to its own.
+  // The changes of the last incremental updates, each from the revision before it.
   struct Change
   {
     std::uint64_t Before;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What IncrementalUpdate does when it is known what changed, and where all of it lies.
+// IncrementalUpdate: what to make again, from the changes and the boxes.
 #include "IncrementalUpdate.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace
 
 constexpr std::uint32_t AllSpans = (1U << DEFORMVOLUME_SPANS) - 1;
 
-// The bits of a brick's sections, and those of the spans between the lowest and the highest one.
+// Returns the section bits of a brick, with all spans between the lowest and the highest one.
 std::uint32_t JoinSpans(std::uint32_t bits)
 {
   const std::uint32_t spans = bits & AllSpans;
@@ -27,7 +27,7 @@ std::uint32_t JoinSpans(std::uint32_t bits)
   return bits | (spans ? upToHighest & ~belowLowest : 0);
 }
 
-// How many sections of a brick are run with these.
+// Returns the number of sections of a brick that are run for these bits.
 std::size_t CountSections(std::uint32_t bits)
 {
   const auto count = [](std::uint32_t v) { return std::bitset<32>(v).count(); };
@@ -35,8 +35,8 @@ std::size_t CountSections(std::uint32_t bits)
   return count(JoinSpans(bits) & AllSpans) * count(halves & 3) * count(halves >> 2);
 }
 
-// How many of all points, sections or patches may change: where more do, it is faster to make all
-// anew.
+// The largest number of points, sections or patches to update. If more change, a full update is
+// faster.
 std::size_t GetMost(std::size_t all)
 {
   constexpr double largestFraction = 0.6;

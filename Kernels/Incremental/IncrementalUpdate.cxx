@@ -69,7 +69,7 @@ bool IncrementalUpdate::HasOnlyInterior(
   const std::array<int, 3>& size = this->Grid.Size;
   if (!this->IsCut.empty() && this->IsCut[subBrick])
   {
-    return false; // sides come apart
+    return false; // the sides of a cut can separate
   }
   if (!state)
   {

@@ -16,50 +16,50 @@
 namespace deformvolume
 {
 
-/// Finds out which part of an output has to be made anew after a change of the deformation or of
-/// the masks.
+/// Finds the parts of an output that must be made again after a change of the deformation or the
+/// masks.
 ///
-/// A sub-brick of cells changes when a point that moves its vertices does, or a mask near it.
-/// All that it wrote, and all that it will write, lies within a box: its box at rest, widened by
-/// the least and the greatest displacement of its points, and by their difference where a smooth
-/// cut continues displacements across the sheet. Patches of the output that the boxes of
-/// changed sub-bricks touch, before or after the change, are cleared, and of all bricks with a
-/// sub-brick whose box touches such a patch the sections that these sub-bricks lie in are run: what
-/// they write outside these patches they wrote before, since nobody else writes there. (Where the
-/// volume is folded over, ExactResampler::MakeAgain keeps these patches as they are.)
+/// A sub-brick of cells changes if a point that moves its vertices changes, or a mask near it. All
+/// voxels that it wrote or will write lie in a box: its box at rest, widened by the least and the
+/// greatest displacement of its points, and by their difference where a smooth cut continues
+/// displacements across the sheet. Patches of the output that intersect the boxes of changed
+/// sub-bricks, before or after the change, are cleared. Then all sections are run that have a
+/// sub-brick whose box intersects a cleared patch. Outside the cleared patches these sections write
+/// the same values as before. (If the volume overlaps itself, ExactResampler::MakeAgain keeps the
+/// other patches unchanged.)
 ///
-/// Where all vertices of the changed sub-bricks are inside the sampling mesh, nothing is cleared
-/// and only changed sub-bricks are run: their cells fill the same space as before, between cells
-/// that stay, so that together they own the same voxels, unless some are inverted, which the counts
-/// tell.
+/// If all vertices of the changed sub-bricks are inside the sampling mesh, nothing is cleared, and
+/// only the changed sub-bricks are run. Their cells fill the same space as before, between cells
+/// that do not change, so they own the same voxels. Inverted cells are an exception, which the
+/// counts of writes reveal.
 class IncrementalUpdate : public DisplacementObserver
 {
 public:
-  /// What there is to do.
+  /// The parts to make again.
   struct Plan
   {
-    std::vector<std::uint32_t> Bricks;  // as DEFORMVOLUME_BRICK_BITS says
-    std::vector<std::uint32_t> Patches; // counted along x, then y, then z
+    std::vector<std::uint32_t> Bricks;  // in the format of DEFORMVOLUME_BRICK_BITS
+    std::vector<std::uint32_t> Patches; // numbered along x, then y, then z
   };
 
-  /// An output of this extent was made, wholly, of what is set now.
+  /// Notes that the whole output of this extent was made.
   void Start(const BrickGrid& bricks, const VoxelGrid& voxelGrid, const Extent& output);
-  /// How far bricks look from now on (BrickGrid::Halo).
+  /// Set how far bricks depend on vertices beyond them (BrickGrid::Halo).
   void SetHalo(int halo);
-  /// The vertices of cells that a smooth cut crosses, since there is another one: after Start.
+  /// Set the vertices of cells that a smooth cut crosses, after Start.
   void SetCut(const std::vector<CutVertex>& vertices);
-  /// The same while it is tracked what changes: the last output still is that with the cut before.
-  /// Returns whether sub-bricks have vertices of the cut now; empty: none has.
+  /// The same while changes are tracked and the last output has the previous cut. Returns for each
+  /// sub-brick whether it has vertices of the new cut; empty if none has.
   std::vector<unsigned char> AddCut(const std::vector<CutVertex>& vertices);
-  /// The last output is of no use any more.
+  /// Discards the last output.
   void Forget() { this->Tracking = false; }
-  /// The last output was brought up to date.
+  /// Notes that the last output was updated.
   void Finish();
 
   ///@{
-  /// See DisplacementObserver. As long as the last output can serve it is tracked what changes;
-  /// where all points change it is of no use any more. The bounds of all points only grow as long
-  /// as not all change.
+  /// See DisplacementObserver. Changes are tracked as long as there is a last output. If all points
+  /// change, the last output is discarded. The bounds of all points only grow until all points
+  /// change.
   bool IsTracking() const override { return this->Tracking; }
   std::size_t GetMostMoved(std::size_t numberOfPoints) const override;
   bool HasPoints() const override { return !this->Points.IsEmpty(); }
@@ -73,64 +73,65 @@ public:
   void MoveAll(const std::optional<DisplacementBounds>& after) override;
   ///@}
 
-  /// A box round the vertices of the sub-bricks of which points moved, in local indices.
+  /// Returns a box of the vertices of all sub-bricks with moved points, in local indices.
   Extent GetMovedVertices() const;
-  /// Whether all that changed are sub-bricks of which points moved and all vertices are inside the
-  /// sampling mesh. state: of the vertices in a box that holds these (VertexState.cl), null where
-  /// all have a position and all cells are active.
+  /// Whether only sub-bricks with moved points changed, and all of their vertices are inside the
+  /// sampling mesh. state: of the vertices in a box that contains these (VertexState.cl); null if
+  /// all vertices have a position and all cells are active.
   bool IsInside(const unsigned char* state, const Extent& box) const;
 
-  /// Whether it is known where sub-bricks lie, as far as MakePlan wants it.
+  /// Whether the boxes that MakePlan needs are known.
   bool HasBoxes() const { return this->BoxesKnown; }
-  /// Finds that out. displacements: of so many points, after the change.
+  /// Finds these boxes. displacements: of numberOfPoints points, after the change.
   void FindBoxes(const Displacements& displacements, std::size_t numberOfPoints);
-  /// Finds out where all sub-bricks lie. displacements: as for the last output.
+  /// Finds the boxes of all sub-bricks. displacements: those of the last output.
   void FindAllBoxes(const Displacements& displacements);
-  /// Finds out where the changed sub-bricks lie, and no others.
+  /// Finds the boxes of the changed sub-bricks only.
   void FindChangedBoxes(const Displacements& displacements);
 
-  /// A mask of vertices, or of cells, changes in some boxes of these.
+  /// Notes that a mask of vertices or cells changed in some boxes.
   void ChangeMask(const std::vector<Extent>& changes, bool ofCells);
 
-  /// False where it is better to make all anew. inside: see IsInside; boxes are not needed then.
+  /// Plans the update. Returns false if a full update is faster. inside: the result of IsInside;
+  /// boxes are not needed then.
   bool MakePlan(bool inside, Plan& plan);
 
-  /// The output voxels that may change, in structured indices: those in the boxes of changed
-  /// sub-bricks, before and after the change. These boxes must be known.
+  /// Returns a box of the output voxels that may change, in structured indices: the union of the
+  /// boxes of changed sub-bricks, before and after the change. These boxes must be known.
   Extent GetChangedExtent() const;
-  /// The patches of the output that these voxels lie in.
+  /// Returns the patches of the output that contain these voxels.
   std::vector<std::uint32_t> GetChangedPatches() const;
 
   const Extent& GetOutputExtent() const { return this->OutputExtent; }
 
 private:
-  /// In output voxels, counted from the first one; empty where Min > Max.
+  /// A box in output voxels, relative to the first one; empty if Min > Max.
   struct Box
   {
     std::array<double, 3> Min;
     std::array<double, 3> Max;
   };
   using Patches = std::array<int, 6>;          // first and last patch on each axis
-  static constexpr std::size_t StepSize = 256; // sub-bricks that a thread takes at a time
+  static constexpr std::size_t StepSize = 256; // sub-bricks for each task of a thread
 
-  /// Calls body(sub-brick) for those that have vertices of a box, or with more = 1 of cells of it,
-  /// or so many voxels beyond.
+  /// Calls body(sub-brick) for all sub-bricks with vertices in a box, enlarged by `halo` voxels.
+  /// more: 1 if the box is one of cells, 0 if it is one of vertices.
   template <typename Body>
   void ForSubBricks(const Extent& box, int more, int halo, Body&& body) const;
-  /// A sub-brick is about to change by its points.
+  /// Notes that the points of a sub-brick are about to change.
   void Move(std::size_t subBrick, const float* last);
   DisplacementBounds ComputeBounds(std::size_t subBrick, const Displacements& displacements) const;
   Box MakeBox(std::size_t subBrick, const DisplacementBounds& bounds) const;
   DisplacementBounds ComputeAllBounds(
     const Displacements& displacements, std::size_t numberOfPoints) const;
-  /// Finds the boxes of the sub-bricks that a function wants, where they are not known.
+  /// Finds those boxes that are not known yet, of the sub-bricks that a predicate selects.
   template <typename IsWanted>
   void FindBoxesOf(const IsWanted& isWanted, const Displacements& displacements);
-  /// The voxels in a box, within the output and counted from its first one; false without such.
+  /// Returns the voxels of the output in a box, relative to the first one; false if there are none.
   bool GetVoxels(const Box& box, Extent& voxels) const;
-  /// Whether sub-bricks have vertices of a cut; empty: none has.
+  /// Returns for each sub-brick whether it has vertices of a cut; empty if none has.
   std::vector<unsigned char> FindCutBricks(const std::vector<CutVertex>& vertices) const;
-  /// Bricks may reach beyond the volume.
+  /// False for sub-bricks entirely outside the volume: the last bricks can extend beyond it.
   bool HasCells(std::size_t subBrick) const
   {
     return GetNumberOfCells(this->Grid.GetVertices(subBrick, 0)) > 0;
@@ -139,7 +140,7 @@ private:
   {
     return this->Moved[subBrick] || this->Masked[subBrick];
   }
-  /// A box round the patches that the boxes of changed sub-bricks touch, before or after the
+  /// Returns a box of all patches that intersect boxes of changed sub-bricks, before or after the
   /// change.
   Box GetDirtyBox() const;
   static bool IsApart(const Box& a, const Box& b);
@@ -148,31 +149,31 @@ private:
   void MarkPatches(const Box& box, std::vector<unsigned char>& dirty) const;
   std::vector<unsigned char> MakeFlagsOfPatches() const;
   static std::vector<std::uint32_t> ListPatches(const std::vector<unsigned char>& dirty);
-  /// Marks those that a changed sub-brick touches, before or after the change.
+  /// Marks the patches that a changed sub-brick intersects, before or after the change.
   void MarkChangedPatches(std::size_t subBrick, std::vector<unsigned char>& dirty) const;
-  /// Finds the patches to clear, and adds the sub-bricks that touch them to the sections to run.
+  /// Finds the patches to clear, and adds the sections of sub-bricks that intersect them.
   void PlanPatches(const std::vector<std::size_t>& changed, std::vector<std::uint32_t>& run,
     std::vector<unsigned char>& dirty) const;
   bool TouchesPatches(const Box& box, const std::vector<unsigned char>& dirty) const;
 
   bool Tracking = false;
   BrickGrid Bricks;
-  BrickGrid Grid; // of their sub-bricks, which all that follows is about
+  BrickGrid Grid; // of sub-bricks; all members below refer to these
   VoxelGrid Shape;
   Extent OutputExtent{ { 0, -1, 0, -1, 0, -1 } };
   std::array<int, 3> PatchCount{ { 0, 0, 0 } };
   BrickPoints Points;
   BrickPoints PointsOfBricks;
-  // The brick and the section of each sub-brick: see BrickGrid::GetBrick.
+  // The brick and the section of each sub-brick (BrickGrid::GetBrick).
   std::vector<std::pair<std::size_t, std::uint32_t>> Places;
-  std::vector<Box> Boxes; // as far as they are known
+  std::vector<Box> Boxes; // valid where Known
   std::vector<unsigned char> Known;
-  bool BoxesKnown = false; // all that changed, and all that may touch what these touch
-  std::optional<DisplacementBounds> AllBounds; // of all points, or wider
-  std::vector<Box> LastBoxes;                  // of those that were moved
+  bool BoxesKnown = false; // of all changed sub-bricks, and of all that may share patches with them
+  std::optional<DisplacementBounds> AllBounds; // of all points, possibly wider
+  std::vector<Box> LastBoxes;                  // valid where Moved
   std::vector<unsigned char> Moved;
   std::vector<unsigned char> Masked;
-  std::vector<unsigned char> IsCut; // by the cut now, or that of the last output; see FindCutBricks
+  std::vector<unsigned char> IsCut; // by the current cut or that of the last output
 };
 
 } // namespace deformvolume
