@@ -8,12 +8,12 @@
 namespace deformvolume
 {
 
-/// Programs that list the tetrahedra in each tile of an output.
+/// Programs that make the lists of tetrahedra for each tile of an output.
 cl::Program GetRangeListsProgram(OpenCLContext& context);
 cl::Program GetEntryListsProgram(OpenCLContext& context);
 
-/// Tetrahedra in a tile (TileTetrahedra.cl) and what that needs. isShared: whether the items of a
-/// work-group set tetrahedra up for each other.
+/// Returns the text for tetrahedra in a tile (TileTetrahedra.cl), with the texts that it needs.
+/// isShared: whether the work-items of a work-group set up tetrahedra for each other.
 ProgramText GetTileText(bool isShared);
 
 } // namespace deformvolume

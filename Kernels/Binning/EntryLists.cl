@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The lists of the tetrahedra in each tile, for devices with many work-items.
+// Lists of the tetrahedra in each tile, for devices with many work-items.
 //
-// An entry is a tetrahedron in the list of a tile. Entries are made in the order of the tetrahedra,
-// those of a tetrahedron side by side: sums over their numbers of tiles tell an item which entry is
-// whose, so that many items make those of a large tetrahedron. Then entries are sorted by keys, a
-// few bits at a time, from the lowest ones on, and those with equal bits stay in their order. A key
-// is twice the tile, and one more where the tetrahedron is inverted.
+// An entry is a tetrahedron in the list of a tile. Entries are made in the order of the tetrahedra; those of one
+// tetrahedron are consecutive. Prefix sums of the numbers of tiles give the tetrahedron of each entry, so that many
+// work-items make the entries of a large tetrahedron. The entries are then sorted by keys with a stable radix sort,
+// from the lowest bits on. A key is twice the tile, plus 1 if the tetrahedron is inverted.
 //
-// A work-group takes a range of tetrahedra, entries or tiles. What comes out depends neither on the
-// number of ranges nor on that of the items, nor on which item comes first: atomic operations only
-// add numbers and set bits, which a barrier or the end of the kernel waits for.
+// Each work-group takes a range of tetrahedra, entries or tiles. The result does not depend on the number of ranges
+// or work-items, or on their order: atomic operations only add numbers and set bits, and are complete at a barrier or
+// at the end of the kernel.
 //
 // This text comes after TetrahedronBinning.cl.
 
-// A part of count numbers: that of one of several ranges, which follow each other.
+// Divides `count` numbers into consecutive ranges, and returns the begin of one range.
 static uint RangeBegin(uint count, uint range, uint ranges)
 {
   return (uint)((ulong)count * range / ranges);
@@ -22,7 +21,7 @@ static uint RangeBegin(uint count, uint range, uint ranges)
 #define GROUP_BEGIN(count) RangeBegin(count, get_group_id(0), get_num_groups(0))
 #define GROUP_END(count) RangeBegin(count, get_group_id(0) + 1, get_num_groups(0))
 
-// For each tetrahedron its tiles, and how many these are. counters: see RasterParameters.h.
+// Finds the tiles of each tetrahedron, and their number. counters: see RasterParameters.h.
 __kernel void FindTiles(__global const int4* tetrahedra, __global const int4* positions,
   __global uint2* boxes, __global uint* counters, __global uint* counts, const RasterParameters p)
 {
@@ -48,7 +47,7 @@ __kernel void FindTiles(__global const int4* tetrahedra, __global const int4* po
   }
 }
 
-// The sum over the items before this one; *all is that over all of them. All items call it.
+// Returns the sum over the work-items before this one, and sets `all` to the total. All items must call it.
 static ulong SumItemsBefore(ulong own, __local ulong* shared, ulong* all)
 {
   const uint item = get_local_id(0);
@@ -71,7 +70,7 @@ static ulong SumItemsBefore(ulong own, __local ulong* shared, ulong* all)
   return shared[item];
 }
 
-// Of each range of numbers the sum. shared: a number more than there are items.
+// Finds the sum of each range of numbers. shared: one value more than there are work-items.
 __kernel void SumRanges(
   __global const uint* numbers, const uint count, __global ulong* sums, __local ulong* shared)
 {
@@ -89,8 +88,7 @@ __kernel void SumRanges(
   }
 }
 
-// Each sum becomes that over the ranges before it; that over all of them comes last. For one
-// work-group.
+// Replaces each sum by the sum of the ranges before it, and appends the total. For one work-group.
 __kernel void AddSums(const uint ranges, __global ulong* sums, __local ulong* shared)
 {
   const uint begin = RangeBegin(ranges, get_local_id(0), get_local_size(0));
@@ -114,7 +112,7 @@ __kernel void AddSums(const uint ranges, __global ulong* sums, __local ulong* sh
   }
 }
 
-// Each number becomes the sum over those before it.
+// Replaces each number by the sum of all numbers before it.
 __kernel void AddNumbers(
   __global uint* numbers, const uint count, __global const ulong* sums, __local ulong* shared)
 {
@@ -137,7 +135,7 @@ __kernel void AddNumbers(
   }
 }
 
-// The tetrahedron of an entry, where it is not before the first one. begins: of their entries.
+// Returns the tetrahedron of an entry, which must not be before `first`. begins: first entry of each tetrahedron.
 static uint FindTetrahedron(__global const uint* begins, uint count, uint first, uint entry)
 {
   uint low = first;
@@ -147,7 +145,7 @@ static uint FindTetrahedron(__global const uint* begins, uint count, uint first,
     low += step;
     step *= 2;
   }
-  uint high = min(low + step, count); // it is before this one
+  uint high = min(low + step, count); // the tetrahedron is before this one
   while (high - low > 1)
   {
     const uint middle = low + (high - low) / 2;
@@ -163,7 +161,7 @@ static uint FindTetrahedron(__global const uint* begins, uint count, uint first,
   return low;
 }
 
-// boxes: the tiles of each tetrahedron; begins: of their entries.
+// boxes: the tiles of each tetrahedron. begins: the first entry of each tetrahedron.
 __kernel void MakeEntries(__global const uint2* boxes, __global const uint* begins,
   const uint entries, __global uint* keys, __global int* lists, const RasterParameters p)
 {
@@ -189,7 +187,7 @@ static uint GetDigit(uint key, DigitParameters d)
   return key >> d.Shift & ((1u << d.Bits) - 1);
 }
 
-// counters: for each digit, for each range of entries a number.
+// counters: the number of entries, for each digit and each range of entries.
 __kernel void CountDigits(__global const uint* keys, __global uint* counters,
   const DigitParameters d)
 {
@@ -213,8 +211,8 @@ __kernel void CountDigits(__global const uint* keys, __global uint* counters,
   }
 }
 
-// counters: as above, the number being the place of the first entry with that digit. masks: for
-// each digit a bit an item. They tell an item how many items before it have the same digit.
+// counters: the index of the first entry, for each digit and each range of entries. masks: for each digit, a bit for
+// each work-item. An item counts the bits before its own to find how many items before it have the same digit.
 __kernel void SortByDigits(__global const uint* keys, __global const int* lists,
   __global const uint* counters, __global uint* sortedKeys, __global int* sortedLists,
   __local uint* masks, const DigitParameters d)
@@ -270,7 +268,7 @@ __kernel void SortByDigits(__global const uint* keys, __global const int* lists,
   }
 }
 
-// For each tile where its list begins, and where the last one ends. keys: sorted.
+// Finds the begin of the list of each tile, and the end of the last list. keys: sorted.
 __kernel void FindBegins(
   __global const uint* keys, const uint entries, const uint tiles, __global uint* begins)
 {

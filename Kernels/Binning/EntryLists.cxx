@@ -13,15 +13,15 @@ namespace deformvolume
 namespace
 {
 
-// Enough work-groups for a large graphics card. Numbers for each work-item, so that what is kept of
-// each group is little beside them.
+// Enough work-groups for a large GPU. Each work-item takes many numbers, so that the data of a
+// work-group are small in comparison.
 constexpr std::uint64_t MostGroups = 1024;
 constexpr std::uint64_t NumbersPerItem = 16;
 
-// Items of a work-group; a bit for each of them and each digit has to fit into local memory.
+// The largest work-group: local memory must hold a bit for each of its items and each digit.
 constexpr std::size_t LargestGroup = 256;
 
-/// A kernel, and as many work-groups as some numbers are shared out to.
+/// A kernel, and the number of work-groups that share its work.
 class SharedWork
 {
 public:
@@ -42,7 +42,7 @@ public:
       cl::NDRange(this->Groups * this->GroupSize), cl::NDRange(this->GroupSize));
   }
 
-  /// Local memory for a sum over the items.
+  /// Local memory for a prefix sum over the work-items.
   cl::LocalSpaceArg ForSums() const { return cl::Local((this->GroupSize + 1) * sizeof(cl_ulong)); }
 
   cl::Kernel Kernel;
@@ -90,7 +90,7 @@ std::size_t EntryLists::AddBefore(WorkDevice& device, const cl::Buffer& numbers,
   SharedWork join(device, "AddSums", 1);
   join.Launch(device, static_cast<cl_uint>(sum.Groups), this->Sums, join.ForSums());
   SharedWork add(device, "AddNumbers", count);
-  add.Groups = sum.Groups; // it takes the ranges of these
+  add.Groups = sum.Groups; // must use the same ranges
   add.Launch(device, numbers, count, this->Sums, add.ForSums());
   return sum.Groups;
 }
@@ -110,7 +110,7 @@ void EntryLists::Sort(WorkDevice& device, cl_uint tiles, ListBuffers& buffers, c
   const cl_uint digits = cl_uint{ 1 } << d.Bits;
   SharedWork count(device, "CountDigits", entries);
   SharedWork sort(device, "SortByDigits", entries);
-  sort.Groups = count.Groups; // it takes the ranges of these
+  sort.Groups = count.Groups; // must use the same ranges
   const cl_uint counters = digits * static_cast<cl_uint>(count.Groups);
   ReserveLists(device, this->Digits, std::uint64_t{ counters } * sizeof(cl_uint));
   const cl::LocalSpaceArg masks =

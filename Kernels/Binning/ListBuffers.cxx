@@ -13,7 +13,7 @@ namespace deformvolume
 namespace
 {
 
-// Work-items go on by the size of their group, and must not get beyond 32 bits.
+// Loops advance by the size of a work-group, and must not exceed 32 bits.
 constexpr cl_uint LargestLength = std::numeric_limits<cl_uint>::max() - 4096;
 
 } // namespace

@@ -12,22 +12,22 @@ namespace deformvolume
 
 class WorkDevice;
 
-/// What the lists of the tetrahedra in each tile are made of, and the lists (TetrahedronLists).
+/// The lists of tetrahedra for each tile, and the data they are made from (TetrahedronLists).
 struct ListBuffers
 {
   cl::Buffer Boxes;    // the tiles of each tetrahedron
   cl::Buffer Counters; // see RasterParameters.h
-  cl::Buffer Begins;   // of the list of each tile in the lists, and the end of the last one
+  cl::Buffer Begins;   // the begin of each tile's list in Lists, then the end of the last one
   cl::Buffer Lists;
 };
 
 std::uint64_t CountTiles(const RasterParameters& p);
 
-/// Makes a buffer larger where it has to be. Throws an Error where the device gives none of so many
+/// Allocates a larger buffer if needed. Throws an Error if the device cannot allocate that many
 /// bytes.
 void ReserveLists(WorkDevice& device, cl::Buffer& buffer, std::uint64_t bytes);
 
-/// The length of all lists together, unless it is too large: then it throws an Error.
+/// Returns the total length of all lists. Throws an Error if it is too large.
 cl_uint CheckLength(std::uint64_t length);
 
 } // namespace deformvolume

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The lists of the tetrahedra in each tile, for processors: a work-item takes a range of tetrahedra
-// and keeps a counter for each tile, once for upright and once for inverted ones. Their sums over
-// the ranges are the places to write to, so that the lists come out in order. The host does the sums
-// in between, in place.
+// Lists of the tetrahedra in each tile, for CPUs. A work-item takes a range of tetrahedra and has two counters for
+// each tile, one for upright and one for inverted tetrahedra. Between the two kernels, the host replaces the counters
+// by their prefix sums over the ranges. These are the indices to write to, so the lists are in order.
 //
 // This text comes after TetrahedronBinning.cl.
 
@@ -18,8 +17,8 @@ static int RangeBegin(size_t range, const RasterParameters* p)
   return (int)(p->Tetrahedra * range / get_global_size(0));
 }
 
-// boxes: the tiles of each tetrahedron. counters: see RasterParameters.h. places: for upright and
-// then for inverted tetrahedra, for each range, for each tile a number.
+// boxes: the tiles of each tetrahedron. counters: see RasterParameters.h. places: the number of upright tetrahedra
+// for each range and each tile, then the number of inverted ones.
 __kernel void CountTetrahedra(__global const int4* tetrahedra, __global const int4* positions,
   __global uint2* boxes, __global uint* counters, __global uint* places, const RasterParameters p)
 {
@@ -50,7 +49,7 @@ __kernel void CountTetrahedra(__global const int4* tetrahedra, __global const in
   atomic_add(counters + DEFORMVOLUME_BINNED_OVERSTRETCHED, overstretched);
 }
 
-// places: as above, the number being the place in the lists of the next tetrahedron.
+// places: as above, but with the index in the lists of the next tetrahedron.
 __kernel void ListTetrahedra(__global const uint2* boxes, __global uint* places,
   __global int* lists, const RasterParameters p)
 {

@@ -13,7 +13,7 @@ namespace deformvolume
 namespace
 {
 
-// More ranges keep more work-items busy, and cost two counters a tile each.
+// More ranges keep more work-items busy, but each range needs two counters per tile.
 std::size_t CountRanges(WorkDevice& device, std::size_t numberOfTetrahedra, std::uint64_t tiles)
 {
   const std::uint64_t most = std::max<std::uint64_t>(
@@ -51,7 +51,7 @@ std::uint64_t RangeLists::Count(WorkDevice& device, const cl::Buffer& tetrahedra
 std::uint64_t RangeLists::FindPlaces(
   WorkDevice& device, std::size_t ranges, std::size_t tiles, const ListBuffers& buffers)
 {
-  // Sums over the ranges, tile by tile.
+  // Prefix sums over the ranges, for one tile after the other.
   const std::size_t lists = 2 * ranges;
   std::vector<cl_uint> begins(tiles + 1);
   const cl::CommandQueue& queue = device.GetQueue();

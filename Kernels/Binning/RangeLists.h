@@ -10,17 +10,18 @@
 namespace deformvolume
 {
 
-/// Makes the lists of the tetrahedra in each tile on a processor: a few work-items count and list
-/// ranges of tetrahedra (RangeLists.cl).
+/// Makes the lists of tetrahedra for each tile on a CPU: a few work-items count and list ranges of
+/// tetrahedra (RangeLists.cl).
 class RangeLists
 {
 public:
-  /// Finds the boxes of the mesh, the counters, and where lists begin. Returns how long these are.
+  /// Finds the tiles of each tetrahedron, the counters, and the begins of lists. Returns the total
+  /// length of the lists.
   std::uint64_t Count(WorkDevice& device, const cl::Buffer& tetrahedra, const cl::Buffer& positions,
     const RasterParameters& p, ListBuffers& buffers);
   void Fill(WorkDevice& device, const RasterParameters& p, const ListBuffers& buffers);
 
-  /// Bytes on the device, and those that it needs for so many tiles.
+  /// Return the memory on the device, in bytes, and the memory needed for this number of tiles.
   std::uint64_t GetMemory() const;
   static std::uint64_t GetMemoryNeeded(
     WorkDevice& device, std::size_t numberOfTetrahedra, std::uint64_t tiles);
@@ -29,7 +30,7 @@ private:
   std::uint64_t FindPlaces(
     WorkDevice& device, std::size_t ranges, std::size_t tiles, const ListBuffers& buffers);
 
-  cl::Buffer Places; // of each range of tetrahedra in the lists
+  cl::Buffer Places; // where each range of tetrahedra writes in the list of each tile
 };
 
 } // namespace deformvolume

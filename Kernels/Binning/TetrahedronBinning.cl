@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Binning for the mesh rasterisation: tiles of the output, and which of them a tetrahedron of the
-// deformation mesh may hold voxels of. RangeLists.cl and EntryLists.cl list for each tile such
-// tetrahedra, in the order in which they win: upright ones first, then inverted ones, each in
-// ascending order.
+// Binning for mesh rasterization: tiles of the output, and the tiles in which a tetrahedron of the deformation mesh
+// may hold voxels. RangeLists.cl and EntryLists.cl list these tetrahedra for each tile, in the order in which they
+// win: upright ones first, then inverted ones, each in ascending order.
 //
-// Data: a tetrahedron is four nodes (16 bytes), ordered so that it is positively oriented at rest,
-// or -1 where it has no volume at rest; a node is its deformed position in 1/256 output voxel (16
-// bytes, the last four unused).
+// Data: a tetrahedron has four nodes (16 bytes), in an order of positive orientation at rest, or -1 if it has no
+// volume at rest. A node is its deformed position in 1/256 output voxel (16 bytes, the last four unused).
 
-// The voxels of the output in the box of a tetrahedron, both ends included.
+// The output voxels in a box, both ends included.
 typedef struct
 {
   int4 Low, High;
@@ -29,7 +27,7 @@ static int IsEmpty(VoxelBox box)
   return box.Low.x > box.High.x || box.Low.y > box.High.y || box.Low.z > box.High.z;
 }
 
-// The voxels of the output in a tile, and the tile's first voxel, which may lie before the output.
+// Returns the output voxels in a tile, and sets the tile's first voxel, which may lie before the output.
 static VoxelBox GetTile(int index, int* origin, const RasterParameters* p)
 {
   origin[0] = (p->TileFirst[0] + index % p->TileCount[0]) * (1 << DEFORMVOLUME_TILE_BITS_X);
@@ -48,7 +46,7 @@ static VoxelBox GetTile(int index, int* origin, const RasterParameters* p)
   return tile;
 }
 
-// The first voxel of a row of a tile. origin: the tile's first voxel.
+// Sets the first voxel of a row of a tile. origin: the first voxel of the tile.
 static void FindFirstOfRow(int row, const int* origin, int* voxel)
 {
   voxel[0] = origin[0];
@@ -56,8 +54,8 @@ static void FindFirstOfRow(int row, const int* origin, int* voxel)
   voxel[2] = origin[2] + (row >> DEFORMVOLUME_TILE_BITS_Y);
 }
 
-// The tiles of a tetrahedron: the first one; and in one number how many on x, y and z, with bits
-// enough for the largest tetrahedron, and whether it is inverted.
+// The tiles of a tetrahedron: the first tile; and, packed into one number, the count of tiles on x, y and z, with
+// enough bits for the largest tetrahedron, and whether it is inverted.
 #define TILES_BITS_X 8
 #define TILES_BITS_Y 10
 #define TILES_BITS_Z 10
@@ -87,10 +85,10 @@ static uint IsInverted(uint sizes)
   return sizes >> 31;
 }
 
-// A tetrahedron as far as binning goes.
+// The result of binning a tetrahedron.
 typedef struct
 {
-  uint2 Tiles; // none where nothing is to be rasterised
+  uint2 Tiles; // 0 tiles if there is nothing to rasterize
   uint Inverted;
   uint Overstretched;
 } Binned;

@@ -42,8 +42,7 @@ void SetInverse(const VoxelGrid& grid, RasterParameters& parameters)
   const OutputTransform transform = GetOutputTransform(grid);
   const auto split = [](double value, float& sum, float& rest)
   {
-    // Volatile, as GCC 12 leaves out the rounding where it makes vectors of a loop: what misses is
-    // zero then.
+    // Volatile: GCC 12 omits the rounding when it vectorizes the loop, and the rest is then 0.
     const volatile float rounded = static_cast<float>(value);
     sum = rounded;
     rest = static_cast<float>(value - rounded);
@@ -70,7 +69,7 @@ TetrahedronLists::Counts TetrahedronLists::Make(WorkDevice& device, const cl::Bu
   const QueueGuard guard(device.GetQueue());
   static const cl_uint zeros[DEFORMVOLUME_BINNED_COUNTERS] = {};
   PendingCopy cleared = BeginToWrite(device.GetQueue(), buffers.Counters, 0, sizeof(zeros), zeros);
-  // Whatever the way, the lists are the same.
+  // Both methods give the same lists.
   const bool serial = device.HasSerialGroups();
   const std::uint64_t counted = serial
     ? this->Ranges.Count(device, tetrahedra, positions, p, buffers)
@@ -105,7 +104,7 @@ std::uint64_t TetrahedronLists::GetMemory() const
 std::uint64_t TetrahedronLists::GetMemoryNeeded(
   WorkDevice& device, std::size_t numberOfTetrahedra, std::uint64_t tiles)
 {
-  // A tetrahedron is in four lists.
+  // The estimate: a tetrahedron is in four lists.
   const std::uint64_t length = 4 * std::uint64_t{ numberOfTetrahedra };
   return numberOfTetrahedra * sizeof(cl_uint2) + (tiles + length) * sizeof(cl_uint) +
     (device.HasSerialGroups() ? RangeLists::GetMemoryNeeded(device, numberOfTetrahedra, tiles)

@@ -1,24 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A tetrahedron of the deformation mesh in a tile of the output: its edge functions, which are integers in
-// (1/256 voxel)^3, zero on a face and positive inside.
+// A tetrahedron of the deformation mesh in a tile of the output. Its edge functions are integers in (1/256 voxel)^3,
+// 0 on a face and positive inside.
 //
-// What the host puts in front of this text, which comes after TetrahedronBinning.cl:
-//   SETUP_IS_SHARED  1 where the items of a group set tetrahedra up for each other, else 0
+// The host defines before this text, which comes after TetrahedronBinning.cl:
+//   SETUP_IS_SHARED  1 if the work-items of a work-group set up tetrahedra for each other, else 0
 
-// Where tetrahedra lie that are set up: in memory of the group, or of a work-item that has a thread for itself.
+// The address space of tetrahedra that are set up: local memory if they are shared, otherwise private memory.
 #if SETUP_IS_SHARED
 #define OF_GROUP __local
 #else
 #define OF_GROUP __private
 #endif
 
-// A tetrahedron in a tile.
 typedef struct
 {
   VoxelBox Box;       // the voxels of the tile that may lie in it
-  long Start[4];      // edge function opposite node k at the lowest voxel of the box
-  Vector Steps[4];    // and its steps from voxel to voxel
-  float Inverse[4];   // of the step along a row, made positive
+  long Start[4];      // edge function of the face opposite node k, at the lowest voxel of the box
+  Vector Steps[4];    // its change to the next voxel on x, y and z
+  float Inverse[4];   // 1 / absolute value of the change along x
   int AcceptsTie[4];  // whether a voxel on the face stays inside after a shift by (e, e^2, e^3)
   REAL InverseVolume;
 } TileTetrahedron;
@@ -29,7 +28,7 @@ static Vector Scaled(Vector v, long factor)
   return r;
 }
 
-// Returns 0 where the tetrahedron has no voxel in the tile.
+// Sets up a tetrahedron. Returns 0 if it has no voxel in the tile.
 static int SetUpTetrahedron(int4 nodes, __global const int4* positions, VoxelBox tile,
   OF_GROUP TileTetrahedron* t, const RasterParameters* p)
 {
@@ -59,7 +58,7 @@ static int SetUpTetrahedron(int4 nodes, __global const int4* positions, VoxelBox
   {
     const Vector step = Scaled(normals[k], 256);
     t->Steps[k] = step;
-    // The whole box may lie behind the face.
+    // Quick test: the whole box may lie behind one face.
     if (t->Start[k] + max(0L, step.x * size.x) + max(0L, step.y * size.y) +
         max(0L, step.z * size.z) <
       0)

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Inverse displacement fields: finds for each output voxel, through the field, the rest coordinate at
-// which RestSampling.cl looks the volume up. No tetrahedra are there, and no voxel depends on another.
+// Finds the rest coordinate of each output voxel through an inverse displacement field. RestSampling.cl samples the
+// volume there. There are no tetrahedra, and voxels do not depend on each other.
 //
-// Data: the vectors of the field, three floats a point, in output voxels, from a point of the output
-// to the point of the volume at rest that is seen there. In local memory rest coordinates and bits of
-// covered voxels, as in MeshRasterization.cl.
+// Data: the vectors of the field, three floats per point, in output voxels. A vector leads from a point of the output
+// to the point of the volume at rest that is seen there. Local memory has rest coordinates and bits of covered
+// voxels, as in MeshRasterization.cl.
 //
-// A work-group takes an output tile. This text comes after TetrahedronBinning.cl, RestSampling.cl and
-// FieldFading.cl, and the host puts nothing more in front of it than of those.
+// A work-group handles one output tile. This text comes after TetrahedronBinning.cl, RestSampling.cl and
+// FieldFading.cl, and needs no macros beyond theirs.
 
-// What a row of a tile has in common: positions in the field of the tile's first voxel on x, their
-// steps from voxel to voxel, and what takes a position in the output to a rest coordinate.
+// Data that the voxels of a row share: the position of the row's first voxel in the field, the step to the next
+// voxel, and the map from a position in the output to a rest coordinate.
 typedef struct
 {
   REAL Start[3];
@@ -47,7 +47,7 @@ static LookupRow MakeLookupRow(const int* voxel, const LookupParameters* f, cons
 
 #define MIX(A, B, T) MULTIPLY_ADD_REAL(T, (B) - (A), A)
 
-// The vectors of two neighbouring points on x, mixed.
+// Interpolates between two neighboring points on x.
 static void MixAlongX(__global const float* vectors, size_t row, int low, int high, REAL t, REAL* mixed)
 {
   const float3 a = vload3(row + low, vectors);
@@ -57,8 +57,8 @@ static void MixAlongX(__global const float* vectors, size_t row, int low, int hi
   mixed[2] = MIX((REAL)a.z, (REAL)b.z, t);
 }
 
-// The vector at a position within the field, trilinear. A point without weight is not read, since its
-// vector may be not-a-number, which stands for an undefined one.
+// Trilinear interpolation of the vector at a position in the field. Points with weight 0 are not read, as their
+// vector may be not-a-number, which stands for an undefined point.
 static void InterpolateField(
   __global const float* vectors, const REAL* position, REAL* vector, const LookupParameters* f)
 {
@@ -93,8 +93,8 @@ static void InterpolateField(
   }
 }
 
-// The rest coordinate of the x-th voxel of a row, whose first is voxel; 0 where the field does not
-// hold the voxel, or where it leads out of the volume.
+// Finds the rest coordinate of voxel number x of a row; voxel: the first voxel of the row. Returns 0 if the voxel is
+// outside the field, or its rest coordinate is outside the volume.
 static int LookUpRest(__global const float* vectors, const LookupRow* row, const int* voxel, int x,
   __local int* rest, const LookupParameters* f, const RasterParameters* p)
 {
@@ -123,7 +123,7 @@ static int LookUpRest(__global const float* vectors, const LookupRow* row, const
   }
   if (isnan(vector[0]))
   {
-    // Rounding may have given an undefined point a weight.
+    // A rounding error may have given weight to an undefined point.
     for (int axis = 0; axis < 3; ++axis)
     {
       const REAL nearest = rint(position[axis]);
@@ -152,7 +152,7 @@ static int LookUpRest(__global const float* vectors, const LookupRow* row, const
     const int most = (p->Size[axis] - 1) << p->FractionBits[axis];
     inside &= inVolume >= (REAL)-p->Tolerance[axis] &&
       inVolume <= (REAL)most + (REAL)p->Tolerance[axis];
-    // Nothing negative is left, so that the conversion rounds to nearest.
+    // The value is not negative, so adding 0.5 and truncating rounds to nearest.
     found[axis] = (int)(clamp(inVolume, (REAL)0, (REAL)most) + (REAL)0.5);
   }
   if (inside)
@@ -166,8 +166,9 @@ static int LookUpRest(__global const float* vectors, const LookupRow* row, const
 }
 
 #if LANES == 1
-// Rest coordinates of the voxels of a tile that are this work-item's, the first one -1 where there is none. Neighbours
-// take neighbours on x: what they read lies side by side. Always inlined: see SampleTile.
+// Finds the rest coordinates of those voxels of a tile that belong to this work-item; the first component is -1 if
+// there is none. Neighboring work-items take neighboring voxels on x, which read neighboring memory. Always inlined:
+// see SampleTile.
 static __attribute__((always_inline)) void FindTileRests(__global const float* vectors, VoxelBox tile,
   const int* origin, __local int* rests, const LookupParameters* f, const RasterParameters* p)
 {
@@ -192,7 +193,7 @@ static __attribute__((always_inline)) void FindTileRests(__global const float* v
   }
 }
 #else
-// Rest coordinates of a row of a tile: returns the bits of those that there are.
+// Finds the rest coordinates of a row of a tile. Returns a bit for each voxel that has one.
 static uint FindRowRests(__global const float* vectors, VoxelBox tile, const int* origin, int row,
   __local int* rowRests, const LookupParameters* f, const RasterParameters* p)
 {

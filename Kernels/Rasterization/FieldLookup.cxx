@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What MeshRasterizer does with an inverse displacement field.
+// MeshRasterizer: inverse displacement fields.
 #include "MeshRasterizer.h"
 
 #include "DeviceVolume.h"
@@ -40,7 +40,7 @@ void MeshRasterizer::SetField(const DisplacementField& inverse)
   }
   if (deformvolume::GetMemory(last) != bytes)
   {
-    last = cl::Buffer(); // free the old one before the new one is made
+    last = cl::Buffer(); // free the old buffer before allocating a new one
   }
   this->FieldVectors = this->Device->Send(inverse.Vectors, static_cast<std::size_t>(bytes), last);
 }

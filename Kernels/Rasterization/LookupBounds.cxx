@@ -18,12 +18,12 @@ namespace deformvolume
 namespace
 {
 
-/// Cells of the field on each axis that are looked at together.
+/// The number of cells of the field, on each axis, for which candidates are found together.
 constexpr int BlockSize = 8;
-/// Points of the field: farther away than any output.
+/// A margin in points of the field, larger than any output.
 constexpr double Infinity = 1e9;
 
-/// The look-up of output voxels in a volume.
+/// The lookup of output voxels in a volume through a field.
 class Lookup
 {
 public:
@@ -39,7 +39,7 @@ public:
       this->Last[axis] = field.Dimensions[axis] - 1;
     }
     this->FromField = glm::inverse(this->ToField);
-    // As in the kernel: half of the rounding of positions to 1/256 output voxel.
+    // As in the kernel: half a step of positions, which are rounded to 1/256 output voxel.
     const glm::dvec3 tolerance = this->Transform.GetTolerance(1.0 / 256.0);
     this->Volume.Min -= tolerance;
     this->Volume.Max += tolerance;
@@ -50,7 +50,7 @@ public:
     return glm::max(glm::ivec3(1), (glm::ivec3(this->Last) + BlockSize - 1) / BlockSize);
   }
 
-  /// Output voxels that a block of the field may lead into the volume.
+  /// Returns the output voxels that a block of the field may map into the volume.
   IndexBounds GetCandidates(const glm::ivec3& block) const
   {
     const glm::ivec3 first = block * BlockSize;
@@ -63,7 +63,7 @@ public:
         for (int x = first.x; x <= last.x; ++x)
         {
           const glm::dvec3 vector = this->GetPoint(x, y, z);
-          if (IsFinite(vector)) // else it is undefined
+          if (IsFinite(vector)) // otherwise the point is undefined
           {
             vectors.Add(vector);
           }
@@ -111,7 +111,7 @@ public:
     }
     const double weight = GetWeightBeyond(this->Field, position, DEFORMVOLUME_LOOKUP_TOLERANCE);
     glm::dvec3 vector = weight > 0.0 ? this->Interpolate(position) : glm::dvec3(0.0);
-    if (!IsFinite(vector)) // as in the kernel
+    if (!IsFinite(vector)) // use the nearest point, as the kernel does
     {
       const glm::dvec3 nearest = glm::round(position);
       const auto isNear =
@@ -139,7 +139,7 @@ private:
 
   const DisplacementField& Field;
   OutputTransform Transform;
-  IndexBounds Volume; // what rest positions may be, in indices of the volume
+  IndexBounds Volume; // the range of rest positions, in indices of the volume
   glm::dmat3 ToField{ 1.0 };
   glm::dmat3 FromField{ 1.0 };
   glm::dvec3 Offset{ 0.0 };
@@ -152,7 +152,7 @@ bool IsInside(const IndexBounds& bounds, const IndexBounds& box)
     glm::all(glm::lessThanEqual(box.Max, bounds.Max));
 }
 
-/// Adds the covered voxels of a box to bounds; looks at those only that would widen them.
+/// Adds the covered voxels of a box to bounds. Tests only voxels that would extend the bounds.
 void AddCovered(const Lookup& lookup, const IndexBounds& box, IndexBounds& bounds)
 {
   for (double z = box.Min.z; z <= box.Max.z; z += 1.0)

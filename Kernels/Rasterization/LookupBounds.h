@@ -10,8 +10,9 @@
 namespace deformvolume
 {
 
-/// Bounds of the output voxels that an inverse displacement field leads into the volume. Exact, as
-/// the kernel decides (FieldLookup.cl); empty where there are none.
+/// Computes the bounds of the output voxels that an inverse displacement field maps into the
+/// volume. The result is exact, by the rule of the kernel (FieldLookup.cl). Empty if there are no
+/// such voxels.
 DEFORMVOLUME_EXPORT IndexBounds ComputeLookupBounds(
   const VoxelGrid& voxelGrid, const DisplacementField& field);
 

@@ -1,41 +1,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Mesh rasterisation: rasterises the tetrahedra of the deformation mesh itself into the output, and
-// finds for each voxel the rest coordinate at which RestSampling.cl looks the volume up.
+// Rasterizes the tetrahedra of the deformation mesh into the output, and finds the rest coordinate of each voxel.
+// RestSampling.cl samples the volume there.
 //
-// Data: tetrahedra, positions of nodes and lists of tetrahedra as in TetrahedronBinning.cl;
-// displacements of nodes, 16 bytes, in output voxels (the last four unused). In local memory for
-// each voxel of a tile the rest coordinate: three integers, the index from the volume's first voxel
-// times 2^FractionBits, as LaneSampling.cl lays them out; and for each row of a tile a bit a voxel that is covered, and
-// one that a tetrahedron holds of its own.
+// Data: tetrahedra, positions of nodes and lists of tetrahedra as in TetrahedronBinning.cl; displacements of nodes,
+// 16 bytes each, in output voxels (the last four bytes unused). Local memory has the rest coordinate of each voxel of
+// a tile as three integers: the index relative to the volume's first voxel times 2^FractionBits, in the layout of
+// LaneSampling.cl. It also has two bits per voxel: whether it is covered, and whether a tetrahedron holds it as its
+// own.
 //
-// A work-group takes an output tile, its work-items the rows of the tile in turn, and each goes
-// through the tetrahedra of the tile in their order: nothing is shared until all rows are done, no
-// voxel has two writers, and the result does not depend on the size of the group. The voxels of a
-// row that a tetrahedron holds are one interval, which the four edge functions bound: integers in
-// (1/256 voxel)^3, zero on a face and positive inside. An estimate in float is put right by the
-// exact function, so that a voxel on a face is in both tetrahedra, and the first one takes it.
+// A work-group handles one output tile. Its work-items take the rows of the tile in turn, and each visits the
+// tetrahedra of the tile in their order. Nothing is shared until all rows are done, no voxel has two writers, and the
+// result does not depend on the size of the group. The voxels of a row that a tetrahedron holds form one interval,
+// bounded by four edge functions: integers in (1/256 voxel)^3 that are 0 on a face and positive inside. A float
+// estimate of the ends is corrected by the exact function. So a voxel on a shared face is in both tetrahedra, and the
+// first one takes it.
 //
-// Rest coordinates are found by RestCoordinates.cl for all wanted voxels of a row.
+// RestCoordinates.cl finds the rest coordinates of all wanted voxels of a row.
 //
-// This text comes after TetrahedronBinning.cl, RestSampling.cl and RestCoordinates.cl, and the host
-// puts nothing more in front of it than of those.
+// This text comes after TetrahedronBinning.cl, RestSampling.cl and RestCoordinates.cl, and needs no macros beyond
+// theirs.
 
-// The bits from first to last, both included; none where last is before first.
+// The bits from first to last (inclusive); 0 if last < first.
 static uint Bits(int first, int last)
 {
   return last < first ? 0u : (0xffffffffu >> (31 - (last - first))) << first;
 }
 
-// The voxels of a row that the tetrahedron holds, counted from the lowest of its box. edges: the
-// edge functions at the lowest voxel; count: of voxels, less one. Those that it holds after the
-// shift, too, which no neighbour holds as well, are *own.
+// Returns the voxels of a row that a tetrahedron holds, relative to the lowest voxel of its box. edges: the edge
+// functions at the lowest voxel. count: number of voxels minus 1. own: the voxels that it still holds after the
+// symbolic shift, which breaks ties on shared faces.
 static uint FindRow(OF_GROUP const TileTetrahedron* t, const long* edges, int count, uint* own)
 {
   int low = 0;
   int high = count;
   int ownHigh = count;
   *own = 0;
-  // Most rows that are missed lie behind one face as a whole.
+  // Quick test: most rows outside the tetrahedron lie entirely behind one face.
   long behind = 0;
   for (int k = 0; k < 4; ++k)
   {
@@ -90,8 +90,8 @@ static uint FindRow(OF_GROUP const TileTetrahedron* t, const long* edges, int co
   return Bits(low, high);
 }
 
-// The voxels of a row that a tetrahedron holds and no other one has taken. first: voxel of the row at the lowest one of
-// the tetrahedron's box, where the edge functions are edges.
+// Returns the voxels of a row that a tetrahedron holds and that no earlier one has taken. first: voxel of the row at
+// the lowest voxel of the tetrahedron's box, where the edge functions are `edges`.
 static uint FindWanted(OF_GROUP const TileTetrahedron* t, const long* edges, int first, __local const uint* covered,
   __local uint* own, int* overlaps)
 {
@@ -103,7 +103,8 @@ static uint FindWanted(OF_GROUP const TileTetrahedron* t, const long* edges, int
   return held & ~*covered;
 }
 
-// Of these, the ones that the volume covers: finds their rest coordinates. voxel: the first one of the row.
+// Finds the rest coordinates of wanted voxels. Returns those that the volume covers. voxel: the first voxel of the
+// row.
 static uint CoverRow(OF_GROUP const TileTetrahedron* t, OF_GROUP const RestMap* map, long* edges, const int* voxel,
   const int* origin, uint wanted, VolumeMasks masks, __local int* rowRests, const RasterParameters* p)
 {
@@ -123,15 +124,15 @@ static uint CoverRow(OF_GROUP const TileTetrahedron* t, OF_GROUP const RestMap* 
   return SelectSources(masks, found, rowRests, p);
 }
 
-// Goes through the tetrahedra of a tile, with all of its rows that are this work-item's. Returns whether tetrahedra
-// overlap. Where work-items are lanes, they set some tetrahedra up for each other, one each, before each takes a row
-// through these: tetrahedra are many, and to set one up takes longer than a row of it.
+// Visits all tetrahedra of a tile, for all rows of this work-item. Returns whether tetrahedra overlap. If work-items
+// are lanes, each sets up one tetrahedron for all of them, before each takes a row through these: there are many
+// tetrahedra, and setting one up takes longer than handling a row of it.
 #if SETUP_IS_SHARED
 typedef struct
 {
   TileTetrahedron Tetrahedron;
   RestMap Map;
-  ulong Rows; // a bit for each row of the tile that is in its box
+  ulong Rows; // a bit for each row of the tile in the box of the tetrahedron
 } SharedTetrahedron;
 
 static ulong FindRows(VoxelBox box, const int* origin)
@@ -172,7 +173,7 @@ static __attribute__((always_inline)) int RasterizeRows(__global const int4* tet
     {
       int voxel[3];
       FindFirstOfRow(row, origin, voxel);
-      // First those of this row alone: neighbours then go through theirs side by side, whichever they are.
+      // Collect the tetrahedra of this row first, so that neighboring work-items handle theirs at the same time.
       uint left = 0;
       for (int i = 0; i < count; ++i)
       {

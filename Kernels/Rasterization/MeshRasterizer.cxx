@@ -23,7 +23,7 @@ namespace
 
 using Clock = std::chrono::steady_clock;
 
-/// Seconds since it was made, without those in which kernels were compiled.
+/// Measures seconds, without the time of kernel compilation.
 class Stopwatch
 {
 public:
@@ -41,7 +41,7 @@ private:
 // Positions in 1/256 voxel and their differences then fit into 32 bits.
 constexpr double LargestPosition = 1 << 21;
 
-// Launches a rasterisation is split into, for progress and for an abort.
+// The number of launches for a slab, so that progress can be reported and the work aborted.
 constexpr int LaunchesPerSlab = 32;
 
 // Six times the signed volume of a tetrahedron at rest.
@@ -72,7 +72,7 @@ void Send(WorkDevice& device, cl::Buffer& buffer, const void* data, std::uint64_
   }
   if (GetMemory(buffer) != bytes)
   {
-    buffer = cl::Buffer(); // free the old one before the new one is made
+    buffer = cl::Buffer(); // free the old buffer before allocating a new one
   }
   buffer = device.Send(data, static_cast<std::size_t>(bytes), buffer);
 }
@@ -82,14 +82,13 @@ RasterParameters MakeParameters(
 {
   RasterParameters p = MakeTiles(slab, numberOfTetrahedra);
   SetInverse(volume.GetVoxelGrid(), p);
-  // Rounding to 1/256 output voxel moves a surface that is that of the volume by half of it at
-  // most on each axis.
+  // Rounding to 1/256 output voxel can move the surface of the volume by half of that on each axis.
   const glm::dvec3 tolerance = GetOutputTransform(volume.GetVoxelGrid()).GetTolerance(1.0 / 256.0);
   for (int axis = 0; axis < 3; ++axis)
   {
     p.Size[axis] = volume.GetSize(axis);
     p.First[axis] = volume.GetVoxelGrid().VertexExtent[2 * axis];
-    // As many as fit into an int beside an index that is one voxel too far, and into a float.
+    // As many bits as fit into an int, with an index that is one voxel too far, and into a float.
     int bits = 24;
     while ((static_cast<std::int64_t>(p.Size[axis]) + 2) << bits > std::int64_t{ 1 } << 31)
     {
@@ -114,7 +113,7 @@ void MeshRasterizer::SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOf
   std::vector<Tetrahedron> oriented(tetrahedra, tetrahedra + numberOfTetrahedra);
   for (Tetrahedron& tetrahedron : oriented)
   {
-    // As it lies in the output.
+    // The orientation of the tetrahedron in the output.
     const double volume = sign * GetRestVolume(tetrahedron, restNodes);
     if (volume < 0.0)
     {
@@ -181,7 +180,7 @@ cl_uint MeshRasterizer::SetArguments(
 {
   const VolumeChunk& chunk = this->Volume->GetChunks().front();
   cl_uint i = this->SetDeformationArguments(this->Kernel);
-  // Any buffer stands in for a missing one: not all drivers take a null pointer.
+  // Some drivers do not accept a null buffer, so pass another one in place of a missing one.
   this->Kernel.setArg(i++, p.HasActive ? chunk.Active : target.GetCoverage());
   this->Kernel.setArg(i++, p.HasBlanked ? chunk.Blanked : target.GetCoverage());
   this->Kernel.setArg(
@@ -216,11 +215,11 @@ void MeshRasterizer::RunTiles(RasterParameters p, const RasterTarget& target,
   {
     p.TileBegin = static_cast<int>(tile);
     this->Kernel.setArg(parameters, p);
-    context.Prepare(queue, this->Kernel, cl::NDRange(group)); // of the first tile
+    context.Prepare(queue, this->Kernel, cl::NDRange(group)); // for the first tile
     const cl::Event event = context.Launch(
       queue, this->Kernel, cl::NDRange(std::min(step, tiles - tile) * group), cl::NDRange(group));
     queue.flush();
-    // Wait for the launch before this one: the device always has work while we report.
+    // Wait for the previous launch only, so that the device always has work.
     if (previous())
     {
       previous.wait();
@@ -260,7 +259,7 @@ void MeshRasterizer::Make(
   RasterParameters p = MakeParameters(*this->Volume, plan.Slabs[slab], this->NumberOfTetrahedra);
   if (!this->HasField())
   {
-    // Every slab sees all tetrahedra.
+    // The lists of each slab are made from all tetrahedra.
     const TetrahedronLists::Counts counts =
       this->Lists.Make(*this->Device, this->Tetrahedra, this->Positions, p);
     if (counts.Overstretched > 0)
@@ -337,7 +336,7 @@ std::uint64_t MeshRasterizer::GetMemory() const
 std::uint64_t MeshRasterizer::GetMemoryNeeded(WorkDevice& device, std::uint64_t outputVoxels,
   std::uint64_t bytesPerVoxel, std::size_t numberOfNodes, std::size_t numberOfTetrahedra)
 {
-  // Tetrahedra with their lists, nodes with positions and displacements, or points of a field with
+  // Tetrahedra with their lists; nodes with positions and displacements, or points of a field with
   // their vectors; counters of tiles.
   const std::uint64_t tiles = outputVoxels / DEFORMVOLUME_TILE_VOXELS;
   const bool field = numberOfTetrahedra == 0;

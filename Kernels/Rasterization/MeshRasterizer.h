@@ -24,10 +24,10 @@ namespace deformvolume
 class DeviceVolume;
 class WorkDevice;
 
-/// Resamples by rasterising the tetrahedra of the deformation mesh into the output
-/// (TetrahedronBinning.cl, MeshRasterization.cl, RestSampling.cl). Needs of the volume nothing but
-/// its arrays and masks: no links, no state and no positions of its voxels. The volume can also be
-/// looked up through an inverse displacement field (FieldLookup.cl), without any mesh.
+/// Resamples by rasterizing the tetrahedra of the deformation mesh into the output
+/// (TetrahedronBinning.cl, MeshRasterization.cl, RestSampling.cl). Needs only the arrays and masks
+/// of the volume: no links, states or positions of voxels. Instead of a mesh, an inverse
+/// displacement field can be used (FieldLookup.cl).
 class MeshRasterizer : public SlabResampler
 {
 public:
@@ -37,30 +37,31 @@ public:
   {
   }
 
-  /// tetrahedra: node indices that are in range. restNodes: three numbers a node, continuous
-  /// indices of the volume.
+  /// Set the mesh. tetrahedra: node numbers, which must be in range. restNodes: three values per
+  /// node, continuous indices of the volume.
   void SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     const double* restNodes, std::size_t numberOfNodes);
 
-  /// Three floats a node, in output voxels, finite.
+  /// Set the displacements: three floats per node, in output voxels, finite.
   void SetDisplacements(const float* displacements);
 
-  /// A field in place of a mesh: its vectors lead from output voxels to where these lie in the
-  /// volume at rest, in output voxels. IndexToField takes the index of an output voxel.
+  /// Set an inverse field in place of a mesh. Its vectors, in output voxels, lead from output
+  /// voxels to their positions in the volume at rest. IndexToField takes the index of an output
+  /// voxel.
   void SetField(const DisplacementField& inverse);
 
-  /// Forgets the mesh or the field.
+  /// Discards the mesh or the field.
   void Clear() { *this = MeshRasterizer(*this->Device, *this->Volume); }
 
   bool HasMesh() const { return !this->RestNodes.empty(); }
   bool HasField() const { return this->FieldVectors() != nullptr; }
-  /// Whether mesh and displacements are set, or a field.
+  /// Whether a mesh with displacements is set, or a field.
   bool IsReady() const { return this->DisplacementsSet || this->HasField(); }
-  /// Nodes of the mesh, or points of the field.
+  /// Returns the number of nodes of the mesh, or of points of the field.
   std::size_t GetNumberOfNodes() const;
   std::size_t GetNumberOfTetrahedra() const { return this->NumberOfTetrahedra; }
 
-  /// Throws an Error where the deformation or the volume is beyond what can be rasterised.
+  /// Throws an Error if the deformation or the volume is too large to be rasterized.
   void Begin(const DeformRequest& request, const SlabPlan& plan, DeformReport& report) override;
   void Make(const DeformRequest& request, const SlabPlan& plan, std::size_t slab,
     DeformReport& report) override;
@@ -70,24 +71,24 @@ public:
   void FinishReading() override;
   void Finish() noexcept override;
 
-  /// Bytes on the device, and those that a rasterisation needs there besides the arrays of the
-  /// volume and its masks, as far as is known beforehand.
+  /// Returns the memory on the device, in bytes. GetMemoryNeeded estimates the memory of a
+  /// rasterization, without the arrays and masks of the volume.
   std::uint64_t GetMemory() const;
   static std::uint64_t GetMemoryNeeded(WorkDevice& device, std::uint64_t outputVoxels,
     std::uint64_t bytesPerVoxel, std::size_t numberOfNodes, std::size_t numberOfTetrahedra);
 
 private:
   void CheckPositions() const;
-  /// Makes a slab, tile by tile, of the lists. progress: how much of it is done; false ends it with
-  /// Aborted.
+  /// Makes a slab tile by tile from the lists. progress: called with the completed fraction; throws
+  /// Aborted if it returns false.
   void RunTiles(RasterParameters parameters, const RasterTarget& target,
     const std::function<bool(double)>& progress, DeformReport& report);
 
   cl::Kernel MakeKernel(Interpolation interpolation) const;
-  /// Sets all arguments of the kernel but the parameters. Returns which these are.
+  /// Sets all arguments of the kernel except the parameters. Returns the index of the parameters.
   cl_uint SetArguments(
     const RasterParameters& p, const RasterTarget& target, const cl::Buffer& counters);
-  /// Those that come first. Returns how many.
+  /// Sets the first arguments. Returns their number.
   cl_uint SetDeformationArguments(cl::Kernel& kernel) const;
 
   WorkDevice* Device;
@@ -96,7 +97,8 @@ private:
   std::size_t NumberOfTetrahedra = 0;
   std::int64_t NumberOfFlatTetrahedra = 0;
   bool DisplacementsSet = false;
-  // The node that is farthest from the output's index 0, and how far on an axis, in output voxels.
+  // The node with the largest coordinate relative to output index 0, and the absolute value of that
+  // coordinate, in output voxels.
   std::size_t FarthestNode = 0;
   double FarthestPosition = 0.0;
   cl::Buffer Tetrahedra;
@@ -105,8 +107,8 @@ private:
   TetrahedronLists Lists;
   cl::Buffer FieldVectors;
   LookupParameters Field = {};
-  cl::Kernel Kernel; // of the output that is made
-  /// One is made while the other is copied to the caller.
+  cl::Kernel Kernel; // for the current output
+  /// With two targets, one slab is made while the other is copied to the caller.
   std::array<std::unique_ptr<RasterTarget>, 2> Targets;
 };
 

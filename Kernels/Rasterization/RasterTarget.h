@@ -15,13 +15,13 @@
 namespace deformvolume
 {
 
-/// A slab of an output that a kernel writes wholly, background included. A processor writes the
-/// memory of the request itself, where that is aligned; another device a copy, which Read brings
-/// there.
+/// A slab of the output that a kernel writes completely, background included. A CPU device writes
+/// directly to the memory of the request if that is aligned. Other devices write to a buffer, which
+/// Read copies.
 class RasterTarget
 {
 public:
-  /// The request must outlive the object.
+  /// The request must outlive this object.
   RasterTarget(OpenCLContext& context, const std::vector<VolumeArray>& arrays,
     const DeformRequest& request, const Extent& slab);
   RasterTarget(const RasterTarget&) = delete;
@@ -29,19 +29,18 @@ public:
 
   const cl::Buffer& GetArray(std::size_t index) const { return this->Memories[index].Buffer; }
   const cl::Buffer& GetCoverage() const { return this->Memories.back().Buffer; }
-  /// Eight bytes an array, the first of which are the background in the array's type.
+  /// Eight bytes for each array; the first of them are the background in the type of the array.
   const cl::Buffer& GetBackgrounds() const { return this->Backgrounds; }
 
-  /// Begins to copy the slab, which is done, in a queue of its own. The request has its voxels
-  /// after FinishReading, which throws cl::Error where that has failed.
+  /// Begins to copy the finished slab in a separate queue. The request has its voxels after
+  /// FinishReading, which throws cl::Error if a copy failed.
   void Read(const cl::CommandQueue& queue);
   void FinishReading() { this->Reads.Check(); }
-  /// Leaves the slab, which is the whole output, on the device. The queue is that by which it is
-  /// read then.
+  /// Leaves the slab, which must be the whole output, on the device. queue: for copying it later.
   std::vector<std::shared_ptr<DeviceOutput>> Leave(const cl::CommandQueue& queue) const;
 
 private:
-  /// Of an array, or of the coverage: on the device, and of the request.
+  /// The memory of an array or of the coverage: on the device, and in the request.
   struct Memory
   {
     cl::Buffer Buffer;
@@ -54,11 +53,11 @@ private:
     const ElementBytes& background);
 
   Extent SlabExtent;
-  std::uint64_t FirstVoxel; // of the slab in the output
+  std::uint64_t FirstVoxel; // index of the slab's first voxel in the output
   std::uint64_t NumberOfVoxels;
   std::vector<Memory> Memories;
   cl::Buffer Backgrounds;
-  PendingCopies Reads; // last: they end before the buffers do
+  PendingCopies Reads; // last member: copies end before buffers are deleted
 };
 
 } // namespace deformvolume

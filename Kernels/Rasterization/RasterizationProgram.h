@@ -12,10 +12,10 @@
 namespace deformvolume
 {
 
-/// The mesh rasterisation (MeshRasterization.cl, RestSampling.cl), or for a field the look-up
-/// through it (FieldLookup.cl), for arrays of these types. masks: whether the volume has some: what
-/// looks at them takes twice the registers of all else. Throws Error where the device lacks what
-/// the arrays need.
+/// Returns the program of mesh rasterization (MeshRasterization.cl, RestSampling.cl) or, for a
+/// field, of the lookup through it (FieldLookup.cl), for arrays of these types. masks: whether the
+/// volume has masks; code for masks doubles the number of registers. Throws an Error if the device
+/// lacks a feature that the arrays need.
 cl::Program GetRasterizationProgram(OpenCLContext& context, const std::vector<VolumeArray>& arrays,
   const VoxelGrid& voxelGrid, Interpolation interpolation, bool field, bool masks);
 

@@ -1,40 +1,39 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rest coordinates for the mesh rasterisation: where in the undeformed volume the voxels are that a
-// tetrahedron holds.
+// Rest coordinates for mesh rasterization: the positions in the undeformed volume of the voxels that a tetrahedron
+// holds.
 //
-// What is interpolated is the displacement, d3 + sum of w_k (d_k - d3), rather than the rest
-// coordinate: a mesh that moves as a whole moves the volume exactly. It is evaluated at the tile's first
-// voxel and goes on from there by forward differences in integers, which do not drift; neither
-// depends on the output's extent.
+// The displacement is interpolated, d3 + sum of w_k (d_k - d3), rather than the rest coordinate: a mesh that moves as
+// a whole then moves the volume exactly. It is evaluated at the first voxel of a tile, and continued by forward
+// differences in integers, which do not drift. Neither depends on the extent of the output.
 //
 // This text comes after TileTetrahedra.cl.
 //
-// Data: see MeshRasterization.cl. Rest coordinates are integers of 32 bits, their steps integers of 64
-// bits with STEP_BITS more.
+// Data: see MeshRasterization.cl. Rest coordinates are 32-bit integers. Their steps are 64-bit integers with
+// STEP_BITS additional bits.
 
-// Rest coordinates within this are found by forward differences; beyond it (slivers, whose
-// gradients are huge) voxel by voxel.
+// Forward differences are used up to this rest coordinate, in voxels. Beyond it (slivers with huge gradients) each
+// voxel is evaluated on its own.
 #define LARGEST_REST 524288
 #define STEP_BITS 18
 
-// What turns edge functions into rest coordinates, in 2^-FractionBits voxel.
+// The map from edge functions to rest coordinates, in 2^-FractionBits voxel.
 typedef struct
 {
   REAL Last[3];         // displacement of the last node, in output voxels
   REAL Gradients[3][3]; // by edge function, by axis
   REAL Scale[3];        // from output voxels, along the same axis
-  // In a tile: the rest coordinate of its first voxel, and its steps from voxel to voxel on x, y and
-  // z, all by axis, with STEP_BITS more bits; and whether they fit.
+  // In a tile: the rest coordinate of its first voxel, and the steps to the next voxel on x, y and z, each for three
+  // axes, with STEP_BITS additional bits; and whether these values fit.
   long Start[3];
   long Steps[3][3];
   int Fits;
 } RestMap;
 
-// edges: the edge functions at this output voxel.
+// Finds the rest coordinate of an output voxel. edges: the edge functions there.
 static void FindRest(OF_GROUP const RestMap* map, const long* edges, const int* voxel, REAL* rest,
   const RasterParameters* p)
 {
-  REAL moved[3]; // the voxel, without its displacement
+  REAL moved[3]; // the position of the voxel minus its displacement
   for (int axis = 0; axis < 3; ++axis)
   {
     REAL d = map->Last[axis];
@@ -120,8 +119,8 @@ static void SetRestMap(OF_GROUP const TileTetrahedron* t, int4 ofNodes, __global
   }
 }
 
-// Rest coordinates of some voxels of a row, one by one. voxel: the first of the row; edges: the edge
-// functions there; bits: the voxels that are wanted; returns those within the volume.
+// Finds the rest coordinates of some voxels of a row one by one. voxel: the first voxel of the row. edges: the edge
+// functions there. bits: the wanted voxels. Returns those inside the volume.
 static uint FindRestsOneByOne(OF_GROUP const TileTetrahedron* t, OF_GROUP const RestMap* map, const long* edges,
   const int* voxel, uint bits, __local int* rests, const RasterParameters* p)
 {
@@ -157,7 +156,7 @@ static uint FindRestsOneByOne(OF_GROUP const TileTetrahedron* t, OF_GROUP const 
   return found;
 }
 
-// The same by forward differences: x, y and z count from the tile's first voxel.
+// The same by forward differences. y and z are relative to the first voxel of the tile.
 static uint FindRests(
   OF_GROUP const RestMap* map, int y, int z, uint bits, __local int* rests, const RasterParameters* p)
 {
@@ -201,7 +200,7 @@ static uint FindRests(
     }
     if (!inside)
     {
-      // Integers wrap round; they are right near to the volume, which an estimate in float tells.
+      // These integers can overflow. They are correct near the volume, which a float estimate tests.
       for (int axis = 0; axis < 3; ++axis)
       {
         const int most = (p->Size[axis] - 1) << p->FractionBits[axis];
@@ -210,7 +209,7 @@ static uint FindRests(
           (rest[axis] >= -p->Tolerance[axis]) & (rest[axis] <= most + p->Tolerance[axis]);
         rest[axis] = min(max(rest[axis], 0), most);
       }
-      // A bit for each lane that is set.
+      // Collect one bit for each lane.
       int lanes[LANES];
       STORE(mask, lanes);
       for (int i = 0; i < LANES; ++i)

@@ -1,21 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Looks the volume up at the rest coordinates that MeshRasterization.cl found for a tile of output
-// voxels, and writes the tile: values of all arrays and coverage where it is covered, background
-// where it is not.
+// Samples the volume at the rest coordinates that MeshRasterization.cl found for a tile of output voxels, and writes
+// the tile: values of all arrays and coverage for covered voxels, background for the others.
 //
-// Rest coordinates are integers: the index from the volume's first voxel times 2^FractionBits.
-// Interpolation is that of VoxelTaps.cl, linear or cubic; the 64 voxels of the latter repeat those
-// of the volume's border beyond it.
+// Rest coordinates are integers: the index relative to the volume's first voxel times 2^FractionBits. Interpolation
+// is that of VoxelTaps.cl, linear or cubic. Beyond the border of the volume, cubic interpolation repeats the border
+// voxels.
 //
-// Arrays of one component, linear, and of float or integers of 8 or 16 bits go by lanes
-// (LaneSampling.cl). All else goes voxel by voxel in REAL.
+// Linear arrays of one component, of type float or 8- or 16-bit integer, are handled in lanes (LaneSampling.cl). All
+// others are handled voxel by voxel in REAL.
 //
-// What the host puts in front of this text, besides that of LaneSampling.cl and VoxelTaps.cl:
-//   HAS_MASKS             1 where the volume has masks or boundary distances, else 0
-//   STRETCH                 neighbouring voxels that a work-item takes: 32 on processors, else 1
+// The host defines before this text, in addition to the macros of LaneSampling.cl and VoxelTaps.cl:
+//   HAS_MASKS             1 if the volume has masks or boundary distances, else 0
+//   STRETCH               neighboring voxels of a work-item: 32 on CPUs, else 1
 //   ARRAY_PARAMETERS      kernel parameters: source and target of each array
-//   TAP_ARRAYS(DO)        DO(index, type, components) for the others
-//   HAS_LANE_ARRAYS, HAS_TAP_ARRAYS  defined where there are such
+//   TAP_ARRAYS(DO)        DO(index, type, components) for arrays that are not handled in lanes
+//   HAS_LANE_ARRAYS, HAS_TAP_ARRAYS  defined if there are such arrays
 //   STORE_ARRAY_i         statement that stores array i at a sample
 
 static AxisTaps MakeAxisTaps(int rest, int bits, int size, int* nearest)
@@ -41,7 +40,7 @@ static AxisTaps MakeAxisTaps(int rest, int bits, int size, int* nearest)
   return taps;
 }
 
-// A voxel of the output.
+// A covered voxel of the output, and where its values come from.
 typedef struct
 {
   size_t Target;
@@ -72,9 +71,9 @@ static void MakeSample(const int* rest, Sample* s, const RasterParameters* p)
 
 typedef struct
 {
-  __global const uchar* Active;    // a byte a cell of the volume, bit i = its tetrahedron i
-  __global const uchar* Blanked;   // a byte a voxel
-  __global const float* Distances; // to the boundary, a float a voxel
+  __global const uchar* Active;    // one byte per cell; bit i: tetrahedron i is active
+  __global const uchar* Blanked;   // one byte per voxel
+  __global const float* Distances; // boundary distances, one float per voxel
 } VolumeMasks;
 
 static void LoadRest(__local const int* rests, int x, int* rest)
@@ -86,8 +85,8 @@ static void LoadRest(__local const int* rests, int x, int* rest)
 }
 
 #if HAS_MASKS
-// Whether a point in a tetrahedron of a cell lies on the far side of the boundary. mirror:
-// DEFORMVOLUME_MIRROR of the cell.
+// Whether a point in a tetrahedron of a cell has a negative boundary distance. mirror: DEFORMVOLUME_MIRROR of the
+// cell.
 static int IsBeyondBoundary(__global const float* distances, const int* cell, int mirror, int t,
   const long* weights, const RasterParameters* p)
 {
@@ -103,8 +102,8 @@ static int IsBeyondBoundary(__global const float* distances, const int* cell, in
   return sum < 0;
 }
 
-// Whether an active tetrahedron of the sampling mesh holds a rest coordinate, and on the near side
-// of the boundary: on faces, edges and vertices that several share, one of them suffices.
+// Whether an active tetrahedron of the sampling mesh contains a rest coordinate, with a boundary distance that is not
+// negative. On shared faces, edges and vertices one such tetrahedron is enough.
 static int IsThere(VolumeMasks masks, const int* rest, const RasterParameters* p)
 {
   int cell[3];
@@ -164,7 +163,7 @@ static int IsBlanked(__global const uchar* blanked, const int* rest, const Raste
   return 0;
 }
 
-// Of the voxels of a row those whose rest coordinates the masks let through.
+// Returns the voxels of a row whose rest coordinates are not masked.
 static uint SelectSources(
   VolumeMasks masks, uint bits, __local const int* rests, const RasterParameters* p)
 {
@@ -189,8 +188,7 @@ static uint SelectSources(
 
 #define BACKGROUND(NUMBER, TYPE) (*(__global const TYPE*)(backgrounds + NUMBER))
 
-// row: index of the row's voxel 0, which may lie before the output; from and to: voxels of the row
-// in the output.
+// row: index of voxel 0 of the row, which may lie before the output. from, to: voxels of the row in the output.
 #define STORE_LANES(NUMBER, TYPE, BITS)                                                            \
   {                                                                                                \
     LANES_OF(TYPE) values = (TYPE)(BACKGROUND(NUMBER, TYPE));                                      \
@@ -220,9 +218,8 @@ static uint SelectSources(
   }
 #define STORE_VALUES(NUMBER, TYPE, COMPONENTS) STORE_ARRAY_##NUMBER
 
-// Always inlined: PoCL 3.1 to 6.0 lose what static functions write that are called with a local
-// array of a kernel. (LLVM puts the array's address into the function, and PoCL then replaces the
-// array in the kernel alone.)
+// Always inlined: in PoCL 3.1 to 6.0, writes of a static function to a local array of a kernel are lost. (LLVM puts
+// the address of the array into the function, and PoCL then replaces the array in the kernel only.)
 static __attribute__((always_inline)) void SampleTile(VoxelBox tile, const int* origin,
   __local const int* rests, __local const uint* covered, __global const ulong* backgrounds,
   __global char* coverage, const RasterParameters* p ARRAY_PARAMETERS)
@@ -285,8 +282,8 @@ static __attribute__((always_inline)) void SampleTile(VoxelBox tile, const int* 
   }
 }
 
-// Counts what a tile covers, and tells whether tetrahedra overlap there, in the counters of the
-// tile. By one work-item, when all rows are there.
+// Writes the number of covered voxels of a tile, and whether tetrahedra overlap there, to its counters. Called by one
+// work-item when all rows are done.
 static inline void CountTile(
   __local const uint* covered, uint overlaps, __global uint* tileCounters)
 {
