@@ -111,7 +111,7 @@ MUTATIONS = {
     "contested-twice": ("Kernels/Output/VoxelWinners.cl", "      return found == key;\n    }\n    const KEY seen",
                         "      return key == (found & ~CONTESTED);\n    }\n    const KEY seen", [FOLDS]),
     "winners-not-awaited": ("Kernels/Resampling/ExactResampler.cxx",
-                            "this->Device.GetQueue().finish(); // it is read in another queue", "", [FOLDS]),
+                            "this->Device.GetQueue().finish(); // the output is read in another queue", "", [FOLDS]),
     "clip": ("Kernels/Resampling/Resampling.cl", "CLIP_TOLERANCE (1.0f / 64.0f)", "CLIP_TOLERANCE 0.0f", [LARGE]),
     "cubic-interior": ("Kernels/Resampling/Resampling.cl", "if (cell->State.Interior != 255)", "if (!cell->State.Interior)",
         [CUBIC]),

@@ -1,40 +1,40 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Resampling of the cells of the sampling mesh that the boundary of the deformation mesh crosses, by the tetrahedra of
-// the deformation mesh, or parts of them (MeshBoundary): pieces. It runs when all other cells have been resampled.
+// Resamples the cells of the sampling mesh that the boundary of the deformation mesh crosses. It uses pieces:
+// tetrahedra of the deformation mesh, or parts of them (MeshBoundary). It runs after all other cells were resampled.
 //
-// An output voxel that these have not covered is taken where a deformed piece holds it, and its rest coordinate lies in
-// a cell at the boundary (DEFORMVOLUME_CELL_AT_BOUNDARY), in one of that cell's own five tetrahedra that is active, has
-// no blanked vertex, and lies on the near side of a carved boundary. Upright pieces come before inverted ones, then the
-// lowest cell, then the lowest piece. Its values are those of that tetrahedron at the rest coordinate, so that they
-// continue those of the cells beside it.
+// An uncovered output voxel is written if two conditions hold. A deformed piece holds the voxel. Its rest coordinate
+// lies in a cell at the boundary (DEFORMVOLUME_CELL_AT_BOUNDARY), in one of the cell's five tetrahedra that is
+// active, has no blanked vertex and has no negative boundary distance there. If there are several, an upright piece
+// wins before an inverted one, then the lowest cell, then the lowest piece. The values are those of that tetrahedron
+// at the rest coordinate, so they continue the values of neighboring cells.
 //
-// A work-group takes a tile of the output. Where work-items are lanes each takes a row of it at a time, else one takes
-// all rows: ROWS_AT_ONCE.
+// A work-group handles one tile of the output. If work-items are lanes, each takes one row of the tile at a time;
+// otherwise one work-item takes all rows (ROWS_AT_ONCE).
 //
-// What the host puts in front of this text, besides what SampleStoring.cl and VoxelWinners.cl name:
-//   ROWS_AT_ONCE  rows of a tile that a work-item takes at once
+// The host defines before this text, in addition to the macros of SampleStoring.cl and VoxelWinners.cl:
+//   ROWS_AT_ONCE  number of rows of a tile that a work-item takes at once
 //
-// Data: positions and displacements of the corners of pieces, as BoundaryCorners.cl makes them.
+// Data: positions and displacements of the corners of pieces, from BoundaryCorners.cl.
 
-// Bits of rest coordinates, which are structured indices, behind the point.
+// The number of fractional bits of rest coordinates, which are structured indices.
 #define REST_BITS 24
 
 typedef struct
 {
-  __global const uchar* Cells;     // of the sampling mesh, those at the boundary have a bit
-  __global const uchar* Active;    // a byte a cell, bit i = its tetrahedron i
-  __global const uchar* Blanked;   // a byte a voxel
-  __global const float* Distances; // to a carved boundary, a float a voxel
+  __global const uchar* Cells;     // of the sampling mesh, with DEFORMVOLUME_CELL_AT_BOUNDARY
+  __global const uchar* Active;    // one byte per cell; bit i: tetrahedron i is active
+  __global const uchar* Blanked;   // one byte per voxel
+  __global const float* Distances; // boundary distances of a carved volume, one float per voxel
 } BoundaryMasks;
 
-// What moves a piece in a tile: displacements in output voxels.
+// The linear map from edge functions to the displacement of a piece in a tile, in output voxels.
 typedef struct
 {
   REAL Last[3];         // of the last corner
   REAL Gradients[3][3]; // by edge function, by axis
 } PieceMap;
 
-// A place in the volume: a tetrahedron of a cell, with the weights that a point has there.
+// A tetrahedron of a cell, and the weights of a point in it.
 typedef struct
 {
   int Cell[3]; // local index
@@ -42,15 +42,15 @@ typedef struct
   long Weights[4];
 } RestPlace;
 
-// The order in which pieces with such places win a voxel: upright before inverted, then by the cell, x varying
-// fastest, then by the tetrahedron. 20 bits for each index.
+// Returns the order in which pieces win a voxel: upright before inverted, then by cell (x varies fastest), then by
+// tetrahedron. 20 bits for each index.
 static ulong KeyOf(const RestPlace* place, int isInverted)
 {
   return (ulong)isInverted << 63 | (ulong)place->Cell[2] << 43 | (ulong)place->Cell[1] << 23 |
     (ulong)place->Cell[0] << 3 | (ulong)place->Tetrahedron;
 }
 
-// A rest coordinate in a cell, mirrored as the parity of the cell asks for, from 0 to one.
+// Returns a rest coordinate relative to a cell, from 0 to one, mirrored according to the parity of the cell.
 static Vector InCell(const long* rest, const int* cell, const KernelParameters* p)
 {
   long point[3];
@@ -64,7 +64,7 @@ static Vector InCell(const long* rest, const int* cell, const KernelParameters* 
   return r;
 }
 
-// Whether no vertex of a tetrahedron is blanked, and a point in it lies on the near side of a carved boundary.
+// Whether a tetrahedron has no blanked vertex, and a point in it has no negative boundary distance.
 static int IsUnmasked(
   const RestPlace* place, const BoundaryMasks* masks, const RasterParameters* r, const KernelParameters* p)
 {
@@ -86,13 +86,13 @@ static int IsUnmasked(
   return !(distance < 0);
 }
 
-// Finds the lowest cell at the boundary that holds a rest coordinate, on its surface included, and the lowest of its
-// tetrahedra that does and is there. Returns 0 where there is none. last: of the last voxel of the volume.
+// Finds the lowest cell at the boundary that contains a rest coordinate, surface included, and its lowest unmasked
+// tetrahedron that contains it. Returns 0 if there is none. last: index of the last voxel of the volume.
 static int FindPlace(const long* rest, const int* last, RestPlace* place, const BoundaryMasks* masks,
   const RasterParameters* r, const KernelParameters* p)
 {
   int cell[3];
-  int below = 0; // on which axes it lies on the lower side of the cell, as bits
+  int below = 0; // bits of the axes on which the coordinate is on the lower side of the cell
   for (int axis = 0; axis < 3; ++axis)
   {
     const int index = min((int)(rest[axis] >> REST_BITS), last[axis] - 1);
@@ -130,7 +130,7 @@ static int FindPlace(const long* rest, const int* last, RestPlace* place, const 
   }
 }
 
-// The edge functions of a piece at a voxel.
+// Returns the edge functions of a piece at a voxel.
 static long4 FindEdges(const TileTetrahedron* t, int x, int y, int z)
 {
   const long dx = x - t->Box.Low.x;
@@ -144,7 +144,7 @@ static long4 FindEdges(const TileTetrahedron* t, int x, int y, int z)
   return (long4)(edges[0], edges[1], edges[2], edges[3]);
 }
 
-// Which voxels of a row of the tile lie in a piece, as bits. first: of the tile on x.
+// Returns the voxels of a row of the tile that lie in a piece, as bits. first: x of the first voxel of the tile.
 static uint FindInside(const TileTetrahedron* t, int first, int y, int z)
 {
   const long4 step = (long4)(t->Steps[0].x, t->Steps[1].x, t->Steps[2].x, t->Steps[3].x);
@@ -158,15 +158,15 @@ static uint FindInside(const TileTetrahedron* t, int first, int y, int z)
   return inside;
 }
 
-// The rest coordinate of a voxel that a piece holds. Returns 0 outside the volume, where
-// rounding does not explain it.
+// Finds the rest coordinate of a voxel that a piece holds. Returns 0 if it lies outside the volume by more than
+// rounding errors.
 static int FindRest(const PieceMap* map, const TileTetrahedron* t, const int* voxel, const int* first,
   const int* last, long* rest, const RasterParameters* r)
 {
   const long4 all = FindEdges(t, voxel[0], voxel[1], voxel[2]);
   const long edges[3] = { all.x, all.y, all.z };
   int isInside = 1;
-  REAL moved[3]; // the voxel, without its displacement
+  REAL moved[3]; // the position of the voxel minus its displacement
   for (int axis = 0; axis < 3; ++axis)
   {
     REAL d = map->Last[axis];
@@ -226,7 +226,7 @@ static size_t TargetOf(const int* voxel, const RasterParameters* r)
 static int IsCovered(__global const char* coverage, size_t target)
 {
 #if COVERAGE_IS_BITS
-  // Others set other bits meanwhile.
+  // Other work-items may set other bits of the word at the same time.
   return atomic_or((volatile __global uint*)coverage + (target >> 5), 0u) >> (target & 31) & 1;
 #else
   return coverage[target];
@@ -252,7 +252,7 @@ static void MarkCovered(const int* voxel, __global char* coverage, __global uint
   atomic_inc(counts + patch);
 }
 
-// Writes the values of a place into a voxel.
+// Writes the values at a place to a voxel.
 static void StoreSample(const RestPlace* place, const int* voxel, const RasterParameters* r,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
@@ -263,8 +263,8 @@ static void StoreSample(const RestPlace* place, const int* voxel, const RasterPa
   StoreArrays(&s ARRAY_ARGUMENTS);
 }
 
-// orientation: of the pieces that take part: 1: upright, 2: inverted, or 3: both. first, last: structured indices of
-// the first and the last voxel of the whole volume. counts: the voxels that are taken in each patch.
+// orientation: 1 for upright pieces, 2 for inverted ones, 3 for both. first, last: structured indices of the first
+// and the last voxel of the whole volume. counts: the number of voxels written in each patch.
 __kernel void ResampleBoundary(__global const int4* tetrahedra, __global const int4* positions,
   __global const float4* displacements, __global const uint* listBegins, __global const int* lists,
   __global const uint* tiles, __global const uchar* cells, __global const uchar* active,
@@ -287,7 +287,7 @@ __kernel void ResampleBoundary(__global const int4* tetrahedra, __global const i
   for (int begin = get_local_id(0) * ROWS_AT_ONCE; begin < DEFORMVOLUME_TILE_ROWS;
        begin += get_local_size(0) * ROWS_AT_ONCE)
   {
-    uint open[ROWS_AT_ONCE]; // voxels that no cell has covered
+    uint open[ROWS_AT_ONCE]; // voxels that are not covered by cells
     uint taken[ROWS_AT_ONCE];
     ulong keys[ROWS_AT_ONCE][32];
     uint any = 0;
@@ -366,7 +366,7 @@ __kernel void ResampleBoundary(__global const int4* tetrahedra, __global const i
             }
             keys[row][x] = key;
             taken[row] |= 1u << x;
-            // Few voxels have several pieces that hold them: what is not the last word is written over.
+            // Few voxels have several pieces, so a value may be overwritten by a better piece.
             StoreSample(&place, voxel, &r, &p ARRAY_ARGUMENTS);
             if (!isTaken)
             {

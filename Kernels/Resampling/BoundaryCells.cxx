@@ -121,7 +121,7 @@ void BoundaryCells::SetCorners(const Tetrahedron* tetrahedra)
       for (std::size_t axis = 0; axis < 3; ++axis)
       {
         const double position = place[static_cast<glm::length_t>(axis)];
-        // Beyond that nothing of it is in any output.
+        // Positions beyond the clamping range are outside any output.
         const double whole = std::clamp(std::floor(position), -0x1p30, 0x1p30);
         corner.Whole[axis] = static_cast<cl_int>(whole);
         corner.Fraction[axis] = static_cast<float>(position - whole);
@@ -133,13 +133,13 @@ void BoundaryCells::SetCorners(const Tetrahedron* tetrahedra)
     }
     if (isMirrored)
     {
-      std::swap(numbers.s[2], numbers.s[3]); // upright ones stay so
+      std::swap(numbers.s[2], numbers.s[3]); // keeps upright pieces upright
     }
     pieces.push_back(numbers);
   }
   const std::uint64_t bytes =
     std::max(corners.size() * sizeof(BoundaryCorner), pieces.size() * sizeof(cl_int4));
-  // A limit that was set is for what can be divided.
+  // The limit that SetAllocationLimit sets is for data that can be divided.
   const std::uint64_t most =
     this->Device.GetDevice().Device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
   if (bytes > most)
@@ -195,7 +195,7 @@ std::vector<cl_uint> BoundaryCells::ListTiles(
     int last[3];
     for (int axis = 0; axis < 3; ++axis)
     {
-      // Patches are counted from the first voxel, tiles from index 0.
+      // Patches are numbered from the first voxel, tiles from index 0.
       const int low =
         r.OutputFirst[axis] + place[axis] * DEFORMVOLUME_PATCH - r.TileFirst[axis] * TileSize[axis];
       const int size =
@@ -284,7 +284,7 @@ void BoundaryCells::RunTiles(const DeformRequest& request, const OutputSlab& out
   const std::size_t group = this->Device.GetBusyGroupSize(kernel);
   const Extent& whole = GetWholeExtent(this->Volume.GetVoxelGrid());
   const std::vector<VolumeChunk>& chunks = this->Volume.GetChunks();
-  // Of several chunks none may have inverted pieces before all have had their upright ones.
+  // With several chunks, all upright pieces must come before any inverted one.
   for (const int orientation : chunks.size() > 1 ? std::vector<int>{ 1, 2 } : std::vector<int>{ 3 })
   {
     for (const VolumeChunk& chunk : chunks)

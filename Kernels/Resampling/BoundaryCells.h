@@ -19,36 +19,36 @@ class Launches;
 class OutputSlab;
 class WorkDevice;
 
-/// Resamples the cells of the sampling mesh that the boundary of the deformation mesh crosses, by
-/// the tetrahedra of that mesh (BoundaryCells.cl has the rule), where all other cells have left the
-/// output uncovered. So the deformed volume ends where the deformed mesh ends.
+/// Resamples the cells of the sampling mesh that the boundary of the deformation mesh crosses. It
+/// uses the tetrahedra of the deformation mesh (rule in BoundaryCells.cl), and fills only voxels
+/// that all other cells left uncovered. The deformed volume then ends where the deformed mesh ends.
 class BoundaryCells
 {
 public:
   BoundaryCells(
     WorkDevice& device, DeviceVolume& volume, const DisplacementSource& source, Launches& launches);
 
-  /// Takes the boundary of the mesh that the source has, or of its field. tetrahedra: those of the
+  /// Sets the boundary of the mesh or field of the displacement source. tetrahedra: those of the
   /// mesh; null for a field.
   void Set(const MeshBoundary& boundary, const Tetrahedron* tetrahedra);
-  /// Tetrahedra have got other nodes, in the same places at rest.
+  /// Updates the corners after tetrahedra got other nodes with the same rest positions.
   void SetCorners(const Tetrahedron* tetrahedra);
   void Clear();
   bool IsEmpty() const { return this->Boundary.empty(); }
 
-  /// Launches of Run over all tiles.
+  /// Returns the number of launches of Run over all tiles.
   std::size_t GetNumberOfLaunches() const;
-  /// Resamples the voxels of a slab that are not covered after all passes over the cells.
-  /// patches: those that are to be looked at, where all others are as they were; null: all.
+  /// Resamples the voxels of a slab that are not covered after all passes over the cells. patches:
+  /// the patches to handle, if all others keep their values; null: all patches.
   void Run(const DeformRequest& request, const OutputSlab& output,
     const std::vector<std::uint32_t>* patches = nullptr);
 
-  /// Of the last output: voxels of the slab that are covered by the boundary; pieces that are
-  /// inverted, and that are stretched so far that they are left out.
+  /// Results of the last Run: the voxels of the slab that the boundary covers; the pieces that are
+  /// inverted, or so overstretched that they are skipped.
   std::uint64_t GetNumberOfCovered() const { return this->Covered; }
   const TetrahedronLists::Counts& GetCounts() const { return this->Counts; }
 
-  /// Bytes on the device.
+  /// Returns the memory on the device, in bytes.
   std::uint64_t GetMemory() const;
 
 private:
@@ -63,9 +63,9 @@ private:
   const DisplacementSource& Source;
   Launches& Launched;
   std::vector<MeshBoundary::Piece> Boundary;
-  std::size_t NumberOfCorners = 0; // different ones, as pieces have nodes in common
+  std::size_t NumberOfCorners = 0; // without duplicates: pieces share nodes
   cl::Buffer Corners;
-  cl::Buffer Pieces; // each four numbers of corners
+  cl::Buffer Pieces; // four corner numbers for each piece
   cl::Buffer Positions;
   cl::Buffer Displacements;
   cl::Buffer Tiles;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The corners of the pieces that the boundary of the deformation mesh is resampled by (BoundaryCells.cl).
+// The corners of the pieces with which the boundary of the deformation mesh is resampled (BoundaryCells.cl).
 
-// Where the corners of the pieces are now, in 1/256 output voxel, and their displacements. Of a mesh: points: nodes;
-// tetrahedra: as links have them. Of a field: points: float4, displacements.
+// Computes the deformed positions of the corners of pieces, in 1/256 output voxel, and their displacements. For a
+// mesh: points: nodes; tetrahedra: in the format of links. For a field: points: its displacements as float4.
 __kernel void MoveCorners(__global const BoundaryCorner* corners, __global const int4* tetrahedra,
   __global const float4* points, const int4 dimensions, __global int4* positions, __global float4* displacements,
   const uint count)
@@ -34,7 +34,7 @@ __kernel void MoveCorners(__global const BoundaryCorner* corners, __global const
       d = MULTIPLY_ADD((float4)(corner.Weights[k]), points[nodes[k] / DEFORMVOLUME_NODE_PLACES], d);
     }
   }
-  // Both parts of the product are exact.
+  // Both the integer and the fractional part of this product are exact.
   const float4 steps = clamp(d, -16384.0f, 16384.0f) * 256.0f;
   const float4 whole = floor(steps);
   const float4 fraction = (float4)(corner.Fraction[0], corner.Fraction[1], corner.Fraction[2], 0.0f);

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The rows of vertices that ResampleBricks (BrickResampling.cl) works on: finds the positions of a row and puts
-// them into memory (PacketVertices.cl), with the values of the arrays.
+// Maps the rows of vertices that ResampleBricks (BrickResampling.cl) works on. Positions (PacketVertices.cl) and
+// values of the arrays are written to memory.
 //
-// Vertices come sixteen at a time, with the operations of PositionOf (DeformationMapping.cl) in the same order;
-// where one of these is missing, one at a time. The last ones of a row come with some before them, which then
-// come twice.
+// Vertices are mapped sixteen at a time, with the operations of PositionOf (DeformationMapping.cl) in the same order.
+// If one of the sixteen has no position, they are mapped one at a time. The last vertices of a row are mapped
+// together with some that were mapped before.
 
-// What is known of the vertices of a row, eight of them a bit, the lowest first.
+// Properties of the vertices of a row: one bit for each eight vertices, the lowest first.
 typedef struct
 {
-  uint Border;  // one is not interior
-  uint Special; // one has a value that sums of products do not give back bit for bit
+  uint Border;  // one of the eight is not interior
+  uint Special; // one has a value that IS_SPECIAL (PacketVertices.cl)
 #if HAS_CUT
-  uint Apart; // one lies elsewhere as seen from the other side of a smooth cut
+  uint Apart; // one has different positions for the two sides of a smooth cut
 #endif
 } RowFlags;
 
@@ -20,8 +20,8 @@ typedef struct
 #define INTERIORS 0x0202020202020202UL
 #define TOGETHER 0x4040404040404040UL
 
-// The bits that both eights of sixteen vertices of a row have; rowInside: whether the row is not on the border
-// of the volume.
+// Returns the state bits that both halves of sixteen vertices of a row have in common. rowInside: whether the row is
+// not at the border of the volume.
 static ulong StatesOf(
   __global const uchar* rowState, int x, int rowInside, const KernelParameters* p)
 {
@@ -34,7 +34,7 @@ static ulong StatesOf(
 }
 
 #define STORE_EIGHT(v, place) *(ROW_MEMORY PlacedFloat8*)(place) = v;
-#define FLAGS_TOGETHER 7u // those of RowFlags that sixteen vertices may be in
+#define FLAGS_TOGETHER 7u // the RowFlags bits that sixteen vertices can belong to
 
 #define PUT_VALUE(index, TYPE, BITS, SLOT)                                                         \
   {                                                                                                \
@@ -59,29 +59,29 @@ static ulong StatesOf(
     }                                                                                              \
   }
 
-// The values of a row are few, and the next row lies far away.
+// A row has few values, and the next row is far away in memory: prefetch it.
 #define FETCH_NEXT_ROW(index, TYPE, BITS, SLOT)                                                    \
   for (int k = x; k < end; k += 512 / BITS)                                                        \
   {                                                                                                \
     PREFETCH(source##index + row.Chunk + p->Size[0] + k)                                           \
   }
 
-// Undeformed vertices, as far as their x says. In whole numbers of 1/256 voxel, relative to the output, and what
-// misses, HALF_ROW each, for even and then for odd vertices: where axes of the volume are those of the output, x in
-// voxels; else for x, y and z what is to be added, the whole numbers as integers.
+// The part of the rest positions that depends on x: whole steps of 1/256 voxel relative to the output, then the
+// remainders, HALF_ROW each, for even and then for odd vertices. If the axes of the volume are those of the output,
+// there is one component x, in voxels. Otherwise there are summands for x, y and z, with the whole steps as integers.
 #if HAS_TURNED_AXES
 #define REST_ODD (6 * HALF_ROW)
 #else
 #define REST_ODD (2 * HALF_ROW)
 #endif
 
-// A row of vertices that is being mapped.
+// A row of vertices while it is mapped.
 typedef struct
 {
   DisplacedRow Displaced;
-  size_t Chunk; // where the row begins in the chunk
+  size_t Chunk; // index of the row's first vertex in the chunk
   ROW_MEMORY const float* RestX;
-  // Undeformed, as far as y and z say: whole steps relative to the output, and what misses.
+  // The part of the rest positions that depends on y and z: whole steps relative to the output, and remainders.
 #if HAS_TURNED_AXES
   int Whole[3];
   float Fraction[3];
@@ -89,10 +89,10 @@ typedef struct
   float WholeY, WholeZ;
   float FractionY, FractionZ;
 #endif
-  ROW_MEMORY float* Places; // for positions and values
+  ROW_MEMORY float* Places; // output: positions and values
 } MappedRow;
 
-// Where a vertex at place i is undeformed: whole steps, in voxels, and what misses.
+// The rest position of the vertex at place i: whole steps, in voxels, and the remainder.
 #if HAS_TURNED_AXES
 #define REST_WHOLE(axis)                                                                           \
   ((float)(((ROW_MEMORY const int*)rest)[2 * (axis)*HALF_ROW] + row->Whole[axis]) * STEP)
@@ -104,7 +104,7 @@ typedef struct
 #define REST_FRACTIONS (float4)(rest[HALF_ROW], row->FractionY, row->FractionZ, 0.0f)
 #endif
 
-// The vertex x, at place i of the brick.
+// Maps vertex x, at place i of the brick.
 static __attribute__((always_inline)) void MapOne(const MappedRow* row, int x, int i, int state,
   RowFlags* flags, const KernelParameters* p ARRAY_PARAMETERS)
 {
@@ -132,7 +132,7 @@ static __attribute__((always_inline)) void MapOne(const MappedRow* row, int x, i
   LANE_ARRAYS(PUT_VALUE)
 }
 
-// Sixteen vertices from x on, all of which have a position. states: of these (StatesOf).
+// Maps sixteen vertices from x on, all of which have a position. states: from StatesOf.
 static __attribute__((always_inline)) void MapSixteen(const MappedRow* row, int x, int i,
   ulong states, RowFlags* flags, const KernelParameters* p ARRAY_PARAMETERS)
 {
@@ -179,7 +179,7 @@ static __attribute__((always_inline)) void MapSixteen(const MappedRow* row, int 
   LANE_ARRAYS(PUT_VALUES_TOGETHER)
 }
 
-// How many vertices to map again where sixteen from x on reach beyond the end. Those begin at an even place.
+// Returns how many vertices must be mapped again so that the last sixteen end at `end`. They begin at an even place.
 static int CountAgain(int x, int begin, int end, int i)
 {
   if (x + 1 >= end || x + 16 <= end)
@@ -191,7 +191,7 @@ static int CountAgain(int x, int begin, int end, int i)
   return again > x - begin ? 0 : again;
 }
 
-// Maps the vertices of a row from x to end; i: place of x in the brick.
+// Maps the vertices of a row from x to end. i: place of x in the brick.
 static RowFlags MapRow(const SamplingMesh* mesh, int x, int end, int i, int y, int z,
   ROW_MEMORY float* places, ROW_MEMORY const float* restX, ROW_MEMORY float* displaced,
   const KernelParameters* p ARRAY_PARAMETERS)

@@ -1,26 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Mapping and resampling in one, for processors: a work-item takes a brick of cells, and LANES cells
-// of a row lie side by side in the lanes of vector registers. It gives the same
-// voxels as Resampling.cl; cells, or samples of large ones, that it is not sure of it leaves to ResampleCell.
+// Mapping and resampling in one kernel, for CPUs. A work-item takes a brick of cells. LANES cells of a row are in the
+// lanes of vector registers. The result has the same voxels as that of Resampling.cl. Cells, or samples of large
+// cells, that floats and 32-bit integers do not decide are handed to ResampleCell.
 //
-// Why it is shaped so: compilers do not turn a kernel with data-dependent loops over candidates
-// into vector code, so the lanes are written out. Positions are found plane by plane, as the cells
-// need them, and never leave the inner caches: two planes of a brick, 17 rows each. A plane is
-// mapped as a whole before the cells below it are resampled: rows side by side follow the same
-// tetrahedra, which are then still in the innermost cache. A row is split into vertices of even and
-// of odd index: cells of equal parity, every second one of a row, are taken together, and no lane
-// needs another 5T split than its neighbour. Every lane goes through its own candidates, one after
-// the other, until the last lane has none left.
+// Design: compilers do not vectorize kernels with data-dependent loops over candidates, so the lanes are written out.
+// Vertices are mapped plane by plane as cells need them, and stay in the inner caches: two planes of a brick with 17
+// rows each. A plane is mapped completely before the cells below it are resampled: neighboring rows use the same
+// tetrahedra, which are then still in the innermost cache. A row is split into even and odd vertices. Cells of equal
+// parity, every second one of a row, form a packet, so that all lanes have the same 5T split. Each lane visits its
+// own candidates, until the last lane has none left.
 //
-// Data: links 16 bytes a voxel (or runs, or a field), state 1 byte, the arrays in their own types; rows of
-// vertices as BrickMapping.cl has them. It comes after PacketResampling.cl.
+// Data: links 16 bytes per voxel (or runs, or a field), state 1 byte, the arrays in their own types; rows of vertices
+// from BrickMapping.cl. This text comes after PacketResampling.cl.
 //
-// What the host puts in front of this text, besides that of Resampling.cl:
-//   ROWS_ARE_GLOBAL      0 or 1: what ROW_MEMORY is (PacketVertices.cl)
+// The host defines before this text, in addition to the macros of Resampling.cl:
+//   ROWS_ARE_GLOBAL      1 if ROW_MEMORY (PacketVertices.cl) is __global, else 0
 
-// Leaves the cells of a packet that have a value which sums of products do not give back to ResampleCell: these only.
-// The flags of rows tell of many vertices at once, and of which depends on where what is mapped of a row begins and
-// ends.
+// Hands the cells of a packet that have a value that IS_SPECIAL to ResampleCell, and no others. (Flags of rows are
+// for eight vertices at once, and depend on where the mapped part of a row begins and ends.)
 static SELDOM void LeaveSpecials(PacketCandidates* c)
 {
   const Packet* const packet = &c->Cells;
@@ -37,8 +34,8 @@ static SELDOM void LeaveSpecials(PacketCandidates* c)
   c->Some &= others;
 }
 
-// A packet of a row whose cells from beginX to endX are wanted. special: whether such a value may be among those of
-// the packet, or near it.
+// Resamples a packet of a row, of which the cells from beginX to endX are wanted. special: whether vertices of the
+// packet, or near it, may have values that are IS_SPECIAL.
 static __attribute__((always_inline)) void ResampleCells(PacketCandidates* c, int special,
   int beginX, int endX, const SamplingMesh* mesh, Output* output, Found* found,
   const KernelParameters* p ARRAY_PARAMETERS)
@@ -64,7 +61,7 @@ static __attribute__((always_inline)) void ResampleCells(PacketCandidates* c, in
   }
   if (again)
   {
-    // These are written again.
+    // Those cells will write their samples again, after these.
     StoreFound(found, &c->Cells, output, p ARRAY_ARGUMENTS);
   }
   const Candidates all = AllCandidates(p);
@@ -80,13 +77,13 @@ static __attribute__((always_inline)) void ResampleCells(PacketCandidates* c, in
   }
 }
 
-// The packets of a row of cells from place begin on up to one that begins at end. beginX, endX: its cells.
-// specials: as RowFlags. outputs: of the spans of the brick.
+// Resamples the packets of a row of cells, from place begin to before end. beginX, endX: the wanted cells. specials:
+// as in RowFlags. outputs: of the spans of the brick.
 static void ResampleRow(const RowOfCells* row, int begin, int end, int beginX, int endX,
   uint specials, const SamplingMesh* mesh, Output* outputs, Found* found,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
-  PacketCandidates candidates[2][2]; // of a place and the next one
+  PacketCandidates candidates[2][2]; // of this place and of the next one
   Bounds even;
   BoundQuads(row->Rows, begin, &even);
   FindPairCandidates(row, begin, &even, mesh, OUTPUT_OF_SPAN(outputs, begin), candidates[0],
@@ -109,8 +106,8 @@ static void ResampleRow(const RowOfCells* row, int begin, int end, int beginX, i
   }
 }
 
-// The cells of a brick on y or z that a work-item takes: from 0 or the middle to the middle or the end.
-// halves: the number of the lower half's bit.
+// The range of cells of a brick on y or z: it begins at 0 or in the middle, and ends in the middle or at the end.
+// halves: index of the bit of the lower half.
 static int BeginIn(uint item, int halves, int cells)
 {
   return item >> halves & 1 ? 0 : cells / 2;
@@ -124,8 +121,8 @@ static int EndIn(uint item, int halves, int cells)
 // A brick, or some of its sections.
 typedef struct
 {
-  int X, Y, Z; // the brick's first place, which may lie before the volume
-  // Of the cells that are taken.
+  int X, Y, Z; // index of the brick's first cell, which may lie before the volume
+  // The cells to resample.
   int BeginX, BeginY, BeginZ;
   int EndX, EndY, EndZ;
 } BrickCells;
@@ -153,17 +150,18 @@ static void FindCells(uint item, BrickCells* cells, const KernelParameters* p)
   cells->EndZ = min(z + EndIn(item, halvesZ, DEFORMVOLUME_BRICK_Z), p->LayersEnd);
 }
 
-// Where a work-item has the rows of a brick.
+// The memory of a work-item for the rows of a brick.
 typedef struct
 {
-  // What the x of the brick's vertices says of where they are undeformed, for even, then odd ones: see REST_FLOATS.
+  // The part of the rest positions that depends on x, for even, then for odd vertices (REST_ODD).
   ROW_MEMORY float* RestX;
-  ROW_MEMORY float* Displaced; // for BeginRow
-  ROW_MEMORY float* Planes; // two planes of vertices: the new one takes the place of the last but one
-  RowFlags (*Flags)[ROWS];  // of their rows
+  ROW_MEMORY float* Displaced; // used by BeginRow
+  ROW_MEMORY float* Planes; // two planes of vertices, used alternately
+  RowFlags (*Flags)[ROWS];  // of the rows of these planes
 } BrickMemory;
 
-// For a brick whose first place on x is this: the undeformed vertices, and none that is deformed.
+// Prepares a brick: sets the rest positions that depend on x, and marks all places as NOT_THERE. x: index of the
+// brick's first cell.
 static void ClearBrick(
   const SamplingMesh* mesh, int x, const BrickMemory* memory, const KernelParameters* p)
 {
@@ -193,7 +191,7 @@ static void ClearBrick(
   }
 }
 
-// Finds the vertices of a brick's cells in a plane.
+// Maps the vertices of a brick's cells in a plane.
 static void MapPlane(const SamplingMesh* mesh, const BrickCells* cells, int z,
   const BrickMemory* memory, const KernelParameters* p ARRAY_PARAMETERS)
 {
@@ -207,14 +205,14 @@ static void MapPlane(const SamplingMesh* mesh, const BrickCells* cells, int z,
   }
 }
 
-// The cells of a brick above a plane. outputs: of its sections.
+// Resamples the cells of a brick above a plane. outputs: of its sections.
 static void ResampleLayer(const SamplingMesh* mesh, const BrickCells* cells, int z,
   const BrickMemory* memory, Output* outputs, Found* found,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   const int begin = (cells->BeginX - cells->X) >> 1 & ~(LANES - 1);
   const int end = (cells->EndX - cells->X + 1) >> 1;
-  // Rows of even and of odd structured y, and planes, lie by their parity.
+  // Rows and planes are stored by the parity of their structured y and z.
   for (int y = cells->BeginY; y < cells->EndY; ++y)
   {
     const int low = y - cells->Y;
@@ -244,9 +242,9 @@ static void ResampleLayer(const SamplingMesh* mesh, const BrickCells* cells, int
   }
 }
 
-// A brick of cells, or some of its sections. item: as for FindCells. isAbove: whether it is the whole brick above the
-// one before, so that its first plane of vertices is in the memory, with their flags (lists hold no bricks without
-// cells). empty: an output without counts.
+// Resamples a brick of cells, or some of its sections. item: as for FindCells. isAbove: whether this is the whole
+// brick directly above the previous one, so that memory already has its first plane of vertices and flags. (Lists
+// have no bricks without cells.) empty: an output with counts of 0.
 static void ResampleBrick(const SamplingMesh* mesh, uint item, int isAbove, const Output* empty,
   __global uint* counters, const BrickMemory* memory, const KernelParameters* p ARRAY_PARAMETERS)
 {
@@ -267,7 +265,7 @@ static void ResampleBrick(const SamplingMesh* mesh, uint item, int isAbove, cons
   {
     ClearBrick(mesh, cells.X, memory, p);
   }
-  // MapPlane is called in one place only: compilers inline it then, which saves one in a hundred instructions.
+  // Compilers inline MapPlane if there is a single call. That saves one percent of all instructions.
   for (int z = isAbove ? cells.BeginZ + 1 : cells.BeginZ; z <= cells.EndZ; ++z)
   {
     MapPlane(mesh, &cells, z, memory, p ARRAY_ARGUMENTS);
@@ -286,11 +284,11 @@ static void ResampleBrick(const SamplingMesh* mesh, uint item, int isAbove, cons
 
 #define BRICK_FLOATS (2 * REST_ODD + 3 * ROW_PLACES + 2 * ROWS * ROW)
 
-// Bricks of a list from p.ListBegin to p.ListEnd. taken: how many of these work-items have begun to work on; 0 at
-// first. rows: BRICK_FLOATS floats (GetBrickMemory), in global memory as many for each work-item.
+// Resamples the bricks of a list from p.ListBegin to p.ListEnd. taken: the number of bricks that work-items have
+// taken so far; initially 0. rows: BRICK_FLOATS floats (GetBrickMemory); in global memory, for each work-item.
 //
-// Why items take one small portion after the other: drivers deal out work-groups in large portions, and wait at the
-// end for the thread that the system has let wait, or that has more to do.
+// Work-items take small portions in turn, because drivers distribute work-groups in large portions. A thread that was
+// interrupted, or that has more work, would otherwise delay the end of the launch.
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(GIVEN_PARAMETERS,
   __global const uint* bricks, __global uint* taken, ROW_MEMORY float* rows, const KernelParameters p ARRAY_PARAMETERS)
 {

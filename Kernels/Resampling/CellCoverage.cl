@@ -1,28 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fill rule: which tetrahedron of the sampling mesh writes a voxel.
+// The fill rule: it decides which tetrahedron of the sampling mesh writes a voxel.
 //
-// Coverage is closed: a voxel is covered when its centre lies in an active tetrahedron or on its
-// surface. Where the centre lies on a face, an edge or a vertex that several tetrahedra share,
-// exactly one of them writes it:
-// - inside the mesh the one that holds the centre after a shift by (e, e^2, e^3) for an
-//   infinitesimal e > 0 (the top-left rule of triangle rasterisation in three dimensions);
-// - on the border of the volume, where all cells are there, the cell that has the simplex on its low sides,
-//   in the order of the voxel grid, or is the last one on an axis; of its tetrahedra the first;
-// - on the border of the mesh elsewhere, where any may be missing, the one that holds the centre after
-//   a shift by (+-e, +-e^2, +-e^3), whichever of the signs +++, -++, +-+, --+, ++-, ... comes first; if no
-//   shift leads into the mesh, the last one in the order of cells and tetrahedra.
-// Which of the three holds depends only on the simplex whose interior the centre lies in, so that
-// all tetrahedra round it decide alike.
+// Coverage is closed: a voxel is covered if its center lies in an active tetrahedron or on its surface. If the center
+// lies on a face, edge or vertex that several tetrahedra share, exactly one of them writes the voxel:
+// - inside the mesh, the one that holds the center after a shift by (e, e^2, e^3) for an infinitesimal e > 0
+//   (the top-left rule of triangle rasterization in three dimensions);
+// - at the border of the volume, if all cells exist there, the cell that has the simplex on its low sides, in the
+//   order of the voxel grid, or that is the last one on an axis; and its first tetrahedron;
+// - elsewhere at the border of the mesh, where any cell may be missing, the one that holds the center after the first
+//   possible shift (+-e, +-e^2, +-e^3), with signs in the order +++, -++, +-+, --+, ++-, ...; if no shift leads into
+//   the mesh, the last one in the order of cells and tetrahedra.
+// Which of the three rules applies depends only on the simplex whose interior contains the center. So all tetrahedra
+// around it decide consistently.
 //
-// Where the mesh folds over, several may write a voxel, and at the crease none. Further passes then
-// take every tetrahedron that holds the centre of such a voxel, and the winner's key decides.
+// Where the mesh is folded, several tetrahedra may write a voxel, and at the crease none. Further passes then visit
+// every tetrahedron that holds the center of such a voxel, and the winner's key decides.
 //
-// What the host puts in front of this text:
-//   OUTLINED  of large functions: nothing, or the attribute that keeps them from being inlined, where compilers that
-//             inline all take many seconds
+// The host defines before this text:
+//   OUTLINED  for large functions: empty, or the noinline attribute for compilers that would take many seconds
+//             to inline them all
 //
-// All arithmetic is exact: positions are integers in 1/256 voxel, and for a tetrahedron of e
-// voxels the edge functions are at most 2 (256 e)^3, which fits 64 bits up to 6,500 voxels.
+// All arithmetic is exact. Positions are integers in 1/256 voxel. For a tetrahedron of e voxels the edge functions
+// are at most 2 (256 e)^3, which fits 64 bits up to 6,500 voxels.
 
 #pragma OPENCL FP_CONTRACT OFF
 
@@ -46,7 +45,7 @@ static Vector Maximum(Vector a, Vector b)
   return r;
 }
 
-// Tetrahedra that the edge functions do not hold are left out.
+// Whether a tetrahedron is too large for the edge functions. Such tetrahedra are skipped.
 static int IsOverstretched(Vector a, Vector b, Vector c, Vector d)
 {
   const Vector extent =
@@ -54,9 +53,9 @@ static int IsOverstretched(Vector a, Vector b, Vector c, Vector d)
   return max(extent.x, max(extent.y, extent.z)) > MAXIMUM_STRETCH;
 }
 
-// A tetrahedron ready to be evaluated: the edge function of the face opposite vertex k is
-// Normals[k] . (sample - Origin), plus Volume for k = 0. It is positive inside, and the four add up
-// to Volume, so that they are the barycentric weights times Volume.
+// The edge functions of a tetrahedron. That of the face opposite vertex k is Normals[k] . (sample - Origin), plus
+// Volume for k = 0. Edge functions are positive inside. Their sum is Volume, so they are the barycentric weights
+// times Volume.
 typedef struct
 {
   Vector Origin;
@@ -82,8 +81,8 @@ static void Evaluate(const EdgeFunctions* f, Vector sample, long* weights)
   weights[0] = f->Volume - weights[1] - weights[2] - weights[3];
 }
 
-// The first shift that leads from a simplex into the tetrahedron with these edge functions and
-// vertices (a mask over the cell's vertices for each), or 8 where none does.
+// Returns the first shift that leads from a simplex into a tetrahedron, or 8 if there is none. simplex: a mask of
+// vertices of the cell.
 static int FirstShiftInside(const EdgeFunctions* f, int tetrahedron, int simplex)
 {
   for (int signs = 0; signs < 8; ++signs)
@@ -101,17 +100,17 @@ static int FirstShiftInside(const EdgeFunctions* f, int tetrahedron, int simplex
   return 8;
 }
 
-// Whether of the tetrahedra that share the simplex with these vertices (a mask over the cell's vertices)
-// none comes before this one of the cell by the rule for the border of the mesh. own: the first shift into it. side: of
-// a smooth cut, from which they are seen.
+// Whether this tetrahedron owns a simplex by the rule for the border of the mesh: of all tetrahedra that share the
+// simplex, none comes before it. simplex: a mask of vertices of the cell. own: the first shift into this tetrahedron.
+// side: the side of a smooth cut whose copies are considered.
 static OUTLINED int IsOwnerOnBorder(const SamplingMesh* mesh, int x, int y, int z, int tetrahedron,
   int simplex, int own, int side, const KernelParameters* p)
 {
   if (own == 0)
   {
-    return 1; // another one with that shift overlaps this one
+    return 1; // only an overlapping tetrahedron could have the same shift
   }
-  // The simplex in the voxel grid: does it reach the low and the high side of the cell on each axis?
+  // The sides of the cell that the simplex touches in the voxel grid, as bits of axes.
   const int mirror = Mirror(x, y, z, p);
   int low = 0;
   int high = 0;
@@ -123,14 +122,14 @@ static OUTLINED int IsOwnerOnBorder(const SamplingMesh* mesh, int x, int y, int 
       low |= ~(v ^ mirror) & 7;
     }
   }
-  // Inside the mesh the shift +++ leads to the high sides more often than not: what they have is found first.
+  // Inside the mesh the shift +++ usually leads to the high sides, so search there first.
   for (int dz = 1; dz >= -1; --dz)
   {
     for (int dy = 1; dy >= -1; --dy)
     {
       for (int dx = 1; dx >= -1; --dx)
       {
-        // A neighbour on the low side shares the simplex only if that does not reach the high side.
+        // A neighbor on the low side shares the simplex only if the simplex does not touch the high side.
         const int needsLow = (dx < 0) | (dz < 0) << 1 | (dy < 0) << 2;
         const int needsHigh = (dx > 0) | (dz > 0) << 1 | (dy > 0) << 2;
         const int nx = x + dx;
@@ -142,9 +141,9 @@ static OUTLINED int IsOwnerOnBorder(const SamplingMesh* mesh, int x, int y, int 
           continue;
         }
         const int active = ActiveTetrahedra(mesh, nx, ny, nz, p);
-        const int order = (dz * 3 + dy) * 3 + dx; // of the cell, 0 for the tetrahedron's own
-        // The simplex in the numbers of the neighbour's vertices: on an axis that leads to the
-        // neighbour sides are exchanged, and so is the mirroring, hence numbers do not change.
+        const int order = (dz * 3 + dy) * 3 + dx; // order of the neighbor; 0 for the own cell
+        // The neighbor has the same vertex numbers for the simplex: on an axis towards the neighbor, both the sides
+        // and the mirroring are exchanged.
         Vector q[8];
 #if HAS_CUT
         CellCut cut;
@@ -192,11 +191,11 @@ static OUTLINED int IsOwnerOnBorder(const SamplingMesh* mesh, int x, int y, int 
   return 1;
 }
 
-// The state of a cell's vertices, as masks.
+// States of the vertices of a cell, as masks.
 typedef struct
 {
   int Interior;
-  int Regular; // all that surrounds these is there, but for what would lie beyond the volume
+  int Regular; // all surrounding cells exist, except those beyond the volume
 } CellState;
 
 static OUTLINED CellState CellStateOf(
@@ -214,11 +213,11 @@ static OUTLINED CellState CellStateOf(
   return cell;
 }
 
-// The vertices on the low side of a cell on the axis of a bit of vertex numbers.
+// The vertices on the low side of a cell, on the axis of a bit of the vertex numbers.
 #define LOW_SIDE(axis, mirror) (LOW_VERTICES(axis) ^ ((mirror) >> (axis)&1 ? 255 : 0))
 #define LOW_VERTICES(axis) ((axis) == 0 ? 0x55 : (axis) == 1 ? 0x33 : 0x0f)
 
-// Whether a tetrahedron of a cell owns a simplex on the border of the volume, where all cells are there.
+// Whether a tetrahedron owns a simplex at the border of the volume, if all cells exist there.
 static int IsOwnerByIndex(
   int x, int y, int z, int tetrahedron, int simplex, const KernelParameters* p)
 {
@@ -235,12 +234,12 @@ static int IsOwnerByIndex(
     ((simplex & LOW_SIDE(2, mirror)) || y == p->Size[1] - 2);
 }
 
-// What a tetrahedron is to a sample.
-#define STRANGER 0 // does not hold it
-#define HOLDER 1   // holds it on its surface, and leaves it to another one
-#define OWNER 2    // writes it
+// The role of a tetrahedron for a sample.
+#define STRANGER 0 // does not hold the sample
+#define HOLDER 1   // has the sample on its surface; another tetrahedron writes it
+#define OWNER 2    // writes the sample
 
-// What a tetrahedron of a cell is to the sample with these weights.
+// Returns the role of a tetrahedron for the sample with these weights.
 static OUTLINED int RoleOf(const SamplingMesh* mesh, int x, int y, int z, int tetrahedron, const long* weights,
   const EdgeFunctions* f, CellState state, const KernelParameters* p)
 {
@@ -263,7 +262,7 @@ static OUTLINED int RoleOf(const SamplingMesh* mesh, int x, int y, int z, int te
   }
   if (DEFORMVOLUME_IS_CLOSED(p->Pass))
   {
-    return OWNER; // the winner is chosen by its key
+    return OWNER; // the winner's key decides
   }
   if ((weights[0] && weights[1] && weights[2] && weights[3]) || (simplex & state.Interior))
   {

@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The vertices of the cells of the sampling mesh: where they are, and which tetrahedra they make.
+// The vertices of the cells of the sampling mesh: their positions, and the tetrahedra that they form.
 
 __constant uchar CornerBehindFace[4] = DEFORMVOLUME_CORNER_BEHIND_FACE;
 
-// Positions of the vertices of a cell and of the cells round it, as far as they have been asked for: on the border of
-// the mesh each is needed many times.
+// A cache of the positions of the vertices of a cell and of the surrounding cells: at the border of the mesh each
+// position is needed many times.
 typedef struct
 {
   int First[3]; // local index of the first vertex
-  ulong Known;  // bits of the vertices, along x, then y, then z
+  ulong Known;  // bits of cached vertices, along x, then y, then z
   int4 Positions[64];
 } Neighbours;
 
 #if HAS_CUT
-// A smooth cut: the vertices of the cells that it crosses (FindCutVertex), and of each where it would be if it moved
-// with the other side (CutPositions.cl); INT_MIN in x where no tetrahedron asks.
+// A smooth cut: the vertices of the cells that it crosses (FindCutVertex). For each vertex, Positions has its
+// position if it moved with the other side (CutPositions.cl); INT_MIN in x if no tetrahedron needs this position.
 typedef struct
 {
   __global const uint* Rows;
   __global const CutVertex* Vertices;
   __global const int4* Positions;
 } SmoothCut;
-// With the comma before them.
+// Both macros include the comma before the parameters.
 #define CUT_PARAMETERS                                                                             \
   , __global const uint *cutRows, __global const CutVertex *cutVertices,                           \
     __global const int4 *cutPositions
@@ -31,24 +31,24 @@ typedef struct
 #define CUT_ARGUMENTS
 #endif
 
-// The sampling mesh round a launch's cells.
+// The sampling mesh around the cells of a launch.
 typedef struct
 {
   Mapping Map;
   __global const uchar* State;
   __global const uchar* Active;
-  __global const float* Distances; // to the boundary, of the vertices
+  __global const float* Distances; // boundary distances of the vertices
 #if HAS_CUT
   SmoothCut Cut;
 #endif
-  // Positions that are in local memory: of each vertex of a cuboid x, y and z, INT_MIN for a vertex without
-  // position. Null: none are.
+  // Positions in local memory: x, y and z of each vertex of a cuboid; INT_MIN for a vertex without position. Null:
+  // there are none.
   __local const int* Cuboid;
   int CuboidFirst[3]; // local index of the first cell
-  Neighbours* Near;   // of the cell that is worked on. Null: none are kept.
+  Neighbours* Near;   // cache for the current cell; null: none
 } SamplingMesh;
 
-// A mesh that keeps the positions round a cell.
+// Returns a mesh that caches the positions around a cell.
 static SamplingMesh KeepNeighbours(const SamplingMesh* mesh, int x, int y, int z, Neighbours* near)
 {
   near->First[0] = x - 1;
@@ -60,7 +60,7 @@ static SamplingMesh KeepNeighbours(const SamplingMesh* mesh, int x, int y, int z
   return keeping;
 }
 
-// The place of a vertex in a cuboid, or -1 outside it.
+// Returns the index of a vertex in the cuboid, or -1 outside it.
 static int PlaceInCuboid(const SamplingMesh* mesh, int x, int y, int z)
 {
   const uint bx = x - mesh->CuboidFirst[0];
@@ -78,7 +78,7 @@ static int4 FindPosition(const SamplingMesh* mesh, int x, int y, int z, const Ke
     : (int4)(INT_MIN, 0, 0, 0);
 }
 
-// The position of a vertex in 1/256 output voxel; INT_MIN in x where it has none.
+// Returns the position of a vertex in 1/256 output voxel; INT_MIN in x if it has none.
 static int4 VertexPosition(
   const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
 {
@@ -107,7 +107,7 @@ static int ActiveTetrahedra(const SamplingMesh* mesh, int x, int y, int z, const
     : DEFORMVOLUME_ALL_TETRAHEDRA;
 }
 
-// The eight vertices of a cell; returns the mask of those that have a position.
+// Loads the eight vertices of a cell. Returns the mask of those that have a position.
 static int LoadCell(
   const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p, Vector* vertices)
 {

@@ -1,38 +1,38 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A cell a work-item, for devices whose work-items are lanes, such as graphics cards: what the kernels that take
-// columns of cells and those that take deferred cells share (ColumnResampling.cl, DeferredResampling.cl). Decisions by
-// floats and by integers of 32 bits are those of the kernels for processors (BrickResampling.cl).
+// One cell for each work-item, for devices whose work-items are lanes, such as GPUs: code that ColumnResampling.cl
+// and DeferredResampling.cl share. Decisions by floats and by 32-bit integers are those of the CPU kernels
+// (BrickResampling.cl).
 //
-// What the host puts in front of this text:
+// The host defines before this text:
 //   HAS_COLUMN_KERNEL  1 for ResampleColumns and ResampleDeferredInt32, 0 for ResampleDeferredInt64
-//   PASS_IS_DIRECT     1 where the pass of the first two is known to be the direct one, which costs fewer registers
+//   PASS_IS_DIRECT     1 if these two kernels are compiled for the direct pass only, which needs fewer registers
 //
-// Data: as BrickResampling.cl. It comes after PacketWalk.cl. rows: ROW floats for each row of three planes, or of two
-// in the kernels for deferred cells. deferred: the number of cells for ResampleDeferredInt64, and of those for
-// ResampleDeferredInt32; then room for all cells of the launch. The former fill it from its begin, the latter from its
-// end.
+// Data: as in BrickResampling.cl. This text comes after PacketWalk.cl. rows: ROW floats for each row of three planes,
+// or of two planes in the kernels for deferred cells. deferred: the number of cells for ResampleDeferredInt64, the
+// number for ResampleDeferredInt32, then entries for all cells of the launch. Cells for ResampleDeferredInt64 are
+// added from the front, the others from the back.
 
 #define PLANE_VERTICES ((ROW_CELLS + 1) * ROWS)
-#define FLAG_BORDER 1  // a vertex that is not interior
-#define FLAG_SPECIAL 2 // one with a value that sums of products do not give back bit for bit
-#define FLAG_APART 4   // one that lies elsewhere as seen from the other side of a smooth cut
-#define FLAG_OUTSIDE 8 // a place beyond the volume
-#define FLAG_WHOLE 16  // the cell that begins at the vertex has all its tetrahedra
+#define FLAG_BORDER 1  // the vertex is not interior
+#define FLAG_SPECIAL 2 // the vertex has a value that IS_SPECIAL
+#define FLAG_APART 4   // the vertex has different positions for the two sides of a smooth cut
+#define FLAG_OUTSIDE 8 // the place is outside the volume
+#define FLAG_WHOLE 16  // the cell whose lowest vertex this is has all of its tetrahedra
 
-// An entry of a deferred cell: the place in the launch's part of the list of bricks, times the cells of a brick, plus
-// the cell in the brick, and above that the step of the exactness chain that comes next.
+// An entry of a deferred cell: the index in the launch's part of the list of bricks times CELLS_OF_BRICK, plus the
+// cell in the brick; and in the highest bits the next step of the exactness chain.
 #define CELLS_OF_BRICK (DEFORMVOLUME_BRICK_X * DEFORMVOLUME_BRICK_Y * DEFORMVOLUME_BRICK_Z)
 #define DEFERRED_BITS 30
-#define DEFERRED_FLOATS 0        // the cell is resampled as a packet is
+#define DEFERRED_FLOATS 0        // resample the cell like a packet
 #define DEFERRED_INT32 1         // it has been, but for samples that floats do not decide: these, by integers of 32
                                  // bits; then nothing: ResampleDeferredInt64 never gets this
 #define DEFERRED_SAMPLES_INT64 2 // such samples, by ResampleSamples
 #define DEFERRED_CELL_INT64 3    // the cell, by ResampleCell
-// The step after the last one.
+// There is no further step.
 #define CELL_DONE -1
 
-// Maps a vertex into a place of the rows, with the values of the arrays. Returns its flags. The operations are those
-// of MapOne (BrickMapping.cl), in their order.
+// Maps a vertex to a place of the rows, with the values of the arrays. Returns its flags. The operations and their
+// order are those of MapOne (BrickMapping.cl).
 static uint MapVertex(const SamplingMesh* mesh, int x, int y, int z, ROW_MEMORY float* place,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
@@ -77,7 +77,7 @@ static __attribute__((always_inline)) void BoundCell(const Packet* packet, Bound
   BOUND_CELL(Z)
 }
 
-// A sample that the cell owns.
+// Stores a sample that the cell owns.
 static __attribute__((always_inline)) void StoreSample(const Packet* packet, uint place, int inverted,
   const SampleWeights* weights, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
@@ -98,14 +98,14 @@ static __attribute__((always_inline)) void StoreSample(const Packet* packet, uin
 #endif
 }
 
-// What a weight has to exceed for a sample to be inside. Aligned cells take all their candidates, whatever the second
-// smallest weight is, from which that is told.
+// The weight above which a sample counts as inside. Aligned cells own all of their candidates, whatever the second
+// smallest weight.
 static float DecisiveWeight(const PacketCandidates* c, const PacketFrame* frame)
 {
   return c->HasAligned && c->Aligned ? -INFINITY : frame->Bound;
 }
 
-// The weights of a sample. Returns whether the cell holds it, as far as floats decide that.
+// Finds the weights of a sample. Returns whether the cell holds it, as far as floats decide this.
 static __attribute__((always_inline)) uint WeighCandidate(const PacketCandidates* c,
   const PacketFrame* frame, const PacketScales* scales, const Walk* at, SampleWeights* weights,
   uint* undecidedByFloats)
@@ -114,8 +114,8 @@ static __attribute__((always_inline)) uint WeighCandidate(const PacketCandidates
   return DecideByFloats(weights, 1, DecisiveWeight(c, frame), frame->Bound, undecidedByFloats);
 }
 
-// Whether an aligned cell beside what is missing has its samples on vertices decided by DecideOnVertices: where floats
-// do not decide others either, integers decide all of them, as they do for packets (PacketResampling.cl).
+// Whether DecideOnVertices decides the samples on vertices of an aligned cell next to missing cells. If floats leave
+// other samples undecided, integers decide all of them, as for packets (PacketResampling.cl).
 static int IsDecidedOnVertices(const PacketCandidates* c, const PacketFrame* frame,
   const PacketScales* scales, const KernelParameters* p)
 {
@@ -133,15 +133,15 @@ static int IsDecidedOnVertices(const PacketCandidates* c, const PacketFrame* fra
   return decided;
 }
 
-// The samples of a cell whose frame is nice. mesh, isComplete, onlyUndecidedByFloats: as for ResampleColumnCell.
-// Returns the next step: CELL_DONE or DEFERRED_...
+// Resamples the samples of a cell whose frame is nice. mesh, isComplete, onlyUndecidedByFloats: as for
+// ResampleColumnCell. Returns the next step: CELL_DONE or DEFERRED_...
 static __attribute__((always_inline)) int TakeSamples(const PacketCandidates* c,
   const PacketFrame* frame, const SamplingMesh* mesh, int isComplete, int onlyUndecidedByFloats,
   Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   const Packet* const packet = &c->Cells;
   const int aligned = c->HasAligned && c->Aligned;
-  const int isSmall = c->Extent < MAXIMUM_EXACT_EXTENT; // integers of 32 bits can decide who owns a sample
+  const int isSmall = c->Extent < MAXIMUM_EXACT_EXTENT; // 32-bit integers can decide who owns a sample
   PacketState state;
   if (isComplete && packet->Border)
   {
@@ -151,14 +151,14 @@ static __attribute__((always_inline)) int TakeSamples(const PacketCandidates* c,
   FindScales(frame, &scales);
   Walk at;
   BeginWalk(c, frame, &at, p);
-  // The only vertex that may be among the candidates of an aligned cell inside the mesh is its lowest one, the first
-  // candidate; but not so in passes for all cells that hold a voxel.
+  // Inside the mesh, the only vertex among the candidates of an aligned cell is its lowest one, the first candidate.
+  // This does not hold in passes that visit all cells which hold a voxel.
   const int mayHoldEnds = isComplete || DEFORMVOLUME_IS_CLOSED(p->Pass);
   const int beginsOnVertex = aligned && IsOnVertex(frame, &at);
   const int beside = mesh && IsDecidedOnVertices(c, frame, &scales, p);
   uint writes = 0;
-  uint isUndecided = 0; // whether floats do not decide some sample, and no integers of 32 bits were asked
-  uint needsInt64 = 0;  // whether integers of 32 bits do not decide some sample
+  uint isUndecided = 0; // whether floats leave a sample undecided, and 32-bit integers were not used
+  uint needsInt64 = 0;  // whether 32-bit integers leave a sample undecided
   for (int i = 0; i < c->Number; ++i)
   {
     SampleWeights weights;
@@ -200,8 +200,8 @@ static __attribute__((always_inline)) int TakeSamples(const PacketCandidates* c,
     }
     Advance(&at);
   }
-  // What is looked at again as a whole must not count twice. Cells too large for these integers leave these samples
-  // only: they have many, and floats decide nearly all of them.
+  // A cell that is resampled again must not be counted twice. Cells too large for 32-bit integers only defer their
+  // undecided samples: they have many samples, and floats decide nearly all of them.
   if (isUndecided && !isComplete && packet->Border)
   {
     return DEFERRED_FLOATS;
@@ -215,10 +215,10 @@ static __attribute__((always_inline)) int TakeSamples(const PacketCandidates* c,
   return !isUndecided ? CELL_DONE : isSmall ? DEFERRED_INT32 : DEFERRED_SAMPLES_INT64;
 }
 
-// A cell, as far as floats take it, or integers of 32 bits. mesh: null where vertices have no state, or it does not
-// matter. isComplete: whether integers decide what floats do not, at once, and cells on the border are told from
-// others; else they must be whole. onlyUndecidedByFloats: of all samples those only. most: of its candidates. Returns
-// the next step: CELL_DONE or DEFERRED_...
+// Resamples a cell by floats and by 32-bit integers. mesh: null if vertices have no state, or it is not needed.
+// isComplete: whether 32-bit integers decide at once what floats do not, and cells at the border are recognized;
+// otherwise cells must be whole. onlyUndecidedByFloats: resample only these samples. most: largest number of
+// candidates. Returns the next step: CELL_DONE or DEFERRED_...
 static __attribute__((always_inline)) int ResampleColumnCell(PacketCandidates* c, int most,
   const SamplingMesh* mesh, PacketFrame* frame, int isComplete, int onlyUndecidedByFloats, Output* output,
   const KernelParameters* p ARRAY_PARAMETERS)
@@ -230,7 +230,7 @@ static __attribute__((always_inline)) int ResampleColumnCell(PacketCandidates* c
   {
     return CELL_DONE;
   }
-  // Aligned cells on the border own what depends on the cells round them.
+  // Aligned cells at the border own samples depending on the surrounding cells.
   if ((c->Some && c->Number > most) || (!isComplete && c->Cells.Border && c->HasAligned))
   {
     return DEFERRED_FLOATS;
@@ -249,7 +249,7 @@ static __attribute__((always_inline)) int ResampleColumnCell(PacketCandidates* c
     c, frame, mesh, isComplete, onlyUndecidedByFloats, output, p ARRAY_ARGUMENTS);
 }
 
-// A cell whose vertices lie in rows. row: the place of its vertices in the row of even y and z.
+// Makes a packet of a cell whose vertices are in rows. row: the place of its vertices in the row of even y and z.
 static __attribute__((always_inline)) void MakeCellPacket(LocalRow row, int oddY, int oddZ, int side,
   int x, int y, int z, uint flags, Packet* cell, const KernelParameters* p)
 {
@@ -265,8 +265,8 @@ static __attribute__((always_inline)) void MakeCellPacket(LocalRow row, int oddY
   cell->Apart = (flags & FLAG_APART) != 0;
 }
 
-// Deferred cells have their vertices in places of the rows that are a work-item's own. Work-groups have at most as many
-// items as there are such places, two in each plane.
+// Returns the places of the rows where a work-item keeps the vertices of a deferred cell. Work-groups have at most as
+// many items as there are such places, two in each plane.
 static ROW_MEMORY float* PlaceOfItem(ROW_MEMORY float* rows)
 {
   const int item = get_local_id(0);
@@ -279,7 +279,7 @@ static void MapCell(const SamplingMesh* mesh, int x, int y, int z, ROW_MEMORY fl
   const int mirror = Mirror(x, y, z, p);
   uint flags = 0;
 #if HAS_COLUMN_KERNEL
-  UNROLLED // memory is asked for all of them at once
+  UNROLLED // issues all loads at once
 #else
   NOT_UNROLLED
 #endif
@@ -302,7 +302,7 @@ static uint CellOf(uint entry)
   return entry & ((1u << DEFERRED_BITS) - 1);
 }
 
-// The place of the cell of an entry in the volume.
+// Returns the index of the cell of an entry.
 static int3 CellOfEntry(uint entry, __global const uint* bricks, const KernelParameters* p)
 {
   const uint cell = CellOf(entry);
@@ -314,6 +314,6 @@ static int3 CellOfEntry(uint entry, __global const uint* bricks, const KernelPar
 }
 
 #define ENTRIES_INT64(deferred) ((deferred) + 2)
-// The entry of ResampleDeferredInt32 with a number.
+// The entry with a number, for ResampleDeferredInt32.
 #define ENTRY_INT32(deferred, number, p)                                                               \
   ENTRIES_INT64(deferred)[(uint)((p)->ListEnd - (p)->ListBegin) * CELLS_OF_BRICK - 1 - (number)]

@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Mapping and resampling in one, for devices whose work-items are lanes, such as graphics cards. It gives the same
-// voxels as the kernels for processors (BrickResampling.cl).
+// Mapping and resampling in one kernel, for devices whose work-items are lanes, such as GPUs. The result has the same
+// voxels as that of the CPU kernels (BrickResampling.cl).
 //
-// A work-group takes a section of a brick, layer by layer, an item a column of cells of it. Two planes of vertices are
-// in local memory, and a third one, so that some items may map the next plane while others still read these. Neighbours
-// along x write voxels that mostly lie side by side. Most cells have a sample or none. Aligned cells, as where
-// nothing is deformed, own what is within their bounds.
-// What few cells need would keep registers from all others, and most of a group waiting: so cells are deferred
-// that have samples which floats do not decide, or very many, and aligned cells on the border of the mesh.
-// ResampleDeferredInt32 takes these. Cells that are bent or large, that a cut divides, or of which tetrahedra may be
-// missing, are deferred to ResampleDeferredInt64 (DeferredResampling.cl), as does what ResampleDeferredInt32 cannot do.
+// A work-group handles a section of a brick layer by layer; each work-item takes columns of cells. Local memory has
+// two planes of vertices, and a third one, so that some items can map the next plane while others still read these
+// two. Neighbors along x mostly write neighboring voxels. Most cells have one sample or none. Aligned cells, for
+// example where nothing is deformed, own all samples within their bounds.
 //
-// Why samples that floats do not decide do not go into a list that the group takes after each layer: some eight of 256
-// cells have one, one warp has all of them, and the others wait.
+// Work that few cells need would take registers from all others and keep most of a group waiting. So cells are
+// deferred if floats do not decide one of their samples, if they have very many samples, or if they are aligned cells
+// at the border of the mesh. ResampleDeferredInt32 handles these. Cells that are bent or large, that a cut divides,
+// or that may lack tetrahedra are deferred to ResampleDeferredInt64 (DeferredResampling.cl), as are cells that
+// ResampleDeferredInt32 cannot finish.
+//
+// The work-group does not handle undecided samples itself after each layer: about eight of 256 cells have one, and
+// one warp would handle all of them while the others wait.
 
-// Of cells with more candidates each takes all lanes as long as the longest of them: they are deferred.
+// A cell with more candidates is deferred: all lanes would wait for it.
 #define MOST_CANDIDATES_IN_COLUMN 64
 
 // Adds the counts of a work-item to those of its group.
@@ -31,8 +33,8 @@ static void AddToGroup(const Output* output, __local uint* counts)
   }
 }
 
-// The section of a brick that a group takes, or one of a brick that has none to be run, for a group that only fills the
-// launch. What can be found from the number of the group is not kept in registers.
+// Returns the brick of a work-group; for padding of the launch, a brick without sections to run. Values that follow
+// from the group's number are computed again to save registers.
 static uint BrickOfGroup(__global const uint* bricks, const KernelParameters* p)
 {
   const int place = p->ListBegin + (int)(get_group_id(0) / DEFORMVOLUME_SPANS);
@@ -52,7 +54,7 @@ static int3 FirstInBrick()
     (int)get_group_id(1) * CELL_ROWS, (int)get_group_id(2) * CELL_LAYERS);
 }
 
-// The number of a cell of a group among deferred ones. cell: its place in a layer.
+// Returns the number of a cell of a group among the cells of the launch. cell: its index in the layer.
 static uint NumberInLaunch(int cell, int layer)
 {
   const int3 first = FirstInBrick();
@@ -61,7 +63,7 @@ static uint NumberInLaunch(int cell, int layer)
     first.x + cell % ROW_CELLS;
 }
 
-// step: the next one for a cell that columns have looked at, or that they must not.
+// step: the next step for a cell that columns have tried, or must not try.
 static void Defer(__global uint* deferred, uint cell, int step, const KernelParameters* p)
 {
   const uint entry = MakeEntry(cell, step);
@@ -75,8 +77,8 @@ static void Defer(__global uint* deferred, uint cell, int step, const KernelPara
   }
 }
 
-// Whether floats can tell something of a cell, and what is to be done with it else. any: the flags of all its vertices;
-// lowest: of the one that it begins at.
+// Returns whether floats can be tried for a cell (SORT_BY_FLOATS), or else the next step. any: the flags of all of
+// its vertices. lowest: the flags of its lowest vertex.
 #define SORT_BY_FLOATS -2
 
 static int SortCell(uint any, uint lowest)
@@ -93,8 +95,8 @@ static int SortCell(uint any, uint lowest)
                                                                            : SORT_BY_FLOATS;
 }
 
-// Bricks of a list from p.ListBegin to p.ListEnd, a group a section: on x the spans of one brick after the other, on y
-// and z the halves.
+// Resamples the bricks of a list from p.ListBegin to p.ListEnd, one section for each work-group. Groups on x are the
+// spans of all bricks; groups on y and z are the halves.
 __kernel void ResampleColumns(GIVEN_PARAMETERS, __global const uint* bricks, __global uint* deferred,
   __local float* rows, const KernelParameters parameters ARRAY_PARAMETERS)
 {
@@ -116,7 +118,7 @@ __kernel void ResampleColumns(GIVEN_PARAMETERS, __global const uint* bricks, __g
   {
     counts[i] = 0;
   }
-  int low = 2, high = 0; // where the last plane and the next one lie
+  int low = 2, high = 0; // indices of the last plane and of the next one
   for (int z = beginZ; z <= endZ; ++z)
   {
     for (int i = get_local_id(0); i < PLANE_VERTICES; i += get_local_size(0))
@@ -129,7 +131,7 @@ __kernel void ResampleColumns(GIVEN_PARAMETERS, __global const uint* bricks, __g
         : FLAG_OUTSIDE;
     }
     barrier(CLK_LOCAL_MEM_FENCE);
-    // The vertices of a cell have their numbers by the parity of their structured indices.
+    // Vertices of a cell are numbered by the parity of their structured indices.
     const int isLowOdd = (p.First[2] + z - 1) & 1;
     const int even = isLowOdd ? high : low;
     const int toOdd = (isLowOdd ? low - high : high - low) * (ROWS * ROW);
@@ -168,8 +170,8 @@ __kernel void ResampleColumns(GIVEN_PARAMETERS, __global const uint* bricks, __g
   }
 }
 
-// Deferred cells that are not for ResampleDeferredInt64, a cell a work-item. The host does not know how many there
-// are.
+// Resamples the deferred cells that are not for ResampleDeferredInt64, one for each work-item. The host does not know
+// their number.
 __kernel void ResampleDeferredInt32(GIVEN_PARAMETERS, __global const uint* bricks, __global uint* deferred,
   __local float* rows, const KernelParameters parameters ARRAY_PARAMETERS)
 {

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cells that a smooth cut divides. A tetrahedron that is crossed, and has vertices on both sides of the sheet, is there
-// twice: the copy of a side has the vertices of that side where they are, and the others where they would be if they
-// moved with that side (CutPositions.cl). A sample belongs to the copy on whose side its interpolated distance lies.
-// Where both copies lie in one place they need not be told apart, and the tetrahedron is as any other.
+// Cells that a smooth cut divides. A crossed tetrahedron with vertices on both sides of the sheet exists twice, as a
+// copy for each side. The copy of a side has the vertices of that side at their positions, and the other vertices
+// where they would be if they moved with that side (CutPositions.cl). A sample belongs to the copy on whose side its
+// interpolated distance lies. If both copies have the same positions, the tetrahedron is handled like any other.
 //
-// As seen from one side the sampling mesh is a mesh as any other: of each divided tetrahedron it has the copy of that
-// side, and all others as they are. The copies agree on the faces that they share, and with tetrahedra that are not
-// divided, since vertices whose two sides such a tetrahedron joins have one place for both. So the fill rule holds as it
-// stands, for each side.
+// For each side, the copies of that side and all tetrahedra that are not divided form an ordinary mesh. Copies agree
+// on shared faces with each other, and with tetrahedra that are not divided: a vertex whose two sides are joined by
+// such a tetrahedron has the same position for both sides. So the fill rule holds unchanged on each side.
 //
 // Source: Molino, Bao, Fedkiw, "A virtual node algorithm for changing mesh topology during simulation", 2004.
 
-// The sum of the weights of a sample, as edge functions give them, times the distances of a cell's vertices.
+// Returns the sum of the weights of a sample, from edge functions, times the distances of a cell's vertices.
 static REAL WeighDistances(const float* distances, int t, const long* weights)
 {
   REAL sum = 0;
@@ -24,16 +23,16 @@ static REAL WeighDistances(const float* distances, int t, const long* weights)
 }
 
 #if HAS_CUT
-// The sides: 0 where the distance is not negative, 1 where it is.
+// Sides: 0 if the distance is not negative, 1 if it is.
 typedef struct
 {
-  int Divided;  // tetrahedra of a cell that are there twice, in different places, as bits
-  int Negative; // vertices of the cell on side 1, as bits; as the rest, only where tetrahedra are divided
+  int Divided;  // bits of the tetrahedra whose two copies have different positions
+  int Negative; // bits of the vertices on side 1; like all below, only set if Divided is not 0
   float Distances[8];
-  int Places[8]; // of the vertices, in the list of cut vertices
+  int Places[8]; // indices of the vertices in the list of cut vertices
 } CellCut;
 
-// What the cut does to some tetrahedra of a cell, given as bits.
+// Loads the cut data of some tetrahedra of a cell, given as bits.
 static void LoadCut(
   const SamplingMesh* mesh, int x, int y, int z, int tetrahedra, const KernelParameters* p, CellCut* cut)
 {
@@ -46,11 +45,11 @@ static void LoadCut(
   }
   const int mirror = Mirror(x, y, z, p);
   cut->Negative = 0;
-  int open = 0; // vertices that lie elsewhere as seen from the other side
+  int open = 0; // bits of vertices with different positions for the two sides
   for (int v = 0; v < 8; ++v)
   {
     const int o = v ^ mirror;
-    // All vertices of a cell with crossed tetrahedra are in the list.
+    // The list has all vertices of a cell with crossed tetrahedra.
     cut->Places[v] = FindCutVertex(
       mesh->Cut.Rows, mesh->Cut.Vertices, x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p);
     cut->Distances[v] = mesh->Cut.Vertices[cut->Places[v]].Distance;
@@ -65,7 +64,7 @@ static void LoadCut(
   }
 }
 
-// Where a vertex of a divided tetrahedron is as seen from a side. own: where it is.
+// Returns the position of a vertex of a divided tetrahedron in the copy of a side. own: its own position.
 static Vector ViewVertex(const SamplingMesh* mesh, const CellCut* cut, int v, int side, Vector own)
 {
   if ((cut->Negative >> v & 1) == side)
@@ -77,8 +76,8 @@ static Vector ViewVertex(const SamplingMesh* mesh, const CellCut* cut, int v, in
   return other;
 }
 
-// The side that a sample of a tetrahedron, divided or not, is on. Any where no divided tetrahedron shares the simplex that
-// it lies in.
+// Returns the side of a sample of a tetrahedron. The result is arbitrary if no divided tetrahedron shares the simplex
+// in which the sample lies.
 static int SideOfSample(const SamplingMesh* mesh, int x, int y, int z, int t, const long* weights,
   const KernelParameters* p)
 {
@@ -100,7 +99,7 @@ static int SideOfSample(const SamplingMesh* mesh, int x, int y, int z, int t, co
   return WeighDistances(distances, t, weights) < 0;
 }
 
-// Moves the vertices of a tetrahedron to where they are as seen from a side. Returns whether all have a place.
+// Replaces the vertices of a tetrahedron by those of the copy of a side. Returns whether all have a position.
 static int ViewTetrahedron(const SamplingMesh* mesh, const CellCut* cut, int t, int side, Vector* vertices)
 {
   int placed = 1;

@@ -14,18 +14,18 @@ namespace deformvolume
 namespace
 {
 
-// Bricks in a launch, each of whose cells has room: as many as take this part of the memory,
-// between these. More than a launch of ExactPasses has are of no use.
+// The number of bricks in a launch is chosen so that the list takes this part of the memory, within
+// these limits. Launches of ExactPasses never have more bricks.
 constexpr std::uint64_t LeastBricks = 64;
 constexpr std::uint64_t MostBricks = 704;
 constexpr std::uint64_t PartOfMemory = 64;
-// A launch of what is in the list, whose length the host does not know.
+// The size of a launch that processes the list, whose length the host does not know.
 constexpr std::size_t GroupsPerUnit = 16;
-// Work-items of a group that have places in its local memory: see ResampleDeferredInt64.
+// The largest work-group whose items all have places in local memory (ResampleDeferredInt64).
 constexpr std::size_t LargestDeferredGroup =
   std::size_t{ DEFORMVOLUME_SPAN / 2 } * ((DEFORMVOLUME_BRICK_Y / 2 + 1) / 2);
 
-/// For launches of so many bricks.
+/// Returns the memory for launches of this number of bricks.
 std::uint64_t CountBytes(std::uint64_t bricks)
 {
   constexpr std::uint64_t cellsOfBrick =
@@ -57,7 +57,7 @@ std::uint64_t DeferredCells::GetMostBricks()
 void DeferredCells::Reserve(std::uint64_t bricks)
 {
   const std::uint64_t bytes = CountBytes(std::min(bricks, this->GetMostBricks()));
-  if (deformvolume::GetMemory(this->Buffer) < bytes) // a longer one serves as well
+  if (deformvolume::GetMemory(this->Buffer) < bytes) // keeps a larger buffer
   {
     deformvolume::Reserve(this->Device.GetContext(), this->Buffer, bytes);
   }

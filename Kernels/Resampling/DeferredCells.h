@@ -12,8 +12,8 @@ namespace deformvolume
 
 class WorkDevice;
 
-/// The cells that the kernel for columns defers to those that follow, in a list on the device. The
-/// host does not know how many there are: the list has room for all cells of a launch.
+/// The list, on the device, of cells that the kernel for columns defers to later kernels. The host
+/// does not know its length: it has room for all cells of a launch.
 class DeferredCells
 {
 public:
@@ -22,26 +22,28 @@ public:
   {
   }
 
-  /// Bytes for a volume of so many bricks; 0 where the device has no kernel for columns.
+  /// Returns the memory, in bytes, for a volume with this number of bricks; 0 if the device has no
+  /// kernel for columns.
   static std::uint64_t GetMemory(WorkDevice& device, std::uint64_t bricks);
 
-  /// Bricks in a launch by columns, at most.
+  /// Returns the largest number of bricks in a launch by columns.
   std::uint64_t GetMostBricks();
-  /// Makes room for launches of so many bricks, or of GetMostBricks(), and clears the list.
+  /// Allocates memory for launches of this number of bricks, at most GetMostBricks(), and clears
+  /// the list.
   void Reserve(std::uint64_t bricks);
-  /// Nothing is in the list.
+  /// Clears the list.
   void Clear();
 
   const cl::Buffer& GetBuffer() const { return this->Buffer; }
 
-  /// Work-items of a group of the kernels that drain the list (ResampleDeferredInt32,
-  /// ResampleDeferredInt64), and of a launch with groups of that size.
+  /// Return the size of a work-group of the kernels that process the list (ResampleDeferredInt32,
+  /// ResampleDeferredInt64), and the number of work-items of a launch with such groups.
   std::size_t GetGroup(const cl::Kernel& kernel);
   std::size_t GetItems(std::size_t group);
 
 private:
   WorkDevice& Device;
-  cl::Buffer Buffer; // two counts, then the entries: see ColumnCells.cl
+  cl::Buffer Buffer; // two counts, then the entries (ColumnCells.cl)
 };
 
 } // namespace deformvolume

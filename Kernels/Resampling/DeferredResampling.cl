@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cells that the kernels for columns defer (ColumnResampling.cl): those that are bent or large, that a cut
-// divides, or of which tetrahedra may be missing.
+// Resamples cells that the kernels for columns defer (ColumnResampling.cl): cells that are bent or large, that a cut
+// divides, or that may lack tetrahedra.
 
-// The samples of a cell that floats do not decide.
+// Resamples the samples of a cell that floats leave undecided.
 static void ResampleUndecided(const PacketCandidates* c, const PacketFrame* frame,
   const SamplingMesh* mesh, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
@@ -11,8 +11,8 @@ static void ResampleUndecided(const PacketCandidates* c, const PacketFrame* fram
   Neighbours near;
   const SamplingMesh keeping = KeepNeighbours(mesh, packet->X, packet->Y, packet->Z, &near);
   Cell cell;
-  int isMade = -1; // -1: not known
-  // It is counted already whether the cell is inverted.
+  int isMade = -1; // -1: unknown
+  // Whether the cell is inverted was counted before.
   const uint inverted = output->Inverted;
   PacketScales scales;
   FindScales(frame, &scales);
@@ -32,10 +32,10 @@ static void ResampleUndecided(const PacketCandidates* c, const PacketFrame* fram
     const Vector voxel = { (int)x + p->OutputFirst[0], (int)y + p->OutputFirst[1],
       (int)z + p->OutputFirst[2] };
     const Candidates only = { voxel, voxel };
-    // In the closed passes the sample decides whether the cell is looked at.
+    // In the closed passes, MakeCell tests the sample and not the whole cell.
     if (isMade < 0 || DEFORMVOLUME_IS_CLOSED(p->Pass))
     {
-      // No whole cell is divided: there are no views of it.
+      // A whole cell is not divided, so there are no views.
       isMade = MakeCell(&keeping, packet->X, packet->Y, packet->Z,
                  DEFORMVOLUME_IS_CLOSED(p->Pass) ? &only : &all, &cell, 0, output, p) &&
         !IsPutOff(&cell, &only, output, p);
@@ -48,7 +48,7 @@ static void ResampleUndecided(const PacketCandidates* c, const PacketFrame* fram
   output->Inverted = inverted;
 }
 
-// A deferred cell by itself. place: for its vertices.
+// Resamples one deferred cell. place: memory for its vertices.
 static void ResampleDeferredCell(const SamplingMesh* mesh, int x, int y, int z, int what,
   ROW_MEMORY float* place, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
@@ -75,8 +75,8 @@ static void ResampleDeferredCell(const SamplingMesh* mesh, int x, int y, int z, 
   ResampleCell(&keeping, x, y, z, &all, output, p ARRAY_ARGUMENTS);
 }
 
-// A deferred cell a work-item, those that ResampleDeferredInt32 has not finished included. The host does not know how
-// many there are.
+// Resamples one deferred cell for each work-item, including those that ResampleDeferredInt32 has not finished. The
+// host does not know their number.
 __kernel void ResampleDeferredInt64(GIVEN_PARAMETERS, __global const uint* bricks, __global uint* deferred,
   __local float* rows, const KernelParameters p ARRAY_PARAMETERS)
 {

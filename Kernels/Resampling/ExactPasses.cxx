@@ -26,7 +26,7 @@ static_assert(DEFORMVOLUME_CUBOID_X % DEFORMVOLUME_SPAN == 0 &&
 namespace
 {
 
-// Cells in a launch, about: where the lanes of processors take them, and where work-items do.
+// The approximate number of cells in a launch, on CPUs and on other devices.
 constexpr std::int64_t CellsOfProcessors = std::int64_t{ 1 } << 23;
 constexpr std::int64_t CellsOfColumns = std::int64_t{ 1 } << 25;
 
@@ -88,9 +88,9 @@ ResamplingForm ExactPasses::ChooseForm(
   }
   if (method == Resampling::ExactByLanes && !hasVectors)
   {
-    throw Error("The resampling by lanes is for processors whose vector registers a work-item has "
-                "for itself, and the device \"" +
-      this->Device.GetDevice().Name + "\" is none.");
+    throw Error("The resampling by lanes needs a processor whose work-items have vector registers "
+                "of their own. The device \"" +
+      this->Device.GetDevice().Name + "\" is not such a processor.");
   }
   const bool hasColumns = HasLocalColumns(this->Device.GetContext());
   if (method == Resampling::ExactByColumns && !hasColumns)
@@ -159,7 +159,7 @@ void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
   kernel.setArg(i++, this->Volume.GetMasks().GetActive(chunk, this->Volume.GetRestPositions()));
   kernel.setArg(i++, this->Volume.GetMasks().GetDistances(chunk, this->Volume.GetRestPositions()));
   kernel.setArg(i++, output.GetCoverageTarget());
-  // A null pointer is not something that all drivers take: any buffer stands in for a missing one.
+  // Some drivers do not accept a null buffer, so pass another one in place of a missing one.
   const OutputWinners& winners = output.GetWinners();
   kernel.setArg(i++, winners.GetKeys()() ? winners.GetKeys() : output.GetCoverageTarget());
   kernel.setArg(i++, winners.GetPatches()() ? winners.GetPatches() : output.GetCoverageTarget());
@@ -213,7 +213,7 @@ void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
 void ExactPasses::PrepareKernel(cl::Kernel& kernel, const VolumeChunk& chunk,
   const OutputSlab& output, ResamplingForm form, const KernelParameters& parameters)
 {
-  // One that has no brick to work on.
+  // Parameters without any brick to run.
   KernelParameters p = parameters;
   p.ListBegin = p.ListEnd = 0;
   this->SetArguments(kernel, chunk, output, form, p);
@@ -251,7 +251,7 @@ std::vector<ExactPasses::PlannedLaunch> ExactPasses::PlanAll(
   {
     throw Error("The volume has more than 10^11 voxels. Use a smaller volume.");
   }
-  // Several are too much at once where there are few bricks for each unit.
+  // Take one brick at a time if there are few bricks for each compute unit.
   const int leastForTurns = 32 * static_cast<int>(this->Device.GetContext().GetNumberOfUnits());
   std::vector<PlannedLaunch> launches;
   for (const VolumeChunk& chunk : this->Volume.GetChunks())
@@ -259,7 +259,7 @@ std::vector<ExactPasses::PlannedLaunch> ExactPasses::PlanAll(
     for (int begin = chunk.LayersBegin; begin < chunk.LayersEnd;)
     {
       KernelParameters p = this->Volume.GetParameters(chunk);
-      // Launches end where bricks do.
+      // Launches end at the borders of bricks.
       const int step =
         this->GetLayersPerLaunch() - (begin - p.BrickOrigin[2]) % DEFORMVOLUME_BRICK_Z;
       p.LayersBegin = begin;
@@ -285,7 +285,7 @@ std::vector<ExactPasses::PlannedLaunch> ExactPasses::PlanSome(
   p.Pass = pass;
   output.SetParameters(p);
   p.Portion = 1;
-  // As many in a launch as there are when all are run.
+  // As many bricks in a launch as in a pass over all of them.
   const std::size_t step = static_cast<std::size_t>(p.BrickCount[0]) *
     static_cast<std::size_t>(p.BrickCount[1]) *
     static_cast<std::size_t>(this->GetLayersPerLaunch() / DEFORMVOLUME_BRICK_Z);
@@ -339,9 +339,9 @@ const cl::Buffer& ExactPasses::SendBricks(const std::vector<cl_uint>& list)
 {
   if (list == this->SentBricks)
   {
-    return this->Bricks; // to send them again would wait for all that is enqueued
+    return this->Bricks; // sending them again would wait for the queue
   }
-  this->SentBricks.clear(); // it is unknown what the device has, if this fails
+  this->SentBricks.clear(); // if sending fails, the content is unknown
   this->Bricks = this->Device.Send(list.data(), list.size() * sizeof(cl_uint), this->Bricks);
   this->SentBricks = list;
   return this->Bricks;

@@ -22,34 +22,34 @@ class OutputSlab;
 class WorkDevice;
 struct VolumeChunk;
 
-/// The passes of the exact resampling over the cells of the sampling mesh: which kernel does them,
-/// in which launches. What the passes are for is told by ExactResampler and KernelParameters.h.
+/// Runs the passes of exact resampling over the cells of the sampling mesh: chooses the kernel and
+/// the launches. ExactResampler and KernelParameters.h describe the passes.
 class ExactPasses
 {
 public:
   ExactPasses(
     WorkDevice& device, DeviceVolume& volume, const DisplacementSource& source, Launches& launches);
 
-  /// The kernel for cells: Cells, Lanes or Columns. Throws an Error where the method demands one
-  /// that it cannot be.
+  /// Chooses the kernel for cells: Cells, Lanes or Columns. Throws an Error if the requested method
+  /// cannot be used.
   ResamplingForm ChooseForm(
     const DeformRequest& request, const OutputSlab& output, int pass = DEFORMVOLUME_PASS_DIRECT);
 
-  /// Runs a pass (DEFORMVOLUME_PASS_DIRECT and so on). bricks: those to run
-  /// (DEFORMVOLUME_BRICK_BITS), where the volume is one chunk; null: all. The mapping is up to date
-  /// (DisplacementSource::PrepareMapping).
+  /// Runs a pass (such as DEFORMVOLUME_PASS_DIRECT). bricks: the bricks to run
+  /// (DEFORMVOLUME_BRICK_BITS), for a volume with one chunk; null: all. The mapping must be up to
+  /// date (DisplacementSource::PrepareMapping).
   void Run(const DeformRequest& request, const OutputSlab& output, int pass,
     const std::vector<cl_uint>* bricks = nullptr);
-  /// Runs the large cells that Run has put off.
+  /// Resamples the large cells that Run has put off.
   void RunLargeCells(const DeformRequest& request, const OutputSlab& output, int pass);
 
-  /// Launches of Run over all cells, about.
+  /// Returns the approximate number of launches of Run over all cells.
   std::size_t GetNumberOfLaunches() const;
 
-  /// Makes a list, which is not empty, the one that the device has.
+  /// Sends a list of bricks, which must not be empty, to the device.
   const cl::Buffer& SendBricks(const std::vector<cl_uint>& list);
 
-  /// Bytes on the device, but for lists of work that are short.
+  /// Returns the memory on the device, in bytes, without short work lists.
   std::uint64_t GetMemory() const;
 
 private:
@@ -58,28 +58,28 @@ private:
     const VolumeChunk& Chunk;
     KernelParameters Parameters;
   };
-  /// The launches of a pass over all bricks, which are put into a list.
+  /// Plans the launches of a pass over all bricks, and lists these bricks.
   std::vector<PlannedLaunch> PlanAll(
     const OutputSlab& output, int pass, std::vector<cl_uint>& bricks);
-  /// Those of a pass over a list of some.
+  /// Plans the launches of a pass over listed bricks.
   std::vector<PlannedLaunch> PlanSome(
     const OutputSlab& output, int pass, const std::vector<cl_uint>& bricks);
-  /// Cell layers in a launch, whole bricks of them: few enough that progress is reported, and
-  /// enough that processors are not kept waiting at its end.
+  /// Returns the number of cell layers in a launch, in whole bricks: few enough to report progress,
+  /// and enough that CPUs do not wait at the end of each launch.
   int GetLayersPerLaunch() const;
 
-  /// Launches a kernel of a form over the bricks that the parameters have of the list.
+  /// Launches a kernel of a form over the bricks of the list that the parameters select.
   void Launch(const DeformRequest& request, cl::Kernel& kernel, ResamplingForm form,
     const KernelParameters& p);
-  /// Launches the kernel for columns, and after each launch those for what that leaves.
+  /// Launches the kernel for columns, each time followed by the kernels for deferred cells.
   void RunColumns(const DeformRequest& request, const OutputSlab& output, cl::Kernel& columns,
     const std::vector<PlannedLaunch>& launches);
-  /// Work-items of a group of the kernel for columns.
+  /// Returns the size of a work-group of the kernel for columns.
   std::size_t GetColumnGroup(const cl::Kernel& kernel);
 
   cl::Kernel MakeKernel(
     const DeformRequest& request, ResamplingForm form, const OutputSlab& output, int pass);
-  /// Has a kernel compiled before it runs (OpenCLContext::Prepare).
+  /// Compiles a kernel before it runs (OpenCLContext::Prepare).
   void PrepareKernel(cl::Kernel& kernel, const VolumeChunk& chunk, const OutputSlab& output,
     ResamplingForm form, const KernelParameters& parameters);
   void SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk, const OutputSlab& output,
@@ -89,12 +89,12 @@ private:
   DeviceVolume& Volume;
   const DisplacementSource& Source;
   Launches& Launched;
-  cl::Buffer Bricks;               // the list of those to work on
-  std::vector<cl_uint> SentBricks; // what it has
-  cl::Buffer BrickRows;            // what these need, where local memory is too small
-  cl::Buffer TakenBricks;          // how many of these the launch that runs has taken
-  DeferredCells Deferred;          // of a launch by columns
-  cl::Buffer Pieces;               // of large cells, to work on
+  cl::Buffer Bricks;               // the list of bricks to run
+  std::vector<cl_uint> SentBricks; // the content of Bricks
+  cl::Buffer BrickRows;            // rows of vertices, if local memory is too small
+  cl::Buffer TakenBricks;          // the number of bricks that the current launch has taken
+  DeferredCells Deferred;          // cells deferred by a launch by columns
+  cl::Buffer Pieces;               // pieces of large cells to run
 };
 
 } // namespace deformvolume

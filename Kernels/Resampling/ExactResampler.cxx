@@ -91,7 +91,7 @@ bool ExactResampler::IsFolded(const OutputSlab::Counts& counts) const
 void ExactResampler::MakeExact(
   const DeformRequest& request, OutputSlab& output, bool isFirst, DeformReport& report)
 {
-  // What was folded last time probably still is: then one pass does for two.
+  // An output that was folded last time probably still is: run the claiming pass at once.
   const bool expected =
     this->WasContested && this->Budget.HasRoomFor(output.GetWinners().GetMissingMemory());
   if (expected)
@@ -100,7 +100,7 @@ void ExactResampler::MakeExact(
   }
   const Outcome first = this->RunFirstPass(
     request, output, expected ? DEFORMVOLUME_PASS_OWNERS : DEFORMVOLUME_PASS_DIRECT);
-  if (isFirst) // every slab sees all tetrahedra
+  if (isFirst) // each slab counts all tetrahedra
   {
     report.NumberOfInvertedTetrahedra = static_cast<std::int64_t>(first.Counts.Inverted);
     report.NumberOfOverstretchedCells = static_cast<std::int64_t>(first.Counts.Overstretched);
@@ -283,7 +283,7 @@ std::optional<ExactResampler::Again> ExactResampler::MakeAgain(const DeformReque
     }
     output.Complete(this->Device.GetContext(), this->Volume.GetArrays().Get(), true,
       this->Launched.GetResamplingEvents());
-    this->Device.GetQueue().finish(); // it is read in another queue
+    this->Device.GetQueue().finish(); // the output is read in another queue
   };
   if (!won)
   {

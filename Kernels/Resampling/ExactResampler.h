@@ -23,17 +23,17 @@ class DisplacementSource;
 class MemoryBudget;
 class WorkDevice;
 
-/// Resamples by the cells of the sampling mesh, each voxel written by one tetrahedron: in one pass,
-/// and where tetrahedra overlap in more, which find the winners.
+/// Resamples by the cells of the sampling mesh; one tetrahedron writes each voxel. Needs one pass,
+/// and more passes to find the winners if tetrahedra overlap.
 class ExactResampler : public SlabResampler
 {
 public:
   ExactResampler(
     WorkDevice& device, MemoryBudget& budget, DeviceVolume& volume, DisplacementSource& source);
 
-  /// Of a new deformation nothing was launched yet.
+  /// Resets the launches for a new deformation.
   void Start() { this->Launched.Start(); }
-  /// Adds the times of what was launched since.
+  /// Adds the times of all launches since Start().
   void AddTimes(DeformReport& report) { this->Launched.AddTimes(report); }
 
   void Begin(const DeformRequest& request, const SlabPlan& plan, DeformReport& report) override;
@@ -45,43 +45,44 @@ public:
   void FinishReading() override;
   void Finish() noexcept override;
 
-  /// Whether the last output was made in one slab of one chunk, so that MakeAgain can make bricks
-  /// of it anew.
+  /// Whether the last output was made in one slab from one chunk, so that MakeAgain can make parts
+  /// of it again.
   bool CanMakeAgain() const { return this->Last != LastOutput::Unknown; }
-  /// Whether the last output, of a request for the same extent and by the same method, is at hand.
+  /// Whether the last output, of a request for the same extent and by the same method, is still
+  /// available.
   bool HoldsLastOutput(const DeformRequest& request);
-  /// Whether winners were chosen in the last output.
+  /// Whether the last output chose winners.
   bool HasWinners() const { return this->Last == LastOutput::Won; }
-  /// What came of MakeAgain.
+  /// The result of MakeAgain.
   struct Again
   {
-    OutputSlab::Counts Counts; // of all bricks
-    bool Overlapping = false;  // only where winners were chosen
+    OutputSlab::Counts Counts; // over all bricks
+    bool Overlapping = false;  // only set if winners were chosen
   };
-  /// Makes some bricks of the last output anew, in the target 0. The memory of the request holds
-  /// the last output. Some of its patches are cleared before, in that memory or on the device.
-  /// Chooses winners where they were chosen in the last output. Nothing where a whole output is
-  /// needed, as there are none any more.
+  /// Makes some bricks of the last output again, in target 0. The memory of the request must hold
+  /// the last output. First clears some patches there or on the device. Chooses winners if the last
+  /// output chose them. Returns nothing if there are no winners any more, so that the whole output
+  /// must be made.
   std::optional<Again> MakeAgain(const DeformRequest& request, const std::vector<cl_uint>& bricks,
     const std::vector<std::uint32_t>& patches);
-  /// The covered voxels of some patches of the last output, counted on the device.
+  /// Counts the covered voxels of some patches of the last output, on the device.
   std::uint64_t CountCovered(const std::vector<std::uint32_t>& patches);
-  /// The same as Leave(), where of each array, and of the coverage, a part has to be copied when it
-  /// is read.
+  /// Like Leave(), but only a part of each array and of the coverage must be copied when it is
+  /// read.
   std::vector<std::shared_ptr<DeviceOutput>> LeaveParts(
     const DeformRequest& request, const std::vector<Extent>& parts);
-  /// Begins to copy a part of that to the memory of the request, as Read() does.
+  /// Begins to copy a part of the output to the memory of the request, like Read().
   void ReadPart(const DeformRequest& request, const Extent& part);
 
-  /// What it does where the boundary of the deformation mesh passes through the volume.
+  /// Returns the resampling at the boundary of the deformation mesh inside the volume.
   BoundaryCells& GetBoundary() { return this->Boundary; }
   const BoundaryCells& GetBoundary() const { return this->Boundary; }
 
-  /// Bytes on the device.
+  /// Returns the memory on the device, in bytes.
   std::uint64_t GetMemory() const;
 
 private:
-  /// What a pass is followed by.
+  /// The result of the first pass.
   struct Outcome
   {
     OutputSlab::Counts Counts;
@@ -91,18 +92,18 @@ private:
   Outcome RunFirstPass(const DeformRequest& request, OutputSlab& output, int pass);
   void RunPass(const DeformRequest& request, const OutputSlab& output, int pass, bool hasLargeCells,
     const std::vector<cl_uint>* bricks = nullptr);
-  /// The passes that find winners and write what these have won. claimed: the first pass has found
-  /// the voxels that several cells write. Returns whether that is known in the end.
+  /// Runs the passes that find winners and write their samples. claimed: whether the first pass was
+  /// the claiming one. Returns whether the claims are known in the end.
   bool ChooseWinners(
     const DeformRequest& request, OutputSlab& output, const Outcome& first, bool claimed);
-  /// The last two of these: in all bricks, or in those that may have something to win. claimed:
-  /// whether it is known what cells hold beside what they own.
+  /// Runs the last two of these passes: over all bricks, or over those with possible winners.
+  /// claimed: whether the samples that cells hold without owning them are known.
   void WriteWinners(
     const DeformRequest& request, OutputSlab& output, bool hasLargeCells, bool claimed);
-  /// Counts the tetrahedra that hold each voxel of a slab, which is done and has room for winners.
-  /// These are lost.
+  /// Counts the tetrahedra that hold each voxel of a finished slab, in the memory of the winners.
+  /// The winners are lost.
   void CountFolds(const DeformRequest& request, OutputSlab& output);
-  /// Whether some tetrahedra are inverted, but not most of them, as they are in a mirror image.
+  /// Whether some tetrahedra are inverted, but not most of them, as in a mirror image.
   bool IsFolded(const OutputSlab::Counts& counts) const;
   void MakeExact(
     const DeformRequest& request, OutputSlab& output, bool isFirst, DeformReport& report);
@@ -115,14 +116,14 @@ private:
   ExactPasses Exact;
   BoundaryCells Boundary;
   std::array<OutputSlab, 2> Targets;
-  bool WasContested = false; // whether cells of the last output overlapped, or were folded
-  bool IsContested = false;  // and of this one, as far as is known
-  /// What is known of it.
+  bool WasContested = false; // whether cells of the last output overlapped or were folded
+  bool IsContested = false;  // the same for the current output
+  /// The kind of the last output.
   enum class LastOutput
   {
     Unknown,
     Plain, // one slab of one chunk, without winners
-    Won    // the same, and what wins each voxel, or has it alone
+    Won    // the same, with winners
   };
   LastOutput Last = LastOutput::Unknown;
 };

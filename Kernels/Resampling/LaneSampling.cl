@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The part of RestSampling.cl for arrays that single precision does for: looks the volume up at the rest
-// coordinates of LANES neighbouring voxels of a row, side by side.
+// The part of RestSampling.cl for arrays that are interpolated in single precision: samples the volume at the rest
+// coordinates of LANES neighboring voxels of a row at once.
 //
-// Why it is shaped so: rest coordinates of neighbours may be anywhere, so that memory is read lane by
-// lane, two neighbours on x at once; all arithmetic is in vectors of float. Integers of 8 and 16 bits
-// are exact in float, and an interpolation that has no weight on a side leaves that side out.
+// Design: rest coordinates of neighboring voxels may be anywhere, so memory is read lane by lane, two neighbors on x
+// at once. All arithmetic is in vectors of float. Integers of 8 and 16 bits are exact in float. A side without weight
+// does not contribute to the result.
 //
-// It comes after LaneVectors.cl. What the host puts in front of this text besides:
-//   INDEX                 int, or long where the volume has too many voxels for it
-//   LANE_ARRAYS(DO)       DO(index, type, bits) for arrays by lanes, bits 32 for float
+// This text comes after LaneVectors.cl. The host defines before this text:
+//   INDEX                 int, or long if the volume has too many voxels for it
+//   LANE_ARRAYS(DO)       DO(index, type, bits) for arrays handled in lanes; bits is 32 for float
 
 #pragma OPENCL FP_CONTRACT OFF
 
-// LANES elements of a type, and how they are stored.
+// Types of LANES elements, and how they are stored.
 #if LANES > 1
 #define LANES_OF(TYPE) JOIN(TYPE, LANES)
 #define STORE(v, p) JOIN(vstore, LANES)(v, 0, p)
@@ -22,7 +22,7 @@
 #endif
 #define UINTS LANES_OF(uint)
 #define AS_UINTS LANES_OF(as_uint)
-// Of small numbers: added to 1.5 * 2^23, they are rounded to the nearest integer.
+// Rounds small numbers to the nearest integer, by adding 1.5 * 2^23.
 #define ROUND_TO_INTS(v) (AS_INTS((v) + 12582912.0f) - 0x4B400000)
 
 #define LANE_MASK ((uint)(((ulong)1 << LANES) - 1))
@@ -40,8 +40,8 @@
 #define GATHER(F, o) F(0, o)
 #endif
 
-// Rest coordinates of a tile in local memory, by axis. Of processors those of a row lie side by side; where work-items
-// are lanes, those of neighbours on x and in neighbouring rows both lie in other banks.
+// The layout of rest coordinates of a tile in local memory, by axis. On CPUs those of a row are consecutive. If
+// work-items are lanes, neighbors on x and in the next row are in different banks.
 #if LANES > 1
 #define REST_STEP 1
 #define REST_ROW_STEP (1 << DEFORMVOLUME_TILE_BITS_X)
@@ -53,13 +53,13 @@
 #endif
 #define RESTS (3 * REST_AXIS_STEP)
 
-// Where the values of LANES neighbouring voxels come from.
+// Where the values of LANES neighboring voxels come from.
 typedef struct
 {
   INDEX Places[LANES]; // lowest voxel of the cell
   INDEX StepY, StepZ;
   FLOATS Fractions[3];
-  INTS Mask; // lanes that are covered
+  INTS Mask; // lanes with covered voxels
 } LaneCells;
 
 static void MakeLaneCells(
@@ -82,8 +82,8 @@ static void MakeLaneCells(
     cells->Places);
 }
 
-// Integers are exact in float, and so are both ends. For floats the ends are chosen, as a NaN times
-// 0 is none.
+// Integers and interpolation between them are exact at both ends. For floats the ends are selected explicitly, as a
+// NaN times 0 is a NaN.
 static FLOATS MixIntegers(FLOATS a, FLOATS b, FLOATS f)
 {
   return MULTIPLY_ADD(f, b - a, a);
@@ -95,7 +95,7 @@ static FLOATS MixFloats(FLOATS a, FLOATS b, FLOATS f)
   return f > 0.0f ? (f < 1.0f ? mixed : b) : a;
 }
 
-// Two neighbours on x at once, and the parts of that.
+// Loads two neighbors on x at once, and extracts the two.
 #define LOAD_PAIR_8(k, o) (int)as_ushort(vload2(0, source + cells->Places[k] + (o)))
 #define LOAD_PAIR_16(k, o) as_int(vload2(0, source + cells->Places[k] + (o)))
 #define LOW_uchar(pair) ((pair) & 255)
@@ -129,9 +129,9 @@ static FLOATS MixFloats(FLOATS a, FLOATS b, FLOATS f)
 
 #define TO_8(TYPE) JOIN(JOIN(convert_, LANES_OF(TYPE)), _sat_rte)
 #define TO_16(TYPE) TO_8(TYPE)
-#define TO_32(TYPE) // floats they are
+#define TO_32(TYPE) // already float
 
-// The values of LANES voxels, as a vector of the array's type.
+// Samples the values of LANES voxels, as a vector of the type of the array.
 #define DEFINE_LANE_SAMPLING(NUMBER, TYPE, BITS)                                                   \
   static LANES_OF(TYPE) SampleLanes##NUMBER(                                                       \
     __global const TYPE* restrict source, const LaneCells* cells, float background)                \

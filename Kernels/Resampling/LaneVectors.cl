@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Vectors of LANES floats or integers, for the kernels that say themselves what the lanes of a processor's vectors
-// do. What the host puts in front of this text:
-//   LANES  16, 8 or 4: floats in a vector; 1 for devices whose work-items are the lanes
+// Vectors of LANES floats or integers, for kernels with explicit vector lanes. The host defines before this text:
+//   LANES  16, 8 or 4: number of floats in a vector; 1 for devices whose work-items are the lanes
 
 #define JOIN_(a, b) a##b
 #define JOIN(a, b) JOIN_(a, b)
@@ -12,14 +11,16 @@
 #define TO_FLOATS JOIN(convert_float, LANES)
 #define TO_INTS JOIN(convert_int, LANES)
 #define AS_INTS JOIN(as_int, LANES)
-// A value where a lane of a mask is set, else 0.
+// A value where a mask is set, otherwise 0.
 #define WHERE(mask, v) ((mask) & (v))
-// Of functions that are seldom called, and of loops that keep arrays out of registers unless they are unrolled.
+// SELDOM: attribute of functions that are rarely called. UNROLLED: for loops whose arrays stay out of registers
+// otherwise.
 #define SELDOM __attribute__((noinline))
 #define UNROLLED
 #define NOT_UNROLLED
 #else
-// A comparison gives 1 then, and not -1: masks are combined by & and |, by ~ only beside &, and are no bits of values.
+// For scalars a comparison gives 1, not -1. So combine masks by & and |, use ~ only next to &, and do not use masks
+// as bits of values.
 #define FLOATS float
 #define INTS int
 #define LOAD(p) (*(p))
@@ -28,7 +29,7 @@
 #define AS_INTS as_int
 #define WHERE(mask, v) ((mask) ? (v) : 0)
 #if HAS_COLUMN_KERNEL
-#define SELDOM // a call has all that is in registers stored
+#define SELDOM // a call would save all registers to memory
 #else
 #define SELDOM __attribute__((noinline))
 #endif
@@ -37,7 +38,7 @@
 #endif
 
 #if LANES > 1
-// Vectors where their elements may lie. Stored so they take one instruction; vstore16 of PoCL 3.1 takes three.
+// Unaligned vectors. Storing through these types takes one instruction; vstore16 of PoCL 3.1 takes three.
 typedef float16 __attribute__((aligned(4))) PlacedFloat16;
 typedef float8 __attribute__((aligned(4))) PlacedFloat8;
 typedef int16 __attribute__((aligned(4))) PlacedInt16;
@@ -54,14 +55,14 @@ static FLOATS Most(FLOATS a, FLOATS b)
   return a > b ? a : b;
 }
 #else
-// One instruction, where a comparison and a choice are two.
+// One instruction; a comparison and a selection would be two.
 #define Least fmin
 #define Most fmax
 #endif
 
-// 1 / v, of numbers that are neither tiny nor huge, to a unit in the last place or two.
+// 1 / v with an error of one or two units in the last place, for numbers that are neither tiny nor huge.
 #ifdef __NV_CL_C_VERSION
-#define INVERSE(v) native_recip(v) // else scaled before and after, in case
+#define INVERSE(v) native_recip(v) // a division would also scale the operands
 #else
 #define INVERSE(v) (1.0f / (v))
 #endif
@@ -78,8 +79,8 @@ static FLOATS Most(FLOATS a, FLOATS b)
 #define LANE_BITS ((INTS)(1) << LANE_INDEX)
 
 #if LANES > 1
-// From the second lane on, and the first lane of another vector. One instruction for clang's builtin, five for
-// what PoCL 3.1 makes of vectors put together.
+// Shifts by one lane: lanes from the second one on, then the first lane of another vector. One instruction with
+// clang's builtin, five for a vector literal with PoCL 3.1.
 static FLOATS NextLanes(FLOATS v, FLOATS behind)
 {
 #if LANES == 16 && defined(__clang__)
@@ -97,14 +98,14 @@ static FLOATS NextLanes(FLOATS v, FLOATS behind)
 }
 #endif
 
-// A vector that is read back lane by lane.
+// A vector that is read lane by lane.
 typedef union
 {
   INTS Vector;
   int Lanes[LANES];
 } Lanes;
 
-// A bit for each lane that is set.
+// Returns a bit for each lane that is set.
 static uint LaneBits(INTS mask)
 {
 #if LANES == 1
@@ -135,7 +136,7 @@ static INTS LanesOf(uint bits)
 }
 
 #if LANES > 1
-// Writes the lanes with set bits to a place, one after the other; what comes behind them there is lost.
+// Writes the lanes with set bits consecutively to a place. Values after them are overwritten.
 static void Append(INTS v, uint bits, int* place)
 {
 #if LANES == 16 && defined(__AVX512F__)
@@ -152,11 +153,11 @@ static void Append(INTS v, uint bits, int* place)
 }
 #endif
 
-// For each set bit, the highest first: lane is its number.
+// Loops over the set bits, the highest first. lane: number of the bit.
 #define FOR_EACH_LANE(lane, bits)                                                                  \
   for (int lane = 31 - clz(bits); lane >= 0; bits ^= 1u << lane, lane = 31 - clz(bits))
 
-// The largest lane.
+// Returns the largest lane.
 static int MostOf(INTS v)
 {
 #if LANES == 1
@@ -175,7 +176,7 @@ static int MostOf(INTS v)
 #endif
 }
 
-// The least and the largest of some lanes.
+// Return the largest and the smallest of some lanes.
 static int MostAmong(INTS some, INTS v)
 {
   return MostOf(some ? v : (INTS)INT_MIN);

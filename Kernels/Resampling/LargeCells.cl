@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cells that have so many samples that one work-item does not take them all. A cell can be stretched over the whole
-// output: devices that draw the screen, too, end kernels that take seconds, and others have all units but one waiting.
+// Resamples cells with too many samples for one work-item. A cell can extend over the whole output. Devices that also
+// draw the screen abort kernels that take seconds, and on other devices all other units would wait.
 //
-// Data and what the host puts in front of this text: as in Resampling.cl, which it comes after. pieces: from
-// p.ListBegin to p.ListEnd local x, y and z of a cell, and the number of a piece of it.
+// Data and macros of the host: as in Resampling.cl, after which this text comes. pieces: from p.ListBegin to
+// p.ListEnd, the local x, y and z of a cell, and the number of a piece of it.
 
 __kernel void ResampleLargeCells(GIVEN_PARAMETERS,
   __global const int4* pieces, const KernelParameters p ARRAY_PARAMETERS)
@@ -11,7 +11,7 @@ __kernel void ResampleLargeCells(GIVEN_PARAMETERS,
   const int i = p.ListBegin + (int)get_global_id(0);
   if (i >= p.ListEnd)
   {
-    return; // an item that only fills its group
+    return; // padding of the last work-group
   }
   const int4 piece = pieces[i];
   const SamplingMesh mesh = GIVEN_MESH;
@@ -22,7 +22,7 @@ __kernel void ResampleLargeCells(GIVEN_PARAMETERS,
   {
     return;
   }
-  // Of the cell itself all has been counted.
+  // The cell itself was counted before.
   output.Inverted = output.Overstretched = output.Missing = 0;
   const Candidates part = PieceOf(FindCandidates(cell.Low, cell.High, 0, &all), piece.w);
   if (!DEFORMVOLUME_IS_CLOSED(p.Pass) || AreUnsettled(part, &output, &p))

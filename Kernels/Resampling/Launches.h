@@ -13,7 +13,7 @@ namespace deformvolume
 
 class WorkDevice;
 
-/// The launches of a deformation: how long they take, and how far it is by their number.
+/// The launches of a deformation: their times and the progress by their number.
 class Launches
 {
 public:
@@ -22,27 +22,27 @@ public:
   {
   }
 
-  /// Of a new deformation nothing was launched yet.
+  /// Resets everything for a new deformation.
   void Start();
 
-  /// Enqueues a kernel that resamples, then waits for the launch before, so that the device always
-  /// has work, and reports the progress. Throws Aborted where the request says so.
+  /// Enqueues a resampling kernel, waits for the previous launch, so that the device always has
+  /// work, and reports progress. Throws Aborted if the progress callback returns false.
   void Run(const DeformRequest& request, const cl::Kernel& kernel, const cl::NDRange& items,
     const cl::NDRange& group);
 
   ///@{
-  /// So many launches are to come; or so many more than were expected; or no fewer.
+  /// Set the expected number of further launches; add to it; or set a lower limit.
   void Expect(std::size_t launches) { this->Expected = this->Done + launches; }
   void ExpectMore(std::size_t launches) { this->Expected += launches; }
   void ExpectAtLeast(std::size_t launches);
   ///@}
 
-  /// Of launches that map vertices, and of those that resample; what is launched elsewhere is added
-  /// there.
+  /// The events of launches that map vertices, and of those that resample. Other classes add their
+  /// launches.
   std::vector<cl::Event>& GetMappingEvents() { return this->MappingEvents; }
   std::vector<cl::Event>& GetResamplingEvents() { return this->ResamplingEvents; }
 
-  /// Adds the times of all launches, which have ended, and forgets them.
+  /// Adds the times of all launches, which must be finished, and resets them.
   void AddTimes(DeformReport& report);
 
 private:
@@ -51,7 +51,7 @@ private:
   std::vector<cl::Event> ResamplingEvents;
   cl::Event Last;
   std::size_t Done = 0;
-  std::size_t Expected = 1; // with those that are done, as far as is known
+  std::size_t Expected = 1; // estimated total, including Done
 };
 
 } // namespace deformvolume

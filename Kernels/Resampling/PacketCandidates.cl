@@ -1,37 +1,37 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The candidates of packets of cells: the samples in the box of each cell (BrickResampling.cl).
 //
-// Why they are found a packet before this is looked at: how many rounds a packet takes is no two times the same, and
-// the processor guesses it wrong. It finds that out at once where the numbers lie in memory, and only after all
-// that precedes if they have just been computed. And there is time to fetch the output. Not for all packets of a
-// row: what is known of these would take the innermost cache. Neighbours share vertices, so that the bounds of a
-// row's quads of vertices are found once: the four vertices at one x.
+// Candidates are found one packet ahead. The number of rounds of a packet is hard to predict for the branch
+// predictor. If the number was stored in memory before, a wrong prediction is detected at once, and not only after
+// the preceding computations. There is also time to prefetch the output. They are not found for all packets of a row,
+// as their data would displace the innermost cache. Neighboring cells share vertices, so the bounds of quads (the
+// four vertices at one x) are computed once for a row.
 
-#define MAXIMUM_EXTENT 64.0f // voxels; WeighOrigin (PacketSamples.cl) counts on it
+#define MAXIMUM_EXTENT 64.0f // voxels; WeighOrigin (PacketValues.cl) relies on this limit
 #define MAXIMUM_CANDIDATES 4096 // of a cell
 #define EXACT_NORMALS_EXTENT 7.99f // voxels: the normals of larger cells are not exact in float
-#define INEXACT_NORMALS 1.35f // by how much more coordinates in these are off (PacketWeights.cl)
+#define INEXACT_NORMALS 1.35f // factor of errors for such cells (PacketWeights.cl)
 #define ALMOST_ONE (255.0f / 256.0f) // ceil(v) = trunc(v + ALMOST_ONE) for multiples of 1/256
 
 typedef struct
 {
   Packet Cells;
-  uint There;       // cells that have a vertex with a position, and none beyond the volume, as bits
-  uint Fit;         // of these the small ones all of whose tetrahedra are active and have positions
-  uint Some;        // of these the ones that have candidates
+  uint There;       // bits of cells with a vertex that has a position, and no vertex outside the volume
+  uint Fit;         // the small ones of these whose tetrahedra are all active and have positions
+  uint Some;        // those of Fit with candidates
   FLOATS Extent;    // the longest edge of the box
-  FLOATS BoundScale;     // the extent times the sum of the box's three faces, and more where normals are not exact
-  INTS First[3];    // the first candidate, in voxels of the output
-  INTS Count[3];    // how many on each axis
-  INTS Place;       // of the first one in the output
-  INTS Number;      // how many in all, in cells that have some
-  int IsBeyond;     // whether some may lie beyond the part of the output that is made
+  FLOATS BoundScale;     // Extent times the sum of the box's three faces; larger if normals are not exact
+  INTS First[3];    // the first candidate, in output voxels
+  INTS Count[3];    // number of candidates on each axis
+  INTS Place;       // index of the first candidate in the output
+  INTS Number;      // total number of candidates, for cells with candidates
+  int IsBeyond;     // whether some may lie outside the part of the output that is made
   INTS Aligned;     // cells whose edges are parallel to the axes of the output, if HasAligned
-  INTS Beside;      // aligned cells where something is missing round a vertex (DecideOnVertices), if HasBeside
+  INTS Beside;      // aligned cells with a missing neighbor at a vertex (DecideOnVertices), if HasBeside
   PacketState State; // if HasBeside
   int HasAligned;
   int HasBeside;
-  int Skip; // no cell touches a voxel to be won
+  int Skip; // whether no cell touches a voxel that is still to be won
 } PacketCandidates;
 
 // Bounds of vertices or of cells.
@@ -41,10 +41,10 @@ typedef struct
   FLOATS HighX, HighY, HighZ;
 } Bounds;
 
-// Functions that are inlined give no structures back: Oclgrind does not know what compilers make of that.
+// Inlined functions do not return structures: Oclgrind does not support the code that compilers make of that.
 
 #if LANES > 1
-// Bounds of the quads of four vertices at a place of the rows.
+// Finds the bounds of the quads of four vertices at a place of the rows.
 static __attribute__((always_inline)) void BoundQuads(const LocalRow* rows, int place, Bounds* b)
 {
 #define BOUND_QUADS(C, slot)                                                                     \
@@ -71,7 +71,7 @@ static __attribute__((always_inline)) void Join(const Bounds* a, const Bounds* b
   joined->HighZ = Most(a->HighZ, b->HighZ);
 }
 
-// From the second lane on, and the first lane of what comes behind.
+// Shifts by one lane: lanes from the second one on, then the first lane of `behind`.
 static __attribute__((always_inline)) void Shift(const Bounds* a, const Bounds* behind, Bounds* b)
 {
   b->LowX = NextLanes(a->LowX, behind->LowX);
@@ -83,8 +83,8 @@ static __attribute__((always_inline)) void Shift(const Bounds* a, const Bounds* 
 }
 #endif
 
-// The cells, as bits, whose edge from vertex 0 to another one is parallel to an axis: two coordinates of its ends
-// are the same, and one is not.
+// Returns the bits of the cells whose edge from vertex 0 to another vertex is parallel to an axis: exactly two
+// coordinates of its ends are equal.
 static __attribute__((always_inline)) uint FindAxialEdges(const Packet* packet, int to)
 {
 #define IS_SAME(slot) LaneBits(VERTEX(0, slot) == VERTEX(to, slot))
@@ -92,8 +92,8 @@ static __attribute__((always_inline)) uint FindAxialEdges(const Packet* packet, 
   return ((x & y) | ((x ^ y) & z)) & ~(x & y & z);
 }
 
-// Aligned cells, as in an undeformed, shifted, axis-wise scaled or right-angled turned volume: each
-// coordinate varies along one axis of the voxel grid only. rises: those whose coordinates grow with the indices.
+// Finds aligned cells, as in a volume that is undeformed, shifted, scaled along axes or rotated by right angles: each
+// coordinate varies along a single axis of the voxel grid. rises: those whose coordinates grow with the indices.
 static SELDOM INTS FindAligned(const Packet* packet, int mirror, INTS* rises)
 {
   LOAD_VERTICES
@@ -108,8 +108,8 @@ static SELDOM INTS FindAligned(const Packet* packet, int mirror, INTS* rises)
   return ALIGNED(X) & ALIGNED(Y) & ALIGNED(Z);
 }
 
-// Cells whose edges along an axis are parallel to it, while the other two coordinates vary along their own axes only,
-// and grow with the indices: such as where tissue is pulled along an axis.
+// Cells whose edges along an axis are parallel to that axis, while the other two coordinates vary only along their
+// own axes and grow with the indices. For example where tissue is pulled along an axis.
 typedef struct
 {
   INTS X, Y, Z;
@@ -127,15 +127,14 @@ static SELDOM void FindParallelEdges(
   edges->Z = x & y;
 }
 
-// The first of the samples of the output that lie within bounds on an axis, and one past the last.
-// Of cells that are not there either may be anything. Cells with a vertex without position reach to the end of the
-// output, as their samples may lie anywhere beyond the other vertices: floats are limited, not the integers that they
-// become, as processors make the least one of NO_SOURCE.
+// The first sample of the output within bounds on an axis, and one past the last. Lanes without a cell may have any
+// result. Cells with a vertex without position extend to the end of the output, as their samples may be anywhere
+// beyond the other vertices. Clamp before converting: float-to-int conversion of NO_SOURCE gives INT_MIN on x86.
 #define FIRST_OF(low) TO_INTS(Most(low, 0.0f) + ALMOST_ONE)
 #define END_OF(high, toEnd, size) TO_INTS(Least((high) + toEnd, (float)(size)))
 
-// Aligned cells do not look at their high sides, nor at whether they own a sample: all samples in them count as
-// touched.
+// Marks all samples in aligned cells as touched: these cells neither test their high sides nor whether they own a
+// sample.
 static SELDOM void TouchAligned(
   INTS aligned, const Bounds* b, Output* output, const KernelParameters* p)
 {
@@ -167,8 +166,8 @@ static SELDOM void TouchAligned(
 }
 
 #if LANES > 1
-// Has the processor fetch the output where the candidates of some lanes of a packet begin, long before it is written:
-// FetchFound reaches the caches in time, and memory only where this has begun.
+// Prefetches the output at the first candidates of some lanes, long before it is written. The prefetch of FetchFound
+// reaches the caches in time, but would be too late for memory.
 static __attribute__((always_inline)) void FetchOutput(
   const PacketCandidates* c, const Output* output ARRAY_PARAMETERS)
 {
@@ -183,7 +182,7 @@ static __attribute__((always_inline)) void FetchOutput(
 }
 #endif
 
-// How large cells with these bounds are.
+// Finds the sizes of cells with these bounds.
 static __attribute__((always_inline)) void MeasureCells(const Bounds* b, PacketCandidates* c)
 {
   const FLOATS sizeX = b->HighX - b->LowX, sizeY = b->HighY - b->LowY, sizeZ = b->HighZ - b->LowZ;
@@ -198,15 +197,15 @@ static __attribute__((always_inline)) void MeasureCells(const Bounds* b, PacketC
   }
 }
 
-// Whether cells are aligned, and which. rises: as for FindAligned.
+// Finds whether there are aligned cells, and which. rises: as for FindAligned.
 static __attribute__((always_inline)) void LookForAligned(
   PacketCandidates* c, INTS* aligned, INTS* rises, const KernelParameters* p)
 {
   const Packet* const packet = &c->Cells;
   *aligned = 0;
   *rises = 0;
-  // If two edges of no cell are parallel to axes, no need to look for aligned cells. Lanes that hold no cell hold
-  // anything, and must not decide.
+  // If no cell has two edges parallel to axes, there are no aligned cells. Lanes without a cell contain arbitrary
+  // values and must not decide.
   uint alignedCells = c->There & FindAxialEdges(packet, 1);
   if (alignedCells)
   {
@@ -220,28 +219,29 @@ static __attribute__((always_inline)) void LookForAligned(
   }
 }
 
-// What END_OF adds to the high sides of cells: 1 where samples on them are candidates, else ALMOST_ONE.
+// The numbers that END_OF adds to the high sides of cells: 1 if samples on the high sides are candidates, otherwise
+// ALMOST_ONE.
 typedef struct
 {
   FLOATS X, Y, Z;
 } ToEnds;
 
-// For a packet on the border: the whole cells, as bits, those that may be taken for aligned ones, and what is added to
-// the high sides of these; aligned cells beside what is missing.
+// For a packet at the border: finds the whole cells, as bits; the cells that may be handled as aligned; the numbers
+// that are added to the high sides of these; and aligned cells next to missing ones.
 static __attribute__((always_inline)) void EndOnBorder(PacketCandidates* c, INTS rises,
   const SamplingMesh* mesh, uint* whole, INTS* aligned, ToEnds* toEnds, Output* output,
   const KernelParameters* p)
 {
   const Packet* const packet = &c->Cells;
   PacketState* const state = &c->State;
-  // Without states all that is there is whole.
+  // Without states all cells that exist are whole.
   if (p->HasState || c->HasAligned)
   {
     StatesOfPacket(mesh, packet->X, packet->Y, packet->Z, state, p);
     *whole = c->There & LaneBits(state->Whole);
   }
-  // Aligned cells on the border leave what is on their high sides to the next cells, if there are any. That the
-  // high sides are the upper ones is wanted for that.
+  // Aligned cells at the border leave the samples on their high sides to the next cells, if these exist. This
+  // requires that the high sides have the higher coordinates.
   if (!DEFORMVOLUME_IS_CLOSED(p->Pass) && c->HasAligned)
   {
     const INTS inner = state->Interior == 255;
@@ -275,8 +275,8 @@ static __attribute__((always_inline)) void FindSamples(
   s->CountZ = END_OF(b->HighZ, toEnds->Z, p->OutputSize[2]) - s->FirstZ;
 }
 
-// The same in the whole output, which this is a part of. A cell that reaches beyond the part is looked at as in the
-// whole: what becomes of it must not depend on where the part ends. It begins less than MAXIMUM_EXTENT before the
+// The same for the whole output of which this is a part. A cell that extends beyond the part must be handled as in
+// the whole, so that results do not depend on where the part ends. It begins less than MAXIMUM_EXTENT before the
 // part.
 static __attribute__((always_inline)) void FindSamplesOfWhole(
   const Bounds* b, const ToEnds* toEnds, SamplesInBounds* s, const KernelParameters* p)
@@ -297,11 +297,11 @@ static __attribute__((always_inline)) void FindSamplesOfWhole(
   s->CountZ = WHOLE_END(b->HighZ, toEnds->Z, 2) - s->FirstZ;
 }
 
-// The samples within the bounds of cells as their candidates. inPart: those in the buffers.
+// Takes the samples within the bounds of cells as candidates. inPart: those in the buffers.
 static __attribute__((always_inline)) void SetCandidates(const Bounds* b, const ToEnds* toEnds,
   const SamplesInBounds* inPart, PacketCandidates* c, const KernelParameters* p)
 {
-  // What lies in the part has the same samples in the whole.
+  // Cells that lie in the part have the same samples in the whole.
   c->IsBeyond = p->IsPart &&
     LaneBits((Least(b->LowX, Least(b->LowY, b->LowZ)) < 0.0f) |
       (inPart->FirstX + inPart->CountX == p->OutputSize[0]) |
@@ -322,7 +322,7 @@ static __attribute__((always_inline)) void SetCandidates(const Bounds* b, const 
   c->Number = s.CountX * s.CountY * s.CountZ;
 }
 
-// Whether some cells, as bits, touch no voxel to be won.
+// Whether some cells, as bits, touch no voxel that is still to be won.
 static __attribute__((always_inline)) int IsSettled(
   uint some, const SamplesInBounds* s, const Output* output, const KernelParameters* p)
 {
@@ -334,9 +334,9 @@ static __attribute__((always_inline)) int IsSettled(
   return !some || !AnyUnsettled(output->Patches, first, last, p);
 }
 
-// b: the bounds of the cells. mesh: null where vertices have no state. withBorder: whether cells on the border are to
-// be told from others; else they must be whole, and if there are aligned cells among them, nothing holds but that there
-// are.
+// Finds the candidates of a packet. b: the bounds of the cells. mesh: null if vertices have no state. withBorder:
+// whether cells at the border are recognized; otherwise cells must be whole, and if HasAligned is set, the other
+// results are not valid.
 static __attribute__((always_inline)) void FindPacketCandidates(const Bounds* b,
   const SamplingMesh* mesh, int withBorder, Output* output, PacketCandidates* c,
   const KernelParameters* p ARRAY_PARAMETERS)
@@ -345,7 +345,7 @@ static __attribute__((always_inline)) void FindPacketCandidates(const Bounds* b,
   INTS aligned, rises;
   LookForAligned(c, &aligned, &rises, p);
 
-  // Candidates are half-open inside the mesh: by the fill rule no sample on the upper side is taken.
+  // Candidates are half-open inside the mesh: by the fill rule no sample on the upper side is owned.
   const int border = c->Cells.Border;
   uint whole = c->There;
   c->HasBeside = 0;
@@ -376,7 +376,7 @@ static __attribute__((always_inline)) void FindPacketCandidates(const Bounds* b,
   SamplesInBounds s;
   FindSamples(b, &toEnds, &s, p);
   const uint some = c->There & LaneBits((s.CountX > 0) & (s.CountY > 0) & (s.CountZ > 0));
-  // Cells that a cut divides, none of which is whole, reach beyond the bounds of their vertices.
+  // If a cut divides cells, these extend beyond the bounds of their vertices.
   const int isDivided = HAS_CUT && (c->There & ~whole);
   c->Skip = DEFORMVOLUME_IS_CLOSED(p->Pass) && !isDivided && IsSettled(some, &s, output, p);
   SetCandidates(b, &toEnds, &s, c, p);
@@ -386,9 +386,9 @@ static __attribute__((always_inline)) void FindPacketCandidates(const Bounds* b,
 }
 
 #if LANES > 1
-// For the two packets at place k of a row of cells, for even and for odd x: cells of the second begin at the odd
-// vertices. even: the bounds of the quads of even x at this place, and then at the next one. output: of the
-// span of the brick.
+// Finds the candidates of the two packets at place k of a row of cells, for even and for odd x. Cells of the second
+// packet begin at the odd vertices. even: input: bounds of the quads of even x at this place; output: at the next
+// place. output: of the span of the brick.
 static SELDOM void FindPairCandidates(const RowOfCells* row, int k, Bounds* even,
   const SamplingMesh* mesh, Output* output, PacketCandidates* candidates,
   const KernelParameters* p ARRAY_PARAMETERS)

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fill rule of CellCoverage.cl for a packet of cells side by side, in integers of 32 bits: for the samples that
-// floats do not decide (BrickResampling.cl).
+// The fill rule of CellCoverage.cl for a packet of cells in 32-bit integers, for samples that floats do not decide
+// (BrickResampling.cl).
 
 #define MAXIMUM_EXACT_EXTENT 3.99f // voxels: edge functions of larger cells need more than 32 bits
 
-// What lies round the cells of a packet on the border of the mesh.
+// The surroundings of the cells of a packet at the border of the mesh.
 typedef struct
 {
-  INTS Whole;    // all five tetrahedra are active and have positions
-  INTS Interior; // as CellState
+  INTS Whole;    // whether all five tetrahedra are active and have positions
+  INTS Interior; // masks as in CellState
   INTS Regular;
 } PacketState;
 
-// The states of the vertices of a row that a packet's cells have: of the lower x in the lowest byte, of the upper one
-// in the next.
+// Loads the states of the vertices of a packet's cells in a row: the vertex of lower x in the lowest byte, that of
+// higher x in the next byte.
 static INTS LoadStates(__global const uchar* row)
 {
 #if LANES == 16
@@ -27,8 +27,8 @@ static INTS LoadStates(__global const uchar* row)
 #endif
 }
 
-// Where the states of a packet's vertices begin; null where some would lie beyond all states. Those of cells beyond the
-// volume are others' then.
+// Returns where the states of a packet's vertices begin; null if some lie outside the array of states. (For cells
+// outside the volume, states of other vertices are read.)
 static __global const uchar* BeginStates(const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
 {
   const long row = p->Size[0];
@@ -39,7 +39,7 @@ static __global const uchar* BeginStates(const SamplingMesh* mesh, int x, int y,
     : mesh->State + first;
 }
 
-// Adds the vertices of a row to masks as CellState has them. o: the number of the lower one where nothing is mirrored.
+// Adds the vertices of a row to masks as in CellState. o: number of the lower vertex without mirroring.
 static void AddStates(INTS row, int o, int mirror, PacketState* states)
 {
   const int low = 1 << (o ^ mirror);
@@ -50,7 +50,7 @@ static void AddStates(INTS row, int o, int mirror, PacketState* states)
     WHERE((row & DEFORMVOLUME_VERTEX_REGULAR << 8) != 0, high);
 }
 
-// The same vertex by vertex: what lies beyond the states must not be read.
+// The same vertex by vertex: memory outside the array of states must not be read.
 static void StatesOfLanes(
   const SamplingMesh* mesh, int x, int y, int z, INTS inVolume, PacketState* states, const KernelParameters* p)
 {
@@ -81,7 +81,7 @@ static SELDOM void StatesOfPacket(const SamplingMesh* mesh, int x, int y, int z,
   const INTS inVolume = (cellX >= 0) & (cellX < p->Size[0] - 1);
   if (!p->HasState)
   {
-    // What is not on the border of the volume is interior.
+    // Without states, all vertices inside the volume are interior.
     const int mirror = Mirror(x, y, z, p);
     const int lowX = LOW_SIDE(0, mirror), lowZ = LOW_SIDE(1, mirror), lowY = LOW_SIDE(2, mirror);
     const int outer = (y == 0 ? lowY : 0) | (y == p->Size[1] - 2 ? 255 ^ lowY : 0) |
@@ -114,7 +114,7 @@ static SELDOM void StatesOfPacket(const SamplingMesh* mesh, int x, int y, int z,
 }
 
 #if HAS_CUT
-// What FindDivided finds, vertex by vertex: as StatesOfLanes.
+// The same as FindDivided, vertex by vertex, like StatesOfLanes.
 static uint FindDividedLanes(
   const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
 {
@@ -138,8 +138,8 @@ static uint FindDividedLanes(
   return divided;
 }
 
-// The cells of a packet, as bits, that a smooth cut may divide (CutCells.cl): one that it crosses, with a vertex that
-// lies elsewhere as seen from the other side.
+// Returns the bits of cells of a packet that a smooth cut may divide (CutCells.cl): crossed cells with a vertex that
+// has different positions for the two sides.
 static SELDOM uint FindDivided(
   const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
 {
@@ -157,11 +157,11 @@ static SELDOM uint FindDivided(
 }
 #endif
 
-// Which lanes own a sample by the fill rule, by edge functions in integers of 32 bits, for cells of less than
-// MAXIMUM_EXACT_EXTENT, all of whose tetrahedra are upright, or all inverted: these are at most
-// 2 (256 extent)^3. Normals, of at most 2 (256 extent)^2 each and three times that together, are exact in float, whose
-// products cost less. sample: in voxels relative to vertex 0 of the cell. inverted: lanes whose tetrahedra are.
-// simplex: the vertices of the simplex that the sample lies in, 0 where that is not in the cell.
+// Returns which lanes own a sample by the fill rule, from edge functions in 32-bit integers. All tetrahedra of a cell
+// must be upright, or all inverted, and smaller than MAXIMUM_EXACT_EXTENT; edge functions are then at most 2 (256
+// extent)^3. Normals are at most 2 (256 extent)^2 each, and three times that in total. They are exact in float, in
+// which products are cheaper. sample: in voxels relative to vertex 0 of the cell. inverted: lanes with inverted
+// tetrahedra. simplex: the vertices of the simplex that contains the sample, 0 if it is not in the cell.
 static SELDOM INTS HoldSample(
   const Packet* packet, const FLOATS* sample, int odd, INTS inverted, INTS* simplex)
 {
@@ -176,7 +176,7 @@ static SELDOM INTS HoldSample(
   }
 #define RELATIVE(v, axis) q[v][axis]
 #else
-  // Registers are few: vertices are read again.
+  // To save registers, vertices are loaded again.
 #define RELATIVE(v, axis) (VERTEX(v, axis) - VERTEX(0, axis))
 #endif
   INTS held = 0;
@@ -184,7 +184,7 @@ static SELDOM INTS HoldSample(
   NOT_UNROLLED
   for (int t = 0; t < 5; ++t)
   {
-    FLOATS e[3][3]; // edges from the first vertex, and the normals of the faces opposite the others
+    FLOATS e[3][3]; // edges from the first vertex; below: normals of the faces opposite the others
     FLOATS n[4][3];
     INTS r[3]; // the sample, in 1/256 voxel
     UNROLLED
@@ -198,7 +198,7 @@ static SELDOM INTS HoldSample(
         e[k][axis] = RELATIVE(Tetrahedra[t][k + 1], axis) - first;
       }
     }
-    // The orientation that the parity of the cell asks for: normals point inside.
+    // Orient the normals inwards, according to the parity of the cell.
     const INTS negative = odd != (t == 4) ? !inverted : inverted;
 #define NORMAL_OF(k, u, v)                                                                         \
   {                                                                                                \
@@ -230,7 +230,7 @@ static SELDOM INTS HoldSample(
     {
       const INTS f = k ? PRODUCT(k, r) : first;
       first -= f;
-      // As ShiftsInside.
+      // The same rule as ShiftsInside.
       inside &= (f > 0) |
         ((f == 0) &
           ((n[k][0] > 0.0f) |
@@ -247,7 +247,7 @@ static SELDOM INTS HoldSample(
   return held;
 }
 
-// The lanes whose sample lies in the output, as bits. x, y, z: in voxels of the output.
+// Returns the bits of lanes whose sample lies in the output. x, y, z: in output voxels.
 static __attribute__((always_inline)) uint InOutput(
   FLOATS x, FLOATS y, FLOATS z, const KernelParameters* p)
 {
@@ -256,7 +256,7 @@ static __attribute__((always_inline)) uint InOutput(
     (iz >= 0) & (iz < p->OutputSize[2]));
 }
 
-// Marks the samples of some lanes, by bits, which hold these and do not own them. x, y, z: in voxels of the output.
+// Marks the samples that some lanes, given by bits, hold but do not own. x, y, z: in output voxels.
 static SELDOM void TouchHeld(
   uint lanes, FLOATS x, FLOATS y, FLOATS z, Output* output, const KernelParameters* p)
 {
@@ -264,7 +264,7 @@ static SELDOM void TouchHeld(
   place[0].Vector = TO_INTS(x);
   place[1].Vector = TO_INTS(y);
   place[2].Vector = TO_INTS(z);
-  // Part of a cell may lie beyond the output.
+  // Part of a cell may lie outside the output.
   uint bits = lanes & InOutput(x, y, z, p);
   FOR_EACH_LANE(lane, bits)
   {
@@ -272,7 +272,8 @@ static SELDOM void TouchHeld(
   }
 }
 
-// The lanes whose cell owns a simplex on the border of the volume, where all cells are there, as IsOwnerByIndex.
+// Returns the lanes whose cell owns a simplex at the border of the volume, if all cells exist there: the rule of
+// IsOwnerByIndex.
 static __attribute__((always_inline)) INTS OwnByIndex(
   const Packet* packet, INTS simplex, int mirror, const KernelParameters* p)
 {
@@ -284,9 +285,9 @@ static __attribute__((always_inline)) INTS OwnByIndex(
     (((simplex & LOW_SIDE(2, mirror)) != 0) | isLastY);
 }
 
-// Returns which cells of undecidedByFloats, as bits, own their sample. state: of the packet, where it is on the border
-// of the mesh. onVertex: lanes whose sample is a vertex. needsInt64: cells for ResampleCell are added to it. All else
-// is as for HoldSample.
+// Returns which cells of undecidedByFloats, as bits, own their sample. state: of the packet, if it is at the border
+// of the mesh. onVertex: lanes whose sample is a vertex. needsInt64: output: cells for ResampleCell are added. Other
+// parameters are as for HoldSample.
 static __attribute__((always_inline)) uint DecideByIntegers(const Packet* packet, uint undecidedByFloats,
   const FLOATS* sample, INTS inverted, const PacketState* state, INTS* onVertex, uint* needsInt64,
   Output* output, const KernelParameters* p)
@@ -295,7 +296,7 @@ static __attribute__((always_inline)) uint DecideByIntegers(const Packet* packet
   INTS held = HoldSample(packet, sample, packet->Odd, inverted, &simplex);
   if (packet->Border)
   {
-    // As RoleOf.
+    // The same rule as RoleOf.
     const INTS outer = (simplex != 0) & ((simplex & state->Interior) == 0);
     const INTS regular = (simplex & ~state->Regular) == 0;
     held = outer ? OwnByIndex(packet, simplex, Mirror(packet->X, packet->Y, packet->Z, p), p) & regular
@@ -311,15 +312,15 @@ static __attribute__((always_inline)) uint DecideByIntegers(const Packet* packet
 #if LANES > 1
   *onVertex = LanesOf(undecidedByFloats) & ((simplex & (simplex - 1)) == 0);
 #else
-  // Oclgrind lacks a function for what its compiler makes of the above.
+  // Oclgrind lacks a function that its compiler would use for the expression above.
   *onVertex = undecidedByFloats && popcount(simplex) < 2;
 #endif
   return undecidedByFloats & LaneBits(held);
 }
 
-// Whether an aligned cell that has all its tetrahedra, and whose coordinates grow with the indices, owns a sample on
-// one of its vertices, which is on the border of the mesh. Of its tetrahedra that share the vertex it is the one at the
-// edge along x that a shift away from the vertex leads into.
+// Whether a cell owns a sample on one of its vertices at the border of the mesh. The cell must be aligned, with all
+// of its tetrahedra and coordinates that grow with the indices. Of its tetrahedra at the vertex, the candidate is the
+// one at the edge along x, into which a shift away from the vertex leads.
 static SELDOM int OwnsVertex(
   const SamplingMesh* mesh, int x, int y, int z, int vertex, const KernelParameters* p)
 {
@@ -339,15 +340,15 @@ static SELDOM int OwnsVertex(
 #else
   const int side = 0;
 #endif
-  const int high = vertex ^ Mirror(x, y, z, p); // the axes on whose high side the vertex is
+  const int high = vertex ^ Mirror(x, y, z, p); // bits of the axes on whose high side the vertex is
   const int shift = (high & 1) | (high >> 2 & 1) << 1 | (high >> 1 & 1) << 2;
   Neighbours near;
   const SamplingMesh keeping = KeepNeighbours(mesh, x, y, z, &near);
   return IsOwnerOnBorder(&keeping, x, y, z, tetrahedron, 1 << vertex, shift, side, p);
 }
 
-// Returns which of some cells, as bits, own their sample. The cells are as for OwnsVertex. simplex: the vertex that
-// the sample is, as a mask. x, y, z: the sample, in voxels of the output.
+// Returns which of some cells, as bits, own their sample, which is a vertex. The cells are as for OwnsVertex.
+// simplex: the vertex as a mask. x, y, z: the sample, in output voxels.
 static SELDOM uint DecideOnVertices(const Packet* packet, uint some, INTS simplex,
   const PacketState* state, FLOATS x, FLOATS y, FLOATS z, const SamplingMesh* mesh, Output* output,
   const KernelParameters* p)
@@ -356,7 +357,7 @@ static SELDOM uint DecideOnVertices(const Packet* packet, uint some, INTS simple
   const INTS lowest = simplex == 1 << mirror;
   const INTS outer = (simplex & state->Interior) == 0;
   const INTS regular = (simplex & state->Regular) != 0;
-  // The shift +++ leads from its lowest vertex into a cell.
+  // A cell owns its lowest vertex: the shift +++ leads into the cell.
   uint held = some & LaneBits((outer & regular) ? OwnByIndex(packet, simplex, mirror, p) : lowest);
   output->Assumed |= (some & LaneBits(outer)) != 0;
   uint open = some & LaneBits(outer & ~regular & ~lowest);

@@ -1,34 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The samples that a packet of cells holds, with their values (BrickResampling.cl): by floats where the sign of a
-// coordinate is certain (PacketWeights.cl), by integers where it is not (PacketCoverage.cl).
+// Resamples a packet of cells: by floats where the sign of a barycentric coordinate is certain (PacketWeights.cl),
+// otherwise by integers (PacketCoverage.cl).
 //
-// Cells with a sample that floats do not decide are repeated with edge functions in integers of 32 bits, LANES cells at
-// once again (NeedsInt32). Where cells are bent, or what surrounds them is not all there, ResampleCell takes them with
-// integers of 64 bits (NeedsInt64). Cells that are too large for integers of 32 bits leave only these samples to it
+// Cells with a sample that floats do not decide are repeated with edge functions in 32-bit integers, again for LANES
+// cells at once (NeedsInt32). Cells that are bent, or that lack surrounding cells, are handed to ResampleCell, which
+// uses 64-bit integers (NeedsInt64). Cells too large for 32-bit integers only hand over their undecided samples
 // (SamplesNeedInt64): they have many samples, and floats decide nearly all of them.
 
-// What became of LANES cells, as bits.
+// The outcome for LANES cells, as bits.
 typedef struct
 {
-  uint NeedsInt32;       // repeat them with integers of 32 bits
-  uint NeedsInt64;       // leave them to ResampleCell, which has integers of 64 bits
-  uint SamplesNeedInt64; // leave some of their samples to ResampleSamples
+  uint NeedsInt32;       // cells to repeat with 32-bit integers
+  uint NeedsInt64;       // cells for ResampleCell, which uses 64-bit integers
+  uint SamplesNeedInt64; // cells with undecided samples for ResampleSamples
 } Outcome;
 
-// The samples that floats do not decide: for each round that has some its number, and in the lower 16 bits the cells.
+// The samples that floats do not decide: for each round with such samples, the number of the round, and the bits of
+// the cells in the lower 16 bits.
 typedef struct
 {
   uint Rounds[MAXIMUM_CANDIDATES];
   uint Count;
 } UndecidedSamples;
 
-// Decides samples on the four lines that hold a cell's edges along an axis, where these are parallel to it
-// (ParallelEdges), inside the mesh. Planes bound such a cell on the other two axes, so that the shifts along these lead
-// out of it from its high sides and into it from the low ones: of the four edges it owns what lies between the ends of
-// the lowest one. At an end of an edge along x the shift along x decides, which comes first. Where edges lie along
-// another axis, the face at the end may be bent as seen from there, and the sample is not decided. x, y, z: the
-// samples, in voxels of the output. Returns which cells own theirs, and removes the decided ones from
-// undecidedByFloats.
+// Decides samples on the four edges of a cell along an axis, if these edges are parallel to the axis (ParallelEdges),
+// inside the mesh. Such a cell is bounded by planes on the other two axes. Shifts along these axes lead into the cell
+// from its low sides and out of it from its high sides. So of the four edges the cell owns the part of the lowest one
+// between its ends. At an end of an edge along x, the shift along x decides, as it comes first. At an end of an edge
+// along another axis, the face there may be bent, and the sample is not decided. x, y, z: the samples, in output
+// voxels. Returns the bits of cells that own their sample, and removes the decided ones from undecidedByFloats.
 static __attribute__((noinline)) uint DecideOnEdges(const Packet* packet, const PacketFrame* f,
   const ParallelEdges* edges, FLOATS x, FLOATS y, FLOATS z, uint* undecidedByFloats, INTS* onVertex,
   const KernelParameters* p)
@@ -56,16 +56,16 @@ static __attribute__((noinline)) uint DecideOnEdges(const Packet* packet, const 
   return decided & LaneBits(ownsX | ownsY | ownsZ);
 }
 
-// What became of a packet's candidates. In a round each lane takes one of its own.
+// The result of a packet's rounds. In each round every lane visits one of its candidates.
 typedef struct
 {
   uint Count;
-  uint Writes;    // samples that were found
-  uint NeedsNextStep;   // cells, as bits, with a sample that this step of the exactness chain does not decide
-  uint UndecidedRounds; // how many rounds undecidedSamples has
+  uint Writes;    // number of samples found
+  uint NeedsNextStep;   // bits of cells with a sample that this step of the exactness chain does not decide
+  uint UndecidedRounds; // number of rounds in undecidedSamples
 } Rounds;
 
-// Whether cells inside the mesh have edges of which DecideOnEdges knows, and which.
+// Finds cells inside the mesh with edges for DecideOnEdges. Returns whether there are any.
 static __attribute__((noinline)) int LookForEdges(const Packet* packet, const PacketFrame* frame,
   const SamplingMesh* mesh, ParallelEdges* edges, const KernelParameters* p)
 {
@@ -83,16 +83,15 @@ static __attribute__((noinline)) int LookForEdges(const Packet* packet, const Pa
   return LaneBits(edges->X | edges->Y | edges->Z) != 0;
 }
 
-// Takes the candidates of some cells, as bits. hits: of each round the cells that it has found a sample in. All else
-// is as for ResamplePacket.
+// Visits the candidates of some cells, given as bits. hits: output: the bits of cells with a sample in each round.
+// Other parameters are as for ResamplePacket.
 static __attribute__((always_inline)) void TakeRounds(const PacketCandidates* c,
   const PacketFrame* frame, uint some, const PacketState* state, const SamplingMesh* mesh, Output* output,
   Found* found, UndecidedSamples* undecidedSamples, ushort* hits, Rounds* rounds,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   const Packet* const packet = &c->Cells;
-  // Aligned cells take all their candidates, whatever the second smallest weight is, from which it is told that a
-  // sample is inside.
+  // Aligned cells own all of their candidates, whatever the second smallest weight, which decides otherwise.
   const int hasAligned = c->HasAligned;
   FLOATS decisive = frame->Bound;
   INTS aligned = 0;
@@ -107,7 +106,7 @@ static __attribute__((always_inline)) void TakeRounds(const PacketCandidates* c,
   BeginWalk(c, frame, &at, p);
   uint kept = found->Count;
   ParallelEdges edges;
-  int hasEdges = !state && p->Pass == DEFORMVOLUME_PASS_DIRECT ? -1 : 0; // -1: not known
+  int hasEdges = !state && p->Pass == DEFORMVOLUME_PASS_DIRECT ? -1 : 0; // -1: unknown
   for (;;)
   {
     SampleWeights weights;
@@ -181,9 +180,9 @@ static __attribute__((always_inline)) void TakeRounds(const PacketCandidates* c,
   }
 }
 
-// The samples of a packet of cells. mesh: where state is null. state: where the packet is on the border, if samples
-// that floats do not decide are to be decided by integers: those of the cells in only, as bits. Else null, and
-// undecidedSamples takes these samples. What cells that must be repeated have written is not counted.
+// Resamples a packet of cells. state: if not null, 32-bit integers decide what floats do not, for the cells in `only`
+// (bits); it is the state of the packet at the border. If null, such samples are added to undecidedSamples. mesh:
+// needed if state is null. Writes of cells that must be repeated are not counted.
 static __attribute__((always_inline)) void ResamplePacket(
   const PacketCandidates* c, uint only, const PacketState* state, const SamplingMesh* mesh,
   Output* output, Found* found, UndecidedSamples* undecidedSamples, Outcome* outcome,
@@ -214,14 +213,14 @@ static __attribute__((always_inline)) void ResamplePacket(
   const uint again = bent | needsNextStep;
   if (again)
   {
-    // What these cells wrote so far is written again with them, and must not count twice.
+    // These cells will write their samples again, so these must not be counted twice.
     for (uint i = 0; i < rounds.Count; ++i)
     {
       rounds.Writes -= popcount(hits[i] & again);
     }
   }
   output->Writes += rounds.Writes;
-  // Integers of 32 bits decide who owns a sample.
+  // 32-bit integers decide ownership only, so not in the closed passes.
   outcome->NeedsInt32 = exact || DEFORMVOLUME_IS_CLOSED(p->Pass) ? 0 : needsNextStep;
   outcome->NeedsInt64 = again & ~outcome->NeedsInt32;
 }
@@ -235,7 +234,7 @@ static __attribute__((noinline)) Outcome ResampleByFloats(
   return outcome;
 }
 
-// Returns the cells that are left to ResampleCell.
+// Returns the cells for ResampleCell.
 static __attribute__((noinline)) uint ResampleByIntegers(
   const PacketCandidates* c, uint only, const SamplingMesh* mesh, Output* output, Found* found,
   const KernelParameters* p ARRAY_PARAMETERS)
@@ -250,7 +249,7 @@ static __attribute__((noinline)) uint ResampleByIntegers(
   return outcome.NeedsInt64;
 }
 
-// The samples of some cells, as bits, from beginX to endX, that floats do not decide.
+// Resamples the samples that floats leave undecided, of some cells, given as bits, from beginX to endX.
 static __attribute__((noinline)) void ResampleUndecided(const PacketCandidates* c,
   const UndecidedSamples* undecidedSamples, uint wanted, int beginX, int endX, const SamplingMesh* mesh, Output* output,
   const KernelParameters* p ARRAY_PARAMETERS)
@@ -265,9 +264,9 @@ static __attribute__((noinline)) void ResampleUndecided(const PacketCandidates* 
   Cell cells[LANES];
   SamplingMesh keeping = *mesh;
   const Candidates all = AllCandidates(p);
-  uint begun = 0; // lanes whose cell has been made
-  uint made = 0;  // of these, those that may have samples
-  // It is counted already which cells are inverted.
+  uint begun = 0; // bits of lanes whose cell was made
+  uint made = 0;  // bits of those that may have samples
+  // Inverted cells were counted before.
   const uint inverted = output->Inverted;
   for (uint i = 0; i < undecidedSamples->Count; ++i)
   {
@@ -287,11 +286,11 @@ static __attribute__((noinline)) void ResampleUndecided(const PacketCandidates* 
       }
       const Vector voxel = { x + p->OutputFirst[0], y + p->OutputFirst[1], z + p->OutputFirst[2] };
       const Candidates only = { voxel, voxel };
-      // In the closed passes the sample decides whether the cell is looked at.
+      // In the closed passes, MakeCell tests the sample and not the whole cell.
       if (!(begun >> lane & 1) || DEFORMVOLUME_IS_CLOSED(p->Pass))
       {
         keeping = KeepNeighbours(mesh, cell, c->Cells.Y, c->Cells.Z, near + lane);
-        // No whole cell is divided: there are no views of it.
+        // A whole cell is not divided, so there are no views.
         const int hasSamples = MakeCell(&keeping, cell, c->Cells.Y, c->Cells.Z,
                                  DEFORMVOLUME_IS_CLOSED(p->Pass) ? &only : &all, cells + lane, 0, output, p) &&
           !IsPutOff(cells + lane, &only, output, p);

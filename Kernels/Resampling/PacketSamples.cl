@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The samples that have been found in packets of cells (PacketVertices.cl): how they are kept and stored.
+// Keeps and stores the samples that were found in packets of cells (PacketVertices.cl).
 
 #define LANE_STORE(index, TYPE, BITS, SLOT)                                                        \
   target##index[place] = LANE_CONVERT_##BITS(TYPE, found->Values##index[i]);
 
 typedef ulong __attribute__((may_alias)) TwoInts;
 
-// Two at once: what is read costs as much as what is written.
+// Two values at once: reading costs as much as writing.
 #define LANE_STORE_ALL(index, TYPE, BITS, SLOT)                                                    \
   found->Values##index[count] = found->Values##index[count - 1];                                   \
   _Pragma("clang loop vectorize(disable) unroll_count(4)")                                         \
@@ -19,24 +19,24 @@ typedef ulong __attribute__((may_alias)) TwoInts;
   }
 
 #define FOUND_CAPACITY 256
-#define INVERTED_LANE 16 // added to the lane of a cell whose tetrahedra are inverted
+#define INVERTED_LANE 16 // flag that is added to the lane of an inverted cell
 #define FOUND_VALUES(index, TYPE, BITS, SLOT)                                                      \
   int Values##index[FOUND_CAPACITY + 2 * LANES] __attribute__((aligned(8)));
 
-// Whether samples are kept with their winner's key; else with the lane of their cell.
+// Whether samples are kept with their winner's key; otherwise with the lane of their cell.
 #define KEEPS_KEYS (!HAS_OTHER_ARRAYS && sizeof(KEY) == sizeof(int))
-// Whether the packet matters when samples are stored, so that this happens packet by packet: where their weights
-// are found again, keys are too long, or it is counted where voxels are won.
+// Whether storing samples needs their packet, so that they are stored after each packet: if weights must be computed
+// again, keys are too long, or won voxels are counted.
 #define KEEPS_PACKET(p)                                                                             \
   (HAS_OTHER_ARRAYS || (!KEEPS_KEYS && (p)->Pass != DEFORMVOLUME_PASS_DIRECT) ||                   \
     (p)->Pass == DEFORMVOLUME_PASS_MARK)
 
-// Samples that have been found in cells, before they are stored: many at once, as a loop that ends after
-// a few is mispredicted each time. Appending writes LANES of them whatever their number.
+// Samples that were found but not stored yet. Many are stored at once, as a loop that ends after a few is
+// mispredicted each time. Appending always writes LANES values, whatever the number of samples.
 typedef struct
 {
-  int Places[FOUND_CAPACITY + 2 * LANES] __attribute__((aligned(8))); // in the output
-  int Cells[FOUND_CAPACITY + 2 * LANES]; // as KEEPS_KEYS says; in the first pass for other arrays only
+  int Places[FOUND_CAPACITY + 2 * LANES] __attribute__((aligned(8))); // output voxels
+  int Cells[FOUND_CAPACITY + 2 * LANES]; // keys or lanes (KEEPS_KEYS); in the first pass only used for other arrays
   LANE_ARRAYS(FOUND_VALUES)
   uint Count;
 } Found;
@@ -49,7 +49,7 @@ typedef struct
 
 #define KEEP_VALUE(index, TYPE, BITS, SLOT) found->Values##index[kept] = found->Values##index[i];
 
-// An atomic operation waits for memory, and nothing that follows goes on meanwhile.
+// Prefetches the winners: an atomic operation waits for memory and blocks all following ones.
 static __attribute__((always_inline)) void FetchWinners(const Found* found, const Output* output)
 {
   for (uint i = 0; i < found->Count; ++i)
@@ -58,7 +58,7 @@ static __attribute__((always_inline)) void FetchWinners(const Found* found, cons
   }
 }
 
-// Has the cells claim their samples, and returns how many of these are theirs so far: the first ones then.
+// Lets the cells claim their samples. Moves those that belong to them so far to the front, and returns their number.
 static uint KeepClaimed(Found* found, const Output* output)
 {
   FetchWinners(found, output);
@@ -75,9 +75,9 @@ static uint KeepClaimed(Found* found, const Output* output)
 
 #define FETCH_OUTPUT(index, TYPE, BITS, SLOT) PREFETCH_TO_WRITE(target##index + place)
 
-// Has the processor fetch the output where the samples will be stored. Stores leave one after the other, so that
-// one that misses the innermost cache, or the page table's, keeps all others waiting. For neighbours, which share
-// what is fetched, it is enough to do so for one in four.
+// Prefetches the output where samples will be stored. Stores retire in order, so one that misses the innermost cache
+// or the TLB delays all others. For neighboring samples, which share cache lines, one prefetch for each four is
+// enough.
 static __attribute__((always_inline)) void FetchFound(
   const Found* found, uint count, __global char* coverage ARRAY_PARAMETERS)
 {
@@ -91,14 +91,14 @@ static __attribute__((always_inline)) void FetchFound(
   }
 }
 
-// Stores the samples and forgets them.
+// Stores the samples, and clears the list.
 static void StoreFound(Found* found, const Packet* packet, Output* output,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   const int pass = p->Pass;
   uint count = found->Count;
   __global char* const coverage = output->Coverage;
-  // Bit by bit: compilers warn of a condition that is constant.
+  // Bitwise operators: compilers warn of constant logical conditions.
   if (!HAS_OTHER_ARRAYS &&
     ((pass == DEFORMVOLUME_PASS_DIRECT) | (KEEPS_KEYS & (pass == DEFORMVOLUME_PASS_OWNERS))))
   {
@@ -111,7 +111,7 @@ static void StoreFound(Found* found, const Packet* packet, Output* output,
     {
       return;
     }
-    // The last one twice, where their number is odd.
+    // If the number is odd, the last sample is stored twice.
     found->Places[count] = found->Places[count - 1];
     FetchFound(found, count, coverage ARRAY_ARGUMENTS);
     _Pragma("clang loop vectorize(disable) unroll_count(4)")
@@ -152,8 +152,9 @@ static void StoreFound(Found* found, const Packet* packet, Output* output,
   found->Count = 0;
 }
 
-// Keeps the samples of some cells, as bits. places: in the output. inverted: lanes whose tetrahedra are. kept: how
-// many are kept, in place of found->Count, which memory holds. All are stored where these are too many.
+// Keeps the samples of some cells, given as bits. places: output voxels. inverted: lanes with inverted tetrahedra.
+// kept: the number of kept samples, in place of found->Count, which is in memory. Stores all samples if there are too
+// many.
 static __attribute__((always_inline)) void KeepSamples(const Packet* packet, uint bits, INTS places,
   INTS inverted, const SampleWeights* weights, Found* found, uint* kept, Output* output,
   const KernelParameters* p ARRAY_PARAMETERS)
@@ -165,7 +166,7 @@ static __attribute__((always_inline)) void KeepSamples(const Packet* packet, uin
   Append(places, bits, found->Places + *kept);
   if (KEEPS_KEYS && p->Pass != DEFORMVOLUME_PASS_DIRECT)
   {
-    // The first cell of the row, as the first one of the packet may lie before the volume.
+    // Start from the first cell of the row: the first cell of the packet may lie before the volume.
     const INTS keys = (int)MakeKey(0, packet->Y, packet->Z, 0, p) + (packet->X + 2 * LANE_INDEX);
     Append(keys | (inverted & (int)MakeKey(0, 0, 0, 1, p)), bits, found->Cells + *kept);
   }

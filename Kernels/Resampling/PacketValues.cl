@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The values at samples of packets of cells (PacketVertices.cl): how they are interpolated.
+// Interpolates values at samples of packets of cells (PacketVertices.cl).
 //
-// What the host puts in front of this text:
-//   STORE_OTHER_ARRAYS   statements that store the arrays at a sample that are not LANE_ARRAYS; HAS_OTHER_ARRAYS
-//                        0 or 1
+// The host defines before this text:
+//   STORE_OTHER_ARRAYS   statements that store the arrays that are not LANE_ARRAYS at a sample
+//   HAS_OTHER_ARRAYS     1 if there are such arrays, else 0
 
 #define LANE_RANGE_LOW_char -128.0f
 #define LANE_RANGE_HIGH_char 127.0f
@@ -20,9 +20,9 @@
 #define LANE_CONVERT_8(TYPE, bits) ((TYPE)(bits))
 
 #if HAS_OTHER_ARRAYS
-// The weights and their sum, as of edge functions, of the origin in a tetrahedron of a cell with these vertices.
-// Coordinates are whole numbers of 1/256 voxel under 2^14, so that all numbers are under 2^47, and exact. (What
-// MakeEdgeFunctions and Evaluate are for larger cells, which doubles do not hold.)
+// Finds the weights of the origin in a tetrahedron of a cell with these vertices, and their sum, like edge functions.
+// Coordinates are whole numbers of 1/256 voxel under 2^14, so all numbers are under 2^47, and exact.
+// (MakeEdgeFunctions and Evaluate do the same for larger cells, whose numbers do not fit into a double.)
 static __attribute__((always_inline)) void WeighOrigin(
   const EXACT* x, const EXACT* y, const EXACT* z, int t, long* weights, long* volume)
 {
@@ -43,8 +43,8 @@ static __attribute__((always_inline)) void WeighOrigin(
   weights[0] = *volume - weights[1] - weights[2] - weights[3];
 }
 
-// A sample that is in a cell, for the arrays that want its weights as they are: which of the cell's
-// tetrahedra holds it is found out again, in whole numbers.
+// Stores a sample of a cell for arrays that need exact weights. The tetrahedron that holds the sample is found again,
+// in whole numbers.
 static SELDOM void StoreOtherArrays(
   const Packet* packet, int lane, uint place, const KernelParameters* p ARRAY_PARAMETERS)
 {
@@ -83,15 +83,15 @@ static SELDOM void StoreOtherArrays(
 }
 #endif
 
-// The weights of the cells' vertices at samples (PacketWeights.cl).
+// The weights of the vertices of cells at samples (PacketWeights.cl).
 typedef struct
 {
-  FLOATS T0, T3, T5, T6; // of the central tetrahedron, still to be multiplied by Scale
+  FLOATS T0, T3, T5, T6; // of the central tetrahedron, not yet multiplied by Scale
   FLOATS U1, U2, U4, U7; // of the corners
   FLOATS Scale;
 } SampleWeights;
 
-// The interpolated values v of an array, those of integers rounded: their bits are what LANE_CONVERT takes.
+// Interpolates the values v of an array. Integers are rounded; LANE_CONVERT takes their bits.
 #define INTERPOLATE_LANES(v, TYPE, BITS, SLOT)                                                     \
   FLOATS v;                                                                                        \
   {                                                                                                \

@@ -1,59 +1,61 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A packet of cells: LANES of a row, of equal parity (BrickResampling.cl, ColumnResampling.cl). Where its vertices lie.
+// A packet of cells: LANES cells of a row, of equal parity (BrickResampling.cl, ColumnResampling.cl), and where its
+// vertices are stored.
 //
-// Data: in ROW_MEMORY, a row of vertices: for even, then for odd ones the position in output voxels relative to the
-// first output voxel (x, y, z; float, exact multiples of 1/256), then the values of the arrays that are
+// Data: rows of vertices in ROW_MEMORY. For even, then for odd vertices: the position in output voxels relative to
+// the first output voxel (x, y, z; float, exact multiples of 1/256), then the values of the arrays that are
 // interpolated in single precision, HALF_ROW floats each.
 //
-// What the host puts in front of this text:
-//   ROW_MEMORY           address space of the rows: __local, or __global where local memory is too small
-//   ROW_CELLS, CELL_ROWS cells along a row, and rows of cells between two planes of vertices
-//   LANE_SLOTS           how many arrays have values in a row
-//   LANE_ARRAYS(DO)      DO(index, type, bits, slot) for each of these: linear ones of one component, float
-//                        (bits 32) or integers of 8 or 16 bits
+// The host defines before this text:
+//   ROW_MEMORY           address space of the rows: __local, or __global if local memory is too small
+//   ROW_CELLS, CELL_ROWS number of cells along a row, and of rows of cells between two planes of vertices
+//   LANE_SLOTS           number of arrays with values in a row
+//   LANE_ARRAYS(DO)      DO(index, type, bits, slot) for each of these: linear arrays of one component, float
+//                        (bits 32) or 8- or 16-bit integers
 
 #define HALF_ROW ((ROW_CELLS / 2 / LANES + 1) * LANES)
 #define SLOTS (3 + LANE_SLOTS)
-#define ODD (SLOTS * HALF_ROW)   // from an even vertex to the odd one with the same place
+#define ODD (SLOTS * HALF_ROW)   // offset from an even vertex to the odd one at the same place
 #define ROW (2 * ODD)
 #define ROWS (CELL_ROWS + 1)
-#define NOT_THERE -1e30f // x of places beyond the volume
+#define NOT_THERE -1e30f // x of places outside the volume
 #define NO_SOURCE 1e30f  // x of vertices without position
 #define STEP (1.0f / 256.0f) // of positions, in voxels
 
 typedef ROW_MEMORY const float* LocalRow;
 
-// A value, by its bits, that the sum of products would not give back: -0, not finite, or so large (2^115) that the
-// sum may overflow, as weights add up to the determinant, which is under 2^11.
+// Whether the bits of a value show that a sum of products would not give it back bit for bit: -0, values that are not
+// finite, or values so large (2^115) that the sum may overflow. (Weights add up to the determinant, which is under
+// 2^11.)
 #define IS_SPECIAL(bits) ((((bits)&0x7f800000) >= 0x79000000) | ((bits) == INT_MIN))
 
 #if LANES > 1
-// A row of cells between two rows of vertices in each of two planes. Rows: of places of even x, by bit 0: odd z,
-// bit 1: odd y, as the vertices of a cell have their numbers by the parity of their structured indices
-// (CellCoverage.cl). Odd: the parity of y and z together.
+// A row of cells between two rows of vertices in each of two planes. Rows: places of even x; bit 0 of the index: odd
+// z, bit 1: odd y, as vertices of a cell are numbered by the parity of their structured indices (CellCoverage.cl).
+// Odd: the parity of y + z.
 typedef struct
 {
   LocalRow Rows[4];
-  int X; // of the brick's first place
+  int X; // index of the brick's first cell
   int Y;
   int Z;
   int Odd;
-  uint Borders; // as RowFlags
+  uint Borders; // flags as in RowFlags
   uint Apart;
 } RowOfCells;
 #endif
 
-// Cells from X on, every second one. Side: 1 where these have vertices of even x behind those of odd x. Odd:
-// parity of x, y and z together. Border: whether a vertex may not be interior. Apart: whether a vertex may
-// lie elsewhere as seen from the other side of a smooth cut.
+// Every second cell of a row, from X on. Side: 1 if the vertices of even x come after those of odd x. Odd: the parity
+// of x + y + z. Border: whether a vertex may not be interior. Apart: whether a vertex may have different positions
+// for the two sides of a smooth cut.
 typedef struct
 {
 #if LANES > 1
   LocalRow Rows[4];
 #else
-  LocalRow Row; // of even y and z
-  int OddY;     // from there to the row of odd y
-  int OddZ;     // and to the one of odd z
+  LocalRow Row; // the row of even y and z
+  int OddY;     // offset from Row to the row of odd y
+  int OddZ;     // offset from Row to the row of odd z
 #endif
   int Side;
   int X;
@@ -68,7 +70,7 @@ typedef struct
 // The flags of the vertices of a packet's cells.
 #define PACKET_FLAGS(k) (((2u << (2 * LANES / 8)) - 1) << ((k) >> 2))
 
-// Where the packets at place k are counted.
+// The output that counts the packets at place k.
 #define OUTPUT_OF_SPAN(outputs, k) ((outputs) + 2 * (k) / DEFORMVOLUME_SPAN)
 
 static __attribute__((always_inline)) void MakePacket(
@@ -81,7 +83,7 @@ static __attribute__((always_inline)) void MakePacket(
 }
 #endif
 
-// The row of a vertex of a packet's cells, and the place of that in it.
+// The row of a vertex of a packet's cells, and its place in the row.
 #if LANES > 1
 #define ROW_OF(packet, v) ((packet)->Rows[(v) >> 1])
 #else

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The way of the lanes through the candidates of their cells (PacketCandidates.cl), one after the other.
+// The walk of the lanes through the candidates of their cells (PacketCandidates.cl).
 
-// Where the lanes are among the candidates of their cells.
+// The current candidate of each lane.
 typedef struct
 {
   FLOATS X, Y, Z; // the candidate, relative to vertex 0
-  INTS Place;     // in the output
+  INTS Place;     // index in the output
   FLOATS StartX, StartY;
   FLOATS EndX, EndY;           // between the last candidate and the next voxel
-  INTS ToNextRow, ToNextPlane; // places of the output that are left out after a row, and after a plane
+  INTS ToNextRow, ToNextPlane; // number of output voxels to skip after a row and after a plane
 } Walk;
 
 static __attribute__((always_inline)) void BeginWalk(
@@ -26,7 +26,7 @@ static __attribute__((always_inline)) void BeginWalk(
   at->Place = c->Place;
 }
 
-// To the next candidate of each lane.
+// Moves each lane to its next candidate.
 static __attribute__((always_inline)) void Advance(Walk* at)
 {
   at->X += 1.0f;
@@ -39,7 +39,7 @@ static __attribute__((always_inline)) void Advance(Walk* at)
   at->Place += 1 + WHERE(rowDone, at->ToNextRow) + WHERE(planeDone, at->ToNextPlane);
 }
 
-// The lanes whose candidate is a vertex of their cell, if that is aligned.
+// Returns the lanes whose candidate is a vertex of their cell, which must be aligned.
 static __attribute__((always_inline)) INTS IsOnVertex(const PacketFrame* f, const Walk* at)
 {
   const FLOATS x = at->X + f->X0, y = at->Y + f->Y0, z = at->Z + f->Z0;
@@ -47,7 +47,7 @@ static __attribute__((always_inline)) INTS IsOnVertex(const PacketFrame* f, cons
     ((z == f->Z0) | (z == f->Z7));
 }
 
-// The vertices of their cells that samples are, where IsOnVertex, as masks.
+// Returns the vertices at which samples lie, as masks, for lanes with IsOnVertex.
 static __attribute__((always_inline)) INTS VerticesAt(const PacketFrame* f, const Walk* at)
 {
   INTS vertices = at->X + f->X0 == f->X7 ? (INTS)(2) : (INTS)(1);

@@ -1,58 +1,56 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The weights of a cell's vertices at a sample, for a packet of cells, and which samples these decide
-// (PacketResampling.cl). In floats.
+// Computes, in floats, the weights of a cell's vertices at a sample, for a packet of cells, and finds which samples
+// these weights decide (PacketResampling.cl).
 //
-// The method. The central tetrahedron has the vertices 0, 3, 5, 6 of the cell; l0, l3, l5, l6 are a
-// sample's barycentric coordinates in it. The corner tetrahedra replace one of them by the vertex
-// 1 (for 6), 2 (for 5), 4 (for 3) or 7 (for 0). In a cell that is not too bent a sample has at most
-// one negative coordinate li, and lies behind that face: in the corner's coordinates the corner
-// vertex c has the weight u = li / bi, where bi < 0 is the corner's own coordinate, and the others
-// have tj = lj - u bj. For samples of the central tetrahedron u is 0 and tj = lj. So
+// Method. The central tetrahedron has the vertices 0, 3, 5, 6 of the cell; l0, l3, l5, l6 are a sample's barycentric
+// coordinates in it. Each corner tetrahedron replaces one of these vertices by vertex 1 (for 6), 2 (for 5), 4 (for 3)
+// or 7 (for 0). In a cell that is not too bent, a sample has at most one negative coordinate li, and lies behind that
+// face. In the corner tetrahedron, the corner vertex then has the weight u = li / bi, where bi < 0 is the corner
+// vertex's own coordinate, and the other vertices have tj = lj - u bj. For samples of the central tetrahedron u = 0
+// and tj = lj. So
 //   u = min(li, 0) / bi for each corner,  tj = max(lj, 0) - sum of u bj
-// are the weights of all eight vertices without a branch, and the sample is in the cell where
-// no tj is negative. All coordinates of cells and of samples are left multiplied by the determinant D of the
-// central tetrahedron, and so are the tj, so that nothing waits for a division by it; where D is negative, the
-// normals are turned.
+// are the weights of all eight vertices without a branch, and the sample is in the cell if no tj is negative. All
+// coordinates, and so the tj, are left multiplied by the determinant D of the central tetrahedron, to avoid waiting
+// for a division by D. If D is negative, the normals are reversed.
 //
-// The fill rule stays exact. Positions are exact in float (cells under 8 voxels, steps of 1/256), and so are the
-// normals. Let e = 2^-24, and k >= D the cell's extent times the largest 1-norm of the normals. The three
-// roundings of l3, l5, l6, of D and of the like bj are at most 3 e k, and the errors of l0 = (D - l3) - (l5 +
-// l6) and of the bj with j = 0 at most (4 * 3 + 2 + 2 + 4) e k. With M = max |bj / bi|, and where u is not over
-// 1, tj is off by the errors of lj and bj, M times those of li and bi, 7 M e k as u has six roundings that count
-// and divisions may be off by more than one, and three roundings of its own: at most (9 + 47 M) e k, when i is
-// 0. Up to two more li that are negative only by their error add M times that, 6 M e k, which makes (9 + 53 M) e
-// k. (Where u is over 1 the tj add up to D (1 - u), and the least of them is clearly negative as long as d < D /
-// 3, which cells that are not too flat keep by far.) As the bj are at least 1/64 and bi is at most -1/8, M is at
-// most (1 - bi) / -bi = 9; where the bj are at least 0.35 and bi is at most -0.42, as in cells that are hardly
-// bent, M is at most (0.3 - bi) / -bi < 1.72. So d = 3.2e-5 k, or 6.5e-6 k, which is more by 5 %. The 1-norm is
-// at most the sum of the areas of the box's three faces, as each component of a normal is twice the area of a
-// triangle in such a face. When three of the tj exceed d, the sample is inside; when one is under -d, outside.
-// Floats do not decide what is in between.
+// Exactness. Positions are exact in float (cells under 8 voxels, steps of 1/256), and so are the normals. Let e =
+// 2^-24, and let k >= D be the cell's extent times the largest 1-norm of the normals. The three roundings of l3, l5,
+// l6, of D and of the corresponding bj are at most 3 e k. The errors of l0 = (D - l3) - (l5 + l6) and of the bj with
+// j = 0 are at most (4 * 3 + 2 + 2 + 4) e k. Let M = max |bj / bi|. For u <= 1, the error of tj has these parts: the
+// errors of lj and bj; M times the errors of li and bi; 7 M e k, as u has six roundings that count and divisions may
+// have an error of more than one unit; and three roundings of its own. The sum is at most (9 + 47 M) e k, for i = 0.
+// Up to two more li may be negative only by their error, which adds M times that error, 6 M e k. The total is (9 + 53
+// M) e k. (For u > 1 the tj add up to D (1 - u), and the least tj is clearly negative as long as d < D / 3, which
+// holds by far in cells that are not too flat.) With bj >= 1/64 and bi <= -1/8, M <= (1 - bi) / -bi = 9. With bj >=
+// 0.35 and bi <= -0.42, as in cells that are hardly bent, M <= (0.3 - bi) / -bi < 1.72. So d = 3.2e-5 k or 6.5e-6 k,
+// which includes a reserve of 5 %. The 1-norm is at most the sum of the areas of the box's three faces, as each
+// component of a normal is twice the area of a triangle in such a face. If three of the tj exceed d, the sample is
+// inside. If one is below -d, it is outside. Floats do not decide samples in between.
 //
-// In cells over 8 voxels the normals have rounding errors, too: of a product, at most as large as the face of the
-// box, and of the difference. That adds 2 e k to each product with a normal, 5 e k instead of 3, and makes the
-// above 28 e k instead of 20, (13 + 73 M) e k instead of (9 + 53 M), and d more by a third (INEXACT_NORMALS).
+// In cells over 8 voxels, normals have rounding errors as well: one of a product, at most the size of a face of the
+// box, and one of the difference. This adds 2 e k to each product with a normal: 5 e k instead of 3, 28 e k instead
+// of 20, and (13 + 73 M) e k instead of (9 + 53 M). So d grows by a third (INEXACT_NORMALS).
 
-// Cells that are flatter are left out: d / D, which weights are off by at most, is 1.5e-3 or 7.4e-3 in others.
+// Flatter cells are not decided by floats. For other cells d / D, the largest error of weights, is 1.5e-3 or 7.4e-3.
 #define MOST_BOUND_SCALE 4.35e-3f
 
 // The central tetrahedra of a packet's cells.
 typedef struct
 {
-  // Vertex 0, to which samples are relative, and the opposite one.
+  // Vertex 0, to which samples are relative, and the opposite vertex.
   FLOATS X0, Y0, Z0, X7, Y7, Z7;
-  // Normals: the gradients of l3, l5 and l6. They point inside.
+  // Normals: the gradients of l3, l5 and l6, oriented inwards.
   FLOATS N3x, N3y, N3z, N5x, N5y, N5z, N6x, N6y, N6z;
   FLOATS Determinant;
-  // Coordinates of the corners' vertices: Bcj is bj of vertex c.
+  // Coordinates of the corner vertices: Bcj is bj of vertex c.
   FLOATS B13, B15, B16, B10, B23, B25, B26, B20, B43, B45, B46, B40, B73, B75, B76, B70;
-  FLOATS Bound;  // d: how far the weights may be off
-  INTS Inverted; // cells that are mirror images: all their tetrahedra are inverted
-  uint Turned;   // the same as bits, of cells that fit only
-  uint Nice;     // cells of which floats decide the samples
+  FLOATS Bound;  // d: the largest error of the weights
+  INTS Inverted; // mirrored cells, all of whose tetrahedra are inverted
+  uint Turned;   // Inverted as bits, only for cells that fit
+  uint Nice;     // bits of cells whose samples floats can decide
 } PacketFrame;
 
-// A packet's normals and determinants, as if no cell were inverted.
+// Finds a packet's normals and determinants, as if no cell were inverted.
 static __attribute__((always_inline)) void FindNormals(const PacketCandidates* c, PacketFrame* f)
 {
   const Packet* const packet = &c->Cells;
@@ -74,7 +72,8 @@ static __attribute__((always_inline)) void FindNormals(const PacketCandidates* c
 #if LANES > 1
   const int turned = packet->Odd;
 #else
-  // Every second work-item has an odd cell: a branch would be two ways for all. Signs do where normals are exact.
+  // Every second work-item has an odd cell, and a branch would be divergent. Changing the sign is exact if the
+  // normals are exact.
   const int turned = packet->Odd && c->Extent > EXACT_NORMALS_EXTENT;
 #endif
   if (turned)
@@ -97,8 +96,8 @@ static __attribute__((always_inline)) void FindNormals(const PacketCandidates* c
   f->Determinant = fma(e3z, f->N3z, fma(e3y, f->N3y, e3x * f->N3x));
 }
 
-// Coordinates do not tell a cell from its mirror image, all of whose tetrahedra are inverted. Its normals are turned.
-// fit: the cells that count. Lanes without a cell hold anything.
+// Barycentric coordinates do not distinguish a cell from its mirror image, whose tetrahedra are all inverted: reverse
+// the normals of mirrored cells. fit: the cells to consider; lanes without a cell contain arbitrary values.
 static __attribute__((always_inline)) void TurnInverted(uint fit, PacketFrame* f)
 {
   f->Inverted = 0;
@@ -113,7 +112,7 @@ static __attribute__((always_inline)) void TurnInverted(uint fit, PacketFrame* f
   }
 }
 
-// The coordinates of the corners' vertices.
+// Finds the coordinates of the corner vertices.
 static __attribute__((always_inline)) void FindCoordinates(const Packet* packet, PacketFrame* f)
 {
   LOAD_VERTEX(1)
@@ -139,7 +138,7 @@ static __attribute__((always_inline)) void FindCoordinates(const Packet* packet,
   COORDINATES(7)
 }
 
-// The bounds of the errors, and the cells that are not too bent for these, of those that fit.
+// Finds the error bounds, and the cells that fit and are not too bent for these bounds.
 static __attribute__((always_inline)) void BoundErrors(
   const PacketCandidates* c, uint fit, PacketFrame* f)
 {
@@ -156,7 +155,7 @@ static __attribute__((always_inline)) void BoundErrors(
       (leastOwn >= f->Determinant * -2.0f) & (c->BoundScale * MOST_BOUND_SCALE < f->Determinant));
 }
 
-// fit: the cells that are small and complete, as bits.
+// fit: bits of the cells that are small and complete.
 static __attribute__((always_inline)) void MakePacketFrame(
   const PacketCandidates* c, uint fit, PacketFrame* frame)
 {
@@ -166,7 +165,7 @@ static __attribute__((always_inline)) void MakePacketFrame(
   BoundErrors(c, fit, frame);
 }
 
-// What coordinates are multiplied by to become weights.
+// The factors that turn coordinates into weights.
 typedef struct
 {
   FLOATS Corner1, Corner2, Corner4, Corner7; // 1 / bi of each corner
@@ -176,7 +175,7 @@ typedef struct
 static __attribute__((always_inline)) void FindScales(const PacketFrame* f, PacketScales* scales)
 {
   scales->Central = INVERSE(f->Determinant);
-  // One division for four.
+  // One division for all four inverses.
   const FLOATS product12 = f->B16 * f->B25, product47 = f->B43 * f->B70;
   const FLOATS inverses = INVERSE(product12 * product47);
   const FLOATS inverse12 = inverses * product47, inverse47 = inverses * product12;
@@ -186,7 +185,7 @@ static __attribute__((always_inline)) void FindScales(const PacketFrame* f, Pack
   scales->Corner7 = inverse47 * f->B43;
 }
 
-// The weights at samples. rx, ry, rz: these, relative to vertex 0.
+// Finds the weights at samples. rx, ry, rz: the samples relative to vertex 0.
 static __attribute__((always_inline)) void WeighSamples(const PacketFrame* f,
   const PacketScales* scales, FLOATS rx, FLOATS ry, FLOATS rz, SampleWeights* w)
 {
@@ -209,23 +208,23 @@ static __attribute__((always_inline)) void WeighSamples(const PacketFrame* f,
   w->Scale = scales->Central;
 }
 
-// Returns which of some cells, as bits, hold their sample. undecidedByFloats: those that may hold it. A cell holds it
-// where three weights exceed decisive, and does not where one is under -bound.
+// Returns which of some cells, as bits, hold their sample. A cell holds the sample if three weights exceed
+// `decisive`, and does not if one is below -bound. undecidedByFloats: the cells in between.
 static __attribute__((always_inline)) uint DecideByFloats(
   const SampleWeights* w, uint some, FLOATS decisive, FLOATS bound, uint* undecidedByFloats)
 {
   const FLOATS lowA = Least(w->T3, w->T5), highA = Most(w->T3, w->T5);
   const FLOATS lowB = Least(w->T6, w->T0), highB = Most(w->T6, w->T0);
   const uint maybe = LaneBits(Least(lowA, lowB) >= -bound) & some;
-  // The second smallest weight decides: that opposite the corner may be 0.
+  // The second smallest weight decides: the weight opposite the corner may be 0.
   const FLOATS second = Least(Most(lowA, lowB), Least(highA, highB));
   const uint held = maybe & LaneBits(second > decisive);
   *undecidedByFloats = maybe & ~held;
   return held;
 }
 
-// Where a vertex lies on a sample its value is taken bit for bit: the weights, which rounding may have touched, are
-// made 0 and 1. All other lanes keep their bits, whatever their neighbours are.
+// At a vertex, the sample takes the value of the vertex bit for bit: sets the weights, which may have rounding
+// errors, to 0 and 1. Other lanes keep their bits, whatever their neighbors are.
 static __attribute__((always_inline)) void SnapWeights(
   INTS onVertex, const PacketFrame* f, SampleWeights* w)
 {

@@ -1,41 +1,40 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Resampling: rasterises the five tetrahedra of each cell of the sampling mesh into the output, by
-// the fill rule of CellCoverage.cl, for all arrays of the volume in one pass over the geometry.
+// Resampling: rasterizes the five tetrahedra of each cell of the sampling mesh into the output by the fill rule of
+// CellCoverage.cl, for all arrays of the volume in one pass over the geometry.
 //
-// Data: what the mapping needs (DeformationMapping.cl), state 1 byte a vertex, active tetrahedra 1
-// byte a cell (optional), boundary distances 4 bytes a voxel (optional), a smooth cut (CutCells.cl;
-// optional), the output (VoxelWinners.cl), and the arrays themselves in their own types
-// (SampleStoring.cl).
+// Data: input of the mapping (DeformationMapping.cl), state 1 byte per vertex, active tetrahedra 1 byte per cell
+// (optional), boundary distances 4 bytes per voxel (optional), a smooth cut (CutCells.cl; optional), the output
+// (VoxelWinners.cl), and the arrays in their own types (SampleStoring.cl).
 //
-// A work-group takes a cuboid of cells: it maps the cuboid's vertices into local memory, once each,
-// and then a work-item takes a cell, neighbours side by side. Almost all cells are convex enough
-// that a sample needs the central tetrahedron's edge functions and at most those of the corner
-// behind a face; the others, and those with many samples, take one tetrahedron after the other, row
-// by row. Cells with very many samples are put off (LargeCells.cl).
+// A work-group handles a cuboid of cells. It maps the vertices of the cuboid into local memory, each once. Then each
+// work-item takes one cell, neighboring items neighboring cells. Almost all cells are convex enough that a sample
+// needs the edge functions of the central tetrahedron, and at most those of the corner behind one face. Other cells,
+// and cells with many samples, are resampled one tetrahedron after the other, row by row. Cells with very many
+// samples are put off (LargeCells.cl).
 
-// A cell of the sampling mesh, with the tetrahedra of it that a smooth cut leaves whole; or, with a
-// Side, the copies of the others as they are seen from there.
+// A cell of the sampling mesh, with those of its tetrahedra that a smooth cut does not divide; or, with a Side, a
+// view: the copies of the divided tetrahedra for that side.
 typedef struct ViewedCell
 {
   int X, Y, Z;
-  int Tetrahedra; // those that are there and not flat, as bits
-  int Inverted;   // of these the inverted ones
-  int Clipped;    // of these the ones that the boundary passes through
+  int Tetrahedra; // bits of the tetrahedra that exist and are not flat
+  int Inverted;   // bits of the inverted ones
+  int Clipped;    // bits of those with negative and other boundary distances
 #if HAS_CUT
-  int Side; // -1 for the cell itself
+  int Side; // side of a view; -1 for the cell itself
   CellCut Cut;
   const struct ViewedCell* Whole; // the cell itself
-  const struct ViewedCell* Views; // from side 0 and 1, where tetrahedra are divided
+  const struct ViewedCell* Views; // views of sides 0 and 1, if tetrahedra are divided
 #endif
   CellState State;
   Vector Vertices[8];
-  Vector Low; // bounds of the vertices that are there
+  Vector Low; // bounds of the vertices that have a position
   Vector High;
-  float Distances[8]; // of the vertices to the boundary, where something is clipped
+  float Distances[8]; // boundary distances of the vertices, if a vertex is clipped
 } Cell;
 
-// A cell has one part, or three of which the last two are its views. They are drawn in the order of
-// these numbers. Without a cut there is only the cell itself.
+// A cell has one part, or three if it has two views. Parts are drawn in the order of these numbers. Without a cut
+// there is only the cell itself.
 #if HAS_CUT
 static const Cell* WholeOf(const Cell* part)
 {
@@ -69,9 +68,8 @@ static Vector SamplePosition(Vector voxel)
   return r;
 }
 
-// Whether a sample lies on the far side of the boundary, or on the other side of the cut, by its
-// distance: that is interpolated in the tetrahedron, as values are. weights: those of the sample,
-// as edge functions give them.
+// Whether a sample is left out, because its boundary distance is negative or it lies on the other side of the cut.
+// Distances are interpolated in the tetrahedron like values. weights: of the sample, from edge functions.
 static int IsLeftOut(const Cell* cell, int t, const long* weights)
 {
 #if HAS_CUT
@@ -83,8 +81,7 @@ static int IsLeftOut(const Cell* cell, int t, const long* weights)
   return (cell->Clipped >> t & 1) && WeighDistances(cell->Distances, t, weights) < 0;
 }
 
-// Whether a tetrahedron of the cell that comes before this one, and has the same key, writes a
-// voxel, too.
+// Whether an earlier tetrahedron of the cell with the same key writes the voxel, too.
 static __attribute__((noinline)) int IsWrittenBefore(const SamplingMesh* mesh, const Cell* cell,
   int tetrahedron, Vector voxel, const KernelParameters* p)
 {
@@ -117,10 +114,10 @@ static __attribute__((noinline)) int IsWrittenBefore(const SamplingMesh* mesh, c
 }
 
 #if CUBIC
-// Whether the 64 voxels round a cell are there, and on the near side of the boundary, and so are
-// all tetrahedra of the cell and of the 26 round it, with no smooth cut across them. The vertices
-// are interior then; that they may be, too, beside cells that the boundary of the deformation mesh
-// crosses, which are resampled without their vertices.
+// Whether all 64 voxels around a cell exist with boundary distances that are not negative, and all tetrahedra of the
+// cell and of its 26 neighbors exist and are not crossed by a smooth cut. All vertices of the cell are interior in
+// that case. They may also be interior next to cells at the boundary of the deformation mesh, which are resampled
+// without their vertices.
 static int HasAllAround(const SamplingMesh* mesh, const Cell* cell, const KernelParameters* p)
 {
   if (cell->State.Interior != 255)
@@ -147,7 +144,7 @@ static int HasAllAround(const SamplingMesh* mesh, const Cell* cell, const Kernel
 }
 #endif
 
-// s: of the tetrahedron, as far as it is known.
+// s: the sample of the tetrahedron; Volume is 0 if it was not begun yet.
 static OUTLINED void Write(const SamplingMesh* mesh, const Cell* cell, int t, const long* weights,
   long volume, Sample* s, Vector voxel, int role, Output* output,
   const KernelParameters* p ARRAY_PARAMETERS)
@@ -177,7 +174,7 @@ static OUTLINED void Write(const SamplingMesh* mesh, const Cell* cell, int t, co
   if (p->Pass != DEFORMVOLUME_PASS_DIRECT)
   {
     const KEY key = MakeKey(cell->X, cell->Y, cell->Z, cell->Inverted >> t & 1, p);
-    // It may also be there because the cell is repeated (BrickResampling.cl).
+    // The key may also be there because the cell is repeated (BrickResampling.cl).
     if (p->Pass == DEFORMVOLUME_PASS_OWNERS && output->Winners[target] == key &&
       IsWrittenBefore(mesh, cell, t, voxel, p))
     {
@@ -207,7 +204,7 @@ static OUTLINED void Write(const SamplingMesh* mesh, const Cell* cell, int t, co
   StoreArrays(s ARRAY_ARGUMENTS);
 }
 
-// A box of output voxels, from the lowest to the highest on each axis.
+// A box of output voxels, both ends included.
 typedef struct
 {
   Vector Low, High;
@@ -222,8 +219,7 @@ static Candidates AllCandidates(const KernelParameters* p)
   return all;
 }
 
-// Those of all that may lie within some bounds in 1/256 voxel. open: 1 where the high ones do not
-// count, else 0.
+// Returns the candidates within bounds in 1/256 voxel, among `all`. open: 1 if the upper bounds are excluded, else 0.
 static Candidates FindCandidates(Vector low, Vector high, int open, const Candidates* all)
 {
   Candidates c;
@@ -251,14 +247,13 @@ static long CountCandidates(Candidates c)
     for (voxel.y = c.Low.y; voxel.y <= c.High.y; ++voxel.y)                                        \
       for (voxel.x = c.Low.x; voxel.x <= c.High.x; ++voxel.x)
 
-// A cell whose tetrahedra are all there and upright: a sample behind no face of the central
-// tetrahedron is in it, and a corner tetrahedron holds only samples behind its face. Corner
-// tetrahedra of a cell that is much bent overlap. As in any cell, the lowest tetrahedron comes
-// last, because the last one to write wins.
+// Resamples a cell whose tetrahedra all exist and are upright. A sample behind no face of the central tetrahedron is
+// in the central tetrahedron, and a corner tetrahedron only holds samples behind its face. Corner tetrahedra of a
+// very bent cell overlap. As in any cell, the lowest tetrahedron comes last, because the last write wins.
 static OUTLINED void ResampleUprightCell(const SamplingMesh* mesh, const Cell* cell, Candidates c,
   Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
-  // All that hold a sample write it in turn then.
+  // In the closed passes, all tetrahedra that hold a sample write it in turn.
   const int closed = DEFORMVOLUME_IS_CLOSED(p->Pass);
   const EdgeFunctions central = EdgeFunctionsOf(cell, 4);
   Sample ofCentral;
@@ -300,22 +295,21 @@ static OUTLINED void ResampleUprightCell(const SamplingMesh* mesh, const Cell* c
       }
       if (roleOfCorner == OWNER && beyond == 0 && !closed)
       {
-        break; // on the face: no other corner tetrahedron has the sample inside
+        break; // the sample is on the face, so no other corner tetrahedron contains it
       }
     }
   }
 }
 
-// Rows of fewer samples are not worth clipping.
+// Shorter rows are not worth clipping.
 #define LEAST_CLIPPED_ROW 6
-// By how many samples the ends of a clipped row may be off. They are found in single precision,
-// with an error of less than 2^-20 of their distance from the first sample; that is at most
-// MAXIMUM_STRETCH.
+// The tolerance for the ends of a clipped row, in samples. The ends are found in single precision, with an error of
+// less than 2^-20 of their distance from the first sample, which is at most MAXIMUM_STRETCH.
 #define CLIP_TOLERANCE (1.0f / 64.0f)
 
-// The first and the last one of a row of samples that a tetrahedron may hold; none where the first
-// comes later. weights: at the first sample. steps: from a sample to the next one. zeros: 1 /
-// -steps where these are not 0.
+// Returns the first and the last sample of a row that a tetrahedron may hold; the first is greater if there is none.
+// weights: at the first sample. steps: change from a sample to the next one. zeros: 1 / -steps, where steps are not
+// 0.
 static int2 ClipRow(const long* weights, const long* steps, const float* zeros, long samples)
 {
   float first = 0.0f;
@@ -330,7 +324,7 @@ static int2 ClipRow(const long* weights, const long* steps, const float* zeros, 
   return first > last ? (int2)(1, 0) : (int2)((int)ceil(first), (int)floor(last));
 }
 
-// The samples of a tetrahedron among candidates.
+// Resamples the samples of a tetrahedron among candidates.
 static OUTLINED void ResampleTetrahedron(const SamplingMesh* mesh, const Cell* cell, int t,
   const Candidates* candidates, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
@@ -380,7 +374,7 @@ static OUTLINED void ResampleTetrahedron(const SamplingMesh* mesh, const Cell* c
   }
 }
 
-// Any cell: each tetrahedron on its own. The lowest one last, because the last one to write wins.
+// Resamples any cell, one tetrahedron after the other. The lowest one comes last, because the last write wins.
 static OUTLINED void ResampleTetrahedra(const SamplingMesh* mesh, const Cell* cell,
   const Candidates* all, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
@@ -408,7 +402,7 @@ static OUTLINED void ResampleTetrahedra(const SamplingMesh* mesh, const Cell* ce
   }
 }
 
-// Whether candidates lie in a patch of the output with voxels that are not settled.
+// Whether candidates lie in a patch of the output with unsettled voxels.
 static int AreUnsettled(Candidates c, const Output* output, const KernelParameters* p)
 {
   if (IsEmpty(c))
@@ -422,17 +416,16 @@ static int AreUnsettled(Candidates c, const Output* output, const KernelParamete
   return AnyUnsettled(output->Patches, first, last, p);
 }
 
-// Of cells with more candidates it is faster to take the tetrahedra one after the other, whatever
-// these are.
+// With more candidates it is faster to take one tetrahedron after the other.
 #define MOST_ONE_BY_ONE 128
 
-// The samples of a cell, by whichever of the two ways is right for it. all: those that are wanted.
+// Resamples the samples of a cell by the faster of the two methods. all: the wanted samples.
 static OUTLINED void ResampleSamples(const SamplingMesh* mesh, const Cell* cell,
   const Candidates* all, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   if (cell->Tetrahedra == DEFORMVOLUME_ALL_TETRAHEDRA && cell->Inverted == 0)
   {
-    // Where all ties are decided by the shift, no sample on the upper bounds is ever taken.
+    // If the shift +++ decides all ties, no sample on the upper bounds is owned.
     const int open = cell->State.Interior == 255 && p->Pass == DEFORMVOLUME_PASS_DIRECT;
     const Candidates c = FindCandidates(cell->Low, cell->High, open, all);
     if (IsEmpty(c))
@@ -448,8 +441,8 @@ static OUTLINED void ResampleSamples(const SamplingMesh* mesh, const Cell* cell,
   ResampleTetrahedra(mesh, cell, all, output, p ARRAY_ARGUMENTS);
 }
 
-// The vertices of a cell that lie on the far side of the boundary, as bits; their distances are
-// loaded where there are some.
+// Returns the bits of the vertices of a cell with a negative boundary distance. Loads the boundary distances of the
+// cell.
 static int ClippedVertices(const SamplingMesh* mesh, Cell* cell, const KernelParameters* p)
 {
   if (!p->HasDistances)
@@ -469,9 +462,8 @@ static int ClippedVertices(const SamplingMesh* mesh, Cell* cell, const KernelPar
   return clipped;
 }
 
-// Makes some tetrahedra of a cell, given as bits, those of a cell or a view that has its vertices.
-// present: vertices of these that have a place. clipped: ones on the far side of the boundary.
-// Returns whether one is flat, or left out.
+// Prepares some tetrahedra of a cell or of a view, given as bits. present: vertices that have a position. clipped:
+// vertices with a negative boundary distance. Returns whether one of the tetrahedra is flat, or left out.
 static OUTLINED int MakeTetrahedra(
   Cell* cell, int tetrahedra, int present, int clipped, int odd, Output* output)
 {
@@ -520,8 +512,8 @@ static void AddToBounds(Cell* cell, int present, const Vector* q)
 }
 
 #if HAS_CUT
-// What is known of the vertices of a cell as they are seen from both sides. views: room for two.
-// present: those of the cell that have a place; after that those of each view.
+// Prepares the views of a cell: the positions of vertices for both sides. views: memory for two views. present: bits
+// of vertices that have a position: of the cell (input), then of each view (output).
 static __attribute__((noinline)) void BeginViews(
   const SamplingMesh* mesh, Cell* cell, Cell* views, int* present)
 {
@@ -546,8 +538,8 @@ static __attribute__((noinline)) void BeginViews(
   cell->Views = views;
 }
 
-// What the cell has in common with its views; their tetrahedra. Returns whether one is flat, or
-// left out.
+// Copies what the cell and its views have in common, and prepares their tetrahedra. Returns whether one of these is
+// flat, or left out.
 static __attribute__((noinline)) int FinishViews(
   const Cell* cell, Cell* views, const int* present, int clipped, int odd, Output* output)
 {
@@ -572,8 +564,8 @@ static __attribute__((noinline)) int FinishViews(
 }
 #endif
 
-// What is known of a cell before its samples are, and is counted. views: room for two, where the
-// cell may be divided. Returns whether it may have some samples.
+// Prepares a cell for resampling, and counts it. views: memory for two views, if the cell may be divided. Returns
+// whether the cell may have samples.
 static OUTLINED int MakeCell(const SamplingMesh* mesh, int x, int y, int z, const Candidates* all,
   Cell* cell, Cell* views, Output* output, const KernelParameters* p)
 {
@@ -605,7 +597,7 @@ static OUTLINED int MakeCell(const SamplingMesh* mesh, int x, int y, int z, cons
     return 0;
   }
   const int mirror = Mirror(x, y, z, p);
-  // Orientations, against the one that the parity of the cell asks for.
+  // The expected orientation, from the parity of the cell.
   const int odd = IsTurned(x, y, z, p);
   cell->X = x;
   cell->Y = y;
@@ -627,13 +619,13 @@ static OUTLINED int MakeCell(const SamplingMesh* mesh, int x, int y, int z, cons
   return 1;
 }
 
-// A box in pieces of at most DEFORMVOLUME_PIECE samples, or of one row: so many rows of so many
-// planes.
+// The division of a box into pieces of at most DEFORMVOLUME_PIECE samples, or of one row. Each piece has a number of
+// rows in a number of planes.
 typedef struct
 {
   int Rows;
   int Planes;
-  int InPlane; // pieces of a plane
+  int InPlane; // number of pieces in a plane
   int Count;
 } Pieces;
 
@@ -661,10 +653,10 @@ static Candidates PieceOf(Candidates c, int piece)
   return c;
 }
 
-// Boxes that are smaller, in 1/256 voxel, have at most as many samples as a piece: 40 * 40 * 40.
+// Smaller boxes, in 1/256 voxel, have at most as many samples as a piece: 40 * 40 * 40.
 #define LEAST_LARGE_SIZE (39 * 256)
 
-// Whether the cell is large and has been put into the list of such.
+// Whether the cell is large and was added to the list of large cells.
 static int IsPutOff(
   const Cell* cell, const Candidates* all, Output* output, const KernelParameters* p)
 {
@@ -689,7 +681,7 @@ static int IsPutOff(
   return 1;
 }
 
-// One cell. all: the samples that are wanted.
+// Resamples one cell. all: the wanted samples.
 static OUTLINED void ResampleCell(const SamplingMesh* mesh, int x, int y, int z,
   const Candidates* all, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
@@ -700,7 +692,7 @@ static OUTLINED void ResampleCell(const SamplingMesh* mesh, int x, int y, int z,
   }
 }
 
-// Adds counts to those of a section of a brick.
+// Adds counts to the counters of a section of a brick.
 static void AddCounts(
   const Output* output, size_t section, __global uint* counters, const KernelParameters* p)
 {
@@ -715,7 +707,7 @@ static void AddCounts(
 #define CUBOIDS_X (DEFORMVOLUME_BRICK_X / DEFORMVOLUME_CUBOID_X)
 #define SPANS_OF_CUBOID (DEFORMVOLUME_CUBOID_X / DEFORMVOLUME_SPAN)
 
-// Whether there are cells of a launch in a cuboid with this first cell.
+// Whether a cuboid with this first cell has cells of the launch.
 static int HasCells(int3 first, const KernelParameters* p)
 {
   return first.x + DEFORMVOLUME_CUBOID_X > 0 && first.x < p->Size[0] - 1 &&
@@ -723,20 +715,20 @@ static int HasCells(int3 first, const KernelParameters* p)
     first.z + DEFORMVOLUME_CUBOID_Z > p->LayersBegin && first.z < p->LayersEnd;
 }
 
-// Bricks of a list from p.ListBegin to p.ListEnd (DEFORMVOLUME_BRICK_BITS). A work-group takes a
-// cuboid of cells of a brick, span by span, since counts are those of sections. On x there are
-// the groups of one brick after the other. positions: room for three ints a vertex of the cuboid.
+// Resamples the bricks of a list from p.ListBegin to p.ListEnd (DEFORMVOLUME_BRICK_BITS). A work-group handles a
+// cuboid of cells of a brick, span by span, as counters are those of sections. Groups on x are those of all bricks.
+// positions: memory for three ints per vertex of the cuboid.
 __kernel void Resample(GIVEN_PARAMETERS, __global const uint* bricks, __local int* positions,
   const KernelParameters p ARRAY_PARAMETERS)
 {
   const int place = p.ListBegin + (int)(get_group_id(0) / CUBOIDS_X);
-  const uint brick = place < p.ListEnd ? bricks[place] : 0; // no section of it
+  const uint brick = place < p.ListEnd ? bricks[place] : 0; // 0: a brick without sections
   const int3 first = FirstOfBrick(brick, &p) +
     (int3)((int)get_group_id(0) % CUBOIDS_X * DEFORMVOLUME_CUBOID_X,
       (int)get_group_id(1) * DEFORMVOLUME_CUBOID_Y, (int)get_group_id(2) * DEFORMVOLUME_CUBOID_Z);
-  // That of the first span; the next spans follow.
+  // The section of the first span; the next spans follow.
   const size_t section = SectionOf(first.x, first.y, first.z, &p);
-  int spans = 0; // those that are run, as bits
+  int spans = 0; // bits of the spans that are run
   for (int span = 0; span < SPANS_OF_CUBOID && HasCells(first, &p); ++span)
   {
     spans |= IsSectionRun(brick, section + span) << span;
@@ -750,8 +742,7 @@ __kernel void Resample(GIVEN_PARAMETERS, __global const uint* bricks, __local in
     const int x = first.x + i % width;
     const int y = first.y + i / width % height;
     const int z = first.z + i / (width * height);
-    // Cells beyond the launch's first and last layer are looked at where samples lie on the border
-    // of the mesh.
+    // Samples at the border of the mesh also depend on cells before the first and after the last layer of the launch.
     const int4 q = x >= 0 && y >= 0 && z >= max(p.LayersBegin - 1, 0) && x < p.Size[0] &&
         y < p.Size[1] && z < p.Size[2] && z <= p.LayersEnd + 1
       ? VertexPosition(&unmapped, x, y, z, &p)

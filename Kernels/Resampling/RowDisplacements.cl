@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The displacements of the vertices of a row (BrickMapping.cl), one or sixteen at a time, with the operations of
-// Displacement (DeformationMapping.cl) in the same order. Sixteen come as those of even, then those of odd place.
+// Displacement (DeformationMapping.cl) in the same order. The results for sixteen vertices are those of even places,
+// then those of odd places.
 
 #ifdef __x86_64__
 #define PREFETCH(address) __builtin_prefetch((const void*)(size_t)(address));
@@ -10,17 +11,17 @@
 #define PREFETCH_TO_WRITE(address)
 #endif
 
-#define ROW_PLACES (DEFORMVOLUME_BRICK_X + 16) // of a row that is not split; vectors may reach beyond the end
+#define ROW_PLACES (DEFORMVOLUME_BRICK_X + 16) // number of places of a row; vectors may extend beyond its end
 
 #define LOAD_PLACED(place) *(ROW_MEMORY const PlacedFloat16*)(place)
 
-// A row, and where its displacements come from.
+// A row, and the source of its displacements.
 typedef struct
 {
   const Mapping* Map;
   int Y, Z;
 #if MAPPING == MAPPING_RUNS
-  ROW_MEMORY const float* Displaced; // by places of the brick, x, y and z apart
+  ROW_MEMORY const float* Displaced; // by places of the brick; x, y and z in separate rows
 #elif MAPPING == MAPPING_FIELD_IN_PLACE
   __global const float* Vectors;
 #elif MAPPING == MAPPING_LINKS
@@ -30,8 +31,8 @@ typedef struct
 
 #if MAPPING == MAPPING_RUNS
 
-// Finds the displacements of the vertices of a row from x to end, x, y and z apart, one after the other from
-// place i: affine from one run's begin to the next.
+// Finds the displacements of the vertices of a row from x to end, and stores them from place i on, with x, y and z in
+// separate rows. They are affine within each run.
 static void DisplaceRow(const Mapping* m, int x, int end, int i, int y, int z,
   ROW_MEMORY float* places, const KernelParameters* p)
 {
@@ -55,7 +56,7 @@ static void DisplaceRow(const Mapping* m, int x, int end, int i, int y, int z,
       const RunDisplacement d = MakeRunDisplacement(record, y, z);
       do
       {
-        // From memory one number goes to all lanes at no cost, from another vector it does not.
+        // Broadcasting a number is free from memory, but not from another vector.
         ROW_MEMORY float* const place = places + x;
         const float16 offset = ((float)x + steps) - record->Origin[0];
 #define DISPLACE_AXIS(axis, across)                                                                \
@@ -71,7 +72,7 @@ static void DisplaceRow(const Mapping* m, int x, int end, int i, int y, int z,
   }
 }
 
-// For the vertices from x to end. i: place of x in the brick. displaced: memory for their displacements.
+// Prepares the vertices from x to end. i: place of x in the brick. displaced: memory for their displacements.
 static __attribute__((always_inline)) void BeginRow(DisplacedRow* row, int x, int end, int i,
   ROW_MEMORY float* displaced, const KernelParameters* p)
 {
@@ -79,7 +80,7 @@ static __attribute__((always_inline)) void BeginRow(DisplacedRow* row, int x, in
   DisplaceRow(row->Map, x, end, i, row->Y, row->Z, displaced, p);
 }
 
-// The displacement of vertex x, at place i of the brick.
+// Returns the displacement of vertex x, at place i of the brick.
 static __attribute__((always_inline)) float4 DisplaceOne(
   const DisplacedRow* row, int x, int i, const KernelParameters* p)
 {
@@ -115,7 +116,7 @@ static __attribute__((always_inline)) float4 DisplaceOne(
 static __attribute__((always_inline)) void DisplaceSixteen(const DisplacedRow* row, int x, int i,
   float16* dx, float16* dy, float16* dz, const KernelParameters* p)
 {
-  // Three floats a vertex: the x of the even vertices are every sixth, from the first one on, and so on.
+  // Three floats per vertex: the x of even vertices are every sixth value from the first one on, and so on.
   const float16 v0 = vload16(0, row->Vectors + 3 * x);
   const float16 v1 = vload16(1, row->Vectors + 3 * x);
   const float16 v2 = vload16(2, row->Vectors + 3 * x);
@@ -138,7 +139,7 @@ static __attribute__((always_inline)) void DisplaceSixteen(const DisplacedRow* r
 
 #if MAPPING == MAPPING_LINKS
 
-// The element i of each four, to all of these.
+// Broadcasts element i of each group of four to the whole group.
 #ifdef __clang__
 #define OF_EACH_FOUR(v, i)                                                                         \
   __builtin_shufflevector(v, v, i, i, i, i, i + 4, i + 4, i + 4, i + 4, i + 8, i + 8, i + 8,       \
@@ -149,8 +150,8 @@ static __attribute__((always_inline)) void DisplaceSixteen(const DisplacedRow* r
                i + 12, i + 12, i + 12))
 #endif
 
-// The nodes of four tetrahedra that two places, read as one number, name first and second: loads are what takes
-// longest here.
+// Two node places are read as one 64-bit number, as loads take most of the time here. These macros load the node of
+// the first or second place.
 #ifdef __ENDIAN_LITTLE__
 #define FIRST_NODE(m, places) NODE((m)->Nodes, (ulong)(uint)(places))
 #define SECOND_NODE(m, places) NODE((m)->Nodes, (places) >> 32)
@@ -162,7 +163,7 @@ static __attribute__((always_inline)) void DisplaceSixteen(const DisplacedRow* r
   (float16)(WHICH##_NODE(m, places##0), WHICH##_NODE(m, places##1), WHICH##_NODE(m, places##2),    \
     WHICH##_NODE(m, places##3))
 
-// The displacements of four vertices with links behind one another, with the operations of FollowLink.
+// Returns the displacements of four vertices with consecutive links, with the operations of FollowLink.
 static float16 FollowFourLinks(const Mapping* m, __global const VertexLink* links)
 {
   const float16 four = *(__global const PlacedFloat16*)links;
@@ -202,7 +203,7 @@ static __attribute__((always_inline)) float16 DisplaceFour(
   return FollowFourLinks(row->Map, row->Links + x);
 }
 
-// Links are most of what is read, each once: those of the next row are fetched ahead.
+// Most of the memory that is read are links, each read once: prefetch those of the next row.
 static __attribute__((always_inline)) void FetchAhead(
   const DisplacedRow* row, int x, const KernelParameters* p)
 {
@@ -250,7 +251,7 @@ static __attribute__((always_inline)) void DisplaceSixteen(const DisplacedRow* r
   const float16 d4 = DisplaceFour(row, x + 4, p);
   const float16 d8 = DisplaceFour(row, x + 8, p);
   const float16 d12 = DisplaceFour(row, x + 12, p);
-  // Of two vectors at a time: that is one instruction.
+  // Combine two vectors at a time: this is a single instruction.
   const float16 xyLow =
     (float16)(d0.s08, d4.s08, d0.s4c, d4.s4c, d0.s19, d4.s19, d0.s5d, d4.s5d);
   const float16 xyHigh =

@@ -1,35 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a sample of a tetrahedron is, and how the arrays are interpolated at it and stored.
+// The samples of a tetrahedron, and how arrays are interpolated and stored at samples.
 //
-// What the host puts in front of this text:
-//   REAL                 type of the interpolation: double where the device has it, else float
-//   EXACT                type that holds whole numbers to 2^53: double where the device has it,
-//   else long ARRAY_PARAMETERS     kernel parameters: source and target of each array
+// The host defines before this text:
+//   REAL                 type of the interpolation: double if the device has it, else float
+//   EXACT                type that holds whole numbers to 2^53: double if the device has it, else long
+//   ARRAY_PARAMETERS     kernel parameters: source and target of each array
 //   ARRAY_ARGUMENTS      the same as arguments
 //   STORE_ARRAYS         statements that store all arrays at a sample
-//   CUBIC                whether the interpolation is cubic where it can be; VoxelTaps.cl comes
-//   before this text then
+//   CUBIC                1 for cubic interpolation where possible (VoxelTaps.cl then comes first), else 0
 
-// One sample of one tetrahedron.
+// A sample of a tetrahedron.
 typedef struct
 {
   size_t Target;     // output voxel in the buffers
   size_t Sources[4]; // voxels of the chunk at the tetrahedron's vertices
   REAL Weights[4];   // barycentric weights
-  REAL Scale;        // of the weights as edge functions give them
-  long Volume;       // their sum as these give them, or 0 where all this is not known yet
+  REAL Scale;        // 1 / Volume
+  long Volume;       // sum of the edge functions; 0 if the sample was not begun yet
   int Only;          // the vertex at which the sample lies exactly, or -1
   int Nearest;       // the vertex with the largest weight; of equal ones the lowest voxel
 #if CUBIC
-  int IsCubic;    // whether all voxels and cells are there that a cubic interpolation wants
+  int IsCubic;    // whether all voxels and cells that cubic interpolation needs exist
   int Cell[3];    // local index of the cell, on z counted from the first plane of the chunk
-  int Corners[4]; // of the cell that the vertices are: bits of x, z and y
-  long Along[3];  // where the sample lies in the cell at rest, on x, y and z, from 0 to Volume
+  int Corners[4]; // corners of the cell at the vertices: bits of x, z and y
+  long Along[3];  // position in the cell at rest on x, y and z, from 0 to Volume
 #endif
 } Sample;
 
-// Vertices without weight are not read into the sum: a NaN stays within its tetrahedra. A sample at
-// a vertex takes its value as it is, bit for bit.
+// Vertices without weight are not read, so a NaN does not spread beyond its tetrahedra. A sample at a vertex takes
+// its value bit for bit.
 #define STORE_LINEAR(SOURCE, TARGET, COMPONENTS, CONVERT)                                          \
   for (int c = 0; c < COMPONENTS; ++c)                                                             \
   {                                                                                                \
@@ -49,8 +48,8 @@ typedef struct
     }                                                                                              \
   }
 
-// Integers of 64 bits do not fit into REAL: what is interpolated is the difference to the first
-// vertex, which is exact wherever the values are near to each other.
+// Integers of 64 bits do not fit into REAL. So the difference to the first vertex is interpolated, which is exact if
+// the values are close to each other.
 #define STORE_LINEAR_64(SOURCE, TARGET, COMPONENTS, TYPE, CONVERT)                                 \
   for (int c = 0; c < COMPONENTS; ++c)                                                             \
   {                                                                                                \
@@ -86,7 +85,7 @@ static void StoreArrays(const Sample* s ARRAY_PARAMETERS)
 }
 
 #if CUBIC
-// The voxels on an axis of the cell that a sample lies in.
+// Returns the taps on an axis for the cell that contains a sample.
 static AxisTaps MakeAxisTaps(const Sample* s, int axis)
 {
   const int voxel = s->Cell[axis];
@@ -110,8 +109,8 @@ static AxisTaps MakeAxisTaps(const Sample* s, int axis)
 #define STORE_LINEAR_64(SOURCE, TARGET, COMPONENTS, TYPE, CONVERT)                                 \
   STORE_TAPS_64(taps, SOURCE, TARGET, s->Target, COMPONENTS, TYPE, CONVERT)
 
-// As StoreArrays, cubic at the rest coordinate of the sample: in its tetrahedron that goes linearly
-// from vertex to vertex.
+// Like StoreArrays, with cubic interpolation at the rest coordinate of the sample. In a tetrahedron the rest
+// coordinate is linear between the vertices.
 static __attribute__((noinline)) void StoreCubic(
   const Sample* s, const KernelParameters* p ARRAY_PARAMETERS)
 {
@@ -124,8 +123,7 @@ static __attribute__((noinline)) void StoreCubic(
 }
 #endif
 
-// What all samples of a tetrahedron share. volume: the sum of the weights as the edge functions
-// give them.
+// Sets the data that all samples of a tetrahedron share. volume: the sum of the edge functions.
 static void BeginSamples(
   Sample* s, int x, int y, int z, int t, long volume, const KernelParameters* p)
 {

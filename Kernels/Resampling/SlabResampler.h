@@ -12,41 +12,43 @@
 namespace deformvolume
 {
 
-/// The slabs that an output is made in.
+/// The division of an output into slabs.
 struct SlabPlan
 {
   std::vector<Extent> Slabs;
-  /// Whether there is memory for two, and the driver copies one to the caller while the device
-  /// works on the other.
+  /// Whether two slabs fit into memory, and the driver copies one to the caller while the device
+  /// makes the other.
   bool Overlapped = false;
 
-  /// Which memory a slab is made in, 0 or 1.
+  /// Returns the target in which a slab is made, 0 or 1.
   std::size_t GetTarget(std::size_t slab) const { return this->Overlapped ? slab % 2 : 0; }
 };
 
-/// A way to make the output of a request, one slab after the other.
+/// Interface of the resamplers, which make the output of a request slab by slab.
 class SlabResampler
 {
 public:
   virtual ~SlabResampler() = default;
 
-  /// Begins a new output. Throws an Error where it cannot be made.
+  /// Begins a new output. Throws an Error if it cannot be made.
   virtual void Begin(const DeformRequest& request, const SlabPlan& plan, DeformReport& report) = 0;
-  /// Makes a slab in its target, after what was there is in the memory of the request.
+  /// Makes a slab in its target, after the previous slab there was copied to the memory of the
+  /// request.
   virtual void Make(
     const DeformRequest& request, const SlabPlan& plan, std::size_t slab, DeformReport& report) = 0;
-  /// Begins to copy a target to the memory of the request, in a queue of its own; FinishReading()
-  /// may have to make the copy.
+  /// Begins to copy a target to the memory of the request, in a separate queue. FinishReading() may
+  /// have to do the copy.
   virtual void Read(const DeformRequest& request, std::size_t target) = 0;
-  /// Leaves a target on the device that is the whole output.
+  /// Leaves a target, which must be the whole output, on the device.
   virtual std::vector<std::shared_ptr<DeviceOutput>> Leave(
     const DeformRequest& request, std::size_t target) = 0;
-  /// Waits until all that is read is there. Throws cl::Error where it did not get there.
+  /// Waits until all copies are finished. Throws cl::Error if a copy failed.
   virtual void FinishReading() = 0;
-  /// Waits, whatever has happened, and lets go of the memory of the request. Throws nothing.
+  /// Waits in any case, also after a failure, and releases the memory of the request. Does not
+  /// throw.
   virtual void Finish() noexcept = 0;
 
-  /// Finishes, however a scope is left.
+  /// Calls Finish() when a scope is left, also by an exception.
   class FinishGuard
   {
   public:
