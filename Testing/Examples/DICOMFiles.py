@@ -115,7 +115,7 @@ def set_fields(*slices, **fields):
     return change
 
 
-# What is read.
+# Series that can be read.
 write("plain")
 write("rescaled", change=set_fields(RescaleSlope=1, RescaleIntercept=-1024))
 write("half", change=set_fields(RescaleSlope=0.5, RescaleIntercept=3))
@@ -146,7 +146,7 @@ for name, image in (("projection", uid.ComputedRadiographyImageStorage),
     add(name, same_place=name == "capture")
 write("inverted", change=set_fields(PhotometricInterpretation="MONOCHROME1"))
 add("inverted", "MONOCHROME1", same_values=False)
-# Files that are no slices.
+# Files that are not slices.
 write("other")
 shutil.copy(os.path.join(package, "test-SR.dcm"), path("other", "report.dcm"))
 shutil.copy(os.path.join(package, "dicomdirtests", "DICOMDIR"), path("other", "DICOMDIR"))
@@ -197,7 +197,7 @@ for name in ("MR_small_RLE", "MR_small_jp2klossless", "MR_small_jpeg_ls_lossless
     assert numpy.array_equal(small, numpy.load(path(cases[names.index(name)]["values"]))), name
 
 
-# What is not.
+# Series that cannot be read.
 def add_wrong(name, words, **options):
     write(name, **options)
     wrong.append([name, words])

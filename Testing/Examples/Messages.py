@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the messages of a program may say."""
+"""Checks the wording of messages of a program."""
 import re
 
 from Volumes import call
 
-# What only programmers know: classes, methods, addresses, enumerators and VTK's pipeline. Names of
+# Words that only programmers know: classes, methods, addresses, enumerators and VTK's pipeline. Names of
 # arrays that VTK gives are known to users.
 CODE = re.compile(r"\bvtk(?!GhostType|ValidPointMask)[A-Z]\w*|::|\b[A-Za-z]\w*\(\)|\b0x[0-9a-f]{4}|"
                   r"\b[A-Z]{4,}_[A-Z]+\b|\b[A-Z][a-z]+[A-Z][a-z]\w*|input port|\b[Cc]onnect\b|"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests of an example that draws three pictures side by side and has a twin in Python."""
+"""Tests of an example that draws three pictures side by side, in C++ and in Python."""
 import os
 import sys
 

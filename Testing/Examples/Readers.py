@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What tests have in common that compare deform-volume with SimpleITK, nibabel, pynrrd and pydicom.
+"""Common parts of the tests that compare deform-volume with SimpleITK, nibabel, pynrrd and pydicom.
 Scripts that use these run with the Python of "Testing/packages.sh readers"."""
 import json
 import os

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""vtkFiniteElementDeformation beside CalculiX: displacements of a body of unstructured tetrahedra under its weight, at small
+"""Compares vtkFiniteElementDeformation with CalculiX: displacements of a body of unstructured tetrahedra under its weight, at small
 strains. CalculiX solves the same load case with ten-node tetrahedra (C3D10) of half the size. For a Poisson ratio of 0.3 its
 elements are the same, and it also solves the load case on the same mesh.
 Usage: TestCalculiXElements.py FOLDER"""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""deform-volume says clearly what is wrong, with the right exit code, and deforms as it is told.
+"""deform-volume reports errors with the right text and exit code, and deforms as its options say.
 Usage: TestCommandLine.py PROGRAM FOLDER"""
 import os
 import re
@@ -60,7 +60,7 @@ fails(2, "--displacement", path("in.vti"), "--mesh", path("m.vtu"), "-o", path("
 fails(2, "--nonsense", path("in.vti"), *lattice, *push, "-o", path("o.vti"), "--nonsense")
 fails(2, "--outside", path("in.vti"), *lattice, *push, "-o", path("o.vti"), "--outside", "x")
 
-# Options that do not apply to what is asked for.
+# Options that do not apply.
 mesh = ("--mesh", path("m.vtu"), "--displacement", "D")
 tetgen = ("--tetgen", *push)
 for deformation, option, expected in (
@@ -85,7 +85,7 @@ for deformation, option, expected in (
         (mesh, ("--view", "0,1,0"), "--view requires --image")):
     fails(2, expected, path("in.vti"), *deformation, *option, "-o", path("o.vti"))
 
-# Numbers without a meaning.
+# Invalid numbers.
 for number in ("nan", "inf", "-inf", "many"):
     for deformation, option in ((mesh, "--scale"), (tetgen, "--isovalue"),
                                 (tetgen, "--edge-length"), (tetgen, "--radius-edge-ratio"),
@@ -124,7 +124,7 @@ for suffix in read | {".nii", ".mhd", ".mha", ".nrrd", ".nhdr", ".mgz", ".img", 
 _, errors = call(program, folder, *lattice, *push, "-o", path("o.vti"), code=1)
 assert ("DICOM" in line) == ("a volume is a" not in errors), errors
 
-# What is read is not overwritten, however it is called.
+# Input files are not overwritten, whatever name of them is given.
 with open(path("in.vti"), "rb") as file:
     content = file.read()
 os.symlink("in.vti", path("link.vti"))
@@ -157,7 +157,7 @@ fails(1, "xvfb-run", path("in.vti"), *lattice, *push, "--image", path("o.png"),
 assert not os.path.exists(path("o.vti"))
 assert not os.path.exists(path("o.png"))
 
-# What is asked for.
+# Valid commands.
 output, _ = call(program, "--help")
 for option in ("--mesh", "--displacement", "--rest", "--tetgen", "--lattice", "--push", "--image",
                "--cut", "--smooth-cut", "--carve", "--model", "--pull", "--fix", "--gravity",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""cut-and-pull draws what one of its baselines shows, and so does its twin in Python.
+"""cut-and-pull, in C++ and in Python, draws one of its baselines.
 Usage: TestCutAndPull.py PROGRAM SCRIPT BASELINE FOLDER"""
 import numpy
 from PictureTwins import check_twins

@@ -26,7 +26,7 @@ def path(name):
 
 
 def wait_for(find):
-    """What find() gives once that is something."""
+    """Calls find() until it returns something, and returns that."""
     end = time.monotonic() + PATIENCE
     while time.monotonic() < end:
         found = find()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""deform-interactive and its twin in Python: misuse, and recorded events, which give the arrays that
+"""deform-interactive, in C++ and in Python: misuse, and recorded events, which give the arrays that
 the saved session gives.
 Usage: TestInteractive.py PROGRAM SCRIPT FOLDER"""
 import collections

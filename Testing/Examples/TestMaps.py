@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What deform-volume writes of a deformation itself: the inverse field, by which SimpleITK resamples
-the volume to the same result, and the Jacobian; and densities, whose sum stays.
+"""What deform-volume writes about the deformation: the inverse field, by which SimpleITK resamples
+the volume to the same result, and the Jacobian; and densities, whose sum is preserved.
 Usage: TestMaps.py PROGRAM FOLDER"""
 import os
 import re

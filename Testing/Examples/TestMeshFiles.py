@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """deform-volume reads meshes and sheets of many formats, each with the same result, and says what a
-file holds that it cannot use. Usage: TestMeshFiles.py PROGRAM FOLDER"""
+file contains if it cannot use it. Usage: TestMeshFiles.py PROGRAM FOLDER"""
 import os
 import re
 import shutil
@@ -430,7 +430,7 @@ def write_flipped_meshes():
                    for some in (cells[:half], cells[half:]))
     write(vtkXMLMultiBlockDataWriter(), make_blocks(("left", left), ("right", right)),
           path("other.vtm"), **XML)
-    # What files say themselves.
+    # Files that state their world.
     write(vtkXMLUnstructuredGridWriter(), state_space(grid, "LPS"), path("slicer.vtu"), **XML)
     write(vtkXMLUnstructuredGridWriter(), state_space(left, "LPS"), path("left.vtu"), **XML)
     write_collection(path("mixed.pvd"), [(0, "left.vtu"), (0, "part1.vtu")])

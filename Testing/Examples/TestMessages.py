@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whatever a file or a number is wrong, deform-volume says it in words of its users.
+"""Messages of deform-volume about wrong files and numbers use only words that its users know.
 Usage: TestMessages.py PROGRAM FOLDER"""
 import os
 import sys

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The minimal examples in C++ and Python do the same, and what they say.
+"""The minimal examples in C++ and Python have the same output, and it is what their comments say.
 Usage: TestMinimal.py PROGRAM SCRIPT FOLDER"""
 import os
 import sys

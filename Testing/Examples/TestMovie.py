@@ -52,7 +52,7 @@ call(program, path("in.vti"), "--model", "fem", *common, "--movie", path("m.png"
      path("o.vti"), "--quiet")
 frames = [read(f"m{i:04}.png") for i in (1, 2)]
 assert not os.path.exists(path("m0003.png")) and not os.path.exists(path("m.png"))
-# The camera stays: what was before does not change, and what follows goes on.
+# The camera stays: earlier frames do not change, and later ones continue.
 assert (frames[0][:, :700] == frames[1][:, :700]).all()
 moved = [(numpy.abs(frame[60:, :700] - frame[60:, 700:]).max(axis=2) > 24).mean() for frame in frames]
 assert 0.002 < moved[0] < 0.8 * moved[1] < 0.3, moved

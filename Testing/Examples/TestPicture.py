@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""deform-volume draws a picture that shows the volume, and what has changed, on the right.
+"""deform-volume draws a picture with the volume at rest on the left, and the deformed volume on the right.
 Usage: TestPicture.py PROGRAM FOLDER"""
 import os
 import sys

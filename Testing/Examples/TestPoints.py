@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""deform-volume moves points with the volume: SimpleITK's transforms lead them back to where they were.
+"""deform-volume moves points with the volume: SimpleITK's transforms map them back to their places.
 Usage: TestPoints.py PROGRAM FOLDER"""
 import json
 import os
@@ -347,7 +347,7 @@ for name, options in (("fem", model), ("cut", (*model, "--cut", path("sheet.obj"
     numbers.append(check_middles(name, options))
 assert numbers[1] > numbers[0] > numbers[2], numbers
 check_middles("mesh", ("--mesh", path("mesh.vtu"), "--displacement", "Displacement"))
-# Far away all is kept, and nothing is outside.
+# With --keep no point is outside, and points far away stay.
 move("moving.mha", ("--mesh", path("mesh.vtu"), "--displacement", "Displacement", "--keep", "5"), ["landmarks.csv"])
 assert (read_table("moved-landmarks.csv")[-1:] == outside).all()
 

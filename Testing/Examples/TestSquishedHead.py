@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""squished-head draws what one of its baselines shows, and so does its twin in Python: a head at rest, and one pulled by
+"""squished-head, in C++ and in Python, draws one of its baselines: a head at rest, and one pulled by
 its nose, by finite elements and by springs. Usage: TestSquishedHead.py PROGRAM SCRIPT BASELINE FOLDER"""
 import re
 

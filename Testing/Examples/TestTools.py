@@ -76,7 +76,7 @@ fails(2, "--push", *cut, "--push", "1,2,3,4,5,6,7")
 
 
 def deform(image, field=None):
-    """What the filters make of it."""
+    """The output of the filters."""
     if field is None:
         field = vtkImageData()
         field.SetDimensions(2, 2, 2)
@@ -160,7 +160,7 @@ output, _ = check("pulled.vti", deform(carver.GetOutput(), chain_mail.GetOutput(
                   *pull)
 assert f"{chain_mail.GetNumberOfMovedVoxels()} voxels moved" in output
 
-# Tools beside the volume do nothing, and that is said.
+# Tools beside the volume do nothing, with a warning.
 write_sheet("far.vtp", bounds[1] + 100)
 _, errors = call(program, path("in.vti"), "--cut", path("far.vtp"), "-o", path("far.vti"))
 assert "crosses nothing" in errors, errors

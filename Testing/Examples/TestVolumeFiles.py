@@ -17,7 +17,7 @@ def path(name):
     return os.path.join(folder, name)
 
 
-# What others wrote, and what is written of that.
+# Files of other programs, and the files that deform-volume writes from them.
 Readers.run("VolumeFiles.py", folder)
 written_again = {f"{kind}.{suffix}" for kind, suffix in (
     ("uint8", "mha"), ("int8", "mhd"), ("uint16", "nii"), ("int16", "nii.gz"), ("uint32", "mha"),

@@ -233,13 +233,13 @@ for name in ("q.nii.gz", "q-mirrored.nii.gz", "both.nii", "s-mirrored.nii", "one
 for unit, millimetres in ((1, 1000), (3, 0.001), (0, 1)):
     write_nifti(f"unit{unit}.nii", values, oblique, other, xyzt_units=unit)
     add_nifti(f"unit{unit}.nii", millimetres=millimetres)
-# The sign of pixdim counts nothing where there is an s-form.
+# With an s-form the sign of pixdim is ignored.
 write_nifti("negative.nii", values, oblique)
 with open(path("negative.nii"), "rb+") as file:
     file.seek(80)
     file.write(numpy.float32(-0.7).tobytes())
 add_nifti("negative.nii")
-# Whole numbers stay whole numbers where slope and intercept are.
+# Integers stay integers if slope and intercept are integers.
 for number, (kind, slope, result) in enumerate((
         ("int16", (1, -1024), "int32"), ("uint8", (2, -3), "int16"), ("uint16", (1, -1024), "int32"),
         ("int32", (1, 5), "float64"), ("uint8", (0.5, 0), "float32"), ("int16", (0.1, 3.3), "float32"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the tests of the ParaView plugin share: the plugin's place, messages, pipelines, checks."""
+"""Common parts of the tests of the ParaView plugin: the path of the plugin, messages, pipelines, checks."""
 
 import contextlib
 import os
@@ -26,7 +26,7 @@ def load_plugin(remote=False):
 
 
 def plugin_proxies():
-    """The elements of the proxies that a user meets, each with all that it is based on."""
+    """The elements of the proxies that users see, each with all proxies that it is based on."""
     elements = {}
     for name in sorted(os.listdir(PLUGIN_SOURCE)):
         if name.endswith(".xml"):
@@ -46,7 +46,7 @@ def plugin_proxies():
 
 
 def check(condition, text):
-    """Ends the test where something is wrong."""
+    """Ends the test if a condition is false."""
     if not condition:
         raise AssertionError(text)
 
@@ -158,7 +158,7 @@ def bent_lattice(volume, nodes=6, array="Displacement", function="0.05*coordsY*c
 
 
 def deformed(volume, deformation, **properties):
-    """A filter that is up to date, with its properties of information."""
+    """A filter after an update, with its information properties."""
     filter_ = simple.DeformVolume(Volume=volume, Deformation=deformation, **properties)
     filter_.UpdatePipeline()
     filter_.UpdatePipelineInformation()

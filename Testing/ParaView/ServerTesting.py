@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A pvserver for the time of a test. Without ParaView's modules: what has loaded MPI starts no mpiexec."""
+"""A pvserver for the time of a test. Imports no module of ParaView, because a process
+that has loaded MPI cannot start mpiexec."""
 
 import socket
 import subprocess
@@ -13,7 +14,7 @@ def free_port():
 
 
 class Server:
-    """Starts with the block that it is used in, and is gone after it."""
+    """A context manager: the server runs within its block."""
 
     def __init__(self, command, log, environment=None):
         self.port = free_port()
@@ -45,7 +46,7 @@ class Server:
             return log.read()
 
     def wait(self):
-        """Until the server has ended, after its client."""
+        """Waits until the server has ended, after its client."""
         self.process.wait(timeout=60)
         if self.process.returncode != 0:
             raise AssertionError(f"The server ends with {self.process.returncode}: {self.log()}")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A deformation mesh over ten time steps, from files: the animation links the voxels once and sends
-the volume once, and each step has the voxels that a fresh filter gives. An Exodus file, by either of
-ParaView's readers, plays as the .pvd file does."""
+"""A deformation mesh over ten time steps, from files. The animation builds one static mapping and uploads the
+volume once, and each step has the voxels of a new filter. An Exodus file, by either of ParaView's readers,
+gives the same as the .pvd file."""
 
 import os
 
@@ -19,7 +19,7 @@ STEPS = 10
 
 
 def displacements(points, time):
-    """Swings, so that the steps do not grow one from the other."""
+    """Displacements of a step. They swing, so that a step does not follow from the last one."""
     x, y, z = points.T
     amount = 3.0 * numpy.sin(2.0 * numpy.pi * time / STEPS + 0.3)
     return numpy.stack(
@@ -113,7 +113,7 @@ def main():
 
     play(filter_)
     seen = []
-    # Forwards, then a jump back: nothing may accumulate.
+    # Forwards, then a jump back: errors must not accumulate.
     for step in list(range(STEPS)) + [2]:
         scene.AnimationTime = 0.5 * step
         filter_.UpdatePipeline(keeper.Time)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The proxies' results against those of the classes used without ParaView's server manager: a head
-of an MRI, and ParaView's wavelet with several arrays and all kinds of deformation."""
+"""Compares results of the proxies with those of the classes without ParaView's server manager: for the MRI of a
+head, and for ParaView's wavelet with several arrays and all kinds of deformation."""
 
 import deformvolume_vtk
 import numpy
@@ -141,7 +141,7 @@ def test_wavelet():
 
 
 def test_geometry():
-    """Surfaces that follow the wavelet, and are led back."""
+    """Surfaces that are moved with the wavelet, and back to rest."""
     volume = wavelet(6)
     mesh = bent_lattice(volume)
     ball = simple.Sphere(Radius=4)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ChainMail Deformation with handles, materials and ranges, and Deform Volume behind it."""
+"""ChainMail Deformation with handles, materials and ranges, and Deform Volume with its output."""
 
 import deformvolume_vtk  # noqa: F401, the class of the object on the server
 from paraview import simple
@@ -36,7 +36,7 @@ def main():
     assert drag.PointData["Displacement"].GetRange(0) == (0.0, 3.0)
     assert made.GetNumberOfMovedVoxels() == 231, made.GetNumberOfMovedVoxels()
     assert "Voxels moved: 231" in drag.Summary, drag.Summary
-    # Ranges: all of it is stiffer, so that more moves.
+    # Ranges: the whole volume is stiffer, so more voxels move.
     drag.MaterialRanges = [0, 1000, 7]
     handles.Script = HANDLES % 4
     drag.Reset()
@@ -50,7 +50,7 @@ def main():
     drag.Reset()
     deformed.UpdatePipeline()
     assert (drag.PointData["Displacement"].GetRange(-1), made.GetNumberOfMovedVoxels()) == whole
-    # Nothing holds it any more, and all is put to rest.
+    # Without handles the volume returns to rest.
     drag.Handles = None
     drag.Reset()
     deformed.UpdatePipeline()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The graphical client in an X server of its own: it loads the plugin and a state, shows the volume as
-pvpython does, and survives a filter with a rest mesh and no deformation with one message."""
+pvpython does, and reports one error for a filter with a rest mesh but without a deformation."""
 
 import os
 import re
@@ -67,7 +67,7 @@ def save_state():
 
 def start_client():
     home = os.path.join(FOLDER, "home")
-    # Without a greeting that has to be closed, and whatever settings the user has.
+    # Without a welcome dialog, and independent of the user's settings.
     settings = os.path.join(home, ".config", "ParaView")
     os.makedirs(settings)
     version = ".".join(

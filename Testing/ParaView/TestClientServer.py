@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A server and a client: the plugin is loaded on both, data and properties go both ways, and the list
-of devices is the server's: the client of this test has none."""
+"""A server and a client: the plugin is loaded on both, data and properties are passed in both directions, and
+the list of devices is that of the server. The client of this test has no device."""
 
 import os
 import re

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Cutting and carving in ParaView: by a sheet, by widgets' functions, by a surface and by a label, with
-undo and redo, what is hidden in views, and what Deform Volume makes of it."""
+undo and redo, hidden cells in views, and the output of Deform Volume."""
 
 from paraview import simple
 
@@ -81,7 +81,7 @@ def check_carve(volume):
     by_label = active(simple.CarveVolumeLabel(Volume=labels, Labels="label", Label=1))
     check(off(by_label) > 0, "the label carves nothing")
 
-    # One filter does what took three.
+    # One filter with three tools.
     one = simple.CarveVolume(Volume=labels)
     check(one.Labels == "", f"the labels are at first {one.Labels}")
     check(off(active(one)) > 0, "the body carves nothing at first")
@@ -95,7 +95,7 @@ def check_carve(volume):
 
 
 def check_hidden(volume):
-    """Views and filters leave out what is cut."""
+    """Views and filters leave out the cells that are cut."""
     cut = simple.CutVolumeWithPlane(Volume=volume)
     middle = [list(cut.Plane.Center), list(cut.Plane.BoundingBox)]
     check(middle == [[0, 0, 0], [-10, 10] * 3], f"the plane is put to {middle}")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Misuse through the proxies: one readable message for each update, a living process, and a filter
-that works once its input is right."""
+"""Misuse through the proxies: each update reports one readable message, the process does not end, and the
+filter works when its input is right."""
 
 from paraview import simple
 
@@ -43,7 +43,7 @@ def main():
     filter_.Volume = volume
     check_works(filter_)
 
-    # Without a deformation the volume itself comes out.
+    # Without a deformation the output is the volume itself.
     simple.SetActiveSource(None)
     filter_ = simple.DeformVolume(Volume=volume)
     texts = update(filter_)

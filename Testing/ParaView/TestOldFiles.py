@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""State files and a Python script of version 0.1: what was removed is one warning each, the voxels come, and a
-state that is saved then loads silently. Filters that are not in the menu any more work as they did: TestOldFiles.py
-FOLDER-OF-DATA."""
+"""State files and a Python script of version 0.1 load: one warning for each removed setting, the same voxels, and a
+state that is saved afterwards loads without warnings. Filters that are no longer in the menu still work:
+TestOldFiles.py FOLDER-OF-DATA."""
 
 import os
 import sys

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Mass-Spring and Finite-Element Deformation with handles, materials and times, and Deform Volume
-behind them."""
+with their output."""
 
 import deformvolume_vtk  # noqa: F401, the classes of the objects on the server
 from paraview import simple
@@ -37,7 +37,7 @@ def check_elements(volume, mesh, handle):
     deformed.UpdatePipeline()
     bounds = deformed.GetDataInformation().GetBounds()
     assert bounds[5] > 13.0, bounds
-    # What is said of the last update follows each one.
+    # Information properties are those of the last update.
     handle.Position = [0, 0, 11]
     assert abs(largest(fem) - 1.0) < 1e-6
     handle.Position = [0, 0, 14]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every property of every proxy: its default is that of the class, and what is set reaches that property
-of the proxy's object, and no other. Then each is set to its extremes: the process lives, an error is
-one readable message, and the defaults work afterwards. Then what ParaView shows."""
+"""For every property of every proxy: its default is that of the class, and setting it changes that property of
+the proxy's object and no other. Then each is set to its extremes: the process does not end, an error is one
+readable message, and the defaults work afterwards. At the end, what ParaView's panels show."""
 
 import re
 
@@ -61,7 +61,7 @@ def read_presets(instance):
 
 
 def read_ranges(instance):
-    """The class prints them only."""
+    """Of a class that only prints them."""
     printed = re.search(r"MaterialRanges:\n((?: +\S+ to \S+: \d+\n)*)", str(instance)).group(1)
     ranges = re.findall(r"(\S+) to (\S+): (\d+)", printed)
     check(len(ranges) == instance.GetNumberOfMaterialRanges(), f"{ranges} are printed")
@@ -289,7 +289,7 @@ def check_all_reach(sources):
 HUGE = 1e300
 BAD_NUMBERS = [-HUGE, HUGE, 0.0, 1e-300, float("nan"), float("inf")]
 BAD_TEXTS = ["", "none of these", "x" * 10000, "\u00e9\u4e2d\n\"'<>&"]
-# Has a part of its own.
+# Tested separately.
 SKIPPED = {"NumberOfNodes"}
 
 
@@ -349,7 +349,7 @@ def check_extremes(make, names):
 
 
 def check_limits(make):
-    """Panels offer what the class works with. TestProxies.py looks at classes that clamp."""
+    """Panels offer only values that the class accepts. TestProxies.py looks at classes that clamp."""
     for name, smproperty in properties_of(make()).items():
         enumeration = smproperty.FindDomain("vtkSMEnumerationDomain")
         kind = re.sub("VectorProperty$", "RangeDomain", smproperty.GetClassName())
@@ -379,7 +379,7 @@ def check_limits(make):
 
 
 def check_shown(make):
-    """Panels show what is there after an update, without asking for it."""
+    """Panels show current values after an update, without a request."""
     proxy = make()
     instance = proxy.GetClientSideObject()
     information = {

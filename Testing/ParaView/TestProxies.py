@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every algorithm of the module has a proxy, every method that sets, adds, tells or does something has a
+"""Every algorithm of the module has a proxy, every method that sets, adds, returns or does something has a
 property, and the ranges and enumerations in the XML are those of the class. TestProperties.py has the
 defaults, and sets the properties."""
 
@@ -59,9 +59,9 @@ WITHOUT_PROPERTY = {
 # What Carve Volume and Finite Element Deformation do now: not in the menu, and there for state files and
 # scripts.
 FORMER_PROXIES = {"CarveVolumeLabel", "CarveVolumeWithSurface", "CorotationalDeformation"}
-# A panel has at most so many widgets before the user asks for advanced ones.
+# The most widgets that a panel may have without advanced ones.
 MOST_WIDGETS = 8
-# Numbers of enumerators that there are no more.
+# Numbers of removed enumerators.
 REMOVED_VALUES = {"PieceMode": {1}, "Resampler": {1}}
 
 failures = []

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The output of the filter shows up as a volume, in the colours of its input: a head of an MRI, pushed
-in from the front."""
+"""The output of the filter is drawn as a volume, in the colors of its input: the MRI of a head, pushed in from
+the front."""
 
 import os
 import sys

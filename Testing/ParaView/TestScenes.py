@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pictures of what the plugin's filters do. A scene passes where it is within the limit of its
-baseline, and where its spoiled twin and the scene shifted by one voxel differ by twice that or more.
+"""Pictures of the plugin's filters. A scene passes if it is within its limit of the baseline, and if a spoiled
+variant and the scene shifted by one voxel differ from the baseline by at least twice the limit.
 
 Usage: TestScenes.py FOLDER_OF_BASELINES [--update]"""
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A state saved and loaded again, as .pvsm and as a Python script, each in a new process: all
-properties and all voxels come back."""
+properties and all voxels are as before."""
 
 import json
 import os

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Plugins for another ParaView than the running one: each is told in one message, and the process
-lives. The plugin for this one is silent."""
+"""A plugin for another version of ParaView gives one message, and the process does not end. The plugin for this
+version gives none."""
 
 import contextlib
 import sys

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Deforms a volume in pvbatch and saves the result: data as <prefix>.pvti, a picture as <prefix>.png.
-What is cut, carved and dragged by ChainMail is saved as <prefix>-edited.pvti, and deformed by that as
-<prefix>-dragged.pvti.
+The volume that is cut, carved and dragged by ChainMail is saved as <prefix>-edited.pvti, and deformed by
+these displacements as <prefix>-dragged.pvti.
 
 Arguments: the plugin, the prefix, the volume (.vti), the deformation mesh (.pvtu), the number of ranks
 that there should be.
@@ -20,7 +20,7 @@ lattice = TetrahedralLattice(NumberOfNodes=[7, 7, 7], EqualSpacing=False, Bounds
 lattice.UpdatePipeline()
 if lattice.GetDataInformation().GetNumberOfCells() != 5 * 6**3:
     sys.exit(f"{ranks} ranks make {lattice.GetDataInformation().GetNumberOfCells()} cells")
-# ParaView deals the pieces of the file out to the ranks.
+# ParaView distributes the pieces of the file over the ranks.
 mesh = simple.XMLPartitionedUnstructuredGridReader(FileName=[mesh_file])
 deformed = DeformVolume(Volume=volume, Deformation=mesh)
 deformed.DisplacementArray = ["POINTS", "displacement"]

@@ -25,7 +25,7 @@ from PluginTesting import (
     wavelet,
 )
 
-# What the last rank, or none, has of a mesh.
+# A mesh on the last rank only, or on none.
 ON_ONE_RANK = """
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 if vtkMultiProcessController.GetGlobalController().GetLocalProcessId() == {rank}:
@@ -57,7 +57,7 @@ def update(filter_):
 
 
 def whole_image(proxy):
-    """What all ranks have; ParaView's Fetch gives the first rank's piece."""
+    """The data of all ranks. ParaView's Fetch returns the piece of the first rank."""
     path = os.path.join(OUTPUT, "ServerRanksClient.pvti")
     simple.SaveData(path, proxy=proxy, DataMode="Binary")
     reader = vtkXMLPImageDataReader()

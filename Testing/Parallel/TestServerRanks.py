@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A client and a pvserver of three ranks: the voxels are those of one process, properties of information
-are those of all ranks, a mesh may lie on one rank only, and an error is one message.
+"""A client and a pvserver of three ranks: the voxels are those of one process, information properties
+are those of all ranks, the mesh may be on one rank only, and an error is one message.
 
 Arguments: mpiexec, pvserver, pvpython, the folder for output.
 """
@@ -17,7 +17,7 @@ from ServerTesting import Server  # noqa: E402
 RANKS = 3
 mpiexec, pvserver, pvpython, output = sys.argv[1:]
 log = os.path.join(output, "TestServerRanks.log")
-# What each rank says in a file of its own: mpiexec mixes the middles of lines.
+# Each rank writes to its own file, because mpiexec mixes lines.
 for old in glob.glob(f"{glob.escape(log)}.*"):
     os.remove(old)
 with_log = ["sh", "-c", f'exec "$0" "$@" 2>"{log}.$$"', pvserver]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every class of the package: made and printed, set and read back, updated without input, and with
-headers that follow VTK's rules. What is wrong with any of them is listed at the end."""
+"""Creates and prints every class of the package, sets and reads its properties, updates it without input,
+and checks that headers follow VTK's rules. Lists all failures at the end."""
 
 import inspect
 import os
@@ -56,7 +56,7 @@ def properties(cls):
 
 
 def other_values(value):
-    """Values of the same type to be set in turn."""
+    """Values of the same type, to be set one after the other."""
     if isinstance(value, bool):
         return [not value]
     if isinstance(value, int):
@@ -70,7 +70,7 @@ def other_values(value):
     return None
 
 
-# Numbers of former enumerators, which become another one, with a warning.
+# Numbers of removed enumerators. They set another one, with a warning.
 REMOVED_VALUES = {"vtkTetGenMesher.PieceMode": 1}
 
 

@@ -23,7 +23,7 @@ def turn(axis, degrees):
 
 
 class Grid:
-    """Where the points of an image lie."""
+    """The grid of the points of an image."""
 
     def __init__(self, extent, origin=(0, 0, 0), spacing=(1, 1, 1), direction=np.eye(3)):
         self.extent, self.origin = extent, np.array(origin, dtype=float)
@@ -108,7 +108,7 @@ def make_filter(volume, field, inverse=True):
     return deform
 
 
-# A volume and a field that share nothing.
+# A volume and a field with different grids.
 grid = Grid((-4, 15, 3, 20, -1, 14), (5, -7, 11), (1.0, 1.4, 1.9), turn(2, 30) @ turn(0, -20))
 middle = grid.get_points().reshape(-1, 3).mean(axis=0)
 shape = grid.size[::-1]
@@ -133,7 +133,7 @@ def make_vectors(points, strength):
 vectors = make_vectors(field_grid.get_points(), 2.0).astype(np.float32)
 field = field_grid.make_image(b=vectors)
 
-# Misuse: one error that says what to do; then the same filter works.
+# Misuse: one error that says what to do. Then the same filter works.
 deform = make_filter(volume, field)
 messages = []
 
@@ -235,13 +235,13 @@ deform.SetOutputBoundsModeToDeformedBounds()
 deform.SetDisplacementScale(1.0)
 deform.SetBackgroundValue(0)
 
-# Voxels outside the field discard or follow its border.
+# Voxels outside the field are discarded, or have the vector of its border.
 deform.SetOutsideModeToExtrapolate()
 _, covered = compare(deform, vectors, extrapolate=True)
 check_bounds(deform, vectors, covered, extrapolate=True)
 deform.SetOutsideModeToDiscard()
 
-# A field that folds, and a moved one in the same object.
+# A field that folds. Then the same object gets a field that does not.
 strong = make_vectors(field_grid.get_points(), 25.0).astype(np.float32)
 vtk_to_numpy(field.GetPointData().GetArray("b"))[:] = strong.reshape(-1, 3)
 field.GetPointData().GetArray("b").Modified()
@@ -268,7 +268,7 @@ cut = np.s_[part[4] - extent[4]:part[5] - extent[4] + 1, part[2] - extent[2]:par
 for name in (*arrays, "vtkValidPointMask"):
     assert np.array_equal(get(parts.GetOutput(), name), get(whole, name)[cut]), name
 
-# Nothing moves: bit for bit the volume, linear and cubic.
+# A field of zero: the volume bit for bit, linear and cubic.
 still = grid.make_image(b=np.zeros((*shape, 3)))
 deform.SetDeformationData(still)
 for interpolation in (Filter.LINEAR_INTERPOLATION, Filter.CUBIC_INTERPOLATION):
@@ -279,7 +279,7 @@ for interpolation in (Filter.LINEAR_INTERPOLATION, Filter.CUBIC_INTERPOLATION):
         assert np.array_equal(get(deform.GetOutput(), name), values), name
     assert get(deform.GetOutput(), "vtkValidPointMask").all()
 
-# By whole voxels to and fro: forward and inverse are the same, and so is a change between them.
+# Shifts by whole voxels: forward and inverse fields give the same, also when one replaces the other.
 step = grid.matrix @ (2, -1, 3)
 outputs = []
 there = make_filter(volume, grid.make_image(b=np.broadcast_to(step, (*shape, 3)).copy()), False)
@@ -321,7 +321,7 @@ mirrored = make_filter(ramp, mirror)
 mirrored.Update()
 assert mirrored.GetNumberOfInvertedTetrahedra() == 5 * np.prod(np.array(field_grid.size) - 1)
 
-# Hidden points are no source.
+# Hidden points have no value.
 hidden = vtkImageData()
 hidden.DeepCopy(volume)
 ghosts = np.zeros(shape, dtype=np.uint8)
@@ -337,7 +337,7 @@ near = (np.abs(index - (10, 9, 8)) < 0.999).all(axis=-1)
 assert near.sum() > 2 and not covered[near].any()
 assert covered[(margin > 1e-5) & (np.abs(index - (10, 9, 8)) > 1.001).any(axis=-1)].all()
 
-# Tetrahedra that are switched off hold nothing.
+# Tetrahedra that are switched off contain no sample.
 def find_tetrahedra(index):
     """Which of the five tetrahedra of its cell holds a point of the volume, and by how much."""
     cell = np.floor(index).astype(int)

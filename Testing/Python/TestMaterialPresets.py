@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The tables of presets in Documents/physics.md and in the panels of ParaView are those of the code:
+"""Compares the tables of presets in Documents/physics.md and in the panels of ParaView with those of the code:
 TestMaterialPresets.py SOURCES"""
 import pathlib
 import re
@@ -34,8 +34,8 @@ for number, (name, *values, source, remark) in zip(numbers, rows):
         assert 100 <= of_code[0] <= 3e10 and 0 <= of_code[1] < 0.495 and 900 <= of_code[2] <= 2000, of_code
     assert written == of_code, f"{name}: {written} in the document, {of_code} in the code"
 
-# Panels have numbers in place of names.
+# Panels have the numbers of presets instead of names.
 panel = (sources / "Plugin" / "MaterialFromVolume.xml").read_text(encoding="utf-8")
-names = re.search(r"stands for: ([^.]*)\.", panel).group(1)
+names = re.search(r"and a tissue: ([^.]*)\.", panel).group(1)
 wanted = [f"{number} {rows[number][0].lower()}" for number in numbers[1:]]
 assert [" ".join(name.split()) for name in names.split(",")] == wanted, names

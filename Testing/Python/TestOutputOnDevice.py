@@ -82,12 +82,12 @@ def test_numpy():
         assert reported(expected, "Arrays on the device") == 0
         check_equal(found.GetOutput(), expected.GetOutput())
         assert reported(found, "Arrays on the device") == 0
-        # What numpy holds is not written again.
+        # An output that numpy refers to is not overwritten.
         values = vtk_to_numpy(found.GetOutput().GetPointData().GetArray("two"))
         kept.append((values, values.copy()))
         for values, copy in kept:
             assert np.array_equal(values, copy)
-    # Not read before another update, and then by another way.
+    # Not read before the next update, and then read in another way.
     held = vtkImageData()
     wanted = vtkImageData()
     move(mesh, 0.3)
@@ -100,7 +100,7 @@ def test_numpy():
     adapted = dataset_adapter.WrapDataObject(held)
     for name in names(wanted):
         assert np.array_equal(np.asarray(adapted.PointData[name]), vtk_to_numpy(wanted.GetPointData().GetArray(name)))
-    # The filter is no more.
+    # The filter has been deleted.
     move(mesh, 0.3)
     found.Update()
     held.ShallowCopy(found.GetOutput())

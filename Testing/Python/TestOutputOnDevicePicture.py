@@ -75,7 +75,7 @@ def make_actor(mapper):
 
 
 def draw(mapper_class, image, mesh, on_device):
-    """Three pictures, the last one after an update that nobody looks at."""
+    """Three pictures, the last one after an update whose output is not drawn."""
     deform = deformvolume_vtk.vtkDeformVolumeFilter()
     deform.SetInputData(image)
     deform.SetDeformationData(mesh)

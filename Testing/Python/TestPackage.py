@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The package deformvolume: misuse first, then the bits of vtkDeformVolumeFilter, by numpy arrays and in pipelines.
+"""The package deformvolume: misuse first, then results equal to those of vtkDeformVolumeFilter, bit by bit, by numpy
+arrays and in pipelines.
 
     TestPackage.py FOLDER
 
-FOLDER has the package, with its library."""
+FOLDER contains the package with its library."""
 
 import doctest
 import os
@@ -91,7 +92,7 @@ def make_reference():
 
 
 def compare(name, image, deformation, rest=None, reference=None, **properties):
-    """The filter of the package and that of C++ make the same."""
+    """The filter of the package has the output of the C++ filter."""
     outputs = []
     for kind in (DeformVolume, Filter):
         made = kind()
@@ -157,7 +158,7 @@ def test_misuse():
         (ValueError, "no volume", lambda: DeformVolume()._prepare()),
     ):
         expect(kind, text, call)
-    # After errors all is well.
+    # It works after errors.
     assert dv.deform(volume, mesh, bounds="volume").array.shape == (5, 6, 7)
 
 
@@ -196,7 +197,7 @@ def test_pipelines():
     body.Update()
     compare("quadratic tetrahedra", image, body.GetOutput())
 
-    # What cuts and carvings leave out.
+    # Masks of cuts and carvings.
     tool = vtkSphereSource()
     tool.SetRadius(9.0)
     tool.SetCenter(*image.GetCenter())
@@ -228,7 +229,7 @@ def test_pipelines():
     compare("nothing", image, None)
     compare("nothing, reference", image, None, reference=make_reference())
 
-    # Updates that follow each other.
+    # Several updates.
     both = [DeformVolume(), Filter()]
     for one in both:
         one.SetInputDataObject(0, image)
@@ -278,7 +279,7 @@ def test_arrays():
         # The affine rounds the origin.
         assert (ours == theirs).mean() > 0.99 and ours.dtype == theirs.dtype, (name, (ours == theirs).mean())
 
-    # However an array lies in memory, the result is the same; what can be used where it is, is not copied.
+    # The result does not depend on the memory layout of an array. Arrays that can be used in place are not copied.
     first = arrays[0]
     assert np.shares_memory(dv._arrays.image(first, ""), first)
     for other in (

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The documents: links lead somewhere, commands have options that exist, and the Python in them runs as it stands there.
-TestReadme.py SOURCE PACKAGE, where PACKAGE is the folder that has the package deformvolume."""
+"""Checks the documents: targets of links exist, options in commands exist, and their Python code runs.
+TestReadme.py SOURCE PACKAGE, where PACKAGE is the folder that contains the package deformvolume."""
 import pathlib
 import re
 import sys
@@ -27,7 +27,7 @@ def run(block):
     return names
 
 
-# Links, and the headings that they name as GitHub does. Pages of the web are not visited.
+# Links, and the anchors that GitHub makes of headings. Web pages are not visited.
 documents = sorted([*source.glob("*.md"), *source.glob("Documents/*.md"), *source.glob("Python/*.md")])
 assert len(documents) > 15, documents
 
@@ -62,7 +62,7 @@ for document in documents:
             for option in re.findall(r"(?<=\s)--[a-z-]+", command):
                 assert re.search(rf'{option}[",]', program), f"{document}: {option} in {command}"
 
-# The package, with a head in place of a file.
+# The package. A made-up head takes the place of the file.
 saved = []
 nibabel = types.ModuleType("nibabel")
 nibabel.load = lambda name: types.SimpleNamespace(
@@ -77,7 +77,7 @@ sys.modules["nibabel"] = nibabel
 result = run(of_package)["result"]
 ((array, affine),) = saved
 assert array is result.array and array.dtype == numpy.uint8
-# The front has gone back by 20 voxels in the middle, and by nothing at the sides.
+# The front has moved back by 20 voxels in the middle, and not at the sides.
 front = result.coverage[90, :, 90].nonzero()[0].max(), result.coverage[1, :, 1].nonzero()[0].max()
 assert front[0] in range(195, 198) and front[1] in range(214, 217), front
 (of_readme,) = read_blocks("Python/README.md", "python")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""deformvolume.sitk beside SimpleITK.Resample. Run with the Python of "Testing/packages.sh readers":
+"""Compares deformvolume.sitk with SimpleITK.Resample. Run with the Python of "Testing/packages.sh readers":
 TestSimpleITK.py FOLDER, where FOLDER has the package."""
 import sys
 

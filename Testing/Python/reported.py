@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What vtkDeformVolumeFilter.GetSummary() tells, as numbers."""
+"""The numbers of vtkDeformVolumeFilter.GetSummary()."""
 
 
 def reported(deform, name):
