@@ -275,7 +275,7 @@ protected:
 
 } // namespace
 
-TEST_F(TetrahedronListing, MisuseIsAnErrorAndLeavesThemUsable)
+TEST_F(TetrahedronListing, MisuseLeavesThemUsable)
 {
   ListCase good({ { 0, 0, 0 } }, { { 100, 50, 50 } });
   good.AddRandom(200, 20, 1);
@@ -314,7 +314,7 @@ TEST_F(TetrahedronListing, ListsThatAreTooLong)
   this->ExpectEqualsReference(small);
 }
 
-TEST_F(TetrahedronListing, OutputsThatBeginAnywhere)
+TEST_F(TetrahedronListing, OutputsFarFromIndexZero)
 {
   for (const int first : { -1000, -33, -1, 0, 5, 31, 4096 })
   {
@@ -403,7 +403,7 @@ TEST_F(TetrahedronListing, LongLists)
 }
 
 // So many tetrahedra that several work-groups have their part in all of it, again and again.
-TEST_F(TetrahedronListing, RunsEqualEachOther)
+TEST_F(TetrahedronListing, EqualFromRunToRun)
 {
   ListCase many({ { 0, 0, 0 } }, { { 500, 300, 100 } });
   many.AddRandom(30000, 12, 10);

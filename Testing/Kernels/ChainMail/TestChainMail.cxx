@@ -8,7 +8,7 @@
 
 using namespace chainMailTesting;
 
-TEST(ChainMail, RefusesWhatMakesNoSense)
+TEST(ChainMail, MisuseIsAnError)
 {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   const Extent extent{ { 0, 8, 0, 8, 0, 8 } };
@@ -64,7 +64,7 @@ TEST(ChainMail, RefusesWhatMakesNoSense)
   EXPECT_EQ(subject.Output, other.Output);
 }
 
-TEST(ChainMail, OfAChain)
+TEST(ChainMail, ClosedFormOfAChain)
 {
   const Extent extent{ { 3, 60, 0, 1, -1, 0 } };
   const std::vector<ChainMailMaterial> table{ { 0.75, 1.125, 0.5 } };
@@ -95,7 +95,7 @@ TEST(ChainMail, OfAChain)
   }
 }
 
-TEST(ChainMail, OfASoftCube)
+TEST(ChainMail, ClosedFormOfASoftCube)
 {
   const int n = 48;
   const Extent extent{ { 0, n - 1, 0, n - 1, 0, n - 1 } };
@@ -200,7 +200,7 @@ TEST(ChainMail, SeparatedBodiesNeverInteract)
 
 // A rigid path that turns at each voxel, so that a sweep over a block follows it by a step only: it
 // takes more sweeps than a visit has.
-TEST(ChainMail, ALongWayWithinABlock)
+TEST(ChainMail, LongPathsWithinABlock)
 {
   const Extent extent{ { 0, 8, 0, 8, 0, 8 } };
   ChainMailReference reference(extent, { { 1, 1, 1 } });
@@ -283,7 +283,7 @@ TEST(ChainMail, HandlesThatContradictEachOther)
 }
 
 // Handles of voxels that others hold already take no time: the first one counts.
-TEST(ChainMail, ManyHandlesOfAFewVoxels)
+TEST(ChainMail, ManyHandlesOnTheSameVoxels)
 {
   const Extent extent{ { 0, 29, 0, 8, 0, 8 } };
   const std::vector<ChainMailHandle> few{ MakeHandle({ { 10, 4, 4 } }, { { 4, 0, 0 } }),
@@ -306,7 +306,7 @@ TEST(ChainMail, ManyHandlesOfAFewVoxels)
   EXPECT_EQ(report.Handles.back().NumberOfVoxels, 0);
 }
 
-TEST(ChainMail, AHandleThatCannotBeHeldIsReleased)
+TEST(ChainMail, ImpossibleHandlesAreReleased)
 {
   const Extent extent{ { 0, 20, 0, 4, 0, 4 } };
   ChainMailReference reference(extent, { { 1, 1, 1 } });
@@ -330,7 +330,7 @@ TEST(ChainMail, AHandleThatCannotBeHeldIsReleased)
 }
 
 // A model that goes back is as one that has never gone on.
-TEST(ChainMail, SnapshotsComeBack)
+TEST(ChainMail, SavedStatesAreRestored)
 {
   const Extent extent{ { -3, 30, 2, 21, 0, 18 } };
   std::mt19937 random(11);
@@ -399,7 +399,7 @@ TEST(ChainMail, SnapshotsComeBack)
 
 // Links that are cut free what they held. A state from then may violate them when they are there
 // again.
-TEST(ChainMail, SnapshotsThatViolateLinks)
+TEST(ChainMail, SavedStatesThatViolateLinks)
 {
   const Extent extent{ { 0, 20, 0, 9, 0, 9 } };
   Subject subject(extent);

@@ -144,7 +144,7 @@ TEST_P(Relaxation, LowersTheEnergy)
 }
 
 // The figures of Documents/chainmail.md. What the drag alone does is a closed form there.
-TEST(ChainMailRelaxation, EnergyOfTheDocumentation)
+TEST(ChainMailRelaxation, EnergyInTheDocumentation)
 {
   ChainMailReference reference(Cube, { { 1, 1, 1 } });
   std::size_t voxel = 0;
@@ -248,7 +248,7 @@ TEST_P(Relaxation, IsTheSameInAnyOrder)
 
 INSTANTIATE_TEST_SUITE_P(Tissues, Relaxation, testing::Bool());
 
-TEST(ChainMailRelaxation, LeavesWhatIsNearEnough)
+TEST(ChainMailRelaxation, PlasticityThreshold)
 {
   Subject subject(Cube);
   subject.Request.Handles = { GetDrag() };
@@ -292,7 +292,7 @@ TEST(ChainMailRelaxation, ReturnsToRestWherePinned)
   EXPECT_LE(subject.GetLargest(), 6.0 * 0.5 * 15.0 * 15.0 / 8.0 / 65536.0);
 }
 
-TEST(ChainMailSteps, AreAbortedWithoutATrace)
+TEST(ChainMailSteps, AbortRestoresTheState)
 {
   Subject subject(Cube);
   subject.Request.Handles = { GetDrag() };
@@ -325,7 +325,7 @@ TEST(ChainMailSteps, AreAbortedWithoutATrace)
   EXPECT_EQ(subject.Output, other.Output);
 }
 
-TEST(ChainMailSteps, WriteWhatTheyChangeOnly)
+TEST(ChainMailSteps, OnlyChangedVoxelsAreWritten)
 {
   const Extent extent{ { 2, 70, -9, 30, 0, 20 } };
   Subject subject(extent);
@@ -382,7 +382,7 @@ TEST(ChainMailSteps, WriteWhatTheyChangeOnly)
   EXPECT_FALSE(subject.Step(0).WasReset);
 }
 
-TEST(ChainMailSteps, WriteWorldCoordinates)
+TEST(ChainMailSteps, OutputIsInWorldCoordinates)
 {
   // A rotation about z, after which x runs along -z.
   const std::array<double, 9> indexToWorld{ { 0, -2, 0, 0.5, 0, 0, 0, 0, 4 } };

@@ -93,7 +93,7 @@ glm::dvec3 MakePoint(std::mt19937& random, const Extent& vertices, int unit)
 
 } // namespace
 
-TEST(Carving, RefusesWhatIsNoTool)
+TEST(Carving, MisuseIsAnError)
 {
   const double bad = std::nan("");
   EXPECT_THROW(MakeSweptSphere({}, glm::dvec3(1.0)), Error);

@@ -100,7 +100,7 @@ void ExpectSeparate(const std::vector<int>& pieces, const std::vector<std::size_
 
 } // namespace
 
-TEST(Cutting, RefusesWhatIsNoSheet)
+TEST(Cutting, MisuseIsAnError)
 {
   const std::vector<glm::dvec3> points{ glm::dvec3(0.0), glm::dvec3(1.0, 0.0, 0.0),
     glm::dvec3(0.0, 1.0, 0.0), glm::dvec3(std::nan(""), 0.0, 0.0),
@@ -218,7 +218,7 @@ TEST(Cutting, EqualsTheReference)
 }
 
 // Sheets over all of the volume that go up and down, also through nodes and along edges.
-TEST(Cutting, CompleteSheetsSeparate)
+TEST(Cutting, SheetsAcrossTheVolumeSeparate)
 {
   std::mt19937 random(3);
   for (int round = 0; round < GetNumberOfCases(400); ++round)

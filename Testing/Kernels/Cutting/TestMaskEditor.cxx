@@ -101,7 +101,7 @@ int CountActive(reference::Mask mask)
 
 } // namespace
 
-TEST(MaskEditor, RefusesWhatIsNoMask)
+TEST(MaskEditor, MisuseIsAnError)
 {
   EXPECT_THROW(MaskEditor(Extent{ { 0, 5, 0, 5, 3, 3 } }), Error);
   EXPECT_THROW(MaskEditor(Extent{ { 0, -1, 0, -1, 0, -1 } }), Error);

@@ -328,7 +328,7 @@ TEST(SheetCrossings, PartsOfASheetDivideAsTheWhole)
   }
 }
 
-TEST(SheetCrossings, WhatTwoSheetsPassThroughIsSwitchedOff)
+TEST(SheetCrossings, TetrahedraCrossedTwiceAreSwitchedOff)
 {
   std::mt19937 random(4);
   const RestPositions positions(Cells);

@@ -201,7 +201,7 @@ TEST(SmoothCarving, SweptSpheresHaveDistancesToFirstOrder)
   }
 }
 
-TEST(SmoothCarving, EditsOfDistancesComeAndGo)
+TEST(SmoothCarving, EditsOfDistancesAreUndoneAndRedone)
 {
   std::mt19937 random(7);
   MaskEditor editor(Volume, Far);

@@ -597,7 +597,7 @@ TEST_P(TightMeshes, LargeTetrahedra)
 
 // Nodes that are in one place at rest belong together: there is no boundary between parts of a
 // mesh.
-TEST(MeshBoundaries, PartsThatAreNotJoinedHaveNone)
+TEST(MeshBoundaries, NoneBetweenUnmergedParts)
 {
   const TightMesh mesh =
     MakeTightMesh(Volume, 12.3, Turn(0.2), Middle, [](const glm::dvec3&) { return true; });
@@ -646,7 +646,7 @@ TEST(MeshBoundaries, FacesOnOneSideOnly)
 
 // Of meshes that hold the whole volume none passes through it, also where it lies on the border of
 // the volume or touches a corner.
-TEST(MeshBoundaries, MeshesThatHoldTheVolumeHaveNone)
+TEST(MeshBoundaries, NoneIfTheMeshContainsTheVolume)
 {
   const Extent& e = Volume;
   const glm::dvec3 low(e[0], e[2], e[4]);

@@ -137,7 +137,7 @@ private:
 };
 
 // Kernels that read or write behind the end of memory that they use in place would crash here.
-TEST_F(HostMemory, ArraysThatEndTheirMemory)
+TEST_F(HostMemory, ArraysAtTheEndOfTheirMemory)
 {
   for (const int size : { 1, 2, 7, 8, 9, 15, 16, 31, 33, 64, 65, 70 })
   {

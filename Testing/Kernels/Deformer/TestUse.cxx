@@ -87,7 +87,7 @@ TEST_F(Use, MeshWithoutDisplacements)
   this->ExpectUsable();
 }
 
-TEST_F(Use, SettersOutOfOrder)
+TEST_F(Use, SettersInAnyOrder)
 {
   GetError([&] { this->Deformer.SetArrays(this->Arrays); });
   GetError([&] { this->Deformer.SetNodeDisplacements(this->Values.data()); });
@@ -118,7 +118,7 @@ TEST_F(Use, EmptyExtents)
   this->ExpectUsable();
 }
 
-TEST_F(Use, MeshThatPointsOutsideItself)
+TEST_F(Use, IndicesOutsideTheMesh)
 {
   Load(this->Deformer, this->Case, this->Arrays, Route::Field);
   std::vector<VertexLink> links(this->Case.GetNumberOfVoxels());
@@ -284,7 +284,7 @@ TEST_F(Use, AbortedByProgress)
     RunDeformer(this->Deformer, this->Case, this->Arrays));
 }
 
-TEST_F(Use, MovedAgainAndAgain)
+TEST_F(Use, ManyUpdates)
 {
   Load(this->Deformer, this->Case, this->Arrays, Route::Mesh);
   for (unsigned int seed = 10; seed < 14; ++seed)
@@ -305,7 +305,7 @@ TEST_F(Use, MovedAgainAndAgain)
   }
 }
 
-TEST_F(Use, MasksComeAndGo)
+TEST_F(Use, MasksAreSetAndRemoved)
 {
   Load(this->Deformer, this->Case, this->Arrays, Route::Field);
   const auto check = [this]

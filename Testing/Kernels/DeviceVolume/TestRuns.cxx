@@ -548,7 +548,7 @@ TEST_F(RunsMisuse, WrongRuns)
     this->Case, reference, this->Arrays, RunDeformer(this->Deformer, this->Case, this->Arrays));
 }
 
-TEST_F(RunsMisuse, DisplacementsAreDueAgain)
+TEST_F(RunsMisuse, DisplacementsAreNeededAgain)
 {
   const auto nodes = static_cast<std::size_t>(this->Case.GetNumberOfVoxels());
   const std::vector<Tetrahedron> tetrahedra(nodes, Tetrahedron{ { 0, 1, 2, 3 } });
@@ -556,7 +556,7 @@ TEST_F(RunsMisuse, DisplacementsAreDueAgain)
   EXPECT_THROW(RunDeformer(this->Deformer, this->Case, this->Arrays), Error);
 }
 
-TEST_F(RunsMisuse, NothingInTheMesh)
+TEST_F(RunsMisuse, NoVoxelInTheMesh)
 {
   VertexRuns outside;
   for (std::uint32_t row = 0; row < 42; ++row)
@@ -573,7 +573,7 @@ TEST_F(RunsMisuse, NothingInTheMesh)
 }
 
 // Runs, links, a field and runs again on one deformer; what one leaves behind must not matter.
-TEST_F(RunsMisuse, FormsTakeTurns)
+TEST_F(RunsMisuse, FormsAlternate)
 {
   const reference::Result reference = ResampleByReference(this->Case);
   for (const Route route : { Route::Runs, Route::Mesh, Route::Runs, Route::Field, Route::Runs })

@@ -164,7 +164,7 @@ TEST(FieldInPlace, MatrixIsThatOfScaledVectors)
 }
 
 // Vectors that are read where they lie may be anything: what they move is left out.
-TEST(FieldInPlace, IsRobust)
+TEST(FieldInPlace, AnyVectors)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
   const EditedVolume volume;
@@ -196,7 +196,7 @@ TEST(FieldInPlace, IsRobust)
 }
 
 // The owner is held as long as the vectors are used, and no longer.
-TEST(FieldInPlace, HoldsItsOwner)
+TEST(FieldInPlace, KeepsItsOwner)
 {
   const EditedVolume volume;
   VolumeDeformer deformer;

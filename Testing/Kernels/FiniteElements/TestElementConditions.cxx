@@ -214,7 +214,7 @@ TEST(ElementConditions, NearlyParallelPlanes)
 }
 
 // Nodes that have left a plane before they slide in it return to it.
-TEST(ElementConditions, PlanesThatComeLater)
+TEST(ElementConditions, PlanesAddedLater)
 {
   const auto isFixed = [](const Place& place) { return place[2] == 0; };
   QuadraticLattice cube = MakeCube(isFixed);

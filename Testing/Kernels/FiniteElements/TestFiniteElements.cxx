@@ -232,7 +232,7 @@ void AttachTetrahedron(LatticeBody& lattice, const std::vector<std::int32_t>& no
 
 // A tetrahedron that hangs on a node, or on an edge, of a body: the body bends as without it, and
 // it goes with what it hangs on. Another one that hangs on the first does, too.
-TEST(FiniteElements, PiecesThatHang)
+TEST(FiniteElements, PiecesOnANodeOrAnEdge)
 {
   const LatticeBody alone = MakeLinearBlock({ 3, 3, 5 });
   FiniteElementModel model;
@@ -405,7 +405,7 @@ TEST(FiniteElements, ManyPieces)
 }
 
 // Free nodes that are connected with none: each is a group that cannot turn.
-TEST(FiniteElements, FreeNodesOfTheirOwn)
+TEST(FiniteElements, UnconnectedFreeNodes)
 {
   ElasticBody body;
   constexpr int pieces = 1100;
@@ -565,7 +565,7 @@ TEST(FiniteElements, Threads)
   }
 }
 
-TEST(FiniteElements, WarmFramesReachWhatAColdSolveFinds)
+TEST(FiniteElements, WarmFramesReachTheColdSolution)
 {
   for (const Place& nodes : { Place{ 3, 3, 5 }, Place{ 6, 6, 8 } })
   {
@@ -594,7 +594,7 @@ TEST(FiniteElements, WarmFramesReachWhatAColdSolveFinds)
 
 // A handle that turns and jumps: frames leave no more than they say, and those without a motion
 // after it come nearer.
-TEST(FiniteElements, FramesOfAHandleThatJumps)
+TEST(FiniteElements, FramesOfAJumpingHandle)
 {
   const Place nodes{ 6, 6, 8 };
   const LatticeBody lattice = MakeBlock(nodes, 0.45);
@@ -628,7 +628,7 @@ TEST(FiniteElements, FramesOfAHandleThatJumps)
 }
 
 // Where the body bends far the tangent of the step before does not serve.
-TEST(FiniteElements, FramesOfABodyThatBends)
+TEST(FiniteElements, FramesOfABendingBody)
 {
   const LatticeBody lattice = MakeBlock({ 3, 3, 20 });
   FiniteElementModel model;
@@ -644,7 +644,7 @@ TEST(FiniteElements, FramesOfABodyThatBends)
 }
 
 // What has moved a handle before says where it goes now: hardly anything is left to solve.
-TEST(FiniteElements, FramesOfAHandleThatGoesOn)
+TEST(FiniteElements, FramesOfAMovingHandle)
 {
   const Place nodes{ 6, 6, 8 };
   const LatticeBody lattice = MakeBlock(nodes, 0.45);
@@ -719,7 +719,7 @@ std::int64_t CountInverted(const LatticeBody& lattice, const FiniteElementModel&
 } // namespace
 
 // Nearly all tetrahedra are inside out somewhere.
-TEST(FiniteElements, Scramble)
+TEST(FiniteElements, RandomPlacements)
 {
   const LatticeBody lattice = MakeBlock({ 3, 3, 3 });
   std::int64_t fewestInverted = std::numeric_limits<std::int64_t>::max();
@@ -749,7 +749,7 @@ TEST(FiniteElements, Scramble)
 }
 
 // Back to where the body is in equilibrium, which is bent here, with its end turned by 57 degrees.
-TEST(FiniteElements, ScrambleOfABentBody)
+TEST(FiniteElements, RandomPlacementsOfABentBody)
 {
   const LatticeBody lattice = MakeBlock({ 3, 3, 5 });
   const glm::dmat3 rotation = MakeRotation(1.0, { 1.0, 0.0, 0.0 });

@@ -88,7 +88,7 @@ Vectors Combine(double a, const Vectors& first, double b, const Vectors& second)
 
 } // namespace
 
-TEST(SolutionHistory, GuessesCombinations)
+TEST(SolutionHistory, StartsFromCombinations)
 {
   System system;
   SolutionHistory history;
@@ -128,7 +128,7 @@ TEST(SolutionHistory, GuessesCombinations)
   EXPECT_EQ(guess, zero);
 }
 
-TEST(SolutionHistory, LeavesOutWhatIsNothingNew)
+TEST(SolutionHistory, SkipsDependentSolutions)
 {
   System system;
   SolutionHistory history;

@@ -30,7 +30,7 @@ void SetConnectivity(VolumeDeformer& deformer, const EditedVolume& volume,
 
 } // namespace
 
-TEST_P(Connectivity, RefusesWhatIsNoChangeOfTheMesh)
+TEST_P(Connectivity, MisuseIsAnError)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
   const EditedVolume volume;
@@ -66,7 +66,7 @@ TEST_P(Connectivity, RefusesWhatIsNoChangeOfTheMesh)
   EXPECT_TRUE(found == expected);
 }
 
-TEST_P(Connectivity, EqualsWhatIsSentAnew)
+TEST_P(Connectivity, EqualsANewUpload)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
   const Route route = GetParam();

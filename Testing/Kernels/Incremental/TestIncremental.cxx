@@ -71,7 +71,7 @@ protected:
   int Parts = 0; // updates that were not whole
 };
 
-TEST_P(IncrementalBorders, OneSideGoesOutAndTheOtherIn)
+TEST_P(IncrementalBorders, OneSideMovesOutTheOtherIn)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
   this->Start();
@@ -87,7 +87,7 @@ TEST_P(IncrementalBorders, OneSideGoesOutAndTheOtherIn)
   EXPECT_EQ(this->Parts, 1);
 }
 
-TEST_P(IncrementalBorders, AHoleMoves)
+TEST_P(IncrementalBorders, MovingHole)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
   this->BlankedAt(32, 32, 64) = 1;
@@ -105,7 +105,7 @@ TEST_P(IncrementalBorders, AHoleMoves)
   EXPECT_EQ(this->Parts, 12);
 }
 
-TEST_P(IncrementalBorders, AMaskChangesAndWhatIsInsideMoves)
+TEST_P(IncrementalBorders, MaskChangesWhileTheInsideMoves)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
   this->BlankedAt(32, 32, 64) = 1;
@@ -243,7 +243,7 @@ protected:
 
 } // namespace
 
-TEST_F(IncrementalMasks, AMaskChangesBesideAPart)
+TEST_F(IncrementalMasks, MaskChangesBesideASubBrick)
 {
   std::vector<unsigned char> blanked(static_cast<std::size_t>(this->Case.GetNumberOfVoxels()));
   std::vector<unsigned char> active(
@@ -280,7 +280,7 @@ TEST_F(IncrementalMasks, AMaskChangesBesideAPart)
 
 // A cell with a value that sums of products do not give back is interpolated in double precision,
 // and those beside it are not, whichever of them are made.
-TEST_F(IncrementalMasks, SpecialValuesLieBesideAPart)
+TEST_F(IncrementalMasks, SpecialValuesBesideASubBrick)
 {
   const auto voxelAt = [](int x, int y)
   { return static_cast<std::size_t>((20 * 49 + y) * 49 + x); };
@@ -400,7 +400,7 @@ TEST_P(IncrementalFolds, EqualWholeUpdates)
 }
 
 // What is folded and stays as it is costs an edit elsewhere nothing.
-TEST_P(IncrementalFolds, AnEditElsewhereRunsFewBricks)
+TEST_P(IncrementalFolds, EditsOutsideTheFoldRunFewBricks)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
   EditedVolume& edited = this->Edited;

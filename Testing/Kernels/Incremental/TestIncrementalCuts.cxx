@@ -155,7 +155,7 @@ struct VoxelField
 
 // A side that is drawn out towards the sheet: its copies go on in that direction, and reach further
 // than any of its vertices. The other side is far away.
-TEST(IncrementalCuts, CopiesReachFurtherThanVertices)
+TEST(IncrementalCuts, CopiesReachBeyondVertices)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
   for (const Resampling method : GetExactMethods())
@@ -226,7 +226,7 @@ TEST(IncrementalCuts, VoxelsMoveCopiesUpToTwoVoxelsAway)
 
 // What moves lies two voxels beside a part of a brick, of which it moves copies: they belong to
 // tetrahedra whose other copies are far away, beyond all that the brick of the voxel reaches.
-TEST(IncrementalCuts, CopiesOfTheNextBrickMove)
+TEST(IncrementalCuts, CopiesInTheNextBrickMove)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
   for (const Resampling method : GetExactMethods())

@@ -64,7 +64,7 @@ protected:
 
 } // namespace
 
-TEST_P(IncrementalGraphics, LittleIsReadOfALocalEdit)
+TEST_P(IncrementalGraphics, LocalEditsReadLittle)
 {
   this->At(12, 6, 5)[0] = 0.5F;
   this->UpdatePart(); // and the static mapping is read, to know what nodes move

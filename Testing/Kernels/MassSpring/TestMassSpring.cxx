@@ -97,7 +97,7 @@ double MeasurePeriod(MassSpringModel& model, double timeStep, int periods)
 
 } // namespace
 
-TEST(MassSpring, RefusesBodiesThatMakeNoSense)
+TEST(MassSpring, InvalidBodies)
 {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   MassSpringModel model;
@@ -141,7 +141,7 @@ TEST(MassSpring, RefusesBodiesThatMakeNoSense)
 }
 
 // Springs are a material on fifths of equal cubes only.
-TEST(MassSpring, RefusesOtherTetrahedra)
+TEST(MassSpring, TetrahedraOfOtherShapesAreAnError)
 {
   MassSpringModel model;
   const auto getError = [&](const ElasticBody& body)
@@ -205,7 +205,7 @@ TEST(MassSpring, RefusesOtherTetrahedra)
   refuses(pyramid, 0);
 }
 
-TEST(MassSpring, TakesLatticesThatAreTurnedAndIncomplete)
+TEST(MassSpring, RotatedAndIncompleteLattices)
 {
   ElasticBody body = MakeSmallBody();
   const glm::dvec3 axis = glm::normalize(glm::dvec3(1.0, 2.0, 3.0));
@@ -221,7 +221,7 @@ TEST(MassSpring, TakesLatticesThatAreTurnedAndIncomplete)
   EXPECT_GT(model.GetStableTimeStep(), 0.0);
 }
 
-TEST(MassSpring, RefusesRequestsThatMakeNoSense)
+TEST(MassSpring, InvalidRequests)
 {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   ElasticBody body = MakeSmallBody();
@@ -298,7 +298,7 @@ TEST(MassSpring, FreeFall)
   RecordMeasured("fall", largest);
 }
 
-TEST(MassSpring, DampingSlowsDown)
+TEST(MassSpring, Damping)
 {
   const ElasticBody body = MakeSmallBody();
   MassSpringModel model;
@@ -366,7 +366,7 @@ TEST(MassSpring, PeriodOfASpring)
   RecordMeasured("period", std::abs(measured / period - 1.0));
 }
 
-TEST(MassSpring, HandlesArriveAndLetGo)
+TEST(MassSpring, HandlesArriveAndAreReleased)
 {
   ElasticBody body = MakeSmallBody();
   FixNodes(body, [](const glm::dvec3& point) { return point.x == 0.0; });
@@ -481,7 +481,7 @@ TEST(MassSpring, AbortLeavesTheBodyAsItWas)
   EXPECT_EQ(model.GetVelocities(), velocities);
 }
 
-TEST(MassSpring, NodesMayGoRoundTheOtherWay)
+TEST(MassSpring, MirroredTetrahedra)
 {
   const ElasticBody body = MakeSmallBody();
   ElasticBody turned = body;
@@ -516,7 +516,7 @@ TEST(MassSpring, NodesMayGoRoundTheOtherWay)
   }
 }
 
-TEST(MassSpring, SplitNodesGoOnWhereTheyWere)
+TEST(MassSpring, SplitNodesKeepTheirState)
 {
   // Two tetrahedra that share a face, and then share nothing.
   ElasticBody body;

@@ -122,7 +122,7 @@ Compiled Deform(VolumeDeformer& deformer, const DeformerCase& deformerCase)
 } // namespace
 
 // First, while nothing is compiled.
-TEST_F(Compilation, HasItsOwnTime)
+TEST_F(Compilation, TimeIsReportedSeparately)
 {
   if (IsEmulated(FindDevice("").Description))
   {
@@ -150,7 +150,7 @@ TEST_F(Compilation, HasItsOwnTime)
   EXPECT_TRUE(second.Calls.empty());
 }
 
-TEST_F(Compilation, HoldsUpNoOtherProgram)
+TEST_F(Compilation, ProgramsCompileConcurrently)
 {
   std::promise<void> isCompiling;
   std::promise<void> hasOther;
@@ -174,7 +174,7 @@ TEST_F(Compilation, HoldsUpNoOtherProgram)
   EXPECT_TRUE(came);
 }
 
-TEST_F(Compilation, WatchesAreOfTheirThread)
+TEST_F(Compilation, WatchesMeasureTheirOwnThread)
 {
   EXPECT_EQ(CompilationWatch::GetCurrentSeconds(), 0.0);
   {

@@ -152,7 +152,7 @@ Vectors MakeOnDevice(const std::vector<float>& vectors)
 
 } // namespace
 
-TEST(RangeLog, KnowsTheLastRanges)
+TEST(RangeLog, RemembersTheLastRanges)
 {
   RangeLog log;
   EXPECT_EQ(log.GetRevision(), 0U);
@@ -294,7 +294,7 @@ TEST_P(DeviceVectorsRoutes, EqualsHost)
 }
 
 // What is known of the changes of one is no matter after another one.
-TEST_P(DeviceVectorsRoutes, TakeTurnsWithHostAndOthers)
+TEST_P(DeviceVectorsRoutes, AlternateWithOtherVectors)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
   const Subject subject;
@@ -331,7 +331,7 @@ TEST_P(DeviceVectorsRoutes, TakeTurnsWithHostAndOthers)
   EXPECT_EQ(subject.Run(deformer), subject.RunFresh(Route::Mesh, one, Turned)) << "another mesh";
 }
 
-TEST_P(DeviceVectorsRoutes, WhatIsNotFinite)
+TEST_P(DeviceVectorsRoutes, NonFiniteVectors)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
   const Subject subject;

@@ -47,7 +47,7 @@ protected:
 
 } // namespace
 
-TEST_F(Transfers, WhatIsWrittenAndReadIsCopiedOnce)
+TEST_F(Transfers, WrittenVectorsAreCopiedOnce)
 {
   const auto vectors = std::make_shared<DeviceVectors>("", this->Points);
   ASSERT_FALSE(vectors->AreInHostMemory());
@@ -164,7 +164,7 @@ TEST_F(Transfers, ChainMailPassesNothingThroughTheHost)
 
 // Points that are known to have changed move a part of the output, and where they lie is found on
 // the device.
-TEST_F(Transfers, APartOfAFieldMovesAPartOfTheOutput)
+TEST_F(Transfers, PartsOfAFieldUpdatePartsOfTheOutput)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
   EditedVolume edited(Extent{ { -5, 140, 0, 100, 3, 80 } });

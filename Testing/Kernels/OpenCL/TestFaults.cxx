@@ -133,7 +133,7 @@ TEST_F(Faults, RefusedFieldChangesNothing)
   this->ExpectRight();
 }
 
-TEST_F(Faults, HostMemoryThatIsShort)
+TEST_F(Faults, ShortHostMemory)
 {
   bool isClean = false;
   EXPECT_THROW(

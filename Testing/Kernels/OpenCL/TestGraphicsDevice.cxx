@@ -53,7 +53,7 @@ TEST_F(GraphicsDevice, EqualsReference)
 }
 
 // Drivers take groups of one item where the number of items is prime.
-TEST_F(GraphicsDevice, GroupsAreNotLeftToTheDriver)
+TEST_F(GraphicsDevice, WorkGroupSizesAreGiven)
 {
   FakeDriver::Get().LaunchesWithoutGroup = 0;
   // So large that several items count, and folded.
@@ -85,7 +85,7 @@ TEST_F(GraphicsDevice, MemoryIsCountedOnce)
 }
 
 // A call for each of many places takes longer than what lies between them.
-TEST_F(GraphicsDevice, ChangedMasksAreSentAtOnce)
+TEST_F(GraphicsDevice, ChangedMasksAreUploadedInOneCall)
 {
   Load(this->Deformer, this->Case, this->Arrays, Route::Mesh);
   this->Case.Blanked.assign(static_cast<std::size_t>(this->Case.GetNumberOfVoxels()), 0);
@@ -103,7 +103,7 @@ TEST_F(GraphicsDevice, ChangedMasksAreSentAtOnce)
 }
 
 // Single precision holds whole numbers up to 2^24.
-TEST_F(GraphicsDevice, WholeNumbersThatSinglePrecisionDoesNotHold)
+TEST_F(GraphicsDevice, IntegersBeyondSinglePrecision)
 {
   const auto size = static_cast<std::size_t>(this->Case.GetNumberOfVoxels());
   const auto ints = MakeRandomValues<std::int32_t>(size, 3);

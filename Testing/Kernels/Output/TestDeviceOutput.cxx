@@ -126,7 +126,7 @@ TEST_P(OnDevice, IsReadOnce)
   EXPECT_TRUE(this->Outputs == this->MakeExpected());
 }
 
-TEST_P(OnDevice, RangesAreFoundWithoutReading)
+TEST_P(OnDevice, RangesNeedNoReading)
 {
   const auto check = [this](const DeviceOutputs& outputs)
   {
@@ -163,7 +163,7 @@ TEST_P(OnDevice, RangesAreFoundWithoutReading)
 }
 
 // What is there when the deformer needs its memory, or goes.
-TEST_P(OnDevice, OutlivesWhatFollows)
+TEST_P(OnDevice, OutlivesLaterUpdates)
 {
   enum
   {
@@ -230,7 +230,7 @@ TEST_P(OnDevice, OutlivesWhatFollows)
 
 // Random edits, of which some are whole: it is read or not, into one memory or another, which holds
 // what it held.
-TEST_P(OnDevice, EqualsWholeOutputsWhateverIsRead)
+TEST_P(OnDevice, EqualsWholeOutputs)
 {
   std::mt19937 random(static_cast<unsigned>(GetParam()) + 1);
   std::vector<EditedOutputs> memories(3, EditedOutputs(this->Edited));
@@ -282,7 +282,7 @@ TEST_P(OnDevice, EqualsWholeOutputsWhateverIsRead)
   EXPECT_GT(parts, GetNumberOfCases(40) / 3);
 }
 
-TEST_P(OnDevice, LittleIsReadOfALocalEdit)
+TEST_P(OnDevice, LocalEditsReadLittle)
 {
   DeformReport report = this->Update();
   Read(report.DeviceOutputs);
@@ -301,7 +301,7 @@ TEST_P(OnDevice, LittleIsReadOfALocalEdit)
   EXPECT_TRUE(this->Outputs == this->MakeExpected());
 }
 
-TEST_P(OnDevice, WhatIsMadeInPartsGoesToTheHost)
+TEST_P(OnDevice, OutputsInPartsGoToTheHost)
 {
   // Room for the two doubles of some planes of voxels.
   this->Deformer->SetAllocationLimit(16 *

@@ -193,7 +193,7 @@ TEST(OutputMaps, SmoothCutsAndMasks)
   }
 }
 
-TEST(OutputMaps, AMirrorImageHasTheSameValues)
+TEST(OutputMaps, MirrorImagesHaveTheSameValues)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
   const DeformerCase plain = MakeJittered(Identity, 2, 0.1);

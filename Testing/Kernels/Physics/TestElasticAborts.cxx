@@ -125,7 +125,7 @@ TEST(ElasticAborts, FiniteElementBodies)
   }
 }
 
-TEST(ElasticAborts, TheLastFiniteElementBodyStays)
+TEST(ElasticAborts, AbortedSettersKeepTheLastBody)
 {
   const ElasticBody body = MakeBody({ 7, 7, 7 });
   const ElasticBody other = MakeBody({ 16, 16, 16 });
@@ -217,7 +217,7 @@ bool AbortAfter(int allowed, FiniteElementModel& model, EquilibriumRequest reque
 // A call that is given up leaves the displacements of before, and nothing else: the next ones find
 // to the last bit what a new model finds that begins there. With the inverses of the diagonal, and
 // with levels.
-TEST(ElasticAborts, OfASolveTheLastDisplacementsStay)
+TEST(ElasticAborts, AbortedSolvesKeepTheLastDisplacements)
 {
   for (const Place& nodes : { Place{ 4, 4, 4 }, Place{ 7, 7, 7 } })
   {
@@ -258,7 +258,7 @@ TEST(ElasticAborts, OfASolveTheLastDisplacementsStay)
 
 // Levels that have become unlike the matrix, as the body was pulled far, are to be built anew when
 // a call is given up.
-TEST(ElasticAborts, AfterAFarPull)
+TEST(ElasticAborts, AfterALargeDisplacement)
 {
   for (const EquilibriumMode mode : { EquilibriumMode::Interactive, EquilibriumMode::Converged })
   {
@@ -286,7 +286,7 @@ TEST(ElasticAborts, AfterAFarPull)
 }
 
 // Levels that were given up are built anew.
-TEST(ElasticAborts, Levels)
+TEST(ElasticAborts, AbortedHierarchiesAreRebuilt)
 {
   const ElasticBody body = MakeBody({ 8, 8, 10 });
   EquilibriumRequest request = MakeConverged();

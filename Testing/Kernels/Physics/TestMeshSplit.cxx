@@ -103,7 +103,7 @@ TEST(MeshSplit, NothingToDo)
   EXPECT_EQ(Split(more, moreSheet).Origins, split.Origins);
 }
 
-TEST(MeshSplit, Pair)
+TEST(MeshSplit, TwoTetrahedra)
 {
   const ElasticBody body = MakePair();
   for (const double height : { 0.1, 0.0, -0.1, 0.25, -0.25 })
@@ -177,7 +177,7 @@ TEST(MeshSplit, ClosedSheet)
   EXPECT_NEAR(volumes[1], 64.0, 1e-9);
 }
 
-TEST(MeshSplit, EndInside)
+TEST(MeshSplit, SheetThatEndsInside)
 {
   const ElasticBody body = MakeLattice();
   const SheetSurface sheet = MakeSheet({ 4.0, -1.0, -1.0 }, { 0.0, 5.0, 0.0 }, { 0.0, 0.0, 10.0 });
@@ -266,7 +266,7 @@ TEST(MeshSplit, DeformedPositions)
   ExpectSame(Split(bent, sheet), Split(rest, MakePlaneX(4.0)));
 }
 
-TEST(MeshSplit, ContactsPart)
+TEST(MeshSplit, ContactsSeparate)
 {
   ElasticBody body = MakePair();
   body.Points.emplace_back(2.0, 2.0, -1.0);

@@ -65,7 +65,7 @@ TEST(MidSideNodes, LieInTheMiddleOfEdges)
   }
 }
 
-TEST(MidSideNodes, ThatAreThereStay)
+TEST(MidSideNodes, GivenOnesStay)
 {
   ElasticBody body = MakePair();
   body.Points.push_back({ 0.52, 0.5, 0.0 }); // of the edge 1 2
@@ -167,7 +167,7 @@ TEST(MidSideNodes, Misuse)
 
 // Where it is split into linear tetrahedra one of them is inside out, though its determinant is
 // nowhere near 0 where it is looked at: volumes cannot be deformed by it.
-TEST(MidSideNodes, SplitInsideOut)
+TEST(MidSideNodes, InvertedPartsAreAnError)
 {
   for (const bool isMirrored : { false, true })
   {
@@ -187,7 +187,7 @@ TEST(MidSideNodes, SplitInsideOut)
 }
 
 // A curved edge is no reason for an error, nor for a strain where there is none.
-TEST(MidSideNodes, MayLieBesideTheMiddle)
+TEST(MidSideNodes, MayLieOffTheMiddle)
 {
   QuadraticLattice lattice({ 3, 3, 3 }, 0.5, MakeMaterial(1e4, 0.45));
   ElasticBody& body = lattice.Body;

@@ -152,7 +152,7 @@ TEST(SplitFaces, SegmentsOutside)
   }
 }
 
-TEST(SplitFaces, FacesOfMany)
+TEST(SplitFaces, FacesOfSeveralTetrahedra)
 {
   ElasticBody body = MakePair();
   body.Points.emplace_back(0.1, 0.1, 2.0);

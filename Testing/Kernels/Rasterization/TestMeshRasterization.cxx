@@ -43,7 +43,7 @@ glm::dvec3 Wave(const glm::dvec3& index)
 
 } // namespace
 
-TEST(MeshRasterization, MisuseIsAnErrorAndLeavesTheDeformerUsable)
+TEST(MeshRasterization, MisuseLeavesTheDeformerUsable)
 {
   const RasterCase good = MakeRasterCase(Volume, 2, Wave, { { 1, 1, 1 } });
   const auto values = MakeRandomValues<float>(good.GetNumberOfVoxels(), 1);
@@ -354,7 +354,7 @@ TEST(MeshRasterization, MasksEqualReference)
 }
 
 // Work-groups, slabs, and the part of the output that is asked for change no bit.
-TEST(MeshRasterization, ResultDoesNotDependOnHowTheWorkIsSplit)
+TEST(MeshRasterization, ResultDoesNotDependOnTheDivisionOfWork)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
   const RasterCase folded = MakeRasterCase(Volume, 3, MakeJitter(9, 3.0), { { 2.3, 2.3, 1.7 } });

@@ -78,7 +78,7 @@ TEST(BoundaryDistances, MisuseIsAnError)
     RunDeformer(deformer, still, arrays).Report.NumberOfCoveredVoxels, GetNumberOfPoints(Volume));
 }
 
-TEST(BoundaryDistances, WhatIsNotNegativeStays)
+TEST(BoundaryDistances, NonNegativeSamplesStay)
 {
   const DeformerCase moved =
     MakeCase(Volume, NoScale, [](const glm::dvec3& index) { return index * 1.25; });
@@ -144,7 +144,7 @@ TEST(BoundaryDistances, ChunksAndPartsEqualTheWhole)
   EXPECT_EQ(inChunks.Outputs, whole.Outputs);
 }
 
-TEST(BoundaryDistances, MeshRasterizationLeavesOutTheSame)
+TEST(BoundaryDistances, MeshRasterizationAgrees)
 {
   // One tetrahedron round the volume, shifted by whole voxels: rest coordinates are exact.
   DeformerCase moved =

@@ -64,7 +64,7 @@ TEST(Columns, AtRest)
   Check(MakeSheared({ { 0, 40, -3, 17, 1, 19 } }, 1.0, 0.0));
 }
 
-TEST(Columns, MoreTiesThanTheListHolds)
+TEST(Columns, ManySamplesOnFaces)
 {
   // Every vertex is a sample, and each of the 256 cells of a layer has more than four on its faces.
   Check(MakeSheared({ { 0, 66, 0, 18, 0, 10 } }, 2.0, 1.0));
@@ -100,7 +100,7 @@ TEST(Columns, MoreBricksThanALaunchTakes)
     RunDeformer(deformer, tallCase, arrays, Resampling::ExactByColumns));
 }
 
-TEST(Columns, OutputsThatTheyDoNotTake)
+TEST(Columns, UnsupportedOutputs)
 {
   DeformerCase far = MakeSheared({ { 0, 4, 0, 4, 0, 4 } }, 1.0, 0.0);
   far.Output[4] += 5000000;

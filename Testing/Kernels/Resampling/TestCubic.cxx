@@ -260,7 +260,7 @@ TEST(Cubic, EqualsMeshRasterization)
 
 // What is missing leaves linear values round it, with the bits that a linear interpolation gives,
 // and all else as it is.
-TEST(Cubic, LinearWhereNotAllIsThere)
+TEST(Cubic, LinearWhereVoxelsAreMissing)
 {
   const DeformerCase whole = MakeJittered();
   const UsualArrays usual(whole.GetNumberOfVoxels());

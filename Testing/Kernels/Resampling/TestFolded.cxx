@@ -257,7 +257,7 @@ TEST(Folded, SameFromRunToRunAndForEveryWorkGroupSize)
   }
 }
 
-TEST(Folded, OutputsBeforeDoNotMatter)
+TEST(Folded, EarlierOutputsDoNotMatter)
 {
   // The passes depend on whether the output before was folded, what comes out does not.
   const Extent large{ { 0, 131, 0, 9, 0, 11 } };
@@ -307,7 +307,7 @@ TEST(Folded, OutputsBeforeDoNotMatter)
   }
 }
 
-TEST(Folded, OnSamplesAfterAFold)
+TEST(Folded, SamplesOnFacesAfterAFold)
 {
   // Where the output before was folded, one pass finds who wins, but for cells that only touch a
   // sample: all cells here have samples on their faces, as boxes and sheared, with the crease on

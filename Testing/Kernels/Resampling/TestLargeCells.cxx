@@ -96,7 +96,7 @@ DeformerCase MakeStretchedCell(int parity, double size, double part, unsigned in
 
 } // namespace
 
-TEST(LargeCells, OneCellOverTheOutput)
+TEST(LargeCells, OneCellLargerThanTheOutput)
 {
   const auto values = MakeRandomValues<std::uint16_t>(8, 2);
   const auto labels = MakeRandomValues<std::uint8_t>(8, 3);
@@ -167,7 +167,7 @@ TEST(LargeCells, InChunksAndSlabs)
   }
 }
 
-TEST(LargeCells, TimeIsThatOfTheSamplesInThem)
+TEST(LargeCells, TimeIsThatOfTheirSamples)
 {
   // One cell fills its box, the other one lies in it from corner to corner.
   const Extent cell{ { 0, 1, 0, 1, 0, 1 } };

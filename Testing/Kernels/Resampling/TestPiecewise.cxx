@@ -110,7 +110,7 @@ TEST(Piecewise, MovedAlongSomeAxes)
 }
 
 // Poses that put faces, edges and vertices of many tetrahedra exactly on samples.
-TEST(Piecewise, PosesFullOfTies)
+TEST(Piecewise, SamplesOnManyFaces)
 {
   const glm::dmat3 swapped(glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1), glm::dvec3(1, 0, 0));
   const std::vector<std::pair<const char*, glm::dmat3>> matrices{
@@ -197,7 +197,7 @@ TEST(Piecewise, ThinVolumes)
 
 // Bricks that are worked on one above the other, as they are where there are many for each
 // processor: five layers of them, the first and the last not whole, so that one has no partner.
-TEST(Piecewise, PilesOfBricks)
+TEST(Piecewise, StacksOfBricks)
 {
   const int units = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   DeformerCase jittered =
@@ -219,7 +219,7 @@ TEST(Piecewise, OutputSmallerThanTheDeformedVolume)
 }
 
 // Boxes of three voxels that the border of the output cuts between their vertices.
-TEST(Piecewise, OutputCutsBoxes)
+TEST(Piecewise, OutputCutsAlignedCells)
 {
   DeformerCase tripled = MakeCase(
     { { 0, 24, 0, 8, 0, 8 } }, NoScale, [](const glm::dvec3& index) { return 3.0 * index; });

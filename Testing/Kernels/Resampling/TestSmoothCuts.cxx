@@ -79,7 +79,7 @@ TEST(SmoothCuts, MisuseIsAnError)
   EXPECT_NO_THROW(Load(deformer, still, arrays, Route::Mesh));
 }
 
-TEST(SmoothCuts, AtRestNothingIsSeen)
+TEST(SmoothCuts, InvisibleAtRest)
 {
   for (const double scale : { 1.0, 2.0, 0.5 })
   {
@@ -118,7 +118,7 @@ TEST(SmoothCuts, AtRestNothingIsSeen)
 // side, which go on beyond all of these vertices, lie in patches of the output of their own. There
 // other cells, turned inside out, come first and lose. No cell is a box, and no sample lies on a
 // face: else patches are looked at for that.
-TEST(SmoothCuts, CopiesAreSettledBeyondTheVerticesOfTheirCells)
+TEST(SmoothCuts, CopiesBeyondTheVerticesOfTheirCellsWin)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
   const Extent extent{ { 0, 4, 0, 8, 0, 3 } };
@@ -320,7 +320,7 @@ TEST(SmoothCuts, SmoothMotionsLeaveTheCutClosed)
 
 // A cut that ends inside is pulled open: there is a gap, no hole but that, and nothing is torn at
 // its end.
-TEST(SmoothCuts, NothingIsTornWhereACutEnds)
+TEST(SmoothCuts, NothingTearsAtTheEndOfACut)
 {
   const Extent extent{ { 0, 20, 0, 20, 0, 6 } };
   const auto sheet = [](const glm::dvec3& i) { return i.x - 10.3; };
