@@ -1,8 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Runs a command with a kernel cache of PoCL that no other command has at the same time: PoCL does
-# not survive several processes that compile into one. So there are as many caches as commands that
-# run at once. What a command has compiled goes to all of them, by hard links: it is compiled once.
+# Runs a command with a kernel cache of PoCL that no other command uses at the same time, because PoCL
+# fails if several processes compile into one cache. So there are as many caches as commands that run
+# at the same time. Compiled kernels are shared by hard links, so each is compiled once.
 #
 # Usage: WithKernelCache.sh FOLDER COMMAND [ARGUMENT]...
 set -euo pipefail

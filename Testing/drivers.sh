@@ -1,8 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Runs the tests of the kernels and of the VTK classes on each OpenCL driver for processors that is
-# there, with what has been built by preset vtk, and prints a table. What cannot run on a driver
-# counts as skipped, and the reasons are listed.
+# Runs the tests of the kernels and of the VTK classes, built by preset vtk, on each installed OpenCL
+# driver for CPUs, and prints a table. Tests that cannot run on a driver count as skipped, and the
+# reasons are listed.
 #
 # Usage: drivers.sh [DRIVER]...
 #   pocl      PoCL (Debian: pocl-opencl-icd)
@@ -10,8 +10,8 @@
 #             python3 -m venv build/intel-opencl &&
 #             build/intel-opencl/bin/pip install intel-opencl-rt intel-cmplr-lib-rt
 #   rusticl   Mesa's rusticl on llvmpipe (Debian 13 or later: mesa-opencl-icd)
-# Default: those that are installed. One driver at a time is loaded: several LLVMs in one process do
-# not get on.
+# Default: those that are installed. One driver at a time is loaded, because several versions of LLVM
+# in one process conflict.
 #
 # DEFORMVOLUME_DRIVER_TESTS: a regular expression of CTest, instead of all tests of the two groups.
 # DEFORMVOLUME_TEST_TIMEOUT: seconds that a test may take, 900 by default; more where a driver

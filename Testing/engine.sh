@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Builds and installs the engine where VTK cannot be found, and uses what is installed. In
-# build/engine; with ccache it takes seconds where the engine has been compiled for VTK.
+# Builds and installs the engine without VTK, and builds and runs an example with the installed files,
+# in build/engine. With ccache it takes seconds if the engine has been compiled for VTK.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -17,6 +17,6 @@ cmake -S Examples/minimal-kernels -B build/engine/minimal-kernels -G Ninja \
 cmake --build build/engine/minimal-kernels
 build/engine/minimal-kernels/minimal-kernels
 if grep -ri 'vtk[0-9]*\.h\|libvtk' "$prefix" --include='*.h' --include='*.cmake'; then
-  echo "What is installed asks for VTK"
+  echo "Installed files refer to VTK"
   exit 1
 fi

@@ -1,8 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Compiles the OpenCL programs that this library builds for a graphics card with compilers for
-# graphics cards, of which none has to be there, and prints a table for each: registers, what is
-# spilled, and how many work-items run at once. Fails where a program does not compile.
+# Compiles the OpenCL programs of this library for GPUs, without a GPU, and prints a table for each
+# compiler: registers, spills and occupancy. Fails if a program does not compile.
 #
 # Usage: gpu-compilers.sh [--only PATTERN] [COMPILER]...
 #   nvidia    clang with libclc's builtins to PTX, and from there CUDA's ptxas
@@ -13,13 +12,13 @@
 #             mkdir -p build/ocloc && cd build/ocloc && apt-get download intel-opencl-icd libigc1 \
 #               libigdfcl1 libigdgmm12 libopencl-clang14 libllvmspirvlib14 &&
 #             for package in *.deb; do dpkg -x "$package" .; done
-#   oclgrind  no compiler: instructions of the resampling kernels for a small volume, counted
+#   oclgrind  not a compiler: counts instructions of the resampling kernels for a small volume
 # Default: all of them. What is not installed is skipped.
 # All but ptxas and ocloc come with bash Testing/packages.sh gpu-compilers.
 #   --only    programs whose name holds a pattern of grep -E, such as 'ResampleDeferredInt32-links'
 #
-# From the build of preset vtk; DEFORMVOLUME_BUILD: another build directory. All that is made is in
-# build/gpu-compilers. CUDA is looked for in CUDA_HOME, by default /usr/local/cuda.
+# Uses the build of preset vtk, or of the build directory DEFORMVOLUME_BUILD. Writes to
+# build/gpu-compilers. CUDA is expected in CUDA_HOME, by default /usr/local/cuda.
 # shellcheck disable=SC2317 # functions are called by names that are put together
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -1,15 +1,17 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
-# What takes too long for each change: all tests of the VTK classes against ParaView's VTK and with
-# the sanitizers, all tests with Clang and with static libraries, the quick tests without optimization
-# and with the thread sanitizer, those with Oclgrind that take minutes, edits by cell as on a graphics
-# card, edits and random pipelines with new seeds, all mutations, the wheel of the Python package with
-# several versions of Python and VTK, and Examples/run.sh and Testing/run.sh --all on other Debian systems. Takes hours; logs are in build.
+# Checks that take too long for each change. Takes hours; logs are in build.
+#   - all tests of the VTK classes against ParaView's VTK, with the sanitizers, with Clang, and as
+#     static libraries; the quick tests without optimization and with the thread sanitizer
+#   - the tests with Oclgrind that take minutes
+#   - edits by cell, as on a GPU; edits and random pipelines with new seeds; all mutations
+#   - the wheel of the Python package with several versions of Python and VTK
+#   - Examples/run.sh and Testing/run.sh --all on other Debian systems
 #
 # Usage: nightly.sh [--seconds SECONDS]
 #   --seconds  how long random pipelines run, 3600 by default
-# Fails where one of them does, after all of them. A Debian system that cannot be made is no failure, but
-# is reported.
+# Runs all of them, and fails if one has failed. A Debian system that cannot be made is reported, but
+# is not a failure.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

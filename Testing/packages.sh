@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs what this project needs from Debian's archive, where it is missing. Needs no network,
-# and no rights, where nothing is missing.
+# Installs the packages of Debian that this project needs and that are missing. If none is missing, it
+# needs neither a network nor root.
 #
 # Usage: packages.sh [--upgrade] SET...
 #   --upgrade first brings the sets and all that they depend on up to date, as users have them

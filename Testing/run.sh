@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs what is missing, builds against VTK, and runs the quick tests. From a pristine Debian 12
-# as root; afterwards without a network and without rights.
+# Installs what is missing, builds against VTK, and runs the quick tests. On a pristine Debian 12 it
+# needs root and a network. Later runs need neither.
 #
 # Usage: run.sh [--all] [PRESET]...
 #   --all   runs all tests, and without PRESET those of vtk, paraview (the plugin) and asan (the

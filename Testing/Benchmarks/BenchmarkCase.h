@@ -86,7 +86,7 @@ private:
   /// Null where there are displacements.
   vtkSmartPointer<vtkUnstructuredGrid> Rest;
   int Step = 0;
-  /// What the filter complained of.
+  /// Error messages of the filter.
   std::string Error;
 };
 

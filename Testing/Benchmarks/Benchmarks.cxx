@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// DeformVolumeBenchmarks: repeats the published evaluation, with VTK's own ways to deform a volume
-// beside it. Options are --quick (few rounds, no volume over 30 million voxels) and those of Google
-// Benchmark; run.sh makes a report of its result.
+// DeformVolumeBenchmarks: repeats the published evaluation, and compares with VTK's own classes.
+// Options are --quick (few rounds, no volume over 30 million voxels) and those of Google Benchmark;
+// run.sh makes a report of its result.
 #include "Evaluation.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a frame takes while tissue is dragged by ChainMail: a step of it, and the volume deformed.
+// Time of a frame while tissue is dragged by ChainMail: a step, and the volume deformed.
 #include "Evaluation.h"
 #include "Timing.h"
 

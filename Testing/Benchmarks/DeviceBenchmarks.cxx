@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // DeformVolumeDevice: describes the OpenCL device that an empty device name stands for, and
-// measures how fast its memory is copied: the floor under the time of any resampling. Options are
-// those of Google Benchmark. Returns 125 where there is no such device.
+// measures how fast its memory is copied, which is a lower bound of the time of any resampling.
+// Options are those of Google Benchmark. Returns 125 if there is no such device.
 #include "Error.h"
 #include "OpenCLContext.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What cutting and carving cost.
+// Time of cutting and carving.
 #include "Evaluation.h"
 #include "Timing.h"
 
@@ -59,7 +59,7 @@ vtkSmartPointer<vtkPolyData> MakeSheet(vtkImageData* volume, double height)
   return sheet;
 }
 
-// Both filters on a volume, and where their tools are.
+// Both filters on a volume, and the positions of their tools.
 struct Editing
 {
   explicit Editing(vtkImageData* volume)

@@ -12,13 +12,13 @@
 
 struct EvaluationSize
 {
-  /// Few rounds of less, to see that it works.
+  /// Few rounds and fewer sizes, to check that everything runs.
   bool Quick = false;
 
   int GetRounds() const { return this->Quick ? 1 : 7; }
-  /// For what takes long.
+  /// For measurements that take long.
   int GetSlowRounds() const { return this->Quick ? 1 : 5; }
-  /// For what takes short and whose difference is small beside what the machine varies by.
+  /// For short measurements whose difference is smaller than the variation of the machine.
   int GetManyRounds() const { return this->Quick ? 1 : 21; }
   /// Whether the peers have a turn that does not count, as others do.
   bool GetWarmUp() const { return !this->Quick; }
@@ -62,7 +62,7 @@ void RegisterGivenMeshes(const EvaluationSize& size);
 /// Incremental/<whole or local>: a mesh that moves in one place only.
 void RegisterIncremental(const EvaluationSize& size);
 
-/// Live/<edit>: what moves, is split or switched off between two frames.
+/// Live/<edit>: nodes that move or are split, and cells that are switched off, between two frames.
 void RegisterLive(const EvaluationSize& size);
 
 /// Edit/<dimensions>/<edit>: cutting and carving.
@@ -88,7 +88,7 @@ struct NamedResampler
   const char* Name;
   int Resampler;
 };
-/// The subject of the demands.
+/// The volume of the limits (demands.py).
 inline constexpr NamedResampler ExactResampler{ "exact", vtkDeformVolumeFilter::EXACT };
 inline constexpr NamedResampler MeshRasterizationResampler{ "mesh-rasterization",
   vtkDeformVolumeFilter::MESH_RASTERIZATION };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Warm frames of finite elements: what they take, and what force they leave.
+// Frames of finite elements that start from the last one: their time and their residual force.
 //
 // Usage: FiniteElementFrames [FRAMES [NEWTON [ITERATIONS [SCENE [MODEL]]]]]. Times are in
 // milliseconds. The body is a block that is fixed at its lower end; in the middle of the other end

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What changes between two frames, and what that costs.
+// Time of an update after changes between two frames.
 #include "../Reported.h"
 #include "Evaluation.h"
 #include "LiveCase.h"

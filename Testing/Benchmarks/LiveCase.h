@@ -31,11 +31,11 @@ public:
   /// So many tetrahedra beside a plane of the lattice, another one each time, get at most so many
   /// nodes of their own, which move a little.
   void Split(int tetrahedra, int nodes);
-  /// Moves a node at rest, so that all is made anew.
+  /// Changes the rest position of a node, so that the static mapping is rebuilt.
   void MoveAtRest();
   /// Switches tetrahedra off, and others on again, in a box of so many cells.
   void ChangeMask(const std::array<int, 3>& cells);
-  /// Tells that the mesh has been written to, which it has not.
+  /// Marks the mesh as modified without a change.
   void Touch();
 
   /// Seconds of an update. Throws where the filter fails.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What it costs that a mask of the volume appears or changes, while the mesh rests.
+// Time of an update after a mask of the volume has appeared or changed. The mesh does not move.
 #include "Evaluation.h"
 
 #include <vtkCellData.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a frame takes while a body is simulated: a step of the simulation, and the volume deformed
-// with it.
+// Time of a frame while a body is simulated: a step of the simulation, and the volume deformed by
+// the body.
 #include "Evaluation.h"
 #include "Timing.h"
 

@@ -39,7 +39,7 @@ const char* GetName(Pose pose);
 std::array<double, 6> GetLocalEditBox(Pose pose, const std::array<int, 3>& dimensions);
 
 /// Where the points of a volume with spacing 1 and origin 0 go in a pose. Each step is a little
-/// different from the one before, so that all has to be computed anew.
+/// different from the last one, so that nothing can be reused.
 class PoseMap
 {
 public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The evaluation of what the time depends on: the pose.
+// Time by the pose.
 #include "Evaluation.h"
 #include "SampleCount.h"
 

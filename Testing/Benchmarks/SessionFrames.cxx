@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a live session takes from the move of a mouse, or the stroke of a knife, to a new volume.
+// Time of a live session from a mouse move, or the stroke of a knife, to the new volume.
 #include "Evaluation.h"
 #include "Timing.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The evaluation of what the time depends on: the deformation mesh, the volume, what moves.
+// Time by the size of the deformation mesh and of the volume, and by the nodes that move.
 #include "Evaluation.h"
 
 #include <vtkImageData.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The peers of the benchmarks do what the filter does: what is compared by time gives one result.
+// The peers of the benchmarks have the output of the filter: times of equal work are compared.
 #include "BenchmarkCase.h"
 #include "Peers.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The one check of time: an update of vtkDeformVolumeFilter beside vtkImageReslice with an affine
-// transform, which fills the same output, in turns. The best of ten of each, so that other work on
-// the machine matters little.
+// The only check of time: an update of vtkDeformVolumeFilter relative to vtkImageReslice with an
+// affine transform, which fills the same output. They run in turn. The best of ten of each counts,
+// so that other work on the machine matters little.
 #include "BenchmarkCase.h"
 #include "Peers.h"
 
@@ -40,7 +40,7 @@ unsigned int FindLanes()
   return 0;
 }
 
-// The ratio as measured with VTK 9.1 on two cores with so many lanes; 0: nobody has.
+// The ratio as measured with VTK 9.1 on two cores with so many lanes; 0: not measured.
 double GetMeasuredRatio(unsigned int lanes)
 {
   return lanes == 16 ? 0.47 : 0.0;

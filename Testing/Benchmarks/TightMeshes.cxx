@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What it costs that the deformed volume ends where the mesh ends: meshes as large as a body of 100
-// voxels on each axis, and for comparison the same without the cells that the boundary of the mesh
-// crosses.
+// Time of the cells that the boundary of the mesh crosses: meshes as large as a body of 100 voxels
+// on each axis, with these cells and without.
 #include "Evaluation.h"
 
 #include <StaticMapping.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Several ranks: each makes its piece of the output, and all pieces are those that one process
-// makes, to the last bit; whoever has the deformation mesh; errors end alike on all ranks. With the
-// argument "cold": the start with an empty cache of kernels.
+// Several ranks: each makes its piece of the output, and all pieces are equal to those of one
+// process, to the last bit, whichever rank has the deformation mesh. Errors are reported on all
+// ranks. With the argument "cold": the start with an empty cache of kernels.
 #include "../Reported.h"
 #include "DivisionCases.h"
 #include "RankTesting.h"
@@ -53,7 +53,7 @@ void Broadcast(vtkImageData* image)
   image->SetDirectionMatrix(grid.data() + 6);
 }
 
-/// What one process makes, on all ranks.
+/// The output of one process, on all ranks.
 vtkSmartPointer<vtkImageData> MakeWhole(const Case& from)
 {
   auto image = vtkSmartPointer<vtkImageData>::New();
@@ -80,7 +80,7 @@ void Check(Deformed& deformed, vtkImageData* whole, const std::string& name, int
     std::cerr << deformed.LastError;
   }
   vtkImageData* output = deformed.Filter->GetOutput();
-  // What is told counts for all ranks.
+  // Counts are sums over all ranks.
   vtkDataArray* mask = output->GetPointData()->GetArray("vtkValidPointMask");
   vtkIdType mine = 0;
   for (vtkIdType id = 0; mask && id < mask->GetNumberOfTuples(); ++id)
@@ -113,7 +113,7 @@ enum class Spread
   WithGhosts  // and the cells round them as ghosts
 };
 
-/// What this rank has of a mesh.
+/// The part of a mesh that this rank has.
 vtkSmartPointer<vtkUnstructuredGrid> Distribute(vtkUnstructuredGrid* mesh, Spread spread)
 {
   auto mine = vtkSmartPointer<vtkUnstructuredGrid>::New();
@@ -223,7 +223,8 @@ void TestSpread(const Case& from, vtkImageData* whole)
   }
 }
 
-/// An error that one rank causes is told by all in the same words, and can be mended.
+/// An error that one rank causes is reported by all with the same text. The filter works when the
+/// cause is removed.
 void TestError(const Case& from, vtkImageData* whole, const std::string& words,
   const std::function<void(Parallel&)>& spoil, const std::function<void(Parallel&)>& mend)
 {
@@ -245,7 +246,7 @@ void TestError(const Case& from, vtkImageData* whole, const std::string& words,
   Check(parallel, whole, words);
 }
 
-/// Of the reference image on the last rank: one error on all ranks.
+/// Errors of the reference image on the last rank: one error on all ranks.
 void TestReferenceErrors(const Case& from, vtkImageData* whole)
 {
   const auto good = MakeReference(from.Volume, true);
@@ -283,7 +284,7 @@ void TestReferenceErrors(const Case& from, vtkImageData* whole)
     mend);
 }
 
-/// All ranks together make nothing but background: each that has a piece warns once.
+/// The whole output is background: each rank that has a piece warns once.
 void TestNothingCovered(const Case& from)
 {
   Parallel parallel(from);
@@ -297,7 +298,7 @@ void TestNothingCovered(const Case& from)
   const bool hasPiece = parallel.Filter->GetOutput()->GetNumberOfPoints() > 0;
   VERIFY_EQUAL(at != std::string::npos, hasPiece);
   VERIFY_EQUAL(warnings.rfind("Warning: "), warnings.find("Warning: "));
-  // A rank whose piece the body does not reach has nothing to say where another one's is reached.
+  // A rank whose piece the body does not reach does not warn if the body reaches another piece.
   far->SetOrigin(MakeReference(from.Volume, true)->GetOrigin());
   far->SetExtent(4, 200, -11, 29, -8, 33);
   far->Modified();
@@ -353,7 +354,7 @@ void TestErrors(const Case& from, vtkImageData* whole)
       });
   }
   {
-    // No rank has anything.
+    // No rank has a part of the mesh.
     Parallel parallel(from);
     parallel.Filter->SetDeformationData(vtkSmartPointer<vtkUnstructuredGrid>::New());
     parallel.Filter->UpdatePiece(GetRank(), GetRanks(), 0);
@@ -387,7 +388,7 @@ void TestSmallAndMoving(const Case& from)
     moving.Filter->SetDeformationData(Distribute(mesh, Spread::Pieces));
     Check(moving, MakeWhole(step), "Moving mesh");
   }
-  // What it has needed stays.
+  // The part of the volume that was needed before is kept.
   VERIFY(moving.Source->Made.size() <= 2);
   VERIFY(GetReported(moving.Filter, "Static mappings made") <= 2);
   VERIFY(GetReported(moving.Filter, "Volumes sent") <= 2);
@@ -424,7 +425,7 @@ void TestKeptExtent(const Case& from)
   }
 }
 
-/// Each rank moves its own points, as one process does, whoever has the mesh.
+/// Each rank moves its own points, as one process does, whichever rank has the mesh.
 void TestPoints(vtkUnstructuredGrid* mesh)
 {
   vtkNew<vtkMultiBlockDataSet> blocks;
@@ -476,7 +477,7 @@ void TestPoints(vtkUnstructuredGrid* mesh)
         VERIFY(output != nullptr);
         for (vtkIdType id = 0; output && id < output->GetNumberOfPoints(); ++id)
         {
-          // Pieces give tetrahedra other numbers, and points on their faces to other ones.
+          // In pieces, tetrahedra have other numbers, so points on faces may follow another one.
           const glm::dvec3 miss = GetPoint(output, id) - GetPoint(getBlock(alone, block), id);
           VERIFY(std::abs(miss.x) + std::abs(miss.y) + std::abs(miss.z) < 1e-5);
         }
@@ -549,7 +550,7 @@ void TestColdStart()
   Parallel parallel(from);
   if (GetRank() == 0)
   {
-    // As a user interface does, before the other ranks hear of anything: devices start here.
+    // As a user interface does, before the other ranks do anything: devices start here.
     vtkSmartPointer<vtkStringArray>::Take(vtkDeformVolumeFilter::GetDeviceNames());
     VERIFY(std::getenv("POCL_MAX_PTHREAD_COUNT") != nullptr);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A volume that is cut, carved and dragged on several ranks: each makes its piece of the output,
-// and all pieces are those that one process makes, to the last bit, after each step of the drag,
+// and all pieces are those of one process, to the last bit, after each step of the drag,
 // after undo and redo, and where the volume is folded over.
 #include "ChainMailTesting.h"
 #include "DivisionCases.h"
@@ -23,7 +23,7 @@ vtkMPIController* Controller = nullptr;
 
 constexpr Extent Box{ { -3, 60, 2, 45, 0, 40 } };
 
-/// A volume, what edits it, and what deforms the result.
+/// A volume, the filters that edit it, and the filter that deforms the result.
 struct Pipeline
 {
   explicit Pipeline(vtkImageData* volume)

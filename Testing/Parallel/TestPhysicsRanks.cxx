@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A volume that a simulated body deforms, on several ranks: one simulates, each makes its piece of
-// the output, and all pieces are those that one process makes, to the last bit, also after a cut.
+// the output, and all pieces are those of one process, to the last bit, also after a cut.
 #include "ChainMailTesting.h"
 #include "DivisionCases.h"
 #include "EditChecks.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Memory that does not suffice on one rank: all ranks report one error, none waits for another, and
-// the filter works once there is memory. Every large allocation of an update fails once.
+// Too little memory on one rank: all ranks report one error, none waits for another, and the
+// filter works when there is memory. Every large allocation of an update fails once.
 #include "FilterTesting.h"
 #include "RankTesting.h"
 
@@ -102,7 +102,7 @@ public:
 
   void Run()
   {
-    // What is compiled and found once.
+    // Compiles kernels and finds devices.
     VERIFY(!this->Update(-1));
     VERIFY_EQUAL(this->Tested.TakeErrors(), 0);
     const vtkIdType covered = this->Tested.Filter->GetNumberOfCoveredVoxels();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sources that fail on one rank, as readers do whose file a machine cannot read: all ranks tell it,
-// none waits for another, and the filter works once the source does.
+// Sources that fail on one rank, such as a reader that cannot read its file there: all ranks report
+// the error, none waits for another, and the filter works when the source does.
 #include "DivisionCases.h"
 #include "RankTesting.h"
 
@@ -19,7 +19,7 @@ enum class Failure
   Information
 };
 
-/// Fails as it is told to. Who observes it hears nothing of that.
+/// A source that fails on request, without an event for its observers.
 template <typename Base>
 class FailingSource : public Base
 {
@@ -144,7 +144,7 @@ void TestFailures(vtkMPIController* controller)
       pipeline, pipeline.Mesh.Get(), Failure::Data, controller, "deformation on input port 1");
   }
   {
-    // When everything has been up to date before.
+    // After an update that succeeded.
     Pipeline pipeline(from);
     pipeline.Filter->UpdatePiece(
       controller->GetLocalProcessId(), controller->GetNumberOfProcesses(), 0);

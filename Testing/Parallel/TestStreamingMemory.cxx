@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A volume that takes 864 MB is deformed and written to a file in 16 pieces, in a process that
-// never takes more than 1.5 GB. Arguments: the folder for the file.
+// Deforms a volume of 864 MB and writes it to a file in 16 pieces. The process must never take more
+// than 1.5 GB. Arguments: the folder for the file.
 #include "FilterTesting.h"
 
 #include <vtkInformation.h>
@@ -17,7 +17,7 @@ using namespace filterTesting;
 namespace
 {
 
-/// Megabytes that this process has taken at most.
+/// The highest resident memory of this process, in MB.
 double GetPeakMemory()
 {
   std::ifstream status("/proc/self/status");
@@ -92,7 +92,7 @@ int main(int argc, char* argv[])
   // The whole of input and output would have taken more.
   VERIFY(2.0 * inputMegabytes > 1500.0);
 
-  // What was written is what the filter makes when it is asked for a few planes.
+  // The file has the values that the filter gives for a request of a few planes.
   Extent whole;
   deformed.Filter->GetOutputInformation(0)->Get(
     vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole.data());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What scenes are put together from: deformations, cameras, colours, slices and surfaces.
+// Parts of scenes: deformations, cameras, colors, slices and surfaces.
 #include "SceneTesting.h"
 
 #include <vtkActor.h>

@@ -21,8 +21,8 @@ namespace sceneTesting
 
 using namespace pictureTesting;
 
-/// What is drawn. INTACT is what the baseline shows. The others have to differ from it: SPOILED is
-/// what an error that the scene is there to find would draw, and of SHIFTED all displacements are
+/// Variants of a scene. INTACT is compared with the baseline. The others have to differ from it:
+/// SPOILED is the picture of an error that the scene should find. In SHIFTED all displacements are
 /// one voxel longer along x.
 enum class Version
 {
@@ -37,8 +37,8 @@ using AddScene = void (*)(vtkRenderWindow* window, Version version);
 struct Scene
 {
   const char* Name;
-  /// Of the mean absolute difference of all bytes of two pictures, 0 to 255: at most half of the
-  /// smaller difference of SPOILED and SHIFTED, far above what two drivers of OpenGL differ by.
+  /// Limit of the mean absolute difference of all bytes of two pictures, 0 to 255: at most half of
+  /// the smaller difference of SPOILED and SHIFTED, far above the difference of two OpenGL drivers.
   double Limit;
   AddScene DrawScene;
 };
@@ -48,10 +48,10 @@ struct Scene
 /// of output.
 bool Test(const Scene& scene, const std::string& baselines, const std::string& output);
 
-/// Makes the picture the baseline.
+/// Writes the picture of INTACT as the baseline.
 bool WriteBaseline(const Scene& scene, const std::string& baselines);
 
-/// Adds a point array as AddScalars() does, and keeps those that are there.
+/// Adds a point array as AddScalars() does, and keeps the other arrays.
 template <typename T>
 void AddValues(vtkImageData* image, const char* name, const WorldFunction& function)
 {
@@ -59,7 +59,7 @@ void AddValues(vtkImageData* image, const char* name, const WorldFunction& funct
   AddScalars<T>(image, name, function);
 }
 
-/// A deformation with what SHIFTED adds to its active vectors.
+/// A deformation. SHIFTED adds one voxel along x to its active vectors.
 vtkSmartPointer<vtkDataSet> Shifted(vtkDataSet* deformation, Version version);
 
 /// A renderer in one of several columns of the window, with a parallel projection: the window shows

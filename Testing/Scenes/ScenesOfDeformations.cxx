@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What vtkDeformVolumeFilter makes of volumes: values, surfaces, slices, labels and folds.
+// Outputs of vtkDeformVolumeFilter: values, surfaces, slices, labels and folds.
 #include "SceneTesting.h"
 
 #include <vtkColorTransferFunction.h>
@@ -70,7 +70,7 @@ void DrawVolumeRendering(vtkRenderWindow* window, Version version)
   {
     filter->AddCategoricalArray("RTData");
   }
-  // Rays of a processor: the same pictures whatever draws them.
+  // Ray casting on the CPU gives the same pictures with all OpenGL drivers.
   vtkNew<vtkFixedPointVolumeRayCastMapper> mapper;
   mapper->SetInputConnection(filter->GetOutputPort());
   mapper->AutoAdjustSampleDistancesOff();
@@ -95,7 +95,7 @@ void DrawVolumeRendering(vtkRenderWindow* window, Version version)
   AddRenderer(window, glm::dvec3(0.0), glm::dvec3(30.0, -80.0, 50.0), 42.0)->AddViewProp(shown);
 }
 
-// Spoiled: twisted to the other side.
+// Spoiled: twisted in the other direction.
 void DrawIsosurface(vtkRenderWindow* window, Version version)
 {
   auto volume = MakeImage({ { -15, 15, -15, 15, -20, 20 } });
@@ -131,7 +131,7 @@ void DrawSlice(vtkRenderWindow* window, Version version)
     filter->GetOutput(), "RTData", MakeColours(40.0, 280.0, Warm));
 }
 
-// Labels, and beside them values. Spoiled: labels are interpolated, so that there are others
+// Labels (left) and values (right). Spoiled: labels are interpolated, which gives other labels
 // between them.
 void DrawLabels(vtkRenderWindow* window, Version version)
 {
@@ -171,7 +171,7 @@ void DrawLabels(vtkRenderWindow* window, Version version)
   }
 }
 
-// A bulge that is pushed over what is beside it. Where two upright parts overlap, the cells
+// A bulge that is pushed over the tissue beside it. Where two upright parts overlap, the cells
 // with lower indices are in front. Spoiled: indices run the other way, so that the other part is in
 // front.
 void DrawFold(vtkRenderWindow* window, Version version)

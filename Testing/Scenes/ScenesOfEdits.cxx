@@ -22,7 +22,7 @@ namespace
 {
 
 // A rounded block in layers, whose surface lies two voxels within the volume: its values fall off
-// there, so that only what cuts and carves leave is as sharp as the output's voxels.
+// there, so that only the faces of cuts and carvings are as sharp as the output's voxels.
 vtkSmartPointer<vtkImageData> MakeBlock(const Extent& extent)
 {
   auto volume = MakeImage(extent);
@@ -84,8 +84,8 @@ vtkSmartPointer<vtkPolyData> MakeLine(int number, const std::function<glm::dvec3
 namespace sceneTesting
 {
 
-// A wedge: the sheet ends within the block, and what is above its end is turned apart. Spoiled: not
-// cut, so that the block is stretched over the gap.
+// A wedge: the sheet ends within the block, and the two parts above its end are rotated apart.
+// Spoiled: not cut, so that the block is stretched over the gap.
 void DrawHardCut(vtkRenderWindow* window, Version version)
 {
   const auto block = MakeBlock({ { -14, 14, -10, 10, -2, 24 } });
@@ -103,8 +103,8 @@ void DrawHardCut(vtkRenderWindow* window, Version version)
   AddEditedBlock(renderer, block, cut->GetOutputPort(), open, version, 0.25);
 }
 
-// A curved sheet, pulled open: whole tetrahedra left out, and beside it divided. Spoiled: whole
-// tetrahedra left out in both.
+// A curved cut, pulled open: tetrahedra left out (left) and divided (right). Spoiled: left out in
+// both.
 void DrawSmoothCut(vtkRenderWindow* window, Version version)
 {
   const auto block = MakeBlock({ { -9, 9, -20, 20, -2, 8 } });
@@ -129,7 +129,7 @@ void DrawSmoothCut(vtkRenderWindow* window, Version version)
   }
 }
 
-// A bowl carved out of whole tetrahedra, and beside it with a smooth boundary. Spoiled: whole
+// A bowl carved out as whole tetrahedra (left) and with a smooth boundary (right). Spoiled: whole
 // tetrahedra in both.
 void DrawSmoothBoundary(vtkRenderWindow* window, Version version)
 {
@@ -150,7 +150,7 @@ void DrawSmoothBoundary(vtkRenderWindow* window, Version version)
 }
 
 // A beam that is held at both ends and cut from below: its mesh is split along the sheet, and
-// gapes. Spoiled: the volume is stretched over the gap.
+// the cut opens. Spoiled: the volume is stretched over the gap.
 void DrawSplit(vtkRenderWindow* window, Version version)
 {
   const auto beam = MakeBlock({ { -22, 22, -7, 7, -2, 17 } });

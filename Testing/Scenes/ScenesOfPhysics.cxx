@@ -87,8 +87,8 @@ void DrawChainMail(vtkRenderWindow* window, Version version)
   }
 }
 
-// An arch that stands on its feet and leans in the wind, with the surface of its mesh. Spoiled: a
-// tissue that is stiffer.
+// An arch that stands on its feet and is pushed sideways, with the surface of its mesh. Spoiled: a
+// stiffer tissue.
 void DrawFiniteElements(vtkRenderWindow* window, Version version)
 {
   auto volume = MakeImage({ { -20, 20, -7, 7, 0, 20 } });
