@@ -3,6 +3,7 @@
 #define DeformVolumeGuardedCall_h
 
 #include "Error.h"
+#include "FloatingPointTrapGuard.h"
 #include "OpenCLContext.h"
 
 #include <new>

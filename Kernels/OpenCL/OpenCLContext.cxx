@@ -6,6 +6,7 @@
 #include "DeviceRank.h"
 #include "DeviceThreads.h"
 #include "Error.h"
+#include "FloatingPointTrapGuard.h"
 #include "KernelCache.h"
 #include "KernelLinker.h"
 #include "StagedCopies.h"

@@ -10,7 +10,6 @@
 #include "DeviceRank.h"
 #include "ProgramText.h"
 
-#include <cfenv>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -109,20 +108,6 @@ private:
 
 /// What an error of the OpenCL layer means to the user.
 std::string GetMessage(const cl::Error& error);
-
-/// Some hosts trap floating-point exceptions, which OpenCL compilers and kernels may raise
-/// harmlessly: traps are off during the life of this object.
-class FloatingPointTrapGuard
-{
-public:
-  FloatingPointTrapGuard() { std::feholdexcept(&this->Environment); }
-  ~FloatingPointTrapGuard() { std::fesetenv(&this->Environment); }
-  FloatingPointTrapGuard(const FloatingPointTrapGuard&) = delete;
-  FloatingPointTrapGuard& operator=(const FloatingPointTrapGuard&) = delete;
-
-private:
-  std::fenv_t Environment;
-};
 
 } // namespace deformvolume
 

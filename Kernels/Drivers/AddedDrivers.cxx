@@ -3,8 +3,8 @@
 
 #include "DeviceThreads.h"
 #include "Error.h"
+#include "FloatingPointTrapGuard.h"
 #include "KernelCache.h"
-#include "OpenCLContext.h" // for FloatingPointTrapGuard
 
 #include <algorithm>
 #include <filesystem>
