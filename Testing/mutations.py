@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Changes constants that correctness rests on, one at a time, and runs the tests that have to notice.
+"""Changes constants and lines that correctness depends on, one at a time, and runs the tests that must fail.
 
     python3 Testing/mutations.py [NAME...]
 
-Without names all mutations are tried; --list prints them, and --check says which texts are no longer there. The
-sources are copied to build/mutations, so that the working tree stays as it is. Each mutation replaces one text in one file; the tests are built, and those named
-with the mutation are run. It prints a table of what was changed and the first test that failed, and
-returns 1 if a mutation was not noticed. Before that the tests must pass without a change. CONTRIBUTING.md tells
-when to add one.
+Without names all mutations are run. --list prints their names. --check lists mutations whose text does not exist
+once. The sources are copied to build/mutations, so the working tree does not change. First the tests must pass
+without a mutation. Each mutation replaces one text in one file; the tests are built, and those of the mutation are
+run. Prints a table with the change and the first test that failed. Returns 1 if no test failed for a mutation.
+CONTRIBUTING.md says when to add a mutation.
 """
 import argparse
 import os
@@ -24,7 +24,7 @@ BUILD = WORK / "build"
 # Against ParaView's VTK, with the plugin; CTest starts its tests.
 PLUGIN_BUILD = WORK / "plugin-build"
 SKIPPED = 125
-# As CTest fails tests of the VTK classes.
+# Output with which CTest fails tests of the VTK classes.
 ERROR = re.compile(r"(^|\n)ERROR: |(^|\n|[|] *)ERR[|]")
 
 NARROW = ("TestNarrowDecisions", "*")
@@ -485,14 +485,14 @@ MUTATIONS = {
 
 
 def copy_sources():
-    """The files of the working tree that git knows or does not ignore; what did not change keeps its time."""
+    """Copies the files of the working tree that git does not ignore. Files that are equal keep their time."""
     names = subprocess.run(
         ["git", "ls-files", "--cached", "--others", "--exclude-standard"], cwd=SOURCE, check=True,
         capture_output=True, text=True).stdout.splitlines()
     for name in names:
         if (SOURCE / name).is_file():
             write(COPY / name, (SOURCE / name).read_bytes())
-    # A header that has moved would still be found where it was.
+    # The compiler would still find a header that has moved at its former place.
     for path in COPY.rglob("*"):
         if path.is_file() and not (SOURCE / path.relative_to(COPY)).is_file():
             path.unlink()
@@ -525,7 +525,7 @@ def configure(folder, *options):
 
 
 def build(tests):
-    """Returns whether it worked; what the compiler says is printed where it did not."""
+    """Returns whether the build succeeded. If not, prints the output of the compiler."""
     commands = []
     targets = {get_program(test) for test in tests if not is_of_plugin(test)}
     if targets:
@@ -546,7 +546,7 @@ def build(tests):
 
 
 def get_command(test):
-    """The test's name, and how it is started."""
+    """The name of the test, and its command."""
     if is_of_plugin(test):
         # CTest knows its environment.
         return test, ["ctest", "--test-dir", PLUGIN_BUILD, "-R", f"^{re.escape(test)}$", "--no-tests=error"]
@@ -589,9 +589,9 @@ def find_failure(tests):
 
 
 def find_stale():
-    """Mutations whose text does not stand once in its file, a line each."""
+    """A message for each mutation whose text does not exist exactly once in its file."""
     counts = {name: (SOURCE / file).read_text().count(old) for name, (file, old, _, _) in MUTATIONS.items()}
-    return [f"{name}: the text stands {count} times in {MUTATIONS[name][0]}."
+    return [f"{name}: the text exists {count} times in {MUTATIONS[name][0]}."
             for name, count in counts.items() if count != 1]
 
 
@@ -599,7 +599,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*", metavar="NAME")
     parser.add_argument("--list", action="store_true", help="print the names of the mutations")
-    parser.add_argument("--check", action="store_true", help="only look whether each text is there, once")
+    parser.add_argument("--check", action="store_true", help="only check that each text exists once")
     arguments = parser.parse_args()
     if arguments.list:
         print("\n".join(MUTATIONS))
