@@ -13,7 +13,7 @@
 namespace deformvolume
 {
 
-/// A block, and the systems that voxels round it have changed.
+/// A block, and the systems in which voxels around it have changed.
 struct ActiveBlock
 {
   std::uint32_t Block;
@@ -26,20 +26,20 @@ class ActiveBlocks
 public:
   explicit ActiveBlocks(const ChainMailBlocks& blocks);
 
-  /// Another order for each number but 0.
+  /// Set the order of visits: 0 for the default order, other numbers for different random orders.
   void SetOrder(unsigned int order);
 
   bool IsEmpty() const { return this->Lists[0].empty() && this->Lists[1].empty(); }
   void Add(std::uint32_t block, std::uint32_t systems);
-  /// Adds the blocks on faces of another one; faces: as bits.
+  /// Adds the neighbors of a block on some faces. faces: as bits.
   void AddNeighbours(std::uint32_t block, std::uint32_t faces, std::uint32_t systems);
-  /// Takes blocks of one colour, which share no faces, at most so many.
+  /// Takes at most `most` blocks of one color. Blocks of the same color share no faces.
   std::vector<ActiveBlock> Take(int colour, std::size_t most);
   void Clear();
 
 private:
   ChainMailBlocks Blocks;
-  std::vector<unsigned char> Systems; // of each block
+  std::vector<unsigned char> Systems; // for each block
   std::array<std::vector<std::uint32_t>, 2> Lists;
   bool IsShuffled = false;
   std::mt19937 Random;

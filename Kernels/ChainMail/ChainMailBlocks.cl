@@ -1,22 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the ChainMail kernels share: blocks of voxels, their links, and their rows in the output.
+// Code that the ChainMail kernels share: blocks of voxels, their links, and their rows in the output.
 //
-// A work-group takes a block of the list; its work-items share the rows of eight voxels. On processors a work-group is
-// one work-item, and SERIAL is 1.
+// A work-group handles a block of the list, and its work-items share the rows of eight voxels. On CPUs a work-group
+// is a single work-item, and SERIAL is 1.
 //
-// displacements: of block b, 512 integers for each axis. flags, links, materials: of block b, 512 bytes.
-// limits: for component c and axis a of a link, ((3 c + a) * 2 + way) * 256 + material. Way 0: how much more the voxel
-// at the upper end may have than the one at the lower end. Way 1: how much less. Half of it counts for each voxel.
-// saved: three numbers a voxel of the volume. It is the output, which nobody needs during a step: of each block that
-// the step has changed, it then holds what the displacements were before.
+// displacements: for each block, 512 integers for each axis. flags, links, materials: for each block, 512 bytes.
+//
+// limits: for component c and axis a of a link, ((3 c + a) * 2 + way) * 256 + material. Way 0: how much greater the
+// displacement may be at the upper end of the link than at the lower end. Way 1: how much smaller. The limit of a
+// link is the mean of those of its two voxels.
+//
+// saved: three numbers per voxel of the volume. This is the memory of the output, which is not needed during a step.
+// For each block that the step has changed, it holds the displacements before the step.
 
 #define INLINE static inline __attribute__((always_inline))
 #define ROWS DEFORMVOLUME_BLOCK_ROWS
 #define VOXELS DEFORMVOLUME_BLOCK_VOXELS
 #define NO_LIMIT DEFORMVOLUME_NO_LIMIT
-// So that arrays of vectors stay in registers.
+// Keeps arrays of vectors in registers.
 #define UNROLL _Pragma("unroll")
-// Over the faces: unrolled, a work-item needs more registers than graphics cards have.
+// For loops over the faces: unrolled, they would need more registers than GPUs have.
 #if SERIAL
 #define UNROLL_FACES UNROLL
 #else
@@ -30,8 +33,8 @@
 #else
 #define BARRIER() barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE)
 #define OR_INTO(place, bits) atomic_or(place, bits)
-// All work-items take as many turns: on processors with AVX-512, PoCL 6.0 miscompiles loops of r from the number of the
-// work-item on. Without the casts it does not compile this loop.
+// All work-items take the same number of turns. PoCL 6.0 on CPUs with AVX-512 miscompiles loops of r that begin at
+// the number of the work-item, and does not compile this loop without the casts.
 #define FOR_ROWS(r)                                                                                \
   for (int turn = 0, r = (int)get_local_id(0);                                                     \
        turn < (int)(ROWS + get_local_size(0) - 1) / (int)get_local_size(0);                        \
@@ -39,7 +42,7 @@
     if (r < ROWS)
 #endif
 
-// A neighbour of a block, and whether it is there.
+// Whether a block has a neighbor on a face, and the number of that neighbor.
 INLINE int HasNeighbour(uint block, int face, const ChainMailGrid* g)
 {
   const int at[3] = { block % g->Blocks[0], block / g->Blocks[0] % g->Blocks[1],
@@ -58,7 +61,7 @@ INLINE __global const int* Limits(__global const int* limits, int component, int
   return limits + ((3 * component + axis) * 2 + way) * 256;
 }
 
-// Values of a table for eight materials, which most often are the same.
+// Looks up the values of eight materials, which are mostly the same.
 INLINE int8 LookUp(__global const int* table, uchar8 m)
 {
   const ulong all = as_ulong(m);
@@ -77,7 +80,8 @@ INLINE int AreAlike(uchar8 a, uchar8 b)
   return all == as_ulong(b) && all == (all & 255) * 0x0101010101010101UL;
 }
 
-// How much more, and how much less, voxels may have than their neighbours on a face, of each component.
+// Finds how much greater (over) and how much smaller (under) each component of displacements may be than that of the
+// neighbors on a face.
 INLINE void FindLimitsBeside(
   __global const int* limits, uchar8 m, uchar8 beside, int face, int8* over, int8* under)
 {
@@ -101,14 +105,15 @@ INLINE void FindLimitsBeside(
   }
 }
 
-// Limits of eight links between voxels with these halves. links: of the voxels at the lower ends.
+// Returns the limits of eight links from the values of their two voxels. links: of the voxels at the lower ends.
 INLINE int8 LinkLimits(int8 a, int8 b, uchar8 links, int axis)
 {
   const int8 there = (convert_int8(links) & (1 << axis)) != 0;
   return select((int8)(NO_LIMIT), (a + b) >> 1, there);
 }
 
-// Where the row on one side of row r, of faces -y to +z, begins in flags, links and materials.
+// Finds the offset in flags, links and materials of the row next to row r, on the faces -y to +z. Returns whether it
+// exists.
 INLINE int FindRow(uint block, int r, int face, const ChainMailGrid* g, size_t* offset)
 {
   const int steps[3] = { 0, 1, 8 };
@@ -126,17 +131,17 @@ INLINE int FindRow(uint block, int r, int face, const ChainMailGrid* g, size_t* 
   return has;
 }
 
-// Displacements beside those of a row, on an axis.
+// Returns a component of the displacements of the row at an offset.
 INLINE __global const int* RowAt(__global const int* displacements, size_t offset, int component)
 {
   return displacements + offset / VOXELS * 3 * VOXELS + component * VOXELS + offset % VOXELS;
 }
 
-// The neighbours of the voxels of a row on one side.
+// The neighbors of the voxels of a row on one side.
 typedef struct
 {
   int8 Displacements[3];
-  uchar8 Links; // nonzero where there is a link to them
+  uchar8 Links; // nonzero if there is a link to the neighbor
   uchar8 Materials;
 } Neighbours;
 
@@ -179,7 +184,8 @@ INLINE void FindNeighbours(Neighbours* n, __global const int* displacements,
   }
 }
 
-// Voxels of a row of a block that lie in the volume, and the place of the first one in the output.
+// Returns the number of voxels of a block's row that lie in the volume, and sets the place of the first one in the
+// output.
 INLINE int FindOutputRow(uint block, int r, const ChainMailGrid* g, size_t* place)
 {
   const int x = block % g->Blocks[0] * 8;
@@ -234,8 +240,9 @@ __kernel void PutToRest(__global int* displacements, __global const uint* list)
   }
 }
 
-// Handles take their voxels. voxels: place of a voxel in its block and all blocks before, and its handle. targets: of
-// a handle, a displacement and the flags of its voxels; without flags of systems the voxels stay where they are.
+// Moves the voxels of handles. voxels: for each voxel its place in the memory of all blocks, and its handle. targets:
+// for each handle its displacement, and the flags of its voxels. Without flags of systems, the voxels are held where
+// they are.
 __kernel void Hold(__global int* displacements, __global uchar* flags, __global const uchar* links,
   __global const uint* voxels, __global const int* targets, __global uint* shared,
   __global uint* counts, const uint end)

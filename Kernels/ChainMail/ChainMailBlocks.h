@@ -12,8 +12,8 @@
 namespace deformvolume
 {
 
-/// The blocks of 8 x 8 x 8 voxels that a volume is divided into. Local indices count from 0 at its
-/// first voxel.
+/// The division of a volume into blocks of 8 x 8 x 8 voxels. Local indices begin at 0 at its first
+/// voxel.
 class ChainMailBlocks
 {
 public:
@@ -24,17 +24,18 @@ public:
   const std::array<int, 3>& GetCounts() const { return this->Counts; }
   std::size_t GetNumberOfBlocks() const;
 
-  /// The block on a face of another one (-x, +x, -y, +y, -z, +z); -1 where there is none.
+  /// Returns the neighbor of a block on a face (-x, +x, -y, +y, -z, +z); -1 if there is none.
   std::int64_t GetNeighbour(std::uint32_t block, int face) const;
-  /// Blocks that share a face have different ones: 0 or 1.
+  /// Returns the color of a block, 0 or 1. Blocks that share a face have different colors.
   int GetColour(std::uint32_t block) const;
-  /// The place of a voxel among those of all blocks.
+  /// Returns the place of a voxel in the memory of all blocks.
   std::uint32_t GetPlace(int x, int y, int z) const;
-  /// Local indices of the voxels of a block.
+  /// Returns the local indices of the voxels of a block.
   Extent GetVoxels(std::uint32_t block) const;
-  /// The blocks of the voxels in a box of local indices.
+  /// Appends the blocks that contain voxels of a box of local indices.
   void Append(const Extent& box, std::vector<std::uint32_t>& blocks) const;
-  /// Structured indices of blocks in ascending order; those that are neighbours on x are joined.
+  /// Returns the extents of blocks in structured indices. blocks: in ascending order. Neighbors on
+  /// x are joined.
   std::vector<Extent> Join(const std::vector<std::uint32_t>& blocks) const;
 
 private:

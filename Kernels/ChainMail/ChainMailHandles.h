@@ -15,16 +15,15 @@ namespace deformvolume
 /// A voxel that a handle holds.
 struct HeldVoxel
 {
-  std::uint32_t Place; // among those of all blocks
+  std::uint32_t Place; // place in the memory of all blocks
   std::uint32_t Handle;
 };
 
-/// Throws an Error where a handle lies outside the volume, is moved too far or has a number that is
-/// none.
+/// Throws an Error if a handle lies outside the volume, is moved too far, or has an invalid number.
 void CheckHandles(const ChainMailBlocks& blocks, const std::vector<ChainMailHandle>& handles);
 
-/// The voxels of handles that were checked, those of the first one first. A voxel belongs to the
-/// first handle in reach.
+/// The voxels of handles that CheckHandles accepted. A voxel within the radius of several handles
+/// belongs to the first of these. Sorted by place.
 class ChainMailHandles
 {
 public:
@@ -32,15 +31,15 @@ public:
     const std::vector<ChainMailHandle>& handles);
 
   const std::vector<HeldVoxel>& GetVoxels() const { return this->Voxels; }
-  /// The blocks that they lie in, in ascending order.
+  /// Returns the blocks that contain these voxels, in ascending order.
   std::vector<std::uint32_t> GetBlocks() const;
-  /// Of a handle, in units.
+  /// Returns the displacement of a handle, in units.
   const std::array<std::int32_t, 3>& GetTarget(std::size_t handle) const
   {
     return this->Targets[handle];
   }
   std::size_t GetNumberOfHandles() const { return this->Targets.size(); }
-  /// Whether a handle has voxels, which do not belong to handles before it.
+  /// Whether a handle has voxels that do not belong to earlier handles.
   bool HasVoxels(std::size_t handle) const { return this->HasSome[handle]; }
 
 private:

@@ -11,10 +11,10 @@
 namespace deformvolume
 {
 
-/// A table of materials as the kernels have it.
+/// The limits of materials in the layout of the kernels.
 struct ChainMailLimits
 {
-  /// table: 1 to 256 materials; throws an Error where one is invalid. spacing: on each axis.
+  /// table: 1 to 256 materials; throws an Error if one is invalid. spacing: on each axis.
   ChainMailLimits(
     const std::vector<ChainMailMaterial>& table, const std::array<double, 3>& spacing);
 

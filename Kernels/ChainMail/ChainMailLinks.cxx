@@ -16,16 +16,16 @@ namespace
 
 constexpr unsigned char AllBits = DEFORMVOLUME_LINKS | DEFORMVOLUME_ELEMENT;
 
-// What a cell gives the voxel at one of its corners: the links that begin there, and the element.
-// Corners are numbered as in FiveTetrahedra.h; mirror: the axes on which the cell's index is odd,
-// in the same bits.
+// The bits that a cell gives to the voxel at one of its corners: the links that begin there, and
+// the element. Corners are numbered as in FiveTetrahedra.h. mirror: bits of the axes on which the
+// index of the cell is odd.
 class CornerTable
 {
 public:
   CornerTable()
   {
     constexpr unsigned int tetrahedra[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
-    constexpr unsigned int bits[3] = { 1, 4, 2 }; // of the axes, in the number of a corner
+    constexpr unsigned int bits[3] = { 1, 4, 2 }; // bits of the axes in the number of a corner
     for (unsigned int mirror = 0; mirror < 8; ++mirror)
     {
       for (unsigned int active = 0; active < 32; ++active)

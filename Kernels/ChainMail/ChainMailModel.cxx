@@ -20,7 +20,8 @@ namespace deformvolume
 namespace
 {
 
-// Calls a function for all voxels: with their number, x varying fastest, and with their place.
+// Calls function(number, place) for all voxels: the number with x varying fastest, and the place in
+// the memory of all blocks.
 template <typename Function>
 void ForVoxels(const ChainMailBlocks& blocks, const Function& function)
 {
@@ -281,7 +282,7 @@ void ChainMailModel::SetOutput(float* output)
   impl.CheckIsSet();
   if (!output)
   {
-    throw Error("The output of ChainMail has no memory.");
+    throw Error("The output of ChainMail is null.");
   }
   impl.Guard(
     [&]
@@ -357,7 +358,8 @@ void ChainMailModel::Restore(const ChainMailSnapshot& snapshot)
   this->Impl->CheckIsSet();
   if (snapshot.Voxels != this->Impl->Blocks->GetExtent())
   {
-    throw Error("The snapshot is one of other voxels. Take one of this volume.");
+    throw Error(
+      "The snapshot has other voxels than this volume. Restore snapshots of this volume only.");
   }
   this->Impl->Guard([&] { this->Impl->Solver->Restore(snapshot); });
 }

@@ -18,26 +18,28 @@
 namespace deformvolume
 {
 
-/// Displacements of the voxels of a volume by ChainMail: each voxel is linked to its six
-/// neighbours, and a link gives way within limits. Handles move voxels; others follow as far as the
-/// limits demand, each by as little as possible. A step takes time for what moves only.
+/// Computes displacements of the voxels of a volume by ChainMail. Each voxel is linked to its six
+/// neighbors, and links can be deformed within limits. Handles move voxels, and other voxels follow
+/// as far as the limits require, each by the smallest possible amount. The run time of a step
+/// depends only on the voxels that move.
 ///
-/// Displacements are whole multiples of 1/65536 voxel. Results do not depend on the device, the
-/// size of work-groups or the order of blocks, to the last bit.
+/// Displacements are multiples of 1/65536 voxel. Results are bit for bit the same for any device,
+/// size of work-groups and order of blocks.
 ///
-/// Order of calls: SetDevice, SetVoxelGrid, SetMaterials, SetOutput, then Step, as often as wanted.
-/// SetActiveTetrahedra and SetPinned are optional. SetVoxelGrid forgets everything that was set
-/// after it. Every failure is an Error; what was set and the displacements are then as before, but
-/// for failures of the device, after which SetVoxelGrid has to be called again.
+/// Call SetDevice, SetVoxelGrid, SetMaterials and SetOutput, then Step any number of times.
+/// SetActiveTetrahedra and SetPinned are optional. SetVoxelGrid discards what was set after it.
+/// Every failure throws an Error. All settings and displacements are then unchanged, except after
+/// failures of the device, which require a new call of SetVoxelGrid.
 ///
-/// Memory: 12 bytes a voxel for the displacement and one byte each for flags, links and material,
-/// in blocks of 8 x 8 x 8 voxels, of which the last ones on each axis are filled up; on the host
-/// one byte a voxel where SetActiveTetrahedra was given some. A step needs no more: it keeps what
-/// it may have to restore in the output.
+/// Memory on the device: 12 bytes per voxel for the displacement, and one byte each for flags,
+/// links and material, in blocks of 8 x 8 x 8 voxels (partly filled at the end of each axis).
+/// Memory on the host: one byte per voxel if SetActiveTetrahedra was called with a mask. A step
+/// needs no other memory: it keeps the displacements that it may have to restore in the memory of
+/// the output.
 class DEFORMVOLUME_EXPORT ChainMailModel
 {
 public:
-  /// Displacements are at most this many voxels.
+  /// The largest displacement, in voxels on each axis.
   static constexpr double LargestDisplacement = 4095.0;
 
   ChainMailModel();
@@ -45,71 +47,76 @@ public:
   ChainMailModel(const ChainMailModel&) = delete;
   ChainMailModel& operator=(const ChainMailModel&) = delete;
 
-  /// Chooses the device (see ResolveDevice) and returns its name. A change of device forgets all
-  /// that was set.
+  /// Set the device (see ResolveDevice); returns its name. A change of device discards all that was
+  /// set.
   std::string SetDevice(const std::string& request);
 
-  /// Bytes that may be used on the device; 0: what it has available.
+  /// Set the memory that may be used on the device, in bytes. Default 0: all that is available.
   void SetMemoryLimit(std::uint64_t bytes);
 
-  /// Work-items in a work-group; 0: chosen by device. To be called before SetVoxelGrid.
+  /// Set the number of work-items in a work-group. Default 0: chosen for the device. Call it before
+  /// SetVoxelGrid.
   void SetWorkGroupSize(std::size_t size);
 
-  /// Visits blocks in another order for each number but 0.
+  /// Set the order in which blocks are visited: 0 for the default order, other numbers for
+  /// different random orders. Results do not depend on it.
   void SetBlockOrder(unsigned int order);
 
-  /// extent: structured indices of the voxels. indexToWorld: row-major 3 x 3, its columns lead from
-  /// a voxel to the next one on an axis. All voxels are at rest and of the default material. An
-  /// Error where there is no memory for them and for an output.
+  /// Set the voxel grid. extent: structured indices of the voxels. indexToWorld: row-major 3 x 3;
+  /// its columns are the steps to the next voxel on each axis. All voxels are then at rest and have
+  /// the default material. Throws an Error if there is not enough memory for the voxels and an
+  /// output.
   void SetVoxelGrid(const Extent& extent,
     const std::array<double, 9>& indexToWorld = { { 1, 0, 0, 0, 1, 0, 0, 0, 1 } });
 
-  /// table: 1 to 256 materials. indices: which one each voxel has, x varying fastest; null: the
-  /// first one. Displacements stay unless they violate a limit now; then they are put to 0.
+  /// Set the materials. table: 1 to 256 materials. indices: the material of each voxel, x varying
+  /// fastest; null: the first one. If displacements violate the new limits, all displacements are
+  /// set to 0; otherwise they do not change.
   void SetMaterials(
     const std::vector<ChainMailMaterial>& table, const unsigned char* indices = nullptr);
 
-  /// One byte a cell, bit i = tetrahedron i is active; null: all are. A link is there if any of the
-  /// up to four tetrahedra that have it as an edge is active; a voxel is an element if any of its
-  /// tetrahedra is. So there is a way along links only where there is one along active tetrahedra.
-  /// What differs from the last ones is found by comparing. Where links return that the
-  /// displacements violate, these are put to 0.
+  /// Set the active tetrahedra. One byte per cell: bit i is set if tetrahedron i is active; null:
+  /// all are active. A link exists if any of the up to four tetrahedra with this edge is active. A
+  /// voxel is an element if any of its tetrahedra is active. So voxels are connected by links only
+  /// if they are connected by active tetrahedra. Changes are found by comparing with the last mask.
+  /// If displacements violate restored links, all displacements are set to 0.
   void SetActiveTetrahedra(const unsigned char* active);
 
-  /// One byte a voxel: nonzero where it stays as it is. Null: none is pinned.
+  /// Set the pinned voxels. One byte per voxel: nonzero if the voxel must not move. Null: no voxel
+  /// is pinned.
   void SetPinned(const unsigned char* pinned);
 
-  /// Three floats a voxel, x varying fastest: the displacements in world units. It stays the same
-  /// memory until SetOutput is called again. A step writes only what it changes; during a step the
-  /// contents are undefined. All of it is written by the call.
+  /// Set the memory for the output: three floats per voxel, x varying fastest, the displacements in
+  /// world units. The memory must remain valid until SetOutput is called again. This call writes
+  /// all of it. A step writes only what changes; during a step the contents are undefined.
   void SetOutput(float* output);
 
-  /// The same on the device of the model: a vector for each voxel, so that on a device with memory
-  /// of its own nothing passes through the host. The vectors know what each step has changed. Where
-  /// a step fails, and the voxel grid has to be set again, they are undefined.
+  /// The same with vectors on the device of the model, one for each voxel. On a device with its own
+  /// memory they are not copied through the host. The vectors record what each step has changed. If
+  /// a step fails and the voxel grid must be set again, their values are undefined.
   void SetOutput(const std::shared_ptr<DeviceVectors>& output);
 
-  /// What SetMaterials and Step would refuse of these: they throw the same.
+  /// Throws the Error that SetMaterials would throw for this table.
   static void CheckMaterials(const std::vector<ChainMailMaterial>& table);
-  /// The same of a request for the voxels of an extent.
+  /// Throws the Error that Step would throw for this request and voxels of an extent.
   static void CheckRequest(const Extent& extent, const ChainMailRequest& request);
 
-  /// Moves the handles, and relaxes.
+  /// Moves the handles, then relaxes.
   ChainMailReport Step(const ChainMailRequest& request);
 
-  /// Puts all displacements to 0.
+  /// Sets all displacements to 0.
   void Reset();
 
-  /// The displacements as they are. last: null, or another snapshot, which is shared where nothing
-  /// has changed.
+  /// Returns a copy of the current displacements. last: null, or another snapshot with which
+  /// unchanged blocks are shared.
   std::shared_ptr<const ChainMailSnapshot> TakeSnapshot(
     const std::shared_ptr<const ChainMailSnapshot>& last = {});
-  /// Takes the displacements back to what they were, to the last bit; what was relaxing then rests
-  /// until it is touched. Where they violate a limit or a link of now, the next step puts them to 0
-  /// first. An Error where the snapshot is one of other voxels.
+  /// Restores the displacements of a snapshot bit for bit. Blocks that were relaxing do not
+  /// continue. If the displacements violate current limits or links, the next step first sets them
+  /// to 0. Throws an Error if the snapshot has other voxels.
   void Restore(const ChainMailSnapshot& snapshot);
 
-  /// Bytes allocated on the device, without the output.
+  /// Returns the memory allocated on the device, in bytes, without the output.
   std::uint64_t GetDeviceMemory() const;
 
 private:

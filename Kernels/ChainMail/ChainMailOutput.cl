@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The output of ChainMail, and whether displacements keep to the limits. It comes after ChainMailBlocks.cl.
+// The output of ChainMail, and the check of the limits. This text comes after ChainMailBlocks.cl.
 
-// Displacements of a row in world units. fma is rounded once, everywhere.
+// Writes the displacements of a row in world units. fma rounds once on every device, so results are the same.
 INLINE void WriteRow(
   const int8* x, __global int* output, size_t place, int count, const ChainMailGrid* g)
 {
@@ -26,7 +26,8 @@ INLINE void WriteRow(
   }
 }
 
-// Blocks as they were before the step. isEnd: whether the step ends with it, and saved is the output again.
+// Restores blocks to their state before the step. isEnd: whether the step ends here, so that `saved` must become the
+// output again.
 __kernel void Restore(__global int* displacements, __global uchar* flags, __global int* saved,
   __global const uint* list, const int isEnd, const ChainMailGrid g)
 {
@@ -53,7 +54,7 @@ __kernel void Restore(__global int* displacements, __global uchar* flags, __glob
   }
 }
 
-// The largest violation of the limits of a row.
+// Returns the largest violation of limits of a row.
 INLINE int FindViolation(const int8* x, uchar8 m, __global const int* displacements,
   __global const uchar* links, __global const uchar* materials, __global const int* limits,
   uint block, int r, const ChainMailGrid* g)
@@ -80,7 +81,7 @@ INLINE int FindViolation(const int8* x, uchar8 m, __global const int* displaceme
   return max(two.x, two.y);
 }
 
-// The largest violation in blocks.
+// Finds the largest violation in blocks.
 __kernel void Check(__global const int* displacements, __global const uchar* links,
   __global const uchar* materials, __global const int* limits, __global uint* shared,
   __global const uint* list, const ChainMailGrid g)
@@ -103,7 +104,7 @@ __kernel void Check(__global const int* displacements, __global const uchar* lin
   }
 }
 
-// The output of blocks.
+// Writes the output of blocks.
 __kernel void Write(__global const int* displacements, __global int* output,
   __global const uint* list, const ChainMailGrid g)
 {
@@ -121,8 +122,7 @@ __kernel void Write(__global const int* displacements, __global int* output,
   }
 }
 
-// The end of a step, for blocks that were saved: flags are cleared, moved voxels counted, limits checked, and the output
-// is written.
+// Ends a step, for blocks that were saved: clears flags, counts moved voxels, checks limits and writes the output.
 __kernel void Finish(__global const int* displacements, __global uchar* flags,
   __global const uchar* links, __global const uchar* materials, __global const int* limits,
   __global int* output, __global uint* shared, __global const uint* list, __global uint* results,

@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Handles pull and push voxels. It comes after ChainMailBlocks.cl.
+// Propagates the motion of handles to other voxels. This text comes after ChainMailBlocks.cl.
 //
-// A system is one component of the displacements in one direction. Where handles have been moved, the links bound the
-// displacement of each voxel: it is at most that of a handle plus the limits of the links on any way from there, and at
-// least that less the limits. Voxels beyond their bound are put onto it and marked, and only marked voxels bound others.
-// A visit finds the bounds that a block has by its marked voxels and by those round it, until they no longer change.
-// Bounds are minima of sums of integers: whatever the order of visits and rows, the last ones are the same.
+// A system is one component of the displacements in one direction. When handles move, the links bound the
+// displacement of each voxel: it is at most the displacement of a handle plus the limits of the links on any path
+// from there, and at least that displacement minus the limits. Voxels beyond their bound are moved to the bound and
+// marked. Only marked voxels bound others. A visit computes the bounds in a block, from its marked voxels and those
+// around it, until they do not change any more. Bounds are minima of sums of integers, so the final bounds do not
+// depend on the order of visits and rows.
 //
-// Blocks that share a face are not visited in one launch, and without SERIAL neither are rows that are neighbours
-// between two barriers: nothing is read that others write.
+// Blocks that share a face are not visited in the same launch. Without SERIAL, neighboring rows are not handled
+// between the same two barriers. So no work-item reads what another one writes.
 
-// The system "pushed up" is that of "pulled down" with the other sign.
+// The systems "pushed up" are those "pulled down" with the sign reversed.
 INLINE int8 Upright(int system, int8 x)
 {
   return system < 3 ? x : -x;
 }
 
-// What bounds a row from the voxels round the block that a system has marked.
+// Bounds a row by marked voxels outside the block.
 INLINE int8 BoundByNeighbours(int8 bound, __global const int* displacements,
   __global const uchar* flags, __global const uchar* links, __global const uchar* materials,
   __global const int* limits, uint block, int r, int system, const ChainMailGrid* g)
@@ -74,7 +75,7 @@ INLINE int8 BoundByNeighbours(int8 bound, __global const int* displacements,
   return bound;
 }
 
-// Bounds from voxels of the same row. forward and backward: limits of the links that begin at the voxels.
+// Bounds voxels by others of the same row. forward, backward: limits of the links that begin at the voxels.
 INLINE int8 BoundAlongRow(int8 bound, int8 forward, int8 backward)
 {
   const int none = NO_LIMIT;
@@ -101,7 +102,7 @@ INLINE int IsAny(int8 a)
   return (two.x | two.y) != 0;
 }
 
-// One row of a sweep. Returns whether it has changed.
+// Handles one row in a sweep. Returns whether it changed.
 INLINE int SweepRow(__local int8* bounds, __local int8* forward, __local int8* backward,
   int backwardAxis, int r, int first)
 {
@@ -136,7 +137,7 @@ INLINE int SweepRow(__local int8* bounds, __local int8* forward, __local int8* b
   return IsAny(bound < before);
 }
 
-// Sweeps over the rows until nothing changes. Returns whether it came to that.
+// Sweeps over the rows until nothing changes. Returns false if that takes too many sweeps.
 INLINE int SweepBlock(__local int8* bounds, __local int8* forward, __local int8* backward,
   int backwardAxis, __local int* changed)
 {
@@ -178,7 +179,7 @@ INLINE int SweepBlock(__local int8* bounds, __local int8* forward, __local int8*
   return 0;
 }
 
-// The limits of the links within a block. The last rows have none: their links lead to other blocks.
+// Finds the limits of the links inside a block. Links of the last rows lead to other blocks and are not included.
 INLINE void FindLimits(__local int8* forward, __local int8* backward, __global const uchar* links,
   __global const uchar* materials, __global const int* limits, uint block, int r, int system)
 {
@@ -211,8 +212,8 @@ INLINE void FindLimits(__local int8* forward, __local int8* backward, __global c
   }
 }
 
-// Voxels of a row that are beyond their bounds, and those of them that may be moved; of the others,
-// the ones that count tell how far they would have to move.
+// Returns the voxels of a row that are beyond their bounds and can move. For voxels that do not yield, records the
+// distance by which they would have to move.
 INLINE int8 FindMoved(int8 x, int8 bound, uchar8 flags, uchar8 links, int system,
   __global uint* shared)
 {
@@ -240,7 +241,7 @@ INLINE int8 FindMoved(int8 x, int8 bound, uchar8 flags, uchar8 links, int system
   return beyond & ~held & ~opposite;
 }
 
-// The faces of the block that moved voxels of a row lie on, as bits.
+// Returns the faces of the block on which moved voxels of a row lie, as bits.
 INLINE uint FacesOf(int8 moved, int r)
 {
   const int y = r & 7;
@@ -249,8 +250,8 @@ INLINE uint FacesOf(int8 moved, int r)
     (z == 0 ? 16 : 0) | (z == 7 ? 32 : 0);
 }
 
-// list: a block, and below its bit DEFORMVOLUME_SYSTEMS the systems that others have changed round it; that bit itself:
-// the block is already saved.
+// list: for each block its number and a task. The bits below DEFORMVOLUME_SYSTEMS are the systems in which voxels
+// around it changed. Bit DEFORMVOLUME_SYSTEMS: the block is already saved.
 __kernel void Propagate(__global int* displacements, __global uchar* flags,
   __global const uchar* links, __global const uchar* materials, __global const int* limits,
   __global int* saved, __global uint* shared, __global const uint* list, __global uint* results,
@@ -263,7 +264,7 @@ __kernel void Propagate(__global int* displacements, __global uchar* flags,
   __local uint result;
   const uint block = list[2 * get_group_id(0)];
   const uint task = list[2 * get_group_id(0) + 1];
-  // Whether the block is saved stands in local memory: PoCL 7.1 lost a private variable that the loop sets.
+  // Whether the block is saved is kept in local memory: PoCL 7.1 lost a private variable that the loop sets.
   if (get_local_id(0) == 0)
   {
     result = task >> DEFORMVOLUME_SYSTEMS & 1 ? DEFORMVOLUME_SAVED : 0;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Relaxation: a voxel moves towards the weighted mean of its neighbours' displacements, as far as its links allow. It
-// comes after ChainMailBlocks.cl.
+// Relaxation: a voxel moves towards the weighted mean of the displacements of its neighbors, within the limits of its
+// links. This text comes after ChainMailBlocks.cl.
 //
-// Neighbours of a voxel have another parity of x + y + z. A launch moves the voxels of one parity and reads the others:
-// no limit is violated then, and it does not matter which one comes first.
+// Neighbors of a voxel have the other parity of x + y + z. A launch moves the voxels of one parity and reads the
+// others. So no limit is violated, and the order of voxels does not matter.
 //
-// weights: of a link between two materials, 65536 numbers for links along the component, then for all others.
-// reciprocals: of the sums of weights, as floats. A product of two floats is rounded the same everywhere.
+// weights: of a link between two materials: 65536 numbers for links along the component, then for all other links.
+// reciprocals: of the sums of weights, as floats. A product of two floats is rounded in the same way on every device.
 
-// Differences over this many units count as this: six of them, 255 times each, fit in an int.
+// Larger differences, in units, are clamped to this value: six of them times 255 fit into an int.
 #define MOST_PULL (1 << 20)
 
 INLINE int8 WeightsOf(__global const uchar* weights, uchar8 a, uchar8 b)
@@ -28,7 +28,7 @@ INLINE float8 ReciprocalsOf(__global const float* reciprocals, int8 s)
     reciprocals[s.s4], reciprocals[s.s5], reciprocals[s.s6], reciprocals[s.s7]);
 }
 
-// results: 1 where a block has changed. threshold: in units; smaller moves are not made.
+// results: set to 1 if a block changed. threshold: in units; smaller moves are ignored.
 __kernel void Relax(__global int* displacements, __global const uchar* flags,
   __global const uchar* links, __global const uchar* materials, __global const int* limits,
   __global const uchar* weights, __global const float* reciprocals, __global const uint* list,
@@ -100,7 +100,7 @@ __kernel void Relax(__global int* displacements, __global const uchar* flags,
       any |= moves;
       vstore8(select(x[c], next, moves), 0, after[c]);
     }
-    // Only voxels of this parity are written.
+    // Write only voxels of this parity.
     int isAny[8];
     vstore8(any, 0, isAny);
     uint rowChanged = 0;

@@ -13,20 +13,21 @@
 namespace deformvolume
 {
 
-/// The displacements of a ChainMailModel at some time. It holds the blocks of 8 x 8 x 8 voxels that
-/// are not at rest, 6 KiB each; one that is as in an earlier snapshot is shared with it.
+/// A copy of the displacements of a ChainMailModel. It has the blocks of 8 x 8 x 8 voxels that are
+/// not at rest, with 6 KiB each. Blocks that are the same as in an earlier snapshot are shared with
+/// it.
 struct ChainMailSnapshot
 {
-  /// Voxels of a block.
+  /// The number of voxels of a block.
   static constexpr std::size_t VoxelsPerBlock = 512;
-  /// Three displacements a voxel, in 1/65536 of the spacing.
+  /// Three displacements per voxel, in 1/65536 of the spacing.
   using Block = std::array<std::int32_t, 3 * VoxelsPerBlock>;
 
-  /// Structured indices of the volume.
+  /// Structured extent of the volume.
   Extent Voxels{ { 0, -1, 0, -1, 0, -1 } };
-  /// The numbers of the blocks, ascending.
+  /// The numbers of the blocks, in ascending order.
   std::vector<std::uint32_t> Numbers;
-  /// The blocks of these numbers.
+  /// The blocks with these numbers.
   std::vector<std::shared_ptr<const Block>> Blocks;
 };
 

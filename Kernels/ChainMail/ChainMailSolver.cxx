@@ -12,13 +12,13 @@ namespace deformvolume
 namespace
 {
 
-// Steps in which a block relaxes after it was touched.
+// The number of steps in which a block relaxes after it was touched.
 constexpr std::int64_t RelaxingSteps = 30;
 
 constexpr std::int32_t Source = DEFORMVOLUME_ALL_SYSTEMS | DEFORMVOLUME_HELD;
 constexpr std::int32_t FirmSource = Source | DEFORMVOLUME_FIXED;
 constexpr std::int32_t Firm = DEFORMVOLUME_HELD | DEFORMVOLUME_FIXED;
-// A handle is moved back once on each side, and then tried a last time.
+// A handle is moved back at most once on each side, and then tried a last time.
 constexpr int MostAttempts = 3;
 
 double ToVoxels(std::int64_t units)
@@ -32,7 +32,8 @@ bool IsContradiction(const SharedNumbers& shared)
     [](std::uint32_t number) { return number != 0; });
 }
 
-// Moves a handle back by what would move others. Returns false where these pull it to both sides.
+// Moves a handle back by the distance that voxels which do not yield would have to move. Returns
+// false if this is needed in both directions.
 bool MoveBack(HandleTask& task, const SharedNumbers& shared)
 {
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -86,7 +87,7 @@ void ChainMailSolver::PutToRest()
   this->WasReset = true;
 }
 
-// Of blocks, ascending, between two steps.
+// Publishes changes of blocks between two steps. blocks: in ascending order.
 void ChainMailSolver::PublishChanges(const std::vector<std::uint32_t>& blocks)
 {
   if (this->State.HasOutput())
@@ -108,7 +109,7 @@ std::shared_ptr<const ChainMailSnapshot> ChainMailSolver::TakeSnapshot(
   std::sort(this->Displaced.begin(), this->Displaced.end());
   std::vector<Block> values(this->Displaced.size());
   this->State.ReadBlocks(this->Displaced, values);
-  std::size_t next = 0; // of the last snapshot
+  std::size_t next = 0; // index in the last snapshot
   for (std::size_t i = 0; i < values.size(); ++i)
   {
     const std::uint32_t block = this->Displaced[i];
@@ -262,12 +263,12 @@ void ChainMailSolver::ResolveInOrder(const ChainMailHandles& handles, ChainMailR
 {
   const std::size_t count = handles.GetNumberOfHandles();
   std::vector<HandleTask> accepted(count, HandleTask{ { { 0, 0, 0 } }, 0 });
-  bool isRestored = true; // as before the step, but for what was accepted
+  bool isRestored = true; // whether the state is that before the step, plus accepted handles
   for (std::size_t i = 0; i < count; ++i)
   {
     if (!handles.HasVoxels(i))
     {
-      continue; // what handles before it hold has been resolved
+      continue; // all of its voxels belong to earlier handles
     }
     HandleTask task{ handles.GetTarget(i), Source };
     for (int attempt = 0; task.Flags; ++attempt)
@@ -319,7 +320,7 @@ void ChainMailSolver::ResolveInOrder(const ChainMailHandles& handles, ChainMailR
   }
   if (!isRestored || count > 1)
   {
-    this->Move(handles, accepted, report); // relaxation leaves what is held
+    this->Move(handles, accepted, report); // held voxels do not relax
   }
 }
 
@@ -408,7 +409,7 @@ void ChainMailSolver::Finish(ChainMailReport& report)
   {
     Include(report.ChangedExtent, extent);
   }
-  // Blocks that were saved and have not moved hold their displacements again, too.
+  // Blocks that were saved but did not move must be read, too: the output held their saved state.
   this->State.ReadOutput(this->Blocks.Join(this->Saved));
   this->State.TellOfChanges(report.Changes);
   report.WasReset = this->WasReset;
@@ -430,7 +431,7 @@ ChainMailReport ChainMailSolver::Advance(
     this->Touch(this->Saved);
   }
   this->Relax(request, report);
-  this->State.SetProgress(nullptr); // what follows is short, and has to be done
+  this->State.SetProgress(nullptr); // Finish is short and must not be aborted
   this->Finish(report);
   return report;
 }

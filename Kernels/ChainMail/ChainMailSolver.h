@@ -16,35 +16,36 @@
 namespace deformvolume
 {
 
-/// The steps of a ChainMailModel: which blocks the kernels visit, and in which order.
+/// Runs the steps of a ChainMailModel: chooses the blocks that kernels visit, and their order.
 class ChainMailSolver
 {
 public:
   ChainMailSolver(ChainMailState& state, const ChainMailBlocks& blocks);
 
-  /// Blocks are visited in another order for each number but 0.
+  /// Set the order of visits: 0 for the default order, other numbers for different random orders.
   void SetOrder(unsigned int order) { this->Active.SetOrder(order); }
 
   ChainMailReport Step(const ChainMailHandles& handles, const ChainMailRequest& request);
 
-  /// These blocks relax in the next steps.
+  /// Lets these blocks relax in the next steps.
   void Touch(const std::vector<std::uint32_t>& blocks);
-  /// Puts all displacements to 0.
+  /// Sets all displacements to 0.
   void PutToRest();
-  /// Does so if they violate a limit somewhere in these blocks, or in all.
+  /// Sets all displacements to 0 if they violate a limit in these blocks, or in any block.
   void CheckDisplacements(const std::vector<std::uint32_t>& blocks);
   void CheckDisplacements() { this->CheckDisplacements(this->Displaced); }
 
-  /// The displacements as they are, and as they are in another snapshot, or null, where that is so.
+  /// Returns the current displacements. last: null, or a snapshot with which unchanged blocks are
+  /// shared.
   std::shared_ptr<const ChainMailSnapshot> TakeSnapshot(const ChainMailSnapshot* last);
-  /// Takes them back. The next step checks them.
+  /// Restores the displacements of a snapshot. The next step checks them.
   void Restore(const ChainMailSnapshot& snapshot);
 
 private:
   ChainMailReport Advance(const ChainMailHandles& handles, const ChainMailRequest& request);
   void Resolve(const ChainMailHandles& handles, ChainMailReport& report);
   void ResolveInOrder(const ChainMailHandles& handles, ChainMailReport& report);
-  /// Moves the handles of a step. Returns what the blocks share afterwards.
+  /// Moves the handles of a step. Returns the shared numbers afterwards.
   SharedNumbers Move(
     const ChainMailHandles& handles, const std::vector<HandleTask>& tasks, ChainMailReport& report);
   void Propagate(ChainMailReport& report);
@@ -58,14 +59,14 @@ private:
   ChainMailState& State;
   ChainMailBlocks Blocks;
   ActiveBlocks Active;
-  std::vector<unsigned char> IsSaved, IsDisplaced, IsRecent; // of each block
+  std::vector<unsigned char> IsSaved, IsDisplaced, IsRecent; // for each block
   std::vector<std::uint32_t> Saved, Displaced, Recent;
-  std::vector<std::int64_t> LastTouched; // of each block, the step
-  std::vector<std::uint32_t> PutBack;    // changed since the last step
+  std::vector<std::int64_t> LastTouched; // for each block, the number of the step
+  std::vector<std::uint32_t> PutBack;    // blocks that changed between steps
   std::int64_t NumberOfSteps = 0;
   bool HasMoved = false;
   bool WasReset = false;
-  bool IsToCheck = false; // whether displacements may violate a limit
+  bool IsToCheck = false; // whether displacements may violate limits
 };
 
 } // namespace deformvolume

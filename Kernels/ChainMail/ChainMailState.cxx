@@ -17,7 +17,7 @@ namespace deformvolume
 namespace
 {
 
-// Work-items of a work-group, which share the rows of a block.
+// The largest number of work-items of a work-group, which share the rows of a block.
 constexpr std::size_t MostItems = DEFORMVOLUME_BLOCK_ROWS;
 
 static_assert(ChainMailSnapshot::VoxelsPerBlock == DEFORMVOLUME_BLOCK_VOXELS,
@@ -282,7 +282,7 @@ void ChainMailState::ReadBlocks(
   PendingCopies reads;
   for (std::size_t begin = 0; begin < list.size();)
   {
-    // Those that lie side by side at once.
+    // Read consecutive blocks at once.
     std::size_t end = begin + 1;
     while (end < list.size() && list[end] == list[end - 1] + 1)
     {

@@ -20,18 +20,18 @@
 namespace deformvolume
 {
 
-/// A block, and what the kernel Propagate is to do there.
+/// A block, and the task of the kernel Propagate there.
 struct BlockTask
 {
   std::uint32_t Block;
   std::uint32_t Task;
 };
 
-/// What a step does with a handle.
+/// The task of a handle in a step.
 struct HandleTask
 {
   std::array<std::int32_t, 3> Target;
-  std::int32_t Flags; // 0: it is left out
+  std::int32_t Flags; // 0: the handle is skipped
 };
 
 using SharedNumbers = std::array<std::uint32_t, DEFORMVOLUME_SHARED>;
@@ -40,68 +40,68 @@ using SharedNumbers = std::array<std::uint32_t, DEFORMVOLUME_SHARED>;
 class ChainMailState
 {
 public:
-  /// device: it stays where it is. workGroupSize: 0: chosen by device.
+  /// device: must outlive this object. workGroupSize: 0 to choose it for the device.
   ChainMailState(WorkDevice& device, const ChainMailBlocks& blocks,
     const std::array<double, 9>& indexToWorld, std::size_t workGroupSize);
 
-  /// Bytes that such a volume needs on the device, with its output, which may be there already.
+  /// Returns the memory that such a volume needs on the device, in bytes, including the output.
   static std::uint64_t GetNeededMemory(const ChainMailBlocks& blocks);
   std::uint64_t GetMemory() const;
 
-  /// Blocks in a launch: so few that an end can be asked for in between.
+  /// The number of blocks in a launch: small enough to ask for an abort in between.
   static constexpr std::size_t AtOnce = 1024;
 
-  /// Asked between launches whether to go on: throws Aborted where not. Null: always. Only Save()
-  /// and Propagate() always do all of their work.
+  /// Set a callback that is called between launches; Aborted is thrown if it returns false. Null:
+  /// no callback. Save() and Propagate() are never aborted in between.
   void SetProgress(const std::function<bool()>& progress) { this->Progress = progress; }
 
   void Continue() const;
 
   void SetLimits(const ChainMailLimits& limits);
-  /// Changes a byte of all voxels, as they lie in blocks.
+  /// Changes one byte of each voxel, in the order of blocks.
   void ChangeLinks(const std::function<void(unsigned char*)>& change);
   void ChangeMaterials(const std::function<void(unsigned char*)>& change);
 
   ///@{
-  /// Where the output goes: memory of the host, or vectors on this device, one a voxel.
+  /// Set where the output goes: host memory, or vectors on this device, one per voxel.
   void PlaceOutput(float* output);
   void PlaceOutput(const std::shared_ptr<DeviceVectors>& output);
   ///@}
   bool HasOutput() const { return this->Output.IsPlaced(); }
-  /// Brings rows of blocks of the output, in structured indices, to where they are read. It waits
-  /// until they are written.
+  /// Waits until the output is written, and copies rows of blocks, in structured indices, to the
+  /// host memory.
   void ReadOutput(const std::vector<Extent>& changes);
-  /// Tells vectors which rows of blocks are others than before.
+  /// Marks changed rows of blocks in the output vectors.
   void TellOfChanges(const std::vector<Extent>& changes);
 
-  /// Each of these works on blocks.
+  /// The following functions run a kernel on blocks.
   void Save(const std::vector<std::uint32_t>& list);
-  /// isEnd: whether the output is to be as it was, too.
+  /// isEnd: whether the output must be restored, too.
   void Restore(const std::vector<std::uint32_t>& list, bool isEnd = false);
   void ClearFlags(const std::vector<std::uint32_t>& list);
   void PutToRest(const std::vector<std::uint32_t>& list);
   void WriteOutput(const std::vector<std::uint32_t>& list);
   void Check(const std::vector<std::uint32_t>& list);
   ///@{
-  /// The displacements of blocks, ascending.
+  /// Read or write the displacements of blocks, in ascending order.
   void ReadBlocks(
     const std::vector<std::uint32_t>& list, std::vector<ChainMailSnapshot::Block>& values);
   void WriteBlocks(const std::vector<std::uint32_t>& list,
     const std::vector<std::shared_ptr<const ChainMailSnapshot::Block>>& values);
   ///@}
-  /// No two of them share a face. results: of each, what the kernel reports.
+  /// No two blocks may share a face. results: the result of the kernel for each block.
   void Propagate(const std::vector<BlockTask>& list, std::vector<std::uint32_t>& results);
-  /// One sweep. Sets those of results to 1 whose block has changed.
+  /// One sweep. Sets results to 1 for blocks that changed.
   void Relax(const std::vector<std::uint32_t>& list, float elasticity, int threshold,
     std::vector<std::uint32_t>& results);
-  /// moved: of each block, how many of its voxels are not as they were saved.
+  /// moved: for each block, the number of voxels that differ from the saved ones.
   void Finish(const std::vector<std::uint32_t>& list, std::vector<std::uint32_t>& moved);
 
-  /// counts: how many voxels each handle has got.
+  /// counts: the number of voxels of each handle.
   void Hold(const std::vector<HeldVoxel>& voxels, const std::vector<HandleTask>& handles,
     std::vector<std::uint32_t>& counts);
 
-  /// The numbers that blocks share, which are 0 from then on.
+  /// Returns the shared numbers, and resets them to 0.
   SharedNumbers TakeShared();
 
 private:
@@ -111,7 +111,7 @@ private:
   void ForParts(const std::vector<BlockTask>& list, const Setter& launch, bool canStop);
   void ForParts(const std::vector<std::uint32_t>& list, const Setter& launch, bool canStop = true);
   void Run(const cl::Kernel& kernel, const std::vector<std::uint32_t>& list, bool canStop = true);
-  /// The same, and reads what the kernel reports of each block.
+  /// The same, and reads the result of the kernel for each block.
   template <typename Task>
   void RunAndRead(const cl::Kernel& kernel, const std::vector<Task>& list,
     std::vector<std::uint32_t>& results, bool canStop = true);

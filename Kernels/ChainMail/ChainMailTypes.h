@@ -13,83 +13,85 @@
 namespace deformvolume
 {
 
-/// How far the links of a voxel give way, as fractions of the spacing. A link between two materials
-/// has the mean of their limits. The default is a soft tissue. All of them are engineering values.
+/// The limits of the links of a voxel, as fractions of the spacing. A link between two materials
+/// has the mean of their limits. The default is a soft tissue. All limits are engineering values.
 struct ChainMailMaterial
 {
-  /// The shortest that a link may be along its axis, 0 to 1.
+  /// The shortest length of a link along its axis, 0 to 1.
   double MinimumStretch = 0.5;
-  /// The longest, 1 to 1000.
+  /// The longest length of a link along its axis, 1 to 1000.
   double MaximumStretch = 1.5;
-  /// How far its ends may move past each other across its axis, 0 to 1000.
+  /// The largest displacement of the ends of a link relative to each other, across its axis, 0 to
+  /// 1000.
   double Shear = 0.5;
 };
 
-/// The materials of vtkChainMailDeformation by default: air, soft tissue, muscle, cartilage, bone.
+/// The default materials of vtkChainMailDeformation: air, soft tissue, muscle, cartilage, bone.
 inline constexpr std::array<ChainMailMaterial, 5> DefaultChainMailMaterials{ { { 0.1, 2.0, 1.0 },
   { 0.5, 1.5, 0.5 }, { 0.8, 1.2, 0.2 }, { 0.95, 1.05, 0.05 }, { 0.99, 1.01, 0.01 } } };
-/// The one of voxels for which nothing else tells one: soft tissue.
+/// The default material of voxels: soft tissue.
 constexpr int DefaultChainMailMaterial = 1;
 
-/// Voxels that are held together, and where.
+/// A group of voxels that are held together, and their displacement.
 struct ChainMailHandle
 {
-  /// Continuous structured indices of the place at rest.
+  /// The rest position, in continuous structured indices.
   std::array<double, 3> RestPosition{ { 0, 0, 0 } };
-  /// Voxels within this distance at rest are held, in world units; at least the nearest one is.
+  /// The radius, in world units. Voxels within this distance at rest are held; at least the nearest
+  /// voxel is held.
   double Radius = 0.0;
-  /// Where they are to be displaced to, in voxels on each axis.
+  /// The prescribed displacement, in voxels on each axis.
   std::array<double, 3> Displacement{ { 0, 0, 0 } };
 };
 
-/// What a step of a ChainMailModel is to do.
+/// The input of ChainMailModel::Step().
 struct ChainMailRequest
 {
-  /// The first ones come first where handles contradict each other.
+  /// The handles. If handles contradict each other, earlier ones have priority.
   std::vector<ChainMailHandle> Handles;
-  /// Passes of relaxation over the blocks that were moved in the last 30 steps; 0: none.
+  /// The number of relaxation sweeps over the blocks that were moved in the last 30 steps; 0: none.
   int RelaxationSweeps = 0;
-  /// How much of the way to the mean of its neighbours a voxel moves in a sweep, 0 to 1.
+  /// The part of the way to the mean of its neighbors that a voxel moves in a sweep, 0 to 1.
   double Elasticity = 1.0;
-  /// Voxels that are nearer to it than this fraction of the spacing do not relax.
+  /// Voxels closer to this mean than this fraction of the spacing do not relax.
   double PlasticityThreshold = 0.0;
-  /// Called between launches; returning false aborts the step.
+  /// Called between launches. Return false to abort the step.
   std::function<bool()> Progress;
 };
 
-/// What has become of a handle in a step.
+/// The result of a step for one handle.
 struct ChainMailHandleReport
 {
-  /// Voxels that are held: elements that are neither pinned nor held by a handle before this one.
+  /// The number of voxels held: elements that are neither pinned nor held by an earlier handle.
   std::int64_t NumberOfVoxels = 0;
-  /// What was taken from the displacement so that pinned voxels, and handles before this one, stay:
-  /// wanted minus applied, in voxels.
+  /// The reduction of the displacement so that pinned voxels and earlier handles do not move:
+  /// requested minus applied displacement, in voxels.
   std::array<double, 3> Reduction{ { 0, 0, 0 } };
-  /// False: no displacement of these voxels as a whole is possible; they are not held.
+  /// False if these voxels cannot be displaced together. They are not held then.
   bool IsHeld = true;
 };
 
-/// What a step of a ChainMailModel has done.
+/// The output of ChainMailModel::Step().
 struct ChainMailReport
 {
-  /// Rounds over the active blocks until no bound changed, and sweeps of relaxation.
+  /// The number of rounds over active blocks plus the number of relaxation sweeps.
   std::int64_t NumberOfSweeps = 0;
-  /// Voxels whose displacement is not what it was before the step.
+  /// The number of voxels whose displacement changed in this step.
   std::int64_t NumberOfMovedVoxels = 0;
   /// The largest violation of a limit by a moved voxel, as a fraction of the spacing.
   double LargestViolation = 0.0;
-  /// One for each handle of the request, in the same order.
+  /// The results of the handles, in the order of the request.
   std::vector<ChainMailHandleReport> Handles;
-  /// Whether all displacements were put to 0 since the last step: by Reset(), or because links or
-  /// materials were set that they would violate.
+  /// Whether all displacements were set to 0 since the last step: by Reset(), or because they would
+  /// violate new links or materials.
   bool WasReset = false;
-  /// Blocks of 8 x 8 x 8 voxels, or rows of these, in which the output was changed since the last
-  /// step, as structured indices; and what holds all of them, empty if there are none.
+  /// The blocks of 8 x 8 x 8 voxels, or rows of such blocks, in which the output changed since the
+  /// last step, as extents in structured indices.
   std::vector<Extent> Changes;
-  /// Holds all of Changes, in structured indices; empty if there are none.
+  /// A box of all Changes, in structured indices; empty if there are none.
   Extent ChangedExtent{ { 0, -1, 0, -1, 0, -1 } };
 
-  /// Handles whose displacement was reduced.
+  /// Returns the number of handles whose displacement was reduced.
   int CountReducedHandles() const
   {
     return static_cast<int>(std::count_if(this->Handles.begin(), this->Handles.end(),
@@ -99,7 +101,7 @@ struct ChainMailReport
           [](double reduction) { return reduction != 0.0; });
       }));
   }
-  /// Handles that were released.
+  /// Returns the number of handles that were released.
   int CountReleasedHandles() const
   {
     return static_cast<int>(std::count_if(this->Handles.begin(), this->Handles.end(),

@@ -14,11 +14,11 @@
 namespace deformvolume
 {
 
-/// The matrix of a volume for ChainMailModel::SetVoxelGrid().
+/// Returns the matrix of a volume for ChainMailModel::SetVoxelGrid().
 DEFORMVOLUME_EXPORT std::array<double, 9> GetVoxelMatrix(const ImageGeometry& volume);
 
-/// Handles of a volume by world coordinates: what each one holds at rest, and where it is now.
-/// radius: of all of them, in world units.
+/// Makes handles from world coordinates: the rest position of each one, and where it is now.
+/// radius: of all handles, in world units.
 DEFORMVOLUME_EXPORT std::vector<ChainMailHandle> MakeHandles(const ImageGeometry& volume,
   const std::vector<glm::dvec3>& rest, const std::vector<glm::dvec3>& now, double radius);
 
