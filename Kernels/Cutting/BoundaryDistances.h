@@ -14,36 +14,38 @@
 namespace deformvolume
 {
 
-/// The signed distance of each vertex of a volume to the boundary of what has been carved out:
-/// the least of that before all edits and of those of the edits. So the order of edits does not
-/// matter, and what is undone comes back bit for bit.
+/// The boundary distances of the vertices of a volume: the signed distance of each vertex from the
+/// surface of what was carved out. The distance is the minimum of the distance before all edits and
+/// those of the edits. So the order of edits does not matter, and undoing an edit restores
+/// distances bit for bit.
 class DEFORMVOLUME_EXPORT BoundaryDistances
 {
 public:
-  /// vertices: structured indices of the voxels. far: the distance where there is no boundary.
+  /// vertices: structured indices of the voxels. far: the distance of vertices that are far from
+  /// any boundary.
   BoundaryDistances(const Extent& vertices, float far);
 
-  /// The distance where there is no boundary.
+  /// Returns the distance of vertices that are far from any boundary.
   float GetFar() const { return this->Far; }
-  /// The bricks of the vertices.
+  /// Returns the bricks of the vertices.
   const CellBricks& GetBricks() const { return this->Bricks; }
 
-  /// Other distances before all edits, one a vertex; null: there is no boundary. sets: of the
-  /// edits.
+  /// Set the distances before all edits, one for each vertex; null: there is no boundary. sets: of
+  /// all edits.
   void SetBase(const float* base, const std::vector<const DistanceSet*>& sets);
 
-  /// An edit comes.
+  /// Adds an edit.
   void Add(const DistanceSet& edit);
-  /// Makes some bricks anew, as an edit has gone. sets: of those that are left.
+  /// Computes some bricks again after an edit was removed. sets: of the remaining edits.
   void Update(const std::vector<std::size_t>& bricks, const std::vector<const DistanceSet*>& sets);
 
-  /// One a vertex, x varying fastest; none before there was a boundary.
+  /// Returns one distance for each vertex, x varying fastest; empty if there was never a boundary.
   const std::vector<float>& Get() const { return this->Values; }
-  /// Bricks that may have changed since the last call, in ascending order. At the first call after
-  /// there is a boundary these are all bricks.
+  /// Returns the bricks that may have changed since the last call, in ascending order. The first
+  /// call after a boundary was added returns all bricks.
   std::vector<std::size_t> TakeChangedBricks();
 
-  /// Bytes of memory.
+  /// Returns the memory, in bytes.
   std::uint64_t GetMemory() const;
 
 private:
@@ -51,9 +53,9 @@ private:
 
   CellBricks Bricks;
   float Far;
-  std::vector<float> Base; // empty: far from any boundary
+  std::vector<float> Base; // empty: all vertices are far from any boundary
   std::vector<float> Values;
-  std::vector<bool> Changed; // of each brick
+  std::vector<bool> Changed; // for each brick
 };
 
 } // namespace deformvolume

@@ -12,8 +12,8 @@
 namespace deformvolume
 {
 
-/// The block of a brick, of bricks in ascending order that have one each; null where it is none of
-/// them.
+/// Returns the block of a brick, or null if the brick is not listed. bricks: in ascending order,
+/// with one block each.
 template <typename Block>
 const Block* FindBlock(
   const std::vector<std::size_t>& bricks, const std::vector<Block>& blocks, std::size_t brick)
@@ -24,7 +24,7 @@ const Block* FindBlock(
     : nullptr;
 }
 
-/// The bricks that are marked, in ascending order. None is afterwards.
+/// Returns the marked bricks in ascending order, and clears all marks.
 inline std::vector<std::size_t> TakeMarked(std::vector<bool>& marked)
 {
   std::vector<std::size_t> taken;
@@ -39,8 +39,8 @@ inline std::vector<std::size_t> TakeMarked(std::vector<bool>& marked)
   return taken;
 }
 
-/// Calls function(local indices, place in a block, place in the volume) for the cells of a brick,
-/// or its vertices (GetVertexBricks).
+/// Calls function(local indices, place in a block, index in the volume) for the cells of a brick,
+/// or for its vertices (GetVertexBricks).
 template <typename Function>
 void ForEachCell(const CellBricks& bricks, std::size_t brick, Function&& function)
 {

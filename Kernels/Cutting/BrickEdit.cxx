@@ -30,8 +30,8 @@ void BrickEdit::Set(const VertexPositions& positions, std::size_t brick)
 {
   this->Set(positions.GetBricks(), brick);
   positions.Find(this->Vertices, this->Positions.data(), this->HasPositions.data());
-  // A vertex without position gets that of another one, so that all lie within the box of the
-  // brick: predicates would overflow elsewhere.
+  // A vertex without position gets that of another vertex, so that all lie in the box of the brick.
+  // Elsewhere predicates could overflow.
   const auto end =
     this->HasPositions.begin() + static_cast<std::ptrdiff_t>(this->GetNumberOfVertices());
   const auto found = std::find(this->HasPositions.begin(), end, true);
@@ -56,7 +56,7 @@ void BrickEdit::CopyPoints(std::array<glm::dvec3, MaxVertices>& points) const
 BrickEdit::CellTetrahedra BrickEdit::GetTetrahedra(int x, int y, int z) const
 {
   static constexpr int table[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
-  // Of the structured index: pieces of a volume are split as the whole is.
+  // By the structured index, so that parts of a volume are divided like the whole.
   const int mirror =
     DEFORMVOLUME_MIRROR(this->Vertices[0] + x, this->Vertices[2] + y, this->Vertices[4] + z);
   CellTetrahedra tetrahedra;
@@ -77,10 +77,10 @@ TetrahedronSet BrickEdit::ForEachBrick(std::size_t bricks,
   const EditProgress& progress)
 {
   constexpr std::size_t step = 64;
-  // Bricks between two questions.
+  // The number of bricks between two calls of the progress function.
   const std::size_t askedFor =
     progress ? 16 * step * static_cast<std::size_t>(GetProcessorShare()) : std::max(bricks, step);
-  std::vector<std::pair<std::size_t, TetrahedronSet>> parts; // by their first bricks
+  std::vector<std::pair<std::size_t, TetrahedronSet>> parts; // with the first brick of each part
   std::mutex mutex;
   const auto run = [&](std::size_t begin, std::size_t end)
   {

@@ -17,18 +17,18 @@
 namespace deformvolume
 {
 
-/// A brick of cells while it is found which of its tetrahedra an edit hits: where its vertices are,
-/// and what has been hit.
+/// Work data of an edit for one brick of cells: the positions of its vertices, and the tetrahedra
+/// that are hit.
 class BrickEdit
 {
 public:
   static constexpr std::size_t MaxVertices = 729;
-  /// Vertices of each tetrahedron of a cell, as places in the arrays of vertices.
+  /// The vertices of each tetrahedron of a cell, as indices into the arrays of vertices.
   using CellTetrahedra = std::array<std::array<std::size_t, 4>, 5>;
 
-  /// Makes the brick another one. Nothing of it is hit.
+  /// Sets the brick, without any hits.
   void Set(const CellBricks& bricks, std::size_t brick);
-  /// The same, with the positions of its vertices.
+  /// Sets the brick, with the positions of its vertices.
   void Set(const VertexPositions& positions, std::size_t brick);
 
   const Extent& GetVertices() const { return this->Vertices; }
@@ -37,7 +37,7 @@ public:
     return static_cast<std::size_t>(GetNumberOfPoints(this->Vertices));
   }
   const SnappedPoint& GetPosition(std::size_t vertex) const { return this->Positions[vertex]; }
-  /// Where all vertices are, in continuous structured indices.
+  /// Copies the positions of all vertices, in continuous structured indices.
   void CopyPoints(std::array<glm::dvec3, MaxVertices>& points) const;
   bool IsPlaced(std::size_t vertex) const { return this->HasPositions[vertex]; }
   /// Whether all vertices of a tetrahedron have positions.
@@ -47,8 +47,8 @@ public:
       this->HasPositions[vertices[2]] && this->HasPositions[vertices[3]];
   }
 
-  /// Calls function(x, y, z, place) for all cells of the brick: indices within the brick, and the
-  /// place of the cell in a block of bytes.
+  /// Calls function(x, y, z, place) for all cells of the brick: the indices within the brick, and
+  /// the index of the cell in a block of bytes.
   template <typename Function>
   void ForEachCell(Function&& function) const
   {
@@ -64,7 +64,8 @@ public:
     }
   }
 
-  /// The first vertex of a cell, and how far the others are from it on each axis.
+  /// Returns the first vertex of a cell. GetSteps() returns the offsets to the next vertex on each
+  /// axis.
   std::size_t GetVertex(int x, int y, int z) const
   {
     return (static_cast<std::size_t>(z) * this->Steps[2]) +
@@ -81,15 +82,15 @@ public:
     this->HasHits = true;
   }
 
-  /// Calls a function for some bricks, in parallel, and gathers what is hit.
+  /// Calls a function for some bricks in parallel, and collects the hits.
   static TetrahedronSet ForEachBrick(std::size_t bricks,
     const std::function<void(std::size_t brick, BrickEdit& edit)>& function,
     const EditProgress& progress);
 
 private:
   Extent Vertices{ { 0, -1, 0, -1, 0, -1 } };
-  std::array<int, 3> Size{ { 0, 0, 0 } };          // cells
-  std::array<std::size_t, 3> Steps{ { 0, 0, 0 } }; // from vertex to vertex
+  std::array<int, 3> Size{ { 0, 0, 0 } };          // number of cells on each axis
+  std::array<std::size_t, 3> Steps{ { 0, 0, 0 } }; // offset to the next vertex on each axis
   std::array<SnappedPoint, MaxVertices> Positions;
   std::array<bool, MaxVertices> HasPositions;
   TetrahedronSet::Block Hits{};

@@ -17,7 +17,7 @@ namespace deformvolume
 namespace
 {
 
-// By the values at the vertices.
+// Whether a tetrahedron is hit, from the values at its vertices.
 bool IsHit(const double* values, const std::array<std::size_t, 4>& v, CarvingRule rule)
 {
   const int inside = (values[v[0]] < 0.0 ? 1 : 0) + (values[v[1]] < 0.0 ? 1 : 0) +
@@ -59,7 +59,7 @@ void CarveByCentroids(BrickEdit& edit, const CarvingTool& tool)
     {
       for (const std::array<std::size_t, 4>& v : edit.GetTetrahedra(x, y, z))
       {
-        // A whole number of 1/1024 voxel, without rounding.
+        // An exact multiple of 1/1024 voxel.
         centroids.push_back(0.25 *
           GetIndex(edit.GetPosition(v[0]) + edit.GetPosition(v[1]) + edit.GetPosition(v[2]) +
             edit.GetPosition(v[3])));
@@ -153,8 +153,8 @@ CarvingTool MakeSweptSphere(const std::vector<glm::dvec3>& centers, const glm::d
       values[i] = least - 1.0;
     }
   };
-  // To first order: the function by its gradient. Within half a radius of the path that is no
-  // distance, nor needed.
+  // A first-order distance: the function divided by its gradient. Within half a radius of the path
+  // this is not a distance, but it is not needed there.
   tool.Distance = [function = tool.Function, radii](
                     const glm::dvec3* points, std::size_t count, double* distances)
   {
@@ -162,7 +162,7 @@ CarvingTool MakeSweptSphere(const std::vector<glm::dvec3>& centers, const glm::d
     function(points, count, distances);
     for (std::size_t i = 0; i < count; ++i)
     {
-      const double squared = distances[i] + 1.0; // of the distance from the path, in radii
+      const double squared = distances[i] + 1.0; // squared distance from the path, in radii
       distances[i] = radius * std::abs(distances[i]) / (2.0 * std::max(std::sqrt(squared), 0.5));
     }
   };

@@ -32,7 +32,7 @@ CarvingContainment FindContainment(const SnappedBox& box, const CarvingTool& too
   {
     return CarvingContainment::Some;
   }
-  constexpr double rounding = 1e-9; // of the largest value
+  constexpr double rounding = 1e-9; // relative to the largest value
   std::array<glm::dvec3, 8> corners;
   for (std::size_t corner = 0; corner < corners.size(); ++corner)
   {

@@ -9,12 +9,12 @@ namespace deformvolume
 
 struct CarvingTool;
 
-/// How much of a box a tool may hold.
+/// How much of a box a tool may contain.
 enum class CarvingContainment
 {
   Nothing,
   Some,
-  All // only told of linear tools
+  All // only found for linear tools
 };
 
 CarvingContainment FindContainment(const SnappedBox& box, const CarvingTool& tool);

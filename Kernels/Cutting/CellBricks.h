@@ -12,14 +12,15 @@
 namespace deformvolume
 {
 
-/// The bricks of 8 x 8 x 8 cells that edits of a mask work on: small, since most of what a sheet
-/// does not cross is left out by bricks. Their numbers grow with x, then y, then z.
+/// The bricks of 8 x 8 x 8 cells by which edits of a mask work. They are small, because most cells
+/// that a sheet does not cross are skipped as whole bricks. Bricks are numbered along x, then y,
+/// then z.
 class CellBricks
 {
 public:
-  /// Cells of a whole brick on each axis.
+  /// The number of cells of a whole brick on each axis.
   static constexpr int Length = 8;
-  /// Cells of a whole brick.
+  /// The number of cells of a whole brick.
   static constexpr std::size_t Cells = 512;
 
   /// vertices: structured indices of the voxels of the volume.
@@ -35,17 +36,17 @@ public:
     }
   }
 
-  /// Structured indices of the voxels of the volume.
+  /// Returns the structured extent of the voxels of the volume.
   const Extent& GetVertices() const { return this->Vertices; }
-  /// Cells on each axis.
+  /// Returns the number of cells on each axis.
   const std::array<int, 3>& GetSize() const { return this->Size; }
 
-  /// Cells of the volume.
+  /// Returns the number of cells of the volume.
   std::size_t GetNumberOfCells() const { return Multiply(this->Size); }
-  /// Bricks of the volume, those that are not whole included.
+  /// Returns the number of bricks of the volume, including incomplete ones.
   std::size_t GetNumberOfBricks() const { return Multiply(this->Count); }
 
-  /// The brick of a cell, by its local indices.
+  /// Returns the brick of a cell, given by local indices.
   std::size_t FindBrick(const std::array<int, 3>& cell) const
   {
     return static_cast<std::size_t>(cell[0] / Length) +
@@ -54,7 +55,7 @@ public:
         static_cast<std::size_t>(this->Count[1]) * static_cast<std::size_t>(cell[2] / Length));
   }
 
-  /// Local indices of the cells of a brick.
+  /// Returns the local indices of the cells of a brick.
   Extent GetCells(std::size_t brick) const
   {
     const std::array<std::size_t, 3> place{ { brick % this->Count[0],
@@ -68,14 +69,15 @@ public:
     return cells;
   }
 
-  /// On which axes the tetrahedra of a cell are mirrored (FiveTetrahedra.h), by its local indices.
+  /// Returns the axes on which the tetrahedra of a cell are mirrored (FiveTetrahedra.h). cell:
+  /// local indices.
   int GetMirror(const std::array<int, 3>& cell) const
   {
     return DEFORMVOLUME_MIRROR(
       this->Vertices[0] + cell[0], this->Vertices[2] + cell[1], this->Vertices[4] + cell[2]);
   }
 
-  /// Structured indices of the vertices of a brick.
+  /// Returns the structured indices of the vertices of a brick.
   Extent GetVertices(std::size_t brick) const
   {
     Extent box = this->GetCells(brick);

@@ -15,11 +15,11 @@
 namespace deformvolume
 {
 
-/// Where one edit crosses a sampling mesh smoothly: edges that a sheet crosses, and on which side
-/// of it their ends are.
+/// Where one smooth cut crosses a sampling mesh: the edges that the sheet crosses, and the sides of
+/// their ends.
 struct CrossingSet
 {
-  /// What crosses the five tetrahedra of a cell. Two edits' crossings are joined by Join().
+  /// The crossed edges of the five tetrahedra of a cell.
   struct Cell
   {
     /// Crossed edges: bit 6 t + k is edge k of tetrahedron t, in the order of Ends.
@@ -42,25 +42,25 @@ struct CrossingSet
   /// The two vertices of each edge of a tetrahedron.
   static constexpr int Ends[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 2 }, { 1, 3 }, { 2, 3 } };
 
-  /// One for each cell of a brick, at the number that TetrahedronSet::GetPlace() gives it.
+  /// One item for each cell of a brick, with the index of TetrahedronSet::GetPlace().
   using Block = std::array<Cell, CellBricks::Cells>;
 
-  /// Bricks of cells with crossed edges, in ascending order, and as many blocks.
+  /// The bricks of cells with crossed edges, in ascending order.
   std::vector<std::size_t> Bricks;
   /// The block of each of these bricks.
   std::vector<Block> Blocks;
-  /// The signed distances of the ends of edges from the sheet: infinite for all other vertices, 0
-  /// for those that are on both sides of it.
+  /// The signed distances of the ends of crossed edges from the sheet; 0 for vertices on both sides
+  /// of it, infinite for all other vertices.
   DistanceSet Distances;
 
   /// Whether no edge is crossed.
   bool IsEmpty() const { return this->Bricks.empty(); }
 };
 
-/// Of a vertex that is no end of a crossed edge.
+/// The distance of a vertex that is no end of a crossed edge.
 constexpr float FarFromSheets = std::numeric_limits<float>::infinity();
 
-/// What two triangles, or two edits, make of the distance of a vertex.
+/// Joins the distances of a vertex from two triangles, or from two edits.
 inline float JoinSheetDistances(float a, float b)
 {
   if (a == FarFromSheets || b == FarFromSheets)

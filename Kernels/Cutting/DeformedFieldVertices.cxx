@@ -17,8 +17,8 @@ namespace deformvolume
 namespace
 {
 
-// What the components of vectors in short rows, all of one length, lie between. Each place of a row
-// has limits of its own, so that compilers compare several at a time.
+// The limits of the components of vectors, given in short rows of equal length. Each position in a
+// row has its own limits, so that compilers can vectorize the comparisons.
 class ComponentsOfRows
 {
 public:
@@ -30,10 +30,10 @@ public:
       const float* next = values + begin;
       for (std::size_t i = 0; i < some; ++i)
       {
-        // Not-a-number is not less and not greater.
+        // Comparisons with not-a-number are false.
         this->Least[i] = next[i] < this->Least[i] ? next[i] : this->Least[i];
         this->Greatest[i] = next[i] > this->Greatest[i] ? next[i] : this->Greatest[i];
-        this->Nothing[i] += 0.0F * next[i]; // unless it is not finite
+        this->Nothing[i] += 0.0F * next[i]; // stays 0 if all values are finite
       }
     }
   }
@@ -54,7 +54,7 @@ public:
   }
 
 private:
-  static constexpr std::size_t Most = 27; // those of the vertices of a brick
+  static constexpr std::size_t Most = 27; // the components of a row of nine vertices
   static constexpr float Largest = std::numeric_limits<float>::max();
 
   static std::array<float, Most> Fill(float value)
@@ -102,8 +102,8 @@ void DeformedFieldVertices::FindRow(
   }
 }
 
-// Those of all points of the field between which a vertex may lie: weights are 0 to 1, and sum up
-// to 1. By rounding a point may be missed whose weight is next to nothing.
+// The limits of all points of the field that affect a vertex: weights are between 0 and 1, and add
+// up to 1. Rounding can miss a point whose weight is almost 0.
 DisplacementLimits DeformedFieldVertices::GetLimits(std::size_t brick) const
 {
   const Extent vertices = this->Bricks.GetVertices(brick);
@@ -162,7 +162,7 @@ std::vector<unsigned char> DeformedFieldVertices::SetField(
   const DisplacementField& field, const PointRanges* changed)
 {
   const DisplacementField last = std::exchange(this->Field, field);
-  // Where points are voxels it is simple to say which vertices have one.
+  // Changed vertices are only found in the simple case that points of the field are voxels.
   const VoxelGrid vertices{ this->Bricks.GetVertices(), {}, {} };
   if (!changed || last.Dimensions != field.Dimensions || last.IndexToField != field.IndexToField ||
     last.ToDisplacement != field.ToDisplacement || last.Extrapolate != field.Extrapolate ||
@@ -189,14 +189,15 @@ std::vector<unsigned char> DeformedFieldVertices::SetField(
   return marked;
 }
 
-// The bricks with a vertex among points of the field; one on their faces belongs to both.
+// Marks the bricks that have a vertex among some points of the field. A vertex on a common face
+// belongs to both bricks.
 void DeformedFieldVertices::MarkRow(const Extent& points, std::vector<unsigned char>& bricks) const
 {
   Extent cells;
   for (std::size_t axis = 0; axis < 3; ++axis)
   {
     const int first = this->Bricks.GetVertices()[2 * axis] +
-      static_cast<int>(this->Field.IndexToField[4 * axis + 3]); // the point of the first vertex
+      static_cast<int>(this->Field.IndexToField[4 * axis + 3]); // the point at the first vertex
     cells[2 * axis] = std::max(points[2 * axis] - first - 1, 0);
     cells[2 * axis + 1] = std::min(points[2 * axis + 1] - first, this->Bricks.GetSize()[axis] - 1);
     if (cells[2 * axis] > cells[2 * axis + 1])

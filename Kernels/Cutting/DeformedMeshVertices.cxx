@@ -76,8 +76,8 @@ DeformedMeshVertices::DeformedMeshVertices(const CellBricks& bricks, const Exten
   }
 }
 
-// Calls function(i, tetrahedron, weights) for the vertices of a row that have a tetrahedron; of
-// those of a run the first and the last one, if ends is set, as all others lie between them.
+// Calls function(i, tetrahedron, weights) for the vertices of a row that lie in a tetrahedron.
+// ends: only for the first and the last vertex of each run, as all others lie between them.
 template <typename Function>
 void DeformedMeshVertices::FollowRow(
   int x, int y, int z, int count, bool ends, Function&& function) const
@@ -154,7 +154,7 @@ void DeformedMeshVertices::FindTetrahedra(
   }
   std::sort(tetrahedra.begin(), tetrahedra.end());
   tetrahedra.erase(std::unique(tetrahedra.begin(), tetrahedra.end()), tetrahedra.end());
-  constexpr double rounding = 1e-6; // of doubles, generously
+  constexpr double rounding = 1e-6; // a generous bound for rounding of doubles
   overshoot = static_cast<float>(most * (1.0 + rounding) + rounding);
 }
 

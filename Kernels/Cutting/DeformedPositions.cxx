@@ -61,7 +61,8 @@ void DeformedPositions::Find(
       for (int i = 0; i < count; ++i)
       {
         const glm::dvec3& move = displacements[static_cast<std::size_t>(i)];
-        // Extrapolation can lead anywhere, and a field may hold anything, not-a-number included.
+        // Extrapolation can give any value, and a field may contain any value, including
+        // not-a-number.
         hasPosition[i] = hasPosition[i] && std::abs(move.x) <= LargestDisplacement &&
           std::abs(move.y) <= LargestDisplacement && std::abs(move.z) <= LargestDisplacement;
         const SnappedPoint rest = StepsPerVoxel * SnappedPoint(vertices[0] + i, y, z);
@@ -107,17 +108,17 @@ SnappedBox DeformedPositions::FindBox(std::size_t brick) const
   {
     return {};
   }
-  const glm::dvec3 most(LargestDisplacement); // what is moved farther has no position
+  const glm::dvec3 most(LargestDisplacement); // vertices with larger displacements have no position
   const glm::dvec3 low = glm::clamp(limits.Min, -most, most);
   const glm::dvec3 high = glm::clamp(limits.Max, -most, most);
   const Extent vertices = this->GetBricks().GetVertices(brick);
-  // Sums are rounded, which may move a position by a step.
+  // Rounding of sums can move a position by one step.
   SnappedBox box;
   box.Add(StepsPerVoxel * SnappedPoint(vertices[0], vertices[2], vertices[4]) + Snap(low) -
     SnappedPoint(1));
   box.Add(StepsPerVoxel * SnappedPoint(vertices[1], vertices[3], vertices[5]) + Snap(high) +
     SnappedPoint(1));
-  // An error says of a brick that it is too large only where it is.
+  // Use the exact box before a brick is reported as too large.
   return box.GetLength() <= TriangleCrossing::LargestBox ? box : this->FindExactBox(brick);
 }
 

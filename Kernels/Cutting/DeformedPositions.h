@@ -19,25 +19,25 @@ class DeformedFieldVertices;
 class DeformedMeshVertices;
 class DeformedVertices;
 
-/// Where the vertices of a volume are in a deformation. Of all bricks only limits are found; their
-/// vertices are looked at where a brick matters.
+/// The deformed positions of the vertices of a volume. Only the boxes of bricks are stored;
+/// positions of vertices are computed when they are needed.
 class DEFORMVOLUME_EXPORT DeformedPositions : public VertexPositions
 {
 public:
-  /// In a deformation mesh. What is given must live, and stay as it is, for as long as this object.
-  /// mapping: that of all voxels of an extent which holds these, with links or runs. displacements:
-  /// three floats a node, in voxels of the volume. Throws Error where the mapping is not one of
-  /// them.
+  /// Vertices in a deformation mesh. All arguments must outlive this object and not change. mapped,
+  /// mapping: the mapping of all voxels of an extent that contains the vertices, with links or
+  /// runs. displacements: three floats per node, in voxels of the volume. Throws an Error if the
+  /// mapping does not fit.
   DeformedPositions(const Extent& vertices, const Extent& mapped, const StaticMapping& mapping,
     const std::vector<Tetrahedron>& tetrahedra, const float* displacements);
-  /// In a displacement field, forward, whose displacements are in voxels of the volume.
+  /// Vertices in a forward displacement field, with displacements in voxels of the volume.
   DeformedPositions(const Extent& vertices, const DisplacementField& field);
   ~DeformedPositions() override;
 
-  /// Other displacements of the same mesh, or other nodes of its tetrahedra. Not for a field.
+  /// Set the displacements, for the same mesh or after tetrahedra got other nodes. Not for a field.
   void SetDisplacements(const float* displacements);
-  /// Another displacement field. changed: ranges of its points outside of which the field is as the
-  /// last one was; null: that is not known. Not for a mesh.
+  /// Set another displacement field. changed: ranges of points outside of which the field equals
+  /// the last one; null: unknown. Not for a mesh.
   void SetField(const DisplacementField& field, const PointRanges* changed);
 
   SnappedBox GetBox(std::size_t brick) const override { return this->Boxes[brick]; }
@@ -45,13 +45,14 @@ public:
   void Find(const Extent& vertices, SnappedPoint* positions, bool* hasPosition) const override;
 
 private:
-  /// Of the bricks that are marked, one byte each; of all where there are no marks.
+  /// Finds the boxes of marked bricks, one byte for each brick; of all bricks if there are no
+  /// marks.
   void FindBoxes(const std::vector<unsigned char>& marked);
   SnappedBox FindBox(std::size_t brick) const;
   SnappedBox FindExactBox(std::size_t brick) const;
 
   std::unique_ptr<DeformedVertices> Vertices;
-  // Those above; one of these is null.
+  // Vertices as its own class; one of these pointers is null.
   DeformedMeshVertices* OfMesh = nullptr;
   DeformedFieldVertices* OfField = nullptr;
   std::vector<SnappedBox> Boxes;

@@ -19,19 +19,20 @@
 namespace deformvolume
 {
 
-/// What displacements lie between.
+/// Limits of displacements.
 struct DisplacementLimits
 {
   glm::dvec3 Min{ 1.0 };
   glm::dvec3 Max{ -1.0 };
-  /// Whether they are known; else they may be anything.
+  /// Whether the limits are known; otherwise displacements may have any value.
   bool AreKnown = true;
 
   bool IsEmpty() const { return this->Min.x > this->Max.x; }
   void Add(const glm::dvec3& displacement);
 };
 
-/// What moves the vertices of a volume. Functions may be called by many threads.
+/// Interface of deformations that move the vertices of a volume. Functions may be called by several
+/// threads.
 class DeformedVertices
 {
 public:
@@ -40,25 +41,25 @@ public:
   DeformedVertices(const DeformedVertices&) = delete;
   DeformedVertices& operator=(const DeformedVertices&) = delete;
 
-  /// The displacements of the vertices of a row from x on, in structured indices, and whether they
-  /// have any.
+  /// Finds the displacements of `count` vertices of a row from x on, in structured indices, and
+  /// whether each vertex has a position.
   virtual void FindRow(
     int x, int y, int z, int count, glm::dvec3* displacements, bool* hasPosition) const = 0;
-  /// What the displacements of the vertices of a brick lie between. They may be closer together.
+  /// Returns limits of the displacements of the vertices of a brick. They need not be tight.
   virtual DisplacementLimits GetLimits(std::size_t brick) const = 0;
 };
 
-/// The vertices in a deformation mesh. What is given must live, and stay as it is, but for the
-/// displacements.
+/// Vertices in a deformation mesh. All arguments must outlive this object and not change;
+/// displacements may be set again.
 class DeformedMeshVertices : public DeformedVertices
 {
 public:
-  /// mapped: structured indices of the voxels that the mapping is of, which hold those of the
+  /// mapped: structured indices of the voxels of the mapping. They must include those of the
   /// bricks.
   DeformedMeshVertices(const CellBricks& bricks, const Extent& mapped, const StaticMapping& mapping,
     const std::vector<Tetrahedron>& tetrahedra);
 
-  /// Three floats a node.
+  /// Three floats per node.
   void SetDisplacements(const float* displacements);
 
   void FindRow(
@@ -81,17 +82,17 @@ private:
   const StaticMapping& Mapping;
   const std::vector<Tetrahedron>& Tetrahedra;
   const float* Displacements = nullptr;
-  /// The tetrahedra that hold vertices of each brick, all of brick 0 first; brick b has those from
+  /// The tetrahedra that contain vertices of each brick, sorted by bricks. Brick b has those from
   /// Begins[b] to Begins[b + 1].
   std::vector<std::int32_t> OfBricks;
   std::vector<std::size_t> Begins;
-  /// How much negative weights of the vertices of each brick sum up to, at most, with their signs
-  /// changed: where vertices are extrapolated, and by rounding.
+  /// For the vertices of each brick, the largest absolute value of the sum of negative weights.
+  /// Weights are negative where vertices are extrapolated, and by rounding.
   std::vector<float> Overshoots;
-  std::vector<Box> Limits; // of the displacements of the nodes of each tetrahedron
+  std::vector<Box> Limits; // limits of the displacements of the nodes of each tetrahedron
 };
 
-/// The vertices in a displacement field.
+/// Vertices in a displacement field.
 class DeformedFieldVertices : public DeformedVertices
 {
 public:
@@ -105,8 +106,9 @@ public:
     int x, int y, int z, int count, glm::dvec3* displacements, bool* hasPosition) const override;
   DisplacementLimits GetLimits(std::size_t brick) const override;
 
-  /// Another field. changed: ranges of its points outside of which it is as the last one was.
-  /// Returns which bricks may have other limits, one byte a brick; nothing: all may have.
+  /// Set another field. changed: ranges of points outside of which it equals the last one. Returns
+  /// the bricks whose limits may have changed, one byte for each brick; empty: all may have
+  /// changed.
   std::vector<unsigned char> SetField(const DisplacementField& field, const PointRanges* changed);
 
 private:

@@ -12,13 +12,13 @@
 namespace deformvolume
 {
 
-/// Gathers the distances of the vertices of bricks of cells into those of a volume. Several threads
-/// may add some.
+/// Collects the distances of the vertices of bricks of cells into a set for a volume. Add may be
+/// called by several threads.
 class DistanceGatherer
 {
 public:
-  /// far: the distance of vertices that are not gathered. join: what a vertex gets that several
-  /// bricks have, of the last distance, or far, and the next one.
+  /// far: the distance of vertices that were not added. join: combines the last distance of a
+  /// vertex, or `far`, with the next one, as a vertex can belong to several bricks.
   DistanceGatherer(const Extent& volume, float far, float (*join)(float last, float next))
     : Volume(volume)
     , Bricks(GetVertexBricks(volume))

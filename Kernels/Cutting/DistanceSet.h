@@ -12,25 +12,25 @@
 namespace deformvolume
 {
 
-/// Signed distances of vertices to the boundary of what one edit carves out, negative inside. What
-/// is not in the set is far outside.
+/// The signed distances of vertices from the surface of what one edit carves out, negative inside.
+/// Vertices that are not in the set are far outside.
 struct DistanceSet
 {
-  /// One float a vertex of a brick of 8 x 8 x 8 vertices (GetVertexBricks), at the place that
-  /// TetrahedronSet::GetPlace() gives it.
+  /// One float for each vertex of a brick of 8 x 8 x 8 vertices (GetVertexBricks), with the index
+  /// of TetrahedronSet::GetPlace().
   using Block = std::array<float, CellBricks::Cells>;
 
-  /// Bricks with vertices of the set, in ascending order, and as many blocks.
+  /// The bricks with vertices of the set, in ascending order.
   std::vector<std::size_t> Bricks;
   /// The block of each of these bricks.
   std::vector<Block> Blocks;
 
-  /// Whether no vertex is in it.
+  /// Whether the set has no vertices.
   bool IsEmpty() const { return this->Bricks.empty(); }
 };
 
-/// The bricks of the vertices of a volume. They are those of the cells of a volume that is larger
-/// by one voxel on each axis: each vertex is the first one of such a cell.
+/// Returns the bricks of the vertices of a volume. These are the bricks of cells of a volume with
+/// one more voxel on each axis: each vertex is the first vertex of such a cell.
 inline CellBricks GetVertexBricks(const Extent& vertices)
 {
   Extent larger = vertices;

@@ -7,8 +7,8 @@
 namespace deformvolume
 {
 
-/// Called now and then while it is found what an edit hits, in the thread that asked for it, with
-/// how much is done, 0 to 1. Where it returns false the edit is given up: Aborted is thrown.
+/// Called repeatedly while an edit is computed, in the calling thread, with the completed part, 0
+/// to 1. If it returns false, the edit is abandoned and Aborted is thrown.
 using EditProgress = std::function<bool(double)>;
 
 } // namespace deformvolume

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Products of vectors of whole numbers, which GLM has for floating-point numbers only.
+// Products of integer vectors; GLM has these for floating-point vectors only.
 #ifndef DeformVolumeExactVectors_h
 #define DeformVolumeExactVectors_h
 
@@ -25,8 +25,8 @@ inline int GetSign(std::int64_t value)
   return (value > 0 ? 1 : 0) - (value < 0 ? 1 : 0);
 }
 
-/// The sign of the product of a vector with (e, e^2, e^3), for any e > 0 that is small enough: that
-/// of its first component other than 0. 0 for the zero vector.
+/// Returns the sign of the scalar product of a vector with (e, e^2, e^3) for infinitesimal e > 0:
+/// the sign of its first component that is not 0. Returns 0 for the zero vector.
 inline int FindSign(const SnappedPoint& v)
 {
   return GetSign(v.x != 0 ? v.x : v.y != 0 ? v.y : v.z);

@@ -12,8 +12,8 @@
 namespace deformvolume
 {
 
-/// What the blocks of several edits are together, brick by brick: an edit that is added is joined
-/// with what there is, and needs none of the edits before it. The order of edits must not matter.
+/// The blocks of several edits joined, brick by brick. An added edit is joined with the existing
+/// block, without the earlier edits. Joining must not depend on the order of edits.
 template <typename Block>
 class JoinedBlocks
 {
@@ -23,14 +23,14 @@ public:
   /// Joins a value with another one.
   using Join = void (*)(Value& value, const Value& other);
 
-  /// empty: what joins with any value to that value.
+  /// empty: the value that does not change any value when joined with it.
   JoinedBlocks(const Value& empty, Join join)
     : JoinValues(join)
   {
     this->Empty.fill(empty);
   }
 
-  /// Joins a block of an edit with what its brick has.
+  /// Joins a block of an edit with the block of its brick.
   void Add(std::size_t brick, const Block& block)
   {
     Block& joined = this->Blocks.emplace(brick, this->Empty).first->second;
@@ -48,7 +48,7 @@ public:
       this->Add(bricks[i], blocks[i]);
     }
   }
-  /// Forgets what some bricks have.
+  /// Removes the blocks of some bricks.
   void Forget(const std::vector<std::size_t>& bricks)
   {
     for (const std::size_t brick : bricks)
@@ -56,7 +56,7 @@ public:
       this->Blocks.erase(brick);
     }
   }
-  /// Adds those of some bricks that an edit has a block of.
+  /// Joins the blocks of an edit for some bricks.
   void AddAgain(const std::vector<std::size_t>& wanted, const std::vector<std::size_t>& bricks,
     const std::vector<Block>& blocks)
   {
@@ -68,19 +68,19 @@ public:
       }
     }
   }
-  /// Forgets everything.
+  /// Removes all blocks.
   void Clear() { this->Blocks.clear(); }
 
-  /// Null where no edit has a block.
+  /// Returns the joined block of a brick; null if no edit has one.
   const Block* Find(std::size_t brick) const
   {
     const auto found = this->Blocks.find(brick);
     return found == this->Blocks.end() ? nullptr : &found->second;
   }
 
-  /// Blocks of edits that were joined: what edits cost.
+  /// Returns the number of blocks that were joined, a measure of the work for edits.
   std::uint64_t GetNumberOfJoins() const { return this->NumberOfJoins; }
-  /// Bytes that the blocks take.
+  /// Returns the memory of the blocks, in bytes.
   std::uint64_t GetMemory() const
   {
     return this->Blocks.size() * (sizeof(Block) + sizeof(std::size_t));

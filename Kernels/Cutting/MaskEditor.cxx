@@ -50,7 +50,7 @@ std::vector<std::size_t> MaskEditor::CompareBase(
   std::vector<bool> isChanged(this->Changed.size());
   for (const std::array<std::size_t, 2>& range : changes)
   {
-    // Row by row, and of rows that differ what lies in one brick at once.
+    // Compare row by row; in rows that differ, compare the part in each brick.
     const std::size_t rangeEnd = std::min(range[1], this->Mask.size());
     for (std::size_t row = range[0] / width; range[0] < rangeEnd && row * width < rangeEnd; ++row)
     {
@@ -101,7 +101,7 @@ void MaskEditor::SetBase(const unsigned char* base, const PointRanges* changes)
     this->Base = std::vector<unsigned char>();
     this->Mask.assign(count, DEFORMVOLUME_ALL_TETRAHEDRA);
   }
-  // What was counted goes with the old base.
+  // The count was relative to the old base.
   this->NumberOfSwitchedOff = 0;
   this->Update(this->Edits);
   this->UpdateSwitchedOff();

@@ -22,92 +22,93 @@
 namespace deformvolume
 {
 
-/// A mask of active tetrahedra, one byte a cell, with edits that switch tetrahedra off and can be
-/// undone and redone.
+/// A mask of active tetrahedra, one byte per cell, with edits that switch tetrahedra off. Edits can
+/// be undone, redone and removed.
 ///
-/// An edit is kept as the set of tetrahedra that it hits. The mask is the base, which is the mask
-/// before all edits, without what the edits hit. So the order of edits does not matter, one in the
-/// middle can be removed, and what is undone comes back bit for bit. Work is done only on the
-/// bricks that an edit hits, and does not grow with the number of edits before it; where one is
-/// undone or removed, it does. Of the bytes of the base, the bits above the fifth stay as they are.
+/// An edit is stored as the set of tetrahedra that it hits. The mask is the base (the mask before
+/// all edits) without the tetrahedra that edits hit. So the order of edits does not matter, any
+/// edit can be removed, and undoing restores the mask bit for bit. Adding an edit takes time for
+/// the bricks that it hits only, independent of earlier edits. Undoing or removing one takes time
+/// for all edits of these bricks. The upper three bits of the bytes of the base do not change.
 ///
-/// An edit may have the distances of vertices to a smooth boundary besides, which passes through
-/// tetrahedra that stay active (BoundaryDistances), and where a sheet crosses edges, which divides
-/// tetrahedra (SmoothCrossings).
+/// An edit can also have boundary distances, for a smooth boundary through active tetrahedra
+/// (BoundaryDistances), and crossed edges, for a smooth cut that divides tetrahedra
+/// (SmoothCrossings).
 class DEFORMVOLUME_EXPORT MaskEditor
 {
 public:
-  /// vertices: structured indices of the voxels. All tetrahedra are active. far: the boundary
-  /// distance where there is no boundary. Throws Error where there are less than two voxels on an
-  /// axis.
+  /// vertices: structured indices of the voxels. All tetrahedra are active at first. far: the
+  /// boundary distance of vertices that are far from any boundary. Throws an Error if there are
+  /// fewer than two voxels on an axis.
   explicit MaskEditor(const Extent& vertices, float far = std::numeric_limits<float>::max());
 
-  /// The bricks of the cells.
+  /// Returns the bricks of the cells.
   const CellBricks& GetBricks() const { return this->Bricks; }
 
-  /// Another mask before all edits, one byte a cell; null: all are active. The edits stay. changes:
-  /// cells that may have changed since the last one; null where that is not known. Bricks that are
-  /// equal do not count as changed.
+  /// Set the mask before all edits, one byte per cell; null: all are active. Edits are kept.
+  /// changes: cells that may have changed since the last base; null: unknown. Bricks without
+  /// differences do not count as changed.
   void SetBase(const unsigned char* base, const PointRanges* changes = nullptr);
-  /// Other boundary distances before all edits, one a vertex; null: there are none.
+  /// Set the boundary distances before all edits, one per vertex; null: none.
   void SetBaseDistances(const float* base);
 
-  /// Another smooth cut before all edits (SmoothCrossings::SetBase); null: there is none.
+  /// Set the smooth cut before all edits (SmoothCrossings::SetBase); null: none.
   void SetBaseCut(const unsigned char* crossed, const float* distances);
 
-  /// Adds an edit and returns its number. What was undone cannot be redone any more. A set without
-  /// tetrahedra is an edit as well. Throws Error where a brick is not one of this mask.
+  /// Adds an edit, which may be empty, and returns its number. Undone edits cannot be redone
+  /// afterwards. Throws an Error if a brick does not exist in this mask.
   std::uint64_t Add(
     TetrahedronSet&& set, DistanceSet&& distances = {}, CrossingSet&& crossings = {});
-  /// Removes an edit, be it undone or not. False where it is not there any more.
+  /// Removes an edit, undone or not. Returns false if it does not exist.
   bool Remove(std::uint64_t edit);
 
-  /// Switches the tetrahedra of the last edit on again, as far as no other edit hits them. False
-  /// where there is none.
+  /// Undoes the last edit: switches its tetrahedra on again, unless another edit hits them. Returns
+  /// false if there is no edit.
   bool Undo();
-  /// Takes the last Undo() back. False where there is none.
+  /// Redoes the edit of the last Undo(). Returns false if there is none.
   bool Redo();
-  /// Removes all edits: the mask is the base.
+  /// Removes all edits, so that the mask is the base.
   void Reset();
 
-  /// Edits that are not undone.
+  /// Returns the number of edits that are not undone.
   std::size_t GetNumberOfEdits() const { return this->Edits.size(); }
-  /// Edits that Redo() can make again.
+  /// Returns the number of edits that Redo() can restore.
   std::size_t GetNumberOfUndoneEdits() const { return this->Undone.size(); }
 
-  /// The mask, one byte a cell, x varying fastest.
+  /// Returns the mask, one byte per cell, x varying fastest.
   const std::vector<unsigned char>& GetMask() const { return this->Mask; }
-  /// Tetrahedra that are active in the base and not in the mask.
+  /// Returns the number of tetrahedra that are active in the base and not in the mask.
   std::int64_t GetNumberOfSwitchedOffTetrahedra() const { return this->NumberOfSwitchedOff; }
-  /// Bricks whose mask may have changed since the last call, in ascending order. At the first call
-  /// these are all bricks.
+  /// Returns the bricks whose mask may have changed since the last call, in ascending order. The
+  /// first call returns all bricks.
   std::vector<std::size_t> TakeChangedBricks();
 
   /// Whether an edit divides tetrahedra.
   bool HasSmoothCuts() const;
-  /// What is divided, where an edit or the cut before all edits does so.
+  /// Returns the divided tetrahedra of all edits and of the cut before all edits.
   SmoothCrossings& GetSmoothCrossings() { return this->Crossings; }
-  /// The same, to be read only.
+  /// Returns the same for reading.
   const SmoothCrossings& GetSmoothCrossings() const { return this->Crossings; }
 
   /// Whether an edit has boundary distances.
   bool HasDistanceEdits() const;
-  /// The boundary distance where there is no boundary.
+  /// Returns the boundary distance of vertices that are far from any boundary.
   float GetFarDistance() const { return this->Distances.GetFar(); }
-  /// The bricks of the vertices.
+  /// Returns the bricks of the vertices.
   const CellBricks& GetVertexBricks() const { return this->Distances.GetBricks(); }
-  /// The boundary distances, one a vertex, where there are some.
+  /// Returns the boundary distances, one per vertex; empty if there was never a boundary.
   const std::vector<float>& GetDistances() const { return this->Distances.Get(); }
-  /// As TakeChangedBricks(), of their vertices.
+  /// Like TakeChangedBricks(), for the bricks of vertices.
   std::vector<std::size_t> TakeChangedVertexBricks() { return this->Distances.TakeChangedBricks(); }
 
-  /// Blocks of edits that were joined so far, of tetrahedra and of crossings: what edits cost.
+  /// Returns the number of blocks of tetrahedra and crossings that were joined, a measure of the
+  /// work for edits.
   std::uint64_t GetNumberOfJoins() const
   {
     return this->Hits.GetNumberOfJoins() + this->Crossings.GetNumberOfJoins();
   }
 
-  /// Bytes of memory that the mask, the base and the edits take.
+  /// Returns the memory of the mask, the base and the edits, in bytes.
   std::uint64_t GetMemory() const;
 
 private:
@@ -119,30 +120,30 @@ private:
     CrossingSet Crossings;
   };
 
-  /// Which bricks of a base differ, in ascending order.
+  /// Returns the bricks in which a base differs from the current one, in ascending order.
   std::vector<std::size_t> CompareBase(const unsigned char* base, const PointRanges& changes) const;
-  /// Makes the mask of some bricks anew.
+  /// Computes the mask of some bricks again.
   void Update(const std::vector<std::size_t>& bricks);
-  /// An edit comes, or goes: makes all anew that it hits.
+  /// Update everything that an added or removed edit hits.
   void Apply(const Edit& edit);
   void TakeBack(const Edit& edit);
-  /// Those of all edits that are not empty.
+  /// Returns the sets of one kind of all edits that are not empty.
   template <typename Set>
   std::vector<const Set*> GetSets(Set Edit::*set) const;
   void Update(const std::list<Edit>& edits);
-  /// Makes all anew where smooth cuts may have switched something off.
+  /// Computes the mask again if smooth cuts may have switched tetrahedra off.
   void UpdateSwitchedOff();
   void UpdateBrick(std::size_t brick);
 
   CellBricks Bricks;
-  std::vector<unsigned char> Base; // empty: all active
+  std::vector<unsigned char> Base; // empty: all are active
   std::vector<unsigned char> Mask;
   std::list<Edit> Edits;
-  std::list<Edit> Undone; // the last one undone at the end
+  std::list<Edit> Undone; // the edit that was undone last is at the end
   std::uint64_t LastNumber = 0;
   std::int64_t NumberOfSwitchedOff = 0;
-  std::vector<bool> Changed;                // of each brick
-  JoinedBlocks<TetrahedronSet::Block> Hits; // of all edits
+  std::vector<bool> Changed;                // for each brick
+  JoinedBlocks<TetrahedronSet::Block> Hits; // joined hits of all edits
   BoundaryDistances Distances;
   SmoothCrossings Crossings;
 };

@@ -29,8 +29,8 @@ std::int64_t GetLength(const SnappedPoint& a, const SnappedPoint& b)
   return std::max(size.x, std::max(size.y, size.z));
 }
 
-// Depends on the edge alone, and not on which of its ends is named first. Division rounds towards
-// zero, so that differences of equal size are halved alike, whatever their signs.
+// Depends only on the edge, and not on the order of its ends. Division rounds towards zero, so that
+// differences of equal size are halved alike, whatever their signs.
 SnappedPoint GetMiddle(const SnappedPoint& a, const SnappedPoint& b)
 {
   const SnappedPoint& first = ComesFirst(a, b) ? a : b;
@@ -38,7 +38,7 @@ SnappedPoint GetMiddle(const SnappedPoint& a, const SnappedPoint& b)
   return first + (second - first) / std::int64_t{ 2 };
 }
 
-// The number of the longest edge: it begins at the point of this number.
+// Returns the number of the longest edge, which is that of its first point.
 int FindLongestEdge(const SnappedTriangle& triangle)
 {
   int longest = 0;
@@ -71,7 +71,7 @@ Sheet::Sheet(const std::vector<glm::dvec3>& points, const std::vector<Triangle>&
       const glm::dvec3& point = points[static_cast<std::size_t>(triangle[k])];
       for (int axis = 0; axis < 3; ++axis)
       {
-        // Not-a-number is not near either.
+        // False for not-a-number, too.
         if (!(std::abs(point[axis]) <= FarthestPoint))
         {
           throw Error("Point " + std::to_string(triangle[k]) +
@@ -123,7 +123,7 @@ bool Sheet::IsClosed() const
 
 Sheet Sheet::Orient() const
 {
-  // A number for each place, and the triangles at each edge between two of them.
+  // A number for each position, and the triangles at each edge between two positions.
   using Place = std::array<std::int64_t, 3>;
   std::map<Place, int> numbers;
   std::map<std::array<int, 2>, std::vector<std::size_t>> edges;

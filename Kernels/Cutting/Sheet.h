@@ -14,42 +14,42 @@
 namespace deformvolume
 {
 
-/// A surface of triangles to cut with, or a closed one to carve with, in structured indices of the
-/// volume. Points are rounded to 1/256 voxel. It may be open, fold, cross itself, and have
-/// triangles of either orientation.
+/// A triangle surface to cut with, or a closed one to carve with, in structured indices of the
+/// volume. Points are rounded to 1/256 voxel. The surface may be open, folded and
+/// self-intersecting, and its triangles may have any orientation.
 class DEFORMVOLUME_EXPORT Sheet
 {
 public:
-  /// Three numbers of points.
+  /// Three point numbers.
   using Triangle = std::array<std::int64_t, 3>;
 
   Sheet() = default;
-  /// points: continuous indices of the volume. Throws Error where a triangle has a point that is
-  /// none, is not finite, or is more than 2^31 voxels away from index 0.
+  /// points: continuous indices of the volume. Throws an Error if a triangle refers to a point that
+  /// does not exist, is not finite, or is more than 2^31 voxels away from index 0.
   Sheet(const std::vector<glm::dvec3>& points, const std::vector<Triangle>& triangles);
 
-  /// The triangles after rounding, those without area included.
+  /// Returns the rounded triangles, including those without area.
   const std::vector<SnappedTriangle>& GetTriangles() const { return this->Triangles; }
-  /// The box of all triangles; empty where there are none.
+  /// Returns the bounding box of all triangles; empty if there are none.
   const SnappedBox& GetBox() const { return this->Box; }
 
-  /// Whether each edge is one of an even number of triangles, points in one place being one: such
-  /// a surface has an inside and an outside.
+  /// Whether each edge belongs to an even number of triangles; points with equal positions count as
+  /// one. Such a surface has an inside and an outside.
   bool IsClosed() const;
 
-  /// The sheet with its triangles turned so that those which share an edge, two of them, are
-  /// oriented alike, as far as that can be; one of each piece stays as it is.
+  /// Returns the sheet with consistent orientation, as far as that is possible, across edges with
+  /// two triangles. One triangle of each connected piece keeps its orientation.
   Sheet Orient() const;
 
-  /// What the triangles are within a box: those with area, divided until none is longer than
-  /// LongestTriangle on an axis. An edge is divided in the same place for all triangles that have
-  /// it, so that no gaps arise; a point where an edge is divided lies at most half a step off it on
-  /// each axis, and not off planes that hold the edge and are parallel to an axis plane or at 45
-  /// degrees between two of them. Triangles outside the box may be missing.
+  /// Returns the triangles with area, divided until none is longer than LongestTriangle on an axis.
+  /// All triangles at an edge divide it at the same point, so that there are no gaps. This point is
+  /// at most half a step off the edge on each axis. It stays in planes through the edge that are
+  /// parallel to an axis plane, or at 45 degrees between two of them. Triangles outside the box
+  /// `within` may be missing.
   std::vector<SnappedTriangle> Divide(const SnappedBox& within) const;
 
-  /// In steps: 512 voxels. Predicates are exact in 64 bits for triangles and tetrahedra of such
-  /// sizes, see TriangleCrossing.
+  /// The largest extent of a divided triangle, in steps: 512 voxels. Predicates are exact in 64
+  /// bits for triangles and tetrahedra of this size (TriangleCrossing).
   static constexpr std::int64_t LongestTriangle = std::int64_t{ 1 } << 17;
 
 private:

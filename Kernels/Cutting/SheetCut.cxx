@@ -19,16 +19,16 @@ namespace deformvolume
 namespace
 {
 
-// Where a vertex is as seen from a triangle: bits of places where it does not reach. What has one
-// of them in common for all vertices is not crossed.
+// The position of a vertex relative to a triangle, as bits. If all vertices have a bit in common,
+// they are not crossed by the triangle.
 enum Places : unsigned char
 {
   Above = 1,
   Below = 2,
-  First = 4 // of three pairs: too low and too high on each axis
+  First = 4 // first of three pairs: below and above the box on each axis
 };
 
-// The triangles of a sheet that are near a volume.
+// The triangles of a sheet near a volume.
 class SheetTriangles
 {
 public:
@@ -43,7 +43,7 @@ public:
     }
   }
 
-  // The triangles whose boxes overlap another one.
+  // Finds the triangles whose boxes overlap a box.
   void Find(const SnappedBox& box, std::vector<std::size_t>& numbers) const
   {
     this->Tree.Find(box, numbers);
@@ -52,8 +52,8 @@ public:
   {
     return this->Crossings[triangle].MayIntersect(box);
   }
-  // Calls function(place of a cell, tetrahedron, its vertices, which of them are above the plane of
-  // the triangle) for the tetrahedra of a brick that a triangle may cross.
+  // Calls function(index of a cell, tetrahedron, its vertices, which of these are above the plane
+  // of the triangle) for the tetrahedra of a brick that a triangle may cross.
   template <typename Function>
   void ForEachNear(std::size_t triangle, const BrickEdit& edit, Function&& function) const;
   const TriangleCrossing& GetCrossing(std::size_t triangle) const
@@ -70,7 +70,7 @@ private:
   BoxTree<SnappedBox> Tree;
 };
 
-// A vertex at the upper end of the box is moved out of it.
+// A vertex at the upper end of the box counts as outside, because of the symbolic shift.
 unsigned char SheetTriangles::GetPlaces(
   const TriangleCrossing& crossing, const SnappedBox& box, const SnappedPoint& p) const
 {
@@ -126,7 +126,7 @@ void SheetTriangles::ForEachNear(
     });
 }
 
-// Sets a brick, and finds the triangles that may cross something of it; none where that is nothing.
+// Sets up a brick, and returns the triangles that may cross it.
 std::vector<std::size_t> FindNear(const SheetTriangles& triangles, const VertexPositions& positions,
   std::size_t brick, BrickEdit& edit)
 {
@@ -170,16 +170,17 @@ void Hit(const SheetTriangles& triangles, std::size_t triangle, BrickEdit& edit)
     });
 }
 
-// What is crossed of a brick.
+// The crossings of a brick.
 struct BrickCrossings
 {
   std::size_t Brick = 0;
   CrossingSet::Block Cells{};
-  std::array<float, BrickEdit::MaxVertices> Distances; // as CrossingSet has them
-  Extent Vertices;                                     // structured indices
+  std::array<float, BrickEdit::MaxVertices> Distances; // as in CrossingSet
+  Extent Vertices;                                     // in structured indices
 };
 
-// A sheet through a vertex passes it at a distance that is not 0: it counts as moved.
+// The least distance: a sheet through a vertex passes beside it, because vertices are shifted
+// symbolically.
 constexpr double LeastDistance = 1e-6;
 
 void Cross(

@@ -12,18 +12,18 @@
 namespace deformvolume
 {
 
-/// The tetrahedra of the sampling mesh that a sheet crosses, exactly (TriangleCrossing has the
-/// rule). A tetrahedron that it does not cross lies on one side of it: where a sheet has no edge
-/// within the volume, no tetrahedron that is left shares a face with one on the other side. A
-/// tetrahedron with a vertex that has no position is not crossed. Throws Error where the
-/// deformation draws a brick that may be crossed out to more than 2,048 voxels, which is too large
-/// for 64 bits.
+/// Finds the tetrahedra of the sampling mesh that a sheet crosses, exactly (rule in
+/// TriangleCrossing). A tetrahedron that is not crossed lies on one side of the sheet. So if the
+/// sheet has no edge inside the volume, remaining tetrahedra on one side share no face with those
+/// on the other side. Tetrahedra with a vertex without position are not crossed. Throws an Error if
+/// a brick that the sheet may cross is deformed to more than 2,048 voxels, for which 64 bits are
+/// not enough.
 DEFORMVOLUME_EXPORT TetrahedronSet FindCrossedTetrahedra(
   const VertexPositions& positions, const Sheet& sheet, const EditProgress& progress = nullptr);
 
-/// Where a sheet crosses the edges of the sampling mesh, exactly, for a cut that divides tetrahedra
-/// (SmoothCrossings). Which side of the sheet is positive follows from the first triangle of each
-/// of its pieces. All else is as above.
+/// Finds where a sheet crosses the edges of the sampling mesh, exactly, for a cut that divides
+/// tetrahedra (SmoothCrossings). The first triangle of each connected piece of the sheet determines
+/// its positive side. Otherwise as above.
 DEFORMVOLUME_EXPORT CrossingSet FindSheetCrossings(
   const VertexPositions& positions, const Sheet& sheet, const EditProgress& progress = nullptr);
 

@@ -16,10 +16,10 @@ namespace deformvolume
 namespace
 {
 
-// Of the vertices of a brick of cells, of which neighbouring bricks have some in common.
+// Distances of the vertices of a brick of cells. Neighboring bricks share vertices.
 using BrickDistances = std::array<float, BrickEdit::MaxVertices>;
 
-/// Finds the distances of a brick's vertices.
+/// Finds the distances of the vertices of a brick.
 class BrickBoundary
 {
 public:
@@ -28,8 +28,8 @@ public:
   {
   }
 
-  /// inside: whether each vertex is. Has the tetrahedra hit that have all vertices inside, and
-  /// marks the vertices of cells that the boundary passes through. False where no vertex is inside.
+  /// Hits the tetrahedra with all vertices inside, and marks the vertices of cells that the
+  /// boundary passes through. inside: for each vertex. Returns false if no vertex is inside.
   bool Mark(BrickEdit& edit, const std::array<bool, BrickEdit::MaxVertices>& inside)
   {
     this->Count = edit.GetNumberOfVertices();
@@ -47,7 +47,7 @@ public:
     return true;
   }
 
-  /// Places of the vertices whose distances are wanted.
+  /// Returns the indices of the vertices whose distances are needed.
   std::vector<std::size_t> GetMarked() const
   {
     std::vector<std::size_t> marked;
@@ -61,7 +61,7 @@ public:
     return marked;
   }
 
-  /// All distances. known: those of the marked vertices, without sign.
+  /// Returns all distances. known: the unsigned distances of the marked vertices.
   BrickDistances Join(const std::vector<std::size_t>& marked, const double* known) const
   {
     BrickDistances distances;
@@ -71,7 +71,7 @@ public:
     }
     for (std::size_t k = 0; k < marked.size(); ++k)
     {
-      // What is inside stays so, however near the boundary it is.
+      // A vertex inside keeps a negative distance, however small.
       const float least = this->Inside[marked[k]] ? std::numeric_limits<float>::min() : 0.0F;
       const double size = std::isnan(known[k]) ? this->Far : std::abs(known[k]);
       const float distance =
@@ -121,7 +121,7 @@ private:
   std::array<bool, BrickEdit::MaxVertices> Marked{};
 };
 
-/// A vertex of several bricks may be near the boundary in one of them only.
+/// A vertex of several bricks may be near the boundary in only one of these.
 float JoinCarvedDistances(float last, float next)
 {
   return std::abs(next) <= std::abs(last) ? next : last;

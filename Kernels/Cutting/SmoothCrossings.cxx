@@ -16,7 +16,7 @@ namespace
 
 constexpr int FiveTetrahedra[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
 
-// The edges that are crossed where some vertices are on the negative side.
+// Returns the edges that are crossed if some vertices are on the negative side.
 unsigned int GetEdges(const std::array<bool, 4>& isNegative)
 {
   unsigned int edges = 0;
@@ -37,7 +37,7 @@ int CountTetrahedra(unsigned int bits)
   return static_cast<int>(std::bitset<5>(bits).count());
 }
 
-// Whether crossed edges part the vertices of a tetrahedron into two sides.
+// Whether crossed edges separate the vertices of a tetrahedron into two sides.
 bool IsDivision(unsigned int edges)
 {
   bool found = false;
@@ -101,7 +101,7 @@ void SmoothCrossings::SetBase(
     return;
   }
   this->Allocate();
-  // What was counted goes with the old cut.
+  // The count was relative to the old cut.
   std::fill(this->Crossed.begin(), this->Crossed.end(), static_cast<unsigned char>(0));
   this->NumberOfDivided = 0;
   std::vector<bool> isCorner(this->Distances.size());
@@ -141,7 +141,7 @@ void SmoothCrossings::SetBase(
         if (isCorner[vertex])
         {
           AppendVertex(this->Base.Distances, brick);
-          // 0 is on the side of positive numbers there.
+          // In the base, a distance of 0 counts as positive.
           const float distance = distances[vertex];
           this->Base.Distances.Blocks.back()[place] =
             distance < 0.0F || distance > 0.0F ? distance : std::numeric_limits<float>::min();
@@ -222,7 +222,7 @@ std::vector<std::size_t> SmoothCrossings::Remove(
   return this->Update(edit);
 }
 
-// Makes all anew that an edit hits.
+// Updates everything that an edit hits.
 std::vector<std::size_t> SmoothCrossings::Update(const CrossingSet& edit)
 {
   if (edit.IsEmpty())
@@ -235,7 +235,7 @@ std::vector<std::size_t> SmoothCrossings::Update(const CrossingSet& edit)
     this->UpdateDistances(brick);
     this->ChangedVertices[brick] = true;
   }
-  // Vertices on the sides of bricks belong to cells of several.
+  // Vertices on the faces of bricks belong to cells of several bricks.
   std::vector<std::size_t> bricks = this->FindNeighbours(edit.Bricks);
   for (const std::size_t brick : bricks)
   {
@@ -267,7 +267,7 @@ void SmoothCrossings::UpdateCells(std::size_t brick)
       const int mirror = this->Bricks.GetMirror(cell);
       unsigned int crossed = 0;
       unsigned int off = 0;
-      unsigned int before = 0; // what the cut before all edits divides
+      unsigned int before = 0; // bits of the tetrahedra that the cut before all edits divides
       for (unsigned int t = 0; joined.Edges != 0 && t < 5; ++t)
       {
         const unsigned int edges = joined.Edges >> 6 * t & 63U;

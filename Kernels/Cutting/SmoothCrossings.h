@@ -15,63 +15,64 @@
 namespace deformvolume
 {
 
-/// The tetrahedra of a volume that smooth cuts divide, and the signed distance of each of their
-/// vertices from the sheet (VolumeDeformer::SetCut), by all edits together: what is undone comes
-/// back bit for bit, and the order of edits does not matter.
+/// The tetrahedra of a volume that smooth cuts divide, and the signed distances of their vertices
+/// from the sheets (VolumeDeformer::SetCut), for all edits together. Undoing an edit restores them
+/// bit for bit, and the order of edits does not matter.
 ///
-/// A tetrahedron is divided where the edges that are crossed, each of them once, part its vertices
-/// into two sides, and the sides that triangles see them on are the same. Where the sheet only
-/// enters it, and parts no vertices, as at the end of a cut, it stays whole. Where two sheets pass
-/// through an edge, or a vertex is on different sides of two sheets, it is switched off.
+/// A tetrahedron is divided if three conditions hold: each crossed edge is crossed once; the
+/// crossed edges separate its vertices into two sides; and these sides agree with the signs of the
+/// distances. If a sheet only enters the tetrahedron without separating vertices, as at the end of
+/// a cut, the tetrahedron stays whole. If two sheets cross an edge, or a vertex is on different
+/// sides of two sheets, it is switched off.
 class DEFORMVOLUME_EXPORT SmoothCrossings
 {
 public:
   /// vertices: structured indices of the voxels.
   explicit SmoothCrossings(const Extent& vertices);
 
-  /// The bricks of the cells.
+  /// Returns the bricks of the cells.
   const CellBricks& GetBricks() const { return this->Bricks; }
-  /// The bricks of the vertices.
+  /// Returns the bricks of the vertices.
   const CellBricks& GetVertexBricks() const { return this->VertexBricks; }
 
-  /// Another cut before all edits, as GetCrossed() and GetDistances() have it; null: there is none.
-  /// sets: of the edits.
+  /// Set the cut before all edits, in the format of GetCrossed() and GetDistances(); null: none.
+  /// sets: of all edits.
   void SetBase(const unsigned char* crossed, const float* distances,
     const std::vector<const CrossingSet*>& sets);
 
   ///@{
-  /// An edit comes, or goes; sets: of all that are left. Returns the bricks of cells that may have
-  /// changed.
+  /// Add or remove an edit. sets: of all remaining edits. Both return the bricks of cells that may
+  /// have changed.
   std::vector<std::size_t> Add(const CrossingSet& edit);
   std::vector<std::size_t> Remove(
     const CrossingSet& edit, const std::vector<const CrossingSet*>& sets);
   ///@}
-  /// Blocks of edits that were joined so far.
+  /// Returns the number of blocks that were joined.
   std::uint64_t GetNumberOfJoins() const
   {
     return this->Cells.GetNumberOfJoins() + this->VertexDistances.GetNumberOfJoins();
   }
 
   ///@{
-  /// One a cell, x varying fastest: tetrahedra that are divided, as bits, and that are switched
-  /// off. One a vertex: its distance, 0 far from all sheets and on both sides of some. None before
-  /// there was a set.
+  /// Get, for each cell with x varying fastest, the bits of the divided tetrahedra, and of those
+  /// that are switched off; for each vertex its distance, 0 far from all sheets and for vertices on
+  /// both sides. Empty if there was never a cut.
   const std::vector<unsigned char>& GetCrossed() const { return this->Crossed; }
   const std::vector<unsigned char>& GetSwitchedOff() const { return this->SwitchedOff; }
   const std::vector<float>& GetDistances() const { return this->Distances; }
   ///@}
 
-  /// Tetrahedra that are divided, and were not so in the cut before all edits.
+  /// Returns the number of divided tetrahedra that the cut before all edits does not divide.
   std::int64_t GetNumberOfDividedTetrahedra() const { return this->NumberOfDivided; }
 
   ///@{
-  /// Bricks, of cells and of vertices, that may have changed since the last call, in ascending
-  /// order. At the first call after there was a set these are all.
+  /// Return the bricks of cells, or of vertices, that may have changed since the last call, in
+  /// ascending order. The first call after a cut was added returns all bricks.
   std::vector<std::size_t> TakeChangedBricks();
   std::vector<std::size_t> TakeChangedVertexBricks();
   ///@}
 
-  /// Bytes of memory.
+  /// Returns the memory, in bytes.
   std::uint64_t GetMemory() const;
 
 private:
@@ -85,14 +86,14 @@ private:
   CellBricks Bricks;
   CellBricks VertexBricks;
   CrossingSet Base;
-  // The base and all edits together.
+  // The base and all edits joined.
   JoinedBlocks<CrossingSet::Block> Cells;
   JoinedBlocks<DistanceSet::Block> VertexDistances;
   std::vector<unsigned char> Crossed;
   std::vector<unsigned char> SwitchedOff;
   std::vector<float> Distances;
   std::int64_t NumberOfDivided = 0;
-  std::vector<bool> Changed; // of each brick
+  std::vector<bool> Changed; // for each brick
   std::vector<bool> ChangedVertices;
 };
 

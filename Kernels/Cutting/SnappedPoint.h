@@ -13,7 +13,7 @@
 namespace deformvolume
 {
 
-/// Cutting is decided in whole numbers: positions are rounded to 1/256 of a voxel.
+/// Cutting is decided in integers: positions are rounded to 1/256 voxel.
 constexpr std::int64_t StepsPerVoxel = 256;
 
 /// A position in steps of 1/256 voxel, in structured indices of the volume.
@@ -21,7 +21,7 @@ using SnappedPoint = glm::i64vec3;
 /// The corners of a triangle.
 using SnappedTriangle = std::array<SnappedPoint, 3>;
 
-/// The nearest snapped point to a continuous index, which is finite.
+/// Returns the snapped point nearest to a continuous index, which must be finite.
 inline SnappedPoint Snap(const glm::dvec3& index)
 {
   constexpr auto steps = static_cast<double>(StepsPerVoxel);
@@ -29,13 +29,13 @@ inline SnappedPoint Snap(const glm::dvec3& index)
     std::llround(index.x * steps), std::llround(index.y * steps), std::llround(index.z * steps));
 }
 
-/// A snapped point as a continuous index.
+/// Returns a snapped point as a continuous index.
 inline glm::dvec3 GetIndex(const SnappedPoint& point)
 {
   return glm::dvec3(point) / static_cast<double>(StepsPerVoxel);
 }
 
-/// A box with its faces; empty until something is added.
+/// A closed box; empty until a point is added.
 struct SnappedBox
 {
   /// The lowest coordinate on each axis.
@@ -43,16 +43,16 @@ struct SnappedBox
   /// The highest coordinate on each axis.
   SnappedPoint Max{ -1 };
 
-  /// Whether nothing has been added.
+  /// Whether nothing was added.
   bool IsEmpty() const { return this->Min.x > this->Max.x; }
-  /// Makes the box hold a point.
+  /// Extends the box to a point.
   void Add(const SnappedPoint& point)
   {
     const bool isEmpty = this->IsEmpty();
     this->Min = isEmpty ? point : glm::min(this->Min, point);
     this->Max = isEmpty ? point : glm::max(this->Max, point);
   }
-  /// Makes the box hold another one.
+  /// Extends the box to another box.
   void Add(const SnappedBox& other)
   {
     if (!other.IsEmpty())
@@ -61,14 +61,14 @@ struct SnappedBox
       this->Add(other.Max);
     }
   }
-  /// False where one of them is empty.
+  /// Whether two boxes overlap; false if one is empty.
   bool Overlaps(const SnappedBox& other) const
   {
     return !this->IsEmpty() && !other.IsEmpty() && this->Min.x <= other.Max.x &&
       other.Min.x <= this->Max.x && this->Min.y <= other.Max.y && other.Min.y <= this->Max.y &&
       this->Min.z <= other.Max.z && other.Min.z <= this->Max.z;
   }
-  /// Of the longest edge.
+  /// Returns the length of the longest edge.
   std::int64_t GetLength() const
   {
     const SnappedPoint size = this->Max - this->Min;
@@ -76,7 +76,7 @@ struct SnappedBox
   }
 };
 
-/// The box of the corners of a triangle.
+/// Returns the box of the corners of a triangle.
 inline SnappedBox GetBox(const SnappedTriangle& triangle)
 {
   SnappedBox box;

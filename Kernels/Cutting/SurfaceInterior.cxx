@@ -15,14 +15,14 @@ namespace deformvolume
 namespace
 {
 
-// Points are whole numbers of a quarter of a step.
+// Points are integers in quarters of a step.
 constexpr std::int64_t PointsPerStep = 4;
 // Beyond all places that can be reached, and small enough to be added to.
 constexpr std::int64_t Beyond = std::int64_t{ 1 } << 60;
 
-// A triangle as seen by rays along x. Exact in 64 bits: differences on y and z are at most 2^19,
-// the length of a triangle (Sheet::LongestTriangle) in quarters of a step, and so are those on x,
-// since points before and behind the triangle are decided by its box.
+// A triangle for rays along x. Predicates are exact in 64 bits: differences on y and z are at most
+// 2^19, the length of a triangle (Sheet::LongestTriangle) in quarters of a step. The same holds for
+// x, since the box decides for points before and behind the triangle.
 class RayTriangle
 {
 public:
@@ -50,7 +50,7 @@ public:
     {
       return false;
     }
-    // The point is above the plane, on the side of its normal, or below.
+    // Whether the point is above the plane, on the side of the normal, or below.
     const int height = point.x < this->Box.Min.x
       ? -GetSign(this->Normal.x)
       : GetSign(Dot(this->Normal, point - this->Triangle[0]));
@@ -58,8 +58,9 @@ public:
   }
 
 private:
-  // On which side of an edge a point lies as seen along x. The point is moved by e^2 on y and e^3
-  // on z, so that the edge's own direction decides where it lies on the edge.
+  // Returns the side of an edge on which a point lies, seen along x. The symbolic shift of the
+  // point by e^2 on y and e^3 on z decides if the point lies on the edge, by the direction of the
+  // edge.
   int GetSide(const SnappedPoint& point, int k) const
   {
     const SnappedPoint& a = this->Triangle[k];
@@ -92,7 +93,7 @@ public:
       snapped[i] = Snap(static_cast<double>(PointsPerStep) * points[i]);
       box.Add(snapped[i]);
     }
-    // Where no triangle reaches the points, all are on the side of the first.
+    // If no triangle is near the points, all are on the side of the first one.
     SnappedBox wider = box;
     wider.Min -= std::int64_t{ 1 };
     wider.Max += std::int64_t{ 1 };
@@ -136,7 +137,7 @@ CarvingTool MakeSurfaceInterior(const Sheet& surface, const SnappedBox& within)
                 "so that there is no inside. Close its holes, for example with vtkFillHolesFilter, "
                 "or cut with it as a sheet.");
   }
-  // What rays from the box can cross.
+  // The region that rays from the box can cross.
   SnappedBox swept = within;
   swept.Max.x = Beyond;
   std::vector<RayTriangle> triangles;

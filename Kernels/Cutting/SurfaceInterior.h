@@ -10,16 +10,16 @@
 namespace deformvolume
 {
 
-/// The tool that carves out what a closed surface encloses: the points from which a ray crosses the
-/// surface an odd number of times, so that a body within another one is a hole, and the orientation
+/// Makes a tool that carves the interior of a closed surface: the points from which a ray crosses
+/// the surface an odd number of times. So a body inside another one is a hole, and the orientation
 /// of triangles does not matter.
 ///
-/// Decided in whole numbers for points that are whole numbers of 1/1024 voxel, as centroids are;
-/// others are rounded to them. As for sheets, points count as moved by (e, e^2, e^3): none lies on
-/// the surface, and of neighbouring bodies that share a face exactly one holds a point there.
+/// Decisions are made in integers, for points that are multiples of 1/1024 voxel, as centroids are;
+/// other points are rounded. As for sheets, points are shifted symbolically by (e, e^2, e^3). So no
+/// point lies on the surface, and a point on the common face of two bodies is in exactly one of
+/// them.
 ///
-/// within: a box that holds all points that will be asked for. Throws Error where the surface is
-/// not closed.
+/// within: a box of all points that will be tested. Throws an Error if the surface is not closed.
 DEFORMVOLUME_EXPORT CarvingTool MakeSurfaceInterior(const Sheet& surface, const SnappedBox& within);
 
 } // namespace deformvolume

@@ -11,25 +11,25 @@
 namespace deformvolume
 {
 
-/// Tetrahedra of a sampling mesh: what one edit switches off.
+/// Tetrahedra of a sampling mesh, for example those that one edit switches off.
 struct TetrahedronSet
 {
-  /// One byte a cell of a brick, bit i = tetrahedron i is in the set. The byte of cell (x, y, z) of
-  /// the brick is number (z * 8 + y) * 8 + x.
+  /// One byte for each cell of a brick: bit i is set if tetrahedron i is in the set. Cell (x, y, z)
+  /// of the brick has the index (z * 8 + y) * 8 + x.
   using Block = std::array<unsigned char, CellBricks::Cells>;
 
-  /// The number of a cell in the block of its brick.
+  /// Returns the index of a cell in the block of its brick.
   static std::size_t GetPlace(int x, int y, int z)
   {
     return static_cast<std::size_t>((z * CellBricks::Length + y) * CellBricks::Length + x);
   }
 
-  /// Bricks with tetrahedra of the set, in ascending order, and as many blocks.
+  /// The bricks with tetrahedra of the set, in ascending order.
   std::vector<std::size_t> Bricks;
   /// The block of each of these bricks.
   std::vector<Block> Blocks;
 
-  /// Whether there are no tetrahedra in it.
+  /// Whether the set has no tetrahedra.
   bool IsEmpty() const { return this->Bricks.empty(); }
 };
 

@@ -35,7 +35,7 @@ bool TriangleCrossing::MayIntersect(const SnappedBox& box) const
   for (int k = 0; k < 3; ++k)
   {
     const SnappedPoint edge = this->Triangle[(k + 1) % 3] - this->Triangle[k];
-    // Its products with the axes.
+    // The cross products of the edge with the axes.
     if (this->AreApart(box, SnappedPoint(0, edge.z, -edge.y)) ||
       this->AreApart(box, SnappedPoint(-edge.z, 0, edge.x)) ||
       this->AreApart(box, SnappedPoint(edge.y, -edge.x, 0)))
@@ -61,9 +61,9 @@ double TriangleCrossing::GetDistance(const SnappedPoint& vertex) const
     glm::length(glm::dvec3(this->Normal)) / static_cast<double>(StepsPerVoxel);
 }
 
-// Two faces of a convex body that meet have a point in common that is a vertex of what they share:
-// an edge of the tetrahedron in the triangle, an edge of the triangle in a face of the tetrahedron,
-// or a point of the triangle in the tetrahedron.
+// If a triangle and a tetrahedron intersect, one of three cases holds: an edge of the tetrahedron
+// crosses the triangle; an edge of the triangle crosses a face of the tetrahedron; or a point of
+// the triangle is inside the tetrahedron.
 bool TriangleCrossing::Crosses(
   const Tetrahedron& vertices, const std::array<bool, 4>& isAbove) const
 {
@@ -104,7 +104,7 @@ bool TriangleCrossing::HasPartInside(const Tetrahedron& vertices) const
     const SnappedPoint& q = vertices[face[1]];
     const SnappedPoint& r = vertices[face[2]];
     const SnappedPoint normal = Cross(q - p, r - p);
-    // A face without area holds nothing, and has no sides.
+    // A face without area contains nothing and has no sides.
     const int movement = FindSign(normal);
     if (movement == 0)
     {
@@ -115,7 +115,7 @@ bool TriangleCrossing::HasPartInside(const Tetrahedron& vertices) const
     {
       const int sign = GetSign(Dot(normal, this->Triangle[k] - p));
       sides[k] = sign != 0 ? sign : -movement;
-      // Normals point outwards where the tetrahedron is upright.
+      // Normals point outwards if the tetrahedron is upright.
       isInside[k] = isInside[k] && sides[k] == -orientation;
     }
     for (int k = 0; k < 3; ++k)

@@ -12,9 +12,9 @@
 namespace deformvolume
 {
 
-/// Where the vertices of a sampling mesh are when it is cut: at rest, or where a deformation has
-/// moved them. In steps of 1/256 voxel, in structured indices of the volume. Functions may be
-/// called by many threads.
+/// The positions of the vertices of a sampling mesh for cutting: at rest, or deformed. Positions
+/// are in steps of 1/256 voxel, in structured indices of the volume. Functions may be called by
+/// several threads.
 class DEFORMVOLUME_EXPORT VertexPositions
 {
 public:
@@ -27,16 +27,16 @@ public:
   VertexPositions(const VertexPositions&) = delete;
   VertexPositions& operator=(const VertexPositions&) = delete;
 
-  /// The bricks of the cells.
+  /// Returns the bricks of the cells.
   const CellBricks& GetBricks() const { return this->Bricks; }
 
-  /// A box that holds all vertices of a brick; empty where none has a position.
+  /// Returns a box of all vertices of a brick; empty if none has a position.
   virtual SnappedBox GetBox(std::size_t brick) const = 0;
-  /// A box that holds all vertices.
+  /// Returns a box of all vertices.
   virtual SnappedBox GetBox() const = 0;
 
-  /// The positions of the vertices of a box of structured indices, x varying fastest. hasPosition:
-  /// false where a vertex has none, as outside a deformation mesh.
+  /// Finds the positions of the vertices in a box of structured indices, x varying fastest.
+  /// hasPosition: false for vertices without position, for example outside a deformation mesh.
   virtual void Find(const Extent& vertices, SnappedPoint* positions, bool* hasPosition) const = 0;
 
 private:
