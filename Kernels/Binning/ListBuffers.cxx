@@ -30,7 +30,7 @@ void ReserveLists(WorkDevice& device, cl::Buffer& buffer, std::uint64_t bytes)
   if (bytes > limit)
   {
     throw Error("The lists of the tetrahedra in each part of the output need " +
-      std::to_string(bytes) + " bytes in one piece, and the device gives no more than " +
+      std::to_string(bytes) + " bytes in one allocation, and the device allows at most " +
       std::to_string(limit) +
       ". Use a coarser deformation mesh, the resampler Exact, or another device.");
   }

@@ -31,12 +31,13 @@ void Check(const ChainMailBlocks& blocks, const ChainMailHandle& handle, std::si
     }
     if (std::abs(displacement) > ChainMailModel::LargestDisplacement)
     {
-      throw Error(name + " is moved by more than 4095 voxels. Move it less.");
+      throw Error(name + " is moved by more than 4095 voxels on an axis. Move it less.");
     }
   }
   if (!std::isfinite(handle.Radius) || handle.Radius < 0.0)
   {
-    throw Error(name + " has an invalid radius. It must be 0 or more.");
+    throw Error(name + " has the radius " + std::to_string(handle.Radius) +
+      ". It must be a finite number, 0 or more.");
   }
 }
 

@@ -318,11 +318,13 @@ void ChainMailModel::CheckRequest(const Extent& extent, const ChainMailRequest& 
 {
   if (!(request.Elasticity >= 0.0 && request.Elasticity <= 1.0))
   {
-    throw Error("The elasticity must be between 0 and 1.");
+    throw Error(
+      "The elasticity is " + std::to_string(request.Elasticity) + ". It must be between 0 and 1.");
   }
   if (!(request.PlasticityThreshold >= 0.0))
   {
-    throw Error("The plasticity threshold must be 0 or more.");
+    throw Error("The plasticity threshold is " + std::to_string(request.PlasticityThreshold) +
+      ". It must be 0 or more.");
   }
   CheckHandles(ChainMailBlocks(extent), request.Handles);
 }

@@ -122,11 +122,11 @@ CarvingTool MakeSweptSphere(const std::vector<glm::dvec3>& centers, const glm::d
 {
   if (centers.empty())
   {
-    throw Error("A tool that carves has no position. Give it one or more.");
+    throw Error("A carving tool has no position. Give it one position or more.");
   }
   if (!IsFinite(radii) || !(radii.x > 0.0 && radii.y > 0.0 && radii.z > 0.0))
   {
-    throw Error("The radius of a tool that carves is not greater than 0, or not finite.");
+    throw Error("The radius of a carving tool is not greater than 0, or not finite.");
   }
   CarvingTool tool;
   std::vector<glm::dvec3> path; // in radii
@@ -134,7 +134,7 @@ CarvingTool MakeSweptSphere(const std::vector<glm::dvec3>& centers, const glm::d
   {
     if (!IsFinite(center))
     {
-      throw Error("A position of a tool that carves is not finite. Correct the position.");
+      throw Error("A position of a carving tool is not finite. Correct the position.");
     }
     tool.Bounds.Add(center - radii);
     tool.Bounds.Add(center + radii);

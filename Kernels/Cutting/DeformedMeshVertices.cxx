@@ -46,8 +46,8 @@ DeformedMeshVertices::DeformedMeshVertices(const CellBricks& bricks, const Exten
   }
   if (!isHeld || (mapping.Links.size() != voxels && mapping.Runs.RowBegins.size() != rows + 1))
   {
-    throw Error("The static mapping is not one of the voxels that are to be cut. Build it for "
-                "their extent.");
+    throw Error("The static mapping does not contain the voxels to cut. Build it for an extent "
+                "that contains them.");
   }
   const std::size_t count = bricks.GetNumberOfBricks();
   this->Overshoots.resize(count);

@@ -139,7 +139,7 @@ std::uint64_t MaskEditor::Add(
   {
     throw Error("An edit has bricks beyond the " +
       std::to_string(this->Bricks.GetNumberOfBricks()) +
-      " bricks of the mask. Find tetrahedra in the volume that the mask is of.");
+      " bricks of the mask. Find the tetrahedra of an edit in the volume of the mask.");
   }
   this->Undone.clear();
   this->Edits.push_back(

@@ -139,8 +139,9 @@ std::vector<std::size_t> FindNear(const SheetTriangles& triangles, const VertexP
   }
   if (box.GetLength() > TriangleCrossing::LargestBox)
   {
-    throw Error("The deformation draws a part of 8 cells of the volume that the sheet may "
-                "cross out to more than 2,048 voxels. Cut before it is deformed so far.");
+    throw Error(
+      "The deformation stretches a brick of 8 x 8 x 8 cells, which the sheet may cross, to "
+      "more than 2,048 voxels. Cut the volume before it is deformed so far.");
   }
   near.erase(std::remove_if(near.begin(), near.end(),
                [&](std::size_t triangle) { return !triangles.MayIntersect(triangle, box); }),

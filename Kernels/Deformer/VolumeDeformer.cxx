@@ -248,7 +248,7 @@ void VolumeDeformer::ChangeConnectivity(const Tetrahedron* tetrahedra,
     {
       if (!tetrahedra && !parts.Exact.GetBoundary().IsEmpty())
       {
-        throw Error("All tetrahedra are needed where the mesh ends within the volume.");
+        throw Error("ChangeConnectivity needs all tetrahedra if the boundary of the mesh is set.");
       }
       parts.Source.ChangeConnectivity(tetrahedra, numberOfTetrahedra, numberOfNodes, changes);
       parts.Exact.GetBoundary().SetCorners(tetrahedra);

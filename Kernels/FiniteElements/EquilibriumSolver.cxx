@@ -422,8 +422,9 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
     const Residuals residuals = FindResiduals(problem, this->Sliding, state.Forces);
     if (!std::isfinite(residuals.Largest) || !std::isfinite(state.Potential))
     {
-      throw Error("The forces in the body are no numbers any more: a load or the displacement of a "
-                  "handle is too large. The displacements are those of before.");
+      throw Error(
+        "The forces in the body are infinite or not a number: a load or the displacement of "
+        "a handle is too large. The displacements are unchanged.");
     }
     report.Residual = residuals.Largest;
     report.RelativeResidual =

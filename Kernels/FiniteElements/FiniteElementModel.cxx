@@ -89,12 +89,11 @@ void FiniteElementModel::SetDisplacements(const std::vector<glm::dvec3>& displac
     throw Error("There are " + std::to_string(displacements.size()) + " displacements, but " +
       std::to_string(nodes) + " are needed.");
   }
-  for (const glm::dvec3& vector : displacements)
+  const auto bad = std::find_if_not(displacements.begin(), displacements.end(), IsFinite);
+  if (bad != displacements.end())
   {
-    if (!IsFinite(vector))
-    {
-      throw Error("A displacement is not finite.");
-    }
+    throw Error("The displacement of node " + std::to_string(bad - displacements.begin()) +
+      " is not finite.");
   }
   solver.SetDisplacements(displacements);
 }

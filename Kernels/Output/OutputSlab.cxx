@@ -70,8 +70,8 @@ std::vector<Extent> OutputSlab::Split(const Extent& output, const std::vector<Vo
   if (planes == 0)
   {
     throw Error("A slice of the output needs " + std::to_string(plane) +
-      " bytes, and the device gives no more than " + std::to_string(allocationLimit) +
-      " bytes at once. Use smaller output bounds or another device.");
+      " bytes, and the device allows at most " + std::to_string(allocationLimit) +
+      " bytes in one allocation. Use smaller output bounds or another device.");
   }
   std::vector<Extent> slabs;
   for (std::int64_t z = output[4]; z <= output[5];)

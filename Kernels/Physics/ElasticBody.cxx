@@ -339,7 +339,8 @@ void CheckHeldNodes(const ElasticBody& body, const std::vector<HeldNode>& held)
     }
     if (!IsFinite(node.Displacement))
     {
-      throw Error("The displacement of a handle is not finite.");
+      throw Error("The displacement of the handle that holds node " + std::to_string(node.Node) +
+        " is not finite.");
     }
     if (body.IsFixed(place) || isHeld[place] != 0)
     {

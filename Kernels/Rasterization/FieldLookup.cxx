@@ -35,7 +35,7 @@ void MeshRasterizer::SetField(const DisplacementField& inverse)
   if (bytes > limit)
   {
     throw Error("The displacement field needs " + std::to_string(bytes) +
-      " bytes in one piece, and the device gives no more than " + std::to_string(limit) +
+      " bytes in one allocation, and the device allows at most " + std::to_string(limit) +
       ". Use a coarser field or another device.");
   }
   if (deformvolume::GetMemory(last) != bytes)

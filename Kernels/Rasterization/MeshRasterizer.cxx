@@ -67,7 +67,7 @@ void Send(WorkDevice& device, cl::Buffer& buffer, const void* data, std::uint64_
   if (bytes > limit)
   {
     throw Error("The deformation mesh needs " + std::to_string(bytes) +
-      " bytes in one piece, and the device gives no more than " + std::to_string(limit) +
+      " bytes in one allocation, and the device allows at most " + std::to_string(limit) +
       ". Use a coarser mesh or another device.");
   }
   if (GetMemory(buffer) != bytes)
@@ -245,8 +245,9 @@ void MeshRasterizer::Begin(const DeformRequest& request, const SlabPlan&, Deform
   this->CheckPositions();
   if (this->Volume->GetChunks().size() > 1)
   {
-    throw Error("The volume has more bytes than the device gives in one piece, which mesh "
-                "rasterization needs. Use the exact resampler, or another device.");
+    throw Error(
+      "Mesh rasterization needs the volume in one allocation, and the device does not allow "
+      "that many bytes. Use the exact resampler, or another device.");
   }
   this->Kernel = this->MakeKernel(request.Interpolation);
   report.NumberOfFlatTetrahedra = this->NumberOfFlatTetrahedra;

@@ -145,7 +145,7 @@ void BoundaryCells::SetCorners(const Tetrahedron* tetrahedra)
   if (bytes > most)
   {
     throw Error("The boundary of the deformation needs " + std::to_string(bytes) +
-      " bytes in one piece, and the device gives no more than " + std::to_string(most) +
+      " bytes in one allocation, and the device allows at most " + std::to_string(most) +
       ". Use a coarser mesh or field, a smaller volume or another device.");
   }
   this->Corners =

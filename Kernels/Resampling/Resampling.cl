@@ -19,7 +19,7 @@ typedef struct ViewedCell
   int X, Y, Z;
   int Tetrahedra; // bits of the tetrahedra that exist and are not flat
   int Inverted;   // bits of the inverted ones
-  int Clipped;    // bits of those with negative and other boundary distances
+  int Clipped;    // bits of the clipped ones: their boundary distances have both signs
 #if HAS_CUT
   int Side; // side of a view; -1 for the cell itself
   CellCut Cut;

@@ -115,7 +115,8 @@ TEST(FiniteElements, Misuse)
   model.SetBody(lattice.Body);
   EquilibriumRequest request;
   request.Held = { { 26, glm::dvec3(NoNumber, 0.0, 0.0) } };
-  EXPECT_EQ(GetError([&] { model.Solve(request); }), "The displacement of a handle is not finite.");
+  EXPECT_EQ(GetError([&] { model.Solve(request); }),
+    "The displacement of the handle that holds node 26 is not finite.");
   request.Held = { { nodes, glm::dvec3(0.0) } };
   EXPECT_NE(GetError([&] { model.Solve(request); }).find(std::to_string(nodes)), std::string::npos);
   request.Held = { { 0, glm::dvec3(0.0) } };
@@ -133,8 +134,8 @@ TEST(FiniteElements, Misuse)
   EXPECT_NE(GetError([&] { model.SetDisplacements({}); }).find(needed), std::string::npos);
   std::vector<glm::dvec3> displacements(lattice.Body.Points.size(), glm::dvec3(0.0));
   displacements[5].z = NoNumber;
-  EXPECT_EQ(
-    GetError([&] { model.SetDisplacements(displacements); }), "A displacement is not finite.");
+  EXPECT_EQ(GetError([&] { model.SetDisplacements(displacements); }),
+    "The displacement of node 5 is not finite.");
   EXPECT_EQ(LargestOf(model.GetDisplacements()), 0.0);
 }
 
