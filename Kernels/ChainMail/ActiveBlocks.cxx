@@ -22,26 +22,26 @@ void ActiveBlocks::Add(std::uint32_t block, std::uint32_t systems)
 {
   if (systems && !this->Systems[block])
   {
-    this->Lists[static_cast<std::size_t>(this->Blocks.GetColour(block))].push_back(block);
+    this->Lists[static_cast<std::size_t>(this->Blocks.GetColor(block))].push_back(block);
   }
   this->Systems[block] = static_cast<unsigned char>(this->Systems[block] | systems);
 }
 
-void ActiveBlocks::AddNeighbours(std::uint32_t block, std::uint32_t faces, std::uint32_t systems)
+void ActiveBlocks::AddNeighbors(std::uint32_t block, std::uint32_t faces, std::uint32_t systems)
 {
   for (int face = 0; face < 6; ++face)
   {
-    const std::int64_t neighbour = this->Blocks.GetNeighbour(block, face);
-    if ((faces >> face & 1) && neighbour >= 0)
+    const std::int64_t neighbor = this->Blocks.GetNeighbor(block, face);
+    if ((faces >> face & 1) && neighbor >= 0)
     {
-      this->Add(static_cast<std::uint32_t>(neighbour), systems);
+      this->Add(static_cast<std::uint32_t>(neighbor), systems);
     }
   }
 }
 
-std::vector<ActiveBlock> ActiveBlocks::Take(int colour, std::size_t most)
+std::vector<ActiveBlock> ActiveBlocks::Take(int color, std::size_t most)
 {
-  std::vector<std::uint32_t>& blocks = this->Lists[static_cast<std::size_t>(colour)];
+  std::vector<std::uint32_t>& blocks = this->Lists[static_cast<std::size_t>(color)];
   std::size_t kept = blocks.size() - std::min(blocks.size(), most);
   if (this->IsShuffled && !blocks.empty())
   {

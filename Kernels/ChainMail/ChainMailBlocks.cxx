@@ -38,7 +38,7 @@ std::array<int, 3> ChainMailBlocks::GetIndex(std::uint32_t block) const
     static_cast<int>(block / row / column) } };
 }
 
-std::int64_t ChainMailBlocks::GetNeighbour(std::uint32_t block, int face) const
+std::int64_t ChainMailBlocks::GetNeighbor(std::uint32_t block, int face) const
 {
   const int axis = face / 2;
   const int at = this->GetIndex(block)[axis];
@@ -51,7 +51,7 @@ std::int64_t ChainMailBlocks::GetNeighbour(std::uint32_t block, int face) const
   return std::int64_t{ block } + (face % 2 ? steps[axis] : -steps[axis]);
 }
 
-int ChainMailBlocks::GetColour(std::uint32_t block) const
+int ChainMailBlocks::GetColor(std::uint32_t block) const
 {
   const std::array<int, 3> index = this->GetIndex(block);
   return (index[0] + index[1] + index[2]) % 2;

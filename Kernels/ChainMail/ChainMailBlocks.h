@@ -25,9 +25,9 @@ public:
   std::size_t GetNumberOfBlocks() const;
 
   /// Returns the neighbor of a block on a face (-x, +x, -y, +y, -z, +z); -1 if there is none.
-  std::int64_t GetNeighbour(std::uint32_t block, int face) const;
+  std::int64_t GetNeighbor(std::uint32_t block, int face) const;
   /// Returns the color of a block, 0 or 1. Blocks that share a face have different colors.
-  int GetColour(std::uint32_t block) const;
+  int GetColor(std::uint32_t block) const;
   /// Returns the place of a voxel in the memory of all blocks.
   std::uint32_t GetPlace(int x, int y, int z) const;
   /// Returns the local indices of the voxels of a block.

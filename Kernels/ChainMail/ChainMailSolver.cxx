@@ -199,10 +199,10 @@ void ChainMailSolver::Propagate(ChainMailReport& report)
 {
   std::vector<BlockTask> tasks;
   std::vector<std::uint32_t> results;
-  for (int colour = 0; !this->Active.IsEmpty(); colour = 1 - colour)
+  for (int color = 0; !this->Active.IsEmpty(); color = 1 - color)
   {
     tasks.clear();
-    for (const ActiveBlock& active : this->Active.Take(colour, ChainMailState::AtOnce))
+    for (const ActiveBlock& active : this->Active.Take(color, ChainMailState::AtOnce))
     {
       const std::uint32_t saved = this->IsSaved[active.Block] ? 1U << DEFORMVOLUME_SYSTEMS : 0U;
       tasks.push_back({ active.Block, active.Systems | saved });
@@ -225,7 +225,7 @@ void ChainMailSolver::Propagate(ChainMailReport& report)
       {
         this->Active.Add(tasks[i].Block, systems);
       }
-      this->Active.AddNeighbours(tasks[i].Block, results[i], systems);
+      this->Active.AddNeighbors(tasks[i].Block, results[i], systems);
     }
     this->State.Continue();
   }
@@ -253,7 +253,7 @@ SharedNumbers ChainMailSolver::Move(
   {
     constexpr std::uint32_t allFaces = 63;
     this->Active.Add(block, needed);
-    this->Active.AddNeighbours(block, allFaces, needed);
+    this->Active.AddNeighbors(block, allFaces, needed);
   }
   this->Propagate(report);
   return this->State.TakeShared();

@@ -169,7 +169,7 @@ void SmoothCrossings::SetBase(
   this->ChangedVertices.assign(this->ChangedVertices.size(), true);
 }
 
-std::vector<std::size_t> SmoothCrossings::FindNeighbours(
+std::vector<std::size_t> SmoothCrossings::FindNeighbors(
   const std::vector<std::size_t>& bricks) const
 {
   std::array<std::size_t, 3> count;
@@ -236,7 +236,7 @@ std::vector<std::size_t> SmoothCrossings::Update(const CrossingSet& edit)
     this->ChangedVertices[brick] = true;
   }
   // Vertices on the faces of bricks belong to cells of several bricks.
-  std::vector<std::size_t> bricks = this->FindNeighbours(edit.Bricks);
+  std::vector<std::size_t> bricks = this->FindNeighbors(edit.Bricks);
   for (const std::size_t brick : bricks)
   {
     this->UpdateCells(brick);

@@ -77,7 +77,7 @@ public:
 
 private:
   void Allocate();
-  std::vector<std::size_t> FindNeighbours(const std::vector<std::size_t>& bricks) const;
+  std::vector<std::size_t> FindNeighbors(const std::vector<std::size_t>& bricks) const;
   std::vector<std::size_t> Update(const CrossingSet& edit);
   void UpdateDistances(std::size_t brick);
   void UpdateCells(std::size_t brick);

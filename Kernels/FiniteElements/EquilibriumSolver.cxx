@@ -156,9 +156,9 @@ void EquilibriumSolver::Untangle(Watch& watch, const EquilibriumProblem& problem
               pattern.Columns[static_cast<std::size_t>(block)])];
           }
           // The node itself is in the row as well.
-          const double neighbours = pattern.Rows[node + 1] - pattern.Rows[node] - 1;
+          const double neighbors = pattern.Rows[node + 1] - pattern.Rows[node] - 1;
           this->Trial.Displacements[node] =
-            this->Sliding.Project(node, (sum - state.Displacements[node]) / neighbours);
+            this->Sliding.Project(node, (sum - state.Displacements[node]) / neighbors);
         }
       });
     this->Evaluate(watch, problem, this->Trial);
