@@ -282,7 +282,7 @@ bool EquilibriumSolver::Search(Watch& watch, const EquilibriumProblem& problem, 
     slope -= glm::dot(this->RightHandSide[node], this->Direction[node]);
   }
   const double slack = rounding * (state.Sums.Energy + std::abs(state.Potential)) +
-    roundingOfTerms * state.Sums.Rounded;
+    roundingOfTerms * state.Sums.SizeOfTerms;
   const double residual = FindResiduals(problem, this->Sliding, state.Forces).Largest;
   double length = 1.0;
   for (int halving = 0; halving < halvings; ++halving, length *= 0.5)

@@ -64,7 +64,7 @@ template <MaterialModel Model>
 DEFORMVOLUME_ALWAYS_INLINE void FindForcesOfChunk(const ForceArguments& arguments)
 {
   Lanes energy = MakeLanes(0.0);
-  Lanes rounded = MakeLanes(0.0);
+  Lanes sizeOfTerms = MakeLanes(0.0);
   std::int64_t inverted = 0;
   for (std::size_t i = arguments.Range.Begin; i < arguments.Range.End; ++i)
   {
@@ -81,7 +81,7 @@ DEFORMVOLUME_ALWAYS_INLINE void FindForcesOfChunk(const ForceArguments& argument
       volume = volume + batch.Volumes[p];
       energy = energy + batch.Volumes[p] * stress.EnergyDensity;
       const LaneVector* const h = point.Gradient.Columns;
-      rounded = rounded +
+      sizeOfTerms = sizeOfTerms +
         batch.Volumes[p] * batch.Mu * (Dot(h[0], h[0]) + Dot(h[1], h[1]) + Dot(h[2], h[2]));
     }
     energy = energy + 0.5 * volume * element.MeanPressure * element.MeanDilatation;
@@ -94,7 +94,7 @@ DEFORMVOLUME_ALWAYS_INLINE void FindForcesOfChunk(const ForceArguments& argument
     }
   }
   arguments.Sums->Energy = SumOfLanes(energy);
-  arguments.Sums->Rounded = SumOfLanes(rounded);
+  arguments.Sums->SizeOfTerms = SumOfLanes(sizeOfTerms);
   arguments.Sums->Inverted = inverted;
 }
 
@@ -377,7 +377,7 @@ FiniteElements::Sums FiniteElements::FindForces(
   for (const Sums& sum : sums)
   {
     total.Energy += sum.Energy;
-    total.Rounded += sum.Rounded;
+    total.SizeOfTerms += sum.SizeOfTerms;
     total.Inverted += sum.Inverted;
   }
   return total;

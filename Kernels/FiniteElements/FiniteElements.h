@@ -48,7 +48,7 @@ public:
     double Energy = 0.0;
     /// The size of the terms whose difference the energy is. Rounding errors of the energy are
     /// about 1e-16 of this value.
-    double Rounded = 0.0;
+    double SizeOfTerms = 0.0;
     /// The number of tetrahedra that are inverted at a Gauss point.
     std::int64_t Inverted = 0;
   };
