@@ -168,8 +168,8 @@ public:
   /// Set a displacement field. changes: as above, for fields of the same dimensions.
   void SetDisplacementField(const DisplacementField& field, const PointRanges* changes = nullptr);
 
-  /// The same with vectors on the device of the volume. Vectors and Owner of `field` are ignored;
-  /// on a CPU device, the vectors are those of Owner.
+  /// The same with vectors on the device of the volume. Vectors and Owner of `field` are ignored.
+  /// On a CPU device, the memory of the vectors is used in place.
   void SetDisplacementField(
     const DisplacementField& field, const std::shared_ptr<DeviceVectors>& vectors);
 

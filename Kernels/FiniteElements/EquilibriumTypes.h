@@ -45,8 +45,8 @@ struct EquilibriumLimits
   /// Interactive, otherwise 5000.
   int LinearIterations = 0;
   /// The factor by which the iterations reduce the residual of the linear system. 0: 1e-6 in mode
-  /// Converged. In mode Interactive the factor is chosen between 3e-3 and 0.3, as the tolerances
-  /// below require.
+  /// Converged, 3e-3 in mode Interactive. In mode Interactive, the factor is larger, up to 0.3, if
+  /// the tolerances below permit.
   double LinearTolerance = 0.0;
   /// The body is in equilibrium if no component of the residual force on a free node exceeds this
   /// part of the largest applied force or reaction. 0: 1e-6 in mode Converged; 1e-3 in mode
