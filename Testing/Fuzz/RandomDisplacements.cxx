@@ -311,7 +311,7 @@ std::function<void()> EditDisplacements(
     default:
       MoveSome(points, vectors, volume, random, geometry);
   }
-  if (kind == 9) // with some that no log tells of
+  if (kind == 9) // with some that are not logged
   {
     SetVector(vectors, PickTuple(vectors, random), MakeVector(random, 0.3), volume, geometry);
     vectors->Modified();

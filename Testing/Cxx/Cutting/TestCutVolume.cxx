@@ -311,7 +311,7 @@ void TestOutput()
   VERIFY(held->GetComponent(3, 0) == 0.0);
   // The volume's own array is not touched.
   VERIFY_EQUAL(int(base->GetValue(3)), 31);
-  // Another geometry: the tool's positions cut anew.
+  // Another geometry: the tool's positions cut again.
   volume->SetOrigin(1.0, 0.0, 0.0);
   VERIFY(cut.CountOff() > 50);
 }

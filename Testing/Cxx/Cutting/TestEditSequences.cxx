@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Random cuts, carvings, drags, undo and redo in one pipeline, step by step against filters that
-// know nothing of what was before: masks are made anew from all edits, displacements by a second
-// model whose inputs are copies without logs, and outputs by a filter that makes them wholly. In
-// the end all is undone, bit by bit.
+// have no history: masks are made from all edits, displacements by a second model whose inputs are
+// copies without logs, and outputs by a filter that resamples the whole volume. At the end all
+// edits are undone, bit by bit.
 //
 // Usage: TestEditSequences [NUMBER OF SEQUENCES] (1) [FIRST SEED] (0), each of 150 steps
 #include "ChainMailTesting.h"

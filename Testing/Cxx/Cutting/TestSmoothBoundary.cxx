@@ -135,7 +135,7 @@ void TestTypes()
   VERIFY(AreEqual(first.Update(), second.Update()));
   VERIFY(first.Filter->GetNumberOfCoveredVoxels() < volume->GetNumberOfPoints());
   VERIFY(first.Filter->GetNumberOfCoveredVoxels() > 0);
-  // A change that is told and one that is not give the same.
+  // A change with a log and one without give the same.
   floats->SetValue(333, -2.0F);
   floats->Modified();
   doubles->SetValue(333, -2.0);

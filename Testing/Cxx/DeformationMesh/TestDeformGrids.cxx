@@ -336,7 +336,7 @@ void TestTwoMeshes()
   shape->GetPoints()->GetData()->SetComponent(30, 2, 5.0);
   shape->Modified();
   meshes.Expect("the point put right", 0);
-  // What displacements hold is told from what points hold.
+  // The filter must not take displacements from two meshes for those of the array.
   meshes.Rest = nullptr;
   meshes.Give(Copy(shape));
   meshes.Tested.Filter->SetRestData(nullptr);
@@ -388,8 +388,8 @@ void TestOtherParts()
   VERIFY(AreEqual(inParts.Update(), inOne.Update()));
 }
 
-// Floats are read by a way of their own: they become the same displacements as equal doubles, and
-// what is wrong with one is told, wherever it stands.
+// Floats are read by different code: they give the same displacements as equal doubles, and an
+// error in one of them is reported at any position.
 void TestFloats()
 {
   for (const bool isOblique : { false, true })

@@ -379,7 +379,7 @@ void TestBlocks()
   }
 }
 
-// Lagrange cells with a degree of their own along each axis, which an array of the cells tells.
+// Lagrange cells with a different degree along each axis, which a cell array states.
 void TestDegrees()
 {
   const struct

@@ -12,7 +12,7 @@ namespace filterTesting
 {
 
 /// Whether a filter that has been edited makes the same as a fresh one of the same inputs. Adds to
-/// parts where only a part of the output was made anew. what: the edit, told where they differ.
+/// parts if only a part of the output was resampled. what: the edit, for the message.
 inline bool CompareWithFresh(Deformed& tested, Deformed& fresh, const std::string& what, int& parts)
 {
   const int failures = GetNumberOfFailures();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The log of an array: what it knows and when it knows nothing; and that vtkDeformVolumeFilter
-// looks at what it tells, and at nothing else. Testing/Fuzz edits arrays at random with logs.
+// The log of an array: its ranges, and when it has none. vtkDeformVolumeFilter reads the logged
+// tuples only. Testing/Fuzz edits arrays at random with logs.
 #include "FilterTesting.h"
 #include "vtkArrayChanges.h"
 
@@ -183,7 +183,7 @@ void TestFilter()
   active->Modified();
   VERIFY(AreEqual(update(), fresh()));
 
-  // Cells that were hidden are not told of by the log.
+  // The log does not contain the cells that were hidden.
   maskLog->AddTuples(0, 0);
   vtkNew<vtkUnsignedCharArray> ghosts;
   ghosts->SetName(vtkDataSetAttributes::GhostArrayName());

@@ -155,11 +155,11 @@ void TestMasks()
     active->SetValue(cell, 3);
     active->Modified();
     fields.CompareOutputs();
-    // The field has not changed: only what the mask touches is made anew.
+    // The field has not changed: only the part that the mask affects is resampled.
     VERIFY(GetReported(fields.Tested.Filter, "Bricks resampled") <
       GetReported(fields.Tested.Filter, "Bricks of the volume"));
   }
-  // A log tells what has changed of the field.
+  // A log says which vectors of the field have changed.
   vtkNew<vtkArrayChanges> log;
   log->SetArray(fields.Floats->GetPointData()->GetVectors());
   int parts = 0;

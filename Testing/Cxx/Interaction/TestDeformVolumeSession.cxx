@@ -597,7 +597,7 @@ std::string Replace(std::string text, const std::string& from, const std::string
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
-// Tissue that is pulled out of the output is cut off, which is told once.
+// Tissue that is pulled out of the output is cut off, with one warning.
 void TestPadding(vtkImageData* volume)
 {
   for (const int padding : { 8, 30 })

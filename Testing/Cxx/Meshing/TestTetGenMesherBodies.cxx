@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The tetrahedra hold every voxel of a body, however thin its parts, and what is left out is told.
+// The tetrahedra contain every voxel of a body with thin parts. Voxels that are left out are
+// counted.
 #include "vtkTetGenMesher.h"
 
 #include "BodyChecks.h"

@@ -154,7 +154,7 @@ void VerifyRestMesh(vtkUnstructuredGrid* cut, vtkUnstructuredGrid* whole)
   VERIFY_EQUAL(different, 0);
 }
 
-// A cut of an update that fails is not there, and is made when what was wrong has been mended.
+// An update that fails does not cut. The next one that succeeds does.
 template <typename Filter>
 void TestFailedCuts()
 {

@@ -323,7 +323,7 @@ void TestTimes()
   VERIFY_EQUAL(free.Object->GetTime(), 0.1);
 }
 
-// What was simulated goes on with other materials, and begins anew with another mesh.
+// A simulation continues with other materials, and starts again with another mesh.
 template <typename Filter>
 void TestWhatIsKept()
 {

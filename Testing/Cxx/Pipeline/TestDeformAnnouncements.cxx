@@ -21,7 +21,7 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 namespace
 {
 
-/// Gives a volume whatever is asked for, and announces what it is told to.
+/// A source that outputs a volume whatever is requested, and announces what the test sets.
 class CarelessSource : public vtkImageAlgorithm
 {
 public:

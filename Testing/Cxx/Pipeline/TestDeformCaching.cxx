@@ -24,7 +24,7 @@ public:
     SetDisplacements(this->Mesh, Shift(1.0, 0.0, 0.0));
   }
 
-  /// Updates and says which of static mapping and volume were made anew.
+  /// Updates, and expects so many static mappings built and uploads of the volume.
   void Expect(const char* what, int builds, int uploads)
   {
     vtkDeformVolumeFilter* filter = this->Subject.Filter;

@@ -18,7 +18,7 @@ using namespace filterTesting;
 namespace
 {
 
-/// A filter that works, is spoilt, has to say so once, and works again once it is mended.
+/// A filter that works, gets a wrong input, reports one error, and works again with the right one.
 class Misuse
 {
 public:
@@ -199,7 +199,7 @@ void TestMeshes(Misuse& misuse)
 
 void TestCells(Misuse& misuse)
 {
-  // A good cell before and after, so that the number of the bad one is told, and not just any.
+  // A good cell before and after, so that the error must have the right number.
   const vtkIdType good[4] = { 0, 1, 3, 9 };
   std::vector<vtkIdType> points(13);
   std::iota(points.begin(), points.end(), 0);
@@ -363,7 +363,7 @@ void TestSettings(Misuse& misuse)
   misuse.Expect("bounds the wrong way round", "CustomBounds");
 }
 
-// What is mended after a failure may also change the extent of the output.
+// A correction after a failure may also change the extent of the output.
 void TestExtentAfterFailure(vtkImageData* volume, vtkUnstructuredGrid* mesh)
 {
   Deformed deformed(volume, mesh);

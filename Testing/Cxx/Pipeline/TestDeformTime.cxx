@@ -115,7 +115,7 @@ int TestDeformTime(int, char*[])
   VERIFY_EQUAL(GetReported(deformed.Filter, "Volumes sent"), 1);
   VERIFY_EQUAL(lattice->Executions, 4); // once for each change of the time
 
-  // Another deformation: the extent is found anew, from the time that was asked for last.
+  // Another deformation: the extent is computed again, from the time that was requested last.
   lattice->Speed = 2.0;
   lattice->Modified();
   deformed.Filter->UpdateTimeStep(4.0);

@@ -290,7 +290,7 @@ void TestChainMail()
   VERIFY(AreEqual(other->GetOutput(), chain->GetOutput()));
 }
 
-// A drag makes the parts of the output anew that it moves.
+// A drag resamples only the parts of the output that move.
 void TestParts()
 {
   const auto volume = MakeVolume({ { 0, 95, 0, 79, 0, 79 } });

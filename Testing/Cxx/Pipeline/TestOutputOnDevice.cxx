@@ -403,7 +403,7 @@ void TestRanges()
   VERIFY_EQUAL(range[1], 255.0);
 }
 
-// An array as any other, after it has been emptied and filled anew.
+// It is an ordinary array after it has been emptied and filled again.
 void TestAsAnyArray()
 {
   Both both;
@@ -522,7 +522,7 @@ void TestHeldOutputs()
     VERIFY_EQUAL(CountRead([&] { VERIFY(AreEqual(wanted, held)); }), 0U);
   };
   hold();
-  for (int i = 0; i < 3; ++i) // all anew, and the one before is held
+  for (int i = 0; i < 3; ++i) // a whole output, while the last one is held
   {
     both.Move(0.3);
     both.Check(both.Update());

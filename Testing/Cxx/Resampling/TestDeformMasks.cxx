@@ -44,7 +44,7 @@ vtkIdType CountCovered(Deformed& deformed)
   return count;
 }
 
-// The output is four times as fine, so that the tetrahedra of a cell can be told apart.
+// The output is four times as fine, so that the tetrahedra of a cell can be distinguished.
 void TestActiveTetrahedra()
 {
   auto volume = MakeVolume(Box);

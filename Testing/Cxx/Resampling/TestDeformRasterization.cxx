@@ -170,7 +170,7 @@ void TestAffineMap()
   VERIFY_EQUAL(covered, deformed.Filter->GetNumberOfCoveredVoxels());
   VERIFY(covered > 5000);
 
-  // What it tells: there is no mapping, and a moved mesh sends nothing.
+  // Its report: there is no static mapping, and a moved mesh uploads no volume.
   VERIFY_EQUAL(GetReported(deformed.Filter, "Static mappings made"), 0);
   VERIFY_EQUAL(GetReported(deformed.Filter, "Volumes sent"), 1);
   VERIFY_EQUAL(GetReportedSeconds(deformed.Filter, "Seconds for the static mapping"), 0.0);

@@ -359,7 +359,7 @@ public:
     VERIFY_EQUAL(GetReported(filter, "Static mappings made"), 2);
     VERIFY_EQUAL(GetReported(filter, "Volumes sent"), 7); // the last value, at 2
 
-    // All is given back, and built anew.
+    // All memory is released, and everything is rebuilt.
     filter->ReleaseDeviceMemory();
     VERIFY_EQUAL(filter->GetDeviceMemory(), 0);
     filter->Modified();

@@ -198,7 +198,7 @@ void TestMesh()
   CHECK(ComputeDeformedBounds(plain, mesh.Points, mesh.Tetrahedra, displacements.data()).IsEmpty());
 }
 
-// Edits of some nodes, each told of by ranges of nodes, against bounds that are computed at once.
+// Edits of some nodes, each logged as ranges of nodes, against bounds of all nodes.
 void TestChanges()
 {
   std::mt19937 random(23);
@@ -229,7 +229,7 @@ void TestChanges()
         std::copy(
           moved.begin() + 3 * begin, moved.begin() + 3 * end, displacements.begin() + 3 * begin);
       }
-      // At first there is nothing that could be the same, whatever is told.
+      // The first bounds are of all nodes, whatever is logged.
       const IndexBounds found =
         bounds.Compute(mesh.Points, mesh.Tetrahedra, displacements.data(), &ranges);
       const IndexBounds expected =
