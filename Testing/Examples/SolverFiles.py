@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files as solvers write them, made here: FEBio's and FEBio Studio's .vtk files, and those of SOFA's VTKExporter. Numbers
-have the digits that these programs write."""
+"""Writes files in the formats of solvers: the .vtk files of FEBio and FEBio Studio, and those of SOFA's VTKExporter.
+Numbers have the digits that these programs write."""
 
 VTK_TYPES = {1: 1, 2: 3, 3: 5, 4: 10, 8: 12, 10: 24, 15: 24, 20: 25, 27: 25}  # by the number of nodes
 

@@ -105,8 +105,8 @@ def read_bounds():
 
 
 def check_voxels(places, moves, tetrahedra):
-    """Each voxel within a tetrahedron comes from where its barycentric coordinates are at rest. The deformation is linear
-    there, so that nothing but the rounding of positions remains: 1/256 voxel, times the stretch."""
+    """Each voxel within a tetrahedron has the rest position of its barycentric coordinates. The deformation is linear
+    there, so the error is the rounding of positions: 1/256 voxel, times the stretch."""
     call(program, VOLUME, "--mesh", path("head.pvd"), "--displacement", "U", "--inverse-field", path("inverse.vti"),
          "--quiet")
     field = read_vti(path("inverse.vti"))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Compares vtkFiniteElementDeformation with CalculiX: displacements of a body of unstructured tetrahedra under its weight, at small
-strains. CalculiX solves the same load case with ten-node tetrahedra (C3D10) of half the size. For a Poisson ratio of 0.3 its
-elements are the same, and it also solves the load case on the same mesh.
+"""Compares vtkFiniteElementDeformation with CalculiX: displacements of a body of unstructured tetrahedra under its
+weight, at small strains. CalculiX solves the same load case with ten-node tetrahedra (C3D10) of half the size. For a
+Poisson ratio of 0.3 it also solves the load case on the same mesh, because the elements are the same there.
 Usage: TestCalculiXElements.py FOLDER"""
 import os
 import re
@@ -26,8 +26,8 @@ DENSITY = 1000.0  # kg/m^3
 GRAVITY = (6.0, 3.0, -7.0)  # m/s^2
 NODES_IN_A_RING = 16
 RINGS = 12
-# mm. Displacements are compared at the nodes that are nearest to these: low, two at half the height on both sides, high,
-# and at the top.
+# Displacements are compared at the nodes that are nearest to these places, in mm: low, two at half the height on both
+# sides, high, and at the top.
 PLACES = ((-8.0, 6.0, 22.0), (13.0, 2.0, 38.0), (-5.0, -2.0, 42.0), (21.0, 3.0, 62.0), (25.0, -12.0, 80.0))
 POISSON_RATIOS = (0.3, 0.49)
 # Limits of |u - u of CalculiX| / |u of CalculiX| at each of these nodes.

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""deform-volume reads results as FEBio, FEBio Studio and SOFA write them, with the options that Documents/solvers.md gives
-for them, and says what is wrong with other options, other units and meshes that have changed.
+"""deform-volume reads results as FEBio, FEBio Studio and SOFA write them, with the options of
+Documents/solvers.md, and reports errors for other options, other units and meshes that have changed.
 Usage: TestSolvers.py PROGRAM FOLDER"""
 import os
 import sys
@@ -56,8 +56,8 @@ def check_same(expected, *arguments, warnings=()):
 
 
 def check_values(values, expected, both):
-    """Numbers of six digits move a position by at most 5e-5 mm. Where it lies so near to the limit of the rounding to 1/256
-    voxel it moves by 1/256 voxel on each axis, in few voxels. Values of neighbours are up to 850 apart, and are integers."""
+    """Numbers of six digits move a position by at most 5e-5 mm. In a few voxels this changes the rounded position by
+    1/256 voxel on each axis. Values of neighbours are up to 850 apart, and are integers."""
     difference = numpy.abs(values - expected)[both]
     assert difference.max() <= 3 * 850 / 256 + 1, difference.max()
     assert (difference > 0).mean() < 0.02, (difference > 0).mean()

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a deformed volume must be. Each function returns what is wrong, or "".
+// Checks of a deformed volume. Each function returns a description of the failure, or "".
 #ifndef Fuzz_Comparison_h
 #define Fuzz_Comparison_h
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Random pipelines round vtkDeformVolumeFilter. After each edit the output equals that of a fresh
-// filter to the last bit, and that of the host reference where that applies, or the update ends in
-// one error. Each pipeline follows from its seed alone.
+// Random pipelines with vtkDeformVolumeFilter. After each edit the output equals that of a new
+// filter to the last bit, and that of the host reference if it applies, or the update ends in one
+// error. The seed alone determines a pipeline.
 #include "Pipeline.h"
 #include "Subject.h"
 

@@ -35,10 +35,10 @@ Draft MakeLattice(const std::array<double, 6>& box, Random& random, std::ostream
 /// A few tetrahedra of any shape, also flat ones.
 Draft MakeTetrahedra(const std::array<double, 6>& box, Random& random, std::ostream& log);
 
-/// Adds cells and nodes that meshes have and should not, but that are no error.
+/// Adds cells and nodes that are unusual, but not an error.
 void AddOddities(Draft& draft, Random& random, std::ostream& log);
 
-/// Adds what is an error.
+/// Adds something that is an error.
 void AddErrors(Draft& draft, Random& random, std::ostream& log);
 
 /// Puts nodes and cells in any order.

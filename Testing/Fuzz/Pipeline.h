@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A random pipeline round vtkDeformVolumeFilter, and random edits of it.
+// A random pipeline with vtkDeformVolumeFilter, and random edits of it.
 #ifndef Fuzz_Pipeline_h
 #define Fuzz_Pipeline_h
 
@@ -32,7 +32,7 @@ public:
   /// makes many small edits of a large volume.
   Pipeline(std::uint64_t seed, std::ostream& log);
 
-  /// Updates and edits. Returns what went wrong, or "".
+  /// Updates and edits. Returns a description of the failure, or "".
   std::string Run();
 
   /// Updates that gave an output, and that ended in an error.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an update of a pipeline must end in.
+// Checks after an update of a pipeline.
 #include "Pipeline.h"
 
 #include "Comparison.h"

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The example Examples/paraview/deform_ct.py, run by pvbatch with a made-up CT of a body with two bones, and a mesh with two
-arrays of vectors: TestScript.py SCRIPT BASELINE [--update]. The picture is compared with its baseline. It differs where the
-other array is chosen, and where the mesh is shifted by a voxel."""
+"""Runs the example Examples/paraview/deform_ct.py by pvbatch, with a made-up CT of a body with two bones, and a mesh with
+two arrays of vectors: TestScript.py SCRIPT BASELINE [--update]. The picture is compared with its baseline. With the
+other array, and with a mesh that is shifted by a voxel, it must differ."""
 
 import os
 import shutil
