@@ -13,8 +13,8 @@
 namespace deformvolume
 {
 
-/// Finds those of many boxes that overlap another one. Box: SnappedBox or IndexBounds. Functions
-/// that are const may be called by many threads.
+/// A bounding volume hierarchy: finds the boxes that overlap a given box. Box is SnappedBox or
+/// IndexBounds. Several threads may call const functions at the same time.
 template <typename Box>
 class BoxTree
 {
@@ -30,15 +30,15 @@ public:
       this->Build(0, this->Order.size());
     }
   }
-  /// getBox: the box of one of the items.
+  /// getBox(item) returns the box of an item.
   template <typename Item, typename GetBox>
   BoxTree(const std::vector<Item>& items, const GetBox& getBox)
     : BoxTree(TransformItems(items, getBox))
   {
   }
 
-  /// Calls a function for the number of each box that overlaps a box, in no certain order, until it
-  /// returns false.
+  /// Calls visitor(number) for each box that overlaps `box`, in unspecified order. Stops when the
+  /// visitor returns false.
   template <typename Visitor>
   void Visit(const Box& box, Visitor&& visitor) const
   {
@@ -72,7 +72,7 @@ public:
     }
   }
 
-  /// Appends the numbers of the boxes that overlap a box, in no certain order.
+  /// Appends the numbers of the boxes that overlap `box`, in unspecified order.
   void Find(const Box& box, std::vector<std::size_t>& numbers) const
   {
     this->Visit(box,
@@ -83,7 +83,7 @@ public:
       });
   }
 
-  /// Whether any of them does.
+  /// Whether any box of the tree overlaps `box`.
   bool Overlaps(const Box& box) const
   {
     bool found = false;
@@ -109,13 +109,13 @@ private:
     return boxes;
   }
 
-  /// A box around some of the boxes: those between two places in Order, or two nodes.
+  /// Bounds of the boxes Order[Begin] to Order[End - 1].
   struct Node
   {
     Box Bounds;
     std::size_t Begin = 0;
     std::size_t End = 0;
-    std::size_t Upper = 0; // the lower node is the next one; 0: a leaf
+    std::size_t Upper = 0; // number of the second child, 0 in a leaf; the first child is next
   };
 
   void Build(std::size_t begin, std::size_t end)

@@ -19,14 +19,14 @@ namespace deformvolume
 namespace
 {
 
-// Where a hierarchy of groups is mounted, and which of its groups is to be seen there.
+// A mounted cgroup hierarchy: the mount point, and the control group at its root.
 struct Mount
 {
   std::string Folder;
   std::string Group;
 };
 
-// Spaces and the like are written as a backslash and three octal digits.
+// mountinfo escapes blanks and backslashes as a backslash and three octal digits.
 std::string Unescape(const std::string& text)
 {
   constexpr std::size_t length = 4;
@@ -46,8 +46,9 @@ std::string Unescape(const std::string& text)
   return plain;
 }
 
-// A line of mountinfo: id, parent, device, root, mount point, options, any number of optional
-// fields, "-", type, source, options of the file system. False where it is no mount of groups.
+// Parses a line of mountinfo: id, parent, device, root, mount point, options, any number of
+// optional fields, "-", type, source, options of the file system. Returns false unless the type is
+// cgroup2.
 bool ParseMount(const std::string& line, Mount& mount)
 {
   std::istringstream words(line);
@@ -71,8 +72,8 @@ bool ParseMount(const std::string& line, Mount& mount)
 
 constexpr const char* Blanks = " \t\n";
 
-// The whole of a small file of the system; empty where it cannot be read. Without a stream: these
-// files are read at each update.
+// Returns the content of a small system file, or "" if it cannot be read. System calls are faster
+// than a stream, and each update reads these files.
 std::string ReadFile(const std::string& path)
 {
   std::string text;
@@ -90,7 +91,7 @@ std::string ReadFile(const std::string& path)
   return text;
 }
 
-// The number that a text begins with, after blanks.
+// Parses the number at the start of a text, after blanks.
 std::optional<std::int64_t> ParseNumber(std::string_view text)
 {
   text.remove_prefix(std::min(text.find_first_not_of(Blanks), text.size()));
@@ -99,8 +100,8 @@ std::optional<std::int64_t> ParseNumber(std::string_view text)
   return result.ec == std::errc() ? std::optional<std::int64_t>(number) : std::nullopt;
 }
 
-// The folders from that of a group up to that of the mount. A group that is not below the group of
-// the mount cannot be seen; its limits are then those of the mount itself, as in containers.
+// Lists the folders of a control group and of its parents, up to the mount point. A container may
+// mount a group that is not a parent of this one: then only the mount point is listed.
 std::vector<std::string> ListFolders(
   const std::string& root, const Mount& mount, const std::string& group)
 {
@@ -124,7 +125,7 @@ std::vector<std::string> ListFolders(
 
 std::vector<std::string> FindControlGroups(const std::string& root)
 {
-  // The line "0::group"; others are of version 1.
+  // The line "0::group" is that of version 2.
   std::string group;
   std::string line;
   std::ifstream own(root + "/proc/self/cgroup");

@@ -10,16 +10,15 @@
 namespace deformvolume
 {
 
-/// The folders of the control groups (version 2) that this process is in, its own first, then those
-/// round it as far as they can be seen: what limits one of them limits the process. root is put in
-/// front of all paths, so that tests can bring a tree of their own. What cannot be read counts as
-/// not there.
+/// Lists the folders of the control groups (cgroup version 2) of this process: its own group first,
+/// then the visible parents. The limits of each of them apply to the process. Files that cannot be
+/// read are ignored. root is a prefix of all paths, for tests.
 std::vector<std::string> FindControlGroups(const std::string& root = "");
 
-/// The number that a file begins with; nothing where there is no file, and no number, as in "max".
+/// Reads the number at the start of a file. Empty if there is no file or no number, as in "max".
 std::optional<std::int64_t> ReadNumber(const std::string& path);
 
-/// The sum of the numbers after keys in a file of lines "key number"; nothing where none is there.
+/// Sums the numbers of the given keys in a file of lines "key number". Empty if no key is found.
 std::optional<std::int64_t> ReadSum(const std::string& path, const std::vector<std::string>& keys);
 
 } // namespace deformvolume

@@ -9,9 +9,9 @@
 namespace deformvolume
 {
 
-/// Sorts entries into lists by counting. Those of list n are from begins[n] to begins[n + 1] then,
-/// in the order in which they are given. forEach(take) has to call take(n, entry) for each of them;
-/// it is called twice.
+/// Sorts entries into lists (a stable counting sort). The entries of list n become
+/// entries[begins[n]] to entries[begins[n + 1] - 1]. forEach(take) must call take(n, entry) for
+/// each entry. MakeLists() calls forEach twice.
 template <typename Index, typename Entry, typename ForEach>
 void MakeLists(std::size_t numberOfLists, const ForEach& forEach, std::vector<Index>& begins,
   std::vector<Entry>& entries)

@@ -10,8 +10,8 @@
 namespace deformvolume
 {
 
-/// Sets of the numbers from 0 on, of one each at first, which are united. A set is known by its
-/// lowest number.
+/// Disjoint sets (union-find) of the numbers 0 to size - 1. At first each number is a set of its
+/// own. The representative of a set is its lowest number.
 template <typename Integer>
 class DisjointSets
 {
@@ -24,7 +24,7 @@ public:
     std::iota(this->Parents.begin(), this->Parents.end(), Integer{ 0 });
   }
 
-  /// The lowest number of the set of a number.
+  /// Returns the lowest number of the set that contains `item`.
   Integer Find(Integer item)
   {
     while (this->At(item) != item)

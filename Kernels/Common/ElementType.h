@@ -8,8 +8,7 @@
 namespace deformvolume
 {
 
-/// Type of the elements of an array of the volume. The list stands once, here: X(name, C++ type,
-/// OpenCL type).
+/// Element types of the arrays of a volume, as X(name, C++ type, OpenCL type).
 #define DEFORMVOLUME_ELEMENT_TYPES(X)                                                              \
   X(Int8, std::int8_t, "char")                                                                     \
   X(UInt8, std::uint8_t, "uchar")                                                                  \
@@ -22,7 +21,7 @@ namespace deformvolume
   X(Float32, float, "float")                                                                       \
   X(Float64, double, "double")
 
-/// The types of the elements of arrays.
+/// Element type of an array.
 enum class ElementType
 {
 #define DEFORMVOLUME_ENUMERATOR(name, type, cl) name,

@@ -8,23 +8,23 @@
 #include <stdexcept>
 #include <string>
 
-/// The engine: deforms arrays on OpenCL devices. It has no type of VTK or of OpenCL in its
-/// interface.
+/// The engine, which deforms arrays on OpenCL devices. Its interface uses no types of VTK or
+/// OpenCL.
 namespace deformvolume
 {
 
-/// What this library throws. The message says what is wrong and what to do about it.
+/// The exception of this library. The message says what is wrong and how to correct it.
 class DEFORMVOLUME_EXPORT Error : public std::runtime_error
 {
 public:
   using std::runtime_error::runtime_error;
 };
 
-/// Thrown when a progress callback asked for an end: not a failure.
+/// Thrown when a progress callback requested an abort. This is not a failure.
 class DEFORMVOLUME_EXPORT Aborted : public std::exception
 {
 public:
-  /// Says "aborted".
+  /// Returns "aborted".
   const char* what() const noexcept override { return "aborted"; }
 };
 

@@ -8,21 +8,22 @@
 namespace deformvolume
 {
 
-/// An extent in structured indices, both ends included: x min, x max, y min, y max, z min, z max.
+/// An extent in structured indices: x min, x max, y min, y max, z min, z max. Both ends belong to
+/// the extent.
 using Extent = std::array<int, 6>;
 
-/// Points of an extent along an axis, and altogether; 0 where it is empty.
+/// Number of points of an extent along an axis. 0 if the extent is empty.
 inline std::int64_t GetSize(const Extent& extent, int axis)
 {
   const std::int64_t size = static_cast<std::int64_t>(extent[2 * axis + 1]) - extent[2 * axis] + 1;
   return size > 0 ? size : 0;
 }
-/// Points of an extent; 0 where it is empty.
+/// Number of points of an extent. 0 if the extent is empty.
 inline std::int64_t GetNumberOfPoints(const Extent& extent)
 {
   return GetSize(extent, 0) * GetSize(extent, 1) * GetSize(extent, 2);
 }
-/// Cells of an extent; 0 where it has less than two points on an axis.
+/// Number of cells of an extent. 0 if an axis has fewer than two points.
 inline std::int64_t GetNumberOfCells(const Extent& extent)
 {
   std::int64_t cells = 1;
@@ -33,7 +34,7 @@ inline std::int64_t GetNumberOfCells(const Extent& extent)
   return cells;
 }
 
-/// Widens an extent, which may be empty, to hold another one that is not.
+/// Enlarges an extent, which may be empty, to contain another extent, which must not be empty.
 inline void Include(Extent& extent, const Extent& other)
 {
   const bool isFirst = GetNumberOfPoints(extent) == 0;

@@ -13,10 +13,11 @@
 namespace deformvolume
 {
 
-/// Rows of boxes beyond which it is as fast to look at all points.
+/// Above this number of rows it is as fast to process all points.
 constexpr std::int64_t MostRows = 32768;
 
-/// The rows of boxes in an extent, x varying fastest; nothing where they are more than MostRows.
+/// Returns the index ranges of all rows of the boxes in the extent `whole`, where x varies fastest.
+/// Empty if there are more than MostRows rows.
 inline std::optional<PointRanges> FindRows(const std::vector<Extent>& boxes, const Extent& whole)
 {
   std::int64_t rows = 0;

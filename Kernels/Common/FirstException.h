@@ -9,12 +9,13 @@
 namespace deformvolume
 {
 
-/// Carries the first exception of several threads to the thread that waits for them: an exception
-/// that leaves a thread ends the process.
+/// Passes the first exception of several threads to the thread that waits for them. Without it, an
+/// exception that leaves a thread would terminate the process.
 class FirstException
 {
 public:
-  /// Calls a function, and nothing once a function has thrown. May be called by many threads.
+  /// Calls a function, unless an earlier function has thrown. Several threads may call Run() at the
+  /// same time.
   template <typename Function>
   void Run(Function&& function)
   {
@@ -37,7 +38,7 @@ public:
     }
   }
 
-  /// Throws what has been thrown. All threads must have ended.
+  /// Rethrows the first exception, if there is one. All threads must have ended.
   void Rethrow() const
   {
     if (this->Exception)

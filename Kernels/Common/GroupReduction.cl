@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Reductions over the work-items of a group.
 
-// Joins what the items of a group have in local memory into the first item's: of each of some rows of one value an item,
-// by the expression JOIN(row, a, b). All items come here; the value of the first item of a row is that of all then.
+// Reduces rows of values in local memory, with one value per work-item in each row, by the expression JOIN(row, a, b).
+// All work-items of the group must execute it. The result of a row replaces the value of its first work-item.
 #define REDUCE_ROWS(rows, number, JOIN)                                                            \
   {                                                                                                \
     const size_t reduced = get_local_size(0);                                                      \

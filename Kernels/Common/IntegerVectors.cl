@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Vectors of integers of 64 bits, for arithmetic that is exact.
+// Vectors of 64-bit integers, for exact arithmetic.
 
 typedef struct
 {
@@ -29,9 +29,9 @@ static long Dot(Vector a, Vector b)
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-// Inward normals of the faces of a tetrahedron, the one opposite the end of u, of v and of w, and the last one opposite
-// the vertex where these edges begin; as long as twice the area of the face. They add up to 0. Returns six times the
-// volume.
+// Computes the inward normals of the faces of a tetrahedron with the edges u, v and w from one vertex. normals: of the
+// faces opposite the ends of u, v and w; last: of the face opposite the common vertex. The length of a normal is twice
+// the area of its face; the four normals add up to 0. Returns six times the volume.
 static long FindFaceNormals(Vector u, Vector v, Vector w, Vector* normals, Vector* last)
 {
   normals[0] = Cross(v, w);
@@ -54,8 +54,8 @@ static long FindFaceNormals(Vector u, Vector v, Vector w, Vector* normals, Vecto
   return volume;
 }
 
-// Whether a shift by (e, e^2, e^3) moves a sample on the face towards the inside; of the signs of the
-// shift those are reversed whose bits are set.
+// Whether a shift by (e, e^2, e^3), for an infinitesimal e, moves a sample on the face to the inside (symbolic
+// perturbation). Bit k of signs reverses the sign of component k of the shift.
 static int ShiftsInside(Vector normal, int signs)
 {
   const long along = normal.x ? (signs & 1 ? -normal.x : normal.x)

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A product and a sum: fused where that is one instruction, and the same everywhere on a device. Compilers may
-// fuse a * b + c or not, from one place to the next, and some do so whatever FP_CONTRACT says: a sum with a
-// product that may be rounded is written with these. PoCL does not define the macros that OpenCL has for it.
+// Multiply-add that rounds in the same way everywhere on a device: fused where the device has an instruction for that.
+// Compilers may contract a * b + c at one place and not at another, and some ignore FP_CONTRACT. So use these macros
+// for each sum with a product that may be rounded. PoCL does not define FP_FAST_FMAF; its compiler, Clang, defines
+// __FMA__.
 #if defined(FP_FAST_FMAF) || defined(__FMA__)
 #define MULTIPLY_ADD(a, b, c) fma(a, b, c)
 #else

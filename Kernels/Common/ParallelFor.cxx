@@ -19,8 +19,8 @@ namespace
 
 std::atomic<ParallelLoop> CurrentLoop{ nullptr };
 
-// Calls body(turn) for each of so many turns, side by side on at most so many threads. What a call
-// throws first is thrown once all threads have ended; turns that had not begun are left out then.
+// Calls body(turn) for turns 0 to turns - 1, in parallel on at most `limit` threads. After an
+// exception no further turn starts. The first exception is rethrown when all threads have ended.
 template <typename Body>
 void RunOnThreads(std::size_t turns, std::size_t limit, Body&& body)
 {
@@ -45,7 +45,7 @@ void RunOnThreads(std::size_t turns, std::size_t limit, Body&& body)
   }
   catch (const std::system_error&)
   {
-    // Those that there are do all.
+    // The threads that have started do all the work.
   }
   catch (const std::bad_alloc&)
   {
@@ -90,7 +90,7 @@ void ParallelFor(
     RunOnOwnThreads(first, last, grain, body, GetProcessorShare());
     return;
   }
-  // Not all loops can be left by an exception.
+  // The body must not throw (ParallelLoop).
   FirstException failure;
   loop(first, last, grain,
     [&](std::int64_t begin, std::int64_t end) { failure.Run([&] { body(begin, end); }); });

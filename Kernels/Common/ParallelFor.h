@@ -13,28 +13,30 @@
 namespace deformvolume
 {
 
-/// What is done with a part of a range, from begin to one before end.
+/// Processes the items begin to end - 1 of a range.
 using ParallelBody = std::function<void(std::int64_t begin, std::int64_t end)>;
 
-/// Calls a body for all parts of a range, side by side, and returns when all have ended. A part has
-/// grain items; 0: as the loop likes. The body does not throw.
+/// Calls a body for all parts of the range from first to last - 1, in parallel, and returns when
+/// all calls have returned. A part has `grain` items; 0: the loop chooses. The body does not throw.
 using ParallelLoop = void (*)(
   std::int64_t first, std::int64_t last, std::int64_t grain, const ParallelBody& body);
 
-/// The loop that all work on the host uses from now on, in this process: that of a program that has
-/// threads already. Null: RunOnOwnThreads, the default. May be called by many threads.
+/// Set the loop for all work on the host in this process. A program with a thread pool of its own
+/// can pass a loop that uses this pool. Default: null, which means RunOnOwnThreads. Thread-safe.
 DEFORMVOLUME_EXPORT void SetParallelLoop(ParallelLoop loop);
 
-/// A loop that starts so many threads at most, which end with it.
+/// A loop that works on at most `threads` threads, the calling thread included. The threads end
+/// when the loop ends.
 DEFORMVOLUME_EXPORT void RunOnOwnThreads(
   std::int64_t first, std::int64_t last, std::int64_t grain, const ParallelBody& body, int threads);
 
-/// Calls body(begin, end) for parts of a range in parallel; see ParallelLoop. What a call throws
-/// first is thrown once all have ended; parts that had not begun are left out then.
+/// Calls body(begin, end) for parts of a range in parallel; see ParallelLoop. After an exception no
+/// further part starts. The first exception is rethrown when all calls have returned.
 DEFORMVOLUME_EXPORT void ParallelFor(
   std::int64_t first, std::int64_t last, std::int64_t grain, const ParallelBody& body);
 
-/// The same for parts of 0 to size that have step items each, but for the last one.
+/// Calls body(begin, end) in parallel for parts of the range from 0 to size - 1. Each part has
+/// `step` items; the last part may have fewer.
 template <typename Body>
 void ParallelForParts(std::size_t size, std::size_t step, Body&& body)
 {
@@ -49,7 +51,7 @@ void ParallelForParts(std::size_t size, std::size_t step, Body&& body)
     });
 }
 
-/// Sets the least of the values that several threads find to another one, if that is lower.
+/// Sets `least` to the minimum of `least` and `value`. Thread-safe.
 template <typename T>
 void Lower(std::atomic<T>& least, T value)
 {

@@ -10,11 +10,11 @@
 namespace deformvolume
 {
 
-/// Points of a deformation, or places in a mask: of each range the first one, and one past the
-/// last. Ranges may overlap, and come in any order.
+/// Ranges of point or mask indices: the first index of each range, and one past the last. Ranges
+/// may overlap, and may be in any order.
 using PointRanges = std::vector<std::array<std::size_t, 2>>;
 
-/// Marks those of some blocks of so many points that ranges touch.
+/// Sets marked[n] to 1 for each block n of blockSize points that contains a point of the ranges.
 inline void MarkBlocks(
   const PointRanges& ranges, std::size_t blockSize, std::vector<unsigned char>& marked)
 {

@@ -26,8 +26,8 @@ int GetMachineProcessors()
   return std::max(1, static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN)));
 }
 
-// Those to which this process is bound; all, where it is not, or where there are more than the mask
-// holds.
+// Number of processors in the affinity mask of this process. All processors if the mask cannot be
+// read, as on machines with more processors than a cpu_set_t holds.
 int GetBoundProcessors()
 {
   cpu_set_t set;
@@ -35,7 +35,7 @@ int GetBoundProcessors()
                                                       : GetMachineProcessors();
 }
 
-// How much of a processor's time a period of it gives, 1 for all of one.
+// Number of processors that a quota of time per period is worth.
 double GetQuota(double quota, double period)
 {
   return quota > 0.0 && period > 0.0 ? quota / period : UNLIMITED;
@@ -76,7 +76,7 @@ int GetProcessorShare(int processes, const std::string& root)
 
 int GetProcessorShare()
 {
-  // The files are read once: this is asked for each time that threads are started.
+  // Each start of threads calls this function, so the files are read only once.
   static const double quota = GetQuota("");
   static const int bound = GetBoundProcessors();
   static const int machine = GetMachineProcessors();

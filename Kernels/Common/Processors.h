@@ -9,18 +9,19 @@
 namespace deformvolume
 {
 
-/// The processors that are for one of so many processes, which share the machine and a control
-/// group alike: those of the machine on which it may run (taskset, MPI's binding), and what the
-/// control groups that it is in are given of their time, rounded up. At least 1. A process that is
-/// bound to some processors has these for itself.
-/// root is put in front of the paths of the control groups, for tests.
+/// Returns the number of processors for one of `processes` processes that share this machine. It is
+/// the minimum of:
+/// - the processors to which this process is bound (taskset, MPI), which it does not share,
+/// - the processors of the machine, divided by the number of processes,
+/// - the CPU quota of the control groups, divided by the number of processes and rounded up.
+/// At least 1. root is a prefix of the paths of the control groups, for tests.
 DEFORMVOLUME_EXPORT int GetProcessorShare(int processes, const std::string& root);
 
-/// The share of this process: of as many as SetProcessesHere said last. Threads of the host and
-/// devices that are processors take no more.
+/// Returns the share of this process, for the number of processes set by SetProcessesHere(). It
+/// limits the threads on the host and on CPU devices.
 DEFORMVOLUME_EXPORT int GetProcessorShare();
 
-/// So many processes share this machine. Default 1.
+/// Set the number of processes that share this machine. Default: 1.
 DEFORMVOLUME_EXPORT void SetProcessesHere(int processes);
 
 } // namespace deformvolume

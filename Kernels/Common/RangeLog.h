@@ -13,21 +13,22 @@
 namespace deformvolume
 {
 
-/// Which points have been written, and in which revision. Only the last ranges are kept.
+/// Log of the points that have been written, with the revision of each write. Only the last
+/// MostEntries ranges are kept.
 class RangeLog
 {
 public:
   static constexpr std::size_t MostEntries = 65536;
 
-  /// It is 0 at first, and grows with each entry.
+  /// The current revision: 0 at first, incremented by each call of Add() and AddAll().
   std::uint64_t GetRevision() const { return this->Revision; }
 
   void Add(const PointRanges& ranges);
-  /// Any point may have been written.
+  /// Records that any point may have been written.
   void AddAll();
 
-  /// What has been written since a revision; nothing where that is not known, and any point may
-  /// have been.
+  /// Returns the ranges that have been written since a revision. Empty if the log does not reach
+  /// back to that revision: then any point may have been written.
   std::optional<PointRanges> GetSince(std::uint64_t revision) const;
 
 private:
@@ -38,7 +39,7 @@ private:
   };
 
   std::uint64_t Revision = 0;
-  std::uint64_t Begin = 0; // the log knows what has come after this revision
+  std::uint64_t Begin = 0; // the log is complete after this revision
   std::deque<Entry> Entries;
 };
 

@@ -16,8 +16,8 @@ namespace
 
 constexpr std::int64_t NoLimit = std::numeric_limits<std::int64_t>::max();
 
-// What a group has left. all: the memory of the system, which a group that may have as much does
-// not limit: its use is then no matter, and it takes the system time to find that.
+// Returns the memory that a control group has left. all: the memory of the system. A limit of at
+// least `all` has no effect; the usage, which is slow to read, is then not needed.
 std::int64_t GetLeft(const std::string& folder, std::int64_t all)
 {
   const std::int64_t limit = std::min(ReadNumber(folder + "/memory.max").value_or(NoLimit),
@@ -44,11 +44,11 @@ std::uint64_t GetSystemMemory(const std::string& root)
   {
     left = *available * kibibyte;
   }
-  // The first line; it stays, but for tests.
+  // The total does not change, except in tests.
   static const auto ownTotal = ReadSum("/proc/meminfo", { "MemTotal:" });
   const auto total = root.empty() ? ownTotal : ReadSum(system, { "MemTotal:" });
   const std::int64_t all = total ? *total * kibibyte : NoLimit;
-  // A process seldom changes its groups, and this is asked for at each update.
+  // Each update calls this function, and a process rarely changes its groups.
   static const std::vector<std::string> ownGroups = FindControlGroups();
   const std::vector<std::string> groups = root.empty() ? ownGroups : FindControlGroups(root);
   for (const std::string& folder : groups)

@@ -8,10 +8,10 @@
 namespace deformvolume
 {
 
-/// Bytes of memory that this process can get without swapping: what the system has available, and
-/// what the control groups (of version 2) that the process is in have left, whichever is
-/// less. Page cache counts as available. At least 1; 0 where nothing is known.
-/// root is put in front of all paths, for tests.
+/// Returns the bytes of memory that this process can allocate without swapping: the minimum of the
+/// memory that the system has available and of what the control groups (cgroup version 2) of the
+/// process have left. Page cache counts as available. At least 1; 0 if nothing is known.
+/// root is a prefix of all paths, for tests.
 std::uint64_t GetSystemMemory(const std::string& root = "");
 
 } // namespace deformvolume

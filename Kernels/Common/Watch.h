@@ -16,7 +16,7 @@
 namespace deformvolume
 {
 
-/// Asks now and then whether to go on.
+/// Calls a progress callback at most every 5 ms, and aborts when it returns false.
 class Watch
 {
 public:
@@ -25,7 +25,7 @@ public:
   {
   }
 
-  /// Throws Aborted where the answer is no.
+  /// Calls the callback if 5 ms have passed. Throws Aborted if it returns false.
   void Ask()
   {
     constexpr std::chrono::milliseconds interval(5);
@@ -47,8 +47,8 @@ private:
   bool IsFirst = true;
 };
 
-/// Calls body(item) for so many items, one after the other, and asks now and then. They take a
-/// microsecond or so each.
+/// Calls body(item) for items 0 to items - 1 in sequence, and checks for an abort after every 4096.
+/// An item should take about a microsecond.
 template <typename Body>
 void ForItems(Watch& watch, std::size_t items, Body&& body)
 {
@@ -63,8 +63,8 @@ void ForItems(Watch& watch, std::size_t items, Body&& body)
   }
 }
 
-/// Appends values to a vector until there are so many, and asks now and then: the memory of a large
-/// one is slow when it is touched first.
+/// Grows a vector to a size, and checks for an abort after every 16 MiB, since the first access to
+/// new memory is slow.
 template <typename Value>
 void Grow(Watch& watch, std::vector<Value>& values, std::size_t size)
 {
@@ -77,8 +77,8 @@ void Grow(Watch& watch, std::vector<Value>& values, std::size_t size)
   }
 }
 
-/// Calls body(part) for so many parts in parallel, and asks after so many of them: all together
-/// should take some ten milliseconds at most.
+/// Calls body(part) for parts 0 to parts - 1 in parallel, and checks for an abort after every
+/// atOnce parts. So many parts should take about ten milliseconds at most.
 template <typename Body>
 void ForParts(Watch& watch, std::size_t parts, std::size_t atOnce, Body&& body)
 {
@@ -98,8 +98,8 @@ void ForParts(Watch& watch, std::size_t parts, std::size_t atOnce, Body&& body)
   }
 }
 
-/// Calls body(item) for so many items in parallel, and asks now and then. They take a microsecond
-/// or so each.
+/// Calls body(item) for items 0 to items - 1 in parallel, and checks for an abort after every 8192.
+/// An item should take about a microsecond.
 template <typename Body>
 void ForItemsInParallel(Watch& watch, std::size_t items, Body&& body)
 {
