@@ -22,8 +22,8 @@ namespace deformvolume
 class BarycentricMap
 {
 public:
-  /// False for a tetrahedron without volume: one whose determinant is no larger than what
-  /// rounding its coordinates in their last bits can make of zero.
+  /// Returns false for a flat tetrahedron: one whose determinant is not larger than its rounding
+  /// error when the coordinates are rounded to double precision.
   bool SetTetrahedron(const Tetrahedron& tetrahedron, const std::vector<glm::dvec3>& points)
   {
     const glm::dvec3& last = points[tetrahedron[3]];
@@ -61,14 +61,14 @@ public:
       glm::dot(this->Gradients[2], offset));
   }
 
-  /// The weight of the fourth node included.
+  /// Returns the weights of all four nodes.
   glm::dvec4 GetAllWeights(const glm::dvec3& point) const
   {
     const glm::dvec3 weights = this->GetWeights(point);
     return glm::dvec4(weights, 1.0 - weights.x - weights.y - weights.z);
   }
 
-  /// Gradient of the weight of a node.
+  /// Returns the gradient of the weight of a node.
   glm::dvec3 GetGradient(int node) const
   {
     return node < 3 ? this->Gradients[node]
@@ -89,7 +89,7 @@ private:
   glm::dvec3 Gradients[3] = { glm::dvec3(0.0), glm::dvec3(0.0), glm::dvec3(0.0) };
 };
 
-/// The link of a point with these weights.
+/// Makes the link of a point to a tetrahedron. weights: of the first three nodes.
 inline VertexLink MakeLink(std::int32_t tetrahedron, const glm::dvec3& weights)
 {
   VertexLink link;

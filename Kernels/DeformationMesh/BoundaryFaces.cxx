@@ -21,12 +21,12 @@ bool IsLess(const glm::dvec3& a, const glm::dvec3& b)
   return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
 }
 
-// A face of a tetrahedron, by the places of its nodes at rest in ascending order.
+// A face of a tetrahedron, ordered by the positions of its nodes at rest.
 struct Face
 {
   std::array<glm::dvec3, 3> Places;
-  bool IsAbove;         // on which side of it the tetrahedron lies
-  std::uint32_t Number; // as FaceNeighbours has it
+  bool IsAbove;         // the side of the face on which the tetrahedron lies
+  std::uint32_t Number; // as in FaceNeighbours
 
   bool operator<(const Face& other) const
   {
@@ -49,8 +49,8 @@ Face GetFace(std::size_t face, const std::vector<glm::dvec3>& points,
   return found;
 }
 
-// The faces that have tetrahedra on one side only. Those that have nodes in common are found first,
-// as they are nearly all. tetrahedra: none is flat.
+// Finds the faces that have tetrahedra on one side only. The first step finds pairs of faces with
+// the same nodes, which are nearly all inner faces. No tetrahedron may be flat.
 std::vector<std::uint32_t> FindSingleFaces(
   const std::vector<glm::dvec3>& points, const std::vector<Tetrahedron>& tetrahedra)
 {
@@ -64,7 +64,7 @@ std::vector<std::uint32_t> FindSingleFaces(
       {
         const std::size_t next = neighbours.GetNext(face);
         const Face here = GetFace(face, points, tetrahedra);
-        // More than two in one place may be anything.
+        // More than two faces with the same nodes are left to the second step.
         if (next == face || !neighbours.IsShared(face) ||
           GetFace(next, points, tetrahedra).IsAbove == here.IsAbove)
         {
@@ -77,8 +77,8 @@ std::vector<std::uint32_t> FindSingleFaces(
   {
     faces.insert(faces.end(), part.begin(), part.end());
   }
-  // Where the mesh is split, or its parts were never joined, faces of different nodes are in one
-  // place.
+  // The second step compares positions: where the mesh is split or its parts are not connected,
+  // faces with different nodes coincide.
   std::sort(faces.begin(), faces.end());
   std::vector<std::uint32_t> single;
   for (std::size_t i = 0; i < faces.size();)

@@ -13,15 +13,15 @@
 namespace deformvolume
 {
 
-/// A face of a tetrahedron: the one opposite to one of its nodes.
+/// A face of a tetrahedron, which is opposite one of its nodes.
 struct TetrahedronFace
 {
   /// The number of the tetrahedron.
   std::int32_t Tetrahedron = 0;
-  /// Which of its nodes is opposite to the face, 0 to 3.
+  /// The node of the tetrahedron that is opposite the face, 0 to 3.
   std::int32_t Opposite = 0;
 
-  /// Its nodes, in the order in which the tetrahedron has them.
+  /// Returns the nodes of the face, in their order in the tetrahedron. nodes: of the tetrahedron.
   std::array<std::int32_t, 3> GetNodes(const deformvolume::Tetrahedron& nodes) const
   {
     const auto at = [&](int k)
@@ -30,17 +30,21 @@ struct TetrahedronFace
   }
 };
 
-/// The faces of a mesh that have tetrahedra on one side only, by their places at rest: where the
-/// mesh is split, or its parts were never joined, faces of different nodes in one place are inside
-/// it. solid: FindSolidTetrahedra; others count as none. In ascending order of tetrahedra.
+/// Finds the faces of a mesh that have tetrahedra on one side only, in ascending order of
+/// tetrahedra. Faces are compared by the positions of their nodes at rest. So two coincident faces
+/// with different nodes are inside the mesh; there are such faces where the mesh is split or its
+/// parts are not connected. solid: the result of FindSolidTetrahedra(); other tetrahedra are
+/// ignored.
 std::vector<TetrahedronFace> FindBoundaryFaces(const std::vector<glm::dvec3>& points,
   const std::vector<Tetrahedron>& tetrahedra, const std::vector<std::int32_t>& solid);
 
-/// The places of a face's nodes at rest, in ascending order. nodes: those of the tetrahedron.
+/// Returns the positions of the nodes of a face at rest, in ascending order. nodes: of the
+/// tetrahedron.
 std::array<glm::dvec3, 3> GetPlaces(
   const TetrahedronFace& face, const std::vector<glm::dvec3>& points, const Tetrahedron& nodes);
 
-/// The tetrahedra that are not flat: flat ones hold nothing, and their faces may be in one place.
+/// Finds the tetrahedra that are not flat. Flat tetrahedra contain nothing, and their faces may
+/// coincide.
 std::vector<std::int32_t> FindSolidTetrahedra(
   const std::vector<glm::dvec3>& points, const std::vector<Tetrahedron>& tetrahedra);
 

@@ -16,25 +16,25 @@ namespace deformvolume
 namespace
 {
 
-// Cells on an axis of a piece at most: edge functions have 64 bits, which hold those of pieces that
-// span up to 5,000 output voxels.
+// Largest size of a piece on an axis, in cells. The edge functions have 64 bits, which is enough
+// for pieces of up to 5,000 output voxels.
 constexpr double LargestPiece = 128.0;
-// Tetrahedra over so many cells are halved across their longest edge. Where all of their edges were
-// halved, one with a node far away would fall into (its length / 128)^2 slivers within the volume.
+// Larger tetrahedra are bisected at their longest edge. If all edges were halved instead, a
+// tetrahedron with one distant node would become (length / 128)^2 slivers within the volume.
 constexpr double LargestDivided = 4096.0;
 
-// The cells between voxels.
+// Returns the extent of the cells between voxels.
 Extent GetCells(const Extent& voxels)
 {
   return { { voxels[0], voxels[1] - 1, voxels[2], voxels[3] - 1, voxels[4], voxels[5] - 1 } };
 }
 
-// Adds the cells that a triangle crosses within the whole volume, and maybe some beside these.
-// tolerance: by which it has to reach into a cell; 0: cells that it touches are added as well.
+// Adds the cells that a triangle crosses within the whole volume, and possibly some neighbors.
+// tolerance: how far the triangle must reach into a cell; 0: to touch the cell is enough.
 void AddCells(const Triangle& face, const Extent& whole, double tolerance, CellSet& cells)
 {
   const glm::dvec3 normal = glm::cross(face[1] - face[0], face[2] - face[0]);
-  int k = 0; // the axis on which the plane rises least
+  int k = 0; // the axis along which the normal is longest
   for (int axis = 1; axis < 3; ++axis)
   {
     k = std::abs(normal[axis]) > std::abs(normal[k]) ? axis : k;
@@ -67,7 +67,7 @@ void AddCells(const Triangle& face, const Extent& whole, double tolerance, CellS
   const double slopes[2] = { -normal[u] / normal[k], -normal[v] / normal[k] };
   const double sign = normal[k] > 0.0 ? 1.0 : -1.0;
   glm::dvec3 cell;
-  // The lower or the upper side of the cell, as far as it lies in the box of the triangle.
+  // The lower or upper side of the cell, clamped to the box of the triangle.
   const auto side = [&](int axis, bool upper)
   { return std::clamp(cell[axis] + (upper ? 1.0 : 0.0), box.Min[axis], box.Max[axis]); };
   for (cell[v] = getFirst(v, box.Min[v]); cell[v] <= getLast(v, box.Max[v]); ++cell[v])
@@ -80,7 +80,7 @@ void AddCells(const Triangle& face, const Extent& whole, double tolerance, CellS
         const glm::dvec3& from = face[static_cast<std::size_t>(edge)];
         const glm::dvec3& to = face[static_cast<std::size_t>((edge + 1) % 3)];
         const double inward[2] = { -sign * (to[v] - from[v]), sign * (to[u] - from[u]) };
-        // The corner of the cell that lies farthest inside.
+        // The edge function at the corner of the cell that is farthest inside.
         const double farthest = inward[0] * (side(u, inward[0] > 0.0) - from[u]) +
           inward[1] * (side(v, inward[1] > 0.0) - from[v]);
         meets = farthest >= 0.0;
@@ -106,7 +106,7 @@ void AddCells(const Triangle& face, const Extent& whole, double tolerance, CellS
   }
 }
 
-// Cells of a part and those beside them, in which the boundary decides as in these.
+// Adds a layer of neighbors to the cells of a part: a crossed cell there affects cells of the part.
 Extent Widen(const Extent& cells, const Extent& whole)
 {
   Extent wide;
@@ -118,7 +118,7 @@ Extent Widen(const Extent& cells, const Extent& whole)
   return wide;
 }
 
-// The two parts of a tetrahedron on both sides of the middle of its longest edge.
+// Bisects a tetrahedron at the midpoint of its longest edge.
 std::array<MeshBoundary::Piece, 2> Halve(const MeshBoundary::Piece& whole)
 {
   std::size_t first = 0;
@@ -146,11 +146,11 @@ std::array<MeshBoundary::Piece, 2> Halve(const MeshBoundary::Piece& whole)
   return halves;
 }
 
-// The eight parts of a tetrahedron between its corners and the middles of its edges.
+// Divides a tetrahedron into eight, at the midpoints of its edges.
 std::array<MeshBoundary::Piece, 8> Divide(const MeshBoundary::Piece& whole)
 {
-  // Each corner of a part as the middle between two corners of the whole. The octahedron is split
-  // along the diagonal from the middle of edge 0 2 to that of edge 1 3.
+  // Each corner of a part is the midpoint of two corners of the whole. The inner octahedron is
+  // split along the diagonal from the midpoint of edge 0-2 to that of edge 1-3.
   static constexpr int parts[8][4][2] = { { { 0, 0 }, { 0, 1 }, { 0, 2 }, { 0, 3 } },
     { { 0, 1 }, { 1, 1 }, { 1, 2 }, { 1, 3 } }, { { 0, 2 }, { 1, 2 }, { 2, 2 }, { 2, 3 } },
     { { 0, 3 }, { 1, 3 }, { 2, 3 }, { 3, 3 } }, { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 3 } },

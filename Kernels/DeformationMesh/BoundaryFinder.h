@@ -20,17 +20,18 @@ namespace deformvolume
 
 using Triangle = std::array<glm::dvec3, 3>;
 
-// Voxels by which a tetrahedron may reach into a cell since its nodes are rounded to 1/256 voxel.
+// In voxels: how far a tetrahedron may reach into a cell because its nodes are rounded to 1/256
+// voxel.
 constexpr double BoundaryTolerance = 1.0 / 64.0;
-// Voxels by which a face may lie within the volume and count as on its border: voxels there are
-// still linked.
+// In voxels: a face that is no deeper than this inside the volume counts as on the border of the
+// volume. Voxels on the border are then still linked.
 constexpr double BorderTolerance = 1.0 / 512.0;
 
-/// A set of cells in a box of them, a bit each.
+/// A set of cells in a box, with one bit per cell.
 class CellSet
 {
 public:
-  // cells: structured indices of the first and the last one on each axis.
+  // cells: the box, as structured indices of the first and last cell on each axis.
   explicit CellSet(const Extent& cells)
     : Cells(cells)
     , Words(static_cast<std::size_t>((GetNumberOfPoints(cells) + 63) / 64))
@@ -44,7 +45,7 @@ public:
       [](const std::atomic<std::uint64_t>& word) { return word == 0; });
   }
 
-  // May be called on several threads.
+  // Thread-safe.
   void Add(std::int64_t x, std::int64_t y, std::int64_t z)
   {
     const std::int64_t number = this->GetRow(y, z) + x - this->Cells[0];
@@ -52,7 +53,7 @@ public:
       std::uint64_t{ 1 } << (number % 64), std::memory_order_relaxed);
   }
 
-  // Whether it has any of the cells of a box that lies within its own.
+  // Whether the set has any cell of a box. The box must lie within GetCells().
   bool HasAny(const VoxelBox& box) const
   {
     for (std::int64_t z = box.Min[2]; z <= box.Max[2]; ++z)
@@ -77,7 +78,7 @@ public:
     return false;
   }
 
-  // Calls take(x, y, z) for all cells, in ascending order.
+  // Calls take(x, y, z) for all cells of the set, in ascending order.
   template <typename Take>
   void ForEach(Take&& take) const
   {
@@ -108,27 +109,29 @@ private:
   std::vector<std::atomic<std::uint64_t>> Words;
 };
 
-/// Finds which cells the faces of a boundary cross, and collects the pieces that meet these.
+/// Finds the cells that the faces of a boundary cross, and collects the pieces that meet these
+/// cells or their neighbors.
 class BoundaryFinder
 {
 public:
-  /// See FindMeshBoundary.
+  /// part, whole: as in FindMeshBoundary().
   BoundaryFinder(const Extent& part, const Extent& whole);
 
-  /// Returns whether any cell is crossed. tolerance: voxels by which a face has to reach into a
-  /// cell; 0: cells that it touches are crossed as well.
+  /// Finds the cells that faces cross. Returns whether there are any in the part or beside it.
+  /// tolerance: how far a face must reach into a cell, in voxels; 0: to touch the cell is enough.
   bool Cross(const std::vector<Triangle>& faces, double tolerance);
 
-  /// Calls take(x, y, z) for the cells that are crossed and those beside them.
+  /// Calls take(x, y, z) for the crossed cells and their neighbors.
   template <typename Take>
   void ForEachNear(Take&& take) const
   {
     this->Near.ForEach(take);
   }
 
-  /// Makes the boundary of these cells. For numbers of a range, in parallel, make(number, add)
-  /// calls add for pieces, oriented either way; those that meet the cells are taken, in the order
-  /// of the numbers.
+  /// Makes the boundary. Calls make(number, add) in parallel for numbers 0 to numbers - 1.
+  /// make(number, add) must call add(piece) for its pieces, which may have either orientation. The
+  /// boundary has the pieces that meet crossed cells or their neighbors, in the order of the
+  /// numbers.
   template <typename Make>
   MeshBoundary Collect(std::size_t numbers, Make&& make) const
   {
@@ -152,7 +155,8 @@ public:
   }
 
 private:
-  /// Adds a piece, or of a large one the parts, that meet cells near the boundary.
+  /// Appends a piece if it meets cells of Near. A large piece is divided, and each part that meets
+  /// cells of Near is appended.
   void Add(const MeshBoundary::Piece& piece, std::vector<MeshBoundary::Piece>& pieces) const;
   void ListCells(MeshBoundary& boundary) const;
 

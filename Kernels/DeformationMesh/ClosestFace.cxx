@@ -15,8 +15,8 @@ namespace
 {
 
 constexpr std::int32_t LargestLeaf = 4;
-// By so much, of itself, rounding may make a squared distance to a triangle less than that to a box
-// around it.
+// Relative rounding error by which the squared distance to a triangle may be less than the squared
+// distance to its bounding box.
 constexpr double RoundingMargin = 1e-9;
 
 double GetSquaredDistance(const glm::dvec3& point, const glm::dvec3& min, const glm::dvec3& max)
@@ -25,8 +25,8 @@ double GetSquaredDistance(const glm::dvec3& point, const glm::dvec3& min, const 
   return glm::dot(offset, offset);
 }
 
-// The barycentric weights of the point of a triangle that is closest to another point. Signs of dot
-// products tell whether it is a corner, on an edge, or inside.
+// Returns the barycentric weights of the point of a triangle that is closest to another point. The
+// signs of dot products decide whether it is a corner, on an edge or inside the triangle.
 glm::dvec3 FindWeights(const glm::dvec3& point, const ClosestFace::Triangle& triangle)
 {
   const glm::dvec3 ab = triangle[1] - triangle[0];
@@ -140,7 +140,7 @@ void ClosestFace::Look(const glm::dvec3& point, std::int32_t face, Result& best)
 {
   const Triangle& triangle = this->Triangles[static_cast<std::size_t>(face)];
   const glm::dvec3 weights = FindWeights(point, triangle);
-  // With differences, since large coordinates would cost digits.
+  // Differences avoid cancellation of large coordinates.
   const glm::dvec3 offset = (point - triangle[0]) - weights.y * (triangle[1] - triangle[0]) -
     weights.z * (triangle[2] - triangle[0]);
   const double squared = glm::dot(offset, offset);
@@ -168,7 +168,7 @@ ClosestFace::Result ClosestFace::Find(const glm::dvec3& point, std::int32_t near
     std::int32_t Node;
     double SquaredDistance;
   };
-  // The tree halves 2^31 triangles at most.
+  // The depth of the tree is at most 31.
   Entry stack[64];
   int depth = 0;
   stack[depth++] = { 0, 0.0 };

@@ -12,7 +12,8 @@
 namespace deformvolume
 {
 
-/// Finds the triangle that is closest to a point, by a tree of boxes. Calls may run side by side.
+/// Finds the triangle that is closest to a point, with a bounding volume hierarchy. Find() is
+/// thread-safe.
 class ClosestFace
 {
 public:
@@ -21,16 +22,16 @@ public:
   {
     std::int32_t Face = -1;
     double SquaredDistance = std::numeric_limits<double>::infinity();
-    /// Of the closest point, which they add up to: barycentric weights of the triangle's corners,
-    /// none negative.
+    /// Barycentric weights of the closest point in the triangle. None is negative.
     glm::dvec3 Weights{ 0.0 };
   };
 
-  /// None of the triangles may be a line or a point.
+  /// No triangle may be degenerate.
   explicit ClosestFace(std::vector<Triangle> triangles);
 
-  /// Of equally close ones the first. nearby: a triangle that may be close, or -1; the result does
-  /// not depend on it. No triangle where there are none.
+  /// Returns the closest triangle; of several at the same distance, the first. Face is -1 if there
+  /// are no triangles. nearby: a triangle that may be close, or -1. It makes the search faster and
+  /// does not change the result.
   Result Find(const glm::dvec3& point, std::int32_t nearby = -1) const;
 
 private:
@@ -38,9 +39,9 @@ private:
   {
     glm::dvec3 Min;
     glm::dvec3 Max;
-    std::int32_t Begin; // triangles in Order; or of an inner node
-    std::int32_t End;   // 0
-    std::int32_t Upper; // whose lower half is the next node
+    std::int32_t Begin; // first triangle in Order
+    std::int32_t End;   // leaf: one past the last triangle in Order; inner node: 0
+    std::int32_t Upper; // inner node: its second child; the first child is the next node
   };
 
   void Build(std::int32_t begin, std::int32_t end, const std::vector<glm::dvec3>& centers);

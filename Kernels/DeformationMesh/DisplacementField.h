@@ -10,39 +10,43 @@
 namespace deformvolume
 {
 
-/// Displacements over so many output voxels are refused: the kernels could not round them.
+/// Largest displacement, in output voxels. Larger displacements are refused: the kernels cannot
+/// round them.
 constexpr double LargestDisplacement = 16383.0;
 
-/// Steps between points of a field by which a voxel may lie outside it and count as inside: that of
-/// DeformationMapping.cl.
+/// Distance from a field, in steps between its points, up to which a voxel counts as inside. Equal
+/// to the tolerance of DeformationMapping.cl.
 constexpr double FieldTolerance = 1e-3;
 
-/// A displacement field on a regular grid, trilinear between its points.
+/// A displacement field on a regular grid. Displacements between the points are interpolated
+/// trilinearly.
 struct DisplacementField
 {
-  /// Points on each axis.
+  /// Number of points on each axis.
   std::array<int, 3> Dimensions{ { 0, 0, 0 } };
-  /// Three floats a point, x varying fastest.
+  /// Three floats per point, with x varying fastest.
   const float* Vectors = nullptr;
-  /// Row-major 3 x 3 matrix that takes a vector to a displacement in output voxels. It is applied
-  /// in double precision (see GetFactor), and the result rounded to float.
+  /// Row-major 3 x 3 matrix that maps a vector to a displacement in output voxels. It is applied in
+  /// double precision (see GetFactor()), and the result is rounded to float. Default: the identity.
   std::array<double, 9> ToDisplacement{ { 1, 0, 0, 0, 1, 0, 0, 0, 1 } };
-  /// What keeps Vectors where they are and as they are. With it a device that is a processor, and
-  /// has double precision, reads Vectors where they lie, at each Deform(), where each voxel is a
-  /// point of the field, and holds the owner until it has another deformation. They are not
-  /// checked then: tetrahedra with displacements that are not finite, or too large, are skipped.
-  /// Nor are they compared: all is made anew where they are set again, unless it is said which have
-  /// changed. Else Vectors are checked, converted and copied during the call. Null by default.
+  /// Owner of Vectors. While an object holds the owner, Vectors must stay valid and unchanged.
+  /// Default: null, with which the call checks, converts and copies Vectors.
+  ///
+  /// With an owner, a CPU device that supports double precision reads Vectors in place at each
+  /// Deform(), if each voxel is a point of the field. It holds the owner until another deformation
+  /// is set. Vectors in place are not checked: tetrahedra whose displacements are too large or not
+  /// finite are skipped. Vectors in place are not compared either: when the same Vectors are set
+  /// again, all of the output is resampled, unless the caller states which vectors have changed.
   std::shared_ptr<const void> Owner;
-  /// Row-major 3 x 4 matrix that takes a structured index of the volume to a continuous index of
-  /// the field, 0 being the field's first point.
+  /// Row-major 3 x 4 matrix that maps a structured index of the volume to a continuous index of the
+  /// field. The first point of the field has the index 0. Default: the identity.
   std::array<double, 12> IndexToField{ { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 } };
-  /// True: voxels outside the field take the displacement of its nearest point on the border.
-  /// False: they are discarded.
+  /// True: voxels outside the field use the displacement of the nearest point on its border.
+  /// False: voxels outside the field are discarded.
   bool Extrapolate = false;
-  /// How the displacement of the border fades with the distance from the field, where voxels
-  /// outside take it: what a step of one point on each axis adds to a distance that is 1 where the
-  /// displacement is zero. 0: it does not fade.
+  /// Fading of extrapolated displacements, for each axis: the inverse of the distance from the
+  /// field, in steps between its points, at which the displacement becomes zero. 0: it does not
+  /// fade.
   std::array<double, 3> Fading{ { 0.0, 0.0, 0.0 } };
 };
 
@@ -52,7 +56,7 @@ inline bool IsFading(const DisplacementField& field)
   return field.Fading[0] > 0.0;
 }
 
-/// The points of a field; 0 where it has none on an axis.
+/// Returns the number of points of a field. 0 if an axis has none.
 inline std::int64_t GetNumberOfPoints(const DisplacementField& field)
 {
   std::int64_t points = 1;
@@ -63,14 +67,14 @@ inline std::int64_t GetNumberOfPoints(const DisplacementField& field)
   return points;
 }
 
-/// Whether displacements are the vectors of a field as they are.
+/// Whether the vectors of a field are its displacements (ToDisplacement is the identity).
 inline bool HasDisplacements(const DisplacementField& field)
 {
   return field.ToDisplacement == DisplacementField().ToDisplacement;
 }
 
-/// A factor rounded to 29 bits, so that its product with a float is exact in double precision. Then
-/// it does not matter whether a compiler, of the host or of the device, fuses products with sums.
+/// Rounds a factor to 29 bits, so that its product with a float is exact in double precision. The
+/// result is then the same whether or not the compiler of host or device fuses multiply and add.
 inline double RoundFactor(double exact)
 {
   std::uint64_t bits = 0;
@@ -82,13 +86,13 @@ inline double RoundFactor(double exact)
   return factor;
 }
 
-/// An element of the matrix of a field as it is applied.
+/// Returns an element of ToDisplacement, rounded as it is applied.
 inline double GetFactor(const DisplacementField& field, int element)
 {
   return RoundFactor(field.ToDisplacement[element]);
 }
 
-/// The displacement of a point of a field, to the last bit as the kernels have it.
+/// Returns the displacement of a point of a field. Bitwise equal to the result of the kernels.
 inline std::array<float, 3> GetDisplacement(const DisplacementField& field, std::int64_t point)
 {
   const float* vector = field.Vectors + 3 * point;

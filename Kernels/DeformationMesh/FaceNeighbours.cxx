@@ -13,7 +13,7 @@ namespace deformvolume
 namespace
 {
 
-// A face in the list of those that have the same lowest node.
+// A face in the list of the faces with the same lowest node.
 struct Entry
 {
   std::int32_t Middle;
@@ -46,7 +46,8 @@ FaceNeighbours::FaceNeighbours(
 {
   Watch none(nullptr);
   Watch& asked = watch ? *watch : none;
-  // Of each node the faces whose lowest one it is: few, so that they are sorted at once.
+  // Each node has a list of the faces of which it is the lowest node. The lists are short, so
+  // sorting them is fast.
   std::vector<std::size_t> begins;
   std::vector<Entry> entries;
   Grow(asked, entries, this->Next.size());

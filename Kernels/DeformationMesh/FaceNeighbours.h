@@ -13,18 +13,18 @@ namespace deformvolume
 
 class Watch;
 
-/// What lies beyond the faces of tetrahedra. Face 4 t + k is that of tetrahedron t which is
-/// opposite to its node k.
+/// The faces of tetrahedra that have the same nodes. Face 4 * t + k is the face of tetrahedron t
+/// that is opposite its node k.
 class FaceNeighbours
 {
 public:
-  /// tetrahedra: at most 2^30, with nodes from 0 to numberOfNodes - 1. Takes time for these
-  /// numbers. watch: asked now and then.
+  /// tetrahedra: at most 2^30, with nodes from 0 to numberOfNodes - 1. The time is proportional to
+  /// the numbers of tetrahedra and nodes. watch: checks for an abort; may be null.
   FaceNeighbours(
     const std::vector<Tetrahedron>& tetrahedra, std::size_t numberOfNodes, Watch* watch = nullptr);
 
-  /// The face of another tetrahedron that has the same nodes; the face itself where there is none.
-  /// Where a mesh has more than two such faces, they follow each other in a ring.
+  /// Returns the face of another tetrahedron with the same nodes, or `face` itself if there is
+  /// none. More than two faces with the same nodes form a circular list.
   std::uint32_t GetNext(std::size_t face) const { return this->Next[face]; }
   /// Whether exactly two tetrahedra share a face.
   bool IsShared(std::size_t face) const

@@ -21,7 +21,7 @@
 namespace deformvolume
 {
 
-/// A box, in continuous output indices where nothing else is said.
+/// A bounding box, in continuous output indices unless stated otherwise.
 struct IndexBounds
 {
   /// The lowest coordinate on each axis.
@@ -30,7 +30,7 @@ struct IndexBounds
   glm::dvec3 Max{ -1.0 };
   /// Whether nothing has been added.
   bool IsEmpty() const { return this->Min.x > this->Max.x; }
-  /// Makes the box hold a point.
+  /// Enlarges the box to contain a point.
   void Add(const glm::dvec3& point)
   {
     if (this->IsEmpty())
@@ -42,7 +42,7 @@ struct IndexBounds
     this->Min = glm::min(this->Min, point);
     this->Max = glm::max(this->Max, point);
   }
-  /// Makes the box hold another one.
+  /// Enlarges the box to contain another box.
   void Add(const IndexBounds& other)
   {
     if (!other.IsEmpty())
@@ -51,7 +51,7 @@ struct IndexBounds
       this->Add(other.Max);
     }
   }
-  /// False where one of them is empty.
+  /// Whether the boxes overlap. False if one of them is empty.
   bool Overlaps(const IndexBounds& other) const
   {
     return !this->IsEmpty() && !other.IsEmpty() &&
@@ -60,11 +60,11 @@ struct IndexBounds
   }
 };
 
-/// Of a vertex at rest, on each axis of the output: 1/256 of it then fits into 32 bits, with
-/// differences.
+/// Largest absolute index of a vertex at rest on each axis of the output. Indices in units of 1/256
+/// voxel, and their differences, then fit into 32 bits.
 inline constexpr double MostOutputIndex = 1 << 21;
 
-/// The volume's box, in its continuous indices.
+/// Returns the bounding box of the volume, in continuous indices of the volume.
 inline IndexBounds GetBox(const VoxelGrid& voxelGrid)
 {
   const Extent& extent = voxelGrid.VertexExtent;
@@ -74,11 +74,11 @@ inline IndexBounds GetBox(const VoxelGrid& voxelGrid)
   return box;
 }
 
-/// VoxelGrid::ToOutput, for points, boxes and the way back.
+/// The transform VoxelGrid::ToOutput and its inverse, for points and boxes.
 class OutputTransform
 {
 public:
-  /// The transform of a map, which has an inverse.
+  /// map: must be invertible.
   explicit OutputTransform(const OutputMap& map)
     : Shift(map.Shift[0], map.Shift[1], map.Shift[2])
     , IsDiagonal(map.IsDiagonal())
@@ -104,18 +104,18 @@ public:
     }
   }
 
-  /// The continuous index in the output of a continuous index of the volume.
+  /// Transforms a continuous index of the volume to one of the output.
   glm::dvec3 ToOutput(const glm::dvec3& index) const
   {
     return (this->IsDiagonal ? this->Scale * index : this->Matrix * index) + this->Shift;
   }
-  /// The continuous index in the volume of a continuous index of the output.
+  /// Transforms a continuous index of the output to one of the volume.
   glm::dvec3 ToIndex(const glm::dvec3& position) const
   {
     const glm::dvec3 moved = position - this->Shift;
     return this->IsDiagonal ? moved / this->Scale : this->Inverse * moved;
   }
-  /// What the places of a box lie between.
+  /// Returns the bounding box of a transformed box.
   IndexBounds ToOutput(const IndexBounds& box) const
   {
     IndexBounds bounds;
@@ -129,14 +129,14 @@ public:
     }
     return bounds;
   }
-  /// The step in the output from voxel to voxel: column by column the axes of the volume.
+  /// The linear part. Column k is the step in the output between neighboring voxels on axis k.
   const glm::dmat3& GetMatrix() const { return this->Matrix; }
   /// The inverse of GetMatrix().
   const glm::dmat3& GetInverse() const { return this->Inverse; }
-  /// Where the index (0, 0, 0) of the volume lies in the output.
+  /// Position of the index (0, 0, 0) of the volume in the output.
   const glm::dvec3& GetShift() const { return this->Shift; }
-  /// By how many voxels of the volume, on each of its axes, a place may be off where it is off by
-  /// some output voxels on each axis of the output; one at most.
+  /// Converts a tolerance in output voxels, on each axis of the output, to a tolerance in voxels of
+  /// the volume on each of its axes. At most 1.
   glm::dvec3 GetTolerance(double ofOutput) const
   {
     const glm::dvec3 sum =
@@ -152,40 +152,42 @@ private:
   bool IsDiagonal;
 };
 
-/// The transform of a voxel grid.
+/// Returns the transform of a voxel grid.
 inline OutputTransform GetOutputTransform(const VoxelGrid& voxelGrid)
 {
   return OutputTransform(voxelGrid.ToOutput);
 }
 
-/// Whether no coordinate is infinite or not-a-number.
+/// Whether all coordinates are finite.
 inline bool IsFinite(const glm::dvec3& v)
 {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-/// One of many vectors, three floats each.
+/// Returns a vector from an array of three floats per vector.
 inline glm::dvec3 GetVector(const float* vectors, std::int64_t index)
 {
   return glm::dvec3(vectors[3 * index], vectors[3 * index + 1], vectors[3 * index + 2]);
 }
 
-/// What takes a vector in voxels of the volume to one in points of a field.
+/// Returns the matrix from vectors in voxels of the volume to vectors in steps between points of a
+/// field.
 inline glm::dmat3 GetVoxelsToField(const DisplacementField& field)
 {
   const auto& m = field.IndexToField;
   return glm::dmat3(m[0], m[4], m[8], m[1], m[5], m[9], m[2], m[6], m[10]);
 }
 
-/// The displacement of a point of a field.
+/// Returns the displacement of a point of a field.
 inline glm::dvec3 GetVector(const DisplacementField& field, std::int64_t point)
 {
   const std::array<float, 3> displacement = GetDisplacement(field, point);
   return glm::dvec3(displacement[0], displacement[1], displacement[2]);
 }
 
-/// What is left of the displacement of the border at a position outside a field, in indices of its
-/// points. tolerance: how far outside still counts as inside.
+/// Returns the factor by which the displacement of the border has faded at a position outside a
+/// field. position: continuous index of the field. tolerance: distance up to which a position
+/// counts as inside.
 inline double GetWeightBeyond(
   const DisplacementField& field, const glm::dvec3& position, double tolerance)
 {
@@ -204,8 +206,8 @@ inline double GetWeightBeyond(
   return GetFadedWeight(std::sqrt(square));
 }
 
-/// Whether a field holds all of a box in the indices that it takes, to within a tolerance, in steps
-/// between its points.
+/// Whether a field contains a box of continuous indices of the volume. tolerance: in steps between
+/// points of the field.
 inline bool HoldsBox(const DisplacementField& field, const IndexBounds& box, double tolerance)
 {
   const auto& m = field.IndexToField;
@@ -225,8 +227,8 @@ inline bool HoldsBox(const DisplacementField& field, const IndexBounds& box, dou
   return true;
 }
 
-/// The trilinear vector at a position within a field, in indices of its points. getVector returns
-/// the one of a point; it is not asked for points without weight, which may be undefined.
+/// Interpolates a vector trilinearly at a continuous index within a field. getVector(point) returns
+/// the vector of a point. It is not called for points with weight 0, which may be undefined.
 template <typename Function>
 glm::dvec3 Interpolate(
   const DisplacementField& field, const glm::dvec3& position, const Function& getVector)

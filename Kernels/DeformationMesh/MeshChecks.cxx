@@ -14,12 +14,14 @@ void CheckMesh(
 {
   if (!numberOfTetrahedra || !numberOfNodes || !tetrahedra)
   {
-    throw Error("The deformation mesh is empty.");
+    throw Error("The deformation mesh is empty: it has " + std::to_string(numberOfTetrahedra) +
+      " tetrahedra and " + std::to_string(numberOfNodes) + " nodes. Both are needed.");
   }
-  static_assert(DEFORMVOLUME_NODE_PLACES == 2, "as the message says");
+  static_assert(DEFORMVOLUME_NODE_PLACES == 2, "The limit is 2^31 / DEFORMVOLUME_NODE_PLACES.");
   if (numberOfNodes > std::size_t{ 1 } << 30)
   {
-    throw Error("The deformation mesh has more than 2^30 nodes. Use a coarser mesh.");
+    throw Error("The deformation mesh has " + std::to_string(numberOfNodes) +
+      " nodes, but at most 2^30 are possible. Use a coarser mesh.");
   }
   CheckTetrahedra(tetrahedra, 0, numberOfTetrahedra, numberOfNodes);
 }
@@ -33,8 +35,9 @@ void CheckTetrahedra(
     {
       if (node < 0 || static_cast<std::size_t>(node) >= numberOfNodes)
       {
-        throw Error("Tetrahedron " + std::to_string(t) + " of the deformation mesh has the node " +
-          std::to_string(node) + ", but there are " + std::to_string(numberOfNodes) + ".");
+        throw Error("Tetrahedron " + std::to_string(t) +
+          " of the deformation mesh refers to node " + std::to_string(node) +
+          ", but the mesh has only " + std::to_string(numberOfNodes) + " nodes.");
       }
     }
   }
@@ -47,9 +50,9 @@ void CheckLinks(const VertexLink* links, std::int64_t count, std::size_t numberO
     if (links[i].Tetrahedron >= 0 &&
       static_cast<std::size_t>(links[i].Tetrahedron) >= numberOfTetrahedra)
     {
-      throw Error("Voxel " + std::to_string(i) + " is linked to the tetrahedron " +
-        std::to_string(links[i].Tetrahedron) + ", but there are " +
-        std::to_string(numberOfTetrahedra) + ".");
+      throw Error("Voxel " + std::to_string(i) + " is linked to tetrahedron " +
+        std::to_string(links[i].Tetrahedron) + ", but the mesh has only " +
+        std::to_string(numberOfTetrahedra) + " tetrahedra.");
     }
   }
 }

@@ -11,19 +11,19 @@
 namespace deformvolume
 {
 
-// The kernels trust these indices: a wrong one would read beyond a buffer. (CheckRuns is in
+// The kernels do not check indices: a wrong index would read outside a buffer. (CheckRuns() is in
 // VertexRuns.h.)
 
-/// Throws an Error where a mesh has no tetrahedra, no nodes or more than 2^30, or a tetrahedron has
-/// a node that is none.
+/// Throws Error if a mesh has no tetrahedra, no nodes or more than 2^30 nodes, or if a tetrahedron
+/// refers to a node that does not exist.
 void CheckMesh(
   const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes);
 
-/// The same for some tetrahedra, from one number to before another.
+/// Throws Error if one of the tetrahedra begin to end - 1 refers to a node that does not exist.
 void CheckTetrahedra(
   const Tetrahedron* tetrahedra, std::size_t begin, std::size_t end, std::size_t numberOfNodes);
 
-/// Throws an Error where one of so many voxels is linked to a tetrahedron that is none.
+/// Throws Error if one of `count` links refers to a tetrahedron that does not exist.
 void CheckLinks(const VertexLink* links, std::int64_t count, std::size_t numberOfTetrahedra);
 
 } // namespace deformvolume

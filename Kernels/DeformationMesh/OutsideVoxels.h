@@ -5,38 +5,39 @@
 namespace deformvolume
 {
 
-/// What is left of the displacement of the boundary outside a mesh or a field. distance: 1 is where
-/// nothing is left.
+/// Returns the factor by which the displacement of the boundary fades outside a mesh or a field:
+/// from 1 at distance 0 to 0 at distance 1.
 inline double GetFadedWeight(double distance)
 {
   return distance < 1.0 ? 1.0 - distance * distance * (3.0 - 2.0 * distance) : 0.0;
 }
 
-/// Its derivative by the distance, for distances up to 1.
+/// Returns the derivative of GetFadedWeight() for distances from 0 to 1.
 inline double GetFadedSlope(double distance)
 {
   return 6.0 * distance * (distance - 1.0);
 }
 
-/// What becomes of the voxels outside a deformation mesh or field.
+/// Treatment of the voxels outside a deformation mesh or a displacement field.
 struct OutsideVoxels
 {
-  /// What becomes of them.
+  /// Treatment of the voxels outside.
   enum class Modes
   {
-    Discard, // they have no place after the deformation
-    // They follow the tetrahedron of the nearest voxel inside, or the nearest point of the field.
+    Discard, // the voxels have no deformed position
+    // The voxels follow the tetrahedron of the nearest voxel inside, or the nearest point of the
+    // field.
     Extrapolate,
-    Keep // they stay where they are, but for those near the mesh or the field
+    Keep // the voxels do not move, except within FadeDistance
   };
 
-  /// fadeDistance counts with Keep only.
+  /// fadeDistance is used with Keep only.
   OutsideVoxels(Modes mode, double fadeDistance = 0.0)
     : Mode(mode)
     , FadeDistance(mode == Modes::Keep ? fadeDistance : 0.0)
   {
   }
-  /// True: Extrapolate, false: Discard.
+  /// true: Extrapolate; false: Discard.
   OutsideVoxels(bool extrapolate = false)
     : OutsideVoxels(extrapolate ? Modes::Extrapolate : Modes::Discard)
   {
@@ -54,10 +55,10 @@ struct OutsideVoxels
     return this->Mode == other.Mode && this->FadeDistance == other.FadeDistance;
   }
 
-  /// What becomes of them.
+  /// Treatment of the voxels outside.
   Modes Mode;
-  /// Of Keep: how far from the mesh or the field the displacement of its boundary fades to zero, in
-  /// world units; 0: no voxel outside moves.
+  /// For Keep: distance from the mesh or the field, in world units, at which the displacement of
+  /// the boundary has faded to zero. 0: no voxel outside moves.
   double FadeDistance;
 };
 

@@ -11,19 +11,19 @@
 namespace deformvolume
 {
 
-/// Some of the points of a deformation, a bit each. Points may be added side by side.
+/// A set of points of a deformation, with one bit per point. Points may be added in parallel.
 class PointSet
 {
 public:
   static constexpr std::size_t PointsPerWord = 64;
 
-  /// None of so many points.
+  /// Makes the set empty, with room for `count` points.
   void Clear(std::size_t count)
   {
     std::vector<Word>((count + PointsPerWord - 1) / PointsPerWord).swap(this->Words);
   }
 
-  /// Bit k: point PointsPerWord * word + k.
+  /// Adds the points whose bits are set. Bit k is point PointsPerWord * word + k.
   void AddWord(std::size_t word, std::uint64_t bits)
   {
     if (bits)
@@ -36,7 +36,7 @@ public:
     this->AddWord(point / PointsPerWord, std::uint64_t{ 1 } << point % PointsPerWord);
   }
 
-  /// Points from begin to before end.
+  /// Adds the points begin to end - 1.
   void AddRange(std::size_t begin, std::size_t end)
   {
     while (begin < end)
@@ -48,7 +48,8 @@ public:
     }
   }
 
-  /// The first one and one past the last, or a few points more; begin = end: there are none.
+  /// Returns a range that contains all points of the set, rounded to whole words. begin = end: the
+  /// set is empty.
   void GetEnds(std::size_t& begin, std::size_t& end) const
   {
     const auto isSet = [](const Word& word) { return word.Get() != 0; };
@@ -60,7 +61,8 @@ public:
       : PointsPerWord * static_cast<std::size_t>(last - this->Words.begin());
   }
 
-  /// Of points from begin to before end, some of which may be beyond those that it knows.
+  /// Whether the set has any of the points begin to end - 1. The range may exceed the size of the
+  /// set.
   bool HasAnyOf(std::size_t begin, std::size_t end) const
   {
     end = std::min(end, PointsPerWord * this->Words.size());

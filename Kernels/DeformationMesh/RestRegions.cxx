@@ -17,10 +17,10 @@ namespace deformvolume
 namespace
 {
 
-// Voxels on an axis by which one may lie outside the tetrahedron that it is linked to: nodes are
-// rounded to 1/256 voxel before voxels are looked for.
+// In voxels: how far a voxel may lie outside the tetrahedron to which it is linked. Nodes are
+// rounded to 1/256 voxel when links are computed.
 constexpr double LinkTolerance = 1.0 / 64.0;
-// Output voxels by which the kernels may round a position, with room to spare.
+// In output voxels: an upper bound of the rounding of positions in the kernels.
 constexpr double PositionTolerance = 1.0 / 32.0;
 
 constexpr std::int64_t MostRegions = std::int64_t{ 1 } << 17;
@@ -78,7 +78,7 @@ void RestRegions::AddTetrahedron(const Tetrahedron& tetrahedron,
   BarycentricMap map;
   if (!map.SetTetrahedron(tetrahedron, restPoints))
   {
-    return; // no voxel is linked to a flat one
+    return; // no voxel is linked to a flat tetrahedron
   }
   IndexBounds rest;
   IndexBounds moved;
@@ -90,8 +90,9 @@ void RestRegions::AddTetrahedron(const Tetrahedron& tetrahedron,
     rest.Add(point);
     moved.Add(nodes[node]);
   }
-  // Voxels outside have negative weights, which lead out of the tetrahedron after the deformation,
-  // too. Columns: what a step along an axis of the volume moves.
+  // Linked voxels slightly outside the tetrahedron have negative weights, so they also lie outside
+  // the deformed tetrahedron. Column k of steps: deformed step between neighboring voxels on axis
+  // k.
   double outside = 0.0;
   glm::dmat3 steps(0.0);
   for (int node = 0; node < 4; ++node)
@@ -121,7 +122,7 @@ void RestRegions::AddTetrahedron(const Tetrahedron& tetrahedron,
     {
       return;
     }
-    // Regions share their ends.
+    // Neighboring regions share the voxels between them.
     begin[axis] = std::max(0, static_cast<int>(std::ceil((low - first) / this->Size)) - 1);
     end[axis] =
       std::min(this->Count[axis] - 1, static_cast<int>(std::floor((high - first) / this->Size)));
@@ -140,7 +141,7 @@ void RestRegions::AddTetrahedron(const Tetrahedron& tetrahedron,
           box.Min[axis] = std::max<double>(voxels[2 * axis], rest.Min[axis]);
           box.Max[axis] = std::min<double>(voxels[2 * axis + 1], rest.Max[axis]);
         }
-        // The deformation is affine in the tetrahedron.
+        // The deformation of the box is affine: its bounds follow from the center and half sizes.
         const glm::dvec3 center = 0.5 * (box.Min + box.Max);
         const glm::dvec3 half = 0.5 * (box.Max - box.Min);
         const glm::dvec4 weights = map.GetAllWeights(center);
@@ -193,8 +194,7 @@ RestRegions::RestRegions(const VoxelGrid& voxelGrid, const DisplacementField& fi
             from += std::min(row[k] * voxels[2 * k], row[k] * voxels[2 * k + 1]);
             to += std::max(row[k] * voxels[2 * k], row[k] * voxels[2 * k + 1]);
           }
-          // The device finds places with the precision of float, and far fewer than a quarter of a
-          // cell off.
+          // The device computes positions in single precision, with an error far below this margin.
           constexpr double margin = 0.25;
           const double end = field.Dimensions[axis] - 1;
           hasOutside = hasOutside || from < 0.0 || to > end;
@@ -275,7 +275,7 @@ Extent RestRegions::Find(const Extent& part) const
       found[2 * axis + 1] = std::min(found[2 * axis + 1], found[2 * axis] + 1);
     }
   }
-  // What cells do depends on the state of their vertices, and that on the voxels round these.
+  // A cell depends on the state of its vertices, which depends on the voxels around them.
   for (int axis = 0; axis < 3; ++axis)
   {
     found[2 * axis] = std::max(found[2 * axis] - 1, this->Volume[2 * axis]);

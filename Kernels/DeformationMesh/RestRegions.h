@@ -17,31 +17,33 @@
 namespace deformvolume
 {
 
-/// Tells which voxels of a volume can land in a part of the output. The volume is divided into
-/// regions, and the bounds of each are found after the deformation; they are never too small.
+/// Finds the voxels of a volume that can lie in a part of the output. The volume is divided into
+/// regions, with the bounds of each region after the deformation. The bounds are never too small.
 class DEFORMVOLUME_EXPORT RestRegions
 {
 public:
-  /// Of a mesh whose voxels outside are discarded. voxelGrid: of the whole volume; restPoints: in
-  /// continuous indices of the volume; displacements: three floats a node, in output voxels.
+  /// For a mesh with OutsideVoxels::Modes::Discard. voxelGrid: of the whole volume. restPoints: in
+  /// continuous indices of the volume. displacements: three floats per node, in output voxels.
   RestRegions(const VoxelGrid& voxelGrid, const std::vector<glm::dvec3>& restPoints,
     const std::vector<Tetrahedron>& tetrahedra, const float* displacements);
 
-  /// Of a displacement field.
+  /// For a displacement field.
   RestRegions(const VoxelGrid& voxelGrid, const DisplacementField& field);
 
-  /// Whether the deformation moves any voxel.
+  /// Whether any voxel has a deformed position.
   bool HasVoxels() const;
 
-  /// The voxels of the volume that are needed to make a part of the output as the whole would be:
-  /// all cells that can land there, and their neighbours, in whole rows along x, as the kernels
-  /// want them. Two voxels or more on each axis even where nothing lands there.
+  /// Returns the voxels of the volume that are needed to compute a part of the output exactly as in
+  /// the whole output: all cells that can lie there, and their neighbors. The extent has complete
+  /// rows along x, which the kernels need. It has at least two voxels on each axis, even if no cell
+  /// lies there.
   Extent Find(const Extent& part) const;
 
 private:
   explicit RestRegions(const VoxelGrid& voxelGrid);
   std::int64_t GetNumberOfRegions() const;
-  /// The voxels of the region at a place, the upper end being shared with the next region.
+  /// Returns the voxels of a region. Neighboring regions share the voxels between them. place:
+  /// index of the region on each axis.
   Extent GetVoxels(const int* place) const;
   void AddTetrahedron(const Tetrahedron& tetrahedron, const std::vector<glm::dvec3>& restPoints,
     const float* displacements);

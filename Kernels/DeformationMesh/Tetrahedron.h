@@ -13,14 +13,14 @@ namespace deformvolume
 /// The nodes of a tetrahedron of the deformation mesh.
 using Tetrahedron = std::array<std::int32_t, 4>;
 
-/// A tetrahedron that has got other nodes.
+/// A change of the nodes of a tetrahedron.
 struct TetrahedronChange
 {
   /// The number of the tetrahedron.
   std::int32_t Number = 0;
-  /// Its nodes before.
+  /// The previous nodes.
   Tetrahedron Before{};
-  /// Its nodes now.
+  /// The new nodes.
   Tetrahedron After{};
 };
 

@@ -11,8 +11,9 @@ namespace deformvolume
 namespace
 {
 
-// A convex polygon that is cut to a box: a triangle gains a corner with each side. There is room
-// for more, up to half of the corners anew with each side, should rounding have bent the polygon.
+// Clips a convex polygon to a box. Each side of the box adds at most one corner to a convex
+// polygon. Rounding may make the polygon slightly concave: there is room for half as many new
+// corners as the polygon has, for each side.
 class ClippedPolygon
 {
 public:
@@ -44,7 +45,7 @@ public:
 private:
   static constexpr int Room = 28;
 
-  // Keeps what lies on the side of a plane to which the sign points.
+  // Keeps the part above the plane (sign 1), or below it (sign -1).
   void ClipSide(int axis, double sign, double plane)
   {
     std::array<MovedPoint, Room> kept;
@@ -100,7 +101,7 @@ void AddClippedTetrahedron(const std::array<MovedPoint, 4>& nodes, const Barycen
     }
     return;
   }
-  // A corner of the part is one of a clipped face, or a corner of the box.
+  // Each corner of the clipped part is a corner of a clipped face or of the box.
   for (int face = 0; face < 4; ++face)
   {
     ClippedPolygon polygon;

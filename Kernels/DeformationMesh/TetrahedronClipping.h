@@ -17,8 +17,8 @@ struct MovedPoint
   glm::dvec3 Moved;
 };
 
-/// Adds the bounds of the part of a tetrahedron that lies in a box at rest, after the deformation.
-/// map: that of the nodes at rest.
+/// Clips a tetrahedron at rest to a box, and adds the deformed positions of the clipped part to
+/// bounds. map: barycentric map of the nodes at rest.
 void AddClippedTetrahedron(const std::array<MovedPoint, 4>& nodes, const BarycentricMap& map,
   const IndexBounds& box, IndexBounds& bounds);
 

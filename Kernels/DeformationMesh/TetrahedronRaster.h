@@ -9,19 +9,19 @@
 namespace deformvolume
 {
 
-/// Positions are rounded to this fraction of a voxel, so that the edge functions are exact.
+/// Positions are rounded to multiples of 2^-RasterBits voxel, so that the edge functions are exact.
 constexpr int RasterBits = 8;
-/// Raster units of a voxel.
+/// Raster units per voxel.
 constexpr std::int64_t RasterUnit = std::int64_t{ 1 } << RasterBits;
 
-/// A box of voxels, both ends included.
+/// A box of voxels. Both ends belong to the box.
 struct VoxelBox
 {
   /// The first voxel on each axis.
   std::array<std::int64_t, 3> Min{ { 0, 0, 0 } };
   /// The last voxel on each axis.
   std::array<std::int64_t, 3> Max{ { -1, -1, -1 } };
-  /// Whether there is no voxel in it.
+  /// Whether the box has no voxel.
   bool IsEmpty() const
   {
     return this->Min[0] > this->Max[0] || this->Min[1] > this->Max[1] ||
@@ -32,22 +32,22 @@ struct VoxelBox
 /// A position in raster units.
 using RasterPoint = std::array<std::int64_t, 3>;
 
-/// The nearest multiple of a raster unit to a continuous index, in raster units.
+/// Rounds a continuous index to the nearest raster unit. Returns raster units.
 inline std::int64_t RoundToRaster(double index)
 {
   const double scaled = index * static_cast<double>(RasterUnit);
   return static_cast<std::int64_t>(scaled < 0.0 ? scaled - 0.5 : scaled + 0.5);
 }
 
-/// Finds the voxels of a tetrahedron, those on its surface included, with the signs of four affine
-/// edge functions, one a face, that are integers. Integer is a type that holds them exactly: see
-/// FitsInt64.
+/// Finds the voxels in a tetrahedron and on its surface, by the signs of four affine edge
+/// functions, one per face, in integer arithmetic. Integer: a type that represents their values
+/// exactly (see FitsInt64()).
 template <typename Integer>
 class TetrahedronRaster
 {
 public:
-  /// Nodes of either orientation, and the voxels to search, which lie in the box of the nodes.
-  /// False where the rounded tetrahedron has no volume.
+  /// Set the tetrahedron. nodes: of either orientation. box: the voxels to search, which must lie
+  /// in the bounding box of the nodes. Returns false if the rounded tetrahedron has no volume.
   bool SetTetrahedron(const std::array<RasterPoint, 4>& nodes, const VoxelBox& box)
   {
     this->Box = box;
@@ -87,8 +87,8 @@ public:
       normals[3][axis] = -(normals[0][axis] + normals[1][axis] + normals[2][axis]);
     }
 
-    // Faces that bound a row from below come first, then those that bound it from above, then
-    // those along the row.
+    // Order the faces: those that bound a row from below, those that bound a row from above, those
+    // parallel to rows.
     int order[4];
     int count = 0;
     for (int kind = 0; kind < 3; ++kind)
@@ -120,7 +120,7 @@ public:
     return true;
   }
 
-  /// Calls row(y, z, x first, x last) for each row that has voxels in the tetrahedron.
+  /// Calls row(y, z, first x, last x) for each row that has voxels in the tetrahedron.
   template <typename Row>
   void ForEachRow(Row&& row) const
   {
@@ -166,7 +166,7 @@ private:
         return false;
       }
     }
-    // The quotient in double precision is right or off by one; the exact function decides.
+    // The quotient in double precision may be off by one. The exact edge function corrects it.
     for (int index = this->End[0]; index < this->End[1]; ++index)
     {
       if (values[index] < 0)
@@ -213,15 +213,16 @@ private:
   double Inverse[4];
 };
 
-/// Whether 64 bits hold all edge functions of a tetrahedron, partial sums included: with e the
-/// longest edge of its box, they are sums of at most 18 terms of the size e^3.
+/// Whether 64 bits are enough for the edge functions of a tetrahedron and all intermediate sums.
+/// These are sums of at most 18 terms of size e^3, where e is the longest edge of its bounding box.
+/// min, max: the bounding box.
 inline bool FitsInt64(const RasterPoint& min, const RasterPoint& max)
 {
-  constexpr std::int64_t largest = 790000; // the greatest round number with 18 e^3 < 2^63
+  constexpr std::int64_t largest = 790000; // 18 * 790000^3 < 2^63
   return std::max({ max[0] - min[0], max[1] - min[1], max[2] - min[2] }) <= largest;
 }
 
-/// For tetrahedra beyond that: holds those of boxes up to 2^32 voxels.
+/// The integer type for larger tetrahedra. Large enough for bounding boxes of up to 2^32 voxels.
 __extension__ typedef __int128 WideInteger;
 
 } // namespace deformvolume

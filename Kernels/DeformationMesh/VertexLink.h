@@ -7,12 +7,12 @@
 namespace deformvolume
 {
 
-/// The static link of one voxel into the deformation mesh; 16 bytes.
+/// The static link of a voxel to the deformation mesh; 16 bytes.
 struct VertexLink
 {
-  /// Index of the tetrahedron of the deformation mesh, or -1 for a voxel outside it.
+  /// Number of the tetrahedron, or -1 for a voxel outside the mesh.
   std::int32_t Tetrahedron = -1;
-  /// Barycentric weights of the first three nodes; that of the fourth is what misses to 1.
+  /// Barycentric weights of the first three nodes. All four weights add up to 1.
   float Weights[3] = { 0.0F, 0.0F, 0.0F };
 };
 

@@ -12,7 +12,7 @@ namespace deformvolume
 namespace
 {
 
-// Oclgrind knows no restrict in functions that are inlined.
+// Oclgrind does not support restrict in inlined functions.
 const char* const Restrict =
   "#ifdef __x86_64__\n#define RESTRICT restrict\n#else\n#define RESTRICT\n"
   "#endif\n";
@@ -70,15 +70,17 @@ std::string MakeArrayText(const OpenCLContext& context, const std::vector<Volume
     if (arrays[i].Type == ElementType::Float64 && !HasDouble(context))
     {
       throw Error("The device \"" + context.GetDevice().Name +
-        "\" has no double precision, which an array of the volume needs. Convert the array to "
-        "float, or use another device.");
+        "\" has no double precision, but array " + std::to_string(i) +
+        " of the volume has elements of type double. Convert the array to float, or use another "
+        "device.");
     }
     if (!HasDouble(context) && !arrays[i].Categorical && !IsReal(arrays[i].Type) &&
       GetElementSize(arrays[i].Type) >= 4)
     {
       throw Error("The device \"" + context.GetDevice().Name +
-        "\" has no double precision, which integers of 32 or 64 bits need to be interpolated. "
-        "Convert the array to 16 bits or to float, make it categorical, or use another device.");
+        "\" has no double precision, which is needed to interpolate array " + std::to_string(i) +
+        " of the volume, of 32-bit or 64-bit integers. Convert the array to 16 bits or to float, "
+        "make it categorical, or use another device.");
     }
     const std::string index = std::to_string(i);
     const std::string type = GetTypeName(arrays[i].Type);

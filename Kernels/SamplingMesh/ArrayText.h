@@ -11,18 +11,18 @@
 namespace deformvolume
 {
 
-/// The OpenCL C name of a type.
+/// Returns the OpenCL C name of a type.
 std::string GetTypeName(ElementType type);
 
-/// Whether single precision is enough to interpolate an array, and vectors of it are worthwhile.
+/// Whether an array can be interpolated in single precision with vector instructions.
 bool FitsFloat(const VolumeArray& array);
 
-/// The statement that stores one array at a sample. index: its number, as in the names of the
-/// parameters.
+/// Returns the statement that stores one array at a sample. index: number of the array, as in the
+/// names of the kernel parameters.
 std::string MakeStore(const VolumeArray& array, const std::string& index);
 
-/// What kernels that work on arrays of these types expect in front of them. Throws Error where the
-/// device lacks what the arrays need.
+/// Returns the source text that must precede kernels that work on these arrays. Throws Error if the
+/// arrays need double precision and the device has none.
 std::string MakeArrayText(const OpenCLContext& context, const std::vector<VolumeArray>& arrays);
 
 } // namespace deformvolume

@@ -14,15 +14,16 @@
 namespace deformvolume
 {
 
-/// The bits that a section of a brick is run by, from the lowest one on (DEFORMVOLUME_BRICK_BITS).
+/// Returns the bits that select one section of a brick in a kernel launch, starting at bit 0. In a
+/// list of bricks they are shifted by DEFORMVOLUME_BRICK_BITS.
 inline std::uint32_t MakeSectionBits(std::uint32_t span, bool upperY, bool upperZ)
 {
   return 1U << span | (upperY ? 2U : 1U) << DEFORMVOLUME_SPANS |
     (upperZ ? 2U : 1U) << (DEFORMVOLUME_SPANS + 2);
 }
 
-/// The bricks of cells that a voxel grid is worked on in, or the sub-bricks of these. Their
-/// numbers grow with x, then y, then z.
+/// The division of the cells of a voxel grid into bricks, or into sub-bricks. Bricks are numbered
+/// along x, then y, then z.
 struct BrickGrid
 {
   BrickGrid() = default;
@@ -32,12 +33,12 @@ struct BrickGrid
   std::array<int, 3> Origin{ { 0, 0, 0 } }; // local index of the first cell of the first brick
   std::array<int, 3> Count{ { 0, 0, 0 } };  // bricks on each axis
   std::array<int, 3> Cells{ { DEFORMVOLUME_BRICK_X, DEFORMVOLUME_BRICK_Y,
-    DEFORMVOLUME_BRICK_Z } }; // of a brick
-  /// How far a brick looks beyond its vertices: the fill rule asks the cells round a vertex.
+    DEFORMVOLUME_BRICK_Z } }; // cells of a brick on each axis
+  /// Halo without smooth cuts: the fill rule uses the cells around a vertex.
   static constexpr int LeastHalo = 1;
-  /// Or where there is a smooth cut: it moves vertices by others that are so many voxels away
-  /// (CutPositions.cl). The cells round a vertex add nothing: what a cut changes of those that are
-  /// in another brick, that brick has changed, and the vertex lies in both.
+  /// Halo with smooth cuts: a copy of a vertex is extrapolated from vertices up to two voxels away
+  /// (CutPositions.cl). The cells around a vertex do not enlarge the halo. If such a cell lies in
+  /// another brick, the vertex lies in both bricks, and a change of the cell changes both.
   static constexpr int HaloOfCuts = 2;
   int Halo = LeastHalo;
 
@@ -47,22 +48,22 @@ struct BrickGrid
       static_cast<std::size_t>(this->Count[2]);
   }
 
-  /// So many bricks, each above the one before, are worked on one after the other where all are:
-  /// the positions of vertices between them are found once.
+  /// Number of bricks above one another that AppendBricks() lists in succession. A work-item that
+  /// processes them in succession computes the positions of the vertices between them only once.
   static constexpr int BricksInTurn = 2;
-  /// Appends the bricks of some layers of cells, whole ones (DEFORMVOLUME_BRICK_BITS), in that
-  /// order.
+  /// Appends the bricks that contain the cell layers from layersBegin to layersEnd - 1. All
+  /// sections of each brick are selected (DEFORMVOLUME_BRICK_BITS).
   void AppendBricks(int layersBegin, int layersEnd, std::vector<std::uint32_t>& bricks) const;
 
-  /// What bricks consist of, 16 x 8 x 8 cells each.
+  /// Returns the division into sub-bricks of 16 x 8 x 8 cells.
   BrickGrid GetSubBricks() const;
-  /// The brick that a sub-brick is of, and the bits of its section, from the lowest one on
-  /// (DEFORMVOLUME_BRICK_BITS).
+  /// Returns the brick that contains a sub-brick, and the bits of the section that contains the
+  /// sub-brick (MakeSectionBits()).
   std::pair<std::size_t, std::uint32_t> GetBrick(
     const BrickGrid& subBricks, std::size_t subBrick) const;
 
-  /// Local indices of the vertices of a brick, and so many beyond them on each side, within the
-  /// voxel grid.
+  /// Returns the local indices of the vertices of a brick and of `halo` vertices beyond each side,
+  /// clipped to the voxel grid.
   Extent GetVertices(std::size_t brick, int halo) const;
 };
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The 5T split of a cell of the sampling mesh: the one table that the C++ code and the OpenCL
-// kernels share (this file is valid in both languages and is put in front of every kernel).
+// The split of a cell of the sampling mesh into five tetrahedra (5T). This file is valid C++ and
+// OpenCL C; it precedes the text of every kernel, so both languages share one table.
 //
 // Vertex v of the cell at (x, y, z) lies at x + (v & 1), y + (v >> 2 & 1), z + (v >> 1 & 1), so v
 // is one less than the number used in the literature. The split is mirrored from cell to cell: on
 // every axis on which the cell's structured index is odd, that offset counts downwards from the
-// upper side. Neighbouring cells then agree on the diagonals of the faces they share.
+// upper side. So two neighboring cells have the same diagonal on their common face.
 //
 // Four corner tetrahedra, then the central one. In a cell of even parity (x + y + z even)
 // det(b - a, c - a, d - a) of the undeformed tetrahedra is +1 +1 +1 +1 -2 times the volume of the
@@ -24,19 +24,20 @@
     }                                                                                              \
   }
 
-// The axes on which the split of the cell with this structured index is mirrored, in the order of
-// the bits of a vertex number: v ^ mirror is the offset of vertex v.
+// The axes on which the split of the cell with this structured index is mirrored, as bits in the
+// order of the bits of a vertex number: v ^ mirror is the offset of vertex v.
 #define DEFORMVOLUME_MIRROR(x, y, z) (((x)&1) | ((z)&1) << 1 | ((y)&1) << 2)
 
 #ifdef __OPENCL_VERSION__
 __constant uchar Tetrahedra[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
 #endif
 
-// The bits of a cell in a mask of active tetrahedra where all of them are.
+// The byte of a cell in a mask of active tetrahedra if all five are active.
 #define DEFORMVOLUME_ALL_TETRAHEDRA 31
 
-// The corner tetrahedron that lies behind the face of the central tetrahedron opposite its
-// k-th vertex; and by the number of that tetrahedron, the vertex k.
+// Entry k: the corner tetrahedron on the other side of the face of the central tetrahedron that is
+// opposite its vertex k. The permutation is its own inverse: entry t is the vertex of the central
+// tetrahedron that is opposite its common face with corner tetrahedron t.
 #define DEFORMVOLUME_CORNER_BEHIND_FACE                                                            \
   {                                                                                                \
     2, 3, 0, 1                                                                                     \

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the launches of the kernels work on. Shared by the C++ code and the kernels: four-byte
-// numbers only, so that both sides lay it out alike.
+// Parameters of kernel launches, shared by the C++ code and the kernels. All members have four
+// bytes, so that the layout is the same in both languages.
 //
-// "Local" indices count from 0 at the voxel grid's first voxel. Vertex data of the volume lie in
-// chunks of whole planes of constant z.
+// "Local" indices count from 0 at the first voxel of the voxel grid. The vertex data of the volume
+// are divided into chunks of whole planes of constant z.
 #ifndef DeformVolumeKernelParameters_h
 #define DeformVolumeKernelParameters_h
 
@@ -16,114 +16,114 @@ typedef struct
 {
   int Size[3];     // voxels on each axis
   int First[3];    // structured index of the first voxel; its parity decides the 5T split
-  int IsMirrored;  // 1 where upright tetrahedra are mirror images of those of the volume, else 0
+  int IsMirrored;  // 1 if the map from the volume to the output is a reflection, else 0
   int ChunkFirst;  // local z of the first vertex plane, and of the first cell layer, in the chunk
-  int PlanesBegin; // local z of the first vertex plane to work on
+  int PlanesBegin; // local z of the first vertex plane to process
   int PlanesEnd;   // and one past the last
-  int LayersBegin; // local z of the first layer of cells to work on
+  int LayersBegin; // local z of the first layer of cells to process
   int LayersEnd;   // and one past the last
   int OutputFirst[3]; // structured index of the first output voxel in the output buffers
   int OutputSize[3];  // output voxels in the buffers on each axis
-  int WholeFirst[3];  // the output that these are a part of: its first voxel, and one past the last
-  int WholeEnd[3];    // one, counted from the first voxel in the buffers
-  int IsPart;         // whether there are voxels beyond those in the buffers
+  int WholeFirst[3];  // the whole output: its first voxel, counted from the first voxel in the
+  int WholeEnd[3];    // buffers, and one past its last voxel
+  int IsPart;         // whether the output has voxels that are not in the buffers
   int Pass;           // one of the passes below
-  int KeepsPatches;   // whether some patches of the output stay as they are
-  int HasActive;      // whether a mask of active tetrahedra is there; without one all are active
-  int HasDistances;   // whether there are boundary distances; without them nothing is clipped
-  int HasState;       // whether the vertices have a state; without one all that could be is there
-  int BrickOrigin[3]; // local index of the first cell of the first brick; may lie before the volume
+  int KeepsPatches;   // whether some patches of the output keep their values
+  int HasActive;      // whether there is a mask of active tetrahedra; otherwise all are active
+  int HasDistances;   // whether there are boundary distances; otherwise nothing is clipped
+  int HasState;       // whether the vertices have a state; otherwise all vertices are sources
+  int BrickOrigin[3]; // local index of the first cell of the first brick; may be negative
   int BrickCount[3];  // bricks on each axis
-  int ListBegin; // place in the list, of bricks or of pieces of cells, of the first one to work on
+  int ListBegin; // position in the list of bricks or of cell pieces of the first one to process
   int ListEnd;   // and one past the last
-  int Portion;   // bricks of the list that a work-item takes at once
-  int MostLargeCells; // room in the list of large cells
+  int Portion;   // bricks of the list per work-item
+  int MostLargeCells; // capacity of the list of large cells
 } KernelParameters;
 
-// A vertex of a cell with crossed tetrahedra: those that a smooth cut divides where their vertices
-// lie on both sides.
+// A vertex of a cell with crossed tetrahedra. A smooth cut divides a crossed tetrahedron that has
+// vertices on both sides.
 typedef struct
 {
-  int X, Y, Z; // local index
-  unsigned int
-    Tetrahedra;   // the crossed ones of the cell that begins at it, as bits; and the bit below
-  float Distance; // signed, from the sheet; only its sign and its ratio to others matter
+  int X, Y, Z;             // local index
+  unsigned int Tetrahedra; // bits: crossed tetrahedra of the cell that begins at the vertex, and
+                           // DEFORMVOLUME_CUT_CORNER
+  float Distance;          // signed distance from the sheet, in any unit
 } CutVertex;
 #define DEFORMVOLUME_CUT_CORNER 32 // the vertex belongs to a crossed tetrahedron
 
-// Copies of a vertex that are no further than this from it on each axis, in 1/256 output voxel, lie
-// where it does: extrapolation is right to second order only, and a cut that is not open must not
-// show.
+// In 1/256 output voxel. A copy of a vertex that is no farther than this from the vertex on each
+// axis is moved onto the vertex. Extrapolation has an error of second order, and a closed cut must
+// not be visible.
 #define DEFORMVOLUME_CLOSED_GAP 64
 
 // The undeformed position of the voxels with one index on an axis, in 1/256 output voxel: a whole
-// number and what misses to it.
+// number plus a fraction.
 typedef struct
 {
   int Whole;
   float Fraction;
 } RestPosition;
 
-// The same where axes of the volume are not those of the output: what an index on an axis adds to
-// the position. Fractions are multiples of 1/256 below 1, so that all sums are exact, in any order,
-// and a voxel has the same position whatever it is a part of. An index on z or y adds the fraction
-// that it has in the whole volume, and counts whole numbers from the first one there is; those on x
-// have the rest.
+// The undeformed position if the axes of the volume are not those of the output. It is a sum of one
+// RestVector for each axis. Fractions are multiples of 1/256 below 1. So all sums are exact in any
+// order, and a voxel has the same position in the whole volume and in each part. The vector of an
+// index on y or z has the fraction of this index in the whole volume, and whole numbers relative to
+// the first index of the part. The vectors on x contain the remainder.
 typedef struct
 {
   int Whole[3];
   float Fraction[3];
 } RestVector;
 
-// A displacement field. IndexToField: row-major 3 x 4, from an index counted from the first voxel
-// of the whole volume to a continuous index of the field.
+// A displacement field. Indices of voxels count from the first voxel of the whole volume.
 typedef struct
 {
-  float IndexToField[12];
-  int First[3]; // of the voxel grid, counted so
+  float IndexToField[12]; // row-major 3 x 4, from a voxel to a continuous index of the field
+  int First[3];           // first voxel of the voxel grid
   int Dimensions[3];
   int Extrapolate; // whether voxels outside the field follow its border
   float Fading[3]; // DisplacementField::Fading
-  int SameGrid;    // whether voxels are points of the field, and all lie in it: the point of voxel
-  int Offset[3];   // (i, j, k) is (i, j, k) + Offset
-  int IsMapped;    // of vectors that are read where they lie: whether the matrix is to be applied
-  unsigned int ToDisplacement[18]; // row-major 3 x 3, of each double the lower four bytes first
+  int SameGrid;    // whether each voxel is a point of the field
+  int Offset[3];   // if so, voxel (i, j, k) is point (i, j, k) + Offset
+  int IsMapped;    // for vectors that are read in place: whether to apply ToDisplacement
+  unsigned int ToDisplacement[18]; // row-major 3 x 3 doubles, lower four bytes first
 } FieldParameters;
 
-// The displacement in a tetrahedron of the deformation mesh, in output voxels; 64 bytes. That of
-// the voxel with the local index (x, y, z) is, in this order,
+// The displacement in a tetrahedron of the deformation mesh, in output voxels; 64 bytes. The
+// displacement of the voxel with the local index (x, y, z) is, in this order of operations,
 //   Displacement +
 //     ((AlongY * (y - Origin[1]) + AlongZ * (z - Origin[2])) + AlongX * (x - Origin[0])).
 typedef struct
 {
   float Displacement[3]; // at Origin
-  float AlongX[3];       // its derivatives
+  float AlongX[3];       // derivatives of the displacement
   float AlongY[3];
   float AlongZ[3];
   float Origin[3]; // local index of a voxel in the tetrahedron
   float Padding;
 } TetrahedronRecord;
 
-// Tetrahedra on the device name a node by its place in units of 8 bytes, of which it takes this
-// many: processors add eight times a number to an address at no cost, but not sixteen times.
+// Units of 8 bytes per node. Tetrahedra on the device refer to a node by its offset in such units:
+// CPUs multiply an index by 8 in an address at no cost, but not by 16.
 #define DEFORMVOLUME_NODE_PLACES 2
 
-// Passes of the exact resampling kernel. What comes after the first is for voxels that several
-// cells write, and for those on a crease, which none does. All others keep what the first pass gave
-// them: a voxel never depends on others, and so not on how the output is divided.
+// Passes of the exact resampling kernel. The passes after the first are for voxels that several
+// cells write, and for voxels on a crease, which no cell writes. All other voxels keep the value of
+// the first pass. So no voxel depends on other voxels, nor on how the output is divided.
 #define DEFORMVOLUME_PASS_DIRECT 0 // write, and count the writes
-#define DEFORMVOLUME_PASS_OWNERS 1 // the same, and find voxels that several cells write: who wins
-#define DEFORMVOLUME_PASS_MARK 2   // find who wins of those that only hold a voxel not settled
-#define DEFORMVOLUME_PASS_WINNER 3 // write where this tetrahedron is the winner
-#define DEFORMVOLUME_PASS_COUNT 4  // count the tetrahedra that write each voxel; write none
-// Whether every tetrahedron that holds a voxel takes part, and not only the one that writes it.
+#define DEFORMVOLUME_PASS_OWNERS 1 // also find the winners of voxels that several cells write
+#define DEFORMVOLUME_PASS_MARK                                                                     \
+  2 // find the winners among all tetrahedra that hold an unsettled voxel
+#define DEFORMVOLUME_PASS_WINNER 3 // write the voxels of which this tetrahedron is the winner
+#define DEFORMVOLUME_PASS_COUNT 4  // count the tetrahedra that write each voxel; write nothing
+// Whether all tetrahedra that hold a voxel take part, not only the tetrahedron that writes it.
 #define DEFORMVOLUME_IS_CLOSED(pass)                                                               \
   ((pass) == DEFORMVOLUME_PASS_MARK || (pass) == DEFORMVOLUME_PASS_WINNER)
-// Whether values are written.
+// Whether the pass writes values.
 #define DEFORMVOLUME_IS_WRITING(pass) ((pass) != DEFORMVOLUME_PASS_MARK)
 
-// Cells of a brick, which begins at even structured indices: the parity of a place in a brick is
-// that of the structured index. It is long on x, in whose direction memory is contiguous.
+// Cells of a brick. Bricks begin at even structured indices, so an index within a brick has the
+// parity of the structured index. Bricks are long on x, since rows are contiguous in memory.
 #define DEFORMVOLUME_BRICK_X 192
 #define DEFORMVOLUME_BRICK_Y 16
 #define DEFORMVOLUME_BRICK_Z 16
@@ -132,15 +132,17 @@ typedef struct
   {                                                                                                \
     2, DEFORMVOLUME_BRICK_Y, DEFORMVOLUME_BRICK_Z                                                  \
   }
-// What can be run of a brick by itself: spans of so many cells on x, and halves on y and z.
+// Sections of a brick, which can be run separately: spans of DEFORMVOLUME_SPAN cells on x, and
+// halves on y and z.
 #define DEFORMVOLUME_SPAN 32
 #define DEFORMVOLUME_SPANS (DEFORMVOLUME_BRICK_X / DEFORMVOLUME_SPAN)
 #define DEFORMVOLUME_SECTIONS (4 * DEFORMVOLUME_SPANS)
 
-// What a work-item of the kernel ResampleBricks takes, and some work-groups of the kernels Resample
-// and ResampleColumns:
-// the number of a brick, and above that a bit for each span, and for y and z a bit for the lower
-// half and one for the upper half. ResampleBricks takes all spans from the lowest to the highest.
+// An entry in the list of bricks: the number of a brick, and above it the bits of its sections.
+// There is one bit for each span, then one for the lower and one for the upper half on y, then the
+// same on z. A work-item of the kernel ResampleBricks processes one entry, with all spans from the
+// first to the last selected one. Several work-groups of the kernels Resample and ResampleColumns
+// process one entry.
 #define DEFORMVOLUME_BRICK_BITS 22
 #define DEFORMVOLUME_WHOLE_BRICK ((1 << (DEFORMVOLUME_SPANS + 4)) - 1)
 
@@ -152,50 +154,50 @@ typedef struct
 #define DEFORMVOLUME_CUBOID_VERTICES                                                               \
   ((DEFORMVOLUME_CUBOID_X + 1) * (DEFORMVOLUME_CUBOID_Y + 1) * (DEFORMVOLUME_CUBOID_Z + 1))
 
-// Counters of a section of a brick: number (brick * 4 + 2 (upper z) + (upper y)) * SPANS +
-// span.
+// Counters of a section. Its number is (brick * 4 + 2 * (upper z) + (upper y)) * SPANS + span.
 #define DEFORMVOLUME_COUNT_WRITES 0
 #define DEFORMVOLUME_COUNT_INVERTED 1
 #define DEFORMVOLUME_COUNT_OVERSTRETCHED 2
-#define DEFORMVOLUME_COUNT_MISSING 3    // cells on the border with flat tetrahedra or left-out ones
-#define DEFORMVOLUME_COUNT_ASSUMED 4    // nonzero where it was assumed that there are none such
+#define DEFORMVOLUME_COUNT_MISSING 3 // cells on the border with flat or omitted tetrahedra
+#define DEFORMVOLUME_COUNT_ASSUMED 4 // nonzero if the kernel assumed that there are no such cells
 #define DEFORMVOLUME_COUNT_CANDIDATES 5 // voxels that cells may have won
-#define DEFORMVOLUME_COUNT_TOUCHED 6 // nonzero where cells hold samples that others write, or none
-#define DEFORMVOLUME_COUNT_LARGE 7   // cells that were put into the list of large ones
+#define DEFORMVOLUME_COUNT_TOUCHED                                                                 \
+  6                                // nonzero if cells hold samples that another cell or none writes
+#define DEFORMVOLUME_COUNT_LARGE 7 // cells that were added to the list of large cells
 #define DEFORMVOLUME_COUNTERS 8
 
-// Partial sums of these, and of the voxels that bits say are covered (the kernel SumParts): how
-// many, and how many parts there are.
+// Partial sums of the counters and of the covered voxels (the kernel SumParts): the number of sums,
+// and the number of parts.
 #define DEFORMVOLUME_SUMMED_COVERED DEFORMVOLUME_COUNTERS
 #define DEFORMVOLUME_SUMMED (DEFORMVOLUME_COUNTERS + 1)
 #define DEFORMVOLUME_PARTS 128
 
-// What the counters of all sections add up to (the kernel Summarize): two words each, the lower one
-// first, of writes, voxels covered and inverted tetrahedra; then overstretched ones, and the flags.
+// Totals of all sections (the kernel Summarize). Two words each, the lower word first: writes,
+// covered voxels and inverted tetrahedra. One word each: overstretched tetrahedra, and flags.
 #define DEFORMVOLUME_SUMMARY_WORDS 8
-#define DEFORMVOLUME_SUMMARY_MISSING_WHERE_ASSUMED 1 // missing and assumed ones, somewhere
-#define DEFORMVOLUME_SUMMARY_LARGE 2                 // large cells
+#define DEFORMVOLUME_SUMMARY_MISSING_WHERE_ASSUMED 1 // flag: COUNT_MISSING and COUNT_ASSUMED
+#define DEFORMVOLUME_SUMMARY_LARGE 2                 // flag: there are large cells
 
-// Samples that a work-item tries of one cell. A cell whose box has more is large: it goes into a
-// list, and what that lists is resampled in pieces, by kernels that follow (LargeCells.cl).
+// Samples of one cell that a work-item tests. A cell whose box has more samples is large. Large
+// cells are added to a list, and later kernels resample them in pieces (LargeCells.cl).
 #define DEFORMVOLUME_PIECE 65536
-// Room in that list, for four integers a cell: local x, y and z, and in how many pieces. Cells that
-// find no room there are resampled where they are found.
+// Capacity of that list, with four integers per cell: local x, y and z, and the number of pieces. A
+// large cell that does not fit into the list is resampled where it is found.
 #define DEFORMVOLUME_MOST_LARGE_CELLS 65536
 // Pieces in a launch.
 #define DEFORMVOLUME_PIECES 1024
 
-// Voxels of a patch of the output on each axis: what is cleared where a part is made anew and what
-// it covers may change, and what is looked at where voxels are not settled.
+// Voxels of a patch of the output on each axis. An update of a part of the output clears whole
+// patches if coverage may change, and searches whole patches for unsettled voxels.
 #define DEFORMVOLUME_PATCH 8
-// Patches that so many voxels on an axis lie in.
+// Number of patches that contain `voxels` voxels on an axis.
 #define DEFORMVOLUME_PATCHES(voxels) (((voxels) + DEFORMVOLUME_PATCH - 1) / DEFORMVOLUME_PATCH)
-// What is known of a patch.
-#define DEFORMVOLUME_PATCH_UNSETTLED 1 // voxels have to be won
-#define DEFORMVOLUME_PATCH_TOUCHED 2   // cells may hold voxels that others write, or none
-#define DEFORMVOLUME_PATCH_KEPT 4      // its voxels stay as they are
+// State of a patch.
+#define DEFORMVOLUME_PATCH_UNSETTLED 1 // it has voxels without a winner yet
+#define DEFORMVOLUME_PATCH_TOUCHED 2   // cells may hold voxels that another cell or none writes
+#define DEFORMVOLUME_PATCH_KEPT 4      // its voxels keep their values
 
-// Voxels of which a work-item makes bytes of the bits of coverage at a time: half a word of these.
+// Voxels per work-item when coverage bits are expanded to bytes: half a word of bits.
 #define DEFORMVOLUME_EXPANDED 16
 
 // Bytes that a work-item of the kernels Fill1 to Fill8 writes.
@@ -203,36 +205,36 @@ typedef struct
 
 // State of a vertex of the sampling mesh.
 #define DEFORMVOLUME_VERTEX_SOURCE 1 // it has a deformed position and may be interpolated
-// All tetrahedra that it could belong to are there, but for those in cells that the boundary of the
-// deformation mesh crosses.
+// All tetrahedra around it are present, except those in cells that the boundary of the deformation
+// mesh crosses, and it does not lie on the border of the volume.
 #define DEFORMVOLUME_VERTEX_INTERIOR 2
-#define DEFORMVOLUME_CELL_WHOLE 4     // of the cell that begins at it, all tetrahedra are there
-#define DEFORMVOLUME_VERTEX_REGULAR 8 // interior, but that it may lie on the border of the volume
-#define DEFORMVOLUME_VERTEX_UNCLIPPED 16 // a source, not on the far side of the boundary
+#define DEFORMVOLUME_CELL_WHOLE 4        // all tetrahedra of the cell that begins at it are present
+#define DEFORMVOLUME_VERTEX_REGULAR 8    // as interior, or on the border of the volume
+#define DEFORMVOLUME_VERTEX_UNCLIPPED 16 // a source with a boundary distance that is not negative
 #define DEFORMVOLUME_CELL_UNCROSSED 32   // a smooth cut crosses no tetrahedron of that cell
-#define DEFORMVOLUME_VERTEX_TOGETHER 64  // both sides of the cut see it where it is
+#define DEFORMVOLUME_VERTEX_TOGETHER 64  // its copies on both sides of the cut coincide with it
 
-// Beside the active tetrahedra of a cell: the boundary of the deformation mesh crosses it or one of
-// its neighbours; and it crosses the cell itself.
+// Further bits in the mask of active tetrahedra: the boundary of the deformation mesh crosses the
+// cell or one of its neighbors; and it crosses the cell itself.
 #define DEFORMVOLUME_CELL_AT_BOUNDARY 32
 #define DEFORMVOLUME_CELL_CROSSED 64
 
 #ifdef __OPENCL_VERSION__
 
-// On which axes the split of a cell is mirrored; x, y, z are local indices.
+// The axes on which the split of a cell is mirrored. x, y, z: local indices.
 static int Mirror(int x, int y, int z, const KernelParameters* p)
 {
   return DEFORMVOLUME_MIRROR(p->First[0] + x, p->First[1] + y, p->First[2] + z);
 }
 
-// Whether tetrahedra of a cell, but for the central one, are mirror images of those of the cell at
-// index 0.
+// Whether the corner tetrahedra of a cell have the opposite orientation to those of the cell at
+// index 0, in the output.
 static int IsTurned(int x, int y, int z, const KernelParameters* p)
 {
   return (p->First[0] + x + p->First[1] + y + p->First[2] + z + p->IsMirrored) & 1;
 }
 
-// Places of a vertex, and of a cell, in what a chunk has of each.
+// Index of a vertex, and of a cell, in the arrays of a chunk.
 static size_t VertexInChunk(int x, int y, int z, const KernelParameters* p)
 {
   return ((size_t)(z - p->ChunkFirst) * p->Size[1] + y) * p->Size[0] + x;
@@ -243,10 +245,10 @@ static size_t CellInChunk(int x, int y, int z, const KernelParameters* p)
   return ((size_t)(z - p->ChunkFirst) * (p->Size[1] - 1) + y) * (p->Size[0] - 1) + x;
 }
 
-#if HAS_CUT // whether a program knows smooth cuts (CutVertex)
-// The place of a vertex in the list of cut vertices, which is in the order of rows along x, then y,
-// then z; -1 where it is not there. rows: where each row begins in the list, and where the last one
-// ends.
+#if HAS_CUT // whether the program supports smooth cuts (CutVertex)
+// Returns the index of a vertex in the list of cut vertices, or -1 if it is not in the list. The
+// list is sorted by z, then y, then x. rows: index of the first vertex of each row along x, and the
+// end of the list.
 static int FindCutVertex(__global const uint* rows, __global const CutVertex* vertices, int x,
   int y, int z, const KernelParameters* p)
 {
@@ -270,7 +272,7 @@ static int FindCutVertex(__global const uint* rows, __global const CutVertex* ve
 }
 #endif
 
-// Patches of the output along x that hold the voxels with an y and a z: number of the first one.
+// Number of the first patch in the row of patches along x that contains the voxels at y and z.
 static size_t PatchRow(size_t y, size_t z, const KernelParameters* p)
 {
   const size_t width = DEFORMVOLUME_PATCHES(p->OutputSize[0]);
@@ -278,14 +280,14 @@ static size_t PatchRow(size_t y, size_t z, const KernelParameters* p)
   return (z / DEFORMVOLUME_PATCH * height + y / DEFORMVOLUME_PATCH) * width;
 }
 
-// The first plane of voxels behind all patches.
+// Number of voxel planes of all patches.
 static size_t PatchedPlanes(const KernelParameters* p)
 {
   return (size_t)DEFORMVOLUME_PATCHES(p->OutputSize[2]) * DEFORMVOLUME_PATCH;
 }
 
-// Local index of the first cell of a brick (DEFORMVOLUME_BRICK_BITS), which may lie before the
-// volume.
+// Local index of the first cell of a brick, which may be negative. item: an entry in the list of
+// bricks (DEFORMVOLUME_BRICK_BITS).
 static int3 FirstOfBrick(uint item, const KernelParameters* p)
 {
   const int brick = item & ((1u << DEFORMVOLUME_BRICK_BITS) - 1);
@@ -294,7 +296,7 @@ static int3 FirstOfBrick(uint item, const KernelParameters* p)
     brick / p->BrickCount[0] / p->BrickCount[1] * DEFORMVOLUME_BRICK_Z + p->BrickOrigin[2]);
 }
 
-// Whether a section of a brick is to be run. section: as counters number them.
+// Whether an entry in the list of bricks selects a section. section: number as for the counters.
 static int IsSectionRun(uint item, size_t section)
 {
   const uint inBrick = section % DEFORMVOLUME_SECTIONS;
@@ -306,7 +308,7 @@ static int IsSectionRun(uint item, size_t section)
     halvesZ >> (halves >> 1) & 1;
 }
 
-// The section of a brick that a cell lies in, as counters number them.
+// Number of the section that contains a cell, as for the counters.
 static size_t SectionOf(int x, int y, int z, const KernelParameters* p)
 {
   const int inBricks[3] = { x - p->BrickOrigin[0], y - p->BrickOrigin[1], z - p->BrickOrigin[2] };

@@ -20,7 +20,7 @@ std::size_t CountCuboids(int size, int cuboid)
   return static_cast<std::size_t>((size + cuboid - 1) / cuboid);
 }
 
-// Without branches in the loops, so that compilers make vectors of them.
+// The loops have no branches, so that compilers vectorize them.
 bool AreDifferent(
   const MaskValues& last, const MaskValues& next, std::size_t begin, std::size_t count)
 {
@@ -54,7 +54,7 @@ void Add(Extent& box, int x, int y, int z)
     std::min(box[4], z), std::max(box[5], z) } };
 }
 
-// The cuboids of all x with the same y and z.
+// The row of cuboids along x at one y and z.
 class CuboidRow
 {
 public:
@@ -118,7 +118,7 @@ private:
   int EndZ;
 };
 
-// The rows of cuboids that ranges of places touch, or all.
+// Finds the rows of cuboids that ranges touch; all rows if `written` is null.
 std::vector<std::size_t> FindRows(const std::array<int, 3>& size, const PointRanges* written)
 {
   const std::size_t rowsOfPlane = CountCuboids(size[1], DEFORMVOLUME_CUBOID_Y);

@@ -11,13 +11,12 @@
 namespace deformvolume
 {
 
-/// What a mask of the vertices or the cells of a voxel grid can be read as: one byte each, of which
-/// some bits count.
+/// A mask of the vertices or cells of a voxel grid: some bits of one byte per vertex or cell.
 struct MaskValues
 {
-  const unsigned char* Bytes = nullptr; // null: all are usual
-  unsigned char Bits = 255;
-  unsigned char Usual = 0; // what bytes, with these bits, usually are
+  const unsigned char* Bytes = nullptr; // null: all values are Usual
+  unsigned char Bits = 255;             // the bits that belong to the mask
+  unsigned char Usual = 0;              // the value of a vertex or cell without a mask
 
   unsigned char Get(std::size_t place) const
   {
@@ -25,13 +24,14 @@ struct MaskValues
   }
 };
 
-/// Where two masks of so many vertices or cells on each axis differ: boxes of local indices that do
-/// not overlap, each as small as one within 64 x 4 x 4 of them can be. written: ranges of places;
-/// elsewhere the masks are the same, for certain. Null: they may differ anywhere.
+/// Finds the differences between two masks. Returns boxes of local indices: the bounding box of the
+/// differences in each cuboid of 64 x 4 x 4 vertices or cells that has any. size: vertices or cells
+/// on each axis. written: ranges outside which the masks are known to be equal; null: none are
+/// known.
 std::vector<Extent> FindMaskChanges(const std::array<int, 3>& size, const MaskValues& last,
   const MaskValues& next, const PointRanges* written = nullptr);
 
-/// Copies the bits that count of a box, from a mask to another of the same size.
+/// Copies the values of a box from one mask to another of the same size.
 void CopyMask(
   const std::array<int, 3>& size, const Extent& box, const MaskValues& from, unsigned char* to);
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a point of the volume at rest lies in the five tetrahedra of its cell. It comes after IntegerVectors.cl.
+// Location of a point of the volume at rest in the five tetrahedra of its cell. This text comes after
+// IntegerVectors.cl.
 
-// Whether a point lies in a tetrahedron of a cell, or on its surface. point: in the cell, mirrored
-// as its parity asks for, from 0 to one. weights: of the vertices then, all with one factor.
+// Whether a point lies in tetrahedron t of a cell, or on its surface. point: position in the cell, from 0 to `one` on
+// each axis, mirrored by the parity of the cell. weights: if so, barycentric weights times a common factor.
 static int IsInTetrahedron(int t, Vector point, long one, long* weights)
 {
   const long x = point.x;

@@ -7,9 +7,8 @@
 namespace deformvolume
 {
 
-/// What kernels need of the sampling mesh (FiveTetrahedra.h), and the parameters of launches over
-/// it (KernelParameters.h). withCut: the program knows smooth cuts; without one it must not pay for
-/// them.
+/// Returns the source text that kernels on the sampling mesh include: FiveTetrahedra.h and
+/// KernelParameters.h. withCut: whether the program supports smooth cuts, which make it slower.
 ProgramText GetSamplingMeshText(bool withCut = false);
 
 } // namespace deformvolume

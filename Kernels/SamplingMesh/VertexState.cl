@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The static state of the vertices of the sampling mesh, one byte a voxel. It comes after
-// DeformationMapping.cl. Vertices are worked on by cuboids of them, as many as such of cells have (KernelParameters.h),
-// which are numbered in each chunk along x, then y, then z. Global size (any, cuboids of a list): a work-item takes
-// every global-size(0)-th vertex of the rows of one.
+// The static state of the vertices of the sampling mesh, one byte per voxel. This text comes after
+// DeformationMapping.cl. Vertices are processed in cuboids of DEFORMVOLUME_CUBOID_X x Y x Z vertices, which are
+// numbered in each chunk along x, then y, then z. Global size: (any, cuboids in the list). A work-item processes the
+// vertices get_global_id(0), get_global_id(0) + get_global_size(0) and so on of each row of its cuboid.
 
-// Local indices of the first vertex of a cuboid, and of one past the last.
+// Local indices of the first vertex of a cuboid, and one past its last vertex.
 static int3 FirstVertex(uint cuboid, const KernelParameters* p)
 {
   const uint countX = (p->Size[0] + DEFORMVOLUME_CUBOID_X - 1) / DEFORMVOLUME_CUBOID_X;
@@ -19,16 +19,15 @@ static int3 EndOfVertices(int3 first, const KernelParameters* p)
     (int3)(p->Size[0], p->Size[1], p->PlanesEnd));
 }
 
-// Place of a vertex among those that MarkVertices has found the state of.
+// Index of a vertex in the array `marked` of MarkVertices.
 static size_t PlaceInList(int3 first, int x, int y, int z)
 {
   return ((get_global_id(1) * DEFORMVOLUME_CUBOID_Z + (z - first.z)) * DEFORMVOLUME_CUBOID_Y + (y - first.y)) *
     DEFORMVOLUME_CUBOID_X + (x - first.x);
 }
 
-// State of the vertices, first pass: those are a source that the deformation moves and that are
-// not blanked, and of these those unclipped whose boundary distance is not negative. Their other bits
-// are found after that.
+// State of the vertices, first pass. A vertex is a source if the deformation moves it and it is not blanked. A source
+// is unclipped if its boundary distance is not negative. MarkVertices sets the other bits.
 __kernel void MarkSources(MAPPING_PARAMETERS, __global const uchar* blanked, const int hasBlanked,
   __global const float* distances, __global uchar* state, __global const uint* cuboids, const KernelParameters p)
 {
@@ -57,23 +56,24 @@ static int IsUnclipped(__global const uchar* state, int x, int y, int z, const K
   return (state[VertexInChunk(x, y, z, p)] & DEFORMVOLUME_VERTEX_UNCLIPPED) != 0;
 }
 
-// What the first pass has found.
+// The bits that MarkSources has set.
 static int SourceBits(__global const uchar* state, int x, int y, int z, const KernelParameters* p)
 {
   return state[VertexInChunk(x, y, z, p)] & (DEFORMVOLUME_VERTEX_SOURCE | DEFORMVOLUME_VERTEX_UNCLIPPED);
 }
 
-// Whether a cell has all of its tetrahedra.
+// Whether all tetrahedra of a cell are active.
 static int IsWhole(int active)
 {
   return (active & DEFORMVOLUME_ALL_TETRAHEDRA) == DEFORMVOLUME_ALL_TETRAHEDRA;
 }
 
-// What is found of the vertices and cells with one x round a row at y and z, as far as they lie in the volume:
-#define ALL_SOURCES 1       // the nine vertices round (x, y, z) are unclipped sources
-#define CELL_OF_SOURCES 2   // the four of these that cells from y and z on have are
-#define ALL_ACTIVE 4        // the four cells from x on, round the row, have all their tetrahedra
-#define CELL_ACTIVE 8       // the one from y and z on has them
+// Bits of MarkCrossSection() for the vertices and cells at x around the row at y and z. Those outside the volume do not
+// count.
+#define ALL_SOURCES 1       // the nine vertices (x, y - 1 to y + 1, z - 1 to z + 1) are unclipped sources
+#define CELL_OF_SOURCES 2   // the four vertices (x, y to y + 1, z to z + 1) are unclipped sources
+#define ALL_ACTIVE 4        // all tetrahedra of the four cells (x, y - 1 to y, z - 1 to z) are active
+#define CELL_ACTIVE 8       // all tetrahedra of the cell (x, y, z) are active
 
 static int MarkCrossSectionAtBorder(__global const uchar* state, __global const uchar* active, int x, int y, int z,
   const KernelParameters* p)
@@ -142,7 +142,7 @@ static int IsCrossed(
 #endif
 }
 
-// Whether a cell is whole, and all its vertices are there.
+// Whether all tetrahedra of a cell are active and all its vertices are unclipped sources.
 static int IsComplete(__global const uchar* state, int cell, int x, int y, int z, const KernelParameters* p)
 {
   int all = IsWhole(cell);
@@ -153,7 +153,7 @@ static int IsComplete(__global const uchar* state, int cell, int x, int y, int z
   return all;
 }
 
-// Whether the boundary of the deformation mesh crosses one of the cells round a vertex.
+// Whether the boundary of the deformation mesh crosses one of the cells around a vertex.
 static int IsBesideCrossed(__global const uchar* active, int x, int y, int z, const KernelParameters* p)
 {
   int crossed = 0;
@@ -170,8 +170,8 @@ static int IsBesideCrossed(__global const uchar* active, int x, int y, int z, co
   return crossed != 0;
 }
 
-// Whether a vertex and all tetrahedra round it are there, but for those in cells that the boundary of the deformation
-// mesh crosses: samples on their faces are found when these cells are resampled (BoundaryCells.cl).
+// Whether a vertex is an unclipped source and all cells around it are complete. Cells that the boundary of the
+// deformation mesh crosses do not count: BoundaryCells.cl finds the samples on their faces.
 static int IsSurrounded(__global const uchar* state, __global const uchar* active, int x, int y, int z,
   const KernelParameters* p)
 {
@@ -190,8 +190,8 @@ static int IsSurrounded(__global const uchar* state, __global const uchar* activ
   return all;
 }
 
-// Whether the boundary crosses the cell that begins at a vertex, and all its vertices are there. Such a vertex must not
-// be interior: a cell whose eight vertices are interior counts as whole.
+// Whether the boundary of the deformation mesh crosses the cell that begins at a vertex, and all vertices of this cell
+// are unclipped sources. Such a vertex must not be interior, since a cell with eight interior vertices counts as whole.
 static int BeginsCrossed(__global const uchar* state, __global const uchar* active, int x, int y, int z,
   const KernelParameters* p)
 {
@@ -203,14 +203,15 @@ static int BeginsCrossed(__global const uchar* state, __global const uchar* acti
   return IsComplete(state, DEFORMVOLUME_ALL_TETRAHEDRA, x, y, z, p);
 }
 
-// The state of the vertices of a row of a cuboid that begins at first, into a place for that.
+// Computes the state of the vertices of one row of a cuboid, and stores it in `marked`. first: first vertex of the
+// cuboid.
 static void MarkRow(__global const uchar* state, __global const uchar* active, __global const uint* cutRows,
   __global const CutVertex* cutVertices, int3 first, int endX, int y, int z, __global uchar* marked,
   const KernelParameters* p)
 {
   const int step = get_global_size(0);
   const int begin = first.x + get_global_id(0);
-  // Vertices of the planes beyond the layers of this chunk serve only as neighbours.
+  // Vertices beyond the cell layers of this chunk are needed only as neighbors of other vertices.
   if (z < p->LayersBegin || z > p->LayersEnd)
   {
     for (int x = begin; x < endX; x += step)
@@ -227,7 +228,7 @@ static void MarkRow(__global const uchar* state, __global const uchar* active, _
     int bits = SourceBits(state, x, y, z, p);
     if (bits)
     {
-      bits |= DEFORMVOLUME_VERTEX_TOGETHER; // until its copy is found (CutPositions.cl)
+      bits |= DEFORMVOLUME_VERTEX_TOGETHER; // CutPositions.cl clears the bit if a copy lies elsewhere
       if (((before & here & after & ALL_SOURCES) && (before & here & ALL_ACTIVE)) ||
         (p->HasActive && IsBesideCrossed(active, x, y, z, p) && IsSurrounded(state, active, x, y, z, p)))
       {
@@ -248,11 +249,12 @@ static void MarkRow(__global const uchar* state, __global const uchar* active, _
   }
 }
 
-// Second pass: a vertex is interior when all vertices round it are unclipped sources and all tetrahedra of
-// the eight cells round it are active, or in cells that the boundary of the deformation mesh crosses: those that a
-// smooth cut divides are all there as each side sees them (CutCells.cl). Being wrong on the careful side costs time,
-// not truth. A cell is whole when its vertices are unclipped sources and its tetrahedra active. Not into the states,
-// where others look for sources meanwhile.
+// State of the vertices, second pass. A vertex is interior if all vertices around it are unclipped sources, and all
+// tetrahedra of the eight cells around it are active or in cells that the boundary of the deformation mesh crosses.
+// Tetrahedra that a smooth cut divides count as active, since each side has a copy (CutCells.cl). A vertex that is
+// wrongly not marked as interior costs time, but does not change the result. A cell is whole if its vertices are
+// unclipped sources and its tetrahedra are active. The result goes to `marked`, since other work-items read the sources
+// from `state` at the same time.
 __kernel void MarkVertices(__global const uchar* state, __global const uchar* active,
   __global const uint* cutRows, __global const CutVertex* cutVertices, __global uchar* marked, __global const uint* cuboids, const KernelParameters p)
 {

@@ -10,23 +10,23 @@
 namespace deformvolume
 {
 
-/// One array over the voxels of the volume: tuples of Components elements, x varying fastest.
+/// An array over the voxels of a volume: tuples of Components elements, with x varying fastest.
 struct VolumeArray
 {
-  /// The values; aligned for Type.
+  /// The values, aligned for Type.
   const void* Data = nullptr;
-  /// What keeps Data where it is and as it is. With it a device that is a processor reads Data
-  /// where it lies, at each Deform(), and holds the owner until it has other arrays; without it,
-  /// and on other devices, Data is copied during the call. Null by default.
+  /// Owner of Data. While an object holds the owner, Data must stay valid and unchanged. With an
+  /// owner, a CPU device reads Data in place at each Deform(), and holds the owner until other
+  /// arrays are set. Without an owner, and on other devices, the call copies Data. Default: null.
   std::shared_ptr<const void> Owner;
-  /// The type of the elements.
+  /// Type of the elements.
   ElementType Type = ElementType::UInt8;
-  /// Elements of a tuple, 1 or more.
+  /// Number of components of a tuple, 1 or more.
   int Components = 1;
-  /// True: take the value of the nearest vertex. False: interpolate linearly, and round to the
-  /// nearest integer where the type is an integer type.
+  /// True: use the value of the nearest vertex. False: interpolate linearly, and round to the
+  /// nearest integer for integer types.
   bool Categorical = false;
-  /// What voxels get that the deformed volume does not cover, clamped to the type's range.
+  /// Value of output voxels outside the deformed volume, clamped to the range of Type.
   double Background = 0.0;
 };
 

@@ -10,17 +10,17 @@
 namespace deformvolume
 {
 
-/// Takes structured indices of a volume to continuous indices of the output.
+/// Affine map from structured indices of a volume to continuous indices of the output.
 struct OutputMap
 {
-  /// Row-major 3 x 3: the step in the output from voxel to voxel. It may turn, mirror and scale,
-  /// but has an inverse.
+  /// Row-major 3 x 3 matrix: column k is the step in the output between neighboring voxels on axis
+  /// k. It may rotate, reflect, shear and scale, but must be invertible.
   std::array<double, 9> Matrix{ { 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0 } };
-  /// Where the index (0, 0, 0) lies.
+  /// Position of the index (0, 0, 0) in the output.
   std::array<double, 3> Shift{ { 0.0, 0.0, 0.0 } };
 
   OutputMap() = default;
-  /// The axes are the same: steps are the ratios of the volume's spacing to the output's.
+  /// A map for parallel axes. scale: ratio of the spacing of the volume to that of the output.
   OutputMap(const std::array<double, 3>& scale)
     : Matrix{ { scale[0], 0.0, 0.0, 0.0, scale[1], 0.0, 0.0, 0.0, scale[2] } }
   {
@@ -31,7 +31,7 @@ struct OutputMap
   {
     return this->Matrix[static_cast<std::size_t>(3 * row + column)];
   }
-  /// Whether each axis of the volume is one of the output.
+  /// Whether each axis of the volume is parallel to the same axis of the output.
   bool IsDiagonal() const
   {
     bool diagonal = true;
@@ -41,7 +41,7 @@ struct OutputMap
     }
     return diagonal;
   }
-  /// Less than zero: the output is a mirror image of the volume.
+  /// Determinant of Matrix. Negative: the output is a mirror image of the volume.
   double GetDeterminant() const
   {
     const std::array<double, 9>& m = this->Matrix;
@@ -53,24 +53,25 @@ struct OutputMap
   {
     return this->Matrix == other.Matrix && this->Shift == other.Shift;
   }
-  /// Whether one of them differs.
+  /// Whether matrix or shift differs.
   bool operator!=(const OutputMap& other) const { return !(*this == other); }
 };
 
-/// The voxels of a volume at rest, which are the vertices of the implicit sampling mesh, and where
-/// they lie in the output.
+/// The voxels of a volume at rest, which are the vertices of the implicit sampling mesh, and the
+/// map from voxels to the output.
 struct VoxelGrid
 {
   /// Structured indices of the voxels. Their parity decides the 5T split.
   Extent VertexExtent{ { 0, -1, 0, -1, 0, -1 } };
-  /// Where they lie in the output. By default volume and output share their indices.
+  /// Map to indices of the output. Default: the identity.
   OutputMap ToOutput;
-  /// Structured indices of the volume that the voxels are a part of; empty: they are all of it.
-  /// Voxels of a part are displaced as in the whole, to the last bit.
+  /// Extent of the whole volume, if the voxels are a part of it. Default: empty, which means that
+  /// the voxels are the whole volume. The displacements of a part are bitwise equal to those of the
+  /// whole.
   Extent WholeExtent{ { 0, -1, 0, -1, 0, -1 } };
 };
 
-/// Structured indices of the whole volume, whether the voxels are a part of it or all of it.
+/// Returns the extent of the whole volume: WholeExtent, or VertexExtent if that is empty.
 inline const Extent& GetWholeExtent(const VoxelGrid& grid)
 {
   return GetNumberOfPoints(grid.WholeExtent) > 0 ? grid.WholeExtent : grid.VertexExtent;

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The voxels that a place at rest lies between, with their weights, and what arrays are there:
-// linear over eight voxels, or cubic (Catmull-Rom) over 64. Voxels without weight are left out: a
-// NaN stays within its cells, and a voxel's own place gives its bits.
+// Interpolation at a position at rest: trilinear over 8 voxels, or tricubic (Catmull-Rom) over 64. Voxels with weight 0
+// are omitted, so that a NaN does not spread beyond its cells, and a position on a voxel gives exactly the value of the
+// voxel.
 //
-// What the host puts in front of this text:
-//   REAL   type of the interpolation: double where the device has it, else float
+// Macros that the host defines before this text:
+//   REAL   type of the interpolation: double if the device supports it, else float
 //   CUBIC  whether the interpolation is cubic
 
 #define TAPS_PER_AXIS (CUBIC ? 4 : 2)
 #define TAPS (CUBIC ? 64 : 8)
 
-// The voxels on an axis.
+// The voxels and weights on one axis.
 typedef struct
 {
   int Voxels[TAPS_PER_AXIS];
@@ -28,8 +28,8 @@ static void AddTap(AxisTaps* taps, int voxel, REAL weight)
 }
 
 #if CUBIC
-// Those for a place between a voxel and the next one, at a fraction f of the way. before, after:
-// the voxels beyond these.
+// Adds the taps for a position between `voxel` and voxel + 1, at the fraction f. before, after: the voxels before and
+// after these two.
 static void AddCubicTaps(AxisTaps* taps, int before, int voxel, int after, REAL f)
 {
   AddTap(taps, before, MULTIPLY_ADD_REAL(2 - f, f, (REAL)-1) * f / 2);
@@ -43,12 +43,12 @@ static void AddCubicTaps(AxisTaps* taps, int before, int voxel, int after, REAL 
 
 typedef struct
 {
-  size_t Sources[TAPS]; // places of voxels in the arrays
+  size_t Sources[TAPS]; // indices of the voxels in the arrays
   REAL Weights[TAPS];
   int Count;
 } VoxelTaps;
 
-// size: of the volume.
+// Multiplies the taps of three axes. size: voxels of the volume on each axis.
 static void JoinTaps(
   const AxisTaps* x, const AxisTaps* y, const AxisTaps* z, const int* size, VoxelTaps* taps)
 {
@@ -86,9 +86,8 @@ static void JoinTaps(
     }                                                                                              \
   }
 
-// Integers of 64 bits do not fit into REAL: what is interpolated is the difference to the first
-// voxel, which is exact wherever the values are near to each other. A cubic sum may leave the range
-// of the type: it is added where no overflow is possible.
+// REAL cannot represent all 64-bit integers. So the difference to the first voxel is interpolated, which is exact if
+// the values are close to each other. A cubic sum may exceed the range of the type, so the addition saturates.
 #define STORE_TAPS_64(T, SOURCE, TARGET, PLACE, COMPONENTS, TYPE, CONVERT)                         \
   for (int c = 0; c < COMPONENTS; ++c)                                                             \
   {                                                                                                \

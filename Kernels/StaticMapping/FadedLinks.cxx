@@ -51,8 +51,9 @@ void FadedLinks::Link(const Extent& voxels, const glm::dvec3& spacing,
   if (tetrahedra.size() + this->Faces.size() >=
     static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
   {
-    throw Error("The deformation mesh has too many tetrahedra to keep the voxels outside it where "
-                "they are. Use a coarser mesh.");
+    throw Error("The voxels outside the deformation mesh cannot be kept: the mesh has " +
+      std::to_string(tetrahedra.size()) + " tetrahedra and " + std::to_string(this->Faces.size()) +
+      " boundary faces, but together fewer than 2^31 - 1 are possible. Use a coarser mesh.");
   }
   this->LinkRows(
     voxels, spacing, restPoints, tetrahedra, links, [&](double done) { progress(0.9 * done); });
@@ -84,7 +85,7 @@ void FadedLinks::LinkRows(const Extent& voxels, const glm::dvec3& spacing,
     glm::dvec3 index(
       0.0, voxels[2] + row % GetSize(voxels, 1), voxels[4] + row / GetSize(voxels, 1));
     std::int32_t nearby = -1;
-    std::int64_t farUntil = 0; // voxels before are too far from the mesh
+    std::int64_t farUntil = 0; // voxels of the row before this index are beyond the fade distance
     for (std::int64_t x = 0; x < size; ++x, ++link)
     {
       if (link->Tetrahedron >= 0)
@@ -107,7 +108,7 @@ void FadedLinks::LinkRows(const Extent& voxels, const glm::dvec3& spacing,
       }
       else
       {
-        // The distance shrinks by no more than the step from voxel to voxel.
+        // From voxel to voxel, the distance decreases at most by the step between them.
         const double steps = (distance - this->FadeDistance) * (1.0 - 1e-9) / stepLength;
         farUntil = x + static_cast<std::int64_t>(std::min(steps, 1e9));
       }
@@ -317,7 +318,7 @@ IndexBounds FadedLinks::ComputeBounds(const VoxelGrid& voxelGrid,
   std::size_t begin = 0;
   for (const Block& block : this->Blocks)
   {
-    // Most blocks are inside, wherever their voxels go.
+    // Most blocks do not enlarge the bounds, even with the largest displacements of all faces.
     const IndexBounds widest = move(block.Voxels, block.GreatestWeight, most);
     const bool isInside = !bounds.IsEmpty() &&
       glm::all(glm::greaterThanEqual(widest.Min, bounds.Min)) &&

@@ -9,7 +9,7 @@ namespace deformvolume
 void FadedMesh::Set(
   const FadedLinks& links, const std::vector<Tetrahedron>& tetrahedra, std::size_t numberOfNodes)
 {
-  // Room for nodes that are added where the mesh is split.
+  // Reserve numbers for nodes that are added when the mesh is split.
   this->NumberOfNodes = numberOfNodes + numberOfNodes / 4 + 1024;
   this->NumberOfTetrahedra = tetrahedra.size();
   this->Displacements.assign(3 * this->NumberOfNodes, 0.0F);

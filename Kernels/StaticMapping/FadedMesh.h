@@ -13,29 +13,31 @@
 namespace deformvolume
 {
 
-/// A deformation mesh as faded links name it, and as a VolumeDeformer is to be given it: its
-/// tetrahedra and then the records of the links, its nodes and then one that never moves.
+/// A deformation mesh with the records of FadedLinks, for a VolumeDeformer. The records follow the
+/// tetrahedra of the mesh. The last node never moves.
 class DEFORMVOLUME_EXPORT FadedMesh
 {
 public:
-  /// Displacements are those of Move from then on; before they are zero.
+  /// Set the mesh. All displacements are zero until Move() is called.
   void Set(
     const FadedLinks& links, const std::vector<Tetrahedron>& tetrahedra, std::size_t numberOfNodes);
-  /// Whether there is room for so many nodes, else Set has to be called again: the node that never
-  /// moves has the same number as long as a mesh that is split does not grow by a quarter.
+  /// Whether a mesh with this number of nodes fits without a new call of Set(). Set() reserves room
+  /// for a quarter more nodes, so that the number of the node that never moves stays the same when
+  /// a mesh is split.
   bool HasRoom(std::size_t numberOfNodes) const { return numberOfNodes < this->NumberOfNodes; }
-  /// Some tetrahedra have got other nodes in the same places; returns the changes with those of
-  /// records.
+  /// Applies changes of the nodes of tetrahedra. The positions at rest must not change. Returns the
+  /// changes together with the resulting changes of records.
   std::vector<TetrahedronChange> Change(
     const FadedLinks& links, const std::vector<TetrahedronChange>& changes);
-  /// changes: all others are those of the last call; null: any may have changed.
+  /// Set the displacements. changes: the nodes whose displacements have changed since the last
+  /// call; null: any may have changed.
   void Move(const float* displacements, std::size_t numberOfNodes, const PointRanges* changes);
 
-  /// The tetrahedra of the mesh, and then the records.
+  /// The tetrahedra of the mesh, followed by the records.
   const std::vector<Tetrahedron>& GetTetrahedra() const { return this->Tetrahedra; }
-  /// The one that never moves is the last.
+  /// Number of nodes, with those in reserve and the node that never moves, which is the last.
   std::size_t GetNumberOfNodes() const { return this->NumberOfNodes; }
-  /// Three floats a node, in output voxels.
+  /// Displacements: three floats per node, in output voxels.
   const std::vector<float>& GetDisplacements() const { return this->Displacements; }
 
 private:

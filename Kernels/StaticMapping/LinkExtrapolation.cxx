@@ -14,10 +14,12 @@ namespace deformvolume
 namespace
 {
 
-// The nearest linked voxel, counted from the first voxel. Until an unlinked voxel gets its link,
-// the room of its weights holds this, so that the transform needs no memory of its own.
+// The feature of the distance transform: the local index of the nearest linked voxel. It is stored
+// in the weights of an unlinked voxel until this voxel is linked, so that the transform needs no
+// additional memory.
 using Feature = std::array<std::int32_t, 3>;
-static_assert(sizeof(Feature) == sizeof(VertexLink::Weights), "a feature takes the weights' room");
+static_assert(
+  sizeof(Feature) == sizeof(VertexLink::Weights), "A feature is stored in place of the weights.");
 
 Feature GetFeature(const VertexLink& link)
 {
@@ -36,7 +38,8 @@ bool IsLinked(const VertexLink& link)
   return link.Tetrahedron >= 0;
 }
 
-// For each place on a line the place with the least sum of a cost and the squared distance to it.
+// One-dimensional distance transform: for each position on a line, finds the position with the
+// least sum of cost and squared distance.
 class NearestOnLine
 {
 public:
@@ -49,13 +52,14 @@ public:
   {
   }
 
-  // Infinity: not to be chosen.
+  // cost: infinity excludes the position.
   void SetCost(std::int64_t place, double cost) { this->Costs[place] = cost; }
 
-  // -1 where no place can be chosen.
+  // Returns -1 if all positions are excluded.
   std::int32_t GetNearest(std::int64_t place) const { return this->Nearest[place]; }
 
-  // The lower envelope of the parabolas above the places, found in one sweep.
+  // Computes the lower envelope of the parabolas at the positions in one sweep (Felzenszwalb and
+  // Huttenlocher).
   void Compute()
   {
     const std::int32_t size = static_cast<std::int32_t>(this->Costs.size());
@@ -93,8 +97,8 @@ public:
   }
 
 private:
-  // Where the parabola above q sinks below that above p, for p < q. Written with differences, since
-  // the squares of the places would cost digits.
+  // Returns the position from which the parabola at q is below that at p, for p < q. Differences
+  // avoid cancellation of the squared positions.
   double Intersect(std::int32_t p, std::int32_t q) const
   {
     return 0.5 *
@@ -241,8 +245,8 @@ private:
     }
   }
 
-  // Only unlinked voxels of the plane are written, and of others only linked ones are read: planes
-  // do not disturb each other.
+  // Writes unlinked voxels of this plane, and reads only linked voxels of other planes. So planes
+  // can be processed in parallel.
   void LinkPlane(std::int64_t y, NearestOnLine& line)
   {
     std::vector<Feature> features(this->Size[2]);

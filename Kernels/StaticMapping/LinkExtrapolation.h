@@ -14,11 +14,12 @@
 namespace deformvolume
 {
 
-/// Links each voxel without a tetrahedron to that of the nearest voxel with one (index difference
-/// times spacing), with weights outside 0 to 1. Where voxels are equally near, which one it is
-/// depends on neither threads nor runs. Nothing happens where no voxel has a tetrahedron.
+/// Links each voxel without a tetrahedron to the tetrahedron of the nearest voxel that has one,
+/// with weights outside 0 to 1. Distances are in world units (index difference times spacing). If
+/// several voxels are equally near, the choice is deterministic. Does nothing if no voxel has a
+/// tetrahedron.
 ///
-/// progress gets the fraction done and may throw, which leaves links in an undefined state.
+/// progress: called with the fraction done. It may throw; the links are then undefined.
 void ExtrapolateLinks(const Extent& voxels, const glm::dvec3& spacing,
   const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra,
   std::vector<VertexLink>& links, const std::function<void(double)>& progress);

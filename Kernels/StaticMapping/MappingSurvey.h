@@ -15,49 +15,50 @@ namespace deformvolume
 /// The form of a static mapping: a link for each voxel, or runs of voxels.
 enum class StaticMappingForm
 {
-  /// Runs where they are long enough (LeastMeanRunLength, by a sample of the volume that is always
-  /// the same) and need less memory than links, and voxels outside the mesh are discarded; else
-  /// links.
+  /// Runs if voxels outside the mesh are discarded, and if runs are long enough
+  /// (LeastMeanRunLength) and need less memory than links. Otherwise links. The lengths are
+  /// estimated from a deterministic sample of the volume.
   Automatic,
   /// A link for each voxel.
   Links,
-  /// Not where voxels outside the mesh are linked, which needs to see all of them at once.
+  /// Runs. Only possible if voxels outside the mesh are discarded.
   Runs
 };
 
-/// Runs are made where they are so long on average, in voxels: below, finding the run of a voxel
-/// costs what reading less memory gains.
+/// Least mean length of runs, in voxels, for which StaticMappingForm::Automatic chooses runs. With
+/// shorter runs, the search for the run of a voxel takes the time that is saved by less memory
+/// access.
 constexpr double LeastMeanRunLength = 3.0;
 
-/// What a tile of a volume, some rows of voxels, is found to have.
+/// Counts of a tile of a volume, which consists of rows of voxels.
 struct TileSample
 {
-  /// Rows of voxels.
+  /// Number of rows.
   std::int64_t Rows = 0;
-  /// Runs in these rows.
+  /// Number of runs in these rows.
   std::int64_t Runs = 0;
-  /// Those of them that are in slivers (LargestWeightVariation).
+  /// Number of these runs that are in slivers (LargestWeightVariation).
   std::int64_t RunsOfSlivers = 0;
 };
 
-/// What the choice between the forms of a static mapping follows from, and what is counted of a
-/// mesh.
+/// The data for the choice between the forms of a static mapping.
 struct MappingSurvey
 {
-  /// The form that is asked for.
+  /// The requested form.
   StaticMappingForm Form = StaticMappingForm::Automatic;
   /// Whether voxels outside the mesh have links.
   bool IsOutsideLinked = false;
-  /// Tetrahedra of the mesh.
+  /// Number of tetrahedra of the mesh.
   std::int64_t NumberOfTetrahedra = 0;
-  /// Tetrahedra of the mesh without volume at rest.
+  /// Number of tetrahedra without volume at rest.
   std::int64_t NumberOfFlatTetrahedra = 0;
-  /// Of all tiles; tetrahedra in several are counted several times.
+  /// Number of tetrahedra in the lists of all tiles. A tetrahedron in several tiles counts several
+  /// times.
   std::int64_t NumberOfEntries = 0;
-  /// None where there is no choice.
+  /// Counts of some tiles. Empty if only links are possible.
   std::vector<TileSample> Samples;
 
-  /// Bytes that runs will take (GetRunBytes in VertexRuns.h), about; 0 where links are made.
+  /// Estimates the bytes of the runs (GetRunBytes() in VertexRuns.h). 0 if links are chosen.
   DEFORMVOLUME_EXPORT std::uint64_t GetRunBytes(const Extent& voxels) const;
 };
 

@@ -13,9 +13,9 @@
 namespace deformvolume
 {
 
-// Gives records their numbers: one for a tetrahedron, or one for each run of a sliver, in the order
-// in which they appear, which does not depend on threads. The origin of a tetrahedron's record is a
-// voxel that does not depend on the part of the volume that the runs are made for.
+// Numbers the records in the order of their first runs, which does not depend on threads. A
+// tetrahedron has one record, and a sliver has one record for each run. The origin of the record of
+// a tetrahedron does not depend on the part of the volume for which the runs are made.
 class RunBuilder::Numbering
 {
 public:
@@ -27,7 +27,7 @@ public:
   {
   }
 
-  // voxel: the run's first one.
+  // voxel: the first voxel of the run.
   std::int32_t GetRecord(std::int32_t tetrahedron, glm::i64vec3 voxel)
   {
     std::int32_t& known = this->Known[tetrahedron];
@@ -133,7 +133,7 @@ bool RunBuilder::IsSliver(std::int32_t tetrahedron) const
 
 RestTetrahedron RunBuilder::MakeRest(std::int32_t tetrahedron, const glm::i64vec3& voxel) const
 {
-  BarycentricMap map; // a tetrahedron that holds voxels is not flat
+  BarycentricMap map; // SetTetrahedron() succeeds: a tetrahedron with voxels is not flat
   map.SetTetrahedron(this->Tetrahedra[tetrahedron], this->RestPoints);
   const glm::dvec3 weights = map.GetWeights(glm::dvec3(voxel));
   RestTetrahedron rest;
@@ -158,8 +158,8 @@ std::vector<std::int64_t> RunBuilder::ChooseTiles(const TileGrid& tiles)
     chosen[i] = i;
     if (samples < tiles.GetNumberOfTiles())
     {
-      // Spread evenly over the plane, in no step with the mesh: multiples of the powers of the
-      // inverse of the plastic number, modulo 1.
+      // A low-discrepancy sequence, to avoid aliasing with a regular mesh: multiples of 1/p and
+      // 1/p^2 modulo 1, where p is the plastic number.
       const double y = std::fmod((static_cast<double>(i) + 0.5) * 0.7548776662466927, 1.0);
       const double z = std::fmod((static_cast<double>(i) + 0.5) * 0.5698402909980532, 1.0);
       chosen[i] = static_cast<std::int64_t>(z * static_cast<double>(count[1])) * count[0] +
@@ -192,7 +192,7 @@ std::vector<TileSample> RunBuilder::SampleTiles(const std::vector<std::int64_t>&
 void RunBuilder::Append(const std::vector<TileRuns>& tiles, const VoxelBox& firstBox,
   Numbering& numbering, VertexRuns& runs) const
 {
-  // Tiles lie side by side on y: a plane of rows goes through all of them.
+  // Each plane of rows passes through all tiles, which are neighbors on y.
   const std::int64_t planes = firstBox.Max[2] - firstBox.Min[2] + 1;
   std::vector<const VertexRun*> next;
   std::vector<const std::uint32_t*> row;
@@ -211,8 +211,8 @@ void RunBuilder::Append(const std::vector<TileRuns>& tiles, const VoxelBox& firs
       {
         if (runs.Runs.size() + *row[tile] > std::numeric_limits<std::uint32_t>::max())
         {
-          throw Error("The volume falls into more than 2^32 runs of voxels in a tetrahedron of the "
-                      "deformation mesh. Use a smaller volume or a coarser mesh.");
+          throw Error("The static mapping of the volume has more than 2^32 runs of voxels. Use a "
+                      "smaller volume or a coarser mesh.");
         }
         runs.RowBegins.push_back(static_cast<std::uint32_t>(runs.Runs.size()));
         for (std::uint32_t i = 0; i < *row[tile]; ++i)
@@ -245,7 +245,7 @@ VertexRuns RunBuilder::Build(const Extent& part, std::int64_t& numberOfInnerVoxe
   runs.RowBegins.reserve(GetSize(part, 1) * GetSize(part, 2) + 1);
   Numbering numbering(*this, part, runs.Tetrahedra);
   numberOfInnerVoxels = 0;
-  // Enough tiles at a time to keep all threads busy.
+  // Process enough tiles at a time to keep all threads busy.
   const std::int64_t step = std::max<std::int64_t>(1, 64 / across);
   for (std::int64_t begin = 0; begin < layers; begin += step)
   {

@@ -17,38 +17,38 @@
 namespace deformvolume
 {
 
-/// Makes the static mapping by runs, some tiles of a VoxelLinker after the others, in parallel over
-/// tiles, without ever holding more than the tetrahedra of the voxels of some tiles. What it is
-/// made of must outlive it. The displacement of a voxel is the same to the last bit whatever part
-/// of the volume the runs are made for.
+/// Builds the static mapping as runs. It processes a few tiles of a VoxelLinker at a time, in
+/// parallel. So it never stores the tetrahedra of more voxels than those of these tiles. The
+/// arguments of the constructor must outlive the object. The displacement of a voxel does not
+/// depend, bit for bit, on the part of the volume for which the runs are made.
 class RunBuilder
 {
 public:
   RunBuilder(const VoxelLinker& linker, const Extent& voxels,
     const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra);
 
-  /// The tiles by which it is estimated how many runs there will be, always the same ones.
+  /// Chooses tiles for an estimate of the number of runs. The choice is deterministic.
   static std::vector<std::int64_t> ChooseTiles(const TileGrid& tiles);
-  /// What some tiles are found to have. Voxels outside the mesh form runs, too.
+  /// Counts the rows and runs of some tiles. Voxels outside the mesh form runs, too.
   std::vector<TileSample> SampleTiles(const std::vector<std::int64_t>& tiles) const;
 
-  /// numberOfInnerVoxels: of voxels with a tetrahedron. progress gets the fraction done and may
-  /// throw. Throws Error where there are more runs than 32 bits count.
-  /// part: voxels of the volume, whole rows.
+  /// Builds the runs of a part of the volume, which must have complete rows. numberOfInnerVoxels:
+  /// returns the number of voxels with a tetrahedron. progress: called with the fraction done; it
+  /// may throw. Throws Error if there are more than 2^32 runs.
   VertexRuns Build(const Extent& part, std::int64_t& numberOfInnerVoxels,
     const std::function<void(double)>& progress) const;
 
 private:
   struct TileRuns
   {
-    /// Of the tile's rows, one after the other; with tetrahedra of the mesh.
+    /// The runs of the rows of the tile, in sequence. Their tetrahedra are numbers in the mesh.
     std::vector<VertexRun> Runs;
     std::vector<std::uint32_t> RunsOfRow;
     std::int64_t InnerVoxels = 0;
   };
   class Numbering;
 
-  /// box: voxels of a tile.
+  /// box: the voxels of the tile.
   TileRuns MakeTileRuns(std::int64_t tile, const VoxelBox& box) const;
   void Append(const std::vector<TileRuns>& tiles, const VoxelBox& firstBox, Numbering& numbering,
     VertexRuns& runs) const;

@@ -19,7 +19,7 @@ namespace deformvolume
 namespace
 {
 
-// What has been done when the tetrahedra are sorted into tiles.
+// Fraction of the work that is done when the tetrahedra are sorted into tiles.
 constexpr double SortedFraction = 0.25;
 
 bool FitsRuns(const Extent& voxels)
@@ -40,8 +40,10 @@ StaticMappingBuilder::StaticMappingBuilder(const Extent& voxels, const glm::dvec
 {
   if (form == StaticMappingForm::Runs && !outside.AreDiscarded())
   {
-    throw Error(std::string("Voxels outside the mesh cannot be ") +
-      (outside.AreKept() ? "kept" : "extrapolated") + " by runs: make links.");
+    throw Error(
+      std::string("A static mapping by runs cannot have voxels outside the mesh that are ") +
+      (outside.AreKept() ? "kept" : "extrapolated") +
+      ". Use StaticMappingForm::Links or StaticMappingForm::Automatic.");
   }
   const std::int64_t size = GetNumberOfPoints(voxels);
   if (size == 0)

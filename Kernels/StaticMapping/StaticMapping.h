@@ -24,44 +24,46 @@ namespace deformvolume
 
 class VoxelLinker;
 
-/// The static part of the deformation mapping: where each voxel of the volume lies in the
-/// tetrahedra of the deformation mesh at rest. In one of two forms.
+/// The static part of the deformation mapping: the tetrahedron of the deformation mesh at rest that
+/// contains each voxel. It has one of two forms: links or runs.
 struct StaticMapping
 {
-  /// One link a voxel, x varying fastest; or none.
+  /// One link per voxel, with x varying fastest. Empty if the mapping has runs.
   std::vector<VertexLink> Links;
-  /// Runs of voxels; or none.
+  /// Runs of voxels. Empty if the mapping has links.
   VertexRuns Runs;
-  /// Where the boundary of the mesh passes through the volume; empty unless voxels outside the mesh
-  /// are discarded.
+  /// The boundary of the mesh within the volume. Empty unless voxels outside the mesh are
+  /// discarded.
   MeshBoundary Boundary;
-  /// What links name besides the tetrahedra, where voxels outside the mesh are kept (FadedMesh).
+  /// The records of links if voxels outside the mesh are kept (FadedMesh).
   FadedLinks Faded;
-  /// Voxels inside the mesh (those that are extrapolated or kept do not count).
+  /// Number of voxels inside the mesh. Extrapolated and kept voxels do not count.
   std::int64_t NumberOfInnerVoxels = 0;
-  /// Tetrahedra without volume; they are skipped.
+  /// Number of tetrahedra without volume, which are skipped.
   std::int64_t NumberOfFlatTetrahedra = 0;
 };
 
-/// Finds the tetrahedron of each voxel by rasterising the tetrahedra into the voxel grid, in
-/// parallel over slabs of voxels, with exact integer arithmetic on positions rounded to 1/256
-/// voxel: no voxel inside the mesh is missed, those on its surface included, and the result does
-/// not depend on the number of threads. A voxel that several tetrahedra hold, such as one on a
-/// face, goes to the tetrahedron whose nodes come first by their positions: those of the first
-/// nodes are compared by x, then y, then z, then those of the second nodes, and so on. So the
-/// mapping does not depend on how nodes and tetrahedra are numbered; only of tetrahedra in one
-/// place the lowest index gets the voxel. Both forms give a voxel to the same tetrahedron.
+/// Finds the tetrahedron of each voxel. The tetrahedra are rasterized into the voxel grid, in
+/// parallel over tiles of voxels, with exact integer arithmetic on positions rounded to 1/256
+/// voxel. So every voxel inside the mesh or on its surface is found, and the result does not depend
+/// on the number of threads.
 ///
-/// voxels: structured indices of the volume. restPoints: the nodes at rest in continuous indices
-/// of the volume. outside: voxels outside the mesh have no link; or are linked to the tetrahedron
-/// of the nearest voxel (in continuous indices times spacing, hence world distance) inside it, with
-/// weights outside 0 to 1; or are kept (FadedLinks).
+/// A voxel in several tetrahedra, such as a voxel on a face, is linked to the tetrahedron whose
+/// nodes come first in lexicographic order: the positions of the first nodes are compared by x,
+/// then y, then z, then those of the second nodes, and so on. So the mapping does not depend on the
+/// numbers of nodes and tetrahedra. Only for tetrahedra with equal positions, the lowest number is
+/// used. Links and runs select the same tetrahedra.
+///
+/// voxels: extent of the volume. restPoints: the nodes at rest, in continuous indices of the
+/// volume. outside: voxels outside the mesh have no link (Discard), are linked to the tetrahedron
+/// of the nearest voxel inside, in world distance, with weights outside 0 to 1 (Extrapolate), or
+/// are kept (Keep, see FadedLinks).
 class DEFORMVOLUME_EXPORT StaticMappingBuilder
 {
 public:
-  /// Decides on the form. restPoints and tetrahedra must live and stay the same until Build
-  /// returns. Throws Error where a tetrahedron has a node more than 2^31 voxels away from index 0,
-  /// and where runs are demanded of voxels outside the mesh that are not discarded.
+  /// Chooses the form. restPoints and tetrahedra must not change or be deleted before the last
+  /// Build() returns. Throws Error if a node is more than 2^31 voxels away from index 0, and if
+  /// runs are requested but voxels outside the mesh are not discarded.
   StaticMappingBuilder(const Extent& voxels, const glm::dvec3& spacing,
     const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra,
     const OutsideVoxels& outside, StaticMappingForm form = StaticMappingForm::Automatic);
@@ -69,19 +71,21 @@ public:
   StaticMappingBuilder(const StaticMappingBuilder&) = delete;
   StaticMappingBuilder& operator=(const StaticMappingBuilder&) = delete;
 
-  /// Bytes of the runs, about; 0 for links.
+  /// Estimated bytes of the runs. 0 if the form is links.
   std::uint64_t GetRunBytes() const { return this->RunBytes; }
 
-  /// Whether any tetrahedron holds a voxel of the volume: at once where one of the first does.
+  /// Whether any tetrahedron contains a voxel of the volume. Fast if one of the first tetrahedra
+  /// does.
   bool HoldsVoxels() const;
 
-  /// progress: as in DeformRequest; throws Aborted where it returns false.
+  /// Builds the mapping of the whole volume. progress: as in DeformRequest. Throws Aborted if it
+  /// returns false.
   StaticMapping Build(const std::function<bool(double)>& progress = {}) const
   {
     return this->Build(this->Voxels, progress);
   }
-  /// The mapping of a part of the volume alone, whole rows of voxels, where voxels outside the mesh
-  /// are discarded. Voxels are displaced as by the mapping of the whole, to the last bit.
+  /// Builds the mapping of a part of the volume, which must have complete rows. Voxels outside the
+  /// mesh must be discarded. The displacements are bitwise equal to those of the whole volume.
   StaticMapping Build(const Extent& part, const std::function<bool(double)>& progress = {}) const;
 
 private:
@@ -98,7 +102,7 @@ private:
   std::unique_ptr<VoxelLinker> Linker; // null for a volume without voxels
 };
 
-/// Build by a StaticMappingBuilder.
+/// Builds the static mapping of a whole volume with a StaticMappingBuilder.
 DEFORMVOLUME_EXPORT StaticMapping BuildStaticMapping(const Extent& voxels,
   const glm::dvec3& spacing, const std::vector<glm::dvec3>& restPoints,
   const std::vector<Tetrahedron>& tetrahedra, const OutsideVoxels& outside, StaticMappingForm form,

@@ -20,13 +20,15 @@ namespace deformvolume
 namespace
 {
 
-// Tetrahedra that are looked at when the deformation changes: about a millisecond.
+// Largest number of tetrahedra to test when the deformation changes. Their test takes about a
+// millisecond.
 constexpr std::int64_t MostStretchable = 1 << 13;
 constexpr double StretchLimit = 2.0; // output voxels
-// Neighbours whose weights differ by more follow the boundary, and stay.
+// Weights of two neighbors that differ by more: one follows the boundary, and the other does not
+// move.
 constexpr double LargestStep = 0.5;
 
-// What a voxel follows: a place in the mesh, and how much.
+// The point of the mesh that a voxel follows, and the factor of the displacement.
 struct Anchor
 {
   glm::dvec3 Place{ 0.0 };
@@ -72,8 +74,8 @@ void StretchedTetrahedra::Find(const Extent& voxels, const glm::dvec3& spacing,
   const std::int64_t plane = size * GetSize(voxels, 1);
   const std::int64_t layers = std::max<std::int64_t>(GetSize(voxels, 2) - 1, 0);
   std::vector<std::vector<std::array<std::int64_t, 4>>> found(static_cast<std::size_t>(layers));
-  // Its vertices follow places that are farther apart than the mesh itself explains: what lies
-  // between the closest points of two voxels is at most as far as these, on a convex boundary.
+  // Whether two vertices follow points that are too far apart. On a convex boundary, the closest
+  // points of two voxels are not farther apart than the voxels.
   const auto isStretchable = [&](const std::array<Anchor, 8>& anchors,
                                const std::array<glm::dvec3, 8>& places, const int* vertices)
   {

@@ -18,26 +18,26 @@ namespace deformvolume
 
 class FadedLinks;
 
-/// The tetrahedra of the sampling mesh, active or not, that a deformation may stretch because they
-/// reach from voxels to others that follow a distant part of the boundary of the deformation mesh.
-/// Links are those of FadedLinks, whose faces are given beside them.
+/// The tetrahedra of the sampling mesh, active or not, that a deformation may stretch because their
+/// vertices follow distant parts of the boundary of the deformation mesh. The links and faces are
+/// those of FadedLinks.
 class StretchedTetrahedra
 {
 public:
-  /// Finds those that may be stretched. spacing: the world distance of neighbours.
+  /// Finds the tetrahedra that may be stretched. spacing: of the volume, in world units.
   void Find(const Extent& voxels, const glm::dvec3& spacing,
     const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra,
     const std::vector<TetrahedronFace>& faces, const std::vector<VertexLink>& links);
 
-  /// Those that are stretched over more than 2 output voxels on an axis. displacements: of the
-  /// nodes, three floats each, in output voxels.
+  /// Counts the tetrahedra that are stretched over more than 2 output voxels on an axis.
+  /// displacements: three floats per node, in output voxels.
   std::int64_t Count(const FadedLinks& links, const std::vector<Tetrahedron>& tetrahedra,
     const float* displacements) const;
-  /// Where many may be stretched, the number is an estimate from some of them.
+  /// Whether Count() returns an estimate from a sample, since many tetrahedra may be stretched.
   bool IsCountEstimated() const { return this->Step > 1; }
 
 private:
-  std::vector<std::array<VertexLink, 4>> Stretchable; // each Step-th of them
+  std::vector<std::array<VertexLink, 4>> Stretchable; // every Step-th candidate
   std::int64_t Step = 1;
 };
 

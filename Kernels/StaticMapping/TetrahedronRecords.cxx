@@ -71,7 +71,7 @@ void TetrahedronRecords::WriteRest(
 void TetrahedronRecords::Set(const std::vector<RestTetrahedron>& tetrahedra)
 {
   this->Clear();
-  const std::size_t room = std::max<std::size_t>(tetrahedra.size(), 1); // no buffer is of no bytes
+  const std::size_t room = std::max<std::size_t>(tetrahedra.size(), 1); // OpenCL needs size > 0
   this->Rest = this->MakeBuffer(room * this->GetRestSize());
   this->Owners = this->MakeBuffer(room * sizeof(std::int32_t));
   this->Records = this->MakeBuffer((room + 1) * sizeof(TetrahedronRecord));

@@ -13,8 +13,8 @@
 namespace deformvolume
 {
 
-/// The records of runs on the device (RunEvaluation.cl): where tetrahedra lie at rest, and what
-/// that comes to with the displacements of now.
+/// The records of runs on the device (RunEvaluation.cl): the tetrahedra at rest, and their current
+/// displacements.
 class TetrahedronRecords
 {
 public:
@@ -24,17 +24,20 @@ public:
   void Set(const std::vector<RestTetrahedron>& tetrahedra);
   void Clear();
 
-  /// For each record the displacements as an affine function (TetrahedronRecord), after Evaluate,
-  /// which is due after the nodes have moved.
+  /// The displacements of each record as an affine function (TetrahedronRecord). Valid if
+  /// AreCurrent().
   const cl::Buffer& Get() const { return this->Records; }
+  /// Whether Evaluate() has been called since the last Set(), Clear() or Forget(). Call Forget()
+  /// after nodes have moved.
   bool AreCurrent() const { return this->Current; }
   void Forget() { this->Current = false; }
   cl::Event Evaluate(
     const cl::Program& mapping, const cl::Buffer& tetrahedra, const cl::Buffer& nodes);
 
-  /// The tetrahedron of each.
+  /// The tetrahedron of each record.
   const cl::Buffer& GetOwners() const { return this->Owners; }
-  /// Calls a function with the 15 numbers of each (RunEvaluation.cl). On a processor.
+  /// Calls visit(numbers) with the 15 numbers of each record at rest (RunEvaluation.cl). For CPU
+  /// devices.
   void VisitRest(const std::function<void(const double*)>& visit) const;
 
   std::uint64_t GetMemory() const;
@@ -47,7 +50,7 @@ private:
   OpenCLContext& Context;
   cl::CommandQueue Queue;
   std::uint64_t AllocationLimit;
-  cl::Buffer Rest; // of each record 15 reals, see RunMapping.cl
+  cl::Buffer Rest; // 15 reals per record, see RunEvaluation.cl
   cl::Buffer Owners;
   cl::Buffer Records;
   std::size_t Count = 0;

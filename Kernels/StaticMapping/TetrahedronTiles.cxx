@@ -14,13 +14,14 @@ namespace deformvolume
 namespace
 {
 
-// Parts of the tetrahedra that a thread takes at a time, in their order.
+// Number of chunks into which `size` tetrahedra are divided. A thread processes one chunk at a
+// time.
 std::int64_t CountChunks(std::int64_t size)
 {
   return std::min<std::int64_t>(64, size);
 }
 
-// Calls body(chunk, begin, end) for parts of so many.
+// Calls body(chunk, begin, end) in parallel for the chunks of `size` tetrahedra.
 template <typename Body>
 void ForEachChunk(std::int64_t size, Body&& body)
 {
@@ -64,8 +65,9 @@ TetrahedronTiles::TetrahedronTiles(const Extent& voxels, const std::vector<glm::
     });
   if (beyondLimit)
   {
-    throw Error("The deformation mesh has nodes more than 2147483648 voxels away from the volume's "
-                "index 0. Check the units of the mesh and the spacing of the volume.");
+    throw Error(
+      "The deformation mesh has nodes more than 2147483648 voxels away from index 0 of the "
+      "volume. Check the units of the mesh and the spacing of the volume.");
   }
   this->FlatTetrahedra = flat;
   this->MakeLists(ranges);

@@ -14,16 +14,17 @@
 namespace deformvolume
 {
 
-/// Lists the tetrahedra of each tile of a volume. One thread links all voxels of a tile, so that
-/// nothing has to be locked.
+/// Lists of the tetrahedra in each tile of a volume. One thread links all voxels of a tile, so no
+/// locks are needed.
 class TetrahedronTiles : public TileGrid
 {
 public:
-  /// A tetrahedron belongs to the tiles with voxels in its box, widened by a margin in voxels.
-  /// Throws Error where a node is more than 2^31 voxels away.
+  /// Sorts tetrahedra into tiles. A tetrahedron belongs to each tile with a voxel in its bounding
+  /// box. margin: by which bounding boxes are enlarged, in voxels. Throws Error if a node is more
+  /// than 2^31 voxels away from index 0.
   TetrahedronTiles(const Extent& voxels, const std::vector<glm::dvec3>& restPoints,
     const std::vector<Tetrahedron>& tetrahedra, double margin);
-  /// The tetrahedra of a tile in ascending order.
+  /// The tetrahedra of a tile, in ascending order.
   struct List
   {
     const std::int32_t* First;
@@ -36,10 +37,11 @@ public:
     return { this->Bins.data() + this->Offsets[tile], this->Bins.data() + this->Offsets[tile + 1] };
   }
 
-  /// Tetrahedra of all tiles; those in several are counted several times.
+  /// Total length of all lists. A tetrahedron in several tiles counts several times.
   std::int64_t GetNumberOfEntries() const { return static_cast<std::int64_t>(this->Bins.size()); }
 
-  /// Tetrahedra without volume, wherever they are. They are listed too.
+  /// Number of tetrahedra without volume, also of those outside the volume. The lists contain such
+  /// tetrahedra, too.
   std::int64_t GetNumberOfFlatTetrahedra() const { return this->FlatTetrahedra; }
 
 private:

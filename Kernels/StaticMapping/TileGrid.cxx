@@ -12,8 +12,8 @@ namespace deformvolume
 namespace
 {
 
-// Nodes farther away (in voxels) would not fit the wide integers; their weights, being floats,
-// would mean nothing either.
+// In voxels. Nodes farther away would overflow WideInteger, and their weights in single precision
+// would be meaningless.
 constexpr double LargestIndex = 2147483648.0;
 
 } // namespace
@@ -24,8 +24,8 @@ TileGrid::TileGrid(const Extent& voxels)
   this->ChooseSize();
 }
 
-// Tiles of this size stay in the processor's caches. Larger volumes get larger tiles, as each
-// tile costs memory.
+// The default size of tiles fits into the caches of a CPU. Large volumes have larger tiles, since
+// each tile needs memory.
 void TileGrid::ChooseSize()
 {
   constexpr std::int64_t most = 16384;
@@ -66,7 +66,7 @@ VoxelBox TileGrid::FindBox(const Places& nodes, double margin) const
   {
     const double first = static_cast<double>(this->Voxels[2 * axis]);
     const double last = static_cast<double>(this->Voxels[2 * axis + 1]);
-    // Counted from the first voxel, so that conversion rounds down.
+    // Relative to the first voxel, so not negative: the conversion to an integer rounds down.
     const double low = std::max(min[axis], first) - first;
     const double high = std::min(max[axis], last) - first;
     if (!(low <= high))

@@ -15,23 +15,25 @@
 namespace deformvolume
 {
 
-/// Splits a volume into tiles, each the rows of voxels in a rectangle of y and z.
+/// The division of a volume into tiles. A tile is a rectangle in y and z with complete rows of
+/// voxels along x.
 class TileGrid
 {
 public:
   explicit TileGrid(const Extent& voxels);
 
   std::int64_t GetNumberOfTiles() const { return this->Count[0] * this->Count[1]; }
-  /// Tiles on y (0) and z (1); tile = z * (tiles on y) + y.
+  /// Number of tiles on y (axis 0) and z (axis 1). Tile (y, z) has the number z * (tiles on y) + y.
   std::int64_t GetNumberOfTiles(int axis) const { return this->Count[axis]; }
   VoxelBox GetVoxels(std::int64_t tile) const;
 
-  /// The tiles that hold voxels of a box within the volume, on y (0) and z (1).
+  /// A range of tiles on y (0) and z (1), from Begin to End - 1.
   struct Rectangle
   {
     std::int64_t Begin[2];
     std::int64_t End[2];
   };
+  /// Returns the tiles that contain the voxels of a box. The box must lie within the volume.
   Rectangle GetTiles(const VoxelBox& box) const
   {
     Rectangle tiles;
@@ -49,19 +51,19 @@ public:
   {
     return { { points[nodes[0]], points[nodes[1]], points[nodes[2]], points[nodes[3]] } };
   }
-  /// Whether the nodes of a tetrahedron are at most 2^31 voxels away.
+  /// Whether the nodes of a tetrahedron are at most 2^31 voxels away from index 0.
   static bool IsWithinLimit(const Places& nodes);
-  /// The voxels of the volume in the box of a tetrahedron within that limit, widened by a margin in
-  /// voxels.
+  /// Returns the voxels of the volume in the bounding box of a tetrahedron, enlarged by a margin in
+  /// voxels. The nodes must be within the limit.
   VoxelBox FindBox(const Places& nodes, double margin) const;
 
-  /// The tiles of a tetrahedron, those with voxels in its box, both ends included; empty where it
-  /// has no voxel.
+  /// A range of tiles on y (0) and z (1), from Min to Max. By default empty.
   struct Range
   {
     std::int16_t Min[2] = { 0, 0 };
     std::int16_t Max[2] = { -1, -1 };
   };
+  /// Returns the tiles with voxels in the bounding box of a tetrahedron, enlarged by a margin.
   Range FindRange(const Places& nodes, double margin) const;
   template <typename Body>
   void ForEachTile(const Range& range, Body&& body) const

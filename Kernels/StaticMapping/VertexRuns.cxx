@@ -18,8 +18,9 @@ void CheckRecords(const VertexRuns& runs, std::size_t numberOfTetrahedra)
     const std::int32_t id = runs.Tetrahedra[i].Tetrahedron;
     if (id < 0 || static_cast<std::size_t>(id) >= numberOfTetrahedra)
     {
-      throw Error("Record " + std::to_string(i) + " of the runs is of the tetrahedron " +
-        std::to_string(id) + ", but there are " + std::to_string(numberOfTetrahedra) + ".");
+      throw Error("Record " + std::to_string(i) + " of the runs refers to tetrahedron " +
+        std::to_string(id) + ", but the mesh has only " + std::to_string(numberOfTetrahedra) +
+        " tetrahedra.");
     }
   }
 }
@@ -32,24 +33,29 @@ void CheckRow(const VertexRuns& runs, std::size_t row, std::int64_t size)
   const std::uint32_t end = runs.RowBegins[row + 1];
   if (begin >= end || end > runs.Runs.size())
   {
-    refuse("has no runs, or more than there are.");
+    refuse("has the runs " + std::to_string(begin) + " to " + std::to_string(end) +
+      " (exclusive), but the range must not be empty, and there are " +
+      std::to_string(runs.Runs.size()) + " runs.");
   }
   if (runs.Runs[begin].Begin != 0)
   {
-    refuse("has a first run that does not begin at its first voxel.");
+    refuse("has a first run that begins at voxel " + std::to_string(runs.Runs[begin].Begin) +
+      ". It must begin at voxel 0.");
   }
   for (std::uint32_t i = begin; i < end; ++i)
   {
     const VertexRun& run = runs.Runs[i];
     if (run.Begin >= size || (i > begin && run.Begin <= runs.Runs[i - 1].Begin))
     {
-      refuse("has runs that do not begin one after the other within the row.");
+      refuse("has a run that begins at voxel " + std::to_string(run.Begin) +
+        ". Runs must begin in ascending order within the " + std::to_string(size) +
+        " voxels of the row.");
     }
     if (run.Tetrahedron < -1 ||
       run.Tetrahedron >= static_cast<std::int64_t>(runs.Tetrahedra.size()))
     {
-      refuse("has a run with the record " + std::to_string(run.Tetrahedron) + ", but there are " +
-        std::to_string(runs.Tetrahedra.size()) + ".");
+      refuse("has a run that refers to record " + std::to_string(run.Tetrahedron) +
+        ", but there are only " + std::to_string(runs.Tetrahedra.size()) + " records.");
     }
   }
 }
@@ -77,8 +83,8 @@ void CheckRuns(const VertexRuns& runs, const VoxelGrid& voxelGrid, std::size_t n
   {
     if (GetSize(extent, axis) > LargestRunSize)
     {
-      throw Error("A volume of more than 16,777,216 voxels on an axis cannot be mapped by runs: "
-                  "give a link for each voxel.");
+      throw Error("A volume with " + std::to_string(GetSize(extent, axis)) +
+        " voxels on an axis cannot be mapped by runs: at most 16777216 are possible. Use links.");
     }
   }
   CheckRuns(runs, rows, GetSize(extent, 0), numberOfTetrahedra);
@@ -90,7 +96,9 @@ void CheckRuns(
   if (runs.RowBegins.size() != rows + 1 || runs.RowBegins.front() != 0 ||
     runs.RowBegins.back() != runs.Runs.size())
   {
-    throw Error("The runs are not those of " + std::to_string(rows) + " rows of voxels.");
+    throw Error("The runs do not match a volume of " + std::to_string(rows) +
+      " rows of voxels: RowBegins must have one entry more than there are rows, begin with 0 and "
+      "end with the number of runs.");
   }
   CheckRecords(runs, numberOfTetrahedra);
   for (std::size_t row = 0; row < rows; ++row)

@@ -19,7 +19,7 @@ namespace deformvolume
 namespace
 {
 
-// Calls body(index, number) for the voxels of an extent, in parallel.
+// Calls body(index, number) in parallel for the voxels of an extent.
 template <typename Body>
 void ForEachVoxel(const Extent& voxels, Body&& body)
 {
@@ -45,8 +45,8 @@ bool IsUndefined(const glm::dvec3& vector)
   return glm::any(glm::isnan(vector));
 }
 
-// The slope of a function between two places. An undefined value would make it not-a-number, so
-// the one in the middle takes its place; without two values the slope is 0.
+// Returns the finite difference of a function between two positions. An undefined value is replaced
+// by the value in the middle. Returns 0 if there are not two defined values.
 template <typename Function>
 glm::dvec3 GetSlope(double low, double middle, double high, const Function& getValue)
 {
@@ -66,12 +66,12 @@ glm::dvec3 GetSlope(double low, double middle, double high, const Function& getV
                                                                    : glm::dvec3(0.0);
 }
 
-// A displacement field of which derivatives are taken.
+// The derivatives of a displacement field.
 class DerivedField
 {
 public:
-  // undefined: the points that have no vector, one byte each, besides those whose vector is
-  // not-a-number; empty: none.
+  // undefined: one byte per point, nonzero if the point has no vector; may be empty. Points with a
+  // NaN are undefined, too.
   DerivedField(
     const DisplacementField& field, bool isMapped, const std::vector<unsigned char>& undefined = {})
     : Field(field)
@@ -83,7 +83,8 @@ public:
   {
   }
 
-  // What a step of the indices that the field takes adds to the displacement there.
+  // Returns the derivative of the displacement with respect to the index to which IndexToField
+  // applies.
   glm::dmat3 GetDerivative(const glm::dvec3& index) const
   {
     const glm::dvec3 position = this->ToField * index + this->Offset;
@@ -103,8 +104,8 @@ public:
       }
       return derivative;
     }
-    // Along the axes of the field, so that no difference reaches beyond its border. Voxels outside
-    // that are discarded have what the nearest point of the border has: cells there are
+    // Differences are taken along the axes of the field, so that none crosses its border. Discarded
+    // voxels outside have the derivative at the nearest point of the border, since cells there are
     // interpolated.
     glm::dmat3 alongField(0.0);
     for (int axis = 0; axis < 3; ++axis)
@@ -134,7 +135,7 @@ private:
     }
     return this->IsMapped ? GetVector(this->Field, point) : GetVector(this->Field.Vectors, point);
   }
-  // Not-a-number where an undefined point counts.
+  // Returns NaN if an undefined point has a weight other than 0.
   glm::dvec3 Interpolate(const glm::dvec3& position) const
   {
     const auto getPoint = [this](std::int64_t point) { return this->GetPoint(point); };
@@ -143,7 +144,7 @@ private:
     {
       return vector;
     }
-    // Rounding may have given an undefined point a weight.
+    // The weight of the undefined point may be a rounding error: round to the nearest point.
     const glm::dvec3 nearest = glm::round(position);
     const auto isNear =
       glm::lessThanEqual(glm::abs(position - nearest), glm::dvec3(FieldTolerance));
@@ -154,7 +155,7 @@ private:
     const double weight = GetWeightBeyond(this->Field, position, FieldTolerance);
     return weight > 0.0
       ? weight * this->Interpolate(glm::clamp(position, glm::dvec3(0.0), this->Last))
-      : glm::dvec3(0.0); // whatever the point of the border is
+      : glm::dvec3(0.0); // even if the point on the border is undefined
   }
 
   const DisplacementField& Field;
@@ -226,7 +227,7 @@ void VoxelJacobians::Compute(const OutputMap& toOutput, const std::vector<glm::d
         BarycentricMap map;
         if (!map.SetTetrahedron(tetrahedra[i], restPoints))
         {
-          continue; // no voxel is linked to it
+          continue; // no voxel is linked to a flat tetrahedron
         }
         glm::dmat3 derivative = atRest;
         for (int node = 0; node < 4; ++node)

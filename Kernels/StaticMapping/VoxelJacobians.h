@@ -18,25 +18,25 @@
 namespace deformvolume
 {
 
-/// The determinant of the derivative of the deformed position with respect to the position at rest,
-/// at each voxel of a volume in a deformation mesh: how many times as large the deformation makes
-/// the volume there; less than 0 where it turns it inside out. From displacements as they are
-/// given, which no position rounds.
+/// Jacobian determinants of the deformation by a mesh, at each voxel of a volume: the determinant
+/// of the derivative of the deformed position with respect to the position at rest. It is the
+/// factor by which the deformation changes volumes, and negative where the deformation inverts
+/// them. It is computed from the given displacements, not from rounded positions.
 ///
-/// A voxel has that of the tetrahedron it is linked to, and a voxel without link that of the
-/// nearest voxel with one. Where voxels outside the mesh are kept, theirs is found from the
-/// differences of the displacements of neighbouring voxels.
+/// A voxel has the determinant of the tetrahedron to which it is linked. A voxel without a link has
+/// that of the nearest linked voxel. If voxels outside the mesh are kept, their determinants are
+/// computed from finite differences of the displacements of neighboring voxels.
 class DEFORMVOLUME_EXPORT VoxelJacobians
 {
 public:
-  /// mapping: that of these voxels, with its links or runs; it is looked at in this call only.
-  /// spacing: of the volume, in world units. restPoints: in continuous indices of the volume.
+  /// Set the static mapping of the voxels. The mapping is not used after the call. spacing: of the
+  /// volume, in world units. restPoints: in continuous indices of the volume.
   void SetMapping(const Extent& voxels, const glm::dvec3& spacing, const StaticMapping& mapping,
     const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra);
 
-  /// tetrahedra: those of the mapping, of which nodes may have been exchanged for others in the
-  /// same places. displacements: three floats a node, in output voxels. jacobians: room for one a
-  /// voxel, x varying fastest.
+  /// Computes the determinants. tetrahedra: of the mapping; their nodes may have been replaced by
+  /// others with the same positions at rest. displacements: three floats per node, in output
+  /// voxels. jacobians: one value per voxel, with x varying fastest.
   void Compute(const OutputMap& toOutput, const std::vector<glm::dvec3>& restPoints,
     const std::vector<Tetrahedron>& tetrahedra, const float* displacements, float* jacobians);
 
@@ -45,20 +45,21 @@ private:
     const float* displacements, float* jacobians) const;
 
   Extent Voxels{ { 0, -1, 0, -1, 0, -1 } };
-  std::vector<std::int32_t> Owners; // the tetrahedron of each voxel, or less than 0
-  // Where voxels outside are kept:
+  std::vector<std::int32_t> Owners; // the tetrahedron of each voxel; negative: none
+  // Used if voxels outside the mesh are kept:
   std::vector<VertexLink> Links;
   FadedLinks Faded;
 };
 
-/// The same of a forward displacement field, from the differences of displacements half a voxel
-/// before and after each voxel, or on one side of it where the other is undefined. undefined: one
-/// byte a point of the field; empty: all are defined.
+/// Computes the Jacobian determinants of a forward displacement field by central differences, from
+/// displacements half a voxel before and after each voxel. If one of these is undefined, the
+/// difference is one-sided. undefined: one byte per point of the field; empty: all are defined.
 DEFORMVOLUME_EXPORT void ComputeFieldJacobians(const VoxelGrid& voxelGrid,
   const DisplacementField& field, const std::vector<unsigned char>& undefined, float* jacobians);
 
-/// The same at the voxels of an output, of an inverse field, which leads from them to the places at
-/// rest that are seen there. Infinite where it leads many of them to one place.
+/// Computes the Jacobian determinants of the deformation that an inverse field describes, at the
+/// voxels of an output. The field maps them to positions at rest. Infinite where the derivative of
+/// the field's map is singular.
 DEFORMVOLUME_EXPORT void ComputeInverseFieldJacobians(
   const Extent& output, const DisplacementField& inverse, float* jacobians);
 

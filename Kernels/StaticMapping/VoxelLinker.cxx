@@ -10,10 +10,12 @@ namespace deformvolume
 namespace
 {
 
-// Rounding moves a node by up to 2^-9 voxel on each axis, and with it a voxel by this far out of
-// its tetrahedron, with room to spare.
+// Upper bound, in voxels, of the distance of a voxel from its tetrahedron that rounding can cause.
+// Rounding moves a node by up to 2^-9 voxel on each axis.
 constexpr double RoundingDistance = VoxelLinker::Margin;
-// A tetrahedron this thin can be distorted by rounding until its weights leave 0 to 1 noticeably.
+// In voxels. Rounding can distort a thinner tetrahedron so much that weights are clearly outside 0
+// to
+// 1.
 constexpr double ThinHeight = 1.0 / 16.0;
 constexpr double LeastThinWeight = -1.0 / 8.0;
 
@@ -69,7 +71,7 @@ bool VoxelLinker::ComesBefore(std::int32_t id, std::int32_t other) const
   return id < other;
 }
 
-// Links voxels of a row, from the first one on; returns how many had no tetrahedron yet.
+// Links `count` voxels of a row. Returns the number of voxels that had no tetrahedron before.
 std::int64_t VoxelLinker::LinkRow(std::int32_t id, const BarycentricMap& map,
   const glm::i64vec3& first, std::int64_t count, VertexLink* links) const
 {
@@ -98,7 +100,7 @@ std::int64_t VoxelLinker::LinkRow(std::int32_t id, const BarycentricMap&, const 
     tetrahedra[offset] = free ? id : tetrahedra[offset];
     linked += free ? 1 : 0;
   }
-  // Few voxels are held by several tetrahedra.
+  // This loop is rarely needed: few voxels lie in several tetrahedra.
   for (std::int64_t offset = 0; linked < count && offset < count; ++offset)
   {
     if (tetrahedra[offset] != id && this->ComesBefore(id, tetrahedra[offset]))
@@ -129,7 +131,7 @@ VoxelBox VoxelLinker::GetBox(const Nodes& nodes, const VoxelBox& part)
   {
     const auto ends =
       std::minmax({ nodes[0][axis], nodes[1][axis], nodes[2][axis], nodes[3][axis] });
-    // Shifts round down, of negative numbers too.
+    // Shifts round down, also for negative numbers.
     box.Min[axis] = std::max((ends.first + RasterUnit - 1) >> RasterBits, part.Min[axis]);
     box.Max[axis] = std::min(ends.second >> RasterBits, part.Max[axis]);
   }
@@ -161,7 +163,7 @@ bool VoxelLinker::FindVoxel(const Nodes& nodes, const VoxelBox& box, glm::i64vec
     voxel = found ? voxel : glm::i64vec3(first + (last - first) / 2, y, z);
     found = true;
   };
-  // The row nearest to the centroid has voxels, but for small and thin tetrahedra.
+  // Except in small and thin tetrahedra, the row nearest to the centroid has voxels.
   VoxelBox row = box;
   for (int axis = 1; axis < 3; ++axis)
   {
@@ -269,9 +271,10 @@ std::int64_t VoxelLinker::LinkTetrahedron(std::int32_t id, const Nodes& nodes, c
   return linked;
 }
 
-// A voxel in a tetrahedron that has room for it only since its nodes were rounded. By the same
-// rounding its true neighbours may have missed the voxel, so the one that holds it best before
-// rounding takes it, if any is as near as rounding explains.
+// Links a voxel that lies in a tetrahedron only because the nodes of that tetrahedron are rounded.
+// The same rounding may have moved the voxel out of the tetrahedron in which it really lies. So
+// this function compares the weights before rounding, and links the voxel to the best tetrahedron
+// within the rounding distance, if there is one.
 template <typename Element>
 bool VoxelLinker::LinkHeldByRounding(
   std::int64_t tile, const glm::i64vec3& voxel, Element& element) const

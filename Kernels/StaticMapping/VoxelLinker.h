@@ -18,15 +18,16 @@
 namespace deformvolume
 {
 
-/// What is to be known of each voxel of a box: a VertexLink, or the tetrahedron alone, an
-/// std::int32_t that is -1 outside the mesh.
+/// An array of results for the voxels of a box. Element: VertexLink, or std::int32_t for the number
+/// of the tetrahedron only (-1 outside the mesh).
 template <typename Element>
 struct VoxelTarget
 {
-  /// The first voxel's element; x varies fastest.
+  /// The element of the first voxel. x varies fastest.
   Element* Data = nullptr;
-  /// Structured index of the first voxel, and voxels on x and y.
+  /// Structured index of the first voxel.
   std::int64_t First[3] = { 0, 0, 0 };
+  /// Number of voxels on x and y.
   std::int64_t Size[2] = { 0, 0 };
 
   Element& At(std::int64_t x, std::int64_t y, std::int64_t z) const
@@ -37,7 +38,7 @@ struct VoxelTarget
   }
 };
 
-/// The voxels of an extent.
+/// Converts an extent to a box of voxels.
 inline VoxelBox MakeVoxelBox(const Extent& extent)
 {
   VoxelBox box;
@@ -49,7 +50,7 @@ inline VoxelBox MakeVoxelBox(const Extent& extent)
   return box;
 }
 
-/// The voxels that two boxes share.
+/// Returns the intersection of two boxes.
 inline VoxelBox Intersect(const VoxelBox& a, const VoxelBox& b)
 {
   VoxelBox box;
@@ -61,36 +62,37 @@ inline VoxelBox Intersect(const VoxelBox& a, const VoxelBox& b)
   return box;
 }
 
-/// Finds the tetrahedra of voxels, tile by tile. Calls for several tiles may run at a time. What
-/// it is made of must outlive it.
+/// Finds the tetrahedra of voxels, tile by tile. Calls for different tiles may run in parallel. The
+/// arguments of the constructor must outlive the object.
 class VoxelLinker
 {
 public:
-  /// Throws Error where a tetrahedron has a node more than 2^31 voxels away from index 0.
+  /// Throws Error if a node is more than 2^31 voxels away from index 0.
   VoxelLinker(const Extent& voxels, const std::vector<glm::dvec3>& restPoints,
     const std::vector<Tetrahedron>& tetrahedra);
-  /// What a voxel gets depends only on the tetrahedra whose boxes, widened by so much, hold it.
+  /// In voxels. The link of a voxel depends only on the tetrahedra whose bounding boxes, enlarged
+  /// by this margin, contain the voxel.
   static constexpr double Margin = 1.0 / 128.0;
 
   const TetrahedronTiles& GetTiles() const { return this->Tiles; }
 
-  /// Fills the elements of the voxels of a tile that lie in a part of it, and which are outside the
-  /// mesh so far; returns how many have a tetrahedron. What a voxel gets does not depend on the
-  /// part, if that has whole rows. Of tetrahedra that hold a voxel the first one by the positions
-  /// of its nodes gets it (see StaticMappingBuilder). Element: VertexLink or std::int32_t.
+  /// Links the voxels of a tile that lie in `part`. Before the call they must have no tetrahedron.
+  /// Returns the number of linked voxels. The links do not depend on `part` if it has complete
+  /// rows. StaticMappingBuilder describes which of several tetrahedra is linked. Element:
+  /// VertexLink or std::int32_t.
   template <typename Element>
   std::int64_t LinkTile(
     std::int64_t tile, const VoxelBox& part, const VoxelTarget<Element>& target) const;
 
-  /// A voxel in a tetrahedron, always the same one; false where no voxel of the volume lies in the
-  /// tetrahedron after its nodes are rounded.
+  /// Finds a voxel in a tetrahedron. The choice is deterministic. Returns false if no voxel of the
+  /// volume lies in the tetrahedron with rounded nodes.
   bool FindVoxel(std::int32_t tetrahedron, glm::i64vec3& voxel) const;
 
 private:
   using Nodes = std::array<RasterPoint, 4>;
 
   Nodes GetNodes(const Tetrahedron& tetrahedron) const;
-  /// The voxels of a part of the volume in the box of a tetrahedron.
+  /// Returns the voxels of a part of the volume in the bounding box of a tetrahedron.
   static VoxelBox GetBox(const Nodes& nodes, const VoxelBox& part);
   static bool FitsInt64(const Nodes& nodes);
   template <typename Integer>
@@ -104,7 +106,7 @@ private:
     std::int64_t count, VertexLink* links) const;
   std::int64_t LinkRow(std::int32_t id, const BarycentricMap& map, const glm::i64vec3& first,
     std::int64_t count, std::int32_t* tetrahedra) const;
-  /// Whether a tetrahedron gets the voxels that another one holds, too.
+  /// Whether a tetrahedron precedes another in the order that StaticMappingBuilder describes.
   bool ComesBefore(std::int32_t id, std::int32_t other) const;
 
   const std::vector<glm::dvec3>& RestPoints;

@@ -61,7 +61,7 @@ TEST(MeshSplit, Misuse)
     ElasticBody broken = body;
     broken.Tetrahedra[1][3] = bad;
     ExpectError([&] { Split(broken, sheet); },
-      "Tetrahedron 1 of the deformation mesh has the node " + std::to_string(bad));
+      "Tetrahedron 1 of the deformation mesh refers to node " + std::to_string(bad));
   }
   for (const std::int32_t bad : { -1, 2 })
   {
