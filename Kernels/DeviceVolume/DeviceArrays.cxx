@@ -133,7 +133,7 @@ void DeviceArrays::ReadAgain() const
   {
     for (const BufferInPlace& place : this->Places)
     {
-      TellOfWrites(this->Context, this->Queue, place);
+      UpdateFromHost(this->Context, this->Queue, place);
     }
   }
 }

@@ -24,7 +24,7 @@ void BoxBounds::Clear()
 std::vector<DisplacementBounds> BoxBounds::Find(
   const cl::Buffer& displacements, const std::array<int, 3>& size, const std::vector<Extent>& boxes)
 {
-  static_assert(sizeof(Extent) == 6 * sizeof(cl_int), "as the kernel reads it");
+  static_assert(sizeof(Extent) == 6 * sizeof(cl_int), "The kernel reads an Extent as six ints.");
   if (boxes.empty())
   {
     return {};

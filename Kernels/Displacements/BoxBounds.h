@@ -12,8 +12,8 @@
 namespace deformvolume
 {
 
-/// What the displacements of a field lie between, in each of some boxes of its points: found on the
-/// device, so that they need not come to the host.
+/// Computes the bounds of the displacements of a field in boxes of its points, on the device. So
+/// the displacements need not be copied to the host.
 class BoxBounds
 {
 public:
@@ -22,7 +22,8 @@ public:
   {
   }
 
-  /// displacements: four floats a point, all finite. size: the points of the field on each axis.
+  /// Computes the bounds in each box. displacements: four finite floats per point. size: points of
+  /// the field on each axis.
   std::vector<DisplacementBounds> Find(const cl::Buffer& displacements,
     const std::array<int, 3>& size, const std::vector<Extent>& boxes);
 

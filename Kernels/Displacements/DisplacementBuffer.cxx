@@ -23,12 +23,12 @@ namespace deformvolume
 namespace
 {
 
-// Vectors are worked on by words of a PointSet.
+// Vectors are processed in groups of the size of a word of a PointSet.
 constexpr std::size_t WordSize = PointSet::PointsPerWord;
-constexpr std::size_t WordStep = 65536 / WordSize; // that a thread takes at a time
+constexpr std::size_t WordStep = 65536 / WordSize; // words that a thread processes at a time
 
-// Calls body(word, begin, end) for words and the vectors of each, of which there are count
-// altogether, side by side.
+// Calls body(word, begin, end) in parallel for words, with the range of vectors of each word.
+// count: number of all vectors.
 template <typename Body>
 void ForWords(const std::vector<std::size_t>& words, std::size_t count, Body&& body)
 {
@@ -43,7 +43,7 @@ void ForWords(const std::vector<std::size_t>& words, std::size_t count, Body&& b
     });
 }
 
-// The words of all points, or of those that may have changed.
+// Lists the words of the points that may have changed, or of all points if `changes` is null.
 std::vector<std::size_t> FindWords(const PointRanges* changes, std::size_t count)
 {
   PointRanges ranges = changes ? *changes : PointRanges{ { { 0, count } } };
@@ -64,7 +64,7 @@ std::vector<std::size_t> FindWords(const PointRanges* changes, std::size_t count
   return words;
 }
 
-// The first of the vectors that is not finite or too large; count where there is none.
+// Returns the first vector that is too large or not finite; `count` if there is none.
 std::size_t FindBadVector(
   const float* vectors, const std::vector<std::size_t>& words, std::size_t count)
 {
@@ -74,7 +74,7 @@ std::size_t FindBadVector(
     {
       const auto isGood = [](float component)
       { return std::abs(component) <= static_cast<float>(LargestDisplacement); };
-      // All at once, without an early end, is what compilers make vectors of.
+      // No early exit, so that compilers vectorize the loop.
       int good = 1;
       for (std::size_t i = 3 * begin; i < 3 * end; ++i)
       {
@@ -89,8 +89,8 @@ std::size_t FindBadVector(
   return bad;
 }
 
-// Marks the vectors that differ from those that the device has, four floats each; returns how many
-// they are. Once they are more than the most, it leaves out the rest.
+// Marks the vectors that differ from those on the device, and returns their number. Stops when the
+// number exceeds `most`. last: the vectors on the device, four floats each.
 std::size_t MarkChanges(const float* vectors, const float* last,
   const std::vector<std::size_t>& words, std::size_t count, std::size_t most, PointSet& changed)
 {
@@ -102,7 +102,7 @@ std::size_t MarkChanges(const float* vectors, const float* last,
       {
         return;
       }
-      // Bit by bit: -0 is not 0, and what is not the same may not be taken for it.
+      // A bitwise comparison: -0 differs from 0, and a NaN equals itself.
       std::uint64_t bits = 0;
       for (std::size_t i = begin; i < end; ++i)
       {
@@ -115,12 +115,12 @@ std::size_t MarkChanges(const float* vectors, const float* last,
   return number;
 }
 
-// The three floats of vectors from begin to before end become the four that the device reads at
-// once; adds them to bounds.
+// Copies the vectors begin to end - 1, and pads each from three to four floats, which the device
+// reads at once. Adds the vectors to bounds.
 void PadSome(const float* vectors, std::size_t begin, std::size_t end, float* padded,
   DisplacementBounds& bounds)
 {
-  // Local copies: the compiler cannot rule out that padded is the memory of the bounds.
+  // A local copy allows vectorization: bounds may alias padded.
   DisplacementBounds all = bounds;
   for (std::size_t i = begin; i < end; ++i)
   {
@@ -136,7 +136,7 @@ void PadSome(const float* vectors, std::size_t begin, std::size_t end, float* pa
   bounds = all;
 }
 
-// The same for some words of vectors; returns what they lie between.
+// Pads the vectors of words, in parallel. Returns their bounds.
 DisplacementBounds PadVectors(
   const float* vectors, const std::vector<std::size_t>& words, std::size_t count, float* padded)
 {
@@ -173,7 +173,7 @@ void CheckDisplacements(
 void ThrowBadDisplacement(const char* what, std::size_t point)
 {
   throw Error(std::string("The displacement of ") + what + " " + std::to_string(point) +
-    " is not finite, or over 16,383 output voxels. Check the scale of the displacements and "
+    " is not finite, or larger than 16383 output voxels. Check the scale of the displacements and "
     "the output spacing.");
 }
 
@@ -195,7 +195,7 @@ void DisplacementBuffer::Visit(const std::function<void(const float*)>& visit) c
     visit(this->Copy.data());
     return;
   }
-  // Also what a kernel has written on a device with memory of its own.
+  // On a CPU, or if a kernel has written the buffer.
   const MappedBuffer<const float> mapped(this->Device.GetQueue(), this->Buffer, CL_MAP_READ);
   visit(mapped.Get());
 }
@@ -222,7 +222,7 @@ void DisplacementBuffer::Reserve(std::size_t count)
   {
     return;
   }
-  const std::size_t room = count + count / 8; // more may follow soon
+  const std::size_t room = count + count / 8; // reserve, since more nodes may follow soon
   const cl::CommandQueue& queue = this->Device.GetQueue();
   const cl::Buffer buffer(this->Device.GetContext().GetContext(), CL_MEM_READ_ONLY, room * bytes);
   queue.enqueueFillBuffer(buffer, cl_uchar{ 0 }, had * bytes, (room - had) * bytes);

@@ -18,16 +18,16 @@ namespace deformvolume
 class BrickPoints;
 class DisplacementObserver;
 
-/// Throws an Error where a displacement, of three floats each, is not finite or too large. what:
-/// what has it, in the Error. changes: those to look at, null: all.
+/// Throws Error if a displacement is too large or not finite. displacements: three floats per
+/// point. what: "node" or "point", for the message. changes: points to check; null: all.
 void CheckDisplacements(
   const float* displacements, std::size_t count, const char* what, const PointRanges* changes);
 
-/// Throws that Error.
+/// Throws the Error of CheckDisplacements() for a point.
 [[noreturn]] void ThrowBadDisplacement(const char* what, std::size_t point);
 
-/// Displacements of points on the device, four floats each. Only those that change are written, or
-/// sent together with some between them, and the observer is told which.
+/// Displacements of points on the device, four floats each. Only the range of the points that have
+/// changed is copied to the device, and the observer is notified of these points.
 class DisplacementBuffer
 {
 public:
@@ -37,29 +37,29 @@ public:
   {
   }
 
-  /// displacements: three floats a point, checked. room: the buffer has room for at least so many
-  /// points (meshes that had more nodes). changes: those that may have changed since the last call;
-  /// null: all. makePoints: makes what the observer wants to know
-  /// (DisplacementObserver::SetPoints).
+  /// Set the displacements. displacements: three floats per point, already checked. room: least
+  /// number of points of the buffer, for meshes that had more nodes before. changes: points that
+  /// may have changed since the last call; null: all. makePoints: returns the argument of
+  /// DisplacementObserver::SetPoints().
   void Send(const float* displacements, std::size_t count, std::size_t room,
     const PointRanges* changes, const std::function<BrickPoints()>& makePoints);
 
-  /// Makes room for so many points; those that are new have no displacement yet.
+  /// Enlarges the buffer to at least `count` points. The displacements of new points are 0.
   void Reserve(std::size_t count);
 
-  /// Makes room for so many points that a kernel writes; what was there may be lost. All points
-  /// count as changed.
+  /// Returns a buffer for `count` points, to be written by a kernel. The previous displacements may
+  /// be lost. All points count as changed.
   const cl::Buffer& Place(std::size_t count);
 
   const cl::Buffer& Get() const { return this->Buffer; }
-  /// Calls a function with the displacements as the device has them.
+  /// Calls visit(displacements) with the displacements on the device, four floats per point.
   void Visit(const std::function<void(const float*)>& visit) const;
-  /// That there is room for.
+  /// Number of points for which the buffer has room.
   std::size_t GetNumberOfPoints() const;
   void Clear();
 
 private:
-  /// Displacements that are sent.
+  /// The arguments of Send().
   struct News
   {
     const float* Vectors;
@@ -67,16 +67,17 @@ private:
     const PointRanges* Changes;
     const std::function<BrickPoints()>& MakePoints;
   };
-  /// Brings up to date what the device has, as the host sees it, and tells the observer. Returns
-  /// the first point that has changed and one past the last, or more points.
+  /// Writes the displacements to `sent` (the mapped buffer, or Copy), and notifies the observer.
+  /// Returns a range that contains all changed points.
   std::array<std::size_t, 2> Write(const News& news, float* sent);
 
   WorkDevice& Device;
   DisplacementObserver& Observer;
   cl::Buffer Buffer;
-  // What the device has, where the host cannot look into that; empty where a kernel has written it.
+  // A copy of the buffer on the host, for devices with memory of their own. Empty if a kernel has
+  // written the buffer.
   std::vector<float> Copy;
-  PointSet Changed; // while they are sent
+  PointSet Changed; // used within Write()
 };
 
 } // namespace deformvolume

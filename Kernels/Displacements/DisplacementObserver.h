@@ -16,37 +16,39 @@ namespace deformvolume
 
 class PointSet;
 
-/// What a DisplacementSource tells of its changes.
+/// Receives notifications of the changes of a DisplacementSource.
 class DisplacementObserver
 {
 public:
   virtual ~DisplacementObserver() = default;
 
-  /// Whether it is worthwhile to find out which points change.
+  /// Whether the observer needs to know which points change.
   virtual bool IsTracking() const = 0;
-  /// Of so many points: where more change, it is as good as all of them.
+  /// Returns the largest number of changed points, of numberOfPoints, that are worth tracking. If
+  /// more points change, call MoveAll().
   virtual std::size_t GetMostMoved(std::size_t numberOfPoints) const = 0;
 
-  /// Which points move the sub-bricks. Not known at first, nor after ForgetMapping; needed for
-  /// MovePoints.
+  /// Whether the observer knows which points move each sub-brick, as MovePoints() needs. False at
+  /// first and after ForgetMapping().
   virtual bool HasPoints() const = 0;
+  /// Set the points that move each sub-brick.
   virtual void SetPoints(BrickPoints&& points) = 0;
-  /// Other points move them now, or the same in another way.
+  /// The mapping from points to vertices has changed.
   virtual void ForgetMapping() = 0;
 
-  /// Whether it is known of all sub-bricks where they lie, so that a change may be told when it has
-  /// been made.
+  /// Whether the observer knows the boxes of all sub-bricks. If so, MovePoints() may be called
+  /// after the change.
   virtual bool KnowsAllBoxes() const = 0;
-  /// Points will change. last: four floats a point, the displacements before the change; null: they
-  /// have changed, and all boxes were known.
+  /// Points will change. last: displacements before the change, four floats per point; null: the
+  /// points have already changed (KnowsAllBoxes()).
   virtual void MovePoints(const PointSet& changed, const float* last) = 0;
-  /// Tetrahedra get other nodes. last: as above. Returns
-  /// boxes that hold all vertices which lie in one of these; nothing where that is not known.
+  /// The nodes of tetrahedra will change. last: as in MovePoints(). Returns boxes that contain all
+  /// vertices in these tetrahedra; empty if they are not known.
   virtual std::optional<std::vector<Extent>> ChangeTetrahedra(
     const std::vector<TetrahedronChange>& changes, const float* last) = 0;
-  /// Points have changed. after: of these, or of more.
+  /// Points have changed. after: bounds of the new displacements of at least these points.
   virtual void AddMoved(const DisplacementBounds& after) = 0;
-  /// All points change. after: of all of them, where it is known.
+  /// All points may have changed. after: bounds of all new displacements, if they are known.
   virtual void MoveAll(const std::optional<DisplacementBounds>& after) = 0;
 };
 

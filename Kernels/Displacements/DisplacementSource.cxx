@@ -11,6 +11,7 @@
 #include "WorkDevice.h"
 
 #include <algorithm>
+#include <string>
 
 namespace deformvolume
 {
@@ -27,7 +28,7 @@ bool HasSameDimensions(const FieldParameters& a, const FieldParameters& b)
   return std::equal(a.Dimensions, a.Dimensions + 3, b.Dimensions);
 }
 
-// Whether the points of a field move the same voxels, in the same way.
+// Whether two fields have the same map from voxels to points.
 bool IsSameMapping(const FieldParameters& a, const FieldParameters& b)
 {
   return std::equal(a.IndexToField, a.IndexToField + 12, b.IndexToField) &&
@@ -94,12 +95,12 @@ void DisplacementSource::SetNodePlaces(const std::int32_t* places)
 {
   if (places && !this->HasMesh())
   {
-    throw Error("No deformation mesh with links or runs is set: call SetMesh first.");
+    throw Error("SetNodePlaces() needs a deformation mesh. Call SetMesh() first.");
   }
   std::vector<std::int32_t> all;
   if (places)
   {
-    // Nodes that are there no more share no place with others.
+    // Removed nodes have no common position with other nodes.
     all.assign(places, places + this->NumberOfNodes);
     all.resize(this->MostNodes, -1);
   }
@@ -172,7 +173,7 @@ void DisplacementSource::SetField(
   const std::optional<PointRanges> changes = this->Reading.Begin(vectors, field, points);
   if (!this->Reading.CanConvert())
   {
-    this->Reading.Check(changes, "point"); // what is read where it lies is not looked at again
+    this->Reading.Check(changes, "point"); // vectors that are read in place are not checked later
     DisplacementField read = field;
     read.Vectors = vectors->Read();
     read.Owner = vectors;
@@ -208,7 +209,7 @@ void DisplacementSource::ConvertField(const PointRanges* changes)
   if (changes)
   {
     this->Reading.Convert(this->FieldVectors.Get(), "point");
-    if (!this->TellOfChanges(*changes, [this] { return Join(this->FindBoundsOfSubBricks()); }))
+    if (!this->NotifyOfChanges(*changes, [this] { return Join(this->FindBoundsOfSubBricks()); }))
     {
       this->Observer.MoveAll({});
     }
@@ -250,7 +251,7 @@ FieldParameters DisplacementSource::BeginField(const DisplacementField& field)
 void DisplacementSource::UseField(const DisplacementField& field, const PointRanges* changes)
 {
   this->IsConverted = false;
-  CountPoints(field); // throws where there are none
+  CountPoints(field); // throws if there are none
   const FieldParameters parameters = this->BeginField(field);
   if (this->CanReadInPlace(field, parameters))
   {
@@ -276,8 +277,11 @@ void DisplacementSource::CheckFieldSize() const
 {
   if (4 * this->NumberOfNodes * sizeof(float) > this->Device.GetAllocationLimit())
   {
-    throw Error("The displacement field is larger than the device can hold in one piece. Use a "
-                "coarser field or another device.");
+    throw Error("The displacement field needs " +
+      std::to_string(4 * this->NumberOfNodes * sizeof(float)) +
+      " bytes in one allocation, but the device allows at most " +
+      std::to_string(this->Device.GetAllocationLimit()) +
+      ". Use a coarser field or another device.");
   }
 }
 
@@ -315,7 +319,8 @@ bool DisplacementSource::CanReadInPlace(
   {
     return false;
   }
-  // It may be an array of the volume, too, and lies in one piece.
+  // The field may also be an array of the volume. Its buffer can be shared if it is not divided
+  // into chunks.
   const BufferInPlace array =
     this->Volume.GetArrays().FindOverlapping(field.Vectors, GetBytes(field));
   return array.Bytes == 0 ||
@@ -337,7 +342,7 @@ bool DisplacementSource::ChangeInPlace(const DisplacementField& field, const Poi
     }
     return bounds;
   };
-  if (!this->TellOfChanges(changes, after))
+  if (!this->NotifyOfChanges(changes, after))
   {
     return false;
   }
@@ -345,7 +350,7 @@ bool DisplacementSource::ChangeInPlace(const DisplacementField& field, const Poi
   return true;
 }
 
-bool DisplacementSource::TellOfChanges(
+bool DisplacementSource::NotifyOfChanges(
   const PointRanges& changes, const std::function<DisplacementBounds()>& after)
 {
   std::size_t count = 0;
@@ -383,14 +388,14 @@ void DisplacementSource::SetFieldInPlace(const DisplacementField& field)
   this->FieldVectors.Clear();
   const BufferInPlace array =
     this->Volume.GetArrays().FindOverlapping(field.Vectors, GetBytes(field));
-  this->VectorsInPlace = array.Buffer; // that of before may lie over the same memory
+  this->VectorsInPlace = array.Buffer; // release the last buffer, which may use the same memory
   if (!array.Buffer())
   {
-    // The kernels only read them.
+    // The kernels only read the vectors.
     this->VectorsInPlace = MakeBufferOver(this->Device.GetContext(), CL_MEM_READ_ONLY,
       const_cast<float*>(field.Vectors), GetBytes(field));
   }
-  this->FieldInPlace = field; // only now no buffer lies over the memory of the last one
+  this->FieldInPlace = field; // release the last owner after the buffer that used its memory
 }
 
 BufferInPlace DisplacementSource::GetFieldInPlace() const
@@ -402,7 +407,7 @@ BufferInPlace DisplacementSource::GetFieldInPlace() const
 
 void DisplacementSource::ReadFieldAgain() const
 {
-  TellOfWrites(this->Device.GetContext(), this->Device.GetQueue(), this->GetFieldInPlace());
+  UpdateFromHost(this->Device.GetContext(), this->Device.GetQueue(), this->GetFieldInPlace());
 }
 
 void DisplacementSource::ForgetNodes()

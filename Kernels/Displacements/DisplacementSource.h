@@ -27,87 +27,89 @@ class DisplacementObserver;
 class WorkDevice;
 struct VolumeChunk;
 
-/// Where the displacements are that move a volume, on the device: those of the nodes of a
-/// deformation mesh, or of the points of a field, which may be read where it lies. It says by which
-/// form of the deformation mapping the kernels find the displacement of a vertex, and gives them
-/// the arguments of that.
+/// The displacements that move a volume, on the device: of the nodes of a deformation mesh, or of
+/// the points of a field, which may be read in place. The class selects the form of the deformation
+/// mapping by which kernels compute the displacement of a vertex, and sets their arguments.
 ///
-/// Each call that fails leaves the deformation of before, or none.
+/// After a call that throws, the previous deformation is set, or none.
 class DisplacementSource
 {
 public:
-  /// The volume gets the static mapping of the mesh. The observer is told what changes.
+  /// volume: receives the static mapping of the mesh. observer: is notified of changes.
   DisplacementSource(WorkDevice& device, DeviceVolume& volume, DisplacementObserver& observer);
 
   ///@{
-  /// A deformation mesh that was checked (CheckMesh), with a link for each voxel or with runs. Its
-  /// nodes have no displacements yet.
+  /// Set a deformation mesh with a link for each voxel or with runs. The mesh must have been
+  /// checked (CheckMesh()). Its nodes have no displacements until SetNodeDisplacements() is called.
   void SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     std::size_t numberOfNodes, const VertexLink* links);
   void SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     std::size_t numberOfNodes, const VertexRuns& runs);
   ///@}
   bool HasMesh() const;
-  /// See VolumeDeformer; the mesh is the one that was set.
+  /// See VolumeDeformer.
   void ChangeConnectivity(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     std::size_t numberOfNodes, const std::vector<TetrahedronChange>* changes);
   void SetNodePlaces(const std::int32_t* places);
-  /// Three floats a node, in output voxels. changes, areChecked: see
-  /// VolumeDeformer::SetNodeDisplacements.
+  /// Set the displacements of nodes: three floats per node, in output voxels. changes, areChecked:
+  /// see VolumeDeformer::SetNodeDisplacements().
   void SetNodeDisplacements(
     const float* displacements, const PointRanges* changes, bool areChecked);
 
-  /// The same of vectors on the device. toDisplacement: see DisplacementField.
+  /// Set the displacements of nodes to vectors on the device. toDisplacement: see
+  /// DisplacementField.
   void SetNodeDisplacements(
     const std::shared_ptr<DeviceVectors>& vectors, const std::array<double, 9>& toDisplacement);
 
-  /// A field that is not empty (CountPoints). changes: see VolumeDeformer::SetDisplacementField.
+  /// Set a field, which must not be empty. changes: see VolumeDeformer::SetDisplacementField().
   void SetField(const DisplacementField& field, const PointRanges* changes);
-  /// A field that has its vectors on the device.
+  /// Set a field whose vectors are on the device.
   void SetField(const DisplacementField& field, const std::shared_ptr<DeviceVectors>& vectors);
 
-  /// There is no deformation any more.
+  /// Removes the deformation.
   void Forget();
 
-  /// Whether there are displacements for each vertex.
+  /// Whether displacements are set.
   bool IsReady() const;
 
-  /// Nodes of the mesh, or points of the field.
+  /// Number of nodes of the mesh, or of points of the field.
   std::size_t GetNumberOfNodes() const { return this->NumberOfNodes; }
   std::size_t GetNumberOfTetrahedra() const { return this->NumberOfTetrahedra; }
 
-  /// Leaves out the tetrahedra of the sampling mesh that bridge a gap of the mesh, where that is
-  /// wanted; returns the boxes of cells that have other ones than before.
+  /// Updates the mask of bridges: tetrahedra of the sampling mesh over a split of the mesh, which
+  /// are not resampled (SetNodePlaces()). Returns the boxes of cells whose bridges have changed.
   std::vector<Extent> UpdateBridges();
-  /// Brings up to date what follows from displacements and masks: the records of runs and the state
-  /// of the vertices. Events of launches are added to a list. bricks: the ones that are to be made
-  /// (DEFORMVOLUME_BRICK_BITS), if all else stays as it is; null: all.
+  /// Updates the data that depend on displacements and masks: the records of runs and the state of
+  /// the vertices. events: receives the events of launches. bricks: bricks to resample, if the
+  /// other bricks do not change (DEFORMVOLUME_BRICK_BITS); null: all.
   void PrepareMapping(std::vector<cl::Event>& events, const std::vector<cl_uint>* bricks = nullptr);
   MappingForm GetMappingForm() const;
-  /// Sets a kernel's first arguments, those of the mapping, and returns how many they are.
+  /// Sets the arguments of the mapping, which are the first arguments of a kernel. Returns their
+  /// number.
   cl_uint SetMappingArguments(cl::Kernel& kernel, const VolumeChunk& chunk) const;
 
-  /// Sets arguments from one on, and returns the number of the next one: tetrahedra, points, and as
-  /// four integers the dimensions of a field, 0 for a mesh. other: any buffer.
+  /// Sets three arguments, starting at number `argument`: tetrahedra, displacements of points, and
+  /// the dimensions of a field as four integers (0 for a mesh). Returns the number of the next
+  /// argument. other: any buffer, which replaces the tetrahedra for a field.
   cl_uint SetPointArguments(cl::Kernel& kernel, cl_uint argument, const cl::Buffer& other) const;
 
-  /// Which points move the sub-bricks of the volume, where that is one chunk.
+  /// Finds the points that move each sub-brick of the volume. The volume must be one chunk.
   BrickPoints MakeBrickPoints() const;
-  /// Bricks look further or less far than before (BrickGrid::Halo).
+  /// BrickGrid::Halo has changed.
   void ChangeHalo() { this->BoundsOfSubBricks.clear(); }
-  /// Calls a function with the displacements as they are now, or with what is known of them, and
-  /// how many they are.
+  /// Calls visit(displacements, numberOfPoints) with the current displacements, or with their
+  /// bounds if they are only on the device.
   void Visit(const std::function<void(const Displacements&, std::size_t)>& visit) const;
 
-  /// Whether a field that the kernels read where it lies, or that a kernel has converted, is
-  /// written in part, and that is told.
+  /// Whether the last call of SetField() changed only some points, for a field that is read in
+  /// place or that a kernel has converted.
   bool IsWrittenInPart() const
   {
     return (this->FieldInPlace.Owner || this->IsConverted) && this->WrittenInPart;
   }
-  /// Memory of the host where the kernels read a field, of no bytes where they do not.
+  /// Returns the host memory of a field that is read in place. It has 0 bytes if there is none.
   BufferInPlace GetFieldInPlace() const;
-  /// Has it be read as it is now.
+  /// Updates the field that is read in place after its memory has been written.
   void ReadFieldAgain() const;
 
   /// Bytes on the device.
@@ -116,34 +118,34 @@ public:
 private:
   void SendTetrahedra(
     const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes);
-  /// The tetrahedra that are not as the device has them.
+  /// Finds the tetrahedra that differ from those on the device.
   std::vector<TetrahedronChange> FindChanges(const Tetrahedron* tetrahedra) const;
   void CheckChanges(const std::vector<TetrahedronChange>& changes, std::size_t numberOfNodes) const;
   void SendChanges(const std::vector<TetrahedronChange>& changes);
   void SendNodes(const float* displacements, const PointRanges* changes, bool areChecked);
-  /// There are so many nodes now.
   void SetNumberOfNodes(std::size_t numberOfNodes);
   void ForgetNodes();
   void ForgetField();
   bool HasField() const { return this->GetFieldVectors()() != nullptr; }
   const cl::Buffer& GetFieldVectors() const;
-  /// What moves the voxels becomes a field, of which this returns what the kernels are told.
+  /// Removes a mesh, if one is set, and prepares for a field. Returns the parameters of the field
+  /// for kernels.
   FieldParameters BeginField(const DisplacementField& field);
   void UseField(const DisplacementField& field, const PointRanges* changes);
   bool CanReadInPlace(const DisplacementField& field, const FieldParameters& parameters) const;
-  /// Some points of the field that is read where it lies have changed. False where all of it is as
-  /// good as new.
+  /// Changes some points of the field that is read in place. Returns false if all points must count
+  /// as changed.
   bool ChangeInPlace(const DisplacementField& field, const PointRanges& changes);
   void SetFieldInPlace(const DisplacementField& field);
   void CheckFieldSize() const;
-  /// Has a kernel make the displacements of the field. changes: what may have changed of them, and
-  /// of no others; null: all.
+  /// Converts the vectors of the field to displacements, by a kernel. changes: points that may have
+  /// changed; null: all.
   void ConvertField(const PointRanges* changes);
   const std::vector<DisplacementBounds>& FindBoundsOfSubBricks() const;
-  /// Points that have changed, so many of them: the observer is told, if that is worthwhile and
-  /// possible. after: finds what their displacements lie between now. False where all of the field
-  /// is as good as new.
-  bool TellOfChanges(const PointRanges& changes, const std::function<DisplacementBounds()>& after);
+  /// Notifies the observer of changed points. after: computes the bounds of their new
+  /// displacements. Returns false if all points must count as changed.
+  bool NotifyOfChanges(
+    const PointRanges& changes, const std::function<DisplacementBounds()>& after);
   void SendField(
     const DisplacementField& field, const FieldParameters& parameters, const PointRanges* changes);
 
@@ -151,24 +153,24 @@ private:
   DeviceVolume& Volume;
   DisplacementObserver& Observer;
 
-  cl::Buffer Tetrahedra; // their nodes (DEFORMVOLUME_NODE_PLACES)
+  cl::Buffer Tetrahedra; // nodes of the tetrahedra, times DEFORMVOLUME_NODE_PLACES
   std::size_t NumberOfTetrahedra = 0;
   std::size_t NumberOfNodes = 0;
-  std::size_t MostNodes = 0; // that the mesh has had: the buffers have room for them
+  std::size_t MostNodes = 0; // largest number of nodes since SetMesh(), and size of the buffers
   DisplacementBuffer Nodes;
   bool NodesSet = false;
 
   FieldParameters Field = {};
   DisplacementBuffer FieldVectors;
   bool WrittenInPart = false;
-  DisplacementField FieldInPlace; // with an owner, where the kernels read the vectors of that
-  cl::Buffer VectorsInPlace;      // which lies over them
+  DisplacementField FieldInPlace; // has an owner if the kernels read its vectors in place
+  cl::Buffer VectorsInPlace;      // uses the memory of these vectors
 
   VectorReading Reading;
-  bool IsConverted = false; // the displacements of the field are made on the device
+  bool IsConverted = false; // whether a kernel has written the displacements of the field
   mutable BoxBounds Bounds;
-  mutable std::vector<DisplacementBounds> BoundsOfSubBricks; // of these; empty: not known
-  bool LastSent = false; // the last displacements that were given are on the device
+  mutable std::vector<DisplacementBounds> BoundsOfSubBricks; // if converted; empty: not known
+  bool LastSent = false; // whether the device has the displacements of the last call
 };
 
 } // namespace deformvolume

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How DisplacementSource follows changes of the mesh: tetrahedra that get other nodes.
+// The part of DisplacementSource that applies changes of the nodes of tetrahedra.
 #include "DisplacementSource.h"
 
 #include "DeviceVolume.h"
@@ -47,18 +47,17 @@ void DisplacementSource::CheckChanges(
   };
   for (const TetrahedronChange& change : changes)
   {
-    const std::string name = "The tetrahedron " + std::to_string(change.Number);
+    const std::string name = "tetrahedron " + std::to_string(change.Number);
     if (change.Number < 0 || static_cast<std::size_t>(change.Number) >= this->NumberOfTetrahedra)
     {
-      throw Error(name + " is to have other nodes, but there are " +
+      throw Error("The nodes of " + name + " cannot be changed: the mesh has only " +
         std::to_string(this->NumberOfTetrahedra) + " tetrahedra.");
     }
     if (!areNodes(change.After, numberOfNodes) || !areNodes(change.Before, this->MostNodes))
     {
-      throw Error(name +
-        " is to have other nodes, and one of these, or of those that it had, is "
-        "none: there are " +
-        std::to_string(numberOfNodes) + " nodes now.");
+      throw Error("The change of the nodes of " + name +
+        " refers to a node that does not exist: the mesh has " + std::to_string(numberOfNodes) +
+        " nodes, and had at most " + std::to_string(this->MostNodes) + " before.");
     }
   }
 }
@@ -76,7 +75,7 @@ void DisplacementSource::SendChanges(const std::vector<TetrahedronChange>& chang
     return;
   }
   std::vector<Tetrahedron> places;
-  places.reserve(changes.size()); // they stay until they are sent
+  places.reserve(changes.size()); // the copies in progress use the addresses of elements
   PendingCopies writes;
   for (const TetrahedronChange& change : changes)
   {
@@ -94,7 +93,10 @@ void DisplacementSource::ChangeConnectivity(const Tetrahedron* tetrahedra,
 {
   if (!this->HasMesh() || numberOfTetrahedra != this->NumberOfTetrahedra || numberOfNodes == 0)
   {
-    throw Error("The tetrahedra are not those of the mesh that was set: call SetMesh.");
+    throw Error("The connectivity cannot be changed to that of a mesh with " +
+      std::to_string(numberOfTetrahedra) + " tetrahedra and " + std::to_string(numberOfNodes) +
+      " nodes: the mesh that is set has " + std::to_string(this->NumberOfTetrahedra) +
+      " tetrahedra. Call SetMesh() instead.");
   }
   std::vector<TetrahedronChange> found;
   if (!changes)
@@ -132,7 +134,8 @@ void DisplacementSource::SetNumberOfNodes(std::size_t numberOfNodes)
     {
       this->Observer.SetPoints(this->MakeBrickPoints());
     }
-    // A node that is new may stay where it is by chance, so that nobody learns of it.
+    // The displacement of a new node may equal the value in the buffer: then the node does not
+    // count as changed later. So add its bounds here.
     DisplacementBounds bounds;
     this->Nodes.Visit(
       [&](const float* last)

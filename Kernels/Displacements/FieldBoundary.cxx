@@ -18,7 +18,8 @@ namespace deformvolume
 namespace
 {
 
-// Cells of the volume on an axis of a piece of a field, about: in a piece the field is linear.
+// Approximate size of a piece on an axis, in cells of the volume. In a piece the field is
+// approximated as linear.
 constexpr double FieldPiece = 4.0;
 
 } // namespace
@@ -62,8 +63,8 @@ MeshBoundary FindFieldBoundary(
     }
   }
   BoundaryFinder finder(part, whole);
-  // Where a side of the field lies on voxels, cells end there by themselves: kernels take voxels
-  // that lie by 1/1000 of a cell of the field outside it for voxels in it.
+  // A side of the field that lies on voxels is no boundary, since cells end there. Kernels treat
+  // voxels up to FieldTolerance outside the field as inside.
   const double finest =
     std::min({ glm::length(toIndex[0]), glm::length(toIndex[1]), glm::length(toIndex[2]) });
   if (!finder.Cross(faces, std::min(BorderTolerance, 0.5e-3 * finest)))
@@ -71,9 +72,9 @@ MeshBoundary FindFieldBoundary(
     return MeshBoundary();
   }
 
-  // A lattice with cells that are about as large as a piece is to be: parts of the field's cells,
-  // or several of these.
-  glm::dvec3 step; // from cell to cell of the lattice, in points of the field
+  // A lattice with cells of about the size of a piece. A cell of the lattice is a fraction of a
+  // cell of the field, or consists of several such cells.
+  glm::dvec3 step; // size of a lattice cell, in steps between points of the field
   glm::i64vec3 cells;
   glm::dvec3 last;
   for (int axis = 0; axis < 3; ++axis)
@@ -85,7 +86,7 @@ MeshBoundary FindFieldBoundary(
     cells[axis] =
       std::max<std::int64_t>(1, std::llround(std::ceil(last[axis] / step[axis] - 1e-9)));
   }
-  // Those that meet cells near the boundary.
+  // The lattice cells that meet cells near the boundary.
   std::vector<std::int64_t> numbers;
   finder.ForEachNear(
     [&](std::int64_t x, std::int64_t y, std::int64_t z)

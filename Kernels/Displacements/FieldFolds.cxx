@@ -20,7 +20,7 @@ namespace deformvolume
 namespace
 {
 
-// The displacements of a row of points along x, in points of the field.
+// The displacements of a row of points along x, in steps between points of the field.
 struct Row
 {
   std::array<std::vector<double>, 3> Components;
@@ -29,7 +29,7 @@ struct Row
   int Z = -1;
 };
 
-/// Counts the inverted tetrahedra of one row of cells after the other.
+/// Counts the inverted tetrahedra in rows of cells.
 class RowCounter
 {
 public:
@@ -42,13 +42,14 @@ private:
   int CountInCell(int x, int y, int z) const;
 
   const DisplacementField& Field;
-  const std::size_t Size; // in points
+  const std::size_t Size; // points on x
   const glm::dmat3 ToField;
-  // By the parities of y and z, so that the next row of cells finds two of them here.
+  // Indexed by the parities of y and z, so that the next row of cells can reuse two rows.
   std::array<std::array<Row, 2>, 2> Rows;
-  // How much one component changes from the rows at a point to the next ones along y and along z.
+  // Largest change of one component along the edges on y, and on z, at each x.
   std::vector<double> ChangeAcross[2];
-  // Of each cell of the row, whether its edges tell that none of its tetrahedra is inverted.
+  // For each cell of the row: whether the changes along its edges prove that no tetrahedron is
+  // inverted.
   std::vector<unsigned char> IsRegular;
 };
 
@@ -98,14 +99,16 @@ void RowCounter::Read(Row& row, int y, int z) const
   row.Z = z;
 }
 
-// The map in a tetrahedron is I + D. In one at a corner of a cell, column j of D is how the
-// displacement changes along an edge of the cell along axis j. In the one in the middle it is the
-// mean of the changes along two edges along j, plus or minus half the difference of the changes
-// along two edges along another axis, whichever of the two axes one takes. Where the absolute
-// values in each row of D sum to less than 1, the determinant of I + D is positive. So if X, Y and
-// Z are the greatest changes of a component along the edges of a cell, and X + Y + Z + min(Y, Z) +
-// min(X, Z) + min(X, Y) < 1 for all three components, none of the five is inverted. This is true of
-// most cells of most fields, and found for several cells at once.
+// Finds the cells that certainly have no inverted tetrahedron, with vector instructions. Most cells
+// of most fields are among them.
+//
+// The derivative of the map in a tetrahedron is I + D. In a corner tetrahedron, column j of D is
+// the change of the displacement along an edge of the cell on axis j. In the central tetrahedron,
+// it is the mean of the changes along two edges on axis j, plus or minus half the difference of the
+// changes along two edges on another axis, which may be either of the two. If the absolute values
+// in each row of D add up to less than 1, the determinant of I + D is positive. Let X, Y and Z be
+// the largest changes of a component along the edges of a cell on each axis. If X + Y + Z + min(Y,
+// Z) + min(X, Z) + min(X, Y) < 1 for all three components, none of the five tetrahedra is inverted.
 void RowCounter::FindRegularCells()
 {
   bool areFinite = true;
@@ -137,7 +140,7 @@ void RowCounter::FindRegularCells()
       const double alongZ = std::max(changeZ[x], changeZ[x + 1]);
       const double sum = alongX + alongY + alongZ + std::min(alongY, alongZ) +
         std::min(alongX, alongZ) + std::min(alongX, alongY);
-      isRegular[x] &= sum < 0.999 ? 1 : 0; // less than 1 by far more than rounding
+      isRegular[x] &= sum < 0.999 ? 1 : 0; // the margin to 1 is far larger than rounding errors
     }
   }
 }
@@ -146,10 +149,11 @@ int RowCounter::CountInCell(int x, int y, int z) const
 {
   static constexpr int tetrahedra[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
   const glm::ivec3 cell(x, y, z);
-  glm::dvec3 moved[8]; // in points of the field
+  glm::dvec3 moved[8]; // in continuous indices of the field
   for (int vertex = 0; vertex < 8; ++vertex)
   {
-    // The vertices of neighbours are mirrored, so that these are the parities of the point.
+    // The split is mirrored from cell to cell, so the bits of a vertex are the parities of its
+    // point.
     const glm::ivec3 parity(vertex & 1, vertex >> 2 & 1, vertex >> 1 & 1);
     const glm::ivec3 point = cell + (parity ^ (cell & 1));
     const Row& row = this->Rows[parity.y][parity.z];

@@ -10,8 +10,8 @@
 namespace deformvolume
 {
 
-/// Of the tetrahedra of a field's grid, five for each cell, the number that the field turns
-/// inside out. Where there are any, several points are led to one.
+/// Counts the tetrahedra that a field inverts. Each cell of the field's grid is split into five
+/// tetrahedra. If any is inverted, the field maps several points to the same position.
 DEFORMVOLUME_EXPORT std::int64_t CountInvertedTetrahedra(const DisplacementField& field);
 
 } // namespace deformvolume

@@ -9,13 +9,14 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <string>
 
 namespace deformvolume
 {
 namespace
 {
 
-// Finds out whether the voxels are points of a field.
+// Sets SameGrid and Offset: whether all voxels are points of the field.
 void SetSameGrid(FieldParameters& field, const Extent& extent)
 {
   field.SameGrid = 1;
@@ -40,7 +41,8 @@ std::size_t CountPoints(const DisplacementField& field)
   const auto points = static_cast<std::size_t>(GetNumberOfPoints(field));
   if (points == 0 || !field.Vectors)
   {
-    throw Error("The displacement field is empty.");
+    throw Error("The displacement field is empty: it has " + std::to_string(points) + " points" +
+      (field.Vectors ? "." : ", and its vectors are null."));
   }
   return points;
 }
@@ -65,8 +67,8 @@ FieldParameters MakeFieldParameters(const DisplacementField& field, const VoxelG
   FieldParameters parameters = MakeMatrixParameters(field);
   std::transform(field.IndexToField.begin(), field.IndexToField.end(), parameters.IndexToField,
     [](double element) { return static_cast<float>(element); });
-  // The kernels count from the first voxel of the whole volume: large structured indices do not fit
-  // into a float, and a part must round as the whole does.
+  // The kernels use indices relative to the first voxel of the whole volume. Large structured
+  // indices are not exact in floats, and a part must round like the whole.
   const Extent& extent = voxelGrid.VertexExtent;
   const Extent& whole = GetWholeExtent(voxelGrid);
   for (int row = 0; row < 3; ++row)

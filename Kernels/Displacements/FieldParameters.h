@@ -13,18 +13,19 @@
 namespace deformvolume
 {
 
-/// Points of a field. Throws an Error where it has none.
+/// Returns the number of points of a field. Throws Error if it has none, or no vectors.
 std::size_t CountPoints(const DisplacementField& field);
 
-/// What the kernels are told of a field that moves the voxels of a grid.
+/// Makes the kernel parameters of a field that moves the voxels of a grid.
 FieldParameters MakeFieldParameters(const DisplacementField& field, const VoxelGrid& voxelGrid);
 
-/// The same of what takes vectors to displacements only: the matrix of a field.
+/// Makes kernel parameters with ToDisplacement and IsMapped only.
 FieldParameters MakeMatrixParameters(const DisplacementField& field);
 
-/// The displacements of a field, three floats a point.
+/// Returns the displacements of a field, three floats per point.
 std::vector<float> MapVectors(const DisplacementField& field);
-/// Those of some points of it, from the first one to one past the last.
+/// Computes the displacements of the points range[0] to range[1] - 1. displacements: three floats
+/// for each point of the field.
 void MapVectors(
   const DisplacementField& field, const std::array<std::size_t, 2>& range, float* displacements);
 

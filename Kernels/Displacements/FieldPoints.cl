@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What lies between the points of a field. It comes after MultiplyAdd.cl.
+// Interpolation between the points of a field. This text comes after MultiplyAdd.cl.
 
-// Products and sums are fused where MULTIPLY_ADD does so, and nowhere else.
+// Only MULTIPLY_ADD may fuse multiply and add.
 #pragma OPENCL FP_CONTRACT OFF
 
-// a + t (b - a) is exact for t = 0: no rounding where a voxel is a point of the field.
+// a + t (b - a) is exact for t = 0, where a voxel is a point of the field.
 #define MIX(a, b, t) MULTIPLY_ADD((float4)(t), (b) - (a), a)
 
-// The trilinear displacement at a place f, in indices of the points, from the first to the last one.
+// Interpolates the displacement trilinearly at the continuous index f, from 0 to last. width, plane: points of a row
+// and of a plane.
 static float4 InterpolatePoints(__global const float4* points, size_t width, size_t plane, float3 f, int3 last)
 {
   const int3 low = min(convert_int3(floor(f)), last);

@@ -16,7 +16,7 @@ namespace deformvolume
 namespace
 {
 
-// A block has so many rows of one plane.
+// Rows of one plane in a block.
 constexpr int RowsOfBlock = 8;
 
 int CountBlocksOfPlane(const DisplacementField& field)
@@ -24,7 +24,7 @@ int CountBlocksOfPlane(const DisplacementField& field)
   return (field.Dimensions[1] + RowsOfBlock - 1) / RowsOfBlock;
 }
 
-// Looks at blocks of a field.
+// Checks blocks of a field and computes their bounds.
 class BlockScanner
 {
 public:
@@ -59,7 +59,8 @@ public:
     }
   }
 
-  // A box that holds the deformed voxels of a block. usable: whether its vectors are.
+  // Returns a box that contains the deformed voxels of a block. usable: set to false if a vector is
+  // not usable.
   IndexBounds Scan(std::size_t block, bool& usable) const
   {
     IndexBounds box;
@@ -81,7 +82,7 @@ public:
     return box;
   }
 
-  // The bounds of these voxels.
+  // Returns the exact bounds of the deformed voxels of a block.
   IndexBounds FindBounds(std::size_t block) const
   {
     IndexBounds bounds;
@@ -97,7 +98,7 @@ public:
   }
 
 private:
-  static constexpr int Step = 64; // points of a row that are looked at together
+  static constexpr int Step = 64; // points of a row that are processed together
 
   std::int64_t GetPoint(int x, int y, int z) const
   {
@@ -109,14 +110,14 @@ private:
   {
     return this->Rest[0][x] + this->Rest[1][y] + this->Rest[2][z];
   }
-  // Whether a row has voxels, and not only other points of the field.
+  // Whether a row of points contains voxels.
   bool HasVoxels(int y, int z) const
   {
     return y >= this->Begin[1] && y < this->End[1] && z >= this->Begin[2] && z < this->End[2];
   }
 
-  // Points of a row from x to end; those that are voxels are added to a box. Returns whether all
-  // are usable.
+  // Checks the points x to end - 1 of a row. If they are voxels, adds their deformed positions to
+  // the box. Returns whether all vectors are usable.
   bool AddSome(int x, int end, int y, int z, bool areVoxels, IndexBounds& box) const
   {
     const VectorComponents components = FindComponents(
@@ -153,10 +154,10 @@ private:
 
   const DisplacementField& Field;
   DisplacementFactors Factors;
-  // The voxels, counted from the field's first point.
+  // The range of voxels, relative to the first point of the field.
   std::array<int, 3> Begin;
   std::array<int, 3> End;
-  // For each index on an axis of the field what it adds to the position of a voxel.
+  // The position of a voxel is the sum of one element for each axis, by the index of its point.
   std::array<std::vector<glm::dvec3>, 3> Rest;
 };
 

@@ -14,12 +14,12 @@
 namespace deformvolume
 {
 
-/// What there is to know of the vectors of a displacement field before it is used.
+/// State of the vectors of a displacement field.
 struct FieldState
 {
-  /// Whether all vectors are finite, and no displacement is over LargestDisplacement.
+  /// Whether all vectors are finite, and no displacement exceeds LargestDisplacement.
   bool IsUsable = false;
-  /// Of the voxels after the deformation, as ComputeDeformedBounds has them.
+  /// Bounds of the deformed voxels, as by ComputeDeformedBounds().
   IndexBounds Bounds;
 };
 
@@ -27,13 +27,13 @@ struct FieldState
 DEFORMVOLUME_EXPORT bool AreVoxelsPoints(
   const VoxelGrid& voxelGrid, const DisplacementField& field);
 
-/// Looks at each vector of a field that has each voxel for a point; once, and then at those only
-/// that have been written.
+/// Checks the vectors of a field in which each voxel is a point, and computes the bounds of the
+/// deformed voxels. Later calls process only vectors that have changed.
 class DEFORMVOLUME_EXPORT FieldScan
 {
 public:
-  /// changes: points of the field. If all else is as it was at the last call, only those are looked
-  /// at. Null: any may have changed.
+  /// Checks the vectors. changes: points that have changed since the last call, if nothing else
+  /// has; null: any may have changed.
   FieldState Look(const VoxelGrid& voxelGrid, const DisplacementField& field,
     const PointRanges* changes = nullptr);
 
@@ -41,7 +41,8 @@ private:
   std::vector<unsigned char> FindChanged(
     const DisplacementField& field, const PointRanges* changes) const;
 
-  BlockBounds Bounds; // of some rows of points each, and of as many in all that follows
+  // One element for each block of rows.
+  BlockBounds Bounds;
   std::vector<unsigned char> AreUsable;
 };
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bounds of displacements on the device, and of voxels that vectors there move. It comes after GroupReduction.cl
-// and VectorConversion.cl.
+// Bounds of displacements, and of deformed voxels, computed on the device. This text comes after GroupReduction.cl and
+// VectorConversion.cl.
 
-#define BOUNDS 6 // the least x, y and z, and the greatest ones
+#define BOUNDS 6 // the least x, y and z, then the greatest
 
-// What the items of a work-group have found, joined into six bounds. shared: room for BOUNDS values a work-item. All items call it.
+// Reduces the bounds of the work-items of a group to six numbers. shared: BOUNDS values per work-item. All work-items
+// of the group must execute it.
 #define JOIN_BOUND(row, a, b) ((row) < 3 ? fmin(a, b) : fmax(a, b))
 #define JOIN_BOUNDS(shared, least, greatest, bounds)                                               \
   {                                                                                                \
@@ -20,8 +21,8 @@
     }                                                                                              \
   }
 
-// What finite displacements lie between in boxes of points, six ends each; a work-group takes a box. width and height:
-// points on x and y.
+// Computes the bounds of finite displacements in boxes of points. A work-group processes one box. boxes: six ints per
+// box, as an Extent. width, height: points of the field on x and y.
 __kernel void FindBoxBounds(__global const float4* displacements, const int width, const int height,
   __global const int* boxes, __local float* shared, __global float* bounds)
 {
@@ -48,9 +49,10 @@ __kernel void FindBoxBounds(__global const float4* displacements, const int widt
 
 #if REAL_IS_DOUBLE
 
-// rest: for each index on x, then y, then z the three numbers that it adds to where a voxel lies. bounds: six numbers a
-// work-group. A group takes every so many-th row of voxels, and its items every so many-th voxel of these. Voxels whose
-// displacement is not finite, or larger than the largest, are counted.
+// Computes the bounds of deformed voxels. rest: three numbers for each index on x, then y, then z; the position of a
+// voxel at rest is the sum of those of its indices. bounds: six numbers per work-group. bad: counts voxels whose
+// displacement is not finite or exceeds `largest`. A work-group processes the rows get_group_id(0),
+// get_group_id(0) + get_num_groups(0) and so on; its work-items process the voxels of a row in the same way.
 __kernel void FindBounds(__global const float* vectors, const FieldParameters field,
   const KernelParameters p, __global const double* rest, const float largest, __local double* shared,
   __global double* bounds, __global uint* bad)

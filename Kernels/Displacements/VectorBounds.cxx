@@ -22,7 +22,8 @@ using Bounds = std::array<double, 6>;
 
 constexpr std::size_t Groups = 256;
 
-// For each index on x, then y, then z what it adds to the position of a voxel, as the host has it.
+// Returns the argument `rest` of the kernel FindBounds, with the arithmetic of the host
+// (FieldScan).
 std::vector<double> FindRestPositions(const VoxelGrid& voxelGrid)
 {
   const Extent& extent = voxelGrid.VertexExtent;
@@ -83,7 +84,7 @@ std::optional<IndexBounds> Find(
   IndexBounds all;
   for (const Bounds& one : found)
   {
-    if (one[0] <= one[3]) // else it had no row
+    if (one[0] <= one[3]) // otherwise the work-group had no row
     {
       all.Add(glm::dvec3(one[0], one[1], one[2]));
       all.Add(glm::dvec3(one[3], one[4], one[5]));

@@ -13,11 +13,13 @@
 namespace deformvolume
 {
 
-/// The bounds of the deformed voxels, as ComputeDeformedBounds has them, of a field whose vectors
-/// lie on a device: found there, so that no vector comes to the host. Nothing where that is not
-/// possible: each voxel has to be a point of the field (AreVoxelsPoints), the device needs memory
-/// of its own and double precision, and displacements have to be finite and not too large. Vectors
-/// and Owner of field are not used. Throws an Error where there are not so many vectors.
+/// Computes the bounds of the deformed voxels, as ComputeDeformedBounds() does, for a field whose
+/// vectors are on a device. No vectors are copied to the host.
+///
+/// Returns an empty result unless all of these hold: each voxel is a point of the field
+/// (AreVoxelsPoints()), the device has memory of its own and double precision, and all
+/// displacements are finite and not too large. Vectors and Owner of `field` are not used. Throws
+/// Error if the number of vectors is not that of the points of the field.
 DEFORMVOLUME_EXPORT std::optional<IndexBounds> FindDeformedBounds(
   const VoxelGrid& voxelGrid, const DisplacementField& field, DeviceVectors& vectors);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Displacements, in output voxels, of vectors in world units that lie on the device. With double precision it comes
-// after the mapping by fields in place, by whose products a matrix is applied; without it there is no matrix.
+// Conversion of vectors in world units to displacements in output voxels, on the device. With double precision, this
+// text comes after the mapping by fields in place, which defines ROW_PRODUCT. Without it, there is no matrix.
 
 static float3 ConvertVector(float3 v, const FieldParameters* field)
 {
@@ -15,8 +15,8 @@ static float3 ConvertVector(float3 v, const FieldParameters* field)
   return v;
 }
 
-// Four floats a point. A point whose displacement is not finite, or larger than the largest, is reported. A work-item
-// takes one point.
+// Converts vectors to displacements of four floats per point. firstBad: set to the first point whose displacement is
+// not finite or exceeds `largest`. A work-item processes one point.
 __kernel void ConvertVectors(__global const float* vectors, const FieldParameters field, const ulong count,
   const float largest, __global float4* displacements, __global uint* firstBad)
 {
@@ -26,7 +26,7 @@ __kernel void ConvertVectors(__global const float* vectors, const FieldParameter
     return;
   }
   const float3 moved = ConvertVector(vload3(point, vectors), &field);
-  // Not-a-number is not good either.
+  // True for NaN, too.
   if (!all(fabs(moved) <= largest))
   {
     atomic_min(firstBad, (uint)point);

@@ -70,7 +70,7 @@ void VectorReading::Convert(const cl::Buffer& displacements, const char* what)
   const std::size_t group = this->Device.GetGroupSize(kernel);
   context.Launch(
     queue, kernel, cl::NDRange((count + group - 1) / group * group), cl::NDRange(group));
-  // Waits, too: the vectors may be written again from now on.
+  // This read also waits for the kernel, since the vectors may be written after the return.
   queue.enqueueReadBuffer(firstBad, CL_TRUE, 0, sizeof(bad), &bad);
   if (bad != NoPoint)
   {
@@ -95,7 +95,7 @@ void VectorReading::Check(const std::optional<PointRanges>& changes, const char*
             GetDisplacement(field, static_cast<std::int64_t>(point));
           const float largest =
             std::max({ std::abs(moved[0]), std::abs(moved[1]), std::abs(moved[2]) });
-          const float sum = moved[0] + moved[1] + moved[2]; // not-a-number where one of them is
+          const float sum = moved[0] + moved[1] + moved[2]; // NaN if one of them is
           if (!(largest <= LargestDisplacement) || std::isnan(sum))
           {
             Lower(bad, point);

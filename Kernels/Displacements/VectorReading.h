@@ -15,8 +15,9 @@
 namespace deformvolume
 {
 
-/// Reads DeviceVectors as displacements: by a kernel on a device with memory of its own, so that
-/// nothing passes through the host, else on the host. It knows what has been read last.
+/// Converts DeviceVectors to displacements. On a device with memory of its own, a kernel converts
+/// them, so that no vectors are copied to the host. Otherwise they are converted on the host. The
+/// class keeps the vectors and their revision of the last call.
 class VectorReading
 {
 public:
@@ -25,24 +26,27 @@ public:
   {
   }
 
-  /// What has changed since these vectors were read last, by the same matrix (ToDisplacement of
-  /// field); nothing where any may have. Throws an Error, and leaves all as it was, where they are
-  /// not so many vectors on the device.
+  /// Set the vectors and the matrix (ToDisplacement of field). Returns the points that have changed
+  /// since the last call with the same vectors and matrix; empty if any may have changed. Throws
+  /// Error and changes nothing if the vectors do not have this number of points or are on another
+  /// device.
   std::optional<PointRanges> Begin(const std::shared_ptr<DeviceVectors>& vectors,
     const DisplacementField& field, std::size_t numberOfPoints);
-  /// Other displacements than those of vectors are in use.
+  /// Releases the vectors.
   void Forget();
 
-  /// Whether a kernel can read what was begun: where there is a matrix, that needs double
+  /// Whether a kernel can convert the vectors. A matrix other than the identity needs double
   /// precision.
   bool CanConvert() const;
-  /// Writes four floats a point to a buffer. Throws an Error where a displacement is not finite or
-  /// too large; the buffer is then undefined. what: what has it, in the Error.
+  /// Writes the displacements to a buffer, four floats per point. Throws Error if a displacement is
+  /// too large or not finite; the buffer is then undefined. what: "node" or "point", for the
+  /// message.
   void Convert(const cl::Buffer& displacements, const char* what);
 
-  /// Throws the same Error where they are read on the host. changes: what Begin() has returned.
+  /// Checks the displacements on the host, and throws the same Error as Convert(). changes: the
+  /// result of Begin().
   void Check(const std::optional<PointRanges>& changes, const char* what);
-  /// The displacements on the host, three floats a point. changes: what Begin() has returned.
+  /// Returns the displacements on the host, three floats per point. changes: the result of Begin().
   const float* GetDisplacements(const std::optional<PointRanges>& changes);
 
 private:
@@ -50,7 +54,7 @@ private:
   std::shared_ptr<DeviceVectors> Vectors;
   DisplacementField Field; // without vectors
   std::uint64_t Revision = 0;
-  std::vector<float> Displacements; // those on the host that a matrix has made
+  std::vector<float> Displacements; // on the host, if there is a matrix
 };
 
 } // namespace deformvolume

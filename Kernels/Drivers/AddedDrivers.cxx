@@ -22,7 +22,8 @@ void AddedDrivers::Add(const std::string& path)
 {
   if (path.empty() || path[0] != '/')
   {
-    throw Error("The path of an OpenCL driver has to be absolute, and \"" + path + "\" is not.");
+    throw Error(
+      "The path \"" + path + "\" of an OpenCL driver is not absolute. Pass an absolute path.");
   }
   std::error_code error;
   const std::string library = std::filesystem::canonical(path, error).string();
@@ -36,7 +37,7 @@ void AddedDrivers::Add(const std::string& path)
     return;
   }
   const bool maySetProcessor = MaySetKernelProcessor();
-  // Drivers read these when they start.
+  // Drivers read the environment variables that these functions set when they start.
   PrepareKernelCache();
   LimitDeviceThreads();
   const FloatingPointTrapGuard guard;
@@ -44,7 +45,7 @@ void AddedDrivers::Add(const std::string& path)
   const std::vector<cl_platform_id> platforms = LoadPlatforms(library, problem);
   if (platforms.empty())
   {
-    throw Error("\"" + path + "\" is no OpenCL driver that can be used: " + problem + ".");
+    throw Error("\"" + path + "\" is not a usable OpenCL driver: " + problem + ".");
   }
   this->Libraries.push_back(library);
   this->Platforms.insert(this->Platforms.end(), platforms.begin(), platforms.end());

@@ -14,8 +14,8 @@
 namespace deformvolume
 {
 
-/// The drivers that AddDriver() has loaded. Their objects work with every loader, since each begins
-/// with a pointer to the functions of its driver.
+/// The drivers that AddDriver() has loaded. Their objects work with every OpenCL loader, since each
+/// object begins with a pointer to the function table of its driver (cl_khr_icd).
 class AddedDrivers
 {
 public:
@@ -24,9 +24,10 @@ public:
   /// Throws Error as AddDriver() does.
   void Add(const std::string& path);
   std::vector<cl_platform_id> GetPlatforms();
-  std::size_t GetCount(); // of drivers
+  /// Number of drivers.
+  std::size_t GetCount();
   bool Has(cl_platform_id platform);
-  /// What kernels are compiled for on a device.
+  /// Returns the processor for which kernels are compiled on a device.
   KernelProcessor GetProcessor(cl_device_id device);
 
 private:

@@ -5,8 +5,8 @@
 namespace deformvolume
 {
 
-/// Makes PoCL start no more threads than the share of this process (GetProcessorShare), unless the
-/// environment variable POCL_MAX_PTHREAD_COUNT is set. To be called before there is a device.
+/// Limits the threads of PoCL to the share of this process (GetProcessorShare()), unless the
+/// environment variable POCL_MAX_PTHREAD_COUNT is set. Call this before PoCL starts.
 void LimitDeviceThreads();
 
 } // namespace deformvolume

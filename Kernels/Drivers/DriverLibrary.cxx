@@ -12,7 +12,8 @@ namespace
 
 using AddressFunction = void*(CL_API_CALL*)(const char*);
 
-/// The function that lists the platforms of a driver. Drivers export it, or answer with it.
+/// Finds the function that lists the platforms of a driver. Some drivers export it; others return
+/// it from clGetExtensionFunctionAddress.
 clIcdGetPlatformIDsKHR_fn FindPlatformFunction(void* library)
 {
   void* found = nullptr;
@@ -39,7 +40,7 @@ std::vector<cl_platform_id> LoadPlatforms(const std::string& library, std::strin
     problem = reason ? reason : "it cannot be loaded";
     return {};
   }
-  // It is never unloaded: drivers leave threads behind.
+  // The library is never unloaded, since drivers leave threads behind.
   const clIcdGetPlatformIDsKHR_fn list = FindPlatformFunction(handle);
   if (!list)
   {

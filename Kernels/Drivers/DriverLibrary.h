@@ -13,8 +13,8 @@
 namespace deformvolume
 {
 
-/// Loads the library of an OpenCL driver (cl_khr_icd), for the rest of the process, and returns its
-/// platforms. Empty where that fails; problem then says why.
+/// Loads the library of an OpenCL driver (cl_khr_icd), which is never unloaded, and returns its
+/// platforms. On failure the list is empty, and `problem` says why.
 std::vector<cl_platform_id> LoadPlatforms(const std::string& library, std::string& problem);
 
 } // namespace deformvolume

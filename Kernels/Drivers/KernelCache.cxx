@@ -25,7 +25,7 @@ std::string GetEnvironment(const char* name)
   return value ? value : "";
 }
 
-/// Where PoCL keeps its cache if nobody interferes; "" where it has no idea either.
+/// Returns PoCL's default cache directory, or "" if the environment does not define one.
 std::string GetDefaultDirectory()
 {
   const std::string own = GetEnvironment("POCL_CACHE_DIR");
@@ -67,7 +67,7 @@ std::string MakeTemporaryDirectory(const std::string& parent)
   return buffer.data();
 }
 
-/// The private directory goes with the process.
+/// The private directory, which is removed at the end of the process.
 std::string TemporaryDirectory;
 void RemoveTemporaryDirectory()
 {

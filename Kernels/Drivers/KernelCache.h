@@ -5,13 +5,13 @@
 namespace deformvolume
 {
 
-/// PoCL writes the kernels it compiles into a cache directory and loads them from there. Where that
-/// directory cannot be made, written to or executed from, PoCL has no devices or ends the process.
-/// This looks first, before anything of OpenCL is called, and falls back to a private temporary
-/// directory. Later calls do nothing.
+/// Checks the directory in which PoCL caches compiled kernels. If PoCL cannot create the directory,
+/// write to it or execute from it, PoCL has no devices or terminates the process. In that case this
+/// function sets POCL_CACHE_DIR to a private temporary directory. Call it before any function of
+/// OpenCL. Later calls do nothing.
 void PrepareKernelCache();
 
-/// Throws Error where there is no usable cache directory.
+/// Throws Error if there is no usable cache directory.
 void CheckKernelCache();
 
 } // namespace deformvolume

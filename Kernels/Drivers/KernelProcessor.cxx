@@ -45,7 +45,7 @@ bool HasBits(unsigned int value, std::initializer_list<int> bits)
   return std::all_of(bits.begin(), bits.end(), [&](int bit) { return value >> bit & 1U; });
 }
 
-/// Which registers the system saves; all others cannot be used.
+/// Returns the register sets that the operating system saves (XCR0). Others cannot be used.
 unsigned int GetSavedRegisters()
 {
   unsigned int low = 0;
@@ -54,14 +54,13 @@ unsigned int GetSavedRegisters()
   return low;
 }
 
-/// For which processor the built-in functions were compiled that PoCL takes (getX86KernelLibName in
-/// its pocl_llvm_build.cc, and its build for distributions). Null for processors without AVX2: LLVM
-/// recognizes all of these.
+/// Returns the processor of the built-in functions that PoCL selects, as getX86KernelLibName does
+/// in its pocl_llvm_build.cc. Null for processors without AVX2, all of which LLVM 14 recognizes.
 const char* GetProcessor()
 {
   const unsigned int first = Ask(1).C;
   const unsigned int seventh = Ask(7).B;
-  if (!HasBits(first, { 27 })) // the system saves registers
+  if (!HasBits(first, { 27 })) // OSXSAVE
   {
     return nullptr;
   }
@@ -71,8 +70,7 @@ const char* GetProcessor()
   {
     return "skylake-avx512";
   }
-  // Of leaf 1: FMA, 16-byte compare and exchange, popcnt, F16C. Of leaf 7: BMI, AVX2, BMI2. Of the
-  // last one: lzcnt.
+  // Leaf 1: FMA, CMPXCHG16B, POPCNT, F16C. Leaf 7: BMI1, AVX2, BMI2. Leaf 0x80000001: LZCNT.
   if (hasAVX && HasBits(first, { 12, 13, 23, 29 }) && HasBits(seventh, { 3, 5, 8 }) &&
     HasBits(Ask(0x80000001).C, { 5 }))
   {
@@ -175,7 +173,7 @@ bool IsKnownBuild(const void* function)
   return search.Found == KnownBuild;
 }
 
-/// Memory of this process that need not be there.
+/// Reads memory of this process at addresses that may be invalid.
 class Memory
 {
 public:
@@ -203,11 +201,11 @@ private:
   int File;
 };
 
-/// The only member among the first of a structure that points to a text; null where there is none,
-/// or more than one.
+/// Finds the member of a structure that points to a text, among the first 128 members. Null if
+/// there is none, or more than one.
 const char** FindText(void* structure, const std::string& text)
 {
-  const std::size_t members = 128; // it is the 81st
+  const std::size_t members = 128; // in PoCL 3.0, the member is the 81st
   const Memory memory;
   const char** found = nullptr;
   for (std::size_t i = 0; i < members; ++i)
@@ -262,7 +260,7 @@ KernelProcessor SetKernelProcessor(
     return kernels;
   }
   void* const function = dlsym(handle, "pocl_get_llvm_cpu_name");
-  dlclose(handle); // it stays loaded
+  dlclose(handle); // the driver stays loaded
   if (!function)
   {
     return kernels;

@@ -12,32 +12,37 @@
 namespace deformvolume
 {
 
-/// What an added driver compiles kernels for.
+/// The processor for which an added driver compiles kernels.
 struct KernelProcessor
 {
-  /// The name of the processor, as LLVM has it; empty: the driver has chosen one.
+  /// The name of the processor in LLVM. "": the driver has chosen it.
   std::string Name;
-  /// Whether the driver would end the process when it compiles a kernel.
+  /// Whether the driver would terminate the process when it compiles a kernel.
   bool EndsProcess = false;
 };
 
-/// PoCL 3.0 of the package pocl-binary-distribution has built-in functions that were compiled for
-/// one of eight processors, of which it takes the best that this processor can run. But it compiles
-/// kernels for the processor that its LLVM 14 recognizes. The two do not fit together: LLVM does
-/// not recognize later processors at all, and then no kernel is compiled; it takes Zen 4 for Zen 3,
-/// for which built-in functions with AVX-512 cannot be compiled, and then the process ends; on
-/// others the functions are not inlined, and kernels take up to three times as long. Nothing but a
-/// member of the driver's own structure says what kernels are compiled for. So this sets that
-/// member to the processor of the built-in functions, before anything has been compiled.
+/// Makes PoCL 3.0 of the package pocl-binary-distribution compile kernels for the processor for
+/// which its built-in functions were compiled. library: the file of the driver, which must be
+/// loaded. maySet: MaySetKernelProcessor(). Call this before any kernel is compiled.
 ///
-/// It does so for one library only, which its version and its build ID have to name, and only where
-/// exactly one member has the text that the driver is known to have put there. Else nothing
-/// changes. library: the file of the driver, which is loaded. maySet: MaySetKernelProcessor().
+/// This driver has built-in functions for eight processors, and uses the best that this processor
+/// can run. But it compiles kernels for the processor that its LLVM 14 recognizes. The two often do
+/// not match:
+/// - LLVM 14 does not recognize later processors. Then no kernel is compiled.
+/// - LLVM 14 takes Zen 4 for Zen 3, for which built-in functions with AVX-512 cannot be compiled.
+///   Then the process terminates.
+/// - On other processors the built-in functions are not inlined, and kernels take up to three times
+///   as long.
+/// Only a member of the driver's private structure holds the processor of the kernels. This
+/// function changes that member.
+///
+/// Nothing is changed unless the version and the build ID of the library are those of the one known
+/// library, and exactly one member has the text that this library is known to store there.
 KernelProcessor SetKernelProcessor(
   const std::string& library, const cl::Device& device, bool maySet);
 
-/// Whether that may be done: not where the environment variable DEFORMVOLUME_KERNEL_PROCESSOR is
-/// "driver". Throws Error where it is neither that nor "auto".
+/// Whether SetKernelProcessor() may change the driver: false if the environment variable
+/// DEFORMVOLUME_KERNEL_PROCESSOR is "driver". Throws Error if it is neither that nor "auto".
 bool MaySetKernelProcessor();
 
 } // namespace deformvolume

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The functions of OpenCL that the engine calls, for libraries that must not depend on a loader of
-// the system, such as that of the Python package: it may not be there. Each object of OpenCL begins
-// with a pointer to the functions of its driver (cl_khr_icd), and calls go there. Which drivers the
-// system has is in the files that all loaders read.
+// An OpenCL loader for libraries that must not depend on the loader of the system, which may not be
+// installed; the Python package is one of them. It has the OpenCL functions that the engine calls.
+// Each OpenCL object begins with a pointer to the function table of its driver (cl_khr_icd), and
+// each function here calls the function in that table. SystemDrivers finds the drivers.
 #include "DriverLibrary.h"
 #include "SystemDrivers.h"
 
@@ -14,7 +14,7 @@
 namespace
 {
 
-/// Of the driver that an object belongs to.
+/// The function table of the driver that owns an object.
 template <typename Object>
 const cl_icd_dispatch& Functions(Object object)
 {
@@ -40,7 +40,7 @@ const std::vector<cl_platform_id>& GetPlatforms()
     {
       for (const std::string& library : deformvolume::FindSystemDrivers())
       {
-        std::string problem; // a driver that cannot be loaded must not hide the others
+        std::string problem; // ignored: a broken driver must not hide working drivers
         for (cl_platform_id platform : deformvolume::LoadPlatforms(library, problem))
         {
           platforms->push_back(platform);

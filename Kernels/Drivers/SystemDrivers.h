@@ -8,13 +8,14 @@
 namespace deformvolume
 {
 
-/// The libraries of the OpenCL drivers that the system lists, as the loaders of Khronos and ocl-icd
-/// find them:
-/// 1. those of the environment variable OCL_ICD_FILENAMES, separated by colons,
-/// 2. those of the environment variable OCL_ICD_VENDORS: a folder, a file *.icd or a library; where
-///    it is not set or empty, of the folder OPENCL_VENDOR_PATH, or else of /etc/OpenCL/vendors.
-/// A folder stands for its files *.icd in the order of their names, and such a file has the name of
-/// a library in its first line.
+/// Finds the libraries of the OpenCL drivers that are installed on the system, as the loaders of
+/// Khronos and ocl-icd do:
+/// 1. the libraries in the environment variable OCL_ICD_FILENAMES, separated by colons,
+/// 2. the libraries of the environment variable OCL_ICD_VENDORS: a folder, an .icd file or a
+///    library. If it is not set or empty, those of the folder OPENCL_VENDOR_PATH (an environment
+///    variable) or, by default, of /etc/OpenCL/vendors.
+/// A folder stands for all of its .icd files in alphabetical order. The first line of an .icd file
+/// is the name of a library.
 std::vector<std::string> FindSystemDrivers();
 
 } // namespace deformvolume

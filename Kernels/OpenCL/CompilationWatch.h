@@ -8,13 +8,13 @@
 namespace deformvolume
 {
 
-/// Adds up what the compilation of kernels takes in this thread while the object lives, and reports
-/// when it begins and ends. Drivers compile where a program is built, and some of them again where
-/// a kernel is launched for the first time.
+/// Measures the time that this thread spends on the compilation of kernels during the lifetime of
+/// the object, and reports the begin and the end of each compilation. Drivers compile when a
+/// program is built; some compile again at the first launch of a kernel.
 class CompilationWatch
 {
 public:
-  /// Called with true when a compilation begins, with false when it ends. Null: nobody listens.
+  /// Called with true when a compilation begins and with false when it ends. May be null.
   using Listener = std::function<void(bool)>;
 
   explicit CompilationWatch(const Listener& listener);
@@ -24,10 +24,10 @@ public:
 
   double GetSeconds() const { return this->Seconds; }
 
-  /// Seconds of the watch of this thread; 0 where there is none.
+  /// Returns the seconds of the innermost watch of this thread; 0 if there is none.
   static double GetCurrentSeconds();
 
-  /// A compilation in this thread, from its construction to its end.
+  /// Marks a compilation in this thread, which lasts as long as the object.
   class Compilation
   {
   public:
@@ -36,7 +36,7 @@ public:
     Compilation(const Compilation&) = delete;
     Compilation& operator=(const Compilation&) = delete;
 
-    /// Seconds in between that were no compilation.
+    /// Subtracts seconds in which nothing was compiled.
     void Exclude(double seconds) { this->Excluded += seconds; }
 
   private:

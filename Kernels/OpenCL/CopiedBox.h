@@ -9,16 +9,16 @@
 namespace deformvolume
 {
 
-/// What is copied between a buffer of a device and memory of the host, in bytes: a box of rows, in
-/// planes, that lies in larger boxes on both sides.
+/// A box to copy between a device buffer and host memory, in bytes. It is a part of a larger box on
+/// both sides, as in clEnqueueReadBufferRect.
 struct CopiedBox
 {
   using Bytes = std::array<std::size_t, 3>; // bytes of a row, rows, planes
   struct Place
   {
-    Bytes Origin;      // of the box in the larger one
-    std::size_t Row;   // bytes from one row to the next
-    std::size_t Plane; // bytes from one plane to the next
+    Bytes Origin;      // of the box in the larger box
+    std::size_t Row;   // row pitch
+    std::size_t Plane; // plane pitch
 
     std::size_t GetOffset(const Bytes& shift = {}) const
     {
@@ -31,7 +31,7 @@ struct CopiedBox
   Place OnDevice;
   Place OnHost;
 
-  /// So many bytes that lie side by side. offset: in the buffer.
+  /// Makes a box of contiguous bytes. offset: in the device buffer.
   static CopiedBox MakeRange(std::size_t offset, std::size_t bytes)
   {
     return { { { bytes, 1, 1 } }, { { { offset, 0, 0 } }, bytes, bytes },
@@ -41,7 +41,7 @@ struct CopiedBox
   std::size_t GetBytes() const { return this->Size[0] * this->Size[1] * this->Size[2]; }
   bool IsRange() const { return this->Size[1] == 1 && this->Size[2] == 1; }
 
-  /// The part from some place on that has a size, or less at an end.
+  /// Returns the part that begins at `begin` and has the given size, clipped to the box.
   CopiedBox GetPart(const Bytes& begin, const Bytes& size) const
   {
     CopiedBox part = *this;
@@ -54,8 +54,8 @@ struct CopiedBox
     return part;
   }
 
-  /// Rows that follow one another on both sides become one, and so do planes: fewer are copied
-  /// faster.
+  /// Merges rows, and then planes, that are contiguous on both sides: fewer and longer rows are
+  /// copied faster.
   void Join()
   {
     for (int times = 0; times < 2; ++times)

@@ -24,7 +24,7 @@ bool BeginsWith(const std::string& text, const char* begin)
   return text.rfind(begin, 0) == 0;
 }
 
-/// PoCL has devices for processors and for others; it is the name that tells which.
+/// PoCL has devices for CPUs and for other processors, which differ in the prefix of the name.
 bool IsProcessorOfPoCL(const DeviceDescription& device)
 {
   return BeginsWith(device.Platform, "Portable Computing Language") &&

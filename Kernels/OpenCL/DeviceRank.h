@@ -7,7 +7,7 @@
 namespace deformvolume
 {
 
-/// What a driver says of a device.
+/// Properties that a driver reports for a device.
 struct DeviceDescription
 {
   enum class Kind
@@ -19,20 +19,20 @@ struct DeviceDescription
   Kind Type = Kind::Processor;
   std::string Name;
   std::string Platform;
-  /// The device has no memory of its own: it works in that of the processor.
+  /// Whether the device works in host memory (CL_DEVICE_HOST_UNIFIED_MEMORY).
   bool SharesMemory = false;
   bool HasDouble = true;
   unsigned int ComputeUnits = 1;
 };
 
-/// In small letters: names of devices are compared so.
+/// Converts a text to lower case. Device names are compared in lower case.
 std::string ToLower(std::string text);
 
-/// Whether the device is emulated on the processor, by a renderer that is software or by an
-/// interpreter: slower than a driver for processors, whatever type and size the driver states.
+/// Whether a software renderer or an interpreter emulates the device on the CPU. Such a device is
+/// slower than an OpenCL driver for CPUs, whatever type and number of units its driver reports.
 bool IsEmulated(const DeviceDescription& device);
 
-/// Whether a comes before b, by the rule of GetDeviceNames() (Device.h).
+/// Whether a precedes b in the order of GetDeviceNames() (Device.h).
 bool IsBetter(const DeviceDescription& a, const DeviceDescription& b);
 
 } // namespace deformvolume

@@ -14,8 +14,8 @@ namespace
 
 constexpr std::size_t VectorSize = 3 * sizeof(float);
 
-// Ranges in order, and in one piece where only a few points lie between them: to start a copy costs
-// more than some thousand vectors.
+// Sorts ranges, and merges those with only a few points between them: to start a copy takes longer
+// than to copy some thousand vectors.
 PointRanges Join(PointRanges ranges)
 {
   constexpr std::size_t few = 4096;
@@ -39,7 +39,7 @@ void CheckSource(const float* vectors)
 {
   if (!vectors)
   {
-    throw Error("There are no vectors to write.");
+    throw Error("DeviceVectors::Write() needs an array of vectors, but the pointer is null.");
   }
 }
 
@@ -57,8 +57,9 @@ DeviceVectors::Internals::Internals(OpenCLContext& context, std::size_t numberOf
   const std::uint64_t bytes = std::uint64_t{ numberOfPoints } * VectorSize;
   if (bytes > this->Device.GetAllocationLimit())
   {
-    throw Error("The vectors are larger than the device can hold in one piece. Use fewer points or "
-                "another device.");
+    throw Error("The vectors of " + std::to_string(numberOfPoints) + " points need " +
+      std::to_string(bytes) + " bytes in one allocation, but the device allows at most " +
+      std::to_string(this->Device.GetAllocationLimit()) + ". Use fewer points or another device.");
   }
   Reserve(context, this->Buffer, bytes);
   this->Device.GetQueue().enqueueFillBuffer(this->Buffer, cl_float{ 0.0F }, 0, bytes);
@@ -137,13 +138,13 @@ void CheckVectors(DeviceVectors* vectors, WorkDevice& device, std::size_t number
 {
   if (!vectors)
   {
-    throw Error("There are no vectors on a device.");
+    throw Error("The vectors on a device are null. Pass DeviceVectors.");
   }
   if (vectors->GetNumberOfPoints() != numberOfPoints)
   {
     throw Error("There are " + std::to_string(vectors->GetNumberOfPoints()) +
       " vectors on the device for " + std::to_string(numberOfPoints) +
-      " points. Give one for each point.");
+      " points. Pass one vector for each point.");
   }
   if (!vectors->GetInternals().IsOn(device.GetContext()))
   {
@@ -157,7 +158,7 @@ DeviceVectors::DeviceVectors(const std::string& device, std::size_t numberOfPoin
 {
   if (numberOfPoints == 0)
   {
-    throw Error("Vectors on a device need at least one point.");
+    throw Error("DeviceVectors need at least one point.");
   }
   CallGuarded(
     [&]

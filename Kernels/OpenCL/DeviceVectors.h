@@ -15,19 +15,19 @@
 namespace deformvolume
 {
 
-/// Vectors of points, in the memory of an OpenCL device: where the nodes of a deformation mesh, or
-/// the points of a displacement field, are now. Three floats a point, in world units. Whoever moves
-/// the points writes them once, from the host or on the device; any number of VolumeDeformer
-/// objects on the same device read them there, each by a matrix of its own.
+/// Positions of points in the memory of an OpenCL device: the deformed positions of the nodes of a
+/// deformation mesh, or of the points of a displacement field. Three floats per point, in world
+/// units. A simulation writes the vectors once, from the host or on the device. Any number of
+/// VolumeDeformer objects on the same device read them there, each with a matrix of its own.
 ///
-/// On a device with memory of its own they are brought to the host where somebody asks (Read). A
-/// processor has them in the memory of the host, and they are never copied.
+/// A CPU device keeps the vectors in host memory. On other devices, Read() copies them to the host.
 ///
-/// They are shared by std::shared_ptr, and used by one thread at a time. Every failure is an Error.
+/// Share the object by std::shared_ptr, and use it from one thread at a time. All failures are
+/// thrown as Error.
 class DEFORMVOLUME_EXPORT DeviceVectors
 {
 public:
-  /// device: see ResolveDevice. All vectors are 0 at first. At least one point.
+  /// Allocates vectors for at least one point and sets them to 0. device: as in ResolveDevice().
   DeviceVectors(const std::string& device, std::size_t numberOfPoints);
   ~DeviceVectors();
   DeviceVectors(const DeviceVectors&) = delete;
@@ -35,31 +35,32 @@ public:
 
   /// The name of the device.
   const std::string& GetDevice() const;
-  /// Whether it has them in the memory of the host.
+  /// Whether the vectors are in host memory, which is so on CPU devices.
   bool AreInHostMemory() const;
-  /// How many vectors there are.
+  /// Number of points.
   std::size_t GetNumberOfPoints() const;
-  /// Bytes allocated on the device.
+  /// Allocated bytes.
   std::uint64_t GetDeviceMemory() const;
 
   /// Writes all vectors.
   void Write(const float* vectors);
-  /// Writes some of them. vectors: of all points; only those of the ranges are read.
+  /// Writes the vectors of some points. vectors: the array of all points, of which only the given
+  /// ranges are read.
   void Write(const float* vectors, const PointRanges& written);
 
-  /// The vectors in memory of the host, which is there as long as this object is. This call brings
-  /// it up to date: of what has been written on the device it copies what may have changed, and at
-  /// the first time all.
+  /// Returns the current vectors in host memory, which this object owns. Copies them from the
+  /// device if necessary: all vectors at the first call, later only those that may have changed.
   const float* Read();
 
-  /// Grows with each change.
+  /// Revision of the vectors, which grows with each change.
   std::uint64_t GetRevision() const;
-  /// What has changed since a revision; nothing where that is not known, and any vector may have.
+  /// Returns the points whose vectors have changed since a revision. Empty if this is not known:
+  /// then any vector may have changed.
   std::optional<PointRanges> GetChanges(std::uint64_t revision) const;
 
-  /// For objects of this library that work on the device.
+  /// Access for classes of this library that work on the device.
   class DEFORMVOLUME_NO_EXPORT Internals;
-  /// For objects of this library.
+  /// Access for classes of this library.
   Internals& GetInternals() { return *this->Impl; }
 
 private:

@@ -11,7 +11,7 @@
 namespace deformvolume
 {
 
-/// DeviceVectors as objects see them that work on the device. cl::Error is thrown.
+/// Access to DeviceVectors for classes that work on the device. Functions throw cl::Error.
 class DeviceVectors::Internals
 {
 public:
@@ -23,12 +23,12 @@ public:
   std::size_t GetNumberOfPoints() const { return this->NumberOfPoints; }
   bool AreInHostMemory() const { return !this->Buffer(); }
 
-  /// The memory of the device, where it has its own. What is done with it ends before somebody else
-  /// uses the vectors.
+  /// The device buffer; null if the vectors are in host memory. Commands that use the buffer must
+  /// end before another object uses the vectors.
   const cl::Buffer& GetBuffer() const { return this->Buffer; }
-  /// The memory of the host, where the device has none of its own.
+  /// The vectors in host memory, if AreInHostMemory().
   float* GetHostMemory() { return this->Host.data(); }
-  /// Some, or all, vectors have been written there.
+  /// Records that the vectors of some points, or of all, have been written in either memory.
   void MarkWritten(const PointRanges& ranges) { this->Log.Add(ranges); }
   void MarkAllWritten() { this->Log.AddAll(); }
 
@@ -41,12 +41,12 @@ private:
   WorkDevice Device;
   std::size_t NumberOfPoints;
   cl::Buffer Buffer;
-  std::vector<float> Host; // empty on a device with memory of its own until it is wanted
+  std::vector<float> Host; // on a device with memory of its own: empty until the first Read()
   std::uint64_t HostRevision = 0;
   RangeLog Log;
 };
 
-/// Throws an Error where they are null, or not so many vectors, or on another device.
+/// Throws Error if the vectors are null, have another number of points or are on another device.
 void CheckVectors(DeviceVectors* vectors, WorkDevice& device, std::size_t numberOfPoints);
 
 } // namespace deformvolume

@@ -12,9 +12,9 @@
 namespace deformvolume
 {
 
-/// Runs a function, with floating-point traps off and OpenCL's errors put into words: an Error with
-/// their meaning and the advice. clean: called before that, and where memory of the host is short,
-/// as what is on the device may be half done. Other errors leave what is there usable.
+/// Calls a function with floating-point traps off. Converts a cl::Error to an Error whose message
+/// explains the OpenCL error and ends with `advice`. After a cl::Error or std::bad_alloc, the data
+/// on the device may be incomplete, so clean() is called. Other exceptions leave the data valid.
 template <typename Function, typename Cleaner>
 auto CallGuarded(Function&& function, Cleaner&& clean, const char* advice = "")
 {
@@ -35,7 +35,7 @@ auto CallGuarded(Function&& function, Cleaner&& clean, const char* advice = "")
   }
 }
 
-/// The same where nothing is to be cleaned up.
+/// The overload for functions that need no cleanup.
 template <typename Function>
 auto CallGuarded(Function&& function)
 {

@@ -11,7 +11,7 @@ namespace deformvolume
 namespace
 {
 
-/// Null: the copy is better left to the driver.
+/// Returns null for small copies, and on devices without staged copies: then the driver copies.
 StagedCopies* FindStagedCopies(const cl::CommandQueue& queue, std::uint64_t bytes)
 {
   OpenCLContext* const context =
@@ -65,12 +65,12 @@ cl::Buffer MakeBufferOver(
   return cl::Buffer(context.GetContext(), access | CL_MEM_USE_HOST_PTR, bytes, data);
 }
 
-void TellOfWrites(
+void UpdateFromHost(
   const OpenCLContext& context, const cl::CommandQueue& queue, const BufferInPlace& place)
 {
   if (place.Buffer() && !context.SharesHostMemory())
   {
-    // From the memory that the buffer was made over: OpenCL's way to say that it has changed.
+    // OpenCL allows this write from the memory that the buffer uses itself.
     queue.enqueueWriteBuffer(place.Buffer, CL_TRUE, 0, place.Bytes, place.Data);
   }
 }
@@ -80,7 +80,8 @@ void CheckAllocation(std::uint64_t bytes, std::uint64_t limit)
   if (bytes > limit)
   {
     throw Error("An array of the volume needs " + std::to_string(bytes) +
-      " bytes in one piece, and the device gives no more than " + std::to_string(limit) + ".");
+      " bytes in one allocation, but the device allows at most " + std::to_string(limit) +
+      ". Use a smaller volume or another device.");
   }
 }
 
@@ -98,7 +99,7 @@ void Place(const OpenCLContext& context, cl::Buffer& buffer, void* memory, std::
 {
   if (CanWorkInPlace(context, memory, elementSize))
   {
-    buffer = cl::Buffer(); // it may lie over the same memory
+    buffer = cl::Buffer(); // the old buffer may use the same memory
     buffer = MakeBufferOver(context, CL_MEM_READ_WRITE, memory, bytes);
   }
   else
@@ -114,7 +115,7 @@ PendingCopy BeginToRead(
   {
     return BeginToReadRange(queue, buffer, 0, bytes, memory);
   }
-  // What was written is sure to be in the host's memory only while it is mapped there.
+  // OpenCL guarantees that host memory is up to date only after the buffer has been mapped.
   cl::Event done;
   void* mapped = queue.enqueueMapBuffer(buffer, CL_FALSE, CL_MAP_READ, 0, bytes);
   queue.enqueueUnmapMemObject(buffer, mapped, nullptr, &done);
@@ -223,7 +224,7 @@ void PendingCopy::Check()
 
 void PendingCopies::Check()
 {
-  // However this ends, they are forgotten.
+  // All copies are removed, also after an exception.
   std::vector<PendingCopy> copies = std::move(this->Copies);
   this->Copies.clear();
   for (PendingCopy& copy : copies)

@@ -14,19 +14,20 @@
 namespace deformvolume
 {
 
-/// Bytes that were allocated for a buffer; 0 for none, and for one over memory of the host.
+/// Returns the bytes allocated for a buffer. 0 if it is null or uses host memory
+/// (CL_MEM_USE_HOST_PTR).
 std::uint64_t GetMemory(const cl::Buffer& buffer);
 
-/// Whether the kernels can work in memory of the host as it is: a processor can where it is aligned
-/// for its elements, which is all that the kernels ask for.
+/// Whether kernels can work directly in host memory: on a CPU device, if the memory is aligned for
+/// its elements. The kernels need no larger alignment.
 bool CanWorkInPlace(const OpenCLContext& context, const void* data, std::size_t elementSize);
 
-/// A buffer over memory of the host, which has to stay for as long as the buffer does.
+/// Makes a buffer that uses host memory (CL_MEM_USE_HOST_PTR). The memory must outlive the buffer.
 cl::Buffer MakeBufferOver(
   const OpenCLContext& context, cl_mem_flags access, void* data, std::size_t bytes);
 
-/// Memory of the host with the buffer over it. What commands do is undefined by OpenCL where they
-/// work on several buffers over the same memory, even if they only read it: no two may overlap.
+/// Host memory with the buffer that uses it. No two such buffers may overlap: OpenCL leaves
+/// commands on buffers that use the same memory undefined, even if they only read it.
 struct BufferInPlace
 {
   const void* Data = nullptr;
@@ -45,22 +46,23 @@ struct BufferInPlace
   }
 };
 
-/// Tells the device that the host may have written to the memory that a buffer lies over, all of
-/// it. Nothing that uses the buffer may be under way.
-void TellOfWrites(
+/// Updates a buffer after the host may have written to its memory. Does nothing on drivers that
+/// work in that memory (OpenCLContext::SharesHostMemory()). No command that uses the buffer may be
+/// running.
+void UpdateFromHost(
   const OpenCLContext& context, const cl::CommandQueue& queue, const BufferInPlace& place);
 
-/// Throws an Error where a device gives no buffer of so many bytes.
+/// Throws Error if a buffer of `bytes` exceeds the allocation limit of the device.
 void CheckAllocation(std::uint64_t bytes, std::uint64_t limit);
 
-/// Makes a buffer of the device of so many bytes, where it is not one.
+/// Replaces a buffer by a device buffer of `bytes`, unless it already has this size.
 void Reserve(const OpenCLContext& context, cl::Buffer& buffer, std::uint64_t bytes);
 
-/// Waits for a command. Returns OpenCL's error, or CL_SUCCESS.
+/// Waits for a command. Returns its OpenCL error code, or CL_SUCCESS.
 cl_int WaitFor(cl_event event) noexcept;
 
-/// A copy between a buffer and memory of the caller that is under way, or that Finish() makes. The
-/// memory is left alone once the object is gone.
+/// A copy between a buffer and memory of the caller that is in progress, or that Finish() makes.
+/// After the destructor the copy no longer accesses the memory.
 class PendingCopy
 {
 public:
@@ -68,7 +70,7 @@ public:
     : Event(event)
   {
   }
-  /// finish: makes the copy, and returns OpenCL's error, or CL_SUCCESS.
+  /// finish() makes the copy, and returns its OpenCL error code, or CL_SUCCESS.
   explicit PendingCopy(std::function<cl_int()> finish)
     : MakeCopy(std::move(finish))
   {
@@ -79,9 +81,9 @@ public:
   PendingCopy(PendingCopy&&) noexcept = default;
   PendingCopy& operator=(PendingCopy&&) = delete;
 
-  /// Returns when the copy is there, with OpenCL's error, or CL_SUCCESS.
+  /// Completes the copy. Returns its OpenCL error code, or CL_SUCCESS.
   cl_int Finish();
-  /// The same. Throws cl::Error where it has failed: what it was to copy is not there.
+  /// Completes the copy. Throws cl::Error if it has failed: its destination is then undefined.
   void Check();
 
 private:
@@ -89,34 +91,37 @@ private:
   std::function<cl_int()> MakeCopy;
 };
 
-/// A buffer for an output: over the memory of the host where it goes, if the device can work there,
-/// else one of the device. BeginToRead then copies it there. The copy is complete once it has been
-/// checked; nothing may write to the buffer until then.
+/// Makes a buffer for an output. If CanWorkInPlace(), the buffer uses the host memory of the
+/// output; otherwise it is a device buffer. In both cases, BeginToRead() brings the output to the
+/// host. The output is complete after PendingCopy::Check(); until then, no command may write to the
+/// buffer.
 void Place(const OpenCLContext& context, cl::Buffer& buffer, void* memory, std::size_t elementSize,
   std::uint64_t bytes);
 PendingCopy BeginToRead(
   const cl::CommandQueue& queue, const cl::Buffer& buffer, std::uint64_t bytes, void* memory);
 
 ///@{
-/// The same for a part of a buffer that is not over the memory of the host: of some bytes from an
-/// offset on, or of a box. bytes: of a voxel; whole: the voxels that are in the buffer; held: those
-/// that there is room for in the memory.
+/// Begins to read a part of a device buffer: a range of bytes, or a box of voxels. For a box,
+/// bytes: size of a voxel; whole: extent of the buffer; part: extent to copy; held: extent of the
+/// host memory.
 PendingCopy BeginToReadRange(const cl::CommandQueue& queue, const cl::Buffer& buffer,
   std::uint64_t offset, std::uint64_t bytes, void* memory);
 PendingCopy BeginToReadBox(const cl::CommandQueue& queue, const cl::Buffer& buffer,
   const Extent& whole, const Extent& part, std::size_t bytes, void* memory, const Extent& held);
 ///@}
 
-/// Copies to a buffer from an offset on, after all that is in the queue, and returns when that is
-/// done.
+/// Copies data to a buffer, after all previous commands of the queue, and returns when the copy is
+/// complete. offset: of the first byte in the buffer.
 void Write(const cl::CommandQueue& queue, const cl::Buffer& buffer, std::uint64_t offset,
   std::uint64_t bytes, const void* data);
 
-/// The same, but it may return before the copy has ended: data has to stay until then.
+/// Begins a copy to a buffer. It may return before the copy is complete: `data` must stay valid and
+/// unchanged until PendingCopy::Check().
 PendingCopy BeginToWrite(const cl::CommandQueue& queue, const cl::Buffer& buffer,
   std::uint64_t offset, std::uint64_t bytes, const void* data);
 
-/// The same as Write for a box, with parameters as those of BeginToReadBox.
+/// Copies a box of voxels to a buffer, and returns when the copy is complete. Parameters as in
+/// BeginToReadBox().
 void WriteBox(const cl::CommandQueue& queue, const cl::Buffer& buffer, const Extent& whole,
   const Extent& part, std::size_t bytes, const void* memory, const Extent& held);
 
@@ -125,19 +130,19 @@ class PendingCopies
 {
 public:
   void Add(PendingCopy copy) { this->Copies.push_back(std::move(copy)); }
-  /// Returns when all of them are there, and forgets them. Throws cl::Error where one has failed:
-  /// what it was to copy is not there.
+  /// Completes and removes all copies. Throws cl::Error if one has failed: its destination is then
+  /// undefined.
   void Check();
-  /// Forgets them where that does not matter any more.
+  /// Removes all copies without a check.
   void Drop() { this->Copies.clear(); }
 
 private:
   std::vector<PendingCopy> Copies;
 };
 
-/// Waits for a queue, however a scope is left: before memory of the caller, or buffers that are
-/// declared before, are gone. (To release a buffer while launches that use it are queued crashes
-/// PoCL 3.1.)
+/// Waits for a queue at the end of a scope, also after an exception. Commands then no longer use
+/// memory of the caller or buffers that were declared before. (PoCL 3.1 crashes when a buffer is
+/// released while a queued launch uses it.)
 class QueueGuard
 {
 public:
@@ -153,11 +158,11 @@ private:
   cl::CommandQueue Queue;
 };
 
-/// Whether a buffer lies over memory of the host.
+/// Whether a buffer uses host memory (CL_MEM_USE_HOST_PTR).
 bool IsInPlace(const cl::Buffer& buffer);
 
-/// A buffer as the host sees it, for the life of this object: waits for all that was enqueued
-/// before. For processors: elsewhere the whole buffer is copied.
+/// Maps a buffer for the lifetime of the object, after all previous commands of the queue. Use it
+/// on CPU devices only: other devices copy the whole buffer.
 template <typename T>
 class MappedBuffer
 {
@@ -170,7 +175,7 @@ public:
   }
   ~MappedBuffer()
   {
-    // clEnqueueUnmapMemObject as such: an exception must not leave a destructor.
+    // The C function, since the C++ function may throw.
     clEnqueueUnmapMemObject(this->Queue(), this->Buffer(), this->Mapped, 0, nullptr, nullptr);
     clFinish(this->Queue());
   }

@@ -32,14 +32,14 @@ bool RunsLinker(const std::string& version)
 {
   int major = 0;
   int minor = 0;
-  const std::string words = ToLower(version); // "pocl" before version 3
+  const std::string words = ToLower(version); // before version 3 it is written "pocl"
   const std::size_t begin = words.find("pocl ");
   return begin != std::string::npos &&
     std::sscanf(words.c_str() + begin, "pocl %d.%d", &major, &minor) == 2 &&
     (major < 7 || (major == 7 && minor < 2));
 }
 
-// Where the libraries of C compilers lie that the linker does not know by itself.
+// Lists the folders of the libraries of C compilers, which are not on the default path of "ld".
 std::vector<std::string> FindLibraries()
 {
   std::vector<std::string> found;
@@ -70,14 +70,14 @@ std::vector<std::string> FindLibraries()
   return found;
 }
 
-// Runs a program that is found on the PATH. Returns what is wrong: the last line that it prints, or
-// the message of the system; empty where it succeeds or where that is not known.
+// Runs a program that is found on the PATH. Returns the error: the last line of its output, or the
+// message of the system. Returns "" if the program succeeds or if its result is not known.
 std::string Run(const std::vector<std::string>& command)
 {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0)
   {
-    return ""; // it is not known: PoCL is not refused
+    return ""; // the result is not known, so accept PoCL
   }
   std::vector<char*> arguments;
   for (const std::string& word : command)
@@ -111,7 +111,7 @@ std::string Run(const std::vector<std::string>& command)
   close(ends[0]);
   if (error == EAGAIN || error == ENOMEM)
   {
-    return ""; // that is no fault of the linker
+    return ""; // the system is out of resources: this is not an error of the linker
   }
   if (error != 0)
   {
@@ -123,17 +123,17 @@ std::string Run(const std::vector<std::string>& command)
   {
     ended = waitpid(process, &status, 0);
   } while (ended < 0 && errno == EINTR);
-  // Where SIGCHLD is ignored, the exit status is not known.
+  // The exit status is not known if the process ignores SIGCHLD.
   if (ended != process || status == 0)
   {
     return "";
   }
-  // The first lines may be about libraries of other processors that were passed over.
+  // The first lines may be about skipped libraries for other processors.
   words.erase(words.find_last_not_of('\n') + 1);
-  return words.empty() ? "it fails without a word" : words.substr(words.rfind('\n') + 1);
+  return words.empty() ? "it fails without a message" : words.substr(words.rfind('\n') + 1);
 }
 
-/// Links nothing with a program: what is wrong, or nothing.
+/// Runs a linker without an object file. Returns the error, or "".
 std::string Try(const std::string& program)
 {
   std::vector<std::string> command{ program, "-shared", "-o", "/dev/null" };
@@ -149,7 +149,7 @@ std::string Try(const std::string& program)
   return Run(command);
 }
 
-/// The program of SetKernelLinker(), and the environment variable that leads to it.
+/// The linker of SetKernelLinker(), and the entry of the environment that contains its folder.
 struct OwnLinker
 {
   std::mutex Mutex;
@@ -157,8 +157,8 @@ struct OwnLinker
   bool IsTried = false;
   std::string Problem;
   int Users = 0;
-  char* Entry = nullptr;  // of the environment, which it belongs to
-  char* Before = nullptr; // the entry of the user; null where there was none
+  char* Entry = nullptr;  // owned by the environment
+  char* Before = nullptr; // the entry of the user; null if there was none
 };
 
 OwnLinker& GetOwnLinker()
@@ -180,11 +180,12 @@ void SetKernelLinker(const std::string& folder)
 {
   if (folder.empty() || folder[0] != '/')
   {
-    throw Error("The folder of a linker has to be absolute, and \"" + folder + "\" is not.");
+    throw Error(
+      "The path \"" + folder + "\" of a linker's folder is not absolute. Pass an absolute path.");
   }
   OwnLinker& own = GetOwnLinker();
   const std::lock_guard<std::mutex> lock(own.Mutex);
-  if (!own.IsTried) // kernels may have been linked with it
+  if (!own.IsTried) // later, kernels may have been linked with it
   {
     own.Folder = folder;
   }
@@ -257,7 +258,7 @@ KernelLinkerScope::KernelLinkerScope(bool isUsed)
   }
   else if (own.Before)
   {
-    putenv(own.Entry); // in place of that of the user
+    putenv(own.Entry); // replaces the entry of the user
   }
   else
   {
@@ -283,7 +284,7 @@ KernelLinkerScope::~KernelLinkerScope()
   }
   else
   {
-    // A variable of another name. Without its entry all entries behind it would move.
+    // Rename the variable: its removal would move all entries behind it.
     __atomic_store_n(own.Entry, '_', __ATOMIC_SEQ_CST);
   }
 }

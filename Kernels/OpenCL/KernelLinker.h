@@ -7,18 +7,19 @@
 namespace deformvolume
 {
 
-/// Versions of PoCL before 7.2 run the program "ld" for each kernel, with the libraries of a C
-/// compiler, and end the process where that fails; later ones mostly link by themselves, and are
-/// not asked. So this links once, with the same libraries and nothing else. Where that fails, and
-/// the driver is one of AddDriver(), it links with the program of SetKernelLinker(). Throws Error
-/// where none of them works. version: what a platform says of itself (CL_PLATFORM_VERSION). Returns
-/// whether kernels are to be linked within a KernelLinkerScope.
+/// Checks whether PoCL can link kernels. Versions before 7.2 run the program "ld" for each kernel,
+/// with the libraries of a C compiler, and terminate the process if "ld" fails. Later versions
+/// mostly link by themselves and are not checked. The check runs "ld" once, with the same libraries
+/// and no object file. If "ld" fails and the driver was added with AddDriver(), the check tries the
+/// linker of SetKernelLinker(). Returns true if kernels must be linked with that linker, within a
+/// KernelLinkerScope. Throws Error if no linker works. version: CL_PLATFORM_VERSION of the
+/// platform.
 bool CheckKernelLinker(const std::string& version, bool isAdded);
 
-/// As long as there is one that is in use, PoCL finds the program of SetKernelLinker(): Clang,
-/// which is a part of PoCL, looks for "ld" in the folders of the environment variable COMPILER_PATH
-/// first. It is to end when what has been launched has run. The variable goes on and off without
-/// moving any other one, as other threads may read them.
+/// Makes PoCL use the linker of SetKernelLinker() during the lifetime of the object, if isUsed.
+/// PoCL contains Clang, which searches the folders of the environment variable COMPILER_PATH for
+/// "ld" first. Keep the object until the launched kernels have run. The variable is set and reset
+/// without moving other entries of the environment, since other threads may read them.
 class KernelLinkerScope
 {
 public:

@@ -7,7 +7,7 @@
 namespace deformvolume
 {
 
-/// A kernel of a program with all of its arguments.
+/// Makes a kernel of a program and sets all of its arguments.
 template <typename... Arguments>
 cl::Kernel MakeKernel(const cl::Program& program, const char* name, const Arguments&... arguments)
 {

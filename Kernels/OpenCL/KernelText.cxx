@@ -4,9 +4,9 @@
 namespace deformvolume
 {
 
-// Without warnings: PoCL counts them on the user's terminal. On processors without AVX-512, clang
-// warns that functions with vectors of 64 bytes would not fit those compiled for others, of which
-// there are none.
+// -w, since PoCL prints the number of warnings on the user's terminal. Without AVX-512, Clang warns
+// that functions with 64-byte vectors are not compatible with code compiled for other processors.
+// There is no such code.
 const char* const KernelOptions = "-cl-std=CL1.2 -w";
 
 bool HasDouble(const OpenCLContext& context)

@@ -9,16 +9,17 @@
 namespace deformvolume
 {
 
-/// Whether the device has double precision.
+/// Whether the device supports double precision.
 bool HasDouble(const OpenCLContext& context);
 
-/// Floats in a vector of the device that the kernels for processors use.
+/// Number of floats in the vectors that the kernels for CPUs use on this device: 4, 8 or 16.
 int GetLanes(const OpenCLContext& context);
 
-/// What all programs are compiled with.
+/// Compiler options of all programs.
 extern const char* const KernelOptions;
 
-/// The type of arithmetic that is as precise as the device has it.
+/// Returns the OpenCL source that defines REAL, the most precise floating-point type of the device,
+/// REAL_IS_DOUBLE and EXACT.
 std::string GetReal(const OpenCLContext& context);
 
 } // namespace deformvolume

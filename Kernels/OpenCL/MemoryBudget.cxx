@@ -48,8 +48,8 @@ void MemoryBudget::MeasureSystemMemory()
 
 bool MemoryBudget::HasRoomFor(std::uint64_t bytes)
 {
-  this->MeasureSystemMemory(); // the output takes some of it by now
-  // Also where none is missing: the limit may be lower now.
+  this->MeasureSystemMemory(); // the output may have been allocated since the last measurement
+  // Compare even if bytes is 0: the limit may have been lowered.
   return this->CountHeld() + bytes <= this->GetUsable();
 }
 

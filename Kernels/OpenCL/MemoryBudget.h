@@ -11,27 +11,27 @@ namespace deformvolume
 
 class WorkDevice;
 
-/// How much memory may be used: on the device, and in the system, which a processor shares with its
-/// device.
+/// The memory that may be used on the device and on the host. A CPU device uses host memory.
 class MemoryBudget
 {
 public:
-  /// held: bytes that are allocated on the device.
+  /// held() returns the bytes that are allocated on the device.
   MemoryBudget(WorkDevice& device, std::function<std::uint64_t()> held);
 
-  /// Bytes that may be used on the device; 0: what the device (and for a processor, the system) has
-  /// available.
+  /// Set the bytes that may be used on the device. 0: all memory of the device; on a CPU device,
+  /// all memory that the system has available.
   void SetLimit(std::uint64_t bytes) { this->Limit = bytes; }
 
-  /// Bytes that may be allocated on the device, those included that are and will be freed or used
-  /// again: all that it has, and for a processor no more than GetSystemMemory().
+  /// Returns the bytes that may be allocated on the device in total, including those that are
+  /// allocated now. This is the limit of SetLimit() if one is set. Otherwise it is the memory of
+  /// the device, and on a CPU device at most GetSystemMemory().
   std::uint64_t GetUsable();
-  /// Bytes that the system had left when this was asked first in an update, and for a processor
-  /// those held then, which are of the same memory; 0: unknown.
+  /// Returns the bytes that the system has available, as measured at the first call in an update.
+  /// On a CPU device, the bytes that were held at that time are added. 0: unknown.
   std::uint64_t GetSystemMemory();
-  /// An update begins: it is asked again.
+  /// Makes GetSystemMemory() measure again.
   void ForgetSystemMemory() { this->SystemMemory.reset(); }
-  /// Does so at the end of an update, also of one that fails.
+  /// Calls ForgetSystemMemory() at the end of an update, also after an exception.
   class UpdateGuard
   {
   public:
@@ -47,16 +47,16 @@ public:
     MemoryBudget& Budget;
   };
 
-  /// Whether there is room for so many bytes beside what is held now.
+  /// Whether `bytes` can be allocated in addition to the memory that is held now.
   bool HasRoomFor(std::uint64_t bytes);
-  /// Throws an Error where there is none. where: as in CheckBytes.
+  /// Throws Error unless HasRoomFor(bytes). where: as in CheckBytes().
   void CheckRoomFor(std::uint64_t bytes, const char* where);
 
-  /// Throws an Error that names the bytes where there are too few. where: "on the device".
+  /// Throws Error if needed > available. where: a phrase for the message, such as "on the device".
   static void CheckBytes(std::uint64_t needed, std::uint64_t available, const char* where);
 
 private:
-  /// Measures the memory of the system: something may have been allocated.
+  /// Measures the memory of the system again, since memory may have been allocated.
   void MeasureSystemMemory();
 
   WorkDevice& Device;

@@ -20,7 +20,7 @@ namespace deformvolume
 namespace
 {
 
-/// Some platforms end names with zeros or pad them with blanks.
+/// Removes the null characters and blanks with which some platforms pad names.
 std::string Trim(const std::string& text)
 {
   const char* blank = " \t\n";
@@ -70,9 +70,9 @@ double GetSeconds(const cl::Event& event)
       event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
 }
 
-/// Those of drivers that were added, and then those of the system, each once: a driver may be added
-/// that the system has as well, and be named by two files of the system. It hands out one pointer
-/// for a platform.
+/// Lists the platforms of added drivers, then those of the system. A driver may be added and also
+/// be installed, or be named by two .icd files; it returns the same pointer each time. Each
+/// platform is listed once.
 std::vector<cl::Platform> ListPlatforms()
 {
   std::vector<cl::Platform> platforms;
@@ -95,13 +95,12 @@ std::vector<cl::Platform> ListPlatforms()
   }
   catch (const cl::Error&)
   {
-    system.clear(); // the loader answers with an error where there is no platform
+    system.clear(); // the loader returns an error if there is no platform
   }
   std::for_each(system.begin(), system.end(), add);
   return platforms;
 }
 
-// Asks all drivers.
 std::vector<OpenCLDevice> ListDevices()
 {
   const FloatingPointTrapGuard guard;
@@ -130,13 +129,13 @@ std::vector<OpenCLDevice> ListDevices()
     }
     catch (const cl::Error&)
     {
-      continue; // a platform without devices must not hide the others
+      continue; // a platform without devices must not hide other platforms
     }
   }
   std::stable_sort(found.begin(), found.end(),
     [](const OpenCLDevice& a, const OpenCLDevice& b)
     { return IsBetter(a.Description, b.Description); });
-  // Two cards of one kind have one name; the second and later ones get a number.
+  // Devices of the same model have the same name: number all but the first.
   std::map<std::string, int> seen;
   for (OpenCLDevice& device : found)
   {
@@ -175,12 +174,12 @@ ContextList& GetContexts()
 
 std::vector<OpenCLDevice> FindDevices()
 {
-  // Drivers start here, and not all of them bear that from two threads at once: PoCL then says that
-  // there is no device, or crashes. They keep their devices as long as the process lives; it leaves
-  // the list to the system in the end (destructors may call drivers that are gone).
+  // Drivers start here. Some do not support that from two threads at once: PoCL then reports no
+  // device, or crashes. The list is never deleted, since its destructors could call drivers that
+  // have already been unloaded.
   static std::mutex mutex;
   static auto* const devices = new std::vector<OpenCLDevice>;
-  static std::size_t listed = 0; // how many drivers had been added
+  static std::size_t listed = 0; // number of added drivers in the list
   const std::lock_guard<std::mutex> lock(mutex);
   const std::size_t added = AddedDrivers::Get().GetCount();
   if (devices->empty() || added != listed)
@@ -206,11 +205,10 @@ OpenCLDevice FindDevice(const std::string& request)
   const std::vector<OpenCLDevice> devices = FindDevices();
   if (devices.empty())
   {
-    CheckKernelCache(); // the likelier reason, where there is one
-    throw Error(
-      "There is no OpenCL device. Install an OpenCL driver (on Debian the package "
-      "pocl-opencl-icd runs on every processor; in Python \"pip install pocl-binary-distribution\" "
-      "does, on Linux), and check OCL_ICD_VENDORS if it is set.");
+    CheckKernelCache(); // without a cache directory PoCL has no devices
+    throw Error("There is no OpenCL device. Install an OpenCL driver: on Debian the package "
+                "pocl-opencl-icd, which runs on every CPU; in Python on Linux, \"pip install "
+                "pocl-binary-distribution\". If OCL_ICD_VENDORS is set, check its value.");
   }
   const std::string wanted = ToLower(words);
   for (const OpenCLDevice& device : devices)
@@ -225,7 +223,7 @@ OpenCLDevice FindDevice(const std::string& request)
     }
   }
   throw Error("There is no OpenCL " + origin + " \"" + words +
-    "\". Ask for \"\" (the best), \"cpu\", \"gpu\", or a part of one of these names: " +
+    "\". Ask for \"\" (the best device), \"cpu\", \"gpu\", or a part of one of these names: " +
     ListNames(devices) + ".");
 }
 
@@ -259,7 +257,7 @@ OpenCLContext::OpenCLContext(const OpenCLDevice& device)
   if (IsPoCL(device))
   {
     CheckKernelCache();
-    if (device.IsProcessor) // others of PoCL's devices do not link
+    if (device.IsProcessor) // PoCL runs no linker for other devices
     {
       const cl::Platform platform(device.Device.getInfo<CL_DEVICE_PLATFORM>());
       this->OwnLinker = CheckKernelLinker(
@@ -305,7 +303,7 @@ StagedCopies* OpenCLContext::GetStagedCopies()
 
 cl::Program OpenCLContext::GetProgram(const ProgramText& source, const std::string& options)
 {
-  // Who wants another program, or launches one, does not wait for a compiler.
+  // Lock only this program: other threads can build or launch other programs meanwhile.
   BuiltProgram& built = this->FindProgram(source, options);
   const std::lock_guard<std::mutex> lock(built.Mutex);
   if (!built.Program())
@@ -323,7 +321,7 @@ OpenCLContext::BuiltProgram& OpenCLContext::FindProgram(
   BuiltProgram*& requested = this->Requested[{ options, source }];
   if (!requested)
   {
-    // References to elements of a map stay.
+    // References to elements of a map stay valid.
     requested = &this->Programs[options + "\n" + source.GetText()];
   }
   return *requested;
@@ -332,7 +330,8 @@ OpenCLContext::BuiltProgram& OpenCLContext::FindProgram(
 cl::Program OpenCLContext::Build(const std::string& source, const std::string& options) const
 {
   cl::Program program(this->Context, source);
-  // The driver does not know of this processor: its cache would give what was compiled for another.
+  // SetKernelProcessor() changed the processor without PoCL's knowledge. The macro keeps kernels
+  // for other processors in PoCL's cache from being used.
   std::string processor = AddedDrivers::Get().GetProcessor(this->Device.Device()).Name;
   if (!processor.empty())
   {
@@ -348,12 +347,12 @@ cl::Program OpenCLContext::Build(const std::string& source, const std::string& o
     if (log.find("unknown target CPU") != std::string::npos)
     {
       throw Error("The OpenCL driver of \"" + this->Device.Name +
-        "\" is older than this processor, and compiles nothing for it (" + Trim(log) +
-        "). Install a later version of the driver, such as that of the system (on Debian the "
-        "package pocl-opencl-icd).");
+        "\" is older than this CPU and cannot compile kernels for it (" + Trim(log) +
+        "). Install a later version of the driver, for example the package pocl-opencl-icd on "
+        "Debian.");
     }
     throw Error("The OpenCL compiler of \"" + this->Device.Name +
-      "\" refuses the kernels. Its words: " + log);
+      "\" cannot compile the kernels. Its build log: " + log);
   }
   return program;
 }
@@ -366,8 +365,8 @@ bool OpenCLContext::IsNew(
   {
     name += " " + std::to_string(group[axis]);
   }
-  // PoCL compiles kernels for small numbers of work-groups once more, too. What it then takes
-  // hardly counts, but the linker has to be there.
+  // PoCL also compiles kernels again for small numbers of work-groups. This takes little time, but
+  // needs the linker.
   for (cl::size_type axis = 0; this->OwnLinker && axis < items.dimensions(); ++axis)
   {
     name += " of " + std::to_string(items[axis]);
@@ -385,7 +384,7 @@ cl::Event OpenCLContext::Launch(const cl::CommandQueue& queue, const cl::Kernel&
     queue.enqueueNDRangeKernel(kernel, cl::NullRange, items, group, nullptr, &event);
     return event;
   }
-  queue.finish(); // what is waited for is this launch alone
+  queue.finish(); // so that the measured time is that of this launch alone
   const KernelLinkerScope linker(this->OwnLinker);
   CompilationWatch::Compilation compilation;
   queue.enqueueNDRangeKernel(kernel, cl::NullRange, items, group, nullptr, &event);

@@ -29,68 +29,71 @@ struct OpenCLDevice
   cl::Device Device;
   std::string Name; // "device (platform)"
   bool IsProcessor = false;
-  /// Whether a work-item has a thread of a processor, with its vector registers, for itself. Else
-  /// work-items share them, be it on a processor, and groups of one leave most of it idle.
+  /// Whether a work-item can use all vector registers of a CPU thread. Otherwise the driver, also
+  /// one for CPUs, spreads work-items over vector lanes, and work-groups of one item leave most
+  /// lanes idle.
   bool HasVectors = false;
   DeviceDescription Description;
 };
 
-/// The devices of this machine, the best first (IsBetter). Empty where there is no platform.
+/// Returns the devices of this machine, the best first (IsBetter). Empty if there is no platform.
 std::vector<OpenCLDevice> FindDevices();
 
-/// The device for a request in the words of ResolveDevice; throws Error.
+/// Returns the device that a request selects, by the rules of ResolveDevice(). Throws Error.
 OpenCLDevice FindDevice(const std::string& request);
 
-/// What the process shares of a device: its context and the programs built for it. Contexts live as
-/// long as the process: releasing OpenCL objects from static destructors crashes some platforms.
+/// The OpenCL context of a device and the programs built for it. All users of a device in a process
+/// share one context. Contexts live until the process ends: some platforms crash when static
+/// destructors release OpenCL objects.
 class OpenCLContext
 {
 public:
-  /// The context of a device; made at the first request. Throws Error.
+  /// Returns the context of a device, which the first call creates. Throws Error.
   static OpenCLContext& Get(const OpenCLDevice& device);
-  /// The one that a queue belongs to; null for queues of other contexts.
+  /// Returns the OpenCLContext of a queue; null for queues of other contexts.
   static OpenCLContext* Find(const cl::CommandQueue& queue);
 
   const OpenCLDevice& GetDevice() const { return this->Device; }
   const cl::Context& GetContext() const { return this->Context; }
-  /// Whether what may compile kernels has to be done, and to end, within a KernelLinkerScope.
+  /// Whether commands that may compile kernels must run within a KernelLinkerScope.
   bool UsesOwnLinker() const { return this->OwnLinker; }
   bool HasExtension(const std::string& name) const;
   cl_uint GetNumberOfUnits() const { return this->NumberOfUnits; }
-  /// Whether a buffer over memory of the host (CL_MEM_USE_HOST_PTR) is that memory, wherever it
-  /// lies. Other drivers may keep a copy, which has to be told of what the host writes there.
+  /// Whether the driver never copies a buffer that uses host memory (CL_MEM_USE_HOST_PTR). Other
+  /// drivers may keep a copy, which UpdateFromHost() updates.
   bool SharesHostMemory() const;
-  /// How large copies reach a device with memory of its own, which is behind a bus; null where it
-  /// shares that of the host, or the driver gives no page-locked memory.
+  /// Returns the staged copies for large transfers to and from a device with memory of its own.
+  /// Null if the device uses host memory, or if the driver provides no page-locked memory.
   StagedCopies* GetStagedCopies();
 
-  /// The program of this text and these options, built at the first request. Throws Error with the
-  /// compiler's log.
+  /// Returns the program of a source text and options. The first call builds it. Throws Error with
+  /// the log of the compiler.
   cl::Program GetProgram(const ProgramText& source, const std::string& options);
 
-  /// Enqueues a kernel, in a queue that takes the times. Drivers may compile a kernel once more for
-  /// the size of its work-groups: the first launch of a kind is waited for, and what it takes
-  /// before the kernel runs counts as compilation.
+  /// Enqueues a kernel. The queue must have profiling enabled. Drivers may compile a kernel again
+  /// for the size of its work-groups. So the first launch with each size waits for the kernel, and
+  /// its time before the kernel runs counts as compilation.
   cl::Event Launch(const cl::CommandQueue& queue, const cl::Kernel& kernel,
     const cl::NDRange& items, const cl::NDRange& group);
 
-  /// Runs one work-group of a kernel where no kernel of this kind has been launched: some drivers
-  /// compile when the kernel already counts as running. For kernels that do no harm then.
+  /// Compiles a kernel: runs one work-group of it, unless it has been launched with this group
+  /// size. Needed for drivers that compile at the launch but report this time as time of the
+  /// kernel. The kernel must have no effect when its first work-group runs an additional time.
   void Prepare(const cl::CommandQueue& queue, const cl::Kernel& kernel, const cl::NDRange& group);
 
 private:
   struct BuiltProgram
   {
-    std::mutex Mutex; // held while it is compiled
+    std::mutex Mutex; // locked during the compilation
     cl::Program Program;
   };
 
   explicit OpenCLContext(const OpenCLDevice& device);
 
-  /// The place of a program, which stays where it is.
+  /// Returns the entry of a program, whose address does not change.
   BuiltProgram& FindProgram(const ProgramText& source, const std::string& options);
   cl::Program Build(const std::string& source, const std::string& options) const;
-  /// Whether it is the first time that this is asked for such launches.
+  /// Whether this is the first call for this kernel and group size.
   bool IsNew(const cl::Kernel& kernel, const cl::NDRange& items, const cl::NDRange& group);
 
   OpenCLDevice Device;
@@ -106,7 +109,7 @@ private:
   std::unique_ptr<StagedCopies> Staging;
 };
 
-/// What an error of the OpenCL layer means to the user.
+/// Returns a message that explains an OpenCL error to the user.
 std::string GetMessage(const cl::Error& error);
 
 } // namespace deformvolume

@@ -11,23 +11,23 @@
 namespace deformvolume
 {
 
-/// Where a model writes vectors, three floats each: memory of the host, which a processor works in,
-/// or vectors on the device.
+/// The destination of the vectors that a model computes, three floats each: host memory, or
+/// DeviceVectors.
 class OutputVectors
 {
 public:
   ///@{
-  /// vectors: on the device of the context.
+  /// Set the destination. vectors must be on the device of the context.
   void Place(const OpenCLContext& context, float* memory, std::size_t numberOfPoints);
   void Place(const OpenCLContext& context, const std::shared_ptr<DeviceVectors>& vectors);
   ///@}
   bool IsPlaced() const { return this->Buffer() != nullptr; }
 
-  /// What kernels write to.
+  /// The buffer to which kernels write.
   const cl::Buffer& GetBuffer() const { return this->Buffer; }
-  /// Where it is to be brought then; null where it stays on the device.
+  /// The host memory to which the buffer must be read; null if the vectors stay on the device.
   float* GetHostMemory() const { return this->HostMemory; }
-  /// Those that have to be told what has been written; null where there are none.
+  /// The DeviceVectors in which writes must be recorded (MarkWritten); null if there are none.
   DeviceVectors::Internals* GetVectors() const
   {
     return this->Vectors ? &this->Vectors->GetInternals() : nullptr;

@@ -10,13 +10,13 @@
 namespace deformvolume
 {
 
-/// The text of a program, in pieces. Programs are asked for at each update, and their text is long:
-/// constant pieces are known by their address, so that a program is found without its text.
+/// The source text of a program, as a list of pieces. Each update looks up programs, and their
+/// texts are long. So constant pieces are compared by address, and a look-up does not read them.
 class ProgramText
 {
 public:
   ProgramText() = default;
-  /// A constant: a literal or a text of KernelSources.h, which stays as long as the process lives.
+  /// constant: a literal or a text of KernelSources.h, which is never deleted.
   ProgramText(const char* constant)
     : Pieces{ constant }
   {
@@ -36,7 +36,7 @@ public:
     first += second;
     return first;
   }
-  /// Texts that are equal may differ, where their pieces do.
+  /// Compares pieces. Two ProgramTexts with equal text may be different if their pieces differ.
   bool operator<(const ProgramText& other) const { return this->Pieces < other.Pieces; }
 
   std::string GetText() const

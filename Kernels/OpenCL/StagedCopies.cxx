@@ -15,7 +15,7 @@ namespace deformvolume
 namespace
 {
 
-/// How many bytes of a row, rows and planes a portion of a box has at most.
+/// Returns the largest size of a portion of a box: bytes of a row, rows and planes.
 CopiedBox::Bytes FindStep(const CopiedBox& box)
 {
   constexpr std::size_t most = StagedCopies::HalfBytes;
@@ -32,7 +32,8 @@ CopiedBox::Bytes FindStep(const CopiedBox& box)
   return { { most, 1, 1 } };
 }
 
-// A copy. Functions of OpenCL as such: an event has to be waited for whatever fails.
+// A copy between a buffer and memory of the caller. It calls the C functions of OpenCL, which do
+// not throw, since the caller must wait for each event even after an error.
 struct Transfer
 {
   cl_command_queue Queue;
@@ -66,7 +67,8 @@ struct Transfer
                              there.GetOffset(), size[0], half, 0, nullptr, done);
     }
     const CopiedBox::Bytes here{ { 0, 0, 0 } };
-    // Of rows that have been joined there is one plane, which has no pitch.
+    // CopiedBox::Join() leaves one plane with a pitch that may be invalid. 0 lets OpenCL compute
+    // it.
     const std::size_t plane = size[2] > 1 || there.Origin[2] > 0 ? there.Plane : 0;
     return this->Reads ? clEnqueueReadBufferRect(this->Queue, this->Buffer, CL_FALSE,
                            there.Origin.data(), here.data(), size.data(), there.Row, plane, size[0],
@@ -77,7 +79,7 @@ struct Transfer
   }
 };
 
-/// The parts of a box that are copied one by one.
+/// Divides a box into portions.
 class Portions
 {
 public:
@@ -111,14 +113,15 @@ private:
   CopiedBox::Bytes Count;
 };
 
-/// Copies every so many-th portion through the two halves of one thread. Returns OpenCL's error.
+/// Copies the portions first, first + step, first + 2 * step and so on through the two halves of
+/// one thread. Returns the OpenCL error code, or CL_SUCCESS.
 cl_int CopyPortions(const Transfer& transfer, const Portions& portions, std::size_t first,
   std::size_t step, char* memory)
 {
   struct
   {
     CopiedBox Box;
-    cl_event Done = nullptr; // null: nothing is on the bus
+    cl_event Done = nullptr; // null: no transfer in progress
   } halves[2];
   cl_int error = CL_SUCCESS;
   const auto end = [&](std::size_t half)
@@ -154,7 +157,7 @@ cl_int CopyPortions(const Transfer& transfer, const Portions& portions, std::siz
     error = transfer.Enqueue(halves[half].Box, memoryOfHalf, &halves[half].Done);
     clFlush(transfer.Queue);
   }
-  end(half); // what was started first
+  end(half); // of the two, this transfer was started first
   end(1 - half);
   return error;
 }
@@ -169,7 +172,7 @@ std::unique_ptr<StagedCopies> StagedCopies::Make(
     constexpr std::size_t bytes = MostThreads * 2 * HalfBytes;
     const cl::CommandQueue queue(context, device);
     const cl::Buffer pinned(context, CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR, bytes);
-    // It stays mapped: what is copied to it and from it is the host's memory.
+    // The buffer stays mapped: the portions are copied to and from its host memory.
     void* const memory =
       queue.enqueueMapBuffer(pinned, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0, bytes);
     return std::unique_ptr<StagedCopies>(
@@ -185,7 +188,8 @@ cl_int StagedCopies::Copy(const cl::CommandQueue& queue, const cl::Buffer& buffe
   const CopiedBox& box, void* memory, bool reads) noexcept
 {
   const Transfer transfer{ queue(), buffer(), static_cast<char*>(memory), reads };
-  // Others may copy until the kernels of this queue are done. A failure comes with the copy.
+  // Wait for the kernels of this queue before the lock, so that other threads can copy meanwhile.
+  // An error of the queue is returned by the copy.
   clFinish(queue());
   const std::lock_guard<std::mutex> lock(this->Mutex);
   const Portions portions(box);
@@ -222,7 +226,7 @@ cl_int StagedCopies::Read(const cl::CommandQueue& queue, const cl::Buffer& buffe
 cl_int StagedCopies::Write(const cl::CommandQueue& queue, const cl::Buffer& buffer,
   const CopiedBox& box, const void* memory) noexcept
 {
-  return this->Copy(queue, buffer, box, const_cast<void*>(memory), false); // only read
+  return this->Copy(queue, buffer, box, const_cast<void*>(memory), false); // never written to
 }
 
 } // namespace deformvolume

@@ -12,30 +12,29 @@
 namespace deformvolume
 {
 
-/// Copies between a device with memory of its own and any memory of the host, in portions that go
-/// through double buffers of page-locked memory: drivers move other memory at a fraction of what
-/// the bus can do. While one half is on the bus, the other is copied to or from the memory of the
-/// caller. One thread copies on the host at a fraction of the speed of the bus, too, so that
-/// several work on a large copy, each with a double buffer of its own.
+/// Copies between any host memory and a device with memory of its own, in portions through double
+/// buffers of page-locked (pinned) memory. Drivers copy pageable memory at a fraction of the speed
+/// of the bus. While the bus transfers one half of a double buffer, the host copies the other half
+/// to or from the memory of the caller. One thread does this at a fraction of the speed of the bus,
+/// so several threads work on a large copy, each with a double buffer of its own.
 ///
-/// May be used by many threads; a copy waits until those of others have ended. The buffers are
-/// memory of the host, and of the process: it is no part of what an object holds on the device, and
-/// what the system has left is measured without it (MemoryBudget).
+/// Thread-safe: a copy waits until the copies of other threads have ended. The buffers belong to
+/// the process. MemoryBudget does not count them as memory on the device.
 class StagedCopies
 {
 public:
   static constexpr std::size_t HalfBytes = std::size_t{ 1 } << 20;
   static constexpr std::size_t MostThreads = 8;
   static constexpr std::size_t PortionsWorthAThread = 2;
-  /// Smaller copies gain nothing.
+  /// Smaller copies are not faster than those of the driver.
   static constexpr std::size_t LeastBytes = std::size_t{ 1 } << 16;
 
-  /// Null where the driver gives no page-locked memory.
+  /// Returns null if the driver provides no page-locked memory.
   static std::unique_ptr<StagedCopies> Make(const cl::Context& context, const cl::Device& device);
 
   ///@{
-  /// Copies from a buffer, or to one, after all that is in the queue, and returns when that is
-  /// done. Returns OpenCL's error, or CL_SUCCESS.
+  /// Copies from or to a buffer, after all previous commands of the queue, and returns when the
+  /// copy is complete. Returns the OpenCL error code, or CL_SUCCESS.
   cl_int Read(const cl::CommandQueue& queue, const cl::Buffer& buffer, const CopiedBox& box,
     void* memory) noexcept;
   cl_int Write(const cl::CommandQueue& queue, const cl::Buffer& buffer, const CopiedBox& box,

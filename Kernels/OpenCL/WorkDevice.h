@@ -10,39 +10,42 @@
 namespace deformvolume
 {
 
-/// The device that work is done on, with the queues to it and the limits that the user has set.
+/// The device of an object, with its command queues and with the limits that the user has set.
 class WorkDevice
 {
 public:
-  /// From now on the device is that of a context. What belongs to another one is not forgotten
-  /// here.
+  /// Set the device to that of a context. The caller must release what it holds on the previous
+  /// device.
   void Use(OpenCLContext& context);
   bool Uses(const OpenCLContext& context) const { return this->Context == &context; }
 
-  /// The best device is used where none was chosen.
+  /// Returns the context of the device. If none has been set, sets that of the default device.
   OpenCLContext& GetContext();
   const OpenCLDevice& GetDevice() { return this->GetContext().GetDevice(); }
   const cl::CommandQueue& GetQueue();
-  /// A queue of its own for copies to the caller.
+  /// A separate queue for copies to the host.
   const cl::CommandQueue& GetReadQueue();
 
-  /// Bytes of one allocation at most: what the device allows, or less where a limit was set. 0: no
-  /// limit.
+  /// Set the largest number of bytes of one allocation. 0: the limit of the device, which always
+  /// applies.
   void SetAllocationLimit(std::uint64_t bytes) { this->AllocationLimit = bytes; }
   std::uint64_t GetAllocationLimit();
 
-  /// Work-items in a work-group along the rows of the volume; 0: chosen by device.
+  /// Set the number of work-items in a work-group, along the rows of the volume. 0: chosen by the
+  /// device.
   void SetWorkGroupSize(std::size_t size) { this->WorkGroupSize = size; }
-  /// Whether one work-item does what a work-group has to do: it has the vector registers of a
-  /// processor for itself, and no size is set.
+  /// Whether kernels with heavy work-groups run with one work-item per group: on CPUs whose
+  /// work-items can use all vector registers, unless a size is set.
   bool HasSerialGroups();
-  /// Those that a kernel gets, as far as it can. wanted: where none were set.
+  /// Returns the size of the work-groups of a kernel: the size that is set, or `wanted` if none is
+  /// set, but at most the largest size that the kernel allows.
   std::size_t GetGroupSize(const cl::Kernel& kernel, std::size_t wanted = 64);
-  /// The same for a kernel whose work-groups have much to do: one where groups are serial.
+  /// Returns the size of the work-groups of a kernel with heavy work-groups: 1 if
+  /// HasSerialGroups(), otherwise GetGroupSize().
   std::size_t GetBusyGroupSize(const cl::Kernel& kernel, std::size_t wanted = 64);
 
-  /// Sends data, and waits until they are there. Returns the previous buffer where it has the size
-  /// of the data, else a new one.
+  /// Copies data to a buffer on the device, and returns when the copy is complete. Uses the
+  /// previous buffer if it has the size of the data, otherwise a new buffer.
   cl::Buffer Send(const void* data, std::size_t bytes, const cl::Buffer& previous);
 
 private:
