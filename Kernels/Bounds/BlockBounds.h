@@ -15,23 +15,25 @@
 namespace deformvolume
 {
 
-/// Bounds of many points that are looked at by blocks. Of a block that lies within the others for
-/// certain, only a box that holds it is found. What is found is kept until the block changes.
+/// Computes the bounds of many points, block by block. If the bounds of other blocks certainly
+/// contain a block, only an upper bound of its box is computed. The results are kept until the
+/// block changes.
 class BlockBounds
 {
 public:
-  /// So many blocks, of which nothing is known.
+  /// Set the number of blocks.
   void Resize(std::size_t blocks)
   {
     this->Bounds.resize(blocks);
     this->IsExact.resize(blocks);
   }
-  /// How many blocks there are.
+  /// Number of blocks.
   std::size_t GetNumberOfBlocks() const { return this->Bounds.size(); }
 
-  /// Finds the bounds of all blocks. changed: nonzero for those that are not as they were.
-  /// findBox(block): a box that holds a changed block, empty if it is. findBounds(block): its
-  /// bounds. Both are called by many threads.
+  /// Computes the bounds of all blocks. changed: nonzero for blocks that have changed since the
+  /// last call. findBox(block): returns a box that contains a block; empty if the block is.
+  /// findBounds( block): returns the exact bounds of a block. Both functions are called in
+  /// parallel.
   template <typename FindBox, typename FindBounds>
   IndexBounds Compute(
     const std::vector<unsigned char>& changed, FindBox&& findBox, FindBounds&& findBounds)
@@ -61,7 +63,7 @@ public:
       this->IsExact[block] = 1;
     };
     IndexBounds all = this->GetExact();
-    // Those that reach farthest first: they leave few others.
+    // Start with the blocks that reach farthest: few other blocks are then not contained.
     std::vector<std::size_t> left = this->FindBeyond(all);
     for (int direction = 0; direction < 6 && !left.empty(); ++direction)
     {
@@ -82,14 +84,14 @@ public:
   }
 
 private:
-  /// Whether a box has another one in it. What is not-a-number is in none.
+  /// Whether a box contains another box. False if the other box has a NaN.
   static bool Holds(const IndexBounds& box, const IndexBounds& other)
   {
     return !box.IsEmpty() && glm::all(glm::lessThanEqual(box.Min, other.Min)) &&
       glm::all(glm::greaterThanEqual(box.Max, other.Max));
   }
 
-  /// Of all blocks whose bounds are known.
+  /// Returns the bounds of all blocks with exact bounds.
   IndexBounds GetExact() const
   {
     IndexBounds all;
@@ -103,8 +105,8 @@ private:
     return all;
   }
 
-  /// Those whose bounds are not known, and whose boxes a box does not hold; in the second form of
-  /// some blocks.
+  /// Finds the blocks without exact bounds that a box does not contain, among all blocks or among
+  /// the given blocks.
   std::vector<std::size_t> FindBeyond(const IndexBounds& box) const
   {
     std::vector<std::size_t> beyond;
@@ -133,7 +135,7 @@ private:
     }
   }
 
-  /// The one of some blocks that reaches farthest on an axis.
+  /// Returns the block that reaches farthest on an axis.
   std::size_t FindFarthest(const std::vector<std::size_t>& blocks, int axis, bool upwards) const
   {
     const auto isNearer = [&](std::size_t a, std::size_t b)
@@ -146,7 +148,7 @@ private:
   }
 
   std::vector<IndexBounds> Bounds;
-  std::vector<unsigned char> IsExact; // else a box that holds them
+  std::vector<unsigned char> IsExact; // 0: Bounds may be too large
 };
 
 } // namespace deformvolume

@@ -21,7 +21,8 @@ namespace deformvolume
 namespace
 {
 
-// The bounds of what body(item, bounds) adds for each of a number of items, in parallel.
+// Calls body(item, bounds) in parallel for items 0 to count - 1, and returns the union of the
+// bounds.
 template <typename Body>
 IndexBounds ComputeInParallel(std::int64_t count, Body&& body)
 {
@@ -48,13 +49,13 @@ IndexBounds ComputeInParallel(std::int64_t count, Body&& body)
   return all;
 }
 
-// How far outside the field, in its cells, a voxel may lie and still count: more than the device's
-// rounding.
+// In cells of the field: distance from the field up to which a voxel counts as inside. More than
+// the rounding of the device.
 constexpr double BoundsTolerance = 2.0 * FieldTolerance;
-// Positions this near to a voxel or to a point of the field are on it.
+// Distance up to which a position counts as on a voxel, or on a point of the field.
 constexpr double OnPoint = 1e-6;
 
-// Takes indices of the volume to continuous indices of a field, and back.
+// The transform between continuous indices of the volume and of a field.
 class FieldGeometry
 {
 public:
@@ -111,7 +112,7 @@ public:
       this->ToIndex(0.5 * (box.Min + box.Max)), this->Inverse, 0.5 * (box.Max - box.Min));
   }
 
-  /// The field's last point.
+  /// Index of the last point of the field.
   const glm::dvec3 Last;
 
 private:
@@ -132,7 +133,7 @@ private:
   bool Invertible = false;
 };
 
-// The voxels of a box, which may be none.
+// Shrinks a box to the voxels that it contains. Returns false if it contains none.
 bool ShrinkToVoxels(IndexBounds& box)
 {
   box.Min = glm::ceil(box.Min - OnPoint);
@@ -140,7 +141,7 @@ bool ShrinkToVoxels(IndexBounds& box)
   return box.Min.x <= box.Max.x && box.Min.y <= box.Max.y && box.Min.z <= box.Max.z;
 }
 
-// The bounds of the volume's part that the field covers, at rest.
+// Returns the bounds, at rest, of the part of the volume that the field covers.
 IndexBounds GetCoveredBox(
   const DisplacementField& field, const FieldGeometry& geometry, const IndexBounds& box)
 {
@@ -176,8 +177,8 @@ IndexBounds GetCoveredBox(
   return bounds;
 }
 
-// Whether a field ends within the volume, and not at its voxels: the deformed volume then ends with
-// it.
+// Whether the field ends within the volume, between voxels. The deformed volume then ends at the
+// border of the field.
 bool EndsBetweenVoxels(
   const VoxelGrid& voxelGrid, const DisplacementField& field, const FieldGeometry& geometry)
 {
@@ -185,7 +186,8 @@ bool EndsBetweenVoxels(
     !HoldsBox(field, GetBox(voxelGrid), BoundsTolerance);
 }
 
-// The displacement at a place: trilinear, and outside what is left of that of the border.
+// Returns the displacement at a position: interpolated trilinearly within the field, and faded
+// outside it.
 glm::dvec3 Interpolate(const DisplacementField& field, const glm::dvec3& position)
 {
   const glm::dvec3 last(field.Dimensions[0] - 1, field.Dimensions[1] - 1, field.Dimensions[2] - 1);
@@ -199,9 +201,9 @@ glm::dvec3 Interpolate(const DisplacementField& field, const glm::dvec3& positio
                       : glm::dvec3(0.0);
 }
 
-// Bounds of the voxels themselves, for fields that are no coarser than the volume or that fade: the
-// bounds of cells would be far too wide where these reach from voxels that move to others that
-// stay.
+// Computes bounds from the positions of all voxels. For fields with at least as many points as the
+// volume has voxels, and for fields that fade. The bounds of fading cells would be far too large,
+// since a cell has voxels that move and voxels that do not.
 IndexBounds ComputeBoundsOfVoxels(
   const VoxelGrid& voxelGrid, const DisplacementField& field, const FieldGeometry& geometry)
 {
@@ -231,7 +233,8 @@ IndexBounds ComputeBoundsOfVoxels(
     });
 }
 
-// Bounds from the cells of the field: a displacement in a cell lies between those of its corners.
+// Computes bounds from the cells of the field: each displacement in a cell lies between those of
+// its corners.
 IndexBounds ComputeBoundsOfCells(
   const VoxelGrid& voxelGrid, const DisplacementField& field, const FieldGeometry& geometry)
 {
@@ -242,7 +245,7 @@ IndexBounds ComputeBoundsOfCells(
   {
     return IndexBounds();
   }
-  // Cells at the field's border reach as far as it counts.
+  // Cells at the border of the field extend to where voxels count as inside or follow the border.
   IndexBounds extended = geometry.ToField(box);
   if (!field.Extrapolate)
   {
@@ -360,7 +363,7 @@ IndexBounds ComputeDeformedBounds(const VoxelGrid& voxelGrid, const Displacement
     return IndexBounds();
   }
   const FieldGeometry geometry(field);
-  // A field over the volume's own grid may cover a part of it only, and then has fewer points.
+  // A field on the voxels of the volume may cover only a part of them, and then has fewer points.
   const bool coLocated = geometry.IsOnGrid();
   return coLocated || IsFading(field) ||
       (points >= GetNumberOfPoints(voxelGrid.VertexExtent) &&

@@ -14,14 +14,16 @@
 namespace deformvolume
 {
 
-/// Bounds of all linked voxels after the deformation: for links that extrapolate.
+/// Computes the bounds of all linked voxels after the deformation. For meshes with
+/// OutsideVoxels::Modes::Extrapolate. displacements: three floats per node, in output voxels.
 DEFORMVOLUME_EXPORT IndexBounds ComputeDeformedBounds(const VoxelGrid& voxelGrid,
   const std::vector<VertexLink>& links, const std::vector<Tetrahedron>& tetrahedra,
   const float* displacements);
 
-/// Bounds of the part of the volume that a displacement field covers (all of it where the field
-/// extrapolates), after the deformation. Exact where the field's points are the voxels, otherwise
-/// no smaller than the truth, and exact for a constant field.
+/// Computes bounds, after the deformation, of the part of the volume that a displacement field
+/// covers. This is the whole volume if the field extrapolates. The bounds are exact if the points
+/// of the field are voxels, and for constant fields. Otherwise they may be too large, but never too
+/// small.
 DEFORMVOLUME_EXPORT IndexBounds ComputeDeformedBounds(
   const VoxelGrid& voxelGrid, const DisplacementField& field);
 

@@ -14,34 +14,35 @@ struct DisplacementField;
 
 struct DisplacementBounds;
 
-/// Displacements of points, in output voxels, as they lie in memory, or as they are known.
+/// Displacements of points, in output voxels. One of the pointers is set.
 struct Displacements
 {
-  const float* Padded = nullptr; // four floats each, or else
+  const float* Padded = nullptr; // four floats per point
   const DisplacementField* Field = nullptr;
-  // Or, of displacements that are not on the host, their bounds in each sub-brick.
+  // Bounds in each sub-brick, for displacements that are not in host memory.
   const std::vector<DisplacementBounds>* OfSubBricks = nullptr;
 };
 
-/// The least and the greatest displacement of some points.
+/// The least and the greatest components of displacements.
 struct DisplacementBounds
 {
   DisplacementBounds();
-  /// Points from begin to before end, of four floats each in the first form.
+  /// Adds the displacements of the points begin to end - 1. displacements: four floats per point.
   void Add(const float* displacements, std::size_t begin, std::size_t end);
-  /// Of a field maybe a little wider, where its axes are turned.
+  /// Adds the displacements of the points begin to end - 1. The bounds of a field may be slightly
+  /// too large if its ToDisplacement is not diagonal.
   void Add(const Displacements& displacements, std::size_t begin, std::size_t end);
   void Add(const DisplacementBounds& other);
   std::array<float, 4> Least;
   std::array<float, 4> Greatest;
 };
 
-/// What holds all of some bounds.
+/// Returns the union of bounds.
 DisplacementBounds Join(const std::vector<DisplacementBounds>& bounds);
 
 inline void DisplacementBounds::Add(const float* displacements, std::size_t begin, std::size_t end)
 {
-  // Local: the compiler cannot rule out that the floats are the memory of the members.
+  // Local copies allow vectorization: the members may alias the displacements.
   std::array<float, 4> least = this->Least;
   std::array<float, 4> greatest = this->Greatest;
   for (std::size_t point = begin; point < end; ++point)

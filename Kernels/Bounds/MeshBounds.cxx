@@ -20,7 +20,8 @@ namespace
 {
 
 constexpr std::size_t NodeBlock = 512;
-constexpr std::size_t ClippedBlock = 64; // to clip a tetrahedron takes some hundred times as long
+constexpr std::size_t ClippedBlock =
+  64; // smaller, since clipping takes about a hundred times longer
 
 std::size_t CountBlocks(std::size_t size, std::size_t block)
 {
@@ -38,13 +39,14 @@ bool IsInside(
     });
 }
 
-// What holds all points of a box that move by displacements with such components.
+// Returns a box that contains all points of `box` after displacements within the bounds
+// `components`.
 IndexBounds AddDisplacements(const IndexBounds& box, const VectorComponents& components)
 {
   IndexBounds moved = box;
   for (int axis = 0; axis < 3; ++axis)
   {
-    // Where one is not finite nothing holds them, so that each is looked at.
+    // If a value is not finite, the box is infinite, so that exact bounds are computed.
     constexpr double anywhere = std::numeric_limits<double>::infinity();
     moved.Min[axis] += components.AreFinite ? double{ components.Least[axis] } : -anywhere;
     moved.Max[axis] += components.AreFinite ? double{ components.Greatest[axis] } : anywhere;
@@ -64,7 +66,7 @@ void MeshBounds::SetMesh(const VoxelGrid& voxelGrid, const std::vector<glm::dvec
   const std::vector<Tetrahedron>& tetrahedra)
 {
   const IndexBounds box = GetBox(voxelGrid);
-  // Bytes, which several threads may set to the same.
+  // Bytes, not bits, so that several threads can set neighboring elements.
   std::vector<unsigned char> clipped(tetrahedra.size(), 0);
   std::vector<std::atomic<unsigned char>> wanted(restPoints.size());
   ParallelFor(0, static_cast<std::int64_t>(tetrahedra.size()), 0,
@@ -145,7 +147,7 @@ void MeshBounds::Use(const Tetrahedron& tetrahedron, std::uint32_t uses)
   for (const std::int32_t node : tetrahedron)
   {
     const auto place = static_cast<std::size_t>(node);
-    if (place >= this->Uses.size()) // it is gone
+    if (place >= this->Uses.size()) // the node has been removed
     {
       continue;
     }
@@ -254,7 +256,7 @@ IndexBounds MeshBounds::Compute(const std::vector<glm::dvec3>& restPoints,
   {
     changed.assign(changed.size(), 1);
   }
-  this->IsComputed = false; // half done, if this ends early
+  this->IsComputed = false; // until the end, in case of an exception
   const IndexBounds box = GetBox(this->Shape);
   const OutputTransform transform = GetOutputTransform(this->Shape);
   const auto move = [&](std::int32_t node)

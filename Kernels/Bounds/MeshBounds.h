@@ -16,30 +16,32 @@
 namespace deformvolume
 {
 
-/// Bounds of the part of the volume that lies inside a deformation mesh, after the deformation.
-/// Tight: tetrahedra that the surface of the volume cuts are clipped to it, since a tetrahedron's
-/// map is affine. Of a tetrahedron inside the volume the nodes tell the bounds.
+/// Computes the bounds, after the deformation, of the part of the volume inside a deformation mesh.
+/// The bounds are tight. For a tetrahedron inside the volume, the bounds are those of its nodes. A
+/// tetrahedron that reaches outside the volume is clipped to it, since the map in a tetrahedron is
+/// affine.
 ///
-/// Keeps the bounds of blocks of nodes and of clipped tetrahedra, so that only those are computed
-/// again that have changed.
+/// The bounds of blocks of nodes and of blocks of clipped tetrahedra are kept. Only blocks that
+/// have changed are computed again.
 ///
-/// voxelGrid: the volume's voxels and their output indices at rest. restPoints: the nodes at rest
-/// in continuous indices of the volume. displacements: of the nodes, three floats each, in output
+/// voxelGrid: the voxels of the volume and their output indices at rest. restPoints: the nodes at
+/// rest, in continuous indices of the volume. displacements: three floats per node, in output
 /// voxels.
 class DEFORMVOLUME_EXPORT MeshBounds
 {
 public:
-  /// Another mesh or another voxel grid: everything is computed again.
+  /// Set the mesh and the voxel grid. The next Compute() computes all bounds.
   void SetMesh(const VoxelGrid& voxelGrid, const std::vector<glm::dvec3>& restPoints,
     const std::vector<Tetrahedron>& tetrahedra);
 
-  /// Some tetrahedra have got other nodes in the same places, and there may be more nodes, or
-  /// fewer. restPoints and tetrahedra: as they are now, after all changes that were not told.
+  /// Applies changes of the nodes of tetrahedra. The positions at rest must not change; the number
+  /// of nodes may. restPoints and tetrahedra: the current ones, with all changes since the last
+  /// call.
   void ChangeConnectivity(const std::vector<glm::dvec3>& restPoints,
     const std::vector<Tetrahedron>& tetrahedra, const std::vector<TetrahedronChange>& changes);
 
-  /// restPoints and tetrahedra: those that were set. changes: all other displacements are those of
-  /// the last call for this mesh, if there was one; null: any may have changed.
+  /// Computes the bounds. restPoints and tetrahedra: the current ones. changes: the nodes whose
+  /// displacements have changed since the last call for this mesh; null: any may have changed.
   IndexBounds Compute(const std::vector<glm::dvec3>& restPoints,
     const std::vector<Tetrahedron>& tetrahedra, const float* displacements,
     const PointRanges* changes = nullptr);
@@ -48,29 +50,30 @@ private:
   void FindRestBounds(const std::vector<glm::dvec3>& restPoints, std::size_t block);
   IndexBounds ComputeNodes(const std::vector<glm::dvec3>& restPoints, const float* displacements,
     const std::vector<unsigned char>& changed);
-  /// There are so many nodes now, or have been.
+  /// Resizes the data of nodes. Counts of removed nodes are kept for Use().
   void Resize(std::size_t numberOfNodes);
-  /// A tetrahedron inside the volume has come, or has gone: so many more uses of its nodes.
+  /// Adds `uses` to the number of uses of the nodes of a tetrahedron inside the volume. -1 (as an
+  /// unsigned number): the tetrahedron is removed; 1: it is added.
   void Use(const Tetrahedron& tetrahedron, std::uint32_t uses);
   void CountUses(
     const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra);
 
   VoxelGrid Shape;
-  std::vector<unsigned char> Wanted;           // nodes of tetrahedra inside the volume
-  std::vector<std::uint32_t> Uses;             // by how many of these, from the first change on
+  std::vector<unsigned char> Wanted;           // nonzero: node of a tetrahedron inside the volume
+  std::vector<std::uint32_t> Uses;             // tetrahedra inside per node; empty until a change
   std::vector<std::int32_t> ClippedTetrahedra; // in ascending order
-  std::vector<IndexBounds> RestBounds;         // of each block of wanted nodes, scaled
+  std::vector<IndexBounds> RestBounds;         // wanted nodes of each block, in output indices
   BlockBounds NodeBounds;                      // of each block of nodes
   std::vector<IndexBounds> ClippedBounds;      // of each block of clipped tetrahedra
   ///@{
-  /// Blocks whose bounds are those of other tetrahedra.
+  /// Nonzero for blocks whose tetrahedra have changed since their bounds were computed.
   std::vector<unsigned char> StaleNodes;
   std::vector<unsigned char> StaleClipped;
   ///@}
   bool IsComputed = false;
 };
 
-/// The same, at once.
+/// Computes the bounds of a deformed mesh once (MeshBounds).
 DEFORMVOLUME_EXPORT IndexBounds ComputeDeformedBounds(const VoxelGrid& voxelGrid,
   const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra,
   const float* displacements);

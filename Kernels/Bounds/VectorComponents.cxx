@@ -12,7 +12,7 @@ namespace deformvolume
 
 VectorComponents FindComponents(const float* values, std::size_t count)
 {
-  // So many numbers, of 8 vectors, are looked at side by side: compilers use vectors for these.
+  // Process 8 vectors at a time, so that compilers vectorize the loop.
   constexpr std::size_t width = 24;
   constexpr float largest = std::numeric_limits<float>::max();
   std::array<float, width> least;
@@ -67,7 +67,8 @@ DisplacementRange GetRange(const DisplacementFactors& factors, const VectorCompo
   DisplacementRange range;
   for (int axis = 0; axis < 3; ++axis)
   {
-    // Products and sums are rounded alike for all vectors.
+    // The order of operations is that of GetDisplacement(): rounding is monotonic, so no
+    // displacement exceeds the range.
     double low = 0.0;
     double high = 0.0;
     for (int k = 0; k < 3; ++k)

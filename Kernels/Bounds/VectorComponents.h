@@ -12,27 +12,27 @@ namespace deformvolume
 
 struct DisplacementField;
 
-/// What the three components of some vectors lie between, and whether all are finite.
+/// The ranges of the three components of vectors, and whether all values are finite.
 struct VectorComponents
 {
   /// The least value of each component.
   std::array<float, 3> Least{};
   /// The greatest value of each component.
   std::array<float, 3> Greatest{};
-  /// Whether no value is infinite or not-a-number.
+  /// Whether all values are finite.
   bool AreFinite = false;
 };
 
-/// Of so many numbers, three a vector.
+/// Computes the ranges of the components. values: `count` numbers, three per vector.
 DEFORMVOLUME_EXPORT VectorComponents FindComponents(const float* values, std::size_t count);
 
-/// The matrix of a field as it is applied (GetFactor).
+/// ToDisplacement of a field, with elements rounded by GetFactor().
 using DisplacementFactors = std::array<double, 9>;
-/// The factors of a field.
+/// Returns the factors of a field.
 DisplacementFactors GetFactors(const DisplacementField& field);
 
-/// What the displacements of a field lie between whose vectors lie between others, as they are
-/// rounded. No displacement of such a vector leaves these bounds.
+/// The range of the displacements of a field, from the ranges of its vectors. No rounded
+/// displacement of a vector within these ranges exceeds it.
 struct DisplacementRange
 {
   /// The least displacement on each axis, in output voxels.
@@ -40,7 +40,7 @@ struct DisplacementRange
   /// The greatest displacement on each axis, in output voxels.
   std::array<double, 3> Greatest;
 };
-/// The range of the displacements of vectors between these.
+/// Returns the range of the displacements of vectors with these ranges of components.
 DisplacementRange GetRange(const DisplacementFactors& factors, const VectorComponents& components);
 
 } // namespace deformvolume

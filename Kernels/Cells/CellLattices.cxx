@@ -13,13 +13,13 @@ namespace
 
 using Place = std::array<int, 3>;
 
-// Nodes with their places in a lattice, in the order in which they are added.
+// The nodes of a lattice, numbered in the order in which they are added.
 class Lattice
 {
 public:
   void Add(const Place& place) { this->Nodes.emplace(place, static_cast<int>(this->Nodes.size())); }
 
-  // The nodes between two places that are so many steps apart.
+  // Adds the nodes between two lattice points that are `steps` steps apart.
   void AddBetween(const Place& first, const Place& last, int steps)
   {
     for (int step = 1; step < steps; ++step)
@@ -28,7 +28,7 @@ public:
     }
   }
 
-  // All nodes of a triangle with so many steps along its edges.
+  // Adds all nodes of a triangle with `steps` steps along its edges.
   void AddTriangle(const std::array<Place, 3>& corners, int steps)
   {
     if (steps == 0)
@@ -47,7 +47,7 @@ public:
     this->AddWithin(corners, steps);
   }
 
-  // Those that are not on its edges, which are a triangle again.
+  // Adds the nodes within a triangle, which form a smaller triangle.
   void AddWithin(const std::array<Place, 3>& corners, int steps)
   {
     if (steps >= 3)
@@ -98,7 +98,7 @@ public:
     }
   }
 
-  // -1: there is no node.
+  // Returns the number of the node, or -1 if there is none.
   int Get(const Place& place) const
   {
     const auto found = this->Nodes.find(place);
@@ -106,7 +106,8 @@ public:
   }
 
 private:
-  // The mean of places of a lattice, with weights that add up to a sum and give such a place.
+  // Returns the weighted mean of lattice points. sum: of the weights. The mean must be a lattice
+  // point.
   template <std::size_t Count>
   static Place Mix(
     const std::array<Place, Count>& places, const std::array<int, Count>& weights, int sum)
@@ -148,7 +149,7 @@ NodeAt NumberHexahedron(const std::array<int, 3>& degrees)
   }
   for (const int k : { 0, z })
   {
-    // All in the direction of their axis.
+    // VTK lists the nodes of these edges in the direction of the axes, not around the face.
     lattice->AddBetween({ { 0, 0, k } }, { { x, 0, k } }, x);
     lattice->AddBetween({ { x, 0, k } }, { { x, y, k } }, y);
     lattice->AddBetween({ { 0, y, k } }, { { x, y, k } }, x);
@@ -197,7 +198,7 @@ NodeAt NumberWedge(int degree, int layers)
   const auto at = [&](std::size_t corner, int k) -> Place {
     return { { ring[corner % 3][0], ring[corner % 3][1], k } };
   };
-  // Of a triangle, without its edges.
+  // Adds the nodes within a triangle.
   const auto addTriangle = [&](int k)
   {
     for (int j = 1; j < n; ++j)

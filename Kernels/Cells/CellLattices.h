@@ -10,13 +10,14 @@ namespace deformvolume
 {
 
 ///@{
-/// The order in which cells with a lattice of nodes list these, as VTK does it for Lagrange cells:
-/// corners, then the nodes within the edges, within the faces and within the cell. The quadratic
-/// cells that have a lattice of 3 nodes on an axis list theirs in the same order.
+/// Numbers the nodes of cells with a lattice of nodes in the order of VTK's Lagrange cells:
+/// corners, then nodes within edges, within faces and within the cell. Quadratic cells with a
+/// lattice of 3 nodes on an axis have the same order.
 
-/// degrees: steps of the lattice along the axes.
+/// degrees: number of steps of the lattice along each axis.
 NodeAt NumberHexahedron(const std::array<int, 3>& degrees);
-/// degree: steps along the edges of the triangles; layers: between these.
+/// degree: number of steps along the edges of the triangles. layers: number of steps between the
+/// triangles.
 NodeAt NumberWedge(int degree, int layers);
 NodeAt NumberTetrahedron(int degree);
 ///@}

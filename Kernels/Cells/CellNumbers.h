@@ -9,11 +9,11 @@
 namespace deformvolume
 {
 
-/// The numbers of three-dimensional cells, which are VTK's (vtkCellType.h); and the order of the
-/// points of these is VTK's as well.
+/// The numbers of three-dimensional cell types. The numbers and the order of the points of cells
+/// are those of VTK (vtkCellType.h).
 namespace cellNumbers
 {
-/// Types of cells.
+/// Cell types.
 enum Types : int
 {
   Tetrahedron = 10,
@@ -43,7 +43,7 @@ enum Types : int
 };
 } // namespace cellNumbers
 
-/// The name of any type of cells of VTK, such as "quadratic hexahedron".
+/// Returns the name of a cell type of VTK, such as "quadratic hexahedron".
 DEFORMVOLUME_EXPORT std::string GetCellName(int type);
 
 } // namespace deformvolume

@@ -12,7 +12,7 @@ namespace deformvolume
 namespace
 {
 
-// A part from faces that name their nodes by positions in the cell.
+// Makes a part from faces whose nodes are positions in the cell's list of points.
 CellPart MakePart(const CellFaces& faces)
 {
   CellPart part;
@@ -50,7 +50,7 @@ CellPart MakeWedge(const std::array<int, 3>& bottom, const std::array<int, 3>& t
   return MakePart(faces);
 }
 
-// The sides of a pyramid over a polygon, and the polygon.
+// Makes a pyramid over a polygon.
 CellPart MakeCone(int apex, const std::vector<int>& base)
 {
   CellFaces faces{ base };
@@ -78,8 +78,8 @@ CellParts SplitSerendipity(const CellFaces& faces)
 {
   CellParts parts;
   CellFaces rest;
-  std::map<int, std::map<int, std::vector<int>>> rings; // of a corner: its mid-edge nodes, each
-                                                        // with its neighbours among them
+  // For each corner the mid-edge nodes around it, each with its two neighbors among them.
+  std::map<int, std::map<int, std::vector<int>>> rings;
   for (const std::vector<int>& face : faces)
   {
     const std::size_t corners = face.size() / 2;
@@ -182,7 +182,7 @@ CellParts SplitWedge(int degree, int layers, const NodeAt& at)
 CellParts SplitRings(const NodeAt& at)
 {
   static const int mid[4][2] = { { 1, 0 }, { 2, 1 }, { 1, 2 }, { 0, 1 } };
-  static const int corner[4][2] = { { 2, 0 }, { 2, 2 }, { 0, 2 }, { 0, 0 } }; // after each mid
+  static const int corner[4][2] = { { 2, 0 }, { 2, 2 }, { 0, 2 }, { 0, 0 } }; // follows mid[i]
   CellParts parts;
   for (int k = 0; k < 2; ++k)
   {
@@ -204,7 +204,7 @@ CellParts SplitRings(const NodeAt& at)
   return parts;
 }
 
-// Each cube of the lattice that is whole holds a tetrahedron, an octahedron and a tetrahedron.
+// Each complete cube of the lattice consists of a tetrahedron, an octahedron and a tetrahedron.
 CellParts SplitTetrahedron(int degree, const NodeAt& at)
 {
   CellParts parts;

@@ -11,52 +11,54 @@
 namespace deformvolume
 {
 
-/// A convex part of a cell: its nodes, by positions in the cell's list of points, and its faces, by
-/// positions among these nodes.
+/// A convex part of a cell.
 struct CellPart
 {
-  /// The nodes, by their positions in the cell's list of points.
+  /// The nodes, as positions in the cell's list of points.
   std::vector<int> Nodes;
-  /// The faces, by positions in Nodes.
+  /// The faces, as positions in Nodes.
   CellFaces Faces;
-  /// Where the part is split round a node that the cell does not have: the weights of the cell's
-  /// nodes there. The faces are triangles then.
+  /// If the part is split around a derived node: the weights of all nodes of the cell for it. The
+  /// faces are then triangles. Otherwise empty.
   std::vector<double> CenterWeights;
 };
 /// The parts of a cell.
 using CellParts = std::vector<CellPart>;
 
-/// The position in a cell's list of points of the node at a point of the cell's lattice.
+/// Returns the position in a cell's list of points of the node at a lattice point of the cell. -1:
+/// there is no node.
 using NodeAt = std::function<int(int i, int j, int k)>;
 
 ///@{
-/// The parts of a cell, such that SplitCell() of all of them gives tetrahedra between the nodes of
-/// the cell, all of which count, and cells that share a face agree on it:
-/// - a face with a node at each point of a lattice is cut into the triangles or quadrilaterals of
-///   the lattice, and these are cut as those of linear cells;
-/// - a quadrilateral without a node in its middle loses its corners, and the quadrilateral of its
-///   mid-edge nodes is cut as that of a linear cell;
-/// - a triangle with nodes in the middle of its edges and of itself loses its corners, and the
-///   triangle of its mid-edge nodes is cut into three.
+/// Divide a cell into parts. SplitCell() then splits each part into tetrahedra. The tetrahedra use
+/// all nodes of the cell. Cells that share a face split it in the same way:
+/// - A face with a node at each lattice point is divided into the triangles or quadrilaterals of
+///   the lattice. These are split as in linear cells.
+/// - A quadrilateral without a center node is divided into four corner triangles and the
+///   quadrilateral of its mid-edge nodes, which is split as in linear cells.
+/// - A triangle with mid-edge nodes and a center node is divided into three corner triangles and
+///   the triangle of its mid-edge nodes, which is split into three.
 
-/// With nodes at corners and in the middle of edges only. faces: as VTK lists their nodes, corners
-/// in order round the face, then the middles of the edges in the same order. Corners are cut off;
-/// what is left has the mid-edge nodes.
+/// A cell with nodes at corners and mid-edges only (serendipity). faces: nodes in VTK's order:
+/// corners in order around the face, then the mid-edge nodes in the same order. The parts are one
+/// pyramid at each corner, and the rest with the mid-edge nodes.
 CellParts SplitSerendipity(const CellFaces& faces);
 
-/// With a node in its middle, too, and one in the middle of each face, the last of its list.
+/// A cell with mid-edge nodes, a center node, and a center node of each face, which is the last
+/// node of the face.
 CellParts SplitRoundCenter(const CellFaces& faces, int center);
 
-/// With a lattice of nodes. degrees: steps of the lattice along the axes; of wedges along the edges
-/// of the triangles, and between them.
+/// A cell with a lattice of nodes. degrees: number of steps of the lattice along each axis. degree:
+/// number of steps along the edges of the triangles. layers: number of steps between the triangles.
 CellParts SplitHexahedron(const std::array<int, 3>& degrees, const NodeAt& at);
 CellParts SplitWedge(int degree, int layers, const NodeAt& at);
 CellParts SplitTetrahedron(int degree, const NodeAt& at);
 
-/// A hexahedron with a lattice of 3 x 3 x 3 nodes, without the three at (1, 1, k).
+/// A hexahedron with a lattice of 3 x 3 x 3 nodes without the three nodes (1, 1, k).
 CellParts SplitRings(const NodeAt& at);
 
-/// VTK's quadratic wedge with nodes in the middle of its triangles, of its faces and of itself.
+/// VTK's quadratic wedge of 21 nodes, with center nodes of its triangles, of its quadrilaterals and
+/// of the cell.
 CellParts SplitWedgeOf21();
 ///@}
 

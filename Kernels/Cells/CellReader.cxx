@@ -47,7 +47,7 @@ void CheckCellPoint(std::int64_t point, std::int64_t numberOfPoints, std::int64_
   if (point < 0 || point >= numberOfPoints)
   {
     throw Error("Cell " + std::to_string(cell) + " of the deformation mesh uses point " +
-      std::to_string(point) + ", and there are only " + std::to_string(numberOfPoints) +
+      std::to_string(point) + ", but the mesh has only " + std::to_string(numberOfPoints) +
       " points. Correct the cells of the mesh.");
   }
 }
@@ -68,7 +68,7 @@ void CellReader::CheckSize(std::int64_t cell, int type, std::int64_t count)
   }
 }
 
-// Returns the number of a new node.
+// Adds a derived node, and returns its number.
 std::int32_t CellReader::AddNode(
   const std::vector<std::int32_t>& nodes, const std::vector<double>& weights)
 {
@@ -76,8 +76,8 @@ std::int32_t CellReader::AddNode(
     static_cast<std::size_t>(this->NumberOfNodes) + this->Cells.Derived.GetCount();
   if (number >= static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
   {
-    throw Error("The deformation mesh has more than 2,147,483,647 nodes, with those in the "
-                "middle of its cells. Use a coarser one.");
+    throw Error("The deformation mesh has more than 2,147,483,647 nodes, including derived nodes "
+                "in the middle of cells. Use a coarser mesh.");
   }
   this->Cells.Derived.Add(nodes, weights);
   return static_cast<std::int32_t>(number);
@@ -134,9 +134,9 @@ void CellReader::AddPolyhedron(
   }
 }
 
-// Whether all nodes in the middle of edges are about there. The middle of an arc of 120 degrees is
-// farther by 0.29 of the length between its ends, a quarter point is by 0.25, and the middle of
-// another edge is by 0.5 where all edges have one length.
+// Whether all mid-side nodes are close to the midpoints of their edges. The distances, relative to
+// the length between the ends of the edge, are 0.29 for the middle of an arc of 120 degrees, 0.25
+// for a quarter point, and 0.5 for the midpoint of a wrong edge if all edges have the same length.
 bool CellReader::HasNearMidSides(int type, const std::vector<std::int32_t>& nodes) const
 {
   constexpr double most = 0.3;

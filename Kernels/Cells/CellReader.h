@@ -21,72 +21,71 @@
 namespace deformvolume
 {
 
-/// The tetrahedra of a deformation mesh, and what is said of the cells that they were made from.
+/// The tetrahedra of a deformation mesh, and the data for warnings about its cells.
 struct MeshCells
 {
-  /// The tetrahedra, cell after cell.
+  /// The tetrahedra, in the order of the cells.
   std::vector<Tetrahedron> Tetrahedra;
-  /// Nodes that some tetrahedra have besides those of the mesh, numbered behind these.
+  /// Additional nodes of the tetrahedra. Their numbers follow those of the nodes of the mesh.
   DerivedNodes Derived;
-  /// Cells that are not three-dimensional, or of a type that is not known, in words for a warning;
-  /// "" without such.
+  /// Text for a warning: number and type of cells that are not three-dimensional or of an
+  /// unsupported type. "" if there are none.
   std::string Ignored;
-  /// Quadratic cells with a node that is far from the middle of its edge, in words for a warning;
-  /// "" without such.
+  /// Text for a warning: number of quadratic cells with a mid-side node far from the midpoint of
+  /// its edge. "" if there are none.
   std::string FarMidSides;
 };
 
-/// Warnings of ignored cells and of far nodes (MeshCells).
+/// Returns the warnings for MeshCells::Ignored and MeshCells::FarMidSides.
 DEFORMVOLUME_EXPORT std::vector<std::string> GetCellWarnings(
   const std::string& ignored, const std::string& farMidSides);
 
-/// Throws an Error of a cell of the deformation mesh with so many points.
+/// Throws Error for a cell of the deformation mesh. count: number of its points. complaint: follows
+/// the number of points in the message.
 [[noreturn]] DEFORMVOLUME_EXPORT void ThrowBadCell(
   std::int64_t cell, int type, std::int64_t count, const std::string& complaint);
 
-/// Throws an Error where a cell of the deformation mesh uses a point that is not there.
+/// Throws Error if a cell of the deformation mesh uses a point that does not exist.
 DEFORMVOLUME_EXPORT void CheckCellPoint(
   std::int64_t point, std::int64_t numberOfPoints, std::int64_t cell);
 
-/// Takes the cells of a deformation mesh, one after the other: tetrahedra, and those that other
-/// three-dimensional cells (cellNumbers) are split into. The nodes of quadratic and Lagrange cells
-/// all become nodes of tetrahedra.
+/// Converts the cells of a deformation mesh to tetrahedra. Three-dimensional cells of other types
+/// (cellNumbers) are split. All nodes of quadratic and Lagrange cells become nodes of tetrahedra.
 class DEFORMVOLUME_EXPORT CellReader
 {
 public:
-  /// Where a node is at rest. Few cells need it.
+  /// Returns the position of a node at rest. Called for few cells.
   using Positions = std::function<glm::dvec3(std::int32_t node)>;
 
-  /// rounding: the relative error of positions.
+  /// rounding: relative error of positions.
   CellReader(std::int32_t numberOfNodes, Positions positions, double rounding);
 
-  /// Reserves memory for so many tetrahedra.
+  /// Reserves memory for tetrahedra.
   void Reserve(std::size_t numberOfTetrahedra)
   {
     this->Cells.Tetrahedra.reserve(numberOfTetrahedra);
   }
-  /// Derived nodes that cells name already.
+  /// Set the derived nodes that the cells already use.
   void SetDerived(const DerivedNodes& derived) { this->Cells.Derived = derived; }
 
-  /// Throws an Error where a cell of this type has another number of points.
+  /// Throws Error if cells of this type have a fixed number of points other than `count`.
   static void CheckSize(std::int64_t cell, int type, std::int64_t count);
 
-  /// Adds a tetrahedron as it is.
+  /// Adds a tetrahedron without a check.
   void AddTetrahedron(const Tetrahedron& nodes) { this->Cells.Tetrahedra.push_back(nodes); }
-  /// A cell of another type than Polyhedron. nodes: of the mesh, in the order of the cell. degrees:
-  /// of a Lagrange cell along its axes; null: they follow from the number of nodes. Throws an Error
-  /// where it has a wrong number of nodes, and where it is a Bezier cell.
+  /// Adds a cell of any type except Polyhedron. nodes: numbers in the mesh, in the order of the
+  /// cell. degrees: of a Lagrange cell along its axes; null: derived from the number of nodes.
+  /// Throws Error if the number of nodes is wrong, and for Bezier cells.
   void Add(std::int64_t cell, int type, const std::vector<std::int32_t>& nodes,
     const std::array<int, 3>* degrees);
-  /// The nodes of each face, in order round it.
+  /// The nodes of each face, in order around the face.
   using PolyhedronFaces = std::vector<std::vector<std::int32_t>>;
-  /// A polyhedron, which brings its own faces. count: of its points, for errors. areComplete:
-  /// whether all faces could be read. Throws an Error where some are missing, and where it cannot
-  /// be split.
+  /// Adds a polyhedron. count: number of its points, for messages. areComplete: whether all faces
+  /// could be read. Throws Error if faces are missing, or if the polyhedron cannot be split.
   void AddPolyhedron(
     std::int64_t cell, std::int64_t count, const PolyhedronFaces& faces, bool areComplete);
 
-  /// All that has been made. The reader is not used any more then.
+  /// Returns the result. Call no other function afterwards.
   MeshCells Finish();
 
 private:

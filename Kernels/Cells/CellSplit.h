@@ -11,23 +11,23 @@
 namespace deformvolume
 {
 
-/// The faces of a cell, each by positions in the cell's list of points, in order round the face.
+/// The faces of a cell, as positions in the cell's list of points, in order around the face.
 using CellFaces = std::vector<std::vector<int>>;
 
-/// The faces of a linear three-dimensional type of cells (cellNumbers) of fixed shape other than
-/// tetrahedra and voxels (whose points, once 2 and 3, and 6 and 7 are swapped, are those of
-/// hexahedra); null for all other types.
+/// Returns the faces of a hexahedron, wedge, pyramid, pentagonal prism or hexagonal prism
+/// (cellNumbers). Null for all other types. For a voxel, swap points 2 and 3, and points 6 and 7,
+/// and use the faces of a hexahedron.
 DEFORMVOLUME_EXPORT const CellFaces* GetCellFaces(int cellType);
 
-/// How many points a cell of a linear or quadratic three-dimensional type of fixed shape has;
-/// 0 for all other types.
+/// Returns the number of points of a linear or quadratic three-dimensional cell type with a fixed
+/// number of points. 0 for all other types.
 DEFORMVOLUME_EXPORT int GetNumberOfCellPoints(int cellType);
 
-/// Splits a convex cell into tetrahedra between its own points and appends them.
+/// Splits a convex cell into tetrahedra between its own points, and appends these.
 ///
-/// The node of the lowest index is joined to the faces that it is no part of, and each of these is
-/// cut by the lines from its own lowest node. The cut of a face therefore follows from its nodes
-/// alone, and cells that share a face agree on it.
+/// The node with the lowest number is connected to all faces that do not contain it. Each of these
+/// faces is split into a fan of triangles around its own lowest node. So the split of a face
+/// depends only on its nodes, and cells that share a face split it in the same way.
 void SplitCell(const std::vector<std::int32_t>& nodes, const CellFaces& faces,
   std::vector<Tetrahedron>& tetrahedra);
 

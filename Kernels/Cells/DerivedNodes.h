@@ -11,22 +11,22 @@
 namespace deformvolume
 {
 
-/// Nodes that the grids of a mesh do not have. Positions and displacements of each are sums of
-/// those of nodes that they have, times weights whose sum is 1. They are numbered behind the nodes
-/// of all grids.
+/// Additional nodes that are not points of the grids of a mesh. The position and displacement of a
+/// derived node are weighted sums of those of nodes of the grids. The weights add up to 1. The
+/// numbers of derived nodes follow those of the nodes of all grids.
 struct DerivedNodes
 {
-  /// Of each the end of its nodes and their weights in the lists of all.
+  /// For each derived node the end of its range in Nodes and Weights.
   std::vector<std::uint64_t> Ends;
-  /// The nodes of all sums, one derived node after the other.
+  /// The nodes of the sums of all derived nodes.
   std::vector<std::int32_t> Nodes;
-  /// Their weights.
+  /// The weights of these nodes.
   std::vector<double> Weights;
 
-  /// How many derived nodes there are.
+  /// Number of derived nodes.
   std::size_t GetCount() const { return this->Ends.size(); }
 
-  /// Adds a derived node: the weighted sum of these nodes.
+  /// Adds a derived node, which is the weighted sum of the given nodes.
   void Add(const std::vector<std::int32_t>& nodes, const std::vector<double>& weights)
   {
     this->Nodes.insert(this->Nodes.end(), nodes.begin(), nodes.end());
@@ -34,7 +34,8 @@ struct DerivedNodes
     this->Ends.push_back(this->Nodes.size());
   }
 
-  /// The weighted sum for a derived node. get(node): the vector of a node of the grids.
+  /// Returns the weighted sum for a derived node. get(node): returns the vector of a node of the
+  /// grids.
   template <typename Get>
   glm::dvec3 Sum(std::size_t derived, const Get& get) const
   {
@@ -46,7 +47,7 @@ struct DerivedNodes
     return sum;
   }
 
-  /// Whether all sums are equal.
+  /// Whether all derived nodes are equal.
   bool operator==(const DerivedNodes& other) const
   {
     return this->Ends == other.Ends && this->Nodes == other.Nodes && this->Weights == other.Weights;

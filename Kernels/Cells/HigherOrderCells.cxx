@@ -12,8 +12,8 @@ namespace deformvolume
 namespace
 {
 
-// The faces of cells: corners in order round the face, nodes in the middle of the edges in the same
-// order, and the node in the middle of the face where there is one.
+// Returns the faces of a cell type: corners in order around the face, mid-edge nodes in the same
+// order, and the center node of the face if there is one.
 const CellFaces& GetQuadraticFaces(int cellType)
 {
   static const CellFaces tetrahedron{ { 0, 1, 3, 4, 8, 7 }, { 1, 2, 3, 5, 9, 8 },
@@ -28,7 +28,7 @@ const CellFaces& GetQuadraticFaces(int cellType)
   static const CellFaces triQuadraticPyramid{ { 0, 3, 2, 1, 8, 7, 6, 5, 13 },
     { 0, 1, 4, 5, 10, 9, 14 }, { 1, 2, 4, 6, 11, 10, 15 }, { 2, 3, 4, 7, 12, 11, 16 },
     { 3, 0, 4, 8, 9, 12, 17 } };
-  // Of the quadratic Lagrange tetrahedron with nodes in the middle of the faces and of the cell.
+  // The quadratic Lagrange tetrahedron of 15 nodes, with center nodes of the faces and of the cell.
   static const CellFaces tetrahedronOf15{ { 0, 1, 3, 4, 8, 7, 11 }, { 2, 3, 1, 9, 8, 5, 12 },
     { 0, 3, 2, 7, 9, 6, 13 }, { 0, 2, 1, 6, 5, 4, 10 } };
   switch (cellType)
@@ -55,8 +55,9 @@ CellParts MakeParts(int cellType)
     case cellNumbers::QuadraticTetrahedron:
     {
       CellParts parts = SplitSerendipity(GetQuadraticFaces(cellType));
-      // What is left of the tetrahedron without its corners is an octahedron. None of its three
-      // diagonals is better than the others: the values of the shape functions in the middle are.
+      // The tetrahedron without its corners is an octahedron. No choice among its three diagonals
+      // is symmetric. So it is split around a derived node in the center, whose weights are the
+      // values of the shape functions there.
       parts.back().CenterWeights.assign(4, -0.125);
       parts.back().CenterWeights.resize(10, 0.25);
       return parts;
@@ -75,12 +76,12 @@ CellParts MakeParts(int cellType)
       return SplitWedge(2, 1, NumberWedge(2, 1));
     case cellNumbers::BiQuadraticQuadraticWedge:
       return SplitWedge(2, 2, NumberWedge(2, 2));
-    default: // cellNumbers::BiQuadraticQuadraticHexahedron: no node in the middle of any layer
+    default: // cellNumbers::BiQuadraticQuadraticHexahedron, which has no node (1, 1, k)
       return SplitRings(NumberHexahedron({ { 2, 2, 2 } }));
   }
 }
 
-// The degree for which a cell has so many points; 0 for none.
+// Returns the degree for which a cell has this number of points; 0 if there is none.
 template <typename Count>
 int FindDegree(std::int64_t numberOfPoints, const Count& count)
 {
@@ -94,7 +95,7 @@ int FindDegree(std::int64_t numberOfPoints, const Count& count)
 
 CellParts MakeLagrangeTetrahedron(std::int64_t numberOfPoints)
 {
-  if (numberOfPoints == 15) // quadratic, with nodes in the middle of the faces and of the cell
+  if (numberOfPoints == 15) // quadratic, with center nodes of the faces and of the cell
   {
     return SplitRoundCenter(GetQuadraticFaces(cellNumbers::LagrangeTetrahedron), 14);
   }
@@ -102,7 +103,7 @@ CellParts MakeLagrangeTetrahedron(std::int64_t numberOfPoints)
     numberOfPoints, [](std::int64_t n) -> std::int64_t { return (n + 1) * (n + 2) * (n + 3) / 6; });
   if (degree == 2)
   {
-    return MakeParts(cellNumbers::QuadraticTetrahedron); // which has the same nodes
+    return MakeParts(cellNumbers::QuadraticTetrahedron); // the nodes are the same
   }
   return SplitTetrahedron(degree, NumberTetrahedron(degree));
 }
@@ -128,7 +129,7 @@ CellParts MakeLagrangeHexahedron(std::int64_t numberOfPoints, const std::array<i
 
 CellParts MakeLagrangeWedge(std::int64_t numberOfPoints, const std::array<int, 3>* degrees)
 {
-  if (numberOfPoints == 21) // whatever the degrees: VTK takes it for quadratic
+  if (numberOfPoints == 21) // VTK treats it as quadratic, even if degrees are given
   {
     return SplitWedgeOf21();
   }

@@ -13,26 +13,26 @@
 namespace deformvolume
 {
 
-/// The parts of quadratic and Lagrange cells. Keeps those of each type, number of points and
-/// degree.
+/// Divides quadratic and Lagrange cells into parts. The parts for each type, number of points and
+/// degree are kept.
 class DEFORMVOLUME_EXPORT HigherOrderCells
 {
 public:
-  /// Whether a type is that of a three-dimensional quadratic or Lagrange cell.
+  /// Whether a type is a three-dimensional quadratic or Lagrange cell.
   static bool Contain(int cellType);
 
-  /// Whether a type is that of a three-dimensional Bezier cell. The points of these control the
-  /// shape and do not lie on it.
+  /// Whether a type is a three-dimensional Bezier cell. The control points of such a cell do not
+  /// lie on its shape.
   static bool IsBezier(int cellType);
 
-  /// The parts of a cell of such a type with so many points. degrees: of a Lagrange cell along its
-  /// three axes; null: one degree, which follows from the number of points. Empty where a cell of
-  /// that type and degree does not have so many points. Valid as long as this object.
+  /// Returns the parts of a quadratic or Lagrange cell. degrees: of a Lagrange cell along its three
+  /// axes; null: one degree, derived from the number of points. Empty if a cell of that type and
+  /// degree does not have this number of points. The reference is valid as long as this object.
   const CellParts& GetParts(
     int cellType, std::int64_t numberOfPoints, const std::array<int, 3>* degrees);
 
-  /// The edges of a quadratic type of fixed shape that have a node in their middle: two corners,
-  /// then that node, by positions in the cell's list of points.
+  /// Returns the edges of a quadratic cell type that have a mid-side node: two corners and the
+  /// mid-side node, as positions in the cell's list of points. Empty for all other types.
   static const std::vector<std::array<int, 3>>& GetMidSides(int cellType);
 
 private:

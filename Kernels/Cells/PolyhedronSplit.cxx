@@ -16,7 +16,7 @@ namespace deformvolume
 namespace
 {
 
-// Of the volume: what the tetrahedra of a cell may have too much.
+// Relative to the volume of a cell: by how much the volume of its tetrahedra may differ.
 constexpr double VolumeTolerance = 5e-7;
 
 using Triangle = std::array<int, 3>; // positions in the cell's list of points
@@ -26,14 +26,14 @@ double GetVolume(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, 
   return glm::dot(b - a, glm::cross(c - a, d - a)) / 6.0;
 }
 
-// Twice the area of a triangle, as a vector.
+// Returns the normal of a triangle; its length is twice the area.
 glm::dvec3 GetArea(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
 {
   return glm::cross(b - a, c - a);
 }
 
 // Whether all points are on one side of each face, and all faces are convex, within the error of
-// the positions. Most cells are convex, and the volumes need not be computed for these.
+// the positions. Most cells are convex; for them no volumes need to be computed.
 bool IsConvex(const CellFaces& faces, const std::vector<glm::dvec3>& points, double error)
 {
   for (const std::vector<int>& face : faces)
@@ -70,8 +70,8 @@ bool IsConvex(const CellFaces& faces, const std::vector<glm::dvec3>& points, dou
   return true;
 }
 
-// Makes all faces run round the cell in the same sense. False where some edge is not one of two
-// faces.
+// Orients all faces consistently. Returns false if an edge does not belong to exactly two faces, or
+// if there is no consistent orientation.
 bool OrientFaces(CellFaces& faces)
 {
   struct Use
@@ -136,8 +136,8 @@ bool OrientFaces(CellFaces& faces)
   return true;
 }
 
-// The triangles of a polygon that no line from its first node crosses are those of a fan; else ears
-// are cut off, the first one first.
+// Splits a polygon into triangles: a fan around its first node if all triangles of the fan have the
+// same orientation, otherwise by ear clipping.
 std::vector<Triangle> SplitPolygon(
   const std::vector<int>& face, const std::vector<glm::dvec3>& points)
 {
@@ -188,7 +188,8 @@ std::vector<Triangle> SplitPolygon(
   return ears;
 }
 
-// The same whatever the first node and the sense of the face. The triangles have its sense.
+// Splits a face into triangles with its orientation. The split does not depend on the first node or
+// on the orientation of the face.
 std::vector<Triangle> SplitFace(const std::vector<int>& face,
   const std::vector<std::int32_t>& nodes, const std::vector<glm::dvec3>& points)
 {
@@ -214,8 +215,8 @@ std::vector<Triangle> SplitFace(const std::vector<int>& face,
   return triangles;
 }
 
-// A point that is inside of all triangles, as far from them as can be had without much ado. False
-// where none is found.
+// Finds a point on the inner side of all triangles, with a large distance from them (not the
+// largest). Returns false if none is found.
 bool FindCenter(const std::vector<Triangle>& triangles, const std::vector<glm::dvec3>& points,
   double size, glm::dvec3& center)
 {
@@ -247,7 +248,7 @@ bool FindCenter(const std::vector<Triangle>& triangles, const std::vector<glm::d
     center = mean;
     for (int step = 0; step < mostSteps; ++step)
     {
-      // To the plane of which it is farthest on the wrong side, and somewhat beyond.
+      // Project beyond the plane that is violated most (over-relaxation).
       double most = 0.0;
       const Plane* worst = nullptr;
       for (const Plane& plane : planes)
@@ -269,7 +270,7 @@ bool FindCenter(const std::vector<Triangle>& triangles, const std::vector<glm::d
   return false;
 }
 
-// Weights of points whose sum is 1, and that give a place; of all such those with the least
+// Returns the weights of points that add up to 1 and give a position, with the least sum of
 // squares.
 std::vector<double> FindWeights(const std::vector<glm::dvec3>& points, const glm::dvec3& place)
 {
@@ -300,7 +301,7 @@ bool SplitPolyhedron(const std::vector<std::int32_t>& nodes, const CellFaces& fa
 {
   split = PolyhedronSplit();
   SplitCell(nodes, faces, split.Tetrahedra);
-  double error = 0.0; // of the places
+  double error = 0.0; // of the positions
   for (const glm::dvec3& point : points)
   {
     const glm::dvec3 size = glm::abs(point);
@@ -357,7 +358,7 @@ bool SplitPolyhedron(const std::vector<std::int32_t>& nodes, const CellFaces& fa
     area += 0.5 * glm::length(GetArea(at(t[0]), at(t[1]), at(t[2])));
   }
   const double tolerance = VolumeTolerance * volume + error * area;
-  // Not-a-number where a point is.
+  // True if a volume is NaN, too.
   if (!(volume > 0.0) || !(std::abs(filled - volume) > tolerance))
   {
     return true;

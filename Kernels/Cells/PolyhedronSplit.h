@@ -14,24 +14,25 @@
 namespace deformvolume
 {
 
-/// How a polyhedron is split.
+/// The split of a polyhedron into tetrahedra.
 struct PolyhedronSplit
 {
-  /// Between its own nodes; empty where it is split round a center.
+  /// Tetrahedra between the nodes of the polyhedron. Empty if it is split around a center.
   std::vector<Tetrahedron> Tetrahedra;
-  /// What each of its nodes contributes to the center, and the triangles that make tetrahedra with
-  /// it; else empty.
+  /// The weights of all nodes for the center. Empty if there is no center.
   std::vector<double> CenterWeights;
+  /// The triangles that form tetrahedra with the center. Empty if there is no center.
   std::vector<std::array<std::int32_t, 3>> Triangles;
 };
 
-/// Splits a polyhedron. nodes: their numbers in the mesh; points: where they are at rest; rounding:
-/// relative error of these.
-/// Where the tetrahedra of SplitCell() fill it, as they do in convex cells, they are taken. Else
-/// the triangles of its faces are joined to a point that sees all of them from inside. The
-/// triangles of a face follow from its nodes and their places, and cells that share a face agree on
-/// them. Returns false where there is no such point. A polyhedron that is not closed is split by
-/// SplitCell().
+/// Splits a polyhedron. nodes: numbers of its nodes in the mesh. points: positions of the nodes at
+/// rest. rounding: relative error of the positions.
+///
+/// If the tetrahedra of SplitCell() fill the polyhedron, as in convex cells, they are the result.
+/// Otherwise the triangles of the faces are connected to a point inside from which all triangles
+/// are visible. Returns false if no such point is found. The triangles of a face depend only on its
+/// nodes and their positions, so cells that share a face split it in the same way. A polyhedron
+/// that is not closed is split by SplitCell().
 bool SplitPolyhedron(const std::vector<std::int32_t>& nodes, const CellFaces& faces,
   const std::vector<glm::dvec3>& points, double rounding, PolyhedronSplit& split);
 

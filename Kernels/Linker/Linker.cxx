@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A linker for the compiled kernels of PoCL on x86-64, for systems where no other one works: it
-// makes a shared library of object files. It knows what LLVM writes for position-independent code,
-// and fails for all else: no code without -fPIC, no thread-local or common symbols, no archives, no
-// scripts.
+// A linker for the compiled kernels of PoCL on x86-64, for systems without a working linker. It
+// links object files to a shared library. It supports the output of LLVM for position-independent
+// code, and reports an error for anything else: code without -fPIC, thread-local or common symbols,
+// archives and linker scripts.
 //
-// Usage, like that of ld: ld -shared -o LIBRARY [OPTION]... OBJECT...
-// Libraries (-l) are left out: what kernels need of the C library and of libm is found when they
-// are loaded. Other options have no effect.
+// Usage, as for ld: ld -shared -o LIBRARY [OPTION]... OBJECT...
+// Libraries (-l) are ignored: the dynamic loader finds the functions of libc and libm when the
+// kernels are loaded. Other options are ignored, too.
 #include <elf.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ T Read(const Bytes& bytes, std::uint64_t at)
 {
   if (at > bytes.size() || bytes.size() - at < sizeof(T))
   {
-    throw std::runtime_error("an object file is too short");
+    throw std::runtime_error("an object file is truncated");
   }
   T value;
   std::memcpy(&value, bytes.data() + at, sizeof(T));
@@ -104,7 +104,7 @@ Object ReadObject(const std::string& path)
   if (std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 || header.e_ident[EI_CLASS] != ELFCLASS64 ||
     header.e_type != ET_REL || header.e_machine != EM_X86_64)
   {
-    throw std::runtime_error(path + " is no object file for x86-64");
+    throw std::runtime_error(path + " is not an object file for x86-64");
   }
   for (unsigned int i = 0; i < header.e_shnum; ++i)
   {
@@ -114,7 +114,7 @@ Object ReadObject(const std::string& path)
   }
   if (header.e_shstrndx >= object.Sections.size())
   {
-    throw std::runtime_error(path + " has no names of sections");
+    throw std::runtime_error(path + " has no section name table");
   }
   const std::uint64_t names = object.Sections[header.e_shstrndx].Header.sh_offset;
   for (Section& section : object.Sections)
@@ -126,7 +126,7 @@ Object ReadObject(const std::string& path)
     }
     if (section.Header.sh_link >= object.Sections.size())
     {
-      throw std::runtime_error(path + " has no names of symbols");
+      throw std::runtime_error(path + " has no symbol name table");
     }
     const std::uint64_t texts = object.Sections[section.Header.sh_link].Header.sh_offset;
     for (std::uint64_t at = 0; at < section.Header.sh_size; at += sizeof(Elf64_Sym))
@@ -161,13 +161,13 @@ private:
   struct Global
   {
     std::uint64_t Address = 0;
-    std::uint32_t Index = 0; // in the dynamic symbols
+    std::uint32_t Index = 0; // in the dynamic symbol table
     bool IsDefined = false;
     Elf64_Sym Symbol{};
     const Object* From = nullptr;
   };
 
-  // Names of what is defined, and of what is not and is asked for when the library is loaded.
+  // Collects the defined symbols, and the undefined symbols that the dynamic loader must find.
   void ListSymbols()
   {
     for (const Object& object : this->Objects)
@@ -181,7 +181,8 @@ private:
         }
         if (symbol.st_shndx == SHN_COMMON || ELF64_ST_TYPE(symbol.st_info) == STT_TLS)
         {
-          throw std::runtime_error("no such symbols are known: " + object.Names[i]);
+          throw std::runtime_error(
+            "common and thread-local symbols are not supported: " + object.Names[i]);
         }
         Global& global = this->Globals[object.Names[i]];
         if (symbol.st_shndx == SHN_UNDEF)
@@ -195,7 +196,7 @@ private:
         if (global.IsDefined && ELF64_ST_BIND(global.Symbol.st_info) != STB_WEAK &&
           ELF64_ST_BIND(symbol.st_info) != STB_WEAK)
         {
-          throw std::runtime_error("defined twice: " + object.Names[i]);
+          throw std::runtime_error("symbol defined twice: " + object.Names[i]);
         }
         if (!global.IsDefined || ELF64_ST_BIND(global.Symbol.st_info) == STB_WEAK)
         {
@@ -232,7 +233,7 @@ private:
     return at;
   }
 
-  // Calls f(object, section, relocation) for all that is relocated in the library.
+  // Calls f(object, section, relocation) for all relocations in loaded sections.
   template <typename Function>
   void ForRelocations(Function f)
   {
@@ -242,7 +243,7 @@ private:
       {
         if (list.Header.sh_type == SHT_REL)
         {
-          throw std::runtime_error("relocations without addends are not known");
+          throw std::runtime_error("relocations without addends (SHT_REL) are not supported");
         }
         if (list.Header.sh_type != SHT_RELA || list.Header.sh_info >= object.Sections.size())
         {
@@ -258,7 +259,9 @@ private:
           const auto relocation = Read<Elf64_Rela>(object.File, list.Header.sh_offset + at);
           if (ELF64_R_SYM(relocation.r_info) >= object.Symbols.size())
           {
-            throw std::runtime_error("a relocation names no symbol");
+            throw std::runtime_error("a relocation refers to symbol " +
+              std::to_string(ELF64_R_SYM(relocation.r_info)) + ", but there are only " +
+              std::to_string(object.Symbols.size()));
           }
           f(object, section, relocation);
         }
@@ -272,7 +275,7 @@ private:
       type == R_X86_64_REX_GOTPCRELX;
   }
 
-  // What a slot of the table of addresses, or a jump through it, stands for.
+  // Returns the key of a symbol in Slots and Jumps. Local symbols of different objects differ.
   std::string GetKey(const Object& object, std::uint32_t index) const
   {
     const bool isLocal = ELF64_ST_BIND(object.Symbols[index].st_info) == STB_LOCAL;
@@ -309,12 +312,13 @@ private:
         }
         if (IsByTable(type) || isCall || type == R_X86_64_64)
         {
-          ++this->MostDynamicRelocations; // at most one each
+          ++this->MostDynamicRelocations; // an upper bound: several may share a slot
         }
       });
   }
 
-  // Addresses equal offsets in the file. Two segments: what is read and run, and what is written.
+  // Assigns addresses, which equal the offsets in the file. There are two loaded segments: one for
+  // reading and execution, and one for reading and writing.
   void Place()
   {
     std::uint64_t at = sizeof(Elf64_Ehdr) + Segments * sizeof(Elf64_Phdr);
@@ -346,7 +350,7 @@ private:
         if (global.Index)
         {
           this->Dynamic[global.Index].st_value = global.Address;
-          this->Dynamic[global.Index].st_shndx = 1; // any that is not 0
+          this->Dynamic[global.Index].st_shndx = 1; // any section number except SHN_UNDEF
         }
       }
     }
@@ -363,7 +367,7 @@ private:
         {
           if (section.Header.sh_flags & SHF_TLS)
           {
-            throw std::runtime_error("thread-local sections are not known");
+            throw std::runtime_error("thread-local sections are not supported: " + section.Name);
           }
           section.Address = take(section.Header.sh_size, section.Header.sh_addralign);
         }
@@ -393,15 +397,15 @@ private:
   {
     if (symbol.st_shndx == SHN_ABS)
     {
-      throw std::runtime_error("absolute symbols are not known");
+      throw std::runtime_error("absolute symbols are not supported");
     }
     if (symbol.st_shndx == SHN_UNDEF)
     {
-      return 0; // symbol 0
+      return 0; // symbol 0, which means "no symbol"
     }
     if (symbol.st_shndx >= object.Sections.size() || !object.Sections[symbol.st_shndx].IsLoaded())
     {
-      throw std::runtime_error("a symbol lies in a section that is not loaded");
+      throw std::runtime_error("a symbol is in a section that is not loaded");
     }
     return object.Sections[symbol.st_shndx].Address + symbol.st_value;
   }
@@ -470,11 +474,12 @@ private:
     }
     else if (type != R_X86_64_PC32 && type != R_X86_64_PLT32 && type != R_X86_64_PC64)
     {
-      throw std::runtime_error("relocation " + std::to_string(type) + " is not known: " + name);
+      throw std::runtime_error(
+        "relocation type " + std::to_string(type) + " is not supported: " + name);
     }
     else if (!isDefined)
     {
-      throw std::runtime_error("undefined, and no function: " + name);
+      throw std::runtime_error("undefined symbol, and not a function call: " + name);
     }
     const auto value =
       static_cast<std::int64_t>(address + static_cast<std::uint64_t>(relocation.r_addend) - place);
@@ -485,7 +490,7 @@ private:
     }
     if (value != static_cast<std::int32_t>(value))
     {
-      throw std::runtime_error("too far away: " + name);
+      throw std::runtime_error("relocation out of range: " + name);
     }
     Write<std::int32_t>(this->File, place, static_cast<std::int32_t>(value));
   }
@@ -504,7 +509,7 @@ private:
   void FillTables()
   {
     const auto count = static_cast<std::uint32_t>(this->Dynamic.size());
-    // One list of all symbols: few are looked for.
+    // A hash table with one bucket: a search is linear, but there are few.
     Bytes hash;
     Append<std::uint32_t>(hash, 1);
     Append<std::uint32_t>(hash, count);
@@ -593,8 +598,8 @@ private:
   Bytes Texts;
   std::vector<Elf64_Sym> Dynamic;
   std::vector<std::uint32_t> Needed;
-  std::map<std::string, std::uint64_t> Slots; // addresses that are found when the library is loaded
-  std::map<std::string, std::uint64_t> Jumps; // to functions that are found then
+  std::map<std::string, std::uint64_t> Slots; // entries of the global offset table (GOT)
+  std::map<std::string, std::uint64_t> Jumps; // entries of the procedure linkage table (PLT)
   std::map<std::string, bool> FilledSlots;
   std::size_t MostDynamicRelocations = 0;
   std::vector<Elf64_Rela> DynamicRelocations;
@@ -622,7 +627,7 @@ void Link(const std::vector<std::string>& arguments)
       argument == "-l" || argument == "-z" || argument == "-soname" || argument == "-h";
     if (hasValue && ++i >= arguments.size())
     {
-      throw std::runtime_error("no value after " + argument);
+      throw std::runtime_error("option " + argument + " needs a value");
     }
     if (argument == "-o")
     {
@@ -639,7 +644,7 @@ void Link(const std::vector<std::string>& arguments)
   }
   if (!isShared)
   {
-    throw std::runtime_error("only shared libraries are made (-shared)");
+    throw std::runtime_error("only shared libraries are supported: pass -shared");
   }
   const Bytes library = Library(std::move(objects)).Make();
   std::ofstream stream(output, std::ios::binary | std::ios::trunc);

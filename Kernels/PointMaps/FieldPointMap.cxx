@@ -18,19 +18,22 @@ namespace deformvolume
 namespace
 {
 
-constexpr int BlockSize = 2;           // cells on an axis that have one box
-constexpr int MostCellSteps = 20;      // of Newton's method in a cell
-constexpr double LastCellStep = 1e-12; // cells
-constexpr double CellFaceTolerance =
-  1e-9; // cells; no rounding must lose points between two of them
-constexpr double CellSolutionTolerance = 1e-8; // cells
-// A point with a smaller weight is not needed: rounding errors of positions.
+constexpr int BlockSize = 2;      // a box of the tree has so many cells on each axis
+constexpr int MostCellSteps = 20; // of Newton's method in a cell
+// In cells: length of the last step of Newton's method.
+constexpr double LastCellStep = 1e-12;
+// In cells: rounding must not lose points between two cells.
+constexpr double CellFaceTolerance = 1e-9;
+// In cells: distance that Newton's method may leave.
+constexpr double CellSolutionTolerance = 1e-8;
+// A smaller weight may be a rounding error of the position: the vector of the point is not needed.
 constexpr double LeastWeight = 1e-5;
 
-/// The corners of a cell, that of its upper x, y and z in bits 0, 1 and 2 of their number.
+/// Values at the corners of a cell. Bits 0, 1 and 2 of a corner's number: upper x, y and z.
 using Corners = std::array<glm::dvec3, 8>;
 
-/// What is trilinear between corners, at a place between 0 and 1, and its derivatives by that.
+/// Interpolates trilinearly at a position in a cell, with coordinates from 0 to 1. gradient:
+/// returns the derivatives with respect to the position.
 glm::dvec3 Interpolate(const Corners& corners, const glm::dvec3& place, glm::dmat3& gradient)
 {
   const auto mix = [](const glm::dvec3& a, const glm::dvec3& b, double t)
@@ -81,7 +84,8 @@ public:
     return point.x * this->Strides.x + point.y * this->Strides.y + point.z * this->Strides.z;
   }
 
-  /// The vectors at the corners of a cell. On an axis with one point both sides have the same.
+  /// Returns the vectors at the corners of a cell. On an axis with one point, both sides have the
+  /// same vectors.
   Corners GetVectors(const glm::ivec3& cell) const
   {
     Corners corners;
@@ -99,7 +103,7 @@ public:
     return glm::dvec3(this->Field.IndexToWorld * glm::dvec4(index, 1.0));
   }
 
-  /// Where the corners of a cell are moved to.
+  /// Returns the deformed positions of the corners of a cell.
   Corners GetMoved(const glm::ivec3& cell) const
   {
     Corners corners = this->GetVectors(cell);
@@ -111,7 +115,7 @@ public:
     return corners;
   }
 
-  /// Whether all vectors are known that a place in a cell needs.
+  /// Whether all vectors that are needed at a position in a cell are defined.
   bool IsDefined(const glm::ivec3& cell, const glm::dvec3& place) const
   {
     for (int corner = 0; this->Field.Undefined && corner < 8; ++corner)
@@ -155,7 +159,7 @@ public:
     }
   }
 
-  /// The box of a cell that has been moved, wider by a tolerance.
+  /// Returns the bounding box of a deformed cell, enlarged by a tolerance.
   IndexBounds GetBox(const Corners& moved) const
   {
     IndexBounds box;
@@ -163,7 +167,7 @@ public:
     {
       box.Add(corner);
     }
-    // Of a cell that is stretched the tolerance is a part of what it is now.
+    // The tolerance is relative to the size of the deformed cell.
     const glm::dvec3 margin =
       2.0 * (this->Field.Tolerance + CellFaceTolerance) * (box.Max - box.Min);
     box.Min -= margin;
@@ -185,11 +189,11 @@ public:
     this->Boxes = BoxTree<IndexBounds>(std::move(boxes));
   }
 
-  /// A place in a cell that is moved to a point.
+  /// A position in a cell whose deformed position is a given point.
   struct Solution
   {
-    std::int64_t Number = -1;
-    bool IsBeside = true; // by a tolerance
+    std::int64_t Number = -1; // of the cell; -1: no solution
+    bool IsBeside = true;     // outside the cell, within the tolerance
     bool IsInverted = false;
     glm::ivec3 Cell{ 0 };
     glm::dvec3 Place{ 0.0 };
@@ -204,7 +208,7 @@ public:
     }
   };
 
-  /// Newton's method from a start. No number where it leads out of the cell.
+  /// Runs Newton's method from a start. Number is -1 if the method leaves the cell.
   Solution Find(const glm::ivec3& cell, const Corners& moved, const glm::dvec3& point,
     const glm::dvec3& start) const
   {
@@ -231,7 +235,7 @@ public:
     found.IsBeside = false;
     for (int axis = 0; axis < 3; ++axis)
     {
-      // What is flat has no other side.
+      // On an axis with one point the cell has no thickness.
       const double beyond = this->Last[axis] == 0
         ? std::abs(found.Place[axis])
         : std::max(-found.Place[axis], found.Place[axis] - 1.0);
@@ -251,7 +255,7 @@ public:
     return found;
   }
 
-  /// thorough: from more starts.
+  /// thorough: tries 27 more starts.
   Solution FindInCell(
     const glm::ivec3& cell, const Corners& moved, const glm::dvec3& point, bool thorough) const
   {
@@ -268,7 +272,7 @@ public:
   Solution FindInCells(const glm::dvec3& point) const
   {
     const Solution found = this->FindInCells(point, false);
-    // Where a cell is folded the method may lead out of it from some starts.
+    // In a folded cell, the method may leave the cell from some starts.
     return found.Number < 0 || found.IsInverted ? this->FindInCells(point, true) : found;
   }
 
@@ -302,8 +306,8 @@ public:
   const WorldField Field;
   const glm::dmat3 ToWorld;
   const glm::dmat4 ToIndex;
-  glm::ivec3 Last{ 0 };  // point on each axis
-  glm::ivec3 Cells{ 1 }; // on each axis; one where all points lie in a plane
+  glm::ivec3 Last{ 0 };  // index of the last point on each axis
+  glm::ivec3 Cells{ 1 }; // cells on each axis; 1 on an axis with one point
   glm::i64vec3 Strides{ 1 };
   BoxTree<IndexBounds> Boxes;
 };
@@ -338,7 +342,7 @@ bool FieldPointMap::Map(const glm::dvec3& point, Image& image) const
   }
   image = { point };
   double weight = 1.0;
-  glm::dvec3 slope(0.0); // of the weight
+  glm::dvec3 slope(0.0); // gradient of the weight
   if (isOutside && this->Outside.AreDiscarded())
   {
     return false;
@@ -381,7 +385,7 @@ bool FieldPointMap::InvertInside(const glm::dvec3& point, Image& image) const
   const glm::dvec3 place = inside.GetWorld(glm::dvec3(found.Cell) + found.Place);
   if (found.IsBeside)
   {
-    // There it is the border of the field that moves points.
+    // Outside the cell, points follow the border of the field.
     return this->Solve(point, place, image);
   }
   image = { place, inside.ToWorld * glm::inverse(found.Gradient) };

@@ -15,26 +15,27 @@
 namespace deformvolume
 {
 
-/// A displacement field in world coordinates, trilinear between its points. What is pointed to must
-/// outlive what uses it.
+/// A displacement field in world coordinates, interpolated trilinearly between its points. The
+/// arrays must outlive the objects that use the field.
 struct WorldField
 {
-  /// Points on each axis.
+  /// Number of points on each axis.
   std::array<int, 3> Dimensions{ { 0, 0, 0 } };
-  /// From indices, 0 being the first point, to world coordinates.
+  /// Transform from indices to world coordinates. The first point has the index 0.
   glm::dmat4 IndexToWorld{ 1.0 };
-  /// Three values a point, x varying fastest, of which one pointer is set; and a factor on them.
+  /// Vectors in single precision: three values per point, with x varying fastest. Set either Floats
+  /// or Doubles.
   const float* Floats = nullptr;
-  /// As Floats, in double precision.
+  /// Vectors in double precision.
   const double* Doubles = nullptr;
-  /// A factor on the vectors.
+  /// Factor by which all vectors are multiplied. Default: 1.
   double Scale = 1.0;
-  /// One byte a point, 1: its vector is not known; null: all are.
+  /// One byte per point. 1: its vector is undefined. Null: all vectors are defined.
   const unsigned char* Undefined = nullptr;
-  /// Cells by which a point may be outside and count as inside.
+  /// Distance from the field, in cells, up to which a point counts as inside. Default: 0.
   double Tolerance = 0.0;
 
-  /// The vector of a point, times Scale, in world units.
+  /// Returns the vector of a point, multiplied by Scale, in world units.
   glm::dvec3 GetVector(std::int64_t point) const
   {
     const std::int64_t first = 3 * point;
@@ -45,20 +46,20 @@ struct WorldField
   }
 };
 
-/// The map of a field.
+/// The deformation of points by a displacement field.
 class DEFORMVOLUME_EXPORT FieldPointMap : public PointMap
 {
 public:
-  /// isInverse: whether Invert is to be called, and not Map.
+  /// isInverse: whether to prepare for Invert(). Without it, call only Map().
   FieldPointMap(const WorldField& field, const OutsideVoxels& outside, bool isInverse);
   ~FieldPointMap() override;
 
-  /// Extrapolate: by the displacement of the closest point of the field's border; Keep: by that,
-  /// faded.
+  /// Maps a point. Outside the field with Extrapolate: by the displacement of the closest point on
+  /// the border. With Keep: by that displacement, faded.
   bool Map(const glm::dvec3& point, Image& image) const override;
 
 private:
-  /// Looks into all cells that may have come to the point.
+  /// Searches all cells whose deformed bounding boxes contain the point.
   bool InvertInside(const glm::dvec3& point, Image& image) const override;
 
   class Internals;

@@ -22,12 +22,13 @@ namespace deformvolume
 namespace
 {
 
-// Points so near to the mesh, of its size and of its largest coordinate, count as in it: points are
-// often stored as floats.
+// The tolerances are relative to Configuration::Size.
+// Points within this distance from the mesh count as inside, since points are often stored as
+// floats.
 constexpr double MeshBorderTolerance = 1e-6;
-// The same for points between two tetrahedra, which no rounding must lose.
+// Rounding must not lose points between two tetrahedra.
 constexpr double MeshFaceTolerance = 1e-13;
-// What Newton's method leaves, of the same.
+// Distance that Newton's method may leave.
 constexpr double MeshSolutionTolerance = 1e-11;
 
 using Points = std::vector<glm::dvec3>;
@@ -55,12 +56,12 @@ public:
   {
   }
 
-  /// The nodes at some places, and where the tetrahedra then are.
+  /// Positions of the nodes, and a tree of the bounding boxes of the tetrahedra.
   struct Configuration
   {
     const Points* Places = nullptr;
-    double Size = 0.0;          // what tolerances are a part of
-    BoxTree<IndexBounds> Boxes; // by the tolerance wider; empty where there is no volume
+    double Size = 0.0;          // diagonal of the bounding box plus largest coordinate
+    BoxTree<IndexBounds> Boxes; // enlarged by the tolerance; empty boxes for flat tetrahedra
   };
 
   Configuration Search(const Points& places) const
@@ -111,7 +112,7 @@ public:
     this->Boundary = std::make_unique<ClosestFace>(std::move(triangles));
   }
 
-  /// A tetrahedron that holds a point.
+  /// A tetrahedron that contains a point.
   struct Holder
   {
     std::int32_t Number = -1;
@@ -119,7 +120,8 @@ public:
     BarycentricMap Map;
   };
 
-  /// Of tetrahedra that were turned inside out others come first, and then those with low numbers.
+  /// Finds the tetrahedron that contains a point. Of several, one that is not inverted is
+  /// preferred, then the lowest number.
   Holder Find(const Configuration& configuration, const glm::dvec3& point) const
   {
     const bool isAtRest = &configuration == &this->Rest;
@@ -127,7 +129,7 @@ public:
     const double tolerance = configuration.Size * MeshBorderTolerance;
     const double touching = configuration.Size * MeshFaceTolerance;
     Holder best;
-    bool isBestNear = true; // and does not hold the point
+    bool isBestNear = true; // `best` is within the tolerance but does not contain the point
     configuration.Boxes.Visit({ point, point },
       [&](std::size_t i)
       {
@@ -151,7 +153,7 @@ public:
           {
             continue;
           }
-          // A weight is the distance from a face times the length of its gradient.
+          // The weight is the distance from the face times the length of the gradient.
           const glm::dvec3 gradient = found.Map.GetGradient(node);
           const double squared = weights[node] * weights[node] / glm::dot(gradient, gradient);
           if (squared > tolerance * tolerance)
@@ -180,7 +182,8 @@ public:
     glm::dmat3 Gradient{ 0.0 };
   };
 
-  /// The displacement that a tetrahedron gives a point, and its derivatives by the place of that.
+  /// Returns the displacement of a point in a tetrahedron, and its derivatives with respect to the
+  /// position of the point.
   Displacement Displace(const Holder& holder, const glm::dvec3& point) const
   {
     Displacement result;
@@ -195,7 +198,7 @@ public:
     return result;
   }
 
-  /// The tetrahedron of a face of the boundary.
+  /// Returns the tetrahedron of a boundary face.
   Holder GetHolder(std::int32_t face) const
   {
     Holder holder;
@@ -218,7 +221,7 @@ public:
     const TetrahedronFace& face = this->Faces[static_cast<std::size_t>(closest.Face)];
     const auto corners = face.GetNodes(this->GetNodes(face.Tetrahedron));
     glm::dvec3 place(0.0); // the closest point
-    // The corners of the face, the edge or the node that it is on.
+    // The corners of the face, edge or node on which the closest point lies.
     std::array<glm::dvec3, 3> feature;
     std::size_t featureSize = 0;
     for (int k = 0; k < 3; ++k)
@@ -229,7 +232,7 @@ public:
         place += closest.Weights[k] * feature[featureSize++];
       }
     }
-    // How the closest point moves with the point.
+    // The derivative of the closest point with respect to the point.
     glm::dmat3 projection(0.0);
     if (featureSize == 3)
     {
@@ -312,7 +315,7 @@ bool MeshPointMap::Map(const glm::dvec3& point, Image& image) const
     const ClosestFace::Result closest = inside.Boundary->Find(point);
     if (closest.Face < 0)
     {
-      return false; // there are no faces, or the squares of distances are too large for numbers
+      return false; // there are no faces, or squared distances overflow
     }
     if (this->Outside.AreKept())
     {

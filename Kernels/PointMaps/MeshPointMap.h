@@ -13,20 +13,21 @@
 namespace deformvolume
 {
 
-/// The map of a deformation mesh: a point follows the first tetrahedron that holds it. What it is
-/// made of must outlive it.
+/// The deformation of points by a mesh. A point follows the first tetrahedron that contains it. The
+/// arguments of the constructor must outlive the object.
 class DEFORMVOLUME_EXPORT MeshPointMap : public PointMap
 {
 public:
-  /// points: at rest. Tetrahedra without volume hold no point.
+  /// points: the nodes at rest. Tetrahedra without volume contain no point.
   MeshPointMap(const std::vector<glm::dvec3>& points, const std::vector<Tetrahedron>& tetrahedra);
   ~MeshPointMap() override;
 
-  /// What the map is from then on. isInverse: whether Invert is to be called, and not Map.
+  /// Set the displacements of the nodes. isInverse: whether to prepare for Invert(). Without it,
+  /// call only Map().
   void Set(std::vector<glm::dvec3> displacements, const OutsideVoxels& outside, bool isInverse);
 
-  /// Outside the mesh as OutsideVoxels says; Extrapolate: by the affine map of the tetrahedron with
-  /// the closest face of the boundary.
+  /// Maps a point. Outside the mesh, OutsideVoxels applies. With Extrapolate, the point follows the
+  /// affine map of the tetrahedron with the closest boundary face.
   bool Map(const glm::dvec3& point, Image& image) const override;
 
 private:

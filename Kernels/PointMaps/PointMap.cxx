@@ -14,7 +14,7 @@ namespace
 
 constexpr int MostSteps = 60;
 constexpr double ShortestStep = 1.0 / 1024.0;
-// A map that shrinks a volume by more has no inverse there.
+// A map with a smaller determinant of its derivative counts as not invertible.
 constexpr double LeastDeterminant = 1e-12;
 
 } // namespace

@@ -11,19 +11,19 @@
 namespace deformvolume
 {
 
-/// A deformation of single points, in world coordinates and double precision. Functions that are
-/// const may be called by many threads.
+/// A deformation of single points, in world coordinates and double precision. Several threads may
+/// call const functions at the same time.
 class DEFORMVOLUME_EXPORT PointMap
 {
 public:
-  /// Where a point goes, and the derivatives of that by where it was.
+  /// The image of a point, and the derivatives of the map.
   struct Image
   {
-    /// Where the point goes.
+    /// The mapped position.
     glm::dvec3 Point{ 0.0 };
-    /// The derivatives of Point by where the point was: column k by coordinate k.
+    /// Derivatives of Point with respect to the original position: column k for coordinate k.
     glm::dmat3 Gradient{ 1.0 };
-    /// Outside, how far the point of the border moves whose displacement fades there; else 0.
+    /// Where displacements fade outside, length of the displacement on the border. Elsewhere 0.
     double FadingDisplacement = 0.0;
   };
 
@@ -32,22 +32,22 @@ public:
   PointMap(const PointMap&) = delete;
   PointMap& operator=(const PointMap&) = delete;
 
-  /// False where the point is outside.
+  /// Maps a point. Returns false if the deformation is not defined there.
   virtual bool Map(const glm::dvec3& point, Image& image) const = 0;
-  /// The point that is mapped to a point, and the derivatives of the inverse map. Where there are
-  /// several, one where the map does not turn space inside out, and of those the one in the lowest
-  /// tetrahedron or cell, or else one outside. False where there is none.
+  /// Finds the point that is mapped to `point`, and the derivatives of the inverse map. Of several
+  /// solutions, one where the map is not inverted is preferred, then the one in the lowest
+  /// tetrahedron or cell, then one outside. Returns false if there is no solution.
   bool Invert(const glm::dvec3& point, Image& image) const;
 
 protected:
-  /// Invert for places in the mesh or the field.
+  /// Finds a solution for Invert() within the mesh or the field.
   virtual bool InvertInside(const glm::dvec3& point, Image& image) const = 0;
-  /// Inverts the map by Newton's method from a start; steps that do not come closer are shortened.
-  /// False where it does not converge.
+  /// Inverts the map by Newton's method from a start. Steps that do not reduce the distance are
+  /// shortened. Returns false if the method does not converge.
   bool Solve(const glm::dvec3& point, const glm::dvec3& start, Image& image) const;
 
   OutsideVoxels Outside;
-  double SolutionTolerance = 0.0; // the distance that Newton's method leaves
+  double SolutionTolerance = 0.0; // distance that Newton's method may leave
 };
 
 } // namespace deformvolume

@@ -105,7 +105,7 @@ void TestPointsAgainstDisplacements()
 
   spoilt.Mesh->GetPoints()->SetNumberOfPoints(20);
   spoilt.Mesh->GetPoints()->Modified();
-  spoilt.Fails("fewer points than cells use", "there are only 20 points");
+  spoilt.Fails("fewer points than cells use", "the mesh has only 20 points");
 
   spoilt.Mesh->GetPointData()->GetVectors()->SetNumberOfTuples(26);
   spoilt.Mesh->GetPointData()->GetVectors()->Modified();
@@ -245,7 +245,7 @@ void TestRestConfiguration()
     grid->GetPoints()->SetNumberOfPoints(20);
     grid->GetPoints()->Modified();
   }
-  spoilt.Fails("fewer points in both", "there are only 20 points");
+  spoilt.Fails("fewer points in both", "the mesh has only 20 points");
 
   // A point more in both is used by no cell.
   rest = connect();
