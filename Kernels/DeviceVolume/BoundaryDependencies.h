@@ -12,15 +12,16 @@
 namespace deformvolume
 {
 
-/// For each sub-brick, what moves its cells at the boundary of the deformation mesh: tetrahedra of
-/// the mesh, or a box of points of the field. The other list is empty; both are without a boundary.
+/// For each sub-brick, the tetrahedra of the mesh, or the box of points of the field, that move its
+/// cells at the boundary. The other list is empty. Both are empty if there is no boundary.
 struct BoundaryDependencies
 {
   std::vector<std::vector<std::int32_t>> Tetrahedra;
   std::vector<Extent> FieldPoints;
 };
 
-/// vertices: the extent of the volume. isField: whether the boundary is that of a field.
+/// Finds the dependencies. vertices: extent of the volume. isField: whether the boundary is that of
+/// a field.
 BoundaryDependencies FindBoundaryDependencies(
   const MeshBoundary& boundary, bool isField, const Extent& vertices, const BrickGrid& subBricks);
 

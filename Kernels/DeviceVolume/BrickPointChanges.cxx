@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How BrickPoints follow changes of the mesh, and what sets of bricks have.
+// The parts of BrickPoints for changes of the mesh and for sets of bricks.
 #include "BrickPoints.h"
 
 #include "ParallelFor.h"
@@ -56,7 +56,7 @@ std::vector<BrickPoints::ChangesOfBrick> BrickPoints::FindBricks(
         this->AnyOf(brick,
           [&](std::size_t first, std::size_t past)
           {
-            // Most ranges have none of these nodes.
+            // A fast test: most ranges have none of these nodes.
             if (!nodes.Used.HasAnyOf(first, past))
             {
               return false;

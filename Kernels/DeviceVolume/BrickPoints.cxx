@@ -11,19 +11,20 @@
 namespace deformvolume
 {
 
-// What a brick's vertices are found to need.
+// The nodes that move the vertices of a brick, and the largest excess of their weights
+// (GetExcess()).
 struct BrickPoints::Needs
 {
   std::vector<std::int32_t> Nodes;
   double Excess = 0.0;
 
-  // Weights of the first three nodes of a vertex.
+  // Adds the weights of the first three nodes of a vertex.
   template <typename T>
   void AddWeights(T a, T b, T c)
   {
     const double excess = std::max(0.0, -double(a)) + std::max(0.0, -double(b)) +
       std::max(0.0, -double(c)) + std::max(0.0, double(a) + double(b) + double(c) - 1.0);
-    // The negation catches NaN as well.
+    // The negated comparison is true for NaN, too.
     if (!(excess <= this->Excess))
     {
       this->Excess = std::isfinite(excess) ? excess : std::numeric_limits<double>::infinity();
@@ -43,7 +44,8 @@ void ForNodes(const Tetrahedron& places, Use&& use)
   }
 }
 
-// Which of many things a brick has had: the last brick, plus 1, that had each.
+// Tests whether an element is new to a brick. For each element, the number of the last brick plus
+// 1.
 class Marks
 {
 public:
@@ -84,7 +86,8 @@ void BrickPoints::Append(const Needs& needs)
   this->Excess.push_back(needs.Excess);
 }
 
-// visit(vertices, needs, add): calls add(tetrahedron) for those that the vertices are linked to.
+// visit(vertices, needs, add) must call add(tetrahedron) for each tetrahedron to which vertices are
+// linked.
 template <typename Visit>
 void BrickPoints::Collect(const BrickGrid& grid, const Mesh& mesh, Visit&& visit)
 {
@@ -175,7 +178,7 @@ BrickPoints BrickPoints::FromRuns(const BrickGrid& grid, const Runs& runs, const
               continue;
             }
             add(runs.Owners[run->Tetrahedron]);
-            // Along a run weights are affine: the extremes are at its ends.
+            // Weights are affine along a run, so the extremes are at its ends.
             const double* record = runs.Rest + 15 * static_cast<std::size_t>(run->Tetrahedron);
             for (const int x : { first, last })
             {
@@ -219,8 +222,8 @@ BrickPoints BrickPoints::FromField(
         low += std::min(ends[0], ends[1]);
         high += std::max(ends[0], ends[1]);
       }
-      // The device finds the place with the precision of float: a quarter of a cell is more than it
-      // misses, for the fields that fit into memory.
+      // The device computes positions in single precision. For fields that fit into memory, the
+      // error is below this margin.
       constexpr double margin = 0.25;
       const double end = field.Dimensions[axis] - 1;
       box[2 * axis] = static_cast<int>(std::min(std::max(std::floor(low - margin), 0.0), end));

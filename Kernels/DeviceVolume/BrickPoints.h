@@ -19,22 +19,23 @@
 namespace deformvolume
 {
 
-/// Which points of the deformation, nodes of the mesh or points of the field, move the vertices
-/// that a brick depends on.
+/// The points of the deformation (nodes of the mesh or points of the field) that move the vertices
+/// on which each brick depends.
 class BrickPoints
 {
 public:
   BrickPoints() = default;
-  /// The tetrahedra of a mesh as on the device (DEFORMVOLUME_NODE_PLACES).
+  /// The tetrahedra of a mesh, as on the device (DEFORMVOLUME_NODE_PLACES).
   struct Mesh
   {
     const Tetrahedron* Tetrahedra;
     std::size_t NumberOfTetrahedra;
     std::size_t NumberOfNodes;
-    /// For each brick of the grid those that move cells at the boundary of the mesh in it; or none.
+    /// For each brick of the grid, the tetrahedra that move its cells at the boundary of the mesh.
+    /// May be empty.
     const std::vector<std::vector<std::int32_t>>& Boundary;
   };
-  /// Runs as on the device, see RunMapping.cl and RunEvaluation.cl.
+  /// Runs, as on the device (RunMapping.cl, RunEvaluation.cl).
   struct Runs
   {
     const VertexRun* First;
@@ -46,38 +47,38 @@ public:
   static BrickPoints FromLinks(const BrickGrid& grid, const VertexLink* links, const Mesh& mesh);
   static BrickPoints FromRuns(const BrickGrid& grid, const Runs& runs, const Mesh& mesh);
   ///@}
-  /// boundary: for each brick of the grid a box of points of the field that move cells at the
-  /// boundary of the field in it, maybe empty; or none at all.
+  /// boundary: for each brick of the grid, the box of the points of the field that move its cells
+  /// at the boundary of the field. The vector and each box may be empty.
   static BrickPoints FromField(
     const BrickGrid& grid, const FieldParameters& field, const std::vector<Extent>& boundary);
-  /// Of sets of bricks: the points that any of a set has. They are for AnyOf and IsApart only.
+  /// Returns the points of sets of bricks, with one element for each set. Use the result for
+  /// AnyOf() and IsApart() only.
   BrickPoints Join(const std::vector<std::vector<std::size_t>>& sets) const;
 
   bool IsEmpty() const { return this->Begins.empty() && this->Boxes.empty(); }
 
-  /// Which of some changes each node had a part in, and how many nodes each change has.
+  /// The previous nodes of changed tetrahedra.
   struct NodesBefore
   {
     explicit NodesBefore(const std::vector<TetrahedronChange>& changes);
     std::vector<std::pair<std::int32_t, std::uint32_t>> Users; // nodes and changes, sorted
-    std::vector<int> NumbersOfNodes;                           // of each change
-    PointSet Used;
+    std::vector<int> NumbersOfNodes;                           // different nodes of each change
+    PointSet Used;                                             // all previous nodes
   };
-  /// The bricks that depend on one of some tetrahedra by the nodes that it had, of those that
-  /// isNear(brick) is true for; each with its tetrahedra, by their places in the list. The bricks
-  /// of other tetrahedra with the same nodes may be among them.
+  /// Finds the bricks that depend on all previous nodes of a changed tetrahedron, among the bricks
+  /// for which isNear(brick) is true. Returns each brick with its changes, as indices into the list
+  /// of changes. A brick may be found that depends on these nodes by other tetrahedra only.
   using ChangesOfBrick = std::pair<std::size_t, std::vector<std::size_t>>;
   std::vector<ChangesOfBrick> FindBricks(
     const NodesBefore& nodes, const std::function<bool(std::size_t)>& isNear) const;
-  /// Bricks, none of them twice, depend on the nodes that their tetrahedra have got as well from
-  /// now on.
+  /// Adds the new nodes of the changed tetrahedra to the bricks. No brick may be listed twice.
   void AddPoints(
     const std::vector<ChangesOfBrick>& bricks, const std::vector<TetrahedronChange>& changes);
-  /// Whether so many were added that all are better found anew.
+  /// Whether so many points have been added that it is better to make new BrickPoints.
   bool AreOverloaded() const { return this->NumberOfAdded > this->Ranges.size() / 2 + 4096; }
 
-  /// Whether body(begin, end) was true for one of the ranges that a brick's points are; no more are
-  /// asked then.
+  /// Calls body(begin, end) for the ranges of the points of a brick, until it returns true. Returns
+  /// whether it did.
   template <typename Body>
   bool AnyOf(std::size_t brick, Body&& body) const
   {
@@ -119,10 +120,10 @@ public:
     return false;
   }
 
-  /// Of a field: the box of points of each brick.
+  /// For a field: the box of points of each brick.
   const std::vector<Extent>& GetBoxes() const { return this->Boxes; }
 
-  /// Whether all of a brick's points lie before one, or from another one on, for certain.
+  /// Whether all points of a brick are certainly outside the range from begin to end - 1.
   bool IsApart(std::size_t brick, std::size_t begin, std::size_t end) const
   {
     if (!this->Boxes.empty())
@@ -142,41 +143,41 @@ public:
       static_cast<std::size_t>(this->Ranges[first].Begin) >= end;
   }
 
-  /// The largest sum of the negative weights of one of the brick's vertices, as a positive number:
-  /// a vertex moves by no more than the greatest displacement of its points and so many times the
-  /// difference to the least.
+  /// Largest absolute sum of the negative weights of a vertex in the brick. The displacement of a
+  /// vertex exceeds the range of the displacements of its points by at most this number times the
+  /// size of the range.
   double GetExcess(std::size_t brick) const
   {
     return this->Excess.empty() ? 0.0 : this->Excess[brick];
   }
 
-  /// Whether a brick may have vertices that move by less than all of its points: outside a field
-  /// whose displacement fades there.
+  /// Whether a brick may have vertices whose displacement fades outside a field, and so is smaller
+  /// than those of all of its points.
   bool IsFading() const { return this->Fades; }
 
 private:
   struct Needs;
   template <typename Visit>
   void Collect(const BrickGrid& grid, const Mesh& mesh, Visit&& visit);
-  /// Takes the points of the next brick, in ascending order.
+  /// Appends the points of the next brick, which must be in ascending order.
   void Append(const Needs& needs);
-  /// Returns how many nodes are new to the brick.
+  /// Returns the number of nodes that are new to the brick.
   std::size_t AddPoints(const ChangesOfBrick& brick, const std::vector<TetrahedronChange>& changes);
 
-  // Points with numbers that follow each other: in meshes that are lattices they are many.
+  // A range of consecutive points. Lattices have long ranges.
   struct Range
   {
     std::int32_t Begin;
     std::int32_t End;
   };
 
-  std::vector<std::size_t> Begins; // the ranges of each brick, in Ranges: the first one
-  std::vector<std::size_t> Ends;   // and one past the last
+  std::vector<std::size_t> Begins; // index into Ranges of the first range of each brick
+  std::vector<std::size_t> Ends;   // and one past its last
   std::vector<Range> Ranges;
   std::vector<double> Excess;
-  std::vector<std::vector<std::int32_t>> Added; // of each brick, in no order; or none at all
+  std::vector<std::vector<std::int32_t>> Added; // points of each brick, not sorted; may be empty
   std::size_t NumberOfAdded = 0;
-  // Or, of a field, a box of points for each.
+  // For a field: the box of points of each brick.
   std::vector<Extent> Boxes;
   bool Fades = false;
   std::array<std::int64_t, 3> FieldSize{ { 0, 0, 0 } };

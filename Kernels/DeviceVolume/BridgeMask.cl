@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which tetrahedra of the sampling mesh are resampled by their vertices: those that are active, bridge no gap where the
-// deformation mesh has been split, and are in no cell that the boundary of the mesh crosses. It comes after
+// The mask of the tetrahedra of the sampling mesh that are resampled by their vertices: tetrahedra that are active, are
+// not bridges, and are not in a cell that the boundary of the deformation mesh crosses. This text comes after
 // VertexState.cl.
 //
-// Where a node is split, tetrahedra on both sides of the split name different nodes in the same place at rest. A
-// tetrahedron of the sampling mesh with vertices in two such tetrahedra would be stretched over the gap that opens
-// between them. So would one whose vertices lie in tetrahedra that have no node in common, of which others of the
-// same cell show that they are on different sides: within a cell that a split goes through, tetrahedra belong together
-// if they share a node, one after the other, and none of the two has a node of its own where the other has another one.
+// Where a node of the deformation mesh is split, the tetrahedra on the two sides have different nodes with the same
+// position at rest. Two such tetrahedra are on different sides. A bridge is a tetrahedron of the sampling mesh that
+// would be stretched over the gap between the sides. A tetrahedron is a bridge in two cases:
+// - Two of its vertices are linked to tetrahedra on different sides.
+// - The cell has vertices on different sides, and two vertices of the tetrahedron are in different connected
+//   components. Two vertices of a cell are connected if their tetrahedra share a node and are not on different sides.
 //
-// A tetrahedron that a smooth cut crosses is there once for each side, and bridges a gap only between vertices of one
-// side.
+// A tetrahedron that a smooth cut crosses has a copy for each side of the cut. For it, only pairs of vertices on the
+// same side of the cut count.
 //
-// Data: tetrahedra int4, the places of nodes (DEFORMVOLUME_NODE_PLACES); placesAtRest: 4 bytes a node, a number that
-// all nodes with one place at rest share; boundary: a byte a cell, the tetrahedra that the boundary leaves, and
-// DEFORMVOLUME_CELL_AT_BOUNDARY and DEFORMVOLUME_CELL_CROSSED.
+// Data:
+//   tetrahedra    int4: nodes, times DEFORMVOLUME_NODE_PLACES
+//   placesAtRest  an int per node, equal for all nodes with the same position at rest
+//   boundary      a byte per cell: tetrahedra that may be resampled by their vertices,
+//                 DEFORMVOLUME_CELL_AT_BOUNDARY and DEFORMVOLUME_CELL_CROSSED
 
 #if MAPPING == MAPPING_RUNS
 #define TETRAHEDRON_OF(m, x, y, z, p) RunTetrahedronOf(m, owners, x, y, z, p)
@@ -33,7 +36,8 @@ static int RunTetrahedronOf(
 #define SHARES_NODE 1
 #define IS_SPLIT 2
 
-// What two tetrahedra, by their nodes, have to do with each other.
+// Returns SHARES_NODE if two tetrahedra share a node, and IS_SPLIT if they have different nodes with the same position
+// at rest.
 static int Compare(int4 first, int4 second, __global const int* placesAtRest)
 {
   const int a[4] = { first.x / DEFORMVOLUME_NODE_PLACES, first.y / DEFORMVOLUME_NODE_PLACES,
@@ -51,7 +55,7 @@ static int Compare(int4 first, int4 second, __global const int* placesAtRest)
   return found;
 }
 
-// The crossed tetrahedra of a cell, as bits, and its vertices where the distance is negative.
+// Returns the crossed tetrahedra of a cell (x) and its vertices with negative distance (y), as bits.
 static int2 FindCut(__global const uint* cutRows, __global const CutVertex* cutVertices, int x, int y, int z,
   int mirror, const KernelParameters* p)
 {
@@ -70,12 +74,12 @@ static int2 FindCut(__global const uint* cutRows, __global const CutVertex* cutV
   return cut;
 }
 
-// The tetrahedra of a cell that bridge a gap, as bits. owners: of its vertices, by their numbers. cut: see FindCut.
+// Returns the bridges of a cell, as bits. owners: tetrahedra of the vertices, by vertex number. cut: result of FindCut.
 static int FindBridges(
   const int* owners, int2 cut, __global const int4* tetrahedra, __global const int* placesAtRest)
 {
-  uchar split[8]; // of each vertex, the ones that are on another side, as bits
-  int component[8];   // the lowest vertex of the connected component that each is in
+  uchar split[8]; // for each vertex the vertices on a different side, as bits
+  int component[8];   // the lowest vertex of the connected component of each vertex
   int any = 0;
   for (int v = 0; v < 8; ++v)
   {
@@ -126,8 +130,8 @@ static int FindBridges(
   return bridges;
 }
 
-// The tetrahedra of the cells of a cuboid that are left. changed: 1 for each cuboid of the list with a cell that has
-// other ones than before.
+// Computes the mask `joined` of the cells of cuboids. changed: set to 1 for each cuboid of the list in which the mask
+// of a cell has changed.
 __kernel void LeaveOutBridges(MAPPING_PARAMETERS, __global const int* owners,
   __global const int4* tetrahedraOfMesh, __global const int* placesAtRest, const int hasPlaces,
   __global const uchar* boundary, const int hasBoundary, __global const uchar* active, const int hasActive, __global const uint* cutRows, __global const CutVertex* cutVertices,

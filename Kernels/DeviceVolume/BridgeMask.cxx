@@ -26,7 +26,7 @@ void BridgeMask::SetPlaces(
   const std::size_t bytes = places.size() * sizeof(std::int32_t);
   if (GetMemory(this->Places) < bytes)
   {
-    // More may follow soon.
+    // Reserve room, since more nodes may follow soon.
     this->Places = cl::Buffer(context.GetContext(), CL_MEM_READ_ONLY, bytes + bytes / 8);
   }
   queue.enqueueWriteBuffer(this->Places, CL_TRUE, 0, bytes, places.data());
@@ -76,7 +76,7 @@ void BridgeMask::Update(OpenCLContext& context, const cl::CommandQueue& queue,
     static_cast<std::uint64_t>(p.PlanesEnd - p.PlanesBegin - 1);
   const bool all = !this->Known || GetMemory(chunk.Joined) != bytes;
   const VertexCuboids chunkCuboids(p);
-  // The cells of a vertex begin one before it.
+  // The cells around a vertex begin at the vertex and one voxel before it.
   const std::vector<cl_uint> cuboids = all
     ? chunkCuboids.GetAll()
     : JoinLists(chunkCuboids.Find(this->Vertices, 1), chunkCuboids.Find(this->Cells, 0));

@@ -14,49 +14,52 @@
 namespace deformvolume
 {
 
-/// Leaves out the tetrahedra of the sampling mesh that would bridge the gap where the deformation
-/// mesh has been split (BridgeMask.cl has the rule), and the cells that the boundary of the mesh
-/// crosses (MeshBoundary): keeps a mask of the others on the device, and looks again only at the
-/// cells round tetrahedra that have got other nodes.
+/// Keeps the mask of the tetrahedra of the sampling mesh that are resampled by their vertices, on
+/// the device. The mask excludes bridges over a split of the deformation mesh (BridgeMask.cl has
+/// the rule) and cells that the boundary of the mesh crosses (MeshBoundary). An update processes
+/// only cells for which something has changed.
 class BridgeMask
 {
 public:
-  /// What the mask of a chunk depends on.
+  /// The data on which the mask of a chunk depends. Any buffer may replace a missing buffer.
   struct Source
   {
-    cl::Program Program; // GetBridgeProgram
-    /// Sets a kernel's arguments of the mapping, which come first, and returns how many they are.
+    cl::Program Program; // GetBridgeProgram()
+    /// Sets the arguments of the mapping, which are the first arguments of a kernel. Returns their
+    /// number.
     std::function<cl_uint(cl::Kernel&)> SetMapping;
-    cl::Buffer Owners; // of the records of runs; any buffer, for links
+    cl::Buffer Owners; // tetrahedra of the records of runs
     cl::Buffer Tetrahedra;
-    cl::Buffer Active; // any buffer, if there is none
+    cl::Buffer Active;
     bool HasActive;
-    cl::Buffer Other;   // any buffer
-    cl::Buffer CutRows; // any buffer, if there is no cut
+    cl::Buffer Other; // any buffer
+    cl::Buffer CutRows;
     cl::Buffer CutVertices;
   };
 
-  /// places: for each node, as the device numbers them, a number that nodes with one place at rest
-  /// share; empty: nothing is left out. (What tetrahedra had changed has to be told.)
+  /// Set a number for each node that is equal for all nodes with the same position at rest. Empty:
+  /// bridges are not excluded. Report changed tetrahedra by ChangeVertices().
   void SetPlaces(
     OpenCLContext& context, const cl::CommandQueue& queue, const std::vector<std::int32_t>& places);
   bool HasPlaces() const { return this->Places() != nullptr; }
-  /// Whether chunks have a boundary (VolumeChunk::Boundary).
+  /// Set whether chunks have a boundary (VolumeChunk::Boundary).
   void SetBoundary(bool has);
   bool HasBoundary() const { return this->WithBoundary; }
+  /// Whether there is a mask.
   bool IsOn() const { return this->HasPlaces() || this->WithBoundary; }
 
-  /// All cells have to be looked at.
+  /// Makes the next update process all cells.
   void Forget();
-  /// The tetrahedra that some vertices lie in have got other nodes, or a smooth cut lists them
-  /// otherwise.
+  /// Reports vertices whose tetrahedra have new nodes, or whose entries in the list of a smooth cut
+  /// have changed.
   void ChangeVertices(const std::vector<Extent>& vertices);
-  /// Others of the active tetrahedra of some cells are active.
+  /// Reports cells whose active tetrahedra have changed.
   void ChangeCells(const std::vector<Extent>& cells);
+  /// Whether the mask is up to date.
   bool IsCurrent() const { return this->Current; }
 
-  /// Brings the mask of a chunk up to date. p: its parameters. Adds the boxes of cells that have
-  /// changed. Finish() follows after all chunks.
+  /// Updates the mask of a chunk. p: parameters of the chunk. changes: the boxes of cells with
+  /// changes are appended. Call Finish() after all chunks.
   void Update(OpenCLContext& context, const cl::CommandQueue& queue, const KernelParameters& p,
     VolumeChunk& chunk, const Source& source, std::vector<Extent>& changes);
   void Finish();
@@ -65,7 +68,7 @@ private:
   cl::Buffer Places;
   bool WithBoundary = false;
   bool Current = true;
-  bool Known = false; // but for these
+  bool Known = false; // whether the mask was computed before, and only these may have changed:
   std::vector<Extent> Vertices;
   std::vector<Extent> Cells;
 };

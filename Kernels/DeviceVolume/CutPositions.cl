@@ -1,27 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the vertices of divided tetrahedra would be if they moved with the other side of a smooth cut (CutCells.cl has
-// what these are for). It comes after VertexState.cl.
+// Positions of the copies of the vertices of divided tetrahedra, as if the vertices moved with the other side of a
+// smooth cut (CutCells.cl uses them). This text comes after VertexState.cl.
 //
-// A vertex takes the mean of what its neighbours on the other side say, those that it shares an edge of a divided
-// tetrahedron with. A neighbour continues the displacement that it and the next vertex in the same direction have, so
-// that an affine deformation is continued as it is. Where no neighbour has such a vertex on its side, as in one layer of
-// cells beside the border of the volume, they take how the displacement changes in that direction from the vertex and
-// the one behind it; and where there is none, they say their own displacement. So neighbouring tetrahedra agree on their
-// vertices. All numbers are whole, and the order of neighbours does not matter.
+// The copy of a vertex has the mean of displacements that are extrapolated from its neighbors on the other side:
+// vertices with which it shares an edge of a divided tetrahedron. There are three ways, in this order:
+// - CONTINUES: linear extrapolation from the neighbor and the next vertex in the same direction, on the side of the
+//   neighbor. So an affine deformation is reproduced.
+// - FOLLOWS: the displacement of the neighbor plus the change along this direction on the side of the vertex. Used if
+//   no neighbor has such a next vertex, as in a single layer of cells at the border of the volume.
+// - IS_CONSTANT: the displacement of the neighbor.
+// A vertex has one copy, which all of its tetrahedra use. All numbers are integers, so the order of neighbors does not
+// matter.
 //
-// Data: the list of cut vertices (KernelParameters.h); of each a stencil, the neighbours that are heard, as bits
-// (NEIGHBOUR), and what they say; and its position as seen from the other side, with 0 in the last component where it lies
-// where it does itself, so that tetrahedra with only such vertices need no copies; states tell that, too.
+// Data:
+//   vertices   list of cut vertices (KernelParameters.h)
+//   stencils   for each cut vertex: neighbors to use, as bits (NEIGHBOUR), and the way of extrapolation
+//   positions  for each cut vertex: position of its copy, and in the last component 0 if the copy coincides with the
+//              vertex. Tetrahedra with only such vertices need no copies. The bit DEFORMVOLUME_VERTEX_TOGETHER of the
+//              state is set for such vertices.
 
 #define NEIGHBOUR(dx, dy, dz) (1u << ((dz + 1) * 9 + (dy + 1) * 3 + dx + 1))
-// What neighbours say.
-#define CONTINUES 0  // their displacement, continued from the next vertex
-#define FOLLOWS 1    // theirs, with the change of the vertex itself
-#define IS_CONSTANT 2 // theirs
-#define IS_JOINED 3  // nothing: tetrahedra that are not divided join both sides
+#define CONTINUES 0
+#define FOLLOWS 1
+#define IS_CONSTANT 2
+#define IS_JOINED 3 // no extrapolation: undivided tetrahedra connect the vertex to its neighbors on the other side
 
 
-// The list, with the masks of the chunk.
+// The list of cut vertices, and the masks of the chunk.
 typedef struct
 {
   __global const uint* Rows;
@@ -30,7 +35,7 @@ typedef struct
   __global const uchar* Active;
 } CutMesh;
 
-// Tetrahedra of a cell, none beyond the volume.
+// Active tetrahedra of a cell, as bits. 0 outside the volume.
 static int ActiveOf(const CutMesh* mesh, int x, int y, int z, const KernelParameters* p)
 {
   if (x < 0 || y < 0 || z < 0 || x >= p->Size[0] - 1 || y >= p->Size[1] - 1 || z >= p->Size[2] - 1)
@@ -50,7 +55,7 @@ static int IsPlaced(const CutMesh* mesh, int x, int y, int z, const KernelParame
   return IsInVolume(x, y, z, p) && (StateOf(mesh->State, x, y, z, p) & DEFORMVOLUME_VERTEX_SOURCE);
 }
 
-// Whether a vertex that belongs to crossed tetrahedra lies on side 1 (sign 1) or 0; -1 for all others.
+// Returns the side of a vertex of crossed tetrahedra: 1 if its distance is negative, else 0. -1 for other vertices.
 static int SideOf(const CutMesh* mesh, int x, int y, int z, const KernelParameters* p)
 {
   const int place = FindCutVertex(mesh->Rows, mesh->Vertices, x, y, z, p);
@@ -59,8 +64,8 @@ static int SideOf(const CutMesh* mesh, int x, int y, int z, const KernelParamete
     : mesh->Vertices[place].Distance < 0.0f;
 }
 
-// Adds the neighbours of a vertex in one of its cells: apart those on the other side in a divided tetrahedron, joined all
-// those in others.
+// Adds the neighbors of a vertex in one of its cells, as bits. apart: neighbors on the other side in divided
+// tetrahedra. joined: all neighbors in undivided tetrahedra.
 static void AddNeighbours(const CutMesh* mesh, int3 vertex, int side, int3 cell, uint* apart, uint* joined,
   const KernelParameters* p)
 {
@@ -102,11 +107,11 @@ static void AddNeighbours(const CutMesh* mesh, int3 vertex, int side, int3 cell,
   }
 }
 
-// Whether an active tetrahedron has two vertices that are neighbours.
+// Whether two neighboring vertices belong to the same active tetrahedron.
 static int AreConnected(const CutMesh* mesh, int3 a, int3 b, const KernelParameters* p)
 {
   const int3 low = min(a, b);
-  const int3 step = abs(a - b) == 0 ? (int3)(1) : (int3)(0); // cells on both sides, where a and b lie in one plane
+  const int3 step = abs(a - b) == 0 ? (int3)(1) : (int3)(0); // 1 on axes on which there are cells on both sides
   for (int c = 0; c < 8; ++c)
   {
     const int3 back = (int3)(c & 1, c >> 1 & 1, c >> 2);
@@ -135,14 +140,15 @@ static int AreConnected(const CutMesh* mesh, int3 a, int3 b, const KernelParamet
   return 0;
 }
 
-// Whether a vertex on a side leads to a neighbour on that side, which can tell how the displacement changes there.
+// Whether the change of the displacement between two vertices can be used on a side of the cut: the second vertex has a
+// position, is not on the other side, and is connected to the first one.
 static int Leads(const CutMesh* mesh, int3 from, int3 to, int side, const KernelParameters* p)
 {
   return IsPlaced(mesh, to.x, to.y, to.z, p) && SideOf(mesh, to.x, to.y, to.z, p) != 1 - side &&
     AreConnected(mesh, from, to, p);
 }
 
-// The stencils of the vertices of the list from begin to end.
+// Computes the stencils of the cut vertices begin to end - 1.
 __kernel void FindCutStencils(__global const uchar* state, __global const uchar* active, __global const uint* rows,
   __global const CutVertex* vertices, __global uint2* stencils, const uint begin, const uint end,
   const KernelParameters p)
@@ -188,26 +194,26 @@ static int3 WholeRestOf(const Mapping* m, int3 at, const KernelParameters* p)
 {
   const Rest rest = RestOf(m, at.x, at.y, at.z, p);
 #if HAS_TURNED_AXES
-  return rest.Whole.xyz + convert_int3_rte(rest.Fraction.xyz); // up to three in these
+  return rest.Whole.xyz + convert_int3_rte(rest.Fraction.xyz); // the sum of fractions is below 3
 #else
   return rest.Whole.xyz;
 #endif
 }
 
-// How far a vertex is from where it rests, in 1/256 output voxel.
+// The rounded displacement of a vertex, in 1/256 output voxel.
 static int3 StepsOf(const Mapping* m, int3 at, const KernelParameters* p)
 {
   return PositionOf(m, at.x, at.y, at.z, p).xyz - WholeRestOf(m, at, p);
 }
 
-// To the nearest whole number, upwards in the middle.
+// Divides, and rounds to the nearest integer, halves up.
 static int DivideRounded(int sum, int count)
 {
   const int twice = 2 * sum + count;
   return twice >= 0 ? twice / (2 * count) : -((2 * count - 1 - twice) / (2 * count));
 }
 
-// Whether some of the bricks are wanted that have cells at a vertex. wanted: a byte for each brick.
+// Whether a brick with cells at a vertex is wanted. wanted: a byte per brick.
 static int IsInBricks(__global const uchar* wanted, int3 at, const KernelParameters* p)
 {
   const int3 cells = (int3)(DEFORMVOLUME_BRICK_X, DEFORMVOLUME_BRICK_Y, DEFORMVOLUME_BRICK_Z);
@@ -231,7 +237,7 @@ static int IsInBricks(__global const uchar* wanted, int3 at, const KernelParamet
   return 0;
 }
 
-// The position of a vertex as seen from the other side. own: where it is.
+// Returns the position of the copy of a vertex. own: position of the vertex.
 static int4 OtherPosition(const Mapping* m, int3 at, uint2 stencil, int3 own, const KernelParameters* p)
 {
   if (stencil.y == IS_JOINED)
@@ -262,8 +268,8 @@ static int4 OtherPosition(const Mapping* m, int3 at, uint2 stencil, int3 own, co
   return isNear ? (int4)(own, 0) : (int4)(other, 1);
 }
 
-// The positions, as seen from the other side, of the vertices of the list from begin to end, in the bricks that are
-// wanted, or in all where this is not some.
+// Computes the positions of the copies of the cut vertices begin to end - 1. some: process only vertices in bricks that
+// are wanted.
 __kernel void FindCutPositions(MAPPING_PARAMETERS, __global uchar* state, __global const CutVertex* vertices,
   __global const uint2* stencils, __global int4* positions, __global const uchar* wanted, const int some,
   const uint begin, const uint end, const KernelParameters p)
@@ -286,7 +292,7 @@ __kernel void FindCutPositions(MAPPING_PARAMETERS, __global uchar* state, __glob
     positions[i] = (int4)(INT_MIN, 0, 0, 1);
     return;
   }
-  const int3 own = PositionOf(&m, at.x, at.y, at.z, &p).xyz; // the last component may be anything
+  const int3 own = PositionOf(&m, at.x, at.y, at.z, &p).xyz; // the last component is undefined
   const int4 other = OtherPosition(&m, at, stencil, own, &p);
   positions[i] = other;
   state[vertex] = other.w ? state[vertex] & ~DEFORMVOLUME_VERTEX_TOGETHER : state[vertex] | DEFORMVOLUME_VERTEX_TOGETHER;

@@ -1,25 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Deformation mapping: the deformed position of a vertex of the sampling mesh (one vertex a voxel).
+// Deformation mapping: the deformed positions of the vertices of the sampling mesh (one vertex per voxel).
 //
-// A position is an undeformed one plus a displacement, rounded to 1/256 of an output voxel: that
-// makes every later decision of the fill rule exact. What is interpolated is the displacement and
-// not the position: an undeformed vertex then stays exactly where it was, however the deformation
-// mesh looks and however large the volume is. All kernels find a vertex's position with the same
-// operations in the same order, so that wherever it is found it is the same to the last bit.
+// A position is the undeformed position plus a displacement, rounded to 1/256 output voxel. With rounded positions, all
+// later decisions of the fill rule are exact. The mapping interpolates displacements, not positions. So a vertex with
+// displacement 0 keeps its exact position, whatever the deformation mesh and the size of the volume. All kernels
+// compute a position with the same operations in the same order, so the result is always bitwise equal.
 //
-// What the host puts in front of this text: MAPPING, one of
-//   MAPPING_LINKS  links: 16 bytes a voxel (tetrahedron, three barycentric weights); tetrahedra:
-//                  int4, the places of nodes (DEFORMVOLUME_NODE_PLACES); nodes: float4,
-//                  displacement in output voxels
-//   MAPPING_RUNS   runs of voxels in one tetrahedron, see RunMapping.cl
-//   MAPPING_FIELD  vectors: float4 a point of the field, displacement in output voxels; trilinear
-//   MAPPING_FIELD_IN_PLACE
-//                  vectors: three floats a point of the field, each voxel being one; a matrix takes
-//                  them to displacements in output voxels
-// and HAS_TURNED_AXES: whether axes of the volume are not those of the output.
+// Macros that the host defines before this text:
+//   HAS_TURNED_AXES  whether the axes of the volume are not those of the output
+//   MAPPING          one of:
+//     MAPPING_LINKS           links: 16 bytes per voxel (tetrahedron, three barycentric weights); tetrahedra: int4,
+//                             nodes times DEFORMVOLUME_NODE_PLACES; nodes: float4, displacements in output voxels
+//     MAPPING_RUNS            runs of voxels in one tetrahedron (RunMapping.cl)
+//     MAPPING_FIELD           vectors: float4 per point of the field, displacements in output voxels, interpolated
+//                             trilinearly
+//     MAPPING_FIELD_IN_PLACE  vectors: three floats per point of the field, which a matrix maps to displacements in
+//                             output voxels; each voxel is a point of the field
 //
-// rest: for each index on x, then y, then z the undeformed position as a whole number of 1/256
-// output voxels and what misses to it (RestPosition, or RestVector where axes are turned).
+// rest: for each index on x, then y, then z the undeformed position (RestPosition, or RestVector if HAS_TURNED_AXES).
 
 #pragma OPENCL FP_CONTRACT OFF
 
@@ -40,15 +38,15 @@ typedef struct
   float Weights[3];
 } VertexLink;
 
-// A node, of an array of these, by what a tetrahedron names it by.
+// A node in an array of nodes. place: number of the node, times DEFORMVOLUME_NODE_PLACES.
 #define NODE(nodes, place) (*(__global const float4*)((__global const float2*)(nodes) + (place)))
 
 #define LARGEST 4194303.0f // 1/256 voxels: about 2^14 voxels
-#define ROUND_TO_INTEGER 12582912.0f // 1.5 * 2^23: added to v and subtracted again, v is rounded
-#define FIELD_TOLERANCE 1e-3f // of a field cell: rounding must not lose the field's border
+#define ROUND_TO_INTEGER 12582912.0f // 1.5 * 2^23: (v + this) - this is v rounded to an integer
+#define FIELD_TOLERANCE 1e-3f // in cells of the field: rounding must not lose the field's border
 
-// Displacements, rounded to multiples of 1/256 voxel. unit: 1 where they are in 1/256 voxel, 1/256 where they are
-// in voxels. Clamped, because extrapolation can lead anywhere, and a field may hold anything, NaN included.
+// Rounds displacements to multiples of 1/256 voxel. unit: 1 if they are in 1/256 voxel, 1/256 if they are in voxels.
+// The result is clamped: extrapolated displacements can be very large, and a field may contain any value, also NaN.
 #define DEFINE_ROUND_STEPS(TYPE)                                                                   \
   static TYPE RoundSteps_##TYPE(TYPE moved, float unit)                                            \
   {                                                                                                \
@@ -59,7 +57,7 @@ typedef struct
 DEFINE_ROUND_STEPS(float4)
 DEFINE_ROUND_STEPS(float16)
 
-// The state of a vertex.
+// Returns the state of a vertex. Without stored states, all vertices are sources.
 static int StateOf(__global const uchar* state, int x, int y, int z, const KernelParameters* p)
 {
   if (p->HasState)
@@ -97,7 +95,7 @@ typedef struct
   __global const RestEntry* Rest;
 } Mapping;
 
-// The displacement of a linked vertex.
+// Returns the displacement of a linked vertex.
 static float4 FollowLink(const Mapping* m, __global const VertexLink* link)
 {
   const int4 t = m->Tetrahedra[link->Tetrahedron];
@@ -136,13 +134,13 @@ typedef struct
   __global const RestEntry* Rest;
 } Mapping;
 
-// The runs of a row: the first one, and one past the last.
+// Returns the indices of the first run of a row, and one past the last.
 static uint2 RangeOf(const Mapping* m, int y, int z, const KernelParameters* p)
 {
   return vload2((size_t)(z - p->ChunkFirst) * p->Size[1] + y, m->RowRanges);
 }
 
-// The run of a vertex.
+// Returns the run that contains a vertex.
 static VertexRun RunOf(const Mapping* m, int x, int y, int z, const KernelParameters* p)
 {
   const uint2 range = RangeOf(m, y, z, p);
@@ -189,8 +187,8 @@ static double MatrixElement(const FieldParameters* field, int i)
     (ulong)field->ToDisplacement[2 * i] | (ulong)field->ToDisplacement[2 * i + 1] << 32);
 }
 
-// The products of a row of the matrix with vectors, in this order. No product is rounded (GetFactor in
-// VolumeDeformer.h).
+// The product of a row of the matrix with vectors, with additions in this order. The products are exact (GetFactor() in
+// DisplacementField.h).
 #define ROW_PRODUCT(field, row, FLOATS, DOUBLES, x, y, z)                                          \
   convert_##FLOATS(MatrixElement(field, 3 * (row)) * convert_##DOUBLES(x) +                        \
     MatrixElement(field, 3 * (row) + 1) * convert_##DOUBLES(y) +                                   \
@@ -264,7 +262,7 @@ static int IsMoved(const Mapping* m, int x, int y, int z, const KernelParameters
 
 #endif
 
-// Where a vertex is undeformed, in 1/256 of an output voxel: whole numbers, and what misses.
+// The undeformed position of a vertex in 1/256 output voxel: whole numbers plus fractions.
 typedef struct
 {
   int4 Whole;
@@ -287,11 +285,11 @@ static Rest RestOf(const Mapping* m, int x, int y, int z, const KernelParameters
   return rest;
 }
 
-// The position of a vertex that has one, in 1/256 of an output voxel.
+// Returns the position of a vertex, in 1/256 output voxel. The vertex must be a source.
 static int4 PositionOf(const Mapping* m, int x, int y, int z, const KernelParameters* p)
 {
   const Rest rest = RestOf(m, x, y, z, p);
-  // This product is not rounded.
+  // The product with 256 is exact.
   const float4 steps =
     RoundSteps_float4(Displacement(m, x, y, z, p) * 256.0f + rest.Fraction, 1.0f);
   return rest.Whole + convert_int4(steps);

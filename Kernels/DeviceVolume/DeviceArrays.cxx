@@ -53,7 +53,7 @@ void DeviceArrays::Set(const std::vector<VolumeArray>& arrays, const BufferInPla
   const QueueGuard guard(this->Queue);
   this->Leave();
   this->Places.assign(arrays.size(), BufferInPlace());
-  this->Described.clear(); // there are none if this fails
+  this->Described.clear(); // no arrays are set after an exception
   const std::int64_t plane = static_cast<std::int64_t>(this->Size[0]) * this->Size[1];
   const bool whole = this->Chunks.size() == 1;
   for (std::size_t i = 0; i < arrays.size(); ++i)
@@ -62,7 +62,7 @@ void DeviceArrays::Set(const std::vector<VolumeArray>& arrays, const BufferInPla
     const std::uint64_t bytes =
       static_cast<std::uint64_t>(plane * this->Size[2]) * GetTupleSize(array);
     const BufferInPlace other = this->FindOverlapping(array.Data, bytes);
-    // The field lies in one piece.
+    // A buffer can be shared with the field only if the volume is one chunk.
     const bool free = other.Bytes == 0 || other.IsOver(array.Data, bytes);
     const bool freeOfField =
       !field.Overlaps(array.Data, bytes) || (whole && field.IsOver(array.Data, bytes));
@@ -111,13 +111,14 @@ bool DeviceArrays::SetOptions(const std::vector<VolumeArray>& arrays)
       { return a.Type == b.Type && a.Components == b.Components; });
   if (!alike)
   {
-    throw Error("The options are those of other arrays than are set: call SetArrays first.");
+    throw Error("The array options do not match the arrays that are set, in number, type or "
+                "components. Call SetArrays() first.");
   }
   bool changed = false;
   for (std::size_t i = 0; i < arrays.size(); ++i)
   {
     VolumeArray& set = this->Described[i];
-    // Not-a-number never counts as the same.
+    // A background of NaN always counts as changed.
     changed = changed || set.Categorical != arrays[i].Categorical ||
       !(set.Background == arrays[i].Background);
     set.Categorical = arrays[i].Categorical;
@@ -128,7 +129,7 @@ bool DeviceArrays::SetOptions(const std::vector<VolumeArray>& arrays)
 
 void DeviceArrays::ReadAgain() const
 {
-  // The buffers of several chunks are made whenever it is the chunk's turn.
+  // If there are several chunks, GetBuffers() makes new buffers for each.
   if (this->Chunks.size() == 1)
   {
     for (const BufferInPlace& place : this->Places)
@@ -159,7 +160,7 @@ const std::vector<cl::Buffer>& DeviceArrays::GetBuffers(const VolumeChunk& chunk
     if (!same->Buffer())
     {
       const std::uint64_t bytesPerPlane = place.Bytes / static_cast<std::uint64_t>(this->Size[2]);
-      // The kernels only read it.
+      // The kernels only read the array.
       same->Buffer = MakeBufferOver(this->Context, CL_MEM_READ_ONLY,
         static_cast<char*>(const_cast<void*>(place.Data)) +
           bytesPerPlane * static_cast<std::uint64_t>(chunk.PlanesBegin),

@@ -14,39 +14,42 @@
 namespace deformvolume
 {
 
-/// Whether an array of the volume is not copied to the device.
+/// Whether an array of the volume can be used in place, without a copy.
 bool IsUsedInPlace(const OpenCLContext& context, const VolumeArray& array);
 
-/// The point arrays of a volume on the device, chunk by chunk: copies, or buffers over the memory
-/// of the host.
+/// The point arrays of a volume on the device. The buffers of each chunk are copies, or use host
+/// memory.
 class DeviceArrays
 {
 public:
-  /// size: voxels on each axis. chunks: those of the volume; this object sets their Arrays.
+  /// size: voxels on each axis. chunks: of the volume; this object sets their Arrays.
   DeviceArrays(const OpenCLContext& context, const cl::CommandQueue& queue,
     const std::array<int, 3>& size, std::uint64_t allocationLimit,
     std::vector<VolumeChunk>& chunks);
 
-  /// Arrays with an owner are used in place if the device can do that and their memory does not
-  /// overlap that of other arrays. field: the memory of a displacement field that is used in place.
+  /// Set the arrays. An array with an owner is used in place if the device supports it and its
+  /// memory does not overlap that of other arrays. field: memory of a displacement field that is
+  /// used in place.
   void Set(const std::vector<VolumeArray>& arrays, const BufferInPlace& field = {});
-  /// The arrays of the last call of Set. Only those that are used in place have an owner, and only
-  /// their Data is read. Empty if Set has failed.
+  /// The arrays of the last call of Set(). Data and Owner are valid only for arrays in place. Empty
+  /// if Set() has thrown.
   const std::vector<VolumeArray>& Get() const { return this->Described; }
-  /// Sets which arrays are categorical, and their background. Throws an Error if the arrays have
-  /// other types or components than those of Set. Returns whether any option has changed.
+  /// Set Categorical and Background of the arrays. Throws Error if types or components differ from
+  /// those of Set(). Returns whether any option has changed.
   bool SetOptions(const std::vector<VolumeArray>& arrays);
   bool IsInPlace(std::size_t array) const { return this->Places[array].Bytes > 0; }
-  /// The array whose memory overlaps this memory; with its buffer if the volume is one chunk.
+  /// Returns an array in place whose memory overlaps the given memory. It has a buffer if the
+  /// volume is one chunk. Bytes is 0 if there is none.
   BufferInPlace FindOverlapping(const void* data, std::uint64_t bytes) const;
-  /// Makes the device read arrays that are used in place again: their values have changed.
+  /// Updates the arrays in place after their memory has been written.
   void ReadAgain() const;
-  /// The buffers of a chunk. Only one chunk at a time has buffers over memory of the host, as these
-  /// would overlap: if that is another chunk, waits for the queue first.
+  /// Returns the buffers of a chunk. The arrays in place of several chunks overlap, so only one
+  /// chunk at a time has buffers for them. If another chunk had them before, the function waits for
+  /// all commands of the queue.
   const std::vector<cl::Buffer>& GetBuffers(const VolumeChunk& chunk);
 
 private:
-  /// Releases the buffers over memory of the host.
+  /// Releases the buffers that use host memory.
   void Leave();
 
   const OpenCLContext& Context;
@@ -55,8 +58,8 @@ private:
   std::uint64_t AllocationLimit;
   std::vector<VolumeChunk>& Chunks;
   std::vector<VolumeArray> Described;
-  std::vector<BufferInPlace> Places;   // one for each array, of no bytes where it was sent
-  VolumeChunk* ChunkInPlace = nullptr; // the one that has buffers over them
+  std::vector<BufferInPlace> Places;   // one for each array, with 0 bytes if it was copied
+  VolumeChunk* ChunkInPlace = nullptr; // the chunk that has buffers for arrays in place
 };
 
 } // namespace deformvolume

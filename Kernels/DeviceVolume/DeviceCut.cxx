@@ -23,7 +23,7 @@ struct CrossedCell
   unsigned int Tetrahedra;
 };
 
-// The cells with crossed tetrahedra, of each layer.
+// Finds the cells with crossed tetrahedra in each layer.
 std::vector<std::vector<CrossedCell>> FindCells(
   const std::array<int, 3>& size, const unsigned char* crossed)
 {
@@ -53,7 +53,7 @@ std::vector<std::vector<CrossedCell>> FindCells(
   return layers;
 }
 
-// The list of cut vertices, plane by plane.
+// Builds the list of cut vertices plane by plane.
 class ListBuilder
 {
 public:
@@ -91,7 +91,7 @@ public:
 private:
   static constexpr unsigned char Unlisted = 255;
 
-  // Marks the vertices of cells of a layer that lie in its lower or upper plane.
+  // Marks the vertices of cells of a layer in its lower (upper = 0) or upper plane (upper = 1).
   void Mark(const std::vector<CrossedCell>& cells, int layer, int upper)
   {
     const Extent& extent = this->Shape.VertexExtent;
@@ -124,7 +124,7 @@ private:
     }
   }
 
-  // Takes what is marked into the list.
+  // Appends the marked vertices of a plane to the list, and resets the marks.
   void Append(std::size_t z, std::vector<CutVertex>& list, std::vector<std::uint32_t>& rows)
   {
     for (std::size_t y = 0; y < this->Size[1]; ++y)
@@ -149,7 +149,7 @@ private:
   const float* Distances;
   std::array<std::size_t, 3> Size{};
   std::vector<unsigned char> Plane;
-  std::vector<unsigned char> HasListed; // of its rows
+  std::vector<unsigned char> HasListed; // nonzero for rows of Plane with marked vertices
 };
 
 bool ComesBefore(const CutVertex& a, const CutVertex& b)
@@ -157,8 +157,8 @@ bool ComesBefore(const CutVertex& a, const CutVertex& b)
   return std::array<int, 3>{ { a.Z, a.Y, a.X } } < std::array<int, 3>{ { b.Z, b.Y, b.X } };
 }
 
-// Boxes round the vertices of which two lists say different things, one for each block of the
-// volume at most.
+// Finds the vertices whose entries in two lists differ. Returns at most one bounding box of such
+// vertices for each block of the volume.
 std::vector<Extent> FindChanges(const std::vector<CutVertex>& a, const std::vector<CutVertex>& b)
 {
   constexpr int block = 16;
@@ -228,7 +228,7 @@ std::vector<Extent> DeviceCut::Set(const OpenCLContext& context, const cl::Comma
 
 void DeviceCut::Send(const OpenCLContext& context, const cl::CommandQueue& queue)
 {
-  queue.finish(); // nothing uses what is let go
+  queue.finish(); // no command may use the buffers that are released
   this->Rows = this->Vertices = this->Stencils = this->Positions = cl::Buffer();
   if (this->List.empty())
   {
@@ -250,7 +250,7 @@ void DeviceCut::Update(OpenCLContext& context, const cl::CommandQueue& queue,
   const KernelParameters& p, const VolumeChunk& chunk, const Source& source,
   const std::vector<unsigned char>& wanted)
 {
-  // Chunks have states of their own: vertices between two of them are looked at in both.
+  // Each chunk has its own states, so vertices between two chunks are processed for both.
   const auto row = [&](int z)
   { return this->RowBegins[static_cast<std::size_t>(z) * static_cast<std::size_t>(p.Size[1])]; };
   const cl_uint begin = row(chunk.LayersBegin);
@@ -286,7 +286,7 @@ void DeviceCut::Update(OpenCLContext& context, const cl::CommandQueue& queue,
   kernel.setArg(i++, this->Vertices);
   kernel.setArg(i++, this->Stencils);
   kernel.setArg(i++, this->Positions);
-  // Any buffer stands in for a missing one.
+  // Any buffer may replace a missing buffer.
   kernel.setArg(i++, some ? this->Wanted : this->Stencils);
   kernel.setArg(i++, cl_int{ some });
   kernel.setArg(i++, begin);

@@ -15,41 +15,43 @@
 namespace deformvolume
 {
 
-/// A smooth cut on the device: the list of the vertices of the cells that it crosses, with their
-/// distances from the sheet, and where each of them would be if it moved with the other side
-/// (CutPositions.cl). Its size is that of the cut, not of the volume.
+/// A smooth cut on the device: the list of the vertices of crossed cells, with their distances from
+/// the sheet and the positions of their copies on the other side (CutPositions.cl). The memory is
+/// proportional to the size of the cut, not of the volume.
 class DeviceCut
 {
 public:
-  /// crossed: one byte a cell, bit i = tetrahedron i is crossed; null: none is. distances: one
-  /// float a voxel. Returns boxes round the vertices whose entry is another one than before.
+  /// Set the cut. crossed: one byte per cell, bit i: tetrahedron i is crossed; null: no cut.
+  /// distances: one float per voxel. Returns bounding boxes of the vertices whose entries have
+  /// changed.
   std::vector<Extent> Set(const OpenCLContext& context, const cl::CommandQueue& queue,
     const VoxelGrid& voxelGrid, const unsigned char* crossed, const float* distances);
 
-  /// Whether a cell has crossed tetrahedra.
+  /// Whether any cell has crossed tetrahedra.
   bool IsOn() const { return !this->List.empty(); }
   const std::vector<CutVertex>& GetList() const { return this->List; }
-  /// The stencils have to be found anew: states or active tetrahedra have changed.
+  /// Makes the next update compute the stencils, since states or active tetrahedra have changed.
   void ForgetStencils() { this->StencilsCurrent = false; }
 
-  /// What the positions of the vertices of a chunk depend on.
+  /// The data on which the positions of the copies in a chunk depend.
   struct Source
   {
     cl::Program Program; // of the deformation mapping
-    /// Sets a kernel's arguments of the mapping, which come first, and returns how many they are.
+    /// Sets the arguments of the mapping, which are the first arguments of a kernel. Returns their
+    /// number.
     std::function<cl_uint(cl::Kernel&)> SetMapping;
     cl::Buffer State;
     cl::Buffer Active;
   };
-  /// Finds them. p: the parameters of the chunk. wanted: of each brick whether its vertices may
-  /// have other positions than before; empty: all may, as where stencils are found anew. Finish()
-  /// follows after all chunks.
+  /// Computes the positions of the copies. p: parameters of the chunk. wanted: for each brick,
+  /// whether positions of its vertices may have changed; empty: all may have changed. If the
+  /// stencils must be computed, all positions are computed. Call Finish() after all chunks.
   void Update(OpenCLContext& context, const cl::CommandQueue& queue, const KernelParameters& p,
     const VolumeChunk& chunk, const Source& source, const std::vector<unsigned char>& wanted);
   void Finish() { this->StencilsCurrent = true; }
 
   ///@{
-  /// What kernels are given; null where there is no cut.
+  /// The buffers for kernels. Null if there is no cut.
   const cl::Buffer& GetRows() const { return this->Rows; }
   const cl::Buffer& GetVertices() const { return this->Vertices; }
   const cl::Buffer& GetPositions() const { return this->Positions; }
@@ -69,7 +71,7 @@ private:
   cl::Buffer Vertices;
   cl::Buffer Stencils;
   cl::Buffer Positions;
-  cl::Buffer Wanted; // bricks
+  cl::Buffer Wanted; // a byte per brick
   bool StencilsCurrent = false;
 };
 

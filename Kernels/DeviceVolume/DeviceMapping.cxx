@@ -37,7 +37,7 @@ void DeviceMapping::SetLinks(std::vector<VolumeChunk>& chunks, const VertexLink*
   this->Rows.clear();
   this->Records.Clear();
   this->RunBytes = 0;
-  this->WithLinks = false; // until all of them are there
+  this->WithLinks = false; // until all links are copied
   const std::int64_t voxels =
     static_cast<std::int64_t>(this->Size[0]) * this->Size[1] * this->Size[2];
   this->AllLinked = std::all_of(
@@ -64,7 +64,7 @@ void DeviceMapping::Forget(std::vector<VolumeChunk>& chunks)
 void DeviceMapping::SetRuns(std::vector<VolumeChunk>& chunks, const VertexRuns& runs)
 {
   static_assert(
-    sizeof(VertexRun) == 8 && sizeof(TetrahedronRecord) == 64, "as the kernels have it");
+    sizeof(VertexRun) == 8 && sizeof(TetrahedronRecord) == 64, "The kernels need these sizes.");
   this->Forget(chunks);
   this->AllLinked = std::all_of(
     runs.Runs.begin(), runs.Runs.end(), [](const VertexRun& run) { return run.Tetrahedron >= 0; });

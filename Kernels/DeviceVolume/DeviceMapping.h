@@ -16,8 +16,8 @@
 namespace deformvolume
 {
 
-/// The static mapping of a volume on the device: links, or runs with their records. Its parts lie
-/// in the chunks of the volume.
+/// The static mapping of a volume on the device: links, or runs with their records. The links or
+/// runs are stored in the chunks of the volume.
 class DeviceMapping
 {
 public:
@@ -26,25 +26,25 @@ public:
     const std::array<int, 3>& size, std::uint64_t allocationLimit);
 
   ///@{
-  /// A call that fails leaves none.
+  /// Set the links or runs. After a call that throws, there is no mapping.
   void SetLinks(std::vector<VolumeChunk>& chunks, const VertexLink* links);
-  /// The runs were checked (CheckRuns).
+  /// The runs must have been checked (CheckRuns()).
   void SetRuns(std::vector<VolumeChunk>& chunks, const VertexRuns& runs);
   ///@}
   void Forget(std::vector<VolumeChunk>& chunks);
 
   bool HasLinks() const { return this->WithLinks; }
   bool HasRuns() const { return this->RunBytes > 0; }
-  /// See GetRunBytes in VertexRuns.h; 0 without runs.
+  /// Bytes of the runs (GetRunBytes() in VertexRuns.h). 0 without runs.
   std::uint64_t GetRunBytes() const { return this->RunBytes; }
-  /// Whether no link or run says that a voxel is outside.
+  /// Whether all voxels have a tetrahedron.
   bool AreAllLinked() const { return this->AllLinked; }
 
   TetrahedronRecords& GetRecords() { return this->Records; }
   const TetrahedronRecords& GetRecords() const { return this->Records; }
 
-  /// Of a mapping in one chunk, on a processor. tetrahedra: as on the device. boundary: see
-  /// BrickPoints::Mesh.
+  /// Finds the points that move each brick of a grid, for a mapping in one chunk. tetrahedra: as on
+  /// the device. boundary: see BrickPoints::Mesh.
   BrickPoints MakeBrickPoints(const VolumeChunk& chunk, const BrickGrid& grid,
     const cl::Buffer& tetrahedra, std::size_t numberOfNodes,
     const std::vector<std::vector<std::int32_t>>& boundary) const;
@@ -59,7 +59,7 @@ private:
   bool WithLinks = false;
   std::uint64_t RunBytes = 0;
   bool AllLinked = false;
-  /// Where the runs of each row lie in each chunk, as on the device (RowRanges in VolumeChunk).
+  /// For each chunk a copy of VolumeChunk::RowRanges.
   std::vector<std::vector<std::uint32_t>> Rows;
   TetrahedronRecords Records;
 };

@@ -14,9 +14,8 @@
 namespace deformvolume
 {
 
-/// A mask of a volume on the device: of its vertices, which of them are blanked, or how far they
-/// are from the boundary; or of its cells, which tetrahedra of them are active. Only what differs
-/// from what the device has is sent.
+/// A mask of a volume on the device: blanked vertices, boundary distances of vertices, or active
+/// tetrahedra of cells. Only differences to the mask on the device are copied.
 class DeviceMask
 {
 public:
@@ -24,7 +23,7 @@ public:
   {
     BlankedVertices,
     ActiveTetrahedra,
-    BoundaryDistances // a float a vertex
+    BoundaryDistances // a float per vertex
   };
 
   explicit DeviceMask(Kind kind)
@@ -32,21 +31,22 @@ public:
   {
   }
 
-  /// Whether the chunks have a buffer of it. Else no vertex is blanked, all tetrahedra are active,
-  /// or no distance is negative.
+  /// Whether the chunks have buffers for the mask. Otherwise no vertex is blanked, all tetrahedra
+  /// are active, or no distance is negative.
   bool HasBuffers() const { return this->WithBuffers; }
 
-  /// next: one byte for each vertex, of so many on each axis, or cell, or one float; null: all are
-  /// as usual. bits: those of a byte that count. written: vertices or cells elsewhere have been
-  /// left alone since the last call; null: any may have been written. Returns where the mask is not
-  /// as it was: boxes of local indices that do not overlap.
+  /// Set the mask. vertices: number of vertices on each axis. next: one byte per vertex or cell, or
+  /// one float per vertex; null: no vertex is blanked, all tetrahedra are active, or no distance is
+  /// negative. bits: the bits of a byte that belong to the mask. written: vertices or cells that
+  /// may have been written since the last call; null: any. Returns boxes of local indices that
+  /// contain all changes and do not overlap.
   std::vector<Extent> Set(const OpenCLContext& context, const cl::CommandQueue& queue,
     const std::array<int, 3>& vertices, std::vector<VolumeChunk>& chunks, const unsigned char* next,
     unsigned char bits, const PointRanges* written);
 
 private:
   cl::Buffer& GetBuffer(VolumeChunk& chunk) const;
-  /// Bytes of a vertex or a cell.
+  /// Bytes per vertex or cell.
   int GetWidth() const;
   std::size_t CountBytes() const
   {
@@ -54,24 +54,25 @@ private:
       static_cast<std::size_t>(this->Size[2]);
   }
   MaskValues MakeValues(const unsigned char* bytes, unsigned char bits) const;
-  /// Whether something of a mask is not as usual. Notes the farthest of distances.
+  /// Whether a mask has any effect. Sets Farthest to the largest distance.
   bool IsAny(const MaskValues& values);
-  /// First and last plane of a chunk in the mask.
+  /// Returns the first and the last plane of a chunk in the mask.
   std::array<int, 2> GetPlanes(const VolumeChunk& chunk) const;
   void Allocate(
     const OpenCLContext& context, const cl::CommandQueue& queue, std::vector<VolumeChunk>& chunks);
   void Release(std::vector<VolumeChunk>& chunks);
-  /// Sends one box that holds all changes. A call for each of them mostly takes longer than what
-  /// lies between them: a cut or a carving has hundreds beside each other.
+  /// Copies one box that contains all changes. A cut or a carving has hundreds of neighboring
+  /// changes; separate copies would mostly take longer.
   void Write(
     const cl::CommandQueue& queue, VolumeChunk& chunk, const std::vector<Extent>& changes) const;
 
   Kind MaskKind;
-  std::array<int, 3> Size{ { 0, 0, 0 } }; // on x in bytes
+  std::array<int, 3> Size{ { 0, 0, 0 } }; // vertices or cells on each axis, times GetWidth() on x
   bool WithBuffers = false;
-  // What buffers hold before distances are there: those that are as far count as unchanged then.
+  // Initial value of the buffers for distances, so that vertices at this distance do not count as
+  // changed.
   float Farthest = 0.0F;
-  std::vector<unsigned char> Last; // what the device has, where the host cannot look into that
+  std::vector<unsigned char> Last; // a copy of the mask on the device, if the host cannot map it
 };
 
 } // namespace deformvolume

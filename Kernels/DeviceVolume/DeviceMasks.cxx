@@ -4,6 +4,7 @@
 #include "Error.h"
 
 #include <algorithm>
+#include <string>
 
 namespace deformvolume
 {
@@ -38,7 +39,7 @@ std::vector<Extent> DeviceMasks::SetActive(const unsigned char* active, const Po
   if (this->Bridges.IsOn())
   {
     this->Bridges.ChangeCells(changes);
-    // In cells that the boundary crosses the mask is looked at otherwise (BoundaryCells).
+    // BoundaryCells uses the mask of crossed cells directly.
     return this->HasBoundary() ? changes : std::vector<Extent>();
   }
   this->States.ChangeCells(changes);
@@ -59,15 +60,15 @@ std::vector<Extent> DeviceMasks::SetCut(
 {
   if (crossed && !hasRoom)
   {
-    throw Error("A smooth cut needs room for more than five slices of the volume at once, and the "
-                "device gives no more than " +
+    throw Error("A smooth cut needs six slices of the volume in one allocation, but the device "
+                "allows at most " +
       std::to_string(this->AllocationLimit) + " bytes. Use a smaller volume or another device.");
   }
   std::vector<Extent> changes =
     this->Cut.Set(this->Context, this->Queue, this->Grid, crossed, distances);
   if (this->HasCut())
   {
-    this->Bricks.Halo = BrickGrid::HaloOfCuts; // from now on, as another cut may follow
+    this->Bricks.Halo = BrickGrid::HaloOfCuts; // never reset, since another cut may follow
   }
   this->States.ChangeSources(changes);
   this->Bridges.ChangeVertices(changes);
@@ -76,7 +77,7 @@ std::vector<Extent> DeviceMasks::SetCut(
 
 void DeviceMasks::SetNodePlaces(const std::vector<std::int32_t>& places)
 {
-  this->Queue.finish(); // nothing uses what is let go
+  this->Queue.finish(); // no command may use the buffers that are released
   const bool had = this->Bridges.HasPlaces();
   this->Bridges.SetPlaces(this->Context, this->Queue, places);
   if (had != this->Bridges.HasPlaces())
@@ -95,7 +96,7 @@ void DeviceMasks::SetBoundary(const MeshBoundary& boundary)
   {
     return;
   }
-  this->Queue.finish(); // nothing uses what is let go
+  this->Queue.finish(); // no command may use the buffers that are released
   this->States.Forget();
   this->Bridges.SetBoundary(!boundary.IsEmpty());
   const std::int64_t layer = static_cast<std::int64_t>(this->Size[0] - 1) * (this->Size[1] - 1);

@@ -19,40 +19,37 @@
 namespace deformvolume
 {
 
-/// The masks of a volume on the device: blanked voxels, active tetrahedra, distances to a boundary,
-/// a smooth cut, and the tetrahedra that BridgeMask leaves out.
+/// The masks of a volume on the device: blanked voxels, active tetrahedra, boundary distances, a
+/// smooth cut, and BridgeMask.
 class DeviceMasks
 {
 public:
-  /// chunks, states: those of the volume. This object sets the buffers of masks in chunks, and says
-  /// which states have changed. bricks: get a larger Halo where there is a cut.
+  /// chunks, states, bricks: of the volume. This object sets the buffers of masks in the chunks,
+  /// reports changes to the states, and sets the Halo of the bricks for smooth cuts.
   DeviceMasks(OpenCLContext& context, const cl::CommandQueue& queue, const VoxelGrid& grid,
     std::uint64_t allocationLimit, BrickGrid& bricks, std::vector<VolumeChunk>& chunks,
     VertexStates& states);
 
   ///@{
-  /// Sets a mask of the vertices or of the cells; null: no mask. Compares it with the last one,
-  /// sends what has changed, and returns the boxes of that (DeviceMask::Set). bits: the bits of a
-  /// byte that blank a voxel. Where BridgeMask is on, DeviceVolume::UpdateBridges() finds the
-  /// changed cells.
+  /// Set a mask of vertices or cells; null: no mask. Copies the differences to the last mask, and
+  /// returns the boxes of changes (DeviceMask::Set()). bits: the bits of a byte that blank a voxel.
+  /// If BridgeMask is on, DeviceVolume::UpdateBridges() returns the changes of cells.
   std::vector<Extent> SetBlanked(
     const unsigned char* blanked, unsigned char bits, const PointRanges* written);
   std::vector<Extent> SetActive(const unsigned char* active, const PointRanges* written);
   std::vector<Extent> SetBoundaryDistances(const float* distances, const PointRanges* written);
   ///@}
-  /// Sets a smooth cut (DeviceCut::Set). hasRoom: whether chunks have the planes that it needs.
-  /// Returns the boxes of vertices that the cut lists differently than before.
+  /// Set a smooth cut (DeviceCut::Set()). hasRoom: whether chunks have the planes that it needs.
+  /// Returns the boxes of vertices whose entries have changed. Throws Error without room.
   std::vector<Extent> SetCut(const unsigned char* crossed, const float* distances, bool hasRoom);
-  /// Leaves out the tetrahedra that would bridge the gap where the mesh is split. places: see
-  /// BridgeMask; empty: leaves out none.
+  /// Excludes bridges over a split of the mesh. places: see BridgeMask::SetPlaces().
   void SetNodePlaces(const std::vector<std::int32_t>& places);
-  /// Leaves out the cells that the boundary of the deformation mesh, or of the field, crosses.
+  /// Excludes the cells that the boundary of the deformation mesh, or of the field, crosses.
   void SetBoundary(const MeshBoundary& boundary);
 
-  /// Whether any voxel is blanked, any tetrahedron is not active or left out, or there are
-  /// distances.
+  /// Whether there is any mask, apart from a smooth cut.
   bool HasAny() const { return this->HasActive() || this->HasBlanked() || this->HasDistances(); }
-  /// Whether there is a mask of active tetrahedra, given or made by BridgeMask.
+  /// Whether kernels need a mask of active tetrahedra: one that is set, or BridgeMask.
   bool HasActive() const { return this->HasGivenActive() || this->Bridges.IsOn(); }
   bool HasGivenActive() const { return this->Active.HasBuffers(); }
   bool HasBlanked() const { return this->Blanked.HasBuffers(); }
@@ -60,8 +57,8 @@ public:
   bool HasCut() const { return this->Cut.IsOn(); }
   bool HasBoundary() const { return this->Bridges.HasBoundary(); }
   ///@{
-  /// Masks of a chunk as an argument of kernels. other: what kernels get where there is no mask, as
-  /// not all drivers take null.
+  /// Returns the mask of a chunk as an argument of kernels. other: any buffer, which replaces a
+  /// missing mask: not all drivers accept a null pointer.
   const cl::Buffer& GetActive(const VolumeChunk& chunk, const cl::Buffer& other) const
   {
     return this->Bridges.IsOn() ? chunk.Joined : this->GetGivenActive(chunk, other);

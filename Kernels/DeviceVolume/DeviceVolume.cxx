@@ -52,15 +52,16 @@ DeviceVolume::DeviceVolume(OpenCLContext& context, const cl::CommandQueue& queue
   const std::uint64_t planeBytes =
     static_cast<std::uint64_t>(plane) * std::max(bytesPerVoxel, withLinks ? sizeof(VertexLink) : 0);
   const std::uint64_t planes = allocationLimit / planeBytes;
-  // A smooth cut looks at the vertices up to two voxels away. Devices without room for that have no
-  // smooth cuts.
+  // A smooth cut needs the vertices up to two voxels away. Smooth cuts are not possible if these do
+  // not fit into an allocation.
   this->HasRoomForCuts = planes > 5;
-  const std::uint64_t neighbours = this->HasRoomForCuts ? 5 : 3; // planes beyond the layers
+  const std::uint64_t neighbours = this->HasRoomForCuts ? 5 : 3; // planes in addition to the layers
   if (planes <= neighbours)
   {
-    throw Error("A slice of the volume needs " + std::to_string(planeBytes) +
-      " bytes, and the device gives no more than " + std::to_string(allocationLimit) +
-      " bytes at once for several slices. Use a smaller volume or another device.");
+    throw Error("A slice of the volume needs " + std::to_string(planeBytes) + " bytes, and " +
+      std::to_string(neighbours + 1) +
+      " slices must fit into one allocation, but the device allows at most " +
+      std::to_string(allocationLimit) + " bytes. Use a smaller volume or another device.");
   }
   const int beyond = this->HasRoomForCuts ? 2 : 1;
   const int layers = this->GetSize(2) - 1;

@@ -25,21 +25,21 @@ namespace deformvolume
 {
 
 ///@{
-/// Tetrahedra as the device has them, with the places of their nodes (DEFORMVOLUME_NODE_PLACES).
+/// Converts tetrahedra to those on the device: multiplies node numbers by DEFORMVOLUME_NODE_PLACES.
 Tetrahedron NameNodePlaces(const Tetrahedron& tetrahedron);
 std::vector<Tetrahedron> NameNodePlaces(
   const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra);
 ///@}
 
-/// What the device holds of the sampling mesh: per voxel the arrays and the state; the static links
-/// into the deformation mesh, or runs; per cell the active tetrahedra.
+/// The sampling mesh on the device: the arrays of the volume, the states of vertices, the static
+/// mapping (links or runs), and the masks of vertices and cells.
 class DeviceVolume
 {
 public:
   DeviceVolume(OpenCLContext& context, const cl::CommandQueue& queue, const VoxelGrid& voxelGrid,
     std::size_t bytesPerVoxel, std::uint64_t allocationLimit, bool withLinks = true);
 
-  /// Others refer to members of this object.
+  /// Not copyable: Masks and Arrays refer to other members.
   DeviceVolume(const DeviceVolume&) = delete;
   DeviceVolume& operator=(const DeviceVolume&) = delete;
 
@@ -49,22 +49,23 @@ public:
   const DeviceArrays& GetArrays() const { return this->Arrays; }
   ///@}
   ///@{
-  /// The masks of the volume. Smooth cuts and boundaries are set by this class.
+  /// The masks of the volume. Set smooth cuts and boundaries by SetCut() and SetBoundary() below.
   DeviceMasks& GetMasks() { return this->Masks; }
   const DeviceMasks& GetMasks() const { return this->Masks; }
   ///@}
-  /// Sets a smooth cut (DeviceMasks::SetCut). Throws an Error if the device has no room for it.
+  /// Set a smooth cut (DeviceMasks::SetCut()). Throws Error if the device has no room for it.
   std::vector<Extent> SetCut(const unsigned char* crossed, const float* distances);
-  /// Leaves out the cells that the boundary of the deformation mesh crosses (DeviceMasks), and
-  /// finds what moves them. isField: whether it is the boundary of a displacement field.
+  /// Excludes the cells that the boundary of the deformation mesh crosses (DeviceMasks), and finds
+  /// the tetrahedra or points of the field that move them. isField: whether it is the boundary of a
+  /// displacement field.
   void SetBoundary(const MeshBoundary& boundary, bool isField);
-  /// Finds the tetrahedra that BridgeMask leaves out, if anything changed that this depends on.
-  /// Returns the boxes of cells whose tetrahedra have changed. set: see UpdateState.
+  /// Updates BridgeMask, if anything on which it depends has changed. Returns the boxes of cells
+  /// whose mask has changed. set: see UpdateState().
   std::vector<Extent> UpdateBridges(MappingForm mapping, const cl::Buffer& tetrahedra,
     const std::function<cl_uint(cl::Kernel&, const VolumeChunk&)>& set);
 
   ///@{
-  /// The links or runs were checked (CheckLinks, CheckRuns).
+  /// Set the static mapping. The links or runs must have been checked (CheckLinks(), CheckRuns()).
   void SetLinks(const VertexLink* links);
   void SetRuns(const VertexRuns& runs);
   ///@}
@@ -77,54 +78,53 @@ public:
   }
   bool HasMesh() const { return this->Mapping.HasLinks() || this->Mapping.HasRuns(); }
   bool HasRuns() const { return this->Mapping.HasRuns(); }
-  /// See GetRunBytes in VertexRuns.h; 0 without runs.
+  /// Bytes of the runs (GetRunBytes() in VertexRuns.h). 0 without runs.
   std::uint64_t GetRunBytes() const { return this->Mapping.GetRunBytes(); }
   const std::vector<VolumeChunk>& GetChunks() const { return this->Chunks; }
 
-  /// Whether axes of the volume are not those of the output: HAS_TURNED_AXES in the programs that
-  /// read undeformed positions.
+  /// Whether the axes of the volume are not those of the output (HAS_TURNED_AXES in programs).
   bool HasTurnedAxes() const { return !this->Shape.ToOutput.IsDiagonal(); }
-  /// For each index on x, then y, then z the undeformed position (RestPosition or RestVector in
+  /// The undeformed position for each index on x, then y, then z (RestPosition or RestVector in
   /// KernelParameters.h).
   const cl::Buffer& GetRestPositions() const { return this->RestPositions; }
 
-  /// Those that the runs refer to.
+  /// The records of runs.
   TetrahedronRecords& GetRecords() { return this->Mapping.GetRecords(); }
 
   const BrickGrid& GetBricks() const { return this->Bricks; }
-  /// Those of the sub-bricks, of a mesh, where the voxel grid is one chunk. Devices with memory of
-  /// their own copy the static mapping to the host for that. See DeviceMapping.
+  /// Finds the points that move each sub-brick, for a mesh. The volume must be one chunk. A device
+  /// with memory of its own copies the static mapping to the host. See DeviceMapping.
   BrickPoints MakeBrickPoints(const cl::Buffer& tetrahedra, std::size_t numberOfNodes) const
   {
     return this->Mapping.MakeBrickPoints(this->Chunks.front(), this->Bricks.GetSubBricks(),
       tetrahedra, numberOfNodes, this->AtBoundary.Tetrahedra);
   }
-  /// The same of a field.
+  /// Finds the points that move each sub-brick, for a field.
   BrickPoints MakeBrickPoints(const FieldParameters& field) const
   {
     return BrickPoints::FromField(this->Bricks.GetSubBricks(), field, this->AtBoundary.FieldPoints);
   }
 
-  /// Brings the state of the vertices up to date, where anything changed that it depends on.
-  /// mapping: the program of the deformation mapping. set: sets a kernel's arguments of the mapping
-  /// for a chunk, which come first, and returns how many they are.
-  /// Where the deformation moves all voxels and no mask is set there is no state to keep. movesAll:
-  /// whether a field moves all voxels; links and runs tell by themselves.
+  /// Updates the states of the vertices, if anything on which they depend has changed. If the
+  /// deformation moves all voxels and there is no mask and no cut, no states are stored. mapping:
+  /// the program of the deformation mapping. movesAll: whether a field moves all voxels; not used
+  /// for meshes. set: sets the arguments of the mapping for a chunk, which are the first arguments
+  /// of a kernel, and returns their number.
   void UpdateState(const cl::Program& mapping, bool movesAll,
     const std::function<cl_uint(cl::Kernel&, const VolumeChunk&)>& set);
-  /// Finds where the vertices of a smooth cut would be on its other side: after UpdateState, each
-  /// time that the mapping has changed. bricks: as DEFORMVOLUME_BRICK_BITS says, if only those of
-  /// some bricks have changed; else null.
+  /// Computes the positions of the copies of vertices at a smooth cut. Call it after UpdateState(),
+  /// each time that the mapping has changed. bricks: the bricks in which positions have changed
+  /// (DEFORMVOLUME_BRICK_BITS); null: all.
   void UpdateCut(const cl::Program& mapping, const std::vector<cl_uint>* bricks,
     const std::function<cl_uint(cl::Kernel&, const VolumeChunk&)>& set);
   void ForgetState() { this->States.Forget(); }
-  /// The state, or any buffer that stands in for it.
+  /// Returns the states of a chunk, or any buffer if there are none.
   const cl::Buffer& GetState(const VolumeChunk& chunk) const
   {
     return chunk.State() ? chunk.State : this->RestPositions;
   }
 
-  /// The parameters of a launch over the whole of a chunk.
+  /// Returns the parameters of a launch over a whole chunk.
   KernelParameters GetParameters(const VolumeChunk& chunk) const;
 
   std::uint64_t GetMemory() const;

@@ -7,32 +7,33 @@
 namespace deformvolume
 {
 
-/// How the kernels find the displacement of a vertex: the names of MAPPING in
-/// DeformationMapping.cl.
+/// The form of the deformation mapping, by which kernels compute the displacement of a vertex
+/// (MAPPING in DeformationMapping.cl).
 enum class MappingForm
 {
   Links,
   Runs,
   Field,
-  /// A field whose vectors are read where they lie; for devices with double precision.
+  /// A field whose vectors are read in place. Needs double precision.
   FieldInPlace
 };
 
-/// The deformation mapping (DeformationMapping.cl) and the state of vertices (VertexState.cl).
-/// withCut: there is a smooth cut (CutPositions.cl). hasTurnedAxes: see DeviceVolume.
+/// Returns the program of the deformation mapping (DeformationMapping.cl) and of the states of
+/// vertices (VertexState.cl). withCut: whether there is a smooth cut (CutPositions.cl).
+/// hasTurnedAxes: see DeviceVolume.
 cl::Program GetMappingProgram(
   OpenCLContext& context, MappingForm mapping, bool withCut = false, bool hasTurnedAxes = false);
 
-/// What leaves out tetrahedra that bridge a gap (BridgeMask.cl), for links or runs.
+/// Returns the program of the mask of bridges (BridgeMask.cl), for links or runs.
 cl::Program GetBridgeProgram(
   OpenCLContext& context, MappingForm mapping, bool withCut = false, bool hasTurnedAxes = false);
 
-/// What makes displacements of vectors (VectorConversion.cl), and finds bounds by them
-/// (VectorBounds.cl).
+/// Returns the program that converts vectors to displacements (VectorConversion.cl) and computes
+/// bounds (VectorBounds.cl).
 cl::Program GetConversionProgram(OpenCLContext& context);
 
-/// The text of a form of the mapping (DeformationMapping.cl). It expects GetSamplingMeshText
-/// before.
+/// Returns the source text of a form of the mapping (DeformationMapping.cl). It must follow
+/// GetSamplingMeshText().
 ProgramText GetMappingText(MappingForm mapping, bool hasTurnedAxes = false);
 
 } // namespace deformvolume

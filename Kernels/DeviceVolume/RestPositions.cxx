@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace deformvolume
@@ -21,10 +22,10 @@ cl::Buffer MakeBuffer(const OpenCLContext& context, std::vector<Entry> entries)
     entries.size() * sizeof(Entry), entries.data());
 }
 
-/// For each index on x, then y, then z.
+/// Returns a RestVector for each index on x, then y, then z.
 std::vector<RestVector> MakeRestVectors(const VoxelGrid& grid, const OutputTransform& transform)
 {
-  // In 2^-16 voxel, as they are in the whole volume.
+  // In 2^-16 voxel. The rounding does not depend on the part of the volume.
   const auto getPart = [&](int axis, int index)
   {
     glm::dvec3 part = transform.GetMatrix()[axis] * static_cast<double>(index);
@@ -71,8 +72,11 @@ cl::Buffer MakeRestPositions(const OpenCLContext& context, const VoxelGrid& grid
     if (!(std::abs(bounds.Min[axis]) <= MostOutputIndex &&
           std::abs(bounds.Max[axis]) <= MostOutputIndex))
     {
-      throw Error("The output would have indices beyond 2^21. Use a coarser output spacing, or a "
-                  "volume whose extent starts nearer to 0.");
+      throw Error("The voxels at rest have output indices from " +
+        std::to_string(bounds.Min[axis]) + " to " + std::to_string(bounds.Max[axis]) +
+        " on an axis, but at most 2^21 is possible. Use a coarser output spacing, or a volume "
+        "whose "
+        "extent begins closer to 0.");
     }
   }
   if (!grid.ToOutput.IsDiagonal())

@@ -8,9 +8,9 @@
 namespace deformvolume
 {
 
-/// The undeformed positions of the voxels in the output, axis by axis: for each index on x, then y,
-/// then z a RestPosition, or a RestVector if the axes of the volume are not those of the output
-/// (KernelParameters.h). Throws an Error if the output would have indices beyond 2^21.
+/// Makes a buffer of the undeformed positions of voxels in the output: one element for each index
+/// on x, then y, then z. The elements are RestPosition, or RestVector if the axes of the volume are
+/// not those of the output (KernelParameters.h). Throws Error if an output index exceeds 2^21.
 cl::Buffer MakeRestPositions(const OpenCLContext& context, const VoxelGrid& grid);
 
 } // namespace deformvolume

@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The records of the tetrahedra that RunMapping.cl reads.
+// Evaluates the records of tetrahedra that RunMapping.cl reads.
 //
-// Data: rest: for each record 15 reals, the origin, the weights of the first three nodes there, and the
-// gradient of each of these weights, an index a unit; owners: the tetrahedron of each record, or -1 for one that is not in use; tetrahedra: the
-// places of their nodes (DEFORMVOLUME_NODE_PLACES).
+// Data:
+//   rest        15 reals per record: origin, weights of the first three nodes at the origin, and gradients of these
+//               weights per voxel
+//   owners      tetrahedron of each record
+//   tetrahedra  nodes of the tetrahedra, times DEFORMVOLUME_NODE_PLACES
 //
-// REAL is double where the device has it: the gradients of a thin tetrahedron are large, and only
-// their sum with the displacements is small again.
+// REAL is double if the device supports it, since the gradients of a thin tetrahedron are large and cancel when they
+// are multiplied by displacements and added.
 
 #pragma OPENCL FP_CONTRACT OFF
 
-// A work-item takes a record.
+// A work-item processes one record.
 __kernel void EvaluateTetrahedra(__global const REAL* restrict rest,
   __global const int* restrict owners, __global const int4* restrict tetrahedra,
   __global const float4* restrict nodes, __global TetrahedronRecord* restrict records,
@@ -32,7 +34,8 @@ __kernel void EvaluateTetrahedra(__global const REAL* restrict rest,
   __global TetrahedronRecord* record = records + id;
   for (int axis = 0; axis < 3; ++axis)
   {
-    // Differences to the last node: where all nodes move alike, so does each voxel, exactly.
+    // With differences to the last node, the displacement of each voxel is exact if all nodes have the same
+    // displacement.
     const REAL last = d[axis];
     const REAL u = a[axis] - last;
     const REAL v = b[axis] - last;

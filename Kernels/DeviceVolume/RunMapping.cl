@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The displacement of vertices where the static mapping is by runs: voxels of a row, along x, that lie
-// in one tetrahedron of the deformation mesh. Comes before DeformationMapping.cl.
+// The displacements of vertices by runs: voxels along x in one tetrahedron of the deformation mesh. This text comes
+// before DeformationMapping.cl.
 //
-// The displacement is affine in the index of the voxel within a tetrahedron. So a run needs no
-// weights: for each Deform the affine function of each tetrahedron is put into a record of 64 bytes
-// (TetrahedronRecord, RunEvaluation.cl), and a voxel costs three products and three sums an axis.
+// Within a tetrahedron, the displacement is an affine function of the index of the voxel. So a run needs no weights.
+// Each Deform() stores the affine function of each tetrahedron in a record of 64 bytes (TetrahedronRecord,
+// RunEvaluation.cl). A voxel needs three multiplications and three additions per axis.
 //
-// Data: runs 8 bytes each; rowRanges 8 bytes a row of vertices (row = plane * Size[1] + y, counted
-// from the chunk's first plane): the first of its runs, and one past its last; the first begins at 0,
-// and each ends where the next begins.
+// Data:
+//   runs       8 bytes each. The first run of a row begins at 0; each run ends where the next begins.
+//   rowRanges  8 bytes per row of vertices: index of its first run, and one past its last. row = plane * Size[1] + y,
+//              counted from the first plane of the chunk.
 
 #pragma OPENCL FP_CONTRACT OFF
 
@@ -18,18 +19,18 @@ typedef struct
   int Begin;       // local x
 } VertexRun;
 
-// The displacement of the voxels with one y and z in the tetrahedron of a record, but for x.
+// The displacement of the voxels at one y and z in the tetrahedron of a record, as a function of x.
 typedef struct
 {
   float4 Displacement; // at the origin
   float4 AlongX;
-  float4 Across; // what y and z add
+  float4 Across; // contribution of y and z
   float OriginX;
 } RunDisplacement;
 
 static RunDisplacement MakeRunDisplacement(__global const TetrahedronRecord* record, int y, int z)
 {
-  // The fourth component is whatever follows in the record.
+  // The fourth component is undefined: it is read from the next member of the record.
   RunDisplacement run;
   run.Displacement = vload4(0, record->Displacement);
   run.AlongX = vload4(0, record->AlongX);
@@ -40,14 +41,14 @@ static RunDisplacement MakeRunDisplacement(__global const TetrahedronRecord* rec
   return run;
 }
 
-// What is small is added first: the error bound in VertexRuns.h wants this order.
+// Small terms are added first: the error bound in VertexRuns.h depends on this order.
 static float4 GetDisplacement(const RunDisplacement* run, int x)
 {
   return run->Displacement +
     MULTIPLY_ADD(run->AlongX, (float4)((float)x - run->OriginX), run->Across);
 }
 
-// The run that holds x, of those from first to before end.
+// Finds the run that contains x among the runs first to end - 1.
 static uint FindRun(__global const VertexRun* runs, uint first, uint end, int x)
 {
   while (end - first > 1)

@@ -15,8 +15,8 @@
 namespace deformvolume
 {
 
-/// The cuboids of vertices that kernels work on a chunk in which look only at a part of it
-/// (VertexState.cl has their numbers).
+/// The cuboids of vertices of a chunk, for kernels that process only a part of the chunk.
+/// VertexState.cl describes their numbers.
 class VertexCuboids
 {
 public:
@@ -27,27 +27,29 @@ public:
     std::size_t{ DEFORMVOLUME_CUBOID_X } * DEFORMVOLUME_CUBOID_Y * DEFORMVOLUME_CUBOID_Z;
 
   std::vector<cl_uint> GetAll() const;
-  /// Those with a vertex in some boxes, or so many beyond them; in ascending order.
+  /// Returns the cuboids with a vertex in the boxes, each enlarged by `halo` vertices on each side;
+  /// in ascending order.
   std::vector<cl_uint> Find(const std::vector<Extent>& boxes, int halo) const;
-  /// Local indices of the cells whose first vertex a cuboid has.
+  /// Returns the local indices of the cells that begin at the vertices of a cuboid.
   Extent GetCells(cl_uint cuboid) const;
 
-  /// So many are worked on at once.
+  /// Largest number of cuboids in a launch.
   static constexpr std::size_t AtOnce = 4096;
-  /// Goes through a list of them, some at a time, which are written to the buffer `list`: run is
-  /// given what launches a kernel over them, where they begin and how many they are.
+  /// Processes a list of cuboids, at most AtOnce at a time. Writes the numbers of these cuboids to
+  /// the buffer `list`, and calls run(launch, begin, count): their index in `cuboids`, and their
+  /// number. launch(kernel) launches a kernel over them.
   using Launch = std::function<void(const cl::Kernel& kernel)>;
   static void ForAll(OpenCLContext& context, const cl::CommandQueue& queue,
     const std::vector<cl_uint>& cuboids, const cl::Buffer& list,
     const std::function<void(const Launch& launch, std::size_t begin, std::size_t count)>& run);
 
 private:
-  std::array<int, 3> First; // local index of the chunk's first vertex on each axis
+  std::array<int, 3> First; // local index of the first vertex of the chunk on each axis
   std::array<int, 3> End;   // and one past the last
   std::array<std::int64_t, 3> Count;
 };
 
-/// Two lists joined, each number once, in ascending order.
+/// Returns the union of two sorted lists, in ascending order.
 std::vector<cl_uint> JoinLists(const std::vector<cl_uint>& a, const std::vector<cl_uint>& b);
 
 } // namespace deformvolume

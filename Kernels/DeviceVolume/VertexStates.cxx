@@ -55,8 +55,8 @@ void VertexStates::Update(OpenCLContext& context, const cl::CommandQueue& queue,
   Reserve(context, chunk.State, bytes);
   const VertexCuboids cuboids(p);
   const std::vector<cl_uint> sources = all ? cuboids.GetAll() : cuboids.Find(this->Sources, 0);
-  // A state depends on the vertices that share a cell with this one, and on these cells; the first
-  // of the vertices of a cell has the index of the cell.
+  // The state of a vertex depends on the cells around it and on their vertices. A cell has the
+  // index of its first vertex.
   const std::vector<cl_uint> vertices =
     all ? sources : JoinLists(cuboids.Find(this->Sources, 1), cuboids.Find(this->Cells, 1));
   if (vertices.empty())

@@ -13,45 +13,47 @@
 namespace deformvolume
 {
 
-/// Keeps the state of the vertices of the sampling mesh (VertexState.cl) up to date on the device:
-/// computes it only round what has changed.
+/// Keeps the states of the vertices of the sampling mesh (VertexState.cl) on the device. An update
+/// computes only the states around changes.
 class VertexStates
 {
 public:
-  /// What the state of the vertices of a chunk depends on.
+  /// The data on which the states of a chunk depend. Any buffer may replace a missing buffer.
   struct Source
   {
     cl::Program Mapping; // of the deformation mapping
-    /// Sets a kernel's arguments of the mapping, which come first, and returns how many they are.
+    /// Sets the arguments of the mapping, which are the first arguments of a kernel. Returns their
+    /// number.
     std::function<cl_uint(cl::Kernel&)> SetMapping;
-    cl::Buffer Blanked; // any buffer, if it has none
+    cl::Buffer Blanked;
     bool HasBlanked;
-    cl::Buffer Active;    // any buffer, if it has none
-    cl::Buffer Distances; // any buffer, if it has none
-    cl::Buffer CutRows;   // any buffer, if there is no cut
+    cl::Buffer Active;
+    cl::Buffer Distances;
+    cl::Buffer CutRows;
     cl::Buffer CutVertices;
   };
 
-  /// All vertices have to be looked at.
+  /// Makes the next update compute all states.
   void Forget();
-  /// Some vertices may have become sources, or are none any more.
+  /// Reports vertices that may have become sources, or are no longer sources.
   void ChangeSources(const std::vector<Extent>& vertices);
-  /// The active tetrahedra of some cells have changed.
+  /// Reports cells whose active tetrahedra have changed.
   void ChangeCells(const std::vector<Extent>& cells);
 
+  /// Whether the states are up to date.
   bool AreCurrent() const { return this->Current; }
 
-  /// Brings the states of a chunk up to date. p: its parameters. Finish() follows after all chunks.
+  /// Updates the states of a chunk. p: parameters of the chunk. Call Finish() after all chunks.
   void Update(OpenCLContext& context, const cl::CommandQueue& queue, const KernelParameters& p,
     VolumeChunk& chunk, const Source& source);
   void Finish();
 
-  /// There is no state to keep, as all is as the kernels expect it without (HasState).
+  /// Releases the states: kernels run with HasState = 0.
   void Release(std::vector<VolumeChunk>& chunks);
 
 private:
   bool Current = false;
-  bool Known = false; // but for these
+  bool Known = false; // whether states were computed before, and only these may have changed:
   std::vector<Extent> Sources;
   std::vector<Extent> Cells;
 };

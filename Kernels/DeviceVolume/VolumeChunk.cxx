@@ -15,7 +15,7 @@ cl::Buffer SendLayers(const OpenCLContext& context, const cl::CommandQueue& queu
     static_cast<std::uint64_t>(layers.ElementsPerLayer) * layers.BytesPerElement;
   const std::uint64_t bytes = layerBytes * static_cast<std::uint64_t>(layers.End - layers.Begin);
   CheckAllocation(bytes, allocationLimit);
-  // No buffer is of no bytes.
+  // OpenCL has no buffers of 0 bytes.
   const std::uint64_t room = std::max<std::uint64_t>(bytes, layers.BytesPerElement);
   cl::Buffer buffer = previous;
   if (GetMemory(buffer) != room)

@@ -11,27 +11,27 @@
 namespace deformvolume
 {
 
-/// A range of cell layers of the sampling mesh with the vertex planes that they and their
-/// neighbours need: a volume over the device's allocation limit is held in several.
+/// A range of cell layers of the sampling mesh, with the vertex planes that the cells and their
+/// neighbors need. A volume that exceeds the allocation limit of the device has several chunks.
 struct VolumeChunk
 {
   int LayersBegin = 0; // cells, local z
   int LayersEnd = 0;
-  int PlanesBegin = 0; // vertices, local z: one or two planes more than the cells have on each side
+  int PlanesBegin = 0; // vertices, local z: one or two more planes on each side than the cells have
   int PlanesEnd = 0;
-  cl::Buffer Links;     // one a voxel, or else runs
-  cl::Buffer Runs;      // those of the rows of the planes
-  cl::Buffer RowRanges; // of each row the first of its runs, and one past the last: 4 bytes each
+  cl::Buffer Links;     // one per voxel; null if there are runs
+  cl::Buffer Runs;      // of the rows of the planes
+  cl::Buffer RowRanges; // per row the index of its first run and one past its last, 4 bytes each
   cl::Buffer State;
   cl::Buffer Blanked;
   cl::Buffer Active;
-  cl::Buffer Distances;           // to the boundary, a float a voxel
-  cl::Buffer Boundary;            // where that of the deformation mesh is (BridgeMask.cl), or none
-  cl::Buffer Joined;              // the active tetrahedra that are resampled (BridgeMask), or none
-  std::vector<cl::Buffer> Arrays; // see DeviceArrays::GetBuffers
+  cl::Buffer Distances;           // boundary distances, a float per voxel
+  cl::Buffer Boundary;            // a byte per cell (BridgeMask.cl); may be null
+  cl::Buffer Joined;              // mask of BridgeMask; may be null
+  std::vector<cl::Buffer> Arrays; // see DeviceArrays::GetBuffers()
 };
 
-/// Layers of an array of the host: planes of voxels or of cells.
+/// Layers of an array in host memory: planes of voxels or of cells.
 struct HostLayers
 {
   const void* Data;
@@ -41,8 +41,8 @@ struct HostLayers
   std::int64_t End;
 };
 
-/// Sends layers to a buffer: to the previous one if that has their size. The data must stay until
-/// the queue has finished.
+/// Copies layers to a buffer. Uses the previous buffer if it has the right size, otherwise a new
+/// buffer. The data must stay valid until the queue has finished.
 cl::Buffer SendLayers(const OpenCLContext& context, const cl::CommandQueue& queue,
   std::uint64_t allocationLimit, const HostLayers& layers, const cl::Buffer& previous);
 

@@ -10,8 +10,8 @@
 namespace deformvolume
 {
 
-/// The active tetrahedra without those that a smooth cut crosses, one byte a cell: what is crossed
-/// holds nothing together. active: null where all are.
+/// Returns the active tetrahedra without those that a smooth cut crosses, one byte per cell:
+/// crossed tetrahedra do not connect the two sides. active: null if all tetrahedra are active.
 inline std::vector<unsigned char> SwitchOffCrossed(
   const unsigned char* active, const unsigned char* crossed, std::size_t numberOfCells)
 {

@@ -11,29 +11,29 @@
 namespace deformvolume
 {
 
-/// Values from Minimum on, less than Maximum, have a material.
+/// A range of values with one material: Minimum <= value < Maximum.
 struct MaterialRange
 {
-  /// The least value of the material.
+  /// The least value of the range.
   double Minimum;
-  /// The first value beyond it.
+  /// The end of the range, which does not belong to it.
   double Maximum;
   /// The number of the material.
   int Index;
 };
 
-/// How the values of voxels tell materials, of which there are at most 256.
+/// The map from values of voxels to materials, of which there are at most 256.
 struct MaterialRule
 {
-  /// The first range that holds a value counts; without ranges values are numbers of materials.
+  /// The first range that contains a value is used. Empty: values are numbers of materials.
   std::vector<MaterialRange> Ranges;
-  /// The material of values that no range holds.
+  /// The material of values that no range contains.
   int Fallback = 0;
-  /// Which materials there are.
+  /// Whether each material is defined.
   std::array<bool, 256> Exists{};
 };
 
-/// The number of the material that a value is, or -1.
+/// Converts a value to the number of a material. Returns -1 if it is not an integer from 0 to 255.
 template <typename T>
 int GetMaterialNumber(T value)
 {
@@ -42,8 +42,8 @@ int GetMaterialNumber(T value)
   return isNumber ? static_cast<int>(value) : -1;
 }
 
-/// Writes the material of each of some values. Returns the place of the first one that has none,
-/// or -1.
+/// Writes the material of each value. Returns the index of the first value without a defined
+/// material, or -1.
 template <typename Values>
 std::int64_t WriteMaterials(
   const Values& values, const MaterialRule& rule, unsigned char* materials)
