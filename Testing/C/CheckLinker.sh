@@ -1,20 +1,25 @@
-#!/ bin / bash
-#SPDX - License - Identifier : BSD - 3 - Clause
-#The linker of the Python package : what it refuses, and a library that it makes.
+#!/bin/bash
+# SPDX-License-Identifier: BSD-3-Clause
+# The linker of the Python package: what it refuses, and a library that it makes.
 #
-#Usage : CheckLinker.sh < linker> < C compiler> < folder to work in>
-set - euo pipefail linker = $(realpath "$1") compiler = $2 folder = $3 source =
-  $(realpath "$(dirname " $0 ")") / linked.c rm - rf "$folder" mkdir -
-  p "$folder" cd "$folder"
+# Usage: CheckLinker.sh <linker> <C compiler> <folder to work in>
+set -euo pipefail
+linker=$(realpath "$1") compiler=$2 folder=$3
+source=$(realpath "$(dirname "$0")")/linked.c
+rm -rf "$folder"
+mkdir -p "$folder"
+cd "$folder"
 
-  failed = 0 refuse() #words of the message,
-                   arguments
+failed=0
+refuse() # words of the message, arguments
 {
-  if
-    "$linker"
-    "${@:2}" > message 2 > &1;
-  then echo "not refused: ${*:2}" failed = 1 elif !grep - q "$1" message;
-  then echo "another message than \"$1\" for ${*:2}: $(cat message)" failed = 1 fi
+  if "$linker" "${@:2}" >message 2>&1; then
+    echo "not refused: ${*:2}"
+    failed=1
+  elif ! grep -q "$1" message; then
+    echo "another message than \"$1\" for ${*:2}: $(cat message)"
+    failed=1
+  fi
 }
 
 "$compiler" -O2 -fno-builtin -fPIC -c "$source" -o linked.o
@@ -33,30 +38,26 @@ echo '__thread int x; int f(void) { return x; }' >thread.c
 "$compiler" -fPIC -c thread.c -o thread.o
 refuse "thread-local" -shared -o x.so thread.o
 
-for option in -O0 -O2;
-do
-  for
-    extra in - fno - builtin "-fno-builtin -fvisibility=hidden -fno-plt";
-do
-#shellcheck disable = SC2086 #a list of options
+for option in -O0 -O2; do
+  for extra in -fno-builtin "-fno-builtin -fvisibility=hidden -fno-plt"; do
+    # shellcheck disable=SC2086 # a list of options
     "$compiler" $option $extra -fPIC -c "$source" -o linked.o
     "$linker" --hash-style=both -m elf_x86_64 -shared -o linked.so -L/usr/lib linked.o -lm -lgcc \
       --as-needed -lgcc_s --no-as-needed -lc
     case $extra in *hidden*)
-#Nothing is left that could be called.
-      readelf --dyn-syms --wide linked.so | grep -q ' linked_' &&
-    {
-      echo "hidden names are exported" failed = 1
-    }
-continue;
-;
-esac cat > main.c << 'MAIN'
+      # Nothing is left that could be called.
+      readelf --dyn-syms --wide linked.so | grep -q ' linked_' && {
+        echo "hidden names are exported"
+        failed=1
+      }
+      continue ;;
+    esac
+    cat >main.c <<'MAIN'
 #include <dlfcn.h>
 #include <errno.h>
 #include <stdint.h>
 #include <stdio.h>
-    int
-    main(void)
+int main(void)
 {
   void* const library = dlopen("./linked.so", RTLD_NOW);
   double (*multiply)(int, double);
@@ -82,4 +83,9 @@ esac cat > main.c << 'MAIN'
   }
   return 0;
 }
-MAIN "$compiler" main.c - o main - ldl./ main || failed = 1 done done exit $failed
+MAIN
+    "$compiler" main.c -o main -ldl
+    ./main || failed=1
+  done
+done
+exit $failed

@@ -35,7 +35,7 @@ int main(int argc, char* argv[])
   RefuseDriver("", "absolute");
   RefuseDriver("libpocl.so", "absolute");
   RefuseDriver("/nowhere/libpocl.so", "\"/nowhere/libpocl.so\" cannot be loaded");
-  RefuseDriver("/", "is no OpenCL driver");
+  RefuseDriver("/", "is not a usable OpenCL driver");
   RefuseDriver("/etc/passwd", "invalid ELF header");
 
   CHECK(dv_set_linker(NULL) == DV_ERROR && strstr(dv_last_error(), "null") != NULL);

@@ -59,7 +59,7 @@ class Devices(unittest.TestCase):
         self.expect_error("/nowhere/lib.so.* cannot be loaded", DEFORMVOLUME_DRIVER="/nowhere/lib.so")
 
     def test_driver_that_is_none(self):
-        self.expect_error("no OpenCL driver.*invalid ELF", DEFORMVOLUME_DRIVER="/etc/passwd")
+        self.expect_error("not a usable OpenCL driver.*invalid ELF", DEFORMVOLUME_DRIVER="/etc/passwd")
 
     def test_unknown_word(self):
         self.expect_error('DEFORMVOLUME_DRIVER is "pocl"', DEFORMVOLUME_DRIVER="pocl")

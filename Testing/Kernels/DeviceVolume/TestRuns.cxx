@@ -523,15 +523,15 @@ TEST_F(RunsMisuse, WrongRuns)
   this->ExpectRefused(change([](VertexRuns& runs) { runs.RowBegins[5] = 0xFFFFFFFF; }), "Row 4");
   this->ExpectRefused(change([row](VertexRuns& runs) { runs.Runs[row].Begin = 1; }), "first run");
   this->ExpectRefused(
-    change([row](VertexRuns& runs) { runs.Runs[row + 1].Begin = 0; }), "one after the other");
+    change([row](VertexRuns& runs) { runs.Runs[row + 1].Begin = 0; }), "ascending order");
   this->ExpectRefused(
-    change([row](VertexRuns& runs) { runs.Runs[row + 1].Begin = 8; }), "one after the other");
+    change([row](VertexRuns& runs) { runs.Runs[row + 1].Begin = 8; }), "ascending order");
   this->ExpectRefused(
     change([row](VertexRuns& runs) { runs.Runs[row + 1].Tetrahedron = -2; }), "record -2");
   this->ExpectRefused(
     change([row](VertexRuns& runs)
       { runs.Runs[row + 1].Tetrahedron = static_cast<std::int32_t>(runs.Tetrahedra.size()); }),
-    "with the record");
+    "refers to record");
   this->ExpectRefused(
     change([](VertexRuns& runs) { runs.Tetrahedra[2].Tetrahedron = -1; }), "Record 2");
   this->ExpectRefused(change(

@@ -202,7 +202,7 @@ TEST(DeviceVectors, Misuse)
     const auto expected = subject.Run(deformer);
     const auto getError = [&](const Vectors& vectors)
     { return GetError([&] { subject.Move(deformer, route, vectors, Identity); }); };
-    EXPECT_NE(getError(nullptr).find("no vectors"), std::string::npos);
+    EXPECT_NE(getError(nullptr).find("vectors on a device are null"), std::string::npos);
     EXPECT_NE(getError(few).find(std::to_string(subject.Points - 1) +
                 " vectors on the device for " + std::to_string(subject.Points) + " points"),
       std::string::npos);
@@ -479,8 +479,8 @@ TEST(DeviceVectors, OutputOfChainMail)
   {
     model.SetVoxelGrid(extent, toWorld);
   }
-  EXPECT_NE(
-    GetError([&] { models[0].SetOutput(Vectors()); }).find("no vectors"), std::string::npos);
+  EXPECT_NE(GetError([&] { models[0].SetOutput(Vectors()); }).find("vectors on a device are null"),
+    std::string::npos);
   EXPECT_NE(GetError([&] { models[0].SetOutput(std::make_shared<DeviceVectors>("", 5)); }), "");
   models[0].SetOutput(output);
   models[1].SetOutput(host.data());
