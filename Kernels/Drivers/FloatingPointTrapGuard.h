@@ -7,8 +7,8 @@
 namespace deformvolume
 {
 
-/// Some hosts trap floating-point exceptions, which OpenCL compilers and kernels may raise
-/// harmlessly: traps are off during the life of this object.
+/// Turns floating-point traps off during the lifetime of the object. Some programs enable them, but
+/// OpenCL compilers and kernels may raise harmless floating-point exceptions.
 class FloatingPointTrapGuard
 {
 public:
