@@ -228,12 +228,12 @@ vtkSmartPointer<vtkPointSet> vtkDeformGeometryFilter::vtkInternals::Move(vtkPoin
   {
     return output;
   }
-  std::vector<glm::dvec3> places(static_cast<std::size_t>(count));
+  std::vector<glm::dvec3> positions(static_cast<std::size_t>(count));
   vtkDataArray* inputPoints = input->GetPoints()->GetData();
   deformvolume::ReadVectors(
     inputPoints,
     [&](vtkIdType first, const glm::dvec3* points, vtkIdType number)
-    { std::copy_n(points, number, places.begin() + first); },
+    { std::copy_n(points, number, positions.begin() + first); },
     "Point", "point set on input port 0");
   const vtkSmartPointer<vtkDataArray> moved = deformvolume::MakeVectors(inputPoints, count);
   const std::vector<TransformedArray> arrays =
@@ -242,7 +242,7 @@ vtkSmartPointer<vtkPointSet> vtkDeformGeometryFilter::vtkInternals::Move(vtkPoin
   std::atomic<bool> isTooFar{ false };
   std::atomic<double> leastFading{ 0.0 }; // displacement, negated
   const double farthest = moved->GetDataTypeMax();
-  this->RunInParts(places.size(),
+  this->RunInParts(positions.size(),
     [&](std::size_t begin, std::size_t end)
     {
       vtkIdType outsideHere = 0;
@@ -252,7 +252,7 @@ vtkSmartPointer<vtkPointSet> vtkDeformGeometryFilter::vtkInternals::Move(vtkPoin
       {
         PointMap::Image& image = images[i - begin];
         const auto point = static_cast<vtkIdType>(i);
-        const bool isValid = this->MovePoint(places[i], image);
+        const bool isValid = this->MovePoint(positions[i], image);
         outsideHere += isValid ? 0 : 1;
         fadingHere = std::max(fadingHere, image.FadingDisplacement);
         const glm::dvec3 size = glm::abs(image.Point);

@@ -105,7 +105,7 @@ deformvolume::MappedVolume vtkDeformVolumeFilter::vtkInternals::GetMappedVolume(
       "into memory first.");
   }
   deformvolume::CheckTransform(given, "the volume on input port 0");
-  if (!deformvolume::AreSamePlaces(mapped.Whole, given, mapped.Whole.PointExtent))
+  if (!deformvolume::AreSamePositions(mapped.Whole, given, mapped.Whole.PointExtent))
   {
     throw Error("The volume on input port 0 has " + deformvolume::DescribeTransform(given) +
       ", but its source announced " + deformvolume::DescribeTransform(mapped.Whole) +

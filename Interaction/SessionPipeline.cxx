@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SessionPipeline.h"
 
-#include "SessionPlaces.h"
+#include "SessionPositions.h"
 #include "vtkDeformVolumeSession.h"
 
 #include "vtkCallbackCommand.h"
@@ -51,7 +51,7 @@ void TakeWarning(vtkObject*, unsigned long, void* target, void* text)
   static_cast<std::vector<std::string>*>(target)->push_back(StripMessage(text));
 }
 
-glm::dvec3 GetPlace(const SessionEvent& event, std::size_t first)
+glm::dvec3 GetPosition(const SessionEvent& event, std::size_t first)
 {
   return { event.Numbers[first], event.Numbers[first + 1], event.Numbers[first + 2] };
 }
@@ -164,9 +164,9 @@ void SessionPipeline::Apply(const SessionEvent& event)
   switch (event.Kind)
   {
     case SessionEvent::BEGIN_GRAB:
-      return this->BeginGrab(event.Numbers[0], GetPlace(event, 1));
+      return this->BeginGrab(event.Numbers[0], GetPosition(event, 1));
     case SessionEvent::MOVE_GRAB:
-      this->FindHandle(event.Numbers[0], true).Now = GetPlace(event, 1);
+      this->FindHandle(event.Numbers[0], true).Now = GetPosition(event, 1);
       return;
     case SessionEvent::END_GRAB:
     {
@@ -220,11 +220,11 @@ void SessionPipeline::Apply(const SessionEvent& event)
   }
 }
 
-void SessionPipeline::BeginGrab(double handle, const glm::dvec3& place)
+void SessionPipeline::BeginGrab(double handle, const glm::dvec3& position)
 {
   try
   {
-    this->TryBeginGrab(handle, place);
+    this->TryBeginGrab(handle, position);
   }
   catch (...)
   {
@@ -233,7 +233,7 @@ void SessionPipeline::BeginGrab(double handle, const glm::dvec3& place)
   }
 }
 
-void SessionPipeline::TryBeginGrab(double handle, const glm::dvec3& place)
+void SessionPipeline::TryBeginGrab(double handle, const glm::dvec3& position)
 {
   for (const Action& action : this->Done)
   {
@@ -244,7 +244,7 @@ void SessionPipeline::TryBeginGrab(double handle, const glm::dvec3& place)
   }
   Action drag;
   drag.Handle = handle;
-  drag.Rest = FindRestPlace(this->GetDeformation(), place);
+  drag.Rest = FindRestPosition(this->GetDeformation(), position);
   drag.IsGrabbed = drag.IsHeld = true;
   double bounds[6];
   this->Volume->GetBounds(bounds);
@@ -263,7 +263,7 @@ void SessionPipeline::TryBeginGrab(double handle, const glm::dvec3& place)
   }
   drag.ToNode = this->FindWayToNode(drag.Rest);
   // The point of the body that is nearest stays where it is until the handle is moved.
-  drag.Now = drag.LastPossible = FindDeformedPlace(this->GetDeformation(), drag.Rest);
+  drag.Now = drag.LastPossible = FindDeformedPosition(this->GetDeformation(), drag.Rest);
   const Actions undone = this->Undone;
   this->Do(drag);
   if (this->GetElastic())
@@ -322,11 +322,11 @@ void SessionPipeline::Cut(const SessionEvent& event)
   vtkPoints* points = cut.RestSheet->GetPoints();
   for (vtkIdType id = 0; id < points->GetNumberOfPoints(); ++id)
   {
-    double place[3];
-    points->GetPoint(id, place);
+    double position[3];
+    points->GetPoint(id, position);
     // A sheet ends where there is no tissue, and there any place will do.
     const glm::dvec3 rest =
-      EstimateRestPlace(this->GetDeformation(), { place[0], place[1], place[2] });
+      EstimateRestPosition(this->GetDeformation(), { position[0], position[1], position[2] });
     points->SetPoint(id, rest.x, rest.y, rest.z);
   }
   vtkElasticDeformation* elastic = this->GetElastic();
@@ -383,7 +383,7 @@ void SessionPipeline::CutMesh(
 
 void SessionPipeline::Carve(const SessionEvent& event)
 {
-  const glm::dvec3 place = GetPlace(event, 1);
+  const glm::dvec3 position = GetPosition(event, 1);
   if (!(event.Numbers[4] > 0.0))
   {
     throw std::runtime_error("The radius to carve with is not greater than 0.");
@@ -400,7 +400,7 @@ void SessionPipeline::Carve(const SessionEvent& event)
     this->CarveFilter->SetDeformationData(this->GetDeformation());
   }
   this->CarveFilter->SetToolRadius(event.Numbers[4]);
-  this->CarveFilter->AddToolPosition(place.x, place.y, place.z);
+  this->CarveFilter->AddToolPosition(position.x, position.y, position.z);
   try
   {
     this->Update(this->CarveFilter);

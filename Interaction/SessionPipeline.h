@@ -119,8 +119,8 @@ private:
   };
   using Actions = std::vector<Action>;
 
-  void BeginGrab(double handle, const glm::dvec3& place);
-  void TryBeginGrab(double handle, const glm::dvec3& place);
+  void BeginGrab(double handle, const glm::dvec3& position);
+  void TryBeginGrab(double handle, const glm::dvec3& position);
   void StepBack();
   Action& FindHandle(double handle, bool isGrabbed);
   void Release(double handle);

@@ -254,9 +254,9 @@ glm::dvec3 SessionPipeline::FindWayToNode(const glm::dvec3& rest)
   vtkDataArray* fixed = this->RestMesh->GetPointData()->GetArray("Fixed");
   glm::dvec3 nearest(0.0); // no way where no node can move
   double least = std::numeric_limits<double>::infinity();
-  const auto take = [&](const glm::dvec3& place)
+  const auto take = [&](const glm::dvec3& position)
   {
-    const glm::dvec3 way = place - rest;
+    const glm::dvec3 way = position - rest;
     const double square = glm::dot(way, way);
     if (square < least)
     {
@@ -264,11 +264,11 @@ glm::dvec3 SessionPipeline::FindWayToNode(const glm::dvec3& rest)
       nearest = way;
     }
   };
-  const auto getPlace = [&](vtkIdType id)
+  const auto getPosition = [&](vtkIdType id)
   {
-    glm::dvec3 place;
-    this->RestMesh->GetPoint(id, &place.x);
-    return place;
+    glm::dvec3 position;
+    this->RestMesh->GetPoint(id, &position.x);
+    return position;
   };
   const auto isFixed = [&](vtkIdType id) { return fixed && fixed->GetComponent(id, 0) != 0.0; };
   for (vtkIdType id = 0; id < this->RestMesh->GetNumberOfPoints(); ++id)
@@ -276,7 +276,7 @@ glm::dvec3 SessionPipeline::FindWayToNode(const glm::dvec3& rest)
     // Points that no cell uses are no nodes.
     if (!isFixed(id) && this->IsUsed(id))
     {
-      take(getPlace(id));
+      take(getPosition(id));
     }
   }
   // The nodes that finite elements have in the middle of edges.
@@ -292,7 +292,7 @@ glm::dvec3 SessionPipeline::FindWayToNode(const glm::dvec3& rest)
       {
         if (!(isFixed(ids->GetId(i)) && isFixed(ids->GetId(k))))
         {
-          take(0.5 * (getPlace(ids->GetId(i)) + getPlace(ids->GetId(k))));
+          take(0.5 * (getPosition(ids->GetId(i)) + getPosition(ids->GetId(k))));
         }
       }
     }

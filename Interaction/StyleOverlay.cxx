@@ -113,16 +113,16 @@ void StyleOverlay::ClearMarks()
   this->Marks.clear();
 }
 
-void StyleOverlay::AddPoint(const glm::dvec3& place, const Colour& colour)
+void StyleOverlay::AddPoint(const glm::dvec3& position, const Colour& colour)
 {
-  this->Marks.push_back({ { place }, colour });
+  this->Marks.push_back({ { position }, colour });
 }
 
-void StyleOverlay::AddLine(const std::vector<glm::dvec3>& places, const Colour& colour)
+void StyleOverlay::AddLine(const std::vector<glm::dvec3>& positions, const Colour& colour)
 {
-  if (places.size() > 1)
+  if (positions.size() > 1)
   {
-    this->Marks.push_back({ places, colour });
+    this->Marks.push_back({ positions, colour });
   }
 }
 
@@ -145,12 +145,13 @@ void StyleOverlay::PutMarks()
   colours->SetNumberOfComponents(3);
   const auto put = [&](const Mark& mark, vtkCellArray* cells)
   {
-    cells->InsertNextCell(static_cast<int>(mark.Places.size()));
+    cells->InsertNextCell(static_cast<int>(mark.Positions.size()));
     const int* origin = this->Renderer->GetOrigin();
-    for (const glm::dvec3& place : mark.Places)
+    for (const glm::dvec3& position : mark.Positions)
     {
       double at[3];
-      vtkInteractorObserver::ComputeWorldToDisplay(this->Renderer, place.x, place.y, place.z, at);
+      vtkInteractorObserver::ComputeWorldToDisplay(
+        this->Renderer, position.x, position.y, position.z, at);
       cells->InsertCellPoint(points->InsertNextPoint(at[0] - origin[0], at[1] - origin[1], 0.0));
     }
     colours->InsertNextTypedTuple(mark.Paint.data());
@@ -160,14 +161,14 @@ void StyleOverlay::PutMarks()
     // Colours of cells follow VTK's order: vertices before lines.
     for (const Mark& mark : this->Marks)
     {
-      if (mark.Places.size() == 1)
+      if (mark.Positions.size() == 1)
       {
         put(mark, vertices);
       }
     }
     for (const Mark& mark : this->Marks)
     {
-      if (mark.Places.size() > 1)
+      if (mark.Positions.size() > 1)
       {
         put(mark, lines);
       }

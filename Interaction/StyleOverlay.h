@@ -37,8 +37,8 @@ public:
   ///@{
   /// They are the same until they are cleared.
   void ClearMarks();
-  void AddPoint(const glm::dvec3& place, const Colour& colour);
-  void AddLine(const std::vector<glm::dvec3>& places, const Colour& colour);
+  void AddPoint(const glm::dvec3& position, const Colour& colour);
+  void AddLine(const std::vector<glm::dvec3>& positions, const Colour& colour);
   ///@}
 
   ///@{
@@ -51,7 +51,7 @@ public:
 private:
   struct Mark
   {
-    std::vector<glm::dvec3> Places; // one for a point
+    std::vector<glm::dvec3> Positions; // one for a point
     Colour Paint;
   };
 

@@ -13,9 +13,9 @@ std::string Format(double number)
   return digits;
 }
 
-std::string Format(const double place[3])
+std::string Format(const double position[3])
 {
-  return "(" + Format(place[0]) + ", " + Format(place[1]) + ", " + Format(place[2]) + ")";
+  return "(" + Format(position[0]) + ", " + Format(position[1]) + ", " + Format(position[2]) + ")";
 }
 
 } // namespace deformvolume

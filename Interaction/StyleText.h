@@ -54,7 +54,7 @@ int FindChoice(const std::array<Choice, Count>& choices, char key)
 }
 
 std::string Format(double number);
-std::string Format(const double place[3]);
+std::string Format(const double position[3]);
 
 } // namespace deformvolume
 

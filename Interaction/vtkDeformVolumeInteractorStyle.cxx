@@ -83,9 +83,9 @@ std::vector<std::pair<int, glm::dvec3>> vtkDeformVolumeInteractorStyle::vtkInter
   std::vector<std::pair<int, glm::dvec3>> found;
   for (vtkIdType id = 0; id < handles->GetNumberOfPoints(); ++id)
   {
-    glm::dvec3 place(0.0);
-    handles->GetPoint(id, &place.x);
-    found.emplace_back(static_cast<int>(numbers->GetComponent(id, 0)), place);
+    glm::dvec3 worldPosition(0.0);
+    handles->GetPoint(id, &worldPosition.x);
+    found.emplace_back(static_cast<int>(numbers->GetComponent(id, 0)), worldPosition);
   }
   return found;
 }
@@ -482,9 +482,9 @@ void vtkDeformVolumeInteractorStyle::UpdateOverlay()
     stroke.push_back(GetWorld(this->CurrentRenderer, point[0], point[1], 0.5));
   }
   overlay.AddLine(stroke, StrokeColour);
-  for (const glm::dvec3& place : internals.Measured)
+  for (const glm::dvec3& worldPosition : internals.Measured)
   {
-    overlay.AddPoint(place, MeasureColour);
+    overlay.AddPoint(worldPosition, MeasureColour);
   }
   overlay.AddLine(internals.Measured, MeasureColour);
   for (const glm::dvec3& centre : internals.Sphere)
@@ -508,7 +508,7 @@ void vtkDeformVolumeInteractorStyle::UpdateOverlay()
   }
 }
 
-bool vtkDeformVolumeInteractorStyle::FindPlace(int x, int y, double place[3])
+bool vtkDeformVolumeInteractorStyle::FindPlace(int x, int y, double worldPosition[3])
 {
   if (!this->CheckInteractor() || !this->FindUsedRenderer() || !this->Internals->Output)
   {
@@ -519,7 +519,7 @@ bool vtkDeformVolumeInteractorStyle::FindPlace(int x, int y, double place[3])
     this, output, deformvolume::GetLineOfSight(this->CurrentRenderer, x, y));
   if (voxel >= 0)
   {
-    output->GetPoint(voxel, place);
+    output->GetPoint(voxel, worldPosition);
   }
   return voxel >= 0;
 }

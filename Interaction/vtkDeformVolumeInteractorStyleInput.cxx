@@ -108,16 +108,16 @@ void vtkDeformVolumeInteractorStyle::OnMouseMove()
     this->ProbeAt(x, y);
     return;
   }
-  glm::dvec3 place(0.0);
+  glm::dvec3 position(0.0);
   const bool wasThere = !internals.Sphere.empty();
   internals.Sphere.clear();
   if (internals.IsPressed)
   {
     internals.Sphere.push_back(internals.Carved);
   }
-  else if (this->FindPlace(x, y, &place.x))
+  else if (this->FindPlace(x, y, &position.x))
   {
-    internals.Sphere.push_back(place);
+    internals.Sphere.push_back(position);
   }
   internals.IsChanged = internals.IsChanged || wasThere || !internals.Sphere.empty();
 }

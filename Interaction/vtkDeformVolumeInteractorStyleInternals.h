@@ -3,7 +3,7 @@
 #define vtkDeformVolumeInteractorStyleInternals_h
 
 #include "StyleOverlay.h"
-#include "VisiblePlaces.h"
+#include "VisiblePositions.h"
 #include "vtkDeformVolumeInteractorStyle.h"
 #include "vtkDeformVolumeSession.h"
 

@@ -76,8 +76,8 @@ void vtkDeformVolumeInteractorStyle::BeginTool()
     internals.Stroke.push_back({ { x, y } });
     return;
   }
-  glm::dvec3 place(0.0);
-  if (!this->FindPlace(x, y, &place.x))
+  glm::dvec3 worldPosition(0.0);
+  if (!this->FindPlace(x, y, &worldPosition.x))
   {
     this->ShowMessage("There is nothing here. Press on the body.");
     return;
@@ -85,11 +85,12 @@ void vtkDeformVolumeInteractorStyle::BeginTool()
   switch (this->Tool)
   {
     case GRAB:
-      internals.Handle = internals.Session->BeginGrab(place.x, place.y, place.z);
+      internals.Handle =
+        internals.Session->BeginGrab(worldPosition.x, worldPosition.y, worldPosition.z);
       if (internals.Handle >= 0)
       {
         internals.IsPressed = true;
-        internals.Held = place;
+        internals.Held = worldPosition;
         internals.Cursor = { { x, y } };
         if (internals.GetModel() == Session::NONE)
         {
@@ -100,8 +101,9 @@ void vtkDeformVolumeInteractorStyle::BeginTool()
     case CARVE:
       internals.IsPressed = true;
       internals.CarvedImage = internals.Output;
-      internals.Carved = place;
-      internals.Session->CarveSphere(place.x, place.y, place.z, this->GetUsedCarveRadius());
+      internals.Carved = worldPosition;
+      internals.Session->CarveSphere(
+        worldPosition.x, worldPosition.y, worldPosition.z, this->GetUsedCarveRadius());
       break;
     case PROBE:
       this->ProbeAt(x, y);
@@ -159,13 +161,14 @@ void vtkDeformVolumeInteractorStyle::CarveAt(int x, int y, bool isLast)
   {
     return;
   }
-  glm::dvec3 place(0.0);
-  internals.CarvedImage->GetPoint(voxel, &place.x);
-  const double way = glm::length(place - internals.Carved);
+  glm::dvec3 worldPosition(0.0);
+  internals.CarvedImage->GetPoint(voxel, &worldPosition.x);
+  const double way = glm::length(worldPosition - internals.Carved);
   if (way >= 0.25 * this->GetUsedCarveRadius() || (isLast && way > 0.0))
   {
-    internals.Carved = place;
-    internals.Session->CarveTo(place.x, place.y, place.z, this->GetUsedCarveRadius());
+    internals.Carved = worldPosition;
+    internals.Session->CarveTo(
+      worldPosition.x, worldPosition.y, worldPosition.z, this->GetUsedCarveRadius());
   }
 }
 
@@ -206,11 +209,11 @@ void vtkDeformVolumeInteractorStyle::FinishCut()
 {
   vtkInternals& internals = *this->Internals;
   const std::size_t count = internals.Stroke.size();
-  std::vector<glm::dvec3> places(count, glm::dvec3(0.0));
+  std::vector<glm::dvec3> positions(count, glm::dvec3(0.0));
   std::vector<bool> isFound(count, false);
   for (std::size_t i = 0; i < count; ++i)
   {
-    isFound[i] = this->FindPlace(internals.Stroke[i][0], internals.Stroke[i][1], &places[i].x);
+    isFound[i] = this->FindPlace(internals.Stroke[i][0], internals.Stroke[i][1], &positions[i].x);
   }
   if (count < 2 || std::find(isFound.begin(), isFound.end(), true) == isFound.end())
   {
@@ -230,15 +233,15 @@ void vtkDeformVolumeInteractorStyle::FinishCut()
     {
       ++way;
     }
-    const glm::dvec3 nearest = places[isThere(i + way) ? i + way : i - way];
+    const glm::dvec3 nearest = positions[isThere(i + way) ? i + way : i - way];
     const double x = internals.Stroke[i][0];
     const double y = internals.Stroke[i][1];
     const double depth = GetDisplay(this->CurrentRenderer, nearest).z;
-    const glm::dvec3 place = GetWorld(this->CurrentRenderer, x, y, depth);
+    const glm::dvec3 worldPosition = GetWorld(this->CurrentRenderer, x, y, depth);
     const glm::dvec3 away = glm::normalize(
       GetWorld(this->CurrentRenderer, x, y, 1.0) - GetWorld(this->CurrentRenderer, x, y, 0.0));
-    upper.push_back(place - above * away);
-    lower.push_back(place + this->GetUsedCutDepth() * away);
+    upper.push_back(worldPosition - above * away);
+    lower.push_back(worldPosition + this->GetUsedCutDepth() * away);
   }
   internals.Session->Cut(MakeStrip(upper, lower));
 }
@@ -247,8 +250,8 @@ void vtkDeformVolumeInteractorStyle::FinishCut()
 void vtkDeformVolumeInteractorStyle::ProbeAt(int x, int y)
 {
   vtkInternals& internals = *this->Internals;
-  double place[3];
-  if (!this->FindPlace(x, y, place))
+  double worldPosition[3];
+  if (!this->FindPlace(x, y, worldPosition))
   {
     this->ShowMessage("There is nothing here.");
     return;
@@ -257,27 +260,27 @@ void vtkDeformVolumeInteractorStyle::ProbeAt(int x, int y)
   {
     vtkImageData* output = internals.Output;
     vtkDataArray* scalars = output->GetPointData()->GetScalars();
-    const vtkIdType voxel = output->FindPoint(place);
+    const vtkIdType voxel = output->FindPoint(worldPosition);
     this->ShowMessage("value " + Format(scalars ? scalars->GetComponent(voxel, 0) : 0.0) + " at " +
-      Format(place) + ", moving");
+      Format(worldPosition) + ", moving");
   }
-  else if (internals.Session->Probe(place[0], place[1], place[2]))
+  else if (internals.Session->Probe(worldPosition[0], worldPosition[1], worldPosition[2]))
   {
     this->ShowMessage("value " + Format(internals.Session->GetProbedValue()) + " at " +
-      Format(place) + ", at rest " + Format(internals.Session->GetProbedRestPosition()));
+      Format(worldPosition) + ", at rest " + Format(internals.Session->GetProbedRestPosition()));
   }
 }
 
 void vtkDeformVolumeInteractorStyle::MeasureAt(int x, int y)
 {
   vtkInternals& internals = *this->Internals;
-  glm::dvec3 place(0.0);
-  this->FindPlace(x, y, &place.x);
+  glm::dvec3 worldPosition(0.0);
+  this->FindPlace(x, y, &worldPosition.x);
   if (internals.Measured.size() > 1)
   {
     internals.Measured.clear();
   }
-  internals.Measured.push_back(place);
+  internals.Measured.push_back(worldPosition);
   if (internals.Measured.size() == 1)
   {
     this->ShowMessage("Press on the other place.");
@@ -290,13 +293,13 @@ void vtkDeformVolumeInteractorStyle::MeasureAt(int x, int y)
 void vtkDeformVolumeInteractorStyle::PinAt(int x, int y)
 {
   vtkInternals& internals = *this->Internals;
-  glm::dvec3 place(0.0);
-  if (!this->FindPlace(x, y, &place.x))
+  glm::dvec3 worldPosition(0.0);
+  if (!this->FindPlace(x, y, &worldPosition.x))
   {
     this->ShowMessage("There is nothing here. Pin a place on the body.");
     return;
   }
-  internals.Session->Pin(place.x, place.y, place.z);
+  internals.Session->Pin(worldPosition.x, worldPosition.y, worldPosition.z);
 }
 
 void vtkDeformVolumeInteractorStyle::ReleaseAt(int x, int y)

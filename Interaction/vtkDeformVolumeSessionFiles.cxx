@@ -153,11 +153,12 @@ bool vtkDeformVolumeSession::Save(const std::string& fileName, bool isMesh)
     vtkDataArray* vectors = mesh->GetPointData()->GetVectors();
     for (vtkIdType id = 0; id < deformed->GetNumberOfPoints(); ++id)
     {
-      double place[3];
+      double position[3];
       double by[3];
-      mesh->GetPoint(id, place);
+      mesh->GetPoint(id, position);
       vectors->GetTuple(id, by);
-      deformed->GetPoints()->SetPoint(id, place[0] + by[0], place[1] + by[1], place[2] + by[2]);
+      deformed->GetPoints()->SetPoint(
+        id, position[0] + by[0], position[1] + by[1], position[2] + by[2]);
     }
     WriteData<vtkXMLUnstructuredGridWriter>(deformed, fileName);
     return true;

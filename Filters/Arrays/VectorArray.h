@@ -29,7 +29,7 @@ struct VectorMemory
   const void* Array = nullptr; // null where nothing is known
   vtkMTimeType Time = 0;       // of the array
   vtkIdType Count = 0;         // of its tuples
-  vtkIdType Place = 0;         // what its first tuple counted as
+  vtkIdType FirstNumber = 0;   // what its first tuple counted as
 };
 
 /// Reads the tuples of an array of three components, in parallel, some at a time. Throws an Error

@@ -180,10 +180,10 @@ void ReadPointVectors(const MeshParts& parts, const ArraySelector& selector, Nod
     const vtkIdType points = grid->GetNumberOfPoints();
     vtkDataArray* array = points > 0 ? selector(grid) : nullptr;
     const bool isUsable = HaveVectors(grid, array);
-    if (!isUsable || last[part].Place != next)
+    if (!isUsable || last[part].FirstNumber != next)
     {
       last[part] = VectorMemory();
-      last[part].Place = next;
+      last[part].FirstNumber = next;
     }
     if (!isUsable)
     {

@@ -264,10 +264,10 @@ void RestMesh::ReadMovedPoints(const MeshParts& rest, const DeformationSource& s
   {
     VectorMemory& memory = this->PointMemories[part];
     const vtkIdType count = rest[part]->GetNumberOfPoints();
-    if (count == 0 || memory.Place != first)
+    if (count == 0 || memory.FirstNumber != first)
     {
       memory = VectorMemory();
-      memory.Place = first;
+      memory.FirstNumber = first;
     }
     if (count > 0)
     {

@@ -68,10 +68,10 @@ void ReadPointDifferences(const MeshParts& shape, const MeshParts& rest, const V
   for (std::size_t part = 0; part < shape.size(); ++part)
   {
     const vtkIdType count = shape[part]->GetNumberOfPoints();
-    if (count == 0 || memories[part].Place != next)
+    if (count == 0 || memories[part].FirstNumber != next)
     {
       memories[part] = VectorMemory();
-      memories[part].Place = next;
+      memories[part].FirstNumber = next;
     }
     if (count > 0)
     {

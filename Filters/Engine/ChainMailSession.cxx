@@ -2,7 +2,7 @@
 #include "ChainMailSession.h"
 
 #include "ExtentRanges.h"
-#include "HandlePlaces.h"
+#include "HandlePositions.h"
 #include "PipelineGeometry.h"
 #include "ShapedArray.h"
 #include "VolumeArrays.h"
@@ -40,8 +40,8 @@ vtkDataArray* FindVolumeArray(vtkImageData* volume, const char* name)
 std::vector<ChainMailHandle> ReadHandles(
   vtkPointSet* handles, const ImageGeometry& geometry, double radius)
 {
-  const HandlePlaces places = ReadHandlePlaces(handles, "volume");
-  return MakeHandles(geometry, places.Rest, places.Now, radius);
+  const HandlePositions positions = ReadHandlePositions(handles, "volume");
+  return MakeHandles(geometry, positions.Rest, positions.Now, radius);
 }
 
 // The masks as links see them: what a smooth cut crosses holds nothing together.

@@ -291,7 +291,7 @@ void DeviceSession::SetMesh(const Deformation& deformation, MappingCache& mappin
     this->SendMesh(mesh, mapping.GetMapping(), mapping.IsByRuns());
     transfer.End();
     this->SentMapping = mapping.GetVersion();
-    this->PlacesAreSent = false;
+    this->CoincidentNodesAreSent = false;
   }
   else if (hasSplit)
   {
@@ -305,17 +305,17 @@ void DeviceSession::SetMesh(const Deformation& deformation, MappingCache& mappin
     // Only the bounds of an extrapolated deformation need them again.
     mapping.ReleaseVoxels();
   }
-  if (openSplits != this->PlacesAreSent || (openSplits && hasSplit))
+  if (openSplits != this->CoincidentNodesAreSent || (openSplits && hasSplit))
   {
     if (openSplits)
     {
-      this->Places.Update(mesh);
+      this->Coincident.Update(mesh);
     }
     Transfer transfer(this);
-    this->Deformer.SetNodePlaces(
-      openSplits && !this->Places.Get().empty() ? this->Places.Get().data() : nullptr);
+    this->Deformer.SetCoincidentNodes(
+      openSplits && !this->Coincident.Get().empty() ? this->Coincident.Get().data() : nullptr);
     transfer.End();
-    this->PlacesAreSent = openSplits;
+    this->CoincidentNodesAreSent = openSplits;
   }
   if (!isCurrent || this->SentVectors != deformation.GetVectorsVersion())
   {

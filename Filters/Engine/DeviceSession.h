@@ -2,10 +2,10 @@
 #ifndef DeformVolumeDeviceSession_h
 #define DeformVolumeDeviceSession_h
 
+#include "CoincidentNodes.h"
 #include "Deformation.h"
 #include "FadedMesh.h"
 #include "MappingCache.h"
-#include "NodePlaces.h"
 #include "VolumeArrays.h"
 #include "VolumeDeformer.h"
 
@@ -100,8 +100,8 @@ private:
   bool HasInverseField = false;
   bool HasRestMesh = false;
   std::uint64_t SentConnectivity = 0;
-  NodePlaces Places;
-  bool PlacesAreSent = false;
+  CoincidentNodes Coincident;
+  bool CoincidentNodesAreSent = false;
   std::uint64_t SentMapping = 0;
   std::uint64_t SentVectors = 0;
   OutsideVoxels SentOutside;

@@ -4,7 +4,7 @@
 #include "CellNumbers.h"
 #include "CellTypes.h"
 #include "Error.h"
-#include "HandlePlaces.h"
+#include "HandlePositions.h"
 #include "IndexBounds.h"
 #include "ShapedArray.h"
 #include "VectorArray.h"
@@ -315,7 +315,7 @@ void AddMidSides(std::vector<MidSideNodes>&& ofCells, BodyMesh& mesh)
 }
 
 // Adds the nodes that a place holds. isTaken: by another handle.
-void Hold(const glm::dvec3& place, double radius, const glm::dvec3& displacement,
+void Hold(const glm::dvec3& position, double radius, const glm::dvec3& displacement,
   const BodyMesh& mesh, std::vector<unsigned char>& isTaken, std::vector<HeldNode>& held)
 {
   const ElasticBody& body = mesh.Body;
@@ -332,7 +332,7 @@ void Hold(const glm::dvec3& place, double radius, const glm::dvec3& displacement
   std::size_t nearest = 0;
   for (std::size_t node = 0; node < body.Points.size(); ++node)
   {
-    const double distance = glm::distance(body.Points[node], place);
+    const double distance = glm::distance(body.Points[node], position);
     if (distance < least && mesh.IsUsed[node] != 0)
     {
       least = distance;
@@ -469,12 +469,12 @@ std::vector<HeldNode> ReadHandles(
   vtkPointSet* handles, double radius, const BodyMesh& mesh, const BodySettings& settings)
 {
   std::vector<HeldNode> held;
-  const HandlePlaces places = ReadHandlePlaces(handles, "mesh");
+  const HandlePositions positions = ReadHandlePositions(handles, "mesh");
   std::vector<unsigned char> isTaken(mesh.Body.Points.size(), 0);
-  for (std::size_t i = 0; i < places.Rest.size(); ++i)
+  for (std::size_t i = 0; i < positions.Rest.size(); ++i)
   {
-    const glm::dvec3 rest = places.Rest[i] * settings.UnitLength;
-    const glm::dvec3 now = places.Now[i] * settings.UnitLength;
+    const glm::dvec3 rest = positions.Rest[i] * settings.UnitLength;
+    const glm::dvec3 now = positions.Now[i] * settings.UnitLength;
     Hold(rest, radius * settings.UnitLength, now - rest, mesh, isTaken, held);
   }
   return held;

@@ -272,25 +272,25 @@ void ElasticSession::FillMesh(vtkUnstructuredGrid* grid, vtkUnstructuredGrid* ma
   points->SetNumberOfPoints(static_cast<vtkIdType>(after));
   const auto getPoint = [&](std::size_t point)
   {
-    glm::dvec3 place;
-    grid->GetPoint(static_cast<vtkIdType>(point), &place.x);
-    return place;
+    glm::dvec3 position;
+    grid->GetPoint(static_cast<vtkIdType>(point), &position.x);
+    return position;
   };
   for (std::size_t node = 0; node < after; ++node)
   {
     const std::size_t origin = this->GetOrigin(node);
-    glm::dvec3 place;
+    glm::dvec3 position;
     if (origin < before)
     {
-      place = getPoint(origin);
+      position = getPoint(origin);
     }
     else
     {
       const std::array<std::int32_t, 2>& ends = this->Whole.MidSideEnds[origin - before];
-      place = 0.5 *
+      position = 0.5 *
         (getPoint(static_cast<std::size_t>(ends[0])) + getPoint(static_cast<std::size_t>(ends[1])));
     }
-    points->SetPoint(static_cast<vtkIdType>(node), &place.x);
+    points->SetPoint(static_cast<vtkIdType>(node), &position.x);
   }
   made->SetPoints(points);
   made->Allocate(grid->GetNumberOfCells());

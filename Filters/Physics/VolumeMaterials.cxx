@@ -120,13 +120,13 @@ private:
     std::size_t voxel = 0;
     for (int axis = 2; axis >= 0; --axis)
     {
-      const double place = std::floor(centroid[axis] + 0.5);
-      if (!(place >= whole[2 * axis] && place <= whole[2 * axis + 1]))
+      const double rounded = std::floor(centroid[axis] + 0.5);
+      if (!(rounded >= whole[2 * axis] && rounded <= whole[2 * axis + 1]))
       {
         return std::nullopt;
       }
       voxel = voxel * static_cast<std::size_t>(GetSize(whole, axis)) +
-        static_cast<std::size_t>(place - whole[2 * axis]);
+        static_cast<std::size_t>(rounded - whole[2 * axis]);
     }
     return this->IsHidden(voxel) ? std::nullopt : std::optional<std::size_t>(voxel);
   }

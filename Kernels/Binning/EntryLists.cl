@@ -217,13 +217,13 @@ __kernel void SortByDigits(__global const uint* keys, __global const int* lists,
   __global const uint* counters, __global uint* sortedKeys, __global int* sortedLists,
   __local uint* masks, const DigitParameters d)
 {
-  __local uint places[1 << DEFORMVOLUME_DIGIT_BITS];
+  __local uint indices[1 << DEFORMVOLUME_DIGIT_BITS];
   const uint item = get_local_id(0);
   const uint items = get_local_size(0);
   const uint words = (items + 31) / 32;
   for (uint digit = item; digit < 1u << d.Bits; digit += items)
   {
-    places[digit] = counters[digit * get_num_groups(0) + get_group_id(0)];
+    indices[digit] = counters[digit * get_num_groups(0) + get_group_id(0)];
     for (uint word = 0; word < words; ++word)
     {
       masks[digit * words + word] = 0;
@@ -252,14 +252,14 @@ __kernel void SortByDigits(__global const uint* keys, __global const int* lists,
         all += popcount(mask[word]);
       }
       before += popcount(mask[item / 32] & ((1u << item % 32) - 1));
-      const uint place = places[digit] + before;
-      sortedKeys[place] = key;
-      sortedLists[place] = lists[i];
+      const uint index = indices[digit] + before;
+      sortedKeys[index] = key;
+      sortedLists[index] = lists[i];
     }
     barrier(CLK_LOCAL_MEM_FENCE);
     if (i < end && before == all - 1)
     {
-      places[digit] += all;
+      indices[digit] += all;
       for (uint word = 0; word < words; ++word)
       {
         mask[word] = 0;

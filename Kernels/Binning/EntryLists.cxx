@@ -59,10 +59,10 @@ std::uint64_t EntryLists::Count(WorkDevice& device, const cl::Buffer& tetrahedra
   ReserveLists(device, this->EntryBegins, std::uint64_t{ count } * sizeof(cl_uint));
   SharedWork(device, "FindTiles", count)
     .Launch(device, tetrahedra, positions, buffers.Boxes, buffers.Counters, this->EntryBegins, p);
-  const std::size_t place = this->AddBefore(device, this->EntryBegins, count);
+  const std::size_t index = this->AddBefore(device, this->EntryBegins, count);
   cl_ulong length = 0;
   device.GetQueue().enqueueReadBuffer(
-    this->Sums, CL_TRUE, place * sizeof(length), sizeof(length), &length);
+    this->Sums, CL_TRUE, index * sizeof(length), sizeof(length), &length);
   return length;
 }
 

@@ -17,14 +17,14 @@ static int RangeBegin(size_t range, const RasterParameters* p)
   return (int)(p->Tetrahedra * range / get_global_size(0));
 }
 
-// boxes: the tiles of each tetrahedron. counters: see RasterParameters.h. places: the number of upright tetrahedra
+// boxes: the tiles of each tetrahedron. counters: see RasterParameters.h. rangeBegins: the number of upright tetrahedra
 // for each range and each tile, then the number of inverted ones.
 __kernel void CountTetrahedra(__global const int4* tetrahedra, __global const int4* positions,
-  __global uint2* boxes, __global uint* counters, __global uint* places, const RasterParameters p)
+  __global uint2* boxes, __global uint* counters, __global uint* rangeBegins, const RasterParameters p)
 {
   const size_t range = get_global_id(0);
   const size_t tiles = (size_t)p.TileCount[0] * p.TileCount[1] * p.TileCount[2];
-  __global uint* upright = places + tiles * range;
+  __global uint* upright = rangeBegins + tiles * range;
   __global uint* inverted = upright + tiles * get_global_size(0);
   for (size_t tile = 0; tile < tiles; ++tile)
   {
@@ -49,13 +49,13 @@ __kernel void CountTetrahedra(__global const int4* tetrahedra, __global const in
   atomic_add(counters + DEFORMVOLUME_BINNED_OVERSTRETCHED, overstretched);
 }
 
-// places: as above, but with the index in the lists of the next tetrahedron.
-__kernel void ListTetrahedra(__global const uint2* boxes, __global uint* places,
+// rangeBegins: as above, but with the index in the lists of the next tetrahedron.
+__kernel void ListTetrahedra(__global const uint2* boxes, __global uint* rangeBegins,
   __global int* lists, const RasterParameters p)
 {
   const size_t range = get_global_id(0);
   const size_t tiles = (size_t)p.TileCount[0] * p.TileCount[1] * p.TileCount[2];
-  __global uint* upright = places + tiles * range;
+  __global uint* upright = rangeBegins + tiles * range;
   __global uint* inverted = upright + tiles * get_global_size(0);
   const int end = RangeBegin(range + 1, &p);
   for (int t = RangeBegin(range, &p); t < end; ++t)

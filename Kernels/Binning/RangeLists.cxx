@@ -23,7 +23,7 @@ std::size_t CountRanges(WorkDevice& device, std::size_t numberOfTetrahedra, std:
     { most, 4 * units, 128, static_cast<std::uint64_t>(numberOfTetrahedra) }));
 }
 
-std::uint64_t CountPlaceBytes(std::size_t ranges, std::uint64_t tiles)
+std::uint64_t CountBeginBytes(std::size_t ranges, std::uint64_t tiles)
 {
   return 2 * ranges * tiles * sizeof(cl_uint);
 }
@@ -35,52 +35,52 @@ std::uint64_t RangeLists::Count(WorkDevice& device, const cl::Buffer& tetrahedra
 {
   const std::uint64_t tiles = CountTiles(p);
   const std::size_t ranges = CountRanges(device, static_cast<std::size_t>(p.Tetrahedra), tiles);
-  ReserveLists(device, this->Places, CountPlaceBytes(ranges, tiles));
+  ReserveLists(device, this->RangeBegins, CountBeginBytes(ranges, tiles));
   ReserveLists(device, buffers.Begins, (tiles + 1) * sizeof(cl_uint));
   cl::Kernel count(GetRangeListsProgram(device.GetContext()), "CountTetrahedra");
   count.setArg(0, tetrahedra);
   count.setArg(1, positions);
   count.setArg(2, buffers.Boxes);
   count.setArg(3, buffers.Counters);
-  count.setArg(4, this->Places);
+  count.setArg(4, this->RangeBegins);
   count.setArg(5, p);
   device.GetContext().Launch(device.GetQueue(), count, cl::NDRange(ranges), cl::NDRange(1));
-  return this->FindPlaces(device, ranges, static_cast<std::size_t>(tiles), buffers);
+  return this->FindRangeBegins(device, ranges, static_cast<std::size_t>(tiles), buffers);
 }
 
-std::uint64_t RangeLists::FindPlaces(
+std::uint64_t RangeLists::FindRangeBegins(
   WorkDevice& device, std::size_t ranges, std::size_t tiles, const ListBuffers& buffers)
 {
   // Prefix sums over the ranges, for one tile after the other.
   const std::size_t lists = 2 * ranges;
   std::vector<cl_uint> begins(tiles + 1);
   const cl::CommandQueue& queue = device.GetQueue();
-  cl_uint* places = static_cast<cl_uint*>(queue.enqueueMapBuffer(
-    this->Places, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0, CountPlaceBytes(ranges, tiles)));
-  std::uint64_t place = 0;
+  cl_uint* rangeBegins = static_cast<cl_uint*>(queue.enqueueMapBuffer(
+    this->RangeBegins, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0, CountBeginBytes(ranges, tiles)));
+  std::uint64_t next = 0;
   for (std::size_t tile = 0; tile < tiles; ++tile)
   {
-    begins[tile] = static_cast<cl_uint>(place);
+    begins[tile] = static_cast<cl_uint>(next);
     for (std::size_t list = 0; list < lists; ++list)
     {
-      cl_uint& entry = places[list * tiles + tile];
+      cl_uint& entry = rangeBegins[list * tiles + tile];
       const cl_uint number = entry;
-      entry = static_cast<cl_uint>(place);
-      place += number;
+      entry = static_cast<cl_uint>(next);
+      next += number;
     }
   }
-  begins[tiles] = static_cast<cl_uint>(place);
-  queue.enqueueUnmapMemObject(this->Places, places);
+  begins[tiles] = static_cast<cl_uint>(next);
+  queue.enqueueUnmapMemObject(this->RangeBegins, rangeBegins);
   queue.enqueueWriteBuffer(
     buffers.Begins, CL_TRUE, 0, begins.size() * sizeof(cl_uint), begins.data());
-  return place;
+  return next;
 }
 
 void RangeLists::Fill(WorkDevice& device, const RasterParameters& p, const ListBuffers& buffers)
 {
   cl::Kernel list(GetRangeListsProgram(device.GetContext()), "ListTetrahedra");
   list.setArg(0, buffers.Boxes);
-  list.setArg(1, this->Places);
+  list.setArg(1, this->RangeBegins);
   list.setArg(2, buffers.Lists);
   list.setArg(3, p);
   const std::size_t ranges =
@@ -90,13 +90,13 @@ void RangeLists::Fill(WorkDevice& device, const RasterParameters& p, const ListB
 
 std::uint64_t RangeLists::GetMemory() const
 {
-  return deformvolume::GetMemory(this->Places);
+  return deformvolume::GetMemory(this->RangeBegins);
 }
 
 std::uint64_t RangeLists::GetMemoryNeeded(
   WorkDevice& device, std::size_t numberOfTetrahedra, std::uint64_t tiles)
 {
-  return CountPlaceBytes(CountRanges(device, numberOfTetrahedra, tiles), tiles);
+  return CountBeginBytes(CountRanges(device, numberOfTetrahedra, tiles), tiles);
 }
 
 } // namespace deformvolume

@@ -27,10 +27,10 @@ public:
     WorkDevice& device, std::size_t numberOfTetrahedra, std::uint64_t tiles);
 
 private:
-  std::uint64_t FindPlaces(
+  std::uint64_t FindRangeBegins(
     WorkDevice& device, std::size_t ranges, std::size_t tiles, const ListBuffers& buffers);
 
-  cl::Buffer Places; // where each range of tetrahedra writes in the list of each tile
+  cl::Buffer RangeBegins; // where each range of tetrahedra writes in the list of each tile
 };
 
 } // namespace deformvolume

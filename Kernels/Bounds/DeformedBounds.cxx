@@ -186,8 +186,7 @@ bool EndsBetweenVoxels(
     !HoldsBox(field, GetBox(voxelGrid), BoundsTolerance);
 }
 
-// Returns the displacement at a position: interpolated trilinearly within the field, and faded
-// outside it.
+// The displacement at a outputRest: trilinear, and outside what is left of that of the border.
 glm::dvec3 Interpolate(const DisplacementField& field, const glm::dvec3& position)
 {
   const glm::dvec3 last(field.Dimensions[0] - 1, field.Dimensions[1] - 1, field.Dimensions[2] - 1);
@@ -303,9 +302,9 @@ IndexBounds ComputeBoundsOfCells(
       }
       if (!displacement.IsEmpty())
       {
-        const IndexBounds place = transform.ToOutput(rest);
-        bounds.Add(place.Min + displacement.Min);
-        bounds.Add(place.Max + displacement.Max);
+        const IndexBounds outputRest = transform.ToOutput(rest);
+        bounds.Add(outputRest.Min + displacement.Min);
+        bounds.Add(outputRest.Max + displacement.Max);
       }
     });
 }

@@ -146,16 +146,16 @@ void MeshBounds::Use(const Tetrahedron& tetrahedron, std::uint32_t uses)
 {
   for (const std::int32_t node : tetrahedron)
   {
-    const auto place = static_cast<std::size_t>(node);
-    if (place >= this->Uses.size()) // the node has been removed
+    const auto index = static_cast<std::size_t>(node);
+    if (index >= this->Uses.size()) // it is gone
     {
       continue;
     }
-    this->Uses[place] += uses;
-    this->Wanted[place] = this->Uses[place] > 0;
-    if (place / NodeBlock < this->StaleNodes.size())
+    this->Uses[index] += uses;
+    this->Wanted[index] = this->Uses[index] > 0;
+    if (index / NodeBlock < this->StaleNodes.size())
     {
-      this->StaleNodes[place / NodeBlock] = 1;
+      this->StaleNodes[index / NodeBlock] = 1;
     }
   }
 }

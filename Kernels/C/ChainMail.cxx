@@ -149,9 +149,10 @@ void SetMaterials(dv_chainmail& chainmail, const dv_chainmail_materials& given)
   chainmail.Model.SetMaterials(table, ReadMaterials(array, voxels, rule).data());
 }
 
-std::vector<glm::dvec3> ReadPlaces(const double* places, std::int64_t count, const char* what)
+std::vector<glm::dvec3> ReadPositions(
+  const double* coordinates, std::int64_t count, const char* what)
 {
-  const VectorView view = MakeView(places, DV_FLOAT64, count, what);
+  const VectorView view = MakeView(coordinates, DV_FLOAT64, count, what);
   std::vector<glm::dvec3> read;
   for (std::size_t i = 0; i < view.Count; ++i)
   {
@@ -243,8 +244,8 @@ std::int32_t dv_chainmail_step(
       }
       ChainMailRequest request;
       request.Handles = MakeHandles(chainmail->Volume,
-        ReadPlaces(wanted.rest_positions, wanted.number_of_handles, "rest positions of handles"),
-        ReadPlaces(wanted.positions, wanted.number_of_handles, "positions of handles"),
+        ReadPositions(wanted.rest_positions, wanted.number_of_handles, "rest positions of handles"),
+        ReadPositions(wanted.positions, wanted.number_of_handles, "positions of handles"),
         wanted.handle_radius);
       request.RelaxationSweeps = wanted.relaxation_sweeps;
       request.Elasticity = wanted.elasticity;

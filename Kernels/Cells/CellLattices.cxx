@@ -11,16 +11,19 @@ namespace deformvolume
 namespace
 {
 
-using Place = std::array<int, 3>;
+using LatticePoint = std::array<int, 3>;
 
 // The nodes of a lattice, numbered in the order in which they are added.
 class Lattice
 {
 public:
-  void Add(const Place& place) { this->Nodes.emplace(place, static_cast<int>(this->Nodes.size())); }
+  void Add(const LatticePoint& point)
+  {
+    this->Nodes.emplace(point, static_cast<int>(this->Nodes.size()));
+  }
 
-  // Adds the nodes between two lattice points that are `steps` steps apart.
-  void AddBetween(const Place& first, const Place& last, int steps)
+  // The nodes between two places that are so many steps apart.
+  void AddBetween(const LatticePoint& first, const LatticePoint& last, int steps)
   {
     for (int step = 1; step < steps; ++step)
     {
@@ -28,15 +31,15 @@ public:
     }
   }
 
-  // Adds all nodes of a triangle with `steps` steps along its edges.
-  void AddTriangle(const std::array<Place, 3>& corners, int steps)
+  // All nodes of a triangle with so many steps along its edges.
+  void AddTriangle(const std::array<LatticePoint, 3>& corners, int steps)
   {
     if (steps == 0)
     {
       this->Add(corners[0]);
       return;
     }
-    for (const Place& corner : corners)
+    for (const LatticePoint& corner : corners)
     {
       this->Add(corner);
     }
@@ -47,12 +50,12 @@ public:
     this->AddWithin(corners, steps);
   }
 
-  // Adds the nodes within a triangle, which form a smaller triangle.
-  void AddWithin(const std::array<Place, 3>& corners, int steps)
+  // Those that are not on its edges, which are a triangle again.
+  void AddWithin(const std::array<LatticePoint, 3>& corners, int steps)
   {
     if (steps >= 3)
     {
-      std::array<Place, 3> inner;
+      std::array<LatticePoint, 3> inner;
       for (std::size_t i = 0; i < 3; ++i)
       {
         std::array<int, 3> weights{ { 1, 1, 1 } };
@@ -63,14 +66,14 @@ public:
     }
   }
 
-  void AddTetrahedron(const std::array<Place, 4>& corners, int steps)
+  void AddTetrahedron(const std::array<LatticePoint, 4>& corners, int steps)
   {
     if (steps == 0)
     {
       this->Add(corners[0]);
       return;
     }
-    for (const Place& corner : corners)
+    for (const LatticePoint& corner : corners)
     {
       this->Add(corner);
     }
@@ -87,7 +90,7 @@ public:
     }
     if (steps >= 4)
     {
-      std::array<Place, 4> inner;
+      std::array<LatticePoint, 4> inner;
       for (std::size_t i = 0; i < 4; ++i)
       {
         std::array<int, 4> weights{ { 1, 1, 1, 1 } };
@@ -98,10 +101,10 @@ public:
     }
   }
 
-  // Returns the number of the node, or -1 if there is none.
-  int Get(const Place& place) const
+  // -1: there is no node.
+  int Get(const LatticePoint& point) const
   {
-    const auto found = this->Nodes.find(place);
+    const auto found = this->Nodes.find(point);
     return found == this->Nodes.end() ? -1 : found->second;
   }
 
@@ -109,22 +112,22 @@ private:
   // Returns the weighted mean of lattice points. sum: of the weights. The mean must be a lattice
   // point.
   template <std::size_t Count>
-  static Place Mix(
-    const std::array<Place, Count>& places, const std::array<int, Count>& weights, int sum)
+  static LatticePoint Mix(const std::array<LatticePoint, Count>& latticePoints,
+    const std::array<int, Count>& weights, int sum)
   {
-    Place mixed{ { 0, 0, 0 } };
+    LatticePoint mixed{ { 0, 0, 0 } };
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
       for (std::size_t i = 0; i < Count; ++i)
       {
-        mixed[axis] += weights[i] * places[i][axis];
+        mixed[axis] += weights[i] * latticePoints[i][axis];
       }
       mixed[axis] /= sum;
     }
     return mixed;
   }
 
-  std::map<Place, int> Nodes;
+  std::map<LatticePoint, int> Nodes;
 };
 
 NodeAt MakeNodeAt(const std::shared_ptr<Lattice>& lattice)
@@ -195,7 +198,7 @@ NodeAt NumberWedge(int degree, int layers)
   const auto lattice = std::make_shared<Lattice>();
   const int n = degree;
   const std::array<std::array<int, 2>, 3> ring{ { { { 0, 0 } }, { { n, 0 } }, { { 0, n } } } };
-  const auto at = [&](std::size_t corner, int k) -> Place {
+  const auto at = [&](std::size_t corner, int k) -> LatticePoint {
     return { { ring[corner % 3][0], ring[corner % 3][1], k } };
   };
   // Adds the nodes within a triangle.

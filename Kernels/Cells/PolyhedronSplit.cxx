@@ -272,7 +272,7 @@ bool FindCenter(const std::vector<Triangle>& triangles, const std::vector<glm::d
 
 // Returns the weights of points that add up to 1 and give a position, with the least sum of
 // squares.
-std::vector<double> FindWeights(const std::vector<glm::dvec3>& points, const glm::dvec3& place)
+std::vector<double> FindWeights(const std::vector<glm::dvec3>& points, const glm::dvec3& position)
 {
   const auto count = static_cast<double>(points.size());
   glm::dvec3 mean(0.0);
@@ -285,7 +285,7 @@ std::vector<double> FindWeights(const std::vector<glm::dvec3>& points, const glm
   {
     spread += glm::outerProduct(point - mean, point - mean);
   }
-  const glm::dvec3 factors = glm::inverse(spread) * (place - mean);
+  const glm::dvec3 factors = glm::inverse(spread) * (position - mean);
   std::vector<double> weights;
   for (const glm::dvec3& point : points)
   {

@@ -28,11 +28,11 @@
 
 #if SERIAL
 #define BARRIER()
-#define OR_INTO(place, bits) (*(place) |= (bits))
+#define OR_INTO(word, bits) (*(word) |= (bits))
 #define FOR_ROWS(r) for (int r = 0; r < ROWS; ++r)
 #else
 #define BARRIER() barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE)
-#define OR_INTO(place, bits) atomic_or(place, bits)
+#define OR_INTO(word, bits) atomic_or(word, bits)
 // All work-items take the same number of turns. PoCL 6.0 on CPUs with AVX-512 miscompiles loops of r that begin at
 // the number of the work-item, and does not compile this loop without the casts.
 #define FOR_ROWS(r)                                                                                \
@@ -117,9 +117,9 @@ INLINE int8 LinkLimits(int8 a, int8 b, uchar8 links, int axis)
 INLINE int FindRow(uint block, int r, int face, const ChainMailGrid* g, size_t* offset)
 {
   const int steps[3] = { 0, 1, 8 };
-  const int place = face < 4 ? r & 7 : r >> 3;
+  const int word = face < 4 ? r & 7 : r >> 3;
   const int step = steps[face >> 1];
-  if (face & 1 ? place < 7 : place > 0)
+  if (face & 1 ? word < 7 : word > 0)
   {
     *offset = (size_t)block * VOXELS + 8 * (face & 1 ? r + step : r - step);
     return 1;
@@ -186,12 +186,12 @@ INLINE void FindNeighbours(Neighbours* n, __global const int* displacements,
 
 // Returns the number of voxels of a block's row that lie in the volume, and sets the place of the first one in the
 // output.
-INLINE int FindOutputRow(uint block, int r, const ChainMailGrid* g, size_t* place)
+INLINE int FindOutputRow(uint block, int r, const ChainMailGrid* g, size_t* word)
 {
   const int x = block % g->Blocks[0] * 8;
   const int y = block / g->Blocks[0] % g->Blocks[1] * 8 + (r & 7);
   const int z = block / (g->Blocks[0] * g->Blocks[1]) * 8 + (r >> 3);
-  *place = (((size_t)z * g->Size[1] + y) * g->Size[0] + x) * 3;
+  *word = (((size_t)z * g->Size[1] + y) * g->Size[0] + x) * 3;
   return y < g->Size[1] && z < g->Size[2] ? min(8, g->Size[0] - x) : 0;
 }
 
@@ -200,14 +200,14 @@ INLINE void SaveBlock(
 {
   FOR_ROWS(r)
   {
-    size_t place;
-    const int count = FindOutputRow(block, r, g, &place);
+    size_t word;
+    const int count = FindOutputRow(block, r, g, &word);
     for (int c = 0; c < 3; ++c)
     {
       __global const int* row = displacements + ((size_t)block * 3 + c) * VOXELS + 8 * r;
       for (int i = 0; i < count; ++i)
       {
-        saved[place + c * count + i] = row[i];
+        saved[word + c * count + i] = row[i];
       }
     }
   }

@@ -57,7 +57,7 @@ int ChainMailBlocks::GetColor(std::uint32_t block) const
   return (index[0] + index[1] + index[2]) % 2;
 }
 
-std::uint32_t ChainMailBlocks::GetPlace(int x, int y, int z) const
+std::uint32_t ChainMailBlocks::GetVoxelIndex(int x, int y, int z) const
 {
   const int block = (z / Block * this->Counts[1] + y / Block) * this->Counts[0] + x / Block;
   const int voxel = (z % Block * Block + y % Block) * Block + x % Block;

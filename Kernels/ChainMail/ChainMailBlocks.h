@@ -29,7 +29,7 @@ public:
   /// Returns the color of a block, 0 or 1. Blocks that share a face have different colors.
   int GetColor(std::uint32_t block) const;
   /// Returns the place of a voxel in the memory of all blocks.
-  std::uint32_t GetPlace(int x, int y, int z) const;
+  std::uint32_t GetVoxelIndex(int x, int y, int z) const;
   /// Returns the local indices of the voxels of a block.
   Extent GetVoxels(std::uint32_t block) const;
   /// Appends the blocks that contain voxels of a box of local indices.

@@ -67,9 +67,9 @@ ChainMailHandles::ChainMailHandles(const ChainMailBlocks& blocks,
     this->Targets.push_back(target);
   }
   const auto order = [](const HeldVoxel& a, const HeldVoxel& b)
-  { return a.Place != b.Place ? a.Place < b.Place : a.Handle < b.Handle; };
+  { return a.Index != b.Index ? a.Index < b.Index : a.Handle < b.Handle; };
   std::sort(this->Voxels.begin(), this->Voxels.end(), order);
-  const auto isSame = [](const HeldVoxel& a, const HeldVoxel& b) { return a.Place == b.Place; };
+  const auto isSame = [](const HeldVoxel& a, const HeldVoxel& b) { return a.Index == b.Index; };
   this->Voxels.erase(
     std::unique(this->Voxels.begin(), this->Voxels.end(), isSame), this->Voxels.end());
   this->HasSome.resize(handles.size());
@@ -95,7 +95,7 @@ void ChainMailHandles::Select(const ChainMailBlocks& blocks, const std::array<do
     box[2 * axis + 1] =
       static_cast<int>(std::clamp(std::floor(at[axis] + radius), -1.0, 0.0 + last));
   }
-  this->Voxels.push_back({ blocks.GetPlace(nearest[0], nearest[1], nearest[2]), number });
+  this->Voxels.push_back({ blocks.GetVoxelIndex(nearest[0], nearest[1], nearest[2]), number });
   const double limit = handle.Radius * handle.Radius;
   const auto square = [&](int axis, int index)
   { return (index - at[axis]) * spacing[axis] * (index - at[axis]) * spacing[axis]; };
@@ -107,7 +107,7 @@ void ChainMailHandles::Select(const ChainMailBlocks& blocks, const std::array<do
       {
         if (square(0, x) + square(1, y) + square(2, z) <= limit)
         {
-          this->Voxels.push_back({ blocks.GetPlace(x, y, z), number });
+          this->Voxels.push_back({ blocks.GetVoxelIndex(x, y, z), number });
         }
       }
     }
@@ -119,7 +119,7 @@ std::vector<std::uint32_t> ChainMailHandles::GetBlocks() const
   std::vector<std::uint32_t> blocks;
   for (const HeldVoxel& voxel : this->Voxels)
   {
-    const std::uint32_t block = voxel.Place / DEFORMVOLUME_BLOCK_VOXELS;
+    const std::uint32_t block = voxel.Index / DEFORMVOLUME_BLOCK_VOXELS;
     if (blocks.empty() || blocks.back() != block)
     {
       blocks.push_back(block);

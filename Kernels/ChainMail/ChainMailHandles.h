@@ -15,7 +15,7 @@ namespace deformvolume
 /// A voxel that a handle holds.
 struct HeldVoxel
 {
-  std::uint32_t Place; // place in the memory of all blocks
+  std::uint32_t Index; // place in the memory of all blocks
   std::uint32_t Handle;
 };
 

@@ -142,7 +142,7 @@ void ChainMailLinks::Write(
           {
             for (int x = voxels[0]; x <= voxels[1]; ++x)
             {
-              unsigned char& byte = bytes[blocks.GetPlace(x, y, z)];
+              unsigned char& byte = bytes[blocks.GetVoxelIndex(x, y, z)];
               byte = static_cast<unsigned char>((byte & ~AllBits) | this->Find(blocks, x, y, z));
             }
           }

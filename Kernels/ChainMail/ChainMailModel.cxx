@@ -38,7 +38,7 @@ void ForVoxels(const ChainMailBlocks& blocks, const Function& function)
             static_cast<std::size_t>(size[0]);
           for (int x = 0; x < size[0]; ++x)
           {
-            function(row + static_cast<std::size_t>(x), blocks.GetPlace(x, y, z));
+            function(row + static_cast<std::size_t>(x), blocks.GetVoxelIndex(x, y, z));
           }
         }
       }
@@ -231,8 +231,8 @@ void ChainMailModel::SetMaterials(
         [&](unsigned char* bytes)
         {
           ForVoxels(*impl.Blocks,
-            [&](std::size_t voxel, std::uint32_t place)
-            { bytes[place] = indices ? indices[voxel] : 0; });
+            [&](std::size_t voxel, std::uint32_t index)
+            { bytes[index] = indices ? indices[voxel] : 0; });
         });
       impl.Solver->CheckDisplacements();
     });
@@ -266,11 +266,11 @@ void ChainMailModel::SetPinned(const unsigned char* pinned)
         [&](unsigned char* bytes)
         {
           ForVoxels(*impl.Blocks,
-            [&](std::size_t voxel, std::uint32_t place)
+            [&](std::size_t voxel, std::uint32_t index)
             {
               const int bit = pinned && pinned[voxel] ? DEFORMVOLUME_PINNED : 0;
-              bytes[place] =
-                static_cast<unsigned char>((bytes[place] & ~DEFORMVOLUME_PINNED) | bit);
+              bytes[index] =
+                static_cast<unsigned char>((bytes[index] & ~DEFORMVOLUME_PINNED) | bit);
             });
         });
     });
@@ -287,7 +287,7 @@ void ChainMailModel::SetOutput(float* output)
   impl.Guard(
     [&]
     {
-      impl.State->PlaceOutput(output);
+      impl.State->SetOutput(output);
       impl.State->WriteOutput(GetAll(*impl.Blocks));
       impl.State->ReadOutput({ impl.Blocks->GetExtent() });
     });
@@ -302,7 +302,7 @@ void ChainMailModel::SetOutput(const std::shared_ptr<DeviceVectors>& output)
   impl.Guard(
     [&]
     {
-      impl.State->PlaceOutput(output);
+      impl.State->SetOutput(output);
       impl.State->WriteOutput(GetAll(*impl.Blocks));
       impl.State->ReadOutput({ impl.Blocks->GetExtent() });
       impl.State->TellOfChanges({ impl.Blocks->GetExtent() });

@@ -3,7 +3,7 @@
 
 // Writes the displacements of a row in world units. fma rounds once on every device, so results are the same.
 INLINE void WriteRow(
-  const int8* x, __global int* output, size_t place, int count, const ChainMailGrid* g)
+  const int8* x, __global int* output, size_t index, int count, const ChainMailGrid* g)
 {
   float8 world[3];
   for (int k = 0; k < 3; ++k)
@@ -20,9 +20,9 @@ INLINE void WriteRow(
   }
   for (int i = 0; i < count; ++i)
   {
-    output[place + 3 * i] = values[0][i];
-    output[place + 3 * i + 1] = values[1][i];
-    output[place + 3 * i + 2] = values[2][i];
+    output[index + 3 * i] = values[0][i];
+    output[index + 3 * i + 1] = values[1][i];
+    output[index + 3 * i + 2] = values[2][i];
   }
 }
 
@@ -34,22 +34,22 @@ __kernel void Restore(__global int* displacements, __global uchar* flags, __glob
   const uint block = list[2 * get_group_id(0)];
   FOR_ROWS(r)
   {
-    size_t place;
-    const int count = FindOutputRow(block, r, &g, &place);
+    size_t index;
+    const int count = FindOutputRow(block, r, &g, &index);
     int8 x[3];
     for (int c = 0; c < 3; ++c)
     {
       __global int* row = displacements + ((size_t)block * 3 + c) * VOXELS + 8 * r;
       for (int i = 0; i < count; ++i)
       {
-        row[i] = saved[place + c * count + i];
+        row[i] = saved[index + c * count + i];
       }
       x[c] = vload8(0, row);
     }
     vstore8((uchar8)(0), 0, flags + (size_t)block * VOXELS + 8 * r);
     if (isEnd)
     {
-      WriteRow(x, saved, place, count, &g);
+      WriteRow(x, saved, index, count, &g);
     }
   }
 }
@@ -111,14 +111,14 @@ __kernel void Write(__global const int* displacements, __global int* output,
   const uint block = list[2 * get_group_id(0)];
   FOR_ROWS(r)
   {
-    size_t place;
-    const int count = FindOutputRow(block, r, &g, &place);
+    size_t index;
+    const int count = FindOutputRow(block, r, &g, &index);
     int8 x[3];
     for (int c = 0; c < 3; ++c)
     {
       x[c] = vload8(r, displacements + ((size_t)block * 3 + c) * VOXELS);
     }
-    WriteRow(x, output, place, count, &g);
+    WriteRow(x, output, index, count, &g);
   }
 }
 
@@ -138,8 +138,8 @@ __kernel void Finish(__global const int* displacements, __global uchar* flags,
   uint movedRows = 0;
   FOR_ROWS(r)
   {
-    size_t place;
-    const int count = FindOutputRow(block, r, &g, &place);
+    size_t index;
+    const int count = FindOutputRow(block, r, &g, &index);
     int8 x[3];
     int8 isMoved = 0;
     for (int c = 0; c < 3; ++c)
@@ -149,7 +149,7 @@ __kernel void Finish(__global const int* displacements, __global uchar* flags,
       vstore8(x[c], 0, before);
       for (int i = 0; i < count; ++i)
       {
-        before[i] = output[place + c * count + i];
+        before[i] = output[index + c * count + i];
       }
       isMoved |= vload8(0, before) != x[c];
     }
@@ -167,7 +167,7 @@ __kernel void Finish(__global const int* displacements, __global uchar* flags,
       }
       movedRows += rowMoved;
     }
-    WriteRow(x, output, place, count, &g);
+    WriteRow(x, output, index, count, &g);
   }
 #if SERIAL
   moved = movedRows;

@@ -52,9 +52,9 @@ INLINE int8 BoundByNeighbours(int8 bound, __global const int* displacements,
   }
   for (int face = 2; face < 6; ++face)
   {
-    const int place = face < 4 ? r & 7 : r >> 3;
+    const int index = face < 4 ? r & 7 : r >> 3;
     size_t beside;
-    if (place != (face & 1 ? 7 : 0) || !FindRow(block, r, face, g, &beside))
+    if (index != (face & 1 ? 7 : 0) || !FindRow(block, r, face, g, &beside))
     {
       continue;
     }
@@ -190,8 +190,8 @@ INLINE void FindLimits(__local int8* forward, __local int8* backward, __global c
   const uchar8 m = vload8(r, materials + (size_t)block * VOXELS);
   for (int axis = 0; axis < 3; ++axis)
   {
-    const int place = axis == 1 ? r & 7 : r >> 3;
-    if (axis > 0 && place == 7)
+    const int index = axis == 1 ? r & 7 : r >> 3;
+    if (axis > 0 && index == 7)
     {
       continue;
     }

@@ -17,9 +17,9 @@ INLINE int8 WeightsOf(__global const uchar* weights, uchar8 a, uchar8 b)
   {
     return (int8)(weights[a.s0 * 256 + b.s0]);
   }
-  const int8 place = convert_int8(a) * 256 + convert_int8(b);
-  return (int8)(weights[place.s0], weights[place.s1], weights[place.s2], weights[place.s3],
-    weights[place.s4], weights[place.s5], weights[place.s6], weights[place.s7]);
+  const int8 lookup = convert_int8(a) * 256 + convert_int8(b);
+  return (int8)(weights[lookup.s0], weights[lookup.s1], weights[lookup.s2], weights[lookup.s3],
+    weights[lookup.s4], weights[lookup.s5], weights[lookup.s6], weights[lookup.s7]);
 }
 
 INLINE float8 ReciprocalsOf(__global const float* reciprocals, int8 s)

@@ -121,15 +121,15 @@ void ChainMailState::ChangeMaterials(const std::function<void(unsigned char*)>& 
   this->ChangeBytes(this->Materials, change);
 }
 
-void ChainMailState::PlaceOutput(float* output)
+void ChainMailState::SetOutput(float* output)
 {
-  this->Output.Place(this->Device.GetContext(), output,
+  this->Output.Bind(this->Device.GetContext(), output,
     static_cast<std::size_t>(GetNumberOfPoints(this->Blocks.GetExtent())));
 }
 
-void ChainMailState::PlaceOutput(const std::shared_ptr<DeviceVectors>& output)
+void ChainMailState::SetOutput(const std::shared_ptr<DeviceVectors>& output)
 {
-  this->Output.Place(this->Device.GetContext(), output);
+  this->Output.Bind(this->Device.GetContext(), output);
 }
 
 void ChainMailState::TellOfChanges(const std::vector<Extent>& changes)

@@ -64,10 +64,10 @@ public:
 
   ///@{
   /// Set where the output goes: host memory, or vectors on this device, one per voxel.
-  void PlaceOutput(float* output);
-  void PlaceOutput(const std::shared_ptr<DeviceVectors>& output);
+  void SetOutput(float* output);
+  void SetOutput(const std::shared_ptr<DeviceVectors>& output);
   ///@}
-  bool HasOutput() const { return this->Output.IsPlaced(); }
+  bool HasOutput() const { return this->Output.IsSet(); }
   /// Waits until the output is written, and copies rows of blocks, in structured indices, to the
   /// host memory.
   void ReadOutput(const std::vector<Extent>& changes);

@@ -137,8 +137,8 @@ private:
     const auto size = box.Max - box.Min;
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     const std::size_t middle = begin + (end - begin) / 2;
-    const auto at = [this](std::size_t place)
-    { return this->Order.begin() + static_cast<std::ptrdiff_t>(place); };
+    const auto at = [this](std::size_t index)
+    { return this->Order.begin() + static_cast<std::ptrdiff_t>(index); };
     std::nth_element(at(begin), at(middle), at(end),
       [this, axis](std::size_t a, std::size_t b)
       {

@@ -41,8 +41,8 @@ void BoundaryDistances::Add(const DistanceSet& edit)
   {
     const DistanceSet::Block& block = edit.Blocks[i];
     ForEachCell(this->Bricks, edit.Bricks[i],
-      [&](const std::array<int, 3>&, std::size_t place, std::size_t vertex)
-      { this->Values[vertex] = std::min(this->Values[vertex], block[place]); });
+      [&](const std::array<int, 3>&, std::size_t index, std::size_t vertex)
+      { this->Values[vertex] = std::min(this->Values[vertex], block[index]); });
     this->Changed[edit.Bricks[i]] = true;
   }
 }
@@ -72,12 +72,12 @@ void BoundaryDistances::UpdateBrick(std::size_t brick, const std::vector<const D
     }
   }
   ForEachCell(this->Bricks, brick,
-    [&](const std::array<int, 3>&, std::size_t place, std::size_t vertex)
+    [&](const std::array<int, 3>&, std::size_t index, std::size_t vertex)
     {
       float least = this->Base.empty() ? this->Far : this->Base[vertex];
       for (const DistanceSet::Block* block : blocks)
       {
-        least = std::min(least, (*block)[place]);
+        least = std::min(least, (*block)[index]);
       }
       this->Values[vertex] = least;
     });

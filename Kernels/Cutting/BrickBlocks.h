@@ -18,9 +18,9 @@ template <typename Block>
 const Block* FindBlock(
   const std::vector<std::size_t>& bricks, const std::vector<Block>& blocks, std::size_t brick)
 {
-  const auto place = std::lower_bound(bricks.begin(), bricks.end(), brick);
-  return place != bricks.end() && *place == brick
-    ? &blocks[static_cast<std::size_t>(place - bricks.begin())]
+  const auto index = std::lower_bound(bricks.begin(), bricks.end(), brick);
+  return index != bricks.end() && *index == brick
+    ? &blocks[static_cast<std::size_t>(index - bricks.begin())]
     : nullptr;
 }
 
@@ -56,7 +56,7 @@ void ForEachCell(const CellBricks& bricks, std::size_t brick, Function&& functio
       for (int x = cells[0]; x <= cells[1]; ++x)
       {
         function(std::array<int, 3>{ { x, y, z } },
-          TetrahedronSet::GetPlace(x - cells[0], y - cells[2], z - cells[4]),
+          TetrahedronSet::GetIndex(x - cells[0], y - cells[2], z - cells[4]),
           row + static_cast<std::size_t>(x));
       }
     }

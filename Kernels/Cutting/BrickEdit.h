@@ -39,9 +39,9 @@ public:
   const SnappedPoint& GetPosition(std::size_t vertex) const { return this->Positions[vertex]; }
   /// Copies the positions of all vertices, in continuous structured indices.
   void CopyPoints(std::array<glm::dvec3, MaxVertices>& points) const;
-  bool IsPlaced(std::size_t vertex) const { return this->HasPositions[vertex]; }
+  bool HasPosition(std::size_t vertex) const { return this->HasPositions[vertex]; }
   /// Whether all vertices of a tetrahedron have positions.
-  bool IsPlaced(const std::array<std::size_t, 4>& vertices) const
+  bool HasPosition(const std::array<std::size_t, 4>& vertices) const
   {
     return this->HasPositions[vertices[0]] && this->HasPositions[vertices[1]] &&
       this->HasPositions[vertices[2]] && this->HasPositions[vertices[3]];
@@ -58,7 +58,7 @@ public:
       {
         for (int x = 0; x < this->Size[0]; ++x)
         {
-          function(x, y, z, TetrahedronSet::GetPlace(x, y, z));
+          function(x, y, z, TetrahedronSet::GetIndex(x, y, z));
         }
       }
     }
@@ -75,10 +75,10 @@ public:
   CellTetrahedra GetTetrahedra(int x, int y, int z) const;
 
   bool IsHit() const { return this->HasHits; }
-  unsigned char GetHits(std::size_t place) const { return this->Hits[place]; }
-  void Hit(std::size_t place, int tetrahedron)
+  unsigned char GetHits(std::size_t index) const { return this->Hits[index]; }
+  void Hit(std::size_t index, int tetrahedron)
   {
-    this->Hits[place] = static_cast<unsigned char>(this->Hits[place] | 1U << tetrahedron);
+    this->Hits[index] = static_cast<unsigned char>(this->Hits[index] | 1U << tetrahedron);
     this->HasHits = true;
   }
 

@@ -36,15 +36,15 @@ bool IsHit(const double* values, const std::array<std::size_t, 4>& v, CarvingRul
 void CarveByVertices(BrickEdit& edit, const double* values, CarvingRule rule)
 {
   edit.ForEachCell(
-    [&](int x, int y, int z, std::size_t place)
+    [&](int x, int y, int z, std::size_t index)
     {
       const BrickEdit::CellTetrahedra tetrahedra = edit.GetTetrahedra(x, y, z);
       for (int t = 0; t < 5; ++t)
       {
         const std::array<std::size_t, 4>& vertices = tetrahedra[static_cast<std::size_t>(t)];
-        if (edit.IsPlaced(vertices) && IsHit(values, vertices, rule))
+        if (edit.HasPosition(vertices) && IsHit(values, vertices, rule))
         {
-          edit.Hit(place, t);
+          edit.Hit(index, t);
         }
       }
     });
@@ -69,14 +69,14 @@ void CarveByCentroids(BrickEdit& edit, const CarvingTool& tool)
   tool.Function(centroids.data(), centroids.size(), values.data());
   const double* value = values.data();
   edit.ForEachCell(
-    [&](int x, int y, int z, std::size_t place)
+    [&](int x, int y, int z, std::size_t index)
     {
       const BrickEdit::CellTetrahedra tetrahedra = edit.GetTetrahedra(x, y, z);
       for (int t = 0; t < 5; ++t)
       {
-        if (*value++ < 0.0 && edit.IsPlaced(tetrahedra[static_cast<std::size_t>(t)]))
+        if (*value++ < 0.0 && edit.HasPosition(tetrahedra[static_cast<std::size_t>(t)]))
         {
-          edit.Hit(place, t);
+          edit.Hit(index, t);
         }
       }
     });
@@ -85,14 +85,14 @@ void CarveByCentroids(BrickEdit& edit, const CarvingTool& tool)
 void CarveAll(BrickEdit& edit)
 {
   edit.ForEachCell(
-    [&](int x, int y, int z, std::size_t place)
+    [&](int x, int y, int z, std::size_t index)
     {
       const BrickEdit::CellTetrahedra tetrahedra = edit.GetTetrahedra(x, y, z);
       for (int t = 0; t < 5; ++t)
       {
-        if (edit.IsPlaced(tetrahedra[static_cast<std::size_t>(t)]))
+        if (edit.HasPosition(tetrahedra[static_cast<std::size_t>(t)]))
         {
-          edit.Hit(place, t);
+          edit.Hit(index, t);
         }
       }
     });

@@ -58,12 +58,12 @@ public:
   /// Returns the local indices of the cells of a brick.
   Extent GetCells(std::size_t brick) const
   {
-    const std::array<std::size_t, 3> place{ { brick % this->Count[0],
+    const std::array<std::size_t, 3> index{ { brick % this->Count[0],
       brick / this->Count[0] % this->Count[1], brick / this->Count[0] / this->Count[1] } };
     Extent cells;
     for (int axis = 0; axis < 3; ++axis)
     {
-      cells[2 * axis] = static_cast<int>(place[axis]) * Length;
+      cells[2 * axis] = static_cast<int>(index[axis]) * Length;
       cells[2 * axis + 1] = std::min(cells[2 * axis] + Length, this->Size[axis]) - 1;
     }
     return cells;

@@ -42,7 +42,7 @@ struct CrossingSet
   /// The two vertices of each edge of a tetrahedron.
   static constexpr int Ends[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 2 }, { 1, 3 }, { 2, 3 } };
 
-  /// One item for each cell of a brick, with the index of TetrahedronSet::GetPlace().
+  /// One item for each cell of a brick, with the index of TetrahedronSet::GetIndex().
   using Block = std::array<Cell, CellBricks::Cells>;
 
   /// The bricks of cells with crossed edges, in ascending order.

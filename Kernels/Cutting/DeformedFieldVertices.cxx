@@ -78,14 +78,15 @@ bool DeformedFieldVertices::Find(const glm::dvec3& vertex, glm::dvec3& displacem
   for (int axis = 0; axis < 3; ++axis)
   {
     const double* row = &this->Field.IndexToField[4 * axis];
-    const double place = row[0] * vertex.x + row[1] * vertex.y + row[2] * vertex.z + row[3];
+    const double coordinate = row[0] * vertex.x + row[1] * vertex.y + row[2] * vertex.z + row[3];
     const double last = this->Field.Dimensions[axis] - 1;
-    if (!this->Field.Extrapolate && !(place >= -FieldTolerance && place <= last + FieldTolerance))
+    if (!this->Field.Extrapolate &&
+      !(coordinate >= -FieldTolerance && coordinate <= last + FieldTolerance))
     {
       return false;
     }
-    position[axis] = place;
-    inside[axis] = std::min(std::max(place, 0.0), last);
+    position[axis] = coordinate;
+    inside[axis] = std::min(std::max(coordinate, 0.0), last);
   }
   displacement = Interpolate(
     this->Field, inside, [this](std::int64_t point) { return GetVector(this->Field, point); });

@@ -104,7 +104,7 @@ void DeformedMeshVertices::FollowRow(
   const VertexRuns& runs = this->Mapping.Runs;
   const VertexRun* const end = runs.Runs.data() + runs.RowBegins[row + 1];
   const VertexRun* run = std::upper_bound(runs.Runs.data() + runs.RowBegins[row], end, first,
-                           [](int place, const VertexRun& other) { return place < other.Begin; }) -
+                           [](int at, const VertexRun& other) { return at < other.Begin; }) -
     1;
   for (int i = 0; i < count; ++run)
   {

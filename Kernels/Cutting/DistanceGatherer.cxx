@@ -25,7 +25,7 @@ void DistanceGatherer::Add(const Extent& vertices, const float* distances)
         {
           found->second.fill(this->Far);
         }
-        float& last = found->second[TetrahedronSet::GetPlace(x % length, y % length, z % length)];
+        float& last = found->second[TetrahedronSet::GetIndex(x % length, y % length, z % length)];
         last = this->Join(last, distance);
       }
     }

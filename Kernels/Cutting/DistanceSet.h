@@ -17,7 +17,7 @@ namespace deformvolume
 struct DistanceSet
 {
   /// One float for each vertex of a brick of 8 x 8 x 8 vertices (GetVertexBricks), with the index
-  /// of TetrahedronSet::GetPlace().
+  /// of TetrahedronSet::GetIndex().
   using Block = std::array<float, CellBricks::Cells>;
 
   /// The bricks with vertices of the set, in ascending order.

@@ -299,9 +299,9 @@ void MaskEditor::UpdateBrick(std::size_t brick)
   const TetrahedronSet::Block* const block = this->Hits.Find(brick);
   const std::vector<unsigned char>& off = this->Crossings.GetSwitchedOff();
   ForEachCell(this->Bricks, brick,
-    [&](const std::array<int, 3>&, std::size_t place, std::size_t cell)
+    [&](const std::array<int, 3>&, std::size_t index, std::size_t cell)
     {
-      unsigned int hit = block ? (*block)[place] : 0U;
+      unsigned int hit = block ? (*block)[index] : 0U;
       hit |= off.empty() ? 0U : off[cell];
       const unsigned int base = this->Base.empty() ? DEFORMVOLUME_ALL_TETRAHEDRA : this->Base[cell];
       const unsigned int next = base & ~(hit & DEFORMVOLUME_ALL_TETRAHEDRA);

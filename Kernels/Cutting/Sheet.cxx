@@ -124,8 +124,8 @@ bool Sheet::IsClosed() const
 Sheet Sheet::Orient() const
 {
   // A number for each position, and the triangles at each edge between two positions.
-  using Place = std::array<std::int64_t, 3>;
-  std::map<Place, int> numbers;
+  using Coordinates = std::array<std::int64_t, 3>;
+  std::map<Coordinates, int> numbers;
   std::map<std::array<int, 2>, std::vector<std::size_t>> edges;
   std::vector<std::array<int, 3>> corners;
   for (const SnappedTriangle& triangle : this->Triangles)
@@ -135,7 +135,8 @@ Sheet Sheet::Orient() const
     {
       const SnappedPoint& p = triangle[k];
       corner[k] =
-        numbers.emplace(Place{ { p.x, p.y, p.z } }, static_cast<int>(numbers.size())).first->second;
+        numbers.emplace(Coordinates{ { p.x, p.y, p.z } }, static_cast<int>(numbers.size()))
+          .first->second;
     }
     corners.push_back(corner);
     for (std::size_t k = 0; k < 3; ++k)

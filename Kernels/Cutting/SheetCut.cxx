@@ -21,7 +21,7 @@ namespace
 
 // The position of a vertex relative to a triangle, as bits. If all vertices have a bit in common,
 // they are not crossed by the triangle.
-enum Places : unsigned char
+enum Outcodes : unsigned char
 {
   Above = 1,
   Below = 2,
@@ -62,7 +62,7 @@ public:
   }
 
 private:
-  unsigned char GetPlaces(
+  unsigned char GetOutcode(
     const TriangleCrossing& crossing, const SnappedBox& box, const SnappedPoint& p) const;
 
   std::vector<SnappedTriangle> Triangles;
@@ -71,17 +71,18 @@ private:
 };
 
 // A vertex at the upper end of the box counts as outside, because of the symbolic shift.
-unsigned char SheetTriangles::GetPlaces(
+unsigned char SheetTriangles::GetOutcode(
   const TriangleCrossing& crossing, const SnappedBox& box, const SnappedPoint& p) const
 {
-  unsigned int places = crossing.IsAbove(p) ? Above : Below;
+  unsigned int outcodes = crossing.IsAbove(p) ? Above : Below;
   for (int axis = 0; axis < 3; ++axis)
   {
     const unsigned int low = p[axis] < box.Min[axis] ? 1U : 0U;
     const unsigned int high = p[axis] >= box.Max[axis] ? 2U : 0U;
-    places |= (low | high) * (static_cast<unsigned int>(First) << 2U * static_cast<unsigned>(axis));
+    outcodes |=
+      (low | high) * (static_cast<unsigned int>(First) << 2U * static_cast<unsigned>(axis));
   }
-  return static_cast<unsigned char>(places);
+  return static_cast<unsigned char>(outcodes);
 }
 
 template <typename Function>
@@ -90,12 +91,12 @@ void SheetTriangles::ForEachNear(
 {
   const TriangleCrossing& crossing = this->Crossings[triangle];
   const SnappedBox& box = this->Tree.GetBox(triangle);
-  std::array<unsigned char, BrickEdit::MaxVertices> places;
+  std::array<unsigned char, BrickEdit::MaxVertices> outcodes;
   unsigned int common = 255;
   for (std::size_t i = 0; i < edit.GetNumberOfVertices(); ++i)
   {
-    places[i] = this->GetPlaces(crossing, box, edit.GetPosition(i));
-    common &= places[i];
+    outcodes[i] = this->GetOutcode(crossing, box, edit.GetPosition(i));
+    common &= outcodes[i];
   }
   if (common != 0)
   {
@@ -104,9 +105,9 @@ void SheetTriangles::ForEachNear(
   const std::size_t up = edit.GetSteps()[1];
   const std::size_t over = edit.GetSteps()[2];
   edit.ForEachCell(
-    [&](int x, int y, int z, std::size_t place)
+    [&](int x, int y, int z, std::size_t index)
     {
-      const unsigned char* first = places.data() + edit.GetVertex(x, y, z);
+      const unsigned char* first = outcodes.data() + edit.GetVertex(x, y, z);
       if ((first[0] & first[1] & first[up] & first[up + 1] & first[over] & first[over + 1] &
             first[over + up] & first[over + up + 1]) != 0)
       {
@@ -116,11 +117,12 @@ void SheetTriangles::ForEachNear(
       for (int t = 0; t < 5; ++t)
       {
         const std::array<std::size_t, 4>& v = tetrahedra[static_cast<std::size_t>(t)];
-        if ((places[v[0]] & places[v[1]] & places[v[2]] & places[v[3]]) == 0 && edit.IsPlaced(v))
+        if ((outcodes[v[0]] & outcodes[v[1]] & outcodes[v[2]] & outcodes[v[3]]) == 0 &&
+          edit.HasPosition(v))
         {
-          function(place, t, v,
-            std::array<bool, 4>{ { (places[v[0]] & Above) != 0, (places[v[1]] & Above) != 0,
-              (places[v[2]] & Above) != 0, (places[v[3]] & Above) != 0 } });
+          function(index, t, v,
+            std::array<bool, 4>{ { (outcodes[v[0]] & Above) != 0, (outcodes[v[1]] & Above) != 0,
+              (outcodes[v[2]] & Above) != 0, (outcodes[v[3]] & Above) != 0 } });
         }
       }
     });
@@ -158,15 +160,15 @@ using Vertices = std::array<std::size_t, 4>;
 void Hit(const SheetTriangles& triangles, std::size_t triangle, BrickEdit& edit)
 {
   triangles.ForEachNear(triangle, edit,
-    [&](std::size_t place, int t, const Vertices& v, const std::array<bool, 4>& isAbove)
+    [&](std::size_t index, int t, const Vertices& v, const std::array<bool, 4>& isAbove)
     {
-      if ((edit.GetHits(place) >> t & 1) == 0 &&
+      if ((edit.GetHits(index) >> t & 1) == 0 &&
         triangles.GetCrossing(triangle).Crosses(
           { { edit.GetPosition(v[0]), edit.GetPosition(v[1]), edit.GetPosition(v[2]),
             edit.GetPosition(v[3]) } },
           isAbove))
       {
-        edit.Hit(place, t);
+        edit.Hit(index, t);
       }
     });
 }
@@ -196,7 +198,7 @@ void Cross(
       JoinSheetDistances(crossings.Distances[vertex], isAbove ? far : -far);
   };
   triangles.ForEachNear(triangle, edit,
-    [&](std::size_t place, int t, const Vertices& v, const std::array<bool, 4>& isAbove)
+    [&](std::size_t index, int t, const Vertices& v, const std::array<bool, 4>& isAbove)
     {
       CrossingSet::Cell crossed;
       for (unsigned int k = 0; k < 6; ++k)
@@ -213,8 +215,8 @@ void Cross(
       }
       if (crossed.Edges != 0)
       {
-        crossings.Cells[place].Join(crossed);
-        edit.Hit(place, t);
+        crossings.Cells[index].Join(crossed);
+        edit.Hit(index, t);
       }
     });
 }

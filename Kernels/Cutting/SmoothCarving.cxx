@@ -41,8 +41,8 @@ public:
     this->Inside = inside;
     this->Marked.fill(false);
     edit.ForEachCell(
-      [&](int x, int y, int z, std::size_t place) {
-        this->MarkCell(edit, edit.GetVertex(x, y, z), { { x, y, z } }, place);
+      [&](int x, int y, int z, std::size_t index) {
+        this->MarkCell(edit, edit.GetVertex(x, y, z), { { x, y, z } }, index);
       });
     return true;
   }
@@ -83,7 +83,7 @@ public:
 
 private:
   void MarkCell(
-    BrickEdit& edit, std::size_t first, const std::array<int, 3>& cell, std::size_t place)
+    BrickEdit& edit, std::size_t first, const std::array<int, 3>& cell, std::size_t index)
   {
     std::array<std::size_t, 8> vertices;
     int insides = 0;
@@ -110,7 +110,7 @@ private:
       const auto& of = tetrahedra[static_cast<std::size_t>(t)];
       if (std::all_of(of.begin(), of.end(), [this](std::size_t v) { return this->Inside[v]; }))
       {
-        edit.Hit(place, t);
+        edit.Hit(index, t);
       }
     }
   }
@@ -151,7 +151,7 @@ SmoothCarving FindSmoothCarving(const VertexPositions& positions, const CarvingT
       std::array<bool, BrickEdit::MaxVertices> inside{};
       for (std::size_t i = 0; i < count; ++i)
       {
-        inside[i] = edit.IsPlaced(i) && values[i] < 0.0;
+        inside[i] = edit.HasPosition(i) && values[i] < 0.0;
       }
       BrickBoundary boundary(far);
       if (!boundary.Mark(edit, inside))

@@ -110,7 +110,7 @@ void SmoothCrossings::SetBase(
     CrossingSet::Block block{};
     bool isHit = false;
     ForEachCell(this->Bricks, brick,
-      [&](const std::array<int, 3>& cell, std::size_t place, std::size_t number)
+      [&](const std::array<int, 3>& cell, std::size_t index, std::size_t number)
       {
         const unsigned int hit = crossed[number] & DEFORMVOLUME_ALL_TETRAHEDRA;
         const int mirror = this->Bricks.GetMirror(cell);
@@ -123,9 +123,9 @@ void SmoothCrossings::SetBase(
             isNegative[k] = distances[vertex] < 0.0F;
             isCorner[vertex] = isCorner[vertex] || (hit >> t & 1U) != 0;
           }
-          block[place].Edges |= (hit >> t & 1U) != 0 ? GetEdges(isNegative) << 6 * t : 0U;
+          block[index].Edges |= (hit >> t & 1U) != 0 ? GetEdges(isNegative) << 6 * t : 0U;
         }
-        isHit = isHit || block[place].Edges != 0;
+        isHit = isHit || block[index].Edges != 0;
       });
     if (isHit)
     {
@@ -136,14 +136,14 @@ void SmoothCrossings::SetBase(
   for (std::size_t brick = 0; crossed && brick < this->VertexBricks.GetNumberOfBricks(); ++brick)
   {
     ForEachCell(this->VertexBricks, brick,
-      [&](const std::array<int, 3>&, std::size_t place, std::size_t vertex)
+      [&](const std::array<int, 3>&, std::size_t index, std::size_t vertex)
       {
         if (isCorner[vertex])
         {
           AppendVertex(this->Base.Distances, brick);
           // In the base, a distance of 0 counts as positive.
           const float distance = distances[vertex];
-          this->Base.Distances.Blocks.back()[place] =
+          this->Base.Distances.Blocks.back()[index] =
             distance < 0.0F || distance > 0.0F ? distance : std::numeric_limits<float>::min();
         }
       });
@@ -249,9 +249,9 @@ void SmoothCrossings::UpdateDistances(std::size_t brick)
 {
   const DistanceSet::Block* const block = this->VertexDistances.Find(brick);
   ForEachCell(this->VertexBricks, brick,
-    [&](const std::array<int, 3>&, std::size_t place, std::size_t vertex)
+    [&](const std::array<int, 3>&, std::size_t index, std::size_t vertex)
     {
-      const float distance = block ? (*block)[place] : FarFromSheets;
+      const float distance = block ? (*block)[index] : FarFromSheets;
       this->Distances[vertex] = distance == FarFromSheets ? 0.0F : distance;
     });
 }
@@ -261,9 +261,9 @@ void SmoothCrossings::UpdateCells(std::size_t brick)
   const CrossingSet::Block* const block = this->Cells.Find(brick);
   const CrossingSet::Block* const base = FindBlock(this->Base.Bricks, this->Base.Blocks, brick);
   ForEachCell(this->Bricks, brick,
-    [&](const std::array<int, 3>& cell, std::size_t place, std::size_t number)
+    [&](const std::array<int, 3>& cell, std::size_t index, std::size_t number)
     {
-      const CrossingSet::Cell joined = block ? (*block)[place] : CrossingSet::Cell();
+      const CrossingSet::Cell joined = block ? (*block)[index] : CrossingSet::Cell();
       const int mirror = this->Bricks.GetMirror(cell);
       unsigned int crossed = 0;
       unsigned int off = 0;
@@ -275,7 +275,7 @@ void SmoothCrossings::UpdateCells(std::size_t brick)
         {
           continue;
         }
-        before |= (base && ((*base)[place].Edges >> 6 * t & 63U) != 0 ? 1U : 0U) << t;
+        before |= (base && ((*base)[index].Edges >> 6 * t & 63U) != 0 ? 1U : 0U) << t;
         std::array<bool, 4> isNegative;
         bool isClear = true;
         for (std::size_t k = 0; k < 4; ++k)

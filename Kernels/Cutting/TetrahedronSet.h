@@ -19,7 +19,7 @@ struct TetrahedronSet
   using Block = std::array<unsigned char, CellBricks::Cells>;
 
   /// Returns the index of a cell in the block of its brick.
-  static std::size_t GetPlace(int x, int y, int z)
+  static std::size_t GetIndex(int x, int y, int z)
   {
     return static_cast<std::size_t>((z * CellBricks::Length + y) * CellBricks::Length + x);
   }

@@ -24,14 +24,14 @@ bool IsLess(const glm::dvec3& a, const glm::dvec3& b)
 // A face of a tetrahedron, ordered by the positions of its nodes at rest.
 struct Face
 {
-  std::array<glm::dvec3, 3> Places;
-  bool IsAbove;         // the side of the face on which the tetrahedron lies
-  std::uint32_t Number; // as in FaceNeighbours
+  std::array<glm::dvec3, 3> Positions;
+  bool IsAbove;         // on which side of it the tetrahedron lies
+  std::uint32_t Number; // as FaceNeighbours has it
 
   bool operator<(const Face& other) const
   {
-    return std::lexicographical_compare(
-      this->Places.begin(), this->Places.end(), other.Places.begin(), other.Places.end(), IsLess);
+    return std::lexicographical_compare(this->Positions.begin(), this->Positions.end(),
+      other.Positions.begin(), other.Positions.end(), IsLess);
   }
 };
 
@@ -41,9 +41,9 @@ Face GetFace(std::size_t face, const std::vector<glm::dvec3>& points,
   const Tetrahedron& nodes = tetrahedra[face / 4];
   Face found;
   found.Number = static_cast<std::uint32_t>(face);
-  found.Places = GetPlaces(
+  found.Positions = GetPositions(
     { static_cast<std::int32_t>(face / 4), static_cast<std::int32_t>(face % 4) }, points, nodes);
-  const std::array<glm::dvec3, 3>& q = found.Places;
+  const std::array<glm::dvec3, 3>& q = found.Positions;
   found.IsAbove = glm::dot(glm::cross(q[1] - q[0], q[2] - q[0]),
                     points[static_cast<std::size_t>(nodes[face % 4])] - q[0]) > 0.0;
   return found;
@@ -86,7 +86,7 @@ std::vector<std::uint32_t> FindSingleFaces(
     std::size_t end = i;
     bool isOnBoth = false;
     std::uint32_t first = faces[i].Number;
-    for (; end < faces.size() && faces[end].Places == faces[i].Places; ++end)
+    for (; end < faces.size() && faces[end].Positions == faces[i].Positions; ++end)
     {
       isOnBoth = isOnBoth || faces[end].IsAbove != faces[i].IsAbove;
       first = std::min(first, faces[end].Number);
@@ -103,17 +103,17 @@ std::vector<std::uint32_t> FindSingleFaces(
 
 } // namespace
 
-std::array<glm::dvec3, 3> GetPlaces(
+std::array<glm::dvec3, 3> GetPositions(
   const TetrahedronFace& face, const std::vector<glm::dvec3>& points, const Tetrahedron& nodes)
 {
-  std::array<glm::dvec3, 3> places;
+  std::array<glm::dvec3, 3> positions;
   const std::array<std::int32_t, 3> corners = face.GetNodes(nodes);
   for (std::size_t k = 0; k < 3; ++k)
   {
-    places[k] = points[static_cast<std::size_t>(corners[k])];
+    positions[k] = points[static_cast<std::size_t>(corners[k])];
   }
-  std::sort(places.begin(), places.end(), IsLess);
-  return places;
+  std::sort(positions.begin(), positions.end(), IsLess);
+  return positions;
 }
 
 std::vector<std::int32_t> FindSolidTetrahedra(

@@ -97,7 +97,7 @@ ClosestFace::ClosestFace(std::vector<Triangle> triangles)
 void ClosestFace::Build(
   std::int32_t begin, std::int32_t end, const std::vector<glm::dvec3>& centers)
 {
-  const std::size_t place = this->Nodes.size();
+  const std::size_t index = this->Nodes.size();
   Node& node = this->Nodes.emplace_back();
   node.Begin = begin;
   node.End = end;
@@ -132,7 +132,7 @@ void ClosestFace::Build(
       return atA != atB ? atA < atB : a < b;
     });
   this->Build(begin, middle, centers);
-  this->Nodes[place].Upper = static_cast<std::int32_t>(this->Nodes.size());
+  this->Nodes[index].Upper = static_cast<std::int32_t>(this->Nodes.size());
   this->Build(middle, end, centers);
 }
 

@@ -215,9 +215,9 @@ inline bool HoldsBox(const DisplacementField& field, const IndexBounds& box, dou
   const glm::dvec3 last(field.Dimensions[0] - 1, field.Dimensions[1] - 1, field.Dimensions[2] - 1);
   for (int corner = 0; corner < 8; ++corner)
   {
-    const glm::dvec3 place((corner & 1) != 0 ? box.Max.x : box.Min.x,
+    const glm::dvec3 cornerPoint((corner & 1) != 0 ? box.Max.x : box.Min.x,
       (corner & 2) != 0 ? box.Max.y : box.Min.y, (corner & 4) != 0 ? box.Max.z : box.Min.z);
-    const glm::dvec3 position = toField * place + glm::dvec3(m[3], m[7], m[11]);
+    const glm::dvec3 position = toField * cornerPoint + glm::dvec3(m[3], m[7], m[11]);
     if (!glm::all(glm::greaterThan(position, glm::dvec3(-tolerance))) ||
       !glm::all(glm::lessThan(position, last + tolerance)))
     {

@@ -17,7 +17,7 @@ std::vector<Triangle> GetTriangles(const std::vector<glm::dvec3>& points,
   for (const TetrahedronFace& face : FindBoundaryFaces(points, tetrahedra, solid))
   {
     triangles.push_back(
-      GetPlaces(face, points, tetrahedra[static_cast<std::size_t>(face.Tetrahedron)]));
+      GetPositions(face, points, tetrahedra[static_cast<std::size_t>(face.Tetrahedron)]));
   }
   return triangles;
 }

@@ -51,12 +51,12 @@ std::int64_t RestRegions::GetNumberOfRegions() const
   return static_cast<std::int64_t>(this->Count[0]) * this->Count[1] * this->Count[2];
 }
 
-Extent RestRegions::GetVoxels(const int* place) const
+Extent RestRegions::GetVoxels(const int* regionIndex) const
 {
   Extent voxels;
   for (int axis = 0; axis < 3; ++axis)
   {
-    voxels[2 * axis] = this->Volume[2 * axis] + place[axis] * this->Size;
+    voxels[2 * axis] = this->Volume[2 * axis] + regionIndex[axis] * this->Size;
     voxels[2 * axis + 1] = std::min(voxels[2 * axis] + this->Size, this->Volume[2 * axis + 1]);
   }
   return voxels;
@@ -127,14 +127,14 @@ void RestRegions::AddTetrahedron(const Tetrahedron& tetrahedron,
     end[axis] =
       std::min(this->Count[axis] - 1, static_cast<int>(std::floor((high - first) / this->Size)));
   }
-  int place[3];
-  for (place[2] = begin[2]; place[2] <= end[2]; ++place[2])
+  int regionIndex[3];
+  for (regionIndex[2] = begin[2]; regionIndex[2] <= end[2]; ++regionIndex[2])
   {
-    for (place[1] = begin[1]; place[1] <= end[1]; ++place[1])
+    for (regionIndex[1] = begin[1]; regionIndex[1] <= end[1]; ++regionIndex[1])
     {
-      for (place[0] = begin[0]; place[0] <= end[0]; ++place[0])
+      for (regionIndex[0] = begin[0]; regionIndex[0] <= end[0]; ++regionIndex[0])
       {
-        const Extent voxels = this->GetVoxels(place);
+        const Extent voxels = this->GetVoxels(regionIndex);
         IndexBounds box;
         for (int axis = 0; axis < 3; ++axis)
         {
@@ -159,9 +159,9 @@ void RestRegions::AddTetrahedron(const Tetrahedron& tetrahedron,
           landing.Min.z <= landing.Max.z)
         {
           this
-            ->Bounds[(static_cast<std::int64_t>(place[2]) * this->Count[1] + place[1]) *
+            ->Bounds[(static_cast<std::int64_t>(regionIndex[2]) * this->Count[1] + regionIndex[1]) *
                 this->Count[0] +
-              place[0]]
+              regionIndex[0]]
             .Add(landing);
         }
       }
@@ -177,10 +177,10 @@ RestRegions::RestRegions(const VoxelGrid& voxelGrid, const DisplacementField& fi
     {
       for (std::int64_t region = first; region < last; ++region)
       {
-        const int place[3] = { static_cast<int>(region % this->Count[0]),
+        const int regionIndex[3] = { static_cast<int>(region % this->Count[0]),
           static_cast<int>(region / this->Count[0] % this->Count[1]),
           static_cast<int>(region / this->Count[0] / this->Count[1]) };
-        const Extent voxels = this->GetVoxels(place);
+        const Extent voxels = this->GetVoxels(regionIndex);
         std::int64_t low[3];
         std::int64_t high[3];
         bool hasOutside = false;
@@ -237,12 +237,12 @@ Extent RestRegions::Find(const Extent& part) const
 {
   Extent found{ { 0, -1, 0, -1, 0, -1 } };
   std::int64_t region = 0;
-  int place[3];
-  for (place[2] = 0; place[2] < this->Count[2]; ++place[2])
+  int regionIndex[3];
+  for (regionIndex[2] = 0; regionIndex[2] < this->Count[2]; ++regionIndex[2])
   {
-    for (place[1] = 0; place[1] < this->Count[1]; ++place[1])
+    for (regionIndex[1] = 0; regionIndex[1] < this->Count[1]; ++regionIndex[1])
     {
-      for (place[0] = 0; place[0] < this->Count[0]; ++place[0], ++region)
+      for (regionIndex[0] = 0; regionIndex[0] < this->Count[0]; ++regionIndex[0], ++region)
       {
         const IndexBounds& bounds = this->Bounds[region];
         bool lands = !bounds.IsEmpty();
@@ -255,7 +255,7 @@ Extent RestRegions::Find(const Extent& part) const
         {
           continue;
         }
-        const Extent voxels = this->GetVoxels(place);
+        const Extent voxels = this->GetVoxels(regionIndex);
         const bool first = GetNumberOfPoints(found) == 0;
         for (int axis = 0; axis < 3; ++axis)
         {

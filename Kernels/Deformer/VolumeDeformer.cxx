@@ -255,14 +255,14 @@ void VolumeDeformer::ChangeConnectivity(const Tetrahedron* tetrahedra,
     });
 }
 
-void VolumeDeformer::SetNodePlaces(const std::int32_t* places)
+void VolumeDeformer::SetCoincidentNodes(const std::int32_t* numbers)
 {
   this->Impl->Send(
     [&](Internals::Parts& parts)
     {
-      const bool wasOn = parts.Volume.GetMasks().GetBridges().HasPlaces();
-      parts.Source.SetNodePlaces(places);
-      if (wasOn != parts.Volume.GetMasks().GetBridges().HasPlaces())
+      const bool wasOn = parts.Volume.GetMasks().GetBridges().HasCoincidentNodes();
+      parts.Source.SetCoincidentNodes(numbers);
+      if (wasOn != parts.Volume.GetMasks().GetBridges().HasCoincidentNodes())
       {
         parts.Incremental.Forget();
       }

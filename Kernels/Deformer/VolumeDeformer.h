@@ -136,10 +136,10 @@ public:
   void ChangeConnectivity(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     std::size_t numberOfNodes, const std::vector<TetrahedronChange>* changes = nullptr);
   /// Opens gaps where the mesh is split: tetrahedra of the sampling mesh with vertices on both
-  /// sides are left out (rule in BridgeMask.cl). places: one number per node; nodes with the same
+  /// sides are left out (rule in BridgeMask.cl). numbers: one number per node; nodes with the same
   /// rest position have the same number. Call this again after SetMesh and ChangeConnectivity. Null
   /// (default): no gaps.
-  void SetNodePlaces(const std::int32_t* places);
+  void SetCoincidentNodes(const std::int32_t* numbers);
   /// Set the deformation mesh for MeshRasterization, in place of SetMesh. restNodes: three values
   /// per node, continuous indices of the volume.
   void SetRestMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,

@@ -15,7 +15,7 @@ BoundaryDependencies FindBoundaryDependencies(
   {
     return found;
   }
-  const auto getPlace = [&](int axis, double cell)
+  const auto getIndex = [&](int axis, double cell)
   {
     return std::clamp((static_cast<int>(std::clamp(cell, 0.0, GetSize(vertices, axis) - 2.0)) -
                         subBricks.Origin[axis]) /
@@ -33,9 +33,9 @@ BoundaryDependencies FindBoundaryDependencies(
   for (const std::int64_t cell : boundary.Near)
   {
     const std::int64_t size[2] = { GetSize(vertices, 0) - 1, GetSize(vertices, 1) - 1 };
-    isNear[getNumber(getPlace(0, static_cast<double>(cell % size[0])),
-      getPlace(1, static_cast<double>(cell / size[0] % size[1])),
-      getPlace(2, static_cast<double>(cell / size[0] / size[1])))] = 1;
+    isNear[getNumber(getIndex(0, static_cast<double>(cell % size[0])),
+      getIndex(1, static_cast<double>(cell / size[0] % size[1])),
+      getIndex(2, static_cast<double>(cell / size[0] / size[1])))] = 1;
   }
   found.Tetrahedra.resize(isField ? 0 : isNear.size());
   found.FieldPoints.resize(isField ? isNear.size() : 0, { { 0, -1, 0, -1, 0, -1 } });
@@ -51,11 +51,10 @@ BoundaryDependencies FindBoundaryDependencies(
       };
       const auto rest = getEnds(piece.Rest, static_cast<glm::length_t>(axis));
       const int begin = vertices[2 * axis];
-      // The margin of one cell covers the rounding of nodes. It also includes the crossed neighbor
-      // of a cell that the piece moves, so that a change of pieces is never inside
-      // (IncrementalUpdate::IsInside).
-      first[axis] = getPlace(static_cast<int>(axis), std::floor(rest.first - begin) - 1.0);
-      last[axis] = getPlace(static_cast<int>(axis), std::floor(rest.second - begin) + 1.0);
+      // Nodes are rounded before samples are looked for. And a piece that moves a cell moves the
+      // crossed one beside it, too: so no change of pieces is inside (IncrementalUpdate::IsInside).
+      first[axis] = getIndex(static_cast<int>(axis), std::floor(rest.first - begin) - 1.0);
+      last[axis] = getIndex(static_cast<int>(axis), std::floor(rest.second - begin) + 1.0);
       const auto indices = getEnds(piece.Weights, axis);
       points[2 * axis] = static_cast<int>(std::floor(indices.first));
       points[2 * axis + 1] = static_cast<int>(std::ceil(indices.second));

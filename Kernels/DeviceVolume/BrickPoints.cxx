@@ -36,11 +36,11 @@ namespace
 {
 
 template <typename Use>
-void ForNodes(const Tetrahedron& places, Use&& use)
+void ForNodes(const Tetrahedron& nodeOffsets, Use&& use)
 {
-  for (const std::int32_t place : places)
+  for (const std::int32_t nodeOffset : nodeOffsets)
   {
-    use(place / DEFORMVOLUME_NODE_PLACES);
+    use(nodeOffset / DEFORMVOLUME_NODE_STRIDE);
   }
 }
 

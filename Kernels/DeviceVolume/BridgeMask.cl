@@ -13,11 +13,9 @@
 // A tetrahedron that a smooth cut crosses has a copy for each side of the cut. For it, only pairs of vertices on the
 // same side of the cut count.
 //
-// Data:
-//   tetrahedra    int4: nodes, times DEFORMVOLUME_NODE_PLACES
-//   placesAtRest  an int per node, equal for all nodes with the same position at rest
-//   boundary      a byte per cell: tetrahedra that may be resampled by their vertices,
-//                 DEFORMVOLUME_CELL_AT_BOUNDARY and DEFORMVOLUME_CELL_CROSSED
+// Data: tetrahedra int4, the offsets of nodes (DEFORMVOLUME_NODE_STRIDE); coincidentNodes: 4 bytes a node, a number that
+// all nodes with one place at rest share; boundary: a byte a cell, the tetrahedra that the boundary leaves, and
+// DEFORMVOLUME_CELL_AT_BOUNDARY and DEFORMVOLUME_CELL_CROSSED.
 
 #if MAPPING == MAPPING_RUNS
 #define TETRAHEDRON_OF(m, x, y, z, p) RunTetrahedronOf(m, owners, x, y, z, p)
@@ -36,20 +34,19 @@ static int RunTetrahedronOf(
 #define SHARES_NODE 1
 #define IS_SPLIT 2
 
-// Returns SHARES_NODE if two tetrahedra share a node, and IS_SPLIT if they have different nodes with the same position
-// at rest.
-static int Compare(int4 first, int4 second, __global const int* placesAtRest)
+// What two tetrahedra, by their nodes, have to do with each other.
+static int Compare(int4 first, int4 second, __global const int* coincidentNodes)
 {
-  const int a[4] = { first.x / DEFORMVOLUME_NODE_PLACES, first.y / DEFORMVOLUME_NODE_PLACES,
-    first.z / DEFORMVOLUME_NODE_PLACES, first.w / DEFORMVOLUME_NODE_PLACES };
-  const int b[4] = { second.x / DEFORMVOLUME_NODE_PLACES, second.y / DEFORMVOLUME_NODE_PLACES,
-    second.z / DEFORMVOLUME_NODE_PLACES, second.w / DEFORMVOLUME_NODE_PLACES };
+  const int a[4] = { first.x / DEFORMVOLUME_NODE_STRIDE, first.y / DEFORMVOLUME_NODE_STRIDE,
+    first.z / DEFORMVOLUME_NODE_STRIDE, first.w / DEFORMVOLUME_NODE_STRIDE };
+  const int b[4] = { second.x / DEFORMVOLUME_NODE_STRIDE, second.y / DEFORMVOLUME_NODE_STRIDE,
+    second.z / DEFORMVOLUME_NODE_STRIDE, second.w / DEFORMVOLUME_NODE_STRIDE };
   int found = 0;
   for (int i = 0; i < 4; ++i)
   {
     for (int j = 0; j < 4; ++j)
     {
-      found |= a[i] == b[j] ? SHARES_NODE : placesAtRest[a[i]] == placesAtRest[b[j]] ? IS_SPLIT : 0;
+      found |= a[i] == b[j] ? SHARES_NODE : coincidentNodes[a[i]] == coincidentNodes[b[j]] ? IS_SPLIT : 0;
     }
   }
   return found;
@@ -66,9 +63,9 @@ static int2 FindCut(__global const uint* cutRows, __global const CutVertex* cutV
   for (int v = 0; v < 8 && cut.x; ++v)
   {
     const int o = v ^ mirror;
-    const int place =
+    const int index =
       FindCutVertex(cutRows, cutVertices, x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p);
-    cut.y |= (cutVertices[place].Distance < 0.0f) << v;
+    cut.y |= (cutVertices[index].Distance < 0.0f) << v;
   }
 #endif
   return cut;
@@ -76,7 +73,7 @@ static int2 FindCut(__global const uint* cutRows, __global const CutVertex* cutV
 
 // Returns the bridges of a cell, as bits. owners: tetrahedra of the vertices, by vertex number. cut: result of FindCut.
 static int FindBridges(
-  const int* owners, int2 cut, __global const int4* tetrahedra, __global const int* placesAtRest)
+  const int* owners, int2 cut, __global const int4* tetrahedra, __global const int* coincidentNodes)
 {
   uchar split[8]; // for each vertex the vertices on a different side, as bits
   int component[8];   // the lowest vertex of the connected component of each vertex
@@ -96,7 +93,7 @@ static int FindBridges(
       }
       const int found = owners[v] == owners[w]
         ? SHARES_NODE
-        : Compare(tetrahedra[owners[v]], tetrahedra[owners[w]], placesAtRest);
+        : Compare(tetrahedra[owners[v]], tetrahedra[owners[w]], coincidentNodes);
       if (found & IS_SPLIT)
       {
         split[v] |= 1 << w;
@@ -133,7 +130,7 @@ static int FindBridges(
 // Computes the mask `joined` of the cells of cuboids. changed: set to 1 for each cuboid of the list in which the mask
 // of a cell has changed.
 __kernel void LeaveOutBridges(MAPPING_PARAMETERS, __global const int* owners,
-  __global const int4* tetrahedraOfMesh, __global const int* placesAtRest, const int hasPlaces,
+  __global const int4* tetrahedraOfMesh, __global const int* coincidentNodes, const int hasCoincidentNodes,
   __global const uchar* boundary, const int hasBoundary, __global const uchar* active, const int hasActive, __global const uint* cutRows, __global const CutVertex* cutVertices,
   __global uchar* joined, __global uint* changed, __global const uint* cuboids, const KernelParameters p)
 {
@@ -150,7 +147,7 @@ __kernel void LeaveOutBridges(MAPPING_PARAMETERS, __global const int* owners,
         const int mirror = Mirror(x, y, z, &p);
         int ownersOfCell[8];
         int same = 1;
-        for (int v = 0; v < 8 && hasPlaces; ++v)
+        for (int v = 0; v < 8 && hasCoincidentNodes; ++v)
         {
           const int o = v ^ mirror;
           ownersOfCell[v] = TETRAHEDRON_OF(&m, x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), &p);
@@ -159,7 +156,7 @@ __kernel void LeaveOutBridges(MAPPING_PARAMETERS, __global const int* owners,
         const int bridges = same
           ? 0
           : FindBridges(ownersOfCell, FindCut(cutRows, cutVertices, x, y, z, mirror, &p),
-              tetrahedraOfMesh, placesAtRest);
+              tetrahedraOfMesh, coincidentNodes);
         const size_t cell = CellInChunk(x, y, z, &p);
         const int ofBoundary = hasBoundary ? boundary[cell] : DEFORMVOLUME_ALL_TETRAHEDRA;
         const int left = ofBoundary &

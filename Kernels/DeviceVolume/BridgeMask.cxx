@@ -10,26 +10,26 @@
 namespace deformvolume
 {
 
-void BridgeMask::SetPlaces(
-  OpenCLContext& context, const cl::CommandQueue& queue, const std::vector<std::int32_t>& places)
+void BridgeMask::SetCoincidentNodes(
+  OpenCLContext& context, const cl::CommandQueue& queue, const std::vector<std::int32_t>& numbers)
 {
-  const bool had = this->HasPlaces();
-  if (places.empty())
+  const bool had = this->HasCoincidentNodes();
+  if (numbers.empty())
   {
-    this->Places = cl::Buffer();
+    this->CoincidentNodes = cl::Buffer();
     if (had)
     {
       this->Forget();
     }
     return;
   }
-  const std::size_t bytes = places.size() * sizeof(std::int32_t);
-  if (GetMemory(this->Places) < bytes)
+  const std::size_t bytes = numbers.size() * sizeof(std::int32_t);
+  if (GetMemory(this->CoincidentNodes) < bytes)
   {
-    // Reserve room, since more nodes may follow soon.
-    this->Places = cl::Buffer(context.GetContext(), CL_MEM_READ_ONLY, bytes + bytes / 8);
+    // More may follow soon.
+    this->CoincidentNodes = cl::Buffer(context.GetContext(), CL_MEM_READ_ONLY, bytes + bytes / 8);
   }
-  queue.enqueueWriteBuffer(this->Places, CL_TRUE, 0, bytes, places.data());
+  queue.enqueueWriteBuffer(this->CoincidentNodes, CL_TRUE, 0, bytes, numbers.data());
   if (!had)
   {
     this->Forget();
@@ -97,8 +97,8 @@ void BridgeMask::Update(OpenCLContext& context, const cl::CommandQueue& queue,
   cl_uint i = source.SetMapping(kernel);
   kernel.setArg(i++, source.Owners);
   kernel.setArg(i++, source.Tetrahedra() ? source.Tetrahedra : source.Other);
-  kernel.setArg(i++, this->HasPlaces() ? this->Places : source.Other);
-  kernel.setArg(i++, cl_int{ this->HasPlaces() });
+  kernel.setArg(i++, this->HasCoincidentNodes() ? this->CoincidentNodes : source.Other);
+  kernel.setArg(i++, cl_int{ this->HasCoincidentNodes() });
   kernel.setArg(i++, this->WithBoundary ? chunk.Boundary : source.Other);
   kernel.setArg(i++, cl_int{ this->WithBoundary });
   kernel.setArg(i++, source.Active);

@@ -37,16 +37,15 @@ public:
     cl::Buffer CutVertices;
   };
 
-  /// Set a number for each node that is equal for all nodes with the same position at rest. Empty:
-  /// bridges are not excluded. Report changed tetrahedra by ChangeVertices().
-  void SetPlaces(
-    OpenCLContext& context, const cl::CommandQueue& queue, const std::vector<std::int32_t>& places);
-  bool HasPlaces() const { return this->Places() != nullptr; }
-  /// Set whether chunks have a boundary (VolumeChunk::Boundary).
+  /// numbers: for each node, as the device numbers them, a number that nodes with one place at rest
+  /// share; empty: nothing is left out. (What tetrahedra had changed has to be told.)
+  void SetCoincidentNodes(OpenCLContext& context, const cl::CommandQueue& queue,
+    const std::vector<std::int32_t>& numbers);
+  bool HasCoincidentNodes() const { return this->CoincidentNodes() != nullptr; }
+  /// Whether chunks have a boundary (VolumeChunk::Boundary).
   void SetBoundary(bool has);
   bool HasBoundary() const { return this->WithBoundary; }
-  /// Whether there is a mask.
-  bool IsOn() const { return this->HasPlaces() || this->WithBoundary; }
+  bool IsOn() const { return this->HasCoincidentNodes() || this->WithBoundary; }
 
   /// Makes the next update process all cells.
   void Forget();
@@ -65,7 +64,7 @@ public:
   void Finish();
 
 private:
-  cl::Buffer Places;
+  cl::Buffer CoincidentNodes;
   bool WithBoundary = false;
   bool Current = true;
   bool Known = false; // whether the mask was computed before, and only these may have changed:

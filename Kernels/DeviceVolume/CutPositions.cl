@@ -50,7 +50,7 @@ static int IsInVolume(int x, int y, int z, const KernelParameters* p)
   return x >= 0 && y >= 0 && z >= 0 && x < p->Size[0] && y < p->Size[1] && z < p->Size[2];
 }
 
-static int IsPlaced(const CutMesh* mesh, int x, int y, int z, const KernelParameters* p)
+static int HasPosition(const CutMesh* mesh, int x, int y, int z, const KernelParameters* p)
 {
   return IsInVolume(x, y, z, p) && (StateOf(mesh->State, x, y, z, p) & DEFORMVOLUME_VERTEX_SOURCE);
 }
@@ -58,10 +58,10 @@ static int IsPlaced(const CutMesh* mesh, int x, int y, int z, const KernelParame
 // Returns the side of a vertex of crossed tetrahedra: 1 if its distance is negative, else 0. -1 for other vertices.
 static int SideOf(const CutMesh* mesh, int x, int y, int z, const KernelParameters* p)
 {
-  const int place = FindCutVertex(mesh->Rows, mesh->Vertices, x, y, z, p);
-  return place < 0 || !(mesh->Vertices[place].Tetrahedra & DEFORMVOLUME_CUT_CORNER)
+  const int index = FindCutVertex(mesh->Rows, mesh->Vertices, x, y, z, p);
+  return index < 0 || !(mesh->Vertices[index].Tetrahedra & DEFORMVOLUME_CUT_CORNER)
     ? -1
-    : mesh->Vertices[place].Distance < 0.0f;
+    : mesh->Vertices[index].Distance < 0.0f;
 }
 
 // Adds the neighbors of a vertex in one of its cells, as bits. apart: neighbors on the other side in divided
@@ -144,7 +144,7 @@ static int AreConnected(const CutMesh* mesh, int3 a, int3 b, const KernelParamet
 // position, is not on the other side, and is connected to the first one.
 static int Leads(const CutMesh* mesh, int3 from, int3 to, int side, const KernelParameters* p)
 {
-  return IsPlaced(mesh, to.x, to.y, to.z, p) && SideOf(mesh, to.x, to.y, to.z, p) != 1 - side &&
+  return HasPosition(mesh, to.x, to.y, to.z, p) && SideOf(mesh, to.x, to.y, to.z, p) != 1 - side &&
     AreConnected(mesh, from, to, p);
 }
 
@@ -177,7 +177,7 @@ __kernel void FindCutStencils(__global const uchar* state, __global const uchar*
   {
     const int3 step = (int3)(n % 3, n / 3 % 3, n / 9) - 1;
     const int3 near = at + step;
-    if (!(apart >> n & 1) || !IsPlaced(&mesh, near.x, near.y, near.z, &p))
+    if (!(apart >> n & 1) || !HasPosition(&mesh, near.x, near.y, near.z, &p))
     {
       continue;
     }
@@ -218,9 +218,9 @@ static int IsInBricks(__global const uchar* wanted, int3 at, const KernelParamet
 {
   const int3 cells = (int3)(DEFORMVOLUME_BRICK_X, DEFORMVOLUME_BRICK_Y, DEFORMVOLUME_BRICK_Z);
   const int3 count = (int3)(p->BrickCount[0], p->BrickCount[1], p->BrickCount[2]);
-  const int3 place = at - (int3)(p->BrickOrigin[0], p->BrickOrigin[1], p->BrickOrigin[2]);
-  const int3 low = max(place - 1, 0) / cells;
-  const int3 high = min(place / cells, count - 1);
+  const int3 index = at - (int3)(p->BrickOrigin[0], p->BrickOrigin[1], p->BrickOrigin[2]);
+  const int3 low = max(index - 1, 0) / cells;
+  const int3 high = min(index / cells, count - 1);
   for (int z = low.z; z <= high.z; ++z)
   {
     for (int y = low.y; y <= high.y; ++y)

@@ -29,12 +29,12 @@ void DeviceArrays::Leave()
   if (this->ChunkInPlace)
   {
     this->Queue.finish();
-    for (std::size_t i = 0; i < this->Places.size(); ++i)
+    for (std::size_t i = 0; i < this->BuffersInPlace.size(); ++i)
     {
       if (this->IsInPlace(i))
       {
         this->ChunkInPlace->Arrays[i] = cl::Buffer();
-        this->Places[i].Buffer = cl::Buffer();
+        this->BuffersInPlace[i].Buffer = cl::Buffer();
       }
     }
     this->ChunkInPlace = nullptr;
@@ -43,17 +43,17 @@ void DeviceArrays::Leave()
 
 BufferInPlace DeviceArrays::FindOverlapping(const void* data, std::uint64_t bytes) const
 {
-  const auto found = std::find_if(this->Places.begin(), this->Places.end(),
+  const auto found = std::find_if(this->BuffersInPlace.begin(), this->BuffersInPlace.end(),
     [&](const BufferInPlace& one) { return one.Overlaps(data, bytes); });
-  return found != this->Places.end() ? *found : BufferInPlace();
+  return found != this->BuffersInPlace.end() ? *found : BufferInPlace();
 }
 
 void DeviceArrays::Set(const std::vector<VolumeArray>& arrays, const BufferInPlace& field)
 {
   const QueueGuard guard(this->Queue);
   this->Leave();
-  this->Places.assign(arrays.size(), BufferInPlace());
-  this->Described.clear(); // no arrays are set after an exception
+  this->BuffersInPlace.assign(arrays.size(), BufferInPlace());
+  this->Described.clear(); // there are none if this fails
   const std::int64_t plane = static_cast<std::int64_t>(this->Size[0]) * this->Size[1];
   const bool whole = this->Chunks.size() == 1;
   for (std::size_t i = 0; i < arrays.size(); ++i)
@@ -68,8 +68,8 @@ void DeviceArrays::Set(const std::vector<VolumeArray>& arrays, const BufferInPla
       !field.Overlaps(array.Data, bytes) || (whole && field.IsOver(array.Data, bytes));
     if (IsUsedInPlace(this->Context, array) && free && freeOfField)
     {
-      this->Places[i].Data = array.Data;
-      this->Places[i].Bytes = bytes;
+      this->BuffersInPlace[i].Data = array.Data;
+      this->BuffersInPlace[i].Bytes = bytes;
     }
   }
   for (VolumeChunk& chunk : this->Chunks)
@@ -88,8 +88,8 @@ void DeviceArrays::Set(const std::vector<VolumeArray>& arrays, const BufferInPla
   {
     for (std::size_t i = 0; i < arrays.size(); ++i)
     {
-      BufferInPlace& place = this->Places[i];
-      place.Buffer = field.IsOver(place.Data, place.Bytes) ? field.Buffer : cl::Buffer();
+      BufferInPlace& inPlace = this->BuffersInPlace[i];
+      inPlace.Buffer = field.IsOver(inPlace.Data, inPlace.Bytes) ? field.Buffer : cl::Buffer();
     }
     this->GetBuffers(this->Chunks.front());
   }
@@ -132,9 +132,9 @@ void DeviceArrays::ReadAgain() const
   // If there are several chunks, GetBuffers() makes new buffers for each.
   if (this->Chunks.size() == 1)
   {
-    for (const BufferInPlace& place : this->Places)
+    for (const BufferInPlace& inPlace : this->BuffersInPlace)
     {
-      UpdateFromHost(this->Context, this->Queue, place);
+      TellOfWrites(this->Context, this->Queue, inPlace);
     }
   }
 }
@@ -148,26 +148,26 @@ const std::vector<cl::Buffer>& DeviceArrays::GetBuffers(const VolumeChunk& chunk
   this->Leave();
   VolumeChunk& placed = this->Chunks[static_cast<std::size_t>(&chunk - this->Chunks.data())];
   this->ChunkInPlace = &placed;
-  for (std::size_t i = 0; i < this->Places.size(); ++i)
+  for (std::size_t i = 0; i < this->BuffersInPlace.size(); ++i)
   {
-    BufferInPlace& place = this->Places[i];
-    if (place.Bytes == 0)
+    BufferInPlace& inPlace = this->BuffersInPlace[i];
+    if (inPlace.Bytes == 0)
     {
       continue;
     }
-    const auto same = std::find_if(this->Places.begin(), this->Places.end(),
-      [&](const BufferInPlace& one) { return one.IsOver(place.Data, place.Bytes); });
+    const auto same = std::find_if(this->BuffersInPlace.begin(), this->BuffersInPlace.end(),
+      [&](const BufferInPlace& one) { return one.IsOver(inPlace.Data, inPlace.Bytes); });
     if (!same->Buffer())
     {
-      const std::uint64_t bytesPerPlane = place.Bytes / static_cast<std::uint64_t>(this->Size[2]);
-      // The kernels only read the array.
+      const std::uint64_t bytesPerPlane = inPlace.Bytes / static_cast<std::uint64_t>(this->Size[2]);
+      // The kernels only read it.
       same->Buffer = MakeBufferOver(this->Context, CL_MEM_READ_ONLY,
-        static_cast<char*>(const_cast<void*>(place.Data)) +
+        static_cast<char*>(const_cast<void*>(inPlace.Data)) +
           bytesPerPlane * static_cast<std::uint64_t>(chunk.PlanesBegin),
         bytesPerPlane * static_cast<std::uint64_t>(chunk.PlanesEnd - chunk.PlanesBegin));
     }
-    place.Buffer = same->Buffer;
-    placed.Arrays[i] = place.Buffer;
+    inPlace.Buffer = same->Buffer;
+    placed.Arrays[i] = inPlace.Buffer;
   }
   return chunk.Arrays;
 }

@@ -37,9 +37,8 @@ public:
   /// Set Categorical and Background of the arrays. Throws Error if types or components differ from
   /// those of Set(). Returns whether any option has changed.
   bool SetOptions(const std::vector<VolumeArray>& arrays);
-  bool IsInPlace(std::size_t array) const { return this->Places[array].Bytes > 0; }
-  /// Returns an array in place whose memory overlaps the given memory. It has a buffer if the
-  /// volume is one chunk. Bytes is 0 if there is none.
+  bool IsInPlace(std::size_t array) const { return this->BuffersInPlace[array].Bytes > 0; }
+  /// The array whose memory overlaps this memory; with its buffer if the volume is one chunk.
   BufferInPlace FindOverlapping(const void* data, std::uint64_t bytes) const;
   /// Updates the arrays in place after their memory has been written.
   void ReadAgain() const;
@@ -58,8 +57,8 @@ private:
   std::uint64_t AllocationLimit;
   std::vector<VolumeChunk>& Chunks;
   std::vector<VolumeArray> Described;
-  std::vector<BufferInPlace> Places;   // one for each array, with 0 bytes if it was copied
-  VolumeChunk* ChunkInPlace = nullptr; // the chunk that has buffers for arrays in place
+  std::vector<BufferInPlace> BuffersInPlace; // one for each array, of no bytes where it was sent
+  VolumeChunk* ChunkInPlace = nullptr;       // the one that has buffers over them
 };
 
 } // namespace deformvolume

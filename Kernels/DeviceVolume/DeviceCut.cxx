@@ -113,13 +113,13 @@ private:
         {
           continue;
         }
-        unsigned char& place =
+        unsigned char& entry =
           this->Plane[(static_cast<std::size_t>(cell.Y) + (offset >> 2U)) * this->Size[0] +
             static_cast<std::size_t>(cell.X) + (offset & 1U)];
-        place = place == Unlisted ? 0 : place;
+        entry = entry == Unlisted ? 0 : entry;
         this->HasListed[static_cast<std::size_t>(cell.Y) + (offset >> 2U)] = 1;
-        place |= static_cast<unsigned char>((corners >> offset & 1U) * DEFORMVOLUME_CUT_CORNER);
-        place |= static_cast<unsigned char>(offset == 0 ? cell.Tetrahedra : 0U);
+        entry |= static_cast<unsigned char>((corners >> offset & 1U) * DEFORMVOLUME_CUT_CORNER);
+        entry |= static_cast<unsigned char>(offset == 0 ? cell.Tetrahedra : 0U);
       }
     }
   }
@@ -133,12 +133,12 @@ private:
       for (std::size_t x = 0; this->HasListed[y] && x < this->Size[0]; ++x)
       {
         const std::size_t vertex = y * this->Size[0] + x;
-        unsigned char& place = this->Plane[vertex];
-        if (place != Unlisted)
+        unsigned char& entry = this->Plane[vertex];
+        if (entry != Unlisted)
         {
-          list.push_back({ static_cast<int>(x), static_cast<int>(y), static_cast<int>(z), place,
+          list.push_back({ static_cast<int>(x), static_cast<int>(y), static_cast<int>(z), entry,
             this->Distances[z * this->Plane.size() + vertex] });
-          place = Unlisted;
+          entry = Unlisted;
         }
       }
       this->HasListed[y] = 0;

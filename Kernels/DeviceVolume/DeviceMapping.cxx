@@ -96,14 +96,14 @@ BrickPoints DeviceMapping::MakeBrickPoints(const VolumeChunk& chunk, const Brick
   const cl::Buffer& tetrahedra, std::size_t numberOfNodes,
   const std::vector<std::vector<std::int32_t>>& boundary) const
 {
-  const MappedBuffer<const Tetrahedron> places(this->Queue, tetrahedra, CL_MAP_READ);
+  const MappedBuffer<const Tetrahedron> offsets(this->Queue, tetrahedra, CL_MAP_READ);
   const auto numberOfTetrahedra =
     static_cast<std::size_t>(GetMemory(tetrahedra) / sizeof(Tetrahedron));
   if (!this->HasRuns())
   {
     const MappedBuffer<const VertexLink> links(this->Queue, chunk.Links, CL_MAP_READ);
     return BrickPoints::FromLinks(
-      grid, links.Get(), { places.Get(), numberOfTetrahedra, numberOfNodes, boundary });
+      grid, links.Get(), { offsets.Get(), numberOfTetrahedra, numberOfNodes, boundary });
   }
   const MappedBuffer<const VertexRun> runs(this->Queue, chunk.Runs, CL_MAP_READ);
   const MappedBuffer<const std::int32_t> owners(
@@ -114,7 +114,7 @@ BrickPoints DeviceMapping::MakeBrickPoints(const VolumeChunk& chunk, const Brick
     {
       points =
         BrickPoints::FromRuns(grid, { runs.Get(), this->Rows.front().data(), rest, owners.Get() },
-          { places.Get(), numberOfTetrahedra, numberOfNodes, boundary });
+          { offsets.Get(), numberOfTetrahedra, numberOfNodes, boundary });
     });
   return points;
 }

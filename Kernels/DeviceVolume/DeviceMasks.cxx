@@ -75,12 +75,12 @@ std::vector<Extent> DeviceMasks::SetCut(
   return changes;
 }
 
-void DeviceMasks::SetNodePlaces(const std::vector<std::int32_t>& places)
+void DeviceMasks::SetCoincidentNodes(const std::vector<std::int32_t>& numbers)
 {
-  this->Queue.finish(); // no command may use the buffers that are released
-  const bool had = this->Bridges.HasPlaces();
-  this->Bridges.SetPlaces(this->Context, this->Queue, places);
-  if (had != this->Bridges.HasPlaces())
+  this->Queue.finish(); // nothing uses what is let go
+  const bool had = this->Bridges.HasCoincidentNodes();
+  this->Bridges.SetCoincidentNodes(this->Context, this->Queue, numbers);
+  if (had != this->Bridges.HasCoincidentNodes())
   {
     this->States.Forget();
     for (VolumeChunk& chunk : this->Chunks)

@@ -12,29 +12,29 @@
 namespace deformvolume
 {
 
-Tetrahedron NameNodePlaces(const Tetrahedron& tetrahedron)
+Tetrahedron GetNodeOffsets(const Tetrahedron& tetrahedron)
 {
-  Tetrahedron places = tetrahedron;
-  for (std::int32_t& node : places)
+  Tetrahedron offsets = tetrahedron;
+  for (std::int32_t& node : offsets)
   {
-    node *= DEFORMVOLUME_NODE_PLACES;
+    node *= DEFORMVOLUME_NODE_STRIDE;
   }
-  return places;
+  return offsets;
 }
 
-std::vector<Tetrahedron> NameNodePlaces(
+std::vector<Tetrahedron> GetNodeOffsets(
   const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra)
 {
-  std::vector<Tetrahedron> places(numberOfTetrahedra);
+  std::vector<Tetrahedron> offsets(numberOfTetrahedra);
   ParallelForParts(numberOfTetrahedra, 1 << 16,
     [&](std::size_t begin, std::size_t end)
     {
       for (std::size_t t = begin; t < end; ++t)
       {
-        places[t] = NameNodePlaces(tetrahedra[t]);
+        offsets[t] = GetNodeOffsets(tetrahedra[t]);
       }
     });
-  return places;
+  return offsets;
 }
 
 DeviceVolume::DeviceVolume(OpenCLContext& context, const cl::CommandQueue& queue,
@@ -81,7 +81,7 @@ DeviceVolume::DeviceVolume(OpenCLContext& context, const cl::CommandQueue& queue
 
 void DeviceVolume::SetLinks(const VertexLink* links)
 {
-  this->Masks.SetNodePlaces({});
+  this->Masks.SetCoincidentNodes({});
   this->SetBoundary({}, false);
   const QueueGuard guard(this->Queue);
   this->States.Forget();
@@ -90,7 +90,7 @@ void DeviceVolume::SetLinks(const VertexLink* links)
 
 void DeviceVolume::ForgetMesh()
 {
-  this->Masks.SetNodePlaces({});
+  this->Masks.SetCoincidentNodes({});
   this->SetBoundary({}, false);
   this->Mapping.Forget(this->Chunks);
   this->States.Forget();

@@ -25,9 +25,9 @@ namespace deformvolume
 {
 
 ///@{
-/// Converts tetrahedra to those on the device: multiplies node numbers by DEFORMVOLUME_NODE_PLACES.
-Tetrahedron NameNodePlaces(const Tetrahedron& tetrahedron);
-std::vector<Tetrahedron> NameNodePlaces(
+/// Tetrahedra as the device has them, with the offsets of their nodes (DEFORMVOLUME_NODE_STRIDE).
+Tetrahedron GetNodeOffsets(const Tetrahedron& tetrahedron);
+std::vector<Tetrahedron> GetNodeOffsets(
   const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra);
 ///@}
 

@@ -200,7 +200,7 @@ void DisplacementBuffer::Visit(const std::function<void(const float*)>& visit) c
   visit(mapped.Get());
 }
 
-const cl::Buffer& DisplacementBuffer::Place(std::size_t count)
+const cl::Buffer& DisplacementBuffer::ReserveFor(std::size_t count)
 {
   const bool isWritable =
     this->Buffer() && this->Buffer.getInfo<CL_MEM_FLAGS>() & CL_MEM_READ_WRITE;

@@ -71,9 +71,9 @@ void DisplacementSource::SendTetrahedra(
   const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes)
 {
   this->NumberOfTetrahedra = numberOfTetrahedra;
-  const std::vector<Tetrahedron> places = NameNodePlaces(tetrahedra, numberOfTetrahedra);
+  const std::vector<Tetrahedron> offsets = GetNodeOffsets(tetrahedra, numberOfTetrahedra);
   this->Tetrahedra =
-    this->Device.Send(places.data(), numberOfTetrahedra * sizeof(Tetrahedron), this->Tetrahedra);
+    this->Device.Send(offsets.data(), numberOfTetrahedra * sizeof(Tetrahedron), this->Tetrahedra);
   this->NumberOfNodes = numberOfNodes;
   this->MostNodes = numberOfNodes;
   if (this->Nodes.GetNumberOfPoints() != numberOfNodes)
@@ -91,20 +91,20 @@ bool DisplacementSource::HasMesh() const
   return this->Volume.HasMesh();
 }
 
-void DisplacementSource::SetNodePlaces(const std::int32_t* places)
+void DisplacementSource::SetCoincidentNodes(const std::int32_t* numbers)
 {
-  if (places && !this->HasMesh())
+  if (numbers && !this->HasMesh())
   {
     throw Error("SetNodePlaces() needs a deformation mesh. Call SetMesh() first.");
   }
   std::vector<std::int32_t> all;
-  if (places)
+  if (numbers)
   {
-    // Removed nodes have no common position with other nodes.
-    all.assign(places, places + this->NumberOfNodes);
+    // Nodes that are there no more share no place with others.
+    all.assign(numbers, numbers + this->NumberOfNodes);
     all.resize(this->MostNodes, -1);
   }
-  this->Volume.GetMasks().SetNodePlaces(all);
+  this->Volume.GetMasks().SetCoincidentNodes(all);
 }
 
 std::vector<Extent> DisplacementSource::UpdateBridges()
@@ -138,7 +138,7 @@ void DisplacementSource::SetNodeDisplacements(
     return;
   }
   this->NodesSet = false;
-  this->Reading.Convert(this->Nodes.Place(this->MostNodes), "node");
+  this->Reading.Convert(this->Nodes.ReserveFor(this->MostNodes), "node");
   this->NodesSet = true;
   this->LastSent = true;
   this->Volume.GetRecords().Forget();
@@ -215,7 +215,7 @@ void DisplacementSource::ConvertField(const PointRanges* changes)
     }
     return;
   }
-  this->Reading.Convert(this->FieldVectors.Place(this->NumberOfNodes), "point");
+  this->Reading.Convert(this->FieldVectors.ReserveFor(this->NumberOfNodes), "point");
   this->IsConverted = true;
 }
 

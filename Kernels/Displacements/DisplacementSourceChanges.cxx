@@ -18,16 +18,16 @@ namespace deformvolume
 
 std::vector<TetrahedronChange> DisplacementSource::FindChanges(const Tetrahedron* tetrahedra) const
 {
-  const MappedBuffer<const Tetrahedron> places(
+  const MappedBuffer<const Tetrahedron> offsets(
     this->Device.GetQueue(), this->Tetrahedra, CL_MAP_READ);
   std::vector<TetrahedronChange> changes;
   for (std::size_t t = 0; t < this->NumberOfTetrahedra; ++t)
   {
     TetrahedronChange change;
     change.Number = static_cast<std::int32_t>(t);
-    const Tetrahedron& last = places.Get()[t];
+    const Tetrahedron& last = offsets.Get()[t];
     std::transform(last.begin(), last.end(), change.Before.begin(),
-      [](std::int32_t place) { return place / DEFORMVOLUME_NODE_PLACES; });
+      [](std::int32_t offset) { return offset / DEFORMVOLUME_NODE_STRIDE; });
     change.After = tetrahedra[t];
     if (change.After != change.Before)
     {
@@ -70,19 +70,19 @@ void DisplacementSource::SendChanges(const std::vector<TetrahedronChange>& chang
     const MappedBuffer<Tetrahedron> sent(queue, this->Tetrahedra, CL_MAP_READ | CL_MAP_WRITE);
     for (const TetrahedronChange& change : changes)
     {
-      sent.Get()[change.Number] = NameNodePlaces(change.After);
+      sent.Get()[change.Number] = GetNodeOffsets(change.After);
     }
     return;
   }
-  std::vector<Tetrahedron> places;
-  places.reserve(changes.size()); // the copies in progress use the addresses of elements
+  std::vector<Tetrahedron> offsets;
+  offsets.reserve(changes.size()); // they stay until they are sent
   PendingCopies writes;
   for (const TetrahedronChange& change : changes)
   {
-    places.push_back(NameNodePlaces(change.After));
+    offsets.push_back(GetNodeOffsets(change.After));
     writes.Add(BeginToWrite(queue, this->Tetrahedra,
       static_cast<std::size_t>(change.Number) * sizeof(Tetrahedron), sizeof(Tetrahedron),
-      &places.back()));
+      &offsets.back()));
   }
   writes.Check();
 }

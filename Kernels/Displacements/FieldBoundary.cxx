@@ -40,7 +40,7 @@ MeshBoundary FindFieldBoundary(
     return MeshBoundary();
   }
   const glm::dvec3 offset(m[3], m[7], m[11]);
-  const auto place = [&](const glm::dvec3& point) { return toIndex * (point - offset); };
+  const auto toVolume = [&](const glm::dvec3& point) { return toIndex * (point - offset); };
 
   // Two triangles on each side of the field.
   std::vector<Triangle> faces;
@@ -56,7 +56,7 @@ MeshBoundary FindFieldBoundary(
         point[(axis + 1) % 3] = (corner & 1) * (size[static_cast<std::size_t>((axis + 1) % 3)] - 1);
         point[(axis + 2) % 3] =
           (corner >> 1) * (size[static_cast<std::size_t>((axis + 2) % 3)] - 1);
-        corners[static_cast<std::size_t>(corner)] = place(point);
+        corners[static_cast<std::size_t>(corner)] = toVolume(point);
       }
       faces.push_back({ { corners[0], corners[1], corners[2] } });
       faces.push_back({ { corners[3], corners[1], corners[2] } });
@@ -132,7 +132,7 @@ MeshBoundary FindFieldBoundary(
         for (std::size_t k = 0; k < 4; ++k)
         {
           const glm::dvec3& point = points[static_cast<std::size_t>(tetrahedron[k])];
-          piece.Rest[k] = place(point);
+          piece.Rest[k] = toVolume(point);
           piece.Weights[k] = { { static_cast<float>(point.x), static_cast<float>(point.y),
             static_cast<float>(point.z), 0.0F } };
         }

@@ -91,7 +91,7 @@ public:
       {
         for (int x = this->Begin[0]; this->HasVoxels(y, z) && x < this->End[0]; ++x)
         {
-          bounds.Add(this->GetPlace(x, y, z) + GetVector(this->Field, this->GetPoint(x, y, z)));
+          bounds.Add(this->GetPosition(x, y, z) + GetVector(this->Field, this->GetPoint(x, y, z)));
         }
       });
     return bounds;
@@ -106,7 +106,7 @@ private:
       this->Field.Dimensions[0] +
       x;
   }
-  glm::dvec3 GetPlace(int x, int y, int z) const
+  glm::dvec3 GetPosition(int x, int y, int z) const
   {
     return this->Rest[0][x] + this->Rest[1][y] + this->Rest[2][z];
   }
@@ -133,9 +133,9 @@ private:
       near = near && range.Least[axis] >= -LargestDisplacement &&
         range.Greatest[axis] <= LargestDisplacement;
     }
-    for (int place = x; !near && place < end; ++place)
+    for (int at = x; !near && at < end; ++at)
     {
-      const glm::dvec3 moved = glm::abs(GetVector(this->Field, this->GetPoint(place, y, z)));
+      const glm::dvec3 moved = glm::abs(GetVector(this->Field, this->GetPoint(at, y, z)));
       if (!(std::max({ moved.x, moved.y, moved.z }) <= LargestDisplacement))
       {
         return false;
@@ -143,11 +143,11 @@ private:
     }
     if (areVoxels)
     {
-      IndexBounds places;
-      places.Add(this->GetPlace(x, y, z));
-      places.Add(this->GetPlace(end - 1, y, z));
-      box.Add(places.Min + glm::dvec3(range.Least[0], range.Least[1], range.Least[2]));
-      box.Add(places.Max + glm::dvec3(range.Greatest[0], range.Greatest[1], range.Greatest[2]));
+      IndexBounds positions;
+      positions.Add(this->GetPosition(x, y, z));
+      positions.Add(this->GetPosition(end - 1, y, z));
+      box.Add(positions.Min + glm::dvec3(range.Least[0], range.Least[1], range.Least[2]));
+      box.Add(positions.Max + glm::dvec3(range.Greatest[0], range.Greatest[1], range.Greatest[2]));
     }
     return true;
   }

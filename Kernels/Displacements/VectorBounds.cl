@@ -74,13 +74,13 @@ __kernel void FindBounds(__global const float* vectors, const FieldParameters fi
       {
         atomic_inc(bad);
       }
-      const double3 place = vload3(x, rest) + vload3(p.Size[0] + y, rest) +
+      const double3 position = vload3(x, rest) + vload3(p.Size[0] + y, rest) +
         vload3(p.Size[0] + p.Size[1] + z, rest) + convert_double3(moved);
-      const double places[3] = { place.x, place.y, place.z };
+      const double positions[3] = { position.x, position.y, position.z };
       for (int axis = 0; axis < 3; ++axis)
       {
-        least[axis] = fmin(least[axis], places[axis]);
-        greatest[axis] = fmax(greatest[axis], places[axis]);
+        least[axis] = fmin(least[axis], positions[axis]);
+        greatest[axis] = fmax(greatest[axis], positions[axis]);
       }
     }
   }

@@ -29,20 +29,20 @@ std::uint64_t SpreadBits(std::uint64_t value)
 }
 
 // The position of a tetrahedron on a space-filling (Morton) curve, and its number.
-using CurvePlace = std::pair<std::uint64_t, std::int32_t>;
+using CurveCode = std::pair<std::uint64_t, std::int32_t>;
 
 // Sorts parts and merges them in pairs: a single sort would not poll the watch for too long.
-void Sort(Watch& watch, std::vector<CurvePlace>& places)
+void Sort(Watch& watch, std::vector<CurveCode>& codes)
 {
   constexpr std::size_t partsAtOnce = 16;
-  const auto at = [&](std::size_t place)
-  { return places.begin() + static_cast<std::ptrdiff_t>(std::min(place, places.size())); };
+  const auto at = [&](std::size_t index)
+  { return codes.begin() + static_cast<std::ptrdiff_t>(std::min(index, codes.size())); };
   std::size_t size = std::size_t(1) << 14;
-  ForParts(watch, (places.size() + size - 1) / size, partsAtOnce,
+  ForParts(watch, (codes.size() + size - 1) / size, partsAtOnce,
     [&](std::size_t part) { std::sort(at(part * size), at((part + 1) * size)); });
-  for (; size < places.size(); size *= 2)
+  for (; size < codes.size(); size *= 2)
   {
-    ForParts(watch, (places.size() + 2 * size - 1) / (2 * size), partsAtOnce,
+    ForParts(watch, (codes.size() + 2 * size - 1) / (2 * size), partsAtOnce,
       [&](std::size_t part)
       {
         const std::size_t begin = 2 * part * size;
@@ -63,7 +63,7 @@ std::vector<std::int32_t> OrderTetrahedra(Watch& watch, const ElasticBody& body)
   }
   const glm::dvec3 size = upper - lower;
   const double scale = ((1 << 20) - 1) / std::max({ size.x, size.y, size.z });
-  std::vector<CurvePlace> codes(body.Tetrahedra.size());
+  std::vector<CurveCode> codes(body.Tetrahedra.size());
   ForItemsInParallel(watch, codes.size(),
     [&](std::size_t t)
     {
@@ -80,7 +80,7 @@ std::vector<std::int32_t> OrderTetrahedra(Watch& watch, const ElasticBody& body)
   Sort(watch, codes);
   std::vector<std::int32_t> order(codes.size());
   std::transform(
-    codes.begin(), codes.end(), order.begin(), [](const CurvePlace& code) { return code.second; });
+    codes.begin(), codes.end(), order.begin(), [](const CurveCode& code) { return code.second; });
   return order;
 }
 
@@ -102,8 +102,8 @@ std::array<std::int32_t, ElementBatch::NumberOfNodes> GetNodes(
   for (std::size_t edge = 0; edge < std::size(TetrahedronEdges); ++edge)
   {
     const auto& ends = TetrahedronEdges[edge];
-    const int place = BatchMiddle[ranks[ends[0]]][ranks[ends[1]]];
-    nodes[static_cast<std::size_t>(place)] = body.MidSides[tetrahedron][edge];
+    const int index = BatchMiddle[ranks[ends[0]]][ranks[ends[1]]];
+    nodes[static_cast<std::size_t>(index)] = body.MidSides[tetrahedron][edge];
   }
   return nodes;
 }

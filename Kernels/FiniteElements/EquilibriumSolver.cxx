@@ -361,13 +361,13 @@ void EquilibriumSolver::MoveFollowers(const EquilibriumProblem& problem, State& 
   {
     return;
   }
-  std::vector<unsigned char> isPlaced = problem.IsFree;
+  std::vector<unsigned char> isSettled = problem.IsFree;
   for (const std::int32_t node : problem.HeldNodes)
   {
-    isPlaced[static_cast<std::size_t>(node)] = 1;
+    isSettled[static_cast<std::size_t>(node)] = 1;
   }
   MoveFollowing(
-    this->Body, this->Pieces, problem.Supports.Following, isPlaced, state.Displacements);
+    this->Body, this->Pieces, problem.Supports.Following, isSettled, state.Displacements);
 }
 
 EquilibriumReport EquilibriumSolver::FindEquilibrium(

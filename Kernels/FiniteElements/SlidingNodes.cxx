@@ -18,8 +18,8 @@ SlidingNodes::SlidingNodes(const ElasticBody& body)
     const auto [first, second] = GetSlidingNormals(body, node);
     if (first != glm::dvec3(0.0) || second != glm::dvec3(0.0))
     {
-      this->Places.resize(body.Points.size(), -1);
-      this->Places[node] = static_cast<std::int32_t>(this->Nodes.size());
+      this->Indices.resize(body.Points.size(), -1);
+      this->Indices[node] = static_cast<std::int32_t>(this->Nodes.size());
       this->Nodes.push_back(node);
       this->Projections.push_back(
         glm::dmat3(1.0) - glm::outerProduct(first, first) - glm::outerProduct(second, second));

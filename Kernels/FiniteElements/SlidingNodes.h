@@ -26,8 +26,8 @@ public:
   /// slide.
   glm::dvec3 Project(std::size_t node, const glm::dvec3& vector) const
   {
-    const std::int32_t place = this->Places.empty() ? -1 : this->Places[node];
-    return place < 0 ? vector : this->Projections[static_cast<std::size_t>(place)] * vector;
+    const std::int32_t index = this->Indices.empty() ? -1 : this->Indices[node];
+    return index < 0 ? vector : this->Projections[static_cast<std::size_t>(index)] * vector;
   }
   void Project(std::vector<glm::dvec3>& vectors) const;
 
@@ -37,7 +37,7 @@ public:
 
 private:
   // The index of each node in Nodes and Projections; -1: it does not slide. Empty: no node slides.
-  std::vector<std::int32_t> Places;
+  std::vector<std::int32_t> Indices;
   std::vector<std::size_t> Nodes;
   std::vector<glm::dmat3> Projections;
 };

@@ -59,10 +59,10 @@ SparseBlocks<Columns, Rows> Transpose(Watch& watch, const SparseBlocks<Rows, Col
       const auto row = static_cast<std::int32_t>(item);
       for (std::size_t block = matrix.GetStart(row); block < matrix.GetEnd(row); ++block)
       {
-        const auto place =
+        const auto index =
           static_cast<std::size_t>(next[static_cast<std::size_t>(matrix.ColumnOfBlock[block])]++);
-        result.ColumnOfBlock[place] = row;
-        result.Blocks[place] = matrix.Blocks[block].transpose();
+        result.ColumnOfBlock[index] = row;
+        result.Blocks[index] = matrix.Blocks[block].transpose();
       }
     });
   return result;
@@ -83,7 +83,7 @@ SparseBlocks<Rows, Columns> Multiply(
     [&](std::size_t part)
     {
       Result& result = parts[part];
-      std::vector<std::int32_t> places(static_cast<std::size_t>(b.NumberOfColumns), -1);
+      std::vector<std::int32_t> indices(static_cast<std::size_t>(b.NumberOfColumns), -1);
       const auto first = static_cast<std::int32_t>(part) * rowsOfPart;
       std::vector<std::int32_t> columns;
       for (std::int32_t row = first; row < std::min(rows, first + rowsOfPart); ++row)
@@ -94,10 +94,10 @@ SparseBlocks<Rows, Columns> Multiply(
           for (std::size_t j = b.GetStart(a.ColumnOfBlock[i]); j < b.GetEnd(a.ColumnOfBlock[i]);
                ++j)
           {
-            std::int32_t& place = places[static_cast<std::size_t>(b.ColumnOfBlock[j])];
-            if (place < 0)
+            std::int32_t& index = indices[static_cast<std::size_t>(b.ColumnOfBlock[j])];
+            if (index < 0)
             {
-              place = 0;
+              index = 0;
               columns.push_back(b.ColumnOfBlock[j]);
             }
           }
@@ -105,7 +105,7 @@ SparseBlocks<Rows, Columns> Multiply(
         std::sort(columns.begin(), columns.end());
         for (const std::int32_t column : columns)
         {
-          places[static_cast<std::size_t>(column)] =
+          indices[static_cast<std::size_t>(column)] =
             static_cast<std::int32_t>(result.Blocks.size());
           result.ColumnOfBlock.push_back(column);
           result.Blocks.push_back(Result::Block::Zero());
@@ -115,14 +115,14 @@ SparseBlocks<Rows, Columns> Multiply(
           for (std::size_t j = b.GetStart(a.ColumnOfBlock[i]); j < b.GetEnd(a.ColumnOfBlock[i]);
                ++j)
           {
-            const auto place =
-              static_cast<std::size_t>(places[static_cast<std::size_t>(b.ColumnOfBlock[j])]);
-            result.Blocks[place].noalias() += a.Blocks[i].lazyProduct(b.Blocks[j]);
+            const auto index =
+              static_cast<std::size_t>(indices[static_cast<std::size_t>(b.ColumnOfBlock[j])]);
+            result.Blocks[index].noalias() += a.Blocks[i].lazyProduct(b.Blocks[j]);
           }
         }
         for (const std::int32_t column : columns)
         {
-          places[static_cast<std::size_t>(column)] = -1;
+          indices[static_cast<std::size_t>(column)] = -1;
         }
         result.Starts.push_back(static_cast<std::int32_t>(result.Blocks.size()));
       }

@@ -66,9 +66,9 @@ void IncrementalUpdate::SetPoints(BrickPoints&& points)
 {
   this->Points = std::move(points);
   std::vector<std::vector<std::size_t>> bricks(this->Bricks.GetNumberOfBricks());
-  for (std::size_t subBrick = 0; subBrick < this->Places.size(); ++subBrick)
+  for (std::size_t subBrick = 0; subBrick < this->Sections.size(); ++subBrick)
   {
-    bricks[this->Places[subBrick].first].push_back(subBrick);
+    bricks[this->Sections[subBrick].first].push_back(subBrick);
   }
   this->PointsOfBricks = this->Points.Join(bricks);
 }
@@ -95,7 +95,7 @@ void IncrementalUpdate::MovePoints(const PointSet& changed, const float* last)
       }
     });
   const auto isMoved = [&](std::size_t subBrick)
-  { return near[this->Places[subBrick].first] && hasMoved(this->Points, subBrick); };
+  { return near[this->Sections[subBrick].first] && hasMoved(this->Points, subBrick); };
   ParallelForParts(this->Grid.GetNumberOfBricks(), StepSize,
     [&](std::size_t begin, std::size_t end)
     {
@@ -144,7 +144,7 @@ std::optional<std::vector<Extent>> IncrementalUpdate::ChangeTetrahedra(
   }
   this->PointsOfBricks.AddPoints(bricks, changes);
   const std::vector<BrickPoints::ChangesOfBrick> subBricks = this->Points.FindBricks(
-    nodes, [&](std::size_t number) { return near[this->Places[number].first] != 0; });
+    nodes, [&](std::size_t number) { return near[this->Sections[number].first] != 0; });
   std::vector<Extent> boxes;
   for (const BrickPoints::ChangesOfBrick& subBrick : subBricks)
   {
@@ -176,8 +176,8 @@ void IncrementalUpdate::ForSubBricks(const Extent& box, int more, int halo, Body
   {
     const auto find = [&](int vertex)
     {
-      const int place = (vertex - this->Grid.Origin[axis]) / this->Grid.Cells[axis];
-      return std::min(std::max(place, 0), this->Grid.Count[axis] - 1);
+      const int index = (vertex - this->Grid.Origin[axis]) / this->Grid.Cells[axis];
+      return std::min(std::max(index, 0), this->Grid.Count[axis] - 1);
     };
     subBricks[2 * axis] = find(box[2 * axis] - halo - 1);
     subBricks[2 * axis + 1] = find(box[2 * axis + 1] + more + halo);

@@ -96,7 +96,7 @@ Extent IncrementalUpdate::GetChangedExtent() const
     }
     Include(changed, voxels);
   };
-  for (std::size_t subBrick = 0; subBrick < this->Places.size(); ++subBrick)
+  for (std::size_t subBrick = 0; subBrick < this->Sections.size(); ++subBrick)
   {
     if (this->IsChanged(subBrick))
     {
@@ -156,7 +156,7 @@ std::vector<std::uint32_t> IncrementalUpdate::ListPatches(const std::vector<unsi
 std::vector<std::uint32_t> IncrementalUpdate::GetChangedPatches() const
 {
   std::vector<unsigned char> dirty = this->MakeFlagsOfPatches();
-  for (std::size_t subBrick = 0; subBrick < this->Places.size(); ++subBrick)
+  for (std::size_t subBrick = 0; subBrick < this->Sections.size(); ++subBrick)
   {
     if (this->IsChanged(subBrick))
     {
@@ -174,9 +174,9 @@ void IncrementalUpdate::PlanPatches(const std::vector<std::size_t>& changed,
     this->MarkChangedPatches(subBrick, dirty);
   }
   const Box dirtyBox = this->GetDirtyBox();
-  for (std::size_t subBrick = 0; subBrick < this->Places.size(); ++subBrick)
+  for (std::size_t subBrick = 0; subBrick < this->Sections.size(); ++subBrick)
   {
-    const auto [brick, bits] = this->Places[subBrick];
+    const auto [brick, bits] = this->Sections[subBrick];
     if (this->Known[subBrick] && !IsApart(this->Boxes[subBrick], dirtyBox) &&
       (run[brick] & bits) != bits && this->TouchesPatches(this->Boxes[subBrick], dirty))
     {
@@ -189,12 +189,12 @@ bool IncrementalUpdate::MakePlan(bool inside, Plan& plan)
 {
   std::vector<std::uint32_t> run(this->Bricks.GetNumberOfBricks()); // sections of bricks
   std::vector<std::size_t> changed;
-  for (std::size_t subBrick = 0; subBrick < this->Places.size(); ++subBrick)
+  for (std::size_t subBrick = 0; subBrick < this->Sections.size(); ++subBrick)
   {
     if (this->IsChanged(subBrick))
     {
       changed.push_back(subBrick);
-      run[this->Places[subBrick].first] |= this->Places[subBrick].second;
+      run[this->Sections[subBrick].first] |= this->Sections[subBrick].second;
     }
   }
   if (changed.empty())

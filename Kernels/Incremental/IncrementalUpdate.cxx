@@ -20,11 +20,11 @@ void IncrementalUpdate::Start(
     this->Known.assign(subBricks, 0); // boxes are relative to the output
     this->BoxesKnown = false;
   }
-  if (this->Places.empty())
+  if (this->Sections.empty())
   {
     for (std::size_t subBrick = 0; subBrick < subBricks; ++subBrick)
     {
-      this->Places.push_back(bricks.GetBrick(this->Grid, subBrick));
+      this->Sections.push_back(bricks.GetBrick(this->Grid, subBrick));
     }
   }
   this->Shape = voxelGrid;

@@ -165,7 +165,7 @@ private:
   BrickPoints Points;
   BrickPoints PointsOfBricks;
   // The brick and the section of each sub-brick (BrickGrid::GetBrick).
-  std::vector<std::pair<std::size_t, std::uint32_t>> Places;
+  std::vector<std::pair<std::size_t, std::uint32_t>> Sections;
   std::vector<Box> Boxes; // valid where Known
   std::vector<unsigned char> Known;
   bool BoxesKnown = false; // of all changed sub-bricks, and of all that may share patches with them

@@ -150,7 +150,7 @@ public:
   {
     this->ListSymbols();
     this->CountSlots();
-    this->Place();
+    this->LayOut();
     this->CopySections();
     this->Relocate();
     this->FillTables();
@@ -317,9 +317,8 @@ private:
       });
   }
 
-  // Assigns addresses, which equal the offsets in the file. There are two loaded segments: one for
-  // reading and execution, and one for reading and writing.
-  void Place()
+  // Addresses equal offsets in the file. Two segments: what is read and run, and what is written.
+  void LayOut()
   {
     std::uint64_t at = sizeof(Elf64_Ehdr) + Segments * sizeof(Elf64_Phdr);
     const auto take = [&](std::uint64_t size, std::uint64_t alignment)
@@ -334,13 +333,13 @@ private:
     this->TextsAt = take(this->Texts.size(), 1);
     this->RelocationsAt = take(sizeof(Elf64_Rela) * this->MostDynamicRelocations, 8);
     this->JumpsAt = take(JumpSize * this->Jumps.size(), 16);
-    this->PlaceSections(false, take);
+    this->LayOutSections(false, take);
     this->ReadEnd = at;
     at = Align(at, Page);
     this->WrittenAt = at;
     this->SlotsAt = take(8 * this->Slots.size(), 8);
     this->DynamicAt = take(sizeof(Elf64_Dyn) * DynamicEntries, 16);
-    this->PlaceSections(true, take);
+    this->LayOutSections(true, take);
     this->File.assign(at, '\0');
     for (auto& [name, global] : this->Globals)
     {
@@ -357,7 +356,7 @@ private:
   }
 
   template <typename Take>
-  void PlaceSections(bool written, Take take)
+  void LayOutSections(bool written, Take take)
   {
     for (Object& object : this->Objects)
     {
@@ -443,7 +442,7 @@ private:
         isLocal ? this->GetAddress(object, object.Symbols[index]) : this->Globals.at(name).Address;
     }
     const std::uint32_t dynamic = isLocal ? 0 : this->Globals.at(name).Index;
-    const std::uint64_t place = section.Address + relocation.r_offset;
+    const std::uint64_t target = section.Address + relocation.r_offset;
     if (relocation.r_offset >= section.Header.sh_size)
     {
       throw std::runtime_error("a relocation is outside its section");
@@ -459,7 +458,7 @@ private:
         throw std::runtime_error("not compiled with -fPIC: section " + section.Name);
       }
       this->AddDynamicRelocation(
-        place, isDefined, R_X86_64_64, dynamic, address, relocation.r_addend);
+        target, isDefined, R_X86_64_64, dynamic, address, relocation.r_addend);
       return;
     }
     if (IsByTable(type) || (type == R_X86_64_PLT32 && !isDefined))
@@ -482,24 +481,24 @@ private:
       throw std::runtime_error("undefined symbol, and not a function call: " + name);
     }
     const auto value =
-      static_cast<std::int64_t>(address + static_cast<std::uint64_t>(relocation.r_addend) - place);
+      static_cast<std::int64_t>(address + static_cast<std::uint64_t>(relocation.r_addend) - target);
     if (type == R_X86_64_PC64)
     {
-      Write<std::int64_t>(this->File, place, value);
+      Write<std::int64_t>(this->File, target, value);
       return;
     }
     if (value != static_cast<std::int32_t>(value))
     {
       throw std::runtime_error("relocation out of range: " + name);
     }
-    Write<std::int32_t>(this->File, place, static_cast<std::int32_t>(value));
+    Write<std::int32_t>(this->File, target, static_cast<std::int32_t>(value));
   }
 
-  void AddDynamicRelocation(std::uint64_t place, bool isDefined, std::uint32_t type,
+  void AddDynamicRelocation(std::uint64_t target, bool isDefined, std::uint32_t type,
     std::uint32_t symbol, std::uint64_t address, std::int64_t addend)
   {
     Elf64_Rela relocation{};
-    relocation.r_offset = place;
+    relocation.r_offset = target;
     relocation.r_info =
       isDefined ? ELF64_R_INFO(0, R_X86_64_RELATIVE) : ELF64_R_INFO(std::uint64_t{ symbol }, type);
     relocation.r_addend = isDefined ? static_cast<std::int64_t>(address) + addend : addend;

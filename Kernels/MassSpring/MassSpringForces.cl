@@ -92,11 +92,11 @@ static Vectors SpringForce(Vectors rest, Vectors displacement, FLOATS stiffness)
   return Times(now, stiffness * lengthening / length);
 }
 
-static void StoreForce(Vectors force, __global FLOATS* place)
+static void StoreForce(Vectors force, __global FLOATS* target)
 {
-  place[0] = force.X;
-  place[1] = force.Y;
-  place[2] = force.Z;
+  target[0] = force.X;
+  target[1] = force.Y;
+  target[2] = force.Z;
 }
 
 // Six times the signed volume of a tetrahedron; negative if the order of nodes is reversed.

@@ -281,7 +281,7 @@ void MassSpringModel::SetOutput(float* output, double factor)
   impl.Guard(
     [&]
     {
-      impl.State->PlaceOutput(output, static_cast<float>(factor));
+      impl.State->SetOutput(output, static_cast<float>(factor));
       impl.State->WriteOutput();
     });
 }
@@ -294,7 +294,7 @@ void MassSpringModel::SetOutput(const std::shared_ptr<DeviceVectors>& output, do
   impl.Guard(
     [&]
     {
-      impl.State->PlaceOutput(output, static_cast<float>(factor));
+      impl.State->SetOutput(output, static_cast<float>(factor));
       impl.State->WriteOutput();
     });
 }

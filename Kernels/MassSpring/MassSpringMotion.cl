@@ -2,34 +2,34 @@
 // Moves the nodes by the forces of their tetrahedra. Each node adds up its forces in a fixed order, so that sums do
 // not depend on work-groups. The host defines LANES before this text, see MassSpringForces.cl.
 
-// The sum of the forces of the tetrahedra of a node. begins: for each node, the first index in places. places: index
+// The sum of the forces of the tetrahedra of a node. begins: for each node, the first index in places. forceIndices: index
 // of the first component of each force.
 static float3 GatherForce(
-  __global const uint* begins, __global const uint* places, __global const float* forces, size_t node)
+  __global const uint* begins, __global const uint* forceIndices, __global const float* forces, size_t node)
 {
   float3 force = (float3)(0.0f);
   const uint end = begins[node + 1];
   for (uint i = begins[node]; i < end; ++i)
   {
-    __global const float* place = forces + places[i];
-    force += (float3)(place[0], place[LANES], place[2 * LANES]);
+    __global const float* source = forces + forceIndices[i];
+    force += (float3)(source[0], source[LANES], source[2 * LANES]);
   }
   return force;
 }
 
-__kernel void AddForces(__global const uint* begins, __global const uint* places, __global const float* forces,
+__kernel void AddForces(__global const uint* begins, __global const uint* forceIndices, __global const float* forces,
   __global float* sums, uint numberOfNodes)
 {
   const size_t node = get_global_id(0);
   if (node < numberOfNodes)
   {
-    vstore3(GatherForce(begins, places, forces, node), node, sums);
+    vstore3(GatherForce(begins, forceIndices, forces, node), node, sums);
   }
 }
 
 // A step of the Verlet (leapfrog) method. mobilities: 1 / mass; 0 for nodes that do not move. loads: external forces.
 // hasDiverged: set if a displacement is not finite or exceeds the limit.
-__kernel void MoveNodes(__global const uint* begins, __global const uint* places, __global const float* forces,
+__kernel void MoveNodes(__global const uint* begins, __global const uint* forceIndices, __global const float* forces,
   __global const float* mobilities, __global const float* loads, __global float* velocities,
   __global float* displacements, __global int* hasDiverged, MassSpringStep step, int hasLoads)
 {
@@ -43,7 +43,7 @@ __kernel void MoveNodes(__global const uint* begins, __global const uint* places
   {
     return;
   }
-  float3 force = GatherForce(begins, places, forces, node);
+  float3 force = GatherForce(begins, forceIndices, forces, node);
   if (hasLoads)
   {
     force += vload3(node, loads);

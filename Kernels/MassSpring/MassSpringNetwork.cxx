@@ -125,7 +125,7 @@ MassSpringNetwork::MassSpringNetwork(
           }
         });
     },
-    this->Begins, this->Places);
+    this->Begins, this->ForceIndices);
 }
 
 } // namespace deformvolume

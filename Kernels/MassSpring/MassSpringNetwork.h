@@ -46,7 +46,7 @@ struct MassSpringNetwork
   std::vector<float> Materials;
   std::vector<float> RestPoints; // relative to the center of the body
   std::vector<std::uint32_t> Begins;
-  std::vector<std::uint32_t> Places;
+  std::vector<std::uint32_t> ForceIndices;
   std::vector<double> Masses; // in kg
   std::vector<float> Mobilities;
   double Size = 0.0; // the diagonal of the bounding box, in m

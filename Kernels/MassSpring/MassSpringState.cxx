@@ -36,7 +36,7 @@ std::uint64_t MassSpringState::GetMemory() const
 {
   std::uint64_t bytes = 0;
   for (const cl::Buffer* buffer : { &this->Tetrahedra, &this->Materials, &this->RestPoints,
-         &this->Begins, &this->Places, &this->Mobilities, &this->Forces, &this->Displacements,
+         &this->Begins, &this->ForceIndices, &this->Mobilities, &this->Forces, &this->Displacements,
          &this->Velocities, &this->Loads, &this->Handles, &this->HasDiverged, &this->Sums,
          &this->SavedDisplacements, &this->SavedVelocities })
   {
@@ -66,7 +66,7 @@ MassSpringState::MassSpringState(
   this->Materials = send(network.Materials);
   this->RestPoints = send(network.RestPoints);
   this->Begins = send(network.Begins);
-  this->Places = send(network.Places);
+  this->ForceIndices = send(network.ForceIndices);
   this->Mobilities = send(network.Mobilities);
   const std::vector<float> zeros(this->NumberOfNodes * 3, 0.0F);
   this->Displacements = send(zeros);
@@ -84,9 +84,9 @@ MassSpringState::MassSpringState(
     MakeKernel(this->Program, "CountInverted", this->Tetrahedra, this->RestPoints,
       this->Displacements, this->Inverted, static_cast<cl_uint>(this->NumberOfPackets));
   this->AddForcesKernel = MakeKernel(
-    this->Program, "AddForces", this->Begins, this->Places, this->Forces, this->Sums, nodes);
+    this->Program, "AddForces", this->Begins, this->ForceIndices, this->Forces, this->Sums, nodes);
   // There are no loads yet: pass another buffer in their place.
-  this->MoveNodesKernel = MakeKernel(this->Program, "MoveNodes", this->Begins, this->Places,
+  this->MoveNodesKernel = MakeKernel(this->Program, "MoveNodes", this->Begins, this->ForceIndices,
     this->Forces, this->Mobilities, this->Velocities, this->Velocities, this->Displacements,
     this->HasDiverged, MassSpringStep{}, cl_int{ 0 });
   this->MoveHandlesKernel = cl::Kernel(this->Program, "MoveHandles");
@@ -239,15 +239,15 @@ void MassSpringState::Restore()
   queue.finish();
 }
 
-void MassSpringState::PlaceOutput(float* output, float factor)
+void MassSpringState::SetOutput(float* output, float factor)
 {
-  this->Output.Place(this->Device.GetContext(), output, this->NumberOfNodes);
+  this->Output.Bind(this->Device.GetContext(), output, this->NumberOfNodes);
   this->Factor = factor;
 }
 
-void MassSpringState::PlaceOutput(const std::shared_ptr<DeviceVectors>& output, float factor)
+void MassSpringState::SetOutput(const std::shared_ptr<DeviceVectors>& output, float factor)
 {
-  this->Output.Place(this->Device.GetContext(), output);
+  this->Output.Bind(this->Device.GetContext(), output);
   this->Factor = factor;
 }
 

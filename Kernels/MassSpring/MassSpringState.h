@@ -63,10 +63,10 @@ public:
 
   ///@{
   /// Sets where the output goes, and the factor of the displacements.
-  void PlaceOutput(float* output, float factor);
-  void PlaceOutput(const std::shared_ptr<DeviceVectors>& output, float factor);
+  void SetOutput(float* output, float factor);
+  void SetOutput(const std::shared_ptr<DeviceVectors>& output, float factor);
   ///@}
-  bool HasOutput() const { return this->Output.IsPlaced(); }
+  bool HasOutput() const { return this->Output.IsSet(); }
   void WriteOutput();
 
 private:
@@ -83,7 +83,7 @@ private:
   cl::Program Program;
   cl::Kernel ComputeForcesKernel, AddForcesKernel, MoveNodesKernel, MoveHandlesKernel,
     WriteOutputKernel, CountInvertedKernel;
-  cl::Buffer Tetrahedra, Materials, RestPoints, Begins, Places, Mobilities;
+  cl::Buffer Tetrahedra, Materials, RestPoints, Begins, ForceIndices, Mobilities;
   cl::Buffer Forces, Displacements, Velocities, Loads, Handles, HasDiverged, Inverted;
   cl::Buffer Sums, SavedDisplacements, SavedVelocities;
   std::size_t NumberOfHandles = 0;

@@ -14,7 +14,7 @@ namespace deformvolume
 struct CopiedBox
 {
   using Bytes = std::array<std::size_t, 3>; // bytes of a row, rows, planes
-  struct Place
+  struct Location
   {
     Bytes Origin;      // of the box in the larger box
     std::size_t Row;   // row pitch
@@ -28,8 +28,8 @@ struct CopiedBox
   };
 
   Bytes Size;
-  Place OnDevice;
-  Place OnHost;
+  Location OnDevice;
+  Location OnHost;
 
   /// Makes a box of contiguous bytes. offset: in the device buffer.
   static CopiedBox MakeRange(std::size_t offset, std::size_t bytes)
@@ -67,11 +67,11 @@ struct CopiedBox
         return;
       }
       this->Size = { { row * this->Size[1], this->Size[2], 1 } };
-      for (Place* const place : { &this->OnDevice, &this->OnHost })
+      for (Location* const location : { &this->OnDevice, &this->OnHost })
       {
-        place->Origin = { { place->Origin[0] + place->Origin[1] * place->Row, place->Origin[2],
-          0 } };
-        place->Row = place->Plane;
+        location->Origin = { { location->Origin[0] + location->Origin[1] * location->Row,
+          location->Origin[2], 0 } };
+        location->Row = location->Plane;
       }
     }
   }

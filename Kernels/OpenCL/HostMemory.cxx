@@ -21,10 +21,10 @@ StagedCopies* FindStagedCopies(const cl::CommandQueue& queue, std::uint64_t byte
 
 CopiedBox MakeBox(const Extent& whole, const Extent& part, std::size_t bytes, const Extent& held)
 {
-  const auto place = [&](const Extent& extent)
+  const auto locate = [&](const Extent& extent)
   {
     const std::size_t row = bytes * static_cast<std::size_t>(GetSize(extent, 0));
-    CopiedBox::Place result{ {}, row, row * static_cast<std::size_t>(GetSize(extent, 1)) };
+    CopiedBox::Location result{ {}, row, row * static_cast<std::size_t>(GetSize(extent, 1)) };
     for (int axis = 0; axis < 3; ++axis)
     {
       result.Origin[axis] =
@@ -33,7 +33,7 @@ CopiedBox MakeBox(const Extent& whole, const Extent& part, std::size_t bytes, co
     return result;
   };
   const auto size = [&](int axis) { return static_cast<std::size_t>(GetSize(part, axis)); };
-  return { { { bytes * size(0), size(1), size(2) } }, place(whole), place(held) };
+  return { { { bytes * size(0), size(1), size(2) } }, locate(whole), locate(held) };
 }
 
 void CheckWritten(cl_int error)
@@ -65,13 +65,13 @@ cl::Buffer MakeBufferOver(
   return cl::Buffer(context.GetContext(), access | CL_MEM_USE_HOST_PTR, bytes, data);
 }
 
-void UpdateFromHost(
-  const OpenCLContext& context, const cl::CommandQueue& queue, const BufferInPlace& place)
+void TellOfWrites(
+  const OpenCLContext& context, const cl::CommandQueue& queue, const BufferInPlace& inPlace)
 {
-  if (place.Buffer() && !context.SharesHostMemory())
+  if (inPlace.Buffer() && !context.SharesHostMemory())
   {
-    // OpenCL allows this write from the memory that the buffer uses itself.
-    queue.enqueueWriteBuffer(place.Buffer, CL_TRUE, 0, place.Bytes, place.Data);
+    // From the memory that the buffer was made over: OpenCL's way to say that it has changed.
+    queue.enqueueWriteBuffer(inPlace.Buffer, CL_TRUE, 0, inPlace.Bytes, inPlace.Data);
   }
 }
 
@@ -94,7 +94,7 @@ void Reserve(const OpenCLContext& context, cl::Buffer& buffer, std::uint64_t byt
   }
 }
 
-void Place(const OpenCLContext& context, cl::Buffer& buffer, void* memory, std::size_t elementSize,
+void Bind(const OpenCLContext& context, cl::Buffer& buffer, void* memory, std::size_t elementSize,
   std::uint64_t bytes)
 {
   if (CanWorkInPlace(context, memory, elementSize))

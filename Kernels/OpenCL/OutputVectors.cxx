@@ -7,22 +7,22 @@
 namespace deformvolume
 {
 
-void OutputVectors::Place(const OpenCLContext& context, float* memory, std::size_t numberOfPoints)
+void OutputVectors::Bind(const OpenCLContext& context, float* memory, std::size_t numberOfPoints)
 {
   this->Vectors.reset();
   this->HostMemory = nullptr;
-  deformvolume::Place(
+  deformvolume::Bind(
     context, this->Buffer, memory, sizeof(float), numberOfPoints * 3 * sizeof(float));
   this->HostMemory = memory;
 }
 
-void OutputVectors::Place(
+void OutputVectors::Bind(
   const OpenCLContext& context, const std::shared_ptr<DeviceVectors>& vectors)
 {
   DeviceVectors::Internals& internals = vectors->GetInternals();
   if (internals.AreInHostMemory())
   {
-    this->Place(context, internals.GetHostMemory(), internals.GetNumberOfPoints());
+    this->Bind(context, internals.GetHostMemory(), internals.GetNumberOfPoints());
   }
   else
   {

@@ -17,11 +17,11 @@ class OutputVectors
 {
 public:
   ///@{
-  /// Set the destination. vectors must be on the device of the context.
-  void Place(const OpenCLContext& context, float* memory, std::size_t numberOfPoints);
-  void Place(const OpenCLContext& context, const std::shared_ptr<DeviceVectors>& vectors);
+  /// vectors: on the device of the context.
+  void Bind(const OpenCLContext& context, float* memory, std::size_t numberOfPoints);
+  void Bind(const OpenCLContext& context, const std::shared_ptr<DeviceVectors>& vectors);
   ///@}
-  bool IsPlaced() const { return this->Buffer() != nullptr; }
+  bool IsSet() const { return this->Buffer() != nullptr; }
 
   /// The buffer to which kernels write.
   const cl::Buffer& GetBuffer() const { return this->Buffer; }

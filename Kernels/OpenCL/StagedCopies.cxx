@@ -58,7 +58,7 @@ struct Transfer
   cl_int Enqueue(const CopiedBox& box, char* half, cl_event* done) const
   {
     const CopiedBox::Bytes& size = box.Size;
-    const CopiedBox::Place& there = box.OnDevice;
+    const CopiedBox::Location& there = box.OnDevice;
     if (box.IsRange())
     {
       return this->Reads ? clEnqueueReadBuffer(this->Queue, this->Buffer, CL_FALSE,

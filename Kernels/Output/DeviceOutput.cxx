@@ -28,11 +28,11 @@ std::uint64_t DeviceOutput::Internals::GetBytes() const
   return static_cast<std::uint64_t>(GetNumberOfPoints(this->Values.Whole)) * this->Values.Bytes;
 }
 
-void DeviceOutput::Internals::LeaveDevice(Place place) noexcept
+void DeviceOutput::Internals::LeaveDevice(Location location) noexcept
 {
   this->Buffer = cl::Buffer();
   this->Queue = cl::CommandQueue();
-  this->State = place;
+  this->State = location;
 }
 
 void DeviceOutput::Internals::Bring() noexcept
@@ -45,13 +45,13 @@ void DeviceOutput::Internals::Bring() noexcept
   try
   {
     this->Copy();
-    this->LeaveDevice(Place::Host);
+    this->LeaveDevice(Location::Host);
   }
   catch (const std::exception& error)
   {
     this->FillWithBackground();
     this->Message = error.what();
-    this->LeaveDevice(Place::Nowhere);
+    this->LeaveDevice(Location::Nowhere);
   }
 }
 
@@ -94,7 +94,7 @@ void DeviceOutput::Internals::Drop() noexcept
   const std::lock_guard<std::mutex> lock(this->Mutex);
   if (this->IsOnDevice())
   {
-    this->LeaveDevice(Place::Nowhere);
+    this->LeaveDevice(Location::Nowhere);
   }
 }
 

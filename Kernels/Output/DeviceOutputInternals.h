@@ -39,8 +39,8 @@ public:
   Internals(const cl::CommandQueue& queue, const cl::Buffer& buffer, const Voxels& voxels,
     void* memory, const ElementBytes& background);
 
-  bool IsOnDevice() const { return this->State == Place::Device; }
-  bool IsRead() const { return this->State == Place::Host; }
+  bool IsOnDevice() const { return this->State == Location::Device; }
+  bool IsRead() const { return this->State == Location::Host; }
 
   /// Copies the values to the host unless that is done, and releases the buffer. Does not throw.
   void Bring() noexcept;
@@ -56,7 +56,7 @@ public:
   std::uint64_t GetMemory();
 
 private:
-  enum class Place
+  enum class Location
   {
     Device,
     Host,
@@ -64,11 +64,11 @@ private:
   };
   void Copy();
   void FillWithBackground() const;
-  void LeaveDevice(Place place) noexcept;
+  void LeaveDevice(Location location) noexcept;
   std::uint64_t GetBytes() const;
 
   std::mutex Mutex;
-  std::atomic<Place> State{ Place::Device };
+  std::atomic<Location> State{ Location::Device };
   cl::CommandQueue Queue;
   cl::Buffer Buffer;
   Voxels Values;

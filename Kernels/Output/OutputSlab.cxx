@@ -100,7 +100,7 @@ std::uint64_t OutputSlab::GetBytesPerVoxel(const OpenCLContext& context,
   return bytes;
 }
 
-void OutputSlab::PlaceArrays(
+void OutputSlab::BindArrays(
   OpenCLContext& context, const DeformRequest& request, const std::vector<VolumeArray>& arrays)
 {
   this->Arrays.resize(arrays.size());
@@ -109,11 +109,11 @@ void OutputSlab::PlaceArrays(
   for (std::size_t i = 0; i < arrays.size(); ++i)
   {
     this->TupleSizes[i] = GetTupleSize(arrays[i]);
-    deformvolume::Place(context, this->Arrays[i],
+    deformvolume::Bind(context, this->Arrays[i],
       static_cast<char*>(request.Outputs[i]) + offset * this->TupleSizes[i],
       GetElementSize(arrays[i].Type), this->NumberOfVoxels * this->TupleSizes[i]);
   }
-  deformvolume::Place(context, this->Coverage, request.Coverage + offset, 1, this->NumberOfVoxels);
+  deformvolume::Bind(context, this->Coverage, request.Coverage + offset, 1, this->NumberOfVoxels);
 }
 
 bool OutputSlab::HoldsLastOutput(const OpenCLContext& context, const DeformRequest& request,
@@ -150,7 +150,7 @@ void OutputSlab::PrepareAgain(OpenCLContext& context, const cl::CommandQueue& qu
     // Clear patches while the memory belongs to the host, before it is given to buffers.
     ClearPatches(request, arrays, part.Patches);
   }
-  this->PlaceArrays(context, request, arrays);
+  this->BindArrays(context, request, arrays);
   const bool withWinners = part.WithWinners && !part.Bricks.empty();
   this->NumberOfListedPatches = 0;
   if (!onHost || withWinners || this->BitsUsed)
@@ -219,7 +219,7 @@ void OutputSlab::ClearSections(
   }
 }
 
-void OutputSlab::Place(OpenCLContext& context, const cl::CommandQueue& queue, const Extent& extent,
+void OutputSlab::Bind(OpenCLContext& context, const cl::CommandQueue& queue, const Extent& extent,
   const DeformRequest& request, const std::vector<VolumeArray>& arrays, const VoxelGrid& voxelGrid,
   std::size_t numberOfBricks, std::vector<cl::Event>& events)
 {
@@ -230,7 +230,7 @@ void OutputSlab::Place(OpenCLContext& context, const cl::CommandQueue& queue, co
   this->WholeExtent = GetWholeOutput(request);
   this->NumberOfVoxels = static_cast<std::uint64_t>(GetNumberOfPoints(extent));
   this->Winners.Start(queue, extent, voxelGrid);
-  this->PlaceArrays(context, request, arrays);
+  this->BindArrays(context, request, arrays);
   this->NumberOfSections = DEFORMVOLUME_SECTIONS * numberOfBricks;
   Reserve(
     context, this->Counters, this->NumberOfSections * DEFORMVOLUME_COUNTERS * sizeof(cl_uint));
@@ -376,8 +376,8 @@ std::vector<cl_uint> OutputSlab::FindBricks(int counter)
     cl_uint bits = 0;
     for (std::size_t section = 0; section < DEFORMVOLUME_SECTIONS; ++section)
     {
-      const std::size_t place = (DEFORMVOLUME_SECTIONS * brick + section) * DEFORMVOLUME_COUNTERS;
-      if (counters[place + static_cast<std::size_t>(counter)])
+      const std::size_t index = (DEFORMVOLUME_SECTIONS * brick + section) * DEFORMVOLUME_COUNTERS;
+      if (counters[index + static_cast<std::size_t>(counter)])
       {
         bits |= GetSectionBits(section);
       }

@@ -58,10 +58,10 @@ public:
 
   /// Allocates memory for a slab of the request's output, reuses existing buffers, or uses the
   /// memory of the request in place. Adds events of launches to a list.
-  void Place(OpenCLContext& context, const cl::CommandQueue& queue, const Extent& extent,
+  void Bind(OpenCLContext& context, const cl::CommandQueue& queue, const Extent& extent,
     const DeformRequest& request, const std::vector<VolumeArray>& arrays,
     const VoxelGrid& voxelGrid, std::size_t numberOfBricks, std::vector<cl::Event>& events);
-  /// After Place: sets the coverage to 0, and fills the arrays with the background. If coverage is
+  /// After Bind: sets the coverage to 0, and fills the arrays with the background. If coverage is
   /// bits, Complete fills them instead.
   void Clear(OpenCLContext& context, const std::vector<VolumeArray>& arrays, bool coverageBits,
     std::vector<cl::Event>& events);
@@ -152,7 +152,7 @@ public:
   std::uint64_t GetMemory() const;
 
 private:
-  void PlaceArrays(
+  void BindArrays(
     OpenCLContext& context, const DeformRequest& request, const std::vector<VolumeArray>& arrays);
   void SendPatches(OpenCLContext& context, const std::vector<std::uint32_t>& patches);
   void ClearSections(

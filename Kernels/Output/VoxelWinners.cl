@@ -119,7 +119,7 @@ static int IsKept(const Output* output, size_t target, const KernelParameters* p
 }
 
 // Handles a voxel that a cell writes, in all passes but the first. Returns whether values must be written.
-static int TakesPlace(Output* output, size_t target, KEY key, const KernelParameters* p)
+static int WinsVoxel(Output* output, size_t target, KEY key, const KernelParameters* p)
 {
   __global KEY* winner = output->Winners + target;
   const KEY found = *winner;

@@ -131,14 +131,14 @@ public:
 
   void Add(const std::vector<glm::dvec3>& points, std::int32_t node)
   {
-    const auto place = [&](std::int32_t i) { return points[static_cast<std::size_t>(i)]; };
+    const auto at = [&](std::int32_t i) { return points[static_cast<std::size_t>(i)]; };
     if (this->Slides)
     {
       for (int axis = 0; axis < 3; ++axis)
       {
         glm::dvec3 normal(0.0);
         normal[axis] = 1.0;
-        this->Planes.Add(place(node), normal);
+        this->Planes.Add(at(node), normal);
       }
     }
     if (this->Nodes[0] < 0)
@@ -146,13 +146,13 @@ public:
       this->Nodes[0] = node;
       return;
     }
-    const glm::dvec3 offset = place(node) - place(this->Nodes[0]);
+    const glm::dvec3 offset = at(node) - at(this->Nodes[0]);
     if (this->Nodes[1] < 0)
     {
       this->Nodes[1] = glm::length(offset) > 0.0 ? node : -1;
       return;
     }
-    const glm::dvec3 along = place(this->Nodes[1]) - place(this->Nodes[0]);
+    const glm::dvec3 along = at(this->Nodes[1]) - at(this->Nodes[0]);
     this->IsStiff =
       this->IsStiff || glm::length(glm::cross(offset, along)) > LeastArea * glm::dot(along, along);
   }
@@ -268,7 +268,7 @@ PieceSupports FindSupports(
   // Takes all pieces whose support satisfies isNext, and calls take for each of them. The shared
   // nodes of a taken piece then support its neighbors, which are tried again.
   std::vector<bool> isTaken(number, false);
-  std::vector<bool> isPlaced(body.Points.size(), false);
+  std::vector<bool> isSettled(body.Points.size(), false);
   const auto spread = [&](auto&& isNext, auto&& take)
   {
     std::vector<std::int32_t> open(number);
@@ -286,11 +286,11 @@ PieceSupports FindSupports(
       ForPairs(pieces.SharedByPieces, piece,
         [&](std::int32_t node)
         {
-          if (isPlaced[static_cast<std::size_t>(node)])
+          if (isSettled[static_cast<std::size_t>(node)])
           {
             return;
           }
-          isPlaced[static_cast<std::size_t>(node)] = true;
+          isSettled[static_cast<std::size_t>(node)] = true;
           ForPairs(pieces.SharedNodes, node,
             [&](std::int32_t other)
             {
@@ -313,7 +313,7 @@ PieceSupports FindSupports(
 }
 
 void MoveFollowing(const ElasticBody& body, const BodyPieces& pieces,
-  const std::vector<FollowingPiece>& following, std::vector<unsigned char>& isPlaced,
+  const std::vector<FollowingPiece>& following, std::vector<unsigned char>& isSettled,
   std::vector<glm::dvec3>& displacements)
 {
   for (const FollowingPiece& follower : following)
@@ -337,9 +337,9 @@ void MoveFollowing(const ElasticBody& body, const BodyPieces& pieces,
         [&](std::int32_t number)
         {
           const auto node = static_cast<std::size_t>(number);
-          if (isPlaced[node] == 0)
+          if (isSettled[node] == 0)
           {
-            isPlaced[node] = 1;
+            isSettled[node] = 1;
             displacements[node] =
               moved + TurnBetween(from, to, body.Points[node] - origin) - body.Points[node];
           }

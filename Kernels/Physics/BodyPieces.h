@@ -68,10 +68,10 @@ DEFORMVOLUME_EXPORT PieceSupports FindSupports(
 
 /// Moves each following piece like a rigid body, so that its supporting nodes keep their
 /// displacements. A piece with two supporting nodes is rotated by the smallest possible angle.
-/// isPlaced: nodes that already have their final displacement; the nodes of the moved pieces are
+/// isSettled: nodes that already have their final displacement; the nodes of the moved pieces are
 /// added.
 DEFORMVOLUME_EXPORT void MoveFollowing(const ElasticBody& body, const BodyPieces& pieces,
-  const std::vector<FollowingPiece>& following, std::vector<unsigned char>& isPlaced,
+  const std::vector<FollowingPiece>& following, std::vector<unsigned char>& isSettled,
   std::vector<glm::dvec3>& displacements);
 
 } // namespace deformvolume

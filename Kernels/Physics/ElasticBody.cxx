@@ -118,10 +118,10 @@ bool IsFolded(const std::array<glm::dvec3, QuadraticTetrahedron::NumberOfNodes>&
   constexpr double leastPart = 1e-3;
   const double corners = glm::determinant(
     glm::dmat3(points[1] - points[0], points[2] - points[0], points[3] - points[0]));
-  const auto isBad = [&](const glm::dvec4& place)
+  const auto isBad = [&](const glm::dvec4& weights)
   {
     return !(
-      glm::determinant(QuadraticTetrahedron::GetJacobian(points, place)) / corners > leastPart);
+      glm::determinant(QuadraticTetrahedron::GetJacobian(points, weights)) / corners > leastPart);
   };
   for (std::size_t i = 0; i < 4; ++i)
   {
@@ -331,8 +331,8 @@ void CheckHeldNodes(const ElasticBody& body, const std::vector<HeldNode>& held)
   std::vector<unsigned char> isHeld(body.Points.size(), 0);
   for (const HeldNode& node : held)
   {
-    const auto place = static_cast<std::size_t>(node.Node);
-    if (node.Node < 0 || place >= body.Points.size())
+    const auto weights = static_cast<std::size_t>(node.Node);
+    if (node.Node < 0 || weights >= body.Points.size())
     {
       throw Error("A handle holds the node " + std::to_string(node.Node) + ", but the mesh has " +
         std::to_string(body.Points.size()) + " nodes.");
@@ -342,12 +342,12 @@ void CheckHeldNodes(const ElasticBody& body, const std::vector<HeldNode>& held)
       throw Error("The displacement of the handle that holds node " + std::to_string(node.Node) +
         " is not finite.");
     }
-    if (body.IsFixed(place) || isHeld[place] != 0)
+    if (body.IsFixed(weights) || isHeld[weights] != 0)
     {
       throw Error("The node " + std::to_string(node.Node) +
-        (body.IsFixed(place) ? " is fixed, and a handle holds it." : " is held by two handles."));
+        (body.IsFixed(weights) ? " is fixed, and a handle holds it." : " is held by two handles."));
     }
-    isHeld[place] = 1;
+    isHeld[weights] = 1;
   }
 }
 

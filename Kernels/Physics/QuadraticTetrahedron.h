@@ -31,9 +31,9 @@ struct QuadraticTetrahedron
   static constexpr double FarCoordinate = 0.13819660112501051518;  // (5 - sqrt 5) / 20
   static glm::dvec4 GetGaussPoint(std::size_t i)
   {
-    glm::dvec4 place(FarCoordinate);
-    place[static_cast<int>(i)] = NearCoordinate;
-    return place;
+    glm::dvec4 weights(FarCoordinate);
+    weights[static_cast<int>(i)] = NearCoordinate;
+    return weights;
   }
 
   static std::array<glm::dvec3, NumberOfNodes> GetPoints(
@@ -50,19 +50,19 @@ struct QuadraticTetrahedron
   /// columns; the coordinate of corner 0 is 1 minus the others. With straight edges the determinant
   /// is six times the volume.
   static glm::dmat3 GetJacobian(
-    const std::array<glm::dvec3, NumberOfNodes>& points, const glm::dvec4& place)
+    const std::array<glm::dvec3, NumberOfNodes>& points, const glm::dvec4& weights)
   {
     std::array<glm::dvec3, 4> slopes; // derivatives by each coordinate
     for (std::size_t i = 0; i < 4; ++i)
     {
-      slopes[i] = (4.0 * place[static_cast<int>(i)] - 1.0) * points[i];
+      slopes[i] = (4.0 * weights[static_cast<int>(i)] - 1.0) * points[i];
     }
     for (std::size_t edge = 0; edge < 6; ++edge)
     {
       const std::size_t a = TetrahedronEdges[edge][0];
       const std::size_t b = TetrahedronEdges[edge][1];
-      slopes[a] += 4.0 * place[static_cast<int>(b)] * points[4 + edge];
-      slopes[b] += 4.0 * place[static_cast<int>(a)] * points[4 + edge];
+      slopes[a] += 4.0 * weights[static_cast<int>(b)] * points[4 + edge];
+      slopes[b] += 4.0 * weights[static_cast<int>(a)] * points[4 + edge];
     }
     return { slopes[1] - slopes[0], slopes[2] - slopes[0], slopes[3] - slopes[0] };
   }
@@ -129,17 +129,17 @@ struct QuadraticTetrahedron
   /// The shape functions at Gauss point i: the part of a force there that each node takes.
   static std::array<double, NumberOfNodes> GetShares(std::size_t i)
   {
-    const glm::dvec4 place = GetGaussPoint(i);
+    const glm::dvec4 weights = GetGaussPoint(i);
     std::array<double, NumberOfNodes> shares;
     for (std::size_t a = 0; a < 4; ++a)
     {
-      const double coordinate = place[static_cast<int>(a)];
+      const double coordinate = weights[static_cast<int>(a)];
       shares[a] = coordinate * (2.0 * coordinate - 1.0);
     }
     for (std::size_t edge = 0; edge < 6; ++edge)
     {
-      shares[4 + edge] = 4.0 * place[static_cast<int>(TetrahedronEdges[edge][0])] *
-        place[static_cast<int>(TetrahedronEdges[edge][1])];
+      shares[4 + edge] = 4.0 * weights[static_cast<int>(TetrahedronEdges[edge][0])] *
+        weights[static_cast<int>(TetrahedronEdges[edge][1])];
     }
     return shares;
   }

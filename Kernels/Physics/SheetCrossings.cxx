@@ -95,7 +95,7 @@ SheetCrossings::SheetCrossings(const MeshSteps& steps, const std::vector<glm::dv
   }
   this->Tree =
     BoxTree<SnappedBox>(divided, [](const SnappedTriangle& triangle) { return GetBox(triangle); });
-  this->Sums.assign(this->GetPlace(0, 0, this->Cells + 1), 0);
+  this->Sums.assign(this->GetIndex(0, 0, this->Cells + 1), 0);
   std::vector<std::size_t> numbers(divided.size());
   std::iota(numbers.begin(), numbers.end(), std::size_t{ 0 });
   this->MarkCells(SnappedPoint(0), depth, numbers);
@@ -118,7 +118,7 @@ void SheetCrossings::MarkCells(
   {
     if (std::any_of(numbers.begin(), numbers.end(), intersects))
     {
-      this->Sums[this->GetPlace(firstCell.x + 1, firstCell.y + 1, firstCell.z + 1)] = 1;
+      this->Sums[this->GetIndex(firstCell.x + 1, firstCell.y + 1, firstCell.z + 1)] = 1;
     }
     return;
   }
@@ -140,9 +140,9 @@ void SheetCrossings::SumCells()
       std::int32_t row = 0;
       for (std::int64_t x = 1; x <= this->Cells; ++x)
       {
-        row += this->Sums[this->GetPlace(x, y, z)];
-        this->Sums[this->GetPlace(x, y, z)] = row + this->Sums[this->GetPlace(x, y - 1, z)] +
-          this->Sums[this->GetPlace(x, y, z - 1)] - this->Sums[this->GetPlace(x, y - 1, z - 1)];
+        row += this->Sums[this->GetIndex(x, y, z)];
+        this->Sums[this->GetIndex(x, y, z)] = row + this->Sums[this->GetIndex(x, y - 1, z)] +
+          this->Sums[this->GetIndex(x, y, z - 1)] - this->Sums[this->GetIndex(x, y - 1, z - 1)];
       }
     }
   }
@@ -158,7 +158,7 @@ bool SheetCrossings::HasMarkedCells(const SnappedBox& box) const
     high[axis] = this->GetCell(box.Max[axis]) + 1;
   }
   const auto below = [&](std::int64_t x, std::int64_t y, std::int64_t z)
-  { return this->Sums[this->GetPlace(x, y, z)]; };
+  { return this->Sums[this->GetIndex(x, y, z)]; };
   const auto ofLayers = [&](std::int64_t z)
   {
     return below(high.x, high.y, z) - below(low.x, high.y, z) - below(high.x, low.y, z) +

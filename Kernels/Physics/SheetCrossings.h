@@ -72,7 +72,7 @@ private:
   {
     return std::min(this->Cells - 1, steps >> this->CellShift);
   }
-  std::size_t GetPlace(std::int64_t x, std::int64_t y, std::int64_t z) const
+  std::size_t GetIndex(std::int64_t x, std::int64_t y, std::int64_t z) const
   {
     return static_cast<std::size_t>((z * (this->Cells + 1) + y) * (this->Cells + 1) + x);
   }

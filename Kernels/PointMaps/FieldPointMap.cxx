@@ -32,9 +32,8 @@ constexpr double LeastWeight = 1e-5;
 /// Values at the corners of a cell. Bits 0, 1 and 2 of a corner's number: upper x, y and z.
 using Corners = std::array<glm::dvec3, 8>;
 
-/// Interpolates trilinearly at a position in a cell, with coordinates from 0 to 1. gradient:
-/// returns the derivatives with respect to the position.
-glm::dvec3 Interpolate(const Corners& corners, const glm::dvec3& place, glm::dmat3& gradient)
+/// What is trilinear between corners, at a place between 0 and 1, and its derivatives by that.
+glm::dvec3 Interpolate(const Corners& corners, const glm::dvec3& position, glm::dmat3& gradient)
 {
   const auto mix = [](const glm::dvec3& a, const glm::dvec3& b, double t)
   { return a + t * (b - a); };
@@ -43,14 +42,14 @@ glm::dvec3 Interpolate(const Corners& corners, const glm::dvec3& place, glm::dma
   for (std::size_t i = 0; i < 4; ++i)
   {
     byX[i] = corners[2 * i + 1] - corners[2 * i];
-    alongX[i] = corners[2 * i] + place.x * byX[i];
+    alongX[i] = corners[2 * i] + position.x * byX[i];
   }
-  const glm::dvec3 low = mix(alongX[0], alongX[1], place.y);
-  const glm::dvec3 high = mix(alongX[2], alongX[3], place.y);
-  gradient[0] = mix(mix(byX[0], byX[1], place.y), mix(byX[2], byX[3], place.y), place.z);
-  gradient[1] = mix(alongX[1] - alongX[0], alongX[3] - alongX[2], place.z);
+  const glm::dvec3 low = mix(alongX[0], alongX[1], position.y);
+  const glm::dvec3 high = mix(alongX[2], alongX[3], position.y);
+  gradient[0] = mix(mix(byX[0], byX[1], position.y), mix(byX[2], byX[3], position.y), position.z);
+  gradient[1] = mix(alongX[1] - alongX[0], alongX[3] - alongX[2], position.z);
   gradient[2] = high - low;
-  return mix(low, high, place.z);
+  return mix(low, high, position.z);
 }
 
 } // namespace
@@ -115,8 +114,8 @@ public:
     return corners;
   }
 
-  /// Whether all vectors that are needed at a position in a cell are defined.
-  bool IsDefined(const glm::ivec3& cell, const glm::dvec3& place) const
+  /// Whether all vectors are known that a place in a cell needs.
+  bool IsDefined(const glm::ivec3& cell, const glm::dvec3& position) const
   {
     for (int corner = 0; this->Field.Undefined && corner < 8; ++corner)
     {
@@ -124,7 +123,8 @@ public:
       bool isNeeded = true;
       for (int axis = 0; axis < 3; ++axis)
       {
-        isNeeded = isNeeded && (offset[axis] != 0 ? place[axis] : 1.0 - place[axis]) > LeastWeight;
+        isNeeded =
+          isNeeded && (offset[axis] != 0 ? position[axis] : 1.0 - position[axis]) > LeastWeight;
       }
       if (isNeeded &&
         this->Field.Undefined[this->GetNumber(glm::min(cell + offset, this->Last))] != 0)
@@ -196,7 +196,7 @@ public:
     bool IsBeside = true;     // outside the cell, within the tolerance
     bool IsInverted = false;
     glm::ivec3 Cell{ 0 };
-    glm::dvec3 Place{ 0.0 };
+    glm::dvec3 Position{ 0.0 };
     glm::dmat3 Gradient{ 1.0 };
 
     bool IsBetterThan(const Solution& other) const
@@ -214,14 +214,14 @@ public:
   {
     Solution found;
     found.Cell = cell;
-    found.Place = start;
+    found.Position = start;
     bool isDone = false;
     for (int i = 0; i < MostCellSteps && !isDone; ++i)
     {
-      const glm::dvec3 miss = Interpolate(moved, found.Place, found.Gradient) - point;
+      const glm::dvec3 miss = Interpolate(moved, found.Position, found.Gradient) - point;
       const glm::dvec3 step = glm::inverse(found.Gradient) * miss;
-      found.Place -= step;
-      const glm::dvec3 away = glm::abs(found.Place - 0.5);
+      found.Position -= step;
+      const glm::dvec3 away = glm::abs(found.Position - 0.5);
       if (!(std::max({ away.x, away.y, away.z }) < 3.0))
       {
         return found;
@@ -237,17 +237,17 @@ public:
     {
       // On an axis with one point the cell has no thickness.
       const double beyond = this->Last[axis] == 0
-        ? std::abs(found.Place[axis])
-        : std::max(-found.Place[axis], found.Place[axis] - 1.0);
+        ? std::abs(found.Position[axis])
+        : std::max(-found.Position[axis], found.Position[axis] - 1.0);
       if (beyond > std::max(this->Field.Tolerance, CellFaceTolerance))
       {
         return found;
       }
       found.IsBeside = found.IsBeside || beyond > CellFaceTolerance;
     }
-    if (this->IsDefined(cell, found.Place))
+    if (this->IsDefined(cell, found.Position))
     {
-      Interpolate(moved, found.Place, found.Gradient);
+      Interpolate(moved, found.Position, found.Gradient);
       found.IsInverted =
         (glm::determinant(found.Gradient) > 0.0) != (glm::determinant(this->ToWorld) > 0.0);
       found.Number = this->GetNumber(cell);
@@ -262,8 +262,8 @@ public:
     Solution best = this->Find(cell, moved, point, glm::dvec3(0.5));
     for (int start = 0; thorough && start < 27; ++start)
     {
-      const glm::dvec3 place(start % 3, start / 3 % 3, start / 9);
-      const Solution found = this->Find(cell, moved, point, 0.1 + 0.4 * place);
+      const glm::dvec3 position(start % 3, start / 3 % 3, start / 9);
+      const Solution found = this->Find(cell, moved, point, 0.1 + 0.4 * position);
       best = found.IsBetterThan(best) ? found : best;
     }
     return best;
@@ -360,13 +360,13 @@ bool FieldPointMap::Map(const glm::dvec3& point, Image& image) const
     slope = GetFadedSlope(s) / this->Outside.FadeDistance * offset / distance;
   }
   const glm::ivec3 cell = inside.GetCell(nearest);
-  const glm::dvec3 place = nearest - glm::dvec3(cell);
-  if (!inside.IsDefined(cell, place))
+  const glm::dvec3 position = nearest - glm::dvec3(cell);
+  if (!inside.IsDefined(cell, position))
   {
     return false;
   }
   glm::dmat3 gradient;
-  const glm::dvec3 displacement = Interpolate(inside.GetVectors(cell), place, gradient);
+  const glm::dvec3 displacement = Interpolate(inside.GetVectors(cell), position, gradient);
   image.FadingDisplacement = weight < 1.0 ? glm::length(displacement) : 0.0;
   image.Point += weight * displacement;
   image.Gradient += weight * gradient * clamped * glm::dmat3(inside.ToIndex) +
@@ -382,13 +382,13 @@ bool FieldPointMap::InvertInside(const glm::dvec3& point, Image& image) const
   {
     return false;
   }
-  const glm::dvec3 place = inside.GetWorld(glm::dvec3(found.Cell) + found.Place);
+  const glm::dvec3 position = inside.GetWorld(glm::dvec3(found.Cell) + found.Position);
   if (found.IsBeside)
   {
-    // Outside the cell, points follow the border of the field.
-    return this->Solve(point, place, image);
+    // There it is the border of the field that moves points.
+    return this->Solve(point, position, image);
   }
-  image = { place, inside.ToWorld * glm::inverse(found.Gradient) };
+  image = { position, inside.ToWorld * glm::inverse(found.Gradient) };
   return true;
 }
 

@@ -59,22 +59,22 @@ public:
   /// Positions of the nodes, and a tree of the bounding boxes of the tetrahedra.
   struct Configuration
   {
-    const Points* Places = nullptr;
-    double Size = 0.0;          // diagonal of the bounding box plus largest coordinate
-    BoxTree<IndexBounds> Boxes; // enlarged by the tolerance; empty boxes for flat tetrahedra
+    const Points* Positions = nullptr;
+    double Size = 0.0;          // what tolerances are a part of
+    BoxTree<IndexBounds> Boxes; // by the tolerance wider; empty where there is no volume
   };
 
-  Configuration Search(const Points& places) const
+  Configuration Search(const Points& positions) const
   {
     Configuration configuration;
-    configuration.Places = &places;
+    configuration.Positions = &positions;
     IndexBounds all;
     std::vector<IndexBounds> boxes(this->Tetrahedra.size());
     for (std::size_t i = 0; i < boxes.size(); ++i)
     {
       for (const std::int32_t node : this->Tetrahedra[i])
       {
-        boxes[i].Add(At(places, node));
+        boxes[i].Add(At(positions, node));
       }
       all.Add(boxes[i]);
     }
@@ -84,7 +84,7 @@ public:
     for (std::size_t i = 0; i < boxes.size(); ++i)
     {
       if (std::isfinite(configuration.Size) &&
-        BarycentricMap().SetTetrahedron(this->Tetrahedra[i], places))
+        BarycentricMap().SetTetrahedron(this->Tetrahedra[i], positions))
       {
         boxes[i].Min -= configuration.Size * MeshBorderTolerance;
         boxes[i].Max += configuration.Size * MeshBorderTolerance;
@@ -100,7 +100,7 @@ public:
 
   void FindBoundary()
   {
-    const Points& rest = *this->Rest.Places;
+    const Points& rest = *this->Rest.Positions;
     this->Faces =
       FindBoundaryFaces(rest, this->Tetrahedra, FindSolidTetrahedra(rest, this->Tetrahedra));
     std::vector<ClosestFace::Triangle> triangles;
@@ -125,7 +125,7 @@ public:
   Holder Find(const Configuration& configuration, const glm::dvec3& point) const
   {
     const bool isAtRest = &configuration == &this->Rest;
-    const Points& places = *configuration.Places;
+    const Points& positions = *configuration.Positions;
     const double tolerance = configuration.Size * MeshBorderTolerance;
     const double touching = configuration.Size * MeshFaceTolerance;
     Holder best;
@@ -141,7 +141,7 @@ public:
         Holder found;
         found.Number = number;
         const Tetrahedron& nodes = this->Tetrahedra[i];
-        if (!found.Map.SetTetrahedron(nodes, places))
+        if (!found.Map.SetTetrahedron(nodes, positions))
         {
           return true;
         }
@@ -163,7 +163,7 @@ public:
           holds = holds && squared <= touching * touching;
         }
         found.IsInverted = !isAtRest &&
-          (GetVolume(nodes, places) > 0.0) != (GetVolume(nodes, *this->Rest.Places) > 0.0);
+          (GetVolume(nodes, positions) > 0.0) != (GetVolume(nodes, *this->Rest.Positions) > 0.0);
         if (best.Number < 0 ||
           std::make_tuple(!holds, found.IsInverted, found.Number) <
             std::make_tuple(isBestNear, best.IsInverted, best.Number))
@@ -203,7 +203,7 @@ public:
   {
     Holder holder;
     holder.Number = this->Faces[static_cast<std::size_t>(face)].Tetrahedron;
-    holder.Map.SetTetrahedron(this->GetNodes(holder.Number), *this->Rest.Places);
+    holder.Map.SetTetrahedron(this->GetNodes(holder.Number), *this->Rest.Positions);
     return holder;
   }
 
@@ -220,16 +220,16 @@ public:
     const double weight = GetFadedWeight(s);
     const TetrahedronFace& face = this->Faces[static_cast<std::size_t>(closest.Face)];
     const auto corners = face.GetNodes(this->GetNodes(face.Tetrahedron));
-    glm::dvec3 place(0.0); // the closest point
-    // The corners of the face, edge or node on which the closest point lies.
+    glm::dvec3 position(0.0); // the closest point
+    // The corners of the face, the edge or the node that it is on.
     std::array<glm::dvec3, 3> feature;
     std::size_t featureSize = 0;
     for (int k = 0; k < 3; ++k)
     {
       if (closest.Weights[k] > 0.0)
       {
-        feature[featureSize] = At(*this->Rest.Places, corners[static_cast<std::size_t>(k)]);
-        place += closest.Weights[k] * feature[featureSize++];
+        feature[featureSize] = At(*this->Rest.Positions, corners[static_cast<std::size_t>(k)]);
+        position += closest.Weights[k] * feature[featureSize++];
       }
     }
     // The derivative of the closest point with respect to the point.
@@ -245,14 +245,15 @@ public:
       const glm::dvec3 edge = glm::normalize(feature[1] - feature[0]);
       projection = glm::outerProduct(edge, edge);
     }
-    const Displacement displacement = this->Displace(this->GetHolder(closest.Face), place);
+    const Displacement displacement = this->Displace(this->GetHolder(closest.Face), position);
     image.FadingDisplacement = glm::length(displacement.Vector);
     image.Point += weight * displacement.Vector;
     image.Gradient += weight * displacement.Gradient * projection;
     if (distance > 0.0)
     {
       const double slope = GetFadedSlope(s) / fadeDistance;
-      image.Gradient += glm::outerProduct(displacement.Vector, slope * (point - place) / distance);
+      image.Gradient +=
+        glm::outerProduct(displacement.Vector, slope * (point - position) / distance);
     }
   }
 
@@ -292,7 +293,7 @@ void MeshPointMap::Set(
   inside.Moved = {};
   if (isInverse)
   {
-    inside.MovedPoints = *inside.Rest.Places;
+    inside.MovedPoints = *inside.Rest.Positions;
     for (std::size_t i = 0; i < inside.MovedPoints.size(); ++i)
     {
       inside.MovedPoints[i] += inside.Displacements[i];

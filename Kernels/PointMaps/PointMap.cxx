@@ -23,9 +23,9 @@ PointMap::~PointMap() = default;
 
 bool PointMap::Solve(const glm::dvec3& point, const glm::dvec3& start, Image& image) const
 {
-  glm::dvec3 place = start;
+  glm::dvec3 position = start;
   Image here;
-  if (!this->Map(place, here))
+  if (!this->Map(position, here))
   {
     return false;
   }
@@ -34,10 +34,10 @@ bool PointMap::Solve(const glm::dvec3& point, const glm::dvec3& start, Image& im
   {
     Image there;
     const bool isNearer =
-      this->Map(place - step, there) && glm::length(there.Point - point) < glm::length(miss);
+      this->Map(position - step, there) && glm::length(there.Point - point) < glm::length(miss);
     if (isNearer)
     {
-      place -= step;
+      position -= step;
       here = there;
       miss = here.Point - point;
     }
@@ -65,7 +65,7 @@ bool PointMap::Solve(const glm::dvec3& point, const glm::dvec3& start, Image& im
   {
     return false;
   }
-  image.Point = place;
+  image.Point = position;
   image.Gradient = glm::inverse(here.Gradient);
   image.FadingDisplacement = here.FadingDisplacement;
   return true;

@@ -78,11 +78,11 @@ public:
       for (int axis = 0; axis < 3; ++axis)
       {
         const bool upper = (corner >> axis & 1) != 0;
-        const int place = upper ? last[axis] : first[axis];
-        const bool isBorder = place == (upper ? static_cast<int>(this->Last[axis]) : 0);
+        const int gridPoint = upper ? last[axis] : first[axis];
+        const bool isBorder = gridPoint == (upper ? static_cast<int>(this->Last[axis]) : 0);
         const double margin =
           isBorder ? (this->Field.Extrapolate ? Infinity : DEFORMVOLUME_LOOKUP_TOLERANCE) : 0.0;
-        point[axis] = place + (upper ? margin : -margin);
+        point[axis] = gridPoint + (upper ? margin : -margin);
         hasBorder = hasBorder || isBorder;
       }
       box.Add(this->FromField * (point - this->Offset));

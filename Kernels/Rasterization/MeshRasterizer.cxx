@@ -140,12 +140,12 @@ void MeshRasterizer::SetDisplacements(const float* displacements)
   for (std::size_t node = 0; node < count; ++node)
   {
     const double* rest = &this->RestNodes[3 * node];
-    const glm::dvec3 place = transform.ToOutput(glm::dvec3(rest[0], rest[1], rest[2]));
+    const glm::dvec3 restPosition = transform.ToOutput(glm::dvec3(rest[0], rest[1], rest[2]));
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
       const float displacement = displacements[3 * node + axis];
       const double position =
-        place[static_cast<glm::length_t>(axis)] + static_cast<double>(displacement);
+        restPosition[static_cast<glm::length_t>(axis)] + static_cast<double>(displacement);
       const double distance =
         std::isnan(position) ? std::numeric_limits<double>::infinity() : std::abs(position);
       if (distance > this->FarthestPosition)

@@ -37,7 +37,7 @@ void RasterTarget::AddMemory(OpenCLContext& context, void* output, std::uint64_t
   memory.Background = background;
   memory.Host = static_cast<char*>(output) + this->FirstVoxel * tuple;
   memory.Tuple = tuple;
-  Place(context, memory.Buffer, memory.Host, GetElementSize(type), this->NumberOfVoxels * tuple);
+  Bind(context, memory.Buffer, memory.Host, GetElementSize(type), this->NumberOfVoxels * tuple);
   this->Memories.push_back(memory);
 }
 

@@ -219,8 +219,8 @@ static uint FindRests(
     }
     for (int axis = 0; axis < 3; ++axis)
     {
-      __local int* place = rests + axis * REST_AXIS_STEP + x * REST_STEP;
-      STORE(select(LOAD(place), rest[axis], mask), place);
+      __local int* target = rests + axis * REST_AXIS_STEP + x * REST_STEP;
+      STORE(select(LOAD(target), rest[axis], mask), target);
     }
   }
   return found;

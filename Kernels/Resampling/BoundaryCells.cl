@@ -40,14 +40,14 @@ typedef struct
   int Cell[3]; // local index
   int Tetrahedron;
   long Weights[4];
-} RestPlace;
+} RestLocation;
 
 // Returns the order in which pieces win a voxel: upright before inverted, then by cell (x varies fastest), then by
 // tetrahedron. 20 bits for each index.
-static ulong KeyOf(const RestPlace* place, int isInverted)
+static ulong KeyOf(const RestLocation* location, int isInverted)
 {
-  return (ulong)isInverted << 63 | (ulong)place->Cell[2] << 43 | (ulong)place->Cell[1] << 23 |
-    (ulong)place->Cell[0] << 3 | (ulong)place->Tetrahedron;
+  return (ulong)isInverted << 63 | (ulong)location->Cell[2] << 43 | (ulong)location->Cell[1] << 23 |
+    (ulong)location->Cell[0] << 3 | (ulong)location->Tetrahedron;
 }
 
 // Returns a rest coordinate relative to a cell, from 0 to one, mirrored according to the parity of the cell.
@@ -66,21 +66,21 @@ static Vector InCell(const long* rest, const int* cell, const KernelParameters* 
 
 // Whether a tetrahedron has no blanked vertex, and a point in it has no negative boundary distance.
 static int IsUnmasked(
-  const RestPlace* place, const BoundaryMasks* masks, const RasterParameters* r, const KernelParameters* p)
+  const RestLocation* location, const BoundaryMasks* masks, const RasterParameters* r, const KernelParameters* p)
 {
-  const int mirror = Mirror(place->Cell[0], place->Cell[1], place->Cell[2], p);
+  const int mirror = Mirror(location->Cell[0], location->Cell[1], location->Cell[2], p);
   REAL distance = 0;
   for (int k = 0; k < 4; ++k)
   {
-    const int o = Tetrahedra[place->Tetrahedron][k] ^ mirror;
+    const int o = Tetrahedra[location->Tetrahedron][k] ^ mirror;
     const size_t voxel =
-      VertexInChunk(place->Cell[0] + (o & 1), place->Cell[1] + (o >> 2), place->Cell[2] + (o >> 1 & 1), p);
+      VertexInChunk(location->Cell[0] + (o & 1), location->Cell[1] + (o >> 2), location->Cell[2] + (o >> 1 & 1), p);
     if (r->HasBlanked && masks->Blanked[voxel])
     {
       return 0;
     }
-    distance = r->HasDistances && place->Weights[k]
-      ? MULTIPLY_ADD_REAL((REAL)place->Weights[k], (REAL)masks->Distances[voxel], distance)
+    distance = r->HasDistances && location->Weights[k]
+      ? MULTIPLY_ADD_REAL((REAL)location->Weights[k], (REAL)masks->Distances[voxel], distance)
       : distance;
   }
   return !(distance < 0);
@@ -88,7 +88,7 @@ static int IsUnmasked(
 
 // Finds the lowest cell at the boundary that contains a rest coordinate, surface included, and its lowest unmasked
 // tetrahedron that contains it. Returns 0 if there is none. last: index of the last voxel of the volume.
-static int FindPlace(const long* rest, const int* last, RestPlace* place, const BoundaryMasks* masks,
+static int FindLocation(const long* rest, const int* last, RestLocation* location, const BoundaryMasks* masks,
   const RasterParameters* r, const KernelParameters* p)
 {
   int cell[3];
@@ -104,20 +104,20 @@ static int FindPlace(const long* rest, const int* last, RestPlace* place, const 
     int isCell = 1;
     for (int axis = 0; axis < 3; ++axis)
     {
-      place->Cell[axis] = cell[axis] - (neighbour >> axis & 1);
-      isCell &= place->Cell[axis] >= 0 && place->Cell[axis] < p->Size[axis] - 1;
+      location->Cell[axis] = cell[axis] - (neighbour >> axis & 1);
+      isCell &= location->Cell[axis] >= 0 && location->Cell[axis] < p->Size[axis] - 1;
     }
-    isCell &= place->Cell[2] >= p->LayersBegin && place->Cell[2] < p->LayersEnd;
-    const size_t number = isCell ? CellInChunk(place->Cell[0], place->Cell[1], place->Cell[2], p) : 0;
+    isCell &= location->Cell[2] >= p->LayersBegin && location->Cell[2] < p->LayersEnd;
+    const size_t number = isCell ? CellInChunk(location->Cell[0], location->Cell[1], location->Cell[2], p) : 0;
     if (isCell && (masks->Cells[number] & DEFORMVOLUME_CELL_AT_BOUNDARY))
     {
       const int active = r->HasActive ? masks->Active[number] : DEFORMVOLUME_ALL_TETRAHEDRA;
-      const Vector point = InCell(rest, place->Cell, p);
+      const Vector point = InCell(rest, location->Cell, p);
       for (int t = 0; t < 5; ++t)
       {
-        place->Tetrahedron = t;
-        if ((active >> t & 1) && IsInTetrahedron(t, point, 1L << REST_BITS, place->Weights) &&
-          (!(r->HasBlanked || r->HasDistances) || IsUnmasked(place, masks, r, p)))
+        location->Tetrahedron = t;
+        if ((active >> t & 1) && IsInTetrahedron(t, point, 1L << REST_BITS, location->Weights) &&
+          (!(r->HasBlanked || r->HasDistances) || IsUnmasked(location, masks, r, p)))
         {
           return 1;
         }
@@ -253,13 +253,13 @@ static void MarkCovered(const int* voxel, __global char* coverage, __global uint
 }
 
 // Writes the values at a place to a voxel.
-static void StoreSample(const RestPlace* place, const int* voxel, const RasterParameters* r,
+static void StoreSample(const RestLocation* location, const int* voxel, const RasterParameters* r,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
-  const long sum = place->Weights[0] + place->Weights[1] + place->Weights[2] + place->Weights[3];
+  const long sum = location->Weights[0] + location->Weights[1] + location->Weights[2] + location->Weights[3];
   Sample s;
-  BeginSamples(&s, place->Cell[0], place->Cell[1], place->Cell[2], place->Tetrahedron, sum, p);
-  PlaceSample(&s, place->Weights, TargetOf(voxel, r));
+  BeginSamples(&s, location->Cell[0], location->Cell[1], location->Cell[2], location->Tetrahedron, sum, p);
+  SetSample(&s, location->Weights, TargetOf(voxel, r));
   StoreArrays(&s ARRAY_ARGUMENTS);
 }
 
@@ -352,13 +352,13 @@ __kernel void ResampleBoundary(__global const int4* tetrahedra, __global const i
             const int x = popcount((left & -left) - 1);
             const int voxel[3] = { origin[0] + x, y, z };
             long rest[3];
-            RestPlace place;
+            RestLocation location;
             if (!FindRest(&map, &t, voxel, first, last, rest, &r) ||
-              !FindPlace(rest, last, &place, &masks, &r, &p))
+              !FindLocation(rest, last, &location, &masks, &r, &p))
             {
               continue;
             }
-            const ulong key = KeyOf(&place, isInverted);
+            const ulong key = KeyOf(&location, isInverted);
             const int isTaken = taken[row] >> x & 1;
             if (isTaken && keys[row][x] <= key)
             {
@@ -367,7 +367,7 @@ __kernel void ResampleBoundary(__global const int4* tetrahedra, __global const i
             keys[row][x] = key;
             taken[row] |= 1u << x;
             // Few voxels have several pieces, so a value may be overwritten by a better piece.
-            StoreSample(&place, voxel, &r, &p ARRAY_ARGUMENTS);
+            StoreSample(&location, voxel, &r, &p ARRAY_ARGUMENTS);
             if (!isTaken)
             {
               MarkCovered(voxel, coverage, counts, &r, &p);

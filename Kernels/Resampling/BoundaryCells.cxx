@@ -117,10 +117,10 @@ void BoundaryCells::SetCorners(const Tetrahedron* tetrahedra)
         continue;
       }
       BoundaryCorner corner;
-      const glm::dvec3 place = 256.0 * transform.ToOutput(piece.Rest[k]);
+      const glm::dvec3 scaled = 256.0 * transform.ToOutput(piece.Rest[k]);
       for (std::size_t axis = 0; axis < 3; ++axis)
       {
-        const double position = place[static_cast<glm::length_t>(axis)];
+        const double position = scaled[static_cast<glm::length_t>(axis)];
         // Positions beyond the clamping range are outside any output.
         const double whole = std::clamp(std::floor(position), -0x1p30, 0x1p30);
         corner.Whole[axis] = static_cast<cl_int>(whole);
@@ -189,17 +189,17 @@ std::vector<cl_uint> BoundaryCells::ListTiles(
   const std::uint32_t down = DEFORMVOLUME_PATCHES(static_cast<std::uint32_t>(r.OutputSize[1]));
   for (const std::uint32_t patch : *patches)
   {
-    const int place[3] = { static_cast<int>(patch % across),
+    const int scaled[3] = { static_cast<int>(patch % across),
       static_cast<int>(patch / across % down), static_cast<int>(patch / across / down) };
     int first[3];
     int last[3];
     for (int axis = 0; axis < 3; ++axis)
     {
       // Patches are numbered from the first voxel, tiles from index 0.
-      const int low =
-        r.OutputFirst[axis] + place[axis] * DEFORMVOLUME_PATCH - r.TileFirst[axis] * TileSize[axis];
+      const int low = r.OutputFirst[axis] + scaled[axis] * DEFORMVOLUME_PATCH -
+        r.TileFirst[axis] * TileSize[axis];
       const int size =
-        std::min(DEFORMVOLUME_PATCH, r.OutputSize[axis] - place[axis] * DEFORMVOLUME_PATCH);
+        std::min(DEFORMVOLUME_PATCH, r.OutputSize[axis] - scaled[axis] * DEFORMVOLUME_PATCH);
       first[axis] = low / TileSize[axis];
       last[axis] = (low + size - 1) / TileSize[axis];
     }

@@ -22,16 +22,16 @@ __kernel void MoveCorners(__global const BoundaryCorner* corners, __global const
   }
   else if (corner.Node >= 0)
   {
-    const int place = ((__global const int*)tetrahedra)[4 * (size_t)corner.Tetrahedron + corner.Node];
-    d = points[place / DEFORMVOLUME_NODE_PLACES];
+    const int offset = ((__global const int*)tetrahedra)[4 * (size_t)corner.Tetrahedron + corner.Node];
+    d = points[offset / DEFORMVOLUME_NODE_STRIDE];
   }
   else
   {
-    const int4 places = tetrahedra[corner.Tetrahedron];
-    const int nodes[4] = { places.x, places.y, places.z, places.w };
+    const int4 offsets = tetrahedra[corner.Tetrahedron];
+    const int nodes[4] = { offsets.x, offsets.y, offsets.z, offsets.w };
     for (int k = 0; k < 4; ++k)
     {
-      d = MULTIPLY_ADD((float4)(corner.Weights[k]), points[nodes[k] / DEFORMVOLUME_NODE_PLACES], d);
+      d = MULTIPLY_ADD((float4)(corner.Weights[k]), points[nodes[k] / DEFORMVOLUME_NODE_STRIDE], d);
     }
   }
   // Both the integer and the fractional part of this product are exact.

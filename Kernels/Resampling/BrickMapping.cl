@@ -33,13 +33,13 @@ static ulong StatesOf(
   return SOURCES | TOGETHER | (rowInside && x > 0 && x + 16 < p->Size[0] ? INTERIORS : 0);
 }
 
-#define STORE_EIGHT(v, place) *(ROW_MEMORY PlacedFloat8*)(place) = v;
+#define STORE_EIGHT(v, slot) *(ROW_MEMORY UnalignedFloat8*)(slot) = v;
 #define FLAGS_TOGETHER 7u // the RowFlags bits that sixteen vertices can belong to
 
 #define PUT_VALUE(index, TYPE, BITS, SLOT)                                                         \
   {                                                                                                \
     const float value = (float)source##index[row->Chunk + x];                                      \
-    place[(3 + SLOT) * HALF_ROW] = value;                                                          \
+    slot[(3 + SLOT) * HALF_ROW] = value;                                                          \
     if (BITS == 32 && IS_SPECIAL(as_int(value)))                                                   \
     {                                                                                              \
       flags->Special |= 1u << (i >> 3);                                                            \
@@ -48,8 +48,8 @@ static ulong StatesOf(
 #define PUT_VALUES_TOGETHER(index, TYPE, BITS, SLOT)                                               \
   {                                                                                                \
     const float16 value = convert_float16(vload16(0, source##index + row->Chunk + x));             \
-    STORE_EIGHT(value.even, place + (3 + SLOT) * HALF_ROW)                                         \
-    STORE_EIGHT(value.odd, place + ODD + (3 + SLOT) * HALF_ROW)                                    \
+    STORE_EIGHT(value.even, slot + (3 + SLOT) * HALF_ROW)                                         \
+    STORE_EIGHT(value.odd, slot + ODD + (3 + SLOT) * HALF_ROW)                                    \
     if (BITS == 32)                                                                                \
     {                                                                                              \
       if (any(IS_SPECIAL(as_int16(value))))                                                        \
@@ -89,7 +89,7 @@ typedef struct
   float WholeY, WholeZ;
   float FractionY, FractionZ;
 #endif
-  ROW_MEMORY float* Places; // output: positions and values
+  ROW_MEMORY float* Slots; // output: positions and values
 } MappedRow;
 
 // The rest position of the vertex at place i: whole steps, in voxels, and the remainder.
@@ -108,7 +108,7 @@ typedef struct
 static __attribute__((always_inline)) void MapOne(const MappedRow* row, int x, int i, int state,
   RowFlags* flags, const KernelParameters* p ARRAY_PARAMETERS)
 {
-  ROW_MEMORY float* const place = row->Places + (i >> 1) + (i & 1 ? ODD : 0);
+  ROW_MEMORY float* const slot = row->Slots + (i >> 1) + (i & 1 ? ODD : 0);
   ROW_MEMORY const float* const rest = row->RestX + (i >> 1) + (i & 1 ? REST_ODD : 0);
   float4 position = (float4)(NO_SOURCE, 0.0f, 0.0f, 0.0f);
   if (state & DEFORMVOLUME_VERTEX_SOURCE)
@@ -116,9 +116,9 @@ static __attribute__((always_inline)) void MapOne(const MappedRow* row, int x, i
     const float4 moved = DisplaceOne(&row->Displaced, x, i, p) + REST_FRACTIONS;
     position = RoundSteps_float4(moved, STEP) + REST_WHOLES;
   }
-  place[0] = position.x;
-  place[HALF_ROW] = position.y;
-  place[2 * HALF_ROW] = position.z;
+  slot[0] = position.x;
+  slot[HALF_ROW] = position.y;
+  slot[2 * HALF_ROW] = position.z;
   if (!(state & DEFORMVOLUME_VERTEX_INTERIOR))
   {
     flags->Border |= 1u << (i >> 3);
@@ -136,7 +136,7 @@ static __attribute__((always_inline)) void MapOne(const MappedRow* row, int x, i
 static __attribute__((always_inline)) void MapSixteen(const MappedRow* row, int x, int i,
   ulong states, RowFlags* flags, const KernelParameters* p ARRAY_PARAMETERS)
 {
-  ROW_MEMORY float* const place = row->Places + (i >> 1);
+  ROW_MEMORY float* const slot = row->Slots + (i >> 1);
   ROW_MEMORY const float* const rest = row->RestX + (i >> 1);
   float16 dx, dy, dz;
   DisplaceSixteen(&row->Displaced, x, i, &dx, &dy, &dz, p);
@@ -144,8 +144,8 @@ static __attribute__((always_inline)) void MapSixteen(const MappedRow* row, int 
   {                                                                                                \
     const float16 moved = d + FRACTION;                                                            \
     const float16 position = RoundSteps_float16(moved, STEP) + WHOLE;                              \
-    STORE_EIGHT(position.lo, place + (OFFSET)*HALF_ROW)                                            \
-    STORE_EIGHT(position.hi, place + ODD + (OFFSET)*HALF_ROW)                                      \
+    STORE_EIGHT(position.lo, slot + (OFFSET)*HALF_ROW)                                            \
+    STORE_EIGHT(position.hi, slot + ODD + (OFFSET)*HALF_ROW)                                      \
   }
 #if HAS_TURNED_AXES
 #define POSITIONS_ALONG(d, AXIS)                                                                   \
@@ -193,7 +193,7 @@ static int CountAgain(int x, int begin, int end, int i)
 
 // Maps the vertices of a row from x to end. i: place of x in the brick.
 static RowFlags MapRow(const SamplingMesh* mesh, int x, int end, int i, int y, int z,
-  ROW_MEMORY float* places, ROW_MEMORY const float* restX, ROW_MEMORY float* displaced,
+  ROW_MEMORY float* slots, ROW_MEMORY const float* restX, ROW_MEMORY float* displaced,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   MappedRow row;
@@ -218,7 +218,7 @@ static RowFlags MapRow(const SamplingMesh* mesh, int x, int end, int i, int y, i
   row.FractionY = ry.Fraction * STEP;
   row.FractionZ = rz.Fraction * STEP;
 #endif
-  row.Places = places;
+  row.Slots = slots;
   BeginRow(&row.Displaced, x, end, i, displaced, p);
   LANE_ARRAYS(FETCH_NEXT_ROW)
   RowFlags flags = { 0 };

@@ -88,19 +88,19 @@ static void ResampleRow(const RowOfCells* row, int begin, int end, int beginX, i
   BoundQuads(row->Rows, begin, &even);
   FindPairCandidates(row, begin, &even, mesh, OUTPUT_OF_SPAN(outputs, begin), candidates[0],
     p ARRAY_ARGUMENTS);
-  for (int k = begin, place = 0; k < end; k += LANES, place ^= 1)
+  for (int k = begin, buffer = 0; k < end; k += LANES, buffer ^= 1)
   {
     Output* const output = OUTPUT_OF_SPAN(outputs, k);
     const int special = (specials & PACKET_FLAGS(k)) != 0;
-    PacketCandidates* const here = candidates[place];
+    PacketCandidates* const here = candidates[buffer];
     FetchOutput(here + 1, output ARRAY_ARGUMENTS);
     ResampleCells(here, special, beginX, endX, mesh, output, found, p ARRAY_ARGUMENTS);
     const int next = k + LANES;
     if (next < end)
     {
-      FindPairCandidates(row, next, &even, mesh, OUTPUT_OF_SPAN(outputs, next), candidates[!place],
+      FindPairCandidates(row, next, &even, mesh, OUTPUT_OF_SPAN(outputs, next), candidates[!buffer],
         p ARRAY_ARGUMENTS);
-      FetchOutput(candidates[!place], output ARRAY_ARGUMENTS);
+      FetchOutput(candidates[!buffer], output ARRAY_ARGUMENTS);
     }
     ResampleCells(here + 1, special, beginX, endX, mesh, output, found, p ARRAY_ARGUMENTS);
   }
@@ -282,7 +282,7 @@ static void ResampleBrick(const SamplingMesh* mesh, uint item, int isAbove, cons
   }
 }
 
-#define BRICK_FLOATS (2 * REST_ODD + 3 * ROW_PLACES + 2 * ROWS * ROW)
+#define BRICK_FLOATS (2 * REST_ODD + 3 * ROW_SLOTS + 2 * ROWS * ROW)
 
 // Resamples the bricks of a list from p.ListBegin to p.ListEnd. taken: the number of bricks that work-items have
 // taken so far; initially 0. rows: BRICK_FLOATS floats (GetBrickMemory); in global memory, for each work-item.
@@ -299,7 +299,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(GIVE
   const Output empty = GIVEN_OUTPUT;
   RowFlags flags[2][ROWS];
   ROW_MEMORY float* const displaced = rows + 2 * REST_ODD;
-  const BrickMemory memory = { rows, displaced, displaced + 3 * ROW_PLACES, flags };
+  const BrickMemory memory = { rows, displaced, displaced + 3 * ROW_SLOTS, flags };
   for (uint begin = p.ListBegin + atomic_add(taken, p.Portion); begin < p.ListEnd;
        begin = p.ListBegin + atomic_add(taken, p.Portion))
   {

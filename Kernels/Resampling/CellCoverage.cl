@@ -170,11 +170,11 @@ static OUTLINED int IsOwnerOnBorder(const SamplingMesh* mesh, int x, int y, int 
           }
           Vector v[4] = { q[Tetrahedra[t][0]],
             q[Tetrahedra[t][1]], q[Tetrahedra[t][2]], q[Tetrahedra[t][3]] };
-          int placed = (present & needed) == needed;
+          int hasPositions = (present & needed) == needed;
 #if HAS_CUT
-          placed = placed && ViewTetrahedron(mesh, &cut, t, side, v);
+          hasPositions = hasPositions && ViewTetrahedron(mesh, &cut, t, side, v);
 #endif
-          if (!placed || IsOverstretched(v[0], v[1], v[2], v[3]))
+          if (!hasPositions || IsOverstretched(v[0], v[1], v[2], v[3]))
           {
             continue;
           }

@@ -61,7 +61,7 @@ static SamplingMesh KeepNeighbours(const SamplingMesh* mesh, int x, int y, int z
 }
 
 // Returns the index of a vertex in the cuboid, or -1 outside it.
-static int PlaceInCuboid(const SamplingMesh* mesh, int x, int y, int z)
+static int IndexInCuboid(const SamplingMesh* mesh, int x, int y, int z)
 {
   const uint bx = x - mesh->CuboidFirst[0];
   const uint by = y - mesh->CuboidFirst[1];
@@ -84,18 +84,18 @@ static int4 VertexPosition(
 {
   if (mesh->Near)
   {
-    const int place = ((z - mesh->Near->First[2]) * 4 + y - mesh->Near->First[1]) * 4 + x - mesh->Near->First[0];
-    if (!(mesh->Near->Known >> place & 1))
+    const int index = ((z - mesh->Near->First[2]) * 4 + y - mesh->Near->First[1]) * 4 + x - mesh->Near->First[0];
+    if (!(mesh->Near->Known >> index & 1))
     {
-      mesh->Near->Positions[place] = FindPosition(mesh, x, y, z, p);
-      mesh->Near->Known |= 1ul << place;
+      mesh->Near->Positions[index] = FindPosition(mesh, x, y, z, p);
+      mesh->Near->Known |= 1ul << index;
     }
-    return mesh->Near->Positions[place];
+    return mesh->Near->Positions[index];
   }
-  const int place = mesh->Cuboid ? PlaceInCuboid(mesh, x, y, z) : -1;
-  if (place >= 0)
+  const int index = mesh->Cuboid ? IndexInCuboid(mesh, x, y, z) : -1;
+  if (index >= 0)
   {
-    return (int4)(mesh->Cuboid[3 * place], mesh->Cuboid[3 * place + 1], mesh->Cuboid[3 * place + 2], 0);
+    return (int4)(mesh->Cuboid[3 * index], mesh->Cuboid[3 * index + 1], mesh->Cuboid[3 * index + 2], 0);
   }
   return FindPosition(mesh, x, y, z, p);
 }

@@ -33,7 +33,7 @@
 
 // Maps a vertex to a place of the rows, with the values of the arrays. Returns its flags. The operations and their
 // order are those of MapOne (BrickMapping.cl).
-static uint MapVertex(const SamplingMesh* mesh, int x, int y, int z, ROW_MEMORY float* place,
+static uint MapVertex(const SamplingMesh* mesh, int x, int y, int z, ROW_MEMORY float* slot,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   const int state = StateOf(mesh->State, x, y, z, p);
@@ -46,9 +46,9 @@ static uint MapVertex(const SamplingMesh* mesh, int x, int y, int z, ROW_MEMORY 
     position =
       RoundSteps_float4(moved, STEP) + convert_float4(rest.Whole - first * 256) * STEP;
   }
-  place[0] = position.x;
-  place[HALF_ROW] = position.y;
-  place[2 * HALF_ROW] = position.z;
+  slot[0] = position.x;
+  slot[HALF_ROW] = position.y;
+  slot[2 * HALF_ROW] = position.z;
   uint flags = state & DEFORMVOLUME_VERTEX_INTERIOR ? 0 : FLAG_BORDER;
   flags |= state & DEFORMVOLUME_CELL_WHOLE ? FLAG_WHOLE : 0;
 #if HAS_CUT
@@ -57,7 +57,7 @@ static uint MapVertex(const SamplingMesh* mesh, int x, int y, int z, ROW_MEMORY 
 #define PUT_COLUMN_VALUE(index, TYPE, BITS, SLOT)                                                  \
   {                                                                                                \
     const float value = (float)source##index[VertexInChunk(x, y, z, p)];                           \
-    place[(3 + SLOT) * HALF_ROW] = value;                                                          \
+    slot[(3 + SLOT) * HALF_ROW] = value;                                                          \
     flags |= BITS == 32 && IS_SPECIAL(as_int(value)) ? FLAG_SPECIAL : 0;                           \
   }
   LANE_ARRAYS(PUT_COLUMN_VALUE)
@@ -78,23 +78,23 @@ static __attribute__((always_inline)) void BoundCell(const Packet* packet, Bound
 }
 
 // Stores a sample that the cell owns.
-static __attribute__((always_inline)) void StoreSample(const Packet* packet, uint place, int inverted,
+static __attribute__((always_inline)) void StoreSample(const Packet* packet, uint voxel, int inverted,
   const SampleWeights* weights, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   if (p->Pass != DEFORMVOLUME_PASS_DIRECT &&
-    !TakesPlace(output, place, MakeKey(packet->X, packet->Y, packet->Z, inverted, p), p))
+    !WinsVoxel(output, voxel, MakeKey(packet->X, packet->Y, packet->Z, inverted, p), p))
   {
     return;
   }
-  Cover(output, place);
+  Cover(output, voxel);
 #define STORE_COLUMN_VALUE(index, TYPE, BITS, SLOT)                                                \
   {                                                                                                \
     INTERPOLATE_LANES(v, TYPE, BITS, SLOT)                                                         \
-    target##index[place] = LANE_CONVERT_##BITS(TYPE, as_int(v));                                   \
+    target##index[voxel] = LANE_CONVERT_##BITS(TYPE, as_int(v));                                   \
   }
   LANE_ARRAYS(STORE_COLUMN_VALUE)
 #if HAS_OTHER_ARRAYS
-  StoreOtherArrays(packet, 0, place, p ARRAY_ARGUMENTS);
+  StoreOtherArrays(packet, 0, voxel, p ARRAY_ARGUMENTS);
 #endif
 }
 
@@ -196,7 +196,7 @@ static __attribute__((always_inline)) int TakeSamples(const PacketCandidates* c,
       {
         SnapWeights(1, frame, &weights);
       }
-      StoreSample(packet, at.Place, frame->Inverted, &weights, output, p ARRAY_ARGUMENTS);
+      StoreSample(packet, at.Voxel, frame->Inverted, &weights, output, p ARRAY_ARGUMENTS);
     }
     Advance(&at);
   }
@@ -267,13 +267,13 @@ static __attribute__((always_inline)) void MakeCellPacket(LocalRow row, int oddY
 
 // Returns the places of the rows where a work-item keeps the vertices of a deferred cell. Work-groups have at most as
 // many items as there are such places, two in each plane.
-static ROW_MEMORY float* PlaceOfItem(ROW_MEMORY float* rows)
+static ROW_MEMORY float* SlotOfItem(ROW_MEMORY float* rows)
 {
   const int item = get_local_id(0);
   return rows + item / (ROW_CELLS / 2) * 2 * ROW + item % (ROW_CELLS / 2);
 }
 
-static void MapCell(const SamplingMesh* mesh, int x, int y, int z, ROW_MEMORY float* place,
+static void MapCell(const SamplingMesh* mesh, int x, int y, int z, ROW_MEMORY float* slot,
   Packet* cell, const KernelParameters* p ARRAY_PARAMETERS)
 {
   const int mirror = Mirror(x, y, z, p);
@@ -287,9 +287,9 @@ static void MapCell(const SamplingMesh* mesh, int x, int y, int z, ROW_MEMORY fl
   {
     const int o = v ^ mirror;
     flags |= MapVertex(mesh, x + (o & 1), y + (o >> 2), z + (o >> 1 & 1),
-      place + (v >> 1 & 1) * (ROWS * ROW) + (v >> 2) * ROW + (v & 1 ? ODD : 0), p ARRAY_ARGUMENTS);
+      slot + (v >> 1 & 1) * (ROWS * ROW) + (v >> 2) * ROW + (v & 1 ? ODD : 0), p ARRAY_ARGUMENTS);
   }
-  MakeCellPacket(place, ROW, ROWS * ROW, 0, x, y, z, flags, cell, p);
+  MakeCellPacket(slot, ROW, ROWS * ROW, 0, x, y, z, flags, cell, p);
 }
 
 static uint MakeEntry(uint cell, int what)

@@ -37,8 +37,8 @@ static void AddToGroup(const Output* output, __local uint* counts)
 // from the group's number are computed again to save registers.
 static uint BrickOfGroup(__global const uint* bricks, const KernelParameters* p)
 {
-  const int place = p->ListBegin + (int)(get_group_id(0) / DEFORMVOLUME_SPANS);
-  return place < p->ListEnd ? bricks[place] : 0;
+  const int index = p->ListBegin + (int)(get_group_id(0) / DEFORMVOLUME_SPANS);
+  return index < p->ListEnd ? bricks[index] : 0;
 }
 
 static size_t SectionOfGroup(uint brick)
@@ -186,7 +186,7 @@ __kernel void ResampleDeferredInt32(GIVEN_PARAMETERS, __global const uint* brick
     const uint entry = ENTRY_INT32(deferred, i, &p);
     const int3 cell = CellOfEntry(entry, bricks, &p);
     PacketCandidates c;
-    MapCell(&mesh, cell.x, cell.y, cell.z, PlaceOfItem(rows), &c.Cells, &p ARRAY_ARGUMENTS);
+    MapCell(&mesh, cell.x, cell.y, cell.z, SlotOfItem(rows), &c.Cells, &p ARRAY_ARGUMENTS);
     Output output = GIVEN_OUTPUT;
     PacketFrame frame;
     const int step = ResampleColumnCell(&c, MAXIMUM_CANDIDATES, 0, &frame, 1,

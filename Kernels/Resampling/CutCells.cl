@@ -29,7 +29,7 @@ typedef struct
   int Divided;  // bits of the tetrahedra whose two copies have different positions
   int Negative; // bits of the vertices on side 1; like all below, only set if Divided is not 0
   float Distances[8];
-  int Places[8]; // indices of the vertices in the list of cut vertices
+  int Indices[8]; // indices of the vertices in the list of cut vertices
 } CellCut;
 
 // Loads the cut data of some tetrahedra of a cell, given as bits.
@@ -50,11 +50,11 @@ static void LoadCut(
   {
     const int o = v ^ mirror;
     // The list has all vertices of a cell with crossed tetrahedra.
-    cut->Places[v] = FindCutVertex(
+    cut->Indices[v] = FindCutVertex(
       mesh->Cut.Rows, mesh->Cut.Vertices, x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p);
-    cut->Distances[v] = mesh->Cut.Vertices[cut->Places[v]].Distance;
+    cut->Distances[v] = mesh->Cut.Vertices[cut->Indices[v]].Distance;
     cut->Negative |= (cut->Distances[v] < 0.0f) << v;
-    open |= (mesh->Cut.Positions[cut->Places[v]].w != 0) << v;
+    open |= (mesh->Cut.Positions[cut->Indices[v]].w != 0) << v;
   }
   for (int t = 0; t < 5; ++t)
   {
@@ -71,7 +71,7 @@ static Vector ViewVertex(const SamplingMesh* mesh, const CellCut* cut, int v, in
   {
     return own;
   }
-  const int4 q = mesh->Cut.Positions[cut->Places[v]];
+  const int4 q = mesh->Cut.Positions[cut->Indices[v]];
   const Vector other = { q.x, q.y, q.z };
   return other;
 }
@@ -87,14 +87,14 @@ static int SideOfSample(const SamplingMesh* mesh, int x, int y, int z, int t, co
   {
     const int v = Tetrahedra[t][k];
     const int o = v ^ mirror;
-    const int place = weights[k]
+    const int index = weights[k]
       ? FindCutVertex(mesh->Cut.Rows, mesh->Cut.Vertices, x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p)
       : -1;
-    if (weights[k] && place < 0)
+    if (weights[k] && index < 0)
     {
       return 0;
     }
-    distances[v] = weights[k] ? mesh->Cut.Vertices[place].Distance : 0.0f;
+    distances[v] = weights[k] ? mesh->Cut.Vertices[index].Distance : 0.0f;
   }
   return WeighDistances(distances, t, weights) < 0;
 }
@@ -102,12 +102,12 @@ static int SideOfSample(const SamplingMesh* mesh, int x, int y, int z, int t, co
 // Replaces the vertices of a tetrahedron by those of the copy of a side. Returns whether all have a position.
 static int ViewTetrahedron(const SamplingMesh* mesh, const CellCut* cut, int t, int side, Vector* vertices)
 {
-  int placed = 1;
+  int hasPositions = 1;
   for (int k = 0; k < 4 && (cut->Divided >> t & 1); ++k)
   {
     vertices[k] = ViewVertex(mesh, cut, Tetrahedra[t][k], side, vertices[k]);
-    placed &= vertices[k].x != INT_MIN;
+    hasPositions &= vertices[k].x != INT_MIN;
   }
-  return placed;
+  return hasPositions;
 }
 #endif

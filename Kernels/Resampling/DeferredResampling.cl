@@ -48,15 +48,15 @@ static void ResampleUndecided(const PacketCandidates* c, const PacketFrame* fram
   output->Inverted = inverted;
 }
 
-// Resamples one deferred cell. place: memory for its vertices.
+// Resamples one deferred cell. slot: memory for its vertices.
 static void ResampleDeferredCell(const SamplingMesh* mesh, int x, int y, int z, int what,
-  ROW_MEMORY float* place, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
+  ROW_MEMORY float* slot, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   if (what != DEFERRED_CELL_INT64)
   {
     PacketCandidates c;
     PacketFrame frame;
-    MapCell(mesh, x, y, z, place, &c.Cells, p ARRAY_ARGUMENTS);
+    MapCell(mesh, x, y, z, slot, &c.Cells, p ARRAY_ARGUMENTS);
     what = ResampleColumnCell(
       &c, MAXIMUM_CANDIDATES, mesh, &frame, 1, what != DEFERRED_FLOATS, output, p ARRAY_ARGUMENTS);
     if (what == DEFERRED_SAMPLES_INT64)
@@ -91,7 +91,7 @@ __kernel void ResampleDeferredInt64(GIVEN_PARAMETERS, __global const uint* brick
     }
     const int3 cell = CellOfEntry(entry, bricks, &p);
     Output output = GIVEN_OUTPUT;
-    ResampleDeferredCell(&mesh, cell.x, cell.y, cell.z, entry >> DEFERRED_BITS, PlaceOfItem(rows),
+    ResampleDeferredCell(&mesh, cell.x, cell.y, cell.z, entry >> DEFERRED_BITS, SlotOfItem(rows),
       &output, &p ARRAY_ARGUMENTS);
     AddCounts(&output, SectionOf(cell.x, cell.y, cell.z, &p), counters, &p);
   }

@@ -39,7 +39,7 @@ void ExactResampler::Make(
   OutputSlab& target = this->Targets[plan.GetTarget(slab)];
   this->Launched.Expect((plan.Slabs.size() - slab) *
     (this->Exact.GetNumberOfLaunches() + this->Boundary.GetNumberOfLaunches()));
-  target.Place(this->Device.GetContext(), this->Device.GetQueue(), plan.Slabs[slab], request,
+  target.Bind(this->Device.GetContext(), this->Device.GetQueue(), plan.Slabs[slab], request,
     this->Volume.GetArrays().Get(), this->Volume.GetVoxelGrid(),
     this->Volume.GetBricks().GetNumberOfBricks(), this->Launched.GetResamplingEvents());
   target.Clear(this->Device.GetContext(), this->Volume.GetArrays().Get(),
@@ -192,9 +192,9 @@ void ExactResampler::CountFolds(const DeformRequest& request, OutputSlab& output
   {
     for (int y = slab[2]; y <= slab[3]; ++y, ++row)
     {
-      const std::int64_t place =
+      const std::int64_t index =
         ((z - all[4]) * GetSize(all, 1) + y - all[2]) * GetSize(all, 0) + slab[0] - all[0];
-      std::copy_n(counts.data() + row * width, width, request.FoldCounts + place);
+      std::copy_n(counts.data() + row * width, width, request.FoldCounts + index);
     }
   }
   this->Last = LastOutput::Unknown;

@@ -56,7 +56,7 @@
 // Where the values of LANES neighboring voxels come from.
 typedef struct
 {
-  INDEX Places[LANES]; // lowest voxel of the cell
+  INDEX Indices[LANES]; // lowest voxel of the cell
   INDEX StepY, StepZ;
   FLOATS Fractions[3];
   INTS Mask; // lanes with covered voxels
@@ -79,7 +79,7 @@ static void MakeLaneCells(
   cells->StepZ = (INDEX)p->Size[0] * p->Size[1];
   STORE(TO_INDICES(voxels[2]) * cells->StepZ + TO_INDICES(voxels[1]) * cells->StepY +
       TO_INDICES(voxels[0]),
-    cells->Places);
+    cells->Indices);
 }
 
 // Integers and interpolation between them are exact at both ends. For floats the ends are selected explicitly, as a
@@ -96,8 +96,8 @@ static FLOATS MixFloats(FLOATS a, FLOATS b, FLOATS f)
 }
 
 // Loads two neighbors on x at once, and extracts the two.
-#define LOAD_PAIR_8(k, o) (int)as_ushort(vload2(0, source + cells->Places[k] + (o)))
-#define LOAD_PAIR_16(k, o) as_int(vload2(0, source + cells->Places[k] + (o)))
+#define LOAD_PAIR_8(k, o) (int)as_ushort(vload2(0, source + cells->Indices[k] + (o)))
+#define LOAD_PAIR_16(k, o) as_int(vload2(0, source + cells->Indices[k] + (o)))
 #define LOW_uchar(pair) ((pair) & 255)
 #define HIGH_uchar(pair) ((pair) >> 8)
 #define LOW_char(pair) ((pair) << 24 >> 24)
@@ -116,7 +116,7 @@ static FLOATS MixFloats(FLOATS a, FLOATS b, FLOATS f)
 #define MIX_X_8(row, o, TYPE) MIX_X_INTEGER(row, o, TYPE, 8)
 #define MIX_X_16(row, o, TYPE) MIX_X_INTEGER(row, o, TYPE, 16)
 
-#define LOAD_FLOAT(k, o) source[cells->Places[k] + (o)]
+#define LOAD_FLOAT(k, o) source[cells->Indices[k] + (o)]
 #define MIX_X_32(row, o, TYPE)                                                                     \
   {                                                                                                \
     const FLOATS low = (FLOATS)(GATHER(LOAD_FLOAT, o));                                            \

@@ -39,9 +39,9 @@
 
 #if LANES > 1
 // Unaligned vectors. Storing through these types takes one instruction; vstore16 of PoCL 3.1 takes three.
-typedef float16 __attribute__((aligned(4))) PlacedFloat16;
-typedef float8 __attribute__((aligned(4))) PlacedFloat8;
-typedef int16 __attribute__((aligned(4))) PlacedInt16;
+typedef float16 __attribute__((aligned(4))) UnalignedFloat16;
+typedef float8 __attribute__((aligned(4))) UnalignedFloat8;
+typedef int16 __attribute__((aligned(4))) UnalignedInt16;
 #endif
 
 #if LANES > 1
@@ -137,17 +137,17 @@ static INTS LanesOf(uint bits)
 
 #if LANES > 1
 // Writes the lanes with set bits consecutively to a place. Values after them are overwritten.
-static void Append(INTS v, uint bits, int* place)
+static void Append(INTS v, uint bits, int* target)
 {
 #if LANES == 16 && defined(__AVX512F__)
-  *(PlacedInt16*)place = __builtin_ia32_compresssi512_mask(v, v, bits);
+  *(UnalignedInt16*)target = __builtin_ia32_compresssi512_mask(v, v, bits);
 #else
   Lanes lanes;
   lanes.Vector = v;
   for (int lane = 0; lane < LANES; ++lane)
   {
-    *place = lanes.Lanes[lane];
-    place += bits >> lane & 1;
+    *target = lanes.Lanes[lane];
+    target += bits >> lane & 1;
   }
 #endif
 }

@@ -23,7 +23,7 @@ typedef struct
   FLOATS BoundScale;     // Extent times the sum of the box's three faces; larger if normals are not exact
   INTS First[3];    // the first candidate, in output voxels
   INTS Count[3];    // number of candidates on each axis
-  INTS Place;       // index of the first candidate in the output
+  INTS Voxel;       // index of the first candidate in the output
   INTS Number;      // total number of candidates, for cells with candidates
   int IsBeyond;     // whether some may lie outside the part of the output that is made
   INTS Aligned;     // cells whose edges are parallel to the axes of the output, if HasAligned
@@ -45,14 +45,14 @@ typedef struct
 
 #if LANES > 1
 // Finds the bounds of the quads of four vertices at a place of the rows.
-static __attribute__((always_inline)) void BoundQuads(const LocalRow* rows, int place, Bounds* b)
+static __attribute__((always_inline)) void BoundQuads(const LocalRow* rows, int begin, Bounds* b)
 {
 #define BOUND_QUADS(C, slot)                                                                     \
   {                                                                                                \
-    const FLOATS c0 = LOAD(rows[0] + place + (slot)*HALF_ROW);                                     \
-    const FLOATS c1 = LOAD(rows[1] + place + (slot)*HALF_ROW);                                     \
-    const FLOATS c2 = LOAD(rows[2] + place + (slot)*HALF_ROW);                                     \
-    const FLOATS c3 = LOAD(rows[3] + place + (slot)*HALF_ROW);                                     \
+    const FLOATS c0 = LOAD(rows[0] + begin + (slot)*HALF_ROW);                                     \
+    const FLOATS c1 = LOAD(rows[1] + begin + (slot)*HALF_ROW);                                     \
+    const FLOATS c2 = LOAD(rows[2] + begin + (slot)*HALF_ROW);                                     \
+    const FLOATS c3 = LOAD(rows[3] + begin + (slot)*HALF_ROW);                                     \
     b->Low##C = Least(Least(c0, c1), Least(c2, c3));                                               \
     b->High##C = Most(Most(c0, c1), Most(c2, c3));                                                 \
   }
@@ -171,13 +171,13 @@ static SELDOM void TouchAligned(
 static __attribute__((always_inline)) void FetchOutput(
   const PacketCandidates* c, const Output* output ARRAY_PARAMETERS)
 {
-  const uint* const places = (const uint*)&c->Place;
+  const uint* const voxels = (const uint*)&c->Voxel;
 #pragma unroll
   for (int i = 0; i < 3; ++i)
   {
-    const uint place = places[i * (LANES - 1) / 2];
+    const uint voxel = voxels[i * (LANES - 1) / 2];
     LANE_ARRAYS(FETCH_OUTPUT)
-    PREFETCH_TO_WRITE(output->Coverage + place)
+    PREFETCH_TO_WRITE(output->Coverage + voxel)
   }
 }
 #endif
@@ -318,7 +318,7 @@ static __attribute__((always_inline)) void SetCandidates(const Bounds* b, const 
   c->Count[0] = s.CountX;
   c->Count[1] = s.CountY;
   c->Count[2] = s.CountZ;
-  c->Place = (s.FirstZ * p->OutputSize[1] + s.FirstY) * p->OutputSize[0] + s.FirstX;
+  c->Voxel = (s.FirstZ * p->OutputSize[1] + s.FirstY) * p->OutputSize[0] + s.FirstX;
   c->Number = s.CountX * s.CountY * s.CountZ;
 }
 

@@ -260,15 +260,15 @@ static __attribute__((always_inline)) uint InOutput(
 static SELDOM void TouchHeld(
   uint lanes, FLOATS x, FLOATS y, FLOATS z, Output* output, const KernelParameters* p)
 {
-  Lanes place[3];
-  place[0].Vector = TO_INTS(x);
-  place[1].Vector = TO_INTS(y);
-  place[2].Vector = TO_INTS(z);
+  Lanes voxel[3];
+  voxel[0].Vector = TO_INTS(x);
+  voxel[1].Vector = TO_INTS(y);
+  voxel[2].Vector = TO_INTS(z);
   // Part of a cell may lie outside the output.
   uint bits = lanes & InOutput(x, y, z, p);
   FOR_EACH_LANE(lane, bits)
   {
-    Touch(place[0].Lanes[lane], place[1].Lanes[lane], place[2].Lanes[lane], output, p);
+    Touch(voxel[0].Lanes[lane], voxel[1].Lanes[lane], voxel[2].Lanes[lane], output, p);
   }
 }
 

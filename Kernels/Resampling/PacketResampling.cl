@@ -164,7 +164,7 @@ static __attribute__((always_inline)) void TakeRounds(const PacketCandidates* c,
     }
     hits[rounds->Count] = held;
     rounds->Writes += popcount(held);
-    KeepSamples(packet, held, at.Place, frame->Inverted, &weights, found, &kept, output,
+    KeepSamples(packet, held, at.Voxel, frame->Inverted, &weights, found, &kept, output,
       p ARRAY_ARGUMENTS);
     some &= LaneBits(c->Number > (int)++rounds->Count);
     if (!some)

@@ -2,7 +2,7 @@
 // Keeps and stores the samples that were found in packets of cells (PacketVertices.cl).
 
 #define LANE_STORE(index, TYPE, BITS, SLOT)                                                        \
-  target##index[place] = LANE_CONVERT_##BITS(TYPE, found->Values##index[i]);
+  target##index[voxel] = LANE_CONVERT_##BITS(TYPE, found->Values##index[i]);
 
 typedef ulong __attribute__((may_alias)) TwoInts;
 
@@ -12,10 +12,10 @@ typedef ulong __attribute__((may_alias)) TwoInts;
   _Pragma("clang loop vectorize(disable) unroll_count(4)")                                         \
   for (uint i = 0; i < count; i += 2)                                                              \
   {                                                                                                \
-    const ulong places = *(const TwoInts*)(found->Places + i);                                     \
+    const ulong voxels = *(const TwoInts*)(found->Voxels + i);                                     \
     const ulong values = *(const TwoInts*)(found->Values##index + i);                              \
-    target##index[(uint)places] = LANE_CONVERT_##BITS(TYPE, (int)values);                          \
-    target##index[places >> 32] = LANE_CONVERT_##BITS(TYPE, (int)(values >> 32));                  \
+    target##index[(uint)voxels] = LANE_CONVERT_##BITS(TYPE, (int)values);                          \
+    target##index[voxels >> 32] = LANE_CONVERT_##BITS(TYPE, (int)(values >> 32));                  \
   }
 
 #define FOUND_CAPACITY 256
@@ -35,7 +35,7 @@ typedef ulong __attribute__((may_alias)) TwoInts;
 // mispredicted each time. Appending always writes LANES values, whatever the number of samples.
 typedef struct
 {
-  int Places[FOUND_CAPACITY + 2 * LANES] __attribute__((aligned(8))); // output voxels
+  int Voxels[FOUND_CAPACITY + 2 * LANES] __attribute__((aligned(8))); // output voxels
   int Cells[FOUND_CAPACITY + 2 * LANES]; // keys or lanes (KEEPS_KEYS); in the first pass only used for other arrays
   LANE_ARRAYS(FOUND_VALUES)
   uint Count;
@@ -54,7 +54,7 @@ static __attribute__((always_inline)) void FetchWinners(const Found* found, cons
 {
   for (uint i = 0; i < found->Count; ++i)
   {
-    PREFETCH_TO_WRITE(output->Winners + (uint)found->Places[i])
+    PREFETCH_TO_WRITE(output->Winners + (uint)found->Voxels[i])
   }
 }
 
@@ -65,15 +65,15 @@ static uint KeepClaimed(Found* found, const Output* output)
   uint kept = 0;
   for (uint i = 0; i < found->Count; ++i)
   {
-    const uint place = found->Places[i];
-    found->Places[kept] = place;
+    const uint voxel = found->Voxels[i];
+    found->Voxels[kept] = voxel;
     LANE_ARRAYS(KEEP_VALUE)
-    kept += Claim(output->Winners + place, (KEY)(uint)found->Cells[i]);
+    kept += Claim(output->Winners + voxel, (KEY)(uint)found->Cells[i]);
   }
   return kept;
 }
 
-#define FETCH_OUTPUT(index, TYPE, BITS, SLOT) PREFETCH_TO_WRITE(target##index + place)
+#define FETCH_OUTPUT(index, TYPE, BITS, SLOT) PREFETCH_TO_WRITE(target##index + voxel)
 
 // Prefetches the output where samples will be stored. Stores retire in order, so one that misses the innermost cache
 // or the TLB delays all others. For neighboring samples, which share cache lines, one prefetch for each four is
@@ -81,13 +81,13 @@ static uint KeepClaimed(Found* found, const Output* output)
 static __attribute__((always_inline)) void FetchFound(
   const Found* found, uint count, __global char* coverage ARRAY_PARAMETERS)
 {
-  const int apart = found->Places[count / 2] - found->Places[count / 2 + 1];
+  const int apart = found->Voxels[count / 2] - found->Voxels[count / 2 + 1];
   const uint step = abs(apart) > 64 ? 1 : 4;
   for (uint i = 0; i < count; i += step)
   {
-    const uint place = found->Places[i];
+    const uint voxel = found->Voxels[i];
     LANE_ARRAYS(FETCH_OUTPUT)
-    PREFETCH_TO_WRITE(coverage + place)
+    PREFETCH_TO_WRITE(coverage + voxel)
   }
 }
 
@@ -112,14 +112,14 @@ static void StoreFound(Found* found, const Packet* packet, Output* output,
       return;
     }
     // If the number is odd, the last sample is stored twice.
-    found->Places[count] = found->Places[count - 1];
+    found->Voxels[count] = found->Voxels[count - 1];
     FetchFound(found, count, coverage ARRAY_ARGUMENTS);
     _Pragma("clang loop vectorize(disable) unroll_count(4)")
     for (uint i = 0; i < count; i += 2)
     {
-      const ulong places = *(const TwoInts*)(found->Places + i);
-      coverage[(uint)places] = 1;
-      coverage[places >> 32] = 1;
+      const ulong voxels = *(const TwoInts*)(found->Voxels + i);
+      coverage[(uint)voxels] = 1;
+      coverage[voxels >> 32] = 1;
     }
     LANE_ARRAYS(LANE_STORE_ALL)
     return;
@@ -130,7 +130,7 @@ static void StoreFound(Found* found, const Packet* packet, Output* output,
   }
   for (uint i = 0; i < count; ++i)
   {
-    const uint place = found->Places[i];
+    const uint voxel = found->Voxels[i];
     if (pass != DEFORMVOLUME_PASS_DIRECT)
     {
       const int cell = found->Cells[i];
@@ -138,24 +138,24 @@ static void StoreFound(Found* found, const Packet* packet, Output* output,
         ? (KEY)(uint)cell
         : MakeKey(packet->X + 2 * (cell & (INVERTED_LANE - 1)), packet->Y, packet->Z,
           cell & INVERTED_LANE, p);
-      if (!TakesPlace(output, place, key, p))
+      if (!WinsVoxel(output, voxel, key, p))
       {
         continue;
       }
     }
-    coverage[place] = 1;
+    coverage[voxel] = 1;
     LANE_ARRAYS(LANE_STORE)
 #if HAS_OTHER_ARRAYS
-    StoreOtherArrays(packet, found->Cells[i] & (INVERTED_LANE - 1), place, p ARRAY_ARGUMENTS);
+    StoreOtherArrays(packet, found->Cells[i] & (INVERTED_LANE - 1), voxel, p ARRAY_ARGUMENTS);
 #endif
   }
   found->Count = 0;
 }
 
-// Keeps the samples of some cells, given as bits. places: output voxels. inverted: lanes with inverted tetrahedra.
+// Keeps the samples of some cells, given as bits. voxels: output voxels. inverted: lanes with inverted tetrahedra.
 // kept: the number of kept samples, in place of found->Count, which is in memory. Stores all samples if there are too
 // many.
-static __attribute__((always_inline)) void KeepSamples(const Packet* packet, uint bits, INTS places,
+static __attribute__((always_inline)) void KeepSamples(const Packet* packet, uint bits, INTS voxels,
   INTS inverted, const SampleWeights* weights, Found* found, uint* kept, Output* output,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
@@ -163,7 +163,7 @@ static __attribute__((always_inline)) void KeepSamples(const Packet* packet, uin
   {
     LANE_ARRAYS(KEEP_LANE_VALUE)
   }
-  Append(places, bits, found->Places + *kept);
+  Append(voxels, bits, found->Voxels + *kept);
   if (KEEPS_KEYS && p->Pass != DEFORMVOLUME_PASS_DIRECT)
   {
     // Start from the first cell of the row: the first cell of the packet may lie before the volume.

@@ -46,12 +46,12 @@ static __attribute__((always_inline)) void WeighOrigin(
 // Stores a sample of a cell for arrays that need exact weights. The tetrahedron that holds the sample is found again,
 // in whole numbers.
 static SELDOM void StoreOtherArrays(
-  const Packet* packet, int lane, uint place, const KernelParameters* p ARRAY_PARAMETERS)
+  const Packet* packet, int lane, uint voxel, const KernelParameters* p ARRAY_PARAMETERS)
 {
   const uint width = p->OutputSize[0];
   const uint plane = width * p->OutputSize[1];
-  const uint sampleZ = place / plane;
-  const uint inPlane = place - sampleZ * plane;
+  const uint sampleZ = voxel / plane;
+  const uint inPlane = voxel - sampleZ * plane;
   const uint sampleY = inPlane / width;
   const float sample[3] = { inPlane - sampleY * width, sampleY, sampleZ };
   EXACT x[8], y[8], z[8]; // relative to the sample
@@ -77,7 +77,7 @@ static SELDOM void StoreOtherArrays(
   }
   Sample made;
   BeginSamples(&made, packet->X + 2 * lane, packet->Y, packet->Z, t, volume, p);
-  PlaceSample(&made, weights, place);
+  SetSample(&made, weights, voxel);
   const Sample* s = &made;
   STORE_OTHER_ARRAYS
 }

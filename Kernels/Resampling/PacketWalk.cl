@@ -5,7 +5,7 @@
 typedef struct
 {
   FLOATS X, Y, Z; // the candidate, relative to vertex 0
-  INTS Place;     // index in the output
+  INTS Voxel;     // index in the output
   FLOATS StartX, StartY;
   FLOATS EndX, EndY;           // between the last candidate and the next voxel
   INTS ToNextRow, ToNextPlane; // number of output voxels to skip after a row and after a plane
@@ -23,7 +23,7 @@ static __attribute__((always_inline)) void BeginWalk(
   at->X = at->StartX;
   at->Y = at->StartY;
   at->Z = TO_FLOATS(c->First[2]) - f->Z0;
-  at->Place = c->Place;
+  at->Voxel = c->Voxel;
 }
 
 // Moves each lane to its next candidate.
@@ -36,7 +36,7 @@ static __attribute__((always_inline)) void Advance(Walk* at)
   const INTS planeDone = at->Y > at->EndY;
   at->Y = planeDone ? at->StartY : at->Y;
   at->Z = planeDone ? at->Z + 1.0f : at->Z;
-  at->Place += 1 + WHERE(rowDone, at->ToNextRow) + WHERE(planeDone, at->ToNextPlane);
+  at->Voxel += 1 + WHERE(rowDone, at->ToNextRow) + WHERE(planeDone, at->ToNextPlane);
 }
 
 // Returns the lanes whose candidate is a vertex of their cell, which must be aligned.

@@ -132,9 +132,9 @@ static int HasAllAround(const SamplingMesh* mesh, const Cell* cell, const Kernel
 #if HAS_CUT
   for (int i = 0; i < 27; ++i)
   {
-    const int place = FindCutVertex(mesh->Cut.Rows, mesh->Cut.Vertices, cell->X + i % 3 - 1,
+    const int index = FindCutVertex(mesh->Cut.Rows, mesh->Cut.Vertices, cell->X + i % 3 - 1,
       cell->Y + i / 3 % 3 - 1, cell->Z + i / 9 - 1, p);
-    if (place >= 0 && (mesh->Cut.Vertices[place].Tetrahedra & DEFORMVOLUME_ALL_TETRAHEDRA))
+    if (index >= 0 && (mesh->Cut.Vertices[index].Tetrahedra & DEFORMVOLUME_ALL_TETRAHEDRA))
     {
       return 0;
     }
@@ -153,18 +153,18 @@ static OUTLINED void Write(const SamplingMesh* mesh, const Cell* cell, int t, co
   {
     return;
   }
-  const int placeX = voxel.x - p->OutputFirst[0];
-  const int placeY = voxel.y - p->OutputFirst[1];
-  const int placeZ = voxel.z - p->OutputFirst[2];
+  const int outputX = voxel.x - p->OutputFirst[0];
+  const int outputY = voxel.y - p->OutputFirst[1];
+  const int outputZ = voxel.z - p->OutputFirst[2];
   if (role == HOLDER)
   {
     if (p->Pass == DEFORMVOLUME_PASS_OWNERS)
     {
-      Touch(placeX, placeY, placeZ, output, p);
+      Touch(outputX, outputY, outputZ, output, p);
     }
     return;
   }
-  const size_t target = ((size_t)placeZ * p->OutputSize[1] + placeY) * p->OutputSize[0] + placeX;
+  const size_t target = ((size_t)outputZ * p->OutputSize[1] + outputY) * p->OutputSize[0] + outputX;
   if (p->Pass == DEFORMVOLUME_PASS_COUNT)
   {
     atomic_inc((volatile __global uint*)(output->Winners + target));
@@ -180,7 +180,7 @@ static OUTLINED void Write(const SamplingMesh* mesh, const Cell* cell, int t, co
     {
       Contest(output->Winners + target, key);
     }
-    if (!TakesPlace(output, target, key, p))
+    if (!WinsVoxel(output, target, key, p))
     {
       return;
     }
@@ -192,7 +192,7 @@ static OUTLINED void Write(const SamplingMesh* mesh, const Cell* cell, int t, co
     s->IsCubic = HasAllAround(mesh, cell, p);
 #endif
   }
-  PlaceSample(s, weights, target);
+  SetSample(s, weights, target);
   Cover(output, target);
 #if CUBIC
   if (s->IsCubic && s->Only < 0)
@@ -670,13 +670,13 @@ static int IsPutOff(
   {
     return 0;
   }
-  const uint place = atomic_inc(output->LargeCells);
-  if (place >= p->MostLargeCells)
+  const uint index = atomic_inc(output->LargeCells);
+  if (index >= p->MostLargeCells)
   {
     return 0;
   }
   const int4 large = { cell->X, cell->Y, cell->Z, DivideBox(box).Count };
-  ((__global int4*)output->LargeCells)[1 + place] = large;
+  ((__global int4*)output->LargeCells)[1 + index] = large;
   output->Large++;
   return 1;
 }
@@ -721,8 +721,8 @@ static int HasCells(int3 first, const KernelParameters* p)
 __kernel void Resample(GIVEN_PARAMETERS, __global const uint* bricks, __local int* positions,
   const KernelParameters p ARRAY_PARAMETERS)
 {
-  const int place = p.ListBegin + (int)(get_group_id(0) / CUBOIDS_X);
-  const uint brick = place < p.ListEnd ? bricks[place] : 0; // 0: a brick without sections
+  const int index = p.ListBegin + (int)(get_group_id(0) / CUBOIDS_X);
+  const uint brick = index < p.ListEnd ? bricks[index] : 0; // 0: a brick without sections
   const int3 first = FirstOfBrick(brick, &p) +
     (int3)((int)get_group_id(0) % CUBOIDS_X * DEFORMVOLUME_CUBOID_X,
       (int)get_group_id(1) * DEFORMVOLUME_CUBOID_Y, (int)get_group_id(2) * DEFORMVOLUME_CUBOID_Z);

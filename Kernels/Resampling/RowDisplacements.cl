@@ -11,9 +11,9 @@
 #define PREFETCH_TO_WRITE(address)
 #endif
 
-#define ROW_PLACES (DEFORMVOLUME_BRICK_X + 16) // number of places of a row; vectors may extend beyond its end
+#define ROW_SLOTS (DEFORMVOLUME_BRICK_X + 16) // number of places of a row; vectors may extend beyond its end
 
-#define LOAD_PLACED(place) *(ROW_MEMORY const PlacedFloat16*)(place)
+#define LOAD_UNALIGNED(slot) *(ROW_MEMORY const UnalignedFloat16*)(slot)
 
 // A row, and the source of its displacements.
 typedef struct
@@ -34,7 +34,7 @@ typedef struct
 // Finds the displacements of the vertices of a row from x to end, and stores them from place i on, with x, y and z in
 // separate rows. They are affine within each run.
 static void DisplaceRow(const Mapping* m, int x, int end, int i, int y, int z,
-  ROW_MEMORY float* places, const KernelParameters* p)
+  ROW_MEMORY float* slots, const KernelParameters* p)
 {
   const float16 steps = (float16)(0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f, 8.0f, 9.0f, 10.0f,
     11.0f, 12.0f, 13.0f, 14.0f, 15.0f);
@@ -44,7 +44,7 @@ static void DisplaceRow(const Mapping* m, int x, int end, int i, int y, int z,
   __global const VertexRun* run =
     m->Runs + (x == 0 ? first : FindRun(m->Runs, first, last + 1, x));
   __global const VertexRun* const lastRun = m->Runs + last;
-  places += i - x;
+  slots += i - x;
   while (x < end)
   {
     const int tetrahedron = run->Tetrahedron;
@@ -57,10 +57,10 @@ static void DisplaceRow(const Mapping* m, int x, int end, int i, int y, int z,
       do
       {
         // Broadcasting a number is free from memory, but not from another vector.
-        ROW_MEMORY float* const place = places + x;
+        ROW_MEMORY float* const slot = slots + x;
         const float16 offset = ((float)x + steps) - record->Origin[0];
 #define DISPLACE_AXIS(axis, across)                                                                \
-  *(ROW_MEMORY PlacedFloat16*)(place + (axis)*ROW_PLACES) =                                        \
+  *(ROW_MEMORY UnalignedFloat16*)(slot + (axis)*ROW_SLOTS) =                                        \
     record->Displacement[axis] + MULTIPLY_ADD((float16)record->AlongX[axis], offset, (float16)across);
         DISPLACE_AXIS(0, d.Across.x)
         DISPLACE_AXIS(1, d.Across.y)
@@ -84,16 +84,16 @@ static __attribute__((always_inline)) void BeginRow(DisplacedRow* row, int x, in
 static __attribute__((always_inline)) float4 DisplaceOne(
   const DisplacedRow* row, int x, int i, const KernelParameters* p)
 {
-  ROW_MEMORY const float* const place = row->Displaced + i;
-  return (float4)(place[0], place[ROW_PLACES], place[2 * ROW_PLACES], 0.0f);
+  ROW_MEMORY const float* const slot = row->Displaced + i;
+  return (float4)(slot[0], slot[ROW_SLOTS], slot[2 * ROW_SLOTS], 0.0f);
 }
 
 static __attribute__((always_inline)) void DisplaceSixteen(const DisplacedRow* row, int x, int i,
   float16* dx, float16* dy, float16* dz, const KernelParameters* p)
 {
-  const float16 xs = LOAD_PLACED(row->Displaced + i);
-  const float16 ys = LOAD_PLACED(row->Displaced + i + ROW_PLACES);
-  const float16 zs = LOAD_PLACED(row->Displaced + i + 2 * ROW_PLACES);
+  const float16 xs = LOAD_UNALIGNED(row->Displaced + i);
+  const float16 ys = LOAD_UNALIGNED(row->Displaced + i + ROW_SLOTS);
+  const float16 zs = LOAD_UNALIGNED(row->Displaced + i + 2 * ROW_SLOTS);
   *dx = (float16)(xs.even, xs.odd);
   *dy = (float16)(ys.even, ys.odd);
   *dz = (float16)(zs.even, zs.odd);
@@ -153,20 +153,20 @@ static __attribute__((always_inline)) void DisplaceSixteen(const DisplacedRow* r
 // Two node places are read as one 64-bit number, as loads take most of the time here. These macros load the node of
 // the first or second place.
 #ifdef __ENDIAN_LITTLE__
-#define FIRST_NODE(m, places) NODE((m)->Nodes, (ulong)(uint)(places))
-#define SECOND_NODE(m, places) NODE((m)->Nodes, (places) >> 32)
+#define FIRST_NODE(m, slots) NODE((m)->Nodes, (ulong)(uint)(slots))
+#define SECOND_NODE(m, slots) NODE((m)->Nodes, (slots) >> 32)
 #else
-#define FIRST_NODE(m, places) NODE((m)->Nodes, (places) >> 32)
-#define SECOND_NODE(m, places) NODE((m)->Nodes, (ulong)(uint)(places))
+#define FIRST_NODE(m, slots) NODE((m)->Nodes, (slots) >> 32)
+#define SECOND_NODE(m, slots) NODE((m)->Nodes, (ulong)(uint)(slots))
 #endif
-#define FOUR_NODES(WHICH, m, places)                                                               \
-  (float16)(WHICH##_NODE(m, places##0), WHICH##_NODE(m, places##1), WHICH##_NODE(m, places##2),    \
-    WHICH##_NODE(m, places##3))
+#define FOUR_NODES(WHICH, m, slots)                                                               \
+  (float16)(WHICH##_NODE(m, slots##0), WHICH##_NODE(m, slots##1), WHICH##_NODE(m, slots##2),    \
+    WHICH##_NODE(m, slots##3))
 
 // Returns the displacements of four vertices with consecutive links, with the operations of FollowLink.
 static float16 FollowFourLinks(const Mapping* m, __global const VertexLink* links)
 {
-  const float16 four = *(__global const PlacedFloat16*)links;
+  const float16 four = *(__global const UnalignedFloat16*)links;
   const float16 a = OF_EACH_FOUR(four, 1);
   const float16 b = OF_EACH_FOUR(four, 2);
   const float16 c = OF_EACH_FOUR(four, 3);

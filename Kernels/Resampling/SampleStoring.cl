@@ -145,7 +145,7 @@ static void BeginSamples(
   s->Volume = volume;
 }
 
-static void PlaceSample(Sample* s, const long* weights, size_t target)
+static void SetSample(Sample* s, const long* weights, size_t target)
 {
   s->Target = target;
   s->Only = -1;

@@ -46,18 +46,18 @@ bool FitsFloat(const VolumeArray& array)
 std::string MakeStore(const VolumeArray& array, const std::string& index)
 {
   const std::string type = GetTypeName(array.Type);
-  const std::string places = "source" + index + ", target" + index + ", ";
+  const std::string names = "source" + index + ", target" + index + ", ";
   const std::string components = std::to_string(array.Components);
   if (array.Categorical)
   {
-    return "STORE_NEAREST(" + places + components + ") ";
+    return "STORE_NEAREST(" + names + components + ") ";
   }
   const std::string convert = "convert_" + type + (IsReal(array.Type) ? "" : "_sat_rte");
   if (GetElementSize(array.Type) == 8 && !IsReal(array.Type))
   {
-    return "STORE_LINEAR_64(" + places + components + ", " + type + ", " + convert + ") ";
+    return "STORE_LINEAR_64(" + names + components + ", " + type + ", " + convert + ") ";
   }
-  return "STORE_LINEAR(" + places + components + ", " + convert + ") ";
+  return "STORE_LINEAR(" + names + components + ", " + convert + ") ";
 }
 
 std::string MakeArrayText(const OpenCLContext& context, const std::vector<VolumeArray>& arrays)

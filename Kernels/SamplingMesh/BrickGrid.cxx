@@ -64,19 +64,19 @@ std::pair<std::size_t, std::uint32_t> BrickGrid::GetBrick(
 {
   std::size_t brick = 0;
   std::size_t stride = 1;
-  int place[3];
+  int inBrick[3];
   for (int axis = 0; axis < 3; ++axis)
   {
     const auto count = static_cast<std::size_t>(subBricks.Count[axis]);
     const int cell = static_cast<int>(subBrick % count) * subBricks.Cells[axis];
-    place[axis] = cell % this->Cells[axis];
+    inBrick[axis] = cell % this->Cells[axis];
     brick += stride * static_cast<std::size_t>(cell / this->Cells[axis]);
     subBrick /= count;
     stride *= static_cast<std::size_t>(this->Count[axis]);
   }
   return { brick,
-    MakeSectionBits(static_cast<std::uint32_t>(place[0] / DEFORMVOLUME_SPAN),
-      place[1] >= this->Cells[1] / 2, place[2] >= this->Cells[2] / 2) };
+    MakeSectionBits(static_cast<std::uint32_t>(inBrick[0] / DEFORMVOLUME_SPAN),
+      inBrick[1] >= this->Cells[1] / 2, inBrick[2] >= this->Cells[2] / 2) };
 }
 
 Extent BrickGrid::GetVertices(std::size_t brick, int halo) const

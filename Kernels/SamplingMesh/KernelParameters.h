@@ -103,9 +103,9 @@ typedef struct
   float Padding;
 } TetrahedronRecord;
 
-// Units of 8 bytes per node. Tetrahedra on the device refer to a node by its offset in such units:
-// CPUs multiply an index by 8 in an address at no cost, but not by 16.
-#define DEFORMVOLUME_NODE_PLACES 2
+// Tetrahedra on the device name a node by its place in units of 8 bytes, of which it takes this
+// many: processors add eight times a number to an address at no cost, but not sixteen times.
+#define DEFORMVOLUME_NODE_STRIDE 2
 
 // Passes of the exact resampling kernel. The passes after the first are for voxels that several
 // cells write, and for voxels on a crease, which no cell writes. All other voxels keep the value of

@@ -75,7 +75,7 @@ public:
     {
       const auto rows = static_cast<std::size_t>(this->EndY - this->Y);
       const auto width = static_cast<std::size_t>(this->Size[0]);
-      const std::size_t begin = this->GetPlace(this->Y, z);
+      const std::size_t begin = this->GetIndex(this->Y, z);
       if (!AreDifferent(last, next, begin, rows * width))
       {
         continue;
@@ -90,7 +90,7 @@ public:
   const std::vector<Extent>& GetBoxes() const { return this->Boxes; }
 
 private:
-  std::size_t GetPlace(int y, int z) const
+  std::size_t GetIndex(int y, int z) const
   {
     return (static_cast<std::size_t>(z) * static_cast<std::size_t>(this->Size[1]) +
              static_cast<std::size_t>(y)) *
@@ -99,10 +99,10 @@ private:
 
   void CompareRow(const MaskValues& last, const MaskValues& next, int y, int z)
   {
-    const std::size_t place = this->GetPlace(y, z);
+    const std::size_t index = this->GetIndex(y, z);
     for (int x = 0; x < this->Size[0]; ++x)
     {
-      const std::size_t i = place + static_cast<std::size_t>(x);
+      const std::size_t i = index + static_cast<std::size_t>(x);
       if (last.Get(i) != next.Get(i))
       {
         Add(this->Boxes[static_cast<std::size_t>(x / DEFORMVOLUME_CUBOID_X)], x, y, z);

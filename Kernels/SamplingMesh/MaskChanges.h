@@ -18,9 +18,9 @@ struct MaskValues
   unsigned char Bits = 255;             // the bits that belong to the mask
   unsigned char Usual = 0;              // the value of a vertex or cell without a mask
 
-  unsigned char Get(std::size_t place) const
+  unsigned char Get(std::size_t index) const
   {
-    return this->Bytes ? this->Bytes[place] & this->Bits : this->Usual;
+    return this->Bytes ? this->Bytes[index] & this->Bits : this->Usual;
   }
 };
 

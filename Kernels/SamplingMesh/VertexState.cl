@@ -19,8 +19,8 @@ static int3 EndOfVertices(int3 first, const KernelParameters* p)
     (int3)(p->Size[0], p->Size[1], p->PlanesEnd));
 }
 
-// Index of a vertex in the array `marked` of MarkVertices.
-static size_t PlaceInList(int3 first, int x, int y, int z)
+// Place of a vertex among those that MarkVertices has found the state of.
+static size_t IndexInList(int3 first, int x, int y, int z)
 {
   return ((get_global_id(1) * DEFORMVOLUME_CUBOID_Z + (z - first.z)) * DEFORMVOLUME_CUBOID_Y + (y - first.y)) *
     DEFORMVOLUME_CUBOID_X + (x - first.x);
@@ -135,8 +135,8 @@ static int IsCrossed(
   __global const uint* cutRows, __global const CutVertex* cutVertices, int x, int y, int z, const KernelParameters* p)
 {
 #if HAS_CUT
-  const int place = FindCutVertex(cutRows, cutVertices, x, y, z, p);
-  return place >= 0 && (cutVertices[place].Tetrahedra & DEFORMVOLUME_ALL_TETRAHEDRA);
+  const int index = FindCutVertex(cutRows, cutVertices, x, y, z, p);
+  return index >= 0 && (cutVertices[index].Tetrahedra & DEFORMVOLUME_ALL_TETRAHEDRA);
 #else
   return 0;
 #endif
@@ -216,7 +216,7 @@ static void MarkRow(__global const uchar* state, __global const uchar* active, _
   {
     for (int x = begin; x < endX; x += step)
     {
-      marked[PlaceInList(first, x, y, z)] = SourceBits(state, x, y, z, p);
+      marked[IndexInList(first, x, y, z)] = SourceBits(state, x, y, z, p);
     }
     return;
   }
@@ -243,7 +243,7 @@ static void MarkRow(__global const uchar* state, __global const uchar* active, _
         : 0;
       bits |= IsCrossed(cutRows, cutVertices, x, y, z, p) ? 0 : DEFORMVOLUME_CELL_UNCROSSED;
     }
-    marked[PlaceInList(first, x, y, z)] = bits;
+    marked[IndexInList(first, x, y, z)] = bits;
     before = step == 1 ? here : MarkCrossSection(state, active, x + step - 1, y, z, p);
     here = step == 1 ? after : MarkCrossSection(state, active, x + step, y, z, p);
   }
@@ -280,7 +280,7 @@ __kernel void StoreStates(__global const uchar* marked, __global uchar* state,
     {
       for (int x = first.x + get_global_id(0); x < end.x; x += get_global_size(0))
       {
-        state[VertexInChunk(x, y, z, &p)] = marked[PlaceInList(first, x, y, z)];
+        state[VertexInChunk(x, y, z, &p)] = marked[IndexInList(first, x, y, z)];
       }
     }
   }

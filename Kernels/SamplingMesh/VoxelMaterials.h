@@ -51,7 +51,7 @@ std::int64_t WriteMaterials(
   using Value =
     std::decay_t<typename std::iterator_traits<decltype(std::begin(values))>::value_type>;
   std::int64_t without = -1;
-  std::int64_t place = 0;
+  std::int64_t voxel = 0;
   for (const Value value : values)
   {
     int index = rule.Ranges.empty() ? GetMaterialNumber<Value>(value) : rule.Fallback;
@@ -66,9 +66,9 @@ std::int64_t WriteMaterials(
     }
     if ((index < 0 || !rule.Exists[static_cast<std::size_t>(index)]) && without < 0)
     {
-      without = place;
+      without = voxel;
     }
-    materials[place++] = static_cast<unsigned char>(index);
+    materials[voxel++] = static_cast<unsigned char>(index);
   }
   return without;
 }

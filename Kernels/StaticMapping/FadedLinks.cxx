@@ -208,8 +208,8 @@ void FadedLinks::FindBlocks(
     block.GreatestWeight = 0.0;
     const std::size_t first = layer.Faces.size();
     std::int32_t last = -1;
-    const auto end = [&](std::int64_t place, int axis)
-    { return std::min((place + 1) * BlockSize, GetSize(voxels, axis)); };
+    const auto end = [&](std::int64_t blockIndex, int axis)
+    { return std::min((blockIndex + 1) * BlockSize, GetSize(voxels, axis)); };
     for (std::int64_t z = k * BlockSize; z < end(k, 2); ++z)
     {
       for (std::int64_t y = j * BlockSize; y < end(j, 1); ++y)

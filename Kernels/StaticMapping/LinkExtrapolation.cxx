@@ -47,16 +47,16 @@ public:
     : Weight(spacing * spacing)
     , Costs(size)
     , Nearest(size)
-    , Places(size)
+    , Indices(size)
     , Starts(size)
   {
   }
 
-  // cost: infinity excludes the position.
-  void SetCost(std::int64_t place, double cost) { this->Costs[place] = cost; }
+  // Infinity: not to be chosen.
+  void SetCost(std::int64_t index, double cost) { this->Costs[index] = cost; }
 
-  // Returns -1 if all positions are excluded.
-  std::int32_t GetNearest(std::int64_t place) const { return this->Nearest[place]; }
+  // -1 where no place can be chosen.
+  std::int32_t GetNearest(std::int64_t index) const { return this->Nearest[index]; }
 
   // Computes the lower envelope of the parabolas at the positions in one sweep (Felzenszwalb and
   // Huttenlocher).
@@ -64,16 +64,16 @@ public:
   {
     const std::int32_t size = static_cast<std::int32_t>(this->Costs.size());
     std::int32_t count = 0;
-    for (std::int32_t place = 0; place < size; ++place)
+    for (std::int32_t index = 0; index < size; ++index)
     {
-      if (this->Costs[place] == std::numeric_limits<double>::infinity())
+      if (this->Costs[index] == std::numeric_limits<double>::infinity())
       {
         continue;
       }
       double start = -std::numeric_limits<double>::infinity();
       while (count > 0)
       {
-        start = this->Intersect(this->Places[count - 1], place);
+        start = this->Intersect(this->Indices[count - 1], index);
         if (start > this->Starts[count - 1])
         {
           break;
@@ -81,18 +81,18 @@ public:
         --count;
         start = -std::numeric_limits<double>::infinity();
       }
-      this->Places[count] = place;
+      this->Indices[count] = index;
       this->Starts[count] = start;
       ++count;
     }
     std::int32_t current = 0;
-    for (std::int32_t place = 0; place < size; ++place)
+    for (std::int32_t index = 0; index < size; ++index)
     {
-      while (current + 1 < count && this->Starts[current + 1] < place)
+      while (current + 1 < count && this->Starts[current + 1] < index)
       {
         ++current;
       }
-      this->Nearest[place] = count > 0 ? this->Places[current] : -1;
+      this->Nearest[index] = count > 0 ? this->Indices[current] : -1;
     }
   }
 
@@ -109,7 +109,7 @@ private:
   double Weight;
   std::vector<double> Costs;
   std::vector<std::int32_t> Nearest;
-  std::vector<std::int32_t> Places;
+  std::vector<std::int32_t> Indices;
   std::vector<double> Starts;
 };
 

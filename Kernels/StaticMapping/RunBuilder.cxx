@@ -237,10 +237,10 @@ VertexRuns RunBuilder::Build(const Extent& part, std::int64_t& numberOfInnerVoxe
   const TetrahedronTiles::Rectangle wanted = tiles.GetTiles(MakeVoxelBox(part));
   const std::int64_t across = wanted.End[0] - wanted.Begin[0];
   const std::int64_t layers = wanted.End[1] - wanted.Begin[1];
-  const auto getTile = [&](std::int64_t layer, std::int64_t place)
-  { return (wanted.Begin[1] + layer) * tiles.GetNumberOfTiles(0) + wanted.Begin[0] + place; };
-  const auto getBox = [&](std::int64_t layer, std::int64_t place)
-  { return Intersect(tiles.GetVoxels(getTile(layer, place)), MakeVoxelBox(part)); };
+  const auto getTile = [&](std::int64_t layer, std::int64_t inLayer)
+  { return (wanted.Begin[1] + layer) * tiles.GetNumberOfTiles(0) + wanted.Begin[0] + inLayer; };
+  const auto getBox = [&](std::int64_t layer, std::int64_t inLayer)
+  { return Intersect(tiles.GetVoxels(getTile(layer, inLayer)), MakeVoxelBox(part)); };
   VertexRuns runs;
   runs.RowBegins.reserve(GetSize(part, 1) * GetSize(part, 2) + 1);
   Numbering numbering(*this, part, runs.Tetrahedra);
@@ -257,9 +257,9 @@ VertexRuns RunBuilder::Build(const Extent& part, std::int64_t& numberOfInnerVoxe
         for (std::int64_t tile = first; tile < last; ++tile)
         {
           const std::int64_t layer = tile / across;
-          const std::int64_t place = tile % across;
-          made[layer - begin][place] =
-            this->MakeTileRuns(getTile(layer, place), getBox(layer, place));
+          const std::int64_t inLayer = tile % across;
+          made[layer - begin][inLayer] =
+            this->MakeTileRuns(getTile(layer, inLayer), getBox(layer, inLayer));
         }
       });
     for (std::int64_t layer = begin; layer < end; ++layer)

@@ -31,7 +31,7 @@ constexpr double LargestStep = 0.5;
 // The point of the mesh that a voxel follows, and the factor of the displacement.
 struct Anchor
 {
-  glm::dvec3 Place{ 0.0 };
+  glm::dvec3 Position{ 0.0 };
   double Weight = 0.0;
 };
 
@@ -53,11 +53,11 @@ Anchor GetAnchor(const VertexLink& link, const glm::dvec3& voxel, const glm::dve
   Anchor anchor;
   for (std::size_t k = 0; k < 3; ++k)
   {
-    anchor.Place +=
+    anchor.Position +=
       double{ link.Weights[k] } * (spacing * restPoints[static_cast<std::size_t>(nodes[k])]);
     anchor.Weight += double{ link.Weights[k] };
   }
-  anchor.Place /= anchor.Weight;
+  anchor.Position /= anchor.Weight;
   return anchor;
 }
 
@@ -77,7 +77,7 @@ void StretchedTetrahedra::Find(const Extent& voxels, const glm::dvec3& spacing,
   // Whether two vertices follow points that are too far apart. On a convex boundary, the closest
   // points of two voxels are not farther apart than the voxels.
   const auto isStretchable = [&](const std::array<Anchor, 8>& anchors,
-                               const std::array<glm::dvec3, 8>& places, const int* vertices)
+                               const std::array<glm::dvec3, 8>& positions, const int* vertices)
   {
     for (int i = 1; i < 4; ++i)
     {
@@ -87,8 +87,8 @@ void StretchedTetrahedra::Find(const Extent& voxels, const glm::dvec3& spacing,
         const auto b = static_cast<std::size_t>(vertices[j]);
         const bool isStep = std::abs(anchors[a].Weight - anchors[b].Weight) > LargestStep;
         const bool isJump = anchors[a].Weight > 0.0 && anchors[b].Weight > 0.0 &&
-          glm::distance(anchors[a].Place, anchors[b].Place) >
-            2.0 * (1.0 + 1e-6) * glm::distance(places[a], places[b]);
+          glm::distance(anchors[a].Position, anchors[b].Position) >
+            2.0 * (1.0 + 1e-6) * glm::distance(positions[a], positions[b]);
         if (isStep || isJump)
         {
           return true;
@@ -101,7 +101,7 @@ void StretchedTetrahedra::Find(const Extent& voxels, const glm::dvec3& spacing,
     [&](std::int64_t begin, std::int64_t end)
     {
       std::array<Anchor, 8> anchors;
-      std::array<glm::dvec3, 8> places;
+      std::array<glm::dvec3, 8> positions;
       std::array<std::int64_t, 8> numbers;
       for (std::int64_t z = begin; z < end; ++z)
       {
@@ -131,7 +131,7 @@ void StretchedTetrahedra::Find(const Extent& voxels, const glm::dvec3& spacing,
               const glm::dvec3 voxel(static_cast<double>(voxels[0] + x + (corner & 1)),
                 static_cast<double>(voxels[2] + y + (corner >> 2 & 1)),
                 static_cast<double>(voxels[4] + z + (corner >> 1 & 1)));
-              places[at] = spacing * voxel;
+              positions[at] = spacing * voxel;
               anchors[at] = GetAnchor(links[static_cast<std::size_t>(numbers[at])], voxel, spacing,
                 restPoints, tetrahedra, faces);
             }
@@ -143,7 +143,7 @@ void StretchedTetrahedra::Find(const Extent& voxels, const glm::dvec3& spacing,
               {
                 vertices[k] = tetrahedron[k] ^ mirror;
               }
-              if (isStretchable(anchors, places, vertices))
+              if (isStretchable(anchors, positions, vertices))
               {
                 std::array<std::int64_t, 4>& one =
                   found[static_cast<std::size_t>(z)].emplace_back();

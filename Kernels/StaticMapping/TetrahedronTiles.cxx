@@ -51,15 +51,15 @@ TetrahedronTiles::TetrahedronTiles(const Extent& voxels, const std::vector<glm::
       std::int64_t flatInChunk = 0;
       for (std::int64_t id = begin; id < end; ++id)
       {
-        const Places places = GetPlaces(tetrahedra[id], restPoints);
-        if (!IsWithinLimit(places))
+        const Positions positions = GetPositions(tetrahedra[id], restPoints);
+        if (!IsWithinLimit(positions))
         {
           beyondLimit = true;
           continue;
         }
         BarycentricMap map;
         flatInChunk += map.SetTetrahedron(tetrahedra[id], restPoints) ? 0 : 1;
-        ranges[id] = this->FindRange(places, margin);
+        ranges[id] = this->FindRange(positions, margin);
       }
       flat += flatInChunk;
     });

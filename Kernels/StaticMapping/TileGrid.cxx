@@ -45,7 +45,7 @@ void TileGrid::ChooseSize()
   }
 }
 
-bool TileGrid::IsWithinLimit(const Places& nodes)
+bool TileGrid::IsWithinLimit(const Positions& nodes)
 {
   return std::all_of(nodes.begin(), nodes.end(),
     [](const glm::dvec3& point)
@@ -55,7 +55,7 @@ bool TileGrid::IsWithinLimit(const Places& nodes)
     });
 }
 
-VoxelBox TileGrid::FindBox(const Places& nodes, double margin) const
+VoxelBox TileGrid::FindBox(const Positions& nodes, double margin) const
 {
   const glm::dvec3 min =
     glm::min(glm::min(nodes[0], nodes[1]), glm::min(nodes[2], nodes[3])) - margin;
@@ -80,7 +80,7 @@ VoxelBox TileGrid::FindBox(const Places& nodes, double margin) const
   return box;
 }
 
-TileGrid::Range TileGrid::FindRange(const Places& nodes, double margin) const
+TileGrid::Range TileGrid::FindRange(const Positions& nodes, double margin) const
 {
   Range range;
   const VoxelBox box = this->FindBox(nodes, margin);

@@ -95,10 +95,10 @@ public:
       for (int axis = 0; axis < 3; ++axis)
       {
         derivative[axis] = GetSlope(index[axis] - 0.5, index[axis], index[axis] + 0.5,
-          [&](double place)
+          [&](double shifted)
           {
             glm::dvec3 moved = index;
-            moved[axis] = place;
+            moved[axis] = shifted;
             return this->Displace(this->ToField * moved + this->Offset);
           });
       }
@@ -116,10 +116,10 @@ public:
       const glm::dvec3 middle = glm::clamp(position, glm::dvec3(0.0), this->Last);
       alongField[axis] = GetSlope(std::max(middle[axis] - halfStep, 0.0), middle[axis],
         std::min(middle[axis] + halfStep, this->Last[axis]),
-        [&](double place)
+        [&](double shifted)
         {
           glm::dvec3 moved = middle;
-          moved[axis] = place;
+          moved[axis] = shifted;
           return this->Interpolate(moved);
         });
     }

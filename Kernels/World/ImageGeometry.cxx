@@ -66,7 +66,7 @@ bool ImageGeometry::operator==(const ImageGeometry& other) const
     this->Spacing == other.Spacing && this->Direction == other.Direction;
 }
 
-bool AreSamePlaces(const ImageGeometry& first, const ImageGeometry& second, const Extent& extent)
+bool AreSamePositions(const ImageGeometry& first, const ImageGeometry& second, const Extent& extent)
 {
   constexpr double tolerance = 1e-3; // far more than the rounding of floats, far less than a voxel
   const glm::dmat4 transform = second.GetWorldToIndex() * first.GetIndexToWorld();
@@ -116,10 +116,10 @@ void ComputeWorldPositions(const ImageGeometry& image, const std::array<float*, 
         for (std::int64_t x = 0; x < width; ++x)
         {
           index.x = static_cast<double>(extent[0] + x);
-          const glm::dvec4 place = toWorld * index;
+          const glm::dvec4 position = toWorld * index;
           for (std::size_t axis = 0; axis < 3; ++axis)
           {
-            positions[axis][row * width + x] = static_cast<float>(place[static_cast<int>(axis)]);
+            positions[axis][row * width + x] = static_cast<float>(position[static_cast<int>(axis)]);
           }
         }
       }

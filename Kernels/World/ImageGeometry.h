@@ -46,7 +46,7 @@ DEFORMVOLUME_EXPORT glm::dmat3 MakeDirection(const double* rows);
 
 /// Whether the points of an extent lie at the same places in the world, to a thousandth of the
 /// distance between them. The second geometry must have a transform that can be inverted.
-DEFORMVOLUME_EXPORT bool AreSamePlaces(
+DEFORMVOLUME_EXPORT bool AreSamePositions(
   const ImageGeometry& first, const ImageGeometry& second, const Extent& extent);
 
 /// What takes indices of an image to indices of another one. Rounding errors are dropped: two

@@ -61,7 +61,7 @@ void VectorField::Update(const ImageGeometry& volume, const OutputMap& toOutput)
   this->IsOld = true; // where it fails
   if (!isSame || !this->InPlace)
   {
-    this->Place(volume, toOutput);
+    this->Locate(volume, toOutput);
   }
   if (!this->InPlace)
   {
@@ -74,7 +74,7 @@ void VectorField::Update(const ImageGeometry& volume, const OutputMap& toOutput)
   ++this->Version;
 }
 
-void VectorField::Place(const ImageGeometry& volume, const OutputMap& toOutput)
+void VectorField::Locate(const ImageGeometry& volume, const OutputMap& toOutput)
 {
   const Extent& points = this->Grid.PointExtent;
   for (int axis = 0; axis < 3; ++axis)

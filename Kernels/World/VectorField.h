@@ -54,7 +54,7 @@ public:
 private:
   void Replace(const ImageGeometry& grid, const VectorView& vectors, bool isInverse,
     const std::shared_ptr<DeviceVectors>& shared);
-  void Place(const ImageGeometry& volume, const OutputMap& toOutput);
+  void Locate(const ImageGeometry& volume, const OutputMap& toOutput);
   void Convert(const ImageGeometry& volume, const OutputMap& toOutput);
   /// Where all voxels are points of the field and there are others between them, makes the field
   /// one of the former, and returns which points these are; else nothing.

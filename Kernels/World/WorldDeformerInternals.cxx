@@ -177,8 +177,8 @@ std::vector<VolumeArray> WorldDeformer::Internals::MakeArrays(
   for (VolumeArray& array : arrays)
   {
     // Only the arrays of the volume may be labels.
-    const auto place = static_cast<std::size_t>(&array - arrays.data());
-    array.Categorical |= request.IsNearest && place < this->Arrays.size();
+    const auto index = static_cast<std::size_t>(&array - arrays.data());
+    array.Categorical |= request.IsNearest && index < this->Arrays.size();
   }
   return arrays;
 }

@@ -228,7 +228,7 @@ void DeformEach(Recorder& recorder, const std::string& purpose, const DeformerCa
       std::vector<std::int32_t> places(static_cast<std::size_t>(deformerCase.GetNumberOfVoxels()));
       std::iota(places.begin(), places.end(), 0);
       places.back() = 0;
-      deformer.SetNodePlaces(places.data());
+      deformer.SetCoincidentNodes(places.data());
       Deform(deformer, deformerCase, OneArray);
     }
   }

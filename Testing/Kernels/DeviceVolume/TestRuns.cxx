@@ -191,7 +191,7 @@ public:
   {
     this->Mesh.GetMasks().SetBlanked(blanked, 255, nullptr);
     const cl::Buffer tetrahedra =
-      this->Send(NameNodePlaces(this->Case.Tetrahedra.data(), this->Case.Tetrahedra.size()));
+      this->Send(GetNodeOffsets(this->Case.Tetrahedra.data(), this->Case.Tetrahedra.size()));
     std::vector<float> padded;
     for (std::size_t i = 0; i < displacements.size(); i += 3)
     {

@@ -158,14 +158,14 @@ TEST_P(Connectivity, GapsAndMasksOfASmallVolume)
     volume.Active.resize(GetNumberOfCells(volume.Shape.VertexExtent), 31);
     volume.Active[random() % volume.Active.size()] = random() % 32;
     SetConnectivity(changed, volume, &changes);
-    changed.SetNodePlaces(places.data());
+    changed.SetCoincidentNodes(places.data());
     volume.SendMasks(changed);
     volume.SendDisplacements(changed, route);
     VolumeDeformer fresh;
     volume.SendAll(fresh, route);
     EditedOutputs whole(volume);
     fresh.Deform(whole.MakeRequest(volume));
-    fresh.SetNodePlaces(places.data());
+    fresh.SetCoincidentNodes(places.data());
     EditedOutputs expected(volume);
     fresh.Deform(expected.MakeRequest(volume));
     hasGap = hasGap || !(whole == expected);
@@ -180,7 +180,7 @@ TEST_P(Connectivity, GapsAndMasksOfASmallVolume)
     // Without gaps again, and with them.
     if (edit == 1)
     {
-      changed.SetNodePlaces(nullptr);
+      changed.SetCoincidentNodes(nullptr);
       EditedOutputs closed(volume);
       changed.Deform(closed.MakeRequest(volume));
       EXPECT_TRUE(closed == whole);

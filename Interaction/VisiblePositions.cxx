@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "VisiblePlaces.h"
+#include "VisiblePositions.h"
 
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
@@ -108,10 +108,11 @@ glm::dvec3 deformvolume::GetWorld(vtkRenderer* renderer, double x, double y, dou
   return { world[0], world[1], world[2] };
 }
 
-glm::dvec3 deformvolume::GetDisplay(vtkRenderer* renderer, const glm::dvec3& place)
+glm::dvec3 deformvolume::GetDisplay(vtkRenderer* renderer, const glm::dvec3& position)
 {
   double display[3];
-  vtkInteractorObserver::ComputeWorldToDisplay(renderer, place.x, place.y, place.z, display);
+  vtkInteractorObserver::ComputeWorldToDisplay(
+    renderer, position.x, position.y, position.z, display);
   return { display[0], display[1], display[2] };
 }
 

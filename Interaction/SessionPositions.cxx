@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "SessionPlaces.h"
+#include "SessionPositions.h"
 
 #include "vtkDataArray.h"
 #include "vtkIdList.h"
@@ -31,19 +31,19 @@ glm::dvec3 GetVector(vtkDataArray* vectors, vtkIdType id)
   return { tuple[0], tuple[1], tuple[2] };
 }
 
-glm::dvec3 GetPlace(vtkDataSet* dataSet, vtkIdType id)
+glm::dvec3 GetPosition(vtkDataSet* dataSet, vtkIdType id)
 {
-  double place[3];
-  dataSet->GetPoint(id, place);
-  return { place[0], place[1], place[2] };
+  double position[3];
+  dataSet->GetPoint(id, position);
+  return { position[0], position[1], position[2] };
 }
 
 // Trilinear, and constant outside.
-glm::dvec3 Interpolate(vtkImageData* field, const glm::dvec3& place)
+glm::dvec3 Interpolate(vtkImageData* field, const glm::dvec3& position)
 {
   vtkDataArray* vectors = field->GetPointData()->GetVectors();
   const int* extent = field->GetExtent();
-  const double world[3] = { place.x, place.y, place.z };
+  const double world[3] = { position.x, position.y, position.z };
   double index[3];
   field->TransformPhysicalPointToContinuousIndex(world, index);
   int low[3];
@@ -94,7 +94,7 @@ glm::dvec3 FindNearestVoxel(vtkImageData* field, const glm::dvec3& deformed)
   const float* floats = areFloats ? static_cast<float*>(vectors->GetVoidPointer(0)) : nullptr;
   const int* extent = field->GetExtent();
   const vtkIdType width = extent[1] - extent[0] + 1;
-  const glm::dvec3 along = GetPlace(field, 1) - GetPlace(field, 0);
+  const glm::dvec3 along = GetPosition(field, 1) - GetPosition(field, 0);
   NearestVoxel best;
   std::mutex mutex;
   vtkSMPTools::For(0, field->GetNumberOfPoints() / width,
@@ -103,7 +103,7 @@ glm::dvec3 FindNearestVoxel(vtkImageData* field, const glm::dvec3& deformed)
       NearestVoxel nearest;
       for (vtkIdType row = begin; row < end; ++row)
       {
-        const glm::dvec3 first = GetPlace(field, row * width) - deformed;
+        const glm::dvec3 first = GetPosition(field, row * width) - deformed;
         for (vtkIdType x = 0; x < width; ++x)
         {
           const vtkIdType id = row * width + x;
@@ -118,7 +118,7 @@ glm::dvec3 FindNearestVoxel(vtkImageData* field, const glm::dvec3& deformed)
       const std::lock_guard<std::mutex> lock(mutex);
       best = nearest.IsBetterThan(best) ? nearest : best;
     });
-  return GetPlace(field, best.Id);
+  return GetPosition(field, best.Id);
 }
 
 // Whether the iteration came to an end; where the body is folded or torn it need not.
@@ -148,7 +148,7 @@ struct CellNodes
   std::vector<glm::dvec3> Deformed;
 };
 
-using Places = std::vector<glm::dvec3>;
+using Positions = std::vector<glm::dvec3>;
 using Corners = std::array<std::size_t, 4>;
 
 constexpr std::size_t LinearNodes = 4;
@@ -167,14 +167,14 @@ const std::vector<Corners>& GetParts(std::size_t numberOfNodes)
   return numberOfNodes == LinearNodes ? linear : numberOfNodes == QuadraticNodes ? quadratic : none;
 }
 
-void AddMiddle(Places& places)
+void AddMiddle(Positions& positions)
 {
   glm::dvec3 middle(0.0);
   for (std::size_t i = 0; i < QuadraticNodes; ++i)
   {
-    middle += (i < LinearNodes ? -0.125 : 0.25) * places[i];
+    middle += (i < LinearNodes ? -0.125 : 0.25) * positions[i];
   }
-  places.push_back(middle);
+  positions.push_back(middle);
 }
 
 CellNodes ReadCell(vtkDataSet* mesh, vtkDataArray* vectors, vtkIdList* ids)
@@ -182,7 +182,7 @@ CellNodes ReadCell(vtkDataSet* mesh, vtkDataArray* vectors, vtkIdList* ids)
   CellNodes nodes;
   for (const vtkIdType id : *ids)
   {
-    nodes.Rest.push_back(GetPlace(mesh, id));
+    nodes.Rest.push_back(GetPosition(mesh, id));
     nodes.Deformed.push_back(nodes.Rest.back() + GetVector(vectors, id));
   }
   if (nodes.Rest.size() == QuadraticNodes)
@@ -194,12 +194,12 @@ CellNodes ReadCell(vtkDataSet* mesh, vtkDataArray* vectors, vtkIdList* ids)
 }
 
 // In the tetrahedron that holds a place, or is nearest by its least barycentric coordinate.
-glm::dvec3 MapInMesh(
-  vtkDataSet* mesh, const glm::dvec3& place, Places CellNodes::*from, Places CellNodes::*to)
+glm::dvec3 MapInMesh(vtkDataSet* mesh, const glm::dvec3& position, Positions CellNodes::*from,
+  Positions CellNodes::*to)
 {
   vtkDataArray* vectors = mesh->GetPointData()->GetVectors();
   double best = -std::numeric_limits<double>::infinity();
-  glm::dvec3 found = place;
+  glm::dvec3 found = position;
   vtkNew<vtkIdList> ids;
   for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells() && best < 0.0; ++cell)
   {
@@ -208,11 +208,11 @@ glm::dvec3 MapInMesh(
     const CellNodes nodes = parts.empty() ? CellNodes() : ReadCell(mesh, vectors, ids);
     for (const Corners& part : parts)
     {
-      const auto get = [&](Places CellNodes::*places, std::size_t i) -> const glm::dvec3&
-      { return (nodes.*places)[part[i]]; };
+      const auto get = [&](Positions CellNodes::*positions, std::size_t i) -> const glm::dvec3&
+      { return (nodes.*positions)[part[i]]; };
       const glm::dvec3& origin = get(from, 0);
       const glm::dmat3 edges(get(from, 1) - origin, get(from, 2) - origin, get(from, 3) - origin);
-      const glm::dvec3 weights = glm::inverse(edges) * (place - origin);
+      const glm::dvec3 weights = glm::inverse(edges) * (position - origin);
       const double least =
         std::min({ weights.x, weights.y, weights.z, 1.0 - weights.x - weights.y - weights.z });
       if (least > best) // not where the tetrahedron is flat
@@ -228,7 +228,7 @@ glm::dvec3 MapInMesh(
 
 } // namespace
 
-glm::dvec3 deformvolume::EstimateRestPlace(vtkDataSet* deformation, const glm::dvec3& deformed)
+glm::dvec3 deformvolume::EstimateRestPosition(vtkDataSet* deformation, const glm::dvec3& deformed)
 {
   if (auto* field = vtkImageData::SafeDownCast(deformation))
   {
@@ -239,18 +239,18 @@ glm::dvec3 deformvolume::EstimateRestPlace(vtkDataSet* deformation, const glm::d
   return MapInMesh(deformation, deformed, &CellNodes::Deformed, &CellNodes::Rest);
 }
 
-glm::dvec3 deformvolume::FindRestPlace(vtkDataSet* deformation, const glm::dvec3& deformed)
+glm::dvec3 deformvolume::FindRestPosition(vtkDataSet* deformation, const glm::dvec3& deformed)
 {
   auto* field = vtkImageData::SafeDownCast(deformation);
   if (!field)
   {
-    return EstimateRestPlace(deformation, deformed);
+    return EstimateRestPosition(deformation, deformed);
   }
   glm::dvec3 rest;
   return SearchField(field, deformed, rest) ? rest : FindNearestVoxel(field, deformed);
 }
 
-glm::dvec3 deformvolume::FindDeformedPlace(vtkDataSet* deformation, const glm::dvec3& rest)
+glm::dvec3 deformvolume::FindDeformedPosition(vtkDataSet* deformation, const glm::dvec3& rest)
 {
   if (auto* field = vtkImageData::SafeDownCast(deformation))
   {

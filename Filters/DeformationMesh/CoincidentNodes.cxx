@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "NodePlaces.h"
+#include "CoincidentNodes.h"
 
 #include "RestMesh.h"
 
@@ -10,31 +10,31 @@
 namespace deformvolume
 {
 
-void NodePlaces::Join(std::int32_t first, std::int32_t second)
+void CoincidentNodes::Join(std::int32_t first, std::int32_t second)
 {
-  const std::int32_t place = this->Places[first];
-  const std::int32_t other = this->Places[second];
-  if (place == other)
+  const std::int32_t number = this->Numbers[first];
+  const std::int32_t other = this->Numbers[second];
+  if (number == other)
   {
     return;
   }
   this->AnyShared = true;
   if (!this->Shares[second])
   {
-    this->Places[second] = place;
+    this->Numbers[second] = number;
   }
   else if (!this->Shares[first])
   {
-    this->Places[first] = other;
+    this->Numbers[first] = other;
   }
   else
   {
-    std::replace(this->Places.begin(), this->Places.end(), other, place);
+    std::replace(this->Numbers.begin(), this->Numbers.end(), other, number);
   }
   this->Shares[first] = this->Shares[second] = 1;
 }
 
-void NodePlaces::Update(const RestMesh& mesh)
+void CoincidentNodes::Update(const RestMesh& mesh)
 {
   const std::vector<glm::dvec3>& points = mesh.GetPoints();
   const bool isKnown = this->ShapeVersion == mesh.GetShapeVersion();
@@ -46,11 +46,11 @@ void NodePlaces::Update(const RestMesh& mesh)
                                : std::optional<std::vector<TetrahedronChange>>();
   if (changes)
   {
-    for (std::size_t node = this->Places.size(); node < points.size(); ++node)
+    for (std::size_t node = this->Numbers.size(); node < points.size(); ++node)
     {
-      this->Places.push_back(static_cast<std::int32_t>(node));
+      this->Numbers.push_back(static_cast<std::int32_t>(node));
     }
-    this->Shares.resize(this->Places.size());
+    this->Shares.resize(this->Numbers.size());
     // Nodes that tetrahedra have got lie where those were that they had. No others are used.
     for (const TetrahedronChange& change : *changes)
     {
@@ -59,25 +59,25 @@ void NodePlaces::Update(const RestMesh& mesh)
         this->Join(change.Before[k], change.After[k]);
       }
     }
-    this->Places.resize(points.size());
+    this->Numbers.resize(points.size());
     this->Shares.resize(points.size());
   }
   else
   {
     std::vector<std::int32_t> order(points.size());
     std::iota(order.begin(), order.end(), 0);
-    const auto place = [&](std::int32_t node)
+    const auto number = [&](std::int32_t node)
     { return std::make_tuple(points[node].x, points[node].y, points[node].z); };
     std::sort(order.begin(), order.end(),
       [&](std::int32_t a, std::int32_t b)
-      { return std::make_tuple(place(a), a) < std::make_tuple(place(b), b); });
-    this->Places.resize(points.size());
+      { return std::make_tuple(number(a), a) < std::make_tuple(number(b), b); });
+    this->Numbers.resize(points.size());
     this->Shares.assign(points.size(), 0);
     this->AnyShared = false;
     for (std::size_t i = 0; i < order.size(); ++i)
     {
       const bool shares = i > 0 && points[order[i]] == points[order[i - 1]];
-      this->Places[order[i]] = shares ? this->Places[order[i - 1]] : order[i];
+      this->Numbers[order[i]] = shares ? this->Numbers[order[i - 1]] : order[i];
       if (shares)
       {
         this->Shares[order[i - 1]] = this->Shares[order[i]] = 1;

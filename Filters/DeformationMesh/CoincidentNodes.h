@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef DeformVolumeNodePlaces_h
-#define DeformVolumeNodePlaces_h
+#ifndef DeformVolumeCoincidentNodes_h
+#define DeformVolumeCoincidentNodes_h
 
 #include <cstdint>
 #include <vector>
@@ -12,7 +12,7 @@ class RestMesh;
 
 /// Which nodes of a mesh have one place at rest, as those have that a node was split into. Found
 /// among all nodes once for a mesh, and then followed.
-class NodePlaces
+class CoincidentNodes
 {
 public:
   void Update(const RestMesh& mesh);
@@ -20,14 +20,14 @@ public:
   const std::vector<std::int32_t>& Get() const
   {
     static const std::vector<std::int32_t> none;
-    return this->AnyShared ? this->Places : none;
+    return this->AnyShared ? this->Numbers : none;
   }
 
 private:
   /// Two nodes have one place.
   void Join(std::int32_t first, std::int32_t second);
 
-  std::vector<std::int32_t> Places;
+  std::vector<std::int32_t> Numbers;
   std::vector<unsigned char> Shares; // whether a node may share its place
   bool AnyShared = false;
   std::uint64_t ShapeVersion = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef DeformVolumeSessionPlaces_h
-#define DeformVolumeSessionPlaces_h
+#ifndef DeformVolumeSessionPositions_h
+#define DeformVolumeSessionPositions_h
 
 #include <glm/vec3.hpp>
 
@@ -16,9 +16,9 @@ namespace deformvolume
 /// Places outside go with what is nearest. An estimate is the same where a field is neither folded
 /// nor torn, and looks no further where it is.
 ///@{
-glm::dvec3 FindRestPlace(vtkDataSet* deformation, const glm::dvec3& deformed);
-glm::dvec3 EstimateRestPlace(vtkDataSet* deformation, const glm::dvec3& deformed);
-glm::dvec3 FindDeformedPlace(vtkDataSet* deformation, const glm::dvec3& rest);
+glm::dvec3 FindRestPosition(vtkDataSet* deformation, const glm::dvec3& deformed);
+glm::dvec3 EstimateRestPosition(vtkDataSet* deformation, const glm::dvec3& deformed);
+glm::dvec3 FindDeformedPosition(vtkDataSet* deformation, const glm::dvec3& rest);
 ///@}
 
 } // namespace deformvolume

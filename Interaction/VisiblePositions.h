@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef DeformVolumeVisiblePlaces_h
-#define DeformVolumeVisiblePlaces_h
+#ifndef DeformVolumeVisiblePositions_h
+#define DeformVolumeVisiblePositions_h
 
 #include "vtkType.h"
 
@@ -25,7 +25,7 @@ struct LineOfSight
 ///@{
 /// Between pixels, with their depth from 0 to 1, and the world.
 glm::dvec3 GetWorld(vtkRenderer* renderer, double x, double y, double z);
-glm::dvec3 GetDisplay(vtkRenderer* renderer, const glm::dvec3& place);
+glm::dvec3 GetDisplay(vtkRenderer* renderer, const glm::dvec3& position);
 LineOfSight GetLineOfSight(vtkRenderer* renderer, int x, int y);
 ///@}
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef DeformVolumeHandlePlaces_h
-#define DeformVolumeHandlePlaces_h
+#ifndef DeformVolumeHandlePositions_h
+#define DeformVolumeHandlePositions_h
 
 #include <glm/vec3.hpp>
 
@@ -13,7 +13,7 @@ namespace deformvolume
 {
 
 /// What handles hold, and where they are now, in world coordinates.
-struct HandlePlaces
+struct HandlePositions
 {
   std::vector<glm::dvec3> Rest;
   std::vector<glm::dvec3> Now;
@@ -22,7 +22,7 @@ struct HandlePlaces
 /// Reads the handles on input port 1, of which there may be none, or null. body: what they hold, in
 /// words. Throws an Error where the point array RestPosition is missing or has another shape, or a
 /// coordinate is not finite.
-HandlePlaces ReadHandlePlaces(vtkPointSet* handles, const std::string& body);
+HandlePositions ReadHandlePositions(vtkPointSet* handles, const std::string& body);
 
 } // namespace deformvolume
 

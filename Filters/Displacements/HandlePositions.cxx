@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "HandlePlaces.h"
+#include "HandlePositions.h"
 
 #include "Error.h"
 #include "ShapedArray.h"
@@ -17,24 +17,24 @@ namespace deformvolume
 namespace
 {
 
-std::vector<glm::dvec3> ReadPlaces(vtkDataArray* array, const char* kind)
+std::vector<glm::dvec3> ReadPositions(vtkDataArray* array, const char* kind)
 {
-  std::vector<glm::dvec3> places(static_cast<std::size_t>(array->GetNumberOfTuples()));
+  std::vector<glm::dvec3> positions(static_cast<std::size_t>(array->GetNumberOfTuples()));
   const auto taker = [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType number)
-  { std::copy_n(vectors, number, places.begin() + first); };
+  { std::copy_n(vectors, number, positions.begin() + first); };
   ReadVectors(array, taker, kind, "handles on input port 1");
-  return places;
+  return positions;
 }
 
 } // namespace
 
-HandlePlaces ReadHandlePlaces(vtkPointSet* handles, const std::string& body)
+HandlePositions ReadHandlePositions(vtkPointSet* handles, const std::string& body)
 {
-  HandlePlaces places;
+  HandlePositions positions;
   const vtkIdType count = handles ? handles->GetNumberOfPoints() : 0;
   if (count == 0)
   {
-    return places;
+    return positions;
   }
   constexpr int components = 3;
   vtkDataArray* rest = FindShapedArray(handles->GetPointData(), "RestPosition", components, count,
@@ -46,9 +46,9 @@ HandlePlaces ReadHandlePlaces(vtkPointSet* handles, const std::string& body)
       "components: the place in the " +
       body + " at rest that each handle holds.");
   }
-  places.Rest = ReadPlaces(rest, "Rest position");
-  places.Now = ReadPlaces(handles->GetPoints()->GetData(), "Point");
-  return places;
+  positions.Rest = ReadPositions(rest, "Rest position");
+  positions.Now = ReadPositions(handles->GetPoints()->GetData(), "Point");
+  return positions;
 }
 
 } // namespace deformvolume
