@@ -157,7 +157,7 @@ MUTATIONS = {
                    "queue, kernel, cl::NDRange(items), cl::NullRange));", [GRAPHICS]),
     "range-most": ("Kernels/Output/OutputRange.cl", "((b) > (a) ? (b) : (a))", "(a)",
                    [DEVICE_OUTPUT]),
-    "range-run": ("Kernels/Output/OutputRange.cl", "first + run, (size_t)tuples", "first + 1, (size_t)tuples / 2",
+    "range-portion": ("Kernels/Output/OutputRange.cl", "first + portion, (size_t)tuples", "first + 1, (size_t)tuples / 2",
                   [DEVICE_OUTPUT]),
     "far-vertices": ("Kernels/Resampling/PacketCandidates.cl", "TO_INTS(Least((high) + toEnd, (float)(size)))",
                      "min(TO_INTS((high) + toEnd), (INTS)(size))", [("TestFolded", "*AtTheEdge*")]),

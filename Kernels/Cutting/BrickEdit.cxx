@@ -82,7 +82,7 @@ TetrahedronSet BrickEdit::ForEachBrick(std::size_t bricks,
     progress ? 16 * step * static_cast<std::size_t>(GetProcessorShare()) : std::max(bricks, step);
   std::vector<std::pair<std::size_t, TetrahedronSet>> parts; // with the first brick of each part
   std::mutex mutex;
-  const auto run = [&](std::size_t begin, std::size_t end)
+  const auto editCells = [&](std::size_t begin, std::size_t end)
   {
     const auto edit = std::make_unique<BrickEdit>();
     TetrahedronSet part;
@@ -110,7 +110,7 @@ TetrahedronSet BrickEdit::ForEachBrick(std::size_t bricks,
       throw Aborted();
     }
     ParallelForParts(std::min(askedFor, bricks - first), step,
-      [&](std::size_t begin, std::size_t end) { run(first + begin, first + end); });
+      [&](std::size_t begin, std::size_t end) { editCells(first + begin, first + end); });
   }
   std::sort(
     parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.first < b.first; });

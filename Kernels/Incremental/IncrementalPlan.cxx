@@ -27,7 +27,7 @@ std::uint32_t JoinSpans(std::uint32_t bits)
   return bits | (spans ? upToHighest & ~belowLowest : 0);
 }
 
-// Returns the number of sections of a brick that are run for these bits.
+// Returns the number of sections of a brick that are resampled for these bits.
 std::size_t CountSections(std::uint32_t bits)
 {
   const auto count = [](std::uint32_t v) { return std::bitset<32>(v).count(); };
@@ -167,7 +167,7 @@ std::vector<std::uint32_t> IncrementalUpdate::GetChangedPatches() const
 }
 
 void IncrementalUpdate::PlanPatches(const std::vector<std::size_t>& changed,
-  std::vector<std::uint32_t>& run, std::vector<unsigned char>& dirty) const
+  std::vector<std::uint32_t>& toResample, std::vector<unsigned char>& dirty) const
 {
   for (const std::size_t subBrick : changed)
   {
@@ -178,55 +178,56 @@ void IncrementalUpdate::PlanPatches(const std::vector<std::size_t>& changed,
   {
     const auto [brick, bits] = this->Sections[subBrick];
     if (this->Known[subBrick] && !IsApart(this->Boxes[subBrick], dirtyBox) &&
-      (run[brick] & bits) != bits && this->TouchesPatches(this->Boxes[subBrick], dirty))
+      (toResample[brick] & bits) != bits && this->TouchesPatches(this->Boxes[subBrick], dirty))
     {
-      run[brick] |= bits;
+      toResample[brick] |= bits;
     }
   }
 }
 
 bool IncrementalUpdate::MakePlan(bool inside, Plan& plan)
 {
-  std::vector<std::uint32_t> run(this->Bricks.GetNumberOfBricks()); // sections of bricks
+  std::vector<std::uint32_t> toResample(this->Bricks.GetNumberOfBricks()); // sections of bricks
   std::vector<std::size_t> changed;
   for (std::size_t subBrick = 0; subBrick < this->Sections.size(); ++subBrick)
   {
     if (this->IsChanged(subBrick))
     {
       changed.push_back(subBrick);
-      run[this->Sections[subBrick].first] |= this->Sections[subBrick].second;
+      toResample[this->Sections[subBrick].first] |= this->Sections[subBrick].second;
     }
   }
   if (changed.empty())
   {
     return true;
   }
-  const auto isRunTooMuch = [&]
+  const auto isTooMuch = [&]
   {
-    const std::size_t sections = std::accumulate(run.begin(), run.end(), std::size_t{ 0 },
-      [](std::size_t sum, std::uint32_t bits) { return sum + CountSections(bits); });
-    return sections > GetMost(DEFORMVOLUME_SECTIONS * run.size());
+    const std::size_t sections =
+      std::accumulate(toResample.begin(), toResample.end(), std::size_t{ 0 },
+        [](std::size_t sum, std::uint32_t bits) { return sum + CountSections(bits); });
+    return sections > GetMost(DEFORMVOLUME_SECTIONS * toResample.size());
   };
-  if (isRunTooMuch())
+  if (isTooMuch())
   {
     return false;
   }
   if (!inside)
   {
     std::vector<unsigned char> dirty = this->MakeFlagsOfPatches();
-    this->PlanPatches(changed, run, dirty);
+    this->PlanPatches(changed, toResample, dirty);
     plan.Patches = ListPatches(dirty);
-    if (plan.Patches.size() > GetMost(dirty.size()) || isRunTooMuch())
+    if (plan.Patches.size() > GetMost(dirty.size()) || isTooMuch())
     {
       return false;
     }
   }
-  for (std::size_t brick = 0; brick < run.size(); ++brick)
+  for (std::size_t brick = 0; brick < toResample.size(); ++brick)
   {
-    if (run[brick])
+    if (toResample[brick])
     {
-      plan.Bricks.push_back(
-        static_cast<std::uint32_t>(brick | JoinSpans(run[brick]) << DEFORMVOLUME_BRICK_BITS));
+      plan.Bricks.push_back(static_cast<std::uint32_t>(
+        brick | JoinSpans(toResample[brick]) << DEFORMVOLUME_BRICK_BITS));
     }
   }
   return true;

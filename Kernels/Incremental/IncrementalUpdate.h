@@ -23,15 +23,15 @@ namespace deformvolume
 /// voxels that it wrote or will write lie in a box: its box at rest, widened by the least and the
 /// greatest displacement of its points, and by their difference where a smooth cut continues
 /// displacements across the sheet. Patches of the output that intersect the boxes of changed
-/// sub-bricks, before or after the change, are cleared. Then all sections are run that have a
+/// sub-bricks, before or after the change, are cleared. Then all sections are resampled that have a
 /// sub-brick whose box intersects a cleared patch. Outside the cleared patches these sections write
 /// the same values as before. (If the volume overlaps itself, ExactResampler::MakeAgain keeps the
 /// other patches unchanged.)
 ///
 /// If all vertices of the changed sub-bricks are inside the sampling mesh, nothing is cleared, and
-/// only the changed sub-bricks are run. Their cells fill the same space as before, between cells
-/// that do not change, so they own the same voxels. Inverted cells are an exception, which the
-/// counts of writes reveal.
+/// only the changed sub-bricks are resampled. Their cells fill the same space as before, between
+/// cells that do not change, so they own the same voxels. Inverted cells are an exception, which
+/// the counts of writes reveal.
 class IncrementalUpdate : public DisplacementObserver
 {
 public:
@@ -152,7 +152,7 @@ private:
   /// Marks the patches that a changed sub-brick intersects, before or after the change.
   void MarkChangedPatches(std::size_t subBrick, std::vector<unsigned char>& dirty) const;
   /// Finds the patches to clear, and adds the sections of sub-bricks that intersect them.
-  void PlanPatches(const std::vector<std::size_t>& changed, std::vector<std::uint32_t>& run,
+  void PlanPatches(const std::vector<std::size_t>& changed, std::vector<std::uint32_t>& toResample,
     std::vector<unsigned char>& dirty) const;
   bool TouchesPatches(const Box& box, const std::vector<unsigned char>& dirty) const;
 

@@ -107,7 +107,7 @@ __kernel void Summarize(__global const ulong* parts, __global uint* summary, __l
   }
 }
 
-// Clears the counters of those sections of listed bricks that will be run. One work-item per section.
+// Clears the counters of those sections of listed bricks that will be resampled. One work-item per section.
 __kernel void ClearSections(__global uint* counters, __global const uint* bricks, const uint sections)
 {
   const size_t i = get_global_id(0);
@@ -115,7 +115,7 @@ __kernel void ClearSections(__global uint* counters, __global const uint* bricks
   const size_t section =
     DEFORMVOLUME_SECTIONS * (size_t)(brick & ((1u << DEFORMVOLUME_BRICK_BITS) - 1)) +
     i % DEFORMVOLUME_SECTIONS;
-  for (int k = 0; k < DEFORMVOLUME_COUNTERS && IsSectionRun(brick, section); ++k)
+  for (int k = 0; k < DEFORMVOLUME_COUNTERS && IsSectionResampled(brick, section); ++k)
   {
     counters[section * DEFORMVOLUME_COUNTERS + k] = 0;
   }

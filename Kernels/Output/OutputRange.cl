@@ -6,17 +6,17 @@
 #define JOIN_ENDS(row, a, b) ((row) == 0 ? ((b) < (a) ? (b) : (a)) : ((b) > (a) ? (b) : (a)))
 
 // Each work-group writes its least and its largest finite value; TYPE_MOST and TYPE_LEAST if there is none.
-// Work-items with values that are not finite increment `others`. run: number of consecutive tuples of a work-item,
+// Work-items with values that are not finite increment `others`. portion: number of consecutive tuples of a work-item,
 // before those of the next one. ends: local memory for two values per work-item.
 __kernel void FindRange(__global const TYPE* values, const ulong tuples, const uint components, const uint component,
-  const uint run, __global TYPE* found, __global uint* others, __local TYPE* ends)
+  const uint portion, __global TYPE* found, __global uint* others, __local TYPE* ends)
 {
   TYPE low = TYPE_MOST;
   TYPE high = TYPE_LEAST;
   int anyOther = 0;
-  for (size_t first = get_global_id(0) * run; first < tuples; first += get_global_size(0) * run)
+  for (size_t first = get_global_id(0) * portion; first < tuples; first += get_global_size(0) * portion)
   {
-    const size_t end = min(first + run, (size_t)tuples);
+    const size_t end = min(first + portion, (size_t)tuples);
     for (size_t i = first; i < end; ++i)
     {
       const TYPE value = values[i * components + component];

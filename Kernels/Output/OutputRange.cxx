@@ -55,10 +55,10 @@ DeviceOutput::Range Find(const cl::CommandQueue& queue, const cl::Buffer& buffer
   // If a work-item has a thread of its own, it takes consecutive tuples; otherwise neighboring
   // work-items take neighboring tuples.
   const bool hasThread = context->GetDevice().HasVectors;
-  const cl_uint run = hasThread ? 65536 : 1;
+  const cl_uint portion = hasThread ? 65536 : 1;
   const std::size_t group = hasThread ? 1 : 64;
   const std::size_t most = context->GetNumberOfUnits() * (hasThread ? 4 : 32);
-  const std::uint64_t wanted = (tuples + run * group - 1) / (run * group);
+  const std::uint64_t wanted = (tuples + portion * group - 1) / (portion * group);
   const std::size_t groups =
     static_cast<std::size_t>(std::min<std::uint64_t>(most, std::max<std::uint64_t>(wanted, 1)));
   std::vector<T> ranges(2 * groups);
@@ -70,7 +70,7 @@ DeviceOutput::Range Find(const cl::CommandQueue& queue, const cl::Buffer& buffer
   kernel.setArg(1, cl_ulong{ tuples });
   kernel.setArg(2, static_cast<cl_uint>(components));
   kernel.setArg(3, static_cast<cl_uint>(component));
-  kernel.setArg(4, run);
+  kernel.setArg(4, portion);
   kernel.setArg(5, found);
   kernel.setArg(6, counter);
   kernel.setArg(7, cl::Local(2 * group * sizeof(T)));

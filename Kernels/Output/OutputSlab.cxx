@@ -203,7 +203,7 @@ void OutputSlab::SendPatches(OpenCLContext& context, const std::vector<std::uint
 void OutputSlab::ClearSections(
   OpenCLContext& context, const PartToMake& part, std::vector<cl::Event>& events)
 {
-  const auto run = [&](const char* name, std::size_t sections, auto... arguments)
+  const auto launch = [&](const char* name, std::size_t sections, auto... arguments)
   {
     cl::Kernel kernel(GetOutputProgram(context), name);
     cl_uint i = 0;
@@ -212,10 +212,10 @@ void OutputSlab::ClearSections(
     kernel.setArg(i++, static_cast<cl_uint>(sections));
     LaunchSmallItems(context, this->Queue, kernel, sections, events);
   };
-  run("ClearSections", DEFORMVOLUME_SECTIONS * part.Bricks.size(), part.BrickList);
+  launch("ClearSections", DEFORMVOLUME_SECTIONS * part.Bricks.size(), part.BrickList);
   if (part.WithWinners)
   {
-    run("ClearWork", this->NumberOfSections);
+    launch("ClearWork", this->NumberOfSections);
   }
 }
 
@@ -398,7 +398,7 @@ OutputSlab::Counts OutputSlab::ReadCounts(
   Reserve(context, this->Parts, DEFORMVOLUME_PARTS * DEFORMVOLUME_SUMMED * sizeof(cl_ulong));
   Reserve(context, this->Summary, sizeof(words));
   const bool withBits = covered && this->BitsUsed;
-  const auto run = [&](const char* name, std::size_t groups, const auto&... arguments)
+  const auto launch = [&](const char* name, std::size_t groups, const auto&... arguments)
   {
     cl::Kernel kernel(GetOutputProgram(context), name);
     const std::size_t group = device.GetBusyGroupSize(kernel, 256);
@@ -409,10 +409,10 @@ OutputSlab::Counts OutputSlab::ReadCounts(
       context.Launch(this->Queue, kernel, cl::NDRange(group * groups), cl::NDRange(group)));
   };
   // Some drivers do not accept a null buffer, so pass another one.
-  run("SumParts", DEFORMVOLUME_PARTS, this->Counters, static_cast<cl_uint>(this->NumberOfSections),
-    withBits ? this->CoverageBits : this->Counters,
+  launch("SumParts", DEFORMVOLUME_PARTS, this->Counters,
+    static_cast<cl_uint>(this->NumberOfSections), withBits ? this->CoverageBits : this->Counters,
     cl_ulong{ withBits ? CountWords(this->NumberOfVoxels) : 0 }, this->Parts);
-  run("Summarize", 1, this->Parts, this->Summary);
+  launch("Summarize", 1, this->Parts, this->Summary);
   this->Queue.enqueueReadBuffer(this->Summary, CL_TRUE, 0, sizeof(words), words.data());
   const auto join = [&](std::size_t word)
   { return words[word] | std::uint64_t{ words[word + 1] } << 32; };

@@ -109,7 +109,7 @@ __kernel void ResampleColumns(GIVEN_PARAMETERS, __global const uint* bricks, __g
   const uint brick = BrickOfGroup(bricks, &p);
   const int3 first = FirstOfBrick(brick, &p) + FirstInBrick();
   const int beginZ = max(first.z, p.LayersBegin);
-  const int endZ = IsSectionRun(brick, SectionOfGroup(brick)) && beginZ < p.LayersEnd
+  const int endZ = IsSectionResampled(brick, SectionOfGroup(brick)) && beginZ < p.LayersEnd
     ? min(first.z + CELL_LAYERS, p.LayersEnd)
     : beginZ - 1;
   const SamplingMesh mesh = GIVEN_MESH;

@@ -165,7 +165,7 @@ void ExactResampler::WriteWinners(
   const DeformRequest& request, OutputSlab& output, bool hasLargeCells, bool claimed)
 {
   const bool someBricks = this->Volume.GetChunks().size() == 1;
-  const auto run = [&](int pass, bool all, int counter)
+  const auto runPass = [&](int pass, bool all, int counter)
   {
     std::vector<cl_uint> bricks;
     if (!all)
@@ -174,8 +174,8 @@ void ExactResampler::WriteWinners(
     }
     this->RunPass(request, output, pass, hasLargeCells, all ? nullptr : &bricks);
   };
-  run(DEFORMVOLUME_PASS_MARK, !someBricks || !claimed, DEFORMVOLUME_COUNT_TOUCHED);
-  run(DEFORMVOLUME_PASS_WINNER, !someBricks, DEFORMVOLUME_COUNT_CANDIDATES);
+  runPass(DEFORMVOLUME_PASS_MARK, !someBricks || !claimed, DEFORMVOLUME_COUNT_TOUCHED);
+  runPass(DEFORMVOLUME_PASS_WINNER, !someBricks, DEFORMVOLUME_COUNT_CANDIDATES);
 }
 
 void ExactResampler::CountFolds(const DeformRequest& request, OutputSlab& output)

@@ -728,10 +728,10 @@ __kernel void Resample(GIVEN_PARAMETERS, __global const uint* bricks, __local in
       (int)get_group_id(1) * DEFORMVOLUME_CUBOID_Y, (int)get_group_id(2) * DEFORMVOLUME_CUBOID_Z);
   // The section of the first span; the next spans follow.
   const size_t section = SectionOf(first.x, first.y, first.z, &p);
-  int spans = 0; // bits of the spans that are run
+  int spans = 0; // bits of the spans that are resampled
   for (int span = 0; span < SPANS_OF_CUBOID && HasCells(first, &p); ++span)
   {
-    spans |= IsSectionRun(brick, section + span) << span;
+    spans |= IsSectionResampled(brick, section + span) << span;
   }
   const SamplingMesh unmapped = GIVEN_MESH;
   const int width = DEFORMVOLUME_CUBOID_X + 1;

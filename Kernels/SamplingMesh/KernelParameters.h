@@ -132,8 +132,7 @@ typedef struct
   {                                                                                                \
     2, DEFORMVOLUME_BRICK_Y, DEFORMVOLUME_BRICK_Z                                                  \
   }
-// Sections of a brick, which can be run separately: spans of DEFORMVOLUME_SPAN cells on x, and
-// halves on y and z.
+// What can be resampled of a brick by itself: spans of so many cells on x, and halves on y and z.
 #define DEFORMVOLUME_SPAN 32
 #define DEFORMVOLUME_SPANS (DEFORMVOLUME_BRICK_X / DEFORMVOLUME_SPAN)
 #define DEFORMVOLUME_SECTIONS (4 * DEFORMVOLUME_SPANS)
@@ -296,8 +295,8 @@ static int3 FirstOfBrick(uint item, const KernelParameters* p)
     brick / p->BrickCount[0] / p->BrickCount[1] * DEFORMVOLUME_BRICK_Z + p->BrickOrigin[2]);
 }
 
-// Whether an entry in the list of bricks selects a section. section: number as for the counters.
-static int IsSectionRun(uint item, size_t section)
+// Whether a section of a brick is to be resampled. section: as counters number them.
+static int IsSectionResampled(uint item, size_t section)
 {
   const uint inBrick = section % DEFORMVOLUME_SECTIONS;
   const uint halves = inBrick / DEFORMVOLUME_SPANS;
