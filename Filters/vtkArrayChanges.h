@@ -24,8 +24,8 @@
  *
  * From SetArray() on, all tuples that are written have to be logged. AddTuples() marks the array as
  * modified. An array that is marked as modified by something else counts as changed in all tuples,
- * so do not call its Modified() yourself. Tuples that are appended are no matter of the log: their
- * number tells of them. A copy of an array has no log.
+ * so do not call its Modified() yourself. Appended tuples need not be logged: the number of tuples
+ * shows them. A copy of an array has no log.
  *
  * Only the last changes are kept, about 65,000 ranges. A consumer that has seen none of them looks
  * at the whole array.

@@ -85,9 +85,10 @@ public:
 
   ///@{
   /**
-   * Name of a point array of the volume, numeric and of one component, and the value in it of the
-   * voxels that are carved out, compared as a double: whole numbers up to 2^53. By CENTROID three
-   * of the four vertices of a tetrahedron have it. Default: "", which carves nothing, and 1.
+   * Set/Get the name of a point array of the volume, numeric and of one component, and the value in
+   * it of the voxels that are carved out, compared as a double: whole numbers up to 2^53. By
+   * CENTROID three of the four vertices of a tetrahedron have it. Default: "", which carves
+   * nothing, and 1.
    */
   vtkSetMacro(LabelArrayName, std::string);
   vtkGetMacro(LabelArrayName, std::string);
@@ -107,9 +108,9 @@ public:
 
   ///@{
   /**
-   * Which tetrahedra are inside: those with their centroid there, the mean of their vertices; those
-   * with any vertex there, so that nothing of the body is left; or those with all vertices there,
-   * so that nothing but the body is taken. Default: CENTROID.
+   * Set/Get which tetrahedra are inside: those with their centroid there, the mean of their
+   * vertices; those with any vertex there, so that nothing of the body is left; or those with all
+   * vertices there, so that nothing but the body is taken. Default: CENTROID.
    */
   vtkSetClampMacro(Rule, int, CENTROID, MINIMAL);
   vtkGetMacro(Rule, int);
@@ -120,14 +121,14 @@ public:
 
   ///@{
   /**
-   * Whether the surface of what is carved out passes between the voxels. On: tetrahedra with all
-   * vertices inside are switched off, whatever Rule is, and the output gets the point array
-   * "BoundaryDistance" (float, world units): how far each vertex is from the surface, negative
-   * inside, to first order and near the surface only. vtkDeformVolumeFilter interpolates it in each
-   * tetrahedron and leaves out samples where it is negative. The volume of a sphere of a radius of
-   * 20 voxels is then right to within a tenth of a percent at any sampling of the output. Of a
-   * label the surface lies halfway between voxels. An array of this name that the volume comes with
-   * is kept where it is less. Default: off.
+   * Set/Get whether the surface of what is carved out passes between the voxels. On: tetrahedra
+   * with all vertices inside are switched off, whatever Rule is, and the output gets the point
+   * array "BoundaryDistance" (float, world units): how far each vertex is from the surface,
+   * negative inside, to first order and near the surface only. vtkDeformVolumeFilter interpolates
+   * it in each tetrahedron and leaves out samples where it is negative. The volume of a sphere of a
+   * radius of 20 voxels is then right to within a tenth of a percent at any sampling of the output.
+   * Of a label the surface lies halfway between voxels. An array of this name that the volume comes
+   * with is kept where it is less. Default: off.
    */
   vtkSetMacro(SmoothBoundary, bool);
   vtkGetMacro(SmoothBoundary, bool);
@@ -145,8 +146,8 @@ public:
 
   ///@{
   /**
-   * Radius of the tool in world units, greater than 0. It counts for positions that are new.
-   * Default 1.
+   * Set/Get the radius of the tool in world units, greater than 0. It counts for positions that are
+   * new. Default 1.
    */
   vtkSetMacro(ToolRadius, double);
   vtkGetMacro(ToolRadius, double);

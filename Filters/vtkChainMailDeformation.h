@@ -16,7 +16,7 @@
  * @par Port 0, the volume:
  * vtkImageData at rest, of at least two voxels on each axis: any extent, origin, spacing and
  * direction matrix. It is asked for whole. These arrays are used, all of them optional:
- * - a point array of one component that tells the materials, see MaterialArrayName;
+ * - a point array of one component with the materials, see MaterialArrayName;
  * - a point array "Pinned" of one component, any numeric type: voxels where it is not 0 do not
  *   move;
  * - a cell array "ActiveTetrahedra" (unsigned char, one component; bit i stands for tetrahedron i
@@ -26,7 +26,7 @@
  *
  * @par Port 1, optional, the handles:
  * vtkPointSet. A point is where a handle is now. A point array "RestPosition" of three components,
- * any numeric type, tells the place in the volume at rest that it holds: all voxels within
+ * any numeric type, is the position in the volume at rest that it holds: all voxels within
  * HandleRadius of that, and at least the nearest one. Both are world coordinates. A handle
  * displaces its voxels by the difference, at most 4095 voxels on each axis. Voxels of a handle that
  * is no longer there are free, and stay until they are moved or relax.
@@ -37,8 +37,8 @@
  * processor, and on a device with memory of its own a vtkDeviceVectorArray, whose values stay there
  * until somebody asks for them. Displacements are whole multiples of 1/65536 of the spacing, along
  * the axes of the volume. The array is the same object, in the same memory, in all executions on
- * one lattice, and an execution writes only what it changes (GetChangedExtent()): who needs it as
- * it was makes a deep copy. What others write to a vtkDeviceVectorArray is gone after the next
+ * one lattice, and an execution writes only what it changes (GetChangedExtent()): make a deep copy
+ * to keep it as it is. What others write to a vtkDeviceVectorArray is gone after the next
  * execution.
  *
  * @par What cannot be done:
@@ -94,8 +94,8 @@ public:
 
   ///@{
   /**
-   * How far round its rest position a handle holds voxels, in world units, at least 0. Default 0:
-   * the nearest voxel.
+   * Set/Get how far round its rest position a handle holds voxels, in world units, at least 0.
+   * Default 0: the nearest voxel.
    */
   vtkSetClampMacro(HandleRadius, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(HandleRadius, double);
@@ -128,8 +128,8 @@ public:
 
   ///@{
   /**
-   * Name of the point array of the volume that tells the material of each voxel; any numeric type.
-   * Without ranges (AddMaterialRange()) its values are indices of materials. "": the active
+   * Set/Get the name of the point array of the volume with the material of each voxel; any numeric
+   * type. Without ranges (AddMaterialRange()) its values are indices of materials. "": the active
    * scalars where there are ranges, and DefaultMaterial everywhere where there are none. Default
    * "".
    */
@@ -150,7 +150,7 @@ public:
 
   ///@{
   /**
-   * Index of the material of voxels for which nothing else tells one. Default 1, soft tissue.
+   * Set/Get the index of the material of voxels that have no other one. Default 1, soft tissue.
    */
   vtkSetClampMacro(DefaultMaterial, int, 0, 255);
   vtkGetMacro(DefaultMaterial, int);
@@ -158,8 +158,8 @@ public:
 
   ///@{
   /**
-   * Sweeps of relaxation in an execution, over the blocks of 8 x 8 x 8 voxels that a drag has moved
-   * in the last 30 executions. Default 5, 0 to 10000.
+   * Set/Get the sweeps of relaxation in an execution, over the blocks of 8 x 8 x 8 voxels that a
+   * drag has moved in the last 30 executions. Default 5, 0 to 10000.
    */
   vtkSetClampMacro(RelaxationSweeps, int, 0, 10000);
   vtkGetMacro(RelaxationSweeps, int);
@@ -167,7 +167,7 @@ public:
 
   ///@{
   /**
-   * How much of the way to the weighted mean of its neighbours a voxel moves in a sweep of
+   * Set/Get how much of the way to the weighted mean of its neighbours a voxel moves in a sweep of
    * relaxation, 0 to 1. Links that give way less weigh more. Default 1.
    */
   vtkSetClampMacro(Elasticity, double, 0.0, 1.0);
@@ -176,7 +176,7 @@ public:
 
   ///@{
   /**
-   * Voxels that are nearer to that mean than this fraction of the spacing stay where they are, on
+   * Set/Get a fraction of the spacing: voxels that are nearer to that mean stay where they are, on
    * each axis by itself. 0: all that is pinned somewhere returns to rest in the end. Default 0, at
    * least 0.
    */
@@ -211,9 +211,9 @@ public:
 
   ///@{
   /**
-   * The OpenCL device, in the words of vtkDeformVolumeFilter::SetDevice(). Displacements are the
-   * same on all of them, to the last bit. A change of device puts all voxels to rest. Default "":
-   * the best there is.
+   * Set/Get the OpenCL device, in the words of vtkDeformVolumeFilter::SetDevice(). Displacements
+   * are the same on all of them, to the last bit. A change of device puts all voxels to rest.
+   * Default "": the best there is.
    */
   vtkSetMacro(Device, std::string);
   vtkGetMacro(Device, std::string);
@@ -221,8 +221,8 @@ public:
 
   ///@{
   /**
-   * Bytes of device memory that may be used; 0 is what the device has available. A volume that
-   * needs more is an error before anything is allocated. Default 0.
+   * Set/Get how many bytes of device memory may be used; 0 is what the device has available. A
+   * volume that needs more is an error before anything is allocated. Default 0.
    */
   vtkSetClampMacro(MemoryLimit, vtkTypeInt64, 0, VTK_TYPE_INT64_MAX);
   vtkGetMacro(MemoryLimit, vtkTypeInt64);

@@ -71,8 +71,8 @@ public:
 
   ///@{
   /**
-   * Polylines of the sheet cut along this vector: each segment becomes the parallelogram that it
-   * sweeps. World units; 0, 0, 0: polylines do not cut. Default 0, 0, 0.
+   * Set/Get the vector along which polylines of the sheet cut: each segment becomes the
+   * parallelogram that it sweeps. World units; 0, 0, 0: polylines do not cut. Default 0, 0, 0.
    */
   vtkSetVector3Macro(SweepVector, double);
   vtkGetVector3Macro(SweepVector, double);
@@ -80,18 +80,18 @@ public:
 
   ///@{
   /**
-   * Whether what is crossed is divided, in place of being switched off. On: the output gets the
-   * cell array "CutTetrahedra" (unsigned char, bit i stands for tetrahedron i of the cell) with the
-   * tetrahedra that the sheet parts into two sides, and the point array "CutDistance" (float): the
-   * signed distance of their vertices from the sheet, in voxels of what is cut, and 0 elsewhere.
-   * vtkDeformVolumeFilter draws each side of such a tetrahedron with the motion of that side, so
-   * that a cut which is not opened leaves the image as it was, and a gap lies exactly between the
-   * two moved sheets. Where the sheet ends inside a tetrahedron, that one stays whole. Where two
-   * sheets pass between two neighbouring vertices, and where a vertex lies on different sides of
-   * two sheets, tetrahedra are switched off as without SmoothCut. Sheets of one piece have one
-   * orientation; tool positions divide where they have gone on from each other. A smooth cut that
-   * the volume comes with is joined. It matters for edits that follow; another value has the sheet
-   * cut anew. Default: off.
+   * Set/Get whether what is crossed is divided, in place of being switched off. On: the output gets
+   * the cell array "CutTetrahedra" (unsigned char, bit i stands for tetrahedron i of the cell) with
+   * the tetrahedra that the sheet parts into two sides, and the point array "CutDistance" (float):
+   * the signed distance of their vertices from the sheet, in voxels of what is cut, and 0
+   * elsewhere. vtkDeformVolumeFilter draws each side of such a tetrahedron with the motion of that
+   * side, so that a cut which is not opened leaves the image as it was, and a gap lies exactly
+   * between the two moved sheets. Where the sheet ends inside a tetrahedron, that one stays whole.
+   * Where two sheets pass between two neighbouring vertices, and where a vertex lies on different
+   * sides of two sheets, tetrahedra are switched off as without SmoothCut. Sheets of one piece have
+   * one orientation; tool positions divide where they have gone on from each other. A smooth cut
+   * that the volume comes with is joined. It matters for edits that follow; with another value the
+   * sheet cuts again. Default: off.
    */
   vtkSetMacro(SmoothCut, bool);
   vtkGetMacro(SmoothCut, bool);

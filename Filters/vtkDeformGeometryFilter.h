@@ -117,7 +117,8 @@ public:
 
   ///@{
   /**
-   * Factor on the displacements of port 1, as in vtkWarpVector. Not used with port 2. Default 1.
+   * Set/Get a factor on the displacements of port 1, as in vtkWarpVector. Not used with port 2.
+   * Default 1.
    */
   vtkSetMacro(DisplacementScale, double);
   vtkGetMacro(DisplacementScale, double);
@@ -125,8 +126,8 @@ public:
 
   ///@{
   /**
-   * Whether the points of the mesh on port 1 are deformed already, with the displacements that led
-   * there beside them. See vtkDeformVolumeFilter. Default: off.
+   * Set/Get whether the points of the mesh on port 1 are deformed already, with the displacements
+   * that led there beside them. See vtkDeformVolumeFilter. Default: off.
    */
   vtkSetMacro(PointsAreDeformed, bool);
   vtkGetMacro(PointsAreDeformed, bool);
@@ -157,7 +158,7 @@ public:
 
   ///@{
   /**
-   * What happens to points outside the deformation mesh or field.
+   * Set/Get what happens to points outside the deformation mesh or field.
    * - DISCARD: they are nowhere in the deformed volume. They stay where they are, and
    *   vtkValidPointMask is 0 there.
    * - EXTRAPOLATE: they follow the affine map of the tetrahedron with the closest face of the
@@ -179,11 +180,12 @@ public:
 
   ///@{
   /**
-   * With OutsideMode KEEP, the distance from the mesh or the field within which the displacement
-   * fades to zero, in world units. A point at the distance d is displaced as the closest point of
-   * the boundary, times 1 - 3 s^2 + 2 s^3 with s = d / FadeDistance. 0: no point outside moves.
-   * Negative, infinite and NaN are errors at the next update. A warning says where points outside
-   * take a displacement of over two thirds of it, with which space may fold. Default: 0.
+   * Set/Get, for OutsideMode KEEP, the distance from the mesh or the field within which the
+   * displacement fades to zero, in world units. A point at the distance d is displaced as the
+   * closest point of the boundary, times 1 - 3 s^2 + 2 s^3 with s = d / FadeDistance. 0: no point
+   * outside moves. Negative, infinite and NaN are errors at the next update. A warning says where
+   * points outside take a displacement of over two thirds of it, with which space may fold.
+   * Default: 0.
    */
   vtkSetMacro(FadeDistance, double);
   vtkGetMacro(FadeDistance, double);
@@ -191,8 +193,8 @@ public:
 
   ///@{
   /**
-   * Whether all point arrays of three components of type float or double are transformed as the
-   * active vectors are, but for normals and texture coordinates. Default: off.
+   * Set/Get whether all point arrays of three components of type float or double are transformed as
+   * the active vectors are, but for normals and texture coordinates. Default: off.
    */
   vtkSetMacro(TransformAllInputVectors, bool);
   vtkGetMacro(TransformAllInputVectors, bool);

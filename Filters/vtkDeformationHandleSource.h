@@ -36,7 +36,8 @@ public:
 
   ///@{
   /**
-   * The place of the body at rest that the handle holds, in world coordinates. Default: 0, 0, 0.
+   * Set/Get the position in the body at rest that the handle holds, in world coordinates. Default:
+   * 0, 0, 0.
    */
   vtkSetVector3Macro(RestPosition, double);
   vtkGetVector3Macro(RestPosition, double);
@@ -44,7 +45,7 @@ public:
 
   ///@{
   /**
-   * Where the handle is now, in world coordinates. Default: 0, 0, 0.
+   * Set/Get where the handle is now, in world coordinates. Default: 0, 0, 0.
    */
   vtkSetVector3Macro(Position, double);
   vtkGetVector3Macro(Position, double);

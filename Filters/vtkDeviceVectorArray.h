@@ -64,7 +64,7 @@ public:
 
   ///@{
   /**
-   * The OpenCL device that values of the host are taken to, in the words of
+   * Set/Get the OpenCL device that values of the host are taken to, in the words of
    * vtkDeformVolumeFilter::SetDevice(). Default: "", the best one. Values that have been made on a
    * device stay there.
    */

@@ -44,20 +44,21 @@
  * The mesh at rest, with the point array "Displacement" (floats, three components, in the units of
  * the points), which is also the active vectors: a vtkFloatArray on a processor, and on a device
  * with memory of its own a vtkDeviceVectorArray. It is the same object, in the same memory, in all
- * executions for one mesh: who needs it as it was makes a deep copy. With ElementResults there are
- * cell arrays besides. The first piece is the whole mesh, all others are empty. Points that are
+ * executions for one mesh: make a deep copy to keep it as it is. With ElementResults there are cell
+ * arrays besides. The first piece is the whole mesh, all others are empty. Points that are
  * appended, those of vtkFiniteElementDeformation and the copies of cuts, follow those of the input.
  *
  * @par Time:
  * Where a time is asked for (UpdateTimeStep(), ParaView's play button), the simulation goes on to
- * it in frames of FrameTime. Where it is earlier than the last one, the simulation starts anew and
- * goes on to it with the handles and loads of now. Handles go straight to where they are wanted in
- * the first frame. Where no time is asked for, see the subclasses. The output has the time range
- * from 0 to EndTime, unless the inputs have times.
+ * it in frames of FrameTime. Where it is earlier than the last one, the simulation restarts from
+ * rest and goes on to it with the current handles and loads. Handles go straight to where they are
+ * wanted in the first frame. Where no time is asked for, see the subclasses. The output has the
+ * time range from 0 to EndTime, unless the inputs have times.
  *
  * @par Changes:
- * Where the rest mesh gets other points or cells, the simulation starts anew, with a warning. With
- * other materials, fixed or sliding nodes, forces or prescribed displacements it goes on.
+ * Where the rest mesh gets other points or cells, the simulation restarts from rest, with a
+ * warning. With other materials, fixed or sliding nodes, forces or prescribed displacements it goes
+ * on.
  *
  * @par Abort:
  * An execution that is aborted ends within some 50 ms, with an empty output; what was simulated is
@@ -122,8 +123,8 @@ public:
 
   ///@{
   /**
-   * Polylines of the sheet cut along this vector: each segment becomes the parallelogram that it
-   * sweeps. World units; 0, 0, 0: polylines do not cut. Default 0, 0, 0.
+   * Set/Get the vector along which polylines of the sheet cut: each segment becomes the
+   * parallelogram that it sweeps. World units; 0, 0, 0: polylines do not cut. Default 0, 0, 0.
    */
   vtkSetVector3Macro(SweepVector, double);
   vtkGetVector3Macro(SweepVector, double);
@@ -149,8 +150,8 @@ public:
 
   ///@{
   /**
-   * How far round its rest position a handle holds nodes, in the units of the mesh, at least 0.
-   * Default 0: the nearest node.
+   * Set/Get how far round its rest position a handle holds nodes, in the units of the mesh, at
+   * least 0. Default 0: the nearest node.
    */
   vtkSetClampMacro(HandleRadius, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(HandleRadius, double);
@@ -158,7 +159,7 @@ public:
 
   ///@{
   /**
-   * The acceleration of gravity, in m/s^2, along the axes of the world. Default 0, 0, 0.
+   * Set/Get the acceleration of gravity, in m/s^2, along the axes of the world. Default 0, 0, 0.
    */
   vtkSetVector3Macro(Gravity, double);
   vtkGetVector3Macro(Gravity, double);
@@ -166,8 +167,8 @@ public:
 
   ///@{
   /**
-   * The Young modulus, in Pa, of tetrahedra that no cell array says one for; greater than 0.
-   * Default 10000, a soft tissue.
+   * Set/Get the Young modulus, in Pa, of tetrahedra that no cell array says one for; greater than
+   * 0. Default 10000, a soft tissue.
    */
   vtkSetMacro(YoungModulus, double);
   vtkGetMacro(YoungModulus, double);
@@ -175,7 +176,7 @@ public:
 
   ///@{
   /**
-   * The Poisson ratio of these, 0 or more and less than 0.495. Default 0.3.
+   * Set/Get the Poisson ratio of these, 0 or more and less than 0.495. Default 0.3.
    */
   vtkSetMacro(PoissonRatio, double);
   vtkGetMacro(PoissonRatio, double);
@@ -183,7 +184,7 @@ public:
 
   ///@{
   /**
-   * The density of these, in kg/m^3, greater than 0. Default 1000.
+   * Set/Get the density of these, in kg/m^3, greater than 0. Default 1000.
    */
   vtkSetMacro(Density, double);
   vtkGetMacro(Density, double);
@@ -248,8 +249,8 @@ public:
 
   ///@{
   /**
-   * The unit of the mesh, the handles and the displacements: MILLIMETRE (default), as in most
-   * medical images, or METRE. A body of less than 1 mm or more than 10 m is warned of.
+   * Set/Get the unit of the mesh, the handles and the displacements: MILLIMETRE (default), as in
+   * most medical images, or METRE. A body of less than 1 mm or more than 10 m is warned of.
    */
   vtkSetClampMacro(LengthUnit, int, METRE, MILLIMETRE);
   vtkGetMacro(LengthUnit, int);
@@ -259,7 +260,7 @@ public:
 
   ///@{
   /**
-   * How long a frame is, in s, at least 1e-6. Default 1/60.
+   * Set/Get how long a frame is, in s, at least 1e-6. Default 1/60.
    */
   vtkSetClampMacro(FrameTime, double, 1e-6, VTK_DOUBLE_MAX);
   vtkGetMacro(FrameTime, double);
@@ -267,8 +268,9 @@ public:
 
   ///@{
   /**
-   * The end of the time range of the output, in s, where the inputs have no times. A filter behind
-   * then asks for a time in each update. Default 0: there is no time range. In ParaView it is 1.
+   * Set/Get the end of the time range of the output, in s, where the inputs have no times. A filter
+   * behind then asks for a time in each update. Default 0: there is no time range. In ParaView it
+   * is 1.
    */
   vtkSetClampMacro(EndTime, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(EndTime, double);
@@ -276,11 +278,11 @@ public:
 
   ///@{
   /**
-   * Whether the output has cell arrays of doubles with what each tetrahedron undergoes: "Stress"
-   * (Cauchy, in Pa, the components xx yy zz xy yz xz), "StrainEnergyDensity" (J/m^3 of the volume
-   * at rest) and "DeformationGradientDeterminant" (how many times its volume at rest it has; less
-   * than 0 where it is inside out). A flat tetrahedron, of a determinant within 1e-12 of 0, has no
-   * volume for a stress: its "Stress" is 0. Default: off.
+   * Set/Get whether the output has cell arrays of doubles with what each tetrahedron undergoes:
+   * "Stress" (Cauchy, in Pa, the components xx yy zz xy yz xz), "StrainEnergyDensity" (J/m^3 of the
+   * volume at rest) and "DeformationGradientDeterminant" (how many times its volume at rest it has;
+   * less than 0 where it is inside out). A flat tetrahedron, of a determinant within 1e-12 of 0,
+   * has no volume for a stress: its "Stress" is 0. Default: off.
    */
   vtkSetMacro(ElementResults, bool);
   vtkGetMacro(ElementResults, bool);

@@ -86,12 +86,12 @@ public:
 
   ///@{
   /**
-   * The strain energy. STABLE_NEO_HOOKEAN (default): for soft tissue. It keeps volumes at large
-   * strain, and comes back from where elements are inside out. COROTATIONAL: linear elasticity in a
-   * frame that turns with the material, as published where the Poisson ratio is at most 0.4. Above,
-   * the part of lambda that is more than 4 mu acts on the volume, as in STABLE_NEO_HOOKEAN. The
-   * rest does not keep volumes at large strain. Small strains of both are those of linear
-   * elasticity.
+   * Set/Get the strain energy. STABLE_NEO_HOOKEAN (default): for soft tissue. It keeps volumes at
+   * large strain, and comes back from where elements are inside out. COROTATIONAL: linear
+   * elasticity in a frame that turns with the material, as published where the Poisson ratio is at
+   * most 0.4. Above, the part of lambda that is more than 4 mu acts on the volume, as in
+   * STABLE_NEO_HOOKEAN. The rest does not keep volumes at large strain. Small strains of both are
+   * those of linear elasticity.
    */
   vtkSetClampMacro(MaterialModel, int, STABLE_NEO_HOOKEAN, COROTATIONAL);
   vtkGetMacro(MaterialModel, int);
@@ -110,9 +110,10 @@ public:
 
   ///@{
   /**
-   * CONVERGED (default): equilibrium, to a GetRelativeResidual() of 1e-6. INTERACTIVE: one or two
-   * steps towards equilibrium, for a body that is moved live, until GetRelativeResidual() is at
-   * most 0.01 where handles have moved, else 0.001; the next execution goes on from what is left.
+   * Set/Get how far an execution goes. CONVERGED (default): equilibrium, to a GetRelativeResidual()
+   * of 1e-6. INTERACTIVE: one or two steps towards equilibrium, for a body that is moved live,
+   * until GetRelativeResidual() is at most 0.01 where handles have moved, else 0.001; the next
+   * execution goes on from what is left.
    */
   vtkSetClampMacro(Mode, int, INTERACTIVE, CONVERGED);
   vtkGetMacro(Mode, int);

@@ -46,7 +46,8 @@ public:
 
   ///@{
   /**
-   * Nodes on each axis, at least 2; with EqualSpacing, at most as many. Default: 13, 13, 13.
+   * Set/Get the number of nodes on each axis, at least 2; with EqualSpacing, at most as many.
+   * Default: 13, 13, 13.
    */
   vtkSetVector3Macro(NumberOfNodes, int);
   vtkGetVector3Macro(NumberOfNodes, int);
@@ -54,11 +55,11 @@ public:
 
   ///@{
   /**
-   * Whether the cells are cubes, as vtkMassSpringDeformation needs them and as tetrahedra are best.
-   * The edge of a cube is then the longest of the distances that NumberOfNodes gives on the axes.
-   * Axes on which that takes fewer nodes get fewer, and the lattice reaches beyond the box or the
-   * volume there, by less than half a cell and as far on both sides. When off, each axis has
-   * NumberOfNodes, and the lattice ends where the box ends. Where the axes of a volume are not
+   * Set/Get whether the cells are cubes, as vtkMassSpringDeformation needs them and as tetrahedra
+   * are best. The edge of a cube is then the longest of the distances that NumberOfNodes gives on
+   * the axes. Axes on which that takes fewer nodes get fewer, and the lattice reaches beyond the
+   * box or the volume there, by less than half a cell and as far on both sides. When off, each axis
+   * has NumberOfNodes, and the lattice ends where the box ends. Where the axes of a volume are not
    * perpendicular, edges are equally long, but cells are no cubes. Default: on.
    */
   vtkSetMacro(EqualSpacing, bool);
@@ -75,8 +76,8 @@ public:
 
   ///@{
   /**
-   * The box in world coordinates (x min, x max, y min, y max, z min, z max) that the lattice covers
-   * when no volume is connected. Default: -0.5, 0.5, -0.5, 0.5, -0.5, 0.5.
+   * Set/Get the box in world coordinates (x min, x max, y min, y max, z min, z max) that the
+   * lattice covers when no volume is connected. Default: -0.5, 0.5, -0.5, 0.5, -0.5, 0.5.
    */
   vtkSetVector6Macro(Bounds, double);
   vtkGetVector6Macro(Bounds, double);
@@ -84,9 +85,9 @@ public:
 
   ///@{
   /**
-   * How far the lattice reaches beyond the box or the volume on each side at least, in world units,
-   * at least 0. Default 0: without EqualSpacing, the outermost voxel centres lie on the lattice's
-   * boundary.
+   * Set/Get how far the lattice reaches beyond the box or the volume on each side at least, in
+   * world units, at least 0. Default 0: without EqualSpacing, the outermost voxel centres lie on
+   * the lattice's boundary.
    */
   vtkSetClampMacro(Margin, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(Margin, double);

@@ -20,7 +20,7 @@
  *
  * @par Tetrahedra inside out:
  * The springs of a tetrahedron have no force that turns it back when it is inside out. A warning
- * tells how many there are, when there were none before (GetNumberOfInvertedTetrahedra()).
+ * gives their number, when there were none before (GetNumberOfInvertedTetrahedra()).
  *
  * @par Errors:
  * Those of vtkElasticDeformation; a tetrahedron that is not a fifth of a cube of the same size as
@@ -56,8 +56,8 @@ public:
 
   ///@{
   /**
-   * The longest time step, in s; 0: three quarters of the stable one. A frame has as many equal
-   * steps as it needs. Default 0, at least 0.
+   * Set/Get the longest time step, in s; 0: three quarters of the stable one. A frame has as many
+   * equal steps as it needs. Default 0, at least 0.
    */
   vtkSetClampMacro(TimeStep, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(TimeStep, double);
@@ -65,8 +65,8 @@ public:
 
   ///@{
   /**
-   * How fast velocities die away, in 1/s: after that time they are 1/e of what they were. Default
-   * 2, at least 0.
+   * Set/Get how fast velocities die away, in 1/s: after that time they are 1/e of what they were.
+   * Default 2, at least 0.
    */
   vtkSetClampMacro(Damping, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(Damping, double);
@@ -74,8 +74,8 @@ public:
 
   ///@{
   /**
-   * The OpenCL device, in the words of vtkDeformVolumeFilter::SetDevice(). A change of device puts
-   * the body to rest. Default "": the best there is.
+   * Set/Get the OpenCL device, in the words of vtkDeformVolumeFilter::SetDevice(). A change of
+   * device puts the body to rest. Default "": the best there is.
    */
   vtkSetMacro(Device, std::string);
   vtkGetMacro(Device, std::string);
@@ -83,8 +83,8 @@ public:
 
   ///@{
   /**
-   * Bytes of device memory that may be used; 0 is what the device has available. A mesh that needs
-   * more is an error before anything is allocated. Default 0.
+   * Set/Get how many bytes of device memory may be used; 0 is what the device has available. A mesh
+   * that needs more is an error before anything is allocated. Default 0.
    */
   vtkSetClampMacro(MemoryLimit, vtkTypeInt64, 0, VTK_TYPE_INT64_MAX);
   vtkGetMacro(MemoryLimit, vtkTypeInt64);

@@ -19,7 +19,7 @@
  *
  * @par Port 1, the volume:
  * vtkImageData of at least two voxels on each axis: any extent, origin, spacing and direction
- * matrix. It is asked for whole. Its point array of one component and any numeric type tells the
+ * matrix. It is asked for whole. Its point array of one component and any numeric type has the
  * materials, see MaterialArrayName. Points that vtkGhostType marks as hidden or duplicate do not
  * count.
  *
@@ -115,10 +115,10 @@ public:
 
   ///@{
   /**
-   * Name of the point array of the volume that tells the material of each voxel; any numeric type.
-   * Without ranges (AddMaterialRange()) its values are indices of materials, as labels are. "": the
-   * active scalars where there are ranges, and DefaultMaterial everywhere where there are none.
-   * Default "".
+   * Set/Get the name of the point array of the volume with the material of each voxel; any numeric
+   * type. Without ranges (AddMaterialRange()) its values are indices of materials, as labels are.
+   * "": the active scalars where there are ranges, and DefaultMaterial everywhere where there are
+   * none. Default "".
    */
   vtkSetMacro(MaterialArrayName, std::string);
   vtkGetMacro(MaterialArrayName, std::string);
@@ -137,8 +137,8 @@ public:
 
   ///@{
   /**
-   * Index of the material of voxels for which nothing else tells one, and of tetrahedra outside the
-   * volume. Default 1, soft tissue.
+   * Set/Get the index of the material of voxels that have no other one, and of tetrahedra outside
+   * the volume. Default 1, soft tissue.
    */
   vtkSetClampMacro(DefaultMaterial, int, 0, 255);
   vtkGetMacro(DefaultMaterial, int);

@@ -35,7 +35,8 @@
  * @par Output:
  * vtkUnstructuredGrid in world coordinates: points in double precision, vtkTetra cells, all with
  * positive volume, no data arrays. The first piece is the whole mesh, all others are empty: with
- * several ranks, only the first of them runs TetGen. What is told of an execution is told there.
+ * several ranks, only the first of them runs TetGen. Results and warnings of an execution are those
+ * of that rank.
  *
  * @par Errors:
  * No body at the isovalue or with the labels; a volume of one slice; a surface that is empty, open,
@@ -100,8 +101,8 @@ public:
 
   ///@{
   /**
-   * What the body of a volume is: the voxels with at least the isovalue, or those with one of the
-   * labels. Default: ISOSURFACE.
+   * Set/Get what the body of a volume is: the voxels with at least the isovalue, or those with one
+   * of the labels. Default: ISOSURFACE.
    */
   vtkSetClampMacro(BodyMode, int, ISOSURFACE, LABELS);
   vtkGetMacro(BodyMode, int);
@@ -111,8 +112,8 @@ public:
 
   ///@{
   /**
-   * Whether the isovalue is chosen by the volume's histogram (Otsu's method, which separates two
-   * classes of voxels best) rather than by Isovalue. Default: on.
+   * Set/Get whether the isovalue is chosen by the volume's histogram (Otsu's method, which
+   * separates two classes of voxels best) rather than by Isovalue. Default: on.
    */
   vtkSetMacro(AutomaticIsovalue, bool);
   vtkGetMacro(AutomaticIsovalue, bool);
@@ -121,7 +122,7 @@ public:
 
   ///@{
   /**
-   * The isovalue when AutomaticIsovalue is off, in the array's units. Default 0.
+   * Set/Get the isovalue when AutomaticIsovalue is off, in the array's units. Default 0.
    */
   vtkSetMacro(Isovalue, double);
   vtkGetMacro(Isovalue, double);
@@ -155,9 +156,9 @@ public:
 
   ///@{
   /**
-   * Pieces of at most that many voxels are specks, which are not meshed; 0: nothing is a speck. A
-   * body of specks only is meshed all the same. Volumes only. Default 26, one less than a cube of 3
-   * x 3 x 3 voxels has; at least 0.
+   * Set/Get the size of a speck: pieces of at most that many voxels are not meshed; 0: nothing is a
+   * speck. A body of specks only is meshed all the same. Volumes only. Default 26, one less than a
+   * cube of 3 x 3 x 3 voxels has; at least 0.
    */
   vtkSetClampMacro(SpeckSize, int, 0, VTK_INT_MAX);
   vtkGetMacro(SpeckSize, int);
@@ -165,9 +166,9 @@ public:
 
   ///@{
   /**
-   * Length of the edges of the tetrahedra, in world units; 0 is a twentieth of the diagonal of the
-   * input's bounding box. The surface does not follow finer detail, but encloses it. Default 0, at
-   * least 0.
+   * Set/Get the length of the edges of the tetrahedra, in world units; 0 is a twentieth of the
+   * diagonal of the input's bounding box. The surface does not follow finer detail, but encloses
+   * it. Default 0, at least 0.
    */
   vtkSetClampMacro(TargetEdgeLength, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(TargetEdgeLength, double);
@@ -175,8 +176,9 @@ public:
 
   ///@{
   /**
-   * How far the mesh reaches beyond the body, in target edge lengths, so that the body's skin lies
-   * well inside the mesh and is deformed with it. Volumes only. Default 0.5, from 0 to 10.
+   * Set/Get how far the mesh reaches beyond the body, in target edge lengths, so that the body's
+   * skin lies well inside the mesh and is deformed with it. Volumes only. Default 0.5, from 0 to
+   * 10.
    */
   vtkSetClampMacro(Margin, double, 0.0, 10.0);
   vtkGetMacro(Margin, double);
@@ -184,8 +186,9 @@ public:
 
   ///@{
   /**
-   * Iterations of windowed-sinc smoothing of a volume's surface, 0: none. Where smoothing would
-   * make the surface intersect itself, there is less of it. Default 20, at most 1000.
+   * Set/Get the iterations of windowed-sinc smoothing of a volume's surface, 0: none. Where
+   * smoothing would make the surface intersect itself, there is less of it. Default 20, at most
+   * 1000.
    */
   vtkSetClampMacro(SmoothingIterations, int, 0, 1000);
   vtkGetMacro(SmoothingIterations, int);
@@ -193,9 +196,9 @@ public:
 
   ///@{
   /**
-   * Whether a surface with triangles finer than the target edge length is decimated to it. Where
-   * that would make the surface intersect itself, it is meshed undecimated (the one of a volume
-   * with less detail). Default: on.
+   * Set/Get whether a surface with triangles finer than the target edge length is decimated to it.
+   * Where that would make the surface intersect itself, it is meshed undecimated (the one of a
+   * volume with less detail). Default: on.
    */
   vtkSetMacro(Decimation, bool);
   vtkGetMacro(Decimation, bool);
@@ -219,9 +222,9 @@ public:
 
   ///@{
   /**
-   * Quality of the tetrahedra: the greatest ratio of the radius of the circumscribed sphere to the
-   * shortest edge that TetGen aims at inside the body (0.612 is a regular tetrahedron). The lower,
-   * the more tetrahedra. Default 1.414, from 1 to 100.
+   * Set/Get the quality of the tetrahedra: the greatest ratio of the radius of the circumscribed
+   * sphere to the shortest edge that TetGen aims at inside the body (0.612 is a regular
+   * tetrahedron). The lower, the more tetrahedra. Default 1.414, from 1 to 100.
    */
   vtkSetClampMacro(RadiusEdgeRatio, double, 1.0, 100.0);
   vtkGetMacro(RadiusEdgeRatio, double);
@@ -229,7 +232,8 @@ public:
 
   ///@{
   /**
-   * Seconds that a run of TetGen may take; an update may take several. Default 60, at least 0.001.
+   * Set/Get how many seconds a run of TetGen may take; an update may take several. Default 60, at
+   * least 0.001.
    */
   vtkSetClampMacro(TimeLimit, double, 0.001, VTK_DOUBLE_MAX);
   vtkGetMacro(TimeLimit, double);
@@ -237,9 +241,9 @@ public:
 
   ///@{
   /**
-   * The TetGen program: a path, or a name that is looked for on PATH. "", the default, is what the
-   * environment variable DEFORMVOLUME_TETGEN says, or else the one found when this library was
-   * built, or else "tetgen" on PATH.
+   * Set/Get the TetGen program: a path, or a name that is looked for on PATH. "", the default, is
+   * what the environment variable DEFORMVOLUME_TETGEN says, or else the one found when this library
+   * was built, or else "tetgen" on PATH.
    */
   vtkSetMacro(TetGenExecutable, std::string);
   vtkGetMacro(TetGenExecutable, std::string);

@@ -33,8 +33,8 @@
  * @par Edits:
  * Undo() switches on again what the last edit has switched off, bit for bit, as far as no other
  * edit has. Edits are forgotten when voxels lie elsewhere than before (extent, origin, spacing or
- * direction); everything then edits anew. They stay when values or "ActiveTetrahedra" of the volume
- * change.
+ * direction); everything then edits again. They stay when values or "ActiveTetrahedra" of the
+ * volume change.
  *
  * @par Abort:
  * An execution that is aborted ends with an empty output; the edits are as they were, and the next
@@ -80,9 +80,9 @@ public:
 
   ///@{
   /**
-   * Whether an edit stays when what has made it changes: a sheet, a function, a surface or a label.
-   * Off: the new edit takes the place of the old one, as when a plane is moved about. Edits by the
-   * tool always stay. Default: off.
+   * Set/Get whether an edit stays when what has made it changes: a sheet, a function, a surface or
+   * a label. Off: the new edit takes the place of the old one, as when a plane is moved about.
+   * Edits by the tool always stay. Default: off.
    */
   vtkSetMacro(Accumulate, bool);
   vtkGetMacro(Accumulate, bool);
@@ -107,14 +107,14 @@ public:
   ///@}
 
   /**
-   * Forget all edits: the volume is as it comes. What is connected or set edits again when it
+   * Forget all edits: the output is the input. What is connected or set edits again when it
    * changes, the tool when it moves on.
    */
   void Reset();
 
   ///@{
   /**
-   * Factor on the displacements of port 2, as in vtkDeformVolumeFilter. Default 1.
+   * Set/Get a factor on the displacements of port 2, as in vtkDeformVolumeFilter. Default 1.
    */
   vtkSetMacro(DisplacementScale, double);
   vtkGetMacro(DisplacementScale, double);
@@ -122,8 +122,8 @@ public:
 
   ///@{
   /**
-   * Whether the points of a mesh on port 2 are deformed already, as in vtkDeformVolumeFilter.
-   * Default: off.
+   * Set/Get whether the points of a mesh on port 2 are deformed already, as in
+   * vtkDeformVolumeFilter. Default: off.
    */
   vtkSetMacro(PointsAreDeformed, bool);
   vtkGetMacro(PointsAreDeformed, bool);
@@ -142,9 +142,9 @@ public:
 
   ///@{
   /**
-   * Where the voxels outside the deformation are, as in vtkDeformVolumeFilter: nowhere, so that no
-   * edit takes them, where the nearest tetrahedron takes them, or where they are at rest, but for
-   * what fades within FadeDistance. Default: DISCARD.
+   * Set/Get where the voxels outside the deformation are, as in vtkDeformVolumeFilter: nowhere, so
+   * that no edit takes them, where the nearest tetrahedron takes them, or where they are at rest,
+   * but for what fades within FadeDistance. Default: DISCARD.
    */
   vtkSetClampMacro(OutsideMode, int, DISCARD, KEEP);
   vtkGetMacro(OutsideMode, int);
@@ -155,7 +155,7 @@ public:
 
   ///@{
   /**
-   * With OutsideMode KEEP, the distance within which the displacement fades to zero, as in
+   * Set/Get, for OutsideMode KEEP, the distance within which the displacement fades to zero, as in
    * vtkDeformVolumeFilter. Default: 0.
    */
   vtkSetMacro(FadeDistance, double);
@@ -164,11 +164,11 @@ public:
 
   ///@{
   /**
-   * Whether the output's cell array vtkGhostType hides the cells that have a tetrahedron that is
-   * switched off or divided, in addition to those that the volume's array hides. Renderers and most
-   * filters leave hidden cells out, so that edits show in the volume itself, to within a cell.
-   * These cells have the bit 128 as well, by which vtkDeformVolumeFilter knows that they are not
-   * hidden from it. Default: off.
+   * Set/Get whether the output's cell array vtkGhostType hides the cells that have a tetrahedron
+   * that is switched off or divided, in addition to those that the volume's array hides. Renderers
+   * and most filters leave hidden cells out, so that edits show in the volume itself, to within a
+   * cell. These cells have the bit 128 as well, by which vtkDeformVolumeFilter knows that they are
+   * not hidden from it. Default: off.
    */
   vtkSetMacro(BlankCells, bool);
   vtkGetMacro(BlankCells, bool);

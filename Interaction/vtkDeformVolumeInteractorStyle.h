@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkDeformVolumeInteractorStyle
- * @brief   the tools of vtkDeformVolumeSession, in the hand of somebody at a window
+ * @brief   mouse and keyboard tools of vtkDeformVolumeSession
  *
  * vtkDeformVolumeInteractorStyle has a mouse and keys drive a session: it finds what is visible
  * under the cursor, turns movements into events of the session, and shows each new output. Put it
@@ -125,8 +125,8 @@ public:
 
   ///@{
   /**
-   * How deep a sheet cuts below what is visible, and the radius of the sphere that carves, in world
-   * units. 0 is a tenth and a fortieth of the diagonal of the output. Default 0.
+   * Set/Get how deep a sheet cuts below what is visible, and the radius of the sphere that carves,
+   * in world units. 0 is a tenth and a fortieth of the diagonal of the output. Default 0.
    */
   vtkSetClampMacro(CutDepth, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(CutDepth, double);
@@ -146,7 +146,7 @@ public:
 
   ///@{
   /**
-   * What counts as visible. Default OPACITY.
+   * Set/Get what counts as visible. Default OPACITY.
    */
   vtkSetClampMacro(PickMode, int, OPACITY, SLICES);
   vtkGetMacro(PickMode, int);
@@ -154,7 +154,7 @@ public:
 
   ///@{
   /**
-   * The value from which on voxels are visible with ISOSURFACE. Default 0.
+   * Set/Get the value from which on voxels are visible with ISOSURFACE. Default 0.
    */
   vtkSetMacro(Isovalue, double);
   vtkGetMacro(Isovalue, double);
@@ -199,7 +199,8 @@ public:
 
   ///@{
   /**
-   * Whether the keys are shown, as h does, and what is shown below them. Default off, and "".
+   * Set/Get whether the keys are shown, as h does, and what is shown below them. Default off, and
+   * "".
    */
   virtual void SetShowHelp(bool show);
   vtkGetMacro(ShowHelp, bool);

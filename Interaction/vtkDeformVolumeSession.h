@@ -36,7 +36,7 @@
  * @par Output:
  * vtkImageData as vtkDeformVolumeFilter makes it, with the bounds of the volume at rest and
  * Padding. Each output is an object of its own, which the session never changes as long as somebody
- * holds it; memory that is let go serves again.
+ * holds it; memory that nobody holds is used again.
  *
  * @par Files:
  * A session is saved as the record of its events, in XML with a version, a checksum, and a hash of
