@@ -33,6 +33,7 @@ struct BodyPieces
   std::vector<std::pair<std::int32_t, std::int32_t>> SharedNodes;
   /// The same pairs as a piece and a node, sorted by pieces.
   std::vector<std::pair<std::int32_t, std::int32_t>> SharedByPieces;
+  /// The number of pieces.
   std::int32_t NumberOfPieces = 0;
 };
 /// Finds the pieces of a body. `watch` of the engine is polled for cancellation.
@@ -43,6 +44,7 @@ DEFORMVOLUME_EXPORT BodyPieces FindPieces(const ElasticBody& body, Watch* watch 
 /// pieces.
 struct FollowingPiece
 {
+  /// The number of the piece.
   std::int32_t Piece;
   /// A supporting node of the piece.
   std::int32_t First;

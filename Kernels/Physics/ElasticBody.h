@@ -70,10 +70,12 @@ struct ElasticBody
   /// coordinates may come from floats.
   static constexpr double LargestSine = 1e-3;
 
+  /// The material of a tetrahedron.
   const ElasticMaterial& GetMaterial(std::size_t tetrahedron) const
   {
     return this->Materials[this->Materials.size() == 1 ? 0 : tetrahedron];
   }
+  /// Whether a node is fixed.
   bool IsFixed(std::size_t node) const { return !this->Fixed.empty() && this->Fixed[node] != 0; }
 
   /// Calls take(node) for all nodes of a tetrahedron: the corners first, then the mid-side nodes.
@@ -97,6 +99,7 @@ struct ElasticBody
 /// A node that a handle moves.
 struct HeldNode
 {
+  /// The number of the node.
   std::int32_t Node = 0;
   /// The prescribed displacement of the node, in metres.
   glm::dvec3 Displacement{ 0.0 };
