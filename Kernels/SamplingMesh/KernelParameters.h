@@ -112,8 +112,8 @@ typedef struct
 // the first pass. So no voxel depends on other voxels, nor on how the output is divided.
 #define DEFORMVOLUME_PASS_DIRECT 0 // write, and count the writes
 #define DEFORMVOLUME_PASS_OWNERS 1 // also find the winners of voxels that several cells write
-#define DEFORMVOLUME_PASS_MARK                                                                     \
-  2 // find the winners among all tetrahedra that hold an unsettled voxel
+// Find the winners among all tetrahedra that hold an unsettled voxel.
+#define DEFORMVOLUME_PASS_MARK 2
 #define DEFORMVOLUME_PASS_WINNER 3 // write the voxels of which this tetrahedron is the winner
 #define DEFORMVOLUME_PASS_COUNT 4  // count the tetrahedra that write each voxel; write nothing
 // Whether all tetrahedra that hold a voxel take part, not only the tetrahedron that writes it.
@@ -160,8 +160,8 @@ typedef struct
 #define DEFORMVOLUME_COUNT_MISSING 3 // cells on the border with flat or omitted tetrahedra
 #define DEFORMVOLUME_COUNT_ASSUMED 4 // nonzero if the kernel assumed that there are no such cells
 #define DEFORMVOLUME_COUNT_CANDIDATES 5 // voxels that cells may have won
-#define DEFORMVOLUME_COUNT_TOUCHED                                                                 \
-  6                                // nonzero if cells hold samples that another cell or none writes
+// Nonzero if cells hold samples that another cell or none writes.
+#define DEFORMVOLUME_COUNT_TOUCHED 6
 #define DEFORMVOLUME_COUNT_LARGE 7 // cells that were added to the list of large cells
 #define DEFORMVOLUME_COUNTERS 8
 
