@@ -53,7 +53,7 @@ void DeviceArrays::Set(const std::vector<VolumeArray>& arrays, const BufferInPla
   const QueueGuard guard(this->Queue);
   this->Leave();
   this->BuffersInPlace.assign(arrays.size(), BufferInPlace());
-  this->Described.clear(); // there are none if this fails
+  this->Described.clear(); // no arrays are set after an exception
   const std::int64_t plane = static_cast<std::int64_t>(this->Size[0]) * this->Size[1];
   const bool whole = this->Chunks.size() == 1;
   for (std::size_t i = 0; i < arrays.size(); ++i)
@@ -134,7 +134,7 @@ void DeviceArrays::ReadAgain() const
   {
     for (const BufferInPlace& inPlace : this->BuffersInPlace)
     {
-      TellOfWrites(this->Context, this->Queue, inPlace);
+      UpdateFromHost(this->Context, this->Queue, inPlace);
     }
   }
 }

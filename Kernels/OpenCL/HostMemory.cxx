@@ -65,7 +65,7 @@ cl::Buffer MakeBufferOver(
   return cl::Buffer(context.GetContext(), access | CL_MEM_USE_HOST_PTR, bytes, data);
 }
 
-void TellOfWrites(
+void UpdateFromHost(
   const OpenCLContext& context, const cl::CommandQueue& queue, const BufferInPlace& inPlace)
 {
   if (inPlace.Buffer() && !context.SharesHostMemory())

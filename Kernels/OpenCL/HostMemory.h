@@ -48,7 +48,7 @@ struct BufferInPlace
 
 /// Tells the device that the host may have written to the memory that a buffer lies over, all of
 /// it. Nothing that uses the buffer may be under way.
-void TellOfWrites(
+void UpdateFromHost(
   const OpenCLContext& context, const cl::CommandQueue& queue, const BufferInPlace& inPlace);
 
 /// Throws Error if a buffer of `bytes` exceeds the allocation limit of the device.
