@@ -141,7 +141,7 @@ void vtkCarveVolume::vtkInternals::Execute(vtkInformationVector** input)
   {
     vtkWarningWithObjectMacro(this->Self,
       << "No voxel has the label " << this->Self->Label << " in \"" << this->Self->LabelArrayName
-      << "\", so nothing of it is carved out. Set Label to a value that occurs.");
+      << "\", so this label carves nothing. Set Label to a value that occurs.");
   }
   for (Change& change : changes)
   {

@@ -273,9 +273,10 @@ vtkSmartPointer<vtkPointSet> vtkDeformGeometryFilter::vtkInternals::Move(vtkPoin
     });
   if (isTooFar)
   {
-    throw deformvolume::Error("The deformation moves points so far that their coordinates are no " +
+    throw deformvolume::Error(
+      "The deformation moves points so far that their coordinates overflow the type " +
       std::string(moved->GetDataTypeAsString()) +
-      " numbers. Check the displacements and DisplacementScale.");
+      ". Check the displacements and DisplacementScale.");
   }
   vtkNew<vtkPoints> points;
   points->SetData(moved);
@@ -369,12 +370,12 @@ void vtkDeformGeometryFilter::vtkInternals::WarnOfOutside()
   }
   const bool isField = this->Deformation.IsField();
   const std::string where = this->IsInverted
-    ? (isField ? "lie where the displacement field moves no point"
+    ? (isField ? "are at positions to which the displacement field moves no point"
                : "lie outside the deformed mesh")
     : (isField ? "lie outside the displacement field" : "lie outside the deformation mesh");
   vtkWarningWithObjectMacro(this->Self,
     << outside << " of " << this->NumberOfPoints << " points " << where
-    << ". They stay where they are, and " << deformvolume::ValidPointMaskName << " is 0 there."
+    << ". They do not move, and " << deformvolume::ValidPointMaskName << " is 0 for them."
     << (this->Self->OutsideMode == DISCARD
            ? " Set OutsideMode to EXTRAPOLATE or KEEP for points outside."
            : ""));
@@ -395,15 +396,15 @@ void vtkDeformGeometryFilter::vtkInternals::WarnOfIgnored(const std::vector<vtkP
       {
         warnings.insert(std::string("The active ") + kind + " \"" +
           (array->GetName() ? array->GetName() : "") +
-          "\" of the cells on input port 0 are not transformed. Compute them again from the "
-          "output, or convert them to point arrays before.");
+          "\" of the cells on input port 0 are not transformed. Compute them from the output, or "
+          "convert them to point arrays before this filter.");
       }
     }
   }
   // A rank may have no points.
   if (points == 0 && !deformvolume::Ranks().AreMany())
   {
-    warnings.insert("The input on port 0 has no points, and neither has the output.");
+    warnings.insert("The input on port 0 has no points, so the output has no points.");
   }
   if (this->Map && !this->Deformation.IsField())
   {

@@ -319,9 +319,10 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfCut(vtkInformation* output)
 void vtkDeformVolumeFilter::vtkInternals::WarnOfGrowth()
 {
   vtkWarningWithObjectMacro(this->Self,
-    "The deformed volume leaves the extent that holds it at the times seen before, and is cut off "
-    "there. The next update has an extent that holds it. Set OutputBoundsMode to VOLUME_BOUNDS or "
-    "CUSTOM_BOUNDS, or Padding, where the extent must hold all times from the first picture on.");
+    "The deformed volume extends beyond the extent of the output, and is cut off there. The extent "
+    "was computed from the times of earlier updates. The next update has a larger extent. If the "
+    "extent must hold the deformed volume at all times from the first update on, set "
+    "OutputBoundsMode to VOLUME_BOUNDS or CUSTOM_BOUNDS, or set Padding.");
 }
 
 //------------------------------------------------------------------------------

@@ -112,8 +112,8 @@ void vtkDeformVolumeFilter::vtkInternals::CheckOutputIndices(
            << " in the grid of the reference image on axis "
            << "xyz"[axis] << ", beyond 2^21. The reference image has "
            << deformvolume::DescribeTransform(*this->Reference)
-           << ". Connect one that lies where the volume does, in the same world units, or whose "
-              "spacing is greater.";
+           << ". Connect a reference image near the volume, in the same world units, or one with a "
+              "greater spacing.";
       throw Error(text.str());
     }
   }
@@ -132,9 +132,9 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfReference()
   if (!names.empty() && names != this->WarnedOfSettings)
   {
     vtkWarningWithObjectMacro(this->Self,
-      "The output has the grid of the reference image on input port 3. These settings have no "
+      "The output has the grid of the reference image on input port 3. These properties have no "
       "effect: "
-        << names << ". Disconnect the reference image where they are wanted.");
+        << names << ". Disconnect the reference image to use them.");
   }
   this->WarnedOfSettings = names;
 }

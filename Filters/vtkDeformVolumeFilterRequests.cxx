@@ -299,9 +299,9 @@ int vtkDeformVolumeFilter::RequestData(
       this->Internals->HadCut = deformvolume::HasCut(worked);
       if (this->Internals->HadCut && !mapped.IsWhole())
       {
-        throw Error("The volume comes in parts, and has a smooth cut (the array "
-                    "\"CutTetrahedra\"), which needs all of it. From the next update on all of it "
-                    "is asked for.");
+        throw Error("The source of the volume was asked for a part of it, but the smooth cut (the "
+                    "array \"CutTetrahedra\") needs the whole volume. Update again: from the next "
+                    "update on, the whole volume is requested.");
       }
     });
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What vtkDeformVolumeFilter warns of after it has made an output.
+// Warnings of vtkDeformVolumeFilter after an update.
 #include "vtkDeformVolumeFilterInternals.h"
 
 #include "Densities.h"
@@ -32,11 +32,12 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfIgnored(
   if (!cellArrays.empty())
   {
     warnings.insert("Cell arrays of the volume are not resampled: " + cellArrays +
-      ". Convert them to point arrays where they are wanted.");
+      ". Convert them to point arrays to resample them.");
   }
   if (!leftOut.empty())
   {
-    warnings.insert("Point arrays of the volume of a type that cannot be resampled are left out: " +
+    warnings.insert(
+      "These point arrays of the volume are left out, because their types cannot be resampled: " +
       list(leftOut) + ".");
   }
   using Attributes = vtkDataSetAttributes;
@@ -48,7 +49,7 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfIgnored(
       warnings.insert(std::string("The active ") + kind + " \"" +
         (array->GetName() ? array->GetName() : "") +
         "\" of the volume are interpolated component by component, and not rotated with the "
-        "deformation. Rotate them afterwards where their directions matter.");
+        "deformation. If their directions matter, rotate them afterwards.");
     }
   }
   if (!this->State->Deformation.IsField())
@@ -138,20 +139,20 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfNothing() const
   std::string text;
   if (this->Self->GetNumberOfInputConnections(1) > 0 && this->State->Deformation.IsInverseField())
   {
-    text = "The inverse displacement field leads from no voxel of the output to the volume: all of "
-           "the output is background. Check that the field holds points of ";
+    text = "The inverse displacement field leads from no voxel of the output into the volume, so "
+           "the whole output is background. Check that the field holds points of ";
     text += this->Reference ? "the reference image" : "the output";
     text += ", that its vectors lead from there to the volume, and that all are in the same world "
             "coordinates.";
   }
   else
   {
-    text = "The deformed volume covers no voxel of the output: all of it is background. Check ";
+    text = "The deformed volume covers no voxel of the output, so the whole output is background. "
+           "Check ";
     text += this->Reference
-      ? "that the reference image lies where the deformed volume does, in the same world "
-        "coordinates,"
+      ? "that the reference image overlaps the deformed volume, in the same world coordinates,"
       : "the output bounds,";
-    text += " and that the deformation mesh holds neighbouring voxels of the volume.";
+    text += " and that the deformation mesh holds neighboring voxels of the volume.";
   }
   vtkWarningWithObjectMacro(this->Self, << text);
 }

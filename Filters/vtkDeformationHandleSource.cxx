@@ -51,7 +51,7 @@ int vtkDeformationHandleSource::RequestData(
   }
   if (!IsFinite(this->RestPosition) || !IsFinite(this->Position))
   {
-    vtkErrorMacro("A position of the handle is not finite. Set finite ones.");
+    vtkErrorMacro("RestPosition or Position is not finite. Set finite coordinates.");
     info->Set(
       vtkDemandDrivenPipeline::DATA_NOT_GENERATED(), 1); // so that the next update fails, too
     return 0;

@@ -265,8 +265,8 @@ void vtkElasticDeformation::Execute(
   if (session.Update(simulation, grid, settings, [&] { return progress.Tell(0.0); }))
   {
     vtkWarningMacro(
-      "The simulation starts anew: the rest mesh has got other points or cells, or the "
-      "body was lost in an update that failed.");
+      "The simulation starts again from rest, because the points or cells of the rest mesh have "
+      "changed, or because a failed update lost the state of the body.");
   }
   this->CheckSize(session.GetMesh().Size);
   const bool wasToReset = internals.IsToReset;
@@ -368,10 +368,9 @@ void vtkElasticDeformation::CheckSize(double size)
   constexpr double most = 10.0;
   if (size != this->Internals->CheckedSize && !(size >= least && size <= most))
   {
-    vtkWarningMacro(<< "The body measures " << size
-                    << " m from corner to corner, as its lengths are taken for "
-                    << (this->LengthUnit == METRE ? "metres" : "millimetres")
-                    << ". Convert the mesh, or set another unit of length, if that is wrong.");
+    vtkWarningMacro(<< "The diagonal of the body is " << size << " m, if the unit of the mesh is "
+                    << (this->LengthUnit == METRE ? "METRE" : "MILLIMETRE")
+                    << ". If this size is wrong, set another LengthUnit, or convert the mesh.");
   }
   this->Internals->CheckedSize = size;
 }

@@ -106,15 +106,15 @@ void vtkMaterialFromVolume::SetMaterialPreset(int index, int preset)
 {
   if (!deformvolume::IsMaterialIndex(index))
   {
-    vtkErrorMacro("There is no material " << index << ". Give it a whole number from 0 to 255.");
+    vtkErrorMacro("The material index " << index << " is not valid. Use an integer from 0 to 255.");
     return;
   }
   if (!vtkElasticDeformation::GetMaterialPresetName(preset))
   {
-    vtkErrorMacro("Material " << index << " cannot have the preset " << preset
-                              << ". Give it one of vtkElasticDeformation::MaterialPresetType, from "
-                              << vtkElasticDeformation::CUSTOM << " to "
-                              << vtkElasticDeformation::BONE << ".");
+    vtkErrorMacro("The preset "
+      << preset << " of material " << index
+      << " is not defined. Use one of vtkElasticDeformation::MaterialPresetType, from "
+      << vtkElasticDeformation::CUSTOM << " to " << vtkElasticDeformation::BONE << ".");
     return;
   }
   int& last = this->Internals->Presets[static_cast<std::size_t>(index)];

@@ -47,26 +47,27 @@ vtkDataArray* FindArray(vtkDataArray* array, vtkImageData* volume)
     if (dimensions[axis] < 2)
     {
       throw deformvolume::Error("The volume has " + std::to_string(dimensions[axis]) +
-        " voxels on axis " + std::to_string(axis) +
-        ". A body needs at least two on every axis: give the whole volume, not a slice.");
+        " voxels on axis " + "xyz"[axis] +
+        ". A body needs at least two voxels on each axis. Connect the whole volume, not a slice.");
     }
     if (!(std::abs(volume->GetSpacing()[axis]) > 0.0) ||
       !std::isfinite(volume->GetSpacing()[axis]) || !std::isfinite(volume->GetOrigin()[axis]))
     {
       throw deformvolume::Error(
-        "The volume's spacing or origin is not valid on axis " + std::to_string(axis) + ".");
+        std::string("The spacing or the origin of the volume is not valid on axis ") + "xyz"[axis] +
+        ". Set a finite spacing other than 0, and a finite origin.");
     }
   }
   if (!array)
   {
-    throw deformvolume::Error("The volume has no such point array: set active scalars, or choose "
+    throw deformvolume::Error("The volume has no such point array. Set active scalars, or choose "
                               "an array with SetInputArrayToProcess().");
   }
   if (array->GetNumberOfTuples() != volume->GetNumberOfPoints())
   {
-    throw deformvolume::Error("The volume's array has " +
-      std::to_string(array->GetNumberOfTuples()) + " values for " +
-      std::to_string(volume->GetNumberOfPoints()) + " voxels.");
+    throw deformvolume::Error("The point array of the volume has " +
+      std::to_string(array->GetNumberOfTuples()) + " tuples for " +
+      std::to_string(volume->GetNumberOfPoints()) + " voxels. Give it one tuple for each voxel.");
   }
   return array;
 }
@@ -90,7 +91,7 @@ std::vector<deformvolume::RefinementSphere> GetSpheres(
       std::ostringstream message;
       message << "Refinement sphere " << spheres.size() << " has the center " << n[0] << ", "
               << n[1] << ", " << n[2] << ", the radius " << n[3] << " and the edge length " << n[4]
-              << ": all have to be finite, and the last two greater than 0.";
+              << ". All numbers must be finite, and the radius and the edge length greater than 0.";
       throw deformvolume::Error(message.str());
     }
     spheres.push_back({ glm::dvec3(n[0], n[1], n[2]), n[3], n[4] });
@@ -339,13 +340,13 @@ void vtkTetGenMesher::CheckSize(vtkPolyData* surface, double length, const Spher
   std::ostringstream message;
   if (expected < MaximumNumberOfTetrahedra)
   {
-    message << "The refinement spheres ask for about " << refined
-            << " tetrahedra; at most 20 million are made. Give them smaller radii or longer edges.";
+    message << "The refinement spheres require about " << refined
+            << " tetrahedra. The limit is 20 million. Use smaller radii or greater edge lengths.";
   }
   else
   {
-    message << "An edge length of " << length << " asks for about " << expected
-            << " tetrahedra; at most 20 million are made. Use a greater edge length.";
+    message << "An edge length of " << length << " requires about " << expected
+            << " tetrahedra. The limit is 20 million. Use a greater edge length.";
   }
   throw deformvolume::Error(message.str());
 }

@@ -48,7 +48,7 @@ deformvolume::Error NoBody(vtkDataArray* array, const deformvolume::BodyCriterio
   array->GetFiniteRange(range, 0);
   if (range[0] > range[1])
   {
-    text << "No body: the volume has no finite value.";
+    text << "No body: all values of the volume are infinite or NaN.";
   }
   else if (criterion.ByLabels)
   {
@@ -59,7 +59,7 @@ deformvolume::Error NoBody(vtkDataArray* array, const deformvolume::BodyCriterio
   else
   {
     text << "No body: the volume has no value of at least " << criterion.Isovalue
-         << ", the isovalue, that is not hidden; its values go from " << range[0] << " to "
+         << ", the isovalue, that is not hidden. Its values range from " << range[0] << " to "
          << range[1] << ". Use another isovalue.";
   }
   return deformvolume::Error(text.str());
@@ -236,9 +236,9 @@ void vtkTetGenMesher::WarnOfVoxelsOutside()
        << " %) lie outside the mesh.";
   if (this->PieceMode == LARGEST_PIECE && this->NumberOfPieces > 1)
   {
-    text << " The body has " << WithCommas(this->NumberOfPieces)
-         << " pieces, of which only the largest is meshed. All pieces can be meshed "
-            "instead.";
+    text
+      << " The body has " << WithCommas(this->NumberOfPieces)
+      << " pieces, and only the largest is meshed. Set PieceMode to ALL_PIECES to mesh all pieces.";
   }
   else
   {

@@ -101,14 +101,14 @@ SessionEvent deformvolume::ParseEvent(const std::string& text)
     const auto [end, error] = std::from_chars(at, textEnd, number);
     if (error != std::errc() || !std::isfinite(number))
     {
-      throw std::runtime_error("\"" + name + "\" has something that is no finite number");
+      throw std::runtime_error("\"" + name + "\" has an argument that is not a finite number");
     }
     event.Numbers.push_back(number);
     at = end;
   }
   if (!IsComplete(event))
   {
-    throw std::runtime_error("\"" + name + "\" has other numbers than it needs");
+    throw std::runtime_error("\"" + name + "\" has missing, superfluous or invalid arguments");
   }
   return event;
 }
@@ -117,7 +117,7 @@ SessionEvent deformvolume::MakeCutEvent(vtkPolyData* sheet)
 {
   if (!sheet || !sheet->GetPoints() || sheet->GetNumberOfPolys() == 0)
   {
-    throw std::runtime_error("The sheet has no triangles. Give a vtkPolyData of triangles.");
+    throw std::runtime_error("The sheet has no triangles. Use a vtkPolyData of triangles.");
   }
   SessionEvent event;
   event.Kind = SessionEvent::CUT;
@@ -130,7 +130,7 @@ SessionEvent deformvolume::MakeCutEvent(vtkPolyData* sheet)
     {
       if (!std::isfinite(coordinate))
       {
-        throw std::runtime_error("A point of the sheet is not finite. Set finite ones.");
+        throw std::runtime_error("A point of the sheet is not finite. Set finite coordinates.");
       }
       event.Numbers.push_back(coordinate);
     }
@@ -141,7 +141,8 @@ SessionEvent deformvolume::MakeCutEvent(vtkPolyData* sheet)
     sheet->GetPolys()->GetCellAtId(cell, ids);
     if (ids->GetNumberOfIds() != 3)
     {
-      throw std::runtime_error("The sheet has cells that are no triangles. Use vtkTriangleFilter.");
+      throw std::runtime_error(
+        "Cell " + std::to_string(cell) + " of the sheet is not a triangle. Use vtkTriangleFilter.");
     }
     for (vtkIdType i = 0; i < 3; ++i)
     {
@@ -150,7 +151,8 @@ SessionEvent deformvolume::MakeCutEvent(vtkPolyData* sheet)
   }
   if (!IsComplete(event))
   {
-    throw std::runtime_error("The sheet has cells with points that it does not have.");
+    throw std::runtime_error(
+      "A cell of the sheet refers to a point that the sheet does not have. Correct the cells.");
   }
   return event;
 }

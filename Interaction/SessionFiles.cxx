@@ -157,7 +157,7 @@ deformvolume::SessionEvents deformvolume::ReadEvents(
   vtkXMLDataElement* root = isParsed ? parser->GetRootElement() : nullptr;
   if (!root || !root->GetName() || std::strcmp(root->GetName(), RootName) != 0)
   {
-    throw std::runtime_error(fileName + " is no session, or it is damaged.");
+    throw std::runtime_error(fileName + " is not a session file, or it is damaged.");
   }
   if (GetAttribute(root, "version") != Version)
   {
@@ -179,12 +179,13 @@ deformvolume::SessionEvents deformvolume::ReadEvents(
   if (GetAttribute(root, "checksum") != HashEvents(events))
   {
     throw std::runtime_error(
-      "The session " + fileName + " is damaged: its events do not have its checksum.");
+      "The session " + fileName + " is damaged: its checksum does not match its events.");
   }
   if (GetAttribute(root, "inputs") != inputHash)
   {
     throw std::runtime_error("The session " + fileName +
-      " is of another volume or mesh. Open the volume that it was made with.");
+      " was recorded with another volume or mesh. Open the volume and mesh that it was recorded "
+      "with.");
   }
   return events;
 }

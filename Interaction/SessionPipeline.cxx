@@ -62,8 +62,8 @@ int GetWhole(const SessionEvent& event, int least, int most, const char* name)
   if (!(number >= least) || number > most || number != std::floor(number))
   {
     std::ostringstream text;
-    text << name << " is " << number << ", and must be a whole number from " << least << " to "
-         << most << ".";
+    text << name << " is " << number << ". It must be an integer from " << least << " to " << most
+         << ".";
     throw std::runtime_error(text.str());
   }
   return static_cast<int>(number);
@@ -198,7 +198,7 @@ void SessionPipeline::Apply(const SessionEvent& event)
     case SessionEvent::HANDLE_RADIUS:
       if (!(event.Numbers[0] >= 0.0))
       {
-        throw std::runtime_error("The radius of handles is less than 0. Set 0 or more.");
+        throw std::runtime_error("The radius of handles is negative. Set 0 or more.");
       }
       this->HandleRadius = event.Numbers[0];
       return;
@@ -210,7 +210,7 @@ void SessionPipeline::Apply(const SessionEvent& event)
     case SessionEvent::UNDO_MEMORY:
       if (!(event.Numbers[0] >= 0.0))
       {
-        throw std::runtime_error("The memory for undo is less than 0. Set 0 or more bytes.");
+        throw std::runtime_error("The memory for undo is negative. Set 0 or more bytes.");
       }
       this->UndoMemory = event.Numbers[0];
       this->LimitStates();
@@ -239,7 +239,7 @@ void SessionPipeline::TryBeginGrab(double handle, const glm::dvec3& position)
   {
     if (action.Kind == Action::DRAG && action.Handle == handle)
     {
-      throw std::runtime_error("There is a handle of this number already. Take another one.");
+      throw std::runtime_error("A handle with this number already exists. Use another number.");
     }
   }
   Action drag;
@@ -256,8 +256,8 @@ void SessionPipeline::TryBeginGrab(double handle, const glm::dvec3& position)
     const double most = this->Volume->GetSpacing()[axis];
     if (!(drag.Rest[axis] >= low[axis] - most && drag.Rest[axis] <= high[axis] + most))
     {
-      throw std::runtime_error(
-        "There is nothing of the volume where it was grabbed. Grab a place within the volume.");
+      throw std::runtime_error("There is nothing of the volume at the place that was grabbed. Grab "
+                               "a place within the volume.");
     }
     drag.Rest[axis] = std::clamp(drag.Rest[axis], low[axis], high[axis]);
   }
@@ -294,7 +294,7 @@ SessionPipeline::Action& SessionPipeline::FindHandle(double handle, bool isGrabb
   }
   std::ostringstream text;
   text << "Handle " << handle << (isGrabbed ? " is not grabbed" : " holds nothing")
-       << ". Call BeginGrab() first, and take the number that it returns.";
+       << ". Call BeginGrab() first, and use the number that it returns.";
   throw std::runtime_error(text.str());
 }
 
@@ -305,7 +305,7 @@ void SessionPipeline::Release(double handle)
   if (std::none_of(
         held.begin(), held.end(), [=](const Action& one) { return one.Handle == handle; }))
   {
-    throw std::runtime_error("The handle is released already.");
+    throw std::runtime_error("The handle was released already.");
   }
   Action release;
   release.Kind = Action::RELEASE;
@@ -386,7 +386,7 @@ void SessionPipeline::Carve(const SessionEvent& event)
   const glm::dvec3 position = GetPosition(event, 1);
   if (!(event.Numbers[4] > 0.0))
   {
-    throw std::runtime_error("The radius to carve with is not greater than 0.");
+    throw std::runtime_error("The carving radius is not greater than 0. Set a greater radius.");
   }
   const bool isNew = event.Numbers[0] != 0.0 || !this->IsStroke;
   if (isNew)

@@ -229,7 +229,8 @@ bool vtkDeformVolumeInteractorStyle::CheckInteractor()
 {
   if (!this->Interactor || !this->Interactor->GetRenderWindow())
   {
-    vtkErrorMacro("There is no interactor with a window. Call SetInteractorStyle() of one.");
+    vtkErrorMacro(
+      "There is no interactor with a window. Call SetInteractorStyle() of an interactor.");
     return false;
   }
   return true;

@@ -128,7 +128,7 @@ bool vtkDeformVolumeSession::CheckFinite(const std::vector<double>& numbers)
     numbers.begin(), numbers.end(), [](double number) { return std::isfinite(number); });
   if (!areFinite)
   {
-    this->Report("A number is not finite. Set finite ones.");
+    this->Report("An argument is not finite. Use finite numbers.");
   }
   return areFinite;
 }

@@ -8,20 +8,22 @@
 
 const char* const UsageText =
   "deform-interactive [VOLUME] [OPTIONS]\n"
-  "Drags, cuts and carves a volume live: any that deform-volume reads, or the MRI of a head (ch2 "
-  "of\n"
-  "the package mricron-data). Press h in the window for its keys.\n\n"
-  "  --frame NUMBER         which volume of a file with several in time, counted from 0\n"
-  "  --session FILE.xml     load a session, after the volume\n"
+  "Drags, cuts and carves a volume interactively. VOLUME is a file that deform-volume reads. "
+  "Default:\n"
+  "an MRI of a head (ch2 of the package mricron-data). Press h in the window for a list of "
+  "keys.\n\n"
+  "  --frame NUMBER         index of the volume in a file with several time steps, counted from 0\n"
+  "  --session FILE.xml     load a session after the volume\n"
   "  --record FILE.log      record the events of the window\n"
-  "  --replay FILE.log      replay recorded events, do what the options below say, and end\n"
-  "  --screenshot FILE.png  a picture of the window, after a replay\n"
-  "  --output FILE          the deformed volume (.vti), its mesh (.vtu) or the session (.xml) "
-  "after a\n"
-  "                         replay; can be given several times\n"
-  "  --frames FOLDER        a picture of each frame of a replay: frame0000.png and so on\n"
-  "  --size WIDTH,HEIGHT    of the window, in pixels (1000,750)\n"
-  "  --help\n";
+  "  --replay FILE.log      replay recorded events, write the files of the options below, and "
+  "exit\n"
+  "  --screenshot FILE.png  write a picture of the window after the replay\n"
+  "  --output FILE          write the deformed volume (.vti), its mesh (.vtu) or the session "
+  "(.xml)\n"
+  "                         after the replay; can be given several times\n"
+  "  --frames FOLDER        write a picture of each frame of the replay: frame0000.png, ...\n"
+  "  --size WIDTH,HEIGHT    size of the window, in pixels (default: 1000,750)\n"
+  "  --help                 print this text, and exit\n";
 
 Arguments ParseArguments(int argc, char* argv[])
 {
@@ -49,7 +51,7 @@ Arguments ParseArguments(int argc, char* argv[])
     const auto text = texts.find(name);
     if (text == texts.end() && name != "--output" && name != "--size" && name != "--frame")
     {
-      throw UsageError("there is no option " + name + ", see --help");
+      throw UsageError("there is no option " + name + ". See --help");
     }
     if (i + 1 == argc)
     {
@@ -70,7 +72,7 @@ Arguments ParseArguments(int argc, char* argv[])
       int frame = 0;
       if (std::sscanf(value.c_str(), "%d%c", &frame, &rest) != 1 || frame < 0)
       {
-        throw UsageError("--frame " + value + ": a whole number from 0 on");
+        throw UsageError("--frame " + value + ": expected an integer of 0 or more");
       }
       arguments.Reading.Frame = frame;
     }
@@ -83,13 +85,14 @@ Arguments ParseArguments(int argc, char* argv[])
       if (std::sscanf(value.c_str(), "%d,%d%c", &size[0], &size[1], &rest) != 2 ||
         size[0] < least || size[1] < least || size[0] > most || size[1] > most)
       {
-        throw UsageError("--size " + value + ": two numbers from 200 to 8000 with a comma between");
+        throw UsageError("--size " + value +
+          ": expected two integers from 200 to 8000, with a comma between them");
       }
     }
   }
-  const bool isOfReplay =
+  const bool needsReplay =
     !arguments.Screenshot.empty() || !arguments.Frames.empty() || !arguments.Outputs.empty();
-  if (isOfReplay && arguments.Replay.empty())
+  if (needsReplay && arguments.Replay.empty())
   {
     throw UsageError("--screenshot, --frames and --output need --replay");
   }

@@ -32,8 +32,8 @@ constexpr const char* ProgramKeys =
   "arrows: level and width, or drag the plot at the lower right\n"
   "o open a volume, session .xml or recording .log (or drop one)\n"
   "s save: volume .vti, mesh .vtu, session .xml, picture .png\n"
-  "j record events, or stop     i numbers and plot\n"
-  ", . how far round its place a handle holds tissue";
+  "j start or stop recording     i numbers and plot\n"
+  ", . radius in which a handle holds tissue";
 
 void SetUpText(vtkTextActor* actor, double x, double y, bool isRight)
 {

@@ -130,7 +130,7 @@ std::string Viewer::TrySave(const std::string& path)
   }
   else
   {
-    return "The name " + path + " ends in none of .vti, .vtu, .xml and .png.";
+    return "The name " + path + " must end in .vti, .vtu, .xml or .png.";
   }
   return isSaved ? "" : this->Session->GetErrorMessage();
 }

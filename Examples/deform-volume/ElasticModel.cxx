@@ -162,7 +162,7 @@ void DeformByElasticModel(const Options& options, const Volume& volume, vtkUnstr
       if (model->GetNumberOfSplitFaces() == 0)
       {
         messages.DisplayWarningText(
-          "--cut crosses nothing of the mesh. Is it in the world of the volume?");
+          "--cut crosses nothing of the mesh. Is it in the world coordinates of the volume?");
       }
     }
   };

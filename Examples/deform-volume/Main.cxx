@@ -84,7 +84,7 @@ void CheckOutputs(const Options& options)
     const std::string& place = vtksys::SystemTools::FileExists(path) ? path : folder;
     if (access(place.c_str(), W_OK) != 0)
     {
-      throw Failure("cannot write " + path + ": " + place + " may not be written to");
+      throw Failure("cannot write " + path + ": there is no permission to write " + place);
     }
   }
   if (!options.Image.empty() || !options.Movie.empty())
@@ -147,7 +147,7 @@ void SetUp(vtkDeformVolumeFilter* filter, const Options& options, vtkImageData* 
       {
         names += std::string(names.empty() ? "" : ", ") + arrays->GetArrayName(i);
       }
-      throw Failure(option + (" " + name) + ": the volume has no such array; it has " + names);
+      throw Failure(option + (" " + name) + ": the volume has no such array. It has " + names);
     }
   };
   for (const std::string& name : options.CategoricalArrays)
@@ -251,7 +251,7 @@ void CheckValues(vtkImageData* image, const std::string& path)
   {
     throw Failure("cannot use " + path + ": its voxels have no numbers" +
       (image->GetCellData()->GetNumberOfArrays() > 0
-          ? "; its cells do, which ParaView's filter Cell Data to Point Data converts"
+          ? ". Its cells have: convert them with ParaView's filter Cell Data to Point Data"
           : ""));
   }
   if (!arrays->GetScalars())
@@ -352,9 +352,8 @@ void DeformVolume(const Options& options, Messages& messages)
   deform(deformation);
   if (options.FieldIsInverse && filter->GetNumberOfInvertedTetrahedra() > 0)
   {
-    messages.DisplayWarningText(
-      "The field folds: it leads several points of the result to one point "
-      "of the volume, which is seen more than once.");
+    messages.DisplayWarningText("The field folds: it leads several points of the result to the "
+                                "same point of the volume, which is shown more than once.");
   }
   timings.Add("deform", deforming.GetSeconds());
 

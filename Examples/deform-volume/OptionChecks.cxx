@@ -19,7 +19,7 @@
 
 namespace
 {
-/// NaN passes all comparisons of a range, and no length or value is infinite.
+/// Checks of ranges let NaN pass.
 void CheckNumbers(const Options& options)
 {
   const std::pair<const char*, double> numbers[] = { { "--scale", options.Scale },
@@ -36,7 +36,7 @@ void CheckNumbers(const Options& options)
   }
 }
 
-/// The result never takes the place of what it is made from.
+/// Inputs must not be overwritten.
 void CheckOverwriting(const Options& options)
 {
   std::vector<std::string> outputs = options.Outputs;
@@ -46,7 +46,7 @@ void CheckOverwriting(const Options& options)
     {
       if (std::count(outputs.begin(), outputs.end(), output) > 0)
       {
-        throw UsageError(output + " is written twice: give " + option + " another name");
+        throw UsageError(output + " is written twice. Give " + option + " another name");
       }
       outputs.push_back(output);
     }
@@ -72,20 +72,21 @@ void CheckOverwriting(const Options& options)
     {
       if (!output.empty() && !input.empty() && vtksys::SystemTools::SameFile(output, input))
       {
-        throw UsageError(output + " is read and would be overwritten: give another name");
+        throw UsageError(
+          output + " is an input, and would be overwritten. Give the output another name");
       }
     }
   }
 }
 
-/// Each file of points has one that is written, in the same format.
+/// Each file of --points needs a file of --points-output in the same format.
 void CheckPoints(const Options& options)
 {
   if (options.Points.size() != options.PointsOutputs.size())
   {
     throw UsageError("--points is given " + std::to_string(options.Points.size()) +
       " times and --points-output " + std::to_string(options.PointsOutputs.size()) +
-      " times: the first output belongs to the first file, the second one to the second");
+      " times. Give one --points-output for each --points, in the same order");
   }
   for (std::size_t i = 0; i < options.Points.size(); ++i)
   {
@@ -109,19 +110,16 @@ void CheckModel(const Options& options)
   {
     if (!options.TetGen && !options.HasLattice())
     {
-      throw UsageError("--model " + options.Model +
-        " needs --tetgen or --lattice, the mesh that it "
-        "moves");
+      throw UsageError("--model " + options.Model + " needs a mesh. Give --tetgen or --lattice");
     }
     if (options.Model == "mass-spring" && options.TetGen)
     {
-      throw UsageError("--model mass-spring needs the cubes of --lattice; --model fem takes the "
-                       "mesh of --tetgen, too");
+      throw UsageError("--model mass-spring needs the cubes of --lattice. Give --lattice, or use "
+                       "--model fem with --tetgen");
     }
     if (!options.Pushes.empty())
     {
-      throw UsageError(
-        "--push moves nodes without a model; give --pull to --model " + options.Model);
+      throw UsageError("--push cannot be used with --model " + options.Model + ". Use --pull");
     }
   }
   else if (!options.Fixations.empty() || !options.Materials.empty() || !options.Tissue.empty())
@@ -131,12 +129,12 @@ void CheckModel(const Options& options)
   }
   if (options.CutsMesh() && options.SmoothCut)
   {
-    throw UsageError(
-      "--smooth-cut divides voxels; with --model " + options.Model + " a --cut parts the mesh");
+    throw UsageError("--smooth-cut cannot be used with --model " + options.Model +
+      ", where --cut splits the mesh");
   }
   if (options.Model == "chainmail" && !options.MeshOutput.empty())
   {
-    throw UsageError("--write-mesh goes with --tetgen or --lattice; ChainMail has no mesh");
+    throw UsageError("--write-mesh goes with --tetgen or --lattice. --model chainmail has no mesh");
   }
   if (options.Model == "chainmail" && options.Pulls.empty())
   {
@@ -146,12 +144,12 @@ void CheckModel(const Options& options)
   {
     if (pull.Radius != options.Pulls.front().Radius)
     {
-      throw UsageError("all --pull need the same radius");
+      throw UsageError("all --pull must have the same radius");
     }
   }
 }
 
-/// One thing deforms the volume, and its options go with it.
+/// There must be one deformation, and options that apply to it.
 void CheckDeformation(const Options& options)
 {
   CheckModel(options);
@@ -166,16 +164,15 @@ void CheckDeformation(const Options& options)
     }
     if (!options.Displacement.empty() || options.Scale != 1.0 || !options.Pushes.empty())
     {
-      throw UsageError("--push, --displacement and --scale need a --mesh, --field, --tetgen or "
-                       "--lattice beside --cut and --carve");
+      throw UsageError("--push, --displacement and --scale need a deformation: --mesh, --field, "
+                       "--tetgen or --lattice");
     }
     return;
   }
   if (deformations != 1)
   {
-    throw UsageError(
-      "exactly one of --mesh, --field, --transform, --tetgen, --lattice and --model chainmail says "
-      "what deforms the volume");
+    throw UsageError("exactly one of --mesh, --field, --transform, --tetgen, --lattice and --model "
+                     "chainmail must be given");
   }
   if (!options.Mesh.empty())
   {
@@ -186,7 +183,8 @@ void CheckDeformation(const Options& options)
     }
     if (!options.Pushes.empty())
     {
-      throw UsageError("--push goes with --tetgen or --lattice; a --mesh brings its displacement");
+      throw UsageError(
+        "--push goes with --tetgen or --lattice. The displacements of a --mesh are in its file");
     }
   }
   else if (!options.Field.empty())
@@ -194,21 +192,22 @@ void CheckDeformation(const Options& options)
     if (!options.Displacement.empty() && !IsVTKFile(options.Field))
     {
       throw UsageError("--displacement names an array of a .vti file; " + options.Field +
-        " has one set of vectors only");
+        " has only one set of vectors");
     }
     if (!options.Pushes.empty())
     {
-      throw UsageError("--push goes with --tetgen or --lattice; a --field brings its displacement");
+      throw UsageError(
+        "--push goes with --tetgen or --lattice. The displacements of a --field are in its file");
     }
   }
   else if (!options.Transforms.empty() && !options.Pushes.empty())
   {
     throw UsageError(
-      "--push goes with --tetgen or --lattice; a --transform brings its displacement");
+      "--push goes with --tetgen or --lattice. The displacements of a --transform are in its file");
   }
   else if (options.Model == "chainmail" && !options.Pushes.empty())
   {
-    throw UsageError("--push goes with --tetgen or --lattice; give --pull to --model chainmail");
+    throw UsageError("--push goes with --tetgen or --lattice. Use --pull with --model chainmail");
   }
   else if (!options.Displacement.empty() || options.Scale != 1.0)
   {
@@ -231,13 +230,15 @@ void CheckResampler(const Options& options, bool isForwardField)
   {
     if (isExact)
     {
-      throw UsageError("--resampler exact deforms a mesh of the voxels, which an inverse field "
-                       "(--field-is-inverse or --transform) does not move: leave --resampler out");
+      throw UsageError(
+        "--resampler exact cannot be used with an inverse field (--field-is-inverse or "
+        "--transform), which has no positions for the voxels. Remove --resampler");
     }
     if (options.SmoothCut)
     {
-      throw UsageError("--smooth-cut goes with a mesh or a forward field: an inverse one "
-                       "(--field-is-inverse or --transform) does not say where the two sides go");
+      throw UsageError(
+        "--smooth-cut goes with a mesh or a forward field. An inverse field (--field-is-inverse or "
+        "--transform) has no positions for the two sides of a cut");
     }
     return;
   }
@@ -247,13 +248,12 @@ void CheckResampler(const Options& options, bool isForwardField)
     if (isForwardField)
     {
       throw UsageError(what +
-        " needs a --mesh, --tetgen, --lattice or inverse field; a forward field and --model "
-        "chainmail "
-        "do not go with it");
+        " needs a --mesh, --tetgen, --lattice or inverse field. It cannot be used with a forward "
+        "field or with --model chainmail");
     }
     if (options.Extrapolate || options.SmoothCut)
     {
-      throw UsageError(what + " does not go with " +
+      throw UsageError(what + " cannot be used with " +
         (options.Extrapolate ? "--outside extrapolate" : "--smooth-cut"));
     }
   }
@@ -267,7 +267,7 @@ void CheckOptions(const Options& options)
   }
   if (options.Volume.empty())
   {
-    throw UsageError("no VOLUME is given; deform-volume --help tells how to call the program");
+    throw UsageError("no VOLUME is given. deform-volume --help lists the arguments");
   }
   CheckDeformation(options);
   CheckResampler(options, !options.Field.empty() || options.Model == "chainmail");
@@ -280,12 +280,12 @@ void CheckOptions(const Options& options)
   }
   if (!options.WritesResult() && options.MeshOutput.empty())
   {
-    throw UsageError("nothing to write: give --output, --image, --movie or --write-mesh");
+    throw UsageError("nothing to write. Give --output, --image, --movie or --write-mesh");
   }
   if (!options.Movie.empty() && !CanWriteMovie(options.Movie))
   {
     throw UsageError("--movie " + options.Movie +
-      ": the name must end in .png, or in .ogv where VTK has Ogg Theora");
+      ": the name must end in .png, or, if VTK was built with Ogg Theora, in .ogv");
   }
   const auto checkNames = [](const std::string& option, const std::vector<std::string>& names)
   {

@@ -4,11 +4,11 @@
 
 struct Options;
 
-/// Throws a UsageError where options do not go together, or a number or a name makes no sense.
+/// Throws a UsageError if options cannot be combined, or if a number or a name is not valid.
 void CheckOptions(const Options& options);
 
-/// Throws a UsageError where the resampler or the interpolation does not go with the deformation.
-/// isForwardField: whether that is a displacement field that leads from the volume to the result.
+/// Throws a UsageError if the resampler cannot be used with the deformation. isForwardField:
+/// whether the deformation is a displacement field from the volume to the result.
 void CheckResampler(const Options& options, bool isForwardField);
 
 #endif

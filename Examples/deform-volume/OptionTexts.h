@@ -15,7 +15,7 @@
 #include <sstream>
 #include <string>
 
-/// Reads numbers with commas between them. shape: what was expected, in words. This and all below
+/// Reads numbers with commas between them. shape: the expected text, in words. All functions here
 /// throw a UsageError that names the option.
 template <typename Number, std::size_t Count>
 std::array<Number, Count> ParseNumbers(
@@ -37,7 +37,7 @@ std::array<Number, Count> ParseNumbers(
 }
 
 ///@{
-/// Read the text behind the option of the name.
+/// Parse the argument of the option of that name.
 Push ParsePush(const std::string& text);
 Pull ParsePull(const std::string& text);
 Fixation ParseFixation(const std::string& text);
@@ -46,8 +46,8 @@ MaterialOfValues ParseMaterial(const std::string& text);
 TransformFile ParseTransform(const std::string& text);
 ///@}
 
-/// The Young modulus, Poisson ratio and density of a tissue (vtkElasticDeformation); none where no
-/// tissue has the name, in lower case.
+/// The Young modulus, Poisson ratio and density of a tissue (vtkElasticDeformation), by its name in
+/// lower case. Empty if there is no such tissue.
 std::optional<std::array<double, 3>> FindTissue(const std::string& name);
 /// The names of all tissues, with commas between them.
 std::string GetTissues();

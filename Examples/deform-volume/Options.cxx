@@ -16,7 +16,7 @@
 
 namespace
 {
-/// Options that need more than their own text to be right.
+/// Options whose texts are parsed after the command line.
 struct RawOptions
 {
   std::string Lattice;
@@ -32,20 +32,21 @@ struct RawOptions
   std::string Bounds = "deformed";
 };
 
-/// What no range holds is of a tissue.
+/// Sets the tissue of voxels that are in no range of --material.
 void SetTissue(const CLI::App& program, const std::string& tissue, Options& options)
 {
   if (!options.Tissue.empty())
   {
-    throw UsageError("--material " + tissue + ": the body is already of --material " +
-      options.Tissue + ". Give one of them a range of values, MINIMUM:MAXIMUM=TISSUE");
+    throw UsageError("--material " + tissue + ": --material " + options.Tissue +
+      " already sets the tissue of the body. Give one of the two a range of values, "
+      "MINIMUM:MAXIMUM=TISSUE");
   }
   for (const char* option : { "--young", "--poisson", "--density" })
   {
     if (program.count(option))
     {
-      throw UsageError("--material " + tissue + " sets what " + option +
-        " sets. Leave one of them out, or give the tissue a range of values, "
+      throw UsageError("--material " + tissue + " and " + option +
+        " set the same property. Remove one of them, or give the tissue a range of values, "
         "MINIMUM:MAXIMUM=TISSUE");
     }
   }
@@ -114,7 +115,7 @@ void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
     options.View = ParseNumbers<double, 3>("--view", raw.View, "three numbers X,Y,Z");
     if (*options.View == std::array<double, 3>{ { 0.0, 0.0, 0.0 } })
     {
-      throw UsageError("--view 0,0,0 is no direction");
+      throw UsageError("--view 0,0,0 is not a direction");
     }
   }
   options.Extrapolate = raw.Outside == "extrapolate";
@@ -123,8 +124,8 @@ void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
   {
     if (program.count("--bounds") && raw.Bounds != "volume")
     {
-      throw UsageError("--bounds deformed: a --transform is known on the grid of the volume, or of "
-                       "the --reference, where the result lies");
+      throw UsageError("--bounds deformed cannot be used with --transform: the result has the grid "
+                       "of the volume, or of --reference");
     }
     options.FieldIsInverse = true;
   }
@@ -136,13 +137,13 @@ void AddElasticModel(CLI::App& program, Options& options, RawOptions& raw)
   const char* group = "With --model fem or mass-spring";
   program
     .add_option("--fix", raw.Fixations,
-      "Nodes that stay where they are: those in a box, those with a z of at most Z, or those in "
-      "voxels of the value N. May be given several times")
+      "Fixed nodes: nodes in a box, nodes with a z coordinate of at most Z, or nodes in voxels of "
+      "the value N. May be given several times")
     ->type_name("box:X0,X1,Y0,Y1,Z0,Z1|below:Z|label:N")
     ->take_all()
     ->expected(1)
     ->group(group);
-  program.add_option("--gravity", raw.Gravity, "The acceleration of gravity, in m/s^2")
+  program.add_option("--gravity", raw.Gravity, "Acceleration of gravity, in m/s^2")
     ->capture_default_str()
     ->type_name("X,Y,Z")
     ->group(group);
@@ -152,12 +153,11 @@ void AddElasticModel(CLI::App& program, Options& options, RawOptions& raw)
   };
   program
     .add_option("--material", raw.Materials,
-      "Voxels with values from MINIMUM on, less than MAXIMUM, have the Young modulus E (Pa), the "
-      "Poisson ratio NU and the DENSITY, or those of a TISSUE, and each tetrahedron has the mean "
-      "of "
-      "its voxels. The first range that holds a value counts; what none holds is of the TISSUE "
-      "that "
-      "is given without a range, or else has --young, --poisson and --density. Tissues: " +
+      "Material of voxels whose value is at least MINIMUM and less than MAXIMUM: Young modulus E "
+      "(Pa), Poisson ratio NU and DENSITY (kg/m^3), or the values of a TISSUE. Each tetrahedron "
+      "gets the mean of its voxels. If ranges overlap, the first one is used. Voxels in no range "
+      "get the TISSUE that is given without a range, or else --young, --poisson and --density. "
+      "Tissues: " +
         GetTissues() + ". May be given several times")
     ->type_name("TISSUE|MINIMUM:MAXIMUM=TISSUE|MINIMUM:MAXIMUM=E[,NU[,DENSITY]]")
     ->take_all()
@@ -166,101 +166,103 @@ void AddElasticModel(CLI::App& program, Options& options, RawOptions& raw)
   addNumber("--young", options.YoungModulus, "Young modulus, in Pa");
   addNumber("--poisson", options.PoissonRatio, "Poisson ratio, from 0 to less than 0.495");
   addNumber("--density", options.Density, "Density, in kg/m^3");
-  addNumber("--duration", options.Duration, "With mass-spring: how long it moves, in s");
+  addNumber("--duration", options.Duration, "With mass-spring: duration of the simulation, in s");
 }
 
 void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
 {
   const char* group =
-    "What deforms the volume (one of --mesh, --field, --transform, --tetgen, --lattice, --model)";
+    "Deformation (one of --mesh, --field, --transform, --tetgen, --lattice, --model)";
   program
     .add_option("--mesh", options.Mesh,
       "Mesh (" + GetMeshSuffixes() +
-        "; cells are split into tetrahedra), or a displacement field (.vti). Of a series in time "
-        "the "
-        "last step is read")
+        "; cells are split into tetrahedra), or displacement field (.vti). Of a time series, the "
+        "last time step is read")
     ->type_name("FILE")
     ->group(group);
   program
     .add_option("--field", options.Field,
       "Displacement field: .nii or .nii.gz of the shape (X,Y,Z,1,3) with the intent 1006 (vectors "
-      "right, anterior, superior) or 1007 (left, posterior, superior, as ITK and ANTs write "
-      "them), " +
+      "right, anterior, superior) or 1007 (left, posterior, superior, as written by ITK and "
+      "ANTs), " +
         std::string(HasITK ? ".mha, .mhd, .nrrd, .nhdr " : "") +
-        "or .vti. It is forward: it leads from a point of the volume to where that point goes, see "
-        "--field-is-inverse")
+        "or .vti. Without --field-is-inverse, it leads from each point of the volume to the "
+        "deformed position of that point")
     ->type_name("FILE")
     ->group(group);
   program
     .add_flag("--field-is-inverse", options.FieldIsInverse,
-      "The --field leads from a point of the result to the point of the volume that is seen there, "
-      "as registration programs write it (from the fixed to the moving image)")
+      "The --field leads from each point of the result to the point of the volume that is shown "
+      "there, as written by registration programs (from the fixed to the moving image)")
     ->group(group);
   program
     .add_option("--field-space", options.FieldSpace,
-      "The world of a --field that does not say it itself: lps (x to the left, y to the back, z to "
-      "the head) or ras (x to the right, y to the front) [that of the volume]")
+      "World coordinates of a --field whose file does not state them: lps (x to the left, y to the "
+      "back, z to the head) or ras (x to the right, y to the front, z to the head) [those of the "
+      "volume]")
     ->check(CLI::IsMember({ "lps", "ras" }))
     ->type_name("SPACE")
     ->group(group);
   program
     .add_option("--transform", raw.Transforms,
-      HasITK
-        ? "A registration's transform, from the result (the fixed image) to the volume (the moving "
-          "one), as ITK, SimpleITK, ANTs and 3D Slicer write it: .h5, .tfm, .txt or .mat with a "
-          "matrix, a B-spline, a displacement field or a composition, or a displacement field as "
-          "for --field. With ,invert behind its name a matrix is inverted. May be given several "
-          "times: points go through the last one first, as with antsApplyTransforms"
-        : "A registration's transform, which a program reads that was built with ITK: this one was "
-          "not")
+      HasITK ? "Transform of a registration, from the result (the fixed image) to the volume (the "
+               "moving image), as written by ITK, SimpleITK, ANTs and 3D Slicer: .h5, .tfm, .txt "
+               "or .mat with a matrix, a B-spline, a displacement field or a composition, or a "
+               "displacement field as for --field. With ,invert after the file name, a matrix is "
+               "inverted. May be given several times: the last transform is applied first, as in "
+               "antsApplyTransforms"
+             : "Transform of a registration. Not available: this program was built without ITK")
     ->type_name("FILE[,invert]")
     ->take_all()
     ->expected(1)
     ->group(group);
   program
     .add_option("--displacement", options.Displacement,
-      "Name of the point array of --mesh or of a --field in a .vti file that holds the "
-      "displacements, in world units and forward; the points of --mesh are then the mesh at rest")
+      "Name of the point array that holds the displacements, in world units, from rest to deformed "
+      "positions: an array of --mesh, or of a --field in a .vti file. The points of --mesh are "
+      "then at rest")
     ->type_name("NAME")
     ->group(group);
   program
     .add_option("--rest", options.Rest,
-      "The mesh at rest, with the cells of --mesh; the points of --mesh are then deformed")
+      "Mesh at rest, with the same cells as --mesh. The points of --mesh are then the deformed "
+      "positions")
     ->type_name("FILE")
     ->group(group);
   program
     .add_option("--mesh-space", options.MeshSpace,
-      "The world of files of --mesh, --rest, --cut and --points (.vtp, .vtu) that do not say it "
-      "themselves, as those of "
-      "3D "
-      "Slicer do: lps (x to the left, y to the back, z to the head) or ras (x to the right, y to "
-      "the front) [that of the volume]")
+      "World coordinates of files of --mesh, --rest, --cut and --points (.vtp, .vtu) that do not "
+      "state them (files of 3D Slicer do): lps (x to the left, y to the back, z to the head) or "
+      "ras (x to the right, y to the front, z to the head) [those of the volume]")
     ->check(CLI::IsMember({ "lps", "ras" }))
     ->type_name("SPACE")
     ->group(group);
   program
     .add_flag("--points-are-deformed", options.PointsAreDeformed,
-      "The points of --mesh are deformed already: their displacements lead from the rest "
-      "positions to them")
+      "The points of --mesh are already deformed. The displacements lead from the positions at "
+      "rest to these points")
     ->group(group);
-  program.add_option("--scale", options.Scale, "Factor on the displacements of --mesh")
+  program
+    .add_option("--scale", options.Scale,
+      "Factor by which the displacements of --mesh or --field are multiplied")
     ->capture_default_str()
     ->type_name("NUMBER")
     ->group(group);
   program
-    .add_flag(
-      "--tetgen", options.TetGen, "Mesh the body that the volume shows with TetGen, then --push")
+    .add_flag("--tetgen", options.TetGen,
+      "Make a mesh of the body in the volume with TetGen. Use with --push or --model")
     ->group(group);
   program
     .add_option("--lattice", raw.Lattice,
-      "Mesh of cubes over the whole volume, of five tetrahedra each, with at most so many nodes on "
-      "each axis, then --push")
+      "Make a mesh of cubes that covers the whole volume, with at most NX, NY and NZ nodes on the "
+      "axes. Each cube has five tetrahedra. Use with --push or --model")
     ->type_name("NX,NY,NZ")
     ->group(group);
   program
     .add_option("--push", raw.Pushes,
-      "Move the nodes round X,Y,Z (world coordinates) by DX,DY,DZ (world units), falling smoothly "
-      "to nothing at RADIUS (world units). May be given several times: pushes add up")
+      "Move the nodes around X,Y,Z (world coordinates) by DX,DY,DZ (world units). The displacement "
+      "decreases smoothly to 0 at the distance RADIUS (world units). May be given several times: "
+      "displacements are added")
     ->type_name("X,Y,Z,DX,DY,DZ,RADIUS")
     ->take_all()
     ->expected(1)
@@ -268,38 +270,38 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
 
   program
     .add_option("--model", options.Model,
-      "chainmail: each voxel is linked to its neighbours, which follow a --pull as far as their "
-      "links do not give way. fem, with --tetgen or --lattice: the mesh comes to equilibrium, by "
-      "finite elements. mass-spring, with --lattice: it moves for some time. Units are mm")
+      "chainmail: voxels are linked to their neighbors, and follow a --pull as far as the limits "
+      "of their links require. fem, with --tetgen or --lattice: the equilibrium of the mesh, by "
+      "finite elements. mass-spring, with --lattice: a simulation of the mesh for --duration. "
+      "Units of length are mm")
     ->check(CLI::IsMember({ "chainmail", "fem", "mass-spring" }))
     ->type_name("NAME")
     ->group(group);
   program
     .add_option("--pull", raw.Pulls,
-      "With --model: take the voxels or nodes within RADIUS of X,Y,Z (world coordinates; by "
-      "default "
-      "the nearest one) and move them by DX,DY,DZ (world units). May be given several times")
+      "With --model: move the voxels or nodes within RADIUS of X,Y,Z (world coordinates) by "
+      "DX,DY,DZ (world units). Without RADIUS, only the nearest one is moved. May be given several "
+      "times")
     ->type_name("X,Y,Z,DX,DY,DZ[,RADIUS]")
     ->take_all()
     ->expected(1)
     ->group(group);
   AddElasticModel(program, options, raw);
 
-  const char* tools = "What is cut before (alone, or with what deforms the volume)";
+  const char* tools = "Cuts and carvings of the volume at rest (alone, or with a deformation)";
   program
     .add_option("--cut", options.Cuts,
       "Cut the volume along a sheet of triangles (" + GetSheetSuffixes() +
-        ", world coordinates); with --model fem or "
-        "mass-spring the mesh, before it moves, and the volume opens there. May be given several "
-        "times")
+        ", world coordinates). With --model fem or mass-spring, the sheet cuts the mesh at rest, "
+        "and the volume opens there. May be given several times")
     ->type_name("FILE")
     ->take_all()
     ->expected(1)
     ->group(tools);
   program
     .add_flag("--smooth-cut", options.SmoothCut,
-      "With --cut: divide what a sheet crosses between its two sides, in place of leaving it out. "
-      "Needs the resampler exact or automatic")
+      "With --cut: divide tetrahedra that a sheet crosses between its two sides, instead of "
+      "leaving them out. Requires --resampler exact or automatic")
     ->group(tools);
   program
     .add_option("--carve", raw.Carvings,
@@ -309,44 +311,45 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
     ->expected(1)
     ->group(tools);
 
-  const char* tetgen = "Mesh of --tetgen";
+  const char* tetgen = "Mesh made by --tetgen";
   program
     .add_option("--isovalue", options.Isovalue,
-      "Value from which on a voxel belongs to the body [chosen by the histogram]")
+      "Minimum value of voxels of the body [computed from the histogram]")
     ->type_name("NUMBER")
     ->group(tetgen);
   program
     .add_option("--pieces", options.Pieces,
-      "Of a body in several pieces, mesh all or the largest alone: all or largest. Specks of up to "
-      "26 voxels are left out")
+      "Which pieces of the body are meshed: all, or only the largest one. Pieces of at most 26 "
+      "voxels are left out")
     ->capture_default_str()
     ->check(CLI::IsMember({ "all", "largest" }))
     ->type_name("MODE")
     ->group(tetgen);
   program
     .add_option("--edge-length", options.EdgeLength,
-      "Length of the tetrahedra's edges, in world units; 0: a twentieth of the diagonal of the "
-      "volume, and a tenth with --model fem, which has nodes in the middle of edges as well. "
-      "Within a --push, edges are at most a sixth of its radius")
+      "Target length of the edges of the tetrahedra, in world units. 0: a twentieth of the "
+      "diagonal of the volume, or with --model fem a tenth, because fem adds nodes in the middle "
+      "of edges. Within a --push, edges are not longer than a sixth of its radius")
     ->capture_default_str()
     ->check(CLI::NonNegativeNumber)
     ->type_name("NUMBER")
     ->group(tetgen);
   program
     .add_option("--radius-edge-ratio", options.RadiusEdgeRatio,
-      "Quality of the tetrahedra: circumscribed radius by shortest edge, 1 to 100")
+      "Quality of the tetrahedra: maximum ratio of the radius of the circumscribed sphere to the "
+      "shortest edge, 1 to 100")
     ->capture_default_str()
     ->check(CLI::Range(1.0, 100.0))
     ->type_name("NUMBER")
     ->group(tetgen);
   program
     .add_option("--tetgen-executable", options.TetGenExecutable,
-      "The TetGen program [the one found when this program was built]")
+      "TetGen program [the program that was found when deform-volume was built]")
     ->type_name("FILE")
     ->group(tetgen);
 }
 
-/// Options that say nothing about what is asked for are mistakes, and are not ignored.
+/// Makes options that have no effect without another option an error.
 void AddDependencies(CLI::App& program)
 {
   const auto needs = [&](const char* needed, std::initializer_list<const char*> options)
@@ -390,49 +393,51 @@ void AddDependencies(CLI::App& program)
 
 void AddResampling(CLI::App& program, Options& options, RawOptions& raw)
 {
-  const char* group = "How it is deformed";
+  const char* group = "Resampling";
   program
     .add_option("--outside", raw.Outside,
-      "Voxels outside the mesh: discard, or extrapolate from the nearest tetrahedron")
+      "What happens to voxels outside the mesh or field: discard leaves them out, extrapolate "
+      "moves them with the nearest tetrahedron")
     ->capture_default_str()
     ->check(CLI::IsMember({ "discard", "extrapolate" }))
     ->type_name("MODE")
     ->group(group);
   program
     .add_option("--keep", options.KeepDistance,
-      "Tissue outside the mesh stays where it is: what the nearest point of the mesh does fades to "
-      "nothing within DISTANCE (world units; 0: a hard edge)")
+      "Tissue outside the mesh or field stays where it is. The displacement of the boundary fades "
+      "to zero over DISTANCE (world units). With 0, nothing outside moves")
     ->check(CLI::NonNegativeNumber)
     ->type_name("DISTANCE")
     ->group(group);
   program
     .add_option("--reference", options.Reference,
-      "An image, of the types of VOLUME, whose grid the result gets: its voxels, their spacing, "
-      "direction and place. Its values are not used. With --transform that is the fixed image")
+      "Image, in a format of VOLUME, whose grid the result gets: size, spacing, direction and "
+      "origin. Its values are not used. With --transform, give the fixed image")
     ->type_name("FILE")
     ->group(group);
   program
     .add_option("--bounds", raw.Bounds,
-      "Extent of the result: that of the deformed volume, or of the volume at rest")
+      "Bounds of the result: those of the deformed volume, or those of the volume at rest")
     ->capture_default_str()
     ->check(CLI::IsMember({ "deformed", "volume" }))
     ->type_name("MODE")
     ->group(group);
-  program.add_option("--padding", options.Padding, "Border on each side of the result, in voxels")
+  program
+    .add_option(
+      "--padding", options.Padding, "Width of a border on each side of the result, in voxels")
     ->capture_default_str()
     ->check(CLI::Range(0, 1000))
     ->type_name("VOXELS")
     ->group(group);
   program
     .add_option("--background", options.Background,
-      "Value of the voxels that the deformed volume does not cover [the least value where values "
-      "can "
-      "be negative, which is air in CT, else 0]")
+      "Value of voxels outside the deformed volume [the minimum of the volume if its type has "
+      "negative values, such as air in CT, otherwise 0]")
     ->type_name("NUMBER")
     ->group(group);
   program
     .add_option("--categorical", options.CategoricalArrays,
-      "Name of an array of labels, which are never mixed. May be given several times")
+      "Name of an array of labels, which is not interpolated. May be given several times")
     ->type_name("NAME")
     ->take_all()
     ->expected(1)
@@ -440,41 +445,42 @@ void AddResampling(CLI::App& program, Options& options, RawOptions& raw)
   program.add_flag("--labels", options.Labels, "All arrays hold labels")->group(group);
   program
     .add_option("--density-array", options.DensityArrays,
-      "Name of an array of amounts for each unit of volume, such as a dose or an activity: its "
-      "values "
-      "are divided by how many times as large the deformation makes the volume, so that their sum "
-      "stays. They become float, or stay double. May be given several times")
+      "Name of an array that holds an amount per unit of volume, such as a dose or an activity. "
+      "Its values are divided by the Jacobian determinant, so that the deformation preserves the "
+      "total amount. The result is float, or double for an array of doubles. May be given several "
+      "times")
     ->type_name("NAME")
     ->take_all()
     ->expected(1)
     ->group(group);
   program
     .add_option("--resampler", options.Resampler,
-      "exact: deforms a mesh of the voxels; mesh-rasterization: looks the volume up from the "
-      "deformation mesh, with less memory")
+      "exact: resamples over tetrahedra whose vertices are the voxels; mesh-rasterization: over "
+      "the tetrahedra of the deformation mesh, with less memory; automatic: exact if the memory is "
+      "sufficient")
     ->capture_default_str()
     ->check(CLI::IsMember({ "automatic", "exact", "mesh-rasterization" }))
     ->type_name("NAME")
     ->group(group);
   program
     .add_option("--interpolation", options.Interpolation,
-      "linear; nearest, which mixes no values, as --labels; or cubic, over 64 voxels, and linear "
-      "where some of these are missing or cut off")
+      "linear; nearest, which takes the value of the nearest voxel, as --labels does; or cubic, "
+      "which uses 64 voxels, and is linear where some of them are missing or cut off")
     ->capture_default_str()
     ->check(CLI::IsMember({ "nearest", "linear", "cubic" }))
     ->type_name("NAME")
     ->group(group);
   program
     .add_option("--device", options.Device,
-      "OpenCL device: cpu, gpu, or a part of a name in --list-devices [the best; or what the "
-      "environment variable DEFORMVOLUME_DEVICE says]")
+      "OpenCL device: cpu, gpu, or a part of a name that --list-devices prints [the environment "
+      "variable DEFORMVOLUME_DEVICE, or else the best device]")
     ->type_name("NAME")
     ->group(group);
 }
 
 void AddOutput(CLI::App& program, Options& options, RawOptions& raw)
 {
-  const char* group = "What is written";
+  const char* group = "Output";
   program
     .add_option("-o,--output", options.Outputs,
       std::string("The deformed volume: .vti (all arrays), ") + FormatsOfOneArray +
@@ -485,22 +491,21 @@ void AddOutput(CLI::App& program, Options& options, RawOptions& raw)
     ->group(group);
   program
     .add_option("--label-output", options.LabelOutputs,
-      std::string(
-        "The deformed labels of --label-volume, in files of their own: .vti (all arrays), ") +
+      std::string("The deformed labels of --label-volume: .vti (all arrays), ") +
         FormatsOfOneArray +
-        " (where there is one array). They are 0 where the deformed volume does not reach. May be "
-        "given several times")
+        " (only if there is one array). Labels are 0 outside the deformed volume. May be given "
+        "several times")
     ->type_name("FILE")
     ->take_all()
     ->expected(1)
     ->group(group);
   program
     .add_option("--jacobian", options.Jacobians,
-      std::string(
-        "How many times as large the deformation makes the volume at each voxel of the "
-        "result, less than 0 where it turns it inside out, and 0 where the deformed volume "
-        "does not reach: .vti, ") +
-        FormatsOfOneArray + ". May be given several times")
+      std::string("The Jacobian determinant of the deformation (deformed by undeformed volume) at "
+                  "each voxel of the result: .vti, ") +
+        FormatsOfOneArray +
+        ". It is negative where the deformation turns tissue inside out, and 0 outside the "
+        "deformed volume. May be given several times")
     ->type_name("FILE")
     ->take_all()
     ->expected(1)
@@ -508,60 +513,62 @@ void AddOutput(CLI::App& program, Options& options, RawOptions& raw)
   program
     .add_option("--inverse-field", options.InverseFields,
       std::string(
-        "The displacement field from each voxel of the result to the point of the volume "
-        "that it shows, as ITK, ANTs and 3D Slicer read it (left, posterior, superior; mm): ") +
-        FormatsOfOneArray + "; or .vti, in the world of the volume. May be given several times")
+        "The displacement field from each voxel of the result to the point of the volume that is "
+        "shown there, as read by ITK, ANTs and 3D Slicer (left, posterior, superior; mm): ") +
+        FormatsOfOneArray +
+        "; or .vti, in the world coordinates of the volume. May be given several times")
     ->type_name("FILE")
     ->take_all()
     ->expected(1)
     ->group(group);
   program
     .add_option("--points-output", options.PointsOutputs,
-      "The moved points of --points, in the format and the world of that file: the first one "
-      "belongs to the first --points, the second one to the second. Points outside the deformation "
-      "stay where they are")
+      "The moved points of --points, in the format and the world coordinates of that file. Give "
+      "one for each --points, in the same order. Points outside the deformation stay where they "
+      "are")
     ->type_name("FILE")
     ->take_all()
     ->expected(1)
     ->group(group);
   program
     .add_option("--write-mesh", options.MeshOutput,
-      "The mesh of --tetgen or --lattice at rest, in the world of the volume, with the point array "
-      "\"Displacement\" (.vtu). Without any other output and without --push it is the mesh for "
-      "another solver")
+      "The mesh of --tetgen or --lattice at rest, in the world coordinates of the volume, with the "
+      "point array \"Displacement\" (.vtu). If it is the only output, --push is not needed: the "
+      "mesh can be the input of another solver")
     ->type_name("FILE")
     ->group(group);
   program
     .add_option("--image", options.Image,
-      "Picture of the volume before and after, 700 x 700 pixels each, side by side (.png)")
+      "Picture of the volume before and after the deformation, side by side, 700 x 700 pixels each "
+      "(.png)")
     ->type_name("FILE")
     ->group(group);
   program
     .add_option("--movie", options.Movie,
-      "Pictures like that of --image of the way there, which --model goes in --frames steps: a "
-      "file "
-      "for each frame (.png: movie.png makes movie0001.png), or a video in Ogg Theora (.ogv)")
+      "Pictures like that of --image for each of the --frames steps of --model: one file for each "
+      "frame (.png: movie.png makes movie0001.png), or a video in Ogg Theora (.ogv)")
     ->type_name("FILE")
     ->group(group);
   program
     .add_option("--frames", options.Frames,
-      "How many: handles go as many steps, and mass-spring takes as many parts of --duration")
+      "Number of frames of --movie. Handles move in this number of steps, and mass-spring divides "
+      "--duration into it")
     ->check(CLI::Range(1, 9999))
     ->type_name("NUMBER")
     ->group(group);
   program
     .add_option("--threshold", options.Threshold,
-      "Value from about which on the picture shows something [the isovalue of --tetgen, or a fifth "
+      "Minimum value that the picture shows, approximately [the isovalue of --tetgen, or a fifth "
       "of the range of values]")
     ->type_name("NUMBER")
     ->group(group);
   program
     .add_option("--view", raw.View,
-      "Direction from the volume to the viewer of the picture [one from which a face looks at the "
-      "viewer: in front, a little from the side]")
+      "Direction from the volume to the viewer of the picture [slightly from the side of the face, "
+      "which looks at the viewer]")
     ->type_name("X,Y,Z")
     ->group(group);
-  program.add_flag("-q,--quiet", options.Quiet, "No progress bar and no table of timings")
+  program.add_flag("-q,--quiet", options.Quiet, "Print no progress bar and no table of times")
     ->group(group);
 }
 }
@@ -573,17 +580,16 @@ std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)
     "deform-volume");
   const std::string placed = HasITK
     ? "s-form,\nor else their q-form (x to the right, y to the front, z to the head); DICOM "
-      "series, "
-      "MetaImage\nand NRRD files by origin and direction (x to the left, y to the back, z to the "
-      "head, unless an\nNRRD file says otherwise); .vti files as they are. "
+      "series, MetaImage\nand NRRD files by origin and direction (x to the left, y to the back, z "
+      "to the head, unless an\nNRRD file states another space); .vti files by origin and "
+      "direction. "
     : "s-form,\nor else their q-form (x to the right, y to the front, z to the head); .vti files "
-      "as "
-      "they are.\n";
+      "by origin and\ndirection.\n";
   program.footer(
-    "World coordinates are those of the file, mostly in mm: NIfTI files are placed by their " +
+    "World coordinates are those of the file, usually in mm. NIfTI files are placed by their " +
     placed +
-    "All lengths are in these units. A --field is\n"
-    "turned into the world of the volume, its vectors included.\n\n"
+    "All lengths are in these units. A --field\n"
+    "is converted to the world coordinates of the volume, including its vectors.\n\n"
     "Exit codes: 0 success, 1 failure, 2 wrong usage.\n\n"
     "Example: dent a head to a depth of 15 mm\n"
     "  deform-volume head.nii.gz --tetgen --push 0,88,-50,0,-15,0,30 -o dented.nii.gz");
@@ -593,37 +599,38 @@ std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)
     ->type_name("FILE");
   program
     .add_option("--frame", options.Frame,
-      std::string("Which volume of a file with several in time, counted from 0 (NIfTI") +
+      std::string(
+        "Index of the volume to read from a file with several time steps, counted from 0 (NIfTI") +
         (HasITK ? ", MetaImage, NRRD)" : ")"))
     ->check(CLI::NonNegativeNumber)
     ->type_name("NUMBER");
   program
     .add_option("--volume-space", options.VolumeSpace,
-      std::string("The world of a volume whose file does not say it (.vti") +
+      std::string("World coordinates of a volume whose file does not state them (.vti") +
         (HasITK ? ", some .nrrd" : "") + "): lps or ras, see --field-space")
     ->check(CLI::IsMember({ "lps", "ras" }))
     ->type_name("SPACE");
   program
     .add_option("--label-volume", options.LabelVolume,
-      "Labels of the voxels of VOLUME, on its grid, in a file of the same types: whole numbers, "
-      "which are deformed with it and never mixed")
+      "Labels of the voxels of VOLUME, on the same grid, in a file of the same formats. Labels "
+      "must be integers. They are deformed with VOLUME, and not interpolated")
     ->type_name("FILE");
   program
     .add_option("--points", options.Points,
       std::string("Points, surfaces or landmarks that belong to VOLUME: ") + PointFormats +
         ". They move with the tissue, from VOLUME (the moving image) to the result (the fixed "
-        "image). antsApplyTransformsToPoints leads points the opposite way by the same transforms. "
-        "The first line of a .csv file names its columns, which begin with x,y,z; its world is "
-        "lps. May be given several times")
+        "image). With the same transforms, antsApplyTransformsToPoints moves points in the "
+        "opposite direction. The first line of a .csv file must name its columns, starting with "
+        "x,y,z; its world coordinates are lps. May be given several times")
     ->type_name("FILE")
     ->take_all()
     ->expected(1);
   program.add_flag("--file-coordinates", options.FileCoordinates,
-    std::string(
-      "Do as VTK's and ParaView's readers do: no direction, and origin 0 for NIfTI files") +
+    std::string("Use the coordinates of VTK's and ParaView's readers: no direction, and the origin "
+                "0 for NIfTI files") +
       (HasITK ? " and DICOM series" : ""));
   program.add_flag(
-    "--list-devices", options.ListDevices, "List the OpenCL devices, the best first, and end");
+    "--list-devices", options.ListDevices, "List the OpenCL devices, the best first, and exit");
   AddDeformation(program, options, raw);
   AddResampling(program, options, raw);
   AddOutput(program, options, raw);

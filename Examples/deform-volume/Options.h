@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-/// What the command line says. Lengths are in the world units of the volume.
+/// The options of the command line. Lengths are in the world units of the volume.
 struct Options
 {
   bool ListDevices = false;
@@ -52,7 +52,7 @@ struct Options
   double PoissonRatio = 0.3;
   double Density = 1000.0;
   double Duration = 1.0;
-  std::string Tissue; // what the three are of; "": they are numbers of their own
+  std::string Tissue; // of YoungModulus, PoissonRatio and Density; "": these are given as numbers
   std::vector<MaterialOfValues> Materials;
 
   std::vector<std::string> Cuts;
@@ -76,7 +76,7 @@ struct Options
   std::vector<std::string> LabelOutputs;
   std::vector<std::string> Jacobians;
   std::vector<std::string> InverseFields;
-  /// One for each of Points.
+  /// One for each file of Points.
   std::vector<std::string> PointsOutputs;
   std::string MeshOutput;
   std::string Image;
@@ -86,7 +86,7 @@ struct Options
   std::optional<std::array<double, 3>> View;
   bool Quiet = false;
 
-  /// Whether the volume is deformed. Otherwise --write-mesh writes a mesh, and that is all.
+  /// Whether the volume is deformed. Otherwise only --write-mesh writes a file.
   bool WritesResult() const
   {
     return !this->Outputs.empty() || !this->LabelOutputs.empty() || !this->Jacobians.empty() ||
@@ -94,17 +94,17 @@ struct Options
       !this->Movie.empty();
   }
   bool HasTools() const { return !this->Cuts.empty() || !this->Carvings.empty(); }
-  /// Whether --cut cuts the mesh of a model, where the volume opens, and not the volume.
+  /// Whether --cut cuts the mesh of a model instead of the volume.
   bool CutsMesh() const { return !this->Cuts.empty() && this->HasElasticModel(); }
   bool HasLattice() const { return this->Lattice[0] > 0; }
-  /// Whether the tetrahedra of the mesh get nodes in the middle of their edges.
+  /// Whether the model adds nodes in the middle of edges.
   bool HasMidSideNodes() const { return this->Model == "fem"; }
   /// Whether a model moves the nodes of a mesh.
   bool HasElasticModel() const { return this->Model == "fem" || this->Model == "mass-spring"; }
 };
 
-/// Reads the command line. Returns the exit code where the program has nothing more to do: 0 after
-/// --help, 2 where the command line makes no sense, after a message that says why.
+/// Parses the command line. Returns an exit code if the program must exit: 0 after --help, 2 after
+/// an error message about the command line.
 std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options);
 
 #endif

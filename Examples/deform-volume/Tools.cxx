@@ -45,9 +45,9 @@ std::vector<std::string> CutAndCarve(const Options& options, Volume& volume, Mes
     const vtkIdType divided = cut->GetNumberOfDividedTetrahedra();
     if (off == 0 && divided == 0)
     {
-      messages.DisplayWarningText(
-        ("The sheet " + path + " crosses nothing of the volume. Is it in the world of the volume?")
-          .c_str());
+      messages.DisplayWarningText(("The sheet " + path +
+        " crosses nothing of the volume. Is it in the world coordinates of the volume?")
+                                    .c_str());
     }
     done.push_back(Describe(path, off, divided));
   }
@@ -66,8 +66,8 @@ std::vector<std::string> CutAndCarve(const Options& options, Volume& volume, Mes
     const vtkIdType off = carve->GetNumberOfSwitchedOffTetrahedra();
     if (off == 0)
     {
-      messages.DisplayWarningText("A sphere of --carve holds nothing of the volume. Are the "
-                                  "coordinates those of the file?");
+      messages.DisplayWarningText(
+        "A sphere of --carve holds nothing of the volume. Are its coordinates those of the file?");
     }
     done.push_back(Describe("sphere", off));
   }

@@ -142,7 +142,7 @@ private:
     if (!IsMaterialIndex(index))
     {
       vtkErrorWithObjectMacro(
-        owner, << "There is no material " << index << ". Give it a whole number from 0 to 255.");
+        owner, << "The material index " << index << " is not valid. Use an integer from 0 to 255.");
       return false;
     }
     return true;

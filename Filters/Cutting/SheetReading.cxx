@@ -82,7 +82,7 @@ WorldSheet ReadSheet(vtkPolyData* data, const glm::dvec3& sweepVector, const std
   WorldSheet sheet;
   if (!IsFinite(sweepVector))
   {
-    throw Error("SweepVector is not finite. Set a finite one.");
+    throw Error("SweepVector is not finite. Set a finite vector.");
   }
   if (!data)
   {

@@ -83,7 +83,7 @@ void CheckParts(const MeshParts& parts, vtkDataObject* object, const std::string
   }
   if (GetNumberOfNodes(parts) > std::numeric_limits<std::int32_t>::max())
   {
-    throw Error("The " + name + " has more than 2,147,483,647 points. Use a coarser one.");
+    throw Error("The " + name + " has more than 2,147,483,647 points. Use a coarser mesh.");
   }
 }
 

@@ -228,7 +228,7 @@ DeformationSource MeshGathering::Gather(const Ranks& ranks, const DeformationSou
       if (sum + sumOfDerived > static_cast<std::uint64_t>(std::numeric_limits<std::int32_t>::max()))
       {
         throw Error("The " + std::string(MESH_NAME) +
-          " has more than 2,147,483,647 points on all ranks. Use a coarser one.");
+          " has more than 2,147,483,647 points on all ranks. Use a coarser mesh.");
       }
       for (Tetrahedron& tetrahedron : piece.Tetrahedra)
       {

@@ -67,7 +67,7 @@ void CheckDisplacementScale(double scale)
 {
   if (!std::isfinite(scale))
   {
-    throw Error("DisplacementScale is not finite. Set a finite one.");
+    throw Error("DisplacementScale is not finite. Set a finite factor.");
   }
 }
 

@@ -86,7 +86,7 @@ double FindIsovalue(vtkImageData* volume, vtkDataArray* array, double resolution
     blocks.end());
   if (blocks.empty())
   {
-    throw Error("No body: the volume has no finite value that is not hidden.");
+    throw Error("No body: all values of the volume are hidden, infinite or NaN.");
   }
   const auto [low, high] = std::minmax_element(blocks.begin(), blocks.end(),
     [](const Block& a, const Block& b) { return a.Mean() < b.Mean(); });
@@ -95,11 +95,11 @@ double FindIsovalue(vtkImageData* volume, vtkDataArray* array, double resolution
   if (range == 0.0)
   {
     const std::string name = array->GetName() ? array->GetName() : "";
-    throw Error("The isovalue cannot be found: all values of the volume are equal" +
+    throw Error("The isovalue cannot be computed: all values of the volume are equal" +
       (array->GetNumberOfComponents() > 1
           ? " in the first component of the point array \"" + name + "\""
           : "") +
-      ". Set an isovalue, or give a volume that shows a body.");
+      ". Set an isovalue, or connect a volume that shows a body.");
   }
   std::vector<double> counts(NumberOfBins, 0.0);
   for (const Block& block : blocks)

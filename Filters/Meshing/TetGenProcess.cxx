@@ -247,7 +247,7 @@ vtkSmartPointer<vtkUnstructuredGrid> ReadMesh(const std::filesystem::path& folde
   catch (const std::ios::failure&)
   {
     throw Error("TetGen's result cannot be read: its files are missing or cut off. Is the disk "
-                "full, or is the program given as TetGen another one?");
+                "full, or is the given program not TetGen?");
   }
   auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
   mesh->SetPoints(points);
@@ -298,7 +298,7 @@ vtkSmartPointer<vtkUnstructuredGrid> RunTetGen(
     }
     const std::string said = LastLine(outcome.Text);
     throw SurfaceRejected("TetGen failed (" + outcome.Failure + ")." +
-      (said.empty() ? "" : " It says: " + said) +
+      (said.empty() ? "" : " TetGen says: " + said) +
       " For a volume, another edge length or smoothing may help.");
   }
   auto mesh = ReadMesh(folder.Path);

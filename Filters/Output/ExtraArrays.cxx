@@ -83,7 +83,7 @@ void ExtraArrays::Select(const ExtraArraysWish& wish, const ImageGeometry& volum
           [&](const SourceArray& array) { return HasName(array.Array, name); }))
     {
       throw Error("The volume on input port 0 has a point array \"" + std::string(name) +
-        "\", the name of an array that is to be generated. Rename or remove it.");
+        "\", which is the name of an array that the filter generates. Rename or remove it.");
     }
   };
   if (wish.RestPositions)

@@ -140,7 +140,7 @@ void ReadPointArrays(vtkUnstructuredGrid* grid, const BodySettings& settings, Bo
     }
   };
   need(fixed || mesh.PrescribedDisplacements.empty(), FixedName, PrescribedDisplacementName,
-    "Add it, not 0 where nodes are displaced.");
+    "Add that array, with values other than 0 at nodes that are displaced.");
   need(!mesh.Body.SlidingNormals.empty() || mesh.Body.SecondSlidingNormals.empty(),
     SlidingNormalName, SecondSlidingNormalName, "Rename the array.");
 }
@@ -350,12 +350,11 @@ void Hold(const glm::dvec3& position, double radius, const glm::dvec3& displacem
   if (held.size() == before)
   {
     throw Error(radius > 0.0
-        ? "A handle holds no node that could move: within its radius of its rest position there "
-          "is "
-          "none, or all of them are fixed or held by another handle. Use a larger radius, or "
-          "another rest position."
-        : "A handle holds no node that could move: the one that is nearest to its rest position "
-          "is fixed, or held by another handle. Use another rest position, or a radius.");
+        ? "A handle holds no node that could move: no node is within its radius of its rest "
+          "position, or all of these nodes are fixed or held by another handle. Use a larger "
+          "radius, or another rest position."
+        : "A handle holds no node that could move: the node nearest to its rest position is fixed, "
+          "or held by another handle. Use another rest position, or a radius greater than 0.");
   }
 }
 
@@ -388,7 +387,7 @@ GridTetrahedra ReadTetrahedra(vtkUnstructuredGrid* grid, bool takesQuadratic)
   const vtkIdType count = grid->GetNumberOfCells();
   if (count > 0 && (!types || types->GetNumberOfTuples() < count || !grid->GetCells()->IsValid()))
   {
-    throw Error(std::string("The cells of the ") + MESH + " are incomplete.");
+    throw Error(std::string("The cells of the ") + MESH + " are incomplete. Correct the cells.");
   }
   std::map<int, vtkIdType> others;
   for (vtkIdType cell = 0; cell < count; ++cell)
@@ -441,7 +440,8 @@ BodyMesh ReadBody(vtkUnstructuredGrid* grid, const BodySettings& settings)
   const vtkIdType points = grid->GetNumberOfPoints();
   if (points > std::numeric_limits<std::int32_t>::max())
   {
-    throw Error(std::string("The ") + MESH + " has more than 2,147,483,647 points.");
+    throw Error(
+      std::string("The ") + MESH + " has more than 2,147,483,647 points. Use a coarser mesh.");
   }
   if (points > 0)
   {

@@ -60,34 +60,37 @@ void FiniteElementSimulation::Warn(const EquilibriumReport& last)
   std::ostringstream text;
   if (now.NumberOfFrozenPieces != last.NumberOfFrozenPieces && now.NumberOfFrozenPieces > 0)
   {
-    text << now.NumberOfFrozenPieces
-         << " pieces of the mesh are not held: tetrahedra that are connected by their faces need "
-            "three nodes that lie on no common line and are fixed, held by handles, or shared with "
-            "a piece that is held, or nodes that slide in planes of three directions. One of them "
-            "has tetrahedron "
-         << now.FirstFrozenTetrahedron << ". They bear no load; " << now.NumberOfFollowingPieces
-         << " of them go with nodes that they share, or that are held, the others stay where they "
-            "were. Fix nodes of them, or connect them by faces.";
+    text << now.NumberOfFrozenPieces << " pieces of the mesh are not held. Tetrahedron "
+         << now.FirstFrozenTetrahedron
+         << " is in one of these pieces. A piece consists of tetrahedra that are connected by "
+            "their faces. It is held by three nodes that do not lie on one line and are fixed, "
+            "held by handles, or shared with a piece that is held, or by nodes that slide in "
+            "planes of three directions. Pieces that are not held bear no load: "
+         << now.NumberOfFollowingPieces
+         << " of them follow nodes that they share or that are held, the others do not move. Fix "
+            "nodes of these pieces, or connect the pieces by faces.";
     this->Warnings.push_back(text.str());
     text.str("");
   }
-  // Live, what is left is less in each frame: once is enough.
-  const bool isLive = this->Mode == EquilibriumMode::Interactive;
-  if (!now.IsConverged && !(isLive && this->HasWarnedOfResidual))
+  // In interactive mode the residual decreases from update to update, so one warning is enough.
+  const bool isInteractive = this->Mode == EquilibriumMode::Interactive;
+  if (!now.IsConverged && !(isInteractive && this->HasWarnedOfResidual))
   {
     text << "The body is not in equilibrium after " << now.NewtonSteps
-         << " steps: the largest force that is left on a node is " << 100.0 * now.RelativeResidual
-         << " % of the largest one that is applied or holds a node. "
-         << (isLive ? "Further updates go on from there (mode INTERACTIVE)."
-                    : "Move handles and loads in smaller steps, or make a better mesh.");
+         << " steps: the largest residual force on a node is " << 100.0 * now.RelativeResidual
+         << " % of the largest force that is applied to a node or holds it. "
+         << (isInteractive ? "Further updates continue from there (Mode INTERACTIVE)."
+                           : "Move handles and loads in smaller steps, or make a better mesh.");
     this->Warnings.push_back(text.str());
     text.str("");
     this->HasWarnedOfResidual = true;
   }
-  if (now.NumberOfInvertedTetrahedra > 0 && (!isLive || last.NumberOfInvertedTetrahedra == 0))
+  if (now.NumberOfInvertedTetrahedra > 0 &&
+    (!isInteractive || last.NumberOfInvertedTetrahedra == 0))
   {
     text << now.NumberOfInvertedTetrahedra
-         << " tetrahedra are inside out. Move handles and loads in smaller steps, or make a better "
+         << " tetrahedra are inverted (inside out). Move handles and loads in smaller steps, or "
+            "make a better "
             "mesh.";
     this->Warnings.push_back(text.str());
   }

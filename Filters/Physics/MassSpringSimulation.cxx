@@ -104,7 +104,8 @@ void MassSpringSimulation::Advance(const Frame& frame)
   if (before == 0 && this->Report.NumberOfInvertedTetrahedra > 0)
   {
     this->Warnings.push_back(std::to_string(this->Report.NumberOfInvertedTetrahedra) +
-      " tetrahedra are inside out, and springs may keep them so. Reset the body, and move handles "
+      " tetrahedra are inverted (inside out), and springs can keep them inverted. Reset the body, "
+      "and move handles "
       "and loads more slowly, or use finite elements.");
   }
 }

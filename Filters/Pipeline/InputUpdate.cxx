@@ -70,7 +70,7 @@ vtkDataObject* Update(vtkAlgorithm* filter, int port, vtkInformation* request, c
         throw Error(std::string("The source of the ") + names[port] + " on input port " +
           std::to_string(port) + " failed" +
           (ranks.AreMany() ? " on rank " + std::to_string(ranks.GetRank()) : "") +
-          ". Mend what its own message tells.");
+          ". Correct the error that the source reports.");
       }
     });
   return source->GetProducer()->GetOutputDataObject(source->GetIndex());

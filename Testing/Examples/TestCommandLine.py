@@ -140,7 +140,7 @@ with open(path("in.vti"), "rb") as file:
 fails(1, "no such file", path("none.nii.gz"), *lattice, *push, "-o", path("o.vti"))
 with open(path("text.nii"), "w", encoding="utf-8") as file:
     file.write("no volume")
-fails(1, "no NIfTI file", path("text.nii"), *lattice, *push, "-o", path("o.vti"))
+fails(1, "not a NIfTI file", path("text.nii"), *lattice, *push, "-o", path("o.vti"))
 fails(1, "a volume is a", __file__, *lattice, *push, "-o", path("o.vti"))
 os.makedirs(path("empty"), exist_ok=True)
 fails(1, "DICOM" if "DICOM" in line else "a volume is a", path("empty"), *lattice, *push, "-o", path("o.vti"))

@@ -188,7 +188,7 @@ for field_name, options, words in (
         ("identity.nii", (), "look like the positions"),
         ("positions.nii", inverse_flag, "look like the positions"),
         ("folded.nii", inverse_flag, "The field folds"), ("inverse.nii", inverse_flag, ""),
-        ("kind.nrrd", (), "goes with --field-is-inverse"), ("kind.nrrd", inverse_flag, "")):
+        ("kind.nrrd", (), "needs --field-is-inverse"), ("kind.nrrd", inverse_flag, "")):
     _, errors = call(program, path("volume.nii.gz"), "--field", path(field_name), "-o", path("out.vti"),
                      "--quiet", *options)
     assert words in errors and (words or "warning:" not in errors), errors
@@ -230,10 +230,10 @@ write_nrrd(path("wrong.nrrd"), single, in_lps, space="scanner-xyz")
 fails("right-anterior-superior", "wrong.nrrd")
 _, errors = call(program, path("volume.vti"), "--field", path("f.vti"), "--field-space", "lps", "-o",
                  path("no.vti"), code=1)
-assert "does not say whether its own world is lps or ras" in errors, errors
+assert "does not state whether its world coordinates are lps or ras" in errors, errors
 _, errors = call(program, path("volume.nii.gz"), "--field", path("ras.nii"), "--field-space", "lps",
                  "-o", path("out.vti"), "--quiet")
-assert "ras.nii says itself that it is ras" in errors, errors
+assert "ras.nii states that it is ras" in errors, errors
 write_nrrd(path("wrong.nrrd"), single, in_lps, encoding="bzip2")
 fails("bzip2", "wrong.nrrd")
 write_nrrd(path("wrong.nrrd"), single, in_lps, encoding="gzip")

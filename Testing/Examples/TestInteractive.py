@@ -35,7 +35,7 @@ for code, words, arguments in (
     (2, "cannot be used together", ["--record", "a.log", "--replay", "b.log"]),
     (1, "no such file", [path("missing.vti"), "--replay", path("missing.log")]),
     (1, "no such file", [path("ball.vti"), "--replay", path("missing.log")]),
-    (1, "is no session", [path("ball.vti"), "--session", path("ball.vti"), "--replay", "x.log"]),
+    (1, "is not a session file", [path("ball.vti"), "--session", path("ball.vti"), "--replay", "x.log"]),
 ):
     _, errors = call(program, *arguments, code=code, quiet=True)
     assert errors.startswith("deform-interactive: ") and words in errors, errors

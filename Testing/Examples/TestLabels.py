@@ -86,7 +86,7 @@ refuses(1, "no folder", "one.vti", output="none/o.vti")
 refuses(1, ["cannot read", "no such file"], "none.vti")
 with open(path("text.nii"), "w", encoding="utf-8") as file:
     file.write("no labels")
-refuses(1, ["cannot read", "no NIfTI file"], "text.nii")
+refuses(1, ["cannot read", "not a NIfTI file"], "text.nii")
 
 # Other grids: which number differs.
 for change, expected in (
@@ -113,7 +113,7 @@ for kind, bad in (("float32", 0.5), ("float64", 1e-3), ("float64", numpy.nan), (
     fractions = all_types[kind].copy()
     fractions[number // 2] = bad
     write_vti(make_labels(good=all_types["uint8"], bad=fractions), path("fractions.vti"))
-    refuses(1, ['array "bad" holds', "whole numbers"], "fractions.vti")
+    refuses(1, ['array "bad" holds', "labels are integers"], "fractions.vti")
 write_vti(make_labels(parts=all_types["int16"], more=all_types["uint8"]), path("two.vti"))
 refuses(1, ["one array", "parts, more", "Write .vti"], "two.vti", output="o.nii.gz")
 

@@ -33,7 +33,7 @@ fails("the name must end in", *same, "--inverse-field", path("field.h5"), code=2
 fails("is written twice", *same, "--jacobian", path("a.mha"), "--inverse-field", path("a.mha"), code=2)
 fails("would be overwritten", *same, "--inverse-field", path("moving.mha"), code=2)
 fails("there is no folder", *same, "--inverse-field", path("none/a.mha"))
-fails("--density-array dose: the volume has no such array; it has ", *same, "--density-array", "dose",
+fails("--density-array dose: the volume has no such array. It has ", *same, "--density-array", "dose",
       "-o", path("a.vti"))
 
 background = -123.0

@@ -233,7 +233,7 @@ def check_misuse_of_meshes():
     write_collection(path("broken.pvd"), [(0, "gone.vtu")])
     fails(1, [path("gone.vtu"), "no such file"], *as_mesh("broken.pvd"))
     write_collection(path("times.pvd"), [("later", "mesh.vtu")])
-    fails(1, '"later" of a file is no number', *as_mesh("times.pvd"))
+    fails(1, '"later" of a file is not a number', *as_mesh("times.pvd"))
     write_collection(path("nested.pvd"), [(0, "one.pvd")])
     fails(1, "another .pvd file", *as_mesh("nested.pvd"))
     write_collection(path("msh.pvd"), [(0, "fe.msh")])
@@ -487,7 +487,7 @@ def check_files_that_say_their_space():
     for name in ("slicer.vtu", "slicer.vtk"):
         check_same(expected, *as_mesh(name), "--mesh-space", "lps", source="in.nii.gz")
         check_same(expected, *as_mesh(name), "--mesh-space", "ras", source="in.nii.gz",
-                   expected_warnings=[f"--mesh-space ras is not used: {path(name)} says itself that "
+                   expected_warnings=[f"--mesh-space ras is not used: {path(name)} states that "
                                       "it is lps"])
     check_same(expected, *as_mesh("strange.vtu"), source="in.nii.gz",
                expected_warnings=['says "scanner", which is neither LPS nor RAS'])

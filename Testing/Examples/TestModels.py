@@ -42,8 +42,8 @@ def fails(code, expected, *arguments):
 
 # Misuse.
 for model in ("fem", "mass-spring"):
-    fails(2, "needs --tetgen or --lattice", "--model", model, *fix, *pull)
-    fails(2, "give --pull", "--model", model, *lattice, *fix, "--push", "1,2,3,4,5,6,7")
+    fails(2, "Give --tetgen or --lattice", "--model", model, *fix, *pull)
+    fails(2, "Use --pull", "--model", model, *lattice, *fix, "--push", "1,2,3,4,5,6,7")
     fails(2, "expected box:", "--model", model, *lattice, "--fix", "above:3")
     fails(2, "six numbers", "--model", model, *lattice, "--fix", "box:1,2,3")
     fails(2, "a number", "--model", model, *lattice, "--fix", "below:")
@@ -59,16 +59,16 @@ for text in ("5=1", "1:2", "1:2=", "1:2=3,", "1:2=3,0.3,1,4", "2:1=3", "a:2=3"):
           "--material", text)
 for text in ("kidney", "Liver", "1:2=kidney", "1:2=liver,0.3"):
     fails(2, "brain, liver, fat, muscle, skin, cartilage, bone", "--model", "fem", *lattice, *fix, "--material", text)
-fails(2, "--material liver sets what --young sets", "--model", "fem", *lattice, *fix, "--material", "liver",
+fails(2, "--material liver and --young set the same property", "--model", "fem", *lattice, *fix, "--material", "liver",
       "--young", "5000")
-fails(2, "--material fat: the body is already of --material liver", "--model", "fem", *lattice, *fix,
+fails(2, "--material fat: --material liver already sets the tissue of the body", "--model", "fem", *lattice, *fix,
       "--material", "liver", "--material", "fat")
 fails(2, "--material requires", "--model", "chainmail", *pull, "--material", "liver")
 fails(2, "--material requires --model", *lattice, "--push", "9,20,25,3,0,0,15", "--material", "liver")
 fails(1, "Young modulus of material 0", "--model", "fem", *lattice, *fix, "--material", "0:9=-1")
 fails(2, "--material requires", "--model", "chainmail", *pull, "--material", "0:9=1")
 fails(1, "no such file", "--model", "fem", *lattice, *fix, "--cut", path("none.vtp"))
-fails(2, "--smooth-cut divides voxels", "--model", "fem", *lattice, *fix, "--cut", "x.vtp",
+fails(2, "--smooth-cut cannot be used with --model fem", "--model", "fem", *lattice, *fix, "--cut", "x.vtp",
       "--smooth-cut")
 fails(2, "--movie requires --frames", "--model", "fem", *lattice, *fix, "--movie", "x.png")
 fails(2, "--frames requires --movie", "--model", "fem", *lattice, *fix, "--frames", "3")
@@ -79,7 +79,7 @@ fails(2, "--movie requires --model", *lattice, "--push", "9,20,25,3,0,0,15", "--
 fails(1, "there is no folder", "--model", "fem", *lattice, *fix, "--movie",
       path("none/x.png"), "--frames", "3")
 fails(2, "needs the cubes of --lattice", "--model", "mass-spring", "--tetgen", *fix)
-fails(2, "ChainMail has no mesh", "--model", "chainmail", *pull, "--write-mesh", path("m.vtu"))
+fails(2, "--model chainmail has no mesh", "--model", "chainmail", *pull, "--write-mesh", path("m.vtu"))
 
 # The same by the filters.
 source = deformvolume_vtk.vtkLatticeTetrahedraSource()

@@ -144,7 +144,7 @@ for name, text, words in (
         ("two.csv", "x,y\n1,2\n", "the first three are x,y,z"),
         ("short.csv", "x,y,z,t\n1,2,3,0\n\n1,2,3\n", "its line 4 has 3 columns, and its first line names 4"),
         ("long.csv", "x,y,z\n1,2,3,4\n", "its line 2 has 4 columns"),
-        ("nan.csv", "x,y,z\r\n1,2,3\r\n1,nan,3\r\n", 'its line 3 has "nan" as y, which is no number'),
+        ("nan.csv", "x,y,z\r\n1,2,3\r\n1,nan,3\r\n", 'its line 3 has "nan" as y, which is not a number'),
         ("inf.csv", "x,y,z\n1,2,1e999\n", 'its line 2 has "1e999" as z'),
         ("gap.csv", "x,y,z\n,2,3\n", 'its line 2 has "" as x'),
         ("words.csv", "x,y,z\n1.5mm,2,3\n", 'its line 2 has "1.5mm" as x')):
@@ -156,7 +156,7 @@ write_geometry("grid.vtu", some)
 os.replace(path("grid.vtu"), path("grid.vtp"))
 write_geometry("none.vtp", [])
 write_geometry("nan.vtp", [*some, [1, numpy.nan, 2]])
-for name, words in (("broken.vtp", "damaged or cut off"), ("words.vtp", "it is no XML file"),
+for name, words in (("broken.vtp", "damaged or cut off"), ("words.vtp", "it is no valid XML file"),
                     ("grid.vtp", "it does not hold polygonal data"), ("none.vtp", "it has no points"),
                     ("nan.vtp", "its point 2, counted from 0, is 1, nan, 2")):
     fails(words, name, "no.vtp")
@@ -165,13 +165,13 @@ point = good["markups"][0]["controlPoints"][0]
 for name, markups, words in (
         ("none", {"markups": []}, "it has no points"),
         ("list", [1], 'it has no list of "markups"'),
-        ("number", {"markups": [3]}, "the markup in its line 3 is no object"),
+        ("number", {"markups": [3]}, "the markup in its line 3 is not an object"),
         ("world", make_markups(some, "IJK"), 'the coordinateSystem in its line 6 is "IJK", and neither LPS nor RAS'),
         ("units", make_markups(some, coordinateUnits=["um", "UCUM", "micrometer"]), "are not mm"),
         ("mixed", {"markups": good["markups"] + make_markups(some, "RAS")["markups"]}, "some of its markups are LPS"),
         ("object", make_markups(some, controlPoints={}), "it has no points"),
-        ("words", make_markups(some, controlPoints="F"), "are no list"),
-        ("text", make_markups(some, controlPoints=["F"]), "is no object"),
+        ("words", make_markups(some, controlPoints="F"), "are not a list"),
+        ("text", make_markups(some, controlPoints=["F"]), "is not an object"),
         ("flat", make_markups(some, controlPoints=[{**point, "position": [1.0, 2.0]}]),
          "has no position of three numbers"),
         ("letter", make_markups(some, controlPoints=[{**point, "position": [1.0, "a", 2.0]}]),

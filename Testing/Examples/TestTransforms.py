@@ -58,9 +58,9 @@ for name, words in {
         "mni.xfm": "lta_convert --inmni",
         "warp.m3z": "mri_warp_convert --inm3z",
         "TransformParameters.0.txt": "transformix -def all",
-        "empty.txt": "it holds no transform as ITK",
-        "words.tfm": "it holds no transform as ITK",
-        "broken.h5": "it holds no transform as ITK",
+        "empty.txt": "it holds no transform of ITK",
+        "words.tfm": "it holds no transform of ITK",
+        "broken.h5": "it holds no transform of ITK",
         "two.tfm": "it holds 2 transforms",
         "planar.tfm": "AffineTransform_double_2_2",
         "words.xyz": "a transform is a .h5",
@@ -83,7 +83,7 @@ fails("on the grid of the volume", *affine, "--bounds", "deformed", code=2)
 _, errors = call(program, path("moving.nii.gz"), *affine, "-o", path("affine.h5"), code=2)
 assert "nothing to write" in errors or "must end in" in errors, errors
 _, errors = call(program, path("moving.mha"), "--volume-space", "ras", *affine, "-o", path("a.vti"), "-q")
-assert "says itself" in errors, errors
+assert "states that" in errors, errors
 
 # Numbers: single precision of the field, of coordinates up to 50, and of the values of noise.
 expected = numpy.load(path("expected.npz"))

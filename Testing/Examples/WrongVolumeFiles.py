@@ -81,8 +81,8 @@ for name, words, data, *arguments in (
         ("far.nii", "truncated", make_nifti(patches=[(108, "<f4", 100000)])),
         ("half.nii", "truncated", nifti[:500]), ("last.nii", "truncated", nifti[:-1]),
         ("half.nii.gz", "truncated", zipped[:len(zipped) // 2]),
-        ("text.nii", "it is no NIfTI file", b"hello"), ("text.nii.gz", "it is no NIfTI file", b"hello"),
-        ("none.nii.gz", "it is no NIfTI file", b""),
+        ("text.nii", "it is not a NIfTI file", b"hello"), ("text.nii.gz", "it is not a NIfTI file", b"hello"),
+        ("none.nii.gz", "it is not a NIfTI file", b""),
         ("shear.nii", "sheared by 0.0687", make_nifti(sform=shear(0.0012))),
         ("tilt.nii", "sheared by 16.7", make_nifti(sform=shear(0.3))),
         ("tilt-q.nii", "set sform_code to 0", make_nifti(sform=shear(0.3), qform=place))):
@@ -98,7 +98,7 @@ def make_meta(data=values.tobytes(), **fields):
     return "".join(lines).encode() + f"ElementDataFile = {name}\n".encode() + data
 
 
-missing, no_header = "its data are missing, damaged, or not complete", "it is no MetaImage file"
+missing, no_header = "its data are missing, damaged, or not complete", "it is not a MetaImage file"
 deflated = zlib.compress(values.tobytes())
 damaged = bytearray(deflated)
 damaged[len(damaged) // 2] ^= 255
@@ -187,7 +187,7 @@ for name, words, data, *arguments in (
     add(name, words, data, *arguments)
 
 add("volume.mgz", "mri_convert", b"")
-add("text.vti", "it is no image file of VTK", b"hello")
+add("text.vti", "it is not an image file of VTK", b"hello")
 wrong.append(["nowhere.mha", "there is no such file or folder"])
 with open(os.path.join(folder, "wrong.json"), "w", encoding="utf-8") as file:
     json.dump(wrong, file)

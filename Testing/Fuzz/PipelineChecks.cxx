@@ -202,7 +202,7 @@ std::string Pipeline::Check()
   }
   // A filter that has seen a smooth cut in a part of the volume asks for all of it from then on.
   if (tested.Errors.empty() && tested.Output->GetNumberOfPoints() > 0 && !fresh.Errors.empty() &&
-    fresh.Errors[0].find("From the next update on all of it") != std::string::npos)
+    fresh.Errors[0].find("from the next update on, the whole volume") != std::string::npos)
   {
     other.GetFilter()->Modified();
     fresh = other.Update(nullptr, time);

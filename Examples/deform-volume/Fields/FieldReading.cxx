@@ -33,7 +33,7 @@ std::string GetShapeText(vtkNIFTIImageHeader* header)
   return "(" + text + ")";
 }
 
-/// What the shape of a NIfTI file means where it is not that of a field; "" where it is.
+/// Why the shape of a NIfTI file is not that of a field; "" if it is one.
 std::string FindWrongShape(vtkNIFTIImageHeader* header)
 {
   const auto axes = static_cast<int>(header->GetDim(0));
@@ -90,7 +90,7 @@ bool IsRightAnterior(vtkNIFTIImageHeader* header, const std::string& what)
   if (!reason.empty())
   {
     throw Failure(what + ": its shape is " + GetShapeText(header) +
-      ", where a displacement field has (X, Y, Z, 1, 3): " + reason);
+      ", but a displacement field has the shape (X, Y, Z, 1, 3): " + reason);
   }
   if (intent != IntentDisplacement && intent != NIfTIIntentVector)
   {
@@ -101,7 +101,7 @@ bool IsRightAnterior(vtkNIFTIImageHeader* header, const std::string& what)
   return intent == IntentDisplacement;
 }
 
-/// Slicer says in NRRD files in which direction a field maps.
+/// 3D Slicer writes the direction of a field into NRRD files.
 void CheckKind(const Volume& field, const std::string& path, bool isInverse, Messages& messages)
 {
   const auto found = field.Fields.find("displacement field type");
@@ -109,14 +109,14 @@ void CheckKind(const Volume& field, const std::string& path, bool isInverse, Mes
   if ((kind == "resampling" && !isInverse) || (kind == "modeling" && isInverse))
   {
     messages.DisplayWarningText(("The displacement field type of " + path + " is \"" + kind +
-      (isInverse ? "\": it is forward, and --field-is-inverse does not go with it."
-                 : "\": it is a field from the deformed volume to the volume at rest, which "
-                   "goes with --field-is-inverse."))
+      (isInverse ? "\": it is forward, so --field-is-inverse is wrong for it."
+                 : "\": it leads from the deformed volume to the volume at rest, and needs "
+                   "--field-is-inverse."))
                                   .c_str());
   }
 }
 
-/// Applies a matrix to vectors, which become float or double; none where that changes nothing.
+/// Applies a matrix to vectors. The result is float or double, or null if nothing changes.
 vtkSmartPointer<vtkDataArray> Turn(vtkDataArray* stored, vtkMatrix3x3* matrix)
 {
   if (matrix->IsIdentity())
@@ -150,7 +150,7 @@ void FlipWorldAxes(vtkMatrix3x3* matrix)
   }
 }
 
-/// Takes a field of a .vti file, which says nothing of its world, from one world to the other.
+/// Converts a field of a .vti file, which states no world coordinates, from LPS to RAS or back.
 void FlipWorld(vtkImageData* image)
 {
   FlipWorldAxes(image);
@@ -171,8 +171,8 @@ void FlipWorld(vtkImageData* image)
   }
 }
 
-/// Says so where vectors are rather the positions that points move to, which NiftyReg and
-/// voxelmorph call a deformation field: where they grow with the position by about as much.
+/// Warns if the vectors seem to be deformed positions, which NiftyReg and voxelmorph call a
+/// deformation field: such vectors increase with the position by about the same amount.
 void CheckPositions(vtkImageData* image, const std::string& path, Messages& messages)
 {
   vtkDataArray* const vectors = image->GetPointData()->GetVectors();
@@ -235,7 +235,7 @@ vtkSmartPointer<vtkImageData> ReadField(const std::string& path, const Volume& v
       "transformations into a displacement field first");
   }
   ReadingOptions reading;
-  reading.Frame = 0; // what its shape says is looked at below
+  reading.Frame = 0; // the shape is checked below
   Volume field = ReadVolume(path, reading, messages, showProgress);
   vtkImageData* image = field.Image;
   const WorldAxes space =
@@ -253,7 +253,7 @@ vtkSmartPointer<vtkImageData> ReadField(const std::string& path, const Volume& v
   vtkNew<vtkMatrix3x3> matrix;
   if (field.NIfTIHeader)
   {
-    // The image is right-anterior-superior whatever its vectors are.
+    // The image is right-anterior-superior, independently of its vectors.
     if (!IsRightAnterior(field.NIfTIHeader, what))
     {
       FlipWorldAxes(matrix);

@@ -69,8 +69,7 @@ void WriteInverseField(const Options& options, const Volume& deformed, Messages&
   if (uncovered > 0)
   {
     messages.DisplayWarningText(("The inverse field is 0 at " + std::to_string(uncovered) + " of " +
-      std::to_string(deformed.Image->GetNumberOfPoints()) +
-      " voxels, which the deformed volume does not cover.")
+      std::to_string(deformed.Image->GetNumberOfPoints()) + " voxels outside the deformed volume.")
                                   .c_str());
   }
   for (const std::string& path : options.InverseFields)

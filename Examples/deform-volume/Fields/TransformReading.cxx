@@ -124,7 +124,7 @@ void CheckProgram(const std::string& path, const std::string& what)
   if (CountNumbers(path) == numbersOfMatrix)
   {
     throw Failure(what +
-      ": it is a matrix of 16 numbers, as FSL and NiftyReg write it. Convert it first; of FSL: "
+      ": it is a matrix of 16 numbers, as written by FSL and NiftyReg. Convert it first; of FSL: "
       "c3d_affine_tool -ref FIXED.nii.gz -src MOVING.nii.gz " +
       path + " -fsl2ras -oitk transform.txt; of NiftyReg: c3d_affine_tool " + path +
       " -oitk transform.txt");
@@ -168,19 +168,19 @@ ItkTransform::Pointer ReadTransform(const TransformFile& file, const std::string
   }
   catch (const std::exception&) // says nothing to somebody who does not know ITK's sources
   {
-    throw Failure(what + ": it holds no transform as ITK, ANTs and 3D Slicer write it");
+    throw Failure(what + ": it holds no transform of ITK, ANTs or 3D Slicer");
   }
   if (list->size() != 1)
   {
     throw Failure(what + ": it holds " + std::to_string(list->size()) +
-      " transforms and does not say how they follow each other. Write them as one composite "
-      "transform, or in a file each");
+      " transforms, but not their order. Write them as one composite transform, or in separate "
+      "files");
   }
   auto* const transform = dynamic_cast<ItkTransform*>(list->front().GetPointer());
   if (!transform)
   {
     throw Failure(what + ": it holds " + list->front()->GetTransformTypeAsString() +
-      ", where a transform of points in space is needed");
+      ", but a transform of points in space is needed");
   }
   if (!file.IsInverted)
   {
@@ -210,8 +210,8 @@ std::unique_ptr<PointMap> ReadMap(
     if (file.IsInverted)
     {
       throw Failure(what +
-        ": a displacement field cannot be inverted here. Registration programs write that of the "
-        "other direction, too (ANTs: the file InverseWarp)");
+        ": a displacement field cannot be inverted. Use the inverse field, which registration "
+        "programs also write (ANTs: the file InverseWarp)");
     }
     FieldOptions options;
     options.IsInverse = true;
@@ -227,8 +227,8 @@ vtkSmartPointer<vtkImageData> ReadTransforms(const std::vector<TransformFile>& f
 {
   if (volume.Axes == WorldAxes::Unknown)
   {
-    throw Failure("--transform leads through the world left, posterior, superior, and the file of "
-                  "the volume does not say whether its own is that: say it with --volume-space");
+    throw Failure("--transform needs the world coordinates left, posterior, superior, but the file "
+                  "of the volume does not state its world coordinates. Give --volume-space");
   }
   Volume world;
   world.Axes = WorldAxes::LeftPosteriorSuperior;

@@ -39,7 +39,7 @@ std::string GetText(const std::string& text, const Range& range)
   throw Failure("cannot read " + path + ": " + words);
 }
 
-/// NaN where a text is no number.
+/// NaN if the text is not a number.
 double GetNumber(const std::string& text)
 {
   std::istringstream stream(text);
@@ -49,7 +49,7 @@ double GetNumber(const std::string& text)
   return isNumber ? number : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// The shortest text that is read as the same number.
+/// The shortest text that represents the number exactly.
 std::string GetShortestText(double number)
 {
   std::string text;
@@ -69,7 +69,8 @@ std::string GetShortestText(double number)
   return text;
 }
 
-/// The columns of a line, without blanks round them. Commas in quotation marks divide nothing.
+/// The columns of a line, without surrounding blanks. Commas in quotation marks do not separate
+/// columns.
 std::vector<Range> FindColumns(const std::string& text, std::size_t begin, std::size_t end)
 {
   std::vector<Range> columns;
@@ -98,7 +99,7 @@ std::vector<Range> FindColumns(const std::string& text, std::size_t begin, std::
   return columns;
 }
 
-/// The number of columns, from the line that names them.
+/// The number of columns of the header line.
 std::size_t ReadHeader(
   const std::string& path, const std::string& text, const std::vector<Range>& columns)
 {
@@ -112,7 +113,7 @@ std::size_t ReadHeader(
   {
     Fail(path,
       "its first line is \"" + GetText(text, { columns.front().first, columns.back().second }) +
-        "\", and has to name the columns, of which the first three are x,y,z");
+        "\". It must name the columns, and the first three must be x,y,z");
   }
   return columns.size();
 }
@@ -151,7 +152,7 @@ void ReadTable(const std::string& path, LandmarkFile& file)
       point[axis] = GetNumber(number);
       if (!std::isfinite(point[axis]))
       {
-        Fail(path, place + " has \"" + number + "\" as " + "xyz"[axis] + ", which is no number");
+        Fail(path, place + " has \"" + number + "\" as " + "xyz"[axis] + ", which is not a number");
       }
       file.Numbers.push_back(columns[axis]);
     }
@@ -188,7 +189,7 @@ Json::Value ParseJson(const std::string& path, const std::string& text)
   }
   if (!isParsed)
   {
-    // One line of the first error, which begins with a star.
+    // The first line of the first error, which begins with an asterisk.
     std::istringstream words(errors.substr(0, errors.find("\n* ")));
     std::string word;
     std::string line;
@@ -196,7 +197,7 @@ Json::Value ParseJson(const std::string& path, const std::string& text)
     {
       line += word == "*" ? "" : (line.empty() ? "" : " ") + word;
     }
-    Fail(path, "it is no JSON file, or it is damaged or cut off (" + line + ")");
+    Fail(path, "it is not a JSON file, or it is damaged or cut off (" + line + ")");
   }
   return root;
 }
@@ -214,7 +215,7 @@ std::string GetSpace(const std::string& path, const std::string& text, const Jso
   {
     Fail(path,
       "the coordinateSystem in its line " + std::to_string(GetLine(text, space)) + " is \"" + said +
-        "\", and neither LPS nor RAS");
+        "\", which is neither LPS nor RAS");
   }
   return "RAS";
 }
@@ -240,7 +241,7 @@ void ReadControlPoint(const std::string& path, const Json::Value& controlPoint, 
   };
   if (!controlPoint.isObject())
   {
-    fail(" is no object");
+    fail(" is not an object");
   }
   const Json::Value& status = controlPoint["positionStatus"];
   if (status.isString() && status.asString() != "defined")
@@ -277,12 +278,13 @@ void ReadMarkups(const std::string& path, LandmarkFile& file, Messages& messages
     if (!markup.isObject())
     {
       Fail(path,
-        "the markup in its line " + std::to_string(GetLine(file.Text, markup)) + " is no object");
+        "the markup in its line " + std::to_string(GetLine(file.Text, markup)) +
+          " is not an object");
     }
     const std::string space = GetSpace(path, file.Text, markup);
     if (!ofFile.empty() && space != ofFile)
     {
-      Fail(path, "some of its markups are LPS, others RAS. Save them in files of their own");
+      Fail(path, "some of its markups are LPS, others RAS. Save them in separate files");
     }
     ofFile = space;
     CheckUnits(path, file.Text, markup);
@@ -290,8 +292,7 @@ void ReadMarkups(const std::string& path, LandmarkFile& file, Messages& messages
     if (type.isString() && (type.asString() == "ROI" || type.asString() == "Plane"))
     {
       messages.DisplayWarningText((path + " holds a markup of the type " + type.asString() +
-        ": its control points follow the deformation, its size and orientation and other center do "
-        "not.")
+        ": its control points are deformed, but its size, orientation and center are not.")
                                     .c_str());
     }
     const Json::Value& controlPoints = markup["controlPoints"];
@@ -299,7 +300,7 @@ void ReadMarkups(const std::string& path, LandmarkFile& file, Messages& messages
     {
       Fail(path,
         "the controlPoints in its line " + std::to_string(GetLine(file.Text, controlPoints)) +
-          " are no list");
+          " are not a list");
     }
     for (const Json::Value& controlPoint : controlPoints)
     {
@@ -322,7 +323,7 @@ LandmarkFile ReadLandmarks(const std::string& path, [[maybe_unused]] Messages& m
   if (!vtksys::SystemTools::FileExists(path, true) || !stream)
   {
     Fail(path,
-      vtksys::SystemTools::FileExists(path, true) ? "the file may not be read"
+      vtksys::SystemTools::FileExists(path, true) ? "there is no permission to read the file"
                                                   : "there is no such file");
   }
   LandmarkFile file;

@@ -121,7 +121,7 @@ void CheckEdges(
     std::ostringstream warning;
     warning.precision(3);
     warning << "Edges of tetrahedra are up to " << longest << " long within a push of radius "
-            << push.Radius << ". Longer than a sixth of it, they may show as facets: give "
+            << push.Radius << ". Edges longer than a sixth of the radius can show as facets. Give "
             << "--lattice more nodes, or use --tetgen.";
     messages.DisplayWarningText(warning.str().c_str());
   }
@@ -135,14 +135,15 @@ void PushNodes(const Options& options, const vtkSmartPointer<vtkUnstructuredGrid
   {
     if (push.Folds())
     {
-      messages.DisplayWarningText("A push is too strong for its radius: the volume folds over.");
+      messages.DisplayWarningText(
+        "The displacement of a push is too large for its radius: the volume folds over itself.");
     }
     CheckEdges(push, mesh, messages, deformation);
   }
   if (ApplyPushes(options.Pushes, mesh) == 0 && !options.Pushes.empty())
   {
-    messages.DisplayWarningText("No node of the mesh lies within the radius of a push, so that "
-                                "nothing moves. Are the coordinates those of the file?");
+    messages.DisplayWarningText("No node of the mesh is within the radius of a push, so nothing "
+                                "moves. Are its coordinates those of the file?");
   }
   deformation.Data = mesh;
   deformation.Displacement = PushArrayName;
@@ -170,7 +171,7 @@ void CheckMeshOptions(const Options& options, const Deformation& deformation)
     {
       throw Failure("cannot use " + options.Rest + " as the rest of " + options.Mesh + ": it has " +
         std::to_string(rest) + " points, and the deformed mesh has " + std::to_string(deformed) +
-        ". Both have to be the same mesh");
+        ". Both must be the same mesh");
     }
   }
 }

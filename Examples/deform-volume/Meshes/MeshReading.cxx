@@ -63,7 +63,7 @@ void CheckReading(const Source& source, const std::string& format)
   if (!words.empty())
   {
     // VTK's words on infinite numbers in XML files name classes.
-    throw Failure("cannot read " + source.Path + ": it is no " + format +
+    throw Failure("cannot read " + source.Path + ": it is no valid " + format +
       ", or it is damaged or cut off" +
       (NamesCode(words) ? ", or has numbers that are not finite" : " (" + words + ")"));
   }
@@ -240,7 +240,7 @@ std::map<double, std::vector<std::string>> FindFiles(const Source& source)
   vtkXMLDataElement* collection = root ? root->FindNestedElementWithName("Collection") : nullptr;
   if (!collection)
   {
-    throw Failure("cannot read " + source.Path + ": it is no collection of files (.pvd)");
+    throw Failure("cannot read " + source.Path + ": it is not a collection of files (.pvd)");
   }
   std::string folder = vtksys::SystemTools::GetFilenamePath(source.Path);
   folder = folder.empty() ? "." : folder;
@@ -257,8 +257,8 @@ std::map<double, std::vector<std::string>> FindFiles(const Source& source)
     const char* text = entry->GetAttribute("timestep");
     if (text && (!entry->GetScalarAttribute("timestep", time) || !std::isfinite(time)))
     {
-      throw Failure(
-        "cannot read " + source.Path + ": the time step \"" + text + "\" of a file is no number");
+      throw Failure("cannot read " + source.Path + ": the time step \"" + text +
+        "\" of a file is not a number");
     }
     files[time].push_back(vtksys::SystemTools::CollapseFullPath(file, folder));
   }

@@ -53,8 +53,8 @@ WorldAxes Choose(const std::string& said, const std::string& path, WorldAxes ofF
   {
     messages.DisplayWarningText(
       (path + " is " + (ofFile == WorldAxes::RightAnteriorSuperior ? "ras" : "lps") +
-        ", which is not used, as the file of the volume does not say whether its own world is lps "
-        "or ras.")
+        ". This is not used, because the file of the volume does not state whether its world "
+        "coordinates are lps or ras.")
         .c_str());
     return ofVolume;
   }

@@ -51,7 +51,7 @@ void CheckWhole(Array* array, const std::string& name, const std::string& path)
   {
     std::ostringstream text;
     text << "cannot use the labels " << path << ": its array \"" << name << "\" holds " << *fraction
-         << ", and labels are whole numbers. An image of other values is deformed as VOLUME";
+         << ", but labels are integers. Deform an image with other values as VOLUME";
     throw Failure(text.str());
   }
 }
@@ -110,7 +110,7 @@ void CheckGrid(vtkImageData* volume, vtkImageData* labels, const std::string& pa
   const auto fail = [&](const std::string& words)
   {
     throw Failure("cannot use the labels " + path + ": they are not on the grid of the volume. " +
-      words + ". Resample them onto it, by nearest neighbour");
+      words + ". Resample them to that grid, with nearest-neighbor interpolation");
   };
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -177,7 +177,7 @@ LabelVolume::LabelVolume(const Options& options, const Volume& volume, Messages&
     if (!array)
     {
       messages.DisplayWarningText(
-        ("The array \"" + name + "\" of the labels " + path + " holds no numbers, and is left out.")
+        ("The array \"" + name + "\" of the labels " + path + " holds no numbers. It is left out.")
           .c_str());
       continue;
     }

@@ -28,7 +28,7 @@ vtkSmartPointer<vtkDataArray> GetFrame(vtkDataArray* all, int frame, vtkIdType v
 Volume ReadMetaImage(const std::string& path, const ReadingOptions& options, Messages& messages)
 {
   const auto io = itk::MetaImageIO::New();
-  ReadHeader(io, path, "it is no MetaImage file, its header is wrong, or it names a missing file");
+  ReadHeader(io, path, "it is not a MetaImage file, its header is wrong, or it names a missing file");
   const unsigned int axes = io->GetNumberOfDimensions();
   const auto getSize = [&](unsigned int axis)
   { return axis < axes ? static_cast<int>(io->GetDimensions(axis)) : 1; };
@@ -37,7 +37,7 @@ Volume ReadMetaImage(const std::string& path, const ReadingOptions& options, Mes
     if (getSize(axis) > 1)
     {
       throw Failure("cannot read " + path + ": it has " + std::to_string(axes) +
-        " axes, where a volume has three, and one of time");
+        " axes. A volume has three axes of space, and one of time");
     }
   }
   const int frames = getSize(3);

@@ -60,7 +60,7 @@ void CheckHeader(vtkNIFTIImageHeader* header, const std::string& path)
   const std::string magic = header->GetMagic();
   if (magic != "n+1" && magic != "n+2")
   {
-    Fail(path, "it is no NIfTI file that holds its voxels (its magic is not n+1 or n+2)");
+    Fail(path, "it is not a NIfTI file with voxels (its magic is not n+1 or n+2)");
   }
   const auto axes = header->GetDim(0);
   for (int axis = 1; axis <= std::min<vtkTypeInt64>(axes, 7); ++axis)
@@ -74,7 +74,7 @@ void CheckHeader(vtkNIFTIImageHeader* header, const std::string& path)
     {
       Fail(path,
         "it has " + std::to_string(axes) +
-          " axes, where a volume has three, and one each of time and of components");
+          " axes. A volume has three axes of space, one of time and one of components");
     }
   }
   using Header = vtkNIFTIImageHeader;
@@ -249,7 +249,7 @@ Volume ReadNIfTI(
   reader->AddObserver(vtkCommand::WarningEvent, ignore);
   if (!reader->CanReadFile(path.c_str()))
   {
-    Fail(path, "it is no NIfTI file");
+    Fail(path, "it is not a NIfTI file");
   }
   reader->SetFileName(path.c_str());
   reader->UpdateInformation();

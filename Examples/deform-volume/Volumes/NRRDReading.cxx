@@ -166,7 +166,7 @@ void NRRDFile::SortAxes()
   if (this->ComponentAxes.size() > 1 || this->FrameAxes.size() > 1)
   {
     this->Fail("it has " + std::to_string(this->Data->dim) +
-      " axes, where a volume has three, and one each of components and of time");
+      " axes. A volume has three axes of space, one of components and one of time");
   }
 }
 

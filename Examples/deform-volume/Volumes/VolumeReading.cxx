@@ -30,7 +30,7 @@ Volume ReadVTI(const std::string& path, Messages& messages, bool showProgress)
   vtkNew<vtkXMLImageDataReader> reader;
   if (!reader->CanReadFile(path.c_str()))
   {
-    throw Failure("cannot read " + path + ": it is no image file of VTK");
+    throw Failure("cannot read " + path + ": it is not an image file of VTK");
   }
   reader->SetFileName(path.c_str());
   const ProgressBar bar(reader, "reading", showProgress);

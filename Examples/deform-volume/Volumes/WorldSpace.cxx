@@ -16,7 +16,7 @@ WorldAxes HeedSpace(const std::string& option, const std::string& said, const st
   if (ofFile != WorldAxes::Unknown && ofFile != axes)
   {
     messages.DisplayWarningText((option + " " + said + " is not used: " + path +
-      " says itself that it is " + (said == "ras" ? "lps." : "ras."))
+      " states that it is " + (said == "ras" ? "lps." : "ras."))
                                   .c_str());
     return ofFile;
   }
@@ -29,8 +29,8 @@ WorldAxes ChooseSpace(const std::string& option, const std::string& said, const 
   if (!said.empty() && ofVolume == WorldAxes::Unknown)
   {
     throw Failure(option + " " + said +
-      ": the file of the volume does not say whether its own world is lps or ras, so " + path +
-      " cannot be turned into it. Say it with --volume-space");
+      ": the file of the volume does not state whether its world coordinates are lps or ras, so " +
+      path + " cannot be converted to them. Give --volume-space");
   }
   const WorldAxes axes = HeedSpace(option, said, path, ofFile, messages);
   return axes != WorldAxes::Unknown ? axes : ofVolume;

@@ -43,7 +43,7 @@ void TestMeshers()
   check.Fails("unsigned char");
   data->RemoveArray(GHOSTS);
   data->GetScalars()->SetNumberOfTuples(count - 1);
-  check.Fails("values for");
+  check.Fails("tuples for");
 
   // vtkLatticeTetrahedraSource goes by the geometry of a volume only.
   vtkNew<vtkLatticeTetrahedraSource> lattice;

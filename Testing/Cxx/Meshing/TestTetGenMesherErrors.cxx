@@ -62,12 +62,12 @@ void TestMisuseOfVolumes()
 
   vtkNew<vtkImageData> empty;
   mesher->SetInputData(empty);
-  check.Fails("0 voxels on axis 0");
+  check.Fails("0 voxels on axis x");
   vtkNew<vtkImageData> slice;
   slice->SetDimensions(8, 8, 1);
   slice->AllocateScalars(VTK_SHORT, 1);
   mesher->SetInputData(slice);
-  check.Fails("1 voxels on axis 2");
+  check.Fails("1 voxels on axis z");
   vtkNew<vtkImageData> bare;
   bare->SetDimensions(4, 4, 4);
   mesher->SetInputData(bare);
@@ -78,7 +78,7 @@ void TestMisuseOfVolumes()
   mesher->SetIsovalue(8.0);
   check.Fails("no value of at least 8");
   mesher->SetInputData(MakeVolume(std::nan("")));
-  check.Fails("no finite value");
+  check.Fails("infinite or NaN");
   mesher->SetBodyModeToLabels();
   mesher->SetInputData(MakeVolume(0.0));
   check.Fails("a label other than 0");
@@ -87,7 +87,7 @@ void TestMisuseOfVolumes()
   mesher->ClearLabels();
   mesher->SetInputData(MakeVolume(3.0));
   mesher->SetTargetEdgeLength(0.01);
-  check.Fails("at most 20 million");
+  check.Fails("limit is 20 million");
   mesher->SetTargetEdgeLength(1e300);
   check.Fails("cannot be moved out by a margin of 5e+298 world units");
   mesher->SetTargetEdgeLength(0.0);
@@ -96,10 +96,10 @@ void TestMisuseOfVolumes()
   check.Fails("Refinement sphere 1 has the center 10, 10, 10, the radius 0 and the edge length 1");
   mesher->ClearRefinementSpheres();
   mesher->AddRefinementSphere(std::nan(""), 10.0, 10.0, 1.0, 1.0);
-  check.Fails("have to be finite");
+  check.Fails("must be finite");
   mesher->ClearRefinementSpheres();
   mesher->AddRefinementSphere(10.0, 10.0, 10.0, 8.0, 0.01);
-  check.Fails("refinement spheres ask for about");
+  check.Fails("refinement spheres require about");
   mesher->ClearRefinementSpheres();
   mesher->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "absent");
   check.Fails("no such point array");
@@ -147,7 +147,7 @@ void TestMisuseOfSurfaces()
   check.FailsWithAny({ "pairs of faces are intersecting", "segments exactly intersect" });
   mesher->SetInputConnection(cube->GetOutputPort());
   mesher->SetTargetEdgeLength(1e-9); // and does not try for hours
-  check.Fails("at most 20 million");
+  check.Fails("limit is 20 million");
   mesher->SetTargetEdgeLength(0.0);
   check.Succeeds();
   VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume, 1.0, 1e-12);
@@ -170,7 +170,7 @@ void TestMisuseOfTheProgram(const std::filesystem::path& folder)
 
   mesher->SetTetGenExecutable(
     WriteScript(folder, "fails", "echo 'Opening x.'; echo 'the moon is wrong'; exit 3"));
-  check.Fails("TetGen failed (exit status 3). It says: the moon is wrong");
+  check.Fails("TetGen failed (exit status 3). TetGen says: the moon is wrong");
   mesher->SetTetGenExecutable(WriteScript(folder, "wordless", "kill -ABRT $$"));
   check.Fails("TetGen failed (Subprocess aborted).");
   // More than a pipe holds.

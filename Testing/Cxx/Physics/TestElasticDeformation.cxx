@@ -359,7 +359,7 @@ void TestWhatIsKept()
     simulated.Observer->Clear();
     return words;
   }();
-  VERIFY(Holds(warning, "starts anew"));
+  VERIFY(Holds(warning, "starts again from rest"));
   VERIFY_EQUAL(simulated.Copy()->GetRange(-1)[1], 0.0);
   VERIFY(
     Holds(simulated.Object->GetSummary(), "Nodes: " + std::to_string(NodesOfBar<Filter>) + "\n"));

@@ -144,13 +144,13 @@ void TestMisuse()
   VERIFY_EQUAL(tested.TryUpdate(), std::string());
 
   tested.Filter->SetMaterial(256, 1.0, 0.0, 1.0);
-  VERIFY(Holds(tested.Observer->GetErrorMessage(), "no material 256"));
+  VERIFY(Holds(tested.Observer->GetErrorMessage(), "material index 256 is not valid"));
   tested.Observer->Clear();
   tested.Filter->SetMaterial(1.5, 1.0, 0.0, 1.0);
-  VERIFY(Holds(tested.Observer->GetErrorMessage(), "no material 1.5"));
+  VERIFY(Holds(tested.Observer->GetErrorMessage(), "material index 1.5 is not valid"));
   tested.Observer->Clear();
   tested.Filter->AddMaterialRange(0.0, 1.0, -1.0);
-  VERIFY(Holds(tested.Observer->GetErrorMessage(), "no material -1"));
+  VERIFY(Holds(tested.Observer->GetErrorMessage(), "material index -1 is not valid"));
   tested.Observer->Clear();
   VERIFY_EQUAL(tested.Filter->GetNumberOfMaterialRanges(), 0);
 
@@ -370,10 +370,10 @@ void TestPresets()
     return Holds(errors, words) && filter->GetMTime() == time &&
       filter->GetNumberOfMaterialPresets() == 0;
   };
-  VERIFY(fails(256, vtkElasticDeformation::LIVER, "no material 256"));
-  VERIFY(fails(-1, vtkElasticDeformation::LIVER, "no material -1"));
-  VERIFY(fails(4, 8, "Material 4 cannot have the preset 8"));
-  VERIFY(fails(4, -1, "Material 4 cannot have the preset -1"));
+  VERIFY(fails(256, vtkElasticDeformation::LIVER, "material index 256 is not valid"));
+  VERIFY(fails(-1, vtkElasticDeformation::LIVER, "material index -1 is not valid"));
+  VERIFY(fails(4, 8, "preset 8 of material 4 is not defined"));
+  VERIFY(fails(4, -1, "preset -1 of material 4 is not defined"));
   for (const int index : { -1, 0, 256 })
   {
     VERIFY_EQUAL(filter->GetMaterialPreset(index), static_cast<int>(vtkElasticDeformation::CUSTOM));
