@@ -28,7 +28,8 @@ vtkSmartPointer<vtkDataArray> GetFrame(vtkDataArray* all, int frame, vtkIdType v
 Volume ReadMetaImage(const std::string& path, const ReadingOptions& options, Messages& messages)
 {
   const auto io = itk::MetaImageIO::New();
-  ReadHeader(io, path, "it is not a MetaImage file, its header is wrong, or it names a missing file");
+  ReadHeader(
+    io, path, "it is not a MetaImage file, its header is wrong, or it names a missing file");
   const unsigned int axes = io->GetNumberOfDimensions();
   const auto getSize = [&](unsigned int axis)
   { return axis < axes ? static_cast<int>(io->GetDimensions(axis)) : 1; };
