@@ -95,7 +95,7 @@ void DisplacementSource::SetCoincidentNodes(const std::int32_t* numbers)
 {
   if (numbers && !this->HasMesh())
   {
-    throw Error("SetNodePlaces() needs a deformation mesh. Call SetMesh() first.");
+    throw Error("SetCoincidentNodes() needs a deformation mesh. Call SetMesh() first.");
   }
   std::vector<std::int32_t> all;
   if (numbers)

@@ -77,7 +77,8 @@ public:
   std::size_t GetNumberOfTetrahedra() const { return this->NumberOfTetrahedra; }
 
   /// Updates the mask of bridges: tetrahedra of the sampling mesh over a split of the mesh, which
-  /// are not resampled (SetNodePlaces()). Returns the boxes of cells whose bridges have changed.
+  /// are not resampled (SetCoincidentNodes()). Returns the boxes of cells whose bridges have
+  /// changed.
   std::vector<Extent> UpdateBridges();
   /// Updates the data that depend on displacements and masks: the records of runs and the state of
   /// the vertices. events: receives the events of launches. bricks: bricks to resample, if the
