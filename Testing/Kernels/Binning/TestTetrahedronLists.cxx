@@ -292,7 +292,7 @@ TEST_F(TetrahedronListing, MisuseLeavesThemUsable)
     this->Make(stretched, inverted);
     EXPECT_EQ(this->Overstretched, 2);
     this->Device.SetAllocationLimit(1500); // less than a box a tetrahedron
-    EXPECT_NE(this->GetError(good).find("in one piece"), std::string::npos);
+    EXPECT_NE(this->GetError(good).find("in one allocation"), std::string::npos);
     this->Device.SetAllocationLimit(0);
     EXPECT_EQ(this->GetError(good), "");
   }
