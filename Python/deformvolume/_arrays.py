@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What numpy arrays the library takes, and how they get there."""
 
+import weakref
 from typing import Sequence, Tuple
 
 import numpy
@@ -39,6 +40,14 @@ def image(array, what: str, components: Tuple[int, ...] = ()) -> numpy.ndarray:
     if 0 in array.shape:
         raise ValueError(f"{what} is empty: its shape is {array.shape}.")
     return numpy.ascontiguousarray(array.transpose((2, 1, 0, 3)[: array.ndim]))
+
+
+def pin(array: numpy.ndarray) -> weakref.ref:
+    """A reference to the array that has the memory. As long as there is one, numpy neither moves nor frees that memory:
+    also resize(refcheck=False), which pays no regard to views, refuses then."""
+    while isinstance(array.base, numpy.ndarray):
+        array = array.base
+    return weakref.ref(array)
 
 
 def from_image(array: numpy.ndarray) -> numpy.ndarray:

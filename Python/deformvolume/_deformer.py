@@ -229,7 +229,7 @@ class Deformer:
         with self._lock:
             self._call("dv_set_volume", ctypes.byref(grid))
             self._call("dv_set_arrays", len(images), structs)
-            self._borrowed["arrays"] = images
+            self._borrowed["arrays"] = images, [_arrays.pin(image) for image in images]
             self._arrays = images
             extent = grid.extent
             self._shape = tuple(extent[2 * axis + 1] - extent[2 * axis] + 1 for axis in range(3))
@@ -266,7 +266,7 @@ class Deformer:
             self._call("dv_set_active_tetrahedra", pointers[1])
             self._call("dv_set_boundary_distances", pointers[2])
             self._call("dv_set_smooth_cut", pointers[3], pointers[4])
-            self._borrowed["masks"] = masks
+            self._borrowed["masks"] = masks, [_arrays.pin(mask) for mask in masks if mask is not None]
 
     def set_deformation(self, deformation: Union[Mesh, Field]) -> None:
         """The mesh or the field that deforms the volume, in place of the one before."""
@@ -332,7 +332,7 @@ class Deformer:
         with self._lock:
             self._call("dv_set_field", ctypes.byref(struct))
             self._points = 0
-            self._borrowed["field"] = vectors
+            self._borrowed["field"] = vectors, _arrays.pin(vectors)
 
     def set_outside(self, mode: str = "discard", fade_distance: float = 0.0) -> None:
         """What becomes of voxels outside the mesh or the field.

@@ -38,6 +38,7 @@ from . import _native
 _PACKAGE = "pocl-binary-distribution"
 _lock = threading.Lock()
 _ready = False
+_process: Optional[int] = None  # that has started the drivers
 
 
 class Device(NamedTuple):
@@ -123,9 +124,17 @@ def _add_driver() -> None:
 
 def prepare() -> None:
     """Adds the driver from PyPI where it is needed. All functions that use a device call this first."""
-    global _ready
+    global _process, _ready
+    # Before the lock, which another thread may have held when the process was forked.
+    if _process is not None and os.getpid() != _process:
+        raise _native.Error(
+            "This process was forked from one that had used OpenCL, which does not survive that: its calls would wait "
+            'forever. Start processes by "spawn" or "forkserver" (multiprocessing.set_start_method), or before the '
+            "first use of deformvolume."
+        )
     with _lock:
         if not _ready:
+            _process = os.getpid()
             _add_driver()
             _ready = True
 
@@ -134,7 +143,8 @@ def devices() -> List[Device]:
     """The OpenCL devices of this machine, the best first; the list is empty where there is none.
 
     Raises:
-        Error: where the environment variable DEFORMVOLUME_DRIVER names a driver that cannot be used.
+        Error: where the environment variable DEFORMVOLUME_DRIVER names a driver that cannot be used, and in a process
+            that was forked from one that has used OpenCL.
     """
     prepare()
     return _list()

@@ -48,7 +48,7 @@ try() # python, further packages: those that cannot be had for a version of Pyth
   else
     result=passed
     local test
-    for test in Testing/Wheel/test_{devices,deform,vtk}.py; do
+    for test in Testing/Wheel/test_{devices,deform,misuse,vtk}.py; do
       # What this system has for drivers is not looked for.
       env -u OCL_ICD_VENDORS -u OCL_ICD_FILENAMES OPENCL_VENDOR_PATH=/nowhere \
         "$venv/bin/python" "$test" >>"$venv.log" 2>&1 || result=failed

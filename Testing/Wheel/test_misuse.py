@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What users do by mistake: an exception says what is wrong, nothing ends the process, and the next call works."""
+
+import os
+import signal
+import threading
+import unittest
+
+import numpy
+
+import deformvolume
+from moving_cube import deform
+from own_process import OwnProcess
+
+AFFINE = numpy.diag([2.0, 2.0, 2.0, 1.0])
+POINTS = 18.0 * numpy.eye(4, 3, k=-1)
+CELLS = numpy.array([[0, 1, 2, 3]])
+MOVED = numpy.ones((4, 3))
+Mesh = deformvolume.Mesh
+
+
+def make_volume(order="F"):
+    values = numpy.random.RandomState(2).rand(10, 11, 12)
+    return numpy.array(values.astype(numpy.float32), order=order)
+
+
+class Misuse(unittest.TestCase):
+    def refuse(self, kind, words, volume=None, mesh=None, affine=AFFINE, **options):
+        volume = make_volume() if volume is None else volume
+        mesh = Mesh(POINTS, CELLS, MOVED) if mesh is None else mesh
+        with self.assertRaisesRegex(kind, words):
+            deformvolume.deform(volume, mesh, affine, **options)
+
+    def tearDown(self):
+        result = deformvolume.deform(make_volume(), Mesh(POINTS, CELLS, MOVED), AFFINE, bounds="volume")
+        self.assertTrue(result.coverage.any())
+
+    def test_shapes(self):
+        self.refuse(ValueError, r"shape \(10, 11\)", make_volume()[:, :, 0])
+        self.refuse(ValueError, "empty", make_volume()[:, :0])
+        self.refuse(deformvolume.Error, "", make_volume()[:1])
+        self.refuse(ValueError, "4 x 4", affine=numpy.eye(3))
+        self.refuse(ValueError, r"\(n, 3\)", mesh=Mesh(POINTS[:, :2], CELLS, MOVED))
+        self.refuse(ValueError, r"\(4, 3\)", mesh=Mesh(POINTS, CELLS, MOVED[:3]))
+        self.refuse(ValueError, r"\(m, 4\)", mesh=Mesh(POINTS, CELLS[:, :3], MOVED))
+        self.refuse(ValueError, r"\(m, 4\)", mesh=Mesh(POINTS, CELLS[0], MOVED))
+
+    def test_types(self):
+        for kind in (complex, object, "U3", "datetime64[s]", numpy.float16):
+            self.refuse(TypeError, "Give integers", numpy.zeros((3, 3, 3), kind))
+        self.refuse(TypeError, "Give integers", mesh=Mesh(POINTS.astype(complex), CELLS, MOVED))
+        self.refuse(ValueError, "float64", mesh=Mesh(POINTS, CELLS.astype(float), MOVED))
+        with self.assertRaisesRegex(TypeError, "Give a Mesh or a Field"):
+            deformvolume.deform(make_volume(), POINTS)
+
+    def test_numbers(self):
+        self.refuse(deformvolume.Error, "finite", mesh=Mesh(POINTS, CELLS, MOVED * numpy.nan))
+        self.refuse(deformvolume.Error, "finite", mesh=Mesh(POINTS, CELLS, MOVED * numpy.inf))
+        self.refuse(deformvolume.Error, "", mesh=Mesh(POINTS * numpy.nan, CELLS, MOVED))
+        self.refuse(deformvolume.Error, "", affine=numpy.diag([1.0, numpy.nan, 1.0, 1.0]))
+        self.refuse(deformvolume.Error, "", mesh=Mesh(POINTS, CELLS, MOVED * 1e9))
+        field = deformvolume.Field(numpy.full((2, 2, 2, 3), numpy.nan), AFFINE)
+        self.refuse(deformvolume.Error, "finite", mesh=field)
+        # NaN in a volume is a value as others.
+        volume = make_volume()
+        volume[4] = numpy.nan
+        field = deformvolume.Field(numpy.zeros((2, 2, 2, 3)), numpy.diag([30.0, 30.0, 30.0, 1.0]))
+        result = deformvolume.deform(volume, field, AFFINE, bounds="volume", interpolation="nearest")
+        numpy.testing.assert_array_equal(result.array, volume)
+
+    def test_cells(self):
+        def refuse(words, *cells):
+            self.refuse((ValueError, deformvolume.Error), words, mesh=Mesh(POINTS, cells, MOVED))
+
+        self.refuse(deformvolume.Error, "4", mesh=Mesh(POINTS, CELLS + 1, MOVED))
+        self.refuse(deformvolume.Error, "-1", mesh=Mesh(POINTS, CELLS - 1, MOVED))
+        self.refuse(deformvolume.Error, "", mesh=Mesh(POINTS, numpy.zeros((0, 4), int), MOVED))
+        self.refuse(deformvolume.Error, "", mesh=Mesh(numpy.zeros((0, 3)), CELLS, numpy.zeros((0, 3))))
+        refuse("no tetrahedra", [5], [[0, 1, 2]])  # a triangle
+        refuse("no tetrahedra", [0], [[]])
+        refuse("", [10], [[0, 1, 2]])  # a tetrahedron of three points
+        refuse("", [12], [[0, 1, 2, 3]])  # a hexahedron of four
+        refuse("", [10, 24], [[0, 1, 2, 3], [0, 1, 2, 3]])
+        refuse("", [42], [[0, 1, 2, 3]])  # a polyhedron without faces
+        refuse("", [78], [[0, 1, 2, 3]])  # a Bezier cell
+        refuse("types of cells", [10, 10], [[0, 1, 2, 3]])
+        refuse("9", [10], [[0, 1, 2, 9]])
+
+    def test_orders(self):
+        mesh = Mesh(POINTS, CELLS, MOVED)
+        fortran = make_volume()
+        wanted = deformvolume.deform(fortran, mesh, AFFINE).array
+        backwards = numpy.ascontiguousarray(fortran[::-1, ::-1])[::-1, ::-1]
+        strided = numpy.zeros((20, 11, 24), numpy.float32)
+        strided[::2, :, ::2] = fortran
+        other = fortran.astype(fortran.dtype.newbyteorder())
+        arrays = [fortran, make_volume("C"), backwards, strided[::2, :, ::2], other]
+        for array in arrays:
+            before = array.copy()
+            array.flags.writeable = False
+            numpy.testing.assert_array_equal(deformvolume.deform(array, mesh, AFFINE).array, wanted)
+            numpy.testing.assert_array_equal(array, before)
+        # A view of a part is not taken for the whole, and read-only points and cells will do.
+        for array in (POINTS, CELLS, MOVED):
+            array.flags.writeable = False
+        turned = Mesh(numpy.asfortranarray(POINTS), CELLS[:, ::-1][:, ::-1], MOVED[::-1][::-1])
+        numpy.testing.assert_array_equal(deformvolume.deform(fortran, turned, AFFINE).array, wanted)
+
+    # The deformer reads a Fortran array where it is.
+    def test_borrowed_memory(self):
+        deformer = deformvolume.Deformer()
+        volume = make_volume()
+        deformer.set_volume(volume, AFFINE)
+        deformer.set_deformation(Mesh(POINTS, CELLS, MOVED))
+        wanted = deformer.deform().array
+        for check in (True, False):
+            with self.assertRaisesRegex(ValueError, "resize"):
+                volume.resize((100, 100, 100), refcheck=check)
+        vectors = numpy.zeros((2, 2, 2, 3)).transpose((2, 1, 0, 3))
+        deformer.set_deformation(deformvolume.Field(vectors, AFFINE))
+        with self.assertRaisesRegex(ValueError, "resize"):
+            vectors.base.resize((9, 9, 9, 9), refcheck=False)
+        deformer.set_deformation(Mesh(POINTS, CELLS, MOVED))
+        # Other values in the same memory are to be set again.
+        volume *= 2
+        deformer.deform()
+        deformer.set_volume(volume, AFFINE)
+        numpy.testing.assert_array_equal(deformer.deform().array, 2 * wanted)
+        # It lives as long as it is needed.
+        del volume
+        deformer.set_deformation(Mesh(POINTS, CELLS, MOVED))
+        numpy.testing.assert_array_equal(deformer.deform().array, 2 * wanted)
+        deformer.set_volume(make_volume(), AFFINE)
+        numpy.testing.assert_array_equal(deformer.deform().array, wanted)
+
+    def test_threads(self):
+        shared = deformvolume.Deformer()
+        shared.set_volume(make_volume(), AFFINE)
+        shared.set_deformation(Mesh(POINTS, CELLS, MOVED))
+        wanted = shared.deform().array
+        equal = []
+
+        def work():
+            for _ in range(3):
+                alone = deformvolume.deform(make_volume(), Mesh(POINTS, CELLS, MOVED), AFFINE).array
+                equal.append(numpy.array_equal(alone, wanted) and numpy.array_equal(shared.deform().array, wanted))
+
+        threads = [threading.Thread(target=work) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(equal, 12 * [True])
+
+    # The driver's threads are not in a forked process, and its calls would wait for them.
+    def test_fork(self):
+        shared = deformvolume.Deformer()
+        shared.set_volume(make_volume(), AFFINE)
+        for call in (deformvolume.devices, deform, shared.deform):
+            child = os.fork()
+            if child == 0:
+                signal.alarm(60)
+                status = 1
+                try:
+                    call()
+                except deformvolume.Error as error:
+                    status = 0 if "spawn" in str(error) else 2
+                finally:
+                    os._exit(status)
+            self.assertEqual(os.waitpid(child, 0)[1], 0, call)
+
+
+class Drivers(OwnProcess):
+    def test_none(self):
+        self.assertRegex(
+            self.run_program(DEFORMVOLUME_DRIVER="system", OPENCL_VENDOR_PATH=self.folder),
+            'Error: There is no OpenCL device.*"pip install pocl-binary-distribution"',
+        )
+
+
+if __name__ == "__main__":
+    unittest.main()
