@@ -22,7 +22,7 @@ class Processor(OwnProcess):
         output = self.run_program(DEFORMVOLUME_KERNEL_PROCESSOR="driver")
         if output != "deformed\n":
             self.assertRegex(
-                output, "(?s)Error: .*(older than this processor|would end the process).*pocl-opencl-icd"
+                output, "(?s)Error: .*(older than this CPU|would end the process).*pocl-opencl-icd"
             )
 
 
