@@ -368,9 +368,10 @@ void vtkElasticDeformation::CheckSize(double size)
   constexpr double most = 10.0;
   if (size != this->Internals->CheckedSize && !(size >= least && size <= most))
   {
-    vtkWarningMacro(<< "The diagonal of the body is " << size << " m, if the unit of the mesh is "
-                    << (this->LengthUnit == METRE ? "METRE" : "MILLIMETRE")
-                    << ". If this size is wrong, set another LengthUnit, or convert the mesh.");
+    vtkWarningMacro(<< "The diagonal of the body is " << size
+                    << " m, if the unit of length of the mesh is the "
+                    << (this->LengthUnit == METRE ? "meter" : "millimeter")
+                    << ". If this size is wrong, set another unit of length, or convert the mesh.");
   }
   this->Internals->CheckedSize = size;
 }

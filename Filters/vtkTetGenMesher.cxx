@@ -48,7 +48,7 @@ vtkDataArray* FindArray(vtkDataArray* array, vtkImageData* volume)
     {
       throw deformvolume::Error("The volume has " + std::to_string(dimensions[axis]) +
         " voxels on axis " + "xyz"[axis] +
-        ". A body needs at least two voxels on each axis. Connect the whole volume, not a slice.");
+        ". A body needs at least two voxels on each axis. Use the whole volume, not a slice.");
     }
     if (!(std::abs(volume->GetSpacing()[axis]) > 0.0) ||
       !std::isfinite(volume->GetSpacing()[axis]) || !std::isfinite(volume->GetOrigin()[axis]))

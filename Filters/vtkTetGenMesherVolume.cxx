@@ -236,9 +236,8 @@ void vtkTetGenMesher::WarnOfVoxelsOutside()
        << " %) lie outside the mesh.";
   if (this->PieceMode == LARGEST_PIECE && this->NumberOfPieces > 1)
   {
-    text
-      << " The body has " << WithCommas(this->NumberOfPieces)
-      << " pieces, and only the largest is meshed. Set PieceMode to ALL_PIECES to mesh all pieces.";
+    text << " The body has " << WithCommas(this->NumberOfPieces)
+         << " pieces, and only the largest is meshed. All pieces can be meshed instead.";
   }
   else
   {

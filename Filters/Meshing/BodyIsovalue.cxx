@@ -99,7 +99,7 @@ double FindIsovalue(vtkImageData* volume, vtkDataArray* array, double resolution
       (array->GetNumberOfComponents() > 1
           ? " in the first component of the point array \"" + name + "\""
           : "") +
-      ". Set an isovalue, or connect a volume that shows a body.");
+      ". Set an isovalue, or use a volume that shows a body.");
   }
   std::vector<double> counts(NumberOfBins, 0.0);
   for (const Block& block : blocks)

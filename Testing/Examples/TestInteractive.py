@@ -30,7 +30,7 @@ for code, words, arguments in (
     (2, "there is no option", ["--none"]),
     (2, "more than one volume", ["a.vti", "b.vti"]),
     (2, "needs a value", ["--replay"]),
-    (2, "two numbers", ["--size", "10"]),
+    (2, "two integers", ["--size", "10"]),
     (2, "need --replay", ["--screenshot", path("x.png")]),
     (2, "cannot be used together", ["--record", "a.log", "--replay", "b.log"]),
     (1, "no such file", [path("missing.vti"), "--replay", path("missing.log")]),

@@ -227,7 +227,7 @@ def check_misuse_of_meshes():
                   *as_mesh("cut-off-" + source))
     # Collections.
     write_text("other.pvd", '<VTKFile type="UnstructuredGrid"></VTKFile>\n')
-    fails(1, "no collection", *as_mesh("other.pvd"))
+    fails(1, "not a collection", *as_mesh("other.pvd"))
     write_collection(path("empty.pvd"), [])
     fails(1, "names no files", *as_mesh("empty.pvd"))
     write_collection(path("broken.pvd"), [(0, "gone.vtu")])
@@ -492,11 +492,11 @@ def check_files_that_say_their_space():
     check_same(expected, *as_mesh("strange.vtu"), source="in.nii.gz",
                expected_warnings=['says "scanner", which is neither LPS nor RAS'])
     # A volume that does not say its own.
-    fails(1, ["--mesh-space lps", "does not say"], *as_mesh("mesh.vtu"), "--mesh-space", "lps")
+    fails(1, ["--mesh-space lps", "does not state"], *as_mesh("mesh.vtu"), "--mesh-space", "lps")
     write(vtkXMLUnstructuredGridWriter(), state_space(make_unstructured(places, moves), "LPS"),
           path("stated.vtu"), **XML)
     check_same(expected, *as_mesh("stated.vtu"),
-               expected_warnings=["stated.vtu is lps, which is not used"])
+               expected_warnings=["stated.vtu is lps. This is not used"])
     # Wrong usage.
     fails(2, "--mesh-space", *as_mesh("mesh.vtu"), "--mesh-space", "LAS")
     fails(2, "--mesh-space requires --mesh or --cut", "--carve", "sphere:9,20,25,5", "--mesh-space",

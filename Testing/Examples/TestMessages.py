@@ -246,7 +246,7 @@ def check_models():
     fails(1, "nothing holds the body", *fem, "--pull", "9,20,25,1,0,0")
     image = make_ball(spacing=(1e-3, 1.5e-3, 2e-3), origin=(0, 0, 0))
     write_vti(image, path("metres.vti"))
-    warns("millimetres", "--model", "fem", "--lattice", "5,5,5", "--fix", "below:0.001",
+    warns("millimeter", "--model", "fem", "--lattice", "5,5,5", "--fix", "below:0.001",
           volume="metres.vti")
     fails(1, "OpenCL", *mesh, "--device", "no-such-device")
 

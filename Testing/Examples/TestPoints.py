@@ -139,9 +139,9 @@ fails("there is no such file", "missing.csv")
 fails("there is no such file", "missing.vtp", "no.vtp")
 for name, text, words in (
         ("empty.csv", "", "it has no points"), ("header.csv", "x,y,z,t\n\n", "it has no points"),
-        ("unnamed.csv", "1,2,3\n4,5,6\n", 'its first line is "1,2,3", and has to name the columns'),
+        ("unnamed.csv", "1,2,3\n4,5,6\n", 'its first line is "1,2,3". It must name the columns'),
         ("order.csv", "label,x,y,z\na,1,2,3\n", 'its first line is "label,x,y,z"'),
-        ("two.csv", "x,y\n1,2\n", "the first three are x,y,z"),
+        ("two.csv", "x,y\n1,2\n", "the first three must be x,y,z"),
         ("short.csv", "x,y,z,t\n1,2,3,0\n\n1,2,3\n", "its line 4 has 3 columns, and its first line names 4"),
         ("long.csv", "x,y,z\n1,2,3,4\n", "its line 2 has 4 columns"),
         ("nan.csv", "x,y,z\r\n1,2,3\r\n1,nan,3\r\n", 'its line 3 has "nan" as y, which is not a number'),
@@ -166,7 +166,7 @@ for name, markups, words in (
         ("none", {"markups": []}, "it has no points"),
         ("list", [1], 'it has no list of "markups"'),
         ("number", {"markups": [3]}, "the markup in its line 3 is not an object"),
-        ("world", make_markups(some, "IJK"), 'the coordinateSystem in its line 6 is "IJK", and neither LPS nor RAS'),
+        ("world", make_markups(some, "IJK"), 'the coordinateSystem in its line 6 is "IJK", which is neither LPS nor RAS'),
         ("units", make_markups(some, coordinateUnits=["um", "UCUM", "micrometer"]), "are not mm"),
         ("mixed", {"markups": good["markups"] + make_markups(some, "RAS")["markups"]}, "some of its markups are LPS"),
         ("object", make_markups(some, controlPoints={}), "it has no points"),
@@ -210,7 +210,7 @@ numbers = [[0.1, 0.30000000000000004, 0.0], [1 / 3, -2e-300, 4e15]]
 write_markups("still.mrk.json", make_markups(numbers, "1"))
 write_geometry("still.vtp", numbers)
 still = ["still.csv", "still.mrk.json", "still.vtp"]
-lps = ["still.csv is lps, which is not used", "still.mrk.json is lps, which is not used"]
+lps = ["still.csv is lps. This is not used", "still.mrk.json is lps. This is not used"]
 move("ball.vti", ("--carve", "sphere:9,20,25,3"), still, lps)
 assert read("moved-still.csv") == table.replace("-0.0", "0").replace("1e3", "1000").replace("2.50", "2.5").replace(
     "-1.2345678901234567E15", "-1234567890123456.8")

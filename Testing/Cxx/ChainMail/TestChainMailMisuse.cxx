@@ -118,7 +118,7 @@ void TestMaterials(Dragged& dragged)
   VERIFY(Holds(dragged.TryUpdate(), "material 7 is not defined"));
   dragged.Filter->ClearMaterialRanges();
   dragged.Filter->SetMaterial(1.5, 0.5, 1.5, 0.5);
-  VERIFY(Holds(dragged.Observer->GetErrorMessage(), "whole number"));
+  VERIFY(Holds(dragged.Observer->GetErrorMessage(), "an integer"));
   dragged.Observer->Clear();
   dragged.Filter->SetMaterial(3.0, 0.5, 1.5, 0.5);
   VERIFY_EQUAL(dragged.Filter->GetNumberOfMaterials(), 2);

@@ -313,7 +313,7 @@ void TestMisuse()
 
   filter->SetDisplacementScale(1e300);
   filter->SetInputData(MakePoints({ glm::dvec3(5.0) }, VTK_FLOAT));
-  misuse.Expect("no float numbers");
+  misuse.Expect("overflow the type float");
 
   for (const double wrong : { -1.0, nan, infinity })
   {

@@ -131,7 +131,7 @@ void TestMisuse(vtkImageData* volume)
   one.Object->Cut(nullptr);
   VERIFY(Holds(one.TakeError(), "no triangles"));
   one.Object->Cut(MakePlane({ 8, 8, 8 }, { 9, 0, 0 }, { 0, 9, 0 }, false));
-  VERIFY(Holds(one.TakeError(), "no triangles"));
+  VERIFY(Holds(one.TakeError(), "is not a triangle"));
   one.Object->CarveSphere(8, 8, 8, 0.0);
   one.ExpectError("radius");
   one.Object->ChangeModel(9);
@@ -141,9 +141,9 @@ void TestMisuse(vtkImageData* volume)
   one.Object->ChangeRelaxationSweeps(-1);
   one.ExpectError("sweeps");
   one.Object->ChangeUndoMemory(-1.0);
-  one.ExpectError("less than 0");
+  one.ExpectError("negative");
   one.Object->ChangeHandleRadius(-1.0);
-  one.ExpectError("less than 0");
+  one.ExpectError("negative");
   one.Object->SetMovingSamplingFactor(3);
   one.ExpectError("MovingSamplingFactor");
   one.Object->SetMovingSamplingFactor(1);
@@ -650,7 +650,7 @@ void TestFiles(vtkImageData* volume, const std::string& fileName)
     { Replace(text, "version=\"1\" inputs", "version=\"2\" inputs"), "has version 2" },
     { Replace(text, "MoveGrab 0 13 ", "MoveGrab 0 12 "), "checksum" },
     { Replace(text, "MoveGrab", "Move"), "there is no event" },
-    { Replace(text, "MoveGrab 0 13 ", "MoveGrab 0 "), "other numbers" },
+    { Replace(text, "MoveGrab 0 13 ", "MoveGrab 0 "), "invalid arguments" },
     { Replace(text, "MoveGrab 0 13 ", "MoveGrab 0 nan "), "finite" },
     { Replace(text, "MoveGrab 0 13 ", "MoveGrab 0 1e999 "), "finite" },
   };

@@ -132,7 +132,7 @@ int TestDeformTime(int, char*[])
     consumer->UpdateTimeStep(time);
     VERIFY(GetExtent(consumer->GetOutput())[1] < last);
     const std::string warning = deformed.TakeWarning();
-    VERIFY(warning.find("leaves the extent") != std::string::npos);
+    VERIFY(warning.find("extends beyond the extent") != std::string::npos);
     VERIFY(warning.find("CUSTOM_BOUNDS") != std::string::npos);
     consumer->UpdateTimeStep(time);
     VERIFY_EQUAL(GetExtent(consumer->GetOutput())[1], last);
