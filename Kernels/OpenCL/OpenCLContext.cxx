@@ -267,10 +267,9 @@ OpenCLContext::OpenCLContext(const OpenCLDevice& device)
   if (AddedDrivers::Get().GetProcessor(device.Device()).EndsProcess)
   {
     throw Error("The OpenCL driver of \"" + device.Name +
-      "\", PoCL 3.0, would end the process when it compiles a kernel for this processor. Unset the "
-      "environment variable DEFORMVOLUME_KERNEL_PROCESSOR where it is \"driver\"; else install a "
-      "later version of the driver, such as that of the system (on Debian the package "
-      "pocl-opencl-icd).");
+      "\", PoCL 3.0, would end the process when it compiles a kernel for this CPU. Unset the "
+      "environment variable DEFORMVOLUME_KERNEL_PROCESSOR if it is \"driver\". Otherwise install a "
+      "later version of the driver, for example the package pocl-opencl-icd on Debian.");
   }
   const FloatingPointTrapGuard guard;
   this->Context = cl::Context(device.Device);
