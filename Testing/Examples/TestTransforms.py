@@ -79,7 +79,7 @@ fails("excludes", "--lattice", "3,3,3", "--push", "1,2,3,4,5,6,7", "--reference"
       "--bounds", "volume", code=2)
 fails("excludes", *affine, "--reference", path("fixed.mha"), "--padding", "2", code=2)
 fails("there is no such file", *affine, "--reference", path("missing.mha"))
-fails("on the grid of the volume", *affine, "--bounds", "deformed", code=2)
+fails("has the grid of the volume", *affine, "--bounds", "deformed", code=2)
 _, errors = call(program, path("moving.nii.gz"), *affine, "-o", path("affine.h5"), code=2)
 assert "nothing to write" in errors or "must end in" in errors, errors
 _, errors = call(program, path("moving.mha"), "--volume-space", "ras", *affine, "-o", path("a.vti"), "-q")
