@@ -508,7 +508,7 @@ void TestMisuse()
   }
   catch (const Error& error)
   {
-    isRefused = std::string(error.what()).find("kept by runs") != std::string::npos;
+    isRefused = std::string(error.what()).find("mesh that are kept") != std::string::npos;
   }
   CHECK(isRefused);
   // Without a tetrahedron all voxels stay.
