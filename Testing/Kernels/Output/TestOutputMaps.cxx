@@ -137,7 +137,7 @@ TEST(OutputMaps, MisuseIsAnError)
          MakeMap({ { 1, 0, 0, 0, 1, 0, 0, 0, 1 } }, { { 0, nan, 0 } }) })
   {
     grid.ToOutput = map;
-    EXPECT_NE(GetError([&] { deformer.SetVoxelGrid(grid); }).find("inverse"), std::string::npos);
+    EXPECT_NE(GetError([&] { deformer.SetVoxelGrid(grid); }).find("invertible"), std::string::npos);
   }
   for (OutputMap map : { Identity, Turned })
   {
