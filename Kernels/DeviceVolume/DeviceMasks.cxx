@@ -2,6 +2,7 @@
 #include "DeviceMasks.h"
 
 #include "Error.h"
+#include "FiveTetrahedra.h"
 
 #include <algorithm>
 #include <string>

@@ -2,6 +2,7 @@
 #ifndef DeformVolumeDeviceMasks_h
 #define DeformVolumeDeviceMasks_h
 
+#include "BrickGrid.h"
 #include "BridgeMask.h"
 #include "DeviceCut.h"
 #include "DeviceMask.h"
