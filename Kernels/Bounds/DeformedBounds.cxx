@@ -186,7 +186,8 @@ bool EndsBetweenVoxels(
     !HoldsBox(field, GetBox(voxelGrid), BoundsTolerance);
 }
 
-// The displacement at a outputRest: trilinear, and outside what is left of that of the border.
+// Returns the displacement at a position: interpolated trilinearly within the field, and faded
+// outside it.
 glm::dvec3 Interpolate(const DisplacementField& field, const glm::dvec3& position)
 {
   const glm::dvec3 last(field.Dimensions[0] - 1, field.Dimensions[1] - 1, field.Dimensions[2] - 1);

@@ -147,7 +147,7 @@ void MeshBounds::Use(const Tetrahedron& tetrahedron, std::uint32_t uses)
   for (const std::int32_t node : tetrahedron)
   {
     const auto index = static_cast<std::size_t>(node);
-    if (index >= this->Uses.size()) // it is gone
+    if (index >= this->Uses.size()) // the node has been removed
     {
       continue;
     }

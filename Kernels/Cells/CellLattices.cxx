@@ -22,7 +22,7 @@ public:
     this->Nodes.emplace(point, static_cast<int>(this->Nodes.size()));
   }
 
-  // The nodes between two places that are so many steps apart.
+  // Adds the nodes between two lattice points that are `steps` steps apart.
   void AddBetween(const LatticePoint& first, const LatticePoint& last, int steps)
   {
     for (int step = 1; step < steps; ++step)
@@ -31,7 +31,7 @@ public:
     }
   }
 
-  // All nodes of a triangle with so many steps along its edges.
+  // Adds all nodes of a triangle with `steps` steps along its edges.
   void AddTriangle(const std::array<LatticePoint, 3>& corners, int steps)
   {
     if (steps == 0)
@@ -50,7 +50,7 @@ public:
     this->AddWithin(corners, steps);
   }
 
-  // Those that are not on its edges, which are a triangle again.
+  // Adds the nodes within a triangle, which form a smaller triangle.
   void AddWithin(const std::array<LatticePoint, 3>& corners, int steps)
   {
     if (steps >= 3)
@@ -101,7 +101,7 @@ public:
     }
   }
 
-  // -1: there is no node.
+  // Returns the number of the node, or -1 if there is none.
   int Get(const LatticePoint& point) const
   {
     const auto found = this->Nodes.find(point);

@@ -25,8 +25,8 @@ bool IsLess(const glm::dvec3& a, const glm::dvec3& b)
 struct Face
 {
   std::array<glm::dvec3, 3> Positions;
-  bool IsAbove;         // on which side of it the tetrahedron lies
-  std::uint32_t Number; // as FaceNeighbours has it
+  bool IsAbove;         // the side of the face on which the tetrahedron lies
+  std::uint32_t Number; // as in FaceNeighbours
 
   bool operator<(const Face& other) const
   {

@@ -38,7 +38,8 @@ struct TetrahedronFace
 std::vector<TetrahedronFace> FindBoundaryFaces(const std::vector<glm::dvec3>& points,
   const std::vector<Tetrahedron>& tetrahedra, const std::vector<std::int32_t>& solid);
 
-/// The places of a face's nodes at rest, in ascending order. nodes: those of the tetrahedron.
+/// Returns the positions of the nodes of a face at rest, in ascending order. nodes: of the
+/// tetrahedron.
 std::array<glm::dvec3, 3> GetPositions(
   const TetrahedronFace& face, const std::vector<glm::dvec3>& points, const Tetrahedron& nodes);
 

@@ -17,7 +17,7 @@ void CheckMesh(
     throw Error("The deformation mesh is empty: it has " + std::to_string(numberOfTetrahedra) +
       " tetrahedra and " + std::to_string(numberOfNodes) + " nodes. Both are needed.");
   }
-  static_assert(DEFORMVOLUME_NODE_STRIDE == 2, "as the message says");
+  static_assert(DEFORMVOLUME_NODE_STRIDE == 2, "The limit is 2^31 / DEFORMVOLUME_NODE_STRIDE.");
   if (numberOfNodes > std::size_t{ 1 } << 30)
   {
     throw Error("The deformation mesh has " + std::to_string(numberOfNodes) +

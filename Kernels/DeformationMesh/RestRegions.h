@@ -42,7 +42,8 @@ public:
 private:
   explicit RestRegions(const VoxelGrid& voxelGrid);
   std::int64_t GetNumberOfRegions() const;
-  /// The voxels of the region at a place, the upper end being shared with the next region.
+  /// Returns the voxels of a region. Neighboring regions share the voxels between them.
+  /// regionIndex: index of the region on each axis.
   Extent GetVoxels(const int* regionIndex) const;
   void AddTetrahedron(const Tetrahedron& tetrahedron, const std::vector<glm::dvec3>& restPoints,
     const float* displacements);

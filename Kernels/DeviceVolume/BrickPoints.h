@@ -25,7 +25,7 @@ class BrickPoints
 {
 public:
   BrickPoints() = default;
-  /// The tetrahedra of a mesh as on the device (DEFORMVOLUME_NODE_STRIDE).
+  /// The tetrahedra of a mesh, as on the device (DEFORMVOLUME_NODE_STRIDE).
   struct Mesh
   {
     const Tetrahedron* Tetrahedra;

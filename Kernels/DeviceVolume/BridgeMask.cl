@@ -13,9 +13,11 @@
 // A tetrahedron that a smooth cut crosses has a copy for each side of the cut. For it, only pairs of vertices on the
 // same side of the cut count.
 //
-// Data: tetrahedra int4, the offsets of nodes (DEFORMVOLUME_NODE_STRIDE); coincidentNodes: 4 bytes a node, a number that
-// all nodes with one place at rest share; boundary: a byte a cell, the tetrahedra that the boundary leaves, and
-// DEFORMVOLUME_CELL_AT_BOUNDARY and DEFORMVOLUME_CELL_CROSSED.
+// Data:
+//   tetrahedra       int4: nodes, times DEFORMVOLUME_NODE_STRIDE
+//   coincidentNodes  an int per node, equal for all nodes with the same position at rest
+//   boundary         a byte per cell: tetrahedra that may be resampled by their
+//                    vertices, DEFORMVOLUME_CELL_AT_BOUNDARY and DEFORMVOLUME_CELL_CROSSED
 
 #if MAPPING == MAPPING_RUNS
 #define TETRAHEDRON_OF(m, x, y, z, p) RunTetrahedronOf(m, owners, x, y, z, p)
@@ -34,7 +36,8 @@ static int RunTetrahedronOf(
 #define SHARES_NODE 1
 #define IS_SPLIT 2
 
-// What two tetrahedra, by their nodes, have to do with each other.
+// Returns SHARES_NODE if two tetrahedra share a node, and IS_SPLIT if they have different nodes with the same position
+// at rest.
 static int Compare(int4 first, int4 second, __global const int* coincidentNodes)
 {
   const int a[4] = { first.x / DEFORMVOLUME_NODE_STRIDE, first.y / DEFORMVOLUME_NODE_STRIDE,

@@ -26,7 +26,7 @@ void BridgeMask::SetCoincidentNodes(
   const std::size_t bytes = numbers.size() * sizeof(std::int32_t);
   if (GetMemory(this->CoincidentNodes) < bytes)
   {
-    // More may follow soon.
+    // Reserve room, since more nodes may follow soon.
     this->CoincidentNodes = cl::Buffer(context.GetContext(), CL_MEM_READ_ONLY, bytes + bytes / 8);
   }
   queue.enqueueWriteBuffer(this->CoincidentNodes, CL_TRUE, 0, bytes, numbers.data());

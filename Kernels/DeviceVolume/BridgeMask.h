@@ -37,14 +37,15 @@ public:
     cl::Buffer CutVertices;
   };
 
-  /// numbers: for each node, as the device numbers them, a number that nodes with one place at rest
-  /// share; empty: nothing is left out. (What tetrahedra had changed has to be told.)
+  /// Set a number for each node that is equal for all nodes with the same position at rest. Empty:
+  /// bridges are not excluded. Report changed tetrahedra by ChangeVertices().
   void SetCoincidentNodes(OpenCLContext& context, const cl::CommandQueue& queue,
     const std::vector<std::int32_t>& numbers);
   bool HasCoincidentNodes() const { return this->CoincidentNodes() != nullptr; }
-  /// Whether chunks have a boundary (VolumeChunk::Boundary).
+  /// Set whether chunks have a boundary (VolumeChunk::Boundary).
   void SetBoundary(bool has);
   bool HasBoundary() const { return this->WithBoundary; }
+  /// Whether there is a mask.
   bool IsOn() const { return this->HasCoincidentNodes() || this->WithBoundary; }
 
   /// Makes the next update process all cells.

@@ -6,16 +6,16 @@
 // displacement 0 keeps its exact position, whatever the deformation mesh and the size of the volume. All kernels
 // compute a position with the same operations in the same order, so the result is always bitwise equal.
 //
-// What the host puts in front of this text: MAPPING, one of
-//   MAPPING_LINKS  links: 16 bytes a voxel (tetrahedron, three barycentric weights); tetrahedra:
-//                  int4, the offsets of nodes (DEFORMVOLUME_NODE_STRIDE); nodes: float4,
-//                  displacement in output voxels
-//   MAPPING_RUNS   runs of voxels in one tetrahedron, see RunMapping.cl
-//   MAPPING_FIELD  vectors: float4 a point of the field, displacement in output voxels; trilinear
-//   MAPPING_FIELD_IN_PLACE
-//                  vectors: three floats a point of the field, each voxel being one; a matrix takes
-//                  them to displacements in output voxels
-// and HAS_TURNED_AXES: whether axes of the volume are not those of the output.
+// Macros that the host defines before this text:
+//   HAS_TURNED_AXES  whether the axes of the volume are not those of the output
+//   MAPPING          one of:
+//     MAPPING_LINKS           links: 16 bytes per voxel (tetrahedron, three barycentric weights); tetrahedra: int4,
+//                             nodes times DEFORMVOLUME_NODE_STRIDE; nodes: float4, displacements in output voxels
+//     MAPPING_RUNS            runs of voxels in one tetrahedron (RunMapping.cl)
+//     MAPPING_FIELD           vectors: float4 per point of the field, displacements in output voxels, interpolated
+//                             trilinearly
+//     MAPPING_FIELD_IN_PLACE  vectors: three floats per point of the field, which a matrix maps to displacements in
+//                             output voxels; each voxel is a point of the field
 //
 // rest: for each index on x, then y, then z the undeformed position (RestPosition, or RestVector if HAS_TURNED_AXES).
 
@@ -38,7 +38,7 @@ typedef struct
   float Weights[3];
 } VertexLink;
 
-// A node, of an array of these, by what a tetrahedron names it by.
+// A node in an array of nodes. offset: number of the node, times DEFORMVOLUME_NODE_STRIDE.
 #define NODE(nodes, offset) (*(__global const float4*)((__global const float2*)(nodes) + (offset)))
 
 #define LARGEST 4194303.0f // 1/256 voxels: about 2^14 voxels

@@ -160,7 +160,7 @@ const std::vector<cl::Buffer>& DeviceArrays::GetBuffers(const VolumeChunk& chunk
     if (!same->Buffer())
     {
       const std::uint64_t bytesPerPlane = inPlace.Bytes / static_cast<std::uint64_t>(this->Size[2]);
-      // The kernels only read it.
+      // The kernels only read the array.
       same->Buffer = MakeBufferOver(this->Context, CL_MEM_READ_ONLY,
         static_cast<char*>(const_cast<void*>(inPlace.Data)) +
           bytesPerPlane * static_cast<std::uint64_t>(chunk.PlanesBegin),

@@ -38,7 +38,8 @@ public:
   /// those of Set(). Returns whether any option has changed.
   bool SetOptions(const std::vector<VolumeArray>& arrays);
   bool IsInPlace(std::size_t array) const { return this->BuffersInPlace[array].Bytes > 0; }
-  /// The array whose memory overlaps this memory; with its buffer if the volume is one chunk.
+  /// Returns an array in place whose memory overlaps the given memory. It has a buffer if the
+  /// volume is one chunk. Bytes is 0 if there is none.
   BufferInPlace FindOverlapping(const void* data, std::uint64_t bytes) const;
   /// Updates the arrays in place after their memory has been written.
   void ReadAgain() const;
@@ -57,8 +58,8 @@ private:
   std::uint64_t AllocationLimit;
   std::vector<VolumeChunk>& Chunks;
   std::vector<VolumeArray> Described;
-  std::vector<BufferInPlace> BuffersInPlace; // one for each array, of no bytes where it was sent
-  VolumeChunk* ChunkInPlace = nullptr;       // the one that has buffers over them
+  std::vector<BufferInPlace> BuffersInPlace; // one for each array, with 0 bytes if it was copied
+  VolumeChunk* ChunkInPlace = nullptr;       // the chunk that has buffers for arrays in place
 };
 
 } // namespace deformvolume

@@ -78,7 +78,7 @@ std::vector<Extent> DeviceMasks::SetCut(
 
 void DeviceMasks::SetCoincidentNodes(const std::vector<std::int32_t>& numbers)
 {
-  this->Queue.finish(); // nothing uses what is let go
+  this->Queue.finish(); // no command may use the buffers that are released
   const bool had = this->Bridges.HasCoincidentNodes();
   this->Bridges.SetCoincidentNodes(this->Context, this->Queue, numbers);
   if (had != this->Bridges.HasCoincidentNodes())

@@ -43,10 +43,9 @@ public:
   /// Set a smooth cut (DeviceCut::Set()). hasRoom: whether chunks have the planes that it needs.
   /// Returns the boxes of vertices whose entries have changed. Throws Error without room.
   std::vector<Extent> SetCut(const unsigned char* crossed, const float* distances, bool hasRoom);
-  /// Leaves out the tetrahedra that would bridge the gap where the mesh is split. numbers: see
-  /// BridgeMask; empty: leaves out none.
+  /// Excludes bridges over a split of the mesh. numbers: see BridgeMask::SetCoincidentNodes().
   void SetCoincidentNodes(const std::vector<std::int32_t>& numbers);
-  /// Leaves out the cells that the boundary of the deformation mesh, or of the field, crosses.
+  /// Excludes the cells that the boundary of the deformation mesh, or of the field, crosses.
   void SetBoundary(const MeshBoundary& boundary);
 
   /// Whether there is any mask, apart from a smooth cut.

@@ -25,7 +25,7 @@ namespace deformvolume
 {
 
 ///@{
-/// Tetrahedra as the device has them, with the offsets of their nodes (DEFORMVOLUME_NODE_STRIDE).
+/// Converts tetrahedra to those on the device: multiplies node numbers by DEFORMVOLUME_NODE_STRIDE.
 Tetrahedron GetNodeOffsets(const Tetrahedron& tetrahedron);
 std::vector<Tetrahedron> GetNodeOffsets(
   const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra);

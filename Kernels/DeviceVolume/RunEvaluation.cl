@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Evaluates the records of tetrahedra that RunMapping.cl reads.
 //
-// Data: rest: for each record 15 reals, the origin, the weights of the first three nodes there, and the
-// gradient of each of these weights, an index a unit; owners: the tetrahedron of each record, or -1 for one that is not in use; tetrahedra: the
-// offsets of their nodes (DEFORMVOLUME_NODE_STRIDE).
+// Data:
+//   rest        15 reals per record: origin, weights of the first three nodes at the origin, and gradients of these
+//               weights per voxel
+//   owners      tetrahedron of each record
+//   tetrahedra  nodes of the tetrahedra, times DEFORMVOLUME_NODE_STRIDE
 //
 // REAL is double if the device supports it, since the gradients of a thin tetrahedron are large and cancel when they
 // are multiplied by displacements and added.

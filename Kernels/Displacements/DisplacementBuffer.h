@@ -47,8 +47,8 @@ public:
   /// Enlarges the buffer to at least `count` points. The displacements of new points are 0.
   void Reserve(std::size_t count);
 
-  /// Makes room for so many points that a kernel writes; what was there may be lost. All points
-  /// count as changed.
+  /// Returns a buffer for `count` points, to be written by a kernel. The previous displacements may
+  /// be lost. All points count as changed.
   const cl::Buffer& ReserveFor(std::size_t count);
 
   const cl::Buffer& Get() const { return this->Buffer; }

@@ -100,7 +100,7 @@ void DisplacementSource::SetCoincidentNodes(const std::int32_t* numbers)
   std::vector<std::int32_t> all;
   if (numbers)
   {
-    // Nodes that are there no more share no place with others.
+    // Removed nodes have no common position with other nodes.
     all.assign(numbers, numbers + this->NumberOfNodes);
     all.resize(this->MostNodes, -1);
   }

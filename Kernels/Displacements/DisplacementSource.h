@@ -51,8 +51,8 @@ public:
   void ChangeConnectivity(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     std::size_t numberOfNodes, const std::vector<TetrahedronChange>* changes);
   void SetCoincidentNodes(const std::int32_t* numbers);
-  /// Three floats a node, in output voxels. changes, areChecked: see
-  /// VolumeDeformer::SetNodeDisplacements.
+  /// Set the displacements of nodes: three floats per node, in output voxels. changes, areChecked:
+  /// see VolumeDeformer::SetNodeDisplacements().
   void SetNodeDisplacements(
     const float* displacements, const PointRanges* changes, bool areChecked);
 
@@ -154,7 +154,7 @@ private:
   DeviceVolume& Volume;
   DisplacementObserver& Observer;
 
-  cl::Buffer Tetrahedra; // their nodes (DEFORMVOLUME_NODE_STRIDE)
+  cl::Buffer Tetrahedra; // nodes of the tetrahedra, times DEFORMVOLUME_NODE_STRIDE
   std::size_t NumberOfTetrahedra = 0;
   std::size_t NumberOfNodes = 0;
   std::size_t MostNodes = 0; // largest number of nodes since SetMesh(), and size of the buffers

@@ -75,7 +75,7 @@ void DisplacementSource::SendChanges(const std::vector<TetrahedronChange>& chang
     return;
   }
   std::vector<Tetrahedron> offsets;
-  offsets.reserve(changes.size()); // they stay until they are sent
+  offsets.reserve(changes.size()); // the copies in progress use the addresses of elements
   PendingCopies writes;
   for (const TetrahedronChange& change : changes)
   {

@@ -317,7 +317,8 @@ private:
       });
   }
 
-  // Addresses equal offsets in the file. Two segments: what is read and run, and what is written.
+  // Assigns addresses, which equal the offsets in the file. There are two loaded segments: one for
+  // reading and execution, and one for reading and writing.
   void LayOut()
   {
     std::uint64_t at = sizeof(Elf64_Ehdr) + Segments * sizeof(Elf64_Phdr);

@@ -70,7 +70,7 @@ void UpdateFromHost(
 {
   if (inPlace.Buffer() && !context.SharesHostMemory())
   {
-    // From the memory that the buffer was made over: OpenCL's way to say that it has changed.
+    // OpenCL allows this write from the memory that the buffer uses itself.
     queue.enqueueWriteBuffer(inPlace.Buffer, CL_TRUE, 0, inPlace.Bytes, inPlace.Data);
   }
 }

@@ -46,8 +46,9 @@ struct BufferInPlace
   }
 };
 
-/// Tells the device that the host may have written to the memory that a buffer lies over, all of
-/// it. Nothing that uses the buffer may be under way.
+/// Updates a buffer after the host may have written to its memory. Does nothing on drivers that
+/// work in that memory (OpenCLContext::SharesHostMemory()). No command that uses the buffer may be
+/// running.
 void UpdateFromHost(
   const OpenCLContext& context, const cl::CommandQueue& queue, const BufferInPlace& inPlace);
 
@@ -90,9 +91,10 @@ private:
   std::function<cl_int()> MakeCopy;
 };
 
-/// A buffer for an output: over the memory of the host where it goes, if the device can work there,
-/// else one of the device. BeginToRead then copies it there. The copy is complete once it has been
-/// checked; nothing may write to the buffer until then.
+/// Makes a buffer for an output. If CanWorkInPlace(), the buffer uses the host memory of the
+/// output; otherwise it is a device buffer. In both cases, BeginToRead() brings the output to the
+/// host. The output is complete after PendingCopy::Check(); until then, no command may write to the
+/// buffer.
 void Bind(const OpenCLContext& context, cl::Buffer& buffer, void* memory, std::size_t elementSize,
   std::uint64_t bytes);
 PendingCopy BeginToRead(

@@ -17,7 +17,7 @@ class OutputVectors
 {
 public:
   ///@{
-  /// vectors: on the device of the context.
+  /// Set the destination. vectors must be on the device of the context.
   void Bind(const OpenCLContext& context, float* memory, std::size_t numberOfPoints);
   void Bind(const OpenCLContext& context, const std::shared_ptr<DeviceVectors>& vectors);
   ///@}

@@ -32,7 +32,8 @@ constexpr double LeastWeight = 1e-5;
 /// Values at the corners of a cell. Bits 0, 1 and 2 of a corner's number: upper x, y and z.
 using Corners = std::array<glm::dvec3, 8>;
 
-/// What is trilinear between corners, at a place between 0 and 1, and its derivatives by that.
+/// Interpolates trilinearly at a position in a cell, with coordinates from 0 to 1. gradient:
+/// returns the derivatives with respect to the position.
 glm::dvec3 Interpolate(const Corners& corners, const glm::dvec3& position, glm::dmat3& gradient)
 {
   const auto mix = [](const glm::dvec3& a, const glm::dvec3& b, double t)
@@ -114,7 +115,7 @@ public:
     return corners;
   }
 
-  /// Whether all vectors are known that a place in a cell needs.
+  /// Whether all vectors that are needed at a position in a cell are defined.
   bool IsDefined(const glm::ivec3& cell, const glm::dvec3& position) const
   {
     for (int corner = 0; this->Field.Undefined && corner < 8; ++corner)
@@ -385,7 +386,7 @@ bool FieldPointMap::InvertInside(const glm::dvec3& point, Image& image) const
   const glm::dvec3 position = inside.GetWorld(glm::dvec3(found.Cell) + found.Position);
   if (found.IsBeside)
   {
-    // There it is the border of the field that moves points.
+    // Outside the cell, points follow the border of the field.
     return this->Solve(point, position, image);
   }
   image = { position, inside.ToWorld * glm::inverse(found.Gradient) };

@@ -60,8 +60,8 @@ public:
   struct Configuration
   {
     const Points* Positions = nullptr;
-    double Size = 0.0;          // what tolerances are a part of
-    BoxTree<IndexBounds> Boxes; // by the tolerance wider; empty where there is no volume
+    double Size = 0.0;          // diagonal of the bounding box plus largest coordinate
+    BoxTree<IndexBounds> Boxes; // enlarged by the tolerance; empty boxes for flat tetrahedra
   };
 
   Configuration Search(const Points& positions) const
@@ -221,7 +221,7 @@ public:
     const TetrahedronFace& face = this->Faces[static_cast<std::size_t>(closest.Face)];
     const auto corners = face.GetNodes(this->GetNodes(face.Tetrahedron));
     glm::dvec3 position(0.0); // the closest point
-    // The corners of the face, the edge or the node that it is on.
+    // The corners of the face, edge or node on which the closest point lies.
     std::array<glm::dvec3, 3> feature;
     std::size_t featureSize = 0;
     for (int k = 0; k < 3; ++k)

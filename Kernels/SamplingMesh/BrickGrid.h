@@ -14,8 +14,8 @@
 namespace deformvolume
 {
 
-/// The bits that a section of a brick is resampled by, from the lowest one on
-/// (DEFORMVOLUME_BRICK_BITS).
+/// Returns the bits that select one section of a brick in a kernel launch, starting at bit 0. In a
+/// list of bricks they are shifted by DEFORMVOLUME_BRICK_BITS.
 inline std::uint32_t MakeSectionBits(std::uint32_t span, bool upperY, bool upperZ)
 {
   return 1U << span | (upperY ? 2U : 1U) << DEFORMVOLUME_SPANS |

@@ -103,8 +103,8 @@ typedef struct
   float Padding;
 } TetrahedronRecord;
 
-// Tetrahedra on the device name a node by its place in units of 8 bytes, of which it takes this
-// many: processors add eight times a number to an address at no cost, but not sixteen times.
+// Units of 8 bytes per node. Tetrahedra on the device refer to a node by its offset in such units:
+// CPUs multiply an index by 8 in an address at no cost, but not by 16.
 #define DEFORMVOLUME_NODE_STRIDE 2
 
 // Passes of the exact resampling kernel. The passes after the first are for voxels that several
@@ -132,7 +132,8 @@ typedef struct
   {                                                                                                \
     2, DEFORMVOLUME_BRICK_Y, DEFORMVOLUME_BRICK_Z                                                  \
   }
-// What can be resampled of a brick by itself: spans of so many cells on x, and halves on y and z.
+// Sections of a brick, which can be resampled separately: spans of DEFORMVOLUME_SPAN cells on x, and
+// halves on y and z.
 #define DEFORMVOLUME_SPAN 32
 #define DEFORMVOLUME_SPANS (DEFORMVOLUME_BRICK_X / DEFORMVOLUME_SPAN)
 #define DEFORMVOLUME_SECTIONS (4 * DEFORMVOLUME_SPANS)
@@ -295,7 +296,7 @@ static int3 FirstOfBrick(uint item, const KernelParameters* p)
     brick / p->BrickCount[0] / p->BrickCount[1] * DEFORMVOLUME_BRICK_Z + p->BrickOrigin[2]);
 }
 
-// Whether a section of a brick is to be resampled. section: as counters number them.
+// Whether an entry in the list of bricks selects a section. section: number as for the counters.
 static int IsSectionResampled(uint item, size_t section)
 {
   const uint inBrick = section % DEFORMVOLUME_SECTIONS;

@@ -19,7 +19,7 @@ static int3 EndOfVertices(int3 first, const KernelParameters* p)
     (int3)(p->Size[0], p->Size[1], p->PlanesEnd));
 }
 
-// Place of a vertex among those that MarkVertices has found the state of.
+// Index of a vertex in the array `marked` of MarkVertices.
 static size_t IndexInList(int3 first, int x, int y, int z)
 {
   return ((get_global_id(1) * DEFORMVOLUME_CUBOID_Z + (z - first.z)) * DEFORMVOLUME_CUBOID_Y + (y - first.y)) *

@@ -52,10 +52,10 @@ public:
   {
   }
 
-  // Infinity: not to be chosen.
+  // cost: infinity excludes the position.
   void SetCost(std::int64_t index, double cost) { this->Costs[index] = cost; }
 
-  // -1 where no place can be chosen.
+  // Returns -1 if all positions are excluded.
   std::int32_t GetNearest(std::int64_t index) const { return this->Nearest[index]; }
 
   // Computes the lower envelope of the parabolas at the positions in one sweep (Felzenszwalb and

@@ -51,10 +51,10 @@ public:
   {
     return { { points[nodes[0]], points[nodes[1]], points[nodes[2]], points[nodes[3]] } };
   }
-  /// Whether the nodes of a tetrahedron are at most 2^31 voxels away.
+  /// Whether the nodes of a tetrahedron are at most 2^31 voxels away from index 0.
   static bool IsWithinLimit(const Positions& nodes);
-  /// The voxels of the volume in the box of a tetrahedron within that limit, widened by a margin in
-  /// voxels.
+  /// Returns the voxels of the volume in the bounding box of a tetrahedron, enlarged by a margin in
+  /// voxels. The nodes must be within the limit.
   VoxelBox FindBox(const Positions& nodes, double margin) const;
 
   /// A range of tiles on y (0) and z (1), from Min to Max. By default empty.
@@ -63,6 +63,7 @@ public:
     std::int16_t Min[2] = { 0, 0 };
     std::int16_t Max[2] = { -1, -1 };
   };
+  /// Returns the tiles with voxels in the bounding box of a tetrahedron, enlarged by a margin.
   Range FindRange(const Positions& nodes, double margin) const;
   template <typename Body>
   void ForEachTile(const Range& range, Body&& body) const
