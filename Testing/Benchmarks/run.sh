@@ -152,7 +152,7 @@ measure_gpu_peers()
 {
   local status=0
   # Whatever Python holds torch and cupy.
-  python3 Testing/Benchmarks/gpu_peers.py "$folder" || status=$?
+  python3 Testing/Benchmarks/Report/gpu_peers.py "$folder" || status=$?
   # 125: neither is there.
   if [ $status -ne 0 ] && [ $status -ne 125 ]; then
     echo "run.sh: gpu_peers.py failed with status $status" >&2
@@ -173,7 +173,7 @@ for device in "${devices[@]}"; do
     continue
   fi
   [ $status -eq 0 ]
-  "$python" Testing/Benchmarks/machine.py "$folder"
+  "$python" Testing/Benchmarks/Report/machine.py "$folder"
   if wants benchmarks; then measure_benchmarks; fi
   if wants memory; then
     for line in "${memory[@]}"; do
@@ -189,8 +189,8 @@ done
 
 if [ "$python" != /usr/bin/python3 ] && ! "$python" -c "import matplotlib" 2>/dev/null; then
   echo "run.sh: the report is left out: there is no matplotlib. Copy $results to a machine that has it:" \
-    "Testing/Benchmarks/report.py makes the report" >&2
+    "Testing/Benchmarks/Report/report.py makes the report" >&2
 else
-  "$python" Testing/Benchmarks/report.py "$results"
+  "$python" Testing/Benchmarks/Report/report.py "$results"
 fi
 [ $failed = no ]
