@@ -3,9 +3,9 @@
 
 Usage: pvpython paraview_pictures.py <ParaView's client> <DeformVolume.so> <NIfTI plugin>
 
-Needs xvfb and the packages mricron-data and python3-numpy. The plugin for NIfTI files comes with
-ParaView: AnalyzeNIfTIReaderWriter.so. The client runs this file, too, for the pipeline of the worked
-example.
+Needs xvfb and the packages mricron-data, python3-numpy and, for the icons of the client, libqt5svg5.
+ParaView comes with the plugin for NIfTI files: AnalyzeNIfTIReaderWriter.so. The client runs this file,
+too, for the pipeline of the worked example.
 """
 
 import gzip
@@ -24,7 +24,7 @@ from vtkmodules.vtkIOImage import vtkPNGReader
 MRI = "/usr/share/mricron/templates/ch2.nii.gz"
 FILE = os.path.abspath(__file__)
 HERE = os.path.dirname(FILE)
-SIZE = (1100, 760)
+SIZE = (1280, 800)
 
 sys.path.insert(0, os.path.join(HERE, "..", "..", "Testing", "ParaView"))
 from XWindowDump import read_window_dump, write_png  # noqa: E402
