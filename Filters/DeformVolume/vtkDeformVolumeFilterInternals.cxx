@@ -6,6 +6,7 @@
 #include "FieldFolds.h"
 #include "InputUpdate.h"
 #include "MaskArray.h"
+#include "OutputExtent.h"
 #include "OutsideMode.h"
 #include "ResamplerChoice.h"
 #include "VectorChoice.h"
@@ -162,7 +163,11 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::MakeSource(
       { this->Self->DisplacementScale, this->Self->PointsAreDeformed, this->Self->FieldIsInverse });
   source.Volume = volume;
   source.ToOutput = deformvolume::GetOutputMap(volume, this->GetOutputGeometry(volume));
-  this->CheckOutputIndices({ volume.PointExtent, source.ToOutput, {} });
+  if (this->Reference)
+  {
+    deformvolume::CheckReferenceIndices(
+      { volume.PointExtent, source.ToOutput, {} }, *this->Reference);
+  }
   return source;
 }
 

@@ -58,9 +58,6 @@ public:
   void ReadReference(vtkInformation* reference);
   /// Throws an Error where the ranks have different ones. Collective.
   void CheckReferenceOfRanks(const deformvolume::Ranks& ranks) const;
-  /// Throws an Error where a volume has indices in the grid of the reference image that the kernels
-  /// cannot have.
-  void CheckOutputIndices(const deformvolume::VoxelGrid& voxelGrid) const;
   /// Warns where settings are without effect beside the reference image.
   void WarnOfReference();
   /// Warns that all of the output is background.

@@ -2,21 +2,16 @@
 // The grid of the output: that of the reference image, or that of the volume.
 #include "vtkDeformVolumeFilterInternals.h"
 
-#include "IndexBounds.h"
-#include "OutputExtent.h"
 #include "PipelineGeometry.h"
 
 #include "vtkInformation.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <sstream>
 
 using deformvolume::Error;
 using deformvolume::ImageGeometry;
-using deformvolume::IndexBounds;
 
 //------------------------------------------------------------------------------
 void vtkDeformVolumeFilter::vtkInternals::ReadReference(vtkInformation* reference)
@@ -89,33 +84,6 @@ void vtkDeformVolumeFilter::vtkInternals::CheckReferenceOfRanks(
   {
     throw Error("The reference image on input port 3 has different grids on different ranks. "
                 "Connect a source that announces the same grid on all.");
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::vtkInternals::CheckOutputIndices(
-  const deformvolume::VoxelGrid& voxelGrid) const
-{
-  if (!this->Reference)
-  {
-    return;
-  }
-  const IndexBounds bounds =
-    deformvolume::GetOutputTransform(voxelGrid).ToOutput(deformvolume::GetBox(voxelGrid));
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const double farthest = std::max(std::abs(bounds.Min[axis]), std::abs(bounds.Max[axis]));
-    if (!(farthest <= deformvolume::MostOutputIndex))
-    {
-      std::ostringstream text;
-      text << "The volume at rest reaches to the index " << farthest
-           << " in the grid of the reference image on axis "
-           << "xyz"[axis] << ", beyond 2^21. The reference image has "
-           << deformvolume::DescribeTransform(*this->Reference)
-           << ". Connect a reference image near the volume, in the same world units, or one with a "
-              "greater spacing.";
-      throw Error(text.str());
-    }
   }
 }
 

@@ -26,14 +26,9 @@ std::uint64_t CountTiles(const RasterParameters& p)
 
 void ReserveLists(WorkDevice& device, cl::Buffer& buffer, std::uint64_t bytes)
 {
-  const std::uint64_t limit = device.GetAllocationLimit();
-  if (bytes > limit)
-  {
-    throw Error("The lists of the tetrahedra in each part of the output need " +
-      std::to_string(bytes) + " bytes in one allocation, and the device allows at most " +
-      std::to_string(limit) +
-      ". Use a coarser deformation mesh, the resampler Exact, or another device.");
-  }
+  CheckAllocation(bytes, device.GetAllocationLimit(),
+    "The lists of the tetrahedra in each part of the output",
+    "Use a coarser deformation mesh, the exact resampler,");
   if (GetMemory(buffer) < bytes)
   {
     buffer = cl::Buffer();

@@ -6,6 +6,7 @@
 #include "ChainMailState.h"
 #include "DeviceVectorsInternals.h"
 #include "GuardedCall.h"
+#include "HostMemory.h"
 #include "MemoryBudget.h"
 #include "ParallelFor.h"
 
@@ -67,14 +68,14 @@ public:
   {
     const MemoryBudget::UpdateGuard update(this->Budget);
     return CallGuarded(
-      function, [this] { this->Forget(); }, " Set the voxel grid again.");
+      function, [this] { this->Forget(); }, " The state of ChainMail is lost.");
   }
 
   void CheckIsSet() const
   {
     if (!this->State)
     {
-      throw Error("No volume is set: call SetVoxelGrid first.");
+      throw Error("ChainMail has no volume: none was set, or an error of the device discarded it.");
     }
   }
 
@@ -107,7 +108,8 @@ void ChainMailModel::Internals::CheckMemory(const ChainMailBlocks& blocks)
   const std::uint64_t voxels =
     std::uint64_t{ blocks.GetNumberOfBlocks() } * DEFORMVOLUME_BLOCK_VOXELS;
   const std::uint64_t allocation = voxels * 3 * sizeof(std::int32_t);
-  MemoryBudget::CheckBytes(allocation, this->Device.GetAllocationLimit(), "in one allocation");
+  CheckAllocation(allocation, this->Device.GetAllocationLimit(), "The displacements of ChainMail",
+    "Use a smaller volume");
   if (voxels > std::numeric_limits<std::uint32_t>::max())
   {
     throw Error("The volume has too many voxels for ChainMail: at most 4,294,967,295. Use a "

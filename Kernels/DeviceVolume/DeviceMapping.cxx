@@ -23,7 +23,8 @@ void DeviceMapping::SendLinks(VolumeChunk& chunk, const VertexLink* links)
   const std::int64_t plane = static_cast<std::int64_t>(this->Size[0]) * this->Size[1];
   const std::uint64_t bytes =
     static_cast<std::uint64_t>((chunk.PlanesEnd - chunk.PlanesBegin) * plane) * sizeof(VertexLink);
-  CheckAllocation(bytes, this->AllocationLimit);
+  CheckAllocation(bytes, this->AllocationLimit, "The links of the voxels to the deformation mesh",
+    "Use a smaller volume");
   Reserve(this->Context, chunk.Links, bytes);
   Write(this->Queue, chunk.Links, 0, bytes, links + chunk.PlanesBegin * plane);
 }
@@ -81,7 +82,8 @@ void DeviceMapping::SetRuns(std::vector<VolumeChunk>& chunks, const VertexRuns& 
     }
     const std::uint64_t bytes[2] = { static_cast<std::uint64_t>(*last - *first) * sizeof(VertexRun),
       ranges.size() * sizeof(std::uint32_t) };
-    CheckAllocation(std::max(bytes[0], bytes[1]), this->AllocationLimit);
+    CheckAllocation(std::max(bytes[0], bytes[1]), this->AllocationLimit, "The runs of voxels",
+      "Use a smaller volume, a coarser deformation mesh");
     Reserve(this->Context, chunk.Runs, bytes[0]);
     Reserve(this->Context, chunk.RowRanges, bytes[1]);
     Write(this->Queue, chunk.Runs, 0, bytes[0], runs.Runs.data() + *first);

@@ -14,7 +14,8 @@ cl::Buffer SendLayers(const OpenCLContext& context, const cl::CommandQueue& queu
   const std::uint64_t layerBytes =
     static_cast<std::uint64_t>(layers.ElementsPerLayer) * layers.BytesPerElement;
   const std::uint64_t bytes = layerBytes * static_cast<std::uint64_t>(layers.End - layers.Begin);
-  CheckAllocation(bytes, allocationLimit);
+  CheckAllocation(
+    bytes, allocationLimit, "The values of an array of the volume", "Use a smaller volume");
   // OpenCL has no buffers of 0 bytes.
   const std::uint64_t room = std::max<std::uint64_t>(bytes, layers.BytesPerElement);
   cl::Buffer buffer = previous;

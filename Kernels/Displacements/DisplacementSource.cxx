@@ -6,6 +6,7 @@
 #include "DisplacementObserver.h"
 #include "Error.h"
 #include "FieldParameters.h"
+#include "HostMemory.h"
 #include "KernelText.h"
 #include "MeshChecks.h"
 #include "WorkDevice.h"
@@ -275,14 +276,8 @@ void DisplacementSource::UseField(const DisplacementField& field, const PointRan
 
 void DisplacementSource::CheckFieldSize() const
 {
-  if (4 * this->NumberOfNodes * sizeof(float) > this->Device.GetAllocationLimit())
-  {
-    throw Error("The displacement field needs " +
-      std::to_string(4 * this->NumberOfNodes * sizeof(float)) +
-      " bytes in one allocation, but the device allows at most " +
-      std::to_string(this->Device.GetAllocationLimit()) +
-      ". Use a coarser field or another device.");
-  }
+  CheckAllocation(4 * this->NumberOfNodes * sizeof(float), this->Device.GetAllocationLimit(),
+    "The vectors of the displacement field", "Use a coarser field");
 }
 
 void DisplacementSource::SendField(

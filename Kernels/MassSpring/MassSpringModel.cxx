@@ -4,6 +4,7 @@
 #include "CubeFifths.h"
 #include "DeviceVectorsInternals.h"
 #include "GuardedCall.h"
+#include "HostMemory.h"
 #include "MassSpringResults.h"
 #include "MassSpringState.h"
 #include "MemoryBudget.h"
@@ -57,7 +58,7 @@ public:
   {
     const MemoryBudget::UpdateGuard update(this->Budget);
     return CallGuarded(
-      function, [this] { this->Forget(); }, " Set the body again.");
+      function, [this] { this->Forget(); }, " The state of the springs is lost.");
   }
 
   void CheckIsSet() const
@@ -100,7 +101,8 @@ void MassSpringModel::Internals::CheckSize(const ElasticBody& body)
                 "mesh.");
   }
   const std::uint64_t allocation = body.Tetrahedra.size() * valuesOfTetrahedron * sizeof(float);
-  MemoryBudget::CheckBytes(allocation, this->Device.GetAllocationLimit(), "in one allocation");
+  CheckAllocation(allocation, this->Device.GetAllocationLimit(), "The springs of the tetrahedra",
+    "Use a coarser mesh");
 }
 
 void MassSpringModel::Internals::Make(Watch& watch, const ElasticBody& body, double cubeEdge)

@@ -55,12 +55,8 @@ DeviceVectors::Internals::Internals(OpenCLContext& context, std::size_t numberOf
     return;
   }
   const std::uint64_t bytes = std::uint64_t{ numberOfPoints } * VectorSize;
-  if (bytes > this->Device.GetAllocationLimit())
-  {
-    throw Error("The vectors of " + std::to_string(numberOfPoints) + " points need " +
-      std::to_string(bytes) + " bytes in one allocation, but the device allows at most " +
-      std::to_string(this->Device.GetAllocationLimit()) + ". Use fewer points or another device.");
-  }
+  CheckAllocation(bytes, this->Device.GetAllocationLimit(),
+    ("The vectors of " + std::to_string(numberOfPoints) + " points").c_str(), "Use fewer points");
   Reserve(context, this->Buffer, bytes);
   this->Device.GetQueue().enqueueFillBuffer(this->Buffer, cl_float{ 0.0F }, 0, bytes);
   this->Device.GetQueue().finish();

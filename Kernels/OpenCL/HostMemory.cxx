@@ -75,13 +75,14 @@ void UpdateFromHost(
   }
 }
 
-void CheckAllocation(std::uint64_t bytes, std::uint64_t limit)
+void CheckAllocation(
+  std::uint64_t bytes, std::uint64_t limit, const char* owners, const char* remedy)
 {
   if (bytes > limit)
   {
-    throw Error("An array of the volume needs " + std::to_string(bytes) +
-      " bytes in one allocation, but the device allows at most " + std::to_string(limit) +
-      ". Use a smaller volume or another device.");
+    throw Error(std::string(owners) + " need " + std::to_string(bytes) +
+      " bytes in one allocation, but the device allows at most " + std::to_string(limit) + ". " +
+      remedy + " or another device.");
   }
 }
 

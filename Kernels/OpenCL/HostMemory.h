@@ -52,8 +52,10 @@ struct BufferInPlace
 void UpdateFromHost(
   const OpenCLContext& context, const cl::CommandQueue& queue, const BufferInPlace& inPlace);
 
-/// Throws Error if a buffer of `bytes` exceeds the allocation limit of the device.
-void CheckAllocation(std::uint64_t bytes, std::uint64_t limit);
+/// Throws Error if a buffer of `bytes` exceeds the allocation limit of the device. owners: what
+/// needs the buffer, in the plural. remedy: what to do, except for using another device.
+void CheckAllocation(
+  std::uint64_t bytes, std::uint64_t limit, const char* owners, const char* remedy);
 
 /// Replaces a buffer by a device buffer of `bytes`, unless it already has this size.
 void Reserve(const OpenCLContext& context, cl::Buffer& buffer, std::uint64_t bytes);

@@ -3,7 +3,7 @@
 #include "MeshRasterizer.h"
 
 #include "DeviceVolume.h"
-#include "Error.h"
+#include "HostMemory.h"
 #include "RasterizationProgram.h"
 #include "WorkDevice.h"
 
@@ -31,13 +31,8 @@ void MeshRasterizer::SetField(const DisplacementField& inverse)
   {
     bytes *= static_cast<std::uint64_t>(size);
   }
-  const std::uint64_t limit = this->Device->GetAllocationLimit();
-  if (bytes > limit)
-  {
-    throw Error("The displacement field needs " + std::to_string(bytes) +
-      " bytes in one allocation, and the device allows at most " + std::to_string(limit) +
-      ". Use a coarser field or another device.");
-  }
+  CheckAllocation(bytes, this->Device->GetAllocationLimit(),
+    "The vectors of the displacement field", "Use a coarser field");
   if (deformvolume::GetMemory(last) != bytes)
   {
     last = cl::Buffer(); // free the old buffer before allocating a new one

@@ -4,6 +4,7 @@
 #include "CompilationWatch.h"
 #include "DeviceVolume.h"
 #include "Error.h"
+#include "HostMemory.h"
 #include "IndexBounds.h" // for GetOutputTransform
 #include "RasterTarget.h"
 #include "WorkDevice.h"
@@ -63,13 +64,8 @@ double GetRestVolume(const Tetrahedron& tetrahedron, const double* nodes)
 
 void Send(WorkDevice& device, cl::Buffer& buffer, const void* data, std::uint64_t bytes)
 {
-  const std::uint64_t limit = device.GetAllocationLimit();
-  if (bytes > limit)
-  {
-    throw Error("The deformation mesh needs " + std::to_string(bytes) +
-      " bytes in one allocation, and the device allows at most " + std::to_string(limit) +
-      ". Use a coarser mesh or another device.");
-  }
+  CheckAllocation(bytes, device.GetAllocationLimit(),
+    "The nodes and tetrahedra of the deformation mesh", "Use a coarser mesh");
   if (GetMemory(buffer) != bytes)
   {
     buffer = cl::Buffer(); // free the old buffer before allocating a new one
@@ -245,9 +241,8 @@ void MeshRasterizer::Begin(const DeformRequest& request, const SlabPlan&, Deform
   this->CheckPositions();
   if (this->Volume->GetChunks().size() > 1)
   {
-    throw Error(
-      "Mesh rasterization needs the volume in one allocation, and the device does not allow "
-      "that many bytes. Use the exact resampler, or another device.");
+    throw Error("Mesh rasterization needs the volume in one allocation, but the device does not "
+                "allow that many bytes. Use the exact resampler or another device.");
   }
   this->Kernel = this->MakeKernel(request.Interpolation);
   report.NumberOfFlatTetrahedra = this->NumberOfFlatTetrahedra;

@@ -5,7 +5,6 @@
 #include "BinningProgram.h"
 #include "DeviceVolume.h"
 #include "DisplacementSource.h"
-#include "Error.h"
 #include "HostMemory.h"
 #include "IndexBounds.h" // for GetOutputTransform
 #include "KernelSources.h"
@@ -142,12 +141,8 @@ void BoundaryCells::SetCorners(const Tetrahedron* tetrahedra)
   // The limit that SetAllocationLimit sets is for data that can be divided.
   const std::uint64_t most =
     this->Device.GetDevice().Device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
-  if (bytes > most)
-  {
-    throw Error("The boundary of the deformation needs " + std::to_string(bytes) +
-      " bytes in one allocation, and the device allows at most " + std::to_string(most) +
-      ". Use a coarser mesh or field, a smaller volume or another device.");
-  }
+  CheckAllocation(bytes, most, "The cells on the boundary of the deformation",
+    "Use a coarser mesh or field, a smaller volume");
   this->Corners =
     this->Device.Send(corners.data(), corners.size() * sizeof(BoundaryCorner), this->Corners);
   this->Pieces = this->Device.Send(pieces.data(), pieces.size() * sizeof(cl_int4), this->Pieces);

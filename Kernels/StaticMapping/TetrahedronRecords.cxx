@@ -51,7 +51,8 @@ void TetrahedronRecords::Clear()
 
 cl::Buffer TetrahedronRecords::MakeBuffer(std::uint64_t bytes) const
 {
-  CheckAllocation(bytes, this->AllocationLimit);
+  CheckAllocation(
+    bytes, this->AllocationLimit, "The tetrahedra of the deformation mesh", "Use a coarser mesh");
   return { this->Context.GetContext(), CL_MEM_READ_WRITE, bytes };
 }
 

@@ -3,7 +3,9 @@
 
 #include "Error.h"
 
+#include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace deformvolume
 {
@@ -136,6 +138,26 @@ Extent GetPadded(const Extent& extent, int padding)
       "world units.");
   }
   return padded;
+}
+
+void CheckReferenceIndices(const VoxelGrid& voxelGrid, const ImageGeometry& reference)
+{
+  const IndexBounds bounds = GetOutputTransform(voxelGrid).ToOutput(GetBox(voxelGrid));
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double farthest = std::max(std::abs(bounds.Min[axis]), std::abs(bounds.Max[axis]));
+    if (!(farthest <= MostOutputIndex))
+    {
+      std::ostringstream text;
+      text << "The volume at rest has the index " << farthest
+           << " in the grid of the reference image on axis "
+           << "xyz"[axis] << ", beyond 2^21. The reference image has "
+           << DescribeTransform(reference)
+           << ". Use a reference image near the volume, in the same world units, or with a greater "
+              "spacing.";
+      throw Error(text.str());
+    }
+  }
 }
 
 } // namespace deformvolume

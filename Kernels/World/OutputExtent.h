@@ -5,6 +5,7 @@
 #include "DeformVolumeExport.h"
 #include "ImageGeometry.h"
 #include "IndexBounds.h"
+#include "VoxelGrid.h"
 
 namespace deformvolume
 {
@@ -36,6 +37,11 @@ DEFORMVOLUME_EXPORT Extent GetKept(const Extent& last, const Extent& needed, int
 /// An extent with a border of so many voxels. Throws an Error where it counts more voxels than any
 /// machine can hold or stream.
 DEFORMVOLUME_EXPORT Extent GetPadded(const Extent& extent, int padding);
+
+/// Throws an Error if the volume at rest has indices beyond MostOutputIndex in the grid of the
+/// reference image. voxelGrid: of the volume, with its transform to that grid.
+DEFORMVOLUME_EXPORT void CheckReferenceIndices(
+  const VoxelGrid& voxelGrid, const ImageGeometry& reference);
 
 } // namespace deformvolume
 

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 namespace deformvolume
 {
@@ -179,31 +178,6 @@ ImageGeometry WorldDeformer::Internals::GetOutputGrid() const
   return output;
 }
 
-void WorldDeformer::Internals::CheckOutputIndices() const
-{
-  if (!this->Reference)
-  {
-    return;
-  }
-  const VoxelGrid voxelGrid = this->GetVoxelGrid();
-  const IndexBounds bounds = GetOutputTransform(voxelGrid).ToOutput(GetBox(voxelGrid));
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const double farthest = std::max(std::abs(bounds.Min[axis]), std::abs(bounds.Max[axis]));
-    if (!(farthest <= MostOutputIndex))
-    {
-      std::ostringstream text;
-      text << "The volume at rest reaches to the index " << farthest
-           << " in the reference grid on axis "
-           << "xyz"[axis] << ", beyond 2^21. The reference grid has "
-           << DescribeTransform(*this->Reference)
-           << ". Give one that lies where the volume does, in the same world units, or whose "
-              "spacing is greater.";
-      throw Error(text.str());
-    }
-  }
-}
-
 void WorldDeformer::Internals::UpdateDeformation()
 {
   if (!this->Volume)
@@ -217,7 +191,10 @@ void WorldDeformer::Internals::UpdateDeformation()
     this->VolumeAtRest = this->Volume;
   }
   this->ToOutput = GetOutputMap(*this->Volume, this->GetOutputGrid());
-  this->CheckOutputIndices();
+  if (this->Reference)
+  {
+    CheckReferenceIndices(this->GetVoxelGrid(), *this->Reference);
+  }
   if (!this->IsMesh())
   {
     this->Field.Update(*this->Volume, this->ToOutput);

@@ -78,7 +78,6 @@ private:
   {
     return { this->Volume->PointExtent, this->ToOutput, this->Volume->PointExtent };
   }
-  void CheckOutputIndices() const;
   IndexBounds FindBounds();
 
   bool HasDensities() const;
