@@ -2,6 +2,7 @@
 // The grid of the output: that of the reference image, or that of the volume.
 #include "vtkDeformVolumeFilterInternals.h"
 
+#include "OutputExtent.h"
 #include "PipelineGeometry.h"
 
 #include "vtkInformation.h"
