@@ -6,7 +6,7 @@
 #include "DeviceVolume.h"
 #include "MemoryBudget.h"
 #include "MeshRasterizer.h"
-#include "OutputSlab.h"
+#include "SlabSizes.h"
 #include "VertexLink.h"
 #include "WorkDevice.h"
 
@@ -23,7 +23,7 @@ std::uint64_t CountVoxelsOfSlab(WorkDevice& device, const DeformationSize& size)
     return 0;
   }
   const std::vector<Extent> slabs =
-    OutputSlab::Split(size.OutputExtent, size.Arrays, size.Grid, device.GetAllocationLimit());
+    SplitIntoSlabs(size.OutputExtent, size.Arrays, size.Grid, device.GetAllocationLimit());
   return static_cast<std::uint64_t>(GetNumberOfPoints(slabs.front()));
 }
 
@@ -48,7 +48,7 @@ std::uint64_t CountDeviceMemory(
   // The queue of deferred cells (GPUs), and coverage as bits.
   const std::uint64_t queue =
     DeferredCells::GetMemory(device, BrickGrid(size.Grid).GetNumberOfBricks());
-  const std::uint64_t bits = queue > 0 ? OutputSlab::CountWords(outputVoxels) * 4 : 0;
+  const std::uint64_t bits = queue > 0 ? CountWords(outputVoxels) * 4 : 0;
   // Arrays, states, active tetrahedra and blanking; links or runs of a mesh; arrays and coverage of
   // the output; displacements and tetrahedra.
   return voxels * (sent + 3) + size.MappingBytes + outputVoxels * outputBytesPerVoxel + queue +

@@ -3,8 +3,8 @@
 
 #include "DeviceVolume.h"
 #include "HostMemory.h"
-#include "OutputSlab.h"
 #include "SlabResampler.h"
+#include "SlabSizes.h"
 #include "WorkDevice.h"
 
 #include <chrono>
@@ -18,9 +18,9 @@ void MakeSlabs(SlabResampler& resampler, WorkDevice& device, const DeviceVolume&
   using Clock = std::chrono::steady_clock;
   const std::vector<VolumeArray>& arrays = volume.GetArrays().Get();
   SlabPlan plan;
-  plan.Slabs = OutputSlab::Split(
+  plan.Slabs = SplitIntoSlabs(
     request.OutputExtent, arrays, volume.GetVoxelGrid(), device.GetAllocationLimit());
-  const std::uint64_t bytes = OutputSlab::GetBytesPerVoxel(device.GetContext(), arrays, request) *
+  const std::uint64_t bytes = GetOutputBytesPerVoxel(device.GetContext(), arrays, request) *
     static_cast<std::uint64_t>(GetNumberOfPoints(plan.Slabs.front()));
   const bool stays =
     request.MayStayOnDevice && !device.GetDevice().IsProcessor && plan.Slabs.size() == 1;

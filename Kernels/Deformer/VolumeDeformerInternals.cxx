@@ -3,6 +3,7 @@
 
 #include "FieldParameters.h"
 #include "SlabLoop.h"
+#include "SlabSizes.h"
 
 #include <algorithm>
 
@@ -148,8 +149,7 @@ DeformReport VolumeDeformer::Internals::Parts::Deform(const DeformRequest& reque
   this->Volume.GetArrays().ReadAgain();
   this->Source.ReadFieldAgain();
   const std::uint64_t spare = CheckDeviceMemory(this->Device, this->Budget, this->GetSize(request),
-    OutputSlab::GetBytesPerVoxel(
-      this->Device.GetContext(), this->Volume.GetArrays().Get(), request));
+    GetOutputBytesPerVoxel(this->Device.GetContext(), this->Volume.GetArrays().Get(), request));
   const bool isRasterized = request.Method == Resampling::MeshRasterization;
   DeformReport report =
     isRasterized ? this->Rasterize(request, spare) : this->Resample(request, spare);

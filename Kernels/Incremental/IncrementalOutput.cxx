@@ -263,7 +263,7 @@ bool IncrementalOutput::TryUpdate(const DeformRequest& request, const Displaceme
   {
     return false;
   }
-  const OutputSlab::Counts& counts = again->Counts;
+  const SlabCounts& counts = again->Counts;
   const auto done = Clock::now();
   const Extent changed = this->Changes.GetChangedExtent();
   if (!stays)

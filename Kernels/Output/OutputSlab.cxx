@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "OutputSlab.h"
 
-#include "BrickGrid.h"
 #include "DeviceOutputInternals.h"
-#include "Error.h"
 #include "OutputFilling.h"
 #include "OutputPatches.h"
 #include "ResamplingProgram.h"
+#include "SlabSizes.h"
 #include "WorkDevice.h"
 
 #include <algorithm>
@@ -17,14 +16,6 @@ namespace deformvolume
 {
 namespace
 {
-
-/// The bits of a section of a brick, in the format of DEFORMVOLUME_BRICK_BITS.
-cl_uint GetSectionBits(std::size_t section)
-{
-  const std::size_t halves = section / DEFORMVOLUME_SPANS;
-  return MakeSectionBits(static_cast<cl_uint>(section % DEFORMVOLUME_SPANS), halves & 1, halves & 2)
-    << DEFORMVOLUME_BRICK_BITS;
-}
 
 /// Adds up the values that a kernel writes for each of its work-items.
 std::uint64_t ReadSum(const cl::CommandQueue& queue, const cl::Buffer& sums, std::size_t items)
@@ -50,55 +41,6 @@ Extent GetWholeOutput(const DeformRequest& request)
 }
 
 } // namespace
-
-std::uint64_t OutputSlab::CountWords(std::uint64_t voxels)
-{
-  return (voxels + 31) / 32;
-}
-
-std::vector<Extent> OutputSlab::Split(const Extent& output, const std::vector<VolumeArray>& arrays,
-  const VoxelGrid& voxelGrid, std::uint64_t allocationLimit)
-{
-  std::uint64_t widest = GetWinnerSize(voxelGrid);
-  for (const VolumeArray& array : arrays)
-  {
-    widest = std::max<std::uint64_t>(widest, GetTupleSize(array));
-  }
-  const std::uint64_t plane = static_cast<std::uint64_t>(GetSize(output, 0)) *
-    static_cast<std::uint64_t>(GetSize(output, 1)) * widest;
-  const std::uint64_t planes = allocationLimit / plane;
-  if (planes == 0)
-  {
-    throw Error("A slice of the output needs " + std::to_string(plane) +
-      " bytes, and the device allows at most " + std::to_string(allocationLimit) +
-      " bytes in one allocation. Use smaller output bounds or another device.");
-  }
-  std::vector<Extent> slabs;
-  for (std::int64_t z = output[4]; z <= output[5];)
-  {
-    Extent slab = output;
-    slab[4] = static_cast<int>(z);
-    slab[5] = static_cast<int>(
-      std::min<std::int64_t>(output[5], z + static_cast<std::int64_t>(planes) - 1));
-    slabs.push_back(slab);
-    z = std::int64_t{ slab[5] } + 1;
-  }
-  return slabs;
-}
-
-std::uint64_t OutputSlab::GetBytesPerVoxel(const OpenCLContext& context,
-  const std::vector<VolumeArray>& arrays, const DeformRequest& request)
-{
-  std::uint64_t bytes = CanWorkInPlace(context, request.Coverage, 1) ? 0 : 1;
-  for (std::size_t i = 0; i < arrays.size(); ++i)
-  {
-    if (!CanWorkInPlace(context, request.Outputs[i], GetElementSize(arrays[i].Type)))
-    {
-      bytes += GetTupleSize(arrays[i]);
-    }
-  }
-  return bytes;
-}
 
 void OutputSlab::BindArrays(
   OpenCLContext& context, const DeformRequest& request, const std::vector<VolumeArray>& arrays)
@@ -144,7 +86,7 @@ void OutputSlab::PrepareAgain(OpenCLContext& context, const cl::CommandQueue& qu
   this->Finish();
   this->Queue = queue;
   this->WholeExtent = GetWholeOutput(request);
-  const bool onHost = GetBytesPerVoxel(context, arrays, request) == 0;
+  const bool onHost = GetOutputBytesPerVoxel(context, arrays, request) == 0;
   if (onHost)
   {
     // Clear patches while the memory belongs to the host, before it is given to buffers.
@@ -185,7 +127,8 @@ void OutputSlab::PrepareAgain(OpenCLContext& context, const cl::CommandQueue& qu
   }
   if (!part.Bricks.empty())
   {
-    this->ClearSections(context, part, events);
+    this->Counters.ClearSections(
+      context, part.Bricks.size(), part.BrickList, part.WithWinners, events);
   }
 }
 
@@ -197,25 +140,6 @@ void OutputSlab::SendPatches(OpenCLContext& context, const std::vector<std::uint
     Reserve(context, this->PatchList, bytes);
     this->Queue.enqueueWriteBuffer(this->PatchList, CL_TRUE, 0, bytes, patches.data());
     this->NumberOfListedPatches = patches.size();
-  }
-}
-
-void OutputSlab::ClearSections(
-  OpenCLContext& context, const PartToMake& part, std::vector<cl::Event>& events)
-{
-  const auto launch = [&](const char* name, std::size_t sections, auto... arguments)
-  {
-    cl::Kernel kernel(GetOutputProgram(context), name);
-    cl_uint i = 0;
-    kernel.setArg(i++, this->Counters);
-    (kernel.setArg(i++, arguments), ...);
-    kernel.setArg(i++, static_cast<cl_uint>(sections));
-    LaunchSmallItems(context, this->Queue, kernel, sections, events);
-  };
-  launch("ClearSections", DEFORMVOLUME_SECTIONS * part.Bricks.size(), part.BrickList);
-  if (part.WithWinners)
-  {
-    launch("ClearWork", this->NumberOfSections);
   }
 }
 
@@ -231,13 +155,8 @@ void OutputSlab::Bind(OpenCLContext& context, const cl::CommandQueue& queue, con
   this->NumberOfVoxels = static_cast<std::uint64_t>(GetNumberOfPoints(extent));
   this->Winners.Start(queue, extent, voxelGrid);
   this->BindArrays(context, request, arrays);
-  this->NumberOfSections = DEFORMVOLUME_SECTIONS * numberOfBricks;
-  Reserve(
-    context, this->Counters, this->NumberOfSections * DEFORMVOLUME_COUNTERS * sizeof(cl_uint));
-  this->ClearCounters(context, events);
-  this->MostLargeCells = static_cast<std::size_t>(std::min<std::int64_t>(
-    GetNumberOfCells(voxelGrid.VertexExtent), DEFORMVOLUME_MOST_LARGE_CELLS));
-  Reserve(context, this->LargeCells, (1 + this->MostLargeCells) * sizeof(LargeCell));
+  this->Counters.Start(context, queue, numberOfBricks, events);
+  this->LargeCells.Start(context, queue, GetNumberOfCells(voxelGrid.VertexExtent));
 }
 
 void OutputSlab::Clear(OpenCLContext& context, const std::vector<VolumeArray>& arrays,
@@ -294,12 +213,6 @@ void OutputSlab::Complete(OpenCLContext& context, const std::vector<VolumeArray>
   this->Queue.finish(); // the output is read in another queue
 }
 
-void OutputSlab::ClearCounters(OpenCLContext& context, std::vector<cl::Event>& events)
-{
-  Fill(context, this->Queue, this->Counters, ElementBytes::Of(cl_uint{ 0 }),
-    this->NumberOfSections * DEFORMVOLUME_COUNTERS, events);
-}
-
 void OutputSlab::Settle(OpenCLContext& context, bool claimed, const KernelParameters& parameters,
   std::vector<cl::Event>& events)
 {
@@ -309,25 +222,7 @@ void OutputSlab::Settle(OpenCLContext& context, bool claimed, const KernelParame
   {
     this->ExpandCoverage(context, false, events);
   }
-  this->Winners.Settle(context, claimed, this->Coverage, this->Counters, p, events);
-}
-
-void OutputSlab::ClearLargeCells() const
-{
-  this->Queue.enqueueFillBuffer(this->LargeCells, cl_uint{ 0 }, 0, sizeof(cl_uint));
-}
-
-std::vector<OutputSlab::LargeCell> OutputSlab::ReadLargeCells() const
-{
-  cl_uint number = 0;
-  this->Queue.enqueueReadBuffer(this->LargeCells, CL_TRUE, 0, sizeof(number), &number);
-  std::vector<LargeCell> cells(std::min<std::size_t>(number, this->MostLargeCells));
-  if (!cells.empty())
-  {
-    this->Queue.enqueueReadBuffer(
-      this->LargeCells, CL_TRUE, sizeof(LargeCell), cells.size() * sizeof(LargeCell), cells.data());
-  }
-  return cells;
+  this->Winners.Settle(context, claimed, this->Coverage, this->Counters.GetBuffer(), p, events);
 }
 
 std::uint64_t OutputSlab::CountCovered(WorkDevice& device, std::vector<cl::Event>& events)
@@ -365,65 +260,11 @@ std::uint64_t OutputSlab::CountCovered(
   return ReadSum(this->Queue, sums, patches.size());
 }
 
-std::vector<cl_uint> OutputSlab::FindBricks(int counter)
+SlabCounts OutputSlab::ReadCounts(WorkDevice& device, bool covered, std::vector<cl::Event>& events)
 {
-  std::vector<cl_uint> counters(this->NumberOfSections * DEFORMVOLUME_COUNTERS);
-  this->Queue.enqueueReadBuffer(
-    this->Counters, CL_TRUE, 0, counters.size() * sizeof(cl_uint), counters.data());
-  std::vector<cl_uint> bricks;
-  for (std::size_t brick = 0; brick < this->NumberOfSections / DEFORMVOLUME_SECTIONS; ++brick)
-  {
-    cl_uint bits = 0;
-    for (std::size_t section = 0; section < DEFORMVOLUME_SECTIONS; ++section)
-    {
-      const std::size_t index = (DEFORMVOLUME_SECTIONS * brick + section) * DEFORMVOLUME_COUNTERS;
-      if (counters[index + static_cast<std::size_t>(counter)])
-      {
-        bits |= GetSectionBits(section);
-      }
-    }
-    if (bits)
-    {
-      bricks.push_back(static_cast<cl_uint>(brick) | bits);
-    }
-  }
-  return bricks;
-}
-
-OutputSlab::Counts OutputSlab::ReadCounts(
-  WorkDevice& device, bool covered, std::vector<cl::Event>& events)
-{
-  OpenCLContext& context = device.GetContext();
-  std::array<cl_uint, DEFORMVOLUME_SUMMARY_WORDS> words;
-  Reserve(context, this->Parts, DEFORMVOLUME_PARTS * DEFORMVOLUME_SUMMED * sizeof(cl_ulong));
-  Reserve(context, this->Summary, sizeof(words));
   const bool withBits = covered && this->BitsUsed;
-  const auto launch = [&](const char* name, std::size_t groups, const auto&... arguments)
-  {
-    cl::Kernel kernel(GetOutputProgram(context), name);
-    const std::size_t group = device.GetBusyGroupSize(kernel, 256);
-    cl_uint i = 0;
-    (kernel.setArg(i++, arguments), ...);
-    kernel.setArg(i, cl::Local(DEFORMVOLUME_SUMMED * group * sizeof(cl_ulong)));
-    events.push_back(
-      context.Launch(this->Queue, kernel, cl::NDRange(group * groups), cl::NDRange(group)));
-  };
-  // Some drivers do not accept a null buffer, so pass another one.
-  launch("SumParts", DEFORMVOLUME_PARTS, this->Counters,
-    static_cast<cl_uint>(this->NumberOfSections), withBits ? this->CoverageBits : this->Counters,
-    cl_ulong{ withBits ? CountWords(this->NumberOfVoxels) : 0 }, this->Parts);
-  launch("Summarize", 1, this->Parts, this->Summary);
-  this->Queue.enqueueReadBuffer(this->Summary, CL_TRUE, 0, sizeof(words), words.data());
-  const auto join = [&](std::size_t word)
-  { return words[word] | std::uint64_t{ words[word + 1] } << 32; };
-  Counts counts;
-  counts.Writes = join(0);
-  counts.Covered = join(2);
-  counts.Inverted = join(4);
-  counts.Overstretched = words[6];
-  counts.MissingWhereAssumed = (words[7] & DEFORMVOLUME_SUMMARY_MISSING_WHERE_ASSUMED) != 0;
-  counts.HasLarge = (words[7] & DEFORMVOLUME_SUMMARY_LARGE) != 0;
-  return counts;
+  return this->Counters.Read(device, withBits ? this->CoverageBits : cl::Buffer(),
+    withBits ? CountWords(this->NumberOfVoxels) : 0, events);
 }
 
 bool OutputSlab::FitsLanes() const
@@ -452,7 +293,7 @@ void OutputSlab::SetParameters(KernelParameters& parameters) const
     parameters.WholeFirst[axis] = this->WholeExtent[2 * axis] - this->SlabExtent[2 * axis];
     parameters.WholeEnd[axis] = this->WholeExtent[2 * axis + 1] + 1 - this->SlabExtent[2 * axis];
   }
-  parameters.MostLargeCells = static_cast<int>(this->MostLargeCells);
+  parameters.MostLargeCells = static_cast<int>(this->LargeCells.GetCapacity());
   parameters.KeepsPatches = this->Winners.KeepsPatches() ? 1 : 0;
   parameters.IsPart = this->WholeExtent != this->SlabExtent ? 1 : 0;
 }
@@ -530,7 +371,7 @@ std::uint64_t OutputSlab::GetMemory() const
 {
   std::uint64_t bytes = deformvolume::GetMemory(this->Coverage) +
     deformvolume::GetMemory(this->CoverageBits) + this->Winners.GetMemory() +
-    deformvolume::GetMemory(this->Counters);
+    this->Counters.GetMemory();
   for (const cl::Buffer& array : this->Arrays)
   {
     bytes += deformvolume::GetMemory(array);

@@ -6,8 +6,10 @@
 #include "Extent.h"
 #include "HostMemory.h"
 #include "KernelParameters.h"
+#include "LargeCellList.h"
 #include "OpenCLContext.h"
 #include "OutputWinners.h"
+#include "SectionCounters.h"
 #include "VolumeArray.h"
 #include "VoxelGrid.h"
 
@@ -24,38 +26,6 @@ class WorkDevice;
 class OutputSlab
 {
 public:
-  struct Counts
-  {
-    std::uint64_t Writes = 0;
-    std::uint64_t Inverted = 0;
-    std::uint64_t Overstretched = 0;
-    std::uint64_t Covered = 0; // only if coverage is bits, after a pass over all cells
-    bool HasLarge = false;     // whether there are large cells
-    /// Whether tetrahedra at the border of the mesh do not cover samples that the kernel assumed
-    /// they cover.
-    bool MissingWhereAssumed = false;
-
-    /// Whether winners must be chosen. Without overlaps every covered voxel is written once. Where
-    /// the mesh is folded, voxels on the crease may also be missing.
-    bool NeedWinners(std::uint64_t covered) const
-    {
-      return this->Writes > covered || this->Inverted > 0 || this->Overstretched > 0 ||
-        this->MissingWhereAssumed;
-    }
-  };
-
-  /// Splits an output into slabs that the device can allocate. Throws an Error if not even one
-  /// plane fits.
-  static std::vector<Extent> Split(const Extent& output, const std::vector<VolumeArray>& arrays,
-    const VoxelGrid& voxelGrid, std::uint64_t allocationLimit);
-
-  /// Returns the number of 32-bit words of coverage stored as bits.
-  static std::uint64_t CountWords(std::uint64_t voxels);
-  /// Returns the device memory per output voxel of the request, in bytes: of the arrays and the
-  /// coverage that are not written in place.
-  static std::uint64_t GetBytesPerVoxel(const OpenCLContext& context,
-    const std::vector<VolumeArray>& arrays, const DeformRequest& request);
-
   /// Allocates memory for a slab of the request's output, reuses existing buffers, or uses the
   /// memory of the request in place. Adds events of launches to a list.
   void Bind(OpenCLContext& context, const cl::CommandQueue& queue, const Extent& extent,
@@ -82,7 +52,7 @@ public:
     const std::vector<std::uint32_t>& Patches;
     bool WithWinners; // whether the last output chose winners
   };
-  /// Replaces Place and Clear for an incremental update. The last output and its counters must be
+  /// Replaces Bind and Clear for an incremental update. The last output and its counters must be
   /// available. Clears the patches, the counters of the bricks, and the counters that tell the
   /// passes for winners where they have work. Other patches keep their winners.
   void PrepareAgain(OpenCLContext& context, const cl::CommandQueue& queue,
@@ -91,34 +61,20 @@ public:
 
   OutputWinners& GetWinners() { return this->Winners; }
   const OutputWinners& GetWinners() const { return this->Winners; }
-  /// Sets all counters to 0, before a counting pass is run again.
-  void ClearCounters(OpenCLContext& context, std::vector<cl::Event>& events);
   /// See OutputWinners. parameters: of the mesh.
   void Settle(OpenCLContext& context, bool claimed, const KernelParameters& parameters,
     std::vector<cl::Event>& events);
-
-  /// The list of large cells (DEFORMVOLUME_PIECE) that the launches of a pass have found.
-  struct LargeCell
-  {
-    std::array<cl_int, 3> Cell; // local index
-    cl_int Pieces;
-  };
-  void ClearLargeCells() const;
-  std::vector<LargeCell> ReadLargeCells() const;
 
   std::uint64_t CountCovered(WorkDevice& device, std::vector<cl::Event>& events);
   /// Counts the covered voxels of some patches, after Complete.
   std::uint64_t CountCovered(OpenCLContext& context, const std::vector<std::uint32_t>& patches,
     std::vector<cl::Event>& events);
-  /// covered: whether to find Counts.Covered, which requires that coverage is bits.
-  Counts ReadCounts(WorkDevice& device, bool covered, std::vector<cl::Event>& events);
+  /// Reads the sums of the counters. covered: whether to find SlabCounts::Covered, which requires
+  /// that coverage is bits.
+  SlabCounts ReadCounts(WorkDevice& device, bool covered, std::vector<cl::Event>& events);
 
   /// Whether the slab fits the CPU kernel, which uses float positions and 31-bit indices.
   bool FitsLanes() const;
-
-  /// Returns the bricks with sections that have a counter other than 0, in the format of
-  /// DEFORMVOLUME_BRICK_BITS.
-  std::vector<cl_uint> FindBricks(int counter);
 
   /// Sets the output extent in the parameters of a launch.
   void SetParameters(KernelParameters& parameters) const;
@@ -132,8 +88,9 @@ public:
   {
     return this->BitsUsed ? this->CoverageBits : this->Coverage;
   }
-  const cl::Buffer& GetLargeCells() const { return this->LargeCells; }
-  const cl::Buffer& GetCounters() const { return this->Counters; }
+  const LargeCellList& GetLargeCells() const { return this->LargeCells; }
+  const SectionCounters& GetCounters() const { return this->Counters; }
+  SectionCounters& GetCounters() { return this->Counters; }
 
   /// Begins to copy a part of the finished slab to the memory of the request, in a separate queue.
   void Read(const cl::CommandQueue& queue, const DeformRequest& request, const Extent& part);
@@ -155,8 +112,6 @@ private:
   void BindArrays(
     OpenCLContext& context, const DeformRequest& request, const std::vector<VolumeArray>& arrays);
   void SendPatches(OpenCLContext& context, const std::vector<std::uint32_t>& patches);
-  void ClearSections(
-    OpenCLContext& context, const PartToMake& part, std::vector<cl::Event>& events);
   void ExpandCoverage(OpenCLContext& context, bool again, std::vector<cl::Event>& events);
   std::uint64_t GetOffset(const DeformRequest& request) const;
 
@@ -171,12 +126,8 @@ private:
   OutputWinners Winners;
   cl::Buffer PatchList; // patches that an update clears
   std::size_t NumberOfListedPatches = 0;
-  cl::Buffer Counters;
-  cl::Buffer Parts;      // partial sums of Counters
-  cl::Buffer Summary;    // sums of Parts
-  cl::Buffer LargeCells; // at most 1 MB; like all work lists not included in GetMemory()
-  std::size_t MostLargeCells = 0;
-  std::size_t NumberOfSections = 0; // sections of bricks
+  SectionCounters Counters;
+  LargeCellList LargeCells; // at most 1 MB; like all work lists not included in GetMemory()
   std::uint64_t NumberOfVoxels = 0;
   PendingCopies Reads; // last member: copies end before buffers are deleted
 };

@@ -163,8 +163,8 @@ void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
   const OutputWinners& winners = output.GetWinners();
   kernel.setArg(i++, winners.GetKeys()() ? winners.GetKeys() : output.GetCoverageTarget());
   kernel.setArg(i++, winners.GetPatches()() ? winners.GetPatches() : output.GetCoverageTarget());
-  kernel.setArg(i++, output.GetLargeCells());
-  kernel.setArg(i++, output.GetCounters());
+  kernel.setArg(i++, output.GetLargeCells().GetBuffer());
+  kernel.setArg(i++, output.GetCounters().GetBuffer());
   if (this->Volume.GetMasks().HasCut())
   {
     i = this->Volume.GetMasks().GetCut().SetArguments(kernel, i);
@@ -350,7 +350,7 @@ const cl::Buffer& ExactPasses::SendBricks(const std::vector<cl_uint>& list)
 void ExactPasses::Run(const DeformRequest& request, const OutputSlab& output, int pass,
   const std::vector<cl_uint>* bricks)
 {
-  output.ClearLargeCells();
+  output.GetLargeCells().Clear();
   std::vector<cl_uint> all;
   const std::vector<PlannedLaunch> launches =
     bricks ? this->PlanSome(output, pass, *bricks) : this->PlanAll(output, pass, all);
@@ -415,7 +415,7 @@ void ExactPasses::RunColumns(const DeformRequest& request, const OutputSlab& out
 
 void ExactPasses::RunLargeCells(const DeformRequest& request, const OutputSlab& output, int pass)
 {
-  const std::vector<OutputSlab::LargeCell> cells = output.ReadLargeCells();
+  const std::vector<LargeCellList::LargeCell> cells = output.GetLargeCells().Read();
   if (cells.empty())
   {
     return;
@@ -424,7 +424,7 @@ void ExactPasses::RunLargeCells(const DeformRequest& request, const OutputSlab& 
   std::vector<Piece> pieces;
   pieces.reserve(DEFORMVOLUME_PIECES);
   std::uint64_t left = 0;
-  for (const OutputSlab::LargeCell& cell : cells)
+  for (const LargeCellList::LargeCell& cell : cells)
   {
     left += static_cast<std::uint64_t>(cell.Pieces);
   }

@@ -81,7 +81,7 @@ ExactResampler::Outcome ExactResampler::RunFirstPass(
   return outcome;
 }
 
-bool ExactResampler::IsFolded(const OutputSlab::Counts& counts) const
+bool ExactResampler::IsFolded(const SlabCounts& counts) const
 {
   const auto tetrahedra =
     5 * static_cast<std::uint64_t>(GetNumberOfCells(this->Volume.GetVoxelGrid().VertexExtent));
@@ -149,7 +149,7 @@ bool ExactResampler::ChooseWinners(
     output.GetWinners().Prepare(this->Device.GetContext(), this->Launched.GetResamplingEvents());
     if (contested)
     {
-      output.ClearCounters(this->Device.GetContext(), this->Launched.GetResamplingEvents());
+      output.GetCounters().Clear(this->Device.GetContext(), this->Launched.GetResamplingEvents());
       this->RunPass(request, output, DEFORMVOLUME_PASS_OWNERS, first.HasLargeCells);
       claimed = true;
     }
@@ -170,7 +170,7 @@ void ExactResampler::WriteWinners(
     std::vector<cl_uint> bricks;
     if (!all)
     {
-      bricks = output.FindBricks(counter);
+      bricks = output.GetCounters().FindBricks(counter);
     }
     this->RunPass(request, output, pass, hasLargeCells, all ? nullptr : &bricks);
   };

@@ -56,8 +56,8 @@ public:
   /// The result of MakeAgain.
   struct Again
   {
-    OutputSlab::Counts Counts; // over all bricks
-    bool Overlapping = false;  // only set if winners were chosen
+    SlabCounts Counts;        // over all bricks
+    bool Overlapping = false; // only set if winners were chosen
   };
   /// Makes some bricks of the last output again, in target 0. The memory of the request must hold
   /// the last output. First clears some patches there or on the device. Chooses winners if the last
@@ -85,7 +85,7 @@ private:
   /// The result of the first pass.
   struct Outcome
   {
-    OutputSlab::Counts Counts;
+    SlabCounts Counts;
     std::uint64_t Covered = 0;
     bool HasLargeCells = false;
   };
@@ -104,7 +104,7 @@ private:
   /// The winners are lost.
   void CountFolds(const DeformRequest& request, OutputSlab& output);
   /// Whether some tetrahedra are inverted, but not most of them, as in a mirror image.
-  bool IsFolded(const OutputSlab::Counts& counts) const;
+  bool IsFolded(const SlabCounts& counts) const;
   void MakeExact(
     const DeformRequest& request, OutputSlab& output, bool isFirst, DeformReport& report);
 

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SectionCounters.h"
+
+#include "BrickGrid.h"
+#include "HostMemory.h"
+#include "KernelParameters.h"
+#include "OutputFilling.h"
+#include "ResamplingProgram.h"
+#include "WorkDevice.h"
+
+#include <array>
+
+namespace deformvolume
+{
+namespace
+{
+
+/// The bits of a section of a brick, in the format of DEFORMVOLUME_BRICK_BITS.
+cl_uint GetSectionBits(std::size_t section)
+{
+  const std::size_t halves = section / DEFORMVOLUME_SPANS;
+  return MakeSectionBits(static_cast<cl_uint>(section % DEFORMVOLUME_SPANS), halves & 1, halves & 2)
+    << DEFORMVOLUME_BRICK_BITS;
+}
+
+} // namespace
+
+void SectionCounters::Start(OpenCLContext& context, const cl::CommandQueue& queue,
+  std::size_t numberOfBricks, std::vector<cl::Event>& events)
+{
+  this->Queue = queue;
+  this->NumberOfSections = DEFORMVOLUME_SECTIONS * numberOfBricks;
+  Reserve(
+    context, this->Counters, this->NumberOfSections * DEFORMVOLUME_COUNTERS * sizeof(cl_uint));
+  this->Clear(context, events);
+}
+
+void SectionCounters::Clear(OpenCLContext& context, std::vector<cl::Event>& events)
+{
+  Fill(context, this->Queue, this->Counters, ElementBytes::Of(cl_uint{ 0 }),
+    this->NumberOfSections * DEFORMVOLUME_COUNTERS, events);
+}
+
+void SectionCounters::ClearSections(OpenCLContext& context, std::size_t bricks,
+  const cl::Buffer& brickList, bool withWinners, std::vector<cl::Event>& events)
+{
+  const auto launch = [&](const char* name, std::size_t sections, auto... arguments)
+  {
+    cl::Kernel kernel(GetOutputProgram(context), name);
+    cl_uint i = 0;
+    kernel.setArg(i++, this->Counters);
+    (kernel.setArg(i++, arguments), ...);
+    kernel.setArg(i++, static_cast<cl_uint>(sections));
+    LaunchSmallItems(context, this->Queue, kernel, sections, events);
+  };
+  launch("ClearSections", DEFORMVOLUME_SECTIONS * bricks, brickList);
+  if (withWinners)
+  {
+    launch("ClearWork", this->NumberOfSections);
+  }
+}
+
+SlabCounts SectionCounters::Read(WorkDevice& device, const cl::Buffer& coverageBits,
+  std::uint64_t coverageWords, std::vector<cl::Event>& events)
+{
+  OpenCLContext& context = device.GetContext();
+  std::array<cl_uint, DEFORMVOLUME_SUMMARY_WORDS> words;
+  Reserve(context, this->Parts, DEFORMVOLUME_PARTS * DEFORMVOLUME_SUMMED * sizeof(cl_ulong));
+  Reserve(context, this->Summary, sizeof(words));
+  const auto launch = [&](const char* name, std::size_t groups, const auto&... arguments)
+  {
+    cl::Kernel kernel(GetOutputProgram(context), name);
+    const std::size_t group = device.GetBusyGroupSize(kernel, 256);
+    cl_uint i = 0;
+    (kernel.setArg(i++, arguments), ...);
+    kernel.setArg(i, cl::Local(DEFORMVOLUME_SUMMED * group * sizeof(cl_ulong)));
+    events.push_back(
+      context.Launch(this->Queue, kernel, cl::NDRange(group * groups), cl::NDRange(group)));
+  };
+  // Some drivers do not accept a null buffer, so pass another one.
+  launch("SumParts", DEFORMVOLUME_PARTS, this->Counters,
+    static_cast<cl_uint>(this->NumberOfSections), coverageBits() ? coverageBits : this->Counters,
+    cl_ulong{ coverageWords }, this->Parts);
+  launch("Summarize", 1, this->Parts, this->Summary);
+  this->Queue.enqueueReadBuffer(this->Summary, CL_TRUE, 0, sizeof(words), words.data());
+  const auto join = [&](std::size_t word)
+  { return words[word] | std::uint64_t{ words[word + 1] } << 32; };
+  SlabCounts counts;
+  counts.Writes = join(0);
+  counts.Covered = join(2);
+  counts.Inverted = join(4);
+  counts.Overstretched = words[6];
+  counts.MissingWhereAssumed = (words[7] & DEFORMVOLUME_SUMMARY_MISSING_WHERE_ASSUMED) != 0;
+  counts.HasLarge = (words[7] & DEFORMVOLUME_SUMMARY_LARGE) != 0;
+  return counts;
+}
+
+std::vector<cl_uint> SectionCounters::FindBricks(int counter) const
+{
+  std::vector<cl_uint> counters(this->NumberOfSections * DEFORMVOLUME_COUNTERS);
+  this->Queue.enqueueReadBuffer(
+    this->Counters, CL_TRUE, 0, counters.size() * sizeof(cl_uint), counters.data());
+  std::vector<cl_uint> bricks;
+  for (std::size_t brick = 0; brick < this->NumberOfSections / DEFORMVOLUME_SECTIONS; ++brick)
+  {
+    cl_uint bits = 0;
+    for (std::size_t section = 0; section < DEFORMVOLUME_SECTIONS; ++section)
+    {
+      const std::size_t index = (DEFORMVOLUME_SECTIONS * brick + section) * DEFORMVOLUME_COUNTERS;
+      if (counters[index + static_cast<std::size_t>(counter)])
+      {
+        bits |= GetSectionBits(section);
+      }
+    }
+    if (bits)
+    {
+      bricks.push_back(static_cast<cl_uint>(brick) | bits);
+    }
+  }
+  return bricks;
+}
+
+std::uint64_t SectionCounters::GetMemory() const
+{
+  return deformvolume::GetMemory(this->Counters);
+}
+
+} // namespace deformvolume
