@@ -23,7 +23,7 @@ namespace deformvolume
 namespace
 {
 
-// Of whole numbers, also below 0.
+// Rounds towards minus infinity.
 int DivideDown(int number, int divisor)
 {
   return number / divisor - (number % divisor < 0 ? 1 : 0);
@@ -31,11 +31,12 @@ int DivideDown(int number, int divisor)
 
 constexpr unsigned char AllActive = DEFORMVOLUME_ALL_TETRAHEDRA;
 
-// Rows along x of points or cells that a thread takes at a time.
+// Number of rows along x that a thread takes at a time.
 constexpr std::size_t RowStep = 16;
 
-// Calls body(row, coarse, fine) for the rows along x of the points of an extent: the number of its
-// first point, and that of the same point in the extent that it was made of.
+// Calls body(coarsePoint, finePoint) for each row along x of the coarse extent. The arguments are
+// the indices of the row's first point in an array of the coarse extent and in one of the fine
+// extent.
 template <typename Body>
 void ForRows(const Extent& coarse, const Extent& fine, int factor, Body&& body)
 {
@@ -93,7 +94,8 @@ vtkSmartPointer<vtkUnsignedCharArray> MakeMask(const char* name, std::int64_t si
   return mask;
 }
 
-// Whether all tetrahedra of some neighbouring cells, side by side on each axis, are active.
+// Whether all tetrahedra of a box of side * side * side cells are active. first: mask of the first
+// of these cells. cells: the extent that the mask covers.
 bool IsWhole(const unsigned char* first, const Extent& cells, int side)
 {
   bool whole = true;
@@ -109,7 +111,7 @@ bool IsWhole(const unsigned char* first, const Extent& cells, int side)
   return whole;
 }
 
-// Cells of an extent of points, each by its first point.
+// The extent of the cells between the points of an extent.
 Extent GetCells(Extent points)
 {
   for (int axis = 0; axis < 3; ++axis)
@@ -119,10 +121,11 @@ Extent GetCells(Extent points)
   return points;
 }
 
-// An image of the coarse voxels with their masks.
+// Makes an image of the coarse voxels that has only their masks.
 vtkSmartPointer<vtkImageData> MakeMasks(vtkImageData* volume, int factor)
 {
-  // Coarse cells that a smooth cut passes through are left out: their vertices are others.
+  // Coarse cells that a smooth cut crosses are switched off: CutTetrahedra has bits for tetrahedra
+  // of the fine cells only.
   VolumeMasks masks = ReadMasks(volume, {});
   SwitchOffCut(masks, static_cast<std::size_t>(volume->GetNumberOfCells()));
   Extent fine;
@@ -216,7 +219,7 @@ vtkSmartPointer<vtkDataArray> TakeTuples(
 {
   auto made = MakeLike(array, GetNumberOfPoints(coarse));
   auto* to = static_cast<char*>(GetWritableValues(made));
-  VolumeArray copy; // of values in another layout
+  VolumeArray copy; // used if the array is not an array of structs
   if (!GetWritableValues(array))
   {
     CopyIntoCommonLayout(array, copy);
@@ -264,7 +267,7 @@ vtkImageData* CoarseVolume::Update(
   const Stamp arraysStamp = GetStamp(arrays);
   const Stamp masksStamp = GetMasksStamp(volume);
   vtkSmartPointer<vtkImageData> image = this->Image;
-  this->Image = nullptr; // until all of it is there
+  this->Image = nullptr; // stays null if one of the calls below throws
   const bool isNew = !image || this->Voxels != fine;
   if (isNew || this->ArraysStamp != arraysStamp)
   {
@@ -289,7 +292,7 @@ void CoarseVolume::CopyArrays(
   const std::vector<SourceArray>& arrays, const Extent& fine, int factor)
 {
   const Extent coarse = GetCoarse(fine, factor);
-  this->Arrays.clear(); // two copies never stand in memory
+  this->Arrays.clear(); // frees the old copies before new ones are made
   for (const SourceArray& source : arrays)
   {
     this->Arrays.push_back(TakeTuples(source.Array, fine, coarse, factor));

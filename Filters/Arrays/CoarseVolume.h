@@ -14,32 +14,34 @@ class vtkImageData;
 namespace deformvolume
 {
 
-/// The extent of those voxels whose structured indices a factor divides, in indices divided by it.
+/// The extent of the coarse volume. Its voxels are those whose structured indices are multiples of
+/// the factor, and their indices in the coarse volume are these indices divided by the factor.
 Extent GetCoarse(const Extent& voxels, int factor);
 
-/// The geometry of these voxels: they lie where they lay.
+/// The geometry of the coarse volume: its voxels keep their positions in the world.
 ImageGeometry GetCoarse(const ImageGeometry& volume, int factor);
 
-/// The extent of the volume from the first to the last of some of these voxels.
+/// The extent of the volume from the first to the last voxel of a coarse extent.
 Extent GetFine(const Extent& coarse, int factor);
 
-/// An array of some tuples of another one, which has a tuple for each point of the fine extent: a
-/// point of the coarse extent has that of the point whose structured indices are a factor times
-/// its.
+/// Makes an array with one tuple for each point of the coarse extent, from an array with one tuple
+/// for each point of the fine extent. Point (i, j, k) of the coarse extent gets the tuple of point
+/// (factor * i, factor * j, factor * k).
 vtkSmartPointer<vtkDataArray> TakeTuples(
   vtkDataArray* array, const Extent& fine, const Extent& coarse, int factor);
 
-/// Throws an Error where these are fewer than two on an axis.
+/// Throws an Error if a coarse volume has fewer than two voxels on an axis.
 void CheckCoarse(const ImageGeometry& coarse, int factor);
 
-/// A volume of those voxels of another one whose structured indices a factor divides, kept until
-/// the other one changes. Voxels keep their blanking. A cell has all its tetrahedra where all cells
-/// that it covers have all of theirs, and else none.
+/// The coarse volume of a volume, kept until the volume changes. Voxels keep their blanking. If all
+/// tetrahedra of the cells that a coarse cell covers are active, those of the coarse cell are
+/// active, too; otherwise none of them is.
 class CoarseVolume
 {
 public:
-  /// Makes it of a volume and its arrays, and puts its own in their place. A factor of 1 changes
-  /// nothing. Returns an image that has the masks.
+  /// Makes the coarse arrays and masks from those of the volume, and replaces the entries of
+  /// `arrays` by the coarse arrays. Returns an image that has the masks. With a factor of 1 it
+  /// changes nothing and returns `volume`.
   vtkImageData* Update(vtkImageData* volume, int factor, std::vector<SourceArray>& arrays);
 
   void Forget();
@@ -49,7 +51,7 @@ private:
 
   vtkSmartPointer<vtkImageData> Image;
   std::vector<vtkSmartPointer<vtkDataArray>> Arrays;
-  Extent Voxels{ { 0, -1, 0, -1, 0, -1 } }; // of the volume that this was made of
+  Extent Voxels{ { 0, -1, 0, -1, 0, -1 } }; // of the volume that the copies were made from
   Stamp ArraysStamp;
   Stamp MasksStamp;
 };

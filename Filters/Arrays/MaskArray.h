@@ -15,63 +15,65 @@ class vtkInformation;
 namespace deformvolume
 {
 
-/// Bytes in memory, one after the other: a vtkUnsignedCharArray is one, and since VTK 9.6 others
-/// are, too.
+/// An array of contiguous bytes: a vtkUnsignedCharArray, and since VTK 9.6 also other classes.
 using ByteArray = vtkAOSDataArrayTemplate<unsigned char>;
 
-/// The cell array that tells which tetrahedra are active.
+/// Name of the cell array of active tetrahedra: a bit for each of the five tetrahedra of a cell.
 constexpr const char* ActiveTetrahedraName = "ActiveTetrahedra";
 
-/// The point array of signed distances to the boundary of what has been carved out.
+/// Name of the point array of boundary distances: signed, to the surface of what was carved out.
 constexpr const char* BoundaryDistanceName = "BoundaryDistance";
 
 ///@{
-/// The cell array that tells which tetrahedra a smooth cut crosses, and the point array of signed
-/// distances to the sheet.
+/// Names of the arrays of a smooth cut: the cell array of the tetrahedra that it crosses, and the
+/// point array of signed distances to the sheet.
 constexpr const char* CutTetrahedraName = "CutTetrahedra";
 constexpr const char* CutDistanceName = "CutDistance";
 ///@}
 
-/// Which points of an output are deformed ones, as vtkProbeFilter names it.
+/// Name of the point array that marks the covered points of an output, as in vtkProbeFilter.
 constexpr const char* ValidPointMaskName = "vtkValidPointMask";
 
-/// The bit that vtkGhostType of a cell has beside HIDDENCELL where only an edit hides the cell, for
-/// views: the arrays above say what is left of it. VTK uses the first six bits.
+/// Bit of the vtkGhostType of a cell, set together with HIDDENCELL if the cell is hidden only
+/// because an edit switched off tetrahedra. Such a cell is hidden in views, but the filters still
+/// read its tetrahedra from the arrays above. VTK uses the first six bits.
 constexpr unsigned char HiddenByEdit = 128;
 
 /// Distances of the points of a volume.
 struct DistanceValues
 {
-  const float* Values = nullptr; // null: there are none
-  std::vector<float> Converted;  // where they are not floats in memory, one after the other
+  const float* Values = nullptr; // null: there are no distances
+  std::vector<float> Converted;  // storage of Values, if the array is not one of contiguous floats
 };
 
-/// Throws an Error where the array is there, but not numeric, of one component and as long as the
-/// volume has points.
+/// Returns the boundary distances of a volume. Throws an Error if the array exists, but is not
+/// numeric, or does not have one component and one tuple for each point.
 DistanceValues FindBoundaryDistances(vtkImageData* volume);
 
 /// A smooth cut of a volume.
 struct CutValues
 {
-  const unsigned char* Crossed = nullptr; // one a cell; null: there is no cut
+  const unsigned char* Crossed = nullptr; // one byte for each cell; null: there is no cut
   DistanceValues Distances;
 };
 
-/// Whether a volume comes with a smooth cut.
+/// Whether a volume has a smooth cut.
 bool HasCut(vtkImageData* volume);
-/// Whether a source says that its volume does, before it is there. Few do.
+/// Whether the information of a source announces a smooth cut, before the volume is read. Few
+/// sources announce their cell arrays.
 bool IsCutAnnounced(vtkInformation* volumeInfo);
-/// Throws an Error where one of the arrays is there and not the other one, or of another type or
-/// size.
+/// Returns the smooth cut of a volume. Throws an Error if only one of the two arrays exists, or if
+/// one has a wrong type or size.
 CutValues FindCut(vtkImageData* volume);
 
-/// An array of one byte for each of `size` points or cells, or null where there is none of the
-/// name. Throws an Error where the array is there, but of another type, shape or size. `what` and
-/// `owner` are its words: "cell" and "volume" for a cell array of the volume.
+/// Finds the array of a name that has one byte for each of `size` points or cells. Returns null if
+/// there is no array of that name. Throws an Error if the array has another type, number of
+/// components or size. `what` and `owner` are words for the message, such as "cell" and "volume".
 ByteArray* FindMask(vtkDataSetAttributes* attributes, const char* name, vtkIdType size,
   const std::string& what, const std::string& owner);
 
-/// The ghosts of a volume's points, one byte each; null where there are none. Throws as FindMask.
+/// The vtkGhostType of a volume's points, one byte each; null if there is none. Throws like
+/// FindMask().
 const unsigned char* FindPointGhosts(vtkImageData* volume);
 
 } // namespace deformvolume

@@ -24,7 +24,8 @@ namespace
 
 constexpr vtkIdType NoTuple = std::numeric_limits<vtkIdType>::max();
 
-// Calls function(first, values) for parts of an array.
+// Calls function(first, values) for ranges of an array, in parallel. first: index of the first
+// value.
 struct TakeValues
 {
   template <typename Array, typename Function>

@@ -16,19 +16,20 @@ class vtkImageData;
 namespace deformvolume
 {
 
-/// The point array of a volume that tells materials: the one of a name, or, where that is "" and
-/// there are ranges, the active scalars; else null. Throws an Error where it is not there, or has
-/// several components.
+/// Finds the point array of a volume from which materials are read: the array called `name`, or, if
+/// `name` is "" and there are ranges, the active scalars. Returns null if `name` is "" and there
+/// are no ranges. Throws an Error if the array does not exist, is not numeric, or does not have one
+/// component and one tuple for each voxel.
 vtkDataArray* FindMaterialArray(vtkImageData* volume, const std::string& name, bool hasRanges);
 
-/// The materials of so many voxels, by an array of one component: by ranges, and fallback where
-/// none holds a value, or, without ranges, the values themselves. Without an array all are
-/// fallback. exists: which of the 256 materials there are. Throws an Error that names a value
-/// without a material.
+/// Reads the materials of the voxels from an array of one component. With ranges, a voxel has the
+/// material of the range that contains its value, or `fallback` if no range does. Without ranges,
+/// the values are the materials. Without an array, all voxels have the material `fallback`. exists:
+/// which of the 256 materials are defined. Throws an Error that names a value without a material.
 std::vector<unsigned char> ReadMaterials(vtkDataArray* array, vtkIdType voxels,
   const std::vector<MaterialRange>& ranges, int fallback, const std::array<bool, 256>& exists);
 
-/// 1 where a value of an array of one component is not 0, else 0.
+/// Converts the values of an array of one component to flags: 0 for 0, and 1 for other values.
 std::vector<unsigned char> ReadFlags(vtkDataArray* array);
 
 } // namespace deformvolume

@@ -20,14 +20,15 @@
 namespace deformvolume
 {
 
-/// Whether a number is an index of a material, 0 to 255.
+/// Whether a number is an index of a material: an integer from 0 to 255.
 inline bool IsMaterialIndex(double index)
 {
   return index >= 0.0 && index <= 255.0 && index == std::floor(index);
 }
 
-/// Materials by their indices, and the ranges of values that have them: what
-/// vtkChainMailDeformation and vtkMaterialFromVolume are set to. Material: three numbers.
+/// Materials by their indices, and ranges of values with the index of a material.
+/// vtkChainMailDeformation and vtkMaterialFromVolume have such tables. Material: a struct of three
+/// doubles.
 template <typename Material>
 struct MaterialTable
 {
@@ -39,8 +40,8 @@ struct MaterialTable
   std::vector<MaterialRange> Ranges;
 
   ///@{
-  /// Marks the owner as modified where something changes, and reports an error of it where an index
-  /// is not a whole number from 0 to 255.
+  /// Call Modified() of the owner if something changes. If an index is not an integer from 0 to
+  /// 255, report an error of the owner and change nothing.
   void Set(vtkObject* owner, double index, const Material& material)
   {
     if (!CheckIndex(owner, index))
@@ -82,14 +83,15 @@ struct MaterialTable
   }
   ///@}
 
-  /// Null where it is not defined.
+  /// The material of an index; null if it is not defined.
   const Material* Find(int index) const
   {
     return IsMaterialIndex(index) && this->Exists[static_cast<std::size_t>(index)]
       ? &this->Materials[static_cast<std::size_t>(index)]
       : nullptr;
   }
-  /// Throws an Error where it is not defined. who: what has the index, for the message.
+  /// The material of an index. Throws an Error if it is not defined. who: the name of the property
+  /// with this index, for the message.
   const Material& Get(int index, const std::string& who) const
   {
     const Material* material = this->Find(index);
@@ -100,7 +102,7 @@ struct MaterialTable
     }
     return *material;
   }
-  /// False, and no change, where it is not defined.
+  /// Copies the numbers of a material. Returns false, and copies nothing, if it is not defined.
   bool GetNumbers(int index, double numbers[3]) const
   {
     const Material* material = this->Find(index);

@@ -13,13 +13,14 @@ class vtkDataSetAttributes;
 namespace deformvolume
 {
 
-/// Throws an Error where an array is none of numbers, or has another shape. subject: what the error
-/// calls it, as 'The point array "Pinned" of the volume'.
+/// Returns `array` as a vtkDataArray. Throws an Error if it is not numeric, or has another number
+/// of components or tuples. subject: names the array in the message, such as 'The point array
+/// "Pinned" of the volume'.
 vtkDataArray* CheckShape(
   vtkAbstractArray* array, int components, vtkIdType tuples, const std::string& subject);
 
-/// The array of a name, checked like that; null where there is none. kind: "point array" or the
-/// like; owner: of what.
+/// Finds the array of a name and checks it with CheckShape(). Returns null if there is no such
+/// array. kind and owner: words for the message, such as "point array" and "the volume".
 vtkDataArray* FindShapedArray(vtkDataSetAttributes* attributes, const char* name, int components,
   vtkIdType tuples, const std::string& kind, const std::string& owner);
 

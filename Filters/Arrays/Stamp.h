@@ -10,7 +10,8 @@
 namespace deformvolume
 {
 
-/// Tells two states of VTK objects apart: addresses and modification times.
+/// Addresses and modification times of VTK objects. Two stamps differ if one of the objects was
+/// replaced or modified.
 using Stamp = std::vector<std::pair<const void*, vtkMTimeType>>;
 
 } // namespace deformvolume

@@ -25,10 +25,11 @@ namespace deformvolume
 namespace
 {
 
-constexpr vtkIdType BLOCK = 512; // tuples at a time
+constexpr vtkIdType BLOCK = 512; // tuples that are read at a time
 constexpr vtkIdType NONE = std::numeric_limits<vtkIdType>::max();
 
-// Which blocks of an array a log has as not written since it was read last.
+// The blocks of an array that were not written since the last reading, according to the log of the
+// array (vtkArrayChanges).
 class UnwrittenBlocks
 {
 public:
@@ -49,11 +50,11 @@ public:
   }
 
 private:
-  vtkIdType Known = 0; // tuples of the last reading
+  vtkIdType Known = 0; // number of tuples at the last reading
   std::vector<unsigned char> Written;
 };
 
-// Without branches, and in sums that do not wait for each other: there are millions.
+// Independent sums without branches, which compilers vectorize: arrays have millions of values.
 bool AreFinite(const double* values, vtkIdType count)
 {
   constexpr vtkIdType lanes = 8;
@@ -73,14 +74,15 @@ bool AreFinite(const double* values, vtkIdType count)
   return std::all_of(sums.begin(), sums.end(), [](double sum) { return sum == 0.0; });
 }
 
-// Has the values of an array be in memory of the host.
+// Downloads the values of an array that are only on a device.
 void BringToHost(vtkDeviceVectorArray* array)
 {
   array->GetValues();
 }
 void BringToHost(vtkDataArray*) {}
 
-// Reads tuples of an array. Memory is read by its address, which compilers make vectors of.
+// Copies tuples of an array. Contiguous memory is read through a pointer, which compilers
+// vectorize.
 template <typename T>
 void CopyTuples(
   vtkAOSDataArrayTemplate<T>* array, vtkIdType first, vtkIdType count, glm::dvec3* vectors)
@@ -99,7 +101,7 @@ void CopyTuples(ArrayT* array, vtkIdType first, vtkIdType count, glm::dvec3* vec
   }
 }
 
-// Calls body(array) with the class of an array of real numbers, or as it is.
+// Calls body(array) with the concrete class of an array of real numbers, or with vtkDataArray.
 template <typename Body>
 void VisitVectors(vtkDataArray* array, Body&& body)
 {
@@ -147,8 +149,8 @@ struct VectorReader
       take(first, vectors.data(), count);
       std::for_each(faults.begin(), faults.end(), takeFault);
     };
-    // A thread that is started for a few blocks costs more than it saves: the device's own threads
-    // lose a turn to it when they begin their work right after.
+    // Starting a thread for a few blocks costs more than it saves: the thread competes with those
+    // of the device, which begin their work right afterwards.
     constexpr vtkIdType blocksOfPart = 8;
     ParallelFor(0, (tuples + BLOCK - 1) / BLOCK, blocksOfPart,
       [&](vtkIdType begin, vtkIdType end)
@@ -199,7 +201,7 @@ VectorCopier MakeVectorCopier(vtkDataArray* array)
   VisitVectors(array,
     [&](auto* typed)
     {
-      BringToHost(typed); // now and not in many threads
+      BringToHost(typed); // once, before several threads call the copier
       copier = [typed](vtkIdType first, vtkIdType count, glm::dvec3* vectors)
       { CopyTuples(typed, first, count, vectors); };
     });

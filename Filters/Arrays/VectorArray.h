@@ -16,39 +16,39 @@ class vtkDataSet;
 namespace deformvolume
 {
 
-/// Takes count vectors from the one with number first on; called in parallel.
+/// Receives the vectors with the indices first to first + count - 1. Called in parallel.
 using VectorTaker =
   std::function<void(vtkIdType first, const glm::dvec3* vectors, vtkIdType count)>;
 
-/// Is told of a vector that is not finite; called in parallel.
+/// Receives the index of a tuple that is not finite. Called in parallel.
 using FaultTaker = std::function<void(vtkIdType tuple)>;
 
-/// When an array was read last.
+/// The last reading of an array.
 struct VectorMemory
 {
-  const void* Array = nullptr; // null where nothing is known
-  vtkMTimeType Time = 0;       // of the array
-  vtkIdType Count = 0;         // of its tuples
-  vtkIdType FirstNumber = 0;   // what its first tuple counted as
+  const void* Array = nullptr; // null: there was no reading
+  vtkMTimeType Time = 0;       // modification time of the array
+  vtkIdType Count = 0;         // number of its tuples
+  vtkIdType FirstNumber = 0;   // index of its first tuple, counted over the arrays of all parts
 };
 
-/// Reads the tuples of an array of three components, in parallel, some at a time. Throws an Error
-/// that names the first tuple that is not finite: "<kind> 5 of the <owner>".
-/// memory: of the last reading of this array or of one in its place, which may have had fewer or
-/// more tuples. Blocks of tuples that a log of the array (vtkArrayChanges) has as not written since
-/// then are left out. Null: all are taken.
-/// takeFault: called for tuples that are not finite, after they have been taken as zeros. Empty:
-/// they are an error.
+/// Reads the tuples of an array of three components in blocks, in parallel. Throws an Error that
+/// names the first tuple that is not finite: "<kind> 5 of the <owner>".
+/// memory: the last reading, which this call updates. The array may have had fewer or more tuples
+/// then. Blocks that were not written since, according to the log of the array (vtkArrayChanges),
+/// are skipped. Null: all blocks are read.
+/// takeFault: called for each tuple that is not finite, after `take` received zeros for it. Empty:
+/// a tuple that is not finite is an error.
 void ReadVectors(vtkDataArray* array, const VectorTaker& take, const std::string& kind,
   const std::string& owner, VectorMemory* memory = nullptr, const FaultTaker& takeFault = {});
 
-/// Copies tuples of an array of three components, from the one with number first on; may be called
-/// by several threads.
+/// Copies the tuples with the indices first to first + count - 1 of an array of three components.
+/// May be called by several threads.
 using VectorCopier = std::function<void(vtkIdType first, vtkIdType count, glm::dvec3* vectors)>;
 VectorCopier MakeVectorCopier(vtkDataArray* array);
 
-/// The vectors of a dataset's points where nobody chose: the active ones, or else the only array of
-/// three components; null where there is no such array.
+/// The point vectors of a dataset, used if no array was selected: the active vectors, or else the
+/// only array of three components. Null if there is no such array, or if there are several.
 vtkDataArray* FindVectors(vtkDataSet* dataSet);
 
 } // namespace deformvolume

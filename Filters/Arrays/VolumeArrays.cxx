@@ -27,9 +27,9 @@ namespace deformvolume
 namespace
 {
 
-const char* const VOLUME = "volume"; // in errors
+const char* const VOLUME = "volume"; // in messages
 
-// The element type of the same size and kind: VTK has several names for most of them.
+// Finds the element type of the same size and kind: VTK has several types for most of them.
 template <typename T>
 constexpr bool FindElementType(ElementType& type)
 {
@@ -55,7 +55,7 @@ bool FindElementType(int vtkType, ElementType& type)
   }
 }
 
-// The values of an array in VTK's common layout, else null.
+// The values of an array of structs (vtkAOSDataArrayTemplate); null for other layouts.
 void* FindValues(vtkDataArray* array)
 {
   switch (array->GetDataType())
@@ -81,7 +81,8 @@ std::string GetLabel(vtkAbstractArray* array, int index)
                           : "number " + std::to_string(index);
 }
 
-// The arrays that masks are made of; null where there is none. Two entries of a stamp each.
+// Indices of the arrays that masks are read from, see FindMasks(). GetMasksStamp() has two entries
+// for each of them.
 enum Mask
 {
   BlankedPoints,
@@ -93,7 +94,7 @@ enum Mask
   NumberOfMasks
 };
 
-// Cells that only edits hide are no hidden cells.
+// Whether a cell is hidden by something else than an edit.
 bool IsHidden(unsigned char value)
 {
   constexpr unsigned char Hidden = vtkDataSetAttributes::HIDDENCELL;
@@ -118,7 +119,8 @@ bool HasSameMask(
   return last.size() == 2 * NumberOfMasks && last[2 * mask].first == arrays[mask];
 }
 
-// What was written in one of the masks since a stamp was taken, where a log tells that.
+// The tuples of a mask that were written since a stamp was taken, according to the log of its
+// array. Empty: unknown.
 std::optional<PointRanges> FindWrittenMask(
   const std::array<vtkAbstractArray*, NumberOfMasks>& arrays, Mask mask, const Stamp& last)
 {
@@ -140,7 +142,7 @@ std::vector<SourceArray> SelectArrays(
   vtkImageData* volume, const std::set<std::string>& categorical, std::vector<std::string>& leftOut)
 {
   vtkPointData* pointData = volume->GetPointData();
-  // Ids are never mixed, whatever their arrays are called.
+  // Ids must not be interpolated, so that their arrays are categorical, whatever their names are.
   int roles[vtkDataSetAttributes::NUM_ATTRIBUTES];
   pointData->GetAttributeIndices(roles);
   std::vector<SourceArray> arrays;
@@ -216,7 +218,7 @@ Stamp GetStamp(const std::vector<SourceArray>& arrays)
   for (const SourceArray& source : arrays)
   {
     stamp.emplace_back(source.Array, source.Array->GetMTime());
-    // Values may be exchanged under an array that stays, as SetArray() does.
+    // SetArray() replaces the values of an array without replacing the array.
     stamp.emplace_back(
       FindValues(source.Array), static_cast<vtkMTimeType>(source.Array->GetNumberOfValues()));
   }
@@ -234,7 +236,7 @@ void CopyIntoCommonLayout(vtkDataArray* array, VolumeArray& described)
 
 vtkSmartPointer<vtkDataArray> MakeLike(vtkDataArray* array, vtkIdType numberOfTuples)
 {
-  // A class of its own is kept, unless its layout is one that the kernels cannot write.
+  // The class of the array is kept, unless the kernels cannot write its layout.
   const auto made = vtkSmartPointer<vtkDataArray>::Take(
     FindValues(array) ? array->NewInstance() : vtkDataArray::CreateDataArray(array->GetDataType()));
   made->SetName(array->GetName());

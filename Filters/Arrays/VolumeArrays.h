@@ -27,66 +27,72 @@ namespace deformvolume
 struct SourceArray
 {
   vtkDataArray* Array = nullptr;
-  /// Its place among the point arrays.
+  /// Index among the point arrays of the volume.
   int Index = 0;
   bool Categorical = false;
 };
 
-/// The point arrays of a volume to resample; the names and types of those that cannot be (bits,
-/// strings) are appended to leftOut. Throws an Error where there is nothing to resample or a
-/// size is wrong.
+/// Selects the point arrays of a volume that can be resampled. categorical: names of arrays that
+/// are not interpolated. The names and types of arrays that cannot be resampled (bits, strings) are
+/// appended to leftOut. Throws an Error if there is nothing to resample, an array has a wrong size,
+/// or two arrays have the same name.
 std::vector<SourceArray> SelectArrays(vtkImageData* volume,
   const std::set<std::string>& categorical, std::vector<std::string>& leftOut);
 
-/// The arrays, with their data and an owner where the kernels can read these as they are.
+/// Describes arrays for the engine. Data and Owner are set only for arrays of structs, which
+/// kernels can read without a copy.
 std::vector<VolumeArray> MakeVolumeArrays(
   const std::vector<SourceArray>& arrays, double background);
 
-/// What an upload of arrays depends on.
+/// Differs if the arrays have to be uploaded again.
 Stamp GetStamp(const std::vector<SourceArray>& arrays);
 
-/// Gives an array in another layout the data and the owner of a copy.
+/// Copies an array into an array of structs, and sets Data and Owner of `described` to the copy.
 void CopyIntoCommonLayout(vtkDataArray* array, VolumeArray& described);
 
 /// A new array with the type, components and names of another and the given number of tuples.
 vtkSmartPointer<vtkDataArray> MakeLike(vtkDataArray* array, vtkIdType numberOfTuples);
 
-/// Where the values of an array that MakeLike() made are written.
+/// The memory of the values of an array of structs, such as MakeLike() makes; null for other
+/// layouts.
 void* GetWritableValues(vtkDataArray* array);
 
-/// Gives arrays[i] of the output the roles (active scalars, vectors, ...) that sources[i] has.
+/// Gives array i of `to` the attribute roles (active scalars, vectors and others) that sources[i]
+/// has in `from`.
 void CopyRoles(
   vtkDataSetAttributes* from, vtkDataSetAttributes* to, const std::vector<SourceArray>& sources);
 
-/// What is no source, one byte a voxel, the active tetrahedra, one byte a cell, the distances to
-/// the boundary of what has been carved out, a float a voxel, and what a smooth cut crosses. In the
-/// memory of the volume where that serves as it is.
+/// The masks of a volume: blanked voxels, active tetrahedra, boundary distances and a smooth cut.
+/// Pointers lead to the arrays of the volume, or to members of this struct where values had to be
+/// converted.
 struct VolumeMasks
 {
-  /// Null where there are no such voxels for certain.
+  /// One byte for each voxel; null if no voxel is blanked.
   const unsigned char* Blanked = nullptr;
-  unsigned char BlankedBits = 0; // of each byte that make it so
-  /// Null where all tetrahedra are active.
+  unsigned char BlankedBits = 0; // bits of a byte that mean that the voxel is blanked
+  /// One byte for each cell, with a bit for each of its tetrahedra; null if all are active.
   const unsigned char* Active = nullptr;
-  std::vector<unsigned char> Joined; // with what cells are hidden
+  std::vector<unsigned char> Joined; // storage of Active, if cells are hidden
   DistanceValues Distances;
   CutValues Cut;
 
   ///@{
-  /// What was written since a stamp was taken (GetMasksStamp), where logs tell that.
+  /// Tuples that were written since the stamp that ReadMasks() got, according to the logs of the
+  /// arrays. Empty: unknown.
   std::optional<PointRanges> WrittenBlanked;
   std::optional<PointRanges> WrittenActive;
   std::optional<PointRanges> WrittenDistances;
   ///@}
 };
 
-/// last: of the masks that were read last; empty: there are none.
+/// Reads the masks of a volume. last: GetMasksStamp() at the last reading; empty: there was none.
 VolumeMasks ReadMasks(vtkImageData* volume, const Stamp& last);
 
-/// Switches off the tetrahedra that a smooth cut crosses, for what knows no such cuts.
+/// Switches off the tetrahedra that a smooth cut crosses, and removes the cut. For models without
+/// smooth cuts.
 void SwitchOffCut(VolumeMasks& masks, std::size_t numberOfCells);
 
-/// What ReadMasks depends on.
+/// Differs if ReadMasks() may give another result.
 Stamp GetMasksStamp(vtkImageData* volume);
 
 /// Names of the cell arrays that are not resampled.

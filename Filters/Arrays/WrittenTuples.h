@@ -13,8 +13,9 @@ class vtkAbstractArray;
 namespace deformvolume
 {
 
-/// Tuples of an array, which may be null, that were written since it had a modification time, where
-/// a vtkArrayChanges tells that. last: the array that had it; there is no answer about another one.
+/// The tuples of an array that were written after `time`, according to its log (vtkArrayChanges).
+/// Empty if there is no log, `array` is null, or `array` is not `last`, the array that had this
+/// modification time.
 std::optional<PointRanges> FindWritten(
   vtkAbstractArray* array, const void* last, vtkMTimeType time);
 
