@@ -20,8 +20,8 @@ namespace deformvolume
 namespace
 {
 
-// Their evaluation changes nothing of the function. Others keep what they have found, such as a
-// cell.
+// Whether several threads may evaluate the function at the same time. Functions of other classes
+// may cache results, such as the last cell.
 bool IsThreadSafe(vtkImplicitFunction* function)
 {
   const char* const classes[] = { "vtkBox", "vtkCone", "vtkCylinder", "vtkPlane", "vtkQuadric",
@@ -30,7 +30,7 @@ bool IsThreadSafe(vtkImplicitFunction* function)
     [&](const char* name) { return function->IsA(name) != 0; });
 }
 
-// Planes of VTK and of ParaView. Other subclasses may be other bodies.
+// Only the planes of VTK and of ParaView: other subclasses of vtkPlane may be nonlinear.
 bool IsLinear(vtkImplicitFunction* function)
 {
   const std::string name = function->GetClassName();
@@ -50,9 +50,9 @@ IndexBounds FindBounds(vtkImplicitFunction* function)
     auto* sphere = vtkSphere::SafeDownCast(function);
     glm::dvec3 center;
     sphere->GetCenter(&center.x);
-    const glm::dvec3 reach(std::abs(sphere->GetRadius()));
-    bounds.Min = center - reach;
-    bounds.Max = center + reach;
+    const glm::dvec3 radius(std::abs(sphere->GetRadius()));
+    bounds.Min = center - radius;
+    bounds.Max = center + radius;
   }
   else if (name == "vtkBox")
   {

@@ -9,10 +9,10 @@ class vtkImplicitFunction;
 namespace deformvolume
 {
 
-/// The tool that a function in world coordinates is: it carves out where the function is negative.
-/// The tool holds the function. Functions that VTK is not known to evaluate in several threads at a
-/// time are evaluated in one. Spheres and boxes without a transform have bounds. The distance from
-/// the boundary is to first order.
+/// Makes a tool that carves where a function of world coordinates is negative. The tool holds a
+/// reference to the function. Unless the class of the function is known to be thread-safe, only one
+/// thread evaluates it at a time. Spheres and boxes without a transform have bounds. The distance
+/// from the boundary is a first-order approximation.
 CarvingTool MakeImplicitTool(vtkImplicitFunction* function);
 
 } // namespace deformvolume

@@ -55,7 +55,8 @@ bool HasTrianglesOnly(vtkPolyData* data)
 
 void AddLines(vtkPolyData* data, const glm::dvec3& sweepVector, WorldSheet& sheet)
 {
-  // Each point once more, so that neighbouring segments share what they sweep.
+  // Add each point a second time, at the end of the sweep, so that the swept areas of neighboring
+  // segments share their edges.
   const std::size_t count = sheet.Points.size();
   for (std::size_t i = 0; i < count; ++i)
   {

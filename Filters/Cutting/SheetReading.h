@@ -13,10 +13,11 @@ class vtkPolyData;
 namespace deformvolume
 {
 
-/// Reads triangles, polygons and triangle strips, and what polylines sweep along a vector; null
-/// data are an empty sheet. Vertices, and polylines where the vector is zero, are left out. Throws
-/// Error where a cell has a point that is none, the vector is not finite, or there are polylines
-/// only and no vector. name: what errors call it.
+/// Reads the triangles, polygons and triangle strips of a sheet, and the areas that its polylines
+/// sweep along a vector. Null data give an empty sheet. Vertex cells are ignored, and so are
+/// polylines if the vector is zero. Throws Error if a cell uses a point that does not exist, if the
+/// vector is not finite, or if there are only polylines and the vector is zero. name: the name of
+/// the sheet in messages.
 WorldSheet ReadSheet(vtkPolyData* data, const glm::dvec3& sweepVector, const std::string& name);
 
 } // namespace deformvolume

@@ -12,19 +12,19 @@
 namespace deformvolume
 {
 
-/// Positions of a tool, and which of them it has been taken along already.
+/// Positions of a tool, and those of them along which it has already been moved.
 class ToolPath
 {
 public:
-  /// The two ends of the tool; of a sphere both are its centre.
+  /// The two ends of the tool; for a sphere both are its center.
   using Position = std::array<glm::dvec3, 2>;
 
   void Add(const Position& position) { this->Positions.push_back(position); }
   void Clear() { this->Positions.clear(); }
   std::size_t GetNumberOfPositions() const { return this->Positions.size(); }
 
-  /// Positions between which the tool has not been: from the last one where it was on, or all where
-  /// these do not continue those before. Empty: nothing is new.
+  /// The positions along which the tool has to be moved: from the last position of the previous
+  /// stroke on, or all positions if they do not continue the previous ones. Empty: nothing is new.
   std::vector<Position> GetStroke() const
   {
     const std::vector<Position>& all = this->Positions;
@@ -40,9 +40,9 @@ public:
     }
     return { all.begin() + static_cast<std::ptrdiff_t>(done) - 1, all.end() };
   }
-  /// The tool has been at all positions.
+  /// Marks all positions as done.
   void Finish() { this->Done = this->Positions; }
-  /// The tool has been nowhere yet.
+  /// Marks no position as done.
   void Restart() { this->Done.clear(); }
 
 private:

@@ -24,8 +24,9 @@ namespace deformvolume
 namespace
 {
 
-// Makes an array of the output anew, with all values, where there is none, or somebody else holds
-// it and wants it as it is: the last output has let it go. Returns whether it has.
+// Makes a new array of the output with all values, if there is none, or if somebody else holds a
+// reference to the last one, which must then keep its values. The output itself holds no reference
+// at this time. Returns whether the array is new.
 template <typename ArrayT, typename T>
 bool MakeOutput(vtkSmartPointer<ArrayT>& array, const char* name, const std::vector<T>& values)
 {
@@ -37,17 +38,17 @@ bool MakeOutput(vtkSmartPointer<ArrayT>& array, const char* name, const std::vec
   array->SetName(name);
   array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()));
   std::copy(values.begin(), values.end(), array->GetPointer(0));
-  vtkNew<vtkArrayChanges> log; // which the array holds
+  vtkNew<vtkArrayChanges> log; // the array holds a reference to it
   log->SetArray(array);
   return true;
 }
 
-// Writes some bricks of values into an array of the output, and says so.
+// Writes the changed bricks of values into an array of the output, and marks them as written.
 template <typename ArrayT, typename T>
 void WriteBricks(ArrayT* array, const CellBricks& bricks, const std::vector<std::size_t>& changed,
   const std::vector<T>& values)
 {
-  // Of so many bricks, consumers find the changes faster by a comparison.
+  // Consumers find the changes of more bricks faster by comparing all values.
   constexpr std::size_t mostLogged = 512;
   vtkArrayChanges* log = changed.size() <= mostLogged ? vtkArrayChanges::FindLog(array) : nullptr;
   const std::array<int, 3>& size = bricks.GetSize();
@@ -74,7 +75,7 @@ void WriteBricks(ArrayT* array, const CellBricks& bricks, const std::vector<std:
   }
 }
 
-// Of the smooth cut that a volume comes with; empty where there is none.
+// Stamp of the arrays of the smooth cut of a volume; empty if there is none.
 Stamp GetCutStamp(vtkImageData* volume)
 {
   Stamp stamp;
@@ -105,12 +106,12 @@ bool VolumeEditor::SetVolume(vtkImageData* volume, vtkInformation* info)
   const bool isNew = !this->Mask || geometry != this->Geometry;
   if (distancesStamp != this->DistancesStamp)
   {
-    FindBoundaryDistances(volume); // which throws where they cannot be used
+    FindBoundaryDistances(volume); // throws if they cannot be used
   }
   const Stamp cutStamp = GetCutStamp(volume);
   if (cutStamp != this->CutStamp)
   {
-    FindCut(volume); // which throws where it cannot be used
+    FindCut(volume); // throws if it cannot be used
   }
   const Extent whole = deformvolume::GetGeometry(info).PointExtent;
   this->Whole = Contains(whole, geometry.PointExtent) ? whole : geometry.PointExtent;
@@ -154,7 +155,7 @@ const VertexPositions& VolumeEditor::GetPositions(
   this->Grids.Find(source);
   this->Deformation.Read(source);
   const bool isField = this->Deformation.IsField();
-  // The mapping of a part has whole rows, and is that of the whole volume to the last bit.
+  // The part has whole rows, so that its mapping equals that of the whole volume bit for bit.
   MappedVolume mapped{ this->Geometry, this->Geometry.PointExtent, outside };
   mapped.Whole.PointExtent = this->Whole;
   mapped.Part[0] = this->Whole[0];
@@ -244,7 +245,7 @@ void VolumeEditor::Write(vtkImageData* volume, vtkImageData* output)
   }
   this->WriteMask();
   output->GetCellData()->AddArray(this->Active);
-  // Else those that the volume comes with are shared.
+  // Without such edits, the output shares the distances of the volume.
   if (this->Mask->HasDistanceEdits())
   {
     if (this->BaseDistancesStamp != this->DistancesStamp)

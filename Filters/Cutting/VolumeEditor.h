@@ -27,36 +27,35 @@ class vtkUnsignedCharArray;
 namespace deformvolume
 {
 
-/// What the filters that edit the active tetrahedra of a volume have in common: the edits, where
-/// the vertices of the volume are, and the array of the output.
+/// Common part of the filters that edit the active tetrahedra of a volume: the edits, the positions
+/// of the vertices, and the arrays of the output.
 class VolumeEditor
 {
 public:
-  /// Takes a volume with its own active tetrahedra, from which the edits are taken away, and with
-  /// its own boundary distances, which edits make smaller. info: what announces the volume that it
-  /// may be a part of. Returns whether its voxels lie elsewhere than before: then there are no
-  /// edits any more. Throws Error, and leaves all as it was, where there is no volume, or it cannot
-  /// be used.
+  /// Sets the volume. Edits switch off some of its active tetrahedra, and reduce its boundary
+  /// distances. info: pipeline information of the volume, with the whole extent, of which the
+  /// volume may be a part. Returns whether the voxel grid has changed, in which case all edits are
+  /// removed. Throws Error, and changes nothing, if there is no volume or it cannot be used.
   bool SetVolume(vtkImageData* volume, vtkInformation* info);
   const ImageGeometry& GetGeometry() const { return this->Geometry; }
 
-  /// Where the vertices of the volume are: at rest, or with a Shape where the deformation has moved
-  /// them. The source's volume is set here. Throws Error; ports have the numbers that they have in
-  /// the filters here, the deformation 2 and the rest configuration 3.
+  /// The positions of the vertices of the volume: at rest, or, if the source has a Shape, deformed.
+  /// The Volume of the source is set here. Throws Error. The filters that use this class have the
+  /// deformation on port 2 and the rest configuration on port 3.
   const VertexPositions& GetPositions(DeformationSource source, const OutsideVoxels& outside);
 
-  /// Makes an edit in the place of another one, of which the number is known; 0: of none. keep: the
-  /// other one stays, too.
+  /// Adds the edit `next` and sets `edit` to its number. The edit that had the number `edit` before
+  /// is removed, unless `keep` is true. 0: there was no edit.
   void Put(std::uint64_t& edit, VolumeEdit&& next, bool keep);
-  /// Removes an edit.
+  /// Removes the edit with a number, and sets the number to 0.
   void Drop(std::uint64_t& edit);
 
   ///@{
-  /// False where there is nothing to be undone or redone.
+  /// Return false if there is nothing to undo or redo.
   bool Undo() { return this->Mask && this->Mask->Undo(); }
   bool Redo() { return this->Mask && this->Mask->Redo(); }
   ///@}
-  /// False where there were no edits.
+  /// Removes all edits. Returns false if there were none.
   bool Reset();
 
   vtkIdType GetNumberOfSwitchedOffTetrahedra() const
@@ -71,11 +70,11 @@ public:
       : 0;
   }
 
-  /// See deformvolume::GetFarDistance(): of the whole volume.
+  /// deformvolume::GetFarDistance() of the whole volume.
   float GetFarDistance() const { return this->Mask->GetFarDistance(); }
 
-  /// Makes an output the volume with its arrays, the active tetrahedra that are left, and the
-  /// boundary distances and the smooth cut where there are some.
+  /// Makes the output a shallow copy of the volume, with the remaining active tetrahedra, and with
+  /// boundary distances and a smooth cut if there are any.
   void Write(vtkImageData* volume, vtkImageData* output);
 
 private:
@@ -87,11 +86,11 @@ private:
   ImageGeometry Geometry;
   Extent Whole{ { 0, -1, 0, -1, 0, -1 } };
   Stamp BaseStamp;
-  Stamp DistancesStamp;     // of those that the volume comes with
-  Stamp BaseDistancesStamp; // and of those that edits are taken from
-  Stamp CutStamp;           // of the smooth cut that the volume comes with
-  Stamp BaseCutStamp;       // and of that which edits are joined with
-  // Those of the output.
+  Stamp DistancesStamp;     // of the distances of the volume
+  Stamp BaseDistancesStamp; // of the distances that Mask has
+  Stamp CutStamp;           // of the smooth cut of the volume
+  Stamp BaseCutStamp;       // of the smooth cut that Mask has
+  // // Arrays of the output.
   vtkSmartPointer<vtkUnsignedCharArray> Active;
   vtkSmartPointer<vtkFloatArray> Distances;
   vtkSmartPointer<vtkUnsignedCharArray> CutTetrahedra;
@@ -101,9 +100,9 @@ private:
   DeformationGrids Grids;
   deformvolume::Deformation Deformation;
   MappingCache Mapping;
-  FadedMesh Faded; // what the mapping is of, where voxels outside the mesh are kept
+  FadedMesh Faded; // the mesh of the mapping, if voxels outside the deformation mesh are kept
   std::unique_ptr<DeformedPositions> Deformed;
-  // What those are of.
+  // // What Deformed was computed from.
   struct PositionsKey
   {
     std::uint64_t Mapping = 0; // a version

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an execution of vtkCarveVolume does.
+// The execution of vtkCarveVolume.
 #include "vtkCarveVolumeInternals.h"
 
 #include "Error.h"

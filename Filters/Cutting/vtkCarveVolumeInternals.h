@@ -29,16 +29,16 @@ public:
   void Execute(vtkInformationVector** input);
 
 private:
-  /// Something that carves at most once until it changes: a function, a surface, a label.
+  /// A function, surface or label. It carves again only after it has changed.
   struct Body
   {
-    /// What tells two bodies apart: objects with their times, and settings.
+    /// Identifies a body: its objects with their modification times, and settings.
     using Key = std::pair<deformvolume::Stamp, std::vector<double>>;
 
-    Key Carved; // the body that has carved; empty: none
+    Key Carved; // key of the body that carved last; empty: none
     std::uint64_t Edit = 0;
   };
-  /// A change of the edit of a body, found and not yet made.
+  /// A new edit of a body, which is not yet applied.
   struct Change
   {
     Body* Changed;
@@ -49,7 +49,7 @@ private:
   void Check() const;
   deformvolume::CarvingRule GetRule() const;
   vtkDataArray* FindLabels(vtkImageData* volume) const;
-  /// Appends a change where a body is another one. carve: finds what it carves out.
+  /// Appends a change if the key of a body has changed. carve: finds the edit.
   void Find(Body& body, Body::Key&& next, const std::function<deformvolume::VolumeEdit()>& carve,
     std::vector<Change>& changes);
 
@@ -58,7 +58,7 @@ private:
   Body Surface;
   Body Label;
   deformvolume::WorldSheet Sheet; // the surface that was read last
-  double SheetVersion = 0.0;      // changes with it
+  double SheetVersion = 0.0;      // incremented if Sheet changes
 };
 
 #endif

@@ -10,7 +10,7 @@
 
 #include "vtkVolumeEditAlgorithm.h"
 
-/// What the subclasses keep from one execution to the next.
+/// State that the subclasses keep from one execution to the next.
 class vtkVolumeEditAlgorithm::vtkEdits
 {
 public:
@@ -19,19 +19,20 @@ public:
   {
   }
 
-  /// Takes the volume on port 0; see VolumeEditor::SetVolume().
+  /// Sets the volume on port 0; see VolumeEditor::SetVolume().
   bool SetVolume(vtkInformationVector** input);
-  /// What finds edits of the volume, as it is deformed by ports 2 and 3, without options. It is
-  /// valid during this execution.
+  /// Makes an EditFinder with default options for the volume as deformed by the inputs on ports 2
+  /// and 3. It is valid during this execution.
   deformvolume::EditFinder MakeFinder(vtkInformationVector** input);
 
   deformvolume::VolumeEditor Editor;
   deformvolume::ToolPath Tool;
-  deformvolume::EditProgress Progress; // of the execution that there is
+  deformvolume::EditProgress Progress; // of the current execution
   deformvolume::PipelineExecution Execution;
 
 private:
-  /// Where its vertices are, by ports 2 and 3; see VolumeEditor::GetPositions().
+  /// Positions of the vertices of the volume, deformed by the inputs on ports 2 and 3; see
+  /// VolumeEditor::GetPositions().
   const deformvolume::VertexPositions& GetVertices(vtkInformationVector** input);
 
   vtkVolumeEditAlgorithm* Self;

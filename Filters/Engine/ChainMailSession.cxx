@@ -30,7 +30,7 @@ Stamp GetStampOf(vtkDataArray* array)
   return { { array, array ? array->GetMTime() : 0 } };
 }
 
-// Null where there is none of the name.
+// Null if there is no array of this name.
 vtkDataArray* FindVolumeArray(vtkImageData* volume, const char* name)
 {
   return FindShapedArray(
@@ -44,7 +44,7 @@ std::vector<ChainMailHandle> ReadHandles(
   return MakeHandles(geometry, positions.Rest, positions.Now, radius);
 }
 
-// The masks as links see them: what a smooth cut crosses holds nothing together.
+// Reads the masks without the tetrahedra that a smooth cut crosses, which must not link voxels.
 VolumeMasks ReadLinkMasks(vtkImageData* volume)
 {
   VolumeMasks masks = ReadMasks(volume, {});
@@ -150,14 +150,14 @@ bool ChainMailSession::RemoveState(std::int64_t number)
 void ChainMailSession::MakeOutput(vtkIdType voxels)
 {
   this->Output.Make(this->Model, this->Device, voxels);
-  vtkNew<vtkArrayChanges> log; // which the array holds
+  vtkNew<vtkArrayChanges> log; // the array holds a reference to it
   log->SetArray(this->Output.GetArray());
 }
 
 ChainMailReport ChainMailSession::Step(vtkImageData* volume, vtkPointSet* handles,
   const ChainMailSettings& settings, ChainMailRequest request)
 {
-  // What can be wrong is looked at before anything is changed.
+  // Check all inputs before anything is changed.
   const ImageGeometry geometry = GetGeometry(volume);
   CheckVolume(geometry);
   vtkDataArray* materialArray =
@@ -235,7 +235,8 @@ ChainMailReport ChainMailSession::Step(vtkImageData* volume, vtkPointSet* handle
       this->Model.SetPinned(pins ? flags.data() : nullptr);
       this->StampOfPins = pinStamp;
     }
-    // After all that frees or holds voxels, so that nothing is touched by it and begins to relax.
+    // Reset and restore after the calls above. Otherwise the voxels that these calls release or
+    // hold would be visited and begin to relax.
     if (this->IsToReset)
     {
       this->Model.Reset();

@@ -21,7 +21,7 @@ class vtkPointSet;
 namespace deformvolume
 {
 
-/// What vtkChainMailDeformation was told.
+/// Settings of vtkChainMailDeformation.
 struct ChainMailSettings
 {
   MaterialTable<ChainMailMaterial> Table;
@@ -32,19 +32,19 @@ struct ChainMailSettings
   std::int64_t MemoryLimit = 0;
 };
 
-/// A ChainMailModel with its output, and what it was given of VTK's data.
+/// A ChainMailModel with its output array, and with stamps of the VTK data that it was given.
 class ChainMailSession
 {
 public:
-  /// handles: null where there are none. Throws Error and Aborted; the displacements are then as
-  /// before, but for errors of the device.
+  /// Executes a step. handles: null if there are none. Throws Error and Aborted. The displacements
+  /// do not change then, unless the device has failed.
   ChainMailReport Step(vtkImageData* volume, vtkPointSet* handles,
     const ChainMailSettings& settings, ChainMailRequest request);
 
-  /// Gives an image the geometry and the array of the last step.
+  /// Sets the geometry and the displacements of the last step in an image.
   void GiveOutput(vtkImageData* output) const;
 
-  /// Puts all voxels to rest before the next step.
+  /// Lets the next step begin with all voxels at rest.
   void Reset()
   {
     this->IsToReset = true;
@@ -52,20 +52,21 @@ public:
   }
 
   ///@{
-  /// The displacements as they are before the next step, under a number, and back to them before
-  /// the next step. False where there is no such state, or it is one of another volume.
+  /// Save the displacements as a state and return its number; let the next step begin with the
+  /// displacements of a state; remove a state. RestoreState() and RemoveState() return false if
+  /// there is no such state. RestoreState() also returns false for a state of another volume.
   std::int64_t SaveState();
   bool RestoreState(std::int64_t number);
   bool RemoveState(std::int64_t number);
   std::size_t GetNumberOfStates() const { return this->States.size(); }
-  /// Bytes that they take.
+  /// Memory of all states, in bytes.
   std::uint64_t GetStateMemory() const { return this->StateMemory; }
   ///@}
 
   const std::string& GetDevice() const { return this->Device; }
 
 private:
-  /// What the materials were made of.
+  /// Identifies the array and the settings that the materials were read from.
   struct MaterialsKey
   {
     Stamp Array;
@@ -79,17 +80,17 @@ private:
   void SetVolume(const ImageGeometry& geometry, const ChainMailSettings& settings);
   void Forget();
   void MakeOutput(vtkIdType voxels);
-  /// Says which displacements a step has written.
+  /// Adds the displacements that a step has written to the log of the output array.
   void LogChanges(const ChainMailReport& report);
 
   ChainMailModel Model;
   std::string Device;
   bool HasVolume = false;
   bool IsToReset = false;
-  std::shared_ptr<const ChainMailSnapshot> ToRestore; // null: nothing
+  std::shared_ptr<const ChainMailSnapshot> ToRestore; // null: no state
   std::map<std::int64_t, std::shared_ptr<const ChainMailSnapshot>> States;
   std::int64_t LastState = -1;
-  // How many states have each of their blocks.
+  // Number of states that share each block.
   std::unordered_map<const ChainMailSnapshot::Block*, std::size_t> Owners;
   std::uint64_t StateMemory = 0;
   ImageGeometry Geometry;

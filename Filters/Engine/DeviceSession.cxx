@@ -24,7 +24,8 @@ std::string GetKernelKey(const std::string& device, const DeformRequest& request
   return kind;
 }
 
-// Marks what the device has as unknown unless a transfer ends well.
+// Marks the contents of the device as unknown until End() is called. If a transfer throws, they
+// stay unknown.
 class DeviceSession::Transfer
 {
 public:
@@ -302,7 +303,7 @@ void DeviceSession::SetMesh(const Deformation& deformation, MappingCache& mappin
   this->SentConnectivity = connectivity;
   if (!volume.Outside.AreExtrapolated())
   {
-    // Only the bounds of an extrapolated deformation need them again.
+    // Only the bounds of an extrapolated deformation need the voxels of the mapping again.
     mapping.ReleaseVoxels();
   }
   if (openSplits != this->CoincidentNodesAreSent || (openSplits && hasSplit))
@@ -344,7 +345,7 @@ void DeviceSession::SetRestMesh(const Deformation& deformation, const OutsideVox
     this->SentOutside = outside;
     return;
   }
-  // Which changes with the shape, too.
+  // The version of the connectivity changes with the shape, too.
   const std::uint64_t connectivity = deformation.GetRestMesh().GetConnectivityVersion();
   const bool meshIsSent = this->HasRestMesh && this->SentConnectivity == connectivity;
   const std::uint64_t vectors = deformation.GetVectorsVersion();

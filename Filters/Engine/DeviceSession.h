@@ -20,21 +20,22 @@ class vtkImageData;
 namespace deformvolume
 {
 
-/// Stands for no wish, as "" does, where a wish has to be seen.
+/// Device name with the meaning of "": the best device. For user interfaces, which have to show a
+/// name.
 constexpr const char* BEST_DEVICE = "best";
 
-/// Tells apart what needs different kernels. form: of the mapping.
+/// Differs for requests that need different kernels. form: the kind of mapping, such as "runs".
 std::string GetKernelKey(const std::string& device, const DeformRequest& request,
   const std::string& form, const std::vector<VolumeArray>& arrays);
 
-/// A VolumeDeformer that remembers what it was sent and is sent only what changed.
+/// A VolumeDeformer with a record of the data on its device. Only data that changed are sent.
 class DeviceSession
 {
 public:
-  /// Throws an Error where no device answers to a request.
+  /// Throws an Error if no device matches a request.
   static void CheckDevice(const std::string& request);
 
-  /// The name of the device for a request where it has memory of its own, else nothing.
+  /// The name of the requested device if it has memory of its own, else "".
   static std::string FindOwnMemory(const std::string& request);
 
   /// Chooses the device and returns its name.
@@ -45,18 +46,18 @@ public:
     const Extent& outputExtent, std::uint64_t heldBytes, const Deformation& deformation,
     std::uint64_t runBytes, Resampling method = Resampling::Exact) const;
 
-  /// A change to or from the method MeshRasterization sends the volume anew.
-  /// Voxels whose displacement is undefined count as blanked.
+  /// Sends the volume, its arrays and masks, as far as they have changed. A change to or from the
+  /// method MeshRasterization sends all of them. Voxels with an undefined displacement are blanked.
   void SetVolume(const VoxelGrid& voxelGrid, vtkImageData* volume,
     const std::vector<SourceArray>& arrays, double background, const Deformation& deformation,
     const OutsideVoxels& outside, Resampling method = Resampling::Exact);
 
-  /// Brings the mapping up to date, too, where it has to be sent. openSplits: whether gaps open
-  /// where the mesh is split.
+  /// Sends the deformation, as far as it has changed. Updates the mapping if it has to be sent.
+  /// openSplits: whether gaps open where the mesh is split.
   void SetDeformation(const Deformation& deformation, MappingCache& mapping,
     const MappedVolume& volume, bool openSplits, const std::function<bool(double)>& progress);
 
-  /// A mesh, or an inverse field, for the method MeshRasterization: there is no mapping.
+  /// Sends a mesh or an inverse field for the method MeshRasterization, which uses no mapping.
   void SetRestMesh(const Deformation& deformation, const OutsideVoxels& outside);
 
   DeformReport Deform(const DeformRequest& request);
@@ -70,21 +71,24 @@ private:
   class Transfer;
 
   void Forget();
-  /// Sends the displacements of nodes. changes: null, or others are as before.
+  /// Sends the displacements of nodes. changes: the nodes whose displacements have changed; null:
+  /// all.
   void SetNodes(const Deformation& deformation, const PointRanges* changes);
   void SetMesh(const Deformation& deformation, MappingCache& mapping, const MappedVolume& volume,
     bool openSplits, const std::function<bool(double)>& progress);
-  /// Sends a mesh and its mapping, or what has changed of its tetrahedra.
+  /// Sends a mesh and its mapping.
   void SendMesh(const RestMesh& mesh, const StaticMapping& mapping, bool byRuns);
+  /// Sends the changed connectivity of a mesh that was sent before.
   void SendConnectivity(const RestMesh& mesh, const StaticMapping& mapping);
-  /// Whether what has changed of the tetrahedra can be sent as changes.
+  /// Whether changes of the connectivity can be sent without the whole mesh.
   bool CanFollow(const RestMesh& mesh) const;
 
   VolumeDeformer Deformer;
   std::string Device;
-  FadedMesh Faded; // what the device has, where voxels outside the mesh are kept
+  FadedMesh Faded; // the mesh on the device, if voxels outside the deformation mesh are kept
 
-  // What the device has. A call that throws leaves it unknown, and then everything is sent again.
+  // Contents of the device. After a call that throws, they are unknown, and everything is sent
+  // again.
   bool Known = false;
   VoxelGrid SentGrid;
   // Bytes of a voxel in the widest array that the voxel grid was prepared for.

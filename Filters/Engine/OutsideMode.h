@@ -7,8 +7,8 @@
 namespace deformvolume
 {
 
-/// What an OutsideMode of the filters and a FadeDistance ask for. Throws an Error where the
-/// distance counts and is none.
+/// Converts the properties OutsideMode and FadeDistance of the filters. Throws an Error if
+/// OutsideMode is KEEP and FadeDistance is negative or not finite.
 OutsideVoxels MakeOutsideVoxels(int outsideMode, double fadeDistance);
 
 } // namespace deformvolume

@@ -15,12 +15,12 @@ namespace deformvolume
 namespace
 {
 
-/// How many threads of our own to use instead of VTK's, 0: none. VTK's are set for the whole
-/// process, so that changing them for one filter would disturb all others. They do not serve where
-/// - VTK is sequential because it was built so, as ParaView's is, and nobody has chosen that with
-///   VTK_SMP_BACKEND_IN_USE;
-/// - they are more than this process's share of the processors, and VTK_SMP_MAX_THREADS does not
-///   choose their number.
+/// The number of our own threads to use instead of VTK's; 0: use VTK's. VTK's threads are not
+/// reconfigured, since their settings affect the whole process. Own threads are used if
+/// - VTK was built with the sequential backend, as ParaView's VTK is, and VTK_SMP_BACKEND_IN_USE is
+/// not set;
+/// - VTK has more threads than this process's share of the processors, and VTK_SMP_MAX_THREADS does
+/// not set their number.
 int GetOwnThreads()
 {
   const char* variable = std::getenv("VTK_SMP_MAX_THREADS");

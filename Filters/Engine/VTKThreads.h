@@ -5,8 +5,9 @@
 namespace deformvolume
 {
 
-/// Has all loops of this process (ParallelFor.h) use VTK's threads, or as many threads of their own
-/// where VTK's do not serve. The settings of vtkSMPTools are respected and stay as they are.
+/// Makes all parallel loops of this process (ParallelFor.h) use VTK's threads. If VTK is sequential
+/// by default, or has more threads than this process's share of the processors, they use threads of
+/// their own. The settings of vtkSMPTools do not change.
 void UseVTKThreads();
 
 } // namespace deformvolume

@@ -19,10 +19,10 @@ bool VectorOutput::Allocate(const std::string& device, vtkIdType tuples)
   if (this->Array && this->Device == device && this->Array->GetNumberOfTuples() == tuples &&
     (isOnDevice || this->Array->GetVoidPointer(0) == this->Memory))
   {
-    // Who compares arrays to find what has changed sees the one it knows.
+    // Keep the array: consumers find changes by comparing arrays.
     return isOnDevice;
   }
-  this->Array = nullptr; // its memory goes first
+  this->Array = nullptr; // frees its memory before new memory is allocated
   this->Vectors.reset();
   this->Device = device;
   if (isOnDevice)

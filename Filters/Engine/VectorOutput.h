@@ -18,9 +18,9 @@ namespace deformvolume
 class VectorOutput
 {
 public:
-  /// Gives the array to a model, which has a function SetOutput for memory of the host and for
-  /// vectors; makes another one where device or number have changed. arguments: what else that
-  /// takes.
+  /// Sets the array as the output of a model. Makes a new array if the device or the number of
+  /// tuples has changed. The model has overloads of SetOutput() for host memory and for
+  /// DeviceVectors; `arguments` are their other arguments.
   template <typename Model, typename... Arguments>
   void Make(
     Model& model, const std::string& device, vtkIdType tuples, const Arguments&... arguments)
@@ -35,13 +35,14 @@ public:
     }
   }
 
-  /// Has the array hold what the device has, also where somebody has written to it.
+  /// Makes the array hold the values on the device again, if somebody has written other values to
+  /// it.
   void Restore();
 
   vtkDataArray* GetArray() const { return this->Array; }
 
 private:
-  /// Whether the values are on the device.
+  /// Makes or keeps the array. Returns whether its values are on the device.
   bool Allocate(const std::string& device, vtkIdType tuples);
 
   vtkSmartPointer<vtkDataArray> Array;
