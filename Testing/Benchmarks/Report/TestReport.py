@@ -136,6 +136,19 @@ def check_document(names):
         DRAWN.clear()
         make_report(results, documents / "gpu.md")
         text = (documents / "gpu.md").read_text()
+        # Text before and after the report is kept.
+        (documents / "gpu.md").write_text("Before\n" + text + "After\n")
+        DRAWN.clear()
+        make_report(results, documents / "gpu.md")
+        assert (documents / "gpu.md").read_text() == "Before\n" + text + "After\n"
+        (documents / "other.md").write_text("By hand\n")
+        try:
+            make_report(results, documents / "other.md")
+        except SystemExit as error:
+            assert "between which to write" in str(error)
+        else:
+            raise AssertionError("a document without the lines was overwritten")
+        assert (documents / "other.md").read_text() == "By hand\n"
         assert "| cpu |" not in text and "A device" in text and "Some processors" in text
         assert DRAWN
         for path in DRAWN:

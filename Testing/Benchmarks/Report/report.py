@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Makes a report in Markdown, with plots, of the results of the benchmark programs: report.py FOLDER [DOCUMENT].
 FOLDER contains a folder of JSON files for each device; report.md and the plots are written to FOLDER. With
-DOCUMENT the report is about GPUs only and is written to that file, its plots to images/ beside it. Returns an error
-if a limit is exceeded."""
+DOCUMENT the report is about GPUs only and is written to that file, between the lines BEGIN and END, so that text before
+and after them is kept; its plots are written to images/ beside it. Returns an error if a limit is exceeded."""
 import pathlib
 import sys
 
@@ -11,6 +11,9 @@ from demands import DEMANDS
 from plots import Pictures
 from results import Results, format_date
 from sections import cell, table
+
+BEGIN = "<!-- Written by Testing/Benchmarks/Report/report.py: -->\n"
+END = "<!-- End of the written text -->\n"
 
 
 def describe(results):
@@ -63,8 +66,9 @@ def device_report(results, pictures, kind):
 
 
 def report(devices, pictures, title, manual):
-    """manual: the link to Documents/benchmarks.md."""
-    yield f"# {title}\n"
+    """title: None: without a title. manual: the link to Documents/benchmarks.md."""
+    if title:
+        yield f"# {title}\n"
     date = min(results.context["date"] for results in devices.values())
     yield f"Measured on {format_date(date)}. {manual} describes the tables.\n"
     yield table(["device", "description"],
@@ -88,12 +92,18 @@ def main(folder, document=None):
     if document:
         pictures = Pictures(document.parent / "images", "images/")
         pictures.folder.mkdir(exist_ok=True)
-        title, manual = "Benchmarks on GPUs", "[benchmarks.md](benchmarks.md)"
+        title, manual = None, "[benchmarks.md](benchmarks.md)"
+        old = document.read_text(encoding="utf-8") if document.exists() else "# Benchmarks on GPUs\n\n" + BEGIN + END
+        if old.count(BEGIN) != 1 or END not in old.split(BEGIN)[1]:
+            sys.exit(f"report.py: {document} has no lines {BEGIN.strip()} and {END.strip()}, between which to write")
+        before, after = old.split(BEGIN)
+        before, after = before + BEGIN, END + after.split(END, 1)[1]
     else:
         document = folder / "report.md"
         pictures = Pictures(folder)
         title, manual = "Benchmarks", "Documents/benchmarks.md"
-    text = "\n".join(report(devices, pictures, title, manual))
+        before = after = ""
+    text = before + "\n".join(report(devices, pictures, title, manual)) + after
     document.write_text(text, encoding="utf-8")
     print(text)
     return text
