@@ -302,12 +302,12 @@ void VolumeEditor::WriteCut()
 
 void VolumeEditor::WriteDistances()
 {
-  const bool isNew = MakeOutput(this->Distances, BoundaryDistanceName, this->Mask->GetDistances());
-  const std::vector<std::size_t> changed = this->Mask->TakeChangedVertexBricks();
+  deformvolume::BoundaryDistances& distances = this->Mask->GetBoundaryDistances();
+  const bool isNew = MakeOutput(this->Distances, BoundaryDistanceName, distances.Get());
+  const std::vector<std::size_t> changed = distances.TakeChangedBricks();
   if (!isNew)
   {
-    WriteBricks(
-      this->Distances.Get(), this->Mask->GetVertexBricks(), changed, this->Mask->GetDistances());
+    WriteBricks(this->Distances.Get(), distances.GetBricks(), changed, distances.Get());
   }
 }
 

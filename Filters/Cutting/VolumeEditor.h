@@ -71,7 +71,7 @@ public:
   }
 
   /// deformvolume::GetFarDistance() of the whole volume.
-  float GetFarDistance() const { return this->Mask->GetFarDistance(); }
+  float GetFarDistance() const { return this->Mask->GetBoundaryDistances().GetFar(); }
 
   /// Makes the output a shallow copy of the volume, with the remaining active tetrahedra, and with
   /// boundary distances and a smooth cut if there are any.

@@ -92,14 +92,9 @@ public:
 
   /// Whether an edit has boundary distances.
   bool HasDistanceEdits() const;
-  /// Returns the boundary distance of vertices that are far from any boundary.
-  float GetFarDistance() const { return this->Distances.GetFar(); }
-  /// Returns the bricks of the vertices.
-  const CellBricks& GetVertexBricks() const { return this->Distances.GetBricks(); }
-  /// Returns the boundary distances, one per vertex; empty if there was never a boundary.
-  const std::vector<float>& GetDistances() const { return this->Distances.Get(); }
-  /// Like TakeChangedBricks(), for the bricks of vertices.
-  std::vector<std::size_t> TakeChangedVertexBricks() { return this->Distances.TakeChangedBricks(); }
+  /// Returns the boundary distances of all edits and of the base.
+  BoundaryDistances& GetBoundaryDistances() { return this->Distances; }
+  const BoundaryDistances& GetBoundaryDistances() const { return this->Distances; }
 
   /// Returns the number of blocks of tetrahedra and crossings that were joined, a measure of the
   /// work for edits.

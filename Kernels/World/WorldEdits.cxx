@@ -18,7 +18,7 @@ EditFinder WorldEdits::MakeFinder() const
   EditFinder finder;
   finder.Volume = this->Volume;
   finder.GetVertices = [this]() -> const VertexPositions& { return this->Vertices; };
-  finder.FarDistance = this->Editor.GetFarDistance();
+  finder.FarDistance = this->Editor.GetBoundaryDistances().GetFar();
   return finder;
 }
 
@@ -60,7 +60,7 @@ WorldMasks WorldEdits::GetMasks()
       this->Editor.SetBaseDistances(this->Base.BoundaryDistances);
       this->BaseDistancesAreOld = false;
     }
-    masks.BoundaryDistances = this->Editor.GetDistances().data();
+    masks.BoundaryDistances = this->Editor.GetBoundaryDistances().Get().data();
   }
   masks.ActiveTetrahedra = this->Editor.GetMask().data();
   return masks;

@@ -57,9 +57,9 @@ std::vector<float> Spread(const DistanceSet& set)
   MaskEditor editor(Volume, Far);
   DistanceSet copy = set;
   editor.Add({}, std::move(copy));
-  return editor.GetDistances().empty()
+  return editor.GetBoundaryDistances().Get().empty()
     ? std::vector<float>(static_cast<std::size_t>(GetNumberOfPoints(Volume)), Far)
-    : editor.GetDistances();
+    : editor.GetBoundaryDistances().Get();
 }
 
 // Whether a cell that a vertex belongs to has vertices on both sides.
@@ -206,9 +206,9 @@ TEST(SmoothCarving, EditsOfDistancesAreUndoneAndRedone)
   std::mt19937 random(7);
   MaskEditor editor(Volume, Far);
   EXPECT_FALSE(editor.HasDistanceEdits());
-  EXPECT_TRUE(editor.TakeChangedVertexBricks().empty());
+  EXPECT_TRUE(editor.GetBoundaryDistances().TakeChangedBricks().empty());
   DistanceSet beyond;
-  beyond.Bricks.push_back(editor.GetVertexBricks().GetNumberOfBricks());
+  beyond.Bricks.push_back(editor.GetBoundaryDistances().GetBricks().GetNumberOfBricks());
   beyond.Blocks.emplace_back();
   EXPECT_THROW(editor.Add({}, std::move(beyond)), Error);
 
@@ -244,7 +244,7 @@ TEST(SmoothCarving, EditsOfDistancesAreUndoneAndRedone)
         }
         break;
       default:
-        edits.push_back(MakeSet(random, editor.GetVertexBricks()));
+        edits.push_back(MakeSet(random, editor.GetBoundaryDistances().GetBricks()));
         undone.clear();
         editor.Add({}, DistanceSet(edits.back()));
         break;
@@ -257,15 +257,15 @@ TEST(SmoothCarving, EditsOfDistancesAreUndoneAndRedone)
         [](float a, float b) { return std::min(a, b); });
     }
     EXPECT_EQ(editor.HasDistanceEdits(), !edits.empty());
-    if (editor.GetDistances().empty())
+    if (editor.GetBoundaryDistances().Get().empty())
     {
       continue;
     }
-    ASSERT_EQ(editor.GetDistances(), expected);
+    ASSERT_EQ(editor.GetBoundaryDistances().Get(), expected);
     seen.resize(count, -1.0F);
-    for (const std::size_t brick : editor.TakeChangedVertexBricks())
+    for (const std::size_t brick : editor.GetBoundaryDistances().TakeChangedBricks())
     {
-      const Extent box = editor.GetVertexBricks().GetCells(brick);
+      const Extent box = editor.GetBoundaryDistances().GetBricks().GetCells(brick);
       for (std::int64_t z = box[4]; z <= box[5]; ++z)
       {
         for (std::int64_t y = box[2]; y <= box[3]; ++y)
@@ -274,7 +274,7 @@ TEST(SmoothCarving, EditsOfDistancesAreUndoneAndRedone)
           {
             const auto vertex =
               static_cast<std::size_t>((z * GetSize(Volume, 1) + y) * GetSize(Volume, 0) + x);
-            seen[vertex] = editor.GetDistances()[vertex];
+            seen[vertex] = editor.GetBoundaryDistances().Get()[vertex];
           }
         }
       }
@@ -282,5 +282,5 @@ TEST(SmoothCarving, EditsOfDistancesAreUndoneAndRedone)
     ASSERT_EQ(seen, expected);
   }
   editor.Reset();
-  EXPECT_EQ(editor.GetDistances(), base);
+  EXPECT_EQ(editor.GetBoundaryDistances().Get(), base);
 }
