@@ -22,9 +22,8 @@
 namespace deformvolume
 {
 
-/// What vtkDeformVolumeFilter keeps of a volume at one resolution from one execution to the next:
-/// for each SamplingFactor that is in use there is one. All of it is as if the voxels that are left
-/// were the volume.
+/// State that vtkDeformVolumeFilter keeps from one execution to the next for one SamplingFactor.
+/// All members refer to the coarse volume.
 struct ExecutionState
 {
   CoarseVolume Volume;
@@ -34,11 +33,11 @@ struct ExecutionState
   OutputArrays Outputs;
   ExtraArrays Extra;
 
-  /// Frees the memory of the device and all that is as large as a volume.
+  /// Frees the memory on the device, and all host memory with the size of a volume.
   void Release();
   bool HoldsMemory() const { return !this->ArraysInUse.empty(); }
 
-  // What the cached bounds were computed for.
+  // What the member Bounds was computed for.
   struct BoundsKey
   {
     Stamp Inputs;
@@ -54,28 +53,28 @@ struct ExecutionState
   IndexBounds Bounds;
   std::set<double> TimesInBounds;
 
-  // The last extent that was made of the bounds, and what it depends on besides these.
+  // The last extent that was computed from Bounds, and what it depends on besides Bounds.
   struct ExtentKey
   {
-    BoundsKey Settings; // without inputs
+    BoundsKey Settings; // without Inputs
     int Padding = 0;
-    int Granularity = 0; // 0: there is no extent
+    int Granularity = 0; // 0: LastExtent is not valid
     bool operator==(const ExtentKey& other) const;
   };
   ExtentKey KeyOfExtent;
   Extent LastExtent{ { 0, -1, 0, -1, 0, -1 } };
 
-  // Of the deformation whose bounds were computed last.
+  // Versions of the deformation that was included in Bounds last: of the shape and of the vectors.
   std::pair<std::uint64_t, std::uint64_t> VersionsInBounds;
 
-  // Of the mesh, and which that is.
+  // Bounds of the deformation mesh, and the versions of the mesh that they were computed for.
   MeshBounds BoundsOfMesh;
   std::uint64_t BoundsShapeVersion = 0;
   std::uint64_t BoundsConnectivityVersion = 0;
   std::uint64_t BoundsVectorsVersion = 0;
   VoxelGrid BoundsGrid;
 
-  // Where the voxels of the volume go, and what that is of.
+  // The regions of the volume with their deformed bounds, and what they were computed for.
   struct RegionsKey
   {
     std::uint64_t ShapeVersion = 0;
@@ -88,7 +87,8 @@ struct ExecutionState
   RegionsKey KeyOfRegions;
   std::unique_ptr<RestRegions> Regions;
 
-  // What was needed last, and for which share of the output of which volume.
+  // The extent of the volume that was needed last, and for which part of the output of which
+  // volume.
   struct Share
   {
     Extent Asked{ { 0, -1, 0, -1, 0, -1 } }; // empty: all
@@ -100,16 +100,17 @@ struct ExecutionState
   Share LastShare;
   Extent LastNeeded{ { 0, -1, 0, -1, 0, -1 } };
 
-  // Mapping and displacements that were looked at for warnings of kept voxels.
+  // Versions of the mapping and of the vectors for which WarnOfFading() was called last.
   std::pair<std::uint64_t, std::uint64_t> VersionsOfFading;
-  // What was wrong with how a field fades.
+  // The last warning about the fading of a field.
   std::string FaultOfFading;
 
-  // For which displacements inverted tetrahedra of an inverse field were counted, and their number.
+  // Version of the vectors for which inverted tetrahedra of an inverse field were counted, and
+  // their number.
   std::uint64_t FoldsVersion = 0;
   std::int64_t NumberOfFolds = 0;
 
-  // The arrays of the volume that the last execution had, and the state of its source.
+  // The arrays of the volume in the last execution with this state, and the stamp of its source.
   std::vector<const void*> ArraysInUse;
   std::pair<const void*, vtkMTimeType> SourceInUse;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How vtkDeformVolumeFilter finds the extent that holds the deformed volume, and keeps it.
+// How vtkDeformVolumeFilter computes the extent of the deformed volume, and enlarges it over time.
 #include "vtkDeformVolumeFilterInternals.h"
 
 #include "DeformedBounds.h"
@@ -101,7 +101,7 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ComputeBounds(
   }
   if (bounds.IsEmpty())
   {
-    // Tells what is wrong.
+    // // Throws an Error that says what is wrong with the mesh.
     this->State->Mapping.Update(mesh.GetMeshAtRest(), mapped, {});
     throw Error("The deformed volume has no bounds. Check the deformation mesh.");
   }
@@ -112,7 +112,8 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ComputeBounds(
 void vtkDeformVolumeFilter::vtkInternals::MakeLinks(
   const deformvolume::VoxelGrid& voxelGrid, const deformvolume::MappedVolume& mapped)
 {
-  // They are made before any output is asked for: what they need is checked here.
+  // Bounds are computed before the output is requested, so that RequestData() has not yet checked
+  // the memory for the mapping.
   const deformvolume::Deformation& mesh = this->State->Deformation;
   this->SelectDevice();
   this->CheckWithRoom(
@@ -140,7 +141,7 @@ void vtkDeformVolumeFilter::vtkInternals::UpdateBoundsOfMesh(
     }
     changes = mesh.GetChanges(this->State->BoundsConnectivityVersion);
   }
-  this->State->BoundsShapeVersion = 0; // nothing, if this fails
+  this->State->BoundsShapeVersion = 0; // not valid if a call below throws
   if (changes)
   {
     this->State->BoundsOfMesh.ChangeConnectivity(mesh.GetPoints(), mesh.GetTetrahedra(), *changes);
@@ -197,7 +198,7 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::GetDeformedBounds(
   {
     return this->State->Bounds;
   }
-  // One time is enough for the first picture; the bounds grow with the others (KeepInBounds).
+  // The bounds at one time are enough here. HoldTime() and KeepInBounds() add those at other times.
   const std::optional<double> time = this->FindTime(output);
   std::uint64_t bits = 0;
   if (time)
@@ -244,7 +245,7 @@ deformvolume::Extent vtkDeformVolumeFilter::vtkInternals::GetDeformedExtent(
   deformvolume::ExecutionState::ExtentKey key{ this->State->KeyOfBounds, this->Self->Padding,
     this->Self->BoundsGranularity };
   key.Settings.Inputs.clear();
-  // Ranks keep what all of them have kept.
+  // The last extent is kept only if all ranks have the same one.
   bool keep = !ranks.IsAny(!(key == this->State->KeyOfExtent));
   for (const int end : this->State->LastExtent)
   {

@@ -112,7 +112,8 @@ void vtkDeformVolumeFilter::vtkInternals::ReleaseOldVolumes(
   const auto source = deformvolume::GetInputStamp(this->Self, 0);
   for (auto& state : this->States)
   {
-    // Arrays that were changed are still there, and so are those of other parts of a volume.
+    // A volume is still connected if it has the same arrays, even if their values have changed, or
+    // if its source is unchanged, which may have given another part of it.
     if (&state.second != this->State && state.second.ArraysInUse != inUse &&
       state.second.SourceInUse != source)
     {
@@ -187,8 +188,8 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::MakeSourceAtRest(const Im
   source.Selector = [](vtkDataSet* dataSet) { return dataSet->GetPointData()->GetVectors(); };
   source.PointsAreDeformed = false;
   source.DisplacementScale = 1.0;
-  // Both kinds of fields leave the volume where it is. The resampler that looks up needs an inverse
-  // one.
+  // Displacements of zero have the same effect in a forward and in an inverse field. Mesh
+  // rasterization needs an inverse field.
   source.FieldIsInverse = this->Self->Resampler == MESH_RASTERIZATION;
   source.Choice = source.FieldIsInverse ? "at rest inverse" : "at rest";
   return source;
@@ -254,7 +255,7 @@ void vtkDeformVolumeFilter::vtkInternals::TakeReport(
   const deformvolume::DeformReport& report, deformvolume::Resampling method)
 {
   this->Report = report;
-  this->Report.DeviceOutputs.clear(); // the arrays of the output have them
+  this->Report.DeviceOutputs.clear(); // the arrays of the output hold them
   this->StaticMappingTime = this->State->Mapping.TakeTime();
   this->Self->NumberOfInvertedTetrahedra = this->State->Deformation.IsInverseField()
     ? this->GetNumberOfFolds()
@@ -294,7 +295,7 @@ vtkIdType vtkDeformVolumeFilter::vtkInternals::GetNumberOfFolds()
 std::function<bool(double)> vtkDeformVolumeFilter::vtkInternals::GetProgress(
   double from, double to) const
 {
-  // Observers expect to be called where they live.
+  // Observers may be called only in the thread that updates the filter.
   const std::thread::id thread = std::this_thread::get_id();
   return [this, from, to, thread](double done)
   {

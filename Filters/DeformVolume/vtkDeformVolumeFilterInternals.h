@@ -24,8 +24,8 @@
 
 class vtkImageData;
 
-/// What vtkDeformVolumeFilter keeps from one execution to the next, and what it computes from its
-/// settings.
+/// State that vtkDeformVolumeFilter keeps from one execution to the next, and functions that the
+/// requests of the pipeline share.
 class vtkDeformVolumeFilter::vtkInternals
 {
 public:
@@ -35,34 +35,34 @@ public:
   {
   }
 
-  /// Makes State that of SamplingFactor. Throws an Error where it is none.
+  /// Sets State to the state of SamplingFactor. Throws an Error if SamplingFactor is not 1, 2 or 4.
   void SelectState();
 
-  /// Chooses the device for State, with what the other states leave of the memory limit, and
-  /// returns its name.
+  /// Selects the device for State and returns its name. The memory limit of State is MemoryLimit
+  /// minus the device memory of the other states.
   std::string SelectDevice();
 
-  /// Calls a function that throws an Error where the memory does not suffice; then once more, after
-  /// what other states hold has been freed.
+  /// Calls a function that throws an Error if the memory does not suffice. If it throws, frees the
+  /// memory of the other states and calls it again.
   void CheckWithRoom(const std::function<void()>& check);
 
-  /// Frees what other states hold of volumes that are no longer connected. arrays: those of the
-  /// volume.
+  /// Frees the memory of other states that hold volumes which are no longer connected. arrays: the
+  /// arrays of the connected volume.
   void ReleaseOldVolumes(const std::vector<deformvolume::SourceArray>& arrays);
 
-  /// Bytes that all states hold on the device.
+  /// Device memory of all states, in bytes.
   std::uint64_t GetDeviceMemory() const;
 
-  /// Reads what the source of the reference image announces; null: there is none. Throws an Error
-  /// where it has no grid.
+  /// Reads the grid of the reference image from its pipeline information; null: there is no
+  /// reference image. Throws an Error if the grid is not valid.
   void ReadReference(vtkInformation* reference);
-  /// Throws an Error where the ranks have different ones. Collective.
+  /// Throws an Error if the ranks have reference images with different grids. Collective.
   void CheckReferenceOfRanks(const deformvolume::Ranks& ranks) const;
-  /// Warns where settings are without effect beside the reference image.
+  /// Warns of properties that have no effect because of the reference image.
   void WarnOfReference();
-  /// Warns that all of the output is background.
+  /// Warns that the whole output is background.
   void WarnOfNothing() const;
-  /// Whether the output ends where the deformed volume does.
+  /// Whether the extent of the output follows from the deformed volume.
   bool EndsWithVolume() const
   {
     return this->Self->OutputBoundsMode == DEFORMED_BOUNDS && !this->Reference;
@@ -74,92 +74,96 @@ public:
   deformvolume::DeformationSource MakeSource(
     const deformvolume::ImageGeometry& volume, vtkDataObject* shape, vtkDataObject* rest) const;
 
-  /// The same where port 1 is not connected: all of the volume stays where it is. Throws an Error
-  /// where port 2 is connected.
+  /// The source if port 1 is not connected: displacements of zero. Throws an Error if port 2 is
+  /// connected.
   deformvolume::DeformationSource MakeSourceAtRest(const deformvolume::ImageGeometry& volume);
 
-  /// Brings the deformation up to date with what ports 1 and 2 have, on all ranks together.
-  /// Collective.
+  /// Updates the deformation of State from the data of ports 1 and 2 of all ranks. Collective.
   deformvolume::DeformationSource ReadDeformation(const deformvolume::Ranks& ranks,
     const deformvolume::ImageGeometry& volume, vtkDataObject* shape, vtkDataObject* rest);
 
-  /// What becomes of voxels outside the deformation. Throws an Error where FadeDistance is none.
+  /// How voxels outside the deformation move: OutsideMode and FadeDistance. Throws an Error if
+  /// FadeDistance is used and not valid.
   deformvolume::OutsideVoxels GetOutside() const;
-  /// Throws an Error where the deformation cannot do that.
+  /// Throws an Error if OutsideMode cannot be used with the deformation.
   void CheckOutside() const;
 
-  /// The whole volume as SamplingFactor leaves it. Throws an Error where too little is left.
+  /// The geometry of the whole coarse volume. Throws an Error if it has fewer than two voxels on an
+  /// axis.
   deformvolume::ImageGeometry GetCoarseGeometry(const deformvolume::ImageGeometry& volume) const;
 
-  /// Where the voxels of the whole volume lie: as its source announces it, and what it does not
-  /// announce as its data have it. Collective.
+  /// The geometry of the whole volume. Origin, spacing and direction are taken from the data if the
+  /// source does not announce them. Collective.
   deformvolume::ImageGeometry GetVolumeGeometry(
     const deformvolume::Ranks& ranks, vtkInformation* volumeInfo, vtkInformation* output);
 
-  /// The whole extent of an output that is as large as the deformed volume, padded. It is that of
-  /// the last call as far as BoundsGranularity has it kept. Collective.
+  /// The whole extent of an output that holds the deformed volume and Padding. With
+  /// BoundsGranularity, the extent of the last call is kept if possible. Collective.
   deformvolume::Extent GetDeformedExtent(const deformvolume::Ranks& ranks,
     const deformvolume::ImageGeometry& volume, vtkInformation* output);
-  /// The next such extent depends on no other.
+  /// Makes the next result of GetDeformedExtent() independent of the last one.
   void ForgetDeformedExtent() { this->State->KeyOfExtent = {}; }
 
   ///@{
-  /// The bounds that decided the extent of the output hold the times seen before. Where the
-  /// deformation at the time asked for leaves them they grow, and the next pass finds the filter
-  /// out of date, so that its consumers learn of the new extent. HoldTime: before extents are asked
-  /// for, so that who updates this filter alone gets all of the new extent. KeepInBounds: where
-  /// that pass did not come, or no time is asked for. Collective.
+  /// With DEFORMED_BOUNDS the bounds hold the deformed volume at all times requested so far. If the
+  /// deformed volume leaves them at the requested time, the bounds grow, and the filter is out of
+  /// date in the next update, in which its consumers get the new extent. HoldTime() is called
+  /// before extents are requested, so that an update of this filter alone gives the whole new
+  /// extent. KeepInBounds() is called with the data, for updates without that pass or without a
+  /// time. Collective.
   void HoldTime(vtkInformation* volumeInfo, vtkInformation* output);
   void KeepInBounds(const deformvolume::Ranks& ranks, const deformvolume::ImageGeometry& volume,
     const deformvolume::DeformationSource& source, vtkInformation* output);
   ///@}
-  /// Warns where a consumer that does not know of an extent that has grown asks for the one before.
+  /// Warns if a consumer requests the whole extent from before it has grown.
   void WarnOfCut(vtkInformation* output);
 
-  /// The extent of the volume that is needed for what is asked for: all of it, unless a part of the
-  /// output or CUSTOM_BOUNDS asks for less, and all before the volume can give less. Collective.
+  /// The extent of the volume that the requested output needs. This is a part of the volume only if
+  /// a part of the output is requested, or the output has custom bounds or a reference image, and
+  /// the source of the volume can produce parts. Collective.
   deformvolume::Extent GetNeededExtent(
     const deformvolume::Ranks& ranks, vtkInformation* volumeInfo, vtkInformation* output);
 
-  /// The volume whose data are there, and what they are a part of, both as SamplingFactor leaves
-  /// them. Throws an Error where they are not what the source announced or was asked for.
+  /// The extent of the data of the coarse volume, and the geometry of the whole coarse volume.
+  /// Throws an Error if the data differ from what the source announced or from what was requested.
   deformvolume::MappedVolume GetMappedVolume(vtkImageData* volume, vtkInformation* info) const;
 
-  /// The volume without what is outside its whole extent, about which it warns.
+  /// Crops a volume that is larger than its whole extent, with a warning. Returns the cropped
+  /// volume, or the volume itself.
   vtkImageData* CutToWhole(vtkImageData* volume, vtkInformation* info);
 
-  /// Runs a function on the ranks that have work. The first time that kernels of a kind are wanted
-  /// one rank of each machine goes first, and leaves what it compiled to the others: two processes
-  /// that fill one cache disturb each other. Collective.
+  /// Calls a function on the ranks that have work. If kernels of a kind are used for the first
+  /// time, one rank of each machine goes first and compiles them into the kernel cache for the
+  /// other ranks, because two processes that write to one cache disturb each other. Collective.
   void RunInTurn(const deformvolume::Ranks& ranks, const std::string& kind, bool hasWork,
     const std::function<void()>& function) const;
 
-  /// The resampler for the current deformation of a volume, which also becomes ResamplerInUse.
-  /// checkMemory throws an Error where the memory does not suffice for one.
+  /// Chooses the resampler for a volume and the current deformation, and sets ResamplerInUse.
+  /// checkMemory: throws an Error if the memory does not suffice for a resampler.
   deformvolume::Resampling ChooseResampler(
     vtkImageData* volume, const std::function<void(deformvolume::Resampling)>& checkMemory) const;
   void SetResamplerInUse(deformvolume::Resampling method) const;
 
-  /// Sets what the filter tells of an execution.
+  /// Sets Report, and the results of the execution that the filter has as properties.
   void TakeReport(const deformvolume::DeformReport& report, deformvolume::Resampling method);
 
-  /// Makes what has been counted on this rank that of all ranks. Collective.
+  /// Sums the counters over all ranks. Collective.
   void AddUpCounts(const deformvolume::Ranks& ranks);
 
-  /// Warns where what is ignored changed since the last call.
+  /// Warns of arrays and cells that are ignored, if they were not in the last call.
   void WarnOfIgnored(vtkImageData* volume, const std::vector<std::string>& leftOut);
 
-  /// What arrays are wanted besides those of the volume.
+  /// The requested arrays besides those of the volume.
   deformvolume::ExtraArraysWish GetExtraArrays() const
   {
     return { this->Self->GenerateRestPositions, this->Self->GenerateJacobian,
       this->Self->GenerateFoldCount, this->DensityArrays };
   }
-  /// Warns where densities lack a part of the volume, and that has changed.
+  /// Warns if density arrays lack a part of the volume, unless the last warning was the same.
   void WarnOfLoss(const deformvolume::ExtraArrays::Loss& loss);
 
-  /// Warns where voxels that are kept are torn or folded for certain, when the deformation has
-  /// changed. output: its whole extent.
+  /// Warns if kept voxels are certainly torn or folded, if the deformation has changed. output: the
+  /// whole extent of the output.
   void WarnOfFading(const deformvolume::MappedVolume& mapped, const deformvolume::Extent& output);
   void WarnOfFadingField(
     const deformvolume::MappedVolume& mapped, const deformvolume::Extent& output);
@@ -167,43 +171,46 @@ public:
   /// A progress callback for the part of the execution between two fractions.
   std::function<bool(double)> GetProgress(double from, double to) const;
 
-  /// A callback that is told when the compilation of kernels begins and ends: while it lasts, the
-  /// progress of the filter has a text that says so.
+  /// A callback for the begin and the end of the compilation of kernels. It sets the progress text
+  /// of the filter meanwhile.
   std::function<void(bool)> GetCompilationReport() const;
 
   deformvolume::DeformReport Report; // of the last execution
-  double StaticMappingTime = 0.0;    // of that
+  double StaticMappingTime = 0.0;    // of the last execution
 
   std::set<std::string> CategoricalArrays;
   std::set<std::string> DensityArrays;
   deformvolume::DeformationGrids Grids;
   deformvolume::MeshGathering Gathering;
 
-  // What is kept for each SamplingFactor, and for the one that is set.
+  // The state of each SamplingFactor that was used, and that of the current one.
   std::map<int, deformvolume::ExecutionState> States;
   deformvolume::ExecutionState* State;
-  // That of the output; 0: there is no output that an execution could be compared with.
+  // SamplingFactor of the last output; 0: there is no output with which the next one can be
+  // compared.
   int FactorOfOutput = 0;
-  /// Whether the volume that was worked on last has a smooth cut.
+  /// Whether the volume of the last execution has a smooth cut.
   bool HadCut = false;
 
   deformvolume::PipelineExecution Execution;
-  /// That of the reference image, while the executive must not find it.
+  /// Information of the reference image, while it is hidden from the executive; see
+  /// ModifyRequest().
   vtkSmartPointer<vtkInformation> ReferenceInfo;
   /// The grid of the reference image, with its whole extent.
   std::optional<deformvolume::ImageGeometry> Reference;
-  /// What the last request for information has thrown.
+  /// The exception that the last request for information has thrown.
   std::exception_ptr InformationFailure;
-  /// Whether the output was too small, so that the next update has to execute the filter.
+  /// Whether the extent of the output was too small, so that the next update has to execute the
+  /// filter.
   bool BoundsHaveGrown = false;
-  /// The whole extent that consumers know, after it has grown in this update.
+  /// The whole extent before this update, if it has grown in this update.
   std::optional<deformvolume::Extent> ExtentBefore;
 
 private:
-  /// False where there was nothing to free.
+  /// Returns false if there was nothing to free.
   bool ReleaseOtherStates();
-  /// The time of the first look at a deformation: the one asked for, or the first that the inputs
-  /// announce; nothing where it does not vary.
+  /// The time for which bounds are computed first: the requested time, or the first time that the
+  /// inputs announce. Empty if there are no times.
   std::optional<double> FindTime(vtkInformation* output) const;
   /// The bounds of the deformed volume, united over the times seen so far. Collective.
   deformvolume::IndexBounds GetDeformedBounds(const deformvolume::Ranks& ranks,
@@ -211,39 +218,40 @@ private:
   void WarnOfGrowth();
   deformvolume::IndexBounds ReadBounds(const deformvolume::Ranks& ranks,
     const deformvolume::ImageGeometry& volume, vtkInformation* output, const double* time);
-  /// The extent that BoundsGranularity, Padding and the extent before make of bounds.
+  /// Computes an extent from bounds, Padding, BoundsGranularity and the last extent.
   deformvolume::Extent FindExtent(const deformvolume::IndexBounds& bounds) const;
   deformvolume::IndexBounds ComputeBounds(
     const deformvolume::ImageGeometry& volume, const deformvolume::DeformationSource& source);
-  /// Makes the links of a whole volume, of a mesh whose voxels outside are not discarded.
+  /// Updates the mapping of the whole volume. For meshes, if voxels outside are not discarded.
   void MakeLinks(
     const deformvolume::VoxelGrid& voxelGrid, const deformvolume::MappedVolume& mapped);
-  /// Makes the bounds those of the mesh, whatever its displacements are.
+  /// Updates BoundsOfMesh for the mesh at rest.
   void UpdateBoundsOfMesh(const deformvolume::VoxelGrid& voxelGrid);
-  /// Of the deformation at rest and of its displacements.
+  /// Versions of the deformation: of the shape and of the vectors.
   std::pair<std::uint64_t, std::uint64_t> GetVersions() const;
   bool WantsPart(vtkInformation* output) const;
   bool CanTakePart(vtkInformation* volumeInfo) const;
-  /// An extent that is needed, and what was needed before for the same share of the output: where
-  /// the deformation moves to and fro, the volume is not read, sent and mapped at each step.
+  /// Adds the extent that was needed before for the same part of the output. If the deformation
+  /// moves to and fro, the volume is then not read, uploaded and mapped again at each step.
   deformvolume::Extent KeepNeeded(const deformvolume::Extent& needed,
     const deformvolume::ImageGeometry& volume, vtkInformation* output);
-  /// Inverted tetrahedra of an inverse field.
+  /// Number of inverted tetrahedra of an inverse field.
   vtkIdType GetNumberOfFolds();
-  /// Where the voxels of the volume go.
+  /// Updates and returns the regions of the volume in State.
   const deformvolume::RestRegions& GetRegions(
     const deformvolume::ImageGeometry& volume, const deformvolume::DeformationSource& source);
 
   vtkDeformVolumeFilter* Self;
 
-  // What stands in for a deformation where none is connected, and the volume that it is made for.
+  // The field of zeros that is used if no deformation is connected, and the volume that it was made
+  // for.
   vtkSmartPointer<vtkImageData> FieldAtRest;
   deformvolume::ImageGeometry VolumeAtRest;
 
-  // What the source of the volume announced, and of which state of it that is.
+  // The last result of GetVolumeGeometry(), and the stamp of the source at that time.
   deformvolume::ImageGeometry VolumeGeometry;
   std::pair<const void*, vtkMTimeType> VolumeStamp;
-  // What is left of a volume beyond its whole extent, and of which volume.
+  // The volume that CutToWhole() has cropped, and the stamp of the volume that it was cropped from.
   vtkSmartPointer<vtkImageData> CutVolume;
   std::pair<const void*, vtkMTimeType> CutStamp;
 

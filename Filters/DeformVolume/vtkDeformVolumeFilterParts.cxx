@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What vtkDeformVolumeFilter does where it has a part of the volume, of the output or of the
-// deformation mesh only.
+// How vtkDeformVolumeFilter works on a part of the volume, of the output or of the deformation
+// mesh.
 #include "vtkDeformVolumeFilterInternals.h"
 
 #include "InputUpdate.h"
@@ -44,7 +44,7 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::ReadDeformation(
   ranks.Attempt(
     [&]
     {
-      // Those of kept voxels are sent from the host, and Jacobians are found there.
+      // The vectors are needed on the host for voxels that are kept, and for Jacobians.
       source.Device =
         ranks.AreMany() || this->Self->OutsideMode == KEEP || this->GetExtraArrays().NeedsJacobian()
         ? ""
@@ -71,18 +71,18 @@ bool vtkDeformVolumeFilter::vtkInternals::WantsPart(vtkInformation* output) cons
 //------------------------------------------------------------------------------
 bool vtkDeformVolumeFilter::vtkInternals::CanTakePart(vtkInformation* volumeInfo) const
 {
-  // Where a smooth cut leads the two sides is known with all of the volume only. Coarse volumes
-  // have none.
+  // A smooth cut needs the whole volume: a part does not show where its two sides move. Coarse
+  // volumes have no smooth cuts.
   const bool isCut =
     this->Self->SamplingFactor == 1 && (this->HadCut || deformvolume::IsCutAnnounced(volumeInfo));
-  // The other resampler wants the volume whole, and so do voxels that follow the nearest
-  // tetrahedron of a mesh, wherever it may be.
+  // Mesh rasterization needs the whole volume. So do voxels outside a mesh that follow the nearest
+  // tetrahedron, which may be anywhere.
   const bool exact = this->Self->Resampler != MESH_RASTERIZATION;
   const bool local = this->State->Deformation.IsField() ? !this->State->Deformation.IsInverseField()
                                                         : this->Self->OutsideMode == DISCARD;
-  // Voxels beside a mesh have the Jacobian of the nearest one in it.
+  // Voxels outside a mesh have the Jacobian of the nearest voxel inside, which may be anywhere.
   const bool isDerived = this->GetExtraArrays().NeedsJacobian();
-  // Data that are there already cost nothing.
+  // A volume that is already in memory is used as a whole.
   return exact && local && !isDerived && !isCut && !deformvolume::IsInMemory(this->Self, 0) &&
     deformvolume::CanProduceParts(this->Self, 0);
 }
@@ -122,8 +122,8 @@ Extent vtkDeformVolumeFilter::vtkInternals::KeepNeeded(
   Extent whole;
   output->Get(Pipeline::UPDATE_EXTENT(), asked.data());
   output->Get(Pipeline::WHOLE_EXTENT(), whole.data());
-  // With CUSTOM_BOUNDS other bounds want other voxels, and none of those before; and so do other
-  // reference images.
+  // Other custom bounds or another reference image need other voxels, and no longer the previous
+  // ones.
   if (asked != whole || this->Self->OutputBoundsMode == CUSTOM_BOUNDS || this->Reference)
   {
     share.Asked = asked;
@@ -162,7 +162,7 @@ Extent vtkDeformVolumeFilter::vtkInternals::GetNeededExtent(
       const RestRegions& regions = this->GetRegions(volume, source);
       if (!regions.HasVoxels())
       {
-        return; // the data pass tells what is wrong
+        return; // RequestData() reports what is wrong
       }
       needed = deformvolume::GetFine(
         this->KeepNeeded(regions.Find(deformvolume::GetRequestedPart(output)), volume, output),
@@ -175,8 +175,7 @@ Extent vtkDeformVolumeFilter::vtkInternals::GetNeededExtent(
 namespace
 {
 
-// The kinds of kernels that have been compiled: once in a process, whichever filter of whichever
-// thread wants them.
+// The kinds of kernels that this process has compiled, for the filters of all threads.
 class CompiledKinds
 {
 public:
@@ -226,11 +225,11 @@ void vtkDeformVolumeFilter::vtkInternals::RunInTurn(const Ranks& ranks, const st
   {
     const std::vector<std::uint64_t> works = ranks.Gather(hasWork ? 1 : 0);
     int leader = ranks.GetRank();
-    for (const int neighbour : ranks.GetNeighbours())
+    for (const int neighbor : ranks.GetNeighbours())
     {
-      if (works[neighbour] > 0)
+      if (works[neighbor] > 0)
       {
-        leader = neighbour;
+        leader = neighbor;
         break;
       }
     }
@@ -278,7 +277,7 @@ void vtkDeformVolumeFilter::vtkInternals::AddUpCounts(const Ranks& ranks)
   addUp(this->Self->NumberOfCoveredVoxels);
   addUp(this->Report.NumberOfBricks);
   addUp(this->Report.NumberOfResampledBricks);
-  // Of the whole mesh, which each rank knows that has work.
+  // Each rank with work has counted the flat tetrahedra of the whole mesh.
   this->Self->NumberOfFlatTetrahedra = static_cast<vtkIdType>(
     ranks.GetMost(static_cast<std::uint64_t>(this->Self->NumberOfFlatTetrahedra)));
 }

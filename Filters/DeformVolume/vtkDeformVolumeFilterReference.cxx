@@ -48,7 +48,7 @@ void vtkDeformVolumeFilter::vtkInternals::ReadReference(vtkInformation* referenc
   this->Reference = geometry;
   if (this->Reference != last)
   {
-    // Another grid wants other voxels, and none of those before.
+    // Another grid needs other voxels, and no longer the previous ones.
     for (auto& state : this->States)
     {
       state.second.LastShare = {};
@@ -128,7 +128,7 @@ ImageGeometry vtkDeformVolumeFilter::vtkInternals::GetOutputGeometry(
         throw Error(std::string("CustomSpacing is ") + std::to_string(spacing) + " on axis " +
           "xyz"[axis] + ". Set a spacing greater than 0.");
       }
-      // A volume with negative spacing keeps its sense.
+      // The spacing keeps the sign of the volume's spacing.
       output.Spacing[axis] =
         std::copysign(this->Self->SamplingFactor * spacing, volume.Spacing[axis]);
     }

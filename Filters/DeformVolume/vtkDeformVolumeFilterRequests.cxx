@@ -37,7 +37,8 @@ using deformvolume::ImageGeometry;
 namespace
 {
 
-// That of the reference image. The ports before it have data, and it has a grid only.
+// The port of the reference image. Only its grid is read, while the ports before it are read with
+// their data.
 constexpr int ReferencePort = 3;
 
 } // namespace
@@ -67,8 +68,8 @@ vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
     }
     catch (const std::exception&)
     {
-      // Reported when data are requested: a program that requests information may be about to
-      // choose inputs and arrays. Nothing is offered until then.
+      // The error is reported when data are requested: a program that requests information may not
+      // have set all inputs and arrays yet. Until then the output has an empty extent.
       this->Internals->InformationFailure = std::current_exception();
       const int empty[6] = { 0, -1, 0, -1, 0, -1 };
       outInfo->Set(Pipeline::WHOLE_EXTENT(), empty, 6);
@@ -91,9 +92,9 @@ vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
   {
     return result;
   }
-  // The executive goes on to the data pass all the same, and on the ranks whose inputs have failed
-  // it gets no further than these.
-  // (The reference image is asked for nothing in any case.)
+  // The executive continues with the data pass all the same, but on ranks whose inputs have failed
+  // it stops at these inputs. Therefore request nothing from the inputs on any rank. (Nothing is
+  // ever requested from the reference image.)
   for (int port = 0; port < 2 && request->Has(Pipeline::REQUEST_UPDATE_EXTENT()); ++port)
   {
     if (vtkInformation* info = input[port]->GetInformationObject(0))
@@ -115,7 +116,8 @@ vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
 //------------------------------------------------------------------------------
 int vtkDeformVolumeFilter::ModifyRequest(vtkInformation* request, int when)
 {
-  // The executive would have the source of the reference image make its data, of an empty extent.
+  // Hide the reference image from the executive, which would execute its source for an empty
+  // extent.
   if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
   {
     vtkInformationVector* reference = this->GetExecutive()->GetInputInformation(ReferencePort);
@@ -141,14 +143,14 @@ int vtkDeformVolumeFilter::RequestInformation(
   vtkInformation* outInfo = output->GetInformationObject(0);
   if (this->Internals->InformationFailure)
   {
-    // The executive then asks for the whole extent anew.
+    // Makes the executive request the whole extent again.
     outInfo->Remove(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT_INITIALIZED());
     this->Internals->InformationFailure = nullptr;
   }
   const deformvolume::Ranks ranks;
   if (ranks.AreMany())
   {
-    ranks.GetNeighbours(); // before anything asks for a device
+    ranks.GetNeighbours(); // has to be called before a device is selected
   }
   vtkInformation* volumeInfo = input[0]->GetInformationObject(0);
   ImageGeometry volume;
@@ -172,7 +174,8 @@ int vtkDeformVolumeFilter::RequestInformation(
       deformvolume::CheckVolume(volume);
       volume = this->Internals->GetCoarseGeometry(volume);
       outputGeometry = this->Internals->GetOutputGeometry(volume);
-      // Here, since ParaView's views complain, too, where data fail that were announced.
+      // The device is checked here, because ParaView's views report errors of their own if
+      // RequestData() fails after this pass has succeeded.
       deformvolume::DeviceSession::CheckDevice(this->Device);
     });
   deformvolume::MergeTimes(this, ReferencePort, outInfo);
@@ -202,7 +205,7 @@ int vtkDeformVolumeFilter::RequestInformation(
   outInfo->Set(vtkDataObject::SPACING(), glm::value_ptr(outputGeometry.Spacing), 3);
   outInfo->Set(vtkDataObject::DIRECTION(), glm::value_ptr(rows), 9);
   outInfo->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-  // The time is known after this pass only.
+  // The requested time is known only after this pass.
   outInfo->Set(vtkStreamingDemandDrivenPipeline::TIME_DEPENDENT_INFORMATION(), 1);
   return 1;
 }
@@ -217,7 +220,7 @@ int vtkDeformVolumeFilter::RequestUpdateExtent(
   }
   this->Internals->SelectState();
   const deformvolume::Ranks ranks;
-  // First, as another port that has the same source asks it for more.
+  // Before the other ports: one with the same source requests more from it.
   if (input[ReferencePort]->GetNumberOfInformationObjects() > 0)
   {
     deformvolume::RequestNothing(input[ReferencePort]->GetInformationObject(0));
@@ -247,11 +250,11 @@ int vtkDeformVolumeFilter::RequestData(
   vtkImageData* image = vtkImageData::GetData(outInfo);
   if (this->Internals->Execution.HasFailed())
   {
-    return 0; // the request for extents has failed, which the executive ignores
+    return 0; // RequestUpdateExtent() has failed, which the executive ignores
   }
   this->Internals->SelectState();
   deformvolume::ExecutionState& state = *this->Internals->State;
-  // Nothing of an earlier execution is left standing beside a failure.
+  // If this execution fails, no results of an earlier one may remain.
   image->Initialize();
   const bool hasLast = this->Internals->FactorOfOutput == this->SamplingFactor;
   this->Internals->FactorOfOutput = 0;
@@ -278,7 +281,7 @@ int vtkDeformVolumeFilter::RequestData(
   deformvolume::Deformation& deformation = state.Deformation;
   this->Internals->KeepInBounds(ranks, geometry, source, outInfo);
 
-  // With the arrays and the masks that are worked on; all else is that of the volume.
+  // The image whose masks are used: of the coarse volume, or the volume itself.
   vtkImageData* worked = nullptr;
   std::vector<deformvolume::SourceArray> arrays;
   ranks.Attempt(
@@ -345,8 +348,8 @@ int vtkDeformVolumeFilter::RequestData(
       }
       this->DeviceInUse = this->Internals->SelectDevice();
       heldBytes = state.Outputs.Prepare(arrays, numberOfPoints);
-      // The memory for the whole decides, so that all parts are made alike. A volume that is read
-      // in parts need never fit.
+      // The resampler is chosen by the memory that the whole output needs, so that all parts of the
+      // output have the same one. A volume that is read in parts does not have to fit.
       request.Method = this->Internals->ChooseResampler(worked,
         [&](deformvolume::Resampling method)
         {
@@ -401,7 +404,7 @@ int vtkDeformVolumeFilter::RequestData(
     deformvolume::SetTransform(image, outputGeometry);
     image->GetFieldData()->ShallowCopy(volume->GetFieldData());
     state.Outputs.Make(arrays, request);
-    // What folds hide is counted in a whole pass only.
+    // Samples that folds hide are counted only if the whole output is resampled.
     request.Incremental =
       this->Incremental && !this->GenerateFoldCount && this->Internals->DensityArrays.empty();
     request.FoldCounts = state.Extra.MakeFoldCounts(numberOfPoints);
@@ -446,7 +449,8 @@ int vtkDeformVolumeFilter::RequestData(
     std::copy(request.OutputExtent.begin(), request.OutputExtent.end(), this->ChangedExtent);
   }
   this->Internals->FactorOfOutput = this->SamplingFactor;
-  // Pieces of ranks share planes, so that those of all have no fewer points than the whole.
+  // The pieces of the ranks share planes. Together they have at least as many points as the whole
+  // output.
   const bool isWhole =
     pointsOfRanks >= static_cast<std::uint64_t>(deformvolume::GetNumberOfPoints(whole));
   if (this->NumberOfCoveredVoxels == 0 && isWhole)

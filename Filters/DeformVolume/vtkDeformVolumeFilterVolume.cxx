@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What vtkDeformVolumeFilter knows of the volume: what its source announces, and what it gives.
+// The volume of vtkDeformVolumeFilter: the information that its source announces, and its data.
 #include "vtkDeformVolumeFilterInternals.h"
 
 #include "InputUpdate.h"
@@ -23,7 +23,7 @@ using deformvolume::Ranks;
 namespace
 {
 
-// A copy is made of all arrays: none must be read beyond its end.
+// vtkImageData::Crop() copies all arrays, and would read short ones beyond their ends.
 void CheckSizes(vtkDataSetAttributes* attributes, vtkIdType size, const std::string& what)
 {
   for (int i = 0; i < attributes->GetNumberOfArrays(); ++i)
@@ -59,8 +59,9 @@ ImageGeometry vtkDeformVolumeFilter::vtkInternals::GetVolumeGeometry(
     }
     return this->VolumeGeometry;
   }
-  // Sources that leave out one of these have forgotten it, or know that it is the default: only the
-  // data tell. A direction is left out by most.
+  // A source that does not announce origin or spacing may rely on the defaults, or may have omitted
+  // other values by mistake. Only its data have the right ones. Most sources announce no direction,
+  // so that a missing direction alone means nothing.
   Extent part = announced.PointExtent;
   if (deformvolume::CanProduceParts(this->Self, 0))
   {

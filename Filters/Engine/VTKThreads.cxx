@@ -18,9 +18,9 @@ namespace
 /// The number of our own threads to use instead of VTK's; 0: use VTK's. VTK's threads are not
 /// reconfigured, since their settings affect the whole process. Own threads are used if
 /// - VTK was built with the sequential backend, as ParaView's VTK is, and VTK_SMP_BACKEND_IN_USE is
-/// not set;
+///   not set;
 /// - VTK has more threads than this process's share of the processors, and VTK_SMP_MAX_THREADS does
-/// not set their number.
+///   not set their number.
 int GetOwnThreads()
 {
   const char* variable = std::getenv("VTK_SMP_MAX_THREADS");
