@@ -336,9 +336,14 @@ void TestAutomatic()
   VERIFY_EQUAL(wrong, 0);
   VERIFY(output->GetNumberOfPoints() >= 34 * 35 * 19);
 
-  // What only the exact resampler can do fails with its words.
+  // What only the exact resampler can do fails with its error.
   deformed.Filter->SetOutsideModeToExtrapolate();
   VERIFY(Contains(GetError(deformed), std::to_string(limit)));
+  deformed.Filter->SetOutsideModeToDiscard();
+  deformed.Filter->AddDensityArray(volume->GetPointData()->GetScalars()->GetName());
+  VERIFY(Contains(GetError(deformed), std::to_string(limit)));
+  deformed.Filter->ClearDensityArrays();
+  deformed.Update();
 }
 
 } // namespace
