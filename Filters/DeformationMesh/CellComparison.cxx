@@ -25,22 +25,22 @@ namespace deformvolume
 namespace
 {
 
-constexpr vtkIdType BLOCK = 8192;      // cells compared at a time
-constexpr std::size_t MostChanges = 8; // one tetrahedron in so many
+constexpr vtkIdType BLOCK = 8192;      // cells that are compared at a time
+constexpr std::size_t MostChanges = 8; // list at most one change for this number of tetrahedra
 
-// The tetrahedra of a part, and what is found of them.
+// The tetrahedra of a part of the mesh, and the changes that were found.
 struct ComparedPart
 {
   const Tetrahedron* Tetrahedra;
-  std::size_t First; // its first tetrahedron, of all
+  std::size_t First; // index of its first tetrahedron in the whole mesh
   std::int32_t FirstNode;
-  std::size_t Most;                   // changes that are worth to be listed
-  std::vector<unsigned char> Written; // blocks, where a log tells which; else empty
+  std::size_t Most;                   // the largest number of changes for which a list pays
+  std::vector<unsigned char> Written; // for each block whether it was written; empty: unknown
   std::vector<TetrahedronChange> Changes;
 };
 
-// The cells of a part, in arrays of numbers of one size. Null: all have the type, or the number of
-// nodes, of a tetrahedron.
+// The cells of a part, in arrays of integers of one size. Types or Offsets is null if it is known
+// that all cells have the type, or the number of nodes, of a tetrahedron.
 template <typename Integer>
 struct PartCells
 {
@@ -48,7 +48,8 @@ struct PartCells
   const Integer* Offsets;
   const Integer* Connectivity;
 
-  // Whether some are tetrahedra. Without branches, which compilers make vectors of.
+  // Whether the cells from begin to end are tetrahedra. The loops have no branches, so that
+  // compilers vectorize them.
   bool AreTetrahedra(vtkIdType begin, vtkIdType end) const
   {
     Integer differences = 0;
@@ -70,11 +71,12 @@ struct PartCells
     return differences == 0 && otherTypes == 0;
   }
 
-  // Whether some have the nodes of tetrahedra, which are counted from firstNode.
+  // Whether the cells from begin to end have the nodes of the tetrahedra. firstNode: index of the
+  // first node of the part.
   bool HaveNodes(
     vtkIdType begin, vtkIdType end, const Tetrahedron* tetrahedra, Integer firstNode) const
   {
-    // Without signs, as no number is negative: what is widened then needs no look at its sign.
+    // Unsigned, since no index is negative: widening needs no sign extension.
     using Word = std::make_unsigned_t<Integer>;
     Word differences = 0;
     const std::int32_t* nodes = tetrahedra[begin].data();
@@ -88,7 +90,7 @@ struct PartCells
     return differences == 0;
   }
 
-  // The nodes of a cell; false where one is none.
+  // Reads the nodes of a cell. Returns false if a node does not exist.
   bool Read(vtkIdType cell, vtkIdType numberOfPoints, std::int32_t firstNode,
     Tetrahedron& tetrahedron) const
   {
@@ -104,7 +106,8 @@ struct PartCells
     return true;
   }
 
-  // Those of some cells that do not have the nodes of their tetrahedra; false where a node is none.
+  // Lists the cells from begin to end whose nodes differ from those of their tetrahedra. Returns
+  // false if a node does not exist.
   bool ListChanges(vtkIdType begin, vtkIdType end, vtkIdType numberOfPoints,
     const ComparedPart& part, std::vector<TetrahedronChange>& changes) const
   {
@@ -126,7 +129,7 @@ struct PartCells
   }
 };
 
-// False where the cells are not all tetrahedra, or too many changed.
+// Returns false if not all cells are tetrahedra, or too many have changed.
 template <typename Integer>
 bool Compare(
   vtkUnstructuredGrid* grid, const unsigned char* types, vtkDataArray* offsets, ComparedPart& part)
@@ -193,7 +196,7 @@ bool Compare(vtkUnstructuredGrid* grid, ComparedPart& part)
   }
   if (!offsets->HasStandardMemoryLayout())
   {
-    // Computed, as where all cells have the same number of nodes.
+    // VTK computes the offsets if all cells have the same number of nodes.
     if (cells->IsHomogeneous() != 4)
     {
       return false;
@@ -227,8 +230,8 @@ CellMemory GetCellMemory(vtkUnstructuredGrid* grid)
   return memory;
 }
 
-// Which blocks of cells have been written, of a part of so many tetrahedra; empty where that is not
-// known.
+// For each block of cells of a part whether it was written. Empty: unknown. count: number of
+// tetrahedra of the part.
 std::vector<unsigned char> FindWrittenBlocks(
   vtkUnstructuredGrid* grid, const CellMemory& last, std::size_t count)
 {
@@ -268,7 +271,8 @@ std::optional<std::vector<TetrahedronChange>> FindDifferences(const MeshParts& p
   const std::size_t most = tetrahedra.size() / MostChanges;
   std::size_t first = 0;
   std::int32_t firstNode = 0;
-  // The numbers of the nodes of a part follow from the parts before it, which may have more now.
+  // With several parts, node indices depend on the numbers of points of earlier parts, which may
+  // have changed.
   const bool areKnown = memories.size() == 1 && parts.size() == 1;
   for (vtkUnstructuredGrid* grid : parts)
   {

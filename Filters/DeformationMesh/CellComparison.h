@@ -11,22 +11,22 @@
 namespace deformvolume
 {
 
-/// How the cells of a part of a mesh were when they were read.
+/// State of the cells of a part of a mesh when they were read.
 struct CellMemory
 {
-  Stamp Arrays; // those of the cells, without the connectivity
+  Stamp Arrays; // arrays of the cells, without the connectivity
   const void* Connectivity = nullptr;
-  vtkMTimeType Time = 0; // of the connectivity
+  vtkMTimeType Time = 0; // modification time of the connectivity
 };
 
 std::vector<CellMemory> GetCellMemories(const MeshParts& parts);
 
-/// Which of some tetrahedra have other nodes, where the cells of a mesh are those now; in ascending
-/// order. Nothing where it takes more than a comparison of memory to say: other cells than
-/// tetrahedra, another number of them, ghosts, uncommon layouts, nodes that are not there, or
-/// changes of so many tetrahedra that they are read faster. memories: of when the tetrahedra were
-/// these. Where a log of the connectivity (vtkArrayChanges) tells which cells have been written
-/// since, only these are compared. Empty: all are.
+/// Compares the cells of a mesh with tetrahedra that were read from it before. Returns those with
+/// other nodes, in ascending order. Returns nothing if a comparison of memory does not suffice: for
+/// cells other than tetrahedra, another number of cells, ghost cells, uncommon layouts, nodes that
+/// do not exist, or so many changes that reading the cells is faster. memories: GetCellMemories()
+/// of when the tetrahedra were read. If a log of the connectivity (vtkArrayChanges) has the cells
+/// that were written since, only these are compared. Empty: all cells are compared.
 std::optional<std::vector<TetrahedronChange>> FindDifferences(const MeshParts& parts,
   const std::vector<Tetrahedron>& tetrahedra, const std::vector<CellMemory>& memories);
 

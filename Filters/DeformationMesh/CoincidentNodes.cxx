@@ -51,7 +51,7 @@ void CoincidentNodes::Update(const RestMesh& mesh)
       this->Numbers.push_back(static_cast<std::int32_t>(node));
     }
     this->Shares.resize(this->Numbers.size());
-    // Nodes that tetrahedra have got lie where those were that they had. No others are used.
+    // The new nodes of tetrahedra have the positions of the old ones. No other new nodes are used.
     for (const TetrahedronChange& change : *changes)
     {
       for (int k = 0; k < 4; ++k)

@@ -10,13 +10,15 @@ namespace deformvolume
 
 class RestMesh;
 
-/// Which nodes of a mesh have one place at rest, as those have that a node was split into. Found
-/// among all nodes once for a mesh, and then followed.
+/// Groups of nodes of a mesh with the same position at rest, such as the nodes that a node was
+/// split into. The groups are found once for a shape of the mesh, and then updated from the changes
+/// of its connectivity.
 class CoincidentNodes
 {
 public:
   void Update(const RestMesh& mesh);
-  /// A number for each node, which nodes with one place share. Empty where no two do.
+  /// A number for each node, which is the same for coincident nodes. Empty if there are no
+  /// coincident nodes.
   const std::vector<std::int32_t>& Get() const
   {
     static const std::vector<std::int32_t> none;
@@ -24,11 +26,11 @@ public:
   }
 
 private:
-  /// Two nodes have one place.
+  /// Joins the groups of two nodes.
   void Join(std::int32_t first, std::int32_t second);
 
   std::vector<std::int32_t> Numbers;
-  std::vector<unsigned char> Shares; // whether a node may share its place
+  std::vector<unsigned char> Shares; // whether a node may have coincident nodes
   bool AnyShared = false;
   std::uint64_t ShapeVersion = 0;
   std::uint64_t ConnectivityVersion = 0;

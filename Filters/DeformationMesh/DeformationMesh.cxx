@@ -21,7 +21,7 @@ namespace deformvolume
 namespace
 {
 
-// Where a node of a mesh is: its part, and its number there.
+// The part that a node of a mesh belongs to, and the index of the node in this part.
 std::pair<std::size_t, vtkIdType> FindNode(const MeshParts& parts, vtkIdType node)
 {
   std::size_t part = 0;
@@ -248,7 +248,8 @@ Stamp GetPointVectorsStamp(const MeshParts& parts)
       stamp.emplace_back(
         nullptr, static_cast<vtkMTimeType>(pointData->GetAbstractArray(i)->GetNumberOfTuples()));
     }
-    // There is one vector for each point: where points come or go, vectors are looked at anew.
+    // There is one vector for each point, so that vectors have to be read again if the number of
+    // points changes.
     stamp.emplace_back(nullptr, static_cast<vtkMTimeType>(grid->GetNumberOfPoints()));
   }
   return stamp;

@@ -23,12 +23,12 @@ class vtkUnstructuredGrid;
 namespace deformvolume
 {
 
-/// What errors call the meshes.
+/// Names of the meshes in messages.
 constexpr const char* MESH_NAME = "deformation mesh";
 constexpr const char* REST_NAME = "rest configuration";
 
-/// The grids that make up a mesh: one, or the leaves of a composite dataset. Nodes are counted
-/// through all of them, in order.
+/// The grids that make up a mesh: one, or the leaves of a composite dataset. Node indices are
+/// counted over all grids, in order.
 struct MeshParts : std::vector<vtkUnstructuredGrid*>
 {
   using std::vector<vtkUnstructuredGrid*>::vector;
@@ -36,49 +36,51 @@ struct MeshParts : std::vector<vtkUnstructuredGrid*>
   std::vector<std::string> Blocks;
 };
 
-/// What errors call a part of the mesh that they call by `name`.
+/// The name of a part of a mesh in messages. name: the name of the mesh.
 std::string DescribePart(const MeshParts& parts, std::size_t part, const std::string& name);
 
-/// Throws an Error, which calls the mesh by `name`, where there is no part, or no point in all of
-/// them. object: where the parts were found (see MeshGrids).
+/// Throws an Error if there is no part, there is no point in all parts, or there are too many
+/// points. object: the data object in which MeshGrids has found the parts. name: the name of the
+/// mesh in messages.
 void CheckParts(const MeshParts& parts, vtkDataObject* object, const std::string& name);
 
 std::size_t GetNumberOfNodes(const MeshParts& parts);
 
-/// The points, in world coordinates. Throws an Error where tetrahedra use one that is not finite.
+/// The points in world coordinates. Throws an Error if tetrahedra use a point that is not finite.
 std::vector<glm::dvec3> ReadPoints(
   const MeshParts& parts, const std::string& name, const std::vector<Tetrahedron>& tetrahedra);
 
-/// Throws an Error where tetrahedra use a point that is not finite.
+/// Throws an Error if tetrahedra use a point that is not finite.
 void CheckPoints(const MeshParts& parts, const std::string& name, const NodeFaults& faults,
   const std::vector<Tetrahedron>& tetrahedra);
 
 /// Finds the vectors of a dataset, or null.
 using ArraySelector = std::function<vtkDataArray*(vtkDataSet*)>;
 
-/// The array that a selector finds, checked to be one of three components, with as many tuples as
-/// the dataset has points. `wanted` says in words what is looked for.
+/// Returns the array that a selector finds. Throws an Error if there is none, or if it does not
+/// have three components and one tuple for each point of the dataset. wanted: describes the array
+/// in messages.
 vtkDataArray* FindVectors(vtkDataSet* dataSet, const ArraySelector& selector,
   const std::string& wanted, const std::string& name);
 
-/// Whether a dataset has these as one vector of three components for each point; they may be null.
+/// Whether an array, which may be null, has three components and one tuple for each point of a
+/// dataset.
 bool HaveVectors(vtkDataSet* dataSet, vtkDataArray* vectors);
 
-/// Vectors of all points, one part's after the other's. Those that are not finite, and those of
-/// parts without a usable array, are marked in faults, after they have been taken as zeros.
-/// memories: of the last reading (see ReadVectors), where they were taken to the same places; null:
-/// all are taken.
+/// Reads the vectors of all points, part by part. Vectors that are not finite, and those of parts
+/// without a usable array, are marked in faults, after `take` received zeros for them. memories:
+/// the last reading of each part, see ReadVectors(); null: all vectors are read.
 void ReadPointVectors(const MeshParts& parts, const ArraySelector& selector, NodeFaults& faults,
   const VectorTaker& take, std::vector<VectorMemory>* memories = nullptr);
 
-/// Throws an Error where tetrahedra use a node without a vector, or with one that is not finite.
-/// Those that are too far are left to the caller.
+/// Throws an Error if tetrahedra use a node without a vector, or with a vector that is not finite.
+/// The caller handles nodes that move too far.
 void CheckPointVectors(const MeshParts& parts, const ArraySelector& selector,
   const std::string& wanted, const std::string& name, const NodeFaults& faults,
   const std::vector<Tetrahedron>& tetrahedra);
 
 ///@{
-/// What the functions above depend on.
+/// Differ if the functions above may give another result.
 Stamp GetPointsStamp(const MeshParts& parts);
 Stamp GetPointVectorsStamp(const MeshParts& parts);
 ///@}

@@ -14,41 +14,42 @@ class vtkDataObject;
 namespace deformvolume
 {
 
-/// Where a deformation comes from, and where it is wanted.
+/// The input of a deformation, and the grids that it is converted to.
 struct DeformationSource
 {
-  /// What is connected to port 1, and to port 2 or null.
+  /// The deformation and its rest configuration; Rest may be null.
   vtkDataObject* Shape = nullptr;
   vtkDataObject* Rest = nullptr;
-  /// Their grids, where they are meshes.
+  /// The grids of Shape and Rest if they are meshes.
   MeshParts ShapeParts;
   MeshParts RestParts;
-  /// Derived nodes that their cells name already (see ReadCells), or null.
+  /// Derived nodes that the cells of these grids use already (see ReadCells()), or null.
   const DerivedNodes* Derived = nullptr;
-  /// Whether a filter makes these, and they are not data that somebody holds (see MeshStamp).
+  /// Whether a filter has made Shape or Rest. False for data that were set directly (see
+  /// MeshStamp).
   bool ShapeIsMade = false;
   bool RestIsMade = false;
-  /// Finds the displacements; Wanted names them in words, Choice tells two choices apart.
+  /// Finds the array of displacements. Wanted describes it in messages. Choice differs for
+  /// different arrays.
   ArraySelector Selector;
   std::string Wanted;
   std::string Choice;
   double DisplacementScale = 1.0;
-  /// Whether the mesh is given by its deformed points; the grids above are at rest all the same.
+  /// Whether the points of the mesh are deformed. ShapeParts have the points at rest also then.
   bool PointsAreDeformed = false;
   /// Whether a field leads from the output to the volume at rest.
   bool FieldIsInverse = false;
   ImageGeometry Volume;
-  /// The whole name of a device with memory of its own that takes vectors where they lie there;
-  /// empty: there is none.
+  /// The full name of a device that reads vectors in its own memory without a copy; empty: none.
   std::string Device;
   /// From indices of the volume to those of the output.
   OutputMap ToOutput;
 
-  /// The grids that have the rest positions.
+  /// The grids with the positions at rest.
   const MeshParts& GetRestParts() const { return this->Rest ? this->RestParts : this->ShapeParts; }
 };
 
-/// Throws an Error where what is connected does not go together.
+/// Throws an Error if the inputs and settings do not match.
 void CheckSource(const DeformationSource& source);
 
 } // namespace deformvolume

@@ -27,7 +27,7 @@ namespace deformvolume
 namespace
 {
 
-// What would have to be read beyond the end of an array, once it is followed.
+// Throws an Error if reading the cells would read beyond the end of an array.
 void CheckStructure(vtkUnstructuredGrid* grid)
 {
   const vtkIdType numberOfCells = grid->GetNumberOfCells();
@@ -46,7 +46,7 @@ void CheckStructure(vtkUnstructuredGrid* grid)
   }
 }
 
-// Where the nodes of a mesh are, found one by one: few cells need it.
+// Positions of the nodes of a mesh. They are read one by one, since few cells need them.
 class NodePositions
 {
 public:
@@ -85,7 +85,7 @@ public:
 
 private:
   std::vector<vtkPoints*> Points;
-  std::vector<vtkIdType> Ends; // of the nodes of each
+  std::vector<vtkIdType> Ends; // index after the last node of each
   double Rounding = std::numeric_limits<double>::epsilon();
 };
 
@@ -108,8 +108,8 @@ void ReadPolyhedron(vtkUnstructuredGrid* grid, vtkIdType cell, vtkIdType count,
   reader.AddPolyhedron(cell, count, faces, complete);
 }
 
-// The degrees of Lagrange cells along their axes, one tuple for each cell of the mesh; null where
-// they follow from the numbers of points.
+// The degrees of Lagrange cells along their axes, one tuple for each cell of the mesh; null if the
+// degrees follow from the numbers of points.
 vtkDataArray* FindDegrees(vtkUnstructuredGrid* grid)
 {
   vtkDataArray* degrees = grid->GetCellData()->GetHigherOrderDegrees();
@@ -126,7 +126,7 @@ vtkDataArray* FindDegrees(vtkUnstructuredGrid* grid)
   return degrees;
 }
 
-// Those of a cell; 0 on an axis where they are no number of steps.
+// Reads the degrees of a cell. A degree that is not valid becomes 0.
 std::array<int, 3> ReadDegrees(vtkDataArray* array, vtkIdType cell)
 {
   std::array<int, 3> degrees{ { 0, 0, 0 } };
@@ -138,7 +138,7 @@ std::array<int, 3> ReadDegrees(vtkDataArray* array, vtkIdType cell)
   return degrees;
 }
 
-// named: how many derived nodes cells may name.
+// named: number of derived nodes that cells may use.
 void ReadPart(
   vtkUnstructuredGrid* grid, std::int32_t firstNode, vtkIdType named, CellReader& reader)
 {

@@ -8,13 +8,12 @@
 namespace deformvolume
 {
 
-/// The tetrahedra of a mesh, and those that its other three-dimensional cells are split into: the
-/// nodes of quadratic and Lagrange cells all become nodes of tetrahedra. Cells that vtkGhostType
-/// marks as hidden or duplicate are left out. rest: the same mesh with its points at rest, on which
-/// the split of concave polyhedra depends. derived: the derived nodes of a single grid whose cells
-/// name them already; else null.
-/// Throws an Error where a cell has a wrong number of points, points that are not there or
-/// incomplete faces, where it is a Bezier cell, and where it is a polyhedron that cannot be split.
+/// Reads the tetrahedra of a mesh, and splits its other three-dimensional cells into tetrahedra.
+/// All nodes of quadratic and Lagrange cells become nodes of tetrahedra. Cells that vtkGhostType
+/// marks as hidden or duplicate are skipped. rest: the same mesh with its points at rest, on which
+/// the split of concave polyhedra depends. derived: the derived nodes that the cells of a single
+/// grid use already; else null. Throws an Error if a cell has a wrong number of points, points that
+/// do not exist or incomplete faces, is a Bezier cell, or is a polyhedron that cannot be split.
 MeshCells ReadCells(
   const MeshParts& parts, const MeshParts& rest, const DerivedNodes* derived = nullptr);
 

@@ -44,7 +44,7 @@ Stamp GetPieceStamp(const DeformationSource& source)
   return stamp;
 }
 
-// FNV-1a, eight bytes at a time.
+// A variant of the FNV-1a hash that takes eight bytes at a time.
 void AddToHash(std::uint64_t& hash, const void* data, std::size_t bytes)
 {
   const auto* next = static_cast<const char*>(data);
@@ -98,7 +98,7 @@ struct MeshGathering::Piece
   std::vector<Tetrahedron> Tetrahedra;
   DerivedNodes Derived;
   std::vector<glm::dvec3> RestPoints;
-  /// Deformed positions where there is a rest configuration, else displacements.
+  /// Deformed positions if there is a rest configuration, else displacements.
   std::vector<glm::dvec3> Vectors;
   std::string IgnoredCells;
   std::string FarMidSides;
@@ -209,7 +209,7 @@ DeformationSource MeshGathering::Gather(const Ranks& ranks, const DeformationSou
     this->FarMidSides = piece.FarMidSides;
     if (!ranks.AreEqual(hash))
     {
-      // What the ranks before this one have, and all of them.
+      // The sum over the ranks before this one, and the sum over all ranks.
       const auto count = [&](std::size_t mine)
       {
         std::array<std::uint64_t, 2> counts{};

@@ -18,20 +18,21 @@ namespace deformvolume
 
 class RestMesh;
 
-/// Makes a deformation mesh of which each rank has a piece whole on every rank: pieces one after
-/// the other in the order of ranks, ghost cells left out. A mesh that every rank has whole is taken
-/// once. Keeps what it made until the piece of any rank changes.
+/// Gathers a deformation mesh of which each rank has a piece, so that every rank has the whole
+/// mesh. The pieces follow each other in the order of the ranks, without ghost cells. If every rank
+/// already has the same whole mesh, that mesh is used. The result is kept until the piece of any
+/// rank changes.
 class MeshGathering
 {
 public:
-  /// Collective. The source of the whole mesh; a displacement field, which every rank has whole,
-  /// and any source of a single process are given back as they are. Throws the same Error on all
-  /// ranks.
+  /// Returns a source with the whole mesh. Returns `source` itself if it is a displacement field,
+  /// which every rank has as a whole, or if there is one process. Throws the same Error on all
+  /// ranks. Collective.
   DeformationSource Gather(const Ranks& ranks, const DeformationSource& source);
 
-  /// Cells of this rank's piece that were ignored, in words; "" without such.
+  /// Describes the cells of this rank's piece that were ignored; "": none were.
   const std::string& GetIgnoredCells() const { return this->IgnoredCells; }
-  /// See RestMesh.
+  /// See RestMesh::GetFarMidSides().
   const std::string& GetFarMidSides() const { return this->FarMidSides; }
 
 private:
@@ -44,12 +45,13 @@ private:
   std::string Choice;
   vtkSmartPointer<vtkUnstructuredGrid> Shape;
   vtkSmartPointer<vtkUnstructuredGrid> Rest;
-  DerivedNodes Derived; // which the cells of both name, behind their points
+  DerivedNodes
+    Derived; // used by the cells of Shape and Rest; their indices follow those of the points
   std::string IgnoredCells;
   std::string FarMidSides;
 };
 
-/// Adds what there is to say of cells of a mesh that are ignored, or look wrong.
+/// Adds warnings about cells of a mesh that are ignored, or that are probably wrong.
 void AddCellWarnings(
   const RestMesh& mesh, const MeshGathering& gathering, std::set<std::string>& warnings);
 

@@ -37,7 +37,8 @@ const char* GetName(vtkInformation* metaData)
   return metaData ? metaData->Get(vtkCompositeDataSet::NAME()) : nullptr;
 }
 
-// The name of the block that a composite dataset is traversed to, or else its flat index.
+// The name of the current block in a traversal of a composite dataset, or its flat index if it has
+// no name.
 std::string FindBlock(vtkCompositeDataSet* composite, vtkCompositeDataIterator* leaf)
 {
   const char* name = leaf->HasCurrentMetaData() ? GetName(leaf->GetCurrentMetaData()) : nullptr;
@@ -75,12 +76,12 @@ ByteArray* FindGhosts(vtkDataSetAttributes* attributes, vtkIdType count, const c
     attributes, vtkDataSetAttributes::GhostArrayName(), count, kind, "deformation mesh");
 }
 
-// All cells but the blanked ones: those that are hidden or duplicate, or have a hidden point.
+// Adds all cells of a grid, except those that are hidden or duplicate, or have a hidden point.
 void MakeCells(vtkDataSet* source, vtkUnstructuredGrid* grid)
 {
   ByteArray* cellGhosts = FindGhosts(source->GetCellData(), source->GetNumberOfCells(), "cell");
   ByteArray* pointGhosts = FindGhosts(source->GetPointData(), source->GetNumberOfPoints(), "point");
-  const auto isLeft = [](ByteArray* ghosts, vtkIdType id, int kinds)
+  const auto isSkipped = [](ByteArray* ghosts, vtkIdType id, int kinds)
   { return ghosts && (ghosts->GetValue(id) & kinds) != 0; };
   vtkNew<vtkUnsignedCharArray> types;
   vtkNew<vtkCellArray> cells;
@@ -88,10 +89,11 @@ void MakeCells(vtkDataSet* source, vtkUnstructuredGrid* grid)
   for (vtkIdType cell = 0; cell < source->GetNumberOfCells(); ++cell)
   {
     source->GetCellPoints(cell, ids);
-    if (!isLeft(cellGhosts, cell,
+    if (!isSkipped(cellGhosts, cell,
           vtkDataSetAttributes::HIDDENCELL | vtkDataSetAttributes::DUPLICATECELL) &&
       std::none_of(ids->begin(), ids->end(),
-        [&](vtkIdType id) { return isLeft(pointGhosts, id, vtkDataSetAttributes::HIDDENPOINT); }))
+        [&](vtkIdType id)
+        { return isSkipped(pointGhosts, id, vtkDataSetAttributes::HIDDENPOINT); }))
     {
       types->InsertNextValue(static_cast<unsigned char>(source->GetCellType(cell)));
       cells->InsertNextCell(ids);
@@ -114,7 +116,7 @@ vtkSmartPointer<vtkPoints> MakePoints(vtkRectilinearGrid* source)
   return points;
 }
 
-// Points less vectors, of as many tuples.
+// Subtracts vectors from points. Both arrays have the same number of tuples.
 vtkSmartPointer<vtkPoints> Subtract(vtkDataArray* points, vtkDataArray* vectors)
 {
   vtkNew<vtkDoubleArray> differences;
@@ -151,7 +153,7 @@ vtkUnstructuredGrid* MeshGrids::UpdateRest(Conversion& conversion, vtkUnstructur
   vtkDataArray* displacements, vtkMTimeType time)
 {
   vtkDataArray* points = deformed->GetPoints() ? deformed->GetPoints()->GetData() : nullptr;
-  // Without usable displacements the cells, if there are any that need them, are an error later on.
+  // If the displacements are not usable and cells need them, a later check throws an Error.
   if (!points || !HaveVectors(deformed, displacements))
   {
     conversion.Rest = nullptr;
@@ -184,7 +186,7 @@ void MeshGrids::Update(Conversion& conversion, vtkDataSet* source, bool made)
   vtkUnstructuredGrid* grid = conversion.Grid;
   auto* curved = vtkStructuredGrid::SafeDownCast(source);
   auto* straight = vtkRectilinearGrid::SafeDownCast(source);
-  // Who modifies a grid that no filter makes may have written to its arrays.
+  // If a grid that no filter has made is modified, its owner may have written to its arrays.
   const vtkMTimeType time = made ? 0 : source->vtkObject::GetMTime();
   Stamp cells{ { nullptr, time } };
   Stamp points{ { nullptr, time } };

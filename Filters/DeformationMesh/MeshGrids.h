@@ -14,15 +14,15 @@ class vtkPoints;
 namespace deformvolume
 {
 
-/// Finds the grids of a mesh, and makes unstructured ones of structured and rectilinear grids,
-/// which share their points and point arrays, and of grids whose points are deformed already, which
-/// have the points at rest. Keeps what it made until it is not as it was.
+/// Finds the grids of a mesh. Converts structured and rectilinear grids to unstructured grids,
+/// which share the point arrays, and if possible the points. Converts grids with deformed points to
+/// grids with the points at rest. The converted grids are kept until the originals change.
 class MeshGrids
 {
 public:
-  /// The grids in a data object, which may have none, or be null. They are valid until the next
-  /// call. made: see DeformationSource::ShapeIsMade. displacements: where the points are deformed
-  /// already, finds what is taken from them; else null.
+  /// The grids in a data object, which may have none or be null. They are valid until the next
+  /// call. made: see DeformationSource::ShapeIsMade. displacements: if the points are deformed,
+  /// finds the displacements to subtract from them; else null.
   MeshParts Find(vtkDataObject* object, bool made, const ArraySelector* displacements = nullptr);
 
 private:
@@ -32,7 +32,7 @@ private:
     Stamp Cells;
     Stamp Points;
     Stamp PointData;
-    vtkMTimeType Time = 0; // of the source itself
+    vtkMTimeType Time = 0; // modification time of the source
     vtkSmartPointer<vtkUnstructuredGrid> Rest;
     Stamp RestPoints;
   };
@@ -46,13 +46,13 @@ private:
 
 struct DeformationSource;
 
-/// The grids of a deformation and of its rest configuration.
+/// Finds the grids of a deformation and of its rest configuration.
 struct DeformationGrids
 {
   MeshGrids Shape;
   MeshGrids Rest;
 
-  /// Gives a source its parts. They are valid until the next call.
+  /// Sets ShapeParts and RestParts of a source. They are valid until the next call.
   void Find(DeformationSource& source);
 };
 

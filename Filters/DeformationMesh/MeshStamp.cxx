@@ -22,7 +22,7 @@ namespace
 void AddArray(Stamp& stamp, vtkAbstractArray* array)
 {
   stamp.emplace_back(array, array ? array->GetMTime() : 0);
-  // What is inserted leaves no trace in the time.
+  // Insertions do not change the modification time.
   stamp.emplace_back(nullptr, array ? static_cast<vtkMTimeType>(array->GetNumberOfValues()) : 0);
 }
 
@@ -43,8 +43,8 @@ Stamp GetCellFormStamp(vtkUnstructuredGrid* grid)
   AddArray(stamp, grid->GetCellData()->GetHigherOrderDegrees());
   if (HasPolyhedronFaces(grid))
   {
-    stamp.emplace_back(grid, grid->vtkObject::GetMTime()); // which knows of the faces
-    // The split of concave polyhedra follows from where their points are.
+    stamp.emplace_back(grid, grid->vtkObject::GetMTime()); // changes with the faces
+    // The split of concave polyhedra depends on the positions of their points.
     vtkPoints* points = grid->GetPoints();
     stamp.emplace_back(points, points ? points->vtkObject::GetMTime() : 0);
     AddArray(stamp, points ? points->GetData() : nullptr);
@@ -57,7 +57,7 @@ Stamp GetCellArraysStamp(const MeshParts& parts)
   Stamp stamp;
   for (vtkUnstructuredGrid* grid : parts)
   {
-    // The node numbers of a part follow from the sizes of the parts before it.
+    // The node indices of a part depend on the numbers of points of the parts before it.
     stamp.emplace_back(nullptr, static_cast<vtkMTimeType>(grid->GetNumberOfPoints()));
     vtkCellArray* cells = grid->GetCells();
     stamp.emplace_back(cells, cells ? cells->GetMTime() : 0);

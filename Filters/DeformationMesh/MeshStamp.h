@@ -9,35 +9,35 @@
 namespace deformvolume
 {
 
-/// What the cells of a grid are besides their connectivity: arrays with modification times and
+/// Stamp of the arrays of a grid's cells without the connectivity: arrays, modification times and
 /// sizes.
 Stamp GetCellFormStamp(vtkUnstructuredGrid* grid);
 
-/// The arrays of the cells of a mesh: their places, modification times and sizes.
+/// Stamp of all arrays of the cells of a mesh: arrays, modification times and sizes.
 Stamp GetCellArraysStamp(const MeshParts& parts);
 
-/// What the cells or the points of a mesh are known by without a look at them: their arrays, with
-/// modification times and sizes. Another grid with the same arrays has the same cells: that is what
-/// filters give that pass them on, as a new grid or in the one that is their output. Where a grid
-/// that no filter makes was modified, its owner may have written to its arrays, and stamps differ.
+/// Identifies the cells or the points of a mesh without reading them: by their arrays, with
+/// modification times and sizes. Another grid with the same arrays has the same cells: filters that
+/// pass their input on make such grids. If a grid that no filter has made is modified, its owner
+/// may have written to its arrays, and the stamps differ.
 class MeshStamp
 {
 public:
-  MeshStamp() = default; // of nothing
-  /// made: whether the mesh is what a filter makes, and not data that somebody holds.
+  MeshStamp() = default; // equals no other stamp
+  /// made: whether a filter has made the mesh. False for data that were set directly.
   static MeshStamp OfCells(const MeshParts& parts, bool made);
   static MeshStamp OfPoints(const MeshParts& parts, bool made);
 
-  /// Whether a mesh is as it was, for certain, when the other stamp was taken.
+  /// Whether the mesh has certainly not changed since the other stamp was taken.
   bool IsThatOf(const MeshStamp& last) const;
-  /// Whether both are of the same arrays.
+  /// Whether both stamps have the same arrays.
   bool HasArraysOf(const MeshStamp& other) const { return this->Arrays == other.Arrays; }
 
 private:
   struct Grid
   {
     const void* Object;
-    vtkMTimeType Modified; // 0 where it does not matter
+    vtkMTimeType Modified; // 0: not compared
   };
 
   void Add(vtkUnstructuredGrid* grid, bool made);

@@ -20,9 +20,9 @@ namespace deformvolume
 namespace
 {
 
-constexpr std::size_t MostInLog = 8; // one tetrahedron in so many
+constexpr std::size_t MostInLog = 8; // log at most one change for this number of tetrahedra
 
-// The mesh at rest is the one on port 1 where port 2 has none.
+// Without a rest configuration, the points of the deformation mesh are at rest.
 bool IsRestMade(const DeformationSource& source)
 {
   return source.Rest ? source.RestIsMade : source.ShapeIsMade;
@@ -36,7 +36,7 @@ bool AreEqual(
     { return a.Number == b.Number && a.After == b.After; });
 }
 
-// Of as many tetrahedra those that have other nodes.
+// Lists the tetrahedra with other nodes. Returns nothing if the numbers of tetrahedra differ.
 std::optional<std::vector<TetrahedronChange>> FindDifferences(
   const std::vector<Tetrahedron>& before, const std::vector<Tetrahedron>& after)
 {
@@ -63,7 +63,7 @@ void Apply(const std::vector<TetrahedronChange>& changes, std::vector<Tetrahedro
   }
 }
 
-// Whether all nodes of some tetrahedra are under a number.
+// Whether all nodes of the tetrahedra are less than count.
 bool AreNodes(const std::vector<Tetrahedron>& tetrahedra, std::size_t count)
 {
   constexpr std::size_t step = 65536;
@@ -97,9 +97,9 @@ void RestMesh::Read(const MeshParts& shape, const MeshParts& rest, const Deforma
   std::vector<CellMemory> cellMemories = GetCellMemories(rest);
   const std::size_t nodes = GetNumberOfNodes(rest);
   const std::size_t nodesBefore = this->Points.size() - this->Derived.GetCount();
-  this->RestCells = this->ShapeCells = MeshStamp(); // of nothing, where this fails
+  this->RestCells = this->ShapeCells = MeshStamp(); // equal no other stamps if a call below throws
   this->RestCellMemories.clear();
-  // The numbers of derived nodes follow from those of all others.
+  // The indices of derived nodes follow those of all other nodes.
   const bool keepsDerived =
     !cells.Derived && (this->Derived.GetCount() == 0 || nodes == nodesBefore);
   if (!keepsDerived)
@@ -130,12 +130,12 @@ void RestMesh::Read(const MeshParts& shape, const MeshParts& rest, const Deforma
   if (nodes < nodesBefore && !AreNodes(this->Tetrahedra, this->Points.size()))
   {
     this->ShapeIsOld = true;
-    deformvolume::ReadCells(rest, rest, source.Derived); // which says what is wrong
+    deformvolume::ReadCells(rest, rest, source.Derived); // throws an Error that says what is wrong
     throw Error(
-      "The deformation mesh has cells that use points that are not there. Correct the cells "
-      "of the mesh.");
+      "The deformation mesh has cells that use points that do not exist. Correct the cells of the "
+      "mesh.");
   }
-  this->ShapeIsOld = true; // where the check fails
+  this->ShapeIsOld = true; // stays true if the check throws
   CheckPoints(rest, source.Rest ? REST_NAME : MESH_NAME, this->PointFaults, this->Tetrahedra);
   this->ShapeIsOld = false;
   this->RestCells = restCells;
@@ -155,7 +155,7 @@ std::optional<RestMesh::Changes> RestMesh::CompareCells(
     : deformvolume::FindDifferences(rest, this->Tetrahedra, this->RestCellMemories);
   if (differences && !shared)
   {
-    // Both had these tetrahedra.
+    // Both meshes had these tetrahedra when they were read.
     const std::optional<Changes> others =
       sameShape ? Changes() : deformvolume::FindDifferences(shape, this->Tetrahedra, {});
     if (!others || !AreEqual(*differences, *others))
@@ -227,13 +227,13 @@ bool RestMesh::ReadPoints(
   {
     return false;
   }
-  this->PointsStamp = MeshStamp(); // of nothing, where this fails
+  this->PointsStamp = MeshStamp(); // equals no other stamp if a call below throws
   if (!(source.Volume == this->Volume))
   {
     this->PointMemories.clear();
   }
   const std::size_t sizeBefore = this->Points.size();
-  // Points that are gone are still those of tetrahedra as they were.
+  // Keep removed points: tetrahedra of the last version still use them.
   this->Points.resize(std::max(sizeBefore, GetNumberOfNodes(rest)));
   this->PointFaults.Resize(GetNumberOfNodes(rest));
   std::atomic<bool> kept{ true };

@@ -26,66 +26,69 @@ namespace deformvolume
 struct DeformationSource;
 
 /// The tetrahedra of the deformation mesh, and its nodes at rest in continuous indices of the
-/// volume. Reads again only what is not as it was, and says what that is. Content decides: a mesh
-/// that is another object with the same cells and rest positions changes nothing.
+/// volume. Only arrays that have changed are read again. Versions change with the content: another
+/// object with the same cells and rest positions changes no version.
 ///
-/// What a tetrahedron is at rest, its shape, and which nodes it names, its connectivity, change by
-/// themselves: where a node is split, tetrahedra get other nodes in the places of the old ones.
+/// The shape of a tetrahedron (its positions at rest) and its connectivity (the nodes that it uses)
+/// have separate versions: if a node is split, tetrahedra get new nodes at the positions of the old
+/// ones.
 class RestMesh
 {
 public:
-  /// shape: what port 1 has; rest: what has the rest positions, the same unless there is a port 2.
-  /// Throws an Error where they cannot be used, or are not two configurations of one mesh.
+  /// Reads the mesh. shape: the deformation mesh. rest: the grids with the positions at rest, which
+  /// are `shape` if there is no rest configuration. Throws an Error if they cannot be used, or are
+  /// not two configurations of one mesh.
   void Read(const MeshParts& shape, const MeshParts& rest, const DeformationSource& source);
 
   const std::vector<Tetrahedron>& GetTetrahedra() const { return this->Tetrahedra; }
-  /// Those of the grids, and behind them the derived ones.
+  /// The nodes of the grids, followed by the derived nodes.
   const std::vector<glm::dvec3>& GetPoints() const { return this->Points; }
   const DerivedNodes& GetDerivedNodes() const { return this->Derived; }
 
-  /// Changes with the shape of the tetrahedra at rest, and with their number.
+  /// Changes if the shape of a tetrahedron at rest or the number of tetrahedra changes.
   std::uint64_t GetShapeVersion() const { return this->ShapeVersion; }
-  /// Changes with the shape, and with the nodes of tetrahedra and the number of nodes.
+  /// Changes if the shape, the nodes of a tetrahedron or the number of nodes changes.
   std::uint64_t GetConnectivityVersion() const { return this->ConnectivityVersion; }
-  /// The tetrahedra that have got other nodes since a version of the connectivity, while the shape
-  /// was the same, each once. Nothing where that is not known any more.
+  /// The tetrahedra that have other nodes than at a version of the connectivity with the same
+  /// shape, each once. Returns nothing if the log no longer has this version.
   std::optional<std::vector<TetrahedronChange>> GetChanges(std::uint64_t version) const;
 
-  /// Whether the last call of Read() found all nodes that there were before where they were.
+  /// Whether the last call of Read() did not move any node that existed before.
   bool HasKeptPoints() const { return this->KeptPoints; }
 
-  /// Cells that were ignored, in words for a warning; "" without such.
+  /// Describes ignored cells for a warning; "": no cells were ignored.
   const std::string& GetIgnoredCells() const { return this->IgnoredCells; }
-  /// Quadratic cells with a node far from the middle of its edge, in words; "" without such.
+  /// Describes quadratic cells with a node far from the middle of its edge; "": there are none.
   const std::string& GetFarMidSides() const { return this->FarMidSides; }
 
 private:
   using Changes = std::vector<TetrahedronChange>;
 
-  /// What the cells are found to be: how they differ, or all of them.
+  /// Result of reading the cells: the differences from the last tetrahedra, or all tetrahedra.
   struct CellReading
   {
-    std::optional<Changes> Differences;  // where there are as many as before
-    std::vector<Tetrahedron> All;        // where there is nothing in the former, or not that alone
-    std::optional<DerivedNodes> Derived; // where they are others than there are
+    std::optional<Changes> Differences;  // nothing: the number of tetrahedra has changed
+    std::vector<Tetrahedron> All;        // empty: Differences suffice
+    std::optional<DerivedNodes> Derived; // nothing: they have not changed
     std::string Ignored;
     std::string FarMidSides;
   };
 
   CellReading ReadCells(const MeshParts& shape, const MeshParts& rest, const DerivedNodes* derived,
     const MeshStamp& restCells, const MeshStamp& shapeCells);
-  /// How the cells differ, where a comparison can tell that. sameRest, sameShape: whether both are
-  /// as they were; shared: whether both are the same.
+  /// The differences of the cells from the last ones; nothing if a comparison of memory does not
+  /// suffice. sameRest, sameShape: whether these cells are unchanged. shared: whether both meshes
+  /// have the same arrays of cells.
   std::optional<Changes> CompareCells(const MeshParts& shape, const MeshParts& rest, bool sameRest,
     bool sameShape, bool shared) const;
-  /// Whether cells are as many tetrahedra as there are, in the places of these.
+  /// Whether the cells are as many tetrahedra as before, with the same positions at rest.
   bool HaveSameShape(const CellReading& cells) const;
-  /// before: how many nodes there were. Returns false where nothing had to be read.
+  /// before: number of nodes before. Returns false if nothing had to be read.
   bool ReadPoints(const MeshParts& rest, const DeformationSource& source, std::size_t before);
-  /// before: how many nodes there were. kept: set to false where one of these is elsewhere now.
+  /// before: number of nodes before. kept: set to false if one of these nodes has moved.
   void ReadMovedPoints(const MeshParts& rest, const DeformationSource& source, std::size_t before,
     std::atomic<bool>& kept);
-  /// nodes: how many the grids have.
+  /// nodes: number of nodes of the grids.
   void UpdateDerivedPoints(std::size_t nodes);
   void SetConnectivity(Changes&& changes);
   void SetShape(CellReading&& cells);
@@ -98,15 +101,15 @@ private:
   std::string FarMidSides;
   std::uint64_t ShapeVersion = 0;
   std::uint64_t ConnectivityVersion = 0;
-  bool ShapeIsOld = false; // a reading that failed has left other points than that of the version
+  bool ShapeIsOld = false; // a failed reading has left points that do not belong to ShapeVersion
   bool KeptPoints = false;
 
-  // The last changes of the connectivity, each with the version that it led to, and the version
-  // before the first one.
+  // Log: the last changes of the connectivity, each with the version after it. LogBegin: the
+  // version before the first change.
   std::deque<std::pair<std::uint64_t, Changes>> Log;
   std::uint64_t LogBegin = 0;
 
-  // What the above was read from.
+  // Stamps of the inputs that the members above were read from.
   MeshStamp RestCells;
   MeshStamp ShapeCells;
   std::vector<CellMemory> RestCellMemories; // of each part

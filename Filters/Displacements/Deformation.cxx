@@ -48,7 +48,8 @@ void Deformation::ReadMesh(const DeformationSource& source)
     ++this->VectorsVersion;
     if (this->Faults.MayHaveAny() || this->Mesh.GetDerivedNodes().GetCount() > 0)
     {
-      this->VectorsStamp.clear(); // tetrahedra may use them now, or have other nodes in the middle
+      this->VectorsStamp.clear(); // tetrahedra may now use faulty vectors, or derived nodes may
+                                  // depend on other nodes
     }
   }
 
@@ -58,7 +59,7 @@ void Deformation::ReadMesh(const DeformationSource& source)
     const Stamp restStamp = GetPointsStamp(rest);
     stamp.insert(stamp.end(), restStamp.begin(), restStamp.end());
   }
-  // The two ways to give displacements never count as the same.
+  // Stamps of displacements from points and from vectors must differ.
   const bool ofPoints = source.Rest != nullptr;
   stamp.emplace_back(nullptr, ofPoints ? 1 : 0);
   if (this->VectorsAreCurrent(stamp, source, false))
@@ -66,7 +67,7 @@ void Deformation::ReadMesh(const DeformationSource& source)
     return;
   }
   const DerivedNodes& derived = this->Mesh.GetDerivedNodes();
-  // Derived displacements are made on the host.
+  // Displacements of derived nodes are computed on the host.
   vtkDataArray* only = !ofPoints && shape.size() == 1 && derived.GetCount() == 0
     ? source.Selector(shape.front())
     : nullptr;
@@ -177,7 +178,7 @@ void Deformation::ResizeVectors(std::size_t count, std::size_t blocks)
   }
   if (this->Vectors.size() != 3 * count)
   {
-    // Of a block that ends elsewhere now not all can be as it was.
+    // A block with another number of points has changed.
     const std::size_t same = std::min(this->Vectors.size() / 3, count) / PointsPerBlock;
     this->BlockVersions.resize(std::min(this->BlockVersions.size(), same));
     this->Vectors.resize(3 * count);
@@ -224,7 +225,7 @@ void Deformation::UpdateDerived(
 void Deformation::ReplaceVectors(std::size_t count, const VectorSource& read, double factor,
   const DeformationSource& source, const DerivedNodes* derived)
 {
-  // Whatever fails from here on, the vectors are not those of any source.
+  // If a call below throws, the vectors belong to no source.
   this->VectorsStamp.clear();
   this->FieldInPlace = DisplacementField();
   const std::uint64_t version = this->VectorsVersion;
@@ -288,7 +289,7 @@ void Deformation::RememberVectors(const Stamp& stamp, const DeformationSource& s
   this->Field = field;
   this->VectorsStamp = stamp;
   this->VectorsSource = source;
-  // Only compared, never called or read through again.
+  // The source is only compared later. Do not keep pointers and functions.
   this->VectorsSource.Shape = nullptr;
   this->VectorsSource.Rest = nullptr;
   this->VectorsSource.ShapeParts.clear();

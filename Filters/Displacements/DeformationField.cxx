@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What Deformation does with a displacement field.
+// The part of Deformation for displacement fields.
 #include "Deformation.h"
 
 #include "CoarseVolume.h"
@@ -28,8 +28,8 @@ namespace deformvolume
 namespace
 {
 
-// Fields of fewer points are converted and compared with what they were: that takes no time, and
-// then only what changed is made anew.
+// Fields of fewer points are copied and compared with their last values. This is fast, and later
+// steps then process only changed blocks.
 constexpr vtkIdType LeastPointsInPlace = vtkIdType{ 1 } << 18;
 
 } // namespace
@@ -51,7 +51,7 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
 {
   vtkPointData* pointData = image->GetPointData();
   Stamp stamp{ { image, image->GetMTime() }, { nullptr, pointData->GetMTime() } };
-  // An array that gets other memory, or is cut off, keeps its time.
+  // The modification time does not change if an array gets other memory or is truncated.
   vtkDataArray* chosen = source.Selector(image);
   stamp.emplace_back(
     FindFloats(chosen), chosen ? static_cast<vtkMTimeType>(chosen->GetNumberOfValues()) : 0);
@@ -75,7 +75,7 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
   vtkSmartPointer<vtkDataArray> takenGhosts;
   if (step > 1)
   {
-    // The vectors between the voxels are never looked at.
+    // Take only the vectors at the voxels: those between them are not used.
     const Extent& voxels = source.Volume.PointExtent;
     Extent points;
     for (int axis = 0; axis < 3; ++axis)
@@ -154,7 +154,7 @@ std::vector<unsigned char> Deformation::FindUndefinedVoxels(
       position[axis] = at;
       if (!field.Extrapolate && (at < -tolerance || at > last + tolerance))
       {
-        return false; // it is outside
+        return false; // the voxel is outside the field
       }
       at = std::min(std::max(at, 0.0), static_cast<double>(last));
       low[axis] = static_cast<int>(at + tolerance);
@@ -162,7 +162,7 @@ std::vector<unsigned char> Deformation::FindUndefinedVoxels(
     }
     if (IsFading(field) && GetWeightBeyond(field, position, tolerance) == 0.0)
     {
-      return false; // it stays where it is
+      return false; // the voxel stays where it is
     }
     for (int corner = 0; corner < 8; ++corner)
     {
@@ -227,7 +227,7 @@ bool Deformation::UseFieldInPlace(vtkDataArray* array, const DeformationSource& 
   const FieldState state = this->ScanInPlace.Look(voxelGrid, field, written ? &*written : nullptr);
   if (!state.IsUsable)
   {
-    return false; // to convert them tells what is wrong
+    return false; // SetVectors() throws an Error that says what is wrong
   }
   this->ArrayInPlace = array;
   this->TimeInPlace = array->GetMTime();

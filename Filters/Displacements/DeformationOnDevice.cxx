@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What Deformation does with vectors that lie on a device.
+// The part of Deformation for vectors on a device.
 #include "Deformation.h"
 
 #include "VectorConversion.h"
@@ -27,7 +27,7 @@ bool Deformation::UseVectorsOnDevice(
   }
   this->VectorsStamp.clear();
   this->FieldInPlace = DisplacementField();
-  this->VectorsAreWhole = false; // those on the host are of another version
+  this->VectorsAreWhole = false; // Vectors on the host are of another version
   this->OnDevice = std::move(there);
   this->ArrayOnDevice = vectors;
   this->FactorOnDevice = factor;

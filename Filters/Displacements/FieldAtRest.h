@@ -11,8 +11,8 @@ class vtkImageData;
 namespace deformvolume
 {
 
-/// A displacement field of zeros that holds all of a volume: what stands in for a deformation where
-/// there is none. The zeros are its active vectors.
+/// Makes a displacement field of zeros that contains the whole volume, for use if no deformation is
+/// connected. The zeros are its active vectors.
 vtkSmartPointer<vtkImageData> MakeFieldAtRest(const ImageGeometry& volume);
 
 } // namespace deformvolume

@@ -12,16 +12,17 @@ class vtkPointSet;
 namespace deformvolume
 {
 
-/// What handles hold, and where they are now, in world coordinates.
+/// The positions at rest that handles hold, and the positions of the handles now, in world
+/// coordinates.
 struct HandlePositions
 {
   std::vector<glm::dvec3> Rest;
   std::vector<glm::dvec3> Now;
 };
 
-/// Reads the handles on input port 1, of which there may be none, or null. body: what they hold, in
-/// words. Throws an Error where the point array RestPosition is missing or has another shape, or a
-/// coordinate is not finite.
+/// Reads the handles on input port 1. handles: may be empty or null. body: in messages, the object
+/// that the handles hold. Throws an Error if the point array RestPosition is missing, is not
+/// numeric, or has another number of components or tuples, or if a coordinate is not finite.
 HandlePositions ReadHandlePositions(vtkPointSet* handles, const std::string& body);
 
 } // namespace deformvolume

@@ -15,7 +15,7 @@ namespace
 
 constexpr vtkIdType POINTS_AT_A_TIME = 512;
 
-// The points of all parts of a mesh, which have been looked at.
+// Copies points of a mesh, whose indices are counted over all parts.
 class PointsOfParts
 {
 public:

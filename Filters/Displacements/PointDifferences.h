@@ -11,9 +11,9 @@
 namespace deformvolume
 {
 
-/// What is to be added to the points of one mesh to have those of another, part by part. Points of
-/// the second that are not finite are marked in faults. memories: of the last reading, from the
-/// same points.
+/// Reads the differences between the points of `shape` and those of `rest`, part by part. Points of
+/// `shape` that are not finite are marked in faults. memories: the last reading of each part, with
+/// the same points of `rest`.
 void ReadPointDifferences(const MeshParts& shape, const MeshParts& rest, const VectorTaker& take,
   std::vector<VectorMemory>& memories, NodeFaults& faults);
 

@@ -19,7 +19,7 @@ namespace deformvolume
 namespace
 {
 
-// Sets how a source finds its displacements.
+// Sets Selector, Wanted and Choice of a source.
 void ChooseVectors(DeformationSource& source, vtkInformation* choice, const ArrayFinder& find)
 {
   const char* name = choice->Get(vtkDataObject::FIELD_NAME());
@@ -74,7 +74,7 @@ void CheckDisplacementScale(double scale)
 void FillDeformationPort(bool isRest, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
-  // Composite datasets come first, or the executive would iterate over their leaves.
+  // vtkCompositeDataSet has to be first. Otherwise the executive would iterate over the leaves.
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
   for (const char* grid : { "vtkUnstructuredGrid", "vtkStructuredGrid", "vtkRectilinearGrid" })
   {

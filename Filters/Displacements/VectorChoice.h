@@ -17,26 +17,26 @@ namespace deformvolume
 /// vtkAlgorithm::GetInputArrayToProcess() of a filter, for the choice of its displacements.
 using ArrayFinder = std::function<vtkDataArray*(vtkDataSet* dataSet, int& association)>;
 
-/// The settings of filters that take a deformation.
+/// The settings of filters with a deformation as an input.
 struct DeformationSettings
 {
   double DisplacementScale = 1.0;
   bool PointsAreDeformed = false;
   bool FieldIsInverse = false;
 };
-/// A deformation with such settings, and the displacements that were chosen with
-/// SetInputArrayToProcess(): choice is what GetInputArrayInformation() gives of it. Throws an Error
-/// where DisplacementScale is not finite. rest: null where it is not connected.
+/// Makes a source with these settings, and with the displacements that SetInputArrayToProcess() has
+/// selected. choice: GetInputArrayInformation() of the filter. rest: null if it is not connected.
+/// Throws an Error if DisplacementScale is not finite.
 DeformationSource ChooseDeformation(vtkDataObject* shape, vtkDataObject* rest,
   vtkInformation* choice, const ArrayFinder& find, const DeformationSettings& settings);
 
-/// Throws an Error where it is not finite.
+/// Throws an Error if the scale is not finite.
 void CheckDisplacementScale(double scale);
 
-/// What a port for the deformation takes, or one for its rest configuration.
+/// Sets the data types of the port for the deformation, or of the port for the rest configuration.
 void FillDeformationPort(bool isRest, vtkInformation* info);
 
-/// For filters with nothing on port 1 but something on port 2.
+/// Throws the Error of filters with a rest configuration on port 2 but no deformation on port 1.
 [[noreturn]] void ThrowRestAlone();
 
 } // namespace deformvolume

@@ -110,7 +110,7 @@ void WorldDeformation::ReadField(vtkImageData* image, const DeformationSource& s
   this->Undefined = FindHiddenPoints(ghosts);
   this->Converted.clear();
   this->Converted.resize(floats ? 0 : static_cast<std::size_t>(array->GetNumberOfValues()));
-  // All are looked at, for those that are not finite.
+  // All vectors are read even if they are not copied: those that are not finite are an error.
   ReadFieldVectors(array, this->Undefined,
     [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType count)
     {

@@ -21,27 +21,28 @@ class vtkImageData;
 namespace deformvolume
 {
 
-/// A deformation in world coordinates and double precision. Keeps what it has read, and reads again
-/// only what changed.
+/// A deformation in world coordinates and double precision. Only data that have changed are read
+/// again.
 class WorldDeformation
 {
 public:
-  /// Throws an Error where the source cannot be used. Its volume and output are those by default.
+  /// Reads a source, whose Volume and ToOutput have their default values. Throws an Error if it
+  /// cannot be used.
   void Read(const DeformationSource& source);
 
   bool IsField() const { return this->Field; }
-  /// Changes with all that follows.
+  /// Changes if one of the results below changes.
   std::uint64_t GetVersion() const { return this->Version; }
   const RestMesh& GetRestMesh() const { return this->Mesh; }
-  /// Of the nodes of the mesh.
+  /// Displacements of the nodes of the mesh.
   const std::vector<glm::dvec3>& GetDisplacements() const { return this->Displacements; }
-  /// It points into this object, and into the array that was read.
+  /// The field points into this object, and into the array that was read.
   const WorldField& GetField() const { return this->Vectors; }
 
 private:
   void ReadMesh(const DeformationSource& source);
   void ReadField(vtkImageData* image, const DeformationSource& source);
-  /// Whether the last vectors were read from this, and with this choice.
+  /// Whether the last vectors were read from the same arrays with the same choice and scale.
   bool IsCurrent(const Stamp& stamp, const DeformationSource& source) const;
   void Remember(const Stamp& stamp, const DeformationSource& source);
 
@@ -50,11 +51,11 @@ private:
   RestMesh Mesh;
   std::vector<glm::dvec3> Displacements;
   WorldField Vectors;
-  vtkSmartPointer<vtkDataArray> Array; // that of the field
-  std::vector<double> Converted;       // its values, where they are not floats one after the other
+  vtkSmartPointer<vtkDataArray> Array; // the vectors of the field
+  std::vector<double> Converted; // values of Array, if it is not an array of structs of floats
   std::vector<unsigned char> Undefined;
 
-  // What the above was read from; empty where that failed.
+  // The inputs that the members above were read from. LastStamp is empty if the reading failed.
   Stamp LastStamp;
   std::string LastChoice;
   double LastScale = 1.0;

@@ -36,7 +36,7 @@ void RequestPiece(vtkInformation* request, int piece, int pieces)
   request->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
 }
 
-// What an input is asked for, given what it announces.
+// Sets the request for an input: the whole extent if it announces one, else the piece of this rank.
 void Request(vtkInformation* input, vtkInformation* request, const Ranks& ranks)
 {
   if (input->Has(Pipeline::WHOLE_EXTENT()))
@@ -51,7 +51,8 @@ void Request(vtkInformation* input, vtkInformation* request, const Ranks& ranks)
   }
 }
 
-// A source that fails on one rank fails on all: the ranks that go on would wait for it.
+// Updates an input. If the source fails on one rank, all ranks throw. Otherwise the other ranks
+// would wait for the failed one.
 vtkDataObject* Update(vtkAlgorithm* filter, int port, vtkInformation* request, const Ranks& ranks)
 {
   const bool isVolume = vtkImageData::SafeDownCast(filter->GetInputDataObject(0, 0)) != nullptr;
@@ -191,7 +192,7 @@ Extent GetRequestedPart(vtkInformation* output)
   {
     return asked;
   }
-  // As the executive does it before the data pass.
+  // The executive computes the same extent before the data pass.
   const int mode = output->Has(vtkExtentTranslator::UPDATE_SPLIT_MODE())
     ? output->Get(vtkExtentTranslator::UPDATE_SPLIT_MODE())
     : vtkExtentTranslator::BLOCK_MODE;
@@ -224,7 +225,7 @@ std::pair<const void*, vtkMTimeType> GetInputStamp(vtkAlgorithm* filter, int por
   }
   vtkExecutive* executive = filter->GetInputExecutive(port, 0);
   const auto pipeline = vtkDemandDrivenPipeline::SafeDownCast(executive);
-  // One producer may have several outputs.
+  // The connection identifies an output: a producer may have several.
   return { filter->GetInputConnection(port, 0), pipeline ? pipeline->GetPipelineMTime() : 0 };
 }
 

@@ -19,57 +19,60 @@ class vtkInformationVector;
 namespace deformvolume
 {
 
-/// Brings what is connected to an input port up to date, at a time or, where that is null, at the
-/// time asked for at the output, and returns it; null where nothing is connected. Of an image each
-/// rank gets all, of other data its piece. Meant for the information pass: a whole extent may
-/// depend on the data of an input. Throws an Error, on all ranks, where a source fails. Collective.
+/// Updates an input and returns its data; null if nothing is connected. time: the time step to
+/// request; null: the one that is requested from the output. Each rank gets the whole of an image,
+/// and its piece of other data. For the information pass, since a whole extent may depend on the
+/// data of an input. Throws an Error on all ranks if a source fails. Collective.
 vtkDataObject* UpdateInput(
   vtkAlgorithm* filter, int port, vtkInformation* output, const double* time, const Ranks& ranks);
 
-/// Asks an input for the same: all of an image, of other data the piece of this rank, whatever part
-/// of the output is asked for.
+/// Requests the same data from an input in the pass for update extents: the whole of an image, or
+/// the piece of this rank of other data. The request does not depend on the requested part of the
+/// output.
 void RequestInput(vtkInformation* input, const Ranks& ranks);
 
-/// Asks an input for an extent, and for nothing else.
+/// Requests an extent as one piece without ghost levels.
 void RequestExtent(vtkInformation* input, const Extent& extent);
 
-/// Asks an image for no voxel, at the lower corner of its whole extent: where that does not begin
-/// at 0, an empty extent there would be an error of its own.
+/// Requests no voxel of an image: an empty extent at the lower corner of the whole extent. An empty
+/// extent at 0 would be an error if the whole extent begins elsewhere.
 void RequestNothing(vtkInformation* input);
 
-/// Brings the inputs of the first ports up to date with what they have been asked for. The
-/// executive would do it, too; but where a source fails on one rank, the executive ends the data
-/// pass on that rank alone. Throws an Error, on all ranks. Collective.
+/// Updates the inputs of the first ports as requested. The executive would do the same, but if a
+/// source fails on one rank, the executive ends the data pass on that rank only. Throws an Error on
+/// all ranks. Collective.
 void UpdateRequested(
   vtkAlgorithm* filter, int ports, vtkInformationVector** input, const Ranks& ranks);
 
-/// The part of the output that is asked for while requests go upstream: of the extent the piece,
-/// with its ghost levels.
+/// The requested part of the output in the pass for update extents: the requested piece of the
+/// update extent, with ghost levels.
 Extent GetRequestedPart(vtkInformation* output);
 
-/// Whether all that an image port's data come from can make a part of it. That a source can, it has
-/// to say itself (CAN_PRODUCE_SUB_EXTENT); filters from images to images can.
+/// Whether all producers upstream of an image port can produce a part of the image. A source has to
+/// announce this with CAN_PRODUCE_SUB_EXTENT. Filters from images to images are assumed to be able
+/// to.
 bool CanProduceParts(vtkAlgorithm* filter, int port);
 
-/// Whether an image port has its data already, as a whole.
+/// Whether the data of a port were set directly, so that the whole data are in memory.
 bool IsInMemory(vtkAlgorithm* filter, int port);
 
-/// The producer of an input and the time of the last change up to it.
+/// The connection of an input, and the last modification time of the pipeline upstream of it.
 std::pair<const void*, vtkMTimeType> GetInputStamp(vtkAlgorithm* filter, int port);
 
-/// Brings a part of the image on an input port up to date, like UpdateInput() at the output's time.
+/// Updates a part of the image on an input port, at the time step that is requested from the
+/// output.
 vtkDataObject* UpdateInputPart(
   vtkAlgorithm* filter, int port, vtkInformation* output, const Extent& part, const Ranks& ranks);
 
-/// The times that an input announces: its steps, or the ends of its range where it has no steps;
-/// none for one that does not vary.
+/// The times that an input announces: its time steps, or else the two ends of its time range. Empty
+/// if it announces no times.
 std::vector<double> GetTimes(vtkInformation* input);
 
-/// Gives the output the time steps and the range of the inputs of the first ports.
+/// Sets the time steps and the time range of the output to the union of those of the first ports.
 void MergeTimes(vtkAlgorithm* filter, int ports, vtkInformation* output);
 
-/// Gives output data the time asked for, or else that of the first input that has one. Inputs may
-/// be null.
+/// Sets the time step of the output data to the requested one, or else to that of the first input
+/// that has one. Inputs may be null.
 void SetTimeStep(
   vtkDataObject* data, vtkInformation* output, std::initializer_list<vtkDataObject*> inputs);
 

@@ -11,8 +11,8 @@
 namespace deformvolume
 {
 
-/// Whether the first of several pieces is asked for, or all. A mesh that is made in one goes there,
-/// so that all pieces together have each cell once.
+/// Whether the first of several pieces is requested, or the whole output. A mesh that cannot be
+/// divided is the output of the first piece, so that all pieces together have each cell once.
 inline bool IsFirstPiece(vtkInformationVector* output)
 {
   vtkInformation* info = output->GetInformationObject(0);
@@ -20,7 +20,7 @@ inline bool IsFirstPiece(vtkInformationVector* output)
   return !info->Has(key) || info->Get(key) <= 0;
 }
 
-/// Asks for all of an input, in one piece.
+/// Requests the whole of an input as one piece.
 inline void AskForAll(vtkInformation* info)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;

@@ -14,8 +14,8 @@ class PipelineExecution
 {
 public:
   /// Calls body, and returns the result of the request: 0 after an error, which is reported; 1
-  /// after an abort. noMemory: the message where there is not enough memory. What body has put into
-  /// an output by then stays there.
+  /// after an abort. noMemory: the message if there is not enough memory. Data that body has put
+  /// into an output remain there.
   int Run(vtkAlgorithm* algorithm, const char* noMemory, const std::function<void()>& body);
 
   /// Whether a request has failed since Renew(), which the executive calls before each update.

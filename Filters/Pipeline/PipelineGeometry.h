@@ -14,7 +14,7 @@ ImageGeometry GetGeometry(vtkImageData* image);
 /// Sets the origin, the spacing and the direction of an image.
 void SetTransform(vtkImageData* image, const ImageGeometry& geometry);
 
-/// The geometry that pipeline information announces, with the whole extent.
+/// The geometry that pipeline information announces. Its extent is the whole extent.
 ImageGeometry GetGeometry(vtkInformation* info);
 
 } // namespace deformvolume

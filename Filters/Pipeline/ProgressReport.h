@@ -11,7 +11,8 @@
 namespace deformvolume
 {
 
-/// Tells the observers of an algorithm how far its execution has come, now and then: they may draw.
+/// Reports the progress of an algorithm to its observers, at most every 20 ms: observers may
+/// render.
 class ProgressReport
 {
 public:
@@ -20,7 +21,7 @@ public:
   {
   }
 
-  /// done: 0 to 1. Returns false where the execution is to be given up.
+  /// done: 0 to 1. Returns false if the execution has to be aborted.
   bool Tell(double done)
   {
     if (this->IsDue())
@@ -29,7 +30,7 @@ public:
     }
     return !IsAborted(this->Algorithm);
   }
-  /// The same where nobody knows how much there is to do: each time a tenth of the rest.
+  /// The same for executions of unknown length: each report adds a tenth of the rest.
   bool Tell()
   {
     if (this->IsDue())

@@ -22,8 +22,8 @@ namespace deformvolume
 namespace
 {
 
-// A value that travels in two halves of 32 bits: no controller sends unsigned numbers of 64 bits
-// everywhere.
+// A value of 64 bits as two integers of 32 bits: not all controllers can send unsigned numbers of
+// 64 bits.
 using Halves = std::array<int, 2>;
 
 Halves Split(std::uint64_t value)
@@ -94,7 +94,7 @@ std::vector<char> Ranks::Gather(const void* data, std::size_t bytes, const std::
   }
   const std::vector<std::uint64_t> sizes = this->Gather(static_cast<std::uint64_t>(bytes));
   const std::uint64_t sum = std::accumulate(sizes.begin(), sizes.end(), std::uint64_t{ 0 });
-  // Message passing counts with ints, also where vtkIdType has 64 bits.
+  // MPI counts with int, also if vtkIdType has 64 bits.
   if (sum > static_cast<std::uint64_t>(std::numeric_limits<int>::max()))
   {
     throw Error("The " + what + " takes " + std::to_string(sum) +
@@ -104,7 +104,7 @@ std::vector<char> Ranks::Gather(const void* data, std::size_t bytes, const std::
   std::vector<vtkIdType> lengths;
   std::vector<vtkIdType> offsets;
   std::vector<char> all;
-  // Before the message: a rank that lacks the memory would leave the others waiting in it.
+  // Allocate before the exchange: if a rank failed to allocate, the other ranks would wait for it.
   this->Attempt(
     [&]
     {
@@ -119,7 +119,7 @@ std::vector<char> Ranks::Gather(const void* data, std::size_t bytes, const std::
     });
   if (sum > 0)
   {
-    char none = 0; // where there is nothing to send or to receive
+    char none = 0; // sent by ranks without data
     this->Controller->AllGatherV(bytes > 0 ? begin : &none, all.data(),
       static_cast<vtkIdType>(bytes), lengths.data(), offsets.data());
   }
@@ -164,8 +164,8 @@ void Ranks::Agree(Outcome outcome, const std::string& message) const
 
 const std::vector<int>& Ranks::GetNeighbours() const
 {
-  // Found once: ranks stay where they are. A list is complete before it is entered, and never
-  // changes then.
+  // Found once, since ranks do not move to other machines. A list is complete when it is inserted
+  // into the map, and does not change afterwards.
   static std::mutex mutex;
   static std::map<int, std::vector<int>> found;
   {
@@ -176,7 +176,7 @@ const std::vector<int>& Ranks::GetNeighbours() const
       return known->second;
     }
   }
-  std::vector<int> neighbours;
+  std::vector<int> neighbors;
   constexpr std::size_t length = 256;
   std::array<char, length> name{};
   gethostname(name.data(), length - 1);
@@ -185,26 +185,26 @@ const std::vector<int>& Ranks::GetNeighbours() const
   {
     if (std::equal(name.begin(), name.end(), names.begin() + rank * static_cast<int>(length)))
     {
-      neighbours.push_back(rank);
+      neighbors.push_back(rank);
     }
   }
-  deformvolume::ShareProcessors(static_cast<int>(neighbours.size()));
+  deformvolume::ShareProcessors(static_cast<int>(neighbors.size()));
   const std::lock_guard<std::mutex> lock(mutex);
-  return found.emplace(this->Count, std::move(neighbours)).first->second;
+  return found.emplace(this->Count, std::move(neighbors)).first->second;
 }
 
 void Ranks::ShareProcessors() const
 {
   int here = this->Count;
-  // Open MPI, MPICH and its kin, MVAPICH, Slurm.
+  // Variables of Open MPI, of MPICH and its derivatives, of MVAPICH, and of Slurm.
   for (const char* name : { "OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS",
          "MV2_COMM_WORLD_LOCAL_SIZE", "SLURM_STEP_TASKS_PER_NODE" })
   {
     const char* value = std::getenv(name);
-    const int told = value ? std::atoi(value) : 0;
-    if (told > 0)
+    const int ranksHere = value ? std::atoi(value) : 0;
+    if (ranksHere > 0)
     {
-      here = std::min(here, told);
+      here = std::min(here, ranksHere);
       break;
     }
   }

@@ -15,9 +15,9 @@ class vtkMultiProcessController;
 namespace deformvolume
 {
 
-/// The processes that VTK's global controller knows, and what they decide together. With one
-/// process nothing is sent. Functions are collective unless they say otherwise: every rank has to
-/// call them, in the same order.
+/// The processes of VTK's global controller, and the operations that they do together. With one
+/// process nothing is sent. Functions are collective unless their comments say otherwise: every
+/// rank has to call them in the same order.
 class Ranks
 {
 public:
@@ -36,13 +36,13 @@ public:
   bool AreEqual(std::uint64_t value) const;
   /// The values of all ranks, in their order.
   std::vector<std::uint64_t> Gather(std::uint64_t value) const;
-  /// The bytes of all ranks, one after the other. Throws an Error, on all ranks, where there are
-  /// more than one message can hold.
+  /// The concatenated bytes of all ranks. Throws an Error on all ranks if there are more than
+  /// 2,147,483,647. what: names the data in the message.
   std::vector<char> Gather(const void* data, std::size_t bytes, const std::string& what) const;
   void Wait() const;
 
-  /// Runs a function, which must be without calls to other ranks. If it throws on any rank, all
-  /// ranks throw: what the first of those has thrown, as an Error or Aborted.
+  /// Calls a function, which must not call collective functions. If it throws on any rank, all
+  /// ranks throw the exception of the first of these ranks, as an Error, Aborted or std::bad_alloc.
   template <typename Function>
   void Attempt(Function&& function) const
   {
@@ -73,13 +73,14 @@ public:
     this->Agree(outcome, message);
   }
 
-  /// The ranks on this machine, this one included, in ascending order. They share its processors:
-  /// the first call on a machine makes the device's share smaller, before there is a device.
+  /// The ranks on this machine, including this one, in ascending order. They share its processors:
+  /// the first call limits the threads of this rank, on the host and on CPU devices, to its share.
+  /// It has to come before a device is selected.
   const std::vector<int>& GetNeighbours() const;
 
-  /// Makes the device's share smaller on this rank alone, where a device is asked for before all
-  /// ranks have come together: by the number of ranks on this machine that the launcher tells, or
-  /// else by that of all. Not collective.
+  /// Limits the threads of this rank to its share, if a device is needed before the ranks can
+  /// communicate. The number of ranks on this machine is taken from an environment variable of the
+  /// launcher, or else is that of all ranks. Not collective.
   void ShareProcessors() const;
 
 private:

@@ -9,8 +9,9 @@ namespace deformvolume
 
 namespace detail
 {
-// vtkAlgorithm::CheckAbort() also hears of an abort further up the pipeline; VTK 9.1 lacks it.
-// Looked for by overload, because ParaView 5.11 has it in a VTK that calls itself 9.2.
+// vtkAlgorithm::CheckAbort() also finds an abort upstream in the pipeline. VTK 9.1 does not have
+// it. It is detected by overload resolution and not by the version, because ParaView 5.11 has it in
+// a VTK with the version 9.2.
 template <typename Algorithm>
 auto CheckAbort(Algorithm* algorithm, int) -> decltype(static_cast<bool>(algorithm->CheckAbort()))
 {
@@ -24,7 +25,7 @@ bool CheckAbort(Algorithm* algorithm, long)
 }
 } // namespace detail
 
-/// Whether the execution of this algorithm is to be given up.
+/// Whether the execution of this algorithm has to be aborted.
 inline bool IsAborted(vtkAlgorithm* algorithm)
 {
   return detail::CheckAbort(algorithm, 0);

@@ -15,7 +15,7 @@ namespace deformvolume
 
 namespace detail
 {
-// Since VTK 9.6 the types may be in an array of any kind, such as a constant one.
+// Since VTK 9.6 the types may be in an array of any class, such as vtkConstantArray.
 template <typename Grid>
 auto GetCellTypes(Grid* grid, int) -> decltype(static_cast<vtkDataArray*>(grid->GetCellTypes()))
 {
@@ -29,14 +29,14 @@ vtkDataArray* GetCellTypes(Grid* grid, long)
 }
 } // namespace detail
 
-/// The types of a grid's cells, one tuple a cell; null where it has none.
+/// The types of a grid's cells, one tuple for each cell; null if it has none.
 inline vtkDataArray* GetCellTypes(vtkUnstructuredGrid* grid)
 {
   return detail::GetCellTypes(grid, 0);
 }
 
-/// The type of all cells of a grid where it is stored once for all of them, as since VTK 9.6; else
-/// -1.
+/// The type of all cells of a grid if it is stored once for all cells, which is possible since VTK
+/// 9.6; else -1.
 inline int GetCommonCellType(vtkUnstructuredGrid* grid)
 {
 #if __has_include("vtkConstantArray.h")

@@ -11,12 +11,12 @@
 namespace deformvolume
 {
 
-/// The faces of a polyhedron: of each the ids of its points.
+/// The faces of a polyhedron: the ids of the points of each face.
 using PolyhedronFaces = std::vector<std::vector<vtkIdType>>;
 
 namespace detail
 {
-// Since VTK 9.4: a cell array of faces, and one that gives each cell its faces.
+// Since VTK 9.4: a cell array of the faces, and one with the faces of each cell.
 template <typename Grid>
 auto ReadPolyhedronFaces(Grid* grid, vtkIdType cell, PolyhedronFaces& faces, int)
   -> decltype(grid->GetPolyhedronFaces(), bool())
@@ -44,7 +44,7 @@ auto ReadPolyhedronFaces(Grid* grid, vtkIdType cell, PolyhedronFaces& faces, int
   return true;
 }
 
-// Before: one stream of numbers, and where in it each cell begins.
+// Before VTK 9.4: one array of numbers, and the index in it at which each cell begins.
 template <typename Grid>
 bool ReadPolyhedronFaces(Grid* grid, vtkIdType cell, PolyhedronFaces& faces, long)
 {
@@ -93,8 +93,8 @@ inline bool HasPolyhedronFaces(vtkUnstructuredGrid* grid)
   return detail::HasPolyhedronFaces(grid, 0);
 }
 
-/// Reads the faces of a polyhedron. False where its description ends before its faces do; the ids
-/// of points are not checked.
+/// Reads the faces of a polyhedron. Returns false if its arrays end before its faces do. The ids of
+/// points are not checked.
 inline bool ReadPolyhedronFaces(vtkUnstructuredGrid* grid, vtkIdType cell, PolyhedronFaces& faces)
 {
   faces.clear();

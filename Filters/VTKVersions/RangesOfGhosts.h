@@ -4,8 +4,8 @@
 
 #include "vtkVersionMacros.h"
 
-/// Whether the range of an array can be found without its ghosts, from VTK 9.2 on: then
-/// vtkDataArray::ComputeRange() has an overload for that.
+/// Defined if the range of an array can be computed without its ghosts: since VTK 9.2,
+/// vtkDataArray::ComputeRange() has an overload for this.
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 0)
 #define DEFORMVOLUME_RANGES_OF_GHOSTS
 #endif

@@ -21,9 +21,9 @@ void UseHammingWindow(Filter*, long)
 }
 } // namespace detail
 
-/// The window that surfaces are smoothed with: Hamming's, the only one there was before VTK 9.4,
-/// and not the default since. With that one, and as few iterations as we make, the filter finds no
-/// offset that keeps the size of a surface: a ball grows by a third of its volume.
+/// Selects the Hamming window, the only one before VTK 9.4 and no longer the default since. With
+/// the new default and the few iterations that are used here, the filter finds no offset that keeps
+/// the size of a surface: a ball grows by a third of its volume.
 inline void UseHammingWindow(vtkWindowedSincPolyDataFilter* filter)
 {
   detail::UseHammingWindow(filter, 0);
