@@ -65,7 +65,7 @@ void MarkTetrahedron(
       min[axis] = std::min(min[axis], node[axis]);
       max[axis] = std::max(max[axis], node[axis]);
     }
-    // Rounded up and down; the shifts of negative numbers round down.
+    // Round the minimum up and the maximum down. Right shifts of negative numbers round down.
     box.Min[axis] = std::max<std::int64_t>(0, (min[axis] + RasterUnit - 1) >> RasterBits);
     box.Max[axis] = std::min<std::int64_t>(size[axis] - 1, max[axis] >> RasterBits);
   }

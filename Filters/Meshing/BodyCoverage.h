@@ -11,15 +11,15 @@ class vtkUnstructuredGrid;
 namespace deformvolume
 {
 
-/// Voxels whose centres lie in no tetrahedron.
+/// Voxels whose centers lie in no tetrahedron.
 struct UncoveredVoxels
 {
-  std::vector<glm::dvec3> OfMeshed; // positions of those of pieces that are to be meshed
-  vtkIdType OfBody = 0;             // of pieces that are no specks, those left out included
+  std::vector<glm::dvec3> OfMeshed; // positions of such voxels in pieces that are meshed
+  vtkIdType OfBody = 0;             // number of such voxels in all pieces except specks
 };
 
-/// Looks each voxel of the body up in a mesh of tetrahedra. Positions are offsets from the first
-/// voxel in world units, and rounded to 1/256 of a voxel.
+/// Finds the voxels of the body that are not in a mesh of tetrahedra. Positions are offsets from
+/// the first voxel, in world units. They are rounded to 1/256 of a voxel.
 UncoveredVoxels FindUncovered(vtkUnstructuredGrid* mesh, const BodyVoxels& body);
 
 } // namespace deformvolume

@@ -30,7 +30,8 @@ struct Block
   double Mean() const { return this->Sum / static_cast<double>(this->Count); }
 };
 
-/// Sums up the voxels of each block that count; a block has `factor` voxels on each axis.
+/// Sums the values in each block that are finite and not hidden. A block has `factor` voxels on
+/// each axis.
 struct SumBlocks
 {
   template <typename Array>

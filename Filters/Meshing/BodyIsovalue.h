@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The isovalue that separates the body in a volume from what is around it.
+// The isovalue that separates the body in a volume from its surroundings.
 #ifndef DeformVolumeBodyIsovalue_h
 #define DeformVolumeBodyIsovalue_h
 
@@ -10,7 +10,8 @@ namespace deformvolume
 {
 
 /// Otsu's threshold for the means of blocks of voxels, of about the size `resolution` in world
-/// units. Voxels that are hidden or not finite do not count. Throws Error where there is none.
+/// units. Voxels that are hidden or not finite are ignored. Throws Error if there are no other
+/// voxels, or if their values are all equal.
 double FindIsovalue(vtkImageData* volume, vtkDataArray* array, double resolution);
 
 } // namespace deformvolume

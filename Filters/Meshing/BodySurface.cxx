@@ -31,14 +31,14 @@ namespace
 {
 
 constexpr double MaximumNumberOfNodes = 5e8;
-// No vertex of the surface lies closer to a node than that part of the distance of nodes:
-// otherwise there are several almost in one place, and TetGen has to keep the tiny triangles
-// between them.
+// Least distance of a vertex of the surface from a node of the grid, as a part of the grid spacing.
+// Without it, several vertices could nearly coincide, and TetGen would have to keep the tiny
+// triangles between them.
 constexpr float LeastValue = 0.1f;
-// So many voxels decide how a surface grows.
+// The largest number of voxels that GrowAround() uses.
 constexpr std::size_t SomeVoxels = 30000;
 
-/// Nodes at equal distances on all axes.
+/// A grid with the same spacing on all axes.
 struct Grid
 {
   double Distance; // from node to node
@@ -54,7 +54,7 @@ void MakeGrid(Grid& grid, const BodyVoxels& body, const SurfaceParameters& param
   const glm::dvec3 lengths = body.Spacing * glm::dvec3(body.Size[0], body.Size[1], body.Size[2]);
   const double voxel = std::cbrt(body.Spacing.x * body.Spacing.y * body.Spacing.z);
   grid.Distance = std::max(voxel, std::min(parameters.Resolution, 0.25 * glm::length(lengths)));
-  // A voxel extends half a spacing beyond its centre.
+  // A voxel extends half a spacing beyond its center.
   const double widest = std::max({ body.Spacing.x, body.Spacing.y, body.Spacing.z });
   const double border = std::ceil((parameters.Margin + 0.5 * widest) / grid.Distance) + 3.0;
   double count = 1.0;
@@ -79,15 +79,16 @@ void MakeGrid(Grid& grid, const BodyVoxels& body, const SurfaceParameters& param
   grid.Image->SetOrigin(origin, origin, origin);
 }
 
-/// 0 at the nodes in the voxels of the body, or nearest to them, or with whole cells at all nodes
-/// of the cells that hold their centres; 1 at the others.
+/// Marks nodes of the grid with 0, and all others with 1: those in the voxels of the body, or those
+/// nearest to voxels without nodes; with wholeCells, all nodes of the cells that contain centers of
+/// voxels.
 vtkSmartPointer<vtkUnsignedCharArray> MarkNodes(
   const Grid& grid, const BodyVoxels& body, bool wholeCells)
 {
   auto marks = vtkSmartPointer<vtkUnsignedCharArray>::New();
   marks->SetNumberOfValues(grid.Count());
   marks->Fill(1);
-  // The first and the last node of voxels side by side.
+  // The first and the last node for the voxels from begin to end - 1 on an axis.
   const auto nodes = [&](int begin, int end, int axis) -> std::array<int, 2>
   {
     const double unit = body.Spacing[axis] / grid.Distance;
@@ -132,9 +133,9 @@ vtkSmartPointer<vtkUnsignedCharArray> MarkNodes(
   return marks;
 }
 
-/// Squares of the distances from the nodes to the nearest one whose mark is 0, in distances of
-/// nodes.
-// vtkImageEuclideanDistance is wrong with spacings other than 1.
+/// Squared distances from the nodes to the nearest node with the mark 0, in units of the grid
+/// spacing.
+// The image has the spacing 1, because vtkImageEuclideanDistance is wrong with other spacings.
 vtkSmartPointer<vtkDataArray> SquaredDistances(const Grid& grid, vtkUnsignedCharArray* marks)
 {
   vtkNew<vtkImageData> image;
@@ -146,12 +147,13 @@ vtkSmartPointer<vtkDataArray> SquaredDistances(const Grid& grid, vtkUnsignedChar
   return distance->GetOutput()->GetPointData()->GetScalars();
 }
 
-/// About the distances from the surface of the body, enlarged by the margin: positive inside.
+/// Approximate distances from the surface of the body, which is enlarged by the margin. Positive
+/// inside.
 std::vector<float> MakeLevelSet(
   const Grid& grid, const BodyVoxels& body, const SurfaceParameters& parameters)
 {
-  // On average, the body ends a quarter of the distance of nodes beyond the nodes that are marked,
-  // and with whole cells as much before them.
+  // On average, the body ends a quarter of the grid spacing outside the marked nodes; with whole
+  // cells, a quarter of the grid spacing inside them.
   const double margin = parameters.Margin / grid.Distance;
   const double offset = parameters.WholeCells ? std::max(0.5, margin - 0.25) : margin + 0.25;
   const auto marks = MarkNodes(grid, body, parameters.WholeCells);
@@ -172,8 +174,8 @@ std::vector<float> MakeLevelSet(
   return values;
 }
 
-// Where two diagonally opposite corners of a face are inside and the two others are not, an
-// isosurface can have edges with four triangles: one more corner becomes inside.
+// If two diagonally opposite corners of a face are inside and the two others are outside, an
+// isosurface can have edges with four triangles. Moves one of the outside corners inside.
 void SeparateSheets(const Grid& grid, std::vector<float>& values)
 {
   const vtkIdType strides[3] = { 1, grid.Size[0], vtkIdType(grid.Size[0]) * grid.Size[1] };
@@ -203,33 +205,33 @@ void SeparateSheets(const Grid& grid, std::vector<float>& values)
   }
 }
 
-// What cannot be reached from outside the body becomes inside.
+// Moves nodes inside that no path of outside nodes connects with the border of the grid.
 void FillCavities(const Grid& grid, std::vector<float>& values)
 {
-  std::vector<unsigned char> reached(values.size(), 0);
-  std::vector<vtkIdType> queue(1, 0);
-  reached[0] = 1;
+  std::vector<unsigned char> isOuter(values.size(), 0);
+  std::vector<vtkIdType> stack(1, 0);
+  isOuter[0] = 1;
   const vtkIdType strides[3] = { 1, grid.Size[0], vtkIdType(grid.Size[0]) * grid.Size[1] };
-  while (!queue.empty())
+  while (!stack.empty())
   {
-    const vtkIdType node = queue.back();
-    queue.pop_back();
+    const vtkIdType node = stack.back();
+    stack.pop_back();
     for (const vtkIdType stride : strides)
     {
       for (const vtkIdType neighbor : { node - stride, node + stride })
       {
-        if (neighbor >= 0 && neighbor < grid.Count() && !reached[neighbor] &&
+        if (neighbor >= 0 && neighbor < grid.Count() && !isOuter[neighbor] &&
           values[neighbor] < 0.0f)
         {
-          reached[neighbor] = 1;
-          queue.push_back(neighbor);
+          isOuter[neighbor] = 1;
+          stack.push_back(neighbor);
         }
       }
     }
   }
   for (std::size_t i = 0; i < values.size(); ++i)
   {
-    values[i] = reached[i] ? values[i] : std::abs(values[i]);
+    values[i] = isOuter[i] ? values[i] : std::abs(values[i]);
   }
 }
 
@@ -300,7 +302,7 @@ void GrowAround(
   locator->SetDataSet(surface);
   locator->BuildLocator();
   vtkNew<vtkGenericCell> cell;
-  // Of the moves that voxels ask for, a vertex makes the longest one.
+  // Each vertex makes the longest of the moves that voxels require.
   std::vector<glm::dvec3> moves(surface->GetNumberOfPoints(), glm::dvec3(0.0));
   const std::size_t stride = outside.size() / SomeVoxels + 1;
   for (std::size_t i = 0; i < outside.size(); i += stride)

@@ -20,7 +20,7 @@ namespace deformvolume
 namespace
 {
 
-// Whether a value is one of the labels, or any other than 0 where no labels are given.
+// Whether a value is one of the labels; if there are no labels, whether it is not 0.
 template <typename T>
 bool IsLabel(T value, const std::vector<vtkTypeInt64>& labels)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which voxels of a volume belong to its body, and to which piece of it.
+// The voxels of a body in a volume, and the pieces (connected components) of the body.
 #ifndef DeformVolumeBodyVoxels_h
 #define DeformVolumeBodyVoxels_h
 
@@ -20,10 +20,10 @@ struct BodyCriterion
 {
   bool ByLabels = false;
   std::vector<vtkTypeInt64> Labels; // empty: all but 0
-  double Isovalue = 0.0;            // unless by labels
+  double Isovalue = 0.0;            // used if ByLabels is false
 };
 
-/// Body voxels that lie side by side in a row.
+/// Adjacent voxels of the body in a row along x.
 struct VoxelRun
 {
   int Begin = 0;
@@ -45,7 +45,7 @@ struct BodyVoxels
   std::array<int, 3> Size{ { 0, 0, 0 } };
   glm::dvec3 Spacing{ 1.0 }; // positive
   std::vector<VoxelRun> Runs;
-  std::vector<vtkIdType> RowStarts; // of each row its first run, and the number of runs at the end
+  std::vector<vtkIdType> RowStarts; // index of the first run of each row, then the number of runs
   std::vector<PieceKind> Pieces;    // the kind of each piece
 
   vtkIdType NumberOfRows() const { return vtkIdType(this->Size[1]) * this->Size[2]; }
@@ -53,13 +53,15 @@ struct BodyVoxels
   vtkIdType CountPieces(PieceKind kind) const;
 };
 
-/// The voxels that fulfil the criterion, are finite and not hidden by vtkGhostType, without pieces.
+/// Finds the voxels that meet the criterion, are finite, and are not hidden by vtkGhostType. Does
+/// not find the pieces.
 BodyVoxels FindBodyVoxels(
   vtkImageData* volume, vtkDataArray* array, const BodyCriterion& criterion);
 
-/// Finds the pieces, sets Piece of all runs and the kinds: pieces of at most `speckSize` voxels are
-/// specks; of the others, all are meshed, or only the one with most voxels. Voxels are neighbours
-/// where they share a face, an edge or a corner. Where all pieces are specks, none is one.
+/// Finds the pieces, and sets Piece of all runs and the kinds of the pieces. Voxels are connected
+/// if they share a face, an edge or a corner. Pieces of at most `speckSize` voxels are specks,
+/// unless all pieces are that small. Of the other pieces, all are meshed, or only the one with the
+/// most voxels.
 void FindPieces(BodyVoxels& body, vtkIdType speckSize, bool largestOnly);
 
 } // namespace deformvolume

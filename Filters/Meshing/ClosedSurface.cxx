@@ -35,7 +35,8 @@ vtkIdType CountEdges(vtkPolyData* surface, bool boundary, bool nonManifold)
   return edges->GetOutput()->GetNumberOfLines();
 }
 
-// Whether all points lie in one plane, to double precision.
+// Whether all points lie in one plane: the oriented bounding box is thinner than 1e-6 of its
+// length.
 bool IsFlat(vtkPolyData* surface)
 {
   double corner[3];
@@ -50,7 +51,7 @@ bool IsFlat(vtkPolyData* surface)
 
 vtkSmartPointer<vtkPolyData> CleanTriangles(vtkPolyData* surface)
 {
-  // The filters below drop or merge cells with such points without a word.
+  // The filters below silently drop or merge cells with points that do not exist or are not finite.
   const vtkIdType numberOfPoints = surface->GetNumberOfPoints();
   for (vtkCellArray* cells : { surface->GetPolys(), surface->GetStrips() })
   {

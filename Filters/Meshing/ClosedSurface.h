@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Closed triangle surfaces: what TetGen needs, and what it must not be given.
+// Makes and checks closed triangle surfaces for TetGen.
 #ifndef DeformVolumeClosedSurface_h
 #define DeformVolumeClosedSurface_h
 
@@ -12,22 +12,23 @@ class vtkPolyData;
 namespace deformvolume
 {
 
-/// Triangles only, coincident points merged, unused points dropped, double precision. Throws Error
-/// where a point is not finite.
+/// Converts a surface to triangles in double precision, with coincident points merged, and without
+/// unused points. Throws Error if a polygon uses a point that does not exist or is not finite.
 vtkSmartPointer<vtkPolyData> CleanTriangles(vtkPolyData* surface);
 
-/// Throws Error unless these triangles are some, closed, manifold and not flat. TetGen ends by a
-/// crash on anything else.
+/// Throws Error if a surface of triangles is empty, flat, not closed or not manifold. TetGen
+/// crashes with such surfaces.
 void CheckClosedSurface(vtkPolyData* surface);
 
 /// Whether every edge belongs to exactly two triangles.
 bool IsClosedManifold(vtkPolyData* surface);
 
-/// The surface with fewer triangles, so that their edges have about the length, or as it is where
-/// they are that long already. Null where decimation does not keep it a closed manifold.
+/// Returns the surface with fewer triangles, whose edges have about the given length. Returns the
+/// surface itself if its edges are that long already, and null if the decimated surface is not a
+/// closed manifold.
 vtkSmartPointer<vtkPolyData> Decimate(vtkPolyData* surface, double edgeLength);
 
-/// The same surface with edges no longer than the length.
+/// Returns the surface with edges that are split until none is longer than the given length.
 vtkSmartPointer<vtkPolyData> SplitLongEdges(vtkPolyData* surface, double edgeLength);
 
 } // namespace deformvolume

@@ -24,13 +24,13 @@ namespace deformvolume
 namespace
 {
 
-// Edges of the surface and of the lattice inside are that much shorter than asked for, since those
-// between the two are longer.
+// Factors on the requested length for edges of the surface and of the lattice of points inside.
+// They are less than 1, since edges between the surface and the lattice are longer.
 constexpr double SurfaceShare = 0.75;
 constexpr double LatticeShare = 0.75;
-// How close to the surface points of the lattice come, in lattice constants.
+// Least distance of lattice points from the surface, in lattice constants.
 constexpr double Clearance = 0.45;
-// How much longer edges may be for each unit of length beyond a sphere.
+// By how much the largest edge length increases for each unit of distance from a sphere.
 constexpr double SurfaceGrowth = 0.5;
 
 using Edge = std::array<vtkIdType, 2>;
@@ -41,8 +41,9 @@ struct LongEdge
   std::vector<std::size_t> Around;
 };
 
-/// Triangles or tetrahedra. Edges may be so long as a part of those of a sphere, and longer outside
-/// it by `growth` for each unit of length.
+/// A mesh of triangles or tetrahedra whose long edges are split. The largest edge length within a
+/// sphere is `share` times the EdgeLength of the sphere. Outside, it increases by `growth` for each
+/// unit of distance from the sphere.
 template <int N>
 class SplitMesh
 {
@@ -70,9 +71,9 @@ public:
     }
   }
 
-  // Of each tetrahedron that has an edge that is too long, the longest one is halved, unless a
-  // neighbor has one that is longer still: that keeps the quality of the tetrahedra. Returns
-  // whether there was any.
+  // Splits the longest edge of each cell with an edge that is too long, unless a neighbor has a
+  // longer one to split. Splitting the longest edges keeps the quality of the cells. Returns
+  // whether there was an edge to split.
   bool SplitOnce()
   {
     std::map<Edge, LongEdge> edges;
@@ -85,7 +86,7 @@ public:
         [&](const Edge& edge, double edgeLength)
         {
           isTooLong = isTooLong || this->IsTooLong(edge, edgeLength);
-          // The lower one of equals, in all tetrahedra around it.
+          // Of several longest edges the lowest one, so that all cells around it choose the same.
           if (edgeLength > length || (edgeLength == length && edge < longest))
           {
             length = edgeLength;
@@ -203,7 +204,8 @@ private:
   std::vector<Simplex> Simplices;
 };
 
-// Whether a sphere before this one has points here, at least as close together.
+// Whether another sphere has points here: one with a shorter edge length, or an earlier one with
+// the same.
 bool IsTaken(
   const glm::dvec3& point, const std::vector<RefinementSphere>& spheres, std::size_t index)
 {
@@ -211,7 +213,7 @@ bool IsTaken(
   {
     const bool finer = spheres[i].EdgeLength < spheres[index].EdgeLength ||
       (spheres[i].EdgeLength == spheres[index].EdgeLength && i < index);
-    // As far as its lattice reaches, and a bit more.
+    // The radius of the lattice of that sphere, and some clearance.
     if (finer &&
       glm::distance(point, spheres[i].Center) < spheres[i].Radius + 1.5 * spheres[i].EdgeLength)
     {
@@ -233,7 +235,7 @@ double EstimateTetrahedra(vtkPolyData* surface, const std::vector<RefinementSphe
   double count = 0.0;
   for (const RefinementSphere& sphere : spheres)
   {
-    // Of the cube around the sphere, the part in the bounds of the surface.
+    // The part of the sphere's bounding cube within the bounds of the surface.
     double volume = 1.0;
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -281,8 +283,8 @@ std::vector<glm::dvec3> MakePoints(
   vtkNew<vtkGenericCell> cell;
   for (std::size_t index = 0; index < spheres.size(); ++index)
   {
-    // A body-centred cubic lattice: the tetrahedra of its Delaunay triangulation are all alike, and
-    // no edge is longer than the lattice constant.
+    // A body-centered cubic lattice: the tetrahedra of its Delaunay triangulation are congruent,
+    // and no edge is longer than the lattice constant.
     const RefinementSphere& sphere = spheres[index];
     const double constant = LatticeShare * sphere.EdgeLength;
     const double radius = sphere.Radius + constant;

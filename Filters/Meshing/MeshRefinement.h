@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Shorter edges of tetrahedra where they are asked for.
+// Local refinement of meshes of tetrahedra.
 #ifndef DeformVolumeMeshRefinement_h
 #define DeformVolumeMeshRefinement_h
 
@@ -13,8 +13,8 @@ class vtkUnstructuredGrid;
 namespace deformvolume
 {
 
-/// Within the radius, edges are at most so long; beyond it, they become longer gradually. World
-/// units.
+/// Within the radius, edges are at most EdgeLength long. Outside, edges gradually become longer.
+/// World units.
 struct RefinementSphere
 {
   glm::dvec3 Center;
@@ -22,17 +22,17 @@ struct RefinementSphere
   double EdgeLength = 0.0;
 };
 
-/// About how many tetrahedra the spheres ask for within the bounds of a surface.
+/// Estimates the number of tetrahedra that the spheres require within the bounds of a surface.
 double EstimateTetrahedra(vtkPolyData* surface, const std::vector<RefinementSphere>& spheres);
 
-/// Halves edges of a surface of triangles that are too long where the spheres are.
+/// Splits edges of a triangle surface that are too long for the spheres.
 void SplitLongEdges(vtkPolyData* surface, const std::vector<RefinementSphere>& spheres);
 
-/// Halves the few edges of a mesh of tetrahedra that are too long within the spheres all the same.
+/// Splits edges of a mesh of tetrahedra that are still too long within the spheres.
 void SplitLongEdges(vtkUnstructuredGrid* mesh, const std::vector<RefinementSphere>& spheres);
 
-/// Points in the spheres for TetGen to use, evenly spaced, at some distance from the surface and
-/// from each other. Those outside the surface do no harm.
+/// Makes evenly spaced points in the spheres, as additional nodes for TetGen. They keep some
+/// distance from the surface. TetGen ignores points outside the surface.
 std::vector<glm::dvec3> MakePoints(
   vtkPolyData* surface, const std::vector<RefinementSphere>& spheres);
 

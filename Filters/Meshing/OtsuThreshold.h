@@ -8,9 +8,9 @@
 namespace deformvolume
 {
 
-/// Otsu, "A threshold selection method from gray-level histograms", 1979: the number of bins below
-/// the threshold at which the variance between the two classes is greatest; the middle where
-/// several thresholds are.
+/// Otsu, "A threshold selection method from gray-level histograms", 1979: returns the number of
+/// bins below the threshold at which the variance between the two classes is greatest. If several
+/// thresholds have that variance, returns the mean of the first and the last.
 inline double FindOtsuThreshold(const std::vector<double>& counts)
 {
   double total = 0.0;

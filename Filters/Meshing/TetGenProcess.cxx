@@ -59,14 +59,14 @@ public:
 
 struct Outcome
 {
-  std::string Failure; // "" where the program succeeded
+  std::string Failure; // "" if the program succeeded
   std::string Text;    // what it printed
 };
 
 Outcome Run(
   const std::vector<std::string>& arguments, double limit, const std::function<bool(double)>& wait)
 {
-  // Ends the program where it still runs.
+  // Ends the program if it is still running.
   const std::unique_ptr<vtksysProcess, void (*)(vtksysProcess*)> owner(vtksysProcess_New(),
     [](vtksysProcess* ended)
     {
@@ -98,7 +98,7 @@ Outcome Run(
     }
     double patience = 0.02;
     pipe = vtksysProcess_WaitForData(process, &data, &length, &patience);
-    // A megabyte is more than enough for a message, whatever the program prints.
+    // A megabyte is enough for any message.
     if (pipe == vtksysProcess_Pipe_STDOUT && outcome.Text.size() < (1u << 20))
     {
       outcome.Text.append(data, static_cast<std::size_t>(length));
@@ -139,7 +139,7 @@ std::string LineAt(const std::string& text, std::size_t position)
   return text.substr(begin, std::min<std::size_t>(600, text.find('\n', position) - begin));
 }
 
-// What the program said last, apart from the C++ library's words on an abort.
+// The last line that the program printed; "" if that is the C++ library's message of an abort.
 std::string LastLine(const std::string& text)
 {
   const std::size_t last = text.find_last_not_of(" \t\r\n");
@@ -188,7 +188,8 @@ void WriteSurface(const std::filesystem::path& path, vtkPolyData* surface,
   }
 }
 
-// Calls read(stream) for the lines after the first one, which begins with their number.
+// Calls read(stream) for each line after the first one, which begins with the number of lines. The
+// index at the beginning of each line is skipped.
 template <typename Read>
 void ReadLines(const std::filesystem::path& path, Read&& read)
 {
@@ -237,7 +238,8 @@ vtkSmartPointer<vtkUnstructuredGrid> ReadMesh(const std::filesystem::path& folde
           }
           points->GetPoint(ids[i], &corners[i].x);
         }
-        // TetGen makes flat ones where points of the surface lie in a plane, but for rounding.
+        // TetGen makes flat tetrahedra if points of the surface lie in one plane except for
+        // rounding.
         if (!IsFlat(corners))
         {
           cells->InsertNextCell(4, ids);
@@ -264,8 +266,8 @@ vtkSmartPointer<vtkUnstructuredGrid> RunTetGen(
   const std::filesystem::path input = folder.Path / "surface.smesh";
   WriteSurface(input, surface, parameters.Points);
 
-  // p: fill a surface; Y: put no points on it, which would cascade near small angles; F: write no
-  // faces; q: quality; a: the largest volume, in digits without an exponent.
+  // p: fill a surface; Y: put no points on it, because TetGen would add more and more near small
+  // angles; F: write no faces; q: quality; a: the largest volume, in digits without an exponent.
   std::ostringstream switches;
   switches.imbue(std::locale::classic());
   switches << "-pYF";
@@ -280,12 +282,12 @@ vtkSmartPointer<vtkUnstructuredGrid> RunTetGen(
     Run({ parameters.Executable, switches.str(), input.string() }, parameters.TimeLimit, wait);
   if (!outcome.Failure.empty())
   {
-    // A program that ends by abort(), as TetGen does on every error, loses what it has printed into
-    // a pipe. But its other mode looks for self-intersections, names them and ends normally.
+    // On every error TetGen ends with abort(), and loses the text that it has printed into a pipe.
+    // With -d it searches for self-intersections, reports them and ends normally.
     const std::string report = parameters.Diagnose
       ? Run({ parameters.Executable, "-d", input.string() }, parameters.TimeLimit, wait).Text
       : "";
-    // TetGen 1.5 counts them; 1.6 warns of each.
+    // TetGen 1.5 prints their number, TetGen 1.6 a warning for each of them.
     const std::size_t found =
       std::min(report.find("!! Found"), report.find("segments exactly intersect"));
     if (found != std::string::npos)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tetrahedra by the program TetGen, as a child process.
+// Makes tetrahedra with the program TetGen, which runs as a child process.
 #ifndef DeformVolumeTetGenProcess_h
 #define DeformVolumeTetGenProcess_h
 
@@ -19,7 +19,7 @@ class vtkUnstructuredGrid;
 namespace deformvolume
 {
 
-/// TetGen could not mesh this surface; it may do better with another one.
+/// A surface cannot be meshed. Another surface of the same body may be.
 class SurfaceRejected : public Error
 {
 public:
@@ -30,14 +30,14 @@ struct TetGenParameters
 {
   std::string Executable;
   double RadiusEdgeRatio = 1.414;
-  double MaximumVolume = 0.0;     // 0: neither this nor the ratio is looked at, which is fast
+  double MaximumVolume = 0.0;     // 0: no limits on the volume and the ratio, which is fast
   double TimeLimit = 60.0;        // seconds
   bool Diagnose = true;           // after a failure, look for self-intersections to name them
-  std::vector<glm::dvec3> Points; // more nodes for the mesh, as far as they lie in the surface
+  std::vector<glm::dvec3> Points; // additional nodes; those outside the surface are ignored
 };
 
 /// Fills a closed triangle surface with tetrahedra. `wait` is called many times a second with the
-/// part of the time limit that has passed; when it returns true, TetGen is ended and Aborted
+/// part of the time limit that has passed. If it returns true, TetGen is ended and Aborted is
 /// thrown. All failures throw Error.
 vtkSmartPointer<vtkUnstructuredGrid> RunTetGen(vtkPolyData* surface,
   const TetGenParameters& parameters, const std::function<bool(double)>& wait);

@@ -22,11 +22,11 @@
 namespace
 {
 
-// From that part of the body's voxels on, those outside the mesh are worth a warning.
+// Warn if at least this part of the body's voxels is outside the mesh.
 constexpr double WarningShare = 0.001;
-// Nodes of a grid that is finer than the edges ask for.
+// Largest number of nodes of a grid that is finer than the edge length requires.
 constexpr double FineNodes = 3e5;
-// In which a surface may grow around voxels outside.
+// Largest number of rounds in which a surface grows around voxels outside of it.
 constexpr int MaximumNumberOfRounds = 20;
 double DiagonalOf(vtkImageData* volume)
 {
@@ -79,8 +79,8 @@ glm::dvec3 ToOffset(const glm::dvec3& world, vtkImageData* volume, const glm::dv
   return (index - FirstVoxel(volume)) * spacing;
 }
 
-// From offsets from the first voxel of the extent, along the axes of the volume. There, faces that
-// the volume's border cuts are exactly plane.
+// Converts points from offsets along the axes of the volume, relative to the first voxel of its
+// extent. With offsets, faces at the border of the volume are exactly plane.
 void MoveToWorld(vtkUnstructuredGrid* mesh, vtkImageData* volume, const glm::dvec3& spacing)
 {
   const glm::dvec3 first = FirstVoxel(volume);
@@ -136,14 +136,16 @@ void vtkTetGenMesher::MeshVolume(
   const glm::dvec3& spacing = body.Spacing;
   const double margin = length * this->Margin;
   const double coarse = length / 1.5;
-  // On the fine grid, the distance of half an edge is more than the diagonal of a cell, so that
-  // parts of the body however thin are surrounded evenly, unless that takes too many nodes.
+  // On the fine grid, half an edge length is more than the diagonal of a cell, so that even very
+  // thin parts of the body are enclosed evenly. The grid is coarser if it would have too many
+  // nodes.
   const glm::dvec3 size =
     spacing * glm::dvec3(body.Size[0], body.Size[1], body.Size[2]) + 2.0 * margin;
   const double fine =
     std::max(0.28 * length, std::min(coarse, std::cbrt(size.x * size.y * size.z / FineNodes)));
-  // Decimation, smoothing and growth can make a surface intersect itself: then there is another
-  // one. An isosurface never does, and the last one encloses the body by construction.
+  // Decimation, smoothing and growth can make a surface intersect itself. Then the next attempt is
+  // tried. The last one is a plain isosurface, which never intersects itself, and encloses the body
+  // by construction.
   std::vector<deformvolume::SurfaceParameters> attempts;
   for (double decimated = length; this->Decimation && decimated > 0.75 * length;
        decimated -= 0.1 * length)
@@ -198,12 +200,12 @@ deformvolume::UncoveredVoxels vtkTetGenMesher::MeshBody(const deformvolume::Body
   }
   catch (const deformvolume::Error& error)
   {
-    throw deformvolume::SurfaceRejected(error.what()); // there may be another one
+    throw deformvolume::SurfaceRejected(error.what()); // the next attempt may succeed
   }
   CheckSize(surface, length, spheres);
   for (int round = 0; !isLast; ++round)
   {
-    // What is just inside can be outside the mesh once positions are rounded.
+    // Voxels just inside the surface can be outside the mesh after positions are rounded.
     const auto shrunk = deformvolume::Shrink(surface, 0.02 * voxel);
     const auto mesh = this->Fill(shrunk, 0.0, {}, false);
     const std::vector<glm::dvec3> outside = deformvolume::FindUncovered(mesh, body).OfMeshed;

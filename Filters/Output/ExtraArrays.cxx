@@ -26,7 +26,7 @@ const std::array<const char*, 3> POSITION_AXES{ { "RestPosition x", "RestPositio
   "RestPosition z" } };
 const char* const JACOBIAN = "Jacobian";
 const char* const FOLD_COUNT = "FoldCount";
-constexpr int NoIndex = -2; // no array of the volume, and no role that is not taken either
+constexpr int NoIndex = -2; // not an index, and not the -1 of attribute roles without an array
 
 bool HasName(vtkDataArray* array, const std::string& name)
 {
@@ -232,7 +232,7 @@ std::uint32_t* ExtraArrays::MakeFoldCounts(vtkIdType numberOfPoints)
 
 void ExtraArrays::FinishFoldCounts(vtkImageData* output)
 {
-  // Where nothing overlaps nothing has been counted.
+  // Only overlaps were counted. Other covered voxels have the count 1.
   const signed char* valid = GetCoverage(output);
   std::uint32_t* counts = this->FoldCounts->GetPointer(0);
   for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
@@ -295,7 +295,7 @@ ExtraArrays::Loss ExtraArrays::FinishDensities(const Deformation& deformation,
   const auto* jacobians = static_cast<const float*>(jacobian->GetVoidPointer(0));
   for (const std::string& name : this->Wish.Densities)
   {
-    // The array that was resampled stays as it is: the next update may write a part of it only.
+    // Do not change the resampled array: the next update may write only a part of it.
     vtkDataArray* resampled = pointData->GetArray(name.c_str());
     const auto divided = MakeLike(resampled, voxels);
     const int components = resampled->GetNumberOfComponents();

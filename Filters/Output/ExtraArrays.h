@@ -27,7 +27,7 @@ class vtkUnsignedIntArray;
 namespace deformvolume
 {
 
-/// What arrays are wanted in an output besides those of the volume.
+/// The requested arrays of an output besides those of the volume.
 struct ExtraArraysWish
 {
   bool RestPositions = false;
@@ -39,32 +39,33 @@ struct ExtraArraysWish
   bool NeedsJacobian() const { return this->Jacobian || !this->Densities.empty(); }
 };
 
-/// Arrays of an output that are not those of the volume: rest positions and Jacobians are arrays of
-/// the volume at rest that are made here, and resampled as all others; densities are divided in the
-/// output. What was made is kept for as long as it serves.
+/// Makes the arrays of an output that the volume does not have. Rest positions and Jacobians are
+/// computed for the voxels of the volume at rest, and resampled like all arrays. Densities are
+/// divided by the Jacobian in the output. Computed arrays are kept as long as they are valid.
 class ExtraArrays
 {
 public:
-  /// Adds arrays to those that are resampled, and puts arrays of floating point in the place of
-  /// densities. volume: the geometry of the voxels of the arrays. Throws an Error where a density
-  /// is not there, or is categorical, and where the volume has an array of the name of another one.
+  /// Adds arrays to those that are resampled, and replaces densities of integers by arrays of
+  /// floats. volume: the geometry of the voxels of the arrays. Throws an Error if a density array
+  /// does not exist or is categorical, or if an array of the volume has the name of an array that
+  /// is made here.
   void Select(const ExtraArraysWish& wish, const ImageGeometry& volume,
     const Deformation& deformation, std::vector<SourceArray>& arrays);
 
-  /// Finds the Jacobians of the voxels that have been selected. mapping: is made where it is
+  /// Computes the Jacobians of the voxels if they were selected. mapping: is updated if it is
   /// needed.
   void Compute(const Deformation& deformation, MappingCache& mapping, const MappedVolume& volume,
     const OutputMap& toOutput, const std::function<bool(double)>& progress);
 
-  /// Room for the counts of an output of so many voxels; null where they are not wanted.
+  /// Allocates the fold counts of an output. Returns null if they are not requested.
   std::uint32_t* MakeFoldCounts(vtkIdType numberOfPoints);
 
-  /// What is left out of the sums of densities.
+  /// The part of the volume that is missing in the sums of densities.
   struct Loss
   {
     std::int64_t NumberOfVoxels = 0; // whose Jacobian is not greater than 0
   };
-  /// Completes the point arrays of the output of the arrays that were selected.
+  /// Completes the point arrays of the output after it was resampled.
   Loss Finish(const Deformation& deformation, const OutsideVoxels& outside, double background,
     vtkImageData* output);
 
@@ -80,11 +81,12 @@ private:
 
   ExtraArraysWish Wish;
   ImageGeometry PositionsGeometry;
-  // By axes: kernels are faster with arrays of one component.
+  // One array for each axis: kernels are faster with arrays of one component.
   std::array<vtkSmartPointer<vtkFloatArray>, 3> Positions;
   VoxelJacobians OfMesh;
   std::uint64_t MappingVersion = 0;
-  vtkSmartPointer<vtkFloatArray> Jacobians; // null: those of an inverse field, or none
+  vtkSmartPointer<vtkFloatArray>
+    Jacobians; // null for inverse fields, or if Jacobians are not needed
   struct JacobiansKey
   {
     std::uint64_t Mapping = 0;
@@ -102,7 +104,7 @@ private:
   };
   JacobiansKey KeyOfJacobians;
   vtkSmartPointer<vtkUnsignedIntArray> FoldCounts;
-  // Copies of densities of integers, and what they are of.
+  // Copies of densities of integers, and the stamps of the original arrays.
   struct Copy
   {
     std::pair<const void*, vtkMTimeType> Stamp;

@@ -28,9 +28,9 @@ vtkSmartPointer<vtkDataArray> MakeMask(vtkIdType numberOfTuples)
   return mask;
 }
 
-// Whether an array can be made into what MakeLike() would make of another, given without tuples.
-// The size of the output follows the deformation, and memory for some voxels more or less serves as
-// well.
+// Whether an array of an earlier output can be used for an array like `wanted`, which has no
+// tuples. Its memory may be somewhat smaller or larger, since the size of the output changes with
+// the deformation.
 bool CanServe(vtkDataArray* last, vtkDataArray* wanted, vtkIdType numberOfTuples)
 {
   constexpr vtkIdType mostWaste = 2;
@@ -40,10 +40,11 @@ bool CanServe(vtkDataArray* last, vtkDataArray* wanted, vtkIdType numberOfTuples
     last->HasAComponentName() == wanted->HasAComponentName();
 }
 
-// Gives an array its size, for values to be written. Where it must grow it may soon grow again.
+// Sets the size of an array whose values will be overwritten. If the array grows, some memory is
+// reserved, since it may soon grow again.
 void SetSize(vtkDataArray* array, vtkIdType numberOfTuples)
 {
-  constexpr vtkIdType reserve = 32; // one part in so many
+  constexpr vtkIdType reserve = 32; // reserve this fraction of the size: 1/32
   if (numberOfTuples > array->GetSize() / array->GetNumberOfComponents())
   {
     array->Allocate((numberOfTuples + numberOfTuples / reserve) * array->GetNumberOfComponents());
@@ -58,8 +59,8 @@ std::uint64_t CountBytes(vtkDataArray* array, vtkIdType numberOfTuples)
   return static_cast<std::uint64_t>(values) * static_cast<std::uint64_t>(array->GetDataTypeSize());
 }
 
-// Where VTK does not know the class of an array it reads numbers as doubles, which do not hold all
-// integers of 64 bits.
+// Whether the values can be in an array of a class that VTK does not know. VTK reads such values as
+// doubles, which do not hold all integers of 64 bits.
 bool CanStayOnDevice(vtkDataArray* array)
 {
   constexpr int mostBytes = 4;
@@ -67,7 +68,7 @@ bool CanStayOnDevice(vtkDataArray* array)
   return type == VTK_FLOAT || type == VTK_DOUBLE || array->GetDataTypeSize() <= mostBytes;
 }
 
-// Names and the like; values are not touched.
+// Copies names, lookup table and information, but no values.
 void CopyDescription(vtkDataArray* array, vtkDataArray* wanted)
 {
   array->SetName(wanted->GetName());
@@ -177,7 +178,7 @@ void OutputArrays::Make(const std::vector<SourceArray>& sources, DeformRequest& 
     {
       if (made->GetNumberOfTuples() != this->NumberOfTuples)
       {
-        SetSize(made, this->NumberOfTuples); // it holds that output no more
+        SetSize(made, this->NumberOfTuples); // it no longer holds the values of that output
         serving.Values = nullptr;
       }
       CopyDescription(made, isMask ? MakeMask(0) : MakeLike(sources[i].Array, 0));
@@ -229,7 +230,7 @@ void OutputArrays::Keep(const DeformReport& report)
     }
     Kept& last = this->Last[i];
     last.Array = std::exchange(this->Made[i], nullptr);
-    last.Array->Modified(); // ranges that were found of earlier values do not hold
+    last.Array->Modified(); // invalidates ranges of earlier values
     last.Values = GetWritableValues(last.Array);
     last.Modified = last.Array->GetMTime();
     last.Revision = report.Revision;

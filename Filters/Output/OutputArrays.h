@@ -17,56 +17,60 @@ class vtkImageData;
 namespace deformvolume
 {
 
-/// The arrays of a filter's output. Those of the last execution serve again where nobody else holds
-/// them: to write memory for the first time costs more than to deform a volume. Where somebody
-/// does, as mappers do, two take turns: the one of the execution before the last one serves.
+/// The arrays of a filter's output. The arrays of the last execution are used again if nobody else
+/// holds references to them: writing to new memory for the first time costs more than deforming a
+/// volume. If somebody does, as mappers do, two sets of arrays alternate: those of the execution
+/// before the last one are used.
 class OutputArrays
 {
 public:
-  /// Drops what cannot serve for arrays like these, of so many tuples; returns the bytes of what
-  /// can. The output holds no array when this is called.
+  /// Drops kept arrays that cannot be used again for arrays like the sources with this number of
+  /// tuples. Returns the size of the others in bytes. The output must not hold the arrays when this
+  /// is called.
   std::uint64_t Prepare(const std::vector<SourceArray>& sources, vtkIdType numberOfTuples);
 
-  /// Makes an array like each of the sources and vtkValidPointMask, and gives the request their
-  /// memory, and that of the last output where nobody has changed it. After Prepare() with the same
-  /// arguments.
+  /// Makes an array like each of the sources, and vtkValidPointMask. Sets the memory of these
+  /// arrays in the request, and that of the last output if nobody has changed it. Call this after
+  /// Prepare() with the same arguments.
   void Make(const std::vector<SourceArray>& sources, DeformRequest& request);
 
-  /// Gives the image these arrays, now that the request is done, as point arrays. Where the values
-  /// have stayed on the device, what reads them there; but integers of 64 bits go to the host at
-  /// once, which is added to the report.
+  /// Adds the arrays to the image as point arrays, after the request is done. If the values are on
+  /// the device, adds arrays that download them at the first access instead. Integers of 64 bits
+  /// are downloaded at once, and the time for this is added to the report.
   void Give(DeformReport& report, vtkImageData* image);
 
-  /// Keeps what Make() made for the next execution.
+  /// Keeps the arrays of Make() for the next execution.
   void Keep(const DeformReport& report);
   void Forget();
 
-  /// How many arrays of the last output nobody has read, and are on the device.
+  /// Number of arrays of the last output that are still on the device, because nobody has read
+  /// them.
   int GetNumberOfUnread() const;
 
 private:
-  // An array of an output, as it was kept.
+  // An array of an output, and its state when it was kept.
   struct Kept
   {
     vtkSmartPointer<vtkDataArray> Array;
     const void* Values = nullptr;
     vtkMTimeType Modified = 0;
     std::uint64_t Revision = 0;
-    std::shared_ptr<DeviceOutput> OnDevice; // null: the values came to the host at once
+    std::shared_ptr<DeviceOutput> OnDevice; // null: the values are on the host
 
-    /// Whether it is of so many tuples, has the values of the output, and nobody has written to it.
+    /// Whether the array has this number of tuples and still the values of the output.
     bool IsAsKept(vtkIdType numberOfTuples) const;
     bool IsHeldByOthers() const;
   };
 
-  /// What serves for an array, or an empty one.
+  /// The kept array that is used for an array of the next output; empty if there is none.
   Kept& GetServing(std::size_t array);
-  /// The revision of what the arrays hold that serve in place of others, where that is one.
+  /// The revision of the output that the arrays in Older hold, if these are used next; 0 if they
+  /// hold several revisions.
   std::uint64_t GetServingRevision();
 
   vtkIdType NumberOfTuples = 0;
   std::vector<Kept> Last;
-  std::vector<Kept> Older; // of the execution before, those that serve in turn
+  std::vector<Kept> Older; // of the execution before, used if Last is held by others
   std::vector<vtkSmartPointer<vtkDataArray>> Made;
 };
 

@@ -22,7 +22,7 @@ namespace
 
 glm::dvec3 TransformNormal(const glm::dmat3& gradient, const glm::dvec3& normal)
 {
-  // The inverse transpose times the determinant, which is there for singular gradients as well.
+  // The inverse transpose times the determinant, which exists for singular gradients as well.
   const glm::dmat3 cofactors(glm::cross(gradient[1], gradient[2]),
     glm::cross(gradient[2], gradient[0]), glm::cross(gradient[0], gradient[1]));
   const glm::dvec3 turned = cofactors * normal;
@@ -40,7 +40,7 @@ void TransformedArray::Transform(vtkIdType first, const std::vector<PointMap::Im
   for (std::size_t i = 0; i < images.size(); ++i)
   {
     const glm::dmat3& gradient = images[i].Gradient;
-    // Where nothing is deformed, normals keep their length.
+    // Normals keep their length if nothing is deformed.
     const bool isNormal =
       this->Attribute == vtkDataSetAttributes::NORMALS && gradient != glm::dmat3(1.0);
     const glm::dvec3 turned =

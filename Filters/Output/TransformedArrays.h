@@ -23,17 +23,18 @@ struct TransformedArray
   int Attribute; // -1: none
   vtkSmartPointer<vtkDataArray> Output;
 
-  /// Writes those of as many points as there are images, from the first on. May be called by
-  /// several threads.
+  /// Writes the tuples of the points from `first` on, one for each image. May be called by several
+  /// threads.
   void Transform(vtkIdType first, const std::vector<PointMap::Image>& images) const;
 };
 
 /// The point arrays that are transformed: the active normals and vectors, and with allVectors all
 /// others of three floats or doubles that have a name, except for texture coordinates. Throws an
-/// Error where one has another number of tuples than there are points.
+/// Error if the number of tuples of an array is not the number of points.
 std::vector<TransformedArray> FindTransformed(vtkPointSet* points, bool allVectors);
 
-/// An array of vectors: of floats where another one is, else of doubles.
+/// Makes an array of vectors with the name of another array: of floats if that one is, else of
+/// doubles.
 vtkSmartPointer<vtkDataArray> MakeVectors(vtkDataArray* like, vtkIdType count);
 
 } // namespace deformvolume

@@ -48,7 +48,7 @@ void vtkDeviceOutputArray<T>::Modified()
 {
   if (this->Values)
   {
-    this->Host->Modified(); // whose memory is not what the filter has put there
+    this->Host->Modified(); // its memory may have other values than the filter has written
   }
   this->Superclass::Modified();
 }
@@ -58,7 +58,7 @@ template <typename T>
 void vtkDeviceOutputArray<T>::SetOutput(
   vtkDataArray* host, const std::shared_ptr<deformvolume::DeviceOutput>& output)
 {
-  this->DataType = host->GetDataType(); // ids have a name of their own
+  this->DataType = host->GetDataType(); // VTK_ID_TYPE differs from the type of T
   this->NumberOfComponents = host->GetNumberOfComponents();
   this->Size = this->MaxId = host->GetNumberOfValues();
   --this->MaxId;
@@ -101,7 +101,7 @@ bool vtkDeviceOutputArray<T>::FindRangeOnDevice(double range[2], int component, 
   }
   catch (const std::exception&)
   {
-    return false; // who reads the values is told
+    return false; // an access to the values reports the error
   }
   if (!found || (!finite && !found->AllFinite))
   {
@@ -141,7 +141,7 @@ T* vtkDeviceOutputArray<T>::BringToHost() const
   }
   if (!message.empty())
   {
-    // Observers may read this array.
+    // Report the error without the lock: observers may read this array.
     vtkErrorWithObjectMacro(const_cast<vtkDeviceOutputArray<T>*>(this), << message);
   }
   return values;
@@ -151,7 +151,7 @@ T* vtkDeviceOutputArray<T>::BringToHost() const
 template <typename T>
 bool vtkDeviceOutputArray<T>::SetSize(vtkIdType values, vtkIdType kept)
 {
-  // The filter knows the memory that it has given.
+  // Do not resize the last memory: the filter still refers to it.
   const auto host =
     vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(this->DataType));
   if (!host->Resize(values))
@@ -326,7 +326,7 @@ vtkSmartPointer<vtkDataArray> MakeDeviceOutputArray(
       made = array;
     });
     default:
-      return host; // there are no others
+      return host; // there are no other types
   }
   made->SetName(host->GetName());
   made->CopyComponentNames(host);

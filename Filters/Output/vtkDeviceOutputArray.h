@@ -19,20 +19,19 @@
 namespace deformvolume
 {
 
-/// An array of the output of a filter whose values are on the device: it has the name and the
-/// description of an ordinary array, and gets the values into the memory of that when somebody
-/// reads or writes the first of them.
+/// Makes an array for output values on a device, with the name, component names and other
+/// descriptions of `host`. The values are downloaded to the memory of `host` at the first access.
 vtkSmartPointer<vtkDataArray> MakeDeviceOutputArray(
   vtkDataArray* host, const std::shared_ptr<DeviceOutput>& output);
 
 } // namespace deformvolume
 
-/// What MakeDeviceOutputArray() makes. It has the interfaces that all arrays have in common; who
-/// needs one of VTK's common layout copies it, or the data set, by DeepCopy(). NewInstance() is
-/// such an array. Several threads may read at once.
+/// The array that MakeDeviceOutputArray() makes. It has the interface of vtkDataArray. To get an
+/// array of structs, such as a vtkFloatArray, copy the array or its dataset with DeepCopy().
+/// NewInstance() makes an array of structs. Several threads may read at once.
 ///
-/// Where the values cannot be brought to the host that is an error of this object, and they are
-/// the background.
+/// If the values cannot be downloaded, this object reports an error, and the values are the
+/// background.
 template <typename T>
 class vtkDeviceOutputArray : public vtkGenericDataArray<vtkDeviceOutputArray<T>, T>
 {
@@ -43,8 +42,8 @@ public:
   vtkAbstractTemplateTypeMacro(vtkDeviceOutputArray<T>, Generic);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// The values become those of an output, in the memory of an array of T that has its size. Before
-  /// anybody else has this array.
+  /// Sets the output that has the values. host: an array of T with the size of the output, to which
+  /// the values are downloaded. Call this before anybody else has this array.
   void SetOutput(vtkDataArray* host, const std::shared_ptr<deformvolume::DeviceOutput>& output);
 
   void Modified() override;
@@ -58,7 +57,7 @@ public:
   }
 
   ///@{
-  /// What vtkGenericDataArray asks of its subclasses.
+  /// Functions that vtkGenericDataArray requires of its subclasses.
   T GetValue(vtkIdType value) const { return this->GetValues()[value]; }
   void SetValue(vtkIdType value, T number) { this->GetValues()[value] = number; }
   void GetTypedTuple(vtkIdType tuple, T* numbers) const
@@ -84,7 +83,7 @@ public:
   ///@}
 
   ///@{
-  /// On the host the values lie tuple by tuple.
+  /// On the host the values are an array of structs.
   bool HasStandardMemoryLayout() const override { return true; }
   void* GetVoidPointer(vtkIdType value) override { return this->GetValues() + value; }
   void* WriteVoidPointer(vtkIdType value, vtkIdType count) override;
@@ -93,10 +92,10 @@ public:
 
 protected:
   ///@{
-  /// Mappers ask for ranges of each new output. Those of components are found on the device, and
-  /// the others by the ordinary array, whose numbers are not read as doubles.
+  /// Mappers request ranges of each new output. Ranges of components are computed on the device.
+  /// Other ranges are computed by Host, which does not read the values as doubles.
 #ifdef DEFORMVOLUME_RANGES_OF_GHOSTS
-  // Those without ghosts come here.
+  // // VTK calls these also for ranges without ghosts.
   void ComputeRange(double range[2], int component, const unsigned char* ghosts,
     unsigned char ghostsToSkip = 0xff) override;
   void ComputeFiniteRange(double range[2], int component, const unsigned char* ghosts,
@@ -120,27 +119,28 @@ private:
   void operator=(const vtkDeviceOutputArray&) = delete;
 
   T* BringToHost() const;
-  /// Null where the values are not on the device any more, or never were.
+  /// The output on the device; null if the values are on the host.
   std::shared_ptr<deformvolume::DeviceOutput> GetDeviceOutput() const;
-  /// Whether the ordinary array has the size of this one.
+  /// Whether Host has the size of this array.
   bool IsLikeHost() const;
-  /// The range of a component as long as the values are on the device. Returns false where the host
-  /// is to find it.
+  /// Finds the range of a component on the device. Returns false if the range has to be computed on
+  /// the host.
   bool FindRangeOnDevice(double range[2], int component, bool finite) const;
-  /// Lets go of the values.
+  /// Releases the output on the device.
   void Drop();
-  /// The ordinary array with the values of this one; null where that has another size by now.
+  /// Host with the values of this array; null if Host has another size.
   vtkDataArray* GetHost() const;
-  /// Gives it memory of its own, for so many values; the first ones are kept, or none.
+  /// Allocates new memory for a number of values. kept: number of values that are copied.
   bool SetSize(vtkIdType values, vtkIdType kept);
 
   int DataType;
-  vtkSmartPointer<vtkDataArray> Host;        // whose memory it is
-  mutable std::mutex Mutex;                  // of a first access
-  mutable std::atomic<T*> Values{ nullptr }; // null: they have to be brought
+  vtkSmartPointer<vtkDataArray> Host;        // has the memory of the values
+  mutable std::mutex Mutex;                  // locked at the first access
+  mutable std::atomic<T*> Values{ nullptr }; // null: not yet downloaded
   std::shared_ptr<deformvolume::DeviceOutput> Output;
   mutable std::mutex RangesMutex;
-  mutable std::vector<std::optional<deformvolume::DeviceOutput::Range>> Ranges; // of components
+  mutable std::vector<std::optional<deformvolume::DeviceOutput::Range>>
+    Ranges; // one for each component
 };
 
 #endif
