@@ -79,9 +79,9 @@ void MakeGrid(Grid& grid, const BodyVoxels& body, const SurfaceParameters& param
   grid.Image->SetOrigin(origin, origin, origin);
 }
 
-/// Marks nodes of the grid with 0, and all others with 1: those in the voxels of the body, or those
-/// nearest to voxels without nodes; with wholeCells, all nodes of the cells that contain centers of
-/// voxels.
+/// Marks the nodes of the body with 0, and all others with 1. Nodes of the body are those in its
+/// voxels, and the nearest node of each voxel without nodes. With wholeCells, they are all nodes of
+/// the cells that contain centers of voxels.
 vtkSmartPointer<vtkUnsignedCharArray> MarkNodes(
   const Grid& grid, const BodyVoxels& body, bool wholeCells)
 {

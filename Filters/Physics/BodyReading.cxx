@@ -93,7 +93,7 @@ void ReadMaterials(vtkUnstructuredGrid* grid, const BodySettings& settings, Body
   }
 }
 
-// Which nodes tetrahedra use, and the diagonal of the box of these.
+// Sets IsUsed, and sets Size to the diagonal of the bounding box of the used nodes.
 void FindUsed(BodyMesh& mesh)
 {
   mesh.IsUsed.assign(mesh.Body.Points.size(), 0);
@@ -145,7 +145,7 @@ void ReadPointArrays(vtkUnstructuredGrid* grid, const BodySettings& settings, Bo
     SlidingNormalName, SecondSlidingNormalName, "Rename the array.");
 }
 
-// How many nodes there are of a kind, and the first of them.
+// The number of nodes of a kind, and the first of them.
 struct CountedNodes
 {
   std::size_t Number = 0;
@@ -156,7 +156,7 @@ struct CountedNodes
     this->First = this->Number == 0 ? node : this->First;
     ++this->Number;
   }
-  // Such as "3 nodes of the rest mesh slide, the first one being number 7. ".
+  // Throws an Error such as "3 nodes of the rest mesh slide, the first one being number 7. ".
   void ThrowIfAny(const std::string& what, const std::string& advice) const
   {
     if (this->Number > 0)
@@ -167,7 +167,8 @@ struct CountedNodes
   }
 };
 
-// Springs can neither displace fixed nodes nor have nodes slide.
+// Throws an Error for arrays that mass-spring dynamics does not support: prescribed displacements
+// of fixed nodes, and sliding nodes.
 void CheckForSprings(const BodyMesh& mesh)
 {
   CountedNodes displaced;
@@ -196,7 +197,7 @@ void CheckForSprings(const BodyMesh& mesh)
   sliding.ThrowIfAny("have a sliding normal", getAdvice(SlidingNormalName));
 }
 
-// Each mid-side node of the cells is in the middle of one edge, and no corner.
+// Throws an Error if a mid-side node of the cells belongs to several edges, or is also a corner.
 void CheckMidSides(const ElasticBody& body)
 {
   constexpr std::uint64_t none = ~std::uint64_t{ 0 };
@@ -251,8 +252,8 @@ bool IsHeldAlong(const ElasticBody& body, std::size_t node, const glm::dvec3& no
   return glm::length(rest) <= LargestSine;
 }
 
-// The normals, as they are given, of the planes in which the middle of an edge slides: those of its
-// ends in which the edge lies and both ends stay; 0: none.
+// The sliding normals of the node in the middle of an edge; 0: none. They are the normals of the
+// ends, not normalized, if the edge lies in the sliding plane and both ends stay in it.
 std::array<glm::dvec3, 2> GetMiddleNormals(const ElasticBody& body, std::size_t a, std::size_t b)
 {
   std::array<glm::dvec3, 2> result{ { glm::dvec3(0.0), glm::dvec3(0.0) } };
@@ -314,7 +315,7 @@ void AddMidSides(std::vector<MidSideNodes>&& ofCells, BodyMesh& mesh)
   }
 }
 
-// Adds the nodes that a place holds. isTaken: by another handle.
+// Adds the nodes that a handle at a position holds. isTaken: whether another handle holds a node.
 void Hold(const glm::dvec3& position, double radius, const glm::dvec3& displacement,
   const BodyMesh& mesh, std::vector<unsigned char>& isTaken, std::vector<HeldNode>& held)
 {

@@ -20,14 +20,14 @@ namespace deformvolume
 {
 
 ///@{
-/// Cell arrays with the material of each tetrahedron.
+/// Names of the cell arrays with the material of each tetrahedron.
 constexpr const char* YoungModulusName = "YoungModulus";
 constexpr const char* PoissonRatioName = "PoissonRatio";
 constexpr const char* DensityName = "Density";
 ///@}
 
 ///@{
-/// Point arrays with what acts on nodes.
+/// Names of the point arrays with boundary conditions and forces of nodes.
 constexpr const char* FixedName = "Fixed";
 constexpr const char* ForceName = "Force";
 constexpr const char* PrescribedDisplacementName = "PrescribedDisplacement";
@@ -35,64 +35,66 @@ constexpr const char* SlidingNormalName = "SlidingNormal";
 constexpr const char* SecondSlidingNormalName = "SecondSlidingNormal";
 ///@}
 
-/// The tetrahedra of a grid, and the cell that each of them is.
+/// The tetrahedra of a grid, and the index of the cell of each tetrahedron.
 struct GridTetrahedra
 {
   std::vector<Tetrahedron> Tetrahedra;
-  /// Of each tetrahedron, -1 where the cell has none; empty where ten-node tetrahedra are errors.
+  /// Mid-side nodes of each tetrahedron, -1 if the cell has none; empty if takesQuadratic was
+  /// false.
   std::vector<MidSideNodes> MidSides;
   std::vector<vtkIdType> Cells;
 };
 
-/// Cells of fewer than three dimensions are left out. Throws an Error for other cells, and for
-/// tetrahedra without four points of the grid. takesQuadratic: vtkQuadraticTetra is no error.
+/// Reads the tetrahedra of a grid. Cells of fewer than three dimensions are ignored. Throws an
+/// Error for other cells, and for tetrahedra with a wrong number of points or with points that do
+/// not exist. takesQuadratic: whether vtkQuadraticTetra is accepted.
 GridTetrahedra ReadTetrahedra(vtkUnstructuredGrid* grid, bool takesQuadratic);
 
-/// What says how a body is read.
+/// Settings for reading a body.
 struct BodySettings
 {
-  /// Of tetrahedra that have none in cell arrays.
+  /// Material of tetrahedra without cell arrays of materials.
   ElasticMaterial Material;
-  /// Metres of a unit of the mesh.
+  /// Length of a unit of the mesh in meters.
   double UnitLength = 1.0;
-  /// Whether the body is one of ten-node tetrahedra: linear cells get mid-side nodes.
+  /// Whether the body has ten-node tetrahedra. Linear cells then get mid-side nodes.
   bool IsQuadratic = false;
 };
 
-/// An elastic body as VTK has it.
+/// An elastic body that was read from a grid.
 struct BodyMesh
 {
   ElasticBody Body;               // its first nodes are the points of the grid
   std::vector<glm::dvec3> Forces; // of nodes, in N; empty: none
-  /// Of nodes, in m, which only those that are fixed have; empty: none.
+  /// Prescribed displacements of nodes, in m. Only those of fixed nodes are used. Empty: none.
   std::vector<glm::dvec3> PrescribedDisplacements;
-  /// Of each mid-side node behind the points of the grid the ends of its edge.
+  /// The ends of the edge of each mid-side node that is not a point of the grid.
   std::vector<std::array<std::int32_t, 2>> MidSideEnds;
-  /// Whether the tetrahedra have the nodes of their cells, and no others.
+  /// Whether all nodes of the tetrahedra are points of the grid.
   bool HasNodesOfCells = true;
-  /// The cell that each tetrahedron is.
+  /// The index of the cell of each tetrahedron.
   std::vector<vtkIdType> Cells;
-  std::vector<unsigned char> IsUsed; // nodes: by a tetrahedron
-  double Size = 0.0;                 // of the diagonal of its box, in m
+  std::vector<unsigned char> IsUsed; // whether a tetrahedron uses the node
+  double Size = 0.0;                 // diagonal of the bounding box, in m
 };
 
-/// What ReadBody depends on.
+/// Differs if ReadBody() may give another result.
 Stamp GetBodyStamp(vtkUnstructuredGrid* grid);
 
-/// The tetrahedra of a grid, with the cell and point arrays that are named above, where there are
-/// such. Cells of fewer than three dimensions are left out. Throws an Error for other cells, arrays
-/// of another shape, what springs cannot do where the body is not quadratic, and what CheckBody
-/// refuses.
+/// Reads the tetrahedra of a grid, and the cell and point arrays with the names above, if they
+/// exist. Cells of fewer than three dimensions are ignored. Throws an Error for other cells, for
+/// arrays of another shape, for boundary conditions that mass-spring dynamics does not support if
+/// the body is not quadratic, and for bodies that CheckBody() rejects.
 ///
-/// A mid-side node that is made here has no force, is fixed where both ends of its edge are, with
-/// the mean of their displacements, and slides where its edge lies in the plane in which an end
-/// slides while the other one is fixed or slides in the same plane.
+/// A mid-side node that is added here has no force. It is fixed if both ends of its edge are fixed,
+/// with the mean of their prescribed displacements. It slides in the plane of an end if the edge
+/// lies in this plane, and the other end is fixed or slides in the same plane.
 BodyMesh ReadBody(vtkUnstructuredGrid* grid, const BodySettings& settings);
 
-/// Which nodes of tetrahedra handles hold, and where: those within a radius of the rest position of
-/// a handle, or the nearest one where the radius is 0. Lengths are those of the mesh. The first
-/// handle counts where several hold a node; fixed nodes stay. Throws an Error where a handle holds
-/// no node.
+/// Finds the nodes that handles hold, and their displacements. A handle holds the nodes of
+/// tetrahedra within a radius of its rest position, or the nearest one if the radius is 0. Lengths
+/// are in units of the mesh. If several handles hold a node, the first one is used. Fixed nodes
+/// cannot be held. Throws an Error if a handle holds no node.
 std::vector<HeldNode> ReadHandles(
   vtkPointSet* handles, double radius, const BodyMesh& mesh, const BodySettings& settings);
 

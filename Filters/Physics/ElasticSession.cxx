@@ -43,7 +43,7 @@ bool IsSame(const ElasticBody& a, const ElasticBody& b)
       [](const auto& one, const auto& other) { return IsSame(one, other); });
 }
 
-// Appends copies of some values, if there are any.
+// Appends a copy of the value of each origin. Does nothing if there are no values.
 template <typename Value>
 void AppendCopies(std::vector<Value>& values, const std::vector<std::int32_t>& origins)
 {
@@ -71,8 +71,8 @@ Stamp GetDataStamp(vtkUnstructuredGrid* grid)
     { grid->GetFieldData(), grid->GetFieldData()->GetMTime() } };
 }
 
-// Point data of a node in the middle of an edge. A ghost or a hidden point is one where both ends
-// are.
+// Interpolates the point data of a node in the middle of an edge. The node is a ghost or hidden if
+// both ends are.
 void InterpolateInMiddle(
   vtkPointData* from, const std::array<std::int32_t, 2>& ends, vtkPointData* to, vtkIdType node)
 {
@@ -113,7 +113,7 @@ bool ElasticSession::Update(ElasticSimulation& simulation, vtkUnstructuredGrid* 
     }
     catch (...)
     {
-      // All is as it was, unless the last body has gone.
+      // Nothing has changed, unless the simulation has lost the last body.
       this->WasLost = this->WasLost || (this->Exists && this->HasMoved && !simulation.HasBody());
       throw;
     }
@@ -256,7 +256,7 @@ void ElasticSession::Reset()
 std::size_t ElasticSession::GetOrigin(std::size_t node) const
 {
   const std::size_t whole = this->Whole.Body.Points.size();
-  while (node >= whole) // a copy, perhaps of one that an earlier cut has made
+  while (node >= whole) // a copy, possibly of a copy that an earlier cut has made
   {
     node = static_cast<std::size_t>(this->Cuts.back().Origins[node - whole]);
   }
@@ -328,7 +328,7 @@ void ElasticSession::FillPointData(vtkUnstructuredGrid* grid, vtkUnstructuredGri
   }
   else
   {
-    to->InterpolateAllocate(from, made->GetNumberOfPoints()); // without ids of points
+    to->InterpolateAllocate(from, made->GetNumberOfPoints()); // leaves out ids of points
   }
   for (vtkIdType node = 0; node < made->GetNumberOfPoints(); ++node)
   {
@@ -342,7 +342,7 @@ void ElasticSession::FillPointData(vtkUnstructuredGrid* grid, vtkUnstructuredGri
       InterpolateInMiddle(from, mesh.MidSideEnds[origin - before], to, node);
     }
   }
-  // What the body has there is no mean of the ends.
+  // For these arrays the values of the body are not the means of the two ends.
   const auto overwrite = [&](const char* name, const auto& getValue)
   {
     auto* array = vtkArrayDownCast<vtkDataArray>(to->GetAbstractArray(name));

@@ -19,75 +19,76 @@ class vtkUnstructuredGrid;
 namespace deformvolume
 {
 
-/// The body that a simulation was given, with the cuts in it, and the time that it has come to.
+/// The body of a simulation with its cuts, and the simulated time.
 class ElasticSession
 {
 public:
-  /// Brings the body up to date. Returns whether something that was simulated is lost by that, or
-  /// has been by calls before that failed or were given up. progress: see
-  /// ElasticSimulation::SetBody.
+  /// Updates the body. Returns whether a simulated state is lost, by this call or by earlier ones
+  /// that failed or were aborted. progress: see ElasticSimulation::SetBody().
   bool Update(ElasticSimulation& simulation, vtkUnstructuredGrid* grid,
     const BodySettings& settings, const std::function<bool()>& progress);
 
-  /// Cuts the body where it is now along a sheet in its units, where that is another one than the
-  /// last time.
+  /// Cuts the deformed body along a sheet, which is in units of the mesh. Does nothing if the sheet
+  /// is the same as in the last call.
   void Cut(const WorldSheet& sheet);
-  /// Takes back the last cuts, but for so many: the body is as it was before, its time is not.
+  /// Removes all cuts except the first ones. left: number of cuts to keep. The state of the body
+  /// becomes that before the removed cuts. The time does not change.
   void RemoveCuts(std::size_t left);
-  /// The same after an error: the sheet that has made them is to cut again.
+  /// Like RemoveCuts(), but after an error: the same sheet then cuts again in the next call.
   void TakeBackNewCuts(std::size_t left);
-  /// For a body in an unknown state: the next Update() begins with a new one.
+  /// Discards a body in an unknown state: the next Update() begins with a new one.
   void Lose();
   std::size_t GetNumberOfCuts() const { return this->Cuts.size(); }
   std::int64_t GetNumberOfSplitFaces() const;
 
-  /// Puts the body to rest.
+  /// Resets the body to its rest state, and the time to 0.
   void Reset();
 
   bool HasBody() const { return this->Exists; }
-  /// As it is cut.
+  /// The body with its cuts.
   const BodyMesh& GetMesh() const { return this->Mesh; }
   const BodySettings& GetSettings() const { return this->Settings; }
 
-  /// The grid with the nodes that mid-sides and cuts have appended: the grid itself where there are
-  /// none. It has the same points and cells as long as the mesh is unchanged.
+  /// Returns the grid with the mid-side nodes that were added, and the nodes that cuts have added;
+  /// the grid itself if there are none. As long as the mesh does not change, the result has the
+  /// same points and cells.
   vtkUnstructuredGrid* GetGrid(vtkUnstructuredGrid* grid);
 
   double Time = 0.0;     // in s
-  bool HasMoved = false; // whether there is something to lose
+  bool HasMoved = false; // whether there is a simulated state
 
 private:
   struct AppliedCut
   {
     std::vector<Tetrahedron> Tetrahedra;
     std::vector<MidSideNodes> MidSides; // empty: the body is not quadratic
-    std::vector<std::int32_t> Origins;  // of all copies of nodes
+    std::vector<std::int32_t> Origins;  // the node that each copy was made from
     std::vector<TetrahedronPair> Unparted;
     std::int64_t NumberOfFaces = 0;
     ElasticSimulation::State Before;
   };
 
-  /// A body with the cuts that there are.
+  /// Adds the current cuts to a body.
   BodyMesh WithCuts(const BodyMesh& whole) const;
-  /// The node of the body without cuts that a node is, or is a copy of.
+  /// The node of the body without cuts that a node was copied from, or the node itself.
   std::size_t GetOrigin(std::size_t node) const;
   void FillMesh(vtkUnstructuredGrid* grid, vtkUnstructuredGrid* made) const;
   void FillPointData(vtkUnstructuredGrid* grid, vtkUnstructuredGrid* made) const;
 
   bool Exists = false;
-  bool WasLost = false;                    // what was simulated, in a call that has failed
-  ElasticSimulation* Simulation = nullptr; // that the body was given to
+  bool WasLost = false;                    // whether a failed call has lost a simulated state
+  ElasticSimulation* Simulation = nullptr; // has the body
   Stamp BodyStamp;
   BodySettings Settings;
   BodyMesh Whole;
   BodyMesh Mesh;
   std::vector<AppliedCut> Cuts;
-  WorldSheet Sheet; // the last one
+  WorldSheet Sheet; // the sheet of the last cut
   vtkSmartPointer<vtkUnstructuredGrid> MadeGrid;
-  Stamp MadeMeshStamp;           // of the points and cells that it was made of
-  Stamp MadeDataStamp;           // of the arrays
+  Stamp MadeMeshStamp;           // of the points and cells that MadeGrid was made from
+  Stamp MadeDataStamp;           // of the arrays that MadeGrid was made from
   std::uint64_t MeshVersion = 0; // changes with the nodes and tetrahedra of the body
-  std::uint64_t MadeVersion = 0; // that of the grid
+  std::uint64_t MadeVersion = 0; // MeshVersion of MadeGrid
 };
 
 } // namespace deformvolume

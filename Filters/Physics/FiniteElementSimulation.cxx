@@ -42,7 +42,7 @@ void FiniteElementSimulation::Return(const ElasticBody& body, const State& state
 
 void FiniteElementSimulation::Advance(const Frame& frame)
 {
-  constexpr double someProgress = 0.5; // nobody knows how much there is to do
+  constexpr double someProgress = 0.5; // the number of steps is not known
   EquilibriumRequest request;
   request.Held = frame.Held;
   request.Loads = frame.Loads;

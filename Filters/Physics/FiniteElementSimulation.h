@@ -11,13 +11,13 @@
 namespace deformvolume
 {
 
-/// A FiniteElementModel with its output.
+/// A FiniteElementModel with its output array.
 class FiniteElementSimulation : public ElasticSimulation
 {
 public:
   EquilibriumMode Mode = EquilibriumMode::Interactive;
   MaterialModel Material = MaterialModel::StableNeoHookean;
-  /// Of the last frame.
+  /// The report of the last frame.
   EquilibriumReport Report;
 
   void SetBody(

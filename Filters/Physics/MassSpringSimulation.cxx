@@ -130,7 +130,7 @@ vtkDataArray* MassSpringSimulation::WriteOutput(double factor)
       this->Model, this->Device, static_cast<vtkIdType>(this->NumberOfNodes), factor);
     this->Factor = factor;
   }
-  // The model has written it at the end of its last frame.
+  // The model has written the output at the end of its last frame.
   this->Output.Restore();
   return this->Output.GetArray();
 }

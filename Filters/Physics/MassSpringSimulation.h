@@ -11,19 +11,19 @@
 namespace deformvolume
 {
 
-/// A MassSpringModel with its output.
+/// A MassSpringModel with its output array.
 class MassSpringSimulation : public ElasticSimulation
 {
 public:
   void SetDevice(const std::string& device, std::uint64_t memoryLimit);
   const std::string& GetDevice() const { return this->Device; }
 
-  /// In s; 0 without a body.
+  /// The longest stable time step in s; 0 without a body.
   double GetStableTimeStep();
 
   double TimeStep = 0.0;
   double Damping = 2.0;
-  /// Of the last frame.
+  /// The report of the last frame.
   MassSpringReport Report;
 
   void SetBody(

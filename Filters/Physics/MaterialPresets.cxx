@@ -14,9 +14,9 @@ namespace
 
 using Filter = vtkElasticDeformation;
 
-// Documents/physics.md has what was measured, and how, beside each source; a test compares the
-// numbers. Young moduli: Pa. Densities: kg/m^3, of ICRU Report 46 (1992). The Poisson ratio of soft
-// tissue is chosen: it is nearly incompressible.
+// Documents/physics.md describes the measurements of each source, and a test compares the numbers.
+// Young moduli are in Pa. Densities are in kg/m^3, from ICRU Report 46 (1992). The Poisson ratio of
+// soft tissue was not measured but chosen, because soft tissue is nearly incompressible.
 constexpr MaterialPreset Presets[] = {
   { Filter::BRAIN, "Brain", { 1600.0, 0.49, 1040.0 }, "Budday et al. 2015" },
   { Filter::LIVER, "Liver", { 5500.0, 0.49, 1060.0 }, "Roulot et al. 2008" },

@@ -18,7 +18,7 @@ struct MaterialPreset
   const char* Source;
 };
 
-/// Null for CUSTOM, and where there is no such preset.
+/// The preset with a number; null for CUSTOM, and if there is no such preset.
 const MaterialPreset* FindMaterialPreset(int number);
 
 } // namespace deformvolume

@@ -17,7 +17,7 @@ namespace deformvolume
 namespace
 {
 
-// Links of so many voxels, of 16 bytes each, are there at a time.
+// Number of voxels whose links, of 16 bytes each, are in memory at a time.
 constexpr std::int64_t VoxelsAtOnce = 1 << 24;
 
 class MeanFinder
@@ -90,7 +90,7 @@ private:
     return this->Volume.Ghosts && (this->Volume.Ghosts[voxel] & hidden) != 0;
   }
 
-  // Of voxels one after the other, as sums of doubles depend on the order.
+  // Adds voxels in their order, because sums of doubles depend on it.
   void Add(std::size_t first, const std::vector<VertexLink>& links)
   {
     for (std::size_t i = 0; i < links.size(); ++i)
@@ -108,7 +108,7 @@ private:
     }
   }
 
-  // The voxel that is nearest to the centroid, if it counts.
+  // The voxel nearest to the centroid; nothing if it is hidden or outside the volume.
   std::optional<std::size_t> FindNearest(const Tetrahedron& tetrahedron) const
   {
     glm::dvec3 centroid{ 0.0 };

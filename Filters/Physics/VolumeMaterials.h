@@ -19,32 +19,32 @@ namespace deformvolume
 struct VolumeMaterials
 {
   ImageGeometry Volume;
-  /// Of each voxel, x varying fastest, an index into the table.
+  /// For each voxel an index into Table. x varies fastest.
   std::vector<unsigned char> Indices;
   std::vector<ElasticMaterial> Table;
-  /// The ghosts of voxels (FindPointGhosts): those that are hidden or duplicate do not count.
+  /// vtkGhostType of the voxels (FindPointGhosts()). Hidden and duplicate voxels are ignored.
   const unsigned char* Ghosts = nullptr;
-  /// Of tetrahedra that no voxel says anything of.
+  /// Material of tetrahedra for which no voxel is found.
   ElasticMaterial Default;
 };
 
-/// What a volume says of tetrahedra.
+/// The materials of tetrahedra, as means over voxels.
 struct MaterialMeans
 {
   std::vector<ElasticMaterial> Materials; // of each tetrahedron
-  /// Tetrahedra that hold no voxel, and have the material of the one that is nearest.
+  /// Number of tetrahedra that contain no voxel and have the material of the nearest voxel.
   std::int64_t NumberWithNearest = 0;
-  /// Those outside the volume, or where voxels do not count.
+  /// Number of tetrahedra with the default material: outside the volume, or near ignored voxels.
   std::int64_t NumberWithDefault = 0;
 };
 
-/// The mean Young modulus, Poisson ratio and density of the voxels that each tetrahedron holds. A
-/// voxel on the border of several counts for one of them, as in the deformation mapping
-/// (StaticMappingBuilder). A tetrahedron that holds none has the material of the voxel that is
-/// nearest to its centroid. The result does not depend on the number of threads.
+/// Computes the mean Young modulus, Poisson ratio and density of the voxels in each tetrahedron. A
+/// voxel on the border of several tetrahedra belongs to one of them, as in the static mapping
+/// (StaticMappingBuilder). A tetrahedron without voxels has the material of the voxel nearest to
+/// its centroid. The result does not depend on the number of threads.
 ///
-/// points: world coordinates. progress: as in StaticMappingBuilder::Build; throws Aborted where it
-/// returns false.
+/// points: in world coordinates. progress: as in StaticMappingBuilder::Build(). Throws Aborted if
+/// it returns false.
 MaterialMeans FindMaterialMeans(const VolumeMaterials& volume,
   const std::vector<glm::dvec3>& points, const std::vector<Tetrahedron>& tetrahedra,
   const std::function<bool(double)>& progress);
