@@ -29,13 +29,13 @@ vtkArrayChanges::~vtkArrayChanges() = default;
 //------------------------------------------------------------------------------
 vtkArrayChanges* vtkArrayChanges::FindLog(vtkAbstractArray* array)
 {
-  // To ask for the information would make it.
+  // GetInformation() would create the information.
   if (!array || !array->HasInformation())
   {
     return nullptr;
   }
   auto* log = vtkArrayChanges::SafeDownCast(array->GetInformation()->Get(vtkArrayChanges::LOG()));
-  // The information of an array goes to its copies as well.
+  // Copies of an array have the same information.
   return log && log->Array == array ? log : nullptr;
 }
 
@@ -46,7 +46,7 @@ void vtkArrayChanges::SetArray(vtkAbstractArray* array)
   {
     return;
   }
-  // The array before may hold the only reference.
+  // The last array may hold the only reference to this log.
   const vtkSmartPointer<vtkArrayChanges> self = this;
   if (vtkArrayChanges::FindLog(this->Array) == this)
   {

@@ -3,15 +3,15 @@
  * @class   vtkArrayChanges
  * @brief   log of the tuples of an array that have been written
  *
- * A producer that writes a few tuples of a large array can log which. vtkDeformVolumeFilter then
- * looks at these only. Without a log it compares the whole array with what it was. The result is
- * the same.
+ * A producer that writes a few tuples of a large array can log which ones. vtkDeformVolumeFilter
+ * then reads only these. Without a log it compares the whole array with its last values. The result
+ * is the same.
  *
  * The filter uses the logs of these arrays:
  * - the vectors and the points of the deformation mesh (ports 1 and 2), or the vectors of a
  *   displacement field,
- * - the connectivity of its cells (vtkCellArray::GetConnectivityArray(), one component: the tuples
- *   4 c to 4 c + 3 are the tetrahedron c),
+ * - the connectivity of the cells of the mesh (vtkCellArray::GetConnectivityArray(), one component:
+ *   the tuples 4 c to 4 c + 3 are the nodes of tetrahedron c),
  * - "ActiveTetrahedra", "BoundaryDistance" and vtkGhostType of the points of the volume (port 0).
  *
  * @code{.cpp}
@@ -27,8 +27,8 @@
  * so do not call its Modified() yourself. Appended tuples need not be logged: the number of tuples
  * shows them. A copy of an array has no log.
  *
- * Only the last changes are kept, about 65,000 ranges. A consumer that has seen none of them looks
- * at the whole array.
+ * The log keeps the last changes, about 65,000 ranges. A consumer that last read the array before
+ * these changes compares the whole array.
  */
 #ifndef vtkArrayChanges_h
 #define vtkArrayChanges_h
@@ -63,14 +63,14 @@ public:
   static vtkInformationObjectBaseKey* LOG();
 
   /**
-   * The log of an array; null where it has none.
+   * The log of an array; null if it has none.
    */
   static vtkArrayChanges* FindLog(vtkAbstractArray* array);
 
   ///@{
   /**
-   * The array that this is the log of, which holds a reference to it. An array has one log: it
-   * takes the place of another one. The log starts empty. Null: of none, the default.
+   * Set/Get the array of this log. The array holds a reference to the log, and has only one log: a
+   * new one replaces the last one. The new log is empty. Default: null.
    */
   void SetArray(vtkAbstractArray* array);
   vtkAbstractArray* GetArray();
@@ -78,14 +78,14 @@ public:
 
   /**
    * Log that the tuples from first to last, both included, have been written, and mark the array as
-   * modified. Without an array, and where last is less than first, nothing happens.
+   * modified. Does nothing if there is no array, or if last is less than first.
    */
   void AddTuples(vtkIdType first, vtkIdType last);
 
   /**
-   * Which tuples have been written since the modification time of the array had a value: first and
-   * last of each range, in the order of writing. Returns false, and no ranges, where that is not
-   * known. Then any tuple may have been.
+   * Get the tuples that have been written since the modification time of the array was `time`: the
+   * first and the last tuple of each range, in the order of writing. Returns false, and no ranges,
+   * if this is not known. Then any tuple may have been written.
    */
   bool GetTuplesSince(vtkMTimeType time, vtkIdTypeArray* ranges);
 
@@ -104,15 +104,15 @@ private:
 
   struct Entry
   {
-    vtkMTimeType Time; // of the array after it
+    vtkMTimeType Time; // modification time of the array after the change
     vtkIdType First;
     vtkIdType Last;
   };
 
   vtkWeakPointer<vtkAbstractArray> Array;
   std::deque<Entry> Entries;
-  vtkMTimeType Begin = 0; // the time of the array before the first entry
-  vtkMTimeType End = 0;   // after the last one
+  vtkMTimeType Begin = 0; // modification time of the array before the first entry
+  vtkMTimeType End = 0;   // modification time of the array after the last entry
 };
 
 #endif

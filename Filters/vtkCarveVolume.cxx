@@ -45,8 +45,8 @@ void vtkCarveVolume::SetSurfaceData(vtkDataObject* data)
 //------------------------------------------------------------------------------
 void vtkCarveVolume::AddToolPosition(double x, double y, double z)
 {
-  const glm::dvec3 centre(x, y, z);
-  this->Edits->Tool.Add({ { centre, centre } });
+  const glm::dvec3 center(x, y, z);
+  this->Edits->Tool.Add({ { center, center } });
   this->Modified();
 }
 

@@ -4,36 +4,39 @@
  * @brief   carve a body out of a volume
  *
  * vtkCarveVolume switches off the tetrahedra of the sampling mesh of a volume that lie inside a
- * body: where an implicit function is negative, inside a closed surface, where voxels have a label,
- * or where a spherical tool has been. Each that is set carves. The volume itself stays: its arrays
- * are shared, and its cell array "ActiveTetrahedra" says what is left for vtkDeformVolumeFilter.
+ * body. A body is where an implicit function is negative, the inside of a closed surface, the
+ * voxels with a label, or the space that a spherical tool has swept. All bodies that are set carve.
+ * The values of the volume do not change: the output shares its arrays, and the cell array
+ * "ActiveTetrahedra" has the remaining tetrahedra for vtkDeformVolumeFilter.
  *
- * Rule says which tetrahedra are inside. By CENTROID, the default, what is carved out is as large
- * as the body, to within a tenth of a percent for a sphere of a radius of 20 voxels.
+ * Rule defines which tetrahedra are inside. With CENTROID, the default, the carved volume is that
+ * of the body, to within a tenth of a percent for a sphere with a radius of 20 voxels.
  *
- * With SmoothBoundary the surface of what is carved out is not made of whole tetrahedra: it passes
- * between the voxels.
+ * With SmoothBoundary the surface of the carved volume passes between the voxels, instead of along
+ * the faces of whole tetrahedra.
  *
  * @par Port 1, the body, optional:
  * vtkPolyData, a closed surface in world coordinates: triangles, polygons and triangle strips.
  * Inside is where a ray crosses the surface an odd number of times; the orientation of cells does
- * not matter. Points in one place, to 1/256 voxel, are one. Points are decided exactly, so that of
- * neighbouring bodies that share a face exactly one carves a tetrahedron.
+ * not matter. Points that coincide to 1/256 voxel are merged. Whether a point is inside is decided
+ * exactly: if two neighboring bodies share a face, exactly one of them carves each tetrahedron
+ * there.
  *
  * @par Port 0, the volume, ports 2 and 3, the deformation and its rest configuration, and output:
- * As in vtkVolumeEditAlgorithm. With a deformation the body lies in the deformed volume, as it is
- * seen. A label is carved wherever its voxels are.
+ * As in vtkVolumeEditAlgorithm. With a deformation, the function, the surface and the tool are in
+ * the coordinates of the deformed volume. A label is carved whatever the deformation is.
  *
  * @par Edits:
- * An update makes an edit for each of the function, the surface, the label and the tool that is
- * new, or for which Rule or SmoothBoundary is. See vtkVolumeEditAlgorithm for undoing them.
+ * An update makes an edit for the function, the surface and the label, each if it has changed, or
+ * if Rule or SmoothBoundary has changed. It makes another edit for new positions of the tool. See
+ * vtkVolumeEditAlgorithm for how to undo edits.
  *
  * @par Errors and warnings:
  * Errors are those of vtkVolumeEditAlgorithm; a surface that is open, or has a point that is not
  * finite; an array of labels that is missing, not numeric, of more than one component or too short;
  * a ToolRadius that is not greater than 0; a "BoundaryDistance" array of the volume that is not
- * numeric, of one component and as long as the volume has points. A label that no voxel has is a
- * warning.
+ * numeric, or does not have one component and one tuple for each point. A label that no voxel has
+ * causes a warning.
  *
  * @sa vtkVolumeEditAlgorithm vtkCutVolume vtkDeformVolumeFilter
  */
@@ -61,15 +64,15 @@ public:
   ///@}
 
   /**
-   * That of the filter or of the implicit function, whichever was changed last.
+   * The modification time of the filter or of the implicit function, whichever is later.
    */
   vtkMTimeType GetMTime() override;
 
   ///@{
   /**
-   * A function of world coordinates; where it is negative is inside. For spheres and boxes without
-   * a transform only what is near them is looked at, for other functions all of the volume.
-   * Default: null, which carves nothing.
+   * Set/Get the implicit function, in world coordinates. Its inside is where it is negative.
+   * Spheres and boxes without a transform are evaluated only near them, other functions in the
+   * whole volume. Default: null, which carves nothing.
    */
   virtual void SetImplicitFunction(vtkImplicitFunction* function);
   vtkGetObjectMacro(ImplicitFunction, vtkImplicitFunction);
@@ -85,10 +88,10 @@ public:
 
   ///@{
   /**
-   * Set/Get the name of a point array of the volume, numeric and of one component, and the value in
-   * it of the voxels that are carved out, compared as a double: whole numbers up to 2^53. By
-   * CENTROID three of the four vertices of a tetrahedron have it. Default: "", which carves
-   * nothing, and 1.
+   * Set/Get the name of a point array of labels, numeric and of one component, and the label of the
+   * voxels that are carved. Labels are compared as doubles, which hold integers up to 2^53. With
+   * CENTROID, a tetrahedron is inside if at least three of its four vertices have the label.
+   * Defaults: "", which carves nothing; 1.
    */
   vtkSetMacro(LabelArrayName, std::string);
   vtkGetMacro(LabelArrayName, std::string);
@@ -108,9 +111,10 @@ public:
 
   ///@{
   /**
-   * Set/Get which tetrahedra are inside: those with their centroid there, the mean of their
-   * vertices; those with any vertex there, so that nothing of the body is left; or those with all
-   * vertices there, so that nothing but the body is taken. Default: CENTROID.
+   * Set/Get which tetrahedra are inside the body. CENTROID: those whose centroid, the mean of their
+   * vertices, is inside. CONSERVATIVE: those with any vertex inside, so that nothing of the body
+   * remains. MINIMAL: those with all vertices inside, so that nothing outside the body is carved.
+   * Default: CENTROID.
    */
   vtkSetClampMacro(Rule, int, CENTROID, MINIMAL);
   vtkGetMacro(Rule, int);
@@ -121,14 +125,15 @@ public:
 
   ///@{
   /**
-   * Set/Get whether the surface of what is carved out passes between the voxels. On: tetrahedra
-   * with all vertices inside are switched off, whatever Rule is, and the output gets the point
-   * array "BoundaryDistance" (float, world units): how far each vertex is from the surface,
-   * negative inside, to first order and near the surface only. vtkDeformVolumeFilter interpolates
-   * it in each tetrahedron and leaves out samples where it is negative. The volume of a sphere of a
-   * radius of 20 voxels is then right to within a tenth of a percent at any sampling of the output.
-   * Of a label the surface lies halfway between voxels. An array of this name that the volume comes
-   * with is kept where it is less. Default: off.
+   * Set/Get whether the surface of the carved volume passes between the voxels. On: tetrahedra with
+   * all vertices inside are switched off, whatever Rule is, and the output has the point array
+   * "BoundaryDistance" (float, world units): the signed distance of each vertex from the surface,
+   * negative inside. The distance is a first-order approximation, and valid only near the surface.
+   * vtkDeformVolumeFilter interpolates it in each tetrahedron, and leaves out samples where it is
+   * negative. The volume of a sphere with a radius of 20 voxels is then right to within a tenth of
+   * a percent at any sampling of the output. The surface of a label lies halfway between voxels. If
+   * the volume has an array of this name, the output has the smaller of both distances. Default:
+   * off.
    */
   vtkSetMacro(SmoothBoundary, bool);
   vtkGetMacro(SmoothBoundary, bool);
@@ -136,18 +141,18 @@ public:
   ///@}
 
   /**
-   * Move a spherical tool of the radius ToolRadius, in world coordinates: it carves out where it
-   * is, and from position to position what it sweeps. An update carves only what is new since the
-   * last one, and looks at the bricks there only. Positions that do not continue those of the last
-   * update begin another stroke: ClearToolPositions() lifts the tool. What has been carved stays
-   * carved.
+   * Move a spherical tool with the radius ToolRadius to a position in world coordinates. The tool
+   * carves at its positions, and the space that it sweeps between them. An update carves only along
+   * positions that are new since the last update, and takes time only for the cells there. If the
+   * positions do not continue those of the last update, a new stroke begins. ClearToolPositions()
+   * lifts the tool. Carved tetrahedra remain switched off.
    */
   void AddToolPosition(double x, double y, double z);
 
   ///@{
   /**
-   * Set/Get the radius of the tool in world units, greater than 0. It counts for positions that are
-   * new. Default 1.
+   * Set/Get the radius of the tool in world units, greater than 0. It is used for new positions.
+   * Default: 1.
    */
   vtkSetMacro(ToolRadius, double);
   vtkGetMacro(ToolRadius, double);

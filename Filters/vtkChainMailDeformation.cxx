@@ -154,7 +154,8 @@ int vtkChainMailDeformation::FillInputPortInformation(int port, vtkInformation* 
 int vtkChainMailDeformation::RequestInformation(
   vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
-  // The executive has copied what the volume announces, without the direction but with the scalars.
+  // The executive has copied the information of the volume without its direction, but with its
+  // scalars.
   constexpr int components = 3;
   vtkInformation* info = output->GetInformationObject(0);
   info->CopyEntry(input[0]->GetInformationObject(0), vtkDataObject::DIRECTION());

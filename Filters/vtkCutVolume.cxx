@@ -22,9 +22,9 @@ vtkStandardNewMacro(vtkCutVolume);
 class vtkCutVolume::vtkInternals
 {
 public:
-  deformvolume::WorldSheet Sheet; // that has cut
+  deformvolume::WorldSheet Sheet; // the sheet of the last update
   std::uint64_t SheetEdit = 0;
-  bool IsSmooth = false; // whether it has divided what it crosses
+  bool IsSmooth = false; // SmoothCut at the last update
 };
 
 //------------------------------------------------------------------------------

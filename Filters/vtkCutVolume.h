@@ -4,36 +4,36 @@
  * @brief   cut a volume with a sheet
  *
  * vtkCutVolume switches off the tetrahedra of the sampling mesh of a volume that a sheet crosses.
- * The volume itself stays: its arrays are shared, and its cell array "ActiveTetrahedra" says what
- * is left. vtkDeformVolumeFilter leaves out what is switched off, so that the sides of the cut come
- * apart where a deformation moves them apart.
+ * The values of the volume do not change: the output shares its arrays, and the cell array
+ * "ActiveTetrahedra" has the remaining tetrahedra. vtkDeformVolumeFilter leaves out tetrahedra that
+ * are switched off, so that the cut opens where a deformation moves its sides apart.
  *
- * A tetrahedron is decided exactly, on positions that are rounded to 1/256 voxel. The vertices of
- * the sampling mesh count as moved by (e, e^2, e^3) for an e that is as small as can be, so that a
- * sheet through voxels cuts one layer of cells, and not two or none. A sheet without a border
- * within the volume always separates: no two tetrahedra that are left on its two sides share a
- * face. The order and the orientation of triangles do not matter. A cut is about one cell thick.
+ * Whether a sheet crosses a tetrahedron is decided exactly, on positions that are rounded to 1/256
+ * voxel. The vertices of the sampling mesh are treated as moved by (e, e^2, e^3) with an infinitely
+ * small e, so that a sheet through voxels cuts one layer of cells, and not two or none. A sheet
+ * without a border within the volume always separates its sides: no two remaining tetrahedra on its
+ * two sides share a face. The order and the orientation of triangles do not matter. A cut is about
+ * one cell thick.
  *
- * With SmoothCut nothing is lost: what the sheet crosses is divided, and both sides keep their part
- * of it.
+ * With SmoothCut no tissue is lost: tetrahedra that the sheet crosses are divided, and both sides
+ * keep their part.
  *
  * @par Port 1, the sheet, optional:
- * vtkPolyData in world coordinates: triangles, polygons and triangle strips; polylines where
+ * vtkPolyData in world coordinates: triangles, polygons and triangle strips; also polylines if
  * SweepVector is set. It may be open, fold and cross itself. A sheet that misses the volume cuts
- * nothing. Where the sheet changes, the new cut takes the place of the old one, unless Accumulate
- * is on.
+ * nothing. If the sheet changes, the new cut replaces the old one, unless Accumulate is on.
  *
  * @par Port 0, the volume, ports 2 and 3, the deformation and its rest configuration, and output:
- * As in vtkVolumeEditAlgorithm. With a deformation the sheet cuts the deformed volume, as it is
- * seen. A cut is made when the sheet or the tool is new.
+ * As in vtkVolumeEditAlgorithm. With a deformation, the sheet and the tool are in the coordinates
+ * of the deformed volume. A cut is made if the sheet or the positions of the tool have changed.
  *
  * @par Edits:
  * An update with a new sheet makes an edit, and so does one with new positions of the tool. See
- * vtkVolumeEditAlgorithm for undoing them.
+ * vtkVolumeEditAlgorithm for how to undo edits.
  *
  * @par Errors:
  * Those of vtkVolumeEditAlgorithm; a point of the sheet that is not finite, or a cell with a point
- * that is none; lines without SweepVector; a SweepVector that is not finite.
+ * that does not exist; lines without SweepVector; a SweepVector that is not finite.
  *
  * The sampling mesh is that of Rodriguez, Leon, Martin and Otaduy, "A parallel resampling method
  * for interactive deformation of volumetric models", and the movement of vertices the simulation of
@@ -80,18 +80,20 @@ public:
 
   ///@{
   /**
-   * Set/Get whether what is crossed is divided, in place of being switched off. On: the output gets
-   * the cell array "CutTetrahedra" (unsigned char, bit i stands for tetrahedron i of the cell) with
-   * the tetrahedra that the sheet parts into two sides, and the point array "CutDistance" (float):
-   * the signed distance of their vertices from the sheet, in voxels of what is cut, and 0
-   * elsewhere. vtkDeformVolumeFilter draws each side of such a tetrahedron with the motion of that
-   * side, so that a cut which is not opened leaves the image as it was, and a gap lies exactly
-   * between the two moved sheets. Where the sheet ends inside a tetrahedron, that one stays whole.
-   * Where two sheets pass between two neighbouring vertices, and where a vertex lies on different
-   * sides of two sheets, tetrahedra are switched off as without SmoothCut. Sheets of one piece have
-   * one orientation; tool positions divide where they have gone on from each other. A smooth cut
-   * that the volume comes with is joined. It matters for edits that follow; with another value the
-   * sheet cuts again. Default: off.
+   * Set/Get whether crossed tetrahedra are divided instead of switched off. On: the output has the
+   * cell array "CutTetrahedra" (unsigned char, bit i stands for tetrahedron i of the cell) with the
+   * tetrahedra that the sheet divides into two sides, and the point array "CutDistance" (float):
+   * the signed distance of their vertices from the sheet, in voxels of the volume that is cut, and
+   * 0 elsewhere. vtkDeformVolumeFilter draws each side of such a tetrahedron with the motion of
+   * that side. Therefore a cut that is not opened does not change the image, and a gap lies exactly
+   * between the two moved sheets.
+   *
+   * A tetrahedron in which the sheet ends stays whole. If two sheets pass between two neighboring
+   * vertices, or a vertex lies on different sides of two sheets, tetrahedra are switched off as
+   * without SmoothCut. The triangles of a connected sheet are first oriented consistently. Strokes
+   * of the tool continue from update to update, and divide as one sheet. A smooth cut of the input
+   * volume is joined with the new cuts. SmoothCut affects the next edits; if it changes, the sheet
+   * cuts again. Default: off.
    */
   vtkSetMacro(SmoothCut, bool);
   vtkGetMacro(SmoothCut, bool);
@@ -99,16 +101,17 @@ public:
   ///@}
 
   /**
-   * Tetrahedra that the edits have divided, and that the volume did not come with as divided ones.
+   * Get the number of tetrahedra that the edits have divided, without those that are divided in the
+   * input volume.
    */
   vtkIdType GetNumberOfDividedTetrahedra();
 
   /**
-   * Move a cutting tool, a straight edge with these two ends in world coordinates. From position to
-   * position it cuts what it sweeps: two triangles. An update cuts only between positions that are
-   * new, and looks at the bricks there only. Positions that do not continue those of the last
-   * update begin another stroke, whose first position cuts nothing: ClearToolPositions() lifts the
-   * tool. What has been cut stays cut.
+   * Move a cutting tool, a straight edge with two ends, to a position in world coordinates. It cuts
+   * along the area that it sweeps from position to position (two triangles). An update cuts only
+   * between new positions, and takes time only for the cells there. If the positions do not
+   * continue those of the last update, a new stroke begins, whose first position cuts nothing.
+   * ClearToolPositions() lifts the tool. Cuts remain.
    */
   void AddToolPosition(double x0, double y0, double z0, double x1, double y1, double z1);
 

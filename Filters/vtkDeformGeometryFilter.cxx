@@ -55,12 +55,13 @@ namespace
 {
 
 constexpr std::size_t PointsPerPart = 512;
-constexpr std::size_t PointsPerReport = 64 * PointsPerPart; // of progress
+constexpr std::size_t PointsPerReport =
+  64 * PointsPerPart; // points between two reports of progress
 
 } // namespace
 
 //------------------------------------------------------------------------------
-/// What vtkDeformGeometryFilter keeps from one execution to the next.
+/// State that vtkDeformGeometryFilter keeps from one execution to the next.
 class vtkDeformGeometryFilter::vtkInternals
 {
 public:
@@ -69,9 +70,9 @@ public:
   {
   }
 
-  /// Brings the map up to date with ports 1 and 2. Collective.
+  /// Updates the map from the data of ports 1 and 2. Collective.
   void ReadDeformation(const deformvolume::Ranks& ranks, vtkDataObject* shape, vtkDataObject* rest);
-  /// Moves a point set, or all of a composite dataset.
+  /// Moves a point set, or all point sets of a composite dataset.
   void MoveAll(vtkDataObject* input, vtkDataObject* output);
 
   deformvolume::PipelineExecution Execution;
@@ -84,7 +85,7 @@ private:
   /// Calls body(begin, end) for parts of a range, in parallel. Throws Aborted.
   template <typename Body>
   void RunInParts(std::size_t size, Body&& body);
-  /// False where the point is outside.
+  /// Returns false if the point is outside.
   bool MovePoint(const glm::dvec3& point, PointMap::Image& image) const;
 
   vtkDeformGeometryFilter* Self;
@@ -92,15 +93,15 @@ private:
   deformvolume::MeshGathering Gathering;
   deformvolume::WorldDeformation Deformation;
 
-  // The map, and what it was made of.
+  // The map, and what it was made from.
   using Key = std::tuple<std::uint64_t, deformvolume::OutsideVoxels::Modes, double, bool>;
-  std::unique_ptr<PointMap> Map; // null: points stay
+  std::unique_ptr<PointMap> Map; // null: points do not move
   bool MapIsOfMesh = false;
   std::uint64_t ConnectivityOfMap = 0;
   Key KeyOfMap;
-  bool IsInverted = false; // whether the map leads the other way
+  bool IsInverted = false; // whether points are moved by the inverse of the map
 
-  // Points of all blocks, and those that have been moved.
+  // Numbers of points of all blocks, and of points that have been moved.
   vtkIdType NumberOfPoints = 0;
   vtkIdType NumberDone = 0;
   double LongestFading = 0.0; // see PointMap::Image
@@ -155,7 +156,7 @@ void vtkDeformGeometryFilter::vtkInternals::MakeMap(const deformvolume::OutsideV
   {
     return;
   }
-  this->KeyOfMap = Key(); // of no map, until this one is complete
+  this->KeyOfMap = Key(); // belongs to no map until this one is complete
   if (isField)
   {
     this->Map = nullptr;
@@ -240,7 +241,7 @@ vtkSmartPointer<vtkPointSet> vtkDeformGeometryFilter::vtkInternals::Move(vtkPoin
     deformvolume::FindTransformed(input, this->Self->TransformAllInputVectors);
   std::atomic<vtkIdType> outside{ 0 };
   std::atomic<bool> isTooFar{ false };
-  std::atomic<double> leastFading{ 0.0 }; // displacement, negated
+  std::atomic<double> leastFading{ 0.0 }; // the negated largest displacement
   const double farthest = moved->GetDataTypeMax();
   this->RunInParts(positions.size(),
     [&](std::size_t begin, std::size_t end)
@@ -256,7 +257,7 @@ vtkSmartPointer<vtkPointSet> vtkDeformGeometryFilter::vtkInternals::Move(vtkPoin
         outsideHere += isValid ? 0 : 1;
         fadingHere = std::max(fadingHere, image.FadingDisplacement);
         const glm::dvec3 size = glm::abs(image.Point);
-        if (!(size.x <= farthest && size.y <= farthest && size.z <= farthest)) // not-a-number, too
+        if (!(size.x <= farthest && size.y <= farthest && size.z <= farthest)) // also for NaN
         {
           isTooFar = true;
           image.Point = glm::dvec3(0.0);
@@ -330,7 +331,7 @@ void vtkDeformGeometryFilter::vtkInternals::MoveAll(vtkDataObject* input, vtkDat
   {
     this->NumberOfPoints += points->GetNumberOfPoints();
   }
-  // The output is complete, or empty.
+  // Move all points before the output is filled: it must be complete or empty.
   std::vector<vtkSmartPointer<vtkPointSet>> moved;
   for (vtkPointSet* points : inputs)
   {
@@ -401,7 +402,7 @@ void vtkDeformGeometryFilter::vtkInternals::WarnOfIgnored(const std::vector<vtkP
       }
     }
   }
-  // A rank may have no points.
+  // With several ranks, a rank may have no points.
   if (points == 0 && !deformvolume::Ranks().AreMany())
   {
     warnings.insert("The input on port 0 has no points, so the output has no points.");
@@ -465,7 +466,8 @@ int vtkDeformGeometryFilter::FillInputPortInformation(int port, vtkInformation* 
   if (port == 0)
   {
     info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPointSet");
-    // The executive would iterate over the blocks, and ranks may have different numbers of these.
+    // Without this, the executive would iterate over the blocks, of which ranks may have different
+    // numbers.
     info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
     return 1;
   }
@@ -549,7 +551,7 @@ int vtkDeformGeometryFilter::RequestData(
   this->NumberOfOutsidePoints = 0;
   if (this->Internals->Execution.HasFailed())
   {
-    return 0; // the request for extents has failed, which the executive ignores
+    return 0; // ComputeInputUpdateExtent() has failed, which the executive ignores
   }
   return this->Internals->Execution.Run(this,
     "There is not enough memory for the points. Use a smaller point set, or free memory.",

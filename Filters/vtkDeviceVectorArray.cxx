@@ -42,7 +42,7 @@ void vtkDeviceVectorArray::Modified()
     }
     else if (this->HasGivenPointer)
     {
-      this->Detach(); // somebody has written there
+      this->Detach(); // somebody has written through the pointer
     }
   }
   this->Superclass::Modified();
@@ -110,10 +110,10 @@ void vtkDeviceVectorArray::Send(const std::string& device)
   }
   else
   {
-    this->Vectors.reset(); // its memory goes first
+    this->Vectors.reset(); // frees its memory before new memory is allocated
     this->Vectors = std::make_shared<deformvolume::DeviceVectors>(device, tuples);
   }
-  this->SentTime = 0; // of nothing, if this fails
+  this->SentTime = 0; // stays 0 if a call below throws
   if (written && !written->empty())
   {
     this->Vectors->Write(this->Memory.data(), *written);
@@ -210,7 +210,7 @@ void* vtkDeviceVectorArray::GetVoidPointer(vtkIdType value)
 {
   if (!this->IsOfHost && this->GetValues() != this->Memory.data())
   {
-    // The vectors have other readers: what is written there must not be seen by them.
+    // Return a copy: other readers of the vectors must not see what is written through the pointer.
     const float* values = this->GetValues();
     this->Memory.assign(values, values + this->Size);
     this->Values = this->Memory.data();

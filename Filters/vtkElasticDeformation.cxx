@@ -39,7 +39,7 @@ using deformvolume::ElasticSimulation;
 namespace
 {
 
-// The times that an input has, if any.
+// Whether an input announces times.
 bool HasTimes(vtkInformation* info)
 {
   return info && (info->Has(Pipeline::TIME_STEPS()) || info->Has(Pipeline::TIME_RANGE()));
@@ -79,7 +79,7 @@ public:
   deformvolume::ElasticSession Session;
   bool IsToReset = false;
   std::size_t CutsToUndo = 0;
-  double CheckedSize = -1.0; // of the body, in m
+  double CheckedSize = -1.0; // argument of the last CheckSize()
   deformvolume::PipelineExecution Execution;
 };
 
@@ -115,7 +115,7 @@ void vtkElasticDeformation::SetSheetData(vtkDataObject* data)
 void vtkElasticDeformation::UndoCut()
 {
   std::size_t& cuts = this->Internals->CutsToUndo;
-  cuts = std::max(cuts, cuts + 1); // all stay all
+  cuts = std::max(cuts, cuts + 1); // does not overflow after ClearCuts()
   this->Modified();
 }
 
@@ -334,7 +334,7 @@ void vtkElasticDeformation::Advance(ElasticSimulation& simulation, vtkPointSet* 
     internals.IsToReset = false;
     end = 0.0;
   }
-  // A time that is a whole number of frames from another one is not less, or more, by round-off.
+  // Rounding errors must not change the number of frames if a time is a multiple of FrameTime.
   const double roundOff = 1e-6 * this->FrameTime;
   if (info->Has(Pipeline::UPDATE_TIME_STEP()))
   {
@@ -381,7 +381,7 @@ void vtkElasticDeformation::TakeBackCuts(ElasticSimulation& simulation, std::siz
   deformvolume::ElasticSession& session = this->Internals->Session;
   if (!simulation.HasBody())
   {
-    session.Lose(); // such as where a device has failed
+    session.Lose(); // for example after a device has failed
     return;
   }
   try
@@ -390,7 +390,7 @@ void vtkElasticDeformation::TakeBackCuts(ElasticSimulation& simulation, std::siz
   }
   catch (...)
   {
-    session.Lose(); // the first error counts
+    session.Lose(); // the first error is reported
   }
 }
 

@@ -42,7 +42,7 @@ glm::dvec3 NodeSteps(const int nodes[3])
   return glm::dvec3(nodes[0] - 1, nodes[1] - 1, nodes[2] - 1);
 }
 
-// Empty on success, otherwise what is wrong.
+// Returns an error message; empty on success.
 std::string FrameOfBounds(
   const double bounds[6], double margin, const int nodes[3], Lattice& lattice)
 {
@@ -104,10 +104,10 @@ std::string FrameOfVolume(
   return std::string();
 }
 
-// Makes the cells of a lattice cubes. nodes: on each axis, before and after.
+// Makes the cells of a lattice cubes. nodes: number of nodes on each axis, which is changed.
 void MakeCubes(Lattice& lattice, int nodes[3])
 {
-  // Rounding does not add a cell.
+  // Rounding errors must not add a cell.
   constexpr double tolerance = 1e-9;
   double edge = 0.0;
   for (int axis = 0; axis < 3; ++axis)
@@ -129,8 +129,8 @@ void MakeCubes(Lattice& lattice, int nodes[3])
   }
 }
 
-// The memory that the output takes is asked for in one piece and given back: the arrays themselves
-// would report a failure in words that do not say what to do.
+// Whether the memory of the output can be allocated. If the arrays failed to allocate, their
+// message would not say what to do.
 bool CanAllocate(double bytes)
 {
   if (bytes > static_cast<double>(std::numeric_limits<std::ptrdiff_t>::max()))
@@ -160,8 +160,8 @@ int vtkLatticeTetrahedraSource::ComputePipelineMTime(vtkInformation* request,
   vtkInformationVector** inputVector, vtkInformationVector* outputVector, int requestFromOutputPort,
   vtkMTimeType* mtime)
 {
-  // The executive regards an output that was not completed as up to date. It sees a change of the
-  // modification time at this moment only.
+  // The executive regards an output that was not completed as up to date. Later than here, it would
+  // not notice a change of the modification time.
   if (this->Incomplete)
   {
     this->Incomplete = false;
@@ -174,9 +174,9 @@ int vtkLatticeTetrahedraSource::ComputePipelineMTime(vtkInformation* request,
 int vtkLatticeTetrahedraSource::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
-  // All of the volume, although the lattice depends on no voxel. Consumers of one source share its
-  // information: a smaller request would replace that of another consumer. Nor is anything read
-  // twice.
+  // Request the whole volume, although the lattice depends on no voxel: consumers of one source
+  // share its information, and a smaller request would replace that of another consumer. The source
+  // would then read the volume twice.
   if (vtkInformation* info = inputVector[0]->GetInformationObject(0))
   {
     deformvolume::AskForAll(info);
@@ -301,7 +301,7 @@ int vtkLatticeTetrahedraSource::RequestData(
         vtkIdType corners[8];
         for (int v = 0; v < 8; ++v)
         {
-          // Mirrored on the axes on which the index is odd.
+          // Cells are mirrored on the axes on which their index is odd.
           corners[v] = x + ((v ^ x) & 1) + rowLength * (y + (((v >> 2) ^ y) & 1)) +
             slabLength * (z + (((v >> 1) ^ z) & 1));
         }

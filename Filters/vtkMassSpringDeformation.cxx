@@ -12,7 +12,7 @@ vtkStandardNewMacro(vtkMassSpringDeformation);
 class vtkMassSpringDeformation::vtkInternals
 {
 public:
-  // A change of device loses what was simulated: another one is made.
+  // Replaced if the device changes, which loses the simulated state.
   std::unique_ptr<deformvolume::MassSpringSimulation> Simulation;
 };
 

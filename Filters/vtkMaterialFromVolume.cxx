@@ -36,7 +36,7 @@ using deformvolume::ElasticMaterial;
 class vtkMaterialFromVolume::vtkInternals
 {
 public:
-  // Materials of presets take the place of those that were set.
+  // Returns Table, in which materials of presets replace those of SetMaterial().
   deformvolume::MaterialTable<ElasticMaterial> GetTable() const
   {
     deformvolume::MaterialTable<ElasticMaterial> table = this->Table;
@@ -52,7 +52,7 @@ public:
   }
 
   deformvolume::MaterialTable<ElasticMaterial> Table; // without the presets
-  std::array<int, 256> Presets{};                     // of all indices; most are CUSTOM
+  std::array<int, 256> Presets{};                     // for all indices; CUSTOM: no preset
   deformvolume::PipelineExecution Execution;
 };
 

@@ -35,7 +35,7 @@ namespace
 {
 
 constexpr double MaximumNumberOfTetrahedra = 20e6;
-constexpr double SurfaceShare = 0.3; // of the progress
+constexpr double SurfaceShare = 0.3; // part of the progress
 constexpr double TetGenShare = 0.65;
 
 vtkDataArray* FindArray(vtkDataArray* array, vtkImageData* volume)
@@ -135,7 +135,7 @@ void vtkTetGenMesher::SetPieceMode(int mode)
 {
   if (mode == 1)
   {
-    // State files have it.
+    // State files may have this value.
     vtkWarningMacro("PieceMode is 1, the convex hull of all pieces, which was removed: ALL_PIECES "
                     "(0) is set. LARGEST_PIECE is 2.");
     mode = ALL_PIECES;
@@ -214,7 +214,7 @@ int vtkTetGenMesher::FillInputPortInformation(int, vtkInformation* info)
 int vtkTetGenMesher::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
-  // A part of a body is no closed surface: everybody asks for all of it.
+  // A part of the input has no closed surface: all ranks request the whole input.
   deformvolume::AskForAll(inputVector[0]->GetInformationObject(0));
   return 1;
 }
@@ -223,8 +223,8 @@ int vtkTetGenMesher::ComputePipelineMTime(vtkInformation* request,
   vtkInformationVector** inputVector, vtkInformationVector* outputVector, int requestFromOutputPort,
   vtkMTimeType* mtime)
 {
-  // The executive regards the output of an execution that failed or was aborted as up to date. This
-  // is the only moment at which a change of the modification time is seen.
+  // The executive regards the output of an execution that failed or was aborted as up to date.
+  // Later than here, it would not notice a change of the modification time.
   if (this->Incomplete)
   {
     this->Incomplete = false;
@@ -316,7 +316,8 @@ void vtkTetGenMesher::MeshSurface(
     }
     catch (const deformvolume::SurfaceRejected&)
     {
-      // Decimation can make a surface intersect itself: below, it is taken as it is.
+      // Decimation can make a surface intersect itself. The surface is then meshed without
+      // decimation.
     }
   }
   CheckSize(surface, length, {});
@@ -329,7 +330,7 @@ void vtkTetGenMesher::CheckSize(vtkPolyData* surface, double length, const Spher
 {
   vtkNew<vtkMassProperties> properties;
   properties->SetInputData(surface);
-  // TetGen ends up with about half of the largest volume on average.
+  // On average, tetrahedra of TetGen have about half of the largest volume.
   const double expected = 2.0 * properties->GetVolume() / RegularVolume(length) +
     properties->GetSurfaceArea() / (std::sqrt(3.0) / 4.0 * length * length);
   const double refined = spheres.empty() ? 0.0 : deformvolume::EstimateTetrahedra(surface, spheres);

@@ -29,8 +29,8 @@
 namespace
 {
 
-// Such as the part of a rank without work, of a volume that has cells: there is nothing to be
-// edited.
+// Whether the data are a part without cells of a volume with cells, such as the part of a rank
+// without work. Such a part is not edited.
 bool IsPartWithoutCells(vtkImageData* volume, vtkInformation* info)
 {
   return deformvolume::GetNumberOfCells(deformvolume::GetGeometry(volume).PointExtent) == 0 &&
@@ -44,7 +44,7 @@ const unsigned char* FindBytes(vtkImageData* image, const char* name)
                                                                           : nullptr;
 }
 
-// Hides the cells that have a tetrahedron that is switched off or divided, from views, not from
+// Hides cells with a tetrahedron that is switched off or divided from views, but not from
 // vtkDeformVolumeFilter.
 void HideEditedCells(vtkImageData* image)
 {
@@ -203,8 +203,9 @@ vtkIdType vtkVolumeEditAlgorithm::GetNumberOfSwitchedOffTetrahedra()
 int vtkVolumeEditAlgorithm::RequestInformation(
   vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
-  // The executive copies all else that the volume announces. vtkImageAlgorithm would crash where
-  // the array of displacements is chosen and there is no deformation.
+  // The executive copies all other information of the volume.
+  // vtkImageAlgorithm::RequestInformation() would crash if an array of displacements is selected
+  // and no deformation is connected.
   output->GetInformationObject(0)->CopyEntry(
     input[0]->GetInformationObject(0), vtkDataObject::DIRECTION());
   return 1;
