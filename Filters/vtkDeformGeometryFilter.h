@@ -4,69 +4,69 @@
  * @brief   move points as vtkDeformVolumeFilter moves a volume
  *
  * vtkDeformGeometryFilter moves surfaces, landmarks, streamlines and grids with the deformation
- * that vtkDeformVolumeFilter applies to a volume: segmentations and measurements stay where they
- * belong. It takes points at rest to their deformed places or, with Inverse, points of the deformed
- * volume back to rest. All is computed on the processor, in double precision; no OpenCL device is
- * needed.
+ * that vtkDeformVolumeFilter applies to a volume, so that segmentations and measurements stay
+ * aligned with the volume. It moves points at rest to their deformed positions or, with Inverse,
+ * points of the deformed volume back to rest. It computes on the CPU, in double precision, and
+ * needs no OpenCL device.
  *
  * @par Port 0, the points:
- * Any vtkPointSet: vtkPolyData, vtkUnstructuredGrid, vtkStructuredGrid, or a composite dataset of
- * such. All points must be finite, whether cells use them or not.
+ * Any vtkPointSet, such as vtkPolyData, vtkUnstructuredGrid or vtkStructuredGrid, or a composite
+ * dataset of these. All points must be finite, whether cells use them or not.
  *
  * @par Port 1, the deformation, optional:
  * A mesh with displacements or, with port 2, deformed points; or a vtkImageData with a displacement
  * field, in world units: the same as port 1 of vtkDeformVolumeFilter. The displacements are chosen
  * by SetInputArrayToProcess(0, 1, 0, POINTS, name), by default the active vectors; an empty name
- * stands for the active vectors or else the only array of three components. Without it points stay
- * where they are.
+ * stands for the active vectors or else the only array of three components. Without a deformation
+ * points do not move.
  *
  * @par Port 2, optional, the rest configuration:
  * A mesh, as on port 1, with the cells and the number of points of port 1.
  *
  * @par Output:
- * The same kind of data with moved points, of type float where the points of the input are, else
- * double. Cells, cell arrays and field data pass. So do point arrays, but for these:
+ * The same kind of data with moved points, of type float if the points of the input are, else
+ * double. Cells, cell arrays and field data are passed. Point arrays are passed, except for these:
  * - Active normals are multiplied by the inverse transpose of the deformation gradient and
- *   normalised.
+ *   normalized.
  * - Active vectors are multiplied by the deformation gradient. See also TransformAllInputVectors.
- *   They are displacements of the same mesh where port 0 and port 1 are connected to one source:
- *   choose other active vectors where these are not to change.
- * - "vtkValidPointMask" (char) is 1 for points that the deformation moves, and 0 for points that it
- *   has no place for (see OutsideMode). These keep their place, normals and vectors, and a warning
- *   says how many there are.
+ *   If ports 0 and 1 are connected to the same source, the active vectors are the displacements:
+ *   choose other active vectors if the displacements must not change.
+ * - "vtkValidPointMask" (char) is 1 for points that the deformation moves, and 0 for points outside
+ *   (see OutsideMode). Points outside keep their positions, normals and vectors, and a warning has
+ *   their number.
  *
- * These arrays are of type float where the input's are, else double. The deformation gradient is
- * the derivative of deformed by rest positions, with Inverse of rest by deformed ones. It is
- * constant in each tetrahedron, and jumps between them. Active normals and vectors of cells are not
- * transformed; a warning names them.
+ * Transformed arrays are of type float if those of the input are, else double. The deformation
+ * gradient is the derivative of deformed by rest positions, with Inverse of rest by deformed ones.
+ * It is constant in each tetrahedron, and jumps between them. Active normals and vectors of cells
+ * are not transformed; a warning names them.
  *
  * @par The map:
- * - Mesh: a point follows the tetrahedron that holds it, of several the one with the lowest number.
- *   Points that are nearer to the mesh than 1e-6 of its size (the diagonal of its bounds plus its
- *   largest coordinate) count as in it.
+ * - Mesh: a point follows the tetrahedron that contains it, of several the one with the lowest
+ *   index. Points nearer to the mesh than 1e-6 of its size (the diagonal of its bounds plus its
+ *   largest coordinate) are treated as inside.
  * - Field: trilinear between the points of the field. Points outside it by at most 1/1000 of a cell
- *   count as on its border. Those whose interpolation needs a hidden point are outside.
- * - With Inverse (or without, where FieldIsInverse is on) a point may have come from several
- * places, where the deformation folds. Upright tetrahedra win over inverted ones, and then the one
- * with the lowest number wins. Cells of a field are solved by Newton's method, to 1e-6 of a cell.
- * Where a cell is folded within itself, the method may miss a place. Where it finds none, the point
- * is outside.
+ *   are treated as on its border. Points whose interpolation needs a hidden point are outside.
+ * - With Inverse (or without, if FieldIsInverse is on), several points at rest may belong to one
+ *   point where the deformation folds. Upright tetrahedra win over inverted ones, then lower
+ *   indices over higher ones. In cells of a field Newton's method finds the point, to 1e-6 of a
+ *   cell. If a cell is folded within itself, the method may miss a point. If it finds no point, the
+ *   point to move is outside.
  *
- * A voxel center comes to where vtkDeformVolumeFilter moves the voxel, which rounds to 1/256 of an
- * output voxel. Between voxels that filter interpolates along the tetrahedra of its voxels, and
- * this filter follows the deformation itself.
+ * This filter moves a voxel center to the same position as vtkDeformVolumeFilter, which rounds
+ * positions to 1/256 of an output voxel. Between voxels, vtkDeformVolumeFilter interpolates in the
+ * tetrahedra of the sampling mesh, while this filter evaluates the deformation itself.
  *
  * @par Ranks:
- * Under MPI each rank moves its points. Of the deformation mesh each rank may have a piece, none,
- * or the whole: it is gathered through vtkMultiProcessController::GetGlobalController(). Every rank
- * needs the whole of a displacement field. All ranks have to update together. An error of one rank
- * is reported on all ranks.
+ * Under MPI each rank moves its points. Each rank may have a piece of the deformation mesh, no
+ * piece, or the whole mesh. The mesh is gathered through
+ * vtkMultiProcessController::GetGlobalController(). Every rank needs the whole of a displacement
+ * field. All ranks have to update together. An error of one rank is reported on all ranks.
  *
  * @par Errors:
- * Each failure is one vtkErrorMacro, which says what is wrong and what to do, at each update that
- * fails: points that are not finite, a mesh without tetrahedra, displacements that are missing or
- * not finite, a point array to transform that has too few tuples. The output is then empty. An
- * input without points is a warning, and gives an output without points.
+ * Each update that fails reports one error with vtkErrorMacro: points that are not finite, a mesh
+ * without tetrahedra, displacements that are missing or not finite, a point array to transform with
+ * a wrong number of tuples. The output is then empty. An input without points causes a warning, and
+ * gives an output without points.
  *
  * @sa vtkDeformVolumeFilter vtkTransformFilter vtkWarpVector
  */
@@ -126,8 +126,8 @@ public:
 
   ///@{
   /**
-   * Set/Get whether the points of the mesh on port 1 are deformed already, with the displacements
-   * that led there beside them. See vtkDeformVolumeFilter. Default: off.
+   * Set/Get whether the points of the mesh on port 1 are deformed already. The rest positions are
+   * then the points minus the displacements. See vtkDeformVolumeFilter. Default: off.
    */
   vtkSetMacro(PointsAreDeformed, bool);
   vtkGetMacro(PointsAreDeformed, bool);
@@ -147,7 +147,7 @@ public:
   ///@}
 
   /**
-   * What becomes of points outside the deformation, see SetOutsideMode().
+   * What happens to points outside the deformation, see SetOutsideMode().
    */
   enum OutsideModes
   {
@@ -159,17 +159,18 @@ public:
   ///@{
   /**
    * Set/Get what happens to points outside the deformation mesh or field.
-   * - DISCARD: they are nowhere in the deformed volume. They stay where they are, and
-   *   vtkValidPointMask is 0 there.
+   * - DISCARD: the deformed volume does not contain them. They do not move, and vtkValidPointMask
+   *   is 0 for them.
    * - EXTRAPOLATE: they follow the affine map of the tetrahedron with the closest face of the
    *   boundary of the mesh; with a field, the displacement of the closest point of the field. (In
    *   vtkDeformVolumeFilter it is the tetrahedron of the closest voxel inside the mesh: the two may
    *   differ far from the mesh.)
-   * - KEEP: they stay where they are, and the displacement fades to zero within FadeDistance.
+   * - KEEP: they do not move, except that the displacement of the boundary fades to zero within
+   *   FadeDistance.
    *
-   * With Inverse the outside is inverted by Newton's method, as far as it converges: where the
-   * closest point of the mesh jumps, there are points that nothing is moved to, which are outside
-   * (vtkValidPointMask is 0). Default: DISCARD.
+   * With Inverse, Newton's method inverts the map outside, as far as it converges. Where the
+   * closest point of the mesh jumps, there are positions to which no point moves. Points at these
+   * positions are outside (vtkValidPointMask is 0). Default: DISCARD.
    */
   vtkSetClampMacro(OutsideMode, int, DISCARD, KEEP);
   vtkGetMacro(OutsideMode, int);
@@ -183,8 +184,8 @@ public:
    * Set/Get, for OutsideMode KEEP, the distance from the mesh or the field within which the
    * displacement fades to zero, in world units. A point at the distance d is displaced as the
    * closest point of the boundary, times 1 - 3 s^2 + 2 s^3 with s = d / FadeDistance. 0: no point
-   * outside moves. Negative, infinite and NaN are errors at the next update. A warning says where
-   * points outside take a displacement of over two thirds of it, with which space may fold.
+   * outside moves. Negative, infinite and NaN are errors at the next update. If points outside get
+   * a displacement of more than two thirds of FadeDistance, space may fold, and there is a warning.
    * Default: 0.
    */
   vtkSetMacro(FadeDistance, double);
@@ -193,8 +194,8 @@ public:
 
   ///@{
   /**
-   * Set/Get whether all point arrays of three components of type float or double are transformed as
-   * the active vectors are, but for normals and texture coordinates. Default: off.
+   * Set/Get whether all point arrays of three components of type float or double are transformed
+   * like the active vectors, except for normals and texture coordinates. Default: off.
    */
   vtkSetMacro(TransformAllInputVectors, bool);
   vtkGetMacro(TransformAllInputVectors, bool);
@@ -202,8 +203,8 @@ public:
   ///@}
 
   /**
-   * Points of the last update that were outside (vtkValidPointMask is 0), of all blocks, on this
-   * rank.
+   * Get the number of points of the last update that were outside (vtkValidPointMask is 0), of all
+   * blocks, on this rank.
    */
   vtkGetMacro(NumberOfOutsidePoints, vtkIdType);
 

@@ -12,11 +12,11 @@
  * @par Port 0, the volume:
  * vtkImageData at rest with at least two voxels on each axis. The source must announce its extent
  * and direction. All numeric point arrays are deformed, and attributes keep their role; field data
- * pass. Points that vtkGhostType
- * marks as hidden or duplicate are no source. These arrays are read besides, where they are there:
- * - "ActiveTetrahedra" (cells, unsigned char): bit i stands for tetrahedron i of the cell, and is 0
- *   where it is cut off. Cells that vtkGhostType hides have none, except those that
- *   vtkVolumeEditAlgorithm::BlankCells hides.
+ * pass. Points that vtkGhostType marks as hidden or duplicate are not used. These arrays are read,
+ * too, if they exist:
+ * - "ActiveTetrahedra" (cells, unsigned char): bit i is 1 if tetrahedron i of the cell is active.
+ *   Cells that vtkGhostType hides have no active tetrahedra, except cells that are hidden by
+ *   vtkVolumeEditAlgorithm::BlankCells.
  * - "BoundaryDistance" (points, numeric, one component, any unit): samples where it is negative are
  *   left out. NaN is not negative.
  * - "CutTetrahedra" (cells, unsigned char) and "CutDistance" (points, numeric): a smooth cut, see
@@ -25,7 +25,8 @@
  * A warning names all other cell arrays, which are not resampled.
  *
  * @par Port 1, the deformation, optional:
- * Without it the volume stays at rest, and masks and cuts show. Otherwise one of:
+ * Without a deformation the volume stays at rest, and only its masks and cuts are applied. The
+ * deformation is one of:
  * - a mesh: vtkUnstructuredGrid, vtkStructuredGrid, vtkRectilinearGrid, or a composite dataset of
  *   these. Cells other than tetrahedra are split. Its points are at rest, and their displacements
  *   are a point array of three components in world units; or they are deformed, see port 2 and
@@ -34,29 +35,33 @@
  *   may have another grid than the volume. Points that vtkGhostType hides are undefined: voxels
  *   whose interpolation needs one are not covered. See also FieldIsInverse.
  *
- * SetInputArrayToProcess(0, 1, 0, POINTS, name) chooses the displacements: by default the active
- * vectors; with an empty name these, or else the only array of three components.
+ * SetInputArrayToProcess(0, 1, 0, POINTS, name) chooses the displacements. The default is the
+ * active vectors. An empty name means the active vectors, or else the only array of three
+ * components.
  *
  * @par Port 2, the rest configuration, optional:
  * A mesh with the cells and the number of points of port 1, whose points are then the deformed
  * positions.
  *
  * @par Port 3, the reference image, optional:
- * vtkImageData whose grid the output has. Only what its source announces is used.
+ * vtkImageData whose grid becomes that of the output. Only the pipeline information of its source
+ * is used, not its data.
  *
  * @par Output:
  * The arrays of the volume, and "vtkValidPointMask" (char): 1 where the deformed volume covers a
  * voxel, else 0. Each covered voxel is written by exactly one tetrahedron. Positions are rounded to
- * 1/256 of an output voxel. An undeformed volume comes out bit for bit equal. Where the volume
- * folds over itself, upright tetrahedra win over inverted ones, and then the lowest cell wins.
+ * 1/256 of an output voxel. Without deformation the output equals the volume bit for bit. Where the
+ * volume folds over itself, upright tetrahedra win over inverted ones, then cells with lower
+ * indices over those with higher ones.
  *
  * @par Pieces and ranks:
- * The filter makes any part of its output, and under MPI each rank makes its piece, with the same
- * bits as the whole. All ranks have to update together. Documents/parallel.md says what is read.
+ * The filter can produce any part of its output. Under MPI each rank produces its piece, which
+ * equals that part of the whole output bit for bit. All ranks have to update together.
+ * Documents/parallel.md describes which inputs are read.
  *
  * @par Errors:
  * An update that fails reports one error, which says what is wrong and what to do. The output is
- * then empty, and the filter works again once the cause is removed.
+ * then empty, and the filter works again after the cause is corrected.
  *
  * @sa vtkLatticeTetrahedraSource vtkTetGenMesher vtkDeformGeometryFilter
  */
@@ -119,9 +124,9 @@ public:
   ///@{
   /**
    * Set/Get whether a displacement field is inverse: it leads from a point of the output to the
-   * point of the volume that is seen there, as registration programs write it. It is looked up, not
-   * inverted. Needs the resampler MESH_RASTERIZATION or AUTOMATIC. Not used with a mesh. Default:
-   * off.
+   * point of the volume that is seen there, as registration programs write it. The field is
+   * evaluated, not inverted. Needs the resampler MESH_RASTERIZATION or AUTOMATIC. Not used with a
+   * mesh. Default: off.
    */
   vtkSetMacro(FieldIsInverse, bool);
   vtkGetMacro(FieldIsInverse, bool);
@@ -130,11 +135,12 @@ public:
 
   ///@{
   /**
-   * Set/Get what decides the extent of the output: the bounds of the deformed volume, those of the
-   * volume at rest, or the box CustomBounds (x min, x max, y min, y max, z min, z max, in world
-   * coordinates). Deformed bounds hold all times seen so far. With a reference image this setting
-   * and those down to CustomSpacing have no effect, and a warning names those that are set.
-   * Defaults: DEFORMED_BOUNDS; -1, 1, -1, 1, -1, 1.
+   * Set/Get which bounds determine the extent of the output: those of the deformed volume, those of
+   * the volume at rest, or the box CustomBounds (x min, x max, y min, y max, z min, z max, in world
+   * coordinates). DEFORMED_BOUNDS contains the deformed volume at all times that were requested so
+   * far. With a reference image, OutputBoundsMode, Padding, BoundsGranularity and OutputSpacingMode
+   * have no effect, and a warning names those that are set. Defaults: DEFORMED_BOUNDS; -1, 1, -1,
+   * 1, -1, 1.
    */
   enum OutputBoundsModes
   {
@@ -162,9 +168,9 @@ public:
 
   ///@{
   /**
-   * Set/Get the number of voxels to whose multiples deformed bounds are rounded outwards. The
-   * extent then stays while the body moves a little, as Incremental and viewers need it. 0 and 1:
-   * off. Default: 0, range 0 to 1000.
+   * Set/Get a number of voxels. Deformed bounds are rounded outwards to its multiples, so that the
+   * extent does not change while the body moves a little. Incremental and viewers need such an
+   * extent. 0 and 1: off. Default: 0, range 0 to 1000.
    */
   vtkSetClampMacro(BoundsGranularity, int, 0, 1000);
   vtkGetMacro(BoundsGranularity, int);
@@ -191,14 +197,15 @@ public:
   ///@{
   /**
    * Set/Get what happens to the volume outside the deformation mesh or field.
-   * - DISCARD: it is left out. The deformed volume ends where the deformed mesh ends, to 1/128
-   *   output voxel.
-   * - EXTRAPOLATE: it follows the tetrahedron of the nearest voxel inside the mesh, or the nearest
-   *   point of the field.
-   * - KEEP: it stays where it is, and the displacement fades to zero within FadeDistance, in world
-   *   units, from the mesh at rest or the grid of the field. Less than twice the largest
-   *   displacement may fold the volume. With 0 no voxel outside moves. Negative, infinite and NaN
-   *   are errors, and so are meshes with OpenSplits or MESH_RASTERIZATION.
+   * - DISCARD: that part of the volume is left out. The deformed volume ends where the deformed
+   *   mesh ends, to 1/128 output voxel.
+   * - EXTRAPOLATE: the part follows the tetrahedron of the nearest voxel inside the mesh, or the
+   *   nearest point of the field.
+   * - KEEP: the part does not move, except that the displacement fades to zero within FadeDistance,
+   *   in world units, of the mesh at rest or of the grid of the field. A FadeDistance of less than
+   *   twice the largest displacement may fold the volume. With 0 no voxel outside moves. Negative,
+   *   infinite and NaN distances are errors. KEEP is an error for meshes with OpenSplits or
+   *   MESH_RASTERIZATION.
    *
    * Defaults: DISCARD; 0.
    */
@@ -220,9 +227,9 @@ public:
   ///@{
   /**
    * Set/Get the interpolation of arrays that are not categorical: linear; cubic (Catmull-Rom, over
-   * four voxels on each axis where all 64 are there and on one side of every cut, else linear); or
-   * nearest, which treats every array as categorical. Integers are rounded to the nearest. Default:
-   * LINEAR_INTERPOLATION.
+   * four voxels on each axis; linear if one of these 64 voxels does not exist, or if they lie on
+   * different sides of a cut); or nearest, which treats every array as categorical. Integers are
+   * rounded to the nearest. Default: LINEAR_INTERPOLATION.
    */
   enum Interpolations
   {
@@ -248,8 +255,8 @@ public:
 
   ///@{
   /**
-   * Names of point arrays that hold labels. Labels are never mixed: each comes from one voxel of
-   * the cell, mostly the nearest one. Labels of 64 bits keep all bits. Default: none.
+   * Names of point arrays that hold labels. Labels are not interpolated: each is that of one voxel
+   * of the cell, usually the nearest one. Labels of 64 bits keep all bits. Default: none.
    */
   void AddCategoricalArray(const char* name);
   void RemoveCategoricalArray(const char* name);
@@ -261,9 +268,9 @@ public:
   ///@{
   /**
    * Names of point arrays that hold amounts per unit of volume, such as a dose. Their values are
-   * divided by the Jacobian, so that their sum is kept, and become float, or stay double. An error
-   * for arrays that are missing or categorical, and for meshes with MESH_RASTERIZATION. Default:
-   * none.
+   * divided by the Jacobian, so that their sum is kept. The output array is of type double if the
+   * array of the volume is, else of type float. It is an error if an array is missing or
+   * categorical, and for meshes with MESH_RASTERIZATION. Default: none.
    */
   void AddDensityArray(const char* name);
   void RemoveDensityArray(const char* name);
@@ -275,8 +282,8 @@ public:
   ///@{
   /**
    * Set/Get whether the output has a point array "RestPosition" (float, three components): the
-   * world coordinates at rest of what a voxel shows. It is the exact inverse of the deformation.
-   * Default: off.
+   * world coordinates at rest of the tissue at a voxel. They are the exact inverse of the
+   * deformation. Default: off.
    */
   vtkSetMacro(GenerateRestPositions, bool);
   vtkGetMacro(GenerateRestPositions, bool);
@@ -286,8 +293,8 @@ public:
   ///@{
   /**
    * Set/Get whether the output has a point array "Jacobian" (float): the determinant of the
-   * derivative of deformed by rest positions. 2 is twice the volume; less than 0 is inside out. An
-   * error for meshes with MESH_RASTERIZATION. Default: off.
+   * derivative of deformed by rest positions. A value of 2 means twice the volume, a negative value
+   * an inverted tetrahedron. It is an error for meshes with MESH_RASTERIZATION. Default: off.
    */
   vtkSetMacro(GenerateJacobian, bool);
   vtkGetMacro(GenerateJacobian, bool);
@@ -296,9 +303,9 @@ public:
 
   ///@{
   /**
-   * Set/Get whether the output has a point array "FoldCount" (unsigned int): how many tetrahedra of
-   * the sampling mesh hold a voxel. More than 1 is a fold. An error for meshes with
-   * MESH_RASTERIZATION. Default: off.
+   * Set/Get whether the output has a point array "FoldCount" (unsigned int): the number of
+   * tetrahedra of the sampling mesh that contain a voxel. More than 1 means a fold. It is an error
+   * for meshes with MESH_RASTERIZATION. Default: off.
    */
   vtkSetMacro(GenerateFoldCount, bool);
   vtkGetMacro(GenerateFoldCount, bool);
@@ -307,11 +314,11 @@ public:
 
   ///@{
   /**
-   * Counts of the last execution: voxels of the output that the deformed volume covers; tetrahedra
-   * that the deformation turned inside out (of the sampling mesh, of the deformation mesh at its
-   * boundary and with MESH_RASTERIZATION, or of the grid of an inverse field), where parts of the
-   * volume are seen twice; tetrahedra of the deformation mesh without volume at rest, which are
-   * skipped.
+   * Get counters of the last execution: voxels of the output that the deformed volume covers;
+   * tetrahedra that the deformation turned inside out (of the sampling mesh, of the deformation
+   * mesh at its boundary and with MESH_RASTERIZATION, or of the grid of an inverse field), where
+   * parts of the volume are seen twice; tetrahedra of the deformation mesh without volume at rest,
+   * which are skipped.
    */
   vtkGetMacro(NumberOfCoveredVoxels, vtkIdType);
   vtkGetMacro(NumberOfInvertedTetrahedra, vtkIdType);
@@ -320,31 +327,32 @@ public:
 
   ///@{
   /**
-   * An extent of the output that holds all voxels that the last execution may have changed: all of
-   * the output, or less after an incremental update. Empty (0, -1, 0, -1, 0, -1) where nothing
-   * changed and after a failure. Under MPI it is about the piece of this rank.
+   * Get an extent of the output that contains all voxels that the last execution may have changed:
+   * the whole output, or less after an incremental update. Empty (0, -1, 0, -1, 0, -1) if nothing
+   * has changed, and after a failure. Under MPI it refers to the piece of this rank.
    */
   vtkGetVector6Macro(ChangedExtent, int);
   ///@}
 
   /**
-   * What the last execution did, one "name: value" a line, such as "Seconds for resampling". ""
-   * before the first. Times are those of this rank; counts are summed over the ranks.
+   * Get statistics of the last execution as text, with one "name: value" in each line, such as
+   * "Seconds for resampling"; "" before the first execution. Times are those of this rank. Counts
+   * are summed over the ranks.
    */
   std::string GetSummary();
 
   ///@{
   /**
    * Set/Get how the deformed volume is resampled.
-   * - EXACT: the tetrahedra of the sampling mesh are rasterised.
-   * - MESH_RASTERIZATION: the tetrahedra of the deformation mesh are rasterised, and the volume is
-   *   looked up at the rest position of each output voxel. It takes less memory. Not for forward
+   * - EXACT: the tetrahedra of the sampling mesh are rasterized.
+   * - MESH_RASTERIZATION: the tetrahedra of the deformation mesh are rasterized, and the volume is
+   *   sampled at the rest position of each output voxel. It takes less memory. Not for forward
    *   fields, nor for meshes with EXTRAPOLATE or KEEP.
    * - AUTOMATIC: EXACT, unless the field is inverse, or the memory suffices for MESH_RASTERIZATION
    *   only.
    *
-   * The value 1 is an error. Default: AUTOMATIC. ResamplerInUse is that of the last execution;
-   * AUTOMATIC before the first.
+   * The value 1 is an error. Default: AUTOMATIC. ResamplerInUse is the resampler of the last
+   * execution; AUTOMATIC before the first.
    */
   enum Resamplers
   {
@@ -375,10 +383,10 @@ public:
 
   ///@{
   /**
-   * Set/Get which voxels the filter works on: all, or every second or fourth one on each axis, for
-   * the time in which something moves. Other values than 1, 2 and 4 are an error. The output's
-   * spacing is larger by the factor, except with a reference image. What is kept between updates is
-   * kept for each factor. Default: 1.
+   * Set/Get which voxels the filter uses: all (1), or every second (2) or fourth one (4) on each
+   * axis, for fast previews while something moves. Other values are an error. The output's spacing
+   * is larger by the factor, except with a reference image. The data that the filter keeps between
+   * updates are kept for each factor. Default: 1.
    */
   vtkSetMacro(SamplingFactor, int);
   vtkGetMacro(SamplingFactor, int);
@@ -398,8 +406,8 @@ public:
   ///@{
   /**
    * Set/Get whether the arrays of the output stay in the memory of a device that has its own until
-   * somebody reads them. They have all interfaces of vtkDataArray, but are none of VTK's own
-   * classes. No effect on processors. Default: off.
+   * somebody reads them. They have all interfaces of vtkDataArray, but their class is not one of
+   * VTK's own. No effect on CPU devices. Default: off.
    */
   vtkSetMacro(OutputOnDevice, bool);
   vtkGetMacro(OutputOnDevice, bool);
@@ -410,8 +418,8 @@ public:
   /**
    * Set/Get the OpenCL device: "" or "best" for the best one, or for the one that the environment
    * variable DEFORMVOLUME_DEVICE names; "cpu" or "gpu" for the best one of that kind; or a part of
-   * a device's name, without regard to case. An error where there is no such device. Default: "".
-   * DeviceInUse is the name of the device of the last execution; "" before the first.
+   * a device's name, without regard to case. It is an error if there is no such device. Default:
+   * "". DeviceInUse is the name of the device of the last execution; "" before the first.
    * GetDeviceNames() lists the devices of this machine, the best first, in an array that belongs to
    * the caller.
    */
@@ -423,10 +431,10 @@ public:
 
   ///@{
   /**
-   * Set/Get how many bytes of device memory may be used; 0: what is available. An update that needs
-   * more is an error before anything is allocated. Default: 0. GetDeviceMemory() returns the bytes
-   * that this filter holds on the device. ReleaseDeviceMemory() frees them; the next update sends
-   * everything again.
+   * Set/Get how many bytes of device memory may be used; 0: the available memory. An update that
+   * needs more is an error before anything is allocated. Default: 0. GetDeviceMemory() returns the
+   * bytes that this filter holds on the device. ReleaseDeviceMemory() frees them; the next update
+   * sends everything again.
    */
   vtkSetClampMacro(MemoryLimit, vtkTypeInt64, 0, VTK_TYPE_INT64_MAX);
   vtkGetMacro(MemoryLimit, vtkTypeInt64);
@@ -436,7 +444,7 @@ public:
 
   /**
    * Set a property by its name in state files and scripts of ParaView. Properties that were removed
-   * are ignored, with a warning where their value is not the former default.
+   * are ignored, with a warning if their value is not the former default.
    */
   void SetFromState(const char* property, int value);
 

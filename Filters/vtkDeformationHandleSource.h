@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkDeformationHandleSource
- * @brief   a handle that holds a place of a body and drags it elsewhere
+ * @brief   a handle that holds a point of a body and drags it elsewhere
  *
- * vtkDeformationHandleSource makes what vtkChainMailDeformation takes as handles: a point, and the
- * place of the body at rest that it holds. Several handles are joined by vtkAppendPolyData.
+ * vtkDeformationHandleSource makes a handle for vtkChainMailDeformation or vtkElasticDeformation:
+ * the current position of the handle, and the position in the body at rest that it holds.
+ * vtkAppendPolyData joins several handles.
  *
  * @par Output:
  * vtkPolyData with one point at Position, in double precision, and one vertex cell. Its point array
- * RestPosition (vtkDoubleArray, 3 components) has the place at rest, in world coordinates. The
+ * RestPosition (vtkDoubleArray, 3 components) has the position at rest, in world coordinates. The
  * first piece has the point, all others are empty.
  *
  * @par Errors:
  * A position that is not finite.
  *
- * @sa vtkChainMailDeformation
+ * @sa vtkChainMailDeformation vtkElasticDeformation
  */
 #ifndef vtkDeformationHandleSource_h
 #define vtkDeformationHandleSource_h

@@ -3,21 +3,21 @@
  * @class   vtkDeviceVectorArray
  * @brief   array of vectors whose values lie in the memory of an OpenCL device
  *
- * An array of floats as any other, whose tuples of three components vtkDeformVolumeFilter reads in
- * the memory of its device. Use it for the vectors of a deformation mesh or of a displacement field
- * that several filters use: they take one copy to the device, not one each. Values that a
- * simulation on the device makes, such as those of vtkChainMailDeformation, never pass through the
- * host unless somebody asks for them.
+ * An array of floats whose tuples of three components vtkDeformVolumeFilter reads in the memory of
+ * its device. Use it for the vectors of a deformation mesh or of a displacement field that several
+ * filters use: they are uploaded once, not once for each filter. Values that a simulation computes
+ * on the device, such as those of vtkChainMailDeformation, are not copied to the host unless
+ * somebody accesses them.
  *
- * Values are brought to the host at the first access by VTK, and again where they have changed on
- * the device since. Once something writes them by VTK, they are values of the host. A filter that
- * wants them on the device then gets them there (see SetDevice()): all of them, or those that a
- * vtkArrayChanges says have been written. Values that are written through a pointer need a call of
- * Modified(), as in any array.
+ * Values are downloaded to the host at the first access through VTK, and again after they have
+ * changed on the device. After something has written values through VTK, the values of the host are
+ * the valid ones. They are uploaded when a filter needs them on the device (see SetDevice()): all
+ * values, or those that a vtkArrayChanges has logged as written. After values are written through a
+ * pointer, call Modified(), as for any array.
  *
- * A device that is a processor works in the memory of the host. There this array is as good as a
- * vtkFloatArray, and no better. A filter on another device than that of the array reads the values
- * on the host, and so does a filter that needs the bounds of a volume that a mesh deforms
+ * On CPU devices this array is equivalent to a vtkFloatArray, since these use the memory of the
+ * host. A filter on another device than that of the array reads the values on the host. So does a
+ * filter that needs the bounds of a volume that a mesh deforms
  * (vtkDeformVolumeFilter::SetOutputBoundsMode()).
  *
  * Arrays of another number of components than three stay on the host.
@@ -43,7 +43,7 @@ class DeviceVectors;
 }
 
 class vtkDeviceVectorArray;
-// The wrappers know no superclass that is a template.
+// VTK's wrappers do not support superclasses that are templates.
 #ifdef __VTK_WRAP__
 #define vtkDeviceVectorArrayBase vtkDataArray
 #else
@@ -64,23 +64,23 @@ public:
 
   ///@{
   /**
-   * Set/Get the OpenCL device that values of the host are taken to, in the words of
-   * vtkDeformVolumeFilter::SetDevice(). Default: "", the best one. Values that have been made on a
-   * device stay there.
+   * Set/Get the OpenCL device to which values of the host are uploaded, see
+   * vtkDeformVolumeFilter::SetDevice(). Default: "", the best device. Values that were computed on
+   * a device stay there.
    */
   vtkSetMacro(Device, std::string);
   vtkGetMacro(Device, std::string);
   ///@}
 
   /**
-   * Whether the values are those of a device with memory of its own, and nothing has been written
-   * on the host since.
+   * Whether a device with memory of its own has the values, and nothing has been written on the
+   * host since.
    */
   bool IsOnDevice() const;
 
   ///@{
   /**
-   * How often values have been taken to the device, and brought to the host.
+   * Get the numbers of uploads to the device, and of downloads to the host.
    */
   vtkGetMacro(NumberOfUploads, vtkIdType);
   vtkGetMacro(NumberOfDownloads, vtkIdType);
@@ -92,8 +92,8 @@ public:
   void Modified() override;
 
 #ifndef __VTK_WRAP__
-  /// The values become these vectors, which the array and others share. Whoever writes them on the
-  /// device calls Modified(), or AddTuples() of a vtkArrayChanges. Null: the array gets empty.
+  /// Set the vectors with the values, which the array shares with others. After writing them on the
+  /// device, call Modified(), or AddTuples() of a vtkArrayChanges. Null makes the array empty.
   void SetVectors(const std::shared_ptr<deformvolume::DeviceVectors>& vectors);
 
   /// Whether the values are these vectors.
@@ -102,12 +102,12 @@ public:
     return !this->IsOfHost && this->Vectors == vectors;
   }
 
-  /// The values in the memory of a device, of which the whole name is given; values of the host are
-  /// taken there first. Null where that is not the device of the array, or has no memory of its
-  /// own, or the tuples have not three components. Throws deformvolume::Error.
+  /// Returns the values in the memory of a device. device: its full name. Values of the host are
+  /// uploaded first. Returns null if it is not the device of the array, if it has no memory of its
+  /// own, or if the tuples do not have three components. Throws deformvolume::Error.
   std::shared_ptr<deformvolume::DeviceVectors> GetVectors(const std::string& device);
 
-  /// The values on the host, to be read only.
+  /// The values on the host, read-only.
   const float* GetValues() const
   {
     const float* values = this->Values.load(std::memory_order_acquire);
@@ -115,7 +115,7 @@ public:
   }
 
   ///@{
-  /// What vtkGenericDataArray asks of its subclasses.
+  /// Functions that vtkGenericDataArray requires of its subclasses.
   float GetValue(vtkIdType value) const
   {
     return this->GetValues()[value];
@@ -147,7 +147,7 @@ public:
   ///@}
 
   ///@{
-  /// On the host the values lie tuple by tuple.
+  /// On the host the values are an array of structs.
   bool HasStandardMemoryLayout() const override
   {
     return true;
@@ -168,7 +168,7 @@ private:
 
 #ifndef __VTK_WRAP__
   const float* BringToHost() const;
-  /// Has the values be those of the host, and returns them.
+  /// Makes the values of the host the valid ones, and returns them for writing.
   float* Write()
   {
     if (!this->IsOfHost.load(std::memory_order_acquire))
@@ -182,15 +182,15 @@ private:
   bool SetSize(std::size_t values, bool keep);
   void Send(const std::string& device);
 
-  mutable std::mutex Mutex; // of what an access changes
+  mutable std::mutex Mutex; // protects the members that an access changes
   std::vector<float> Memory;
-  mutable std::atomic<const float*> Values{ nullptr }; // null: they have to be brought
+  mutable std::atomic<const float*> Values{ nullptr }; // null: not yet downloaded
   std::atomic<bool> IsOfHost{ true };
-  std::atomic<bool> IsWritten{ false }; // since they were taken to the device
+  std::atomic<bool> IsWritten{ false }; // whether values were written since the last upload
   std::shared_ptr<deformvolume::DeviceVectors> Vectors;
   vtkMTimeType SentTime = 0;
-  std::uint64_t Revision = 0;   // that the vectors had when the array was modified last
-  bool HasGivenPointer = false; // to values that the device has, too
+  std::uint64_t Revision = 0;   // of the vectors at the last Modified()
+  bool HasGivenPointer = false; // whether somebody has a pointer to a copy of values of the device
 #endif
 
   std::string Device;
