@@ -197,15 +197,15 @@ public:
   ///@{
   /**
    * Set/Get what happens to the volume outside the deformation mesh or field.
-   * - DISCARD: that part of the volume is left out. The deformed volume ends where the deformed
-   *   mesh ends, to 1/128 output voxel.
-   * - EXTRAPOLATE: the part follows the tetrahedron of the nearest voxel inside the mesh, or the
-   *   nearest point of the field.
-   * - KEEP: the part does not move, except that the displacement fades to zero within FadeDistance,
-   *   in world units, of the mesh at rest or of the grid of the field. A FadeDistance of less than
-   *   twice the largest displacement may fold the volume. With 0 no voxel outside moves. Negative,
-   *   infinite and NaN distances are errors. KEEP is an error for meshes with OpenSplits or
-   *   MESH_RASTERIZATION.
+   * - DISCARD: voxels outside are left out. The deformed volume ends where the deformed mesh ends,
+   *   to 1/128 output voxel.
+   * - EXTRAPOLATE: each voxel outside follows the tetrahedron of the nearest voxel inside the mesh,
+   *   or the nearest point of the field.
+   * - KEEP: voxels outside do not move, except that the displacement fades to zero within
+   *   FadeDistance, in world units, of the mesh at rest or of the grid of the field. A FadeDistance
+   *   of less than twice the largest displacement may fold the volume. With 0 no voxel outside
+   *   moves. Negative, infinite and NaN distances are errors. KEEP is an error for meshes with
+   *   OpenSplits or MESH_RASTERIZATION.
    *
    * Defaults: DISCARD; 0.
    */

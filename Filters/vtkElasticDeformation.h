@@ -3,76 +3,79 @@
  * @class   vtkElasticDeformation
  * @brief   common part of the filters that deform an elastic body by a simulation
  *
- * vtkElasticDeformation reads an elastic body, what holds it, and what acts on it, and gives the
- * mesh at rest with the displacements that a simulation finds. vtkDeformVolumeFilter takes that as
- * its deformation (SetDeformationConnection). Subclasses are the simulations. What is simulated is
- * kept from one execution to the next.
+ * vtkElasticDeformation reads an elastic body with its constraints and loads. The output is the
+ * mesh at rest with the displacements that a simulation computes. It can be connected to
+ * vtkDeformVolumeFilter as the deformation (SetDeformationConnection()). Subclasses implement the
+ * simulations. The simulated state is kept from one execution to the next.
  *
  * @par Port 0, the rest mesh:
  * vtkUnstructuredGrid of vtkTetra cells, and with vtkFiniteElementDeformation of vtkQuadraticTetra
- * cells as well, all of them with the fourth point on the same side of the first three. Cells of
- * fewer than three dimensions are left out. These arrays are used, all of them optional:
- * - the point array "Fixed", one component: nodes where it is not 0 are held where they are;
- * - the point array "PrescribedDisplacement", three components, in the units of the mesh: where
- *   these nodes are displaced to. Its values at other nodes are not used;
- * - the point array "SlidingNormal", three components: nodes where it is not 0 slide without
- *   friction in the plane through their rest position to which it is normal, whatever its length
- *   and sign; "SecondSlidingNormal", of the same kind: nodes that have both slide along the line in
- *   both planes, such as where two planes of symmetry meet;
+ * cells as well, all of the same orientation: with the fourth point on the same side of the first
+ * three. Cells of fewer than three dimensions are ignored. These arrays are used, all of them
+ * optional:
+ * - the point array "Fixed", one component: nodes with a value other than 0 are fixed;
+ * - the point array "PrescribedDisplacement", three components, in the units of the mesh:
+ *   displacements of the fixed nodes. Values at other nodes are not used;
+ * - the point array "SlidingNormal", three components: nodes with a vector other than 0 slide
+ *   without friction in the plane through their rest position with this normal. Its length and sign
+ *   do not matter. "SecondSlidingNormal", of the same kind: nodes with both normals slide along the
+ *   common line of both planes, for example where two planes of symmetry meet;
  * - the point array "Force", three components: a force on each node, in N;
  * - the cell arrays "YoungModulus" (Pa), "PoissonRatio" and "Density" (kg/m^3), one component: the
- *   material of each tetrahedron, in place of the properties of these names and of MaterialPreset.
+ *   material of each tetrahedron, used instead of the properties of these names and of
+ *   MaterialPreset.
  *
- * vtkMassSpringDeformation has neither prescribed displacements nor nodes that slide: it reports an
- * error where an array says otherwise.
+ * vtkMassSpringDeformation supports neither prescribed displacements nor sliding nodes, and reports
+ * an error if an array has some.
  *
  * @par Port 1, optional, the handles:
- * vtkPointSet. A point is where a handle is now. A point array "RestPosition" of three components
- * says which place of the mesh at rest it holds: the nodes within HandleRadius of it, or the
- * nearest node where that is 0. Points that no tetrahedron uses do not count. Where several handles
- * hold a node the first one counts, and nodes that are fixed stay. A handle moves a node that
- * slides within its plane, or along its line, only.
+ * vtkPointSet. Each point is the current position of a handle. The point array "RestPosition" of
+ * three components is the position in the mesh at rest that a handle holds: the nodes within
+ * HandleRadius of this position, or the nearest node if HandleRadius is 0. Points that no
+ * tetrahedron uses are ignored. If several handles hold a node, the first one is used. Handles do
+ * not move fixed nodes, and move sliding nodes only within their plane or along their line.
  *
  * @par Port 2, optional, the sheet:
- * vtkPolyData in world coordinates: triangles, polygons and triangle strips; polylines where
- * SweepVector is set. It cuts the mesh where it is now, along the faces of its tetrahedra that are
- * nearest. What is on both sides of a cut parts: nodes get copies, which are appended. A cut is
- * made when the sheet is new, and cuts add up. Have vtkDeformVolumeFilter open the volume there
- * with OpenSplitsOn().
+ * vtkPolyData in world coordinates: triangles, polygons and triangle strips; also polylines if
+ * SweepVector is set. The sheet cuts the deformed mesh along the nearest faces of its tetrahedra.
+ * Nodes on the cut are split: copies of them are appended, so that the two sides can move apart. A
+ * cut is made when the sheet changes, and cuts accumulate. vtkDeformVolumeFilter opens the volume
+ * at cuts if OpenSplits is on.
  *
  * @par Output:
- * The mesh at rest, with the point array "Displacement" (floats, three components, in the units of
- * the points), which is also the active vectors: a vtkFloatArray on a processor, and on a device
- * with memory of its own a vtkDeviceVectorArray. It is the same object, in the same memory, in all
- * executions for one mesh: make a deep copy to keep it as it is. With ElementResults there are cell
- * arrays besides. The first piece is the whole mesh, all others are empty. Points that are
- * appended, those of vtkFiniteElementDeformation and the copies of cuts, follow those of the input.
+ * The mesh at rest, with the point array "Displacement" (float, three components, in the units of
+ * the points), which is also the active vectors. On CPU devices it is a vtkFloatArray, on a device
+ * with memory of its own a vtkDeviceVectorArray. The array is the same object, in the same memory,
+ * in all executions for one mesh: make a deep copy to keep its values. ElementResults adds cell
+ * arrays. The first piece is the whole mesh, all others are empty. Appended points, which are
+ * mid-side nodes of vtkFiniteElementDeformation and copies of nodes at cuts, follow the points of
+ * the input.
  *
  * @par Time:
- * Where a time is asked for (UpdateTimeStep(), ParaView's play button), the simulation goes on to
- * it in frames of FrameTime. Where it is earlier than the last one, the simulation restarts from
- * rest and goes on to it with the current handles and loads. Handles go straight to where they are
- * wanted in the first frame. Where no time is asked for, see the subclasses. The output has the
+ * If a time is requested (UpdateTimeStep(), or ParaView's play button), the simulation advances to
+ * it in frames of FrameTime. If the time is earlier than the last one, the simulation restarts from
+ * rest and advances to the time with the current handles and loads. Handles move to their final
+ * positions in the first frame. The subclasses describe updates without a time. The output has the
  * time range from 0 to EndTime, unless the inputs have times.
  *
  * @par Changes:
- * Where the rest mesh gets other points or cells, the simulation restarts from rest, with a
- * warning. With other materials, fixed or sliding nodes, forces or prescribed displacements it goes
- * on.
+ * If the points or cells of the rest mesh change, the simulation restarts from rest, with a
+ * warning. If materials, fixed or sliding nodes, forces or prescribed displacements change, it
+ * continues.
  *
  * @par Abort:
- * An execution that is aborted ends within some 50 ms, with an empty output; what was simulated is
- * kept. Reading the mesh, copying a body of springs to the device and cutting are not interrupted.
+ * An aborted execution ends within about 50 ms, with an empty output. The simulated state is kept.
+ * Reading the mesh, copying a body of springs to the device and cutting are not interrupted.
  *
  * @par Errors:
- * Each is one vtkErrorMacro that says what is wrong and what to do: no tetrahedra or other
- * three-dimensional cells; tetrahedra that are flat, or some of them inside out; coordinates and
- * numbers that are not finite; a Young modulus or a density of 0 or less, a Poisson ratio of less
- * than 0 or of 0.495 and more; arrays of another shape; nodes that are fixed and slide; prescribed
- * displacements without the array "Fixed", and second normals without first ones; a handle that
- * holds no node; a sheet that vtkCutVolume would refuse. The output is then empty, what was
- * simulated is kept, and a new sheet cuts in the next execution that succeeds. After a failure of
- * memory or of a device the body starts again from rest.
+ * Each error is reported by one vtkErrorMacro: no tetrahedra, or other three-dimensional cells;
+ * flat tetrahedra, or tetrahedra of different orientations; coordinates and numbers that are not
+ * finite; a Young modulus or a density of 0 or less, a Poisson ratio of less than 0 or of 0.495 and
+ * more; arrays of another shape; nodes that are fixed and slide; prescribed displacements without
+ * the array "Fixed", and second normals without first ones; a handle that holds no node; a sheet
+ * that is an error in vtkCutVolume. The output is then empty, the simulated state is kept, and a
+ * new sheet cuts in the next execution that succeeds. If memory or a device fails, the body
+ * restarts from rest.
  *
  * @sa vtkMassSpringDeformation vtkFiniteElementDeformation vtkDeformVolumeFilter
  */
@@ -132,9 +135,9 @@ public:
 
   ///@{
   /**
-   * Before the next execution the last cut is taken back, or all are. Copies of nodes are gone
-   * then, and the nodes that they were copies of stay where they are. The sheet cuts again when it
-   * is another one.
+   * Undo the last cut, or remove all cuts, before the next execution. The copies of nodes are
+   * removed, and the body returns to its state before the cut. The sheet cuts again after it has
+   * changed.
    */
   void UndoCut();
   void ClearCuts();
@@ -142,7 +145,8 @@ public:
 
   ///@{
   /**
-   * Cuts that have split something, and the faces of tetrahedra that they have split.
+   * Get the number of cuts that have split the mesh, and the number of faces of tetrahedra that
+   * they have split.
    */
   vtkIdType GetNumberOfCuts();
   vtkIdType GetNumberOfSplitFaces();
@@ -150,8 +154,8 @@ public:
 
   ///@{
   /**
-   * Set/Get how far round its rest position a handle holds nodes, in the units of the mesh, at
-   * least 0. Default 0: the nearest node.
+   * Set/Get the distance from its rest position within which a handle holds nodes, in the units of
+   * the mesh, at least 0. Default: 0, only the nearest node.
    */
   vtkSetClampMacro(HandleRadius, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(HandleRadius, double);
@@ -167,8 +171,8 @@ public:
 
   ///@{
   /**
-   * Set/Get the Young modulus, in Pa, of tetrahedra that no cell array says one for; greater than
-   * 0. Default 10000, a soft tissue.
+   * Set/Get the Young modulus of tetrahedra without the cell array "YoungModulus", in Pa, greater
+   * than 0. Default: 10000, a soft tissue.
    */
   vtkSetMacro(YoungModulus, double);
   vtkGetMacro(YoungModulus, double);
@@ -176,7 +180,8 @@ public:
 
   ///@{
   /**
-   * Set/Get the Poisson ratio of these, 0 or more and less than 0.495. Default 0.3.
+   * Set/Get the Poisson ratio of tetrahedra without the cell array "PoissonRatio", 0 or more and
+   * less than 0.495. Default: 0.3.
    */
   vtkSetMacro(PoissonRatio, double);
   vtkGetMacro(PoissonRatio, double);
@@ -184,14 +189,15 @@ public:
 
   ///@{
   /**
-   * Set/Get the density of these, in kg/m^3, greater than 0. Default 1000.
+   * Set/Get the density of tetrahedra without the cell array "Density", in kg/m^3, greater than 0.
+   * Default: 1000.
    */
   vtkSetMacro(Density, double);
   vtkGetMacro(Density, double);
   ///@}
 
   /**
-   * Tissues whose materials are known. CUSTOM: none of them.
+   * Tissues with predefined materials. CUSTOM: no tissue.
    */
   enum MaterialPresetType
   {
@@ -207,13 +213,13 @@ public:
 
   ///@{
   /**
-   * Set/Get the tissue whose Young modulus (Pa), Poisson ratio and density (kg/m^3) are used in
-   * place of the properties of these names, which keep their values. Cell arrays still come first.
-   * CUSTOM: the properties are used. Default CUSTOM.
+   * Set/Get the tissue whose Young modulus (Pa), Poisson ratio and density (kg/m^3) are used
+   * instead of the properties of these names, which keep their values. Cell arrays have priority
+   * over the preset. CUSTOM: the properties are used. Default: CUSTOM.
    *
    * The Young moduli are means of measurements at small strains. They differ between people, and
    * between methods of measurement, by a factor of several: Documents/physics.md has the sources
-   * and ranges. BONE is cortical bone. Time steps of springs become very short with it.
+   * and ranges. BONE is cortical bone. With it, the time steps of springs become very short.
    */
   vtkSetClampMacro(MaterialPreset, int, CUSTOM, BONE);
   vtkGetMacro(MaterialPreset, int);
@@ -229,9 +235,10 @@ public:
 
   ///@{
   /**
-   * The table of presets: the name of a preset, such as "Liver"; the source of its Young modulus,
-   * authors and year; and its Young modulus (Pa), Poisson ratio and density (kg/m^3), in this
-   * order. CUSTOM has the name "Custom" only. Null, or false and no change, where there is none.
+   * Get the name of a preset, such as "Liver"; the source of its Young modulus, authors and year;
+   * and its Young modulus (Pa), Poisson ratio and density (kg/m^3), in this order. CUSTOM has only
+   * the name "Custom". If there is no such preset, these return null, or return false and do not
+   * change `values`.
    */
   static const char* GetMaterialPresetName(int preset);
   static const char* GetMaterialPresetSource(int preset);
@@ -239,7 +246,7 @@ public:
   ///@}
 
   /**
-   * The units of points.
+   * Units of length.
    */
   enum LengthUnitType
   {
@@ -250,7 +257,8 @@ public:
   ///@{
   /**
    * Set/Get the unit of the mesh, the handles and the displacements: MILLIMETRE (default), as in
-   * most medical images, or METRE. A body of less than 1 mm or more than 10 m is warned of.
+   * most medical images, or METRE. A body with a diagonal of less than 1 mm or more than 10 m
+   * causes a warning.
    */
   vtkSetClampMacro(LengthUnit, int, METRE, MILLIMETRE);
   vtkGetMacro(LengthUnit, int);
@@ -260,7 +268,7 @@ public:
 
   ///@{
   /**
-   * Set/Get how long a frame is, in s, at least 1e-6. Default 1/60.
+   * Set/Get the duration of a frame, in s, at least 1e-6. Default: 1/60.
    */
   vtkSetClampMacro(FrameTime, double, 1e-6, VTK_DOUBLE_MAX);
   vtkGetMacro(FrameTime, double);
@@ -268,9 +276,9 @@ public:
 
   ///@{
   /**
-   * Set/Get the end of the time range of the output, in s, where the inputs have no times. A filter
-   * behind then asks for a time in each update. Default 0: there is no time range. In ParaView it
-   * is 1.
+   * Set/Get the end of the time range of the output, in s, used if the inputs have no times.
+   * Consumers then request a time in each update. Default: 0, no time range. In ParaView the
+   * default is 1.
    */
   vtkSetClampMacro(EndTime, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(EndTime, double);
@@ -278,11 +286,11 @@ public:
 
   ///@{
   /**
-   * Set/Get whether the output has cell arrays of doubles with what each tetrahedron undergoes:
+   * Set/Get whether the output has cell arrays of doubles with the results of each tetrahedron:
    * "Stress" (Cauchy, in Pa, the components xx yy zz xy yz xz), "StrainEnergyDensity" (J/m^3 of the
-   * volume at rest) and "DeformationGradientDeterminant" (how many times its volume at rest it has;
-   * less than 0 where it is inside out). A flat tetrahedron, of a determinant within 1e-12 of 0,
-   * has no volume for a stress: its "Stress" is 0. Default: off.
+   * volume at rest) and "DeformationGradientDeterminant" (its deformed volume divided by its volume
+   * at rest; less than 0 if it is inverted). A flat tetrahedron, with a determinant within 1e-12 of
+   * 0, has no volume for a stress: its "Stress" is 0. Default: off.
    */
   vtkSetMacro(ElementResults, bool);
   vtkGetMacro(ElementResults, bool);
@@ -290,22 +298,22 @@ public:
   ///@}
 
   /**
-   * The body is put to rest before the next execution, and its time to 0.
+   * Reset the body to rest, and its time to 0, before the next execution.
    */
   void Reset();
 
   /**
-   * The time that the simulation has come to, in s.
+   * Get the simulated time, in s.
    */
   double GetTime();
 
   /**
-   * Nodes that handles held in the last execution.
+   * Get the number of nodes that handles held in the last execution.
    */
   vtkGetMacro(NumberOfHeldNodes, vtkIdType);
 
   /**
-   * What the last execution did, in a few lines of words, for people to read; "" before the first.
+   * Get a description of the last execution as text; "" before the first.
    */
   virtual std::string GetSummary();
 
@@ -325,8 +333,8 @@ protected:
 
 #ifndef __VTK_WRAP__
   ///@{
-  /// What subclasses do: give the simulation what it needs besides, and say how far it goes without
-  /// a time, in s. They throw deformvolume::Error.
+  /// Subclasses implement these: set the properties of the simulation and return it; return the
+  /// duration that an update without a time simulates, in s. They throw deformvolume::Error.
   virtual deformvolume::ElasticSimulation& PrepareSimulation() = 0;
   virtual double GetFreeDuration() = 0;
   ///@}
@@ -337,13 +345,13 @@ private:
   void operator=(const vtkElasticDeformation&) = delete;
 
   void Execute(vtkInformationVector** input, vtkInformationVector* output);
-  /// Returns how many cuts there were before that of the sheet.
+  /// Undoes cuts, and cuts with the sheet. Returns the number of cuts before that of the sheet.
   std::size_t UpdateCuts(vtkPolyData* sheet);
   void TakeBackCuts(deformvolume::ElasticSimulation& simulation, std::size_t left);
-  /// Goes on to the time that is asked for, if any.
+  /// Advances to the requested time, if any.
   void Advance(deformvolume::ElasticSimulation& simulation, vtkPointSet* handles,
     vtkInformation* info, deformvolume::ProgressReport& progress);
-  /// Warns where a body of so many metres is hardly meant.
+  /// Warns if a body of this size, in m, is probably not intended.
   void CheckSize(double size);
 
   double HandleRadius = 0.0;

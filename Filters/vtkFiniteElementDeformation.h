@@ -3,53 +3,55 @@
  * @class   vtkFiniteElementDeformation
  * @brief   deform an elastic body to equilibrium by finite elements
  *
- * vtkFiniteElementDeformation finds where the nodes of a mesh come to rest under what holds and
- * loads them. Its elements are tetrahedra of ten nodes with four Gauss points. One layer of them is
- * enough for a beam to bend as it should, and they do not lock where the material is nearly
- * incompressible. There is no inertia: what comes out depends on the handles and loads of now, and
- * on where the body was where there are several equilibria. It works on the processor, in double
+ * vtkFiniteElementDeformation computes the static equilibrium of an elastic body under its
+ * constraints and loads. Its elements are ten-node tetrahedra with four Gauss points. One layer of
+ * elements is enough for a beam to bend correctly, and elements do not lock if the material is
+ * nearly incompressible. There is no inertia: the result depends on the current handles and loads
+ * and, if there are several equilibria, on the last state. It computes on the CPU, in double
  * precision. Ports, arrays, units and times are those of vtkElasticDeformation.
  *
- * Every execution solves once, and begins where the last one has ended; times only say when.
+ * Every execution solves once, and starts from the last state. The length of a time step has no
+ * effect.
  *
  * @par Nodes:
- * Tetrahedra have ten nodes: their corners, and one in the middle of each edge. vtkTetra cells get
- * nodes in the middle of their edges; vtkQuadraticTetra cells have them, each near the middle of
- * its edge, which may be curved. A mesh may have cells of both types. "Force" acts on nodes as it
- * is given. A node that is made has no force of its own. It is fixed where both ends of its edge
- * are, and displaced by the mean of their displacements. It slides where its edge lies, within a
- * thousandth, in a plane in which one end slides, and the other end is fixed or slides in the same
- * plane. Where other nodes are to be fixed or to slide, as on curved surfaces, give
+ * Tetrahedra have ten nodes: their corners, and a mid-side node in the middle of each edge. The
+ * filter adds mid-side nodes to vtkTetra cells. vtkQuadraticTetra cells have mid-side nodes, each
+ * near the middle of its edge, which may be curved. A mesh may have cells of both types. "Force"
+ * acts on nodes as given. An added node has no force. It is fixed if both ends of its edge are
+ * fixed, with the mean of their prescribed displacements. It slides in the plane of an end if its
+ * edge lies in this plane, within a thousandth, and the other end is fixed or slides in the same
+ * plane. To fix other mid-side nodes, or to let them slide, as on curved surfaces, use
  * vtkQuadraticTetra cells with these arrays. A mesh has as many nodes as one of linear tetrahedra
- * whose edges are half as long.
+ * with edges of half the length.
  *
  * @par Output:
- * Cells of vtkQuadraticTetra. The points of the input come first, then the nodes that were made in
- * the middle of edges, then the copies of nodes that cuts have made. Points that are made have the
- * mean of both ends in all point arrays but those that are named above, and are ghosts where both
- * ends are. Where points are made, global ids and pedigree ids are left out. The points and cells
- * are the same objects in all executions for one mesh.
+ * Cells of the type vtkQuadraticTetra. The points of the input come first, then the added mid-side
+ * nodes, then the copies of nodes at cuts. In all point arrays except those named above, an added
+ * node has the mean of both ends. It is a ghost if both ends are. If nodes are added, global ids
+ * and pedigree ids are left out. The points and cells are the same objects in all executions for
+ * one mesh.
  *
  * @par Pieces:
- * A piece of the mesh is what holds together by faces of tetrahedra. It is held by three nodes that
- * lie on no common line and are fixed, held by handles, or shared with a piece that is held; or by
- * such nodes and nodes that slide, where no motion of a rigid body is left to it. Other pieces bear
- * no load and exert no force: those with a node or two that are shared, fixed or held by handles go
- * with these like rigid bodies, turned on the shortest way; the rest stays where it was. A warning
- * has their number (GetNumberOfFrozenPieces()). Where no piece is held there is an error.
+ * A piece of the mesh is a connected component of tetrahedra that share faces. A piece is held by
+ * three nodes that do not lie on one line and are fixed, held by handles, or shared with a piece
+ * that is held. It is also held by such nodes together with sliding nodes if these exclude all
+ * motions of a rigid body. Other pieces are frozen: they bear no load and exert no force. A frozen
+ * piece with one or two nodes that are shared, fixed or held by handles follows these nodes like a
+ * rigid body, with the smallest rotation. Other frozen pieces do not move. A warning has the number
+ * of frozen pieces (GetNumberOfFrozenPieces()). It is an error if no piece is held.
  *
  * @par Warnings:
- * Pieces that are not held; a body that is not in equilibrium, with what is left (in the mode
- * INTERACTIVE once); tetrahedra that are inside out, with their number.
+ * Pieces that are not held; a body that is not in equilibrium, with the residual (in the mode
+ * INTERACTIVE only once); inverted tetrahedra, with their number.
  *
  * @par Errors:
- * Those of vtkElasticDeformation; tetrahedra that overlap themselves, or do so split into linear
- * ones, as nodes are far from the middle of their edges or in another order than VTK's; an edge
- * with two different nodes in its middle, or a node in the middle of several edges; no piece that
- * is held; forces that are no numbers any more. The body is then as it was.
+ * Those of vtkElasticDeformation; tetrahedra that overlap themselves, or whose split into linear
+ * tetrahedra does, because mid-side nodes are far from the middle of their edges or not in the
+ * order of VTK; an edge with two different mid-side nodes, or a mid-side node of several edges; no
+ * piece that is held; forces that become NaN. The state of the body does not change then.
  *
  * Sources: Smith, de Goes and Kim 2018 for the stable neo-Hookean law, here without its logarithm,
- * and 2019 for the stiffness that is never negative; Mueller and Gross 2004 for the corotational
+ * and 2019 for the positive semidefinite stiffness; Mueller and Gross 2004 for the corotational
  * law; Documents/physics.md.
  *
  * @sa vtkElasticDeformation vtkMassSpringDeformation vtkDeformVolumeFilter
@@ -76,7 +78,7 @@ public:
   ///@}
 
   /**
-   * How stress follows from strain.
+   * Material laws.
    */
   enum MaterialModelType
   {
@@ -86,12 +88,12 @@ public:
 
   ///@{
   /**
-   * Set/Get the strain energy. STABLE_NEO_HOOKEAN (default): for soft tissue. It keeps volumes at
-   * large strain, and comes back from where elements are inside out. COROTATIONAL: linear
-   * elasticity in a frame that turns with the material, as published where the Poisson ratio is at
-   * most 0.4. Above, the part of lambda that is more than 4 mu acts on the volume, as in
-   * STABLE_NEO_HOOKEAN. The rest does not keep volumes at large strain. Small strains of both are
-   * those of linear elasticity.
+   * Set/Get the material law. STABLE_NEO_HOOKEAN (default): for soft tissue. It preserves the
+   * volume at large strain, and recovers from inverted elements. COROTATIONAL: linear elasticity in
+   * a frame that rotates with the material, as published if the Poisson ratio is at most 0.4. For
+   * greater ratios, the part of lambda above 4 mu acts on the volume, as in STABLE_NEO_HOOKEAN. The
+   * other part does not preserve the volume at large strain. At small strain both laws are linear
+   * elasticity.
    */
   vtkSetClampMacro(MaterialModel, int, STABLE_NEO_HOOKEAN, COROTATIONAL);
   vtkGetMacro(MaterialModel, int);
@@ -100,7 +102,7 @@ public:
   ///@}
 
   /**
-   * How far an execution goes.
+   * When an execution ends.
    */
   enum ModeType
   {
@@ -110,10 +112,10 @@ public:
 
   ///@{
   /**
-   * Set/Get how far an execution goes. CONVERGED (default): equilibrium, to a GetRelativeResidual()
-   * of 1e-6. INTERACTIVE: one or two steps towards equilibrium, for a body that is moved live,
-   * until GetRelativeResidual() is at most 0.01 where handles have moved, else 0.001; the next
-   * execution goes on from what is left.
+   * Set/Get when an execution ends. CONVERGED (default): at equilibrium, with a
+   * GetRelativeResidual() of at most 1e-6. INTERACTIVE: after one or two steps towards equilibrium,
+   * for a body that is moved interactively. It ends as soon as GetRelativeResidual() is at most
+   * 0.01 if handles have moved, else 0.001. The next execution continues from the last state.
    */
   vtkSetClampMacro(Mode, int, INTERACTIVE, CONVERGED);
   vtkGetMacro(Mode, int);
@@ -123,10 +125,11 @@ public:
 
   ///@{
   /**
-   * Of the last execution. Whether the body is in equilibrium; steps of Newton's method, and
-   * iterations of conjugate gradients in all of them; the largest component of a force on a node
-   * that is left, in N, and as a part of the largest force that is applied or that holds a node;
-   * the strain energy, in J; pieces of the mesh that nothing holds; tetrahedra that are inside out.
+   * Get results of the last execution: whether the body is in equilibrium; the number of steps of
+   * Newton's method, and of iterations of conjugate gradients in all steps; the residual, which is
+   * the largest component of the unbalanced force on a node, in N, and the residual as a part of
+   * the largest force that is applied to a node or holds it; the strain energy, in J; the number of
+   * frozen pieces; the number of inverted tetrahedra.
    */
   bool GetIsConverged();
   int GetNumberOfNewtonSteps();

@@ -4,21 +4,21 @@
  * @brief   regular tetrahedral deformation mesh of a box or of a volume
  *
  * vtkLatticeTetrahedraSource makes the simplest deformation mesh: a regular lattice of nodes whose
- * cells are split into five tetrahedra each, mirrored from cell to neighbouring cell so that
- * shared faces match. It is the split that vtkDeformVolumeFilter uses for the voxels themselves.
+ * cells are split into five tetrahedra each, mirrored from cell to neighboring cell so that shared
+ * faces match. vtkDeformVolumeFilter splits the cells of the sampling mesh in the same way.
  *
  * @par Port 0, optional, the volume:
  * vtkImageData, of which only the geometry is used. The lattice then covers the volume's whole
- * extent, from the first voxel centre to the last, along the volume's own axes: origin, spacing,
- * direction matrix and an extent that does not start at 0 are honoured. Each axis needs at least
- * two voxels. Without an input the lattice covers Bounds, along the world axes.
+ * extent, from the first voxel center to the last, along the axes of the volume. Origin, spacing,
+ * direction matrix and an extent that does not start at 0 are taken into account. Each axis needs
+ * at least two voxels. Without an input the lattice covers Bounds, along the world axes.
  *
  * @par Output:
- * vtkUnstructuredGrid. Points in double precision, the first axis varying fastest. Cells are
- * vtkTetra, all with positive volume (the fourth vertex on the side to which the normal of the
- * first three points); the five of a cell follow each other. For Dimensions of nx, ny and nz there
- * are nx * ny * nz points and 5 (nx-1) (ny-1) (nz-1) tetrahedra. The first piece is the whole
- * lattice, all others are empty.
+ * vtkUnstructuredGrid. Points are in double precision, and the first axis varies fastest. Cells are
+ * vtkTetra, all with positive volume (the fourth vertex is on the side to which the normal of the
+ * first three points). The five tetrahedra of a cell follow each other. For Dimensions of nx, ny
+ * and nz there are nx * ny * nz points and 5 (nx-1) (ny-1) (nz-1) tetrahedra. The first piece is
+ * the whole lattice, all others are empty.
  *
  * @par Errors:
  * Bounds that are empty or not finite, a volume with fewer than two voxels on an axis, fewer than
@@ -46,8 +46,8 @@ public:
 
   ///@{
   /**
-   * Set/Get the number of nodes on each axis, at least 2; with EqualSpacing, at most as many.
-   * Default: 13, 13, 13.
+   * Set/Get the number of nodes on each axis, at least 2. With EqualSpacing these are the largest
+   * numbers. Default: 13, 13, 13.
    */
   vtkSetVector3Macro(NumberOfNodes, int);
   vtkGetVector3Macro(NumberOfNodes, int);
@@ -55,12 +55,13 @@ public:
 
   ///@{
   /**
-   * Set/Get whether the cells are cubes, as vtkMassSpringDeformation needs them and as tetrahedra
-   * are best. The edge of a cube is then the longest of the distances that NumberOfNodes gives on
-   * the axes. Axes on which that takes fewer nodes get fewer, and the lattice reaches beyond the
-   * box or the volume there, by less than half a cell and as far on both sides. When off, each axis
-   * has NumberOfNodes, and the lattice ends where the box ends. Where the axes of a volume are not
-   * perpendicular, edges are equally long, but cells are no cubes. Default: on.
+   * Set/Get whether the cells are cubes, which vtkMassSpringDeformation needs, and which give the
+   * best tetrahedra. The edge of a cube is then the longest of the node distances that
+   * NumberOfNodes gives on the three axes. The other axes get only as many nodes as they need, and
+   * the lattice extends beyond the box or the volume there, by less than half a cell, equally on
+   * both sides. Off: each axis has NumberOfNodes nodes, and the lattice ends where the box ends. If
+   * the axes of a volume are not perpendicular, all edges have the same length, but the cells are
+   * not cubes. Default: on.
    */
   vtkSetMacro(EqualSpacing, bool);
   vtkGetMacro(EqualSpacing, bool);
@@ -69,7 +70,7 @@ public:
 
   ///@{
   /**
-   * Nodes on each axis of the last output; 0, 0, 0 where that is empty.
+   * Get the number of nodes on each axis of the last output; 0, 0, 0 if the output is empty.
    */
   vtkGetVector3Macro(Dimensions, int);
   ///@}
@@ -85,9 +86,9 @@ public:
 
   ///@{
   /**
-   * Set/Get how far the lattice reaches beyond the box or the volume on each side at least, in
-   * world units, at least 0. Default 0: without EqualSpacing, the outermost voxel centres lie on
-   * the lattice's boundary.
+   * Set/Get the least distance by which the lattice extends beyond the box or the volume on each
+   * side, in world units, at least 0. Default: 0. Without EqualSpacing, the outermost voxel centers
+   * then lie on the lattice's boundary.
    */
   vtkSetClampMacro(Margin, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(Margin, double);

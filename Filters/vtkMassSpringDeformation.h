@@ -7,25 +7,25 @@
  * are springs, and their volumes resist change. It works on an OpenCL device. Ports, arrays, units
  * and times are those of vtkElasticDeformation.
  *
- * Where no time is asked for, an execution goes on by FrameTime; call Modified() where nothing else
- * has changed.
+ * If no time is requested, an execution simulates FrameTime. Call Modified() to continue if nothing
+ * else has changed.
  *
  * @par Materials:
- * The stiffness of springs is derived from the Young modulus and the Poisson ratio. Springs are a
- * material on lattices of equal cubes only, of five tetrahedra each: those of
- * vtkLatticeTetrahedraSource with EqualSpacing, also with tetrahedra missing or cut apart. Edges
- * may differ by a thousandth. For other meshes use vtkFiniteElementDeformation. Springs have a
- * Poisson ratio of 0.25 by themselves, and the volumes make what is more. Less than that counts as
- * 0.25, with a warning.
+ * The stiffness of springs is derived from the Young modulus and the Poisson ratio. Springs
+ * represent a material only on lattices of equal cubes, with five tetrahedra each, such as those of
+ * vtkLatticeTetrahedraSource with EqualSpacing. Tetrahedra may be missing or cut apart. Edges may
+ * differ by a thousandth. For other meshes use vtkFiniteElementDeformation. Springs alone have a
+ * Poisson ratio of 0.25. The resistance of the volumes makes greater ratios. Smaller ratios are
+ * replaced by 0.25, with a warning.
  *
- * @par Tetrahedra inside out:
- * The springs of a tetrahedron have no force that turns it back when it is inside out. A warning
- * gives their number, when there were none before (GetNumberOfInvertedTetrahedra()).
+ * @par Inverted tetrahedra: Springs have no force that turns an inverted tetrahedron back. A
+ * warning has the number of inverted tetrahedra (GetNumberOfInvertedTetrahedra()), if there were
+ * none before.
  *
  * @par Errors:
  * Those of vtkElasticDeformation; a tetrahedron that is not a fifth of a cube of the same size as
- * the others; a time step that is longer than the stable one; a simulation that
- * diverges, after which the body is as it was; all nodes fixed; too little memory on the device.
+ * the others; a time step that is longer than the stable one; a simulation that diverges, after
+ * which the body keeps its last state; all nodes fixed; too little memory on the device.
  *
  * Sources: Rodriguez, Leon, Martin and Otaduy, "A parallel resampling method for interactive
  * deformation of volumetric models"; Teschner et al. 2004 for the energy of volumes;
@@ -56,8 +56,8 @@ public:
 
   ///@{
   /**
-   * Set/Get the longest time step, in s; 0: three quarters of the stable one. A frame has as many
-   * equal steps as it needs. Default 0, at least 0.
+   * Set/Get the longest time step, in s; 0: three quarters of the stable time step. A frame has as
+   * many equal steps as it needs. Default 0, at least 0.
    */
   vtkSetClampMacro(TimeStep, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(TimeStep, double);
@@ -65,8 +65,8 @@ public:
 
   ///@{
   /**
-   * Set/Get how fast velocities die away, in 1/s: after that time they are 1/e of what they were.
-   * Default 2, at least 0.
+   * Set/Get the rate at which velocities decrease, in 1/s: in the time 1/Damping, they decrease to
+   * 1/e. Default: 2, at least 0.
    */
   vtkSetClampMacro(Damping, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(Damping, double);
@@ -74,8 +74,8 @@ public:
 
   ///@{
   /**
-   * Set/Get the OpenCL device, in the words of vtkDeformVolumeFilter::SetDevice(). A change of
-   * device puts the body to rest. Default "": the best there is.
+   * Set/Get the OpenCL device, see vtkDeformVolumeFilter::SetDevice(). A change of device resets
+   * the body to rest. Default: "", the best device.
    */
   vtkSetMacro(Device, std::string);
   vtkGetMacro(Device, std::string);
@@ -83,23 +83,23 @@ public:
 
   ///@{
   /**
-   * Set/Get how many bytes of device memory may be used; 0 is what the device has available. A mesh
-   * that needs more is an error before anything is allocated. Default 0.
+   * Set/Get how many bytes of device memory may be used; 0: the available memory. A mesh that needs
+   * more is an error before anything is allocated. Default 0.
    */
   vtkSetClampMacro(MemoryLimit, vtkTypeInt64, 0, VTK_TYPE_INT64_MAX);
   vtkGetMacro(MemoryLimit, vtkTypeInt64);
   ///@}
 
   /**
-   * A time step, in s, with which the body is stable near rest (Documents/physics.md); longer ones
-   * are refused. 0 before the first execution.
+   * Get the stable time step, in s, with which the body is stable near rest (Documents/physics.md).
+   * Longer time steps are errors. 0 before the first execution.
    */
   double GetStableTimeStep();
 
   ///@{
   /**
-   * Of the last frame: how many steps it took, and how long each was, in s; tetrahedra that are
-   * inside out at its end.
+   * Get results of the last frame: the number of steps, the length of a step in s, and the number
+   * of inverted tetrahedra at its end.
    */
   vtkIdType GetNumberOfSteps();
   double GetTimeStepInUse();
@@ -107,7 +107,7 @@ public:
   ///@}
 
   /**
-   * Name of the device of the last execution; "" before the first.
+   * Get the name of the device of the last execution; "" before the first.
    */
   std::string GetDeviceInUse();
 

@@ -5,23 +5,23 @@
  *
  * vtkMaterialFromVolume looks up the material of each voxel of a volume in a table, by its label or
  * by ranges of its value. Each tetrahedron gets the mean of the Young modulus, the Poisson ratio
- * and the density of the voxels that it holds, each voxel counting alike. The elastic filters
- * (vtkElasticDeformation) read them.
+ * and the density of the voxels in it, with equal weights. The elastic filters
+ * (vtkElasticDeformation) read these arrays.
  *
- * A voxel on the border of several tetrahedra counts for one of them. A tetrahedron that holds no
- * voxel gets the material of the voxel that is nearest to its centroid, and one outside the volume
+ * A voxel on the border of several tetrahedra belongs to one of them. A tetrahedron without voxels
+ * gets the material of the voxel nearest to its centroid, and a tetrahedron outside the volume gets
  * the default material.
  *
  * @par Port 0, the mesh:
  * vtkUnstructuredGrid of vtkTetra or vtkQuadraticTetra cells in the world coordinates of the
- * volume. Edges of the latter count as straight. Cells of fewer than three dimensions have the
- * default material.
+ * volume. Edges of vtkQuadraticTetra cells are treated as straight. Cells of fewer than three
+ * dimensions have the default material.
  *
  * @par Port 1, the volume:
  * vtkImageData of at least two voxels on each axis: any extent, origin, spacing and direction
- * matrix. It is asked for whole. Its point array of one component and any numeric type has the
- * materials, see MaterialArrayName. Points that vtkGhostType marks as hidden or duplicate do not
- * count.
+ * matrix. The whole volume is requested. A point array of one component and any numeric type has
+ * the materials, see MaterialArrayName. Points that vtkGhostType marks as hidden or duplicate are
+ * ignored.
  *
  * @par Output:
  * The mesh, with the cell arrays "YoungModulus" (Pa), "PoissonRatio" and "Density" (kg/m^3) of
@@ -29,11 +29,11 @@
  * input.
  *
  * @par Errors:
- * Each is one vtkErrorMacro that says what is wrong and what to do, and the output is then empty: a
- * volume that is flat or has no valid spacing; an array that is not there or has several
- * components; a "vtkGhostType" of another type or size; a value that has no material; a Young
- * modulus or a density of 0 or less, or a Poisson ratio of less than 0 or of 0.495 and more; cells
- * that are not tetrahedra; coordinates that are not finite.
+ * Each error is reported by one vtkErrorMacro, and the output is then empty: a volume that is flat
+ * or has no valid spacing; an array that does not exist or has several components; a "vtkGhostType"
+ * of another type or size; a value that has no material; a Young modulus or a density of 0 or less,
+ * or a Poisson ratio of less than 0 or of 0.495 and more; cells that are not tetrahedra;
+ * coordinates that are not finite.
  *
  * @sa vtkFiniteElementDeformation vtkMassSpringDeformation vtkChainMailDeformation
  */
@@ -68,23 +68,24 @@ public:
 
   ///@{
   /**
-   * A material. index: a whole number from 0 to 255 (a double, since panels of ParaView pass
-   * nothing else); youngModulus: in Pa, greater than 0; poissonRatio: 0 or more, less than 0.495;
-   * density: in kg/m^3, greater than 0. Others are an error of the next execution.
+   * Set a material. index: an integer from 0 to 255, passed as a double because panels of ParaView
+   * pass only doubles; youngModulus: in Pa, greater than 0; poissonRatio: 0 or more, less than
+   * 0.495; density: in kg/m^3, greater than 0. Other values are an error in the next execution.
    *
-   * There are five materials by default, all of them engineering values: 0, air: 100, 0, 100;
-   * 1, soft tissue: 1e4, 0.3, 1000; 2, muscle: 5e4, 0.4, 1060; 3, cartilage: 1e6, 0.4, 1100;
-   * 4, bone: 1e7, 0.3, 1900. Air is a very soft tissue, so that a mesh may hold some. Bone is less
-   * stiff than in nature (1e10), where soft tissue does not bend it either, as time steps of
-   * springs become shorter with stiffness.
+   * There are five materials by default. Their numbers are engineering values, not measurements: 0,
+   * air: 100, 0, 100; 1, soft tissue: 1e4, 0.3, 1000; 2, muscle: 5e4, 0.4, 1060; 3, cartilage: 1e6,
+   * 0.4, 1100; 4, bone: 1e7, 0.3, 1900. Air is a very soft tissue, so that a mesh may contain air.
+   * Bone is less stiff than real bone (1e10), because stiffer springs need shorter time steps. Soft
+   * tissue bends neither of them.
    */
   void SetMaterial(double index, double youngModulus, double poissonRatio, double density);
   /**
-   * The values of a material, in this order; false, and no change, where there is none.
+   * Get the values of a material in the order of SetMaterial(). Returns false, and does not change
+   * `values`, if the material is not defined.
    */
   bool GetMaterialValues(int index, double values[3]);
   /**
-   * Remove all materials that SetMaterial() has set, the default ones included.
+   * Remove all materials that SetMaterial() has set, including the default ones.
    */
   void ClearMaterials();
   int GetNumberOfMaterials();
@@ -94,12 +95,12 @@ public:
   /**
    * Set/Get the tissue that an index stands for: an index from 0 to 255, and a value of
    * vtkElasticDeformation::MaterialPresetType, such as vtkElasticDeformation::LIVER. Its Young
-   * modulus, Poisson ratio and density are used in place of those of SetMaterial(), whichever is
-   * called first. Others are an error, and change nothing. CUSTOM, the default of all indices:
-   * those of SetMaterial() are used.
+   * modulus, Poisson ratio and density are used instead of those of SetMaterial(), whichever is
+   * called first. Other indices or presets are an error, and change nothing. CUSTOM, the default of
+   * all indices: the values of SetMaterial() are used.
    *
-   * The numbers are those of vtkElasticDeformation::GetMaterialPresetValues(); their limits are in
-   * Documents/physics.md.
+   * The numbers are those of vtkElasticDeformation::GetMaterialPresetValues(); Documents/physics.md
+   * describes their limits.
    */
   void SetMaterialPreset(int index, int preset);
   int GetMaterialPreset(int index);
@@ -108,7 +109,7 @@ public:
    */
   void ClearMaterialPresets();
   /**
-   * The number of indices that stand for a tissue.
+   * Get the number of indices that stand for a tissue.
    */
   int GetNumberOfMaterialPresets();
   ///@}
@@ -117,8 +118,7 @@ public:
   /**
    * Set/Get the name of the point array of the volume with the material of each voxel; any numeric
    * type. Without ranges (AddMaterialRange()) its values are indices of materials, as labels are.
-   * "": the active scalars where there are ranges, and DefaultMaterial everywhere where there are
-   * none. Default "".
+   * "": with ranges the active scalars, without ranges DefaultMaterial for all voxels. Default: "".
    */
   vtkSetMacro(MaterialArrayName, std::string);
   vtkGetMacro(MaterialArrayName, std::string);
@@ -126,9 +126,9 @@ public:
 
   ///@{
   /**
-   * Voxels with a value of minimum or more, and less than maximum, have a material. The first range
-   * that holds a value counts; where none does, DefaultMaterial. The index is a whole number from 0
-   * to 255.
+   * Add a range of values: voxels with a value of at least minimum and less than maximum have the
+   * material with this index, an integer from 0 to 255. The first range that contains a value is
+   * used. Voxels with other values have the DefaultMaterial.
    */
   void AddMaterialRange(double minimum, double maximum, double index);
   void ClearMaterialRanges();
@@ -137,8 +137,8 @@ public:
 
   ///@{
   /**
-   * Set/Get the index of the material of voxels that have no other one, and of tetrahedra outside
-   * the volume. Default 1, soft tissue.
+   * Set/Get the index of the material of voxels without another material, and of tetrahedra outside
+   * the volume. Default: 1, soft tissue.
    */
   vtkSetClampMacro(DefaultMaterial, int, 0, 255);
   vtkGetMacro(DefaultMaterial, int);
@@ -146,8 +146,9 @@ public:
 
   ///@{
   /**
-   * Tetrahedra of the last execution that hold no voxel and have the material of the nearest one,
-   * and those outside the volume, or where no voxel counts, which have the default material.
+   * Get the number of tetrahedra of the last execution that contain no voxel and have the material
+   * of the nearest one, and the number of tetrahedra with the default material: those outside the
+   * volume, and those whose nearest voxel is ignored.
    */
   vtkGetMacro(NumberOfTetrahedraWithoutVoxels, vtkIdType);
   vtkGetMacro(NumberOfTetrahedraOutside, vtkIdType);

@@ -3,31 +3,32 @@
  * @class   vtkTetGenMesher
  * @brief   tetrahedral deformation mesh that fits the body in a volume, or a closed surface
  *
- * vtkTetGenMesher finds the surface of the body that a volume shows, simplifies it to the edge
- * length asked for, and fills it with tetrahedra. Cavities of the body are filled too: what lies
- * in them moves with the body. The tetrahedra are made by TetGen (Hang Si, "TetGen, a
- * Delaunay-based quality tetrahedral mesh generator"), a program of its own under its own licence
- * (AGPL), which has to be installed; it runs as a child process with a time limit.
+ * vtkTetGenMesher finds the surface of the body that a volume shows, simplifies it to the requested
+ * edge length, and fills it with tetrahedra. Cavities of the body are filled, too: their voxels
+ * move with the body. The tetrahedra are made by TetGen (Hang Si, "TetGen, a Delaunay-based quality
+ * tetrahedral mesh generator"), a separate program under its own license (AGPL), which has to be
+ * installed. It runs as a child process with a time limit.
  *
  * @par What the mesh of a volume holds:
  * A voxel is a voxel of the body if its value is finite and at least the isovalue, or one of the
- * labels, and if vtkGhostType does not hide it. Voxels that share a face, an edge or a corner are
- * neighbours, and a piece is what neighbours connect. A speck is a piece of at most SpeckSize
- * voxels; it is not meshed, and its voxels do not count as voxels of the body. A voxel is inside
- * the mesh if its center is in a tetrahedron, or on its surface, to within 1/256 of a voxel.
+ * labels, and if vtkGhostType does not hide it. A piece is a connected component of the body:
+ * voxels that share a face, an edge or a corner are connected. A speck is a piece of at most
+ * SpeckSize voxels. It is not meshed, and its voxels are not counted as voxels of the body. A voxel
+ * is inside the mesh if its center is in a tetrahedron, or on its surface, to within 1/256 of a
+ * voxel.
  * @par
- * The surface follows the body at the distance of Margin. Where smoothing or decimation cuts voxels
- * off, its vertices are moved outwards until TetGen's tetrahedra hold them. So no voxel of the body
- * lies outside the mesh unless PieceMode leaves pieces out, but for rounding.
- * GetNumberOfBodyVoxelsOutside() is the number of those that do; from one of 1,000 on there is a
- * warning.
+ * The surface follows the body at the distance of Margin. If smoothing or decimation cuts off
+ * voxels, vertices of the surface are moved outwards until the tetrahedra contain them. Except for
+ * rounding, no voxel of the body then lies outside the mesh, unless PieceMode leaves out pieces.
+ * GetNumberOfBodyVoxelsOutside() is the number of voxels outside. If it is at least one of 1,000,
+ * there is a warning.
  *
  * @par Port 0, one of:
  * - vtkImageData, the volume, with at least two voxels on each axis; origin, spacing, direction
- *   matrix and an extent that does not start at 0 are honoured. The array is chosen by
- *   SetInputArrayToProcess(0, 0, 0, POINTS, name), by default the active scalars; of several
- *   components the first counts. Points that vtkGhostType hides lie outside the body. Where the
- *   body is cut off by the volume's border, the surface is closed there.
+ *   matrix and an extent that does not start at 0 are taken into account. SetInputArrayToProcess(0,
+ *   0, 0, POINTS, name) chooses the array, by default the active scalars; of several components the
+ *   first is used. Points that vtkGhostType hides are outside the body. If the volume's border cuts
+ *   off the body, the surface is closed there.
  * - vtkPolyData, a closed surface without self-intersections. Coincident points are merged and
  *   polygons split into triangles. Shells inside others are kept as surfaces, and their insides
  *   are filled too.
@@ -35,15 +36,15 @@
  * @par Output:
  * vtkUnstructuredGrid in world coordinates: points in double precision, vtkTetra cells, all with
  * positive volume, no data arrays. The first piece is the whole mesh, all others are empty: with
- * several ranks, only the first of them runs TetGen. Results and warnings of an execution are those
- * of that rank.
+ * several ranks, only the first one runs TetGen, and only this rank has results and warnings of the
+ * execution.
  *
  * @par Errors:
  * No body at the isovalue or with the labels; a volume of one slice; a surface that is empty, open,
  * flat, not manifold, not finite or that intersects itself; an edge length or refinement spheres
- * that ask for more than 20 million tetrahedra; a refinement sphere that is not valid; TetGen
+ * that require more than 20 million tetrahedra; a refinement sphere that is not valid; TetGen
  * missing, failing (the error says how it ended) or exceeding TimeLimit; a result without
- * tetrahedra. Each is one vtkErrorMacro, and the output is then empty.
+ * tetrahedra. Each error is reported by one vtkErrorMacro, and the output is then empty.
  *
  * @sa vtkLatticeTetrahedraSource vtkDeformVolumeFilter
  */
@@ -82,7 +83,7 @@ public:
   ///@}
 
   /**
-   * What the body of a volume is, see SetBodyMode().
+   * How the body of a volume is defined, see SetBodyMode().
    */
   enum BodyModes
   {
@@ -101,8 +102,8 @@ public:
 
   ///@{
   /**
-   * Set/Get what the body of a volume is: the voxels with at least the isovalue, or those with one
-   * of the labels. Default: ISOSURFACE.
+   * Set/Get how the body of a volume is defined: the voxels with at least the isovalue, or those
+   * with one of the labels. Default: ISOSURFACE.
    */
   vtkSetClampMacro(BodyMode, int, ISOSURFACE, LABELS);
   vtkGetMacro(BodyMode, int);
@@ -112,8 +113,8 @@ public:
 
   ///@{
   /**
-   * Set/Get whether the isovalue is chosen by the volume's histogram (Otsu's method, which
-   * separates two classes of voxels best) rather than by Isovalue. Default: on.
+   * Set/Get whether the isovalue is computed from the volume's histogram by Otsu's method, instead
+   * of set by Isovalue. Default: on.
    */
   vtkSetMacro(AutomaticIsovalue, bool);
   vtkGetMacro(AutomaticIsovalue, bool);
@@ -130,8 +131,8 @@ public:
 
   ///@{
   /**
-   * The labels that make up the body in the mode LABELS. None, the default, means every label
-   * other than 0.
+   * The labels of the body in the mode LABELS. Default: no labels, which means every label other
+   * than 0.
    */
   void AddLabel(vtkTypeInt64 label);
   void ClearLabels();
@@ -141,10 +142,10 @@ public:
 
   ///@{
   /**
-   * What happens to a body of several pieces: each is meshed (ALL_PIECES), or the piece with most
-   * voxels is and the others are left out (LARGEST_PIECE). Pieces that are closer together than the
-   * mesh reaches beyond them are meshed as one. Volumes only. The value 1, formerly the convex
-   * hull, is ALL_PIECES, with a warning. Default: ALL_PIECES.
+   * Set/Get which pieces of a body are meshed: all (ALL_PIECES), or only the piece with the most
+   * voxels (LARGEST_PIECE). Pieces whose meshes would touch, because of Margin, are meshed as one.
+   * Volumes only. The value 1, formerly the convex hull, sets ALL_PIECES, with a warning. Default:
+   * ALL_PIECES.
    */
   void SetPieceMode(int mode);
   int GetPieceModeMinValue() { return ALL_PIECES; }
@@ -156,9 +157,9 @@ public:
 
   ///@{
   /**
-   * Set/Get the size of a speck: pieces of at most that many voxels are not meshed; 0: nothing is a
-   * speck. A body of specks only is meshed all the same. Volumes only. Default 26, one less than a
-   * cube of 3 x 3 x 3 voxels has; at least 0.
+   * Set/Get the largest size of a speck: pieces of at most this number of voxels are not meshed. 0:
+   * there are no specks. A body that has only specks is meshed. Volumes only. Default: 26, one less
+   * than a cube of 3 x 3 x 3 voxels; at least 0.
    */
   vtkSetClampMacro(SpeckSize, int, 0, VTK_INT_MAX);
   vtkGetMacro(SpeckSize, int);
@@ -176,9 +177,9 @@ public:
 
   ///@{
   /**
-   * Set/Get how far the mesh reaches beyond the body, in target edge lengths, so that the body's
-   * skin lies well inside the mesh and is deformed with it. Volumes only. Default 0.5, from 0 to
-   * 10.
+   * Set/Get the distance by which the mesh extends beyond the body, as a multiple of the target
+   * edge length, so that the body's skin lies well inside the mesh and is deformed with it. Volumes
+   * only. Default: 0.5, range 0 to 10.
    */
   vtkSetClampMacro(Margin, double, 0.0, 10.0);
   vtkGetMacro(Margin, double);
@@ -186,9 +187,8 @@ public:
 
   ///@{
   /**
-   * Set/Get the iterations of windowed-sinc smoothing of a volume's surface, 0: none. Where
-   * smoothing would make the surface intersect itself, there is less of it. Default 20, at most
-   * 1000.
+   * Set/Get the iterations of windowed-sinc smoothing of a volume's surface, 0: none. If smoothing
+   * makes the surface intersect itself, the surface is smoothed less. Default: 20, at most 1000.
    */
   vtkSetClampMacro(SmoothingIterations, int, 0, 1000);
   vtkGetMacro(SmoothingIterations, int);
@@ -197,7 +197,7 @@ public:
   ///@{
   /**
    * Set/Get whether a surface with triangles finer than the target edge length is decimated to it.
-   * Where that would make the surface intersect itself, it is meshed undecimated (the one of a
+   * If decimation makes the surface intersect itself, the surface is meshed without it (that of a
    * volume with less detail). Default: on.
    */
   vtkSetMacro(Decimation, bool);
@@ -207,12 +207,13 @@ public:
 
   ///@{
   /**
-   * Spheres in which edges are at most so long, also those of the surface; beyond them, edges grow
-   * to the target edge length. A local displacement looks smooth where the edges are at most a
-   * sixth of its radius; with longer ones, the tetrahedra show as facets. All numbers are in world
-   * units; the radius and the edge length have to be greater than 0, otherwise the update fails. An
-   * edge length above the target has no effect. Default: no spheres. GetRefinementSphere gives the
-   * center, the radius and the edge length, all 0 for an index that is out of range.
+   * Spheres with shorter edges: within a sphere, all edges, including those of the surface, are at
+   * most edgeLength long. Outside, edges grow to the target edge length. A local displacement looks
+   * smooth if the edges are at most a sixth of its radius. With longer edges, the tetrahedra are
+   * visible as facets. All numbers are in world units; the radius and the edge length have to be
+   * greater than 0, otherwise the update fails. An edge length above the target has no effect.
+   * Default: no spheres. GetRefinementSphere() returns the center, the radius and the edge length,
+   * all 0 for an index that is out of range.
    */
   void AddRefinementSphere(double x, double y, double z, double radius, double edgeLength);
   void ClearRefinementSpheres();
@@ -232,8 +233,8 @@ public:
 
   ///@{
   /**
-   * Set/Get how many seconds a run of TetGen may take; an update may take several. Default 60, at
-   * least 0.001.
+   * Set/Get the time limit for one execution of TetGen, in s. An update may execute TetGen several
+   * times. Default: 60, at least 0.001.
    */
   vtkSetClampMacro(TimeLimit, double, 0.001, VTK_DOUBLE_MAX);
   vtkGetMacro(TimeLimit, double);
@@ -241,9 +242,9 @@ public:
 
   ///@{
   /**
-   * Set/Get the TetGen program: a path, or a name that is looked for on PATH. "", the default, is
-   * what the environment variable DEFORMVOLUME_TETGEN says, or else the one found when this library
-   * was built, or else "tetgen" on PATH.
+   * Set/Get the TetGen program: a path, or a name that is searched on PATH. Default: "", which
+   * means the value of the environment variable DEFORMVOLUME_TETGEN, or else the program found when
+   * this library was built, or else "tetgen" on PATH.
    */
   vtkSetMacro(TetGenExecutable, std::string);
   vtkGetMacro(TetGenExecutable, std::string);
@@ -251,7 +252,7 @@ public:
 
   ///@{
   /**
-   * The isovalue and the target edge length that the last execution used.
+   * Get the isovalue and the target edge length that the last execution used.
    */
   vtkGetMacro(UsedIsovalue, double);
   vtkGetMacro(UsedTargetEdgeLength, double);
@@ -259,9 +260,10 @@ public:
 
   ///@{
   /**
-   * The voxels of the body in the volume that the last execution meshed, and how many of them lie
-   * in no tetrahedron, those of pieces that were left out included; the voxels of specks, which are
-   * in neither number; and the number of pieces that are no specks. 0 for a surface.
+   * Get results of the last execution: the number of voxels of the body; the number of these voxels
+   * that are in no tetrahedron, including those of pieces that were left out; the number of voxels
+   * of specks, which are in neither of these numbers; and the number of pieces that are not specks.
+   * 0 for a surface.
    */
   vtkGetMacro(NumberOfBodyVoxels, vtkIdType);
   vtkGetMacro(NumberOfBodyVoxelsOutside, vtkIdType);
@@ -270,7 +272,7 @@ public:
   ///@}
 
   /**
-   * These numbers as a text of several lines; "" before the first execution and for a surface.
+   * Get these numbers as text, one in each line; "" before the first execution and for a surface.
    */
   std::string GetSummary();
 

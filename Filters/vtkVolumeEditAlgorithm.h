@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkVolumeEditAlgorithm
- * @brief   superclass of filters that take tetrahedra out of a volume
+ * @brief   superclass of filters that switch off tetrahedra of a volume
  *
- * vtkVolumeEditAlgorithm has what vtkCutVolume and vtkCarveVolume share: the ports and what is
- * asked of them, a deformation in which the volume is edited as it is seen, positions of a tool,
- * and edits that can be undone. A subclass finds the tetrahedra that its edits switch off.
+ * vtkVolumeEditAlgorithm is the common part of vtkCutVolume and vtkCarveVolume: the ports and their
+ * requests, edits of the deformed volume, positions of a tool, and undo. Subclasses find the
+ * tetrahedra that their edits switch off.
  *
  * @par Port 0, the volume:
  * vtkImageData of at least two voxels on each axis; any extent, origin, spacing and direction. A
  * cell array "ActiveTetrahedra" (unsigned char, one component; bit i stands for tetrahedron i of
- * the cell) says what is active before the edits; absent, all tetrahedra are. Bits are only
- * cleared, so filters in a chain add up.
+ * the cell) has the tetrahedra that are active before the edits. Without it, all tetrahedra are
+ * active. Edits only clear bits, so that the edits of filters in a chain accumulate.
  *
  * @par Port 1, vtkPolyData, optional:
- * What the subclass makes of it.
+ * See the subclasses.
  *
  * @par Port 2, the deformation, optional:
- * As on port 1 of vtkDeformVolumeFilter: tetrahedra with displacements, or a displacement field,
- * forward. The deformed volume is edited then, as it is seen. The vectors are chosen by
- * SetInputArrayToProcess(0, 2, 0, POINTS, name), by default the active ones. An edit is made with
- * the deformation as it is then. When only the deformation changes, the edit stays where it is in
- * the tissue, and costs nothing.
+ * As on port 1 of vtkDeformVolumeFilter: a mesh with displacements, or a forward displacement
+ * field. Edits are then in the coordinates of the deformed volume. SetInputArrayToProcess(0, 2, 0,
+ * POINTS, name) chooses the displacements, by default the active vectors. An edit uses the
+ * deformation of the update that makes it. If only the deformation changes later, the edit keeps
+ * its position in the tissue, and takes no time.
  *
  * @par Port 3, optional, the rest configuration of the deformation mesh:
  * As on port 2 of vtkDeformVolumeFilter.
@@ -31,21 +31,21 @@
  * update, unless somebody else holds a reference to it. With BlankCells also vtkGhostType.
  *
  * @par Edits:
- * Undo() switches on again what the last edit has switched off, bit for bit, as far as no other
- * edit has. Edits are forgotten when voxels lie elsewhere than before (extent, origin, spacing or
- * direction); everything then edits again. They stay when values or "ActiveTetrahedra" of the
- * volume change.
+ * Undo() restores the tetrahedra that the last edit has switched off, bit for bit, except those
+ * that another edit has switched off. If the extent, origin, spacing or direction of the volume
+ * changes, all edits are removed, and the current inputs, settings and tool positions edit again.
+ * If values or "ActiveTetrahedra" of the volume change, the edits remain.
  *
  * @par Abort:
- * An execution that is aborted ends with an empty output; the edits are as they were, and the next
- * update makes those that are missing.
+ * An aborted execution ends with an empty output. The edits do not change, and the next update
+ * makes the missing ones.
  *
  * @par Errors:
  * A volume that is flat; an "ActiveTetrahedra" array of another type or size; a tool
- * position or a DisplacementScale that is not finite; a deformation that vtkDeformVolumeFilter
- * would not take, or that draws 8 cells out to more than 2,048 voxels where it is edited. Each is
- * one vtkErrorMacro; the output is then empty, the edits are as they were, and the filter works
- * again once the cause is corrected.
+ * position or a DisplacementScale that is not finite; a deformation that is an error in
+ * vtkDeformVolumeFilter, or that stretches 8 cells over more than 2,048 voxels at an edit. Each
+ * error is reported by one vtkErrorMacro. The output is then empty, the edits do not change, and
+ * the filter works again after the cause is corrected.
  *
  * @sa vtkCutVolume vtkCarveVolume vtkDeformVolumeFilter
  */
@@ -80,9 +80,9 @@ public:
 
   ///@{
   /**
-   * Set/Get whether an edit stays when what has made it changes: a sheet, a function, a surface or
-   * a label. Off: the new edit takes the place of the old one, as when a plane is moved about.
-   * Edits by the tool always stay. Default: off.
+   * Set/Get whether an edit remains when the sheet, function, surface or label that has made it
+   * changes. Off: the new edit replaces the old one, for example while a plane is moved. Edits of
+   * the tool always remain. Default: off.
    */
   vtkSetMacro(Accumulate, bool);
   vtkGetMacro(Accumulate, bool);
@@ -91,7 +91,8 @@ public:
 
   ///@{
   /**
-   * Lift the tool: positions that follow begin another stroke. What it has done stays.
+   * Remove the tool positions, so that the next positions begin a new stroke. Edits of the tool
+   * remain.
    */
   void ClearToolPositions();
   int GetNumberOfToolPositions();
@@ -99,16 +100,16 @@ public:
 
   ///@{
   /**
-   * Undo the last edit that an update has made, and redo what was undone last. Nothing happens
-   * where there is none.
+   * Undo the last edit that an update has made, or redo the last edit that was undone. Do nothing
+   * if there is none.
    */
   void Undo();
   void Redo();
   ///@}
 
   /**
-   * Forget all edits: the output is the input. What is connected or set edits again when it
-   * changes, the tool when it moves on.
+   * Remove all edits, so that the output equals the input. A sheet, function, surface or label
+   * edits again after it has changed, and the tool after it has moved.
    */
   void Reset();
 
@@ -131,7 +132,7 @@ public:
   ///@}
 
   /**
-   * What becomes of voxels outside the deformation, see SetOutsideMode().
+   * What happens to voxels outside the deformation, see SetOutsideMode().
    */
   enum OutsideModes
   {
@@ -142,9 +143,10 @@ public:
 
   ///@{
   /**
-   * Set/Get where the voxels outside the deformation are, as in vtkDeformVolumeFilter: nowhere, so
-   * that no edit takes them, where the nearest tetrahedron takes them, or where they are at rest,
-   * but for what fades within FadeDistance. Default: DISCARD.
+   * Set/Get what happens to voxels outside the deformation, as in vtkDeformVolumeFilter. DISCARD:
+   * the deformed volume does not contain them, so that no edit affects them. EXTRAPOLATE: they
+   * follow the nearest tetrahedron. KEEP: they do not move, except that the displacement fades to
+   * zero within FadeDistance. Default: DISCARD.
    */
   vtkSetClampMacro(OutsideMode, int, DISCARD, KEEP);
   vtkGetMacro(OutsideMode, int);
@@ -164,11 +166,11 @@ public:
 
   ///@{
   /**
-   * Set/Get whether the output's cell array vtkGhostType hides the cells that have a tetrahedron
-   * that is switched off or divided, in addition to those that the volume's array hides. Renderers
-   * and most filters leave hidden cells out, so that edits show in the volume itself, to within a
-   * cell. These cells have the bit 128 as well, by which vtkDeformVolumeFilter knows that they are
-   * not hidden from it. Default: off.
+   * Set/Get whether the output's cell array vtkGhostType hides cells with a tetrahedron that is
+   * switched off or divided, in addition to cells that are hidden in the volume. Renderers and most
+   * filters leave out hidden cells, so that edits are visible in the volume itself, with the
+   * resolution of a cell. These cells also have the bit 128, so that vtkDeformVolumeFilter does not
+   * treat them as hidden. Default: off.
    */
   vtkSetMacro(BlankCells, bool);
   vtkGetMacro(BlankCells, bool);
@@ -176,7 +178,8 @@ public:
   ///@}
 
   /**
-   * Tetrahedra that the edits have switched off and that were active in the volume.
+   * Get the number of tetrahedra that the edits have switched off and that are active in the input
+   * volume.
    */
   vtkIdType GetNumberOfSwitchedOffTetrahedra();
 
@@ -185,8 +188,8 @@ protected:
   ~vtkVolumeEditAlgorithm() override;
 
   /**
-   * Bring the edits up to date with the inputs. All that can fail comes before the first change.
-   * Throws a std::exception, which RequestData() turns into an error.
+   * Update the edits from the inputs. Everything that can fail has to come before the first change.
+   * Throws a std::exception, which RequestData() reports as an error.
    */
   virtual void UpdateEdits(vtkInformationVector** input) = 0;
 
