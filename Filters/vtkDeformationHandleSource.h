@@ -46,7 +46,7 @@ public:
 
   ///@{
   /**
-   * Set/Get where the handle is now, in world coordinates. Default: 0, 0, 0.
+   * Set/Get the current position of the handle, in world coordinates. Default: 0, 0, 0.
    */
   vtkSetVector3Macro(Position, double);
   vtkGetVector3Macro(Position, double);

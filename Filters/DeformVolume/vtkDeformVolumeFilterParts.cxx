@@ -71,8 +71,8 @@ bool vtkDeformVolumeFilter::vtkInternals::WantsPart(vtkInformation* output) cons
 //------------------------------------------------------------------------------
 bool vtkDeformVolumeFilter::vtkInternals::CanTakePart(vtkInformation* volumeInfo) const
 {
-  // A smooth cut needs the whole volume: a part does not show where its two sides move. Coarse
-  // volumes have no smooth cuts.
+  // A smooth cut needs the whole volume: the motion of its two sides does not follow from a part.
+  // Coarse volumes have no smooth cuts.
   const bool isCut =
     this->Self->SamplingFactor == 1 && (this->HadCut || deformvolume::IsCutAnnounced(volumeInfo));
   // Mesh rasterization needs the whole volume. So do voxels outside a mesh that follow the nearest
