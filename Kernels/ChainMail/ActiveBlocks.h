@@ -31,7 +31,7 @@ public:
 
   bool IsEmpty() const { return this->Lists[0].empty() && this->Lists[1].empty(); }
   void Add(std::uint32_t block, std::uint32_t systems);
-  /// Adds the neighbors of a block on some faces. faces: as bits.
+  /// Adds the neighbors of a block on some faces. faces: one bit for each face.
   void AddNeighbors(std::uint32_t block, std::uint32_t faces, std::uint32_t systems);
   /// Takes at most `most` blocks of one color. Blocks of the same color share no faces.
   std::vector<ActiveBlock> Take(int color, std::size_t most);

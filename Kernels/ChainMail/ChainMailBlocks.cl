@@ -33,7 +33,7 @@
 #else
 #define BARRIER() barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE)
 #define OR_INTO(word, bits) atomic_or(word, bits)
-// All work-items take the same number of turns. PoCL 6.0 on CPUs with AVX-512 miscompiles loops of r that begin at
+// All work-items make the same number of iterations. PoCL 6.0 on CPUs with AVX-512 miscompiles loops of r that begin at
 // the number of the work-item, and does not compile this loop without the casts.
 #define FOR_ROWS(r)                                                                                \
   for (int turn = 0, r = (int)get_local_id(0);                                                     \
@@ -112,8 +112,8 @@ INLINE int8 LinkLimits(int8 a, int8 b, uchar8 links, int axis)
   return select((int8)(NO_LIMIT), (a + b) >> 1, there);
 }
 
-// Finds the offset in flags, links and materials of the row next to row r, on the faces -y to +z. Returns whether it
-// exists.
+// Finds the row next to row r on one of the faces -y to +z: its offset in flags, links and materials. Returns whether
+// that row exists.
 INLINE int FindRow(uint block, int r, int face, const ChainMailGrid* g, size_t* offset)
 {
   const int steps[3] = { 0, 1, 8 };
@@ -184,7 +184,7 @@ INLINE void FindNeighbours(Neighbours* n, __global const int* displacements,
   }
 }
 
-// Returns the number of voxels of a block's row that lie in the volume, and sets the place of the first one in the
+// Returns the number of voxels of a block's row that lie in the volume. word: set to the offset of the first one in the
 // output.
 INLINE int FindOutputRow(uint block, int r, const ChainMailGrid* g, size_t* word)
 {
@@ -240,9 +240,9 @@ __kernel void PutToRest(__global int* displacements, __global const uint* list)
   }
 }
 
-// Moves the voxels of handles. voxels: for each voxel its place in the memory of all blocks, and its handle. targets:
-// for each handle its displacement, and the flags of its voxels. Without flags of systems, the voxels are held where
-// they are.
+// Moves the voxels of handles. voxels: for each voxel, its index in the arrays of all blocks, and its handle. targets:
+// for each handle, its displacement, and the flags of its voxels. If the flags have no bits of systems, the voxels are
+// held at their current displacement.
 __kernel void Hold(__global int* displacements, __global uchar* flags, __global const uchar* links,
   __global const uint* voxels, __global const int* targets, __global uint* shared,
   __global uint* counts, const uint end)

@@ -12,8 +12,8 @@
 namespace deformvolume
 {
 
-/// The division of a volume into blocks of 8 x 8 x 8 voxels. Local indices begin at 0 at its first
-/// voxel.
+/// The division of a volume into blocks of 8 x 8 x 8 voxels. Local indices of voxels begin at 0 at
+/// the first voxel of the volume.
 class ChainMailBlocks
 {
 public:
@@ -28,14 +28,15 @@ public:
   std::int64_t GetNeighbor(std::uint32_t block, int face) const;
   /// Returns the color of a block, 0 or 1. Blocks that share a face have different colors.
   int GetColor(std::uint32_t block) const;
-  /// Returns the place of a voxel in the memory of all blocks.
+  /// Returns the index of a voxel in the arrays of the kernels, which hold one block after the
+  /// other.
   std::uint32_t GetVoxelIndex(int x, int y, int z) const;
   /// Returns the local indices of the voxels of a block.
   Extent GetVoxels(std::uint32_t block) const;
   /// Appends the blocks that contain voxels of a box of local indices.
   void Append(const Extent& box, std::vector<std::uint32_t>& blocks) const;
-  /// Returns the extents of blocks in structured indices. blocks: in ascending order. Neighbors on
-  /// x are joined.
+  /// Returns the extents of blocks in structured indices, with neighbors on x joined. blocks: in
+  /// ascending order.
   std::vector<Extent> Join(const std::vector<std::uint32_t>& blocks) const;
 
 private:

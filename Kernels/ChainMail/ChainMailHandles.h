@@ -15,15 +15,16 @@ namespace deformvolume
 /// A voxel that a handle holds.
 struct HeldVoxel
 {
-  std::uint32_t Index; // place in the memory of all blocks
+  std::uint32_t Index; // index in the arrays of the kernels (ChainMailBlocks::GetVoxelIndex)
   std::uint32_t Handle;
 };
 
-/// Throws an Error if a handle lies outside the volume, is moved too far, or has an invalid number.
+/// Throws an Error if a handle lies outside the volume or is moved too far, if one of its
+/// coordinates is not finite, or if its radius is negative or not finite.
 void CheckHandles(const ChainMailBlocks& blocks, const std::vector<ChainMailHandle>& handles);
 
 /// The voxels of handles that CheckHandles accepted. A voxel within the radius of several handles
-/// belongs to the first of these. Sorted by place.
+/// belongs to the first of these handles. The voxels are sorted by index.
 class ChainMailHandles
 {
 public:

@@ -16,13 +16,13 @@ namespace
 constexpr std::size_t MostMaterials = 256;
 constexpr double LargestLimit = 1000.0;
 constexpr int LargestWeight = 255;
-// Links with a smaller range count as having this range.
+// The weight of a link with a smaller range is computed with this range.
 constexpr double SmallestRange = 1.0 / 1024.0;
 
 void Check(const ChainMailMaterial& material, std::size_t index)
 {
   const std::string name = "Material " + std::to_string(index);
-  // Written so that not-a-number is refused, too.
+  // Each condition is negated so that NaN is refused, too.
   if (!(material.MinimumStretch >= 0.0 && material.MinimumStretch <= 1.0))
   {
     throw Error(name + " has the minimum stretch " + std::to_string(material.MinimumStretch) +
@@ -40,7 +40,7 @@ void Check(const ChainMailMaterial& material, std::size_t index)
   }
 }
 
-// Rounds down, so that the limits hold exactly. Multiples of a unit do not change.
+// Rounds down, so that no displacement exceeds a limit. Multiples of a unit do not change.
 std::int32_t ToUnits(double limit)
 {
   return static_cast<std::int32_t>(std::min(std::floor(limit * DEFORMVOLUME_CHAINMAIL_UNITS + 1e-6),

@@ -14,7 +14,8 @@ namespace deformvolume
 /// The limits of materials in the layout of the kernels.
 struct ChainMailLimits
 {
-  /// table: 1 to 256 materials; throws an Error if one is invalid. spacing: on each axis.
+  /// table: 1 to 256 materials. spacing: of the voxels, on each axis. Throws an Error if a material
+  /// is invalid.
   ChainMailLimits(
     const std::vector<ChainMailMaterial>& table, const std::array<double, 3>& spacing);
 

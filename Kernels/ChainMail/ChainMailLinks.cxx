@@ -16,9 +16,9 @@ namespace
 
 constexpr unsigned char AllBits = DEFORMVOLUME_LINKS | DEFORMVOLUME_ELEMENT;
 
-// The bits that a cell gives to the voxel at one of its corners: the links that begin there, and
-// the element. Corners are numbered as in FiveTetrahedra.h. mirror: bits of the axes on which the
-// index of the cell is odd.
+// The bits that a cell contributes to the voxel at one of its corners: the links that begin at the
+// voxel, and DEFORMVOLUME_ELEMENT. Corners are numbered as in FiveTetrahedra.h. mirror: bits of the
+// axes on which the index of the cell is odd.
 class CornerTable
 {
 public:

@@ -21,8 +21,8 @@ namespace deformvolume
 namespace
 {
 
-// Calls function(number, place) for all voxels: the number with x varying fastest, and the place in
-// the memory of all blocks.
+// Calls function(number, index) for all voxels. number: with x varying fastest. index: in the
+// arrays of all blocks.
 template <typename Function>
 void ForVoxels(const ChainMailBlocks& blocks, const Function& function)
 {

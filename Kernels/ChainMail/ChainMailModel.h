@@ -27,9 +27,10 @@ namespace deformvolume
 /// size of work-groups and order of blocks.
 ///
 /// Call SetDevice, SetVoxelGrid, SetMaterials and SetOutput, then Step any number of times.
-/// SetActiveTetrahedra and SetPinned are optional. SetVoxelGrid discards what was set after it.
-/// Every failure throws an Error. All settings and displacements are then unchanged, except after
-/// failures of the device, which require a new call of SetVoxelGrid.
+/// SetActiveTetrahedra and SetPinned are optional. SetVoxelGrid discards the materials, active
+/// tetrahedra, pinned voxels and output that were set before. Every failure throws an Error. All
+/// settings and displacements are then unchanged, except after failures of the device, which
+/// require a new call of SetVoxelGrid.
 ///
 /// Memory on the device: 12 bytes per voxel for the displacement, and one byte each for flags,
 /// links and material, in blocks of 8 x 8 x 8 voxels (partly filled at the end of each axis).
@@ -47,8 +48,8 @@ public:
   ChainMailModel(const ChainMailModel&) = delete;
   ChainMailModel& operator=(const ChainMailModel&) = delete;
 
-  /// Set the device (see ResolveDevice); returns its name. A change of device discards all that was
-  /// set.
+  /// Set the device (see ResolveDevice); returns its name. A change of device discards the voxel
+  /// grid and all that depends on it.
   std::string SetDevice(const std::string& request);
 
   /// Set the memory that may be used on the device, in bytes. Default 0: all that is available.
@@ -62,10 +63,10 @@ public:
   /// different random orders. Results do not depend on it.
   void SetBlockOrder(unsigned int order);
 
-  /// Set the voxel grid. extent: structured indices of the voxels. indexToWorld: row-major 3 x 3;
-  /// its columns are the steps to the next voxel on each axis. All voxels are then at rest and have
-  /// the default material. Throws an Error if there is not enough memory for the voxels and an
-  /// output.
+  /// Set the voxel grid. extent: structured indices of the voxels, at least two on each axis.
+  /// indexToWorld: row-major 3 x 3; its columns are the steps to the next voxel on each axis. All
+  /// voxels are then at rest and have the default material. Throws an Error if there is not enough
+  /// memory for the voxels and an output.
   void SetVoxelGrid(const Extent& extent,
     const std::array<double, 9>& indexToWorld = { { 1, 0, 0, 0, 1, 0, 0, 0, 1 } });
 
@@ -77,9 +78,9 @@ public:
 
   /// Set the active tetrahedra. One byte per cell: bit i is set if tetrahedron i is active; null:
   /// all are active. A link exists if any of the up to four tetrahedra with this edge is active. A
-  /// voxel is an element if any of its tetrahedra is active. So voxels are connected by links only
-  /// if they are connected by active tetrahedra. Changes are found by comparing with the last mask.
-  /// If displacements violate restored links, all displacements are set to 0.
+  /// voxel is an element if any of its tetrahedra is active. Voxels are therefore connected by
+  /// links only if they are connected by active tetrahedra. Changes are found by a comparison with
+  /// the last mask. If displacements violate restored links, all displacements are set to 0.
   void SetActiveTetrahedra(const unsigned char* active);
 
   /// Set the pinned voxels. One byte per voxel: nonzero if the voxel must not move. Null: no voxel
@@ -91,9 +92,10 @@ public:
   /// all of it. A step writes only what changes; during a step the contents are undefined.
   void SetOutput(float* output);
 
-  /// The same with vectors on the device of the model, one for each voxel. On a device with its own
-  /// memory they are not copied through the host. The vectors record what each step has changed. If
-  /// a step fails and the voxel grid must be set again, their values are undefined.
+  /// Set vectors on the device of the model as the output, one vector for each voxel. On a device
+  /// with its own memory they are not copied through the host. The vectors record what each step
+  /// has changed. If a step fails and the voxel grid must be set again, the values of the vectors
+  /// are undefined.
   void SetOutput(const std::shared_ptr<DeviceVectors>& output);
 
   /// Throws the Error that SetMaterials would throw for this table.
@@ -111,9 +113,9 @@ public:
   /// unchanged blocks are shared.
   std::shared_ptr<const ChainMailSnapshot> TakeSnapshot(
     const std::shared_ptr<const ChainMailSnapshot>& last = {});
-  /// Restores the displacements of a snapshot bit for bit. Blocks that were relaxing do not
-  /// continue. If the displacements violate current limits or links, the next step first sets them
-  /// to 0. Throws an Error if the snapshot has other voxels.
+  /// Restores the displacements of a snapshot bit for bit. Blocks that were relaxing stop relaxing.
+  /// If the displacements violate current limits or links, the next step first sets them to 0.
+  /// Throws an Error if the snapshot was taken of another extent.
   void Restore(const ChainMailSnapshot& snapshot);
 
   /// Returns the memory allocated on the device, in bytes, without the output.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The output of ChainMail, and the check of the limits. This text comes after ChainMailBlocks.cl.
 
-// Writes the displacements of a row in world units. fma rounds once on every device, so results are the same.
+// Writes the displacements of a row in world units. fma rounds once on every device, so all devices give the same
+// results.
 INLINE void WriteRow(
   const int8* x, __global int* output, size_t index, int count, const ChainMailGrid* g)
 {

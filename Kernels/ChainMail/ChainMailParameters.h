@@ -36,8 +36,8 @@
 // The largest number of sweeps over a block in a visit.
 #define DEFORMVOLUME_MOST_SWEEPS 24
 
-// Numbers that all blocks share: first, for each system, the largest distance by which voxels that
-// do not yield would have to move.
+// Indices in the array `shared`, which all blocks use. Its first six numbers are, for each system,
+// the largest distance by which voxels that do not yield would have to move.
 #define DEFORMVOLUME_CONFLICTS 6 // whether two systems move a voxel in opposite directions
 #define DEFORMVOLUME_VIOLATION 7 // the largest violation of a limit
 #define DEFORMVOLUME_NEEDED 8    // bits of the systems in which handles move their voxels

@@ -8,8 +8,8 @@
 // around it, until they do not change any more. Bounds are minima of sums of integers, so the final bounds do not
 // depend on the order of visits and rows.
 //
-// Blocks that share a face are not visited in the same launch. Without SERIAL, neighboring rows are not handled
-// between the same two barriers. So no work-item reads what another one writes.
+// Blocks that share a face are not visited in the same launch. Without SERIAL, neighboring rows are not handled between
+// the same two barriers. Therefore no work-item reads what another one writes.
 
 // The systems "pushed up" are those "pulled down" with the sign reversed.
 INLINE int8 Upright(int system, int8 x)
@@ -17,7 +17,7 @@ INLINE int8 Upright(int system, int8 x)
   return system < 3 ? x : -x;
 }
 
-// Bounds a row by marked voxels outside the block.
+// Bounds a row by marked voxels outside the block. Returns the new bounds.
 INLINE int8 BoundByNeighbours(int8 bound, __global const int* displacements,
   __global const uchar* flags, __global const uchar* links, __global const uchar* materials,
   __global const int* limits, uint block, int r, int system, const ChainMailGrid* g)
@@ -75,7 +75,7 @@ INLINE int8 BoundByNeighbours(int8 bound, __global const int* displacements,
   return bound;
 }
 
-// Bounds voxels by others of the same row. forward, backward: limits of the links that begin at the voxels.
+// Bounds voxels by other voxels of the same row. forward, backward: limits of the links that begin at the voxels.
 INLINE int8 BoundAlongRow(int8 bound, int8 forward, int8 backward)
 {
   const int none = NO_LIMIT;
@@ -250,8 +250,8 @@ INLINE uint FacesOf(int8 moved, int r)
     (z == 0 ? 16 : 0) | (z == 7 ? 32 : 0);
 }
 
-// list: for each block its number and a task. The bits below DEFORMVOLUME_SYSTEMS are the systems in which voxels
-// around it changed. Bit DEFORMVOLUME_SYSTEMS: the block is already saved.
+// list: for each block, its number and a task. The bits below DEFORMVOLUME_SYSTEMS are the systems in which voxels
+// around the block changed. Bit DEFORMVOLUME_SYSTEMS: the block is already saved.
 __kernel void Propagate(__global int* displacements, __global uchar* flags,
   __global const uchar* links, __global const uchar* materials, __global const int* limits,
   __global int* saved, __global uint* shared, __global const uint* list, __global uint* results,

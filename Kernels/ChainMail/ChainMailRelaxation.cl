@@ -2,11 +2,12 @@
 // Relaxation: a voxel moves towards the weighted mean of the displacements of its neighbors, within the limits of its
 // links. This text comes after ChainMailBlocks.cl.
 //
-// Neighbors of a voxel have the other parity of x + y + z. A launch moves the voxels of one parity and reads the
-// others. So no limit is violated, and the order of voxels does not matter.
+// Neighbors of a voxel have the other parity of x + y + z. A launch moves the voxels of one parity, and reads the
+// voxels of the other parity. Therefore no limit is violated, and the order of voxels does not matter.
 //
-// weights: of a link between two materials: 65536 numbers for links along the component, then for all other links.
-// reciprocals: of the sums of weights, as floats. A product of two floats is rounded in the same way on every device.
+// weights: of the links between two materials, 256 * material + material. The first 65536 weights are those of links
+// along the component of the displacement, the next 65536 those of all other links. reciprocals: of the sums of
+// weights, as floats. A product of two floats is rounded in the same way on every device.
 
 // Larger differences, in units, are clamped to this value: six of them times 255 fit into an int.
 #define MOST_PULL (1 << 20)
@@ -28,7 +29,7 @@ INLINE float8 ReciprocalsOf(__global const float* reciprocals, int8 s)
     reciprocals[s.s4], reciprocals[s.s5], reciprocals[s.s6], reciprocals[s.s7]);
 }
 
-// results: set to 1 if a block changed. threshold: in units; smaller moves are ignored.
+// results: set to 1 for blocks that changed. threshold: in units; voxels closer to the mean do not move.
 __kernel void Relax(__global int* displacements, __global const uchar* flags,
   __global const uchar* links, __global const uchar* materials, __global const int* limits,
   __global const uchar* weights, __global const float* reciprocals, __global const uint* list,
@@ -100,7 +101,7 @@ __kernel void Relax(__global int* displacements, __global const uchar* flags,
       any |= moves;
       vstore8(select(x[c], next, moves), 0, after[c]);
     }
-    // Write only voxels of this parity.
+    // Write only voxels of this parity: other work-items read the other voxels of the row.
     int isAny[8];
     vstore8(any, 0, isAny);
     uint rowChanged = 0;

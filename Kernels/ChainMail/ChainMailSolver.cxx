@@ -15,10 +15,12 @@ namespace
 // The number of steps in which a block relaxes after it was touched.
 constexpr std::int64_t RelaxingSteps = 30;
 
+// Flags of the voxels of a handle. A source moves other voxels. Firm voxels do not yield to other
+// handles.
 constexpr std::int32_t Source = DEFORMVOLUME_ALL_SYSTEMS | DEFORMVOLUME_HELD;
 constexpr std::int32_t FirmSource = Source | DEFORMVOLUME_FIXED;
 constexpr std::int32_t Firm = DEFORMVOLUME_HELD | DEFORMVOLUME_FIXED;
-// A handle is moved back at most once on each side, and then tried a last time.
+// A handle is moved back at most once in each direction, and then tried a last time.
 constexpr int MostAttempts = 3;
 
 double ToVoxels(std::int64_t units)
@@ -33,7 +35,7 @@ bool IsContradiction(const SharedNumbers& shared)
 }
 
 // Moves a handle back by the distance that voxels which do not yield would have to move. Returns
-// false if this is needed in both directions.
+// false if these voxels would have to move in both directions on an axis.
 bool MoveBack(HandleTask& task, const SharedNumbers& shared)
 {
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -263,7 +265,7 @@ void ChainMailSolver::ResolveInOrder(const ChainMailHandles& handles, ChainMailR
 {
   const std::size_t count = handles.GetNumberOfHandles();
   std::vector<HandleTask> accepted(count, HandleTask{ { { 0, 0, 0 } }, 0 });
-  bool isRestored = true; // whether the state is that before the step, plus accepted handles
+  bool isRestored = true; // whether the voxels are as before the step, plus the accepted handles
   for (std::size_t i = 0; i < count; ++i)
   {
     if (!handles.HasVoxels(i))
@@ -320,7 +322,7 @@ void ChainMailSolver::ResolveInOrder(const ChainMailHandles& handles, ChainMailR
   }
   if (!isRestored || count > 1)
   {
-    this->Move(handles, accepted, report); // held voxels do not relax
+    this->Move(handles, accepted, report); // held voxels must not relax
   }
 }
 
@@ -409,7 +411,8 @@ void ChainMailSolver::Finish(ChainMailReport& report)
   {
     Include(report.ChangedExtent, extent);
   }
-  // Blocks that were saved but did not move must be read, too: the output held their saved state.
+  // Blocks that were saved but did not move must be read, too: the output holds their saved state
+  // until then.
   this->State.ReadOutput(this->Blocks.Join(this->Saved));
   this->State.TellOfChanges(report.Changes);
   report.WasReset = this->WasReset;

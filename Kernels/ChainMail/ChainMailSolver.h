@@ -31,8 +31,9 @@ public:
   void Touch(const std::vector<std::uint32_t>& blocks);
   /// Sets all displacements to 0.
   void PutToRest();
-  /// Sets all displacements to 0 if they violate a limit in these blocks, or in any block.
+  /// Sets all displacements to 0 if any of them violates a limit in these blocks.
   void CheckDisplacements(const std::vector<std::uint32_t>& blocks);
+  /// Sets all displacements to 0 if any of them violates a limit.
   void CheckDisplacements() { this->CheckDisplacements(this->Displaced); }
 
   /// Returns the current displacements. last: null, or a snapshot with which unchanged blocks are

@@ -17,7 +17,7 @@ namespace deformvolume
 namespace
 {
 
-// The largest number of work-items of a work-group, which share the rows of a block.
+// The largest number of work-items of a work-group. They share the rows of a block.
 constexpr std::size_t MostItems = DEFORMVOLUME_BLOCK_ROWS;
 
 static_assert(ChainMailSnapshot::VoxelsPerBlock == DEFORMVOLUME_BLOCK_VOXELS,

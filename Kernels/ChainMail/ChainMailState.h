@@ -48,17 +48,19 @@ public:
   static std::uint64_t GetNeededMemory(const ChainMailBlocks& blocks);
   std::uint64_t GetMemory() const;
 
-  /// The number of blocks in a launch: small enough to ask for an abort in between.
+  /// The largest number of blocks in a launch. It is small, as a step can be aborted only between
+  /// launches.
   static constexpr std::size_t AtOnce = 1024;
 
   /// Set a callback that is called between launches; Aborted is thrown if it returns false. Null:
   /// no callback. Save() and Propagate() are never aborted in between.
   void SetProgress(const std::function<bool()>& progress) { this->Progress = progress; }
 
+  /// Calls the callback, and throws Aborted if it returns false.
   void Continue() const;
 
   void SetLimits(const ChainMailLimits& limits);
-  /// Changes one byte of each voxel, in the order of blocks.
+  /// Change one byte of each voxel. The bytes are in the order of blocks.
   void ChangeLinks(const std::function<void(unsigned char*)>& change);
   void ChangeMaterials(const std::function<void(unsigned char*)>& change);
 
@@ -71,12 +73,12 @@ public:
   /// Waits until the output is written, and copies rows of blocks, in structured indices, to the
   /// host memory.
   void ReadOutput(const std::vector<Extent>& changes);
-  /// Marks changed rows of blocks in the output vectors.
+  /// Marks rows of blocks as changed in the output vectors.
   void TellOfChanges(const std::vector<Extent>& changes);
 
   /// The following functions run a kernel on blocks.
   void Save(const std::vector<std::uint32_t>& list);
-  /// isEnd: whether the output must be restored, too.
+  /// isEnd: whether `saved` must become the output again, as the step ends.
   void Restore(const std::vector<std::uint32_t>& list, bool isEnd = false);
   void ClearFlags(const std::vector<std::uint32_t>& list);
   void PutToRest(const std::vector<std::uint32_t>& list);
@@ -91,13 +93,13 @@ public:
   ///@}
   /// No two blocks may share a face. results: the result of the kernel for each block.
   void Propagate(const std::vector<BlockTask>& list, std::vector<std::uint32_t>& results);
-  /// One sweep. Sets results to 1 for blocks that changed.
+  /// Performs one relaxation sweep, and sets results to 1 for blocks that changed.
   void Relax(const std::vector<std::uint32_t>& list, float elasticity, int threshold,
     std::vector<std::uint32_t>& results);
-  /// moved: for each block, the number of voxels that differ from the saved ones.
+  /// moved: for each block, the number of voxels whose displacement differs from the saved one.
   void Finish(const std::vector<std::uint32_t>& list, std::vector<std::uint32_t>& moved);
 
-  /// counts: the number of voxels of each handle.
+  /// counts: the number of voxels that each handle holds.
   void Hold(const std::vector<HeldVoxel>& voxels, const std::vector<HandleTask>& handles,
     std::vector<std::uint32_t>& counts);
 
@@ -111,7 +113,7 @@ private:
   void ForParts(const std::vector<BlockTask>& list, const Setter& launch, bool canStop);
   void ForParts(const std::vector<std::uint32_t>& list, const Setter& launch, bool canStop = true);
   void Run(const cl::Kernel& kernel, const std::vector<std::uint32_t>& list, bool canStop = true);
-  /// The same, and reads the result of the kernel for each block.
+  /// Does what Run does, and reads the result of the kernel for each block.
   template <typename Task>
   void RunAndRead(const cl::Kernel& kernel, const std::vector<Task>& list,
     std::vector<std::uint32_t>& results, bool canStop = true);

@@ -51,9 +51,11 @@ struct ChainMailRequest
   std::vector<ChainMailHandle> Handles;
   /// The number of relaxation sweeps over the blocks that were moved in the last 30 steps; 0: none.
   int RelaxationSweeps = 0;
-  /// The part of the way to the mean of its neighbors that a voxel moves in a sweep, 0 to 1.
+  /// The fraction of the distance to the mean of its neighbors that a voxel moves in a sweep, 0 to
+  /// 1.
   double Elasticity = 1.0;
-  /// Voxels closer to this mean than this fraction of the spacing do not relax.
+  /// Voxels closer to this mean than this fraction of the spacing do not relax. Each axis is
+  /// decided independently.
   double PlasticityThreshold = 0.0;
   /// Called between launches. Return false to abort the step.
   std::function<bool()> Progress;
@@ -88,7 +90,7 @@ struct ChainMailReport
   /// The blocks of 8 x 8 x 8 voxels, or rows of such blocks, in which the output changed since the
   /// last step, as extents in structured indices.
   std::vector<Extent> Changes;
-  /// A box of all Changes, in structured indices; empty if there are none.
+  /// The bounding box of all Changes, in structured indices; empty if there are none.
   Extent ChangedExtent{ { 0, -1, 0, -1, 0, -1 } };
 
   /// Returns the number of handles whose displacement was reduced.

@@ -14,11 +14,11 @@
 namespace deformvolume
 {
 
-/// Returns the matrix of a volume for ChainMailModel::SetVoxelGrid().
+/// Returns the argument indexToWorld of ChainMailModel::SetVoxelGrid() for a volume.
 DEFORMVOLUME_EXPORT std::array<double, 9> GetVoxelMatrix(const ImageGeometry& volume);
 
-/// Makes handles from world coordinates: the rest position of each one, and where it is now.
-/// radius: of all handles, in world units.
+/// Makes handles from world coordinates. rest: the rest position of each handle. now: its current
+/// position. radius: of all handles, in world units.
 DEFORMVOLUME_EXPORT std::vector<ChainMailHandle> MakeHandles(const ImageGeometry& volume,
   const std::vector<glm::dvec3>& rest, const std::vector<glm::dvec3>& now, double radius);
 
