@@ -21,8 +21,8 @@ namespace deformvolume
 namespace
 {
 
-// Three points count as collinear if the area between them is less than this part of the square of
-// an edge. Mid-side nodes are collinear with the ends of their edge only up to the rounding of
+// Three points count as collinear if the area between them is less than this fraction of the square
+// of an edge. Mid-side nodes are collinear with the ends of their edge only up to the rounding of
 // floats.
 constexpr double LeastArea = ElasticBody::LargestSine;
 
@@ -96,7 +96,7 @@ public:
     this->Products += row * row.transpose();
   }
 
-  // Whether all motions are prevented. Each row and column is scaled by its diagonal, as
+  // Whether all motions are prevented. Each row and column is scaled by its diagonal element, as
   // translations and rotations have different units.
   bool Holds() const
   {
@@ -266,7 +266,7 @@ PieceSupports FindSupports(
     }
   }
   // Takes all pieces whose support satisfies isNext, and calls take for each of them. The shared
-  // nodes of a taken piece then support its neighbors, which are tried again.
+  // nodes of a taken piece then support its neighbors, so these neighbors are tried again.
   std::vector<bool> isTaken(number, false);
   std::vector<bool> isSettled(body.Points.size(), false);
   const auto spread = [&](auto&& isNext, auto&& take)

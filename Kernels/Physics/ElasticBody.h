@@ -46,7 +46,7 @@ struct ElasticMaterial
 /// A tetrahedral mesh at rest with the properties that all physical models need.
 struct ElasticBody
 {
-  /// Positions of the nodes at rest, in metres.
+  /// Positions of the nodes at rest, in meters.
   std::vector<glm::dvec3> Points;
   /// The corners of each tetrahedron. In all tetrahedra the fourth node lies on the side to which
   /// the normal of the first three nodes points, or in all of them on the opposite side.
@@ -101,18 +101,18 @@ struct HeldNode
 {
   /// The number of the node.
   std::int32_t Node = 0;
-  /// The prescribed displacement of the node, in metres.
+  /// The prescribed displacement of the node, in meters.
   glm::dvec3 Displacement{ 0.0 };
 };
 
 /// The loads and prescribed displacements of the nodes of a body.
 struct BodyLoads
 {
-  /// In m/s^2.
+  /// The acceleration of gravity, in m/s^2.
   glm::dvec3 Gravity{ 0.0 };
   /// The force on each node, in N. Empty: no forces.
   std::vector<glm::dvec3> Forces;
-  /// The prescribed displacement of each fixed node, in metres. Empty: fixed nodes stay at rest.
+  /// The prescribed displacement of each fixed node, in meters. Empty: fixed nodes stay at rest.
   std::vector<glm::dvec3> FixedDisplacements;
 };
 

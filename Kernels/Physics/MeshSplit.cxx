@@ -183,7 +183,8 @@ std::vector<unsigned char> MarkNodesOfSplitFaces(
 void SplitNodes(
   const SplitRegion& region, const NodeParts& parts, std::size_t numberOfNodes, MeshSplit& split)
 {
-  // For each node of the region, the number of its first copy minus 1. Part p gets the copy at + p.
+  // For each node of the region, the number of its first copy minus 1. Part p > 0 of a node gets
+  // the node copies[node] + p.
   std::vector<std::size_t> copies(region.GetNumberOfNodes());
   for (std::size_t node = 0; node < copies.size(); ++node)
   {

@@ -66,8 +66,8 @@ struct MeshSplit
 /// away than a million lengths of the mesh; or if an unparted pair refers to a tetrahedron that
 /// does not exist.
 ///
-/// The run time is that of a few passes over all tetrahedra, and of tests of those near the sheet.
-/// Faces of more than two tetrahedra are not split.
+/// The run time is that of a few passes over all tetrahedra, and of tests of the tetrahedra near
+/// the sheet. Faces of more than two tetrahedra are not split.
 DEFORMVOLUME_EXPORT MeshSplit SplitMesh(const std::vector<glm::dvec3>& positions,
   const std::vector<Tetrahedron>& tetrahedra, const std::vector<glm::dvec3>& sheetPoints,
   const std::vector<std::array<std::int64_t, 3>>& sheetTriangles,

@@ -19,7 +19,7 @@ namespace deformvolume
 {
 
 /// The quadratic tetrahedron of ten nodes: four corners, then the mid-side nodes in the order of
-/// TetrahedronEdges. Positions inside it (`place`) are four barycentric coordinates.
+/// TetrahedronEdges. Positions inside it (`weights`) are four barycentric coordinates.
 struct QuadraticTetrahedron
 {
   static constexpr std::size_t NumberOfNodes = 10;
@@ -46,13 +46,13 @@ struct QuadraticTetrahedron
     return points;
   }
 
-  /// The derivatives of the position by the barycentric coordinates of corners 1, 2 and 3, as three
-  /// columns; the coordinate of corner 0 is 1 minus the others. With straight edges the determinant
-  /// is six times the volume.
+  /// The derivatives of the position with respect to the barycentric coordinates of corners 1, 2
+  /// and 3, as three columns; the coordinate of corner 0 is 1 minus the sum of these three. With
+  /// straight edges the determinant is six times the volume.
   static glm::dmat3 GetJacobian(
     const std::array<glm::dvec3, NumberOfNodes>& points, const glm::dvec4& weights)
   {
-    std::array<glm::dvec3, 4> slopes; // derivatives by each coordinate
+    std::array<glm::dvec3, 4> slopes; // derivatives with respect to each coordinate
     for (std::size_t i = 0; i < 4; ++i)
     {
       slopes[i] = (4.0 * weights[static_cast<int>(i)] - 1.0) * points[i];
@@ -67,15 +67,15 @@ struct QuadraticTetrahedron
     return { slopes[1] - slopes[0], slopes[2] - slopes[0], slopes[3] - slopes[0] };
   }
 
-  /// The part of the volume that a Gauss point stands for, from the determinant of GetJacobian
-  /// there.
+  /// The volume of a Gauss point: its share of the volume of the tetrahedron. determinant: of
+  /// GetJacobian at this point.
   static double GetGaussVolume(double determinant)
   {
     constexpr double ofDeterminant = 1.0 / 24.0;
     return ofDeterminant * std::abs(determinant);
   }
 
-  /// The part of the volume that each Gauss point stands for, in m^3.
+  /// The volume of each Gauss point, in m^3.
   static std::array<double, NumberOfGaussPoints> GetGaussVolumes(
     const ElasticBody& body, std::size_t tetrahedron)
   {
@@ -126,7 +126,8 @@ struct QuadraticTetrahedron
     return false;
   }
 
-  /// The shape functions at Gauss point i: the part of a force there that each node takes.
+  /// The shape functions at Gauss point i: the shares of the ten nodes of a force that acts at this
+  /// point.
   static std::array<double, NumberOfNodes> GetShares(std::size_t i)
   {
     const glm::dvec4 weights = GetGaussPoint(i);

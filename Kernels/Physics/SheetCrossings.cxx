@@ -25,10 +25,11 @@ SnappedBox GetMeshBox()
   return box;
 }
 
-// In lengths of the mesh: somewhat less than 2^20, the limit of Sheet.
+// In lengths of the mesh. The limit of Sheet is slightly larger: 2^20.
 constexpr double FarthestPoint = 1e6;
 
-// Sheet takes its points in voxels.
+// Converts the sheet to voxels, the unit of Sheet, such that the steps of Sheet are the steps of
+// the mesh.
 std::vector<SnappedTriangle> SnapSheet(const MeshSteps& steps,
   const std::vector<glm::dvec3>& points, const std::vector<Sheet::Triangle>& triangles)
 {

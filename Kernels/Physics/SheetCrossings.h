@@ -51,8 +51,8 @@ public:
   /// Whether no triangle is near the mesh.
   bool IsEmpty() const { return this->Crossings.empty(); }
 
-  /// Whether the sheet may intersect a box that lies within the mesh. False is exact, true is not.
-  /// Do not call this function or IsCrossedOddly() if IsEmpty().
+  /// Whether the sheet may intersect a box that lies within the mesh. If false, it certainly does
+  /// not. Do not call this function or IsCrossedOddly() if IsEmpty().
   bool MayIntersect(const SnappedBox& box, std::vector<std::size_t>& scratch) const;
 
   /// Whether the sheet crosses the segment between two points of the mesh an odd number of times.

@@ -15,9 +15,9 @@
 namespace deformvolume
 {
 
-/// The tetrahedra that a cut along a sheet can affect: those near the sheet, and all others that
-/// share a node with them. These tetrahedra and their nodes are numbered here from 0, in the order
-/// of the mesh.
+/// The tetrahedra that a cut along a sheet can affect: the tetrahedra near the sheet, and all
+/// tetrahedra that share a node with them. The tetrahedra and nodes of the region are numbered from
+/// 0, in the order of the mesh.
 class SplitRegion
 {
 public:
