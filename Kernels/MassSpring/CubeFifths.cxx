@@ -82,7 +82,8 @@ double FindCubeEdge(Watch& watch, const ElasticBody& body)
         throw Error("Tetrahedron " + std::to_string(t) +
           " of the rest mesh is not a fifth of a cube" +
           (t == 0 ? std::string() : " of the same size as those before it") +
-          ". Springs are a material on lattices of equal cubes only, of five tetrahedra each: use "
+          ". Springs simulate an elastic material only on lattices of equal cubes with five "
+          "tetrahedra each: use "
           "vtkLatticeTetrahedraSource with EqualSpacing, or vtkFiniteElementDeformation, which "
           "takes any mesh.");
       }

@@ -81,7 +81,7 @@ static Vectors Cross(Vectors a, Vectors b)
 }
 
 // The force of a spring on its first end. It is computed from the displacement, which can be far smaller than the
-// coordinates. So the force is exactly 0 at rest, and accurate near it.
+// coordinates. Therefore the force is exactly 0 at rest, and accurate near it.
 static Vectors SpringForce(Vectors rest, Vectors displacement, FLOATS stiffness)
 {
   const Vectors now = Plus(rest, displacement);
@@ -160,7 +160,7 @@ __kernel void ComputeForces(__global const INTS* tetrahedra, __global const FLOA
   const Vectors e2 = Minus(GetVectors(displacements, n2), moved);
   const Vectors e3 = Minus(GetVectors(displacements, n3), moved);
 
-  // The relative change of the volume, and the gradients of the volume by the nodes.
+  // The relative change of the volume, and the gradients of the volume with respect to the positions of the nodes.
   const Vectors b1 = Plus(a1, e1);
   const Vectors b2 = Plus(a2, e2);
   const Vectors b3 = Plus(a3, e3);

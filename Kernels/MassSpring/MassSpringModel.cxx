@@ -20,9 +20,9 @@ namespace deformvolume
 namespace
 {
 
-// Larger displacements, in sizes of the body, mean that the simulation diverged.
+// A larger displacement, divided by the size of the body, means that the simulation diverged.
 constexpr double LargestDisplacementBySize = 1e4;
-// The default time step, as a part of the stable one: compressed tetrahedra vibrate faster than
+// The default time step, as a fraction of the stable one: compressed tetrahedra vibrate faster than
 // tetrahedra at rest.
 constexpr double PartOfStable = 0.75;
 // Wait for the device, and call the progress function, about this often.

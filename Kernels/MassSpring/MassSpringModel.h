@@ -32,7 +32,7 @@ struct MassSpringRequest
   std::vector<HeldNode> Held;
   /// Forces and gravity.
   BodyLoads Loads;
-  /// Called repeatedly with the completed part of the duration, 0 to 1. Return false to abort.
+  /// Called repeatedly with the completed fraction of the duration, 0 to 1. Return false to abort.
   std::function<bool(double)> Progress;
 };
 
@@ -48,13 +48,13 @@ struct MassSpringReport
 };
 
 /// Simulates the dynamics of an elastic body on an OpenCL device. The edges of its tetrahedra are
-/// springs, and their volume has an energy. Time steps are explicit (Verlet, in leapfrog form), in
-/// single precision. Forces are exactly 0 at rest. Results are bit for bit the same for any size of
-/// work-groups and any number of threads.
+/// springs, and the change of the volume of a tetrahedron has an energy. Time steps are explicit
+/// (Verlet, in leapfrog form), in single precision. Forces are exactly 0 at rest. Results are bit
+/// for bit the same for any size of work-groups and any number of threads.
 ///
-/// Call SetDevice, SetBody and SetOutput, then Advance any number of times. SetBody discards what
-/// was set after it. Every failure throws an Error. The body is then unchanged, except after
-/// failures of the device, which require a new call of SetBody.
+/// Call SetDevice, SetBody and SetOutput, then Advance any number of times. SetBody discards the
+/// output and all displacements and velocities. Every failure throws an Error. The body is then
+/// unchanged, except after failures of the device, which require a new call of SetBody.
 ///
 /// Memory on the device: 80 bytes per node and 88 per tetrahedron.
 ///
@@ -64,7 +64,7 @@ class DEFORMVOLUME_EXPORT MassSpringModel
 {
 public:
   /// The least Poisson ratio of springs. Materials with a smaller ratio are simulated with this
-  /// one.
+  /// ratio.
   static constexpr double LeastPoissonRatio = 0.25;
 
   MassSpringModel();
@@ -72,8 +72,8 @@ public:
   MassSpringModel(const MassSpringModel&) = delete;
   MassSpringModel& operator=(const MassSpringModel&) = delete;
 
-  /// Sets the device (see ResolveDevice) and returns its name. A change of device discards all that
-  /// was set.
+  /// Sets the device (see ResolveDevice) and returns its name. A change of device discards the body
+  /// and the output.
   std::string SetDevice(const std::string& request);
 
   /// Set the memory that may be used on the device, in bytes. Default 0: all that is available.
@@ -85,13 +85,13 @@ public:
 
   /// Sets the body at rest. Its tetrahedra must be the five tetrahedra of equal cubes (see
   /// FindCubeEdge). progress: called every few milliseconds in the calling thread; return false to
-  /// abort. The previous body is kept then.
+  /// abort. After an abort the previous body is kept.
   void SetBody(const ElasticBody& body, const std::function<bool()>& progress = nullptr);
 
-  /// Changes the nodes of some tetrahedra after a cut. The body has the same tetrahedra and rest
-  /// positions, and appended nodes that are copies of old ones. origins: the old node of each
-  /// appended node, whose displacement and velocity it gets. If origins is empty, the body may have
-  /// fewer nodes than before, for example when a split is undone.
+  /// Changes the nodes of some tetrahedra after a cut. body: the same tetrahedra and rest positions
+  /// as before, and appended nodes that are copies of old nodes. origins: the old node of each
+  /// appended node; the appended node gets its displacement and velocity. If origins is empty, the
+  /// body may have fewer nodes than before, for example when a split is undone.
   void SplitNodes(const ElasticBody& body, const std::vector<std::int32_t>& origins);
 
   /// Sets where Advance writes the displacements: three floats per node, multiplied by a factor.

@@ -2,8 +2,8 @@
 // Moves the nodes by the forces of their tetrahedra. Each node adds up its forces in a fixed order, so that sums do
 // not depend on work-groups. The host defines LANES before this text, see MassSpringForces.cl.
 
-// The sum of the forces of the tetrahedra of a node. begins: for each node, the first index in places. forceIndices: index
-// of the first component of each force.
+// The sum of the forces of the tetrahedra of a node. begins: for each node, the first index in forceIndices.
+// forceIndices: the index of the first component of each force.
 static float3 GatherForce(
   __global const uint* begins, __global const uint* forceIndices, __global const float* forces, size_t node)
 {
@@ -61,7 +61,7 @@ __kernel void MoveNodes(__global const uint* begins, __global const uint* forceI
   }
 }
 
-// Moves the nodes of handles on straight lines. fraction: the completed part of the way. rate: 1 / duration.
+// Moves the nodes of handles on straight lines. fraction: the completed fraction of the way. rate: 1 / duration.
 __kernel void MoveHandles(__global const MassSpringHandle* handles, __global float* velocities,
   __global float* displacements, float fraction, float rate, uint numberOfHandles)
 {

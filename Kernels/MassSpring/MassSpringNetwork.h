@@ -14,8 +14,8 @@ namespace deformvolume
 /// The stiffness of the springs and of the volume of a tetrahedron.
 struct SpringStiffness
 {
-  /// The stiffness of each edge, in N/m. An edge that several tetrahedra share has the sum of
-  /// theirs.
+  /// The stiffness of each edge, in N/m. The stiffness of an edge that several tetrahedra share is
+  /// the sum of theirs.
   float Edge = 0.0F;
   /// The modulus of the volume, in Pa. The energy is Volume / 2 times the volume at rest times the
   /// square of the relative change of the volume.
@@ -28,13 +28,13 @@ ElasticMaterial GetSpringMaterial(const ElasticMaterial& material);
 
 /// Returns the stiffness of one of the five tetrahedra of a cube. In a lattice, the springs along
 /// cube edges then have mu h in total, and those along face diagonals 2 mu h. This is the only
-/// isotropic choice. Springs alone have a Poisson ratio of 1/4; the modulus of the volume adds the
-/// rest.
+/// isotropic choice. Springs alone have a Poisson ratio of 1/4; the modulus of the volume gives
+/// larger ratios.
 SpringStiffness GetSpringStiffness(
   const ElasticMaterial& material, double restVolume, double cubeEdge);
 
 /// A body in the memory layout of the kernels (see MassSpringForces.cl and MassSpringMotion.cl).
-/// The last packet is filled up with tetrahedra of which no node takes forces.
+/// The last packet is padded with tetrahedra whose forces no node adds.
 struct MassSpringNetwork
 {
   /// cubeEdge: see FindCubeEdge.

@@ -7,7 +7,7 @@
 typedef struct
 {
   float TimeStep;
-  float Retained;   // the factor of the velocity in a step, by damping
+  float Retained;   // the factor by which damping reduces the velocity in a step
   float Gravity[3]; // m/s^2
   float Limit;      // larger displacements mean that the simulation diverged
   int NumberOfNodes;

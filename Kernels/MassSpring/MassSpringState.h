@@ -46,11 +46,11 @@ public:
   /// Returns the forces of the tetrahedra on the nodes.
   std::vector<float> ComputeForces();
 
-  /// Enqueues a step. fraction: the part of the way that handles have completed after it. rate: 1 /
-  /// the duration of the whole way.
+  /// Enqueues a step. fraction: the fraction of the way that handles have completed after it. rate:
+  /// 1 / the duration of the whole way.
   void EnqueueStep(const MassSpringStep& step, float fraction, float rate);
   void Finish() { this->Device.GetQueue().finish(); }
-  /// Whether a step since the last call diverged.
+  /// Returns whether a step since the last call of this function diverged.
   bool TakeDivergence();
   /// Returns the current number of inverted tetrahedra.
   std::int64_t CountInverted();
