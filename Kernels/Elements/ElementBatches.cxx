@@ -31,7 +31,7 @@ std::uint64_t SpreadBits(std::uint64_t value)
 // The position of a tetrahedron on a space-filling (Morton) curve, and its number.
 using CurveCode = std::pair<std::uint64_t, std::int32_t>;
 
-// Sorts parts and merges them in pairs: a single sort would not poll the watch for too long.
+// Sorts parts and merges them in pairs: a single sort would run too long without polling the watch.
 void Sort(Watch& watch, std::vector<CurveCode>& codes)
 {
   constexpr std::size_t partsAtOnce = 16;
@@ -51,7 +51,7 @@ void Sort(Watch& watch, std::vector<CurveCode>& codes)
   }
 }
 
-// Orders tetrahedra along a Morton curve, so that those of a chunk are near each other.
+// Orders tetrahedra along a Morton curve, so that the tetrahedra of a chunk are near each other.
 std::vector<std::int32_t> OrderTetrahedra(Watch& watch, const ElasticBody& body)
 {
   glm::dvec3 lower(std::numeric_limits<double>::max());

@@ -31,8 +31,8 @@ struct ElementBatch
   /// The corners in ascending order of their numbers, then the mid-side nodes in the order of
   /// BatchEdges.
   std::int32_t Nodes[NumberOfNodes][NumberOfLanes];
-  /// The gradients of the barycentric coordinates of the last three corners by the rest position,
-  /// at each Gauss point, in 1/m.
+  /// The gradients of the barycentric coordinates of the last three corners with respect to the
+  /// rest position, at each Gauss point, in 1/m.
   LaneVector Gradients[NumberOfGaussPoints][3];
   /// The volume of each Gauss point, in m^3.
   Lanes Volumes[NumberOfGaussPoints];
@@ -69,8 +69,8 @@ struct ElementBatches
 /// Makes batches of the tetrahedra of a body, which must have mid-side nodes.
 ElementBatches MakeElementBatches(Watch& watch, const ElasticBody& body);
 
-/// Chooses the pieces of a body whose tetrahedra take part. The tetrahedra of other pieces exert no
-/// forces, and do not count as inverted. isActive: for each piece.
+/// Chooses the pieces of a body whose tetrahedra are active. The tetrahedra of other pieces exert
+/// no forces, and do not count as inverted. isActive: for each piece.
 void SetActivePieces(ElementBatches& batches, const ElasticBody& body,
   const std::vector<std::int32_t>& pieceOfTetrahedron, const std::vector<bool>& isActive);
 

@@ -102,9 +102,9 @@ DEFORMVOLUME_ALWAYS_INLINE void FindElement(
   {
     u[a] = GatherNode(batch.Nodes[a], displacements);
   }
-  // The derivative of the displacement by the coordinate of corner i is linear in the barycentric
-  // coordinates. The coefficient of coordinate q is proportional to the difference of two
-  // neighboring nodes. Each coordinate has one of two values at the Gauss points, so all
+  // The derivative of the displacement with respect to the coordinate of corner i is linear in the
+  // barycentric coordinates. The coefficient of coordinate q is proportional to the difference of
+  // two neighboring nodes. Each coordinate has one of two values at the Gauss points, so all
   // derivatives follow from one sum and these differences.
   LaneVector slopes[points][3];
   for (int i = 1; i < 4; ++i)
@@ -347,20 +347,20 @@ DEFORMVOLUME_ALWAYS_INLINE bool HasPositive(const Lanes& a)
   return a[0] > 0.0 || a[1] > 0.0 || a[2] > 0.0 || a[3] > 0.0;
 }
 
-/// What must be added to a value to make it at least 0.
+/// Returns max(0, -value): the amount that raises a negative value to 0.
 DEFORMVOLUME_ALWAYS_INLINE Lanes MissingToZero(const Lanes& value)
 {
   return Largest(MakeLanes(0.0), -value);
 }
 
-/// The second derivatives of the energy density by F, in the basis of the singular vectors of F:
-/// twists and shears in three planes, and stretches along three axes.
+/// The second derivatives of the energy density with respect to F, in the basis of the singular
+/// vectors of F: twists and shears in three planes, and stretches along three axes.
 struct LaneEigenvalues
 {
   Lanes Twists[3];
   Lanes Shears[3];
-  Lanes Stretches[3]; // second derivatives by one stretch
-  Lanes Mixed[3];     // mixed second derivatives by the two other stretches
+  Lanes Stretches[3]; // second derivatives with respect to one stretch
+  Lanes Mixed[3];     // mixed second derivatives with respect to the two other stretches
 };
 
 // The two axes that span the plane normal to each axis.
@@ -384,7 +384,7 @@ DEFORMVOLUME_ALWAYS_INLINE LaneNodes FindPlaneModes(
   return result;
 }
 
-/// Adds a volume times the terms that raise negative eigenvalues to 0.
+/// Adds the terms that raise negative eigenvalues to 0, multiplied by a volume.
 DEFORMVOLUME_ALWAYS_INLINE void AddMissing(LaneTangent& tangent, const SingularValues& values,
   const LaneNodes& gradientsInFrame, const LaneEigenvalues& e, const Lanes& volume)
 {
@@ -511,9 +511,9 @@ DEFORMVOLUME_ALWAYS_INLINE void AddCorotationalPoint(LaneTangent& tangent,
   }
 }
 
-/// Computes the second derivatives of the strain energy by the positions of the nodes. isClamped:
-/// at each Gauss point, negative eigenvalues are replaced by 0 (Smith, de Goes and Kim 2019), so
-/// that the tangent has no negative eigenvalues.
+/// Computes the second derivatives of the strain energy with respect to the positions of the nodes.
+/// isClamped: at each Gauss point, negative eigenvalues are replaced by 0 (Smith, de Goes and Kim
+/// 2019), so that the tangent has no negative eigenvalues.
 template <MaterialModel Model>
 DEFORMVOLUME_ALWAYS_INLINE void FindTangent(
   const ElementBatch& batch, const LaneElement& element, bool isClamped, LaneTangent& tangent)

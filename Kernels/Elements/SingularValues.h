@@ -31,7 +31,8 @@ DEFORMVOLUME_ALWAYS_INLINE void RotateColumns(
   const Lanes difference = qq - pp;
   const Lanes twice = 2.0 * pq;
   const Lanes root = SquareRoot(difference * difference + twice * twice);
-  // If both are 0, nothing is rotated, and the denominator must not be 0.
+  // If difference and root are both 0, the columns are not rotated. The minimum avoids a division
+  // by 0.
   const Lanes denominator = Largest(Absolute(difference) + root, MakeLanes(1e-300));
   const Lanes tangent = (difference < 0.0 ? -twice : twice) / denominator;
   const Lanes cosine = 1.0 / SquareRoot(1.0 + tangent * tangent);
@@ -107,7 +108,7 @@ DEFORMVOLUME_ALWAYS_INLINE SingularValues FindSingularValues(const LaneMatrix& m
   SortColumns(n[0], n[2], b[0], b[2], V.Columns[0], V.Columns[2]);
   SortColumns(n[1], n[2], b[1], b[2], V.Columns[1], V.Columns[2]);
 
-  // U by Gram-Schmidt orthogonalization; its last column by the cross product.
+  // U by Gram-Schmidt orthogonalization. The last column of U is a cross product.
   LaneMatrix& U = result.U;
   const Lanes least = MakeLanes(1e-290);
   result.Values[0] = SquareRoot(n[0]);
@@ -116,7 +117,8 @@ DEFORMVOLUME_ALWAYS_INLINE SingularValues FindSingularValues(const LaneMatrix& m
   LaneVector second = Subtract(b[1], Scale(U.Columns[0], Dot(U.Columns[0], b[1])));
   second = Subtract(second, Scale(U.Columns[0], Dot(U.Columns[0], second)));
   const Lanes squared = Dot(second, second);
-  // A second column that is mere rounding has no direction: take any one normal to the first.
+  // If the second column is only rounding error, it has no direction: take any direction normal to
+  // the first column.
   const LaneVector& u = U.Columns[0];
   const LaneVector across = Choose(
     Absolute(u.X), MakeLanes(0.6), LaneVector{ zero, -u.Z, u.Y }, LaneVector{ u.Z, zero, -u.X });
