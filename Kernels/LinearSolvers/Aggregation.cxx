@@ -124,7 +124,7 @@ double FindLargestEigenvalue(Watch& watch, const SparseBlocks<Size, Size>& matri
   const std::int32_t rows = matrix.GetNumberOfRows();
   std::vector<Vector> vector(static_cast<std::size_t>(rows));
   std::vector<Vector> product(vector.size());
-  // Start with a rough vector without a pattern: it contains all eigenvectors.
+  // Start with a pseudorandom vector: it has a component along each eigenvector.
   unsigned int random = 1;
   for (Vector& value : vector)
   {
@@ -175,8 +175,8 @@ namespace
 {
 
 // Makes the near null space orthonormal within each aggregate (QR decomposition). Q becomes the
-// tentative prolongation, R the near null space of the coarse level. Modes that an aggregate of few
-// rows does not have become 0.
+// tentative prolongation, R the near null space of the coarse level. An aggregate of few rows does
+// not have all modes; its missing modes become 0.
 template <int Size>
 void Orthogonalize(Watch& watch, const Aggregates& aggregates, const NearNullSpace<Size>& modes,
   SparseBlocks<Size, RigidModes>& prolongation, NearNullSpace<RigidModes>& coarse)
@@ -214,7 +214,7 @@ void Orthogonalize(Watch& watch, const Aggregates& aggregates, const NearNullSpa
     for (int j = 0; j < RigidModes; ++j)
     {
       const double before = std::sqrt(dot(j, j));
-      // Orthogonalize twice: this is enough against rounding.
+      // Orthogonalize twice, to remove the rounding errors of the first pass.
       for (int i = 0; i < 2 * j; ++i)
       {
         const double part = dot(i % j, j);

@@ -18,8 +18,8 @@ constexpr int RigidModes = 6;
 template <int Size>
 using NearNullSpace = std::vector<Eigen::Matrix<double, Size, RigidModes>>;
 
-/// The aggregate of each row of a sparse matrix. An aggregate is a row together with those of its
-/// neighbors that are in no other aggregate.
+/// The aggregate of each row of a sparse matrix. An aggregate is a row together with its neighbors
+/// that are in no other aggregate.
 struct Aggregates
 {
   std::vector<std::int32_t> AggregateOfRow;

@@ -22,7 +22,7 @@ struct ProductArguments
 
 DEFORMVOLUME_ALWAYS_INLINE Lanes LoadColumn(const double* column)
 {
-  // Reads one value too many: the fourth lane is ignored.
+  // This reads one value beyond the column. The fourth lane is ignored.
   Lanes lanes;
   std::memcpy(&lanes, column, sizeof(lanes));
   return lanes;
@@ -109,8 +109,8 @@ BlockPattern MakeNodePattern(Watch& watch, const ElasticBody& body)
       pattern.Rows[node + 1] = static_cast<std::int32_t>(pattern.Columns.size());
     });
 
-  // For a fixed column, rows are visited in ascending order. The transposed blocks have that order,
-  // too.
+  // For a fixed column, rows are visited in ascending order. The transposed blocks have the same
+  // order.
   pattern.Mirrored.resize(pattern.Columns.size());
   std::vector<std::int32_t> nextOfRow(pattern.Rows.begin(), pattern.Rows.end() - 1);
   ForItems(watch, pattern.Columns.size(),
@@ -161,7 +161,7 @@ std::vector<BatchPositions> FindPositions(
 void BlockMatrix::SetPattern(Watch& watch, BlockPattern pattern)
 {
   this->Pattern = std::move(pattern);
-  // One more value, for the ignored lane of LoadColumn.
+  // One more value than the blocks need, for the ignored lane of LoadColumn.
   this->Values.clear();
   Grow(watch, this->Values, this->Pattern.GetNumberOfBlocks() * BlockSize + 1);
 }

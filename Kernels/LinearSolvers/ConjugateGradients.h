@@ -29,11 +29,11 @@ public:
   {
     int Iterations = 0;
     /// Whether the matrix or the preconditioner turned out not to be positive definite. The
-    /// solution is the one of the iteration before.
+    /// solution is then that of the previous iteration.
     bool IsIndefinite = false;
   };
 
-  /// Improves a solution. residual: of that solution, 0 at nodes that are not free; updated.
+  /// Improves a solution. residual: of the given solution, 0 at nodes that are not free; updated.
   Result Solve(Watch& watch, const BlockMatrix& matrix, const std::vector<unsigned char>& isFree,
     Preconditioner& preconditioner, const Limits& limits, std::vector<glm::dvec3>& solution,
     std::vector<glm::dvec3>& residual);

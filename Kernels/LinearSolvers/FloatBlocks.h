@@ -11,8 +11,8 @@
 namespace deformvolume
 {
 
-/// The number of floats that a row of a multigrid vector takes. Those after the third or sixth are
-/// padding.
+/// The number of floats that a row of a multigrid vector takes. The floats after the first three
+/// (or six, for Rows = 6) are padding.
 template <int Rows>
 constexpr std::size_t PaddedSize = Rows <= 4 ? 4 : 8;
 

@@ -268,7 +268,7 @@ void Multigrid::Build(Watch& watch, const BlockMatrix& matrix,
   }
   this->Inverse =
     coarse.GetNumberOfRows() <= CoarsestAggregates ? Invert(watch, coarse) : std::vector<float>();
-  // The coarsest level needs its vectors only.
+  // The coarsest level needs only its vectors.
   this->Coarse.emplace_back();
   const std::size_t length = static_cast<std::size_t>(coarse.GetNumberOfRows()) * PaddedSize<6>;
   if (this->Inverse.empty())

@@ -14,8 +14,8 @@
 namespace deformvolume
 {
 
-/// Finds the rotation of the neighborhood of each of some nodes between two states of a body: the
-/// best fit of the edges at the node.
+/// Finds, for each of the given nodes, the rotation of its neighborhood between two states of a
+/// body: the best fit of the edges at the node.
 void FindNodeRotations(Watch& watch, const BlockPattern& pattern,
   const std::vector<std::int32_t>& nodes, const std::vector<glm::dvec3>& before,
   const std::vector<glm::dvec3>& now, std::vector<glm::mat3>& rotations);

@@ -25,7 +25,8 @@ void ForRows(Watch& watch, std::size_t rows, Body&& body)
     [&](std::size_t part) { body(part * size, std::min(rows, (part + 1) * size)); });
 }
 
-/// Adds what body(begin, end) returns for ranges of rows, in the order of the rows.
+/// Returns the sum of the results of body(begin, end) for ranges of rows, added in the order of the
+/// rows.
 template <typename Body>
 double SumOfParts(Watch& watch, std::size_t rows, Body&& body)
 {
