@@ -42,7 +42,7 @@ EquilibriumProblem MakeProblem(const EquilibriumRequest& request, const ElasticB
   const BodyPieces& pieces, const GaussVolumes& volumes, const SlidingNodes& sliding);
 
 /// The largest component of the unbalanced forces on free nodes, and the largest component of
-/// applied forces and reactions, in N.
+/// applied forces and reactions. Both in N.
 struct Residuals
 {
   double Largest = 0.0;

@@ -132,7 +132,7 @@ void EquilibriumSolver::UpdateTangent(
 
 void EquilibriumSolver::Untangle(Watch& watch, const EquilibriumProblem& problem, State& state)
 {
-  // Continue only while the energy falls by at least this part of the strain energy.
+  // Continue only while the energy falls by at least this fraction of the strain energy.
   constexpr double leastFall = 0.01;
   const BlockPattern& pattern = this->Tangent.GetMatrix().GetPattern();
   std::vector<unsigned char> isInverted;
@@ -155,7 +155,7 @@ void EquilibriumSolver::Untangle(Watch& watch, const EquilibriumProblem& problem
             sum += state.Displacements[static_cast<std::size_t>(
               pattern.Columns[static_cast<std::size_t>(block)])];
           }
-          // The node itself is in the row as well.
+          // Do not count the node itself, which is in the row as well.
           const double neighbors = pattern.Rows[node + 1] - pattern.Rows[node] - 1;
           this->Trial.Displacements[node] =
             this->Sliding.Project(node, (sum - state.Displacements[node]) / neighbors);
@@ -410,7 +410,8 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
   {
     this->Untangle(watch, problem, state);
   }
-  // Frames of an animation follow each other, so a moving frame need not be solved accurately.
+  // Frames of an animation follow each other, so frames in which the body moves need not be solved
+  // accurately.
   constexpr double toleranceOfFrames = 1e-2;
   const double tolerance =
     problem.IsInteractive && isMoved && request.Limits.RelativeTolerance == 0.0
@@ -448,7 +449,7 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
   }
   if (report.NewtonSteps > 1 && this->IsTangentOld)
   {
-    // An old tangent took several steps: a new one is cheaper next time.
+    // A tangent of an earlier call took several steps: a new one is cheaper in the next call.
     this->HasTangent = false;
   }
   this->IsTangentOld = true;

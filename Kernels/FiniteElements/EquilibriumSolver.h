@@ -42,7 +42,8 @@ private:
     double Potential = 0.0;
   };
   void UpdateScale(Watch& watch);
-  // Discards what earlier calls found, except for the displacements.
+  // Discards forces, tangent, preconditioner and solutions of earlier calls. Keeps the
+  // displacements.
   void Forget();
   void UseHeldPieces(const EquilibriumProblem& problem);
   // Moves pieces that are not held with their supporting nodes.
@@ -83,8 +84,8 @@ private:
   std::vector<bool> ActivePieces;
   SlidingNodes Sliding;
   GaussVolumes Volumes;
-  // E h^2, in N: E is the least Young modulus, h the mean distance of nodes. The unit of
-  // EquilibriumLimits::AbsoluteTolerance.
+  // E h^2, in N: E is the least Young modulus, h the mean distance of nodes.
+  // EquilibriumLimits::AbsoluteTolerance is a fraction of this force.
   double ForceScale = 0.0;
   FiniteElements Elements;
   TangentSolver Tangent;

@@ -49,12 +49,12 @@ struct EquilibriumLimits
   /// the tolerances below permit.
   double LinearTolerance = 0.0;
   /// The body is in equilibrium if no component of the residual force on a free node exceeds this
-  /// part of the largest applied force or reaction. 0: 1e-6 in mode Converged; 1e-3 in mode
+  /// fraction of the largest applied force or reaction. 0: 1e-6 in mode Converged; 1e-3 in mode
   /// Interactive, and 1e-2 if held nodes moved.
   double RelativeTolerance = 0.0;
-  /// The body is also in equilibrium if no component exceeds this part of E h^2. This is the force
-  /// that a stress of the size of the Young modulus exerts on a tetrahedron of mean size. 0: 1e-6
-  /// in mode Interactive, otherwise 1e-11.
+  /// The body is also in equilibrium if no component exceeds this fraction of E h^2. This is the
+  /// force that a stress of the size of the Young modulus exerts on a tetrahedron of mean size. 0:
+  /// 1e-6 in mode Interactive, otherwise 1e-11.
   double AbsoluteTolerance = 0.0;
 };
 
@@ -67,7 +67,7 @@ struct EquilibriumRequest
   BodyLoads Loads;
   /// How accurately to solve. Default: Interactive.
   EquilibriumMode Mode = EquilibriumMode::Interactive;
-  /// When to stop. Default: as the mode says.
+  /// When to stop. Default: the defaults of the mode.
   EquilibriumLimits Limits;
   /// Called every few milliseconds in the calling thread. Return false to abort.
   std::function<bool()> Progress;
@@ -80,7 +80,7 @@ struct EquilibriumReport
   bool IsConverged = false;
   /// The number of linear systems that were solved.
   int NewtonSteps = 0;
-  /// The number of conjugate gradient iterations in all of them.
+  /// The number of conjugate gradient iterations, summed over these linear systems.
   int LinearIterations = 0;
   /// The largest component of the residual force on a free node, in N.
   double Residual = 0.0;

@@ -49,21 +49,22 @@ public:
   /// held, or if forces become infinite or not a number.
   EquilibriumReport Solve(const EquilibriumRequest& request);
 
-  /// Sets all displacements to 0, and discards what earlier calls of Solve left for the next one.
+  /// Sets all displacements to 0, and discards the tangent and the solutions of earlier calls of
+  /// Solve.
   void Reset();
 
-  /// The displacement of each node, in metres.
+  /// Returns the displacement of each node, in meters.
   const std::vector<glm::dvec3>& GetDisplacements() const;
 
   /// Sets the displacements from which the next call of Solve starts, such as a saved state.
   /// Displacements of sliding nodes are projected to their plane or line.
   void SetDisplacements(const std::vector<glm::dvec3>& displacements);
 
-  /// The elastic force of each node, in N. In equilibrium, the force of a free node equals its
-  /// load. The force of a held node equals its load plus the reaction of the support.
+  /// Returns the elastic force of each node, in N. In equilibrium, the force of a free node equals
+  /// its load. The force of a held node equals its load plus the reaction of the support.
   std::vector<glm::dvec3> GetForces() const;
 
-  /// The stress and deformation of each tetrahedron.
+  /// Returns the stress and deformation of each tetrahedron.
   std::vector<ElementResults> GetElementResults() const;
 
 private:

@@ -46,14 +46,15 @@ public:
   struct Sums
   {
     double Energy = 0.0;
-    /// The size of the terms whose difference the energy is. Rounding errors of the energy are
+    /// The size of the terms whose difference is the energy. Rounding errors of the energy are
     /// about 1e-16 of this value.
     double SizeOfTerms = 0.0;
     /// The number of tetrahedra that are inverted at a Gauss point.
     std::int64_t Inverted = 0;
   };
 
-  /// Computes the strain energy and its derivatives by the displacements of the nodes.
+  /// Computes the strain energy, and the forces: its derivatives with respect to the displacements
+  /// of the nodes.
   Sums FindForces(Watch& watch, const std::vector<glm::dvec3>& displacements,
     std::vector<glm::dvec3>& forces) const;
 
@@ -61,7 +62,8 @@ public:
   void FindInvertedNodes(Watch& watch, const std::vector<glm::dvec3>& displacements,
     std::vector<unsigned char>& isInverted) const;
 
-  /// Computes the second derivatives. isClamped: without negative eigenvalues, see FindTangent.
+  /// Computes the second derivatives. isClamped: whether the tangent must have no negative
+  /// eigenvalues, see FindTangent.
   void AssembleTangent(Watch& watch, const std::vector<glm::dvec3>& displacements, bool isClamped,
     BlockMatrix& matrix) const;
 

@@ -29,7 +29,7 @@ public:
   void ForgetProducts() { this->HasProducts = false; }
 
   /// Finds the combination of stored solutions with the least energy, and its residual. Without
-  /// stored solutions these are 0 and the right-hand side.
+  /// stored solutions, the solution is 0 and the residual is the right-hand side.
   void Guess(Watch& watch, const BlockMatrix& matrix, const std::vector<unsigned char>& isFree,
     const std::vector<glm::dvec3>& rightHandSide, std::vector<glm::dvec3>& solution,
     std::vector<glm::dvec3>& residual);

@@ -47,15 +47,16 @@ public:
   }
   const BlockMatrix& GetMatrix() const { return this->Matrix; }
 
-  /// Assembles the matrix for displacements. isClamped: without negative eigenvalues, see
-  /// FindTangent.
+  /// Assembles the matrix for displacements. isClamped: whether it must have no negative
+  /// eigenvalues, see FindTangent.
   void Update(Watch& watch, const std::vector<glm::dvec3>& displacements, bool isClamped);
 
   /// Discards the preconditioner and all earlier solutions.
   void Forget();
 
-  /// Solves for the free nodes. The right-hand side must be 0 at other nodes. repeats: the system
-  /// resembles earlier ones that were solved with `repeats`, so start from their solutions.
+  /// Solves for the free nodes. The right-hand side must be 0 at other nodes. repeats: whether the
+  /// system resembles earlier ones that were solved with `repeats`; the solver then starts from
+  /// their solutions.
   ConjugateGradients::Result Solve(Watch& watch, const std::vector<unsigned char>& isFree,
     const std::vector<glm::dvec3>& rightHandSide, const Limits& limits, bool repeats,
     std::vector<glm::dvec3>& solution);
