@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// dv_chainmail: a ChainMailModel of a volume that lies in the world, and its displacements.
+// dv_chainmail: a ChainMailModel of a volume in world coordinates, and its displacements.
 #include "Call.h"
 #include "ChainMailModel.h"
 #include "Conversions.h"
@@ -49,7 +49,7 @@ struct Values
   const T* end() const { return this->Last; }
 };
 
-// Throws where a voxel has none.
+// Throws an Error if a voxel has no material.
 std::vector<unsigned char> ReadMaterials(
   const VolumeArray& array, std::int64_t voxels, const MaterialRule& rule)
 {
@@ -252,7 +252,7 @@ std::int32_t dv_chainmail_step(
       request.PlasticityThreshold = wanted.plasticity_threshold;
       if (wanted.progress)
       {
-        // How many rounds there will be is not known.
+        // The number of rounds is not known in advance.
         request.Progress = [progress = MakeProgress(wanted.progress, wanted.user)]
         { return progress(0.0); };
       }

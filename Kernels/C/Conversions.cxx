@@ -31,7 +31,7 @@ ImageGeometry MakeGeometry(const dv_grid* given, const char* name)
   {
     const int first = grid.extent[2 * axis];
     const int last = grid.extent[2 * axis + 1];
-    // As for outputs (OutputExtent.h), sizes can then be counted.
+    // The same limit as for outputs (OutputExtent.h): sizes cannot overflow.
     constexpr int most = 1 << 29;
     if (first < -most || last > most || first > last)
     {
@@ -84,7 +84,7 @@ VolumeArray MakeArray(const dv_array& given, const std::string& name)
   }
   VolumeArray array;
   array.Data = given.data;
-  // The program keeps them.
+  // The program owns the data, so there is nothing to delete.
   array.Owner = std::shared_ptr<const void>(given.data, [](const void*) {});
   array.Type = static_cast<ElementType>(given.type);
   array.Components = given.components;

@@ -15,21 +15,22 @@
 namespace deformvolume
 {
 
-/// What programs in C give, checked, as the engine takes it. All throw an Error, which calls the
-/// thing by the name given.
+/// The following functions check input of C programs, and convert it to types of the engine. All of
+/// them throw an Error if it is invalid. name, what: names the input in the message.
 
-/// A number of things of which each takes some bytes.
+/// Returns a number of items as std::size_t. factor: the number of bytes of an item. Throws an
+/// Error if the number is negative, or if the number of bytes overflows.
 std::size_t GetProduct(std::int64_t count, std::size_t factor, const char* what);
 
 ImageGeometry MakeGeometry(const dv_grid* given, const char* name);
 
-/// Vectors of three floats or doubles.
+/// Returns a view of `count` vectors of three floats or doubles.
 VectorView MakeView(const void* data, std::int32_t type, std::int64_t count, const char* what);
 
-/// The data are borrowed.
+/// Returns an array that borrows the data.
 VolumeArray MakeArray(const dv_array& given, const std::string& name);
 
-/// Null: no progress.
+/// Converts a progress callback. Null: no callback.
 std::function<bool(double)> MakeProgress(dv_progress progress, void* user);
 
 } // namespace deformvolume

@@ -14,8 +14,8 @@ struct dv_deformer
 {
   deformvolume::WorldDeformer Deformer;
   deformvolume::ImageGeometry Volume;
-  deformvolume::WorldMasks Masks;                  // that the program has set
-  std::unique_ptr<deformvolume::WorldEdits> Edits; // null before there is one
+  deformvolume::WorldMasks Masks;                  // set by the program, without edits
+  std::unique_ptr<deformvolume::WorldEdits> Edits; // null before the first edit
   std::string Device;
   std::string Warnings;
 };
@@ -29,7 +29,7 @@ inline WorldDeformer& GetDeformer(dv_deformer* deformer)
   return deformer->Deformer;
 }
 
-/// The masks of the deformer, with its edits.
+/// Returns the masks of the deformer, with its edits.
 inline WorldMasks GetMasks(const dv_deformer& deformer)
 {
   return deformer.Edits ? deformer.Edits->GetMasks() : deformer.Masks;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// dv_deformer: checks what comes from C, and hands it to a WorldDeformer.
+// dv_deformer: checks and converts the input from C, and calls a WorldDeformer.
 #include "Call.h"
 #include "CellNumbers.h"
 #include "CellReader.h"
@@ -31,7 +31,7 @@ public:
   {
   }
 
-  // False where the numbers end before the faces do.
+  // Reads the faces of a polyhedron. Returns false if the numbers end before its last face.
   bool Read(std::int64_t cell, CellReader::PolyhedronFaces& faces)
   {
     std::int64_t numberOfFaces = 0;
@@ -76,7 +76,7 @@ private:
   const std::int64_t* Next;
 };
 
-// points: that are there.
+// points: the points of the mesh.
 MeshCells ReadCells(const dv_mesh& mesh, const VectorView& points)
 {
   const std::size_t cells = GetProduct(mesh.number_of_cells, 4 * sizeof(std::int64_t), "cells");

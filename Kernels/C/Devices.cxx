@@ -15,8 +15,8 @@ struct ThreadTexts
   std::string Device;
 };
 
-// Of libraries that are loaded at run time, thread-local objects with a destructor keep them loaded
-// until the thread ends, which is what ctypes does anyway.
+// A thread-local object with a destructor keeps a library that was loaded at run time in memory
+// until the thread ends. This is no disadvantage: ctypes never unloads libraries.
 ThreadTexts& GetTexts()
 {
   thread_local ThreadTexts texts;

@@ -73,7 +73,7 @@ void SetOptions(const dv_edit* given, EditFinder& finder)
   finder.Progress = MakeProgress(edit.progress, edit.user);
 }
 
-// Makes an edit. find: what it does. Where that throws, all is as it was.
+// Makes an edit. find: finds the edit, and may throw. The edits are then unchanged.
 template <typename Find>
 std::int32_t Edit(dv_deformer* deformer, const dv_edit* options, const Find& find)
 {
@@ -100,7 +100,7 @@ std::int32_t Edit(dv_deformer* deformer, const dv_edit* options, const Find& fin
     });
 }
 
-// Undoes or redoes an edit. what: one of these words.
+// Undoes or redoes an edit. what: "undone" or "redone".
 std::int32_t Step(dv_deformer* deformer, bool (WorldEdits::*step)(), const char* what)
 {
   return Call(
@@ -133,7 +133,7 @@ LabelReader MakeLabelReader(const VolumeArray& labels)
   };
 }
 
-// A function of the program, called by one thread at a time where there is a mutex.
+// Wraps a function of the program. With a mutex, it is called by one thread at a time.
 template <typename Values>
 std::function<void(const glm::dvec3*, std::size_t, Values*)> MakeFunction(
   dv_point_function function, void* user, const std::shared_ptr<std::mutex>& mutex)

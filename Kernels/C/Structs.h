@@ -13,7 +13,7 @@
 namespace deformvolume
 {
 
-/// Throws an Error where a pointer that is needed is null.
+/// Throws an Error if a required pointer is null.
 inline void CheckPointer(const void* pointer, const char* name)
 {
   if (!pointer)
@@ -22,14 +22,14 @@ inline void CheckPointer(const void* pointer, const char* name)
   }
 }
 
-/// The size of a structure in the first version of the interface that has it: what programs know at
-/// least. Where one grows, a specialisation has the old size.
+/// The size of a structure in the first version of the interface that has it: the least size that a
+/// program can have been compiled with. A structure that has grown since has a specialization.
 template <typename T>
 inline constexpr std::size_t FirstSize = sizeof(T);
 template <>
 inline constexpr std::size_t FirstSize<dv_mesh> = offsetof(dv_mesh, degrees);
 
-/// Throws an Error where a structure is smaller than it ever was.
+/// Throws an Error if a structure is smaller than in the first version of the interface.
 template <typename T>
 std::size_t CheckStruct(const T* given, const char* name)
 {
@@ -43,8 +43,8 @@ std::size_t CheckStruct(const T* given, const char* name)
   return given->struct_size;
 }
 
-/// Reads a structure of a program that may know fewer or more members: those that it does not know
-/// are 0.
+/// Reads a structure of a program that was compiled with fewer or more members. Members that the
+/// program does not have are 0.
 template <typename T>
 T ReadStruct(const T* given, const char* name)
 {
@@ -53,7 +53,8 @@ T ReadStruct(const T* given, const char* name)
   return read;
 }
 
-/// The same for what the library writes: the size that the program knows stays.
+/// Writes a structure to a program that was compiled with fewer or more members. struct_size of the
+/// program does not change.
 template <typename T>
 void WriteStruct(T written, T* given, const char* name)
 {
