@@ -39,9 +39,9 @@ std::array<std::int64_t, 3> GetSizes(const Extent& extent)
   return { { GetSize(extent, 0), GetSize(extent, 1), GetSize(extent, 2) } };
 }
 
-// What one component of an array is at a sample of a tetrahedron: a value and what is to be added,
-// since extended precision has no bits behind the point for the largest integers. Error: what
-// double precision may cost.
+// The expected value of one component of an array at a sample: the sum of First and Difference.
+// They are separate because extended precision cannot hold fractions of the largest integers. Error
+// bounds the rounding errors of the kernels, which calculate in double precision.
 struct Expected
 {
   long double First = 0.0L;
@@ -107,9 +107,9 @@ Expected Interpolate(const DeformerCase& deformerCase, const reference::Containi
     largest = std::max(largest, std::fabs(value));
     farthest = std::max(farthest, std::fabs(value - expected.First));
   }
-  // Integers of 64 bits are as good as their differences, where these are not too large.
+  // The kernels add up the differences of 64-bit integers from one of them, if these are small.
   const bool byDifferences = std::is_integral<T>::value && sizeof(T) == 8 && farthest < 0x1p57L;
-  // Some tens of roundings of weights and sums.
+  // Bounds the rounding errors of a few dozen operations on weights and sums.
   expected.Error =
     128.0L * std::numeric_limits<double>::epsilon() * (byDifferences ? farthest : largest);
   return expected;
@@ -164,8 +164,8 @@ void ExpectArray(const DeformerCase& deformerCase, const reference::Result& refe
       {
         message = CompareBits(value, static_cast<T>(array.Background));
       }
-      // On a face, which of its tetrahedra has the sample makes no difference but for what
-      // surrounds their cells.
+      // Any of the tetrahedra that share a face may write a sample on it. Their values differ only
+      // if one of their cells is interpolated cubically and another one linearly.
       for (const reference::Containing& sample : containing)
       {
         if (message.empty() || !sample.SharesSimplex(containing.front()))
@@ -214,7 +214,7 @@ bool IsCubicCell(const DeformerCase& deformerCase, std::int64_t cell)
     }
     if (i % 4 == 3 || i / 4 % 4 == 3 || i / 16 == 3)
     {
-      continue; // no cell of the 27 begins here
+      continue; // not the first voxel of one of the 27 cells
     }
     const auto number =
       static_cast<std::size_t>((at[2] * (size[1] - 1) + at[1]) * (size[0] - 1) + at[0]);

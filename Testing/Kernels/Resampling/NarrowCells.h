@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cells of even parity with a face that a sample lies on, or misses by the least distance that
-// positions in 1/256 voxel allow, such that single precision puts the sample on the wrong side: the
-// result is off by 1 to 3 times the rounding error of one operation in cells that are hardly bent,
-// and by up to 9 times in others. They were found by a search that changes random cells step by
-// step as long as the error grows.
+// Cells of even parity for which single precision decides wrongly whether they contain the sample.
+// The sample lies on a face, or misses the face by the least distance that positions in 1/256 voxel
+// allow. The error of the result is 1 to 3 times the rounding error of one operation in slightly
+// bent cells, and up to 9 times in others. A search found these cells: it changed random cells step
+// by step as long as the error grew.
 //
-// A row: x, y and z of each vertex, by its number in FiveTetrahedra.h, relative to the sample, in
-// 1/256 voxel.
+// Each row holds x, y and z of the eight vertices, in the order of FiveTetrahedra.h, relative to
+// the sample, in 1/256 voxel.
 #ifndef NarrowCells_h
 #define NarrowCells_h
 
 #include <array>
 
 constexpr std::array<std::array<int, 24>, 50> NarrowCells{ {
-  // Hardly bent; the sample is not in the cell.
+  // Slightly bent; the sample is outside the cell.
   { { -61, -345, -112, 260, -309, -124, -10, -344, 221, 274, -310, 230, -63, 8, -130, 255, 9, -118,
     -62, -13, 197, 267, 4, 173 } },
   { { -254, -301, -179, 24, -279, -182, -256, -296, 53, 47, -288, 55, -271, -16, -165, 34, 23, -152,
@@ -46,7 +46,7 @@ constexpr std::array<std::array<int, 24>, 50> NarrowCells{ {
     -187, 17, 87, 46, -5, 91 } },
   { { -119, -300, -177, 133, -270, -151, -122, -298, 83, 112, -262, 82, -119, -6, -166, 137, 7,
     -177, -129, -6, 62, 125, 5, 84 } },
-  // Hardly bent; the sample is in the cell.
+  // Slightly bent; the sample is inside the cell.
   { { -118, -199, -327, 212, -183, -313, -119, -199, -8, 199, -200, 2, -109, 66, -293, 201, 39,
     -322, -123, 70, 10, 217, 50, -54 } },
   { { -90, -250, -221, 232, -238, -212, -72, -240, -2, 252, -251, 7, -93, -3, -223, 238, 25, -224,
@@ -79,12 +79,12 @@ constexpr std::array<std::array<int, 24>, 50> NarrowCells{ {
     -242, -181, 7, 38, 102, -7, 26 } },
   { { -163, -283, -248, 114, -278, -246, -153, -264, 72, 95, -260, 62, -157, 13, -237, 126, 13,
     -246, -167, 0, 45, 96, -6, 72 } },
-  // Bent; the sample is not in the cell.
+  // Bent; the sample is outside the cell.
   { { -106, -251, -183, 89, -198, -136, -102, -184, 48, 111, -151, 80, -89, -12, -175, 98, 48, -183,
     -105, -12, 118, 86, -91, 103 } },
   { { -372, -178, -227, 9, -162, -166, -262, -163, 116, 21, -183, 29, -299, 117, -96, 7, 94, -210,
     -99, 203, 126, -37, 189, 138 } },
-  // Bent; the sample is in the cell.
+  // Bent; the sample is inside the cell.
   { { -105, -310, -247, 211, -168, -186, -109, -223, -95, 246, -99, 36, -74, -34, -186, 197, 16,
     -244, -111, 9, 48, 247, -52, 52 } },
   { { -231, -184, -281, 15, -105, -160, -97, -59, 17, 15, -191, 35, -150, 91, -237, 20, 69, -290,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A linear function under affine maps, by mesh and by field: the value is known everywhere.
+// Affine maps of a linear function, by mesh and by field. The expected values are known exactly.
 #include "DeformerCase.h"
 #include "DeviceNeeds.h"
 #include "OutputPlace.h"
@@ -34,7 +34,7 @@ struct AffineCase
   {
     return this->Matrix * this->Place(index) + this->Offset;
   }
-  /// From the output's steps to the volume's.
+  /// Derivatives of the volume's indices by the output's indices.
   glm::dmat3 GetBack() const
   {
     glm::dmat3 steps;
@@ -93,8 +93,8 @@ struct AffineCase
     return output;
   }
 
-  /// Values within |gradient| x 3 x 2^-9 voxel, which is what rounding positions costs; coverage
-  /// wherever the sample lies further than that from the border.
+  /// Values may differ by |gradient| x 3 x 2^-9 voxel, because positions are rounded. Coverage is
+  /// checked for samples that are farther than this distance from the border.
   void Check(const std::vector<double>& output, const std::vector<signed char>& coverage) const
   {
     const double snap = 3.0 / 512.0;
@@ -158,8 +158,7 @@ AffineCase MakeRandomAffineCase(unsigned int seed)
   return made;
 }
 
-/// The same on a grid whose axes are not those of the volume, and in a mirror: neither turns a
-/// tetrahedron over.
+/// A random affine case on a rotated, and perhaps mirrored, voxel grid. Neither inverts tetrahedra.
 AffineCase MakeTurnedAffineCase(unsigned int seed)
 {
   AffineCase made = MakeRandomAffineCase(seed);
@@ -178,7 +177,7 @@ AffineCase MakeTurnedAffineCase(unsigned int seed)
   return made;
 }
 
-/// Deforms with one tetrahedron round the whole volume.
+/// Deforms with one tetrahedron that contains the whole volume.
 void DeformByMesh(const AffineCase& affine, VolumeDeformer& deformer)
 {
   const Extent& e = affine.SamplingMesh.VertexExtent;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Boundaries between voxels: samples whose interpolated boundary distance is negative are left out.
-// Distances are multiples of 1/16, and then both sides add up the same numbers without rounding.
+// Boundaries between voxels: samples with a negative interpolated boundary distance are not
+// covered. Distances are multiples of 1/16: the kernels and the reference add them without
+// rounding.
 #include "DeformerCase.h"
 #include "DeviceNeeds.h"
 
@@ -25,7 +26,8 @@ float MakeDistance(std::mt19937& random)
   return (static_cast<float>(random() % 65) - 32.0F) / 16.0F;
 }
 
-// Of all voxels, or of a few: most cells of the others go by lanes.
+// Random distances at all voxels, or at one voxel in 60. In the second case most cells are
+// resampled by lanes.
 std::vector<float> MakeDistances(std::size_t size, unsigned int seed, bool ofAll)
 {
   std::mt19937 random(seed);
@@ -40,7 +42,7 @@ std::vector<float> MakeDistances(std::size_t size, unsigned int seed, bool ofAll
   return distances;
 }
 
-// A plane through the undeformed volume at x = place, what is on its low side left out.
+// Distances from the plane x = place of the undeformed volume, negative on its low side.
 std::vector<float> MakePlane(const Extent& extent, double place)
 {
   std::vector<float> distances;
@@ -100,7 +102,7 @@ TEST(BoundaryDistances, NonNegativeSamplesStay)
 
 TEST(BoundaryDistances, PlaneLiesBetweenVoxels)
 {
-  // Sixteen samples a voxel along x.
+  // Along x the output has sixteen samples per voxel of the volume.
   const Extent extent{ { -1, 6, 0, 4, 0, 3 } };
   DeformerCase fine = MakeCase(
     extent, { { 16, 2, 2 } }, [](const glm::dvec3& index) { return index * glm::dvec3(16, 2, 2); });
@@ -146,7 +148,7 @@ TEST(BoundaryDistances, ChunksAndPartsEqualTheWhole)
 
 TEST(BoundaryDistances, MeshRasterizationAgrees)
 {
-  // One tetrahedron round the volume, shifted by whole voxels: rest coordinates are exact.
+  // One tetrahedron contains the volume and is shifted by whole voxels: rest coordinates are exact.
   DeformerCase moved =
     MakeCase(Volume, { { 4, 4, 4 } }, [](const glm::dvec3& index) { return 4.0 * index + 8.0; });
   const std::size_t size = moved.GetNumberOfVoxels();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The kernel for graphics cards: what it leaves to lists and to the queue, and that the size of its
-// groups and the division of the output change nothing. All other tests of the exact resampling
-// compare it with the one for processors, too.
+// The kernel by columns: its lists of samples and deferred cells, and that results do not depend on
+// work-group sizes and slabs. The other tests of the exact resampling also compare this kernel with
+// the kernel by lanes.
 #include "DeformerCase.h"
 #include "DeviceNeeds.h"
 
@@ -14,8 +14,8 @@ namespace
 
 const std::array<double, 3> NoScale{ { 1, 1, 1 } };
 
-/// Compares what groups of several sizes make with the reference, and with each other bit for bit.
-/// asLanes: and with the kernel for processors.
+/// Compares the results for several work-group sizes with the reference, and with each other bit by
+/// bit. If asLanes is true, also compares with the kernel by lanes.
 void Check(const DeformerCase& deformerCase, bool asLanes = true)
 {
   const auto voxels = static_cast<std::size_t>(deformerCase.GetNumberOfVoxels());
@@ -42,7 +42,7 @@ void Check(const DeformerCase& deformerCase, bool asLanes = true)
     const Deformed lanes = RunDeformer(deformer, deformerCase, arrays, Resampling::ExactByLanes);
     EXPECT_TRUE(lanes.Outputs == all.front().Outputs);
   }
-  // In slabs of a few planes, each a part of the output.
+  // Slabs of a few planes.
   deformer.SetAllocationLimit(
     4 * GetSize(deformerCase.Output, 0) * GetSize(deformerCase.Output, 1) * 3 * sizeof(float));
   const Deformed slabs = RunDeformer(deformer, deformerCase, arrays, Resampling::ExactByColumns);
@@ -66,7 +66,8 @@ TEST(Columns, AtRest)
 
 TEST(Columns, ManySamplesOnFaces)
 {
-  // Every vertex is a sample, and each of the 256 cells of a layer has more than four on its faces.
+  // Every vertex lies on a sample. Each of the 256 cells of a layer has more than four samples on
+  // its faces.
   Check(MakeSheared({ { 0, 66, 0, 18, 0, 10 } }, 2.0, 1.0));
 }
 
@@ -78,7 +79,7 @@ TEST(Columns, MoreCandidatesThanACellTakesAtOnce)
 
 TEST(Columns, CellsTooLargeForIntegersOf32Bits)
 {
-  // Which of these cells are interpolated in double precision differs by lanes and by columns.
+  // The kernels by lanes and by columns interpolate different cells in double precision.
   Check(MakeSheared({ { 0, 11, 0, 10, 0, 9 } }, 4.0, 2.0), false);
 }
 

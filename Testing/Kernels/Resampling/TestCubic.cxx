@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The cubic interpolation of the exact resampling. That it equals the reference with each kind of
-// deformation, mask and cut is the table of TestResampling; here is what is special: what it
-// reproduces, where it gives way to the linear one, types, and that nothing hangs on how the work
-// is divided. Incremental updates are those of TestIncremental.
+// Cubic interpolation in the exact resampling: which functions it reproduces, where linear
+// interpolation replaces it, element types, and that results do not depend on how the work is
+// divided. TestResampling compares it with the reference for each kind of deformation, mask and
+// cut. TestIncremental covers incremental updates.
 #include "CubicReference.h"
 #include "DeviceNeeds.h"
 #include "RasterCase.h"
@@ -85,7 +85,7 @@ glm::dvec3 Map(const glm::dvec3& index)
   return Matrix * index + Moved;
 }
 
-// Whether an index is so far inside the volume that all 64 voxels are there.
+// Whether the index is so far inside the volume that all 64 voxels of the stencil exist.
 bool IsInside(const glm::dvec3& index)
 {
   bool inside = true;
@@ -143,7 +143,7 @@ TEST(Cubic, VoxelsComeOutBitForBit)
   }
 }
 
-// Of 64 voxels those without weight are not read.
+// Voxels of the stencil with weight zero are not read.
 TEST(Cubic, NotANumberStaysWithinItsCells)
 {
   const DeformerCase made = MakeCase(
@@ -157,14 +157,14 @@ TEST(Cubic, NotANumberStaysWithinItsCells)
   ForEachVoxel(made.Output,
     [&](int x, int y, int z)
     {
-      // Two voxels to either side.
+      // Two voxels on each side.
       const bool isNear = y == 9 && z == 6 && x >= 2 && x <= 5;
       wrong += std::isnan(deformed.GetOutput<float>(1)[voxel++]) != isNear;
     });
   EXPECT_EQ(wrong, 0);
 }
 
-// Catmull-Rom gives polynomials of second degree in each index.
+// Catmull-Rom interpolation reproduces polynomials of second degree in each index.
 TEST(Cubic, QuadraticsAreReproduced)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -206,12 +206,12 @@ TEST(Cubic, QuadraticsAreReproduced)
           std::max(largestOfLinear, std::abs(linear.GetOutput<double>(0)[voxel] - wanted));
       });
     EXPECT_GT(compared, 2000);
-    EXPECT_LT(largest, 1e-9); // of values of up to some thousands
+    EXPECT_LT(largest, 1e-9); // the values are up to several thousand
     EXPECT_GT(largestOfLinear, 1.0) << "the linear interpolation is as good";
   }
 }
 
-// The deformation mesh bends in a plane of voxels: both resamplers then find the same rest
+// The deformation mesh bends in a plane of voxels. Both resamplers then find the same rest
 // coordinates, and interpolate over the same 64 voxels.
 TEST(Cubic, EqualsMeshRasterization)
 {
@@ -253,13 +253,13 @@ TEST(Cubic, EqualsMeshRasterization)
       largest, std::abs(exact.GetOutput<float>(0)[voxel] - other.GetOutput<float>(0)[voxel]));
   }
   EXPECT_GT(compared, 3000);
-  // Positions are exact; rest coordinates of the rasterisation are multiples of 2^-24 voxel, and
-  // values differ by up to 2000 from voxel to voxel.
+  // Positions are exact. Rest coordinates in mesh rasterization are multiples of 2^-24 voxel, and
+  // values of neighboring voxels differ by up to 2000.
   EXPECT_LT(largest, 1e-2);
 }
 
-// What is missing leaves linear values round it, with the bits that a linear interpolation gives,
-// and all else as it is.
+// Around a missing voxel or cell, values equal those of linear interpolation bit by bit. All other
+// values do not change.
 TEST(Cubic, LinearWhereVoxelsAreMissing)
 {
   const DeformerCase whole = MakeJittered();
@@ -273,7 +273,7 @@ TEST(Cubic, LinearWhereVoxelsAreMissing)
     const char* Name;
     std::function<void(DeformerCase&)> Make;
     Route Way = Route::Field;
-    int Cells = 0; // that are linear because of it
+    int Cells = 0; // the number of cells that the defect makes linear
   };
   const std::vector<Defect> defects{
     { "nothing", [](DeformerCase&) {} },
@@ -320,7 +320,7 @@ TEST(Cubic, LinearWhereVoxelsAreMissing)
   {
     wholes[static_cast<int>(route)] = RunCubic(whole, arrays, route);
   }
-  int linearCells = 0; // at the border
+  int linearCells = 0; // the cells at the border of the volume
   for (const Defect& defect : defects)
   {
     SCOPED_TRACE(defect.Name);
@@ -340,7 +340,7 @@ TEST(Cubic, LinearWhereVoxelsAreMissing)
     EXPECT_EQ(cubic.Coverage, linear.Coverage);
     EXPECT_EQ(cubic.Outputs[2], linear.Outputs[2]) << "labels";
     std::int64_t wrong = 0;
-    std::int64_t different = 0; // from linear ones
+    std::int64_t different = 0; // voxels that differ from linear interpolation
     std::int64_t cubics = 0;
     for (std::size_t i = 0; i < reference.Voxels.size(); ++i)
     {
@@ -361,7 +361,7 @@ TEST(Cubic, LinearWhereVoxelsAreMissing)
   }
 }
 
-// Three voxels on an axis have no cell with two beyond it.
+// With three voxels on an axis no cell has two voxels on either side of it.
 TEST(Cubic, ThinVolumesAreLinear)
 {
   for (const int axis : { 0, 1, 2 })
@@ -379,8 +379,8 @@ TEST(Cubic, ThinVolumesAreLinear)
   }
 }
 
-// Random values overshoot the range of integers; those of 64 bits are exact where they are near to
-// each other, also at the ends of the range.
+// Interpolated random values exceed the range of integers. 64-bit integers are exact if their
+// differences are small, also at the ends of the range.
 TEST(Cubic, TypesAndComponents)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -410,8 +410,8 @@ TEST(Cubic, TypesAndComponents)
     ExpectEqualsCubicReference(made, reference, arrays, RunCubic(made, arrays, Route::Runs)), 2000);
 }
 
-// A volume in chunks, with masks and a cut: few layers at a time, and so few that there is no room
-// for cuts.
+// Chunks of a few layers, of a volume with masks and a cut. With a cut, memory for less than six
+// planes of links is too little.
 TEST(Cubic, ChunksEqualTheWhole)
 {
   DeformerCase made = MakeJittered(0.5); // folded
@@ -444,7 +444,8 @@ TEST(Cubic, ChunksEqualTheWhole)
   }
 }
 
-// Of the volume only what lands in a part of the output, and a layer of voxels more.
+// The device gets only the voxels that are deformed into the requested part of the output, and one
+// layer more.
 TEST(Cubic, PartsEqualTheWhole)
 {
   const auto move = [jitter = MakeJitter(7, 0.2)](const glm::dvec3& index) mutable
@@ -495,8 +496,8 @@ TEST(Cubic, PartsEqualTheWhole)
   EXPECT_GT(some.Report.NumberOfCoveredVoxels, 400);
 }
 
-// Where the deformation mesh ends within the volume, cells that its boundary crosses are
-// interpolated linearly, and so are those beside them, whose vertices are all there.
+// If the deformation mesh ends inside the volume, cells that its boundary crosses are interpolated
+// linearly. So are their neighbors, although all of their vertices exist.
 TEST(Cubic, TightMeshes)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -514,7 +515,7 @@ TEST(Cubic, TightMeshes)
     DeformTight(deformer, mesh, Resampling::Exact, nullptr, Interpolation::Cubic);
   EXPECT_EQ(cubic.Coverage, linear.Coverage);
   EXPECT_EQ(cubic.Labels, linear.Labels);
-  DeformerCase made; // in which the crossed cells are missing
+  DeformerCase made; // like the other case, but without the crossed cells
   made.VoxelGrid.VertexExtent = volume;
   made.Active.assign(GetNumberOfCells(volume), 31);
   for (const std::int64_t cell :
@@ -525,7 +526,7 @@ TEST(Cubic, TightMeshes)
   const glm::dmat3 back = glm::inverse(glm::dmat3(1.0) + bend);
   std::int64_t cubics = 0;
   std::int64_t linears = 0;
-  std::int64_t beside = 0; // in cells that are not crossed themselves
+  std::int64_t beside = 0; // in cells that the boundary does not cross
   std::int64_t wrong = 0;
   std::int64_t voxel = -1;
   ForEachVoxel(mesh.Output,
@@ -533,7 +534,7 @@ TEST(Cubic, TightMeshes)
     {
       const glm::dvec3 rest = back * (glm::dvec3(x, y, z) - shift);
       const glm::dvec3 first = glm::floor(rest);
-      // Positions are rounded to 1/256 voxel, so that those near a side may lie in either cell.
+      // Positions are rounded to 1/256 voxel: a sample near a face may lie in either cell.
       const glm::dvec3 in = glm::abs(rest - first - 0.5);
       if (!cubic.Coverage[++voxel] || std::max({ in.x, in.y, in.z }) > 0.48)
       {

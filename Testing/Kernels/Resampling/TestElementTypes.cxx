@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What happens to values: every element type, several arrays at once, labels, backgrounds.
+// Values of the output: element types, several arrays at once, labels, background values.
 #include "DeformerCase.h"
 #include "DeviceNeeds.h"
 
@@ -20,7 +20,7 @@ glm::dvec3 Stay(const glm::dvec3& index)
   return index;
 }
 
-/// Arrays of all types: interpolated and categorical ones. They take minutes to compile, for each
+/// Interpolated and categorical arrays of all types. Their kernels take minutes to compile for each
 /// number of components.
 class AllTypes
 {
@@ -52,7 +52,7 @@ DeformerCase Shift(const glm::dvec3& shift)
     Volume, { { 1, 1, 1 } }, [&shift](const glm::dvec3& index) { return index + shift; }, 0);
 }
 
-/// Random bits come out at the voxels that a shift by whole voxels takes them to.
+/// Expects the input's bits at the output voxels that a shift by whole voxels gives.
 void ExpectShifted(const Deformed& deformed, const std::vector<VolumeArray>& arrays)
 {
   for (std::size_t i = 0; i < arrays.size(); ++i)
@@ -74,8 +74,8 @@ void ExpectShifted(const Deformed& deformed, const std::vector<VolumeArray>& arr
 
 } // namespace
 
-// One by one: each type alone has a kernel of its own. By cell and by columns they are the same
-// alone and together.
+// Resamples one array at a time: the kernel by lanes is compiled for each type. By cells and by
+// columns the kernels for one array are the same as for several.
 TEST(ElementTypes, UndeformedVolumeComesOutBitForBit)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -120,7 +120,7 @@ TEST(ElementTypes, DeformedValuesEqualReference)
 
 TEST(ElementTypes, LabelsOf64BitsSurvive)
 {
-  // Neighbours differ in the last bit, which a double cannot tell above 2^53.
+  // Values of neighboring voxels differ in the last bit, which a double does not hold above 2^53.
   const DeformerCase jittered =
     MakeCase({ { 0, 8, 0, 8, 0, 8 } }, { { 1, 1, 1 } }, MakeJitter(21, 0.2));
   const std::size_t size = jittered.GetNumberOfVoxels();
@@ -140,7 +140,8 @@ TEST(ElementTypes, LabelsOf64BitsSurvive)
 TEST(ElementTypes, NearLargeIntegersOf64BitsAreRoundedToNearest)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
-  // Values that a double cannot hold, a few units apart: the mean must lie between them.
+  // Values that a double cannot hold, which differ by a few units. Interpolated values must lie
+  // between them.
   const DeformerCase shifted = MakeCase({ { 0, 6, 0, 6, 0, 6 } }, { { 1, 1, 1 } },
     [](const glm::dvec3& index) { return index + glm::dvec3(0.25, 0.5, 0.125); });
   std::vector<std::int64_t> values(shifted.GetNumberOfVoxels());
@@ -156,7 +157,7 @@ TEST(ElementTypes, NearLargeIntegersOf64BitsAreRoundedToNearest)
   {
     if (!reference.Voxels[voxel].empty())
     {
-      // Exact integers: numerators of some 2^26 times offsets of at most 96.
+      // Exact integers: numerators of about 2^26 times differences of at most 96.
       const auto& containing = reference.Voxels[voxel].front();
       std::int64_t sum = 0;
       for (int k = 0; k < 4; ++k)
@@ -181,7 +182,7 @@ TEST(ElementTypes, IntegersAreRoundedToNearestEvenAndStayInRange)
     values[voxel] = row[voxel % 5];
   }
   const Deformed deformed = LoadAndRun(half, { MakeArray(values, 1, false, 9.0) });
-  // Samples in the middle of two voxels: 0.5 -> 0, 1.5 -> 2, 128.5 -> 128, 255.
+  // Samples halfway between two voxels: 0.5 -> 0, 1.5 -> 2, 128.5 -> 128, 255.
   const std::array<std::uint8_t, 6> expected{ { 9, 0, 2, 128, 255, 9 } };
   for (std::int64_t voxel = 0; voxel < GetNumberOfPoints(half.Output); ++voxel)
   {
@@ -227,7 +228,7 @@ TEST(ElementTypes, NotANumberStaysWithinItsTetrahedra)
 
 TEST(ElementTypes, LargeFloatsInLargeCellsStayFinite)
 {
-  // 9.97e36 is what NetCDF fills with.
+  // 9.97e36 is NetCDF's fill value for floats.
   for (const double size : { 1.5, 3.0, 7.0 })
   {
     SCOPED_TRACE(size);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Deformations that turn tetrahedra inside out or lay the volume over itself.
+// Deformations that invert tetrahedra or fold the volume onto itself.
 #include "DeformerCase.h"
 #include "DeviceNeeds.h"
 
@@ -16,7 +16,7 @@ const Extent Volume{ { -2, 9, 0, 8, 1, 10 } };
 void Check(const DeformerCase& folded, const reference::Result& reference)
 {
   const UsualArrays usual(folded.GetNumberOfVoxels());
-  // And one that is interpolated in double precision.
+  // This array is interpolated in double precision.
   const auto values = MakeRandomValues<std::int32_t>(folded.GetNumberOfVoxels(), 2);
   std::vector<VolumeArray> arrays = usual.Get();
   arrays.push_back(MakeArray(values));
@@ -28,16 +28,17 @@ void Check(const DeformerCase& folded)
   Check(folded, ResampleByReference(folded));
 }
 
-// Offsets of a vertex by its number in FiveTetrahedra.h.
+// Offset of a vertex in its cell, by its number in FiveTetrahedra.h.
 glm::dvec3 GetOffset(int vertex)
 {
   return glm::dvec3(vertex & 1, vertex >> 2 & 1, vertex >> 1 & 1);
 }
 
-/// A single cell, of which the corners first and second are moved past each other.
+/// A single cell with two corner vertices that are moved past each other.
 DeformerCase MakeCellWithOverlap(int parity, int first, int second, double size)
 {
-  // Of the central tetrahedron's vertices a corner's face has all but the one across the cell.
+  // The face of a corner tetrahedron contains all vertices of the central tetrahedron but the one
+  // at the opposite corner of the cell.
   glm::dvec3 edge(0.0);
   for (const int vertex : { 0, 3, 5, 6 })
   {
@@ -73,7 +74,7 @@ DeformerCase MakeCellWithOverlap(int parity, int first, int second, double size)
 TEST(Folded, MirroredAlongAnAxis)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
-  // Nothing moves along the other two: all samples lie on edges of cells.
+  // Nothing moves along the other two axes: all samples lie on edges of cells.
   for (int axis = 0; axis < 3; ++axis)
   {
     SCOPED_TRACE(axis);
@@ -94,8 +95,8 @@ TEST(Folded, MirroredAlongAnAxis)
 TEST(Folded, CornersOfOneCellOverlap)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
-  // Two corner tetrahedra on an edge of the central one reach over it, past each other, and all
-  // five are upright.
+  // Two corner tetrahedra extend past each other over an edge of the central tetrahedron. None of
+  // the five is inverted.
   constexpr std::array<std::array<int, 2>, 6> pairs{ { { { 1, 2 } }, { { 1, 4 } }, { { 1, 7 } },
     { { 2, 4 } }, { { 2, 7 } }, { { 4, 7 } } } };
   for (int parity = 0; parity < 8; ++parity)
@@ -115,9 +116,9 @@ TEST(Folded, CornersOfOneCellOverlap)
 TEST(Folded, VertexInAnotherTetrahedronOfItsCell)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
-  // The upper one of two cells writes the sample on a vertex of both, and once more with a
-  // tetrahedron that does not have that vertex. As the sample is contested, it goes to the lower
-  // cell, upright or mirrored.
+  // Two cells share the vertex at this sample. In the upper cell another tetrahedron, without this
+  // vertex, also contains the sample. The tetrahedra overlap, so that the lower cell wins, whether
+  // it is upright or mirrored.
   for (const double sign : { 1.0, -1.0 })
   {
     SCOPED_TRACE(sign);
@@ -136,7 +137,7 @@ TEST(Folded, VertexInAnotherTetrahedronOfItsCell)
 TEST(Folded, ManyCells)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
-  // So many that in some of them corner tetrahedra overlap.
+  // In some of these many cells corner tetrahedra overlap.
   const DeformerCase jittered = MakeCase({ { 0, 30, 0, 30, 0, 30 } }, NoScale, MakeJitter(3, 1.0));
   Check(jittered);
 }
@@ -144,7 +145,7 @@ TEST(Folded, ManyCells)
 TEST(Folded, FoldedLikeAPage)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
-  // Both orientations meet in a crease on the plane x = 4, from either side, on samples and beside.
+  // Upright and inverted cells meet in a crease on the plane x = 4, on samples and between them.
   for (const double sign : { 1.0, -1.0 })
   {
     for (const double crease : { 4.0, 3.5, 4.25 })
@@ -163,8 +164,8 @@ TEST(Folded, FoldedLikeAPage)
   }
 }
 
-// Cells of more than four and of more than eight voxels, with a crease on samples and beside, that
-// lie on themselves aslant.
+// Obliquely folded volumes with cells of more than four or eight voxels, and a crease on samples or
+// between them.
 TEST(Folded, LargeCells)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -189,7 +190,7 @@ TEST(Folded, LargeCells)
 TEST(Folded, FlattenedVolume)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
-  // A slab of cells has no thickness: its tetrahedra are flat and cover nothing of their own.
+  // One layer of cells has no thickness: its flat tetrahedra cover no samples.
   Check(MakeCase(Volume, NoScale,
     [](const glm::dvec3& index)
     { return glm::dvec3(index.x, index.y - (index.y > 4.0 ? 1.0 : 0.0), index.z); }));
@@ -200,7 +201,7 @@ TEST(Folded, FlattenedVolume)
 TEST(Folded, UprightOverlap)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
-  // Spun round by more than a full turn: upright everywhere, and yet on top of itself.
+  // Twisted by more than a full turn: no tetrahedron is inverted, but the volume overlaps itself.
   const Extent ring{ { 0, 23, 0, 4, 0, 3 } };
   const DeformerCase wound = MakeCase(ring, NoScale,
     [](const glm::dvec3& index)
@@ -218,8 +219,8 @@ TEST(Folded, UprightOverlap)
 TEST(Folded, CellsWithoutAllVerticesAtTheEdgeOfTheOutput)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
-  // Where a vertex is blanked nothing bounds the cell's samples on that side. Some of these cells
-  // win a voxel, and begin before the output does.
+  // At a blanked vertex nothing bounds the samples of the cell on that side. Some of these cells
+  // win a voxel, and begin outside the output.
   std::mt19937 random(5);
   DeformerCase jittered = MakeCase(Volume, NoScale, MakeJitter(32, 1.0));
   for (std::int64_t voxel = 0; voxel < GetNumberOfPoints(Volume); ++voxel)
@@ -259,10 +260,10 @@ TEST(Folded, SameFromRunToRunAndForEveryWorkGroupSize)
 
 TEST(Folded, EarlierOutputsDoNotMatter)
 {
-  // The passes depend on whether the output before was folded, what comes out does not.
+  // The passes depend on whether the previous output was folded. The result does not.
   const Extent large{ { 0, 131, 0, 9, 0, 11 } };
-  // In the second pose cells have samples on their upper sides, which some passes look at and
-  // others do not.
+  // In the second deformation cells have samples on their upper faces. Only some of the passes
+  // examine these samples.
   int pose = 0;
   const auto fold = [&](double crease)
   {
@@ -309,9 +310,9 @@ TEST(Folded, EarlierOutputsDoNotMatter)
 
 TEST(Folded, SamplesOnFacesAfterAFold)
 {
-  // Where the output before was folded, one pass finds who wins, but for cells that only touch a
-  // sample: all cells here have samples on their faces, as boxes and sheared, with the crease on
-  // samples and between.
+  // If the previous output was folded, one pass finds the winners, except for cells that only touch
+  // a sample. All cells here have samples on their faces: as boxes and sheared, with the crease on
+  // samples and between them.
   const auto fold = [](const Extent& extent, double crease, double shear, double scale)
   {
     return MakeCase(extent, NoScale,
@@ -326,7 +327,7 @@ TEST(Folded, SamplesOnFacesAfterAFold)
     Extent VertexExtent;
     std::vector<double> Creases;
   };
-  // The second one has creases in later columns of a brick, and in a second brick.
+  // The second volume has creases in later columns of a brick, and in a second brick.
   const std::vector<Volume> volumes{ { { { -1, 40, 0, 8, 1, 9 } }, { 25.0, 30.5, 22.25 } },
     { { { 1, 212, 0, 4, 1, 5 } }, { 110.0, 140.5, 202.0 } } };
   for (const Resampling method : GetExactMethods())
@@ -359,8 +360,8 @@ TEST(Folded, SamplesOnFacesAfterAFold)
 TEST(Folded, CreaseAwayFromTheBorder)
 {
   SKIP_WITHOUT_VECTORS()
-  // Boxes on both sides of a crease on samples, which none of them writes, in a brick that holds
-  // nothing but boxes, and not in its first column.
+  // Aligned cells on both sides of a crease, on samples that neither side writes. The brick has
+  // only aligned cells, and the crease is not in its first column.
   const Extent large{ { 0, 400, 0, 34, 0, 34 } };
   const DeformerCase folded = MakeCase(large, NoScale,
     [](const glm::dvec3& index)
@@ -372,7 +373,7 @@ TEST(Folded, CreaseAwayFromTheBorder)
   const Deformed reference = RunDeformer(byCells, folded, arrays, Resampling::ExactByCell);
   VolumeDeformer byLanes;
   Load(byLanes, folded, arrays, Route::Field);
-  for (int i = 0; i < 2; ++i) // the second time it is known to be folded
+  for (int i = 0; i < 2; ++i) // the second time the output is known to be folded
   {
     const Deformed deformed = RunDeformer(byLanes, folded, arrays, Resampling::ExactByLanes);
     EXPECT_EQ(deformed.Report.NumberOfCoveredVoxels, std::int64_t{ 241 } * 35 * 35);
@@ -385,7 +386,7 @@ TEST(Folded, OverstretchedTetrahedraAreSkippedAndCounted)
 {
   const Extent small{ { 0, 3, 0, 3, 0, 3 } };
   DeformerCase torn = MakeCase(small, NoScale, [](const glm::dvec3& index) { return index; });
-  // One corner of the volume is thrown far away; it belongs to one cell.
+  // One vertex at a corner of the volume is moved far away. It belongs to one cell.
   torn.Displacements.back() = { { 5000 * 256, 0, 0 } };
   const std::vector<float> values(torn.GetNumberOfVoxels(), 2.0F);
   const std::vector<VolumeArray> arrays{ MakeArray(values) };

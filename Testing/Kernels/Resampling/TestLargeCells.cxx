@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cells that are stretched over much of the output. They are resampled row by row and in pieces.
+// Cells that cover much of the output. They are resampled row by row, divided into pieces.
 #include "DeformerCase.h"
 #include "DeviceNeeds.h"
 
@@ -14,7 +14,7 @@ namespace
 
 const std::array<double, 3> NoScale{ { 1, 1, 1 } };
 
-/// A part of an output, with its values, as one of its own.
+/// Copies a part of a result to a result of its own.
 Deformed Extract(const Deformed& whole, const Extent& extent, const Extent& part,
   const std::vector<VolumeArray>& arrays)
 {
@@ -44,7 +44,7 @@ Deformed Extract(const Deformed& whole, const Extent& extent, const Extent& part
   return extracted;
 }
 
-/// A part of the output against the reference, which would take too long for the whole.
+/// Compares a part of the output with the reference. The whole would take too long.
 void CheckPart(const DeformerCase& deformerCase, const Extent& part,
   const std::vector<VolumeArray>& arrays, const Deformed& deformed)
 {
@@ -52,7 +52,7 @@ void CheckPart(const DeformerCase& deformerCase, const Extent& part,
   smaller.Output = part;
   const reference::Result reference = ResampleByReference(smaller);
   Deformed extracted = Extract(deformed, deformerCase.Output, part, arrays);
-  // What the report says of the whole.
+  // Counters of the part. The counter of inverted tetrahedra is that of the whole volume.
   extracted.Report.NumberOfCoveredVoxels =
     std::count(extracted.Coverage.begin(), extracted.Coverage.end(), static_cast<signed char>(1));
   extracted.Report.NumberOfInvertedTetrahedra = deformed.Report.NumberOfInvertedTetrahedra;
@@ -60,7 +60,7 @@ void CheckPart(const DeformerCase& deformerCase, const Extent& part,
   ExpectEqualsReference(smaller, reference, arrays, extracted);
 }
 
-/// Some rows along each axis, and a corner.
+/// Compares random rows along each axis, and a corner of the output, with the reference.
 void CheckParts(const DeformerCase& deformerCase, const std::vector<VolumeArray>& arrays,
   const Deformed& deformed)
 {
@@ -84,7 +84,7 @@ void CheckParts(const DeformerCase& deformerCase, const std::vector<VolumeArray>
   CheckPart(deformerCase, corner, arrays, deformed);
 }
 
-/// One cell, whose vertices are moved by up to a part of its size.
+/// One cell, whose vertices are moved by up to a fraction of its size.
 DeformerCase MakeStretchedCell(int parity, double size, double part, unsigned int seed)
 {
   const Extent extent{ { parity & 1, (parity & 1) + 1, parity >> 1 & 1, (parity >> 1 & 1) + 1,
@@ -101,7 +101,7 @@ TEST(LargeCells, OneCellLargerThanTheOutput)
   const auto values = MakeRandomValues<std::uint16_t>(8, 2);
   const auto labels = MakeRandomValues<std::uint8_t>(8, 3);
   const std::vector<VolumeArray> arrays{ MakeArray(values), MakeArray(labels, 1, true, 12.0) };
-  // Hardly bent; much, but upright; with inverted tetrahedra.
+  // Slightly bent; strongly bent, but upright; with inverted tetrahedra.
   for (const double part : { 0.02, 0.25, 0.7 })
   {
     for (const int parity : { 0, 5 })
@@ -121,7 +121,7 @@ TEST(LargeCells, OneCellLargerThanTheOutput)
 
 TEST(LargeCells, MaskedCellsThatOverlap)
 {
-  // Large cells lie over each other, and over small ones; some tetrahedra are missing.
+  // Large cells overlap each other and small cells. Some tetrahedra are inactive.
   const Extent volume{ { 0, 3, 0, 2, 0, 2 } };
   DeformerCase cells = MakeCase(volume, NoScale,
     [jitter = MakeJitter(6, 60.0)](const glm::dvec3& index)
@@ -141,8 +141,8 @@ TEST(LargeCells, MaskedCellsThatOverlap)
 
 TEST(LargeCells, InChunksAndSlabs)
 {
-  // Two vertices are pulled out of the volume, and with each the eight cells round it: each is
-  // large in each slab.
+  // Two vertices are moved far out of the volume. The eight cells around each of them are large in
+  // every slab.
   const DeformerCase cells = MakeCase({ { 0, 34, 0, 34, 0, 40 } }, NoScale,
     [](const glm::dvec3& index)
     {
@@ -155,7 +155,7 @@ TEST(LargeCells, InChunksAndSlabs)
   const reference::Result reference = ResampleByReference(cells);
   VolumeDeformer deformer;
   deformer.SetDevice("");
-  // Links have 16 bytes, and a chunk has three planes more than layers. Winners have four bytes a
+  // A link has 16 bytes, and a chunk has three planes more than layers. A winner has four bytes per
   // voxel.
   constexpr int layers = 20;
   deformer.SetAllocationLimit(16 * 35 * 35 * (layers + 3));
@@ -169,7 +169,7 @@ TEST(LargeCells, InChunksAndSlabs)
 
 TEST(LargeCells, TimeIsThatOfTheirSamples)
 {
-  // One cell fills its box, the other one lies in it from corner to corner.
+  // One cell fills its bounding box. The other one lies along the diagonal of its box.
   const Extent cell{ { 0, 1, 0, 1, 0, 1 } };
   const DeformerCase full =
     MakeCase(cell, NoScale, [](const glm::dvec3& index) { return 300.0 * index; });
@@ -179,7 +179,7 @@ TEST(LargeCells, TimeIsThatOfTheirSamples)
       return index.x * glm::dvec3(290, 290, 290) + index.y * glm::dvec3(-10, 10, 0) +
         index.z * glm::dvec3(0, -10, 10);
     });
-  // What voxels get that no cell covers takes time, too.
+  // Writing the background values takes time, too.
   DeformerCase nothing = thin;
   nothing.Blanked.assign(8, 1);
   const std::vector<std::uint8_t> values{ 1, 2, 3, 4, 5, 6, 7, 8 };
@@ -201,7 +201,8 @@ TEST(LargeCells, TimeIsThatOfTheirSamples)
       return least;
     };
     const double ofThin = measure(thin) - measure(nothing, false);
-    // It has one in three hundred of the samples, and a sixth of the rows.
+    // The thin cell has one in three hundred of the samples of the full cell, and a sixth of its
+    // rows.
     EXPECT_LT(ofThin, 0.25 * measure(full));
   }
 }

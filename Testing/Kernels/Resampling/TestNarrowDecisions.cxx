@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Samples that single precision cannot decide: on a face, an edge or a vertex of a cell, or beside
-// a face by the least distance that positions in 1/256 voxel allow. In random cells they are too
-// rare to find out whether the kernels know what they do not know, so that they are constructed
-// here.
+// a face by the least distance that positions in 1/256 voxel allow. Random cells have too few such
+// samples to test the error bounds of the kernels. These tests construct such cells.
 //
-// Each cell is alone: every third one of a volume is active, so that all parities come. A sample
-// that a cell takes or leaves by mistake is then a voxel that is covered or not.
+// Cells do not touch: only every third cell of a volume along each axis is active, so that all
+// parities occur. A wrong decision about a sample then changes the coverage of a voxel.
 #include "DeformerCase.h"
 #include "NarrowCells.h"
 
@@ -21,19 +20,19 @@ namespace
 {
 
 using Position = reference::Position;
-/// The vertices of a cell of even parity by their number in FiveTetrahedra.h, relative to a sample.
+/// The vertices of a cell of even parity, in the order of FiveTetrahedra.h, relative to a sample.
 using Cell = std::array<Position, 8>;
 
-constexpr int Pitch = 3; // from one cell to the next one, in cells
+constexpr int Pitch = 3; // distance of active cells, in cells
 
-/// A cell under the mirroring of another parity, which is that of the shape as well: all that is
-/// computed stays the same but for signs. axes: x, y and z go to these.
+/// Mirrors a cell to get the cell of another parity. All calculations stay the same, except for
+/// signs. axes[i] is the axis that axis i is mapped to.
 Cell Transform(const Cell& cell, int mirror, const std::array<int, 3>& axes, int scale)
 {
   Cell result{};
   for (int v = 0; v < 8; ++v)
   {
-    // Bits of vertex numbers are x, z, y.
+    // The bits of a vertex number are x, z and y.
     const std::array<int, 3> bits{ { v & 1, v >> 2 & 1, v >> 1 & 1 } };
     std::array<int, 3> turned{};
     Position position{};
@@ -74,8 +73,9 @@ bool IsUpright(const Cell& cell, bool odd)
   return true;
 }
 
-/// A volume of such cells. make(number, mirror) gives the cell with a number for the mirroring of
-/// its place; the sample comes to the middle of a box of so many voxels that holds the cell.
+/// A volume of such cells. make(number, mirror) returns the cell with this number, for the
+/// mirroring at its position. Each sample lies in the middle of a box of `box` voxels on each axis,
+/// which contains its cell.
 DeformerCase MakeCells(
   const std::array<int, 3>& count, int box, const std::function<Cell(int number, int mirror)>& make)
 {
@@ -123,7 +123,7 @@ DeformerCase MakeCells(
   return made;
 }
 
-/// By lanes and cell by cell, against the reference.
+/// Compares the kernels by lanes and by cells with the reference.
 void Check(const DeformerCase& cells)
 {
   const auto values =
@@ -149,7 +149,7 @@ Cell GetNarrowCell(int number)
   return cell;
 }
 
-/// What a sample lies on, or beside.
+/// The position of the sample relative to the cell.
 enum class Relation
 {
   Face,
@@ -168,8 +168,8 @@ Position Cross(const Position& a, const Position& b)
   return { { a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0] } };
 }
 
-/// Moves c a little so that the origin is beside the plane of a, b and c by this volume. False
-/// where no position near does that.
+/// Moves c slightly, so that the tetrahedron of the origin, a, b and c has this volume. Returns
+/// false if no position nearby does.
 bool MoveBeside(const Position& a, const Position& b, Position& c, std::int64_t volume)
 {
   const Position normal = Cross(a, b);
@@ -186,7 +186,7 @@ bool MoveBeside(const Position& a, const Position& b, Position& c, std::int64_t 
   return false;
 }
 
-/// A random cell whose sample has such a relation to one of its outer faces.
+/// A random cell of which one outer face has this relation to the sample.
 Cell MakeRandomCell(std::mt19937& random, Relation relation, double size, double distortion)
 {
   constexpr int faces[12][3] = { { 2, 0, 3 }, { 2, 3, 6 }, { 2, 6, 0 }, { 7, 6, 3 }, { 7, 3, 5 },
@@ -211,7 +211,7 @@ Cell MakeRandomCell(std::mt19937& random, Relation relation, double size, double
     Position sample = cell[a];
     if (relation == Relation::Edge)
     {
-      // In the middle, or a third.
+      // At a half or a third of the edge.
       const std::int64_t parts = 2 + random() % 2;
       for (int axis = 0; axis < 3; ++axis)
       {
@@ -246,7 +246,7 @@ Cell MakeRandomCell(std::mt19937& random, Relation relation, double size, double
 
 } // namespace
 
-// Scaled up, they are taken as cells over 4 voxels are: sample by sample.
+// Cells that are scaled to over 4 voxels are decided sample by sample.
 TEST(NarrowDecisions, CellsThatSinglePrecisionGetsWrong)
 {
   constexpr int number = static_cast<int>(NarrowCells.size());
@@ -255,7 +255,7 @@ TEST(NarrowDecisions, CellsThatSinglePrecisionGetsWrong)
     for (const auto& order : Orders)
     {
       SCOPED_TRACE(scale);
-      // Each of them in the four mirrorings on x and y.
+      // Each cell in the four mirrorings on x and y.
       const DeformerCase cells = MakeCells({ { 4, 4, (number + 1) / 2 } }, 4 * scale + 2,
         [&](int i, int mirror) { return Transform(GetNarrowCell(i / 8), mirror, order, scale); });
       Check(cells);

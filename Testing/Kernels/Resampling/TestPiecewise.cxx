@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Coverage, values and single writes under deformations that differ from cell to cell, against the
-// reference.
+// Deformations that differ from cell to cell: compares coverage and values with the reference, and
+// checks that one tetrahedron writes each sample.
 #include "DeformerCase.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ using namespace deformvolume;
 namespace
 {
 
-/// Compares arrays that go by lanes on a processor, and others.
+/// Compares arrays that are resampled by lanes on CPUs, and others.
 void Check(const DeformerCase& deformerCase, Route route = Route::Field)
 {
   const std::size_t size = deformerCase.GetNumberOfVoxels();
@@ -53,7 +53,7 @@ TEST(Piecewise, JitteredVoxels)
 
 TEST(Piecewise, CoarseRandomField)
 {
-  // Random displacements at every fourth voxel, linear between them along each axis.
+  // Random displacements at every fourth voxel, interpolated linearly along each axis.
   std::mt19937 random(4);
   std::uniform_real_distribution<double> uniform(-0.7, 0.7);
   std::array<std::array<std::array<glm::dvec3, 7>, 7>, 7> nodes;
@@ -85,7 +85,8 @@ TEST(Piecewise, CoarseRandomField)
     }));
 }
 
-// Where nothing moves along an axis, or all by whole voxels, all samples lie in sides of cells.
+// If nothing moves along an axis, or everything moves by whole voxels, all samples lie on faces of
+// cells.
 TEST(Piecewise, MovedAlongSomeAxes)
 {
   const glm::dmat3 identity(1.0);
@@ -94,7 +95,7 @@ TEST(Piecewise, MovedAlongSomeAxes)
   int run = 0;
   for (const glm::dmat3& pose : { identity, turned, swapped })
   {
-    for (int axes = 1; axes < 7; ++axes) // those that move, as bits
+    for (int axes = 1; axes < 7; ++axes) // the axes that move, as bits
     {
       SCOPED_TRACE(axes);
       const glm::dvec3 moving(axes & 1, axes >> 1 & 1, axes >> 2 & 1);
@@ -109,7 +110,7 @@ TEST(Piecewise, MovedAlongSomeAxes)
   }
 }
 
-// Poses that put faces, edges and vertices of many tetrahedra exactly on samples.
+// Linear maps that put faces, edges and vertices of many tetrahedra exactly on samples.
 TEST(Piecewise, SamplesOnManyFaces)
 {
   const glm::dmat3 swapped(glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1), glm::dvec3(1, 0, 0));
@@ -143,7 +144,7 @@ TEST(Piecewise, SamplesOnManyFaces)
   }
 }
 
-// An interior vertex with all its tetrahedra on a sample: exactly one of 8 or 32 writes it.
+// An inner vertex lies on a sample: exactly one of its 8 or 32 tetrahedra writes the sample.
 TEST(Piecewise, VerticesOnSamplesOfAJitteredMesh)
 {
   auto jitter = MakeJitter(3, 0.3);
@@ -151,7 +152,7 @@ TEST(Piecewise, VerticesOnSamplesOfAJitteredMesh)
     [&jitter](const glm::dvec3& index)
     {
       const glm::dvec3 moved = jitter(index);
-      // Every third vertex stays on its sample, those between are moved along one axis only.
+      // Every third vertex stays on its sample. The vertices between them move along one axis only.
       const int kind = static_cast<int>(index.x + 2 * index.y + 4 * index.z) % 3;
       return kind == 0 ? 2.0 * index
                        : 2.0 * index +
@@ -161,7 +162,7 @@ TEST(Piecewise, VerticesOnSamplesOfAJitteredMesh)
 
 TEST(Piecewise, ScaledVoxelGrid)
 {
-  // The rest position is Scale times the index: another output spacing than the volume's.
+  // The rest position is the index times a scale: the output has another spacing than the volume.
   for (const std::array<double, 3>& scale :
     { std::array<double, 3>{ { 2, 2, 2 } }, std::array<double, 3>{ { 0.5, 0.75, 0.25 } },
       std::array<double, 3>{ { 1.5, 1, 3.25 } }, std::array<double, 3>{ { 4.5, 6, 5 } } })
@@ -195,8 +196,9 @@ TEST(Piecewise, ThinVolumes)
   Check(MakeCase({ { 0, 130, 0, 2, 0, 2 } }, NoScale, MakeJitter(5, 0.15)));
 }
 
-// Bricks that are worked on one above the other, as they are where there are many for each
-// processor: five layers of them, the first and the last not whole, so that one has no partner.
+// With many bricks per processor, one work-item takes two bricks, one above the other. Here are
+// five layers of bricks, so that the last one has no partner. The first and last layers are
+// incomplete.
 TEST(Piecewise, StacksOfBricks)
 {
   const int units = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
@@ -218,7 +220,7 @@ TEST(Piecewise, OutputSmallerThanTheDeformedVolume)
   Check(jittered);
 }
 
-// Boxes of three voxels that the border of the output cuts between their vertices.
+// Aligned cells of three voxels that the border of the output divides.
 TEST(Piecewise, OutputCutsAlignedCells)
 {
   DeformerCase tripled = MakeCase(
@@ -241,9 +243,9 @@ TEST(Piecewise, OutputBesideTheDeformedVolume)
     jittered, ResampleByReference(jittered), arrays, LoadAndRun(jittered, arrays));
 }
 
-// Cells of more than four voxels, whose undecided samples are decided one by one, of more than
-// eight, whose normals floats do not hold, and of more samples than the lanes take. The shears put
-// every face on samples.
+// Cells of more than four voxels, in which undecided samples are decided one by one; of more than
+// eight voxels, whose normals floats cannot hold; and with more samples than the lanes take. The
+// shears put every face on samples.
 TEST(Piecewise, LargeCells)
 {
   const glm::dmat3 turned = Rotate(23.0, glm::dvec3(1, 2, 3));
@@ -267,7 +269,7 @@ TEST(Piecewise, LargeCells)
       {
         jittered.Active.push_back(static_cast<unsigned char>(cell % 4 == 0 ? 27 : 31));
       }
-      // The middle of the output, whose border cuts cells.
+      // Only the middle of the output, whose border divides cells.
       for (int axis = 0; axis < 3; ++axis)
       {
         const int part = (jittered.Output[2 * axis + 1] - jittered.Output[2 * axis]) / 3;
@@ -281,7 +283,7 @@ TEST(Piecewise, LargeCells)
 
 TEST(Piecewise, LargeTetrahedra)
 {
-  // Tetrahedra of up to 60 voxels.
+  // Tetrahedra with edges of up to 60 voxels.
   Check(MakeCase({ { 0, 2, 0, 1, 0, 2 } }, NoScale,
     [](const glm::dvec3& index)
     {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The table of the exact resampling: each deformation with each kind of mask and each kind of
-// smooth cut equals the reference, by all kernels, linear and cubic, and by links, runs and fields
-// in turn. One row is run with --gtest_filter='*/Bent_Blanked_Opened'. All types of elements are
-// those of TestElementTypes, what is special about single rows those of TestPiecewise, TestFolded,
-// TestLargeCells, TestBoundaryDistances and TestSmoothCuts.
+// Compares each combination of a deformation, a mask and a smooth cut with the reference, for all
+// kernels of the exact resampling, linear and cubic. Links, runs and fields take turns. Run one
+// combination with --gtest_filter='*/Bent_Blanked_Opened'. TestElementTypes covers all element
+// types. TestPiecewise, TestFolded, TestLargeCells, TestBoundaryDistances and TestSmoothCuts cover
+// special cases.
 #include "CubicReference.h"
 #include "DeformerCase.h"
 #include "DeviceNeeds.h"
@@ -45,14 +45,14 @@ const std::vector<Pose> Poses{
     [](unsigned int)
     { return std::function([](const glm::dvec3& index) { return 0.5 * index; }); } },
   { "Jittered", true, Usual, [](unsigned int seed) { return MakeJitter(seed, 0.15); } },
-  // At rest beside what is not.
+  // Some tissue is at rest, the tissue beside it moves.
   { "RestingInPart", true, Usual,
     [](unsigned int seed)
     {
       return std::function([jitter = MakeJitter(seed, 0.15)](const glm::dvec3& index) mutable
         { return index.x < 2.0 ? index : jitter(index); });
     } },
-  // All samples lie in sides of cells.
+  // All samples lie on faces of cells.
   { "MovedAlongX", true, Usual,
     [](unsigned int seed)
     {
@@ -142,7 +142,7 @@ void SwitchOff(DeformerCase& made, Random& random, unsigned int every)
   }
 }
 
-// Multiples of 1/16: the kernels and the reference add them up without rounding.
+// Distances are multiples of 1/16: the kernels and the reference add them without rounding.
 void Clip(DeformerCase& made, Random& random, unsigned int every)
 {
   made.Distances.assign(made.GetNumberOfVoxels(), 1.5F);
@@ -163,12 +163,12 @@ struct Mask
 
 const std::vector<Mask> Masks{
   { "Whole", [](DeformerCase&, Random&) {} },
-  // Most cells have all of their tetrahedra, and lie beside some that have not.
+  // Most cells have all of their tetrahedra. Some of their neighbors do not.
   { "FewTetrahedraOff", [](DeformerCase& made, Random& random) { SwitchOff(made, random, 12); } },
   { "ManyTetrahedraOff", [](DeformerCase& made, Random& random) { SwitchOff(made, random, 2); } },
   { "Blanked", [](DeformerCase& made, Random& random) { Blank(made, random, 10); } },
   { "Unlinked", [](DeformerCase& made, Random& random) { Unlink(made, random, 10); } },
-  // Most cells of the others go by lanes.
+  // Most cells are not clipped. They are resampled by lanes.
   { "ClippedHereAndThere", [](DeformerCase& made, Random& random) { Clip(made, random, 60); } },
   { "Clipped", [](DeformerCase& made, Random& random) { Clip(made, random, 1); } },
   { "AllMasks",
@@ -181,15 +181,15 @@ const std::vector<Mask> Masks{
     } },
 };
 
-// A sheet across the middle of a volume, bent by steps; distances are multiples of 1/16.
+// Distance from a sheet across the middle of the volume, bent in steps, in multiples of 1/16.
 double GetSheetDistance(const Extent& volume, const glm::dvec3& index)
 {
   return index.x - 0.5 * (volume[0] + volume[1]) + 0.25 + 0.25 * std::floor(0.75 * index.y) -
     0.125 * index.z;
 }
 
-// Moves the sides of the sheet apart, or into each other, and cuts between them. The cut may end in
-// the volume.
+// Moves the sides of the sheet apart, or into each other, and cuts along the sheet. The cut may end
+// inside the volume.
 void CutAndMove(DeformerCase& made, Random& random, double apart)
 {
   const Extent& volume = made.VoxelGrid.VertexExtent;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Smooth cuts: crossed tetrahedra that are there twice, once for each side. Distances are multiples
-// of 1/16 where the reference is compared with, and then both sides add up the same numbers without
-// rounding.
+// Smooth cuts, which divide the tetrahedra that a sheet crosses. In comparisons with the reference
+// distances are multiples of 1/16: the kernels and the reference add them without rounding.
 #include "DeformerCase.h"
 #include "DeviceNeeds.h"
 
@@ -23,7 +22,7 @@ const std::array<double, 3> NoScale{ { 1, 1, 1 } };
 const Extent Volume{ { -3, 17, 0, 9, 1, 8 } };
 using Deformation = std::function<glm::dvec3(const glm::dvec3&)>;
 
-// With the cut and without it.
+// Results with the cut and without it.
 struct Pair
 {
   Deformed Cut, Whole;
@@ -72,7 +71,7 @@ TEST(SmoothCuts, MisuseIsAnError)
   EXPECT_NO_THROW(RunDeformer(deformer, still, arrays, Resampling::MeshRasterization));
   MoveByField(deformer, still);
   EXPECT_NO_THROW(RunDeformer(deformer, still, arrays));
-  // Room for four slices of links.
+  // Memory for four planes of links.
   deformer.SetAllocationLimit(16384);
   EXPECT_THROW(Load(deformer, still, arrays, Route::Mesh), Error);
   still.Crossed.clear();
@@ -98,7 +97,7 @@ TEST(SmoothCuts, InvisibleAtRest)
       EXPECT_EQ(both.Cut.Outputs[0], both.Whole.Outputs[0]);
       EXPECT_EQ(both.Cut.ByCell->Coverage, both.Whole.Coverage);
       EXPECT_EQ(both.Cut.ByCell->Outputs, both.Whole.ByCell->Outputs);
-      // By lanes the cells that are not divided have single precision.
+      // By lanes, cells that the cut does not divide are interpolated in single precision.
       for (std::size_t voxel = 0; voxel < both.Cut.Coverage.size(); ++voxel)
       {
         const float value = both.Cut.GetOutput<float>(1)[voxel];
@@ -113,16 +112,16 @@ TEST(SmoothCuts, InvisibleAtRest)
   }
 }
 
-// A copy overlaps other tissue where no vertex of a cell of its group is near: it wins all the
-// same. One side has been drawn back across the other and away, so that the copies of the other
-// side, which go on beyond all of these vertices, lie in patches of the output of their own. There
-// other cells, turned inside out, come first and lose. No cell is a box, and no sample lies on a
-// face: else patches are looked at for that.
+// A copy of a divided tetrahedron must win an overlap also if no vertex of the cells in its
+// work-group is near the voxel. One side of the cut was moved across the other side and away from
+// it. The copies of the other side extend beyond all of these vertices, to patches of the output of
+// their own. Inverted cells that come first there lose the overlap. No cell is aligned, and no
+// sample lies on a face: those are other reasons to examine a patch.
 TEST(SmoothCuts, CopiesBeyondTheVerticesOfTheirCellsWin)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
   const Extent extent{ { 0, 4, 0, 8, 0, 3 } };
-  const double step = 8; // output voxels from voxel to voxel on x: as many as a patch has
+  const double step = 8; // output voxels per voxel along x: the size of a patch
   DeformerCase cut = MakeCase(extent, { { step, 1, 1 } },
     [=](const glm::dvec3& index)
     {
@@ -172,8 +171,8 @@ TEST(SmoothCuts, ChunksEqualTheWhole)
   }
 }
 
-// The gap lies between the two moved planes: what is on each side of the plane is there, and
-// nothing else.
+// The gap lies between the two moved planes. Everything outside the gap is covered, and nothing
+// inside it.
 TEST(SmoothCuts, NothingIsLostBetweenThePlanesOfAGap)
 {
   const Extent extent{ { -1, 10, 0, 7, 0, 6 } };
@@ -190,14 +189,14 @@ TEST(SmoothCuts, NothingIsLostBetweenThePlanesOfAGap)
   {
     SCOPED_TRACE(plane.Place);
     const auto sheet = [&](const glm::dvec3& i) { return glm::dot(plane.Normal, i) - plane.Place; };
-    const glm::dvec3 apart(24, 3, 5); // more than the plane's own slope takes back
+    const glm::dvec3 apart(24, 3, 5); // more than the slope of the plane compensates
     DeformerCase cut = MakeCase(extent, scale,
       [&](const glm::dvec3& index)
       { return index * factor + (sheet(index) < 0.0 ? -apart : apart); });
     CutAlong(cut, sheet);
     const UsualArrays usual(cut.GetNumberOfVoxels());
     const Deformed deformed = LoadAndRun(cut, usual.Get());
-    // Distances are floats: no sample is nearer to a plane than that but those on it.
+    // Distances are floats: only samples on a plane are nearer to it than this.
     constexpr double rounding = 1e-5;
     std::size_t voxel = 0;
     std::int64_t expected = 0;
@@ -223,7 +222,7 @@ TEST(SmoothCuts, NothingIsLostBetweenThePlanesOfAGap)
     }
     EXPECT_EQ(deformed.Report.NumberOfCoveredVoxels, expected);
     EXPECT_FALSE(deformed.Report.Overlapping);
-    // With tetrahedra switched off the tissue round the plane is missing.
+    // Without a smooth cut, switching tetrahedra off removes the tissue around the plane.
     DeformerCase off = cut;
     off.Active.assign(off.Crossed.size(), 31);
     for (std::size_t i = 0; i < off.Active.size(); ++i)
@@ -236,8 +235,8 @@ TEST(SmoothCuts, NothingIsLostBetweenThePlanesOfAGap)
   }
 }
 
-// A cut that is not opened, by affine motions: coverage is that without a cut, and values are the
-// same but for the rounding of an interpolation, near the sheet; elsewhere bit for bit.
+// A closed cut under affine maps. Coverage does not change. Values near the sheet change by
+// rounding errors of the interpolation, and other values are equal bit for bit.
 TEST(SmoothCuts, AffineMotionsLeaveTheCutClosed)
 {
   std::mt19937 random(21);
@@ -265,10 +264,10 @@ TEST(SmoothCuts, AffineMotionsLeaveTheCutClosed)
         for (int x = cut.Output[0]; x <= cut.Output[1]; ++x, ++voxel)
         {
           const double distance = sheet(inverse * (glm::dvec3(x, y, z) - shift));
-          // The vertices of a crossed cell are within (1, 0.2, 0.4) . (1, 1, 1) of the sheet, and
-          // so far again reach the cells with one of these, whose values are added up in double
-          // instead of single precision: of at most 1000, by eight weights of at most 1. Samples on
-          // the surface of the cells beside those are decided in the same way.
+          // The vertices of a crossed cell are within (1, 0.2, 0.4) . (1, 1, 1) = 1.6 of the sheet.
+          // Cells that share a vertex with a crossed cell are within another 1.6: they add eight
+          // values of at most 1000, with weights of at most 1, in double instead of single
+          // precision. The same holds for samples on the faces of the next cells.
           const bool near = std::abs(distance) < 3 * 1.6 + 0.1;
           if (near)
           {
@@ -284,8 +283,8 @@ TEST(SmoothCuts, AffineMotionsLeaveTheCutClosed)
   }
 }
 
-// Motions that bend the volume, with cuts through all of it and some that end inside: no hole, no
-// double.
+// Deformations that bend the volume, with cuts through all of it and cuts that end inside. There
+// must be no holes and no overlaps.
 TEST(SmoothCuts, SmoothMotionsLeaveTheCutClosed)
 {
   const Extent extent{ { 0, 24, 0, 16, 0, 12 } };
@@ -294,8 +293,7 @@ TEST(SmoothCuts, SmoothMotionsLeaveTheCutClosed)
     SCOPED_TRACE(seed);
     const auto sheet = [](const glm::dvec3& i)
     { return i.x - 11.3 + 0.2 * i.y - 0.03 * i.z * i.z; };
-    // Second derivatives of less than 1/4 per voxel: what continues a displacement errs by less
-    // than that.
+    // The second derivatives are less than 1/4 per voxel: extrapolated displacements err by less.
     const double bend = 0.02 * (1 + seed % 3);
     DeformerCase cut = MakeCase(extent, NoScale,
       [&](const glm::dvec3& i) {
@@ -306,7 +304,8 @@ TEST(SmoothCuts, SmoothMotionsLeaveTheCutClosed)
       [seed](const glm::dvec3& cell) { return seed < 3 || (cell.y < 9 && cell.z > 3); });
     const UsualArrays usual(cut.GetNumberOfVoxels());
     const Pair both = RunBoth(cut, usual.Get(), GetSomeRoute(seed));
-    // One kernel interpolates both alike; by lanes cells away from the sheet have single precision.
+    // The kernel by cells interpolates both alike. By lanes, cells away from the sheet are
+    // interpolated in single precision.
     ExpectSame(*both.Cut.ByCell, *both.Whole.ByCell);
     EXPECT_EQ(both.Cut.Coverage, both.Whole.Coverage);
     EXPECT_FALSE(both.Cut.Report.Overlapping);
@@ -318,14 +317,14 @@ TEST(SmoothCuts, SmoothMotionsLeaveTheCutClosed)
   }
 }
 
-// A cut that ends inside is pulled open: there is a gap, no hole but that, and nothing is torn at
-// its end.
+// A cut that ends inside the volume is opened. The gap is the only hole, and the tissue at the end
+// of the cut is not torn.
 TEST(SmoothCuts, NothingTearsAtTheEndOfACut)
 {
   const Extent extent{ { 0, 20, 0, 20, 0, 6 } };
   const auto sheet = [](const glm::dvec3& i) { return i.x - 10.3; };
   const auto isCut = [](const glm::dvec3& cell) { return cell.y < 10; };
-  // Opens towards y = 0, from where the cut ends.
+  // The cut opens towards y = 0, from its end.
   const Deformation open = [&](const glm::dvec3& i)
   {
     const double width = std::max(0.0, 10.0 - i.y) * 0.4;
@@ -348,8 +347,8 @@ TEST(SmoothCuts, NothingTearsAtTheEndOfACut)
         const bool inVolume =
           y >= 0 && y <= 20 && z >= 0 && z <= 6 && x >= -width && x <= 20 + width;
         const bool inGap = x >= 10.3 - width && x < 10.3 + width;
-        // Round the end, where vertices are joined, tissue stretches over the gap of up to two
-        // cells.
+        // Around the end of the cut vertices are joined: tissue stretches over the gap, of up to
+        // two cells.
         if (!inVolume || !inGap)
         {
           ASSERT_EQ(deformed.Coverage[voxel] != 0, inVolume) << x << " " << y << " " << z;
