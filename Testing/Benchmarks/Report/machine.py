@@ -18,7 +18,8 @@ def describe_processors():
             elif key.strip() == "flags":
                 flags = value.split()
     width = next((words for flag, words in (
-        ("avx512f", "AVX-512, 16 floats"), ("avx2", "AVX2, 8 floats"), ("avx", "AVX, 8 floats"))
+        ("avx512f", "AVX-512, vectors of 16 floats"), ("avx2", "AVX2, vectors of 8 floats"),
+        ("avx", "AVX, vectors of 8 floats"))
         if flag in flags), "vectors of 4 floats")
     return f"{model}, {os.cpu_count()} processors, {width}"
 
