@@ -509,7 +509,7 @@ private:
   void FillTables()
   {
     const auto count = static_cast<std::uint32_t>(this->Dynamic.size());
-    // A hash table with one bucket: a search is linear, but there are few.
+    // A hash table with one bucket: a search is linear, but there are few symbols.
     Bytes hash;
     Append<std::uint32_t>(hash, 1);
     Append<std::uint32_t>(hash, count);
