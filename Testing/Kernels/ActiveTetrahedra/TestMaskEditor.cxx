@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Masks that are edited, undone and redone, against copies of whole masks.
+// Masks after edits, undo and redo, compared with copies of whole masks.
 #include "CuttingReference.h"
 #include "Error.h"
 #include "MaskEditor.h"
@@ -42,7 +42,7 @@ TetrahedronSet MakeSet(std::mt19937& random, const CellBricks& bricks)
   return set;
 }
 
-// The mask that edits leave, from scratch.
+// Computes the mask after edits from the original mask.
 reference::Mask Apply(const reference::Mask& base, const std::vector<Edit>& edits)
 {
   reference::Mask mask = base;
@@ -56,7 +56,7 @@ reference::Mask Apply(const reference::Mask& base, const std::vector<Edit>& edit
   return mask;
 }
 
-// Changes some ranges of a mask, and tells which.
+// Changes some ranges of a mask, and returns these ranges.
 PointRanges ChangeSome(std::mt19937& random, reference::Mask& mask)
 {
   PointRanges ranges(random() % 4);
@@ -72,7 +72,7 @@ PointRanges ChangeSome(std::mt19937& random, reference::Mask& mask)
   return ranges;
 }
 
-// The bricks in which two masks are not the same.
+// The bricks in which two masks differ.
 std::vector<std::size_t> FindDifferent(
   const CellBricks& bricks, const reference::Mask& a, const reference::Mask& b)
 {
@@ -116,14 +116,14 @@ TEST(MaskEditor, MisuseIsAnError)
   editor.Reset();
   EXPECT_EQ(editor.GetMask(), reference::Mask(8 * 8 * 9, 31));
   EXPECT_EQ(editor.GetNumberOfSwitchedOffTetrahedra(), 0);
-  // A set without tetrahedra is an edit as well.
+  // A set without tetrahedra is a valid edit.
   editor.Add({});
   EXPECT_TRUE(editor.Undo());
   EXPECT_TRUE(editor.Redo());
 }
 
-// As many updates of a tool: the last one looks at no more than the first one, and all together do
-// what one edit does.
+// 10,000 updates of one tool. The last update handles no more bricks than the first one, and all
+// updates together have the effect of a single edit.
 TEST(MaskEditor, WorkDoesNotGrowWithTheNumberOfEdits)
 {
   const Extent vertices{ { 0, 16, 0, 8, 0, 8 } };
@@ -154,7 +154,7 @@ TEST(MaskEditor, WorkDoesNotGrowWithTheNumberOfEdits)
   }
   other.Add(std::move(all));
   EXPECT_EQ(editor.GetNumberOfEdits(), 10000U);
-  // Edges that are crossed many times switch tetrahedra off besides.
+  // Edges that several edits cross switch off additional tetrahedra.
   for (std::size_t cell = 0; cell < other.GetMask().size(); ++cell)
   {
     ASSERT_EQ(editor.GetMask()[cell],
@@ -180,7 +180,7 @@ TEST(MaskEditor, HistoriesEqualTheReference)
     {
       const unsigned int choice = random() % 18;
       const reference::Mask before = base;
-      std::vector<std::size_t> changed; // that the step has asked for itself
+      std::vector<std::size_t> changed; // requested for this step only
       if (choice < 5)
       {
         TetrahedronSet set = MakeSet(random, editor.GetBricks());
@@ -246,7 +246,7 @@ TEST(MaskEditor, HistoriesEqualTheReference)
         editor.GetNumberOfSwitchedOffTetrahedra(), CountActive(base) - CountActive(expected));
       ASSERT_EQ(editor.GetNumberOfEdits(), edits.size());
       ASSERT_EQ(editor.GetNumberOfUndoneEdits(), undone.size());
-      // What changes lies in the bricks that are told.
+      // All changes lie in the bricks that the editor reports.
       const std::vector<std::size_t> others = editor.TakeChangedBricks();
       changed.insert(changed.end(), others.begin(), others.end());
       for (const std::size_t brick : changed)
@@ -268,7 +268,7 @@ TEST(MaskEditor, HistoriesEqualTheReference)
       ASSERT_EQ(copy, expected);
       ASSERT_TRUE(editor.TakeChangedBricks().empty());
     }
-    // Back to the start, bit for bit.
+    // Undo all edits: the original mask is restored bit for bit.
     while (editor.Undo())
     {
     }
