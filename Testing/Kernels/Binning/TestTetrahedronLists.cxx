@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The lists of the tetrahedra in each tile against those that the host makes, tile by tile: misuse,
-// limits, and that nothing depends on work-groups. With a size of the work-groups processors, too,
-// make them as other devices do.
+// The lists of the tetrahedra in each tile, compared with lists that the host makes tile by tile.
+// Tests misuse, limits, and that results do not depend on the size of work-groups. With a given
+// size of work-groups, CPUs make the lists as other devices do.
 #include "Error.h"
 #include "Tetrahedron.h"
 #include "TetrahedronLists.h"
@@ -23,13 +23,13 @@ namespace
 
 constexpr int TileSize[3] = { 32, 8, 8 };
 
-// 0: as the device does it.
+// 0: chosen for the device.
 constexpr std::size_t GroupSizes[] = { 0, 1, 2, 7, 64, 256, 1000 };
 
 using Lists = std::vector<std::vector<int>>;
 using Position = std::array<cl_int, 4>; // in 1/256 voxel
 
-// A deformed mesh, and an output. Tiles are aligned to multiples of their size.
+// A deformed mesh and an output. Tiles are aligned to multiples of their size.
 struct ListCase
 {
   ListCase(const std::array<int, 3>& first, const std::array<int, 3>& size)
@@ -54,7 +54,7 @@ struct ListCase
     return static_cast<std::size_t>(CountTiles(this->Parameters));
   }
 
-  // With four nodes of its own, in 1/256 voxel.
+  // Adds a tetrahedron with its own four nodes, in 1/256 voxel.
   void Add(const std::array<Position, 4>& nodes)
   {
     const int first = static_cast<int>(this->Positions.size());
@@ -62,8 +62,8 @@ struct ListCase
     this->Positions.insert(this->Positions.end(), nodes.begin(), nodes.end());
   }
 
-  // Anywhere in and round the output, up to so many voxels wide; half of them are inverted, and
-  // some flat.
+  // Adds tetrahedra anywhere in and around the output, up to `width` voxels wide. About half of
+  // them are inverted, and some are flat.
   void AddRandom(int number, int width, unsigned int seed)
   {
     std::mt19937 random(seed);
@@ -97,7 +97,7 @@ struct ListCase
     }
   }
 
-  // Over the whole output and more.
+  // Adds a tetrahedron that contains the whole output.
   void AddLarge()
   {
     std::array<Position, 4> nodes{};
@@ -120,7 +120,7 @@ struct ListCase
 
 __extension__ typedef __int128 Wide;
 
-// Six times the volume, its sign.
+// The sign of the signed volume.
 int GetSign(const ListCase& c, const Tetrahedron& tetrahedron)
 {
   Wide m[3][3];
@@ -138,7 +138,7 @@ int GetSign(const ListCase& c, const Tetrahedron& tetrahedron)
   return (volume > 0) - (volume < 0);
 }
 
-// Whether the box round a tetrahedron holds voxels of the output in a tile of an axis.
+// Whether the box around a tetrahedron contains output voxels of a tile, on one axis.
 bool Meets(const ListCase& c, const Tetrahedron& tetrahedron, std::size_t axis, int tile)
 {
   const RasterParameters& p = c.Parameters;
@@ -206,7 +206,7 @@ Lists MakeReference(const ListCase& c, std::int64_t& inverted)
 class TetrahedronListing : public testing::Test
 {
 protected:
-  // Makes and reads them. Buffers are those of the last ones.
+  // Makes the lists and reads them. Reuses the buffers of the previous call.
   Lists Make(const ListCase& c, std::int64_t& inverted)
   {
     const cl::Buffer tetrahedra = this->Device.Send(
@@ -238,7 +238,7 @@ protected:
     return lists;
   }
 
-  // Returns how long all lists are together.
+  // Returns the total length of all lists.
   std::size_t ExpectEqualsReference(const ListCase& c)
   {
     std::int64_t expectedInverted = 0;
@@ -270,7 +270,7 @@ protected:
 
   WorkDevice Device;
   TetrahedronLists Made;
-  std::int64_t Overstretched = 0; // of those that were made last
+  std::int64_t Overstretched = 0; // of the last call of Make
 };
 
 } // namespace
@@ -291,7 +291,7 @@ TEST_F(TetrahedronListing, MisuseLeavesThemUsable)
     EXPECT_TRUE(this->Make(stretched, inverted) == this->Make(good, inverted));
     this->Make(stretched, inverted);
     EXPECT_EQ(this->Overstretched, 2);
-    this->Device.SetAllocationLimit(1500); // less than a box a tetrahedron
+    this->Device.SetAllocationLimit(1500); // less than one box per tetrahedron
     EXPECT_NE(this->GetError(good).find("in one allocation"), std::string::npos);
     this->Device.SetAllocationLimit(0);
     EXPECT_EQ(this->GetError(good), "");
@@ -299,7 +299,7 @@ TEST_F(TetrahedronListing, MisuseLeavesThemUsable)
   this->ExpectEqualsReference(good);
 }
 
-// Numbers of 32 bits do not suffice: 80 tetrahedra in 61 million tiles each.
+// Overflow of 32-bit numbers: 80 tetrahedra in 61 million tiles each.
 TEST_F(TetrahedronListing, ListsThatAreTooLong)
 {
   ListCase large({ { -2500, -2500, -2500 } }, { { 4990, 4990, 4990 } });
@@ -326,8 +326,8 @@ TEST_F(TetrahedronListing, OutputsFarFromIndexZero)
   }
 }
 
-// Numbers of tiles round the powers of two that bits of keys are counted by, up to more than 16
-// bits.
+// Numbers of tiles near powers of two, which determine the number of bits of the sort keys, up to
+// more than 16 bits.
 TEST_F(TetrahedronListing, AnyNumberOfTiles)
 {
   for (const int tiles : { 1, 2, 3, 64, 65, 127, 128, 129, 4097, 32767, 32768, 32769, 70001 })
@@ -359,7 +359,7 @@ TEST_F(TetrahedronListing, NothingToList)
   outside.Parameters.OutputFirst[0] = 32000;
   outside.Parameters.TileFirst[0] = 1000;
   EXPECT_EQ(this->ExpectEqualsReference(outside), 0U);
-  // One in the middle of those that have no tiles, and at either end.
+  // A single tetrahedron with tiles among tetrahedra without tiles: in the middle and at both ends.
   for (const std::size_t place : { 0, 150, 299 })
   {
     ListCase one = flat;
@@ -369,7 +369,7 @@ TEST_F(TetrahedronListing, NothingToList)
   }
 }
 
-// Some tetrahedra over all tiles, as wide as they may be, among small ones.
+// Some tetrahedra of the largest possible width, which meet all tiles, among small ones.
 TEST_F(TetrahedronListing, LargeTetrahedra)
 {
   ListCase large({ { -1000, 0, 0 } }, { { 4995, 300, 100 } });
@@ -380,7 +380,8 @@ TEST_F(TetrahedronListing, LargeTetrahedra)
   std::swap(large.Tetrahedra.back()[2], large.Tetrahedra.back()[3]); // inverted
   large.AddLarge();
   EXPECT_GT(this->ExpectEqualsReference(large), 3 * large.GetNumberOfTiles());
-  // As many tiles on each axis as a tetrahedron can have there: the bits of its box hold them.
+  // As many tiles on each axis as a tetrahedron can have there: the box of the tetrahedron must
+  // have enough bits for them.
   for (std::size_t axis = 0; axis < 3; ++axis)
   {
     std::array<int, 3> size{ { 3, 3, 3 } };
@@ -391,7 +392,7 @@ TEST_F(TetrahedronListing, LargeTetrahedra)
   }
 }
 
-// Tens of thousands in one tile, next to empty ones.
+// Tens of thousands of tetrahedra in one tile, next to empty tiles.
 TEST_F(TetrahedronListing, LongLists)
 {
   ListCase one({ { 0, 0, 0 } }, { { 32, 8, 8 } });
@@ -402,7 +403,8 @@ TEST_F(TetrahedronListing, LongLists)
   EXPECT_GT(this->ExpectEqualsReference(one), 20000U);
 }
 
-// So many tetrahedra that several work-groups have their part in all of it, again and again.
+// Enough tetrahedra for several work-groups in each phase. Results must be the same in each
+// repetition.
 TEST_F(TetrahedronListing, EqualFromRunToRun)
 {
   ListCase many({ { 0, 0, 0 } }, { { 500, 300, 100 } });
@@ -416,7 +418,7 @@ TEST_F(TetrahedronListing, EqualFromRunToRun)
   }
 }
 
-// Small enough for an interpreter of kernels.
+// Small enough for Oclgrind, an interpreter of kernels.
 TEST_F(TetrahedronListing, Tiny)
 {
   ListCase tiny({ { -5, 3, 0 } }, { { 70, 12, 70 } });
