@@ -14,7 +14,7 @@ namespace
 constexpr std::int64_t Units = 65536;
 constexpr std::int64_t Far = std::int64_t{ 1 } << 50;
 
-// The tetrahedra of a cell as the literature numbers its vertices, 1 to 8.
+// The tetrahedra of a cell, with its vertices numbered 1 to 8 as in the literature.
 constexpr int Tetrahedra[5][4] = { { 1, 3, 4, 7 }, { 7, 8, 4, 6 }, { 4, 2, 1, 6 }, { 1, 5, 7, 6 },
   { 7, 4, 6, 1 } };
 constexpr int Offsets[8][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 0, 1 }, { 1, 0, 1 }, { 0, 1, 0 },
@@ -114,7 +114,7 @@ std::array<std::int64_t, 2> ChainMailReference::GetLimits(
   const ChainMailMaterial& b = this->Table[this->Materials[link.Second]];
   if (link.Axis == component)
   {
-    // The mean, rounded to the stricter side.
+    // The mean, rounded to the stricter limit.
     return { { (ToUnits(a.MaximumStretch - 1.0) + ToUnits(b.MaximumStretch - 1.0)) / 2,
       (ToUnits(1.0 - a.MinimumStretch) + ToUnits(1.0 - b.MinimumStretch)) / 2 } };
   }
@@ -123,7 +123,8 @@ std::array<std::int64_t, 2> ChainMailReference::GetLimits(
   return { { shear, shear } };
 }
 
-// How much more each voxel may have than those at the begin (upwards), or less.
+// Returns the sums of limits along the shortest paths: how much greater (upwards) or smaller the
+// displacement of each voxel may be than that of the voxels `from`.
 std::vector<std::int64_t> ChainMailReference::FindWays(
   const std::vector<std::size_t>& from, int component, bool upwards) const
 {
@@ -198,7 +199,8 @@ std::vector<ChainMailHandleReport> ChainMailReference::Step(
     std::vector<std::size_t> held;
     for (const std::size_t voxel : this->Select(handles[h]))
     {
-      // What a handle would have held is not there for others, even if it is released.
+      // Voxels of an earlier handle are not available to later handles, even if the earlier handle
+      // is released.
       if (this->Elements[voxel] && !this->Pinned[voxel] && !isTaken[voxel])
       {
         held.push_back(voxel);
@@ -289,8 +291,8 @@ std::vector<std::array<double, 3>> ChainMailReference::Relax(
   {
     std::copy(this->Displacements[i].begin(), this->Displacements[i].end(), x[i].begin());
   }
-  // What a voxel has at the other end of a link, for each component: how much more the voxel may
-  // have than that, and how much less.
+  // The other end of a link of a voxel. More, Less: for each component, how much greater and
+  // smaller the displacement of the voxel may be than that of the other end.
   struct End
   {
     std::size_t There;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// No test: what ordinary schemes of ChainMail make of two cubes of 48 x 48 x 48 voxels, and what
-// ChainMailModel does. Documents/chainmail.md has the table that it prints.
+// No test. Compares ordinary schemes of ChainMail with ChainMailModel on two cubes of 48 x 48 x 48
+// voxels. Prints the table of Documents/chainmail.md.
 #include "ChainMailModel.h"
 #include "ChainMailReference.h"
 
@@ -19,7 +19,8 @@ constexpr Extent Cube{ { 0, Size - 1, 0, Size - 1, 0, Size - 1 } };
 constexpr double Drag[3] = { 6, 2, 0 };
 constexpr std::size_t MostPops = 20000000;
 
-// To another voxel: how much more it may have, and how much less.
+// A link to another voxel. More, Less: how much greater and smaller the displacement of that voxel
+// may be.
 struct Way
 {
   std::size_t To;
@@ -52,7 +53,8 @@ public:
     std::copy(Drag, Drag + 3, &this->Displacements[3 * this->Handle]);
   }
 
-  // Puts a voxel onto the limits of a way to it. Returns whether that moves it.
+  // Moves the voxel at the end of a link to the limits of the link. Returns whether this changes
+  // its displacement.
   bool Follow(std::size_t from, const Way& way)
   {
     bool moves = false;
@@ -79,8 +81,8 @@ public:
   std::size_t Handle;
 };
 
-// First in, first out: who has moved is the sponsor of its neighbours, and these are compared with
-// nobody else.
+// A first-in, first-out queue. A voxel that has moved is the sponsor of its neighbors: they are
+// compared with no other voxel.
 void RunQueue(const ChainMailReference& reference, bool onlyOnce)
 {
   Net net(reference);
@@ -123,7 +125,7 @@ void RunQueue(const ChainMailReference& reference, bool onlyOnce)
     queue.empty() ? "" : ", not empty", net.GetViolation());
 }
 
-// All voxels at once are put into the limits of their neighbours that have moved.
+// All voxels at once are moved into the limits of their neighbors that have moved.
 void RunClamping(const ChainMailReference& reference, int sweeps)
 {
   Net net(reference);

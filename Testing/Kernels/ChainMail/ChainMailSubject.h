@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A ChainMailModel as the tests compare it with the reference, and random tissue and handles.
+// A ChainMailModel for comparisons with the reference; random tissue and random handles.
 #ifndef ChainMailSubject_h
 #define ChainMailSubject_h
 
@@ -17,7 +17,8 @@ namespace chainMailTesting
 
 using namespace deformvolume;
 
-// A model with its output, as a reference describes it. Displacements are in voxels, exactly.
+// A model with its output, set up like a reference. Displacements are in voxels, without rounding
+// errors.
 struct Subject
 {
   explicit Subject(const Extent& extent, const std::array<double, 3>& spacing = { { 1, 1, 1 } },
@@ -47,7 +48,7 @@ struct Subject
   {
     return static_cast<double>(this->Output[3 * voxel + component]) / this->Spacing[component];
   }
-  // Spacings are powers of two: division changes nothing but the exponent.
+  // Spacings are powers of two, so divisions by them are exact.
   void ExpectEqual(const ChainMailReference& reference) const
   {
     std::size_t different = 0;
@@ -95,7 +96,7 @@ inline void ExpectSame(const std::vector<ChainMailHandleReport>& found,
 inline void MakeRandom(ChainMailReference& reference, std::mt19937& random, bool withRigid = true)
 {
   reference.Table.assign(Tissues.begin(), Tissues.end() - (withRigid ? 0 : 1));
-  // Runs of one material, as in segmentations, and now and then another one.
+  // Runs of voxels of one material, as in segmentations, with single voxels of other materials.
   unsigned char material = 1;
   for (unsigned char& m : reference.Materials)
   {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ChainMail: misuse, closed forms, and a slow reference.
+// ChainMail: misuse, closed-form solutions, and comparisons with a slow reference.
 #include "ChainMailSubject.h"
 
 #include <algorithm>
@@ -55,7 +55,7 @@ TEST(ChainMail, MisuseIsAnError)
   request.PlasticityThreshold = -1.0;
   EXPECT_THROW(subject.Model.Step(request), Error);
   EXPECT_EQ(subject.Output, before);
-  // A drag that goes on is as one that was not interrupted.
+  // A drag that continues after an error equals a drag without one.
   Subject other(extent);
   other.Step({ good });
   const ChainMailHandle further = MakeHandle({ { 4, 4, 4 } }, { { -1, 3, 0 } });
@@ -80,7 +80,7 @@ TEST(ChainMail, ClosedFormOfAChain)
     for (std::size_t i = 0; i < 58; ++i)
     {
       const double n = static_cast<double>(i);
-      // Pulled away, links get longer by an eighth at most; pushed, shorter by a quarter.
+      // Pulled links get at most an eighth longer, pushed links at most a quarter shorter.
       const double expected =
         drag < 0 ? -std::max(0.0, 5.5 - n * 0.125) : std::max(0.0, 5.5 - n * 0.25);
       for (std::size_t row = 0; row < 4; ++row)
@@ -125,7 +125,7 @@ TEST(ChainMail, ClosedFormOfASoftCube)
   }
   EXPECT_EQ(report.NumberOfMovedVoxels, moved);
   EXPECT_EQ(report.LargestViolation, 0.0);
-  // Moved are those less than 12 links away, within blocks of eight.
+  // Voxels less than 12 links away have moved. Changes are reported as whole blocks of 8 voxels.
   EXPECT_EQ(report.ChangedExtent, (Extent{ { 8, 39, 8, 39, 8, 39 } }));
 }
 
@@ -161,7 +161,7 @@ TEST(ChainMail, SeparatedBodiesNeverInteract)
   std::mt19937 random(11);
   const Extent extent{ { 1, 24, 0, 18, 0, 17 } };
   ChainMailReference reference(extent, { { 1, 1, 1 } });
-  // All tetrahedra of the cells between two planes of voxels are switched off.
+  // Switch off all tetrahedra of the cells between two planes of voxels.
   std::size_t cell = 0;
   for (int k = 0; k < 17; ++k)
   {
@@ -189,7 +189,7 @@ TEST(ChainMail, SeparatedBodiesNeverInteract)
       for (int i = 0; i < 24; ++i, ++voxel)
       {
         const bool isMoved = subject.Get(voxel, 0) != 0.0;
-        // The cells with i + j = 19 are the last ones on this side.
+        // The cells with i + j = 19 are the last cells on this side.
         EXPECT_EQ(isMoved, i + j <= 20 || (i + j == 21 && j > 0)) << i << ' ' << j << ' ' << k;
         still += !isMoved;
       }
@@ -198,8 +198,8 @@ TEST(ChainMail, SeparatedBodiesNeverInteract)
   EXPECT_GT(still, 1000U);
 }
 
-// A rigid path that turns at each voxel, so that a sweep over a block follows it by a step only: it
-// takes more sweeps than a visit has.
+// A rigid path that turns at each voxel: a sweep over a block advances along it by one voxel only.
+// It takes more sweeps than a visit has.
 TEST(ChainMail, LongPathsWithinABlock)
 {
   const Extent extent{ { 0, 8, 0, 8, 0, 8 } };
@@ -230,7 +230,7 @@ TEST(ChainMail, LongPathsWithinABlock)
   {
     Subject subject(extent, { { 1, 1, 1 } }, workGroupSize);
     subject.Set(reference);
-    // What is not rigid gives way by half a voxel and more.
+    // Voxels that are not rigid yield by half a voxel or more, so only the path moves.
     EXPECT_EQ(subject.Step(handles).NumberOfMovedVoxels, static_cast<std::int64_t>(length));
     subject.ExpectEqual(reference);
   }
@@ -251,7 +251,7 @@ TEST(ChainMail, PinsStay)
   subject.Set(reference);
   const std::vector<ChainMailHandle> handles{ MakeHandle({ { 10, 4, 4 } }, { { 9, 1, -20 } }) };
   const ChainMailReport report = subject.Step(handles);
-  // Ten links to the nearest pin give way half a voxel each.
+  // The ten links to the nearest pinned voxel yield by half a voxel each.
   EXPECT_EQ(report.Handles.front().Reduction, (std::array<double, 3>{ { 4, 0, -15 } }));
   EXPECT_TRUE(report.Handles.front().IsHeld);
   EXPECT_EQ(subject.Get(reference.GetVoxel(10, 4, 4), 0), 5.0);
@@ -266,7 +266,8 @@ TEST(ChainMail, HandlesThatContradictEachOther)
   const Extent extent{ { 0, 29, 0, 8, 0, 8 } };
   ChainMailReference reference(extent, { { 1, 1, 1 } });
   Subject subject(extent);
-  // Six links apart, and 8 voxels apart in what they want: the second yields by 5.
+  // The handles are six links apart, and their displacements differ by 8 voxels: the second one is
+  // reduced by 5.
   const std::vector<ChainMailHandle> handles{ MakeHandle({ { 10, 4, 4 } }, { { 4, 0, 0 } }),
     MakeHandle({ { 16, 4, 4 } }, { { -4, 1, 0 } }) };
   const ChainMailReport report = subject.Step(handles);
@@ -274,7 +275,7 @@ TEST(ChainMail, HandlesThatContradictEachOther)
   EXPECT_EQ(report.Handles[1].Reduction, (std::array<double, 3>{ { -5, 0, 0 } }));
   ExpectSame(report.Handles, reference.Step(handles));
   subject.ExpectEqual(reference);
-  // Handles that move together do not hold each other back.
+  // Handles with the same displacement do not restrict each other.
   const std::vector<ChainMailHandle> together{ MakeHandle({ { 10, 4, 4 } }, { { 40, 0, 0 } }),
     MakeHandle({ { 16, 4, 4 } }, { { 40, 0, 0 } }) };
   ExpectSame(subject.Step(together).Handles, reference.Step(together));
@@ -282,7 +283,7 @@ TEST(ChainMail, HandlesThatContradictEachOther)
   EXPECT_EQ(subject.Get(reference.GetVoxel(16, 4, 4), 0), 40.0);
 }
 
-// Handles of voxels that others hold already take no time: the first one counts.
+// Handles whose voxels are all held by earlier handles take no time: the first handle has priority.
 TEST(ChainMail, ManyHandlesOnTheSameVoxels)
 {
   const Extent extent{ { 0, 29, 0, 8, 0, 8 } };
@@ -315,7 +316,7 @@ TEST(ChainMail, ImpossibleHandlesAreReleased)
     MakeHandle({ { 15, 2, 2 } }, { { 2, 0, 0 } }) };
   subject.Step(apart);
   reference.Step(apart);
-  // Both are pinned where they are; ten links between them are as long as they can be.
+  // Both ends are pinned, and the ten links between them have their largest length.
   reference.Pinned[reference.GetVoxel(5, 2, 2)] = 1;
   reference.Pinned[reference.GetVoxel(15, 2, 2)] = 1;
   subject.Model.SetPinned(reference.Pinned.data());
@@ -329,7 +330,7 @@ TEST(ChainMail, ImpossibleHandlesAreReleased)
   subject.ExpectEqual(reference);
 }
 
-// A model that goes back is as one that has never gone on.
+// After a snapshot is restored, a model behaves as if the later steps had not happened.
 TEST(ChainMail, SavedStatesAreRestored)
 {
   const Extent extent{ { -3, 30, 2, 21, 0, 18 } };
@@ -345,7 +346,7 @@ TEST(ChainMail, SavedStatesAreRestored)
   std::vector<std::vector<float>> outputs{ rest };
   for (int step = 0; step < 6; ++step)
   {
-    // At the ends of the volume in turn, so that not all blocks move in a step.
+    // Drag the two ends of the volume in turn, so that not all blocks move in a step.
     ChainMailHandle handle = MakeRandomHandle(extent, random, 1.5);
     handle.RestPosition[0] = step % 2 ? -3.0 : 30.0;
     subject.Step({ handle }, 3);
@@ -365,10 +366,10 @@ TEST(ChainMail, SavedStatesAreRestored)
     const ChainMailReport report = subject.Step({});
     EXPECT_EQ(report.NumberOfMovedVoxels, 0U);
     EXPECT_FALSE(report.WasReset);
-    EXPECT_LE(report.ChangedExtent[0], report.ChangedExtent[1]); // of going back
+    EXPECT_LE(report.ChangedExtent[0], report.ChangedExtent[1]); // the changes of Restore
     EXPECT_EQ(subject.Output, outputs[number]);
   }
-  // It goes on as from the first time.
+  // The next step gives the result of the first time.
   Subject fresh(extent);
   fresh.Set(reference);
   subject.Model.Restore(*atRest);
@@ -377,7 +378,7 @@ TEST(ChainMail, SavedStatesAreRestored)
   fresh.Step({ handle }, 4);
   EXPECT_EQ(subject.Output, fresh.Output);
 
-  // What has not changed is not copied.
+  // Unchanged blocks are shared with the last snapshot.
   const auto one = subject.Model.TakeSnapshot();
   const auto same = subject.Model.TakeSnapshot(one);
   EXPECT_EQ(one->Blocks, same->Blocks);
@@ -397,8 +398,7 @@ TEST(ChainMail, SavedStatesAreRestored)
   EXPECT_THROW(ChainMailModel().TakeSnapshot(), Error);
 }
 
-// Links that are cut free what they held. A state from then may violate them when they are there
-// again.
+// Cut links have no limits. A snapshot of that state may violate them after they are restored.
 TEST(ChainMail, SavedStatesThatViolateLinks)
 {
   const Extent extent{ { 0, 20, 0, 9, 0, 9 } };
@@ -417,7 +417,7 @@ TEST(ChainMail, SavedStatesThatViolateLinks)
   subject.Model.Restore(*apart);
   EXPECT_FALSE(subject.Step({}).WasReset);
   EXPECT_EQ(subject.Output, before);
-  // Back first, and then the links: all is put to rest. And the other way round.
+  // Restore the snapshot and then the links, or the links first: all displacements are set to 0.
   for (const bool linksFirst : { false, true })
   {
     subject.Model.SetActiveTetrahedra(cut.data());

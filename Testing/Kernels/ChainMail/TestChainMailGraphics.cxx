@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Copies of ChainMail from a device with memory of its own that fail.
+// ChainMail: failing copies from a device with its own memory.
 #include "ChainMailModel.h"
 #include "DeviceNeeds.h"
 #include "FakeDriver.h"
@@ -26,7 +26,7 @@ TEST(ChainMailFaults, CopiesThatFail)
   FakeDriver::Get().ReadError = -5;
   EXPECT_THROW(model.Step(request), Error);
   FakeDriver::Get().ReadError = 0;
-  // What is on the device may be half done: it starts anew.
+  // The state of the device may be incomplete, so the volume must be set again.
   EXPECT_THROW(model.Step(request), Error);
   EXPECT_EQ(model.GetDeviceMemory(), 0U);
   model.SetVoxelGrid(extent);

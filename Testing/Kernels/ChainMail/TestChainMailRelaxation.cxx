@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ChainMail: relaxation, steps that are aborted, and what is written where.
+// ChainMail: relaxation, aborted steps, and the voxels of the output that are written.
 #include "ChainMailModel.h"
 #include "ChainMailReference.h"
 #include "ChainMailSubject.h"
@@ -52,8 +52,8 @@ struct Subject
   ChainMailRequest Request;
 };
 
-// The sum of squares by which links differ from their lengths at rest; each weighted by how
-// little it gives way.
+// The sum of the squares of the differences between links and their lengths at rest. Each square is
+// weighted by the stiffness of the link.
 double GetEnergy(const ChainMailReference& reference, const std::vector<float>& displacements)
 {
   double energy = 0.0;
@@ -131,7 +131,7 @@ TEST_P(Relaxation, LowersTheEnergy)
     subject.Request.Handles = { GetDrag() };
     const ChainMailReport report = subject.Step(sweeps);
     EXPECT_EQ(report.LargestViolation, 0.0);
-    // Floats have room for 24 bits, and displacements under 8 voxels need 19.
+    // Floats have 24 bits, and displacements under 8 voxels need 19.
     EXPECT_EQ(reference.GetViolation(subject.Output), 0.0);
     EXPECT_EQ(subject.Output[3 * reference.GetVoxel(24, 24, 24)], 6.0F);
     const double energy = GetEnergy(reference, subject.Output);
@@ -143,7 +143,8 @@ TEST_P(Relaxation, LowersTheEnergy)
   }
 }
 
-// The figures of Documents/chainmail.md. What the drag alone does is a closed form there.
+// The values in Documents/chainmail.md. The displacements of the drag alone have a closed form
+// there.
 TEST(ChainMailRelaxation, EnergyInTheDocumentation)
 {
   ChainMailReference reference(Cube, { { 1, 1, 1 } });
@@ -171,15 +172,15 @@ TEST(ChainMailRelaxation, EnergyInTheDocumentation)
     Subject subject(Cube);
     subject.Request.Handles = { GetDrag() };
     subject.Step(sweeps);
-    // They have two decimals. The reference relaxes the whole cube, not only the blocks that the
-    // drag touched.
+    // The values have two decimals. The reference relaxes the whole cube, not only the blocks that
+    // the drag touched.
     const double relaxed = GetEnergy(reference, ToVoxels(reference.Relax(sweeps, { GetDrag() })));
     EXPECT_NEAR(relaxed / before, expected, 0.005);
     EXPECT_NEAR(GetEnergy(reference, subject.Output) / before, expected, 0.005);
   }
 }
 
-// Where the drag touches all blocks, so that all of them relax.
+// The drag touches all blocks, so that all voxels relax.
 TEST(ChainMailRelaxation, EqualsTheReference)
 {
   std::mt19937 random(23);
@@ -203,10 +204,10 @@ TEST(ChainMailRelaxation, EqualsTheReference)
       subject.Set(reference);
       EXPECT_EQ(subject.Step(handles, sweeps).LargestViolation, 0.0);
       const std::vector<std::array<double, 3>> expected = reference.Relax(sweeps, handles);
-      // A move is rounded to a unit, and found in single precision: the sum of pulls, the
-      // reciprocal of the weights and their product, of at most 16 voxels, are off by 2^-24 each.
-      // Means and limits pass errors on without making them larger, and the second turn of a sweep
-      // takes those of the first.
+      // A move is rounded to a unit, and computed in single precision: the sum of pulls, the
+      // reciprocal of the weights and their product, of at most 16 voxels, have an error of 2^-24
+      // each. Means and limits do not amplify errors. The second half of a sweep adds the errors of
+      // the first half.
       const double bound = 2 * sweeps * (0.5 + 3 * std::ldexp(16.0 * 65536.0, -24) * 1.001);
       double largest = 0.0;
       for (std::size_t i = 0; i < expected.size(); ++i)
@@ -287,8 +288,8 @@ TEST(ChainMailRelaxation, ReturnsToRestWherePinned)
       EXPECT_TRUE(!pinned[i] || subject.Output[3 * i] == 0.0F);
     }
   }
-  // A voxel stays where the mean of its neighbours is within half a unit. Between two planes that
-  // are 15 voxels apart, a displacement that is so bent has at most 6 * 0.5 * 15 * 15 / 8 units.
+  // A voxel does not move if the mean of its neighbors is within half a unit. Between two planes
+  // that are 15 voxels apart, this allows displacements of at most 6 * 0.5 * 15 * 15 / 8 units.
   EXPECT_LE(subject.GetLargest(), 6.0 * 0.5 * 15.0 * 15.0 / 8.0 / 65536.0);
 }
 
@@ -334,7 +335,7 @@ TEST(ChainMailSteps, OnlyChangedVoxelsAreWritten)
   constexpr float mark = 77.0F;
   for (int step = 0; step < 20; ++step)
   {
-    // What is outside the changes stays as it is, even if it was changed by somebody.
+    // A step does not write outside the reported changes, even if these values were overwritten.
     ChainMailHandle handle;
     handle.RestPosition = { { 2.0 + random() % 69, -9.0 + random() % 40, 0.0 + random() % 21 } };
     handle.Displacement = { { -2.0 + random() % 5, 1.0, -1.0 } };
@@ -368,7 +369,7 @@ TEST(ChainMailSteps, OnlyChangedVoxelsAreWritten)
       }
     }
   }
-  // Other memory, and a reset.
+  // Set other memory as the output, then reset.
   std::vector<float> other(subject.Output.size(), mark);
   subject.Model.SetOutput(other.data());
   EXPECT_EQ(other, subject.Output);
@@ -384,7 +385,7 @@ TEST(ChainMailSteps, OnlyChangedVoxelsAreWritten)
 
 TEST(ChainMailSteps, OutputIsInWorldCoordinates)
 {
-  // A rotation about z, after which x runs along -z.
+  // A rotation about z: the x axis of the volume points along +y of the world, its y axis along -x.
   const std::array<double, 9> indexToWorld{ { 0, -2, 0, 0.5, 0, 0, 0, 0, 4 } };
   ChainMailModel model;
   const Extent extent{ { 0, 16, 0, 16, 0, 16 } };
@@ -394,7 +395,7 @@ TEST(ChainMailSteps, OutputIsInWorldCoordinates)
   ChainMailHandle handle;
   handle.RestPosition = { { 8, 8, 8 } };
   handle.Displacement = { { 1, 2, -1 } };
-  // World distances: 1.25 reaches two voxels along x, and none on other axes.
+  // A radius of 1.25 world units includes two voxels along x, and no neighbors on the other axes.
   handle.Radius = 1.25;
   ChainMailRequest request;
   request.Handles = { handle };
@@ -404,8 +405,8 @@ TEST(ChainMailSteps, OutputIsInWorldCoordinates)
   EXPECT_EQ(output[voxel], -4.0F);
   EXPECT_EQ(output[voxel + 1], 0.5F);
   EXPECT_EQ(output[voxel + 2], -4.0F);
-  // Four links along x, of length 0.5 in the world, give way a quarter each, or are sheared so
-  // much.
+  // The voxel that is four voxels away on x is two links away from the held voxels. Each of these
+  // links has the length 0.5 in the world, and yields by 0.25.
   const std::size_t beside = voxel + 3 * 4;
   EXPECT_EQ(output[beside], -4.0F + 2 * 0.5F * 0.5F);
   EXPECT_EQ(output[beside + 1], 0.5F - 2 * 0.25F);

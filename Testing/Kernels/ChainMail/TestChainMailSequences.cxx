@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ChainMail: random drags, releases, cuts, pins and resets, each step as the slow reference does
-// it.
+// ChainMail: random drags, releases, cuts, pins and resets. Each step is compared with the slow
+// reference.
 #include "ChainMailSubject.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ using namespace chainMailTesting;
 namespace
 {
 
-// Drags, releases, cuts, pins and resets of small volumes.
+// Random drags, releases, cuts, pins and resets of a small volume.
 void RunSequence(unsigned int seed, const Extent& extent, int steps)
 {
   SCOPED_TRACE("seed " + std::to_string(seed));
@@ -27,7 +27,7 @@ void RunSequence(unsigned int seed, const Extent& extent, int steps)
     SCOPED_TRACE(step);
     switch (random() % 8)
     {
-      case 0: // cuts, and some of it grows together again
+      case 0: // cuts; some tetrahedra become active again
         for (int i = 0; i < 20; ++i)
         {
           reference.Active[random() % reference.Active.size()] =
@@ -100,7 +100,7 @@ TEST(ChainMailSequences, Random)
   }
 }
 
-// So small that Oclgrind can follow.
+// Small enough for Oclgrind, an interpreter of kernels.
 TEST(ChainMailSequences, Tiny)
 {
   RunSequence(3, { { 0, 9, 0, 8, 0, 4 } }, 10);
