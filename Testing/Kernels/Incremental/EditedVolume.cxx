@@ -255,7 +255,7 @@ std::vector<TetrahedronChange> EditedVolume::Split(std::mt19937& random, int rea
   const int first = static_cast<int>(random() % this->Tetrahedra.size());
   const int end = std::min(
     first + 1 + static_cast<int>(random()) % reach, static_cast<int>(this->Tetrahedra.size()));
-  std::uniform_real_distribution<float> move(-0.2F, 0.2F); // so that hardly anything folds
+  std::uniform_real_distribution<float> move(-0.2F, 0.2F); // small: few tetrahedra are inverted
   std::map<std::int32_t, std::int32_t> twins;
   std::vector<TetrahedronChange> changes;
   for (int t = first; t < end; ++t)
@@ -315,7 +315,8 @@ void EditedVolume::CutAlong(double place, double slope, int end)
     {
       for (int x = 0; x + 1 < size[0]; ++x)
       {
-        // Those of which one side has no vertex are not divided, and may be among them.
+        // Tetrahedra with all vertices on one side are not divided. Some of these cells may have
+        // such tetrahedra.
         const bool isNear = std::abs(distance(x, y, z)) < 2.0;
         this->Crossed.push_back(isNear && y < end ? 31 : 0);
       }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A volume in a grid of nodes that are moved bit by bit, and two deformers of it, of which one does
-// all anew each time and one updates what it made last.
+// A volume in a grid of nodes that tests move step by step, and two deformers of it. One deformer
+// resamples the whole output each time. The other one updates its last output.
 #ifndef EditedVolume_h
 #define EditedVolume_h
 
@@ -18,9 +18,9 @@
 #include <tuple>
 #include <vector>
 
-/// A volume of several bricks, and a grid of nodes round it. Each cell of the grid is split into
-/// six tetrahedra, one for each order of the axes: along a way from its lowest to its highest
-/// corner.
+/// A volume of several bricks, and a grid of nodes around it. Each cell of the grid is divided into
+/// six tetrahedra. Each of them follows one path along edges from the lowest to the highest corner
+/// of the cell, with its own order of the axes.
 struct EditedVolume
 {
   static constexpr int Step = 8; // voxels between nodes
@@ -36,7 +36,7 @@ struct EditedVolume
   std::vector<unsigned char> Blanked;
   std::vector<unsigned char> Active;
   std::vector<float> Distances;
-  std::vector<unsigned char> Crossed; // of a smooth cut
+  std::vector<unsigned char> Crossed; // by a smooth cut
   std::vector<float> CutDistances;
   deformvolume::Extent Output;
   double Background = 3.0;
@@ -47,7 +47,7 @@ struct EditedVolume
   explicit EditedVolume(
     const deformvolume::Extent& extent = { { -5, 140, 0, 50, 3, 40 } }, bool hasCorner = true);
 
-  /// Those of the grid, and copies of them.
+  /// Nodes of the grid, and copies that Split() added.
   std::size_t GetNumberOfNodes() const;
   std::int32_t GetNode(const std::array<int, 3>& place) const;
   std::vector<deformvolume::VolumeArray> GetArrays() const;
@@ -60,22 +60,23 @@ struct EditedVolume
   void SendDisplacements(deformvolume::VolumeDeformer& deformer, Route route,
     const deformvolume::PointRanges* changes = nullptr) const;
 
-  /// Where the displacements are not those, and a few points more.
+  /// The ranges of points whose displacements differ from `last`, and a few other points.
   deformvolume::PointRanges FindChanges(const std::vector<float>& last, std::mt19937& random) const;
 
-  /// Moves nodes round one by up to so many voxels; a radius of 0 moves one node.
+  /// Moves the nodes within a radius of a random node by up to `amount` voxels. A radius of 0 moves
+  /// one node.
   void Move(std::mt19937& random, int radius, float amount);
-  /// Moves a node in the middle.
+  /// Moves a random node in the middle of the grid.
   void MoveInside(std::mt19937& random, float amount);
 
-  /// Gives tetrahedra near one new nodes in place of some of theirs, displaced otherwise.
+  /// Gives up to `reach` tetrahedra copies of some of their nodes, with other displacements.
   std::vector<deformvolume::TetrahedronChange> Split(std::mt19937& random, int reach);
 
-  /// A smooth cut along a plane, through all of the volume or up to a y, counted from the first
-  /// voxel.
+  /// Makes a smooth cut along a plane. It cuts cells with a y index below `end`, counted from the
+  /// first voxel.
   void CutAlong(double place, double slope, int end);
-  /// In a box takes over what is crossed, or joins it again, and moves the sheet. Nothing where
-  /// there is no cut.
+  /// In a random box, either copies the crossed tetrahedra from an array or joins the cut, and
+  /// moves the sheet. Does nothing if there is no cut.
   void EditCut(const std::vector<unsigned char>& crossed, std::mt19937& random);
 
 private:
@@ -92,7 +93,7 @@ inline std::string GetRouteName(const testing::TestParamInfo<Route>& info)
   return info.param == Route::Mesh ? "Links" : info.param == Route::Runs ? "Runs" : "Field";
 }
 
-/// A route, and the kernel: that of the device's choice, or the one by cell.
+/// A route, and a method: the default kernel of the device, or the kernel by cells.
 using Way = std::tuple<Route, deformvolume::Resampling>;
 inline std::string GetWayName(const testing::TestParamInfo<Way>& info)
 {
@@ -105,7 +106,7 @@ inline auto GetWays()
     testing::Values(deformvolume::Resampling::Exact, deformvolume::Resampling::ExactByCell));
 }
 
-/// A test of a way.
+/// A test with a Way as its parameter.
 class WayTest : public testing::TestWithParam<Way>
 {
 protected:
@@ -118,8 +119,8 @@ protected:
     volume.Method = GetMethod();
     return volume;
   }
-  /// How many edits there are time for, of some: fewer by cell, and fewest on a graphics card,
-  /// where whole outputs are made by cell as well.
+  /// Reduces a number of edits to what there is time for. By cells there are fewer, and on graphics
+  /// cards fewest, because the whole outputs are also made by cells there.
   static int GetNumberOf(int edits)
   {
     constexpr int byCell = 7;
@@ -130,7 +131,7 @@ protected:
   }
 };
 
-/// What becomes of an EditedVolume.
+/// Outputs of an EditedVolume.
 struct EditedOutputs
 {
   std::vector<std::uint16_t> First;
@@ -140,15 +141,15 @@ struct EditedOutputs
   explicit EditedOutputs(const EditedVolume& volume);
 
   deformvolume::DeformRequest MakeRequest(const EditedVolume& volume);
-  /// Tells a request that this is the last output.
+  /// Declares these outputs to be the last output of a request.
   void SetLast(deformvolume::DeformRequest& request) const;
   bool operator==(const EditedOutputs& other) const;
 };
 
-/// Expects two reports to tell the same of an output.
+/// Expects two reports to describe the same output.
 void ExpectSame(const deformvolume::DeformReport& report, const deformvolume::DeformReport& wanted);
 
-/// Two deformers, one of which updates what it made last, in place.
+/// Two deformers. The second one updates its last output, in place.
 struct Twins
 {
   deformvolume::VolumeDeformer Whole;
@@ -158,9 +159,9 @@ struct Twins
   deformvolume::DeformReport UpdatedReport;
 
   void SendAll(const EditedVolume& volume, Route route);
-  /// After displacements have changed. Expects the same of both.
+  /// Deforms with both, after displacements have changed, and expects the same results.
   void Deform(const EditedVolume& volume, Route route);
-  /// Whether the last one ran a part of the bricks only.
+  /// Whether the last update resampled only a part of the bricks.
   bool IsPart() const;
 };
 

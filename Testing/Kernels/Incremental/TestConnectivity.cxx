@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tetrahedra that get other nodes while links and runs stay, and masks of which only a part is
-// sent: each time as with a deformer that is given all anew.
+// Changes of the connectivity while links and runs stay, and partial uploads of masks. After each
+// change the output equals that of a new deformer.
 #include "DeviceNeeds.h"
 #include "EditedVolume.h"
 #include "MaskChanges.h"
@@ -49,14 +49,14 @@ TEST_P(Connectivity, MisuseIsAnError)
   TetrahedronChange change{ 3, volume.Tetrahedra[3], volume.Tetrahedra[3] };
   change.After[1] = static_cast<std::int32_t>(volume.GetNumberOfNodes());
   std::vector<TetrahedronChange> changes{ change };
-  EXPECT_THROW(SetConnectivity(deformer, volume, &changes), Error) << "a node that is none";
+  EXPECT_THROW(SetConnectivity(deformer, volume, &changes), Error) << "a node that does not exist";
   changes.front().After = volume.Tetrahedra[3];
   for (const int number : { -1, static_cast<int>(volume.Tetrahedra.size()) })
   {
     changes.front().Number = number;
     EXPECT_THROW(SetConnectivity(deformer, volume, &changes), Error) << "no such tetrahedron";
   }
-  // All is as it was.
+  // The errors have changed nothing.
   VolumeDeformer other;
   volume.SendAll(other, GetParam());
   EditedOutputs found(volume);
@@ -84,7 +84,7 @@ TEST_P(Connectivity, EqualsANewUpload)
     bool areKnown = i % 3 != 0;
     if (i % 20 == 19)
     {
-      volume.Tetrahedra = begin.Tetrahedra; // which need fewer nodes
+      volume.Tetrahedra = begin.Tetrahedra; // these need fewer nodes
       volume.Displacements.resize(begin.Displacements.size());
       areKnown = false;
     }
@@ -130,7 +130,8 @@ TEST_P(Connectivity, EqualsANewUpload)
   EXPECT_GT(parts, 30);
 }
 
-// So small that Oclgrind can follow: edits that open gaps, and masks of which a part is sent.
+// Edits that open gaps, and partial uploads of masks, in a volume that is small enough for
+// Oclgrind.
 TEST_P(Connectivity, GapsAndMasksOfASmallVolume)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -177,7 +178,7 @@ TEST_P(Connectivity, GapsAndMasksOfASmallVolume)
     }
     changed.Deform(request);
     ASSERT_TRUE(last == expected);
-    // Without gaps again, and with them.
+    // Closes the gaps again.
     if (edit == 1)
     {
       changed.SetCoincidentNodes(nullptr);
@@ -229,7 +230,7 @@ TEST(MaskChanges, AreTightAndComplete)
     }
     EXPECT_GE(inBoxes, different);
   }
-  // A mask beside none.
+  // One of the two masks is missing.
   EXPECT_TRUE(FindMaskChanges(size, {}, {}).empty());
   const std::vector<unsigned char> usual(last.size(), 31);
   EXPECT_TRUE(FindMaskChanges(size, { nullptr, 255, 31 }, { usual.data(), 255, 31 }).empty());

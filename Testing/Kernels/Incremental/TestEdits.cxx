@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whatever is edited, and in whatever memory the outputs lie: an incremental update equals a whole
-// one of another deformer, bit by bit. Edits come at random; --gtest_random_seed=N tries others.
+// After random edits, and with outputs in various memory, an incremental update equals the whole
+// output of another deformer, bit by bit. --gtest_random_seed=N selects other edits.
 #include "EditedVolume.h"
 
 #include <gtest/gtest.h>
@@ -19,8 +19,8 @@ using namespace deformvolume;
 namespace
 {
 
-/// Memory for an output. That of the first array may be at an odd address, where no processor
-/// writes numbers of two bytes.
+/// Memory for an output. The memory of the first array may begin at an odd address, where no CPU
+/// writes 2-byte numbers.
 struct Memory
 {
   Memory(const EditedVolume& volume, bool isAligned)
@@ -77,10 +77,10 @@ bool AreSameOutside(const EditedOutputs& first, const EditedOutputs& second, con
 
 enum class Where
 {
-  InPlace,       // the last output is written over
-  OtherMemory,   // memory that holds the output before, of which only what differs is written
-  NewMemory,     // that holds nothing
-  UnevenAddress, // the same, at an odd address
+  InPlace,       // overwrites the last output
+  OtherMemory,   // memory with the output before the last one: only differences are written
+  NewMemory,     // memory without an earlier output
+  UnevenAddress, // like NewMemory, but at an odd address
   Count
 };
 
@@ -90,7 +90,7 @@ protected:
   struct Kind
   {
     const char* Name;
-    int Weight; // how often it comes
+    int Weight; // relative frequency
     void (Edits::*Apply)();
   };
 
@@ -98,7 +98,7 @@ protected:
   {
     SKIP_WITHOUT_DOUBLE_PRECISION()
     this->Volume.Method = GetMethod();
-    // Cubic ones go by cell whatever the method.
+    // Cubic interpolation always uses the kernel by cells.
     if (GetMethod() == Resampling::ExactByCell && GetRoute() != Route::Runs)
     {
       this->Volume.Interpolation = Interpolation::Cubic;
@@ -108,7 +108,7 @@ protected:
     this->Volume.SendAll(this->Updated, GetRoute());
   }
 
-  // Where a voxel, or a cell, lies at random.
+  // A random index below count.
   std::size_t Pick(std::size_t count) { return this->Random() % count; }
   float PickFrom(float least, float most)
   {
@@ -123,7 +123,7 @@ protected:
   void MoveAll() { this->Volume.Move(this->Random, 100, 1.5F); }
   void Fold() { this->Volume.Move(this->Random, 0, 14.0F); }
   void FoldInside() { this->Volume.MoveInside(this->Random, 14.0F); }
-  // So that samples lie on creases.
+  // Puts samples on creases.
   void MoveByWholeVoxels()
   {
     std::transform(this->Volume.Displacements.begin(), this->Volume.Displacements.end(),
@@ -164,7 +164,7 @@ protected:
   {
     this->Volume.CutAlong(this->PickFrom(50.0F, 75.0F), this->PickFrom(0.0F, 0.3F), 99);
     this->AllCrossed = this->Volume.Crossed;
-    // It may end in the volume.
+    // Some cuts end inside the volume.
     if (this->Random() % 2)
     {
       this->Volume.CutAlong(70.0, 0.2, 30);
@@ -173,7 +173,7 @@ protected:
   void ChangeCut() { this->Volume.EditCut(this->AllCrossed, this->Random); }
   void JoinCut() { this->Volume.Crossed.clear(); }
 
-  // What the mesh and the request are
+  // The mesh, the volume and the request
   void Split()
   {
     if (GetRoute() == Route::Field)
@@ -212,17 +212,17 @@ protected:
 
   static const std::vector<Kind>& GetKinds()
   {
-    // Small edits come more often: only they are worked on in part.
+    // Small edits are more frequent: only these lead to partial updates.
     static const std::vector<Kind> kinds{
       { "a node moves", 6, &Edits::MoveNode },
       { "a node inside moves", 6, &Edits::MoveNodeInside },
       { "a region moves", 3, &Edits::MoveRegion },
-      { "half moves", 1, &Edits::MoveHalf },
-      { "all moves", 1, &Edits::MoveAll },
+      { "half of the nodes move", 1, &Edits::MoveHalf },
+      { "all nodes move", 1, &Edits::MoveAll },
       { "a node folds its cells", 1, &Edits::Fold },
       { "a node inside folds its cells", 2, &Edits::FoldInside },
       { "whole voxels", 1, &Edits::MoveByWholeVoxels },
-      { "all is let go", 1, &Edits::LetGo },
+      { "the deformation is reset", 1, &Edits::LetGo },
       { "nothing", 1, &Edits::DoNothing },
       { "a voxel is blanked or not", 3, &Edits::Blank },
       { "tetrahedra of a cell", 3, &Edits::SwitchTetrahedra },
@@ -240,7 +240,7 @@ protected:
     return kinds;
   }
 
-  // What is folded or cut in some edits comes in turn; edits by themselves hardly lead to it.
+  // Each series of edits begins folded or cut, in turn: random edits rarely lead to both.
   void Begin(int turn)
   {
     const bool isFolded = turn % 4 == 1 || turn % 4 == 2;
@@ -267,11 +267,11 @@ protected:
     {
       sum += kind.Weight;
     }
-    int left = static_cast<int>(this->Pick(static_cast<std::size_t>(sum)));
+    int remaining = static_cast<int>(this->Pick(static_cast<std::size_t>(sum)));
     for (const Kind& kind : GetKinds())
     {
-      left -= kind.Weight;
-      if (left < 0)
+      remaining -= kind.Weight;
+      if (remaining < 0)
       {
         return kind;
       }
@@ -279,7 +279,8 @@ protected:
     return GetKinds().back();
   }
 
-  // Sends what an edit has changed, to one of the deformers with what is known of it, or not.
+  // Sends the edits to both deformers. In half of the cases the updated one also gets the ranges of
+  // changed displacements.
   void Send(const std::vector<float>& before)
   {
     const bool isKnown = this->Random() % 2 && before.size() == this->Volume.Displacements.size();
@@ -397,19 +398,19 @@ protected:
   }
 
   std::mt19937 Random{ 17U + static_cast<unsigned int>(GTEST_FLAG_GET(random_seed)) };
-  // So large that a node moves a part of it.
+  // Large enough that moving one node affects only a part.
   EditedVolume Volume{ Extent{ { -5, 140, 0, 74, 3, 78 } } };
-  std::vector<unsigned char> AllCrossed; // by the whole cut
+  std::vector<unsigned char> AllCrossed; // tetrahedra that the whole cut crosses
   std::unique_ptr<VolumeDeformer> Whole;
   VolumeDeformer Updated;
   std::shared_ptr<Memory> Last;
-  std::shared_ptr<Memory> BeforeLast; // holds the output before
+  std::shared_ptr<Memory> BeforeLast; // memory of the output before the last one
   std::unique_ptr<EditedOutputs> LastExpected;
   bool HasSameExtent = true;
   bool Aborts = false;
   bool IsSplit = false;
 
-  // Updates that were not whole: all, and of those some.
+  // Numbers of partial updates: all of them, and those with a certain property.
   int Parts = 0;
   int Nothings = 0;
   int FoldedParts = 0;
@@ -440,7 +441,7 @@ TEST_P(Edits, EqualWholeUpdates)
     (this->*kind.Apply)();
     if (i % turn == turn - 1)
     {
-      // One that knows nothing of what was before.
+      // A new deformer, without earlier outputs.
       this->Whole = std::make_unique<VolumeDeformer>();
       this->Volume.SendAll(*this->Whole, GetRoute());
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Incremental updates after certain edits: they equal whole ones, and run few bricks. TestEdits.cxx
-// has edits at random.
+// Incremental updates after certain edits equal whole outputs, and resample few bricks.
+// TestEdits.cxx has random edits.
 #include "EditedVolume.h"
 #include "KernelParameters.h"
 
@@ -23,8 +23,8 @@ class Incremental : public WayTest
 
 } // namespace
 
-// Edits that change what is covered, but not how much of it, so that counts do not tell: of two
-// sides, of a hole, and of masks.
+// Edits of the volume's sides, of a hole, and of masks. They change which voxels are covered, but
+// not the number of covered voxels: counters alone cannot detect the change.
 class IncrementalBorders : public Incremental
 {
 protected:
@@ -38,7 +38,7 @@ protected:
     }
   }
 
-  // A node that lies on a voxel.
+  // The displacement of a node that lies on a voxel.
   float* At(int x, int y, int z)
   {
     return &this->Edited.Displacements[3 * this->Edited.GetNode({ { x, y, z } })];
@@ -55,7 +55,7 @@ protected:
     this->Both.Deform(this->Edited, GetRoute());
   }
 
-  // Whether as much is covered as before.
+  // Updates both deformers. Returns whether the number of covered voxels is unchanged.
   bool Update()
   {
     const std::int64_t before = this->Both.WholeReport.NumberOfCoveredVoxels;
@@ -68,7 +68,7 @@ protected:
 
   EditedVolume Edited;
   Twins Both;
-  int Parts = 0; // updates that were not whole
+  int Parts = 0; // number of partial updates
 };
 
 TEST_P(IncrementalBorders, OneSideMovesOutTheOtherIn)
@@ -83,7 +83,7 @@ TEST_P(IncrementalBorders, OneSideMovesOutTheOtherIn)
       this->At(x, y, 16)[2] = -1.0F;
     }
   }
-  EXPECT_TRUE(this->Update()) << "a plane comes, and one goes";
+  EXPECT_TRUE(this->Update()) << "one plane more, another one less";
   EXPECT_EQ(this->Parts, 1);
 }
 
@@ -101,7 +101,7 @@ TEST_P(IncrementalBorders, MovingHole)
       same += this->Update();
     }
   }
-  EXPECT_GT(same, 0) << "the hole never covers as much";
+  EXPECT_GT(same, 0) << "each edit changed the number of covered voxels";
   EXPECT_EQ(this->Parts, 12);
 }
 
@@ -113,13 +113,13 @@ TEST_P(IncrementalBorders, MaskChangesWhileTheInsideMoves)
   int same = 0;
   for (int step = 1; step <= 3; ++step)
   {
-    // The hole goes elsewhere, and something far away moves.
+    // The hole moves, and a node far away moves, too.
     this->BlankedAt(32, 32, 63 + step) = 0;
     this->BlankedAt(32, 32, 64 + step) = 1;
     *this->At(4, 4, 4) = 0.25F * static_cast<float>(step);
     same += this->Update();
   }
-  EXPECT_GT(same, 0) << "the hole never covers as much";
+  EXPECT_GT(same, 0) << "each edit changed the number of covered voxels";
   EXPECT_EQ(this->Parts, 3);
 }
 
@@ -136,15 +136,15 @@ TEST_P(Incremental, LocalEditsRunFewBricks)
   EXPECT_EQ(first.NumberOfResampledBricks, first.NumberOfBricks);
   EXPECT_EQ(first.NumberOfBricks, 1 * 7 * 5);
   outputs.SetLast(request);
-  // A node inside moves the bricks that it lies between, and what others own stays as it is.
+  // A node inside the volume moves. Only the bricks around it change.
   const std::int32_t node = volume.GetNode({ { 12, 6, 5 } });
   volume.Displacements[3 * node] = 0.5F;
   volume.SendDisplacements(deformer, GetRoute());
   const DeformReport second = deformer.Deform(request);
   EXPECT_GE(second.NumberOfResampledBricks, 1);
   EXPECT_LE(second.NumberOfResampledBricks, 1 * 2 * 2);
-  // It lies at (91, 48, 43), and moves what is less than 8 voxels away; parts of bricks are a few
-  // voxels more.
+  // The node is at (91, 48, 43), and moves vertices that are less than 8 voxels away. Sub-bricks
+  // add a few voxels.
   const Extent near{ { 91 - 8 - 16, 91 + 8 + 16, 48 - 8 - 8, 48 + 8 + 8, 43 - 8 - 8, 43 + 8 + 8 } };
   for (int end = 0; end < 6; ++end)
   {
@@ -153,7 +153,8 @@ TEST_P(Incremental, LocalEditsRunFewBricks)
   }
   EXPECT_GE(GetNumberOfPoints(second.ChangedExtent), 8 * 8 * 8);
   EXPECT_EQ(second.NumberOfCoveredVoxels, first.NumberOfCoveredVoxels);
-  // One on the border of the mesh changes what is covered: neighbours may own what it leaves.
+  // A node on the border of the mesh changes what is covered. Neighboring cells may own the samples
+  // that become free.
   volume.Displacements[3 * volume.GetNode({ { 12, 6, 0 } }) + 2] = 1.5F;
   volume.SendDisplacements(deformer, GetRoute());
   const DeformReport third = deformer.Deform(request);
@@ -164,7 +165,7 @@ TEST_P(Incremental, LocalEditsRunFewBricks)
   const DeformReport same = deformer.Deform(request);
   EXPECT_EQ(same.NumberOfResampledBricks, 0);
   EXPECT_EQ(GetNumberOfPoints(same.ChangedExtent), 0);
-  // Without being told where the last output is, all is made.
+  // Without the last output in the request, everything is resampled.
   request.LastOutputs.clear();
   const DeformReport last = deformer.Deform(request);
   EXPECT_EQ(last.NumberOfResampledBricks, last.NumberOfBricks);
@@ -174,7 +175,8 @@ TEST_P(Incremental, LocalEditsRunFewBricks)
 namespace
 {
 
-// A mask changes at one place near a corner between eight parts of bricks, each place in turn.
+// Changes a mask at one voxel or cell near a corner where eight sub-bricks meet, at one after the
+// other.
 class IncrementalMasks : public testing::Test
 {
 protected:
@@ -204,7 +206,7 @@ protected:
     return deformer.Deform(request);
   }
 
-  // Sends masks and compares.
+  // Sends the masks to both deformers, and compares their outputs.
   void Update(const std::vector<unsigned char>& blanked, const std::vector<unsigned char>& active)
   {
     const auto voxels = static_cast<std::size_t>(GetNumberOfPoints(this->Case.Output));
@@ -224,9 +226,9 @@ protected:
     ASSERT_EQ(std::memcmp(values.data(), this->Values1.data(), voxels * sizeof(float)), 0);
   }
 
-  // Twice as fine as the volume, so that cells are boxes. Samples lie on the border of the volume,
-  // but none on the plane that divides parts on x, and patches of the output end there: then a part
-  // beside one that is made anew touches nothing of it.
+  // The output is twice as fine as the volume, so that cells are aligned. Samples lie on the border
+  // of the volume, but not on the plane that separates sub-bricks on x. Patches of the output end
+  // at that plane: an update of a sub-brick writes no voxel of the next sub-brick.
   DeformerCase Case = MakeCase(
     { { 0, 48, 0, 48, 0, 48 } }, { { 2, 2, 2 } },
     [](const glm::dvec3& index) { return 2.0 * index - glm::dvec3(0.5, 0.0, 0.0); }, 0);
@@ -255,10 +257,10 @@ TEST_F(IncrementalMasks, MaskChangesBesideASubBrick)
     SCOPED_TRACE(interpolation == deformvolume::Interpolation::Cubic ? "cubic" : "linear");
     this->Interpolation = interpolation;
     ASSERT_NO_FATAL_FAILURE(this->Update(blanked, active));
-    EXPECT_EQ(this->Parts, changes) << "what is interpolated otherwise is all made";
+    EXPECT_EQ(this->Parts, changes) << "another interpolation did not resample everything";
     for (const int y : { 0, 20 })
     {
-      // Parts meet at 32.
+      // Sub-bricks meet at x = 32.
       for (int x = 28; x <= 36; ++x)
       {
         for (const bool ofCells : { false, true })
@@ -278,8 +280,8 @@ TEST_F(IncrementalMasks, MaskChangesBesideASubBrick)
   EXPECT_EQ(this->Parts, changes);
 }
 
-// A cell with a value that sums of products do not give back is interpolated in double precision,
-// and those beside it are not, whichever of them are made.
+// Sums of products do not reproduce special values: cells with such a value are interpolated in
+// double precision. Their neighbors are not, no matter which cells an update resamples.
 TEST_F(IncrementalMasks, SpecialValuesBesideASubBrick)
 {
   const auto voxelAt = [](int x, int y)
@@ -289,7 +291,7 @@ TEST_F(IncrementalMasks, SpecialValuesBesideASubBrick)
   int y = 4;
   for (const float special : specials)
   {
-    this->Values[voxelAt(36, y)] = special; // parts meet at 32
+    this->Values[voxelAt(36, y)] = special; // sub-bricks meet at x = 32
     y += 12;
   }
   this->Wanted->SetArrays(this->Arrays);
@@ -327,16 +329,16 @@ protected:
   }
   bool IsFolded() const { return this->Both.WholeReport.NumberOfInvertedTetrahedra > 0; }
 
-  // So large that a node moves a part of it.
+  // Large enough that moving one node affects only a part.
   EditedVolume Edited{ Extent{ { -5, 140, 0, 74, 3, 78 } } };
   Twins Both;
 };
 
 } // namespace
 
-// Edits at random of a volume that stays folded. With this seed edit 28 needs that cells which
-// write again leave alone what they have won before beside others (the mutation contested-twice),
-// which TestEdits.cxx hardly ever comes to.
+// Random edits of a folded volume. With this seed edit 28 detects the mutation contested-twice:
+// cells that are resampled again must keep the voxels that they have won from other cells. The
+// edits of TestEdits.cxx hardly ever detect it.
 TEST_P(IncrementalFolds, EqualWholeUpdates)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -356,7 +358,7 @@ TEST_P(IncrementalFolds, EqualWholeUpdates)
   for (int i = 0; i < edits; ++i)
   {
     SCOPED_TRACE("edit " + std::to_string(i));
-    // What folds stays so up to the last edit.
+    // The volume stays folded until the last edit.
     const bool unfolds = i == edits - 1;
     const bool folds = i == 3;
     switch (unfolds ? 0 : folds ? 1 : 2 + random() % 8)
@@ -380,7 +382,7 @@ TEST_P(IncrementalFolds, EqualWholeUpdates)
       case 6:
         edited.Active[random() % edited.Active.size()] = random() % 32;
         break;
-      case 7: // whole voxels, so that samples lie on creases
+      case 7: // whole voxels put samples on creases
         std::transform(edited.Displacements.begin(), edited.Displacements.end(),
           edited.Displacements.begin(), [](float v) { return v > 7.0F ? 8.0F : v; });
         break;
@@ -399,7 +401,7 @@ TEST_P(IncrementalFolds, EqualWholeUpdates)
   EXPECT_GT(overlapping, edits / 5);
 }
 
-// What is folded and stays as it is costs an edit elsewhere nothing.
+// An edit far from an unchanged fold resamples only bricks near the edit.
 TEST_P(IncrementalFolds, EditsOutsideTheFoldRunFewBricks)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -417,7 +419,7 @@ TEST_P(IncrementalFolds, EditsOutsideTheFoldRunFewBricks)
     EXPECT_LE(this->Both.UpdatedReport.NumberOfResampledBricks, 3 * 3);
   }
   EXPECT_TRUE(this->Both.IsPart());
-  // The fold goes, and with it all winners: a whole output, and parts again afterwards.
+  // Unfolding removes all winners: the next output is a whole one. Later updates are partial again.
   edited.Displacements[3 * edited.GetNode({ { 4, 5, 5 } })] = 0.0F;
   ASSERT_NO_FATAL_FAILURE(this->Deform());
   EXPECT_FALSE(this->IsFolded());
@@ -427,9 +429,9 @@ TEST_P(IncrementalFolds, EditsOutsideTheFoldRunFewBricks)
   EXPECT_TRUE(this->Both.IsPart());
 }
 
-// Inverted tetrahedra are counted by spans of cells: those that an update runs again are counted
-// again, and no others. A span is folded, which is the second one of its cuboid; an edit of the
-// next one runs it, and the first one not.
+// Inverted tetrahedra are counted per span of cells. An update counts only those spans again that
+// it resamples. Here the second span of a cuboid is folded. An edit of the next span resamples the
+// folded span, but not the first one.
 TEST_P(IncrementalFolds, InvertedTetrahedraAreCountedOnce)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()

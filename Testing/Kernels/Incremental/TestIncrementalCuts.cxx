@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Updates of a part of the output where a smooth cut passes: they equal whole outputs, bit for bit.
+// Partial updates across a smooth cut equal whole outputs, bit for bit.
 #include "EditedVolume.h"
 
 #include <gtest/gtest.h>
@@ -20,8 +20,8 @@ class IncrementalCutWays : public WayTest
 
 } // namespace
 
-// By tetrahedra over many voxels an affine motion is continued across the sheet, and all is as
-// without a cut.
+// If tetrahedra extend over many voxels, an affine map is extrapolated exactly across the sheet:
+// the output is the same as without a cut.
 TEST_P(IncrementalCutWays, AffineMotionsShowNoCut)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -61,8 +61,8 @@ namespace
 struct VoxelField
 {
   static constexpr int Size = 64;
-  // The displacements are those of nodes, of which each moves its voxel only: with a field, bricks
-  // look one voxel further.
+  // Whether each voxel has a node of its own, which moves only this voxel. With a field instead,
+  // changes extend one voxel further.
   bool IsMesh = false;
   EditedVolume Volume{ { { 0, Size - 1, 0, Size - 1, 0, Size - 1 } }, false };
   std::vector<float> Vectors = std::vector<float>(3 * Size * Size * Size);
@@ -105,7 +105,7 @@ struct VoxelField
   }
   void SendMesh(VolumeDeformer& deformer)
   {
-    // The last three nodes belong to all tetrahedra, without weight.
+    // All tetrahedra share the last three nodes, with weight zero.
     const auto nodes = static_cast<std::int32_t>(this->Vectors.size() / 3) - 3;
     std::vector<Tetrahedron> tetrahedra;
     std::vector<VertexLink> links(static_cast<std::size_t>(nodes));
@@ -118,7 +118,7 @@ struct VoxelField
     }
     deformer.SetMesh(tetrahedra.data(), tetrahedra.size(), this->Vectors.size() / 3, links.data());
   }
-  // Moves 4 x 4 voxels of a plane, by the first component.
+  // Sets the x component of the displacements of 4 x 4 voxels in a plane of constant x.
   void MoveSquare(int x, float amount)
   {
     for (int z = 8; z < 12; ++z)
@@ -129,7 +129,8 @@ struct VoxelField
       }
     }
   }
-  // Expects the same of both deformers. Returns whether one made a part.
+  // Deforms with both deformers and expects the same results. Returns whether the update was
+  // partial.
   bool Deform()
   {
     this->SendDisplacements(this->Whole);
@@ -153,8 +154,8 @@ struct VoxelField
 
 } // namespace
 
-// A side that is drawn out towards the sheet: its copies go on in that direction, and reach further
-// than any of its vertices. The other side is far away.
+// One side of the cut is stretched towards the sheet. Its copies are extrapolated in that
+// direction, beyond all vertices. The other side is far away.
 TEST(IncrementalCuts, CopiesReachBeyondVertices)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -166,7 +167,7 @@ TEST(IncrementalCuts, CopiesReachBeyondVertices)
     made.Volume.Output = { { 0, 90, 0, 170, 0, VoxelField::Size - 1 } };
     for (int voxel = 0; voxel < VoxelField::Size * VoxelField::Size * VoxelField::Size; ++voxel)
     {
-      // The cells that are divided are the last ones of a part of a brick.
+      // The divided cells are the last ones of a sub-brick.
       const int x = voxel % VoxelField::Size;
       made.Volume.CutDistances.push_back(static_cast<float>(x) - 15.9F);
       made.Vectors[3 * static_cast<std::size_t>(voxel)] = x == 15 ? 20.0F : 0.0F;
@@ -187,7 +188,7 @@ TEST(IncrementalCuts, CopiesReachBeyondVertices)
   }
 }
 
-// What one voxel moves beside a sheet that divides at random.
+// Moves single voxels beside a sheet that divides random tetrahedra.
 TEST(IncrementalCuts, VoxelsMoveCopiesUpToTwoVoxelsAway)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -224,8 +225,9 @@ TEST(IncrementalCuts, VoxelsMoveCopiesUpToTwoVoxelsAway)
   EXPECT_EQ(parts, steps);
 }
 
-// What moves lies two voxels beside a part of a brick, of which it moves copies: they belong to
-// tetrahedra whose other copies are far away, beyond all that the brick of the voxel reaches.
+// The moved voxels are two voxels away from another sub-brick, and move copies in it. The other
+// copies of the same tetrahedra are far away, outside the part of the output near the voxels' own
+// brick.
 TEST(IncrementalCuts, CopiesInTheNextBrickMove)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -237,13 +239,13 @@ TEST(IncrementalCuts, CopiesInTheNextBrickMove)
     made.Volume.Output = { { 0, 90, 0, 170, 0, VoxelField::Size - 1 } };
     for (int voxel = 0; voxel < VoxelField::Size * VoxelField::Size * VoxelField::Size; ++voxel)
     {
-      // A part of a brick begins at 16. Two planes of vertices there are another side, but for some
-      // vertices, so that there are tetrahedra with copies in both.
+      // A sub-brick begins at x = 16. The planes x = 16 and x = 17 are the other side of the cut,
+      // except for some vertices at x = 17. Some tetrahedra therefore have copies on both planes.
       const int x = voxel % VoxelField::Size;
       const int y = voxel / VoxelField::Size % VoxelField::Size;
       const bool isOther = x == 16 || (x == 17 && y % 4 != 0);
       made.Volume.CutDistances.push_back(isOther ? -1.0F : 1.0F);
-      // Copies in the second plane go on away from the plane behind the next one.
+      // Copies on the second plane are extrapolated away from the plane after the next one.
       made.Vectors[3 * static_cast<std::size_t>(voxel) + 1] = x == 19 ? -60.0F : 0.0F;
     }
     const int cells = VoxelField::Size - 1;

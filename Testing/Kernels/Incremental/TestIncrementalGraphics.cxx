@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What updates of a part of the output send from and to a device with memory of its own; and copies
-// from it that fail.
+// Copies that partial updates make from and to a device with memory of its own, and copies from it
+// that fail.
 #include "DeviceNeeds.h"
 #include "EditedVolume.h"
 #include "FakeDriver.h"
@@ -26,7 +26,7 @@ protected:
     this->Outputs.SetLast(this->Request);
   }
 
-  /// After displacements and masks have changed.
+  /// Updates the output after displacements and masks have changed.
   DeformReport Update()
   {
     FakeDriver& driver = FakeDriver::Get();
@@ -35,8 +35,8 @@ protected:
     this->Edited.SendDisplacements(this->Deformer, GetParam());
     return this->Deformer.Deform(this->Request);
   }
-  /// The same of a small part, which equals that of a deformer without a past. Returns how many
-  /// bytes were read for one of the output.
+  /// Expects a partial update that equals the output of a new deformer. Returns the number of bytes
+  /// read, divided by the bytes of the output.
   double UpdatePart()
   {
     const DeformReport report = this->Update();
@@ -67,7 +67,7 @@ protected:
 TEST_P(IncrementalGraphics, LocalEditsReadLittle)
 {
   this->At(12, 6, 5)[0] = 0.5F;
-  this->UpdatePart(); // and the static mapping is read, to know what nodes move
+  this->UpdatePart(); // also reads the static mapping, to find what the nodes move
   this->At(12, 6, 5)[0] = -0.5F;
   EXPECT_LT(this->UpdatePart(), 0.05) << "inside";
   EXPECT_EQ(this->Update().NumberOfResampledBricks, 0);
@@ -76,7 +76,7 @@ TEST_P(IncrementalGraphics, LocalEditsReadLittle)
   EXPECT_LT(this->UpdatePart(), 0.05) << "on a side";
   this->Edited.Blanked[(40 * 101 + 50) * 146 + 70] = 1;
   EXPECT_LT(this->UpdatePart(), 0.05) << "a mask";
-  // What comes first is a whole output.
+  // The first update after a fold is a whole one.
   this->At(4, 5, 5)[0] = 14.0F;
   EXPECT_TRUE(this->Update().Overlapping);
   this->At(14, 3, 3)[0] = 0.5F;
@@ -85,10 +85,10 @@ TEST_P(IncrementalGraphics, LocalEditsReadLittle)
   EXPECT_LT(this->UpdatePart(), 0.05) << "a fold";
 }
 
-// What the device does not give in one piece is made in chunks and slabs, all of it.
+// Volumes or outputs that must be divided into chunks or slabs get no partial updates.
 TEST_P(IncrementalGraphics, VolumesAndOutputsInParts)
 {
-  // Room for the two doubles of some planes of voxels.
+  // Memory for 30 planes of the array of two doubles per voxel.
   this->Deformer.SetAllocationLimit(16 * 146 * 101 * 30);
   this->Edited.SendAll(this->Deformer, GetParam());
   for (int i = 0; i < 3; ++i)
@@ -117,7 +117,7 @@ TEST_P(IncrementalGraphics, CopiesThatFail)
   FakeDriver::Get().ReadError = -5;
   EXPECT_THROW(this->Update(), Error);
   FakeDriver::Get().ReadError = 0;
-  // What is on the device may be half done: it starts anew.
+  // The data on the device may be incomplete: the deformer has released it.
   EXPECT_EQ(this->Deformer.GetDeviceMemory(), 0U);
   this->Edited.SendAll(this->Deformer, GetParam());
   const DeformReport report = this->Deformer.Deform(this->Request);
