@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Outputs that stay on a device that appears to be a graphics card, with memory of its own.
+// Outputs that stay on the device. The device appears to be a graphics card with memory of its own.
 #include "DeviceNeeds.h"
 #include "EditedVolume.h"
 #include "FakeDriver.h"
@@ -39,7 +39,7 @@ protected:
     this->Edited.SendDisplacements(*this->Deformer, GetParam());
     return this->Deformer->Deform(this->Request);
   }
-  /// What a deformer without a past makes.
+  /// The output of a new deformer.
   EditedOutputs MakeExpected() const
   {
     VolumeDeformer fresh;
@@ -80,9 +80,9 @@ protected:
 
 TEST_P(OnDevice, MisuseIsAnError)
 {
-  this->Request.HeldRevisions = { 1, 2 }; // two arrays, and the coverage
+  this->Request.HeldRevisions = { 1, 2 }; // without one of the coverage
   EXPECT_THROW(this->Deformer->Deform(this->Request), Error);
-  this->Request.HeldRevisions = { 1, 2, 3 }; // of other outputs, or none
+  this->Request.HeldRevisions = { 1, 2, 3 }; // revisions that no output has
   const DeviceOutputs outputs = this->Update().DeviceOutputs;
   ASSERT_EQ(outputs.size(), 3U);
   Read(outputs);
@@ -92,7 +92,7 @@ TEST_P(OnDevice, MisuseIsAnError)
 TEST_P(OnDevice, IsReadOnce)
 {
   this->Update();
-  this->Update(); // it reads the static mapping, to know what nodes move
+  this->Update(); // also reads the static mapping, to find what the nodes move
   EditedOutputs untouched(this->Edited);
   FakeDriver::Get().BytesRead = 0;
   DeviceOutputs outputs = this->Update().DeviceOutputs;
@@ -108,14 +108,14 @@ TEST_P(OnDevice, IsReadOnce)
   EXPECT_EQ(this->CountRead(outputs), this->GetBytes() / 19 * 3);
   EXPECT_EQ(this->CountRead(outputs), 0U);
   EXPECT_TRUE(this->Outputs == this->MakeExpected());
-  // Nobody wants it.
+  // An output that is never read.
   this->At(5, 3, 2)[0] = 0.75F;
   this->Outputs = untouched;
   outputs = this->Update().DeviceOutputs;
   outputs[0]->Drop();
   EXPECT_FALSE(outputs[0]->IsOnDevice());
   EXPECT_FALSE(outputs[0]->IsRead());
-  outputs[0]->Read(); // it is not there
+  outputs[0]->Read(); // the dropped output cannot be read
   outputs.clear();
   this->At(5, 3, 2)[0] = 0.5F;
   FakeDriver::Get().BytesRead = 0;
@@ -152,17 +152,17 @@ TEST_P(OnDevice, RangesNeedNoReading)
       ASSERT_TRUE(found[i]);
       EXPECT_EQ(found[i]->Least, *range.first);
       EXPECT_EQ(found[i]->Largest, *range.second);
-      EXPECT_TRUE(found[i]->Least < found[i]->Largest || i == 2); // all may be covered
+      EXPECT_TRUE(found[i]->Least < found[i]->Largest || i == 2); // all voxels may be covered
       EXPECT_TRUE(found[i]->AllFinite);
     }
-    EXPECT_FALSE(outputs[0]->FindRange(0)); // it is not there any more
+    EXPECT_FALSE(outputs[0]->FindRange(0)); // no longer on the device
   };
   check(this->Update().DeviceOutputs);
-  this->At(5, 3, 2)[0] = 0.75F; // what is made anew is a part of the output
+  this->At(5, 3, 2)[0] = 0.75F; // a partial update
   check(this->Update().DeviceOutputs);
 }
 
-// What is there when the deformer needs its memory, or goes.
+// Outputs on the device when the deformer overwrites or releases its memory, or is deleted.
 TEST_P(OnDevice, OutlivesLaterUpdates)
 {
   enum
@@ -198,7 +198,8 @@ TEST_P(OnDevice, OutlivesLaterUpdates)
         EXPECT_FALSE(outputs[0]->IsOnDevice());
         Read(report.DeviceOutputs);
         EXPECT_TRUE(next == this->MakeExpected());
-        EXPECT_EQ(this->Deformer->GetDeviceMemory(), held) << "the output is there once";
+        EXPECT_EQ(this->Deformer->GetDeviceMemory(), held)
+          << "the device holds more than one output";
         break;
       }
       case OtherVolume:
@@ -228,8 +229,8 @@ TEST_P(OnDevice, OutlivesLaterUpdates)
   }
 }
 
-// Random edits, of which some are whole: it is read or not, into one memory or another, which holds
-// what it held.
+// Random edits, with whole and partial updates. Each output goes to one of three memories, which
+// hold earlier outputs, and is read or not.
 TEST_P(OnDevice, EqualsWholeOutputs)
 {
   std::mt19937 random(static_cast<unsigned>(GetParam()) + 1);
@@ -243,12 +244,12 @@ TEST_P(OnDevice, EqualsWholeOutputs)
   {
     SCOPED_TRACE("edit " + std::to_string(i));
     const std::size_t turn = random() % memories.size();
-    outputs[turn].clear(); // or not, before the memory is used again
+    outputs[turn].clear(); // also outputs that have not been read
     if (i % 9 == 8)
     {
-      this->Edited.Move(random, 0, 14.0F); // it is folded, and later it is not
+      this->Edited.Move(random, 0, 14.0F); // the volume is folded, and unfolded later
     }
-    else if (i % 13 != 5) // and once nothing changes
+    else if (i % 13 != 5) // sometimes nothing changes
     {
       this->Edited.MoveInside(random, 0.5F);
     }
@@ -265,14 +266,14 @@ TEST_P(OnDevice, EqualsWholeOutputs)
     EXPECT_EQ(report.NumberOfCoveredVoxels,
       std::count_if(expected[turn]->Coverage.begin(), expected[turn]->Coverage.end(), isCovered));
     revisions[turn] = report.Revision;
-    if (random() % 2 == 0) // some of it; the memory of the others holds what it held
+    if (random() % 2 == 0) // reads one array; the other arrays of this memory keep earlier outputs
     {
       const std::size_t array = random() % 3;
       outputs[turn][array]->Read();
       held[turn][array] = report.Revision;
     }
     const std::size_t other = random() % memories.size();
-    if (!outputs[other].empty()) // all of it, of now or of some time ago
+    if (!outputs[other].empty()) // reads all arrays, of this output or of an earlier one
     {
       Read(outputs[other]);
       ASSERT_TRUE(memories[other] == *expected[other]);
@@ -303,7 +304,7 @@ TEST_P(OnDevice, LocalEditsReadLittle)
 
 TEST_P(OnDevice, OutputsInPartsGoToTheHost)
 {
-  // Room for the two doubles of some planes of voxels.
+  // Memory for 15 planes of the array of two doubles per voxel.
   this->Deformer->SetAllocationLimit(16 *
     static_cast<std::uint64_t>(GetSize(this->Edited.Output, 0)) *
     static_cast<std::uint64_t>(GetSize(this->Edited.Output, 1)) * 15);
@@ -353,14 +354,14 @@ TEST_P(OnDevice, CopiesThatFail)
     EXPECT_THROW(outputs[0]->Read(), Error);
     FakeDriver::Get().ReadError = 0;
     FakeDriver::Get().FailsAtOnce = false;
-    EXPECT_THROW(outputs[0]->Read(), Error) << "and again, whoever asks";
+    EXPECT_THROW(outputs[0]->Read(), Error) << "a second call must fail, too";
     EXPECT_FALSE(outputs[0]->IsOnDevice());
     EXPECT_FALSE(outputs[0]->IsRead());
     EXPECT_EQ(std::count(this->Outputs.First.begin(), this->Outputs.First.end(), 3),
       static_cast<std::ptrdiff_t>(this->Outputs.First.size()));
     Read({ outputs[1], outputs[2] });
     EXPECT_TRUE(this->Outputs.Second == expected.Second);
-    // The device has lost nothing.
+    // The deformer can still be used.
     this->At(6, 3, 2)[1] += 0.5F;
     Read(this->Update().DeviceOutputs);
     EXPECT_TRUE(this->Outputs == this->MakeExpected());

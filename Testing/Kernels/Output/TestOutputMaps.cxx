@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Outputs whose grid is turned, stretched, shifted or mirrored against that of the volume
-// (VoxelGrid::ToOutput), by all kernels, mappings and resamplers.
+// Outputs whose grid is rotated, scaled, shifted or mirrored relative to the grid of the volume
+// (VoxelGrid::ToOutput), for all kernels, mappings and resamplers.
 #include "DeviceNeeds.h"
 #include "EditedVolume.h"
 #include "OutputPlace.h"
@@ -29,7 +29,7 @@ OutputMap MakeMap(const std::array<double, 9>& matrix, const std::array<double, 
   return map;
 }
 
-/// All numbers are multiples of 1/256, so that the reference has the same positions.
+/// Maps whose numbers are multiples of 1/256: the positions are the same in the reference.
 const OutputMap Identity;
 const OutputMap Mirror = MakeMap({ { -1, 0, 0, 0, 1, 0, 0, 0, 1 } }, { { 20, -3, 0.5 } });
 const OutputMap LeftHanded = MakeMap({ { -1, 0, 0, 0, -1.25, 0, 0, 0, -0.75 } }, { { 2, 7, 1 } });
@@ -40,7 +40,7 @@ const OutputMap Turned =
 const OutputMap TurnedMirror =
   MakeMap({ { 0.75, -0.625, 0.25, -0.5, -1, 0.375, 0.125, 0.25, 1.125 } }, { { 3.25, 40, -11.5 } });
 
-/// A rotation with unequal spacings; mirrored on z where that is wanted. Its numbers are not round.
+/// A rotation with unequal spacings, perhaps mirrored on z. Its numbers are not multiples of 1/256.
 OutputMap MakeTurnedMap(const glm::dvec3& center, bool isMirrored, double scale = 1.0)
 {
   const glm::dmat4 turn = glm::rotate(glm::dmat4(1.0), 0.6, glm::dvec3(0.3, 0.5, 0.81));
@@ -71,7 +71,7 @@ std::string GetError(const std::function<void()>& function)
   return "";
 }
 
-/// Voxels move a little, each by itself.
+/// Moves voxels slightly, independent of each other.
 DeformerCase MakeJittered(const OutputMap& map, unsigned int seed, double amplitude,
   const Extent& extent = { { -5, 29, 3, 12, -12, -5 } })
 {
@@ -80,7 +80,7 @@ DeformerCase MakeJittered(const OutputMap& map, unsigned int seed, double amplit
     [=](const glm::dvec3& index) { return PlaceInOutput(map, index) + jitter(index) - index; });
 }
 
-/// Values, and labels, one each a voxel.
+/// One value and one label per voxel.
 struct Arrays
 {
   explicit Arrays(std::int64_t voxels)
@@ -93,7 +93,7 @@ struct Arrays
   std::vector<VolumeArray> Get() const { return { MakeArray(Shorts), MakeArray(Doubles) }; }
 };
 
-/// Displacements whose sums with anything are rounded.
+/// Sets displacements that cause rounding errors in sums.
 void MoveUnevenly(VolumeDeformer& deformer, const DeformerCase& deformerCase)
 {
   std::vector<float> vectors = deformerCase.GetDisplacements();
@@ -160,7 +160,7 @@ TEST(OutputMaps, EqualTheReference)
       ExpectEmbedding(ResampleByReference(jittered));
       ExpectEqualsReference(jittered, route);
     }
-    // At rest as well, where samples lie on vertices, edges and faces.
+    // At rest samples lie on vertices, edges and faces.
     ExpectEqualsReference(MakeJittered(map, 7, 0.0));
   }
 }
@@ -223,7 +223,7 @@ TEST(OutputMaps, MirrorImagesHaveTheSameValues)
     const auto at = static_cast<std::int64_t>(i);
     const auto image = static_cast<std::size_t>(at / width * width + width - 1 - at % width);
     wrong += one.Coverage[i] != other.Coverage[image] ? 1 : 0;
-    // Another tetrahedron may own a sample on a face, and sum up the same products otherwise.
+    // Another tetrahedron may own a sample on a face, and add the same products in another order.
     wrong += std::abs(one.GetOutput<double>(1)[i] - other.GetOutput<double>(1)[image]) > 1e-9;
     wrong +=
       std::abs(one.GetOutput<std::int16_t>(0)[i] - other.GetOutput<std::int16_t>(0)[image]) > 1;
@@ -231,8 +231,8 @@ TEST(OutputMaps, MirrorImagesHaveTheSameValues)
   EXPECT_EQ(wrong, 0U);
 }
 
-// A map and displacements whose numbers are not round: no kernel, slab, part of the volume or part
-// of the output gives other bits.
+// With a map and displacements that cause rounding errors, results are the same bit for bit for all
+// kernels, slabs, and parts of the volume and of the output.
 TEST(OutputMaps, AllPartsHaveTheSameBits)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -253,8 +253,8 @@ TEST(OutputMaps, AllPartsHaveTheSameBits)
   {
     const Deformed other = RunDeformer(deformer, whole, arrays, method);
     EXPECT_TRUE(other.Coverage == all.Coverage);
-    EXPECT_TRUE(other.Outputs[1] == all.Outputs[1]); // both in double precision
-    if (method == Resampling::ExactByColumns)        // in single precision, as by lanes
+    EXPECT_TRUE(other.Outputs[1] == all.Outputs[1]); // in double precision with both methods
+    if (method == Resampling::ExactByColumns)        // in single precision, like by lanes
     {
       EXPECT_TRUE(other.Outputs[0] == all.Outputs[0]);
     }
@@ -301,7 +301,7 @@ TEST(OutputMaps, AllPartsHaveTheSameBits)
   EXPECT_EQ(wrong, 0);
   EXPECT_EQ(covered, all.Report.NumberOfCoveredVoxels);
 
-  // A part of the volume, which begins elsewhere on each axis.
+  // A part of the volume, with another first index on each axis.
   DeformerCase part = whole;
   part.VoxelGrid.VertexExtent = { { 2, 21, 6, 19, -27, -19 } };
   part.VoxelGrid.WholeExtent = whole.VoxelGrid.VertexExtent;
@@ -384,12 +384,12 @@ TEST(OutputMaps, MeshRasterizationEqualsTheReference)
   }
 }
 
-// The cells that the boundary of a mesh crosses are resampled by the tetrahedra of the mesh.
+// The tetrahedra of the deformation mesh resample the cells that its boundary crosses.
 TEST(OutputMaps, NoVoxelOfATightMeshIsLost)
 {
   const glm::dvec3 middle(8.37, 13.21, 10.63);
   const glm::dmat3 turn(glm::rotate(glm::dmat4(1.0), 0.4, glm::dvec3(0.3, 0.5, 0.81)));
-  // Of noise between 0 and 1: see TestMeshBoundary.cxx.
+  // Bound for values of noise between 0 and 1, see TestMeshBoundary.cxx.
   const double bound = 3.0 * std::sqrt(3.0) / 512.0 / 0.9 + 1e-5;
   for (const double edge : { 1.3, 4.1 })
   {
@@ -400,7 +400,7 @@ TEST(OutputMaps, NoVoxelOfATightMeshIsLost)
       mesh.Grid.ToOutput = MakeTurnedMap(middle, isMirrored);
       for (const StaticMappingForm form : { StaticMappingForm::Links, StaticMappingForm::Runs })
       {
-        // At rest, and moved.
+        // At rest, and shifted.
         for (const double shift : { 0.0, 0.37 })
         {
           mesh.Move([&](const glm::dvec3&) { return glm::dvec3(shift, -shift, 0.5 * shift); });
