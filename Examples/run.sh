@@ -4,7 +4,7 @@
 # volumes of the Debian package mricron-data with a tetrahedral mesh:
 #
 #   build/demo/deformed.vti, before-after.png
-#       ch2better, the brain of an MRI at 301 x 370 x 316 voxels, pushed in from where the nose is
+#       ch2better, the brain of an MRI at 301 x 370 x 316 voxels, pushed in at its front
 #   build/demo/head-deformed.vti, head-before-after.png
 #       ch2, the whole head at 181 x 217 x 181 voxels, with its nose pushed in
 #   build/demo/cut-and-pull.png
@@ -12,12 +12,12 @@
 #   build/demo/squished-head.png
 #       ch2 again, pulled by its nose, by finite elements and by springs
 #
-# Can be run again; needs no network where nothing is missing.
+# Can be repeated. Needs no network if nothing is missing.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 bash Testing/packages.sh library example
-# What only tests need is not asked for. A build directory that is there is taken as it is.
+# The packages that only tests need are not required. An existing build directory is not reconfigured.
 [ -f build/vtk/build.ninja ] || cmake --preset vtk -DBUILD_TESTING=OFF
 cmake --build --preset vtk --target deform-volume cut-and-pull squished-head deform-interactive \
   vtkDeformVolumePython vtkDeformVolumeInteractionPython
@@ -26,13 +26,13 @@ templates=/usr/share/mricron/templates
 mkdir -p build/demo/kernel-cache
 export POCL_CACHE_DIR="${POCL_CACHE_DIR:-$PWD/build/demo/kernel-cache}"
 
-deform() # volume, results, and other options of deform-volume
+deform() # VOLUME RESULT PICTURE OPTION...: OPTION is one of deform-volume
 {
   local volume=$1 result=$2 image=$3
   shift 3
   echo
   echo "$volume"
-  # A display that resets when its last client leaves ends the next one (-noreset).
+  # Without -noreset, the X server resets when its last client exits, which can end the next client.
   xvfb-run -a -s "-noreset -screen 0 1400x1024x24" build/vtk/bin/deform-volume \
     "$volume" --tetgen "$@" --output "build/demo/$result" --image "build/demo/$image"
   echo "See build/demo/$image and build/demo/$result"

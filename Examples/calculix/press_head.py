@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A head is pressed from its right, as CalculiX computes it: press_head.py VOLUME FOLDER [OPTIONS]
+"""Presses a head from its right in CalculiX, and deforms its scan: press_head.py VOLUME FOLDER [OPTIONS]
 
 1. deform-volume meshes the head with tetrahedra (TetGen).
-2. This script writes them as ten-node tetrahedra, with a load, to FOLDER/head.inp.
+2. This script writes the mesh, as ten-node tetrahedra, and a load to FOLDER/head.inp.
 3. ccx, the solver of CalculiX, computes the displacements.
-4. ccx2paraview converts its result, head.frd, to VTK's formats: head.pvd and a .vtu file for each increment.
-5. deform-volume deforms the volume with them: FOLDER/pressed.nii.gz and FOLDER/pressed.png.
+4. ccx2paraview converts the result, head.frd, to VTK's formats: head.pvd and a .vtu file for each increment.
+5. deform-volume deforms the volume by the displacements: FOLDER/pressed.nii.gz and FOLDER/pressed.png.
 
-Made for ch2.nii.gz of the package mricron-data. Lengths are in mm, stresses in MPa and forces in N. On Debian:
+Written for ch2.nii.gz of the package mricron-data. Lengths are in mm, stresses in MPa and forces in N. On Debian:
 apt-get install calculix-ccx python3-vtk9; Documents/solvers.md says how to install ccx2paraview."""
 import argparse
 import os
@@ -21,19 +21,19 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 # x to the right, y to the front, z to the head, as in NIfTI files.
-NECK = -60.0  # nodes below this z are held
-BALL = numpy.array((85.0, 5.0, 5.0))  # what presses, on the skin above the ear
-BALL_RADIUS = 55.0  # of the dent
-PRESS = -18.0  # along x, in the middle of the dent
+NECK = -60.0  # nodes below this z are fixed
+DENT_CENTER = numpy.array((85.0, 5.0, 5.0))  # on the skin above the ear
+DENT_RADIUS = 55.0
+DENT_DEPTH = -18.0  # displacement along x at the center of the dent
 LANDMARKS = {"nose": (0.0, 95.0, -40.0), "crown": (0.0, -15.0, 95.0), "left ear": (-80.0, -15.0, -35.0),
              "brain": (30.0, 5.0, 5.0)}
-YOUNG_MODULUS = 0.01  # MPa, as soft tissue has it
+YOUNG_MODULUS = 0.01  # MPa, a value of soft tissue
 POISSON_RATIO = 0.4
-EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))  # of a tetrahedron, as C3D10 numbers its nodes
+EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))  # of a tetrahedron, in the order of C3D10
 
 
 def call(*command, folder=None):
-    """Runs a program of another package; returns what it has printed."""
+    """Runs a program, and returns its output."""
     print("$", *command, flush=True)
     result = subprocess.run([str(word) for word in command], cwd=folder, text=True, check=False,
                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
@@ -50,7 +50,7 @@ def find_program(name, advice):
 
 
 def read_tetrahedra(path):
-    """The positions of the nodes, and the four nodes of each tetrahedron."""
+    """Returns the positions of the nodes, and the four nodes of each tetrahedron."""
     reader = vtkXMLUnstructuredGridReader()
     reader.SetFileName(path)
     reader.Update()
@@ -59,16 +59,17 @@ def read_tetrahedra(path):
     return vtk_to_numpy(mesh.GetPoints().GetData()).astype(float), cells
 
 
-def add_middle_nodes(places, cells):
-    """Ten-node tetrahedra: linear ones are too stiff. The new nodes lie in the middle of the edges."""
+def add_middle_nodes(positions, cells):
+    """Makes ten-node tetrahedra, because linear tetrahedra are too stiff. The new nodes lie in the middle of edges."""
     edges = numpy.sort(cells[:, EDGES], axis=2)
     unique, middle = numpy.unique(edges.reshape(-1, 2), axis=0, return_inverse=True)
-    all_places = numpy.concatenate((places, places[unique].mean(axis=1)))
-    return all_places, numpy.hstack((cells, len(places) + middle.reshape(-1, 6)))
+    all_positions = numpy.concatenate((positions, positions[unique].mean(axis=1)))
+    return all_positions, numpy.hstack((cells, len(positions) + middle.reshape(-1, 6)))
 
 
 def find_surface(cells):
-    """The nodes of the faces that belong to one tetrahedron only. Row by row: three corners and what lies between."""
+    """Returns the nodes of the boundary faces, which belong to one tetrahedron only."""
+    # Each row: three corners of a face, and the nodes in the middle of its edges.
     faces = numpy.concatenate([cells[:, face] for face in
                                ((0, 1, 2, 4, 5, 6), (0, 1, 3, 4, 8, 7), (1, 2, 3, 5, 9, 8), (0, 2, 3, 6, 9, 7))])
     _, first, count = numpy.unique(numpy.sort(faces[:, :3], axis=1), axis=0, return_index=True,
@@ -77,27 +78,27 @@ def find_surface(cells):
 
 
 def write_set(file, name, nodes):
-    """A set of nodes. CalculiX counts from 1, and takes at most 16 numbers in a line."""
+    """Writes a set of nodes. CalculiX counts from 1, and reads at most 16 numbers in a line."""
     file.write(f"*NSET, NSET={name}\n")
     for start in range(0, len(nodes), 16):
         file.write(", ".join(str(node + 1) for node in nodes[start:start + 16]) + "\n")
 
 
-def write_input(path, places, cells):
-    """The input of CalculiX. Returns the nodes of the landmarks."""
+def write_input(path, positions, cells):
+    """Writes the input of CalculiX. Returns the nodes of the landmarks."""
     surface = find_surface(cells)
-    neck = numpy.flatnonzero(places[:, 2] < NECK)
-    depth = PRESS * (1.0 - numpy.sum((places - BALL) ** 2, axis=1) / BALL_RADIUS ** 2)
-    pressed = surface[depth[surface] * PRESS > 0.0]
-    landmarks = {name: int(numpy.linalg.norm(places - place, axis=1).argmin())
-                 for name, place in LANDMARKS.items()}
+    neck = numpy.flatnonzero(positions[:, 2] < NECK)
+    depth = DENT_DEPTH * (1.0 - numpy.sum((positions - DENT_CENTER) ** 2, axis=1) / DENT_RADIUS ** 2)
+    pressed = surface[depth[surface] * DENT_DEPTH > 0.0]
+    landmarks = {name: int(numpy.linalg.norm(positions - position, axis=1).argmin())
+                 for name, position in LANDMARKS.items()}
     if len(neck) < 3 or len(pressed) < 3:
         sys.exit(f"press_head.py: {len(neck)} nodes to hold and {len(pressed)} nodes to press: is the volume a head, "
                  "placed as ch2.nii.gz is?")
     with open(path, "w", encoding="ascii") as file:
         file.write("*NODE, NSET=ALL\n")
-        for node, place in enumerate(places, 1):
-            file.write(f"{node}, " + ", ".join(f"{number:.9g}" for number in place) + "\n")
+        for node, position in enumerate(positions, 1):
+            file.write(f"{node}, " + ", ".join(f"{number:.9g}" for number in position) + "\n")
         file.write("*ELEMENT, TYPE=C3D10, ELSET=HEAD\n")
         for element, cell in enumerate(cells, 1):
             file.write(f"{element}, " + ", ".join(str(node + 1) for node in cell) + "\n")
@@ -117,7 +118,7 @@ def write_input(path, places, cells):
 
 
 def read_printed(path):
-    """The displacements in a .dat file, at the last time: node, counted from 0, to vector."""
+    """Reads the displacements at the last time from a .dat file. Maps nodes, counted from 0, to vectors."""
     with open(path, encoding="ascii") as file:
         last = file.read().split("displacements")[-1]
     rows = re.findall(r"^ +(\d+)" + r" +(-?\d\.\d+E[-+]\d+)" * 3 + "$", last, flags=re.MULTILINE)
@@ -127,8 +128,8 @@ def read_printed(path):
 parser = argparse.ArgumentParser(description="Presses a head from its right by CalculiX, and deforms its scan.")
 parser.add_argument("volume")
 parser.add_argument("folder", help="where all files are written")
-parser.add_argument("--edge-length", type=float, default=20.0, help="of the tetrahedra, in mm (%(default)s)")
-parser.add_argument("--deform-volume", default="deform-volume", help="the program, where it is not in PATH")
+parser.add_argument("--edge-length", type=float, default=20.0, help="of the tetrahedra, in mm (default: %(default)s)")
+parser.add_argument("--deform-volume", default="deform-volume", help="path of this program, if it is not in PATH")
 arguments = parser.parse_args()
 deform_volume = find_program(arguments.deform_volume, "build this project, and see --deform-volume")
 ccx = find_program("ccx", "install CalculiX (Debian: calculix-ccx)")
@@ -144,7 +145,7 @@ def path(name):
 call(deform_volume, volume, "--tetgen", "--pieces", "largest", "--edge-length", arguments.edge_length, "--write-mesh",
      path("head.vtu"))
 nodes, tetrahedra = add_middle_nodes(*read_tetrahedra(path("head.vtu")))
-os.remove(path("head.vtu"))  # a name that ccx2paraview gives its results
+os.remove(path("head.vtu"))  # ccx2paraview uses this name, too
 landmark_nodes = write_input(path("head.inp"), nodes, tetrahedra)
 call(ccx, "-i", "head", folder=path(""))
 call(ccx2paraview, path("head.frd"), "vtu")

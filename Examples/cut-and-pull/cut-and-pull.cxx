@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A brain is cut open and pulled apart: cut-and-pull VOLUME.nii.gz PICTURE.png [SIZE]
-// draws the volume before, cut along a sheet, and opened by ChainMail: three pictures of SIZE x
-// SIZE pixels (700) side by side. Made for ch2better.nii.gz of the package mricron-data.
+// Cuts a brain and pulls the cut open: cut-and-pull VOLUME.nii.gz PICTURE.png [SIZE]
+// draws three pictures side by side: the volume at rest, cut along a sheet, and opened by
+// ChainMail. Each has SIZE x SIZE pixels (default: 700). Written for ch2better.nii.gz of the
+// package mricron-data.
 #include <vtkActor.h>
 #include <vtkCamera.h>
 #include <vtkChainMailDeformation.h>
@@ -35,10 +36,10 @@
 
 namespace
 {
-// Where the brain is cut, in mm from the first voxel: x to the right, y to the front, z upwards.
+// Position of the cut, in mm from the first voxel: x to the right, y to the front, z upwards.
 constexpr double SheetX = 99.0;
 
-// A sheet from above the brain down into it, from back to front.
+// Makes a vertical sheet along y, from above the brain down into it.
 vtkSmartPointer<vtkPlaneSource> MakeSheet()
 {
   auto sheet = vtkSmartPointer<vtkPlaneSource>::New();
@@ -49,17 +50,17 @@ vtkSmartPointer<vtkPlaneSource> MakeSheet()
   return sheet;
 }
 
-// Hooks on both sides of the cut, and where they pull the tissue to.
-vtkSmartPointer<vtkPolyData> MakeHooks()
+// Makes handles on both sides of the cut, with their positions at rest and after the pull.
+vtkSmartPointer<vtkPolyData> MakeHandles()
 {
   vtkNew<vtkPoints> points;
   vtkNew<vtkDoubleArray> rest;
   rest->SetName("RestPosition");
   rest->SetNumberOfComponents(3);
-  constexpr int hooksPerSide = 21;
-  for (int hook = 0; hook < hooksPerSide; ++hook)
+  constexpr int handlesPerSide = 21;
+  for (int handle = 0; handle < handlesPerSide; ++handle)
   {
-    const double along = hook / (hooksPerSide - 1.0);
+    const double along = handle / (handlesPerSide - 1.0);
     const double pull = 13.0 * std::sin(vtkMath::Pi() * (0.08 + 0.84 * along));
     for (const double side : { -1.0, 1.0 })
     {
@@ -68,36 +69,36 @@ vtkSmartPointer<vtkPolyData> MakeHooks()
       points->InsertNextPoint(from[0] + side * pull, from[1], from[2]);
     }
   }
-  auto hooks = vtkSmartPointer<vtkPolyData>::New();
-  hooks->SetPoints(points);
-  hooks->GetPointData()->AddArray(rest);
-  return hooks;
+  auto handles = vtkSmartPointer<vtkPolyData>::New();
+  handles->SetPoints(points);
+  handles->GetPointData()->AddArray(rest);
+  return handles;
 }
 
 vtkSmartPointer<vtkRenderer> MakeRenderer(vtkAlgorithmOutput* volume, int column)
 {
   vtkNew<vtkSmartVolumeMapper> mapper;
   mapper->SetInputConnection(volume);
-  mapper->AutoAdjustSampleDistancesOff(); // a picture is the same however long it takes
+  mapper->AutoAdjustSampleDistancesOff(); // the same picture on slow machines
   mapper->SetSampleDistance(0.25);
   vtkNew<vtkPiecewiseFunction> opacity;
   opacity->AddPoint(45.0, 0.0);
   opacity->AddPoint(75.0, 1.0);
-  vtkNew<vtkColorTransferFunction> colour;
-  colour->AddRGBPoint(45.0, 0.65, 0.45, 0.42);
-  colour->AddRGBPoint(110.0, 0.90, 0.72, 0.66);
-  colour->AddRGBPoint(150.0, 1.0, 0.97, 0.92);
+  vtkNew<vtkColorTransferFunction> color;
+  color->AddRGBPoint(45.0, 0.65, 0.45, 0.42);
+  color->AddRGBPoint(110.0, 0.90, 0.72, 0.66);
+  color->AddRGBPoint(150.0, 1.0, 0.97, 0.92);
   vtkNew<vtkVolume> actor;
   actor->SetMapper(mapper);
   vtkVolumeProperty* property = actor->GetProperty();
   property->SetScalarOpacity(opacity);
-  property->SetColor(colour);
+  property->SetColor(color);
   property->SetScalarOpacityUnitDistance(0.5);
   property->SetInterpolationTypeToLinear();
   property->ShadeOn();
   property->SetAmbient(0.15);
   property->SetDiffuse(0.8);
-  property->SetSpecular(0.0); // versions of VTK differ in highlights
+  property->SetSpecular(0.0); // highlights differ between versions of VTK
   auto renderer = vtkSmartPointer<vtkRenderer>::New();
   renderer->SetViewport(column / 3.0, 0.0, (column + 1) / 3.0, 1.0);
   renderer->SetBackground(0.10, 0.12, 0.15);
@@ -116,7 +117,7 @@ vtkSmartPointer<vtkActor> MakeActor(vtkAlgorithmOutput* surface)
   return actor;
 }
 
-// Seen from the front, from above.
+// Views the brain from the front and from above.
 void AimCamera(vtkCamera* camera)
 {
   camera->SetFocalPoint(75.0, 92.0, 78.0);
@@ -144,7 +145,7 @@ int main(int argc, char* argv[])
 
   vtkNew<vtkChainMailDeformation> chainMail;
   chainMail->SetInputConnection(cut->GetOutputPort());
-  chainMail->SetHandlesData(MakeHooks());
+  chainMail->SetHandlesData(MakeHandles());
   chainMail->SetHandleRadius(3.0);
   chainMail->SetRelaxationSweeps(20);
 
@@ -157,7 +158,7 @@ int main(int argc, char* argv[])
     deform->SetInputArrayToProcess(
       0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Displacement");
   }
-  closed->SetDisplacementScale(0.0); // cut and not pulled
+  closed->SetDisplacementScale(0.0); // the volume is cut but not pulled
 
   vtkNew<vtkRenderWindow> window;
   window->SetOffScreenRendering(1);

@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-/// What deform-interactive was called with.
+/// The command line of deform-interactive.
 struct Arguments
 {
   std::string Volume; // "": the MRI of a head
   ReadingOptions Reading;
-  std::string Session; // the rest: "" where it was not given
+  std::string Session; // this option and the following ones: "" if they are not given
   std::string Record;
   std::string Replay;
   std::string Screenshot;
@@ -22,7 +22,7 @@ struct Arguments
   bool WantsHelp = false;
 };
 
-/// Throws a UsageError.
+/// Throws a UsageError if the command line is not valid.
 Arguments ParseArguments(int argc, char* argv[]);
 
 extern const char* const UsageText;

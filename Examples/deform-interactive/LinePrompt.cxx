@@ -60,7 +60,7 @@ void LinePrompt::Type(char key)
   }
 }
 
-// By what all names that begin with the text have in common.
+// Extends the text to the longest common prefix of all file names that begin with it.
 void LinePrompt::Complete()
 {
   using vtksys::SystemTools;

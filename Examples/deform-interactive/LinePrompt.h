@@ -5,16 +5,17 @@
 #include <functional>
 #include <string>
 
-/// A line that is typed in the window: the name of a file. Tab completes it, Enter takes it, Escape
-/// ends without it.
+/// A prompt in the window, into which a file name is typed. Tab completes the name, Enter accepts
+/// it, Escape cancels.
 class LinePrompt
 {
 public:
+  /// Activates the prompt. text: initial name. take: called with the name that Enter accepts.
   void Begin(const std::string& question, const std::string& text,
     const std::function<void(const std::string&)>& take);
   bool IsActive() const { return this->Active; }
   void Type(char key);
-  /// "" where nothing is typed.
+  /// The text to draw; "" if the prompt is not active.
   std::string GetLine() const;
 
 private:

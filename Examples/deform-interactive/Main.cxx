@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// deform-interactive: drags, cuts and carves a volume live, in a window.
+// deform-interactive: drags, cuts and carves a volume interactively, in a window.
 #include "Arguments.h"
 #include "Failure.h"
 #include "Messages.h"
@@ -29,7 +29,7 @@ int main(int argc, char* argv[])
     std::cout << UsageText;
     return 0;
   }
-  // VTK writes its errors to a log, too; once is enough.
+  // Messages prints errors; VTK's logger would print them a second time.
   vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
   const vtkNew<Messages> messages;
   messages->SetProgram("deform-interactive");

@@ -41,15 +41,15 @@ struct Counting
   }
 };
 
-struct ColourPoint
+struct ColorPoint
 {
-  double Part; // 0 at Level - Width / 2, 1 at the greatest value
+  double Part; // position: 0 at Level - Width / 2, 1 at the maximum value
   double Red;
   double Green;
   double Blue;
 };
 
-std::vector<ColourPoint> GetColours(Transfer::Preset preset)
+std::vector<ColorPoint> GetColors(Transfer::Preset preset)
 {
   switch (preset)
   {
@@ -159,14 +159,14 @@ void Transfer::Apply(vtkVolumeProperty* property, const double range[2]) const
   opacity->AddPoint(low, 0.0);
   opacity->AddPoint(high, this->Most);
   opacity->AddPoint(std::max(high + this->Width, range[1]), this->Most);
-  vtkNew<vtkColorTransferFunction> colour;
+  vtkNew<vtkColorTransferFunction> color;
   const double most = std::max(high, range[1]);
-  for (const ColourPoint& point : GetColours(this->Chosen))
+  for (const ColorPoint& point : GetColors(this->Chosen))
   {
-    colour->AddRGBPoint(low + point.Part * (most - low), point.Red, point.Green, point.Blue);
+    color->AddRGBPoint(low + point.Part * (most - low), point.Red, point.Green, point.Blue);
   }
   property->SetScalarOpacity(opacity);
-  property->SetColor(colour);
+  property->SetColor(color);
   property->SetScalarOpacityUnitDistance(1.0);
   property->SetInterpolationTypeToLinear();
   property->ShadeOn();

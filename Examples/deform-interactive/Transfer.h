@@ -8,23 +8,24 @@
 class vtkImageData;
 class vtkVolumeProperty;
 
-/// How many voxels have which values: 256 bins between the least and the greatest value.
+/// Histogram of the values of the voxels: 256 bins from the minimum to the maximum.
 struct Histogram
 {
   explicit Histogram(vtkImageData* image);
 
+  /// The value at the lower bound of a bin, or at a fraction of it.
   double GetValue(double bin) const;
   /// The value that best divides the voxels into two classes, by the method of Otsu.
   double FindThreshold() const;
-  /// The value below which there is a part of the voxels that have at least a value.
+  /// Percentile of the values that are at least `least`. part: 0 to 1.
   double FindPercentile(double least, double part) const;
 
   double Range[2] = { 0.0, 1.0 };
   std::vector<double> Counts;
 };
 
-/// Opacity and colours of values: nothing below Level - Width / 2, all of it above Level + Width
-/// / 2.
+/// Opacities and colors of values. The opacity rises from 0 at Level - Width / 2 to Most at Level +
+/// Width / 2.
 struct Transfer
 {
   enum Preset
@@ -32,7 +33,7 @@ struct Transfer
     AUTOMATIC, // a surface at the threshold of the histogram
     CT_BONE,
     CT_SOFT_TISSUE,
-    MR, // what is inside shines through
+    MR, // translucent: the inside is visible, too
     NUMBER_OF_PRESETS
   };
 
@@ -40,14 +41,14 @@ struct Transfer
   Transfer(Preset preset, const Histogram& histogram);
 
   std::string GetName() const;
-  /// What a value absorbs in a millimetre; 0 to 1.
+  /// Opacity of a value per millimeter, 0 to 1.
   double GetOpacity(double value) const;
   void Apply(vtkVolumeProperty* property, const double range[2]) const;
 
   Preset Chosen = AUTOMATIC;
   double Level = 0.5;
   double Width = 0.5;
-  double Most = 1.0; // opacity
+  double Most = 1.0; // maximum opacity
 };
 
 #endif

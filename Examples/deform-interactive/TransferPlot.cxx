@@ -47,8 +47,8 @@ void TransferPlot::Draw(vtkRenderer* renderer, const Histogram& histogram, const
   this->Actor->SetPosition(renderer->GetSize()[0] - Width - Margin, Bottom);
   vtkNew<vtkPoints> points;
   vtkNew<vtkCellArray> lines;
-  vtkNew<vtkUnsignedCharArray> colours;
-  colours->SetNumberOfComponents(3);
+  vtkNew<vtkUnsignedCharArray> colors;
+  colors->SetNumberOfComponents(3);
   const auto addLine = [&](std::initializer_list<std::pair<double, double>> places,
                          unsigned char red, unsigned char green, unsigned char blue)
   {
@@ -58,8 +58,8 @@ void TransferPlot::Draw(vtkRenderer* renderer, const Histogram& histogram, const
       lines->InsertCellPoint(
         points->InsertNextPoint(place.first, std::clamp<double>(place.second, 0.0, Height), 0.0));
     }
-    const unsigned char colour[3] = { red, green, blue };
-    colours->InsertNextTypedTuple(colour);
+    const unsigned char color[3] = { red, green, blue };
+    colors->InsertNextTypedTuple(color);
   };
   addLine({ { 0, 0 }, { Width, 0 }, { Width, Height }, { 0, Height }, { 0, 0 } }, 120, 125, 135);
   const double most =
@@ -86,5 +86,5 @@ void TransferPlot::Draw(vtkRenderer* renderer, const Histogram& histogram, const
   this->Lines->Initialize();
   this->Lines->SetPoints(points);
   this->Lines->SetLines(lines);
-  this->Lines->GetCellData()->SetScalars(colours);
+  this->Lines->GetCellData()->SetScalars(colors);
 }

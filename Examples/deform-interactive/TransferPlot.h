@@ -10,8 +10,8 @@ class vtkActor2D;
 class vtkPolyData;
 class vtkRenderer;
 
-/// A histogram and an opacity function over it, at the lower right of a window, for the mouse to
-/// change.
+/// A plot of a histogram and an opacity function, at the lower right of a window. Viewer changes
+/// the function when the mouse drags the plot.
 class TransferPlot
 {
 public:
@@ -24,14 +24,14 @@ public:
   void Draw(vtkRenderer* renderer, const Histogram& histogram, const Transfer& transfer);
   void SetVisible(bool isVisible);
 
-  /// Whether a pixel is on it.
+  /// Whether a pixel is in the plot.
   bool Contains(vtkRenderer* renderer, int x, int y) const;
   static constexpr int Width = 220;
   static constexpr int Height = 80;
 
 private:
   static constexpr int Margin = 12;
-  static constexpr int Bottom = 70; // above the status
+  static constexpr int Bottom = 70; // above the status text
   vtkNew<vtkPolyData> Lines;
   vtkNew<vtkActor2D> Actor;
 };

@@ -24,7 +24,7 @@ namespace
 {
 const char* const HeadPath = "/usr/share/mricron/templates/ch2.nii.gz";
 
-constexpr float BeforeStyle = 10.0F; // priority of observers
+constexpr float BeforeStyle = 10.0F; // priority of observers that get events before the style
 
 constexpr const char* ProgramKeys =
   "d volume, isosurface, slices    PageUp PageDown move the slice\n"
@@ -147,7 +147,7 @@ void Viewer::Run()
     this->Style->StartSession();
   }
   constexpr int milliseconds = 30;
-  this->Interactor->CreateRepeatingTimer(milliseconds); // also without a volume
+  this->Interactor->CreateRepeatingTimer(milliseconds); // the style has no timer without a volume
   this->Interactor->Start();
   if (this->Recorder)
   {
@@ -278,9 +278,9 @@ bool Viewer::OnMouseMove(vtkObject*, unsigned long, void*)
   return true;
 }
 
-// The program that it comes from waits until this returns, and VTK ends where that has gone by
-// then: it is opened later. By a timer of its own, as that of the style ends with its session, and
-// no timer may be destroyed by its own event.
+// A timer opens the file later: the program that it was dropped from waits until this function
+// returns, and VTK exits if that program has ended by then. The style's timer cannot be used,
+// because it ends with the session, and no timer may be destroyed by its own event.
 void Viewer::OnDrop(vtkObject*, unsigned long, void* files)
 {
   auto* const paths = static_cast<vtkStringArray*>(files);
@@ -296,7 +296,7 @@ void Viewer::OnOutput(vtkObject*, unsigned long, void*)
   this->UploadTime = this->View.Update(this->Renderer);
 }
 
-// Turns of the camera, too.
+// Also called for rotations of the camera.
 void Viewer::OnInteraction(vtkObject*, unsigned long event, void*)
 {
   this->IsInteracting = event == vtkCommand::StartInteractionEvent;
@@ -338,7 +338,7 @@ void Viewer::OnFrame(vtkObject* caller, unsigned long, void*)
     }
     if (this->Values && this->ShowNumbers)
     {
-      this->Plot.Draw(this->Renderer, *this->Values, this->Shown); // where the window ends now
+      this->Plot.Draw(this->Renderer, *this->Values, this->Shown); // the window may have a new size
     }
     return;
   }

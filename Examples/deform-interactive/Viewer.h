@@ -26,8 +26,9 @@ class vtkRenderWindowInteractor;
 class vtkRenderer;
 class vtkTextActor;
 
-/// The window of deform-interactive: files, displays, the editor of the transfer function and the
-/// numbers. The tools are those of vtkDeformVolumeInteractorStyle.
+/// The window of deform-interactive: it opens and saves files, switches displays, edits the
+/// transfer function and shows measured times. The tools are those of
+/// vtkDeformVolumeInteractorStyle.
 class Viewer
 {
 public:
@@ -36,14 +37,14 @@ public:
   Viewer(const Viewer&) = delete;
   void operator=(const Viewer&) = delete;
 
-  /// Until the window is closed, or the replay has come to its end. Throws a Failure where
-  /// something that was asked for on the command line cannot be done.
+  /// Returns when the window is closed, or when the replay has ended. Throws a Failure if an option
+  /// of the command line cannot be carried out.
   void Run();
 
 private:
   using Clock = std::chrono::steady_clock;
 
-  // Observers, which return whether nobody else is to see the event.
+  // Observers. Those that return true stop the event: later observers do not get it.
   bool OnKeyPress(vtkObject*, unsigned long, void*);
   bool OnChar(vtkObject*, unsigned long, void*);
   bool OnLeftButton(vtkObject*, unsigned long event, void*);
@@ -57,20 +58,20 @@ private:
   void OpenVolume(const std::string& path);
   void Open(const std::string& path);
   void Save(const std::string& path);
-  /// "" or why not.
+  /// Returns an error message, or "".
   std::string TrySave(const std::string& path);
   void LoadSession(const std::string& path);
   void ToggleRecording();
   void StartRecording(const std::string& path);
   void Replay(const std::string& path);
-  /// Of what was drawn last.
+  /// Writes the last rendered frame.
   void SavePicture(const std::string& path);
   void AimCamera(const double view[3]);
   void ChoosePreset(Transfer::Preset preset);
   void ChangeHandleRadius(int steps);
   void ShowTransfer();
   void ShowTexts();
-  /// Draws a message before something that takes its time.
+  /// Draws a message before a long operation.
   void Announce(const std::string& message);
 
   Arguments Asked;
@@ -84,26 +85,26 @@ private:
   TransferPlot Plot;
   std::unique_ptr<Histogram> Values; // null before there is a volume
   Transfer Shown;
-  double Diagonal = 0.0;         // of the volume
-  double HandleRadiusPart = 0.0; // of it
+  double Diagonal = 0.0;         // of the volume, in world units
+  double HandleRadiusPart = 0.0; // as a fraction of Diagonal
   LinePrompt Prompt;
   vtkNew<vtkTextActor> Numbers;
   vtkNew<vtkTextActor> PromptLine;
-  vtkSmartPointer<vtkInteractorEventRecorder> Recorder; // while it records
-  std::string FileName = "deformed";                    // without its ending
-  std::string Dropped;                                  // a file that is to be opened
-  int DropTimer = -1;                                   // that opens it
+  vtkSmartPointer<vtkInteractorEventRecorder> Recorder; // null if nothing is recorded
+  std::string FileName = "deformed";                    // proposed by Save, without extension
+  std::string Dropped;                                  // path of a file to open
+  int DropTimer = -1;                                   // opens Dropped
   bool ShowNumbers = true;
-  bool IsChanged = false; // since it was drawn
+  bool IsChanged = false; // since the last frame
   bool IsReplaying = false;
-  bool IsInteracting = false; // a button is pressed
-  bool IsEditing = false;     // the plot is dragged
-  int Frame = 0;
+  bool IsInteracting = false; // a tool is used, or the camera is moved
+  bool IsEditing = false;     // the mouse drags the plot
+  int Frame = 0;              // number of the next picture of --frames
 
   double UploadTime = 0.0;
   double RenderTime = 0.0;
   Clock::time_point FrameBegin;
-  std::deque<Clock::time_point> Frames; // of the last second
+  std::deque<Clock::time_point> Frames; // end times of the frames of the last second
   Clock::time_point LastTexts;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The files of the window: volumes, sessions, pictures and recordings.
+// Opens and saves files: volumes, sessions, pictures and recordings.
 #include "Viewer.h"
 
 #include "Failure.h"
@@ -23,7 +23,7 @@ namespace
 {
 const char* const RecordPath = "deform-interactive.log";
 
-constexpr float BeforeObservers = 20.0F; // the recorder misses nothing
+constexpr float BeforeObservers = 20.0F; // priority of the recorder
 constexpr vtkIdType ManyVoxels = 1000000;
 
 std::string GetEnding(const std::string& path)
@@ -59,7 +59,7 @@ void Viewer::OpenVolume(const std::string& path)
   this->Renderer->ResetCamera(bounds);
   this->Renderer->GetActiveCamera()->Zoom(1.15);
   this->Style->ShowMessage("2 chooses ChainMail, g grabs, h shows all keys");
-  this->Style->Poll(); // draws it
+  this->Style->Poll(); // draws the volume
 }
 
 void Viewer::LoadSession(const std::string& path)
@@ -72,7 +72,7 @@ void Viewer::LoadSession(const std::string& path)
   }
 }
 
-// What can go wrong here is shown, and what was open stays.
+// Errors are shown in the window, and the volume that was open before stays open.
 void Viewer::Open(const std::string& path)
 {
   try
@@ -186,8 +186,8 @@ void Viewer::ToggleRecording()
   this->Recorder = nullptr;
 }
 
-// Without the thread of the session: each timer event of the recording is one step, so that the
-// same recording gives the same volume.
+// Does not use the thread of the session. Each timer event of the recording is one step of the
+// session, so that a recording always gives the same volume.
 void Viewer::Replay(const std::string& path)
 {
   if (!vtksys::SystemTools::FileExists(path, true))

@@ -27,7 +27,7 @@ VolumeView::VolumeView(vtkDeformVolumeInteractorStyle* style)
   : Style(style)
 {
   this->Mapper->SetUseJittering(0);
-  // VTK's own choice leaves out so many samples that surfaces break up.
+  // The automatic sample distances are so large that surfaces break up.
   this->Mapper->SetAutoAdjustSampleDistances(0);
   this->Volume->SetMapper(this->Mapper);
   this->Style->SetVolume(this->Volume);
@@ -59,7 +59,7 @@ void VolumeView::AddTo(vtkRenderer* renderer)
   this->Choose();
 }
 
-// What is not shown is not made.
+// Shows only the chosen display, because VTK updates only visible props.
 void VolumeView::Choose()
 {
   const bool isThere = this->Style->GetShownImage() != nullptr;
@@ -88,7 +88,7 @@ void VolumeView::SetTransfer(const Transfer& transfer, const double range[2])
   this->Style->SetIsovalue(this->Isovalue);
   for (const auto& slice : this->Slices)
   {
-    // From black to white round the level, but wider than the opacity rises.
+    // The gray scale includes the values over which the opacity rises, and is wider.
     slice->GetProperty()->SetColorLevel(transfer.Level + transfer.Width);
     slice->GetProperty()->SetColorWindow(4.0 * transfer.Width);
   }
@@ -128,7 +128,7 @@ double VolumeView::Update(vtkRenderer* renderer)
   {
     return 0.0;
   }
-  if (!this->IsDrawn) // the first frame makes what an upload needs
+  if (!this->IsDrawn) // the first frame creates the OpenGL resources that an upload needs
   {
     this->IsDrawn = true;
     return 0.0;

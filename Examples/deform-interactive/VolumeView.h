@@ -18,7 +18,7 @@ class vtkOpenGLGPUVolumeRayCastMapper;
 class vtkRenderer;
 class vtkVolume;
 
-/// Shows the outputs of a style: rendered as a volume, as an isosurface, or on three slice planes.
+/// Shows the output of a style as a volume, as an isosurface, or on three slice planes.
 class VolumeView
 {
 public:
@@ -41,14 +41,14 @@ public:
 
   void SetTransfer(const Transfer& transfer, const double range[2]);
 
-  /// After each output of the style. Returns the seconds that the copy to the graphics device took,
-  /// where that is known before it is drawn.
+  /// Shows a new output of the style. Returns the duration of the upload to the graphics device, in
+  /// seconds; 0 if the upload happens only when the output is rendered.
   double Update(vtkRenderer* renderer);
 
-  /// Fewer rays with fewer samples, while something moves.
+  /// Renders with fewer rays and samples. Used during interaction.
   void SetCoarse(bool isCoarse);
 
-  /// Moves the slice that faces the viewer most.
+  /// Moves the slice whose normal is closest to the view direction. part: fraction of the extent.
   void MoveSlice(vtkRenderer* renderer, double part);
 
 private:
@@ -57,7 +57,7 @@ private:
   vtkDeformVolumeInteractorStyle* Style;
   Display Chosen = VOLUME;
   double Isovalue = 0.0;
-  std::array<double, 3> SliceParts{ { 0.5, 0.5, 0.5 } }; // of the extent
+  std::array<double, 3> SliceParts{ { 0.5, 0.5, 0.5 } }; // positions, as fractions of the extent
   bool IsDrawn = false;
   vtkNew<vtkVolume> Volume;
   vtkNew<vtkOpenGLGPUVolumeRayCastMapper> Mapper;

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Drags, cuts and carves a volume live: deform_interactive.py VOLUME.nii.gz [EVENTS.log SESSION.xml]
-Press 2 for ChainMail, g to grab, and h for all keys. With EVENTS.log, which vtkInteractorEventRecorder
-has recorded, these events are replayed, and the session is saved."""
+"""Drags, cuts and carves a volume interactively: deform_interactive.py VOLUME.nii.gz [EVENTS.log SESSION.xml]
+Press 2 for ChainMail, g to grab, and h for all keys. EVENTS.log is a recording of vtkInteractorEventRecorder:
+its events are replayed, and the session is saved to SESSION.xml."""
 import sys
 
 import deformvolume_vtk
@@ -33,7 +33,7 @@ style.SetSession(session)
 style.SetVolume(volume)
 interactor.SetInteractorStyle(style)
 interactor.Initialize()
-style.Poll()  # the volume at rest
+style.Poll()  # draws the volume at rest
 renderer.ResetCamera()
 if len(sys.argv) < 4:
     style.StartSession()

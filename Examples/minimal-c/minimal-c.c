@@ -12,7 +12,7 @@
 
 #define SIZE 64
 
-/* Ends the program where a function has failed. */
+/* Exits the program if a function has failed. */
 static void Check(int32_t status)
 {
   if (status != DV_OK)
@@ -22,7 +22,7 @@ static void Check(int32_t status)
   }
 }
 
-/* Whoever wants to stop the work returns another number than 0. */
+/* A return value other than 0 would abort dv_deform(). */
 static int32_t ShowProgress(double fraction, void* user)
 {
   *(double*)user = fraction;
@@ -98,7 +98,7 @@ int main(void)
   mesh.number_of_cells = 5;
   mesh.connectivity = tetrahedra[0];
   Check(dv_set_mesh(deformer, &mesh));
-  /* This and what follows again, whenever the mesh has moved: */
+  /* Repeat this and all following calls whenever the mesh has moved. */
   Check(dv_set_displacements(deformer, DV_FLOAT64, 8, displacements));
 
   output.struct_size = sizeof(output);

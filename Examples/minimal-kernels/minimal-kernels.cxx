@@ -53,7 +53,7 @@ int main()
     deformer.SetVoxelGrid(voxelGrid);
     deformer.SetArrays({ array });
     deformer.SetMesh(tetrahedra.data(), tetrahedra.size(), corners.size(), mapping.Links.data());
-    // These two again, whenever the mesh has moved:
+    // Repeat these two calls whenever the mesh has moved.
     deformer.SetNodeDisplacements(displacements.data());
     std::cout << deformer.Deform(request).NumberOfCoveredVoxels << " voxels covered\n";
   }

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The shortest way from a volume to the deformed volume: minimal.py IN.vti OUT.vti
-bends the volume along x by a sine of z with an amplitude of a tenth of its height."""
+"""A minimal program that deforms a volume: minimal.py IN.vti OUT.vti
+bends the volume along x by a sine of z. The amplitude is a tenth of the height of the volume."""
 import sys
 
 import deformvolume_vtk

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A head is pulled by its nose: squished-head VOLUME.nii.gz PICTURE.png [SIZE]
-// draws it at rest, in equilibrium by finite elements, and after half a second by springs: three
-// pictures of SIZE x SIZE pixels (700) side by side. Bone is stiff and the rest is soft, as the
-// volume shows them. Made for ch2.nii.gz of the package mricron-data, in mm from the first voxel:
-// x to the right, y to the front, z upwards.
+// Pulls a head by its nose: squished-head VOLUME.nii.gz PICTURE.png [SIZE]
+// draws three pictures side by side: the head at rest, in equilibrium by finite elements, and after
+// half a second of mass-spring dynamics. Each has SIZE x SIZE pixels (default: 700). The values of
+// the voxels say where the head is stiff bone and where it is soft tissue. Written for ch2.nii.gz
+// of the package mricron-data. Coordinates are in mm from the first voxel: x to the right, y to the
+// front, z upwards.
 #include <vtkCamera.h>
 #include <vtkColorTransferFunction.h>
 #include <vtkConnectivityFilter.h>
@@ -43,15 +44,16 @@ constexpr double NoseRadius = 18.0;
 constexpr double Pull[3] = { 0.0, 30.0, 8.0 };
 constexpr int NumberOfFrames = 30;
 
-// A mesh of cubes, each of five tetrahedra, as stiff as the voxels in them; cells: along the width
-// of the head. Tetrahedra of air alone are left out, and a speck of noise in a corner.
+// Makes a mesh of cubes, each of five tetrahedra, which have the materials of their voxels. cells:
+// number of cubes along x. Leaves out tetrahedra that hold air only, and noise in a corner of the
+// volume.
 vtkSmartPointer<vtkUnstructuredGrid> MakeMesh(vtkAlgorithmOutput* volume, int cells)
 {
   vtkNew<vtkLatticeTetrahedraSource> lattice;
   lattice->SetInputConnection(volume);
   lattice->SetNumberOfNodes(cells + 1, cells / 5 * 6 + 1, cells + 1);
-  // Bone is as dark as the outermost voxels of the skin, but thicker: these get the value of a
-  // neighbour.
+  // The outermost voxels of the skin are as dark as bone. They get the value of a brighter
+  // neighbor. Bone is too thick to disappear by that.
   vtkNew<vtkImageContinuousDilate3D> brighter;
   brighter->SetInputConnection(volume);
   brighter->SetKernelSize(3, 3, 3);
@@ -95,11 +97,11 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeMesh(vtkAlgorithmOutput* volume, int ce
   return mesh;
 }
 
-// A hook in the nose, which goes some of its way; part: 0 to 1.
-void MoveHook(vtkDeformationHandleSource* hook, double part)
+// Moves the handle in the nose by a fraction of Pull. part: 0 to 1.
+void MoveHandle(vtkDeformationHandleSource* handle, double part)
 {
-  hook->SetRestPosition(Nose[0], Nose[1], Nose[2]);
-  hook->SetPosition(Nose[0] + part * Pull[0], Nose[1] + part * Pull[1], Nose[2] + part * Pull[2]);
+  handle->SetRestPosition(Nose[0], Nose[1], Nose[2]);
+  handle->SetPosition(Nose[0] + part * Pull[0], Nose[1] + part * Pull[1], Nose[2] + part * Pull[2]);
 }
 
 void Hold(vtkElasticDeformation* body, vtkUnstructuredGrid* mesh)
@@ -113,26 +115,26 @@ vtkSmartPointer<vtkRenderer> MakeRenderer(vtkAlgorithmOutput* volume, int column
 {
   vtkNew<vtkSmartVolumeMapper> mapper;
   mapper->SetInputConnection(volume);
-  mapper->AutoAdjustSampleDistancesOff(); // a picture is the same however long it takes
+  mapper->AutoAdjustSampleDistancesOff(); // the same picture on slow machines
   mapper->SetSampleDistance(0.5);
   vtkNew<vtkPiecewiseFunction> opacity;
   opacity->AddPoint(25.0, 0.0);
   opacity->AddPoint(55.0, 1.0);
-  vtkNew<vtkColorTransferFunction> colour;
-  colour->AddRGBPoint(25.0, 0.87, 0.62, 0.51);
-  colour->AddRGBPoint(110.0, 0.96, 0.82, 0.72);
-  colour->AddRGBPoint(200.0, 1.0, 1.0, 0.98);
+  vtkNew<vtkColorTransferFunction> color;
+  color->AddRGBPoint(25.0, 0.87, 0.62, 0.51);
+  color->AddRGBPoint(110.0, 0.96, 0.82, 0.72);
+  color->AddRGBPoint(200.0, 1.0, 1.0, 0.98);
   vtkNew<vtkVolume> actor;
   actor->SetMapper(mapper);
   vtkVolumeProperty* property = actor->GetProperty();
   property->SetScalarOpacity(opacity);
-  property->SetColor(colour);
+  property->SetColor(color);
   property->SetScalarOpacityUnitDistance(1.0);
   property->SetInterpolationTypeToLinear();
   property->ShadeOn();
   property->SetAmbient(0.15);
   property->SetDiffuse(0.8);
-  property->SetSpecular(0.0); // versions of VTK differ in highlights
+  property->SetSpecular(0.0); // highlights differ between versions of VTK
   auto renderer = vtkSmartPointer<vtkRenderer>::New();
   renderer->SetViewport(column / 3.0, 0.0, (column + 1) / 3.0, 1.0);
   renderer->SetBackground(0.10, 0.12, 0.15);
@@ -140,7 +142,7 @@ vtkSmartPointer<vtkRenderer> MakeRenderer(vtkAlgorithmOutput* volume, int column
   return renderer;
 }
 
-// Seen from the right and the front.
+// Views the head from the right and the front.
 void AimCamera(vtkCamera* camera)
 {
   camera->SetFocalPoint(90.0, 133.0, 83.0);
@@ -149,19 +151,20 @@ void AimCamera(vtkCamera* camera)
   camera->SetViewAngle(28.0);
 }
 
-// How far the results of two models are apart, in mm, at the node of both where they are most.
+// Returns the largest distance, in mm, between the displacements that two models give to a common
+// node of their meshes.
 double FindLargestDifference(vtkUnstructuredGrid* first, vtkUnstructuredGrid* second)
 {
-  constexpr double samePlace = 1e-6; // in mm
+  constexpr double tolerance = 1e-6; // in mm^2
   double largest = 0.0;
   for (vtkIdType node = 0; node < first->GetNumberOfPoints(); ++node)
   {
-    double place[3];
+    double point[3];
     double other[3];
-    first->GetPoint(node, place);
-    const vtkIdType nearest = second->FindPoint(place);
+    first->GetPoint(node, point);
+    const vtkIdType nearest = second->FindPoint(point);
     second->GetPoint(nearest, other);
-    if (vtkMath::Distance2BetweenPoints(place, other) < samePlace)
+    if (vtkMath::Distance2BetweenPoints(point, other) < tolerance)
     {
       double a[3];
       double b[3];
@@ -184,27 +187,27 @@ int main(int argc, char* argv[])
   }
   vtkNew<vtkNIFTIImageReader> reader;
   reader->SetFileName(argv[1]);
-  // Cubes of 12 mm and of 9 mm: finite elements have nodes in the middle of edges as well.
+  // Cubes of 12 mm and 9 mm: the coarser mesh is for finite elements, which add mid-side nodes.
   const auto mesh = MakeMesh(reader->GetOutputPort(), 15);
   const auto fineMesh = MakeMesh(reader->GetOutputPort(), 20);
 
   vtkNew<vtkFiniteElementDeformation> elements;
   Hold(elements, mesh);
   elements->SetModeToConverged();
-  vtkNew<vtkDeformationHandleSource> hook;
-  MoveHook(hook, 1.0);
-  elements->SetHandlesConnection(hook->GetOutputPort());
+  vtkNew<vtkDeformationHandleSource> handle;
+  MoveHandle(handle, 1.0);
+  elements->SetHandlesConnection(handle->GetOutputPort());
   elements->Update();
 
   vtkNew<vtkMassSpringDeformation> springs;
   Hold(springs, fineMesh);
-  vtkNew<vtkDeformationHandleSource> slowHook;
-  springs->SetHandlesConnection(slowHook->GetOutputPort());
+  vtkNew<vtkDeformationHandleSource> slowHandle;
+  springs->SetHandlesConnection(slowHandle->GetOutputPort());
   for (int frame = 1; frame <= NumberOfFrames; ++frame)
   {
-    // The hook arrives when half of the time is over.
-    MoveHook(slowHook, std::min(1.0, 2.0 * frame / NumberOfFrames));
-    springs->Modified(); // time goes on while the hook rests
+    // The handle reaches its last position after half of the time.
+    MoveHandle(slowHandle, std::min(1.0, 2.0 * frame / NumberOfFrames));
+    springs->Modified(); // simulates one more frame, even if the handle rests
     springs->Update();
   }
 
@@ -228,7 +231,7 @@ int main(int argc, char* argv[])
     deform->SetInputConnection(reader->GetOutputPort());
     deform->SetInputArrayToProcess(
       0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Displacement");
-    deform->SetPadding(2); // the skin ends before the volume does
+    deform->SetPadding(2); // a border, so that the skin is closed at the bounds of the volume
     const auto renderer = MakeRenderer(deform->GetOutputPort(), column++);
     renderer->SetActiveCamera(camera);
     renderer->ResetCameraClippingRange();

@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A head is pulled by its nose: squished_head.py VOLUME.nii.gz PICTURE.png [SIZE]
-draws it at rest, in equilibrium by finite elements, and after half a second by springs: three
-pictures of SIZE x SIZE pixels (700) side by side. Bone is stiff and the rest is soft, as the volume
-shows them. Made for ch2.nii.gz of the package mricron-data, in mm from the first voxel: x to the
-right, y to the front, z upwards."""
+"""Pulls a head by its nose: squished_head.py VOLUME.nii.gz PICTURE.png [SIZE]
+draws three pictures side by side: the head at rest, in equilibrium by finite elements, and after
+half a second of mass-spring dynamics. Each has SIZE x SIZE pixels (default: 700). The values of the
+voxels say where the head is stiff bone and where it is soft tissue. Written for ch2.nii.gz of the
+package mricron-data. Coordinates are in mm from the first voxel: x to the right, y to the front,
+z upwards."""
 import sys
 
 import deformvolume_vtk
 import numpy
-import vtkmodules.vtkRenderingOpenGL2  # noqa: F401 (what draws)
+import vtkmodules.vtkRenderingOpenGL2  # noqa: F401 (rendering backend)
 import vtkmodules.vtkRenderingVolumeOpenGL2  # noqa: F401
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkPiecewiseFunction, vtkUnstructuredGrid
@@ -34,13 +35,14 @@ AIR_DENSITY = 100.0
 
 
 def make_mesh(volume, cells):
-    """Cubes, each of five tetrahedra, as stiff as the voxels in them; cells: along the width of the
-    head. Tetrahedra of air alone are left out, and a speck of noise in a corner."""
+    """Makes a mesh of cubes, each of five tetrahedra, which have the materials of their voxels.
+    cells: number of cubes along x. Leaves out tetrahedra that hold air only, and noise in a corner
+    of the volume."""
     lattice = deformvolume_vtk.vtkLatticeTetrahedraSource()
     lattice.SetInputConnection(volume)
     lattice.SetNumberOfNodes(cells + 1, cells // 5 * 6 + 1, cells + 1)
-    # Bone is as dark as the outermost voxels of the skin, but thicker: these get the value of a
-    # neighbour.
+    # The outermost voxels of the skin are as dark as bone. They get the value of a brighter
+    # neighbor. Bone is too thick to disappear by that.
     brighter = vtkImageContinuousDilate3D()
     brighter.SetInputConnection(volume)
     brighter.SetKernelSize(3, 3, 3)
@@ -73,10 +75,10 @@ def make_mesh(volume, cells):
     return mesh
 
 
-def move_hook(hook, part):
-    """A hook in the nose, which goes some of its way; part: 0 to 1."""
-    hook.SetRestPosition(*NOSE)
-    hook.SetPosition(*(NOSE + part * PULL))
+def move_handle(handle, part):
+    """Moves the handle in the nose by a fraction of PULL. part: 0 to 1."""
+    handle.SetRestPosition(*NOSE)
+    handle.SetPosition(*(NOSE + part * PULL))
 
 
 def hold(body, mesh):
@@ -91,33 +93,33 @@ def deform(volume, body, scale):
     deformed.SetDeformationConnection(body.GetOutputPort())
     deformed.SetInputArrayToProcess(0, 1, 0, 0, "Displacement")
     deformed.SetDisplacementScale(scale)
-    deformed.SetPadding(2)  # the skin ends before the volume does
+    deformed.SetPadding(2)  # a border, so that the skin is closed at the bounds of the volume
     return deformed
 
 
 def make_renderer(volume, column):
     mapper = vtkSmartVolumeMapper()
     mapper.SetInputConnection(volume.GetOutputPort())
-    mapper.AutoAdjustSampleDistancesOff()  # a picture is the same however long it takes
+    mapper.AutoAdjustSampleDistancesOff()  # the same picture on slow machines
     mapper.SetSampleDistance(0.5)
     opacity = vtkPiecewiseFunction()
     opacity.AddPoint(25.0, 0.0)
     opacity.AddPoint(55.0, 1.0)
-    colour = vtkColorTransferFunction()
-    colour.AddRGBPoint(25.0, 0.87, 0.62, 0.51)
-    colour.AddRGBPoint(110.0, 0.96, 0.82, 0.72)
-    colour.AddRGBPoint(200.0, 1.0, 1.0, 0.98)
+    color = vtkColorTransferFunction()
+    color.AddRGBPoint(25.0, 0.87, 0.62, 0.51)
+    color.AddRGBPoint(110.0, 0.96, 0.82, 0.72)
+    color.AddRGBPoint(200.0, 1.0, 1.0, 0.98)
     actor = vtkVolume()
     actor.SetMapper(mapper)
     look = actor.GetProperty()
     look.SetScalarOpacity(opacity)
-    look.SetColor(colour)
+    look.SetColor(color)
     look.SetScalarOpacityUnitDistance(1.0)
     look.SetInterpolationTypeToLinear()
     look.ShadeOn()
     look.SetAmbient(0.15)
     look.SetDiffuse(0.8)
-    look.SetSpecular(0.0)  # versions of VTK differ in highlights
+    look.SetSpecular(0.0)  # highlights differ between versions of VTK
     renderer = vtkRenderer()
     renderer.SetViewport(column / 3.0, 0.0, (column + 1) / 3.0, 1.0)
     renderer.SetBackground(0.10, 0.12, 0.15)
@@ -126,14 +128,15 @@ def make_renderer(volume, column):
 
 
 def find_largest_difference(first, second):
-    """How far the results of two models are apart, in mm, at the node of both where they are most."""
+    """Returns the largest distance, in mm, between the displacements that two models give to a
+    common node of their meshes."""
     found = []
     for body in (first, second):
         points = vtk_to_numpy(body.GetOutput().GetPoints().GetData())
         vectors = vtk_to_numpy(body.GetOutput().GetPointData().GetArray("Displacement")).astype(float)
         found.append(dict(zip(map(tuple, points.round(3)), vectors)))
     common = found[0].keys() & found[1].keys()
-    return max(numpy.linalg.norm(found[0][place] - found[1][place]) for place in common)
+    return max(numpy.linalg.norm(found[0][point] - found[1][point]) for point in common)
 
 
 if len(sys.argv) not in (3, 4):
@@ -142,30 +145,30 @@ size = int(sys.argv[3]) if len(sys.argv) > 3 else 700
 
 reader = vtkNIFTIImageReader()
 reader.SetFileName(sys.argv[1])
-# Cubes of 12 mm and of 9 mm: finite elements have nodes in the middle of edges as well.
+# Cubes of 12 mm and 9 mm: the coarser mesh is for finite elements, which add mid-side nodes.
 mesh = make_mesh(reader.GetOutputPort(), 15)
 fine_mesh = make_mesh(reader.GetOutputPort(), 20)
 elements = deformvolume_vtk.vtkFiniteElementDeformation()
 hold(elements, mesh)
 elements.SetModeToConverged()
-hook = deformvolume_vtk.vtkDeformationHandleSource()
-move_hook(hook, 1.0)
-elements.SetHandlesConnection(hook.GetOutputPort())
+handle = deformvolume_vtk.vtkDeformationHandleSource()
+move_handle(handle, 1.0)
+elements.SetHandlesConnection(handle.GetOutputPort())
 elements.Update()
 springs = deformvolume_vtk.vtkMassSpringDeformation()
 hold(springs, fine_mesh)
-slow_hook = deformvolume_vtk.vtkDeformationHandleSource()
-springs.SetHandlesConnection(slow_hook.GetOutputPort())
+slow_handle = deformvolume_vtk.vtkDeformationHandleSource()
+springs.SetHandlesConnection(slow_handle.GetOutputPort())
 for frame in range(1, FRAMES + 1):
-    # The hook arrives when half of the time is over.
-    move_hook(slow_hook, min(1.0, 2.0 * frame / FRAMES))
-    springs.Modified()  # time goes on while the hook rests
+    # The handle reaches its last position after half of the time.
+    move_handle(slow_handle, min(1.0, 2.0 * frame / FRAMES))
+    springs.Modified()  # simulates one more frame, even if the handle rests
     springs.Update()
 at_rest = deform(reader.GetOutputPort(), elements, 0.0)
 by_elements = deform(reader.GetOutputPort(), elements, 1.0)
 by_springs = deform(reader.GetOutputPort(), springs, 1.0)
 
-camera = vtkCamera()  # from the right and the front
+camera = vtkCamera()  # to the right and in front of the head
 camera.SetFocalPoint(90.0, 133.0, 83.0)
 camera.SetPosition(472.0, 420.0, 121.0)
 camera.SetViewUp(0.0, 0.0, 1.0)
