@@ -19,7 +19,8 @@ namespace
 
 using Map = std::function<glm::dvec3(const glm::dvec3&)>;
 
-// Corners of a cube, bit 0 for x, 1 for y, 2 for z: six tetrahedra round a diagonal.
+// Six tetrahedra around a diagonal of a cube. Corner numbers have bit 0 for x, bit 1 for y and bit
+// 2 for z.
 constexpr int Kuhn[6][4] = { { 0, 1, 3, 7 }, { 0, 3, 2, 7 }, { 0, 2, 6, 7 }, { 0, 6, 4, 7 },
   { 0, 4, 5, 7 }, { 0, 5, 1, 7 } };
 
@@ -48,7 +49,7 @@ void ExpectValues(const RasterCase& c, const reference::RasterResult& reference,
       const T value = output[voxel * array.Components + component];
       if (array.Categorical)
       {
-        // One of the voxels within half a voxel on every axis.
+        // A label must be that of a voxel within half a voxel on every axis.
         bool found = false;
         for (std::int64_t corner = 0; corner < 8; ++corner)
         {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A volume with a deformation mesh that is rasterised itself, given to a VolumeDeformer and to the
-// host reference alike, and the comparison of what the two make of it.
+// A volume with a deformation mesh for mesh rasterization, for the VolumeDeformer and for the
+// reference on the host, and the comparison of their results.
 #ifndef RasterCase_h
 #define RasterCase_h
 
@@ -10,10 +10,10 @@ struct RasterCase
 {
   deformvolume::VoxelGrid VoxelGrid;
   std::vector<deformvolume::Tetrahedron> Tetrahedra;
-  /// Continuous indices of the volume, and displacements in output voxels.
+  /// Rest positions as continuous indices of the volume.
   std::vector<glm::dvec3> RestNodes;
   std::vector<float> Displacements;
-  /// Empty: none are blanked, all are active.
+  /// Empty: no voxel is blanked, all tetrahedra are active.
   std::vector<unsigned char> Blanked;
   std::vector<unsigned char> Active;
   deformvolume::Extent Output;
@@ -24,14 +24,14 @@ struct RasterCase
   }
 };
 
-/// A mesh of cells x cells x cells cubes, six tetrahedra each, over a box of continuous indices.
-/// deformation takes an index of the volume to a continuous index of the output. The output holds
-/// the result and margin voxels more.
+/// A mesh of cells x cells x cells cubes, of six tetrahedra each, over a box of continuous indices.
+/// deformation maps an index of the volume to a continuous index of the output. The output contains
+/// the result and margin voxels more on each side.
 RasterCase MakeRasterCase(const deformvolume::VoxelGrid& voxelGrid, const glm::dvec3& low,
   const glm::dvec3& high, int cells,
   const std::function<glm::dvec3(const glm::dvec3&)>& deformation, int margin = 1);
 
-/// The same with a mesh over just the volume.
+/// The same, with a mesh that covers exactly the volume.
 RasterCase MakeRasterCase(const deformvolume::Extent& extent, int cells,
   const std::function<glm::dvec3(const glm::dvec3&)>& deformation,
   const deformvolume::OutputMap& toOutput = {});
@@ -50,7 +50,8 @@ Deformed LoadAndRun(const RasterCase& rasterCase,
   const std::vector<deformvolume::VolumeArray>& arrays,
   deformvolume::Interpolation interpolation = deformvolume::Interpolation::Linear);
 
-/// Coverage and counts exactly, and values within 1e-5 of the largest of their array.
+/// Expects the same coverage and counters, and values within 1e-5 of the largest value of their
+/// array.
 void ExpectEqualsReference(const RasterCase& rasterCase,
   const std::vector<deformvolume::VolumeArray>& arrays, const Deformed& deformed,
   deformvolume::Interpolation interpolation = deformvolume::Interpolation::Linear);

@@ -16,8 +16,8 @@ namespace
 __extension__ typedef __int128 Wide;
 using Point = std::array<std::int64_t, 3>;
 
-// Decisions on rest coordinates nearer than this, in voxels, are left open: the kernels know them
-// to 2^-22 voxel or so.
+// Both results are accepted if a rest coordinate is nearer than this to a decision boundary, in
+// voxels. The error of rest coordinates in the kernels is about 2^-22 voxel.
 constexpr long double Margin = 1e-5L;
 
 Wide Determinant(const Point& a, const Point& b, const Point& c, const Point& d)
@@ -37,7 +37,7 @@ Wide Determinant(const Point& a, const Point& b, const Point& c, const Point& d)
 int GetRestSign(const RasterCase& c, const Tetrahedron& t)
 {
   const glm::dvec3 a = c.RestNodes[t[0]];
-  // As it lies in the output.
+  // ToOutput may be a reflection.
   const double volume = c.VoxelGrid.ToOutput.GetDeterminant() *
     glm::dot(c.RestNodes[t[1]] - a, glm::cross(c.RestNodes[t[2]] - a, c.RestNodes[t[3]] - a));
   return (volume > 0.0) - (volume < 0.0);
@@ -67,14 +67,14 @@ Answer IsBlanked(const RasterCase& c, const std::array<long double, 3>& rest, bo
   return answer;
 }
 
-// Whether an active tetrahedron holds a rest coordinate. In a cell, mirrored by its parity, the
-// corner tetrahedra 0 to 3 hold what is nearer than 1 (in the sum of the axes) to 001, 111, 100 and
-// 010, and the central one the rest.
+// Whether an active tetrahedron contains a rest coordinate. Local coordinates are mirrored in odd
+// cells. The corner tetrahedra 0 to 3 contain points whose L1 distance from 001, 111, 100 and 010
+// is less than 1. The central tetrahedron contains the remaining points.
 Answer IsActive(const RasterCase& c, const std::array<long double, 3>& rest)
 {
   const Extent& extent = c.VoxelGrid.VertexExtent;
   const int corners[4][3] = { { 0, 0, 1 }, { 1, 1, 1 }, { 1, 0, 0 }, { 0, 1, 0 } };
-  long double best = -1e9L; // the depth in an active tetrahedron
+  long double best = -1e9L; // the largest depth in an active tetrahedron
   for (std::int64_t z = 0; z < GetSize(extent, 2) - 1; ++z)
   {
     for (std::int64_t y = 0; y < GetSize(extent, 1) - 1; ++y)
@@ -120,7 +120,7 @@ Answer IsActive(const RasterCase& c, const std::array<long double, 3>& rest)
       }
     }
   }
-  // Exactly on a face is inside; by a hair only is open.
+  // A point exactly on a face is inside. A point very near a face is undecided.
   return best >= 0.0L && (best == 0.0L || best > Margin) ? Answer::Yes
     : best < -Margin                                     ? Answer::No
                                                          : Answer::Undecided;
@@ -281,7 +281,7 @@ std::vector<std::pair<std::int64_t, long double>> GetWeights(
     const auto whole = static_cast<std::int64_t>(std::floor(rest[axis]));
     for (std::int64_t voxel = whole - 1; voxel <= whole + 2; ++voxel)
     {
-      // Catmull-Rom and the tent as functions of the distance.
+      // The Catmull-Rom and the linear interpolation kernel, as functions of the distance.
       const long double x = std::fabs(rest[axis] - static_cast<long double>(voxel));
       long double weight = std::max(0.0L, 1.0L - x);
       if (cubic)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The mesh rasterisation done once more on the host: every tetrahedron of the deformation mesh
-// against every voxel of its box, inside tests in integers of 128 bits, rest coordinates in
-// extended precision. It shares nothing with the kernels.
+// An independent implementation of mesh rasterization on the host. It tests every tetrahedron of
+// the deformation mesh against every voxel of its bounding box, with inside tests in 128-bit
+// integers and rest coordinates in extended precision. It shares nothing with the kernels.
 #ifndef RasterReference_h
 #define RasterReference_h
 
@@ -13,14 +13,14 @@
 namespace reference
 {
 
-/// What a voxel of the output ought to be.
+/// The expected voxel of the output.
 struct RasterVoxel
 {
   bool Covered = false;
-  /// A decision hangs on less than what arithmetic costs: either outcome is right.
+  /// A decision depends on rounding errors: both results are right.
   bool Uncertain = false;
   int Tetrahedron = -1;
-  /// Index from the volume's first voxel.
+  /// The continuous index, counted from the first voxel of the volume.
   std::array<long double, 3> Rest{};
 };
 
@@ -32,10 +32,11 @@ struct RasterResult
   std::int64_t NumberOfOverlappedVoxels = 0;
 };
 
-/// cubic: blanked voxels then count over the wider support.
+/// cubic: blanked voxels have an effect on the wider support of cubic interpolation.
 RasterResult Rasterize(const RasterCase& rasterCase, bool cubic = false);
 
-/// Weights of the voxels that an interpolation at a rest coordinate uses, by index in the volume.
+/// The voxels that an interpolation at a rest coordinate uses, by index in the volume, and their
+/// weights.
 std::vector<std::pair<std::int64_t, long double>> GetWeights(
   const deformvolume::Extent& volume, const std::array<long double, 3>& rest, bool cubic);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Inverse displacement fields against a look-up on the host in extended precision: misuse,
-// coverage, values, and that nothing depends on slabs and work-groups.
+// Inverse displacement fields, compared with a look-up on the host in extended precision: misuse,
+// coverage, values, and that results do not depend on slabs and work-groups.
 #include "FieldFolds.h"
 #include "OutputPlace.h"
 #include "RasterCase.h"
@@ -36,7 +36,7 @@ InverseCase MakeCase(const Extent& volume, const std::array<int, 3>& points, flo
     number *= strength;
   }
   made.Field.Dimensions = points;
-  // The field is turned a little, and reaches from about the first voxel to the last.
+  // The field is slightly rotated, and extends approximately from the first to the last voxel.
   for (int axis = 0; axis < 3; ++axis)
   {
     const double first = scale[axis] * volume[2 * axis];
@@ -63,9 +63,9 @@ Deformed RunCase(VolumeDeformer& deformer, InverseCase& c, const std::vector<Vol
   return RunDeformer(deformer, output, arrays, Resampling::MeshRasterization, interpolation);
 }
 
-/// Where an output voxel lies in the volume, counted from the first voxel, and how far inside it
-/// is: of the field in points, of the volume in voxels; negative outside, and where an undefined
-/// vector counts.
+/// The position of an output voxel in the volume, counted from the volume's first voxel. margin is
+/// the distance to the border, in points of the field or voxels of the volume. It is negative
+/// outside and for a voxel that needs an undefined vector.
 std::array<long double, 3> GetRest(
   const InverseCase& c, const std::array<int, 3>& voxel, long double& margin)
 {
@@ -89,7 +89,7 @@ std::array<long double, 3> GetRest(
   }
   const Extent points{ { 0, c.Field.Dimensions[0] - 1, 0, c.Field.Dimensions[1] - 1, 0,
     c.Field.Dimensions[2] - 1 } };
-  // Positions nearer to a point than 1/1024 may be on it.
+  // Positions nearer to a point than 1/1024 may be treated as on the point.
   long double most = 0.0L;
   for (const auto& [point, weight] : reference::GetWeights(points, place, false))
   {
@@ -141,7 +141,7 @@ void ExpectLookedUp(const InverseCase& c, const std::vector<float>& values,
         const auto rest = GetRest(c, at, margin);
         const bool isCovered = deformed.Coverage[voxel] != 0;
         covered += isCovered ? 1 : 0;
-        // The border may be missed by 1/256 output voxel on each axis, or by 1/1024 point of the
+        // The error at the border is up to 1/256 output voxel on each axis, or 1/1024 point of the
         // field.
         if ((margin > 1e-5L && !isCovered) || (margin < -border && isCovered))
         {
@@ -160,7 +160,8 @@ void ExpectLookedUp(const InverseCase& c, const std::vector<float>& values,
           integer += weight * integers[source];
         }
         integer = std::min(std::max(integer, -32768.0L), 32767.0L);
-        // A bound of 1e-5 of the largest value, as for meshes: 1,000 and 2^15.
+        // The bound is 1e-5 of the largest value, like for meshes. The largest values are 1,000 and
+        // 2^15.
         wrong += std::fabs(deformed.GetOutput<float>(0)[voxel] - value) <= 1e-2L ? 0 : 1;
         wrong += std::fabs(deformed.GetOutput<std::int16_t>(1)[voxel] - integer) <= 0.83L ? 0 : 1;
       }
@@ -186,7 +187,8 @@ std::string GetError(const std::function<void()>& function)
 
 const Extent Volume{ { -3, 18, 2, 16, -9, 5 } };
 
-// A whole output is right, linear and cubic, and the same in slabs and with other groups.
+// Compares a whole output with the look-up, linear and cubic, and expects the same result with
+// slabs and other work-group sizes.
 void ExpectLookedUpInSlabs(InverseCase& c)
 {
   const auto values = MakeRandomValues<float>(GetNumberOfPoints(Volume), 1);
@@ -240,8 +242,8 @@ TEST(InverseField, EqualsReference)
   }
 }
 
-// Registration: the output lies on a grid of its own, turned, stretched and mirrored against the
-// volume's, and the field on yet another one.
+// Registration: the grid of the output is rotated, scaled and perhaps mirrored relative to the grid
+// of the volume. The grid of the field differs from both.
 TEST(InverseField, EqualsReferenceOnATurnedGrid)
 {
   for (const bool isMirrored : { false, true })
@@ -251,7 +253,7 @@ TEST(InverseField, EqualsReferenceOnATurnedGrid)
     const double z = isMirrored ? -1.0 : 1.0;
     map.Matrix = { { 0.71, -0.52, 0.31 * z, 0.48, 0.83, -0.12 * z, -0.17, 0.22, 0.94 * z } };
     map.Shift = { { 3.3, -7.9, 12.6 } };
-    // The extent round the volume, and a field that ends within it on one side.
+    // The output extent contains the whole volume. The field ends inside the extent on one side.
     for (int axis = 0; axis < 3; ++axis)
     {
       double low = 1e9;
@@ -277,7 +279,7 @@ TEST(InverseField, EqualsReferenceOnATurnedGrid)
 TEST(InverseField, VoxelsThatNeedUndefinedVectorsAreNotCovered)
 {
   const float nan = std::nanf("");
-  // Between voxels; and each third voxel a point, exactly.
+  // Points between voxels; then points that lie exactly on every third voxel.
   for (const bool onVoxels : { false, true })
   {
     InverseCase c = MakeCase(Volume, { { 8, 7, 6 } }, 0.002F);
@@ -301,7 +303,7 @@ TEST(InverseField, VoxelsThatNeedUndefinedVectorsAreNotCovered)
   }
 }
 
-// Six times the signed volume.
+// Six times the signed volume of a tetrahedron.
 long double GetVolume(const std::array<std::array<long double, 3>, 4>& points)
 {
   long double e[3][3];
@@ -317,8 +319,8 @@ long double GetVolume(const std::array<std::array<long double, 3>, 4>& points)
     e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
 }
 
-// The middle tetrahedron of each cell has its four points whose indices have an even sum; each of
-// the other four points has a tetrahedron with its three neighbours in the cell.
+// The central tetrahedron of each cell has the four vertices whose indices have an even sum. Each
+// of the other four vertices forms a tetrahedron with its three neighbors in the cell.
 std::int64_t CountInvertedByDefinition(const DisplacementField& field)
 {
   using Index = std::array<int, 3>;
@@ -373,7 +375,7 @@ std::int64_t CountInvertedByDefinition(const DisplacementField& field)
 
 TEST(InverseField, InvertedTetrahedra)
 {
-  // Pressed flat along an axis, and a little more or less.
+  // Compressed by slightly less or slightly more than what makes the cells flat, along each axis.
   for (int axis = 0; axis < 3; ++axis)
   {
     for (const float factor : { 0.99F, 1.01F })
@@ -390,13 +392,13 @@ TEST(InverseField, InvertedTetrahedra)
       EXPECT_EQ(CountInvertedTetrahedra(c.Field), factor < 1.0F ? 0 : 5L * 3 * 2 * 4) << axis;
     }
   }
-  // From a few cells whose edges change by nearly the most that inverts nothing, to all.
+  // From a few inverted tetrahedra to many.
   for (const float strength : { 0.0F, 0.0003F, 0.0005F, 0.0007F, 0.001F, 0.005F })
   {
     InverseCase c = MakeCase(Volume, { { 9, 8, 7 } }, strength);
     c.Field.Vectors = c.Vectors.data();
     EXPECT_EQ(CountInvertedTetrahedra(c.Field), CountInvertedByDefinition(c.Field)) << strength;
-    // What has an undefined vertex is not counted.
+    // Tetrahedra with an undefined vertex are not counted.
     for (const std::size_t point : { 0U, 100U, 101U, 163U, 300U })
     {
       std::fill_n(&c.Vectors[3 * point], 3, std::nanf(""));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The resampler MeshRasterization against a brute-force reference: misuse, coverage, values, and
-// that nothing depends on tiles, slabs and work-groups.
+// The resampler MeshRasterization, compared with a brute-force reference: misuse, coverage, values,
+// and that results do not depend on tiles, slabs and work-groups.
 #include "DeviceNeeds.h"
 #include "RasterCase.h"
 
@@ -66,13 +66,13 @@ TEST(MeshRasterization, MisuseLeavesTheDeformerUsable)
               .find("empty"),
     std::string::npos);
   Load(deformer, good, arrays);
-  // Without links all else is impossible.
+  // Without links only mesh rasterization is possible.
   DeformerCase output;
   output.Output = good.Output;
   EXPECT_NE(GetError([&] { RunDeformer(deformer, output, arrays); }).find("deformation"),
     std::string::npos);
 
-  // A node far away, and a tetrahedron that is too large.
+  // A node that is too far away, and a tetrahedron that is too large.
   RasterCase far = good;
   far.RestNodes[0].x = 4e6;
   EXPECT_NE(GetError([&] { LoadAndRun(far, arrays); }).find("Node 0 "), std::string::npos);
@@ -121,8 +121,8 @@ TEST(MeshRasterization, AbortThrows)
   EXPECT_THROW(deformer.Deform(request), Aborted);
 }
 
-// Bits of every kind come out where a mesh that moves by whole voxels takes them: all types, with
-// one component, with three, and as labels.
+// Random bits appear at the voxels that a shift by whole voxels gives: all types, with one
+// component, with three components, and as labels.
 TEST(MeshRasterization, IdentityAndWholeShiftsAreBitExact)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -183,7 +183,7 @@ TEST(MeshRasterization, IdentityAndWholeShiftsAreBitExact)
   }
 }
 
-// A finer output: every voxel of the volume comes out at its place.
+// An output with a finer grid: every voxel of the volume appears at its position.
 TEST(MeshRasterization, UndeformedAtAnotherSpacingKeepsTheVoxels)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -248,7 +248,8 @@ TEST(MeshRasterization, AffineMapsEqualReference)
     }
     if (run == 2)
     {
-      matrix = glm::dmat3(0, 1, 0, 0, 0, 1, 1, 0, 0); // a permutation: all voxels on faces
+      matrix =
+        glm::dmat3(0, 1, 0, 0, 0, 1, 1, 0, 0); // a permutation of the axes: all voxels lie on faces
     }
     if (run % 3 == 0)
     {
@@ -265,7 +266,8 @@ TEST(MeshRasterization, AffineMapsEqualReference)
   }
 }
 
-// Nodes that move on their own by much: inverted tetrahedra, slivers, overlaps everywhere.
+// Nodes have large independent displacements: inverted tetrahedra, slivers, and overlaps
+// everywhere.
 TEST(MeshRasterization, FoldedMeshesEqualReference)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -275,7 +277,7 @@ TEST(MeshRasterization, FoldedMeshesEqualReference)
     RasterCase folded =
       MakeRasterCase({ Volume, { { 1, 1, 1 } } }, glm::dvec3(Volume[0], Volume[2], Volume[4]) - 3.0,
         glm::dvec3(Volume[1], Volume[3], Volume[5]) + 2.0, 3, MakeJitter(seed, 6.0));
-    // Flat at rest, flat when deformed, and twice the same.
+    // A tetrahedron that is flat at rest, one that uses a node twice, and a copy of another one.
     folded.Tetrahedra.push_back({ { 0, 1, 2, 3 } });
     folded.Tetrahedra.push_back({ { 5, 5, 9, 20 } });
     folded.Tetrahedra.push_back(folded.Tetrahedra[7]);
@@ -288,7 +290,7 @@ TEST(MeshRasterization, FoldedMeshesEqualReference)
   }
 }
 
-// A mesh that is pressed almost flat at an angle, and one that is spread far.
+// A mesh that is almost flat, at an angle, and a mesh that is strongly stretched.
 TEST(MeshRasterization, SliversAndStretchedMeshesEqualReference)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -302,8 +304,8 @@ TEST(MeshRasterization, SliversAndStretchedMeshesEqualReference)
       { { 1, 1, 1 } });
     const auto values = MakeRandomValues<float>(flat.GetNumberOfVoxels(), 3);
     const std::vector<VolumeArray> arrays{ MakeArray(values) };
-    // Rest coordinates change by up to 50 voxels from one output voxel to the next, and positions
-    // are rounded to 1/256: only coverage and order are compared voxel by voxel there.
+    // Rest coordinates change by up to 50 voxels per output voxel, and positions are rounded to
+    // 1/256 voxel.
     const Deformed deformed = LoadAndRun(flat, arrays);
     EXPECT_GT(deformed.Report.NumberOfCoveredVoxels, 0);
     ExpectEqualsReference(flat, arrays, deformed);
@@ -353,7 +355,7 @@ TEST(MeshRasterization, MasksEqualReference)
   }
 }
 
-// Work-groups, slabs, and the part of the output that is asked for change no bit.
+// Work-group sizes, slabs, and the requested part of the output do not change any bit.
 TEST(MeshRasterization, ResultDoesNotDependOnTheDivisionOfWork)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -373,7 +375,7 @@ TEST(MeshRasterization, ResultDoesNotDependOnTheDivisionOfWork)
     EXPECT_EQ(other.Coverage, whole.Coverage) << group;
   }
   deformer.SetWorkGroupSize(0);
-  // A few planes at a time.
+  // Slabs of a few planes.
   const std::uint64_t plane = 16 * GetSize(folded.Output, 0) * GetSize(folded.Output, 1);
   deformer.SetAllocationLimit(3 * plane);
   Deformed other = Rasterize(deformer, folded, arrays);
@@ -381,8 +383,7 @@ TEST(MeshRasterization, ResultDoesNotDependOnTheDivisionOfWork)
   EXPECT_EQ(other.Coverage, whole.Coverage);
   EXPECT_EQ(other.Report.NumberOfInvertedTetrahedra, whole.Report.NumberOfInvertedTetrahedra);
   EXPECT_EQ(other.Report.NumberOfCoveredVoxels, whole.Report.NumberOfCoveredVoxels);
-  // The same copied from the device, as to memory that is not aligned, while the next ones are
-  // made.
+  // Unaligned outputs: each slab is copied from the device while the next one is made.
   const auto voxels = static_cast<std::size_t>(GetNumberOfPoints(folded.Output));
   const std::size_t bytes[] = { sizeof(float) * voxels, 2 * sizeof(double) * voxels };
   for (const int calls : { 1000, 2, 40 })
@@ -399,7 +400,7 @@ TEST(MeshRasterization, ResultDoesNotDependOnTheDivisionOfWork)
     request.Progress = [&left](double) { return --left > 0; };
     if (calls < 1000)
     {
-      // The memory is gone as soon as the call has ended.
+      // The memory of the outputs is freed as soon as the call has ended.
       EXPECT_THROW(deformer.Deform(request), Aborted);
       continue;
     }
@@ -410,7 +411,7 @@ TEST(MeshRasterization, ResultDoesNotDependOnTheDivisionOfWork)
     EXPECT_EQ(coverage, whole.Coverage);
   }
   deformer.SetAllocationLimit(0);
-  // A box that begins anywhere.
+  // A part of the output.
   RasterCase part = folded;
   part.Output = { { folded.Output[0] + 11, folded.Output[1] - 5, folded.Output[2] + 3,
     folded.Output[3] - 9, folded.Output[4] + 5, folded.Output[5] - 2 } };
@@ -433,7 +434,7 @@ TEST(MeshRasterization, ResultDoesNotDependOnTheDivisionOfWork)
   }
 }
 
-// NaN and infinities stay in the cells that they belong to.
+// NaN and infinite values affect only the cells around their voxel.
 TEST(MeshRasterization, NotANumberStaysWithinItsCells)
 {
   const RasterCase shifted = MakeRasterCase(Volume, 2,
@@ -447,11 +448,11 @@ TEST(MeshRasterization, NotANumberStaysWithinItsCells)
   {
     numberOfNaN += std::isnan(deformed.GetOutput<float>(0)[voxel]);
   }
-  EXPECT_EQ(numberOfNaN, 2); // half a voxel to the left and to the right of it
+  EXPECT_EQ(numberOfNaN, 2); // one output voxel on either side of the NaN
 }
 
-// Small enough for an interpreter of kernels, and with all that they have to do: folds, masks,
-// arrays by lanes and not, work-groups of several items.
+// Small enough for an interpreter of kernels. It covers folds, masks, arrays in single and double
+// precision, and work-groups of several items.
 TEST(MeshRasterization, Tiny)
 {
   RasterCase tiny = MakeRasterCase({ { { 0, 6, -2, 3, 1, 5 } }, { { 1, 1, 1 } } },

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the lists of tetrahedra send from and to a device with memory of its own.
+// What the lists of tetrahedra copy from and to a device with memory of its own.
 #include "DeviceNeeds.h"
 #include "FakeDriver.h"
 #include "Tetrahedron.h"
@@ -12,8 +12,8 @@
 
 using namespace deformvolume;
 
-// What is counted stays on the device: a length and two numbers come to the host, however many
-// tiles there are.
+// Counters stay on the device. The host reads one length and two counters, no matter how many tiles
+// there are.
 TEST(MeshRasterizationGraphics, ListsStayOnTheDevice)
 {
   SKIP_UNLESS_GRAPHICS()
