@@ -85,7 +85,7 @@ Position CutReference::GetPosition(std::int64_t vertex, int side) const
   {
     return own;
   }
-  // What neighbours say, by how much they know.
+  // The positions that neighbors suggest, sorted by the reliability of their information.
   std::array<std::vector<Position>, 3> words;
   const auto add = [&](std::size_t word, std::int64_t near, std::int64_t from, std::int64_t to)
   {

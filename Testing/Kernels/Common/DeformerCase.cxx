@@ -57,7 +57,7 @@ reference::Position GetRestPosition(const VoxelGrid& voxelGrid, int x, int y, in
   return position;
 }
 
-/// Converts a background as the deformer has to: clamped to the type's range.
+/// Converts a background as the deformer must: clamped to the range of the type.
 template <typename T>
 T ClampTo(double value)
 {
@@ -77,7 +77,7 @@ T ClampTo(double value)
 }
 
 /// Whether the values of an array may have been interpolated in single precision: by the kernel for
-/// processors, or as there is no double precision.
+/// CPUs, or because the device has no double precision.
 bool MayBeSinglePrecision(const VolumeArray& array, Resampling method)
 {
   static const bool hasDouble = HasDoublePrecision();
@@ -89,8 +89,9 @@ bool MayBeSinglePrecision(const VolumeArray& array, Resampling method)
     (array.Type == ElementType::Float32 || GetElementSize(array.Type) <= 2);
 }
 
-/// What single precision costs, of the largest value of the array: an error of the weights of
-/// 2^-24 times the shape of the cells, which bends to over a hundred in these tests.
+/// The error of single precision, as a fraction of the largest value of the array. The error of a
+/// weight is 2^-24 times a factor for the shape of the cell, which is more than a hundred in these
+/// tests.
 constexpr long double SinglePrecision = 1e-5L;
 
 template <typename T>
@@ -106,8 +107,8 @@ long double GetLargest(const VolumeArray& array, std::int64_t voxels)
   return largest;
 }
 
-/// Empty where value is right for a sample in this tetrahedron, else what is wrong. slack: what may
-/// come on top of the error of arithmetic in double precision.
+/// Returns an empty text if value is right for a sample in this tetrahedron, otherwise the fault.
+/// slack: an error that is allowed in addition to that of double precision.
 template <typename T>
 std::string CompareValue(const reference::Containing& winner, const VolumeArray& array,
   int component, T value, long double slack)
@@ -138,7 +139,7 @@ std::string CompareValue(const reference::Containing& winner, const VolumeArray&
         std::isnan(expected) ? std::isnan(value) : static_cast<long double>(value) == expected;
       return same ? "" : std::to_string(value) + " instead of a value that is not finite";
     }
-    // Half a unit of the result, and what summing in double costs.
+    // Half a unit in the last place of the result, and the error of a sum in double precision.
     tolerance = std::numeric_limits<T>::epsilon() * std::fabs(expected) * 0.51L +
       std::numeric_limits<double>::epsilon() * 4.0L * magnitude +
       std::numeric_limits<T>::denorm_min();
@@ -156,7 +157,8 @@ std::string CompareValue(const reference::Containing& winner, const VolumeArray&
   }
   else
   {
-    // Nearest; the slack is that of a sum in double where it falls on the half.
+    // Rounding to nearest. The slack allows for the error of a sum in double precision near one
+    // half.
     tolerance = 0.5L + std::numeric_limits<double>::epsilon() * 8.0L * magnitude;
   }
   if (!(difference <= tolerance + slack))

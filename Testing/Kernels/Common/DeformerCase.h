@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A volume with a displacement of each of its voxels, given to a VolumeDeformer and to the host
-// reference alike, and the comparison of what the two make of it.
+// A volume with a displacement of each voxel, for a VolumeDeformer and for the host reference, and
+// the comparison of their results.
 //
-// Displacements are whole numbers of 1/256 output voxel and scales are powers of two or small
-// multiples of them, so that positions are exact in float and rounding them changes nothing: both
-// sides then see the same tetrahedra, and coverage and winner must agree voxel by voxel.
+// Displacements are multiples of 1/256 output voxel. Scales are powers of two or small multiples of
+// them. Positions are therefore exact in floats, and rounding does not change them: both sides see
+// the same tetrahedra, so coverage and winners must agree voxel by voxel.
 #ifndef DeformerCase_h
 #define DeformerCase_h
 
@@ -21,32 +21,32 @@
 #include <string>
 #include <vector>
 
-/// How the displacements reach the deformer.
+/// How the displacements are given to the deformer.
 enum class Route
 {
-  /// A displacement field whose points are the voxels.
+  /// As a displacement field whose points are the voxels.
   Field,
-  /// A mesh with a node for each voxel, and a link for each.
+  /// As a mesh with a node for each voxel and a link for each voxel.
   Mesh,
-  /// The same mesh with runs: of neighbours that move alike.
+  /// As the same mesh with runs of neighboring voxels that move alike.
   Runs
 };
 
 struct DeformerCase
 {
   deformvolume::VoxelGrid VoxelGrid;
-  /// In 1/256 output voxel, one a voxel.
+  /// The displacement of each voxel, in 1/256 output voxel.
   std::vector<reference::Position> Displacements;
-  /// Empty: none are unlinked, none blanked, all active.
+  /// If an array is empty: no voxel is unlinked, no voxel is blanked, all tetrahedra are active.
   std::vector<bool> Unlinked;
   std::vector<unsigned char> Blanked;
   std::vector<unsigned char> Active;
-  std::vector<float> Distances;       // to the boundary; empty: nothing is clipped
-  std::vector<unsigned char> Crossed; // by a smooth cut; empty: there is none
+  std::vector<float> Distances;       // from the boundary; empty: nothing is clipped
+  std::vector<unsigned char> Crossed; // by a smooth cut; empty: there is no smooth cut
   std::vector<float> CutDistances;
   deformvolume::Extent Output;
 
-  /// In output voxels, x, y and z of each voxel.
+  /// Returns the displacements in output voxels, three numbers per voxel.
   std::vector<float> GetDisplacements() const;
   std::int64_t GetNumberOfVoxels() const
   {
@@ -54,51 +54,50 @@ struct DeformerCase
   }
 };
 
-/// The structured index of each voxel goes to a continuous output index, which is rounded to 1/256.
-/// The output becomes the bounds of the result and margin voxels more.
+/// Makes a case from a map of structured indices to continuous output indices, which are rounded to
+/// 1/256. The output becomes the bounds of the result, enlarged by margin voxels.
 DeformerCase MakeCase(const deformvolume::Extent& extent, const deformvolume::OutputMap& toOutput,
   const std::function<glm::dvec3(const glm::dvec3&)>& deformation, int margin = 1);
 
-/// Adds a smooth cut with distances of random sign; of the cells one in `every` has tetrahedra that
-/// are crossed. Distances are multiples of 1/16: the kernels and the reference add them up without
-/// rounding.
+/// Adds a smooth cut with distances of random sign. One of `every` cells has crossed tetrahedra.
+/// Distances are multiples of 1/16, so the kernels and the reference add them without rounding.
 void CutAtRandom(DeformerCase& made, unsigned int seed, unsigned int every);
 
-/// Adds a smooth cut where a function of the index is 0: it crosses the wanted ones of the cells
-/// that have vertices on both sides.
+/// Adds a smooth cut at the zeros of a function of the index. It crosses the wanted cells among
+/// those that have vertices on both sides.
 void CutAlong(
   DeformerCase& made, const std::function<double(const glm::dvec3&)>& distance,
   const std::function<bool(const glm::dvec3&)>& isWanted = [](const glm::dvec3&) { return true; });
 
 reference::Result ResampleByReference(const DeformerCase& deformerCase);
 
-/// Which of the nodes of its tetrahedron a voxel is: it changes from voxel to voxel, so that all
-/// four weights count.
+/// Which node of its tetrahedron a voxel is. The node changes from voxel to voxel, so that all four
+/// weights are tested.
 inline int GetCorner(std::int64_t voxel)
 {
   return static_cast<int>(voxel % 4);
 }
 
-/// The runs of Route::Runs: each begins with the voxel whose tetrahedron it takes.
+/// The runs of Route::Runs. Each begins at the voxel whose tetrahedron it uses.
 deformvolume::VertexRuns MakeRuns(const DeformerCase& deformerCase);
 
 /// Sets the voxel grid, the arrays, the masks and the deformation.
 void Load(deformvolume::VolumeDeformer& deformer, const DeformerCase& deformerCase,
   const std::vector<deformvolume::VolumeArray>& arrays, Route route);
 
-/// Moves a volume that has been loaded with Route::Field.
+/// Moves a volume that was loaded with Route::Field.
 void MoveByField(deformvolume::VolumeDeformer& deformer, const DeformerCase& deformerCase);
 
 struct Deformed
 {
-  /// One for each array of the volume, and padded by guard bytes that must survive.
+  /// One output for each array of the volume, padded by guard bytes that must not change.
   std::vector<std::vector<unsigned char>> Outputs;
   std::vector<signed char> Coverage;
   deformvolume::DeformReport Report;
   deformvolume::Resampling Method = deformvolume::Resampling::Exact;
-  /// The same by the kernel that takes one cell after the other, where the method is left open.
+  /// The result of the kernel by cells, if no method was requested.
   std::shared_ptr<Deformed> ByCell;
-  /// And by the kernel for graphics cards.
+  /// The result of the kernel by columns, if no method was requested.
   std::shared_ptr<Deformed> ByColumns;
 
   template <typename T>
@@ -108,34 +107,34 @@ struct Deformed
   }
 };
 
-/// Runs a loaded deformer and checks that it writes inside its arrays and all of them.
+/// Runs a loaded deformer, and checks that it writes all of its arrays and nothing beyond them.
 Deformed RunDeformer(deformvolume::VolumeDeformer& deformer, const DeformerCase& deformerCase,
   const std::vector<deformvolume::VolumeArray>& arrays,
   deformvolume::Resampling method = deformvolume::Resampling::Exact,
   deformvolume::Interpolation interpolation = deformvolume::Interpolation::Linear);
 
-/// Load and RunDeformer on a new deformer, by the kernel of its choice, cell by cell and by
+/// Calls Load and RunDeformer on a new deformer: with the kernel of its choice, by cells and by
 /// columns.
 Deformed LoadAndRun(const DeformerCase& deformerCase,
   const std::vector<deformvolume::VolumeArray>& arrays, Route route = Route::Field);
 
-/// Coverage, counts and all values against the reference, also those found cell by cell and by
-/// columns. Values of arrays that go by lanes have single precision, all others the precision of
-/// the reference. By columns they are the same as by lanes, to the last bit.
+/// Compares coverage, counts and all values with the reference, also the results by cells and by
+/// columns. Values of arrays that are resampled by lanes have single precision, all others the
+/// precision of the reference. Results by columns must equal those by lanes bit for bit.
 void ExpectEqualsReference(const DeformerCase& deformerCase, const reference::Result& reference,
   const std::vector<deformvolume::VolumeArray>& arrays, const Deformed& deformed);
 
-/// The same on a new deformer, with the usual arrays.
+/// Compares the result of a new deformer, with the usual arrays.
 void ExpectEqualsReference(const DeformerCase& deformerCase, Route route = Route::Field);
 
-/// No hole and no voxel that more than one tetrahedron writes.
+/// Checks that there are no holes, and no voxels that more than one tetrahedron writes.
 void ExpectEmbedding(const reference::Result& reference);
 
-/// Bits of every kind: extremes, and for floating-point types infinities, NaN and -0.
+/// Random bits, among them extreme values; for floating-point types also infinities, NaN and -0.
 template <typename T>
 std::vector<T> MakeRandomBits(std::size_t size, unsigned int seed);
 
-/// Values of the whole range of an integer type, or of -1000 to 1000.
+/// Random values from the whole range of an integer type, or from -1000 to 1000.
 template <typename T>
 std::vector<T> MakeRandomValues(std::size_t size, unsigned int seed);
 
@@ -163,25 +162,26 @@ deformvolume::VolumeArray MakeArray(
   return array;
 }
 
-/// An array of each kind that the kernels of the resampling treat in a way of its own: integers and
-/// floats that go by lanes, and labels that do not. Kernels are compiled for each list of types,
-/// which takes seconds: a test that needs no others has these.
+/// One array of each kind that the kernels handle differently: integers and floats that are
+/// resampled by lanes, and labels that are not. Kernels are compiled for each list of types, which
+/// takes seconds. Tests that need no other types therefore use these arrays.
 struct UsualArrays
 {
   explicit UsualArrays(std::size_t voxels);
 
   std::vector<std::int16_t> Shorts;
   std::vector<float> Floats;
-  std::vector<std::uint16_t> Labels; // two of each voxel
+  std::vector<std::uint16_t> Labels; // two components per voxel
 
-  /// In this order.
+  /// Returns the arrays in the order of the members.
   std::vector<deformvolume::VolumeArray> Get() const;
 };
 
-/// A map with entries of -0.5 to 0.5 on top of a random rotation, neither flat nor mirrored.
+/// A random rotation plus random entries from -distortion to distortion. The matrix is neither
+/// singular nor mirrored.
 glm::dmat3 MakeRandomMatrix(std::mt19937& random, double distortion = 0.3);
 
-/// Displacements of up to amplitude voxels on each axis, independent from voxel to voxel.
+/// Random displacements of up to amplitude voxels on each axis, independent for each voxel.
 std::function<glm::dvec3(const glm::dvec3&)> MakeJitter(unsigned int seed, double amplitude);
 
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a test needs of the device, by what the device says of itself.
+// What a test requires of the device, as the device reports it.
 #ifndef DeviceNeeds_h
 #define DeviceNeeds_h
 
@@ -7,16 +7,16 @@
 
 #include <vector>
 
-/// Whether the device of the tests has double precision. Without it arrays of doubles and linear
-/// arrays of integers of 32 and 64 bits are refused, and all others are interpolated in single
-/// precision.
+/// Whether the device of the tests has double precision. Without it, arrays of doubles and linear
+/// arrays of 32-bit and 64-bit integers are refused, and all other arrays are interpolated in
+/// single precision.
 bool HasDoublePrecision();
 
-/// Whether a work-item has the vector registers of a processor for itself, as the resampling by
-/// lanes needs.
+/// Whether each work-item has the vector registers of a CPU core for itself, as resampling by lanes
+/// requires.
 bool HasVectors();
 
-/// The kernels of the exact resampling that the device can run, lanes first.
+/// The kernels of the exact resampler that the device supports, lanes first.
 std::vector<deformvolume::Resampling> GetExactMethods();
 
 #define SKIP_WITHOUT_DOUBLE_PRECISION()                                                            \

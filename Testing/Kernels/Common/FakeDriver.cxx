@@ -30,7 +30,7 @@ void FakeDriver::Reset()
 namespace
 {
 
-/// The function of the OpenCL library.
+/// Returns a function of the OpenCL library.
 template <typename Function>
 Function* Find(const char* name)
 {
@@ -54,7 +54,7 @@ cl_int Give(const void* value, std::size_t size, std::size_t room, void* place, 
   return CL_SUCCESS;
 }
 
-/// Memory of the host with a buffer over it.
+/// A range of host memory with a buffer over it.
 struct Range
 {
   const char* Begin;
@@ -72,7 +72,7 @@ bool IsPinned(cl_mem buffer)
   return flags & CL_MEM_ALLOC_HOST_PTR;
 }
 
-/// Whether a copy that the host does not wait for fails; then error is what the call returns.
+/// Whether a non-blocking copy must fail. The call then returns error.
 bool Fails(int asked, Counter<int>& before, cl_command_queue queue, cl_event* done, cl_int& error)
 {
   if (!asked || !done || before-- > 0)
@@ -91,7 +91,7 @@ bool Fails(int asked, Counter<int>& before, cl_command_queue queue, cl_event* do
   return true;
 }
 
-/// Counts a copy, and returns whether it fails instead.
+/// Counts a copy, and returns whether it must fail.
 bool FailsToRead(
   std::size_t bytes, cl_bool blocking, cl_command_queue queue, cl_event* done, cl_int& error)
 {
@@ -110,7 +110,7 @@ bool FailsToWrite(
   return !blocking && Fails(driver.WriteError, driver.WritesBeforeError, queue, done, error);
 }
 
-/// Bytes of local memory that arguments of kernels ask for.
+/// The number of bytes of local memory that arguments of kernels request.
 std::map<cl_kernel, std::map<cl_uint, std::size_t>> LocalMemory;
 
 template <typename Query>
@@ -120,7 +120,7 @@ std::string GetText(Query&& query)
   query(0, nullptr, &size);
   std::string text(size, '\0');
   query(size, size ? &text[0] : nullptr, nullptr);
-  return text.c_str(); // to the first zero
+  return text.c_str(); // up to the first zero
 }
 
 std::string GetText(cl_program program, cl_program_info what)
@@ -255,7 +255,7 @@ extern "C" cl_kernel CL_API_CALL clCreateKernel(cl_program program, const char* 
   static auto* const real = Find<decltype(clCreateKernel)>("clCreateKernel");
   cl_kernel kernel = real(program, name, error);
   const std::lock_guard<std::mutex> lock(Mutex);
-  LocalMemory.erase(kernel); // one that is gone may have had this place
+  LocalMemory.erase(kernel); // a released kernel may have had this address
   return kernel;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stands between the kernels and the OpenCL driver of a test program: has calls fail, and the
-// device appear to be another one than it is. Programs that link it take its functions in place of
-// those of the OpenCL library, which these call.
+// A layer between the kernels and the OpenCL driver of a test program. It makes calls fail, and
+// makes the device appear as another one. Programs that link it call its functions instead of those
+// of the OpenCL library; the functions then call the library.
 #ifndef FakeDriver_h
 #define FakeDriver_h
 
@@ -11,7 +11,7 @@
 #include <functional>
 #include <string>
 
-/// A number that several threads count.
+/// A number that several threads increment.
 template <typename T>
 class Counter
 {
@@ -40,63 +40,64 @@ private:
 
 struct FakeDriver
 {
-  /// A kernel of a program as the driver gets it.
+  /// A launch of a kernel, as the driver receives it.
   struct Launch
   {
     std::string Text; // of the program
     std::string Kernel;
-    std::size_t Items = 1;       // in a group
-    std::size_t LocalMemory = 0; // bytes of a group that arguments ask for
+    std::size_t Items = 1;       // of a work-group
+    std::size_t LocalMemory = 0; // bytes per work-group that arguments request
   };
 
-  /// Copies from the device, and to it, that the host does not wait for fail, unless 0: with this
-  /// error. So many of them succeed before.
+  /// If not 0, non-blocking copies from and to the device fail with this error, after
+  /// ReadsBeforeError or WritesBeforeError copies have succeeded.
   int ReadError = 0;
   Counter<int> ReadsBeforeError;
   int WriteError = 0;
   Counter<int> WritesBeforeError;
-  /// Those that fail are not even enqueued.
+  /// Failing copies are not even enqueued.
   bool FailsAtOnce = false;
-  /// There is no page-locked memory.
+  /// The driver has no page-locked memory.
   bool RefusesPinned = false;
-  /// The device is a graphics card with memory of its own, and has no double precision. Contexts
-  /// live as long as the process: these are set before the first one.
+  /// The device is a graphics card with its own memory, and has no double precision. Contexts live
+  /// as long as the process, so set these members before the first context is created.
   bool IsGraphics = false;
   bool HasDouble = true;
   /// The name of the device that is asked for something first; empty: as it is.
   std::string FirstName;
-  /// The device has the extension cl_nv_compiler_options. Options from the first one of it on are
-  /// for OnBuild only, as the driver does not know them.
+  /// The device has the extension cl_nv_compiler_options. Compiler options from the first option of
+  /// this extension on are passed to OnBuild only, as the real driver does not support them.
   bool HasNVIDIAOptions = false;
-  /// Bytes that the device has, 0: as it is.
+  /// The memory of the device, in bytes; 0: the real size.
   std::uint64_t GlobalMemory = 0;
   std::uint64_t LocalMemory = 0;
-  /// No buffer is made over memory of the host that overlaps that of another one: what commands on
-  /// both do is undefined.
+  /// Buffers over host memory that overlaps the memory of another buffer are refused. The result of
+  /// commands that use both buffers would be undefined.
   bool RefusesOverlaps = false;
-  /// Programs are compiled so that products are fused with sums wherever that is possible.
+  /// Programs are compiled so that multiplications and additions are fused wherever possible.
   bool FusesProducts = false;
-  /// Launches of more than one work-item that left the size of the groups to the driver.
+  /// The number of launches of more than one work-item for which the driver chose the size of
+  /// work-groups.
   Counter<int> LaunchesWithoutGroup;
-  /// Kernels are not run, and what they would have written stays as it was: 0 at first.
+  /// Kernels are not run. Their output keeps its values, which are 0 at first.
   bool SkipsLaunches = false;
-  /// Called with each program that has been built from its text: the text, the options, and the
-  /// names of the kernels, which are separated by semicolons.
+  /// Called with each program that was built from source: the text, the options, and the names of
+  /// the kernels, separated by semicolons.
   std::function<void(const std::string&, const std::string&, const std::string&)> OnBuild;
-  /// Called with each launch.
+  /// Called for each launch.
   std::function<void(const Launch&)> OnLaunch;
 
-  /// Bytes that calls of the host have brought from buffers and to them. A buffer that is mapped
-  /// counts as read and written as the access has it, unless it is page-locked: that one stays
-  /// mapped, and is a place of the host.
+  /// The number of bytes that calls of the host have copied from and to buffers. A mapped buffer
+  /// counts as read and written according to its access flags. Page-locked buffers do not count:
+  /// they stay mapped, and serve as host memory.
   Counter<std::uint64_t> BytesRead;
   Counter<std::uint64_t> BytesWritten;
-  /// Calls that have done so, those of buffers that are mapped left out.
+  /// The number of calls that copied these bytes, without those that map buffers.
   Counter<int> Reads;
   Counter<int> Writes;
 
   static FakeDriver& Get();
-  /// Everything as at first, but the kind of the device, which cannot change in a process.
+  /// Resets all members except the kind of the device, which cannot change in a process.
   static void Reset();
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What validation.py reads of the results of tests.
+// The measured values that validation.py reads from the results of tests.
 #ifndef Measured_h
 #define Measured_h
 
@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <string>
 
-/// Has a number that was measured in the results of the test that runs (--gtest_output=json).
+/// Records a measured value in the results of the current test (--gtest_output=json).
 inline void RecordMeasured(const std::string& name, double value)
 {
   char text[32];

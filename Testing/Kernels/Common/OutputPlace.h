@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// VoxelGrid::ToOutput by its definition, and back by Cramer's rule.
+// VoxelGrid::ToOutput by its definition, and its inverse by Cramer's rule.
 #ifndef OutputPlace_h
 #define OutputPlace_h
 
@@ -9,7 +9,7 @@
 
 #include <array>
 
-/// Where an index of the volume lies in the output.
+/// Maps an index of the volume to a continuous index of the output.
 inline glm::dvec3 PlaceInOutput(const deformvolume::OutputMap& map, const glm::dvec3& index)
 {
   glm::dvec3 place;
@@ -21,7 +21,7 @@ inline glm::dvec3 PlaceInOutput(const deformvolume::OutputMap& map, const glm::d
   return place;
 }
 
-/// The index of the volume that lies there.
+/// Maps a continuous index of the output to an index of the volume.
 inline std::array<long double, 3> FindRestIndex(
   const deformvolume::OutputMap& map, const std::array<long double, 3>& place)
 {
@@ -49,7 +49,7 @@ inline std::array<long double, 3> FindRestIndex(
   return index;
 }
 
-/// How far the index may be off on an axis where the place is off by 1/256 on each axis.
+/// The error of the index on an axis if the output position has an error of 1/256 on each axis.
 inline long double FindRestTolerance(const deformvolume::OutputMap& map, int axis)
 {
   long double sum = 0.0L;

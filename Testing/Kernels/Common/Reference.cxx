@@ -16,7 +16,7 @@ namespace
 
 using Offset = std::array<int, 3>;
 
-/// The eight vertices of a cell by their numbers in the literature, 1 to 8, as offsets to the cell.
+/// The eight vertices of a cell, numbered 1 to 8 as in the literature, as offsets from the cell.
 std::array<Offset, 9> NumberVertices(int x, int y, int z)
 {
   std::array<Offset, 9> vertices{ { { 0, 0, 0 }, { 0, 0, 0 }, { 1, 0, 0 }, { 0, 0, 1 }, { 1, 0, 1 },
@@ -66,7 +66,7 @@ std::int64_t GetVolume(const std::array<Position, 4>& points)
     e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
 }
 
-/// Barycentric weights of a point times the volume, all as signed as the volume.
+/// Barycentric weights of a point times the volume. All of them have the sign of the volume.
 std::array<std::int64_t, 4> GetWeights(const std::array<Position, 4>& points, const Position& p)
 {
   std::array<std::int64_t, 4> weights{};
@@ -79,7 +79,7 @@ std::array<std::int64_t, 4> GetWeights(const std::array<Position, 4>& points, co
   return weights;
 }
 
-/// Whether the point moved by (e, e^2, e^3) lies inside. A weight is an affine function of the
+/// Whether the point, moved by (e, e^2, e^3), lies inside. A weight is an affine function of the
 /// point, so its slopes are its differences over one unit.
 bool ContainsPerturbed(const std::array<Position, 4>& points, const Position& p, std::int64_t sign)
 {
@@ -109,7 +109,7 @@ std::int64_t CeilToVoxel(std::int64_t position)
   return position >= 0 ? (position + 255) / 256 : -((-position) / 256);
 }
 
-/// isDivided: whether only samples on the candidate's side of a smooth cut are its own.
+/// isDivided: whether the candidate owns only the samples on its side of a smooth cut.
 void AddTetrahedron(Containing candidate, bool isDivided, const SamplingMesh& mesh,
   const Box& output, std::int64_t sign, Result& result)
 {
@@ -169,7 +169,7 @@ public:
   {
   }
 
-  /// group: all tetrahedra that contain a voxel in one simplex.
+  /// group: all tetrahedra that contain a voxel in the same simplex.
   bool IsOwned(const std::vector<const Containing*>& group) const
   {
     bool interior = false;
@@ -187,7 +187,8 @@ public:
       return std::any_of(
         group.begin(), group.end(), [](const Containing* c) { return c->Generic; });
     }
-    // Elsewhere on the border of the mesh one of the group is taken, whatever is missing.
+    // On other parts of the border of the mesh one tetrahedron of the group is chosen, even if
+    // others are missing.
     return !regular || this->HasOwnerByIndex(group);
   }
 
@@ -205,7 +206,7 @@ private:
     return vertices;
   }
 
-  /// Counted from the first voxel.
+  /// Returns the index of a vertex on each axis, counted from the first voxel.
   Position GetPlace(std::int64_t vertex) const
   {
     const std::int64_t x = GetSize(this->Mesh.Voxels, 0);
@@ -223,7 +224,7 @@ private:
     return border;
   }
 
-  /// Whether all round a vertex is there that is not beyond the volume.
+  /// Whether all voxels and tetrahedra around a vertex exist, of those that lie within the volume.
   bool IsRegular(const Position& place) const
   {
     const Box& box = this->Mesh.Voxels;
@@ -253,8 +254,9 @@ private:
     return regular;
   }
 
-  /// On the border of the volume: the cell with the simplex on its low sides, or the last one on an
-  /// axis; of its tetrahedra the first with that simplex, which must not be flat.
+  /// On the border of the volume, the owner is in the cell with the simplex on its low sides, or in
+  /// the last cell on an axis. It is the first tetrahedron of that cell that has the simplex and is
+  /// not flat.
   bool HasOwnerByIndex(const std::vector<const Containing*>& group) const
   {
     const std::vector<std::int64_t> simplex = GetSimplex(*group.front());
@@ -296,7 +298,8 @@ private:
   const SamplingMesh& Mesh;
 };
 
-/// Puts those first that have the voxel in the one simplex which is owned, if there is one only.
+/// Sorts the tetrahedra that contain the voxel in the owned simplex to the front, if exactly one
+/// simplex is owned.
 void PreferOwned(const Ownership& ownership, std::vector<Containing>& containing)
 {
   std::vector<std::vector<const Containing*>> groups;
@@ -372,7 +375,7 @@ std::int64_t Containing::GetSingleVertex() const
 namespace
 {
 
-/// All tetrahedra of the mesh, cell by cell.
+/// Lists all tetrahedra of the mesh, cell by cell.
 std::vector<MeshTetrahedron> ListTetrahedra(const SamplingMesh& mesh)
 {
   std::vector<MeshTetrahedron> tetrahedra;
@@ -406,8 +409,8 @@ std::vector<MeshTetrahedron> ListTetrahedra(const SamplingMesh& mesh)
   return tetrahedra;
 }
 
-/// Whether a tetrahedron has all its vertices, and one of them is not on the far side of the
-/// boundary.
+/// Whether a tetrahedron has all of its vertices, and at least one of them is not on the far side
+/// of the boundary.
 bool IsThere(const MeshTetrahedron& tetrahedron, const SamplingMesh& mesh)
 {
   bool there = tetrahedron.Active;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The resampling of a deformed sampling mesh, done once more on the host: every tetrahedron against
-// every voxel of its closed box, in exact integers, values in extended precision. It shares nothing
-// with the kernels, the table of tetrahedra included, so that an error on either side shows.
+// A reference implementation of the resampling of a deformed sampling mesh, on the host. It tests
+// every tetrahedron against every voxel of its closed bounding box in exact integers, and computes
+// values in extended precision. It shares nothing with the kernels, not even the table of
+// tetrahedra, so that an error on either side is found.
 #ifndef Reference_h
 #define Reference_h
 
@@ -32,21 +33,21 @@ using Position = std::array<std::int64_t, 3>;
 struct SamplingMesh
 {
   Box Voxels;
-  /// One position a voxel, x varying fastest.
+  /// One position per voxel, x varying fastest.
   std::vector<Position> Positions;
-  /// Whether a voxel is linked and not blanked; empty: all are.
+  /// Whether each voxel is linked and not blanked; empty: all are.
   std::vector<bool> Present;
-  /// Bit t of a cell: its tetrahedron t is active; empty: all are.
+  /// Bit t of a cell: tetrahedron t is active; empty: all are active.
   std::vector<unsigned char> Active;
-  /// Signed distance of each voxel to the boundary; empty: nothing is clipped.
+  /// The signed distance of each voxel from the boundary; empty: nothing is clipped.
   std::vector<float> Distances;
-  /// Bit t of a cell: a smooth cut crosses its tetrahedron t; empty: there is none.
+  /// Bit t of a cell: a smooth cut crosses tetrahedron t; empty: there is no smooth cut.
   std::vector<unsigned char> Crossed;
-  /// Signed distance of each voxel from the sheet, and how far it is from where it rests; for
-  /// smooth cuts.
+  /// For smooth cuts: the signed distance of each voxel from the sheet, and its displacement from
+  /// its rest position.
   std::vector<float> CutDistances;
   std::vector<Position> Displacements;
-  /// Whether voxels that have not moved lie in the output as in a mirror.
+  /// Whether the map from the volume at rest to the output mirrors.
   bool IsMirrored = false;
 };
 
@@ -56,9 +57,9 @@ struct Containing
   std::int64_t Cell = 0;
   int Tetrahedron = 0;
   bool Inverted = false;
-  /// Of a divided tetrahedron, on which side of the cut it is: 1 where distances are negative.
+  /// The side of the cut of a divided tetrahedron: 1 for negative distances, else 0.
   int Side = 0;
-  /// Whether it contains the voxel also when that is moved by (e, e^2, e^3), e -> 0.
+  /// Whether it also contains the voxel moved by (e, e^2, e^3), e -> 0.
   bool Generic = false;
   /// Voxels of the volume, and their barycentric weights as Numerators / Denominator.
   std::array<std::int64_t, 4> Vertices{};
@@ -66,7 +67,7 @@ struct Containing
   std::array<std::int64_t, 4> Numerators{};
   std::int64_t Denominator = 1;
 
-  /// Upright before inverted, then the lowest cell, tetrahedron and side.
+  /// Upright tetrahedra come before inverted ones, then the lowest cell, tetrahedron and side.
   bool operator<(const Containing& other) const;
 
   template <typename T>
@@ -101,26 +102,28 @@ struct Containing
     return sum / static_cast<long double>(this->Denominator);
   }
 
-  /// The vertex of the largest weight, the lowest one among equals.
+  /// The vertex of the largest weight; among equal weights the lowest vertex.
   std::int64_t GetNearestVertex() const;
-  /// Whether both place the voxel on the same vertex, edge, face or interior of the mesh.
+  /// Whether both place the voxel on the same vertex, edge or face, or in the same interior, of the
+  /// mesh.
   bool SharesSimplex(const Containing& other) const;
-  /// The only vertex of positive weight, or -1.
+  /// The only vertex of positive weight; -1 if there are several.
   std::int64_t GetSingleVertex() const;
 };
 
 struct Result
 {
-  /// For each output voxel all tetrahedra whose closed region contains it, the best first: where a
-  /// single one writes the voxel by the fill rule, those that have it in the same simplex, and
-  /// then in the order of Containing.
+  /// For each output voxel, all tetrahedra whose closed region contains it, the best first. If a
+  /// single tetrahedron writes the voxel by the fill rule, the tetrahedra with the voxel in the
+  /// same simplex come first. The others follow in the order of Containing.
   std::vector<std::vector<Containing>> Voxels;
   std::int64_t NumberOfCoveredVoxels = 0;
   std::int64_t NumberOfInvertedTetrahedra = 0;
   std::int64_t NumberOfFlatTetrahedra = 0;
-  /// Voxels that more than one tetrahedron contains generically.
+  /// The number of voxels that more than one tetrahedron contains generically.
   std::int64_t NumberOfOverlappedVoxels = 0;
-  /// Voxels at which faces, edges or vertices meet that are apart at rest, those above included.
+  /// The number of voxels at which faces, edges or vertices meet that are separate at rest,
+  /// including overlapped voxels.
   std::int64_t NumberOfTouchedVoxels = 0;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a process may take of its machine: memory and processors under the limits of control groups,
-// as systems and containers set them, and threads whose work fails.
+// The memory and processors that a process may use, under the limits of control groups as systems
+// and containers set them; and exceptions in threads.
 #include "ControlGroups.h"
 #include "ParallelFor.h"
 #include "Processors.h"
@@ -30,7 +30,7 @@ namespace
 
 constexpr std::uint64_t MiB = 1024 * 1024;
 
-/// A made-up root folder with a system of 8,000 MiB available.
+/// A simulated root folder of a system with 8,000 MiB available.
 class SystemLimits : public testing::Test
 {
 protected:
@@ -58,7 +58,7 @@ protected:
       "30 23 0:26 " +
         group + " " + folder + " rw,nosuid shared:4 master:2 - cgroup2 cgroup2 rw,nsdelegate\n");
   }
-  /// In MiB.
+  /// Returns the available memory, in MiB.
   std::uint64_t GetMemory() const { return GetSystemMemory(this->Root) / MiB; }
 
   std::string Root;
@@ -88,7 +88,7 @@ TEST_F(SystemLimits, UnifiedGroup)
 
   this->Write(app + "memory.max", InBytes(2000));
   EXPECT_EQ(this->GetMemory(), 1500U);
-  // May have all that the system has: what it uses is no matter.
+  // The limit exceeds the memory of the system, so the memory that the group uses is irrelevant.
   this->Write(app + "memory.max", InBytes(16000));
   this->Write(app + "memory.current", InBytes(15000));
   EXPECT_EQ(this->GetMemory(), 8000U);
@@ -96,25 +96,25 @@ TEST_F(SystemLimits, UnifiedGroup)
   EXPECT_EQ(this->GetMemory(), 999U);
   this->Write(app + "memory.max", InBytes(2000));
   this->Write(app + "memory.current", InBytes(500));
-  // Page cache gives way, memory of programs and of shared segments does not.
+  // Page cache can be reclaimed; memory of programs and shared segments cannot.
   this->Write(app + "memory.stat",
     "anon " + InBytes(150) + "file " + InBytes(350) + "shmem " + InBytes(50) + "inactive_file " +
       InBytes(200) + "active_file " + InBytes(100) + "slab_reclaimable " + InBytes(10));
   EXPECT_EQ(this->GetMemory(), 1810U);
-  // Processes are slowed down from here on.
+  // The kernel slows processes down above this limit.
   this->Write(app + "memory.high", InBytes(1000));
   EXPECT_EQ(this->GetMemory(), 810U);
 
-  // Groups round it count, too.
+  // Limits of enclosing groups apply, too.
   this->Write("/sys/fs/cgroup/user.slice/memory.max", InBytes(700));
   this->Write("/sys/fs/cgroup/user.slice/memory.current", InBytes(600));
   EXPECT_EQ(this->GetMemory(), 100U);
-  // More is used than is allowed: almost nothing, which is not the same as unknown.
+  // If more is used than allowed, almost nothing is available. That differs from an unknown limit.
   this->Write("/sys/fs/cgroup/user.slice/memory.current", InBytes(900));
   EXPECT_EQ(GetSystemMemory(this->Root), 1U);
 }
 
-// A container sees its own group as the root, whatever it is called outside.
+// A container sees its own group as the root, whatever its name is outside.
 TEST_F(SystemLimits, UnifiedContainer)
 {
   this->MountUnified();
@@ -165,7 +165,7 @@ TEST_F(SystemLimits, BoundProcess)
   EXPECT_EQ(sched_setaffinity(0, sizeof(all), &all), 0);
 }
 
-// Ranks of one machine share it.
+// Ranks on the same machine share its memory.
 TEST_F(SystemLimits, Share)
 {
   const int all = GetProcessorShare(1, "");
@@ -181,9 +181,9 @@ TEST_F(SystemLimits, Share)
   EXPECT_EQ(GetProcessorShare(), all);
 }
 
-// What is thrown in a thread reaches the caller, once, and the rest is left out. Later parts take a
-// millisecond each: the thread that throws may be kept from its processor for a while, and the
-// others must not have done everything by then.
+// An exception in a thread reaches the caller once, and the remaining parts are skipped. Later
+// parts take a millisecond each: the thread that throws may not get a processor for a while, and
+// the other threads must not finish all parts before.
 TEST(ParallelFor, Exceptions)
 {
   constexpr std::int64_t quickParts = 1000;
@@ -217,7 +217,7 @@ TEST(ParallelFor, Exceptions)
   EXPECT_THROW(runAll(), std::runtime_error);
 }
 
-// Each item once, in parts as they were asked for.
+// Each item is handled once, in parts of the requested size.
 TEST(ParallelFor, Range)
 {
   for (const std::int64_t grain : { 0, 1, 7, 1000 })
@@ -245,7 +245,7 @@ TEST(ParallelFor, Range)
   ParallelFor(5, 5, 0, [](std::int64_t, std::int64_t) { ADD_FAILURE(); });
 }
 
-// The loop of a program is used instead, and is not left by an exception.
+// A loop that the program provides is used instead. Exceptions do not leave it.
 TEST(ParallelFor, Loop)
 {
   static int calls = 0;

@@ -10,8 +10,8 @@
 #define DEFORMVOLUME_TEST_SANITIZED
 #endif
 
-/// How many random cases there is time for, of some: fewer with the address or the thread
-/// sanitizer, which are slow, and do not look for wrong results.
+/// Returns how many of some random cases to run. The address sanitizer and the thread sanitizer are
+/// slow, and do not look for wrong results, so they run fewer cases.
 constexpr int GetNumberOfCases(int cases)
 {
 #ifdef DEFORMVOLUME_TEST_SANITIZED
