@@ -63,7 +63,7 @@ struct FakeDriver
   /// as long as the process, so set these members before the first context is created.
   bool IsGraphics = false;
   bool HasDouble = true;
-  /// The name of the device that is asked for something first; empty: as it is.
+  /// The name of the device whose properties are queried first; empty: the real name.
   std::string FirstName;
   /// The device has the extension cl_nv_compiler_options. Compiler options from the first option of
   /// this extension on are passed to OnBuild only, as the real driver does not support them.
