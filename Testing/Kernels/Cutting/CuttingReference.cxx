@@ -30,7 +30,7 @@ Wide Project(const Direction& direction, const SnappedPoint& point)
   return direction[0] * point.x + direction[1] * point.y + direction[2] * point.z;
 }
 
-// Of a movement by (e, e^2, e^3) along a direction.
+// The sign of the movement by (e, e^2, e^3) along a direction.
 int GetMovement(const Direction& direction)
 {
   for (const Wide& component : direction)
@@ -43,7 +43,7 @@ int GetMovement(const Direction& direction)
   return 0;
 }
 
-// Whether all of the tetrahedron, which is moved, lies before or behind all of the triangle.
+// Whether the whole tetrahedron, moved by (e, e^2, e^3), lies before or behind the whole triangle.
 bool AreApart(const Direction& direction, const SnappedTriangle& triangle,
   const std::array<SnappedPoint, 4>& tetrahedron)
 {
@@ -125,13 +125,13 @@ void ForEachTetrahedron(const Extent& vertices, Function&& function)
 
 std::array<Place, 4> GetTetrahedron(const Place& cell, int t)
 {
-  // Vertices 1 to 8 of a cell of even indices, and the tetrahedra by these numbers.
+  // Vertices 1 to 8 of a cell with even indices, and the tetrahedra by these numbers.
   static const Place offsets[9] = { { { 0, 0, 0 } }, { { 0, 0, 0 } }, { { 1, 0, 0 } },
     { { 0, 0, 1 } }, { { 1, 0, 1 } }, { { 0, 1, 0 } }, { { 1, 1, 0 } }, { { 0, 1, 1 } },
     { { 1, 1, 1 } } };
   static const int tetrahedra[5][4] = { { 1, 3, 4, 7 }, { 7, 8, 4, 6 }, { 4, 2, 1, 6 },
     { 1, 5, 7, 6 }, { 7, 4, 6, 1 } };
-  // Exchanges of numbers on the axes where the index is odd.
+  // Exchanges of vertex numbers on the axes where the index of the cell is odd.
   static const int exchanges[3][4][2] = { { { 1, 2 }, { 3, 4 }, { 5, 6 }, { 7, 8 } },
     { { 1, 5 }, { 2, 6 }, { 3, 7 }, { 4, 8 } }, { { 1, 3 }, { 2, 4 }, { 5, 7 }, { 6, 8 } } };
   std::array<Place, 4> places;

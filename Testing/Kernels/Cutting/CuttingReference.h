@@ -13,26 +13,26 @@
 #include <random>
 #include <vector>
 
-/// What cutting is compared with: slow, by other methods, without bricks and bounding boxes, and in
-/// 128 bits.
+/// A slow reference for cutting. It uses other methods than the engine, without bricks and bounding
+/// boxes, and integers of 128 bits.
 namespace reference
 {
 
 using Place = std::array<std::int64_t, 3>;
-/// One byte a cell, bit i = tetrahedron i.
+/// One byte per cell; bit i is tetrahedron i.
 using Mask = std::vector<unsigned char>;
 
-/// The places of the vertices of tetrahedron t of a cell, after the numbers of the literature:
-/// structured indices.
+/// The structured indices of the vertices of tetrahedron t of a cell. Tetrahedra are numbered as in
+/// the literature.
 std::array<Place, 4> GetTetrahedron(const Place& cell, int t);
 
-/// Vertices anywhere, some of them without a position.
+/// Vertices at arbitrary positions, some of them without a position.
 class FreePositions : public deformvolume::VertexPositions
 {
 public:
   explicit FreePositions(const deformvolume::Extent& vertices);
 
-  /// Moves vertices by up to so many steps, to multiples of a unit.
+  /// Moves each vertex by up to `steps` steps on each axis, to multiples of a unit.
   void Shake(std::mt19937& random, int steps, int unit);
 
   std::size_t GetNumber(const Place& vertex) const;
@@ -45,22 +45,23 @@ public:
   std::vector<bool> Has;
 };
 
-/// Tetrahedra that any of some triangles crosses: there is no direction along which both are apart.
+/// The tetrahedra that at least one triangle crosses: those that no direction separates from the
+/// triangle.
 Mask Cut(
   const FreePositions& positions, const std::vector<deformvolume::SnappedTriangle>& triangles);
 
-/// Whether a point, in quarters of a step, lies in a tetrahedron of points in steps. It is moved by
-/// (e, e^2, e^3).
+/// Whether a point, in quarters of a step, lies in a tetrahedron of points in steps. The point is
+/// moved by (e, e^2, e^3).
 bool Holds(const std::array<deformvolume::SnappedPoint, 4>& tetrahedron,
   const deformvolume::SnappedPoint& point);
 
-/// A set as a mask.
+/// Converts a set to a mask.
 Mask GetMask(const deformvolume::CellBricks& bricks, const deformvolume::TetrahedronSet& set);
 
 int Count(const Mask& mask);
 
-/// For each tetrahedron (5 * cell + t) of those that are left the number of the piece that it
-/// belongs to, connected through faces; -1 for the others.
+/// For each tetrahedron (5 * cell + t) that is not switched off, the number of its part: tetrahedra
+/// of a part are connected through faces. -1 for other tetrahedra.
 std::vector<int> FindPieces(
   const deformvolume::Extent& vertices, const Mask& switchedOff, int& numberOfPieces);
 

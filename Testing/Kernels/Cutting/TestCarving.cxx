@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What tools carve out, against a slow reference.
+// The tetrahedra that tools carve out, compared with a slow reference.
 #include "Carving.h"
 #include "CuttingReference.h"
 #include "Error.h"
@@ -30,7 +30,7 @@ reference::Mask Carve(const VertexPositions& positions, const CarvingTool& tool,
   return reference::GetMask(positions.GetBricks(), FindCarvedTetrahedra(positions, tool, rule));
 }
 
-// What a rule carves out, one tetrahedron after the other. isInside: takes points in quarters of a
+// The tetrahedra that a rule carves out, found one by one. isInside: takes points in quarters of a
 // step.
 template <typename Function>
 reference::Mask CarveSlowly(
@@ -106,7 +106,7 @@ TEST(Carving, MisuseIsAnError)
   const Sheet open(
     { glm::dvec3(1.0), glm::dvec3(5, 1, 1), glm::dvec3(1, 5, 1) }, { { { 0, 1, 2 } } });
   EXPECT_THROW(MakeSurfaceInterior(open, positions.GetBox()), Error);
-  // Values that are no numbers are outside.
+  // Points with the value NaN are outside.
   CarvingTool nothing;
   nothing.Bounds = GetUnlimitedBounds();
   nothing.Function = [bad](const glm::dvec3*, std::size_t count, double* values)
@@ -117,7 +117,8 @@ TEST(Carving, MisuseIsAnError)
   }
 }
 
-// The volume that is carved out, at 1/6 of a voxel for a corner and 1/3 for a central tetrahedron.
+// Checks the carved volume. A corner tetrahedron has 1/6 of the volume of a cell, a central one
+// 1/3.
 TEST(Carving, SphereHasItsVolume)
 {
   const RestPositions positions(Extent{ { 3, 53, -2, 48, 0, 50 } });
@@ -172,8 +173,8 @@ TEST(Carving, SweptSpheresEqualTheReference)
     }
     std::uniform_real_distribution<double> size(0.3, 3.0);
     const glm::dvec3 radii(size(random), size(random), size(random));
-    // Whether a point is within reach of a path, by what is nearest of many places on it, and how
-    // sure that is.
+    // Whether a point is within the radius of a path. isCertain: whether no distance is too close
+    // to the radius to be decided.
     bool isCertain = true;
     const auto isInside = [&](const SnappedPoint& quarters)
     {
@@ -183,7 +184,7 @@ TEST(Carving, SweptSpheresEqualTheReference)
       {
         const glm::dvec3 a = centers[k - 1] / radii;
         const glm::dvec3 b = centers[k] / radii;
-        // The distance is convex along a segment: halving finds where it is least.
+        // The distance is convex along a segment: a ternary search finds its minimum.
         double low = 0.0;
         double high = 1.0;
         for (int step = 0; step < 80; ++step)
@@ -201,7 +202,7 @@ TEST(Carving, SweptSpheresEqualTheReference)
         }
         nearest = std::min(nearest, glm::distance(point, a + low * (b - a)));
       }
-      // Rounding of either side is less than 2^-40 here.
+      // The rounding errors of both implementations are less than 2^-40 here.
       isCertain = isCertain && std::abs(nearest - 1.0) > 1e-9;
       return nearest < 1.0;
     };
@@ -216,7 +217,7 @@ TEST(Carving, SweptSpheresEqualTheReference)
   EXPECT_GT(carved, 50000);
 }
 
-// With the shortcut for bricks on one side of a plane, and without it.
+// Tests planes with and without the shortcut for bricks on one side of a plane.
 TEST(Carving, PlanesEqualTheReference)
 {
   std::mt19937 random(11);
@@ -231,7 +232,7 @@ TEST(Carving, PlanesEqualTheReference)
       positions.Shake(random, 256, unit);
       positions.Has[random() % positions.Has.size()] = false;
     }
-    // Whole numbers: values are exact.
+    // Use integers, so that values are exact.
     std::uniform_int_distribution<int> component(-3, 3);
     const SnappedPoint normal(component(random), component(random), component(random));
     const SnappedPoint origin = Snap(MakePoint(random, vertices, unit));
@@ -261,7 +262,8 @@ TEST(Carving, PlanesEqualTheReference)
   EXPECT_GT(carved, 100000);
 }
 
-// Surfaces of several tetrahedra that overlap, touch, and lie on the vertices and centroids.
+// Tests surfaces of several tetrahedra, which overlap, touch, and pass through vertices and
+// centroids.
 TEST(Carving, ClosedSurfacesEqualTheReference)
 {
   std::mt19937 random(8);
@@ -278,7 +280,7 @@ TEST(Carving, ClosedSurfacesEqualTheReference)
     std::vector<glm::dvec3> points;
     std::vector<Sheet::Triangle> triangles;
     std::vector<std::array<SnappedPoint, 4>> bodies;
-    // The largest are divided into pieces.
+    // The largest triangles are divided.
     const double scale = round % 10 == 9 ? 1024.0 : 1.0;
     for (std::int64_t body = 0; body <= round % 3; ++body)
     {
@@ -295,7 +297,7 @@ TEST(Carving, ClosedSurfacesEqualTheReference)
         std::shuffle(triangles.back().begin(), triangles.back().end(), random);
       }
     }
-    // Where a large face is divided its pieces are half a step off it at most.
+    // The parts of a divided face are at most half a step away from it.
     bool isCertain = true;
     const auto isInside = [&](const SnappedPoint& point)
     {

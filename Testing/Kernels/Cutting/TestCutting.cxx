@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which tetrahedra of the sampling mesh a sheet switches off: exact numbers, a slow reference, and
-// that complete sheets separate.
+// The tetrahedra of the sampling mesh that a sheet switches off: exact numbers, comparisons with a
+// slow reference, and the separation of volumes by complete sheets.
 #include "CuttingReference.h"
 #include "Error.h"
 #include "Sheet.h"
@@ -23,8 +23,8 @@ namespace
 
 const Extent EightCells{ { 0, 8, 0, 8, 0, 8 } };
 
-// A sheet of a random triangulation of a plane, wider than a volume of 8 cells a side: points of a
-// grid, those inside it moved, and triangles of either orientation.
+// A sheet with a random triangulation of a plane, wider than a volume of 8 cells on each axis. Its
+// points are those of a grid, randomly moved inside it. The triangles have random orientations.
 template <typename Plane>
 Sheet MakePlane(std::mt19937& random, int count, double low, double high, Plane&& plane)
 {
@@ -74,7 +74,7 @@ reference::Mask Cut(const VertexPositions& positions, const Sheet& sheet)
   return reference::GetMask(positions.GetBricks(), FindCrossedTetrahedra(positions, sheet));
 }
 
-// No piece that is left has tetrahedra of both lists.
+// Checks that no part has tetrahedra of both lists.
 void ExpectSeparate(const std::vector<int>& pieces, const std::vector<std::size_t>& some,
   const std::vector<std::size_t>& others)
 {
@@ -112,8 +112,8 @@ TEST(Cutting, MisuseIsAnError)
   {
     EXPECT_THROW(Sheet(points, { { { 0, 1, bad } } }), Error) << bad;
   }
-  // Points of no triangle do not matter. Nothing is cut by nothing, by triangles without area, and
-  // by triangles elsewhere.
+  // Points without triangles are ignored. An empty sheet, triangles without area and triangles
+  // outside the volume cut nothing.
   const RestPositions positions(EightCells);
   EXPECT_TRUE(FindCrossedTetrahedra(positions, Sheet()).IsEmpty());
   EXPECT_TRUE(FindCrossedTetrahedra(
@@ -123,7 +123,7 @@ TEST(Cutting, MisuseIsAnError)
     Sheet(
       { glm::dvec3(9.5, 1, 1), glm::dvec3(9.5, 7, 1), glm::dvec3(9.5, 1, 7) }, { { { 0, 1, 2 } } }))
                 .IsEmpty());
-  // A cell that is drawn out too far for 64 bits.
+  // A cell is too long for integers of 64 bits.
   reference::FreePositions wide(EightCells);
   wide.Points.back().x += 3000 * 256;
   const Sheet sheet({ glm::dvec3(7.5, -1, -1), glm::dvec3(7.5, 20, -1), glm::dvec3(7.5, -1, 20) },
@@ -151,7 +151,7 @@ TEST(Cutting, PlanesSwitchOffWhatTheyCrossAndSeparate)
   {
     for (int round = 0; round < 60; ++round)
     {
-      // The last ones have triangles that are far longer than what is looked at in one piece.
+      // The last sheets have triangles that are far too long to be handled undivided.
       const double far = round < 50 ? 4.0 : round < 55 ? 3000.0 : 1e6;
       const Sheet sheet = MakePlane(random, round % 7 + 1, -far, 8.0 + far, plane.Plane);
       const reference::Mask off = Cut(positions, sheet);
@@ -169,7 +169,7 @@ TEST(Cutting, EqualsTheReference)
   int crossed = 0;
   for (int round = 0; round < 10000; ++round)
   {
-    // Coarse units make vertices, edges and planes coincide.
+    // With coarse units, vertices, edges and planes coincide.
     const int unit = std::array<int, 4>{ { 256, 128, 64, 1 } }[round % 4];
     std::uniform_int_distribution<int> first(-3, 3);
     Extent vertices;
@@ -182,13 +182,14 @@ TEST(Cutting, EqualsTheReference)
     reference::FreePositions positions(vertices);
     if (round % 3)
     {
-      positions.Shake(random, round % 5 ? 128 : 512, unit); // also turned inside out, and flat
+      positions.Shake(
+        random, round % 5 ? 128 : 512, unit); // some tetrahedra become inverted or flat
     }
     for (int k = 0; round % 7 == 0 && k < 4; ++k)
     {
       const std::size_t vertex = random() % positions.Has.size();
       positions.Has[vertex] = false;
-      // Whatever stands there would overflow.
+      // If this position were used, it would cause an overflow.
       positions.Points[vertex] = SnappedPoint(std::int64_t{ 1 } << 40);
     }
     std::vector<glm::dvec3> points;
@@ -217,7 +218,7 @@ TEST(Cutting, EqualsTheReference)
   EXPECT_GT(crossed, 100000);
 }
 
-// Sheets over all of the volume that go up and down, also through nodes and along edges.
+// Tests sheets across the whole volume that go up and down, also through nodes and along edges.
 TEST(Cutting, SheetsAcrossTheVolumeSeparate)
 {
   std::mt19937 random(3);
@@ -259,7 +260,7 @@ TEST(Cutting, ClosedSheetsSeparate)
     {
       positions.Shake(random, 80, round % 4 == 1 ? 1 : 40);
     }
-    // An octahedron round the middle, each face of which may be dented.
+    // An octahedron around the center. Some of its faces are dented.
     std::uniform_int_distribution<int> reach(round % 3 ? 3 * 256 : 3, round % 3 ? 5 * 256 : 5);
     const double unit = round % 3 ? 256.0 : 1.0;
     std::vector<glm::dvec3> points;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cutting a volume where a deformation has moved it.
+// Cutting a volume at its deformed position.
 #include "CuttingReference.h"
 #include "DeformedPositions.h"
 #include "Error.h"
@@ -26,7 +26,7 @@ reference::Mask Cut(const VertexPositions& positions, const Sheet& sheet)
   return reference::GetMask(positions.GetBricks(), FindCrossedTetrahedra(positions, sheet));
 }
 
-// Three random triangles, moved.
+// Three random triangles, translated by move.
 Sheet MakeSheet(unsigned int seed, const glm::dvec3& move)
 {
   std::mt19937 random(seed);
@@ -57,8 +57,8 @@ BrickPositions FindPositions(const DeformedPositions& positions, std::size_t bri
   return found;
 }
 
-// A box holds all vertices of its brick, and the box of all holds it. Returns how much longer boxes
-// are than they would have to be, at most, in steps.
+// Checks that the box of each brick contains its vertices, and that the box of the volume contains
+// these boxes. Returns by how many steps a box is longer than necessary, at most.
 std::int64_t CheckBoxes(const DeformedPositions& positions)
 {
   std::int64_t most = 0;
@@ -88,7 +88,7 @@ std::int64_t CheckBoxes(const DeformedPositions& positions)
 
 } // namespace
 
-// Where the volume has moved by whole voxels, the cut is that of a sheet that has moved back.
+// If the volume moves by whole voxels, the cut equals that of the sheet moved back.
 TEST(DeformedCutting, FollowsTheDeformation)
 {
   const Extent vertices{ { -3, 17, 2, 13, 1, 12 } };
@@ -137,7 +137,7 @@ TEST(DeformedCutting, FollowsTheDeformation)
     }
   }
   EXPECT_GT(count, 5000);
-  // Outside the mesh there is nothing to cut.
+  // Nothing is cut outside the mesh.
   const std::vector<glm::dvec3> half{ glm::dvec3(5, 5, 5), glm::dvec3(160, 5, 5),
     glm::dvec3(5, 170, 5), glm::dvec3(5, 5, 165) };
   const StaticMapping part = BuildStaticMapping(
@@ -152,7 +152,7 @@ TEST(DeformedCutting, FollowsTheDeformation)
   EXPECT_EQ(reference::Count(Cut(inPart, inside)), 5 * 12 * 8);
 }
 
-// An affine deformation, by links, by runs and by a field.
+// Tests an affine deformation by links, by runs and by a field.
 TEST(DeformedCutting, FindsDeformedPositions)
 {
   const Extent vertices{ { -3, 20, 2, 13, 1, 12 } };
@@ -195,8 +195,8 @@ TEST(DeformedCutting, FindsDeformedPositions)
           {
             ASSERT_TRUE(found.HasPosition[i]);
             const glm::dvec3 p(x, y, z);
-            // Rounding moves by half a step, and floats of weights and displacements, which are
-            // exact to 2^-20 of at most 32 voxels, by less than a hundredth.
+            // The error of rounding is half a step. Weights and displacements are floats with an
+            // error of 2^-20 of at most 32 voxels, which adds less than a hundredth.
             const glm::dvec3 error = 256.0 * (p + move(p)) - glm::dvec3(found.Points[i]);
             ASSERT_LT(
               glm::max(glm::abs(error.x), glm::max(glm::abs(error.y), glm::abs(error.z))), 0.51);
@@ -204,12 +204,13 @@ TEST(DeformedCutting, FindsDeformedPositions)
         }
       }
     }
-    // A brick of 8 voxels in tetrahedra of 40: boxes leave room for all of these.
+    // A brick has 8 voxels, and tetrahedra have 40: the box of a brick may be larger by a
+    // tetrahedron.
     EXPECT_LE(CheckBoxes(*positions), 256 * 40);
   }
 }
 
-// Random moves of a mesh of which many vertices are extrapolated, or lie outside it.
+// Tests random displacements of a mesh. Many vertices are extrapolated, or lie outside it.
 TEST(DeformedCutting, BoxesHoldTheirVertices)
 {
   const Extent vertices{ { -3, 30, 2, 23, 1, 20 } };
@@ -234,7 +235,7 @@ TEST(DeformedCutting, BoxesHoldTheirVertices)
     DeformedPositions positions(vertices, vertices, mapping, tetrahedra, displacements.data());
     CheckBoxes(positions);
 
-    // Moved again it is as one made anew.
+    // After new displacements, the positions equal those of a new object.
     std::vector<float> others;
     for (std::size_t i = 0; i < displacements.size(); ++i)
     {
@@ -252,8 +253,8 @@ TEST(DeformedCutting, BoxesHoldTheirVertices)
   }
 }
 
-// Fields with points beside and between the voxels, turned, too, that end within the volume and
-// hold what is no number, or far too large.
+// Tests fields whose points lie beside and between the voxels, also rotated ones. They end within
+// the volume, and contain NaN and values that are far too large.
 TEST(DeformedCutting, BoxesOfFieldsHoldTheirVertices)
 {
   const Extent vertices{ { -3, 30, 2, 23, 1, 20 } };
@@ -291,7 +292,7 @@ TEST(DeformedCutting, BoxesOfFieldsHoldTheirVertices)
   }
 }
 
-// What is far from where a field moves something has a box as at rest.
+// Bricks that are far from the moved points of a field have the box that they have at rest.
 TEST(DeformedCutting, BoxesAreTight)
 {
   const Extent vertices{ { 0, 32, 0, 32, 0, 32 } };
@@ -314,8 +315,8 @@ TEST(DeformedCutting, BoxesAreTight)
   }
 }
 
-// A field that changes at some points, which are told: bricks with a vertex there, or on a face
-// there, and no others.
+// A field changes at some reported points. The boxes of all bricks must equal those of a new
+// object.
 TEST(DeformedCutting, BoxesFollowChanges)
 {
   const Extent vertices{ { 3, 30, 2, 23, -4, 20 } };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a sheet divides: planes with known numbers, rough sheets with known sides, sheets in parts,
-// two sheets, sheets that end inside, and edits.
+// The tetrahedra that a sheet divides: planes with known numbers, rough sheets with known sides,
+// sheets in parts, two sheets, sheets that end inside the volume, and edits.
 #include "CuttingReference.h"
 #include "MaskEditor.h"
 #include "Sheet.h"
@@ -22,8 +22,8 @@ namespace
 
 const Extent Cells{ { -1, 11, 2, 12, 0, 9 } };
 
-// A sheet over a grid of points (u, v) from low to high, with triangles of either orientation.
-// Part: of the rows of its squares, from first on.
+// A sheet over a grid of points (u, v) from low to high, with triangles of random orientation.
+// first, last: the range of rows of squares that the sheet has.
 Sheet MakeSheet(std::mt19937& random, int count, double low, double high,
   const std::function<glm::dvec3(double, double)>& place, int first = 0, int last = 1000)
 {
@@ -110,7 +110,7 @@ std::vector<unsigned char> FindCrossed(const VertexPositions& positions, const S
   return crossed;
 }
 
-// Calls function(number of the cell, tetrahedron, local numbers of its vertices).
+// Calls function(cell, tetrahedron, local numbers of its vertices) for all tetrahedra.
 void ForEachTetrahedron(const Extent& extent,
   const std::function<void(std::size_t, int, const std::array<std::size_t, 4>&)>& function)
 {
@@ -180,7 +180,7 @@ TEST(SheetCrossings, PlanesDivideWhatTheyCross)
       EXPECT_EQ(made.Divided, FindCrossed(positions, sheet));
       EXPECT_GT(CountBits(made.Divided), 300);
       EXPECT_EQ(CountOff(made), 0);
-      // Signs may be the other way round. Points are rounded to 1/256 on three axes.
+      // All signs may be reversed. Points are rounded to 1/256 on three axes.
       double sign = 0.0;
       for (std::size_t v = 0; v < made.Distances.size(); ++v)
       {
@@ -204,9 +204,9 @@ TEST(SheetCrossings, PlanesDivideWhatTheyCross)
   }
 }
 
-// A sheet over all of the volume that goes up and down: on which side vertices are is known. No
-// tetrahedron that is left whole has vertices on both sides, and those that are divided are so by
-// these sides.
+// A sheet over the whole volume that goes up and down, with known sides of the vertices. No
+// undivided tetrahedron has vertices on both sides, and divided tetrahedra are divided by these
+// sides.
 TEST(SheetCrossings, RoughSheetsDivideByTheirSides)
 {
   std::mt19937 random(2);
@@ -245,11 +245,11 @@ TEST(SheetCrossings, RoughSheetsDivideByTheirSides)
           t * (heightAt(cu, cv + 1) - heightAt(cu, cv))
         : heightAt(cu + 1, cv + 1) + (1 - s) * (heightAt(cu, cv + 1) - heightAt(cu + 1, cv + 1)) +
           (1 - t) * (heightAt(cu + 1, cv) - heightAt(cu + 1, cv + 1));
-      // Points of the sheet are rounded to 1/256, so that its slope of some ten moves it by that
-      // much.
+      // Points of the sheet are rounded to 1/256. With slopes of about ten this changes the height
+      // by about 10/256.
       sides[i] = std::abs(p.z - z) < 12.0 / 256.0 ? 0 : p.z > z ? 1 : -1;
     }
-    double product = 0.0; // of the sides and the signs, the same for all
+    double product = 0.0; // the product of side and sign, which is the same for all vertices
     ForEachTetrahedron(Cells,
       [&](std::size_t cell, int t, const std::array<std::size_t, 4>& v)
       {
@@ -287,7 +287,7 @@ TEST(SheetCrossings, PartsOfASheetDivideAsTheWhole)
   const RestPositions positions(Cells);
   const auto place = [](double u, double v)
   { return glm::dvec3(u, v, 4.3 + 0.3 * std::sin(0.5 * u) + 0.2 * v); };
-  // One orientation for all parts: it follows from their first triangles.
+  // All parts have the same orientation, which follows from their first triangles.
   const auto make = [&](int first, int last)
   {
     std::mt19937 same(1);
@@ -315,7 +315,7 @@ TEST(SheetCrossings, PartsOfASheetDivideAsTheWhole)
   EXPECT_GT(CountBits(whole.Divided), 300);
   EXPECT_TRUE(Cut(positions, { make(0, 5), make(5, 12) }) == whole);
   EXPECT_TRUE(Cut(positions, { make(7, 12), make(0, 3), make(3, 7) }) == whole);
-  // A sheet that ends inside leaves what it only enters whole.
+  // A sheet that ends inside the volume does not divide the tetrahedra that it only enters.
   const Made half = Cut(positions, { make(0, 5) });
   const std::vector<unsigned char> crossed = FindCrossed(positions, make(0, 5));
   EXPECT_EQ(CountOff(half), 0);
@@ -345,18 +345,19 @@ TEST(SheetCrossings, TetrahedraCrossedTwiceAreSwitchedOff)
     EXPECT_TRUE(Cut(positions, { second, first }) == both);
     const std::vector<unsigned char> byFirst = FindCrossed(positions, first);
     const std::vector<unsigned char> bySecond = FindCrossed(positions, second);
-    // Where they are a voxel apart and of opposite orientation, each tetrahedron is divided by one
-    // of them.
+    // If the sheets are a voxel apart and have opposite orientations, each tetrahedron is divided
+    // by one of them.
     EXPECT_TRUE(CountOff(both) > 20 || place == 5.2);
     for (std::size_t cell = 0; cell < byFirst.size(); ++cell)
     {
-      // All that is crossed is divided or off; what both cross is off; nothing else is.
+      // Every crossed tetrahedron is divided or off. Tetrahedra that both sheets cross are off. No
+      // other tetrahedron changes.
       const int off = 31 & ~both.Mask[cell];
       ASSERT_EQ(both.Divided[cell] | off, byFirst[cell] | bySecond[cell]);
       ASSERT_EQ(both.Divided[cell] & byFirst[cell] & bySecond[cell], 0);
       ASSERT_EQ(both.Divided[cell] & off, 0);
     }
-    // As the cut that a volume comes with the first one does the same.
+    // The result is the same if the first cut is the base cut of the volume.
     const Made alone = Cut(positions, { first });
     MaskEditor chain(Cells);
     chain.SetBaseCut(alone.Divided.data(), alone.Distances.data());
@@ -400,7 +401,7 @@ TEST(SheetCrossings, EditsAreUndoneBitForBit)
     ASSERT_TRUE(editor.Redo());
     ASSERT_TRUE(Made(editor) == states[i]) << i;
   }
-  // One in the middle, another mask before all edits, and none of them.
+  // Remove an edit in the middle, change the base mask, then remove all edits.
   EXPECT_TRUE(editor.Remove(edits[3].first));
   edits.erase(edits.begin() + 3);
   std::vector<Sheet> sheets;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is carved out with a boundary between vertices, vertex by vertex and cell by cell, and edits
-// of distances against their least.
+// Carving with a boundary between vertices, checked vertex by vertex and cell by cell; and edits of
+// distances, compared with the minimum of their distances.
 #include "Carving.h"
 #include "CuttingReference.h"
 #include "Error.h"
@@ -51,7 +51,7 @@ glm::dvec3 GetPlace(std::int64_t vertex)
     Volume[0] + vertex % x, Volume[2] + vertex / x % y, Volume[4] + vertex / (x * y));
 }
 
-// The distances that a set gives to all vertices.
+// Returns the distances of all vertices after an edit with this set.
 std::vector<float> Spread(const DistanceSet& set)
 {
   MaskEditor editor(Volume, Far);
@@ -62,7 +62,7 @@ std::vector<float> Spread(const DistanceSet& set)
     : editor.GetBoundaryDistances().Get();
 }
 
-// Whether a cell that a vertex belongs to has vertices on both sides.
+// Whether one of the cells of a vertex has vertices on both sides.
 bool IsNearBoundary(std::int64_t vertex, const std::vector<bool>& inside)
 {
   const std::int64_t size[3] = { GetSize(Volume, 0), GetSize(Volume, 1), GetSize(Volume, 2) };
@@ -116,7 +116,7 @@ void Check(const Function& function, bool withDistance)
     ASSERT_EQ(distances[i], expected) << v;
     ASSERT_EQ(distances[i] < 0.0F, inside[i]) << v;
   }
-  // What is switched off are the tetrahedra with all vertices inside.
+  // The tetrahedra with all vertices inside are switched off.
   const TetrahedronSet minimal = FindCarvedTetrahedra(rest, tool, CarvingRule::Minimal);
   EXPECT_EQ(carving.Tetrahedra.Bricks, minimal.Bricks);
   EXPECT_EQ(carving.Tetrahedra.Blocks, minimal.Blocks);
@@ -150,7 +150,7 @@ TEST(SmoothCarving, DistancesAreThoseNearTheBoundary)
       withDistance);
     Check(
       [](const glm::dvec3& p) { return 0.3 * p.x - 0.5 * p.y + 0.8 * p.z + 1.7; }, withDistance);
-    Check([](const glm::dvec3& p) { return p.y - 8.0; }, withDistance); // through vertices
+    Check([](const glm::dvec3& p) { return p.y - 8.0; }, withDistance); // passes through vertices
     Check([](const glm::dvec3& p) { return std::sin(2.0 * p.x) + std::sin(3.0 * p.y * p.z); },
       withDistance);
     Check([](const glm::dvec3&) { return 1.0; }, withDistance);
@@ -194,7 +194,7 @@ TEST(SmoothCarving, SweptSpheresHaveDistancesToFirstOrder)
     EXPECT_EQ(value < 0.0, distance < 0.0);
     if (std::abs(distance) < 1.0)
     {
-      // (d^2 - r^2) / 2 d misses the distance by its square by 2 d.
+      // (d^2 - r^2) / 2 d differs from the distance by the square of the distance divided by 2 d.
       EXPECT_NEAR(found, std::abs(distance), 1e-9 + distance * distance / (2.0 * 1.5));
     }
     EXPECT_GE(found, 0.0);
@@ -216,7 +216,7 @@ TEST(SmoothCarving, EditsOfDistancesAreUndoneAndRedone)
   std::vector<float> base(count, Far);
   std::vector<DistanceSet> edits;
   std::vector<DistanceSet> undone;
-  std::vector<float> seen; // brought up to date by the bricks that are told
+  std::vector<float> seen; // updated in the bricks that the editor reports
   for (int i = 0; i < 60; ++i)
   {
     switch (random() % 5)
