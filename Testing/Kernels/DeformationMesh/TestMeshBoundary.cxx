@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Meshes that end within the volume: the deformed volume ends where the deformed mesh ends.
+// Meshes that end within the volume: the deformed volume must end at the boundary of the deformed
+// mesh.
 #include "DeviceNeeds.h"
 #include "TightMesh.h"
 
@@ -46,7 +47,7 @@ TightMesh MakeTorus(double edge)
     });
 }
 
-// Thinner than a voxel.
+// A wall that is thinner than a voxel.
 TightMesh MakeWall(double thickness)
 {
   const glm::dmat3 turn = Turn(0.5);
@@ -59,11 +60,11 @@ TightMesh MakeWall(double thickness)
     });
 }
 
-// A forward field that ends within the volume, round its middle.
+// A forward field that ends within the volume, around its center.
 class TightField
 {
 public:
-  // edge: of its cells, in voxels; size: its points on each axis.
+  // edge: of the cells of the field, in voxels. size: number of points on each axis.
   TightField(double edge, const glm::dmat3& axes, const std::array<int, 3>& size)
     : Edge(edge)
     , Axes(axes)
@@ -72,7 +73,7 @@ public:
   {
   }
 
-  // The cells of the field as those of a mesh.
+  // Returns the cells of the field as a mesh.
   TightMesh MakeMesh() const
   {
     return MakeTightMesh(Volume, this->Edge, this->Axes, this->First,
@@ -119,7 +120,7 @@ public:
     return field;
   }
 
-  // The number of the point at four times an index, or of the last one on an axis.
+  // The number of the point whose index is four times the given one, or the last index on an axis.
   std::size_t GetPoint(const std::array<std::size_t, 3>& index) const
   {
     std::size_t number = 0;
@@ -138,9 +139,9 @@ private:
   glm::dvec3 First;
 };
 
-// Of noise between 0 and 1 in a tetrahedron of unit edges: no derivative is over 1, and a rest
-// coordinate is off by what rounding moves (1/512 on each axis), turned, so on each axis by less
-// than sqrt(3) / 512 times what the map compresses.
+// The error of noise between 0 and 1 in a tetrahedron of unit edges. No derivative exceeds 1. A
+// rest coordinate has the error of rounded positions (1/512 on each axis), rotated: on each axis
+// less than sqrt(3) / 512 times the compression of the map.
 double GetBound(double compression)
 {
   return 3.0 * std::sqrt(3.0) / 512.0 * compression + 1e-5;
@@ -164,7 +165,7 @@ protected:
     return DeformTight(deformer, mesh, this->GetParam());
   }
 
-  // Nodes move and masks change at random.
+  // Checks updates after random changes of nodes and masks.
   void CheckUpdates(TightMesh mesh)
   {
     VolumeDeformer deformer;
@@ -223,7 +224,7 @@ TEST_P(TightMeshes, AtRestNothingIsLost)
     { MakeBall(1.3), MakeBall(4.1), MakeTorus(1.1), MakeWall(1.2), MakeWall(0.45) })
   {
     const TightOutput output = this->LoadAndRun(mesh);
-    ExpectTight(mesh, output, 1e-12); // what the search rounds
+    ExpectTight(mesh, output, 1e-12); // rounding errors of the search
     EXPECT_EQ(output.Report.NumberOfInvertedTetrahedra, 0);
   }
 }
@@ -309,8 +310,8 @@ TEST_P(TightMeshes, Masks)
   ExpectTight(mesh, this->LoadAndRun(mesh), GetBound(1.0));
 }
 
-// A sheet between two planes of voxels: all cells that meet it are crossed, and all of their
-// vertices lie in it. A boundary distance carves a part of it.
+// A sheet between two planes of voxels. The boundary crosses all cells that meet it, and all of
+// their vertices lie in the sheet. Boundary distances carve a part of it.
 TEST_P(TightMeshes, CarvedSheet)
 {
   const Extent wide{ { 0, 99, 0, 14, 0, 9 } };
@@ -334,8 +335,8 @@ TEST_P(TightMeshes, CarvedSheet)
   ExpectTight(mesh, this->LoadAndRun(mesh), GetBound(1.0));
 }
 
-// The same bits whatever is made anew, and in whatever parts. Of the wall no tetrahedron moves a
-// voxel.
+// Updates must equal new outputs bit for bit, whichever parts of the output they resample. The
+// tetrahedra of the wall contain no voxels.
 TEST_P(TightMeshes, UpdatesEqualNewOutputs)
 {
   for (TightMesh mesh : { MakeBall(1.9), MakeWall(0.45) })
@@ -350,7 +351,7 @@ TEST_P(TightMeshes, ChunksAndSlabs)
 {
   TightMesh mesh = MakeBall(2.1);
   const auto turn = [](const glm::dvec3& point) { return Rotate(point, 0.9) * 1.4; };
-  // Folded along a plane, obliquely to the planes of voxels.
+  // Folded along a plane, which is oblique to the planes of voxels.
   const auto fold = [](const glm::dvec3& point)
   {
     const glm::dvec3 normal = glm::normalize(glm::dvec3(0.3, -0.4, 0.8));
@@ -370,24 +371,24 @@ TEST_P(TightMeshes, ChunksAndSlabs)
     const TightOutput whole = this->LoadAndRun(mesh);
     EXPECT_EQ(whole.Report.NumberOfInvertedTetrahedra > 0, isFolded);
     VolumeDeformer deformer;
-    // Eight planes of links; the output in slabs of a few planes.
+    // Links take chunks of eight planes, and the output takes slabs of a few planes.
     deformer.SetAllocationLimit(8 * 16 * 24 * 23);
     Load(deformer, mesh);
     ExpectSame(DeformTight(deformer, mesh, this->GetParam()), whole);
-    // The same by all kernels.
+    // The other kernels give the same result.
     VolumeDeformer other;
     Load(other, mesh);
     const TightOutput byCell = DeformTight(other, mesh, Resampling::ExactByCell);
     EXPECT_EQ(byCell.Coverage, whole.Coverage);
     EXPECT_EQ(byCell.Labels, whole.Labels);
-    if (!isFolded) // on the crease of a fold cells of the volume are bent, and not the mesh
+    if (!isFolded) // on the crease of a fold, cells of the volume are bent, whereas the mesh is not
     {
       ExpectTight(mesh, whole, GetBound(1.0));
     }
   }
 }
 
-// A part of the volume and of its output, as of the whole.
+// A part of the volume and of its output equals the same part of the whole.
 TEST_P(TightMeshes, Parts)
 {
   TightMesh mesh = MakeBall(2.1);
@@ -399,7 +400,7 @@ TEST_P(TightMeshes, Parts)
   part.Grid.VertexExtent[5] = 16;
   part.Output[4] = 9;
   part.Output[5] = 13;
-  // Its arrays are those of the whole.
+  // The part has the arrays of the whole volume.
   const std::int64_t plane = GetSize(Volume, 0) * GetSize(Volume, 1);
   const std::vector<float> noise = MakeNoise(mesh);
   const std::vector<std::int16_t> labels = MakeLabels(mesh);
@@ -434,15 +435,15 @@ TEST_P(TightMeshes, Parts)
   }
 }
 
-// All voxels lie in the mesh, and a gap goes between them that opens. Rows are so long that the
-// kernels take many cells beside it at once.
+// All voxels lie in the mesh, and a gap between them opens. Rows are so long that the kernels
+// handle many cells beside the gap at once.
 TEST_P(TightMeshes, GapsBetweenVoxels)
 {
   const Extent wide{ { -3, 100, 2, 20, 0, 9 } };
   const double gap = 8.4;
   TightMesh mesh = MakeTightMesh(wide, 110.0, glm::dmat3(1.0), glm::dvec3(-6.0, gap, -40.0),
     [&](const glm::dvec3& p) { return p.x < 110.0 && p.z < 80.0 && std::abs(p.y - gap) < 100.0; });
-  // Two halves, from 8.4 on and up to 8.2.
+  // Two parts: y from 8.4 on, and y up to 8.2.
   const std::size_t points = mesh.Points.size();
   for (Tetrahedron& tetrahedron : mesh.Tetrahedra)
   {
@@ -460,7 +461,7 @@ TEST_P(TightMeshes, GapsBetweenVoxels)
   {
     mesh.Points.push_back(mesh.Points[i] - glm::dvec3(0.0, 0.2, 0.0));
   }
-  // Opened by 1.5 voxels on either side.
+  // Each side moves by 1.5 voxels.
   mesh.Displacements.assign(3 * mesh.Points.size(), 0.125F);
   for (std::size_t i = 0; i < mesh.Points.size(); ++i)
   {
@@ -470,7 +471,7 @@ TEST_P(TightMeshes, GapsBetweenVoxels)
   ExpectTight(mesh, this->LoadAndRun(mesh), GetBound(1.0));
 }
 
-// A forward field that ends within the volume, on a grid at an angle: as a mesh of its cells.
+// A forward field that ends within the volume, on a rotated grid, must equal a mesh of its cells.
 TEST_P(TightMeshes, Fields)
 {
   const TightField tight(2.7, Turn(0.6), { { 5, 4, 6 } });
@@ -486,9 +487,8 @@ TEST_P(TightMeshes, Fields)
   ExpectTight(mesh, DeformTight(deformer, mesh, this->GetParam()), GetBound(1.0));
 }
 
-// Fields coarser and finer than the pieces that they are taken as, one of them with points beside
-// the volume: whatever points move, the output
-// is that of a new deformer to the last bit.
+// Fields that are coarser and finer than the pieces of the boundary, one of them with points beside
+// the volume. Whichever points move, the output must equal that of a new deformer bit for bit.
 TEST_P(TightMeshes, UpdatesOfFieldsEqualNewOutputs)
 {
   for (const TightField& tight :
@@ -496,11 +496,11 @@ TEST_P(TightMeshes, UpdatesOfFieldsEqualNewOutputs)
       TightField(0.83, glm::dmat3(1.0), { { 34, 12, 12 } }) })
   {
     TightMesh mesh = tight.MakeMesh();
-    // Voxels of the output lie beyond the outermost voxels of the field.
+    // Output voxels lie beyond the outermost voxels of the field.
     const auto move = [](const glm::dvec3& point)
     { return 0.1 * (point - Middle) + glm::dvec3(0.55, 0.6, 0.0); };
     mesh.Move(move);
-    mesh.Output = { { -8, 26, -2, 29, -6, 27 } }; // a part of which changes
+    mesh.Output = { { -8, 26, -2, 29, -6, 27 } }; // only a part of it changes
     std::vector<float> vectors = tight.MakeVectors(move);
     const DisplacementField field = tight.MakeField(vectors);
     VolumeDeformer deformer;
@@ -513,11 +513,11 @@ TEST_P(TightMeshes, UpdatesOfFieldsEqualNewOutputs)
     int inPart = 0;
     for (int step = 0; step < 50; ++step)
     {
-      // A corner of one of the pieces that a fine field is taken as, or any point.
+      // A corner of a piece into which a fine field is divided, or any point.
       const std::size_t point = step % 2
         ? tight.GetPoint({ random() % 9, random() % 4, random() % 4 })
         : random() % (vectors.size() / 3);
-      // All of it moves, or a point.
+      // All points move, or one point.
       for (std::size_t i = 0; i < (step == 3 ? vectors.size() : 3); ++i)
       {
         vectors[step == 3 ? i : 3 * point + i] += number(random) * (step == 3 ? 0.1F : 1.0F);
@@ -541,8 +541,8 @@ TEST_P(TightMeshes, UpdatesOfFieldsEqualNewOutputs)
   }
 }
 
-// Of a mesh that is folded onto itself the upright part is on top, also where that comes in a later
-// part of the volume. Both parts lie between planes of voxels at rest.
+// If a mesh is folded onto itself, the upright part hides the inverted part, even if it lies in a
+// later chunk of the volume. Both parts lie between planes of voxels at rest.
 TEST_P(TightMeshes, UprightBeforeInvertedInAllChunks)
 {
   const double edge = 0.6;
@@ -581,7 +581,7 @@ TEST_P(TightMeshes, UprightBeforeInvertedInAllChunks)
   ExpectSame(DeformTight(deformer, mesh, this->GetParam()), whole);
 }
 
-// Parts of one are small enough for edge functions of 64 bits.
+// The tetrahedra are large, but parts of them are small enough for edge functions of 64 bits.
 TEST_P(TightMeshes, LargeTetrahedra)
 {
   TightMesh mesh = MakeTightMesh(Volume, 40000.0, Turn(0.3), Middle,
@@ -595,7 +595,7 @@ TEST_P(TightMeshes, LargeTetrahedra)
   ExpectTight(mesh, this->LoadAndRun(mesh), 3 * GetBound(1.0));
 }
 
-// Nodes that are in one place at rest belong together: there is no boundary between parts of a
+// Nodes that coincide at rest belong together: there is no boundary between unmerged parts of a
 // mesh.
 TEST(MeshBoundaries, NoneBetweenUnmergedParts)
 {
@@ -615,8 +615,8 @@ TEST(MeshBoundaries, NoneBetweenUnmergedParts)
   EXPECT_TRUE(FindMeshBoundary(Volume, Volume, apart.Points, apart.Tetrahedra).IsEmpty());
 }
 
-// A mesh that is there twice, and a flat tetrahedron on its surface, have the boundary that it has
-// once.
+// A mesh whose tetrahedra are listed twice, and a flat tetrahedron on its surface, do not change
+// the boundary.
 TEST(MeshBoundaries, FacesOnOneSideOnly)
 {
   const TightMesh mesh = MakeBall(3.1);
@@ -644,8 +644,8 @@ TEST(MeshBoundaries, FacesOnOneSideOnly)
   EXPECT_EQ(FindMeshBoundary(Volume, Volume, flat.Points, flat.Tetrahedra).Crossed, once.Crossed);
 }
 
-// Of meshes that hold the whole volume none passes through it, also where it lies on the border of
-// the volume or touches a corner.
+// The boundary of a mesh that contains the whole volume does not pass through it, even if it lies
+// on the border of the volume or touches a corner.
 TEST(MeshBoundaries, NoneIfTheMeshContainsTheVolume)
 {
   const Extent& e = Volume;
@@ -655,7 +655,7 @@ TEST(MeshBoundaries, NoneIfTheMeshContainsTheVolume)
     [&](const glm::dvec3& p)
     { return glm::all(glm::greaterThan(p, low)) && glm::all(glm::lessThan(p, high)); });
   EXPECT_TRUE(FindMeshBoundary(Volume, Volume, same.Points, same.Tetrahedra).IsEmpty());
-  // A layer less on one side.
+  // One layer less on one side.
   const TightMesh less = MakeTightMesh(Volume, 1.0, glm::dmat3(1.0), low,
     [&](const glm::dvec3& p)
     {
@@ -679,14 +679,15 @@ TEST(MeshBoundaries, NoneIfTheMeshContainsTheVolume)
   EXPECT_TRUE(FindMeshBoundary(Volume, Volume, touching.Points, touching.Tetrahedra).IsEmpty());
 }
 
-// A tetrahedron that reaches far beyond the volume falls into few pieces, which fill it there.
+// A tetrahedron that extends far beyond the volume is divided into few pieces, which fill it within
+// the volume.
 TEST(MeshBoundaries, NodeFarAway)
 {
   const std::vector<glm::dvec3> points{ { 0.3, 5.1, 3.2 }, { 0.2, 20.4, 5.3 }, { 0.4, 8.7, 18.6 },
     { 1e8, 10.2, 9.1 } };
   const MeshBoundary boundary = FindMeshBoundary(Volume, Volume, points, { { { 0, 1, 2, 3 } } });
   ASSERT_FALSE(boundary.IsEmpty());
-  // Halves of at most 4,096 cells are divided five times, across into 32 x 32.
+  // Parts of at most 4,096 cells are divided five times, across into 32 x 32.
   EXPECT_LT(boundary.Pieces.size(), 10U * 32U * 32U);
   const auto isInside = [](const auto& corners, const glm::dvec3& point)
   {
@@ -700,7 +701,7 @@ TEST(MeshBoundaries, NodeFarAway)
   int inside = 0;
   for (int i = 0; i < 300; ++i)
   {
-    // Beside the face that all three near nodes have.
+    // Next to the face of the three near nodes.
     const double u = uniform(random);
     const double v = (1.0 - u) * uniform(random);
     const glm::dvec3 point =

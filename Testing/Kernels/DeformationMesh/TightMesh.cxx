@@ -22,8 +22,8 @@ namespace
 // Rounding moves corners by up to 1/512 output voxel on each axis.
 constexpr double Margin = 1.0 / 128.0;
 
-// The five tetrahedra of a cell of even index, by offsets x, y, z of their vertices: those at four
-// corners, and the one between them. Written down from the figure of the publication.
+// The five tetrahedra of a cell of even index, as offsets x, y, z of their vertices: four corner
+// tetrahedra and the central one. Taken from the figure of the publication.
 constexpr int Split[5][4][3] = {
   { { 0, 0, 0 }, { 0, 0, 1 }, { 1, 0, 1 }, { 0, 1, 1 } },
   { { 0, 1, 1 }, { 1, 1, 1 }, { 1, 0, 1 }, { 1, 1, 0 } },
@@ -32,7 +32,7 @@ constexpr int Split[5][4][3] = {
   { { 0, 1, 1 }, { 1, 0, 1 }, { 1, 1, 0 }, { 0, 0, 0 } },
 };
 
-// Barycentric weights; false for a flat tetrahedron.
+// Finds barycentric weights. Returns false for a flat tetrahedron.
 bool FindWeights(const std::array<glm::dvec3, 4>& q, const glm::dvec3& point, double* weights)
 {
   const glm::dmat3 sides(q[0] - q[3], q[1] - q[3], q[2] - q[3]);
@@ -49,7 +49,7 @@ bool FindWeights(const std::array<glm::dvec3, 4>& q, const glm::dvec3& point, do
   return true;
 }
 
-// How far a point lies inside a tetrahedron, negative outside.
+// The depth of a point in a tetrahedron; negative outside.
 double FindDepth(const std::array<glm::dvec3, 4>& q, const glm::dvec3& point)
 {
   double depth = std::numeric_limits<double>::infinity();
@@ -68,7 +68,7 @@ std::int64_t GetVoxel(const Extent& e, int x, int y, int z)
   return ((z - e[4]) * GetSize(e, 1) + y - e[2]) * GetSize(e, 0) + x - e[0];
 }
 
-// Whether the volume has something at a rest coordinate: 1, 0 or -1 near to a change. Finds the
+// Whether the volume exists at a rest coordinate: 1, 0, or -1 near a boundary. Finds the
 // tetrahedron and its weights.
 int FindSource(const TightMesh& mesh, const glm::dvec3& rest, TightVoxel& voxel)
 {
@@ -214,7 +214,7 @@ TightMesh MakeTightMesh(const Extent& volume, double edge, const glm::dmat3& tur
         {
           continue;
         }
-        // Along the diagonal from corner 0 to corner 7, over two others.
+        // The edges from corner 0 to corner 7 over two other corners.
         for (const auto& path : paths)
         {
           Tetrahedron tetrahedron;
@@ -289,8 +289,8 @@ std::vector<TightVoxel> FindTightVoxels(const TightMesh& mesh)
       }
     }
   }
-  // Voxels on a face between tetrahedra are inside; the surface of the mesh is where none of the
-  // points round a voxel is.
+  // Voxels on a face between tetrahedra are inside. Voxels on the surface of the mesh have nearby
+  // points outside.
   for (std::size_t i = 0; i < voxels.size(); ++i)
   {
     if (deepest[i] < -Margin)
@@ -306,7 +306,7 @@ std::vector<TightVoxel> FindTightVoxels(const TightMesh& mesh)
       voxels[i].Covered = deepest[i] >= -1e-9 ? voxels[i].Covered : -1;
     }
   }
-  // Of voxels near a face it is known only by others whether it is one of the surface.
+  // Points around a voxel near a face decide whether it is near the surface of the mesh.
   const auto isHeld = [&](const glm::dvec3& point)
   {
     return std::any_of(mesh.Tetrahedra.begin(), mesh.Tetrahedra.end(),

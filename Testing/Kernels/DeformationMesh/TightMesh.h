@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A volume with a deformation mesh that ends within it, and what comes out by a search in double
-// precision: every output voxel against every tetrahedron of the mesh. It shares nothing with the
-// engine, the split of cells into five tetrahedra included.
+// A volume with a deformation mesh that ends within it, and its expected output by a search in
+// double precision: every output voxel is compared with every tetrahedron of the mesh. It shares
+// nothing with the engine, not even the split of cells into five tetrahedra.
 #ifndef TightMesh_h
 #define TightMesh_h
 
@@ -25,7 +25,7 @@ struct TightMesh
   std::vector<deformvolume::Tetrahedron> Tetrahedra;
   std::vector<float> Displacements; // in output voxels
   deformvolume::Extent Output;
-  // Empty: none are blanked, all are active, nothing is clipped.
+  // If an array is empty: no voxel is blanked, all tetrahedra are active, nothing is clipped.
   std::vector<unsigned char> Blanked;
   std::vector<unsigned char> Active;
   std::vector<float> Distances;
@@ -35,30 +35,31 @@ struct TightMesh
     return deformvolume::GetNumberOfPoints(this->Grid.VertexExtent);
   }
   glm::dvec3 GetDeformed(std::int32_t node) const;
-  /// Displaces the nodes, and makes the output large enough.
+  /// Displaces the nodes, and enlarges the output to contain the deformed mesh.
   void Move(const std::function<glm::dvec3(const glm::dvec3&)>& displacement);
 };
 
-/// The cubes of a lattice with this edge, turned by this matrix round a middle, whose middles lie
-/// in a body, each in six tetrahedra. The boundary of the mesh is stairs at any angle.
+/// Makes a mesh of those cubes of a lattice whose centers lie in a body, with six tetrahedra each.
+/// edge: of the cubes. The lattice is rotated by a matrix around a center. The boundary of the mesh
+/// is a staircase at any angle.
 TightMesh MakeTightMesh(const deformvolume::Extent& volume, double edge, const glm::dmat3& turn,
   const glm::dvec3& middle, const std::function<bool(const glm::dvec3&)>& isInside);
 
-/// What an output voxel is to be.
+/// The expected value of an output voxel.
 struct TightVoxel
 {
-  /// 1: covered, 0: not covered, -1: so near to a surface that rounding decides.
+  /// 1: covered, 0: not covered, -1: so near a surface that rounding decides.
   int Covered = -1;
-  /// Of a covered one: weights of voxels of the volume, which add up to 1.
+  /// The weights of voxels of the volume, if covered. They add up to 1.
   std::array<std::int64_t, 4> Voxels{ { -1, -1, -1, -1 } };
   std::array<double, 4> Weights{ { 0, 0, 0, 0 } };
 };
 
-/// For each voxel of the output. Where tetrahedra of the mesh overlap after the deformation, the
-/// voxel is left open, too.
+/// Finds the expected value of each output voxel. Covered is -1 where tetrahedra of the mesh
+/// overlap after the deformation.
 std::vector<TightVoxel> FindTightVoxels(const TightMesh& mesh);
 
-/// What the engine makes of it.
+/// The output of the engine.
 struct TightOutput
 {
   std::vector<float> Values;
@@ -67,7 +68,7 @@ struct TightOutput
   deformvolume::DeformReport Report;
 };
 
-/// Noise, and labels without order: what a deformer of the test gets.
+/// The arrays of the tests: noise, and labels without order.
 std::vector<float> MakeNoise(const TightMesh& mesh);
 std::vector<std::int16_t> MakeLabels(const TightMesh& mesh);
 
@@ -80,11 +81,11 @@ TightOutput DeformTight(deformvolume::VolumeDeformer& deformer, const TightMesh&
   const TightOutput* last = nullptr,
   deformvolume::Interpolation interpolation = deformvolume::Interpolation::Linear);
 
-/// Coverage as the search found it; where the map is affine, values and labels too. bound: of the
-/// difference of values.
+/// Compares the coverage with the search. Where the map is affine, compares values and labels as
+/// well. bound: the largest allowed difference of values.
 void ExpectTight(const TightMesh& mesh, const TightOutput& output, double bound);
 
-/// To the last bit.
+/// Expects equality bit for bit.
 void ExpectSame(const TightOutput& one, const TightOutput& other);
 
 #endif
