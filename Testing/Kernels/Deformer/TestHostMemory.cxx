@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Memory of the caller: arrays that are read where they lie, outputs that are written where they
-// lie or copied, slabs.
+// Memory of the caller: arrays that are read in place, outputs that are written in place or copied,
+// and slabs.
 #include "DeformerCase.h"
 #include "DeviceNeeds.h"
 
@@ -37,7 +37,7 @@ protected:
       RunDeformer(this->Deformer, this->Case, this->Arrays, method));
   }
 
-  /// The device of the tests may be any: only a processor works in place.
+  /// Whether the device of the tests works in place. Only CPUs do.
   bool WorksInPlace()
   {
     VolumeDeformer deformer;
@@ -82,7 +82,7 @@ TEST_F(HostMemory, ArraysWithOwnerAreHeld)
   EXPECT_EQ(others > 0, this->WorksInPlace());
   if (others > 0)
   {
-    // What has changed is read.
+    // Changed values are read.
     std::reverse(this->Values.begin(), this->Values.end());
     this->ExpectRight();
     EXPECT_GT(owner.use_count(), 1 + static_cast<long>(owned.size()));
@@ -107,7 +107,7 @@ TEST_F(HostMemory, ArraysWithOwnerThatAreNotAligned)
   this->ExpectRight();
 }
 
-// Memory that ends where the next page must not be touched.
+// Memory that ends at the end of a page. The next page cannot be accessed.
 class GuardedMemory
 {
 public:
@@ -136,7 +136,7 @@ private:
   std::size_t Size = 0;
 };
 
-// Kernels that read or write behind the end of memory that they use in place would crash here.
+// Kernels that access memory beyond the end of arrays or outputs in place would crash here.
 TEST_F(HostMemory, ArraysAtTheEndOfTheirMemory)
 {
   for (const int size : { 1, 2, 7, 8, 9, 15, 16, 31, 33, 64, 65, 70 })
@@ -174,14 +174,15 @@ TEST_F(HostMemory, ArraysAtTheEndOfTheirMemory)
   }
 }
 
-// Output and its slabs, worked on in place or copied from the device, which for processors is
-// what becomes of memory that is not aligned.
+// Outputs and their slabs are written in place, or copied from the device. On CPUs, output memory
+// that is not aligned is copied.
 TEST_F(HostMemory, OutputsInSlabs)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
   const std::int64_t voxels = GetNumberOfPoints(this->Case.Output);
   const std::int64_t plane = GetSize(this->Case.Output, 0) * GetSize(this->Case.Output, 1);
-  // Bytes of a voxel in the widest array are 16, as in a link: five planes of the volume or more.
+  // The widest array has 16 bytes per voxel, as links do: slabs have five planes of the volume or
+  // more.
   for (const std::int64_t planes : { std::int64_t{ 5 }, std::int64_t{ 8 }, std::int64_t{ 1000 } })
   {
     this->Deformer.SetDevice("");
@@ -208,8 +209,8 @@ TEST_F(HostMemory, OutputsInSlabs)
   }
 }
 
-// Chunks of any number of layers: what cells at their ends do depends on cells of the next chunk,
-// where vertices or tetrahedra are missing.
+// Chunks of different numbers of layers. If vertices or tetrahedra are missing, cells at the end of
+// a chunk depend on cells of the next chunk.
 TEST_F(HostMemory, MaskedVolumesInChunks)
 {
   for (const double amplitude : { 0.0, 0.15 })
@@ -231,7 +232,7 @@ TEST_F(HostMemory, MaskedVolumesInChunks)
       SCOPED_TRACE(testing::Message() << "amplitude " << amplitude << " layers " << layers);
       VolumeDeformer deformer;
       deformer.SetDevice("");
-      // Links have 16 bytes, and a chunk has three planes more than layers.
+      // Links have 16 bytes, and a chunk has three planes more than it has layers.
       deformer.SetAllocationLimit(16 * 13 * 12 * (layers + 3));
       Load(deformer, masked, arrays, Route::Mesh);
       for (const Resampling method : { Resampling::Exact, Resampling::ExactByCell })
@@ -252,7 +253,7 @@ TEST_F(HostMemory, AbortBetweenSlabs)
   Load(this->Deformer, this->Case, this->Arrays, Route::Mesh);
   for (int calls = 1; calls < 6; ++calls)
   {
-    // The memory is gone as soon as the call has ended.
+    // The memory is freed as soon as the call has ended.
     auto first =
       std::make_unique<std::vector<unsigned char>>(2 * GetNumberOfPoints(this->Case.Output) + 1);
     auto second = std::make_unique<std::vector<double>>(2 * GetNumberOfPoints(this->Case.Output));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The order of calls: misuse, repeated use, masks that come and go, memory, progress and abort.
+// The order of calls: misuse, repeated use, masks that are set and removed, memory, progress and
+// abort.
 #include "DeformerCase.h"
 #include "Device.h"
 
@@ -53,7 +54,7 @@ protected:
     request.Coverage = this->Coverage.data();
     return request;
   }
-  /// The deformer works, whatever happened before.
+  /// Checks that the deformer works after any error.
   void ExpectUsable()
   {
     SCOPED_TRACE("used again");
@@ -130,7 +131,7 @@ TEST_F(Use, IndicesOutsideTheMesh)
   this->ExpectUsable();
 }
 
-// Positions relative to an output that is 2^24 voxels away do not fit 32 bits.
+// Positions relative to an output that is 2^24 voxels away overflow 32 bits.
 TEST_F(Use, OutputsFarAway)
 {
   Load(this->Deformer, this->Case, this->Arrays, Route::Field);
@@ -183,7 +184,7 @@ TEST_F(Use, NotEnoughMemory)
       this->Deformer.CheckMemory(voxelGrid, this->Arrays, voxelGrid.VertexExtent, 100, 200, false);
     });
   EXPECT_NE(error.find("12345"), std::string::npos) << error;
-  // What is needed: at the least the volume of 4 bytes a voxel.
+  // The needed number of bytes is at least that of a volume with 4 bytes per voxel.
   std::size_t largest = 0;
   for (std::size_t i = 0; i < error.size(); ++i)
   {
@@ -207,10 +208,11 @@ TEST_F(Use, NotEnoughMemory)
   this->ExpectUsable();
 }
 
-// Memory for winners is asked for only where tetrahedra overlap.
+// Memory for winners is requested only if tetrahedra overlap.
 TEST_F(Use, NotEnoughMemoryForAFold)
 {
-  // So large an output that its winners do not fit into what is counted on, but not used.
+  // The output is so large that its winners do not fit into memory that was counted but is not
+  // used.
   const DeformerCase folded =
     MakeCase(this->Case.VoxelGrid.VertexExtent, { { 1, 1, 1 } }, MakeJitter(3, 1.0), 10);
   const auto nodes = static_cast<std::size_t>(this->Case.GetNumberOfVoxels());
@@ -231,7 +233,7 @@ TEST_F(Use, NotEnoughMemoryForAFold)
   Load(this->Deformer, folded, this->Arrays, Route::Field);
   const std::string error = GetError([&] { RunDeformer(this->Deformer, folded, this->Arrays); });
   EXPECT_NE(error.find("folds"), std::string::npos) << error;
-  // Keys of the winners, and what is known of patches of the output.
+  // The keys of the winners, and the states of patches of the output.
   std::int64_t patches = 1;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -279,7 +281,7 @@ TEST_F(Use, AbortedByProgress)
     request.Progress = [&left](double) { return left-- > 0; };
     EXPECT_THROW(this->Deformer.Deform(request), Aborted) << allowed << " of " << calls;
   }
-  // Without loading again.
+  // The data need not be loaded again.
   ExpectEqualsReference(this->Case, this->Reference, this->Arrays,
     RunDeformer(this->Deformer, this->Case, this->Arrays));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Each kernel once on a volume small enough for an interpreting device that watches every access.
+// Each kernel, on a volume small enough for Oclgrind, which checks every memory access.
 #include "DeformerCase.h"
 #include "DeviceNeeds.h"
 
@@ -28,8 +28,8 @@ void Check(const DeformerCase& tiny, Route route, bool embedding = true)
   ExpectEqualsReference(tiny, reference, arrays, LoadAndRun(tiny, arrays, route));
 }
 
-// Two voxels move by so much, one after the other. For the second one a part of the output is made
-// anew by cell, in memory of the device: that of the caller is not aligned.
+// Two voxels move by `move`, one after the other. The second update resamples a part of the output
+// by cell, in memory of the device: the memory of the caller is not aligned.
 void CheckUpdate(double move)
 {
   DeformerCase tiny = MakeCase({ { 0, 7, 0, 15, 0, 3 } }, NoScale, MakeJitter(8, 0.1), 3);
@@ -53,7 +53,8 @@ void CheckUpdate(double move)
   request.LastOutputs = { output.data() + 1 };
   request.LastCoverage = coverage.data();
   const DeformReport report = deformer.Deform(request);
-  // Of the one brick some sections were run: what may have changed says that it was a part.
+  // Some sections of the only brick were resampled: the changed extent is only a part of the
+  // output.
   EXPECT_LT(GetNumberOfPoints(report.ChangedExtent), GetNumberOfPoints(tiny.Output));
   VolumeDeformer fresh;
   Load(fresh, tiny, arrays, Route::Field);
@@ -156,7 +157,7 @@ TEST(VolumeDeformer, TinyByLanes)
     Resampling::ExactByLanes, MakeCase({ { 0, 5, 0, 3, -1, 2 } }, NoScale, MakeJitter(6, 0.15)));
 }
 
-// Of several sections, with cells for the queue on its border and inside.
+// A volume of several sections, with deferred cells on its border and inside.
 TEST(VolumeDeformer, TinyByColumns)
 {
   for (const double amplitude : { 0.0, 0.15 })
