@@ -17,7 +17,7 @@ namespace
 
 const std::array<double, 3> NoScale{ { 1, 1, 1 } };
 
-/// first: where the structured indices begin, an even number. Large ones do not fit into a float.
+/// first: the first structured index, an even number. Large indices do not fit into a float.
 void TestFieldOfHalfTheResolution(int first)
 {
   const Extent extent{ { first - 2, first + 8, first + 1, first + 9, first, first + 10 } };
@@ -27,7 +27,7 @@ void TestFieldOfHalfTheResolution(int first)
   field.Dimensions = { { 6, 5, 6 } };
   const double begin = -0.5 * first;
   field.IndexToField = { { 0.5, 0, 0, begin + 1, 0, 0.5, 0, begin - 0.5, 0, 0, 0.5, begin } };
-  // Whole numbers of 8/256 voxel: means of two, four and eight are exact.
+  // Integer multiples of 8/256 voxel: means of two, four and eight are exact.
   std::vector<int> units(3 * 6 * 5 * 6);
   std::generate(units.begin(), units.end(), [&] { return uniform(random); });
   std::vector<float> vectors;
@@ -151,7 +151,7 @@ TEST(Mapping, FieldOfOnePointMovesEverything)
 
 TEST(Mapping, BarycentricWeightsOfAllFourNodes)
 {
-  // Weights and displacements that float holds exactly: the mean of four nodes of each voxel.
+  // Weights and displacements that are exact in floats: each voxel has the mean of four nodes.
   const Extent extent{ { 0, 5, 0, 6, 0, 7 } };
   const auto units = MakeRandomValues<std::int8_t>(3 * 50, 12);
   std::mt19937 random(13);
@@ -166,7 +166,7 @@ TEST(Mapping, BarycentricWeightsOfAllFourNodes)
   std::vector<float> displacements;
   for (const std::int8_t unit : units)
   {
-    // Multiples of 1/32 voxel, of which an eighth is a multiple of 1/256.
+    // Multiples of 1/32 voxel: an eighth of them is a multiple of 1/256.
     displacements.push_back(static_cast<float>(unit / 25) / 32.0F);
   }
   DeformerCase linked;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The deformation mapping by runs: against links, and against displacements computed in long
+// The deformation mapping by runs, compared with links and with displacements computed in long
 // double.
 #include "DeformerCase.h"
 #include "DeviceNeeds.h"
@@ -23,8 +23,8 @@ using namespace deformvolume;
 namespace
 {
 
-// A volume whose voxels have been given to tetrahedra at random, row by row, in runs of random
-// lengths. Many voxels lie outside their tetrahedron, which makes no difference to an affine map.
+// A volume whose voxels are assigned to random tetrahedra, row by row, in runs of random lengths.
+// Many voxels lie outside their tetrahedron. This is irrelevant for an affine map.
 struct RunCase
 {
   VoxelGrid Shape;
@@ -85,7 +85,7 @@ RunCase MakeRunCase(const Extent& extent, unsigned int seed)
       made.Points.resize(first);
     }
   }
-  // Several records for some of the tetrahedra, none for others, and in another order.
+  // Some tetrahedra have several records, others have none, and the order is random.
   std::uniform_int_distribution<int> tetrahedron(1, tetrahedra - 1);
   for (int record = 0; record < 40; ++record)
   {
@@ -147,8 +147,8 @@ RunCase MakeRunCase(const Extent& extent, unsigned int seed)
   return made;
 }
 
-// Maps the vertices of some planes into rows: the x of a row of vertices, then their y, then their
-// z. A vertex without position has INT_MIN in x.
+// Maps the vertices of some planes into rows: first x of the vertices of a row, then y, then z. A
+// vertex without a position has INT_MIN in x.
 const char* const MapPositions =
   "__kernel void MapPositions(MAPPING_PARAMETERS, __global const uchar* state,\n"
   "  __global int* positions, const KernelParameters p)\n"
@@ -166,7 +166,7 @@ const char* const MapPositions =
   "  place[2 * p.Size[0]] = q.z;\n"
   "}\n";
 
-// What the device makes of a mapping: three ints a voxel, and the state, one byte a voxel.
+// The result of a mapping on the device: three ints per voxel, and the state, one byte per voxel.
 struct Mapped
 {
   std::vector<std::array<int, 3>> Positions;
@@ -176,7 +176,7 @@ struct Mapped
 class Device
 {
 public:
-  // The largest allocation decides into how many chunks the volume falls.
+  // allocationLimit: the largest allocation, which determines the number of chunks.
   Device(const RunCase& runCase, std::uint64_t allocationLimit)
     : Case(runCase)
     , Context(OpenCLContext::Get(FindDevice("")))
@@ -258,12 +258,12 @@ private:
     std::vector<int> values(3 * voxels);
     this->Queue.enqueueReadBuffer(
       positions, CL_TRUE, 0, values.size() * sizeof(int), values.data());
-    std::vector<unsigned char> states(voxels); // stay 0 where there is no need to keep any
+    std::vector<unsigned char> states(voxels); // all 0 if the chunk stores no states
     if (chunk.State())
     {
       this->Queue.enqueueReadBuffer(chunk.State, CL_TRUE, 0, voxels, states.data());
     }
-    // The planes beyond the layers of the chunk are those of its neighbours.
+    // The planes beyond the layers of a chunk belong to the neighboring chunks.
     const int end = std::min(p.LayersEnd + 1, p.Size[2]);
     for (int z = p.LayersBegin; z < end; ++z)
     {
@@ -273,7 +273,7 @@ private:
         const std::size_t row = local / p.Size[0] * 3 * p.Size[0] + local % p.Size[0];
         mapped.Positions[z * plane + v] = { { values[row], values[row + p.Size[0]],
           values[row + 2 * p.Size[0]] } };
-        // A plane between two chunks has its cells in the second one.
+        // A plane between two chunks has its cells in the second chunk.
         mapped.States[z * plane + v] = states[local];
       }
     }
@@ -297,7 +297,7 @@ std::vector<float> MakeDisplacements(const RunCase& runCase, double largest, uns
   return displacements;
 }
 
-// The error bound of VertexRuns.h, and the rounding of positions to 1/256.
+// Checks the error bound of VertexRuns.h plus the rounding of positions to 1/256.
 void ExpectPositionsWithinBound(
   const RunCase& runCase, const std::vector<float>& displacements, const Mapped& mapped)
 {
@@ -344,7 +344,7 @@ void ExpectPositionsWithinBound(
       {
         continue; // clamped
       }
-      // 1 % for the roundings of roundings, and what doubles cost.
+      // 1 % for products of rounding errors, and an absolute term for the errors of doubles.
       const long double bound =
         1.01L * unit * (4.0L * sum + std::fabs(origin) + std::fabs(exact) + 1e-6L);
       const long double found =
@@ -395,7 +395,8 @@ TEST(Runs, PositionsAreThoseOfLinks)
       {
         for (int axis = 0; axis < 3; ++axis)
         {
-          // In 1/256 voxel. Both are within 1/1024 voxel of the truth and then rounded.
+          // In 1/256 voxel. Both results have an error of at most 1/1024 voxel before they are
+          // rounded.
           ASSERT_LE(std::abs(byRuns.Positions[voxel][axis] - byLinks.Positions[voxel][axis]), 1)
             << voxel;
         }
@@ -459,7 +460,8 @@ TEST(Runs, ChunksAndBlankedVoxels)
     ASSERT_EQ(byRuns.Positions[voxel][0] != INT_MIN,
       !blanked[voxel] && runCase.Links[voxel].Tetrahedron >= 0);
   }
-  // 22 * 12 voxels a plane at 16 bytes; three planes more than layers, five where there is room.
+  // A plane has 22 * 12 voxels of 16 bytes. A chunk has three planes more than layers, or five if
+  // there is room.
   for (const std::uint64_t planes : { 5, 6, 50, 100 })
   {
     SCOPED_TRACE(planes);
@@ -541,7 +543,7 @@ TEST_F(RunsMisuse, WrongRuns)
                         }),
     "Record 2");
   EXPECT_THROW(this->Deformer.SetMesh(nullptr, 0, 0, this->Good), Error);
-  // And used again.
+  // After all errors the deformer can be used.
   const reference::Result reference = ResampleByReference(this->Case);
   Load(this->Deformer, this->Case, this->Arrays, Route::Runs);
   ExpectEqualsReference(
@@ -572,7 +574,8 @@ TEST_F(RunsMisuse, NoVoxelInTheMesh)
   EXPECT_EQ(RunDeformer(this->Deformer, this->Case, this->Arrays).Report.NumberOfCoveredVoxels, 0);
 }
 
-// Runs, links, a field and runs again on one deformer; what one leaves behind must not matter.
+// Sets runs, links, a field and runs again on one deformer. Data of the previous form must have no
+// effect.
 TEST_F(RunsMisuse, FormsAlternate)
 {
   const reference::Result reference = ResampleByReference(this->Case);
@@ -582,7 +585,7 @@ TEST_F(RunsMisuse, FormsAlternate)
     ExpectEqualsReference(
       this->Case, reference, this->Arrays, RunDeformer(this->Deformer, this->Case, this->Arrays));
   }
-  // Without setting the voxel grid again.
+  // The voxel grid need not be set again.
   DisplacementField field;
   field.Dimensions = { { 1, 1, 1 } };
   const std::array<float, 3> vector{ { 0.0F, 0.0F, 0.0F } };
@@ -600,8 +603,8 @@ TEST_F(RunsMisuse, MemoryIsThatOfTheRuns)
   voxelGrid.VertexExtent = { { 0, 199, 0, 199, 0, 199 } };
   const std::uint64_t voxels = 8000000;
   const std::uint64_t runBytes = GetRunBytes(voxels / 10, 40000, 1000);
-  // 4 bytes a voxel of the volume, 3 of state and masks, and 5 of the output where the device does
-  // not work in place: 16 bytes a voxel more do not fit, runs do.
+  // 4 bytes per voxel for the volume, 3 for states and masks, and 5 for the output if the device
+  // does not work in place. There is no room for another 16 bytes per voxel, but for runs there is.
   this->Deformer.SetMemoryLimit(voxels * 22);
   EXPECT_NO_THROW(this->Deformer.CheckMemory(
     voxelGrid, this->Arrays, voxelGrid.VertexExtent, 100, 200, false, runBytes));
@@ -609,7 +612,7 @@ TEST_F(RunsMisuse, MemoryIsThatOfTheRuns)
     this->Deformer.CheckMemory(voxelGrid, this->Arrays, voxelGrid.VertexExtent, 100, 200, false),
     Error);
   this->Deformer.SetMemoryLimit(0);
-  // The case itself: each run ends after one voxel here, so runs alone would save nothing.
+  // In this case each run ends after one voxel, so runs alone would save nothing.
   Load(this->Deformer, this->Case, this->Arrays, Route::Runs);
   RunDeformer(this->Deformer, this->Case, this->Arrays);
   EXPECT_GE(this->Deformer.GetDeviceMemory(), GetBytes(this->Good));
