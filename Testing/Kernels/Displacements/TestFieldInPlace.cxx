@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fields that are read where they lie against the same displacements that are copied: the same to
-// the last bit, with all kernels.
+// Fields that are read in place, compared with copied fields of the same displacements. Results
+// must be the same bit for bit with all kernels.
 #include "Device.h"
 #include "DeviceNeeds.h"
 #include "EditedVolume.h"
@@ -16,7 +16,7 @@ using namespace deformvolume;
 namespace
 {
 
-// Vectors at the voxels of a volume, and round them.
+// Vectors at the voxels of a volume, with a border around them.
 struct Vectors
 {
   explicit Vectors(const EditedVolume& volume, int border)
@@ -93,7 +93,7 @@ TEST(FieldInPlace, EqualsACopy)
         catch (const Error& error)
         {
           EXPECT_EQ(method, Resampling::ExactByLanes) << error.what();
-          continue; // too little local memory
+          continue; // the device has too little local memory
         }
         EXPECT_GT(covered, 1000);
         EXPECT_EQ(Deform(volume, vectors.GetInPlace(), method, found), covered);
@@ -106,8 +106,7 @@ TEST(FieldInPlace, EqualsACopy)
   }
 }
 
-// What has changed may be told in any order, and twice, of a field in place and of one that is
-// copied.
+// Changes may be reported in any order, also twice, for fields in place and for copied fields.
 TEST(FieldInPlace, ChangesInAnyOrder)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -144,7 +143,7 @@ TEST(FieldInPlace, ChangesInAnyOrder)
   }
 }
 
-// The matrix counts where fields are copied, too.
+// The matrix applies to copied fields, too.
 TEST(FieldInPlace, MatrixIsThatOfScaledVectors)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -163,7 +162,7 @@ TEST(FieldInPlace, MatrixIsThatOfScaledVectors)
   EXPECT_TRUE(found == expected);
 }
 
-// Vectors that are read where they lie may be anything: what they move is left out.
+// Vectors that are read in place may have any values. Voxels with invalid vectors are discarded.
 TEST(FieldInPlace, AnyVectors)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -182,7 +181,7 @@ TEST(FieldInPlace, AnyVectors)
     {
       if (GetDeviceAbilities("").OwnMemory)
       {
-        // What is sent to the device is a copy.
+        // Vectors that are sent to the device are copied, and checked.
         EXPECT_THROW(Deform(volume, vectors.GetInPlace(), method, outputs), Error);
         continue;
       }
@@ -190,12 +189,12 @@ TEST(FieldInPlace, AnyVectors)
       EXPECT_LT(covered, before);
       EXPECT_GT(covered, before - 10000);
     }
-    // A copy is checked, where it is not the kernels' to do.
+    // A copied field is checked on the host, unless the kernels check it.
     EXPECT_THROW(Deform(volume, vectors.Field, Resampling::Exact, outputs), Error);
   }
 }
 
-// The owner is held as long as the vectors are used, and no longer.
+// The owner is kept as long as the vectors are used, and not longer.
 TEST(FieldInPlace, KeepsItsOwner)
 {
   const EditedVolume volume;
