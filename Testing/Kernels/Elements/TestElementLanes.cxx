@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Code for processors with AVX2 finds what code for the least processor finds, to the last bit.
+// Code for CPUs with AVX2 must give the results of code for the baseline CPU bit for bit.
 #include "BlockMatrix.h"
 #include "FiniteElementCase.h"
 #include "FiniteElements.h"
@@ -17,7 +17,7 @@ namespace
 
 using Place = LatticeBody::Place;
 
-// Switches the code for AVX2 off, and on again.
+// Switches the code for AVX2 off and on.
 class WideLanes : public ::testing::Test
 {
 protected:
@@ -42,7 +42,7 @@ protected:
   }
 };
 
-// Bits rather than values: zeros of both signs are equal.
+// Compares bits rather than values: +0 and -0 are equal values.
 template <typename Value>
 bool HasSameBits(const std::vector<Value>& a, const std::vector<Value>& b)
 {
@@ -55,7 +55,8 @@ QuadraticLattice MakeBar(const Place& nodes)
     nodes, 0.01, MakeMaterial(1e4, 0.45), [](const Place& place) { return place[2] == 0; });
 }
 
-// So large that some tetrahedra are inside out: all ways through the singular values are gone.
+// The noise is so large that some tetrahedra are inverted. All branches of the singular value
+// decomposition are taken.
 std::vector<glm::dvec3> MakeNoise(std::size_t nodes, double size)
 {
   std::mt19937 random(11);
@@ -68,7 +69,7 @@ std::vector<glm::dvec3> MakeNoise(std::size_t nodes, double size)
   return result;
 }
 
-// What elements and matrices find.
+// Sums over elements and matrices.
 struct Sums
 {
   std::vector<glm::dvec3> Forces;
@@ -138,7 +139,7 @@ TEST_F(WideLanes, ElementsAndProducts)
   }
 }
 
-// With the inverses of the diagonal, and with several levels in single precision.
+// The bodies need block Jacobi, and several multigrid levels in single precision.
 TEST_F(WideLanes, Solutions)
 {
   for (const Place& nodes : { Place{ 3, 3, 5 }, Place{ 6, 7, 8 } })

@@ -70,7 +70,7 @@ void CheckDecomposition(const glm::dmat3& matrix)
     scaled[i] *= d.Values[i];
   }
   const double size = std::max(1e-300, LargestOfMatrix(matrix));
-  // Some tens of operations, each of which rounds.
+  // The error of some tens of rounded operations.
   constexpr double rounding = 1e-14;
   EXPECT_LT(LargestOfMatrix(scaled * glm::transpose(d.V) - matrix), rounding * size);
   EXPECT_LT(LargestOfMatrix(glm::transpose(d.U) * d.U - glm::dmat3(1.0)), rounding);
@@ -81,7 +81,7 @@ void CheckDecomposition(const glm::dmat3& matrix)
   EXPECT_GE(d.Values[1], std::abs(d.Values[2]) - rounding * size);
 }
 
-// A body in a state of stretch, turned, in which no eigenvalue has to be cut off.
+// A stretched and rotated body. None of its eigenvalues is clamped.
 struct Stretched
 {
   Stretched()
@@ -98,7 +98,7 @@ struct Stretched
     }
   }
 
-  // Gives the nodes other numbers, so that those in the middle of edges come before their ends.
+  // Renumbers the nodes, so that mid-side nodes come before the ends of their edges.
   void NumberAnew()
   {
     ElasticBody& body = this->Lattice.Body;
@@ -160,7 +160,7 @@ TEST(ElementMechanics, SingularValues)
       matrix[j] = glm::dvec3(normal(random), normal(random), normal(random));
     }
     CheckDecomposition(matrix);
-    // Nearly a rotation, and flat.
+    // A matrix that is nearly a rotation, and a nearly singular one.
     CheckDecomposition(MakeRotation(normal(random), matrix[0]) + 1e-8 * matrix);
     matrix[2] = matrix[0] + 1e-7 * matrix[1];
     CheckDecomposition(matrix);
@@ -204,7 +204,8 @@ TEST_P(ElementModels, ForcesAreThoseOfTheEnergy)
       const double more = getEnergy(moved);
       moved[node][axis] -= 2.0 * step;
       const double difference = (more - getEnergy(moved)) / (2.0 * step);
-      // An energy of 2 J is rounded to 1e-15 of it, a millionth of a metre apart.
+      // The energy of 2 J has a rounding error of 1e-15 of its value, and the positions differ by
+      // 1e-6 m.
       EXPECT_NEAR(difference, forces[node][axis], 1e-7 * LargestOf(forces));
     }
   }
@@ -247,7 +248,7 @@ TEST_P(ElementModels, TangentIsThatOfTheForces)
     for (std::size_t node = 0; node < nodes; ++node)
     {
       const glm::dvec3 difference = (forcesMore[node] - forcesLess[node]) / (2.0 * step);
-      // What a central difference leaves out is the square of the step, 1e-5 of an edge.
+      // The error of a central difference is the square of the step, which is 1e-5 of an edge.
       EXPECT_LT(LargestOf(difference - product[node]), 1e-8 * LargestOf(product));
     }
   }
@@ -277,7 +278,8 @@ TEST_P(ElementModels, TangentIsNeverNegative)
       direction[node] = glm::dvec3(normal(random), normal(random), normal(random));
     }
     elements.AssembleTangent(watch, displacements, true, matrix);
-    // Towards the least eigenvalue: minus the product of the last direction.
+    // Power iterations converge to the least eigenvalue: each adds minus the product of the last
+    // direction.
     for (int i = 0; i < 20; ++i)
     {
       matrix.Multiply(0, nodes, isFree.data(), direction.data(), product.data());
@@ -297,8 +299,8 @@ TEST_P(ElementModels, TangentIsNeverNegative)
   }
 }
 
-// The stress of a tetrahedron is what its nodes pull at, by its volume: the forces by the
-// positions.
+// The stress of a tetrahedron is the sum of the products of the forces on its nodes and their
+// positions, divided by its volume.
 TEST_P(ElementModels, StressIsThatOfTheForces)
 {
   ElasticBody body;
@@ -311,7 +313,7 @@ TEST_P(ElementModels, StressIsThatOfTheForces)
   model.SetMaterialModel(GetParam());
   model.SetBody(body);
   const glm::dmat3 rotation = MakeRotation(0.7, { 1.0, 2.0, -0.5 });
-  // Larger, smaller and inside out.
+  // Stretched, unchanged, compressed and inverted.
   for (const double height : { 1.4, 1.0, 0.3, 1e-3, -1e-3, -0.8 })
   {
     const std::vector<glm::dvec3> displacements = MapPoints(
@@ -339,7 +341,7 @@ TEST_P(ElementModels, FlatTetrahedraHaveNoStress)
   model.SetMaterialModel(GetParam());
   model.SetBody(lattice.Body);
   const glm::dmat3 rotation = MakeRotation(0.7, { 1.0, 2.0, -0.5 });
-  // Exactly, and but for rounding; to a plane, a line and a point.
+  // Singular matrices, exact and with rounding errors. They map to a plane, a line and a point.
   for (const glm::dmat3& matrix :
     { glm::dmat3(1, 0, 0, 0, 1, 0, 0, 0, 0), rotation * glm::dmat3(1.2, 0, 0, 0, 0.9, 0, 0, 0, 0),
       glm::dmat3(1, 0, 0, 0, 0, 0, 0, 0, 0), glm::dmat3(0.0) })
@@ -351,7 +353,7 @@ TEST_P(ElementModels, FlatTetrahedraHaveNoStress)
       EXPECT_EQ(results.Stress, (std::array<double, 6>{}));
       EXPECT_GT(results.StrainEnergyDensity, 1e3);
     }
-    // A point of neo-Hookean material is in equilibrium, though not a stable one.
+    // A neo-Hookean tetrahedron that is a point is in equilibrium, although not in a stable one.
     const bool isPoint = matrix == glm::dmat3(0.0);
     if (!isPoint || GetParam() == MaterialModel::Corotational)
     {
