@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All tests of the engine. CTest runs them file by file: what a device appears to be, and what has
-// been compiled, is decided once in a process.
+// All tests of the engine. CTest runs one process per source file, as the apparent device and the
+// compiled kernels are fixed within a process.
 //
 // Usage: DeformVolumeEngineTests [--files=NAME,...] [--device=KIND] [OPTION OF GOOGLETEST]...
-//   --files   only tests of these sources, such as --files=TestColumns,TestFolded
+//   --files   run only the tests of these sources, such as --files=TestColumns,TestFolded
 //   --device  gpu-like: the device appears to be a graphics card
-//             gpu-like-no-double: to be one without double precision
+//             gpu-like-no-double: the device appears to be a graphics card without double precision
 #include "Device.h"
 #include "FakeDriver.h"
 
@@ -41,8 +41,8 @@ bool MatchesAny(const std::string& name, const std::string& patterns)
     [&](const std::string& pattern) { return fnmatch(pattern.c_str(), name.c_str(), 0) == 0; });
 }
 
-/// Has only tests of some sources run, as far as GoogleTest's filter has them. Returns a source
-/// without tests, or nothing.
+/// Restricts the tests to some sources, in addition to GoogleTest's filter. Returns the name of a
+/// source without tests, or an empty text.
 std::string SelectFiles(const std::vector<std::string>& files)
 {
   const std::string filter = GTEST_FLAG_GET(filter);
@@ -118,7 +118,7 @@ int Run(int argc, char* argv[])
   {
     return Fail(std::string("unknown argument ") + others[1]);
   }
-  // Otherwise the tests would pass on the processor, and say nothing of graphics cards.
+  // Otherwise the tests would run as on a CPU, and prove nothing for graphics cards.
   if (isGraphics && deformvolume::GetDeviceAbilities("").Vectors)
   {
     return Fail("the device does not appear to be a graphics card");

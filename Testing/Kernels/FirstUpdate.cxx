@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Prints what the first execution of a process costs on a device, and what a later one does: what
-// is compiled makes the difference. Testing/drivers.sh makes a table of it. Prints a line "later:"
-// between the two, for what drivers print: Testing/gpu-compilers.sh counts instructions by it.
+// Prints the times of the first and of a later execution of a process on a device. The difference
+// is the time of compilation. Testing/drivers.sh makes a table of it. Prints a line "later:"
+// between the two, which separates the output of drivers: Testing/gpu-compilers.sh counts
+// instructions by it.
 //
 // Usage: FirstUpdate [still | jittered | folded] [cells | columns] [runs] [mesh CELLS] [VOXELS]
 // [DEVICE]
-//   still      the volume is where it was; else it is moved by a quarter of a voxel
-//   jittered   its voxels are moved besides, each on its own, by up to 0.15 voxels
-//   folded     it is folded over, so that winners are chosen
-//   cells      by the kernel that takes one cell after the other
-//   columns    by the kernel for graphics cards
-//   runs       with runs in place of links
-//   mesh       by mesh rasterisation, with a mesh of so many cubes on each axis, of six tetrahedra
-//   each VOXELS     on each axis, 32 by default
+//   still      the volume does not move; otherwise it moves by a quarter of a voxel
+//   jittered   each voxel is also moved at random, by up to 0.15 voxels
+//   folded     the volume is folded over, so that winners are chosen
+//   cells      by the kernel by cells
+//   columns    by the kernel by columns, for graphics cards
+//   runs       with runs instead of links
+//   mesh       by mesh rasterization, with a mesh of CELLS cubes on each axis, each of six
+//              tetrahedra
+//   VOXELS     number of voxels on each axis, 32 by default
 #include "DeformerCase.h"
 #include "Device.h"
 #include "RasterCase.h"

@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Writes the OpenCL programs that this library builds into a folder, each kind of them once, for
-// Testing/gpu-compilers.sh: whatever is built while volumes are deformed in the ways that there
-// are, on any device, which appears to be a graphics card.
+// Writes the OpenCL programs that this library builds into a folder, one of each kind, for
+// Testing/gpu-compilers.sh. It deforms volumes in all supported ways, on any device, which appears
+// to be a graphics card.
 //
 // Usage: KernelTexts FOLDER (double | single | processor) [texts | linked DRIVER LINKER]
 //   double     the device appears to be a graphics card with double precision
-//   single     to be one without double precision
-//   processor  it is a processor, as it is
-//   texts      no kernel is run, which saves their compilation: those that depend on what others
-//              have found are written for few kinds of arrays only, and no launches are known
-//   linked     the same, with all types of arrays in one program in place of several programs; and
-//              the OpenCL driver of this path compiles and links all kernels, by the program ld in
-//              the folder LINKER: see Testing/Wheel/link_kernels.py
+//   single     the device appears to be a graphics card without double precision
+//   processor  the device is a CPU, and is not disguised
+//   texts      no kernel is run, which saves their compilation. Programs that depend on results of
+//              kernels are written for few kinds of arrays only, and no launches are recorded
+//   linked     as texts, with all types of arrays in one program instead of several programs. The
+//              OpenCL driver with the path DRIVER compiles and links all kernels, with the program
+//              ld in the folder LINKER: see Testing/Wheel/link_kernels.py
 //
-// The folder gets a file NAME.cl for each program, NAME.options, NAME.nvidia with the options that
-// only NVIDIA's drivers have, and the list kernels.txt with a line for each kernel: the name of the
-// program, that of the kernel, and of its launches the most work-items of a group and the most
-// bytes of local memory in arguments; 0 and 0 where it was not launched.
+// The folder gets, for each program, a file NAME.cl, a file NAME.options, and a file NAME.nvidia
+// with the options that only NVIDIA's drivers have. The list kernels.txt has a line for each
+// kernel: the name of the program, the name of the kernel, and over all of its launches the largest
+// number of work-items of a group and the largest number of bytes of local memory in arguments.
+// Both are 0 if the kernel was not launched.
 #include "ChainMailSubject.h"
 #include "Device.h"
 #include "FakeDriver.h"
@@ -40,19 +41,19 @@ using namespace deformvolume;
 namespace
 {
 
-/// What is built, and for which device.
+/// The programs to build, and the device.
 struct Plan
 {
   std::string Folder;
   bool IsProcessor = false;
   bool HasDouble = true;
   bool IsRun = true;
-  std::string Driver; // that links all kernels; empty: none does
+  std::string Driver; // the driver that links all kernels; empty: no kernel is linked
   std::string Linker;
 };
 
-/// Has the driver compile and link all kernels of a program: PoCL does so where it is asked for the
-/// binary.
+/// Makes the driver compile and link all kernels of a program. PoCL does so if its binary is
+/// requested.
 void LinkProgram(const std::string& text, const std::string& options)
 {
   const OpenCLContext& context = OpenCLContext::Get(FindDevice(""));
@@ -85,7 +86,7 @@ public:
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  /// What programs are built for from now on; it becomes a part of their names.
+  /// Sets the purpose of the programs that are built from now on. It becomes a part of their names.
   void SetPurpose(const std::string& words) { this->Purpose = words; }
 
   void WriteKernels() const
@@ -116,7 +117,8 @@ private:
     {
       return;
     }
-    // The last kernel of a text is its own; those before it may be those of other texts, too.
+    // The last kernel of a text belongs to this text. Kernels before it may also belong to other
+    // texts.
     name = kernels.substr(kernels.rfind(';') + 1) + "-" + this->Purpose;
     const int count = ++this->Counts[name];
     name += count > 1 ? "-" + std::to_string(count) : "";
@@ -140,13 +142,13 @@ private:
   bool IsLinking;
   std::string Purpose;
   std::map<std::string, std::string> Names; // of the programs, by their text
-  std::map<std::string, int> Counts;        // of the programs with a name
+  std::map<std::string, int> Counts;        // number of programs with each name
   std::map<std::pair<std::string, std::string>, Use> Kernels;
 };
 
 const std::array<double, 3> NoScale{ { 1, 1, 1 } };
 
-/// Folded in places, and with cells that are so large that they are put off.
+/// A volume that is folded in places, and has cells that are large enough to be deferred.
 DeformerCase MakeFolded()
 {
   const auto jitter = MakeJitter(3, 1.0);
@@ -155,7 +157,7 @@ DeformerCase MakeFolded()
     { return index + (index == glm::dvec3(7, 5, 4) ? glm::dvec3(60) : jitter(index) - index); });
 }
 
-/// A whole output, and one of which a part is made anew.
+/// Computes a whole output, and then an update of a part of it.
 void Deform(VolumeDeformer& deformer, const DeformerCase& deformerCase,
   const std::vector<VolumeArray>& arrays, Resampling method = Resampling::Exact)
 {
@@ -179,7 +181,7 @@ void Deform(VolumeDeformer& deformer, const DeformerCase& deformerCase,
   }
 }
 
-/// Values for arrays of all kinds: their bits do not matter here.
+/// Values for arrays of all types: their bits are irrelevant here.
 const std::vector<std::uint64_t> Values(100000);
 
 VolumeArray MakeArray(ElementType type, int components = 1, bool categorical = false)
@@ -224,7 +226,7 @@ void DeformEach(Recorder& recorder, const std::string& purpose, const DeformerCa
     Deform(deformer, deformerCase, OneArray);
     if (route != Route::Field)
     {
-      // Two nodes lie in one place.
+      // Two nodes coincide.
       std::vector<std::int32_t> places(static_cast<std::size_t>(deformerCase.GetNumberOfVoxels()));
       std::iota(places.begin(), places.end(), 0);
       places.back() = 0;
@@ -382,14 +384,15 @@ void MoveBodies(Recorder& recorder)
   }
   catch (const Error&)
   {
-    if (!FakeDriver::Get().SkipsLaunches) // else the forces of the springs are missing
+    if (!FakeDriver::Get().SkipsLaunches) // without launches, the forces of the springs are missing
     {
       throw;
     }
   }
 }
 
-/// For volumes of more than 2^30 cells, and what a volume may not have needed.
+/// Builds programs for volumes of more than 2^30 cells, and other programs that the volumes here
+/// may not need.
 void BuildOthers(Recorder& recorder)
 {
   recorder.SetPurpose("links-int16-wide");
@@ -405,7 +408,7 @@ void BuildOthers(Recorder& recorder)
     recorder.SetPurpose(withCut ? "links-int16-cut" : "links-int16");
     GetResamplingProgram(
       context, MappingForm::Links, OneArray, { ResamplingForm::LargeCells, false, true, withCut });
-    // For outputs that columns do not take.
+    // Programs for outputs that the kernel by columns does not support.
     GetResamplingProgram(
       context, MappingForm::Links, OneArray, { ResamplingForm::Cells, false, false, withCut });
     recorder.SetPurpose(withCut ? "links-int16-cubic-cut" : "links-int16-cubic");
@@ -423,7 +426,7 @@ void Build(const Plan& plan)
   if (!plan.Driver.empty())
   {
     setenv("COMPILER_PATH", plan.Linker.c_str(), 1);
-    AddDriver(plan.Driver); // while its device is still a processor
+    AddDriver(plan.Driver); // before its device appears to be a graphics card
   }
   driver.SkipsLaunches = !plan.IsRun;
   driver.IsGraphics = !plan.IsProcessor;
@@ -433,7 +436,7 @@ void Build(const Plan& plan)
   DeformArrays(recorder, plan);
   DeformByDeviceVectors(recorder, plan);
   DeformPart(recorder);
-  // A driver that links them gets once what a graphics card has in common with a processor.
+  // If a driver links the programs, those that CPUs and graphics cards share are built only once.
   if (plan.Driver.empty() || plan.IsProcessor)
   {
     DeformEach(recorder, "-int16", MakeFolded());
