@@ -248,8 +248,7 @@ TEST(MeshRasterization, AffineMapsEqualReference)
     }
     if (run == 2)
     {
-      matrix =
-        glm::dmat3(0, 1, 0, 0, 0, 1, 1, 0, 0); // a permutation of the axes: all voxels lie on faces
+      matrix = glm::dmat3(0, 1, 0, 0, 0, 1, 1, 0, 0); // permuted axes: all voxels lie on faces
     }
     if (run % 3 == 0)
     {
@@ -304,8 +303,6 @@ TEST(MeshRasterization, SliversAndStretchedMeshesEqualReference)
       { { 1, 1, 1 } });
     const auto values = MakeRandomValues<float>(flat.GetNumberOfVoxels(), 3);
     const std::vector<VolumeArray> arrays{ MakeArray(values) };
-    // Rest coordinates change by up to 50 voxels per output voxel, and positions are rounded to
-    // 1/256 voxel.
     const Deformed deformed = LoadAndRun(flat, arrays);
     EXPECT_GT(deformed.Report.NumberOfCoveredVoxels, 0);
     ExpectEqualsReference(flat, arrays, deformed);
@@ -405,7 +402,7 @@ TEST(MeshRasterization, ResultDoesNotDependOnTheDivisionOfWork)
       continue;
     }
     EXPECT_EQ(deformer.Deform(request).NumberOfCoveredVoxels, whole.Report.NumberOfCoveredVoxels);
-    EXPECT_LT(left, 1000 - 2 * 32) << "not more than two slabs";
+    EXPECT_LT(left, 1000 - 2 * 32) << "at most two slabs";
     EXPECT_EQ(std::memcmp(first->data() + 1, whole.Outputs[0].data(), bytes[0]), 0);
     EXPECT_EQ(std::memcmp(second->data() + 1, whole.Outputs[1].data(), bytes[1]), 0);
     EXPECT_EQ(coverage, whole.Coverage);
