@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""press_head.py presses a head by CalculiX. The displacements that reach deform-volume are those that CalculiX prints,
-voxels move by them, and the picture is that of the baseline.
+"""Tests press_head.py, which presses a head with CalculiX: the displacements in the result file are those that CalculiX
+prints, deform-volume moves voxels by these displacements, and the picture equals the baseline.
 Usage: TestCalculiX.py PROGRAM SCRIPT BASELINE FOLDER"""
 import os
 import re
@@ -17,8 +17,8 @@ from vtkmodules.vtkIOImage import vtkNIFTIImageReader, vtkNIFTIImageWriter, vtkP
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 VOLUME = "/usr/share/mricron/templates/ch2.nii.gz"
-LIMIT = 0.3  # of 255, the mean of all colours
-CORNERS = ((0, 4, 6, 7), (1, 5, 4, 8), (2, 6, 5, 9), (3, 8, 7, 9))  # tetrahedra between a corner and what is next to it
+LIMIT = 0.3  # limit of the mean difference of color components (0 to 255)
+CORNERS = ((0, 4, 6, 7), (1, 5, 4, 8), (2, 6, 5, 9), (3, 8, 7, 9))  # tetrahedra of a corner and three mid-side nodes
 
 program, script, baseline = sys.argv[1:4]
 folder = make_folder(sys.argv[4], "CalculiX")
@@ -38,7 +38,7 @@ def path(name):
 
 
 def check_misuse():
-    """Without a program, and with a volume that is no head."""
+    """Calls the script without a program, and with a volume that contains no head."""
     _, errors = call(sys.executable, script, VOLUME, folder, "--deform-volume", path("none"), code=1)
     assert f"there is no program {path('none')}" in errors, errors
     _, errors = call(sys.executable, script, VOLUME, folder, "--deform-volume", program, code=1,
@@ -54,7 +54,7 @@ def check_misuse():
 
 
 def read_result():
-    """Nodes, displacements at the last time, and the ten nodes of each tetrahedron."""
+    """Returns nodes, displacements at the last time, and the ten nodes of each tetrahedron."""
     reader = vtkXMLUnstructuredGridReader()
     reader.SetFileName(path("head.4.vtu"))
     reader.Update()
@@ -64,7 +64,8 @@ def read_result():
 
 
 def check_numbers(places, moves, tetrahedra):
-    """What CalculiX was given and has printed, but for the six digits of a .frd file."""
+    """Checks nodes and tetrahedra against the input of CalculiX, and displacements against the numbers that it prints.
+    A .frd file has six digits."""
     with open(path("head.inp"), encoding="ascii") as file:
         text = file.read()
     rows = re.search(r"^\*NODE, NSET=ALL\n((?:\d.*\n)+)", text, flags=re.MULTILINE).group(1).splitlines()
@@ -85,7 +86,7 @@ def check_numbers(places, moves, tetrahedra):
 
 
 def get_distances(corners, points):
-    """How far points lie from the faces of the tetrahedra that they are in: the least distance of each."""
+    """Returns for each point the distance from the nearest face of its tetrahedron."""
     distances = [numpy.einsum("ij,ij->i", points - corners[:, a], normal) / numpy.linalg.norm(normal, axis=1)
                  for a, b, c, d in ((0, 1, 2, 3), (1, 2, 3, 0), (2, 3, 0, 1), (3, 0, 1, 2))
                  for normal in [numpy.cross(corners[:, b] - corners[:, a], corners[:, c] - corners[:, a])]
@@ -95,7 +96,8 @@ def get_distances(corners, points):
 
 
 def read_bounds():
-    """Where the first and the last voxel of the volume lie; its axes are those of the world, with 1 mm a voxel."""
+    """Returns the positions of the first and the last voxel of the volume. Its axes are those of the world, and its
+    spacing is 1 mm."""
     reader = vtkNIFTIImageReader()
     reader.SetFileName(VOLUME)
     reader.Update()
@@ -105,8 +107,9 @@ def read_bounds():
 
 
 def check_voxels(places, moves, tetrahedra):
-    """Each voxel within a tetrahedron has the rest position of its barycentric coordinates. The deformation is linear
-    there, so the error is the rounding of positions: 1/256 voxel, times the stretch."""
+    """Checks that the rest position of each voxel within a tetrahedron is the one with the same barycentric
+    coordinates. The deformation is linear there, so the only error is the rounding of positions: 1/256 voxel, times the
+    stretch."""
     call(program, VOLUME, "--mesh", path("head.pvd"), "--displacement", "U", "--inverse-field", path("inverse.vti"),
          "--quiet")
     field = read_vti(path("inverse.vti"))
@@ -116,14 +119,15 @@ def check_voxels(places, moves, tetrahedra):
     first = numpy.array(field.GetPoint(0))
     small = tetrahedra[:, CORNERS].reshape(-1, 4)
     rest, deformed = places[small], (places + moves)[small]
-    # The voxel that is nearest to the middle.
+    # The voxel that is nearest to the centroid of each tetrahedron.
     index = numpy.rint((deformed.mean(axis=1) - first) / spacing).astype(int)
     voxels = first + index * spacing
     inside = ((index >= 0) & (index < vectors.shape[2::-1])).all(axis=1)
     edges = deformed[:, 1:] - deformed[:, :1]
     weights = numpy.linalg.solve(numpy.swapaxes(edges, 1, 2), (voxels - deformed[:, 0])[:, :, None])
     expected = rest[:, 0] + numpy.einsum("ijk,ij->ik", rest[:, 1:] - rest[:, :1], weights[:, :, 0])
-    # All voxels of the cell that it comes from lie in the tetrahedron, and in the volume, which the mesh surrounds.
+    # Only voxels are compared whose rest position lies in a cell that is within the tetrahedron and within the volume.
+    # The mesh extends beyond the volume.
     low, high = read_bounds()
     inside &= ((expected > low) & (expected < high)).all(axis=1)
     chosen = numpy.flatnonzero(inside & (get_distances(rest, expected) > 1.75))
@@ -138,7 +142,7 @@ def check_voxels(places, moves, tetrahedra):
 
 
 def shrink(name, small):
-    """A picture of a quarter of the width, without the captions."""
+    """Writes a picture of a quarter of the width, without the captions."""
     picture = read_picture(path(name))[60:]
     height, width, _ = picture.shape
     picture = numpy.rint(picture.reshape(height // 4, 4, width // 4, 4, 3).mean(axis=(1, 3))).astype(numpy.uint8)
@@ -155,7 +159,8 @@ def shrink(name, small):
 
 
 def check_picture():
-    """That of the baseline; that of nine tenths of the displacements is another one."""
+    """Checks that the picture equals the baseline, and that a picture with nine tenths of the displacements does
+    not."""
     baselines = read_baselines(baseline)
     assert find_difference(shrink("pressed.png", "small.png"), baselines) < LIMIT
     call(program, VOLUME, "--mesh", path("head.pvd"), "--displacement", "U", "--scale", "0.9", "--view", "0.6,1,0.1",

@@ -26,24 +26,26 @@ DENSITY = 1000.0  # kg/m^3
 GRAVITY = (6.0, 3.0, -7.0)  # m/s^2
 NODES_IN_A_RING = 16
 RINGS = 12
-# Displacements are compared at the nodes that are nearest to these places, in mm: low, two at half the height on both
-# sides, high, and at the top.
+# Displacements are compared at the nodes that are nearest to these positions, in mm: a low one, two at half the height
+# on both sides, a high one, and one at the top.
 PLACES = ((-8.0, 6.0, 22.0), (13.0, 2.0, 38.0), (-5.0, -2.0, 42.0), (21.0, 3.0, 62.0), (25.0, -12.0, 80.0))
 POISSON_RATIOS = (0.3, 0.49)
 # Limits of |u - u of CalculiX| / |u of CalculiX| at each of these nodes.
-# The same elements: CalculiX prints seven digits, and is linear, while strains of 4e-6 are not quite.
+# The same elements: CalculiX prints seven digits. It computes linear strains, which differ a little from those of the
+# filter at strains of 4e-6.
 LIMIT_SAME_MESH = 2e-5
-# Other elements of half the size: measured 0.44 % (0.3) and 0.27 % (0.49) at most, on the mesh of TetGen 1.5.
+# Elements of half the size: at most 0.44 % (Poisson ratio 0.3) and 0.27 % (0.49) were measured, on the mesh of TetGen
+# 1.5.
 LIMIT_HALF_SIZE = 0.01
-# Corners of the edges whose middles are the nodes 4 to 9 of a tetrahedron, both in VTK and in CalculiX. The second list
-# holds the eight tetrahedra of half the size that have these ten nodes as corners.
+# The first list has the ends of the edges whose mid-side nodes are the nodes 4 to 9 of a tetrahedron, both in VTK and
+# in CalculiX. The second list has the eight tetrahedra of half the size that have these ten nodes as corners.
 EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
 EIGHTHS = ((0, 4, 6, 7), (4, 1, 5, 8), (6, 5, 2, 9), (7, 8, 9, 3), (4, 5, 6, 8), (4, 6, 7, 8), (6, 5, 9, 8), (6, 9, 7, 8))
 
 
 def make_surface():
-    """A bent body, 80 mm high and narrow in its middle. The base is flat. It flares, so that stresses do not become
-    infinite at the rim of what is fixed."""
+    """Returns the surface of a bent body, 80 mm high and narrow in its middle. Its base is flat and fixed. The body
+    widens toward the base, so that stresses do not become infinite at the rim of the base."""
     heights = numpy.sin(0.5 * numpy.pi * numpy.arange(RINGS) / RINGS)
     radii = (11.0 + 11.0 * numpy.exp(-heights / 0.15)) * numpy.sqrt(1.0 - heights ** 8)
     # Two rings within the base come first.
@@ -74,7 +76,7 @@ def make_surface():
 
 
 def make_mesh():
-    """Linear tetrahedra. The nodes of the base are fixed."""
+    """Returns a mesh of linear tetrahedra. The nodes of the base are fixed."""
     mesher = vtkTetGenMesher()
     mesher.SetInputData(make_surface())
     mesher.DecimationOff()
@@ -87,7 +89,8 @@ def make_mesh():
 
 
 def solve(mesh, poisson_ratio, model):
-    """By vtkFiniteElementDeformation: the nodes, the ten of each tetrahedron, and displacements in mm."""
+    """Solves by vtkFiniteElementDeformation. Returns the nodes, the ten nodes of each tetrahedron, and displacements
+    in mm."""
     body = vtkFiniteElementDeformation()
     body.SetInputData(mesh)
     body.SetYoungModulus(YOUNG_MODULUS)
@@ -105,7 +108,7 @@ def solve(mesh, poisson_ratio, model):
 
 
 def fix_middles(is_fixed, cells):
-    """A node in the middle of an edge is fixed where both ends are."""
+    """Fixes the mid-side nodes of the edges whose two ends are fixed."""
     result = is_fixed.copy()
     for number, (a, b) in enumerate(EDGES, 4):
         result[cells[:, number]] = is_fixed[cells[:, a]] & is_fixed[cells[:, b]]
@@ -113,7 +116,8 @@ def fix_middles(is_fixed, cells):
 
 
 def refine(places, is_fixed, cells):
-    """Eight ten-node tetrahedra of each one. Nodes keep their numbers, and new ones are appended."""
+    """Splits each ten-node tetrahedron into eight ten-node tetrahedra. Nodes keep their numbers, and new nodes are
+    appended."""
     small = cells[:, EIGHTHS].reshape(-1, 4)
     edges, middles = numpy.unique(numpy.sort(small[:, EDGES], axis=2).reshape(-1, 2), axis=0, return_inverse=True)
     new_cells = numpy.hstack((small, len(places) + middles.reshape(-1, 6)))
@@ -122,7 +126,7 @@ def refine(places, is_fixed, cells):
 
 
 def run_calculix(name, places, is_fixed, cells, nodes, poisson_ratio):
-    """A linear step of CalculiX, in mm, N and t: the displacements of some nodes."""
+    """Runs a linear step of CalculiX, in mm, N and t. Returns the displacements of the given nodes."""
     strength = numpy.linalg.norm(GRAVITY)
     with open(os.path.join(folder, name + ".inp"), "w", encoding="ascii") as file:
         file.write("*NODE\n")
@@ -149,7 +153,7 @@ def run_calculix(name, places, is_fixed, cells, nodes, poisson_ratio):
 
 
 def get_largest_strain(places, cells, moves):
-    """Of the tetrahedra between corners."""
+    """Returns the largest strain of the linear tetrahedra between the corners."""
     edges, moved = (values[cells[:, 1:4]] - values[cells[:, :1]] for values in (places, moves))
     gradients = numpy.linalg.solve(edges, moved)
     return numpy.linalg.norm(0.5 * (gradients + gradients.transpose(0, 2, 1)), ord=2, axis=(1, 2)).max()
@@ -175,7 +179,7 @@ def check(mesh, poisson_ratio):
     assert len(set(nodes)) == len(nodes) and not is_fixed[nodes].any(), nodes
     expected = [("half the size", LIMIT_HALF_SIZE,
                  run_calculix("fine", *refine(places, is_fixed, cells), nodes, poisson_ratio))]
-    # With a larger Poisson ratio the elements differ.
+    # With a larger Poisson ratio the elements of the filter and of CalculiX differ.
     if poisson_ratio <= 0.4:
         expected.append(("same mesh", LIMIT_SAME_MESH,
                          run_calculix("same", places, is_fixed, cells, nodes, poisson_ratio)))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""deform-volume reports errors with the right text and exit code, and deforms as its options say.
+"""Tests the options of deform-volume, and the texts and exit codes of its errors.
 Usage: TestCommandLine.py PROGRAM FOLDER"""
 import os
 import re
@@ -124,7 +124,7 @@ for suffix in read | {".nii", ".mhd", ".mha", ".nrrd", ".nhdr", ".mgz", ".img", 
 _, errors = call(program, folder, *lattice, *push, "-o", path("o.vti"), code=1)
 assert ("DICOM" in line) == ("a volume is a" not in errors), errors
 
-# Input files are not overwritten, whatever name of them is given.
+# Input files are not overwritten, whatever path to them is given.
 with open(path("in.vti"), "rb") as file:
     content = file.read()
 os.symlink("in.vti", path("link.vti"))
@@ -169,8 +169,7 @@ for option in ("--mesh", "--displacement", "--rest", "--tetgen", "--lattice", "-
 output, _ = call(program, "--list-devices")
 assert output.strip(), "no device"
 
-# A push moves what it should: the ball's voxels near the centre of the push by its displacement,
-# and nothing beyond its radius.
+# A push moves voxels near its center by its displacement, and no voxel beyond its radius.
 output, errors = call(program, path("in.vti"), *lattice, *push, "-o", path("pushed.vti"),
                       "--write-mesh", path("mesh.vtu"), "--background", "-7", "--bounds", "volume")
 # Cubes of 4.5 over 24 x 31.5 x 36: 7 x 8 x 9 nodes.
@@ -207,7 +206,7 @@ alone = reader.GetOutput()
 assert numpy.array_equal(vtk_to_numpy(alone.GetPoints().GetData()), points)
 assert not vtk_to_numpy(alone.GetPointData().GetArray("Displacement")).any()
 
-# The mesh that was written gives the same again, and so does the pair of rest and deformed mesh.
+# The mesh that was written gives the same result, and so does the pair of rest and deformed mesh.
 call(program, path("in.vti"), "--mesh", path("mesh.vtu"), "--displacement", "Displacement", "-o",
      path("again.vti"), "--background", "-7", "--bounds", "volume")
 assert numpy.array_equal(after, get_values(read_vti(path("again.vti")), "Values"))
@@ -224,7 +223,7 @@ call(program, path("in.vti"), "--mesh", path("deformed.vtu"), "--rest", path("me
      path("pair.vti"), "--background", "-7", "--bounds", "volume", "--quiet")
 assert numpy.array_equal(after, get_values(read_vti(path("pair.vti")), "Values"))
 
-# So does the deformed mesh with its displacements, but for the rounding of their differences.
+# The deformed mesh with its displacements gives the same result, except for the rounding of differences.
 call(program, path("in.vti"), "--mesh", path("deformed.vtu"), "--displacement", "Displacement",
      "--points-are-deformed", "-o", path("beside.vti"), "--background", "-7", "--bounds", "volume",
      "--quiet")
@@ -251,7 +250,7 @@ call(program, path("in.vti"), "--mesh", path("grid.vts"), "--displacement", "D",
      path("still.vti"), "--quiet")
 assert numpy.array_equal(get_values(volume, "Values"), get_values(read_vti(path("still.vti")), "Values"))
 
-# A mesh of the ball alone discards what lies outside.
+# With a mesh of the ball alone, voxels outside it are discarded.
 output, _ = call(program, path("in.vti"), "--tetgen", "--isovalue", "400", "--edge-length", "5",
                  *push, "--quiet", "-o", path("ball.vti"), "--padding",
                  "2")
@@ -260,7 +259,7 @@ ball = read_vti(path("ball.vti"))
 mask = get_values(ball, "vtkValidPointMask")
 assert 0 < mask.sum() < mask.size
 assert get_values(ball, "Values")[mask == 1].max() >= 800
-# With --keep what lies outside stays.
+# With --keep voxels outside the mesh are kept.
 call(program, path("in.vti"), "--tetgen", "--isovalue", "400", "--edge-length", "5", "--push",
      "9,20,25,0.8,0,0,15", "--quiet", "-o", path("kept.vti"), "--keep", "1.5", "--bounds", "volume")
 kept = read_vti(path("kept.vti"))
@@ -276,7 +275,7 @@ call(program, path("in.vti"), *lattice, *push, "-o", path("labels.vti"), "--labe
 labels = get_values(read_vti(path("labels.vti")), "Values")
 assert set(numpy.unique(labels)) <= set(numpy.unique(before)) | {0}
 
-# The background is the least value, where values can be negative; labels have 0.
+# The background is the least value if values can be negative. Labels have the background 0.
 hounsfield = make_ball()
 vtk_to_numpy(hounsfield.GetPointData().GetScalars())[:] -= 1000
 write_vti(hounsfield, path("ct.vti"))

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""cut-and-pull, in C++ and in Python, draws one of its baselines.
+"""Tests that cut-and-pull, in C++ and in Python, draws a picture that equals a baseline.
 Usage: TestCutAndPull.py PROGRAM SCRIPT BASELINE FOLDER"""
 import numpy
 from PictureTwins import check_twins
 
 
 def check_panels(before, cut, opened):
-    # A cut that stays closed differs by more than 1.
+    # The picture of the open cut differs from that of the volume before the cut.
     assert numpy.abs(opened - before).mean() > 1.0
     assert numpy.abs(cut - before).mean() > 1.0
 

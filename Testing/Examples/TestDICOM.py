@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""deform-volume reads DICOM series as pydicom and SimpleITK do, and reports errors of wrong ones.
+"""Tests that deform-volume reads DICOM series as pydicom and SimpleITK do, and reports errors for invalid series.
 Usage: TestDICOM.py PROGRAM FOLDER"""
 import shutil
 import sys

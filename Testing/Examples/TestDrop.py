@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A recording that is dropped onto the window of deform-interactive, as file managers drop it, is
-replayed. The program that it comes from has gone by then. Usage: TestDrop.py PROGRAM FOLDER"""
+"""Tests that a recording is replayed if it is dropped onto the window of deform-interactive, as file managers do it.
+The program that drops it ends before the replay. Usage: TestDrop.py PROGRAM FOLDER"""
 import os
 import subprocess
 import sys
@@ -16,7 +16,7 @@ except ImportError:
 from Volumes import make_ball, make_folder, write_vti
 from WindowEvents import WindowEvents
 
-PATIENCE = 100.0  # seconds
+PATIENCE = 100.0  # time limit of wait_for(), in seconds
 program = sys.argv[1]
 folder = make_folder(sys.argv[2], "Drop")
 
@@ -26,7 +26,7 @@ def path(name):
 
 
 def wait_for(find):
-    """Calls find() until it returns something, and returns that."""
+    """Calls find() until it returns a value, and returns this value."""
     end = time.monotonic() + PATIENCE
     while time.monotonic() < end:
         found = find()
@@ -51,7 +51,7 @@ class Source:
         return self.display.intern_atom(name)
 
     def find(self, window):
-        """The window that takes what is dropped."""
+        """Returns the window at or below the given one that accepts drops."""
         if window.get_full_property(self.atom("XdndAware"), X.AnyPropertyType):
             return window
         return next(filter(None, map(self.find, window.query_tree().children)), None)

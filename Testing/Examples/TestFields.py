@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""deform-volume reads displacement fields as registration programs write them, and turns them into
-the world of the volume. Usage: TestFields.py PROGRAM FOLDER"""
+"""Tests that deform-volume reads displacement fields as registration programs write them, and converts them to the
+world of the volume. Usage: TestFields.py PROGRAM FOLDER"""
 import itertools
 import os
 import sys
@@ -21,7 +21,7 @@ def path(name):
 
 
 def get_points(size, matrix):
-    """World coordinates of all voxels, [z, y, x, axis]."""
+    """Returns the world coordinates of all voxels as an array [z, y, x, axis]."""
     index = numpy.stack(numpy.meshgrid(*(numpy.arange(n) for n in reversed(size)), indexing="ij"),
                         axis=-1)[..., ::-1]
     return index @ matrix[:, :3].T + matrix[:, 3]
@@ -44,12 +44,12 @@ def make_image(size, matrix, name, values):
 
 
 def to(world, matrix):
-    """A matrix whose rows are RAS, in a world."""
+    """Converts a matrix with rows in RAS to another world."""
     return matrix if world == RAS else flip @ matrix
 
 
-# All that follows is in RAS. The volume's values rise linearly over the world, and the displacement
-# is affine: trilinear interpolation and tetrahedra then add nothing of their own.
+# The volume and the field are defined in RAS. Values and displacements are affine functions of the position, so
+# trilinear interpolation and interpolation in tetrahedra are exact.
 size = (15, 12, 13)
 axes = turn(2, 25) @ turn(0, -15) @ numpy.diag([1.0, 1.5, 2.0])
 origin = numpy.array([-31.0, 12.0, -7.0])
@@ -89,8 +89,8 @@ def deform(volume_name, field_name, *options):
     return get_points(size, numpy.column_stack([matrix, first])), values, covered
 
 
-# Positions are rounded to 1/512 output voxel on each axis; the rest is single precision of files and
-# field, of numbers up to 600.
+# Errors: the rounding of positions, at most 1/512 output voxel on each axis, and the single precision of files and
+# field, for numbers up to 600.
 back = numpy.linalg.inv(numpy.eye(3) + gradient)
 bound = numpy.abs(slope @ back @ axes).sum() / 512 + 600 * 2.0 ** -20
 
@@ -102,7 +102,7 @@ def check(volume_name, field_name, *options, scale=1.0):
     inverse = numpy.linalg.inv(numpy.eye(3) + scale * gradient)
     rest = (points - middle - scale * shift) @ inverse.T + middle
     wrong = numpy.abs(values - rest @ slope)[covered]
-    # Nothing of the volume gets lost: its determinant times as many voxels, but for the border.
+    # No part of the volume is lost: all output voxels whose rest position lies inside the volume are covered.
     index = numpy.linalg.solve(axes, (rest - origin).reshape(-1, 3).T).T.reshape(rest.shape)
     inside = ((index > 0.01) & (index < numpy.array(size) - 1.01)).all(axis=-1)
     assert inside.sum() > 1000, inside.sum()
@@ -148,14 +148,14 @@ add("las.nrrd", write_nrrd, double @ flip @ turn_y, las, space="left-anterior-su
 add("frame.nrrd", write_nrrd, double @ flip @ frame, in_lps, frame=frame)
 for volume_name, field_name in itertools.product(("volume.nii.gz", "volume.mhd"), fields):
     check(volume_name, field_name)
-# The world of the volume, which is right-anterior-superior, turned by an option.
+# By default fields are in the world of the volume, which is right-anterior-superior. An option states another world.
 check("volume.nii.gz", "f.vti", "--field-space", "ras")
 write_vti(make_image(field_size, in_lps, "U", vectors @ flip), path("lps.vti"))
 check("volume.nii.gz", "lps.vti", "--field-space", "lps")
 write_nrrd(path("any.nrrd"), double, field, space="3D-right-handed")
 for volume_name in ("volume.nii.gz", "volume.mhd"):
     check(volume_name, "any.nrrd", "--field-space", "ras")
-# The order of slices that a reflection in the file needs: VTK's reader of NIfTI files turns it.
+# VTK's reader of NIfTI files reverses the order of slices if the axes of the file are left-handed.
 mirrored = field.copy()
 mirrored[:, 3] += 4 * mirrored[:, 2]
 mirrored[:, 2] *= -1
@@ -163,7 +163,7 @@ write_nifti(path("mirrored.nii"), single[::-1], mirrored, 1006)
 check("volume.mhd", "mirrored.nii")
 
 
-# The inverse of the field: the volume is looked up exactly where it leads.
+# An inverse field: the value of an output voxel is that of the volume at the point to which the field leads.
 field_points = get_points(field_size, field)
 inverse = (field_points - middle - shift) @ back.T + middle - field_points
 write_nifti(path("inverse.nii"), (inverse @ flip).astype(numpy.float32), field, 1007)
@@ -172,12 +172,12 @@ for volume_name in ("volume.nii.gz", "volume.mhd"):
     points = points @ flip if volume_name.endswith(".mhd") else points
     rest = (points - middle - shift) @ back.T + middle
     assert covered.sum() > 1000
-    # The border counts up to 1/256 voxel outside, with the values of the border.
+    # Points up to 1/256 voxel outside the volume are covered, with the values of the border.
     index = numpy.linalg.solve(axes, (rest - origin).reshape(-1, 3).T).T.reshape(rest.shape)
     inside = covered & (index >= 0).all(axis=-1) & (index <= numpy.array(size) - 1).all(axis=-1)
     wrong = numpy.abs(values - rest @ slope)[inside].max()
     assert wrong < 600 * 2.0 ** -18, wrong
-# Positions in the place of displacements: the identity, and all moved a little.
+# Files with positions instead of displacements: those of the identity, and those of a small displacement.
 for name, values in (("identity.nii", field_points), ("positions.nii", field_points + vectors)):
     write_nifti(path(name), values.astype(numpy.float32), field, 1006)
 write_nifti(path("folded.nii"), (-2 * (field_points - middle)).astype(numpy.float32), field, 1006)
@@ -194,7 +194,7 @@ for field_name, options, words in (
     assert words in errors and (words or "warning:" not in errors), errors
 
 
-# What is not understood is an error that says why.
+# A file that cannot be read is an error that states the reason.
 def fails(expected, field_name, *options, code=1):
     output, errors = call(program, path("volume.nii.gz"), "--field", path(field_name), "-o",
                           path("no.vti"), *options, code=code)

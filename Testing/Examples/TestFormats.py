@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""deform-volume reads and writes volumes at their place in the world.
+"""Tests that deform-volume reads and writes volumes at their position in the world.
 Usage: TestFormats.py PROGRAM FOLDER"""
 import gzip
 import math
@@ -18,7 +18,7 @@ def path(name):
     return os.path.join(folder, name)
 
 
-# A push that moves no voxel by as much as 1/512, so that values stay as they are.
+# A push that moves no voxel by as much as 1/512 voxel, so that values do not change.
 still = ("--lattice", "3,3,3", "--push", "0,0,0,0.0001,0,0,1000")
 
 
@@ -29,7 +29,7 @@ def convert(source, *targets):
 
 
 def get_matrix(image):
-    """Index to world, of the index counted from the first voxel."""
+    """Returns the matrix from an index, counted from the first voxel of the extent, to the world."""
     extent = image.GetExtent()
     first = [0.0] * 3
     image.TransformIndexToPhysicalPoint(extent[0], extent[2], extent[4], first)
@@ -44,7 +44,7 @@ def same(image, values, matrix):
     assert numpy.allclose(get_matrix(image), matrix, atol=1e-5), (get_matrix(image), matrix)
 
 
-# Oblique axes: turned by 30 degrees round z, then x and y exchanged.
+# Oblique axes: turned by 30 degrees about z, then x and y exchanged.
 c, s = math.cos(math.pi / 6), math.sin(math.pi / 6)
 turned = (c, -s, 0, s, c, 0, 0, 0, 1)
 volume = make_ball(direction=turned)
@@ -52,7 +52,7 @@ values = get_values(volume)
 matrix = get_matrix(volume)
 write_vti(volume, path("in.vti"))
 
-# Unknown world axes stay as they are.
+# If the world is not known, axes do not change.
 same(convert("in.vti", "a.vti"), values, matrix)
 convert("in.vti", "a.nii.gz")
 same(convert("a.nii.gz", "b.vti"), values, matrix)
@@ -61,15 +61,15 @@ same(convert("a.nii", "b.vti"), values, matrix)
 convert("in.vti", "a.mhd")
 same(convert("a.mhd", "b.vti"), values, matrix)
 
-# Known ones are turned: right and anterior become left and posterior.
+# If the world is known, axes are converted: right and anterior become left and posterior.
 flip = numpy.diag([-1.0, -1.0, 1.0])
 convert("a.nii.gz", "c.mhd")
 same(convert("c.mhd", "c.vti"), values, flip @ matrix)
 convert("c.mhd", "d.nii.gz")
 same(convert("d.nii.gz", "d.vti"), values, matrix)
 
-# A mirrored volume. The reader of NIfTI files turns the order of the slices, so that the axes are
-# right-handed: then the last slice is the first, and z the other way.
+# A mirrored volume. The reader of NIfTI files reverses the order of the slices, so that the axes are right-handed: the
+# last slice becomes the first one, and the direction of z is reversed.
 mirrored = make_ball(direction=(-1, 0, 0, 0, 1, 0, 0, 0, 1))
 write_vti(mirrored, path("mirrored.vti"))
 convert("mirrored.vti", "mirrored.mhd")
@@ -80,7 +80,7 @@ turned_matrix[:, 3] += (mirrored.GetDimensions()[2] - 1) * turned_matrix[:, 2]
 turned_matrix[:, 2] *= -1
 same(convert("mirrored.nii.gz", "e.vti"), get_values(mirrored)[::-1], turned_matrix)
 
-# An extent that does not start at 0 keeps its place, whatever the format makes of it.
+# A volume whose extent does not start at 0 keeps its position in the world, also in formats whose indices start at 0.
 shifted = make_ball(direction=turned)
 shifted.SetExtent(-4, 20, 3, 24, -1, 17)
 shifted.GetPointData().ShallowCopy(volume.GetPointData())
@@ -89,13 +89,13 @@ for name in ("shifted.nii.gz", "shifted.mhd"):
     convert("shifted.vti", name)
     same(convert(name, "e.vti"), values, get_matrix(shifted))
 
-# --file-coordinates: what VTK's reader makes of a NIfTI file.
+# --file-coordinates: the output has the coordinates that VTK's reader gives for a NIfTI file.
 call(program, path("a.nii.gz"), *still, "-o", path("f.vti"), "--quiet", "--bounds", "volume",
      "--file-coordinates")
 plain = numpy.column_stack([numpy.diag(volume.GetSpacing()), (0, 0, 0)])
 same(read_vti(path("f.vti")), values, plain)
 
-# NRRD, with a header of its own.
+# An NRRD file, which the test writes.
 columns = matrix[:, :3]
 with open(path("n.nrrd"), "wb") as file:
     directions = " ".join("(" + ",".join(repr(float(number)) for number in columns[:, axis]) + ")"
@@ -158,7 +158,7 @@ assert numpy.allclose(result.GetSpacing(), (2, 2, 3))
 expected = numpy.array([[2, 0, 0, -10], [0, 2, 0, -20], [0, 0, 3, 30]])
 same(result, series, expected)
 
-# Values are rescaled, once.
+# Slope and intercept are applied once.
 with gzip.open(path("a.nii.gz"), "rb") as file:
     raw = bytearray(file.read())
 raw[112:120] = struct.pack("<ff", 2.5, -100.0)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""deform-interactive, in C++ and in Python: misuse, and recorded events, which give the arrays that
-the saved session gives.
+"""Tests deform-interactive, in C++ and in Python: misuse, and recorded events, whose replay gives the same arrays as
+the saved session.
 Usage: TestInteractive.py PROGRAM SCRIPT FOLDER"""
 import collections
 import os
@@ -42,7 +42,7 @@ for code, words, arguments in (
 output, _ = call(program, "--help")
 assert "--screenshot" in output
 
-# Nothing happens.
+# A recording without tools does not change the volume.
 middle = (100, 100)
 WindowEvents().keys("i").wait(2).write(path("rest.log"))
 
@@ -72,7 +72,7 @@ assert rest.GetExtent() == (-8, 38, -8, 35, -8, 32)
 covered = get_values(rest, "vtkValidPointMask") != 0
 assert numpy.array_equal(get_values(rest)[covered], get_values(ball).ravel())
 
-# All tools; then displays and presets, and words that are typed.
+# A recording with all tools, then displays and presets, and typed file names.
 events = WindowEvents().keys("i2").wait(1).keys("g").stroke(middle, (120, 110), shift=True)
 events.keys("p", (90, 90)).wait(1).keys("c").stroke((30, 95), (150, 95)).keys("v-")
 events.stroke((95, 115), (108, 118)).keys("b").mouse("MouseMoveEvent", middle)
@@ -96,7 +96,7 @@ is_ball = before[..., 0] > before[..., 2] + 15
 assert 0.05 < is_ball.mean() < 0.8
 assert (numpy.abs(after - before).max(axis=2) > 30).mean() > 0.02
 
-# The session that was saved in the window is opened there, and by an option; all of it is undone.
+# The session that was saved in the window is opened in the window and by an option, and all actions are undone.
 WindowEvents().keys("io" + path("saved.xml") + "\r").wait(2).write(path("opened.log"))
 WindowEvents().keys("i").wait(1).write(path("given.log"))
 opened, given = replay("opened"), replay("given", "--session", path("saved.xml"))
@@ -104,7 +104,7 @@ assert are_equal(opened, given) and not are_equal(opened, rest)
 WindowEvents().keys("iz").wait(1).write(path("undone.log"))
 assert are_equal(replay("undone", "--session", path("saved.xml")), rest)
 
-# The same volume in Python: the style asks for the same.
+# The viewer in Python gives the same volume for the same events.
 writer = vtkNIFTIImageWriter()
 writer.SetInputData(ball)
 writer.SetFileName(path("ball.nii"))

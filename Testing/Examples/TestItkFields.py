@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""deform-volume reads fields that SimpleITK wrote, and gives what SimpleITK's resampling gives.
+"""Tests that deform-volume deforms a volume by fields that SimpleITK has written as SimpleITK's resampling does.
 Usage: TestItkFields.py PROGRAM FOLDER"""
 import gzip
 import itertools
@@ -27,9 +27,9 @@ for name, suffix, volume in itertools.product(("fine", "coarse"), suffixes,
     result = read_vti(target)
     values, covered = get_values(result), get_values(result, "vtkValidPointMask") != 0
     expected = numpy.load(os.path.join(folder, name + ".npy"))
-    # ITK extends the volume by half a voxel, and this program by 1/256.
+    # ITK extends the volume by half a voxel on each side, and deform-volume by 1/256 voxel.
     assert not (covered & (expected == -100)).any()
     assert covered.sum() > 0.5 * covered.size, covered.sum()
-    # Single precision of ITK's field and of the matrices of NIfTI, of values up to 4.5.
+    # Errors: single precision of ITK's field and of the matrices of NIfTI, for numbers up to 4.5.
     wrong = numpy.abs(values - expected)[covered].max()
     assert wrong < 5e-4, (name, suffix, volume, wrong)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""deform-volume deforms labels with their volume, as the filter deforms categorical arrays.
+"""Tests that deform-volume deforms labels with their volume, as vtkDeformVolumeFilter deforms categorical arrays.
 Usage: TestLabels.py PROGRAM FOLDER"""
 import gzip
 import os
@@ -36,7 +36,7 @@ random = numpy.random.default_rng(3)
 
 
 def make_labels(**arrays):
-    """An image on the grid of the volume."""
+    """Returns an image with these arrays on the grid of the volume."""
     image = vtkImageData()
     image.CopyStructure(volume)
     for name, values in arrays.items():
@@ -47,7 +47,7 @@ def make_labels(**arrays):
 
 
 def make_values(kind):
-    """Numbers of all sizes that a type holds, and 0 seldom."""
+    """Returns random whole numbers of all sizes that a type can represent, few of them 0."""
     if kind.startswith("float"):
         return random.integers(-2 ** 20, 2 ** 20, number).astype(kind)
     limits = numpy.iinfo(kind)
@@ -88,7 +88,7 @@ with open(path("text.nii"), "w", encoding="utf-8") as file:
     file.write("no labels")
 refuses(1, ["cannot read", "not a NIfTI file"], "text.nii")
 
-# Other grids: which number differs.
+# Labels on other grids: the error names the number that differs.
 for change, expected in (
         (lambda image: image.SetDimensions(25, 22, 18), "18 voxels on axis z, and the volume has 19"),
         (lambda image: image.SetDimensions(24, 22, 19), "24 voxels on axis x, and the volume has 25"),
@@ -106,7 +106,7 @@ for change, expected in (
     write_vti(other, path("other.vti"))
     refuses(1, ["not on the grid of the volume", expected], "other.vti")
 
-# Values that are no labels.
+# Arrays that are not labels.
 write_vti(make_labels(), path("none_inside.vti"))
 refuses(1, "its voxels have no numbers", "none_inside.vti")
 for kind, bad in (("float32", 0.5), ("float64", 1e-3), ("float64", numpy.nan), ("float32", numpy.inf)):
@@ -119,7 +119,7 @@ refuses(1, ["one array", "parts, more", "Write .vti"], "two.vti", output="o.nii.
 
 
 def make_filter(arrays, **settings):
-    """The labels as categorical arrays of the volume."""
+    """Returns a filter that deforms the labels as categorical arrays of the volume."""
     image = vtkImageData()
     image.ShallowCopy(volume)
     subject = vtkDeformVolumeFilter()
@@ -145,7 +145,7 @@ def same_grid(image, other):
 
 
 def check(expected, arrays, name="labels.vti"):
-    """Bit for bit, and 0 where nothing is covered."""
+    """Checks that labels equal those of a filter bit for bit, and are 0 in voxels that are not covered."""
     image = read_vti(path(name))
     same_grid(image, expected)
     data = image.GetPointData()
@@ -164,7 +164,7 @@ def deform(*arguments, labels="all.vti", output="labels.vti", source="in.vti"):
          path(output), "--quiet")
 
 
-# All types at once; the volume comes out as without labels.
+# Labels of all types together. The deformed volume is the same as without labels.
 deform(*by_mesh, "--padding", "1", "-o", path("v.vti"))
 check(make_filter(all_types, SetPadding=1), all_types)
 assert read_vti(path("labels.vti")).GetPointData().GetScalars().GetName() == "float64"
@@ -175,7 +175,7 @@ assert [with_labels.GetPointData().GetArrayName(i) for i in range(
 assert numpy.array_equal(get_values(with_labels), get_values(alone))
 assert get_values(alone).min() <= -1000 and with_labels.GetExtent() == alone.GetExtent()
 
-# Other ways to deform, cubic interpolation, and a grid of its own.
+# Other deformations, cubic interpolation, and a reference grid.
 deform(*by_mesh, "--interpolation", "cubic", "--resampler", "mesh-rasterization")
 check(make_filter(all_types, SetInterpolation=vtkDeformVolumeFilter.CUBIC_INTERPOLATION,
                   SetResampler=vtkDeformVolumeFilter.MESH_RASTERIZATION), all_types)
@@ -186,7 +186,7 @@ write_vti(reference, path("reference.vti"))
 deform(*by_mesh, "--reference", path("reference.vti"))
 check(make_filter(all_types, SetReferenceData=reference), all_types)
 
-# Grids that differ by less than shows are one.
+# Grids that differ by less than the tolerance are equal.
 near = make_labels(parts=all_types["int16"])
 near.SetSpacing(1.0001, 1.5, 2.0)
 near.SetOrigin(-3.0, 5.004, 7.0)
@@ -194,7 +194,7 @@ write_vti(near, path("near.vti"))
 deform(*by_mesh, labels="near.vti")
 check(make_filter({"parts": all_types["int16"]}), {"parts": all_types["int16"]})
 
-# What is cut off has no label.
+# Voxels that are carved out have no label.
 carving = ("--carve", "sphere:0,25,25,6")
 deform(*by_mesh, *carving, "-o", path("carved.vti"), labels="one.vti")
 left = get_values(read_vti(path("carved.vti")), "vtkValidPointMask") != 0
@@ -202,8 +202,8 @@ assert not get_values(read_vti(path("labels.vti")), "parts")[~left].any()
 deform(*by_mesh, labels="one.vti")
 assert get_values(read_vti(path("labels.vti")), "parts")[~left].any()
 
-# Files of one array, of the world that a registration program writes. VTK's reader of NIfTI files
-# gives the voxels as they are stored.
+# Files with one array, in the world that a registration program uses. VTK's reader of NIfTI files
+# reads voxels in the order in which they are stored.
 still = ("--lattice", "3,3,3", "--push", "0,0,0,1e-7,0,0,1e6", "--bounds", "volume", "--quiet")
 call(program, path("in.vti"), *still, "-o", path("in.nii.gz"))
 for kind in TYPES:
@@ -222,7 +222,7 @@ for kind in TYPES:
         first, second = file.read(352), beside.read(352)
         assert first[76:108] == second[76:108] and first[252:328] == second[252:328], kind
 
-# Labels of several times.
+# A file of labels with several frames.
 with gzip.open(path("kind.nii.gz")) as file:
     content = bytearray(file.read())
 content[40:50] = struct.pack("<5h", 4, *volume.GetDimensions(), 2)
@@ -231,7 +231,7 @@ with gzip.open(path("times.nii.gz"), "wb") as file:
 fails(program, 1, ["2 frames in time", "a file of its own"], path("in.nii.gz"), *still, "--label-volume",
       path("times.nii.gz"), "--label-output", path("o.nii.gz"))
 
-# The other world, where ITK reads it.
+# Labels in a file of the other world, which only a program with ITK reads.
 text, _ = call(program, "--help", quiet=True)
 if ".mha" in text.splitlines()[5]:
     call(program, path("one.vti"), "--volume-space", "ras", *still, "-o", path("one.mha"), "--labels")
@@ -242,7 +242,7 @@ if ".mha" in text.splitlines()[5]:
     assert numpy.array_equal(get_values(read_vti(path("again.vti"))),
                              get_values(read_vti(path("labels.vti")), "parts"))
 
-# An array of words is left out, and a warning says so.
+# An array of strings is left out, with a warning.
 names = vtkStringArray()
 names.SetName("names")
 names.SetNumberOfValues(number)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What deform-volume writes about the deformation: the inverse field, by which SimpleITK resamples
-the volume to the same result, and the Jacobian; and densities, whose sum is preserved.
+"""Tests the inverse field that deform-volume writes, by which SimpleITK resamples the volume to the same result, the
+Jacobian, and densities, whose sum is preserved.
 Usage: TestMaps.py PROGRAM FOLDER"""
 import os
 import re
@@ -48,11 +48,12 @@ for volume, field, grid in (("moving.nii.gz", ".nii.gz", None), ("moving.nii.gz"
     Readers.run("Maps.py", "check", folder, volume, names["result"], names["inverse"], names["jacobian"],
                 str(background))
     found = re.findall(r"inverse field is 0 at (\d+) of (\d+) voxels", errors)
-    # All of the volume's grid is covered, as the deformation is zero at its border.
+    # The whole grid of the volume is covered, because the deformation is zero at the border. So only a run with another
+    # grid warns.
     assert len(found) == (1 if grid else 0), errors
     assert all(0 < int(uncovered) < int(voxels) for uncovered, voxels in found), errors
 
-# A .vti file has vectors in the world of the volume, and the result none of the arrays.
+# A .vti file has vectors in the world of the volume. The deformed volume has none of these arrays.
 call(program, path("moving.nii.gz"), *forward, "-o", path("result.vti"),
      "--inverse-field", path("inverse.vti"), "--jacobian", path("jacobian.vti"), "-q")
 result, inverse = read_vti(path("result.vti")), read_vti(path("inverse.vti"))
@@ -69,7 +70,7 @@ for k, j, i in indices.tolist():
     result.TransformIndexToPhysicalPoint(i + extent[0], j + extent[2], k + extent[4], place)
     seen = [0.0] * 3
     rest.TransformPhysicalPointToContinuousIndex((numpy.array(place) + vectors[k, j, i]).tolist(), seen)
-    # The reader of NIfTI files may have turned the order of slices.
+    # The reader of NIfTI files may have reversed the order of slices.
     values = get_values(rest)
     low = numpy.clip(numpy.floor(seen).astype(int), 0, numpy.array(rest.GetDimensions()) - 2)
     t = numpy.array(seen) - low
@@ -78,7 +79,7 @@ for k, j, i in indices.tolist():
               values[low[2] + 1, low[1], low[0]] - corner)
     assert abs(corner + numpy.dot(t, slopes) - get_values(result)[k, j, i]) < 2e-3
 
-# Arrays of the volume that have the names of maps come out where these are not asked for.
+# If the inverse field and the Jacobian are not requested, arrays of the volume with their names are deformed.
 for name in ("Jacobian", "RestPosition"):
     array = rest.GetPointData().GetScalars().NewInstance()
     array.DeepCopy(rest.GetPointData().GetScalars())
@@ -93,7 +94,7 @@ for name, option in (("Jacobian", "--jacobian"), ("RestPosition", "--inverse-fie
     _, errors = call(program, path("named.vti"), *Readers.still, option, path("a.vti"), code=1, quiet=True)
     assert f'has a point array "{name}"' in errors, errors
 
-# The sum of a density stays where the volume is deformed inside only.
+# The sum of a density is preserved if the border of the volume does not move.
 call(program, path("moving.mha"), *forward, "--density-array", "MetaImage",
      "--background", "0", "-o", path("density.vti"), "-q")
 before = get_values(rest).sum()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""deform-volume reads meshes and sheets of many formats, each with the same result, and says what a
-file contains if it cannot use it. Usage: TestMeshFiles.py PROGRAM FOLDER"""
+"""Tests that deform-volume reads meshes and sheets of many formats, each with the same result, and that the error for a
+file that it cannot use states what the file contains. Usage: TestMeshFiles.py PROGRAM FOLDER"""
 import os
 import re
 import shutil
@@ -83,7 +83,7 @@ XML = {"SetDataMode": 1, "SetHeaderType": 64}  # binary, not appended
 
 
 def fails(code, expected, *arguments, source="in.vti", warnings=0):
-    """One line in the program's own words, and no output."""
+    """Checks that the program fails with one line and without an output file."""
     Messages.fails(program, code, expected, path(source), *arguments, "-o", path("o.vti"),
                    warnings=warnings)
     assert not os.path.exists(path("o.vti"))
@@ -157,7 +157,7 @@ def make_sheet():
 
 
 def make_flat():
-    """Cells of all dimensions but three."""
+    """Returns a grid with cells of all dimensions except three."""
     grid = make_unstructured(places, moves, [])
     for kind, points in ((VTK_QUAD, [0, 1, 4, 3]), (VTK_QUAD, [3, 4, 7, 6]), (VTK_LINE, [0, 1]),
                          (VTK_VERTEX, [0])):
@@ -170,7 +170,7 @@ def add_cell_array(grid):
 
 
 def write_polyhedra(name):
-    """As VTK 9.4 and later write them: the faces lie in arrays that earlier versions do not know."""
+    """Writes polyhedra as VTK 9.4 and later do: the faces are in arrays that earlier versions do not read."""
     write(vtkXMLUnstructuredGridWriter(), mesh, name, SetDataMode=0)
     with open(name, encoding="ascii") as file:
         text = file.read()
@@ -182,7 +182,8 @@ def write_polyhedra(name):
 
 
 def write_sheets():
-    """The names of files of one sheet. Its points are numbers that all formats hold."""
+    """Writes one sheet in all formats, and returns the names of the files. All formats can represent its coordinates
+    exactly."""
     sheet = make_sheet()
     sheet.GetPointData().Initialize()
     triangulation = vtkTriangleFilter()
@@ -202,7 +203,7 @@ def write_sheets():
 def check_misuse_of_meshes():
     fails(1, ["no such file"], *as_mesh("none.vtu"))
     fails(1, ["no such file"], *as_mesh("series"))
-    # Formats that VTK does not read, and no format at all.
+    # Formats that VTK does not read, and a name without a suffix.
     for name, converter in (
             ("fe.msh", "meshio convert fe.msh fe.vtu"), ("fe.med", "meshio convert fe.med"),
             ("fe.CGNS", "meshio convert fe.CGNS fe.vtu"), ("fe.xdmf", "ParaView"),
@@ -213,7 +214,7 @@ def check_misuse_of_meshes():
         write_text(name)
         fails(1, [".vtu, .pvtu, .vtm, .vts, .vtr, .vtk, .pvd, .e, .exo, .ex2, .vtkhdf", ".vti",
                   converter], *as_mesh(name))
-    # Files of another content than their names say.
+    # Files whose content does not fit their suffix.
     for name in ("text.vtu", "text.vtk", "text.pvd", "text.e", "text.vtkhdf"):
         write_text(name)
         fails(1, [path(name), "cannot read", "damaged or cut off"], *as_mesh(name))
@@ -247,7 +248,7 @@ def check_misuse_of_meshes():
     fails(1, ["cannot read", path("mesh.vtm")], *as_mesh("mesh.vtm"))
     shutil.rmtree(path("mesh"))
     os.rename(path("gone"), path("mesh"))
-    # Files of other things than meshes.
+    # Files with data other than meshes.
     write(vtkXMLRectilinearGridWriter(), make_point(), path("point.vtr"), **XML)
     fails(1, ["1 point and 1 vertex cell", "three-dimensional cells"], *as_mesh("point.vtr", "u"))
     sheet = make_sheet()
@@ -288,7 +289,7 @@ def check_misuse_of_meshes():
           path("half.vtm"), **XML)
     fails(1, ['block "skin"', "no point arrays"], *as_mesh("half.vtm"))
     fails(1, ['no point array "Displacement"', '"Values" (1 component)'], *as_mesh("in.vti"))
-    # What VTK 9.1 does not read of later versions.
+    # Files of later versions of VTK that VTK 9.1 does not read.
     write_polyhedra(path("polyhedra.vtu"))
     fails(1, ["is a polyhedron", "version 2.3", "VTK 9.4", "ParaView 5.13"],
           *as_mesh("polyhedra.vtu"))
@@ -330,7 +331,7 @@ def check_misuse_of_sheets():
         for part in (0.4, 0.7, 0.95):
             cut_off("cut-off-" + name, name, part)
             fails(1, path("cut-off-" + name), *sheet("cut-off-" + name))
-    # Other things than surfaces.
+    # Files with data other than surfaces.
     write(vtkStructuredPointsWriter(), volume, path("image.vtk"))
     fails(1, ["an image of 25 x 22 x 19 points", "triangles"], *sheet("image.vtk"))
     fails(1, ["60 points and 144 three-dimensional cells", "triangles"], *sheet("binary.vtk"))
@@ -345,7 +346,7 @@ def check_misuse_of_sheets():
 
 
 def deform(*arguments, expected_warnings=(), source="in.vti"):
-    """The values of the result and which of them are covered."""
+    """Returns the values and the coverage of the deformed volume."""
     _, errors = call(program, path(source), *arguments, "-o", path("result.vti"), "--bounds",
                      "volume", "--padding", "6", "--quiet")
     warnings = errors.splitlines()
@@ -363,7 +364,8 @@ def check_same(expected, *arguments, **settings):
 
 
 def check_formats_of_meshes():
-    """All formats hold the displacements in double precision, and the nodes as they are."""
+    """Checks that all formats give the same result. All of them store displacements in double precision, and the nodes
+    exactly."""
     expected = deform(*as_mesh("mesh.vtu"))
     assert 1000 < expected[1].sum() < expected[1].size - 1000
     for name in ("binary.vtk", "old.vtk", "mesh.pvtu", "mesh.vtm", "one.pvd", "parts.pvd", "mesh.e",
@@ -374,7 +376,7 @@ def check_formats_of_meshes():
         check_same(hexahedra, *as_mesh(name))
     shutil.copy(path("mesh.vtu"), path("UPPER.VTU"))
     check_same(expected, *as_mesh("UPPER.VTU"))
-    # Of a series the last step, which is said.
+    # Of a series the last step is read, and a warning states it.
     check_same(expected, *as_mesh("series.pvd"),
                expected_warnings=["series.pvd holds 3 time steps; the last one, of the time 2.5"])
     check_same(expected, *as_mesh("series.exo"),
@@ -384,7 +386,7 @@ def check_formats_of_meshes():
           path("moved.vtk"), SetFileType=2)
     pair = deform("--mesh", path("moved.vtk"), "--rest", path("mesh.vtu"))
     check_same(pair, "--mesh", path("moved.vtk"), "--rest", path("mesh.vtkhdf"))
-    assert (pair[0] != expected[0]).mean() < 1e-3  # as the sums are rounded
+    assert (pair[0] != expected[0]).mean() < 1e-3  # because sums are rounded
 
 
 def check_formats_of_sheets():
@@ -400,13 +402,13 @@ LPS_HEADER = "3D Slicer output. SPACE=LPS"  # as 3D Slicer writes it
 
 
 def convert_volume(name):
-    """The volume in a format that says what its world is: .nii is ras, .mhd is lps."""
+    """Writes the volume in a format that states its world: .nii is RAS, .mhd is LPS."""
     call(program, path("in.vti"), "--lattice", "3,3,3", "--push", "0,0,0,0.0001,0,0,1000", "-o",
          path(name), "--quiet", "--bounds", "volume")
 
 
 def write_flipped_meshes():
-    """The mesh in the other space."""
+    """Writes the mesh in the other world."""
     flipped = FLIP * places
     flipped_moves = FLIP * moves
     for integer, name in ((False, "other.vtu"), (True, "bytes.vtu")):
@@ -439,8 +441,8 @@ def write_flipped_meshes():
 
 
 def check_spaces_of_meshes():
-    """A mesh in one space deforms a volume in the other as a mesh does that is in its own: negated
-    numbers are exact."""
+    """Checks that a mesh deforms a volume of the other world as a mesh of the same world does. Results are equal bit
+    for bit, because negation is exact."""
     write_flipped_meshes()
     expected = deform(*as_mesh("mesh.vtu"))
     hexahedra = deform(*as_mesh("hexahedra.vtu"))
@@ -456,15 +458,15 @@ def check_spaces_of_meshes():
           path("other-moved.vtk"), SetFileType=2)
     check_same(same, "--mesh", path("other-moved.vtk"), "--rest", path("other.vtu"), "--mesh-space",
                "lps", source="in.nii.gz")
-    # Without the option a mesh of the other space lies elsewhere.
+    # Without the option, a mesh of the other world contains no voxel of the volume.
     fails(1, "holds no voxel of the volume", *as_mesh("other.vtu"), source="in.nii.gz")
-    # Unsigned displacements, which have no negative.
+    # Displacements of an unsigned type, which cannot be negated.
     grid = make_unstructured(places, moves)
     grid.GetPointData().AddArray(to_vtk("Displacement", numpy.full(moves.shape, 2.0) * FLIP))
     write(vtkXMLUnstructuredGridWriter(), grid, path("signed.vtu"), **XML)
     check_same(deform(*as_mesh("signed.vtu")), *as_mesh("bytes.vtu"), "--mesh-space", "lps",
                source="in.nii.gz")
-    # A field: its box and its vectors.
+    # A field: its grid and its vectors are converted.
     for name, origin, sign in (("field.vti", volume.GetOrigin(), 1),
                                ("other.vti", FLIP * volume.GetOrigin(), -1)):
         field = vtkImageData()
@@ -480,7 +482,7 @@ def check_spaces_of_meshes():
 
 
 def check_files_that_say_their_space():
-    """They are right, and a warning says so where the option says otherwise."""
+    """Checks that the world in a file takes precedence over the option, with a warning if the two differ."""
     expected = deform(*as_mesh("mesh.vtu"))
     for name in ("slicer.vtu", "slicer.vtk", "mixed.pvd"):
         check_same(expected, *as_mesh(name), source="in.nii.gz")
@@ -491,7 +493,7 @@ def check_files_that_say_their_space():
                                       "it is lps"])
     check_same(expected, *as_mesh("strange.vtu"), source="in.nii.gz",
                expected_warnings=['says "scanner", which is neither LPS nor RAS'])
-    # A volume that does not say its own.
+    # A volume whose file does not state its world.
     fails(1, ["--mesh-space lps", "does not state"], *as_mesh("mesh.vtu"), "--mesh-space", "lps")
     write(vtkXMLUnstructuredGridWriter(), state_space(make_unstructured(places, moves), "LPS"),
           path("stated.vtu"), **XML)
@@ -504,7 +506,7 @@ def check_files_that_say_their_space():
 
 
 def check_spaces_of_sheets():
-    """As a mesh, in all formats. Headers and comments as 3D Slicer writes them."""
+    """Checks the world of sheets in all formats, with headers and comments as 3D Slicer writes them."""
     pull = ("--model", "chainmail", "--pull", "8,20,25,-3,1,1,3")
     expected = deform("--cut", path("cut.vtp"), *pull)
     sheet = make_sheet()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Messages of deform-volume about wrong files and numbers use only words that its users know.
+"""Tests that messages of deform-volume about wrong files and numbers use only words that its users know.
 Usage: TestMessages.py PROGRAM FOLDER"""
 import os
 import sys
@@ -77,7 +77,7 @@ def make_field(*names):
 
 
 def make_cells(kind, size, count=1):
-    """A mesh with other cells beside."""
+    """Returns a mesh of tetrahedra with additional cells of another type."""
     grid = make_unstructured(places, moves)
     for cell in range(count):
         grid.InsertNextCell(kind, size, list(range(cell, cell + size)))
@@ -97,7 +97,7 @@ chain_mail = ("--model", "chainmail", "--pull", "8,20,25,-3,1,1,3")
 
 
 def check_resamplers():
-    """What goes with a resampler is known from the options, or from the kind of --mesh."""
+    """Checks errors about options that a resampler does not support."""
     rasterization = ("--resampler", "mesh-rasterization")
     exact = ("--resampler", "exact")
     for arguments in (field, chain_mail):
@@ -127,7 +127,7 @@ def check_volumes():
         for arguments in ((*lattice, *push), ("--tetgen", *push), cut, field,
                           ("--model", "fem", *lattice, "--pull", "9,20,25,1,0,0")):
             fails(1, [path(name), expected], *arguments, volume=name)
-    # No active scalars: the first array counts.
+    # Without active scalars the first array is used.
     image = make_ball()
     image.GetPointData().SetActiveScalars(None)
     write_vti(image, path("inactive.vti"))

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The minimal examples in C++ and Python have the same output, and it is what their comments say.
+"""Tests that the minimal examples in C++ and Python have the same output, and that it is the one which their comments
+describe.
 Usage: TestMinimal.py PROGRAM SCRIPT FOLDER"""
 import os
 import sys
@@ -24,8 +25,8 @@ other = read_vti(second)
 assert result.GetExtent() == other.GetExtent()
 assert numpy.array_equal(get_values(result, "Values"), get_values(other, "Values"))
 
-# Each slice is shifted along x: by a sine of its height with an amplitude of a tenth of the volume's,
-# linear between the 20 nodes of the mesh. The voxels of a row are interpolated linearly.
+# Each slice is shifted along x by a sine of its height, which is linear between the 20 nodes of the mesh. The amplitude
+# is a tenth of the height of the volume. Values are interpolated linearly between the voxels of a row.
 height = 36.0
 nodes = numpy.linspace(0.0, height, 20)
 first, last = result.GetExtent()[:2]
@@ -34,11 +35,11 @@ after = get_values(result, "Values")
 for z in range(volume.GetDimensions()[2]):
     shift = numpy.interp(2.0 * z, nodes, 0.1 * height * numpy.sin(2.0 * numpy.pi * nodes / height))
     rest = numpy.arange(first, last + 1) - shift
-    # Positions are rounded to 1/256 voxel: on the border, whether a voxel is covered is open.
+    # Positions are rounded to 1/256 voxel, so voxels on the border may be covered or not.
     inside = (rest > 0.01) & (rest < volume.GetDimensions()[0] - 1.01)
     outside = (rest < -0.01) | (rest > volume.GetDimensions()[0] - 0.99)
     for y in range(volume.GetDimensions()[1]):
         expected = numpy.interp(rest, numpy.arange(volume.GetDimensions()[0]), before[z, y])
-        # By at most 850 a voxel, and rounded to an integer.
+        # Values differ by at most 850 from voxel to voxel, and are rounded to integers.
         assert numpy.abs(after[z, y] - expected)[inside].max() <= 850 / 256 + 0.5, (z, y)
         assert (after[z, y][outside] == 0).all(), (z, y)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""deform-volume moves meshes by finite elements and by springs as the filters do it, and says what is
-wrong with its options. Usage: TestModels.py PROGRAM FOLDER"""
+"""Tests that deform-volume moves meshes by finite elements and by springs as the filters do, and reports wrong options.
+Usage: TestModels.py PROGRAM FOLDER"""
 import os
 import sys
 
@@ -81,7 +81,7 @@ fails(1, "there is no folder", "--model", "fem", *lattice, *fix, "--movie",
 fails(2, "needs the cubes of --lattice", "--model", "mass-spring", "--tetgen", *fix)
 fails(2, "--model chainmail has no mesh", "--model", "chainmail", *pull, "--write-mesh", path("m.vtu"))
 
-# The same by the filters.
+# The expected results, made by the filters.
 source = deformvolume_vtk.vtkLatticeTetrahedraSource()
 source.SetInputData(volume)
 source.SetNumberOfNodes(7, 7, 7)
@@ -130,7 +130,7 @@ def check(name, model, words, *arguments):
 
 
 def check_tissues():
-    """A tissue is the same as its numbers, of the body and of a range."""
+    """Checks that the name of a tissue gives the same result as its numbers, for the body and for a range of values."""
     low, high = volume.GetPointData().GetScalars().GetRange()
     limit = 0.5 * (low + high)
 
@@ -150,7 +150,7 @@ def check_tissues():
 
 
 def check_materials_and_cut():
-    """The upper half is stiffer, and a plane parts the mesh."""
+    """Checks a mesh with a stiffer upper half that a plane cuts."""
     plane = vtkPlaneSource()
     plane.SetOrigin(middle[0] + 0.3, bounds[2] - 9, middle[2])
     plane.SetPoint1(middle[0] + 0.3, bounds[3] + 9, middle[2])

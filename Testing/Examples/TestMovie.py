@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""deform-volume draws the frames of a model: files of their own, and a video where VTK has Ogg Theora.
+"""Tests that deform-volume draws the frames of a simulation, as pictures, and as a video if VTK has Ogg Theora.
 Usage: TestMovie.py PROGRAM FOLDER"""
 import os
 import sys
@@ -34,8 +34,8 @@ def read(name):
 
 
 def count_packets(name):
-    """Of an Ogg file: a page begins with 27 bytes, the last of which is the number of segments, whose
-    lengths follow. A segment of less than 255 bytes ends a packet."""
+    """Returns the number of packets in an Ogg file. A page begins with 27 bytes, the last of which is the number of
+    segments. The lengths of the segments follow. A segment of less than 255 bytes ends a packet."""
     with open(name, "rb") as file:
         data = file.read()
     begin = packets = 0
@@ -52,17 +52,17 @@ call(program, path("in.vti"), "--model", "fem", *common, "--movie", path("m.png"
      path("o.vti"), "--quiet")
 frames = [read(f"m{i:04}.png") for i in (1, 2)]
 assert not os.path.exists(path("m0003.png")) and not os.path.exists(path("m.png"))
-# The camera stays: earlier frames do not change, and later ones continue.
+# The camera does not move: the volume at rest on the left is the same in all frames.
 assert (frames[0][:, :700] == frames[1][:, :700]).all()
 moved = [(numpy.abs(frame[60:, :700] - frame[60:, 700:]).max(axis=2) > 24).mean() for frame in frames]
 assert 0.002 < moved[0] < 0.8 * moved[1] < 0.3, moved
-# Outputs are those of the last frame: of the pull as a whole.
+# The output is that of the last frame, with the whole pull.
 call(program, path("in.vti"), "--model", "fem", *common, "-o", path("whole.vti"), "--quiet")
 difference = numpy.abs(get_values(read_vti(path("o.vti"))).astype(float) -
                        get_values(read_vti(path("whole.vti"))))
 assert difference.max() <= 1, difference.max()
 
-# Springs that are pulled far in so short a time turn tetrahedra inside out, which is warned of.
+# Springs that are pulled too far in this short time would invert tetrahedra, with a warning.
 gently = [part.replace(",6,0,2,3", ",2,0,1,3") for part in common]
 output, errors = call(program, path("in.vti"), "--model", "mass-spring", *gently, "--duration", "0.05",
                       "--movie", path("m.ogv"), "--frames", "2", code=None)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""deform-volume draws a picture with the volume at rest on the left, and the deformed volume on the right.
+"""Tests that deform-volume draws a picture with the volume at rest on the left, and the deformed volume on the right.
 Usage: TestPicture.py PROGRAM FOLDER"""
 import os
 import sys
@@ -29,13 +29,13 @@ def draw(name, push, *arguments):
 
 
 def is_ball(half):
-    """Skin colour on a dark background."""
+    """Whether pixels have the color of skin; the background is dark."""
     return half[:, :, 0] > half[:, :, 2] + 15
 
 
 left, right = draw("still.png", "0,0,0,0.0001,0,0,1000")
 assert 0.1 < is_ball(left).mean() < 0.8, "the ball fills too little or too much of the picture"
-# One rim pixel more or less is what a deformation of no voxel may change.
+# If no voxel moves, single pixels at the rim of the ball may change.
 assert (numpy.abs(left - right).max(axis=2) > 8).mean() < 0.002
 
 # Pushed from above, towards -z.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""deform-volume moves points with the volume: SimpleITK's transforms map them back to their places.
+"""Tests that deform-volume moves points with the volume: SimpleITK's transforms map them back to their positions.
 Usage: TestPoints.py PROGRAM FOLDER"""
 import json
 import os
@@ -36,7 +36,7 @@ def read(name):
 
 
 def write_geometry(name, points, space=None, vectors=None, normals=None):
-    """A vertex for each point. vectors, normals: values of active arrays."""
+    """Writes points with a vertex cell for each. vectors, normals: values of active arrays."""
     data = vtkPolyData() if name.endswith(".vtp") else vtkUnstructuredGrid()
     places = vtkPoints()
     places.SetData(numpy_to_vtk(numpy.array(points, dtype=float).reshape(-1, 3), deep=True))
@@ -85,7 +85,7 @@ def read_table(name):
 
 
 def make_markups(points, space="LPS", **more):
-    """As 3D Slicer writes them, as far as it matters here."""
+    """Returns markups as 3D Slicer writes them, with the entries that this test needs."""
     markup = {"type": "Fiducial", "coordinateSystem": space, "coordinateUnits": "mm", "locked": False,
               "controlPoints": [{"id": str(i + 1), "label": f"F-{i + 1}",
                                  "position": point, "selected": True, "positionStatus": "defined",
@@ -202,7 +202,8 @@ def move(volume, options, pairs, warnings=()):
     Messages.check_words(errors)
 
 
-# Only coordinates change, in numbers that are read as they were; to the letter where a point is outside.
+# Only coordinates change, and numbers are written such that reading them gives the same double. Points outside the
+# deformation do not change, character by character.
 table = ('\ufeffX,"y", z,t,label,"a, b"\r\n0.1,0.30000000000000004,-0.0,0,7,"some, ""words"""\r\n\r\n'
          '1e3, 2.50 ,-1.2345678901234567E15,x,,-\r\n')
 write("still.csv", table)
@@ -224,7 +225,7 @@ moved = read_geometry("moved-still.vtp")
 assert vtk_to_numpy(moved.GetPointData().GetArray("vtkValidPointMask")).tolist() == [0, 0]
 assert vtk_to_numpy(moved.GetPointData().GetArray("number")).tolist() == [0, 1] and moved.GetNumberOfCells() == 2
 
-# Everything else of markups stays, points without a place too.
+# Everything except positions stays the same in markups. Points without a position stay the same, too.
 undefined = [{**point, "positionStatus": status, "position": ""} for status in ("undefined", "missing", "preview")]
 mixed = make_markups(some, "0")
 mixed["markups"][0]["controlPoints"][1:1] = undefined
@@ -240,7 +241,7 @@ for end, start in zip(ends, some):
 assert list(result) == list(mixed) and result == mixed
 assert read("moved-mixed.mrk.json").count("\n") == read("mixed.mrk.json").count("\n")
 
-# Transforms of SimpleITK lead the points back, in all formats and worlds.
+# Transforms of SimpleITK map the moved points back, in all formats and worlds.
 Readers.run("Maps.py", "make", folder)
 Readers.run("Points.py", "make", folder)
 x, y, z = numpy.meshgrid(*(numpy.linspace(-0.5, 0.5, n) for n in (5, 4, 3)), indexing="ij")
@@ -248,7 +249,7 @@ steps = numpy.stack([x.ravel() * 14, y.ravel() * 15, z.ravel() * 16], axis=1) + 
 
 
 def get_middle():
-    """Of the volumes, LPS."""
+    """Returns the center of the volumes in LPS."""
     call(program, path("moving.mha"), *Readers.still, "-o", path("moving.vti"))
     image = Readers.read_vti(path("moving.vti"))
     return Readers.get_matrix(image) @ [*((n - 1) / 2 for n in image.GetDimensions()), 1]
@@ -287,7 +288,7 @@ for volume, of_volume in (("moving.nii.gz", "RAS"), ("moving.mha", "LPS"), ("mov
         numpy.save(path("ends.npy"), numpy.concatenate(ends))
         Readers.run("Points.py", "check", folder, transform, "starts.npy", "ends.npy")
 
-# Vectors and normals turn: by the inverse of the transform's matrix, and by its transpose.
+# Vectors are multiplied by the inverse of the transform's matrix, and normals by its transpose.
 parameters = re.findall(r"^Parameters: (.*)", read("affine.tfm"), re.M)[0].split()
 matrix = numpy.array(parameters[:9], dtype=float).reshape(3, 3)
 random = numpy.random.default_rng(3)
@@ -303,7 +304,7 @@ for space, factor in (("LPS", 1), ("RAS", flip)):
         assert numpy.abs(vtk_to_numpy(arrays.GetNormals()) * factor
                          - expected / numpy.linalg.norm(expected, axis=1, keepdims=True)).max() < 1e-4
 
-# A forward field leads points to where SimpleITK does.
+# A forward field moves points to the same positions as SimpleITK does.
 def save_ends(*options, warnings=()):
     move("moving.nii.gz", options, ["landmarks.csv"], ["1 of 61 points", *warnings])
     numpy.save(path("end.npy"), read_table("moved-landmarks.csv")[:-1])
@@ -311,19 +312,20 @@ def save_ends(*options, warnings=()):
 
 save_ends("--field", path("forward.mha"))
 Readers.run("Points.py", "field", folder, "forward.mha", "end.npy", "start.npy", "0.001")
-# The inverse field that is written leads them back. That is known to 1/512 voxel on each axis, and between
-# voxels where the deformation is linear.
+# The inverse field that deform-volume writes maps moved points back. Its vectors are rounded to 1/512 voxel on each
+# axis. Between voxels it is exact because the deformation is linear.
 save_ends("--field", path("linear.mha"), "--inverse-field", path("inverse.mha"),
           warnings=["The inverse field is 0 at"])
 Readers.run("Points.py", "field", folder, "inverse.mha", "start.npy", "end.npy", "0.006")
 
-# Points follow the mesh of a lattice or a model: those in the middle of tetrahedra go where its nodes take them.
+# Points follow the mesh of a lattice or a simulation: displacements of points at the centroids of tetrahedra are
+# interpolated between those of the nodes.
 def check_middles(name, options):
     mesh = read_geometry("mesh.vtu")
     size = mesh.GetCell(0).GetNumberOfPoints()
     cells = vtk_to_numpy(mesh.GetCells().GetConnectivityArray()).reshape(-1, size)
     nodes = get_points(mesh)
-    # The shape functions in the middle of tetrahedra of four and of ten nodes.
+    # The shape functions at the centroid of tetrahedra of four and of ten nodes.
     weights = numpy.array([0.25] * 4 if size == 4 else [-0.125] * 4 + [0.25] * 6)[:, None]
     middles = (weights * nodes[cells]).sum(axis=1)
     ends = (weights * (nodes + vtk_to_numpy(mesh.GetPointData().GetArray("Displacement")))[cells]).sum(axis=1)
@@ -347,11 +349,11 @@ for name, options in (("fem", model), ("cut", (*model, "--cut", path("sheet.obj"
     numbers.append(check_middles(name, options))
 assert numbers[1] > numbers[0] > numbers[2], numbers
 check_middles("mesh", ("--mesh", path("mesh.vtu"), "--displacement", "Displacement"))
-# With --keep no point is outside, and points far away stay.
+# With --keep no point is outside, and points far from the mesh do not move.
 move("moving.mha", ("--mesh", path("mesh.vtu"), "--displacement", "Displacement", "--keep", "5"), ["landmarks.csv"])
 assert (read_table("moved-landmarks.csv")[-1:] == outside).all()
 
-# ChainMail moves the voxel that is pulled as far as it is pulled.
+# With ChainMail the displacement of the pulled voxel is that of the pull.
 voxel = Readers.get_matrix(Readers.read_vti(path("moving.vti"))) @ [20, 18, 16, 1]
 write("voxel.csv", make_table([voxel[:3]]))
 move("moving.mha", ("--model", "chainmail", "--pull", ",".join(map(str, voxel[:3])) + ",3,0,2"), ["voxel.csv"])

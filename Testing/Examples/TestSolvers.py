@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""deform-volume reads results as FEBio, FEBio Studio and SOFA write them, with the options of
-Documents/solvers.md, and reports errors for other options, other units and meshes that have changed.
+"""Tests that deform-volume reads results as FEBio, FEBio Studio and SOFA write them, with the options of
+Documents/solvers.md, and reports errors for wrong options, wrong units and changed meshes.
 Usage: TestSolvers.py PROGRAM FOLDER"""
 import os
 import sys
@@ -20,7 +20,7 @@ def path(name):
     return os.path.join(folder, name)
 
 
-# A volume round the origin, as scans are.
+# A volume around the origin of the world, as scans usually are.
 volume = make_ball(origin=(-12.0, -16.0, -18.0))
 write_vti(volume, path("in.vti"))
 places = make_places(volume.GetBounds())[1]
@@ -34,7 +34,7 @@ def fails(expected, *arguments, warnings=0):
 
 
 def deform(*arguments, warnings=()):
-    """The values of the deformed volume, as far as voxels are covered. warnings: texts, one in each warning."""
+    """Returns the values and the coverage of the deformed volume. warnings: a text for each expected warning."""
     _, errors = call(program, path("in.vti"), *arguments, "-o", path("o.vti"), "--quiet", "--bounds", "volume")
     assert errors.count("warning:") == len(warnings), errors
     for text in warnings:
@@ -49,22 +49,22 @@ def mesh(name):
 
 
 def check_same(expected, *arguments, warnings=()):
-    """The rim of what is covered may go either way."""
+    """Checks values. Voxels at the rim of the covered part may be covered or not."""
     values, covered = deform(*arguments, warnings=warnings)
     assert (covered != expected[1]).mean() < 1e-3
     check_values(values, expected[0], (covered != 0) & (expected[1] != 0))
 
 
 def check_values(values, expected, both):
-    """Numbers of six digits move a position by at most 5e-5 mm. In a few voxels this changes the rounded position by
-    1/256 voxel on each axis. Values of neighbours are up to 850 apart, and are integers."""
+    """Checks values. Numbers with six digits change a position by at most 5e-5 mm. In a few voxels this changes the
+    rounded position by 1/256 voxel on each axis. Values of neighboring voxels are integers and differ by up to 850."""
     difference = numpy.abs(values - expected)[both]
     assert difference.max() <= 3 * 850 / 256 + 1, difference.max()
     assert (difference > 0).mean() < 0.02, (difference > 0).mean()
 
 
 def add_middle_nodes(center):
-    """Ten-node tetrahedra, or those of 15 nodes, with nodes in the faces and the center."""
+    """Returns tetrahedra of ten nodes, or of 15 nodes, with nodes in the faces and the center."""
     points = list(map(tuple, places))
     numbers = {}
 
@@ -84,7 +84,7 @@ def add_middle_nodes(center):
 
 
 def interpolate(moves_of_corners, quadratic, number):
-    """Displacements that are linear in each tetrahedron."""
+    """Returns displacements of all nodes, linear in each tetrahedron."""
     result = numpy.zeros((number, 3))
     for cell in quadratic:
         corners = moves_of_corners[cell[:4]]
@@ -95,7 +95,7 @@ def interpolate(moves_of_corners, quadratic, number):
 
 
 def check_febio(expected):
-    """Its points are at rest, and there is a file for each state."""
+    """Tests files of FEBio: points are at rest, and there is a file for each state."""
     for state, factor in enumerate((0.0, 0.5, 1.0)):
         write_febio(path(f"model.{state}.vtk"), places, factor * moves, cells, factor)
         write_febio_studio(path(f"model.st{state}.vtk"), places, factor * moves, cells, factor)
@@ -113,7 +113,7 @@ def check_febio(expected):
     values, _ = deform(*mesh("model.st2.vtk"), *displacement, warnings=["--points-are-deformed"])
     assert numpy.abs(values - expected[0]).max() > 20.0
     check_same(expected, *mesh("model.st2.vtk"), "--rest", path("model.0.vtk"))
-    # Ten nodes, and 15 of a type that has ten.
+    # Tetrahedra of ten nodes, and tetrahedra of 15 nodes with the cell type of ten nodes.
     points, quadratic = add_middle_nodes(center=False)
     write_febio(path("quadratic.vtk"), points, interpolate(moves, quadratic, len(points)), quadratic, 1.0)
     check_same(expected, *mesh("quadratic.vtk"), *displacement)
@@ -123,7 +123,7 @@ def check_febio(expected):
 
 
 def check_sofa(expected):
-    """It writes deformed points, a file for each step, and edges, if it is not told otherwise."""
+    """Tests files of SOFA: points are deformed, there is a file for each step, and edges are written by default."""
     ignored = ["are ignored: 255 line"]
     for step, factor in ((0, 0.0), (1, 1.0)):
         write_sofa(path(f"body{step}.vtu"), places + factor * moves, cells, edges=False)
@@ -135,7 +135,7 @@ def check_sofa(expected):
     check_same(expected, *mesh("body1.vtu"), "--rest", path("body0.vtu"))
     check_same(expected, *mesh("body_1.vtk"), "--rest", path("body_0.vtk"), warnings=ignored)
     check_same(expected, *mesh("body1.vtu"), "--rest", path("body_0.vtk"), warnings=ignored)
-    # Without tetrahedra that were deleted in the meantime: SOFA moves the last one into the gap, and the edges stay.
+    # A tetrahedron has been deleted between two steps: SOFA moves the last one to its index, and keeps all edges.
     left = cells[:-1]
     left[3] = cells[-1]
     write_sofa(path("less1.vtu"), places + moves, find_edges(cells) + left, [("rest_position", places)], edges=False)
@@ -144,14 +144,14 @@ def check_sofa(expected):
     values, covered = deform(*mesh("less1.vtu"), "--rest", path("less0.vtu"))
     both = (covered != 0) & (expected[1] != 0)
     assert 0.0 < ((covered == 0) & (expected[1] != 0)).mean() < 0.05
-    # The others are where they were.
+    # The values in the remaining tetrahedra have not changed.
     check_values(values, expected[0], both)
-    # As ParaView's Calculator makes displacements of the rest positions.
+    # Displacements that ParaView's Calculator computes from the rest positions.
     write_sofa(path("less2.vtu"), places + moves, left, [("rest_position", places), ("displacement", moves)])
     values, again = deform(*mesh("less2.vtu"), *displacement, "--points-are-deformed", warnings=["are ignored"])
     assert (again != covered).mean() < 1e-3
     check_values(values, expected[0], (again != 0) & (expected[1] != 0))
-    # Deleted points.
+    # A point has been deleted.
     number = 30
     others = [[node - (node > number) for node in cell] for cell in cells if number not in cell]
     write_sofa(path("fewer1.vtu"), numpy.delete(places + moves, number, axis=0), others)
@@ -159,20 +159,20 @@ def check_sofa(expected):
 
 
 def check_units():
-    """A mesh in metres round the origin, where it holds some voxels of a volume in millimetres."""
+    """Tests a mesh in meters around the origin, where it contains some voxels of a volume in millimeters."""
     write_febio(path("metres.vtk"), 1e-3 * places, 1e-3 * moves, cells, 1.0)
     words = "metres.vtk is 0.036 long, and the volume 36. If one of them is in metres and the other in millimetres"
     none = "covers no voxel of the output"
     deform(*mesh("metres.vtk"), *displacement, warnings=[words, none])
     deform(*mesh("metres.vtk"), *displacement, "--keep", "1", warnings=[words])
-    # Elsewhere it holds none, and the error has both boxes.
+    # A mesh elsewhere contains no voxel, and the error states both boxes.
     write_febio(path("aside.vtk"), 1e-3 * places + 40.0, 1e-3 * moves, cells, 1.0)
     fails(["holds no voxel of the volume", "x from 39.988 to 40.012", "x from -12 to 12", "millimetres"],
           *mesh("aside.vtk"), *displacement, warnings=1)
     write_sofa(path("metres0.vtu"), 1e-3 * places, cells, edges=False)
     write_sofa(path("metres1.vtu"), 1e-3 * (places + moves), cells, edges=False)
     deform(*mesh("metres1.vtu"), "--rest", path("metres0.vtu"), warnings=["metres0.vtu is 0.036 long", none])
-    # A mesh of a small part is none of these.
+    # A mesh of a small part of the volume is not an error, and there is no warning.
     write_febio(path("part.vtk"), 0.1 * places, 0.1 * moves, cells, 1.0)
     _, covered = deform(*mesh("part.vtk"), *displacement)
     assert covered.any()

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""squished-head, in C++ and in Python, draws one of its baselines: a head at rest, and one pulled by
-its nose, by finite elements and by springs. Usage: TestSquishedHead.py PROGRAM SCRIPT BASELINE FOLDER"""
+"""Tests that squished-head, in C++ and in Python, draws a picture that equals a baseline: a head at rest, and the head
+pulled by its nose, with finite elements and with springs.
+Usage: TestSquishedHead.py PROGRAM SCRIPT BASELINE FOLDER"""
 import re
 
 import numpy
@@ -8,13 +9,13 @@ from PictureTwins import check_twins
 
 
 def check_panels(rest, elements, springs):
-    # A head at rest differs by more than 2.
+    # The pictures of the pulled head differ from that of the head at rest.
     assert numpy.abs(elements - rest).mean() > 2.0
     assert numpy.abs(springs - rest).mean() > 2.0
 
 
 def check_words(output):
-    # The nose goes by 31 mm: the two models agree on most of that.
+    # The nose moves by 31 mm. The displacements of the two models differ by less than 6 mm.
     assert float(re.search("at most ([0-9.]+) mm", output).group(1)) < 6.0
 
 

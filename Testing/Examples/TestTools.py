@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""deform-volume cuts, carves and pulls as the filters do it, and says what is wrong with its tools.
+"""Tests that deform-volume cuts, carves and pulls as the filters do, and reports errors of its tools.
 Usage: TestTools.py PROGRAM FOLDER"""
 import os
 import sys
@@ -76,7 +76,7 @@ fails(2, "--push", *cut, "--push", "1,2,3,4,5,6,7")
 
 
 def deform(image, field=None):
-    """The output of the filters."""
+    """Returns the output of vtkDeformVolumeFilter."""
     if field is None:
         field = vtkImageData()
         field.SetDimensions(2, 2, 2)
@@ -104,7 +104,7 @@ def check(name, expected, *arguments):
     return output, get_values(made, "vtkValidPointMask")
 
 
-# A cut alone leaves the volume where it is.
+# A cut alone does not move the volume.
 cutter = deformvolume_vtk.vtkCutVolume()
 cutter.SetInputData(volume)
 cutter.SetSheetData(sheet)
@@ -115,7 +115,7 @@ assert "cut and carve" in output
 assert numpy.array_equal(get_values(read_vti(path("cut.vti")), "Values")[covered == 1],
                          get_values(volume)[covered == 1])
 
-# A smooth one leaves all of it there.
+# A smooth cut alone does not change the volume at all.
 smooth_cutter = deformvolume_vtk.vtkCutVolume()
 smooth_cutter.SetInputData(volume)
 smooth_cutter.SetSheetData(sheet)
@@ -140,7 +140,7 @@ carver.Update()
 _, covered = check("carved.vti", deform(carver.GetOutput()), *cut, *carve)
 assert 20 < (covered == 0).sum() < 1000
 
-# Both, and pulled by ChainMail.
+# A volume that is cut, carved, and pulled by ChainMail.
 handles = vtkPolyData()
 points = vtkPoints()
 points.SetDataTypeToDouble()
@@ -167,6 +167,6 @@ assert "crosses nothing" in errors, errors
 _, errors = call(program, path("in.vti"), "--carve", "sphere:500,500,500,3", "-o", path("far.vti"))
 assert "holds nothing" in errors, errors
 
-# A mesh moves what has been cut.
+# A mesh deforms a volume that has been cut.
 call(program, path("in.vti"), *cut, "--lattice", "9,9,9", "--push", "9,20,25,3,0,0,15", "-o",
      path("pushed.vti"))

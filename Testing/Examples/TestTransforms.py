@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""deform-volume deforms a volume by transforms that SimpleITK wrote as SimpleITK's resampling does.
+"""Tests that deform-volume deforms a volume by transforms of SimpleITK as SimpleITK's resampling does.
 Usage: TestTransforms.py PROGRAM FOLDER"""
 import itertools
 import os
@@ -25,7 +25,7 @@ def write(name, text):
 Readers.run("Transforms.py", folder)
 
 
-# What cannot be used is an error that says why, and what converts it.
+# A file that cannot be used is an error that states the reason, and a program that converts the file.
 def fails(expected, *options, volume="moving.nii.gz", code=1):
     _, errors = call(program, path(volume), *options, "-o", path("no.vti"), code=code)
     assert errors.startswith("deform-volume: "), errors
@@ -85,7 +85,7 @@ assert "nothing to write" in errors or "must end in" in errors, errors
 _, errors = call(program, path("moving.mha"), "--volume-space", "ras", *affine, "-o", path("a.vti"), "-q")
 assert "states that" in errors, errors
 
-# Numbers: single precision of the field, of coordinates up to 50, and of the values of noise.
+# Errors: single precision of the field, with coordinates up to 50, and of the values, which are noise.
 expected = numpy.load(path("expected.npz"))
 
 
@@ -93,7 +93,7 @@ def check(volume, name, *files, reference=None):
     options = list(itertools.chain.from_iterable(("--transform", path(file)) for file in files))
     if reference:
         options += ["--reference", path(reference)]
-    # In the other world, where there is one.
+    # The file of labels is in the other world, if its format has one.
     labels = path("labels.mha" if volume.endswith(".nii.gz") else "labels.nii.gz")
     call(program, path(volume), *options, "-q", "-o", path("out.vti"), "--label-volume", labels,
          "--label-output", path("labels.vti"))
@@ -102,7 +102,7 @@ def check(volume, name, *files, reference=None):
     parts = get_values(read_vti(path("labels.vti")))
     depth = expected["depth of " + name]
     if reference and reference.startswith("mirrored") and reference.endswith(".nii.gz"):
-        # The reader of NIfTI files turns the order of slices.
+        # The reader of NIfTI files reverses the order of slices.
         values, covered, parts = values[::-1], covered[::-1], parts[::-1]
     assert covered[depth > 0.001].all(), (name, "holes")
     assert not covered[depth < -0.01].any(), (name, "outside")
@@ -113,7 +113,7 @@ def check(volume, name, *files, reference=None):
     # 7 mm from voxel to voxel, and values by up to 7 in 1 mm.
     allowed = 2e-5 + (49 * 2.0 ** -16 if any(file.startswith("warp") for file in files) else 0)
     assert wrong < allowed, (volume, name, files, wrong)
-    # A label changes at once where a point moves by some 2^-16 voxel.
+    # Labels are not compared where a shift of the point by 2^-16 voxel changes the nearest voxel.
     decided = inside & (expected["margin of " + name] > 0.001)
     assert numpy.array_equal(parts[decided], expected["labels of " + name][decided]), (volume, name)
     assert decided.sum() > 0.98 * inside.sum(), (name, decided.sum(), inside.sum())
@@ -124,7 +124,7 @@ formats = ("h5", "tfm", "txt", "mat")
 for name, suffix in itertools.product(("affine", "euler", "spline", "displacement", "composite", "nested"),
                                       formats):
     if os.path.exists(path(f"{name}.{suffix}")):
-        # The world of the volume is right-anterior-superior or left-posterior-superior in turn.
+        # The world of the volume alternates between RAS and LPS.
         volume = ("moving.nii.gz", "moving.mha")[formats.index(suffix) % 2]
         check(volume, name, f"{name}.{suffix}")
     else:
@@ -137,7 +137,7 @@ for volume in ("moving.nii.gz", "moving.mha"):
     check(volume, "affine,invert+warp", "affine.mat,invert", "warp.nii.gz")
     check(volume, "warp+affine", "warp.nii.gz", "affine.mat")
 
-# On the grid of the fixed image, in either world, mirrored ones included.
+# Results on the grid of the fixed image, in both worlds, and on a mirrored grid.
 for grid, suffix in itertools.product(("fixed", "mirrored"), (".nii.gz", ".mha")):
     volume = {".nii.gz": "moving.mha", ".mha": "moving.nii.gz"}[suffix]
     check(volume, f"affine on {grid}", "affine.h5", reference=grid + suffix)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""deform-volume reads MetaImage, NRRD and NIfTI files as SimpleITK, pynrrd and nibabel do, and these
-programs read what it writes. Usage: TestVolumeFiles.py PROGRAM FOLDER"""
+"""Tests that deform-volume reads MetaImage, NRRD and NIfTI files as SimpleITK, pynrrd and nibabel do, and that these
+programs read the files that it writes. Usage: TestVolumeFiles.py PROGRAM FOLDER"""
 import json
 import os
 import sys
@@ -37,7 +37,7 @@ for case in Readers.load(folder, "cases.json"):
     Readers.check(program, folder, case, *outputs)
 assert not written_again, written_again
 
-# An extent that does not start at 0. The world of .vti files is not known, and not turned.
+# A volume whose extent does not start at 0. The world of .vti files is not known, so coordinates are not converted.
 ball = make_ball()
 shifted = make_ball(direction=(0.6, -0.8, 0, 0.8, 0.6, 0, 0, 0, 1))
 shifted.SetExtent(-4, 20, 3, 24, -1, 17)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""deform-volume reports errors for MetaImage, NRRD and NIfTI files that it cannot read, instead of reading them
-wrongly. Usage: TestWrongVolumeFiles.py PROGRAM FOLDER"""
+"""Tests that deform-volume reports errors for MetaImage, NRRD and NIfTI files that it cannot read.
+Usage: TestWrongVolumeFiles.py PROGRAM FOLDER"""
 import os
 import sys
 

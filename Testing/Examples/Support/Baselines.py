@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pictures and their baselines. As with VTK's own regression tests there may be several, of which a picture shows one:
-the others are called BASELINE_1.png and so on. VTK 9.6 shades volumes differently."""
+"""Compares pictures with baselines. As with VTK's own regression tests, a picture may have several baselines and has to
+match one of them: BASELINE.png, BASELINE_1.png and so on. One reason is that VTK 9.6 shades volumes differently."""
 import glob
 
 import numpy
@@ -22,7 +22,7 @@ def read_baselines(path):
 
 
 def find_difference(path, baselines):
-    """Mean difference over all colors, of 255, from the nearest baseline."""
+    """Returns the mean difference of the color components (0 to 255) from the most similar baseline."""
     drawn = read_picture(path)
     assert drawn.shape == baselines[0].shape
     difference = min(numpy.abs(drawn - expected).mean() for expected in baselines)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Run with the Python of "Testing/packages.sh readers": writes DICOM series by pydicom, and what
-pydicom and SimpleITK read from them: cases.json, and arrays [z, y, x(, component)]; wrong.json has those
-that cannot be read: [folder, words of the error]. Usage: DICOMFiles.py FOLDER"""
+"""Writes DICOM series with pydicom. cases.json lists the series that can be read, with the names of arrays
+[z, y, x(, component)] that SimpleITK reads from them. wrong.json lists the series that cannot be read: [folder,
+words of the error]. Usage, with the Python that "Testing/packages.sh readers" installs: DICOMFiles.py FOLDER"""
 import json
 import os
 import shutil
@@ -15,7 +15,7 @@ import SimpleITK
 from pydicom import uid
 from Rotation import turn
 
-warnings.simplefilter("ignore")  # of pydicom, about values that these files have on purpose
+warnings.simplefilter("ignore")  # warnings of pydicom about values that these files have on purpose
 SimpleITK.ProcessObject.SetGlobalWarningDisplay(False)
 folder = sys.argv[1]
 package = os.path.join(os.path.dirname(pydicom.__file__), "data", "test_files")
@@ -32,8 +32,8 @@ straight, oblique = numpy.eye(3), turn(2, 30) @ turn(0, -20)
 
 def write(name, count=5, kind="int16", axes=straight, step=2.5, image=uid.CTImageStorage, change=None,
           syntax=uid.ExplicitVRLittleEndian, names="{:03}.dcm", order=range(99), description="head"):
-    """A series of slices of 8 columns and 6 rows, 0.9 and 0.7 mm apart. change(slice, number) changes
-    what pydicom then writes."""
+    """Writes a series of slices of 8 columns and 6 rows, with a spacing of 0.9 and 0.7 mm. change(data, number)
+    changes the data set of a slice before it is written."""
     os.makedirs(path(name), exist_ok=True)
     series = uid.generate_uid()
     for number in range(count):
@@ -60,7 +60,8 @@ def write(name, count=5, kind="int16", axes=straight, step=2.5, image=uid.CTImag
 
 
 def read(name):
-    """What pydicom reads: None for pixels that it has no decoder for."""
+    """Returns the values and the index-to-world matrix as pydicom reads them. The values are None if pydicom has no
+    decoder for them."""
     slices = [pydicom.dcmread(path(name, file)) for file in os.listdir(path(name)) if "dcm" in file
               or "IM" in file]
     slices = [data for data in slices if "PixelData" in data]
@@ -93,7 +94,8 @@ def read_itk(name):
 
 
 def add(name, *warned, same_values=True, same_place=True, shear=0, farthest=0):
-    """Both programs agree, but where it is said that they do not: place is that of pydicom."""
+    """Adds a series to the cases, with the matrix of pydicom. Checks that pydicom and SimpleITK agree, unless
+    same_values or same_place is False."""
     values, place = read(name)
     itk_values, itk_place = read_itk(name)
     assert values is None or not same_values or numpy.array_equal(values, itk_values), name
@@ -105,7 +107,7 @@ def add(name, *warned, same_values=True, same_place=True, shear=0, farthest=0):
 
 
 def set_fields(*slices, **fields):
-    """A change of all slices, or of some."""
+    """Returns a function that sets fields of the given slices (default: all). The value None deletes a field."""
     def change(data, number):
         for name, value in fields.items():
             if (not slices or number in slices) and value is None:
@@ -139,7 +141,7 @@ def change_pet(data, number):
 
 write("pet", kind="uint16", image=uid.PositronEmissionTomographyImageStorage, change=change_pet)
 add("pet")
-# GDCM takes another field for the spacing of these, or none.
+# For images of these types GDCM reads the spacing from another field, or from none.
 for name, image in (("projection", uid.ComputedRadiographyImageStorage),
                     ("capture", uid.SecondaryCaptureImageStorage)):
     write(name, image=image)
@@ -171,7 +173,7 @@ def change_position(axis, *amounts):
 
 write("nearly", change=change_position(2, 0, 0, 0, 0.1, 0))
 add("nearly", "003.dcm lies 0.1 mm from where")
-# A tilt of 6e-4 is taken out about the middle: corners move by half of it, and by half a slice.
+# A tilt of 6e-4 is removed about the middle of the volume.
 write("tilted", change=change_position(1, *(0.0015 * i for i in range(5))))
 half = numpy.array([0.9 * 7, 0.7 * 5, 2.5 * 4]) / 2
 columns = numpy.array([[1, 0, 0], [0, 1, 6e-4], [0, 0, 1]]) / [1, 1, numpy.hypot(1, 6e-4)]
@@ -179,7 +181,7 @@ u, _, v = numpy.linalg.svd(columns)
 corners = numpy.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * half
 add("tilted", "sheared by 0.0006", shear=6e-4, same_place=False,
     farthest=numpy.linalg.norm((u @ v - columns) @ corners.T, axis=0).max())
-# Files in the package pydicom, three times each: pixels as they are, at places of their own.
+# Files in the package pydicom, three times each: with the same pixels, at different positions.
 for name in ("CT_small", "MR_small", "MR_small_RLE", "MR_small_bigendian", "MR_small_implicit",
              "MR_small_jp2klossless", "MR_small_jpeg_ls_lossless", "MR_small_padded", "693_J2KI",
              "SC_rgb_jpeg_gdcm", "SC_rgb_small_odd", "SC_rgb_rle", "JPEG2000"):
@@ -249,13 +251,13 @@ add_wrong("nan", "no position", change=lambda data, number: data.add_new(0x00200
 add_wrong("sheared-rows", "sheared by 0.57", change=set_fields(
     ImageOrientationPatient=[1, 0, 0, 0.01, 1, 0]))
 add_wrong("one", "it has one slice, 000.dcm", count=1)
-# Enhanced, a dose, and a file that is compressed as a whole.
+# An enhanced image, a dose, a file that is compressed as a whole, and a truncated file.
 for name, words in (("liver_1frame", "no position"), ("rtdose_1frame", "several frames"),
                     ("image_dfl", "deflated"), ("MR_truncated", "it is not complete")):
     os.makedirs(path(name))
     shutil.copy(os.path.join(package, f"{name}.dcm"), path(name))
     wrong.append([name, words])
-# GDCM ends the program where a file ends within an element.
+# GDCM terminates the program if a file ends within an element.
 for name, source, sizes in (
         ("cut", "plain", (140, 200, 500, -50, -1)), ("big-cut", "big", (600, -1)),
         ("implicit-cut", "implicit", (600, -1)), ("packed-cut", "MR_small_RLE", (-9, -1))):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Displacement fields in the formats of registration programs, written byte by byte. Vectors are
-arrays [z, y, x, component], matrices 3 x 4 lead from the index of a voxel to the world of the file."""
+"""Writes displacement fields in the formats of registration programs, byte by byte. Vectors are arrays [z, y, x,
+component]. Matrices have the shape 3 x 4 and map the index of a voxel to the world of the file."""
 import gzip
 import os
 import struct
@@ -16,7 +16,8 @@ types = {"float32": (16, "float", "MET_FLOAT"), "float64": (64, "double", "MET_D
 
 def write_nifti(path, vectors, matrix, intent=1007, name="", shape=None, order="<", slope=(0.0, 0.0),
                 unit=2):
-    """matrix: to RAS, as the s-form holds it; shape: None for (x, y, z, 1, 3); unit: 2 for mm."""
+    """matrix: index to RAS, written as the s-form; shape: None for (x, y, z, 1, 3); unit: the code of the unit of
+    length, 2 for mm."""
     kind = vectors.dtype.name
     size = vectors.shape[2::-1]
     shape = shape or (*size, 1, vectors.shape[3])
@@ -37,7 +38,7 @@ def write_nifti(path, vectors, matrix, intent=1007, name="", shape=None, order="
     put(280, "12f", *matrix.ravel())
     put(328, "16s", name.encode())
     put(344, "4s", b"n+1\0")
-    # All x components, then all y, then all z.
+    # The file has all x components, then all y components, then all z components.
     planes = numpy.moveaxis(vectors, 3, 0).astype(vectors.dtype.newbyteorder(order))
     data = bytes(header) + b"\0" * 4 + planes.tobytes()
     with open(path, "wb") as file:
@@ -45,7 +46,7 @@ def write_nifti(path, vectors, matrix, intent=1007, name="", shape=None, order="
 
 
 def write_meta(path, vectors, matrix, order="<", compressed=False):
-    """matrix: to LPS. .mha holds its data, .mhd names a file that does."""
+    """matrix: index to LPS. A .mha file contains the data, a .mhd file refers to a second file with the data."""
     spacing = numpy.linalg.norm(matrix[:, :3], axis=0)
     directions = (matrix[:, :3] / spacing).T.ravel()
     data = vectors.astype(vectors.dtype.newbyteorder(order)).tobytes()
@@ -72,8 +73,9 @@ def write_meta(path, vectors, matrix, order="<", compressed=False):
 
 def write_nrrd(path, vectors, matrix, order="<", encoding="raw", axis=0, space=LPS, frame=None,
                extra="", skip=0):
-    """axis: which one holds the components. frame: the matrix of the components, to the space. .nhdr
-    names a file that holds the data. extra: more lines of the header. skip: bytes before the data."""
+    """axis: the axis of the components. frame: the measurement frame, a matrix that maps components to the space. A
+    .nhdr file refers to a second file with the data. extra: additional lines of the header. skip: number of bytes
+    before the data."""
     directions = ["(" + ",".join(repr(float(n)) for n in matrix[:, i]) + ")" for i in range(3)]
     sizes, kinds = [str(n) for n in vectors.shape[2::-1]], ["domain"] * 3
     for words, word in ((directions, "none"), (sizes, str(vectors.shape[3])), (kinds, "vector")):

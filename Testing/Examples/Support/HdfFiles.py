@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Meshes as VTKHDF files, written byte by byte: no writer of VTK makes them before VTK 9.4. The file
-format is that of HDF5's specification: superblock 0, object headers 1, contiguous data."""
+"""Writes meshes as VTKHDF files, byte by byte, because VTK has no writer for this format before VTK 9.4. The bytes
+follow the specification of HDF5: superblock 0, object headers 1, contiguous data."""
 import struct
 
 import numpy
@@ -13,7 +13,7 @@ def pad(data):
 
 
 def describe_type(kind):
-    """The message of a data type: int64, uint8, float32, float64, or a string of fixed length."""
+    """Returns the datatype message for int64, uint8, float32, float64, or a string of fixed length."""
     if kind.kind == "S":
         return struct.pack("<B3BI", 0x13, 0, 0, 0, kind.itemsize)
     bits = 8 * kind.itemsize
@@ -29,7 +29,7 @@ def describe_space(shape):
 
 
 class Hdf:
-    """Groups and datasets, each of which is written before the group that holds it."""
+    """A file of groups and datasets. Members of a group have to be added before the group."""
 
     def __init__(self):
         self.bytes = bytearray(96)
@@ -73,8 +73,8 @@ class Hdf:
 
 def write_vtkhdf(path, points, cells, cell_types, arrays, version=(1, 0), kind=b"UnstructuredGrid",
                  without=(), steps=None):
-    """cells: lists of points; arrays: of the points, by name; without: datasets that are left out;
-    steps: times of a series, for which the file holds no further data."""
+    """cells: lists of point ids; arrays: point arrays by name; without: names of datasets that are left out;
+    steps: times of a series, whose data the file does not contain."""
     file = Hdf()
     offsets = numpy.cumsum([0] + [len(cell) for cell in cells]).astype(numpy.int64)
     ids = numpy.concatenate(cells).astype(numpy.int64)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Run with the Python of "Testing/packages.sh readers": writes a volume and inverse displacement fields
-by SimpleITK, and what its resampling makes of them. Usage: ItkFields.py FOLDER"""
+"""Writes a volume, inverse displacement fields, and the volume resampled by these fields, with SimpleITK.
+Usage, with the Python that "Testing/packages.sh readers" installs: ItkFields.py FOLDER"""
 import os
 import sys
 
@@ -38,7 +38,7 @@ moving = make(random.normal(size=size[::-1]).astype(numpy.float32), origin, spac
 SimpleITK.WriteImage(moving, path("moving.nii.gz"))
 SimpleITK.WriteImage(moving, path("moving.mha"))
 
-# On the voxels of the volume, as registration writes it, and on a lattice of its own.
+# One field has a vector for each voxel of the volume, as registration programs write it, and one has another grid.
 coarse_direction = turn(1, 40)
 coarse = [(11, 10, 9), numpy.zeros(3), (3.0, 3.5, 4.0), coarse_direction]
 coarse[1] = middle - get_points(*coarse).reshape(-1, 3).mean(axis=0)
@@ -52,13 +52,13 @@ for name, (field_size, field_origin, field_spacing, field_direction) in (
         SimpleITK.WriteImage(field, path(f"{name}.{suffix}"))
     SimpleITK.WriteImage(field, path(f"{name}-zip.nrrd"), useCompression=True)
     SimpleITK.WriteImage(field, path(f"{name}-zip.mha"), useCompression=True)
-    # As ITK writes them for fMRIPrep and others: right, anterior, superior.
+    # A third form has the world RAS, as fMRIPrep and other programs write fields.
     lps = nibabel.load(path(f"{name}.nii"))
     ras = nibabel.Nifti1Image(lps.get_fdata(dtype=numpy.float32) * numpy.float32([-1, -1, 1]), lps.affine)
     ras.header.set_intent(1006)
     nibabel.save(ras, path(f"{name}-1006.nii.gz"))
 
-    # The field is evaluated at the voxels of the output, here those of the volume.
+    # SimpleITK evaluates the field at the voxels of the output, whose grid is here that of the volume.
     transform = SimpleITK.DisplacementFieldTransform(SimpleITK.Cast(field, SimpleITK.sitkVectorFloat64))
     resampled = SimpleITK.Resample(moving, moving, transform, SimpleITK.sitkLinear, -100.0)
     warp = SimpleITK.WarpImageFilter()
@@ -66,7 +66,7 @@ for name, (field_size, field_origin, field_spacing, field_direction) in (
     warp.SetEdgePaddingValue(-100.0)
     warped = SimpleITK.GetArrayFromImage(warp.Execute(moving, field))
     resampled = SimpleITK.GetArrayFromImage(resampled)
-    # Outside the field one takes no displacement, and the other the nearest.
+    # Outside the field, DisplacementFieldTransform has no displacement, and WarpImageFilter has the nearest one.
     index = (get_points(size, origin, spacing, direction) - field_origin) @ numpy.linalg.inv(
         field_direction * numpy.array(field_spacing)).T
     inside = ((index > -1e-3) & (index < numpy.array(field_size) - 0.999)).all(axis=-1)

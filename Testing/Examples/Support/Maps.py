@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Run by a Python that has SimpleITK. Usage: Maps.py make FOLDER, which writes volumes, or
-Maps.py check FOLDER VOLUME RESULT FIELD JACOBIAN BACKGROUND, which resamples VOLUME by FIELD and compares with
-RESULT, and the derivative of FIELD with JACOBIAN."""
+"""Usage, with a Python that has SimpleITK:
+Maps.py make FOLDER writes volumes.
+Maps.py check FOLDER VOLUME RESULT FIELD JACOBIAN BACKGROUND compares VOLUME, resampled by FIELD, with RESULT, and the
+Jacobian determinant of FIELD with JACOBIAN."""
 import os
 import sys
 
@@ -20,7 +21,7 @@ def make(folder):
     image.SetDirection((turn(2, 25) @ turn(0, -15)).ravel().tolist())
     for name in ("moving.nii.gz", "moving.mha", "moving.nrrd"):
         sitk.WriteImage(image, os.path.join(folder, name))
-    # Forward, smooth, and zero at the border of the volume.
+    # A forward field, which is smooth, and zero at the border of the volume.
     bump = (numpy.sin(numpy.pi * x / 39) * numpy.sin(numpy.pi * y / 35) * numpy.sin(numpy.pi * z / 31)) ** 2
     vectors = numpy.stack([4 * bump * numpy.sin(0.2 * y), -3 * bump * numpy.cos(0.15 * x), 3 * bump], axis=-1)
     field = sitk.GetImageFromArray(vectors.transpose(2, 1, 0, 3).astype(numpy.float32), isVector=True)
@@ -45,7 +46,8 @@ def check(folder, volume, result, field, jacobian, background):
         assert numpy.allclose(image.GetOrigin(), field.GetOrigin(), atol=1e-4), "origin"
         assert numpy.allclose(image.GetDirection(), field.GetDirection(), atol=1e-6), "direction"
     field = sitk.Cast(field, sitk.sitkVectorFloat64)
-    # Of the place at rest by the index. SimpleITK's filter leaves the direction of the image out.
+    # The Jacobian determinant of the position at rest with respect to the index. SimpleITK's filter cannot be used,
+    # because it ignores the direction of the image.
     vectors = sitk.GetArrayFromImage(field)
     steps = numpy.array(field.GetDirection()).reshape(3, 3) * numpy.array(field.GetSpacing())
     changes = numpy.stack([numpy.gradient(vectors, axis=axis) for axis in (2, 1, 0)], axis=-1)
@@ -56,16 +58,17 @@ def check(folder, volume, result, field, jacobian, background):
     values = sitk.GetArrayFromImage(result)
     covered = values != float(background)
     assert covered.sum() > 10000, covered.sum()
-    # Where derivatives take no difference beyond the border.
+    # Voxels whose derivatives need no difference beyond the border.
     inner = numpy.zeros_like(covered)
     inner[1:-1, 1:-1, 1:-1] = covered[1:-1, 1:-1, 1:-1]
     for axis in range(3):
         for step in (-1, 1):
             inner &= numpy.roll(covered, step, axis)
-    # The volume is linear: both interpolate it without an error, at places of single precision.
+    # The volume is linear, so both programs interpolate it without an error, apart from the single precision of
+    # positions.
     wrong = numpy.abs(values - resampled)[inner].max()
     assert wrong < 1e-3, wrong
-    # Positions are rounded to 1/512 voxel, and the derivative is found from those of neighbours.
+    # Positions are rounded, with an error of at most 1/512 voxel, and derivatives are differences of these positions.
     ratio = (expected * sitk.GetArrayFromImage(jacobian))[inner]
     assert numpy.abs(ratio - 1).max() < 0.03 and abs(ratio.mean() - 1) < 0.002, (ratio.min(), ratio.max())
     jacobians = sitk.GetArrayFromImage(jacobian)[inner]

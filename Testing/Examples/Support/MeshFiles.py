@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A small mesh in all forms that files hold, and its files."""
+"""Makes a small mesh as each type of dataset that mesh files can contain, and writes the files."""
 import os
 
 import numpy
@@ -28,8 +28,8 @@ def to_vtk(name, values):
 
 
 def make_places(bounds):
-    """The nodes of a grid of SIZE nodes over a box, x first. The box has numbers that single
-    precision holds, as Exodus files have it."""
+    """Returns the nodes of a grid of SIZE nodes over a box, with x running fastest. The numbers of the box are exact
+    in single precision, which Exodus files have."""
     axes = [numpy.linspace(bounds[2 * axis], bounds[2 * axis + 1], SIZE[axis]).astype(
         numpy.float32).astype(float) for axis in range(3)]
     z, y, x = numpy.meshgrid(*reversed(axes), indexing="ij")
@@ -37,13 +37,13 @@ def make_places(bounds):
 
 
 def make_moves(places):
-    """Displacements that single precision does not hold."""
+    """Returns displacements that are not exact in single precision."""
     x, y, z = (places - places.mean(axis=0)).T / numpy.ptp(places, axis=0).max()
     return numpy.stack([2.1 + 0.7 * y, 1.3 * numpy.sin(3 * z), 1.1 * x * y - 0.3], axis=1)
 
 
 def make_hexahedra():
-    """The cells of the grid."""
+    """Returns the hexahedra of the grid."""
     nx, ny, nz = SIZE
     corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
     return [[x + dx + nx * (y + dy + ny * (z + dz)) for dx, dy, dz in corners]
@@ -51,14 +51,14 @@ def make_hexahedra():
 
 
 def make_tetrahedra():
-    """Six of each hexahedron, round its diagonal, which is the same whatever the nodes' numbers."""
+    """Returns six tetrahedra for each hexahedron, around its diagonal. So the split does not depend on node numbers."""
     ring = (1, 2, 3, 7, 4, 5, 1)
     return [[cell[0], cell[a], cell[b], cell[6]] for cell in make_hexahedra()
             for a, b in zip(ring, ring[1:])]
 
 
 def add_arrays(data, moves):
-    """The displacements, between others."""
+    """Adds the array of displacements, between two other arrays."""
     temperature = 300 + numpy.arange(len(moves), dtype=float)
     for name, values in (("Temperature", temperature), ("Reaction", 100 * moves),
                          ("Displacement", moves)):
@@ -105,7 +105,7 @@ def make_blocks(*parts):
 
 
 def state_space(data, space):
-    """As 3D Slicer does it in .vtu and .vtp files."""
+    """States the world of a mesh as 3D Slicer does in .vtu and .vtp files."""
     array = vtkStringArray()
     array.SetName("SPACE")
     array.InsertNextValue(space)
@@ -114,7 +114,7 @@ def state_space(data, space):
 
 
 def write(writer, data, path, **settings):
-    """settings: methods of the writer and their arguments."""
+    """Writes data with a writer. settings: methods of the writer and their arguments."""
     writer.SetFileName(path)
     writer.SetInputData(data)
     for name, argument in settings.items():
@@ -123,7 +123,7 @@ def write(writer, data, path, **settings):
 
 
 def write_collection(path, entries):
-    """A .pvd file. entries: times and names of files."""
+    """Writes a .pvd file. entries: times and names of files."""
     with open(path, "w", encoding="ascii") as file:
         file.write('<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n<Collection>\n')
         for part, (time, name) in enumerate(entries):
@@ -132,7 +132,7 @@ def write_collection(path, entries):
 
 
 class Series(VTKPythonAlgorithmBase):
-    """A mesh over time: the displacements are those of the end times the time."""
+    """A mesh that varies in time. The displacements at a time are the given ones times this time."""
 
     def __init__(self, mesh, times):
         VTKPythonAlgorithmBase.__init__(self, nInputPorts=0, nOutputPorts=1,

@@ -4,8 +4,8 @@ import re
 
 from Volumes import call
 
-# Words that only programmers know: classes, methods, addresses, enumerators and VTK's pipeline. Names of
-# arrays that VTK gives are known to users.
+# Words that only programmers know: classes, methods, addresses, enumerators and VTK's pipeline. Users know the array
+# names vtkGhostType and vtkValidPointMask.
 CODE = re.compile(r"\bvtk(?!GhostType|ValidPointMask)[A-Z]\w*|::|\b[A-Za-z]\w*\(\)|\b0x[0-9a-f]{4}|"
                   r"\b[A-Z]{4,}_[A-Z]+\b|\b[A-Z][a-z]+[A-Z][a-z]\w*|input port|\b[Cc]onnect\b|"
                   r"\bREQUEST\b")
@@ -14,13 +14,13 @@ NAMES = ("TetGen", "ParaView", "ChainMail", "Mach", "MetaImage", "OpenCL", "DEFO
 
 
 def check_words(text):
-    """Names of programs and paths of files are left out."""
+    """Checks that a text has no such words, apart from names of programs and paths of files."""
     words = re.sub("|".join(NAMES) + r"|\S*/\S*", "", text)
     assert not CODE.search(words), f"{CODE.search(words).group()} in {text}"
 
 
 def fails(program, code, expected, *arguments, warnings=0):
-    """Calls a program, which has to fail with one line. expected: texts in it."""
+    """Calls a program, which has to fail with a message of one line. expected: texts in this line."""
     output, errors = call(program, *arguments, code=code, quiet=True)
     print("  ", errors.strip())
     assert output == "", output

@@ -6,15 +6,15 @@ import sys
 from Baselines import find_difference, read_baselines, read_picture
 from Volumes import call, make_folder
 
-SIZE = 200  # of a picture
-LIMIT = 0.05  # of 255, the mean of all colours
+SIZE = 200  # width and height of a picture
+LIMIT = 0.05  # limit of the mean difference of color components (0 to 255)
 FOLDER = "/usr/share/mricron/templates"
 
 
 def check_twins(name, volume, check_panels, check_words=None):
-    """Both are misused, and draw a volume of the package mricron-data. check_panels is called with the
-    three pictures that each has drawn, and check_words with what is printed, which is the same of both.
-    The arguments of the test are PROGRAM SCRIPT BASELINE FOLDER."""
+    """Checks the misuse of the program and the script, and lets both draw a volume of the package mricron-data.
+    check_panels gets the three pictures that each of them has drawn, and check_words gets the text that they have
+    printed, which must be the same. The arguments of the test are PROGRAM SCRIPT BASELINE FOLDER."""
     program, script, baseline = sys.argv[1:4]
     folder = make_folder(sys.argv[4], name)
     volume = os.path.join(FOLDER, volume)

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Run by a Python that has SimpleITK. Usage: Points.py make FOLDER, which writes transforms for the volumes of
-Maps.py, or Points.py check FOLDER TRANSFORM BEFORE AFTER, which leads the points AFTER back to BEFORE, or
-Points.py field FOLDER FIELD BEFORE AFTER LIMIT, which does so with a field. Points are LPS, in files of
-numpy."""
+"""Usage, with a Python that has SimpleITK:
+Points.py make FOLDER writes transforms for the volumes of Maps.py.
+Points.py check FOLDER TRANSFORM BEFORE AFTER checks that TRANSFORM maps the points AFTER to BEFORE.
+Points.py field FOLDER FIELD BEFORE AFTER LIMIT checks the same for a displacement field.
+Points are LPS, in files of numpy."""
 import os
 import sys
 
@@ -22,20 +23,21 @@ def make(folder):
     affine.SetCenter(middle)
     affine.SetTranslation((1.5, -2.0, 0.7))
     sitk.WriteTransform(affine, os.path.join(folder, "affine.tfm"))
-    # Trilinear on the grid of the fixed image, where the program samples it, as is the sum with a matrix.
+    # This field is trilinear on the grid of the fixed image, where the program samples it. So is its composition with a
+    # matrix.
     x, y, z = numpy.meshgrid(*(numpy.arange(n) for n in fixed.GetSize()), indexing="ij")
     vectors = numpy.stack([1.5 * numpy.sin(0.3 * y), numpy.cos(0.25 * x), 1.2 * numpy.sin(0.2 * (x + z))], axis=-1)
     field = sitk.GetImageFromArray(vectors.transpose(2, 1, 0, 3), isVector=True)
     field.CopyInformation(fixed)
     both = sitk.CompositeTransform([affine, sitk.DisplacementFieldTransform(field)])
     sitk.WriteTransform(both, os.path.join(folder, "both.h5"))
-    # Forward, and linear.
+    # A forward field, which is linear.
     x, y, z = numpy.meshgrid(*(numpy.arange(n) for n in moving.GetSize()), indexing="ij")
     vectors = numpy.stack([0.1 * x - 0.05 * z, 0.03 * x + 0.08 * y - 1, 2 - 0.07 * y], axis=-1)
     linear = sitk.GetImageFromArray(vectors.transpose(2, 1, 0, 3), isVector=True)
     linear.CopyInformation(moving)
     sitk.WriteImage(linear, os.path.join(folder, "linear.mha"))
-    # A grid on which a spline is sampled finely enough.
+    # A grid that is fine enough to sample a spline.
     fine = sitk.Image([128, 128, 128], sitk.sitkUInt8)
     fine.SetSpacing((0.25, 0.25, 0.25))
     fine.SetOrigin([m - 0.125 * 127 for m in middle])

@@ -12,17 +12,17 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 here = os.path.dirname(os.path.abspath(__file__))
 python = os.path.join(here, "..", "..", "build", "readers", "bin", "python")
-# A push that moves no voxel by as much as 1/512, so that values stay as they are.
+# A push that moves no voxel by as much as 1/512 voxel, so that values do not change.
 still = ("--lattice", "3,3,3", "--push", "0,0,0,1e-7,0,0,1e6", "--bounds", "volume", "--quiet")
 
 
 def run(script, *arguments):
-    """Runs a script; skips the test where its Python is not installed."""
+    """Runs a script with the Python that "Testing/packages.sh readers" installs; skips the test without it."""
     if not os.path.exists(python):
         print("Skipped: run bash Testing/packages.sh readers, which installs SimpleITK, nibabel, pynrrd "
               "and pydicom from PyPI.")
         sys.exit(125)
-    # A path for the modules of this Python is none for another one.
+    # PYTHONPATH has modules for the Python of this test, which another version of Python cannot load.
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     call(python, os.path.join(here, script), *arguments, environment=environment)
 
@@ -33,7 +33,7 @@ def load(folder, name):
 
 
 def fails(program, folder, name, words, *arguments):
-    """The program says what is wrong with a file, and neither a function nor a place in its sources."""
+    """Checks that the program fails with one line which contains words, and no names of functions or source files."""
     target = os.path.join(folder, "no.vti")
     _, errors = call(program, os.path.join(folder, name), *still, *arguments, "-o", target, code=1)
     assert errors.startswith("deform-volume: cannot read ") and errors.count("\n") == 1, errors
@@ -43,7 +43,7 @@ def fails(program, folder, name, words, *arguments):
 
 
 def get_matrix(image):
-    """Index to world, of the index counted from the first voxel."""
+    """Returns the matrix from an index, counted from the first voxel of the extent, to the world."""
     extent = image.GetExtent()
     first = [0.0] * 3
     image.TransformIndexToPhysicalPoint(extent[0], extent[2], extent[4], first)
@@ -56,13 +56,14 @@ def get_matrix(image):
 
 
 def get_array(image):
-    """The scalars as an array [z, y, x(, component)]."""
+    """Returns the scalars as an array [z, y, x(, component)]."""
     values = vtk_to_numpy(image.GetPointData().GetScalars())
     return values.reshape(*image.GetDimensions()[::-1], *values.shape[1:])
 
 
 def get_distance(matrix, place, shape):
-    """How far the corners of a volume lie at most from where they should, in voxels and in mm."""
+    """Returns the largest distance of the corners of a volume from their expected positions, in voxels and in mm.
+    matrix, place: the actual and the expected matrix from the index to the world."""
     corners = numpy.array([[x, y, z, 1] for z in (0, shape[0] - 1) for y in (0, shape[1] - 1)
                            for x in (0, shape[2] - 1)])
     voxels = numpy.linalg.inv(place) @ matrix @ corners.T - corners.T
@@ -70,9 +71,9 @@ def get_distance(matrix, place, shape):
 
 
 def compare(image, values, place):
-    """Values are equal, in their type, and voxels lie where they should."""
+    """Checks that values and their type are as expected. Returns the distances of get_distance()."""
     matrix = get_matrix(image)
-    # VTK's reader of NIfTI files turns the order of slices where that makes axes right-handed.
+    # VTK's reader of NIfTI files reverses the order of slices if this makes the axes right-handed.
     if (numpy.linalg.inv(place) @ matrix)[2, 2] < -0.5:
         values = values[::-1]
         place = place.copy()
@@ -85,7 +86,7 @@ def compare(image, values, place):
 
 
 def check(program, folder, case, *outputs):
-    """A file is read as the other program read it, and with the warning that belongs to it alone."""
+    """Checks that deform-volume reads a file as the other program did, with the expected warnings and no others."""
     target = os.path.join(folder, "read.vti")
     arguments = [argument for output in outputs for argument in ("-o", output)]
     _, errors = call(program, os.path.join(folder, case["file"]), *still, *case["arguments"], "-o",
@@ -98,7 +99,7 @@ def check(program, folder, case, *outputs):
     if case["shear"] == 0:
         assert voxels < 1e-4, voxels
         return
-    # Sheared axes cannot be those of the file: the warning says how far voxels lie from there.
+    # Sheared axes are replaced by perpendicular ones: the warning states how far voxels are moved by that.
     assert abs(distance - case["farthest"]) < 1e-3 * case["farthest"] + 1e-6, (distance, case["farthest"])
     numbers = re.search("sheared by ([-0-9.e]+)[.] .* up to ([-0-9.e]+) from", errors)
     for number, expected in zip(numbers.groups() if numbers else (), (case["shear"], case["farthest"])):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes files in the formats of solvers: the .vtk files of FEBio and FEBio Studio, and those of SOFA's VTKExporter.
-Numbers have the digits that these programs write."""
+"""Writes files in the formats of solvers: the .vtk files of FEBio and FEBio Studio, and the files of SOFA's
+VTKExporter. Numbers have as many digits as these programs write."""
 
 VTK_TYPES = {1: 1, 2: 3, 3: 5, 4: 10, 8: 12, 10: 24, 15: 24, 20: 25, 27: 25}  # by the number of nodes
 
@@ -10,8 +10,8 @@ def join(numbers, digits=6):
 
 
 def write_grid(file, places, cells):
-    """A legacy file's points, three in a line, and its cells. FEBio calls a tetrahedron of 15 nodes and a hexahedron of
-    27 by the types of 10 and 20 nodes."""
+    """Writes the points, three in a line, and the cells of a legacy file. FEBio gives tetrahedra of 15 nodes and
+    hexahedra of 27 nodes the cell types of 10 and 20 nodes."""
     file.write(f"DATASET UNSTRUCTURED_GRID\nPOINTS {len(places)} float\n")
     for start in range(0, len(places), 3):
         file.write(" ".join(join(place) for place in places[start:start + 3]) + " \n")
@@ -22,8 +22,8 @@ def write_grid(file, places, cells):
 
 
 def write_febio(path, places, moves, cells, time, title="time"):
-    """A state of FEBio's plot file of the type vtk: points at rest, a scalar, displacements, stresses of the cells.
-    FEBio Studio's export differs in the title and in the points, which are deformed."""
+    """Writes one state of FEBio's plot file of the type vtk: points at rest, a scalar, displacements, and stresses of
+    the cells. An export of FEBio Studio differs in the title and in the points, which are deformed."""
     with open(path, "w", encoding="ascii") as file:
         file.write(f"# vtk DataFile Version 3.0\n{title} {time:g}\nASCII\n")
         write_grid(file, places, cells)
@@ -45,8 +45,8 @@ def find_edges(cells):
 
 
 def write_sofa(path, places, cells, arrays=(), edges=True):
-    """SOFA's VTKExporter, in the format of the name's suffix. It writes edges unless it is told not to, and no
-    displacements: arrays are pairs of names and of vectors at the points."""
+    """Writes a file of SOFA's VTKExporter, in the format of the suffix. VTKExporter writes edges by default, and no
+    displacements. arrays: pairs of a name and of vectors at the points."""
     cells = (find_edges(cells) if edges else []) + list(cells)
     with open(path, "w", encoding="ascii") as file:
         if path.endswith(".vtk"):

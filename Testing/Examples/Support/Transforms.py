@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Run by a Python that has SimpleITK: writes volumes and transforms, and what SimpleITK's resampling makes
-of them on the grid of the volume. Usage: Transforms.py FOLDER"""
+"""Writes volumes, transforms, and the volumes resampled by these transforms with SimpleITK.
+Usage, with a Python that has SimpleITK: Transforms.py FOLDER"""
 import os
 import sys
 
@@ -15,7 +15,7 @@ def path(name):
     return os.path.join(folder, name)
 
 
-# A volume in general position, whose values show any exchange of axes.
+# A rotated volume of random values, with which a test notices any exchange of axes.
 random = numpy.random.default_rng(5)
 size, spacing = (26, 22, 18), (1.0, 1.3, 1.7)
 direction = turn(2, 25) @ turn(0, -15)
@@ -27,7 +27,7 @@ values = sitk.GetArrayViewFromImage(moving)
 assert max(numpy.abs(numpy.diff(values, axis=axis)).max() for axis in range(3)) < 7
 for name in ("moving.nii.gz", "moving.mha", "moving.nrrd"):
     sitk.WriteImage(moving, path(name))
-# A label for each voxel.
+# Each voxel has a label of its own.
 labels = sitk.GetImageFromArray(random.permutation(values.size).astype(numpy.int32).reshape(values.shape) + 1)
 labels.CopyInformation(moving)
 for name in ("labels.nii.gz", "labels.mha"):
@@ -36,7 +36,7 @@ middle = moving.TransformContinuousIndexToPhysicalPoint([(n - 1) / 2 for n in si
 
 
 def make_fixed(turned, spacing):
-    """A grid of another size about the same middle."""
+    """Returns an image of another size with the same center."""
     image = sitk.Image([20, 24, 19], sitk.sitkInt16)
     image.SetSpacing(spacing)
     image.SetDirection(turned.ravel().tolist())
@@ -64,7 +64,7 @@ spline.SetParameters(parameters.tolist())
 
 
 def make_field():
-    """On a coarse lattice of its own that does not reach all of the volume."""
+    """Returns a displacement field on a coarse grid that does not cover the whole volume."""
     image = sitk.Image([9, 8, 7], sitk.sitkVectorFloat64, 3)
     image.SetSpacing((3.0, 3.2, 3.5))
     image.SetDirection(turn(1, 30).ravel().tolist())
@@ -94,7 +94,7 @@ for name, transform in transforms.items():
             sitk.WriteTransform(transform, path(f"{name}.{suffix}"))
             sitk.ReadTransform(path(f"{name}.{suffix}"))
         except RuntimeError:
-            # What this format has no room for, or ITK does not read again.
+            # This format cannot store the transform, or ITK cannot read the file.
             if os.path.exists(path(f"{name}.{suffix}")):
                 os.remove(path(f"{name}.{suffix}"))
 planar = sitk.AffineTransform(2)
@@ -102,7 +102,7 @@ sitk.WriteTransform(planar, path("planar.tfm"))
 
 expected = dict(transforms)
 expected["affine,invert"] = affine.GetInverse()
-# A point goes through the last one first.
+# A composite transform applies its last transform first.
 expected["euler+affine"] = sitk.CompositeTransform([euler, affine])
 expected["affine,invert+warp"] = sitk.CompositeTransform([affine.GetInverse(), displacement])
 expected["warp+affine"] = sitk.CompositeTransform([displacement, affine])
@@ -112,7 +112,7 @@ nothing = -1000.0
 def add(key, transform, grid):
     resampled = sitk.Resample(moving, grid, transform, sitk.sitkLinear, nothing)
     results[key] = sitk.GetArrayFromImage(resampled)
-    # How far inside the volume each voxel's point lies, in voxels: beyond 0, ITK repeats the border.
+    # Depth of each transformed voxel inside the volume, in voxels. Where it is negative, ITK repeats the border.
     index = numpy.stack(numpy.meshgrid(*(numpy.arange(n) for n in grid.GetSize()), indexing="ij"),
                         axis=-1)
     reached = numpy.array([moving.TransformPhysicalPointToContinuousIndex(transform.TransformPoint(
@@ -121,7 +121,7 @@ def add(key, transform, grid):
     results["depth of " + key] = depth.reshape(grid.GetSize()).T
     resampled = sitk.Resample(labels, grid, transform, sitk.sitkNearestNeighbor, 0)
     results["labels of " + key] = sitk.GetArrayFromImage(resampled)
-    # How far each point is from where another voxel is the nearest.
+    # Distance of each point from the next point with another nearest voxel.
     margin = numpy.abs(reached - numpy.floor(reached) - 0.5).min(axis=-1)
     results["margin of " + key] = margin.reshape(grid.GetSize()).T
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Run with the Python of "Testing/packages.sh readers": writes volumes by SimpleITK, pynrrd and
-nibabel, and what these programs read from them: cases.json, and arrays [z, y, x(, component)].
-Usage: VolumeFiles.py FOLDER"""
+"""Writes volumes with SimpleITK, pynrrd and nibabel. cases.json lists them, with the names of arrays
+[z, y, x(, component)] that these programs read from them.
+Usage, with the Python that "Testing/packages.sh readers" installs: VolumeFiles.py FOLDER"""
 import json
 import os
 import sys
@@ -26,7 +26,7 @@ def path(name):
 
 
 def make_values(kind, *shape):
-    """All bits count."""
+    """Returns random values in which all bits are used."""
     kind = numpy.dtype(kind)
     if kind.kind == "f":
         return random.normal(scale=1000, size=shape).astype(kind)
@@ -54,8 +54,9 @@ other = make_place(turn(0, 12), origin=(5, 6, 7))
 
 
 def add(name, values, place, *arguments, warnings=(), shear=0, farthest=0, is_ras=False):
-    """values [z, y, x(, component)]; place: from the index to the world of the file; shear, farthest:
-    the cosine of sheared axes, and how far voxels lie from there, in mm."""
+    """Adds a file to the cases. values: array [z, y, x(, component)]; place: the matrix from the index to the world of
+    the file; shear: the cosine of the angle between sheared axes; farthest: the largest distance by which voxels are
+    moved to make the axes perpendicular, in mm."""
     values_name = f"{len(cases)}.npy"
     numpy.save(path(values_name), values.astype(values.dtype.newbyteorder("=")))
     cases.append({"file": name, "values": values_name, "place": numpy.array(place).tolist(),
@@ -68,7 +69,8 @@ def write_bytes(name, header, data=b""):
         file.write(header.encode() + data)
 
 
-# MetaImage and NRRD as SimpleITK writes them: all types, in one file and two, compressed and not.
+# MetaImage and NRRD files as SimpleITK writes them: all types, with the header in the same file and in another one,
+# with and without compression.
 def to_itk(values, place, is_vector=False):
     image = SimpleITK.GetImageFromArray(values, isVector=is_vector)
     spacing = numpy.linalg.norm(place[:3, :3], axis=0)
@@ -100,7 +102,7 @@ frames = [to_itk(make_values("int16", *size), oblique) for _ in range(3)]
 SimpleITK.WriteImage(SimpleITK.JoinSeries(frames), path("time.mha"))
 add_itk("time.mha", "--frame", "1", frame=1)
 
-# MetaImage that others write, read by SimpleITK.
+# MetaImage files as other programs write them, read by SimpleITK.
 values = make_values("int16", *size)
 start = ("ObjectType = Image\nNDims = 3\nBinaryData = True\nOffset = 1 2 3\nElementSpacing = 1 2 3\n"
          "DimSize = 7 6 5\n")
@@ -122,7 +124,7 @@ for name in ("long.mha", "big.mha", "ascii.mha", "skip.mhd", "list.mhd", "patter
     add_itk(name)
 
 
-# NRRD as pynrrd writes it, whose arrays are [x, y, z]: the components or frames on any axis.
+# NRRD files as pynrrd writes them, with the components or frames on any axis. The arrays of pynrrd are [x, y, z].
 def write_nrrd(name, values, place=oblique, space="left-posterior-superior", axis=0, kind="vector",
                **header):
     directions, kinds = [place[:3, i] for i in range(3)], ["domain"] * 3
@@ -174,7 +176,7 @@ nrrd.write(path("spacings.nrrd"), xyz, {"spacings": [1.0, 2.0, 3.0], "kinds": ["
 add("spacings.nrrd", values, numpy.diag([1.0, 2.0, 3.0, 1.0]))
 
 
-# NIfTI as nibabel writes it.
+# NIfTI files as nibabel writes them.
 def write_nifti(name, values, sform=None, qform=None, codes=(1, 1), kind=nibabel.Nifti1Image, **header):
     image = kind(values, None, dtype=values.dtype)
     for key, value in header.items():
@@ -197,7 +199,7 @@ def add_nifti(name, *arguments, frame=None, millimetres=1, kind=None, **options)
         values = values[:, :, :, 0]
     place = image.affine.copy()
     if not image.header["sform_code"] and not image.header["qform_code"]:
-        # nibabel puts the middle at 0 then, and the standard the first voxel.
+        # Without a form, nibabel places the center of the volume at 0, and the standard places the first voxel there.
         place = numpy.diag([*image.header.get_zooms()[:3], 1.0])
     place[:3] *= millimetres
     values = values.transpose(2, 1, 0, *range(3, values.ndim))
@@ -265,7 +267,7 @@ for name, frame, kind in (
     add_nifti(os.path.join(data_path, name), *arguments, frame=frame, kind=kind)
 
 
-# Sheared axes: up to 1e-3 is taken out, about the middle, and from 1e-5 on a warning says so.
+# Sheared axes: a shear of up to 1e-3 is removed, about the middle of the volume. From 1e-5 on there is a warning.
 def say_shear(place, shape):
     lengths = numpy.linalg.norm(place[:3, :3], axis=0)
     columns = place[:3, :3] / lengths

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Small volumes, and programs that are called with them."""
+"""Makes, reads and writes small volumes, and calls programs."""
 import os
 import subprocess
 
@@ -11,7 +11,7 @@ from vtkmodules.vtkIOXML import vtkXMLImageDataReader, vtkXMLImageDataWriter
 
 def make_ball(dimensions=(25, 22, 19), spacing=(1.0, 1.5, 2.0), origin=(-3.0, 5.0, 7.0),
               direction=(1, 0, 0, 0, 1, 0, 0, 0, 1)):
-    """A bright ball in the middle of noise, as signed 16-bit integers."""
+    """Returns a volume of signed 16-bit integers: a bright ball in the middle, and noise around it."""
     image = vtkImageData()
     image.SetDimensions(*dimensions)
     image.SetSpacing(*spacing)
@@ -31,7 +31,7 @@ def make_ball(dimensions=(25, 22, 19), spacing=(1.0, 1.5, 2.0), origin=(-3.0, 5.
 
 
 def get_values(image, name=None):
-    """The values as an array [z, y, x]."""
+    """Returns the values as an array [z, y, x]."""
     data = image.GetPointData()
     array = data.GetArray(name) if name else data.GetScalars()
     return vtk_to_numpy(array).reshape(image.GetDimensions()[::-1])
@@ -63,9 +63,8 @@ def make_folder(parent, name):
 
 
 def call(*command, code=0, environment=None, quiet=False):
-    """Calls a program, checks its exit code (None: any), and returns what it wrote to both streams.
-    quiet: does not repeat it, since errors of VTK that are expected would count as a failure of the
-    test."""
+    """Calls a program, checks its exit code (None: any), and returns its standard output and standard error.
+    quiet: does not print them, because expected errors of VTK in the output would fail the test."""
     result = subprocess.run([str(word) for word in command], capture_output=True, text=True,
                             timeout=240, check=False, env=environment)
     print("$", *command)

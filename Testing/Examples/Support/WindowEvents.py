@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Events of a window, in the form in which vtkInteractorEventRecorder reads them."""
+"""Writes events of a window in the format that vtkInteractorEventRecorder reads."""
 
 
 class WindowEvents:
-    """Each event but keys is followed by a timer event: a step of the session."""
+    """Records events. A timer event, which is a step of the session, follows each event except those of keys."""
 
     def __init__(self):
-        self.place = (0, 0)  # of the cursor
+        self.place = (0, 0)  # position of the cursor
         self.text = "# StreamVersion 1.1\n"
         self.wait(1)
 
@@ -16,7 +16,7 @@ class WindowEvents:
         return self.wait(1)
 
     def stroke(self, *places, steps=4, shift=False):
-        """From place to place with the left button."""
+        """Drags from position to position with the left button."""
         self.mouse("LeftButtonPressEvent", places[0])
         for begin, end in zip(places, places[1:]):
             for step in range(1, steps + 1):
@@ -25,7 +25,7 @@ class WindowEvents:
         return self.mouse("LeftButtonReleaseEvent", places[-1], shift)
 
     def turn(self, begin, end, steps=4):
-        """The camera, with the right button."""
+        """Turns the camera with the right button."""
         self.mouse("RightButtonPressEvent", begin)
         for step in range(1, steps + 1):
             self.mouse("MouseMoveEvent", [a + (b - a) * step / steps for a, b in zip(begin, end)])

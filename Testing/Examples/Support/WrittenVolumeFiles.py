@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Run with the Python of "Testing/packages.sh readers": checks by SimpleITK, pynrrd and nibabel what
-deform-volume has written, by written.json. Usage: WrittenVolumeFiles.py FOLDER"""
+"""Reads with SimpleITK, pynrrd and nibabel the files that deform-volume has written, and compares with written.json.
+Usage, with the Python that "Testing/packages.sh readers" installs: WrittenVolumeFiles.py FOLDER"""
 import json
 import os
 import sys
@@ -39,8 +39,8 @@ def read_nifti(name, source, padding):
     assert header.get_xyzt_units()[0] == "mm"
     assert numpy.isnan(header["scl_slope"]) or header["scl_slope"] in (0, 1)
     if ".nii" in source:
-        # Both forms are kept, with their codes. Where VTK turns the order of slices, the q-form begins
-        # at the other end.
+        # The file has both forms of the source, with their codes. If VTK reverses the order of slices, the q-form
+        # starts at the last slice.
         old = nibabel.load(os.path.join(folder, source)).header
         for code in ("sform_code", "qform_code"):
             assert header[code] == old[code], (name, header[code], old[code])

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Run with the Python of "Testing/packages.sh readers": writes volumes that cannot be read, and
-wrong.json: [file, words of the error, further arguments]. Usage: WrongVolumeFiles.py FOLDER"""
+"""Writes volumes that cannot be read, and lists them in wrong.json: [file, words of the error, further arguments].
+Usage, with the Python that "Testing/packages.sh readers" installs: WrongVolumeFiles.py FOLDER"""
 import gzip
 import json
 import os
@@ -29,7 +29,7 @@ def shear(amount):
     return sheared
 
 
-# NIfTI: bytes of the header are changed.
+# NIfTI files with changed bytes in the header.
 def make_nifti(array=values, sform=place, qform=None, kind=nibabel.Nifti1Image, patches=()):
     image = kind(array, None, dtype=array.dtype)
     image.set_sform(sform, 0 if sform is None else 1)
@@ -89,7 +89,7 @@ for name, words, data, *arguments in (
     add(name, words, data, *arguments)
 
 
-# MetaImage: fields of the header are changed, or None to leave them out.
+# MetaImage files with changed fields in the header. The value None removes a field.
 def make_meta(data=values.tobytes(), **fields):
     header = {"ObjectType": "Image", "NDims": 3, "BinaryData": True, "ElementSpacing": "1 2 3",
               "DimSize": "7 6 5", "ElementType": "MET_SHORT", **fields}
@@ -142,7 +142,7 @@ for name, words, data, *arguments in (
     add(name, words, data, *arguments)
 
 
-# NRRD: as MetaImage.
+# NRRD files with changed fields in the header.
 def make_nrrd(data=values.tobytes(), **fields):
     header = {"type": "short", "dimension": 3, "space": "left-posterior-superior", "sizes": "7 6 5",
               "space directions": "(1,0,0) (0,2,0) (0,0,3)", "kinds": "domain domain domain",
