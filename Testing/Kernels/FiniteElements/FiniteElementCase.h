@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the tests of finite elements have in common.
+// Bodies, loads and helper functions that the tests of finite elements share.
 #ifndef FiniteElementCase_h
 #define FiniteElementCase_h
 
@@ -54,7 +54,7 @@ inline double LargestDifference(const std::vector<glm::dvec3>& a, const std::vec
   return largest;
 }
 
-/// What a call throws.
+/// Returns the message of the error that a call throws.
 template <typename Call>
 std::string GetError(Call&& call)
 {
@@ -74,7 +74,7 @@ inline glm::dmat3 MakeRotation(double angle, const glm::dvec3& axis)
   return glm::dmat3(glm::rotate(glm::dmat4(1.0), angle, glm::normalize(axis)));
 }
 
-/// The displacements of an affine map.
+/// Returns the displacements of an affine map.
 inline std::vector<glm::dvec3> MapPoints(
   const deformvolume::ElasticBody& body, const glm::dmat3& matrix, const glm::dvec3& offset)
 {
@@ -86,7 +86,7 @@ inline std::vector<glm::dvec3> MapPoints(
   return displacements;
 }
 
-/// A lattice of ten-node tetrahedra; isFixed: which corners are held.
+/// A lattice of ten-node tetrahedra. isFixed: the corners to fix.
 struct QuadraticLattice : LatticeBody
 {
   QuadraticLattice(const Place& nodes, double spacing,
@@ -102,7 +102,7 @@ struct QuadraticLattice : LatticeBody
   }
 };
 
-/// The nodes of which a function of the place is true.
+/// Returns the nodes at whose positions a function is true.
 template <typename Choose>
 std::vector<std::int32_t> FindNodes(const deformvolume::ElasticBody& body, Choose&& isChosen)
 {
@@ -117,8 +117,8 @@ std::vector<std::int32_t> FindNodes(const deformvolume::ElasticBody& body, Choos
   return nodes;
 }
 
-/// The forces of a traction, in N/m^2, on the faces whose corners lie where a function is true: all
-/// of it at the middles of edges, where they are straight.
+/// Returns the node forces of a traction, in N/m^2, on the faces whose corners satisfy a function.
+/// On straight faces, only mid-side nodes have forces.
 template <typename Choose>
 std::vector<glm::dvec3> LoadFaces(
   const deformvolume::ElasticBody& body, Choose&& isOnFace, const glm::dvec3& traction)
@@ -151,7 +151,7 @@ std::vector<glm::dvec3> LoadFaces(
   return forces;
 }
 
-/// The mean of displacements, each node by its share of the load.
+/// Returns the mean of displacements, weighted by the forces on the nodes.
 inline glm::dvec3 GetLoadedMean(
   const std::vector<glm::dvec3>& forces, const std::vector<glm::dvec3>& displacements)
 {

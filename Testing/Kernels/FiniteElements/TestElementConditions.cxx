@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where finite elements are held: displaced nodes, planes in which nodes slide, and what is enough.
+// Supports of finite elements: prescribed displacements, planes in which nodes slide, and which
+// supports suffice.
 #include "Error.h"
 #include "FiniteElementCase.h"
 
@@ -24,7 +25,7 @@ QuadraticLattice MakeCube(const std::function<bool(const Place&)>& isFixed = nul
   return QuadraticLattice({ 3, 3, 3 }, 0.5, MakeMaterial(1e4, 0.45), isFixed);
 }
 
-// The nodes of a face slide; those of two faces along their edge.
+// Makes the nodes of a face slide in its plane. Nodes of two faces slide along their common edge.
 void SlideFace(ElasticBody& body, int axis)
 {
   body.SlidingNormals.resize(body.Points.size(), glm::dvec3(0.0));
@@ -57,7 +58,7 @@ TEST(ElementConditions, Misuse)
   EXPECT_EQ(getError(),
     "2 nodes have contradictory conditions: they are fixed, and have a sliding normal. The first "
     "of them is node 3. Set one of the two to 0.");
-  // A node with two normals is one node.
+  // A node with two normals counts once.
   body.SecondSlidingNormals.assign(body.Points.size(), glm::dvec3(0.0));
   body.SecondSlidingNormals[2].y = 1.0;
   body.SecondSlidingNormals[4].y = 1.0;
@@ -78,7 +79,7 @@ TEST(ElementConditions, Misuse)
     "The prescribed displacement of node 7 is not finite.");
 }
 
-// Fixed nodes go where they are told, and back.
+// Fixed nodes move to prescribed displacements, and back.
 TEST(ElementConditions, FixedNodesAreDisplaced)
 {
   ElasticBody body = MakeCube().Body;
@@ -102,7 +103,7 @@ TEST(ElementConditions, FixedNodesAreDisplaced)
   EXPECT_LT(LargestOf(model.GetDisplacements()), 1e-10);
 }
 
-// Three planes hold a body of which no node is fixed; two do not.
+// Three planes hold a body without fixed nodes; two planes do not.
 TEST(ElementConditions, ThreePlanesHoldABody)
 {
   QuadraticLattice cube = MakeCube();
@@ -112,7 +113,7 @@ TEST(ElementConditions, ThreePlanesHoldABody)
   FiniteElementModel model;
   model.SetBody(body);
   EXPECT_NE(GetError([&] { model.Solve({}); }).find("No constraints"), std::string::npos);
-  // Nor where the motion that is left lies along no axis.
+  // Two planes do not suffice either if the remaining motion is not along an axis.
   ElasticBody turned = body;
   const glm::dmat3 turn = MakeRotation(0.7, { 1.0, 0.5, -0.8 });
   for (auto* vectors : { &turned.Points, &turned.SlidingNormals, &turned.SecondSlidingNormals })
@@ -128,7 +129,7 @@ TEST(ElementConditions, ThreePlanesHoldABody)
   model.SetBody(body);
   EquilibriumRequest request = MakeConverged();
   request.Limits.RelativeTolerance = 1e-10;
-  // Uniaxial tension of 1000 Pa, small enough that E and nu tell what comes.
+  // Uniaxial tension of 1e-3 Pa, small enough for linear elasticity.
   request.Loads.Forces = LoadFaces(
     body, [](const glm::dvec3& point) { return point.z > 1.0 - 1e-9; }, glm::dvec3(0, 0, 1e-3));
   const EquilibriumReport report = model.Solve(request);
@@ -137,7 +138,7 @@ TEST(ElementConditions, ThreePlanesHoldABody)
   const std::vector<glm::dvec3> wanted = MapPoints(
     body, glm::dmat3(1 - 0.45e-7, 0, 0, 0, 1 - 0.45e-7, 0, 0, 0, 1 + 1e-7), glm::dvec3(0.0));
   EXPECT_LT(LargestDifference(model.GetDisplacements(), wanted), 1e-7 * 1e-5);
-  // Planes take forces along their normals only: those of the load.
+  // Reactions of planes act along their normals only, and balance the load.
   glm::dvec3 sum(0.0);
   double friction = 0.0;
   const std::vector<glm::dvec3> forces = model.GetForces();
@@ -155,7 +156,7 @@ TEST(ElementConditions, ThreePlanesHoldABody)
   EXPECT_LT(LargestOf(sum - glm::dvec3(0, 0, -1e-3)), 1e-9);
 }
 
-// Planes are the same whatever the length of their normals.
+// The length of normals does not matter.
 TEST(ElementConditions, NormalsOfAnyLength)
 {
   QuadraticLattice cube = MakeCube();
@@ -170,7 +171,7 @@ TEST(ElementConditions, NormalsOfAnyLength)
   EXPECT_TRUE(model.Solve(request).IsConverged);
   const std::vector<glm::dvec3> wanted = model.GetDisplacements();
   EXPECT_GT(LargestOf(wanted), 0.01);
-  // The squares of these are 0, or overflow.
+  // The squares of these lengths underflow to 0, or overflow.
   for (const double length : { std::numeric_limits<double>::denorm_min(), 1e-200, -1e200, 1e308 })
   {
     SCOPED_TRACE(length);
@@ -188,7 +189,7 @@ TEST(ElementConditions, NormalsOfAnyLength)
   }
 }
 
-// Two planes that are parallel, but for what coordinates are rounded, are one.
+// Two planes that are parallel up to the rounding of coordinates count as one.
 TEST(ElementConditions, NearlyParallelPlanes)
 {
   QuadraticLattice cube = MakeCube([](const Place& place) { return place[2] == 0; });
@@ -243,8 +244,9 @@ TEST(ElementConditions, PlanesAddedLater)
   }
 }
 
-// In an oblique plane, at large strain: nodes stay in it, a handle moves them within it, and no
-// force but along the normal holds them. With levels, which know nothing of planes.
+// An oblique plane at large strain. Nodes stay in the plane, a handle moves them within it, and
+// forces act only along the normal. Bodies with and without a multigrid hierarchy, which ignores
+// planes.
 TEST(ElementConditions, NodesSlideInAnObliquePlane)
 {
   for (const std::int32_t cells : { 2, 6 })
@@ -289,7 +291,7 @@ TEST(ElementConditions, NodesSlideInAnObliquePlane)
   }
 }
 
-// A body of two pieces, of which one is held by planes and the other by nothing.
+// A body of two pieces. Planes hold one of them, and nothing holds the other.
 TEST(ElementConditions, PiecesThatSlide)
 {
   QuadraticLattice cube = MakeCube();

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Finite elements beside closed forms, and beside the same elements in other programs.
+// Finite elements, compared with closed-form solutions and with the same elements in other
+// programs.
 //
-// "By numpy": found with a numpy program that has this element, and that agrees with CalculiX in
-// C3D10 elements to 4e-7 wherever both have the same law. "Converged": by quadratic hexahedra with
-// a linear pressure on finer and finer meshes.
+// "By numpy": computed by a numpy program with this element. It agrees with CalculiX in C3D10
+// elements to 4e-7 in all cases with the same material law. "Converged": computed by quadratic
+// hexahedra with linear pressure on successively refined meshes.
 #include "EquilibriumSolver.h"
 #include "FiniteElementCase.h"
 #include "Measured.h"
@@ -35,8 +36,8 @@ bool IsAt(double value, double wanted)
   return std::abs(value - wanted) < 1e-9;
 }
 
-// What a small load causes: the first step of Newton's method, solved to rounding. Poisson ratios
-// may be larger than those that a model takes.
+// The response to a small load: the first step of Newton's method, solved to rounding. Poisson
+// ratios may exceed the limit of models.
 struct SmallStrain
 {
   explicit SmallStrain(const ElasticBody& body)
@@ -72,8 +73,8 @@ std::vector<glm::dvec3> LoadEnd(const ElasticBody& beam, const glm::dvec3& tract
     beam, [](const glm::dvec3& point) { return IsAt(point.z, 10.0); }, traction);
 }
 
-// The force on the upper face of a cube of size 1, E = 1, both faces of which are bonded to plates,
-// one of which moves along z.
+// The force on the upper face of a cube of size 1, E = 1. Both faces are bonded to plates, and the
+// upper plate moves along z.
 double PressCube(std::int32_t cells, double poissonRatio, double move, bool isLarge)
 {
   const QuadraticLattice cube({ cells + 1, cells + 1, cells + 1 }, 1.0 / cells,
@@ -109,7 +110,8 @@ std::string MakeName(double poissonRatio, std::int32_t cells)
   return name.str();
 }
 
-// How a number was found here, with its share of another one, which it is to be near.
+// Records and checks a value. byNumpy: the value for the same mesh. converged, percent: the
+// converged value, and the allowed difference from it.
 void Expect(double value, double byNumpy, double converged, double percent, const std::string& name)
 {
   RecordMeasured(name, value);
@@ -132,7 +134,7 @@ TEST(FiniteElementBeams, RigidMotion)
       MapPoints(lattice.Body, MakeRotation(2.0, { 1.0, 2.0, -0.5 }), glm::dvec3(0.7, -0.3, 1.1)));
     const double force = LargestOf(model.GetForces());
     RecordMeasured("force", force);
-    // Rounding of E h^2 and of positions of some ten edges.
+    // The rounding errors of E h^2 and of positions of about ten edges.
     EXPECT_LT(force, 5e-11);
   }
 }
@@ -184,9 +186,9 @@ TEST(FiniteElementBeams, Patch)
 namespace
 {
 
-// A state of the stable neo-Hookean law of E = 10 kPa that is the same everywhere: the stretch of
-// one axis, or of two, that are pulled with a nominal stress in Pa, and that of the free ones. In
-// closed form, but for the stretch of the free ones, which is a root of the stress across.
+// A homogeneous state of the stable neo-Hookean law with E = 10 kPa: one axis or two axes are
+// stretched by a nominal stress in Pa, and the other axes are free. The solution has a closed form,
+// except for the stretch of the free axes, which is the root of the transverse stress.
 struct HomogeneousState
 {
   double PoissonRatio;
@@ -195,8 +197,8 @@ struct HomogeneousState
   double Free;
 };
 
-// Pulls a cube of size 1 at opposite faces. One node is fixed; those of two faces slide, so that
-// the cube does not turn, which it would do under forces that press it.
+// Pulls a cube of size 1 at opposite faces. One node is fixed, and the nodes of two faces slide.
+// This prevents rotations, which compressive forces would cause.
 void ExpectHomogeneous(const HomogeneousState& state, bool areTwo)
 {
   QuadraticLattice cube({ 3, 3, 3 }, 0.5, MakeMaterial(1e4, state.PoissonRatio),
@@ -232,7 +234,7 @@ void ExpectHomogeneous(const HomogeneousState& state, bool areTwo)
   const glm::dvec3 stretches(state.Stretch, areTwo ? state.Stretch : state.Free, state.Free);
   const std::vector<glm::dvec3> wanted = MapPoints(
     body, glm::dmat3(stretches.x, 0, 0, 0, stretches.y, 0, 0, 0, stretches.z), glm::dvec3(0.0));
-  // The stretches of the free axes have seven digits.
+  // The stretches of the free axes are given with seven digits.
   const double error = LargestDifference(model.GetDisplacements(), wanted);
   RecordMeasured("error", error);
   EXPECT_LT(error, 1e-6) << state.PoissonRatio << " " << state.Stretch;
@@ -284,7 +286,7 @@ TEST(FiniteElementBeams, Equibiaxial)
   }
 }
 
-// Simple shear g of the same law: s12 = mu g, s11 = mu g^2, and nothing else, exactly.
+// Simple shear g of the same law: s12 = mu g, s11 = mu g^2, and all other stresses are exactly 0.
 TEST(FiniteElementBeams, SimpleShear)
 {
   for (const double poissonRatio : { 0.3, 0.45, 0.49 })
@@ -311,8 +313,9 @@ TEST(FiniteElementBeams, SimpleShear)
   }
 }
 
-// Cauchy stresses of the corotational law in a simple shear of 0.5 and a stretch across its plane.
-// Lambda acts on tr(S - 1) up to 4 mu, and the part above, as that of 0.49, on J - 1.
+// Cauchy stresses of the corotational law in a simple shear of 0.5 and a stretch normal to its
+// plane. Lambda up to 4 mu acts on tr(S - 1). The part above, as for a Poisson ratio of 0.49, acts
+// on J - 1.
 TEST(FiniteElementBeams, CorotationalShear)
 {
   for (const double poissonRatio : { 0.3, 0.49 })
@@ -342,7 +345,7 @@ TEST(FiniteElementBeams, CorotationalShear)
         EXPECT_NEAR(result.Stress[1], stress[1][1] + ofVolume, 1e-7);
         EXPECT_NEAR(result.Stress[3], stress[1][0], 1e-7);
         EXPECT_NEAR(result.Stress[2], 2.0 * mu * (stretch - 1.0) + lambda * trace + ofVolume, 1e-7);
-        // What Documents/physics.md says.
+        // The values in Documents/physics.md.
         if (stretch == 1.0 && poissonRatio == 0.49)
         {
           EXPECT_NEAR(result.Stress[3], 1930.0, 5.0);
@@ -353,7 +356,7 @@ TEST(FiniteElementBeams, CorotationalShear)
   }
 }
 
-// The deflection of a slender beam by a small force, as a part of that of Euler and Bernoulli.
+// The deflection of a slender beam by a small force, divided by that of Euler-Bernoulli theory.
 TEST(FiniteElementBeams, Cantilever)
 {
   struct Row
@@ -379,7 +382,7 @@ TEST(FiniteElementBeams, Cantilever)
   }
 }
 
-// A cube between bonded plates that are pulled apart a little: force / (E A strain).
+// A cube between bonded plates that are pulled apart slightly: force / (E A strain).
 TEST(FiniteElementBeams, BondedCube)
 {
   struct Row
@@ -397,7 +400,7 @@ TEST(FiniteElementBeams, BondedCube)
   }
 }
 
-// Cook's membrane: a tapered panel, held at its left side and sheared at its right one.
+// Cook's membrane: a tapered panel, fixed at its left side and sheared at its right side.
 TEST(FiniteElementBeams, Cook)
 {
   for (const auto& [poissonRatio, byNumpy, converged] :
@@ -422,7 +425,7 @@ TEST(FiniteElementBeams, Cook)
   }
 }
 
-// A beam whose upper half is a hundred times as stiff as the lower one.
+// A beam with two layers. The upper layer is a hundred times as stiff as the lower one.
 TEST(FiniteElementBeams, Bilayer)
 {
   for (const auto& [cells, byNumpy] :
@@ -447,8 +450,8 @@ TEST(FiniteElementBeams, Bilayer)
   }
 }
 
-// A force that bends a beam far, P L^2 / EI = 5: how far it goes sideways and how much shorter it
-// becomes, by its length.
+// A force that bends a beam far, P L^2 / EI = 5: lateral displacement and shortening of its end,
+// divided by its length.
 TEST(FiniteElementBeams, BentCantilever)
 {
   struct Row
@@ -479,15 +482,15 @@ TEST(FiniteElementBeams, BentCantilever)
   }
 }
 
-// The bonded cube, pressed by a fifth of its height.
+// The bonded cube, compressed by a fifth of its height.
 TEST(FiniteElementBeams, PressedCube)
 {
   Expect(PressCube(4, 0.49, -0.2, true), -0.32087, -0.300, 8.0, MakeName(0.49, 4));
   Expect(PressCube(8, 0.49, -0.2, true), -0.31015, -0.300, 4.0, MakeName(0.49, 8));
 }
 
-// Under its own weight a bar becomes longer by rho g L^2 / 2E, as long as strains are small. Where
-// it becomes thinner, too, its end that is held cannot, which matters the less the longer it is.
+// Under its own weight a bar gets longer by rho g L^2 / 2E, if strains are small. Its fixed end
+// cannot get thinner. This matters less for longer bars.
 TEST(FiniteElementBeams, HangingBar)
 {
   for (const double poissonRatio : { 0.0, 0.3 })
@@ -513,10 +516,10 @@ TEST(FiniteElementBeams, HangingBar)
   }
 }
 
-// A straight beam that bends under its weight does not go sideways.
+// A straight beam that bends under its weight must not move sideways.
 TEST(FiniteElementBeams, NoDrift)
 {
-  // With an even number of cells the lattice is its own mirror image.
+  // With an even number of cells the lattice is symmetric.
   QuadraticLattice beam = MakeBeam(2, 0.3);
   EquilibriumRequest request = MakeConverged();
   request.Loads.Gravity = glm::dvec3(-1e-6, 0.0, 0.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Finite elements: misuse, and what stays of a call.
+// Finite elements: misuse, aborts, frozen pieces, sequences of frames, and inverted tetrahedra.
 #include "FiniteElementCase.h"
 #include "FiniteElements.h"
 #include "Measured.h"
@@ -23,7 +23,7 @@ using Place = LatticeBody::Place;
 
 constexpr double NoNumber = std::numeric_limits<double>::quiet_NaN();
 
-// The corners of a block that is held at one end, so many of them.
+// A block of linear tetrahedra that is fixed at one end. nodes: number of nodes on each axis.
 LatticeBody MakeLinearBlock(const Place& nodes, double poissonRatio = 0.3)
 {
   LatticeBody lattice(nodes, 0.01, MakeMaterial(1e4, poissonRatio));
@@ -31,7 +31,7 @@ LatticeBody MakeLinearBlock(const Place& nodes, double poissonRatio = 0.3)
   return lattice;
 }
 
-// The block.
+// The same block with mid-side nodes.
 LatticeBody MakeBlock(const Place& nodes, double poissonRatio = 0.3)
 {
   LatticeBody lattice = MakeLinearBlock(nodes, poissonRatio);
@@ -39,7 +39,7 @@ LatticeBody MakeBlock(const Place& nodes, double poissonRatio = 0.3)
   return lattice;
 }
 
-// Handles at the other end.
+// Returns handles at the other end.
 std::vector<HeldNode> PullEnd(const LatticeBody& lattice, const glm::dvec3& displacement)
 {
   const double end = lattice.Spacing * (lattice.Nodes[2] - 1);
@@ -54,7 +54,7 @@ std::vector<HeldNode> PullEnd(const LatticeBody& lattice, const glm::dvec3& disp
   return held;
 }
 
-// Two blocks of 3 x 3 x 3 nodes that touch nowhere, of which the first is held.
+// Two separate blocks of 3 x 3 x 3 nodes. The first block is held.
 LatticeBody MakeTwoPieces()
 {
   LatticeBody lattice = MakeLinearBlock({ 3, 3, 3 });
@@ -102,7 +102,7 @@ TEST(FiniteElements, Misuse)
   loose.Fixed.clear();
   model.SetBody(loose);
   EXPECT_NE(GetError([&] { model.Solve({}); }).find("No constraints"), std::string::npos);
-  // Two nodes, and three on a line, do not hold it either.
+  // Two nodes, or three nodes on a line, do not hold the body either.
   for (const int number : { 1, 2, 3 })
   {
     EquilibriumRequest request;
@@ -176,7 +176,7 @@ TEST(FiniteElements, FrozenPiece)
     const auto node = static_cast<std::size_t>(number);
     EXPECT_EQ(model.GetDisplacements()[node], displacements[node]);
   }
-  // Held by three nodes it moves.
+  // With three held nodes, the second piece is held as well.
   for (const std::int32_t node : { 27, 28, 30 })
   {
     request.Held.push_back({ node, glm::dvec3(0.0) });
@@ -188,7 +188,7 @@ TEST(FiniteElements, FrozenPiece)
 namespace
 {
 
-// Rest lengths and lengths of the edges of a tetrahedron agree: it has moved like a rigid body.
+// Checks that the edges of a tetrahedron have their rest lengths: it moves like a rigid body.
 void ExpectRigid(const FiniteElementModel& model, const ElasticBody& body, std::size_t tetrahedron)
 {
   const Tetrahedron& nodes = body.Tetrahedra[tetrahedron];
@@ -205,7 +205,7 @@ void ExpectRigid(const FiniteElementModel& model, const ElasticBody& body, std::
   }
 }
 
-// Adds a tetrahedron with some nodes of a body, and others beyond its end on z.
+// Adds a tetrahedron with some nodes of a body, and with new nodes beyond its end on z.
 void AttachTetrahedron(LatticeBody& lattice, const std::vector<std::int32_t>& nodes)
 {
   ElasticBody& body = lattice.Body;
@@ -231,8 +231,9 @@ void AttachTetrahedron(LatticeBody& lattice, const std::vector<std::int32_t>& no
 
 } // namespace
 
-// A tetrahedron that hangs on a node, or on an edge, of a body: the body bends as without it, and
-// it goes with what it hangs on. Another one that hangs on the first does, too.
+// A tetrahedron that shares only a node or an edge with a body. The body bends as without the
+// tetrahedron, which follows its motion. Another tetrahedron that shares nodes with the first one
+// follows, too.
 TEST(FiniteElements, PiecesOnANodeOrAnEdge)
 {
   const LatticeBody alone = MakeLinearBlock({ 3, 3, 5 });
@@ -271,7 +272,7 @@ TEST(FiniteElements, PiecesOnANodeOrAnEdge)
       ExpectRigid(other, lattice.Body, first);
     }
     ExpectRigid(other, lattice.Body, first + 1);
-    // With loads and live it is the same.
+    // Also with loads, and in interactive mode.
     request.Loads.Gravity = glm::dvec3(0.0, -9.81, 0.0);
     EXPECT_TRUE(other.Solve(request).IsConverged);
     request.Mode = EquilibriumMode::Interactive;
@@ -282,8 +283,8 @@ TEST(FiniteElements, PiecesOnANodeOrAnEdge)
   }
 }
 
-// Two blocks with an edge in common: a hinge. The second one turns with a handle on it, without a
-// force; without the handle it keeps its shape.
+// Two blocks with a common edge: a hinge. With a handle on it, the second block rotates without
+// forces. Without the handle it keeps its shape.
 TEST(FiniteElements, HingeWithAHandle)
 {
   LatticeBody lattice = MakeLinearBlock({ 3, 3, 3 });
@@ -328,7 +329,7 @@ TEST(FiniteElements, HingeWithAHandle)
   EXPECT_EQ(report.NumberOfFrozenPieces, 1);
   EXPECT_EQ(report.NumberOfFollowingPieces, 1);
   EXPECT_LT(LargestOf(model.GetDisplacements()), 0.01);
-  // Nodes in the middle of edges lie beside the line of a hinge, by what floats are rounded.
+  // Mid-side nodes lie beside the line of a hinge because of the rounding of floats.
   ElasticBody rounded = body;
   const glm::dvec3 line = body.Points[nodes - 1];
   for (glm::dvec3& point : rounded.Points)
@@ -345,7 +346,7 @@ TEST(FiniteElements, HingeWithAHandle)
   EXPECT_LT(LargestOf(model.GetDisplacements()), 0.01);
   model.SetBody(body);
 
-  // The line of the hinge stays nearly where it is: the far edge goes round it.
+  // The line of the hinge hardly moves, and the far edge rotates about it.
   request.Loads.Gravity = glm::dvec3(0.0);
   model.Reset();
   const glm::dvec3 hinge = body.Points[nodes - 1];
@@ -363,7 +364,8 @@ TEST(FiniteElements, HingeWithAHandle)
   EXPECT_LT(report.StrainEnergy, 1e-9);
 }
 
-// More pieces than the coarsest level has groups, held by the nodes of one side each.
+// The body has more pieces than the coarsest level has aggregates. Each piece is held by the nodes
+// of one side.
 TEST(FiniteElements, ManyPieces)
 {
   LatticeBody lattice = MakeLinearBlock({ 3, 3, 3 });
@@ -405,7 +407,8 @@ TEST(FiniteElements, ManyPieces)
   }
 }
 
-// Free nodes that are connected with none: each is a group that cannot turn.
+// Free nodes that are not connected to other free nodes: each aggregate is a single node, which has
+// no rotations.
 TEST(FiniteElements, UnconnectedFreeNodes)
 {
   ElasticBody body;
@@ -428,7 +431,7 @@ TEST(FiniteElements, UnconnectedFreeNodes)
   one.Fixed.resize(4);
   one.Tetrahedra.resize(1);
   FiniteElementModel model;
-  // The nodes in the middle of edges are held.
+  // Fixes the mid-side nodes.
   const auto addMidSides = [](ElasticBody& target)
   {
     AddMidSideNodes(target);
@@ -442,7 +445,7 @@ TEST(FiniteElements, UnconnectedFreeNodes)
   addMidSides(one);
   single.SetBody(one);
   EXPECT_TRUE(single.Solve(request).IsConverged);
-  // Corners bear a twentieth less than nothing of a weight.
+  // A corner gets -1/20 of a weight, so it moves up.
   EXPECT_GT(single.GetDisplacements()[3].y, 0.0);
   for (std::size_t piece = 0; piece < pieces; ++piece)
   {
@@ -463,7 +466,7 @@ TEST(FiniteElements, Divergence)
   request.Held = PullEnd(lattice, glm::dvec3(1e200, 0.0, 0.0));
   EXPECT_NE(GetError([&] { model.Solve(request); }).find("not a number"), std::string::npos);
   EXPECT_EQ(model.GetDisplacements(), before);
-  // It goes on from there, as a body does that begins there.
+  // The next solution equals that of a body that starts from the same displacements.
   FiniteElementModel other;
   other.SetBody(lattice.Body);
   other.SetDisplacements(before);
@@ -490,7 +493,8 @@ TEST(FiniteElements, Abort)
     EXPECT_THROW(model.Solve(request), Aborted);
     EXPECT_EQ(LargestOf(model.GetDisplacements()), 0.0);
   }
-  // Asked every few milliseconds; the median, since machines do other things, too.
+  // The callback is called every few milliseconds. The median is tested, as other processes may
+  // interrupt the test.
   using Clock = std::chrono::steady_clock;
   std::vector<double> pauses;
   Clock::time_point last = Clock::now();
@@ -516,7 +520,7 @@ TEST(FiniteElements, Abort)
 namespace
 {
 
-// Loops of so many threads, and one that goes backwards.
+// Loops with a given number of threads, and a loop in reverse order.
 template <int Threads>
 void RunOnThreads(
   std::int64_t first, std::int64_t last, std::int64_t grain, const ParallelBody& body)
@@ -554,7 +558,7 @@ std::vector<glm::dvec3> RunFrames(const LatticeBody& lattice, ParallelLoop loop)
 
 TEST(FiniteElements, Threads)
 {
-  // The second one is large enough for several levels.
+  // The second body is large enough for several levels.
   for (const Place& nodes : { Place{ 3, 3, 3 }, Place{ 6, 7, 8 } })
   {
     const LatticeBody lattice = MakeBlock(nodes, 0.45);
@@ -586,15 +590,15 @@ TEST(FiniteElements, WarmFramesReachTheColdSolution)
     FiniteElementModel cold;
     cold.SetBody(lattice.Body);
     EXPECT_TRUE(cold.Solve(request).IsConverged);
-    // The frames leave a hundredth of the force.
+    // The frames leave a residual of a hundredth of the force.
     EXPECT_LT(LargestDifference(warm.GetDisplacements(), cold.GetDisplacements()), 2e-3 * length);
     EXPECT_TRUE(warm.Solve(request).IsConverged);
     EXPECT_LT(LargestDifference(warm.GetDisplacements(), cold.GetDisplacements()), 1e-5 * length);
   }
 }
 
-// A handle that turns and jumps: frames leave no more than they say, and those without a motion
-// after it come nearer.
+// A handle that rotates and jumps. Residuals of frames are within the reported tolerance, and
+// frames without motion reduce them.
 TEST(FiniteElements, FramesOfAJumpingHandle)
 {
   const Place nodes{ 6, 6, 8 };
@@ -628,7 +632,7 @@ TEST(FiniteElements, FramesOfAJumpingHandle)
   EXPECT_LT(LargestDifference(frames, model.GetDisplacements()), 1e-3 * length);
 }
 
-// Where the body bends far the tangent of the step before does not serve.
+// If the body bends far, the tangent of the previous frame cannot be reused.
 TEST(FiniteElements, FramesOfABendingBody)
 {
   const LatticeBody lattice = MakeBlock({ 3, 3, 20 });
@@ -644,7 +648,7 @@ TEST(FiniteElements, FramesOfABendingBody)
   EXPECT_LE(frames, 10);
 }
 
-// What has moved a handle before says where it goes now: hardly anything is left to solve.
+// Earlier motions of a handle predict its next motion, so few iterations are needed.
 TEST(FiniteElements, FramesOfAMovingHandle)
 {
   const Place nodes{ 6, 6, 8 };
@@ -676,7 +680,7 @@ TEST(FiniteElements, Materials)
   FiniteElementModel model;
   model.SetBody(lattice.Body);
   model.Solve(request);
-  // A stiff half, and then one body of it from the beginning.
+  // Make one half stiff. A new body with these materials has the same equilibrium.
   std::vector<ElasticMaterial> materials(lattice.Body.Tetrahedra.size(), MakeMaterial(1e4, 0.4));
   for (std::size_t t = 0; t < materials.size() / 2; ++t)
   {
@@ -694,7 +698,7 @@ TEST(FiniteElements, Materials)
 namespace
 {
 
-// Puts the free nodes of a block anywhere within 0.6 of its thickness from where they are.
+// Moves the free nodes of a block at random, within 0.6 of its thickness.
 void Scramble(const LatticeBody& lattice, std::uint32_t seed, FiniteElementModel& model)
 {
   const double largest = 0.6 * lattice.Spacing * (lattice.Nodes[0] - 1);
@@ -719,7 +723,7 @@ std::int64_t CountInverted(const LatticeBody& lattice, const FiniteElementModel&
 
 } // namespace
 
-// Nearly all tetrahedra are inside out somewhere.
+// Nearly all tetrahedra are inverted at a Gauss point.
 TEST(FiniteElements, RandomPlacements)
 {
   const LatticeBody lattice = MakeBlock({ 3, 3, 3 });
@@ -749,7 +753,7 @@ TEST(FiniteElements, RandomPlacements)
   RecordMeasured("error", largestError);
 }
 
-// Back to where the body is in equilibrium, which is bent here, with its end turned by 57 degrees.
+// The body returns to a bent equilibrium. Its end is rotated by 57 degrees.
 TEST(FiniteElements, RandomPlacementsOfABentBody)
 {
   const LatticeBody lattice = MakeBlock({ 3, 3, 5 });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Guesses from the last solutions of a system.
+// Guesses from the latest solutions of a linear system.
 #include "FiniteElementCase.h"
 #include "FiniteElements.h"
 #include "RowParts.h"
@@ -18,7 +18,7 @@ namespace
 
 using Vectors = std::vector<glm::dvec3>;
 
-// The tangent of a block, of whose nodes those at one end are not free.
+// The tangent of a block. The nodes at one end are not free.
 struct System
 {
   explicit System(double modulus = 1e4)
@@ -53,7 +53,7 @@ struct System
     this->Matrix.Multiply(0, vector.size(), this->IsFree.data(), vector.data(), product.data());
     return product;
   }
-  // Takes up a solution without a residual.
+  // Adds a solution with the residual 0.
   void Add(SolutionHistory& history, const Vectors& solution)
   {
     const Vectors right = this->Multiply(solution);
@@ -107,14 +107,14 @@ TEST(SolutionHistory, StartsFromCombinations)
     solutions.push_back(system.MakeVector(random));
     system.Add(history, solutions.back());
   }
-  // Of the last three.
+  // A combination of the last three solutions.
   const Vectors wanted =
     Combine(1.0, Combine(0.5, solutions[1], -2.0, solutions[2]), 3.0, solutions[3]);
   history.Guess(
     system.Time, system.Matrix, system.IsFree, system.Multiply(wanted), guess, residual);
   EXPECT_LT(Length(Combine(1.0, guess, -1.0, wanted)), 1e-12 * Length(wanted));
   EXPECT_LT(Length(residual), 1e-12 * Length(system.Multiply(wanted)));
-  // The first one is forgotten: what is left is orthogonal to the others.
+  // The first solution was discarded: the residual is orthogonal to the other solutions.
   const Vectors rest = system.Multiply(solutions[0]);
   history.Guess(system.Time, system.Matrix, system.IsFree, rest, guess, residual);
   EXPECT_GT(Length(residual), 0.1 * Length(rest));
