@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Mass-spring dynamics: misuse, and motions that have a closed form.
+// Mass-spring dynamics: misuse, and motions that have a closed-form solution.
 #include "LatticeBody.h"
 #include "MassSpringModel.h"
 #include "Measured.h"
@@ -62,7 +62,7 @@ MassSpringRequest For(double duration, double timeStep = 0.0, double damping = 0
   return request;
 }
 
-// One with three fixed nodes and a fourth that three springs hold, each along an axis.
+// A body with three fixed nodes. Three springs hold the fourth node, one along each axis.
 ElasticBody MakePendulum()
 {
   ElasticBody body;
@@ -73,7 +73,8 @@ ElasticBody MakePendulum()
   return body;
 }
 
-// Of the first node along x, by linear interpolation between the steps where it passes 0 upwards.
+// Measures the period of the first node along x, from the times when it passes 0 upwards.
+// Interpolates linearly between steps.
 double MeasurePeriod(MassSpringModel& model, double timeStep, int periods)
 {
   double first = -1.0;
@@ -140,7 +141,7 @@ TEST(MassSpring, InvalidBodies)
   EXPECT_THROW(model.Advance(For(1.0)), Error) << "nothing moves";
 }
 
-// Springs are a material on fifths of equal cubes only.
+// Only tetrahedra that are fifths of equal cubes are accepted.
 TEST(MassSpring, TetrahedraOfOtherShapesAreAnError)
 {
   MassSpringModel model;
@@ -168,7 +169,7 @@ TEST(MassSpring, TetrahedraOfOtherShapesAreAnError)
   {
     refuses(MakeLatticeBody(SmallLattice, { Spacing, Spacing, factor * Spacing }), 0);
   }
-  // The last node belongs to the last cell only, of which one or all tetrahedra have it.
+  // The last node belongs only to the last cell: to one or to all of its tetrahedra.
   ElasticBody moved = MakeSmallBody();
   moved.Points.back().x += 0.003 * Spacing;
   const auto last = static_cast<std::int32_t>(moved.Points.size() - 1);
@@ -177,7 +178,7 @@ TEST(MassSpring, TetrahedraOfOtherShapesAreAnError)
   refuses(moved, static_cast<std::size_t>(first - moved.Tetrahedra.begin()));
   moved.Points.back().x -= 0.0025 * Spacing;
   EXPECT_EQ(getError(moved), "");
-  // Smaller cubes beside the others.
+  // Smaller cubes beside the larger ones.
   ElasticBody two = MakeSmallBody();
   const auto count = static_cast<std::int32_t>(two.Points.size());
   const std::size_t before = two.Tetrahedra.size();
@@ -195,7 +196,7 @@ TEST(MassSpring, TetrahedraOfOtherShapesAreAnError)
     two.Tetrahedra.push_back(tetrahedron);
   }
   refuses(two, before);
-  // The lengths of a corner's edges, which meet elsewhere: three of them make a face.
+  // Edge lengths of a corner tetrahedron, but in another arrangement: three of them form a face.
   ElasticBody pyramid;
   const double height = Spacing * std::sqrt(2.0 - 1.0 / 3.0);
   pyramid.Points = { { 0, 0, 0 }, { Spacing, 0, 0 },
@@ -211,7 +212,7 @@ TEST(MassSpring, RotatedAndIncompleteLattices)
   const glm::dvec3 axis = glm::normalize(glm::dvec3(1.0, 2.0, 3.0));
   for (glm::dvec3& point : body.Points)
   {
-    // By 0.7 rad round an axis (Rodrigues), and away from the origin.
+    // Rotates by 0.7 rad about an axis (Rodrigues' formula), and translates.
     point = glm::dvec3(4.0, -2.0, 1.0) + point * std::cos(0.7) +
       glm::cross(axis, point) * std::sin(0.7) + axis * glm::dot(axis, point) * (1 - std::cos(0.7));
   }
@@ -354,7 +355,7 @@ TEST(MassSpring, PeriodOfASpring)
   const ElasticBody body = MakePendulum();
   MassSpringModel model;
   model.SetBody(body);
-  // A quarter of a cube's volume; springs of a quarter of those of the lattice.
+  // A quarter of the mass of the tetrahedron; springs with a quarter of the stiffness in a lattice.
   const double mass = GetMasses(body).front();
   const double stiffness = body.Materials.front().GetShearModulus() * Spacing / 4.0;
   const double period = 2.0 * Pi * std::sqrt(mass / stiffness);
@@ -518,7 +519,7 @@ TEST(MassSpring, MirroredTetrahedra)
 
 TEST(MassSpring, SplitNodesKeepTheirState)
 {
-  // Two tetrahedra that share a face, and then share nothing.
+  // Two tetrahedra that share a face, and share no node after the split.
   ElasticBody body;
   body.Points = { { 0, 0, 0 }, { Spacing, 0, 0 }, { 0, Spacing, 0 }, { 0, 0, Spacing },
     { Spacing, Spacing, Spacing } };
@@ -541,7 +542,7 @@ TEST(MassSpring, SplitNodesKeepTheirState)
   }
   EXPECT_EQ(model.GetDisplacements(), displacements);
   EXPECT_EQ(model.GetVelocities(), velocities);
-  // Each goes its own way now, as if the other had never been there.
+  // Each tetrahedron moves independently, as if the other one did not exist.
   const double step = 0.5 * model.GetStableTimeStep();
   model.Advance(For(100 * step, step));
   ElasticBody alone = body;
@@ -554,7 +555,7 @@ TEST(MassSpring, SplitNodesKeepTheirState)
   const std::vector<float> parted = model.GetDisplacements();
   const std::vector<float> expected = other.GetDisplacements();
   EXPECT_TRUE(std::equal(expected.begin(), expected.begin() + 12, parted.begin()));
-  // The copies are gone again, as where a split is undone.
+  // Remove the copies again, as when a split is undone.
   const std::vector<float> together = model.GetDisplacements();
   EXPECT_THROW(model.SplitNodes(body, { 1 }), Error) << "too few nodes";
   EXPECT_EQ(model.GetDisplacements(), together);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The elastic constants that springs give: of lattices of cubes, and in use.
+// The elastic constants of springs: of lattices of cubes, and of simulated bodies.
 #include "LatticeBody.h"
 #include "MassSpringModel.h"
 #include "Measured.h"
@@ -35,8 +35,8 @@ struct Constants
   double PoissonRatio;
 };
 
-// Pulls a box along x: both ends keep their planes and slide in them. The equilibrium is found by
-// conjugate gradients on the forces of the model.
+// Pulls a bar along x. Both ends stay plane, and slide in their planes. Conjugate gradients find
+// the equilibrium from the forces of the model.
 class BarTest
 {
 public:
@@ -66,7 +66,7 @@ public:
     const double wanted = 1e-12 * Dot(this->Force(x), this->Force(x));
     for (int i = 0; i < 1000 && squared > wanted; ++i)
     {
-      // Forces of a body near rest are linear; the sign is that of what resists.
+      // Forces of a body near rest are linear. The sign is that of the stiffness.
       std::vector<double> product = this->Project(this->Force(direction));
       const double length = -squared / Dot(direction, product);
       for (std::size_t j = 0; j < size; ++j)
@@ -105,7 +105,7 @@ private:
     return force;
   }
 
-  // Of displacements of any size, as of small ones.
+  // Returns the forces of displacements, linearized near rest: they are scaled down first.
   std::vector<double> Force(const std::vector<double>& x) const
   {
     double largest = 1e-300;
@@ -134,8 +134,8 @@ private:
     {
       pulled -= this->Body.Points[node].x == this->High.x ? force[3 * node] : 0.0;
     }
-    // By least squares. Springs without an energy of the volume leave every other node of a free
-    // surface behind, which is no property of the material: the surface is left out.
+    // A least-squares fit. Without the volume energy, every second node on a free surface stays
+    // behind. This is no property of the material, so the surface is excluded.
     const glm::dvec3 middle = 0.5 * (this->Low + this->High);
     const glm::dvec3 half = this->High - middle - glm::dvec3(0.5 * Spacing);
     double narrowing = 0.0;
@@ -197,10 +197,10 @@ TEST(MassSpringStatics, HangingBar)
     material.Density * request.Loads.Gravity.z * length * length / (2.0 * material.YoungModulus);
   const std::vector<float> displacements = model.GetDisplacements();
   const double found = displacements[3 * GetNode(nodes, 2, 2, 20) + 2];
-  // The end that is held cannot narrow, which makes a bar of this length a little stiffer.
+  // The fixed end cannot get thinner, which makes a bar of this length slightly stiffer.
   EXPECT_NEAR(found, expected, 0.04 * expected);
   EXPECT_LT(found, expected);
-  // Drift to a side: less than a thousandth of the length.
+  // Lateral drift is less than a thousandth of the length.
   EXPECT_LT(std::abs(displacements[3 * GetNode(nodes, 2, 2, 20)]), 1e-3 * length);
 }
 
@@ -242,11 +242,11 @@ TEST(MassSpringStatics, StressOfAStrain)
   EXPECT_NEAR(energy / volume, 0.5 * stress * Strain, 0.01 * 0.5 * stress * Strain);
 }
 
-// The stress of a tetrahedron is what its nodes pull at, by its volume: the forces by the
-// positions. A flat one has none.
+// The stress of a tetrahedron is the sum of the products of the forces on its nodes and their
+// positions, divided by its volume. A flat tetrahedron has no stress.
 TEST(MassSpringStatics, StressIsThatOfTheForces)
 {
-  constexpr double edge = 1.0 / 256.0; // single precision holds multiples of it
+  constexpr double edge = 1.0 / 256.0; // multiples are exact in single precision
   ElasticBody body;
   body.Points = { { 0, 0, 0 }, { edge, 0, 0 }, { 0, edge, 0 }, { 0, 0, edge } };
   body.Tetrahedra = { { 0, 1, 2, 3 } };
@@ -254,7 +254,7 @@ TEST(MassSpringStatics, StressIsThatOfTheForces)
   const double volume = GetVolumes(body).front();
   MassSpringModel model;
   model.SetBody(body);
-  // Larger, smaller, flat and inside out.
+  // Stretched, compressed, flat and inverted.
   for (const float height : { 1.5F, 0.5F, 0.0F, -0.5F })
   {
     std::vector<float> displacements(12, 0.0F);
@@ -274,7 +274,7 @@ TEST(MassSpringStatics, StressIsThatOfTheForces)
       for (std::size_t node = 0; node < 4; ++node)
       {
         const std::size_t place = 3 * node + axes[i][1];
-        // The forces are those of the body on its nodes.
+        // The forces are those that the body exerts on its nodes.
         wanted[i] -= static_cast<double>(forces[3 * node + axes[i][0]]) *
           (body.Points[node][static_cast<int>(axes[i][1])] +
             static_cast<double>(displacements[place])) /
