@@ -39,7 +39,8 @@ LatticeBody::LatticeBody(const Place& nodes, double spacing, const ElasticMateri
             }
             tetrahedron[i] = this->GetNode(place);
           }
-          // The fifth has the other sign, and so have all of a mirrored cell.
+          // The fifth tetrahedron, and the other four in mirrored cells, have negative volumes in
+          // this order of nodes.
           if ((number == 4) != isOdd)
           {
             std::swap(tetrahedron[2], tetrahedron[3]);

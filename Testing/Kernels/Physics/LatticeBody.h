@@ -11,8 +11,8 @@
 #include <cstdint>
 #include <functional>
 
-/// A lattice of nodes from the origin on, and five tetrahedra in each of its cells, mirrored from
-/// cell to cell as those of the sampling mesh are. Every tetrahedron has a volume greater than 0.
+/// A lattice of nodes that begins at the origin. Each cell has five tetrahedra, which are mirrored
+/// from cell to cell like those of the sampling mesh. Every tetrahedron has a positive volume.
 struct LatticeBody
 {
   using Place = std::array<std::int32_t, 3>;
@@ -24,10 +24,10 @@ struct LatticeBody
     return (place[2] * this->Nodes[1] + place[1]) * this->Nodes[0] + place[0];
   }
 
-  /// Holds the nodes at rest for which this is true.
+  /// Fixes the nodes for which the function returns true.
   void Fix(const std::function<bool(const Place&)>& isFixed);
 
-  /// Calls this for all nodes.
+  /// Calls the function for all nodes.
   void ForNodes(const std::function<void(const Place&, std::int32_t node)>& visit) const;
 
   Place Nodes;
@@ -38,17 +38,17 @@ struct LatticeBody
 namespace physicsTesting
 {
 
-/// The same where distances differ from axis to axis.
+/// Makes such a body with a different spacing on each axis.
 deformvolume::ElasticBody MakeLatticeBody(const LatticeBody::Place& nodes,
   const glm::dvec3& spacing, const deformvolume::ElasticMaterial& material = {});
 
-/// The node at a place of such a body.
+/// Returns the node with a structured index in such a body.
 inline std::size_t GetNode(const LatticeBody::Place& nodes, int x, int y, int z)
 {
   return static_cast<std::size_t>(x + nodes[0] * (y + nodes[1] * z));
 }
 
-/// Holds the nodes at rest whose positions a function chooses.
+/// Fixes the nodes for whose positions the function returns true.
 void FixNodes(
   deformvolume::ElasticBody& body, const std::function<bool(const glm::dvec3&)>& isFixed);
 

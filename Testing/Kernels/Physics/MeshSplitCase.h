@@ -22,37 +22,38 @@ struct SheetSurface
 SheetSurface MakeSheet(const glm::dvec3& corner, const glm::dvec3& u, const glm::dvec3& v);
 
 ///@{
-/// Across the lattice.
+/// Planes across the whole lattice.
 SheetSurface MakePlaneX(double x);
 SheetSurface MakePlaneY(double y);
 ///@}
 
-/// 8^3 cells of length 1.
+/// A lattice of 8 x 8 x 8 cells with edges of length 1.
 deformvolume::ElasticBody MakeLattice();
 
-/// Two tetrahedra with a face in common, at z = 0.
+/// Two tetrahedra that share a face in the plane z = 0.
 deformvolume::ElasticBody MakePair();
 
 deformvolume::MeshSplit Split(const deformvolume::ElasticBody& body, const SheetSurface& sheet,
   const std::vector<deformvolume::TetrahedronPair>& unparted = {});
 
-/// The body after a cut: copies lie where their nodes do.
+/// Returns the body after a cut. Copies of nodes have the positions of their origins.
 deformvolume::ElasticBody Apply(
   deformvolume::ElasticBody body, const deformvolume::MeshSplit& split);
 
 void ExpectSame(const deformvolume::MeshSplit& a, const deformvolume::MeshSplit& b);
 void ExpectNothing(const deformvolume::ElasticBody& body, const deformvolume::MeshSplit& split);
 
-/// What holds for every cut, whatever the sheet.
+/// Expects what is true after every cut, with any sheet.
 void ExpectSound(const deformvolume::ElasticBody& body, const deformvolume::MeshSplit& split);
 
-/// Of each tetrahedron the number of the piece that it belongs to: pieces hold together by faces,
-/// and may touch at edges and nodes. Numbered from 0 in the order of their lowest tetrahedra.
+/// Returns the component of each tetrahedron. The tetrahedra of a component are connected by faces.
+/// Components may share edges and nodes. They are numbered from 0, in the order of their lowest
+/// tetrahedra.
 std::vector<std::int32_t> FindFaceComponents(
   const std::vector<deformvolume::Tetrahedron>& tetrahedra);
 std::size_t CountComponents(const std::vector<std::int32_t>& components);
 
-/// Expects pieces that have no node in common. Returns their volumes.
+/// Expects a number of components that share no nodes. Returns their volumes.
 std::vector<double> ExpectPieces(const deformvolume::ElasticBody& body, std::size_t count);
 
 } // namespace physicsTesting

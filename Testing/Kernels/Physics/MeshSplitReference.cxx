@@ -32,7 +32,8 @@ int GetOrientation(
   return (determinant > 0.0L ? 1 : 0) - (determinant < 0.0L ? 1 : 0);
 }
 
-// 1, 0, or -1 where that cannot be said.
+// Whether the segment from p to q crosses the triangle: 1, 0, or -1 if the segment touches its
+// border or plane.
 int Crosses(const glm::dvec3& p, const glm::dvec3& q, const std::array<glm::dvec3, 3>& t)
 {
   const int above = GetOrientation(t[0], t[1], t[2], p);
@@ -69,7 +70,7 @@ struct SlowSplit
     return 0.25 * sum;
   }
 
-  // How often the sheet crosses the segment between two centroids; -1 where that cannot be said.
+  // How often the sheet crosses the segment between two centroids, or -1 if that is undecided.
   int Count(std::size_t a, std::size_t b) const
   {
     int count = 0;
@@ -88,7 +89,7 @@ struct SlowSplit
     return count;
   }
 
-  // The nodes that two tetrahedra have in common.
+  // The nodes that two tetrahedra share.
   std::set<std::int32_t> GetCommon(
     std::size_t a, std::size_t b, const std::vector<Tetrahedron>& in) const
   {
@@ -114,7 +115,8 @@ std::optional<MeshSplit> SplitMeshSlowly(const std::vector<glm::dvec3>& position
   MeshSplit split;
   split.Tetrahedra = tetrahedra;
   split.Unparted = unparted;
-  std::map<std::size_t, std::vector<std::size_t>> joined; // by faces that are not split
+  std::map<std::size_t, std::vector<std::size_t>>
+    joined; // tetrahedra connected by faces that are not split
   std::set<std::int32_t> nodes;
   for (std::size_t a = 0; a < tetrahedra.size(); ++a)
   {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bodies that are given up while they are taken over: soon, and with nothing half done.
+// Aborts while a model takes over a body, and while it solves: they are quick, and leave the
+// previous state.
 #include "FiniteElementCase.h"
 #include "MassSpringModel.h"
 #include "ParallelFor.h"
@@ -24,8 +25,8 @@ namespace
 
 using Place = LatticeBody::Place;
 
-// In s; with the address or the thread sanitizer all code is several times slower, and bodies are
-// smaller.
+// In seconds. With the address or the thread sanitizer all code is several times slower, and bodies
+// are smaller.
 #ifdef DEFORMVOLUME_TEST_SANITIZED
 constexpr double LongestPause = 0.5;
 constexpr int Shrinking = 2;
@@ -34,10 +35,11 @@ constexpr double LongestPause = 0.05;
 constexpr int Shrinking = 1;
 #endif
 
-// A lattice whose nodes are moved a little; held at one end.
+// A lattice with randomly moved nodes, fixed at one end.
 ElasticBody MakeBody(const Place& nodes)
 {
-  // As many as levels need, where there are so many.
+  // A multigrid hierarchy needs at least this many nodes on an axis. Axes with fewer nodes are not
+  // changed.
   constexpr std::int32_t least = 7;
   Place fewer = nodes;
   for (std::int32_t& count : fewer)
@@ -62,9 +64,9 @@ void RunOnOneThread(
   RunOnOwnThreads(first, last, grain, body, 1);
 }
 
-// How often progress is asked for, and the longest time between two questions in which the
-// processor worked: what other programs do meanwhile does not count. On one thread, as the times of
-// all threads are added.
+// Counts calls of Progress, and measures the longest time between two calls. It measures the
+// processor time of the process, so that other programs have no effect. The times of all threads
+// are added: loops therefore run on one thread.
 class Questions
 {
 public:
@@ -76,7 +78,7 @@ public:
     this->Look();
     return ++this->Number <= this->Allowed;
   }
-  /// Counts what has come after the last question, too.
+  /// Returns the longest time, including the time after the last call.
   double GetLongestPause()
   {
     this->Look();
@@ -111,7 +113,7 @@ TEST(ElasticAborts, FiniteElementBodies)
     EXPECT_LT(questions.GetLongestPause(), LongestPause);
     EXPECT_GT(questions.Number, 5);
   }
-  // The first linear system builds the levels.
+  // The first linear system builds the multigrid hierarchy.
   EquilibriumRequest request = MakeConverged();
   request.Loads.Gravity = glm::dvec3(0.0, -1.0, 0.0);
   request.Limits.NewtonSteps = 1;
@@ -146,7 +148,7 @@ TEST(ElasticAborts, AbortedSettersKeepTheLastBody)
     EXPECT_EQ(questions.Number, allowed + 1);
     EXPECT_EQ(model.GetDisplacements(), before);
   }
-  // The next solution is the one that there would have been.
+  // The aborted calls have no effect on the next solution.
   FiniteElementModel fresh;
   fresh.SetBody(body);
   fresh.Solve(request);
@@ -158,7 +160,7 @@ TEST(ElasticAborts, AbortedSettersKeepTheLastBody)
 namespace
 {
 
-// Frames of a block of which some nodes at the free end are pulled.
+// Frames of a body with handles at four nodes of its free end.
 class Frames
 {
 public:
@@ -168,7 +170,7 @@ public:
     this->Model.SetBody(this->Body);
   }
 
-  // first: of the nodes that are pulled.
+  // first: how far the handles are from the last node.
   EquilibriumRequest MakeRequest(int frame, std::int32_t first = 0) const
   {
     EquilibriumRequest request;
@@ -192,8 +194,8 @@ public:
   FiniteElementModel Model;
 };
 
-// Each place where progress can be asked for is one where it is, as the answer takes longer than
-// the time between two questions. Returns whether the call was aborted.
+// Aborts Solve() after a number of calls of Progress. Each call takes longer than the minimum time
+// between two calls, so that none is skipped. Returns whether the call was aborted.
 bool AbortAfter(int allowed, FiniteElementModel& model, EquilibriumRequest request)
 {
   request.Progress = [&]
@@ -214,9 +216,10 @@ bool AbortAfter(int allowed, FiniteElementModel& model, EquilibriumRequest reque
 
 } // namespace
 
-// A call that is given up leaves the displacements of before, and nothing else: the next ones find
-// to the last bit what a new model finds that begins there. With the inverses of the diagonal, and
-// with levels.
+// An aborted call restores the previous displacements, and no other state remains. The results of
+// the next calls equal, bit for bit, those of a new model that begins with these displacements. The
+// small body is preconditioned by the inverse of the diagonal, the large one by the multigrid
+// hierarchy.
 TEST(ElasticAborts, AbortedSolvesKeepTheLastDisplacements)
 {
   for (const Place& nodes : { Place{ 4, 4, 4 }, Place{ 7, 7, 7 } })
@@ -245,7 +248,7 @@ TEST(ElasticAborts, AbortedSolvesKeepTheLastDisplacements)
       frames.Solve(5, 7);
       EXPECT_EQ(frames.Model.GetDisplacements(), fresh.Model.GetDisplacements());
     }
-    // Nor of one that fails.
+    // A call that fails has no effect on the next ones either.
     Frames frames(nodes);
     frames.Solve(1, 4);
     EquilibriumRequest request = fresh.MakeRequest(1);
@@ -257,8 +260,8 @@ TEST(ElasticAborts, AbortedSolvesKeepTheLastDisplacements)
   }
 }
 
-// Levels that have become unlike the matrix, as the body was pulled far, are to be built anew when
-// a call is given up.
+// Large displacements make the multigrid hierarchy differ from the matrix. An aborted call must
+// rebuild the hierarchy.
 TEST(ElasticAborts, AfterALargeDisplacement)
 {
   for (const EquilibriumMode mode : { EquilibriumMode::Interactive, EquilibriumMode::Converged })
@@ -286,7 +289,7 @@ TEST(ElasticAborts, AfterALargeDisplacement)
   }
 }
 
-// Levels that were given up are built anew.
+// An aborted construction of the multigrid hierarchy is repeated.
 TEST(ElasticAborts, AbortedHierarchiesAreRebuilt)
 {
   const ElasticBody body = MakeBody({ 8, 8, 10 });
@@ -329,7 +332,7 @@ TEST(ElasticAborts, BodiesOfSprings)
   const double step = model.GetStableTimeStep();
   const std::vector<float> displacements(body.Points.size() * 3, 1e-4F);
   model.SetState(displacements, displacements);
-  // The last body stays as it is, until it is too late to abort.
+  // Aborted calls keep the last body.
   int aborts = 0;
   for (bool isAborted = true; isAborted;)
   {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cuts of a deformation mesh along its faces: which pieces they leave.
+// Cuts of a deformation mesh along its faces: the components after the cuts.
 #include "Error.h"
 #include "MeshSplitCase.h"
 
@@ -81,19 +81,19 @@ TEST(MeshSplit, NothingToDo)
   ExpectNothing(body, Split(body, {}));
   ExpectNothing(body, Split(body, MakePlaneX(8.5)));
   ExpectNothing(body, Split(body, MakePlaneX(1e6)));
-  // Within the mesh, but between no two centroids.
+  // A sheet within the mesh that separates no two centroids.
   ExpectNothing(
     body, Split(body, MakeSheet({ 4.5, 4.5, 4.6 }, { 0.01, 0.0, 0.0 }, { 0.0, 0.01, 0.0 })));
-  // Without area.
+  // A sheet without area.
   ExpectNothing(
     body, Split(body, MakeSheet({ 4.5, -1.0, 4.0 }, { 0.0, 9.0, 0.0 }, { 0.0, 2.0, 0.0 })));
-  // Pairs that have parted, or never had a face in common, are dropped.
+  // Pairs that are already separate, or never shared a face, are removed from the list.
   ExpectNothing(body, Split(body, {}, { { { 0, 1 } }, { { 3, 3 } } }));
-  // A mesh without a size, and one without a thickness.
+  // A mesh whose nodes all coincide.
   ElasticBody flat = MakePair();
   flat.Points.assign(5, glm::dvec3(1.0));
   ExpectNothing(flat, Split(flat, sheet));
-  // Points and nodes that nothing has do not matter.
+  // Unused points of the sheet and unused nodes are ignored.
   ElasticBody more = MakePair();
   SheetSurface moreSheet = MakeSheet({ -2.0, -2.0, 0.1 }, { 4.0, 0.0, 0.0 }, { 0.0, 4.0, 0.0 });
   const MeshSplit split = Split(more, moreSheet);
@@ -108,8 +108,9 @@ TEST(MeshSplit, TwoTetrahedra)
   const ElasticBody body = MakePair();
   for (const double height : { 0.1, 0.0, -0.1, 0.25, -0.25 })
   {
-    // A sheet through the upper centroid leaves both on one side, or below and above: the mesh
-    // counts as moved upwards along all axes.
+    // The mesh counts as moved slightly upwards along all axes. A centroid on the sheet is
+    // therefore above it: a sheet through the upper centroid separates the tetrahedra, and a sheet
+    // through the lower centroid does not.
     const MeshSplit split =
       Split(body, MakeSheet({ -2.0, -2.0, height }, { 4.0, 0.0, 0.0 }, { 0.0, 4.0, 0.0 }));
     if (height == -0.25)
@@ -139,24 +140,25 @@ TEST(MeshSplit, Planes)
     EXPECT_TRUE(split.Unparted.empty());
     return ExpectPieces(Apply(body, split), 2);
   };
-  // Along faces: two triangles a cell.
+  // Cuts along faces, with two triangles per cell.
   EXPECT_EQ(Split(body, MakePlaneX(4.0)).NumberOfFaces, 128);
   EXPECT_EQ(Split(body, MakePlaneX(4.0)).Origins.size(), 81U);
   std::vector<double> volumes = cut(MakePlaneX(4.0));
   EXPECT_NEAR(volumes[0], 256.0, 1e-9);
   EXPECT_NEAR(volumes[1], 256.0, 1e-9);
-  // Through the centroids of the tetrahedra in the middle of cells, which are a third of them and
-  // count as moved to higher x. Two of the others, a sixth each, lie on either side.
+  // The sheet passes through the centroids of the central tetrahedra, which have a third of the
+  // volume of the cells and count as moved to higher x. Two of the other tetrahedra, with a sixth
+  // of the volume each, lie on either side.
   volumes = cut(MakePlaneX(4.5));
   EXPECT_NEAR(volumes[0], 256.0 + 64.0 / 3.0, 1e-9);
   EXPECT_NEAR(volumes[1], 256.0 - 64.0 / 3.0, 1e-9);
   volumes = cut(MakeSheet({ -1.0, 9.0, -1.0 }, { 10.0, -10.0, 0.0 }, { 0.0, 0.0, 10.0 }));
   EXPECT_NEAR(volumes[0] + volumes[1], 512.0, 1e-9);
-  // A cell has a cross-section less than sqrt(2), and there are 8 by 8 on the way.
+  // The cross-section of a cell is less than sqrt(2), and the sheet passes through 8 x 8 cells.
   EXPECT_NEAR(volumes[0], 256.0, 64.0);
   volumes = cut(MakeSheet({ -1.0, -1.0, 4.0 }, { 10.0, 0.0, 1.7 }, { 0.0, 10.0, -0.9 }));
   EXPECT_NEAR(volumes[0] + volumes[1], 512.0, 1e-9);
-  // The middle of the box lies 0.4 below the sheet, or so: 256 and 25.6 more.
+  // The center of the box lies about 0.4 below the sheet: 25.6 more than half of the volume of 512.
   EXPECT_NEAR(volumes[0], 281.6, 10.0);
 }
 
@@ -185,7 +187,7 @@ TEST(MeshSplit, SheetThatEndsInside)
   ExpectSound(body, split);
   const ElasticBody after = Apply(body, split);
   ExpectPieces(after, 1);
-  // It ends at y = 4, along edges of the mesh: the nodes there remain.
+  // The sheet ends at y = 4, along edges of the mesh. The nodes on these edges are not split.
   EXPECT_EQ(split.NumberOfFaces, 64);
   EXPECT_TRUE(split.Unparted.empty());
   EXPECT_EQ(split.Origins.size(), 36U);
@@ -194,7 +196,7 @@ TEST(MeshSplit, SheetThatEndsInside)
     EXPECT_EQ(body.Points[static_cast<std::size_t>(origin)].x, 4.0);
     EXPECT_LT(body.Points[static_cast<std::size_t>(origin)].y, 4.0);
   }
-  // The rest of the way.
+  // A second sheet continues the cut to the end of the mesh.
   const MeshSplit rest =
     Split(after, MakeSheet({ 4.0, 4.0, -1.0 }, { 0.0, 5.0, 0.0 }, { 0.0, 0.0, 10.0 }));
   ExpectSound(after, rest);
@@ -237,14 +239,14 @@ TEST(MeshSplit, CrossingCuts)
   both.Add(MakePlaneY(3.25));
   const ElasticBody once = Apply(body, Split(body, both));
   ExpectPieces(once, 4);
-  // One after the other: the same pieces.
+  // One cut after the other gives the same components.
   const ElasticBody first = Apply(body, Split(body, MakePlaneX(4.5)));
   const MeshSplit second = Split(first, MakePlaneY(3.25));
   ExpectSound(first, second);
   const ElasticBody twice = Apply(first, second);
   ExpectPieces(twice, 4);
   EXPECT_EQ(FindFaceComponents(once.Tetrahedra), FindFaceComponents(twice.Tetrahedra));
-  // A third, oblique.
+  // A third, oblique cut.
   const ElasticBody third = Apply(
     twice, Split(twice, MakeSheet({ -1.0, -1.0, 4.0 }, { 10.0, 0.0, 0.3 }, { 0.0, 10.0, 0.4 })));
   ExpectPieces(third, 8);
@@ -271,7 +273,8 @@ TEST(MeshSplit, ContactsSeparate)
   ElasticBody body = MakePair();
   body.Points.emplace_back(2.0, 2.0, -1.0);
   body.Points.emplace_back(3.0, 2.0, -1.0);
-  // The edge of nodes 1 and 2, and a pair with a node in common that is not touched.
+  // The third tetrahedron shares the edge of nodes 1 and 2. The fourth one shares a node with the
+  // third one, which the cut does not split.
   body.Tetrahedra.push_back({ { 1, 2, 5, 6 } });
   body.Points.emplace_back(5.0, 2.0, -1.0);
   body.Points.emplace_back(5.0, 2.0, -2.0);

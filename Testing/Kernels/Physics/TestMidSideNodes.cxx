@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Nodes in the middle of edges: how they are made, split and checked.
+// Mid-side nodes: how they are made, split and checked.
 #include "Error.h"
 #include "FiniteElementCase.h"
 
@@ -14,7 +14,7 @@ using namespace deformvolume;
 namespace
 {
 
-// Two tetrahedra with a face in common, of the nodes 1, 2 and 3.
+// Two tetrahedra that share the face of nodes 1, 2 and 3.
 ElasticBody MakePair()
 {
   ElasticBody body;
@@ -41,7 +41,7 @@ TEST(MidSideNodes, LieInTheMiddleOfEdges)
   lattice.Fix([](const LatticeBody::Place& place) { return place[2] == 0; });
   ElasticBody& body = lattice.Body;
   const auto ends = AddMidSideNodes(body);
-  // Edges along the axes, and a diagonal of each face of a cell.
+  // The edges along the axes, and one diagonal of each face of a cell.
   const std::size_t edges = 3 * 18 + 3 * 12;
   EXPECT_EQ(ends.size(), edges);
   EXPECT_EQ(body.Points.size(), 27 + edges);
@@ -68,16 +68,16 @@ TEST(MidSideNodes, LieInTheMiddleOfEdges)
 TEST(MidSideNodes, GivenOnesStay)
 {
   ElasticBody body = MakePair();
-  body.Points.push_back({ 0.52, 0.5, 0.0 }); // of the edge 1 2
+  body.Points.push_back({ 0.52, 0.5, 0.0 }); // the mid-side node of the edge 1 2
   body.MidSides = { { { -1, 5, -1, -1, -1, -1 } }, { { -1, -1, -1, -1, -1, -1 } } };
   EXPECT_EQ(AddMidSideNodes(body).size(), 8u);
   EXPECT_EQ(body.MidSides[0][1], 5);
   EXPECT_EQ(body.MidSides[1][0], 5);
   EXPECT_EQ(body.Points.size(), 14u);
-  // Nothing is left to do.
+  // All tetrahedra have mid-side nodes now.
   EXPECT_EQ(AddMidSideNodes(body).size(), 0u);
 
-  // The same edge with another node.
+  // A second mid-side node for the same edge.
   body.Points.push_back({ 0.5, 0.51, 0.0 });
   body.MidSides[1][0] = 14;
   const std::string error = GetError([&] { AddMidSideNodes(body); });
@@ -93,7 +93,7 @@ TEST(MidSideNodes, SplitWithTheirEdges)
   const auto nodes = static_cast<std::int32_t>(body.Points.size());
   const std::vector<MidSideNodes> before = body.MidSides;
 
-  // The second tetrahedron comes off.
+  // The second tetrahedron is separated.
   std::vector<MidSideNodes> parted = before;
   const std::vector<std::int32_t> origins =
     SplitMidSides({ { 0, 1, 2, 3 }, { nodes, nodes + 1, 4, nodes + 2 } }, nodes + 3, parted);
@@ -109,12 +109,12 @@ TEST(MidSideNodes, SplitWithTheirEdges)
     }
   }
 
-  // It stays at the edge 1 2, as at a hinge: that has one node.
+  // The tetrahedra still share the edge 1 2, like a hinge. This edge keeps one mid-side node.
   std::vector<MidSideNodes> hinged = before;
   EXPECT_EQ(SplitMidSides({ { 0, 1, 2, 3 }, { 2, 1, 4, nodes } }, nodes + 1, hinged).size(), 2u);
   EXPECT_EQ(hinged[1][0], before[1][0]);
 
-  // Nothing is cut.
+  // Nothing is split.
   std::vector<MidSideNodes> same = before;
   EXPECT_TRUE(SplitMidSides(body.Tetrahedra, nodes, same).empty());
   EXPECT_EQ(same, before);
@@ -128,7 +128,8 @@ TEST(MidSideNodes, Misuse)
   { EXPECT_NE(error.find(text), std::string::npos) << error; };
   EXPECT_EQ(getError(lattice.Body), "");
 
-  // Two nodes of an edge each, so that they are beyond its quarters; the order of another program.
+  // A mid-side node that is nearer to an end of its edge than a quarter of the length; then
+  // mid-side nodes in the order of another program.
   ElasticBody body = lattice.Body;
   const auto a = static_cast<std::size_t>(body.MidSides[3][0]);
   body.Points[a] +=
@@ -152,7 +153,7 @@ TEST(MidSideNodes, Misuse)
   body.Points[a].y = std::numeric_limits<double>::quiet_NaN();
   expectFound(getError(body), "The rest position of node ");
 
-  // Flat ones are counted.
+  // Flat tetrahedra are counted.
   body = lattice.Body;
   body.MidSides.clear();
   for (const std::size_t t : { 4, 9 })
@@ -165,8 +166,8 @@ TEST(MidSideNodes, Misuse)
     getError(body), "2 of 40 tetrahedra of the rest mesh are flat, the first one being number 4.");
 }
 
-// Where it is split into linear tetrahedra one of them is inside out, though its determinant is
-// nowhere near 0 where it is looked at: volumes cannot be deformed by it.
+// One of the linear tetrahedra that this element is divided into is inverted, although the
+// determinant at the integration points is far from 0. A volume cannot be deformed by such a mesh.
 TEST(MidSideNodes, InvertedPartsAreAnError)
 {
   for (const bool isMirrored : { false, true })
@@ -186,7 +187,7 @@ TEST(MidSideNodes, InvertedPartsAreAnError)
   }
 }
 
-// A curved edge is no reason for an error, nor for a strain where there is none.
+// Curved edges cause no error, and no strain in a mesh that is at rest.
 TEST(MidSideNodes, MayLieOffTheMiddle)
 {
   QuadraticLattice lattice({ 3, 3, 3 }, 0.5, MakeMaterial(1e4, 0.45));

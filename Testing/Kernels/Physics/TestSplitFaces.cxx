@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cuts of a deformation mesh along its faces: which faces are split.
+// Cuts of a deformation mesh along its faces: the faces that are split.
 #include "BodyPieces.h"
 #include "LatticeBody.h"
 #include "MeshSplitCase.h"
@@ -34,7 +34,7 @@ TEST(SplitFaces, NoPieceOnBothSides)
     {
       continue;
     }
-    // Far beyond the mesh, whatever the angle.
+    // The sheet extends far beyond the mesh at any angle.
     const MeshSplit split = Split(body, MakeSheet(center - 32.0 * (u + v), 64.0 * u, 64.0 * v));
     ExpectSound(body, split);
     EXPECT_GT(split.NumberOfFaces, 0);
@@ -64,7 +64,7 @@ TEST(SplitFaces, EvenCrossings)
   SheetSurface twice = MakePlaneX(4.0);
   twice.Add(MakePlaneX(4.0));
   ExpectNothing(body, Split(body, twice));
-  // A fold between two layers of centroids.
+  // A folded sheet between two layers of centroids.
   SheetSurface fold = MakePlaneX(3.95);
   fold.Add(MakePlaneX(4.05));
   fold.Add(MakeSheet({ 3.95, 9.0, -1.0 }, { 0.1, 0.0, 0.0 }, { 0.0, 0.0, 10.0 }));
@@ -72,8 +72,8 @@ TEST(SplitFaces, EvenCrossings)
   SheetSurface thrice = twice;
   thrice.Add(MakePlaneX(4.0));
   ExpectSame(Split(body, thrice), Split(body, MakePlaneX(4.0)));
-  // Segments through the line where a sheet crosses itself lead from above it to below it, and hold
-  // these together; two cuts have all four sides apart.
+  // At the line where a sheet crosses itself, some segments cross it twice and connect the regions
+  // above and below it. Two separate cuts instead give four components.
   const SheetSurface up = MakeSheet({ -1.0, -1.0, 2.1 }, { 10.0, 0.0, 4.0 }, { 0.0, 10.0, 0.0 });
   const SheetSurface down = MakeSheet({ -1.0, -1.0, 6.1 }, { 10.0, 0.0, -4.0 }, { 0.0, 10.0, 0.0 });
   SheetSurface crossing = up;
@@ -126,7 +126,7 @@ TEST(SplitFaces, SegmentsOutside)
   body.Points = { { 0.0, 0.0, 0.0 }, { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { 10.0, 1.0, 1.0 },
     { 1.0, 10.0, -1.0 } };
   body.Tetrahedra = { { { 0, 1, 2, 3 } }, { { 0, 2, 1, 4 } } };
-  // From (2.75, 0.5, 0.25) to (0.5, 2.75, -0.25).
+  // The centroids are (2.75, 0.5, 0.25) and (0.5, 2.75, -0.25).
   const auto cut = [&](const glm::dvec3& at)
   {
     return Split(
@@ -143,7 +143,7 @@ TEST(SplitFaces, SegmentsOutside)
   }
   body.Points[3] = { 40.0, 1.0, 1.0 };
   body.Points[4] = { 0.3, 0.3, -0.3 };
-  // From (10.25, 0.5, 0.25) to (0.325, 0.325, -0.075).
+  // The centroids are (10.25, 0.5, 0.25) and (0.325, 0.325, -0.075).
   for (int turn = 0; turn < 2; ++turn)
   {
     EXPECT_EQ(cutAcross(8.0).NumberOfFaces, 1);
@@ -179,7 +179,8 @@ TEST(SplitFaces, Random)
     { return std::floor(std::uniform_real_distribution<>(low, high)(random) / step) * step; };
     ElasticBody body = MakeLatticeBody(nodes, glm::dvec3(2.0));
     const auto last = static_cast<std::int32_t>(body.Points.size() - 1);
-    // Multiples of 2^-14, as centroids are of 2^-16. The longest side remains 8.
+    // Points are multiples of 2^-14, so that centroids are multiples of 2^-16. The longest side
+    // remains 8.
     for (glm::dvec3& point : body.Points)
     {
       const glm::dvec3 offset(
@@ -200,7 +201,7 @@ TEST(SplitFaces, Random)
     std::vector<TetrahedronPair> pairs;
     for (int cut = 0; cut < 2; ++cut)
     {
-      // Multiples of 2^-9: where a triangle is divided, it is divided exactly.
+      // Points are multiples of 2^-9, so that dividing a triangle is exact.
       SheetSurface sheet;
       for (int i = 0; i < 8; ++i)
       {
@@ -229,7 +230,7 @@ TEST(SplitFaces, Random)
       body = Apply(body, split);
     }
   }
-  // Few have triangles that are segments, and edges that meet.
+  // Few cases are left out because the reference cannot decide them.
   EXPECT_GT(compared, 400);
   EXPECT_GT(copies, 4000);
   EXPECT_GT(unparted, 100);
