@@ -15,7 +15,8 @@ struct Deformation;
 struct Options;
 struct Volume;
 
-/// Takes the voxels within Radius of a point, or the nearest one, and moves them. World units.
+/// Moves the voxels or nodes within Radius of Point by Displacement. With the radius 0, moves only
+/// the nearest one. World units.
 struct Pull
 {
   std::array<double, 3> Point{ { 0.0, 0.0, 0.0 } };
@@ -23,12 +24,12 @@ struct Pull
   double Radius = 0.0;
 };
 
-/// The handles that pulls are when they have gone a part of their way, as vtkChainMailDeformation
-/// and vtkElasticDeformation take them.
+/// Makes handles for vtkChainMailDeformation and vtkElasticDeformation. part: the fraction of the
+/// displacements of the pulls by which the handles are moved.
 vtkSmartPointer<vtkPolyData> MakeHandles(const std::vector<Pull>& pulls, double part = 1.0);
 
-/// The displacement field of the pulls of the options: voxels follow their neighbours, by
-/// ChainMail. takeFrame is called for each frame with the field that it has led to.
+/// Computes the displacement field of --pull by ChainMail. Calls takeFrame with the field of each
+/// frame.
 void PullByChainMail(const Options& options, const Volume& volume, Messages& messages,
   Deformation& deformation, const FrameTaker& takeFrame);
 

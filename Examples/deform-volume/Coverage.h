@@ -10,7 +10,7 @@ class vtkImageData;
 /// 1 for each voxel of the result that the deformed volume covers, else 0.
 const char* GetCoverage(vtkImageData* result);
 
-/// A copy of a point array of the result that is 0 where the deformed volume covers nothing.
+/// A copy of a point array of the result, in which voxels outside the deformed volume are 0.
 vtkSmartPointer<vtkDataArray> CopyCovered(vtkImageData* result, const char* name);
 
 #endif

@@ -72,7 +72,7 @@ void AddFixedNodes(const Options& options, vtkImageData* volume, vtkUnstructured
   mesh->GetPointData()->AddArray(fixed);
 }
 
-// The stiffness of the voxels in each tetrahedron, as --material says.
+// Gives the tetrahedra the materials of their voxels, by --material.
 void AddMaterials(
   const Options& options, vtkImageData* volume, vtkUnstructuredGrid* mesh, Messages& messages)
 {
@@ -104,7 +104,7 @@ void AddMaterials(
   mesh->ShallowCopy(filter->GetOutput());
 }
 
-// All sheets as one, which cuts the mesh before it moves.
+// Gives the model one surface of all sheets of --cut, which cuts the mesh at rest.
 void AddSheets(
   const Options& options, const Volume& volume, vtkElasticDeformation* model, Messages& messages)
 {
@@ -138,7 +138,8 @@ void DeformByElasticModel(const Options& options, const Volume& volume, vtkUnstr
 {
   AddFixedNodes(options, volume.Image, mesh);
   AddMaterials(options, volume.Image, mesh, messages);
-  // update: brings the model to a part of the way, or of the time.
+  // update(part): moves the handles by this fraction of their displacements, or simulates this
+  // fraction of --duration.
   const auto run = [&](vtkElasticDeformation* model, const auto& update)
   {
     SetUp(model, options, mesh);

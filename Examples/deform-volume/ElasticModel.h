@@ -14,34 +14,34 @@ struct Deformation;
 struct Options;
 struct Volume;
 
-/// Which nodes stay where they are.
+/// Selects fixed nodes: an argument of --fix.
 struct Fixation
 {
   enum class Kind
   {
-    Box,   // those within Bounds: x min, x max, y min, y max, z min, z max
-    Below, // those with a z of at most Value
-    Label  // those whose nearest voxel has the value Value
+    Box,   // nodes within Bounds: x min, x max, y min, y max, z min, z max
+    Below, // nodes whose z is at most Value
+    Label  // nodes whose nearest voxel has the value Value
   };
   Kind Which = Kind::Box;
   std::array<double, 6> Bounds{};
   double Value = 0.0;
-  std::string Text; // as it was given
+  std::string Text; // the argument
 };
 
-/// The material of the voxels with values from Minimum on, less than Maximum.
+/// The material of voxels whose value is at least Minimum and less than Maximum.
 struct MaterialOfValues
 {
   double Minimum = 0.0;
   double Maximum = 0.0;
   double YoungModulus = 0.0;
-  std::optional<double> PoissonRatio; // without them those of the options
-  std::optional<double> Density;
+  std::optional<double> PoissonRatio; // if empty: Options::PoissonRatio
+  std::optional<double> Density;      // if empty: Options::Density
 };
 
-/// Deforms a mesh by the pulls, fixations and gravity of the options: to equilibrium by finite
-/// elements, or for some time by springs. The sheets of the options cut it first, at rest.
-/// takeFrame is called for each frame with the deformation that it has led to.
+/// Deforms a mesh by --pull, --fix and --gravity: finite elements compute the equilibrium,
+/// mass-spring dynamics simulate --duration. The sheets of --cut cut the mesh at rest before that.
+/// Calls takeFrame with the deformation of each frame.
 void DeformByElasticModel(const Options& options, const Volume& volume, vtkUnstructuredGrid* mesh,
   Messages& messages, Deformation& deformation, const FrameTaker& takeFrame);
 

@@ -4,14 +4,14 @@
 
 #include <stdexcept>
 
-/// The program cannot go on: exit code 1.
+/// An error that ends the program with the exit code 1.
 class Failure : public std::runtime_error
 {
 public:
   using std::runtime_error::runtime_error;
 };
 
-/// The program was called in a way that makes no sense: exit code 2.
+/// An error in the command line, which ends the program with the exit code 2.
 class UsageError : public std::runtime_error
 {
 public:

@@ -6,7 +6,7 @@
 
 struct Deformation;
 
-/// What is done with each frame on the way to a deformation. It may do nothing.
+/// Called with the deformation of each frame of a model, for example to draw it.
 using FrameTaker = std::function<void(const Deformation&)>;
 
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// deform-volume: deforms a volume with a tetrahedral mesh from the command line.
+// deform-volume: deforms a volume from the command line.
 #include "Failure.h"
 #include "ImageAxes.h"
 #include "LabelVolume.h"
@@ -57,7 +57,7 @@ void ListDevices()
   }
 }
 
-// What can be known to fail is said before the work, not after it.
+// Reports files that cannot be written before the long computations begin.
 void CheckOutputs(const Options& options)
 {
   std::vector<std::string> paths = options.Outputs;
@@ -81,10 +81,10 @@ void CheckOutputs(const Options& options)
     {
       throw Failure("cannot write " + path + ": there is no folder " + folder);
     }
-    const std::string& place = vtksys::SystemTools::FileExists(path) ? path : folder;
-    if (access(place.c_str(), W_OK) != 0)
+    const std::string& existing = vtksys::SystemTools::FileExists(path) ? path : folder;
+    if (access(existing.c_str(), W_OK) != 0)
     {
-      throw Failure("cannot write " + path + ": there is no permission to write " + place);
+      throw Failure("cannot write " + path + ": there is no permission to write " + existing);
     }
   }
   if (!options.Image.empty() || !options.Movie.empty())
@@ -93,7 +93,8 @@ void CheckOutputs(const Options& options)
   }
 }
 
-// Where values can be negative, the least one is air, and 0 may be tissue. Labels have 0.
+// The default background: 0 for labels and for types without negative values. Otherwise the minimum
+// of the volume, since 0 may be tissue: in CT, the minimum is air.
 double FindBackground(const Options& options, vtkImageData* volume)
 {
   vtkDataArray* scalars = volume->GetPointData()->GetScalars();
@@ -121,7 +122,7 @@ void SetUp(vtkDeformVolumeFilter* filter, const Options& options, vtkImageData* 
   filter->SetReferenceData(reference);
   SetDeformation(filter, options, deformation);
   filter->SetOpenSplits(options.CutsMesh());
-  // A reference has the bounds, and the filter warns of a mode that it does not use.
+  // With a reference, the mode has no effect, and the filter would warn of it.
   filter->SetOutputBoundsMode(options.VolumeBounds && !reference
       ? vtkDeformVolumeFilter::VOLUME_BOUNDS
       : vtkDeformVolumeFilter::DEFORMED_BOUNDS);
@@ -222,11 +223,11 @@ void PrintResult(vtkDeformVolumeFilter* filter)
             << filter->GetSummary() << "\n\n";
 }
 
-// The grid of the result, in the world of the volume.
+// Reads the grid of the result, in the world coordinates of the volume.
 Volume ReadReference(const Options& options, const Volume& volume, Messages& messages)
 {
   ReadingOptions reading;
-  reading.Frame = 0; // all frames have one grid
+  reading.Frame = 0; // all frames have the same grid
   Volume reference = ReadVolume(options.Reference, reading, messages, !options.Quiet);
   reference.Image->GetPointData()->Initialize();
   reference.Image->GetCellData()->Initialize();
@@ -238,7 +239,8 @@ Volume ReadReference(const Options& options, const Volume& volume, Messages& mes
   return reference;
 }
 
-// Values, and scalars among them, which each step needs.
+// Throws a Failure if the voxels have no numbers. Sets the active scalars if there are none,
+// because all later steps need scalars.
 void CheckValues(vtkImageData* image, const std::string& path)
 {
   vtkPointData* arrays = image->GetPointData();
@@ -266,8 +268,8 @@ void DeformVolume(const Options& options, Messages& messages)
   TimingTable timings;
 
   const Stopwatch reading;
-  const ReadingOptions place{ options.FileCoordinates, options.Frame };
-  Volume volume = ReadVolume(options.Volume, place, messages, !options.Quiet);
+  const ReadingOptions readingOptions{ options.FileCoordinates, options.Frame };
+  Volume volume = ReadVolume(options.Volume, readingOptions, messages, !options.Quiet);
   CheckValues(volume.Image, options.Volume);
   volume.Axes =
     HeedSpace("--volume-space", options.VolumeSpace, options.Volume, volume.Axes, messages);
@@ -412,7 +414,7 @@ int main(int argc, char* argv[])
   {
     return *code;
   }
-  // VTK writes its errors to a log, too; once is enough.
+  // Messages keeps errors for the catch block; VTK's logger would print them a second time.
   vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
   const vtkNew<Messages> messages;
   vtkOutputWindow::SetInstance(messages);

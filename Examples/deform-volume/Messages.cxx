@@ -11,12 +11,13 @@
 namespace
 {
 // "ERROR: In file.cxx, line 12\nvtkClass (0x1234): text" -> "text"
-std::string StripPlace(const std::string& text)
+std::string StripLocation(const std::string& text)
 {
-  static const std::regex place("^\\s*(ERROR|Warning|Generic Warning|Debug):? In .*, line [0-9]+\\n"
-                                "([A-Za-z0-9_]+ \\(0x[0-9a-f]+\\): )?");
+  static const std::regex location(
+    "^\\s*(ERROR|Warning|Generic Warning|Debug):? In .*, line [0-9]+\\n"
+    "([A-Za-z0-9_]+ \\(0x[0-9a-f]+\\): )?");
   std::string message =
-    std::regex_replace(text, place, "", std::regex_constants::format_first_only);
+    std::regex_replace(text, location, "", std::regex_constants::format_first_only);
   message.erase(message.find_last_not_of(" \n") + 1);
   return message;
 }
@@ -35,7 +36,7 @@ void Messages::DisplayErrorText(const char* text)
   const std::lock_guard<std::mutex> lock(this->Mutex);
   if (this->FirstError.empty())
   {
-    this->FirstError = StripPlace(text);
+    this->FirstError = StripLocation(text);
   }
 }
 
@@ -44,11 +45,11 @@ void Messages::DisplayWarningText(const char* text)
   const std::lock_guard<std::mutex> lock(this->Mutex);
   if (this->Reads)
   {
-    this->WaitingWarnings.push_back(StripPlace(text));
+    this->WaitingWarnings.push_back(StripLocation(text));
   }
   else
   {
-    this->PrintWarning(StripPlace(text));
+    this->PrintWarning(StripLocation(text));
   }
 }
 

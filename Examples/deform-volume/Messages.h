@@ -8,15 +8,15 @@
 #include <string>
 #include <vector>
 
-/// Takes the place of VTK's output window: prints warnings in one line each, and keeps the first
-/// error, without the places in the source code, until it is asked for.
+/// Replaces VTK's output window. Prints each warning in one line, and keeps the first error until
+/// Check() or TakeError(). Removes file names and line numbers of source code from both.
 class Messages : public vtkOutputWindow
 {
 public:
   static Messages* New();
   vtkTypeMacro(Messages, vtkOutputWindow);
 
-  /// What warnings begin with.
+  /// Set the name of the program, with which warnings begin. Default: deform-volume.
   void SetProgram(const std::string& name) { this->Program = name; }
 
   void DisplayText(const char* text) override;
@@ -25,17 +25,17 @@ public:
   void DisplayGenericWarningText(const char* text) override;
   void DisplayDebugText(const char* text) override;
 
-  /// Throws a Failure with the first error since the last call, if there was one. doing: what was
-  /// being done, for an algorithm that gave nothing without saying why.
+  /// Throws a Failure with the first error since the last call, if there was one, or if `succeeded`
+  /// is false. doing: the beginning of its message, such as "cannot write FILE".
   void Check(const std::string& doing, bool succeeded = true);
 
-  /// While a file is read, warnings that no object of VTK gives are errors, as readers give them of
-  /// damaged data; the others wait, and are words of an error that follows.
+  /// While a file is read, generic warnings of VTK are errors, because readers report damaged data
+  /// with them. All other warnings are kept: EndReading() prints them, unless TakeError() finds an
+  /// error before. Their text replaces that of an error that names code.
   void BeginReading();
   void EndReading();
 
-  /// The first error since the last call, "" where there was none, for a caller that has words of
-  /// its own.
+  /// Returns the first error since the last call, or "", for callers that write their own message.
   std::string TakeError();
 
 protected:
@@ -55,7 +55,7 @@ private:
   std::string Program = "deform-volume";
 };
 
-/// Whether a text names classes or addresses, which users of a program do not know.
+/// Whether a text names classes or addresses, which mean nothing to users of a program.
 bool NamesCode(const std::string& text);
 
 #endif

@@ -11,26 +11,26 @@
 
 class Messages;
 
-/// Whether a name ends in what a movie can be written as.
+/// Whether a file name has the extension of a format in which movies can be written.
 bool CanWriteMovie(const std::string& path);
 
-/// The file of a frame where frames are files of their own: out.png and 12 make out0012.png.
+/// The file name of a frame in a movie of PNG files: out.png and 12 make out0012.png.
 std::string GetFramePath(const std::string& path, int frame);
 
-/// Pictures of a volume before a deformation and meanwhile, one after the other: files of their own
-/// (.png), or a video in Ogg Theora (.ogv), 25 frames a second.
+/// Writes pictures of a volume before and during a deformation: one file for each frame (.png), or
+/// a video in Ogg Theora (.ogv) with 25 frames per second.
 class Movie
 {
 public:
   Movie(vtkImageData* before, const PictureOptions& options, const std::string& path);
   void Add(vtkImageData* after, Messages& messages);
-  /// After the last frame.
+  /// Completes the file. Call it after the last frame.
   void Finish(Messages& messages);
 
 private:
   Picture Frames;
   std::string Path;
-  vtkSmartPointer<vtkGenericMovieWriter> Writer; // null: frames are files of their own
+  vtkSmartPointer<vtkGenericMovieWriter> Writer; // null: one PNG file for each frame
   int Number = 0;
 };
 

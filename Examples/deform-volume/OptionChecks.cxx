@@ -19,7 +19,7 @@
 
 namespace
 {
-/// Checks of ranges let NaN pass.
+/// Refuses NaN, which the range checks of CLI11 accept, and infinity.
 void CheckNumbers(const Options& options)
 {
   const std::pair<const char*, double> numbers[] = { { "--scale", options.Scale },
@@ -103,7 +103,8 @@ void CheckPoints(const Options& options)
   }
 }
 
-/// A model has one radius for all its handles.
+/// --model needs a suitable mesh and pulls. All pulls have one radius, because a model has only
+/// one.
 void CheckModel(const Options& options)
 {
   if (options.HasElasticModel())

@@ -52,7 +52,8 @@ struct Options
   double PoissonRatio = 0.3;
   double Density = 1000.0;
   double Duration = 1.0;
-  std::string Tissue; // of YoungModulus, PoissonRatio and Density; "": these are given as numbers
+  /// Tissue from which YoungModulus, PoissonRatio and Density are taken; "" if there is none.
+  std::string Tissue;
   std::vector<MaterialOfValues> Materials;
 
   std::vector<std::string> Cuts;

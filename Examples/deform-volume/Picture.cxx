@@ -45,7 +45,7 @@ vtkDataArray* GetShownArray(vtkImageData* image)
   return scalars ? scalars : image->GetPointData()->GetArray(0);
 }
 
-// Some of the voxels that are shown: enough to aim a camera at them.
+// A sample of the visible voxels, which is sufficient to aim a camera.
 struct ShownVoxels
 {
   double Threshold;
@@ -79,7 +79,8 @@ struct ShownVoxels
   }
 };
 
-// Adds the world positions of what is shown; of the corners of the image where nothing is.
+// Adds the world positions of visible voxels, or of the corners of the image if no voxel is
+// visible.
 void AddShownPoints(
   vtkImageData* image, double threshold, std::vector<std::array<double, 3>>& points)
 {
@@ -111,8 +112,9 @@ void AddShownPoints(
   }
 }
 
-// Mappers differ in what they know of directions and of types: they get an image along the axes,
-// and one component of a type that all of them take. The actor's matrix does the rest.
+// Returns an image without direction and origin, with one component of a type that all mappers
+// support: mappers differ in the directions and types that they support. The matrix of the actor
+// applies direction and origin.
 vtkSmartPointer<vtkImageData> MakeDrawable(vtkImageData* image)
 {
   vtkNew<vtkImageData> plain;
@@ -146,13 +148,13 @@ vtkSmartPointer<vtkVolumeProperty> MakeProperty(double threshold, double maximum
   opacity->AddPoint(threshold - 0.5 * step, 0.0);
   opacity->AddPoint(threshold + 0.5 * step, 1.0);
   opacity->AddPoint(maximum + step, 1.0);
-  vtkNew<vtkColorTransferFunction> colour;
-  colour->AddRGBPoint(threshold, 0.87, 0.62, 0.51);
-  colour->AddRGBPoint(0.5 * (threshold + maximum), 0.96, 0.82, 0.72);
-  colour->AddRGBPoint(maximum, 1.0, 1.0, 0.98);
+  vtkNew<vtkColorTransferFunction> color;
+  color->AddRGBPoint(threshold, 0.87, 0.62, 0.51);
+  color->AddRGBPoint(0.5 * (threshold + maximum), 0.96, 0.82, 0.72);
+  color->AddRGBPoint(maximum, 1.0, 1.0, 0.98);
   auto property = vtkSmartPointer<vtkVolumeProperty>::New();
   property->SetScalarOpacity(opacity);
-  property->SetColor(colour);
+  property->SetColor(color);
   property->SetScalarOpacityUnitDistance(spacing);
   property->SetInterpolationTypeToLinear();
   property->ShadeOn();
@@ -163,7 +165,7 @@ vtkSmartPointer<vtkVolumeProperty> MakeProperty(double threshold, double maximum
   return property;
 }
 
-// Puts the camera as near as all points are still seen.
+// Moves the camera as close as possible while all points stay visible.
 void AimCamera(vtkCamera* camera, const std::array<double, 3>& view,
   const std::vector<std::array<double, 3>>& points)
 {

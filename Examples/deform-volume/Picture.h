@@ -17,25 +17,25 @@ class vtkWindowToImageFilter;
 
 struct PictureOptions
 {
-  /// Values from about here on are shown.
+  /// Approximate minimum of the values that are shown.
   double Threshold = 0.0;
-  /// Where the viewer stands as seen from the middle of the volume, in world coordinates.
+  /// Direction from the volume to the viewer, in world coordinates.
   std::array<double, 3> View{ { 0.0, 1.0, 0.0 } };
 };
 
-/// A threshold that shows the skin in most images of a body: a fifth of the way from the smallest
-/// to the greatest value.
+/// A threshold that shows the skin in most images of a body: the minimum plus a fifth of the range
+/// of values.
 double FindThreshold(vtkImageData* image);
 
-/// The direction from which a face looks at the viewer, a little from its side, as far as the axes
-/// of the world are known.
+/// Direction from a head to a viewer in front of it and slightly to its side. Unknown axes are
+/// taken as right, anterior, superior.
 std::array<double, 3> GetFaceView(WorldAxes axes);
 
-/// Throws a Failure where there is no display to draw on. VTK would end the program.
+/// Throws a Failure if there is no X display, without which VTK would exit the program.
 void CheckDisplay();
 
-/// 1400 by 700 pixels: a volume before a deformation on the left and after it on the right, volume
-/// rendered with gradient shading, with the same camera and colours.
+/// A picture of 1400 x 700 pixels: a volume before a deformation on the left, and after it on the
+/// right, with the same camera and colors. Volume rendering with gradient shading.
 class Picture
 {
 public:
@@ -43,10 +43,10 @@ public:
 
   enum class Aim
   {
-    Tight, // all that both show is seen, as near as possible
-    Fixed  // the view stays, with room round the volume before
+    Tight, // as close as possible to all visible voxels of both volumes
+    Fixed  // the camera of the first call, with a margin around the volume before
   };
-  /// Draws both. The image lives until the next call.
+  /// Draws both volumes. The returned image is valid until the next call.
   vtkImageData* Draw(vtkImageData* after, Aim aim, Messages& messages);
 
 private:

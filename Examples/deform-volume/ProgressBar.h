@@ -7,9 +7,9 @@
 class vtkAlgorithm;
 class vtkObject;
 
-/// A line on the terminal that shows how far an algorithm has come, for as long as this object
-/// lives. It begins with the label, or with the algorithm's progress text where there is one. Shows
-/// nothing where standard error is no terminal, or where it is not wanted.
+/// Shows the progress of an algorithm in a line of the terminal, which begins with the algorithm's
+/// progress text, or else with the label. The destructor erases the line. Nothing is shown if
+/// standard error is not a terminal, or if `wanted` is false.
 class ProgressBar
 {
 public:

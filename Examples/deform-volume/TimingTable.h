@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-/// Seconds since it was made.
+/// Measures the time since its construction, in seconds.
 class Stopwatch
 {
 public:
@@ -20,7 +20,7 @@ private:
   std::chrono::steady_clock::time_point Start = std::chrono::steady_clock::now();
 };
 
-/// What each step took.
+/// A table of the durations of steps.
 class TimingTable
 {
 public:

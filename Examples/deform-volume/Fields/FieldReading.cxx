@@ -33,7 +33,7 @@ std::string GetShapeText(vtkNIFTIImageHeader* header)
   return "(" + text + ")";
 }
 
-/// Why the shape of a NIfTI file is not that of a field; "" if it is one.
+/// Returns why the shape of a NIfTI file is not that of a field; "" if it is.
 std::string FindWrongShape(vtkNIFTIImageHeader* header)
 {
   const auto axes = static_cast<int>(header->GetDim(0));
@@ -59,8 +59,8 @@ std::string FindWrongShape(vtkNIFTIImageHeader* header)
                    : "it holds one number for each voxel, and no vectors";
 }
 
-/// Whether the vectors of a NIfTI file point right, anterior and superior. Throws a Failure where
-/// the file is no displacement field in millimetres.
+/// Whether the vectors of a NIfTI file point right, anterior and superior. Throws a Failure if the
+/// file is not a displacement field in mm.
 bool IsRightAnterior(vtkNIFTIImageHeader* header, const std::string& what)
 {
   const int unit = header->GetXYZTUnits() & vtkNIFTIImageHeader::UnitsSpace;
@@ -101,7 +101,8 @@ bool IsRightAnterior(vtkNIFTIImageHeader* header, const std::string& what)
   return intent == IntentDisplacement;
 }
 
-/// 3D Slicer writes the direction of a field into NRRD files.
+/// Warns if the direction of a field, which 3D Slicer writes into NRRD files, is not that of the
+/// options.
 void CheckKind(const Volume& field, const std::string& path, bool isInverse, Messages& messages)
 {
   const auto found = field.Fields.find("displacement field type");
@@ -116,7 +117,8 @@ void CheckKind(const Volume& field, const std::string& path, bool isInverse, Mes
   }
 }
 
-/// Applies a matrix to vectors. The result is float or double, or null if nothing changes.
+/// Applies a matrix to vectors. Returns a new float or double array, or `stored` if the matrix is
+/// the identity.
 vtkSmartPointer<vtkDataArray> Turn(vtkDataArray* stored, vtkMatrix3x3* matrix)
 {
   if (matrix->IsIdentity())
@@ -167,7 +169,7 @@ void FlipWorld(vtkImageData* image)
   }
   for (const vtkSmartPointer<vtkDataArray>& array : vectors)
   {
-    image->GetPointData()->AddArray(array); // in the place of that of its name
+    image->GetPointData()->AddArray(array); // replaces the array of the same name
   }
 }
 

@@ -17,7 +17,7 @@
 
 namespace
 {
-// An image on the grid of another one, with one array.
+// Returns an image on the grid of another one, with one array.
 vtkSmartPointer<vtkImageData> MakeImage(vtkImageData* grid, vtkDataArray* values)
 {
   auto image = vtkSmartPointer<vtkImageData>::New();
@@ -36,24 +36,25 @@ void WriteJacobian(const Options& options, const Volume& deformed, Messages& mes
   }
 }
 
-// Vectors from the voxels to their places at rest, 0 where there is none. sign: of x and y.
+// Returns the vectors from the voxels to their rest positions; 0 for voxels that are not covered.
+// sign: a factor on x and y.
 vtkSmartPointer<vtkFloatArray> MakeVectors(vtkImageData* image, double sign)
 {
-  vtkDataArray* places = image->GetPointData()->GetArray("RestPosition");
+  vtkDataArray* restPositions = image->GetPointData()->GetArray("RestPosition");
   auto vectors = vtkSmartPointer<vtkFloatArray>::New();
   vectors->SetName("Displacement");
   vectors->SetNumberOfComponents(3);
-  vectors->SetNumberOfTuples(places->GetNumberOfTuples());
+  vectors->SetNumberOfTuples(restPositions->GetNumberOfTuples());
   vectors->Fill(0.0);
   const char* covered = GetCoverage(image);
-  for (vtkIdType voxel = 0; voxel < places->GetNumberOfTuples(); ++voxel)
+  for (vtkIdType voxel = 0; voxel < restPositions->GetNumberOfTuples(); ++voxel)
   {
     if (covered[voxel] != 0)
     {
       double here[3];
       double rest[3];
       image->GetPoint(voxel, here);
-      places->GetTuple(voxel, rest);
+      restPositions->GetTuple(voxel, rest);
       vectors->SetTuple3(
         voxel, sign * (rest[0] - here[0]), sign * (rest[1] - here[1]), rest[2] - here[2]);
     }
@@ -74,7 +75,8 @@ void WriteInverseField(const Options& options, const Volume& deformed, Messages&
   }
   for (const std::string& path : options.InverseFields)
   {
-    // NIfTI files lie in a world that points to the right, but ITK wants vectors to the left.
+    // ITK expects vectors left-posterior-superior, although NIfTI files are
+    // right-anterior-superior.
     const bool pointsLeft = deformed.Axes == WorldAxes::LeftPosteriorSuperior ||
       (deformed.Axes == WorldAxes::Unknown && !HasSuffix(path, { ".nii", ".nii.gz" }));
     const double sign = pointsLeft || HasSuffix(path, { ".vti" }) ? 1.0 : -1.0;
@@ -94,18 +96,18 @@ void AskForMaps(const Options& options, vtkDeformVolumeFilter* filter)
 
 void WriteMaps(const Options& options, Volume& deformed, Messages& messages)
 {
-  vtkNew<vtkImageData> left;
-  left->ShallowCopy(deformed.Image);
-  // An array of the volume may have the name of a map that is not written.
+  vtkNew<vtkImageData> remaining;
+  remaining->ShallowCopy(deformed.Image);
+  // Remove only maps that were generated: the volume may have an array of the same name.
   if (!options.Jacobians.empty())
   {
     WriteJacobian(options, deformed, messages);
-    left->GetPointData()->RemoveArray("Jacobian");
+    remaining->GetPointData()->RemoveArray("Jacobian");
   }
   if (!options.InverseFields.empty())
   {
     WriteInverseField(options, deformed, messages);
-    left->GetPointData()->RemoveArray("RestPosition");
+    remaining->GetPointData()->RemoveArray("RestPosition");
   }
-  deformed.Image = left;
+  deformed.Image = remaining;
 }

@@ -8,15 +8,15 @@ class Messages;
 class vtkDeformVolumeFilter;
 struct Options;
 
-/// What is written of the deformation itself: --jacobian and --inverse-field.
+/// Writes maps of the deformation: --jacobian and --inverse-field.
 
-/// Has a filter make the arrays that WriteMaps takes.
+/// Makes a filter generate the arrays that WriteMaps needs.
 void AskForMaps(const Options& options, vtkDeformVolumeFilter* filter);
 
-/// Writes these arrays of a deformed volume, and takes them out of the image. They are 0 where the
-/// volume covers nothing; a warning gives the number of such voxels of a field. Vectors lead from a
-/// voxel of the result to the place at rest that it shows, in the world of the volume, but in files
-/// other than .vti to the left, to the back and to the head.
+/// Writes the maps of a deformed volume, and removes their arrays from the image. Maps are 0
+/// outside the deformed volume; for an inverse field, a warning gives the number of such voxels.
+/// Vectors lead from a voxel of the result to its rest position: in .vti files in the world
+/// coordinates of the volume, in other files left-posterior-superior.
 void WriteMaps(const Options& options, Volume& deformed, Messages& messages);
 
 #endif

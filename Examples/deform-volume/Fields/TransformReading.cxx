@@ -33,7 +33,7 @@ namespace
 {
 using ItkTransform = itk::Transform<double, 3, 3>;
 
-// A map of points of the world left, posterior, superior.
+// A map of points in the world coordinates left, posterior, superior.
 class PointMap
 {
 public:
@@ -58,8 +58,8 @@ private:
   ItkTransform::ConstPointer Transform;
 };
 
-// A displacement field, as ITK takes it: linear between its voxels, up to half a voxel beyond the
-// outermost, and nothing farther out.
+// A displacement field, with the conventions of ITK: linear interpolation up to half a voxel
+// outside the grid, and no displacement beyond that.
 class FieldMap : public PointMap
 {
 public:
@@ -90,7 +90,8 @@ private:
   vtkNew<vtkImageInterpolator> Interpolator;
 };
 
-// How many numbers a text file has, up to a few more than a matrix; 0 where there is anything else.
+// Returns how many numbers a text file has; 0 if it has any other text. Stops after 17, which is
+// more than a matrix has.
 int CountNumbers(const std::string& path)
 {
   std::ifstream file(path);
@@ -102,7 +103,7 @@ int CountNumbers(const std::string& path)
   return file.eof() || count == most ? count : 0;
 }
 
-// What transforms of other programs are converted by.
+// Throws a Failure for transforms of other programs, with the command that converts them.
 void CheckProgram(const std::string& path, const std::string& what)
 {
   if (HasSuffix(path, { ".lta", ".dat", ".xfm" }))
@@ -166,7 +167,7 @@ ItkTransform::Pointer ReadTransform(const TransformFile& file, const std::string
   {
     reader->Update();
   }
-  catch (const std::exception&) // says nothing to somebody who does not know ITK's sources
+  catch (const std::exception&) // its message is about ITK's source code
   {
     throw Failure(what + ": it holds no transform of ITK, ANTs or 3D Slicer");
   }

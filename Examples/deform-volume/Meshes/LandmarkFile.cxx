@@ -82,8 +82,8 @@ std::vector<Range> FindColumns(const std::string& text, std::size_t begin, std::
     if (i == end || (text[i] == ',' && !isQuoted))
     {
       Range column(first, i);
-      const auto isBlank = [&](std::size_t place)
-      { return std::string(" \t\r").find(text[place]) != std::string::npos; };
+      const auto isBlank = [&](std::size_t position)
+      { return std::string(" \t\r").find(text[position]) != std::string::npos; };
       while (column.first < column.second && isBlank(column.first))
       {
         ++column.first;
@@ -121,7 +121,7 @@ std::size_t ReadHeader(
 void ReadTable(const std::string& path, LandmarkFile& file)
 {
   const std::string& text = file.Text;
-  const std::string mark = "\xEF\xBB\xBF"; // of UTF-8, by spreadsheets
+  const std::string mark = "\xEF\xBB\xBF"; // byte order mark, which spreadsheets write
   std::size_t begin = text.compare(0, mark.size(), mark) == 0 ? mark.size() : 0;
   std::size_t expected = 0;
   for (int line = 1; begin < text.size(); ++line)
@@ -138,12 +138,12 @@ void ReadTable(const std::string& path, LandmarkFile& file)
       expected = ReadHeader(path, text, columns);
       continue;
     }
-    const std::string place = "its line " + std::to_string(line);
+    const std::string thisLine = "its line " + std::to_string(line);
     if (columns.size() != expected)
     {
       Fail(path,
-        place + " has " + std::to_string(columns.size()) + " columns, and its first line names " +
-          std::to_string(expected));
+        thisLine + " has " + std::to_string(columns.size()) +
+          " columns, and its first line names " + std::to_string(expected));
     }
     double point[3];
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -152,7 +152,8 @@ void ReadTable(const std::string& path, LandmarkFile& file)
       point[axis] = GetNumber(number);
       if (!std::isfinite(point[axis]))
       {
-        Fail(path, place + " has \"" + number + "\" as " + "xyz"[axis] + ", which is not a number");
+        Fail(
+          path, thisLine + " has \"" + number + "\" as " + "xyz"[axis] + ", which is not a number");
       }
       file.Numbers.push_back(columns[axis]);
     }
@@ -189,7 +190,7 @@ Json::Value ParseJson(const std::string& path, const std::string& text)
   }
   if (!isParsed)
   {
-    // The first line of the first error, which begins with an asterisk.
+    // Only the first error, in one line, without the asterisk before it.
     std::istringstream words(errors.substr(0, errors.find("\n* ")));
     std::string word;
     std::string line;
@@ -209,7 +210,7 @@ std::string GetSpace(const std::string& path, const std::string& text, const Jso
   const std::string said = space.isString() || space.isInt() ? space.asString() : "";
   if (space.isNull() || said == "LPS" || said == "1")
   {
-    return "LPS"; // also where nothing is said, as 3D Slicer does
+    return "LPS"; // the default of 3D Slicer
   }
   if (said != "RAS" && said != "0")
   {

@@ -13,17 +13,17 @@
 class Messages;
 class vtkPointSet;
 
-/// Landmarks of a text file. Only coordinates change when it is written again.
+/// Landmarks of a text file. WriteLandmarks changes only coordinates in the text.
 struct LandmarkFile
 {
   std::string Text;
-  /// Where x, y and z of each point begin in the text, and where they end.
+  /// Begin and end of x, y and z of each point in Text.
   std::vector<std::pair<std::size_t, std::size_t>> Numbers;
-  /// In the world of the file, which the field data say.
+  /// In the world coordinates of the file, which are in the field data (KeepSpace).
   vtkSmartPointer<vtkPolyData> Points;
 };
 
-/// Whether a file's name is that of a format below.
+/// Whether a file name has the extension of a format that ReadLandmarks reads.
 bool IsLandmarkFile(const std::string& path);
 
 /// Whether this program reads and writes .mrk.json.
@@ -35,15 +35,15 @@ inline constexpr bool HasJson = false;
 
 /// Reads landmarks. Throws a Failure that says what is wrong, and in which line.
 ///
-/// .csv: those of antsApplyTransformsToPoints. The first line names the columns, and the first
-/// three are x, y and z. The world is left-posterior-superior.
+/// .csv: points as antsApplyTransformsToPoints reads them. The first line names the columns, and
+/// the first three are x, y and z. World coordinates are left-posterior-superior.
 ///
-/// .mrk.json: the markups of 3D Slicer, in the world that they say. Control points that are not
-/// defined have no place, and are left out.
+/// .mrk.json: markups of 3D Slicer, which state their world coordinates. Control points without a
+/// defined position are left out.
 LandmarkFile ReadLandmarks(const std::string& path, Messages& messages);
 
-/// Writes the text with the coordinates of moved points, in the world of the file. Numbers of
-/// points whose "vtkValidPointMask" is 0 stay as they are, to the letter.
+/// Writes the text with the coordinates of the moved points, in the world coordinates of the file.
+/// The text of points whose "vtkValidPointMask" is 0 does not change.
 void WriteLandmarks(const LandmarkFile& file, vtkPointSet* moved, const std::string& path);
 
 #endif

@@ -26,7 +26,7 @@
 
 namespace
 {
-/// The dimensions of cells by their types, each of which is found once.
+/// The dimensions of cell types. Caches them, because they need an instance of vtkCell.
 class CellDimensions
 {
 public:
@@ -56,7 +56,7 @@ std::string Count(vtkIdType number, const char* one, const char* many)
   return std::to_string(number) + " " + (number == 1 ? one : many);
 }
 
-// "27 points, 12 triangles or other faces and 3 lines"
+// For example "27 points, 12 triangles or other faces and 3 lines".
 std::string DescribeCells(const std::vector<MeshPart>& parts)
 {
   vtkIdType points = 0;
@@ -112,7 +112,7 @@ std::string DescribeArrays(vtkPointData* arrays)
   for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
   {
     const char* const name = arrays->GetArrayName(i);
-    // Arrays of strings are not counted among the others.
+    // GetArray() returns null for arrays of strings.
     vtkAbstractArray* array = arrays->GetAbstractArray(i);
     text += std::string(text.empty() ? "" : ", ") + "\"" + (name ? name : "") + "\" (" +
       Count(array->GetNumberOfComponents(), "component", "components") + ")";
@@ -141,7 +141,8 @@ void CheckArray(const MeshPart& part, const std::string& name, const std::string
   }
 }
 
-// VTK 9.4 and later write polyhedra in a way that earlier readers pass over.
+// Throws a Failure if polyhedra have no faces: earlier readers ignore those that VTK 9.4 and later
+// write.
 void CheckPolyhedra(vtkUnstructuredGrid* grid, const std::string& path)
 {
   vtkNew<vtkIdList> faces;

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-/// A dataset, or one of the blocks of a composite one.
+/// A dataset, or one of the blocks of a composite dataset.
 struct MeshPart
 {
   vtkSmartPointer<vtkDataSet> Data;
@@ -17,25 +17,25 @@ struct MeshPart
   std::string Block;
 };
 
-/// All datasets in an object that a file held.
+/// Returns a dataset, or all datasets of a composite dataset.
 std::vector<MeshPart> FindParts(vtkDataObject* object);
 
-/// Whether a part is a grid with three-dimensional cells, which can deform a volume.
+/// Whether a dataset is a grid with three-dimensional cells, which can deform a volume.
 bool HasVolumeCells(vtkDataSet* data);
 
-/// Throws a Failure, which says what the file holds, where it cannot deform a volume: it has no
-/// three-dimensional cells and is no image, a polyhedron lacks its faces, or a part lacks the point
-/// array of displacements. displacement: its name, or "" where none is needed.
+/// Throws a Failure, which says what the file holds, if it cannot deform a volume: it has no
+/// three-dimensional cells and is not an image, a polyhedron has no faces, or a part does not have
+/// the point array of displacements. displacement: name of the array, or "" if none is needed.
 void CheckMesh(vtkDataObject* mesh, const std::string& displacement, const std::string& path);
 
-/// The longest side of the box of all parts that can deform a volume.
+/// The longest side of the bounding box of all parts that can deform a volume.
 double GetMeshLength(vtkDataObject* mesh);
 
-/// Throws a Failure where an image lacks the point array of displacements. Without a name that is
-/// the active vectors, or else the only array of three components.
+/// Throws a Failure if an image does not have the point array of displacements. If displacement is
+/// "", that is the active vectors, or else the only array of three components.
 void CheckField(vtkImageData* field, const std::string& displacement, const std::string& path);
 
-/// Throws a Failure where a file holds no triangles or other polygons.
+/// Throws a Failure if a file holds no triangles or other polygons.
 void CheckSheet(vtkDataObject* sheet, const std::string& path);
 
 #endif

@@ -7,7 +7,7 @@
 
 namespace
 {
-// The file's name without its folder, and the same with another suffix.
+// The file name without its folder; the second function replaces its extension by suffix.
 std::string GetName(const std::string& path)
 {
   return vtksys::SystemTools::GetFilenameName(path);

@@ -4,12 +4,12 @@
 
 #include <string>
 
-/// The formats of meshes (without those of displacement fields) and sheets: ".vtp, .stl, ...".
+/// The file extensions of meshes (without those of displacement fields) and of sheets, such as
+/// ".vtp, .stl".
 std::string GetMeshSuffixes();
 std::string GetSheetSuffixes();
 
-/// What to do with a mesh or a sheet in a format that is not read: the usual program that converts
-/// it.
+/// Advice for a mesh or a sheet in a format that cannot be read: how to convert it.
 std::string GetMeshConversion(const std::string& path);
 std::string GetSheetConversion(const std::string& path);
 

@@ -26,15 +26,15 @@
 
 namespace
 {
-// In world units; 0: what the mesher takes. Finite elements have nodes in the middle of edges, so
-// that edges twice as long give as many nodes.
+// In world units; 0: the default of the mesher. With --model fem, twice the default: finite
+// elements have mid-side nodes, so that edges twice as long give as many nodes.
 double GetEdgeLength(const Options& options, vtkImageData* volume)
 {
   if (options.EdgeLength != 0.0 || !options.HasMidSideNodes())
   {
     return options.EdgeLength;
   }
-  constexpr double partOfDiagonal = 0.1; // that of the mesher: half of it
+  constexpr double partOfDiagonal = 0.1; // twice that of the mesher
   double square = 0.0;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -107,7 +107,7 @@ vtkSmartPointer<vtkUnstructuredGrid> Mesh(
   return mesher->GetOutput();
 }
 
-// Tetrahedra that are large for a push show as facets.
+// Warns of tetrahedra that are too large for a push, which are visible as facets.
 void CheckEdges(
   const Push& push, vtkUnstructuredGrid* mesh, Messages& messages, Deformation& deformation)
 {
@@ -149,7 +149,7 @@ void PushNodes(const Options& options, const vtkSmartPointer<vtkUnstructuredGrid
   deformation.Displacement = PushArrayName;
 }
 
-// Throws where options of --mesh do not go with what its files hold.
+// Throws a Failure if the files of --mesh and --rest cannot be used with the other options.
 void CheckMeshOptions(const Options& options, const Deformation& deformation)
 {
   const bool isField = vtkImageData::SafeDownCast(deformation.Data);
@@ -176,8 +176,8 @@ void CheckMeshOptions(const Options& options, const Deformation& deformation)
   }
 }
 
-// Metres beside millimetres. Where both surround the origin, the mesh holds some voxels
-// nevertheless.
+// Warns if one file seems to be in m and the other in mm. The filter does not notice that if both
+// surround the origin, because the mesh then holds some voxels.
 void WarnOfUnits(
   const Options& options, const Volume& volume, const Deformation& deformation, Messages& messages)
 {
@@ -233,7 +233,7 @@ Deformation MakeDeformation(const Options& options, const Volume& volume,
   }
   else if (!options.TetGen && !options.HasLattice())
   {
-    return deformation; // it is cut, and stays where it is
+    return deformation; // the volume is cut or carved, but not deformed
   }
   else
   {

@@ -14,35 +14,35 @@
 
 class Messages;
 
-/// What deforms the volume.
+/// The deformation of the volume, and descriptions of it that the program prints.
 struct Deformation
 {
-  /// A mesh or a displacement field; null: the volume stays where it is.
+  /// A mesh or a displacement field; null: the volume is not deformed.
   vtkSmartPointer<vtkDataObject> Data;
   /// The mesh at rest, if Data is the deformed mesh.
   vtkSmartPointer<vtkDataObject> Rest;
-  /// Otherwise the name of the array of displacements; "": the only one there is.
+  /// If Rest is null: the name of the array of displacements; "": the only array of vectors.
   std::string Displacement;
-  /// The isovalue of the surface that was meshed.
+  /// The isovalue that TetGen's mesh was made with.
   std::optional<double> Isovalue;
-  /// What a model has moved, and what has been cut of its mesh.
+  /// Result of a model, and of the cuts in its mesh.
   std::string Motion;
   std::string Cut;
-  /// What became of the voxels of the body that was meshed, and how long edges are where.
+  /// Numbers of voxels of the body that was meshed, and lengths of edges.
   std::string Body;
   std::vector<std::string> Edges;
   long long NumberOfNodes = 0;
   long long NumberOfCells = 0;
 };
 
-/// Reads or makes what the options ask for. grid: the voxels of the result, for a --transform.
-/// takeFrame is called with each frame of a model, the last one included. Throws a Failure where it
-/// is impossible.
+/// Reads or computes the deformation of the options. grid: the grid of the result, on which
+/// --transform is sampled. Calls takeFrame with each frame of a model, including the last one.
+/// Throws a Failure if that is not possible.
 Deformation MakeDeformation(const Options& options, const Volume& volume, vtkImageData* grid,
   Messages& messages, const FrameTaker& takeFrame);
 
-/// Gives a vtkDeformVolumeFilter or vtkDeformGeometryFilter the deformation, and what the options
-/// say of it.
+/// Sets the deformation of a vtkDeformVolumeFilter or vtkDeformGeometryFilter, and the options that
+/// apply to it.
 template <typename Filter>
 void SetDeformation(Filter* filter, const Options& options, const Deformation& deformation)
 {

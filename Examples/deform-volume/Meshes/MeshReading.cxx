@@ -46,7 +46,7 @@
 
 namespace
 {
-/// What is read, and how.
+/// A file to read, and parameters of reading it.
 struct Source
 {
   std::string Path;
@@ -62,13 +62,14 @@ void CheckReading(const Source& source, const std::string& format)
   const std::string words = source.Log.TakeError();
   if (!words.empty())
   {
-    // VTK's words on infinite numbers in XML files name classes.
+    // VTK's messages about infinite numbers in XML files name classes.
     throw Failure("cannot read " + source.Path + ": it is no valid " + format +
       ", or it is damaged or cut off" +
       (NamesCode(words) ? ", or has numbers that are not finite" : " (" + words + ")"));
   }
 }
 
+/// Calls Messages::BeginReading() and Messages::EndReading().
 class Reading
 {
 public:
@@ -141,7 +142,7 @@ vtkSmartPointer<vtkDataObject> ReadLegacy(const Source& source)
   const vtkSmartPointer<vtkDataObject> data = ReadBy(reader.Get(), source, "legacy file of VTK");
   const std::string header = reader->GetHeader() ? reader->GetHeader() : "";
   KeepSpace(data, header.c_str());
-  // The first words are those of FEBio Studio. FEBio itself writes points at rest, and "time 0.5".
+  // FEBio Studio writes this header. FEBio writes "time 0.5" and points at rest.
   if (source.PointsAreAtRest && header.rfind("vtk output at time", 0) == 0)
   {
     source.Log.DisplayWarningText((source.Path +
@@ -171,7 +172,7 @@ vtkSmartPointer<vtkDataObject> ReadExodus(const Source& source)
 {
   const char* const format = "Exodus file";
   vtkNew<vtkExodusIIReader> reader;
-  // The library writes to standard error where a file is of another kind.
+  // Checked first, because the library writes to standard error if a file has another format.
   if (!BeginsWith(source.Path, { "CDF", "\x89HDF" }) || !reader->CanReadFile(source.Path.c_str()))
   {
     source.Log.DisplayErrorText("It does not begin as netCDF files do");
@@ -206,7 +207,7 @@ bool HasTimeSteps(const std::string& path)
 vtkSmartPointer<vtkDataObject> ReadHDF(const Source& source)
 {
   const char* const format = "VTKHDF file that VTK " VTK_VERSION " reads";
-  // The library writes its stack to standard error.
+  // Do not let the library write its error stack to standard error.
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   vtkNew<vtkHDFReader> reader;
   if (!BeginsWith(source.Path, { "\x89HDF" }) || !reader->CanReadFile(source.Path.c_str()))
@@ -217,7 +218,7 @@ vtkSmartPointer<vtkDataObject> ReadHDF(const Source& source)
   reader->SetFileName(source.Path.c_str());
   reader->UpdateInformation();
   CheckReading(source, format);
-  // Earlier readers take the steps for parts of one mesh.
+  // Readers of earlier versions of VTK read all steps as parts of one mesh.
   if (HasTimeSteps(source.Path) &&
     !reader->GetOutputInformation(0)->Has(vtkStreamingDemandDrivenPipeline::TIME_STEPS()))
   {
@@ -231,7 +232,7 @@ vtkSmartPointer<vtkDataObject> ReadHDF(const Source& source)
 
 vtkSmartPointer<vtkDataObject> ReadMeshFile(const Source& source);
 
-/// Files of a .pvd file by their time.
+/// Returns the files that a .pvd file names, by time.
 std::map<double, std::vector<std::string>> FindFiles(const Source& source)
 {
   const auto root = vtkSmartPointer<vtkXMLDataElement>::Take(

@@ -13,20 +13,22 @@ class Messages;
 struct Options;
 struct Volume;
 
-/// The mesh of a file: a vtkUnstructuredGrid, vtkStructuredGrid, vtkRectilinearGrid or a composite
-/// dataset with three-dimensional cells; or a vtkImageData, which is a displacement field. Of a
-/// series in time it is the last step, which a warning says. All parts with three-dimensional cells
-/// have the point array of displacements, if it is named. Points and displacements are turned into
-/// the world of the volume. Throws a Failure that says what the file holds and what is needed.
+/// Reads the mesh of a file: a vtkUnstructuredGrid, vtkStructuredGrid, vtkRectilinearGrid or a
+/// composite dataset with three-dimensional cells; or a vtkImageData, which is a displacement
+/// field. If there are several time steps, reads the last one and warns. If `displacement` is not
+/// "", all parts with three-dimensional cells must have the point array of this name. Points and
+/// displacements are converted to the world coordinates of the volume. Throws a Failure that says
+/// what the file holds and what is needed.
 vtkSmartPointer<vtkDataObject> ReadMesh(const std::string& path, const std::string& displacement,
   const Options& options, const Volume& volume, Messages& messages);
 
-/// The sheet of a file, which has triangles or other polygons, in the world of the volume. Throws a
-/// Failure as well.
+/// Reads a sheet of triangles or other polygons, and converts it to the world coordinates of the
+/// volume. Throws a Failure if the file has no polygons or cannot be read.
 vtkSmartPointer<vtkPolyData> ReadSheet(
   const std::string& path, const Options& options, const Volume& volume, Messages& messages);
 
-/// What a .vtp or .vtu file holds, in the world of the file. Throws a Failure as well.
+/// Reads a .vtp or .vtu file, in the world coordinates of the file. Throws a Failure if it cannot
+/// be read.
 vtkSmartPointer<vtkPointSet> ReadGeometry(
   const std::string& path, const Options& options, Messages& messages);
 

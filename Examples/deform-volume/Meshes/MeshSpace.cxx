@@ -45,7 +45,7 @@ WorldAxes GetSpace(vtkDataObject* object, const std::string& path, Messages& mes
   return space;
 }
 
-/// The space that a part is in, from what its file says.
+/// Chooses the world axes of a part. ofFile: the axes that its file states.
 WorldAxes Choose(const std::string& said, const std::string& path, WorldAxes ofFile,
   WorldAxes ofVolume, Messages& messages)
 {
@@ -81,7 +81,7 @@ vtkSmartPointer<vtkDataArray> Negate(vtkDataArray* array, int components)
 
 void ExchangeWorlds(vtkDataSet* data, const std::vector<std::string>& vectors)
 {
-  // What points and vectors lie in may be shared with other data, and stays as it is.
+  // Arrays are copied, because they can be shared with other datasets.
   if (auto* image = vtkImageData::SafeDownCast(data))
   {
     FlipWorldAxes(image);
@@ -127,7 +127,7 @@ bool TurnIntoWorld(vtkDataObject* object, const std::vector<std::string>& vector
 {
   bool isTurned = false;
   const WorldAxes ofAll = GetSpace(object, path, messages);
-  // What was chosen for parts whose files say one thing is chosen, and warned of, once.
+  // Chooses once for all parts that state the same axes, so that a warning is printed once.
   std::map<WorldAxes, WorldAxes> chosen;
   for (const MeshPart& part : FindParts(object))
   {

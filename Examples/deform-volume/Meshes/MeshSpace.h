@@ -11,19 +11,20 @@ class Messages;
 class vtkDataObject;
 class vtkDataSet;
 
-/// Keeps what the header or a comment of a file says of its space, "SPACE=LPS" or "SPACE=RAS",
-/// where 3D Slicer puts it in files that have room for it: in the field data.
+/// Copies the text "SPACE=LPS" or "SPACE=RAS" of the header or a comment of a file to the field
+/// data, in the form in which 3D Slicer writes it to files that have field data.
 void KeepSpace(vtkDataObject* object, const char* header);
 
-/// Turns a mesh or a sheet of a file into the world of the volume: the points, and the point arrays
-/// of vectors with these names; "" is none. said: what the option --mesh-space says, or "". What
-/// the field data of the object or of one of its blocks say is used before that. Returns whether
-/// there was something to turn. Throws a Failure where the option cannot be followed, as the space
-/// of the volume is not known.
+/// Converts a mesh or a sheet of a file to the world coordinates of the volume: the points, and the
+/// point arrays of vectors with the given names; "" is ignored. said: the value of --mesh-space, or
+/// "". The field data of the object or of a block take precedence over it. Returns whether anything
+/// was converted. Throws a Failure if the option is given and the world axes of the volume are not
+/// known.
 bool TurnIntoWorld(vtkDataObject* object, const std::vector<std::string>& vectors,
   const std::string& said, const std::string& path, WorldAxes ofVolume, Messages& messages);
 
-/// Exchanges right-anterior-superior and left-posterior-superior, in points and these vectors.
+/// Exchanges right-anterior-superior and left-posterior-superior, in points and in the point arrays
+/// of the given names.
 void ExchangeWorlds(vtkDataSet* data, const std::vector<std::string>& vectors);
 
 #endif

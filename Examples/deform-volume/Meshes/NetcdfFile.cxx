@@ -47,12 +47,13 @@ public:
 
   static std::uint64_t GetSize(std::uint64_t type)
   {
-    // byte, char, short, int, float, double, and of CDF-5 ubyte, ushort, uint, int64 and uint64
+    // byte, char, short, int, float, double; in CDF-5 also ubyte, ushort, uint, int64 and uint64
     static const int sizes[] = { 0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8 };
     return type < 12 ? static_cast<std::uint64_t>(sizes[type]) : 0;
   }
 
-  /// The number of elements of a list, whose type stands before it, or zeros.
+  /// Skips the type of a list, and returns the number of its elements. Both are 0 for an empty
+  /// list.
   std::uint64_t ReadListSize()
   {
     this->ReadType();
@@ -95,7 +96,7 @@ Variable ReadVariable(Header& header, const std::vector<std::uint64_t>& lengths)
   }
   header.SkipAttributes();
   variable.Size *= Header::GetSize(header.ReadType());
-  header.ReadCount(); // its size, which overflows where the variable is large
+  header.ReadCount(); // the size in the file is not used: it overflows for large variables
   variable.Begin = header.ReadOffset();
   return variable;
 }
@@ -111,7 +112,7 @@ bool IsNetcdfCutOff(const std::string& path)
   std::uint64_t records = header.ReadCount();
   if (records == 0xffffffff || records == ~std::uint64_t(0))
   {
-    records = 0; // the writer did not know
+    records = 0; // the writer did not know their number
   }
   std::vector<std::uint64_t> lengths;
   for (std::uint64_t left = header.ReadListSize(); left > 0 && !header.Failed(); --left)
@@ -125,7 +126,8 @@ bool IsNetcdfCutOff(const std::string& path)
   {
     variables.push_back(ReadVariable(header, lengths));
   }
-  // A record holds one part of each such variable. One of these alone is not padded.
+  // A record holds a part of each variable with records. If only one variable has records, its
+  // parts are not padded.
   std::uint64_t record = 0;
   std::uint64_t parts = 0;
   for (const Variable& variable : variables)

@@ -4,8 +4,8 @@
 
 #include <string>
 
-/// Whether a file in one of netCDF's classic formats (CDF-1, CDF-2 and CDF-5, in which most Exodus
-/// files are) ends before its data do. The netCDF library gives zeros there, without an error.
+/// Whether a file is truncated. Recognizes netCDF's classic formats (CDF-1, CDF-2 and CDF-5), which
+/// most Exodus files have. The netCDF library reads zeros from truncated files, without an error.
 bool IsNetcdfCutOff(const std::string& path);
 
 #endif

@@ -26,7 +26,7 @@
 
 namespace
 {
-/// The arrays that the filter turns with the points.
+/// The arrays that the filter transforms with the points.
 std::vector<std::string> GetTurnedArrays(vtkPointSet* points)
 {
   std::vector<std::string> names;
@@ -81,8 +81,8 @@ vtkSmartPointer<vtkPointSet> Deform(const PointsFile& file, const Options& optio
   vtkNew<vtkDeformGeometryFilter> filter;
   filter->SetInputData(file.Points);
   SetDeformation(filter.Get(), options, deformation);
-  // Its warnings name properties; those below are for users, and those on the mesh were given when
-  // the volume was deformed.
+  // Ignore the filter's warnings: they name properties of the filter, those about the mesh were
+  // printed when the volume was deformed, and the warning below replaces the others.
   const vtkNew<vtkCallbackCommand> ignored;
   filter->AddObserver(vtkCommand::WarningEvent, ignored);
   const ProgressBar bar(filter, "moving points", !options.Quiet);

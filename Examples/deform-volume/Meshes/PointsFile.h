@@ -19,29 +19,28 @@ struct Volume;
 struct PointsFile
 {
   std::string Path;
-  /// In the world of the volume, with the cells and arrays of a .vtp or .vtu file.
+  /// In the world coordinates of the volume, with the cells and arrays of a .vtp or .vtu file.
   vtkSmartPointer<vtkPointSet> Points;
-  /// Whether the points were turned from the other world.
+  /// Whether the points were converted from other world coordinates.
   bool IsTurned = false;
-  /// Of other formats.
+  /// The text of a .csv or .mrk.json file.
   LandmarkFile Landmarks;
 };
 
-/// How names end that are read and written.
+/// The file extensions that can be read and written.
 inline constexpr const char* PointFormats =
   HasJson ? ".vtp, .vtu, .csv or .mrk.json" : ".vtp, .vtu or .csv";
 
-/// The end of a file's name that says its format, or "" where it is none of these.
+/// The extension of a file name, or "" if it is not one of PointFormats.
 std::string GetPointFormat(const std::string& path);
 
-/// Reads the files of --points, and turns the points into the world of the volume. Throws a
+/// Reads the files of --points, and converts them to the world coordinates of the volume. Throws a
 /// Failure that says what is wrong with a file.
 std::vector<PointsFile> ReadPoints(
   const Options& options, const Volume& volume, Messages& messages);
 
-/// Moves the points with the deformation, and writes them, in the worlds of their files, to those
-/// of --points-output. A warning gives the number of points outside the deformation, which stay
-/// where they are.
+/// Deforms the points, and writes them to the files of --points-output, in the world coordinates of
+/// the files of --points. Points outside the deformation do not move. A warning gives their number.
 void WriteDeformedPoints(const std::vector<PointsFile>& files, const Options& options,
   const Deformation& deformation, Messages& messages);
 

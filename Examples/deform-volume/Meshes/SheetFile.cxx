@@ -13,7 +13,7 @@
 
 namespace
 {
-/// A number of each element, or a list of numbers.
+/// A number of each element; or a list of numbers, if CountType is not "".
 struct Property
 {
   std::string CountType;
@@ -83,7 +83,7 @@ Encoding ReadHeader(std::istream& file, std::vector<Element>& elements)
   return Encoding::Unknown;
 }
 
-/// An integer that says how many numbers follow.
+/// Reads the length of a list.
 long long ReadCount(std::istream& file, const std::string& type, Encoding encoding)
 {
   if (encoding == Encoding::Text)
@@ -111,7 +111,7 @@ void Skip(std::istream& file, long long count, const std::string& type, Encoding
   if (encoding != Encoding::Text)
   {
     file.ignore(count * GetSize(type));
-    // What is ignored beyond the end is no failure.
+    // ignore() does not fail at the end of the file.
     file.setstate(file.eof() ? std::ios::failbit : std::ios::goodbit);
   }
   std::string word;

@@ -4,11 +4,10 @@
 
 #include <string>
 
-/// Whether a binary STL file ends before its triangles do. VTK's reader gives those that are there.
+/// Whether a binary STL file is truncated. VTK's reader reads such files without an error.
 bool IsStlCutOff(const std::string& path);
 
-/// Whether a PLY file ends before its elements do, or has no header that says what they are. VTK's
-/// reader crashes on such files.
+/// Whether a PLY file is truncated, or has no valid header. VTK's reader crashes on such files.
 bool IsPlyCutOff(const std::string& path);
 
 #endif

@@ -24,7 +24,7 @@ bool IsOfSequence(std::uint32_t tag)
   return tag == Item || tag == ItemEnd || tag == SequenceEnd;
 }
 
-// Types whose length has four bytes, after two that are not used.
+// Types whose length has four bytes, which follow two unused bytes.
 bool IsLong(const std::string& type)
 {
   const std::string types = "OB OD OF OL OV OW SQ SV UC UN UR UT UV";
@@ -64,7 +64,7 @@ void DICOMFile::FindBegin()
     this->Begin = preamble + static_cast<std::streamoff>(sizeof(magic));
     return;
   }
-  // Old files begin with an element of group 8 or 2 at once.
+  // Old files have no preamble. They begin with an element of group 8 or 2.
   char start[4] = {};
   this->File.clear();
   this->File.seekg(0);
@@ -109,8 +109,8 @@ bool DICOMFile::ReadElement(Element& element)
   return static_cast<bool>(this->File);
 }
 
-// How what follows the first elements is encoded, which are explicit and little endian. next: the
-// element that follows, read as they are.
+// Sets the encoding of all elements after the first ones (group 2), which are always explicit and
+// little endian. next: the first of these elements, read as explicit and little endian.
 void DICOMFile::SetEncoding(const Element& next)
 {
   const std::string syntax = this->GetText(TransferSyntax);
@@ -122,9 +122,9 @@ void DICOMFile::SetEncoding(const Element& next)
 
 void DICOMFile::Read()
 {
-  // Of what has no length, how much is open: sequences, their items, and compressed pixels.
+  // Number of open elements of undefined length: sequences, their items, and compressed pixels.
   int depth = 0;
-  // Where elements of an unknown type become implicit.
+  // Depth of the element of the type UN, whose contents are implicit; 0: there is none.
   int implicitDepth = 0;
   bool isMeta = true;
   constexpr std::streamoff shortestElement = 8;
@@ -185,7 +185,7 @@ void DICOMFile::Read()
     }
     this->File.seekg(end);
   }
-  // Some writers fill the file up with zeros.
+  // Some writers append zeros.
   char rest[shortestElement] = {};
   this->File.read(rest, shortestElement);
   this->Complete = depth <= 0 && std::count(rest, rest + shortestElement, 0) == shortestElement;

@@ -7,26 +7,27 @@
 #include <map>
 #include <string>
 
-/// The elements of a DICOM file that say what it holds and where that lies. Debian's GDCM, which
-/// decodes the pixels, ends the program by an assertion where a file is truncated, and takes a
-/// spacing of 1 where it finds none.
+/// The elements of a DICOM file that describe its contents and its position. ITK's GDCM decodes the
+/// pixels, but Debian's GDCM exits the program by an assertion if a file is truncated, and uses a
+/// spacing of 1 if there is none.
 class DICOMFile
 {
 public:
   explicit DICOMFile(const std::string& path);
 
-  /// Whether the file begins as DICOM files do. The rest is known of these only.
+  /// Whether the file begins like a DICOM file. Other files are not read any further.
   bool IsDICOM() const { return this->Begin >= 0; }
-  /// False where the file ends within an element or a sequence.
+  /// False if the file ends within an element or a sequence.
   bool IsComplete() const { return this->Complete; }
-  /// Whether all but its first elements is compressed, so that nothing else is known of it.
+  /// Whether all elements after the first ones (group 2) are compressed. They are not read then.
   bool IsDeflated() const;
   bool HasPixels() const { return this->Pixels; }
 
-  /// Elements by tag: 0x00200032 is (0020,0032). What is missing or empty is "", or 0.
+  /// Get an element by its tag: 0x00200032 is (0020,0032). "" or 0 if it is missing or empty.
   std::string GetText(std::uint32_t tag) const;
   int GetShort(std::uint32_t tag) const;
-  /// Numbers with a backslash between them. False unless there are so many, all finite.
+  /// Get numbers with backslashes between them. Returns false unless there are exactly `count`
+  /// numbers, all finite.
   bool GetNumbers(std::uint32_t tag, int count, double* numbers) const;
 
 private:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ITK decodes the pixels of each slice. Its own way to put slices together checks no positions.
+// ITK decodes the pixels of each slice. This file composes the volume, because ITK's
+// ImageSeriesReader does not check the positions of slices.
 #include "DICOMReading.h"
 
 #include "DICOMFile.h"
@@ -47,10 +48,10 @@ class Series
 public:
   Series(const std::string& folder, Messages& messages);
 
-  // Puts slices into the order of the volume, and checks their places.
+  // Sorts the slices by their positions along the normal, and checks them.
   void Sort(Messages& messages);
   vtkSmartPointer<vtkImageData> Read(bool showProgress) const;
-  // Directions and the position of the first voxel.
+  // The columns: directions of the axes, and the position of the first voxel.
   void GetPlace(vtkMatrix4x4* place) const;
 
 private:
@@ -65,13 +66,13 @@ private:
 
   const Slice& First() const { return this->Slices.front(); }
   const Slice& Last() const { return this->Slices.back(); }
-  // From one slice to the next.
+  // The mean vector from one slice to the next.
   void GetStep(double step[3]) const;
 
   std::string Folder;
   std::vector<Slice> Slices;
   std::vector<std::string> WithoutImage;
-  std::vector<std::string> Others; // no DICOM files
+  std::vector<std::string> Others; // files in other formats
 };
 
 Series::Series(const std::string& folder, Messages& messages)
@@ -87,7 +88,7 @@ Series::Series(const std::string& folder, Messages& messages)
   std::sort(names.begin(), names.end());
   for (const std::string& name : names)
   {
-    // Hidden files are notes of the system, some with the names of slices; DICOMDIR is a list.
+    // Operating systems write hidden files, some named like slices. DICOMDIR is a list of files.
     if (name[0] != '.' && name != "DICOMDIR" &&
       !vtksys::SystemTools::FileIsDirectory(folder + "/" + name))
     {
@@ -164,7 +165,7 @@ void Series::AddFile(const std::string& name)
   {
     this->Fail(name + " does not say how far its pixels are apart (0028,0030)");
   }
-  // The file has that of rows first.
+  // The first number is the distance between rows.
   slice.Spacing[0] = spacing[1];
   slice.Spacing[1] = spacing[0];
   this->Slices.push_back(slice);
@@ -253,7 +254,7 @@ void Series::CheckSteps() const
   {
     steps.push_back(this->Slices[i].Along - this->Slices[i - 1].Along);
   }
-  // What most slices have, whatever is missing or doubled.
+  // The median is right even if some slices are missing or duplicated.
   std::vector<double> sorted = steps;
   std::sort(sorted.begin(), sorted.end());
   const double usual = sorted[sorted.size() / 2];
@@ -286,20 +287,20 @@ void Series::CheckPlaces(Messages& messages) const
   std::string name;
   for (std::size_t i = 0; i < this->Slices.size(); ++i)
   {
-    double place[3];
+    double even[3];
     for (int axis = 0; axis < 3; ++axis)
     {
-      place[axis] = this->First().Position[axis] + static_cast<double>(i) * step[axis];
+      even[axis] = this->First().Position[axis] + static_cast<double>(i) * step[axis];
     }
     const double distance =
-      std::sqrt(vtkMath::Distance2BetweenPoints(place, this->Slices[i].Position));
+      std::sqrt(vtkMath::Distance2BetweenPoints(even, this->Slices[i].Position));
     if (distance > farthest)
     {
       farthest = distance;
       name = this->Slices[i].Name;
     }
   }
-  // Positions are often rounded, to a hundredth of a millimetre or a tenth.
+  // Positions are often rounded to 0.01 mm or 0.1 mm.
   constexpr double rounding = 0.01;
   constexpr double most = 0.1;
   std::ostringstream text;
@@ -347,7 +348,7 @@ vtkSmartPointer<vtkDataArray> Series::ReadSlice(const Slice& slice) const
 {
   const auto reader = itk::GDCMImageIO::New();
   ReadHeader(reader, this->Folder + "/" + slice.Name, "its image cannot be decoded");
-  std::string complaints; // also of files that are read rightly
+  std::string complaints; // not used: GDCM also warns of files that it reads correctly
   return ReadValues(reader, complaints);
 }
 
@@ -373,7 +374,7 @@ vtkSmartPointer<vtkImageData> Series::Read(bool showProgress) const
     }
     if (!all || (all->GetDataType() != values->GetDataType() && all->GetDataType() != VTK_DOUBLE))
     {
-      // Each slice may be rescaled on its own, as in PET, and then have a type of its own.
+      // Slices can have different rescale slopes, as in PET, and then different types.
       const auto wider = vtkSmartPointer<vtkDataArray>::Take(
         all ? vtkDataArray::CreateDataArray(VTK_DOUBLE) : values->NewInstance());
       wider->SetNumberOfComponents(components);

@@ -9,11 +9,11 @@
 
 class Messages;
 
-/// Reads the slices of one DICOM series in a folder, each a file of its own, in a world left,
-/// posterior, superior: rescaled (HU of CT), in the order of their positions along the normal of
-/// the slices, with the spacing of these positions. Throws a Failure that names the files where the
-/// folder holds several series, slices of several sizes or orientations or without a place, or
-/// where slices are missing, doubled, unevenly spaced or shifted by gantry tilt.
+/// Reads one DICOM series from a folder with one file for each slice, in the world coordinates
+/// left, posterior, superior. Values are rescaled (CT: HU). Slices are sorted by their positions
+/// along their normal, from which the spacing is computed. Throws a Failure that names the files if
+/// the folder holds several series, if slices have different sizes or orientations or no position,
+/// or if slices are missing, duplicated, unevenly spaced or shifted by gantry tilt.
 Volume ReadDICOM(
   const std::string& folder, const ReadingOptions& options, Messages& messages, bool showProgress);
 

@@ -5,7 +5,8 @@
 #include <initializer_list>
 #include <string>
 
-/// Whether a file's name ends in one of the suffixes, in upper or lower case.
+/// Whether a file name ends in one of the suffixes, in upper or lower case. suffixes: in lower
+/// case.
 bool HasSuffix(const std::string& path, std::initializer_list<const char*> suffixes);
 
 #endif

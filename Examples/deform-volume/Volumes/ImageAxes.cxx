@@ -18,7 +18,7 @@ constexpr double RoundedLength = 2e-7;
 constexpr double RoundedShear = 1e-5;
 constexpr double MaximumShear = 1e-3;
 
-// Of the angles between the axes, whose columns have length 1, the largest cosine.
+// The largest cosine of the angles between the axes. columns: unit vectors.
 double FindShear(const double columns[3][3])
 {
   double shear = 0.0;
@@ -29,7 +29,7 @@ double FindShear(const double columns[3][3])
   return shear;
 }
 
-// The position of an index, from the first voxel.
+// The vector from the first voxel to an index.
 void FindOffset(
   const double columns[3][3], const double spacing[3], const double index[3], double offset[3])
 {
@@ -43,14 +43,15 @@ void FindOffset(
   }
 }
 
-// Makes the columns perpendicular about the middle of the image, whose first voxel moves by shift.
-// Returns how far a corner moves at most.
+// Makes the columns perpendicular, and keeps the center of the image. shift: the displacement of
+// the first voxel. Returns the largest displacement of a corner.
 double RemoveShear(
   double columns[3][3], const double spacing[3], const int dimensions[3], double shift[3])
 {
   double old[3][3];
   std::copy(&columns[0][0], &columns[0][0] + 9, &old[0][0]);
-  // Rows and columns change places, which the nearest orthogonal matrix does not mind.
+  // The arrays hold the transposed matrices. The nearest orthogonal matrix of a transposed matrix
+  // is the transposed nearest orthogonal matrix.
   vtkMath::Orthogonalize3x3(old, columns);
   double middle[3];
   for (int axis = 0; axis < 3; ++axis)
@@ -106,7 +107,7 @@ void SetAxes(vtkImageData* image, vtkMatrix4x4* axes, const std::string& path, M
       columns[column][row] = axes->GetElement(row, column);
     }
     const double length = vtkMath::Normalize(columns[column]);
-    // Files hold single precision: what is one up to its rounding leaves the spacing as it is.
+    // Files hold single precision. A length of 1 up to its rounding does not change the spacing.
     const double factor = std::abs(length - 1.0) < RoundedLength ? 1.0 : length;
     spacing[column] = image->GetSpacing()[column] * factor;
     const bool hasSize = spacing[column] > 0.0 && std::isfinite(spacing[column]);
@@ -163,7 +164,7 @@ void FlipWorldAxes(vtkMatrix4x4* axes)
   {
     for (int column = 0; column < 4; ++column)
     {
-      // Adding zero keeps a negative zero out of the file.
+      // 0.0 - x, because -x would give a negative zero.
       axes->SetElement(row, column, 0.0 - axes->GetElement(row, column));
     }
   }

@@ -10,18 +10,18 @@
 class Messages;
 class vtkImageData;
 
-/// The matrix whose columns are the directions of the index axes and the world position of the
-/// first voxel of the image's extent. It takes (index - first index) * spacing to the world.
+/// Returns the matrix whose columns are the directions of the index axes and the world position of
+/// the first voxel of the extent. It transforms (index - first index) * spacing to the world.
 vtkSmartPointer<vtkMatrix4x4> GetAxes(vtkImageData* image);
 
-/// Gives an image whose extent begins at 0 these directions and this position of its first voxel.
-/// Lengths of the columns are factors on its spacing.
+/// Sets directions and origin of an image from a matrix as GetAxes returns it. The extent of the
+/// image must begin at 0. Its spacing is multiplied by the lengths of the columns.
 ///
-/// vtkImageData has perpendicular axes. A shear (the cosine of the angle between two axes) of up to
-/// 1e-3 is taken out: the nearest perpendicular axes are used, and the middle of the image stays
-/// where it is; from 1e-5 on, which rounding in the file does not explain, a warning says how far
-/// voxels lie from their places. Throws a Failure where the shear is larger or a column is 0; path
-/// is the file, advice one more sentence.
+/// vtkImageData has perpendicular axes. If the shear (the cosine of the angle between two axes) is
+/// at most 1e-3, the nearest perpendicular axes are used, and the center of the image does not
+/// move. A shear of more than 1e-5 is not rounding of the file: a warning gives the largest
+/// displacement of a voxel. Throws a Failure if the shear is larger than 1e-3 or if a column is 0.
+/// path: the file that messages name. advice: appended to the message.
 void SetAxes(vtkImageData* image, vtkMatrix4x4* axes, const std::string& path, Messages& messages,
   const std::string& advice = "");
 

@@ -12,14 +12,14 @@
 
 namespace
 {
-// ITK's messages tell places in its sources.
+// The description of an exception, without the class and the address that ITK puts before it.
 std::string GetReason(const std::exception& error)
 {
   const auto* const exception = dynamic_cast<const itk::ExceptionObject*>(&error);
   std::string text = exception ? exception->GetDescription() : error.what();
   // "ITK ERROR: MetaImageIO(0x1234): text"
-  const std::size_t place = text.rfind("0x");
-  const std::size_t end = place == std::string::npos ? place : text.find("): ", place);
+  const std::size_t address = text.rfind("0x");
+  const std::size_t end = address == std::string::npos ? address : text.find("): ", address);
   text = end == std::string::npos ? text : text.substr(end + 3);
   for (char& character : text)
   {
@@ -29,7 +29,7 @@ std::string GetReason(const std::exception& error)
   return text;
 }
 
-// Takes what a library writes to std::cerr.
+// Redirects std::cerr to a string, for libraries that write to it.
 class ErrorStream
 {
 public:
@@ -63,7 +63,7 @@ const std::pair<itk::IOComponentEnum, int> Types[] = {
   { itk::IOComponentEnum::DOUBLE, VTK_DOUBLE },
 };
 
-// VTK_VOID for a type that VTK does not have.
+// Returns VTK_VOID if VTK does not have the type.
 int GetType(itk::ImageIOBase* io)
 {
   for (const auto& [component, type] : Types)
@@ -76,8 +76,8 @@ int GetType(itk::ImageIOBase* io)
   return VTK_VOID;
 }
 
-// Whether the last value keeps the bytes that it had before, whatever they were: then the file ends
-// too early, or its data are damaged.
+// Reads all values. Returns true if the last value is missing, because the file is truncated or
+// damaged: a byte of this value then keeps the two marks that it has before two readings.
 bool LacksLastValue(itk::ImageIOBase* io, vtkDataArray* values)
 {
   const auto size = static_cast<std::size_t>(values->GetDataTypeSize());
@@ -155,7 +155,7 @@ vtkSmartPointer<vtkDataArray> ReadValues(itk::ImageIOBase* io, std::string& comp
   }
   catch (const std::exception&)
   {
-    // What ITK says names a place in its sources, and seldom the reason.
+    // ITK's messages name a line of its source code, and rarely the reason.
   }
   if (!isRead)
   {

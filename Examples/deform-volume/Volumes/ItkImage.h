@@ -9,24 +9,23 @@
 
 #include <string>
 
-/// What ITK's readers and writers of images have for all formats. Functions throw a Failure that
-/// names the file.
+/// Functions for all image formats of ITK. They throw a Failure that names the file.
 
-/// Reads the header of a file. Refuses values that are no real numbers, and files without voxels.
-/// reason: what is wrong with a file whose header ITK cannot read.
+/// Reads the header of a file. Throws a Failure if the values are not real numbers, or if the file
+/// has no voxels. reason: the message for a file whose header ITK cannot read.
 void ReadHeader(itk::ImageIOBase* io, const std::string& path, const std::string& reason);
 
-/// What is said where data cannot be read.
+/// The message if data cannot be read.
 inline constexpr const char* DataMissing = "its data are missing, damaged, or not complete";
 
-/// Reads all values of a file whose header has been read, in the type of the file. complaints: what
-/// the libraries have written to std::cerr, which is not shown.
+/// Reads all values, in the type of the file, after ReadHeader(). complaints: the text that
+/// libraries have written to std::cerr. It is not printed.
 vtkSmartPointer<vtkDataArray> ReadValues(itk::ImageIOBase* io, std::string& complaints);
 
-/// The type of an array's values. Throws a Failure for a type that no image of ITK has.
+/// The ITK type of the values of an array. Throws a Failure if ITK has no such type.
 itk::IOComponentEnum GetComponentType(vtkDataArray* values);
 
-/// Writes a file whose header has been set.
+/// Writes a file. The header must have been set.
 void WriteValues(itk::ImageIOBase* io, const void* values);
 
 #endif

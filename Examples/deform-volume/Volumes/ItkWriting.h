@@ -8,9 +8,9 @@
 
 class vtkImageData;
 
-/// Writes the scalars of an image as MetaImage (.mha, .mhd) or NRRD (.nrrd, .nhdr), which lie in a
-/// world left, posterior, superior. axes: directions and the position of the first voxel in it, see
-/// GetAxes. Throws a Failure.
+/// Writes the scalars of an image as MetaImage (.mha, .mhd) or NRRD (.nrrd, .nhdr). axes:
+/// directions and the position of the first voxel, as GetAxes returns them, in the world
+/// coordinates left, posterior, superior. Throws a Failure if the file cannot be written.
 void WriteByITK(vtkImageData* image, vtkMatrix4x4* axes, const std::string& path);
 
 #endif

@@ -26,7 +26,7 @@ namespace
 {
 const char* const Mask = "vtkValidPointMask";
 
-// Names that no file has.
+// Names that arrays of files are unlikely to have.
 std::string GetInnerName(std::size_t array)
 {
   return "deform-volume: labels " + std::to_string(array);
@@ -56,13 +56,13 @@ void CheckWhole(Array* array, const std::string& name, const std::string& path)
   }
 }
 
-/// A number in which two grids of one size differ.
+/// A number in which two grids of the same dimensions differ.
 struct GridDifference
 {
   std::string Name;
   double OfVolume = 0.0;
   double OfLabels = 0.0;
-  /// By how many voxels this alone moves the farthest one.
+  /// Displacement of the farthest voxel by this difference alone, in voxels.
   double Voxels = 0.0;
 };
 
@@ -122,7 +122,7 @@ void CheckGrid(vtkImageData* volume, vtkImageData* labels, const std::string& pa
         ", and the volume has " + std::to_string(ofVolume));
     }
   }
-  // Far more than files round, and far less than what shows.
+  // Much larger than the rounding of files, and much smaller than visible differences.
   constexpr double tolerance = 0.01;
   const GridDifference difference = FindLargestDifference(volume, labels);
   if (!(difference.Voxels <= tolerance))
@@ -153,10 +153,10 @@ LabelVolume::LabelVolume(const Options& options, const Volume& volume, Messages&
   {
     return;
   }
-  ReadingOptions place;
-  place.FileCoordinates = options.FileCoordinates;
-  place.CanChooseFrame = false;
-  const Volume labels = ReadVolume(path, place, messages, !options.Quiet);
+  ReadingOptions reading;
+  reading.FileCoordinates = options.FileCoordinates;
+  reading.CanChooseFrame = false;
+  const Volume labels = ReadVolume(path, reading, messages, !options.Quiet);
   if (labels.Axes != volume.Axes && labels.Axes != WorldAxes::Unknown &&
     volume.Axes != WorldAxes::Unknown)
   {
@@ -234,7 +234,7 @@ vtkSmartPointer<vtkImageData> LabelVolume::TakeFrom(vtkSmartPointer<vtkImageData
   for (std::size_t i = 0; i < this->Arrays.size(); ++i)
   {
     const std::string name = GetInnerName(i);
-    // Its background is that of the volume.
+    // The filter has filled uncovered voxels with the background of the volume. Labels get 0.
     const vtkSmartPointer<vtkDataArray> values = CopyCovered(deformed, name.c_str());
     values->SetName(this->Arrays[i].Name.c_str());
     labels->GetPointData()->AddArray(values);

@@ -11,32 +11,33 @@ class Messages;
 class vtkDeformVolumeFilter;
 struct Options;
 
-/// Labels of the voxels of a volume, from a file of their own. They are deformed as further arrays
-/// of the volume, and then taken apart again.
+/// The labels of --label-volume. They are deformed as additional arrays of the volume, and then
+/// separated from it.
 class LabelVolume
 {
 public:
-  /// Reads Options::LabelVolume; without one there are no labels. Throws a Failure where the labels
-  /// are not whole numbers, are not on the grid of the volume, or do not fit into an output.
+  /// Reads Options::LabelVolume; "": there are no labels. Throws a Failure if the labels are not
+  /// integers, are not on the grid of the volume, or cannot be written in the format of an output.
   LabelVolume(const Options& options, const Volume& volume, Messages& messages);
 
   bool AreThere() const { return !this->Arrays.empty(); }
 
-  /// A volume with the labels as categorical arrays of the filter; the volume itself without
-  /// labels.
+  /// Returns a copy of the volume with the labels, which become categorical arrays of the filter;
+  /// the volume itself if there are no labels.
   vtkSmartPointer<vtkImageData> AddTo(vtkImageData* volume, vtkDeformVolumeFilter* filter) const;
 
-  /// The labels of a deformed volume, 0 where that covers nothing. Takes them out of the image.
+  /// Returns the labels of a deformed volume, and removes them from it. Labels of voxels outside
+  /// the deformed volume are 0.
   vtkSmartPointer<vtkImageData> TakeFrom(vtkSmartPointer<vtkImageData>& deformed) const;
 
-  /// Their number and type, in words.
+  /// The names and types of the arrays of labels.
   std::string Describe() const;
 
 private:
   struct LabelArray
   {
     vtkSmartPointer<vtkDataArray> Values;
-    /// In the file.
+    /// Name in the file.
     std::string Name;
   };
   std::vector<LabelArray> Arrays;

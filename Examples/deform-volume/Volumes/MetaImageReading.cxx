@@ -45,7 +45,7 @@ Volume ReadMetaImage(const std::string& path, const ReadingOptions& options, Mes
   const int frame = ChooseFrame(path, frames, options);
   std::string complaints;
   vtkSmartPointer<vtkDataArray> values = ReadValues(io, complaints);
-  // MetaIO returns without an error where a file is missing, damaged or too short.
+  // MetaIO writes to std::cerr, but reports no error, if a file is missing, damaged or truncated.
   if (!complaints.empty())
   {
     throw Failure("cannot read " + path + ": " + DataMissing);

@@ -9,8 +9,8 @@
 
 class Messages;
 
-/// Reads a MetaImage (.mha, .mhd): all types and encodings that ITK reads, in a world left,
-/// posterior, superior. Throws a Failure.
+/// Reads a MetaImage (.mha, .mhd) of all types and encodings that ITK reads, in the world
+/// coordinates left, posterior, superior. Throws a Failure if the file cannot be read.
 Volume ReadMetaImage(const std::string& path, const ReadingOptions& options, Messages& messages);
 
 #endif

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// VTK's reader decodes NIfTI files: it hands out both forms as the file has them, also sheared
-// ones, and reads version 2. ITK 5.2 refuses version 2, and takes the q-form in place of a sheared
-// s-form without a word.
+// VTK's reader decodes NIfTI files: it reads version 2, and returns both forms as they are in the
+// file, even if they are sheared. ITK 5.2 refuses version 2, and replaces a sheared s-form by the
+// q-form without a warning.
 #include "NIfTIReading.h"
 
 #include "Failure.h"
@@ -23,7 +23,7 @@
 
 namespace
 {
-// Whether values are rescaled: a slope of 0 says that they are not, and colours never are.
+// Whether the values must be rescaled. A slope of 0 means that they are not; colors never are.
 bool IsScaled(vtkNIFTIImageHeader* header)
 {
   const double slope = header->GetSclSlope();
@@ -32,12 +32,12 @@ bool IsScaled(vtkNIFTIImageHeader* header)
     type != vtkNIFTIImageHeader::TypeRGBA32;
 }
 
-// Millimetres of the unit of length that a header names; 0 for one that is not known.
+// The unit of length of a header, in mm; 0 if the unit is not known.
 double GetMillimetres(vtkNIFTIImageHeader* header)
 {
   switch (header->GetXYZTUnits() & vtkNIFTIImageHeader::UnitsSpace)
   {
-    case vtkNIFTIImageHeader::UnitsUnknown: // nearly all of these are in mm
+    case vtkNIFTIImageHeader::UnitsUnknown: // nearly all such files are in mm
     case vtkNIFTIImageHeader::UnitsMM:
       return 1.0;
     case vtkNIFTIImageHeader::UnitsMeter:
@@ -54,7 +54,7 @@ double GetMillimetres(vtkNIFTIImageHeader* header)
   throw Failure("cannot read " + path + ": " + reason);
 }
 
-// Refuses what VTK's reader takes without a word for something else.
+// Refuses files that VTK's reader misreads without an error.
 void CheckHeader(vtkNIFTIImageHeader* header, const std::string& path)
 {
   const std::string magic = header->GetMagic();
@@ -96,7 +96,7 @@ void CheckHeader(vtkNIFTIImageHeader* header, const std::string& path)
       "by its header its voxels begin at byte " + std::to_string(header->GetVoxOffset()) +
         ", within the header");
   }
-  // nibabel and SPM take a slope that is NaN as one that is not given.
+  // A slope of NaN is allowed: nibabel and SPM do not rescale then.
   if (std::isinf(header->GetSclSlope()) ||
     (IsScaled(header) && !std::isfinite(header->GetSclInter())))
   {
@@ -125,7 +125,7 @@ bool IsInteger(vtkDataArray* array)
   return array->GetDataType() != VTK_FLOAT && array->GetDataType() != VTK_DOUBLE;
 }
 
-// The type that holds stored * slope + intercept: a type of integers where all are whole numbers.
+// The type for stored * slope + intercept: an integer type if all three are integers.
 int ChooseType(vtkDataArray* stored, double slope, double intercept)
 {
   const int type = stored->GetDataType();
@@ -172,7 +172,7 @@ void Rescale(vtkImageData* image, double slope, double intercept)
   image->GetPointData()->SetScalars(values);
 }
 
-// Leaves one frame of several, which the reader has put into components.
+// Keeps one of several frames. The reader has stored the frames as components.
 void KeepFrame(vtkImageData* image, int frame, int frames)
 {
   vtkDataArray* all = image->GetPointData()->GetScalars();
@@ -224,7 +224,7 @@ void Place(Volume& volume, vtkNIFTIImageReader* reader, const std::string& path,
     ScalePlace(axes, millimetres);
     for (int i = 0; i < 9; ++i)
     {
-      // The reader divides by the spacing, with its sign.
+      // The reader has divided by the signed spacing, but the spacing of the image is positive.
       axes->SetElement(
         i / 3, i % 3, axes->GetElement(i / 3, i % 3) * (spacing[i % 3] < 0.0 ? -1.0 : 1.0));
     }
@@ -244,7 +244,8 @@ Volume ReadNIfTI(
   const std::string& path, const ReadingOptions& options, Messages& messages, bool showProgress)
 {
   vtkNew<vtkNIFTIImageReader> reader;
-  // It warns where only one of the two forms is a reflection, which is read rightly.
+  // Ignore warnings: the reader warns if only one of the two forms is a reflection, but reads such
+  // files correctly.
   const vtkNew<vtkCallbackCommand> ignore;
   reader->AddObserver(vtkCommand::WarningEvent, ignore);
   if (!reader->CanReadFile(path.c_str()))
@@ -267,7 +268,7 @@ Volume ReadNIfTI(
   const auto axes = static_cast<int>(volume.NIfTIHeader->GetDim(0));
   const int frames = axes >= 4 ? static_cast<int>(volume.NIfTIHeader->GetDim(4)) : 1;
   const int frame = ChooseFrame(path, frames, options);
-  // The reader gives the first frame alone, or all of them.
+  // The reader reads either the first frame or all frames.
   reader->SetTimeAsVector(frame > 0);
   {
     const ProgressBar bar(reader, "reading", showProgress);

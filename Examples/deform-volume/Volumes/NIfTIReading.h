@@ -10,10 +10,10 @@
 class Messages;
 
 /// Reads a NIfTI file (.nii, .nii.gz; version 1 or 2): values times slope plus intercept, lengths
-/// in mm, at the place of its s-form, else of its q-form, else at origin 0 with unknown axes of the
-/// world. Whole numbers stay whole numbers if slope and intercept are. Throws a Failure where the
-/// file cannot be read, the axes are sheared, or a file of several frames is read without
-/// ReadingOptions::Frame.
+/// in mm. The s-form, or else the q-form, gives direction and origin. Without both, the origin is 0
+/// and the world axes are unknown. Integers stay integers if slope and intercept are integers.
+/// Throws a Failure if the file cannot be read, if its axes are sheared, or if it has several
+/// frames and ReadingOptions::Frame is not set.
 Volume ReadNIfTI(
   const std::string& path, const ReadingOptions& options, Messages& messages, bool showProgress);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// NrrdIO decodes NRRD files. ITK's own class round it turns spaces into left-posterior-superior,
-// not all of them rightly, and refuses axes of time.
+// NrrdIO decodes NRRD files. itk::NrrdImageIO is not used: it converts some spaces wrongly to
+// left-posterior-superior, and refuses time axes.
 #include "NRRDReading.h"
 
 #include "Failure.h"
@@ -22,7 +22,7 @@
 
 namespace
 {
-// The last of NrrdIO's messages, which says most, without the function that it comes from.
+// The last message of NrrdIO, which is the most specific, without the name of the function.
 std::string GetReason()
 {
   char* const text = biffGetDone("nrrd");
@@ -59,23 +59,23 @@ public:
   }
   vtkSmartPointer<vtkImageData> GetImage(int frame) const;
   WorldAxes GetAxes() const;
-  // Whether y has to be turned for left-posterior-superior.
+  // Whether y must be negated for left-posterior-superior.
   bool IsLeftAnterior() const
   {
     return this->Data->space == nrrdSpaceLeftAnteriorSuperior ||
       this->Data->space == nrrdSpaceLeftAnteriorSuperiorTime;
   }
-  // Whether the header has directions for all axes of space.
+  // Whether the header has directions for all space axes.
   bool HasDirections() const
   {
     return this->SpaceAxes.size() == 3 &&
       std::all_of(this->SpaceAxes.begin(), this->SpaceAxes.end(),
         [this](unsigned int axis) { return this->HasDirection(axis); });
   }
-  // Gives the image its spacing, and directions of unit length and the position of its first voxel,
-  // in the space of the file.
+  // Sets the spacing of the image. place: its columns become the directions, of unit length, and
+  // the position of the first voxel, in the space of the file.
   void GetPlace(vtkImageData* image, vtkMatrix4x4* place) const;
-  // From components of vectors to the space of the file: the identity where it is not given.
+  // The matrix from components of vectors to the space of the file. Unchanged if the file has none.
   void GetMeasurementFrame(vtkMatrix3x3* matrix) const;
   std::map<std::string, std::string> GetFields() const;
 
@@ -92,7 +92,7 @@ private:
     nrrdIoStateNix(state);
     if (!isLoaded)
     {
-      GetReason(); // which NrrdIO keeps otherwise
+      GetReason(); // clears the message of NrrdIO
     }
     return isLoaded;
   }
@@ -149,7 +149,7 @@ void NRRDFile::SortAxes()
     }
     else if (isOfSpace || (kind == nrrdKindUnknown && !hasDirections))
     {
-      // Without kinds, what follows three axes of space is time.
+      // Without kinds, an axis after three space axes is a time axis.
       (this->SpaceAxes.size() < 3 ? this->SpaceAxes : this->FrameAxes).push_back(axis);
     }
     else if (kind != nrrdKindUnknown)

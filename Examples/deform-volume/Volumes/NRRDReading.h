@@ -9,11 +9,12 @@
 
 class Messages;
 
-/// Reads an NRRD file (.nrrd, .nhdr): all types and encodings that ITK's library NrrdIO reads; the
-/// components of a vector, or frames (the kinds list and time), on any axis. The world is that of
-/// the header's space where it is right or left, anterior or posterior, superior; all but
-/// right-anterior-superior become left-posterior-superior, vectors with their MeasurementFrame.
-/// Volume::Fields has the keys of the header. Throws a Failure.
+/// Reads an NRRD file (.nrrd, .nhdr) of all types and encodings that ITK's library NrrdIO reads.
+/// Any axis can hold the components of vectors, or frames (the kinds list and time). The space
+/// right-anterior-superior is kept. Left-posterior-superior and left-anterior-superior become
+/// left-posterior-superior, including Volume::MeasurementFrame. The world axes of other spaces are
+/// unknown. Sets Volume::Fields to the keys of the header. Throws a Failure if the file cannot be
+/// read.
 Volume ReadNRRD(const std::string& path, const ReadingOptions& options, Messages& messages);
 
 #endif

@@ -11,7 +11,7 @@
 #include <map>
 #include <string>
 
-/// What the axes of the world point to, as far as the file says it.
+/// Directions of the world axes, if the file states them.
 enum class WorldAxes
 {
   Unknown,
@@ -21,35 +21,37 @@ enum class WorldAxes
   LeftPosteriorSuperior
 };
 
-/// A NIfTI file's two transformations to the world, with the codes that name that world (1 the
-/// scanner, 2 another image, 3 Talairach, 4 MNI; 0: there is none).
+/// The two transforms of a NIfTI file to the world, and the codes of their world coordinates (1:
+/// scanner, 2: another image, 3: Talairach, 4: MNI; 0: there is no such transform).
 struct NIfTIForms
 {
   int SFormCode = 0;
   int QFormCode = 0;
-  /// From (index * spacing), in mm, to the world. Null where QFormCode is 0.
+  /// From (index * QSpacing), in mm, to the world. Null if QFormCode is 0. The transform of the
+  /// s-form is that of the image.
   vtkSmartPointer<vtkMatrix4x4> QForm;
-  /// In mm. That of the s-form is the image's.
+  /// Spacing of the q-form, in mm. The spacing of the s-form is that of the image.
   double QSpacing[3] = { 1.0, 1.0, 1.0 };
 };
 
-/// What NIfTI files say of vectors that point as those of ITK do (NIFTI_INTENT_VECTOR).
+/// The intent code of NIfTI files whose vectors point left, posterior, superior, as ITK writes them
+/// (NIFTI_INTENT_VECTOR).
 inline constexpr int NIfTIIntentVector = 1007;
 
-/// An image and what vtkImageData has no room for.
+/// An image, and properties of its file that vtkImageData cannot hold.
 struct Volume
 {
   vtkSmartPointer<vtkImageData> Image;
   WorldAxes Axes = WorldAxes::Unknown;
-  /// Of a NIfTI file that says where it lies. The s-form is the place of the image.
+  /// The forms of a NIfTI file.
   NIfTIForms Forms;
-  /// What the values of a NIfTI file mean that is to be written (NIFTI_INTENT); 0: nothing is said.
+  /// The intent code (NIFTI_INTENT) for writing a NIfTI file; 0: none.
   int IntentCode = 0;
   /// Null for other formats.
   vtkSmartPointer<vtkNIFTIImageHeader> NIfTIHeader;
   /// The keys of an NRRD file's header.
   std::map<std::string, std::string> Fields;
-  /// Of an NRRD file: from the components of vectors to the world. Null where there is none.
+  /// The matrix of an NRRD file from components of vectors to the world. Null for other formats.
   vtkSmartPointer<vtkMatrix3x3> MeasurementFrame;
 };
 

@@ -11,38 +11,37 @@ class Messages;
 
 struct ReadingOptions
 {
-  /// NIfTI and DICOM: origin 0; MetaImage and NRRD: the file's origin; all: spacing of the file and
-  /// no direction, as VTK's and ParaView's readers have it.
+  /// Whether to use the coordinates of VTK's and ParaView's readers: the spacing of the file, no
+  /// direction, and the origin 0 (NIfTI, DICOM) or that of the file (MetaImage, NRRD).
   bool FileCoordinates = false;
-  /// Which volume of a file with several in time, counted from 0.
+  /// Index of the volume to read from a file with several time steps, counted from 0.
   std::optional<int> Frame;
-  /// Whether the user has an option that says so.
+  /// Whether the user can set Frame by an option. Affects messages only.
   bool CanChooseFrame = true;
 };
 
-/// Whether the program reads and writes the formats that ITK knows.
+/// Whether the program was built with ITK, and reads and writes its formats.
 #ifdef DEFORMVOLUME_HAVE_ITK
 inline constexpr bool HasITK = true;
 #else
 inline constexpr bool HasITK = false;
 #endif
 
-/// What ReadVolume reads, in words.
+/// The formats of ReadVolume, for messages.
 inline constexpr const char* ReadFormats = HasITK
   ? "a .nii, .nii.gz, .mhd, .mha, .nrrd, .nhdr or .vti file, or a folder with the slices of one "
     "DICOM series"
   : "a .nii, .nii.gz or .vti file";
 
-/// Reads a volume: .nii, .nii.gz, .vti and, where the program has ITK, .mhd, .mha, .nrrd, .nhdr, or
-/// a folder with the slices of one DICOM series. NIfTI volumes lie in a world right, anterior,
-/// superior; MetaImage and DICOM left, posterior, superior; NRRD where the header says, if that is
-/// one of the two; see WorldAxes. Throws a Failure where the volume cannot be read or has no place
-/// in vtkImageData.
+/// Reads a volume: .nii, .nii.gz, .vti and, with ITK, .mhd, .mha, .nrrd, .nhdr, or a folder with
+/// the slices of one DICOM series. Sets Volume::Axes: NIfTI volumes are right, anterior, superior;
+/// MetaImage and DICOM volumes are left, posterior, superior; the header of an NRRD file states its
+/// axes. Throws a Failure if the volume cannot be read, or if vtkImageData cannot hold it.
 Volume ReadVolume(
   const std::string& path, const ReadingOptions& options, Messages& messages, bool showProgress);
 
-/// The frame to read of so many. Throws a Failure where there are several and none is asked for, or
-/// one that is not there.
+/// Returns the index of the frame to read. frames: number of frames in the file. Throws a Failure
+/// if ReadingOptions::Frame is out of range, or if it is not set and there are several frames.
 int ChooseFrame(const std::string& path, int frames, const ReadingOptions& options);
 
 #endif

@@ -49,7 +49,7 @@ vtkSmartPointer<vtkMatrix4x4> GetAxesIn(const Volume& volume, WorldAxes axes)
   return matrix;
 }
 
-// The same voxels with an extent that starts at 0, for formats that know no other.
+// Returns the same voxels with an extent that starts at 0, for formats without extents.
 vtkSmartPointer<vtkImageData> MoveExtentToZero(vtkImageData* image)
 {
   auto moved = vtkSmartPointer<vtkImageData>::New();
@@ -81,7 +81,8 @@ void PutForms(std::fstream& file, const NIfTIForms& forms, int codes, int spacin
   }
 }
 
-// VTK's writer has codes of its own for the two forms, and the spacing of the s-form for both.
+// Corrects the header that VTK's writer has written, which has fixed codes for the two forms, and
+// the spacing of the s-form for both.
 bool SetForms(const std::string& path, const NIfTIForms& forms)
 {
   std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
@@ -115,7 +116,7 @@ bool Compress(const std::string& from, const std::string& to)
   return (!out || gzclose(out) == Z_OK) && written;
 }
 
-// The q-form of the volume, for the first voxel of the result.
+// Moves the q-form of the volume to the first voxel of the result.
 void MoveQForm(const Volume& volume, vtkMatrix4x4* qform)
 {
   vtkNew<vtkMatrix4x4> shift;
@@ -162,7 +163,7 @@ void WriteNIfTI(
   {
     MoveQForm(volume, qform);
   }
-  // A q-form holds no reflection.
+  // A q-form cannot hold a reflection.
   if ((!keepsForms && axes->Determinant() > 0.0) || forms.QForm)
   {
     writer->SetQFormMatrix(qform);
@@ -187,7 +188,7 @@ void WriteNIfTI(
 void WriteVTI(const Volume& volume, const std::string& path, Messages& messages, bool showProgress)
 {
   vtkNew<vtkXMLImageDataWriter> writer;
-  // zlib's fastest level: most of the size at a fraction of the time.
+  // The fastest level of zlib achieves most of the compression.
   writer->SetCompressorTypeToZLib();
   writer->SetCompressionLevel(1);
   writer->SetHeaderTypeToUInt64();

@@ -9,21 +9,22 @@
 
 class Messages;
 
-/// How names end that WriteVolume accepts.
+/// The file extensions that WriteVolume accepts.
 inline constexpr const char* WrittenFormats = HasITK
   ? ".vti, .nii, .nii.gz, .mhd, .mha, .nrrd or .nhdr"
   : ".vti, .nii or .nii.gz: this program was built without ITK";
 
-/// Of these, those of one array.
+/// The file extensions of formats that hold one array.
 inline constexpr const char* FormatsOfOneArray =
   HasITK ? ".nii, .nii.gz, .mhd, .mha, .nrrd or .nhdr" : ".nii or .nii.gz";
 
-/// Whether a name ends so.
+/// Whether a file name has an extension that WriteVolume accepts.
 bool CanWriteVolume(const std::string& path);
 
-/// Writes a volume. A .vti file keeps all arrays, the others the scalars alone. Origin, direction
-/// and the place of an extent that does not start at 0 survive in all formats; axes of the world
-/// are turned to the format's own where the volume's are known. Throws a Failure where that fails.
+/// Writes a volume. A .vti file holds all arrays, other formats only the scalars. All formats keep
+/// direction, origin and the position of the first voxel, even if the extent does not start at 0.
+/// If the world axes of the volume are known, they are converted to those of the format. Throws a
+/// Failure if the file cannot be written.
 void WriteVolume(
   const Volume& volume, const std::string& path, Messages& messages, bool showProgress);
 

@@ -8,14 +8,14 @@
 
 class Messages;
 
-/// The space of a file that says it itself, or else what the option says: "lps", "ras", or "" where
-/// it is not given. A warning says so where they differ.
+/// Returns the world axes that a file states, or else those of an option. said: the value of the
+/// option: "lps", "ras", or "" if it is not given. Warns if the file and the option differ.
 WorldAxes HeedSpace(const std::string& option, const std::string& said, const std::string& path,
   WorldAxes ofFile, Messages& messages);
 
-/// The same for a file that is turned into the world of a volume, which is its space where nothing
-/// else says it. Throws a Failure where the option is given and the volume's own space is not
-/// known, so that there is nothing to turn the file into.
+/// The same for a file that is converted to the world coordinates of a volume. If neither the file
+/// nor the option states the axes, they are those of the volume. Throws a Failure if the option is
+/// given and the axes of the volume are not known, because the file cannot be converted.
 WorldAxes ChooseSpace(const std::string& option, const std::string& said, const std::string& path,
   WorldAxes ofFile, WorldAxes ofVolume, Messages& messages);
 

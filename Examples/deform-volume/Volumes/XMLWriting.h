@@ -8,7 +8,7 @@
 
 #include <string>
 
-/// Writes a file by one of VTK's writers of XML files. Throws a Failure where that fails.
+/// Writes a file with one of VTK's XML writers. Throws a Failure if it cannot be written.
 template <typename Writer>
 void WriteXML(Writer* writer, vtkDataObject* data, const std::string& path, Messages& messages)
 {
