@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is compiled, what the compiler says to it, and that its time is told apart from that of the
-// kernels.
+// Which kernels are compiled, the messages of the compiler, and the separation of the compilation
+// time from the time of kernels.
 #include "BinningProgram.h"
 #include "CompilationWatch.h"
 #include "DeformerCase.h"
@@ -23,8 +23,8 @@ using namespace deformvolume;
 namespace
 {
 
-// What was compiled before neither takes time nor makes the compiler speak: this process begins
-// with nothing.
+// Kernels in a cache take no time, and cause no messages of the compiler. This process therefore
+// begins with empty caches.
 class Compilation : public testing::Test
 {
 protected:
@@ -56,7 +56,7 @@ OpenCLContext& GetContext()
   return OpenCLContext::Get(FindDevice(""));
 }
 
-/// What the compiler says of a program.
+/// Returns the messages of the compiler for a program.
 std::string GetLog(const cl::Program& program)
 {
   return program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(GetContext().GetDevice().Device);
@@ -98,7 +98,7 @@ bool HasBits(ResamplingForm form)
 struct Compiled
 {
   DeformReport Report;
-  double Seconds; // all in all
+  double Seconds; // in total
   std::vector<bool> Calls;
 };
 
@@ -121,7 +121,7 @@ Compiled Deform(VolumeDeformer& deformer, const DeformerCase& deformerCase)
 
 } // namespace
 
-// First, while nothing is compiled.
+// This test comes first, while nothing is compiled yet.
 TEST_F(Compilation, TimeIsReportedSeparately)
 {
   if (IsEmulated(FindDevice("").Description))
@@ -136,7 +136,7 @@ TEST_F(Compilation, TimeIsReportedSeparately)
   Load(deformer, deformerCase, arrays, Route::Field);
   const Compiled first = Deform(deformer, deformerCase);
   const Compiled second = Deform(deformer, deformerCase);
-  // What is left over is the work of some thousand voxels.
+  // The remaining time is the work for some thousand voxels.
   const double work = first.Report.ResamplingTime;
   EXPECT_GT(first.Report.CompilationTime, 0.5 * first.Seconds);
   EXPECT_LE(first.Report.CompilationTime + work, first.Seconds);
@@ -190,7 +190,7 @@ TEST_F(Compilation, WatchesMeasureTheirOwnThread)
   EXPECT_EQ(CompilationWatch::GetCurrentSeconds(), 0.0);
 }
 
-// PoCL writes "1 warning generated." to the terminal of the user, who can do nothing about it.
+// PoCL writes "1 warning generated." to the user's terminal. The user cannot change the cause.
 TEST_F(Compilation, NoWarnings)
 {
   if (!IsDevice("Portable Computing Language"))
@@ -255,15 +255,15 @@ TEST_F(Compilation, NoWarnings)
   }
 }
 
-// A device for graphics has no use for lanes, and a processor none for cells.
+// A graphics card does not use the kernel by lanes, and a CPU does not use the kernel by columns.
 TEST_F(Compilation, KernelsThatAreNotUsedAreNotCompiled)
 {
   OpenCLContext& context = GetContext();
   const std::vector<VolumeArray> arrays = MakeArrays({ ElementType::Int16 }, false);
   for (const auto& [form, name] : { std::make_pair(ResamplingForm::Cells, "Resample"),
          std::make_pair(ResamplingForm::Lanes, "ResampleBricks"),
-         std::make_pair(
-           ResamplingForm::Columns, "ResampleColumns;ResampleDeferredInt32"), // one after the other
+         std::make_pair(ResamplingForm::Columns,
+           "ResampleColumns;ResampleDeferredInt32"), // run one after the other
          std::make_pair(ResamplingForm::DeferredInt64, "ResampleDeferredInt64"),
          std::make_pair(ResamplingForm::LargeCells, "ResampleLargeCells") })
   {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compilers may fuse products with sums, and some do so where they are told not to: results are the
-// same to the last bit, however a driver does it.
+// Compilers may fuse multiplications and additions, and some compilers do so even if they are told
+// not to. Results must be the same bit for bit with every driver.
 //
-// Programs are compiled once a process. So the test runs itself twice, with compilers that are told
-// not to fuse, and with those that are told to (FakeDriver), and compares what comes out.
+// Programs are compiled once in a process. The test therefore runs itself twice, with compilers
+// that must not fuse and with compilers that must fuse (FakeDriver), and compares the results.
 #include "DeviceNeeds.h"
 #include "EditedVolume.h"
 #include "FakeDriver.h"
@@ -26,7 +26,7 @@ using namespace deformvolume;
 namespace
 {
 
-/// By name what came out: as a text of a hash and a count.
+/// The result of each case by its name: a text of a hash and a count.
 using Results = std::map<std::string, std::string>;
 
 class Hash
@@ -57,7 +57,7 @@ std::string Describe(const Deformed& deformed)
   return hash.Get() + " " + std::to_string(deformed.Report.NumberOfCoveredVoxels);
 }
 
-/// Values of different types, of a volume with so many voxels.
+/// Values of different types for a volume of `size` voxels.
 struct Values
 {
   explicit Values(std::size_t size)
@@ -106,7 +106,7 @@ void RunBoth(VolumeDeformer& deformer, const Extent& output, const std::vector<V
   }
 }
 
-/// Links and runs, which a mesh moves by what no float holds.
+/// Links and runs of a mesh, with displacements that cause rounding errors.
 void DeformByMesh(Results& results)
 {
   EditedVolume volume(Extent{ { -5, 90, 0, 40, 3, 40 } });
@@ -138,7 +138,7 @@ void DeformByMesh(Results& results)
   }
 }
 
-/// A field that is coarser than the volume, one at its voxels, and one that is turned.
+/// A field that is coarser than the volume, a field at its voxels, and a rotated field.
 void DeformByField(Results& results)
 {
   VoxelGrid voxelGrid;
@@ -166,7 +166,8 @@ void DeformByField(Results& results)
     std::vector<float> vectors = MakeRandomValues<float>(points, 6);
     for (float& number : vectors)
     {
-      // What is large has few bits that are left for less than 1/256 voxel: those that differ show.
+      // Large floats have few bits for fractions of 1/256 voxel, so differences in the last bits
+      // change positions.
       number = number * 4e-4F + 20.3F;
     }
     field.Vectors = vectors.data();
@@ -193,7 +194,7 @@ void DeformByField(Results& results)
   }
 }
 
-/// The mesh itself, and an inverse field.
+/// Mesh rasterization, and an inverse field.
 void RasterizeMesh(Results& results)
 {
   const RasterCase raster =
@@ -229,7 +230,7 @@ void RasterizeMesh(Results& results)
   }
 }
 
-/// Whether a product and a sum are fused by now.
+/// Whether the compiler fuses a multiplication and an addition.
 bool AreFused()
 {
   const OpenCLDevice device = FindDevice("");
@@ -269,14 +270,14 @@ void WriteResults()
   ASSERT_TRUE(stream.flush());
 }
 
-/// Results of a process of its own: programs that are compiled stay as they are.
+/// Returns the results of a new process, as programs are compiled only once in a process.
 Results RunMyself(const std::string& test)
 {
   const std::string file =
     testing::TempDir() + "DeformVolumeContraction" + std::to_string(getpid()) + test;
   std::remove(file.c_str());
   const std::string program = std::filesystem::read_symlink("/proc/self/exe");
-  // It runs one test, whatever part of the tests this process runs.
+  // The new process runs one test, even if this process runs only a shard of the tests.
   const std::string command = "env -u GTEST_TOTAL_SHARDS -u GTEST_SHARD_INDEX " +
     std::string(FileVariable) + "=\"" + file + "\" \"" + program +
     "\" --gtest_also_run_disabled_tests --gtest_filter=ContractionResults.DISABLED_" + test;
@@ -294,7 +295,7 @@ Results RunMyself(const std::string& test)
 
 } // namespace
 
-// What processes of their own run.
+// The tests that the new processes run.
 TEST(ContractionResults, DISABLED_Separate)
 {
   WriteResults();

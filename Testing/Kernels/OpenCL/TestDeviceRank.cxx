@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which of several devices is the best.
+// The order of several devices by their rank.
 #include "Device.h"
 #include "DeviceRank.h"
 #include "FakeDriver.h"
@@ -28,7 +28,7 @@ DeviceDescription Make(Kind kind, const char* name, const char* platform, bool s
   return device;
 }
 
-// As drivers describe them, from the best to the worst.
+// Devices as drivers describe them, from the best to the worst.
 const std::vector<DeviceDescription> Ranked{
   Make(Kind::Graphics, "NVIDIA H100", "NVIDIA CUDA", false, true, 132),
   Make(Kind::Graphics, "NVIDIA GeForce", "Portable Computing Language", false, true, 20),
@@ -57,7 +57,7 @@ TEST(DeviceRank, Order)
   }
 }
 
-// Whatever type and memory the driver states for it.
+// An emulated device is recognized for any type and memory that its driver reports.
 TEST(DeviceRank, Emulated)
 {
   const DeviceDescription processor =
@@ -76,15 +76,15 @@ TEST(DeviceRank, Emulated)
       }
     }
   }
-  // PoCL may state another type than processor, on request of the user.
+  // PoCL reports another type than CPU if the user requests it.
   EXPECT_TRUE(
     IsEmulated(Make(Kind::Graphics, "cpu-haswell", "Portable Computing Language", false, true, 8)));
   EXPECT_FALSE(IsEmulated(
     Make(Kind::Graphics, "NVIDIA GeForce", "Portable Computing Language", false, true, 8)));
 }
 
-// Where the driver lists a renderer in software before a processor, the processor is used. Two
-// devices are needed, which Kernels.TestDeviceRank asks PoCL for.
+// If the driver lists a software renderer before a CPU, the CPU is used. The test needs two
+// devices, which Kernels.TestDeviceRank requests from PoCL.
 TEST(DeviceRank, EmulatedDeviceThatIsListedFirst)
 {
   FakeDriver::Get().FirstName = "llvmpipe (LLVM 19.1.7, 256 bits)";

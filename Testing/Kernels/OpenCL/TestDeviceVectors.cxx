@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Vectors on a device: what they refuse, what they know of their changes, and that volumes which
-// are moved by them equal, to the last bit, those that get the displacements from the host.
-// TestDeviceVectorsGraphics runs these tests on a device with memory of its own.
+// Vectors on a device: misuse, their record of changes, and volumes that they deform. The outputs
+// must equal those with displacements from the host bit for bit. TestDeviceVectorsGraphics runs
+// these tests on a device with its own memory.
 #include "BoxBounds.h"
 #include "ChainMailModel.h"
 #include "DeformedBounds.h"
@@ -32,7 +32,7 @@ using Matrix = std::array<double, 9>;
 using Vectors = std::shared_ptr<DeviceVectors>;
 
 const Matrix Identity = DisplacementField().ToDisplacement;
-// Nothing about it is round.
+// A matrix without zeros, symmetries or exact binary fractions.
 const Matrix Turned{ { 0.61, -0.23, 0.07, 0.19, 0.71, -0.11, -0.05, 0.13, 0.83 } };
 
 std::string GetError(const std::function<void()>& function)
@@ -48,7 +48,7 @@ std::string GetError(const std::function<void()>& function)
   return "";
 }
 
-// In world units; so small that the volume is not folded too much.
+// Random vectors in world units, small enough that the volume is hardly folded.
 std::vector<float> MakeVectors(std::size_t points, unsigned int seed)
 {
   std::mt19937 random(seed);
@@ -103,7 +103,7 @@ struct Subject
   {
     return RunDeformer(deformer, this->Case, this->Arrays).Outputs;
   }
-  // By a deformer that has never seen vectors on a device.
+  // Returns the outputs of a deformer that has never used vectors on a device.
   std::vector<std::vector<unsigned char>> RunFresh(
     Route route, const std::vector<float>& vectors, const Matrix& matrix) const
   {
@@ -212,7 +212,7 @@ TEST(DeviceVectors, Misuse)
   EXPECT_NE(GetError([&] { deformer.SetDisplacementField(empty, few); }), "");
 }
 
-// There has to be more than one: Kernels.DeviceVectorsOnTwoDevices.
+// The test needs several devices: see Kernels.DeviceVectorsOnTwoDevices.
 TEST(DeviceVectors, AnotherDevice)
 {
   const std::vector<std::string> names = GetDeviceNames();
@@ -222,7 +222,7 @@ TEST(DeviceVectors, AnotherDevice)
   }
   const Subject subject(Extent{ { 0, 4, 0, 4, 0, 4 } });
   VolumeDeformer deformer;
-  subject.LoadInto(deformer, Route::Mesh); // on the first one
+  subject.LoadInto(deformer, Route::Mesh); // on the first device
   const Vectors there = std::make_shared<DeviceVectors>(names[1], subject.Points);
   ASSERT_EQ(there->GetDevice(), names[1]);
   const std::string error = GetError([&] { deformer.SetNodeDisplacements(there); });
@@ -246,7 +246,7 @@ TEST(DeviceVectors, ReadAndWritten)
   const std::uint64_t whole = vectors.GetRevision();
   EXPECT_FALSE(vectors.GetChanges(0)) << "all of them";
   EXPECT_EQ(std::memcmp(vectors.Read(), expected.data(), 12 * points), 0);
-  // Only what the ranges hold is read.
+  // Only the points in the ranges are read.
   std::vector<float> others = MakeVectors(points, 2);
   vectors.Write(others.data(), { { { 5, 9 } }, { { 998, 2000 } }, { { 7, 7 } } });
   std::copy(others.begin() + 15, others.begin() + 27, expected.begin() + 15);
@@ -277,7 +277,7 @@ TEST_P(DeviceVectorsRoutes, EqualsHost)
     shared->Write(vectors.data());
     subject.Move(deformer, GetParam(), shared, matrix);
     EXPECT_EQ(subject.Run(deformer), subject.RunFresh(GetParam(), vectors, matrix));
-    // Frames in which some points move.
+    // Frames in which some of the points move.
     for (std::size_t frame = 1; frame < 4; ++frame)
     {
       const std::size_t first = 700 * frame;
@@ -293,7 +293,7 @@ TEST_P(DeviceVectorsRoutes, EqualsHost)
   }
 }
 
-// What is known of the changes of one is no matter after another one.
+// The changes of one object of vectors are irrelevant after another object was used.
 TEST_P(DeviceVectorsRoutes, AlternateWithOtherVectors)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -357,7 +357,7 @@ TEST_P(DeviceVectorsRoutes, NonFiniteVectors)
 INSTANTIATE_TEST_SUITE_P(
   All, DeviceVectorsRoutes, testing::Values(Route::Field, Route::Mesh, Route::Runs));
 
-// Voxels between the points of the field.
+// The voxels lie between the points of the field.
 TEST(DeviceVectors, FieldsOfAnotherGrid)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -378,7 +378,7 @@ TEST(DeviceVectors, FieldsOfAnotherGrid)
   EXPECT_EQ(found, subject.Run(fresh));
 }
 
-// Nodes that are appended have vectors, too.
+// Appended nodes have vectors, too.
 TEST(DeviceVectors, ConnectivityChanges)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -388,7 +388,7 @@ TEST(DeviceVectors, ConnectivityChanges)
   std::vector<float> vectors = MakeVectors(subject.Points, 1);
   deformer.SetNodeDisplacements(MakeOnDevice(vectors), Turned);
   subject.Run(deformer);
-  // Tetrahedron 4 holds the voxel 4, at its first node, which another one takes the place of.
+  // Tetrahedron 4 contains voxel 4 at its first node. Another node replaces this node.
   const auto size = static_cast<std::int32_t>(subject.Points);
   const Tetrahedron before{ { 4, 5, 6, 7 } };
   const TetrahedronChange change{ 4, before, { { size + 1, 5, 6, 7 } } };
@@ -402,14 +402,14 @@ TEST(DeviceVectors, ConnectivityChanges)
   EXPECT_EQ(subject.Run(deformer), subject.RunFresh(Route::Mesh, vectors, Turned));
 }
 
-// Found where the vectors are, or not at all.
+// Bounds are found on the device of the vectors, or not at all.
 TEST(DeviceVectors, Bounds)
 {
   const Subject subject(Extent{ { 2, 21, -3, 18, -1, 17 } });
   VoxelGrid grid = subject.Case.VoxelGrid;
   grid.ToOutput = std::array<double, 3>{ { 0.3, 1.7, 0.6 } };
   DisplacementField field = subject.GetField();
-  // Points beyond the voxels do not count.
+  // Points without voxels do not count.
   for (int axis = 0; axis < 3; ++axis)
   {
     field.Dimensions[axis] += 3;
@@ -438,13 +438,13 @@ TEST(DeviceVectors, Bounds)
   field.IndexToField[0] = 0.5;
   EXPECT_FALSE(FindDeformedBounds(grid, field, *shared)) << "voxels between points";
   field.IndexToField[0] = 1.0;
-  const std::size_t inside = points / 2 + 10 * 23 + 10; // not at an end of a row, or of a plane
+  const std::size_t inside = points / 2 + 10 * 23 + 10; // neither at an end of a row nor of a plane
   vectors[3 * inside] = std::numeric_limits<float>::quiet_NaN();
   shared->Write(vectors.data(), { { { inside, inside + 1 } } });
   EXPECT_FALSE(FindDeformedBounds(grid, field, *shared)) << "not finite";
 }
 
-// One mesh moves volumes of different spacing.
+// One mesh moves volumes of different spacings.
 TEST(DeviceVectors, SeveralVolumes)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -463,7 +463,8 @@ TEST(DeviceVectors, SeveralVolumes)
   EXPECT_EQ(coarse.Run(other), coarse.RunFresh(Route::Mesh, vectors, half));
 }
 
-// A drag, whose displacements stay on the device, and one whose displacements go to the host.
+// Two drags: the displacements of one stay on the device, and those of the other are copied to the
+// host.
 TEST(DeviceVectors, OutputOfChainMail)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -519,7 +520,7 @@ TEST(DeviceVectors, OutputOfChainMail)
     model.Reset();
   }
   expectSame();
-  // The host has the output again.
+  // The output is host memory again.
   ChainMailRequest request;
   request.Handles.resize(1);
   request.Handles[0].RestPosition = { { 10, 9, 8 } };
@@ -553,7 +554,7 @@ TEST(DeviceVectors, TinyBoxes)
 {
   WorkDevice device;
   const std::array<int, 3> size{ { 5, 4, 3 } };
-  const std::vector<float> vectors = MakeVectors(80, 1); // 60 of four floats
+  const std::vector<float> vectors = MakeVectors(80, 1); // 60 vectors of four floats
   const cl::Buffer there = device.Send(vectors.data(), 60 * 4 * sizeof(float), cl::Buffer());
   const std::vector<Extent> boxes{ { { 0, 4, 0, 3, 0, 2 } }, { { 4, 4, 3, 3, 2, 2 } },
     { { 1, 3, 0, 1, 1, 2 } } };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What passes between the host and vectors on a device with memory of its own.
+// Copies between the host and vectors on a device with its own memory.
 #include "ChainMailModel.h"
 #include "DeformerCase.h"
 #include "DeviceNeeds.h"
@@ -22,7 +22,7 @@ using namespace deformvolume;
 namespace
 {
 
-// A few numbers that the host and the device tell each other.
+// The bytes of a few numbers that the host and the device exchange.
 constexpr std::uint64_t Few = 256;
 
 class Transfers : public testing::Test
@@ -70,7 +70,7 @@ TEST_F(Transfers, WrittenVectorsAreCopiedOnce)
   EXPECT_EQ(std::memcmp(vectors->Read(), this->Displacements.data(), this->Bytes), 0);
 }
 
-// An image and its segmentation, of another spacing.
+// An image and its segmentation, which has another spacing.
 TEST_F(Transfers, SeveralVolumesTakeOneUpload)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -90,7 +90,7 @@ TEST_F(Transfers, SeveralVolumesTakeOneUpload)
     EXPECT_EQ(FakeDriver::Get().BytesWritten, this->Bytes);
     EXPECT_LE(FakeDriver::Get().BytesRead, Few);
   }
-  // On the host each of them is sent by itself.
+  // Displacements on the host are sent for each volume separately.
   this->Reset();
   for (VolumeDeformer& deformer : deformers)
   {
@@ -120,7 +120,7 @@ TEST_F(Transfers, FieldsPassNothingThroughTheHost)
   EXPECT_LE(FakeDriver::Get().BytesRead, Few);
 }
 
-// In a drag the displacements of the voxels neither come to the host nor go from it.
+// In a drag, the displacements of the voxels are not copied to or from the host.
 TEST_F(Transfers, ChainMailPassesNothingThroughTheHost)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -152,7 +152,7 @@ TEST_F(Transfers, ChainMailPassesNothingThroughTheHost)
     deformer.SetDisplacementField(field, vectors);
     const std::uint64_t moved = 12 * static_cast<std::uint64_t>(report.NumberOfMovedVoxels);
     ASSERT_GT(moved, 12U * 512U);
-    // Lists of blocks, and what the kernels tell of each, a few numbers a block of 512 voxels.
+    // Lists of blocks, and results of kernels: a few numbers per block of 512 voxels.
     EXPECT_LT(FakeDriver::Get().BytesRead, moved / 16);
     EXPECT_LT(FakeDriver::Get().BytesWritten, moved / 16);
     std::cout << "Step " << step << ": " << moved << " bytes of displacements have changed, "
@@ -162,8 +162,8 @@ TEST_F(Transfers, ChainMailPassesNothingThroughTheHost)
   EXPECT_EQ(deformer.GetDeviceMemory(), held);
 }
 
-// Points that are known to have changed move a part of the output, and where they lie is found on
-// the device.
+// Points with reported changes cause a partial update of the output. The box of the changes is
+// found on the device.
 TEST_F(Transfers, PartsOfAFieldUpdatePartsOfTheOutput)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -197,7 +197,7 @@ TEST_F(Transfers, PartsOfAFieldUpdatePartsOfTheOutput)
     vectors->Write(edited.Displacements.data(), changes);
     this->Reset();
     deformer.SetDisplacementField(field, vectors);
-    // Six numbers for each sub-brick of 16 x 8 x 8 cells, and where these are.
+    // Six numbers for each sub-brick of 16 x 8 x 8 cells, and the indices of the sub-bricks.
     EXPECT_LE(FakeDriver::Get().BytesRead, 24U * 12 * 14 * 10 + Few);
     EXPECT_LE(FakeDriver::Get().BytesWritten, 24U * 12 * 14 * 10 + Few);
     const DeformReport report = deformer.Deform(request);
@@ -209,7 +209,7 @@ TEST_F(Transfers, PartsOfAFieldUpdatePartsOfTheOutput)
     parts += report.NumberOfResampledBricks < report.NumberOfBricks ? 1 : 0;
   }
   EXPECT_GE(parts, 7);
-  // What is not known to be the same is made anew.
+  // Without reported changes, the output is computed again.
   edited.Displacements[30] += 0.25F;
   vectors->Write(edited.Displacements.data());
   deformer.SetDisplacementField(field, vectors);
@@ -219,7 +219,7 @@ TEST_F(Transfers, PartsOfAFieldUpdatePartsOfTheOutput)
   EditedOutputs expected(edited);
   fresh.Deform(expected.MakeRequest(edited));
   EXPECT_TRUE(outputs == expected);
-  // A part of other displacements, which the host has sent meanwhile.
+  // A partial change of vectors after displacements from the host.
   edited.Displacements[33] += 0.25F;
   edited.SendDisplacements(deformer, Route::Field);
   deformer.Deform(request);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Calls of the driver that fail, settings that fail half way, and processors with little local
-// memory.
+// Failing calls of the driver, settings that fail halfway, and CPUs with little local memory.
 #include "DeformerCase.h"
 #include "DeviceNeeds.h"
 #include "FakeDriver.h"
@@ -40,7 +39,7 @@ protected:
 
 } // namespace
 
-// What is copied to memory that is not aligned for its elements.
+// Outputs in memory that is not aligned for their elements are copied.
 TEST_F(Faults, ReadsThatFail)
 {
   const auto voxels = static_cast<std::size_t>(GetNumberOfPoints(this->Case.Output));
@@ -84,8 +83,7 @@ TEST_F(Faults, ReadsThatFail)
   }
 }
 
-// The second array does not fit into what the device gives in one piece, and the first one is there
-// by then.
+// The second array exceeds the allocation limit after the first array was already copied.
 TEST_F(Faults, ArraysThatDoNotFit)
 {
   const std::uint64_t plane = 22 * 19;
@@ -97,7 +95,7 @@ TEST_F(Faults, ArraysThatDoNotFit)
   const auto large =
     MakeRandomValues<double>(static_cast<std::size_t>(8 * this->Case.GetNumberOfVoxels()), 4);
   EXPECT_THROW(this->Deformer.SetArrays({ MakeArray(bytes), MakeArray(large, 8) }), Error);
-  // What was set before is gone, or whole.
+  // The previous arrays are discarded or complete.
   try
   {
     this->ExpectRight();
@@ -141,8 +139,8 @@ TEST_F(Faults, ShortHostMemory)
   EXPECT_TRUE(isClean);
 }
 
-// Links for which the voxel grid has made no room: there is no mesh then, and another deformation
-// works.
+// The voxel grid has reserved no memory for links. There is no mesh after the error, and another
+// deformation works.
 TEST_F(Faults, LinksThatDoNotFit)
 {
   const std::uint64_t plane = 22 * 19;
@@ -178,13 +176,13 @@ TEST_F(Faults, LittleLocalMemory)
   EXPECT_EQ(first.Outputs, second.Outputs);
 }
 
-// Chunks of a volume share planes, and what commands on buffers over the same memory do is
-// undefined.
+// Chunks of a volume share planes. The result of commands on several buffers over the same memory
+// is undefined.
 TEST_F(Faults, BuffersOverTheSameMemory)
 {
   FakeDriver::Get().RefusesOverlaps = true;
   std::vector<VolumeArray> owned = this->Arrays;
-  owned.push_back(this->Arrays[0]); // twice the same
+  owned.push_back(this->Arrays[0]); // the same array twice
   for (VolumeArray& array : owned)
   {
     array.Owner = std::make_shared<int>(0);
@@ -204,7 +202,7 @@ TEST_F(Faults, BuffersOverTheSameMemory)
       this->Deformer.SetArrays(owned);
     }
   }
-  // A part of another one.
+  // An array that is a part of another one.
   const auto longer = MakeRandomValues<float>(this->Others.size() + 1, 6);
   this->Arrays[1].Data = owned[1].Data = longer.data();
   this->Arrays[2] = this->Arrays[1];
@@ -215,7 +213,7 @@ TEST_F(Faults, BuffersOverTheSameMemory)
   this->ExpectRight();
 }
 
-// The vectors of a field may be an array of the volume, too.
+// The vectors of a field may also be an array of the volume.
 TEST_F(Faults, FieldThatIsAnArray)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is different on a graphics card, on whatever device there is: memory of its own, no double
-// precision, and groups of work-items.
+// Differences of graphics cards, tested on any device: own memory, no double precision, and
+// work-groups of several items.
 #include "DeformerCase.h"
 #include "DeviceNeeds.h"
 #include "DeviceVectors.h"
@@ -52,11 +52,11 @@ TEST_F(GraphicsDevice, EqualsReference)
   }
 }
 
-// Drivers take groups of one item where the number of items is prime.
+// Without a given size, drivers choose work-groups of one item if the number of items is prime.
 TEST_F(GraphicsDevice, WorkGroupSizesAreGiven)
 {
   FakeDriver::Get().LaunchesWithoutGroup = 0;
-  // So large that several items count, and folded.
+  // Large enough for several work-items, and folded.
   const DeformerCase folded =
     MakeCase({ { 0, 30, 0, 30, 0, 30 } }, { { 1, 1, 1 } }, MakeJitter(3, 1.0));
   const auto values =
@@ -69,13 +69,13 @@ TEST_F(GraphicsDevice, WorkGroupSizesAreGiven)
   EXPECT_EQ(FakeDriver::Get().LaunchesWithoutGroup, 0);
 }
 
-// The memory of the device is all that it has, and not what it has beside what is held.
+// Allocated memory counts as a part of the memory of the device, not in addition to it.
 TEST_F(GraphicsDevice, MemoryIsCountedOnce)
 {
   Load(this->Deformer, this->Case, this->Arrays, Route::Mesh);
   RunDeformer(this->Deformer, this->Case, this->Arrays);
   const std::uint64_t held = this->Deformer.GetDeviceMemory();
-  // What has to be there for the next output is not there beside what is held, nor in all.
+  // The next output fits neither beside the allocated memory nor into the whole memory.
   FakeDriver::Get().GlobalMemory = held + held / 4;
   DeformerCase larger = this->Case;
   larger.Output[5] += 60;
@@ -84,7 +84,7 @@ TEST_F(GraphicsDevice, MemoryIsCountedOnce)
   EXPECT_NO_THROW(RunDeformer(this->Deformer, larger, this->Arrays));
 }
 
-// A call for each of many places takes longer than what lies between them.
+// One call for each changed position would take longer than copying the values in between.
 TEST_F(GraphicsDevice, ChangedMasksAreUploadedInOneCall)
 {
   Load(this->Deformer, this->Case, this->Arrays, Route::Mesh);
@@ -102,7 +102,7 @@ TEST_F(GraphicsDevice, ChangedMasksAreUploadedInOneCall)
     RunDeformer(this->Deformer, this->Case, this->Arrays));
 }
 
-// Single precision holds whole numbers up to 2^24.
+// Single precision is exact for integers up to 2^24.
 TEST_F(GraphicsDevice, IntegersBeyondSinglePrecision)
 {
   const auto size = static_cast<std::size_t>(this->Case.GetNumberOfVoxels());
@@ -114,7 +114,7 @@ TEST_F(GraphicsDevice, IntegersBeyondSinglePrecision)
   EXPECT_EQ(this->GetError({ MakeArray(this->Values) }), "");
 }
 
-// A matrix is applied in double precision: on the host, where the device has none.
+// A matrix is applied in double precision. If the device has none, it is applied on the host.
 TEST_F(GraphicsDevice, VectorsOfTheDevice)
 {
   const auto vectors =

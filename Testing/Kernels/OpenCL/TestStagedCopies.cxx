@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Copies to and from a device with memory of its own that go through page-locked memory in
-// portions: copies that fail, boxes, many threads, and whole outputs. Small copies that fail.
+// Copies to and from a device with its own memory that pass through page-locked memory in portions:
+// failing copies, boxes, many threads, and whole outputs. Also failing small copies.
 #include "DeformerCase.h"
 #include "DeviceNeeds.h"
 #include "DeviceVectors.h"
@@ -46,7 +46,7 @@ protected:
   {
     return cl::Buffer(this->Device.GetContext().GetContext(), CL_MEM_READ_WRITE, bytes);
   }
-  /// By calls that the driver does not make wait for others.
+  /// Uses calls that bypass the code under test.
   cl::Buffer MakeBuffer(const Bytes& bytes)
   {
     const cl::Buffer buffer = this->MakeBuffer(bytes.size());
@@ -59,7 +59,7 @@ protected:
     this->GetQueue().enqueueReadBuffer(buffer, CL_TRUE, 0, size, bytes.data());
     return bytes;
   }
-  /// Whether large copies work, in both directions.
+  /// Checks that large copies work in both directions.
   void ExpectRight()
   {
     const Bytes bytes = MakeBytes(3 * Half + 17, 5);
@@ -93,7 +93,7 @@ protected:
     request.Coverage = reinterpret_cast<signed char*>(memory[2].data() + 1);
     return request;
   }
-  /// All tests have one case.
+  /// Returns the reference of the case, which all tests share.
   const reference::Result& GetReference() const
   {
     static const reference::Result result = ResampleByReference(this->Case);
@@ -120,7 +120,7 @@ protected:
 
 } // namespace
 
-// The first test of all: page-locked memory is kept once it is there.
+// This must be the first test, as page-locked memory is kept once it exists.
 TEST_F(StagedOutputs, WithoutPageLockedMemory)
 {
   FakeDriver& driver = FakeDriver::Get();
@@ -138,7 +138,7 @@ TEST_F(StagedOutputs, WithoutPageLockedMemory)
   std::vector<Bytes> memory;
   EXPECT_THROW(this->Deformer.Deform(this->MakeRequest(memory)), Error);
   driver.ReadError = 0;
-  // The driver has some later.
+  // Later the driver has page-locked memory.
   driver.RefusesPinned = false;
   EXPECT_NE(this->Device.GetContext().GetStagedCopies(), nullptr);
   driver.Reads = driver.Writes = 0;
@@ -147,7 +147,7 @@ TEST_F(StagedOutputs, WithoutPageLockedMemory)
   EXPECT_EQ(driver.Writes, 4);
 }
 
-// What fails is told, whichever portion it is, and nothing outside is touched.
+// Each failing portion is reported, and nothing outside the copied range changes.
 TEST_F(Staged, ReadsThatFail)
 {
   FakeDriver& driver = FakeDriver::Get();
@@ -191,7 +191,7 @@ TEST_F(Staged, ReadsThatFail)
   }
 }
 
-// One of several fails: all have ended by then.
+// If one of several copies fails, all copies have ended after the error.
 TEST_F(Staged, ReadsBesideOneThatFails)
 {
   FakeDriver& driver = FakeDriver::Get();
@@ -218,7 +218,7 @@ TEST_F(Staged, ReadsBesideOneThatFails)
         {
           EXPECT_NO_THROW(reads.Check());
         }
-        // else they are given up
+        // otherwise the reads are destroyed without a check
       }
       const std::vector<Bytes> ended = read;
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -256,7 +256,7 @@ TEST_F(Staged, WritesThatFail)
   }
 }
 
-// Arrays that could not be sent are not there.
+// Arrays whose copy failed are discarded.
 TEST_F(StagedOutputs, ArraysThatFail)
 {
   FakeDriver& driver = FakeDriver::Get();
@@ -276,7 +276,7 @@ TEST_F(StagedOutputs, ArraysThatFail)
   }
 }
 
-// The memory of a request is left alone when the call has ended, with an error or without.
+// The memory of a request is not written after the call has ended, with or without an error.
 TEST_F(StagedOutputs, PortionsOfSlabsThatFail)
 {
   FakeDriver& driver = FakeDriver::Get();
@@ -331,7 +331,7 @@ TEST_F(StagedOutputs, AbortBetweenSlabs)
 TEST_F(Staged, RangesOfAllSizes)
 {
   FakeDriver& driver = FakeDriver::Get();
-  this->ExpectRight(); // from now on there is page-locked memory
+  this->ExpectRight(); // afterwards page-locked memory exists
   constexpr std::size_t offset = 13;
   for (const std::size_t middle : { Least, Half, 2 * Half, 3 * Half })
   {
@@ -361,7 +361,8 @@ TEST_F(Staged, RangesOfAllSizes)
 namespace
 {
 
-/// What a box of voxels of a buffer should become in memory that holds others.
+/// Computes the expected result of copying a box of voxels from a buffer into memory with other
+/// voxels.
 void CopyBox(const Bytes& from, const Extent& whole, const Extent& part, std::size_t bytes,
   Bytes& to, const Extent& held)
 {
@@ -392,7 +393,7 @@ TEST_F(Staged, Boxes)
     Extent Whole;
     std::size_t Bytes;
   };
-  // Planes of a few kilobytes, planes that are larger than a half, and rows that are.
+  // Planes of a few kilobytes, planes larger than a half, and rows larger than a half.
   const std::vector<Shape> shapes{ { { { -5, 94, 3, 62, 7, 70 } }, 8 },
     { { { 0, 1099, -4, 900, 0, 3 } }, 4 }, { { { 2, 140001, 0, 1, -1, 1 } }, 16 } };
   std::mt19937 random(4);
@@ -418,7 +419,7 @@ TEST_F(Staged, Boxes)
         {
           std::swap(part[2 * axis], part[2 * axis + 1]);
         }
-        // The same voxels, those of the box only, or some beside it.
+        // The memory has the same voxels, only those of the box, or some more.
         held[2 * axis] = times % 3 == 0 ? first : part[2 * axis] - (times % 3 - 1) * 2;
         held[2 * axis + 1] = times % 3 == 0 ? last : part[2 * axis + 1] + (times % 3 - 1);
       }
@@ -436,7 +437,7 @@ TEST_F(Staged, Boxes)
   EXPECT_GT(large, 40) << "boxes in several portions";
 }
 
-// Boxes that lie in one piece on both sides are copied as such.
+// Boxes that are contiguous on both sides are copied as one range.
 TEST_F(Staged, WholePlanes)
 {
   const Extent whole{ { 0, 1023, 0, 63, 0, 63 } };
@@ -454,7 +455,7 @@ TEST_F(Staged, WholePlanes)
   EXPECT_TRUE(read == expected);
 }
 
-// The page-locked memory is there once, and all threads want it.
+// There is only one page-locked memory, and all threads use it.
 TEST_F(Staged, ManyThreads)
 {
   constexpr int number = 10;
@@ -493,7 +494,7 @@ TEST_F(Staged, ManyThreads)
   EXPECT_EQ(good, std::vector<int>(number, 4));
 }
 
-// A whole output and its slabs, of which one is read while the next one is made.
+// A whole output, and slabs: one slab is read while the next one is computed.
 TEST_F(StagedOutputs, Slabs)
 {
   const reference::Result& reference = this->GetReference();
@@ -522,7 +523,7 @@ TEST_F(StagedOutputs, Slabs)
   }
 }
 
-// A copy that nobody waits for reports its failure all the same.
+// A failure is reported even if no caller waits for the copy.
 TEST_F(Staged, SmallWritesThatFail)
 {
   FakeDriver& driver = FakeDriver::Get();
@@ -551,7 +552,7 @@ TEST_F(Staged, SmallWritesThatFail)
   EXPECT_TRUE(std::equal(values.begin(), values.end(), vectors.Read()));
 }
 
-// Vectors that are sent and read again, some of them or all.
+// Writes and reads vectors, some of them or all.
 TEST_F(Staged, VectorsOfTheDevice)
 {
   const std::size_t points = 400001;
