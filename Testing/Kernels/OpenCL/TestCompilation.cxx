@@ -255,7 +255,8 @@ TEST_F(Compilation, NoWarnings)
   }
 }
 
-// A graphics card does not use the kernel by lanes, and a CPU does not use the kernel by columns.
+// A program contains only the kernels of its form. A graphics card, for example, does not need the
+// kernel by lanes.
 TEST_F(Compilation, KernelsThatAreNotUsedAreNotCompiled)
 {
   OpenCLContext& context = GetContext();
