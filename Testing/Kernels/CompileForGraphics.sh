@@ -2,9 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Usage: CompileForGraphics.sh PROGRAM FOLDER
 #
-# Has clang look at the OpenCL programs that the program KernelTexts writes into the folder, for a
-# target without extensions of its own, as the drivers of graphics cards do. Fails where it finds
-# an error.
+# Checks with clang the OpenCL programs that the program KernelTexts writes into the folder. The target has no
+# extensions of its own, like the drivers of graphics cards. Fails if clang finds an error.
 set -euo pipefail
 
 program=$1

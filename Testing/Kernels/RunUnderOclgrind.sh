@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Usage: RunUnderOclgrind.sh LIBRARY LOG PROGRAM [ARGUMENT]...
 #
-# Runs a program on Oclgrind's device. Fails where the program fails, and where Oclgrind, which
-# never fails itself, has reported anything.
+# Runs a program on the device of Oclgrind. Fails if the program fails, or if Oclgrind reports anything. Oclgrind itself
+# never fails.
 set -u
 
 library=$1
@@ -15,9 +15,9 @@ if [ ! -e "$library" ]; then
 fi
 rm -f "$log"
 
-# The device is named, so that the program fails rather than run elsewhere. Without optimisation,
-# because Oclgrind 21.10 does not know all that its own compiler puts into inlined functions. Its
-# search for uninitialised values is left out: it takes what clEnqueueFillBuffer wrote for such.
+# The device is named, so that the program fails rather than run on another device. Optimization is disabled, because
+# Oclgrind 21.10 does not support all results of its own compiler for inlined functions. The search for uninitialized
+# values is disabled: values written by clEnqueueFillBuffer count as such.
 OCL_ICD_VENDORS="$library" DEFORMVOLUME_DEVICE=oclgrind OCLGRIND_LOG="$log" \
   OCLGRIND_BUILD_OPTIONS=-cl-opt-disable \
   OCLGRIND_DATA_RACES="${OCLGRIND_DATA_RACES:-1}" \

@@ -4,8 +4,8 @@
 
     python3 Testing/Kernels/validation.py FOLDER [--write]
 
-FOLDER is that of the tests of the engine (build/vtk/bin). Runs some of them, which takes about 20 seconds, and prints
-the tables. With --write the tables of the document are replaced.
+FOLDER is the folder of the program DeformVolumeEngineTests (build/vtk/bin). Runs some of its tests, which takes about
+20 seconds, and prints the tables. With --write, replaces the tables of the document.
 """
 import argparse
 import json
@@ -24,7 +24,7 @@ TESTS = {
 
 
 def measure(folder):
-    """Runs the tests. Returns {test: {name: value}}, as they have recorded it; raises an error if a test fails."""
+    """Runs the tests. Returns their recorded values as {test: {name: value}}. Raises an error if a test fails."""
     values = {}
     for source, pattern in TESTS.items():
         with tempfile.TemporaryDirectory() as temporary:
@@ -88,7 +88,7 @@ def elements(values):
     ])
 
 
-# Case, test, prefix of its names, converged values by the names.
+# Each row: case, test, prefix of the names of its values, and the converged value for each name.
 ACCURACY = [
     ("Cantilever, 10 times as long as thick: deflection by that of Euler-Bernoulli theory", "Cantilever", "",
      {"nu 0.3, 1": 1.0010, "nu 0.3, 2": 1.0010, "nu 0.45, 1": 0.9927, "nu 0.45, 2": 0.9927, "nu 0.49, 1": 0.9895,
