@@ -16,8 +16,8 @@ fi
 rm -f "$log"
 
 # The device is named, so that the program fails rather than run on another device. Optimization is disabled, because
-# Oclgrind 21.10 does not support all results of its own compiler for inlined functions. The search for uninitialized
-# values is disabled: values written by clEnqueueFillBuffer count as such.
+# Oclgrind 21.10 does not support all instructions that its own compiler puts into inlined functions. The search for
+# uninitialized values is disabled, because it reports values that clEnqueueFillBuffer wrote.
 OCL_ICD_VENDORS="$library" DEFORMVOLUME_DEVICE=oclgrind OCLGRIND_LOG="$log" \
   OCLGRIND_BUILD_OPTIONS=-cl-opt-disable \
   OCLGRIND_DATA_RACES="${OCLGRIND_DATA_RACES:-1}" \

@@ -86,15 +86,15 @@ Position CutReference::GetPosition(std::int64_t vertex, int side) const
     return own;
   }
   // The positions that neighbors suggest, sorted by the reliability of their information.
-  std::array<std::vector<Position>, 3> words;
-  const auto add = [&](std::size_t word, std::int64_t near, std::int64_t from, std::int64_t to)
+  std::array<std::vector<Position>, 3> suggested;
+  const auto add = [&](std::size_t list, std::int64_t near, std::int64_t from, std::int64_t to)
   {
     Position moved = this->Mesh.Displacements[near];
     for (int axis = 0; axis < 3; ++axis)
     {
       moved[axis] += this->Mesh.Displacements[to][axis] - this->Mesh.Displacements[from][axis];
     }
-    words[word].push_back(moved);
+    suggested[list].push_back(moved);
   };
   const auto leads = [&](std::int64_t from, std::int64_t to, int sideOfBoth)
   {
@@ -126,20 +126,20 @@ Position CutReference::GetPosition(std::int64_t vertex, int side) const
       add(2, near, near, near);
     }
   }
-  const std::vector<Position>& heard = !words[0].empty() ? words[0]
-    : !words[1].empty()                                  ? words[1]
-                                                         : words[2];
+  const std::vector<Position>& best = !suggested[0].empty() ? suggested[0]
+    : !suggested[1].empty()                                 ? suggested[1]
+                                                            : suggested[2];
   Position other{};
   bool near = true;
   for (int axis = 0; axis < 3; ++axis)
   {
     long double sum = 0.0L;
-    for (const Position& moved : heard)
+    for (const Position& moved : best)
     {
       sum += static_cast<long double>(moved[axis]);
     }
     const auto mean =
-      static_cast<std::int64_t>(std::floor(sum / static_cast<long double>(heard.size()) + 0.5L));
+      static_cast<std::int64_t>(std::floor(sum / static_cast<long double>(best.size()) + 0.5L));
     other[axis] = own[axis] - this->Mesh.Displacements[vertex][axis] + mean;
     near = near && std::abs(other[axis] - own[axis]) <= 64;
   }

@@ -189,7 +189,7 @@ void ExpectArrayEqualsReference(const reference::Result& reference, const Volume
       {
         if (std::memcmp(&value, &background, sizeof(T)) != 0)
         {
-          message = "no background";
+          message = "not the background value";
         }
       }
       else
@@ -512,8 +512,8 @@ void ExpectEqualsReference(const DeformerCase& deformerCase, const reference::Re
 
 void ExpectEmbedding(const reference::Result& reference)
 {
-  ASSERT_EQ(reference.NumberOfInvertedTetrahedra, 0) << "the test wants another deformation";
-  ASSERT_EQ(reference.NumberOfTouchedVoxels, 0) << "the test wants another deformation";
+  ASSERT_EQ(reference.NumberOfInvertedTetrahedra, 0) << "the test needs another deformation";
+  ASSERT_EQ(reference.NumberOfTouchedVoxels, 0) << "the test needs another deformation";
 }
 
 UsualArrays::UsualArrays(std::size_t voxels)

@@ -434,7 +434,7 @@ TEST(MassSpring, StableTimeStep)
     words = error.what();
   }
   EXPECT_NE(words.find("diverged"), std::string::npos) << words;
-  EXPECT_EQ(model.GetDisplacements(), at) << "the last good state";
+  EXPECT_EQ(model.GetDisplacements(), at) << "not the state before the call";
   EXPECT_EQ(model.GetVelocities(), velocities);
 }
 

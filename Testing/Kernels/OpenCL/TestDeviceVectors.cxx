@@ -157,7 +157,7 @@ TEST(RangeLog, RemembersTheLastRanges)
   RangeLog log;
   EXPECT_EQ(log.GetRevision(), 0U);
   EXPECT_EQ(log.GetSince(0), PointRanges());
-  EXPECT_FALSE(log.GetSince(1)) << "of the future";
+  EXPECT_FALSE(log.GetSince(1)) << "a future revision";
   log.Add({ { { 3, 5 } }, { { 9, 10 } } });
   const std::uint64_t first = log.GetRevision();
   EXPECT_GT(first, 0U);
@@ -169,14 +169,14 @@ TEST(RangeLog, RemembersTheLastRanges)
   {
     log.Add({ { { i, i + 1 } } });
   }
-  EXPECT_FALSE(log.GetSince(0)) << "some of the first revision are gone";
+  EXPECT_FALSE(log.GetSince(0)) << "ranges of the first revision were discarded";
   EXPECT_EQ(log.GetSince(first)->size(), RangeLog::MostEntries);
   const std::uint64_t before = log.GetRevision();
   log.AddAll();
   EXPECT_FALSE(log.GetSince(before));
   EXPECT_EQ(log.GetSince(log.GetRevision()), PointRanges());
   log.Add(PointRanges(RangeLog::MostEntries + 1, { { 0, 1 } }));
-  EXPECT_FALSE(log.GetSince(before + 1)) << "too many to be kept";
+  EXPECT_FALSE(log.GetSince(before + 1)) << "more ranges than the log keeps";
 }
 
 TEST(DeviceVectors, Misuse)
@@ -206,7 +206,7 @@ TEST(DeviceVectors, Misuse)
     EXPECT_NE(getError(few).find(std::to_string(subject.Points - 1) +
                 " vectors on the device for " + std::to_string(subject.Points) + " points"),
       std::string::npos);
-    EXPECT_EQ(subject.Run(deformer), expected) << "the deformation of before is gone";
+    EXPECT_EQ(subject.Run(deformer), expected) << "an error must not change the deformation";
   }
   DisplacementField empty;
   EXPECT_NE(GetError([&] { deformer.SetDisplacementField(empty, few); }), "");
@@ -244,7 +244,7 @@ TEST(DeviceVectors, ReadAndWritten)
   std::vector<float> expected = MakeVectors(points, 1);
   vectors.Write(expected.data());
   const std::uint64_t whole = vectors.GetRevision();
-  EXPECT_FALSE(vectors.GetChanges(0)) << "all of them";
+  EXPECT_FALSE(vectors.GetChanges(0)) << "all vectors have changed";
   EXPECT_EQ(std::memcmp(vectors.Read(), expected.data(), 12 * points), 0);
   // Only the points in the ranges are read.
   std::vector<float> others = MakeVectors(points, 2);
@@ -257,7 +257,7 @@ TEST(DeviceVectors, ReadAndWritten)
   EXPECT_EQ(changes, (PointRanges{ { { 5, 9 } }, { { 998, 1000 } } }));
   const std::uint64_t revision = vectors.GetRevision();
   vectors.Write(others.data(), { { { 1000, 1001 } } });
-  EXPECT_EQ(vectors.GetRevision(), revision) << "there are no such points";
+  EXPECT_EQ(vectors.GetRevision(), revision) << "the range contains no points";
 }
 
 class DeviceVectorsRoutes : public testing::TestWithParam<Route>

@@ -56,17 +56,17 @@ TEST_F(Transfers, WrittenVectorsAreCopiedOnce)
   EXPECT_EQ(FakeDriver::Get().BytesWritten, this->Bytes);
   vectors->Write(this->Displacements.data(), { { { 100, 150 } } });
   EXPECT_EQ(FakeDriver::Get().BytesWritten, this->Bytes + 50 * 12);
-  EXPECT_EQ(FakeDriver::Get().BytesRead, 0U) << "nobody has asked";
+  EXPECT_EQ(FakeDriver::Get().BytesRead, 0U) << "read before Read() was called";
   vectors->Read();
   vectors->Read();
   EXPECT_EQ(FakeDriver::Get().BytesRead, this->Bytes);
   vectors->Write(this->Displacements.data(), { { { 200, 205 } }, { { 208, 210 } } });
   vectors->Read();
-  EXPECT_EQ(FakeDriver::Get().BytesRead, this->Bytes + 10 * 12) << "what has changed";
+  EXPECT_EQ(FakeDriver::Get().BytesRead, this->Bytes + 10 * 12) << "more than the changed vectors";
   this->Reset();
   vectors->Write(this->Displacements.data(), { { { 7000, 7005 } }, { { 208, 210 } } });
   vectors->Read();
-  EXPECT_EQ(FakeDriver::Get().BytesRead, 7U * 12U) << "not what lies between";
+  EXPECT_EQ(FakeDriver::Get().BytesRead, 7U * 12U) << "more than the two ranges";
   EXPECT_EQ(std::memcmp(vectors->Read(), this->Displacements.data(), this->Bytes), 0);
 }
 

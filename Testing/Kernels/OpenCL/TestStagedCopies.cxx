@@ -128,7 +128,7 @@ TEST_F(StagedOutputs, WithoutPageLockedMemory)
   ASSERT_EQ(this->Device.GetContext().GetStagedCopies(), nullptr);
   driver.Reads = driver.Writes = 0;
   this->ExpectRight();
-  EXPECT_EQ(driver.Reads, 2) << "one by the test";
+  EXPECT_EQ(driver.Reads, 2) << "one read by the test itself";
   EXPECT_EQ(driver.Writes, 1);
   const reference::Result& reference = this->GetReference();
   Load(this->Deformer, this->Case, this->Arrays, Route::Mesh);
@@ -176,7 +176,7 @@ TEST_F(Staged, ReadsThatFail)
         {
           EXPECT_EQ(error.err(), Failure);
         }
-        EXPECT_NO_THROW(reads.Check()) << "it is forgotten";
+        EXPECT_NO_THROW(reads.Check()) << "a failure is reported only once";
       }
       else
       {
@@ -325,7 +325,7 @@ TEST_F(StagedOutputs, AbortBetweenSlabs)
     ExpectEqualsReference(
       this->Case, reference, this->Arrays, RunDeformer(this->Deformer, this->Case, this->Arrays));
   }
-  EXPECT_GT(aborted, 0) << "a slab was read by then";
+  EXPECT_GT(aborted, 0) << "no slab was read before an abort";
 }
 
 TEST_F(Staged, RangesOfAllSizes)

@@ -332,7 +332,7 @@ TEST(Cubic, LinearWhereVoxelsAreMissing)
       linears += !IsCubicCell(made, i);
     }
     linearCells = defect.Cells == 0 ? linears : linearCells;
-    EXPECT_EQ(linears, linearCells + defect.Cells) << "the test wants another place";
+    EXPECT_EQ(linears, linearCells + defect.Cells) << "the test needs another position";
     const reference::Result reference = ResampleByReference(made);
     const Deformed linear = RunLinear(made, arrays, defect.Way);
     const Deformed cubic = RunCubic(made, arrays, defect.Way);
