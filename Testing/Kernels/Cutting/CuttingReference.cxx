@@ -348,13 +348,13 @@ std::vector<int> FindPieces(const Extent& vertices, const Mask& switchedOff, int
         faces[face].push_back(number);
       }
     });
-  std::vector<std::vector<std::size_t>> neighbours(pieces.size());
+  std::vector<std::vector<std::size_t>> neighbors(pieces.size());
   for (const auto& [face, sides] : faces)
   {
     if (sides.size() == 2)
     {
-      neighbours[sides[0]].push_back(sides[1]);
-      neighbours[sides[1]].push_back(sides[0]);
+      neighbors[sides[0]].push_back(sides[1]);
+      neighbors[sides[1]].push_back(sides[0]);
     }
   }
   numberOfPieces = 0;
@@ -370,12 +370,12 @@ std::vector<int> FindPieces(const Extent& vertices, const Mask& switchedOff, int
     {
       const std::size_t next = rest.back();
       rest.pop_back();
-      for (const std::size_t neighbour : neighbours[next])
+      for (const std::size_t neighbor : neighbors[next])
       {
-        if (pieces[neighbour] < 0)
+        if (pieces[neighbor] < 0)
         {
-          pieces[neighbour] = numberOfPieces;
-          rest.push_back(neighbour);
+          pieces[neighbor] = numberOfPieces;
+          rest.push_back(neighbor);
         }
       }
     }
