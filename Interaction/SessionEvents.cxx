@@ -21,7 +21,7 @@ using deformvolume::SessionEvent;
 struct EventForm
 {
   const char* Name;
-  std::size_t Numbers; // of a cut it is the least
+  std::size_t Numbers; // number of arguments; for a cut the minimum
 };
 
 // In the order of SessionEvent::KindType.
@@ -68,7 +68,7 @@ std::string deformvolume::FormatEvent(const SessionEvent& event)
   std::string text = Forms[event.Kind].Name;
   for (const double number : event.Numbers)
   {
-    // With a point, whatever the locale.
+    // std::to_chars writes a decimal point in all locales.
     constexpr int enough = 17;
     char digits[32];
     const auto end =

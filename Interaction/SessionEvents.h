@@ -15,7 +15,7 @@ namespace deformvolume
 {
 
 /// A call of a method that changes a session. A session is the sequence of its events: the same
-/// events give the same arrays, to the last bit.
+/// events give bitwise equal arrays.
 struct SessionEvent
 {
   enum KindType
@@ -48,31 +48,33 @@ struct SessionEvent
 
 using SessionEvents = std::vector<SessionEvent>;
 
-/// The name in files, followed by the numbers; they are read back to the last bit.
+/// Returns the text of an event in files: its name and its numbers. ParseEvent() reads the numbers
+/// exactly.
 std::string FormatEvent(const SessionEvent& event);
 
-/// Throws std::runtime_error where the text is no event.
+/// Throws std::runtime_error if the text is not an event.
 SessionEvent ParseEvent(const std::string& text);
 
-/// The triangles of a surface as an event, and back. Throws std::runtime_error where there are none
-/// or a point is not finite.
+/// Convert the triangles of a surface to an event, and back. MakeCutEvent() throws
+/// std::runtime_error if there are no triangles, if a cell is not a triangle or refers to a missing
+/// point, or if a point is not finite.
 SessionEvent MakeCutEvent(vtkPolyData* sheet);
 vtkSmartPointer<vtkPolyData> MakeSheet(const SessionEvent& cut);
 
-/// A number for the geometry and all point arrays of a volume and, where there is one, for the
-/// points and cells of a mesh.
+/// Returns a hash of the geometry and all point arrays of a volume, and of the points and cells of
+/// a mesh if it is not null.
 std::string HashInputs(vtkImageData* volume, vtkUnstructuredGrid* mesh);
 
 ///@{
-/// A file of events. Both throw std::runtime_error with a reason. The old file stays as it was
-/// until the new one is complete.
+/// Write and read a file of events. Both throw std::runtime_error with the reason of a failure. An
+/// existing file is replaced only when the new file is complete.
 void WriteEvents(
   const std::string& fileName, const std::string& inputHash, const SessionEvents& events);
 SessionEvents ReadEvents(const std::string& fileName, const std::string& inputHash);
 ///@}
 
-/// Has a file written under another name in the same folder, and renames it to its own name where
-/// nothing is thrown.
+/// Calls `write` with the name of a temporary file in the same folder, and then renames this file
+/// to fileName. If something is thrown, removes the temporary file.
 template <typename WriterT>
 void WriteAndRename(const std::string& fileName, const WriterT& write);
 void RenameFile(const std::string& from, const std::string& to);

@@ -40,7 +40,7 @@ public:
   void Add(const void* data, std::size_t size)
   {
     const auto* bytes = static_cast<const unsigned char*>(data);
-    constexpr std::size_t most = 1 << 30; // lengths are ints
+    constexpr std::size_t most = 1 << 30; // vtksysMD5_Append takes an int
     for (; size > 0;)
     {
       const std::size_t part = size < most ? size : most;
@@ -150,7 +150,7 @@ deformvolume::SessionEvents deformvolume::ReadEvents(
   }
   std::istringstream content(text.str());
   vtkNew<vtkXMLDataParser> parser;
-  vtkNew<vtkCallbackCommand> silence; // what is wrong is reported below
+  vtkNew<vtkCallbackCommand> silence; // errors are reported below
   parser->AddObserver(vtkCommand::ErrorEvent, silence);
   parser->SetStream(&content);
   const bool isParsed = parser->Parse() != 0;

@@ -30,7 +30,7 @@ namespace
 using deformvolume::SessionEvent;
 using Session = vtkDeformVolumeSession;
 
-// VTK puts the file, the line and the object before what it says.
+// Removes the file, the line and the object that VTK puts before a message.
 std::string StripMessage(const void* text)
 {
   std::string message = static_cast<const char*>(text);
@@ -43,7 +43,8 @@ std::string StripMessage(const void* text)
 void TakeError(vtkObject*, unsigned long, void* target, void* text)
 {
   auto& message = *static_cast<std::string*>(target);
-  message = message.empty() ? StripMessage(text) : message; // others follow from the first
+  message =
+    message.empty() ? StripMessage(text) : message; // later errors result from the first one
 }
 
 void TakeWarning(vtkObject*, unsigned long, void* target, void* text)
@@ -95,7 +96,7 @@ SessionPipeline::SessionPipeline()
   this->CarveFilter->SmoothBoundaryOn();
   this->ChainMail->SetInputConnection(this->CarveFilter->GetOutputPort());
   this->Resampler->SetInputConnection(this->CarveFilter->GetOutputPort());
-  // So that the extent is always the same one, and outputs are updated in part.
+  // A constant extent allows partial updates of the output.
   this->Resampler->SetOutputBoundsModeToVolumeBounds();
   this->Elements->SetModeToInteractive();
 }
@@ -150,7 +151,7 @@ void SessionPipeline::Apply(const SessionEvent& event)
 {
   const bool isOfHistory = event.Kind == SessionEvent::UNDO || event.Kind == SessionEvent::REDO ||
     event.Kind == SessionEvent::RESET;
-  if (this->IsToRebuild && !isOfHistory) // of several undone at once the body comes from rest once
+  if (this->IsToRebuild && !isOfHistory) // one rebuild after several undo events
   {
     this->Rebuild();
   }
@@ -159,7 +160,7 @@ void SessionPipeline::Apply(const SessionEvent& event)
     event.Kind == SessionEvent::END_GRAB || event.Kind == SessionEvent::HOLD;
   if (isOfGrab && this->Refused.count(event.Numbers[0]) > 0)
   {
-    return; // who drags has not heard yet that there is nothing to drag
+    return; // the caller may not know yet that the handle could not be grabbed
   }
   switch (event.Kind)
   {
@@ -252,7 +253,7 @@ void SessionPipeline::TryBeginGrab(double handle, const glm::dvec3& position)
   const glm::dvec3 high(bounds[1], bounds[3], bounds[5]);
   for (int axis = 0; axis < 3; ++axis)
   {
-    // What is seen of the border may lie beyond it by a part of a voxel.
+    // A visible position at the border can be outside by a fraction of a voxel.
     const double most = this->Volume->GetSpacing()[axis];
     if (!(drag.Rest[axis] >= low[axis] - most && drag.Rest[axis] <= high[axis] + most))
     {
@@ -262,13 +263,13 @@ void SessionPipeline::TryBeginGrab(double handle, const glm::dvec3& position)
     drag.Rest[axis] = std::clamp(drag.Rest[axis], low[axis], high[axis]);
   }
   drag.ToNode = this->FindWayToNode(drag.Rest);
-  // The point of the body that is nearest stays where it is until the handle is moved.
+  // The handle begins at the deformed position of Rest, so that nothing moves before MoveGrab().
   drag.Now = drag.LastPossible = FindDeformedPosition(this->GetDeformation(), drag.Rest);
   const Actions undone = this->Undone;
   this->Do(drag);
   if (this->GetElastic())
   {
-    // Whether there is a node to hold is known only to the filter.
+    // Only the filter knows whether the handle holds a node. It fails if there is none.
     try
     {
       this->UpdateModel(this->GetHeld());
@@ -324,7 +325,7 @@ void SessionPipeline::Cut(const SessionEvent& event)
   {
     double position[3];
     points->GetPoint(id, position);
-    // A sheet ends where there is no tissue, and there any place will do.
+    // Points of a sheet can lie outside the tissue, where an estimate is sufficient.
     const glm::dvec3 rest =
       EstimateRestPosition(this->GetDeformation(), { position[0], position[1], position[2] });
     points->SetPoint(id, rest.x, rest.y, rest.z);
@@ -338,7 +339,7 @@ void SessionPipeline::Cut(const SessionEvent& event)
   const auto disconnect = [this]
   {
     this->CutFilter->SetDeformationData(nullptr);
-    // The same sheet may cut again.
+    // Remove the sheet from the filter, so that the same sheet can cut again.
     this->CutFilter->SetSheetData(nullptr);
   };
   try
@@ -377,7 +378,7 @@ void SessionPipeline::CutMesh(
   elastic->SetSheetData(sheet);
   this->UpdateModel(held);
   cut.HasSplit = elastic->GetNumberOfCuts() > before;
-  // The same sheet may cut again.
+  // Remove the sheet from the filter, so that the same sheet can cut again.
   elastic->SetSheetData(nullptr);
 }
 
@@ -391,7 +392,7 @@ void SessionPipeline::Carve(const SessionEvent& event)
   const bool isNew = event.Numbers[0] != 0.0 || !this->IsStroke;
   if (isNew)
   {
-    // A tool that was nowhere carves again where it has carved last.
+    // After an update without tool positions, the filter carves at the last position once more.
     this->CarveFilter->ClearToolPositions();
     this->Update(this->CarveFilter);
   }

@@ -33,9 +33,8 @@ class vtkVolumeEditAlgorithm;
 namespace deformvolume
 {
 
-/// The filters of a session, and what has been done to them. One thread at a time may use it.
-///
-/// What is done is a list of actions.
+/// The filters of a session, and the list of the actions that can be undone and redone. Only one
+/// thread at a time may use it.
 class SessionPipeline
 {
 public:
@@ -44,16 +43,17 @@ public:
   SessionPipeline(const SessionPipeline&) = delete;
   void operator=(const SessionPipeline&) = delete;
 
-  /// Forgets everything. Without a mesh there is a lattice. Both must stay as they are.
+  /// Begins a new session. mesh: null for a lattice. Volume and mesh must not be modified any more.
   void SetInputs(vtkImageData* volume, vtkUnstructuredGrid* mesh);
 
-  /// Throws std::runtime_error. Actions are then as they were; where the model or the lattice
-  /// cannot be changed, the body comes from rest again.
+  /// Applies an event. Throws std::runtime_error if that fails; the actions are then the same as
+  /// before. If the model or the lattice cannot be changed, the body is rebuilt from rest.
   void Apply(const SessionEvent& event);
 
-  /// One step of the simulation. Where a handle cannot be where it is wanted, handles go back to
-  /// where they were, and std::runtime_error is thrown; where that is not possible either, the body
-  /// comes from rest, and as the last resort nothing holds it. Returns whether it still moves.
+  /// Simulates one step. Returns whether the body still moves. If the positions of the handles are
+  /// not possible, handles return to their last possible positions, and std::runtime_error is
+  /// thrown. If that fails as well, the body is rebuilt from rest, and if necessary all handles are
+  /// released.
   bool Step();
 
   struct Sampling
@@ -62,20 +62,20 @@ public:
     int Padding = 8;
     double BackgroundValue = 0.0;
   };
-  /// Throws std::runtime_error.
+  /// Returns the deformed volume. Throws std::runtime_error if a filter fails.
   vtkImageData* Resample(const Sampling& sampling);
 
   vtkImageData* GetVolume() { return this->Volume; }
   vtkDataSet* GetDeformation();
   vtkDeformVolumeFilter* GetResampler() { return this->Resampler; }
   int GetModel() const { return this->Model; }
-  /// By ChainMail, in the last step.
+  /// Number of voxels that ChainMail has moved in the last step; 0 with other models.
   vtkIdType GetNumberOfMovedVoxels();
-  /// Of the finite elements, in the last step; 0 with other models.
+  /// Residual of the finite elements after the last step; 0 with other models.
   double GetRelativeResidual();
   std::size_t GetNumberOfActions() const { return this->Done.size(); }
   std::size_t GetNumberOfUndoneActions() const { return this->Undone.size(); }
-  /// What the filters have warned of since the last call.
+  /// Returns the warnings of the filters since the last call.
   std::vector<std::string> TakeWarnings() { return std::exchange(this->Warnings, {}); }
   struct Handle
   {
@@ -84,9 +84,9 @@ public:
     glm::dvec3 Now;
     bool IsGrabbed;
   };
-  /// Those that hold something, in the order in which they were grabbed.
+  /// The handles that hold tissue, in the order in which they were grabbed.
   std::vector<Handle> GetHandles() const;
-  /// The settings, as events that make them.
+  /// The settings, as events that set them.
   SessionEvents GetSettings() const;
 
 private:
@@ -113,7 +113,7 @@ private:
     bool HasSplit = false; // whether a cut has split the mesh
     int Model = 0;
     int FormerModel = 0;
-    // Where ChainMail had all voxels before the action, and when it was undone; -1: not known.
+    // States of ChainMail before the action, and when it was undone (SaveState); -1: not saved.
     vtkIdType Before = -1;
     vtkIdType After = -1;
   };
@@ -146,7 +146,7 @@ private:
   Actions GetHeld() const;
   void UpdateModel(const Actions& held);
   bool IsUsed(vtkIdType point);
-  /// Warns once where a handle has pulled tissue out of the output.
+  /// Warns once if a handle lies outside the output.
   void CheckHandles();
   glm::dvec3 FindWayToNode(const glm::dvec3& rest);
   glm::dvec3 GetShift(const Action& drag);
@@ -159,10 +159,10 @@ private:
   vtkElasticDeformation* GetElastic();
 
   vtkSmartPointer<vtkImageData> Volume;
-  vtkSmartPointer<vtkUnstructuredGrid> Mesh; // that was given, or null
+  vtkSmartPointer<vtkUnstructuredGrid> Mesh; // of SetInputs(), or null
   vtkSmartPointer<vtkUnstructuredGrid> RestMesh;
-  bool IsMeshOfElements = false;              // whether the rest mesh is that of finite elements
-  vtkSmartPointer<vtkUnstructuredGrid> Still; // the deformation that does not deform
+  bool IsMeshOfElements = false;              // whether RestMesh was made for finite elements
+  vtkSmartPointer<vtkUnstructuredGrid> Still; // a mesh whose displacements are 0
   vtkNew<vtkCutVolume> CutFilter;
   vtkNew<vtkCarveVolume> CarveFilter;
   vtkNew<vtkChainMailDeformation> ChainMail;
@@ -171,7 +171,7 @@ private:
   vtkNew<vtkDeformVolumeFilter> Resampler;
   vtkNew<vtkCallbackCommand> ErrorObserver;
   vtkNew<vtkCallbackCommand> WarningObserver;
-  std::string Message; // the first error of the filters, since it was taken
+  std::string Message; // first error of the filters in an update
   std::vector<std::string> Warnings;
   bool HasWarnedOfPadding = false;
 
@@ -180,13 +180,13 @@ private:
   double HandleRadius = 0.0;
   int RelaxationSweeps = 5;
   double UndoMemory = 1073741824.0;
-  bool IsStroke = false;    // whether a carving may go on
+  bool IsStroke = false;    // whether CarveTo() continues a stroke
   std::set<double> Refused; // handles that could not be grabbed
   Actions Done;
   Actions Undone;
-  std::vector<double> LastVectors; // of a mesh
+  std::vector<double> LastVectors; // displacements of the mesh after the last step
   int QuietSteps = 0;
-  bool IsToRebuild = false; // whether the body has to come from rest before it is used
+  bool IsToRebuild = false; // whether the body must be rebuilt from rest before it is used
 };
 
 } // namespace deformvolume

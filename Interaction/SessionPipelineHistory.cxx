@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What was done, undone and made again.
+// Undo and redo.
 #include "SessionPipeline.h"
 
 #include "vtkDeformVolumeSession.h"
@@ -19,7 +19,7 @@ using Session = vtkDeformVolumeSession;
 namespace deformvolume
 {
 
-// To be called before anything of the action is seen by the model.
+// Saves the state of the model: must be called before the action changes it.
 void SessionPipeline::Do(Action action)
 {
   for (Action& undone : this->Undone)
@@ -38,7 +38,8 @@ vtkIdType SessionPipeline::SaveState()
                                                                   : -1;
 }
 
-// To where all voxels were, or from rest to where handles are where that is not known.
+// Restores the positions of all voxels. Without a saved state, the body is rebuilt from rest with
+// the current handles.
 void SessionPipeline::RestoreState(vtkIdType state)
 {
   this->Connect();
@@ -54,7 +55,8 @@ void SessionPipeline::ForgetStates(Action& action)
   }
 }
 
-// Those go first that are the most steps of undo or redo away.
+// Removes saved states while they need too much memory. Begins with the states that are the most
+// steps of undo or redo away.
 void SessionPipeline::LimitStates()
 {
   for (Actions* actions : { &this->Done, &this->Undone })
@@ -130,7 +132,7 @@ void SessionPipeline::Undo()
     default:
       break;
   }
-  // Meshes go to where they are held now by themselves.
+  // Meshes move by themselves to where the remaining handles hold them.
   if (!elastic)
   {
     this->RestoreState(action.Before);
@@ -160,7 +162,7 @@ void SessionPipeline::Redo()
     default:
       break;
   }
-  // A cut splits a mesh at rest.
+  // A cut that is redone splits the mesh at rest, so that the body must be rebuilt.
   if (!this->GetElastic() || action.Kind == Action::CUT || action.Kind == Action::MODEL)
   {
     this->RestoreState(action.After);

@@ -34,7 +34,7 @@ using Session = vtkDeformVolumeSession;
 namespace
 {
 
-// A lattice of cubes over a volume, whose nodes of the first layer on the last axis are fixed.
+// Makes a lattice of cubes over a volume. The first layer of nodes on the last axis is fixed.
 vtkSmartPointer<vtkUnstructuredGrid> MakeLattice(vtkImageData* volume, int nodes)
 {
   vtkNew<vtkLatticeTetrahedraSource> source;
@@ -61,7 +61,7 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeLattice(vtkImageData* volume, int nodes
 namespace deformvolume
 {
 
-// The deformation that does not deform.
+// Makes the mesh of the model NONE, whose displacements are 0.
 void SessionPipeline::MakeStill()
 {
   this->Still = MakeLattice(this->Volume, 2);
@@ -76,7 +76,7 @@ void SessionPipeline::MakeStill()
 void SessionPipeline::TakeRestMesh()
 {
   this->IsMeshOfElements = this->Model == Session::FINITE_ELEMENTS;
-  // Finite elements have nodes in the middle of edges besides.
+  // Finite elements add nodes in the middle of edges, so that half of the nodes are sufficient.
   this->RestMesh = this->Mesh
     ? this->Mesh
     : MakeLattice(this->Volume,
@@ -172,7 +172,7 @@ void SessionPipeline::SetLattice(int nodes)
       this->Rebuild();
     }
   }
-  catch (...) // the handles hold no nodes of this lattice
+  catch (...) // handles hold no nodes of this lattice
   {
     this->NumberOfNodes = former;
     this->TakeRestMesh();
@@ -189,8 +189,8 @@ void SessionPipeline::Connect()
   }
   vtkElasticDeformation* elastic = this->GetElastic();
   this->Resampler->SetOpenSplits(elastic != nullptr);
-  // A body that is a mesh opens where the mesh is split. The mask of a cut would be a second gap
-  // beside that, along the sheet.
+  // With an elastic model, the volume opens where the mesh is split. The mask of the cut filter
+  // would add a second gap along the sheet.
   if (elastic)
   {
     this->CarveFilter->SetInputData(this->Volume);
@@ -245,14 +245,14 @@ void SessionPipeline::Rebuild()
 bool SessionPipeline::IsUsed(vtkIdType point)
 {
   vtkNew<vtkIdList> cells;
-  this->RestMesh->GetPointCells(point, cells); // which makes the links once
+  this->RestMesh->GetPointCells(point, cells); // builds the table of cells at points once
   return cells->GetNumberOfIds() > 0;
 }
 
 glm::dvec3 SessionPipeline::FindWayToNode(const glm::dvec3& rest)
 {
   vtkDataArray* fixed = this->RestMesh->GetPointData()->GetArray("Fixed");
-  glm::dvec3 nearest(0.0); // no way where no node can move
+  glm::dvec3 nearest(0.0); // if no node can move
   double least = std::numeric_limits<double>::infinity();
   const auto take = [&](const glm::dvec3& position)
   {
@@ -273,13 +273,13 @@ glm::dvec3 SessionPipeline::FindWayToNode(const glm::dvec3& rest)
   const auto isFixed = [&](vtkIdType id) { return fixed && fixed->GetComponent(id, 0) != 0.0; };
   for (vtkIdType id = 0; id < this->RestMesh->GetNumberOfPoints(); ++id)
   {
-    // Points that no cell uses are no nodes.
+    // Points without cells are not nodes.
     if (!isFixed(id) && this->IsUsed(id))
     {
       take(getPosition(id));
     }
   }
-  // The nodes that finite elements have in the middle of edges.
+  // The mid-side nodes that finite elements add.
   vtkNew<vtkIdList> ids;
   for (vtkIdType cell = 0; this->IsMeshOfElements && cell < this->RestMesh->GetNumberOfCells();
        ++cell)
@@ -300,8 +300,8 @@ glm::dvec3 SessionPipeline::FindWayToNode(const glm::dvec3& rest)
   return nearest;
 }
 
-// To the nearest node of a mesh, where none lies within the radius of handles: who grabs something
-// coarse gets hold of it nevertheless.
+// The vector by which a handle is moved to the nearest node of a mesh, if no node lies within the
+// handle radius. Otherwise handles would hold nothing in a coarse mesh.
 glm::dvec3 SessionPipeline::GetShift(const Action& drag)
 {
   return this->GetElastic() && glm::length(drag.ToNode) > this->HandleRadius ? drag.ToNode
@@ -342,7 +342,7 @@ void SessionPipeline::UpdateModel(const Actions& held)
   }
 }
 
-// After a step that was not possible.
+// Restores a possible state after a step has failed.
 void SessionPipeline::StepBack()
 {
   for (Action& action : this->Done)
@@ -356,7 +356,7 @@ void SessionPipeline::StepBack()
   }
   catch (const std::runtime_error&)
   {
-    // A body that moves too fast stays so: it comes from rest.
+    // A body that moves too fast does not recover. It is rebuilt from rest.
   }
   try
   {
@@ -364,7 +364,7 @@ void SessionPipeline::StepBack()
   }
   catch (const std::runtime_error&)
   {
-    // Nor can it be where it is held. Nothing holds it any more.
+    // The positions of the handles are not possible even from rest: release all handles.
     for (Action& action : this->Done)
     {
       action.IsGrabbed = action.IsHeld = false;
@@ -399,7 +399,8 @@ bool SessionPipeline::Step()
   return this->FindMotion();
 }
 
-// A body with inertia stands still for a moment where it turns round.
+// Returns whether the body still moves. A body with inertia also stands still while it changes its
+// direction, so that mass-spring dynamics need several steps without motion.
 bool SessionPipeline::FindMotion()
 {
   if (this->Model == Session::CHAIN_MAIL)

@@ -38,7 +38,7 @@ glm::dvec3 GetPosition(vtkDataSet* dataSet, vtkIdType id)
   return { position[0], position[1], position[2] };
 }
 
-// Trilinear, and constant outside.
+// Trilinear interpolation of displacements, constant outside the field.
 glm::dvec3 Interpolate(vtkImageData* field, const glm::dvec3& position)
 {
   vtkDataArray* vectors = field->GetPointData()->GetVectors();
@@ -86,7 +86,8 @@ struct NearestVoxel
   }
 };
 
-// The voxel that has come nearest; of equals the first one, whatever the number of threads.
+// Returns the rest position of the voxel whose deformed position is the nearest. Of equally near
+// voxels, takes the first one, so that the result does not depend on the number of threads.
 glm::dvec3 FindNearestVoxel(vtkImageData* field, const glm::dvec3& deformed)
 {
   vtkDataArray* vectors = field->GetPointData()->GetVectors();
@@ -121,27 +122,27 @@ glm::dvec3 FindNearestVoxel(vtkImageData* field, const glm::dvec3& deformed)
   return GetPosition(field, best.Id);
 }
 
-// Whether the iteration came to an end; where the body is folded or torn it need not.
+// Returns whether the iteration has converged. It may not if the field is folded or torn.
 bool SearchField(vtkImageData* field, const glm::dvec3& deformed, glm::dvec3& rest)
 {
   const double* spacing = field->GetSpacing();
   const double tolerance = 1e-3 * std::min({ spacing[0], spacing[1], spacing[2] });
   rest = deformed;
-  // Half of the way each time, as the field may change by as much as the place.
+  // Damped by one half, because the displacement may change as much as the position.
   for (int i = 0; i < 60; ++i)
   {
-    const glm::dvec3 left = deformed - rest - Interpolate(field, rest);
-    if (glm::length(left) <= tolerance)
+    const glm::dvec3 residual = deformed - rest - Interpolate(field, rest);
+    if (glm::length(residual) <= tolerance)
     {
       return true;
     }
-    rest += 0.5 * left;
+    rest += 0.5 * residual;
   }
   return false;
 }
 
-// The nodes of a tetrahedron of four or ten nodes, at rest and deformed. That of ten gets one in
-// its middle, as in vtkDeformVolumeFilter.
+// The nodes of a tetrahedron of four or ten nodes, at rest and deformed. A tetrahedron of ten nodes
+// gets an eleventh node in its middle, as in vtkDeformVolumeFilter.
 struct CellNodes
 {
   std::vector<glm::dvec3> Rest;
@@ -154,12 +155,12 @@ using Corners = std::array<std::size_t, 4>;
 constexpr std::size_t LinearNodes = 4;
 constexpr std::size_t QuadraticNodes = 10;
 
-// The tetrahedra that a cell is split into.
+// Returns the tetrahedra into which a cell is split.
 const std::vector<Corners>& GetParts(std::size_t numberOfNodes)
 {
   static const std::vector<Corners> none;
   static const std::vector<Corners> linear = { { { 0, 1, 2, 3 } } };
-  // Those at the corners, and those round the middle.
+  // Four tetrahedra at the corners, and eight around the middle.
   static const std::vector<Corners> quadratic = { { { 0, 4, 6, 7 } }, { { 1, 4, 5, 8 } },
     { { 2, 5, 6, 9 } }, { { 3, 7, 8, 9 } }, { { 10, 4, 6, 7 } }, { { 10, 4, 5, 8 } },
     { { 10, 5, 6, 9 } }, { { 10, 7, 8, 9 } }, { { 10, 4, 5, 6 } }, { { 10, 4, 8, 7 } },
@@ -193,7 +194,8 @@ CellNodes ReadCell(vtkDataSet* mesh, vtkDataArray* vectors, vtkIdList* ids)
   return nodes;
 }
 
-// In the tetrahedron that holds a place, or is nearest by its least barycentric coordinate.
+// Maps a position by the tetrahedron that contains it, or else by the nearest one: that whose
+// smallest barycentric coordinate is the largest.
 glm::dvec3 MapInMesh(vtkDataSet* mesh, const glm::dvec3& position, Positions CellNodes::*from,
   Positions CellNodes::*to)
 {
@@ -215,7 +217,7 @@ glm::dvec3 MapInMesh(vtkDataSet* mesh, const glm::dvec3& position, Positions Cel
       const glm::dvec3 weights = glm::inverse(edges) * (position - origin);
       const double least =
         std::min({ weights.x, weights.y, weights.z, 1.0 - weights.x - weights.y - weights.z });
-      if (least > best) // not where the tetrahedron is flat
+      if (least > best) // false if the tetrahedron is flat
       {
         best = least;
         found = get(to, 0) + weights.x * (get(to, 1) - get(to, 0)) +

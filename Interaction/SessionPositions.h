@@ -11,10 +11,11 @@ class vtkUnstructuredGrid;
 namespace deformvolume
 {
 
-/// Where a place of the deformed body is at rest, and back. The displacements are the active
-/// vectors of the points: of a field, on the lattice of the volume, or of a mesh of tetrahedra.
-/// Places outside go with what is nearest. An estimate is the same where a field is neither folded
-/// nor torn, and looks no further where it is.
+/// Convert positions of the deformed body to positions at rest, and back. deformation: a field on
+/// the grid of the volume, or a mesh of tetrahedra, with the displacements as active point vectors.
+/// Positions outside are converted by the nearest tetrahedron or point of the field. If a field is
+/// folded or torn, FindRestPosition() searches for the nearest voxel, and EstimateRestPosition()
+/// does not.
 ///@{
 glm::dvec3 FindRestPosition(vtkDataSet* deformation, const glm::dvec3& deformed);
 glm::dvec3 EstimateRestPosition(vtkDataSet* deformation, const glm::dvec3& deformed);

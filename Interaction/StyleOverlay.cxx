@@ -56,7 +56,7 @@ namespace deformvolume
 
 StyleOverlay::StyleOverlay()
 {
-  // The camera may have moved since the last frame.
+  // Project marks before each frame, because the camera may have moved.
   this->Observer->SetClientData(this);
   this->Observer->SetCallback([](vtkObject*, unsigned long, void* overlay, void*)
     { static_cast<StyleOverlay*>(overlay)->PutMarks(); });
@@ -141,8 +141,8 @@ void StyleOverlay::PutMarks()
   vtkNew<vtkPoints> points;
   vtkNew<vtkCellArray> vertices;
   vtkNew<vtkCellArray> lines;
-  vtkNew<vtkUnsignedCharArray> colours;
-  colours->SetNumberOfComponents(3);
+  vtkNew<vtkUnsignedCharArray> colors;
+  colors->SetNumberOfComponents(3);
   const auto put = [&](const Mark& mark, vtkCellArray* cells)
   {
     cells->InsertNextCell(static_cast<int>(mark.Positions.size()));
@@ -154,11 +154,11 @@ void StyleOverlay::PutMarks()
         this->Renderer, position.x, position.y, position.z, at);
       cells->InsertCellPoint(points->InsertNextPoint(at[0] - origin[0], at[1] - origin[1], 0.0));
     }
-    colours->InsertNextTypedTuple(mark.Paint.data());
+    colors->InsertNextTypedTuple(mark.Paint.data());
   };
   if (this->Renderer)
   {
-    // Colours of cells follow VTK's order: vertices before lines.
+    // Cell data are in VTK's order of cells: vertices before lines.
     for (const Mark& mark : this->Marks)
     {
       if (mark.Positions.size() == 1)
@@ -178,7 +178,7 @@ void StyleOverlay::PutMarks()
   this->Drawn->SetPoints(points);
   this->Drawn->SetVerts(vertices);
   this->Drawn->SetLines(lines);
-  this->Drawn->GetCellData()->SetScalars(colours);
+  this->Drawn->GetCellData()->SetScalars(colors);
 }
 
 } // namespace deformvolume

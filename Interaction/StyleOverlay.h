@@ -21,7 +21,7 @@ class vtkTextActor;
 namespace deformvolume
 {
 
-/// What a style draws over the volume: points and lines at places of the world, and texts.
+/// Draws points and lines at world positions, and texts, over the volume.
 class StyleOverlay
 {
 public:
@@ -30,20 +30,20 @@ public:
   StyleOverlay(const StyleOverlay&) = delete;
   void operator=(const StyleOverlay&) = delete;
 
-  /// Where it is drawn; null: nowhere.
+  /// Set the renderer; null: nothing is drawn.
   void SetRenderer(vtkRenderer* renderer);
 
   using Colour = std::array<unsigned char, 3>;
   ///@{
-  /// They are the same until they are cleared.
+  /// Marks stay until they are cleared.
   void ClearMarks();
   void AddPoint(const glm::dvec3& position, const Colour& colour);
   void AddLine(const std::vector<glm::dvec3>& positions, const Colour& colour);
   ///@}
 
   ///@{
-  /// Once there is a renderer. At the lower and at the upper left; "" for none. Returns whether it
-  /// is another one.
+  /// Set the text at the lower left (status) or at the upper left (help); "": none. Returns whether
+  /// the text has changed. Call these methods after SetRenderer().
   bool SetStatus(const std::string& text);
   bool SetHelp(const std::string& text);
   ///@}
@@ -63,7 +63,7 @@ private:
   std::vector<Mark> Marks;
   vtkNew<vtkPolyData> Drawn;
   vtkNew<vtkActor2D> MarkActor;
-  // Made with the first renderer: VTK needs its module RenderingFreeType for them.
+  // Created with the first renderer, because they need VTK's module RenderingFreeType.
   vtkSmartPointer<vtkTextActor> Status;
   vtkSmartPointer<vtkTextActor> Help;
 };

@@ -9,19 +9,19 @@
 namespace deformvolume
 {
 
-/// What a key chooses.
+/// A tool or a model, and the key that chooses it.
 struct Choice
 {
   char Key;
   const char* Name;
 };
-/// In the order of the enumerations.
+/// In the order of vtkDeformVolumeInteractorStyle::Tools and vtkDeformVolumeSession::Models.
 inline constexpr std::array<Choice, 6> ToolChoices = { { { 't', "turn" }, { 'g', "grab" },
   { 'c', "cut" }, { 'v', "carve" }, { 'b', "probe" }, { 'm', "measure" } } };
 inline constexpr std::array<Choice, 4> ModelChoices = { { { '1', "none" }, { '2', "ChainMail" },
   { '3', "mass-spring" }, { '4', "finite elements" } } };
 
-/// All in a row, the chosen one in brackets.
+/// Lists all choices in one line, with the chosen one in brackets.
 template <std::size_t Count>
 std::string ListChoices(const std::array<Choice, Count>& choices, int chosen)
 {
@@ -39,7 +39,7 @@ std::string ListChoices(const std::array<Choice, Count>& choices, int chosen)
   return text;
 }
 
-/// The place of the one with a key; -1 where there is none.
+/// Returns the index of the choice with a key; -1 if there is none.
 template <std::size_t Count>
 int FindChoice(const std::array<Choice, Count>& choices, char key)
 {

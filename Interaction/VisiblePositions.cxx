@@ -17,7 +17,7 @@ namespace
 
 using deformvolume::LineOfSight;
 
-// The voxels that the points of a line are in.
+// Finds the voxels along a line of sight. The line is divided into steps.
 class VoxelsOnLine
 {
 public:
@@ -44,7 +44,8 @@ public:
   /// In world units.
   double GetStep() const { return this->Step; }
 
-  /// The voxel of a step, or of a part of the line; -1 where the body covers none.
+  /// Returns the voxel at the middle of a step, or at a fraction of the line; -1 if there is none,
+  /// or if the deformed volume does not cover it.
   vtkIdType FindVoxelOfStep(vtkIdType step) const
   {
     return this->FindVoxel(this->First +
@@ -93,7 +94,7 @@ private:
   vtkDataArray* Covered;
   glm::dvec3 From;
   glm::dvec3 To;
-  double First = 0.0; // where the line is in the image, in parts of it
+  double First = 0.0; // begin and end of the line within the image, as fractions of the line
   double Last = 1.0;
   vtkIdType NumberOfSteps = 0;
   double Step = 0.0;

@@ -15,7 +15,7 @@ class vtkRenderer;
 namespace deformvolume
 {
 
-/// From where to where a viewer looks through a pixel.
+/// The line that a viewer sees through a pixel, from the near to the far clipping plane.
 struct LineOfSight
 {
   glm::dvec3 Near;
@@ -23,7 +23,7 @@ struct LineOfSight
 };
 
 ///@{
-/// Between pixels, with their depth from 0 to 1, and the world.
+/// Convert between display coordinates (pixels, and a depth from 0 to 1) and world coordinates.
 glm::dvec3 GetWorld(vtkRenderer* renderer, double x, double y, double z);
 glm::dvec3 GetDisplay(vtkRenderer* renderer, const glm::dvec3& position);
 LineOfSight GetLineOfSight(vtkRenderer* renderer, int x, int y);
@@ -36,18 +36,18 @@ struct SlicePlane
 };
 
 ///@{
-/// Each finds the voxel on a line of sight that is first visible in an output of
-/// vtkDeformVolumeFilter, among those that the body covers; -1 where there is none.
+/// Each returns the voxel on a line of sight that is visible in an output of vtkDeformVolumeFilter,
+/// or -1. Voxels outside the deformed volume are not visible.
 
-/// Where voxels have absorbed half of what all of them absorb, or half of all light. opacity: of
-/// a way of unitDistance; null: each voxel absorbs everything.
+/// The voxel by which half of the light is absorbed that all voxels together absorb; -1 if that is
+/// less than a tenth of the light. opacity: opacity per unitDistance; null: each voxel is opaque.
 vtkIdType FindAbsorbingVoxel(
   vtkImageData* image, const LineOfSight& line, vtkPiecewiseFunction* opacity, double unitDistance);
 
-/// Where the value is isovalue or more.
+/// The first voxel whose value is at least the isovalue.
 vtkIdType FindSurfaceVoxel(vtkImageData* image, const LineOfSight& line, double isovalue);
 
-/// Where one of the planes is.
+/// The first voxel on one of the planes.
 vtkIdType FindSliceVoxel(
   vtkImageData* image, const LineOfSight& line, const std::vector<SlicePlane>& planes);
 ///@}

@@ -54,7 +54,7 @@ constexpr const char* KeyHelp =
   "1 2 3 4 the model   u undo   y redo   z undo all   + - like the wheel\n"
   "r reset the camera   h this help   q quit";
 
-// Where the grid along the axes of an image lies in the world.
+// The matrix from the image that is shown, which has no direction and no origin, to the world.
 vtkSmartPointer<vtkMatrix4x4> MakeAxes(vtkImageData* image)
 {
   auto axes = vtkSmartPointer<vtkMatrix4x4>::New();
@@ -348,7 +348,7 @@ std::string vtkDeformVolumeInteractorStyle::GetStatus()
       std::to_string(internals.Session->GetNumberOfActions()) + " done, " +
       std::to_string(internals.Session->GetNumberOfUndoneActions()) + " undone" +
       (internals.Session->GetIsBusy() ? ", moving" : "");
-    // Of the finite elements, which come to rest in several frames.
+    // Finite elements need several frames to reach equilibrium.
     constexpr double leastShown = 1e-3;
     const double residual = internals.Session->GetRelativeResidual();
     text += residual > leastShown ? ", residual " + Format(100.0 * residual) + " %\n" : "\n";
@@ -368,7 +368,7 @@ bool vtkDeformVolumeInteractorStyle::Poll()
   {
     session->Update();
   }
-  const bool isBusy = session->GetIsBusy(); // before the output that it may have left
+  const bool isBusy = session->GetIsBusy(); // asked first: a session at rest has its last output
   if (auto output = vtkSmartPointer<vtkImageData>::Take(session->TakeOutput()))
   {
     internals.Output = output;
@@ -385,13 +385,13 @@ bool vtkDeformVolumeInteractorStyle::Poll()
       if (std::none_of(handles.begin(), handles.end(),
             [&](const auto& handle) { return handle.first == internals.Handle; }))
       {
-        internals.EndPress(); // there was nothing to hold
+        internals.EndPress(); // the handle could not be grabbed
       }
     }
   }
   if (isBusy != internals.WasBusy)
   {
-    internals.IsChanged = true; // at rest in full quality
+    internals.IsChanged = true; // draw the body at rest in full quality
     internals.WasBusy = isBusy;
     if (!isBusy && this->Tool == PROBE)
     {
@@ -475,7 +475,7 @@ void vtkDeformVolumeInteractorStyle::UpdateOverlay()
   }
   if (internals.Handle >= 0)
   {
-    overlay.AddPoint(internals.Held, GrabbedColour); // which the session does not have there yet
+    overlay.AddPoint(internals.Held, GrabbedColour); // the session may not have moved it yet
   }
   std::vector<glm::dvec3> stroke;
   for (const auto& point : internals.Stroke)
@@ -488,7 +488,7 @@ void vtkDeformVolumeInteractorStyle::UpdateOverlay()
     overlay.AddPoint(worldPosition, MeasureColour);
   }
   overlay.AddLine(internals.Measured, MeasureColour);
-  for (const glm::dvec3& centre : internals.Sphere)
+  for (const glm::dvec3& center : internals.Sphere)
   {
     vtkCamera* camera = this->CurrentRenderer->GetActiveCamera();
     const double* view = camera->GetDirectionOfProjection();
@@ -503,7 +503,7 @@ void vtkDeformVolumeInteractorStyle::UpdateOverlay()
     {
       const double angle = 2.0 * vtkMath::Pi() * i / corners;
       circle.push_back(
-        centre + this->GetUsedCarveRadius() * (std::cos(angle) * right + std::sin(angle) * up));
+        center + this->GetUsedCarveRadius() * (std::cos(angle) * right + std::sin(angle) * up));
     }
     overlay.AddLine(circle, StrokeColour);
   }

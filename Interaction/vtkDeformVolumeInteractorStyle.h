@@ -3,42 +3,44 @@
  * @class   vtkDeformVolumeInteractorStyle
  * @brief   mouse and keyboard tools of vtkDeformVolumeSession
  *
- * vtkDeformVolumeInteractorStyle has a mouse and keys drive a session: it finds what is visible
- * under the cursor, turns movements into events of the session, and shows each new output. Put it
- * into any viewer: give it to the interactor, with the session and the vtkVolume that shows it.
+ * vtkDeformVolumeInteractorStyle controls a session by mouse and keyboard: it finds the visible
+ * voxel under the cursor, turns mouse movements into events of the session, and shows each new
+ * output. To use it in a viewer, set it as the style of the interactor, and give it the session and
+ * the vtkVolume that shows the output.
  *
  * @par Buttons:
- * The left button is the tool. The right one turns the camera, the middle one moves it. The wheel
- * changes what the tool needs, and otherwise moves the camera to and fro.
- * - TURN: the camera is turned.
- * - GRAB: what is first visible under the cursor is dragged in the plane of the view, and with the
- *   wheel in depth. With Shift the handle stays where it is left.
- * - CUT: a stroke of the cursor; the sheet goes from it along the lines of sight, to CutDepth below
- *   what is first visible. The wheel changes CutDepth.
- * - CARVE: a sphere of CarveRadius is swept over what is visible. The wheel changes CarveRadius.
- * - PROBE: the value under the cursor, where it is, and where it is at rest.
- * - MEASURE: the distance between two places that are pressed on.
+ * The left button uses the tool. The right button rotates the camera, the middle one pans it. The
+ * wheel changes a parameter of the tool, or else zooms.
+ * - TURN: rotates the camera.
+ * - GRAB: drags the visible voxel under the cursor in the plane of the view. The wheel moves it in
+ *   depth. If Shift is pressed when the button is released, the handle stays there.
+ * - CUT: cuts along a stroke of the cursor. The sheet extends from the stroke along the lines of
+ *   sight, to CutDepth below the visible voxels. The wheel changes CutDepth.
+ * - CARVE: sweeps a sphere of CarveRadius over visible voxels. The wheel changes CarveRadius.
+ * - PROBE: shows the value under the cursor, its position, and its position at rest.
+ * - MEASURE: measures the distance between two positions that are clicked.
  *
  * @par Keys:
- * t g c v b m choose these tools; 1 2 3 4 the models NONE, CHAIN_MAIL, MASS_SPRING and
- * FINITE_ELEMENTS. p pins what is under the cursor, x releases the handle under the cursor. u is
- * undo, y redo, z undoes all. + and - are the wheel of CUT and CARVE. r resets the camera, h shows
- * help, q ends the interaction. Texts need VTK's module RenderingFreeType.
+ * t g c v b m choose these tools; 1 2 3 4 choose the models NONE, CHAIN_MAIL, MASS_SPRING and
+ * FINITE_ELEMENTS. p pins the tissue under the cursor, x releases the handle under the cursor. u
+ * undoes, y redoes, z undoes everything. + and - act like the wheel with CUT and CARVE. r resets
+ * the camera, h shows help, q ends the interaction. Texts need VTK's module RenderingFreeType.
  *
- * @par What is visible:
- * With PickMode OPACITY, the voxel along the ray where half of the light has been absorbed that all
- * of them absorb (or half of all light), by the scalar opacity of the property of Volume; nothing
- * where that is less than a tenth of all light. With ISOSURFACE the first voxel whose value is
- * Isovalue or more; with SLICES the first voxel on one of the slice planes. Without Volume, OPACITY
- * finds the first voxel that the body covers. Values are the first component of the scalars.
+ * @par Visible voxels:
+ * With PickMode OPACITY, the visible voxel is the one by which half of the light is absorbed that
+ * all voxels along the ray absorb, by the scalar opacity of the property of Volume. There is none
+ * if they absorb less than a tenth of the light. With ISOSURFACE, it is the first voxel whose value
+ * is at least Isovalue; with SLICES, the first voxel on one of the slice planes. Without Volume,
+ * OPACITY finds the first voxel that the body covers. Values are the first component of the
+ * scalars.
  *
  * @par Events:
- * UpdateDataEvent after each new output, and UpdateInformationEvent where GetStatus() is another.
- * StartInteractionEvent and EndInteractionEvent where the button of a tool is pressed and released.
+ * UpdateDataEvent: after each new output. UpdateInformationEvent: when GetStatus() has changed.
+ * StartInteractionEvent and EndInteractionEvent: when the button of a tool is pressed and released.
  *
  * @par Errors:
- * A tool that is used without an interactor, a renderer or a session is one vtkErrorMacro. What the
- * session reports is shown as GetMessage().
+ * Using a tool without an interactor, a renderer or a session is an error (vtkErrorMacro). Errors
+ * of the session are shown as GetMessage().
  *
  * @sa vtkDeformVolumeSession vtkInteractorEventRecorder
  */
@@ -70,7 +72,7 @@ public:
 
   ///@{
   /**
-   * What is driven. Default null.
+   * Set/Get the session. Default null.
    */
   virtual void SetSession(vtkDeformVolumeSession* session);
   vtkDeformVolumeSession* GetSession();
@@ -78,8 +80,8 @@ public:
 
   ///@{
   /**
-   * What shows the outputs. Its mapper, a vtkVolumeMapper, gets each new one, and its user matrix
-   * the direction of the output. Default null.
+   * Set/Get the vtkVolume that shows the outputs. Its mapper, a vtkVolumeMapper, gets each new
+   * output, and its user matrix gets direction and origin of the output. Default null.
    */
   virtual void SetVolume(vtkVolume* volume);
   vtkVolume* GetVolume();
@@ -87,23 +89,24 @@ public:
 
   ///@{
   /**
-   * Have a thread of the session work, and a timer of the interactor poll it. Without them, Poll()
-   * does both. StopSession() waits for the end of a step. It destroys the timer, and so must not be
-   * called by an observer of this timer's event, nor of UpdateDataEvent.
+   * Start/Stop the thread of the session, and a timer of the interactor that calls Poll(). Without
+   * them, each Poll() also updates the session. StopSession() waits for the end of a step. It
+   * destroys the timer, and must not be called by an observer of this timer's event or of
+   * UpdateDataEvent.
    */
   void StartSession();
   void StopSession();
   ///@}
 
   /**
-   * What each TimerEvent does: show the newest output, if there is one, and draw what has changed.
-   * Where the thread of the session does not run, and events wait or something moves, that is one
-   * Update() of the session. Returns whether something was drawn.
+   * Show the newest output, if there is one, and render if anything has changed. Called for each
+   * TimerEvent. If the thread of the session does not run, but the session is busy, calls its
+   * Update() first. Returns whether the window was rendered.
    */
   bool Poll();
 
   /**
-   * What the left button does, see SetTool().
+   * The tools of the left button, see SetTool().
    */
   enum Tools
   {
@@ -117,7 +120,7 @@ public:
 
   ///@{
   /**
-   * What the left button does. Default TURN.
+   * Set/Get the tool of the left button. Default TURN.
    */
   virtual void SetTool(int tool);
   vtkGetMacro(Tool, int);
@@ -125,8 +128,8 @@ public:
 
   ///@{
   /**
-   * Set/Get how deep a sheet cuts below what is visible, and the radius of the sphere that carves,
-   * in world units. 0 is a tenth and a fortieth of the diagonal of the output. Default 0.
+   * Set/Get the depth of cuts below visible voxels, and the radius of the carving sphere, in world
+   * units. 0 means a tenth and a fortieth of the diagonal of the output. Default 0.
    */
   vtkSetClampMacro(CutDepth, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(CutDepth, double);
@@ -135,7 +138,7 @@ public:
   ///@}
 
   /**
-   * What counts as visible, see SetPickMode().
+   * Definitions of visible voxels, see SetPickMode().
    */
   enum PickModes
   {
@@ -146,7 +149,7 @@ public:
 
   ///@{
   /**
-   * Set/Get what counts as visible. Default OPACITY.
+   * Set/Get which voxels are visible. Default OPACITY.
    */
   vtkSetClampMacro(PickMode, int, OPACITY, SLICES);
   vtkGetMacro(PickMode, int);
@@ -154,7 +157,7 @@ public:
 
   ///@{
   /**
-   * Set/Get the value from which on voxels are visible with ISOSURFACE. Default 0.
+   * Set/Get the minimum value of visible voxels with ISOSURFACE. Default 0.
    */
   vtkSetMacro(Isovalue, double);
   vtkGetMacro(Isovalue, double);
@@ -162,35 +165,35 @@ public:
 
   ///@{
   /**
-   * The planes that are visible with SLICES: a point and the normal of each, in the world.
+   * Add/Clear the planes that are visible with SLICES: a point and a normal, in world coordinates.
    */
   void AddSlicePlane(double x, double y, double z, double nx, double ny, double nz);
   void ClearSlicePlanes();
   ///@}
 
   /**
-   * The voxel of the output that is first visible at a pixel of the window. False where there is
-   * none.
+   * Get the position of the voxel of the output that is visible at a pixel of the window, in world
+   * coordinates. Returns false if there is none.
    */
   bool FindPlace(int x, int y, double place[3]);
 
   ///@{
   /**
-   * The last output of the session, and the image that the mapper has: the same scalars on a grid
-   * along the axes. Null before there is one.
+   * Get the last output of the session, and the image that the mapper shows: the same scalars
+   * without direction and origin. Null before the first output.
    */
   vtkImageData* GetOutput();
   vtkImageData* GetShownImage();
   ///@}
 
   /**
-   * Forget measures and the output. Call it after SetInputs() or LoadSession() of the session.
+   * Clear measurements and the output. Call it after SetInputs() or LoadSession() of the session.
    */
   void Forget();
 
   ///@{
   /**
-   * Whether tools, models and messages are shown as text. Default on.
+   * Set/Get whether tools, models and messages are shown as text. Default on.
    */
   virtual void SetShowStatus(bool show);
   vtkGetMacro(ShowStatus, bool);
@@ -199,8 +202,8 @@ public:
 
   ///@{
   /**
-   * Set/Get whether the keys are shown, as h does, and what is shown below them. Default off, and
-   * "".
+   * Set/Get whether the list of keys is shown (also toggled by the key h), and additional text
+   * below it. Default off, and "".
    */
   virtual void SetShowHelp(bool show);
   vtkGetMacro(ShowHelp, bool);
@@ -211,7 +214,8 @@ public:
 
   ///@{
   /**
-   * What is shown: the last message alone, and all of it. A viewer may show messages of its own.
+   * Set/Get the last message, and get the whole status text, which contains it. A viewer may show
+   * its own messages.
    */
   void ShowMessage(const std::string& message);
   vtkGetMacro(Message, std::string);
@@ -219,7 +223,7 @@ public:
   ///@}
 
   /**
-   * The distance that was measured last, in world units; 0 where there is none.
+   * Get the last measured distance, in world units; 0 if nothing was measured.
    */
   vtkGetMacro(MeasuredDistance, double);
 

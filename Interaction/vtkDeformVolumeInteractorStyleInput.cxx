@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the buttons, the wheel and the keys do.
+// Mouse buttons, the wheel and keys.
 #include "vtkDeformVolumeInteractorStyleInternals.h"
 
 #include "StyleText.h"
@@ -47,7 +47,7 @@ void vtkDeformVolumeInteractorStyle::OnLeftButtonUp()
   {
     return;
   }
-  // Also where the view is being turned with the other button.
+  // A tool also ends while the right button rotates the camera.
   if (this->State == VTKIS_NONE || this->Internals->IsPressed)
   {
     this->EndTool(this->Interactor->GetShiftKey() != 0);

@@ -30,33 +30,33 @@ public:
   std::vector<deformvolume::SlicePlane> Planes;
   deformvolume::StyleOverlay Overlay;
   int TimerId = -1;
-  bool IsChanged = true; // since it was drawn
+  bool IsChanged = true; // since the last frame
   bool WasBusy = false;
-  int WantedModel = -1; // -1: the session's
+  int WantedModel = -1; // chosen, but not yet used by the session; -1: none
 
   // The tool while the button is pressed.
   bool IsPressed = false;
-  int Handle = -1; // that is dragged
-  glm::dvec3 Held{ 0.0 };
-  std::array<int, 2> Cursor{ { 0, 0 } }; // where it was held last
+  int Handle = -1;                       // the handle that is dragged; -1: none
+  glm::dvec3 Held{ 0.0 };                // its position
+  std::array<int, 2> Cursor{ { 0, 0 } }; // last position of the cursor, in pixels
   std::vector<std::array<int, 2>> Stroke;
-  vtkSmartPointer<vtkImageData> CarvedImage; // as it was when the stroke began
-  glm::dvec3 Carved{ 0.0 };
+  vtkSmartPointer<vtkImageData> CarvedImage; // the output before the stroke
+  glm::dvec3 Carved{ 0.0 };                  // last position of the sphere
 
   std::vector<glm::dvec3> Measured;
-  std::vector<glm::dvec3> Sphere; // under the cursor: none or its centre
+  std::vector<glm::dvec3> Sphere; // center of the sphere under the cursor, or empty
 
   int GetModel() const
   {
     return this->WantedModel >= 0 ? this->WantedModel : this->Session->GetModel();
   }
 
-  /// Numbers and places of all handles that the session has.
+  /// Numbers and positions of all handles of the session.
   std::vector<std::pair<int, glm::dvec3>> GetHandles() const;
-  /// Has nothing to do with the button any more.
+  /// Resets the state of the tool after the button was released.
   void EndPress();
 
-  /// What a style picks on a line of sight; -1 where nothing is visible.
+  /// Returns the visible voxel on a line of sight, by the PickMode of a style; -1 if there is none.
   vtkIdType FindVoxel(const vtkDeformVolumeInteractorStyle* style, vtkImageData* image,
     const deformvolume::LineOfSight& line) const;
 };

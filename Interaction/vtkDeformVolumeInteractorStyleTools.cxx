@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the tools do.
+// The tools.
 #include "vtkDeformVolumeInteractorStyleInternals.h"
 
 #include "StyleText.h"
@@ -30,7 +30,7 @@ namespace
 constexpr int PixelsOfStroke = 4;  // between the points of a stroke
 constexpr int PixelsOfHandle = 20; // from the cursor to a handle
 
-// A strip of triangles between two rows of points.
+// Makes a strip of triangles between two rows of points.
 vtkSmartPointer<vtkPolyData> MakeStrip(
   const std::vector<glm::dvec3>& upper, const std::vector<glm::dvec3>& lower)
 {
@@ -141,7 +141,8 @@ void vtkDeformVolumeInteractorStyle::MoveTool()
 void vtkDeformVolumeInteractorStyle::DragTo(int x, int y)
 {
   vtkInternals& internals = *this->Internals;
-  // The handle is where its voxel was, which is not just under the cursor.
+  // The handle is at the point of its voxel, not exactly under the cursor: move it by as much as
+  // the cursor has moved.
   const double depth = GetDisplay(this->CurrentRenderer, internals.Held).z;
   internals.Held += GetWorld(this->CurrentRenderer, x, y, depth) -
     GetWorld(this->CurrentRenderer, internals.Cursor[0], internals.Cursor[1], depth);
@@ -150,11 +151,11 @@ void vtkDeformVolumeInteractorStyle::DragTo(int x, int y)
     internals.Handle, internals.Held.x, internals.Held.y, internals.Held.z);
 }
 
-// Each event of a carving looks at the whole sphere: those that are near the last one wait.
+// Skips positions near the last one, because each event of a carving processes the whole sphere.
 void vtkDeformVolumeInteractorStyle::CarveAt(int x, int y, bool isLast)
 {
   vtkInternals& internals = *this->Internals;
-  // On the body as it was: otherwise the sphere would sink into the hole that it makes.
+  // Use the output before the stroke: otherwise the sphere would sink into the hole that it makes.
   const vtkIdType voxel =
     internals.FindVoxel(this, internals.CarvedImage, GetLineOfSight(this->CurrentRenderer, x, y));
   if (voxel < 0)
@@ -220,7 +221,7 @@ void vtkDeformVolumeInteractorStyle::FinishCut()
     this->ShowMessage("The stroke misses the body. Draw it over the body.");
     return;
   }
-  // Beside the body the sheet is as deep as where the stroke is on the body nearest.
+  // Points of the stroke beside the body get the depth of the nearest point on the body.
   std::vector<glm::dvec3> upper;
   std::vector<glm::dvec3> lower;
   const double* spacing = internals.Output->GetSpacing();
@@ -229,7 +230,7 @@ void vtkDeformVolumeInteractorStyle::FinishCut()
   {
     std::size_t way = 0;
     const auto isThere = [&](std::size_t at) { return at < count && isFound[at]; };
-    while (!isThere(i + way) && !isThere(i - way)) // i - way wraps round beyond the first one
+    while (!isThere(i + way) && !isThere(i - way)) // i - way wraps around below 0
     {
       ++way;
     }
@@ -246,7 +247,7 @@ void vtkDeformVolumeInteractorStyle::FinishCut()
   internals.Session->Cut(MakeStrip(upper, lower));
 }
 
-// The session is asked only where it need not be waited for.
+// Does not call Probe() of a busy session, because it would wait for the end of a step.
 void vtkDeformVolumeInteractorStyle::ProbeAt(int x, int y)
 {
   vtkInternals& internals = *this->Internals;

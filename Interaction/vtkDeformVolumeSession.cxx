@@ -95,7 +95,7 @@ bool vtkDeformVolumeSession::SetInputs(vtkImageData* volume, vtkUnstructuredGrid
     internals.State = vtkInternals::PublishedState();
     internals.Sampling.BackgroundValue =
       std::min(volume->GetPointData()->GetScalars()->GetRange(0)[0], 0.0);
-    internals.IsBusy = true; // for the first output
+    internals.IsBusy = true; // until the first output
   }
   catch (const std::exception& error)
   {
@@ -133,7 +133,7 @@ bool vtkDeformVolumeSession::CheckFinite(const std::vector<double>& numbers)
   return areFinite;
 }
 
-// kind: of a SessionEvent.
+// kind: a SessionEvent::KindType.
 bool vtkDeformVolumeSession::Enqueue(int kind, const std::vector<double>& numbers)
 {
   if (!this->CheckInputs() || !this->CheckFinite(numbers))

@@ -1,58 +1,59 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkDeformVolumeSession
- * @brief   drag, cut and carve a volume live, without a window
+ * @brief   drag, cut and carve a volume interactively, without a window
  *
- * vtkDeformVolumeSession does the work of an interactive program: it holds a volume at rest, a
- * model of its tissue, and everything that was done to it, and gives the deformed volume. It draws
- * nothing and needs no window, so that a viewer, a server or a script can drive it.
+ * vtkDeformVolumeSession is an interactive deformation without a user interface: it holds a volume
+ * at rest, a model of its tissue, and all actions, and computes the deformed volume. It draws
+ * nothing and needs no window, so that a viewer, a server or a script can control it.
  *
- * Places are world coordinates of the deformed volume, as it is seen.
+ * Positions are world coordinates of the deformed volume.
  *
  * @par Order of events:
- * Methods that change something (the tools, Undo(), ChangeModel() and the settings below it) put an
- * event into a queue and return at once. Update() makes all events that wait and one step of the
- * simulation. After Start() a thread of the session does that as often as something moves; of
- * several moves of a handle that wait it takes the last one. TakeOutput() gives the newest volume.
- * All methods may be called while the thread runs, by one thread at a time.
+ * Methods that change the session (the tools, Undo(), ChangeModel() and settings) add an event to
+ * the pending events and return at once. Update() processes all pending events and one step of the
+ * simulation. After Start(), a thread of the session repeats that while events are pending or the
+ * body moves. If several moves of a handle are pending, it processes only the last one.
+ * TakeOutput() returns the newest volume. All methods may be called while the thread is active, but
+ * only by one thread at a time.
  *
  * @par Undo:
- * Each drag, cut, stroke of carving, release of a handle, and change of the model is an action that
- * can be undone. Undo takes masks back to the last bit, and with ChainMail all voxels to where they
- * were before the action (as far as ChangeUndoMemory() lets that be kept; else the body
- * comes from rest to where handles hold it). A mesh moves by itself to where the remaining actions
- * hold it. When all actions are undone, the output is the volume at rest, to the last bit. Redo
- * takes ChainMail to where it was before the undo; a mesh that is cut again comes from rest.
+ * Each drag, cut, carving stroke, release of a handle, and change of the model is an action that
+ * can be undone. Undo restores masks exactly. With ChainMail it also restores the positions of all
+ * voxels before the action, if they have been kept (ChangeUndoMemory()); otherwise the body is
+ * rebuilt from rest with the handles. A mesh moves by itself to where the remaining handles hold
+ * it. When all actions are undone, the output is bitwise equal to the volume at rest. Redo restores
+ * the positions of ChainMail before the undo. A mesh is rebuilt from rest when a cut is redone.
  *
  * @par Models:
  * NONE does not deform. CHAIN_MAIL is vtkChainMailDeformation: tissue stays where a handle leaves
  * it, and relaxes. MASS_SPRING and FINITE_ELEMENTS are vtkMassSpringDeformation and
- * vtkFiniteElementDeformation on the mesh that SetInputs() was given, or else on a
- * vtkLatticeTetrahedraSource with the first layer of nodes fixed, in millimetres. MASS_SPRING
- * refuses meshes of other cells than equal cubes. A change of the model keeps handles, cuts and
- * carvings. Cuts split meshes along the faces of tetrahedra; those that were made with another
- * model, or undone and made again, split the mesh at rest.
+ * vtkFiniteElementDeformation on the mesh of SetInputs(), or else on a vtkLatticeTetrahedraSource
+ * whose first layer of nodes is fixed, in millimeters. MASS_SPRING refuses meshes whose cells are
+ * not equal cubes. A change of the model keeps handles, cuts and carvings. Cuts split meshes along
+ * the faces of tetrahedra. Cuts that were made with another model, or that are redone, split the
+ * mesh at rest.
  *
  * @par Output:
- * vtkImageData as vtkDeformVolumeFilter makes it, with the bounds of the volume at rest and
- * Padding. Each output is an object of its own, which the session never changes as long as somebody
- * holds it; memory that nobody holds is used again.
+ * The vtkImageData of vtkDeformVolumeFilter, with the bounds of the volume at rest and Padding.
+ * Each output is a separate object, whose arrays the session does not change while the caller holds
+ * them.
  *
  * @par Files:
  * A session is saved as the record of its events, in XML with a version, a checksum, and a hash of
- * the volume and the mesh. Loading replays them: the result is the same to the last bit on the same
- * device, with all that can be undone. Files are written under another name in the same folder, and
- * renamed when they are complete.
+ * the volume and the mesh. Loading a session replays the events. On the same device, the result is
+ * bitwise equal, and the same actions can be undone. Files are written under a temporary name in
+ * the same folder, and renamed when they are complete.
  *
  * @par Errors:
- * Each is one vtkErrorMacro that says what is wrong and what to do, and GetErrorMessage(). The
- * event that failed has then changed nothing; only where the model or the lattice cannot be
- * changed, or a simulation has diverged, the body comes from rest again. What is called for a
- * handle that could not be grabbed does nothing. Errors of events are reported by Update() and
- * TakeOutput(): no inputs; places that are not finite, or where there is nothing to grab; a handle
- * that is not grabbed, or cannot go so far; a sheet that is empty or not made of triangles; what
- * the filters report; files that cannot be written or read, are damaged, or are of another version
- * or volume.
+ * Each error is one vtkErrorMacro, which says what is wrong and what to do, and GetErrorMessage().
+ * An event that fails changes nothing; but if the model or the lattice cannot be changed, or if a
+ * simulation diverges, the body is rebuilt from rest. Calls for a handle that could not be grabbed
+ * have no effect. Errors of events are reported by Update() and TakeOutput(). Errors are: no
+ * inputs; positions that are not finite, or without tissue to grab; a handle that is not grabbed,
+ * or that cannot be moved so far; a sheet that is empty or not made of triangles; errors of the
+ * filters; files that cannot be written or read, are damaged, or belong to another version or
+ * volume.
  *
  * @sa vtkDeformVolumeFilter vtkChainMailDeformation vtkCutVolume vtkCarveVolume
  */
@@ -84,10 +85,10 @@ public:
   ///@}
 
   /**
-   * Begin with a volume at rest, of at least two voxels on each axis, and, if it is not null, with
-   * a mesh of vtkTetra cells for the models that need one, as vtkElasticDeformation reads it. What
-   * was done before is forgotten, the model is NONE, and settings stay. The arrays of the volume
-   * are shared, and must not change; the mesh is copied. False after an error.
+   * Begin a session with a volume at rest, of at least two voxels on each axis, and optionally a
+   * mesh of vtkTetra cells, as vtkElasticDeformation reads it. Removes all actions, and sets the
+   * model to NONE. Settings do not change. The arrays of the volume are shared, and must not be
+   * modified; the mesh is copied. Returns false after an error.
    */
   bool SetInputs(vtkImageData* volume, vtkUnstructuredGrid* mesh = nullptr);
 
@@ -104,7 +105,7 @@ public:
 
   ///@{
   /**
-   * The model of the tissue. GetModel() gives the one of the last update. Default NONE.
+   * Set/Get the model of the tissue. GetModel() returns the model of the last update. Default NONE.
    */
   void ChangeModel(int model);
   int GetModel();
@@ -112,9 +113,10 @@ public:
 
   ///@{
   /**
-   * Take hold of the tissue at a place, move the handle, and let go. BeginGrab() returns the number
-   * of the handle, -1 after an error. Several handles may be grabbed. HoldGrab() ends a grab and
-   * leaves the handle where it is; Release() removes such a handle.
+   * Grab the tissue at a position, move the handle, and end the grab. BeginGrab() returns the
+   * number of the handle, or -1 after an error. Several handles may be grabbed at the same time.
+   * EndGrab() removes the handle. HoldGrab() ends the grab and keeps the handle at its position;
+   * Release() removes such a handle.
    */
   int BeginGrab(double x, double y, double z);
   void MoveGrab(int handle, double x, double y, double z);
@@ -124,22 +126,24 @@ public:
   ///@}
 
   /**
-   * Hold the tissue at a place where it is: BeginGrab() and HoldGrab().
+   * Hold the tissue at its position: BeginGrab() and HoldGrab(). Returns the number of the handle,
+   * or -1 after an error.
    */
   int Pin(double x, double y, double z);
 
   /**
-   * Cut along a sheet of triangles. It is copied. NONE and CHAIN_MAIL divide what the sheet crosses
-   * (SmoothCut of vtkCutVolume), so that nothing is lost and a cut is seen when it opens; the other
-   * models split their mesh along the faces of its tetrahedra.
+   * Cut along a sheet of triangles, which is copied. NONE and CHAIN_MAIL divide the tetrahedra that
+   * the sheet crosses (SmoothCut of vtkCutVolume): no tissue is lost, and a cut is visible only
+   * when it opens. The other models split their mesh along the faces of its tetrahedra.
    */
   void Cut(vtkPolyData* sheet);
 
   ///@{
   /**
-   * Carve out a sphere, which begins a stroke, and go on with the stroke: what a sphere sweeps from
-   * its last place. The surface passes between the voxels (SmoothBoundary of vtkCarveVolume). A
-   * stroke ends with any event of another kind, and is undone as one.
+   * Carve out a sphere, which begins a stroke, and continue the stroke: CarveTo() carves the region
+   * that the sphere sweeps from its last position. The surface passes between the voxels
+   * (SmoothBoundary of vtkCarveVolume). Any event of another kind ends the stroke. A stroke is one
+   * action.
    */
   void CarveSphere(double x, double y, double z, double radius);
   void CarveTo(double x, double y, double z, double radius);
@@ -147,8 +151,8 @@ public:
 
   ///@{
   /**
-   * Undo the last action, redo the one that was undone last, or undo all. A handle that is grabbed
-   * is let go. Nothing happens where there is none.
+   * Undo the last action, redo the last undone action, or undo all actions. Ends the grabs of all
+   * handles. Without an action, nothing else happens.
    */
   void Undo();
   void Redo();
@@ -156,16 +160,16 @@ public:
   ///@}
 
   /**
-   * The handles that hold something after the last update: a point where each of them is, with the
-   * point arrays "Handle" (its number), "RestPosition" (3 components, the place at rest that it
-   * holds) and "Grabbed" (0 once it is left where it is). vtkChainMailDeformation and
-   * vtkElasticDeformation read handles in this form. What handles held is replaced.
+   * Get the handles that hold tissue after the last update: a point at the position of each handle,
+   * with the point arrays "Handle" (its number), "RestPosition" (3 components, the rest position of
+   * the tissue that it holds) and "Grabbed" (0 after HoldGrab()). vtkChainMailDeformation and
+   * vtkElasticDeformation read handles in this form. The contents of the argument are replaced.
    */
   void GetHandles(vtkPolyData* handles);
 
   ///@{
   /**
-   * Actions that can be undone and redone after the last update.
+   * Get the number of actions that can be undone and redone after the last update.
    */
   vtkIdType GetNumberOfActions();
   vtkIdType GetNumberOfUndoneActions();
@@ -173,11 +177,12 @@ public:
 
   ///@{
   /**
-   * Settings, which are events but cannot be undone: how far round its place a handle holds voxels
-   * or nodes, in world units (initially 0); sweeps of relaxation in a step of ChainMail, 0 to 10000
-   * (initially 5); the most nodes of the lattice on an axis, 2 to 100 (initially 7), with those in
-   * the middle of edges that finite elements have, but at least 3 there; bytes that may be kept of
-   * where ChainMail had voxels before actions (initially 1 GiB).
+   * Change settings, by events that cannot be undone:
+   * - the radius within which a handle holds voxels or nodes, in world units (initially 0),
+   * - the sweeps of relaxation in a step of ChainMail, 0 to 10000 (initially 5),
+   * - the maximum number of nodes of the lattice on an axis, 2 to 100 (initially 7); with
+   *   FINITE_ELEMENTS this number includes mid-side nodes, and is at least 3,
+   * - the memory for positions of voxels that ChainMail restores, in bytes (initially 1 GiB).
    */
   void ChangeHandleRadius(double radius);
   void ChangeRelaxationSweeps(int sweeps);
@@ -187,8 +192,8 @@ public:
 
   ///@{
   /**
-   * SamplingFactor of vtkDeformVolumeFilter while something moves: 1, 2 or 4; others are errors.
-   * The output is at full resolution again when the body rests. Default 1.
+   * Set/Get the SamplingFactor of vtkDeformVolumeFilter while the body moves: 1, 2 or 4. Other
+   * values are errors. At rest, the output has full resolution. Default 1.
    */
   void SetMovingSamplingFactor(int factor);
   int GetMovingSamplingFactor();
@@ -196,8 +201,8 @@ public:
 
   ///@{
   /**
-   * Voxels of the output beyond the volume at rest on each side, for tissue that is pulled out.
-   * Default 8, 0 to 1000.
+   * Set/Get the width of the border of the output around the volume at rest, in voxels, for tissue
+   * that is pulled out. Default 8, 0 to 1000.
    */
   void SetPadding(int voxels);
   int GetPadding();
@@ -205,24 +210,25 @@ public:
 
   ///@{
   /**
-   * What voxels of the output get that nothing covers, in every array, as by BackgroundValue of
-   * vtkDeformVolumeFilter. SetInputs() sets it to the least value of the first component of the
-   * scalars, which is air in CT, or to 0 where that is less.
+   * Set/Get the value of uncovered voxels of the output, in all arrays (BackgroundValue of
+   * vtkDeformVolumeFilter). SetInputs() sets it to the minimum of the first component of the
+   * scalars, which is air in CT, or to 0 if that is less.
    */
   void SetBackgroundValue(double value);
   double GetBackgroundValue();
   ///@}
 
   /**
-   * Make the events that wait, one step of the simulation, and an output, in the thread of the
-   * caller. Returns whether the body still moves. An error while the thread of the session runs.
+   * Process the pending events, simulate one step, and compute an output, in the thread of the
+   * caller. Returns whether the body still moves. It is an error to call it between Start() and
+   * Stop().
    */
   bool Update();
 
   ///@{
   /**
-   * Have a thread of the session do it. Stop() waits for the end of a step; what waits stays in the
-   * queue. A session that is deleted stops by itself.
+   * Start/Stop a thread of the session that calls Update() repeatedly. Stop() waits for the end of
+   * a step; pending events stay pending. The destructor calls Stop().
    */
   void Start();
   void Stop();
@@ -230,20 +236,20 @@ public:
   ///@}
 
   /**
-   * Whether events wait, or something moves.
+   * Get whether events are pending or the body moves.
    */
   bool GetIsBusy();
 
   /**
-   * The output, if there is one that was not taken yet, else null. It belongs to the caller (Python
-   * sees to that by itself). Errors of events are reported here.
+   * Get the newest output, or null if it was taken already. The caller must delete it (Python does
+   * so automatically). Reports errors of events.
    */
   VTK_NEWINSTANCE vtkImageData* TakeOutput();
 
   ///@{
   /**
-   * What is seen at a place: false where there is nothing. Otherwise the first component of the
-   * scalars of the voxel there, and its place at rest. It waits for the end of a step.
+   * Get the value at a position of the deformed volume (the first component of the scalars), and
+   * its rest position. Probe() returns false if no tissue is there. It waits for the end of a step.
    */
   bool Probe(double x, double y, double z);
   vtkGetMacro(ProbedValue, double);
@@ -252,9 +258,9 @@ public:
 
   ///@{
   /**
-   * Write the record of all events to a file, and replay one (ProgressEvent tells how far that is).
-   * Before it is saved, events that wait are made; before another is loaded, they are dropped.
-   * False after an error: the session and an old file are then as they were.
+   * Write the record of all events to a file, or replay the record of a file (ProgressEvent reports
+   * the progress). SaveSession() processes pending events first; LoadSession() discards them. Both
+   * return false after an error, which does not change the session or an existing file.
    */
   bool SaveSession(const std::string& fileName);
   bool LoadSession(const std::string& fileName);
@@ -263,7 +269,7 @@ public:
   ///@{
   /**
    * Write the deformed volume at full resolution (.vti), or the deformed mesh of the model (.vtu).
-   * False after an error.
+   * Both return false after an error.
    */
   bool SaveVolume(const std::string& fileName);
   bool SaveMesh(const std::string& fileName);
@@ -271,8 +277,8 @@ public:
 
   ///@{
   /**
-   * Seconds that the last update took: for the events and the step, and for the resampling. How
-   * many steps there were since SetInputs().
+   * Get the durations of the last update, in seconds: of the events and the step, and of
+   * resampling; and the number of steps since SetInputs().
    */
   double GetSimulationTime();
   double GetResamplingTime();
@@ -280,18 +286,18 @@ public:
   ///@}
 
   /**
-   * Voxels that ChainMail has moved in the last step; 0 with other models.
+   * Get the number of voxels that ChainMail has moved in the last step; 0 with other models.
    */
   vtkIdType GetNumberOfMovedVoxels();
 
   /**
-   * How far the finite elements are from equilibrium: the largest force that is left on a node, as
-   * a part of the largest force that is applied or holds a node; 0 with other models.
+   * Get the distance of the finite elements from equilibrium: the largest residual force on a node,
+   * divided by the largest force that is applied to or holds a node; 0 with other models.
    */
   double GetRelativeResidual();
 
   /**
-   * The last error in words; "" where there was none.
+   * Get the message of the last error; "" if there was none.
    */
   vtkGetMacro(ErrorMessage, std::string);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The files of vtkDeformVolumeSession: sessions, volumes and meshes.
+// Files of vtkDeformVolumeSession: sessions, volumes and meshes.
 #include "vtkDeformVolumeSessionInternals.h"
 
 #include "vtkCallbackCommand.h"
@@ -40,7 +40,7 @@ void WriteData(vtkDataObject* data, const std::string& fileName)
       writer->AddObserver(vtkCommand::ErrorEvent, observer);
       writer->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, observer);
       writer->SetFileName(name.c_str());
-      writer->SetDataModeToBinary(); // raw appended data confuse the parser of some versions
+      writer->SetDataModeToBinary(); // some versions of VTK cannot read raw appended data
       writer->SetInputData(data);
       if (writer->Write() == 0 || hasFailed || writer->GetErrorCode() != 0)
       {
@@ -108,7 +108,7 @@ bool vtkDeformVolumeSession::LoadSession(const std::string& fileName)
       }
     }
   }
-  catch (const std::exception& error) // too little memory
+  catch (const std::exception& error) // for example std::bad_alloc
   {
     this->Report("The session " + fileName + " cannot be replayed: " + error.what());
     internals.Replay(record, [](double) {});
@@ -116,8 +116,8 @@ bool vtkDeformVolumeSession::LoadSession(const std::string& fileName)
   }
   {
     const std::lock_guard<std::mutex> lock(internals.QueueMutex);
-    internals.IsBusy = true; // for an output
-    internals.Queue.clear(); // of the session that was before
+    internals.IsBusy = true; // until the next output
+    internals.Queue.clear(); // its events belong to the previous session
   }
   if (wasRunning)
   {

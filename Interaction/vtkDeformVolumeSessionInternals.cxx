@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The thread of vtkDeformVolumeSession: events, steps and the record of them.
+// Processing and recording of the events and steps of vtkDeformVolumeSession, and its thread.
 #include "vtkDeformVolumeSessionInternals.h"
 
 #include <chrono>
@@ -39,7 +39,7 @@ void vtkDeformVolumeSession::vtkInternals::Enqueue(
   SessionEvent::KindType kind, std::vector<double> numbers)
 {
   const std::lock_guard<std::mutex> lock(this->QueueMutex);
-  // A handle goes to where it was moved last; what lies between is not seen.
+  // Of successive moves of a handle, only the last one is kept.
   if (kind == SessionEvent::MOVE_GRAB && !this->Queue.empty() && this->Queue.back().Kind == kind &&
     this->Queue.back().Numbers[0] == numbers[0])
   {
@@ -84,7 +84,7 @@ bool vtkDeformVolumeSession::vtkInternals::RunOnce()
     begin = GetSeconds();
     vtkImageData* resampled = this->Pipeline.Resample(sampling);
     state.ResamplingTime = GetSeconds() - begin;
-    // The filter writes to no array that somebody else holds.
+    // A shallow copy is sufficient: the filter does not write to arrays that others hold.
     output = vtkSmartPointer<vtkImageData>::New();
     output->ShallowCopy(resampled);
   }

@@ -17,11 +17,11 @@
 #include <utility>
 #include <vector>
 
-// The events that wait, the thread that makes them, and what it has made.
+// The pending events, the thread that processes them, and its results.
 class vtkDeformVolumeSession::vtkInternals
 {
 public:
-  // What the caller may ask for while a step is made.
+  // Results that the caller can get while a step is computed.
   struct PublishedState
   {
     int Model = vtkDeformVolumeSession::NONE;
@@ -35,15 +35,16 @@ public:
     std::vector<deformvolume::SessionPipeline::Handle> Handles;
   };
 
-  // The pipeline and the record: for a whole step.
+  // Protects the following members. Locked for a whole step.
   std::mutex PipelineMutex;
   deformvolume::SessionPipeline Pipeline;
   deformvolume::SessionEvents Record;
   bool IsMoving = false;
-  std::string InputHash; // "" until it is wanted
+  std::string InputHash; // "": not computed yet
   vtkIdType Steps = 0;
 
-  // The rest: for moments only. It is locked after PipelineMutex where both are.
+  // Protects the following members. Locked for short times only, and after PipelineMutex if both
+  // are locked.
   std::mutex QueueMutex;
   std::condition_variable Wake;
   deformvolume::SessionEvents Queue;
@@ -51,26 +52,26 @@ public:
   std::vector<std::string> Warnings;
   vtkSmartPointer<vtkImageData> NewOutput;
   PublishedState State;
-  bool IsBusy = false; // something moves, or events are being made
+  bool IsBusy = false; // the body moves, or events are processed
   bool IsToStop = false;
-  int Waiting = 0;                                  // callers that wait for the pipeline
-  deformvolume::SessionPipeline::Sampling Sampling; // where something moves
+  int Waiting = 0;                                  // number of callers that wait for the pipeline
+  deformvolume::SessionPipeline::Sampling Sampling; // while the body moves
   std::thread Worker;
   int LastHandle = -1;
 
-  // Where nothing moves.
+  // The sampling at rest.
   deformvolume::SessionPipeline::Sampling GetFullSampling();
 
-  // For files only: all of the volume is read.
+  // Computed only for files, because it reads the whole volume.
   const std::string& GetInputHash();
 
   void Enqueue(deformvolume::SessionEvent::KindType kind, std::vector<double> numbers);
 
-  // The events that wait and one step. PipelineMutex is locked.
+  // Processes the pending events and one step. PipelineMutex must be locked.
   bool RunOnce();
 
-  // What fails is recorded, too: a step that has failed has put handles back, and all fails again
-  // in a replay.
+  // Processes and records an event. Failed events are recorded, too, because a failed step moves
+  // handles back. They fail again in a replay.
   void Make(deformvolume::SessionEvent event, std::vector<std::string>& errors);
 
   void Begin(vtkImageData* volume, vtkUnstructuredGrid* mesh);
@@ -80,7 +81,7 @@ public:
   {
     this->Begin(this->Inputs.first, this->Inputs.second);
     this->Record.clear();
-    std::vector<std::string> errors; // they were reported when the events were made first
+    std::vector<std::string> errors; // not reported a second time
     for (std::size_t i = 0; i < events.size(); ++i)
     {
       this->Make(events[i], errors);
@@ -88,11 +89,11 @@ public:
     }
   }
 
-  // What the thread does until it is to stop.
+  // The function of the thread.
   void Work();
 
-  // Holds the pipeline between two steps of the thread, which would otherwise take it at once
-  // again.
+  // Locks PipelineMutex between two steps of the thread. Waiting keeps the thread from locking it
+  // again at once.
   class Access
   {
   public:
