@@ -37,8 +37,8 @@ public:
   {
   }
 
-  /// Calls visitor(number) for each box that overlaps `box`, in unspecified order. Stops when the
-  /// visitor returns false.
+  /// Calls visitor(number) for each box that overlaps `box`, in unspecified order. number: index of
+  /// the box. Stops when the visitor returns false.
   template <typename Visitor>
   void Visit(const Box& box, Visitor&& visitor) const
   {
@@ -72,7 +72,7 @@ public:
     }
   }
 
-  /// Appends the numbers of the boxes that overlap `box`, in unspecified order.
+  /// Appends the indices of the boxes that overlap `box`, in unspecified order.
   void Find(const Box& box, std::vector<std::size_t>& numbers) const
   {
     this->Visit(box,
@@ -115,7 +115,8 @@ private:
     Box Bounds;
     std::size_t Begin = 0;
     std::size_t End = 0;
-    std::size_t Upper = 0; // number of the second child, 0 in a leaf; the first child is next
+    std::size_t Upper =
+      0; // index of the second child, 0 in a leaf. The first child is the next node
   };
 
   void Build(std::size_t begin, std::size_t end)

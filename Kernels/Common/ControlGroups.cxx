@@ -100,8 +100,8 @@ std::optional<std::int64_t> ParseNumber(std::string_view text)
   return result.ec == std::errc() ? std::optional<std::int64_t>(number) : std::nullopt;
 }
 
-// Lists the folders of a control group and of its parents, up to the mount point. A container may
-// mount a group that is not a parent of this one: then only the mount point is listed.
+// Lists the folders of a control group and of its parents, up to the mount point. If the mounted
+// group is not a parent of this group, as in some containers, only the mount point is listed.
 std::vector<std::string> ListFolders(
   const std::string& root, const Mount& mount, const std::string& group)
 {
@@ -125,7 +125,7 @@ std::vector<std::string> ListFolders(
 
 std::vector<std::string> FindControlGroups(const std::string& root)
 {
-  // The line "0::group" is that of version 2.
+  // A line "0::group" names the group of cgroup version 2.
   std::string group;
   std::string line;
   std::ifstream own(root + "/proc/self/cgroup");

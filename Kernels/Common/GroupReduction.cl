@@ -2,7 +2,7 @@
 // Reductions over the work-items of a group.
 
 // Reduces rows of values in local memory, with one value per work-item in each row, by the expression JOIN(row, a, b).
-// All work-items of the group must execute it. The result of a row replaces the value of its first work-item.
+// All work-items of the group must execute this macro. The result of a row replaces the value of its first work-item.
 #define REDUCE_ROWS(rows, number, JOIN)                                                            \
   {                                                                                                \
     const size_t reduced = get_local_size(0);                                                      \

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Multiply-add that rounds in the same way everywhere on a device: fused where the device has an instruction for that.
-// Compilers may contract a * b + c at one place and not at another, and some ignore FP_CONTRACT. So use these macros
-// for each sum with a product that may be rounded. PoCL does not define FP_FAST_FMAF; its compiler, Clang, defines
-// __FMA__.
+// Compilers may contract a * b + c in one expression and not in another, and some ignore FP_CONTRACT. Therefore use
+// these macros for each sum with a product that may be rounded. PoCL does not define FP_FAST_FMAF; its compiler, Clang,
+// defines __FMA__.
 #if defined(FP_FAST_FMAF) || defined(__FMA__)
 #define MULTIPLY_ADD(a, b, c) fma(a, b, c)
 #else

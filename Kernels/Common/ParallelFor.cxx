@@ -19,24 +19,24 @@ namespace
 
 std::atomic<ParallelLoop> CurrentLoop{ nullptr };
 
-// Calls body(turn) for turns 0 to turns - 1, in parallel on at most `limit` threads. After an
-// exception no further turn starts. The first exception is rethrown when all threads have ended.
+// Calls body(part) for parts 0 to parts - 1, in parallel on at most `limit` threads. After an
+// exception no further part starts. The first exception is rethrown when all threads have ended.
 template <typename Body>
-void RunOnThreads(std::size_t turns, std::size_t limit, Body&& body)
+void RunOnThreads(std::size_t parts, std::size_t limit, Body&& body)
 {
   FirstException failure;
   std::atomic<std::size_t> next{ 0 };
   const auto work = [&]
   {
-    for (std::size_t turn = next++; turn < turns; turn = next++)
+    for (std::size_t part = next++; part < parts; part = next++)
     {
-      failure.Run([&] { body(turn); });
+      failure.Run([&] { body(part); });
     }
   };
   std::vector<std::thread> threads;
   try
   {
-    const std::size_t wanted = std::min(turns, limit);
+    const std::size_t wanted = std::min(parts, limit);
     threads.reserve(wanted);
     while (threads.size() + 1 < wanted)
     {
@@ -68,15 +68,15 @@ void SetParallelLoop(ParallelLoop loop)
 void RunOnOwnThreads(
   std::int64_t first, std::int64_t last, std::int64_t grain, const ParallelBody& body, int threads)
 {
-  constexpr std::int64_t turnsOfThread = 4;
+  constexpr std::int64_t partsPerThread = 4;
   const std::int64_t size = std::max<std::int64_t>(0, last - first);
   const std::int64_t step =
-    grain > 0 ? grain : std::max<std::int64_t>(1, size / (threads * turnsOfThread));
+    grain > 0 ? grain : std::max<std::int64_t>(1, size / (threads * partsPerThread));
   RunOnThreads(static_cast<std::size_t>((size + step - 1) / step),
     static_cast<std::size_t>(threads),
-    [&](std::size_t turn)
+    [&](std::size_t part)
     {
-      const std::int64_t begin = first + static_cast<std::int64_t>(turn) * step;
+      const std::int64_t begin = first + static_cast<std::int64_t>(part) * step;
       body(begin, std::min(last, begin + step));
     });
 }

@@ -35,7 +35,7 @@ int GetBoundProcessors()
                                                       : GetMachineProcessors();
 }
 
-// Number of processors that a quota of time per period is worth.
+// Converts a CPU quota (time per period) to a number of processors.
 double GetQuota(double quota, double period)
 {
   return quota > 0.0 && period > 0.0 ? quota / period : UNLIMITED;
@@ -76,7 +76,7 @@ int GetProcessorShare(int processes, const std::string& root)
 
 int GetProcessorShare()
 {
-  // Each start of threads calls this function, so the files are read only once.
+  // This function is called whenever threads start. Therefore the files are read only once.
   static const double quota = GetQuota("");
   static const int bound = GetBoundProcessors();
   static const int machine = GetMachineProcessors();

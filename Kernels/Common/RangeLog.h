@@ -27,8 +27,8 @@ public:
   /// Records that any point may have been written.
   void AddAll();
 
-  /// Returns the ranges that have been written since a revision. Empty if the log does not reach
-  /// back to that revision: then any point may have been written.
+  /// Returns the ranges that have been written since a revision. Empty if the log no longer holds
+  /// all of them: then any point may have been written.
   std::optional<PointRanges> GetSince(std::uint64_t revision) const;
 
 private:

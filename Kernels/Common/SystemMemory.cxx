@@ -16,8 +16,8 @@ namespace
 
 constexpr std::int64_t NoLimit = std::numeric_limits<std::int64_t>::max();
 
-// Returns the memory that a control group has left. all: the memory of the system. A limit of at
-// least `all` has no effect; the usage, which is slow to read, is then not needed.
+// Returns the memory that a control group has left. all: the memory of the system. Limits of at
+// least `all` have no effect: then the usage, which is slow to read, is not needed.
 std::int64_t GetLeft(const std::string& folder, std::int64_t all)
 {
   const std::int64_t limit = std::min(ReadNumber(folder + "/memory.max").value_or(NoLimit),

@@ -47,8 +47,8 @@ private:
   bool IsFirst = true;
 };
 
-/// Calls body(item) for items 0 to items - 1 in sequence, and checks for an abort after every 4096.
-/// An item should take about a microsecond.
+/// Calls body(item) for items 0 to items - 1 in sequence, and checks for an abort after every 4096
+/// items. An item should take about a microsecond.
 template <typename Body>
 void ForItems(Watch& watch, std::size_t items, Body&& body)
 {
@@ -78,7 +78,7 @@ void Grow(Watch& watch, std::vector<Value>& values, std::size_t size)
 }
 
 /// Calls body(part) for parts 0 to parts - 1 in parallel, and checks for an abort after every
-/// atOnce parts. So many parts should take about ten milliseconds at most.
+/// atOnce parts. `atOnce` parts should take at most about ten milliseconds.
 template <typename Body>
 void ForParts(Watch& watch, std::size_t parts, std::size_t atOnce, Body&& body)
 {
@@ -98,8 +98,8 @@ void ForParts(Watch& watch, std::size_t parts, std::size_t atOnce, Body&& body)
   }
 }
 
-/// Calls body(item) for items 0 to items - 1 in parallel, and checks for an abort after every 8192.
-/// An item should take about a microsecond.
+/// Calls body(item) for items 0 to items - 1 in parallel, and checks for an abort after every 8192
+/// items. An item should take about a microsecond.
 template <typename Body>
 void ForItemsInParallel(Watch& watch, std::size_t items, Body&& body)
 {
