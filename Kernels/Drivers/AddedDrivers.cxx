@@ -37,7 +37,7 @@ void AddedDrivers::Add(const std::string& path)
     return;
   }
   const bool maySetProcessor = MaySetKernelProcessor();
-  // Drivers read the environment variables that these functions set when they start.
+  // These functions set environment variables, which drivers read when they start.
   PrepareKernelCache();
   LimitDeviceThreads();
   const FloatingPointTrapGuard guard;

@@ -45,7 +45,8 @@ bool HasBits(unsigned int value, std::initializer_list<int> bits)
   return std::all_of(bits.begin(), bits.end(), [&](int bit) { return value >> bit & 1U; });
 }
 
-/// Returns the register sets that the operating system saves (XCR0). Others cannot be used.
+/// Returns the register sets that the operating system saves (XCR0). Programs cannot use the other
+/// register sets.
 unsigned int GetSavedRegisters()
 {
   unsigned int low = 0;
@@ -54,8 +55,9 @@ unsigned int GetSavedRegisters()
   return low;
 }
 
-/// Returns the processor of the built-in functions that PoCL selects, as getX86KernelLibName does
-/// in its pocl_llvm_build.cc. Null for processors without AVX2, all of which LLVM 14 recognizes.
+/// Returns the processor of the built-in functions that PoCL selects, by the rules of
+/// getX86KernelLibName in PoCL's pocl_llvm_build.cc. Null for processors without AVX2, all of which
+/// LLVM 14 recognizes.
 const char* GetProcessor()
 {
   const unsigned int first = Ask(1).C;
@@ -85,8 +87,8 @@ const char* GetProcessor()
 }
 #endif
 
-/// Whether built-in functions with AVX-512 fit kernels that are compiled for a processor, of those
-/// that LLVM 14 recognizes. Where they do not, LLVM ends the process.
+/// Whether kernels that are compiled for a processor can call built-in functions with AVX-512. If
+/// they cannot, LLVM terminates the process. recognized: the name of the processor in LLVM 14.
 bool HasAVX512(const std::string& recognized)
 {
   const std::array<const char*, 9> names{ { "skylake-avx512", "cascadelake", "cooperlake",
@@ -95,8 +97,8 @@ bool HasAVX512(const std::string& recognized)
   return std::find(names.begin(), names.end(), recognized) != names.end();
 }
 
-// PoCL 3.0-rc2 of pocl-binary-distribution 3.0. The build ID is that of the library: its linker has
-// computed it from all that the library has.
+// PoCL 3.0-rc2 of pocl-binary-distribution 3.0, and the build ID of its library. The linker
+// computed the build ID from the contents of the library.
 const char* const KnownVersion =
   "OpenCL 3.0 PoCL 3.0-rc2  Linux, Release, RELOC, LLVM 14.0.6, SLEEF, DISTRO, POCL_DEBUG";
 using BuildID = std::array<unsigned char, 20>;
@@ -109,7 +111,7 @@ struct BuildSearch
   BuildID Found{};
 };
 
-/// The build ID in notes of a library; false where there is none.
+/// Finds the build ID in the notes of a library. Returns false if there is none.
 bool FindBuildID(const char* notes, std::size_t size, BuildID& found)
 {
   const auto round = [](std::size_t bytes) { return (bytes + 3) / 4 * 4; };
@@ -165,7 +167,7 @@ bool IsKnownVersion(const cl::Device& device)
   return std::string(version.c_str()) == KnownVersion;
 }
 
-/// function: one of the library.
+/// Whether the library that contains a function is the known build.
 bool IsKnownBuild(const void* function)
 {
   BuildSearch search{ reinterpret_cast<std::uintptr_t>(function) };
@@ -282,7 +284,7 @@ KernelProcessor SetKernelProcessor(
     kernels.Name = processor;
     return kernels;
   }
-  // For "generic" the driver answers with an error.
+  // For "generic", the driver reports an error and does not terminate the process.
   kernels.EndsProcess = std::strcmp(processor, "skylake-avx512") == 0 && recognized != "generic" &&
     !HasAVX512(recognized);
   return kernels;

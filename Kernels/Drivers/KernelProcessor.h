@@ -15,7 +15,7 @@ namespace deformvolume
 /// The processor for which an added driver compiles kernels.
 struct KernelProcessor
 {
-  /// The name of the processor in LLVM. "": the driver has chosen it.
+  /// The name of the processor in LLVM. Empty if the driver has chosen the processor.
   std::string Name;
   /// Whether the driver would terminate the process when it compiles a kernel.
   bool EndsProcess = false;
@@ -25,9 +25,9 @@ struct KernelProcessor
 /// which its built-in functions were compiled. library: the file of the driver, which must be
 /// loaded. maySet: MaySetKernelProcessor(). Call this before any kernel is compiled.
 ///
-/// This driver has built-in functions for eight processors, and uses the best that this processor
-/// can run. But it compiles kernels for the processor that its LLVM 14 recognizes. The two often do
-/// not match:
+/// This driver has built-in functions for eight processors, and uses the best ones that this
+/// processor can execute. But it compiles kernels for the processor that its LLVM 14 recognizes.
+/// The two processors often do not match:
 /// - LLVM 14 does not recognize later processors. Then no kernel is compiled.
 /// - LLVM 14 takes Zen 4 for Zen 3, for which built-in functions with AVX-512 cannot be compiled.
 ///   Then the process terminates.
@@ -37,7 +37,7 @@ struct KernelProcessor
 /// function changes that member.
 ///
 /// Nothing is changed unless the version and the build ID of the library are those of the one known
-/// library, and exactly one member has the text that this library is known to store there.
+/// library, and exactly one member of the structure points to the name of the recognized processor.
 KernelProcessor SetKernelProcessor(
   const std::string& library, const cl::Device& device, bool maySet);
 

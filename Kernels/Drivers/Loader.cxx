@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // An OpenCL loader for libraries that must not depend on the loader of the system, which may not be
-// installed; the Python package is one of them. It has the OpenCL functions that the engine calls.
+// installed, such as the Python package. It has only the OpenCL functions that the engine calls.
 // Each OpenCL object begins with a pointer to the function table of its driver (cl_khr_icd), and
 // each function here calls the function in that table. SystemDrivers finds the drivers.
 #include "DriverLibrary.h"

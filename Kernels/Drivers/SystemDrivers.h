@@ -12,8 +12,8 @@ namespace deformvolume
 /// Khronos and ocl-icd do:
 /// 1. the libraries in the environment variable OCL_ICD_FILENAMES, separated by colons,
 /// 2. the libraries of the environment variable OCL_ICD_VENDORS: a folder, an .icd file or a
-///    library. If it is not set or empty, those of the folder OPENCL_VENDOR_PATH (an environment
-///    variable) or, by default, of /etc/OpenCL/vendors.
+///    library. If this variable is not set or empty: the libraries of the folder in the environment
+///    variable OPENCL_VENDOR_PATH. Default: /etc/OpenCL/vendors.
 /// A folder stands for all of its .icd files in alphabetical order. The first line of an .icd file
 /// is the name of a library.
 std::vector<std::string> FindSystemDrivers();
