@@ -9,8 +9,8 @@ namespace deformvolume
 {
 
 /// Measures the time that this thread spends on the compilation of kernels during the lifetime of
-/// the object, and reports the begin and the end of each compilation. Drivers compile when a
-/// program is built; some compile again at the first launch of a kernel.
+/// the object, and reports the beginning and the end of each compilation. Drivers compile when a
+/// program is built; some drivers compile again at the first launch of a kernel.
 class CompilationWatch
 {
 public:

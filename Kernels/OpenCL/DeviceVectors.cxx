@@ -14,8 +14,8 @@ namespace
 
 constexpr std::size_t VectorSize = 3 * sizeof(float);
 
-// Sorts ranges, and merges those with only a few points between them: to start a copy takes longer
-// than to copy some thousand vectors.
+// Sorts ranges, and merges ranges with few points between them: starting a copy takes longer than
+// copying a few thousand vectors.
 PointRanges Join(PointRanges ranges)
 {
   constexpr std::size_t few = 4096;

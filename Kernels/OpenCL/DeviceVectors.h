@@ -35,7 +35,7 @@ public:
 
   /// The name of the device.
   const std::string& GetDevice() const;
-  /// Whether the vectors are in host memory, which is so on CPU devices.
+  /// Whether the vectors are in host memory. True on CPU devices only.
   bool AreInHostMemory() const;
   /// Number of points.
   std::size_t GetNumberOfPoints() const;

@@ -70,7 +70,7 @@ void UpdateFromHost(
 {
   if (inPlace.Buffer() && !context.SharesHostMemory())
   {
-    // OpenCL allows this write from the memory that the buffer uses itself.
+    // OpenCL allows a write whose source is the memory of the buffer.
     queue.enqueueWriteBuffer(inPlace.Buffer, CL_TRUE, 0, inPlace.Bytes, inPlace.Data);
   }
 }

@@ -63,8 +63,8 @@ void Reserve(const OpenCLContext& context, cl::Buffer& buffer, std::uint64_t byt
 /// Waits for a command. Returns its OpenCL error code, or CL_SUCCESS.
 cl_int WaitFor(cl_event event) noexcept;
 
-/// A copy between a buffer and memory of the caller that is in progress, or that Finish() makes.
-/// After the destructor the copy no longer accesses the memory.
+/// A copy between a buffer and memory of the caller. The copy is in progress, or is made by
+/// Finish(). After the destructor the copy no longer accesses the memory.
 class PendingCopy
 {
 public:

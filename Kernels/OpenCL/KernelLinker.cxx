@@ -32,7 +32,7 @@ bool RunsLinker(const std::string& version)
 {
   int major = 0;
   int minor = 0;
-  const std::string words = ToLower(version); // before version 3 it is written "pocl"
+  const std::string words = ToLower(version); // versions before 3 spell their name "pocl"
   const std::size_t begin = words.find("pocl ");
   return begin != std::string::npos &&
     std::sscanf(words.c_str() + begin, "pocl %d.%d", &major, &minor) == 2 &&
@@ -77,7 +77,7 @@ std::string Run(const std::vector<std::string>& command)
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0)
   {
-    return ""; // the result is not known, so accept PoCL
+    return ""; // the result is not known
   }
   std::vector<char*> arguments;
   for (const std::string& word : command)
@@ -185,7 +185,8 @@ void SetKernelLinker(const std::string& folder)
   }
   OwnLinker& own = GetOwnLinker();
   const std::lock_guard<std::mutex> lock(own.Mutex);
-  if (!own.IsTried) // later, kernels may have been linked with it
+  if (!own.IsTried) // after the first try, kernels may have been linked with the linker of the
+                    // folder
   {
     own.Folder = folder;
   }
@@ -262,6 +263,7 @@ KernelLinkerScope::KernelLinkerScope(bool isUsed)
   }
   else
   {
+    // Undo the renaming in the destructor.
     __atomic_store_n(own.Entry, PathVariable[0], __ATOMIC_SEQ_CST);
   }
 }

@@ -70,9 +70,9 @@ double GetSeconds(const cl::Event& event)
       event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
 }
 
-/// Lists the platforms of added drivers, then those of the system. A driver may be added and also
-/// be installed, or be named by two .icd files; it returns the same pointer each time. Each
-/// platform is listed once.
+/// Lists the platforms of added drivers, then those of the system, each platform once. A driver
+/// that is both added and installed, or that two .icd files name, returns the same pointer each
+/// time.
 std::vector<cl::Platform> ListPlatforms()
 {
   std::vector<cl::Platform> platforms;
@@ -174,7 +174,7 @@ ContextList& GetContexts()
 
 std::vector<OpenCLDevice> FindDevices()
 {
-  // Drivers start here. Some do not support that from two threads at once: PoCL then reports no
+  // Drivers start here. Some drivers cannot start from two threads at once: PoCL then reports no
   // device, or crashes. The list is never deleted, since its destructors could call drivers that
   // have already been unloaded.
   static std::mutex mutex;
@@ -329,8 +329,8 @@ OpenCLContext::BuiltProgram& OpenCLContext::FindProgram(
 cl::Program OpenCLContext::Build(const std::string& source, const std::string& options) const
 {
   cl::Program program(this->Context, source);
-  // SetKernelProcessor() changed the processor without PoCL's knowledge. The macro keeps kernels
-  // for other processors in PoCL's cache from being used.
+  // PoCL does not know that SetKernelProcessor() may have changed the processor. The macro makes
+  // the source differ, so that PoCL does not take kernels for another processor from its cache.
   std::string processor = AddedDrivers::Get().GetProcessor(this->Device.Device()).Name;
   if (!processor.empty())
   {

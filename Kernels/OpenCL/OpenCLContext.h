@@ -71,14 +71,14 @@ public:
   cl::Program GetProgram(const ProgramText& source, const std::string& options);
 
   /// Enqueues a kernel. The queue must have profiling enabled. Drivers may compile a kernel again
-  /// for the size of its work-groups. So the first launch with each size waits for the kernel, and
-  /// its time before the kernel runs counts as compilation.
+  /// for the size of its work-groups. Therefore the first launch with each size waits for the
+  /// kernel, and the time until the kernel starts counts as compilation.
   cl::Event Launch(const cl::CommandQueue& queue, const cl::Kernel& kernel,
     const cl::NDRange& items, const cl::NDRange& group);
 
-  /// Compiles a kernel: runs one work-group of it, unless it has been launched with this group
-  /// size. Needed for drivers that compile at the launch but report this time as time of the
-  /// kernel. The kernel must have no effect when its first work-group runs an additional time.
+  /// Compiles a kernel by launching one work-group of it, unless the kernel has been launched with
+  /// this group size. Needed for drivers that compile at the launch but report this time as time of
+  /// the kernel. An additional execution of the first work-group must have no effect.
   void Prepare(const cl::CommandQueue& queue, const cl::Kernel& kernel, const cl::NDRange& group);
 
 private:

@@ -10,25 +10,25 @@
 namespace deformvolume
 {
 
-/// The source text of a program, as a list of pieces. Each update looks up programs, and their
-/// texts are long. So constant pieces are compared by address, and a look-up does not read them.
+/// The source text of a program, as a list of parts. Each update looks up programs, and their texts
+/// are long. Therefore constant parts are compared by address, and a look-up does not read them.
 class ProgramText
 {
 public:
   ProgramText() = default;
   /// constant: a literal or a text of KernelSources.h, which is never deleted.
   ProgramText(const char* constant)
-    : Pieces{ constant }
+    : Parts{ constant }
   {
   }
   ProgramText(std::string text)
-    : Pieces{ std::move(text) }
+    : Parts{ std::move(text) }
   {
   }
 
   ProgramText& operator+=(const ProgramText& other)
   {
-    this->Pieces.insert(this->Pieces.end(), other.Pieces.begin(), other.Pieces.end());
+    this->Parts.insert(this->Parts.end(), other.Parts.begin(), other.Parts.end());
     return *this;
   }
   friend ProgramText operator+(ProgramText first, const ProgramText& second)
@@ -36,22 +36,23 @@ public:
     first += second;
     return first;
   }
-  /// Compares pieces. Two ProgramTexts with equal text may be different if their pieces differ.
-  bool operator<(const ProgramText& other) const { return this->Pieces < other.Pieces; }
+  /// Compares the parts. Two ProgramTexts with equal text differ if they consist of different
+  /// parts.
+  bool operator<(const ProgramText& other) const { return this->Parts < other.Parts; }
 
   std::string GetText() const
   {
     std::string text;
-    for (const Piece& piece : this->Pieces)
+    for (const Part& part : this->Parts)
     {
-      std::visit([&](const auto& words) { text += words; }, piece);
+      std::visit([&](const auto& words) { text += words; }, part);
     }
     return text;
   }
 
 private:
-  using Piece = std::variant<const char*, std::string>;
-  std::vector<Piece> Pieces;
+  using Part = std::variant<const char*, std::string>;
+  std::vector<Part> Parts;
 };
 
 } // namespace deformvolume

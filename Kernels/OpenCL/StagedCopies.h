@@ -15,8 +15,8 @@ namespace deformvolume
 /// Copies between any host memory and a device with memory of its own, in portions through double
 /// buffers of page-locked (pinned) memory. Drivers copy pageable memory at a fraction of the speed
 /// of the bus. While the bus transfers one half of a double buffer, the host copies the other half
-/// to or from the memory of the caller. One thread does this at a fraction of the speed of the bus,
-/// so several threads work on a large copy, each with a double buffer of its own.
+/// to or from the memory of the caller. One thread copies at a fraction of the speed of the bus, so
+/// several threads work on a large copy, each with a double buffer of its own.
 ///
 /// Thread-safe: a copy waits until the copies of other threads have ended. The buffers belong to
 /// the process. MemoryBudget does not count them as memory on the device.
@@ -26,7 +26,7 @@ public:
   static constexpr std::size_t HalfBytes = std::size_t{ 1 } << 20;
   static constexpr std::size_t MostThreads = 8;
   static constexpr std::size_t PortionsWorthAThread = 2;
-  /// Smaller copies are not faster than those of the driver.
+  /// Staging does not make smaller copies faster.
   static constexpr std::size_t LeastBytes = std::size_t{ 1 } << 16;
 
   /// Returns null if the driver provides no page-locked memory.

@@ -31,11 +31,11 @@ public:
   void SetAllocationLimit(std::uint64_t bytes) { this->AllocationLimit = bytes; }
   std::uint64_t GetAllocationLimit();
 
-  /// Set the number of work-items in a work-group, along the rows of the volume. 0: chosen by the
-  /// device.
+  /// Set the number of work-items in a work-group, along the rows of the volume. 0: each kernel has
+  /// a default, see GetGroupSize().
   void SetWorkGroupSize(std::size_t size) { this->WorkGroupSize = size; }
-  /// Whether kernels with heavy work-groups run with one work-item per group: on CPUs whose
-  /// work-items can use all vector registers, unless a size is set.
+  /// Whether kernels with heavy work-groups have one work-item per group: on CPUs whose work-items
+  /// can use all vector registers, unless a size is set.
   bool HasSerialGroups();
   /// Returns the size of the work-groups of a kernel: the size that is set, or `wanted` if none is
   /// set, but at most the largest size that the kernel allows.
