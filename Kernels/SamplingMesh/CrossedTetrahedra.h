@@ -10,17 +10,17 @@
 namespace deformvolume
 {
 
-/// Returns the active tetrahedra without those that a smooth cut crosses, one byte per cell:
-/// crossed tetrahedra do not connect the two sides. active: null if all tetrahedra are active.
+/// Returns the active tetrahedra that no smooth cut crosses, one byte per cell: crossed tetrahedra
+/// do not connect the two sides. active: null if all tetrahedra are active.
 inline std::vector<unsigned char> SwitchOffCrossed(
   const unsigned char* active, const unsigned char* crossed, std::size_t numberOfCells)
 {
-  std::vector<unsigned char> left(numberOfCells, DEFORMVOLUME_ALL_TETRAHEDRA);
+  std::vector<unsigned char> remaining(numberOfCells, DEFORMVOLUME_ALL_TETRAHEDRA);
   for (std::size_t i = 0; i < numberOfCells; ++i)
   {
-    left[i] = static_cast<unsigned char>((active ? active[i] : left[i]) & ~crossed[i]);
+    remaining[i] = static_cast<unsigned char>((active ? active[i] : remaining[i]) & ~crossed[i]);
   }
-  return left;
+  return remaining;
 }
 
 } // namespace deformvolume

@@ -4,12 +4,12 @@
 //
 // Vertex v of the cell at (x, y, z) lies at x + (v & 1), y + (v >> 2 & 1), z + (v >> 1 & 1), so v
 // is one less than the number used in the literature. The split is mirrored from cell to cell: on
-// every axis on which the cell's structured index is odd, that offset counts downwards from the
-// upper side. So two neighboring cells have the same diagonal on their common face.
+// every axis on which the structured index of the cell is odd, offsets are counted from the upper
+// side of the cell. Therefore two neighboring cells have the same diagonal on their common face.
 //
-// Four corner tetrahedra, then the central one. In a cell of even parity (x + y + z even)
-// det(b - a, c - a, d - a) of the undeformed tetrahedra is +1 +1 +1 +1 -2 times the volume of the
-// voxel; in a cell of odd parity every sign is reversed.
+// The table lists the four corner tetrahedra, then the central one. In a cell of even parity
+// (x + y + z even) det(b - a, c - a, d - a) of the undeformed tetrahedra is +1 +1 +1 +1 -2 times
+// the volume of the voxel; in a cell of odd parity every sign is reversed.
 //
 // Source: Rodriguez, Leon, Martin, Otaduy, "A parallel resampling method for interactive
 // deformation of volumetric models", section on the implicit sampling mesh.

@@ -19,9 +19,9 @@ typedef struct
   int IsMirrored;  // 1 if the map from the volume to the output is a reflection, else 0
   int ChunkFirst;  // local z of the first vertex plane, and of the first cell layer, in the chunk
   int PlanesBegin; // local z of the first vertex plane to process
-  int PlanesEnd;   // and one past the last
+  int PlanesEnd;   // one past the last vertex plane to process
   int LayersBegin; // local z of the first layer of cells to process
-  int LayersEnd;   // and one past the last
+  int LayersEnd;   // one past the last layer of cells to process
   int OutputFirst[3]; // structured index of the first output voxel in the output buffers
   int OutputSize[3];  // output voxels in the buffers on each axis
   int WholeFirst[3];  // the whole output: its first voxel, counted from the first voxel in the
@@ -34,8 +34,8 @@ typedef struct
   int HasState;       // whether the vertices have a state; otherwise all vertices are sources
   int BrickOrigin[3]; // local index of the first cell of the first brick; may be negative
   int BrickCount[3];  // bricks on each axis
-  int ListBegin; // position in the list of bricks or of cell pieces of the first one to process
-  int ListEnd;   // and one past the last
+  int ListBegin; // index of the first entry to process, in the list of bricks or of cell pieces
+  int ListEnd;   // one past the last entry to process
   int Portion;   // bricks of the list per work-item
   int MostLargeCells; // capacity of the list of large cells
 } KernelParameters;
@@ -51,8 +51,8 @@ typedef struct
 } CutVertex;
 #define DEFORMVOLUME_CUT_CORNER 32 // the vertex belongs to a crossed tetrahedron
 
-// In 1/256 output voxel. A copy of a vertex that is no farther than this from the vertex on each
-// axis is moved onto the vertex. Extrapolation has an error of second order, and a closed cut must
+// A distance, in 1/256 output voxel. A copy of a vertex that is no farther from the vertex on each
+// axis is moved onto the vertex: extrapolation has an error of second order, and a closed cut must
 // not be visible.
 #define DEFORMVOLUME_CLOSED_GAP 64
 
@@ -84,7 +84,7 @@ typedef struct
   int Extrapolate; // whether voxels outside the field follow its border
   float Fading[3]; // DisplacementField::Fading
   int SameGrid;    // whether each voxel is a point of the field
-  int Offset[3];   // if so, voxel (i, j, k) is point (i, j, k) + Offset
+  int Offset[3];   // if SameGrid: voxel (i, j, k) is point (i, j, k) + Offset
   int IsMapped;    // for vectors that are read in place: whether to apply ToDisplacement
   unsigned int ToDisplacement[18]; // row-major 3 x 3 doubles, lower four bytes first
 } FieldParameters;
@@ -111,12 +111,13 @@ typedef struct
 // cells write, and for voxels on a crease, which no cell writes. All other voxels keep the value of
 // the first pass. So no voxel depends on other voxels, nor on how the output is divided.
 #define DEFORMVOLUME_PASS_DIRECT 0 // write, and count the writes
-#define DEFORMVOLUME_PASS_OWNERS 1 // also find the winners of voxels that several cells write
-// Find the winners among all tetrahedra that hold an unsettled voxel.
+#define DEFORMVOLUME_PASS_OWNERS 1 // as DIRECT; and find winners of voxels that several cells write
+// Find the winners of unsettled voxels, among all tetrahedra that contain the voxel.
 #define DEFORMVOLUME_PASS_MARK 2
 #define DEFORMVOLUME_PASS_WINNER 3 // write the voxels of which this tetrahedron is the winner
 #define DEFORMVOLUME_PASS_COUNT 4  // count the tetrahedra that write each voxel; write nothing
-// Whether all tetrahedra that hold a voxel take part, not only the tetrahedron that writes it.
+// Whether the pass uses all tetrahedra that contain a voxel, not only the tetrahedron that writes
+// it.
 #define DEFORMVOLUME_IS_CLOSED(pass)                                                               \
   ((pass) == DEFORMVOLUME_PASS_MARK || (pass) == DEFORMVOLUME_PASS_WINNER)
 // Whether the pass writes values.
@@ -132,8 +133,8 @@ typedef struct
   {                                                                                                \
     2, DEFORMVOLUME_BRICK_Y, DEFORMVOLUME_BRICK_Z                                                  \
   }
-// Sections of a brick, which can be resampled separately: spans of DEFORMVOLUME_SPAN cells on x, and
-// halves on y and z.
+// Sections of a brick, which can be resampled separately: spans of DEFORMVOLUME_SPAN cells on x,
+// and halves on y and z.
 #define DEFORMVOLUME_SPAN 32
 #define DEFORMVOLUME_SPANS (DEFORMVOLUME_BRICK_X / DEFORMVOLUME_SPAN)
 #define DEFORMVOLUME_SECTIONS (4 * DEFORMVOLUME_SPANS)
@@ -161,7 +162,7 @@ typedef struct
 #define DEFORMVOLUME_COUNT_MISSING 3 // cells on the border with flat or omitted tetrahedra
 #define DEFORMVOLUME_COUNT_ASSUMED 4 // nonzero if the kernel assumed that there are no such cells
 #define DEFORMVOLUME_COUNT_CANDIDATES 5 // voxels that cells may have won
-// Nonzero if cells hold samples that another cell or none writes.
+// Nonzero if cells contain samples that another cell writes, or no cell.
 #define DEFORMVOLUME_COUNT_TOUCHED 6
 #define DEFORMVOLUME_COUNT_LARGE 7 // cells that were added to the list of large cells
 #define DEFORMVOLUME_COUNTERS 8
@@ -181,10 +182,10 @@ typedef struct
 // Samples of one cell that a work-item tests. A cell whose box has more samples is large. Large
 // cells are added to a list, and later kernels resample them in pieces (LargeCells.cl).
 #define DEFORMVOLUME_PIECE 65536
-// Capacity of that list, with four integers per cell: local x, y and z, and the number of pieces. A
-// large cell that does not fit into the list is resampled where it is found.
+// Capacity of the list of large cells, with four integers per cell: local x, y and z, and the
+// number of pieces. The kernel that finds a large cell resamples it if the list is full.
 #define DEFORMVOLUME_MOST_LARGE_CELLS 65536
-// Pieces in a launch.
+// Number of pieces in one launch.
 #define DEFORMVOLUME_PIECES 1024
 
 // Voxels of a patch of the output on each axis. An update of a part of the output clears whole
@@ -194,8 +195,9 @@ typedef struct
 #define DEFORMVOLUME_PATCHES(voxels) (((voxels) + DEFORMVOLUME_PATCH - 1) / DEFORMVOLUME_PATCH)
 // State of a patch.
 #define DEFORMVOLUME_PATCH_UNSETTLED 1 // it has voxels without a winner yet
-#define DEFORMVOLUME_PATCH_TOUCHED 2   // cells may hold voxels that another cell or none writes
-#define DEFORMVOLUME_PATCH_KEPT 4      // its voxels keep their values
+// Cells may contain voxels of the patch that another cell writes, or no cell.
+#define DEFORMVOLUME_PATCH_TOUCHED 2
+#define DEFORMVOLUME_PATCH_KEPT 4 // its voxels keep their values
 
 // Voxels per work-item when coverage bits are expanded to bytes: half a word of bits.
 #define DEFORMVOLUME_EXPANDED 16
@@ -208,16 +210,15 @@ typedef struct
 // All tetrahedra around it are present, except those in cells that the boundary of the deformation
 // mesh crosses, and it does not lie on the border of the volume.
 #define DEFORMVOLUME_VERTEX_INTERIOR 2
-#define DEFORMVOLUME_CELL_WHOLE 4        // all tetrahedra of the cell that begins at it are present
-#define DEFORMVOLUME_VERTEX_REGULAR 8    // as interior, or on the border of the volume
+#define DEFORMVOLUME_CELL_WHOLE 4     // the cell that begins at the vertex has all its tetrahedra
+#define DEFORMVOLUME_VERTEX_REGULAR 8 // as INTERIOR, but may lie on the border of the volume
 #define DEFORMVOLUME_VERTEX_UNCLIPPED 16 // a source with a boundary distance that is not negative
-#define DEFORMVOLUME_CELL_UNCROSSED 32   // a smooth cut crosses no tetrahedron of that cell
+#define DEFORMVOLUME_CELL_UNCROSSED 32   // no smooth cut crosses the cell that begins at the vertex
 #define DEFORMVOLUME_VERTEX_TOGETHER 64  // its copies on both sides of the cut coincide with it
 
-// Further bits in the mask of active tetrahedra: the boundary of the deformation mesh crosses the
-// cell or one of its neighbors; and it crosses the cell itself.
-#define DEFORMVOLUME_CELL_AT_BOUNDARY 32
-#define DEFORMVOLUME_CELL_CROSSED 64
+// Further bits in the mask of active tetrahedra: the boundary of the deformation mesh crosses ...
+#define DEFORMVOLUME_CELL_AT_BOUNDARY 32 // the cell or one of its neighbors
+#define DEFORMVOLUME_CELL_CROSSED 64     // the cell itself
 
 #ifdef __OPENCL_VERSION__
 

@@ -26,8 +26,8 @@ struct MaskValues
 
 /// Finds the differences between two masks. Returns boxes of local indices: the bounding box of the
 /// differences in each cuboid of 64 x 4 x 4 vertices or cells that has any. size: vertices or cells
-/// on each axis. written: ranges outside which the masks are known to be equal; null: none are
-/// known.
+/// on each axis. written: ranges outside which the masks are known to be equal; null: the masks may
+/// differ anywhere.
 std::vector<Extent> FindMaskChanges(const std::array<int, 3>& size, const MaskValues& last,
   const MaskValues& next, const PointRanges* written = nullptr);
 

@@ -68,8 +68,8 @@ static int IsWhole(int active)
   return (active & DEFORMVOLUME_ALL_TETRAHEDRA) == DEFORMVOLUME_ALL_TETRAHEDRA;
 }
 
-// Bits of MarkCrossSection() for the vertices and cells at x around the row at y and z. Those outside the volume do not
-// count.
+// Bits of MarkCrossSection() for the vertices and cells at x around the row at y and z. Vertices and cells outside the
+// volume are ignored.
 #define ALL_SOURCES 1       // the nine vertices (x, y - 1 to y + 1, z - 1 to z + 1) are unclipped sources
 #define CELL_OF_SOURCES 2   // the four vertices (x, y to y + 1, z to z + 1) are unclipped sources
 #define ALL_ACTIVE 4        // all tetrahedra of the four cells (x, y - 1 to y, z - 1 to z) are active
@@ -256,7 +256,8 @@ static void MarkRow(__global const uchar* state, __global const uchar* active, _
 // unclipped sources and its tetrahedra are active. The result goes to `marked`, since other work-items read the sources
 // from `state` at the same time.
 __kernel void MarkVertices(__global const uchar* state, __global const uchar* active,
-  __global const uint* cutRows, __global const CutVertex* cutVertices, __global uchar* marked, __global const uint* cuboids, const KernelParameters p)
+  __global const uint* cutRows, __global const CutVertex* cutVertices, __global uchar* marked,
+  __global const uint* cuboids, const KernelParameters p)
 {
   const int3 first = FirstVertex(cuboids[get_global_id(1)], &p);
   const int3 end = EndOfVertices(first, &p);

@@ -68,12 +68,12 @@ static void JoinTaps(
   }
 }
 
-#define STORE_TAPS(T, SOURCE, TARGET, PLACE, COMPONENTS, CONVERT)                                  \
+#define STORE_TAPS(T, SOURCE, TARGET, INDEX, COMPONENTS, CONVERT)                                  \
   for (int c = 0; c < COMPONENTS; ++c)                                                             \
   {                                                                                                \
     if (T.Count == 1)                                                                              \
     {                                                                                              \
-      TARGET[PLACE * COMPONENTS + c] = SOURCE[T.Sources[0] * COMPONENTS + c];                      \
+      TARGET[INDEX * COMPONENTS + c] = SOURCE[T.Sources[0] * COMPONENTS + c];                      \
     }                                                                                              \
     else                                                                                           \
     {                                                                                              \
@@ -82,13 +82,13 @@ static void JoinTaps(
       {                                                                                            \
         sum = MULTIPLY_ADD_REAL(T.Weights[k], (REAL)SOURCE[T.Sources[k] * COMPONENTS + c], sum);   \
       }                                                                                            \
-      TARGET[PLACE * COMPONENTS + c] = CONVERT(sum);                                               \
+      TARGET[INDEX * COMPONENTS + c] = CONVERT(sum);                                               \
     }                                                                                              \
   }
 
 // REAL cannot represent all 64-bit integers. So the difference to the first voxel is interpolated, which is exact if
 // the values are close to each other. A cubic sum may exceed the range of the type, so the addition saturates.
-#define STORE_TAPS_64(T, SOURCE, TARGET, PLACE, COMPONENTS, TYPE, CONVERT)                         \
+#define STORE_TAPS_64(T, SOURCE, TARGET, INDEX, COMPONENTS, TYPE, CONVERT)                         \
   for (int c = 0; c < COMPONENTS; ++c)                                                             \
   {                                                                                                \
     const TYPE first = SOURCE[T.Sources[0] * COMPONENTS + c];                                      \
@@ -104,7 +104,7 @@ static void JoinTaps(
       sum = MULTIPLY_ADD_REAL(T.Weights[k], (REAL)other, sum);                                     \
     }                                                                                              \
     const TYPE step = (TYPE)abs(convert_long_rte(near ? difference : 0));                          \
-    TARGET[PLACE * COMPONENTS + c] = !near ? CONVERT(sum)                                          \
+    TARGET[INDEX * COMPONENTS + c] = !near ? CONVERT(sum)                                          \
       : difference < 0                     ? sub_sat(first, step)                                  \
                                            : add_sat(first, step);                                                     \
   }
