@@ -31,9 +31,9 @@ struct TetrahedronFace
 };
 
 /// Finds the faces of a mesh that have tetrahedra on one side only, in ascending order of
-/// tetrahedra. Faces are compared by the positions of their nodes at rest. So two coincident faces
-/// with different nodes are inside the mesh; there are such faces where the mesh is split or its
-/// parts are not connected. solid: the result of FindSolidTetrahedra(); other tetrahedra are
+/// tetrahedra. Faces are compared by the positions of their nodes at rest. Therefore two coincident
+/// faces with tetrahedra on opposite sides are inside the mesh, even if their nodes differ, as
+/// where the mesh is split. solid: the result of FindSolidTetrahedra(); other tetrahedra are
 /// ignored.
 std::vector<TetrahedronFace> FindBoundaryFaces(const std::vector<glm::dvec3>& points,
   const std::vector<Tetrahedron>& tetrahedra, const std::vector<std::int32_t>& solid);

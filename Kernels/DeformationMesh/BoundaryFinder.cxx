@@ -19,8 +19,9 @@ namespace
 // Largest size of a piece on an axis, in cells. The edge functions have 64 bits, which is enough
 // for pieces of up to 5,000 output voxels.
 constexpr double LargestPiece = 128.0;
-// Larger tetrahedra are bisected at their longest edge. If all edges were halved instead, a
-// tetrahedron with one distant node would become (length / 128)^2 slivers within the volume.
+// Tetrahedra that are larger than this number of cells on an axis are bisected at their longest
+// edge. If all edges were halved instead, a tetrahedron with one distant node would become
+// (length / 128)^2 slivers within the volume.
 constexpr double LargestDivided = 4096.0;
 
 // Returns the extent of the cells between voxels.
@@ -30,7 +31,7 @@ Extent GetCells(const Extent& voxels)
 }
 
 // Adds the cells that a triangle crosses within the whole volume, and possibly some neighbors.
-// tolerance: how far the triangle must reach into a cell; 0: to touch the cell is enough.
+// tolerance: how far the triangle must extend into a cell; 0: it is enough to touch the cell.
 void AddCells(const Triangle& face, const Extent& whole, double tolerance, CellSet& cells)
 {
   const glm::dvec3 normal = glm::cross(face[1] - face[0], face[2] - face[0]);
@@ -159,16 +160,16 @@ std::array<MeshBoundary::Piece, 8> Divide(const MeshBoundary::Piece& whole)
   std::array<MeshBoundary::Piece, 8> divided;
   for (std::size_t part = 0; part < 8; ++part)
   {
-    MeshBoundary::Piece& target = divided[part];
-    target.Tetrahedron = whole.Tetrahedron;
+    MeshBoundary::Piece& piece = divided[part];
+    piece.Tetrahedron = whole.Tetrahedron;
     for (std::size_t corner = 0; corner < 4; ++corner)
     {
       const auto a = static_cast<std::size_t>(parts[part][corner][0]);
       const auto b = static_cast<std::size_t>(parts[part][corner][1]);
-      target.Rest[corner] = 0.5 * (whole.Rest[a] + whole.Rest[b]);
+      piece.Rest[corner] = 0.5 * (whole.Rest[a] + whole.Rest[b]);
       for (std::size_t k = 0; k < 4; ++k)
       {
-        target.Weights[corner][k] = 0.5F * (whole.Weights[a][k] + whole.Weights[b][k]);
+        piece.Weights[corner][k] = 0.5F * (whole.Weights[a][k] + whole.Weights[b][k]);
       }
     }
   }

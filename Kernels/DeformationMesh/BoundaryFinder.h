@@ -20,11 +20,11 @@ namespace deformvolume
 
 using Triangle = std::array<glm::dvec3, 3>;
 
-// In voxels: how far a tetrahedron may reach into a cell because its nodes are rounded to 1/256
-// voxel.
+// Distance, in voxels, by which a tetrahedron may extend into a cell because its nodes are rounded
+// to 1/256 voxel.
 constexpr double BoundaryTolerance = 1.0 / 64.0;
-// In voxels: a face that is no deeper than this inside the volume counts as on the border of the
-// volume. Voxels on the border are then still linked.
+// Depth inside the volume, in voxels, up to which a face counts as on the border of the volume.
+// Voxels on the border are still linked to the mesh then.
 constexpr double BorderTolerance = 1.0 / 512.0;
 
 /// A set of cells in a box, with one bit per cell.
@@ -117,8 +117,9 @@ public:
   /// part, whole: as in FindMeshBoundary().
   BoundaryFinder(const Extent& part, const Extent& whole);
 
-  /// Finds the cells that faces cross. Returns whether there are any in the part or beside it.
-  /// tolerance: how far a face must reach into a cell, in voxels; 0: to touch the cell is enough.
+  /// Finds the cells that faces cross. Returns whether any of these cells is in the part or next to
+  /// it. tolerance: how far a face must extend into a cell, in voxels; 0: it is enough to touch the
+  /// cell.
   bool Cross(const std::vector<Triangle>& faces, double tolerance);
 
   /// Calls take(x, y, z) for the crossed cells and their neighbors.

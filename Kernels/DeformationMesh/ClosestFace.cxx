@@ -26,7 +26,7 @@ double GetSquaredDistance(const glm::dvec3& point, const glm::dvec3& min, const 
 }
 
 // Returns the barycentric weights of the point of a triangle that is closest to another point. The
-// signs of dot products decide whether it is a corner, on an edge or inside the triangle.
+// signs of dot products decide whether the closest point is a corner, on an edge or inside.
 glm::dvec3 FindWeights(const glm::dvec3& point, const ClosestFace::Triangle& triangle)
 {
   const glm::dvec3 ab = triangle[1] - triangle[0];

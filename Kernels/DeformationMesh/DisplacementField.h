@@ -30,7 +30,7 @@ struct DisplacementField
   /// double precision (see GetFactor()), and the result is rounded to float. Default: the identity.
   std::array<double, 9> ToDisplacement{ { 1, 0, 0, 0, 1, 0, 0, 0, 1 } };
   /// Owner of Vectors. While an object holds the owner, Vectors must stay valid and unchanged.
-  /// Default: null, with which the call checks, converts and copies Vectors.
+  /// Default: null. Without an owner, the call checks, converts and copies Vectors.
   ///
   /// With an owner, a CPU device that supports double precision reads Vectors in place at each
   /// Deform(), if each voxel is a point of the field. It holds the owner until another deformation

@@ -18,10 +18,11 @@ namespace deformvolume
 
 /// The boundary of a deformation mesh, or of a displacement field, within a volume.
 ///
-/// A voxel outside the mesh has no deformed position. So the cells of the sampling mesh that the
-/// boundary crosses cannot be resampled by their vertices. They are resampled by the tetrahedra of
-/// the deformation mesh that meet these cells (BoundaryCells). Neighboring cells are resampled by
-/// their vertices; tetrahedra of the deformation mesh fill remaining gaps between the two.
+/// A voxel outside the mesh has no deformed position. Therefore the cells of the sampling mesh that
+/// the boundary crosses cannot be resampled by their vertices. They are resampled by the tetrahedra
+/// of the deformation mesh that meet these cells (BoundaryCells). Neighboring cells are resampled
+/// by their vertices. Tetrahedra of the deformation mesh fill the gaps that remain between the
+/// crossed cells and their neighbors.
 struct MeshBoundary
 {
   /// A tetrahedron of the deformation mesh, or a part of a large one.

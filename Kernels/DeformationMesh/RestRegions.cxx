@@ -90,9 +90,9 @@ void RestRegions::AddTetrahedron(const Tetrahedron& tetrahedron,
     rest.Add(point);
     moved.Add(nodes[node]);
   }
-  // Linked voxels slightly outside the tetrahedron have negative weights, so they also lie outside
-  // the deformed tetrahedron. Column k of steps: deformed step between neighboring voxels on axis
-  // k.
+  // Linked voxels slightly outside the tetrahedron have negative weights. Therefore they also lie
+  // outside the deformed tetrahedron. outside: an upper bound of the sum of these weights. Column k
+  // of steps: deformed step between neighboring voxels on axis k.
   double outside = 0.0;
   glm::dmat3 steps(0.0);
   for (int node = 0; node < 4; ++node)

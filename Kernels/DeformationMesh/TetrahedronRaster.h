@@ -87,8 +87,8 @@ public:
       normals[3][axis] = -(normals[0][axis] + normals[1][axis] + normals[2][axis]);
     }
 
-    // Order the faces: those that bound a row from below, those that bound a row from above, those
-    // parallel to rows.
+    // Order the faces: first faces that bound a row from below, then faces that bound a row from
+    // above, then faces parallel to rows.
     int order[4];
     int count = 0;
     for (int kind = 0; kind < 3; ++kind)
