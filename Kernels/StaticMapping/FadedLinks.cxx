@@ -150,14 +150,14 @@ void FadedLinks::DropUnused(std::size_t numberOfTetrahedra, std::vector<VertexLi
         }
       }
     });
-  std::vector<TetrahedronFace> left;
+  std::vector<TetrahedronFace> kept;
   std::vector<std::int32_t> numbers(this->Faces.size(), -1);
   for (std::size_t face = 0; face < this->Faces.size(); ++face)
   {
     if (used[face] != 0)
     {
-      numbers[face] = static_cast<std::int32_t>(left.size());
-      left.push_back(this->Faces[face]);
+      numbers[face] = static_cast<std::int32_t>(kept.size());
+      kept.push_back(this->Faces[face]);
     }
   }
   ParallelForParts(links.size(), 1 << 16,
@@ -172,7 +172,7 @@ void FadedLinks::DropUnused(std::size_t numberOfTetrahedra, std::vector<VertexLi
         }
       }
     });
-  this->Faces = std::move(left);
+  this->Faces = std::move(kept);
 }
 
 Tetrahedron FadedLinks::GetRecord(

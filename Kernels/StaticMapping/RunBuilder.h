@@ -18,9 +18,9 @@ namespace deformvolume
 {
 
 /// Builds the static mapping as runs. It processes a few tiles of a VoxelLinker at a time, in
-/// parallel. So it never stores the tetrahedra of more voxels than those of these tiles. The
-/// arguments of the constructor must outlive the object. The displacement of a voxel does not
-/// depend, bit for bit, on the part of the volume for which the runs are made.
+/// parallel, and stores the tetrahedra of the voxels of these tiles only. The arguments of the
+/// constructor must outlive the object. The displacement of a voxel does not depend, bit for bit,
+/// on the part of the volume for which the runs are made.
 class RunBuilder
 {
 public:

@@ -51,8 +51,8 @@ struct StaticMapping
 /// A voxel in several tetrahedra, such as a voxel on a face, is linked to the tetrahedron whose
 /// nodes come first in lexicographic order: the positions of the first nodes are compared by x,
 /// then y, then z, then those of the second nodes, and so on. So the mapping does not depend on the
-/// numbers of nodes and tetrahedra. Only for tetrahedra with equal positions, the lowest number is
-/// used. Links and runs select the same tetrahedra.
+/// numbers of nodes and tetrahedra. Only if tetrahedra have equal positions, the tetrahedron with
+/// the lowest number is used. Links and runs select the same tetrahedra.
 ///
 /// voxels: extent of the volume. restPoints: the nodes at rest, in continuous indices of the
 /// volume. outside: voxels outside the mesh have no link (Discard), are linked to the tetrahedron
@@ -75,7 +75,7 @@ public:
   std::uint64_t GetRunBytes() const { return this->RunBytes; }
 
   /// Whether any tetrahedron contains a voxel of the volume. Fast if one of the first tetrahedra
-  /// does.
+  /// contains a voxel.
   bool HoldsVoxels() const;
 
   /// Builds the mapping of the whole volume. progress: as in DeformRequest. Throws Aborted if it

@@ -20,12 +20,12 @@ namespace deformvolume
 namespace
 {
 
-// Largest number of tetrahedra to test when the deformation changes. Their test takes about a
+// Largest number of tetrahedra to test when the deformation changes. Testing them takes about a
 // millisecond.
 constexpr std::int64_t MostStretchable = 1 << 13;
 constexpr double StretchLimit = 2.0; // output voxels
-// Weights of two neighbors that differ by more: one follows the boundary, and the other does not
-// move.
+// If the weights of two neighbors differ by more than this, one neighbor follows the boundary and
+// the other does not move.
 constexpr double LargestStep = 0.5;
 
 // The point of the mesh that a voxel follows, and the factor of the displacement.

@@ -14,24 +14,24 @@ namespace deformvolume
 namespace
 {
 
-// Number of chunks into which `size` tetrahedra are divided. A thread processes one chunk at a
+// Number of blocks into which `size` tetrahedra are divided. A thread processes one block at a
 // time.
-std::int64_t CountChunks(std::int64_t size)
+std::int64_t CountBlocks(std::int64_t size)
 {
   return std::min<std::int64_t>(64, size);
 }
 
-// Calls body(chunk, begin, end) in parallel for the chunks of `size` tetrahedra.
+// Calls body(block, begin, end) in parallel for the blocks of `size` tetrahedra.
 template <typename Body>
-void ForEachChunk(std::int64_t size, Body&& body)
+void ForEachBlock(std::int64_t size, Body&& body)
 {
-  const std::int64_t chunks = CountChunks(size);
-  ParallelFor(0, chunks, 1,
+  const std::int64_t blocks = CountBlocks(size);
+  ParallelFor(0, blocks, 1,
     [&](std::int64_t begin, std::int64_t end)
     {
-      for (std::int64_t chunk = begin; chunk < end; ++chunk)
+      for (std::int64_t block = begin; block < end; ++block)
       {
-        body(chunk, size * chunk / chunks, size * (chunk + 1) / chunks);
+        body(block, size * block / blocks, size * (block + 1) / blocks);
       }
     });
 }
@@ -45,10 +45,10 @@ TetrahedronTiles::TetrahedronTiles(const Extent& voxels, const std::vector<glm::
   std::vector<Range> ranges(tetrahedra.size());
   std::atomic<std::int64_t> flat{ 0 };
   std::atomic<bool> beyondLimit{ false };
-  ForEachChunk(static_cast<std::int64_t>(tetrahedra.size()),
+  ForEachBlock(static_cast<std::int64_t>(tetrahedra.size()),
     [&](std::int64_t, std::int64_t begin, std::int64_t end)
     {
-      std::int64_t flatInChunk = 0;
+      std::int64_t flatInBlock = 0;
       for (std::int64_t id = begin; id < end; ++id)
       {
         const Positions positions = GetPositions(tetrahedra[id], restPoints);
@@ -58,10 +58,10 @@ TetrahedronTiles::TetrahedronTiles(const Extent& voxels, const std::vector<glm::
           continue;
         }
         BarycentricMap map;
-        flatInChunk += map.SetTetrahedron(tetrahedra[id], restPoints) ? 0 : 1;
+        flatInBlock += map.SetTetrahedron(tetrahedra[id], restPoints) ? 0 : 1;
         ranges[id] = this->FindRange(positions, margin);
       }
-      flat += flatInChunk;
+      flat += flatInBlock;
     });
   if (beyondLimit)
   {
@@ -79,18 +79,18 @@ void TetrahedronTiles::MakeLists(const std::vector<Range>& ranges)
   const auto size = static_cast<std::int64_t>(ranges.size());
   const auto forEachEntry = [&](auto&& body)
   {
-    ForEachChunk(size,
-      [&](std::int64_t chunk, std::int64_t begin, std::int64_t end)
+    ForEachBlock(size,
+      [&](std::int64_t block, std::int64_t begin, std::int64_t end)
       {
         for (std::int64_t i = begin; i < end; ++i)
         {
-          this->ForEachTile(ranges[i], [&](std::int64_t tile) { body(chunk, i, tile); });
+          this->ForEachTile(ranges[i], [&](std::int64_t tile) { body(block, i, tile); });
         }
       });
   };
   std::vector<std::vector<std::int64_t>> counts(
-    CountChunks(size), std::vector<std::int64_t>(tiles, 0));
-  forEachEntry([&](std::int64_t chunk, std::int64_t, std::int64_t tile) { ++counts[chunk][tile]; });
+    CountBlocks(size), std::vector<std::int64_t>(tiles, 0));
+  forEachEntry([&](std::int64_t block, std::int64_t, std::int64_t tile) { ++counts[block][tile]; });
   this->Offsets.assign(tiles + 1, 0);
   std::int64_t offset = 0;
   for (std::int64_t tile = 0; tile < tiles; ++tile)
@@ -105,8 +105,8 @@ void TetrahedronTiles::MakeLists(const std::vector<Range>& ranges)
   }
   this->Offsets[tiles] = offset;
   this->Bins.resize(offset);
-  forEachEntry([&](std::int64_t chunk, std::int64_t i, std::int64_t tile)
-    { this->Bins[counts[chunk][tile]++] = static_cast<std::int32_t>(i); });
+  forEachEntry([&](std::int64_t block, std::int64_t i, std::int64_t tile)
+    { this->Bins[counts[block][tile]++] = static_cast<std::int32_t>(i); });
 }
 
 } // namespace deformvolume

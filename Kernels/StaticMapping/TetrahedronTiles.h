@@ -20,8 +20,8 @@ class TetrahedronTiles : public TileGrid
 {
 public:
   /// Sorts tetrahedra into tiles. A tetrahedron belongs to each tile with a voxel in its bounding
-  /// box. margin: by which bounding boxes are enlarged, in voxels. Throws Error if a node is more
-  /// than 2^31 voxels away from index 0.
+  /// box. margin: distance by which bounding boxes are enlarged, in voxels. Throws Error if a node
+  /// is more than 2^31 voxels away from index 0.
   TetrahedronTiles(const Extent& voxels, const std::vector<glm::dvec3>& restPoints,
     const std::vector<Tetrahedron>& tetrahedra, double margin);
   /// The tetrahedra of a tile, in ascending order.
@@ -40,7 +40,7 @@ public:
   /// Total length of all lists. A tetrahedron in several tiles counts several times.
   std::int64_t GetNumberOfEntries() const { return static_cast<std::int64_t>(this->Bins.size()); }
 
-  /// Number of tetrahedra without volume, also of those outside the volume. The lists contain such
+  /// Number of flat tetrahedra, including tetrahedra outside the volume. The lists contain flat
   /// tetrahedra, too.
   std::int64_t GetNumberOfFlatTetrahedra() const { return this->FlatTetrahedra; }
 

@@ -57,7 +57,7 @@ struct VertexRuns
 // at the voxel are at most D, the largest displacement of its nodes. Four roundings to 24 bits (of
 // the coefficient, the product and two sums) affect terms that add up to S = |AlongX x| + |AlongY
 // y| + |AlongZ z|. Two roundings (of Displacement and the last sum) affect terms of at most D:
-// error <= 2^-24 (4 S + 2 D) The error is less than 1/1024 output voxel if S < 2,048 and
+// error <= 2^-24 (4 S + 2 D). The error is less than 1/1024 output voxel if S < 2,048 and
 // displacements are under 8,192 voxels. It is less than 1/512 up to the limit of 16,383 voxels. S
 // is at most the relative motion of the nodes times the weight variation that
 // LargestWeightVariation limits.
@@ -73,10 +73,10 @@ constexpr double LargestWeightVariation = 32.0;
 /// are exact up to this number.
 constexpr std::int64_t LargestRunSize = 1 << 24;
 
-/// Returns the bytes of a mapping by runs on the device. It needs about as many on the host.
+/// Returns the bytes of a mapping by runs on the device. The host needs about as many bytes.
 DEFORMVOLUME_EXPORT std::uint64_t GetRunBytes(
   std::uint64_t runs, std::uint64_t rows, std::uint64_t records);
-/// Returns the bytes of a mapping by these runs. 0 if it is empty.
+/// Returns the bytes of a mapping by these runs. 0 if there are no rows.
 DEFORMVOLUME_EXPORT std::uint64_t GetBytes(const VertexRuns& runs);
 
 /// Throws Error unless each row of voxels has runs that begin in ascending order from 0, and all

@@ -159,7 +159,7 @@ private:
   }
 
   const DisplacementField& Field;
-  const bool IsMapped; // whether its matrix is applied to its vectors
+  const bool IsMapped; // whether the matrix of the field is applied to the vectors
   const std::vector<unsigned char> Undefined;
   const glm::dmat3 ToField;
   const glm::dvec3 Offset;

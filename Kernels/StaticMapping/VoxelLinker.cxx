@@ -13,9 +13,8 @@ namespace
 // Upper bound, in voxels, of the distance of a voxel from its tetrahedron that rounding can cause.
 // Rounding moves a node by up to 2^-9 voxel on each axis.
 constexpr double RoundingDistance = VoxelLinker::Margin;
-// In voxels. Rounding can distort a thinner tetrahedron so much that weights are clearly outside 0
-// to
-// 1.
+// In voxels. Rounding can distort a thinner tetrahedron so much that weights are clearly negative
+// or greater than 1.
 constexpr double ThinHeight = 1.0 / 16.0;
 constexpr double LeastThinWeight = -1.0 / 8.0;
 
@@ -272,9 +271,10 @@ std::int64_t VoxelLinker::LinkTetrahedron(std::int32_t id, const Nodes& nodes, c
 }
 
 // Links a voxel that lies in a tetrahedron only because the nodes of that tetrahedron are rounded.
-// The same rounding may have moved the voxel out of the tetrahedron in which it really lies. So
-// this function compares the weights before rounding, and links the voxel to the best tetrahedron
-// within the rounding distance, if there is one.
+// Rounding may also have moved the nodes of the tetrahedron that contains the voxel before
+// rounding, so that it does not contain the voxel after rounding. Therefore this function compares
+// weights before rounding, and links the voxel to the best tetrahedron within the rounding
+// distance, if there is one.
 template <typename Element>
 bool VoxelLinker::LinkHeldByRounding(
   std::int64_t tile, const glm::i64vec3& voxel, Element& element) const
