@@ -31,28 +31,28 @@ public:
   std::size_t GetNumberOfBlocks() const { return this->Bounds.size(); }
 
   /// Computes the bounds of all blocks. changed: nonzero for blocks that have changed since the
-  /// last call. findBox(block): returns a box that contains a block; empty if the block is.
-  /// findBounds( block): returns the exact bounds of a block. Both functions are called in
+  /// last call. findBox(block): returns a box that contains a block; it is empty if the block is
+  /// empty. findBounds(block): returns the exact bounds of a block. Both functions are called in
   /// parallel.
   template <typename FindBox, typename FindBounds>
   IndexBounds Compute(
     const std::vector<unsigned char>& changed, FindBox&& findBox, FindBounds&& findBounds)
   {
-    std::vector<std::size_t> other;
+    std::vector<std::size_t> stale;
     for (std::size_t block = 0; block < this->Bounds.size(); ++block)
     {
       if (changed[block])
       {
-        other.push_back(block);
+        stale.push_back(block);
       }
     }
     constexpr std::size_t step = 16;
-    ParallelForParts(other.size(), step,
+    ParallelForParts(stale.size(), step,
       [&](std::size_t begin, std::size_t end)
       {
         for (std::size_t i = begin; i < end; ++i)
         {
-          const std::size_t block = other[i];
+          const std::size_t block = stale[i];
           this->Bounds[block] = findBox(block);
           this->IsExact[block] = this->Bounds[block].IsEmpty() ? 1 : 0;
         }
@@ -63,20 +63,21 @@ public:
       this->IsExact[block] = 1;
     };
     IndexBounds all = this->GetExact();
-    // Start with the blocks that reach farthest: few other blocks are then not contained.
-    std::vector<std::size_t> left = this->FindBeyond(all);
-    for (int direction = 0; direction < 6 && !left.empty(); ++direction)
+    // Start with the blocks that extend farthest: the bounds then contain most other blocks.
+    std::vector<std::size_t> remaining = this->FindBeyond(all);
+    for (int direction = 0; direction < 6 && !remaining.empty(); ++direction)
     {
-      const std::size_t farthest = this->FindFarthest(left, direction / 2, direction % 2 != 0);
+      const std::size_t farthest = this->FindFarthest(remaining, direction / 2, direction % 2 != 0);
       if (!this->IsExact[farthest] && !Holds(all, this->Bounds[farthest]))
       {
         compute(farthest);
         all.Add(this->Bounds[farthest]);
       }
     }
-    left = this->FindBeyond(all, left);
-    ParallelForParts(left.size(), 1, [&](std::size_t begin, std::size_t) { compute(left[begin]); });
-    for (const std::size_t block : left)
+    remaining = this->FindBeyond(all, remaining);
+    ParallelForParts(
+      remaining.size(), 1, [&](std::size_t begin, std::size_t) { compute(remaining[begin]); });
+    for (const std::size_t block : remaining)
     {
       all.Add(this->Bounds[block]);
     }
@@ -135,7 +136,7 @@ private:
     }
   }
 
-  /// Returns the block that reaches farthest on an axis.
+  /// Returns the block that extends farthest on an axis.
   std::size_t FindFarthest(const std::vector<std::size_t>& blocks, int axis, bool upwards) const
   {
     const auto isNearer = [&](std::size_t a, std::size_t b)

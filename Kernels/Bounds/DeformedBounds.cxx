@@ -49,8 +49,8 @@ IndexBounds ComputeInParallel(std::int64_t count, Body&& body)
   return all;
 }
 
-// In cells of the field: distance from the field up to which a voxel counts as inside. More than
-// the rounding of the device.
+// Distance from the field, in cells of the field, up to which a voxel counts as inside. Larger than
+// the rounding error of the device.
 constexpr double BoundsTolerance = 2.0 * FieldTolerance;
 // Distance up to which a position counts as on a voxel, or on a point of the field.
 constexpr double OnPoint = 1e-6;
@@ -201,9 +201,9 @@ glm::dvec3 Interpolate(const DisplacementField& field, const glm::dvec3& positio
                       : glm::dvec3(0.0);
 }
 
-// Computes bounds from the positions of all voxels. For fields with at least as many points as the
-// volume has voxels, and for fields that fade. The bounds of fading cells would be far too large,
-// since a cell has voxels that move and voxels that do not.
+// Computes bounds from the positions of all voxels. Used for fields with at least as many points as
+// the volume has voxels, and for fields that fade: bounds from the cells of a fading field would be
+// far too large, since a cell has voxels that move and voxels that do not.
 IndexBounds ComputeBoundsOfVoxels(
   const VoxelGrid& voxelGrid, const DisplacementField& field, const FieldGeometry& geometry)
 {

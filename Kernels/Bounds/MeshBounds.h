@@ -18,8 +18,8 @@ namespace deformvolume
 
 /// Computes the bounds, after the deformation, of the part of the volume inside a deformation mesh.
 /// The bounds are tight. For a tetrahedron inside the volume, the bounds are those of its nodes. A
-/// tetrahedron that reaches outside the volume is clipped to it, since the map in a tetrahedron is
-/// affine.
+/// tetrahedron that extends beyond the volume is clipped to the volume, since the map in a
+/// tetrahedron is affine.
 ///
 /// The bounds of blocks of nodes and of blocks of clipped tetrahedra are kept. Only blocks that
 /// have changed are computed again.
@@ -35,13 +35,14 @@ public:
     const std::vector<Tetrahedron>& tetrahedra);
 
   /// Applies changes of the nodes of tetrahedra. The positions at rest must not change; the number
-  /// of nodes may. restPoints and tetrahedra: the current ones, with all changes since the last
-  /// call.
+  /// of nodes may. restPoints and tetrahedra: the current nodes and tetrahedra, with all changes
+  /// since the last call.
   void ChangeConnectivity(const std::vector<glm::dvec3>& restPoints,
     const std::vector<Tetrahedron>& tetrahedra, const std::vector<TetrahedronChange>& changes);
 
-  /// Computes the bounds. restPoints and tetrahedra: the current ones. changes: the nodes whose
-  /// displacements have changed since the last call for this mesh; null: any may have changed.
+  /// Computes the bounds. restPoints and tetrahedra: the current nodes and tetrahedra. changes: the
+  /// nodes whose displacements have changed since the last call for this mesh; null: any
+  /// displacement may have changed.
   IndexBounds Compute(const std::vector<glm::dvec3>& restPoints,
     const std::vector<Tetrahedron>& tetrahedra, const float* displacements,
     const PointRanges* changes = nullptr);
