@@ -18,13 +18,13 @@ namespace deformvolume
 namespace
 {
 
-constexpr int BlockSize = 2;      // a box of the tree has so many cells on each axis
+constexpr int BlockSize = 2;      // cells in a box of the tree, on each axis
 constexpr int MostCellSteps = 20; // of Newton's method in a cell
-// In cells: length of the last step of Newton's method.
+// Newton's method ends when a step is shorter than this, in cells.
 constexpr double LastCellStep = 1e-12;
-// In cells: rounding must not lose points between two cells.
+// Tolerance at the faces of a cell, in cells: rounding must not lose points between two cells.
 constexpr double CellFaceTolerance = 1e-9;
-// In cells: distance that Newton's method may leave.
+// Largest distance from the solution, in cells, at which Newton's method counts as converged.
 constexpr double CellSolutionTolerance = 1e-8;
 // A smaller weight may be a rounding error of the position: the vector of the point is not needed.
 constexpr double LeastWeight = 1e-5;

@@ -54,8 +54,8 @@ public:
   FieldPointMap(const WorldField& field, const OutsideVoxels& outside, bool isInverse);
   ~FieldPointMap() override;
 
-  /// Maps a point. Outside the field with Extrapolate: by the displacement of the closest point on
-  /// the border. With Keep: by that displacement, faded.
+  /// Maps a point. Outside the field, OutsideVoxels applies. With Extrapolate, a point has the
+  /// displacement of the closest point on the border. With Keep, this displacement fades.
   bool Map(const glm::dvec3& point, Image& image) const override;
 
 private:

@@ -26,9 +26,9 @@ namespace
 // Points within this distance from the mesh count as inside, since points are often stored as
 // floats.
 constexpr double MeshBorderTolerance = 1e-6;
-// Rounding must not lose points between two tetrahedra.
+// Tolerance at the faces of a tetrahedron: rounding must not lose points between two tetrahedra.
 constexpr double MeshFaceTolerance = 1e-13;
-// Distance that Newton's method may leave.
+// Largest distance from the solution at which Newton's method counts as converged.
 constexpr double MeshSolutionTolerance = 1e-11;
 
 using Points = std::vector<glm::dvec3>;
@@ -120,8 +120,8 @@ public:
     BarycentricMap Map;
   };
 
-  /// Finds the tetrahedron that contains a point. Of several, one that is not inverted is
-  /// preferred, then the lowest number.
+  /// Finds the tetrahedron that contains a point. If there are several, a tetrahedron that is not
+  /// inverted is preferred, then the lowest number.
   Holder Find(const Configuration& configuration, const glm::dvec3& point) const
   {
     const bool isAtRest = &configuration == &this->Rest;

@@ -23,7 +23,8 @@ public:
     glm::dvec3 Point{ 0.0 };
     /// Derivatives of Point with respect to the original position: column k for coordinate k.
     glm::dmat3 Gradient{ 1.0 };
-    /// Where displacements fade outside, length of the displacement on the border. Elsewhere 0.
+    /// For a point whose displacement fades outside the mesh or the field: length of the
+    /// displacement of the closest point on the border. Otherwise 0.
     double FadingDisplacement = 0.0;
   };
 
@@ -47,7 +48,7 @@ protected:
   bool Solve(const glm::dvec3& point, const glm::dvec3& start, Image& image) const;
 
   OutsideVoxels Outside;
-  double SolutionTolerance = 0.0; // distance that Newton's method may leave
+  double SolutionTolerance = 0.0; // largest distance at which Newton's method counts as converged
 };
 
 } // namespace deformvolume
