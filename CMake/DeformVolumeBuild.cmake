@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Builds the module, wraps it for Python, and installs both with a CMake package.
+# Builds the VTK modules, wraps them for Python, and installs both.
 
 set(deformvolume_module_files "${CMAKE_CURRENT_SOURCE_DIR}/vtk.module")
 set(deformvolume_requested_modules DeformVolume::Filters)
 if (NOT DEFORMVOLUME_USE_PARAVIEW)
-  # ParaView has an interaction and views of its own.
+  # ParaView has its own views and interaction.
   list(APPEND deformvolume_module_files "${CMAKE_CURRENT_SOURCE_DIR}/Interaction/vtk.module")
   list(APPEND deformvolume_requested_modules DeformVolume::Interaction)
 endif ()
@@ -14,9 +14,9 @@ vtk_module_scan(
   PROVIDES_MODULES deformvolume_modules
   ENABLE_TESTS OFF)
 
-# vtk_module_build adds the module's directory by its path relative to CMAKE_SOURCE_DIR, which would
-# be empty for a module at the root; so that variable points one level down, in this scope only. The
-# path is then "..", and leads to <build>/Module.
+# vtk_module_build() adds the directory of a module by its path relative to CMAKE_SOURCE_DIR. For a
+# module at the root that path would be empty. In this function, CMAKE_SOURCE_DIR is therefore a
+# subfolder: the path is then "..", and the build directory of the module is <build>/Module.
 function (deformvolume_build_module)
   string(APPEND CMAKE_SOURCE_DIR "/CMake")
   string(APPEND CMAKE_BINARY_DIR "/Module/CMake")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# deformvolume_set_compile_options(<target>...): how all code of this project is compiled.
+# deformvolume_set_compile_options(<target>...): sets the compile options of all code of this project.
 
-# Without contraction, host arithmetic gives the same bits on processors with and without fused
+# Without contraction, results on the host are bitwise equal on CPUs with and without fused
 # multiply-add.
 set(DEFORMVOLUME_COMPILE_OPTIONS
   $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang>:-Wall;-Wextra;-ffp-contract=off>)
@@ -12,8 +12,8 @@ function (deformvolume_set_compile_options)
   endforeach ()
 endfunction ()
 
-# deformvolume_optimize_less(<target>...): for tests, most of which run in no time and take long to
-# compile. GCC sees uninitialized variables there that are none.
+# deformvolume_optimize_less(<target>...): shortens the compilation of tests, which are fast enough
+# with less optimization. With it, GCC warns wrongly of uninitialized variables.
 function (deformvolume_optimize_less)
   foreach (target IN LISTS ARGN)
     target_compile_options("${target}" PRIVATE

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Everything that is found outside this project, once, here.
+# Finds the dependencies of this project.
 
 if (DEFORMVOLUME_BUILD_MODULE)
   include(DeformVolumeVTK)
@@ -7,7 +7,8 @@ endif ()
 
 find_package(glm REQUIRED)
 
-# Version 5 says that it is not compatible with a request for version 3, though it is for this project.
+# Without a version, because the package of Eigen 5 refuses a request for version 3. Eigen 5 can be
+# used as well.
 find_package(Eigen3 REQUIRED NO_MODULE)
 if (Eigen3_VERSION VERSION_LESS 3.3)
   message(FATAL_ERROR "Eigen ${Eigen3_VERSION} is too old: 3.3 or later is needed.")
@@ -16,8 +17,8 @@ endif ()
 find_program(DEFORMVOLUME_TETGEN_EXECUTABLE tetgen
   DOC "The TetGen program that vtkTetGenMesher runs by default")
 
-# The system's OpenCL loader is asked for before those that GPU toolkits put elsewhere: theirs may
-# be older and know fewer vendors.
+# The OpenCL loader of the system comes first: the loaders of GPU toolkits may be older, and support
+# fewer vendors.
 if (DEFORMVOLUME_USE_OPENCL_LOADER)
   find_library(OpenCL_LIBRARY OpenCL
     PATHS "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}" /usr/lib64 /usr/lib
@@ -26,7 +27,7 @@ if (DEFORMVOLUME_USE_OPENCL_LOADER)
   find_package(OpenCL 1.2 REQUIRED)
   set(deformvolume_opencl OpenCL::OpenCL ${CMAKE_DL_LIBS})
 else ()
-  # The engine loads the drivers itself, and needs headers only.
+  # The engine loads the drivers itself, and needs only headers.
   find_path(OpenCL_INCLUDE_DIR CL/cl_icd.h REQUIRED)
   mark_as_advanced(OpenCL_INCLUDE_DIR)
   set(deformvolume_opencl ${CMAKE_DL_LIBS})

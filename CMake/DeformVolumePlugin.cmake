@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Builds and installs the ParaView plugin. Its folder has ParaView's version in its name, so that
-# plugins for several versions stand side by side, and no version finds that of another.
+# Builds and installs the ParaView plugin. The name of its folder contains the version of ParaView,
+# so that plugins for several versions can be installed together, and each ParaView finds its own.
 
 set(deformvolume_plugin_directory
   "paraview-${ParaView_VERSION_MAJOR}.${ParaView_VERSION_MINOR}/plugins")

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The target DeformVolumeReference: the reference of the public headers in <build>/Reference.
-# Documents/Doxyfile.in has the settings; Documents.Reference is the test.
+# The target DeformVolumeReference generates the reference of the public headers in
+# <build>/Reference. Documents/Doxyfile.in has the settings; Documents.Reference is the test.
 find_program(DOXYGEN_EXECUTABLE doxygen)
 mark_as_advanced(DOXYGEN_EXECUTABLE)
 
 set(deformvolume_reference "${PROJECT_BINARY_DIR}/Reference")
 set(deformvolume_doxyfile "${PROJECT_BINARY_DIR}/Doxyfile")
-# The classes are the same whatever VTK is there, and where there is none.
+# All classes are documented, independently of the VTK of this build.
 file(GLOB deformvolume_classes CONFIGURE_DEPENDS
   "${PROJECT_SOURCE_DIR}/Filters/vtk*.h"
   "${PROJECT_SOURCE_DIR}/Interaction/vtk*.h")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# VTK or ParaView, and the Python that it is wrapped for.
+# Finds VTK or ParaView, and the Python for which VTK is wrapped.
 
-# Components are named throughout: without them, VTK and ParaView ask for the development files of
-# all their modules, Qt included.
+# Without COMPONENTS, VTK and ParaView would require the development files of all their modules,
+# including Qt.
 set(deformvolume_vtk_components
   CommonCore
   CommonDataModel
@@ -18,13 +18,13 @@ set(deformvolume_vtk_components
   ParallelCore
   vtksys)
 if (NOT DEFORMVOLUME_USE_PARAVIEW)
-  # Of the module in Interaction.
+  # For the module Interaction.
   list(APPEND deformvolume_vtk_components InteractionStyle IOXML IOXMLParser RenderingCore)
 endif ()
-# Those that an installed DeformVolume needs.
+# The components that an installed DeformVolume needs.
 set(deformvolume_package_components ${deformvolume_vtk_components})
 if (DEFORMVOLUME_WRAP_PYTHON)
-  # Another python3 that comes first on PATH would not know the modules of the system's VTK.
+  # Another python3 that comes first in PATH would not find the modules of the system's VTK.
   if (NOT Python3_EXECUTABLE AND EXISTS "/usr/bin/python3")
     set(Python3_EXECUTABLE "/usr/bin/python3" CACHE FILEPATH "The Python that VTK is wrapped for")
   endif ()
@@ -52,7 +52,7 @@ if (DEFORMVOLUME_BUILD_EXAMPLES OR BUILD_TESTING)
     RenderingVolumeOpenGL2
     zlib)
   if (NOT DEFORMVOLUME_USE_PARAVIEW)
-    list(APPEND deformvolume_vtk_components RenderingImage) # of deform-interactive
+    list(APPEND deformvolume_vtk_components RenderingImage) # for deform-interactive
   endif ()
 endif ()
 if (BUILD_TESTING)
@@ -60,7 +60,7 @@ if (BUILD_TESTING)
     FiltersHybrid IOExodus TestingCore)
 endif ()
 
-# VTK 9.6's own functions pass empty arguments on, of which CMake 3.31 and later warn.
+# Functions of VTK 9.6 pass empty arguments, of which CMake 3.31 and later warn.
 set(CMAKE_POLICY_DEFAULT_CMP0174 OLD)
 
 if (DEFORMVOLUME_USE_PARAVIEW)
@@ -75,7 +75,7 @@ endif ()
 if (BUILD_TESTING AND NOT DEFORMVOLUME_SANITIZE)
   list(APPEND deformvolume_optional_vtk_components ParallelMPI)
 endif ()
-# CMake refuses components that are required as well.
+# CMake refuses optional components that are also required.
 list(REMOVE_ITEM deformvolume_optional_vtk_components ${deformvolume_vtk_components})
 if (deformvolume_optional_vtk_components)
   list(PREPEND deformvolume_optional_vtk_components OPTIONAL_COMPONENTS)

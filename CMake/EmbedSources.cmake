@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # deformvolume_embed_sources(<target> <header> FILES <file>...)
 #
-# Compiles text files into a target: <header> declares each one as a string in the namespace
-# deformvolume, named after the file with every other character than letters and digits replaced by
-# an underscore (Resampling.cl: Resampling_cl).
+# Compiles text files into a target. <header> declares a string for each file, in the namespace
+# deformvolume. Its name is the file name, in which all characters except letters and digits are
+# replaced by underscores (Resampling.cl: Resampling_cl).
 #
-# The strings are raw literals of at most a few kilobytes each, which the compiler joins.
+# Each string consists of several raw literals of at most 8000 characters, which the compiler joins.
 
 if (CMAKE_SCRIPT_MODE_FILE)
   file(READ "${input}" rest)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# A toolchain for libraries that run on all Linux systems on x86-64 since glibc 2.28: the compiler of
-# the package ziglang from PyPI, with libc++ linked statically. The environment variable
-# DEFORMVOLUME_ZIG is the path of its program zig, and DEFORMVOLUME_ZIG_PREFIX a folder with GLM, Eigen
-# and the headers of OpenCL alone, as /usr/include has those of another C library, too. Python/wheel.sh
-# makes both.
+# A toolchain for libraries for all Linux systems on x86-64 with glibc 2.28 or later: the compiler of
+# the PyPI package ziglang, with libc++ linked statically. Python/wheel.sh sets two environment
+# variables: DEFORMVOLUME_ZIG is the path of the program zig. DEFORMVOLUME_ZIG_PREFIX is a folder that
+# contains only GLM, Eigen and the headers of OpenCL. /usr/include cannot be used for them, because it
+# contains the headers of another C library as well.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR x86_64)
 foreach (variable IN ITEMS DEFORMVOLUME_ZIG DEFORMVOLUME_ZIG_PREFIX)

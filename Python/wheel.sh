@@ -1,10 +1,11 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Builds the wheel of the Python package deformvolume, for every Linux on x86-64 with glibc 2.28 or later
-# and Python 3.9 or later, and checks what it exports, what it links to, and its size. Compilers and tools
-# come from PyPI into a folder of their own, headers from Debian (Testing/packages.sh wheel).
+# Builds the wheel of the Python package deformvolume, for Linux on x86-64 with glibc 2.28 or later and
+# Python 3.9 or later. Checks the exported symbols, the linked libraries and the size of the wheel.
+# Compilers and tools are installed from PyPI into FOLDER/tools; headers are those of Debian
+# (Testing/packages.sh wheel).
 #
-# Usage: wheel.sh [FOLDER]    (default: build/wheel; the wheel is left there)
+# Usage: wheel.sh [FOLDER]    writes the wheel to FOLDER (default: build/wheel)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 folder=$(realpath -m "${1-build/wheel}")
@@ -24,7 +25,7 @@ print(os.path.join(os.path.dirname(ziglang.__file__), "zig"))')
 export DEFORMVOLUME_ZIG
 export DEFORMVOLUME_ZIG_PREFIX=$folder/prefix/usr
 export ZIG_GLOBAL_CACHE_DIR=$folder/zig-cache
-# For ccache a compiler that has been installed again is the same.
+# ccache must treat a reinstalled compiler as the same compiler.
 export CCACHE_COMPILERCHECK="string:$wanted"
 rm -rf "$folder/prefix"
 mkdir -p "$folder/prefix"

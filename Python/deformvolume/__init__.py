@@ -9,8 +9,8 @@
     >>> deformed.array.dtype, deformed.affine.shape
     (dtype('float32'), (4, 4))
 
-deformvolume.vtk has a filter for VTK's pipelines, deformvolume.pyvista one for pyvista, and deformvolume.sitk takes
-images of SimpleITK. devices() lists the devices that can be used.
+deformvolume.vtk has a filter for VTK's pipelines, and deformvolume.pyvista and deformvolume.sitk deform images of
+pyvista and SimpleITK. devices() lists the OpenCL devices.
 """
 
 from ._deformer import Deformed, Deformer, DeformationWarning, Field, Grid, Mesh, deform

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What numpy arrays the library takes, and how they get there."""
+"""Checks numpy arrays, and converts them to the form that the library reads."""
 
 import weakref
 from typing import Sequence, Tuple
@@ -10,7 +10,7 @@ from . import _structs
 
 
 def native(array, what: str) -> numpy.ndarray:
-    """An array of a type that the library knows: bool counts as uint8, and other byte orders are converted."""
+    """Returns an array of a type that the library supports. Bool becomes uint8, and other byte orders are converted."""
     array = numpy.asarray(array)
     if array.dtype == numpy.bool_:
         array = array.view(numpy.uint8)
@@ -22,13 +22,13 @@ def native(array, what: str) -> numpy.ndarray:
 
 
 def image(array, what: str, components: Tuple[int, ...] = ()) -> numpy.ndarray:
-    """The same values in the order that the library reads: x fastest of the axes, and the components of a voxel
-    side by side. The result has the axes z, y, x and then that of components, if any.
+    """Returns the same values in the order that the library reads: x varies fastest, and the components of a voxel
+    are contiguous. The axes of the result are z, y, x and, if there is one, the axis of components.
 
-    An array in Fortran order, as nibabel's, and the transposed view of an array with the axes z, y, x are used as they
-    are; other arrays are copied once.
+    An array in Fortran order, such as nibabel's, and the transposed view of an array with the axes z, y, x are not
+    copied; other arrays are.
 
-    components: how many there must be; empty: any number, or no axis for them.
+    components: the allowed numbers of components; empty: any number, or no axis of components.
     """
     array = native(array, what)
     if array.ndim not in ((4,) if components else (3, 4)):
@@ -43,20 +43,20 @@ def image(array, what: str, components: Tuple[int, ...] = ()) -> numpy.ndarray:
 
 
 def pin(array: numpy.ndarray) -> weakref.ref:
-    """A reference to the array that has the memory. As long as there is one, numpy neither moves nor frees that memory:
-    also resize(refcheck=False), which pays no regard to views, refuses then."""
+    """Returns a weak reference to the array that owns the memory. While the reference exists, numpy does not reallocate
+    that memory: even resize(refcheck=False), which ignores views, fails."""
     while isinstance(array.base, numpy.ndarray):
         array = array.base
     return weakref.ref(array)
 
 
 def from_image(array: numpy.ndarray) -> numpy.ndarray:
-    """The inverse of image(): a view with the axes x, y, z and then that of components."""
+    """The inverse of image(): returns a view with the axes x, y, z and the axis of components, if there is one."""
     return array.transpose((2, 1, 0, 3)[: array.ndim])
 
 
 def vectors(array, number, what: str) -> numpy.ndarray:
-    """Rows of three float32 or float64, side by side. number: of rows that there must be; None: any."""
+    """Returns contiguous rows of three float32 or float64. number: the required number of rows; None: any."""
     array = native(array, what)
     if array.ndim != 2 or array.shape[1] != 3 or (number is not None and array.shape[0] != number):
         wanted = f"({'n' if number is None else number}, 3)"
@@ -67,7 +67,7 @@ def vectors(array, number, what: str) -> numpy.ndarray:
 
 
 def affine(matrix, what: str) -> numpy.ndarray:
-    """A matrix of 4 x 4 that takes indices of voxels to world coordinates."""
+    """Returns a checked 4 x 4 matrix from indices of voxels to world coordinates."""
     matrix = numpy.asarray(matrix, dtype=numpy.float64)
     if matrix.shape != (4, 4) or not numpy.array_equal(matrix[3], (0, 0, 0, 1)):
         raise ValueError(f"{what} must be a matrix of 4 x 4 whose last row is 0, 0, 0, 1.")
@@ -75,16 +75,16 @@ def affine(matrix, what: str) -> numpy.ndarray:
 
 
 def split_affine(matrix: numpy.ndarray) -> Tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray]:
-    """Origin, spacing and direction (columns are the axes) of an affine matrix."""
+    """Returns the origin, spacing and direction (its columns are the axes) of an affine matrix."""
     axes = matrix[:3, :3]
     spacing = numpy.sqrt((axes * axes).sum(axis=0))
-    # Columns without a length are an error of the library, which names it.
+    # The library reports columns of length 0.
     direction = axes / numpy.where(spacing > 0, spacing, 1.0)
     return matrix[:3, 3].copy(), spacing, direction
 
 
 def join_affine(origin: Sequence[float], spacing: Sequence[float], direction) -> numpy.ndarray:
-    """The affine matrix of an origin, a spacing and a direction."""
+    """Returns the affine matrix of an origin, a spacing and a direction."""
     matrix = numpy.eye(4)
     matrix[:3, :3] = numpy.asarray(direction, dtype=numpy.float64).reshape(3, 3) * numpy.asarray(spacing)
     matrix[:3, 3] = origin

@@ -15,26 +15,26 @@ from . import _arrays, _driver, _native, _structs
 
 
 class DeformationWarning(UserWarning):
-    """What a result lacks, or what of the input had no effect."""
+    """A warning that a result is incomplete, or that a part of the input had no effect."""
 
 
 class Grid(NamedTuple):
     """A grid of voxels, such as that of an image."""
 
     shape: Tuple[int, int, int]
-    """how many voxels there are on x, y and z"""
+    """number of voxels on x, y and z"""
     affine: numpy.ndarray
-    """4 x 4: takes the index (i, j, k, 1) of a voxel to its world coordinates"""
+    """4 x 4 matrix from the index (i, j, k, 1) of a voxel to its world coordinates"""
 
 
 @dataclass
 class Mesh:
-    """A deformation mesh: points at rest, cells, and how far the points have moved.
+    """A deformation mesh: points at rest, cells, and displacements of the points.
 
     Attributes:
         points: shape (n, 3), world coordinates at rest; float32 or float64, other types become float64.
-        cells: tetrahedra, shape (m, 4), numbers of points; or a pair (types, cells) of VTK's numbers of cell types
-            and a list of the point numbers of each cell, such as hexahedra (12) and quadratic tetrahedra (24).
+        cells: tetrahedra, shape (m, 4), indices of points; or a pair (types, cells): VTK's cell types, such as
+            hexahedra (12) and quadratic tetrahedra (24), and a list with the point indices of each cell.
         displacements: shape (n, 3), in world units; None: set later by Deformer.set_displacements().
     """
 
@@ -45,13 +45,14 @@ class Mesh:
 
 @dataclass
 class Field:
-    """A displacement field: a vector at each point of a grid of its own, linear between them.
+    """A displacement field: a vector at each point of its grid, with linear interpolation between the points.
 
     Attributes:
         vectors: shape (nx, ny, nz, 3), in world units; float32 or float64.
-        affine: 4 x 4, takes an index of the field to world coordinates.
-        inverse: False: from where tissue is at rest to where it goes, as a simulation computes it. True: from a place
-            of the output to the place that is seen there, as a registration computes it ("resampling field").
+        affine: 4 x 4 matrix from an index of the field to world coordinates.
+        inverse: False: vectors lead from rest positions to deformed positions, as computed by simulations. True:
+            vectors lead from positions of the output to rest positions, as computed by registrations ("resampling
+            field").
     """
 
     vectors: numpy.ndarray
@@ -61,17 +62,19 @@ class Field:
 
 @dataclass
 class Deformed:
-    """What deform() returns.
+    """The result of deform().
 
     Attributes:
-        arrays: of each array of the volume the deformed one, axes x, y, z and then that of components, if any; in
+        arrays: the deformed arrays of the volume. Axes: x, y, z and, if there is one, the axis of components; in
             Fortran order.
-        affine: 4 x 4, takes an index of the output to world coordinates.
-        coverage: bool, axes x, y, z: where the deformed volume covers the output.
-        rest_positions, jacobian, fold_count: as asked for, else None. (nx, ny, nz, 3) float32: where the tissue was
-            at rest that is seen there, world coordinates. float32: how many times as large the deformation makes
-            the volume there. uint32: how many tetrahedra of the sampling mesh cover the voxel.
-        counts: numbers of covered voxels, inverted tetrahedra and so on, by their names in deformvolume.h.
+        affine: 4 x 4 matrix from an index of the output to world coordinates.
+        coverage: bool, axes x, y, z: whether the deformed volume covers the voxel.
+        rest_positions: float32, shape (nx, ny, nz, 3): rest position of the tissue at the voxel, in world coordinates.
+            None unless requested.
+        jacobian: float32: Jacobian determinant of the deformation (deformed by undeformed volume). None unless
+            requested.
+        fold_count: uint32: number of tetrahedra of the sampling mesh that cover the voxel. None unless requested.
+        counts: numbers of covered voxels, inverted tetrahedra and others, by their names in deformvolume.h.
         device: the name of the device.
     """
 
@@ -97,7 +100,7 @@ def _choose(value: str, choices: Dict[str, int], what: str) -> int:
 
 
 def make_grid(extent, origin, spacing, direction) -> _structs.Grid:
-    """A grid as the library has it; direction: nine numbers, row by row."""
+    """Returns a grid of the library. direction: nine numbers, row by row."""
     return _structs.Grid(
         extent=(ctypes.c_int32 * 6)(*map(int, extent)),
         origin=(ctypes.c_double * 3)(*map(float, origin)),
@@ -113,7 +116,7 @@ def _grid_of(shape: Sequence[int], matrix, what: str) -> _structs.Grid:
 
 
 def _cells(cells):
-    """Connectivity, types and offsets; the last two are None for tetrahedra."""
+    """Returns connectivity, types and offsets. Types and offsets are None for tetrahedra."""
     if isinstance(cells, tuple) and len(cells) == 2:
         types, lists = cells
         types = numpy.ascontiguousarray(types, dtype=numpy.uint8)
@@ -133,14 +136,14 @@ def _cells(cells):
 
 
 class Deformer:
-    """Keeps a volume on a device, and deforms it as often as wanted: only what has changed is sent and computed again.
+    """Keeps a volume on a device for repeated deformations: only data that have changed are sent and computed again.
 
-    Each method raises Error where the library refuses something, ValueError and TypeError for arrays of a wrong
-    shape or type. The deformer can be used again after that. One deformer must not be used by two threads at once: a second
-    call waits for the first one. It cannot be used in a process that was forked after it was made.
+    Methods raise Error if the library reports an error, and ValueError or TypeError for arrays of a wrong shape or
+    type. The deformer can still be used after an error. If two threads call a deformer, the second call waits for the
+    first one to return. A deformer cannot be used in a process that was forked after the deformer was created.
 
     Args:
-        device: a name of devices(), a part of one, "cpu", "gpu", or "": the best one.
+        device: a name of devices(), a part of a name, "cpu", "gpu", or "": the best device.
 
     >>> import numpy as np, deformvolume as dv
     >>> deformer = dv.Deformer()
@@ -182,16 +185,16 @@ class Deformer:
         categorical: Union[bool, Sequence[bool]] = False,
         background: Union[float, Sequence[float]] = 0.0,
     ) -> None:
-        """The volume at rest.
+        """Sets the volume at rest.
 
         Args:
-            arrays: one array or several of the same grid: axes x, y, z, and then that of components, if any. All
-                integer types, float32, float64 and bool. Arrays in Fortran order are used where they are, and must
-                not change until others are set; others are copied. An array with the axes z, y, x, such as
-                SimpleITK's, is given as array.T.
-            affine: 4 x 4, takes the index (i, j, k, 1) of a voxel to world coordinates.
-            categorical: whether an array has labels, which are never mixed; for all arrays, or one for each.
-            background: what voxels of the output get that nothing covers; for all arrays, or one for each.
+            arrays: one or several arrays on the same grid. Axes: x, y, z and, optionally, an axis of components. Types:
+                all integer types, float32, float64 and bool. Arrays in Fortran order are not copied, and must not
+                change until other arrays are set. For arrays with the axes z, y, x, such as SimpleITK's, give array.T.
+            affine: 4 x 4 matrix from the index (i, j, k, 1) of a voxel to world coordinates.
+            categorical: whether arrays hold labels, which are not interpolated; one value for all arrays, or one for
+                each.
+            background: value of voxels outside the deformed volume; one value for all arrays, or one for each.
         """
         listed = list(arrays) if isinstance(arrays, (list, tuple)) else [arrays]
         images = [_arrays.image(array, f"Array {number} of the volume") for number, array in enumerate(listed)]
@@ -208,7 +211,7 @@ class Deformer:
     def set_volume_grid(
         self, grid: _structs.Grid, images: List[numpy.ndarray], categorical=False, background=0.0
     ) -> None:
-        """The same with a grid of the library and arrays with the axes z, y, x."""
+        """Like set_volume(), for a grid of the library and arrays with the axes z, y, x."""
 
         def each(value, what):
             values = list(value) if isinstance(value, (list, tuple, numpy.ndarray)) else [value] * len(images)
@@ -235,13 +238,19 @@ class Deformer:
             self._shape = tuple(extent[2 * axis + 1] - extent[2 * axis] + 1 for axis in range(3))
 
     def set_blanked(self, blanked: Optional[numpy.ndarray]) -> None:
-        """Which voxels are no source: True where a voxel is left out; axes x, y, z. None: none is."""
+        """Sets a mask of voxels that are left out (True); axes x, y, z. None: no voxel is left out."""
         self.set_masks(blanked=None if blanked is None else _arrays.image(blanked, "The mask of blanked voxels"))
 
     def set_masks(self, *, blanked=None, active=None, boundary=None, cut=None, cut_distances=None) -> None:
-        """Masks with the axes z, y, x, of voxels or of cells of eight voxels: which voxels are left out; which of the
-        five tetrahedra of each cell are active (bits); signed distances to the boundary of what has been carved out;
-        which tetrahedra a smooth cut crosses (bits), and signed distances from its sheet. None: there is none."""
+        """Sets masks with the axes z, y, x. None: no mask.
+
+        Args:
+            blanked: voxels that are left out.
+            active: bits of the active tetrahedra of each cell of eight voxels.
+            boundary: signed distances of voxels from the surface of the carved region.
+            cut: bits of the tetrahedra of each cell that a smooth cut crosses.
+            cut_distances: signed distances of voxels from the sheet of that cut.
+        """
         voxels = self._shape or (0, 0, 0)
         cells = tuple(max(0, number - 1) for number in voxels)
 
@@ -269,7 +278,7 @@ class Deformer:
             self._borrowed["masks"] = masks, [_arrays.pin(mask) for mask in masks if mask is not None]
 
     def set_deformation(self, deformation: Union[Mesh, Field]) -> None:
-        """The mesh or the field that deforms the volume, in place of the one before."""
+        """Sets the mesh or the field that deforms the volume. Replaces the previous one."""
         if isinstance(deformation, Mesh):
             self._set_mesh(deformation)
         elif isinstance(deformation, Field):
@@ -288,8 +297,8 @@ class Deformer:
                 self.set_displacements(displacements)
 
     def set_mesh_arrays(self, points, connectivity, types=None, offsets=None) -> None:
-        """A mesh as the library takes it: cells one after the other, and where they begin; types and offsets are None
-        where all are tetrahedra."""
+        """Sets a mesh in the form of the library: the point indices of all cells, and the offsets of the cells. Types
+        and offsets are None if all cells are tetrahedra."""
         points = _arrays.vectors(points, None, "The points of the mesh")
         if offsets is not None and (
             len(offsets) != len(types) + 1
@@ -313,7 +322,7 @@ class Deformer:
             self._borrowed.pop("field", None)
 
     def set_displacements(self, displacements) -> None:
-        """How far the points of the mesh have moved: shape (n, 3), in world units. The mesh stays."""
+        """Sets the displacements of the points of the mesh: shape (n, 3), in world units."""
         vectors = _arrays.vectors(displacements, self._points, "The displacements of the mesh")
         self._call("dv_set_displacements", _structs.type_of(vectors), len(vectors), _structs.address(vectors))
 
@@ -325,7 +334,7 @@ class Deformer:
         self.set_field_grid(grid, vectors, deformation.inverse)
 
     def set_field_grid(self, grid: _structs.Grid, vectors: numpy.ndarray, inverse: bool) -> None:
-        """A field with a grid of the library and vectors with the axes z, y, x and that of components."""
+        """Sets a field with a grid of the library, and vectors with the axes z, y, x and an axis of components."""
         struct = _structs.Field(
             grid=ctypes.pointer(grid), vectors=vectors.ctypes.data, type=_structs.type_of(vectors), inverse=int(bool(inverse))
         )
@@ -335,17 +344,18 @@ class Deformer:
             self._borrowed["field"] = vectors, _arrays.pin(vectors)
 
     def set_outside(self, mode: str = "discard", fade_distance: float = 0.0) -> None:
-        """What becomes of voxels outside the mesh or the field.
+        """Sets what happens to voxels outside the mesh or the field.
 
         Args:
-            mode: "discard": they are left out. "extrapolate": they follow the nearest part. "keep": they stay, and
-                within fade_distance they follow the boundary in part.
-            fade_distance: in world units, 0 or more; 0 is a hard edge.
+            mode: "discard": they are left out. "extrapolate": they move with the nearest part of the mesh or field.
+                "keep": they stay where they are, and the displacement of the boundary fades to zero over
+                fade_distance.
+            fade_distance: in world units, 0 or more. With 0, nothing outside moves.
         """
         self._call("dv_set_outside", _choose(mode, _structs.OUTSIDE, "outside"), float(fade_distance))
 
     def set_reference(self, reference: Optional[Grid]) -> None:
-        """The grid of the output, such as that of the fixed image of a registration. None: see set_output()."""
+        """Sets the grid of the output, such as that of the fixed image of a registration. None: see set_output()."""
         if reference is None:
             self._call("dv_set_reference", None)
             return
@@ -355,7 +365,7 @@ class Deformer:
         self.set_reference_grid(_grid_of(shape, matrix, "The affine of the reference"))
 
     def set_reference_grid(self, grid: _structs.Grid) -> None:
-        """The same with a grid of the library."""
+        """Like set_reference(), for a grid of the library."""
         self._call("dv_set_reference", ctypes.byref(grid))
 
     def set_output(
@@ -365,12 +375,12 @@ class Deformer:
         padding: int = 0,
         spacing: Optional[Sequence[float]] = None,
     ) -> None:
-        """How large the output is without a reference. It has the axes of the volume.
+        """Sets the bounds and the spacing of the output, which has the axes of the volume. Not used with a reference.
 
         Args:
-            bounds: "deformed": as large as the deformed volume. "volume": as large as the volume at rest. Six
-                numbers: x min, x max, y min, y max, z min, z max, in world coordinates.
-            padding: so many voxels more on each side.
+            bounds: "deformed": those of the deformed volume. "volume": those of the volume at rest. Or six numbers: x
+                min, x max, y min, y max, z min, z max, in world coordinates.
+            padding: width of a border on each side, in voxels.
             spacing: three numbers in world units; None: that of the volume.
         """
         struct = _structs.Output(padding=int(padding))
@@ -389,7 +399,7 @@ class Deformer:
         self._call("dv_set_output", ctypes.byref(struct))
 
     def find_output_grid(self) -> _structs.Grid:
-        """The grid of the output, as the library has it."""
+        """Returns the grid of the output."""
         grid = _structs.Grid()
         self._call("dv_output_grid", ctypes.byref(grid))
         return grid
@@ -409,10 +419,10 @@ class Deformer:
         Args:
             interpolation: "linear", "cubic" (Catmull-Rom) or "nearest". Categorical arrays always take the nearest
                 voxel's value.
-            rest_positions, jacobian, fold_count: whether to make these arrays, see Deformed.
-            extra_background: of rest_positions and jacobian where nothing is covered.
-            progress: called with the fraction done. Where it returns False, or raises, nothing more is done: the
-                first raises KeyboardInterrupt, as Ctrl-C does.
+            rest_positions, jacobian, fold_count: whether to compute these arrays, see Deformed.
+            extra_background: value of rest_positions and jacobian for voxels outside the deformed volume.
+            progress: called with the fraction done. If it returns False, the call ends with KeyboardInterrupt, as by
+                Ctrl-C. If it raises an exception, the call ends with that exception.
 
         Warns:
             DeformationWarning: folds, tissue that is left out, settings without an effect.
@@ -465,12 +475,12 @@ class Deformer:
         extra_background=0.0,
         progress=None,
     ) -> _structs.Report:
-        """Deforms the volume into arrays that are there, with the axes z, y, x."""
+        """Deforms the volume into given arrays with the axes z, y, x."""
         extra = extra or {}
         failure = []
 
         def tell(fraction, _):
-            # The callback also lets Python look for Ctrl-C.
+            # Python checks for Ctrl-C when it executes this callback.
             try:
                 return 1 if progress is not None and progress(fraction) is False else 0
             except BaseException as error:  # pylint: disable=broad-except
@@ -499,12 +509,12 @@ class Deformer:
         return report
 
     def release_memory(self) -> None:
-        """Frees what is held on the device. The next deform() sends it again."""
+        """Frees the memory on the device. The next deform() sends the data again."""
         self._call("dv_release_memory")
 
 
 def _destroy(handle: int, process: int) -> None:
-    # A forked process has copies of objects of OpenCL that do not work, also not to be freed.
+    # In a forked process, the objects of OpenCL are not valid, and cannot be released.
     if os.getpid() == process:
         _native.library.dv_destroy(handle)
 
@@ -532,19 +542,19 @@ def deform(
     """Deforms a volume by a mesh or a field.
 
     Args:
-        volume: an array with the axes x, y, z (and components), or several; see Deformer.set_volume().
+        volume: one or several arrays with the axes x, y, z (and components); see Deformer.set_volume().
         deformation: a Mesh or a Field.
-        affine: 4 x 4, takes the index of a voxel to world coordinates; None: the index itself.
-        reference: the grid of the output; None: bounds, padding and spacing say it. See Deformer.set_output().
+        affine: 4 x 4 matrix from the index of a voxel to world coordinates; None: the identity.
+        reference: the grid of the output; None: given by bounds, padding and spacing, see Deformer.set_output().
         categorical, background: see Deformer.set_volume().
         outside, fade_distance: see Deformer.set_outside().
         interpolation, rest_positions, jacobian, fold_count, progress: see Deformer.deform().
         device: see Deformer.
 
     Returns:
-        the deformed arrays with their affine.
+        Deformed: the deformed arrays and their affine.
 
-    A scan that is shifted by 5 mm along x:
+    Example, which shifts a scan by 5 mm along x:
 
     >>> import numpy as np, deformvolume as dv
     >>> scan = np.zeros((40, 40, 40), "int16")

@@ -1,30 +1,30 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which OpenCL devices there are, and the driver from PyPI for systems that have none.
+"""Lists OpenCL devices, and adds the driver from PyPI on systems without a driver for CPUs.
 
-The kernels run on the OpenCL drivers that the system lists. Where none of these is for processors, the
-driver PoCL of the package pocl-binary-distribution is added, in this process and for this package only: no
-environment variable is set, and nothing changes for other users of OpenCL.
+The kernels use the OpenCL drivers that the system lists. If none of these is for CPUs, this module adds the driver PoCL
+of the package pocl-binary-distribution, in this process and for this package only: it sets no environment variable, and
+nothing changes for other users of OpenCL.
 
-DEFORMVOLUME_DRIVER, an environment variable that is read when devices are first needed, changes that:
-    auto            as above; the same as no value
-    system          only drivers that the system lists
-    pypi            the one from PyPI is added in any case
-    /path/lib.so    this driver is added in any case, and the one from PyPI is not
+The environment variable DEFORMVOLUME_DRIVER, which is read when devices are first needed, changes that:
+    auto            as above; the default
+    system          use only drivers that the system lists
+    pypi            always add the driver from PyPI
+    /path/lib.so    always add this driver, and not the one from PyPI
 
-PoCL of the versions before 7.2 runs the program ld to link what it has compiled. Where that does not work, as
-without a C compiler, the program linker/ld of this package does it, for the driver that was added only.
-DEFORMVOLUME_LINKER changes that: system never takes it, own always does. While kernels are compiled, and
-at no other time, its folder is in the environment variable COMPILER_PATH of the process.
+Versions of PoCL before 7.2 call the program ld to link kernels. If that fails, for example without a C compiler, the
+program linker/ld of this package links the kernels of the driver that was added. DEFORMVOLUME_LINKER changes that:
+"system" never uses it, "own" always does. Only while kernels are compiled, its folder is in the environment variable
+COMPILER_PATH of the process.
 
-PoCL 3.0 of the package pocl-binary-distribution compiles its built-in functions and kernels for processors that do not
-fit together, and no option changes that: a member of its own structure, which says what kernels are compiled for, is
-set in memory before anything is compiled. That is done for this build of the driver only (its version and the build
-ID of its library are compared), where it was added by this package. DEFORMVOLUME_KERNEL_PROCESSOR changes that: auto
-is the same as no value, driver leaves the driver alone. Kernels are then slower, or an error says that the driver cannot
-compile them for this processor.
+PoCL 3.0 of the package pocl-binary-distribution compiles its built-in functions and kernels for incompatible CPU types,
+and has no option to change that. Before anything is compiled, this package therefore sets, in memory, the member of a
+structure of PoCL that holds the CPU type of kernels. It does so only for this build of the driver (it compares the
+version, and the build ID of the library), and only if this package has added the driver.
+DEFORMVOLUME_KERNEL_PROCESSOR changes that: "auto" is the default, "driver" does not change the driver. Kernels are then
+slower, or an error says that the driver cannot compile them for this CPU.
 
-OCL_ICD_VENDORS and OCL_ICD_FILENAMES say, as for other programs, which drivers the system lists. Whoever
-sets one of them has chosen: unless DEFORMVOLUME_DRIVER says otherwise, no driver is added then.
+OCL_ICD_VENDORS and OCL_ICD_FILENAMES set, as for other programs, the drivers that the system lists. If one of them is
+set, no driver is added unless DEFORMVOLUME_DRIVER is set as well.
 """
 
 import importlib.metadata
@@ -38,30 +38,30 @@ from . import _native
 _PACKAGE = "pocl-binary-distribution"
 _lock = threading.Lock()
 _ready = False
-_process: Optional[int] = None  # that has started the drivers
+_process: Optional[int] = None  # ID of the process that has loaded the drivers
 
 
 class Device(NamedTuple):
     """An OpenCL device."""
 
     name: str
-    """ "device (platform)", as functions take it that have an argument `device`"""
+    """ "device (platform)", a value for the argument `device` of functions"""
     is_processor: bool
-    """whether it is a processor, by a driver for processors"""
+    """whether it is a CPU"""
     is_emulated: bool
-    """whether a renderer in software or an interpreter emulates it: such devices are slow"""
+    """whether a software renderer or an interpreter emulates it; such devices are slow"""
     double_precision: bool
-    """whether it has double precision"""
+    """whether it supports double precision"""
 
 
 def find_pypi_driver() -> Optional[str]:
-    """The absolute path of PoCL's library from PyPI; None where that package is not installed."""
+    """Returns the absolute path of PoCL's library from PyPI; None if that package is not installed."""
     try:
         files = importlib.metadata.files(_PACKAGE) or []
     except importlib.metadata.PackageNotFoundError:
         return None
     for file in files:
-        # The package installs into the folder of another one, pyopencl, which need not be there.
+        # The package installs files into the folder of pyopencl, even if pyopencl is not installed.
         if re.fullmatch(r"libpocl[^/]*\.so[^/]*", file.name):
             path = os.path.abspath(str(file.locate()))
             if os.path.isfile(path):
@@ -88,7 +88,7 @@ def _list() -> List[Device]:
 
 
 def _add(path: str) -> None:
-    # PoCL needs a linker, and ends the process where it finds none that works.
+    # PoCL needs a linker, and exits the process if it finds no linker that works.
     folder = os.path.join(os.path.dirname(os.path.abspath(__file__)), "linker")
     if os.path.isfile(os.path.join(folder, "ld")):
         _native.check(_native.library.dv_set_linker(os.fsencode(folder)))
@@ -123,9 +123,9 @@ def _add_driver() -> None:
 
 
 def prepare() -> None:
-    """Adds the driver from PyPI where it is needed. All functions that use a device call this first."""
+    """Adds the driver from PyPI if it is needed. All functions that use a device call this first."""
     global _process, _ready
-    # Before the lock, which another thread may have held when the process was forked.
+    # Check this before the lock is taken: another thread may have held it when the process was forked.
     if _process is not None and os.getpid() != _process:
         raise _native.Error(
             "This process was forked from one that had used OpenCL, which does not survive that: its calls would wait "
@@ -140,11 +140,11 @@ def prepare() -> None:
 
 
 def devices() -> List[Device]:
-    """The OpenCL devices of this machine, the best first; the list is empty where there is none.
+    """Returns the OpenCL devices of this machine, the best first. The list is empty if there is none.
 
     Raises:
-        Error: where the environment variable DEFORMVOLUME_DRIVER names a driver that cannot be used, and in a process
-            that was forked from one that has used OpenCL.
+        Error: if the environment variable DEFORMVOLUME_DRIVER names a driver that cannot be used, or if this process
+            was forked from one that has used OpenCL.
     """
     prepare()
     return _list()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The library libdeformvolume.so beside this file, and the functions of its header deformvolume.h."""
+"""Loads the library libdeformvolume.so from the folder of this file, and declares functions of deformvolume.h."""
 
 import ctypes
 import os
@@ -12,7 +12,7 @@ DEVICE_PROCESSOR, DEVICE_EMULATED, DEVICE_DOUBLE = 1, 2, 4
 
 
 class Error(RuntimeError):
-    """What DeformVolume cannot do. The message says what is wrong and what to do about it."""
+    """An error of DeformVolume. The message says what is wrong and what to do."""
 
 
 _SIGNATURES = {
@@ -55,12 +55,12 @@ declare(_SIGNATURES)
 
 
 def last_error():
-    """Why the last function that failed in this thread did so."""
+    """Returns the message of the last error in this thread."""
     return library.dv_last_error().decode("utf-8", "replace")
 
 
 def check(status):
-    """Raises Error for a status that says so, and KeyboardInterrupt for an abort."""
+    """Raises Error for the status ERROR, and KeyboardInterrupt for ABORTED."""
     if status == ERROR:
         raise Error(last_error())
     if status == ABORTED:
@@ -68,5 +68,5 @@ def check(status):
 
 
 def version():
-    """The version of the library, such as "0.2.0"."""
+    """Returns the version of the library, such as "0.2.0"."""
     return library.dv_version().decode()

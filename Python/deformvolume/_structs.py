@@ -134,10 +134,10 @@ _native.declare(
 
 
 def type_of(array) -> int:
-    """The number of an array's type of elements."""
+    """Returns the number of an array's element type (DV_INT8 and so on)."""
     return TYPES.index(array.dtype.name)
 
 
 def address(array):
-    """Where the elements of a numpy array are."""
+    """Returns the address of the elements of a numpy array."""
     return array.ctypes.data_as(c_void_p)

@@ -21,9 +21,9 @@ class DeformVolumeAccessor:
         Args:
             deformation: pyvista.UnstructuredGrid with displacements of its points, or pyvista.ImageData with vectors.
             vectors: the name of the array; None: the active vectors, or the only array of three components.
-            rest: the mesh at rest, where the points of the deformation are the deformed ones.
-            reference: an image whose grid the output has.
-            categorical: names of arrays with labels.
+            rest: the mesh at rest. The points of the deformation are then deformed positions.
+            reference: an image with the grid of the output.
+            categorical: names of arrays of labels, which are not interpolated.
             properties: properties of DeformVolume, such as OutsideMode=DeformVolume.KEEP.
 
         Returns:
@@ -41,7 +41,7 @@ class DeformVolumeAccessor:
 
 
 def deform(image, deformation, *, vectors=None, rest=None, reference=None, categorical=(), **properties):
-    """The same as a function, for versions of pyvista without accessors; see DeformVolumeAccessor.deform()."""
+    """Does the same as DeformVolumeAccessor.deform(), for versions of pyvista without accessors."""
     deformer = DeformVolume()
     deformer.SetInputDataObject(0, image)
     deformer.SetDeformationData(deformation)

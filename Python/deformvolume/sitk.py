@@ -34,14 +34,14 @@ def deform(
         image: three dimensions, pixels of any number type, scalars or vectors.
         deformation: a SimpleITK image of vectors of three components, or a DisplacementFieldTransform, in mm; a
             deformvolume.Mesh or Field, in the world coordinates of the image (LPS).
-        inverse: of fields of SimpleITK: True (default), as registrations and SimpleITK.Resample use them: from a place
-            of the output to the place of the image that is seen there. False: from the image to where it goes.
-        reference: an image whose grid the output has; None: with an inverse field the grid of the image, else one
-            that holds the deformed image.
+        inverse: the direction of a field of SimpleITK. True (default): from the output to the image, as in
+            registrations and SimpleITK.Resample. False: from the image to the deformed image.
+        reference: an image with the grid of the output; None: the grid of the image with an inverse field, otherwise a
+            grid that holds the deformed image.
         categorical, background, outside, fade_distance, interpolation, device: see deformvolume.deform().
 
     Returns:
-        an image of the type of the first one.
+        SimpleITK.Image: the deformed image, of the same pixel type.
     """
     deformer = _deformer.Deformer(device)
     pixels = numpy.ascontiguousarray(SimpleITK.GetArrayViewFromImage(image))

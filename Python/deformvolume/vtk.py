@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""DeformVolume, a filter for VTK pipelines in Python, with any vtk from 9.1 on.
+"""DeformVolume, a filter for VTK pipelines in Python, for VTK 9.1 and later.
 
-It has the names and the results, to the last bit, of vtkDeformVolumeFilter, a C++ class that has to be compiled for
-one version of VTK, but only the properties that are listed in DeformVolume. Others raise AttributeError.
+It has the names of vtkDeformVolumeFilter, a C++ class that must be compiled for one version of VTK, and its results are
+bitwise equal. It has only the properties that are listed in DeformVolume. Others raise AttributeError.
 """
 
 import numpy
@@ -32,7 +32,7 @@ def _grid_of(image):
 
 
 def _view(array, shape):
-    """A numpy view of a VTK array over a grid: the axes z, y, x, and that of components where there are several."""
+    """Returns a numpy view of a VTK array over a grid. Axes: z, y, x and, for several components, an axis of these."""
     components = array.GetNumberOfComponents()
     return vtk_to_numpy(array).reshape(tuple(shape) + ((components,) if components > 1 else ()))
 
@@ -45,29 +45,31 @@ class DeformVolume(VTKPythonAlgorithmBase):
     """Deforms a volume by a tetrahedral mesh or a displacement field.
 
     Ports:
-        0: vtkImageData, the volume. Ghost points, and what vtkCutVolume and vtkCarveVolume have left out, are left out.
+        0: vtkImageData, the volume. Ghost points, and tetrahedra that vtkCutVolume and vtkCarveVolume have switched
+            off, are left out.
         1, optional: vtkUnstructuredGrid with displacements of its points; or vtkImageData with vectors, a displacement
             field. Without it the output is the volume itself.
             SetInputArrayToProcess(0, 1, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, name) chooses the array of three
-            components, in world units. By default it is the active vectors, or else the only such array.
-        2, optional: vtkUnstructuredGrid, the mesh at rest. The points of port 1 are then the deformed ones.
-        3, optional: vtkImageData, whose grid the output has.
+            components, in world units. The default are the active vectors, or else the only array of three components.
+        2, optional: vtkUnstructuredGrid, the mesh at rest. The points of port 1 are then deformed positions.
+        3, optional: vtkImageData with the grid of the output.
 
     Properties, each with Set and Get:
         OutsideMode: DISCARD (default), EXTRAPOLATE or KEEP voxels outside the mesh or the field.
-        FadeDistance: with KEEP, in world units; 0 (default) is a hard edge.
+        FadeDistance: with KEEP, the distance over which the displacement of the boundary fades to zero, in world units;
+            0 by default.
         Interpolation: LINEAR_INTERPOLATION (default), CUBIC_INTERPOLATION or NEAREST_INTERPOLATION.
-        BackgroundValue: of voxels that nothing covers; 0 by default.
+        BackgroundValue: value of voxels outside the deformed volume; 0 by default.
         FieldIsInverse: whether a field leads from the output to the volume; off by default.
         OutputBoundsMode: DEFORMED_BOUNDS (default) or VOLUME_BOUNDS.
         GenerateRestPositions, GenerateJacobian, GenerateFoldCount: whether the output has the arrays RestPosition,
             Jacobian and FoldCount; off by default.
-        Device: a name of deformvolume.devices(), a part of one, "cpu", "gpu", or "" (default): the best one.
-    And AddCategoricalArray(name), ClearCategoricalArrays().
+        Device: a name of deformvolume.devices(), a part of a name, "cpu", "gpu", or "" (default): the best device.
+    AddCategoricalArray(name) and ClearCategoricalArrays() choose arrays of labels.
 
-    The output is vtkImageData with the arrays of the volume and "vtkValidPointMask": 1 where the deformed volume
-    covers a voxel. Updates read the inputs whole, at one time. Update() raises what went wrong; where a filter behind
-    this one is updated, VTK prints it.
+    The output is vtkImageData with the arrays of the volume and "vtkValidPointMask": 1 for voxels that the deformed
+    volume covers. Updates read the whole inputs, at one time step. Update() raises an exception for each error. If the
+    filter is updated by a downstream filter, VTK prints the error.
     """
 
     DISCARD, EXTRAPOLATE, KEEP = range(3)
@@ -123,52 +125,52 @@ class DeformVolume(VTKPythonAlgorithmBase):
             self.Modified()
 
     def AddCategoricalArray(self, name):
-        """Has the array of this name taken as labels, which are never mixed."""
+        """Treats the array of this name as labels, which are not interpolated."""
         if name not in self._categorical:
             self._categorical.add(name)
             self.Modified()
 
     def ClearCategoricalArrays(self):
-        """Has no array taken as labels."""
+        """Treats no array as labels."""
         if self._categorical:
             self._categorical.clear()
             self.Modified()
 
     def SetDeformationConnection(self, output):
-        """Connects port 1."""
+        """Sets the connection of port 1."""
         self.SetInputConnection(1, output)
 
     def SetDeformationData(self, data):
-        """Connects data to port 1."""
+        """Sets the data of port 1."""
         self.SetInputDataObject(1, data)
 
     def SetRestConnection(self, output):
-        """Connects port 2."""
+        """Sets the connection of port 2."""
         self.SetInputConnection(2, output)
 
     def SetRestData(self, data):
-        """Connects data to port 2."""
+        """Sets the data of port 2."""
         self.SetInputDataObject(2, data)
 
     def SetReferenceConnection(self, output):
-        """Connects port 3."""
+        """Sets the connection of port 3."""
         self.SetInputConnection(3, output)
 
     def SetReferenceData(self, data):
-        """Connects data to port 3."""
+        """Sets the data of port 3."""
         self.SetInputDataObject(3, data)
 
     # ---- Pipeline
 
     def Update(self, *arguments):
-        """Updates the output. Raises what went wrong."""
+        """Updates the output. Raises an exception after an error."""
         self._error = None
         super().Update(*arguments)
         if self._error is not None:
             raise self._error
 
     def FillInputPortInformation(self, port, info):
-        """The type of each port."""
+        """Sets the data type of each port."""
         types = ("vtkImageData", "vtkDataSet", "vtkUnstructuredGrid", "vtkImageData")
         info.Set(vtkAlgorithm.INPUT_REQUIRED_DATA_TYPE(), types[port])
         if port > 0:
@@ -176,11 +178,11 @@ class DeformVolume(VTKPythonAlgorithmBase):
         return 1
 
     def RequestInformation(self, request, inInfo, outInfo):
-        """The grid of the output; that of a deformed volume is known once the inputs are there."""
+        """Announces the grid of the output. Updates the inputs, because the bounds of the output depend on them."""
         return self._guard(lambda: self._announce(outInfo.GetInformationObject(0)))
 
     def RequestUpdateExtent(self, request, inInfo, outInfo):
-        """All of the inputs, and of the reference image one voxel: its values are not used."""
+        """Requests the whole inputs, and one voxel of the reference image, whose values are not used."""
         pipeline = vtkStreamingDemandDrivenPipeline
         for port in range(4):
             for number in range(inInfo[port].GetNumberOfInformationObjects()):
@@ -193,7 +195,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
         return 1
 
     def RequestData(self, request, inInfo, outInfo):
-        """The output."""
+        """Computes the output."""
         output = vtkDataObject.GetData(outInfo.GetInformationObject(0))
         output.Initialize()
         return self._guard(lambda: self._deform(output))
@@ -202,7 +204,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
         try:
             work()
         except Exception as error:  # pylint: disable=broad-except
-            # Through VTK no exception passes.
+            # VTK does not propagate exceptions: Update() raises the error again.
             if self._error is None:
                 vtkOutputWindow.GetInstance().DisplayErrorText(f"ERROR: DeformVolume: {error}\n")
             self._error = error
@@ -225,7 +227,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
         info.Set(vtkDataObject.DIRECTION(), grid.direction[:], 9)
 
     def _prepare(self):
-        """Hands to the deformer what has changed."""
+        """Passes changed inputs and properties to the deformer."""
         is_deformed = self._input(1) is not None
         if self._deformer is None or ("deformation" in self._stamps and not is_deformed):
             self._deformer = _deformer.Deformer(self._settings["Device"])
@@ -262,7 +264,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
             raise ValueError("There is no volume on port 0.")
         data = image.GetPointData()
         arrays = [data.GetArray(number) for number in range(data.GetNumberOfArrays())]
-        # Ghost and edit arrays are masks of the volume, which are not resampled.
+        # Arrays of ghosts and of edits are masks of the volume, and are not resampled.
         masks = ("vtkGhostType", "BoundaryDistance", "CutDistance")
         arrays = [array for array in arrays if array is not None and array.GetName() not in masks]
         for number, array in enumerate(arrays):
@@ -290,7 +292,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
             return None if array is None else _view(array, over)
 
         if cell_ghosts is not None:
-            # Hidden cells are off, but for those that only an edit hides, which has a bit of its own.
+            # Switch hidden cells off, except those that only an edit hides (_HIDDEN_BY_EDIT).
             both = vtkDataSetAttributes.HIDDENCELL | _HIDDEN_BY_EDIT
             hidden = (_view(cell_ghosts, cells) & both) == vtkDataSetAttributes.HIDDENCELL
             tetrahedra = numpy.full(cells, _ALL_TETRAHEDRA, numpy.uint8) if active is None else _view(active, cells)
