@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Default of the property Background Value in ParaView, by the same rule as in the program
- * deform-volume. Where values of the volume can be negative, as in CT, 0 would show as tissue.
+ * Computes the default of the property Background Value in ParaView, by the same rule as in the
+ * program deform-volume. In volumes with negative values, such as CT, 0 would look like tissue.
  */
 #ifndef BackgroundDomain_h
 #define BackgroundDomain_h

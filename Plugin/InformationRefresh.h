@@ -4,8 +4,8 @@
  * them when a panel is opened and before Apply updates the pipeline, but not after an update.
  * Panels would therefore show device, counts and times of the previous update.
  *
- * Besides, views show new output after a failed update, and properties that state files and scripts
- * of former versions set are reset to their defaults.
+ * The observers also make views show new output after a failed update, and reset properties to
+ * their defaults if state files or scripts of former versions set them to values that were removed.
  */
 #ifndef InformationRefresh_h
 #define InformationRefresh_h
@@ -14,8 +14,8 @@ namespace deformvolume
 {
 
 /**
- * Adds the observers that do this to the proxies and views of all present and future sessions of
- * this client. A second call has no effect.
+ * Adds these observers to the proxies and views of all present and future sessions of this client.
+ * A second call has no effect.
  */
 void RefreshInformation();
 

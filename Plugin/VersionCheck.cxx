@@ -7,7 +7,7 @@
 
 #include <string>
 
-// A test defines another version.
+// Tests define other versions.
 #ifndef DEFORMVOLUME_PARAVIEW_VERSION
 #define DEFORMVOLUME_PARAVIEW_VERSION                                                              \
   PARAVIEW_VERSION_MAJOR, PARAVIEW_VERSION_MINOR, PARAVIEW_VERSION_PATCH
