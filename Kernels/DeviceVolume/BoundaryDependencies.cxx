@@ -52,8 +52,8 @@ BoundaryDependencies FindBoundaryDependencies(
       const auto rest = getEnds(piece.Rest, static_cast<glm::length_t>(axis));
       const int begin = vertices[2 * axis];
       // The margin of one cell covers the rounding of nodes. It also includes the crossed neighbor
-      // of a cell that the piece moves, so that a change of pieces is never inside
-      // (IncrementalUpdate::IsInside).
+      // of a cell that the piece moves, so that IncrementalUpdate::IsInside() is false if a piece
+      // changes.
       first[axis] = getIndex(static_cast<int>(axis), std::floor(rest.first - begin) - 1.0);
       last[axis] = getIndex(static_cast<int>(axis), std::floor(rest.second - begin) + 1.0);
       const auto indices = getEnds(piece.Weights, axis);

@@ -44,8 +44,8 @@ void ForNodes(const Tetrahedron& nodeOffsets, Use&& use)
   }
 }
 
-// Tests whether an element is new to a brick. For each element, the number of the last brick plus
-// 1.
+// Tests whether an element is new to a brick. Stores for each element the number of the last brick
+// to which the element was added, plus 1.
 class Marks
 {
 public:
@@ -53,9 +53,9 @@ public:
     : Last(count)
   {
   }
-  bool Add(std::int32_t thing, std::size_t brick)
+  bool Add(std::int32_t element, std::size_t brick)
   {
-    std::uint32_t& last = this->Last[static_cast<std::size_t>(thing)];
+    std::uint32_t& last = this->Last[static_cast<std::size_t>(element)];
     const auto mark = static_cast<std::uint32_t>(brick + 1);
     const bool isNew = last != mark;
     last = mark;

@@ -74,11 +74,11 @@ public:
   /// Adds the new nodes of the changed tetrahedra to the bricks. No brick may be listed twice.
   void AddPoints(
     const std::vector<ChangesOfBrick>& bricks, const std::vector<TetrahedronChange>& changes);
-  /// Whether so many points have been added that it is better to make new BrickPoints.
+  /// Whether the lists of added points have become long, so that new BrickPoints are faster.
   bool AreOverloaded() const { return this->NumberOfAdded > this->Ranges.size() / 2 + 4096; }
 
-  /// Calls body(begin, end) for the ranges of the points of a brick, until it returns true. Returns
-  /// whether it did.
+  /// Calls body(begin, end) for the ranges of the points of a brick, until body returns true.
+  /// Returns whether body has returned true.
   template <typename Body>
   bool AnyOf(std::size_t brick, Body&& body) const
   {
@@ -151,8 +151,8 @@ public:
     return this->Excess.empty() ? 0.0 : this->Excess[brick];
   }
 
-  /// Whether a brick may have vertices whose displacement fades outside a field, and so is smaller
-  /// than those of all of its points.
+  /// Whether a brick may have vertices whose displacement fades outside a field, and therefore is
+  /// smaller than the displacements of all points of the brick.
   bool IsFading() const { return this->Fades; }
 
 private:
@@ -171,8 +171,8 @@ private:
     std::int32_t End;
   };
 
-  std::vector<std::size_t> Begins; // index into Ranges of the first range of each brick
-  std::vector<std::size_t> Ends;   // and one past its last
+  std::vector<std::size_t> Begins; // for each brick, index of its first range in Ranges
+  std::vector<std::size_t> Ends;   // for each brick, one past the index of its last range
   std::vector<Range> Ranges;
   std::vector<double> Excess;
   std::vector<std::vector<std::int32_t>> Added; // points of each brick, not sorted; may be empty

@@ -10,8 +10,8 @@
 // - The cell has vertices on different sides, and two vertices of the tetrahedron are in different connected
 //   components. Two vertices of a cell are connected if their tetrahedra share a node and are not on different sides.
 //
-// A tetrahedron that a smooth cut crosses has a copy for each side of the cut. For it, only pairs of vertices on the
-// same side of the cut count.
+// A tetrahedron that a smooth cut crosses has a copy for each side of the cut. For such a tetrahedron, only pairs of
+// vertices on the same side of the cut count.
 //
 // Data:
 //   tetrahedra       int4: nodes, times DEFORMVOLUME_NODE_STRIDE
@@ -134,7 +134,8 @@ static int FindBridges(
 // of a cell has changed.
 __kernel void LeaveOutBridges(MAPPING_PARAMETERS, __global const int* owners,
   __global const int4* tetrahedraOfMesh, __global const int* coincidentNodes, const int hasCoincidentNodes,
-  __global const uchar* boundary, const int hasBoundary, __global const uchar* active, const int hasActive, __global const uint* cutRows, __global const CutVertex* cutVertices,
+  __global const uchar* boundary, const int hasBoundary, __global const uchar* active, const int hasActive,
+  __global const uint* cutRows, __global const CutVertex* cutVertices,
   __global uchar* joined, __global uint* changed, __global const uint* cuboids, const KernelParameters p)
 {
   const Mapping m = MAPPING_ARGUMENTS;
@@ -162,11 +163,11 @@ __kernel void LeaveOutBridges(MAPPING_PARAMETERS, __global const int* owners,
               tetrahedraOfMesh, coincidentNodes);
         const size_t cell = CellInChunk(x, y, z, &p);
         const int ofBoundary = hasBoundary ? boundary[cell] : DEFORMVOLUME_ALL_TETRAHEDRA;
-        const int left = ofBoundary &
+        const int mask = ofBoundary &
           ((DEFORMVOLUME_ALL_TETRAHEDRA & (hasActive ? active[cell] : ~0) & ~bridges) |
             DEFORMVOLUME_CELL_AT_BOUNDARY | DEFORMVOLUME_CELL_CROSSED);
-        isChanged |= left != joined[cell];
-        joined[cell] = left;
+        isChanged |= mask != joined[cell];
+        joined[cell] = mask;
       }
     }
   }

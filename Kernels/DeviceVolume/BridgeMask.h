@@ -68,7 +68,8 @@ private:
   cl::Buffer CoincidentNodes;
   bool WithBoundary = false;
   bool Current = true;
-  bool Known = false; // whether the mask was computed before, and only these may have changed:
+  // Whether the mask has been computed. Since then, only these vertices and cells have changed.
+  bool Known = false;
   std::vector<Extent> Vertices;
   std::vector<Extent> Cells;
 };

@@ -14,12 +14,12 @@
 //
 // Data:
 //   vertices   list of cut vertices (KernelParameters.h)
-//   stencils   for each cut vertex: neighbors to use, as bits (NEIGHBOUR), and the way of extrapolation
+//   stencils   for each cut vertex: neighbors to use, as bits (NEIGHBOR), and the way of extrapolation
 //   positions  for each cut vertex: position of its copy, and in the last component 0 if the copy coincides with the
 //              vertex. Tetrahedra with only such vertices need no copies. The bit DEFORMVOLUME_VERTEX_TOGETHER of the
 //              state is set for such vertices.
 
-#define NEIGHBOUR(dx, dy, dz) (1u << ((dz + 1) * 9 + (dy + 1) * 3 + dx + 1))
+#define NEIGHBOR(dx, dy, dz) (1u << ((dz + 1) * 9 + (dy + 1) * 3 + dx + 1))
 #define CONTINUES 0
 #define FOLLOWS 1
 #define IS_CONSTANT 2
@@ -66,7 +66,7 @@ static int SideOf(const CutMesh* mesh, int x, int y, int z, const KernelParamete
 
 // Adds the neighbors of a vertex in one of its cells, as bits. apart: neighbors on the other side in divided
 // tetrahedra. joined: all neighbors in undivided tetrahedra.
-static void AddNeighbours(const CutMesh* mesh, int3 vertex, int side, int3 cell, uint* apart, uint* joined,
+static void AddNeighbors(const CutMesh* mesh, int3 vertex, int side, int3 cell, uint* apart, uint* joined,
   const KernelParameters* p)
 {
   const int active = ActiveOf(mesh, cell.x, cell.y, cell.z, p);
@@ -95,7 +95,7 @@ static void AddNeighbours(const CutMesh* mesh, int3 vertex, int side, int3 cell,
     {
       const int o = Tetrahedra[t][k] ^ mirror;
       const int3 at = cell + (int3)(o & 1, o >> 2, o >> 1 & 1);
-      const uint bit = NEIGHBOUR(at.x - vertex.x, at.y - vertex.y, at.z - vertex.z);
+      const uint bit = NEIGHBOR(at.x - vertex.x, at.y - vertex.y, at.z - vertex.z);
       all |= bit;
       if (crossed >> t & 1)
       {
@@ -165,14 +165,14 @@ __kernel void FindCutStencils(__global const uchar* state, __global const uchar*
   uint joined = 0;
   for (int c = 0; c < 8; ++c)
   {
-    AddNeighbours(&mesh, at, side, at - (int3)(c & 1, c >> 1 & 1, c >> 2), &apart, &joined, &p);
+    AddNeighbors(&mesh, at, side, at - (int3)(c & 1, c >> 1 & 1, c >> 2), &apart, &joined, &p);
   }
   if (apart & joined)
   {
     stencils[i] = (uint2)(apart, IS_JOINED);
     return;
   }
-  uint heard[3] = { 0, 0, 0 };
+  uint found[3] = { 0, 0, 0 };
   for (int n = 0; n < 27; ++n)
   {
     const int3 step = (int3)(n % 3, n / 3 % 3, n / 9) - 1;
@@ -181,13 +181,13 @@ __kernel void FindCutStencils(__global const uchar* state, __global const uchar*
     {
       continue;
     }
-    const int word = Leads(&mesh, near, near + step, 1 - side, &p) ? CONTINUES
-      : Leads(&mesh, at, at - step, side, &p)                      ? FOLLOWS
-                                                                   : IS_CONSTANT;
-    heard[word] |= 1u << n;
+    const int way = Leads(&mesh, near, near + step, 1 - side, &p) ? CONTINUES
+      : Leads(&mesh, at, at - step, side, &p)                     ? FOLLOWS
+                                                                  : IS_CONSTANT;
+    found[way] |= 1u << n;
   }
-  const int word = heard[CONTINUES] ? CONTINUES : heard[FOLLOWS] ? FOLLOWS : IS_CONSTANT;
-  stencils[i] = (uint2)(heard[word], word);
+  const int way = found[CONTINUES] ? CONTINUES : found[FOLLOWS] ? FOLLOWS : IS_CONSTANT;
+  stencils[i] = (uint2)(found[way], way);
 }
 
 static int3 WholeRestOf(const Mapping* m, int3 at, const KernelParameters* p)
@@ -245,9 +245,9 @@ static int4 OtherPosition(const Mapping* m, int3 at, uint2 stencil, int3 own, co
     return (int4)(own, 0);
   }
   int3 sum = 0;
-  for (uint left = stencil.x; left; left &= left - 1)
+  for (uint remaining = stencil.x; remaining; remaining &= remaining - 1)
   {
-    const int n = 31 - clz(left & -left);
+    const int n = 31 - clz(remaining & -remaining);
     const int3 step = (int3)(n % 3, n / 3 % 3, n / 9) - 1;
     const int3 moved = StepsOf(m, at + step, p);
     sum += moved;
@@ -295,5 +295,6 @@ __kernel void FindCutPositions(MAPPING_PARAMETERS, __global uchar* state, __glob
   const int3 own = PositionOf(&m, at.x, at.y, at.z, &p).xyz; // the last component is undefined
   const int4 other = OtherPosition(&m, at, stencil, own, &p);
   positions[i] = other;
-  state[vertex] = other.w ? state[vertex] & ~DEFORMVOLUME_VERTEX_TOGETHER : state[vertex] | DEFORMVOLUME_VERTEX_TOGETHER;
+  state[vertex] = other.w ? state[vertex] & ~DEFORMVOLUME_VERTEX_TOGETHER
+                          : state[vertex] | DEFORMVOLUME_VERTEX_TOGETHER;
 }

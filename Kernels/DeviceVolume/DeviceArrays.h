@@ -39,7 +39,7 @@ public:
   bool SetOptions(const std::vector<VolumeArray>& arrays);
   bool IsInPlace(std::size_t array) const { return this->BuffersInPlace[array].Bytes > 0; }
   /// Returns an array in place whose memory overlaps the given memory. It has a buffer if the
-  /// volume is one chunk. Bytes is 0 if there is none.
+  /// volume is one chunk. Bytes is 0 if there is no such array.
   BufferInPlace FindOverlapping(const void* data, std::uint64_t bytes) const;
   /// Updates the arrays in place after their memory has been written.
   void ReadAgain() const;

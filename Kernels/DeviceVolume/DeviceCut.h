@@ -56,8 +56,8 @@ public:
   const cl::Buffer& GetVertices() const { return this->Vertices; }
   const cl::Buffer& GetPositions() const { return this->Positions; }
   ///@}
-  /// Sets the arguments of a kernel that stand for the cut (CUT_PARAMETERS), from a number on;
-  /// returns the number of the next argument.
+  /// Sets the kernel arguments of the cut (CUT_PARAMETERS). argument: index of the first of them.
+  /// Returns the index of the next argument.
   cl_uint SetArguments(cl::Kernel& kernel, cl_uint argument) const;
 
   std::uint64_t GetMemory() const;

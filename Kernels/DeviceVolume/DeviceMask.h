@@ -62,7 +62,7 @@ private:
     const OpenCLContext& context, const cl::CommandQueue& queue, std::vector<VolumeChunk>& chunks);
   void Release(std::vector<VolumeChunk>& chunks);
   /// Copies one box that contains all changes. A cut or a carving has hundreds of neighboring
-  /// changes; separate copies would mostly take longer.
+  /// changes, and separate copies would usually take longer.
   void Write(
     const cl::CommandQueue& queue, VolumeChunk& chunk, const std::vector<Extent>& changes) const;
 

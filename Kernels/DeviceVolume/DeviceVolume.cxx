@@ -52,8 +52,8 @@ DeviceVolume::DeviceVolume(OpenCLContext& context, const cl::CommandQueue& queue
   const std::uint64_t planeBytes =
     static_cast<std::uint64_t>(plane) * std::max(bytesPerVoxel, withLinks ? sizeof(VertexLink) : 0);
   const std::uint64_t planes = allocationLimit / planeBytes;
-  // A smooth cut needs the vertices up to two voxels away. Smooth cuts are not possible if these do
-  // not fit into an allocation.
+  // A smooth cut needs the vertices up to two voxels away. Smooth cuts are not possible if the
+  // planes of these vertices do not fit into an allocation.
   this->HasRoomForCuts = planes > 5;
   const std::uint64_t neighbours = this->HasRoomForCuts ? 5 : 3; // planes in addition to the layers
   if (planes <= neighbours)
@@ -179,7 +179,7 @@ void DeviceVolume::UpdateState(const cl::Program& mapping, bool movesAll,
     this->States.Release(this->Chunks);
     return;
   }
-  // A kernel's argument in place of a missing buffer: not all drivers take null.
+  // A kernel's argument in place of a missing buffer: not all drivers accept a null pointer.
   const cl::Buffer& other = this->RestPositions;
   for (VolumeChunk& chunk : this->Chunks)
   {

@@ -25,7 +25,8 @@ cl::Buffer MakeBuffer(const OpenCLContext& context, std::vector<Entry> entries)
 /// Returns a RestVector for each index on x, then y, then z.
 std::vector<RestVector> MakeRestVectors(const VoxelGrid& grid, const OutputTransform& transform)
 {
-  // In 2^-16 voxel. The rounding does not depend on the part of the volume.
+  // Returns the contribution of an index to the position, in 2^-16 voxel. The rounding does not
+  // depend on the part of the volume.
   const auto getPart = [&](int axis, int index)
   {
     glm::dvec3 part = transform.GetMatrix()[axis] * static_cast<double>(index);

@@ -35,9 +35,9 @@ public:
 
   /// Largest number of cuboids in a launch.
   static constexpr std::size_t AtOnce = 4096;
-  /// Processes a list of cuboids, at most AtOnce at a time. Writes the numbers of these cuboids to
-  /// the buffer `list`, and calls run(launch, begin, count): their index in `cuboids`, and their
-  /// number. launch(kernel) launches a kernel over them.
+  /// Processes a list of cuboids, at most AtOnce at a time. Writes the next cuboids to the buffer
+  /// `list`, and calls run(launch, begin, count). begin: index of the first of them in `cuboids`.
+  /// count: number of cuboids in the buffer. launch(kernel) launches a kernel over these cuboids.
   using Launch = std::function<void(const cl::Kernel& kernel)>;
   static void ForAll(OpenCLContext& context, const cl::CommandQueue& queue,
     const std::vector<cl_uint>& cuboids, const cl::Buffer& list,
@@ -45,7 +45,7 @@ public:
 
 private:
   std::array<int, 3> First; // local index of the first vertex of the chunk on each axis
-  std::array<int, 3> End;   // and one past the last
+  std::array<int, 3> End;   // one past the last vertex of the chunk on each axis
   std::array<std::int64_t, 3> Count;
 };
 

@@ -48,12 +48,13 @@ public:
     VolumeChunk& chunk, const Source& source);
   void Finish();
 
-  /// Releases the states: kernels run with HasState = 0.
+  /// Releases the states. Kernels must then be launched with HasState = 0.
   void Release(std::vector<VolumeChunk>& chunks);
 
 private:
   bool Current = false;
-  bool Known = false; // whether states were computed before, and only these may have changed:
+  // Whether the states have been computed. Since then, only these vertices and cells have changed.
+  bool Known = false;
   std::vector<Extent> Sources;
   std::vector<Extent> Cells;
 };
