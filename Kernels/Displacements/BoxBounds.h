@@ -12,8 +12,8 @@
 namespace deformvolume
 {
 
-/// Computes the bounds of the displacements of a field in boxes of its points, on the device. So
-/// the displacements need not be copied to the host.
+/// Computes the bounds of the displacements of a field in boxes of its points, on the device. The
+/// displacements are not copied to the host.
 class BoxBounds
 {
 public:

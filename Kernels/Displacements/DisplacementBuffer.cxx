@@ -23,7 +23,7 @@ namespace deformvolume
 namespace
 {
 
-// Vectors are processed in groups of the size of a word of a PointSet.
+// Number of vectors that are processed together: the points of one word of a PointSet.
 constexpr std::size_t WordSize = PointSet::PointsPerWord;
 constexpr std::size_t WordStep = 65536 / WordSize; // words that a thread processes at a time
 

@@ -314,8 +314,8 @@ bool DisplacementSource::CanReadInPlace(
   {
     return false;
   }
-  // The field may also be an array of the volume. Its buffer can be shared if it is not divided
-  // into chunks.
+  // The field may also be an array of the volume. The buffer of the array can be shared if the
+  // volume is one chunk.
   const BufferInPlace array =
     this->Volume.GetArrays().FindOverlapping(field.Vectors, GetBytes(field));
   return array.Bytes == 0 ||

@@ -89,8 +89,8 @@ public:
   /// number.
   cl_uint SetMappingArguments(cl::Kernel& kernel, const VolumeChunk& chunk) const;
 
-  /// Sets three arguments, starting at number `argument`: tetrahedra, displacements of points, and
-  /// the dimensions of a field as four integers (0 for a mesh). Returns the number of the next
+  /// Sets three arguments, starting at index `argument`: tetrahedra, displacements of points, and
+  /// the dimensions of a field as four integers (0 for a mesh). Returns the index of the next
   /// argument. other: any buffer, which replaces the tetrahedra for a field.
   cl_uint SetPointArguments(cl::Kernel& kernel, cl_uint argument, const cl::Buffer& other) const;
 
@@ -108,7 +108,8 @@ public:
   {
     return (this->FieldInPlace.Owner || this->IsConverted) && this->WrittenInPart;
   }
-  /// Returns the host memory of a field that is read in place. It has 0 bytes if there is none.
+  /// Returns the host memory of the field that is read in place. Bytes is 0 if there is no such
+  /// field.
   BufferInPlace GetFieldInPlace() const;
   /// Updates the field that is read in place after its memory has been written.
   void ReadFieldAgain() const;

@@ -134,8 +134,8 @@ void DisplacementSource::SetNumberOfNodes(std::size_t numberOfNodes)
     {
       this->Observer.SetPoints(this->MakeBrickPoints());
     }
-    // The displacement of a new node may equal the value in the buffer: then the node does not
-    // count as changed later. So add its bounds here.
+    // Add the bounds of new nodes here. If the displacement of a new node equals the value in the
+    // buffer, the node does not count as changed later.
     DisplacementBounds bounds;
     this->Nodes.Visit(
       [&](const float* last)

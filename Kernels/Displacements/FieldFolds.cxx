@@ -99,16 +99,16 @@ void RowCounter::Read(Row& row, int y, int z) const
   row.Z = z;
 }
 
-// Finds the cells that certainly have no inverted tetrahedron, with vector instructions. Most cells
-// of most fields are among them.
+// Finds cells that certainly have no inverted tetrahedron, with vector instructions. In most fields
+// it finds most cells.
 //
 // The derivative of the map in a tetrahedron is I + D. In a corner tetrahedron, column j of D is
 // the change of the displacement along an edge of the cell on axis j. In the central tetrahedron,
 // it is the mean of the changes along two edges on axis j, plus or minus half the difference of the
-// changes along two edges on another axis, which may be either of the two. If the absolute values
-// in each row of D add up to less than 1, the determinant of I + D is positive. Let X, Y and Z be
-// the largest changes of a component along the edges of a cell on each axis. If X + Y + Z + min(Y,
-// Z) + min(X, Z) + min(X, Y) < 1 for all three components, none of the five tetrahedra is inverted.
+// changes along two edges on one of the other two axes, no matter which. If the absolute values in
+// each row of D add up to less than 1, the determinant of I + D is positive. Let X, Y and Z be the
+// largest changes of a component along the edges of a cell on each axis. If X + Y + Z + min(Y, Z) +
+// min(X, Z) + min(X, Y) < 1 for all three components, none of the five tetrahedra is inverted.
 void RowCounter::FindRegularCells()
 {
   bool areFinite = true;

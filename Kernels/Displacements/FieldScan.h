@@ -32,8 +32,8 @@ DEFORMVOLUME_EXPORT bool AreVoxelsPoints(
 class DEFORMVOLUME_EXPORT FieldScan
 {
 public:
-  /// Checks the vectors. changes: points that have changed since the last call, if nothing else
-  /// has; null: any may have changed.
+  /// Checks the vectors. changes: points whose vectors have changed since the last call, if nothing
+  /// else has changed; null: any vector may have changed.
   FieldState Look(const VoxelGrid& voxelGrid, const DisplacementField& field,
     const PointRanges* changes = nullptr);
 

@@ -5,7 +5,7 @@
 #define BOUNDS 6 // the least x, y and z, then the greatest
 
 // Reduces the bounds of the work-items of a group to six numbers. shared: BOUNDS values per work-item. All work-items
-// of the group must execute it.
+// of the group must execute this macro.
 #define JOIN_BOUND(row, a, b) ((row) < 3 ? fmin(a, b) : fmax(a, b))
 #define JOIN_BOUNDS(shared, least, greatest, bounds)                                               \
   {                                                                                                \
@@ -49,8 +49,8 @@ __kernel void FindBoxBounds(__global const float4* displacements, const int widt
 
 #if REAL_IS_DOUBLE
 
-// Computes the bounds of deformed voxels. rest: three numbers for each index on x, then y, then z; the position of a
-// voxel at rest is the sum of those of its indices. bounds: six numbers per work-group. bad: counts voxels whose
+// Computes the bounds of deformed voxels. rest: a vector for each index on x, then y, then z; the position of a voxel
+// at rest is the sum of the vectors of its three indices. bounds: six numbers per work-group. bad: counts voxels whose
 // displacement is not finite or exceeds `largest`. A work-group processes the rows get_group_id(0),
 // get_group_id(0) + get_num_groups(0) and so on; its work-items process the voxels of a row in the same way.
 __kernel void FindBounds(__global const float* vectors, const FieldParameters field,

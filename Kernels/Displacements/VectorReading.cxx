@@ -95,7 +95,7 @@ void VectorReading::Check(const std::optional<PointRanges>& changes, const char*
             GetDisplacement(field, static_cast<std::int64_t>(point));
           const float largest =
             std::max({ std::abs(moved[0]), std::abs(moved[1]), std::abs(moved[2]) });
-          const float sum = moved[0] + moved[1] + moved[2]; // NaN if one of them is
+          const float sum = moved[0] + moved[1] + moved[2]; // NaN if a component is NaN
           if (!(largest <= LargestDisplacement) || std::isnan(sum))
           {
             Lower(bad, point);
