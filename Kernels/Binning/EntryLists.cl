@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Lists of the tetrahedra in each tile, for devices with many work-items.
 //
-// An entry is a tetrahedron in the list of a tile. Entries are made in the order of the tetrahedra; those of one
+// An entry is a tetrahedron in the list of a tile. Entries are made in the order of the tetrahedra; the entries of one
 // tetrahedron are consecutive. Prefix sums of the numbers of tiles give the tetrahedron of each entry, so that many
 // work-items make the entries of a large tetrahedron. The entries are then sorted by keys with a stable radix sort,
-// from the lowest bits on. A key is twice the tile, plus 1 if the tetrahedron is inverted.
+// beginning with the lowest bits. A key is twice the tile, plus 1 if the tetrahedron is inverted.
 //
-// Each work-group takes a range of tetrahedra, entries or tiles. The result does not depend on the number of ranges
-// or work-items, or on their order: atomic operations only add numbers and set bits, and are complete at a barrier or
-// at the end of the kernel.
+// Each work-group processes a range of tetrahedra, entries or tiles. The result does not depend on the number of
+// ranges or work-items, or on their order: atomic operations only add numbers and set bits, and are complete at a
+// barrier or at the end of the kernel.
 //
 // This text comes after TetrahedronBinning.cl.
 
-// Divides `count` numbers into consecutive ranges, and returns the begin of one range.
+// Divides `count` numbers into consecutive ranges, and returns the index of the first number of one range.
 static uint RangeBegin(uint count, uint range, uint ranges)
 {
   return (uint)((ulong)count * range / ranges);
@@ -47,7 +47,8 @@ __kernel void FindTiles(__global const int4* tetrahedra, __global const int4* po
   }
 }
 
-// Returns the sum over the work-items before this one, and sets `all` to the total. All items must call it.
+// Returns the sum over the work-items before this one, and sets `all` to the total. All work-items of the group must
+// call this function.
 static ulong SumItemsBefore(ulong own, __local ulong* shared, ulong* all)
 {
   const uint item = get_local_id(0);
@@ -161,7 +162,8 @@ static uint FindTetrahedron(__global const uint* begins, uint count, uint first,
   return low;
 }
 
-// boxes: the tiles of each tetrahedron. begins: the first entry of each tetrahedron.
+// Finds the key and the tetrahedron of each entry. boxes: the tiles of each tetrahedron. begins: the first entry of
+// each tetrahedron.
 __kernel void MakeEntries(__global const uint2* boxes, __global const uint* begins,
   const uint entries, __global uint* keys, __global int* lists, const RasterParameters p)
 {
@@ -187,7 +189,7 @@ static uint GetDigit(uint key, DigitParameters d)
   return key >> d.Shift & ((1u << d.Bits) - 1);
 }
 
-// counters: the number of entries, for each digit and each range of entries.
+// Counts the entries with each digit. counters: the number of entries, for each digit and each range of entries.
 __kernel void CountDigits(__global const uint* keys, __global uint* counters,
   const DigitParameters d)
 {
@@ -211,8 +213,9 @@ __kernel void CountDigits(__global const uint* keys, __global uint* counters,
   }
 }
 
-// counters: the index of the first entry, for each digit and each range of entries. masks: for each digit, a bit for
-// each work-item. An item counts the bits before its own to find how many items before it have the same digit.
+// Sorts the entries by a digit of their keys. counters: the index of the first entry, for each digit and each range of
+// entries. masks: for each digit, a bit for each work-item. A work-item counts the bits before its own bit to find how
+// many work-items before it have the same digit.
 __kernel void SortByDigits(__global const uint* keys, __global const int* lists,
   __global const uint* counters, __global uint* sortedKeys, __global int* sortedLists,
   __local uint* masks, const DigitParameters d)
@@ -268,7 +271,7 @@ __kernel void SortByDigits(__global const uint* keys, __global const int* lists,
   }
 }
 
-// Finds the begin of the list of each tile, and the end of the last list. keys: sorted.
+// Finds the first entry of the list of each tile, and the end of the last list. keys: sorted.
 __kernel void FindBegins(
   __global const uint* keys, const uint entries, const uint tiles, __global uint* begins)
 {

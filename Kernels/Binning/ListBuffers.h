@@ -12,12 +12,13 @@ namespace deformvolume
 
 class WorkDevice;
 
-/// The lists of tetrahedra for each tile, and the data they are made from (TetrahedronLists).
+/// The lists of tetrahedra for each tile, and the data from which the lists are made
+/// (TetrahedronLists).
 struct ListBuffers
 {
   cl::Buffer Boxes;    // the tiles of each tetrahedron
   cl::Buffer Counters; // see RasterParameters.h
-  cl::Buffer Begins;   // the begin of each tile's list in Lists, then the end of the last one
+  cl::Buffer Begins;   // index in Lists at which each tile's list begins; then the end of the last
   cl::Buffer Lists;
 };
 

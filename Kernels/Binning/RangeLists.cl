@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lists of the tetrahedra in each tile, for CPUs. A work-item takes a range of tetrahedra and has two counters for
+// Lists of the tetrahedra in each tile, for CPUs. A work-item processes a range of tetrahedra and has two counters for
 // each tile, one for upright and one for inverted tetrahedra. Between the two kernels, the host replaces the counters
-// by their prefix sums over the ranges. These are the indices to write to, so the lists are in order.
+// by their prefix sums over the ranges. The sums are the indices at which the second kernel writes, so that the
+// tetrahedra of each list are in order.
 //
 // This text comes after TetrahedronBinning.cl.
 
@@ -17,8 +18,8 @@ static int RangeBegin(size_t range, const RasterParameters* p)
   return (int)(p->Tetrahedra * range / get_global_size(0));
 }
 
-// boxes: the tiles of each tetrahedron. counters: see RasterParameters.h. rangeBegins: the number of upright tetrahedra
-// for each range and each tile, then the number of inverted ones.
+// Counts the tetrahedra of each tile. boxes: the tiles of each tetrahedron. counters: see RasterParameters.h.
+// rangeBegins: the number of upright tetrahedra for each range and each tile, then the number of inverted tetrahedra.
 __kernel void CountTetrahedra(__global const int4* tetrahedra, __global const int4* positions,
   __global uint2* boxes, __global uint* counters, __global uint* rangeBegins, const RasterParameters p)
 {
@@ -49,7 +50,7 @@ __kernel void CountTetrahedra(__global const int4* tetrahedra, __global const in
   atomic_add(counters + DEFORMVOLUME_BINNED_OVERSTRETCHED, overstretched);
 }
 
-// rangeBegins: as above, but with the index in the lists of the next tetrahedron.
+// Writes the lists. rangeBegins: as in CountTetrahedra, but with the index in the lists of the next tetrahedron.
 __kernel void ListTetrahedra(__global const uint2* boxes, __global uint* rangeBegins,
   __global int* lists, const RasterParameters p)
 {

@@ -51,7 +51,7 @@ std::uint64_t RangeLists::Count(WorkDevice& device, const cl::Buffer& tetrahedra
 std::uint64_t RangeLists::FindRangeBegins(
   WorkDevice& device, std::size_t ranges, std::size_t tiles, const ListBuffers& buffers)
 {
-  // Prefix sums over the ranges, for one tile after the other.
+  // Compute prefix sums over the ranges, for one tile after another.
   const std::size_t lists = 2 * ranges;
   std::vector<cl_uint> begins(tiles + 1);
   const cl::CommandQueue& queue = device.GetQueue();

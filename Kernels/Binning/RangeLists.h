@@ -15,8 +15,8 @@ namespace deformvolume
 class RangeLists
 {
 public:
-  /// Finds the tiles of each tetrahedron, the counters, and the begins of lists. Returns the total
-  /// length of the lists.
+  /// Finds the tiles of each tetrahedron, the counters, and the indices at which lists begin.
+  /// Returns the total length of the lists.
   std::uint64_t Count(WorkDevice& device, const cl::Buffer& tetrahedra, const cl::Buffer& positions,
     const RasterParameters& p, ListBuffers& buffers);
   void Fill(WorkDevice& device, const RasterParameters& p, const ListBuffers& buffers);
@@ -30,7 +30,7 @@ private:
   std::uint64_t FindRangeBegins(
     WorkDevice& device, std::size_t ranges, std::size_t tiles, const ListBuffers& buffers);
 
-  cl::Buffer RangeBegins; // where each range of tetrahedra writes in the list of each tile
+  cl::Buffer RangeBegins; // index at which each range of tetrahedra writes, for each tile
 };
 
 } // namespace deformvolume

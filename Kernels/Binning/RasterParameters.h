@@ -53,9 +53,9 @@ typedef struct
   int TileBegin;       // first tile of a launch
   int Tetrahedra;      // number of tetrahedra of the deformation mesh
   int FractionBits[3]; // of rest coordinates, see MeshRasterization.cl
-  int Tolerance[3];    // largest distance of a rest coordinate outside the volume, in its own unit
-  int HasActive;       // whether a mask of active tetrahedra is there
-  int HasBlanked;      // whether a mask of blanked voxels is there
+  int Tolerance[3];    // largest distance of a rest coordinate outside the volume, in its unit
+  int HasActive;       // whether there is a mask of active tetrahedra
+  int HasBlanked;      // whether there is a mask of blanked voxels
   int HasDistances;    // whether there are boundary distances
   // The map from an output index to an index of the volume: Inverse * index - Offset. Row-major 3 x
   // 3, each element the sum of two floats. HasTurnedAxes: whether the matrix is not diagonal.

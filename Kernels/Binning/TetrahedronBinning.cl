@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Binning for mesh rasterization: tiles of the output, and the tiles in which a tetrahedron of the deformation mesh
-// may hold voxels. RangeLists.cl and EntryLists.cl list these tetrahedra for each tile, in the order in which they
-// win: upright ones first, then inverted ones, each in ascending order.
+// may contain voxels. RangeLists.cl and EntryLists.cl list these tetrahedra for each tile, in the order in which they
+// win overlaps: first upright tetrahedra, then inverted tetrahedra, each in ascending order.
 //
 // Data: a tetrahedron has four nodes (16 bytes), in an order of positive orientation at rest, or -1 if it has no
 // volume at rest. A node is its deformed position in 1/256 output voxel (16 bytes, the last four unused).

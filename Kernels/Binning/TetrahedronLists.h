@@ -22,8 +22,9 @@ RasterParameters MakeTiles(const Extent& slab, std::size_t numberOfTetrahedra);
 /// Sets the map from the output to the volume in parameters.
 void SetInverse(const VoxelGrid& grid, RasterParameters& parameters);
 
-/// Lists for each tile of the output the tetrahedra of the deformation mesh that may hold voxels of
-/// it: upright ones first, then inverted ones, each in ascending order (TetrahedronBinning.cl).
+/// Lists for each tile of the output the tetrahedra of the deformation mesh that may contain voxels
+/// of the tile: first upright tetrahedra, then inverted tetrahedra, each in ascending order
+/// (TetrahedronBinning.cl).
 class TetrahedronLists
 {
 public:
@@ -38,7 +39,7 @@ public:
   Counts Make(WorkDevice& device, const cl::Buffer& tetrahedra, const cl::Buffer& positions,
     const RasterParameters& parameters);
 
-  /// Returns the begin of each tile's list in GetLists().
+  /// Returns the indices at which each tile's list begins in GetLists().
   const cl::Buffer& GetBegins() const { return this->Buffers.Begins; }
   const cl::Buffer& GetLists() const { return this->Buffers.Lists; }
 
