@@ -27,7 +27,7 @@ std::string DescribeExtent(vtkImageData* image)
   return text.str();
 }
 
-// The voxels of a part, each with its number in the whole.
+// Calls a function for each voxel of a part, with its index in the part and in the whole.
 template <typename Function>
 void ForEachVoxel(vtkImageData* part, vtkImageData* whole, Function&& function)
 {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Random pipelines with vtkDeformVolumeFilter. After each edit the output equals that of a new
-// filter to the last bit, and that of the host reference if it applies, or the update ends in one
-// error. The seed alone determines a pipeline.
+// Tests vtkDeformVolumeFilter in random pipelines. After each edit, either the output equals that
+// of a new filter to the last bit, and that of the host reference if this can be computed, or both
+// filters report the same error. The seed alone determines a pipeline.
 #include "Pipeline.h"
 #include "Subject.h"
 
@@ -35,12 +35,12 @@ struct Arguments
   bool KeepGoing = false;
 };
 
-// What a signal handler may use.
+// The seed of the pipeline as text. A signal handler cannot convert the number.
 char SeedText[64] = "";
 
 void WriteSeed()
 {
-  // Nothing can be done about a failure.
+  // A signal handler cannot report that writing failed.
   if (write(STDERR_FILENO, SeedText, std::strlen(SeedText)) < 0)
   {
     return;
@@ -77,7 +77,7 @@ int PrintUsage(std::ostream& stream, int code)
             "                        [--timeout SECONDS] [--keep-going] [--verbose]\n"
             "Runs random pipelines with the seeds FIRST, FIRST + 1 and so on. Without --count and\n"
             "--seconds it runs 1000. A pipeline that takes longer than --timeout (120) ends the\n"
-            "program. To see one again: --seed SEED --count 1.\n";
+            "program. To repeat one pipeline: --seed SEED --count 1.\n";
   return code;
 }
 
@@ -191,7 +191,7 @@ int main(int argc, char* argv[])
     return PrintUsage(std::cerr, EXIT_FAILURE);
   }
   CatchSignals();
-  std::cout << std::unitbuf; // so that all is there before a crash
+  std::cout << std::unitbuf; // so that all output is written before a crash
   vtkNew<fuzz::StrayMessages> stray;
   vtkOutputWindow::SetInstance(stray);
   std::cout << "First seed: " << arguments.Seed << std::endl;
@@ -209,8 +209,7 @@ int main(int argc, char* argv[])
   vtkOutputWindow::SetInstance(nullptr);
   std::cout << totals.Pipelines << " pipelines in " << getSeconds() << " s: " << totals.Outputs
             << " outputs, " << totals.References << " of them compared with the reference, "
-            << totals.Errors << " errors as there should be, " << totals.Failures
-            << " pipelines failed\n";
+            << totals.Errors << " expected errors, " << totals.Failures << " pipelines failed\n";
   const fuzz::Pipeline::LiveUpdates& live = totals.Live;
   std::cout << live.All << " updates of large volumes: " << live.Parts << " in part, "
             << live.FoldedParts << " of these folded, " << live.SplitParts << " of split meshes\n";

@@ -83,7 +83,7 @@ Draft MakeLattice(const std::array<double, 6>& box, Random& random, std::ostream
   const std::array<int, 3> nodes{ { random.Int(2, 5), random.Int(2, 5), random.Int(2, 5) } };
   Draft draft;
   const double jitter = random.Pick({ 0.0, 0.0, 0.2, 0.6 });
-  // One kind of cell, any of them, or (6) a mixture.
+  // One type of cells, or (6) a mixture of types.
   const int kind = random.Chance(0.5) ? 0 : random.Int(1, 6);
   log << "lattice of cells " << kind << ", jitter " << jitter;
   for (int z = 0; z < nodes[2]; ++z)
@@ -151,22 +151,22 @@ void AddOddities(Draft& draft, Random& random, std::ostream& log)
     log << ", oddity " << kind;
     switch (kind)
     {
-      case 0: // once more
+      case 0: // a duplicate cell
         draft.Cells.push_back(cell);
         break;
-      case 1: // inside out
+      case 1: // an inverted cell
         if (cell.Type == VTK_TETRA)
         {
           std::swap(draft.Cells[some].Points[0], draft.Cells[some].Points[1]);
         }
         break;
-      case 2: // flat
+      case 2: // a flat cell
         draft.Cells.push_back({ VTK_TETRA, { 0, 1, last, last } });
         break;
       case 3: // a point that no cell uses
         draft.Nodes.emplace_back(random.Real(-30.0, 30.0), 1.0, 2.0);
         break;
-      case 4: // of fewer dimensions
+      case 4: // a cell of fewer dimensions
         draft.Cells.push_back({ VTK_TRIANGLE, { 0, 1, last } });
         draft.Cells.push_back({ VTK_VERTEX, { last } });
         break;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Nodes and cells that become a mesh.
+// Nodes and cells from which a mesh is made.
 #ifndef Fuzz_MeshDrafts_h
 #define Fuzz_MeshDrafts_h
 
@@ -22,26 +22,27 @@ struct Cell
   std::vector<vtkIdType> Points;
 };
 
-// What becomes a mesh: nodes as indices of the volume.
+// Nodes, in indices of the volume, and cells.
 struct Draft
 {
   std::vector<glm::dvec3> Nodes;
   std::vector<Cell> Cells;
 };
 
-/// A lattice of tetrahedra or of other linear cells in a box, perhaps with jittered nodes.
+/// Returns a lattice of tetrahedra or of other linear cells in a box, sometimes with jittered
+/// nodes.
 Draft MakeLattice(const std::array<double, 6>& box, Random& random, std::ostream& log);
 
-/// A few tetrahedra of any shape, also flat ones.
+/// Returns a few tetrahedra of any shape, also flat ones.
 Draft MakeTetrahedra(const std::array<double, 6>& box, Random& random, std::ostream& log);
 
 /// Adds cells and nodes that are unusual, but not an error.
 void AddOddities(Draft& draft, Random& random, std::ostream& log);
 
-/// Adds something that is an error.
+/// Adds cells or nodes that are an error.
 void AddErrors(Draft& draft, Random& random, std::ostream& log);
 
-/// Puts nodes and cells in any order.
+/// Puts nodes and cells in random order.
 void Shuffle(Draft& draft, Random& random);
 
 } // namespace fuzz

@@ -76,13 +76,13 @@ void MovePoints(vtkDataObject* data)
   }
   for (vtkIdType point = 0; point < mesh->GetNumberOfPoints(); ++point)
   {
-    double place[3];
-    mesh->GetPoint(point, place);
+    double position[3];
+    mesh->GetPoint(point, position);
     for (int axis = 0; axis < 3; ++axis)
     {
-      place[axis] += vectors->GetComponent(point, axis);
+      position[axis] += vectors->GetComponent(point, axis);
     }
-    mesh->GetPoints()->SetPoint(point, place);
+    mesh->GetPoints()->SetPoint(point, position);
   }
   mesh->GetPoints()->Modified();
 }
@@ -106,7 +106,7 @@ Pipeline::Pipeline(std::uint64_t seed, std::ostream& log)
   this->Volume = MakeVolume(this->Random, this->Geometry, this->IsLive, log);
   if (this->IsLive)
   {
-    // An output that keeps its extent can be updated in part.
+    // A part of the output can be updated only if its extent stays the same.
     this->Settings.OutputBoundsMode = this->Random.Chance(0.8)
       ? vtkDeformVolumeFilter::VOLUME_BOUNDS
       : vtkDeformVolumeFilter::DEFORMED_BOUNDS;
@@ -134,7 +134,7 @@ void Pipeline::ApplySettings()
   if (this->VariesInTime &&
     this->Settings.OutputBoundsMode == vtkDeformVolumeFilter::DEFORMED_BOUNDS)
   {
-    // A new filter has seen other times.
+    // Deformed bounds depend on the times seen so far, so those of a new filter may differ.
     this->Settings.OutputBoundsMode = vtkDeformVolumeFilter::VOLUME_BOUNDS;
   }
   Apply(this->Settings, this->Tested.GetFilter());
@@ -147,7 +147,7 @@ void Pipeline::MakeDeformation()
   this->MakeShape();
   if (this->IsLive && this->Random.Chance(0.95))
   {
-    // Not folded all over.
+    // Most large volumes start without folds.
     vtkDataArray* vectors =
       GetLeaves(this->Deformation)[0]->GetPointData()->GetArray(DISPLACEMENTS);
     vectors->Fill(0.25);
@@ -161,7 +161,7 @@ void Pipeline::MakeShape()
   const bool exact = this->Geometry == fuzz::Geometry::Exact;
   if (this->Random.Chance(exact ? 0.6 : this->IsLive ? 0.35 : 0.2))
   {
-    // Of a large volume most have a point at each voxel.
+    // Most fields of large volumes have a point at each voxel.
     const bool isOfVoxels = this->IsLive && this->Random.Chance(0.7);
     this->Deformation = MakeField(
       this->Volume, this->Random, isOfVoxels ? Geometry::Exact : this->Geometry, this->Log);
@@ -281,7 +281,7 @@ void Pipeline::TouchSources()
   this->Parts->Volume = this->Volume;
   this->Parts->Modified();
   this->Times->Modified();
-  // The time of a composite dataset does not tell of its blocks.
+  // The modification time of a composite dataset does not include those of its blocks.
   if (vtkCompositeDataSet::SafeDownCast(this->Deformation))
   {
     this->Deformation->Modified();
@@ -319,7 +319,7 @@ void Pipeline::EditDeformation()
   else if (kind == 8 && !this->VariesInTime)
   {
     this->Deformation->DeepCopy(this->Random.Pick(this->Before));
-    this->Log << "a deformation that was\n";
+    this->Log << "an earlier deformation\n";
   }
   else
   {
@@ -331,7 +331,7 @@ void Pipeline::Edit()
 {
   if (this->Repair)
   {
-    this->Log << "what was an error is put right\n";
+    this->Log << "the error is corrected\n";
     this->Repair();
     this->Repair = nullptr;
   }
@@ -346,7 +346,7 @@ void Pipeline::Edit()
   }
   else if (kind < 15)
   {
-    this->Log << "settings as in the beginning\n";
+    this->Log << "initial settings\n";
     this->Settings = this->StartSettings;
   }
   else if (kind < 17)
@@ -394,7 +394,7 @@ void Pipeline::Abort()
   }
   else
   {
-    this->CheckChangedExtent(outcome.Output); // there was no such event
+    this->CheckChangedExtent(outcome.Output); // the update had fewer progress events
   }
 }
 

@@ -28,20 +28,20 @@ namespace fuzz
 class Pipeline
 {
 public:
-  /// The inputs are made at once. log gets what is made and done, one line each. Every eighth seed
-  /// makes many small edits of a large volume.
+  /// Makes the inputs. log gets a line for each input and each edit. Every eighth seed makes many
+  /// small edits of a large volume.
   Pipeline(std::uint64_t seed, std::ostream& log);
 
-  /// Updates and edits. Returns a description of the failure, or "".
+  /// Updates and edits the pipeline in turn. Returns a description of the failure, or "".
   std::string Run();
 
-  /// Updates that gave an output, and that ended in an error.
+  /// Numbers of updates that gave an output, and that ended with an error.
   int GetNumberOfOutputs() const { return this->Outputs; }
   int GetNumberOfErrors() const { return this->Errors; }
   int GetNumberOfReferences() const { return this->References; }
 
-  /// Of a large volume: updates, those in part, and of these those of a folded volume and of a mesh
-  /// whose nodes were split.
+  /// Numbers of updates of a large volume: all, those that resampled a part of the output, and
+  /// among these the updates of a folded volume and of a mesh whose nodes were split.
   struct LiveUpdates
   {
     int All = 0;
@@ -52,7 +52,8 @@ public:
   const LiveUpdates& GetLiveUpdates() const { return this->Live; }
 
 private:
-  // How a mesh is given to the filter; the one here has its points at rest, and displacements.
+  // The form in which the filter gets the mesh. this->Deformation has points at rest, and
+  // displacements.
   enum class Form
   {
     Displacements,
@@ -92,11 +93,11 @@ private:
   double Time = 0.0;
 
   fuzz::Settings StartSettings;
-  std::vector<vtkSmartPointer<vtkDataObject>> Before; // deformations that were, from the first on
-  std::function<void()> Repair;                       // what is an error, if there is one
+  std::vector<vtkSmartPointer<vtkDataObject>> Before; // earlier deformations, the first one first
+  std::function<void()> Repair;                       // removes an error from the deformation
 
   Subject Tested;
-  vtkSmartPointer<vtkImageData> Shown; // the output, by what has changed
+  vtkSmartPointer<vtkImageData> Shown; // a copy of the output, updated within GetChangedExtent()
   int Outputs = 0;
   int Errors = 0;
   int References = 0;

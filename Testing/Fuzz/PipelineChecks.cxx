@@ -14,8 +14,9 @@ namespace fuzz
 namespace
 {
 
-// The same about memory, whatever the numbers of bytes: a static mapping that is there has a size,
-// one that is to be made is estimated, and what is available in the system changes all the time.
+// Whether two errors are equal, apart from the numbers in errors about memory. These differ because
+// the size of a static mapping is estimated before it is built, and because the available memory
+// of the system varies.
 bool AreAlike(const std::string& first, const std::string& second)
 {
   const auto withoutBytes = [](std::string words)
@@ -32,7 +33,7 @@ bool AreAlike(const std::string& first, const std::string& second)
 
 } // namespace
 
-// Whoever shows the output brings what has changed up to date.
+// Updates a copy of the output within GetChangedExtent(), as viewers do, and compares.
 std::string Pipeline::CheckChangedExtent(vtkImageData* output)
 {
   const int* changed = this->Tested.GetFilter()->GetChangedExtent();
@@ -45,7 +46,7 @@ std::string Pipeline::CheckChangedExtent(vtkImageData* output)
   }
   if (!this->Shown || !std::equal(extent, extent + 6, this->Shown->GetExtent()))
   {
-    return "a part is said to have changed of another output than the last one";
+    return "GetChangedExtent() is a part of the output, but the extent of the output has changed";
   }
   vtkPointData* arrays = this->Shown->GetPointData();
   for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
@@ -62,7 +63,7 @@ std::string Pipeline::CheckChangedExtent(vtkImageData* output)
     }
   }
   const std::string wrong = CompareBits(output, this->Shown);
-  return wrong.empty() ? "" : "beyond what is said to have changed: " + wrong;
+  return wrong.empty() ? "" : "outside GetChangedExtent(): " + wrong;
 }
 
 void Pipeline::CountLive(const Outcome& tested)
@@ -137,7 +138,7 @@ std::string Pipeline::CheckOutput(const Outcome& tested, const Outcome& fresh, b
   }
   std::string wrong = CompareBits(tested.Output, fresh.Output);
   wrong = wrong.empty() ? outside : wrong;
-  // Where volumes are large, that takes longer than all else.
+  // In large volumes this check takes longer than all other ones.
   if (wrong.empty() && fresh.Output->GetNumberOfPoints() > 0 &&
     (!this->IsLive || this->Random.Chance(0.1)))
   {
@@ -162,13 +163,14 @@ std::string Pipeline::Check()
   fuzz::Settings settings = this->Settings;
   settings.Incremental = settings.Incremental && this->Random.Chance(0.5);
   Apply(settings, other.GetFilter());
-  // Where a part of the volume is read, a mesh beside it is no error.
+  // If only a part of the volume is read, it is no error that the mesh contains no voxel of it. So
+  // the other filter has to read the same part.
   const bool streamed =
     this->VolumeInParts && this->Settings.OutputBoundsMode == vtkDeformVolumeFilter::CUSTOM_BOUNDS;
   this->Connect(other, this->Random.Chance(0.3) && !streamed);
   Outcome fresh = other.Update(nullptr, time);
 
-  // All of the output or a part of it; someone may hold the last one.
+  // Update the whole output or a part of it. Sometimes something holds the last output.
   vtkNew<vtkImageData> held;
   vtkNew<vtkImageData> before;
   if (this->Random.Chance(0.3))
@@ -180,10 +182,10 @@ std::string Pipeline::Check()
       ? this->Tested.GetFilter()->GetOutput()->GetPointData()->GetArray(0)
       : nullptr)
   {
-    this->Log << "somebody writes to the output\n";
+    this->Log << "another program writes to the output\n";
     values->Fill(1.0);
     values->Modified();
-    this->Tested.GetFilter()->Modified(); // which writes it again
+    this->Tested.GetFilter()->Modified(); // so that the filter writes the output again
   }
   int part[6];
   fresh.Output->GetExtent(part);
@@ -200,7 +202,8 @@ std::string Pipeline::Check()
   {
     return "an output that is held has changed";
   }
-  // A filter that has seen a smooth cut in a part of the volume asks for all of it from then on.
+  // A filter that has read a smooth cut in a part of the volume requests the whole volume after
+  // that.
   if (tested.Errors.empty() && tested.Output->GetNumberOfPoints() > 0 && !fresh.Errors.empty() &&
     fresh.Errors[0].find("from the next update on, the whole volume") != std::string::npos)
   {

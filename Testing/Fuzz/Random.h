@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Random choices that follow from a seed alone, whatever the standard library.
+// Random choices that depend on the seed only, and not on the standard library.
 #ifndef Fuzz_Random_h
 #define Fuzz_Random_h
 
@@ -22,7 +22,7 @@ public:
 
   std::uint64_t Bits() { return this->Engine(); }
 
-  /// A whole number from low to high, both included.
+  /// Returns an integer from low to high, both included.
   int Int(int low, int high)
   {
     const auto count = static_cast<std::uint64_t>(static_cast<std::int64_t>(high) - low + 1);

@@ -23,7 +23,7 @@ namespace fuzz
 namespace
 {
 
-// From a point in voxels to its displacement in voxels.
+// A map from a point to its displacement, both in voxels.
 using Map = std::function<glm::dvec3(const glm::dvec3&)>;
 
 glm::dvec3 MakeVector(Random& random, double size)
@@ -78,16 +78,16 @@ Map MakeMap(Random& random, std::ostream& log)
   }
 }
 
-glm::dvec3 GetPlace(vtkDataSet* points, vtkIdType point, vtkImageData* volume)
+glm::dvec3 GetVoxelPosition(vtkDataSet* points, vtkIdType point, vtkImageData* volume)
 {
   double world[3];
   points->GetPoint(point, world);
-  glm::dvec3 place(0.0);
-  volume->TransformPhysicalPointToContinuousIndex(world, &place.x);
-  return place - glm::dvec3(volume->GetExtent()[0], volume->GetExtent()[2], volume->GetExtent()[4]);
+  glm::dvec3 index(0.0);
+  volume->TransformPhysicalPointToContinuousIndex(world, &index.x);
+  return index - glm::dvec3(volume->GetExtent()[0], volume->GetExtent()[2], volume->GetExtent()[4]);
 }
 
-// A displacement in voxels as one in world units.
+// Converts a displacement in voxels to world units.
 glm::dvec3 GetWorldVector(const glm::dvec3& vector, vtkImageData* volume)
 {
   const double* spacing = volume->GetSpacing();
@@ -131,7 +131,7 @@ vtkIdType PickTuple(vtkDataArray* array, Random& random)
     : static_cast<vtkIdType>(random.Bits() % static_cast<std::uint64_t>(count));
 }
 
-// Returns what takes it back.
+// Makes displacements that are an error. Returns a function that reverts this.
 std::function<void()> AddError(
   const vtkSmartPointer<vtkDataArray>& vectors, Random& random, std::ostream& log)
 {
@@ -149,21 +149,21 @@ std::function<void()> AddError(
   return [=]() { set(before); };
 }
 
-// One moves, those near it or all.
+// Moves one point, the points near it, or all points.
 void MoveSome(vtkDataSet* points, vtkDataArray* vectors, vtkImageData* volume, Random& random,
   Geometry geometry)
 {
   const vtkIdType first = PickTuple(vectors, random);
-  const glm::dvec3 center = GetPlace(points, first, volume);
+  const glm::dvec3 center = GetVoxelPosition(points, first, volume);
   const bool isOfVoxels = vectors->GetNumberOfTuples() > 20000;
-  const double reach = random.Pick({ 0.0, 0.0, 0.0, 6.0, 9.0, isOfVoxels ? 6.0 : 1e3 });
-  // One that moves far folds its cells.
+  const double radius = random.Pick({ 0.0, 0.0, 0.0, 6.0, 9.0, isOfVoxels ? 6.0 : 1e3 });
+  // A point that moves far folds its cells.
   const double most =
-    random.Pick({ 0.3, 1.0, reach > 0.0 ? 0.3 : 12.0 }) * (isOfVoxels && reach > 0.0 ? 0.3 : 1.0);
+    random.Pick({ 0.3, 1.0, radius > 0.0 ? 0.3 : 12.0 }) * (isOfVoxels && radius > 0.0 ? 0.3 : 1.0);
   for (vtkIdType point = 0; point < points->GetNumberOfPoints(); ++point)
   {
     if (point == first ||
-      (reach > 0.0 && glm::distance(GetPlace(points, point, volume), center) <= reach))
+      (radius > 0.0 && glm::distance(GetVoxelPosition(points, point, volume), center) <= radius))
     {
       SetVector(vectors, point, MakeVector(random, most), volume, geometry);
       MarkWritten(vectors, point, point);
@@ -218,7 +218,7 @@ void SetDisplacements(
   const Map map = MakeMap(random, log);
   for (vtkIdType point = 0; point < points->GetNumberOfPoints(); ++point)
   {
-    SetVector(vectors, point, map(GetPlace(points, point, volume)), volume, geometry);
+    SetVector(vectors, point, map(GetVoxelPosition(points, point, volume)), volume, geometry);
   }
   if (random.Chance(0.02) && points->GetNumberOfPoints() > 0)
   {
@@ -238,7 +238,7 @@ std::function<void()> EditDisplacements(
   vtkDataSet* points, vtkImageData* volume, Random& random, Geometry geometry, std::ostream& log)
 {
   const vtkSmartPointer<vtkDataArray> vectors = points->GetPointData()->GetArray(DISPLACEMENTS);
-  // A large volume that is folded all over takes long.
+  // A large volume that is folded everywhere takes long.
   const bool isLarge = points->GetNumberOfPoints() > 600;
   const int kind = random.Int(isLarge ? 1 : 0, 15);
   log << "displacements, edit " << kind << '\n';
@@ -255,13 +255,13 @@ std::function<void()> EditDisplacements(
   auto* field = geometry == Geometry::Any ? vtkImageData::SafeDownCast(points) : nullptr;
   switch (kind)
   {
-    case 1: // nothing
+    case 1: // no change
       vectors->Modified();
       return {};
     case 2:
       MoveSome(points, vectors, volume, random, geometry);
       return AddError(vectors, random, log);
-    case 3: // shorter than the points, in place
+    case 3: // fewer tuples than points, in the same array
       if (random.Chance(0.3))
       {
         vectors->SetNumberOfTuples(count - 1);
@@ -288,7 +288,7 @@ std::function<void()> EditDisplacements(
       const Map map = MakeMap(random, log);
       for (vtkIdType point = 0; point < count && !isLarge; ++point)
       {
-        SetVector(vectors, point, map(GetPlace(points, point, volume)), volume, geometry);
+        SetVector(vectors, point, map(GetVoxelPosition(points, point, volume)), volume, geometry);
       }
       if (isLarge)
       {
@@ -311,7 +311,7 @@ std::function<void()> EditDisplacements(
     default:
       MoveSome(points, vectors, volume, random, geometry);
   }
-  if (kind == 9) // with some that are not logged
+  if (kind == 9) // some changes are not logged
   {
     SetVector(vectors, PickTuple(vectors, random), MakeVector(random, 0.3), volume, geometry);
     vectors->Modified();

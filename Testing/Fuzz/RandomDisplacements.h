@@ -12,21 +12,23 @@
 namespace fuzz
 {
 
-/// The name of the displacements.
+/// The name of the array of displacements.
 constexpr const char* DISPLACEMENTS = "U";
 
-/// Gives each point a displacement, in world units but drawn in voxels of a volume: nothing, a
-/// shift, an affine or smooth map, a jitter, folds. Now and then numbers that are an error. With an
-/// exact geometry they are multiples of 1/256 voxel of less than 8 voxels, in single precision.
+/// Gives each point a displacement: zero, a shift, an affine or smooth map, a jitter, folds, or
+/// rarely numbers that are an error. Displacements are chosen in voxels of a volume and converted
+/// to world units. With an exact geometry they are multiples of 1/256 voxel of less than 8 voxels,
+/// in single precision.
 void SetDisplacements(
   vtkDataSet* points, vtkImageData* volume, Random& random, Geometry geometry, std::ostream& log);
 
-/// Changes some of the displacements, all, none, or their array; hides points of a field, where it
-/// is undefined. Where that is an error the function that is returned takes it back.
+/// Changes some displacements, all, none, or their array, or hides points of a field, which makes
+/// the field undefined there. If the change is an error, returns a function that reverts it.
 std::function<void()> EditDisplacements(
   vtkDataSet* points, vtkImageData* volume, Random& random, Geometry geometry, std::ostream& log);
 
-/// A displacement field over a volume or a part of it; with an exact geometry of its voxels.
+/// Returns a displacement field over a volume or a part of it. With an exact geometry the points of
+/// the field are the voxels.
 vtkSmartPointer<vtkImageData> MakeField(
   vtkImageData* volume, Random& random, Geometry geometry, std::ostream& log);
 

@@ -26,7 +26,7 @@ namespace fuzz
 namespace
 {
 
-// The faces of a polyhedron that is a cube.
+// Inserts a cube as a polyhedron.
 void InsertPolyhedron(vtkUnstructuredGrid* mesh, const std::vector<vtkIdType>& c)
 {
   std::vector<vtkIdType> faces;
@@ -50,9 +50,9 @@ vtkSmartPointer<vtkUnstructuredGrid> Finish(
   points->SetDataType(random.Pick({ VTK_FLOAT, VTK_DOUBLE }));
   for (const glm::dvec3& node : draft.Nodes)
   {
-    double place[3];
-    volume->TransformContinuousIndexToPhysicalPoint(node.x, node.y, node.z, place);
-    points->InsertNextPoint(place);
+    double position[3];
+    volume->TransformContinuousIndexToPhysicalPoint(node.x, node.y, node.z, position);
+    points->InsertNextPoint(position);
   }
   mesh->SetPoints(points);
   mesh->Allocate(static_cast<vtkIdType>(draft.Cells.size()) + 1);
@@ -91,7 +91,7 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeMesh(
   int extent[6];
   volume->GetExtent(extent);
   std::array<double, 6> box;
-  // All of the volume and more, or a part of it.
+  // The mesh covers the whole volume and a margin, or a part of the volume.
   const bool all = random.Chance(0.6);
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -176,7 +176,7 @@ vtkSmartPointer<vtkMultiBlockDataSet> MakeBlocks(vtkUnstructuredGrid* mesh, Rand
 void EditCells(vtkUnstructuredGrid* mesh, Random& random, std::ostream& log)
 {
   const vtkIdType points = mesh->GetNumberOfPoints();
-  // What is an error, or changes all of it, is left to small meshes.
+  // Only small meshes get edits that are an error or that change the whole mesh.
   const int kind = random.Int(points < 600 ? 0 : 3, 10);
   log << "cells, edit " << kind << '\n';
   if (points < 4)
@@ -185,7 +185,7 @@ void EditCells(vtkUnstructuredGrid* mesh, Random& random, std::ostream& log)
   }
   switch (kind)
   {
-    case 0: // a point more than displacements
+    case 0: // more points than displacements
       mesh->GetPoints()->InsertNextPoint(random.Real(-9.0, 9.0), 0.0, 0.0);
       mesh->GetPoints()->Modified();
       break;
@@ -202,7 +202,7 @@ void EditCells(vtkUnstructuredGrid* mesh, Random& random, std::ostream& log)
     case 2:
       HideCells(mesh, random);
       break;
-    case 3: // the same arrays in another order
+    case 3: // the same cells in other arrays
     {
       vtkNew<vtkUnstructuredGrid> copy;
       copy->DeepCopy(mesh);
@@ -216,15 +216,15 @@ void EditCells(vtkUnstructuredGrid* mesh, Random& random, std::ostream& log)
       }
       [[fallthrough]];
     case 4:
-      if (vtkPoints* place = mesh->GetPoints())
+      if (vtkPoints* positions = mesh->GetPoints())
       {
         const auto node =
           static_cast<vtkIdType>(random.Bits() % static_cast<std::uint64_t>(points));
         double point[3];
-        place->GetPoint(node, point);
+        positions->GetPoint(node, point);
         point[random.Int(0, 2)] += random.Real(-1.0, 1.0);
-        place->SetPoint(node, point);
-        place->Modified();
+        positions->SetPoint(node, point);
+        positions->Modified();
       }
   }
   mesh->Modified();

@@ -15,16 +15,16 @@
 namespace fuzz
 {
 
-/// A mesh at rest round or in a volume: a lattice of tetrahedra or of mixed linear cells, or random
-/// tetrahedra, with nodes and cells in any order; perhaps with cells that are flat, inverted,
-/// doubled or ignored, and with points that none uses. Now and then one that is an error.
+/// Returns a mesh at rest around or in a volume: a lattice of tetrahedra or of mixed linear cells,
+/// or random tetrahedra, with nodes and cells in random order. Sometimes cells are flat, inverted,
+/// duplicate or ignored, and points are not used by any cell. Rarely the mesh is an error.
 vtkSmartPointer<vtkUnstructuredGrid> MakeMesh(
   vtkImageData* volume, Random& random, std::ostream& log);
 
-/// A lattice with a node at each voxel.
+/// Returns a lattice with a node at each voxel.
 vtkSmartPointer<vtkUnstructuredGrid> MakeVoxelMesh(vtkImageData* volume);
 
-/// The cells of a mesh, dealt out to several blocks; some blocks are empty or no meshes.
+/// Distributes the cells of a mesh to several blocks. Some blocks are empty or are not meshes.
 vtkSmartPointer<vtkMultiBlockDataSet> MakeBlocks(vtkUnstructuredGrid* mesh, Random& random);
 
 /// Adds points or cells, replaces or reorders cells, moves nodes or splits them, in place.

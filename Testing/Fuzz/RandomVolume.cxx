@@ -36,7 +36,7 @@ struct ArrayKind
 };
 using ArraySet = std::vector<ArrayKind>;
 
-// Arrays named "label" are the ones that Settings makes categorical.
+// Settings makes arrays with the name "label" categorical.
 const std::vector<ArraySet>& GetArraySets()
 {
   static const std::vector<ArraySet> sets{ { { "value", VTK_SHORT, 1 } },
@@ -49,7 +49,7 @@ const std::vector<ArraySet>& GetArraySets()
   return sets;
 }
 
-// Smooth, or of the whole range of the type, or constant, with a few special values.
+// Values are smooth, or use the whole range of the type, or are constant with a few special values.
 template <typename T>
 void FillValues(T* values, vtkIdType count, Random& random)
 {
@@ -189,11 +189,11 @@ void SetOrigin(vtkImageData* volume, Random& random, Geometry geometry)
   volume->SetOrigin(origin);
 }
 
-// What is an error, with one chance in some.
+// Makes a volume that is an error.
 void Spoil(vtkImageData* volume, Random& random, std::ostream& log)
 {
   const int kind = random.Int(0, 4);
-  log << " spoilt in way " << kind;
+  log << " with error " << kind;
   switch (kind)
   {
     case 0:
@@ -214,7 +214,7 @@ void Spoil(vtkImageData* volume, Random& random, std::ostream& log)
       volume->GetCellData()->AddArray(mask);
       break;
     }
-    default: // an array that is shorter than the volume, in place
+    default: // fewer tuples than voxels, in the same array
       if (vtkDataArray* array = volume->GetPointData()->GetArray(0))
       {
         array->SetNumberOfTuples(volume->GetNumberOfPoints() / 2);
@@ -223,7 +223,7 @@ void Spoil(vtkImageData* volume, Random& random, std::ostream& log)
   }
 }
 
-// Multiples of 1/16, so that sums of their products with weights are exact.
+// Distances are multiples of 1/16, so that sums of their products with weights are exact.
 void EditDistances(vtkImageData* volume, int density, Random& random)
 {
   const vtkIdType points = volume->GetNumberOfPoints();
@@ -247,8 +247,8 @@ void EditDistances(vtkImageData* volume, int density, Random& random)
   distances->Modified();
 }
 
-// A smooth cut, of cells at random or along a plane, by distances that are multiples of 1/16 as
-// well. Now and then one of its arrays is left behind.
+// Makes a smooth cut, of random cells or along a plane. Distances are multiples of 1/16 as well.
+// Rarely one of the two arrays is missing.
 void EditCut(vtkImageData* volume, int density, Random& random)
 {
   const vtkIdType points = volume->GetNumberOfPoints();
@@ -258,10 +258,10 @@ void EditCut(vtkImageData* volume, int density, Random& random)
   volume->GetExtent(extent);
   const int width = extent[1] - extent[0] + 1;
   const int height = extent[3] - extent[2] + 1;
-  int place = 0; // of the plane, in the middle of the volume or beside it
+  int offset = 0; // offset of the plane, in the middle of the volume or beside it
   for (int axis = 0; axis < 3; ++axis)
   {
-    place += normal[axis] * ((extent[2 * axis + 1] - extent[2 * axis]) / 2);
+    offset += normal[axis] * ((extent[2 * axis + 1] - extent[2 * axis]) / 2);
   }
   vtkNew<vtkFloatArray> distances;
   distances->SetName("CutDistance");
@@ -270,8 +270,9 @@ void EditCut(vtkImageData* volume, int density, Random& random)
   {
     const int at[3] = { static_cast<int>(i) % width, static_cast<int>(i) / width % height,
       static_cast<int>(i) / (width * height) };
-    const int distance = isPlane ? normal[0] * at[0] + normal[1] * at[1] + normal[2] * at[2] - place
-                                 : random.Int(-32, 32);
+    const int distance = isPlane
+      ? normal[0] * at[0] + normal[1] * at[1] + normal[2] * at[2] - offset
+      : random.Int(-32, 32);
     distances->SetComponent(i, 0, distance / 16.0);
   }
   volume->GetPointData()->AddArray(distances);
@@ -406,13 +407,13 @@ vtkSmartPointer<vtkImageData> MakeVolume(
   auto volume = vtkSmartPointer<vtkImageData>::New();
   int extent[6];
   const bool large = random.Chance(0.05);
-  // Fields over so many voxels are read where they lie.
+  // Some volumes are so large that a field over their voxels is read in place.
   const bool larger = random.Chance(0.4);
   const int far = random.Chance(0.02) ? 100000 : 0;
   for (int axis = 0; axis < 3; ++axis)
   {
     int size = random.Chance(0.1) ? 2 : random.Int(2, 11);
-    if (large) // some bricks, of 192 x 16 x 16 cells
+    if (large) // several bricks of 192 x 16 x 16 cells
     {
       size = axis == 0 ? random.Int(180, 200) : random.Int(2, 20);
     }

@@ -13,25 +13,26 @@
 namespace fuzz
 {
 
-/// Whether positions are to be exact in floating-point numbers: spacings are powers of two, and
-/// nothing is rotated.
+/// With Exact, positions are exact in floating-point numbers: spacings are powers of two, and axes
+/// are not rotated.
 enum class Geometry
 {
   Any,
   Exact
 };
 
-/// A small volume, or a large one of several bricks: its extent, origin, spacing, direction and
-/// arrays; perhaps masks. Now and then one that no filter can take.
+/// Returns a small volume, or a large one of several bricks, with a random extent, origin, spacing
+/// and direction, random arrays, and sometimes masks. Rarely the volume is an error.
 vtkSmartPointer<vtkImageData> MakeVolume(
   Random& random, Geometry geometry, bool isLarge, std::ostream& log);
 
-/// Replaces the point arrays. The types come from a short list of sets of arrays, since each new
-/// combination of types costs a compilation of kernels.
+/// Replaces the point arrays. The types come from a short list of sets of arrays, because kernels
+/// are compiled for each new combination of types.
 void FillArrays(vtkImageData* volume, Random& random, std::ostream& log);
 
 /// Sets or changes vtkGhostType of points or cells, ActiveTetrahedra, BoundaryDistance or a
-/// smooth cut: in large volumes at a few places, and no cut, which takes long there.
+/// smooth cut. In large volumes only a few voxels or cells change, and there are no smooth cuts,
+/// because these take long.
 void EditMasks(vtkImageData* volume, Random& random, std::ostream& log);
 
 /// Changes values, geometry, arrays or masks.

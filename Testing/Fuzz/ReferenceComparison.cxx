@@ -37,7 +37,7 @@ vtkUnsignedCharArray* GetMask(vtkDataSetAttributes* attributes, const char* name
   return vtkUnsignedCharArray::SafeDownCast(attributes->GetAbstractArray(name));
 }
 
-// The factor from an index of the volume to one of the output.
+// Returns the factors from indices of the volume to indices of the output.
 std::array<double, 3> GetScale(vtkImageData* output, vtkImageData* volume)
 {
   std::array<double, 3> scale;
@@ -48,7 +48,7 @@ std::array<double, 3> GetScale(vtkImageData* output, vtkImageData* volume)
   return scale;
 }
 
-// The deformed positions of the voxels; false where they are not exact.
+// Finds the deformed positions of the voxels. Returns false if they are not exact.
 bool FindPositions(vtkImageData* output, vtkImageData* volume, vtkDataSet* deformation,
   double factor, reference::SamplingMesh& mesh)
 {
@@ -68,11 +68,11 @@ bool FindPositions(vtkImageData* output, vtkImageData* volume, vtkDataSet* defor
     reference::Position displacement;
     const std::int64_t size[3] = { reference::GetSize(mesh.Voxels, 0),
       reference::GetSize(mesh.Voxels, 1), reference::GetSize(mesh.Voxels, 2) };
-    const std::int64_t place[3] = { point % size[0], point / size[0] % size[1],
+    const std::int64_t offset[3] = { point % size[0], point / size[0] % size[1],
       point / (size[0] * size[1]) };
     for (int axis = 0; axis < 3; ++axis)
     {
-      const double index = static_cast<double>(mesh.Voxels[2 * axis] + place[axis]);
+      const double index = static_cast<double>(mesh.Voxels[2 * axis] + offset[axis]);
       const double moved = factor * vectors->GetComponent(point, axis);
       const double exact = 256.0 * (index * scale[axis] + moved / output->GetSpacing()[axis]);
       if (node[axis] != rest[axis] || exact != std::nearbyint(exact) || std::abs(exact) > 1e9)
@@ -145,12 +145,12 @@ bool IsRight(const reference::Containing& winner, const T* input, int components
   {
     return std::isnan(expected) ? value != value : static_cast<long double>(value) == expected;
   }
-  // Half a unit of the result, and what summing in double precision costs.
+  // The rounding of the result, and the errors of a sum in double precision.
   long double tolerance = std::numeric_limits<double>::epsilon() * 8.0L * magnitude + slack;
   if (std::is_integral<T>::value && sizeof(T) == 8)
   {
-    // What is interpolated is the difference to one of the vertices, with nine roundings at most.
-    // It may be larger than the result, by that vertex.
+    // The kernels interpolate differences to the value of one of the vertices, with nine roundings
+    // at most. Differences may be larger than the result by the value of that vertex.
     for (const std::int64_t vertex : winner.Vertices)
     {
       const auto of = static_cast<long double>(input[vertex * components + component]);
@@ -165,7 +165,7 @@ bool IsRight(const reference::Containing& winner, const T* input, int components
   return std::fabs(static_cast<long double>(value) - expected) <= tolerance;
 }
 
-// All tetrahedra that contain a voxel, the one that writes it first.
+// Describes all tetrahedra that contain a voxel. The first one is the one that writes the voxel.
 template <typename T>
 std::string Describe(const std::vector<reference::Containing>& candidates, const T* input,
   int components, int component)
@@ -188,13 +188,13 @@ template <typename T>
 std::string CompareArray(const reference::Result& result, vtkDataArray* source, vtkDataArray* array,
   bool categorical, bool cubic)
 {
-  // The values in one piece, whatever the layout.
+  // Copy the values to contiguous memory, because arrays may have any layout.
   vtkNew<vtkAOSDataArrayTemplate<T>> copy;
   copy->DeepCopy(source);
   const T* input = copy->GetPointer(0);
   const auto* output = static_cast<const T*>(array->GetVoidPointer(0));
   const int components = source->GetNumberOfComponents();
-  // The kernel for processors interpolates these in single precision.
+  // The kernel for CPUs interpolates these types in single precision.
   long double slack = 0.0L;
   if (components == 1 && !categorical && (std::is_same<T, float>::value || sizeof(T) <= 2))
   {
@@ -213,7 +213,7 @@ std::string CompareArray(const reference::Result& result, vtkDataArray* source, 
     const reference::Containing& winner = result.Voxels[voxel].front();
     if (cubic && !categorical && winner.GetSingleVertex() < 0)
     {
-      continue; // it knows linear interpolation
+      continue; // the reference has linear interpolation only
     }
     for (int component = 0; component < components; ++component)
     {

@@ -13,7 +13,7 @@ namespace fuzz
 namespace
 {
 
-// A box in the world of a size that does no harm, or one that is an error.
+// Returns a box in world coordinates, which is not too large, or rarely one that is an error.
 std::array<double, 6> MakeBounds(vtkImageData* volume, Random& random)
 {
   std::array<double, 6> bounds{ { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 } };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The properties of vtkDeformVolumeFilter, all of them, as one value.
+// All properties of vtkDeformVolumeFilter in one structure.
 #ifndef Fuzz_Settings_h
 #define Fuzz_Settings_h
 
@@ -37,11 +37,11 @@ struct Settings
   bool PointsAreDeformed = false;
   std::string Device;
   vtkTypeInt64 MemoryLimit = 0;
-  /// The name of the displacements; "" stands for what the filter takes by itself.
+  /// The name of the array of displacements. With "" no array is set, and the filter chooses one.
   std::string Displacements;
 };
 
-/// Changes one property or a few that belong together.
+/// Changes one property, or a few related ones.
 void EditSettings(
   Settings& settings, vtkImageData* volume, Random& random, Geometry geometry, std::ostream& log);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sources as pipelines have them: one that makes the part of a volume that it is asked for, and one
-// whose mesh varies in time.
+// Sources of pipelines: one that makes the requested part of a volume, and one whose mesh varies in
+// time.
 #ifndef Fuzz_Sources_h
 #define Fuzz_Sources_h
 
@@ -37,7 +37,7 @@ public:
   static TimeSource* New();
   vtkTypeMacro(TimeSource, vtkUnstructuredGridAlgorithm);
 
-  /// One a time step; times are 0, 1, 2...
+  /// One mesh for each time step. Times are 0, 1, 2...
   std::vector<vtkSmartPointer<vtkUnstructuredGrid>> Steps;
 
 protected:

@@ -16,9 +16,9 @@ void Messages::Execute(vtkObject*, unsigned long event, void* data)
     const std::string text = static_cast<const char*>(data);
     if (text.find("returned failure for request") != std::string::npos)
     {
-      return; // the executive, after an error of the filter
+      return; // an error of the executive, which follows an error of the filter
     }
-    // Without the file, the line and the address of the object.
+    // Remove the file, the line and the address of the object from the text.
     const std::size_t start = text.find("): ");
     this->Errors.push_back(start == std::string::npos ? text : text.substr(start + 3));
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A vtkDeformVolumeFilter whose updates end in an output or in one error.
+// A vtkDeformVolumeFilter under test, whose messages are kept.
 #ifndef Fuzz_Subject_h
 #define Fuzz_Subject_h
 
@@ -28,7 +28,7 @@ public:
   std::vector<std::string> Errors;
 };
 
-/// Keeps what is said by objects that nobody observes. Nothing should be.
+/// Keeps messages of objects without an observer. There should be none.
 class StrayMessages : public vtkOutputWindow
 {
 public:
@@ -36,7 +36,7 @@ public:
   vtkTypeMacro(StrayMessages, vtkOutputWindow);
   void DisplayText(const char* text) override;
 
-  /// What has been said since the last call.
+  /// Returns the messages since the last call.
   std::string Take();
 
 private:
@@ -59,7 +59,8 @@ class Subject
 public:
   Subject();
 
-  /// part: an extent of the output, or null for all of it; time: null for none.
+  /// Updates the filter. part: the requested extent, or null for the whole output; time: the
+  /// requested time, or null.
   Outcome Update(const int* part, const double* time);
 
   vtkDeformVolumeFilter* GetFilter() { return this->Filter; }

@@ -32,28 +32,28 @@ vtkIdType PickOne(vtkIdType count, Random& random)
   return static_cast<vtkIdType>(random.Bits() % static_cast<std::uint64_t>(count));
 }
 
-glm::dvec3 GetPlace(vtkUnstructuredGrid* mesh, vtkIdType node)
+glm::dvec3 GetPosition(vtkUnstructuredGrid* mesh, vtkIdType node)
 {
-  glm::dvec3 place;
-  mesh->GetPoint(node, &place.x);
-  return place;
+  glm::dvec3 position;
+  mesh->GetPoint(node, &position.x);
+  return position;
 }
 
-// Adds a node between some, near where these are moved to.
+// Adds a node between some nodes, with a displacement near theirs.
 vtkIdType AddNode(vtkUnstructuredGrid* mesh, const std::vector<vtkIdType>& between, Random& random)
 {
   vtkDataArray* vectors = mesh->GetPointData()->GetArray(DISPLACEMENTS);
-  glm::dvec3 place(0.0);
+  glm::dvec3 position(0.0);
   glm::dvec3 move(random.Real(-0.3, 0.3), random.Real(-0.3, 0.3), random.Real(-0.3, 0.3));
   for (const vtkIdType node : between)
   {
     glm::dvec3 vector;
     vectors->GetTuple(node, &vector.x);
-    place += GetPlace(mesh, node) / static_cast<double>(between.size());
+    position += GetPosition(mesh, node) / static_cast<double>(between.size());
     move += vector / static_cast<double>(between.size());
   }
   vectors->InsertNextTuple(&move.x);
-  return mesh->GetPoints()->InsertNextPoint(&place.x);
+  return mesh->GetPoints()->InsertNextPoint(&position.x);
 }
 
 Nodes GetTetrahedron(vtkUnstructuredGrid* mesh, vtkIdType cell)
@@ -69,7 +69,7 @@ void ReplaceTetrahedron(vtkUnstructuredGrid* mesh, vtkIdType cell, const Nodes& 
   MarkWritten(mesh->GetCells()->GetConnectivityArray(), 4 * cell, 4 * cell + 3);
 }
 
-// Whether all cells are tetrahedra of nodes that are there, and have displacements.
+// Whether all cells are tetrahedra of existing nodes that have displacements.
 bool AreTetrahedra(vtkUnstructuredGrid* mesh)
 {
   vtkDataArray* vectors = mesh->GetPointData()->GetArray(DISPLACEMENTS);
@@ -106,11 +106,11 @@ void SetTetrahedra(vtkUnstructuredGrid* mesh, const std::vector<Nodes>& all)
   mesh->SetCells(VTK_TETRA, cells);
 }
 
-// Gives the tetrahedra near a node, on one side of a plane through it, nodes of their own.
+// Splits nodes near a node: the tetrahedra on one side of a plane through it get new nodes.
 void SplitNodes(vtkUnstructuredGrid* mesh, Random& random)
 {
-  const glm::dvec3 center = GetPlace(mesh, PickOne(mesh->GetNumberOfPoints(), random));
-  const double reach = random.Real(3.0, 22.0);
+  const glm::dvec3 center = GetPosition(mesh, PickOne(mesh->GetNumberOfPoints(), random));
+  const double radius = random.Real(3.0, 22.0);
   const glm::dvec3 normal(random.Real(-1.0, 1.0), random.Real(-1.0, 1.0), random.Real(-1.0, 1.0));
   std::map<vtkIdType, vtkIdType> twins;
   for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
@@ -119,13 +119,13 @@ void SplitNodes(vtkUnstructuredGrid* mesh, Random& random)
     glm::dvec3 middle(0.0);
     for (const vtkIdType node : nodes)
     {
-      middle += 0.25 * GetPlace(mesh, node);
+      middle += 0.25 * GetPosition(mesh, node);
     }
     bool isChanged = false;
     for (vtkIdType& node : nodes)
     {
       if (glm::dot(middle - center, normal) > 0.0 &&
-        glm::distance(GetPlace(mesh, node), center) <= reach)
+        glm::distance(GetPosition(mesh, node), center) <= radius)
       {
         if (!twins.count(node))
         {
@@ -142,16 +142,16 @@ void SplitNodes(vtkUnstructuredGrid* mesh, Random& random)
   }
 }
 
-// A node takes the place of others that lie where it lies, in some tetrahedra.
+// Replaces coincident nodes by one of them in some tetrahedra.
 void JoinNodes(vtkUnstructuredGrid* mesh, Random& random)
 {
   std::map<std::array<double, 3>, vtkIdType> first;
   std::vector<vtkIdType> joined;
   for (vtkIdType node = 0; node < mesh->GetNumberOfPoints(); ++node)
   {
-    std::array<double, 3> place;
-    mesh->GetPoint(node, place.data());
-    joined.push_back(first.emplace(place, node).first->second);
+    std::array<double, 3> position;
+    mesh->GetPoint(node, position.data());
+    joined.push_back(first.emplace(position, node).first->second);
   }
   for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
   {
@@ -166,7 +166,7 @@ void JoinNodes(vtkUnstructuredGrid* mesh, Random& random)
   }
 }
 
-// One becomes four, in its place or at the end.
+// Replaces a tetrahedron by four. New ones are inserted at its index or appended.
 void Refine(vtkUnstructuredGrid* mesh, std::vector<Nodes>& all, Random& random)
 {
   const auto parent = static_cast<std::size_t>(PickOne(mesh->GetNumberOfCells(), random));
@@ -194,7 +194,7 @@ void Remove(std::vector<Nodes>& all, Random& random)
 vtkSmartPointer<vtkUnstructuredGrid> MakeFineLattice(
   vtkImageData* volume, Random& random, std::ostream& log)
 {
-  // Links hold the static mapping of the finest ones, runs that of the others.
+  // The static mapping of the finest lattices has links, that of the coarser ones has runs.
   const int nodes = random.Pick({ 9, 12, 14, 25 });
   const double margin = random.Pick({ 0.0, 1.0 });
   double bounds[6];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Meshes of many tetrahedra, whose nodes and cells change as in cuts and in refinement.
+// Meshes of many tetrahedra, and edits of their nodes and cells as in cuts and in refinement.
 #ifndef Fuzz_TetrahedronEdits_h
 #define Fuzz_TetrahedronEdits_h
 
@@ -14,12 +14,12 @@
 namespace fuzz
 {
 
-/// A lattice round a volume, so fine that a node moves a small part of it.
+/// Returns a lattice around a volume which is so fine that a node moves a small part of the volume.
 vtkSmartPointer<vtkUnstructuredGrid> MakeFineLattice(
   vtkImageData* volume, Random& random, std::ostream& log);
 
 /// Splits or joins nodes, refines or removes tetrahedra of a mesh with displacements, in place.
-/// False for meshes of other cells.
+/// Returns false for meshes with other cells.
 bool EditTetrahedra(vtkUnstructuredGrid* mesh, Random& random, std::ostream& log);
 
 } // namespace fuzz

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How a producer says what it has written to an array: by a log where the array has one.
+// Marks tuples of an array as written: in its log, if it has one, or by Modified().
 #ifndef Fuzz_WrittenTuples_h
 #define Fuzz_WrittenTuples_h
 
@@ -27,7 +27,7 @@ inline void StartLog(vtkDataArray* array)
   if (!vtkArrayChanges::FindLog(array))
   {
     vtkNew<vtkArrayChanges> log;
-    log->SetArray(array); // which keeps it
+    log->SetArray(array); // the array keeps a reference to the log
   }
 }
 
