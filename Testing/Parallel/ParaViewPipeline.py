@@ -3,8 +3,7 @@
 The volume that is cut, carved and dragged by ChainMail is saved as <prefix>-edited.pvti, and deformed by
 these displacements as <prefix>-dragged.pvti.
 
-Arguments: the plugin, the prefix, the volume (.vti), the deformation mesh (.pvtu), the number of ranks
-that there should be.
+Arguments: the plugin, the prefix, the volume (.vti), the deformation mesh (.pvtu), the expected number of ranks.
 """
 import sys
 

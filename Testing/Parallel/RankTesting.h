@@ -7,7 +7,7 @@
 #include <vtkExtentTranslator.h>
 #include <vtkMPIController.h>
 
-/// A test on all ranks of MPI; the exit code, which counts the failures of all.
+/// Runs a test on all ranks of MPI. Returns the exit code, a failure if a check failed on any rank.
 template <typename Test>
 int RunOnRanks(int argc, char* argv[], Test&& test)
 {
@@ -27,7 +27,7 @@ int RunOnRanks(int argc, char* argv[], Test&& test)
   return all == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
-/// The extent that a rank has to make of a whole one.
+/// Returns the extent of the piece of a rank.
 inline filterTesting::Extent GetPiece(
   vtkMPIController* controller, filterTesting::Extent whole, int ghosts)
 {
@@ -39,8 +39,8 @@ inline filterTesting::Extent GetPiece(
   return piece;
 }
 
-/// Whether an image is a part of another one, bit by bit. Arrays are found by name: their order
-/// does not survive the way to other ranks.
+/// Whether an image is a part of another one, bit by bit. Arrays are compared by name, because
+/// their order changes when images are sent to other ranks.
 inline bool IsPartOf(vtkImageData* part, vtkImageData* whole)
 {
   using namespace filterTesting;

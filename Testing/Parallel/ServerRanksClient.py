@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The client of TestServerRanks. Arguments: the server's port, how many ranks it has."""
+"""The client of TestServerRanks. Arguments: the port of the server, its number of ranks."""
 
 import os
 import pickle
@@ -25,7 +25,7 @@ from PluginTesting import (
     wavelet,
 )
 
-# A mesh on the last rank only, or on none.
+# A programmable source that has a mesh on one rank only. If no rank has this number, no rank has the mesh.
 ON_ONE_RANK = """
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 if vtkMultiProcessController.GetGlobalController().GetLocalProcessId() == {rank}:
@@ -57,7 +57,7 @@ def update(filter_):
 
 
 def whole_image(proxy):
-    """The data of all ranks. ParaView's Fetch returns the piece of the first rank."""
+    """Returns the data of all ranks. ParaView's Fetch returns the piece of the first rank."""
     path = os.path.join(OUTPUT, "ServerRanksClient.pvti")
     simple.SaveData(path, proxy=proxy, DataMode="Binary")
     reader = vtkXMLPImageDataReader()
@@ -67,7 +67,8 @@ def whole_image(proxy):
 
 
 def expected_output(mesh):
-    """By the class itself, in the client, with the background that ParaView chooses from all ranks."""
+    """Returns the output of the class in the client, with the background that ParaView chooses from the data of all
+    ranks."""
     source = vtkRTAnalyticSource()
     source.SetWholeExtent(-9, 9, -9, 9, -9, 9)
     source.Update()
@@ -81,7 +82,7 @@ def expected_output(mesh):
 
 
 def on_rank(mesh, rank):
-    """A source that has the mesh on one rank."""
+    """Returns a source that has the mesh on one rank."""
     data = fetch(mesh)
     points = [data.GetPoint(i) for i in range(data.GetNumberOfPoints())]
     cells = []
@@ -113,7 +114,7 @@ def main(port, ranks):
     check_silent(update(filter_))
     check_equal_images(whole_image(filter_), expected, "three ranks")
     covered = int(numpy.sum(arrays_of(expected)["vtkValidPointMask"]))
-    # Voxels on the planes between the ranks' parts count for both.
+    # Voxels on the planes between two pieces are counted twice.
     check(covered < filter_.CoveredVoxels < 1.5 * covered, f"{filter_.CoveredVoxels} of {covered}")
     check(f"Covered voxels: {int(filter_.CoveredVoxels):,}" in filter_.Summary, filter_.Summary)
     for rank in (ranks - 1, 0):
@@ -122,7 +123,7 @@ def main(port, ranks):
         check_silent(update(only))
         check_equal_images(whole_image(only), expected, f"mesh on rank {rank}")
 
-    # One message, in the client, whichever rank is wrong.
+    # The client displays one message, whichever rank fails.
     none = simple.DeformVolume(Volume=volume, Deformation=on_rank(mesh, ranks))
     check_one_message(update(none), ["no points"])
     filter_.Device = "no such device"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Several ranks: each makes its piece of the output, and all pieces are equal to those of one
-// process, to the last bit, whichever rank has the deformation mesh. Errors are reported on all
-// ranks. With the argument "cold": the start with an empty cache of kernels.
+// Deforms volumes on several ranks: each rank makes its piece of the output, and all pieces equal
+// the output of one process to the last bit, whichever rank has the deformation mesh. Errors are
+// reported on all ranks. With the argument "cold", tests the start with an empty kernel cache.
 #include "../Reported.h"
 #include "DivisionCases.h"
 #include "RankTesting.h"
@@ -38,7 +38,7 @@ int GetRanks()
   return Controller->GetNumberOfProcesses();
 }
 
-/// Gives all ranks the image of the first.
+/// Sends the image of the first rank to all ranks.
 void Broadcast(vtkImageData* image)
 {
   Controller->Broadcast(image, 0);
@@ -53,7 +53,7 @@ void Broadcast(vtkImageData* image)
   image->SetDirectionMatrix(grid.data() + 6);
 }
 
-/// The output of one process, on all ranks.
+/// Returns the output of one process, on all ranks.
 vtkSmartPointer<vtkImageData> MakeWhole(const Case& from)
 {
   auto image = vtkSmartPointer<vtkImageData>::New();
@@ -70,7 +70,7 @@ vtkSmartPointer<vtkImageData> MakeWhole(const Case& from)
   return image;
 }
 
-/// This rank's piece.
+/// Compares the piece of this rank with the whole output.
 void Check(Deformed& deformed, vtkImageData* whole, const std::string& name, int ghosts = 0)
 {
   deformed.Filter->UpdatePiece(GetRank(), GetRanks(), ghosts);
@@ -107,13 +107,13 @@ void Check(Deformed& deformed, vtkImageData* whole, const std::string& name, int
 
 enum class Spread
 {
-  Everywhere, // each rank has it whole
-  OnOne,      // the last rank has it
+  Everywhere, // each rank has the whole mesh
+  OnOne,      // the last rank has the whole mesh
   Pieces,     // each rank has some cells, and the points of these
-  WithGhosts  // and the cells round them as ghosts
+  WithGhosts  // as Pieces, and neighboring cells as ghost cells
 };
 
-/// The part of a mesh that this rank has.
+/// Returns the part of a mesh that this rank has.
 vtkSmartPointer<vtkUnstructuredGrid> Distribute(vtkUnstructuredGrid* mesh, Spread spread)
 {
   auto mine = vtkSmartPointer<vtkUnstructuredGrid>::New();
@@ -180,7 +180,7 @@ struct Parallel : Deformed
   vtkNew<PartSource> Source;
 };
 
-/// A mesh whose points are where its displacements lead, rounded to the type of the points.
+/// Returns a mesh with deformed points, rounded to the type of the points.
 vtkSmartPointer<vtkUnstructuredGrid> Move(vtkUnstructuredGrid* mesh)
 {
   auto moved = vtkSmartPointer<vtkUnstructuredGrid>::New();
@@ -223,8 +223,8 @@ void TestSpread(const Case& from, vtkImageData* whole)
   }
 }
 
-/// An error that one rank causes is reported by all with the same text. The filter works when the
-/// cause is removed.
+/// Tests that an error which one rank causes is reported on all ranks with the same text, and that
+/// the filter works when the cause is removed.
 void TestError(const Case& from, vtkImageData* whole, const std::string& words,
   const std::function<void(Parallel&)>& spoil, const std::function<void(Parallel&)>& mend)
 {
@@ -246,7 +246,7 @@ void TestError(const Case& from, vtkImageData* whole, const std::string& words,
   Check(parallel, whole, words);
 }
 
-/// Errors of the reference image on the last rank: one error on all ranks.
+/// Tests that an error of the reference image on the last rank is one error on all ranks.
 void TestReferenceErrors(const Case& from, vtkImageData* whole)
 {
   const auto good = MakeReference(from.Volume, true);
@@ -284,7 +284,7 @@ void TestReferenceErrors(const Case& from, vtkImageData* whole)
     mend);
 }
 
-/// The whole output is background: each rank that has a piece warns once.
+/// Tests an output that is background only: each rank that has a piece warns once.
 void TestNothingCovered(const Case& from)
 {
   Parallel parallel(from);
@@ -298,7 +298,7 @@ void TestNothingCovered(const Case& from)
   const bool hasPiece = parallel.Filter->GetOutput()->GetNumberOfPoints() > 0;
   VERIFY_EQUAL(at != std::string::npos, hasPiece);
   VERIFY_EQUAL(warnings.rfind("Warning: "), warnings.find("Warning: "));
-  // A rank whose piece the body does not reach does not warn if the body reaches another piece.
+  // A rank whose piece is background only does not warn if another rank covers voxels.
   far->SetOrigin(MakeReference(from.Volume, true)->GetOrigin());
   far->SetExtent(4, 200, -11, 29, -8, 33);
   far->Modified();
@@ -342,7 +342,7 @@ void TestErrors(const Case& from, vtkImageData* whole)
       parallel.Filter->SetDevice("");
       parallel.Filter->Modified(); // on all ranks
     });
-  if (GetRanks() > 1) // one process believes its source
+  if (GetRanks() > 1) // a single process uses what its source announces
   {
     TestError(
       from, whole, "was asked for",
@@ -363,7 +363,7 @@ void TestErrors(const Case& from, vtkImageData* whole)
   }
 }
 
-/// More ranks than voxels on an axis, and a mesh that moves.
+/// Tests more ranks than voxels on an axis, and a mesh that moves.
 void TestSmallAndMoving(const Case& from)
 {
   Case small = from;
@@ -394,7 +394,7 @@ void TestSmallAndMoving(const Case& from)
   VERIFY(GetReported(moving.Filter, "Volumes sent") <= 2);
 }
 
-/// All ranks keep the same extent.
+/// Tests that all ranks keep the same extent (BoundsGranularity).
 void TestKeptExtent(const Case& from)
 {
   Case kept = from;
@@ -425,7 +425,8 @@ void TestKeptExtent(const Case& from)
   }
 }
 
-/// Each rank moves its own points, as one process does, whichever rank has the mesh.
+/// Tests vtkDeformGeometryFilter: each rank moves its own points as one process does, whichever
+/// rank has the mesh.
 void TestPoints(vtkUnstructuredGrid* mesh)
 {
   vtkNew<vtkMultiBlockDataSet> blocks;
@@ -440,7 +441,7 @@ void TestPoints(vtkUnstructuredGrid* mesh)
     some->SetPoints(points);
     blocks->SetBlock(block, some);
   }
-  vtkNew<vtkTest::ErrorObserver> observer; // points outside are a warning
+  vtkNew<vtkTest::ErrorObserver> observer; // keeps warnings about points outside
   const auto move = [&](vtkDeformGeometryFilter* filter, bool inverse)
   {
     filter->AddObserver(vtkCommand::ErrorEvent, observer);
@@ -477,12 +478,13 @@ void TestPoints(vtkUnstructuredGrid* mesh)
         VERIFY(output != nullptr);
         for (vtkIdType id = 0; output && id < output->GetNumberOfPoints(); ++id)
         {
-          // In pieces, tetrahedra have other numbers, so points on faces may follow another one.
+          // With pieces, tetrahedra have other numbers, so points on faces may follow another
+          // tetrahedron.
           const glm::dvec3 miss = GetPoint(output, id) - GetPoint(getBlock(alone, block), id);
           VERIFY(std::abs(miss.x) + std::abs(miss.y) + std::abs(miss.z) < 1e-5);
         }
       }
-      // Points of one rank, or of its piece of the mesh, are an error on all.
+      // Invalid points of one rank, or of its piece of the mesh, are an error on all ranks.
       observer->Clear();
       const double nan = std::numeric_limits<double>::quiet_NaN();
       auto* first = vtkPointSet::SafeDownCast(blocks->GetBlock(0));
@@ -542,15 +544,15 @@ void TestAll()
   }
 }
 
-/// Nothing has been compiled: all ranks want the same kernels at once. Then they have their share
-/// of the processors.
+/// Tests the start with an empty kernel cache: all ranks need the same kernels at the same time.
+/// Then checks that each rank uses its share of the processors.
 void TestColdStart()
 {
   const Case from = MakeCases()[2];
   Parallel parallel(from);
   if (GetRank() == 0)
   {
-    // As a user interface does, before the other ranks do anything: devices start here.
+    // Request the devices on the first rank before the other ranks do, as a user interface does.
     vtkSmartPointer<vtkStringArray>::Take(vtkDeformVolumeFilter::GetDeviceNames());
     VERIFY(std::getenv("POCL_MAX_PTHREAD_COUNT") != nullptr);
   }

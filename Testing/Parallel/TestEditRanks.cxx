@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A volume that is cut, carved and dragged on several ranks: each makes its piece of the output,
-// and all pieces are those of one process, to the last bit, after each step of the drag,
-// after undo and redo, and where the volume is folded over.
+// Cuts, carves and drags a volume on several ranks: each rank makes its piece of the output, and
+// all pieces equal the output of one process to the last bit, after each step of the drag, after
+// undo and redo, and in a folded volume.
 #include "ChainMailTesting.h"
 #include "DivisionCases.h"
 #include "EditChecks.h"
@@ -23,7 +23,7 @@ vtkMPIController* Controller = nullptr;
 
 constexpr Extent Box{ { -3, 60, 2, 45, 0, 40 } };
 
-/// A volume, the filters that edit it, and the filter that deforms the result.
+/// A volume, the filters that edit it, and the filter that deforms the edited volume.
 struct Pipeline
 {
   explicit Pipeline(vtkImageData* volume)
@@ -53,7 +53,7 @@ struct Pipeline
     return world;
   }
 
-  /// One side of the cut by so many voxels.
+  /// Drags one side of the cut by a number of voxels.
   void Drag(double voxels)
   {
     const glm::dvec3 held(36.0, 24.0, 20.0);
@@ -75,7 +75,8 @@ struct Step
   std::function<void(Pipeline&)> Do;
 };
 
-/// The output of one process, on all ranks, and how many tetrahedra are switched off and inverted.
+/// Returns the output of one process, on all ranks. counts: numbers of tetrahedra that are switched
+/// off and inverted.
 vtkSmartPointer<vtkImageData> MakeWhole(Pipeline& whole, const Step& step, vtkIdType counts[2])
 {
   auto image = vtkSmartPointer<vtkImageData>::New();
@@ -90,7 +91,7 @@ vtkSmartPointer<vtkImageData> MakeWhole(Pipeline& whole, const Step& step, vtkId
     vtkMultiProcessController::SetGlobalController(Controller);
   }
   Controller->Broadcast(image, 0);
-  image->SetDirectionMatrix(whole.Volume->GetDirectionMatrix()); // lost on the way
+  image->SetDirectionMatrix(whole.Volume->GetDirectionMatrix()); // which VTK does not send
   Controller->Broadcast(counts, 2, 0);
   VERIFY(image->GetNumberOfPoints() > 0);
   return image;

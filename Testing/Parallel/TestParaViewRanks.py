@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ParaView's pvbatch with one, two, three and eight ranks: equal data to the last bit, of a volume
-that is deformed, and of one that is cut, carved and dragged, and nearly equal pictures.
+"""Tests ParaView's pvbatch with one, two, three and eight ranks: data are equal to the last bit, of a volume that is
+deformed, and of one that is cut, carved and dragged. Pictures are nearly equal.
 
 Arguments: mpiexec, pvbatch, the plugin, the folder for output.
 """
@@ -31,8 +31,8 @@ writer.Write()
 
 
 def write_mesh(pieces):
-    """A mesh of tetrahedra in a file of pieces, each with every third cell. ParaView could also
-    redistribute a mesh, but 5.11 passes it on as appended data, too."""
+    """Writes a mesh of tetrahedra to a file with several pieces. A filter of ParaView could redistribute a mesh instead,
+    but ParaView 5.11 sends meshes between ranks as appended data, which it cannot read."""
     box = vtkImageData()
     box.SetDimensions(7, 7, 7)
     box.SetOrigin(-32, -31, -33)
@@ -71,7 +71,7 @@ write_mesh(3)
 
 
 def read(name):
-    """The extent of a volume in a file of pieces, and its arrays by their names."""
+    """Returns the extent of a volume in a file with pieces, and its arrays by name."""
     reader = vtkXMLPImageDataReader()
     reader.SetFileName(name)
     reader.Update()
@@ -105,7 +105,7 @@ for arrays, names in ((deformed, ["RTData", "vtkValidPointMask"]),
 for mask in (deformed["vtkValidPointMask"], dragged["vtkValidPointMask"]):
     if not 0.5 * mask.size < mask.sum() < mask.size:
         sys.exit(f"{mask.sum()} of {mask.size} voxels are covered")
-# A plane and a ball, of which two layers of cells and a bit more than 2,100 are left.
+# A plane cuts 58 x 62 cells, and a carved ball adds about 2,100.
 off = (edited["ActiveTetrahedra"] & 31 != 31).sum()
 if not 58 * 62 + 2000 < off < 58 * 62 + 3000:
     sys.exit(f"{off} cells are cut")
@@ -123,7 +123,7 @@ for ranks in (2, 3, 8):
             actual = parallel[what][1][name]
             if expected.tobytes() != actual.tobytes():
                 sys.exit(f"{ranks} ranks: {(expected != actual).sum()} values of {name}{what} differ")
-    # Ranks blend their parts of a ray in 8 bits, and a ray starts anew in each part.
+    # Pictures differ because ranks blend their parts of a ray with 8 bits, and sampling starts again in each part.
     difference = numpy.abs(picture - serial_picture)
     print(f"{ranks} ranks: pixels differ by {difference.mean():.3f} on average, "
           f"{difference.max():.0f} at most")

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A volume that a simulated body deforms, on several ranks: one simulates, each makes its piece of
-// the output, and all pieces are those of one process, to the last bit, also after a cut.
+// Deforms a volume by a simulated body on several ranks: each rank makes its piece of the output,
+// and all pieces equal the output of one process to the last bit, also after a cut.
 #include "ChainMailTesting.h"
 #include "DivisionCases.h"
 #include "EditChecks.h"
@@ -70,7 +70,7 @@ struct Pipeline
   vtkNew<vtkDeformVolumeFilter> Deform;
 };
 
-/// The output of one process, on all ranks.
+/// Returns the output of one process, on all ranks.
 template <typename Model>
 vtkSmartPointer<vtkImageData> MakeWhole(
   Pipeline<Model>& whole, const std::function<void(Pipeline<Model>&)>& step)
@@ -85,7 +85,7 @@ vtkSmartPointer<vtkImageData> MakeWhole(
     vtkMultiProcessController::SetGlobalController(Controller);
   }
   Controller->Broadcast(image, 0);
-  image->SetDirectionMatrix(whole.Volume->GetDirectionMatrix()); // lost on the way
+  image->SetDirectionMatrix(whole.Volume->GetDirectionMatrix()); // which VTK does not send
   VERIFY(image->GetNumberOfPoints() > 0);
   return image;
 }

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A client and a pvserver of three ranks: the voxels are those of one process, information properties
-are those of all ranks, the mesh may be on one rank only, and an error is one message.
+"""Tests a client with a pvserver of three ranks: voxels are those of one process, information properties are those of
+all ranks, the mesh may be on one rank only, and an error is one message.
 
 Arguments: mpiexec, pvserver, pvpython, the folder for output.
 """
@@ -29,7 +29,7 @@ ranks = []
 for path in glob.glob(f"{glob.escape(log)}.*"):
     with open(path, encoding="utf-8", errors="replace") as of_rank:
         ranks.append(of_rank.read())
-# Without those of the executives.
+# Count errors, except those of the executives.
 counts = [len(re.findall(r"ERR\|(?!.*returned failure for request)", text)) for text in ranks]
 if counts != [2] * RANKS:
     sys.exit(f"Not two errors on each rank, but {counts}: {ranks}")

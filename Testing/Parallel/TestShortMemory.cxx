@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Too little memory on one rank: all ranks report one error, none waits for another, and the
-// filter works when there is memory. Every large allocation of an update fails once.
+// Lets memory run out on one rank: all ranks report one error, none waits for another, and the
+// filter works when there is enough memory again. Each large allocation of an update fails once.
 #include "FilterTesting.h"
 #include "RankTesting.h"
 
@@ -12,10 +12,10 @@ using namespace filterTesting;
 namespace
 {
 
-// More than this counts as large, in bytes: less than the mesh of a rank.
+// Allocations of more bytes than this are large. The mesh of a rank is larger.
 constexpr std::size_t LARGE = 20000;
 
-// Large allocations of this thread that still succeed before one fails; negative: all succeed.
+// Number of large allocations of this thread that succeed before one fails. Negative: all succeed.
 thread_local int Left = -1;
 thread_local bool Failed = false;
 
@@ -35,7 +35,7 @@ void* Allocate(std::size_t size)
 
 } // namespace
 
-// The operators of the whole process, of the libraries as well.
+// Replace the operators of the whole process, including its libraries.
 void* operator new(std::size_t size)
 {
   return Allocate(size);
@@ -74,7 +74,7 @@ public:
     , Volume(MakeImage({ { 0, 30, 0, 20, 0, 20 } }))
   {
     AddScalars<short>(this->Volume, "value", [](const glm::dvec3& p) { return p.x + p.y * p.z; });
-    // Each rank has a mesh of its own, beside the last one.
+    // Each rank has a mesh of its own, beside that of the previous rank.
     auto part = MakeImage({ { 10 * this->Rank, 10 * this->Rank + 10, 0, 20, 0, 20 } });
     this->Mesh = MakeMesh(part, 9, 0.0);
     SetDisplacements(this->Mesh, Shift(1.0, 0.0, 0.0));
@@ -82,7 +82,7 @@ public:
     this->Tested.Filter->SetDeformationData(this->Mesh);
   }
 
-  /// Updates after a change of everything; returns whether memory was short.
+  /// Changes all inputs and updates. Returns whether memory ran out.
   bool Update(int allocations)
   {
     this->Mesh->GetPoints()->Modified();
@@ -102,7 +102,7 @@ public:
 
   void Run()
   {
-    // Compiles kernels and finds devices.
+    // The first update compiles kernels and finds devices.
     VERIFY(!this->Update(-1));
     VERIFY_EQUAL(this->Tested.TakeErrors(), 0);
     const vtkIdType covered = this->Tested.Filter->GetNumberOfCoveredVoxels();

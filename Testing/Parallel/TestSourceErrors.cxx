@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sources that fail on one rank, such as a reader that cannot read its file there: all ranks report
-// the error, none waits for another, and the filter works when the source does.
+// Tests sources that fail on one rank, such as a reader that cannot read its file there: all ranks
+// report the error, none waits for another, and the filter works when the source works again.
 #include "DivisionCases.h"
 #include "RankTesting.h"
 
@@ -55,7 +55,7 @@ protected:
   int RequestInformation(
     vtkInformation*, vtkInformationVector**, vtkInformationVector* output) override
   {
-    // Otherwise the executive has only the first rank's made.
+    // Without this, the executive updates the source on the first rank only.
     output->GetInformationObject(0)->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
     return 1;
   }
@@ -144,7 +144,7 @@ void TestFailures(vtkMPIController* controller)
       pipeline, pipeline.Mesh.Get(), Failure::Data, controller, "deformation on input port 1");
   }
   {
-    // After an update that succeeded.
+    // The source fails after an update that succeeded.
     Pipeline pipeline(from);
     pipeline.Filter->UpdatePiece(
       controller->GetLocalProcessId(), controller->GetNumberOfProcesses(), 0);
@@ -159,7 +159,7 @@ void TestFailures(vtkMPIController* controller)
     pipeline.Filter->SetRestConnection(pipeline.Rest->GetOutputPort());
     TestFailure(pipeline, pipeline.Rest.Get(), Failure::Data, controller,
       "rest configuration on input port 2");
-    // No look at the mesh is needed before the data pass.
+    // With these bounds, the filter does not need the mesh before RequestData().
     pipeline.Filter->SetOutputBoundsModeToVolumeBounds();
     TestFailure(pipeline, pipeline.Rest.Get(), Failure::Data, controller,
       "rest configuration on input port 2");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Deforms a volume of 864 MB and writes it to a file in 16 pieces. The process must never take more
-// than 1.5 GB. Arguments: the folder for the file.
+// Deforms a volume of 864 MB and writes it to a file in 16 pieces. The process must never need more
+// than 1.5 GB. Argument: the folder for the file.
 #include "FilterTesting.h"
 
 #include <vtkInformation.h>
@@ -17,7 +17,7 @@ using namespace filterTesting;
 namespace
 {
 
-/// The highest resident memory of this process, in MB.
+/// Returns the highest resident memory of this process, in MB.
 double GetPeakMemory()
 {
   std::ifstream status("/proc/self/status");
@@ -34,7 +34,7 @@ double GetPeakMemory()
   return -1.0;
 }
 
-/// Turns and bends a volume with the centre in the origin.
+/// Turns and bends a volume whose center is at the origin.
 glm::dvec3 Bend(const glm::dvec3& p)
 {
   const double angle = 0.1 * std::sin(0.004 * p.z);
@@ -43,7 +43,7 @@ glm::dvec3 Bend(const glm::dvec3& p)
     p.z + 7.0 * std::sin(0.013 * p.x));
 }
 
-/// Nothing but an extent: the writer has left a piece number behind.
+/// Requests an extent, and removes the piece number that the writer has requested.
 void Request(vtkAlgorithm* algorithm, const Extent& extent)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -89,10 +89,10 @@ int main(int argc, char* argv[])
   const double peak = GetPeakMemory();
   std::cout << "peak " << peak << " MB\n";
   VERIFY(peak > 0.0 && peak < 1500.0);
-  // The whole of input and output would have taken more.
+  // Whole input and output would have needed more memory.
   VERIFY(2.0 * inputMegabytes > 1500.0);
 
-  // The file has the values that the filter gives for a request of a few planes.
+  // The file has the same values as the output for a few planes.
   Extent whole;
   deformed.Filter->GetOutputInformation(0)->Get(
     vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole.data());
