@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Common parts of the tests of the ParaView plugin: the path of the plugin, messages, pipelines, checks."""
+"""Functions for the tests of the ParaView plugin: the path of the plugin, messages, pipelines, checks."""
 
 import contextlib
 import os
@@ -21,12 +21,12 @@ MRI = "/usr/share/mricron/templates/ch2.nii.gz"  # 181 x 217 x 181 bytes, a head
 
 
 def load_plugin(remote=False):
-    """Makes the plugin's proxies functions of paraview.simple."""
+    """Loads the plugin. Its proxies become functions of paraview.simple."""
     simple.LoadPlugin(PLUGIN, remote=remote, ns=vars(simple))
 
 
 def plugin_proxies():
-    """The elements of the proxies that users see, each with all proxies that it is based on."""
+    """Returns the XML elements of the proxies that users see, each with all proxies that it is based on."""
     elements = {}
     for name in sorted(os.listdir(PLUGIN_SOURCE)):
         if name.endswith(".xml"):
@@ -46,15 +46,15 @@ def plugin_proxies():
 
 
 def check(condition, text):
-    """Ends the test if a condition is false."""
+    """Fails the test with a text if a condition is false."""
     if not condition:
         raise AssertionError(text)
 
 
 @contextlib.contextmanager
 def messages():
-    """Collects what is displayed to the user: a list of texts, one for each message, without those
-    in which the executive repeats that a request has failed."""
+    """Collects the messages that the user sees, in a list of texts. Messages in which the executive repeats that a
+    request has failed are left out."""
     window = vtkOutputWindow.GetInstance()
     collecting = vtkStringOutputWindow()
     verbosity = vtkLogger.GetCurrentVerbosityCutoff()
@@ -82,7 +82,7 @@ def check_one_message(texts, words):
 
 
 def check_messages(texts, words):
-    """One kind of message, which views display at each of their updates."""
+    """Checks messages that views display at each of their updates: all must contain the words."""
     check(texts, "No message")
     for text in texts:
         check_one_message([text], words)
@@ -93,7 +93,7 @@ def check_silent(texts):
 
 
 def arrays_of(data):
-    """The point arrays of a dataset by name."""
+    """Returns the point arrays of a dataset by name."""
     point_data = data.GetPointData()
     return {
         point_data.GetArrayName(i): numpy_support.vtk_to_numpy(point_data.GetArray(i))
@@ -106,7 +106,7 @@ def fetch(proxy):
 
 
 def check_equal_images(first, second, what):
-    """Geometry, and all point arrays to the last bit."""
+    """Checks that two images have the same geometry, and the same point arrays to the last bit."""
     for method in ("GetExtent", "GetOrigin", "GetSpacing"):
         one, other = getattr(first, method)(), getattr(second, method)()
         check(one == other, f"{what}: {method} gives {one} and {other}")
@@ -127,7 +127,7 @@ def wavelet(half=10):
 
 
 def head_file():
-    """The MRI as a file that ParaView opens; the test is skipped where there is none."""
+    """Returns the name of a file with the MRI that ParaView can open. Skips the test if the MRI is not installed."""
     if not os.path.exists(MRI):
         print(f"{MRI} of the package mricron-data is missing")
         sys.exit(125)
@@ -139,13 +139,13 @@ def head_file():
     writer.SetFileName(path)
     writer.SetInputConnection(reader.GetOutputPort())
     writer.SetCompressorTypeToNone()
-    writer.SetDataModeToBinary()  # ParaView 5.11 cannot read what VTK appends
+    writer.SetDataModeToBinary()  # ParaView 5.11 cannot read VTK's appended data
     writer.Write()
     return path
 
 
 def bent_lattice(volume, nodes=6, array="Displacement", function="0.05*coordsY*coordsY*iHat"):
-    """A lattice over a volume with displacements."""
+    """Returns a lattice over a volume, with displacements."""
     volume.UpdatePipeline()
     lattice = simple.TetrahedralLatticeOfVolume(Volume=volume)
     lattice.NumberOfNodes = [nodes] * 3
@@ -158,7 +158,7 @@ def bent_lattice(volume, nodes=6, array="Displacement", function="0.05*coordsY*c
 
 
 def deformed(volume, deformation, **properties):
-    """A filter after an update, with its information properties."""
+    """Returns a Deform Volume filter after an update, with current information properties."""
     filter_ = simple.DeformVolume(Volume=volume, Deformation=deformation, **properties)
     filter_.UpdatePipeline()
     filter_.UpdatePipelineInformation()

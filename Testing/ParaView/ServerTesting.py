@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A pvserver for the time of a test. Imports no module of ParaView, because a process
-that has loaded MPI cannot start mpiexec."""
+"""Starts a pvserver for a test. Imports no module of ParaView, because a process that has loaded MPI cannot start
+mpiexec."""
 
 import socket
 import subprocess
@@ -14,7 +14,7 @@ def free_port():
 
 
 class Server:
-    """A context manager: the server runs within its block."""
+    """A context manager, within whose block a server runs."""
 
     def __init__(self, command, log, environment=None):
         self.port = free_port()
@@ -46,7 +46,7 @@ class Server:
             return log.read()
 
     def wait(self):
-        """Waits until the server has ended, after its client."""
+        """Waits until the server ends, which it does after its client."""
         self.process.wait(timeout=60)
         if self.process.returncode != 0:
             raise AssertionError(f"The server ends with {self.process.returncode}: {self.log()}")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A deformation mesh over ten time steps, from files. The animation builds one static mapping and uploads the
-volume once, and each step has the voxels of a new filter. An Exodus file, by either of ParaView's readers,
-gives the same as the .pvd file."""
+"""Tests an animation of a deformation mesh with ten time steps in files. The animation builds one static mapping and
+uploads the volume once, and each step has the voxels of a new filter. An Exodus file gives the same voxels as the
+.pvd file, with both of ParaView's readers."""
 
 import os
 
@@ -19,7 +19,7 @@ STEPS = 10
 
 
 def displacements(points, time):
-    """Displacements of a step. They swing, so that a step does not follow from the last one."""
+    """Returns the displacements of a step. They oscillate, so that each step differs from the previous one."""
     x, y, z = points.T
     amount = 3.0 * numpy.sin(2.0 * numpy.pi * time / STEPS + 0.3)
     return numpy.stack(
@@ -28,7 +28,7 @@ def displacements(points, time):
 
 
 def write_series(image):
-    """A .pvd of the lattice with its displacements at each step, and the meshes."""
+    """Writes a .pvd file of the lattice with its displacements at each step. Returns its name and the meshes."""
     lattice = deformvolume_vtk.vtkLatticeTetrahedraSource()
     lattice.SetInputData(image)
     lattice.SetNumberOfNodes(7, 7, 7)
@@ -47,7 +47,7 @@ def write_series(image):
         name = f"TestAnimation{step}.vtu"
         writer.SetFileName(os.path.join(OUTPUT, name))
         writer.SetInputData(mesh)
-        writer.SetDataModeToBinary()  # ParaView 5.11 cannot read what VTK appends
+        writer.SetDataModeToBinary()  # ParaView 5.11 cannot read VTK's appended data
         writer.Write()
         entries.append(f'<DataSet timestep="{step * 0.5}" part="0" file="{name}"/>')
         meshes.append(mesh)
@@ -62,9 +62,9 @@ def write_series(image):
 
 
 def check_exodus(volume, series, seen):
-    """seen: the voxels of each step."""
+    """Checks that an Exodus file gives the same voxels. seen: the voxels of each step."""
     path = os.path.join(OUTPUT, "TestAnimation.e")
-    # ParaView 6.1 writes with the IOSS library, which gives all steps of a series the time 0.
+    # ParaView's own writer cannot be used: that of ParaView 6.1 gives all steps of a series the time 0.
     writer = vtkExodusIIWriter()
     writer.SetFileName(path)
     writer.SetInputConnection(series.GetClientSideObject().GetOutputPort())
@@ -90,7 +90,8 @@ def check_exodus(volume, series, seen):
 
 
 def play(filter_):
-    """After that the extent of the output holds all steps: ParaView asks for the one before first."""
+    """Plays the animation, with two updates at each step, because the first one still requests the previous extent.
+    After that the extent of the output contains all steps."""
     for step in range(STEPS):
         for _ in range(2):
             filter_.UpdatePipeline(0.5 * step)
@@ -113,7 +114,7 @@ def main():
 
     play(filter_)
     seen = []
-    # Forwards, then a jump back: errors must not accumulate.
+    # Play forward, and then jump back: errors must not accumulate.
     for step in list(range(STEPS)) + [2]:
         scene.AnimationTime = 0.5 * step
         filter_.UpdatePipeline(keeper.Time)
@@ -123,7 +124,7 @@ def main():
         fresh.SetDeformationData(meshes[step])
         fresh.SetInputArrayToProcess(0, 1, 0, 0, "U")
         fresh.SetBackgroundValue(filter_.BackgroundValue)
-        # The animation has one lattice for all steps, and so gets the fresh filter.
+        # The extent of the animation is the same for all steps. The fresh filter gets that extent.
         fresh.SetOutputBoundsModeToCustomBounds()
         bounds = list(got.GetBounds())
         fresh.SetCustomBounds([edge + (0.25, -0.25)[i % 2] for i, edge in enumerate(bounds)])

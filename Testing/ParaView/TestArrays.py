@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Compares results of the proxies with those of the classes without ParaView's server manager: for the MRI of a
-head, and for ParaView's wavelet with several arrays and all kinds of deformation."""
+"""Compares results of the proxies with those of the classes without ParaView's server manager: for the MRI of a head,
+and for ParaView's wavelet with several arrays and all types of deformations."""
 
 import deformvolume_vtk
 import numpy
@@ -38,7 +38,7 @@ def plain_filter(volume, deformation, array, rest=None):
 
 
 def plain_mesh(volume, nodes, displace):
-    """The lattice over a volume with displacements made by numpy."""
+    """Returns a lattice over a volume, with displacements that numpy computes."""
     lattice = deformvolume_vtk.vtkLatticeTetrahedraSource()
     lattice.SetInputData(volume)
     lattice.SetNumberOfNodes(nodes, nodes, nodes)
@@ -53,7 +53,7 @@ def plain_mesh(volume, nodes, displace):
 
 
 def test_mri():
-    """A head, pushed in: 7 million voxels of bytes."""
+    """Tests a head that is pushed in: 7 million voxels of bytes."""
     reader = simple.OpenDataFile(head_file())
     reader.UpdatePipeline()
     head = fetch(reader)
@@ -81,7 +81,7 @@ def test_wavelet():
     more.UpdatePipeline()
     image = fetch(more)
 
-    # Independent of the proxies from the volume on: the displacements are numpy's.
+    # The expected output does not use proxies, except for the volume: numpy computes the displacements.
     mesh = bent_lattice(more)
     filter_ = deformed(more, mesh, CategoricalArrays=["Label"], Padding=2, BackgroundValue=-1.0)
     displaced = plain_mesh(
@@ -108,7 +108,7 @@ def test_wavelet():
     for name, values in arrays_of(image).items():
         check(numpy.array_equal(arrays_of(output)[name], values), f"At rest {name} differs")
 
-    # A displacement field, at a resolution of its own.
+    # A displacement field with another resolution than the volume.
     field = simple.Calculator(Input=wavelet(12))
     field.ResultArrayName = "Field"
     field.Function = "0.1*coordsX*jHat+2*kHat"
@@ -118,7 +118,7 @@ def test_wavelet():
     plain = plain_filter(image, fetch(field), "Field")
     check_equal_images(fetch(by_field), plain.GetOutput(), "field")
 
-    # A composite dataset, as Exodus readers give.
+    # A composite dataset, as Exodus readers output it.
     group = simple.GroupDatasets(Input=[mesh])
     group.UpdatePipeline()
     by_group = deformed(more, group)
@@ -126,7 +126,7 @@ def test_wavelet():
         fetch(by_group), plain_filter(image, fetch(mesh), "Displacement").GetOutput(), "composite"
     )
 
-    # TetGen's mesh.
+    # A mesh of TetGen.
     mesher = simple.TetGenMesher(Input=volume)
     mesher.UpdatePipeline()
     mesher.UpdatePipelineInformation()
@@ -141,7 +141,7 @@ def test_wavelet():
 
 
 def test_geometry():
-    """Surfaces that are moved with the wavelet, and back to rest."""
+    """Tests surfaces that are moved with the wavelet, and back to rest."""
     volume = wavelet(6)
     mesh = bent_lattice(volume)
     ball = simple.Sphere(Radius=4)
@@ -161,7 +161,7 @@ def test_geometry():
     check(numpy.abs(points_of(fetch(back)) - at_rest).max() < 1e-5, "Not led back")
     normals = arrays_of(fetch(moved))["Normals"]
     check(numpy.abs(normals - arrays_of(fetch(ball))["Normals"]).max() > 0.1, "Normals stay")
-    # Blocks, one of which is beside the mesh.
+    # A composite dataset, one block of which is outside the mesh.
     beside = simple.Sphere(Radius=1, Center=[30, 0, 0])
     group = simple.GroupDatasets(Input=[ball, beside])
     with messages() as texts:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""ChainMail Deformation with handles, materials and ranges, and Deform Volume with its output."""
+"""Tests ChainMail Deformation with handles, materials and ranges, and Deform Volume with its output."""
 
 import deformvolume_vtk  # noqa: F401, the class of the object on the server
 from paraview import simple
@@ -44,7 +44,7 @@ def main():
     assert made.GetNumberOfMaterialRanges() == 1
     assert drag.PointData["Displacement"].GetRange(0) == (0.0, 4.0)
     assert made.GetNumberOfMovedVoxels() > 2000, made.GetNumberOfMovedVoxels()
-    # The same handle by the source with widgets.
+    # The same handle, from the source that has widgets.
     whole = drag.PointData["Displacement"].GetRange(-1), made.GetNumberOfMovedVoxels()
     drag.Handles = simple.DeformationHandle(RestPosition=[0, 0, 0], Position=[4, 0, 0])
     drag.Reset()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The graphical client in an X server of its own: it loads the plugin and a state, shows the volume as
-pvpython does, and reports one error for a filter with a rest mesh but without a deformation."""
+"""Tests the graphical client in an X server of its own: it loads the plugin and a state, shows the volume as pvpython
+does, and reports one error for a filter with a rest mesh but without a deformation."""
 
 import os
 import re
@@ -23,7 +23,7 @@ MARKER = os.path.join(FOLDER, "process")
 LOG = os.path.join(FOLDER, "log.txt")
 SIZE = [320, 240]
 
-# Run by the client, which takes either a state or a script.
+# The client runs this script. It cannot load a state and run a script, so the script loads the state.
 SCRIPT = """
 import os
 from paraview import servermanager, simple
@@ -67,14 +67,14 @@ def save_state():
 
 def start_client():
     home = os.path.join(FOLDER, "home")
-    # Without a welcome dialog, and independent of the user's settings.
+    # These settings disable the welcome dialog, and replace those of the user.
     settings = os.path.join(home, ".config", "ParaView")
     os.makedirs(settings)
     version = ".".join(
         str(getattr(simple.servermanager.vtkSMProxyManager, f"GetVersion{part}")())
         for part in ("Major", "Minor", "Patch")
     )
-    # ParaView 6.1 has one file for all versions, earlier ones have one each.
+    # ParaView 6.1 has one settings file for all versions. Earlier versions have one file for each version.
     for name in (f"ParaView{version}.ini", "ParaView.ini"):
         with open(os.path.join(settings, name), "w", encoding="ascii") as file:
             file.write("[General]\nGeneralSettings.ShowWelcomeDialog=false\n")
@@ -103,12 +103,12 @@ def client_log():
 
 
 def check_picture(picture, what):
-    """More than one colour, in a good part of the picture."""
+    """Checks that a large part of the picture is drawn, and in more than one color."""
     background = numpy.median(picture.reshape(-1, 3), axis=0)
     covered = numpy.abs(picture - background).max(axis=2) > 30.0
     check(covered.mean() > 0.1, f"{what} shows nothing: {covered.mean()}")
     spread = picture[covered].std(axis=0).max()
-    check(spread > 10.0, f"{what} has one colour: {spread}")
+    check(spread > 10.0, f"{what} has one color: {spread}")
 
 
 def main():
@@ -127,7 +127,7 @@ def main():
                 f"No client: {client_log()}",
             )
             time.sleep(0.2)
-        # The event loop goes on: panels are filled, the view is drawn.
+        # The event loop continues meanwhile: the client fills panels and draws the view.
         time.sleep(4.0)
         check(client.poll() is None, f"The client has ended: {client_log()}")
         window = read_window_dump(os.path.join(FOLDER, "Xvfb_screen0"))
@@ -147,7 +147,7 @@ def main():
     difference = numpy.abs(shown - expected).mean()
     # Moved by one pixel, the picture differs by 0.7.
     check(difference < 0.3, f"Client and pvpython differ by {difference} of 255 on average")
-    # VTK's executive adds which request has failed.
+    # Leave out the messages of VTK's executive, which state the request that has failed.
     errors = [error for error in re.findall(r"ERR\|.*", client_log())
               if "returned failure for request" not in error]
     check(

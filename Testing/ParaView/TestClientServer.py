@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A server and a client: the plugin is loaded on both, data and properties are passed in both directions, and
-the list of devices is that of the server. The client of this test has no device."""
+"""Tests a server and a client: the plugin is loaded on both, data and properties are passed in both directions, and the
+list of devices is that of the server. The client of this test has no device."""
 
 import os
 import re
@@ -51,7 +51,7 @@ def check_session():
     check(filter_.CoveredVoxels > 1000.0 and "Device" in filter_.Summary, "No information")
     check(filter_.GetClientSideObject() is None, "The filter is in the client")
 
-    # What the client gets is what the server computes: undeformed, the volume itself.
+    # The client gets the voxels that the server computes: without a displacement, those of the volume.
     filter_.DisplacementScale = 0.0
     filter_.Padding = 0
     filter_.UpdatePipeline()
@@ -62,7 +62,7 @@ def check_session():
     filter_.UpdatePipeline()
     check_equal_images(fetch(filter_), first, "two filters on the server")
 
-    # The server reports the error; both live, and go on once the device is right.
+    # The server reports an error. Neither process ends, and the filter works again with a valid device.
     filter_.Device = "no such device"
     with messages() as texts:
         filter_.UpdatePipeline()
@@ -74,7 +74,7 @@ def check_session():
 
 
 def client(port):
-    # A client that loads the plugin when it starts connects afterwards.
+    # This client loads the plugin before it connects.
     load_plugin()
     simple.Connect("localhost", port)
     check_session()
@@ -88,7 +88,7 @@ def main():
     environment = dict(os.environ)
     del environment["OCL_ICD_VENDORS"]
     with Server([os.environ["DEFORMVOLUME_PVSERVER"]], LOG, environment) as server:
-        # A process of its own: its end is what ends the session.
+        # The client is a separate process. When it ends, the server ends.
         subprocess.run(
             [os.environ["DEFORMVOLUME_PVPYTHON"], __file__, str(server.port)],
             timeout=200,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Cutting and carving in ParaView: by a sheet, by widgets' functions, by a surface and by a label, with
+"""Tests cutting and carving in ParaView: by a sheet, by the functions of widgets, by a surface and by a label, with
 undo and redo, hidden cells in views, and the output of Deform Volume."""
 
 from paraview import simple
@@ -8,7 +8,7 @@ from PluginTesting import bent_lattice, check, check_silent, fetch, load_plugin,
 
 
 def active(proxy):
-    """Active tetrahedra of the output, as a list of bytes."""
+    """Returns the active tetrahedra of the output, as a list of bytes."""
     array = fetch(proxy).GetCellData().GetArray("ActiveTetrahedra")
     return bytes(array.GetValue(i) for i in range(array.GetNumberOfTuples()))
 
@@ -24,7 +24,7 @@ def check_cut(volume, cells):
     first = active(cut)
     check(off(first) == 5 * cells * cells, f"a plane cuts {off(first)}")
     count = cut.GetPropertyValue("SwitchedOffTetrahedra")
-    check(count == off(first), f"{count} are told")
+    check(count == off(first), f"{count} are reported")
     cut.SMProxy.InvokeCommand("Undo")
     check(off(active(cut)) == 0, "undo leaves a cut")
     cut.SMProxy.InvokeCommand("Redo")
@@ -95,7 +95,7 @@ def check_carve(volume):
 
 
 def check_hidden(volume):
-    """Views and filters leave out the cells that are cut."""
+    """Checks that views and filters leave out the cells that are cut."""
     cut = simple.CutVolumeWithPlane(Volume=volume)
     middle = [list(cut.Plane.Center), list(cut.Plane.BoundingBox)]
     check(middle == [[0, 0, 0], [-10, 10] * 3], f"the plane is put to {middle}")
@@ -111,7 +111,7 @@ def check_hidden(volume):
     check(count_cells() == 20 * 20 * 19, f"{count_cells()} cells are shown")
     cut.SmoothCut = 1
     check(count_cells() == 20 * 20 * 19, f"a smooth cut shows {count_cells()} cells")
-    # Deform Volume leaves out tetrahedra of these cells, and not all of them.
+    # Deform Volume leaves out some tetrahedra of these cells, and not whole cells.
     cut.Plane.Normal = [1, 0.5, 0.25]
     cut.SmoothCut = 0
     covered = []

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Misuse through the proxies: each update reports one readable message, the process does not end, and the
-filter works when its input is right."""
+"""Tests misuse through the proxies: each update reports one readable message, the process does not end, and the filter
+works again when its input is right."""
 
 from paraview import simple
 
@@ -53,8 +53,8 @@ def main():
     filter_.Deformation = mesh
     check_works(filter_)
 
-    # Arrays: none in the mesh, one that is not there, one with a single component. Nothing is wrong
-    # before an update, as another array may be about to be chosen.
+    # A mesh without arrays, an array that does not exist, and an array with one component. There is no message before
+    # an update, because the user may choose another array before.
     bare.UpdatePipeline()
     with messages() as texts:
         filter_ = simple.DeformVolume(Volume=volume, Deformation=bare)
@@ -79,7 +79,7 @@ def main():
     filter_.RestMesh = None
     check_works(filter_)
 
-    # A volume as a surface, and a surface as deformation.
+    # A surface as volume, and a surface as deformation.
     surface = simple.Sphere()
     surface.UpdatePipeline()
     filter_.Deformation = surface
@@ -88,7 +88,7 @@ def main():
     filter_.Deformation = mesh
     check_works(filter_)
 
-    # A device that does not exist, and memory that does not suffice.
+    # A device that does not exist, and too little memory.
     filter_.Device = "no such device"
     check_one_message(update(filter_), ['no OpenCL device "no such device"', "Ask for"])
     filter_.Device = "cpu"
@@ -97,7 +97,7 @@ def main():
     filter_.MemoryLimit = 0
     check_works(filter_)
 
-    # The other classes.
+    # Errors of other filters.
     lattice = simple.TetrahedralLattice()
     lattice.NumberOfNodes = [1, 5, 5]
     check_one_message(update(lattice), ["at least 2 nodes"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The installed plugin, found through PV_PLUGIN_PATH."""
+"""Tests that ParaView finds the installed plugin through PV_PLUGIN_PATH, and that the plugin finds its libraries."""
 
 import os
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Without any OpenCL device there is one message that says what to install, and the process does not end."""
+"""Tests that without an OpenCL device there is one message that says what to install, and the process does not end."""
 
 from PluginTesting import bent_lattice, check, check_one_message, load_plugin, messages, simple, wavelet
 

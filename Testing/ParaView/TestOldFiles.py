@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""State files and a Python script of version 0.1 load: one warning for each removed setting, the same voxels, and a
-state that is saved afterwards loads without warnings. Filters that are no longer in the menu still work:
-TestOldFiles.py FOLDER-OF-DATA."""
+"""Tests that state files and a Python script of version 0.1 load: there is one warning for each removed setting, voxels
+are the same, and a state that is saved afterwards loads without warnings. Filters that are no longer in the menu still
+work. Usage: TestOldFiles.py FOLDER-OF-DATA"""
 
 import os
 import sys
@@ -50,7 +50,7 @@ def check_file(load, path, expected):
         simple.FindSource("Calculator1"),
         OutputBoundsMode="Custom Bounds",
         CustomBounds=[-6.0, 11.0, -8.0, 8.0, -8.0, 8.0],
-        BackgroundValue=0,  # that of version 0.1
+        BackgroundValue=0,  # the default of version 0.1
     )
     expected_image = fetch(fresh)
     check(arrays_of(expected_image)["vtkValidPointMask"].sum() > 1000, "No voxels")
@@ -60,7 +60,8 @@ def check_file(load, path, expected):
 
 
 def check_edits(path):
-    """A volume that is cut by a sheet, and carved by a body, a surface and a label, one filter each."""
+    """Tests a state with a volume that is cut by a sheet, and carved by a body, a surface and a label, each by its own
+    filter."""
     for source in reversed(list(simple.GetSources().values())):
         simple.Delete(source)
     with messages() as texts:
@@ -78,7 +79,7 @@ def check_edits(path):
 
 
 def check_elements():
-    """A state with the former name of Finite Element Deformation, and a script with it."""
+    """Tests a state and a script with the former name of Finite Element Deformation."""
     for source in reversed(list(simple.GetSources().values())):
         simple.Delete(source)
     lattice = simple.TetrahedralLattice(NumberOfNodes=[3, 3, 3])

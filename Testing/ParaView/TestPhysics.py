@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Mass-Spring and Finite-Element Deformation with handles, materials and times, and Deform Volume
-with their output."""
+"""Tests Mass-Spring and Finite-Element Deformation with handles, materials and times, and Deform Volume with their
+output."""
 
 import deformvolume_vtk  # noqa: F401, the classes of the objects on the server
 from paraview import simple
@@ -46,7 +46,7 @@ def check_elements(volume, mesh, handle):
 
 
 def check_materials(volume, mesh):
-    """Values from 37 to 277; the largest are in the middle."""
+    """Tests materials from a volume, whose values are from 37 to 277, with the largest ones in the middle."""
     materials = simple.MaterialFromVolume(Mesh=mesh, Volume=volume)
     materials.DefaultMaterial = 1
     materials.Materials = [1, 2000, 0.2, 900, 9, 8000, 0.4, 1100]
@@ -76,12 +76,12 @@ def check_springs(mesh, handle):
     moved = springs.PointData["Displacement"].GetRange(-1)
     assert moved[1] >= 4.0, moved
     assert 0 < springs.TimeStepInUse < springs.StableTimeStep
-    # Back, and forth again.
+    # Go back to the start, and play again.
     springs.UpdatePipeline(0.0)
     assert springs.PointData["Displacement"].GetRange(-1)[1] == 0.0
     springs.UpdatePipeline(0.1)
     assert springs.PointData["Displacement"].GetRange(-1) == moved
-    # A cut, and without it.
+    # Cut the body, and remove the cut.
     springs.Sheet = simple.Plane(Origin=[0.1, -50, -50], Point1=[0.1, 50, -50], Point2=[0.1, -50, 50])
     springs.UpdatePipeline(0.1)
     made = springs.GetClientSideObject()
@@ -95,7 +95,7 @@ def check_springs(mesh, handle):
 
 def main():
     load_plugin()
-    volume = simple.Wavelet()  # 21 x 21 x 21 voxels round the origin
+    volume = simple.Wavelet()  # 21 x 21 x 21 voxels around the origin
     lattice = simple.TetrahedralLattice(NumberOfNodes=[5, 5, 5], Bounds=[-10, 10] * 3)
     mesh = simple.ProgrammableFilter(Input=lattice)
     mesh.OutputDataSetType = "vtkUnstructuredGrid"

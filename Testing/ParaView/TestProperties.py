@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""For every property of every proxy: its default is that of the class, and setting it changes that property of
-the proxy's object and no other. Then each is set to its extremes: the process does not end, an error is one
-readable message, and the defaults work afterwards. At the end, what ParaView's panels show."""
+"""Tests every property of every proxy: its default is that of the class, and setting it changes that property of the
+proxy's object and no other. Then each property is set to its extremes: the process does not end, an error is one
+readable message, and the defaults work afterwards. At the end, tests the values that ParaView's panels show."""
 
 import re
 
@@ -21,8 +21,8 @@ from PluginTesting import (
     wavelet,
 )
 
-# Where ParaView has another default than the class. ParaView has a clock; other pipelines are asked
-# for times only by those who want them. A panel shows the name of a device, and a view what is cut.
+# Properties with another default in ParaView than in the class. ParaView's animation always has a time, so simulations
+# have an end time. A panel shows the name of a device. Views hide cells that are cut.
 OTHER_DEFAULTS = {
     ("vtkMassSpringDeformation", "EndTime"): [1.0],
     ("vtkFiniteElementDeformation", "EndTime"): [1.0],
@@ -30,9 +30,9 @@ OTHER_DEFAULTS = {
     ("vtkCutVolume", "BlankCells"): [True],
     ("vtkCarveVolume", "BlankCells"): [True],
 }
-# Of former versions: TestOldFiles.py sets them.
+# Removed properties of former versions. TestOldFiles.py sets them.
 REMOVED = {"StreamInput", "WorkGroupSize", "NumberOfTimeSamples"}
-# Values of lists that the classes take; of other lists they take any numbers.
+# Valid values of lists. All other lists accept any numbers.
 LISTS = {
     ("vtkChainMailDeformation", "Materials"): [3, 0.5, 1.5, 0.25, 7, 0.25, 2.5, 0.125],
     ("vtkMaterialFromVolume", "Materials"): [3, 2000.5, 0.25, 900, 7, 500, 0.125, 1100],
@@ -41,7 +41,7 @@ LISTS = {
 
 
 def read_materials(instance):
-    """Index and values of each material that is defined."""
+    """Returns the index and the values of each material that is defined."""
     read = getattr(instance, "GetMaterialLimits", None) or instance.GetMaterialValues
     result = []
     for index in range(256):
@@ -53,7 +53,7 @@ def read_materials(instance):
 
 
 def read_presets(instance):
-    """Index and preset of each material that has one."""
+    """Returns the index and the preset of each material that has one."""
     presets = [(index, instance.GetMaterialPreset(index)) for index in range(256)]
     found = [number for pair in presets if pair[1] for number in pair]
     check(len(found) == 2 * instance.GetNumberOfMaterialPresets(), f"{found} are presets")
@@ -61,7 +61,7 @@ def read_presets(instance):
 
 
 def read_ranges(instance):
-    """Of a class that only prints them."""
+    """Returns the ranges of materials from the text that the class prints, because it has no getter."""
     printed = re.search(r"MaterialRanges:\n((?: +\S+ to \S+: \d+\n)*)", str(instance)).group(1)
     ranges = re.findall(r"(\S+) to (\S+): (\d+)", printed)
     check(len(ranges) == instance.GetNumberOfMaterialRanges(), f"{ranges} are printed")
@@ -85,8 +85,8 @@ def read_array_choice(instance):
     return ["0", *(str(information.Get(key)) for key in keys), name or ""]
 
 
-# How properties are read whose names are not those of getters. The classes tell only how many
-# positions of tools there are; where they cut is in TestEdits.py.
+# Functions that read properties without a getter of the same name. For positions of tools, the classes have only a
+# getter of their number. TestEdits.py tests where tools cut.
 READERS = {
     "Materials": read_materials,
     "MaterialPresets": read_presets,
@@ -106,7 +106,7 @@ READERS = {
 
 
 def properties_of(proxy, information=False):
-    """The properties that a user sets, or those that are information, by name."""
+    """Returns the properties that a user sets, or the information properties, by name."""
     iterator = proxy.SMProxy.NewPropertyIterator()
     result = {}
     iterator.Begin()
@@ -121,7 +121,7 @@ def properties_of(proxy, information=False):
 
 
 def find_port(cls, name):
-    """The input port that an input property is to reach."""
+    """Returns the input port to which an input property must be connected."""
     instance, producer = cls(), vtkTrivialProducer()
     getattr(instance, f"Set{name}Connection")(producer.GetOutputPort())
     ports = range(instance.GetNumberOfInputPorts())
@@ -129,7 +129,7 @@ def find_port(cls, name):
 
 
 def read(instance, name, smproperty):
-    """What the object has of a property; a property that cannot be read ends the test."""
+    """Returns the value that the object has for a property. Fails the test if it cannot be read."""
     if smproperty.IsA("vtkSMInputProperty"):
         port = find_port(type(instance), name)
         count = instance.GetNumberOfInputConnections(port)
@@ -147,7 +147,7 @@ def elements_of(smproperty):
 
 
 def other_values(instance, name, smproperty, default):
-    """Lists of elements other than the default; no two numbers of a list are equal."""
+    """Returns values other than the default, as lists of elements. No two numbers of a list are equal."""
     domain = smproperty.FindDomain("vtkSMEnumerationDomain")
     if domain:
         entries = [domain.GetEntryValue(i) for i in range(domain.GetNumberOfEntries())]
@@ -162,7 +162,7 @@ def other_values(instance, name, smproperty, default):
         return [[f"array {number}" if is_text else number for number in numbers], []]
     if is_text:
         return [[*default[:-1], "another"]]
-    # Some properties are integers of the class, and floating-point numbers in ParaView.
+    # Some properties are integers in the class, and floating-point numbers in ParaView.
     step = 1 if isinstance(default[0], int) else 0.0625
     values = [number + step * (i + 1) for i, number in enumerate(default)]
     if smproperty.IsA("vtkSMIntVectorProperty") or smproperty.IsA("vtkSMDoubleVectorProperty"):
@@ -178,7 +178,7 @@ def set_elements(smproperty, values):
 
 
 def has(got, values, name, smproperty):
-    """Whether what was read is what was set."""
+    """Whether the value that was read is the one that was set."""
     if name == "ToolPositions":
         return got == len(values) // smproperty.GetNumberOfElementsPerCommand()
     return got == values
@@ -190,7 +190,7 @@ def check_reach(proxy, sources):
     properties = {
         name: smproperty
         for name, smproperty in properties_of(proxy).items()
-        # Neither a button nor an input that is for widgets only.
+        # Leave out buttons, and inputs that only widgets use.
         if smproperty.GetClassName() != "vtkSMProperty" and smproperty.GetCommand()
     }
 
@@ -198,7 +198,7 @@ def check_reach(proxy, sources):
         return {name: read(instance, name, prop) for name, prop in properties.items()}
 
     def check_only(name, before, is_right, label):
-        """Only this property has changed."""
+        """Checks that this property has changed, and no other one."""
         after = read_all()
         check(is_right(after[name]), f"{label}: the object has {after[name]}")
         others = [other for other in before if other != name and before[other] != after[other]]
@@ -243,7 +243,7 @@ def check_reach(proxy, sources):
 
 
 def comes_from(made):
-    """ParaView may put an algorithm of its own between."""
+    """Returns a function that checks that data come from an algorithm. ParaView may insert its own algorithms."""
     def is_right(producers):
         if len(producers) != 1:
             return False
@@ -273,8 +273,8 @@ def check_all_reach(sources):
     for element in plugin_proxies():
         name = element.get("name")
         check(hasattr(simple, name), f"{name}: not in paraview.simple")
-        simple.SetActiveSource(None)  # would become the input
-        with messages():  # inputs are missing
+        simple.SetActiveSource(None)  # an active source would become the input
+        with messages():  # messages about missing inputs
             proxy = getattr(simple, name)()
             missing = [
                 prop.get("name")
@@ -289,16 +289,16 @@ def check_all_reach(sources):
 HUGE = 1e300
 BAD_NUMBERS = [-HUGE, HUGE, 0.0, 1e-300, float("nan"), float("inf")]
 BAD_TEXTS = ["", "none of these", "x" * 10000, "\u00e9\u4e2d\n\"'<>&"]
-# Tested separately.
+# Properties that main() tests separately.
 SKIPPED = {"NumberOfNodes"}
 
 
 def extremes(prop):
-    """Values for a property, and whether the class accepts them all."""
+    """Returns values for a property, and whether the class accepts all of them."""
     smproperty = prop.SMProperty
     kind = smproperty.GetClassName()
     if kind == "vtkSMProperty":
-        return []  # a command
+        return []  # a button
     count = len(prop)
     if kind == "vtkSMStringVectorProperty":
         if count == 5:
@@ -338,7 +338,7 @@ def check_extremes(make, names):
             try:
                 proxy.SetPropertyWithName(name, value)
             except (ValueError, TypeError, RuntimeError):
-                continue  # not an entry of the enumeration
+                continue  # the enumeration has no such entry
             texts = update(proxy)
             check(len(texts) <= 1, f"{label}: {len(texts)} messages:\n" + "\n".join(texts))
             check(not texts or len(texts[0]) > 40, f"{label}: {texts}")
@@ -349,7 +349,8 @@ def check_extremes(make, names):
 
 
 def check_limits(make):
-    """Panels offer only values that the class accepts. TestProxies.py looks at classes that clamp."""
+    """Checks that panels offer only values that the class accepts. TestProxies.py checks properties that the class
+    clamps."""
     for name, smproperty in properties_of(make()).items():
         enumeration = smproperty.FindDomain("vtkSMEnumerationDomain")
         kind = re.sub("VectorProperty$", "RangeDomain", smproperty.GetClassName())
@@ -358,11 +359,11 @@ def check_limits(make):
         if hasattr(make().GetClientSideObject(), f"Get{name}MaxValue"):
             continue
         if name == "FadeDistance":
-            continue  # is looked at with the outside mode Keep only
+            continue  # it has an effect only with the outside mode Keep
         if enumeration:
             good = [enumeration.GetEntryValue(i) for i in range(enumeration.GetNumberOfEntries())]
             bad = [max(good) + 1]
-        elif interval and interval.GetClassName() == kind:  # and not one that follows the data
+        elif interval and interval.GetClassName() == kind:  # other classes of domains depend on the data
             if interval.GetMinimumExists(0):
                 bad.append(interval.GetMinimum(0) - 1)
             if interval.GetMaximumExists(0):
@@ -379,13 +380,13 @@ def check_limits(make):
 
 
 def check_shown(make):
-    """Panels show current values after an update, without a request."""
+    """Checks that panels show current values after an update, without a request for them."""
     proxy = make()
     instance = proxy.GetClientSideObject()
     information = {
         name: smproperty
         for name, smproperty in properties_of(proxy, information=True).items()
-        # ParaView makes these of more than one number that a getter gives.
+        # ParaView computes these properties from several numbers.
         if name not in ("TimestepValues", "TimeRange")
     }
     before = {name: read(instance, name, smproperty) for name, smproperty in information.items()}
@@ -400,7 +401,8 @@ def check_shown(make):
 
 
 def check_background(volume):
-    """The least value where the type of the scalars has negative numbers, else 0."""
+    """Checks that the background is the least value if the type of the scalars has negative numbers, and otherwise
+    0."""
     shift = simple.Calculator(Input=volume, ResultArrayName="HU", Function="RTData-1100")
     whole = simple.Calculator(Input=volume, ResultArrayName="Index", Function="coordsX-20")
     whole.ResultArrayType = "Short"
@@ -411,7 +413,7 @@ def check_background(volume):
         source.UpdatePipeline()
     least = shift.PointData["HU"].GetRange()[0]
     check(least < -800, f"the least value is {least}")
-    # Vectors are not scalars: these are still those of the volume.
+    # Adding active vectors does not change the active scalars.
     first = volume.PointData["RTData"].GetRange()[0]
     for source, expected in ((shift, least), (whole, -26.0), (bytes_, 0.0), (vectors, first)):
         filter_ = simple.DeformVolume(Volume=source)
@@ -428,7 +430,7 @@ def check_background(volume):
 
 
 def check_places():
-    """Widgets start in the data."""
+    """Checks that widgets start in the middle of the data."""
     volume = simple.Wavelet(WholeExtent=[0, 10, 0, 20, 0, 30])
     volume.UpdatePipeline()
     handle = simple.DeformationHandleInData(Data=volume)
@@ -446,14 +448,14 @@ def check_places():
 
 
 def check_defaults(volume):
-    # The only vectors are found whatever their name, and whatever other arrays there are.
+    # If there is only one array of vectors, it is found, whatever its name and whatever other arrays there are.
     mesh = bent_lattice(volume, array="u")
     filter_ = deformed(volume, mesh)
     check(list(filter_.DisplacementArray) == ["POINTS", "u"], f"{filter_.DisplacementArray}")
     check(list(filter_.CustomBounds) == [-6.0, 6.0] * 3, f"{list(filter_.CustomBounds)}")
     check(filter_.Device == "best", filter_.Device)
     check(list(filter_.CategoricalArrays) == [], f"{list(filter_.CategoricalArrays)}")
-    # Of several, the active ones.
+    # Of several arrays of vectors, the active one is chosen.
     two = simple.Calculator(Input=mesh)
     two.ResultArrayName = "a"
     two.Function = "2*coordsX*iHat"
@@ -462,7 +464,7 @@ def check_defaults(volume):
     check(list(filter_.DisplacementArray) == ["POINTS", "a"], f"{filter_.DisplacementArray}")
     filter_.DisplacementArray = ["POINTS", "u"]
     check_silent(update(filter_))
-    # What the last update did.
+    # Information properties about the last update.
     check(filter_.DeviceInUse, "No device is in use")
     check(filter_.ResamplerInUse == "Exact", f"{filter_.ResamplerInUse}")
     check(filter_.InvertedTetrahedra == 0.0, f"{filter_.InvertedTetrahedra}")
@@ -474,7 +476,7 @@ def check_defaults(volume):
     filter_.ReleaseDeviceMemory()
     filter_.UpdatePipelineInformation()
     check(filter_.DeviceMemory == 0.0, f"{filter_.DeviceMemory} bytes are left")
-    # Panels show what is there after an update, without asking for it.
+    # Panels show current information after an update, without a request for it.
     def shown(name):
         return filter_.SMProxy.GetProperty(name).GetElement(0)
 
@@ -490,7 +492,7 @@ def check_defaults(volume):
         check(f"Covered voxels: {covered:,}\n" in shown("Summary"), shown("Summary"))
         check("Inverted tetrahedra: 0\n" in shown("Summary"), shown("Summary"))
 
-    # Folded over, tetrahedra are inverted and counted.
+    # If the volume is turned inside out, tetrahedra are inverted and counted.
     filter_ = deformed(volume, two)
     filter_.DisplacementArray = ["POINTS", "a"]
     filter_.DisplacementScale = -1.0
@@ -509,7 +511,7 @@ def main():
     check_all_reach([volume, mesh, ball])
 
     def deform(**properties):
-        # An output that is too large is an error before it fills this machine.
+        # With a memory limit, an output that is too large is an error, and does not fill the memory of the machine.
         return simple.DeformVolume(
             Volume=volume, Deformation=mesh, MemoryLimit=2.0e8, **properties
         )

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every algorithm of the module has a proxy, every method that sets, adds, returns or does something has a
-property, and the ranges and enumerations in the XML are those of the class. TestProperties.py has the
+"""Tests that every algorithm of the module has a proxy, that every method that sets, adds, returns or does something
+has a property, and that the ranges and enumerations in the XML are those of the class. TestProperties.py tests
 defaults, and sets the properties."""
 
 import inspect
@@ -12,9 +12,8 @@ from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 
 from PluginTesting import plugin_proxies
 
-# Methods that need no property: data instead of a connection, what a command with clean_command
-# makes superfluous, and what is there for lists in C++, or for programs that keep the numbers that they
-# are given.
+# Methods that need no property: those that set data instead of a connection, those that a clean_command replaces, those
+# that access elements of lists, and those that need a number which an earlier call has returned.
 WITHOUT_PROPERTY = {
     "SetDeformationData",
     "SetRestData",
@@ -40,7 +39,7 @@ WITHOUT_PROPERTY = {
     "GetNumberOfMaterials",
     "GetNumberOfMaterialRanges",
     "GetNumberOfMaterialPresets",
-    # The table of presets.
+    # The methods that access the table of presets.
     "GetMaterialPresetName",
     "GetMaterialPresetSource",
     "GetMaterialPresetValues",
@@ -49,17 +48,17 @@ WITHOUT_PROPERTY = {
     "RemoveState",
     "GetNumberOfStates",
     "GetStateMemory",
-    # ParaView reads each output at once, for the ranges of its arrays.
+    # ParaView reads each output immediately, for the ranges of its arrays.
     "SetOutputOnDevice",
-    # The warning of the update says it.
+    # A warning of the update states this number.
     "GetNumberOfOutsidePoints",
-    # Behind SetFromState().
+    # The property calls SetFromState() instead.
     "SetResampler",
 }
-# What Carve Volume and Finite Element Deformation do now: not in the menu, and there for state files and
-# scripts.
+# Proxies that Carve Volume and Finite Element Deformation replace. They are not in the menu, and exist for state files
+# and scripts.
 FORMER_PROXIES = {"CarveVolumeLabel", "CarveVolumeWithSurface", "CorotationalDeformation"}
-# The most widgets that a panel may have without advanced ones.
+# The largest number of widgets of a panel, without advanced ones.
 MOST_WIDGETS = 8
 # Numbers of removed enumerators.
 REMOVED_VALUES = {"PieceMode": {1}, "Resampler": {1}}
@@ -84,7 +83,7 @@ def properties_of(proxy):
 
 
 def own_names(cls):
-    """What the class and its bases in this package add to VTK's."""
+    """Returns the names of members that the class and its bases in this package add to those of VTK's base class."""
     own = [base for base in cls.__mro__ if base in vars(deformvolume_vtk).values()]
     inherited = set(dir(own[-1].__bases__[0]))
     return {name for base in own for name in vars(base)} - inherited
@@ -116,7 +115,7 @@ def check_complete(cls, proxies):
             name, command = prop.get("name"), prop.get("command")
             commands.update((command, prop.get("clean_command")))
             if prop.tag == "Property":
-                # The names are what a button can be checked by that leaves no value behind.
+                # A button sets no value that could be checked, so its name must be that of its method.
                 check(name == command, f"{proxy.get('name')}.{name}: the button does {command}")
     for name in own_methods(cls):
         if name not in WITHOUT_PROPERTY:
@@ -155,7 +154,8 @@ def check_words(proxy):
 
 
 def is_set_by_user(prop):
-    """Not information, a button, an input that is connected in the pipeline, or removed."""
+    """Whether a user sets the property. False for information, buttons, inputs that are connected in the pipeline, and
+    removed properties."""
     is_connected = prop.tag == "InputProperty" and prop.find("ProxyListDomain") is None
     return not (
         is_connected
@@ -166,7 +166,7 @@ def is_set_by_user(prop):
 
 
 def is_widget(prop):
-    """Whether the default panel shows it: information only where that is asked for."""
+    """Whether the default panel shows the property. It shows information properties only if the XML says so."""
     if prop.tag == "InputProperty" and prop.find("ProxyListDomain") is None:
         return False
     default = "never" if prop.get("information_only") else "default"
@@ -195,9 +195,9 @@ def check_values(cls, proxy):
         if not command.startswith("Set") or "Get" + attribute not in own_names(cls):
             continue
         if prop.tag == "ProxyProperty":
-            continue  # an object, of which ParaView makes the first of a list
+            continue  # an object: the default is the first one of a list of ParaView's
         if prop.get("repeat_command"):
-            continue  # a list, whose getter wants an index
+            continue  # a list, whose getter needs an index
         value = getattr(instance, "Get" + attribute)()
         if hasattr(instance, f"Get{attribute}MaxValue"):
             low = getattr(instance, f"Get{attribute}MinValue")()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The output of the filter is drawn as a volume, in the colors of its input: the MRI of a head, pushed in from
-the front."""
+"""Tests that the output of the filter is drawn as a volume, in the colors of its input: the MRI of a head, pushed in
+from the front."""
 
 import os
 import sys
@@ -33,14 +33,14 @@ def main(baseline):
     view.UseColorPaletteForBackground = 0
     view.Background = [0.2, 0.2, 0.3]
 
-    # The user has chosen colours for the volume at rest.
+    # The user has chosen colors for the volume at rest.
     shown = simple.Show(head, view)
     shown.SetRepresentationType("Volume")
     simple.ColorBy(shown, ("POINTS", name))
-    colours = simple.GetColorTransferFunction(name)
-    colours.RGBPoints = [0.0, 0.1, 0.0, 0.0, 60.0, 0.8, 0.5, 0.3, 160.0, 1.0, 1.0, 0.9]
+    colors = simple.GetColorTransferFunction(name)
+    colors.RGBPoints = [0.0, 0.1, 0.0, 0.0, 60.0, 0.8, 0.5, 0.3, 160.0, 1.0, 1.0, 0.9]
     # The default differs between versions.
-    colours.ColorSpace = "Diverging"
+    colors.ColorSpace = "Diverging"
     opacity = simple.GetOpacityTransferFunction(name)
     points = [(0.0, 0.0), (30.0, 0.0), (90.0, 0.5), (160.0, 0.9)]
     opacity.Points = [item for value, amount in points for item in (value, amount, 0.5, 0.0)]
@@ -56,7 +56,7 @@ def main(baseline):
         list(representation.ColorArrayName) == ["POINTS", name],
         f"Coloured by {list(representation.ColorArrayName)}",
     )
-    check(representation.LookupTable.SMProxy == colours.SMProxy, "The colours are not the input's")
+    check(representation.LookupTable.SMProxy == colors.SMProxy, "The colors are not the input's")
     representation.Shade = 1
 
     view.CameraFocalPoint = [90.0, 108.0, 90.0]
@@ -68,13 +68,13 @@ def main(baseline):
     check(os.path.exists(baseline), f"There is no {baseline}; look at {picture}")
     shown, expected = read_picture(picture), read_picture(baseline)
     check(shown.shape == expected.shape, f"{picture} has another size than {baseline}")
-    # Pressed in 3 voxels less, the head differs by 1.1, beside its place by 1.4, undeformed by 6.1; renderers that
-    # are both right differ by 0.001.
+    # If the head is pushed in by 3 voxels less, the picture differs by 1.1; if it is shifted, by 1.4; if it is not
+    # deformed, by 6.1. Pictures of different renderers differ by 0.001.
     error = numpy.abs(shown - expected).mean()
     check(error < 0.1, f"{picture} differs from {baseline} by {error} of 255 on average")
 
 
-    # Each view that updates displays the failure.
+    # Each view displays the error when it updates.
     deformed.Device = "no such device"
     with messages() as texts:
         simple.Render(view)
@@ -87,7 +87,7 @@ def main(baseline):
     check_messages(texts, ["Not enough memory"])
     simple.Delete(failing)
 
-    # With the right settings it is shown again, whatever has failed before.
+    # With valid settings the output is shown again, whatever error there was before.
     volume = wavelet(6)
     small = simple.DeformVolume(Volume=volume, Deformation=bent_lattice(volume))
     representation = simple.Show(small, view)
@@ -109,7 +109,7 @@ def main(baseline):
                 setattr(small, name, right)
                 simple.Render(view)
             check_silent(texts)
-            check(output(0).GetNumberOfPoints() > 0, f"{kind}: mended, {name} is not shown")
+            check(output(0).GetNumberOfPoints() > 0, f"{kind}: after the correction, {name} is not shown")
 
 
 main(sys.argv[1])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pictures of the plugin's filters. A scene passes if it is within its limit of the baseline, and if a spoiled
+"""Tests pictures of the plugin's filters. A scene passes if it is within its limit of the baseline, and if a wrong
 variant and the scene shifted by one voxel differ from the baseline by at least twice the limit.
 
 Usage: TestScenes.py FOLDER_OF_BASELINES [--update]"""
@@ -21,7 +21,7 @@ FINE = {"OutputSpacingMode": "Custom Spacing", "CustomSpacing": [0.25] * 3, "Pad
 
 
 def deform(volume, function, version, **properties):
-    """A volume that is deformed finely by a lattice, with its displacements."""
+    """Returns a volume with a fine spacing that a lattice deforms by a function."""
     shift = 1 if version == "shifted" else 0
     mesh = bent_lattice(volume, nodes=11, function=function % shift)
     return simple.DeformVolume(Volume=volume, Deformation=mesh, **FINE, **properties)
@@ -52,14 +52,14 @@ def show_slice(view, source):
 
 
 def draw_slice(view, version):
-    """Spoiled: the deformation points to the other side."""
+    """Draws a slice. Wrong variant: the deformation has the opposite direction."""
     scale = -1.0 if version == "spoiled" else 1.0
     source = deform(wavelet(), BEND, version, DisplacementScale=scale)
     return show_slice(view, source)
 
 
 def draw_contour(view, version):
-    """Spoiled: samples have the values of single voxels."""
+    """Draws an isosurface. Wrong variant: samples have the values of single voxels."""
     names = ["RTData"] if version == "spoiled" else []
     source = deform(wavelet(), BEND, version, CategoricalArrays=names)
     contour = simple.Contour(Input=source, ContourBy=["POINTS", "RTData"], Isosurfaces=[157.0])
@@ -68,7 +68,7 @@ def draw_contour(view, version):
 
 
 def draw_edits(view, version):
-    """A cube that is cut, opened and carved. Spoiled: whole tetrahedra are left out."""
+    """Draws a cube that is cut, opened and carved. Wrong variant: whole tetrahedra are left out."""
     is_smooth = 0 if version == "spoiled" else 1
     volume = wavelet()
     plane = simple.Plane()
@@ -89,7 +89,7 @@ def draw_edits(view, version):
 
 
 def draw_hidden(view, version):
-    """What a volume shows that is cut and carved, without Deform Volume. Spoiled: it is whole."""
+    """Draws a volume that is cut and carved, without Deform Volume. Wrong variant: the volume is whole."""
     shift = 1 if version == "shifted" else 0
     is_blank = 0 if version == "spoiled" else 1
     volume = wavelet()
@@ -110,7 +110,7 @@ def draw_hidden(view, version):
 
 
 def draw_chain_mail(view, version):
-    """A stiff middle is dragged in soft tissue. Spoiled: all of it is soft."""
+    """Draws a volume whose stiff middle is dragged in soft tissue. Wrong variant: the middle is soft."""
     volume = wavelet()
     handle = simple.DeformationHandle(RestPosition=[0, 0, 0], Position=[4, 0, 3])
     drag = simple.ChainMailDeformation(Volume=volume, Handles=handle)
@@ -123,7 +123,7 @@ def draw_chain_mail(view, version):
     return show_slice(view, source)
 
 
-# The limits of the mean difference, 0 to 255: at most half of the smaller one of the two that fail.
+# Limits of the mean difference, 0 to 255: at most half of the smaller difference of the two pictures that must fail.
 SCENES = {
     "ParaViewSlice": (draw_slice, 2.5),
     "ParaViewContour": (draw_contour, 2.8),

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs the example Examples/paraview/deform_ct.py by pvbatch, with a made-up CT of a body with two bones, and a mesh with
-two arrays of vectors: TestScript.py SCRIPT BASELINE [--update]. The picture is compared with its baseline. With the
-other array, and with a mesh that is shifted by a voxel, it must differ."""
+"""Runs the example Examples/paraview/deform_ct.py by pvbatch, with a synthetic CT of a body with two bones, and a mesh
+with two arrays of vectors. The picture is compared with its baseline. With the other array, and with a mesh that is
+shifted by a voxel, it must differ. Usage: TestScript.py SCRIPT BASELINE [--update]"""
 
 import os
 import shutil
@@ -24,12 +24,12 @@ SPACING = 4.0
 def write(writer, data, path):
     writer.SetFileName(path)
     writer.SetInputData(data)
-    writer.SetDataModeToBinary()  # ParaView 5.11 cannot read what VTK appends
+    writer.SetDataModeToBinary()  # ParaView 5.11 cannot read VTK's appended data
     check(writer.Write() == 1, f"{path} is not written")
 
 
 def make_ct():
-    """In Hounsfield units, as short: air, soft tissue, and two bones along z."""
+    """Returns a CT in Hounsfield units, of type short: air, soft tissue, and two bones along z."""
     size = (48, 40, 52)
     image = vtkImageData()
     image.SetDimensions(size)
@@ -48,7 +48,7 @@ def make_ct():
 
 
 def make_mesh(image, shift):
-    """A lattice that bends in the array U, with other vectors, which are the active ones."""
+    """Returns a lattice with displacements in the array U, and with other vectors, which are active."""
     lattice = deformvolume_vtk.vtkLatticeTetrahedraSource()
     lattice.SetInputData(image)
     lattice.SetNumberOfNodes(11, 11, 11)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A state saved and loaded again, as .pvsm and as a Python script, each in a new process: all
-properties and all voxels are as before."""
+"""Tests that a state, saved as .pvsm and as a Python script and loaded in a new process, has the same properties and
+voxels as before."""
 
 import json
 import os
@@ -57,7 +57,7 @@ def get_properties(filter_):
 
 
 def check_restored(kind):
-    """In the new process."""
+    """Checks properties and voxels in the new process."""
     filters = [
         source for source in simple.GetSources().values() if source.GetXMLName() == "DeformVolume"
     ]
@@ -83,7 +83,7 @@ def save():
     volume = wavelet(8)
     mesh = bent_lattice(volume)
     filter_ = deformed(volume, mesh, **PROPERTIES)
-    # One value that the domain would not choose.
+    # A value that ParaView's domain would not choose by default.
     check(get_properties(filter_)["CustomBounds"] == PROPERTIES["CustomBounds"], "Not set")
     simple.TetGenMesher(Input=volume, AutomaticIsovalue=0, Isovalue=250.0, Labels=[1.0, 5.0])
     simple.TetrahedralLattice(Margin=3.0)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A plugin for another version of ParaView gives one message, and the process does not end. The plugin for this
-version gives none."""
+"""Tests that a plugin for another version of ParaView gives one message, and the process does not end, and that the
+plugin for this version gives no message."""
 
 import contextlib
 import sys

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The screen of an Xvfb that was started with -fbdir, as an array; and PNG files of arrays."""
+"""Reads the screen of an Xvfb that was started with -fbdir as an array, and writes arrays as PNG files."""
 
 import struct
 import zlib
@@ -8,14 +8,14 @@ import numpy
 
 
 def read_window_dump(path):
-    """Rows from the top, each pixel red, green and blue."""
+    """Returns the rows of the screen from the top. Each pixel is red, green and blue."""
     with open(path, "rb") as file:
         data = file.read()
     header = struct.unpack(">25I", data[:100])
     size, width, height, bytes_per_line, colours = (header[i] for i in (0, 4, 5, 12, 19))
     if header[11] != 32:
         raise ValueError(f"{path} has {header[11]} bits per pixel, not 32")
-    # A table of colours, 12 bytes each, lies between header and pixels.
+    # A table of colors, 12 bytes each, is between header and pixels.
     pixels = numpy.frombuffer(
         data, numpy.uint8, count=bytes_per_line * height, offset=size + 12 * colours
     )

@@ -31,8 +31,8 @@ writer.Write()
 
 
 def write_mesh(pieces):
-    """Writes a mesh of tetrahedra to a file with several pieces. A filter of ParaView could redistribute a mesh instead,
-    but ParaView 5.11 sends meshes between ranks as appended data, which it cannot read."""
+    """Writes a mesh of tetrahedra to a file with several pieces. A filter of ParaView could redistribute a mesh
+    instead, but ParaView 5.11 sends meshes between ranks as appended data, which it cannot read."""
     box = vtkImageData()
     box.SetDimensions(7, 7, 7)
     box.SetOrigin(-32, -31, -33)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Plugins for another ParaView than this one: three that load and have the plugin's check, and a library
-# that does not load, since it needs a library of the other ParaView.
+# Plugins for another version of ParaView: three that load and check the version as the plugin does, and a library that
+# does not load, because it needs a library of the other version.
 
 function (deformvolume_add_other_version name version)
   paraview_add_plugin("${name}"
@@ -13,7 +13,7 @@ function (deformvolume_add_other_version name version)
   target_compile_definitions("${name}" PRIVATE "DEFORMVOLUME_PARAVIEW_VERSION=${version}")
 endfunction ()
 
-# These are not installed. The folder above asks for the install script all the same.
+# These plugins are not installed. The parent folder includes an install script of this folder nevertheless.
 set(CMAKE_SKIP_INSTALL_RULES ON)
 file(WRITE "${CMAKE_CURRENT_BINARY_DIR}/cmake_install.cmake" "# Nothing is installed from here.\n")
 paraview_plugin_scan(
@@ -38,5 +38,5 @@ add_library(vtkRemotingCore-pv4.9 SHARED "${CMAKE_CURRENT_BINARY_DIR}/Missing.cx
 add_library(DeformVolumeNotLoadable MODULE "${CMAKE_CURRENT_BINARY_DIR}/NotLoadable.cxx")
 set_target_properties(vtkRemotingCore-pv4.9 PROPERTIES CXX_VISIBILITY_PRESET default)
 target_link_libraries(DeformVolumeNotLoadable PRIVATE vtkRemotingCore-pv4.9)
-# Thus the loader does not find what it links with.
+# Without an RPATH, the loader does not find the library to which this one is linked.
 set_target_properties(DeformVolumeNotLoadable PROPERTIES PREFIX "" SKIP_BUILD_RPATH ON)
