@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Sums over all output voxels, and over all counters. GroupReduction.cl comes before this text.
 
-// Counts covered voxels: one partial sum for each work-item, which takes voxelsOfItem voxels.
+// Counts covered voxels: one partial sum for each work-item, which processes voxelsOfItem voxels.
 __kernel void CountCovered(__global const char* coverage, const ulong numberOfVoxels,
   const uint voxelsOfItem, __global uint* sums)
 {
@@ -107,7 +107,7 @@ __kernel void Summarize(__global const ulong* parts, __global uint* summary, __l
   }
 }
 
-// Clears the counters of those sections of listed bricks that will be resampled. One work-item per section.
+// Clears the counters of the sections that the listed bricks select. One work-item per section.
 __kernel void ClearSections(__global uint* counters, __global const uint* bricks, const uint sections)
 {
   const size_t i = get_global_id(0);
@@ -121,7 +121,7 @@ __kernel void ClearSections(__global uint* counters, __global const uint* bricks
   }
 }
 
-// Clears those counters of all sections that tell the passes for winners where they have work.
+// Clears, for all sections, the counters by which the passes for winners find their work.
 __kernel void ClearWork(__global uint* counters, const uint sections)
 {
   const size_t i = get_global_id(0);
@@ -132,8 +132,8 @@ __kernel void ClearWork(__global uint* counters, const uint sections)
   }
 }
 
-// Marks the sections of bricks that contain winners. Neighboring voxels mostly have winners in the same section, so
-// the cells of the last section are kept as a run.
+// Marks the sections of bricks that contain winners. Neighboring voxels usually have winners in the same section.
+// Therefore a range of cells in the last section is stored, for which the section is marked already.
 typedef struct
 {
   ulong Begin; // a range of cells of a row in one section
@@ -158,12 +158,12 @@ static void MarkSection(ulong cell, CellRun* run, __global uint* counters, const
   run->End = cell + min((int)width - x, DEFORMVOLUME_SPAN - inSpan);
 }
 
-// Runs after the pass in which cells claim voxels. Marks the patches that have unsettled voxels, and the sections
-// that contain current winners. Patches that are kept are skipped. claimed: 0 if no voxel is written twice, so that
-// this pass was skipped; covered voxels then count as settled. words: number of uints of a key. patches: first the
-// state of each patch, then for each patch whether it has contested voxels. Uncovered voxels of touched patches can
-// still be won.
-// patchesOfItem: neighboring patches that a work-item takes. No other work-item writes to these.
+// Follows the pass in which cells claim voxels. Marks the patches that have unsettled voxels, and the sections that
+// contain current winners. Patches that are kept are skipped. claimed: 0 if that pass was skipped because no voxel is
+// written twice; covered voxels then count as settled. words: number of uints of a key. patches: first the state of
+// each patch, then for each patch whether it has contested voxels. Unsettled voxels are contested voxels, and uncovered
+// voxels of touched patches.
+// patchesOfItem: number of neighboring patches that a work-item processes. No other work-item writes to them.
 __kernel void Settle(__global const char* coverage, __global uint* winners, const uint words,
   const int claimed, __global char* patches, __global uint* counters, const uint patchesOfItem,
   const KernelParameters p)

@@ -23,12 +23,13 @@ enum class Resampling
   ExactByCell,
   /// Exact, with the CPU kernel that handles several cells in the lanes of vector registers. For
   /// any arrays. Linear arrays of one component, of type float or 8- or 16-bit integer, are
-  /// interpolated in single precision. An Error if the output has more than 32,768 voxels on an
+  /// interpolated in single precision. Throws Error if the output has more than 32,768 voxels on an
   /// axis or 2^31 voxels in total, or if work-items of the device have no vector registers of their
   /// own.
   ExactByLanes,
   /// Exact, with the GPU kernel in which each work-item is a lane and handles a column of cells.
-  /// Arrays and outputs as above. An Error if the device has too little local memory.
+  /// Arrays and outputs as for ExactByLanes. Throws Error if the device has too little local
+  /// memory.
   ExactByColumns,
   /// Rasterizes the tetrahedra of the deformation mesh, and samples the volume at the interpolated
   /// rest coordinate (MeshRasterizer.h). Needs SetRestMesh, or SetInverseField, whose field gives
@@ -41,9 +42,9 @@ enum class Interpolation
 {
   Linear,
   /// Catmull-Rom interpolation over four voxels on each axis, clamped to the range of integer
-  /// types. With the exact methods it takes place at the rest coordinate of a sample in its
-  /// tetrahedron, if all 64 voxels exist and no cut or boundary lies between them; otherwise
-  /// interpolation is linear. Not supported by ExactByLanes and ExactByColumns.
+  /// types. The exact methods evaluate it at the rest coordinate of a sample in its tetrahedron, if
+  /// all 64 voxels exist and no cut or boundary lies between them; otherwise they interpolate
+  /// linearly. Not supported by ExactByLanes and ExactByColumns.
   Cubic
 };
 
@@ -65,36 +66,37 @@ struct DeformRequest
   /// Memory for one byte per voxel: 1 if the deformed volume covers the voxel, otherwise 0.
   signed char* Coverage = nullptr;
   /// Memory for one number per voxel of OutputExtent, initially 0: the number of tetrahedra of the
-  /// sampling mesh that hold the voxel where several overlap. Cells at the boundary of the mesh are
-  /// not counted. Only with the exact methods, and not incremental. Null: not counted.
+  /// sampling mesh that contain the voxel. Written only if tetrahedra overlap. Cells at the
+  /// boundary of the mesh are not counted. Only with the exact methods, and not incremental. Null:
+  /// not counted.
   std::uint32_t* FoldCounts = nullptr;
   /// Whether the output may stay on the device until it is needed on the host. This requires a
-  /// device with its own memory that makes the output in one slab. DeformReport::DeviceOutputs then
-  /// has the output, and Outputs and Coverage get their values when it is read.
+  /// device with its own memory that computes the output in one slab. DeformReport::DeviceOutputs
+  /// then has the output, and Outputs and Coverage receive their values when it is read.
   bool MayStayOnDevice = false;
-  /// For outputs that stay on the device: the DeformReport::Revision that the memory of each of
-  /// Outputs, then that of Coverage, still holds unchanged; 0: none. After an incremental update
-  /// only later changes are then copied to that memory. Empty: none.
+  /// For outputs that stay on the device: for the memory of each array in Outputs, then for
+  /// Coverage, the DeformReport::Revision of the output that the memory still holds unchanged; 0:
+  /// none. After an incremental update, only later changes are copied to that memory. Empty: none.
   std::vector<std::uint64_t> HeldRevisions;
   /// Whether to keep what the next call needs to write only the voxels that change. That call needs
   /// this output in LastOutputs and LastCoverage. If an incremental update is not possible or not
   /// faster, all voxels are written; the result is the same bit for bit. Supported by the exact
   /// methods, for volumes and outputs within the allocation limit.
   bool Incremental = false;
-  /// The output of the last call, unchanged: the same memory as Outputs and Coverage, or other
-  /// memory, which is then copied. Empty and null if there is none. Not needed for an output that
+  /// The arrays of the output of the last call, unchanged: the same memory as Outputs, or other
+  /// memory, which is then copied. Empty if there is no such output. Not needed for an output that
   /// stays on the device.
   std::vector<const void*> LastOutputs;
-  /// Like LastOutputs, for Coverage.
+  /// The coverage of the output of the last call, as LastOutputs. Null if there is no such output.
   const signed char* LastCoverage = nullptr;
-  /// The DeformReport::Revision that Outputs and Coverage still hold unchanged, if this is not the
-  /// memory of the last output; 0: none. With two alternating output buffers, this is the output
-  /// before the last one, and only differences are copied.
+  /// If Outputs and Coverage are not the memory of the last output: the DeformReport::Revision of
+  /// the output that they still hold unchanged; 0: none. With two alternating output buffers, this
+  /// is the output before the last one, and only differences are copied.
   std::uint64_t OutputRevision = 0;
   /// Called between launches with the completed fraction, 0 to 1. Return false to abort.
   std::function<bool(double)> Progress;
   /// Called with true before kernels are compiled, which can take many seconds, and with false
-  /// afterwards. Runs in the thread that called Deform().
+  /// afterwards. The thread that called Deform() calls it.
   std::function<void(bool)> Compiling;
 };
 
@@ -109,11 +111,11 @@ struct DeformReport
   /// The number of cells with a tetrahedron that extends over more than 4,000 output voxels. Such
   /// tetrahedra are skipped.
   std::int64_t NumberOfOverstretchedCells = 0;
-  /// Whether tetrahedra overlap. The winner of a voxel is then an upright tetrahedron before an
-  /// inverted one, then the one with the lowest cell and number.
+  /// Whether tetrahedra overlap. If several contain a voxel, upright tetrahedra win over inverted
+  /// ones; among these, the tetrahedron with the lowest cell and number wins.
   bool Overlapping = false;
-  /// The number of samples that are hidden by winners of overlaps, and so missing in the output.
-  /// Not counted in an incremental update.
+  /// The number of samples that winners of overlaps hide, and that are therefore missing in the
+  /// output. Not counted in an incremental update.
   std::int64_t NumberOfHiddenSamples = 0;
   /// The number of tetrahedra of the deformation mesh without volume at rest. Only for
   /// MeshRasterization.
@@ -122,11 +124,12 @@ struct DeformReport
   std::int64_t NumberOfBricks = 0;
   /// The number of bricks that were resampled; less than NumberOfBricks in an incremental update.
   std::int64_t NumberOfResampledBricks = 0;
-  /// Identifies this output among those of this deformer; 0: nothing of it is kept.
+  /// Identifies this output among the outputs of this deformer. 0: the deformer keeps no data of
+  /// this output.
   std::uint64_t Revision = 0;
   /// The output if it stayed on the device: one object for each array, then one for the coverage.
-  /// Empty if the output is in the memory of the request. TransferTime does not include reading
-  /// these.
+  /// Empty if the output is in the memory of the request. TransferTime does not include the time of
+  /// DeviceOutput::Read().
   std::vector<std::shared_ptr<DeviceOutput>> DeviceOutputs;
   /// A box of all output voxels that may differ from the last output: OutputExtent after a full
   /// update; smaller after an incremental update; empty if nothing changed.

@@ -22,7 +22,7 @@ std::string DescribeLoss(
   if (lost > 0)
   {
     text += (text.empty() ? "" : " ") + std::to_string(lost) +
-      " voxels show the volume inside out, or pressed together to nothing: density arrays have " +
+      " voxels show the volume inside out, or compressed to zero volume: density arrays have " +
       background + " there.";
   }
   return text;

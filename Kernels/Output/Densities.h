@@ -13,10 +13,11 @@
 namespace deformvolume
 {
 
-/// Divides the values of an output by the Jacobian, so that the sum of amounts for each unit of
-/// volume is kept. T: float or double. values: tuples of some components; they may be divided in
-/// place. valid: which voxels are covered; all others stay as they are. Where the Jacobian is not
-/// greater than 0 they become the background. Returns how many voxels those were.
+/// Divides the values of an output by the Jacobian determinants, so that the sum of a density over
+/// the volume stays the same. T: float or double. values: one tuple per voxel. valid: nonzero for
+/// covered voxels; the values of other voxels do not change. divided: receives the results; may be
+/// the same memory as `values`. Covered voxels whose Jacobian is not greater than 0 receive the
+/// background. Returns the number of these voxels.
 template <typename T>
 std::int64_t DivideByJacobian(const T* values, int components, const float* jacobians,
   const signed char* valid, std::int64_t voxels, T background, T* divided)
@@ -42,9 +43,10 @@ std::int64_t DivideByJacobian(const T* values, int components, const float* jaco
   return count;
 }
 
-/// What the sums of densities lack, in words for a warning; "" where that is nothing. hidden:
-/// samples that other parts of a folded volume hide, in an output with so many covered voxels.
-/// lost: voxels whose Jacobian is not greater than 0. background: what they have, in words.
+/// Returns a warning about amounts that the sums of density arrays lack; empty if they lack
+/// nothing. hidden: number of samples that other parts of a folded volume hide. covered: number of
+/// covered voxels. lost: number of voxels whose Jacobian is not greater than 0. background:
+/// describes the value of these voxels, for the message.
 DEFORMVOLUME_EXPORT std::string DescribeLoss(
   std::int64_t hidden, std::int64_t covered, std::int64_t lost, const std::string& background);
 

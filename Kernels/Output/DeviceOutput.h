@@ -12,9 +12,10 @@ namespace deformvolume
 {
 
 /// An output array, or the coverage, that stayed on the device (DeformRequest::MayStayOnDevice).
-/// Read() copies it to the memory of the request. The deformer copies it by itself before it needs
-/// the device memory: for its next output, for another volume, or to release its memory. The memory
-/// of the request must exist until then, or until Drop(). The deformer may be deleted earlier.
+/// Read() copies it to the memory of the request. The deformer also copies it before it needs the
+/// device memory: for its next output, for another volume, or to release its memory. The memory of
+/// the request must exist until one of these copies, or until Drop(). The deformer may be deleted
+/// earlier.
 class DEFORMVOLUME_EXPORT DeviceOutput
 {
 public:
@@ -27,9 +28,9 @@ public:
   /// Whether the values are in the memory of the request.
   bool IsRead() const;
 
-  /// Copies the values to the memory of the request, unless they are there. Thread-safe: the first
-  /// thread copies, others wait. Throws an Error if the copy failed in this or an earlier call; the
-  /// memory then holds the background.
+  /// Copies the values to the memory of the request, unless they have been copied. Thread-safe: the
+  /// first thread copies, other threads wait. Throws Error if the copy failed in this or an earlier
+  /// call; the memory then holds the background.
   void Read();
 
   /// The range of the finite values of a component.
@@ -44,7 +45,7 @@ public:
   };
   /// Finds the range on the device, without copying the values. Returns nothing if the values are
   /// not on the device, if the component does not exist, if no value is finite, or for 64-bit
-  /// integers, which a double cannot hold. Throws an Error if the device fails.
+  /// integers, which a double cannot represent exactly. Throws Error if the device fails.
   std::optional<Range> FindRange(int component);
 
   /// Discards the values, and allows the memory of the request to be freed. Waits for a copy in

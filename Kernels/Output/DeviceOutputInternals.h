@@ -20,7 +20,7 @@
 namespace deformvolume
 {
 
-/// The device buffer of a DeviceOutput, and the host memory that it is for.
+/// The device buffer of a DeviceOutput, and the host memory to which it is copied.
 class DeviceOutput::Internals
 {
 public:
@@ -34,15 +34,16 @@ public:
     std::size_t Bytes;
   };
 
-  /// The buffer must be complete, and must not be written before Bring() was called. background:
-  /// the value for all of the memory if copying fails.
+  /// The buffer must be complete, and must not be written before Bring() has been called.
+  /// background: the value for all of the memory if copying fails.
   Internals(const cl::CommandQueue& queue, const cl::Buffer& buffer, const Voxels& voxels,
     void* memory, const ElementBytes& background);
 
   bool IsOnDevice() const { return this->State == Location::Device; }
   bool IsRead() const { return this->State == Location::Host; }
 
-  /// Copies the values to the host unless that is done, and releases the buffer. Does not throw.
+  /// Copies the values to the host, unless they have been copied or dropped, and releases the
+  /// buffer. Does not throw.
   void Bring() noexcept;
   /// The message of a failure in Bring(); empty if there was none.
   std::string GetMessage();
@@ -82,9 +83,9 @@ private:
 class UnreadOutputs
 {
 public:
-  /// ownBuffers: whether GetMemory() is to count these buffers, as no other object does.
+  /// ownBuffers: whether GetMemory() counts the buffers, because no other object counts them.
   void Set(const std::vector<std::shared_ptr<DeviceOutput>>& outputs, bool ownBuffers);
-  /// Copies the arrays to the host. Failures are reported to those who read them. Does not throw.
+  /// Copies the arrays to the host. DeviceOutput::Read() reports a failure. Does not throw.
   void Bring() noexcept;
   /// The device memory that no other object counts, in bytes.
   std::uint64_t GetMemory() const;

@@ -3,8 +3,8 @@
 // integers of their size, whatever their type.
 //
 // clEnqueueFillBuffer is not used: some CPU drivers fill with one thread, and the first access to new memory is slow.
-// On an H200, clearing the bits or the counters of 13 million voxels took it 13 to 28 microseconds each; a kernel
-// takes about 13.
+// On an H200, clEnqueueFillBuffer took 13 to 28 microseconds to clear the bits or the counters of 13 million voxels; a
+// kernel takes about 13.
 
 // Each work-item fills DEFORMVOLUME_FILLED_BYTES bytes. size: number of elements.
 #define FILL(NAME, TYPE, VECTOR)                                                                   \
@@ -23,7 +23,7 @@
     }                                                                                              \
   }
 
-// Most fills have equal bytes. memset can use instructions that do not read the memory first.
+// In most fills, all bytes are equal. memset can use instructions that do not read the memory first.
 #ifdef __x86_64__
 __kernel void Fill1(__global uchar* restrict target, const ulong size, const uchar value)
 {
@@ -127,8 +127,8 @@ static uint IsCovered(__global const uint* bits, size_t voxel)
   return bits[voxel >> 5] >> (voxel & 31) & 1;
 }
 
-// The bits of DEFORMVOLUME_EXPANDED voxels, as many as are stored at once. Neighboring work-items take neighboring
-// voxels.
+// Returns the bits of DEFORMVOLUME_EXPANDED voxels, whose bytes are stored at once. Neighboring work-items process
+// neighboring voxels.
 static uint CoveredOf(__global const uint* bits, size_t first)
 {
   return bits[first >> 5] >> (first & 31) & 0xffff;
@@ -159,7 +159,7 @@ __kernel void ExpandCoverage(__global const uint* bits, __global uchar* coverage
 }
 
 // Fills the elements of voxels that are not covered, so that each element of an output is written only once. Each
-// work-item loads several bits before it stores. Neighboring work-items take neighboring voxels: most stores lie at
+// work-item loads several bits before it stores. Neighboring work-items process neighboring voxels: most stores lie at
 // the border of covered voxels, where stores cannot be combined within a work-item.
 #define FILLED_AT_ONCE 8
 #define FILL_UNCOVERED(NAME, TYPE)                                                                 \
@@ -192,7 +192,7 @@ FILL_UNCOVERED(FillUncovered2, ushort)
 FILL_UNCOVERED(FillUncovered4, uint)
 FILL_UNCOVERED(FillUncovered8, ulong)
 
-// Clears the bits of listed patches; ExpandPatches expands them to bytes. One patch for each work-group.
+// Clears the bits of listed patches. One patch for each work-group.
 __kernel void ClearPatchBits(
   __global uint* bits, __global const uint* patches, const KernelParameters p)
 {
@@ -213,6 +213,8 @@ __kernel void ClearPatchBits(
   }
 }
 
+
+// Expands the bits of listed patches to bytes. One patch for each work-group.
 __kernel void ExpandPatches(__global const uint* bits, __global uchar* coverage,
   __global const uint* patches, const KernelParameters p)
 {

@@ -17,7 +17,7 @@ cl::Kernel MakeKernel(OpenCLContext& context, const std::string& name, const Ele
   return cl::Kernel(GetOutputProgram(context), (name + std::to_string(value.Size)).c_str());
 }
 
-/// Launches a work-group for each listed patch, with a work-item for each of its rows.
+/// Launches a work-group for each listed patch, with a work-item for each row of the patch.
 void LaunchPatches(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Kernel& kernel,
   std::size_t count, std::vector<cl::Event>& events)
 {
@@ -25,15 +25,15 @@ void LaunchPatches(OpenCLContext& context, const cl::CommandQueue& queue, const 
   events.push_back(context.Launch(queue, kernel, cl::NDRange(group * count), cl::NDRange(group)));
 }
 
-/// Launches a kernel that strides through memory in portions. There are no more work-items than a
-/// device runs at once, as starting one takes longer than a portion.
-void LaunchPortions(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Kernel& kernel,
-  std::uint64_t size, std::uint64_t portion, std::vector<cl::Event>& events)
+/// Launches a kernel whose work-items process memory in steps of `step` elements. There are no more
+/// work-items than a device executes at once: starting a work-item takes longer than a step.
+void LaunchSteps(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Kernel& kernel,
+  std::uint64_t size, std::uint64_t step, std::vector<cl::Event>& events)
 {
   constexpr std::uint64_t itemsOfUnit = 2048;
-  const std::uint64_t portions = (size + portion - 1) / portion;
+  const std::uint64_t steps = (size + step - 1) / step;
   LaunchBusyItems(context, queue, kernel,
-    static_cast<std::size_t>(std::min(portions, context.GetNumberOfUnits() * itemsOfUnit)), events);
+    static_cast<std::size_t>(std::min(steps, context.GetNumberOfUnits() * itemsOfUnit)), events);
 }
 
 } // namespace
@@ -96,7 +96,7 @@ void Fill(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffe
     kernel.setArg(0, buffer);
     kernel.setArg(1, cl_ulong{ size * value.Size });
     kernel.setArg(2, pattern);
-    LaunchPortions(context, queue, kernel, size * value.Size, sizeof(pattern), events);
+    LaunchSteps(context, queue, kernel, size * value.Size, sizeof(pattern), events);
     return;
   }
   cl::Kernel kernel = MakeKernel(context, "Fill", value);
@@ -141,7 +141,7 @@ void ExpandCoverage(OpenCLContext& context, const cl::CommandQueue& queue, const
   kernel.setArg(0, bits);
   kernel.setArg(1, coverage);
   kernel.setArg(2, cl_ulong{ voxels });
-  LaunchPortions(context, queue, kernel, voxels, DEFORMVOLUME_EXPANDED, events);
+  LaunchSteps(context, queue, kernel, voxels, DEFORMVOLUME_EXPANDED, events);
 }
 
 void ExpandPatches(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& bits,
@@ -177,7 +177,7 @@ void FillUncovered(OpenCLContext& context, const cl::CommandQueue& queue, const 
   kernel.setArg(2, value.Size, value.Bytes.data());
   kernel.setArg(3, bits);
   kernel.setArg(4, static_cast<cl_uint>(elements));
-  LaunchPortions(context, queue, kernel, voxels, 1, events);
+  LaunchSteps(context, queue, kernel, voxels, 1, events);
 }
 
 } // namespace deformvolume

@@ -44,7 +44,7 @@ void LaunchSmallItems(OpenCLContext& context, const cl::CommandQueue& queue,
   const cl::Kernel& kernel, std::uint64_t items, std::vector<cl::Event>& events);
 
 /// Returns the number of voxels for each work-item of the kernel CountCovered: many if a work-item
-/// has a thread of its own, fewer if thousands run at once.
+/// has a thread of its own, fewer if the device executes thousands of work-items at once.
 cl_uint GetCountedVoxels(const OpenCLContext& context);
 
 /// Fills a buffer of `size` elements by a kernel (see OutputClearing.cl).
@@ -63,8 +63,8 @@ void CountCoveredInPatches(OpenCLContext& context, const cl::CommandQueue& queue
   const KernelParameters& parameters, const cl::Buffer& sums, std::vector<cl::Event>& events);
 
 ///@{
-/// For coverage stored as bits: expand the bits of all voxels or of patches to bytes, clear the
-/// bits of patches, and fill the voxels of an array that are not covered.
+/// For coverage stored as bits: expands the bits of all voxels or of patches to bytes, clears the
+/// bits of patches, or fills the voxels of an array that are not covered.
 void ExpandCoverage(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& bits,
   const cl::Buffer& coverage, std::uint64_t voxels, std::vector<cl::Event>& events);
 void ExpandPatches(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& bits,

@@ -11,14 +11,14 @@
 namespace deformvolume
 {
 
-/// Counts the covered voxels of patches (see IncrementalUpdate) of a request's output. Runs on the
-/// host, in the memory of the request: for a few patches this is faster than launching a kernel.
-/// patches: in ascending order.
+/// Counts the covered voxels of patches (see IncrementalUpdate) of a request's output, on the host,
+/// in the memory of the request: for a few patches this is faster than launching a kernel. patches:
+/// in ascending order.
 std::uint64_t CountCoveredInPatches(
   const DeformRequest& request, const std::vector<std::uint32_t>& patches);
 
 /// Sets all voxels of patches to the background of the arrays, and their coverage to 0, on the
-/// host. arrays: those of the volume.
+/// host. arrays: of the volume.
 void ClearPatches(const DeformRequest& request, const std::vector<VolumeArray>& arrays,
   const std::vector<std::uint32_t>& patches);
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The range of a component of an output. The host defines before this text: TYPE; TYPE_LEAST and TYPE_MOST, the ends
-// of the range of that type; IS_FINITE(value). GroupReduction.cl comes before, too.
+// of the range of that type; IS_FINITE(value). This text comes after GroupReduction.cl.
 
 // Joins two least values (row 0), or two largest values.
 #define JOIN_ENDS(row, a, b) ((row) == 0 ? ((b) < (a) ? (b) : (a)) : ((b) > (a) ? (b) : (a)))
 
 // Each work-group writes its least and its largest finite value; TYPE_MOST and TYPE_LEAST if there is none.
-// Work-items with values that are not finite increment `others`. portion: number of consecutive tuples of a work-item,
-// before those of the next one. ends: local memory for two values per work-item.
+// Work-items with values that are not finite increment `others`. portion: number of consecutive tuples that a work-item
+// processes at a time. ends: local memory for two values per work-item.
 __kernel void FindRange(__global const TYPE* values, const ulong tuples, const uint components, const uint component,
   const uint portion, __global TYPE* found, __global uint* others, __local TYPE* ends)
 {

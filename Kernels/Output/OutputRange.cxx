@@ -52,8 +52,8 @@ DeviceOutput::Range Find(const cl::CommandQueue& queue, const cl::Buffer& buffer
                         GroupReduction_cl + OutputRange_cl,
                       KernelOptions),
     "FindRange");
-  // If a work-item has a thread of its own, it takes consecutive tuples; otherwise neighboring
-  // work-items take neighboring tuples.
+  // If a work-item has a thread of its own, it processes consecutive tuples; otherwise neighboring
+  // work-items process neighboring tuples.
   const bool hasThread = context->GetDevice().HasVectors;
   const cl_uint portion = hasThread ? 65536 : 1;
   const std::size_t group = hasThread ? 1 : 64;

@@ -89,7 +89,7 @@ void OutputSlab::PrepareAgain(OpenCLContext& context, const cl::CommandQueue& qu
   const bool onHost = GetOutputBytesPerVoxel(context, arrays, request) == 0;
   if (onHost)
   {
-    // Clear patches while the memory belongs to the host, before it is given to buffers.
+    // Clear patches on the host, before buffers use the memory.
     ClearPatches(request, arrays, part.Patches);
   }
   this->BindArrays(context, request, arrays);

@@ -31,12 +31,12 @@ public:
   void Bind(OpenCLContext& context, const cl::CommandQueue& queue, const Extent& extent,
     const DeformRequest& request, const std::vector<VolumeArray>& arrays,
     const VoxelGrid& voxelGrid, std::size_t numberOfBricks, std::vector<cl::Event>& events);
-  /// After Bind: sets the coverage to 0, and fills the arrays with the background. If coverage is
-  /// bits, Complete fills them instead.
+  /// Sets the coverage to 0, and fills the arrays with the background. If coverage is stored as
+  /// bits, Complete() fills the arrays instead. Call this after Bind().
   void Clear(OpenCLContext& context, const std::vector<VolumeArray>& arrays, bool coverageBits,
     std::vector<cl::Event>& events);
-  /// If coverage is bits: expands them to bytes, and fills voxels that are not covered with the
-  /// background. again: only the patches that PrepareAgain cleared have changed.
+  /// If coverage is stored as bits: expands the bits to bytes, and fills voxels that are not
+  /// covered with the background. again: only the patches that PrepareAgain() cleared have changed.
   void Complete(OpenCLContext& context, const std::vector<VolumeArray>& arrays, bool again,
     std::vector<cl::Event>& events);
 
@@ -44,7 +44,7 @@ public:
   /// arrays that are written in place, otherwise on the device.
   bool HoldsLastOutput(const OpenCLContext& context, const DeformRequest& request,
     const std::vector<VolumeArray>& arrays) const;
-  /// The parts of an output that an incremental update makes again (see IncrementalUpdate).
+  /// The parts of an output that an incremental update computes again (see IncrementalUpdate).
   struct PartToMake
   {
     const std::vector<cl_uint>& Bricks;
@@ -52,9 +52,9 @@ public:
     const std::vector<std::uint32_t>& Patches;
     bool WithWinners; // whether the last output chose winners
   };
-  /// Replaces Bind and Clear for an incremental update. The last output and its counters must be
-  /// available. Clears the patches, the counters of the bricks, and the counters that tell the
-  /// passes for winners where they have work. Other patches keep their winners.
+  /// Replaces Bind() and Clear() for an incremental update. The last output and its counters must
+  /// be available. Clears the patches, the counters of the bricks, and the counters by which the
+  /// passes for winners find their work. Other patches keep their winners.
   void PrepareAgain(OpenCLContext& context, const cl::CommandQueue& queue,
     const DeformRequest& request, const std::vector<VolumeArray>& arrays, const PartToMake& part,
     std::vector<cl::Event>& events);
@@ -94,15 +94,16 @@ public:
 
   /// Begins to copy a part of the finished slab to the memory of the request, in a separate queue.
   void Read(const cl::CommandQueue& queue, const DeformRequest& request, const Extent& part);
-  /// Leaves the finished slab, which must be the whole output, on the device. It must be copied to
-  /// the host before the slab is placed or made again. queue: for that copy. parts: for each array
-  /// and the coverage, the part that the memory of the request lacks.
+  /// Leaves the finished slab, which must be the whole output, on the device. The returned outputs
+  /// must be copied to the host before Bind() or PrepareAgain() is called. queue: for these copies.
+  /// parts: for each array, then for the coverage, the extent in which the memory of the request
+  /// does not have the current values.
   std::vector<std::shared_ptr<DeviceOutput>> Leave(const cl::CommandQueue& queue,
     const DeformRequest& request, const std::vector<VolumeArray>& arrays,
     const std::vector<Extent>& parts) const;
   /// Waits until the slab is in the memory of the request. Throws cl::Error if a copy failed.
   void FinishReading() { this->Reads.Check(); }
-  /// Waits in any case, also after a failure, and releases the memory of the request. Does not
+  /// Waits for all commands, also after a failure, and releases the memory of the request. Does not
   /// throw.
   void Finish();
 
@@ -127,7 +128,7 @@ private:
   cl::Buffer PatchList; // patches that an update clears
   std::size_t NumberOfListedPatches = 0;
   SectionCounters Counters;
-  LargeCellList LargeCells; // at most 1 MB; like all work lists not included in GetMemory()
+  LargeCellList LargeCells; // at most 1 MB; GetMemory() does not count it
   std::uint64_t NumberOfVoxels = 0;
   PendingCopies Reads; // last member: copies end before buffers are deleted
 };

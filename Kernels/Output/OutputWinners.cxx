@@ -44,8 +44,8 @@ std::uint64_t OutputWinners::CountPatches() const
 
 bool OutputWinners::HasBuffers() const
 {
-  // Buffers of a slightly larger output are reused: first access to new memory takes longer than to
-  // fill it.
+  // Buffers of a slightly larger output are reused: the first access to new memory takes longer
+  // than filling the buffers.
   const std::uint64_t held = deformvolume::GetMemory(this->Keys);
   return held >= this->KeyBytes && held - this->KeyBytes <= this->KeyBytes / 4 &&
     deformvolume::GetMemory(this->Patches) >= 2 * this->CountPatches();
@@ -119,13 +119,13 @@ void OutputWinners::Settle(OpenCLContext& context, bool claimed, const cl::Buffe
 {
   if (!claimed)
   {
-    // Without the claiming pass, samples outside a cell's own ones are unknown: assume all are
-    // touched.
+    // Without the pass in which cells claim voxels, it is not known which patches are touched.
+    // Assume that all patches are touched.
     Fill(context, this->Queue, this->Patches,
       ElementBytes::Of(static_cast<cl_uchar>(DEFORMVOLUME_PATCH_TOUCHED)), this->CountPatches(),
       events);
   }
-  // If a work-item has a thread of its own, it takes many neighboring patches.
+  // If a work-item has a thread of its own, it processes many neighboring patches.
   const cl_uint patchesOfItem = context.GetDevice().HasVectors ? 32 : 1;
   cl::Kernel kernel(GetOutputProgram(context), "Settle");
   kernel.setArg(0, coverage);

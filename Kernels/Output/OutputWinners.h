@@ -30,17 +30,18 @@ public:
   std::uint64_t GetMissingMemory() const;
   /// Allocates the buffers if needed, and resets all winners.
   void Prepare(OpenCLContext& context, std::vector<cl::Event>& events);
-  /// Resets the winners of some patches; other patches keep those of the last output. list: the
-  /// patch numbers on the device. parameters: with the extent of the output.
+  /// Resets the winners of some patches. Other patches keep the winners of the last output. list:
+  /// the patch numbers on the device. parameters: with the extent of the output.
   void PrepareAgain(OpenCLContext& context, const std::vector<std::uint32_t>& patches,
     const cl::Buffer& list, const KernelParameters& parameters, std::vector<cl::Event>& events);
-  /// Finds the voxels that are still to be won, and those that no cell has written. Runs after the
-  /// pass in which cells claim voxels, or without that pass if no voxel is contested. coverage,
+  /// Finds the unsettled voxels: voxels whose winner must still be chosen, and voxels that no cell
+  /// has written but some cell may win. Call this after the pass in which cells claim voxels, or
+  /// without that pass if no voxel is contested. claimed: whether that pass was launched. coverage,
   /// counters: of the output.
   void Settle(OpenCLContext& context, bool claimed, const cl::Buffer& coverage,
     const cl::Buffer& counters, const KernelParameters& parameters, std::vector<cl::Event>& events);
-  /// Whether Settle found voxels that several tetrahedra write, now or earlier in patches that are
-  /// kept.
+  /// Whether Settle() has found voxels that several tetrahedra write: in this update, or earlier in
+  /// patches that are kept.
   bool HasContested() const;
 
   ///@{

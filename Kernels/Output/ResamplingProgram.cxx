@@ -18,7 +18,7 @@ namespace deformvolume
 namespace
 {
 
-/// The memory of a work-item of the kernel ResampleBricks for `slots` arrays, in bytes.
+/// Returns the memory of a work-item of the kernel ResampleBricks for `slots` arrays, in bytes.
 std::size_t GetBrickMemory(const OpenCLContext& context, bool hasTurnedAxes, std::size_t slots)
 {
   const std::size_t lanes = static_cast<std::size_t>(GetLanes(context));
@@ -29,8 +29,8 @@ std::size_t GetBrickMemory(const OpenCLContext& context, bool hasTurnedAxes, std
     sizeof(cl_float);
 }
 
-/// The same for a work-group of the kernel ResampleColumns, or of the kernels for deferred cells.
-/// planes: number of planes of vertices.
+/// Returns the memory of a work-group of the kernel ResampleColumns, or of the kernels for deferred
+/// cells, for `slots` arrays, in bytes. planes: number of planes of vertices.
 std::size_t GetColumnMemory(std::size_t slots, std::size_t planes = 3)
 {
   const std::size_t row = 2 * (3 + slots) * (DEFORMVOLUME_SPAN / 2 + 1);
@@ -45,8 +45,8 @@ std::size_t GetLocalMemory(const OpenCLContext& context)
   return context.GetDevice().Device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
 }
 
-/// Whether the kernel interpolates each array in single precision: as many as fit into local
-/// memory, if that is used.
+/// Returns for each array whether the kernel interpolates it in single precision. If the kernel
+/// uses local memory, it does so for the first arrays that fit into local memory.
 std::vector<bool> FindLaneArrays(const OpenCLContext& context,
   const std::vector<VolumeArray>& arrays, ResamplingForm form, bool hasTurnedAxes)
 {

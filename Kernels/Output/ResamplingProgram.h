@@ -41,7 +41,7 @@ struct ResamplingVariant
   bool CoverageBits;
   /// Whether there is a smooth cut (CutCells.cl).
   bool WithCut;
-  /// Whether columns are only resampled in the direct pass.
+  /// Whether the program is used in the pass DIRECT only (PASS_IS_DIRECT), for columns.
   bool IsDirect = false;
   /// Whether interpolation is cubic where possible. Only for the forms Cells and LargeCells.
   bool IsCubic = false;
@@ -57,7 +57,7 @@ cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
 /// Whether the kernel ResampleBricks works in local memory, because there is enough of it.
 /// Otherwise it works in a global buffer with a section for each work-item.
 bool HasLocalBricks(const OpenCLContext& context, bool hasTurnedAxes);
-/// Returns the bytes of that memory for a work-item.
+/// Returns the memory of a work-item of the kernel ResampleBricks, in bytes.
 std::size_t GetBrickMemory(
   const OpenCLContext& context, bool hasTurnedAxes, const std::vector<VolumeArray>& arrays);
 

@@ -41,11 +41,11 @@ public:
   /// Reserves the counters, and sets them to 0.
   void Start(OpenCLContext& context, const cl::CommandQueue& queue, std::size_t numberOfBricks,
     std::vector<cl::Event>& events);
-  /// Sets all counters to 0, before a counting pass is run again.
+  /// Sets all counters to 0, before a counting pass is repeated.
   void Clear(OpenCLContext& context, std::vector<cl::Event>& events);
-  /// Sets the counters of some sections to 0, before an incremental update. bricks: their number.
-  /// brickList: in the format of DEFORMVOLUME_BRICK_BITS. withWinners: whether to set, for all
-  /// sections, the counters to 0 that tell the passes for winners where they have work.
+  /// Sets the counters of some sections to 0, before an incremental update. bricks: number of
+  /// bricks in the list. brickList: in the format of DEFORMVOLUME_BRICK_BITS. withWinners: whether
+  /// to clear also, for all sections, the counters by which the passes for winners find their work.
   void ClearSections(OpenCLContext& context, std::size_t bricks, const cl::Buffer& brickList,
     bool withWinners, std::vector<cl::Event>& events);
 

@@ -25,12 +25,12 @@ typedef struct
   uint Missing; // cells at the border with a flat or absent tetrahedron
   uint Assumed; // whether cells at the border left samples to neighbors without checking these
   uint Candidates; // voxels whose winner this work-item has replaced
-  uint Touched; // nonzero if samples are held that this cell does not own
+  uint Touched; // nonzero if the cell contains samples that it does not own
   uint Large; // cells that were added to LargeCells
 } Output;
 
-// The first parameters of each of these kernels (ExactPasses::SetArguments), and the mesh and the output made from
-// them.
+// The first parameters of each resampling kernel (ExactPasses::SetArguments), and the initializers of the mesh and of
+// the output that consist of these parameters.
 #define GIVEN_PARAMETERS                                                                           \
   MAPPING_PARAMETERS, __global const uchar *state, __global const uchar *active,                   \
     __global const float *distances, __global char *coverage, __global KEY *winners,               \
@@ -66,9 +66,9 @@ static void AddCount(
   }
 }
 
-// The winner of overlapping tetrahedra is an upright one before an inverted one, then the one in the lowest cell.
-// Within a cell the lowest tetrahedron is written last. A contested voxel has the highest bit of its key set, so its
-// key is greater than those of settled voxels.
+// The winner of overlapping tetrahedra is the upright tetrahedron in the lowest cell; if all are inverted, the
+// tetrahedron in the lowest cell. Within a cell the lowest tetrahedron is written last. A contested voxel has the
+// highest bit of its key set, so that its key is greater than the keys of settled voxels.
 #define CONTESTED ((KEY)1 << (sizeof(KEY) * 8 - 1))
 
 static KEY MakeKey(int x, int y, int z, int inverted, const KernelParameters* p)
@@ -78,9 +78,9 @@ static KEY MakeKey(int x, int y, int z, int inverted, const KernelParameters* p)
     (DEFORMVOLUME_IS_CLOSED(p->Pass) ? CONTESTED : 0);
 }
 
-// A cell that writes a voxel stores its key there. If there is a key already, the lower one stays, and the voxel is
+// A cell that writes a voxel stores its key there. If there is a key already, the lower key stays, and the voxel is
 // marked as contested. Returns whether the voxel belongs to this cell so far. A contested voxel is written later by
-// its winner. So in an incremental update a cell that finds its own contested key does not write the voxel.
+// its winner. Therefore, in an incremental update, a cell that finds its own contested key does not write the voxel.
 static int Claim(__global KEY* winner, KEY key)
 {
   const KEY none = (KEY)-1;
@@ -102,7 +102,7 @@ static int Claim(__global KEY* winner, KEY key)
 }
 
 // Marks a voxel of this cell as contested, because several tetrahedra of the cell write it: tetrahedra of other cells
-// that hold the voxel may win.
+// that contain the voxel may win.
 static void Contest(__global KEY* winner, KEY key)
 {
   ATOMIC_CMPXCHG(winner, key, CONTESTED | key);
@@ -144,7 +144,8 @@ static int WinsVoxel(Output* output, size_t target, KEY key, const KernelParamet
 static int AnyUnsettled(
   __global const char* patches, const int* first, const int* last, const KernelParameters* p)
 {
-  // Owned samples were claimed before; the pass MARK needs patches with other samples, too.
+  // Owned samples have been claimed before. Therefore the pass MARK needs only unsettled patches that are also touched:
+  // cells contain samples of these patches that they do not own.
   const char wanted = DEFORMVOLUME_PATCH_UNSETTLED |
     (p->Pass == DEFORMVOLUME_PASS_MARK ? DEFORMVOLUME_PATCH_TOUCHED : 0);
   for (int z = first[2] / DEFORMVOLUME_PATCH; z <= last[2] / DEFORMVOLUME_PATCH; ++z)
@@ -164,7 +165,7 @@ static int AnyUnsettled(
   return 0;
 }
 
-// Notes that a cell holds a voxel that it does not own, and so may win it.
+// Records that a cell contains a voxel that it does not own, and that it may therefore win.
 static OUTLINED void Touch(int x, int y, int z, Output* output, const KernelParameters* p)
 {
   __global char* patch = output->Patches + PatchRow(y, z, p) + x / DEFORMVOLUME_PATCH;
