@@ -116,8 +116,7 @@ typedef struct
 #define DEFORMVOLUME_PASS_MARK 2
 #define DEFORMVOLUME_PASS_WINNER 3 // write the voxels of which this tetrahedron is the winner
 #define DEFORMVOLUME_PASS_COUNT 4  // count the tetrahedra that write each voxel; write nothing
-// Whether the pass uses all tetrahedra that contain a voxel, not only the tetrahedron that writes
-// it.
+// Whether the pass uses all tetrahedra that contain a voxel, not only the one that writes it.
 #define DEFORMVOLUME_IS_CLOSED(pass)                                                               \
   ((pass) == DEFORMVOLUME_PASS_MARK || (pass) == DEFORMVOLUME_PASS_WINNER)
 // Whether the pass writes values.
@@ -216,9 +215,9 @@ typedef struct
 #define DEFORMVOLUME_CELL_UNCROSSED 32   // no smooth cut crosses the cell that begins at the vertex
 #define DEFORMVOLUME_VERTEX_TOGETHER 64  // its copies on both sides of the cut coincide with it
 
-// Further bits in the mask of active tetrahedra: the boundary of the deformation mesh crosses ...
-#define DEFORMVOLUME_CELL_AT_BOUNDARY 32 // the cell or one of its neighbors
-#define DEFORMVOLUME_CELL_CROSSED 64     // the cell itself
+// Further bits in the mask of active tetrahedra, for the boundary of the deformation mesh.
+#define DEFORMVOLUME_CELL_AT_BOUNDARY 32 // the boundary crosses the cell or a neighbor of it
+#define DEFORMVOLUME_CELL_CROSSED 64     // the boundary crosses the cell
 
 #ifdef __OPENCL_VERSION__
 
