@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A library that a Python interpreter loads before all others (LD_PRELOAD): the device appears to
-// be a graphics card with memory of its own.
+// A library that a Python interpreter loads before all other libraries (LD_PRELOAD). It makes the
+// device appear to be a GPU with memory of its own.
 #include "FakeDriver.h"
 
 namespace

@@ -18,7 +18,7 @@ from vtkmodules.vtkCommonDataModel import (
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 
 FOLDERS = ["Filters"]
-if hasattr(deformvolume_vtk, "vtkDeformVolumeSession"):  # not where VTK is ParaView's
+if hasattr(deformvolume_vtk, "vtkDeformVolumeSession"):  # missing with ParaView's VTK
     FOLDERS.append("Interaction")
 ROOT = os.path.join(os.path.dirname(__file__), "..", "..")
 
@@ -44,19 +44,19 @@ def is_abstract(cls):
 
 
 def own_names(cls):
-    """What the class and its bases in this package declare."""
+    """Returns the names of members that the class and its bases in this package declare."""
     return sorted({name for base in cls.__mro__ if base in own_classes() for name in vars(base)})
 
 
 def properties(cls):
-    """Names with both a getter without arguments and a setter, declared by the package."""
+    """Returns the names of properties: those with a setter and a getter without arguments in this package."""
     for name in own_names(cls):
         if name.startswith("Set") and hasattr(cls, "Get" + name[3:]):
             yield name[3:]
 
 
 def other_values(value):
-    """Values of the same type, to be set one after the other."""
+    """Returns other values of the same type, which are set one after the other."""
     if isinstance(value, bool):
         return [not value]
     if isinstance(value, int):
@@ -70,7 +70,7 @@ def other_values(value):
     return None
 
 
-# Numbers of removed enumerators. They set another one, with a warning.
+# Numbers of removed enumerators. Setting such a number sets another value, with a warning.
 REMOVED_VALUES = {"vtkTetGenMesher.PieceMode": 1}
 
 
@@ -90,7 +90,7 @@ def check_properties(cls):
             count += 1
             continue
         others = other_values(value)
-        check(others is not None, f"{label}: values of type {type(value)} are not known here")
+        check(others is not None, f"{label}: other_values() has no values of type {type(value)}")
         for other in others or []:
             if other == REMOVED_VALUES.get(label):
                 continue
@@ -130,13 +130,13 @@ def check_properties(cls):
             if hasattr(instance, name + mode):
                 getattr(instance, name + mode)()
                 check(bool(get()) == (mode == "On"), f"{label}{mode} gives {get()}")
-        check(name in str(instance), f"{label}: PrintSelf does not tell it")
+        check(name in str(instance), f"{label}: PrintSelf does not print it")
         count += 1
     return count
 
 
 class Messages:
-    """Counts what an algorithm and its executive report, so that nothing is printed."""
+    """Counts the messages of an algorithm and of its executive instead of printing them."""
 
     def __init__(self, algorithm):
         self.errors = []
@@ -206,7 +206,7 @@ def check_abstract(cls):
         cls()
     except (NotImplementedError, TypeError):
         return
-    check(False, f"{cls.__name__}: a base class that can be made")
+    check(False, f"{cls.__name__}: an abstract class that can be instantiated")
 
 
 def main():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""FieldIsInverse: misuse first, then numbers against a look-up in numpy."""
+"""Tests FieldIsInverse: misuse first, then numbers, which are compared with an interpolation in numpy."""
 
 import numpy as np
 
@@ -45,20 +45,21 @@ class Grid:
         return image
 
     def get_points(self):
-        """World coordinates, [z, y, x, axis]."""
+        """Returns the world coordinates of the points, as an array [z, y, x, axis]."""
         ranges = (np.arange(self.extent[2 * i], self.extent[2 * i + 1] + 1.0) for i in (2, 1, 0))
         index = np.stack(np.meshgrid(*ranges, indexing="ij"), axis=-1)[..., ::-1]
         return index @ self.matrix.T + self.origin
 
     def to_index(self, points):
-        """Continuous index, counted from the first point."""
+        """Returns continuous indices of points, counted from the first point of the grid."""
         first = np.array(self.extent[::2])
         return np.linalg.solve(self.matrix, (points - self.origin).reshape(-1, 3).T).T.reshape(
             points.shape) - first
 
 
 def interpolate(values, index):
-    """Trilinear, clamped to the array; index: continuous, x first."""
+    """Returns trilinear interpolations of values. index: continuous indices, x first, which are clamped to the
+    array."""
     size = np.array(values.shape[2::-1])
     inside = np.clip(index, 0, size - 1)
     low = np.minimum(np.floor(inside).astype(int), np.maximum(size - 2, 0))
@@ -76,8 +77,8 @@ def interpolate(values, index):
 
 
 def look_up(grid, values, field_grid, vectors, output, scale=1.0, extrapolate=False):
-    """Values at the points of a grid, the distance to the nearest border of what is covered in voxels
-    (negative outside), and the index in the volume."""
+    """Returns for the points of the output's grid: values, the distance from the nearest border of the covered part
+    in voxels (negative outside), and the index in the volume."""
     points = output.get_points()
     in_field = field_grid.to_index(points)
     index = grid.to_index(points + scale * interpolate(vectors, in_field))
@@ -133,7 +134,7 @@ def make_vectors(points, strength):
 vectors = make_vectors(field_grid.get_points(), 2.0).astype(np.float32)
 field = field_grid.make_image(b=vectors)
 
-# Misuse: one error that says what to do. Then the same filter works.
+# Misuse: there is one error that says what to do. After that the same filter works.
 deform = make_filter(volume, field)
 messages = []
 
@@ -178,7 +179,7 @@ def compare(deform, vectors, scale=1.0, extrapolate=False, background=0.0):
     for name in ("single", "short", "wide", "vectors"):
         expected, margin, index = look_up(grid, arrays[name], field_grid, vectors, grid_of(output),
                                           scale, extrapolate)
-        # The border counts up to 1/256 voxel outside.
+        # Points up to 1/256 voxel outside the volume are covered.
         assert covered[margin > 1e-5].all() and not covered[margin < -1 / 128].any(), name
         values = get(output, name)
         assert (values[~covered] == background).all()
@@ -195,8 +196,8 @@ def compare(deform, vectors, scale=1.0, extrapolate=False, background=0.0):
 
 
 def check_bounds(deform, vectors, covered, **options):
-    """The extent is that of the covered voxels: none on its border planes is all background, and a
-    wider output has no more."""
+    """Checks that the extent is that of the covered voxels: no plane at its border is background only, and a larger
+    output covers no more voxels."""
     for axis in range(3):
         for plane in (0, -1):
             assert covered.take(plane, axis=axis).any(), (axis, plane)
@@ -256,7 +257,7 @@ output, _ = compare(deform, vectors)
 for name in arrays:
     assert np.array_equal(get(output, name), get(whole, name)), name
 
-# Parts of the output are those of the whole, to the last bit.
+# Parts of the output equal the whole output to the last bit.
 extent = whole.GetExtent()
 part = [extent[0] + 3, extent[1] - 4, extent[2], extent[2] + 5, extent[4] + 2, extent[5] - 1]
 parts = make_filter(volume, field)
@@ -268,7 +269,7 @@ cut = np.s_[part[4] - extent[4]:part[5] - extent[4] + 1, part[2] - extent[2]:par
 for name in (*arrays, "vtkValidPointMask"):
     assert np.array_equal(get(parts.GetOutput(), name), get(whole, name)[cut]), name
 
-# A field of zero: the volume bit for bit, linear and cubic.
+# A field of zero gives the volume bit for bit, with linear and with cubic interpolation.
 still = grid.make_image(b=np.zeros((*shape, 3)))
 deform.SetDeformationData(still)
 for interpolation in (Filter.LINEAR_INTERPOLATION, Filter.CUBIC_INTERPOLATION):
@@ -279,7 +280,7 @@ for interpolation in (Filter.LINEAR_INTERPOLATION, Filter.CUBIC_INTERPOLATION):
         assert np.array_equal(get(deform.GetOutput(), name), values), name
     assert get(deform.GetOutput(), "vtkValidPointMask").all()
 
-# Shifts by whole voxels: forward and inverse fields give the same, also when one replaces the other.
+# Shifts by whole voxels: forward and inverse fields give the same output, also if one replaces the other.
 step = grid.matrix @ (2, -1, 3)
 outputs = []
 there = make_filter(volume, grid.make_image(b=np.broadcast_to(step, (*shape, 3)).copy()), False)
@@ -294,8 +295,8 @@ for inverse, scale in ((False, 1), (True, -1), (False, 1)):
     for name, values in arrays.items():
         assert np.array_equal(get(result, name), values), name
 
-# An affine field and its inverse: of values that rise linearly, both give the same, up to the rounding
-# of forward positions to 1/512 voxel an axis.
+# An affine field and its inverse: if values are linear, both give the same output, up to the rounding of forward
+# positions, at most 1/512 voxel on each axis.
 gradient = np.array([[0.1, 0.05, -0.02], [-0.08, -0.1, 0.03], [0.04, 0.07, 0.05]])
 away = field_grid.get_points() - middle
 forward = field_grid.make_image(b=away @ gradient.T)
@@ -315,7 +316,7 @@ wrong = np.abs(results[0][0] - results[1][0])[both].max()
 rounding = np.abs(slope @ np.linalg.inv(np.eye(3) + gradient) @ grid.matrix).sum() / 512
 assert wrong < rounding + 1e-4, (wrong, rounding)
 
-# A reflection turns all tetrahedra of the field's lattice inside out, five of each cell.
+# A reflection inverts all tetrahedra of the field's grid, five for each cell.
 mirror = field_grid.make_image(b=(-2.0 * away[..., :1]) * np.array([1.0, 0.0, 0.0]))
 mirrored = make_filter(ramp, mirror)
 mirrored.Update()
@@ -339,12 +340,13 @@ assert covered[(margin > 1e-5) & (np.abs(index - (10, 9, 8)) > 1.001).any(axis=-
 
 # Tetrahedra that are switched off contain no sample.
 def find_tetrahedra(index):
-    """Which of the five tetrahedra of its cell holds a point of the volume, and by how much."""
+    """Returns for points of the volume which of the five tetrahedra of the cell contains it, and the distance from the
+    nearest other tetrahedron."""
     cell = np.floor(index).astype(int)
     part = index - cell
     odd = (cell + np.array(grid.extent[::2])) % 2 == 1
     x, y, z = np.moveaxis(np.where(odd, 1 - part, part), -1, 0)
-    # How far it lies behind the faces of the central tetrahedron.
+    # Distances behind the faces of the central tetrahedron.
     behind = np.stack([1 - (x + y + (1 - z)), 1 - ((1 - x) + (1 - y) + (1 - z)),
                        1 - ((1 - x) + y + z), 1 - (x + (1 - y) + z)], axis=-1)
     found = np.where(behind.max(axis=-1) > 0, behind.argmax(axis=-1), 4)

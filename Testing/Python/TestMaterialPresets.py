@@ -30,7 +30,7 @@ for number, (name, *values, source, remark) in zip(numbers, rows):
         # The source is in the list at the end, with its year.
         author, year = source.split()[0], source.split()[-1]
         assert re.search(rf"{author}\b[^;]*\b{year},\s\"", text.split("## Sources")[1]), source
-        # Units: no tissue is softer than 0.1 kPa, lighter than fat or heavier than bone.
+        # Check the units: no tissue is softer than 0.1 kPa, lighter than fat or heavier than bone.
         assert 100 <= of_code[0] <= 3e10 and 0 <= of_code[1] < 0.495 and 900 <= of_code[2] <= 2000, of_code
     assert written == of_code, f"{name}: {written} in the document, {of_code} in the code"
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Outputs that stay on a device with memory of its own, read by numpy and by VTK's filters."""
+"""Tests outputs that stay on a device with memory of its own, and are read by numpy and by VTK's filters."""
 
 import numpy as np
 
@@ -17,7 +17,7 @@ SHAPE = (12, 14, 16)
 
 
 def make_volume():
-    """One array of each type, and one of two components."""
+    """Returns a volume with one array of each type, and one array of two components."""
     random = np.random.default_rng(1)
     image = vtkImageData()
     image.SetDimensions(*reversed(SHAPE))
@@ -87,7 +87,7 @@ def test_numpy():
         kept.append((values, values.copy()))
         for values, copy in kept:
             assert np.array_equal(values, copy)
-    # Not read before the next update, and then read in another way.
+    # An output that is not read before the next update.
     held = vtkImageData()
     wanted = vtkImageData()
     move(mesh, 0.3)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""VTK's mappers of volumes and slices draw outputs that stay on a device as they draw others."""
+"""Tests that VTK's mappers of volumes and slices draw outputs that stay on a device as they draw other outputs."""
 
 import numpy as np
 
 import deformvolume_vtk
-import vtkmodules.vtkInteractionStyle  # noqa: F401  (they make the classes of windows and mappers)
+import vtkmodules.vtkInteractionStyle  # noqa: F401  (these modules register the classes of windows and mappers)
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
 import vtkmodules.vtkRenderingVolumeOpenGL2  # noqa: F401
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -25,7 +25,7 @@ from reported import reported
 
 try:
     from vtkmodules.vtkRenderingImage import vtkImageResliceMapper as vtkSliceMapper
-except ImportError:  # which ParaView's Python lacks
+except ImportError:  # ParaView's Python has no such module
     from vtkmodules.vtkRenderingCore import vtkImageSliceMapper as vtkSliceMapper
 
 SHAPE = (40, 48, 44)
@@ -75,7 +75,7 @@ def make_actor(mapper):
 
 
 def draw(mapper_class, image, mesh, on_device):
-    """Three pictures, the last one after an update whose output is not drawn."""
+    """Returns three pictures. Before the last one there is an update whose output is not drawn."""
     deform = deformvolume_vtk.vtkDeformVolumeFilter()
     deform.SetInputData(image)
     deform.SetDeformationData(mesh)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The package deformvolume: misuse first, then results equal to those of vtkDeformVolumeFilter, bit by bit, by numpy
-arrays and in pipelines.
+"""Tests the package deformvolume: misuse first, then results, which equal those of vtkDeformVolumeFilter bit by bit,
+with numpy arrays and in pipelines.
 
     TestPackage.py FOLDER
 
@@ -31,7 +31,7 @@ TURNED = np.array([[0.8, -0.6, 0.0], [0.6, 0.8, 0.0], [0.0, 0.0, 1.0]])
 
 
 def expect(kind, text, call):
-    """call() raises an exception of this kind whose message has this text."""
+    """Checks that call() raises an exception of this type whose message contains this text."""
     try:
         call()
     except kind as error:
@@ -92,7 +92,7 @@ def make_reference():
 
 
 def compare(name, image, deformation, rest=None, reference=None, **properties):
-    """The filter of the package has the output of the C++ filter."""
+    """Checks that the filter of the package has the same output as the C++ filter."""
     outputs = []
     for kind in (DeformVolume, Filter):
         made = kind()
@@ -158,7 +158,7 @@ def test_misuse():
         (ValueError, "no volume", lambda: DeformVolume()._prepare()),
     ):
         expect(kind, text, call)
-    # It works after errors.
+    # The package works after errors.
     assert dv.deform(volume, mesh, bounds="volume").array.shape == (5, 6, 7)
 
 
@@ -229,7 +229,7 @@ def test_pipelines():
     compare("nothing", image, None)
     compare("nothing, reference", image, None, reference=make_reference())
 
-    # Several updates.
+    # Several updates of the same filters.
     both = [DeformVolume(), Filter()]
     for one in both:
         one.SetInputDataObject(0, image)
@@ -244,7 +244,8 @@ def test_pipelines():
 
 
 def test_arrays():
-    # Indices of numpy begin at 0; the split of voxels into tetrahedra is that of even indices.
+    # Structured indices of numpy arrays begin at 0. The split of cells into tetrahedra depends on the parity of these
+    # indices, so the extent of the VTK image begins at an even index.
     image = make_image(first=2)
     mesh = bend(make_mesh(image, 5))
     deformer = Filter()
@@ -276,7 +277,7 @@ def test_arrays():
     for name, array in zip(("values", "labels", "colors"), result.arrays):
         theirs = vtk_to_numpy(wanted.GetPointData().GetArray(name))
         ours = array.transpose((2, 1, 0, 3)[: array.ndim]).reshape(theirs.shape)
-        # The affine rounds the origin.
+        # Values differ in a few voxels, because the origin in the affine is rounded.
         assert (ours == theirs).mean() > 0.99 and ours.dtype == theirs.dtype, (name, (ours == theirs).mean())
 
     # The result does not depend on the memory layout of an array. Arrays that can be used in place are not copied.
@@ -293,11 +294,11 @@ def test_arrays():
         assert again.array.tobytes() == result.arrays[0].tobytes()
     mask = arrays[1] > 2
     assert dv.deform(mask, deformation, affine, categorical=True).array.dtype == np.uint8
-    # Integers, doubles and other types of points.
+    # Points and cells of other types.
     for points, cells in ((deformation.points.astype(float), deformation.cells.astype(np.int32)),):
         again = dv.deform(first, dv.Mesh(points, cells, deformation.displacements.astype(float)), affine)
         assert again.array.tobytes() == result.arrays[0].tobytes()
-    # Other cells: a hexahedron that does not move.
+    # Cells other than tetrahedra: a hexahedron that does not move.
     corners = np.array([[x, y, z] for z in (0, 1) for y, x in ((0, 0), (0, 1), (1, 1), (1, 0))], float)
     box = corners * [9.0, 9.0, 9.0]
     cube = random.normal(size=(10, 10, 10))

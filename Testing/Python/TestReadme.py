@@ -62,7 +62,7 @@ for document in documents:
             for option in re.findall(r"(?<=\s)--[a-z-]+", command):
                 assert re.search(rf'{option}[",]', program), f"{document}: {option} in {command}"
 
-# The package. A made-up head takes the place of the file.
+# The package deformvolume. A synthetic head replaces the file.
 saved = []
 nibabel = types.ModuleType("nibabel")
 nibabel.load = lambda name: types.SimpleNamespace(
@@ -88,7 +88,7 @@ assert run(of_readme)["result"].coverage.sum() > 60**3
 names = run(of_classes)
 rest = names["volume"].GetOutput()
 result = names["result"]
-# Bent to one side by up to 5 voxels at both ends: 21 voxels on each axis become 26 or 27 on x.
+# The volume is bent to one side by up to 5 voxels at both ends: 21 voxels on each axis become 26 or 27 on x.
 assert rest.GetDimensions() == (21, 21, 21)
 low, high = result.GetBounds()[:2]
 assert (low, high) == (-10, 15), (low, high)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""From numpy through the filter and back: values, labels, errors and devices as Python sees them."""
+"""Tests arrays of numpy that the filter deforms and numpy reads: values, labels, errors and devices in Python."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from reported import reported
 
 
 def make_volume(shape):
-    """A volume of shape (z, y, x) with values and labels."""
+    """Returns a volume of shape (z, y, x) with values and labels."""
     random = np.random.default_rng(1)
     values = random.integers(-1000, 1000, size=shape, dtype=np.int16)
     labels = random.integers(2**60, 2**62, size=shape, dtype=np.int64)
@@ -86,7 +86,7 @@ def test_half_a_voxel():
     output = deform.GetOutput()
     means = (values[:, :, :-1].astype(float) + values[:, :, 1:]) / 2
     inside = np.s_[1:-1, 1:-1, 1:-1]
-    # Halves go to the even neighbour, as numpy rounds.
+    # Means that end in .5 are rounded to the even integer, as numpy does.
     assert np.array_equal(to_numpy(output, "value")[inside], np.rint(means).astype(np.int16))
     # Both voxels are equally near: the one with the lower index is taken.
     assert np.array_equal(to_numpy(output, "label")[inside], labels[:, :, :-1])
@@ -126,7 +126,7 @@ def test_devices():
 
 
 def test_values_in_place():
-    """A volume whose values are those of a numpy array follows changes of the array."""
+    """Tests that a volume which shares its values with a numpy array follows changes of that array."""
     values = np.arange(4 * 5 * 6, dtype=np.float32)
     image = vtkImageData()
     image.SetDimensions(6, 5, 4)

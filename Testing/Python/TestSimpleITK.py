@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Compares deformvolume.sitk with SimpleITK.Resample. Run with the Python of "Testing/packages.sh readers":
-TestSimpleITK.py FOLDER, where FOLDER has the package."""
+"""Compares deformvolume.sitk with SimpleITK.Resample. FOLDER contains the package.
+Usage, with the Python that "Testing/packages.sh readers" installs: TestSimpleITK.py FOLDER"""
 import sys
 
 import numpy as np
@@ -33,7 +33,7 @@ def expect(kind, text, call):
 
 
 image = make_image(random.normal(size=(20, 25, 30)).astype("f4"), (-5, 7, 3), (1.5, 2.0, 2.5))
-# It reaches beyond the image on all sides.
+# The field is larger than the image on all sides.
 field = make_image(0.7 * random.normal(size=(8, 9, 10, 3)), (-20, -10, -20), (12.0, 13.0, 14.0), is_vector=True)
 fixed = make_image(np.zeros((22, 27, 18), "u1"), (-30, 56, 7), (1.9, 2.1, 1.8), (0, 1, 0, -1, 0, 0, 0, 0, 1))
 
@@ -50,7 +50,7 @@ for reference in (None, fixed):
         for get in ("GetOrigin", "GetSpacing", "GetDirection"):
             assert np.allclose(getattr(ours, get)(), getattr(theirs, get)(), rtol=0, atol=1e-12), get
         a, b = sitk.GetArrayFromImage(ours), sitk.GetArrayFromImage(theirs)
-        # SimpleITK also takes points up to half a voxel outside the image.
+        # SimpleITK extends the image by half a voxel on each side.
         inside = (a != -9.0) & (b != -9.0)
         assert inside.sum() > 1000 and not ((a != -9.0) & (b == -9.0)).any()
         error = abs(a - b)[inside]
@@ -58,10 +58,10 @@ for reference in (None, fixed):
         if interpolation == "linear":
             assert error.max() < 1e-4
         else:
-            # Where two voxels are equally near.
+            # Labels may differ at points where two voxels are equally near.
             assert (error > 0).mean() < 1e-3
 
-# Forward: a shift moves the image.
+# A forward field: a shift moves the image.
 shift = np.tile([3.0, 0.0, 0.0], (2, 2, 2, 1))
 box = sitk.GetImageFromArray(np.pad(np.full((4, 4, 4), 200, "u1"), 8))
 moved = ds.deform(box, dv.Field(shift, np.diag([19.0, 19.0, 19.0, 1.0])))

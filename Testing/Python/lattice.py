@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A lattice of tetrahedra over a volume, for tests that move it."""
+"""Makes a lattice of tetrahedra over a volume."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk
 
 
 def make_mesh(image, nodes):
-    """nodes: on each axis. Their displacements are 0."""
+    """Returns a lattice with displacements of 0. nodes: the number of nodes on each axis."""
     source = deformvolume_vtk.vtkLatticeTetrahedraSource()
     source.SetNumberOfNodes(nodes, nodes, nodes)
     source.EqualSpacingOff()

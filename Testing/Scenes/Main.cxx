@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Draws a scene, or all of them, and compares it with its baseline; or writes the baseline.
+// Draws one scene or all scenes, and compares them with their baselines, or writes the baselines.
 //
 // Usage: DeformVolumeScenes SCENE|all -D FOLDER_OF_BASELINES -T FOLDER_OF_OUTPUT [--update]
 #include "SceneTesting.h"
@@ -12,7 +12,7 @@ using namespace sceneTesting;
 namespace
 {
 
-// As in CMakeLists.txt.
+// CMakeLists.txt has the same list.
 const Scene Scenes[] = {
   { "VolumeRendering", 3.5, DrawVolumeRendering },
   { "Isosurface", 3.3, DrawIsosurface },

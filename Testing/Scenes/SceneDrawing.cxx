@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Parts of scenes: deformations, cameras, colors, slices and surfaces.
+// Functions that several scenes use: deformations, cameras, colors, slices and surfaces.
 #include "SceneTesting.h"
 
 #include <vtkActor.h>
@@ -112,7 +112,7 @@ void AddSurface(
   }
   vtkNew<vtkActor> actor;
   actor->SetMapper(mapper);
-  actor->ForceOpaqueOn(); // the table has a colour that is not opaque, for slices
+  actor->ForceOpaqueOn(); // the table has a transparent color, which slices use
   actor->GetProperty()->SetColor(0.9, 0.75, 0.6);
   renderer->AddViewProp(actor);
 }

@@ -52,7 +52,7 @@ bool Test(const Scene& scene, const std::string& baselines, const std::string& o
     const auto picture = DrawPicture(scene, version);
     const Comparison comparison = Compare(picture, reader->GetOutput());
     const bool isEqual = comparison.Difference <= scene.Limit;
-    // The spoiled variant has to be far from the limit.
+    // SPOILED and SHIFTED must differ by at least twice the limit.
     const bool isRight =
       version == Version::INTACT ? isEqual : comparison.Difference >= 2.0 * scene.Limit;
     std::cout << scene.Name << ' ' << words << ": difference " << comparison.Difference

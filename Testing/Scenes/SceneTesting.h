@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures that are compared with a baseline: how a scene is drawn, compared and spoiled.
+// Scenes: functions that draw pictures and compare them with baselines.
 //
 // All volumes have a spacing of 1 in world units.
 #ifndef SceneTesting_h
@@ -21,9 +21,9 @@ namespace sceneTesting
 
 using namespace pictureTesting;
 
-/// Variants of a scene. INTACT is compared with the baseline. The others have to differ from it:
-/// SPOILED is the picture of an error that the scene should find. In SHIFTED all displacements are
-/// one voxel longer along x.
+/// Versions of a scene. INTACT must equal the baseline, and the other versions must differ from it.
+/// SPOILED has an error that the scene is designed to detect. In SHIFTED all displacements are one
+/// voxel longer along x.
 enum class Version
 {
   INTACT,
@@ -31,7 +31,7 @@ enum class Version
   SHIFTED
 };
 
-/// Adds what a scene shows to a window of 300 x 300 pixels.
+/// Draws a scene in a window of 300 x 300 pixels.
 using AddScene = void (*)(vtkRenderWindow* window, Version version);
 
 struct Scene
@@ -44,8 +44,8 @@ struct Scene
 };
 
 /// Compares all versions of a scene with <baselines>/<Name>.png. Returns whether INTACT is within
-/// the limit, and the others differ by twice the limit or more. Pictures that fail go to the folder
-/// of output.
+/// the limit, and the other versions differ by twice the limit or more. Pictures that fail are
+/// written to the folder of output.
 bool Test(const Scene& scene, const std::string& baselines, const std::string& output);
 
 /// Writes the picture of INTACT as the baseline.
@@ -55,33 +55,34 @@ bool WriteBaseline(const Scene& scene, const std::string& baselines);
 template <typename T>
 void AddValues(vtkImageData* image, const char* name, const WorldFunction& function)
 {
-  image->GetPointData()->SetActiveScalars(nullptr); // or else SetScalars() removes them
+  image->GetPointData()->SetActiveScalars(nullptr); // otherwise SetScalars() removes that array
   AddScalars<T>(image, name, function);
 }
 
-/// A deformation. SHIFTED adds one voxel along x to its active vectors.
+/// Returns a deformation. With SHIFTED, its active vectors are one voxel longer along x.
 vtkSmartPointer<vtkDataSet> Shifted(vtkDataSet* deformation, Version version);
 
-/// A renderer in one of several columns of the window, with a parallel projection: the window shows
-/// so many units from bottom to top, with the centre in its middle, seen from a direction. z is up
-/// unless that is the direction.
+/// Adds a renderer in one of several columns of the window, with a parallel projection. center: the
+/// point in the middle; the other arguments: the height of the window in world units, and the
+/// direction of view. z is up unless it is the direction of view.
 vtkRenderer* AddRenderer(vtkRenderWindow* window, const glm::dvec3& center,
   const glm::dvec3& direction, double height, int column = 0, int columns = 1);
 
-/// Colours in even steps over a range of values, and nothing below it.
+/// Returns a table of colors at equal steps over a range of values. Values below it are
+/// transparent.
 vtkSmartPointer<vtkLookupTable> MakeColours(
   double lowest, double highest, const std::vector<glm::dvec3>& colours, int number = 256);
 
-/// The slice z = 0 of an array, seen from above. Values below the range are not drawn.
+/// Draws the slice z = 0 of an array, seen from above. Values below the range are not drawn.
 void AddSlice(
   vtkRenderer* renderer, vtkImageData* volume, const char* array, vtkLookupTable* colours);
 
-/// The surface where the active scalars of a volume are 50. It is coloured by an array of the
-/// volume, or without one it is plain.
+/// Draws the isosurface of a volume at 50. An array of the volume colors it; without an array it
+/// has one color.
 void AddSurface(vtkRenderer* renderer, vtkAlgorithmOutput* volume, const char* array = nullptr,
   vtkLookupTable* colours = nullptr);
 
-/// Draws a deformed volume finely, with a border that surfaces close in.
+/// Sets a fine output spacing, and a padding in which isosurfaces are closed.
 void SetSampling(vtkDeformVolumeFilter* filter, double spacing, double background = 0.0);
 
 void DrawVolumeRendering(vtkRenderWindow* window, Version version);

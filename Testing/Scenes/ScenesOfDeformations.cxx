@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Outputs of vtkDeformVolumeFilter: values, surfaces, slices, labels and folds.
+// Scenes of outputs of vtkDeformVolumeFilter: values, surfaces, slices, labels and folds.
 #include "SceneTesting.h"
 
 #include <vtkColorTransferFunction.h>
@@ -21,7 +21,7 @@ namespace
 const std::vector<glm::dvec3> Warm = { { 0.1, 0.2, 0.5 }, { 0.3, 0.6, 0.8 }, { 0.95, 0.9, 0.7 },
   { 0.9, 0.5, 0.2 }, { 0.5, 0.1, 0.1 } };
 
-// Waves round a bump, from 37 to 277, in a cube whose middle is the origin.
+// Returns a cube around the origin with waves around a bump, with values from 37 to 277.
 vtkSmartPointer<vtkImageData> MakeWaves(int halfWidth)
 {
   vtkNew<vtkRTAnalyticSource> source;
@@ -33,7 +33,8 @@ vtkSmartPointer<vtkImageData> MakeWaves(int halfWidth)
   return source->GetOutput();
 }
 
-// A turn about z that grows with the distance from a point of that axis.
+// Returns a rotation about z, whose angle grows with the distance from the axis or, for a twist,
+// along the axis.
 WorldMap Turn(double radiansPerUnit, bool isTwist)
 {
   return [=](const glm::dvec3& p)
@@ -44,7 +45,7 @@ WorldMap Turn(double radiansPerUnit, bool isTwist)
   };
 }
 
-// A filter on a volume and a mesh or a field of its own, deformed by a map.
+// Returns a filter that deforms a volume by a map, with its own mesh or field.
 vtkSmartPointer<vtkDeformVolumeFilter> Deform(
   vtkImageData* volume, vtkDataSet* deformation, const WorldMap& map, Version version)
 {
@@ -60,7 +61,8 @@ vtkSmartPointer<vtkDeformVolumeFilter> Deform(
 namespace sceneTesting
 {
 
-// Light on gradients shows steps between voxels. Spoiled: each sample has the value of a voxel.
+// Shading by gradients makes steps between voxels visible. SPOILED: samples have the values of
+// single voxels.
 void DrawVolumeRendering(vtkRenderWindow* window, Version version)
 {
   const auto waves = MakeWaves(16);
@@ -91,11 +93,11 @@ void DrawVolumeRendering(vtkRenderWindow* window, Version version)
   shown->GetProperty()->ShadeOn();
   shown->GetProperty()->SetAmbient(0.2);
   shown->GetProperty()->SetDiffuse(1.0);
-  shown->GetProperty()->SetSpecular(0.0); // versions of VTK differ in highlights
+  shown->GetProperty()->SetSpecular(0.0); // highlights differ between versions of VTK
   AddRenderer(window, glm::dvec3(0.0), glm::dvec3(30.0, -80.0, 50.0), 42.0)->AddViewProp(shown);
 }
 
-// Spoiled: twisted in the other direction.
+// SPOILED: the volume is twisted in the opposite direction.
 void DrawIsosurface(vtkRenderWindow* window, Version version)
 {
   auto volume = MakeImage({ { -15, 15, -15, 15, -20, 20 } });
@@ -103,7 +105,7 @@ void DrawIsosurface(vtkRenderWindow* window, Version version)
   AddValues<short>(volume, "value",
     [](const glm::dvec3& p)
     {
-      // Four bars round the axis, and two plates that hold them.
+      // Four bars around the axis, and two plates at their ends.
       const glm::dvec2 corner(std::abs(p.x) - 8.0, std::abs(p.y) - 8.0);
       const double bar = std::max(glm::length(corner), std::abs(p.z) - 12.0);
       const double plate = std::max(
@@ -117,7 +119,7 @@ void DrawIsosurface(vtkRenderWindow* window, Version version)
     filter->GetOutputPort(), "height", MakeColours(-20.0, 20.0, Warm));
 }
 
-// Spoiled: a forward field taken for an inverse one.
+// SPOILED: a forward field is used as an inverse one.
 void DrawSlice(vtkRenderWindow* window, Version version)
 {
   const auto waves = MakeWaves(20);
@@ -131,8 +133,8 @@ void DrawSlice(vtkRenderWindow* window, Version version)
     filter->GetOutput(), "RTData", MakeColours(40.0, 280.0, Warm));
 }
 
-// Labels (left) and values (right). Spoiled: labels are interpolated, which gives other labels
-// between them.
+// Labels (left) and values (right). SPOILED: labels are interpolated, which gives other labels at
+// their borders.
 void DrawLabels(vtkRenderWindow* window, Version version)
 {
   auto volume = MakeImage({ { -8, 8, -18, 18, -1, 1 } });
@@ -172,8 +174,7 @@ void DrawLabels(vtkRenderWindow* window, Version version)
 }
 
 // A bulge that is pushed over the tissue beside it. Where two upright parts overlap, the cells
-// with lower indices are in front. Spoiled: indices run the other way, so that the other part is in
-// front.
+// with lower indices are drawn. SPOILED: indices are reversed, so that the other part is drawn.
 void DrawFold(vtkRenderWindow* window, Version version)
 {
   auto volume = MakeImage({ { -20, 20, -16, 16, -1, 1 } });

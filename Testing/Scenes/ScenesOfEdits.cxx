@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Volumes that are cut, carved and split.
+// Scenes of volumes that are cut, carved and split.
 #include "ElasticTesting.h"
 #include "SceneTesting.h"
 
@@ -21,8 +21,8 @@ using namespace sceneTesting;
 namespace
 {
 
-// A rounded block in layers, whose surface lies two voxels within the volume: its values fall off
-// there, so that only the faces of cuts and carvings are as sharp as the output's voxels.
+// Returns a rounded block with layers, whose surface is two voxels within the volume. Values fall
+// off at the surface, so that only the faces of cuts and carvings have steps of voxels.
 vtkSmartPointer<vtkImageData> MakeBlock(const Extent& extent)
 {
   auto volume = MakeImage(extent);
@@ -41,7 +41,7 @@ vtkSmartPointer<vtkImageData> MakeBlock(const Extent& extent)
   return volume;
 }
 
-// Shows a deformed block. The background has half of the value where the surface is drawn.
+// Draws a deformed block. The background is half of the value of the isosurface.
 void AddBlock(vtkRenderer* renderer, vtkDeformVolumeFilter* filter, double spacing)
 {
   SetSampling(filter, spacing);
@@ -49,7 +49,7 @@ void AddBlock(vtkRenderer* renderer, vtkDeformVolumeFilter* filter, double spaci
     MakeColours(-1.0, 1.0, { { 0.75, 0.45, 0.35 }, { 0.95, 0.85, 0.7 } }));
 }
 
-// Shows a block that has been edited, and that a field with the block's voxels deforms.
+// Draws an edited block that a field with a vector at each voxel deforms.
 void AddEditedBlock(vtkRenderer* renderer, vtkImageData* block, vtkAlgorithmOutput* edited,
   const WorldMap& map, Version version, double spacing)
 {
@@ -62,7 +62,7 @@ void AddEditedBlock(vtkRenderer* renderer, vtkImageData* block, vtkAlgorithmOutp
   AddBlock(renderer, filter, spacing);
 }
 
-// A polyline. place: its points, for parameters from 0 to 1.
+// Returns a polyline. place: returns the points for parameters from 0 to 1.
 vtkSmartPointer<vtkPolyData> MakeLine(int number, const std::function<glm::dvec3(double)>& place)
 {
   vtkNew<vtkPoints> points;
@@ -85,7 +85,7 @@ namespace sceneTesting
 {
 
 // A wedge: the sheet ends within the block, and the two parts above its end are rotated apart.
-// Spoiled: not cut, so that the block is stretched over the gap.
+// SPOILED: the block is not cut, so that it is stretched over the gap.
 void DrawHardCut(vtkRenderWindow* window, Version version)
 {
   const auto block = MakeBlock({ { -14, 14, -10, 10, -2, 24 } });
@@ -103,8 +103,8 @@ void DrawHardCut(vtkRenderWindow* window, Version version)
   AddEditedBlock(renderer, block, cut->GetOutputPort(), open, version, 0.25);
 }
 
-// A curved cut, pulled open: tetrahedra left out (left) and divided (right). Spoiled: left out in
-// both.
+// A curved cut that is pulled open: tetrahedra are left out (left) or divided (right). SPOILED:
+// they are left out in both.
 void DrawSmoothCut(vtkRenderWindow* window, Version version)
 {
   const auto block = MakeBlock({ { -9, 9, -20, 20, -2, 8 } });
@@ -129,8 +129,8 @@ void DrawSmoothCut(vtkRenderWindow* window, Version version)
   }
 }
 
-// A bowl carved out as whole tetrahedra (left) and with a smooth boundary (right). Spoiled: whole
-// tetrahedra in both.
+// A bowl that is carved out as whole tetrahedra (left) and with a smooth boundary (right). SPOILED:
+// both are carved out as whole tetrahedra.
 void DrawSmoothBoundary(vtkRenderWindow* window, Version version)
 {
   const auto block = MakeBlock({ { -10, 10, -16, 16, -4, 12 } });
@@ -150,7 +150,7 @@ void DrawSmoothBoundary(vtkRenderWindow* window, Version version)
 }
 
 // A beam that is held at both ends and cut from below: its mesh is split along the sheet, and
-// the cut opens. Spoiled: the volume is stretched over the gap.
+// the cut opens. SPOILED: the volume is stretched over the gap.
 void DrawSplit(vtkRenderWindow* window, Version version)
 {
   const auto beam = MakeBlock({ { -22, 22, -7, 7, -2, 17 } });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Volumes that are deformed by a model of their tissue.
+// Scenes of volumes that ChainMail and finite elements deform.
 #include "ElasticTesting.h"
 #include "SceneTesting.h"
 
@@ -39,8 +39,8 @@ void AddPolyData(
 namespace sceneTesting
 {
 
-// Soft tissue with a stiff ball in it, on the ground, dragged by a handle. Spoiled: the ball is
-// as soft as the rest.
+// Soft tissue with a stiff ball in it, pinned at its lower border and dragged by a handle. SPOILED:
+// the ball is as soft as the tissue around it.
 void DrawChainMail(vtkRenderWindow* window, Version version)
 {
   auto volume = MakeImage({ { -20, 20, -16, 16, -2, 2 } });
@@ -87,8 +87,8 @@ void DrawChainMail(vtkRenderWindow* window, Version version)
   }
 }
 
-// An arch that stands on its feet and is pushed sideways, with the surface of its mesh. Spoiled: a
-// stiffer tissue.
+// An arch that stands on its feet and is pushed sideways, with the surface of its mesh. SPOILED:
+// the tissue is stiffer.
 void DrawFiniteElements(vtkRenderWindow* window, Version version)
 {
   auto volume = MakeImage({ { -20, 20, -7, 7, 0, 20 } });
