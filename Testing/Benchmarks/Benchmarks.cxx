@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // DeformVolumeBenchmarks: repeats the published evaluation, and compares with VTK's own classes.
-// Options are --quick (few rounds, no volume over 30 million voxels) and those of Google Benchmark;
-// run.sh makes a report of its result.
+// Options are --quick (few rounds, no volume over 30 million voxels) and those of Google Benchmark.
+// run.sh makes a report of the results.
 #include "Evaluation.h"
 
 #include <algorithm>

@@ -18,20 +18,20 @@ namespace
 {
 
 constexpr double HandleRadius = 3.0; // voxels
-constexpr double DragLength = 14.5;  // voxels, so that some 100,000 move
+constexpr double DragLength = 14.5;  // voxels, so that about 100,000 voxels move
 constexpr double StepAngle = 0.3;
 
-// Drags of which the steps alone are measured.
+// A drag whose steps alone are measured.
 struct StepDrag
 {
-  int Voxels; // that move, or about so many
+  int Voxels; // about the number of voxels that move
   double HandleRadius;
   double Length;
 };
 constexpr StepDrag StepDrags[] = { { 1000, 1.0, 0.5 }, { 100000, HandleRadius, DragLength },
   { 1000000, HandleRadius, 41.0 } };
 
-// A volume of soft tissue, in whose middle a handle goes round in a circle.
+// A volume of soft tissue, in whose middle a handle moves along a circle.
 struct DraggedVolume
 {
   DraggedVolume(vtkImageData* volume, double handleRadius, double dragLength)
@@ -65,7 +65,8 @@ struct DraggedVolume
   vtkNew<vtkDeformVolumeFilter> Filter;
 };
 
-// A step of the drag, and the volume brought up to date: the part of it that follows, or all of it.
+// Measures a step of the drag, and an update of the part of the output that moves, or of the whole
+// output.
 Measurement MeasureFrame(DraggedVolume& dragged, bool whole)
 {
   dragged.MoveHandle();
@@ -84,7 +85,7 @@ Measurement MeasureFrame(DraggedVolume& dragged, bool whole)
   return measurement;
 }
 
-// The step alone.
+// Measures a step alone.
 Measurement MeasureStep(DraggedVolume& dragged)
 {
   dragged.MoveHandle();

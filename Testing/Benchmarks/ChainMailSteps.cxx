@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Steps of ChainMail in a volume of 189 x 305 x 229 voxels: their time, and the voxels that move.
+// Measures steps of ChainMail in a volume of 189 x 305 x 229 voxels: times, and voxels that move.
 //
 // Usage: ChainMailSteps [DEVICE]. Times are medians of the steps of a drag, in milliseconds.
 #include "ChainMailModel.h"
@@ -30,7 +30,7 @@ double GetMedian(std::vector<double> values)
   return values[values.size() / 2];
 }
 
-// A drag to and fro, by a distance that moves a given number of voxels of soft tissue.
+// Measures the steps of a drag to and fro. The distance decides how many voxels move.
 void RunDrag(ChainMailModel& model, const char* name, double distance, int sweeps)
 {
   model.Reset();

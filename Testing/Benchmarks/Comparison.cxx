@@ -8,8 +8,8 @@
 
 namespace
 {
-// The resamplers on one volume, each with a filter of its own, and the peers, which fill the extent
-// that the first filter has filled.
+// All resamplers on one volume, each with a filter of its own, and the peers. Peers fill the same
+// extent as the first filter.
 struct ComparisonStage
 {
   vtkSmartPointer<vtkImageData> Volume = MakeVolume(BenchmarkVolume);
@@ -27,7 +27,7 @@ struct NamedDeformation
 constexpr NamedDeformation Deformations[] = { { "2197", CoarseNodes }, { "512000", FineNodes },
   { "field", DenseField } };
 
-// What is resampled, by its name in the results.
+// A case, with its name in the results.
 struct NamedCase
 {
   std::string Name;
@@ -43,7 +43,7 @@ std::vector<NamedCase> MakeNamedCases(bool quick)
   {
     for (const NamedResampler& resampler : AllResamplers)
     {
-      // A field has no tetrahedra to rasterise.
+      // A field has no tetrahedra that could be rasterized.
       const bool possible = deformation.NodesPerAxis != DenseField ||
         resampler.Resampler != vtkDeformVolumeFilter::MESH_RASTERIZATION;
       const bool wanted = !quick || deformation.NodesPerAxis == CoarseNodes ||
@@ -55,7 +55,7 @@ std::vector<NamedCase> MakeNamedCases(bool quick)
       }
     }
   }
-  // It leads from the output to the volume: the resampler is another one.
+  // An inverse field needs another resampler.
   cases.push_back({ "inverse/automatic", DenseField, vtkDeformVolumeFilter::AUTOMATIC, true });
   return cases;
 }
@@ -92,7 +92,7 @@ Contestant<ComparisonStage> MakePeerContestant(
     warmUp };
 }
 
-// The filter beside one peer.
+// Makes a stage with the filter and one peer.
 std::shared_ptr<ComparisonStage> MakeStageOfTwo(
   const char* peer, std::unique_ptr<Peer> (*make)(vtkImageData*, int))
 {
@@ -116,7 +116,8 @@ void RegisterComparison(const EvaluationSize& size)
     {
       contestants.push_back(MakePeerContestant(named.first, "2197/exact", pose, size.GetWarmUp()));
     }
-    // Those of the first ratios follow each other: within a second the machine changes least.
+    // The contestants of the first limits follow each other, because the speed of the machine
+    // changes least within a short time.
     std::stable_partition(contestants.begin(), contestants.end(),
       [](const Contestant<ComparisonStage>& contestant)
       {

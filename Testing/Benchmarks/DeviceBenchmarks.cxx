@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// DeformVolumeDevice: describes the OpenCL device that an empty device name stands for, and
-// measures how fast its memory is copied, which is a lower bound of the time of any resampling.
-// Options are those of Google Benchmark. Returns 125 if there is no such device.
+// DeformVolumeDevice: describes the default OpenCL device, and measures how fast its memory is
+// copied, which gives a lower bound of the time of any resampling. Options are those of Google
+// Benchmark. Returns 125 if there is no such device.
 #include "Error.h"
 #include "OpenCLContext.h"
 
@@ -33,7 +33,7 @@ void Describe(const OpenCLDevice& device)
     "vector_width", std::to_string(cl.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>()));
 }
 
-// Copies 256 MiB from one buffer to another, and counts what is read and what is written.
+// Copies 256 MiB from one buffer to another. The rate counts bytes that are read and written.
 void Copy(benchmark::State& state, const OpenCLDevice& device)
 {
   constexpr std::size_t bytes = std::size_t{ 256 } << 20;

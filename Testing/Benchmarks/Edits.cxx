@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Time of cutting and carving.
+// Measures cutting and carving.
 #include "Evaluation.h"
 #include "Timing.h"
 
@@ -26,7 +26,7 @@ namespace
 constexpr int SheetColumns = 10; // 200 triangles
 constexpr double SphereRadius = 20.0;
 
-// A sheet that goes up and down through all of the volume, by 200 triangles, somewhere.
+// Returns a wavy sheet of 200 triangles through the whole volume, at a given height.
 vtkSmartPointer<vtkPolyData> MakeSheet(vtkImageData* volume, double height)
 {
   double bounds[6];
@@ -59,7 +59,7 @@ vtkSmartPointer<vtkPolyData> MakeSheet(vtkImageData* volume, double height)
   return sheet;
 }
 
-// Both filters on a volume, and the positions of their tools.
+// A volume with both filters, and the positions of their tools.
 struct Editing
 {
   explicit Editing(vtkImageData* volume)
@@ -73,8 +73,8 @@ struct Editing
     this->Carve->Update();
   }
 
-  // The edge of the tool at a step, in shares of the volume: it goes to and fro over 44 % of the
-  // height and of the width, which is 1 % of the bricks at each step.
+  // Moves the edge of the tool to and fro over 44 % of the height and of the width of the volume.
+  // The tool touches 1 % of the bricks in each step.
   void StepTool()
   {
     double bounds[6];
@@ -94,7 +94,7 @@ struct Editing
   int Step = 0;
 };
 
-// A change, which is not measured, and the update that follows.
+// Returns a contestant that makes a change, which is not measured, and measures the next update.
 Contestant<Editing> MakeEdit(
   const std::string& name, const std::function<vtkImageAlgorithm*(Editing&)>& edit)
 {

@@ -7,35 +7,36 @@
 
 #include <string>
 
-// The parts of the evaluation; each registers its measurements with Google Benchmark. report.py
-// knows them by their names.
+// The parts of the evaluation. Each function registers its measurements with Google Benchmark.
+// report.py finds them by their names.
 
 struct EvaluationSize
 {
-  /// Few rounds and fewer sizes, to check that everything runs.
+  /// Few rounds and few sizes, to check that everything works.
   bool Quick = false;
 
   int GetRounds() const { return this->Quick ? 1 : 7; }
-  /// For measurements that take long.
+  /// Returns the number of rounds for measurements that take long.
   int GetSlowRounds() const { return this->Quick ? 1 : 5; }
-  /// For short measurements whose difference is smaller than the variation of the machine.
+  /// Returns the number of rounds for short measurements whose difference is smaller than the
+  /// variation of the machine.
   int GetManyRounds() const { return this->Quick ? 1 : 21; }
-  /// Whether the peers have a turn that does not count, as others do.
+  /// Whether peers have a first turn that does not count, as all other contestants have.
   bool GetWarmUp() const { return !this->Quick; }
 };
 
-/// Deform/<pose>/<deformation>/<resampler>, Deform/<pose>/<peer>: table 1 and the peers. With the
-/// deformation inverse, the vectors of the dense field are taken for those of an inverse field.
+/// Deform/<pose>/<deformation>/<resampler>, Deform/<pose>/<peer>: table 1 and the peers. For the
+/// deformation "inverse", the vectors of the dense field are used as those of an inverse field.
 void RegisterComparison(const EvaluationSize& size);
 
-/// Nodes/<pose>/<nodes>: meshes of few and of many nodes, alone.
+/// Nodes/<pose>/<nodes>: meshes of few and of many nodes, in a group of their own.
 void RegisterNodes(const EvaluationSize& size);
 
-/// Readback/<pose>/<at-once, unread or later>: outputs that stay on the device (OutputOnDevice),
-/// and one that does not. On a processor there is no difference.
+/// Readback/<pose>/<at-once, unread or later>: an output that is copied in the update, and outputs
+/// that stay on the device (OutputOnDevice). On a CPU there is no difference.
 void RegisterReadback(const EvaluationSize& size);
 
-/// Published/<pose>/<exact or published>: the method as published, by the time of the kernels.
+/// Published/<pose>/<exact or published>: the published method; times of the kernels are compared.
 void RegisterPublished(const EvaluationSize& size);
 
 /// Probe/<pose>/<resampler or probe>: the slowest peer.
@@ -78,11 +79,11 @@ void RegisterChainMail(const EvaluationSize& size);
 /// Physics/<body>/frame: frames of springs and of finite elements.
 void RegisterPhysics(const EvaluationSize& size);
 
-/// Session/<body>/<drag, cut or carve>: a live session, from an event to the output. Not there with
-/// ParaView's VTK.
+/// Session/<body>/<drag, cut or carve>: a live session, from an event to the output. Does not exist
+/// with ParaView's VTK.
 void RegisterSession(const EvaluationSize& size);
 
-/// A resampler by its name in the results.
+/// A resampler, and its name in the results.
 struct NamedResampler
 {
   const char* Name;
@@ -94,10 +95,10 @@ inline constexpr NamedResampler MeshRasterizationResampler{ "mesh-rasterization"
   vtkDeformVolumeFilter::MESH_RASTERIZATION };
 inline constexpr NamedResampler AllResamplers[] = { ExactResampler, MeshRasterizationResampler };
 
-/// Brings a case up to date, whatever has changed.
+/// Updates a case.
 Measurement MeasureUpdate(BenchmarkCase& subject);
 
-/// Moves a case and brings it up to date.
+/// Moves the nodes of a case, and updates it.
 Measurement Measure(BenchmarkCase& subject, Pose pose, Grid grid = Grid::Same);
 
 /// 189x305x229

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Frames of finite elements that start from the last one: their time and their residual force.
+// Measures frames of finite elements, each of which starts from the last one: times and residual
+// forces.
 //
 // Usage: FiniteElementFrames [FRAMES [NEWTON [ITERATIONS [SCENE [MODEL]]]]]. Times are in
 // milliseconds. The body is a block that is fixed at its lower end; in the middle of the other end
@@ -29,7 +30,8 @@ struct Scene
   bool HasHandle;
 };
 
-// By the length of the body: along a circle, by 0.005 in each frame.
+// Returns the displacement of the handle relative to the length of the body: it moves along a
+// circle, by 0.005 in each frame.
 glm::dvec3 GetHandlePlace(int frame)
 {
   constexpr double radius = 0.1;
@@ -85,7 +87,7 @@ void RunScene(
     }
     else
     {
-      // A light that swings, so that no frame is the last one's.
+      // Vary the load, so that each frame differs from the previous one.
       const double angle = 0.05 * frame;
       request.Loads.Gravity = 0.2 * glm::dvec3(std::sin(angle), std::cos(angle), 0.0);
     }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Deforms a volume of unsigned char with 1000 voxels an axis by a lattice of 13 nodes an axis, in a
-// near pose and then by whole voxels, which has to give back each voxel; prints what is measured,
-// and fails where the process was ever over 8 GB resident.
+// Deforms a volume of unsigned char with 1000 voxels on each axis by a lattice with 13 nodes on
+// each axis, near identity and then by whole voxels, after which each voxel is checked. Prints
+// times and memory, and fails if the resident memory of the process ever exceeds 8 GB.
 //
-// Arguments: voxels an axis, nodes an axis. Only the default size has a limit.
+// Arguments: voxels on each axis, nodes on each axis. Only the default size has a limit.
 #include "../Reported.h"
 
 #include <vtkDataArray.h>
@@ -32,7 +32,7 @@ constexpr double MaximumResidentBytes = 8e9;
 constexpr int DefaultSize = 1000;
 constexpr int Skipped = 125;
 
-// The most that the process ever had in memory, in bytes; 0 where the system does not tell.
+// Returns the highest resident memory of the process in bytes; 0 if the system does not report it.
 double GetPeakResidentBytes()
 {
   std::ifstream status("/proc/self/status");
@@ -124,7 +124,7 @@ public:
     return this->Filter->GetNumberOfCoveredVoxels() > 0;
   }
 
-  // Whether each voxel is where it was moved by so many voxels.
+  // Whether all voxels have moved by a number of voxels on each axis.
   bool IsShifted(int dx, int dy, int dz)
   {
     auto* values =

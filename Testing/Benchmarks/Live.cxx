@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Time of an update after changes between two frames.
+// Measures updates after changes between two frames.
 #include "../Reported.h"
 #include "Evaluation.h"
 #include "LiveCase.h"
@@ -8,11 +8,11 @@ namespace
 {
 const std::string LoggedSuffix = "-logged";
 constexpr std::array<double, 3> some{ { 0.215, 0.215, 0.215 } }; // 1 % of the nodes
-constexpr std::array<double, 3> few{ { 0.02, 0.30, 0.02 } };     // they reach into 14 bricks
+constexpr std::array<double, 3> few{ { 0.02, 0.30, 0.02 } };     // nodes that affect 14 bricks
 
 using LiveCases = std::map<std::string, std::unique_ptr<LiveCase>>;
 
-// An edit, which is not measured, and the update that follows.
+// Returns a contestant that makes an edit, which is not measured, and measures the next update.
 Contestant<LiveCases> MakeEdit(const std::string& name, const std::function<void(LiveCase&)>& edit)
 {
   return { name,
@@ -59,7 +59,7 @@ void RegisterLive(const EvaluationSize& size)
   {
     edits.push_back(MakeEdit(name, edit));
   }
-  // The same, with logs of what is written.
+  // The same edits, with logs of the changes.
   for (const int kind : { 1, 3, 4, 5 })
   {
     edits.push_back(MakeEdit(kinds[kind].first + LoggedSuffix, kinds[kind].second));

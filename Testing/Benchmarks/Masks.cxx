@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Time of an update after a mask of the volume has appeared or changed. The mesh does not move.
+// Measures updates after a mask of the volume has appeared or changed. The mesh does not move.
 #include "Evaluation.h"
 
 #include <vtkCellData.h>
@@ -20,12 +20,12 @@
 namespace
 {
 
-// Of cells or points, on each axis.
+// Number of cells or points of the box on each axis.
 constexpr int BoxSize = 20;
 constexpr int BallRadius = 20;
 
-// A volume with one of its masks, and the filter whose output stays on the device: no transfer but
-// that of the mask.
+// A volume with a mask, and a filter whose output stays on the device, so that only the mask is
+// transferred.
 struct MaskedVolume
 {
   explicit MaskedVolume(bool ofCells)
@@ -49,7 +49,7 @@ struct MaskedVolume
     this->Show(true);
   }
 
-  // With the mask, or without.
+  // Adds the mask to the volume, or removes it.
   void Show(bool masked)
   {
     if (masked)
@@ -63,8 +63,9 @@ struct MaskedVolume
     this->Volume->Modified();
   }
 
-  // All but what lies in a box of this half width, or in a ball, about a place near the middle,
-  // another one each time.
+  // Sets a mask in which all cells or points are on, except those in a box or a ball. radius: half
+  // the width of the box, or the radius. The center is near the middle of the volume, and differs
+  // from call to call.
   void SwitchOff(int radius, bool round)
   {
     ++this->Step;
@@ -90,7 +91,7 @@ struct MaskedVolume
     this->Mask->Modified();
   }
 
-  // Half of them, as noise that changes everywhere.
+  // Sets a mask in which a random half is off.
   void ScatterNoise()
   {
     auto state = static_cast<std::uint32_t>(++this->Step);
@@ -114,7 +115,7 @@ struct MaskedVolume
   int Step = 0;
 };
 
-// A change, which is not measured, and the update that follows.
+// Returns a contestant that makes a change, which is not measured, and measures the next update.
 Contestant<MaskedVolume> MakeChange(
   const std::string& name, const std::function<void(MaskedVolume&)>& change)
 {
@@ -130,7 +131,7 @@ Contestant<MaskedVolume> MakeChange(
 
 void RegisterMasks(const EvaluationSize& size)
 {
-  // Each begins with what the others have left: a ball, as that is not measured.
+  // Each contestant starts with a ball that is off. This is not measured.
   const auto begin = [](MaskedVolume& masked)
   {
     masked.SwitchOff(BallRadius, true);

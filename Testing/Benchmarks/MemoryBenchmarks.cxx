@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// DeformVolumeMemory: the memory that a process needs to deform a volume once, as a run of Google
-// Benchmark; run.sh starts one process for each line. The highest resident memory counts all: the
-// volume, the mesh, the result, VTK and the OpenCL driver.
+// DeformVolumeMemory: measures the memory that a process needs to deform a volume once, as a run of
+// Google Benchmark. run.sh starts one process for each measurement. The highest resident memory
+// includes the volume, the mesh, the result, VTK and the OpenCL driver.
 //
 // Usage: DeformVolumeMemory NX NY NZ uchar|ushort NODES_PER_AXIS RESAMPLER [option of Google
 // Benchmark]...
@@ -17,7 +17,7 @@
 
 namespace
 {
-// VmHWM, in bytes.
+// Returns VmHWM in bytes.
 double GetHighestResidentMemory()
 {
   std::ifstream status("/proc/self/status");
@@ -32,7 +32,7 @@ double GetHighestResidentMemory()
       return 1024.0 * kilobytes;
     }
   }
-  throw std::runtime_error("/proc/self/status does not tell the resident memory");
+  throw std::runtime_error("/proc/self/status does not contain the resident memory");
 }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Time of a frame while a body is simulated: a step of the simulation, and the volume deformed by
-// the body.
+// Measures frames of a simulated body: a step of the simulation, and an update of the volume that
+// the body deforms.
 #include "Evaluation.h"
 #include "Timing.h"
 
@@ -25,21 +25,21 @@
 namespace
 {
 
-// How far a handle goes in a frame, by the height of the body: in one step of springs less, as that
-// is some 1/50 of a frame.
+// Distance by which a handle moves in a frame, relative to the height of the body. In one step of
+// springs it moves less, because a step is about 1/50 of a frame.
 constexpr double FrameLength = 0.005;
 constexpr double StepLength = 0.0001;
 constexpr double FrameTime = 1.0 / 60.0;
 
-// A body of cubes, or nearly, over a volume: held at its lower end, with a handle in the middle of
-// the upper end that goes to and fro.
+// A body of cubes, or nearly cubes, over a volume. It is held at its lower end, and a handle in the
+// middle of the upper end moves to and fro.
 struct Body
 {
   Body(vtkImageData* volume, const std::array<int, 3>& nodes)
   {
     double bounds[6];
     volume->GetBounds(bounds);
-    // Springs are isotropic in cubes alone.
+    // Springs are isotropic only on lattices of cubes.
     double edge = 0.0;
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -72,7 +72,7 @@ struct Body
 
   void MoveHandle()
   {
-    constexpr int turn = 20; // frames before it goes back
+    constexpr int turn = 20; // number of frames after which the handle moves back
     const int step = ++this->Step % (2 * turn);
     const double length = this->Length * this->Height * std::min(step, 2 * turn - step);
     this->Handle->SetPosition(this->Rest[0] + length, this->Rest[1], this->Rest[2]);
@@ -87,7 +87,7 @@ struct Body
   int Step = 0;
 };
 
-// A simulation of a body, and the volume behind it.
+// A simulation of a body, and the filter that deforms the volume.
 template <typename Simulation>
 struct SimulatedVolume
 {
@@ -96,7 +96,7 @@ struct SimulatedVolume
   {
     this->Filter->SetInputData(volume);
     this->Filter->SetSamplingFactor(samplingFactor);
-    this->Filter->IncrementalOff(); // all is deformed anew, as published
+    this->Filter->IncrementalOff(); // the whole output is resampled, as in the published evaluation
     this->Model->SetInputData(this->Simulated.Mesh);
     this->Model->SetHandlesConnection(this->Simulated.Handle->GetOutputPort());
     this->Model->SetHandleRadius(this->Simulated.Radius);
@@ -143,7 +143,7 @@ struct SpringFrames
   std::string Name;
   std::array<int, 3> Volume;
   std::array<int, 3> Nodes;
-  bool IsRealTime; // all the steps of a frame of 1/60 s; else one
+  bool IsRealTime; // true: all steps of a frame of 1/60 s; false: one step
   int SamplingFactor;
 };
 
@@ -185,23 +185,23 @@ void RegisterElements(const std::string& name, const std::array<int, 3>& nodes, 
 
 void RegisterPhysics(const EvaluationSize& size)
 {
-  constexpr std::array<int, 3> head{ { 181, 217, 181 } }; // as ch2
+  constexpr std::array<int, 3> head{ { 181, 217, 181 } }; // the size of ch2
   const int rounds = size.GetRounds();
-  // As near to 2,197 and 512,000 nodes as cubes over these volumes allow.
+  // The numbers of nodes are as close to 2,197 and 512,000 as cubes over these volumes allow.
   for (const SpringFrames& frames :
     { SpringFrames{ "springs-2431", BenchmarkVolume, { { 11, 17, 13 } }, false, 1 },
       SpringFrames{ "springs-507584", BenchmarkVolume, { { 64, 103, 77 } }, false, 1 },
       SpringFrames{ "springs-2197-60Hz", head, { { 13, 13, 13 } }, true, 1 },
       SpringFrames{ "springs-2197-60Hz-half", head, { { 13, 13, 13 } }, true, 2 },
-      // Cubes, whose volumes are made small, one of them as large as a scene that SOFA is measured
-      // with.
+      // Bodies that are cubes, over small volumes. One has as many nodes as a scene that was
+      // measured with SOFA.
       SpringFrames{ "springs-2197", { { 13, 13, 13 } }, { { 13, 13, 13 } }, false, 1 },
       SpringFrames{ "springs-4096", { { 16, 16, 16 } }, { { 16, 16, 16 } }, false, 1 },
       SpringFrames{ "springs-512000", { { 80, 80, 80 } }, { { 80, 80, 80 } }, false, 1 } })
   {
     RegisterSprings(frames, rounds);
   }
-  // Lattices of corners: most nodes are in the middle of edges.
+  // These numbers are those of lattices of corners. Most nodes are mid-side nodes.
   RegisterElements("elements-117", { { 3, 3, 3 } }, rounds);
   RegisterElements("elements-3193", { { 6, 10, 9 } }, rounds);
   RegisterElements("elements-19307", { { 9, 38, 9 } }, rounds);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Time by the pose.
+// Measures updates in each pose.
 #include "Evaluation.h"
 #include "SampleCount.h"
 
@@ -49,8 +49,8 @@ void RegisterTable2(Pose pose, const EvaluationSize& size)
     contestants);
 }
 
-// Each pose has a filter of its own: the extent of the output, and with it all memory, would change
-// at each measurement.
+// Each pose has a filter of its own. With one filter, the extent of the output would change at each
+// measurement, and all memory would be allocated again.
 using PoseCases = std::map<Pose, std::unique_ptr<BenchmarkCase>>;
 constexpr Pose ComparedPoses[] = { Pose::NearIdentity, Pose::General, Pose::Rotated,
   Pose::UniformScale, Pose::Folded };

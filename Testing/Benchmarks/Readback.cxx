@@ -10,7 +10,8 @@
 namespace
 {
 
-// A filter whose output goes to the host at once, and two whose output stays on the device.
+// A filter whose output is copied to the host in the update, and two filters whose outputs stay on
+// the device.
 struct ReadbackStage
 {
   vtkSmartPointer<vtkImageData> Volume = MakeVolume(BenchmarkVolume);
@@ -19,7 +20,7 @@ struct ReadbackStage
   BenchmarkCase ReadLater{ Volume, CoarseNodes };
 };
 
-// Brings all arrays of an output to the host. Returns the seconds that this took.
+// Copies all arrays of an output to the host. Returns the seconds that this takes.
 double Read(vtkImageData* image)
 {
   const auto begin = std::chrono::steady_clock::now();

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// DeformVolumeRendering: the time that VTK's volume mappers need for a frame of the MRI of a head,
-// undeformed and deformed. Both images have the same size, and both count as changed before each
-// frame. Options are --quick (few rounds, and not
-// what takes longest), --pictures=FOLDER and those of Google Benchmark; an X
-// display is needed.
+// DeformVolumeRendering: measures the time that VTK's volume mappers need for a frame of the MRI of
+// a head, undeformed and deformed. Both images have the same size, and both are marked as modified
+// before each frame. Options are --quick (few rounds, without the frames that take longest),
+// --pictures=FOLDER and those of Google Benchmark. An X display is needed.
 #include "Evaluation.h"
 #include "Timing.h"
 
@@ -53,7 +52,7 @@ vtkSmartPointer<vtkImageData> ReadHead()
   reader->SetFileName(HeadFile);
   reader->Update();
   vtkSmartPointer<vtkImageData> head = reader->GetOutput();
-  // In voxels, as the poses are.
+  // World coordinates are voxels, as in the poses.
   head->SetOrigin(0.0, 0.0, 0.0);
   head->SetSpacing(1.0, 1.0, 1.0);
   return head;
@@ -91,7 +90,7 @@ vtkSmartPointer<vtkVolumeProperty> MakeProperty(bool shaded)
   return property;
 }
 
-// One window, with two volumes of which one is shown at a time.
+// A window with two volumes, one of which is shown at a time.
 class RenderingStage
 {
 public:
@@ -196,7 +195,7 @@ void Register(
       { "deformed", [=](RenderingStage& stage) { return draw(stage, true); } } });
 }
 
-// Takes --name or --name=value out of the arguments; returns whether it was there.
+// Removes --name or --name=value from the arguments. Returns whether it was given.
 bool TakeOption(int& argc, char* argv[], const std::string& name, std::string* value)
 {
   for (int i = 1; i < argc; ++i)

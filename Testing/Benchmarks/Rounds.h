@@ -13,19 +13,19 @@
 #include <utility>
 #include <vector>
 
-/// One measurement: wall-clock seconds, and what else belongs to it.
+/// One measurement: wall-clock seconds, and further numbers.
 struct Measurement
 {
   double Seconds = 0.0;
   std::map<std::string, double> Counters;
 };
 
-/// What is built for a group of measurements; there is one at a time, so that only the memory of
-/// one group is needed.
+/// The stage of the current group: the objects that its measurements need. Only one group has a
+/// stage at a time, to save memory.
 class CurrentStage
 {
 public:
-  /// The stage of this group, or null; then the one that stood has been taken down.
+  /// Returns the stage of this group. If another group has a stage, deletes it and returns null.
   static void* Find(const std::string& group)
   {
     if (Group != group)
@@ -46,20 +46,20 @@ private:
   inline static std::shared_ptr<void> Stage;
 };
 
-/// One of those that are compared in a group.
+/// One of the alternatives that are compared in a group.
 template <typename Stage>
 struct Contestant
 {
   std::string Name;
   std::function<Measurement(Stage&)> Measure;
-  /// False: its first measurement counts, because a second one would take too long.
+  /// Whether the first measurement does not count. False for contestants that take too long.
   bool WarmUp = true;
 };
 
-/// A turn. Where a run takes less than this many seconds it is several: the first one finds the
-/// caches full of what others left there, which is not so while a volume is worked with, and of the
-/// rest the one in the middle counts. In longer runs that makes no difference, so that it does not
-/// matter on which side of the limit one of two that are compared is.
+/// If a run takes less than ShortRun seconds, a turn has several runs. The first run does not
+/// count, because caches contain data of the other contestants, which is not the case in normal
+/// use. The median of the other runs counts. For longer runs caches make no difference, so
+/// contestants with one run and with several runs can be compared.
 constexpr double ShortRun = 1.0;
 constexpr int RunsAfterShortOne = 3;
 
@@ -82,11 +82,11 @@ Measurement TakeTurn(const Contestant<Stage>& contestant, Stage& stage)
   return *middle;
 }
 
-/// Registers measurements that are taken in turn, A B C A B C and so on: when the machine becomes
-/// slower for a while it does so for all, and the ratio within a round stays. Each measurement is a
-/// turn, and a run of Google Benchmark of its own, named group/contestant, in the order of the
-/// rounds. build makes what is measured, at the first measurement; then each contestant has a run
-/// that does not count.
+/// Registers measurements that are taken in turn, A B C A B C and so on. If the machine becomes
+/// slower for a while, it does so for all contestants, and the ratios within a round do not change.
+/// Each measurement is a turn, and a run of Google Benchmark with the name group/contestant. build
+/// makes the stage at the first measurement of the group. Then each contestant has a turn that does
+/// not count.
 template <typename Stage>
 void RegisterRounds(const std::string& group, int rounds,
   std::function<std::shared_ptr<Stage>()> build, std::vector<Contestant<Stage>> contestants)

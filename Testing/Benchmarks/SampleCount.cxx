@@ -77,7 +77,7 @@ struct CellLayer
         Position corners[8];
         for (int v = 0; v < 8; ++v)
         {
-          // The offset of a vertex counts downwards where the index of the cell is odd.
+          // The offset of a vertex counts downward if the index of the cell is odd.
           const int i = x + ((v & 1) ^ (x & 1));
           const int j = y + ((v >> 2 & 1) ^ (y & 1));
           const int k = z + ((v >> 1 & 1) ^ (z & 1));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Time of a live session from a mouse move, or the stroke of a knife, to the new volume.
+// Measures the time of a live session from an event, such as a mouse move or a cut, to the new
+// volume.
 #include "Evaluation.h"
 #include "Timing.h"
 
@@ -21,9 +22,9 @@
 namespace
 {
 
-constexpr std::array<int, 3> Head{ { 181, 217, 181 } }; // as ch2
+constexpr std::array<int, 3> Head{ { 181, 217, 181 } }; // the size of ch2
 
-// A body that is held in a drag to and fro, with the last output in hands as a viewer has it.
+// A session in which a handle is dragged to and fro. It holds the last output, as a viewer does.
 class LiveBody
 {
 public:
@@ -49,17 +50,17 @@ public:
     return this->Measure(
       [this]
       {
-        constexpr int turn = 8; // frames before it goes back
+        constexpr int turn = 8; // number of frames after which the handle moves back
         const int step = ++this->Step % (2 * turn);
         this->Session->MoveGrab(this->Handle, this->Rest[0] + std::min(step, 2 * turn - step),
           this->Rest[1], this->Rest[2]);
       });
   }
 
-  // A sheet of 50 x 50 voxels beside the handle, which is taken back after the measurement.
+  // Cuts with a sheet of 50 x 50 voxels beside the handle. The cut is undone after the measurement.
   Measurement Cut()
   {
-    constexpr int side = 5; // points
+    constexpr int side = 5; // number of points on each side
     vtkNew<vtkPoints> points;
     vtkNew<vtkCellArray> triangles;
     for (int j = 0; j < side; ++j)
@@ -92,7 +93,7 @@ private:
   void Update()
   {
     this->Session->Update();
-    // As a viewer lets the one before go when it has another.
+    // Release the previous output when there is a new one, as a viewer does.
     const auto output = vtkSmartPointer<vtkImageData>::Take(this->Session->TakeOutput());
     if (!output || !this->Session->GetErrorMessage().empty())
     {
@@ -123,7 +124,7 @@ private:
     const Measurement measurement = this->Measure(event);
     this->Session->Undo();
     this->Update();
-    // An undo lets the handle go.
+    // Undo has released the handle.
     this->Handle = this->Session->BeginGrab(this->Rest[0], this->Rest[1], this->Rest[2]);
     this->Update();
     return measurement;

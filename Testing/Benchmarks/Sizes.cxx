@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Time by the size of the deformation mesh and of the volume, and by the nodes that move.
+// Measures updates with deformation meshes and volumes of different sizes, and with moving parts of
+// meshes.
 #include "Evaluation.h"
 
 #include <vtkImageData.h>
 
 namespace
 {
-// The filter chooses: the report says what.
+// The filter chooses the resampler, and the report states which one.
 const char* const Automatic = "automatic";
 
 using CaseMap = std::map<std::string, std::unique_ptr<BenchmarkCase>>;
@@ -16,7 +17,8 @@ Contestant<CaseMap> MakeContestant(const std::string& name, Pose pose)
   return { name, [=](CaseMap& cases) { return Measure(*cases.at(name), pose); } };
 }
 
-// Meshes of few and of many nodes, by the number of these.
+// Returns the nodes on each axis of meshes with few and with many nodes, by their names in the
+// results.
 std::map<std::string, int> GetNodesPerAxis()
 {
   std::map<std::string, int> nodesPerAxis;
@@ -93,14 +95,14 @@ void RegisterVoxels(const EvaluationSize& size)
   // 1, 4, 13.2, 30, 60 and 100 million.
   constexpr std::array<int, 3> all[] = { { { 100, 100, 100 } }, { { 160, 160, 160 } },
     BenchmarkVolume, { { 311, 311, 311 } }, { { 391, 391, 391 } }, { { 464, 464, 464 } } };
-  // What the exact resampler is compared with is enough to show a trend.
+  // The other resampler is measured up to this size, which suffices to show a trend.
   constexpr int largestCompared = 311;
   struct Wanted
   {
     std::array<int, 3> Dimensions;
     int Resampler;
   };
-  // All volumes stand at once, so that a round holds all of them.
+  // All volumes exist at the same time, so that a round has all of them.
   std::map<std::string, Wanted> wanted;
   std::vector<Contestant<CaseMap>> contestants;
   for (const auto& dimensions : all)
@@ -151,7 +153,7 @@ void RegisterPreprocessing(const EvaluationSize& size)
           subject.GetFilter()->ReleaseDeviceMemory();
           Measurement measurement = Measure(subject, Pose::NearIdentity);
           measurement.Seconds = measurement.Counters.at("preprocessing");
-          // Otherwise the next one would find the memory of this one taken.
+          // Otherwise the device would have less memory for the next volume.
           subject.GetFilter()->ReleaseDeviceMemory();
           return measurement;
         },
@@ -165,7 +167,7 @@ void RegisterPreprocessing(const EvaluationSize& size)
 
 void RegisterGivenMeshes(const EvaluationSize& size)
 {
-  // What the filter gets at each update, by its name in the results.
+  // Returns a contestant for a form of the deformation, with its name in the results.
   const auto contestant = [](const std::string& name, Grid grid)
   {
     return Contestant<CaseMap>{ name,

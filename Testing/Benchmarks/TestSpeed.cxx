@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The only check of time: an update of vtkDeformVolumeFilter relative to vtkImageReslice with an
-// affine transform, which fills the same output. They run in turn. The best of ten of each counts,
-// so that other work on the machine matters little.
+// The only test that checks time: an update of vtkDeformVolumeFilter relative to one of
+// vtkImageReslice with an affine transform, which fills the same output. The two are updated in
+// turn. The best of ten updates of each counts, so that other programs on the machine have little
+// effect.
 #include "BenchmarkCase.h"
 #include "Peers.h"
 
@@ -19,7 +20,8 @@
 namespace
 {
 
-// Floats in a register of the processor that OpenCL works on; 0: there is none.
+// Returns the number of floats in a vector register of the CPU that OpenCL uses; 0 without such a
+// CPU.
 unsigned int FindLanes()
 {
   cl_uint count = 0;
@@ -40,7 +42,8 @@ unsigned int FindLanes()
   return 0;
 }
 
-// The ratio as measured with VTK 9.1 on two cores with so many lanes; 0: not measured.
+// Returns the ratio that was measured with VTK 9.1 on two cores with this number of lanes; 0 if it
+// was not measured.
 double GetMeasuredRatio(unsigned int lanes)
 {
   return lanes == 16 ? 0.47 : 0.0;
@@ -60,7 +63,7 @@ int main()
     const auto reslice = MakeAffineReslice(volume);
     double deformed = std::numeric_limits<double>::infinity();
     double resliced = deformed;
-    // The first round compiles kernels and finds the static mapping.
+    // The first round compiles kernels and builds the static mapping.
     for (int round = 0; round <= rounds; ++round)
     {
       deform.Move(Pose::NearIdentity);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Time of the cells that the boundary of the mesh crosses: meshes as large as a body of 100 voxels
-// on each axis, with these cells and without.
+// Measures the additional time of the cells that the boundary of the mesh crosses: meshes over a
+// body of 100 voxels on each axis are updated with these cells and without.
 #include "Evaluation.h"
 
 #include <StaticMapping.h>
@@ -88,7 +88,7 @@ public:
 
   Measurement Measure()
   {
-    // All nodes move each time.
+    // All nodes move before each update.
     this->Phase += 0.1;
     std::vector<float> displacements;
     for (const glm::dvec3& p : this->Points)

@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-/// Wall-clock seconds that something takes.
+/// Returns the wall-clock seconds that a function takes.
 template <typename Work>
 double Time(Work&& work)
 {

@@ -1,21 +1,22 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Repeats the published evaluation on this machine, on its processors and on its GPU if there is one,
-# and writes build/benchmarks/report.md with plots. Documents/benchmarks.md says what it means.
+# Repeats the published evaluation on this machine, on its CPUs and on its GPU if there is one, and
+# writes build/benchmarks/report.md with plots. Documents/benchmarks.md explains the report.
 #
 # Usage: Testing/Benchmarks/run.sh [OPTION]...
-#   --quick             few rounds and no volume over 30 million voxels: to see that it works, not to
-#                       rely on
-#   --programs FOLDER   measures with the programs in FOLDER, built elsewhere; installs and builds
-#                       nothing. Without xvfb-run or DeformVolumeRendering the viewports are left out,
-#                       without matplotlib the report
+#   --quick             few rounds and no volume over 30 million voxels: checks that everything works.
+#                       Its times are not reliable
+#   --programs FOLDER   measures with the programs in FOLDER, which were built elsewhere, and installs
+#                       and builds nothing. Without xvfb-run or DeformVolumeRendering the viewports are
+#                       left out, without matplotlib the report
 #   --libraries FOLDER  where these programs find libraries; Python does not look there
-#   --output FOLDER     a folder that is empty or not there, instead of build/benchmarks
-#   --parts PART,...    only these of: benchmarks, memory, rendering, gpu-peers
-#   --filter REGEX      only the benchmarks whose names match. Given several times, each is a run with a
-#                       file of results of its own, in this order
-#   --seconds NUMBER    starts no further run with a filter after so many seconds; the other parts follow
-# What fails does not stop the rest; the status is then 1 at the end.
+#   --output FOLDER     writes to this folder, which is empty or does not exist, instead of
+#                       build/benchmarks
+#   --parts PART,...    measures only these parts: benchmarks, memory, rendering, gpu-peers
+#   --filter REGEX      runs only the benchmarks whose names match. Several filters are several runs, in
+#                       this order, each with its own file of results
+#   --seconds NUMBER    starts no further run with a filter after this time; the other parts follow
+# If a measurement fails, the others continue, and the status is 1 at the end.
 # DEFORMVOLUME_DEVICE, if set, is the only device that is measured.
 set -euo pipefail
 
@@ -67,13 +68,13 @@ wants() # PART
   [[ ",$parts," == *",$1,"* ]]
 }
 
-[ -z "$libraries" ] || [ -d "$libraries" ] || fail "$libraries is no folder"
+[ -z "$libraries" ] || [ -d "$libraries" ] || fail "$libraries is not a folder"
 
 python=/usr/bin/python3
 if [ -n "$programs" ]; then
   python=python3
   for program in DeformVolumeDevice DeformVolumeBenchmarks DeformVolumeMemory; do
-    [ -x "$programs/$program" ] || fail "$programs holds no $program"
+    [ -x "$programs/$program" ] || fail "$programs does not contain $program"
   done
 else
   bash Testing/packages.sh library test benchmark
@@ -86,11 +87,11 @@ if [ -z "$results" ]; then
   results=build/benchmarks
   rm -rf "$results"
 elif [ -e "$results" ] && { [ ! -d "$results" ] || [ -n "$(ls -A "$results")" ]; }; then
-  fail "$results is no empty folder"
+  fail "$results is not an empty folder"
 fi
 mkdir -p "$results"
 
-# How the programs are started.
+# The command that starts the programs.
 start=(env)
 [ -z "$libraries" ] || start=(env "LD_LIBRARY_PATH=$libraries${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}")
 
@@ -101,13 +102,13 @@ measure() # PROGRAM NAME-OF-RESULT [ARGUMENT]...
   "${start[@]}" "$programs/$program" "$@" "--benchmark_out=$folder/$result.json" --benchmark_out_format=json
 }
 
-# Volume, type, nodes on each axis, resampler; a process of its own for each.
+# Each line is the volume, the type, the nodes on each axis and the resampler of one process.
 memory=("189 305 229 ushort 13 exact" "189 305 229 ushort 80 exact"
   "189 305 229 ushort 13 mesh-rasterization")
 [ ${#quick[@]} -gt 0 ] || memory+=("464 464 464 ushort 13 exact" \
   "1000 1000 1000 uchar 13 exact" "1000 1000 1000 uchar 13 mesh-rasterization")
 
-# The others are still worth having.
+# After a failure the other measurements continue.
 failed=no
 try() # COMMAND [ARGUMENT]...
 {
@@ -151,9 +152,9 @@ measure_rendering()
 measure_gpu_peers()
 {
   local status=0
-  # Whatever Python holds torch and cupy.
+  # The Python in PATH, which may have torch and cupy.
   python3 Testing/Benchmarks/Report/gpu_peers.py "$folder" || status=$?
-  # 125: neither is there.
+  # 125: neither torch nor cupy is installed.
   if [ $status -ne 0 ] && [ $status -ne 125 ]; then
     echo "run.sh: gpu_peers.py failed with status $status" >&2
     failed=yes

@@ -62,7 +62,7 @@ vtkSmartPointer<vtkImageData> MakeVolume(const std::array<int, 3>& dimensions, i
       FillWaves<unsigned char>(volume, 128.0, 40.0);
       break;
     default:
-      throw std::invalid_argument("MakeVolume makes unsigned short and unsigned char only");
+      throw std::invalid_argument("MakeVolume() supports unsigned short and unsigned char only");
   }
   return volume;
 }
@@ -98,7 +98,7 @@ BenchmarkCase::BenchmarkCase(vtkImageData* volume, int nodesPerAxis, int resampl
   observer->SetCallback(
     [](vtkObject*, unsigned long, void* error, void* text)
     {
-      // Without the place in the sources, and the name of the filter with its address.
+      // Remove the source file, the line, and the name and address of the filter from the text.
       const std::string words = static_cast<const char*>(text);
       const std::size_t begin = words.find("): ");
       *static_cast<std::string*>(error) =
@@ -114,7 +114,7 @@ void BenchmarkCase::ConnectRest()
   this->Rest = vtkUnstructuredGrid::SafeDownCast(this->Deformation);
   vtkNew<vtkUnstructuredGrid> shape;
   shape->DeepCopy(this->Rest);
-  // As many numbers as displacements have.
+  // Deformed positions replace the displacements, with the same number of values.
   vtkNew<vtkPoints> points;
   points->SetDataTypeToFloat();
   points->SetNumberOfPoints(this->Rest->GetNumberOfPoints());
@@ -130,8 +130,8 @@ void BenchmarkCase::Move(Pose pose, Grid grid)
   const PoseMap map(pose, this->Dimensions, ++this->Step);
   auto* displacement = vtkFloatArray::SafeDownCast(this->Displacements)->GetPointer(0);
   vtkDataSet* points = this->Rest ? this->Rest.Get() : this->Deformation.Get();
-  const double share = this->Rest ? 0.0 : 1.0; // of the rest position to be taken off
-  points->GetPoint(0);                         // some datasets get ready at the first call
+  const double share = this->Rest ? 0.0 : 1.0; // 1 subtracts the position at rest
+  points->GetPoint(0); // the first call is not thread-safe for some datasets
   vtkSMPTools::For(0, points->GetNumberOfPoints(),
     [&](vtkIdType begin, vtkIdType end)
     {

@@ -17,30 +17,31 @@ class vtkDataSet;
 class vtkImageData;
 class vtkUnstructuredGrid;
 
-/// The sizes that the demands on speed and memory are stated for.
+/// The volume for which demands.py states limits of time and memory.
 inline constexpr std::array<int, 3> BenchmarkVolume{ { 189, 305, 229 } };
-/// Half as many voxels.
+/// A volume with half as many voxels.
 inline constexpr std::array<int, 3> HalfVolume{ { 150, 242, 182 } };
 inline constexpr std::array<int, 3> HeadVolume{ { 301, 370, 316 } };
-inline constexpr int CoarseNodes = 13; // on each axis: 2,197 nodes
-inline constexpr int FineNodes = 80;   // on each axis: 512,000 nodes
-/// Instead of nodes: a displacement field with a vector for each voxel.
+inline constexpr int CoarseNodes = 13; // nodes on each axis, 2,197 in all
+inline constexpr int FineNodes = 80;   // nodes on each axis, 512,000 in all
+/// Stands for a displacement field with a vector for each voxel, instead of a number of nodes.
 inline constexpr int DenseField = 0;
 
-/// What the filter gets when nodes have moved.
+/// The grid that the filter gets when nodes have moved.
 enum class Grid
 {
-  /// The grid that it has, with other displacements.
+  /// The same grid, with other displacements.
   Same,
-  /// Another grid with the same arrays, as filters give it that pass a mesh on.
+  /// Another grid with the same arrays, as from filters that pass a mesh on.
   SharingArrays
 };
 
-/// A synthetic volume, waves along each axis. type: VTK_UNSIGNED_SHORT or VTK_UNSIGNED_CHAR.
+/// Returns a synthetic volume with waves along each axis. type: VTK_UNSIGNED_SHORT or
+/// VTK_UNSIGNED_CHAR.
 vtkSmartPointer<vtkImageData> MakeVolume(
   const std::array<int, 3>& dimensions, int type = VTK_UNSIGNED_SHORT);
 
-/// Wall-clock seconds of one update, as a whole, and what of them the filter reports.
+/// Wall-clock seconds of one update, and the times of its parts that the filter reports.
 struct UpdateTimes
 {
   double Update = 0.0;
@@ -56,25 +57,25 @@ struct UpdateTimes
 class BenchmarkCase
 {
 public:
-  /// nodesPerAxis: of a lattice of tetrahedra, or DenseField.
+  /// nodesPerAxis: nodes of a lattice of tetrahedra on each axis, or DenseField.
   BenchmarkCase(
     vtkImageData* volume, int nodesPerAxis, int resampler = vtkDeformVolumeFilter::EXACT);
   ~BenchmarkCase();
 
-  /// Instead of displacements: deformed positions, and another grid with equal cells for the rest
-  /// configuration.
+  /// Replaces the displacements by deformed positions, and another grid with equal cells for the
+  /// rest configuration.
   void ConnectRest();
 
-  /// Moves the nodes to the next step of a pose. Not part of what is measured.
+  /// Moves the nodes to the next step of a pose. This is not measured.
   void Move(Pose pose, Grid grid = Grid::Same);
 
-  /// Brings the filter up to date. Throws the filter's error where it fails.
+  /// Updates the filter. Throws the filter's error if it fails.
   UpdateTimes Update();
 
   vtkDeformVolumeFilter* GetFilter() { return this->Filter; }
   int GetStep() const { return this->Step; }
   vtkIdType GetNumberOfVoxels() const;
-  /// Of the deformation mesh; 0 with a displacement field.
+  /// Returns the number of tetrahedra of the deformation mesh; 0 with a displacement field.
   vtkIdType GetNumberOfTetrahedra() const;
 
 private:
@@ -83,7 +84,7 @@ private:
   /// The lattice or the displacement field.
   vtkSmartPointer<vtkDataSet> Deformation;
   vtkSmartPointer<vtkDataArray> Displacements;
-  /// Null where there are displacements.
+  /// The mesh at rest. Null with displacements.
   vtkSmartPointer<vtkUnstructuredGrid> Rest;
   int Step = 0;
   /// Error messages of the filter.

@@ -117,7 +117,7 @@ void LiveCase::Split(int tetrahedra, int nodes)
 {
   const vtkIdType perAxis = this->NodesPerAxis;
   const vtkIdType plane = 3 + this->Step++ % (perAxis - 6);
-  // A patch of the plane, about as wide as high, in its middle.
+  // Nodes in the middle of the plane, in a rectangle that is about as wide as high.
   const auto width = static_cast<vtkIdType>(std::sqrt(static_cast<double>(nodes)));
   const vtkIdType first = (perAxis - width) / 2;
   const auto isSplit = [&](vtkIdType node)
@@ -127,7 +127,7 @@ void LiveCase::Split(int tetrahedra, int nodes)
     return node < perAxis * perAxis * perAxis && node / perAxis / perAxis == plane && x >= first &&
       x < first + width && y >= first && y < first + width;
   };
-  // Those above the plane: five in a cell.
+  // Tetrahedra above the plane, five for each cell.
   const vtkIdType cells = perAxis - 1;
   std::map<vtkIdType, vtkIdType> twins;
   vtkCellArray* connectivity = this->Mesh->GetCells();
@@ -191,7 +191,7 @@ void LiveCase::ChangeMask(const std::array<int, 3>& cells)
   {
     first[axis] = (this->Dimensions[axis] - cells[axis]) / 2;
   }
-  // The box that was off before is on again.
+  // Switch the previous box on again.
   for (const int step : { this->Step - 1, this->Step })
   {
     for (int k = 0; k < cells[2]; ++k)

@@ -16,35 +16,37 @@ class vtkImageData;
 class vtkUnsignedCharArray;
 class vtkUnstructuredGrid;
 
-/// A volume in a lattice that changes as simulations, cuts and hands do it: where it moves, and
-/// what is connected.
+/// A volume in a lattice whose nodes and connectivity change as in simulations, cuts and drags.
 class LiveCase
 {
 public:
-  /// logged: whether logs tell the filter what is written (vtkArrayChanges); else it compares.
+  /// logged: whether changes are logged (vtkArrayChanges). Otherwise the filter compares arrays.
   LiveCase(const std::array<int, 3>& dimensions, int nodesPerAxis, bool logged);
   ~LiveCase();
 
-  /// Moves all nodes, or those in a box whose edges have these fractions of the volume's.
+  /// Moves all nodes, or the nodes in a box. fractions: lengths of its edges relative to those of
+  /// the volume.
   void MoveAll();
   void MoveSome(const std::array<double, 3>& fractions);
-  /// So many tetrahedra beside a plane of the lattice, another one each time, get at most so many
-  /// nodes of their own, which move a little.
+  /// Splits nodes on a plane of the lattice, another plane in each call. tetrahedra: the number of
+  /// tetrahedra on one side that get new nodes. nodes: the largest number of new nodes, which move
+  /// a little.
   void Split(int tetrahedra, int nodes);
   /// Changes the rest position of a node, so that the static mapping is rebuilt.
   void MoveAtRest();
-  /// Switches tetrahedra off, and others on again, in a box of so many cells.
+  /// Switches the tetrahedra in a box off, and those in the previous box on again. cells: the size
+  /// of the box.
   void ChangeMask(const std::array<int, 3>& cells);
   /// Marks the mesh as modified without a change.
   void Touch();
 
-  /// Seconds of an update. Throws where the filter fails.
+  /// Updates the filter, and returns the seconds. Throws if the filter fails.
   double Update();
 
   vtkDeformVolumeFilter* GetFilter() { return this->Filter; }
 
 private:
-  /// Tuples of an array were written. Not logged, the array is modified once all are.
+  /// Logs that tuples of an array were written. Without logs, Finish() marks the array as modified.
   void Log(vtkDataArray* array, vtkIdType first, vtkIdType last);
   void Finish(vtkDataArray* array);
 

@@ -8,8 +8,8 @@
 
 class vtkImageData;
 
-/// What the filter is compared with. A peer fills the output extent that the filter has filled, in
-/// the volume's own coordinates.
+/// An alternative to the filter. A peer fills the same output extent as the filter, in the
+/// coordinates of the volume.
 class Peer
 {
 public:
@@ -23,13 +23,13 @@ public:
   virtual vtkImageData* GetOutput() = 0;
 };
 
-/// vtkImageReslice with an affine transform, linear: the pose General, whatever is asked for. This
-/// is what it costs in VTK to rotate a volume.
+/// vtkImageReslice with linear interpolation and an affine transform: the pose General, whatever
+/// pose is requested. Its time is that of rotating a volume with VTK.
 std::unique_ptr<Peer> MakeAffineReslice(vtkImageData* volume);
 
 enum class GridDirection
 {
-  /// The vectors of the grid are taken as the inverse deformation, as if that were known.
+  /// The vectors of the grid are used as those of the inverse deformation, as if it were known.
   Backward,
   /// The transform inverts the deformation at each voxel by Newton's method.
   Solved
@@ -43,7 +43,7 @@ std::unique_ptr<Peer> MakeGridReslice(
 /// the voxels of the output; then the volume is probed at those coordinates.
 std::unique_ptr<Peer> MakeProbeChain(vtkImageData* volume, int nodesPerAxis);
 
-/// The method as published (PublishedKernels.cl), for volumes that MakeVolume makes of 16 bits.
+/// The published method (PublishedKernels.cl), for volumes of MakeVolume() of 16 bits.
 std::unique_ptr<Peer> MakePublished(vtkImageData* volume, int nodesPerAxis);
 
 #endif

@@ -15,7 +15,7 @@ namespace
 // benchmarks' volume: 1 of 3 on x, 7 of 19 on y and 6 of 15 on z.
 constexpr double LocalEditFraction = 0.28;
 
-// 1 in the middle of an interval, 0 and level at its ends and outside.
+// A window function: 1 in the middle of an interval, 0 outside, with a derivative of 0 at the ends.
 double Window(double x, double begin, double end)
 {
   if (x <= begin || x >= end)
@@ -65,7 +65,8 @@ std::array<double, 6> GetLocalEditBox(Pose pose, const std::array<int, 3>& dimen
   }
   if (pose == Pose::LocalEditAtSide)
   {
-    // As much of the volume, and the middle of the box on its side.
+    // Center the box on a side of the volume, and double its length along that axis, so that as
+    // much of the volume is in the box.
     box[2] = (1.0 - LocalEditFraction) * (dimensions[1] - 1);
     box[3] = (1.0 + LocalEditFraction) * (dimensions[1] - 1);
   }
@@ -157,7 +158,7 @@ std::array<double, 3> PoseMap::operator()(const std::array<double, 3>& rest) con
       {
         const double length = this->Dimensions[axis] - 1;
         const double t = rest[axis] / length;
-        // The derivative goes from 0.7 to 1.6.
+        // The derivative increases from 0.7 to 1.6.
         moved[axis] = length * t * (0.7 + 0.45 * t) + this->Phase;
       }
       break;

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The method as published: one work-item per vertex maps it, then one work-item per cell tests each
-// of its five tetrahedra against every voxel of its bounding box, in single precision with a
-// tolerance. Several work-items may write one voxel, and the last one wins. This is a yardstick: do
-// not make it faster.
+// The published method: one work-item for each vertex maps it, and then one work-item for each cell
+// tests each of its five tetrahedra against every voxel of its bounding box, in single precision with
+// a tolerance. Several work-items may write one voxel, and the last one wins. These kernels are a
+// reference for times: do not make them faster.
 //
 // Source: Rodriguez, Leon, Martin, Otaduy, "A parallel resampling method for interactive
 // deformation of volumetric models", sections on deformation mapping and resampling.
 //
-// FIVE_TETRAHEDRA stands in front of this text (FiveTetrahedra.h). Sizes and indices are in x, y, z.
+// The host puts FIVE_TETRAHEDRA (FiveTetrahedra.h) in front of this text. Sizes and indices are in
+// the order x, y, z.
 
 #define TOLERANCE 1e-5f
 
 __constant uchar Tetrahedra[5][4] = FIVE_TETRAHEDRA;
 
-// links: as VertexLink; none is outside the mesh.
+// links: as VertexLink. All voxels are inside the mesh.
 __kernel void MapVertices(__global const float4* links, __global const int4* tetrahedra,
   __global const float* displacements, __global float* positions, int4 size)
 {

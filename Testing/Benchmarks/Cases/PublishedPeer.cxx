@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The published method (PublishedKernels.cl), on the device of the filter.
+// Runs the published method (PublishedKernels.cl) on the device of the filter.
 #define CL_HPP_ENABLE_EXCEPTIONS
 #define CL_HPP_TARGET_OPENCL_VERSION 120
 #define CL_HPP_MINIMUM_OPENCL_VERSION 120
@@ -178,7 +178,7 @@ private:
     this->Resample.setArg(6, cl_int4{ { size[0], size[1], size[2], 0 } });
   }
 
-  // Over all vertices, or over all cells: one less on each axis.
+  // Launches a kernel for all vertices (less: 0) or for all cells (less: 1).
   void Launch(const cl::Kernel& kernel, int less, cl::Event& event)
   {
     constexpr std::size_t group = 64;
@@ -196,7 +196,7 @@ private:
   cl::Kernel Resample = MakeKernel("Resample");
   std::array<int, 3> Dimensions;
   std::vector<glm::dvec3> Rest;
-  std::vector<cl::Buffer> Sent; // kernels do not own their arguments
+  std::vector<cl::Buffer> Sent; // buffers that kernels use, which do not own them
   cl::Buffer Displacements;
   cl::Buffer Positions;
   cl::Buffer Values;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The peers of the benchmarks have the output of the filter: times of equal work are compared.
+// Tests that the peers of the benchmarks have the same output as the filter, so that the benchmarks
+// compare times for the same result.
 #include "BenchmarkCase.h"
 #include "Peers.h"
 
@@ -16,11 +17,11 @@ namespace
 {
 constexpr std::array<int, 3> Dimensions{ { 48, 40, 44 } };
 constexpr int Nodes = 7;
-// Voxels near the border are left out: there a peer may take the background for a neighbour.
+// Voxels near the border are left out, because peers may use the background as a neighboring value.
 constexpr int Border = 6;
 
-// The largest difference of values at voxels whose neighbourhood the filter covers; negative where
-// there are none.
+// Returns the largest difference of values at voxels whose neighborhood the filter covers; negative
+// if there are no such voxels.
 double GetLargestDifference(vtkImageData* ours, vtkImageData* theirs)
 {
   vtkDataArray* mask = ours->GetPointData()->GetArray("vtkValidPointMask");
@@ -28,7 +29,7 @@ double GetLargestDifference(vtkImageData* ours, vtkImageData* theirs)
   vtkDataArray* b = theirs->GetPointData()->GetScalars();
   if (!b || b->GetNumberOfTuples() != a->GetNumberOfTuples())
   {
-    std::cerr << "the peer's output has another size\n";
+    std::cerr << "the output of the peer has another size\n";
     return -1.0;
   }
   int extent[6];
@@ -68,7 +69,7 @@ bool Check(
   const char* name, vtkImageData* volume, std::unique_ptr<Peer> peer, Pose pose, double tolerance)
 {
   BenchmarkCase subject(volume, Nodes);
-  // Twice, so that a peer that does not notice that the mesh has moved is found out.
+  // Two steps, so that a peer that does not notice that the mesh has moved fails.
   for (int step = 1; step <= 2; ++step)
   {
     subject.Move(pose);
@@ -79,7 +80,7 @@ bool Check(
     std::cout << name << ", " << GetName(pose) << ": largest difference " << difference << "\n";
     if (difference < 0.0 || difference > tolerance)
     {
-      std::cerr << name << " does something else\n";
+      std::cerr << name << " has another output than the filter\n";
       return false;
     }
   }
@@ -90,10 +91,10 @@ bool Check(
 int main()
 {
   const auto volume = MakeVolume(Dimensions);
-  // The waves change by at most 600 (0.11 + 0.07 + 0.05) = 138 from voxel to voxel, so 1/512 voxel
-  // by which the filter rounds positions is 0.3; it rounds values to the nearest integer, which
-  // some peers cut off. Tetrahedra and cells interpolate alike what depends on each axis by itself,
-  // as the waves do and as each component of the displacements does.
+  // The waves change by at most 600 (0.11 + 0.07 + 0.05) = 138 from voxel to voxel. So the rounding
+  // of positions, at most 1/512 voxel, changes values by 0.3. The filter rounds values to the
+  // nearest integer, and some peers truncate. Tetrahedra and cells interpolate sums of functions of
+  // one axis in the same way; the waves and the components of the displacements are such sums.
   constexpr double tolerance = 2.0;
   bool passed = true;
   try
@@ -107,12 +108,14 @@ int main()
     {
       passed &= Check("probe chain", volume, MakeProbeChain(volume, Nodes), pose, tolerance);
     }
-    // Positions that are not rounded move values by 0.3 at most, and both round to integers.
+    // The published method does not round positions, which changes values by 0.3 at most. Both
+    // round values to integers.
     for (const Pose pose : { Pose::NearIdentity, Pose::General, Pose::VaryingScale })
     {
       passed &= Check("published", volume, MakePublished(volume, Nodes), pose, 1.0);
     }
-    // A grid that is taken as the inverse is right for what moves all by the same only.
+    // A forward grid that is used as the inverse is correct only if all points move by the same
+    // vector.
     passed &= Check("grid reslice, backward", volume,
       MakeGridReslice(volume, Nodes, GridDirection::Backward), Pose::Undeformed, tolerance);
   }

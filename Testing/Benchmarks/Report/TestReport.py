@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes reports of results with missing, failed and truncated parts. Numbers are made up, for the names that
-DeformVolumeBenchmarks lists: TestReport.py DeformVolumeBenchmarks."""
+"""Makes reports of results with missing, failed and truncated parts. The results are synthetic numbers for the
+benchmarks that DeformVolumeBenchmarks lists. Usage: TestReport.py DeformVolumeBenchmarks"""
 import contextlib
 import io
 import json
@@ -80,7 +80,7 @@ def missing_sections(text):
 
 
 def check_parts(names):
-    """Each measurement appears in the report, and a report without a section says so."""
+    """Checks that each measurement appears in the report, and that the report lists missing sections."""
     everything = set(sections.ON_GPUS | sections.ALL)
     runs = make_runs(names)
     text = report_on(runs)
@@ -91,7 +91,7 @@ def check_parts(names):
         its_runs = [run for run in runs if run["name"].split("/iterations:")[0] == name]
         others = [run for run in runs if run not in its_runs]
         assert report_on(others) != text, f"{name} is nowhere in the report"
-        # The benchmarks that it is compared with are missing.
+        # A report without the benchmarks with which this one is compared.
         report_on(its_runs)
 
 
@@ -107,7 +107,7 @@ def check_failures(names):
 
 
 def check_ratio():
-    """The median of the ratios within rounds, not the ratio of the medians."""
+    """Checks that ratios are medians of the ratios within rounds, and not ratios of medians."""
     runs = []
     for ours, published in ((0.002, 0.010), (0.004, 0.040), (0.300, 0.300)):
         for name, time in (("Deform/near/2197/exact", ours), ("Published/near/exact", ours),
@@ -136,7 +136,7 @@ def check_document(names):
         DRAWN.clear()
         make_report(results, documents / "gpu.md")
         text = (documents / "gpu.md").read_text()
-        # Text before and after the report is kept.
+        # The text before and after the report does not change.
         (documents / "gpu.md").write_text("Before\n" + text + "After\n")
         DRAWN.clear()
         make_report(results, documents / "gpu.md")
@@ -156,7 +156,7 @@ def check_document(names):
 
 
 def check_positions():
-    """The positions of the peers are the inverse of the general pose, and near identity."""
+    """Checks that the positions of the peers are those of the inverse general pose, and near identity."""
     shape = gpu_peers.get_output_shape(27.5e6)
     assert abs(np.prod(shape) - 27.5e6) < 0.01 * 27.5e6
     matrix = gpu_peers.SCALE * gpu_peers.rotation((7.0, 7.0, 7.0))

@@ -10,8 +10,8 @@ SLACK_IN_VOXELS = 3.9e6  # "from 4 million voxels": 160^3 is 4.1 million
 
 @dataclasses.dataclass
 class Demand:
-    """value is a function of Results that returns the number that must not exceed limit, or None if it was
-    not measured."""
+    """A limit. value is a function of Results that returns the number that must not exceed limit, or None if it was not
+    measured."""
     words: str
     limit: float
     value: typing.Callable
@@ -145,7 +145,7 @@ DEMANDS = [
            lambda r: r.median("Session/elements-665/drag"), "ms"),
     Demand("a cut in a session, at rest", 50.0, lambda r: r.median("Session/at-rest/cut"), "ms"),
     Demand("a cut in a session, ChainMail", 50.0, lambda r: r.median("Session/chain-mail/cut"), "ms"),
-    # The benchmark with the most rounds.
+    # This is the benchmark of the volume with the most rounds.
     Demand("mapping and resampling of 13.2 million voxels, near identity", 1.0,
            lambda r: r.milliseconds("Nodes/near/2197", "kernels"), "ms", "gpu"),
     Demand("mapping and resampling of 13.2 million voxels, general pose", 1.5,

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Measures what users of GPUs have for the same purpose where the inverse deformation is known:
-gpu_peers.py [--cpu] FOLDER.
+"""Measures functions of other packages that resample a volume on a GPU if the inverse deformation is known.
+Usage: gpu_peers.py [--cpu] FOLDER
 
 torch.nn.functional.grid_sample and cupyx.scipy.ndimage.map_coordinates sample the volume of the
-benchmarks at one position for each voxel of the output. The positions lie on the GPU already, in the
-form that each of them takes. The output has as many voxels as that of DeformVolumeBenchmarks, whose
-results are read from FOLDER, or as the volume where there are none.
+benchmarks at one position for each voxel of the output. The positions are on the GPU already, in the
+form that each function needs. The output has as many voxels as that of DeformVolumeBenchmarks, whose
+results are read from FOLDER. Without results it has as many voxels as the volume.
 
 Writes FOLDER/gpu-peers.json in the form of Google Benchmark. Each peer is first compared with
-scipy.ndimage.map_coordinates. What is not installed is left out with a message; where nothing is
-left, the status is 125. With --cpu torch runs on the processors: to try this program, not to measure."""
+scipy.ndimage.map_coordinates. A package that is not installed is left out with a message. If none is
+installed, the status is 125. With --cpu torch uses the CPU, to test this program."""
 import argparse
 import json
 import math
@@ -24,17 +24,17 @@ from results import Results
 
 VOLUME = (229, 305, 189)  # z, y, x: the order of the axes of all arrays here
 POSES = ("near", "general")
-FIELDS = 3  # of positions that take turns, so that no cache holds the next one
+FIELDS = 3  # sets of positions that are used in turn, so that no cache contains the next one
 RUNS = 24
 COPIED_BYTES = 256 << 20
 
-# As in Pose.cxx.
+# The same numbers as in Pose.cxx.
 AMPLITUDE, FREQUENCY = 12.0, 0.02  # near identity
 DEGREES, SCALE = 7.0, 1.03         # general pose
 
 
 def make_volume(shape):
-    """Waves along each axis, as BenchmarkCase.cxx makes them, with values of 16 bits."""
+    """Returns waves along each axis, as BenchmarkCase.cxx makes them, with values of 16 bits."""
     z, y, x = (600.0 * np.sin(frequency * np.arange(n))
                for frequency, n in zip((0.05, 0.07, 0.11), shape))
     waves = 2000.0 + z[:, None, None] + y[:, None] + x
@@ -42,13 +42,13 @@ def make_volume(shape):
 
 
 def get_output_shape(voxels):
-    """The volume's shape, scaled to so many voxels."""
+    """Returns the shape of the volume, scaled to a number of voxels."""
     factor = (voxels / math.prod(VOLUME)) ** (1.0 / 3.0)
     return tuple(round(factor * n) for n in VOLUME)
 
 
 def rotation(degrees):
-    """By so many degrees round x, y and z; rows and columns are z, y, x."""
+    """Returns the matrix of a rotation by an angle about x, y and z. Rows and columns are z, y, x."""
     matrix = np.identity(3)
     for axis, angle in enumerate(np.radians(degrees)):
         first, second = (2 - (axis + step) % 3 for step in (1, 2))
@@ -60,9 +60,9 @@ def rotation(degrees):
 
 
 def make_positions(pose, shape, field):
-    """Where the volume is sampled for each voxel of the output: 3 x shape, in voxels of the volume."""
+    """Returns the position in the volume for each voxel of the output: 3 x shape, in voxels of the volume."""
     phase = 0.01 * field
-    # The output's voxels about its centre, axis by axis.
+    # Voxels of the output relative to its center, axis by axis.
     z, y, x = np.ogrid[tuple(slice(0, n) for n in shape)]
     about = [axis - 0.5 * (n - 1) for axis, n in zip((z, y, x), shape)]
     centre = [0.5 * (n - 1) for n in VOLUME]
@@ -80,10 +80,10 @@ def make_positions(pose, shape, field):
 
 
 class Torch:
-    """torch.nn.functional.grid_sample. It takes positions from -1 to 1, x first."""
+    """torch.nn.functional.grid_sample, which needs positions from -1 to 1, x first."""
     name = "torch"
     cases = (("nearest", "float32"), ("linear", "float32"), ("linear", "float16"))
-    mode = "grid-constant"  # how scipy calls what it does outside
+    mode = "grid-constant"  # scipy's name for its behavior outside the volume
 
     def __init__(self, on_processor):
         import torch
@@ -109,7 +109,7 @@ class Torch:
             padding_mode="zeros", align_corners=True)
 
     def make_output(self, _shape):
-        """grid_sample makes its own, of memory that torch keeps."""
+        """Returns None: grid_sample allocates its output itself, from memory that torch keeps."""
 
     def make_copy(self, size):
         source = self.torch.ones(size // 4, device=self.device)
@@ -120,7 +120,7 @@ class Torch:
         return samples[0, 0].float().cpu().numpy()
 
     def measure(self, call):
-        """Milliseconds of a call on the device."""
+        """Returns the milliseconds of a call on the device."""
         if self.device == "cpu":
             begin = time.perf_counter()
             call()
@@ -134,14 +134,14 @@ class Torch:
 
 
 class Cupy:
-    """cupyx.scipy.ndimage.map_coordinates. It takes positions in voxels, z first."""
+    """cupyx.scipy.ndimage.map_coordinates, which needs positions in voxels, z first."""
     name = "cupy"
     cases = (("nearest", "float32"), ("linear", "float32"))
     mode = "constant"
 
     def __init__(self, on_processor):
         if on_processor:
-            raise ImportError("cupy runs on no processor")
+            raise ImportError("cupy does not run on a CPU")
         import cupy
         import cupyx.scipy.ndimage
         self.cupy = cupy
@@ -189,7 +189,7 @@ def check(peer, interpolation, precision):
     shape, output = (11, 12, 9), (13, 17, 19)
     random = np.random.default_rng(5)
     volume = random.random(shape, np.float32)
-    # Inside and outside. Near a voxel, or in the middle between two, rounding would decide.
+    # Positions inside and outside. They are not near a voxel or the middle between two, where rounding would decide.
     cells = np.stack([random.integers(-2, n + 2, output) for n in shape])
     offsets = random.uniform(0.05, 0.45, cells.shape) * random.choice((-1, 1), cells.shape)
     positions = (cells + offsets).astype(np.float32)
@@ -199,9 +199,9 @@ def check(peer, interpolation, precision):
         peer.load(volume, precision), peer.place(positions, shape, precision), interpolation,
         peer.make_output(output)))
     if samples.shape != expected.shape:
-        raise RuntimeError(f"it makes {samples.shape} of {expected.shape}")
-    # The position on each axis is rounded a few times at up to the number of voxels; values of
-    # neighbours differ by less than 1.
+        raise RuntimeError(f"its output has the shape {samples.shape}, not {expected.shape}")
+    # The position on each axis, which is at most the number of voxels, is rounded a few times. Values of neighboring
+    # voxels differ by less than 1.
     tolerance = (8 * max(shape) + 8) * float(np.finfo(precision).eps)
     difference = float(np.abs(samples - expected).max())
     if not difference <= tolerance:
@@ -211,8 +211,8 @@ def check(peer, interpolation, precision):
 
 
 def measure(peer, calls):
-    """Milliseconds of each run. The call before it keeps the device busy until the host has prepared
-    the call that is measured."""
+    """Returns the milliseconds of each call. A call before each measured one keeps the device busy until the host has
+    prepared the measured one."""
     for call in calls:
         call()
     times = []
@@ -254,7 +254,7 @@ def measure_copy(peer, writer):
 
 
 def measure_case(peer, pose, case, fields, writer):
-    """fields: some sets of positions."""
+    """Measures a peer in a case. fields: sets of positions, which are used in turn."""
     name = f"GpuPeer/{pose}/{peer.name}/{'/'.join(case)}"
     interpolation, precision = case
     shape = fields[0].shape[1:]
@@ -267,7 +267,7 @@ def measure_case(peer, pose, case, fields, writer):
         times = measure(peer, [
             lambda positions=positions: peer.sample(volume, positions, interpolation, output)
             for positions in placed])
-        # The volume is read once, a position for each voxel of the output, and this is written.
+        # The least number of bytes: the volume and the positions are read once, and the output is written once.
         size = np.dtype(precision).itemsize
         moved = size * (math.prod(VOLUME) + 4 * math.prod(shape))
         writer.add(name, times, lambda seconds: {
@@ -278,11 +278,11 @@ def measure_case(peer, pose, case, fields, writer):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n", maxsplit=1)[0])
-    parser.add_argument("--cpu", action="store_true", help="torch on the processors, to try this program")
+    parser.add_argument("--cpu", action="store_true", help="run torch on the CPU, to test this program")
     parser.add_argument("folder", type=pathlib.Path, metavar="FOLDER")
     options = parser.parse_args()
     if not options.folder.is_dir():
-        parser.error(f"{options.folder} is no folder")
+        parser.error(f"{options.folder} is not a folder")
     writer = Writer()
     peers = []
     for kind in (Torch, Cupy):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes what the processors of this machine are to FOLDER/machine.json, in the form of Google Benchmark,
-so that a report can be made on another machine: machine.py FOLDER."""
+"""Writes a description of the CPUs of this machine to FOLDER/machine.json, in the form of Google Benchmark, so that a
+report can be made on another machine. Usage: machine.py FOLDER"""
 import json
 import os
 import pathlib
@@ -8,7 +8,7 @@ import sys
 
 
 def describe_processors():
-    """Model, number and widest vectors of the processors."""
+    """Returns the model, the number and the widest vectors of the CPUs."""
     model, flags = "unknown processor", ""
     with open("/proc/cpuinfo", encoding="utf-8") as file:
         for line in file:

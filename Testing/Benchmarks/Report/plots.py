@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The plots of the report."""
+"""Draws the plots of the report."""
 import matplotlib
 
 matplotlib.use("Agg")
@@ -13,14 +13,14 @@ STYLES = {
 
 
 class Pictures:
-    """The folder of the plots, and its name in the text that shows them."""
+    """The folder of the plots, and its path in the text that shows them."""
 
     def __init__(self, folder, prefix=""):
         self.folder = folder
         self.prefix = prefix
 
     def show(self, name, words):
-        """The Markdown that shows a plot."""
+        """Returns the Markdown that shows a plot."""
         return f"![{words}]({self.prefix}{name})\n"
 
 
@@ -33,14 +33,14 @@ def _finish(axes, path, title):
 
 
 def _label_plainly(axis, ticks=(1.0, 2.0, 5.0)):
-    """Ticks of a logarithmic axis, as plain numbers."""
+    """Labels the ticks of a logarithmic axis with plain numbers."""
     axis.set_major_locator(LogLocator(subs=ticks))
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.10g}"))
     axis.set_minor_formatter(NullFormatter())
 
 
 def plot_curves(path, title, labels, curves, band=None):
-    """curves: resampler -> (x, y). band: (lower, upper) of y."""
+    """Draws curves. curves: resampler -> (x, y). band: (lower, upper) of y."""
     _, axes = plt.subplots(figsize=(7, 4.2))
     for resampler, (x, y) in curves.items():
         label, colour, marker = STYLES[resampler]
@@ -57,7 +57,7 @@ def plot_curves(path, title, labels, curves, band=None):
 
 
 def plot_bars(path, title, label, bars):
-    """bars: (name, value, whether it is DeformVolume)."""
+    """Draws horizontal bars. bars: (name, value, whether it is DeformVolume)."""
     _, axes = plt.subplots(figsize=(9, 0.36 * len(bars) + 1.3))
     names = [name for name, _, _ in bars]
     values = [value for _, value, _ in bars]

@@ -30,7 +30,7 @@ ROWS = [
 
 
 def measured(results):
-    """(name, label in the plot, milliseconds, time relative to DeformVolume in the same rounds)."""
+    """Yields (name, label in the plot, milliseconds, time relative to DeformVolume in the same rounds)."""
     for name, short, ours in ROWS:
         if results.median(name):
             yield name, short, results.median(name), results.ratio(name, ours)

@@ -28,7 +28,7 @@ def describe(results):
 
 
 def demands(devices):
-    """A table of the limits, and a line for each device with those that were not measured."""
+    """Yields a table of the limits, and a line for each device with the limits that were not measured."""
     rows = []
     missing = {kind: [] for kind in devices}
     for demand in DEMANDS:
@@ -66,7 +66,7 @@ def device_report(results, pictures, kind):
 
 
 def report(devices, pictures, title, manual):
-    """title: None: without a title. manual: the link to Documents/benchmarks.md."""
+    """Yields the report. title: None for no title. manual: the link to Documents/benchmarks.md."""
     if title:
         yield f"# {title}\n"
     date = min(results.context["date"] for results in devices.values())

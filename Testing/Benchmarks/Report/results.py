@@ -11,7 +11,7 @@ SUFFIX = "/iterations:"
 
 
 def format_date(text):
-    """27 November 2026 for a date of Google Benchmark."""
+    """Returns a date of Google Benchmark in the form 27 November 2026."""
     day = datetime.datetime.fromisoformat(text)
     return f"{day.day} {day:%B %Y}"
 
@@ -36,7 +36,7 @@ class Results:
 
     @property
     def device(self):
-        """Name of the device, by DeformVolumeDevice."""
+        """The name of the device, as DeformVolumeDevice has written it."""
         return self.context.get("device", "a device that was not described")
 
     @property
@@ -45,7 +45,7 @@ class Results:
 
     @property
     def processors(self):
-        """Description of the CPUs, by machine.py."""
+        """The description of the CPUs, as machine.py has written it."""
         return self.context.get("processors", "unknown processors")
 
     def names(self, prefix):

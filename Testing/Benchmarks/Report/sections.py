@@ -3,9 +3,9 @@
 measured, and may draw plots (Pictures)."""
 from plots import STYLES, plot_bars, plot_curves
 
-# The method's authors measured these on a Radeon R9 270X: Rodriguez, Leon, Martin and Otaduy,
+# Times that the authors of the method measured on a Radeon R9 270X: Rodriguez, Leon, Martin and Otaduy,
 # "A parallel resampling method for interactive deformation of volumetric models". Their ray casting took 500 samples
-# a ray.
+# for each ray.
 PAPER_RESAMPLING = {"undeformed": 14.6, "rotated-45": 23.6, "scale-1.5": 51.2}  # ms
 PAPER_RENDERING = {("700x700", "unshaded"): 7.4, ("700x700", "shaded"): 24.1,
                    ("1920x1080", "unshaded"): 40.3, ("1920x1080", "shaded"): 107.7}  # ms
@@ -50,7 +50,7 @@ DEFORMATIONS = {"2197/exact": "2,197 nodes", "512000/exact": "512,000 nodes", "f
 
 
 def cell(value, digits=1):
-    """Formats a number of a table with `digits` significant digits, and all before the point."""
+    """Formats a number of a table with `digits` significant digits, and with all digits before the point."""
     if value is None:
         return "-"
     if isinstance(value, str):
@@ -84,8 +84,8 @@ def device(results, _pictures, _kind):
 
 
 def _least_milliseconds(results, name):
-    """Time in which the device copies the bytes that must be moved: the volume is read, the result and its
-    mask are written."""
+    """Returns the time in which the device copies as many bytes as a resampling must read and write: the volume, the
+    result and its mask."""
     rate = results.median("Device/copy", "bytes_per_second")
     voxels, output = (results.median(name, key) for key in ("voxels", "output_voxels"))
     return 1e3 * (2.0 * voxels + 3.0 * output) / rate if rate and voxels and output else None
@@ -121,15 +121,15 @@ def gpu_peers(results, pictures, kind):
            "voxel of the output, which is on the GPU already. They read and write values of 32 bits, and no mask. "
            "With \"half\", values and positions have 16 bits, so a position is wrong by a tenth of a voxel or more. "
            "DeformVolume gets the forward deformation (except with the inverse field), and reads and writes 16 bits "
-           "and a mask. The last columns are its mapping and resampling relative to the peer, per voxel of the "
-           "output; they are quotients of medians, as it ran in another process. With an inverse field the output "
-           "has as many voxels as the field has vectors."
+           "and a mask. The last columns are the time of mapping and resampling of DeformVolume relative to that of "
+           "the peer, per voxel of the output. They are quotients of medians, because DeformVolume ran in another "
+           "process. With an inverse field the output has as many voxels as the field has vectors."
            + (f" A copy on the device reads and writes, together: {', '.join(copies)}." if copies else "")
            + "\n")
     for pose, words in POSES.items():
         ours = {what: results.milliseconds(f"Deform/{pose}/{deformation}", "kernels")
                 for deformation, what in DEFORMATIONS.items()}
-        # An inverse field gives an output of the field's size.
+        # With an inverse field the output has the size of the field.
         outputs = {what: results.median(f"Deform/{pose}/{deformation}", "output_voxels")
                    for deformation, what in DEFORMATIONS.items()}
         published = results.milliseconds(f"Published/{pose}/published", "kernels")
@@ -268,7 +268,8 @@ def tight_meshes(results, _pictures, _kind):
 
 
 def _chosen(results, name):
-    """What SetResamplerToAutomatic() has chosen: vtkDeformVolumeFilter::Resamplers."""
+    """Returns the resampler that SetResamplerToAutomatic() has chosen, by its number in
+    vtkDeformVolumeFilter::Resamplers."""
     return {0: "Exact", 2: "MeshRasterization"}.get(results.median(name, "resampler_in_use"), "-")
 
 
@@ -574,7 +575,7 @@ ALL = {
     "forms of the deformation": given,
     "viewports": rendering,
 }
-# Additional sections for GPUs, before the others.
+# Additional sections for GPUs, before those of ALL.
 ON_GPUS = {
     "kernels on the GPU": gpu,
     "peers on the GPU": gpu_peers,
