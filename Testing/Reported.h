@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What vtkDeformVolumeFilter::GetSummary() tells, as numbers.
+// Reads numbers from the text of vtkDeformVolumeFilter::GetSummary().
 #ifndef Reported_h
 #define Reported_h
 
@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-/// The seconds in a line "name: seconds" of the summary. Throws where there is none.
+/// Returns the seconds in the line "name: seconds" of the summary. Throws if there is no such line.
 inline double GetReportedSeconds(vtkDeformVolumeFilter* filter, const std::string& name)
 {
   const std::string summary = "\n" + filter->GetSummary() + "\n";

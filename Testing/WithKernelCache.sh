@@ -1,8 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Runs a command with a kernel cache of PoCL that no other command uses at the same time, because PoCL
-# fails if several processes compile into one cache. So there are as many caches as commands that run
-# at the same time. Compiled kernels are shared by hard links, so each is compiled once.
+# fails if several processes compile into one cache. So there are as many caches as commands at the
+# same time. Hard links share compiled kernels between the caches, so each kernel is compiled once.
 #
 # Usage: WithKernelCache.sh FOLDER COMMAND [ARGUMENT]...
 set -euo pipefail
@@ -21,8 +21,8 @@ done
 own=$folder/$number
 mkdir -p "$own"
 
-# Links the files of a cache into another one, where they are missing. Some versions of cp call that
-# a failure; what is not shared is compiled again.
+# Links the files of a cache that are missing in another one into that one. If files exist there, some
+# versions of cp report a failure, which is ignored: kernels that are not shared are compiled again.
 share() # from, to
 {
   flock "$folder/all.lock" cp --recursive --link --no-clobber "$1/." "$2" 2>/dev/null || true

@@ -6,16 +6,17 @@
 #
 # Usage: drivers.sh [DRIVER]...
 #   pocl      PoCL (Debian: pocl-opencl-icd)
-#   intel     Intel's runtime for processors, in build/intel-opencl: made by
+#   intel     Intel's runtime for CPUs, in build/intel-opencl. To install it:
 #             python3 -m venv build/intel-opencl &&
 #             build/intel-opencl/bin/pip install intel-opencl-rt intel-cmplr-lib-rt
 #   rusticl   Mesa's rusticl on llvmpipe (Debian 13 or later: mesa-opencl-icd)
-# Default: those that are installed. One driver at a time is loaded, because several versions of LLVM
-# in one process conflict.
+# Default: all drivers that are installed. Each process loads one driver only, because several
+# versions of LLVM in one process conflict.
 #
-# DEFORMVOLUME_DRIVER_TESTS: a regular expression of CTest, instead of all tests of the two groups.
-# DEFORMVOLUME_TEST_TIMEOUT: seconds that a test may take, 900 by default; more where a driver
-# compiles for minutes.
+# DEFORMVOLUME_DRIVER_TESTS: a regular expression of CTest that selects tests; default: all tests of
+# the kernels and of the VTK classes.
+# DEFORMVOLUME_TEST_TIMEOUT: seconds that a test may take, 900 by default. Drivers that compile for
+# minutes need more.
 # DEFORMVOLUME_BUILD: another build directory than build/vtk.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -23,11 +24,11 @@ cd "$(dirname "$0")/.."
 build=$(realpath "${DEFORMVOLUME_BUILD:-build/vtk}")
 output=$PWD/build/drivers
 tests=${DEFORMVOLUME_DRIVER_TESTS:-^(Kernels|Cxx)\.}
-# These choose a driver or a cache of their own, or need no driver.
+# Tests that are left out, because they choose a driver or a cache themselves, or need no driver.
 others='Oclgrind|TestEnvironment|TestTetGen|TestDeformHead|TestDeformLarge'
 library=$PWD/build/intel-opencl/lib
 
-icd() # the file of a driver in the system's folder, if any
+icd() # prints the path of the .icd file of a driver in the folder of the system, if there is one
 {
   grep -l -i -s "$1" /etc/OpenCL/vendors/*.icd | head -1
 }
@@ -45,7 +46,7 @@ is_there()
   esac
 }
 
-choose() # a driver, for all that is started afterwards
+choose() # DRIVER: sets the environment such that programs use this driver
 {
   local folder=$output/$1
   mkdir -p "$folder/vendors"
@@ -63,7 +64,8 @@ choose() # a driver, for all that is started afterwards
   export OCL_ICD_VENDORS=$folder/vendors
 }
 
-first_update() # seconds of compilation in a first and in a second process, on an empty cache
+# Prints the seconds of compilation in a first and in a second process, with a cache that is empty at first.
+first_update() # DRIVER
 {
   local caches=$output/$1/first-update
   rm -rf "$caches"
@@ -81,16 +83,16 @@ device()
   "$build/bin/FirstUpdate" 2>/dev/null | sed -n 's/.* device //p'
 }
 
-run() # a driver; leaves its row of the table
+run() # DRIVER: runs the tests, and writes the numbers of its row of the table
 {
   local folder=$output/$1 log=$output/$1/tests.log times
   (
     choose "$1"
     times=$(first_update "$1")
-    # Tests run one after the other, as their times are printed, and share one kernel cache.
+    # Tests are not run in parallel, because their times are printed. They share one kernel cache.
     ctest --test-dir "$build" -R "$tests" -E "$others" --timeout "${DEFORMVOLUME_TEST_TIMEOUT:-900}" \
       --output-on-failure >"$log" 2>&1 || true
-    # What tests that pass, or are skipped, say.
+    # CTest's log also has the output of tests that pass or are skipped.
     cp "$build/Testing/Temporary/LastTest.log" "$folder/output.log"
     {
       echo "$(device)"
@@ -146,7 +148,7 @@ for driver in "${drivers[@]}"; do
 done
 for driver in "${drivers[@]}"; do
   [ -e "$output/$driver/output.log" ] || continue
-  # What GoogleTest and the tests of the VTK classes say where they skip.
+  # The reasons for skipping, as GoogleTest and the tests of the VTK classes print them.
   {
     grep -a -A1 ': Skipped$' "$output/$driver/output.log" | grep -a -v ': Skipped$\|^--'
     sed -n 's/^skipped: //p' "$output/$driver/output.log"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Functions of OpenCL that libclc 15 lacks for NVIDIA's cards: for Testing/gpu-compilers.sh.
+// Built-in functions of OpenCL that libclc 15 does not have for NVIDIA's GPUs, for
+// Testing/gpu-compilers.sh.
 
 ulong __attribute__((overloadable))
 atom_cmpxchg(volatile __global ulong* place, ulong expected, ulong value)

@@ -4,22 +4,23 @@
 # compiler: registers, spills and occupancy. Fails if a program does not compile.
 #
 # Usage: gpu-compilers.sh [--only PATTERN] [COMPILER]...
-#   nvidia    clang with libclc's builtins to PTX, and from there CUDA's ptxas
+#   nvidia    clang with libclc's builtins to PTX, and CUDA's ptxas from PTX
 #   amd       clang with ROCm's device libraries
 #   spirv     clang and llvm-spirv to SPIR-V, which spirv-val checks
-#   intel     Intel's compiler for graphics: ocloc, installed or in build/ocloc. There it is without
-#             a driver, which would be loaded beside others:
+#   intel     Intel's graphics compiler: ocloc, installed or in build/ocloc. These commands extract
+#             it without installing the driver of the same package:
 #             mkdir -p build/ocloc && cd build/ocloc && apt-get download intel-opencl-icd libigc1 \
 #               libigdfcl1 libigdgmm12 libopencl-clang14 libllvmspirvlib14 &&
 #             for package in *.deb; do dpkg -x "$package" .; done
 #   oclgrind  not a compiler: counts instructions of the resampling kernels for a small volume
-# Default: all of them. What is not installed is skipped.
-# All but ptxas and ocloc come with bash Testing/packages.sh gpu-compilers.
-#   --only    programs whose name holds a pattern of grep -E, such as 'ResampleDeferredInt32-links'
+# Default: all of them. Compilers that are not installed are skipped.
+# bash Testing/packages.sh gpu-compilers installs all of them except ptxas and ocloc.
+#   --only    compiles only programs whose names match a pattern of grep -E, such as
+#             'ResampleDeferredInt32-links'
 #
 # Uses the build of preset vtk, or of the build directory DEFORMVOLUME_BUILD. Writes to
 # build/gpu-compilers. CUDA is expected in CUDA_HOME, by default /usr/local/cuda.
-# shellcheck disable=SC2317 # functions are called by names that are put together
+# shellcheck disable=SC2317 # functions are called by composed names
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -28,10 +29,10 @@ output=$PWD/build/gpu-compilers
 cuda=${CUDA_HOME:-/usr/local/cuda}
 
 nvidia_targets="sm_70 sm_75 sm_80 sm_86 sm_90"
-# The oldest one, which all assemblers above take further.
+# The oldest target: ptxas assembles its PTX for all targets above.
 ptx_target=sm_70
 amd_targets="gfx906 gfx90a gfx1030"
-# The first two have double precision, the others have not.
+# The first two targets have double precision, the last two do not.
 intel_targets="skl pvc tgllp dg2-g10"
 
 only=
@@ -60,7 +61,7 @@ is_wanted()
   [[ " ${compilers[*]} " == *" $1 "* ]]
 }
 
-find_first() # of these that is a program
+find_first() # NAME...: prints the path of the first one that is a program
 {
   local name
   for name in "$@"; do
@@ -80,7 +81,7 @@ skip()
   echo "Skipped: there is no $2."
 }
 
-programs() # of the precisions named, as files
+programs() # PRECISION...: prints the files of the programs
 {
   local precision
   for precision in "$@"; do
@@ -88,15 +89,15 @@ programs() # of the precisions named, as files
   done | grep -E -- "${only:-.}" | sort || true
 }
 
-# Takes files from its input. Each becomes the argument of a function, with the files to make
-# without their endings, and what else is given; as many at once as there are processors.
+# Calls a function for each file of the standard input, in parallel. The function gets the file, the
+# path of its output without a suffix, and the further arguments.
 for_each() # FUNCTION FOLDER [ARGUMENT]...
 {
   mkdir -p "$2"
   xargs -r -P "$(nproc)" -I{} bash -c 'make_one "$@"' make_one {} "$@"
 }
 
-# What a function prints stays in NAME.errors where it fails.
+# Calls a function for a file. If the function fails, its output is kept in NAME.errors.
 make_one() # FILE FUNCTION FOLDER [ARGUMENT]...
 {
   local file=$1 function=$2 base precision
@@ -111,12 +112,12 @@ make_one() # FILE FUNCTION FOLDER [ARGUMENT]...
   fi
 }
 
-# Clang for a target, with the options that the program is built with; more follow.
+# Calls clang with the options of a program, and with further options, such as the target.
 front() # FILE [OPTION]...
 {
   local file=$1
   shift
-  # The version is what drivers define. The atomic operations of 64 bits are those of all targets.
+  # Drivers define __OPENCL_VERSION__. All targets have atomic operations of 64 bits.
   # shellcheck disable=SC2046 # a list of words
   "$clang" -x cl $(cat "${file%.cl}.options") -D__OPENCL_VERSION__=120 -O3 \
     -Xclang -cl-ext=+cl_khr_int64_base_atomics,+cl_khr_int64_extended_atomics "$@" "$file"
@@ -129,11 +130,11 @@ make_ptx()
     -Xclang -mlink-builtin-bitcode -Xclang "$libclc"
 }
 
-assemble_ptx() # the listing that the table is made of
+assemble_ptx() # makes the listing from which gpu_tables.py makes the table
 {
   local limit
   limit=$(sed -n 's/.*-cl-nv-maxrregcount=\([0-9]*\).*/--maxrregcount=\1/p' "${1%.cl}.nvidia")
-  # ptxas has no OpenCL's functions: whatever stayed undefined fails here.
+  # ptxas has no built-in functions of OpenCL, so it fails if a function is still undefined.
   # shellcheck disable=SC2086 # no word, or one
   "$ptxas" -v $limit -arch="$3" "$ptx/$(basename "$2").ptx" -o "$2.cubin" >"$2.listing" 2>&1 || {
     cat "$2.listing"
@@ -150,11 +151,11 @@ make_amd()
 make_spirv()
 {
   local environment=opencl1.2
-  # With what is an extension.
+  # Programs with atomic operations of 64 bits need an extension.
   if grep -q cl_khr_int64_base_atomics "$1"; then
     environment=spv1.0
   fi
-  # The translator does not know all that an optimiser makes.
+  # llvm-spirv does not support all instructions of optimized code.
   front "$1" -target spir64-unknown-unknown -O0 -emit-llvm -c -o "$2.bc" &&
     "$llvm_spirv" --spirv-max-version=1.0 "$2.bc" -o "$2.spv" &&
     spirv-val --target-env "$environment" "$2.spv"
@@ -171,7 +172,7 @@ make_intel()
   mv "$2.listing" "$2.log"
 }
 
-report_failures() # of a folder
+report_failures() # FOLDER
 {
   local errors count=0
   for errors in "$1"/*.errors; do
@@ -179,11 +180,11 @@ report_failures() # of a folder
     failed=1
     count=$((count + 1))
     if [ "$count" -gt 5 ]; then
-      printf '\nOthers do not compile either: %s/*.errors\n' "${1#"$PWD"/}"
+      printf '\nMore programs do not compile: %s/*.errors\n' "${1#"$PWD"/}"
       return
     fi
     printf '\n%s does not compile:\n\n' "$(basename "$errors" .errors)"
-    # Without the places in files of this machine.
+    # Print the first lines of the error.
     sed -n 's/^/    /; 1,12p' "$errors"
   done
 }
@@ -284,7 +285,7 @@ run_intel()
   done
 }
 
-# Instructions of LLVM that a processor or a card has, too, as Oclgrind counts them.
+# Lets Oclgrind count those instructions of LLVM that become instructions of CPUs or GPUs.
 run_oclgrind()
 {
   local icd=/usr/lib/oclgrind/liboclgrind-rt-icd.so form shape file runs=() folder=$output/oclgrind
@@ -298,12 +299,13 @@ run_oclgrind()
     for shape in still moved jittered folded; do
       runs+=("$form-$shape")
       file=$folder/$form-$shape.txt
-      # Oclgrind 21.10 does not know all that its own compiler puts into inlined functions.
+      # Functions are not inlined, because Oclgrind 21.10 does not support all instructions that its own
+      # compiler creates in inlined functions.
       # shellcheck disable=SC2046 # no word, or one
       OCL_ICD_VENDORS=$icd OCLGRIND_INST_COUNTS=1 OCLGRIND_BUILD_OPTIONS=-fno-inline \
         "$build/bin/FirstUpdate" $([ "$shape" = moved ] || echo "$shape") "$form" 16 oclgrind \
         >"$file" 2>&1 && continue
-      # Nor all functions that its compiler makes of expressions.
+      # Oclgrind does not support all functions that its compiler creates for expressions, either.
       if grep -q '^Undefined external function' "$file"; then
         printf 'Not counted: %s. %s\n\n' "$form-$shape" "$(grep '^Undefined external' "$file")"
       else
@@ -323,7 +325,7 @@ intel_precision()
   esac
 }
 
-# libclc, llvm-spirv and ROCm's libraries are of this version.
+# libclc and llvm-spirv belong to this version of clang, and ROCm's libraries work with it.
 clang=$(find_first clang-15)
 export clang
 export -f make_one front make_ptx assemble_ptx make_amd make_spirv make_intel

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tables of what compilers for graphics cards say of each kernel: for Testing/gpu-compilers.sh.
+"""Prints tables of the numbers that compilers for GPUs report for each kernel, for Testing/gpu-compilers.sh.
 
 usage: gpu_tables.py FOLDER (nvidia | amd | intel | oclgrind) TARGET...
 
-FOLDER/texts/double and FOLDER/texts/single hold what KernelTexts wrote, and FOLDER/VENDOR/TARGET
-what the compilers printed or made of it. Rows that are equal in all numbers are one. For oclgrind
+FOLDER/texts/double and FOLDER/texts/single contain the programs that KernelTexts has written, and
+FOLDER/VENDOR/TARGET the output of the compilers. Kernels with equal numbers share a row. For oclgrind
 the targets are the updates whose counts are in FOLDER/oclgrind: FORM-DEFORMATION.
 """
 
@@ -13,11 +13,11 @@ import os
 import re
 import sys
 
-# Work-items of a group where a kernel was not launched: as many as WorkDevice takes.
+# Size of work-groups of kernels that KernelTexts did not launch: the size that WorkDevice uses.
 ITEMS = 64
 
-# Of a multiprocessor of NVIDIA's: warps, groups, and bytes of shared memory; and the bytes of it
-# that each group has besides its own. "CUDA C++ Programming Guide", compute capabilities.
+# Limits of a multiprocessor of NVIDIA's GPUs: warps, groups, and bytes of shared memory; and the bytes of shared memory
+# that the system uses for each group. Source: "CUDA C++ Programming Guide", compute capabilities.
 NVIDIA = {
     "sm_70": (64, 32, 96 << 10, 0),
     "sm_75": (32, 16, 64 << 10, 0),
@@ -26,8 +26,8 @@ NVIDIA = {
     "sm_89": (48, 24, 100 << 10, 1024),
     "sm_90": (64, 32, 228 << 10, 1024),
 }
-# Of a compute unit of AMD's: SIMDs, waves of each, groups of several waves, work-items of a wave,
-# bytes of local memory. LLVM's AMDGPUBaseInfo.cpp.
+# Limits of a compute unit of AMD's GPUs: SIMDs, waves of each SIMD, groups of several waves, work-items of a wave,
+# bytes of local memory. Source: LLVM's AMDGPUBaseInfo.cpp.
 AMD = {
     "gfx906": (4, 10, 16, 64, 64 << 10),
     "gfx90a": (4, 8, 16, 64, 64 << 10),
@@ -47,7 +47,7 @@ def round_up(value, step):
 
 
 def find_least(limits):
-    """The least number, and what it is of."""
+    """Returns the least number and its name."""
     return min((number, name) for name, number in limits.items() if number is not None)
 
 
@@ -56,10 +56,10 @@ def describe_occupancy(count, most, limit):
 
 
 def describe_nvidia(target, registers, local, use):
-    """Warps at once: how many, and what limits them."""
+    """Returns the occupancy: the number of warps of a multiprocessor, and what limits it."""
     most, groups, memory, own = NVIDIA[target]
     warps = round_up(use.items, 32) // 32
-    # Each of four parts has a quarter of the registers for its warps.
+    # A multiprocessor has four parts. Each part has a quarter of the registers for its warps.
     by_registers = 4 * ((1 << 14) // round_up(32 * max(registers, 1), 256))
     held = round_up(local + own, 128)
     least, name = find_least(
@@ -73,9 +73,9 @@ def describe_nvidia(target, registers, local, use):
 
 
 def read_nvidia(folder, target, program):
-    """What ptxas prints: a cell's numbers by kernel.
+    """Returns the numbers of each kernel from the output of ptxas.
 
-    What functions spill that are called is listed behind the kernel that calls them first.
+    ptxas lists the spills of called functions behind the kernel that calls them first.
     """
     found = {}
     kernel = None
@@ -111,7 +111,7 @@ def make_nvidia_cell(target, numbers, use):
 
 
 def read_amd(folder, target, program):
-    """What LLVM writes at the end of the assembly: a cell's numbers by kernel."""
+    """Returns the numbers of each kernel from the metadata that LLVM writes at the end of the assembly."""
     found = {}
     path = f"{folder}/amd/{target}/{program}.s"
     text = read(path) if os.path.exists(path) else ""
@@ -121,7 +121,7 @@ def read_amd(folder, target, program):
     )
     metadata = text[text.find(".amdgpu_metadata") :]
     for block in re.split(r"\n  - ", metadata.partition("amdhsa.kernels:")[2])[1:]:
-        # Of the arguments, which are deeper, nothing is taken.
+        # Entries of arguments are indented further, and do not match.
         entries = dict(re.findall(r"^(?:    )?\.(\w+): +(\S+)", block, re.MULTILINE))
         if "name" not in entries:
             continue
@@ -155,7 +155,7 @@ def make_amd_cell(target, numbers, use):
 
 
 def read_intel(folder, target, program):
-    """What ocloc prints. It says nothing of kernels that fit."""
+    """Returns the numbers of each kernel from the output of ocloc, which lists only kernels with spills."""
     path = f"{folder}/intel/{target}/{program}.log"
     if not os.path.exists(path):
         return {}
@@ -196,7 +196,7 @@ VENDORS = {
 }
 
 
-# What costs nothing, or is a part of another instruction.
+# Instructions of LLVM that cost nothing, or are a part of another instruction.
 FREE = re.compile(r"getelementptr|bitcast|phi|alloca|freeze|addrspacecast|call llvm\.lifetime")
 
 

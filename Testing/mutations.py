@@ -21,10 +21,10 @@ SOURCE = pathlib.Path(__file__).resolve().parent.parent
 WORK = SOURCE / "build" / "mutations"
 COPY = WORK / "source"
 BUILD = WORK / "build"
-# Against ParaView's VTK, with the plugin; CTest starts its tests.
+# The build against ParaView's VTK, with the plugin, whose tests CTest starts.
 PLUGIN_BUILD = WORK / "plugin-build"
 SKIPPED = 125
-# Output with which CTest fails tests of the VTK classes.
+# CTest fails a test of the VTK classes if its output matches this expression.
 ERROR = re.compile(r"(^|\n)ERROR: |(^|\n|[|] *)ERR[|]")
 
 NARROW = ("TestNarrowDecisions", "*")
@@ -73,8 +73,8 @@ PIPELINES = "Fuzz.Pipelines"
 # Tests of the VTK classes that open a window.
 WITH_WINDOW = ("TestDeformVolumeInteractorStyle",)
 
-# name: (file, text, replacement, tests). A test of the engine: its sources, with the kind of device behind @, and a
-# filter of GoogleTest. A test of the VTK classes or of the plugin: its name in CTest.
+# name: (file, text, replacement, tests). A test of the engine is a pair of its sources, with the kind of device behind
+# @, and a filter of GoogleTest. A test of the VTK classes or of the plugin is its name in CTest.
 MUTATIONS = {
     "filter-upright": ("Kernels/Resampling/PacketWeights.cl", "(FLOATS)(6.5e-6f)", "(FLOATS)(6.5e-8f)", [NARROW]),
     "vertex-shift": ("Kernels/Resampling/PacketCoverage.cl",
@@ -485,14 +485,14 @@ MUTATIONS = {
 
 
 def copy_sources():
-    """Copies the files of the working tree that git does not ignore. Files that are equal keep their time."""
+    """Copies the files of the working tree that git does not ignore. Files that have not changed keep their time."""
     names = subprocess.run(
         ["git", "ls-files", "--cached", "--others", "--exclude-standard"], cwd=SOURCE, check=True,
         capture_output=True, text=True).stdout.splitlines()
     for name in names:
         if (SOURCE / name).is_file():
             write(COPY / name, (SOURCE / name).read_bytes())
-    # The compiler would still find a header that has moved at its former place.
+    # Remove files that no longer exist in the working tree. Otherwise the compiler would find headers at former paths.
     for path in COPY.rglob("*"):
         if path.is_file() and not (SOURCE / path.relative_to(COPY)).is_file():
             path.unlink()
@@ -532,7 +532,7 @@ def build(tests):
         configure(BUILD, "-DDEFORMVOLUME_WRAP_PYTHON=OFF")
         commands.append(["cmake", "--build", BUILD, "--target", *sorted(targets)])
     if any(map(is_of_plugin, tests)):
-        # As the preset paraview.
+        # The same options as in the preset paraview.
         configure(PLUGIN_BUILD, "-DDEFORMVOLUME_USE_PARAVIEW=ON", "-DDEFORMVOLUME_TEST_KERNELS=OFF",
                   "-DDEFORMVOLUME_TEST_CLASSES=OFF", f"-DDEFORMVOLUME_TEST_KERNEL_CACHE={WORK / 'plugin-kernels'}",
                   f"-DCMAKE_PREFIX_PATH={SOURCE / 'build' / 'paraview-prefix' / 'usr'}")
@@ -546,13 +546,13 @@ def build(tests):
 
 
 def get_command(test):
-    """The name of the test, and its command."""
+    """Returns the name of the test, and its command."""
     if is_of_plugin(test):
-        # CTest knows its environment.
+        # CTest sets the environment of the test.
         return test, ["ctest", "--test-dir", PLUGIN_BUILD, "-R", f"^{re.escape(test)}$", "--no-tests=error"]
     program = BUILD / "bin" / get_program(test)
     if test == PIPELINES:
-        # As CTest does.
+        # The same arguments as in CTest.
         return test, [program, "--seed", "1", "--count", "160"]
     if isinstance(test, str):
         name = test.partition(".")[2]
@@ -566,7 +566,7 @@ def get_command(test):
 
 
 def find_failure(tests):
-    """The first test that fails, or None."""
+    """Returns the name of the first test that fails, or None."""
     environment = dict(os.environ, POCL_CACHE_DIR=str(WORK / "kernel-cache"))
     pathlib.Path(environment["POCL_CACHE_DIR"]).mkdir(parents=True, exist_ok=True)
     for test in tests:
@@ -589,7 +589,7 @@ def find_failure(tests):
 
 
 def find_stale():
-    """A message for each mutation whose text does not exist exactly once in its file."""
+    """Returns a message for each mutation whose text does not exist exactly once in its file."""
     counts = {name: (SOURCE / file).read_text().count(old) for name, (file, old, _, _) in MUTATIONS.items()}
     return [f"{name}: the text exists {count} times in {MUTATIONS[name][0]}."
             for name, count in counts.items() if count != 1]

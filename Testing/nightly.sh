@@ -10,8 +10,8 @@
 #
 # Usage: nightly.sh [--seconds SECONDS]
 #   --seconds  how long random pipelines run, 3600 by default
-# Runs all of them, and fails if one has failed. A Debian system that cannot be made is reported, but
-# is not a failure.
+# Runs all checks, and fails if one of them has failed. A Debian system that cannot be made is reported,
+# but is not a failure.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -24,7 +24,7 @@ elif [ $# -gt 0 ]; then
 fi
 
 failed=()
-run() # a name, and a command
+run() # NAME COMMAND [ARGUMENT]...
 {
   echo "== $1"
   "${@:2}" || failed+=("$1")
@@ -34,7 +34,7 @@ platforms()
 {
   local status=0
   bash Testing/platforms.sh || status=$?
-  if [ $status -eq 3 ]; then # see there
+  if [ $status -eq 3 ]; then # a system could not be made
     echo "nightly.sh: not all systems could be made"
     status=0
   fi
@@ -50,7 +50,7 @@ done
 run "configuration of long tests" cmake --preset vtk -DDEFORMVOLUME_LONG_TESTS=ON
 run "long tests" ctest --preset vtk -R Oclgrind
 run "configuration" cmake --preset vtk -DDEFORMVOLUME_LONG_TESTS=OFF
-run "edits by cell, as on a graphics card" build/vtk/bin/DeformVolumeEngineTests --device=gpu-like \
+run "edits by cell, as on a GPU" build/vtk/bin/DeformVolumeEngineTests --device=gpu-like \
   --files=TestEdits,TestIncremental '--gtest_filter=*ByCell'
 seed=$(date +%s)
 run "edits from seed $((seed % 99999))" build/vtk/bin/DeformVolumeEngineTests --files=TestEdits \

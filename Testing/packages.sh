@@ -4,19 +4,19 @@
 # needs neither a network nor root.
 #
 # Usage: packages.sh [--upgrade] SET...
-#   --upgrade first brings the sets and all that they depend on up to date, as users have them
+#   --upgrade first updates the packages of the sets and their dependencies
 #   engine    to build the engine, which needs no VTK
 #   library   to build the library and its Python package against VTK
 #   example   to build and run the programs in Examples
 #   test      to build and run the tests
-#   readers   to compare volumes and transforms with other programs, from PyPI into build/readers, and
-#             to run solvers whose results are read
-#   benchmark to measure and draw the results, besides test
+#   readers   to compare volumes and transforms with other programs, which are installed from PyPI to
+#             build/readers, and to run CalculiX
+#   benchmark to run benchmarks and draw their results, in addition to the set test
 #   paraview  to build and test against ParaView's VTK on the same machine
 #   check     to check the style of the sources
 #   clang     to build with Clang
-#   wheel     to build the wheel of the Python package and to try it in a pristine system
-#   platforms to try other systems on this one
+#   wheel     to build the wheel of the Python package and to test it in a pristine system
+#   platforms to test on other Debian releases
 #   gpu-compilers for Testing/gpu-compilers.sh, on Debian 12
 set -euo pipefail
 
@@ -39,17 +39,17 @@ declare -A packages=(
   [platforms]="debootstrap curl"
   [gpu-compilers]="clang-15 libclc-15 llvm-spirv-15 spirv-tools rocm-device-libs oclgrind"
 )
-# Left out where the system has none: the tests that want them are skipped.
+# Packages that are left out if the system does not have them. Tests that need them are skipped.
 optional="oclgrind calculix-ccx"
 
-version() # of an installed package; empty where it is not installed
+version() # PACKAGE: prints the version of an installed package; nothing if it is not installed
 {
   dpkg-query --show --showformat '${db:Status-Status} ${Version}' "$1" 2>/dev/null |
     sed -n 's/^installed //p'
 }
 
 updated=no
-update() # apt's lists, once
+update() # updates the package lists of apt, once
 {
   if [ $updated = no ]; then
     apt-get update -qq
@@ -57,17 +57,17 @@ update() # apt's lists, once
   fi
 }
 
-download() # a package's file into a folder
+download() # PACKAGE FOLDER: downloads the file of a package
 {
   (cd "$2" && apt-get download -qq -o APT::Sandbox::User=root "$1")
 }
 
-is_available() # whether the archive has a package, as far as the lists are here
+is_available() # PACKAGE: whether the package lists contain it
 {
   apt-cache show --no-all-versions "$1" >/dev/null 2>&1
 }
 
-# Brings packages and all that they depend on up to date, where they are installed.
+# Updates packages and their dependencies, as far as these are installed.
 upgrade()
 {
   local installed=() package
@@ -89,7 +89,7 @@ install()
   done
   for package in $optional; do
     if [[ " ${missing[*]} " == *" $package "* ]]; then
-      # A new system has no lists yet.
+      # A new system has no package lists yet.
       is_available g++ || update
       is_available "$package" && continue
       echo "This system has no package $package: the tests that need it are skipped"
@@ -107,11 +107,11 @@ install()
     "${missing[@]}" >/dev/null
 }
 
-# A complete ParaView is put together in build/paraview-prefix, of links to what is installed. Debian's
-# needs that for two reasons: where its Python package conflicts with VTK's (Debian 12 and 13),
-# although no file of one overwrites a file of the other's library, that package is unpacked there, so
-# that both can be built against on one machine; and the CMake files of Debian 13 and later name
-# Python modules without the tag of the Python version that their files have.
+# Makes a complete ParaView in build/paraview-prefix, with links to installed files. Debian's packages
+# alone do not suffice, for two reasons. On Debian 12 and 13, ParaView's Python package conflicts with
+# VTK's, although they have no file in common. So it is unpacked there, and both can be used on one
+# machine. On Debian 13 and later, the CMake files name Python modules without the tag of the Python
+# version that the files have.
 paraview_prefix()
 {
   local prefix=build/paraview-prefix wanted package linked=(paraview paraview-dev)
@@ -141,7 +141,7 @@ paraview_prefix()
   find $prefix/usr/lib/python3 -name '*.cpython-*.so' | while read -r module; do
     ln -sf "$(basename "$module")" "${module%%.cpython-*}.so"
   done
-  # CMake resolves links before it looks for what lies beside a package file.
+  # CMake resolves links to package files before it looks for other files in their folder, so copy these.
   local cmake
   for cmake in /usr/lib/*/cmake/paraview-*; do
     rm -rf "$prefix$cmake"
@@ -150,8 +150,8 @@ paraview_prefix()
   echo "$wanted" >$prefix/version
 }
 
-# SimpleITK, nibabel, pydicom, pynrrd and ccx2paraview, which Debian has not or in other versions, with
-# a Python of their own. ccx2paraview needs VTK beside it: PYTHONPATH has to name one.
+# Installs SimpleITK, nibabel, pydicom, pynrrd and ccx2paraview in a virtual environment, because Debian
+# has other versions of them or none. ccx2paraview also needs VTK, in PYTHONPATH.
 readers()
 {
   local folder=build/readers wanted
@@ -165,7 +165,7 @@ readers()
     echo "$wanted" >$folder/version
   else
     rm -rf $folder
-    echo "They cannot be installed: the tests that need them are skipped"
+    echo "These packages cannot be installed: the tests that need them are skipped"
   fi
 }
 

@@ -1,17 +1,16 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Runs the two commands of README.md in pristine Debian systems, each made for it in
-# build/platforms, and prints a table of what they found, warnings of the compiler among it. As root,
-# on Debian; packages come from the archive that this system uses. The logs stay in build/platforms,
-# and so do the pictures that Examples/run.sh draws: look at them. What ccache keeps of a system is
-# kept for the next run, in ~/.cache/deformvolume-platforms: a system whose compiler and sources are
-# the same compiles less.
+# Runs the two commands of README.md in pristine Debian systems, which it makes in build/platforms,
+# and prints a table of the results, with the numbers of compiler warnings. Needs root and Debian.
+# Packages come from the archive that this system uses. Logs, and the pictures that Examples/run.sh
+# draws, are kept in build/platforms: look at the pictures. The files of ccache are kept for the next
+# run, in ~/.cache/deformvolume-platforms.
 #
 # Usage: platforms.sh [--keep] [--quick] [SUITE]...    (default: bookworm trixie forky)
-#   --keep  leaves the systems with what was built in them, to look into a failure
+#   --keep  keeps the systems with all that was built in them, to investigate a failure
 #   --quick builds against VTK only and runs the quick tests only
 #   SUITE   the name of a Debian release
-# Fails where a command fails; with status 3 where none does, but a system cannot be made.
+# Fails if a command fails. If none fails, but a system cannot be made, the status is 3.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -38,14 +37,14 @@ archive=$(apt-cache policy | sed -n 's|^ *[0-9]* \(http[^ ]*/debian\)/\? .*|\1|p
   exit 3
 }
 
-make_system() # suite, folder
+make_system() # SUITE FOLDER
 {
   local suite=$1 root=$2
   rm -rf --one-file-system "$root"
   debootstrap --variant=minbase "$suite" "$root" "$archive" /usr/share/debootstrap/scripts/sid
   {
     echo "deb $archive $suite main"
-    # Those that are released have updates.
+    # Only released suites have updates.
     for updates in "$archive $suite-updates" "$archive-security $suite-security"; do
       read -r address name <<<"$updates"
       ! curl -fsIL "$address/dists/$name/Release" >/dev/null || echo "deb $address $name main"
@@ -60,10 +59,10 @@ make_system() # suite, folder
   git ls-files -z | tar --create --null --files-from - | tar --extract --directory "$root/src"
 }
 
-# The system's own /proc, and nothing of this system's environment. What is mounted for it goes with
-# the namespace. Its root is that of the namespace, as the kernel gives a changed root (chroot) no
-# further namespaces, which a test of the installation wants.
-inside() # folder, command...
+# Runs a command in a system, with its own /proc and without the environment of this system. Mounts end
+# with the mount namespace. pivot_root is used instead of chroot, because a test of the installation
+# makes further namespaces, which the kernel does not allow after chroot.
+inside() # FOLDER COMMAND [ARGUMENT]...
 {
   # shellcheck disable=SC2016 # the inner shell expands these
   unshare --mount bash -c '
@@ -83,9 +82,9 @@ inside() # folder, command...
       PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin "$@"' "$@" </dev/null
 }
 
-versions() # folder: of what differs between the systems
+versions() # FOLDER: prints the versions of packages that differ between the systems
 {
-  # A command that failed early has not installed all of these.
+  # If a command has failed early, not all of these packages are installed.
   # shellcheck disable=SC2016 # the inner shell expands these
   { inside "$1" dpkg-query --show --showformat='${Package} ${Version}\n' \
     g++ cmake libvtk9-dev paraview pocl-opencl-icd tetgen libopenmpi-dev 2>/dev/null || true; } |
@@ -101,7 +100,7 @@ missing=0
 for suite in "${suites[@]}"; do
   root=build/platforms/$suite
   echo "== $suite: a pristine system"
-  # In the background, as it would go on after errors where its status is asked for.
+  # Start the function in the background: if its status were tested directly, bash would ignore set -e in it.
   make_system "$suite" "$root" >"$root.log" 2>&1 &
   wait $! || {
     tail -20 "$root.log"

@@ -1,13 +1,13 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs what is missing, builds against VTK, and runs the quick tests. On a pristine Debian 12 it
+# Installs missing packages, builds against VTK, and runs the quick tests. On a pristine Debian 12 it
 # needs root and a network. Later runs need neither.
 #
 # Usage: run.sh [--all] [PRESET]...
 #   --all   runs all tests, and without PRESET those of vtk, paraview (the plugin) and asan (the
 #           engine with the sanitizers)
 #   PRESET  of CMakePresets.json, in place of vtk
-# DEFORMVOLUME_CMAKE_OPTIONS: further options of CMake for all presets, which keep them.
+# DEFORMVOLUME_CMAKE_OPTIONS: further options of CMake for all presets. The build directories keep them.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -30,7 +30,7 @@ case " ${presets[*]} " in *" clang "*) packages+=(clang) ;; esac
 [ $all = no ] || packages+=(readers)
 bash Testing/packages.sh "${packages[@]}"
 
-# Kernels run on all processors already; more than a few tests at once only wait for each other.
+# A kernel uses all CPUs, so more than a few tests at the same time are not faster.
 jobs=$(nproc)
 [ "$jobs" -le 4 ] || jobs=4
 
