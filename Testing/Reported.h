@@ -25,7 +25,7 @@ inline double GetReportedSeconds(vtkDeformVolumeFilter* filter, const std::strin
   return std::stod(text);
 }
 
-/// The count in a line "name: count"; 0 before the first execution.
+/// Returns the count in the line "name: count"; 0 before the first execution.
 inline vtkIdType GetReported(vtkDeformVolumeFilter* filter, const std::string& name)
 {
   return filter->GetSummary().empty() ? 0
