@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Loaded before the OpenCL library (LD_PRELOAD), together with FakeDriver.cxx: the device of any
-// program appears to be a graphics card.
+// A library for LD_PRELOAD, with FakeDriver.cxx: the OpenCL device appears to be a graphics card in
+// any program.
 #include "FakeDriver.h"
 
 namespace

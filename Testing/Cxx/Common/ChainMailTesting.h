@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the tests of vtkChainMailDeformation have in common.
+// Handles and a filter for the tests of vtkChainMailDeformation.
 #ifndef ChainMailTesting_h
 #define ChainMailTesting_h
 
@@ -39,7 +39,7 @@ inline vtkSmartPointer<vtkPolyData> MakeHandles(const std::vector<Handle>& handl
   return data;
 }
 
-/// Whether an error has these words; else both are printed.
+/// Whether text contains part. If not, both are printed.
 inline bool Holds(const std::string& text, const std::string& part)
 {
   if (text.find(part) == std::string::npos)
@@ -50,7 +50,7 @@ inline bool Holds(const std::string& text, const std::string& part)
   return true;
 }
 
-/// A filter on a volume, with its errors caught.
+/// A vtkChainMailDeformation of a volume, and observers of its errors and warnings.
 struct Dragged
 {
   explicit Dragged(vtkDataObject* volume)
@@ -64,7 +64,7 @@ struct Dragged
     this->Filter->SetRelaxationSweeps(0);
   }
 
-  /// Updates, and gives the errors in words; "" where there is none.
+  /// Updates the filter and returns its error message, or "" without an error.
   std::string TryUpdate()
   {
     this->Filter->Modified();
@@ -73,7 +73,7 @@ struct Dragged
     VERIFY(errors.find("ERROR: ") == errors.rfind("ERROR: "));
     if (!errors.empty())
     {
-      // Although nothing has changed.
+      // The next update reports the error again, although nothing has changed.
       this->Observer->Clear();
       VERIFY(!this->Filter->GetExecutive()->Update());
       VERIFY(this->Observer->GetError());
@@ -83,12 +83,13 @@ struct Dragged
     VERIFY(errors.empty() || this->Filter->GetOutput()->GetPointData()->GetNumberOfArrays() == 0);
     return errors;
   }
-  /// The displacements of the output, which may lie on a device.
+  /// The displacements of the output. They may be on a device.
   vtkDataArray* GetArray()
   {
     return this->Filter->GetOutput()->GetPointData()->GetArray("Displacement");
   }
-  /// Their values: the array itself, or a copy of one that lies on a device.
+  /// The displacements of the output on the host: the array itself, or a copy of an array on a
+  /// device.
   vtkFloatArray* GetFloats()
   {
     vtkDataArray* array = this->GetArray();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Volumes and deformations whose deformed volume must not depend on how the work is divided, and a
-// source that makes any part of a volume. For the tests of streaming and of several ranks.
+// For the tests of streaming and of several ranks: volumes and deformations whose result must not
+// depend on how the output is divided into pieces, and a source that makes any part of a volume.
 #ifndef DivisionCases_h
 #define DivisionCases_h
 
@@ -20,7 +20,7 @@
 #include <cstdint>
 #include <vector>
 
-/// Gives the extent of a volume that it is asked for, and remembers what that was.
+/// Makes the requested extent of a volume, and records the extents that it has made.
 class PartSource : public vtkImageAlgorithm
 {
 public:
@@ -32,15 +32,15 @@ public:
     this->Volume = volume;
     this->Modified();
   }
-  /// Whether it says that it can make parts, and does.
+  /// Whether the source sets CAN_PRODUCE_SUB_EXTENT and makes only the requested extent.
   bool CanMakeParts = true;
-  /// Whether it says which arrays there will be.
+  /// Whether RequestInformation() announces the cell arrays.
   bool AnnouncesArrays = true;
-  /// Gives another extent than it is asked for.
+  /// Whether the source makes an extent that differs from the requested one.
   bool GivesOtherParts = false;
 
   std::vector<filterTesting::Extent> Made;
-  /// Voxels of the largest part made so far.
+  /// The number of voxels of the largest part made so far.
   vtkIdType GetMost() const
   {
     vtkIdType most = 0;
@@ -98,7 +98,7 @@ protected:
     if (this->CanMakeParts)
     {
       asked[1] -= this->GivesOtherParts ? 1 : 0;
-      // ParaView 5.13's VTK does not survive a crop to nothing.
+      // In the VTK of ParaView 5.13, Crop() fails for an empty extent.
       if (asked[0] <= asked[1] && asked[2] <= asked[3] && asked[4] <= asked[5])
       {
         image->Crop(asked.data());
@@ -129,7 +129,7 @@ struct Case
   std::function<void(vtkDeformVolumeFilter*)> Set = [](vtkDeformVolumeFilter*) {};
 };
 
-/// A volume with arrays of several types, over more than one brick of the kernels.
+/// A volume with arrays of several types that has more than one brick.
 inline vtkSmartPointer<vtkImageData> MakeVolume(
   const Extent& extent, const glm::dvec3& spacing = glm::dvec3(1.0))
 {
@@ -156,7 +156,7 @@ inline vtkSmartPointer<vtkImageData> MakeVolume(
   return volume;
 }
 
-/// Random bits that follow from a voxel's place alone.
+/// Random bits that depend only on the id of a point or cell.
 inline std::uint32_t Scatter(vtkIdType id)
 {
   std::uint32_t bits = static_cast<std::uint32_t>(id) * 2654435761U;
@@ -171,7 +171,7 @@ inline glm::dvec3 GetCenter(vtkImageData* volume)
   return center;
 }
 
-/// Turns round the centre, bends and swells.
+/// Rotates the volume about its center, bends it, and makes it larger.
 inline WorldMap Bend(vtkImageData* volume, double amount = 1.0)
 {
   const glm::dvec3 center = GetCenter(volume);
@@ -187,8 +187,8 @@ inline WorldMap Bend(vtkImageData* volume, double amount = 1.0)
   };
 }
 
-/// Folds the last part of the volume back along z; with a factor of 1, so that voxels come to lie
-/// on voxels.
+/// Folds the upper part of the volume back along z. With a factor of 1, the folded voxels are at
+/// the positions of other voxels.
 inline WorldMap Fold(vtkImageData* volume, double factor)
 {
   const glm::dvec3 center = GetCenter(volume);
@@ -201,7 +201,7 @@ inline WorldMap Fold(vtkImageData* volume, double factor)
   };
 }
 
-/// Winds the volume round an axis until it lies on itself, nowhere inside out.
+/// Winds the volume about an axis until it overlaps itself. No tetrahedron is inverted.
 inline WorldMap Wind(vtkImageData* volume)
 {
   const glm::dvec3 center = GetCenter(volume);
@@ -214,8 +214,8 @@ inline WorldMap Wind(vtkImageData* volume)
   };
 }
 
-/// A grid with axes and spacings of its own round the middle of a volume, which it cuts off at some
-/// sides. Mirrored: of the other handedness.
+/// A reference image with another direction and spacing than the volume. It has the center of the
+/// volume, but does not contain all of it. isMirrored: its axes are left-handed.
 inline vtkSmartPointer<vtkImageData> MakeReference(vtkImageData* volume, bool isMirrored)
 {
   const auto reference =
@@ -263,7 +263,7 @@ inline std::vector<Case> MakeCases()
   add("Smaller mesh", volume, deform(MakeMesh(volume, 5, -6.3), Bend(volume, 1.5)));
   add("Torn mesh", volume, nullptr).Deformation = [&]
   {
-    // Two lattices with a gap between them that cells of the volume span, pulled apart.
+    // Two lattices that are pulled apart. The gap between them is inside one layer of cells.
     double bounds[6];
     volume->GetBounds(bounds);
     const double middle = 0.5 * (bounds[4] + bounds[5]) + 0.4;
@@ -330,7 +330,7 @@ inline std::vector<Case> MakeCases()
     add("Masks, half a voxel", masked, deform(MakeMesh(masked, 4), Shift(0.5, 1.0, -2.5)));
   }
   {
-    // A smooth cut, oblique to all divisions; each side moves as it is, and the gap opens.
+    // A smooth cut in a plane that is oblique to the axes. The two sides are moved apart.
     const auto divided = MakeVolume(extent);
     double center[3];
     divided->GetCenter(center);
@@ -347,7 +347,7 @@ inline std::vector<Case> MakeCases()
     crossed->SetName("CutTetrahedra");
     for (vtkIdType id = 0; id < divided->GetNumberOfCells(); ++id)
     {
-      // All near the sheet but a few, whose vertices stay joined.
+      // All cells near the sheet are crossed, except a few whose vertices stay connected.
       double bounds[6];
       divided->GetCellBounds(id, bounds);
       const bool isNear = std::abs(distance({ bounds[0], bounds[2], bounds[4] })) < 4.0;
@@ -373,7 +373,7 @@ inline std::vector<Case> MakeCases()
   add("Volume's bounds", volume, deform(MakeMesh(volume, 6), Bend(volume))).Set =
     [](vtkDeformVolumeFilter* filter) { filter->SetOutputBoundsModeToVolumeBounds(); };
   {
-    // In no step with the voxels, and smaller than the volume.
+    // The points of the field are not at voxels, and the field is smaller than the volume.
     const auto field =
       MakeImage({ { 0, 9, 0, 6, 0, 5 } }, glm::dvec3(7.3, 5.9, 6.7), glm::dvec3(-4.1, 2.2, -15.3));
     add("Field", volume, deform(field, Bend(volume)));
@@ -387,16 +387,16 @@ inline std::vector<Case> MakeCases()
   }
   add("Extrapolated mesh", volume, deform(MakeMesh(volume, 5, -6.3), Bend(volume))).Set =
     [](vtkDeformVolumeFilter* filter) { filter->SetOutsideModeToExtrapolate(); };
-  add("Mesh rasterisation", volume, deform(MakeMesh(volume, 5), Bend(volume))).Set =
+  add("Mesh rasterization", volume, deform(MakeMesh(volume, 5), Bend(volume))).Set =
     [](vtkDeformVolumeFilter* filter)
   { filter->SetResampler(vtkDeformVolumeFilter::MESH_RASTERIZATION); };
-  // The crease lies on nodes of the mesh.
+  // The fold is along nodes of the mesh.
   add("Folded", volume, deform(MakeMesh(volume, 12), Fold(volume, 0.75)));
   add("Folded on voxels", volume, deform(MakeMesh(volume, 35), Fold(volume, 1.0)));
   add("Folded, masks", masked, deform(MakeMesh(masked, 35), Fold(masked, 1.0)));
   add("Wound", volume, deform(MakeMesh(volume, 25), Wind(volume)));
   {
-    // Most cells have all that a cubic interpolation wants.
+    // In most cells all voxels that a cubic interpolation reads have active tetrahedra.
     const auto few = MakeVolume(extent);
     const auto active = vtkSmartPointer<vtkUnsignedCharArray>::New();
     active->SetName("ActiveTetrahedra");
@@ -413,7 +413,7 @@ inline std::vector<Case> MakeCases()
       .Set = setCubic;
   }
   {
-    // On the grid of a reference image. All divisions are oblique to the volume.
+    // Outputs on the grid of a reference image, whose axes are oblique to those of the volume.
     using Filter = vtkDeformVolumeFilter;
     const auto addOn = [&](
                          const std::string& name, bool isMirrored,
@@ -457,7 +457,7 @@ inline std::vector<Case> MakeCases()
         filter->SetOutsideModeToKeep();
         filter->SetFadeDistance(9.0);
       });
-    addOn("Cubic by mesh rasterisation", true, volume, runs,
+    addOn("Cubic by mesh rasterization", true, volume, runs,
       [](Filter* filter)
       {
         filter->SetResamplerToMeshRasterization();

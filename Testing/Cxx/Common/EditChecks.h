@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the tests of vtkCutVolume and vtkCarveVolume have in common.
+// Sheets, labels and checks for the tests of vtkCutVolume and vtkCarveVolume.
 #ifndef EditChecks_h
 #define EditChecks_h
 
@@ -34,7 +34,7 @@ inline int CountActive(const std::vector<unsigned char>& mask)
   return count;
 }
 
-/// A sheet of points in continuous indices of a volume, every three of them a triangle.
+/// A sheet of triangles. Each three points are one triangle, in continuous indices of the volume.
 inline vtkSmartPointer<vtkPolyData> MakeSheet(
   vtkImageData* volume, const std::vector<glm::dvec3>& indices)
 {
@@ -58,7 +58,7 @@ inline vtkSmartPointer<vtkPolyData> MakeSheet(
   return sheet;
 }
 
-/// A plane of a corner and two edges, in indices.
+/// A parallelogram with a corner and the edges u and v, in continuous indices.
 inline vtkSmartPointer<vtkPolyData> MakePlane(
   vtkImageData* volume, const glm::dvec3& corner, const glm::dvec3& u, const glm::dvec3& v)
 {
@@ -83,7 +83,7 @@ inline vtkSmartPointer<vtkShortArray> AddLabels(vtkImageData* volume)
   return labels;
 }
 
-/// A filter that edits active tetrahedra, with its errors caught.
+/// A filter that edits active tetrahedra, and observers of its errors and warnings.
 template <typename FilterT>
 struct Edited
 {
@@ -96,7 +96,7 @@ struct Edited
     }
   }
 
-  /// Updates without an error and without a warning.
+  /// Updates the filter and checks that it reports no error and no warning.
   void Update()
   {
     this->Filter->Update();
@@ -106,7 +106,8 @@ struct Edited
     this->ExecutiveObserver->Clear();
   }
 
-  /// Updates with one error that has these words, and an empty output; then once more.
+  /// Updates the filter twice. Each time it must report one error that contains these words, and
+  /// have an empty output.
   void Fails(const std::string& words)
   {
     this->Filter->Modified();
@@ -142,7 +143,7 @@ struct Edited
     return mask;
   }
 
-  /// Tetrahedra that are off in a volume where all were active.
+  /// The number of tetrahedra that are switched off, in a volume whose tetrahedra were all active.
   int CountOff()
   {
     const std::vector<unsigned char> mask = this->CopyMask();
@@ -156,8 +157,8 @@ struct Edited
   vtkNew<vtkTest::ErrorObserver> ExecutiveObserver;
 };
 
-/// An update that is aborted has an empty output and no error; the next one makes the edits.
-/// edit: gives a filter something to do.
+/// An aborted update has an empty output and reports no error. The next update makes the edits.
+/// edit: sets the edits of a filter.
 template <typename FilterT>
 void CheckAborts(const std::function<void(FilterT*, vtkImageData*)>& edit)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the tests of vtkElasticDeformation have in common.
+// Meshes and a filter for the tests of vtkElasticDeformation and its subclasses.
 #ifndef ElasticTesting_h
 #define ElasticTesting_h
 
@@ -20,7 +20,7 @@ namespace elasticTesting
 using namespace chainMailTesting;
 using namespace filterTesting;
 
-// Gives a mesh the array Fixed.
+// Adds the point array Fixed to a mesh.
 template <typename IsFixed>
 void FixPoints(vtkUnstructuredGrid* mesh, IsFixed&& isFixed)
 {
@@ -33,7 +33,7 @@ void FixPoints(vtkUnstructuredGrid* mesh, IsFixed&& isFixed)
   mesh->GetPointData()->AddArray(fixed);
 }
 
-// Gives a mesh a point array of vectors.
+// Adds a point array of vectors to a mesh.
 template <typename GetVector>
 vtkDoubleArray* AddPointVectors(vtkUnstructuredGrid* mesh, const char* name, GetVector&& getVector)
 {
@@ -49,7 +49,7 @@ vtkDoubleArray* AddPointVectors(vtkUnstructuredGrid* mesh, const char* name, Get
   return vectors;
 }
 
-// A bar of 4 x 4 x 12 cells, held at z = 0. Lengths are in units of so many metres.
+// A bar of 4 x 4 x 12 cells and 1 x 1 x 3 cm, fixed at z = 0. unit: the length unit, in meters.
 inline vtkSmartPointer<vtkUnstructuredGrid> MakeBar(double unit)
 {
   vtkNew<vtkLatticeTetrahedraSource> lattice;
@@ -63,12 +63,12 @@ inline vtkSmartPointer<vtkUnstructuredGrid> MakeBar(double unit)
   return bar;
 }
 
-// Finite elements have nodes in the middle of edges.
+// Finite elements have mid-side nodes.
 template <typename Filter>
 constexpr bool HasMidSides = std::is_same_v<Filter, vtkFiniteElementDeformation>;
 
-// Those of MakeBar: its cells have one for each corner of a lattice twice as fine, but for their
-// centres.
+// The number of nodes of MakeBar(). With mid-side nodes these are the points of a lattice twice as
+// fine, except the centers of the cells.
 template <typename Filter>
 constexpr vtkIdType NodesOfBar = HasMidSides<Filter> ? 9 * 9 * 25 - 4 * 4 * 12 : 5 * 5 * 13;
 
@@ -86,7 +86,7 @@ struct Simulated
     this->Object->SetInputDataObject(mesh);
   }
 
-  // The errors of an update in words; "" where there is none.
+  // Updates the filter and returns its error message, or "" without an error.
   std::string TryUpdate()
   {
     this->Object->Modified();
@@ -95,7 +95,7 @@ struct Simulated
     VERIFY(errors.find("ERROR: ") == errors.rfind("ERROR: "));
     if (!errors.empty())
     {
-      // Although nothing has changed.
+      // The next update reports the error again, although nothing has changed.
       this->Observer->Clear();
       VERIFY(!this->Object->GetExecutive()->Update());
       VERIFY(this->Observer->GetError());

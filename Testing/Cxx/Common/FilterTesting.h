@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the tests of vtkDeformVolumeFilter have in common: volumes and meshes of world functions,
-// and checks that count their failures.
+// For the tests of vtkDeformVolumeFilter: volumes and meshes that world functions define, and
+// checks that count their failures.
 #ifndef FilterTesting_h
 #define FilterTesting_h
 
@@ -103,7 +103,7 @@ inline glm::dvec3 GetPoint(vtkDataSet* dataSet, vtkIdType id)
 using WorldFunction = std::function<double(const glm::dvec3&)>;
 using WorldMap = std::function<glm::dvec3(const glm::dvec3&)>;
 
-/// Adds a point array of a function of the world position, and makes it the scalars.
+/// Adds a point array, whose values are a function of the world position, as active scalars.
 template <typename T>
 void AddScalars(vtkImageData* image, const char* name, const WorldFunction& function)
 {
@@ -152,7 +152,8 @@ inline vtkSmartPointer<vtkImageData> MakeVolume(const Extent& extent = { { 0, 9,
   return volume;
 }
 
-/// A lattice of tetrahedra round the world bounds of a volume, somewhat larger.
+/// A lattice of tetrahedra over the world bounds of a volume, which are extended by a margin, in
+/// world units, on each side. A negative margin makes the lattice smaller than the volume.
 inline vtkSmartPointer<vtkUnstructuredGrid> MakeMesh(
   vtkImageData* volume, int nodes = 3, double margin = 0.5)
 {
@@ -172,7 +173,7 @@ inline vtkSmartPointer<vtkUnstructuredGrid> MakeMesh(
   return mesh;
 }
 
-/// Sets the displacements "displacement" that take each point to its image.
+/// Sets displacements that move each point to its image by a map.
 inline void SetDisplacements(
   vtkDataSet* dataSet, const WorldMap& map, const char* name = "displacement")
 {
@@ -194,7 +195,7 @@ inline WorldMap Shift(double x, double y, double z)
   return [=](const glm::dvec3& point) { return point + glm::dvec3(x, y, z); };
 }
 
-/// A filter on a volume and a deformation, with its errors and warnings caught.
+/// A vtkDeformVolumeFilter, and observers of its errors and warnings.
 struct Deformed
 {
   Deformed()
@@ -212,7 +213,7 @@ struct Deformed
     this->Filter->SetDeformationData(deformation);
   }
 
-  /// Errors of the filter since the last call.
+  /// The number of errors of the filter since the last call.
   int TakeErrors()
   {
     const std::string message = this->Observer->GetErrorMessage();
@@ -234,7 +235,7 @@ struct Deformed
     return message;
   }
 
-  /// Updates without an error and gives the output.
+  /// Updates the filter, checks that it reports no error, and returns the output.
   vtkImageData* Update()
   {
     this->Filter->Update();
@@ -245,7 +246,8 @@ struct Deformed
     }
     return this->Filter->GetOutput();
   }
-  /// Updates with a warning that holds some words, or with none.
+  /// Updates the filter, which must report a warning that contains these words. Without words it
+  /// must report no warning.
   vtkImageData* Expect(const std::string& words)
   {
     this->Observer->Clear();
@@ -272,7 +274,7 @@ struct Deformed
   std::string LastError;
 };
 
-/// Same type, size and bits, component by component.
+/// Whether two arrays have the same type, size and bits.
 inline bool HaveEqualBits(vtkDataArray* first, vtkDataArray* second)
 {
   if (!first || !second || first->GetDataType() != second->GetDataType() ||
@@ -297,7 +299,7 @@ inline vtkSmartPointer<vtkUnsignedCharArray> AddActiveTetrahedra(vtkImageData* v
   return active;
 }
 
-/// All arrays of a part of an output hold what the whole has there.
+/// Checks that all arrays of a part of an output are equal to those of the whole output there.
 inline void VerifyPart(vtkImageData* part, vtkImageData* whole)
 {
   VERIFY(part->GetNumberOfPoints() == 0 ||
@@ -318,7 +320,7 @@ inline void VerifyPart(vtkImageData* part, vtkImageData* whole)
   }
 }
 
-/// Every point array, extent, origin, spacing and direction.
+/// Whether two images have equal point arrays, extents, origins, spacings and directions.
 inline bool AreEqual(vtkImageData* first, vtkImageData* second)
 {
   bool equal = GetExtent(first) == GetExtent(second) &&

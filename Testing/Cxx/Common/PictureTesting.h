@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures of windows, and what two of them differ by.
+// Pictures of render windows, and their comparison.
 #ifndef PictureTesting_h
 #define PictureTesting_h
 
@@ -27,9 +27,9 @@ inline vtkSmartPointer<vtkImageData> Draw(vtkRenderWindow* window)
 
 struct Comparison
 {
-  /// The mean absolute difference of all bytes; that of pictures that cannot be compared is 255.
+  /// The mean absolute difference of all bytes; 255 if the pictures cannot be compared.
   double Difference = 255.0;
-  /// The differences; null where pictures cannot be compared.
+  /// The differences; null if the pictures cannot be compared.
   vtkSmartPointer<vtkImageData> Image;
 };
 

@@ -11,20 +11,20 @@
 
 #include <vector>
 
-/// How a grid describes one polyhedron, which need not be right.
+/// The faces of a polyhedron as a grid stores them. The description may be invalid.
 struct PolyhedronDescription
 {
-  /// The first of its faces, or -1 where nothing is said about them.
+  /// The id of its first face, or -1 if the grid has no entry for the polyhedron.
   vtkIdType FirstFace;
-  /// How many faces are announced.
+  /// The number of faces that the grid states.
   vtkIdType NumberOfFaces;
-  /// Those that are there.
+  /// The faces that the grid has.
   std::vector<std::vector<vtkIdType>> Faces;
 };
 
 namespace detail
 {
-// Since VTK 9.5 faces are cells of cell arrays.
+// Since VTK 9.5 the faces of polyhedra are stored in cell arrays.
 template <typename Grid>
 auto SetPolyhedron(Grid* grid, vtkUnsignedCharArray* types, vtkCellArray* cells,
   const PolyhedronDescription& polyhedron, int)
@@ -68,7 +68,7 @@ void SetPolyhedron(Grid* grid, vtkUnsignedCharArray* types, vtkCellArray* cells,
 }
 } // namespace detail
 
-/// Makes a polyhedron with these points the only cell of a grid.
+/// Makes a polyhedron with these points the only cell of the grid.
 inline void SetPolyhedron(vtkUnstructuredGrid* grid, const std::vector<vtkIdType>& points,
   const PolyhedronDescription& polyhedron)
 {

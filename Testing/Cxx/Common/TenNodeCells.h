@@ -14,12 +14,12 @@
 namespace filterTesting
 {
 
-/// Ten-node tetrahedra with straight edges on the tetrahedra of a mesh. separated: each has nodes
-/// of its own.
+/// Replaces the tetrahedra of a mesh by ten-node tetrahedra with straight edges. separated: the
+/// cells share no nodes.
 inline vtkSmartPointer<vtkUnstructuredGrid> MakeTenNodes(
   vtkUnstructuredGrid* linear, bool separated = false)
 {
-  // Corners of the edges with the nodes 4 to 9.
+  // The end points of the edges whose middles are the nodes 4 to 9.
   constexpr int edges[6][2] = { { 0, 1 }, { 1, 2 }, { 2, 0 }, { 0, 3 }, { 1, 3 }, { 2, 3 } };
   auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
   vtkNew<vtkPoints> points;

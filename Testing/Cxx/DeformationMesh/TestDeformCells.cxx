@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cells that are split round a node of their own: ten-node tetrahedra, and concave polyhedra. The
-// reference of the former is a mesh of the same four-node tetrahedra in which these nodes are
-// ordinary ones.
+// Ten-node tetrahedra, which are split around a derived node in the middle of each cell. The
+// reference is a mesh of the same four-node tetrahedra in which the derived nodes are ordinary
+// points.
 #include "FilterTesting.h"
 #include "MeshCells.h"
 #include "TenNodeCells.h"
@@ -47,7 +47,7 @@ glm::dvec3 GetVector(vtkDataSet* dataSet, vtkIdType id)
   return vector;
 }
 
-// The same with four-node tetrahedra: the nodes in the middle are added behind all others.
+// The same mesh with four-node tetrahedra. The derived nodes are appended to the points.
 Grid MakeReference(vtkUnstructuredGrid* tenNodes)
 {
   Grid grid = Grid::New();
@@ -77,7 +77,7 @@ Grid MakeReference(vtkUnstructuredGrid* tenNodes)
     points->InsertNextPoint(&point.x);
     vectors->InsertNextTuple(&vector.x);
   }
-  // The maps of tetrahedra differ in rounding by the order of their nodes.
+  // The order of nodes is that of ReadCells(): the maps of tetrahedra depend on it by rounding.
   for (const Tetrahedron& nodes : deformvolume::ReadCells({ tenNodes }, { tenNodes }).Tetrahedra)
   {
     const vtkIdType ids[4] = { nodes[0], nodes[1], nodes[2], nodes[3] };
@@ -109,7 +109,7 @@ void TestTenNodes()
   Deformed found(volume, mesh);
   vtkNew<vtkMultiBlockDataSet> blocks;
   blocks->SetBlock(0, mesh);
-  blocks->SetBlock(1, MakeReference(mesh)); // lies in the same place, and comes second
+  blocks->SetBlock(1, MakeReference(mesh)); // hidden by the first block, which it coincides with
   Deformed composite(volume, blocks);
   Deformed twoPorts(volume, MoveToDeformed(mesh));
   twoPorts.Filter->SetRestData(mesh);
@@ -158,7 +158,7 @@ void TestTenNodes()
   VERIFY(AreEqual(expected.Update(), found.Update()));
 }
 
-// Updates of parts, with and without a log, of the displacements and of the mesh at rest.
+// Updates after changes of displacements, with and without a log, and of the mesh at rest.
 void TestUpdates()
 {
   const auto volume = MakeVolume({ { 0, 47, 0, 47, 0, 47 } });
@@ -189,8 +189,9 @@ void TestUpdates()
   const glm::dvec3 point = GetPoint(mesh, 100) + glm::dvec3(0.25, 0.125, -0.25);
   mesh->GetPoints()->SetPoint(100, &point.x);
   mesh->GetPoints()->Modified();
-  check("another place at rest");
-  // A cell gets another node in the middle of an edge, in the same place: the mesh is split there.
+  check("another position at rest");
+  // The mesh is split at a mid-side node of a cell: the cell gets a node of its own at that
+  // position.
   const vtkIdType cell = mesh->GetNumberOfCells() / 2;
   vtkNew<vtkIdList> ids;
   mesh->GetCellPoints(cell, ids);
@@ -204,7 +205,6 @@ void TestUpdates()
   vectors->Modified();
   mesh->Modified();
   check("a split");
-  // Fewer cells.
   vtkNew<vtkCellArray> fewer;
   for (vtkIdType i = 0; i + 20 < mesh->GetNumberOfCells(); ++i)
   {
@@ -214,7 +214,7 @@ void TestUpdates()
   mesh->SetCells(VTK_QUADRATIC_TETRA, fewer);
   mesh->Modified();
   check("fewer cells");
-  // Then cells without such nodes, and with them again.
+  // Change to cells without mid-side nodes, to a field, and back.
   const Grid linear = MakeMesh(volume, 5);
   SetDisplacements(linear, Curve);
   tested.Filter->SetDeformationData(linear);
@@ -228,7 +228,7 @@ void TestUpdates()
   ofField.Filter->SetOutputBoundsModeToVolumeBounds();
   CompareWithFresh(tested, ofField, "a field", parts);
   tested.Filter->SetDeformationData(mesh);
-  check("the cells of before");
+  check("the previous mesh again");
   vectors->SetComponent(5, 1, 1e5);
   vectors->Modified();
   tested.Filter->Update();
@@ -236,7 +236,7 @@ void TestUpdates()
   VERIFY(tested.LastError.find("16,383") != std::string::npos);
 }
 
-// Cells with nodes of their own, which come apart.
+// Cells that share no nodes, and move apart.
 void TestSplits()
 {
   const auto volume = MakeVolume({ { 0, 15, 0, 15, 0, 15 } });
@@ -260,8 +260,8 @@ void TestSplits()
   VERIFY(covered[1] < covered[0]);
 }
 
-// How far the displacements of voxels in one cell are from those of a quadratic function, as the
-// root of the mean square.
+// The root mean square of the differences between the displacements of voxels in one cell and those
+// of a quadratic function.
 double FindError(bool tenNodes, const std::array<glm::dvec3, 4>& corners, int kind)
 {
   const auto move = [&](const glm::dvec3& p)
@@ -269,7 +269,8 @@ double FindError(bool tenNodes, const std::array<glm::dvec3, 4>& corners, int ki
     const double products[6] = { p.x * p.x, p.y * p.y, p.z * p.z, p.x * p.y, p.y * p.z, p.z * p.x };
     return 0.01 * products[kind];
   };
-  // What is seen at the deformed place is the rest position: the volume holds x, and moves along z.
+  // The values of the volume are x at rest, and it moves along x. Thus values of the output are
+  // rest positions.
   auto volume = MakeImage({ { 0, 40, 0, 40, 0, 40 } });
   AddScalars<float>(volume, "value", [](const glm::dvec3& p) { return p.z; });
   Grid linear = Grid::New();
@@ -313,14 +314,14 @@ void TestAccuracy()
   {
     worst = std::max(worst, FindError(true, corners, kind) / FindError(false, corners, kind));
   }
-  std::cout << "Of the error of a four-node tetrahedron: " << worst << '\n';
-  // The error of linear interpolation is proportional to the squares of edges. Those of the twelve
-  // tetrahedra are half as long as those of the cell, but for the lines to the center: of a regular
-  // cell, whose edges have the length 1, these are sqrt(1 / 8). With some room for another shape.
+  std::cout << "Error relative to that of a four-node tetrahedron: " << worst << '\n';
+  // The error of linear interpolation is proportional to the squares of edge lengths. In a regular
+  // cell whose edges have the length 1, the edges of the twelve tetrahedra have the length 1 / 2,
+  // and sqrt(1 / 8) to the center. The bound is larger than 1 / 4, since this cell is not regular.
   VERIFY(worst < 0.35);
 }
 
-// Nodes of the edges in another order.
+// Mid-side nodes in another order than VTK's cause a warning.
 void TestMidSides()
 {
   const auto volume = MakeVolume();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One mesh in other grids: grids that share arrays, equal copies, deformed meshes beside those at
-// rest, other numbers; and edits of a grid in place, which have to be seen. All results are
-// compared bit by bit with those of a new filter.
+// One mesh in different grids: grids that share arrays, equal copies, a deformed mesh and one at
+// rest, other orders of points and cells. Edits of a grid in place must be detected. All results
+// are compared bit by bit with those of a new filter.
 #include "FilterTesting.h"
 
 #include <vtkCellArray.h>
@@ -29,8 +29,8 @@ namespace
 
 using Grid = vtkSmartPointer<vtkUnstructuredGrid>;
 
-// Passes its mesh on, as simulations do: the output is one object, with new arrays each time or the
-// same ones.
+// A source whose output is always the same object, as in simulations. It shares the arrays of a
+// mesh.
 class Passer : public vtkUnstructuredGridAlgorithm
 {
 public:
@@ -88,8 +88,8 @@ public:
     this->Tested.Filter->SetDeformationData(grid);
   }
 
-  // The same as a new filter, and so many static mappings built: none where the tetrahedra at rest
-  // are those of before.
+  // Updates the filter. The output must be equal to that of a new filter, and the filter must have
+  // built this number of static mappings: none if the tetrahedra at rest have not changed.
   void Expect(const char* what, int builds)
   {
     const int failures = GetNumberOfFailures();
@@ -115,7 +115,7 @@ private:
   vtkIdType Builds = 0;
 };
 
-// The cells of a grid with those of one point for another.
+// Exchanges the first two points of a cell.
 void Exchange(vtkUnstructuredGrid* grid, vtkIdType cell)
 {
   vtkNew<vtkIdList> points;
@@ -124,13 +124,13 @@ void Exchange(vtkUnstructuredGrid* grid, vtkIdType cell)
   grid->GetCells()->ReplaceCellAtId(cell, points);
 }
 
-// A cell gets a first node of its own, where it lay.
+// Replaces the first node of a cell by a new node at the same position.
 void SplitNode(vtkUnstructuredGrid* grid, vtkIdType cell)
 {
   vtkNew<vtkIdList> nodes;
   grid->GetCells()->GetCellAtId(cell, nodes);
-  const glm::dvec3 place = GetPoint(grid, nodes->GetId(0));
-  nodes->SetId(0, grid->GetPoints()->InsertNextPoint(&place.x));
+  const glm::dvec3 point = GetPoint(grid, nodes->GetId(0));
+  nodes->SetId(0, grid->GetPoints()->InsertNextPoint(&point.x));
   grid->GetCells()->ReplaceCellAtId(cell, nodes);
   grid->GetPoints()->Modified();
   grid->Modified();
@@ -168,8 +168,7 @@ void TestOtherGrids()
   }
   changed->SetCells(VTK_TETRA, cells);
   meshes.Give(changed);
-  meshes.Expect("a copy in numbers of 32 bits", 0);
-  // One cell less.
+  meshes.Expect("a copy with ids of 32 bits", 0);
   Grid smaller = ShareArrays(meshes.Mesh);
   vtkNew<vtkCellArray> fewer;
   for (vtkIdType cell = 0; cell + 1 < smaller->GetNumberOfCells(); ++cell)
@@ -179,14 +178,14 @@ void TestOtherGrids()
   }
   smaller->SetCells(VTK_TETRA, fewer);
   meshes.Give(smaller);
-  meshes.Expect("a cell less, and so a hole", 1);
+  meshes.Expect("one cell less, which leaves a hole", 1);
 }
 
 void TestEditsInPlace()
 {
   Meshes meshes;
   meshes.Mesh->Modified();
-  meshes.Expect("modified, and yet the same", 0);
+  meshes.Expect("a grid that is marked as modified", 0);
   Exchange(meshes.Mesh, 11);
   meshes.Mesh->Modified();
   meshes.Expect("a cell replaced, and only the grid modified", 1);
@@ -199,19 +198,19 @@ void TestEditsInPlace()
   const vtkIdType corners[4] = { 0, 7, 50, 100 };
   meshes.Mesh->InsertNextCell(VTK_TETRA, 4, corners);
   meshes.Mesh->Modified();
-  meshes.Expect("a cell more", 1);
+  meshes.Expect("one cell more", 1);
   vtkNew<vtkUnsignedCharArray> ghosts;
   ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
   ghosts->SetNumberOfTuples(meshes.Mesh->GetNumberOfCells());
   ghosts->Fill(0);
   ghosts->SetValue(4, vtkDataSetAttributes::HIDDENCELL);
   meshes.Mesh->GetCellData()->AddArray(ghosts);
-  meshes.Expect("a hidden cell, and so a hole", 1);
+  meshes.Expect("a hidden cell, which leaves a hole", 1);
   meshes.Give(ShareArrays(meshes.Mesh));
-  meshes.Expect("shared with it", 0);
+  meshes.Expect("shared arrays with a hidden cell", 0);
   meshes.Give(Copy(meshes.Mesh));
   meshes.Mesh->GetCellData()->RemoveArray(vtkDataSetAttributes::GhostArrayName());
-  meshes.Expect("and without it", 1);
+  meshes.Expect("a copy without the hidden cell", 1);
 }
 
 void TestPipeline()
@@ -220,12 +219,12 @@ void TestPipeline()
   vtkNew<Passer> passer;
   passer->Mesh = meshes.Mesh;
   meshes.Tested.Filter->SetDeformationConnection(passer->GetOutputPort());
-  meshes.Expect("a filter before it", 0);
+  meshes.Expect("a source instead of a grid", 0);
   for (int step = 0; step < 3; ++step)
   {
     meshes.Move();
     passer->Modified();
-    meshes.Expect("new displacements through the filter", 0);
+    meshes.Expect("new displacements of the source", 0);
   }
   Exchange(meshes.Mesh, 5);
   meshes.Mesh->GetCells()->Modified();
@@ -240,7 +239,7 @@ void TestPipeline()
   meshes.Expect("a copy", 0);
 }
 
-// A Lagrange hexahedron over a volume, whose nodes lie where its degrees say.
+// Sets the degrees of a Lagrange hexahedron over a volume, and the positions of its nodes.
 void PlaceNodes(vtkUnstructuredGrid* grid, vtkImageData* volume, const std::array<int, 3>& degrees)
 {
   vtkDataArray* array = grid->GetCellData()->GetHigherOrderDegrees();
@@ -248,13 +247,13 @@ void PlaceNodes(vtkUnstructuredGrid* grid, vtkImageData* volume, const std::arra
   array->Modified();
   std::array<double, 6> bounds;
   volume->GetBounds(bounds.data());
-  const double* places = grid->GetCell(0)->GetParametricCoords();
+  const double* coordinates = grid->GetCell(0)->GetParametricCoords();
   for (vtkIdType node = 0; node < grid->GetNumberOfPoints(); ++node)
   {
     std::array<double, 3> point;
     for (int axis = 0; axis < 3; ++axis)
     {
-      const double share = places[3 * node + axis];
+      const double share = coordinates[3 * node + axis];
       point[axis] =
         bounds[2 * axis] - 1.0 + share * (bounds[2 * axis + 1] - bounds[2 * axis] + 2.0);
     }
@@ -263,7 +262,7 @@ void PlaceNodes(vtkUnstructuredGrid* grid, vtkImageData* volume, const std::arra
   grid->GetPoints()->Modified();
 }
 
-// The same numbers of nodes, in another order.
+// A cell with other degrees, which has the same number of nodes.
 void TestDegrees()
 {
   Meshes meshes;
@@ -303,11 +302,11 @@ void TestTwoMeshes()
     shape->GetPoints()->GetData()->SetComponent(20 + step, step, 0.7 * step);
     shape->GetPoints()->Modified();
     shape->Modified();
-    meshes.Expect("the deformed one modified", 0);
+    meshes.Expect("a point of the deformed mesh moved", 0);
   }
   meshes.Rest = Copy(meshes.Rest);
   meshes.Tested.Filter->SetRestData(meshes.Rest);
-  meshes.Expect("a copy at rest", 0);
+  meshes.Expect("a copy of the mesh at rest", 0);
   SplitNode(meshes.Rest, 8);
   SplitNode(shape, 8);
   meshes.Expect("a node that is split in both", 0);
@@ -320,14 +319,14 @@ void TestTwoMeshes()
   VERIFY_EQUAL(meshes.Tested.TakeErrors(), 1);
   Exchange(shape, 3);
   shape->Modified();
-  meshes.Expect("the cells put right", 0);
+  meshes.Expect("the cell restored", 0);
   Exchange(meshes.Rest, 5);
   meshes.Rest->Modified();
   meshes.Tested.Filter->Update();
   VERIFY_EQUAL(meshes.Tested.TakeErrors(), 1);
   Exchange(shape, 5);
   shape->Modified();
-  meshes.Expect("the same cell replaced in both, by the hole that the point leaves", 1);
+  meshes.Expect("the same cell replaced in both meshes", 1);
   shape->GetPoints()->GetData()->SetComponent(30, 2, std::nan(""));
   shape->Modified();
   meshes.Tested.Filter->Update();
@@ -335,8 +334,9 @@ void TestTwoMeshes()
   VERIFY(meshes.Tested.LastError.find("Point 30") != std::string::npos);
   shape->GetPoints()->GetData()->SetComponent(30, 2, 5.0);
   shape->Modified();
-  meshes.Expect("the point put right", 0);
-  // The filter must not take displacements from two meshes for those of the array.
+  meshes.Expect("the point restored", 0);
+  // Displacements that were computed from two meshes must not be used instead of those of the
+  // array.
   meshes.Rest = nullptr;
   meshes.Give(Copy(shape));
   meshes.Tested.Filter->SetRestData(nullptr);
@@ -344,7 +344,7 @@ void TestTwoMeshes()
   meshes.Expect("displacements again", 1);
 }
 
-// A deformed mesh in one grid, and the one at rest in two.
+// The deformed mesh is one grid, and the mesh at rest has two blocks.
 void TestOtherParts()
 {
   const auto volume = MakeVolume({ { 0, 30, 0, 25, 2, 27 } });
@@ -447,7 +447,8 @@ void TestFloats()
   }
 }
 
-// Nodes and cells at random, and a mesh whose nodes lie on voxels, which many tetrahedra share.
+// Nodes and cells in random order. With a margin of 0 nodes are at voxels, which thus belong to
+// several tetrahedra.
 void TestNumbers()
 {
   const auto volume = MakeVolume({ { 0, 40, 0, 24, 0, 32 } });
@@ -496,7 +497,7 @@ void TestNumbers()
       }
       for (int step = 0; step < 4; ++step)
       {
-        // In the last steps nodes of a corner only.
+        // From the second step on only nodes near a corner move.
         const WorldMap map = [=](const glm::dvec3& p)
         {
           const double more = p.x < 12.0 && p.y < 12.0 ? 0.4 * step : 0.0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Meshes as other programs write them: nodes that no cell uses, blocks without displacements,
-// structured and rectilinear grids, points that are deformed already, other units, and what is said
-// of arrays whose vectors do not turn with the tissue.
+// structured and rectilinear grids, points that are deformed already, other length units, and
+// warnings about vectors and tensors of the volume, which the filter does not rotate.
 #include "FilterTesting.h"
 #include "UpdateChecks.h"
 
@@ -51,8 +51,8 @@ void Expect(Deformed& deformed, const std::string& words)
   }
 }
 
-// A copy of a mesh, with nodes before and behind all others that no cell uses.
-Grid AddUnusedNodes(vtkUnstructuredGrid* mesh, const glm::dvec3& place, const glm::dvec3& vector)
+// A copy of a mesh, with an additional first and last node that no cell uses.
+Grid AddUnusedNodes(vtkUnstructuredGrid* mesh, const glm::dvec3& point, const glm::dvec3& vector)
 {
   Grid more = Grid::New();
   vtkNew<vtkPoints> points;
@@ -62,7 +62,7 @@ Grid AddUnusedNodes(vtkUnstructuredGrid* mesh, const glm::dvec3& place, const gl
   vectors->SetNumberOfComponents(3);
   const auto add = [&]
   {
-    points->InsertNextPoint(&place.x);
+    points->InsertNextPoint(&point.x);
     vectors->InsertNextTuple(&vector.x);
   };
   add();
@@ -157,7 +157,7 @@ void TestUnusedNodes()
   }
 }
 
-// Updates of a part; and a node that is used later on.
+// Partial updates of a mesh with unused nodes, and a cell that begins to use one of these nodes.
 void TestUnusedNodesThatChange()
 {
   const auto volume = MakeVolume({ { 0, 40, 0, 40, 0, 40 } });
@@ -182,7 +182,8 @@ void TestUnusedNodesThatChange()
     CompareWithFresh(tested, fresh, "a step of a mesh with unused nodes", parts);
   }
   VERIFY(parts > 1);
-  // The last cell takes the last node for another, and then this one's own values.
+  // A node of the last cell is replaced by the last node, whose position and displacement are then
+  // set to valid values.
   vtkNew<vtkIdList> before;
   const vtkIdType cell = more->GetNumberOfCells() - 1;
   more->GetCellPoints(cell, before);
@@ -234,7 +235,7 @@ void TestBlocks()
   const Grid solids = Grid::New();
   solids->DeepCopy(mesh);
   solids->GetPointData()->Initialize();
-  // An array of that name need not be one of displacements there.
+  // In other blocks an array of this name may contain something else.
   const Grid other = MakeShells();
   vtkNew<vtkDoubleArray> thickness;
   thickness->SetName(name);
@@ -253,7 +254,7 @@ void TestBlocks()
       found.Filter->Update();
       VERIFY(found.TakeWarning().find("1 quad") != std::string::npos);
       VERIFY(AreEqual(output, found.Update()));
-      // With solids in it, that block needs them.
+      // A block that contains solid cells needs displacements.
       blocks->SetBlock(1 - first, solids);
       Expect(found,
         "The block with flat index " + std::to_string(2 - first) +
@@ -271,7 +272,7 @@ void TestBlocks()
   collection->GetMetaData(1)->Set(vtkCompositeDataSet::NAME(), "bone");
   Deformed named(volume, collection);
   Expect(named, "Block \"bone\" of the deformation mesh");
-  // The number of a node is that in its block.
+  // The error has the index of the node in its block.
   solids->GetPointData()->ShallowCopy(mesh->GetPointData());
   const Grid spoilt = Grid::New();
   spoilt->DeepCopy(mesh);
@@ -281,7 +282,7 @@ void TestBlocks()
   Expect(named, "Displacement 3 of block \"bone\" of the deformation mesh");
 }
 
-// The nodes of a grid of nodes on each axis, unevenly spaced.
+// The number of nodes of a grid on each axis. They are unevenly spaced.
 const std::array<int, 3> nodes{ { 4, 5, 3 } };
 double GetCoordinate(int axis, int i)
 {
@@ -333,7 +334,7 @@ vtkSmartPointer<vtkStructuredGrid> MakeStructuredGrid()
   return grid;
 }
 
-// The same as hexahedra, without some cells.
+// The cells of a grid as hexahedra, without some of them.
 Grid MakeHexahedra(vtkDataSet* grid, const std::function<bool(int cell)>& isLeftOut)
 {
   Grid hexahedra = Grid::New();
@@ -405,7 +406,7 @@ void TestGrid(vtkDataSet* grid)
     one->Filter->SetResamplerToExact();
     one->Update();
   }
-  // What is written to the displacements is seen, and the mapping stays.
+  // Changed displacements are detected, and the static mapping is kept.
   auto* vectors = grid->GetPointData()->GetVectors();
   vtkNew<vtkArrayChanges> changes;
   changes->SetArray(vectors);
@@ -414,7 +415,7 @@ void TestGrid(vtkDataSet* grid)
   changes->AddTuples(17, 17);
   VERIFY(AreEqual(expected.Update(), found.Update()));
   VERIFY_EQUAL(GetReported(found.Filter, "Static mappings made"), builds);
-  // Two configurations.
+  // A deformed mesh and a mesh at rest.
   vtkNew<vtkStructuredGrid> moved;
   moved->SetDimensions(nodes.data());
   vtkNew<vtkPoints> points;
@@ -430,7 +431,7 @@ void TestGrid(vtkDataSet* grid)
   Deformed expectedOfTwo(volume, MakeHexahedra(moved, [](int) { return false; }));
   expectedOfTwo.Filter->SetRestData(whole);
   VERIFY(AreEqual(expectedOfTwo.Update(), two.Update()));
-  // Blanked cells, and those of blanked points.
+  // Blanked cells, and cells of blanked points.
   const auto cellGhosts = AddGhosts(grid->GetCellData(), grid->GetNumberOfCells());
   cellGhosts->SetValue(3, vtkDataSetAttributes::HIDDENCELL);
   grid->Modified();
@@ -470,14 +471,14 @@ void TestGrids()
   flat->SetPoints(points);
   found.Filter->SetDeformationData(flat);
   Expect(found, "no tetrahedra, but 12 quad");
-  // Image data inside a composite dataset are no mesh.
+  // Image data in a composite dataset is not a mesh.
   vtkNew<vtkMultiBlockDataSet> blocks;
   blocks->SetBlock(0, volume);
   found.Filter->SetDeformationData(blocks);
   Expect(found, "holds no vtkUnstructuredGrid, vtkStructuredGrid or vtkRectilinearGrid");
 }
 
-// With numbers that floats hold.
+// Displacements that are exact in floats.
 glm::dvec3 BendExactly(const glm::dvec3& p)
 {
   return p + glm::round(64.0 * (Bend(p) - p)) / 64.0;
@@ -508,7 +509,7 @@ void TestDeformedPoints()
     VERIFY(AreEqual(output, found.Update()));
     VERIFY(AreEqual(output, composite.Update()));
   }
-  // Another time step: the same mesh at rest.
+  // Another time step, with the same mesh at rest.
   for (Deformed* one : { &expected, &found })
   {
     one->Filter->SetDisplacementScale(1.0);
@@ -523,7 +524,6 @@ void TestDeformedPoints()
   moved->GetPointData()->GetVectors()->Modified();
   VERIFY(AreEqual(expected.Update(), found.Update()));
   VERIFY_EQUAL(GetReported(found.Filter, "Static mappings made"), builds);
-  // A structured grid.
   const auto structured = MakeStructuredGrid();
   for (vtkIdType id = 0; id < structured->GetNumberOfPoints(); ++id)
   {
@@ -539,7 +539,7 @@ void TestDeformedPoints()
   }
   found.Filter->SetDeformationData(structured);
   VERIFY(AreEqual(expected.Update(), found.Update()));
-  // What is carved out of the deformed volume.
+  // A ball is carved out of the deformed volume.
   vtkNew<vtkSphere> ball;
   ball->SetCenter(5.0, 4.0, 6.0);
   ball->SetRadius(3.0);
@@ -556,7 +556,6 @@ void TestDeformedPoints()
   }
   VERIFY(gone[0] > 50);
   VERIFY_EQUAL(gone[0], gone[1]);
-  // Misuse.
   found.Filter->SetDeformationData(moved);
   found.Filter->SetRestData(mesh);
   Expect(found, "PointsAreDeformed is on, but there is a rest configuration");

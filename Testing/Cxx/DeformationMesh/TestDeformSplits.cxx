@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A block whose mesh is cut in two: pulled apart it leaves an empty gap as wide as it was pulled,
-// where that is wanted, and otherwise none; with both resamplers.
+// A cuboid whose mesh is split in two parts. With OpenSplits the gap between parts that are pulled
+// apart is as wide as their distance; without OpenSplits there is no gap. Both resamplers are
+// tested.
 #include "FilterTesting.h"
 
 #include <vtkCellArray.h>
@@ -18,11 +19,11 @@ namespace
 
 constexpr int Pull = 10; // voxels
 
-// A block with a lattice over it, which has a plane of nodes between two planes of voxels.
+// A volume, and a lattice that has a plane of nodes between two planes of voxels.
 class Block
 {
 public:
-  // voxelsPerEdge: how fine the lattice is.
+  // voxelsPerEdge: the length of the edges of the lattice.
   Block(const std::array<int, 3>& dimensions, double voxelsPerEdge)
     : Volume(MakeImage({ { 0, dimensions[0] - 1, 0, dimensions[1] - 1, 0, dimensions[2] - 1 } },
         glm::dvec3(1.0, 0.5, 2.0)))
@@ -43,7 +44,8 @@ public:
     SetDisplacements(this->Mesh, Shift(0.0, 0.0, 0.0));
   }
 
-  // Gives what is beyond the plane nodes of its own; as far as y goes, in the world.
+  // Splits the nodes of the plane whose world y is less than highestY: cells beyond the plane get
+  // nodes of their own.
   void Cut(double highestY = 1e9)
   {
     std::map<vtkIdType, vtkIdType> twins;
@@ -101,7 +103,7 @@ public:
   vtkIdType FirstTwin = 0;
 };
 
-// How many voxels of each row are not covered: the same in all, or -1.
+// The number of voxels in each row that are not covered, or -1 if it differs between rows.
 int CountGap(vtkImageData* output)
 {
   vtkDataArray* mask = output->GetPointData()->GetArray("vtkValidPointMask");
@@ -135,13 +137,14 @@ void TestPulledApart(const std::array<int, 3>& dimensions, double voxelsPerEdge)
     const vtkIdType whole = block.Volume->GetNumberOfPoints();
     VERIFY_EQUAL(CountGap(tested.Update()), 0);
     block.Cut();
-    // A cut that is not opened takes away a layer of cells, and no voxel.
+    // While the two parts touch, all voxels are covered, although the cells between them are not
+    // drawn.
     VERIFY_EQUAL(CountGap(tested.Update()), 0);
     VERIFY_EQUAL(tested.Filter->GetNumberOfCoveredVoxels(), whole);
     block.PullApart();
     VERIFY_EQUAL(CountGap(tested.Update()), Pull);
     VERIFY_EQUAL(tested.Filter->GetNumberOfCoveredVoxels(), whole);
-    // Nodes that are split lie where they lay at rest.
+    // A split does not change positions at rest, so the static mapping is kept.
     VERIFY_EQUAL(GetReported(tested.Filter, "Static mappings made"),
       resampler == vtkDeformVolumeFilter::EXACT ? 1 : 0);
     if (resampler == vtkDeformVolumeFilter::EXACT)
@@ -156,7 +159,7 @@ void TestPulledApart(const std::array<int, 3>& dimensions, double voxelsPerEdge)
   }
 }
 
-// A slit: at its end the volume is whole.
+// A split that ends inside the volume: beyond its end there is no gap.
 void TestSlit()
 {
   Block block({ { 48, 40, 12 } }, 4.0);

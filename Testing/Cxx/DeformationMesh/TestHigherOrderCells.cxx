@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Quadratic and Lagrange cells, and concave polyhedra: the tetrahedra that they are split into fill
-// them, agree with those of their neighbours, use all of their nodes, and come closer to the cells'
-// own shape functions at the rate of linear interpolation where the mesh is refined.
+// Quadratic and Lagrange cells, and concave polyhedra. Their tetrahedra must fill the cells,
+// conform with those of neighboring cells, and use all nodes. In finer meshes their displacements
+// must converge to those of the cells' shape functions at the rate of linear interpolation.
 #include "FilterTesting.h"
 #include "MeshCells.h"
 
@@ -46,7 +46,7 @@ double GetVolume(const std::vector<glm::dvec3>& points, const Tetrahedron& nodes
     6.0;
 }
 
-// Vectors of the nodes of a mesh, and behind them those of derived nodes.
+// The vectors of the nodes of a mesh, followed by those of the derived nodes.
 std::vector<glm::dvec3> AddDerived(
   const std::vector<glm::dvec3>& vectors, const deformvolume::MeshCells& cells)
 {
@@ -68,8 +68,9 @@ std::vector<glm::dvec3> GetPoints(vtkUnstructuredGrid* grid, const deformvolume:
   return AddDerived(points, cells);
 }
 
-// A conforming mesh of the cells' parts: each face belongs to one tetrahedron or two, and those of
-// one make up a surface of this area; the volumes of all make up this volume; every node is used.
+// Checks that the tetrahedra of a grid are a conforming mesh. Each face belongs to one or two
+// tetrahedra. The faces of one tetrahedron only have this total area. The tetrahedra have this
+// total volume, and use every node.
 void CheckFilled(const std::string& what, vtkUnstructuredGrid* grid, double volume, double area)
 {
   const deformvolume::MeshCells cells = deformvolume::ReadCells({ grid }, { grid });
@@ -82,12 +83,12 @@ void CheckFilled(const std::string& what, vtkUnstructuredGrid* grid, double volu
   for (const Tetrahedron& tetrahedron : tetrahedra)
   {
     used.insert(tetrahedron.begin(), tetrahedron.end());
-    for (std::size_t left = 0; left < 4; ++left)
+    for (std::size_t opposite = 0; opposite < 4; ++opposite)
     {
       std::array<std::int32_t, 3> face;
       for (std::size_t i = 0, j = 0; i < 4; ++i)
       {
-        if (i != left)
+        if (i != opposite)
         {
           face[j++] = tetrahedron[i];
         }
@@ -111,33 +112,33 @@ void CheckFilled(const std::string& what, vtkUnstructuredGrid* grid, double volu
         glm::length(glm::cross(points[face.first[1]] - origin, points[face.first[2]] - origin));
     }
   }
-  // Sums of some thousand numbers of order one.
+  // The tolerance allows for rounding in sums of some thousand numbers of order one.
   if (std::abs(sum - volume) > 1e-10 * volume || std::abs(surface - area) > 1e-10 * area ||
     most > 2 || least < 1e-6 * volume / static_cast<double>(tetrahedra.size()) ||
     used.size() != points.size())
   {
     ++GetNumberOfFailures();
     std::cerr << what << ": " << tetrahedra.size() << " tetrahedra of volume " << sum
-              << " instead of " << volume << ", the least " << least << ", surface " << surface
+              << " instead of " << volume << ", the smallest " << least << ", surface " << surface
               << " instead of " << area << ", up to " << most << " at a face, " << used.size()
               << " of " << points.size() << " nodes\n";
   }
 }
 
-// The same mesh with its points in another order, since splits go by the ids of points.
+// The same mesh with its points in another order: how cells are split depends on the ids of points.
 Grid Shuffle(vtkUnstructuredGrid* grid, unsigned int seed)
 {
-  std::vector<vtkIdType> place(static_cast<std::size_t>(grid->GetNumberOfPoints()));
-  std::iota(place.begin(), place.end(), 0);
+  std::vector<vtkIdType> newIds(static_cast<std::size_t>(grid->GetNumberOfPoints()));
+  std::iota(newIds.begin(), newIds.end(), 0);
   std::mt19937 random(seed);
-  std::shuffle(place.begin(), place.end(), random);
+  std::shuffle(newIds.begin(), newIds.end(), random);
   Grid shuffled = Grid::New();
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
   points->SetNumberOfPoints(grid->GetNumberOfPoints());
   for (vtkIdType id = 0; id < grid->GetNumberOfPoints(); ++id)
   {
-    points->SetPoint(place[id], grid->GetPoint(id));
+    points->SetPoint(newIds[id], grid->GetPoint(id));
   }
   shuffled->SetPoints(points);
   for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
@@ -146,7 +147,7 @@ Grid Shuffle(vtkUnstructuredGrid* grid, unsigned int seed)
     grid->GetCellPoints(cell, ids);
     for (vtkIdType& id : *ids)
     {
-      id = place[id];
+      id = newIds[id];
     }
     shuffled->InsertNextCell(grid->GetCellType(cell), ids);
   }
@@ -154,8 +155,9 @@ Grid Shuffle(vtkUnstructuredGrid* grid, unsigned int seed)
   return shuffled;
 }
 
-// Adds the nodes to corners that a type of quadratic cell has: in the middle of edges, of faces and
-// of the cell, as VTK orders them. Cells share them by the corners between which they lie.
+// Makes quadratic cells from their corners: adds nodes in the middle of edges, of faces and of the
+// cell, in the order of VTK's cell type. Cells share nodes that are in the middle of the same
+// corners.
 class Elevation
 {
 public:
@@ -238,7 +240,8 @@ private:
   vtkNew<vtkPoints> Points;
 };
 
-// A cube with a pyramid on its top, tetrahedra at the pyramid's sides and a wedge at its own side.
+// A cube with a pyramid on its top, a tetrahedron at a side of the pyramid, and a wedge at a side
+// of the cube.
 struct Types
 {
   int Tetrahedron, Hexahedron, Wedge, Pyramid;
@@ -256,9 +259,9 @@ Grid MakeMixedMesh(const Types& types)
 
 void TestNeighbours()
 {
-  // Each set of types has nodes that fit on the faces between them. The surface: of the cube five
-  // faces less one, of the wedge two triangles and two sides, three sides of the pyramid, and of
-  // the tetrahedron three.
+  // Cells of these types have the same nodes on the faces between them. The surface consists of
+  // four faces of the cube, two triangles and two sides of the wedge, three sides of the pyramid,
+  // and three sides of the tetrahedron.
   const glm::dvec3 a(0, 0, 1), b(1, 0, 1), c(0.5, 0.5, 2), d(0.5, -0.5, 1.5);
   const auto triangle = [](const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& r)
   { return 0.5 * glm::length(glm::cross(q - p, r - p)); };
@@ -274,8 +277,7 @@ void TestNeighbours()
       CheckFilled("a mixed mesh", Shuffle(mesh, seed), 1.0 + 1.0 / 3.0 + 0.5 + tetrahedron, area);
     }
   }
-  // Faces with a node in their middle: between these, and, in the same order of corners, linear
-  // ones.
+  // Cells whose faces have a node in their middle.
   for (const int hexahedron : { VTK_TRIQUADRATIC_HEXAHEDRON, VTK_BIQUADRATIC_QUADRATIC_HEXAHEDRON })
   {
     Elevation mesh({ { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { 1, 0, 1 },
@@ -312,7 +314,7 @@ Grid MakeBlocks(int type, int order, bool complete, int blocks)
   source->SetBlocksDimensions(blocks, blocks, blocks);
   source->SetOutputPrecision(vtkAlgorithm::DOUBLE_PRECISION);
   source->Update();
-  // Cells of higher degrees do not share all of their points, which differ by rounding.
+  // Merge the points of neighboring cells. In cells of higher degrees they differ by rounding.
   Grid grid = Grid::New();
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
@@ -379,7 +381,7 @@ void TestBlocks()
   }
 }
 
-// Lagrange cells with a different degree along each axis, which a cell array states.
+// Lagrange cells with a different degree along each axis. The degrees are a cell array.
 void TestDegrees()
 {
   const struct
@@ -411,11 +413,10 @@ void TestDegrees()
     degrees->SetNumberOfComponents(3);
     degrees->InsertNextTuple3(n[0], n[1], n[2]);
     grid->GetCellData()->SetHigherOrderDegrees(degrees);
-    // The cell itself knows where its nodes are.
-    const double* places = grid->GetCell(0)->GetParametricCoords();
+    const double* coordinates = grid->GetCell(0)->GetParametricCoords();
     for (vtkIdType id = 0; id < count; ++id)
     {
-      points->SetPoint(id, places + 3 * id);
+      points->SetPoint(id, coordinates + 3 * id);
     }
     CheckFilled("a cell of several degrees", grid, expected.Volume, expected.Area);
     degrees->SetNumberOfTuples(0);
@@ -442,8 +443,8 @@ glm::dvec3 Move(const glm::dvec3& p)
     std::sin(2.0 * p.x + p.y), std::cos(2.0 * p.y - p.z), std::sin(1.5 * p.z + p.x));
 }
 
-// The root of the mean square of the differences of displacements at random points of curved cells
-// in a unit cube.
+// The root mean square of the differences between displacements by tetrahedra and by shape
+// functions, at random points of curved cells in a unit cube.
 double FindDifference(const Shape& shape, int blocks)
 {
   const Grid grid = MakeBlocks(shape.Type, shape.Order, shape.Complete, blocks);
@@ -505,7 +506,8 @@ double FindDifference(const Shape& shape, int blocks)
       }
     }
   }
-  VERIFY(found > 80); // the others are between a curved boundary and its triangles, or in no cell
+  // Other samples are between a curved boundary and its triangles, or outside the cell.
+  VERIFY(found > 80);
   return std::sqrt(sum / found);
 }
 
@@ -517,7 +519,8 @@ void TestConvergence()
     const double fine = FindDifference(shape, 4);
     std::cout << shape.Name << ": " << coarse << ", half the size " << fine << ", order "
               << std::log2(coarse / fine) << '\n';
-    // Second order but for what the higher ones add in cells as large as these. Linear cells agree.
+    // The order is less than 2, since terms of higher order matter in cells of this size. Linear
+    // cells are exact.
     const bool linear = shape.Type == VTK_LAGRANGE_TETRAHEDRON && shape.Order == 1;
     if (linear ? fine > 1e-12 : !(std::log2(coarse / fine) > 1.7 && fine < 0.05))
     {
@@ -569,7 +572,7 @@ void TestErrors()
   }
 }
 
-// A volume bent by a cube of twelve tetrahedra: values come from where the exact inverse says.
+// A volume that a cube of twelve tetrahedra bends. The reference is the exact inverse map.
 void TestVolume()
 {
   auto volume = MakeImage({ { 0, 20, 0, 20, 0, 20 } });
@@ -615,7 +618,7 @@ void TestVolume()
   VERIFY(worst[0] < 0.5 * worst[1]);
 }
 
-// Polyhedra with faces that name their points, for points in an order that a seed decides.
+// Polyhedra, which are defined by their faces. A seed decides the order of the points.
 class PolyhedralMesh
 {
 public:
@@ -635,7 +638,7 @@ public:
     this->Mesh->SetPoints(all);
   }
 
-  // Faces may run round the cell in either sense.
+  // The points of a face may be in clockwise or counterclockwise order.
   void Add(const std::vector<std::vector<int>>& faces)
   {
     vtkNew<vtkIdList> stream;
@@ -659,7 +662,7 @@ private:
 
 using Polygon = std::vector<std::array<double, 2>>;
 
-// Prisms over a polygon, one on the other.
+// Prisms over a polygon, one above another.
 Grid MakePrisms(const Polygon& polygon, int layers, unsigned int seed)
 {
   const auto count = static_cast<int>(polygon.size());
@@ -768,7 +771,7 @@ void TestConcavePolyhedra()
     CheckFilled(
       "a cube with spikes", spikes.Mesh, 1.0 + 6.0 * 1.5 / 3.0, 24.0 * 0.5 * std::hypot(1.5, 0.5));
   }
-  // No point sees all of it.
+  // This polyhedron cannot be split around one point: none is visible from all faces.
   const Polygon cup{ { { 0, 0 }, { 3, 0 }, { 3, 3 }, { 2, 3 }, { 2, 1 }, { 1, 1 }, { 1, 3 },
     { 0, 3 } } };
   for (unsigned int seed = 0; seed < 5; ++seed)
@@ -786,7 +789,7 @@ void TestConcavePolyhedra()
         std::string::npos);
     }
   }
-  // The split of convex cells is between their own nodes, from the lowest one.
+  // Convex cells are split without derived nodes: all their tetrahedra have the node of lowest id.
   Polygon round;
   for (int i = 0; i < 7; ++i)
   {
@@ -803,7 +806,7 @@ void TestConcavePolyhedra()
   }
 }
 
-// A volume within a concave cell: all of its voxels, whatever the order of the points.
+// A concave cell inside a volume covers all of its voxels, with any order of points.
 void TestConcaveVolume()
 {
   const auto volume = MakeVolume({ { 0, 12, 0, 12, 0, 12 } });
@@ -822,13 +825,14 @@ void TestConcaveVolume()
       point.z = 0.5 + 8.0 * point.z;
       mesh->GetPoints()->SetPoint(id, &point.x);
     }
-    // What moves its nodes by an affine map moves all of it so.
+    // An affine displacement of the nodes is an affine displacement of the whole cell.
     SetDisplacements(mesh, [](const glm::dvec3& p) { return p + glm::dvec3(1.0, 2.0, p.x / 3.0); });
     Deformed deformed(volume, mesh);
     deformed.Filter->SetResamplerToMeshRasterization();
     deformed.Update();
     VERIFY_EQUAL(deformed.Filter->GetNumberOfCoveredVoxels(), (12 * 4 + 4 * 4) * 8);
-    // Where it is moved at rest so that it is convex, it is split between its nodes.
+    // When its nodes at rest are moved so that it is convex, the cell is split without a derived
+    // node.
     for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
     {
       glm::dvec3 point = GetPoint(mesh, id);
@@ -843,7 +847,7 @@ void TestConcaveVolume()
   }
 }
 
-// The engine's tables are VTK's.
+// The engine's tables of cell types are equal to VTK's.
 void TestTables()
 {
   const std::set<int> linear{ VTK_HEXAHEDRON, VTK_WEDGE, VTK_PYRAMID, VTK_PENTAGONAL_PRISM,
@@ -888,7 +892,7 @@ void TestTables()
   VERIFY_EQUAL(found, 16);
 }
 
-// So is the order of the nodes of lattices.
+// The order of the nodes of Lagrange cells is equal to VTK's.
 void TestLattices()
 {
   int wrong = 0;
@@ -925,8 +929,8 @@ void TestLattices()
       {
         for (int i = 0; i + j + k <= degree; ++i)
         {
-          const vtkIdType place[4] = { i, j, k, degree - i - j - k };
-          check(inTetrahedron, i, j, k, vtkHigherOrderTetra::Index(place, degree));
+          const vtkIdType indices[4] = { i, j, k, degree - i - j - k };
+          check(inTetrahedron, i, j, k, vtkHigherOrderTetra::Index(indices, degree));
         }
       }
     }
@@ -935,7 +939,7 @@ void TestLattices()
       const deformvolume::NodeAt inWedge = deformvolume::NumberWedge(degree, layers);
       const int order[4] = { degree, degree, layers,
         (degree + 1) * (degree + 2) / 2 * (layers + 1) };
-      // VTK takes 21 nodes for another cell.
+      // VTK treats wedges of 21 nodes as quadratic ones with additional nodes.
       for (int k = 0; k <= layers && order[3] != 21; ++k)
       {
         for (int j = 0; j <= degree; ++j)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Meshes as large as their bodies, that of a head by TetGen among them: the deformed volume covers
-// what vtkProbeFilter finds in the moved mesh, and has the values that a mesh round the whole
-// volume gives.
+// Meshes that fit bodies, one of them a mesh of a head by TetGen. The deformed volume must cover
+// the points that vtkProbeFilter finds in the moved mesh, and have the values that a mesh over the
+// whole volume gives.
 #include "FilterTesting.h"
 #include "vtkTetGenMesher.h"
 
@@ -28,10 +28,12 @@ const Extent VolumeExtent{ { -2, 37, 4, 41, 0, 38 } };
 const glm::dvec3 Spacing(0.8, 1.0, 1.25);
 const glm::dvec3 Center(14.3, 22.7, 24.1);
 
-// Rounding moves nodes by up to 1/512 voxel on each axis; in millimetres here, with room to spare.
+// Rounding moves nodes by up to 1/512 voxel on each axis. This bound, in millimeters, is four times
+// as large.
 constexpr double Margin = 1.25 / 128.0;
-// Of noise between 0 and 1, in two volumes: no derivative by an index is over 1, and rounding moves
-// a rest coordinate by sqrt(3) / 512 on each of three axes; spacings differ by up to 1.25 / 0.8.
+// A bound of the differences of two volumes of noise between 0 and 1. Derivatives by an index are
+// at most 1. Rounding moves a rest coordinate by sqrt(3) / 512 on each of three axes. Spacings
+// differ by up to 1.25 / 0.8.
 const double NoiseBound = 2.0 * 3.0 * std::sqrt(3.0) / 512.0 * 1.6;
 
 vtkSmartPointer<vtkImageData> MakeNoise()
@@ -43,7 +45,7 @@ vtkSmartPointer<vtkImageData> MakeNoise()
   return volume;
 }
 
-/// A lattice of a cube from -1 to 1, each node mapped to its place. Points have double precision.
+/// A lattice over a cube from -1 to 1 whose nodes are moved by a map. Points have double precision.
 vtkSmartPointer<vtkUnstructuredGrid> MakeBody(const std::array<int, 3>& nodes, const WorldMap& map)
 {
   vtkNew<vtkLatticeTetrahedraSource> source;
@@ -57,8 +59,8 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeBody(const std::array<int, 3>& nodes, c
   points->SetDataTypeToDouble();
   for (vtkIdType id = 0; id < body->GetNumberOfPoints(); ++id)
   {
-    const glm::dvec3 place = map(GetPoint(body, id));
-    points->InsertNextPoint(&place.x);
+    const glm::dvec3 point = map(GetPoint(body, id));
+    points->InsertNextPoint(&point.x);
   }
   body->SetPoints(points);
   return body;
@@ -138,7 +140,7 @@ std::vector<Body> MakeBodies()
   bodies.push_back({ "wall",
     MakeBody({ { 8, 8, 2 } },
       [](const glm::dvec3& p) { return Center + Turn(p * glm::dvec3(9.0, 9.0, 0.6), 0.3); }) });
-  // The two ends of the lattice meet: there are faces in nearly the same place.
+  // The two ends of the lattice meet: some faces nearly coincide.
   bodies.push_back({ "torus",
     MakeBody({ { 25, 5, 5 } },
       [](const glm::dvec3& p)
@@ -162,7 +164,7 @@ std::vector<Body> MakeBodies()
   return bodies;
 }
 
-/// The mesh where its displacements have brought it; with the places at rest as point data.
+/// The mesh moved by its displacements, with the positions at rest as point data.
 vtkSmartPointer<vtkUnstructuredGrid> MoveMesh(vtkUnstructuredGrid* mesh)
 {
   auto moved = vtkSmartPointer<vtkUnstructuredGrid>::New();
@@ -179,8 +181,8 @@ vtkSmartPointer<vtkUnstructuredGrid> MoveMesh(vtkUnstructuredGrid* mesh)
     glm::dvec3 displacement;
     displacements->GetTuple(id, &displacement.x);
     rest->InsertNextTuple(&point.x);
-    const glm::dvec3 place = point + displacement;
-    points->InsertNextPoint(&place.x);
+    const glm::dvec3 deformed = point + displacement;
+    points->InsertNextPoint(&deformed.x);
   }
   moved->SetPoints(points);
   moved->GetPointData()->AddArray(rest);
@@ -288,7 +290,7 @@ int TestTightMesh(int, char*[])
       false);
     if (GetNumberOfFailures() > before)
     {
-      std::cerr << "that was the " << body.Name << '\n';
+      std::cerr << "with body " << body.Name << '\n';
     }
   }
   return GetExitCode();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the tests of updates of a mesh have in common.
+// A check for tests that update a mesh.
 #ifndef UpdateChecks_h
 #define UpdateChecks_h
 
@@ -11,8 +11,9 @@
 namespace filterTesting
 {
 
-/// Whether a filter that has been edited makes the same as a fresh one of the same inputs. Adds to
-/// parts if only a part of the output was resampled. what: the edit, for the message.
+/// Whether a filter whose inputs were edited has the same output as a new filter with the same
+/// inputs. Increments parts if only a part of the output was resampled. what: the edit, for the
+/// message.
 inline bool CompareWithFresh(Deformed& tested, Deformed& fresh, const std::string& what, int& parts)
 {
   const int failures = GetNumberOfFailures();
