@@ -30,8 +30,8 @@ void BrickEdit::Set(const VertexPositions& positions, std::size_t brick)
 {
   this->Set(positions.GetBricks(), brick);
   positions.Find(this->Vertices, this->Positions.data(), this->HasPositions.data());
-  // A vertex without position gets that of another vertex, so that all lie in the box of the brick.
-  // Elsewhere predicates could overflow.
+  // A vertex without a position gets the position of another vertex, so that all positions lie in
+  // the box of the brick. Predicates could overflow for positions outside this box.
   const auto end =
     this->HasPositions.begin() + static_cast<std::ptrdiff_t>(this->GetNumberOfVertices());
   const auto found = std::find(this->HasPositions.begin(), end, true);
@@ -56,7 +56,8 @@ void BrickEdit::CopyPoints(std::array<glm::dvec3, MaxVertices>& points) const
 BrickEdit::CellTetrahedra BrickEdit::GetTetrahedra(int x, int y, int z) const
 {
   static constexpr int table[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
-  // By the structured index, so that parts of a volume are divided like the whole.
+  // Tetrahedra are mirrored by the structured index of the cell and not by its index in the brick,
+  // so that a part of a volume has the same tetrahedra as the whole volume.
   const int mirror =
     DEFORMVOLUME_MIRROR(this->Vertices[0] + x, this->Vertices[2] + y, this->Vertices[4] + z);
   CellTetrahedra tetrahedra;
@@ -78,7 +79,7 @@ TetrahedronSet BrickEdit::ForEachBrick(std::size_t bricks,
 {
   constexpr std::size_t step = 64;
   // The number of bricks between two calls of the progress function.
-  const std::size_t askedFor =
+  const std::size_t bricksPerCall =
     progress ? 16 * step * static_cast<std::size_t>(GetProcessorShare()) : std::max(bricks, step);
   std::vector<std::pair<std::size_t, TetrahedronSet>> parts; // with the first brick of each part
   std::mutex mutex;
@@ -103,13 +104,13 @@ TetrahedronSet BrickEdit::ForEachBrick(std::size_t bricks,
       parts.emplace_back(begin, std::move(part));
     }
   };
-  for (std::size_t first = 0; first < bricks; first += askedFor)
+  for (std::size_t first = 0; first < bricks; first += bricksPerCall)
   {
     if (progress && !progress(static_cast<double>(first) / static_cast<double>(bricks)))
     {
       throw Aborted();
     }
-    ParallelForParts(std::min(askedFor, bricks - first), step,
+    ParallelForParts(std::min(bricksPerCall, bricks - first), step,
       [&](std::size_t begin, std::size_t end) { editCells(first + begin, first + end); });
   }
   std::sort(

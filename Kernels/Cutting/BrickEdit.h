@@ -18,7 +18,7 @@ namespace deformvolume
 {
 
 /// Work data of an edit for one brick of cells: the positions of its vertices, and the tetrahedra
-/// that are hit.
+/// that the edit hits.
 class BrickEdit
 {
 public:
@@ -26,9 +26,9 @@ public:
   /// The vertices of each tetrahedron of a cell, as indices into the arrays of vertices.
   using CellTetrahedra = std::array<std::array<std::size_t, 4>, 5>;
 
-  /// Sets the brick, without any hits.
+  /// Sets the brick. Positions and hits stay as they were.
   void Set(const CellBricks& bricks, std::size_t brick);
-  /// Sets the brick, with the positions of its vertices.
+  /// Sets the brick and the positions of its vertices.
   void Set(const VertexPositions& positions, std::size_t brick);
 
   const Extent& GetVertices() const { return this->Vertices; }
@@ -47,8 +47,8 @@ public:
       this->HasPositions[vertices[2]] && this->HasPositions[vertices[3]];
   }
 
-  /// Calls function(x, y, z, place) for all cells of the brick: the indices within the brick, and
-  /// the index of the cell in a block of bytes.
+  /// Calls function(x, y, z, index) for all cells of the brick. x, y and z are the indices of the
+  /// cell within the brick; index is that of TetrahedronSet::GetIndex().
   template <typename Function>
   void ForEachCell(Function&& function) const
   {

@@ -59,7 +59,7 @@ void CarveByCentroids(BrickEdit& edit, const CarvingTool& tool)
     {
       for (const std::array<std::size_t, 4>& v : edit.GetTetrahedra(x, y, z))
       {
-        // An exact multiple of 1/1024 voxel.
+        // The centroid has no rounding error: it is a multiple of 1/1024 voxel.
         centroids.push_back(0.25 *
           GetIndex(edit.GetPosition(v[0]) + edit.GetPosition(v[1]) + edit.GetPosition(v[2]) +
             edit.GetPosition(v[3])));
@@ -153,8 +153,8 @@ CarvingTool MakeSweptSphere(const std::vector<glm::dvec3>& centers, const glm::d
       values[i] = least - 1.0;
     }
   };
-  // A first-order distance: the function divided by its gradient. Within half a radius of the path
-  // this is not a distance, but it is not needed there.
+  // A first-order distance: the function divided by the length of its gradient. Within half a
+  // radius of the path this is not a distance, but distances are only needed near the boundary.
   tool.Distance = [function = tool.Function, radii](
                     const glm::dvec3* points, std::size_t count, double* distances)
   {

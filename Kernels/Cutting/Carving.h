@@ -19,9 +19,9 @@
 namespace deformvolume
 {
 
-/// Which tetrahedra a tool carves: those with their centroid, any vertex (Conservative), or all
-/// vertices (Minimal) inside the tool. With Centroid the carved volume is on average as large as
-/// the tool.
+/// Which tetrahedra a tool carves. A tetrahedron is carved if its centroid (Centroid), any of its
+/// vertices (Conservative), or all of its vertices (Minimal) are inside the tool. With Centroid the
+/// carved volume is on average as large as the tool.
 enum class CarvingRule
 {
   Centroid,
@@ -42,17 +42,18 @@ struct CarvingTool
   std::function<void(const glm::dvec3* points, std::size_t count, double* distances)> Distance;
   /// No point outside these bounds is inside the tool. Bricks outside are skipped.
   IndexBounds Bounds;
-  /// Whether the function is linear, like that of a plane. For bricks with all corners on one side
-  /// no other values are then computed.
+  /// Whether the function is linear, like that of a plane. If it is linear, and all corners of the
+  /// box of a brick are on one side, FindCarvedTetrahedra() does not evaluate the function inside
+  /// this box.
   bool IsLinear = false;
 };
 
-/// Returns infinite bounds: the whole volume is tested.
+/// Returns infinite bounds, for tools that may carve anywhere in the volume.
 DEFORMVOLUME_EXPORT IndexBounds GetUnlimitedBounds();
 
 /// Makes a tool from the path of a sphere: the capsules between consecutive centers, or a single
-/// sphere. radii: of the sphere in voxels, on each axis. Throws an Error if there is no center, a
-/// value is not finite, or a radius is not greater than 0.
+/// sphere. radii: the radii of the sphere on each axis, in voxels. Throws an Error if there is no
+/// center, a value is not finite, or a radius is not greater than 0.
 DEFORMVOLUME_EXPORT CarvingTool MakeSweptSphere(
   const std::vector<glm::dvec3>& centers, const glm::dvec3& radii);
 
@@ -61,10 +62,10 @@ DEFORMVOLUME_EXPORT CarvingTool MakeSweptSphere(
 DEFORMVOLUME_EXPORT TetrahedronSet FindCarvedTetrahedra(const VertexPositions& positions,
   const CarvingTool& tool, CarvingRule rule, const EditProgress& progress = nullptr);
 
-/// The same for known values at the vertices, for example from a label map, whatever their
-/// positions. The value at a centroid is the mean of those at the vertices. find: computes the
-/// values of the vertices in a box of structured indices, x varying fastest; called by several
-/// threads.
+/// Finds the carved tetrahedra from known values at the vertices, for example from a label map. The
+/// positions of the vertices do not matter. The value at a centroid is the mean of the values at
+/// the vertices. find: computes the values of the vertices in a box of structured indices, x
+/// varying fastest; called by several threads.
 DEFORMVOLUME_EXPORT TetrahedronSet FindCarvedTetrahedra(const CellBricks& bricks,
   const std::function<void(const Extent& vertices, double* values)>& find, CarvingRule rule,
   const EditProgress& progress = nullptr);
@@ -74,8 +75,9 @@ struct SmoothCarving
 {
   /// The tetrahedra with all vertices inside.
   TetrahedronSet Tetrahedra;
-  /// The boundary distances of the vertices of cells through which the boundary passes. Vertices
-  /// without such a cell are far inside, or not in the set.
+  /// The boundary distances of the vertices of cells through which the boundary passes. Other
+  /// vertices have the distance -far if they are inside; if they are outside, they have the
+  /// distance far or are not in the set.
   DistanceSet Distances;
 };
 
@@ -83,8 +85,8 @@ struct SmoothCarving
 DEFORMVOLUME_EXPORT SmoothCarving FindSmoothCarving(const VertexPositions& positions,
   const CarvingTool& tool, float far, const EditProgress& progress = nullptr);
 
-/// The same for known values at the vertices, as for FindCarvedTetrahedra. distance: of all
-/// vertices next to the boundary.
+/// Carves with a smooth boundary from known values at the vertices (see FindCarvedTetrahedra()).
+/// distance: the unsigned distance of all vertices next to the boundary.
 DEFORMVOLUME_EXPORT SmoothCarving FindSmoothCarving(const CellBricks& bricks,
   const std::function<void(const Extent& vertices, double* values)>& find, double distance,
   float far, const EditProgress& progress = nullptr);

@@ -17,8 +17,8 @@ namespace deformvolume
 namespace
 {
 
-// The limits of the components of vectors, given in short rows of equal length. Each position in a
-// row has its own limits, so that compilers can vectorize the comparisons.
+// The limits of the components of vectors, given in short rows of equal length. Each index in a row
+// has its own limits, so that compilers can vectorize the comparisons.
 class ComponentsOfRows
 {
 public:
@@ -103,8 +103,9 @@ void DeformedFieldVertices::FindRow(
   }
 }
 
-// The limits of all points of the field that affect a vertex: weights are between 0 and 1, and add
-// up to 1. Rounding can miss a point whose weight is almost 0.
+// Returns the limits of the displacements at all points of the field that affect a vertex.
+// Displacements of vertices lie within these limits, because weights are between 0 and 1 and add up
+// to 1. Rounding can miss a point whose weight is almost 0.
 DisplacementLimits DeformedFieldVertices::GetLimits(std::size_t brick) const
 {
   const Extent vertices = this->Bricks.GetVertices(brick);
@@ -190,8 +191,8 @@ std::vector<unsigned char> DeformedFieldVertices::SetField(
   return marked;
 }
 
-// Marks the bricks that have a vertex among some points of the field. A vertex on a common face
-// belongs to both bricks.
+// Marks the bricks of the vertices that are given points of the field. A vertex on the common face
+// of two bricks belongs to both bricks.
 void DeformedFieldVertices::MarkRow(const Extent& points, std::vector<unsigned char>& bricks) const
 {
   Extent cells;

@@ -38,13 +38,13 @@ DeformedMeshVertices::DeformedMeshVertices(const CellBricks& bricks, const Exten
   const Extent& vertices = bricks.GetVertices();
   const auto voxels = static_cast<std::size_t>(GetNumberOfPoints(mapped));
   const auto rows = static_cast<std::size_t>(GetSize(mapped, 1) * GetSize(mapped, 2));
-  bool isHeld = true;
+  bool isContained = true;
   for (std::size_t axis = 0; axis < 3; ++axis)
   {
-    isHeld = isHeld && mapped[2 * axis] <= vertices[2 * axis] &&
+    isContained = isContained && mapped[2 * axis] <= vertices[2 * axis] &&
       vertices[2 * axis + 1] <= mapped[2 * axis + 1];
   }
-  if (!isHeld || (mapping.Links.size() != voxels && mapping.Runs.RowBegins.size() != rows + 1))
+  if (!isContained || (mapping.Links.size() != voxels && mapping.Runs.RowBegins.size() != rows + 1))
   {
     throw Error("The static mapping does not contain the voxels to cut. Build it for an extent "
                 "that contains them.");
@@ -77,7 +77,8 @@ DeformedMeshVertices::DeformedMeshVertices(const CellBricks& bricks, const Exten
 }
 
 // Calls function(i, tetrahedron, weights) for the vertices of a row that lie in a tetrahedron.
-// ends: only for the first and the last vertex of each run, as all others lie between them.
+// ends: if the mapping has runs, only calls the function for the first and the last vertex of each
+// run, because all other vertices of the run lie between these two.
 template <typename Function>
 void DeformedMeshVertices::FollowRow(
   int x, int y, int z, int count, bool ends, Function&& function) const

@@ -118,7 +118,7 @@ SnappedBox DeformedPositions::FindBox(std::size_t brick) const
     SnappedPoint(1));
   box.Add(StepsPerVoxel * SnappedPoint(vertices[1], vertices[3], vertices[5]) + Snap(high) +
     SnappedPoint(1));
-  // Use the exact box before a brick is reported as too large.
+  // Limits overestimate the box. So compute the exact box before a brick is reported as too large.
   return box.GetLength() <= TriangleCrossing::LargestBox ? box : this->FindExactBox(brick);
 }
 

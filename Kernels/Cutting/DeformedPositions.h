@@ -27,17 +27,18 @@ public:
   /// Vertices in a deformation mesh. All arguments must outlive this object and not change. mapped,
   /// mapping: the mapping of all voxels of an extent that contains the vertices, with links or
   /// runs. displacements: three floats per node, in voxels of the volume. Throws an Error if the
-  /// mapping does not fit.
+  /// mapping does not contain the vertices.
   DeformedPositions(const Extent& vertices, const Extent& mapped, const StaticMapping& mapping,
     const std::vector<Tetrahedron>& tetrahedra, const float* displacements);
   /// Vertices in a forward displacement field, with displacements in voxels of the volume.
   DeformedPositions(const Extent& vertices, const DisplacementField& field);
   ~DeformedPositions() override;
 
-  /// Set the displacements, for the same mesh or after tetrahedra got other nodes. Not for a field.
+  /// Set the displacements, for the same mesh or after the connectivity of its tetrahedra changed.
+  /// Only for vertices in a deformation mesh.
   void SetDisplacements(const float* displacements);
   /// Set another displacement field. changed: ranges of points outside of which the field equals
-  /// the last one; null: unknown. Not for a mesh.
+  /// the last one; null: unknown. Only for vertices in a displacement field.
   void SetField(const DisplacementField& field, const PointRanges* changed);
 
   SnappedBox GetBox(std::size_t brick) const override { return this->Boxes[brick]; }

@@ -49,8 +49,8 @@ public:
   virtual DisplacementLimits GetLimits(std::size_t brick) const = 0;
 };
 
-/// Vertices in a deformation mesh. All arguments must outlive this object and not change;
-/// displacements may be set again.
+/// Vertices in a deformation mesh. All arguments must outlive this object and not change, except
+/// for the displacements, which can be set again.
 class DeformedMeshVertices : public DeformedVertices
 {
 public:
@@ -82,8 +82,8 @@ private:
   const StaticMapping& Mapping;
   const std::vector<Tetrahedron>& Tetrahedra;
   const float* Displacements = nullptr;
-  /// The tetrahedra that contain vertices of each brick, sorted by bricks. Brick b has those from
-  /// Begins[b] to Begins[b + 1].
+  /// The tetrahedra that contain vertices of each brick, sorted by bricks. The tetrahedra of brick
+  /// b begin at index Begins[b] and end before index Begins[b + 1].
   std::vector<std::int32_t> OfBricks;
   std::vector<std::size_t> Begins;
   /// For the vertices of each brick, the largest absolute value of the sum of negative weights.
@@ -106,9 +106,9 @@ public:
     int x, int y, int z, int count, glm::dvec3* displacements, bool* hasPosition) const override;
   DisplacementLimits GetLimits(std::size_t brick) const override;
 
-  /// Set another field. changed: ranges of points outside of which it equals the last one. Returns
-  /// the bricks whose limits may have changed, one byte for each brick; empty: all may have
-  /// changed.
+  /// Set another field. changed: ranges of points outside of which the new field equals the last
+  /// one; null: unknown. Returns one byte for each brick, which is not 0 if the limits of the brick
+  /// may have changed. An empty result means that the limits of all bricks may have changed.
   std::vector<unsigned char> SetField(const DisplacementField& field, const PointRanges* changed);
 
 private:

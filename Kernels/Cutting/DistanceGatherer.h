@@ -27,7 +27,7 @@ public:
   {
   }
 
-  /// distances: of the vertices of a part of the volume, x varying fastest.
+  /// distances: one for each vertex of a part of the volume, x varying fastest.
   void Add(const Extent& vertices, const float* distances);
   DistanceSet Take() const;
 

@@ -7,8 +7,8 @@
 namespace deformvolume
 {
 
-/// Called repeatedly while an edit is computed, in the calling thread, with the completed part, 0
-/// to 1. If it returns false, the edit is abandoned and Aborted is thrown.
+/// Called repeatedly while an edit is computed, in the calling thread, with the completed fraction,
+/// 0 to 1. If it returns false, the edit is abandoned and Aborted is thrown.
 using EditProgress = std::function<bool(double)>;
 
 } // namespace deformvolume

@@ -29,8 +29,8 @@ std::int64_t GetLength(const SnappedPoint& a, const SnappedPoint& b)
   return std::max(size.x, std::max(size.y, size.z));
 }
 
-// Depends only on the edge, and not on the order of its ends. Division rounds towards zero, so that
-// differences of equal size are halved alike, whatever their signs.
+// The result does not depend on the order of the two ends. Division rounds towards zero, so that
+// differences with equal absolute values are halved in the same way.
 SnappedPoint GetMiddle(const SnappedPoint& a, const SnappedPoint& b)
 {
   const SnappedPoint& first = ComesFirst(a, b) ? a : b;
@@ -38,7 +38,7 @@ SnappedPoint GetMiddle(const SnappedPoint& a, const SnappedPoint& b)
   return first + (second - first) / std::int64_t{ 2 };
 }
 
-// Returns the number of the longest edge, which is that of its first point.
+// Returns the index of the longest edge. Edge k leads from point k to the next point.
 int FindLongestEdge(const SnappedTriangle& triangle)
 {
   int longest = 0;

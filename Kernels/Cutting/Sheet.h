@@ -20,7 +20,7 @@ namespace deformvolume
 class DEFORMVOLUME_EXPORT Sheet
 {
 public:
-  /// Three point numbers.
+  /// The indices of three points.
   using Triangle = std::array<std::int64_t, 3>;
 
   Sheet() = default;
@@ -38,14 +38,14 @@ public:
   bool IsClosed() const;
 
   /// Returns the sheet with consistent orientation, as far as that is possible, across edges with
-  /// two triangles. One triangle of each connected piece keeps its orientation.
+  /// two triangles. One triangle of each connected component keeps its orientation.
   Sheet Orient() const;
 
   /// Returns the triangles with area, divided until none is longer than LongestTriangle on an axis.
   /// All triangles at an edge divide it at the same point, so that there are no gaps. This point is
-  /// at most half a step off the edge on each axis. It stays in planes through the edge that are
-  /// parallel to an axis plane, or at 45 degrees between two of them. Triangles outside the box
-  /// `within` may be missing.
+  /// at most half a step off the edge on each axis. If the edge lies in a plane that is parallel to
+  /// two axes, or in one on which the sum or the difference of two coordinates is constant, the
+  /// point lies in this plane as well. Triangles outside the box `within` may be missing.
   std::vector<SnappedTriangle> Divide(const SnappedBox& within) const;
 
   /// The largest extent of a divided triangle, in steps: 512 voxels. Predicates are exact in 64

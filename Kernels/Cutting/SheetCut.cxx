@@ -19,13 +19,13 @@ namespace deformvolume
 namespace
 {
 
-// The position of a vertex relative to a triangle, as bits. If all vertices have a bit in common,
-// they are not crossed by the triangle.
+// The position of a vertex relative to a triangle, as bits. If all vertices of a tetrahedron have a
+// bit in common, the triangle does not cross the tetrahedron.
 enum Outcodes : unsigned char
 {
   Above = 1,
   Below = 2,
-  First = 4 // first of three pairs: below and above the box on each axis
+  First = 4 // first of three pairs of bits: below and above the box of the triangle on each axis
 };
 
 // The triangles of a sheet near a volume.
@@ -52,8 +52,9 @@ public:
   {
     return this->Crossings[triangle].MayIntersect(box);
   }
-  // Calls function(index of a cell, tetrahedron, its vertices, which of these are above the plane
-  // of the triangle) for the tetrahedra of a brick that a triangle may cross.
+  // Calls function(index, t, vertices, isAbove) for the tetrahedra of a brick that a triangle may
+  // cross: tetrahedron t of the cell with this index, its four vertices, and whether each of these
+  // is above the plane of the triangle.
   template <typename Function>
   void ForEachNear(std::size_t triangle, const BrickEdit& edit, Function&& function) const;
   const TriangleCrossing& GetCrossing(std::size_t triangle) const
@@ -70,7 +71,8 @@ private:
   BoxTree<SnappedBox> Tree;
 };
 
-// A vertex at the upper end of the box counts as outside, because of the symbolic shift.
+// A vertex at the upper end of the box counts as outside, because vertices are shifted symbolically
+// (TriangleCrossing).
 unsigned char SheetTriangles::GetOutcode(
   const TriangleCrossing& crossing, const SnappedBox& box, const SnappedPoint& p) const
 {
@@ -182,8 +184,8 @@ struct BrickCrossings
   Extent Vertices;                                     // in structured indices
 };
 
-// The least distance: a sheet through a vertex passes beside it, because vertices are shifted
-// symbolically.
+// The least absolute distance, in voxels, of the end of a crossed edge. No distance is 0: a vertex
+// in the plane of a triangle is on one side of it, because vertices are shifted symbolically.
 constexpr double LeastDistance = 1e-6;
 
 void Cross(

@@ -29,7 +29,8 @@ public:
   }
 
   /// Hits the tetrahedra with all vertices inside, and marks the vertices of cells that the
-  /// boundary passes through. inside: for each vertex. Returns false if no vertex is inside.
+  /// boundary passes through. inside: whether each vertex is inside. Returns false if no vertex is
+  /// inside.
   bool Mark(BrickEdit& edit, const std::array<bool, BrickEdit::MaxVertices>& inside)
   {
     this->Count = edit.GetNumberOfVertices();
@@ -61,7 +62,8 @@ public:
     return marked;
   }
 
-  /// Returns all distances. known: the unsigned distances of the marked vertices.
+  /// Returns the signed distances of all vertices. known: the unsigned distances of the marked
+  /// vertices.
   BrickDistances Join(const std::vector<std::size_t>& marked, const double* known) const
   {
     BrickDistances distances;
@@ -71,7 +73,7 @@ public:
     }
     for (std::size_t k = 0; k < marked.size(); ++k)
     {
-      // A vertex inside keeps a negative distance, however small.
+      // The distance of a vertex inside must be negative, even if its unsigned distance is 0.
       const float least = this->Inside[marked[k]] ? std::numeric_limits<float>::min() : 0.0F;
       const double size = std::isnan(known[k]) ? this->Far : std::abs(known[k]);
       const float distance =
@@ -121,7 +123,9 @@ private:
   std::array<bool, BrickEdit::MaxVertices> Marked{};
 };
 
-/// A vertex of several bricks may be near the boundary in only one of these.
+/// Returns the distance with the smaller absolute value. A vertex of several bricks may have a cell
+/// that the boundary passes through in only one of these bricks, and is far from the boundary in
+/// the other bricks.
 float JoinCarvedDistances(float last, float next)
 {
   return std::abs(next) <= std::abs(last) ? next : last;

@@ -13,7 +13,8 @@
 namespace deformvolume
 {
 
-/// Cutting is decided in integers: positions are rounded to 1/256 voxel.
+/// The number of steps per voxel. Cuts are computed with integers: positions are rounded to 1/256
+/// voxel.
 constexpr std::int64_t StepsPerVoxel = 256;
 
 /// A position in steps of 1/256 voxel, in structured indices of the volume.

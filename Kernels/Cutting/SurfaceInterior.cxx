@@ -17,12 +17,13 @@ namespace
 
 // Points are integers in quarters of a step.
 constexpr std::int64_t PointsPerStep = 4;
-// Beyond all places that can be reached, and small enough to be added to.
+// An x coordinate greater than that of any point, and small enough that adding to it does not
+// overflow.
 constexpr std::int64_t Beyond = std::int64_t{ 1 } << 60;
 
 // A triangle for rays along x. Predicates are exact in 64 bits: differences on y and z are at most
 // 2^19, the length of a triangle (Sheet::LongestTriangle) in quarters of a step. The same holds for
-// x, since the box decides for points before and behind the triangle.
+// x: if x of the point is outside the box of the triangle, no product is needed.
 class RayTriangle
 {
 public:
@@ -50,7 +51,8 @@ public:
     {
       return false;
     }
-    // Whether the point is above the plane, on the side of the normal, or below.
+    // 1 if the point is above the plane, which is the side of the normal, -1 if it is below, 0 if
+    // it lies in the plane.
     const int height = point.x < this->Box.Min.x
       ? -GetSign(this->Normal.x)
       : GetSign(Dot(this->Normal, point - this->Triangle[0]));
@@ -58,9 +60,8 @@ public:
   }
 
 private:
-  // Returns the side of an edge on which a point lies, seen along x. The symbolic shift of the
-  // point by e^2 on y and e^3 on z decides if the point lies on the edge, by the direction of the
-  // edge.
+  // Returns the side of an edge on which a point lies, seen along x. If the point lies on the edge,
+  // the direction of its symbolic shift decides: e^2 on y and e^3 on z.
   int GetSide(const SnappedPoint& point, int k) const
   {
     const SnappedPoint& a = this->Triangle[k];
@@ -93,7 +94,7 @@ public:
       snapped[i] = Snap(static_cast<double>(PointsPerStep) * points[i]);
       box.Add(snapped[i]);
     }
-    // If no triangle is near the points, all are on the side of the first one.
+    // If no triangle is near the points, all points are on the same side as the first point.
     SnappedBox wider = box;
     wider.Min -= std::int64_t{ 1 };
     wider.Max += std::int64_t{ 1 };

@@ -14,10 +14,10 @@ namespace deformvolume
 /// the surface an odd number of times. So a body inside another one is a hole, and the orientation
 /// of triangles does not matter.
 ///
-/// Decisions are made in integers, for points that are multiples of 1/1024 voxel, as centroids are;
-/// other points are rounded. As for sheets, points are shifted symbolically by (e, e^2, e^3). So no
-/// point lies on the surface, and a point on the common face of two bodies is in exactly one of
-/// them.
+/// The interior is decided with integers. Points are rounded to multiples of 1/1024 voxel, which
+/// changes neither snapped points nor centroids of tetrahedra. As for sheets, points are shifted
+/// symbolically by (e, e^2, e^3). So no point lies on the surface, and a point on the common face
+/// of two bodies is in exactly one of them.
 ///
 /// within: a box of all points that will be tested. Throws an Error if the surface is not closed.
 DEFORMVOLUME_EXPORT CarvingTool MakeSurfaceInterior(const Sheet& surface, const SnappedBox& within);

@@ -115,7 +115,7 @@ bool TriangleCrossing::HasPartInside(const Tetrahedron& vertices) const
     {
       const int sign = GetSign(Dot(normal, this->Triangle[k] - p));
       sides[k] = sign != 0 ? sign : -movement;
-      // Normals point outwards if the tetrahedron is upright.
+      // Normals point outwards if the orientation is positive.
       isInside[k] = isInside[k] && sides[k] == -orientation;
     }
     for (int k = 0; k < 3; ++k)

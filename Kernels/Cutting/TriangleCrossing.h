@@ -38,7 +38,7 @@ public:
   /// The largest length, in steps, of a box of vertices that are tested together.
   static constexpr std::int64_t LargestBox = std::int64_t{ 1 } << 19;
 
-  /// Whether the triangle may intersect a box. False is exact, true is not.
+  /// Whether the triangle may intersect a box. If false, it does not; if true, it need not.
   bool MayIntersect(const SnappedBox& box) const;
 
   /// Whether a vertex lies above the plane of the triangle.
@@ -70,8 +70,8 @@ public:
 private:
   /// Whether a direction separates the triangle from a box.
   bool AreApart(const SnappedBox& box, const SnappedPoint& direction) const;
-  /// Returns the sign of the volume of the tetrahedron of the mesh edge p q and edge k of the
-  /// triangle.
+  /// Returns the sign of the volume of the tetrahedron spanned by the mesh edge p q and edge k of
+  /// the triangle.
   int GetSide(const SnappedPoint& p, const SnappedPoint& q, int k) const;
   bool HasEdgeThroughTriangle(
     const Tetrahedron& vertices, const std::array<bool, 4>& isAbove) const;
