@@ -15,9 +15,9 @@ namespace deformvolume
 {
 
 /// The boundary distances of the vertices of a volume: the signed distance of each vertex from the
-/// surface of what was carved out. The distance is the minimum of the distance before all edits and
-/// those of the edits. So the order of edits does not matter, and undoing an edit restores
-/// distances bit for bit.
+/// surface of the carved region, negative inside it. The distance is the minimum of the distance
+/// before all edits and the distances of the edits. So the order of edits does not matter, and
+/// undoing an edit restores distances bit for bit.
 class DEFORMVOLUME_EXPORT BoundaryDistances
 {
 public:
@@ -30,13 +30,14 @@ public:
   /// Returns the bricks of the vertices.
   const CellBricks& GetBricks() const { return this->Bricks; }
 
-  /// Set the distances before all edits, one for each vertex; null: there is no boundary. sets: of
-  /// all edits.
+  /// Set the distances before all edits, one for each vertex; null: there is no boundary. sets: the
+  /// distances of all edits.
   void SetBase(const float* base, const std::vector<const DistanceSet*>& sets);
 
   /// Adds an edit.
   void Add(const DistanceSet& edit);
-  /// Computes some bricks again after an edit was removed. sets: of the remaining edits.
+  /// Computes the distances of some bricks again after an edit was removed. sets: the distances of
+  /// the remaining edits.
   void Update(const std::vector<std::size_t>& bricks, const std::vector<const DistanceSet*>& sets);
 
   /// Returns one distance for each vertex, x varying fastest; empty if there was never a boundary.

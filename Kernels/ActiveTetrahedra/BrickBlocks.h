@@ -39,8 +39,8 @@ inline std::vector<std::size_t> TakeMarked(std::vector<bool>& marked)
   return taken;
 }
 
-/// Calls function(local indices, place in a block, index in the volume) for the cells of a brick,
-/// or for its vertices (GetVertexBricks).
+/// Calls function(local indices, index in the block of the brick, index in the volume) for the
+/// cells of a brick, or for the vertices of a brick of vertices (GetVertexBricks()).
 template <typename Function>
 void ForEachCell(const CellBricks& bricks, std::size_t brick, Function&& function)
 {

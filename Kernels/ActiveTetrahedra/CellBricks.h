@@ -12,9 +12,9 @@
 namespace deformvolume
 {
 
-/// The bricks of 8 x 8 x 8 cells by which edits of a mask work. They are small, because most cells
-/// that a sheet does not cross are skipped as whole bricks. Bricks are numbered along x, then y,
-/// then z.
+/// Divides the cells of a volume into bricks of 8 x 8 x 8 cells, the unit of work of edits. Bricks
+/// are small, so that most cells that an edit does not hit are skipped as whole bricks. Bricks are
+/// numbered along x, then y, then z.
 class CellBricks
 {
 public:

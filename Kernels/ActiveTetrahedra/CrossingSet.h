@@ -15,8 +15,8 @@
 namespace deformvolume
 {
 
-/// Where one smooth cut crosses a sampling mesh: the edges that the sheet crosses, and the sides of
-/// their ends.
+/// Where one smooth cut crosses a sampling mesh: the edges that the sheet crosses, and the
+/// distances of their ends from the sheet.
 struct CrossingSet
 {
   /// The crossed edges of the five tetrahedra of a cell.

@@ -12,8 +12,9 @@
 namespace deformvolume
 {
 
-/// The signed distances of vertices from the surface of what one edit carves out, negative inside.
-/// Vertices that are not in the set are far outside.
+/// The signed distances of vertices from the surface of the region that one edit carves out,
+/// negative inside it. A CrossingSet stores distances from a sheet in the same format. Vertices
+/// that are not in the set are far outside the carved region.
 struct DistanceSet
 {
   /// One float for each vertex of a brick of 8 x 8 x 8 vertices (GetVertexBricks), with the index

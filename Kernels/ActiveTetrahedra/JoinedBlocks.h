@@ -13,7 +13,7 @@ namespace deformvolume
 {
 
 /// The blocks of several edits joined, brick by brick. An added edit is joined with the existing
-/// block, without the earlier edits. Joining must not depend on the order of edits.
+/// blocks; the earlier edits are not needed. Joining must not depend on the order of edits.
 template <typename Block>
 class JoinedBlocks
 {
@@ -23,7 +23,7 @@ public:
   /// Joins a value with another one.
   using Join = void (*)(Value& value, const Value& other);
 
-  /// empty: the value that does not change any value when joined with it.
+  /// empty: the neutral value, which changes no value that it is joined with.
   JoinedBlocks(const Value& empty, Join join)
     : JoinValues(join)
   {
@@ -56,7 +56,7 @@ public:
       this->Blocks.erase(brick);
     }
   }
-  /// Joins the blocks of an edit for some bricks.
+  /// Joins the blocks of an edit, but only those of the bricks in `wanted`.
   void AddAgain(const std::vector<std::size_t>& wanted, const std::vector<std::size_t>& bricks,
     const std::vector<Block>& blocks)
   {

@@ -27,9 +27,10 @@ namespace deformvolume
 ///
 /// An edit is stored as the set of tetrahedra that it hits. The mask is the base (the mask before
 /// all edits) without the tetrahedra that edits hit. So the order of edits does not matter, any
-/// edit can be removed, and undoing restores the mask bit for bit. Adding an edit takes time for
-/// the bricks that it hits only, independent of earlier edits. Undoing or removing one takes time
-/// for all edits of these bricks. The upper three bits of the bytes of the base do not change.
+/// edit can be removed, and undoing restores the mask bit for bit. The time to add an edit depends
+/// on the number of bricks that it hits, and not on earlier edits. The time to undo or remove an
+/// edit depends on the number of these bricks and of the edits that hit them. The upper three bits
+/// of the bytes of the base do not change.
 ///
 /// An edit can also have boundary distances, for a smooth boundary through active tetrahedra
 /// (BoundaryDistances), and crossed edges, for a smooth cut that divides tetrahedra
@@ -52,7 +53,7 @@ public:
   /// Set the boundary distances before all edits, one per vertex; null: none.
   void SetBaseDistances(const float* base);
 
-  /// Set the smooth cut before all edits (SmoothCrossings::SetBase); null: none.
+  /// Set the smooth cut before all edits, in the format of SmoothCrossings::SetBase(); null: none.
   void SetBaseCut(const unsigned char* crossed, const float* distances);
 
   /// Adds an edit, which may be empty, and returns its number. Undone edits cannot be redone
@@ -87,7 +88,7 @@ public:
   bool HasSmoothCuts() const;
   /// Returns the divided tetrahedra of all edits and of the cut before all edits.
   SmoothCrossings& GetSmoothCrossings() { return this->Crossings; }
-  /// Returns the same for reading.
+  /// The same, for constant editors.
   const SmoothCrossings& GetSmoothCrossings() const { return this->Crossings; }
 
   /// Whether an edit has boundary distances.
@@ -119,10 +120,10 @@ private:
   std::vector<std::size_t> CompareBase(const unsigned char* base, const PointRanges& changes) const;
   /// Computes the mask of some bricks again.
   void Update(const std::vector<std::size_t>& bricks);
-  /// Update everything that an added or removed edit hits.
+  /// Update the masks, distances and crossings of the bricks that an added or removed edit hits.
   void Apply(const Edit& edit);
   void TakeBack(const Edit& edit);
-  /// Returns the sets of one kind of all edits that are not empty.
+  /// Returns the sets of one kind of all edits, without empty sets.
   template <typename Set>
   std::vector<const Set*> GetSets(Set Edit::*set) const;
   void Update(const std::list<Edit>& edits);

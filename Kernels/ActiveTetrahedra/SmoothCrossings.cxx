@@ -49,7 +49,7 @@ bool IsDivision(unsigned int edges)
   return found;
 }
 
-void AppendVertex(DistanceSet& set, std::size_t brick)
+void AppendBrick(DistanceSet& set, std::size_t brick)
 {
   if (set.IsEmpty() || set.Bricks.back() != brick)
   {
@@ -140,7 +140,7 @@ void SmoothCrossings::SetBase(
       {
         if (isCorner[vertex])
         {
-          AppendVertex(this->Base.Distances, brick);
+          AppendBrick(this->Base.Distances, brick);
           // In the base, a distance of 0 counts as positive.
           const float distance = distances[vertex];
           this->Base.Distances.Blocks.back()[index] =
@@ -222,7 +222,7 @@ std::vector<std::size_t> SmoothCrossings::Remove(
   return this->Update(edit);
 }
 
-// Updates everything that an edit hits.
+// Updates the distances of the vertices and the tetrahedra of the cells that an edit hits.
 std::vector<std::size_t> SmoothCrossings::Update(const CrossingSet& edit)
 {
   if (edit.IsEmpty())

@@ -16,14 +16,14 @@ namespace deformvolume
 {
 
 /// The tetrahedra of a volume that smooth cuts divide, and the signed distances of their vertices
-/// from the sheets (VolumeDeformer::SetCut), for all edits together. Undoing an edit restores them
-/// bit for bit, and the order of edits does not matter.
+/// from the sheets (VolumeDeformer::SetCut), for all edits together. Undoing an edit restores bits
+/// and distances exactly, and the order of edits does not matter.
 ///
 /// A tetrahedron is divided if three conditions hold: each crossed edge is crossed once; the
 /// crossed edges separate its vertices into two sides; and these sides agree with the signs of the
 /// distances. If a sheet only enters the tetrahedron without separating vertices, as at the end of
 /// a cut, the tetrahedron stays whole. If two sheets cross an edge, or a vertex is on different
-/// sides of two sheets, it is switched off.
+/// sides of two sheets, the tetrahedron is switched off.
 class DEFORMVOLUME_EXPORT SmoothCrossings
 {
 public:
@@ -36,13 +36,13 @@ public:
   const CellBricks& GetVertexBricks() const { return this->VertexBricks; }
 
   /// Set the cut before all edits, in the format of GetCrossed() and GetDistances(); null: none.
-  /// sets: of all edits.
+  /// sets: the crossings of all edits.
   void SetBase(const unsigned char* crossed, const float* distances,
     const std::vector<const CrossingSet*>& sets);
 
   ///@{
-  /// Add or remove an edit. sets: of all remaining edits. Both return the bricks of cells that may
-  /// have changed.
+  /// Add or remove an edit. sets: the crossings of all remaining edits. Both return the bricks of
+  /// cells that may have changed.
   std::vector<std::size_t> Add(const CrossingSet& edit);
   std::vector<std::size_t> Remove(
     const CrossingSet& edit, const std::vector<const CrossingSet*>& sets);
@@ -54,9 +54,9 @@ public:
   }
 
   ///@{
-  /// Get, for each cell with x varying fastest, the bits of the divided tetrahedra, and of those
-  /// that are switched off; for each vertex its distance, 0 far from all sheets and for vertices on
-  /// both sides. Empty if there was never a cut.
+  /// Get the bits of the divided tetrahedra and of the switched-off tetrahedra of each cell, and
+  /// the distance of each vertex, x varying fastest. The distance is 0 for vertices far from all
+  /// sheets and for vertices on both sides. All arrays are empty if there was never a cut.
   const std::vector<unsigned char>& GetCrossed() const { return this->Crossed; }
   const std::vector<unsigned char>& GetSwitchedOff() const { return this->SwitchedOff; }
   const std::vector<float>& GetDistances() const { return this->Distances; }
