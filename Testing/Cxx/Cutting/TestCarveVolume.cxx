@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Carving by functions, surfaces, labels and a tool: misuse, numbers, undo and redo, and what a
-// deformation then shows.
+// Carving by functions, surfaces, labels and a tool: misuse, numbers, undo and redo, and the
+// deformed volume.
 #include "EditChecks.h"
 
 #include "vtkCarveVolume.h"
@@ -25,7 +25,7 @@ namespace
 const Extent Box{ { -2, 14, 0, 13, 1, 15 } };
 const double Nan = std::numeric_limits<double>::quiet_NaN();
 
-// The volume of what is switched off, in voxels.
+// The volume of the tetrahedra that are switched off, in voxels.
 double GetVolume(const std::vector<unsigned char>& mask)
 {
   double volume = 0.0;
@@ -93,7 +93,7 @@ void TestMisuse()
   carve.Filter->SetInputData(volume);
   VERIFY(carve.CopyMask() == before);
 
-  // A label that does not occur is a warning, once.
+  // A label that does not occur is reported once, as a warning.
   carve.Filter->SetLabelArrayName("value");
   carve.Filter->SetLabel(-12345);
   carve.Filter->Update();
@@ -103,7 +103,7 @@ void TestMisuse()
   VERIFY(carve.CopyMask() == before);
 }
 
-// Functions of VTK, with and without bounds, in volumes of any geometry.
+// Implicit functions of VTK, with and without known bounds, in volumes of different geometry.
 void TestFunctions()
 {
   for (int geometry = 0; geometry < 3; ++geometry)
@@ -131,17 +131,18 @@ void TestFunctions()
     carve.Filter->SetImplicitFunction(sphere);
     const auto carved = carve.CopyMask();
     const double expected = 4.0 / 3.0 * 3.14159265358979 * radius * radius * radius / voxel;
-    // As Documents/cutting.md has it for spheres of a radius of 20 voxels.
+    // The bound that Documents/cutting.md states for spheres of a radius of 20 voxels.
     VERIFY(geometry > 0 || std::abs(GetVolume(carved) - expected) < 0.0006 * expected);
     VERIFY(std::abs(GetVolume(carved) - expected) < 0.01 * expected);
-    // The same without bounds, and in one thread.
+    // The same sphere as a function without known bounds. Such functions are evaluated in one
+    // thread.
     vtkNew<vtkImplicitBoolean> wrapped;
     wrapped->AddFunction(sphere);
     carve.Filter->SetImplicitFunction(wrapped);
     VERIFY(carve.CopyMask() == carved);
     carve.Filter->SetImplicitFunction(nullptr);
     VERIFY_EQUAL(carve.CountOff(), 0);
-    // A tool in one place.
+    // A tool at one position.
     carve.Filter->SetToolRadius(radius);
     carve.Filter->AddToolPosition(middle[0], middle[1], middle[2]);
     VERIFY(carve.CopyMask() == carved);
@@ -152,13 +153,13 @@ void TestFunctions()
     VERIFY(GetVolume(carve.CopyMask()) < last);
     carve.Filter->SetRuleToConservative();
     VERIFY(GetVolume(carve.CopyMask()) > last);
-    // A change of the function is a change of the filter.
+    // A change of the function causes an update.
     carve.Filter->SetRuleToCentroid();
     sphere->SetRadius(0.5 * radius);
     last = GetVolume(carve.CopyMask());
     VERIFY(std::abs(last - expected / 8) < 0.03 * expected / 8);
   }
-  // Whole cells, and half of a volume.
+  // A box of whole cells, and a plane.
   auto volume = MakeVolume(Box);
   Edited<vtkCarveVolume> carve;
   carve.Filter->SetInputData(volume);
@@ -184,7 +185,7 @@ void TestSurfaces()
   auto volume = MakeVolume(Box);
   Edited<vtkCarveVolume> carve;
   carve.Filter->SetInputData(volume);
-  // A cube through voxels, of polygons whose points are not shared.
+  // A cube whose faces contain voxels, and whose polygons share no points.
   vtkNew<vtkCubeSource> cube;
   cube->SetBounds(0, 4, 2, 5, 3, 10);
   carve.Filter->SetSurfaceConnection(cube->GetOutputPort());
@@ -225,7 +226,8 @@ void TestLabels()
   VERIFY_EQUAL(carve.CountOff(), 5 * 8 * 13 * 14);
   carve.Filter->SetRuleToConservative();
   VERIFY_EQUAL(carve.CountOff(), 5 * 9 * 13 * 14);
-  // In the layer between, of four corner tetrahedra two have three vertices on each side.
+  // In each cell of the layer between the labels, two corner tetrahedra have three vertices with
+  // the label 7.
   carve.Filter->SetRuleToCentroid();
   VERIFY_EQUAL(carve.CountOff(), 5 * 8 * 13 * 14 + 2 * 13 * 14);
   labels->Fill(3);
@@ -234,7 +236,7 @@ void TestLabels()
   VERIFY_EQUAL(carve.CountOff(), 0);
 }
 
-// The tool, in steps and at once, and in a deformed volume.
+// A tool that carves in several updates or in one, and a tool in a deformed volume.
 void TestTool()
 {
   auto volume = MakeVolume(Box);
@@ -246,9 +248,9 @@ void TestTool()
   {
     carve->Filter->SetInputData(volume);
     carve->Filter->SetToolRadius(1.7);
-    for (const double* place : path)
+    for (const double* position : path)
     {
-      carve->Filter->AddToolPosition(place[0], place[1], place[2]);
+      carve->Filter->AddToolPosition(position[0], position[1], position[2]);
       if (carve == &steps)
       {
         masks.push_back(carve->CopyMask());
@@ -263,7 +265,7 @@ void TestTool()
     steps.Filter->Undo();
     VERIFY(steps.CopyMask() == masks[static_cast<std::size_t>(i - 1)]);
   }
-  // Where the deformation has moved it by whole voxels.
+  // The deformation moves the volume by whole voxels, and the tool by as much.
   auto mesh = MakeMesh(volume);
   SetDisplacements(mesh, Shift(2, -1, 3));
   Edited<vtkCarveVolume> deformed;
@@ -273,13 +275,13 @@ void TestTool()
   deformed.Filter->AddToolPosition(3, 1, 6);
   VERIFY(deformed.CopyMask() == masks.front());
 
-  // What is carved out is a hole in the deformed volume.
+  // The carved tetrahedra are a hole in the deformed volume.
   Deformed filter;
   filter.Filter->SetInputConnection(deformed.Filter->GetOutputPort());
   filter.Filter->SetDeformationData(mesh);
   filter.Update();
   const vtkIdType holed = filter.Filter->GetNumberOfCoveredVoxels();
-  deformed.Filter->BlankCellsOn(); // which is not looked at
+  deformed.Filter->BlankCellsOn(); // does not change the deformed volume
   filter.Update();
   VERIFY_EQUAL(filter.Filter->GetNumberOfCoveredVoxels(), holed);
   deformed.Filter->Reset();
@@ -288,8 +290,8 @@ void TestTool()
   VERIFY_EQUAL(filter.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
 }
 
-// Cells that are cut or carved are hidden, beside those that the volume hides, which is not
-// changed.
+// BlankCells hides cells that are cut or carved, in addition to hidden cells of the volume. The
+// ghost array of the volume is not changed.
 void TestBlankCells()
 {
   auto volume = MakeVolume(Box);
@@ -335,7 +337,7 @@ void TestBlankCells()
   VERIFY(counts[1] > 100);
   VERIFY_EQUAL(static_cast<int>(ghosts->GetValue(5)), 32);
 
-  // Without edits nothing more is hidden.
+  // Without edits no other cells than those of the volume are hidden.
   carve.Filter->ClearToolPositions();
   carve.Filter->Reset();
   cut.Filter->Reset();
@@ -346,7 +348,7 @@ void TestBlankCells()
   }
 }
 
-// A small edit that is hidden from views costs what it costs without that: not all is resampled.
+// With BlankCells, too, only a part of the output is resampled after a small edit.
 void TestBlankedUpdates()
 {
   auto volume = MakeVolume({ { 0, 60, 0, 60, 0, 40 } });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cuts in a chain of filters: one cut after another, cuts of a deformed volume, and what a
-// deformation shows of them.
+// Cuts in a chain of filters: one cut after another, cuts of a deformed volume, and the gap of a
+// cut that a deformation opens.
 #include "EditChecks.h"
 
 #include "vtkCutVolume.h"
@@ -34,7 +34,7 @@ void TestChain()
   VERIFY_EQUAL(CountActive(mask), 5 * 512 - 320);
 }
 
-// What is seen is cut, and stays cut.
+// A sheet cuts the deformed volume, and the cut stays in the tissue when the deformation changes.
 void TestDeformed()
 {
   auto volume = MakeVolume(Box);
@@ -86,7 +86,8 @@ void TestDeformed()
     VERIFY(cut.CopyMask() == expected);
     if (kind == 0)
     {
-      // The deformation moves on: the cut stays in the tissue. A new sheet cuts where it is now.
+      // The deformation changes: the cut stays in the tissue. A new sheet cuts the volume in its
+      // new position.
       cut.Filter->SetDisplacementScale(0.0);
       VERIFY(cut.CopyMask() == expected);
       cut.Filter->SetSheetData(MakePlaneX(volume, 3.5));
@@ -95,8 +96,8 @@ void TestDeformed()
   }
 }
 
-// Parts of a volume are cut as the whole is, at rest and in a deformation by links, runs and a
-// field.
+// Cuts of a part of a volume are equal to those of the whole volume: at rest, and deformed by
+// links, by runs and by a field.
 void TestParts()
 {
   vtkNew<vtkRTAnalyticSource> source;
@@ -120,9 +121,9 @@ void TestParts()
     {
       if (kind == 3 && outside == vtkCutVolume::KEEP)
       {
-        continue; // which needs a mesh
+        continue; // KEEP needs a mesh
       }
-      // The first one is the whole.
+      // The first part is the whole volume.
       vtkSmartPointer<vtkImageData> whole;
       for (const Extent& part : parts)
       {
@@ -170,7 +171,7 @@ void TestParts()
   }
 }
 
-// A rank may have a part without cells, or none.
+// The part of a rank may have no cells or no points.
 void TestPartsWithoutCells()
 {
   for (const Extent& part : { Extent{ { 3, 3, 0, 9, 0, 9 } }, Extent{ { 0, -1, 0, -1, 0, -1 } } })
@@ -190,7 +191,7 @@ void TestPartsWithoutCells()
   }
 }
 
-// Two halves that come apart leave an empty gap between them.
+// Two sides of a cut that move apart leave an empty gap.
 void TestGap()
 {
   const Extent extent{ { 0, 16, 0, 8, 0, 8 } };
@@ -224,7 +225,7 @@ void TestGap()
   }
   VERIFY_EQUAL(GetExtent(output), (Extent{ { 0, 22, 0, 8, 0, 8 } }));
   VERIFY_EQUAL(wrong, 0);
-  // Without the cut the voxels between are there.
+  // Without the cut the voxels of the gap are covered.
   cut.Filter->Undo();
   deformed.Update();
   VERIFY_EQUAL(deformed.Filter->GetNumberOfCoveredVoxels(), output->GetNumberOfPoints());

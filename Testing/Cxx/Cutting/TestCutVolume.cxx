@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cuts by sheets and by a tool: misuse, numbers in volumes of any geometry, undo and redo.
+// Cuts by sheets and by a tool: misuse, numbers in volumes of different geometry, undo and redo.
 #include "EditChecks.h"
 
 #include "vtkCutVolume.h"
@@ -29,7 +29,7 @@ void TestMisuse()
   VERIFY_EQUAL(cut.CountOff(), 320);
   const auto before = cut.CopyMask();
 
-  // Each failure leaves the edits as they are.
+  // A failure does not change the edits.
   const double nan = std::numeric_limits<double>::quiet_NaN();
   auto bad = MakePlaneX(volume, 2.5);
   bad->GetPoints()->SetPoint(2, 1.0, nan, 0.0);
@@ -74,7 +74,7 @@ void TestMisuse()
   auto mesh = MakeMesh(volume);
   cut.Filter->SetSheetData(MakePlaneX(volume, 2.5));
   cut.Filter->SetDeformationData(mesh);
-  // Without the ports of another class.
+  // The message must not name ports of vtkDeformVolumeFilter.
   cut.Fails(
     "The deformation mesh has no active Vectors of its points. Choose the displacements with "
     "SetInputArrayToProcess(),");
@@ -88,7 +88,7 @@ void TestMisuse()
   VERIFY_EQUAL(cut.CountOff(), 320);
   VERIFY(cut.CopyMask() == before);
 
-  // Nothing is cut by nothing.
+  // Sheets that do not cut: one outside the volume, one without points, and none.
   cut.Filter->SetSheetData(MakePlaneX(volume, 44.5));
   VERIFY_EQUAL(cut.CountOff(), 0);
   cut.Filter->SetSheetData(vtkSmartPointer<vtkPolyData>::New());
@@ -97,7 +97,7 @@ void TestMisuse()
   VERIFY_EQUAL(cut.CountOff(), 0);
 }
 
-// The same cuts in indices, wherever the volume is.
+// Cuts do not depend on the origin, spacing and direction of the volume.
 void TestGeometry()
 {
   for (int geometry = 0; geometry < 4; ++geometry)
@@ -124,7 +124,8 @@ void TestGeometry()
       MakePlane(volume, corner, glm::dvec3(50, -50, 0), glm::dvec3(0, 0, 70)));
     VERIFY_EQUAL(cut.CountOff(), 480);
   }
-  // Parity is that of structured indices: a part of a volume is cut as the whole is.
+  // The parity of cells depends on structured indices: cuts of a part are equal to those of the
+  // whole.
   auto whole = MakeVolume(Box);
   auto part = MakeVolume({ { 3, 8, 1, 6, 0, 7 } });
   Edited<vtkCutVolume> cutWhole;
@@ -153,7 +154,7 @@ void TestGeometry()
   VERIFY(cutPart.CountOff() > 100);
 }
 
-// Polygons, strips and swept lines are the triangles that they stand for.
+// Polygons, strips and swept lines cut like the triangles that they consist of.
 void TestSheets()
 {
   auto volume = MakeVolume(Box);
@@ -210,7 +211,7 @@ void TestEdits()
     VERIFY_EQUAL(int(start[static_cast<std::size_t>(i)]), i * 37 % 256);
   }
 
-  // A tool that goes on: each update cuts what is new.
+  // Tool positions are added one after another: each update cuts between the last two.
   std::vector<std::vector<unsigned char>> masks{ start };
   cut.Filter->AddToolPosition(1.5, -1, -1, 1.5, -1, 9);
   VERIFY(cut.CopyMask() == start);
@@ -221,7 +222,7 @@ void TestEdits()
     VERIFY(masks.back() != masks[masks.size() - 2]);
   }
   VERIFY_EQUAL(cut.Filter->GetNumberOfToolPositions(), 4);
-  // The same positions again, as an interface sends them, are nothing new.
+  // Clearing and adding the same positions again, as user interfaces do, changes nothing.
   cut.Filter->ClearToolPositions();
   cut.Filter->AddToolPosition(1.5, -1, -1, 1.5, -1, 9);
   for (const double y : { 2.0, 4.0, 9.0 })
@@ -240,7 +241,7 @@ void TestEdits()
     cut.Filter->Redo();
     VERIFY(cut.CopyMask() == masks[i]);
   }
-  // All at once is the same cut.
+  // All positions in one update make the same cut.
   Edited<vtkCutVolume> once;
   once.Filter->SetInputData(volume);
   once.Filter->AddToolPosition(1.5, -1, -1, 1.5, -1, 9);
@@ -250,7 +251,8 @@ void TestEdits()
   }
   VERIFY(once.CopyMask() == masks.back());
 
-  // A sheet beside it, which moves, with and without those before; the last edit is the sheet's.
+  // A sheet after the tool. When it moves, its cut is replaced, or with Accumulate another is
+  // added.
   cut.Filter->SetSheetData(MakePlaneX(volume, 4.5));
   const auto withSheet = cut.CopyMask();
   cut.Filter->SetSheetData(MakePlaneX(volume, 6.5));
@@ -274,7 +276,7 @@ void TestEdits()
   VERIFY(cut.CopyMask() == start);
 }
 
-// What becomes of the arrays of the volume, and of the edits when it changes.
+// The arrays of the output, and edits after changes of the volume.
 void TestOutput()
 {
   auto volume = MakeVolume(Box);
@@ -289,11 +291,11 @@ void TestOutput()
   cut.Filter->Reset();
   cut.Filter->SetSheetData(MakePlaneX(volume, 3.5));
   cut.CopyMask();
-  // Edits stay when the volume's own mask changes.
+  // Edits are kept when the mask of the volume changes.
   base->Fill(31);
   base->Modified();
   VERIFY_EQUAL(cut.CountOff(), 320);
-  // Arrays are shared, and nothing is done where nothing has changed.
+  // Arrays of the volume are shared, and an update without changes does not modify the mask.
   vtkImageData* output = cut.Filter->GetOutput();
   VERIFY(output->GetPointData()->GetArray("value") == volume->GetPointData()->GetArray("value"));
   VERIFY(output->GetFieldData()->GetAbstractArray("kept") != nullptr);
@@ -303,15 +305,15 @@ void TestOutput()
   cut.Update();
   VERIFY(cut.Filter->GetOutput()->GetCellData()->GetArray("ActiveTetrahedra") == array);
   VERIFY(array->GetMTime() == time);
-  // An array that somebody holds is left as it is.
+  // An array that a caller holds is not written again.
   const vtkSmartPointer<vtkDataArray> held = array;
   cut.Filter->SetSheetData(nullptr);
   VERIFY_EQUAL(cut.CountOff(), 0);
   VERIFY(cut.Filter->GetOutput()->GetCellData()->GetArray("ActiveTetrahedra") != held);
   VERIFY(held->GetComponent(3, 0) == 0.0);
-  // The volume's own array is not touched.
+  // The array of the volume is not changed.
   VERIFY_EQUAL(int(base->GetValue(3)), 31);
-  // Another geometry: the tool's positions cut again.
+  // After a change of the geometry the tool positions cut again.
   volume->SetOrigin(1.0, 0.0, 0.0);
   VERIFY(cut.CountOff() > 50);
 }
@@ -332,7 +334,8 @@ int TestCutVolume(int, char*[])
       {
         cut->SetSmoothCut(isSmooth);
         cut->SetSheetData(MakePlaneX(volume, 40.3));
-        // Twice through the same edges: what is cut smoothly is switched off there.
+        // The tool cuts the same edges as the sheet. With SmoothCut, tetrahedra that are cut twice
+        // are switched off.
         cut->AddToolPosition(40.7, -9, -9, 40.7, -9, 99);
         cut->AddToolPosition(40.2, 99, -9, 40.2, 99, 99);
       });

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Random cuts, carvings, drags, undo and redo in one pipeline, step by step against filters that
-// have no history: masks are made from all edits, displacements by a second model whose inputs are
-// copies without logs, and outputs by a filter that resamples the whole volume. At the end all
-// edits are undone, bit by bit.
+// Random cuts, carvings, drags, undo and redo in one pipeline. After each step it is compared with
+// filters without a history: new filters make the masks from all edits, a second ChainMail model
+// computes displacements from copies without logs, and a second deformation filter resamples the
+// whole volume. At the end all edits are undone, and the output must be that without edits, bit by
+// bit.
 //
 // Usage: TestEditSequences [NUMBER OF SEQUENCES] (1) [FIRST SEED] (0), each of 150 steps
 #include "ChainMailTesting.h"
@@ -33,7 +34,7 @@ vtkUnsignedCharArray* GetMask(vtkImageData* volume)
   return vtkUnsignedCharArray::SafeDownCast(volume->GetCellData()->GetArray("ActiveTetrahedra"));
 }
 
-// Arrays that are there only where edits ask for them.
+// Arrays that exist only with smooth boundaries and smooth cuts.
 std::array<vtkDataArray*, 3> GetOthers(vtkImageData* volume)
 {
   return { { volume->GetPointData()->GetArray("BoundaryDistance"),
@@ -57,7 +58,7 @@ vtkSmartPointer<vtkImageData> Copy(vtkImageData* image)
   return copy;
 }
 
-/// The edits of a filter that are made, and those that were undone.
+/// The current edits of a filter, and those that were undone.
 template <typename FilterT>
 class History
 {
@@ -70,7 +71,7 @@ public:
     this->Filter->AccumulateOn();
   }
 
-  /// The filter has to be updated after each of these.
+  /// Update the filter after each call of Do(), Undo() or Redo().
   void Do(const Edit& edit)
   {
     edit(this->Filter);
@@ -81,7 +82,7 @@ public:
   void Redo() { this->Move(this->Undone, this->Done, &FilterT::Redo); }
   bool HasDone() const { return !this->Done.empty(); }
 
-  /// What a new filter makes of the same edits.
+  /// The output of a new filter with the same edits.
   vtkSmartPointer<vtkImageData> MakeAgain(vtkImageData* volume) const
   {
     Edited<FilterT> fresh;
@@ -99,7 +100,7 @@ public:
 private:
   void Move(std::vector<Edit>& from, std::vector<Edit>& to, void (FilterT::*command)())
   {
-    (this->Filter->*command)(); // also where there is nothing to be done
+    (this->Filter->*command)(); // called even if there is no such edit
     if (!from.empty())
     {
       to.push_back(from.back());
@@ -183,22 +184,22 @@ public:
     VERIFY(std::all_of(mask->GetPointer(0), mask->GetPointer(0) + mask->GetNumberOfTuples(),
       [](unsigned char byte) { return byte == 31; }));
     VERIFY(HaveSameOthers(this->Carve->GetOutput(), this->Volume));
-    // The volume as it was.
+    // The output must be that of the volume without edits.
     Deformed rest(this->Volume, this->Twin.Filter->GetOutput());
     SetBounds(rest.Filter);
     VERIFY(AreEqual(this->Output.Filter->GetOutput(), rest.Update()));
     VERIFY_EQUAL(rest.Filter->GetNumberOfCoveredVoxels(), this->Volume->GetNumberOfPoints());
   }
 
-  int Parts = 0;       // outputs that were updated in part
-  int FoldedParts = 0; // and of these, of a volume that was folded over
+  int Parts = 0;       // number of outputs that were updated in part
+  int FoldedParts = 0; // number of these in which the volume overlapped itself
 
 private:
   double GetNumber(double low, double high)
   {
     return std::uniform_real_distribution<double>(low, high)(this->Random);
   }
-  // So that all outputs have one extent, and can be updated in part.
+  // With these bounds all outputs have one extent, so they can be updated in part.
   static void SetBounds(vtkDeformVolumeFilter* filter)
   {
     filter->SetOutputBoundsModeToVolumeBounds();
@@ -245,7 +246,7 @@ private:
     };
   }
 
-  // One or two handles, some of them far enough to fold the volume over.
+  // Sets one or two handles. Some are moved far enough to fold the volume.
   void Drag()
   {
     this->Handles.clear();
@@ -259,7 +260,7 @@ private:
     }
   }
 
-  // Brings all up to date, and compares.
+  // Updates all filters, and compares their outputs.
   void Compare()
   {
     for (Dragged* one : { &this->ChainMail, &this->Twin })
@@ -314,7 +315,7 @@ private:
 int TestEditSequences(int argc, char* argv[])
 {
   constexpr int steps = 150;
-  // The test driver has options of its own.
+  // The test driver passes options, which atoi() reads as 0.
   const int sequences = argc > 1 ? std::max(std::atoi(argv[1]), 1) : 1;
   const int first = argc > 2 ? std::max(std::atoi(argv[2]), 0) : 0;
   int parts = 0;
@@ -335,7 +336,7 @@ int TestEditSequences(int argc, char* argv[])
     parts += sequence.Parts;
     foldedParts += sequence.FoldedParts;
   }
-  std::cout << parts << " outputs in part, " << foldedParts << " of them folded over\n";
+  std::cout << parts << " outputs were updated in part, " << foldedParts << " of them folded\n";
   VERIFY(foldedParts > 10 * sequences);
   return GetExitCode();
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Carving with a boundary between voxels: misuse, volumes and planes in fine outputs, undo and
-// redo, chains, tools, labels and deformed volumes.
+// Carving with SmoothBoundary: misuse, spheres and planes in fine outputs, undo and redo, chains of
+// filters, tools, labels and deformed volumes.
 #include "EditChecks.h"
 
 #include "vtkCarveVolume.h"
@@ -32,7 +32,7 @@ vtkDataArray* GetDistances(vtkImageData* image)
   return image->GetPointData()->GetArray(NAME);
 }
 
-/// What is left of the volume of a filter, at rest, sampled so many times as fine.
+/// A carved volume at rest, sampled with a spacing that is smaller by a factor.
 struct Fine
 {
   Fine(vtkImageData* volume, vtkAlgorithmOutput* carved, int factor)
@@ -47,7 +47,8 @@ struct Fine
       volume->GetSpacing()[1] / factor, volume->GetSpacing()[2] / factor);
   }
 
-  /// The world volume of what is missing. The samples stand for boxes of their spacing.
+  /// The volume of the carved part, in world units: one box of the spacing for each sample that is
+  /// not covered.
   double GetMissing()
   {
     vtkImageData* image = this->Deformed.Update();
@@ -101,11 +102,11 @@ void TestMisuse()
   deformed.Filter->SetInputConnection(carve.Filter->GetOutputPort());
   deformed.Filter->SetDeformationData(mesh);
   deformed.Update();
-  // The array is no array of the output.
+  // The output of the deformation has no such array.
   VERIFY(GetDistances(deformed.Filter->GetOutput()) == nullptr);
 }
 
-// Any numeric type is read, and a NaN is no boundary.
+// BoundaryDistance may have any numeric type. A NaN is not a boundary.
 void TestTypes()
 {
   auto volume = MakeVolume(Box);
@@ -135,7 +136,7 @@ void TestTypes()
   VERIFY(AreEqual(first.Update(), second.Update()));
   VERIFY(first.Filter->GetNumberOfCoveredVoxels() < volume->GetNumberOfPoints());
   VERIFY(first.Filter->GetNumberOfCoveredVoxels() > 0);
-  // A change with a log and one without give the same.
+  // A change with a log and one without a log give the same result.
   floats->SetValue(333, -2.0F);
   floats->Modified();
   doubles->SetValue(333, -2.0);
@@ -143,7 +144,8 @@ void TestTypes()
   VERIFY(AreEqual(first.Update(), second.Update()));
 }
 
-// A sphere of a radius of 20 voxels to 0.1 %, wherever it lies and however the volume is turned.
+// The volume of a sphere of a radius of 20 voxels is right to 0.1 %, for any center and any
+// direction of the volume.
 void TestVolumeOfSphere()
 {
   std::mt19937 random(1);
@@ -180,7 +182,7 @@ void TestVolumeOfSphere()
     std::cout << "sphere by function: " << byFunction / expected - 1.0 << "\n";
     VERIFY(std::abs(byFunction - expected) < 0.001 * expected);
 
-    // The same by the tool, and by a surface, whose facets cut off a little.
+    // The same sphere by a tool, and as a surface, whose facets are slightly inside the sphere.
     carve.Filter->SetImplicitFunction(nullptr);
     carve.Filter->SetToolRadius(radius);
     carve.Filter->AddToolPosition(center[0], center[1], center[2]);
@@ -202,7 +204,7 @@ void TestVolumeOfSphere()
   }
 }
 
-// Of a plane each sample is on the right side.
+// Each sample of the output is covered if it is on the right side of a plane.
 void TestPlane()
 {
   auto volume = MakeVolume(Box);
@@ -229,7 +231,7 @@ void TestPlane()
   plane->SetOrigin(5.1, 4.7, 6.2);
   plane->SetNormal(0.48, 0.6, 0.64);
   check(glm::dvec3(5.1, 4.7, 6.2), glm::dvec3(0.48, 0.6, 0.64));
-  // Wrapped, it has no bounds and is not known to be linear.
+  // A plane inside another function, for which the filter knows neither bounds nor linearity.
   vtkNew<vtkImplicitBoolean> wrapped;
   wrapped->AddFunction(plane);
   carve.Filter->SetImplicitFunction(wrapped);
@@ -257,7 +259,7 @@ void TestLabels()
   VERIFY_EQUAL(wrong, 0);
 }
 
-// Chains of filters take the least distance.
+// In a chain of filters each voxel has the least distance.
 void TestChains()
 {
   auto volume = MakeVolume(Box);
@@ -271,7 +273,7 @@ void TestChains()
   Edited<vtkCarveVolume> carve;
   carve.Filter->SetInputData(volume);
   carve.Filter->SmoothBoundaryOn();
-  // Two filters one after the other, against one with both bodies.
+  // Two filters one after another, compared with one filter that carves both bodies.
   vtkNew<vtkSphere> first;
   first->SetCenter(4, 5, 6);
   first->SetRadius(3.4);
@@ -293,7 +295,7 @@ void TestChains()
   both.Update();
   VERIFY(AreEqual(copy(next.Filter), both.Filter->GetOutput()));
   const auto joined = copy(next.Filter);
-  // A cut between the two leaves the distances alone.
+  // A cut between the two filters does not change the distances.
   Edited<vtkCutVolume> cut;
   cut.Filter->SetInputConnection(carve.Filter->GetOutputPort());
   cut.Filter->SetSheetData(MakePlaneX(volume, 12.5));
@@ -301,7 +303,7 @@ void TestChains()
   next.Update();
   VERIFY(GetDistances(cut.Filter->GetOutput()) == GetDistances(carve.Filter->GetOutput()));
   VERIFY(HaveEqualBits(GetDistances(next.Filter->GetOutput()), GetDistances(joined)));
-  // When the body before moves, the one behind stays.
+  // A change of the first body does not change the second one.
   first->SetRadius(2.0);
   next.Update();
   first->SetRadius(3.4);
@@ -309,7 +311,7 @@ void TestChains()
   VERIFY(HaveEqualBits(GetDistances(next.Filter->GetOutput()), GetDistances(joined)));
 }
 
-// Coarse, too, the volume has a hole.
+// With SamplingFactor, too, the volume has a hole.
 void TestSamplingFactor()
 {
   auto volume = MakeVolume({ { 0, 60, 0, 50, 0, 40 } });

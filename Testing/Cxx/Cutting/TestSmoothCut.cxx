@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cuts that divide what they cross: misuse, cuts that stay closed, gaps between two moved planes,
-// split meshes, undo and redo, chains, tools, deformed volumes, coarse volumes and ChainMail.
+// Cuts that divide tetrahedra: misuse, cuts that stay closed, gaps between two moved planes, split
+// meshes, undo and redo, chains of filters, tools, deformed volumes, coarse volumes and ChainMail.
 #include "ChainMailTesting.h"
 #include "EditChecks.h"
 
@@ -26,7 +26,7 @@ const char* const CELLS = "CutTetrahedra";
 const char* const POINTS = "CutDistance";
 const Extent Box{ { -2, 13, 0, 10, 1, 9 } };
 
-// The arrays of a filter's output, or null.
+// The arrays of the cut in an output, or null.
 vtkUnsignedCharArray* GetCells(vtkImageData* image)
 {
   return vtkUnsignedCharArray::SafeDownCast(image->GetCellData()->GetArray(CELLS));
@@ -60,22 +60,22 @@ struct Arrays
   }
 };
 
-void SetUp(Edited<vtkCutVolume>& cut, vtkImageData* volume, double place)
+void SetUp(Edited<vtkCutVolume>& cut, vtkImageData* volume, double planeX)
 {
   cut.Filter->SetInputData(volume);
-  cut.Filter->SetSheetData(MakePlaneX(volume, place));
+  cut.Filter->SetSheetData(MakePlaneX(volume, planeX));
   cut.Filter->SmoothCutOn();
 }
 
-// A displacement field over the voxels that moves what is on the two sides of a plane of x apart,
-// in the world.
+// A displacement field over the voxels that moves the two sides of the plane x = planeX by low and
+// high.
 vtkSmartPointer<vtkImageData> MakeField(
-  vtkImageData* volume, double place, const glm::dvec3& low, const glm::dvec3& high)
+  vtkImageData* volume, double planeX, const glm::dvec3& low, const glm::dvec3& high)
 {
   auto field = vtkSmartPointer<vtkImageData>::New();
   field->CopyStructure(volume);
   SetDisplacements(
-    field, [=](const glm::dvec3& point) { return point + (point.x < place ? low : high); });
+    field, [=](const glm::dvec3& point) { return point + (point.x < planeX ? low : high); });
   return field;
 }
 
@@ -140,7 +140,7 @@ void TestMisuse()
   VERIFY(!GetCells(deformed.Filter->GetOutput()) && !GetDistances(deformed.Filter->GetOutput()));
 }
 
-// What is not opened stays as it is.
+// A cut that is not opened does not change the output.
 void TestClosed()
 {
   auto volume = MakeVolume(Box);
@@ -165,21 +165,22 @@ void TestClosed()
     for (vtkIdType id = 0; id < expected->GetNumberOfPoints(); ++id)
     {
       VERIFY_EQUAL(closed.IsCovered(id), whole.IsCovered(id));
-      // Shorts are the nearest to what is interpolated in single or in double precision.
+      // Values are interpolated in single or in double precision, then rounded to shorts.
       VERIFY(std::abs(closed.GetValues()->GetComponent(id, 0) -
                whole.GetValues()->GetComponent(id, 0)) <= (amount == 0.0 ? 0.0 : 1.0));
     }
   }
 }
 
-// The gap between the two moved planes is empty, and all else is there, at four samples a voxel.
+// The gap between the two moved planes is empty, and all other samples of the volume are covered,
+// at four samples a voxel.
 void TestGap()
 {
   auto volume = MakeVolume(Box);
-  const double place = 4.3;
+  const double planeX = 4.3;
   Edited<vtkCutVolume> cut;
-  SetUp(cut, volume, place);
-  auto field = MakeField(volume, place, { -1.25, 0, 0.5 }, { 2.0, -0.75, 0 });
+  SetUp(cut, volume, planeX);
+  auto field = MakeField(volume, planeX, { -1.25, 0, 0.5 }, { 2.0, -0.75, 0 });
   filterTesting::Deformed open;
   open.Filter->SetInputConnection(cut.Filter->GetOutputPort());
   open.Filter->SetDeformationData(field);
@@ -194,16 +195,16 @@ void TestGap()
       return p.x >= Box[0] && p.x <= Box[1] && p.y >= Box[2] && p.y <= Box[3] && p.z >= Box[4] &&
         p.z <= Box[5];
     };
-    // No sample is nearer to a plane than 1/20, which is more than the rounding of the sheet and of
-    // positions.
+    // All samples are at least 1/20 from the planes, which is more than the rounding of the sheet
+    // and of positions.
     const glm::dvec3 point = GetPoint(output, id);
     const glm::dvec3 low = point - glm::dvec3(-1.25, 0, 0.5);
     const glm::dvec3 high = point - glm::dvec3(2.0, -0.75, 0);
-    const bool expected = (isIn(low) && low.x < place) || (isIn(high) && high.x > place);
+    const bool expected = (isIn(low) && low.x < planeX) || (isIn(high) && high.x > planeX);
     VERIFY_EQUAL(open.IsCovered(id), expected);
     covered += expected ? 1 : 0;
   }
-  // Without SmoothCut a layer of cells is lost.
+  // Without SmoothCut a layer of cells is missing.
   cut.Filter->SmoothCutOff();
   open.Update();
   VERIFY_EQUAL(cut.CountOff(), 5 * 10 * 8);
@@ -211,17 +212,17 @@ void TestGap()
   VERIFY(open.Filter->GetNumberOfCoveredVoxels() < 0.96 * static_cast<double>(covered));
 }
 
-// On both sides labels and values are those of the volume at rest, sample by sample; a boundary
-// that is carved out smoothly ends where it did.
+// On both sides of the gap, labels and values are those of the volume at rest. A smooth boundary of
+// a carved body moves with each side.
 void TestLabelsAndBoundary()
 {
   auto volume = MakeVolume(Box);
-  AddLabels(volume); // another one from x = 6 on
-  const double place = 5.5;
+  AddLabels(volume); // the label changes between x = 5 and x = 6
+  const double planeX = 5.5;
   Edited<vtkCutVolume> cut;
-  SetUp(cut, volume, place);
+  SetUp(cut, volume, planeX);
   vtkNew<vtkSphere> sphere;
-  sphere->SetCenter(place, 5.0, 5.0);
+  sphere->SetCenter(planeX, 5.0, 5.0);
   const double radius = 2.3;
   sphere->SetRadius(radius);
   Edited<vtkCarveVolume> carve;
@@ -231,8 +232,8 @@ void TestLabelsAndBoundary()
   const glm::dvec3 apart(2.0, 0, 0);
   filterTesting::Deformed open;
   open.Filter->SetInputConnection(carve.Filter->GetOutputPort());
-  open.Filter->SetDeformationData(MakeField(volume, place, -apart, apart));
-  filterTesting::Deformed still(volume, MakeField(volume, place, glm::dvec3(0), glm::dvec3(0)));
+  open.Filter->SetDeformationData(MakeField(volume, planeX, -apart, apart));
+  filterTesting::Deformed still(volume, MakeField(volume, planeX, glm::dvec3(0), glm::dvec3(0)));
   for (filterTesting::Deformed* one : { &open, &still })
   {
     one->Filter->AddCategoricalArray("label");
@@ -247,14 +248,14 @@ void TestLabelsAndBoundary()
   for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
   {
     const glm::dvec3 point = GetPoint(output, id);
-    const bool isLow = point.x < place;
+    const bool isLow = point.x < planeX;
     glm::dvec3 rest = isLow ? point + apart : point - apart;
-    // Of a function's distance in a cell what is curved is missing: less than 1/4 voxel.
-    const double out = glm::length(rest - glm::dvec3(place, 5.0, 5.0)) - radius;
-    const bool isInSide = isLow ? rest.x < place : rest.x > place;
-    if (rest.x == place || std::abs(out) < 0.25 || !isInSide)
+    // Distances are linear in each cell, so the sphere is right to less than 1/4 voxel.
+    const double out = glm::length(rest - glm::dvec3(planeX, 5.0, 5.0)) - radius;
+    const bool isInSide = isLow ? rest.x < planeX : rest.x > planeX;
+    if (rest.x == planeX || std::abs(out) < 0.25 || !isInSide)
     {
-      VERIFY(isInSide || !open.IsCovered(id) || rest.x == place);
+      VERIFY(isInSide || !open.IsCovered(id) || rest.x == planeX);
       continue;
     }
     const bool isInVolume = rest.x >= Box[0] && rest.x <= Box[1];
@@ -263,7 +264,7 @@ void TestLabelsAndBoundary()
     {
       const vtkIdType there = reference->FindPoint(&rest.x);
       VERIFY_EQUAL(labels->GetComponent(id, 0), expected->GetComponent(there, 0));
-      // The nearest shorts to what is interpolated in single or in double precision.
+      // Values are interpolated in single or in double precision, then rounded to shorts.
       VERIFY(std::abs(open.GetValues()->GetComponent(id, 0) -
                still.GetValues()->GetComponent(there, 0)) <= 1.0);
       ++seen[isLow ? 0 : 1];
@@ -272,11 +273,11 @@ void TestLabelsAndBoundary()
   VERIFY(seen[0] > 1000 && seen[1] > 1000);
 }
 
-// Two lattices side by side that meet at the cut, with nodes of their own there.
+// Two lattices that meet at the cut and share no nodes.
 void TestSplitMesh()
 {
   auto volume = MakeVolume(Box);
-  const double place = 4.25;
+  const double planeX = 4.25;
   vtkNew<vtkUnstructuredGrid> mesh;
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
@@ -286,7 +287,7 @@ void TestSplitMesh()
     vtkNew<vtkLatticeTetrahedraSource> source;
     source->SetNumberOfNodes(3, 3, 3);
     source->EqualSpacingOff();
-    source->SetBounds(side ? place : -3.0, side ? 14.0 : place, -1, 11, 0, 10);
+    source->SetBounds(side ? planeX : -3.0, side ? 14.0 : planeX, -1, 11, 0, 10);
     source->Update();
     vtkUnstructuredGrid* half = source->GetOutput();
     const vtkIdType first = points->GetNumberOfPoints();
@@ -315,7 +316,7 @@ void TestSplitMesh()
   }
   mesh->GetPointData()->SetVectors(vectors);
   Edited<vtkCutVolume> cut;
-  SetUp(cut, volume, place);
+  SetUp(cut, volume, planeX);
   for (const bool open : { false, true })
   {
     filterTesting::Deformed deformed;
@@ -327,7 +328,7 @@ void TestSplitMesh()
     {
       const glm::dvec3 p = GetPoint(output, id);
       const bool expected =
-        (p.x >= Box[0] - 3 && p.x < place - 3) || (p.x > place + 3 && p.x <= Box[1] + 3);
+        (p.x >= Box[0] - 3 && p.x < planeX - 3) || (p.x > planeX + 3 && p.x <= Box[1] + 3);
       VERIFY_EQUAL(deformed.IsCovered(id),
         expected && p.y >= Box[2] && p.y <= Box[3] && p.z >= Box[4] && p.z <= Box[5]);
     }
@@ -343,15 +344,15 @@ void TestEdits()
   cut.Filter->AccumulateOn();
   std::vector<Arrays> states{ Arrays(cut) };
   VERIFY(states.front().Cells.empty());
-  for (const double place : { 4.3, 8.6, 8.75 })
+  for (const double planeX : { 4.3, 8.6, 8.75 })
   {
-    cut.Filter->SetSheetData(MakePlaneX(volume, place));
+    cut.Filter->SetSheetData(MakePlaneX(volume, planeX));
     states.emplace_back(cut);
   }
   VERIFY_EQUAL(CountActive(states[1].Cells), 400);
   VERIFY_EQUAL(CountActive(states[2].Cells), 800);
   VERIFY_EQUAL(cut.Filter->GetNumberOfDividedTetrahedra(), 400);
-  // Two sheets between the same voxels: what both cross is off.
+  // Two sheets between the same voxels: tetrahedra that both cross are switched off.
   VERIFY_EQUAL(CountActive(states[3].Cells), 400);
   VERIFY_EQUAL(cut.CountOff(), 400);
   for (std::size_t i = states.size() - 1; i-- > 0;)
@@ -368,14 +369,14 @@ void TestEdits()
   VERIFY(Arrays(cut) == states.front());
   VERIFY_EQUAL(cut.Filter->GetNumberOfDividedTetrahedra(), 0);
 
-  // A chain of two does the same, and both can be undone.
+  // A chain of two filters gives the same result, and both cuts can be undone.
   Edited<vtkCutVolume> first;
   Edited<vtkCutVolume> second;
   SetUp(first, volume, 4.3);
   SetUp(second, volume, 8.6);
   second.Filter->SetInputConnection(first.Filter->GetOutputPort());
   VERIFY(Arrays(second) == states[2]);
-  VERIFY_EQUAL(second.Filter->GetNumberOfDividedTetrahedra(), 400); // and not those of the first
+  VERIFY_EQUAL(second.Filter->GetNumberOfDividedTetrahedra(), 400); // without those of the first
   first.Filter->Undo();
   second.Filter->Undo();
   VERIFY(Arrays(second).Cells.empty());
@@ -383,13 +384,13 @@ void TestEdits()
   VERIFY(Arrays(second).Cells == states[1].Cells);
   second.Filter->Redo();
   VERIFY(Arrays(second) == states[2]);
-  // A filter that cuts as before hands the smooth cut on.
+  // A filter with SmoothCut off passes the smooth cut of the first filter on.
   second.Filter->SmoothCutOff();
   const Arrays mixed(second);
   VERIFY(mixed.Cells == states[1].Cells);
   VERIFY_EQUAL(second.CountOff(), 400);
 
-  // Outputs follow edits, whatever was made before.
+  // A deformation filter follows the edits.
   filterTesting::Deformed deformed;
   deformed.Filter->SetInputConnection(first.Filter->GetOutputPort());
   deformed.Filter->SetDeformationData(MakeField(volume, 4.3, { -2, 0, 0 }, { 2, 0, 0 }));
@@ -403,7 +404,7 @@ void TestEdits()
   VERIFY_EQUAL(deformed.Filter->GetNumberOfCoveredVoxels(), open);
 }
 
-// A tool that goes on from update to update divides as one sheet does.
+// A tool that moves from update to update divides the same tetrahedra as one sheet.
 void TestTool()
 {
   auto volume = MakeVolume(Box);
@@ -425,7 +426,7 @@ void TestTool()
   {
     VERIFY(std::abs(std::abs(found.Points[i]) - std::abs(expected.Points[i])) < 1e-5F);
   }
-  // Half the way: the cut ends inside, and nothing is off.
+  // Without the last two positions the cut ends inside the volume. No tetrahedron is switched off.
   tool.Filter->Undo();
   tool.Filter->Undo();
   const Arrays half(tool);
@@ -433,7 +434,7 @@ void TestTool()
   VERIFY_EQUAL(tool.CountOff(), 0);
 }
 
-// What is cut is what is seen: the volume moved by a voxel and a half.
+// A sheet cuts the deformed volume, which is moved by 1.5 voxels.
 void TestDeformedVolume()
 {
   auto volume = MakeVolume(Box);
@@ -458,14 +459,14 @@ void TestOthers()
   hard.Filter->SmoothCutOff();
   smooth.Update();
   hard.Update();
-  // Links see the same cut.
+  // ChainMail's links are cut by a smooth cut as by any other.
   const std::vector<Handle> handles{ { { 8, 5, 5 }, { 11, 5, 5 } } };
   Dragged bySmooth(smooth.Filter->GetOutput());
   Dragged byHard(hard.Filter->GetOutput());
   vtkNew<vtkFloatArray> expected;
   expected->DeepCopy(byHard.Drag(handles));
   VERIFY(HaveEqualBits(bySmooth.Drag(handles), expected));
-  // Coarse volumes leave out the cells that the cut passes through.
+  // In coarse volumes the cells that a smooth cut crosses are switched off.
   auto mesh = MakeMesh(volume);
   SetDisplacements(mesh, Shift(0.25, 0, 0));
   vtkIdType covered[2];
