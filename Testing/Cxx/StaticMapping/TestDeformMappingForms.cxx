@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The filter with a mapping by runs, which it takes where tetrahedra are large, against one by
-// links, which extrapolation always has: in a mesh round the whole volume there is nothing to
-// extrapolate.
+// Compares a static mapping by runs, which the filter chooses if tetrahedra are large, with one by
+// links, which it uses with extrapolation. The mesh contains the whole volume, so no voxel is
+// extrapolated.
 #include "FilterTesting.h"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ struct Forms
     this->Links.Filter->SetOutsideModeToExtrapolate();
     this->Runs.Update();
     this->Links.Update();
-    // Links alone are 16 bytes a voxel; runs here are fewer than 3.
+    // Links need 16 bytes a voxel, and these runs less than 3.
     const double saved =
       GetBytesPerVoxel(this->Links, volume) - GetBytesPerVoxel(this->Runs, volume);
     std::cout << "runs save " << saved << " bytes a voxel\n";
@@ -86,15 +86,15 @@ void TestSmoothDeformation()
           forms.Links.GetValues()->GetComponent(id, 0)));
     }
   }
-  // Positions differ by 1/256 voxel at most, where a rounding falls the other way. The values
-  // change by 1.75 a voxel at most, and the bend stretches no direction by more than 1.5.
-  std::cout << "largest difference " << largest << ", covered by one alone: " << alone << "\n";
+  // Positions differ by at most 1/256 voxel, if they are rounded differently. Values change by at
+  // most 1.75 a voxel, and the deformation stretches by at most 1.5.
+  std::cout << "largest difference " << largest << ", covered by one form only: " << alone << "\n";
   VERIFY(largest <= 2.0 * 1.75 * 1.5 / 256.0);
-  // A voxel in some hundred thousand lies so near the border of the deformed volume.
+  // Only voxels near the surface of the deformed volume may be covered by one form only.
   VERIFY(alone <= output->GetNumberOfPoints() / 10000);
 }
 
-// The mesh moves, is exchanged for a finer one, and comes back.
+// A coarse mesh, a finer mesh, the coarse mesh again, and other displacements of it.
 void TestFormsTakeTurns()
 {
   auto volume = MakeVolume(Voxels);
@@ -122,13 +122,13 @@ void TestFormsTakeTurns()
   VERIFY_EQUAL(GetReported(deformed.Filter, "Static mappings made"), 3);
 }
 
-// What runs save counts when memory is checked before anything is allocated.
+// The check of the memory limit, before anything is allocated, knows the size of runs.
 void TestMemoryLimit()
 {
   auto volume = MakeVolume(Voxels);
   auto coarse = MakeMesh(volume, 4);
   SetDisplacements(coarse, Shift(1.0, 0.0, 0.0));
-  // Halfway between what the two take: how much that is depends on the device.
+  // The limit is between the needs of the two forms, which depend on the device.
   Forms forms(volume, coarse);
   const auto limit =
     (forms.Runs.Filter->GetDeviceMemory() + forms.Links.Filter->GetDeviceMemory()) / 2;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The bounds of the deformed volume against a list of all possible corners, or of all voxels.
+// Compares the bounds of the deformed volume with those of all of its possible corners, or of all
+// voxels.
 #include "DeformedBounds.h"
 #include "MeshBounds.h"
 #include "StaticMapping.h"
@@ -73,8 +74,8 @@ bool Contains(const IndexBounds& outer, const IndexBounds& inner, double toleran
   return contains;
 }
 
-// The corners of a tetrahedron within a box are found among the points where three of the ten
-// planes meet.
+// Adds the deformed corners of the part of a tetrahedron that is inside the volume. Each corner is
+// an intersection of three of the ten planes.
 void AddCorners(const VoxelGrid& voxelGrid, const Mesh& mesh, const Tetrahedron& nodes,
   const std::vector<float>& displacements, IndexBounds& bounds)
 {
@@ -90,7 +91,7 @@ void AddCorners(const VoxelGrid& voxelGrid, const Mesh& mesh, const Tetrahedron&
   {
     return;
   }
-  // Planes as (normal, offset): inside is normal . x >= offset.
+  // Planes as (normal, offset). A point x is inside if normal . x >= offset.
   std::vector<glm::dvec4> planes;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -163,7 +164,7 @@ void TestMesh()
     }
   }
 
-  // Undeformed: where mesh and volume overlap, to the last bit.
+  // Without displacements the bounds are those of the intersection of mesh and volume.
   const VoxelGrid plain = MakeVolume(voxelGrid.VertexExtent, glm::dvec3(1.0));
   const Mesh mesh =
     MakeLattice({ 4, 4, 4 }, glm::dvec3(-1.0, 0.0, -30.0), glm::dvec3(20.0), 0.3, 0.0, random);
@@ -173,7 +174,8 @@ void TestMesh()
   CHECK(glm::length(bounds.Min - glm::dvec3(-1.0, 2.0, -20.0)) < 1e-12);
   CHECK(glm::length(bounds.Max - glm::dvec3(9.0, 14.0, -9.0)) < 1e-12);
 
-  // Nothing there, nothing with volume, nothing finite.
+  // No mesh, a mesh outside the volume, flat tetrahedra only, and displacements that are not
+  // finite.
   CHECK(ComputeDeformedBounds(plain, std::vector<glm::dvec3>(), {}, nullptr).IsEmpty());
   std::vector<glm::dvec3> apart = mesh.Points;
   for (glm::dvec3& point : apart)
@@ -198,14 +200,15 @@ void TestMesh()
   CHECK(ComputeDeformedBounds(plain, mesh.Points, mesh.Tetrahedra, displacements.data()).IsEmpty());
 }
 
-// Edits of some nodes, each logged as ranges of nodes, against bounds of all nodes.
+// Changes of some displacements, logged as ranges of nodes. The reference is the bounds of all
+// nodes.
 void TestChanges()
 {
   std::mt19937 random(23);
   const VoxelGrid voxelGrid = MakeVolume({ { -4, 9, 2, 14, -20, -9 } }, glm::dvec3(1.0, 0.7, 2.5));
   const glm::dvec3 min(-4.0, 2.0, -20.0);
   const glm::dvec3 max(9.0, 14.0, -9.0);
-  // Of several blocks of nodes, the second one with many tetrahedra that are clipped.
+  // The meshes have several blocks of nodes. The volume clips many tetrahedra of the second mesh.
   for (const Mesh& mesh : { MakeLattice({ 12, 12, 12 }, min, max, 0.2, 0.0, random),
          MakeLattice({ 12, 12, 12 }, min - 8.1, max + 5.7, 0.2, 0.0, random) })
   {
@@ -223,13 +226,13 @@ void TestChanges()
       if (edit > 0)
       {
         ranges.push_back({ { begin, end } });
-        // Every other one goes back, so that bounds shrink as well.
-        const double reach = edit % 2 ? 30.0 : 2.0;
-        const std::vector<float> moved = MakeVectors(mesh.Points.size(), reach, random);
+        // Every other change sets small displacements, so that bounds shrink as well.
+        const double size = edit % 2 ? 30.0 : 2.0;
+        const std::vector<float> moved = MakeVectors(mesh.Points.size(), size, random);
         std::copy(
           moved.begin() + 3 * begin, moved.begin() + 3 * end, displacements.begin() + 3 * begin);
       }
-      // The first bounds are of all nodes, whatever is logged.
+      // The first call reads all nodes, although no range is logged.
       const IndexBounds found =
         bounds.Compute(mesh.Points, mesh.Tetrahedra, displacements.data(), &ranges);
       const IndexBounds expected =
@@ -239,7 +242,7 @@ void TestChanges()
       last = found;
     }
     CHECK(changes > 30);
-    // Nobody looks at the others.
+    // Displacements that are not logged are not read.
     std::fill(displacements.begin(), displacements.end(), 1000.0F);
     CHECK(
       bounds.Compute(mesh.Points, mesh.Tetrahedra, displacements.data(), &none).Max == last.Max);
@@ -292,8 +295,9 @@ void TestLinks()
           .IsEmpty());
 }
 
-// All places of the volume on a lattice with so many points for each voxel, one by one.
-IndexBounds SearchPlaces(const VoxelGrid& voxelGrid, const DisplacementField& field, int density)
+// The bounds of the deformed positions of all points of a lattice over the volume. density: the
+// number of its points per voxel on each axis.
+IndexBounds SearchPoints(const VoxelGrid& voxelGrid, const DisplacementField& field, int density)
 {
   const Extent& extent = voxelGrid.VertexExtent;
   const auto& m = field.IndexToField;
@@ -304,7 +308,7 @@ IndexBounds SearchPlaces(const VoxelGrid& voxelGrid, const DisplacementField& fi
     {
       for (int i = density * extent[0]; i <= density * extent[1]; ++i)
       {
-        const glm::dvec3 place = glm::dvec3(i, j, k) / static_cast<double>(density);
+        const glm::dvec3 point = glm::dvec3(i, j, k) / static_cast<double>(density);
         bool inside = true;
         glm::dvec3 sum(0.0);
         int low[3];
@@ -312,11 +316,11 @@ IndexBounds SearchPlaces(const VoxelGrid& voxelGrid, const DisplacementField& fi
         for (int axis = 0; axis < 3; ++axis)
         {
           const int last = field.Dimensions[axis] - 1;
-          double f = m[4 * axis] * place.x + m[4 * axis + 1] * place.y + m[4 * axis + 2] * place.z +
+          double f = m[4 * axis] * point.x + m[4 * axis + 1] * point.y + m[4 * axis + 2] * point.z +
             m[4 * axis + 3];
           inside = inside && f >= -1e-9 && f <= last + 1e-9;
-          // The offsets below are off by 1e-12; a point must not be mixed with its neighbour for
-          // that, which may not be finite.
+          // Field indices have errors of up to 1e-12. Round them, since otherwise a neighboring
+          // point that is not finite would get a small weight.
           f = std::abs(f - std::round(f)) < 1e-9 ? std::round(f) : f;
           f = std::clamp(f, 0.0, static_cast<double>(last));
           low[axis] = std::max(0, std::min(static_cast<int>(std::floor(f)), last - 1));
@@ -342,7 +346,7 @@ IndexBounds SearchPlaces(const VoxelGrid& voxelGrid, const DisplacementField& fi
         }
         if ((inside || field.Extrapolate) && std::isfinite(sum.x + sum.y + sum.z))
         {
-          bounds.Add(GetRatio(voxelGrid) * place + sum);
+          bounds.Add(GetRatio(voxelGrid) * point + sum);
         }
       }
     }
@@ -363,16 +367,18 @@ void TestField()
     double Angle;
     bool Exact;
     bool ExactIfConstant;
-    bool EndsBetween; // it ends within the volume, not at voxels: so does the deformed volume
+    bool EndsBetween; // the field ends between voxels, inside the volume
   };
   const Case cases[] = {
-    // The volume's own points, some of them, and more.
+    // Fields whose points are at voxels: at all, at some, and beyond the volume.
     { { { 14, 13, 12 } }, glm::dvec3(1.0), center, 0.0, true, true, false },
     { { { 6, 5, 4 } }, glm::dvec3(1.0), center, 0.0, true, true, false },
     { { { 10, 3, 24 } }, glm::dvec3(1.0), center, 0.0, true, true, false },
-    // Finer than the volume.
+    // A field that is finer than the volume.
     { { { 40, 41, 42 } }, glm::dvec3(0.4), center, 0.5, true, true, true },
-    // Coarser: covering all, in part, in part and turned, not at all; one point thick.
+    // Coarser fields: over the whole volume, over a part, rotated, outside the volume, and one
+    // point
+    // thick.
     { { { 7, 7, 7 } }, glm::dvec3(2.6, 2.3, 2.7), center, 0.0, false, true, false },
     { { { 4, 4, 4 } }, glm::dvec3(2.15, 1.7, 3.3), center + 1.3, 0.0, false, true, true },
     { { { 9, 9, 9 } }, glm::dvec3(3.0), center, 0.6, false, true, false },
@@ -417,18 +423,19 @@ void TestField()
       field.Vectors = vectors.data();
       const bool endsBetween = item.EndsBetween && !extrapolate;
       const int density = endsBetween ? 4 : 1;
-      IndexBounds expected = SearchPlaces(voxelGrid, field, density);
+      IndexBounds expected = SearchPoints(voxelGrid, field, density);
       IndexBounds found = ComputeDeformedBounds(voxelGrid, field);
       CHECK(Contains(found, expected, 1e-9));
       CHECK(
         !(item.ExactIfConstant || extrapolate) || endsBetween || AreClose(found, expected, 1e-9));
-      // The corners of what a field covers need not be among these places, but are near them.
+      // The corners of the deformed volume need not be points of the lattice, but are near such
+      // points.
       const double distance = endsBetween && item.Angle == 0.0 ? 0.25 : 1.0;
       IndexBounds grown = expected;
       grown.Min -= distance * GetRatio(voxelGrid);
       grown.Max += distance * GetRatio(voxelGrid);
       CHECK(expected.IsEmpty() || Contains(grown, found, 1e-9));
-      // No larger than the volume.
+      // The bounds are not larger than the shifted volume.
       const glm::dvec3 shift(3.25, -7.5, 100.0);
       CHECK(found.IsEmpty() ||
         Contains({ GetRatio(voxelGrid) * glm::dvec3(-4.0, 2.0, -20.0) + shift,
@@ -442,22 +449,23 @@ void TestField()
         vectors[vectors.size() - 1] =
           broken ? std::numeric_limits<float>::infinity() : vectors[vectors.size() - 1];
         field.Vectors = vectors.data();
-        expected = SearchPlaces(voxelGrid, field, density);
+        expected = SearchPoints(voxelGrid, field, density);
         found = ComputeDeformedBounds(voxelGrid, field);
         CHECK(Contains(found, expected, 1e-4));
         CHECK(!item.Exact || endsBetween || AreClose(found, expected, 1e-4));
-        // Not absurdly large either: no further out than any vector takes a voxel.
-        IndexBounds reach;
+        // The bounds are within those of the volume, extended by the least and largest component of
+        // all vectors.
+        IndexBounds widest;
         for (const float value : vectors)
         {
           if (std::isfinite(value))
           {
-            reach.Add(glm::dvec3(value));
+            widest.Add(glm::dvec3(value));
           }
         }
-        reach.Min += GetRatio(voxelGrid) * glm::dvec3(-4.0, 2.0, -20.0);
-        reach.Max += GetRatio(voxelGrid) * glm::dvec3(9.0, 14.0, -9.0);
-        CHECK(found.IsEmpty() || Contains(reach, found, 1e-9));
+        widest.Min += GetRatio(voxelGrid) * glm::dvec3(-4.0, 2.0, -20.0);
+        widest.Max += GetRatio(voxelGrid) * glm::dvec3(9.0, 14.0, -9.0);
+        CHECK(found.IsEmpty() || Contains(widest, found, 1e-9));
       }
     }
   }

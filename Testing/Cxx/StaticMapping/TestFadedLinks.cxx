@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Links of voxels that are kept outside a deformation mesh: against a search of all faces of its
-// boundary, and for boxes against closed forms.
+// Faded links of voxels outside a deformation mesh. The references are a search of all faces of its
+// boundary, and closed forms for boxes.
 #include "ClosestFace.h"
 #include "DeformedBounds.h"
 #include "Error.h"
@@ -49,7 +49,7 @@ Mesh Join(const Mesh& first, const Mesh& second)
   return mesh;
 }
 
-// Without the tetrahedra that have their center in a box.
+// Removes the tetrahedra whose centers are in a box.
 Mesh Hollow(Mesh mesh, const glm::dvec3& min, const glm::dvec3& max)
 {
   const auto isWithin = [&](const Tetrahedron& tetrahedron)
@@ -67,8 +67,8 @@ Mesh Hollow(Mesh mesh, const glm::dvec3& min, const glm::dvec3& max)
   return mesh;
 }
 
-// The least distance from a point to one of a triangle: to its plane if the foot lies within, by
-// areas, else to one of its edges.
+// The distance from a point to a triangle: to its plane if the projection of the point is inside
+// the triangle, otherwise to one of its edges.
 double GetDistance(const glm::dvec3& p, const std::array<glm::dvec3, 3>& t)
 {
   double least = std::numeric_limits<double>::infinity();
@@ -88,18 +88,18 @@ double GetDistance(const glm::dvec3& p, const std::array<glm::dvec3, 3>& t)
   return isWithin ? std::min(least, std::abs(glm::dot(p - t[0], normal))) : least;
 }
 
-// Faces that one tetrahedron has, by their nodes.
+// The faces that belong to one tetrahedron only, as sorted nodes.
 std::vector<std::array<std::int32_t, 3>> FindSingle(const Mesh& mesh)
 {
   std::map<std::array<std::int32_t, 3>, int> counts;
   for (const Tetrahedron& tetrahedron : mesh.Tetrahedra)
   {
-    for (int left = 0; left < 4; ++left)
+    for (int opposite = 0; opposite < 4; ++opposite)
     {
       std::array<std::int32_t, 3> face;
       for (int k = 0; k < 3; ++k)
       {
-        face[k] = tetrahedron[(left + 1 + k) % 4];
+        face[k] = tetrahedron[(opposite + 1 + k) % 4];
       }
       std::sort(face.begin(), face.end());
       ++counts[face];
@@ -116,7 +116,7 @@ std::vector<std::array<std::int32_t, 3>> FindSingle(const Mesh& mesh)
   return faces;
 }
 
-// A mesh as the deformer is given it, with displacements.
+// A mesh with the tetrahedra of faded links, as VolumeDeformer uses it, and its displacements.
 struct Moved
 {
   Moved(const Mesh& mesh, const StaticMapping& mapping, const std::vector<float>& displacements)
@@ -158,7 +158,7 @@ std::vector<float> MakeDisplacements(
 void TestSearch()
 {
   std::mt19937 random(9);
-  std::uniform_real_distribution<double> place(-10.0, 10.0);
+  std::uniform_real_distribution<double> coordinate(-10.0, 10.0);
   std::uniform_real_distribution<double> size(-3.0, 3.0);
   CHECK(ClosestFace({}).Find(glm::dvec3(1.0)).Face == -1);
   for (const int count : { 1, 4, 5, 333 })
@@ -166,21 +166,21 @@ void TestSearch()
     std::vector<ClosestFace::Triangle> triangles;
     for (int i = 0; i < count; ++i)
     {
-      const glm::dvec3 corner(place(random), place(random), place(random));
+      const glm::dvec3 corner(coordinate(random), coordinate(random), coordinate(random));
       const double scale = i % 5 == 0 ? 1e-4 : 1.0;
       const auto next = [&]
       { return corner + scale * glm::dvec3(size(random), size(random), size(random)); };
       triangles.push_back({ { corner, next(), next() } });
       if (i % 7 == 3)
       {
-        triangles.push_back(triangles[triangles.size() - 2]); // in one place
+        triangles.push_back(triangles[triangles.size() - 2]); // coincides with an earlier one
       }
     }
     const ClosestFace search(triangles);
     for (int i = 0; i < 500; ++i)
     {
       const glm::dvec3 point(
-        1.5 * place(random), 1.5 * place(random), i % 3 == 0 ? 20.0 : place(random));
+        1.5 * coordinate(random), 1.5 * coordinate(random), i % 3 == 0 ? 20.0 : coordinate(random));
       const ClosestFace::Result found = search.Find(point);
       double least = std::numeric_limits<double>::infinity();
       for (const ClosestFace::Triangle& triangle : triangles)
@@ -195,7 +195,7 @@ void TestSearch()
         CHECK(found.Weights[k] >= 0.0);
       }
       CHECK(std::abs(glm::distance(point, closest) - least) <= 1e-11 * (1.0 + least));
-      // What is looked at first does not matter.
+      // The result does not depend on the face at which the search begins.
       const auto nearby = static_cast<std::int32_t>(random() % triangles.size());
       const ClosestFace::Result again = search.Find(point, nearby);
       CHECK(again.Face == found.Face && again.SquaredDistance == found.SquaredDistance);
@@ -210,10 +210,10 @@ void TestAgainstAllFaces()
   const Mesh body = MakeLattice(
     { 4, 4, 4 }, glm::dvec3(-2.2, 7.1, 0.0), glm::dvec3(7.9, 17.0, 9.2), 0.3, 0.0, random);
   const Mesh meshes[] = { body,
-    // With a cavity, and a ring.
+    // A body with a cavity, and a ring.
     Hollow(body, glm::dvec3(0.0, 9.0, 2.0), glm::dvec3(6.0, 15.0, 7.0)),
     Hollow(body, glm::dvec3(0.0, 9.0, -9.0), glm::dvec3(6.0, 15.0, 19.0)),
-    // Two bodies, one of which reaches out of the volume.
+    // Two bodies, one of them partly outside the volume.
     Join(MakeLattice({ 2, 3, 2 }, glm::dvec3(-12.0, 6.3, -1.0), glm::dvec3(-1.5, 13.0, 4.0), 0.0,
            0.0, random),
       MakeLattice(
@@ -259,7 +259,7 @@ void TestAgainstAllFaces()
           CHECK(weight > 0.0 || record == 0);
           if (record <= 0)
           {
-            CHECK(weight <= 1e-12); // a distance may be FadeDistance up to rounding
+            CHECK(weight <= 1e-12); // the distance may be FadeDistance, up to rounding
             continue;
           }
           isUsed[record - 1] = true;
@@ -277,7 +277,7 @@ void TestAgainstAllFaces()
             closest += double{ link.Weights[k] } * spacing * mesh.Points[nodes[k]];
           }
           CHECK(std::abs(sum - weight) <= 1e-6);
-          // Weights of float: relative errors of 2^-24 of places of up to 60 units.
+          // Weights are floats, with relative errors of 2^-24. Coordinates are up to 60.
           CHECK(std::abs(glm::distance(closest / sum, point) - least) <= 2e-5);
         }
         CHECK(std::all_of(isUsed.begin(), isUsed.end(), [](bool used) { return used; }));
@@ -286,7 +286,7 @@ void TestAgainstAllFaces()
   }
 }
 
-// A box that is moved as a whole: the closest point is the point clamped to it.
+// A box that is translated: the closest point of the box is the point clamped to its bounds.
 void TestMovedBox()
 {
   std::mt19937 random(6);
@@ -317,7 +317,7 @@ void TestMovedBox()
   }
 }
 
-// Bounds hold what is linked, and no more than a block of voxels allows.
+// The bounds contain all voxels with faded links, and are not much larger.
 void TestBounds()
 {
   std::mt19937 random(7);
@@ -362,7 +362,8 @@ void TestBounds()
   }
 }
 
-// How many tetrahedra of the sampling mesh with a vertex outside are stretched over 2 voxels.
+// The number of tetrahedra of the sampling mesh with a vertex outside the deformation mesh whose
+// vertices have displacements that differ by more than 2 voxels.
 std::int64_t CountStretched(const Extent& voxels, const StaticMapping& mapping, const Moved& moved,
   std::size_t numberOfTetrahedra)
 {
@@ -434,27 +435,27 @@ void TestStretched()
     }
     return mapping.Faded.IsCountEstimated();
   };
-  // Between two bodies, where each has half of the distance.
+  // Two bodies that move apart: the tetrahedra between them are stretched.
   expect(two, 20.0, apart(4.0), true, voxels);
   expect(two, 20.0, apart(0.9), false, voxels);
-  // Too far from each other to meet.
+  // With this FadeDistance the displacements of the two bodies fade out before they meet.
   expect(two, 3.0, apart(1.5), false, voxels);
-  // One that moves as a whole stretches nothing.
+  // One body that is translated.
   expect(left, 20.0, apart(4.0), false, voxels);
-  // Across a ring that opens.
+  // A ring that opens.
   const Mesh ring = Hollow(MakeLattice({ 5, 7, 3 }, glm::dvec3(8.0, -1.0, 8.0),
                              glm::dvec3(24.0, 19.0, 17.0), 0.0, 0.0, random),
     glm::dvec3(11.9, 2.3, -99.0), glm::dvec3(20.1, 15.7, 99.0));
   expect(
     ring, 20.0, [](const glm::dvec3& p) { return glm::dvec3(0.4 * (p.x - 16.0), 0.0, 0.0); }, true,
     voxels);
-  // A hard edge; and one of so many cells that only some are looked at.
+  // No fading; the second mesh has so many cells that the count is estimated from some of them.
   CHECK(!expect(left, 0.0, apart(3.0), true, voxels));
   CHECK(expect(MakeLattice({ 2, 2, 2 }, glm::dvec3(3.0), glm::dvec3(60.5), 0.0, 0.0, random), 0.0,
     apart(3.0), true, { { 0, 64, 0, 64, 0, 64 } }));
 }
 
-// Tetrahedra that get other nodes in the same places take the records with them.
+// When tetrahedra get other nodes at the same positions, the records of faded links follow.
 void TestSplit()
 {
   std::mt19937 random(10);
@@ -511,7 +512,7 @@ void TestMisuse()
     isRefused = std::string(error.what()).find("mesh that are kept") != std::string::npos;
   }
   CHECK(isRefused);
-  // Without a tetrahedron all voxels stay.
+  // Without tetrahedra all voxels are kept at rest.
   const StaticMapping nothing = BuildStaticMapping(
     { { 0, 2, 0, 2, 0, 2 } }, glm::dvec3(1.0), {}, {}, KeepWithin(1.0), StaticMappingForm::Links);
   CHECK(nothing.Links.size() == 27 && nothing.Links[13].Tetrahedron == 0);

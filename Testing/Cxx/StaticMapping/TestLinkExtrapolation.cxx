@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Links of voxels outside the deformation mesh against a search of every voxel inside.
+// Links of voxels outside the deformation mesh. The reference is a search of all voxels inside.
 #include "StaticMapping.h"
 
 #include "TetrahedralMeshes.h"
@@ -22,7 +22,7 @@ int TestLinkExtrapolation(int, char*[])
     for (const Mesh& mesh : { MakeSoup(40, 10, -4.0, 18.0, 0.0, random),
            MakeLattice(
              { 3, 4, 3 }, glm::dvec3(0.3, 7.1, 2.0), glm::dvec3(6.9, 15.0, 8.2), 0.3, 0.0, random),
-           // One voxel only.
+           // A mesh that contains one voxel only.
            MakeLattice(
              { 2, 2, 2 }, glm::dvec3(4.9, 7.9, 6.9), glm::dvec3(5.2, 8.2, 7.2), 0.0, 0.0, random) })
     {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The static mapping by links against a search of every voxel in every tetrahedron.
+// The static mapping by links. The reference is a search of every voxel in every tetrahedron.
 #include "StaticMapping.h"
 
 #include "TetrahedralMeshes.h"
@@ -27,7 +27,8 @@ __extension__ typedef __int128 WideInteger;
 
 const glm::dvec3 UnitSpacing(1.0);
 
-// Six times the volume of a tetrahedron, in units of 1/256 voxel; exact for points on such units.
+// Six times the volume of a tetrahedron, in units of 1/256 voxel. It is exact for points whose
+// coordinates are multiples of 1/256.
 WideInteger GetExactVolume(
   const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d)
 {
@@ -56,8 +57,8 @@ bool IsInsideExactly(const Mesh& mesh, const Tetrahedron& nodes, const glm::dvec
     std::all_of(volumes, volumes + 4, [](WideInteger v) { return v <= 0; });
 }
 
-// Tetrahedra in the order of the positions of their nodes: then the first one that holds a voxel
-// gets it.
+// Sorts tetrahedra by the positions of their nodes. A voxel is linked to the first tetrahedron in
+// this order that contains it.
 Mesh Sort(Mesh mesh)
 {
   const auto getKey = [&](const Tetrahedron& nodes)
@@ -74,7 +75,8 @@ Mesh Sort(Mesh mesh)
   return mesh;
 }
 
-// Meshes whose nodes are multiples of 1/256 voxel: no rounding, so everything is exact.
+// For meshes whose coordinates are multiples of 1/256 voxel, which are not rounded: all links must
+// be equal to those of an exact search.
 void CheckExactly(const Mesh& unsorted, const Extent& voxels)
 {
   const Mesh mesh = Sort(unsorted);
@@ -133,7 +135,7 @@ double GetDepth(const Mesh& mesh, const Tetrahedron& nodes, const glm::dvec3& po
   return depth;
 }
 
-// Meshes with nodes anywhere: right to within the rounding, and without holes.
+// For meshes with any coordinates: links are right up to rounding, and there are no holes.
 void CheckRounded(const Mesh& unsorted, const Extent& voxels)
 {
   const Mesh mesh = Sort(unsorted);
@@ -247,19 +249,21 @@ void TestExact()
       voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, StaticMappingForm::Links);
     CHECK(mapping.NumberOfInnerVoxels == GetNumberOfPoints(voxels));
   }
-  // Larger, smaller, one tetrahedron's worth of voxels and less.
+  // Meshes that are larger than the volume, smaller, and with tetrahedra that are smaller than a
+  // voxel.
   CheckExactly(MakeLattice({ 4, 5, 4 }, min - 7.3, max + 5.1, 0.3, unit, random), voxels);
   CheckExactly(MakeLattice({ 4, 5, 4 }, min + 2.6, max - 4.9, 0.3, unit, random), voxels);
   CheckExactly(MakeLattice({ 9, 9, 9 }, min + 5.5, min + 8.0, 0.3, unit, random), voxels);
-  // Nodes on voxels, so that many voxels lie on faces, edges and nodes; folded, flat, overlapping.
+  // Nodes at voxels, so that many voxels are on faces, edges and nodes; meshes that are folded,
+  // flat or overlapping.
   CheckExactly(MakeLattice({ 6, 6, 6 }, min, max, 1.4, 1.0, random), voxels);
   CheckExactly(MakeSoup(40, 120, -8.0, 24.0, 1.0, random), voxels);
   CheckExactly(MakeSoup(200, 60, -12.0, 14.0, 0.5, random), voxels);
   CheckExactly(MakeSoup(200, 60, -30.0, 30.0, unit, random), voxels);
-  // Beyond what 64 bits hold.
+  // Coordinates whose products exceed 64 bits.
   CheckExactly(MakeSoup(200, 80, -3100.0, 3100.0, unit, random), voxels);
   CheckExactly(MakeSoup(200, 80, -2.0e9, 2.0e9, 1.0, random), voxels);
-  // More than a tile on each axis, and a volume of two slices.
+  // Several tiles on the axes y and z, and a volume of two planes.
   CheckExactly(
     MakeLattice({ 3, 3, 3 }, glm::dvec3(0.0), glm::dvec3(5.0, 40.0, 37.0), 0.4, unit, random),
     Extent{ { 0, 4, 0, 40, 0, 37 } });
@@ -278,12 +282,12 @@ void TestRounded()
     CheckRounded(MakeLattice({ 4, 4, 4 }, min + 1.7, max - 2.2, 0.3, 0.0, random), voxels);
     CheckRounded(MakeSoup(150, 60, -15.0, 20.0, 0.0, random), voxels);
   }
-  // Bounds that a change of coordinates has moved in their last bits.
+  // Mesh bounds that are inside the volume by 1e-12, as after a transform of coordinates.
   const Mesh mesh = MakeLattice({ 6, 5, 4 }, min + 1e-12, max - 1e-12, 0.3, 0.0, random);
   CHECK(BuildStaticMapping(
           voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, StaticMappingForm::Links)
           .NumberOfInnerVoxels == GetNumberOfPoints(voxels));
-  // Elements far smaller than a voxel, many of them flat once rounded.
+  // Tetrahedra that are much smaller than a voxel. Many of them are flat after rounding.
   const Mesh fine =
     MakeLattice({ 13, 13, 13 }, glm::dvec3(-0.05), glm::dvec3(1.07), 0.3, 0.0, random);
   const Extent corner{ { 0, 1, 0, 1, 0, 1 } };
@@ -293,8 +297,8 @@ void TestRounded()
           .NumberOfInnerVoxels == 8);
 }
 
-// A square between two pyramids that cut it along different diagonals has to be filled with a
-// flat tetrahedron. Rounding opens a gap there, in which no voxel may be lost.
+// Two pyramids whose common base is divided along different diagonals, and a flat tetrahedron
+// between them. Rounding opens a gap there, in which no voxel may be lost.
 void TestFlatBetweenOthers()
 {
   std::mt19937 random(4);
@@ -311,7 +315,7 @@ void TestFlatBetweenOthers()
       Mesh mesh;
       mesh.Points = std::vector<glm::dvec3>{ -10.0 * u - 9.0 * v, 11.0 * u - 10.0 * v,
         10.0 * u + 11.0 * v, -10.0 * u + 10.0 * v, 9.0 * w, -9.0 * w };
-      // A sliver with a little volume is no better.
+      // With this height the tetrahedron in between is a sliver that is not exactly flat.
       mesh.Points[0] += height < 1.0 ? height * w : glm::dvec3(0.0);
       mesh.Tetrahedra = { { { 0, 1, 2, 3 } }, { { 0, 1, 2, 4 } }, { { 0, 2, 3, 4 } },
         { { 0, 1, 3, 5 } }, { { 1, 2, 3, 5 } } };
@@ -328,7 +332,7 @@ void TestFlatBetweenOthers()
       }
     }
   }
-  // Alone, a flat one holds nothing.
+  // A mesh of one flat tetrahedron contains no voxel.
   Mesh mesh;
   mesh.Points = std::vector<glm::dvec3>{ { -10.0, -9.0, 0.1 }, { 11.0, -10.0, 0.1 },
     { 10.0, 11.0, 0.1 }, { -10.0, 10.0, 0.1 } };
@@ -342,7 +346,7 @@ void TestFlatBetweenOthers()
   CHECK(mapping.NumberOfInnerVoxels == 0 && mapping.NumberOfFlatTetrahedra == 1);
 }
 
-// The same mesh with other numbers: the same tetrahedra and weights, to the last bit.
+// The same mesh with nodes and tetrahedra in another order gives the same links, to the last bit.
 void TestNumbering()
 {
   std::mt19937 random(8);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The static mapping by runs against that by links, and the choice between the two.
+// The static mapping by runs, compared with that by links, and the choice between the two forms.
 #include "StaticMapping.h"
 
 #include "TetrahedralMeshes.h"
@@ -63,8 +63,8 @@ double GetWeightVariation(const RestTetrahedron& rest, const Mesh& mesh, const E
   return variation;
 }
 
-// The origin is a voxel in the tetrahedron, whose nodes are rounded by up to 1/512 voxel on an
-// axis.
+// Checks that the origin of a record is a voxel in the tetrahedron. Nodes are rounded by up to
+// 1/512 voxel on each axis.
 void CheckOrigin(const RestTetrahedron& rest, const Extent& voxels)
 {
   double last = 1.0;
@@ -86,7 +86,8 @@ void CheckOrigin(const RestTetrahedron& rest, const Extent& voxels)
   CHECK(last >= -lastVariation && last <= 1.0 + lastVariation);
 }
 
-// What displaces a voxel, bit for bit: counted from index 0 and not from the first voxel.
+// The record that displaces a voxel, with its origin as structured index: comparable between parts
+// of a volume.
 struct Displacer
 {
   std::int32_t Tetrahedron = -1;
@@ -128,7 +129,7 @@ std::vector<Displacer> GetDisplacers(const VertexRuns& runs, const Extent& voxel
   return displacers;
 }
 
-// The mapping of a part is that of the whole, to the last bit.
+// The static mapping of a part is equal to that of the whole volume, to the last bit.
 void TestParts()
 {
   std::mt19937 random(11);
@@ -139,7 +140,7 @@ void TestParts()
       glm::dvec3(43.0, 38.0, 27.25), 0.45, 0.0, random);
     if (nodes == 4)
     {
-      // Thin ones, which have an origin for each run.
+      // Add slivers, which have a record for each run.
       const Mesh soup = MakeSoup(60, 90, -5.0, 40.0, 0.0, random);
       for (Tetrahedron tetrahedron : soup.Tetrahedra)
       {
@@ -187,7 +188,7 @@ void TestParts()
   }
 }
 
-// Every voxel has the tetrahedron of its link, and its weights as far as floats go.
+// By runs and by links every voxel has the same tetrahedron, and the same weights up to rounding.
 void Compare(const Mesh& mesh, const Extent& voxels)
 {
   const StaticMapping byLinks = Build(mesh, voxels, StaticMappingForm::Links);
@@ -226,12 +227,12 @@ void Compare(const Mesh& mesh, const Extent& voxels)
             weight += term;
             magnitude += std::abs(term);
           }
-          // Half a unit of the float, and what the sums in double cost.
+          // Rounding to float, and rounding of sums in double precision.
           CHECK(std::abs(weight - link.Weights[k]) <=
             std::ldexp(std::abs(weight), -24) + 1e-12 * magnitude + 1e-9);
         }
       }
-      // Neighbouring runs are of different tetrahedra, or else they would be one.
+      // Neighboring runs have different tetrahedra: otherwise they would be one run.
       CHECK(last || record < 0 || runs.Runs[i + 1].Tetrahedron < 0 ||
         runs.Tetrahedra[runs.Runs[i + 1].Tetrahedron].Tetrahedron != rest.Tetrahedron);
       CHECK(last || record >= 0 || runs.Runs[i + 1].Tetrahedron >= 0);
@@ -240,7 +241,7 @@ void Compare(const Mesh& mesh, const Extent& voxels)
         const bool sliver = GetWeightVariation(rest, mesh, voxels) > LargestWeightVariation;
         const bool first = used.insert(record).second;
         CHECK(!sliver || first);
-        // Records come in the order of the voxels; those of slivers lie where they are used.
+        // Records are in the order of the voxels. The origin of a sliver's record is in its run.
         CHECK(!first || record + 1 == static_cast<std::int32_t>(used.size()));
         CHECK(!sliver || rest.Origin[0] == runs.Runs[i].Begin);
         CheckOrigin(rest, voxels);
@@ -332,7 +333,8 @@ void TestAgainstLinks()
     Compare(MakeLattice({ 5, 4, 6 }, min, max, jitter, unit, random), voxels);
     Compare(MakeLattice({ 2, 3, 2 }, min, max, jitter, 0.0, random), voxels);
   }
-  // Rows outside, holes, one voxel wide runs; nodes on voxels, folded, flat, overlapping.
+  // Rows outside the mesh, holes, and runs of one voxel; nodes at voxels; meshes that are folded,
+  // flat or overlapping.
   Compare(MakeLattice({ 4, 5, 4 }, min - 7.3, max + 5.1, 0.3, unit, random), voxels);
   Compare(MakeLattice({ 4, 5, 4 }, min + 2.6, max - 4.9, 0.3, 0.0, random), voxels);
   Compare(MakeLattice({ 9, 9, 9 }, min + 5.5, min + 8.0, 0.3, 0.0, random), voxels);
@@ -341,7 +343,7 @@ void TestAgainstLinks()
   Compare(MakeSoup(200, 60, -30.0, 30.0, 0.0, random), voxels);
   Compare(MakeSoup(200, 80, -3100.0, 3100.0, unit, random), voxels);
   Compare(MakeSoup(200, 80, -2.0e9, 2.0e9, 1.0, random), voxels);
-  // Several tiles on y and z, the last ones of each narrower; a row of tiles, and a column.
+  // Several tiles on y and z, of which the last ones are narrower; one row and one column of tiles.
   for (const Extent& many : { Extent{ { 0, 4, 0, 40, 0, 37 } }, Extent{ { 0, 70, 5, 1300, 7, 8 } },
          Extent{ { -3, 9, -1, 0, -500, 600 } } })
   {
@@ -352,7 +354,7 @@ void TestAgainstLinks()
   }
 }
 
-// A layer of tetrahedra between two planes that are close together: each run has its own origin.
+// A layer of slivers between two planes that are close together: each run has its own record.
 void TestSlivers()
 {
   const Extent voxels{ { 0, 40, 0, 30, 0, 20 } };
@@ -387,7 +389,7 @@ void TestChoice()
     const double mean =
       static_cast<double>(GetNumberOfPoints(voxels)) / static_cast<double>(runs.Runs.Runs.size());
     const StaticMappingBuilder builder(voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false);
-    std::cout << nodes << " nodes an axis: mean run length " << mean << ", "
+    std::cout << nodes << " nodes on each axis: mean run length " << mean << ", "
               << static_cast<double>(GetBytes(runs.Runs)) / GetNumberOfPoints(voxels)
               << " bytes a voxel, estimated "
               << static_cast<double>(builder.GetRunBytes()) / GetNumberOfPoints(voxels) << "\n";
@@ -404,7 +406,7 @@ void TestChoice()
       CHECK(ratio > 0.8 && ratio < 1.25);
       CHECK(GetBytes(runs.Runs) < 6 * static_cast<std::uint64_t>(GetNumberOfPoints(voxels)));
     }
-    // Extrapolation has links whatever the mesh.
+    // With extrapolation, links are chosen for any mesh.
     const StaticMapping extrapolated = BuildStaticMapping(
       voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, true, StaticMappingForm::Automatic);
     CHECK(extrapolated.Runs.Runs.empty() && !extrapolated.Links.empty());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Deformation meshes for the tests of the numeric helpers, and what these tests have in common.
+// Deformation meshes and checks for tests that call classes of the engine directly.
 #ifndef DeformVolumeTetrahedralMeshes_h
 #define DeformVolumeTetrahedralMeshes_h
 
@@ -16,7 +16,7 @@
 #include <random>
 #include <vector>
 
-/// Counts a failed check and says where; at most twenty are printed.
+/// Counts a failed check, and prints its file and line. At most twenty are printed.
 #define CHECK(condition)                                                                           \
   do                                                                                               \
   {                                                                                                \
@@ -35,7 +35,7 @@ inline int& Failures()
   return failures;
 }
 
-/// What a test returns.
+/// The exit code of a test.
 inline int GetResult()
 {
   if (Failures() > 0)
@@ -51,8 +51,9 @@ struct Mesh
   std::vector<deformvolume::Tetrahedron> Tetrahedra;
 };
 
-/// A mirrored lattice between two corners. The nodes within are moved at random, by at most jitter
-/// times their distance; unit: positions are multiples of it, 0: not rounded.
+/// A lattice between two corners. Inner nodes are moved at random, by at most jitter times the
+/// distance between nodes. unit: coordinates are rounded to multiples of it; 0: they are not
+/// rounded.
 inline Mesh MakeLattice(const glm::ivec3& nodes, const glm::dvec3& min, const glm::dvec3& max,
   double jitter, double unit, std::mt19937& random)
 {
@@ -104,7 +105,7 @@ inline Mesh MakeLattice(const glm::ivec3& nodes, const glm::dvec3& min, const gl
   return mesh;
 }
 
-/// Tetrahedra that have nothing to do with each other, some of them flat.
+/// Tetrahedra of random points. They overlap, and some of them are flat.
 inline Mesh MakeSoup(
   int points, int tetrahedra, double min, double max, double unit, std::mt19937& random)
 {
@@ -137,7 +138,7 @@ inline glm::ivec3 GetVoxel(const deformvolume::Extent& voxels, std::int64_t inde
     voxels[2] + static_cast<int>(index / x % y), voxels[4] + static_cast<int>(index / (x * y)));
 }
 
-/// The weights of a link must give back the voxel.
+/// Checks that the weights of a link reproduce the position of the voxel.
 inline void CheckWeights(
   const Mesh& mesh, const deformvolume::VertexLink& link, const glm::dvec3& voxel)
 {
@@ -149,7 +150,7 @@ inline void CheckWeights(
     const glm::dvec3 side = mesh.Points[nodes[node]] - mesh.Points[nodes[3]];
     const double weight = link.Weights[node];
     sum += weight * side;
-    // A float is rounded by half of its last bit.
+    // The rounding error of a float is half of its last bit.
     rounding += std::ldexp(std::abs(weight), -24) * glm::length(side);
   }
   CHECK(glm::length(sum - voxel) <= 1.01 * rounding);
