@@ -3,10 +3,11 @@
 // tetrahedra of the deformation mesh, or parts of them (MeshBoundary). It runs after all other cells were resampled.
 //
 // An uncovered output voxel is written if two conditions hold. A deformed piece holds the voxel. Its rest coordinate
-// lies in a cell at the boundary (DEFORMVOLUME_CELL_AT_BOUNDARY), in one of the cell's five tetrahedra that is
-// active, has no blanked vertex and has no negative boundary distance there. If there are several, an upright piece
-// wins before an inverted one, then the lowest cell, then the lowest piece. The values are those of that tetrahedron
-// at the rest coordinate, so they continue the values of neighboring cells.
+// lies in a cell at the boundary (DEFORMVOLUME_CELL_AT_BOUNDARY), in one of the cell's five tetrahedra that is active,
+// has no blanked vertex and has no negative boundary distance there. If several pieces meet these conditions, an
+// upright piece wins before an inverted one, then the lowest cell, then the lowest tetrahedron of the cell, then the
+// lowest piece. The values are those of that tetrahedron at the rest coordinate, so they continue the values of
+// neighboring cells.
 //
 // A work-group handles one tile of the output. If work-items are lanes, each takes one row of the tile at a time;
 // otherwise one work-item takes all rows (ROWS_AT_ONCE).
@@ -30,7 +31,7 @@ typedef struct
 // The linear map from edge functions to the displacement of a piece in a tile, in output voxels.
 typedef struct
 {
-  REAL Last[3];         // of the last corner
+  REAL Last[3];         // displacement of the last corner
   REAL Gradients[3][3]; // by edge function, by axis
 } PieceMap;
 
@@ -42,8 +43,8 @@ typedef struct
   long Weights[4];
 } RestLocation;
 
-// Returns the order in which pieces win a voxel: upright before inverted, then by cell (x varies fastest), then by
-// tetrahedron. 20 bits for each index.
+// Returns the key of a piece for a voxel; the piece with the least key wins. Upright pieces come before inverted ones,
+// then the order is by cell (x varies fastest, 20 bits for each index), then by tetrahedron.
 static ulong KeyOf(const RestLocation* location, int isInverted)
 {
   return (ulong)isInverted << 63 | (ulong)location->Cell[2] << 43 | (ulong)location->Cell[1] << 23 |
@@ -252,7 +253,7 @@ static void MarkCovered(const int* voxel, __global char* coverage, __global uint
   atomic_inc(counts + patch);
 }
 
-// Writes the values at a place to a voxel.
+// Writes the values at a location in the volume to a voxel.
 static void StoreSample(const RestLocation* location, const int* voxel, const RasterParameters* r,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
@@ -366,7 +367,7 @@ __kernel void ResampleBoundary(__global const int4* tetrahedra, __global const i
             }
             keys[row][x] = key;
             taken[row] |= 1u << x;
-            // Few voxels have several pieces, so a value may be overwritten by a better piece.
+            // A piece that wins later overwrites the values. Few voxels have several pieces.
             StoreSample(&location, voxel, &r, &p ARRAY_ARGUMENTS);
             if (!isTaken)
             {

@@ -95,7 +95,7 @@ void BoundaryCells::SetCorners(const Tetrahedron* tetrahedra)
   const bool isMirrored = this->Volume.GetVoxelGrid().ToOutput.GetDeterminant() < 0.0;
   std::vector<BoundaryCorner> corners;
   std::vector<cl_int4> pieces;
-  std::unordered_map<std::int32_t, cl_int> found; // by nodes
+  std::unordered_map<std::int32_t, cl_int> found; // corner of each node
   for (const MeshBoundary::Piece& piece : this->Boundary)
   {
     cl_int4 numbers;
@@ -138,7 +138,8 @@ void BoundaryCells::SetCorners(const Tetrahedron* tetrahedra)
   }
   const std::uint64_t bytes =
     std::max(corners.size() * sizeof(BoundaryCorner), pieces.size() * sizeof(cl_int4));
-  // The limit that SetAllocationLimit sets is for data that can be divided.
+  // The limit of SetAllocationLimit() is for data that can be divided, so use the limit of the
+  // device.
   const std::uint64_t most =
     this->Device.GetDevice().Device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
   CheckAllocation(bytes, most, "The cells on the boundary of the deformation",

@@ -28,10 +28,11 @@ public:
   BoundaryCells(
     WorkDevice& device, DeviceVolume& volume, const DisplacementSource& source, Launches& launches);
 
-  /// Sets the boundary of the mesh or field of the displacement source. tetrahedra: those of the
-  /// mesh; null for a field.
+  /// Sets the boundary of the mesh or field of the displacement source. tetrahedra: the tetrahedra
+  /// of the mesh; null for a field.
   void Set(const MeshBoundary& boundary, const Tetrahedron* tetrahedra);
-  /// Updates the corners after tetrahedra got other nodes with the same rest positions.
+  /// Updates the corners after the connectivity of the tetrahedra changed. Their shapes must be the
+  /// same.
   void SetCorners(const Tetrahedron* tetrahedra);
   void Clear();
   bool IsEmpty() const { return this->Boundary.empty(); }
@@ -39,7 +40,7 @@ public:
   /// Returns the number of launches of Run over all tiles.
   std::size_t GetNumberOfLaunches() const;
   /// Resamples the voxels of a slab that are not covered after all passes over the cells. patches:
-  /// the patches to handle, if all others keep their values; null: all patches.
+  /// the patches to resample, if all other patches keep their values; null: all patches.
   void Run(const DeformRequest& request, const OutputSlab& output,
     const std::vector<std::uint32_t>* patches = nullptr);
 

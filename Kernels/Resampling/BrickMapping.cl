@@ -3,8 +3,8 @@
 // values of the arrays are written to memory.
 //
 // Vertices are mapped sixteen at a time, with the operations of PositionOf (DeformationMapping.cl) in the same order.
-// If one of the sixteen has no position, they are mapped one at a time. The last vertices of a row are mapped
-// together with some that were mapped before.
+// If one of the sixteen has no position, the vertices are mapped one at a time. The last sixteen vertices of a row may
+// include vertices that were mapped before.
 
 // Properties of the vertices of a row: one bit for each eight vertices, the lowest first.
 typedef struct
@@ -20,8 +20,8 @@ typedef struct
 #define INTERIORS 0x0202020202020202UL
 #define TOGETHER 0x4040404040404040UL
 
-// Returns the state bits that both halves of sixteen vertices of a row have in common. rowInside: whether the row is
-// not at the border of the volume.
+// Returns the states of sixteen vertices of a row as eight bytes. Byte k has the bits that vertices k and k + 8 have in
+// common. rowInside: whether the row is not at the border of the volume.
 static ulong StatesOf(
   __global const uchar* rowState, int x, int rowInside, const KernelParameters* p)
 {
@@ -92,7 +92,7 @@ typedef struct
   ROW_MEMORY float* Slots; // output: positions and values
 } MappedRow;
 
-// The rest position of the vertex at place i: whole steps, in voxels, and the remainder.
+// The rest position of the vertex in slot i of the row: whole steps, in voxels, and the remainder.
 #if HAS_TURNED_AXES
 #define REST_WHOLE(axis)                                                                           \
   ((float)(((ROW_MEMORY const int*)rest)[2 * (axis)*HALF_ROW] + row->Whole[axis]) * STEP)
@@ -104,7 +104,7 @@ typedef struct
 #define REST_FRACTIONS (float4)(rest[HALF_ROW], row->FractionY, row->FractionZ, 0.0f)
 #endif
 
-// Maps vertex x, at place i of the brick.
+// Maps vertex x to slot i of the row.
 static __attribute__((always_inline)) void MapOne(const MappedRow* row, int x, int i, int state,
   RowFlags* flags, const KernelParameters* p ARRAY_PARAMETERS)
 {
@@ -132,7 +132,7 @@ static __attribute__((always_inline)) void MapOne(const MappedRow* row, int x, i
   LANE_ARRAYS(PUT_VALUE)
 }
 
-// Maps sixteen vertices from x on, all of which have a position. states: from StatesOf.
+// Maps sixteen vertices from x on, all of which have a position, to the slots from i on. states: from StatesOf.
 static __attribute__((always_inline)) void MapSixteen(const MappedRow* row, int x, int i,
   ulong states, RowFlags* flags, const KernelParameters* p ARRAY_PARAMETERS)
 {
@@ -179,7 +179,8 @@ static __attribute__((always_inline)) void MapSixteen(const MappedRow* row, int 
   LANE_ARRAYS(PUT_VALUES_TOGETHER)
 }
 
-// Returns how many vertices must be mapped again so that the last sixteen end at `end`. They begin at an even place.
+// Returns how many vertices must be mapped again so that the last sixteen vertices end at `end`. The first of these
+// must have an even slot.
 static int CountAgain(int x, int begin, int end, int i)
 {
   if (x + 1 >= end || x + 16 <= end)
@@ -191,7 +192,7 @@ static int CountAgain(int x, int begin, int end, int i)
   return again > x - begin ? 0 : again;
 }
 
-// Maps the vertices of a row from x to end. i: place of x in the brick.
+// Maps the vertices of a row from x to end. i: slot of vertex x in the row.
 static RowFlags MapRow(const SamplingMesh* mesh, int x, int end, int i, int y, int z,
   ROW_MEMORY float* slots, ROW_MEMORY const float* restX, ROW_MEMORY float* displaced,
   const KernelParameters* p ARRAY_PARAMETERS)

@@ -7,8 +7,8 @@
 // Vertices are mapped plane by plane as cells need them, and stay in the inner caches: two planes of a brick with 17
 // rows each. A plane is mapped completely before the cells below it are resampled: neighboring rows use the same
 // tetrahedra, which are then still in the innermost cache. A row is split into even and odd vertices. Cells of equal
-// parity, every second one of a row, form a packet, so that all lanes have the same 5T split. Each lane visits its
-// own candidates, until the last lane has none left.
+// parity, every second one of a row, form a packet, so that all lanes have the same 5T split. Each lane visits its own
+// candidates, until all lanes are finished.
 //
 // Data: links 16 bytes per voxel (or runs, or a field), state 1 byte, the arrays in their own types; rows of vertices
 // from BrickMapping.cl. This text comes after PacketResampling.cl.
@@ -16,8 +16,9 @@
 // The host defines before this text, in addition to the macros of Resampling.cl:
 //   ROWS_ARE_GLOBAL      1 if ROW_MEMORY (PacketVertices.cl) is __global, else 0
 
-// Hands the cells of a packet that have a value that IS_SPECIAL to ResampleCell, and no others. (Flags of rows are
-// for eight vertices at once, and depend on where the mapped part of a row begins and ends.)
+// Removes the cells of a packet that have a value that IS_SPECIAL from Fit and Some, so that ResampleCell takes them.
+// The values are tested again because a flag of a row is for eight vertices, and depends on where the mapped part of
+// the row begins and ends.
 static SELDOM void LeaveSpecials(PacketCandidates* c)
 {
   const Packet* const packet = &c->Cells;
@@ -61,7 +62,7 @@ static __attribute__((always_inline)) void ResampleCells(PacketCandidates* c, in
   }
   if (again)
   {
-    // Those cells will write their samples again, after these.
+    // The cells in `again` write all of their samples once more, which must come after the samples found before.
     StoreFound(found, &c->Cells, output, p ARRAY_ARGUMENTS);
   }
   const Candidates all = AllCandidates(p);
@@ -77,13 +78,13 @@ static __attribute__((always_inline)) void ResampleCells(PacketCandidates* c, in
   }
 }
 
-// Resamples the packets of a row of cells, from place begin to before end. beginX, endX: the wanted cells. specials:
-// as in RowFlags. outputs: of the spans of the brick.
+// Resamples the packets of a row of cells, from slot `begin` to before slot `end`. beginX, endX: the wanted cells.
+// specials: as in RowFlags. outputs: one for each span of the brick.
 static void ResampleRow(const RowOfCells* row, int begin, int end, int beginX, int endX,
   uint specials, const SamplingMesh* mesh, Output* outputs, Found* found,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
-  PacketCandidates candidates[2][2]; // of this place and of the next one
+  PacketCandidates candidates[2][2]; // of this slot and of the next packets
   Bounds even;
   BoundQuads(row->Rows, begin, &even);
   FindPairCandidates(row, begin, &even, mesh, OUTPUT_OF_SPAN(outputs, begin), candidates[0],
@@ -160,8 +161,8 @@ typedef struct
   RowFlags (*Flags)[ROWS];  // of the rows of these planes
 } BrickMemory;
 
-// Prepares a brick: sets the rest positions that depend on x, and marks all places as NOT_THERE. x: index of the
-// brick's first cell.
+// Prepares a brick: sets the rest positions that depend on x, and marks all slots as NOT_THERE. x: index of the brick's
+// first cell.
 static void ClearBrick(
   const SamplingMesh* mesh, int x, const BrickMemory* memory, const KernelParameters* p)
 {
@@ -205,7 +206,7 @@ static void MapPlane(const SamplingMesh* mesh, const BrickCells* cells, int z,
   }
 }
 
-// Resamples the cells of a brick above a plane. outputs: of its sections.
+// Resamples the cells of a brick above a plane. outputs: one for each section of the brick.
 static void ResampleLayer(const SamplingMesh* mesh, const BrickCells* cells, int z,
   const BrickMemory* memory, Output* outputs, Found* found,
   const KernelParameters* p ARRAY_PARAMETERS)
@@ -287,8 +288,8 @@ static void ResampleBrick(const SamplingMesh* mesh, uint item, int isAbove, cons
 // Resamples the bricks of a list from p.ListBegin to p.ListEnd. taken: the number of bricks that work-items have
 // taken so far; initially 0. rows: BRICK_FLOATS floats (GetBrickMemory); in global memory, for each work-item.
 //
-// Work-items take small portions in turn, because drivers distribute work-groups in large portions. A thread that was
-// interrupted, or that has more work, would otherwise delay the end of the launch.
+// Each work-item takes a few bricks at a time (p.Portion). If drivers distributed the bricks, a thread would get many
+// at once, and a thread that was interrupted, or that has more work, would delay the end of the launch.
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void ResampleBricks(GIVEN_PARAMETERS,
   __global const uint* bricks, __global uint* taken, ROW_MEMORY float* rows, const KernelParameters p ARRAY_PARAMETERS)
 {

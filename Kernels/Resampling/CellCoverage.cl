@@ -5,16 +5,17 @@
 // lies on a face, edge or vertex that several tetrahedra share, exactly one of them writes the voxel:
 // - inside the mesh, the one that holds the center after a shift by (e, e^2, e^3) for an infinitesimal e > 0
 //   (the top-left rule of triangle rasterization in three dimensions);
-// - at the border of the volume, if all cells exist there, the cell that has the simplex on its low sides, in the
-//   order of the voxel grid, or that is the last one on an axis; and its first tetrahedron;
+// - at the border of the volume, if all cells exist there, the first tetrahedron with the simplex in this cell: on
+//   each axis the simplex touches the low side of the cell in the voxel grid, or the cell is the last one;
 // - elsewhere at the border of the mesh, where any cell may be missing, the one that holds the center after the first
 //   possible shift (+-e, +-e^2, +-e^3), with signs in the order +++, -++, +-+, --+, ++-, ...; if no shift leads into
 //   the mesh, the last one in the order of cells and tetrahedra.
 // Which of the three rules applies depends only on the simplex whose interior contains the center. So all tetrahedra
 // around it decide consistently.
 //
-// Where the mesh is folded, several tetrahedra may write a voxel, and at the crease none. Further passes then visit
-// every tetrahedron that holds the center of such a voxel, and the winner's key decides.
+// If the mesh is folded, several tetrahedra may write a voxel, and some voxels at the crease may have no tetrahedron
+// that writes them. Further passes then visit every tetrahedron that holds the center of such a voxel, and the winner's
+// key decides.
 //
 // The host defines before this text:
 //   OUTLINED  for large functions: empty, or the noinline attribute for compilers that would take many seconds
@@ -53,9 +54,9 @@ static int IsOverstretched(Vector a, Vector b, Vector c, Vector d)
   return max(extent.x, max(extent.y, extent.z)) > MAXIMUM_STRETCH;
 }
 
-// The edge functions of a tetrahedron. That of the face opposite vertex k is Normals[k] . (sample - Origin), plus
-// Volume for k = 0. Edge functions are positive inside. Their sum is Volume, so they are the barycentric weights
-// times Volume.
+// The edge functions of a tetrahedron. The edge function of the face opposite vertex k is Normals[k] . (sample -
+// Origin), plus Volume for k = 0. Edge functions are positive inside. Their sum is Volume, so they are the barycentric
+// weights times Volume.
 typedef struct
 {
   Vector Origin;

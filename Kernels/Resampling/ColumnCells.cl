@@ -16,7 +16,7 @@
 #define FLAG_BORDER 1  // the vertex is not interior
 #define FLAG_SPECIAL 2 // the vertex has a value that IS_SPECIAL
 #define FLAG_APART 4   // the vertex has different positions for the two sides of a smooth cut
-#define FLAG_OUTSIDE 8 // the place is outside the volume
+#define FLAG_OUTSIDE 8 // the slot has no vertex: it is outside the volume
 #define FLAG_WHOLE 16  // the cell whose lowest vertex this is has all of its tetrahedra
 
 // An entry of a deferred cell: the index in the launch's part of the list of bricks times CELLS_OF_BRICK, plus the
@@ -24,15 +24,15 @@
 #define CELLS_OF_BRICK (DEFORMVOLUME_BRICK_X * DEFORMVOLUME_BRICK_Y * DEFORMVOLUME_BRICK_Z)
 #define DEFERRED_BITS 30
 #define DEFERRED_FLOATS 0        // resample the cell like a packet
-#define DEFERRED_INT32 1         // it has been, but for samples that floats do not decide: these, by integers of 32
-                                 // bits; then nothing: ResampleDeferredInt64 never gets this
-#define DEFERRED_SAMPLES_INT64 2 // such samples, by ResampleSamples
-#define DEFERRED_CELL_INT64 3    // the cell, by ResampleCell
+#define DEFERRED_INT32 1         // resample the samples that floats do not decide, by 32-bit integers; all other
+                                 // samples are finished. ResampleDeferredInt64 skips entries with this step.
+#define DEFERRED_SAMPLES_INT64 2 // resample the samples that floats do not decide, by ResampleSamples
+#define DEFERRED_CELL_INT64 3    // resample the cell by ResampleCell
 // There is no further step.
 #define CELL_DONE -1
 
-// Maps a vertex to a place of the rows, with the values of the arrays. Returns its flags. The operations and their
-// order are those of MapOne (BrickMapping.cl).
+// Maps a vertex to a slot of the rows, with the values of the arrays. Returns its flags. The operations and their order
+// are those of MapOne (BrickMapping.cl).
 static uint MapVertex(const SamplingMesh* mesh, int x, int y, int z, ROW_MEMORY float* slot,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
@@ -216,9 +216,9 @@ static __attribute__((always_inline)) int TakeSamples(const PacketCandidates* c,
 }
 
 // Resamples a cell by floats and by 32-bit integers. mesh: null if vertices have no state, or it is not needed.
-// isComplete: whether 32-bit integers decide at once what floats do not, and cells at the border are recognized;
-// otherwise cells must be whole. onlyUndecidedByFloats: resample only these samples. most: largest number of
-// candidates. Returns the next step: CELL_DONE or DEFERRED_...
+// isComplete: whether 32-bit integers decide at once the samples that floats leave undecided, and cells at the border
+// are recognized; otherwise cells must be whole. onlyUndecidedByFloats: resample only these samples. most: largest
+// number of candidates. Returns the next step: CELL_DONE or DEFERRED_...
 static __attribute__((always_inline)) int ResampleColumnCell(PacketCandidates* c, int most,
   const SamplingMesh* mesh, PacketFrame* frame, int isComplete, int onlyUndecidedByFloats, Output* output,
   const KernelParameters* p ARRAY_PARAMETERS)
@@ -249,7 +249,7 @@ static __attribute__((always_inline)) int ResampleColumnCell(PacketCandidates* c
     c, frame, mesh, isComplete, onlyUndecidedByFloats, output, p ARRAY_ARGUMENTS);
 }
 
-// Makes a packet of a cell whose vertices are in rows. row: the place of its vertices in the row of even y and z.
+// Makes a packet of a cell whose vertices are in rows. row: the slot of its vertices in the row of even y and z.
 static __attribute__((always_inline)) void MakeCellPacket(LocalRow row, int oddY, int oddZ, int side,
   int x, int y, int z, uint flags, Packet* cell, const KernelParameters* p)
 {
@@ -265,8 +265,8 @@ static __attribute__((always_inline)) void MakeCellPacket(LocalRow row, int oddY
   cell->Apart = (flags & FLAG_APART) != 0;
 }
 
-// Returns the places of the rows where a work-item keeps the vertices of a deferred cell. Work-groups have at most as
-// many items as there are such places, two in each plane.
+// Returns the slot in which a work-item keeps the vertices of a deferred cell. A cell takes this slot in two rows of
+// each of two planes. Work-groups have at most as many work-items as there are such slots.
 static ROW_MEMORY float* SlotOfItem(ROW_MEMORY float* rows)
 {
   const int item = get_local_id(0);

@@ -33,8 +33,8 @@ static void AddToGroup(const Output* output, __local uint* counts)
   }
 }
 
-// Returns the brick of a work-group; for padding of the launch, a brick without sections to run. Values that follow
-// from the group's number are computed again to save registers.
+// Returns the brick of a work-group; for padding of the launch, a brick without sections to resample. Values that
+// follow from the group's number are computed again to save registers.
 static uint BrickOfGroup(__global const uint* bricks, const KernelParameters* p)
 {
   const int index = p->ListBegin + (int)(get_group_id(0) / DEFORMVOLUME_SPANS);
@@ -63,7 +63,7 @@ static uint NumberInLaunch(int cell, int layer)
     first.x + cell % ROW_CELLS;
 }
 
-// step: the next step for a cell that columns have tried, or must not try.
+// Adds a cell to the list of deferred cells. step: the next step of the exactness chain for this cell.
 static void Defer(__global uint* deferred, uint cell, int step, const KernelParameters* p)
 {
   const uint entry = MakeEntry(cell, step);

@@ -14,14 +14,16 @@ namespace deformvolume
 namespace
 {
 
-// The number of bricks in a launch is chosen so that the list takes this part of the memory, within
-// these limits. Launches of ExactPasses never have more bricks.
+// The number of bricks in a launch is chosen so that the list takes 1 / PartOfMemory of the memory,
+// within the limits LeastBricks and MostBricks. Launches of ExactPasses never have more bricks.
 constexpr std::uint64_t LeastBricks = 64;
 constexpr std::uint64_t MostBricks = 704;
 constexpr std::uint64_t PartOfMemory = 64;
-// The size of a launch that processes the list, whose length the host does not know.
+// The number of work-groups for each compute unit in a launch that processes the list, whose length
+// the host does not know.
 constexpr std::size_t GroupsPerUnit = 16;
-// The largest work-group whose items all have places in local memory (ResampleDeferredInt64).
+// The largest work-group whose work-items all have slots in local memory (SlotOfItem in
+// ColumnCells.cl).
 constexpr std::size_t LargestDeferredGroup =
   std::size_t{ DEFORMVOLUME_SPAN / 2 } * ((DEFORMVOLUME_BRICK_Y / 2 + 1) / 2);
 

@@ -213,7 +213,7 @@ void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
 void ExactPasses::PrepareKernel(cl::Kernel& kernel, const VolumeChunk& chunk,
   const OutputSlab& output, ResamplingForm form, const KernelParameters& parameters)
 {
-  // Parameters without any brick to run.
+  // An empty list of bricks.
   KernelParameters p = parameters;
   p.ListBegin = p.ListEnd = 0;
   this->SetArguments(kernel, chunk, output, form, p);
@@ -285,7 +285,7 @@ std::vector<ExactPasses::PlannedLaunch> ExactPasses::PlanSome(
   p.Pass = pass;
   output.SetParameters(p);
   p.Portion = 1;
-  // As many bricks in a launch as in a pass over all of them.
+  // A launch has as many bricks as a launch of a pass over all bricks.
   const std::size_t step = static_cast<std::size_t>(p.BrickCount[0]) *
     static_cast<std::size_t>(p.BrickCount[1]) *
     static_cast<std::size_t>(this->GetLayersPerLaunch() / DEFORMVOLUME_BRICK_Z);
@@ -423,12 +423,12 @@ void ExactPasses::RunLargeCells(const DeformRequest& request, const OutputSlab& 
   using Piece = std::array<cl_int, 4>;
   std::vector<Piece> pieces;
   pieces.reserve(DEFORMVOLUME_PIECES);
-  std::uint64_t left = 0;
+  std::uint64_t numberOfPieces = 0;
   for (const LargeCellList::LargeCell& cell : cells)
   {
-    left += static_cast<std::uint64_t>(cell.Pieces);
+    numberOfPieces += static_cast<std::uint64_t>(cell.Pieces);
   }
-  this->Launched.Expect(left / DEFORMVOLUME_PIECES + 1);
+  this->Launched.Expect(numberOfPieces / DEFORMVOLUME_PIECES + 1);
   cl::Kernel kernel = this->MakeKernel(request, ResamplingForm::LargeCells, output, pass);
   const std::size_t group = this->Device.GetBusyGroupSize(kernel);
   Reserve(this->Device.GetContext(), this->Pieces, DEFORMVOLUME_PIECES * sizeof(Piece));

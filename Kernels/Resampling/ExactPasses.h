@@ -35,12 +35,12 @@ public:
   ResamplingForm ChooseForm(
     const DeformRequest& request, const OutputSlab& output, int pass = DEFORMVOLUME_PASS_DIRECT);
 
-  /// Runs a pass (such as DEFORMVOLUME_PASS_DIRECT). bricks: the bricks to run
-  /// (DEFORMVOLUME_BRICK_BITS), for a volume with one chunk; null: all. The mapping must be up to
-  /// date (DisplacementSource::PrepareMapping).
+  /// Runs a pass (such as DEFORMVOLUME_PASS_DIRECT). bricks: the bricks to resample
+  /// (DEFORMVOLUME_BRICK_BITS), for a volume with one chunk; null: all bricks. The mapping must be
+  /// up to date (DisplacementSource::PrepareMapping).
   void Run(const DeformRequest& request, const OutputSlab& output, int pass,
     const std::vector<cl_uint>* bricks = nullptr);
-  /// Resamples the large cells that Run has put off.
+  /// Resamples the cells that Run() has added to the list of large cells.
   void RunLargeCells(const DeformRequest& request, const OutputSlab& output, int pass);
 
   /// Returns the approximate number of launches of Run over all cells.
@@ -89,12 +89,12 @@ private:
   DeviceVolume& Volume;
   const DisplacementSource& Source;
   Launches& Launched;
-  cl::Buffer Bricks;               // the list of bricks to run
+  cl::Buffer Bricks;               // the list of bricks to resample
   std::vector<cl_uint> SentBricks; // the content of Bricks
   cl::Buffer BrickRows;            // rows of vertices, if local memory is too small
   cl::Buffer TakenBricks;          // the number of bricks that the current launch has taken
   DeferredCells Deferred;          // cells deferred by a launch by columns
-  cl::Buffer Pieces;               // pieces of large cells to run
+  cl::Buffer Pieces;               // pieces of large cells to resample
 };
 
 } // namespace deformvolume

@@ -91,7 +91,8 @@ bool ExactResampler::IsFolded(const SlabCounts& counts) const
 void ExactResampler::MakeExact(
   const DeformRequest& request, OutputSlab& output, bool isFirst, DeformReport& report)
 {
-  // An output that was folded last time probably still is: run the claiming pass at once.
+  // If the last output was folded, this output probably is folded as well: use the claiming pass at
+  // once.
   const bool expected =
     this->WasContested && this->Budget.HasRoomFor(output.GetWinners().GetMissingMemory());
   if (expected)

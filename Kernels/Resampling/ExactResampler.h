@@ -60,9 +60,9 @@ public:
     bool Overlapping = false; // only set if winners were chosen
   };
   /// Makes some bricks of the last output again, in target 0. The memory of the request must hold
-  /// the last output. First clears some patches there or on the device. Chooses winners if the last
-  /// output chose them. Returns nothing if there are no winners any more, so that the whole output
-  /// must be made.
+  /// the last output. First clears some patches of the output. Chooses winners if the last output
+  /// chose them. Returns nothing if there are no winners any more, so that the whole output must be
+  /// made.
   std::optional<Again> MakeAgain(const DeformRequest& request, const std::vector<cl_uint>& bricks,
     const std::vector<std::uint32_t>& patches);
   /// Counts the covered voxels of some patches of the last output, on the device.
@@ -96,14 +96,15 @@ private:
   /// the claiming one. Returns whether the claims are known in the end.
   bool ChooseWinners(
     const DeformRequest& request, OutputSlab& output, const Outcome& first, bool claimed);
-  /// Runs the last two of these passes: over all bricks, or over those with possible winners.
+  /// Runs the last two of these passes: over all bricks, or over the bricks with possible winners.
   /// claimed: whether the samples that cells hold without owning them are known.
   void WriteWinners(
     const DeformRequest& request, OutputSlab& output, bool hasLargeCells, bool claimed);
   /// Counts the tetrahedra that hold each voxel of a finished slab, in the memory of the winners.
   /// The winners are lost.
   void CountFolds(const DeformRequest& request, OutputSlab& output);
-  /// Whether some tetrahedra are inverted, but not most of them, as in a mirror image.
+  /// Whether some tetrahedra are inverted. False if most of them are, because a mirror image is not
+  /// folded.
   bool IsFolded(const SlabCounts& counts) const;
   void MakeExact(
     const DeformRequest& request, OutputSlab& output, bool isFirst, DeformReport& report);

@@ -40,8 +40,8 @@
 #define GATHER(F, o) F(0, o)
 #endif
 
-// The layout of rest coordinates of a tile in local memory, by axis. On CPUs those of a row are consecutive. If
-// work-items are lanes, neighbors on x and in the next row are in different banks.
+// The layout of rest coordinates of a tile in local memory, by axis. On CPUs the rest coordinates of a row are
+// consecutive. If work-items are lanes, neighbors on x and in the next row are in different banks.
 #if LANES > 1
 #define REST_STEP 1
 #define REST_ROW_STEP (1 << DEFORMVOLUME_TILE_BITS_X)

@@ -136,7 +136,7 @@ static INTS LanesOf(uint bits)
 }
 
 #if LANES > 1
-// Writes the lanes with set bits consecutively to a place. Values after them are overwritten.
+// Writes the lanes with set bits consecutively to memory. Values after these, up to LANES in all, may be overwritten.
 static void Append(INTS v, uint bits, int* target)
 {
 #if LANES == 16 && defined(__AVX512F__)

@@ -22,7 +22,7 @@ public:
   {
   }
 
-  /// Resets everything for a new deformation.
+  /// Resets times and progress for a new deformation.
   void Start();
 
   /// Enqueues a resampling kernel, waits for the previous launch, so that the device always has
@@ -37,8 +37,8 @@ public:
   void ExpectAtLeast(std::size_t launches);
   ///@}
 
-  /// The events of launches that map vertices, and of those that resample. Other classes add their
-  /// launches.
+  /// The events of launches that map vertices, and of launches that resample. Other classes add the
+  /// events of their launches.
   std::vector<cl::Event>& GetMappingEvents() { return this->MappingEvents; }
   std::vector<cl::Event>& GetResamplingEvents() { return this->ResamplingEvents; }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The candidates of packets of cells: the samples in the box of each cell (BrickResampling.cl).
 //
-// Candidates are found one packet ahead. The number of rounds of a packet is hard to predict for the branch
-// predictor. If the number was stored in memory before, a wrong prediction is detected at once, and not only after
-// the preceding computations. There is also time to prefetch the output. They are not found for all packets of a row,
-// as their data would displace the innermost cache. Neighboring cells share vertices, so the bounds of quads (the
-// four vertices at one x) are computed once for a row.
+// Candidates are found one packet ahead. The number of rounds of a packet is hard to predict for the branch predictor.
+// If the number was stored in memory before, a wrong prediction is detected at once, and not only after the preceding
+// computations. There is also time to prefetch the output. Candidates are not found for all packets of a row at once,
+// because their data would displace other data from the innermost cache. Neighboring cells share vertices, so the
+// bounds of quads (the four vertices at one x) are computed once for a row.
 
 #define MAXIMUM_EXTENT 64.0f // voxels; WeighOrigin (PacketValues.cl) relies on this limit
 #define MAXIMUM_CANDIDATES 4096 // of a cell
@@ -17,15 +17,15 @@ typedef struct
 {
   Packet Cells;
   uint There;       // bits of cells with a vertex that has a position, and no vertex outside the volume
-  uint Fit;         // the small ones of these whose tetrahedra are all active and have positions
-  uint Some;        // those of Fit with candidates
+  uint Fit;         // small cells of There whose tetrahedra are all active and have positions
+  uint Some;        // cells of Fit with candidates
   FLOATS Extent;    // the longest edge of the box
   FLOATS BoundScale;     // Extent times the sum of the box's three faces; larger if normals are not exact
   INTS First[3];    // the first candidate, in output voxels
   INTS Count[3];    // number of candidates on each axis
   INTS Voxel;       // index of the first candidate in the output
   INTS Number;      // total number of candidates, for cells with candidates
-  int IsBeyond;     // whether some may lie outside the part of the output that is made
+  int IsBeyond;     // whether some candidates may lie outside the part of the output that is made
   INTS Aligned;     // cells whose edges are parallel to the axes of the output, if HasAligned
   INTS Beside;      // aligned cells with a missing neighbor at a vertex (DecideOnVertices), if HasBeside
   PacketState State; // if HasBeside
@@ -41,10 +41,10 @@ typedef struct
   FLOATS HighX, HighY, HighZ;
 } Bounds;
 
-// Inlined functions do not return structures: Oclgrind does not support the code that compilers make of that.
+// Inlined functions do not return structures: Oclgrind does not support the code that compilers generate for this.
 
 #if LANES > 1
-// Finds the bounds of the quads of four vertices at a place of the rows.
+// Finds the bounds of the quads of four vertices, for LANES slots of the rows from `begin` on.
 static __attribute__((always_inline)) void BoundQuads(const LocalRow* rows, int begin, Bounds* b)
 {
 #define BOUND_QUADS(C, slot)                                                                     \
@@ -93,7 +93,8 @@ static __attribute__((always_inline)) uint FindAxialEdges(const Packet* packet, 
 }
 
 // Finds aligned cells, as in a volume that is undeformed, shifted, scaled along axes or rotated by right angles: each
-// coordinate varies along a single axis of the voxel grid. rises: those whose coordinates grow with the indices.
+// coordinate varies along a single axis of the voxel grid. rises: output: the cells whose coordinates grow with the
+// indices.
 static SELDOM INTS FindAligned(const Packet* packet, int mirror, INTS* rises)
 {
   LOAD_VERTICES
@@ -108,8 +109,8 @@ static SELDOM INTS FindAligned(const Packet* packet, int mirror, INTS* rises)
   return ALIGNED(X) & ALIGNED(Y) & ALIGNED(Z);
 }
 
-// Cells whose edges along an axis are parallel to that axis, while the other two coordinates vary only along their
-// own axes and grow with the indices. For example where tissue is pulled along an axis.
+// Cells whose edges along an axis are parallel to that axis, while the other two coordinates vary only along their own
+// axes and grow with the indices. Such cells occur, for example, if tissue is pulled along an axis.
 typedef struct
 {
   INTS X, Y, Z;
@@ -197,7 +198,7 @@ static __attribute__((always_inline)) void MeasureCells(const Bounds* b, PacketC
   }
 }
 
-// Finds whether there are aligned cells, and which. rises: as for FindAligned.
+// Finds aligned cells, if there are any. rises: as for FindAligned.
 static __attribute__((always_inline)) void LookForAligned(
   PacketCandidates* c, INTS* aligned, INTS* rises, const KernelParameters* p)
 {
@@ -275,9 +276,9 @@ static __attribute__((always_inline)) void FindSamples(
   s->CountZ = END_OF(b->HighZ, toEnds->Z, p->OutputSize[2]) - s->FirstZ;
 }
 
-// The same for the whole output of which this is a part. A cell that extends beyond the part must be handled as in
-// the whole, so that results do not depend on where the part ends. It begins less than MAXIMUM_EXTENT before the
-// part.
+// Finds the samples in the whole output, if only a part of it is made. A cell that extends beyond the part must have
+// the same candidates as in the whole output, so that results do not depend on where the part ends. Such a cell begins
+// less than MAXIMUM_EXTENT before the part.
 static __attribute__((always_inline)) void FindSamplesOfWhole(
   const Bounds* b, const ToEnds* toEnds, SamplesInBounds* s, const KernelParameters* p)
 {
@@ -297,11 +298,12 @@ static __attribute__((always_inline)) void FindSamplesOfWhole(
   s->CountZ = WHOLE_END(b->HighZ, toEnds->Z, 2) - s->FirstZ;
 }
 
-// Takes the samples within the bounds of cells as candidates. inPart: those in the buffers.
+// Takes the samples within the bounds of cells as candidates. inPart: the samples in the part of the output that is
+// made.
 static __attribute__((always_inline)) void SetCandidates(const Bounds* b, const ToEnds* toEnds,
   const SamplesInBounds* inPart, PacketCandidates* c, const KernelParameters* p)
 {
-  // Cells that lie in the part have the same samples in the whole.
+  // A cell that lies in the part has the same samples in the whole output.
   c->IsBeyond = p->IsPart &&
     LaneBits((Least(b->LowX, Least(b->LowY, b->LowZ)) < 0.0f) |
       (inPart->FirstX + inPart->CountX == p->OutputSize[0]) |
@@ -386,9 +388,9 @@ static __attribute__((always_inline)) void FindPacketCandidates(const Bounds* b,
 }
 
 #if LANES > 1
-// Finds the candidates of the two packets at place k of a row of cells, for even and for odd x. Cells of the second
-// packet begin at the odd vertices. even: input: bounds of the quads of even x at this place; output: at the next
-// place. output: of the span of the brick.
+// Finds the candidates of the two packets at slot k of a row of cells, for even and for odd x. Cells of the second
+// packet begin at the odd vertices. even: input: bounds of the quads of even x from slot k on; output: from slot k +
+// LANES on. output: counts the packets of the span.
 static SELDOM void FindPairCandidates(const RowOfCells* row, int k, Bounds* even,
   const SamplingMesh* mesh, Output* output, PacketCandidates* candidates,
   const KernelParameters* p ARRAY_PARAMETERS)

@@ -50,7 +50,8 @@ static void AddStates(INTS row, int o, int mirror, PacketState* states)
     WHERE((row & DEFORMVOLUME_VERTEX_REGULAR << 8) != 0, high);
 }
 
-// The same vertex by vertex: memory outside the array of states must not be read.
+// Loads states vertex by vertex, if a packet extends beyond the array of states: memory outside the array must not be
+// read.
 static void StatesOfLanes(
   const SamplingMesh* mesh, int x, int y, int z, INTS inVolume, PacketState* states, const KernelParameters* p)
 {
@@ -184,8 +185,8 @@ static SELDOM INTS HoldSample(
   NOT_UNROLLED
   for (int t = 0; t < 5; ++t)
   {
-    FLOATS e[3][3]; // edges from the first vertex; below: normals of the faces opposite the others
-    FLOATS n[4][3];
+    FLOATS e[3][3]; // edges from the first vertex to the others
+    FLOATS n[4][3]; // normals of the faces opposite each vertex
     INTS r[3]; // the sample, in 1/256 voxel
     UNROLLED
     for (int axis = 0; axis < 3; ++axis)
@@ -216,7 +217,7 @@ static SELDOM INTS HoldSample(
       n[0][axis] = -(n[1][axis] + n[2][axis] + n[3][axis]);
     }
 #undef NORMAL_OF
-    // In 1/65536 square voxel.
+    // The product of a normal, in 1/65536 square voxel, and a vector in 1/256 voxel.
 #define PRODUCT(k, v) (TO_INTS(n[k][0] * 65536.0f) * (v)[0] + TO_INTS(n[k][1] * 65536.0f) * (v)[1] + \
   TO_INTS(n[k][2] * 65536.0f) * (v)[2])
     const INTS edge[3] = { TO_INTS(e[0][0] * 256.0f), TO_INTS(e[0][1] * 256.0f),

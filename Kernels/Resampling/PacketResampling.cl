@@ -28,7 +28,7 @@ typedef struct
 // from its low sides and out of it from its high sides. So of the four edges the cell owns the part of the lowest one
 // between its ends. At an end of an edge along x, the shift along x decides, as it comes first. At an end of an edge
 // along another axis, the face there may be bent, and the sample is not decided. x, y, z: the samples, in output
-// voxels. Returns the bits of cells that own their sample, and removes the decided ones from undecidedByFloats.
+// voxels. Returns the bits of cells that own their sample, and removes the decided cells from undecidedByFloats.
 static __attribute__((noinline)) uint DecideOnEdges(const Packet* packet, const PacketFrame* f,
   const ParallelEdges* edges, FLOATS x, FLOATS y, FLOATS z, uint* undecidedByFloats, INTS* onVertex,
   const KernelParameters* p)
@@ -213,7 +213,7 @@ static __attribute__((always_inline)) void ResamplePacket(
   const uint again = bent | needsNextStep;
   if (again)
   {
-    // These cells will write their samples again, so these must not be counted twice.
+    // These cells will write their samples again. The samples must not be counted twice.
     for (uint i = 0; i < rounds.Count; ++i)
     {
       rounds.Writes -= popcount(hits[i] & again);
@@ -234,7 +234,7 @@ static __attribute__((noinline)) Outcome ResampleByFloats(
   return outcome;
 }
 
-// Returns the cells for ResampleCell.
+// Resamples the cells in `only` by 32-bit integers. Returns the bits of the cells for ResampleCell.
 static __attribute__((noinline)) uint ResampleByIntegers(
   const PacketCandidates* c, uint only, const SamplingMesh* mesh, Output* output, Found* found,
   const KernelParameters* p ARRAY_PARAMETERS)
@@ -265,7 +265,7 @@ static __attribute__((noinline)) void ResampleUndecided(const PacketCandidates* 
   SamplingMesh keeping = *mesh;
   const Candidates all = AllCandidates(p);
   uint begun = 0; // bits of lanes whose cell was made
-  uint made = 0;  // bits of those that may have samples
+  uint made = 0;  // bits of lanes whose cell may have samples
   // Inverted cells were counted before.
   const uint inverted = output->Inverted;
   for (uint i = 0; i < undecidedSamples->Count; ++i)

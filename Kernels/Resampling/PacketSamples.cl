@@ -6,7 +6,7 @@
 
 typedef ulong __attribute__((may_alias)) TwoInts;
 
-// Two values at once: reading costs as much as writing.
+// Reads two values at once, because reading costs as much as writing.
 #define LANE_STORE_ALL(index, TYPE, BITS, SLOT)                                                    \
   found->Values##index[count] = found->Values##index[count - 1];                                   \
   _Pragma("clang loop vectorize(disable) unroll_count(4)")                                         \
@@ -31,7 +31,7 @@ typedef ulong __attribute__((may_alias)) TwoInts;
   (HAS_OTHER_ARRAYS || (!KEEPS_KEYS && (p)->Pass != DEFORMVOLUME_PASS_DIRECT) ||                   \
     (p)->Pass == DEFORMVOLUME_PASS_MARK)
 
-// Samples that were found but not stored yet. Many are stored at once, as a loop that ends after a few is
+// Samples that were found but not stored yet. Many samples are stored at once, because the end of a short loop is
 // mispredicted each time. Appending always writes LANES values, whatever the number of samples.
 typedef struct
 {
@@ -49,7 +49,7 @@ typedef struct
 
 #define KEEP_VALUE(index, TYPE, BITS, SLOT) found->Values##index[kept] = found->Values##index[i];
 
-// Prefetches the winners: an atomic operation waits for memory and blocks all following ones.
+// Prefetches the winners: an atomic operation waits for memory and blocks all following operations.
 static __attribute__((always_inline)) void FetchWinners(const Found* found, const Output* output)
 {
   for (uint i = 0; i < found->Count; ++i)
@@ -58,7 +58,8 @@ static __attribute__((always_inline)) void FetchWinners(const Found* found, cons
   }
 }
 
-// Lets the cells claim their samples. Moves those that belong to them so far to the front, and returns their number.
+// Claims the samples for their cells. Moves the samples whose cell is the winner so far to the front, and returns their
+// number.
 static uint KeepClaimed(Found* found, const Output* output)
 {
   FetchWinners(found, output);
@@ -75,9 +76,9 @@ static uint KeepClaimed(Found* found, const Output* output)
 
 #define FETCH_OUTPUT(index, TYPE, BITS, SLOT) PREFETCH_TO_WRITE(target##index + voxel)
 
-// Prefetches the output where samples will be stored. Stores retire in order, so one that misses the innermost cache
-// or the TLB delays all others. For neighboring samples, which share cache lines, one prefetch for each four is
-// enough.
+// Prefetches the output where samples will be stored. Stores retire in order, so a store that misses the innermost
+// cache or the TLB delays all following stores. For neighboring samples, which share cache lines, one prefetch for four
+// samples is enough.
 static __attribute__((always_inline)) void FetchFound(
   const Found* found, uint count, __global char* coverage ARRAY_PARAMETERS)
 {
@@ -153,8 +154,8 @@ static void StoreFound(Found* found, const Packet* packet, Output* output,
 }
 
 // Keeps the samples of some cells, given as bits. voxels: output voxels. inverted: lanes with inverted tetrahedra.
-// kept: the number of kept samples, in place of found->Count, which is in memory. Stores all samples if there are too
-// many.
+// kept: the number of kept samples, which replaces found->Count, because it can stay in a register. Stores all samples
+// if there are too many.
 static __attribute__((always_inline)) void KeepSamples(const Packet* packet, uint bits, INTS voxels,
   INTS inverted, const SampleWeights* weights, Found* found, uint* kept, Output* output,
   const KernelParameters* p ARRAY_PARAMETERS)

@@ -15,24 +15,24 @@
 
 #define HALF_ROW ((ROW_CELLS / 2 / LANES + 1) * LANES)
 #define SLOTS (3 + LANE_SLOTS)
-#define ODD (SLOTS * HALF_ROW)   // offset from an even vertex to the odd one at the same place
+#define ODD (SLOTS * HALF_ROW)   // offset from an even vertex to the odd vertex in the same slot
 #define ROW (2 * ODD)
 #define ROWS (CELL_ROWS + 1)
-#define NOT_THERE -1e30f // x of places outside the volume
+#define NOT_THERE -1e30f // x of slots outside the volume
 #define NO_SOURCE 1e30f  // x of vertices without position
 #define STEP (1.0f / 256.0f) // of positions, in voxels
 
 typedef ROW_MEMORY const float* LocalRow;
 
-// Whether the bits of a value show that a sum of products would not give it back bit for bit: -0, values that are not
+// Whether a value, given by its bits, cannot be reproduced bit for bit by a sum of products: -0, values that are not
 // finite, or values so large (2^115) that the sum may overflow. (Weights add up to the determinant, which is under
 // 2^11.)
 #define IS_SPECIAL(bits) ((((bits)&0x7f800000) >= 0x79000000) | ((bits) == INT_MIN))
 
 #if LANES > 1
-// A row of cells between two rows of vertices in each of two planes. Rows: places of even x; bit 0 of the index: odd
-// z, bit 1: odd y, as vertices of a cell are numbered by the parity of their structured indices (CellCoverage.cl).
-// Odd: the parity of y + z.
+// A row of cells between two rows of vertices in each of two planes. Rows: slots of the vertices of even x; bit 0 of
+// the index: odd z, bit 1: odd y, as vertices of a cell are numbered by the parity of their structured indices
+// (CellCoverage.cl). Odd: the parity of y + z.
 typedef struct
 {
   LocalRow Rows[4];
@@ -70,7 +70,7 @@ typedef struct
 // The flags of the vertices of a packet's cells.
 #define PACKET_FLAGS(k) (((2u << (2 * LANES / 8)) - 1) << ((k) >> 2))
 
-// The output that counts the packets at place k.
+// The output that counts the packets at slot k.
 #define OUTPUT_OF_SPAN(outputs, k) ((outputs) + 2 * (k) / DEFORMVOLUME_SPAN)
 
 static __attribute__((always_inline)) void MakePacket(
@@ -83,7 +83,7 @@ static __attribute__((always_inline)) void MakePacket(
 }
 #endif
 
-// The row of a vertex of a packet's cells, and its place in the row.
+// The row of a vertex of a packet's cells, and its slots in the row.
 #if LANES > 1
 #define ROW_OF(packet, v) ((packet)->Rows[(v) >> 1])
 #else

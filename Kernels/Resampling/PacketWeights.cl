@@ -4,14 +4,13 @@
 //
 // Method. The central tetrahedron has the vertices 0, 3, 5, 6 of the cell; l0, l3, l5, l6 are a sample's barycentric
 // coordinates in it. Each corner tetrahedron replaces one of these vertices by vertex 1 (for 6), 2 (for 5), 4 (for 3)
-// or 7 (for 0). In a cell that is not too bent, a sample has at most one negative coordinate li, and lies behind that
-// face. In the corner tetrahedron, the corner vertex then has the weight u = li / bi, where bi < 0 is the corner
-// vertex's own coordinate, and the other vertices have tj = lj - u bj. For samples of the central tetrahedron u = 0
-// and tj = lj. So
-//   u = min(li, 0) / bi for each corner,  tj = max(lj, 0) - sum of u bj
-// are the weights of all eight vertices without a branch, and the sample is in the cell if no tj is negative. All
-// coordinates, and so the tj, are left multiplied by the determinant D of the central tetrahedron, to avoid waiting
-// for a division by D. If D is negative, the normals are reversed.
+// or 7 (for 0). In a cell that is not too bent, a sample has at most one negative coordinate li, and lies behind the
+// face opposite vertex i. In the corner tetrahedron, the corner vertex then has the weight u = li / bi, where bi < 0 is
+// the corner vertex's own coordinate, and the other vertices have tj = lj - u bj. For samples of the central
+// tetrahedron u = 0 and tj = lj. So u = min(li, 0) / bi for each corner, tj = max(lj, 0) - sum of u bj are the weights
+// of all eight vertices without a branch, and the sample is in the cell if no tj is negative. All coordinates, and so
+// the tj, are left multiplied by the determinant D of the central tetrahedron, to avoid waiting for a division by D. If
+// D is negative, the normals are reversed.
 //
 // Exactness. Positions are exact in float (cells under 8 voxels, steps of 1/256), and so are the normals. Let e =
 // 2^-24, and let k >= D be the cell's extent times the largest 1-norm of the normals. The three roundings of l3, l5,

@@ -7,10 +7,10 @@
 // (VoxelWinners.cl), and the arrays in their own types (SampleStoring.cl).
 //
 // A work-group handles a cuboid of cells. It maps the vertices of the cuboid into local memory, each once. Then each
-// work-item takes one cell, neighboring items neighboring cells. Almost all cells are convex enough that a sample
-// needs the edge functions of the central tetrahedron, and at most those of the corner behind one face. Other cells,
-// and cells with many samples, are resampled one tetrahedron after the other, row by row. Cells with very many
-// samples are put off (LargeCells.cl).
+// work-item takes one cell, neighboring items neighboring cells. Almost all cells are convex enough that a sample needs
+// the edge functions of the central tetrahedron, and at most those of the corner behind one face. Other cells, and
+// cells with many samples, are resampled one tetrahedron after the other, row by row. Cells with very many samples are
+// only added to a list (LargeCells.cl).
 
 // A cell of the sampling mesh, with those of its tetrahedra that a smooth cut does not divide; or, with a Side, a
 // view: the copies of the divided tetrahedra for that side.
@@ -68,7 +68,7 @@ static Vector SamplePosition(Vector voxel)
   return r;
 }
 
-// Whether a sample is left out, because its boundary distance is negative or it lies on the other side of the cut.
+// Whether a sample is skipped, because its boundary distance is negative or it lies on the other side of the cut.
 // Distances are interpolated in the tetrahedron like values. weights: of the sample, from edge functions.
 static int IsLeftOut(const Cell* cell, int t, const long* weights)
 {
@@ -144,7 +144,8 @@ static int HasAllAround(const SamplingMesh* mesh, const Cell* cell, const Kernel
 }
 #endif
 
-// s: the sample of the tetrahedron; Volume is 0 if it was not begun yet.
+// Writes a sample that a tetrahedron holds. s: memory for samples of the tetrahedron; Volume is 0 if BeginSamples was
+// not called yet.
 static OUTLINED void Write(const SamplingMesh* mesh, const Cell* cell, int t, const long* weights,
   long volume, Sample* s, Vector voxel, int role, Output* output,
   const KernelParameters* p ARRAY_PARAMETERS)
@@ -174,7 +175,7 @@ static OUTLINED void Write(const SamplingMesh* mesh, const Cell* cell, int t, co
   if (p->Pass != DEFORMVOLUME_PASS_DIRECT)
   {
     const KEY key = MakeKey(cell->X, cell->Y, cell->Z, cell->Inverted >> t & 1, p);
-    // The key may also be there because the cell is repeated (BrickResampling.cl).
+    // The voxel may also have this key because the cell is resampled a second time (BrickResampling.cl).
     if (p->Pass == DEFORMVOLUME_PASS_OWNERS && output->Winners[target] == key &&
       IsWrittenBefore(mesh, cell, t, voxel, p))
     {
@@ -416,7 +417,7 @@ static int AreUnsettled(Candidates c, const Output* output, const KernelParamete
   return AnyUnsettled(output->Patches, first, last, p);
 }
 
-// With more candidates it is faster to take one tetrahedron after the other.
+// For cells with more candidates than this, it is faster to resample one tetrahedron after the other.
 #define MOST_ONE_BY_ONE 128
 
 // Resamples the samples of a cell by the faster of the two methods. all: the wanted samples.
@@ -463,7 +464,8 @@ static int ClippedVertices(const SamplingMesh* mesh, Cell* cell, const KernelPar
 }
 
 // Prepares some tetrahedra of a cell or of a view, given as bits. present: vertices that have a position. clipped:
-// vertices with a negative boundary distance. Returns whether one of the tetrahedra is flat, or left out.
+// vertices with a negative boundary distance. Returns whether one of the tetrahedra is flat, or skipped because it is
+// overstretched.
 static OUTLINED int MakeTetrahedra(
   Cell* cell, int tetrahedra, int present, int clipped, int odd, Output* output)
 {
@@ -539,7 +541,7 @@ static __attribute__((noinline)) void BeginViews(
 }
 
 // Copies what the cell and its views have in common, and prepares their tetrahedra. Returns whether one of these is
-// flat, or left out.
+// flat, or skipped because it is overstretched.
 static __attribute__((noinline)) int FinishViews(
   const Cell* cell, Cell* views, const int* present, int clipped, int odd, Output* output)
 {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The displacements of the vertices of a row (BrickMapping.cl), one or sixteen at a time, with the operations of
-// Displacement (DeformationMapping.cl) in the same order. The results for sixteen vertices are those of even places,
-// then those of odd places.
+// Displacement (DeformationMapping.cl) in the same order. The results for sixteen vertices are the displacements of the
+// vertices in even slots, then of those in odd slots.
 
 #ifdef __x86_64__
 #define PREFETCH(address) __builtin_prefetch((const void*)(size_t)(address));
@@ -11,7 +11,7 @@
 #define PREFETCH_TO_WRITE(address)
 #endif
 
-#define ROW_SLOTS (DEFORMVOLUME_BRICK_X + 16) // number of places of a row; vectors may extend beyond its end
+#define ROW_SLOTS (DEFORMVOLUME_BRICK_X + 16) // number of slots of a row; vectors may extend beyond its end
 
 #define LOAD_UNALIGNED(slot) *(ROW_MEMORY const UnalignedFloat16*)(slot)
 
@@ -21,7 +21,7 @@ typedef struct
   const Mapping* Map;
   int Y, Z;
 #if MAPPING == MAPPING_RUNS
-  ROW_MEMORY const float* Displaced; // by places of the brick; x, y and z in separate rows
+  ROW_MEMORY const float* Displaced; // by slots of the row; x, y and z in separate rows
 #elif MAPPING == MAPPING_FIELD_IN_PLACE
   __global const float* Vectors;
 #elif MAPPING == MAPPING_LINKS
@@ -31,8 +31,8 @@ typedef struct
 
 #if MAPPING == MAPPING_RUNS
 
-// Finds the displacements of the vertices of a row from x to end, and stores them from place i on, with x, y and z in
-// separate rows. They are affine within each run.
+// Finds the displacements of the vertices of a row from x to end, and stores them from slot i on, with x, y and z in
+// separate rows. Displacements are affine within each run.
 static void DisplaceRow(const Mapping* m, int x, int end, int i, int y, int z,
   ROW_MEMORY float* slots, const KernelParameters* p)
 {
@@ -56,7 +56,7 @@ static void DisplaceRow(const Mapping* m, int x, int end, int i, int y, int z,
       const RunDisplacement d = MakeRunDisplacement(record, y, z);
       do
       {
-        // Broadcasting a number is free from memory, but not from another vector.
+        // Broadcasting a number costs nothing if it is loaded from memory, but it does if it is an element of a vector.
         ROW_MEMORY float* const slot = slots + x;
         const float16 offset = ((float)x + steps) - record->Origin[0];
 #define DISPLACE_AXIS(axis, across)                                                                \
@@ -72,7 +72,7 @@ static void DisplaceRow(const Mapping* m, int x, int end, int i, int y, int z,
   }
 }
 
-// Prepares the vertices from x to end. i: place of x in the brick. displaced: memory for their displacements.
+// Prepares the vertices from x to end. i: slot of vertex x. displaced: memory for their displacements.
 static __attribute__((always_inline)) void BeginRow(DisplacedRow* row, int x, int end, int i,
   ROW_MEMORY float* displaced, const KernelParameters* p)
 {
@@ -80,7 +80,7 @@ static __attribute__((always_inline)) void BeginRow(DisplacedRow* row, int x, in
   DisplaceRow(row->Map, x, end, i, row->Y, row->Z, displaced, p);
 }
 
-// Returns the displacement of vertex x, at place i of the brick.
+// Returns the displacement of vertex x, in slot i of the row.
 static __attribute__((always_inline)) float4 DisplaceOne(
   const DisplacedRow* row, int x, int i, const KernelParameters* p)
 {
@@ -150,8 +150,8 @@ static __attribute__((always_inline)) void DisplaceSixteen(const DisplacedRow* r
                i + 12, i + 12, i + 12))
 #endif
 
-// Two node places are read as one 64-bit number, as loads take most of the time here. These macros load the node of
-// the first or second place.
+// The offsets of two nodes are read as one 64-bit number, because loads take most of the time here. These macros load
+// the node with the first or with the second offset.
 #ifdef __ENDIAN_LITTLE__
 #define FIRST_NODE(m, slots) NODE((m)->Nodes, (ulong)(uint)(slots))
 #define SECOND_NODE(m, slots) NODE((m)->Nodes, (slots) >> 32)
@@ -203,7 +203,7 @@ static __attribute__((always_inline)) float16 DisplaceFour(
   return FollowFourLinks(row->Map, row->Links + x);
 }
 
-// Most of the memory that is read are links, each read once: prefetch those of the next row.
+// Prefetches the links of the next row. Most of the memory that is read holds links, and each link is read once.
 static __attribute__((always_inline)) void FetchAhead(
   const DisplacedRow* row, int x, const KernelParameters* p)
 {
