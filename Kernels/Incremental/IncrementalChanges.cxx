@@ -59,7 +59,7 @@ std::vector<unsigned char> IncrementalUpdate::AddCut(const std::vector<CutVertex
 
 void IncrementalUpdate::SetCut(const std::vector<CutVertex>& vertices)
 {
-  this->IsCut = this->AddCut(vertices); // other boxes may stay wider than needed
+  this->IsCut = this->AddCut(vertices); // boxes that were cut before may stay wider than needed
 }
 
 void IncrementalUpdate::SetPoints(BrickPoints&& points)

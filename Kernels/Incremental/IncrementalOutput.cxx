@@ -29,7 +29,8 @@ double GetSecondsSince(const Clock::time_point& begin)
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-// Unique among all outputs of a process: an object can be replaced by another one.
+// Revisions are unique in a process, so that an object that replaces another one does not repeat
+// its revisions.
 std::uint64_t MakeRevision()
 {
   static std::atomic<std::uint64_t> last{ 0 };
@@ -224,7 +225,7 @@ bool IncrementalOutput::TryUpdate(const DeformRequest& request, const Displaceme
   {
     this->Changes.SetPoints(source.MakeBrickPoints());
   }
-  // Counts of writes do not show who owns a voxel where cells overlap.
+  // If cells overlap, the counts of writes do not show which cell owns a voxel.
   const bool won = resampler.HasWinners();
   const bool inside = !won && this->IsChangeInside();
   if (!inside && !this->Changes.HasBoxes())

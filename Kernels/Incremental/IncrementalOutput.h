@@ -47,7 +47,7 @@ public:
     ExactResampler& resampler, DeformReport& report);
 
 private:
-  /// Whether the output is to be left on the device.
+  /// Whether the output stays on the device.
   bool StaysOnDevice(const DeformRequest& request) const;
   bool CanUpdate(const DeformRequest& request, ExactResampler& resampler);
   /// Like Update, but does not discard the last output after a failure.

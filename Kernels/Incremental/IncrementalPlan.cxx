@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// IncrementalUpdate: what to make again, from the changes and the boxes.
+// IncrementalUpdate: chooses the sections to resample and the patches to clear, from the changes
+// and the boxes.
 #include "IncrementalUpdate.h"
 
 #include <algorithm>
@@ -35,8 +36,8 @@ std::size_t CountSections(std::uint32_t bits)
   return count(JoinSpans(bits) & AllSpans) * count(halves & 3) * count(halves >> 2);
 }
 
-// The largest number of points, sections or patches to update. If more change, a full update is
-// faster.
+// Returns the largest number of points, sections or patches to update. If more change, a full
+// update is faster.
 std::size_t GetMost(std::size_t all)
 {
   constexpr double largestFraction = 0.6;

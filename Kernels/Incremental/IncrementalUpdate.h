@@ -48,8 +48,8 @@ public:
   void SetHalo(int halo);
   /// Set the vertices of cells that a smooth cut crosses, after Start.
   void SetCut(const std::vector<CutVertex>& vertices);
-  /// The same while changes are tracked and the last output has the previous cut. Returns for each
-  /// sub-brick whether it has vertices of the new cut; empty if none has.
+  /// Set the vertices of a new cut while changes are tracked and the last output has the previous
+  /// cut. Returns for each sub-brick whether it has vertices of the new cut; empty if none has.
   std::vector<unsigned char> AddCut(const std::vector<CutVertex>& vertices);
   /// Discards the last output.
   void Forget() { this->Tracking = false; }
@@ -76,15 +76,17 @@ public:
   /// Returns a box of the vertices of all sub-bricks with moved points, in local indices.
   Extent GetMovedVertices() const;
   /// Whether only sub-bricks with moved points changed, and all of their vertices are inside the
-  /// sampling mesh. state: of the vertices in a box that contains these (VertexState.cl); null if
-  /// all vertices have a position and all cells are active.
+  /// sampling mesh. state: the states (VertexState.cl) of the vertices in a box, which must contain
+  /// the vertices of these sub-bricks; null if all vertices have a position and all cells are
+  /// active.
   bool IsInside(const unsigned char* state, const Extent& box) const;
 
   /// Whether the boxes that MakePlan needs are known.
   bool HasBoxes() const { return this->BoxesKnown; }
-  /// Finds these boxes. displacements: of numberOfPoints points, after the change.
+  /// Finds the boxes that MakePlan() needs. displacements: of numberOfPoints points, after the
+  /// change.
   void FindBoxes(const Displacements& displacements, std::size_t numberOfPoints);
-  /// Finds the boxes of all sub-bricks. displacements: those of the last output.
+  /// Finds the boxes of all sub-bricks. displacements: the displacements of the last output.
   void FindAllBoxes(const Displacements& displacements);
   /// Finds the boxes of the changed sub-bricks only.
   void FindChangedBoxes(const Displacements& displacements);
@@ -92,8 +94,8 @@ public:
   /// Notes that a mask of vertices or cells changed in some boxes.
   void ChangeMask(const std::vector<Extent>& changes, bool ofCells);
 
-  /// Plans the update. Returns false if a full update is faster. inside: the result of IsInside;
-  /// boxes are not needed then.
+  /// Plans the update. Returns false if a full update is faster. inside: the result of IsInside();
+  /// if true, no boxes are needed.
   bool MakePlan(bool inside, Plan& plan);
 
   /// Returns a box of the output voxels that may change, in structured indices: the union of the
@@ -168,12 +170,12 @@ private:
   std::vector<std::pair<std::size_t, std::uint32_t>> Sections;
   std::vector<Box> Boxes; // valid where Known
   std::vector<unsigned char> Known;
-  bool BoxesKnown = false; // of all changed sub-bricks, and of all that may share patches with them
+  bool BoxesKnown = false; // of changed sub-bricks, and of those that may share patches with these
   std::optional<DisplacementBounds> AllBounds; // of all points, possibly wider
   std::vector<Box> LastBoxes;                  // valid where Moved
   std::vector<unsigned char> Moved;
   std::vector<unsigned char> Masked;
-  std::vector<unsigned char> IsCut; // by the current cut or that of the last output
+  std::vector<unsigned char> IsCut; // by the current cut or by the cut of the last output
 };
 
 } // namespace deformvolume
