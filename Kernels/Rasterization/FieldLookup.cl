@@ -3,8 +3,8 @@
 // volume there. There are no tetrahedra, and voxels do not depend on each other.
 //
 // Data: the vectors of the field, three floats per point, in output voxels. A vector leads from a point of the output
-// to the point of the volume at rest that is seen there. Local memory has rest coordinates and bits of covered
-// voxels, as in MeshRasterization.cl.
+// to the point of the volume at rest whose values the output has there. Local memory has rest coordinates and bits of
+// covered voxels, as in MeshRasterization.cl.
 //
 // A work-group handles one output tile. This text comes after TetrahedronBinning.cl, RestSampling.cl and
 // FieldFading.cl, and needs no macros beyond theirs.
@@ -93,8 +93,8 @@ static void InterpolateField(
   }
 }
 
-// Finds the rest coordinate of voxel number x of a row; voxel: the first voxel of the row. Returns 0 if the voxel is
-// outside the field, or its rest coordinate is outside the volume.
+// Finds the rest coordinate of voxel x of a row, counted from 0. voxel: the first voxel of the row. Returns 0 if the
+// voxel is outside the field, or its rest coordinate is outside the volume.
 static int LookUpRest(__global const float* vectors, const LookupRow* row, const int* voxel, int x,
   __local int* rest, const LookupParameters* f, const RasterParameters* p)
 {
@@ -166,9 +166,9 @@ static int LookUpRest(__global const float* vectors, const LookupRow* row, const
 }
 
 #if LANES == 1
-// Finds the rest coordinates of those voxels of a tile that belong to this work-item; the first component is -1 if
-// there is none. Neighboring work-items take neighboring voxels on x, which read neighboring memory. Always inlined:
-// see SampleTile.
+// Finds the rest coordinates of the voxels of a tile that this work-item takes. The first component is -1 if a voxel
+// has no rest coordinate. Neighboring work-items take neighboring voxels on x, which read neighboring memory. Always
+// inlined: see SampleTile.
 static __attribute__((always_inline)) void FindTileRests(__global const float* vectors, VoxelBox tile,
   const int* origin, __local int* rests, const LookupParameters* f, const RasterParameters* p)
 {
@@ -193,7 +193,7 @@ static __attribute__((always_inline)) void FindTileRests(__global const float* v
   }
 }
 #else
-// Finds the rest coordinates of a row of a tile. Returns a bit for each voxel that has one.
+// Finds the rest coordinates of a row of a tile. Returns the bits of the voxels that have one.
 static uint FindRowRests(__global const float* vectors, VoxelBox tile, const int* origin, int row,
   __local int* rowRests, const LookupParameters* f, const RasterParameters* p)
 {

@@ -20,7 +20,7 @@ namespace
 
 /// The number of cells of the field, on each axis, for which candidates are found together.
 constexpr int BlockSize = 8;
-/// A margin in points of the field, larger than any output.
+/// A margin that is larger than any output, in steps between points of the field.
 constexpr double Infinity = 1e9;
 
 /// The lookup of output voxels in a volume through a field.

@@ -2,18 +2,18 @@
 // Rasterizes the tetrahedra of the deformation mesh into the output, and finds the rest coordinate of each voxel.
 // RestSampling.cl samples the volume there.
 //
-// Data: tetrahedra, positions of nodes and lists of tetrahedra as in TetrahedronBinning.cl; displacements of nodes,
-// 16 bytes each, in output voxels (the last four bytes unused). Local memory has the rest coordinate of each voxel of
-// a tile as three integers: the index relative to the volume's first voxel times 2^FractionBits, in the layout of
-// LaneSampling.cl. It also has two bits per voxel: whether it is covered, and whether a tetrahedron holds it as its
-// own.
+// Data: tetrahedra, positions of nodes and lists of tetrahedra as in TetrahedronBinning.cl; displacements of nodes, 16
+// bytes each, in output voxels (the last four bytes unused). Local memory has the rest coordinate of each voxel of a
+// tile as three integers: the index relative to the volume's first voxel times 2^FractionBits, in the layout of
+// LaneSampling.cl. It also has two bits per voxel: whether it is covered, and whether a tetrahedron holds it after the
+// symbolic shift (`own`).
 //
 // A work-group handles one output tile. Its work-items take the rows of the tile in turn, and each visits the
-// tetrahedra of the tile in their order. Nothing is shared until all rows are done, no voxel has two writers, and the
-// result does not depend on the size of the group. The voxels of a row that a tetrahedron holds form one interval,
-// bounded by four edge functions: integers in (1/256 voxel)^3 that are 0 on a face and positive inside. A float
-// estimate of the ends is corrected by the exact function. So a voxel on a shared face is in both tetrahedra, and the
-// first one takes it.
+// tetrahedra of the tile in their order. Work-items share no data until all rows are done, and a voxel has a single
+// writer. So the result does not depend on the size of the group. The voxels of a row that a tetrahedron holds form one
+// interval, bounded by four edge functions: integers in (1/256 voxel)^3 that are 0 on a face and positive inside. A
+// float estimate of the ends is corrected by the exact function. So a voxel on a shared face is in both tetrahedra, and
+// the first one takes it.
 //
 // RestCoordinates.cl finds the rest coordinates of all wanted voxels of a row.
 //
@@ -27,8 +27,8 @@ static uint Bits(int first, int last)
 }
 
 // Returns the voxels of a row that a tetrahedron holds, relative to the lowest voxel of its box. edges: the edge
-// functions at the lowest voxel. count: number of voxels minus 1. own: the voxels that it still holds after the
-// symbolic shift, which breaks ties on shared faces.
+// functions at the lowest voxel. count: number of voxels minus 1. own: output: the voxels that it holds after the
+// symbolic shift, which decides for voxels on shared faces.
 static uint FindRow(OF_GROUP const TileTetrahedron* t, const long* edges, int count, uint* own)
 {
   int low = 0;
@@ -90,8 +90,8 @@ static uint FindRow(OF_GROUP const TileTetrahedron* t, const long* edges, int co
   return Bits(low, high);
 }
 
-// Returns the voxels of a row that a tetrahedron holds and that no earlier one has taken. first: voxel of the row at
-// the lowest voxel of the tetrahedron's box, where the edge functions are `edges`.
+// Returns the voxels of a row that a tetrahedron holds and that no earlier tetrahedron has taken. first: voxel of the
+// row at the lowest voxel of the tetrahedron's box, where the edge functions are `edges`.
 static uint FindWanted(OF_GROUP const TileTetrahedron* t, const long* edges, int first, __local const uint* covered,
   __local uint* own, int* overlaps)
 {
@@ -103,7 +103,7 @@ static uint FindWanted(OF_GROUP const TileTetrahedron* t, const long* edges, int
   return held & ~*covered;
 }
 
-// Finds the rest coordinates of wanted voxels. Returns those that the volume covers. voxel: the first voxel of the
+// Finds the rest coordinates of wanted voxels. Returns the voxels that the volume covers. voxel: the first voxel of the
 // row.
 static uint CoverRow(OF_GROUP const TileTetrahedron* t, OF_GROUP const RestMap* map, long* edges, const int* voxel,
   const int* origin, uint wanted, VolumeMasks masks, __local int* rowRests, const RasterParameters* p)
@@ -125,8 +125,8 @@ static uint CoverRow(OF_GROUP const TileTetrahedron* t, OF_GROUP const RestMap* 
 }
 
 // Visits all tetrahedra of a tile, for all rows of this work-item. Returns whether tetrahedra overlap. If work-items
-// are lanes, each sets up one tetrahedron for all of them, before each takes a row through these: there are many
-// tetrahedra, and setting one up takes longer than handling a row of it.
+// are lanes, each work-item first sets up some tetrahedra for the whole group, and then visits all of these for its
+// rows: setting up a tetrahedron takes longer than handling one of its rows.
 #if SETUP_IS_SHARED
 typedef struct
 {
@@ -173,7 +173,8 @@ static __attribute__((always_inline)) int RasterizeRows(__global const int4* tet
     {
       int voxel[3];
       FindFirstOfRow(row, origin, voxel);
-      // Collect the tetrahedra of this row first, so that neighboring work-items handle theirs at the same time.
+      // Collect the tetrahedra of this row first, so that neighboring work-items handle their tetrahedra at the same
+      // time.
       uint left = 0;
       for (int i = 0; i < count; ++i)
       {

@@ -39,7 +39,8 @@ private:
   double Compiled = CompilationWatch::GetCurrentSeconds();
 };
 
-// Positions in 1/256 voxel and their differences then fit into 32 bits.
+// The largest position, in output voxels. Positions in 1/256 voxel and their differences fit into
+// 32 bits.
 constexpr double LargestPosition = 1 << 21;
 
 // The number of launches for a slab, so that progress can be reported and the work aborted.
@@ -176,7 +177,7 @@ cl_uint MeshRasterizer::SetArguments(
 {
   const VolumeChunk& chunk = this->Volume->GetChunks().front();
   cl_uint i = this->SetDeformationArguments(this->Kernel);
-  // Some drivers do not accept a null buffer, so pass another one in place of a missing one.
+  // Some drivers do not accept a null buffer, so pass another buffer instead of a missing one.
   this->Kernel.setArg(i++, p.HasActive ? chunk.Active : target.GetCoverage());
   this->Kernel.setArg(i++, p.HasBlanked ? chunk.Blanked : target.GetCoverage());
   this->Kernel.setArg(

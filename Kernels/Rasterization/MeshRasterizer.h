@@ -26,7 +26,7 @@ class WorkDevice;
 
 /// Resamples by rasterizing the tetrahedra of the deformation mesh into the output
 /// (TetrahedronBinning.cl, MeshRasterization.cl, RestSampling.cl). Needs only the arrays and masks
-/// of the volume: no links, states or positions of voxels. Instead of a mesh, an inverse
+/// of the volume, and no links, states or positions of voxels. Instead of a mesh, an inverse
 /// displacement field can be used (FieldLookup.cl).
 class MeshRasterizer : public SlabResampler
 {
@@ -37,17 +37,16 @@ public:
   {
   }
 
-  /// Set the mesh. tetrahedra: node numbers, which must be in range. restNodes: three values per
-  /// node, continuous indices of the volume.
+  /// Set the mesh. tetrahedra: indices of nodes, which must be in range. restNodes: three values
+  /// per node, continuous indices of the volume.
   void SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     const double* restNodes, std::size_t numberOfNodes);
 
   /// Set the displacements: three floats per node, in output voxels, finite.
   void SetDisplacements(const float* displacements);
 
-  /// Set an inverse field in place of a mesh. Its vectors, in output voxels, lead from output
-  /// voxels to their positions in the volume at rest. IndexToField takes the index of an output
-  /// voxel.
+  /// Set an inverse field instead of a mesh. Its vectors, in output voxels, lead from output voxels
+  /// to their positions in the volume at rest. IndexToField takes the index of an output voxel.
   void SetField(const DisplacementField& inverse);
 
   /// Discards the mesh or the field.

@@ -16,8 +16,8 @@ namespace deformvolume
 {
 
 /// A slab of the output that a kernel writes completely, background included. A CPU device writes
-/// directly to the memory of the request if that is aligned. Other devices write to a buffer, which
-/// Read copies.
+/// directly to the memory of the request if this memory is aligned. Other devices write to a
+/// buffer, which Read() copies.
 class RasterTarget
 {
 public:
@@ -29,11 +29,12 @@ public:
 
   const cl::Buffer& GetArray(std::size_t index) const { return this->Memories[index].Buffer; }
   const cl::Buffer& GetCoverage() const { return this->Memories.back().Buffer; }
-  /// Eight bytes for each array; the first of them are the background in the type of the array.
+  /// Eight bytes for each array. The first of these bytes are the background value in the type of
+  /// the array.
   const cl::Buffer& GetBackgrounds() const { return this->Backgrounds; }
 
-  /// Begins to copy the finished slab in a separate queue. The request has its voxels after
-  /// FinishReading, which throws cl::Error if a copy failed.
+  /// Begins to copy the finished slab in a separate queue. The voxels are in the memory of the
+  /// request after FinishReading(), which throws cl::Error if a copy failed.
   void Read(const cl::CommandQueue& queue);
   void FinishReading() { this->Reads.Check(); }
   /// Leaves the slab, which must be the whole output, on the device. queue: for copying it later.

@@ -120,7 +120,7 @@ static void SetRestMap(OF_GROUP const TileTetrahedron* t, int4 ofNodes, __global
 }
 
 // Finds the rest coordinates of some voxels of a row one by one. voxel: the first voxel of the row. edges: the edge
-// functions there. bits: the wanted voxels. Returns those inside the volume.
+// functions there. bits: the wanted voxels. Returns the voxels whose rest coordinates lie inside the volume.
 static uint FindRestsOneByOne(OF_GROUP const TileTetrahedron* t, OF_GROUP const RestMap* map, const long* edges,
   const int* voxel, uint bits, __local int* rests, const RasterParameters* p)
 {
@@ -156,7 +156,7 @@ static uint FindRestsOneByOne(OF_GROUP const TileTetrahedron* t, OF_GROUP const 
   return found;
 }
 
-// The same by forward differences. y and z are relative to the first voxel of the tile.
+// Does the same as FindRestsOneByOne by forward differences. y and z are relative to the first voxel of the tile.
 static uint FindRests(
   OF_GROUP const RestMap* map, int y, int z, uint bits, __local int* rests, const RasterParameters* p)
 {

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Samples the volume at the rest coordinates that MeshRasterization.cl found for a tile of output voxels, and writes
-// the tile: values of all arrays and coverage for covered voxels, background for the others.
+// the tile: the coverage, and the values of all arrays: interpolated for covered voxels, the background value for other
+// voxels.
 //
 // Rest coordinates are integers: the index relative to the volume's first voxel times 2^FractionBits. Interpolation
 // is that of VoxelTaps.cl, linear or cubic. Beyond the border of the volume, cubic interpolation repeats the border
 // voxels.
 //
 // Linear arrays of one component, of type float or 8- or 16-bit integer, are handled in lanes (LaneSampling.cl). All
-// others are handled voxel by voxel in REAL.
+// other arrays are handled voxel by voxel in REAL.
 //
 // The host defines before this text, in addition to the macros of LaneSampling.cl and VoxelTaps.cl:
 //   HAS_MASKS             1 if the volume has masks or boundary distances, else 0

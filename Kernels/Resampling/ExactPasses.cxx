@@ -159,7 +159,7 @@ void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
   kernel.setArg(i++, this->Volume.GetMasks().GetActive(chunk, this->Volume.GetRestPositions()));
   kernel.setArg(i++, this->Volume.GetMasks().GetDistances(chunk, this->Volume.GetRestPositions()));
   kernel.setArg(i++, output.GetCoverageTarget());
-  // Some drivers do not accept a null buffer, so pass another one in place of a missing one.
+  // Some drivers do not accept a null buffer, so pass another buffer instead of a missing one.
   const OutputWinners& winners = output.GetWinners();
   kernel.setArg(i++, winners.GetKeys()() ? winners.GetKeys() : output.GetCoverageTarget());
   kernel.setArg(i++, winners.GetPatches()() ? winners.GetPatches() : output.GetCoverageTarget());
