@@ -15,7 +15,7 @@ namespace deformvolume
 namespace
 {
 
-// All slabs of the output use the same buffers, so the first slab counts.
+// Returns the number of voxels of the first slab. All slabs of the output use the same buffers.
 std::uint64_t CountVoxelsOfSlab(WorkDevice& device, const DeformationSize& size)
 {
   if (GetNumberOfPoints(size.OutputExtent) == 0)
@@ -45,13 +45,13 @@ std::uint64_t CountDeviceMemory(
       MeshRasterizer::GetMemoryNeeded(
         device, outputVoxels, outputBytesPerVoxel, size.NumberOfNodes, size.NumberOfTetrahedra);
   }
-  // The queue of deferred cells (GPUs), and coverage as bits.
-  const std::uint64_t queue =
+  // The list of deferred cells (GPUs), and coverage as bits.
+  const std::uint64_t deferred =
     DeferredCells::GetMemory(device, BrickGrid(size.Grid).GetNumberOfBricks());
-  const std::uint64_t bits = queue > 0 ? CountWords(outputVoxels) * 4 : 0;
+  const std::uint64_t bits = deferred > 0 ? CountWords(outputVoxels) * 4 : 0;
   // Arrays, states, active tetrahedra and blanking; links or runs of a mesh; arrays and coverage of
   // the output; displacements and tetrahedra.
-  return voxels * (sent + 3) + size.MappingBytes + outputVoxels * outputBytesPerVoxel + queue +
+  return voxels * (sent + 3) + size.MappingBytes + outputVoxels * outputBytesPerVoxel + deferred +
     bits + (size.NumberOfNodes + size.NumberOfTetrahedra) * 16;
 }
 

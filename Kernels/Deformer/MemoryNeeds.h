@@ -39,7 +39,8 @@ std::uint64_t GetMappingBytes(const VoxelGrid& grid, bool field, std::uint64_t r
 std::uint64_t CheckDeviceMemory(WorkDevice& device, MemoryBudget& budget,
   const DeformationSize& size, std::uint64_t outputBytesPerVoxel);
 
-/// The same check for the device and for the system. heldBytes: see VolumeDeformer::CheckMemory.
+/// Checks both the memory of the device and the memory of the system. heldBytes: see
+/// VolumeDeformer::CheckMemory.
 void CheckMemory(
   WorkDevice& device, MemoryBudget& budget, const DeformationSize& size, std::uint64_t heldBytes);
 

@@ -30,9 +30,10 @@ namespace deformvolume
 ///
 /// Call SetDevice, SetVoxelGrid and SetArrays; then SetMesh or SetRestMesh and
 /// SetNodeDisplacements, or SetDisplacementField; then Deform any number of times. SetBlanked,
-/// SetActiveTetrahedra, SetBoundaryDistances and SetCut are optional. SetVoxelGrid discards what
-/// was set after it. Pointers are only used during the call, except for data of arrays that have an
-/// owner. Every failure throws an Error; the object can be used again afterwards.
+/// SetActiveTetrahedra, SetBoundaryDistances and SetCut are optional. SetVoxelGrid discards the
+/// arrays, the masks and the deformation. Pointers are only used during the call, except for data
+/// of arrays that have an owner. Every failure throws an Error; the object can be used again
+/// afterwards.
 class DEFORMVOLUME_EXPORT VolumeDeformer
 {
 public:
@@ -41,9 +42,9 @@ public:
   VolumeDeformer(const VolumeDeformer&) = delete;
   VolumeDeformer& operator=(const VolumeDeformer&) = delete;
 
-  /// Set the device (see ResolveDevice); returns its name. A change of device discards all that was
-  /// set. An update begins with this call and ends with Deform: the free memory is measured once in
-  /// it, and again if a fold or a simulation needs more.
+  /// Set the device (see ResolveDevice); returns its name. A change of device discards the volume
+  /// and its deformation. An update begins with this call and ends with Deform. The free memory is
+  /// measured once during an update, and again if a fold or a simulation needs more.
   std::string SetDevice(const std::string& request);
 
   /// Set the memory that may be used on the device, in bytes. Default 0: all that the device (for a
@@ -55,7 +56,7 @@ public:
   void SetAllocationLimit(std::uint64_t bytes);
 
   /// Set the number of work-items in a work-group along the rows of the volume. Default 0: chosen
-  /// for the device. Results do not depend on it.
+  /// for the device. Results do not depend on this size.
   void SetWorkGroupSize(std::size_t size);
 
   /// Checks that a voxel grid, arrays and an output of these sizes fit into memory, before anything
@@ -98,11 +99,10 @@ public:
     const unsigned char* blanked, unsigned char bits = 255, const PointRanges* written = nullptr);
   /// One byte per cell: bit i is set if tetrahedron i is active. Null: all are active.
   void SetActiveTetrahedra(const unsigned char* active, const PointRanges* written = nullptr);
-  /// One float per voxel: its signed distance, in any unit, from the surface of what was carved
-  /// out; negative inside. The distance is interpolated in each tetrahedron. Samples with a
-  /// negative distance are not covered, so the surface can lie between voxels. Not-a-number counts
-  /// as not negative. Null: no sample is left out. Takes 4 bytes per voxel on the device if any
-  /// distance is not 0.
+  /// One float per voxel: its signed distance, in any unit, from the surface of the carved region;
+  /// negative inside it. The distance is interpolated in each tetrahedron. Samples with a negative
+  /// distance are not covered, so the surface can lie between voxels. Not-a-number counts as not
+  /// negative. Null: no distances. Takes 4 bytes per voxel on the device if any distance is not 0.
   void SetBoundaryDistances(const float* distances, const PointRanges* written = nullptr);
   ///@}
 
@@ -128,27 +128,27 @@ public:
   /// nodes have the same displacement, each voxel has exactly that displacement.
   void SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     std::size_t numberOfNodes, const VertexRuns& runs, const MeshBoundary* boundary = nullptr);
-  /// Changes the nodes of some tetrahedra of the mesh that SetMesh set, for example after a split.
-  /// The number and the rest shapes of the tetrahedra stay the same, so their links or runs are
-  /// kept. The number of nodes may change. changes: the changes since the last call, each
+  /// Changes the connectivity of some tetrahedra of the mesh that SetMesh set, for example after a
+  /// split. The number and the rest shapes of the tetrahedra stay the same, so their links or runs
+  /// are kept. The number of nodes may change. changes: the changes since the last call, each
   /// tetrahedron once. Null: changes are found by comparing. Call SetNodeDisplacements afterwards,
   /// with the displacements of all new nodes.
   void ChangeConnectivity(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     std::size_t numberOfNodes, const std::vector<TetrahedronChange>* changes = nullptr);
   /// Opens gaps where the mesh is split: tetrahedra of the sampling mesh with vertices on both
-  /// sides are left out (rule in BridgeMask.cl). numbers: one number per node; nodes with the same
-  /// rest position have the same number. Call this again after SetMesh and ChangeConnectivity. Null
-  /// (default): no gaps.
+  /// sides are switched off (rule in BridgeMask.cl). numbers: one number per node; nodes with the
+  /// same rest position have the same number. Call this again after SetMesh and ChangeConnectivity.
+  /// Null (default): no gaps.
   void SetCoincidentNodes(const std::int32_t* numbers);
-  /// Set the deformation mesh for MeshRasterization, in place of SetMesh. restNodes: three values
-  /// per node, continuous indices of the volume.
+  /// Set the deformation mesh for MeshRasterization. Use this instead of SetMesh. restNodes: three
+  /// values per node, continuous indices of the volume.
   void SetRestMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     std::size_t numberOfNodes, const double* restNodes);
-  /// Set an inverse displacement field for MeshRasterization, in place of SetRestMesh. Its vectors,
-  /// in output voxels, lead from a point of the output to the point of the volume at rest that is
-  /// seen there. IndexToField takes indices of the output. Vectors that are not-a-number on all
-  /// axes are undefined. Output voxels whose interpolation needs an undefined vector are not
-  /// covered.
+  /// Set an inverse displacement field for MeshRasterization. Use this instead of SetRestMesh.
+  /// Vectors of the field, in output voxels, lead from a point of the output to the point of the
+  /// volume at rest whose values the output has there. IndexToField takes indices of the output.
+  /// Vectors that are not-a-number on all axes are undefined. Output voxels whose interpolation
+  /// needs an undefined vector are not covered.
   void SetInverseField(const DisplacementField& field);
   /// Set the displacements of the nodes, three floats each, in output voxels. changes: the nodes
   /// that may have changed since the last successful call for this mesh; other values are not read.
@@ -165,7 +165,8 @@ public:
   void SetNodeDisplacements(const std::shared_ptr<DeviceVectors>& vectors,
     const std::array<double, 9>& toDisplacement = DisplacementField().ToDisplacement);
 
-  /// Set a displacement field. changes: as above, for fields of the same dimensions.
+  /// Set a displacement field. changes: the points that may have changed since the last field,
+  /// which must have the same dimensions. Null: all may have changed.
   void SetDisplacementField(const DisplacementField& field, const PointRanges* changes = nullptr);
 
   /// The same with vectors on the device of the volume. Vectors and Owner of `field` are ignored.

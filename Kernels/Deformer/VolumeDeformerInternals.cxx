@@ -184,7 +184,7 @@ DeformReport VolumeDeformer::Internals::Parts::Rasterize(
 {
   this->Incremental.Forget();
   DeformReport report;
-  // Leave the other half for lists of tetrahedra that become longer than estimated.
+  // Keep half of the spare memory for lists of tetrahedra that become longer than estimated.
   MakeSlabs(this->Rasterizer, this->Device, this->Volume, request, spare / 2, report);
   report.ChangedExtent = request.OutputExtent;
   return report;

@@ -23,7 +23,7 @@
 namespace deformvolume
 {
 
-/// The device of a VolumeDeformer, and what is on it.
+/// The device of a VolumeDeformer, and the data on it.
 class VolumeDeformer::Internals
 {
 public:
@@ -34,7 +34,7 @@ public:
     Parts(WorkDevice& device, MemoryBudget& budget, const VoxelGrid& voxelGrid,
       std::size_t bytesPerVoxel, bool withLinks);
 
-    /// tetrahedra: those of the mesh; null for a field.
+    /// Sets the boundary. tetrahedra: the tetrahedra of the mesh; null for a field.
     void SetBoundary(const MeshBoundary& boundary, const Tetrahedron* tetrahedra);
     /// Finds the boundary of a field, if the mapping of the field changed.
     void UpdateFieldBoundary(const DisplacementField& field);
