@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vtkChainMailDeformation: closed forms in the world, materials, pins and cuts by arrays, what is
-// kept between executions, and vtkDeformVolumeFilter behind it.
+// vtkChainMailDeformation: closed forms in world coordinates, materials, pinned voxels and cuts by
+// arrays, states between executions, and vtkDeformVolumeFilter behind it.
 #include "ChainMailTesting.h"
 
 #include <vtkCallbackCommand.h>
@@ -44,7 +44,7 @@ glm::dvec3 GetWorld(vtkImageData* volume, const glm::dvec3& index)
   return world;
 }
 
-// Displacements fall off by half the world distance along the axes of the volume.
+// Displacements decrease by half of the distance in world units along each axis of the volume.
 void TestWorldForm()
 {
   const auto volume = MakeImage({ { -4, 20, 3, 30, 0, 18 } }, { 0.5, 1.0, 2.0 }, { 10, -5, 2 });
@@ -79,14 +79,15 @@ void TestWorldForm()
       }
     }
   }
-  // Half a unit of 1/65536 of 2, and floats of lengths under 8: three of them, and three sums.
+  // Half a unit, which is 1/65536 of the largest spacing, 2; and rounding of six floats of less
+  // than 8.
   VERIFY(largest <= 2.0 / 131072.0 + 8.0 * 6.0 / 16777216.0);
   VERIFY_EQUAL(dragged.Filter->GetLargestViolation(), 0.0);
   VERIFY(dragged.Filter->GetNumberOfSweeps() > 0);
   VERIFY(!dragged.Filter->GetSummary().empty());
 }
 
-// What is announced are the arrays of the output, not those of the volume.
+// RequestInformation() announces the arrays of the output, not those of the volume.
 void TestAnnouncement()
 {
   const auto volume = MakeVolume({ { 0, 4, 0, 4, 0, 4 } });
@@ -120,7 +121,7 @@ void TestKept()
   const bool isOnHost = array == found;
   const float* memory = found->GetPointer(0);
   const vtkMTimeType time = array->GetMTime();
-  // 7 voxels along the three axes, and so on: an octahedron with half axes of 3 voxels.
+  // The moved voxels are an octahedron whose vertices are 3 voxels from its center.
   VERIFY_EQUAL(dragged.Filter->GetNumberOfMovedVoxels(), vtkIdType{ 63 });
   VERIFY_EQUAL(GetExtent(dragged.Filter->GetOutput()), GetExtent(volume));
   const auto getChanges = [&]
@@ -130,12 +131,12 @@ void TestKept()
     return extent;
   };
   VERIFY_EQUAL(getChanges(), (Extent{ { 0, 15, 8, 15, 8, 15 } }));
-  // The same again: nothing changes.
+  // Another update without changes.
   dragged.Update();
   VERIFY(dragged.GetArray() == array && array->GetMTime() == time);
   VERIFY_EQUAL(dragged.Filter->GetNumberOfMovedVoxels(), vtkIdType{ 0 });
   VERIFY_EQUAL(getChanges(), (Extent{ { 0, -1, 0, -1, 0, -1 } }));
-  // A drag elsewhere: what was moved stays.
+  // A drag of other voxels: the voxels of the first drag stay displaced.
   const glm::dvec3 other(34, 12, 12);
   found = dragged.Drag({ { other, other + glm::dvec3(0, -1, 0) } });
   VERIFY(dragged.GetArray() == array && array->GetMTime() > time);
@@ -143,7 +144,7 @@ void TestKept()
   VERIFY(GetTuple(found, GetId(volume, 8, 12, 12)) == glm::dvec3(2, 0, 0));
   VERIFY(GetTuple(found, GetId(volume, 34, 12, 12)) == glm::dvec3(0, -1, 0));
   VERIFY_EQUAL(getChanges(), (Extent{ { 32, 39, 8, 15, 8, 15 } }));
-  // Relaxation: what is not held goes back.
+  // Relaxation moves voxels back that no handle holds.
   dragged.Filter->SetHandlesData(nullptr);
   dragged.Filter->SetRelaxationSweeps(50);
   dragged.Update();
@@ -156,14 +157,14 @@ void TestKept()
   found->GetRange(range, -1);
   VERIFY_EQUAL(range[1], 0.0);
   VERIFY_EQUAL(getChanges()[0], 0);
-  // Another lattice: other memory. The first stays as it was.
+  // A volume of another extent gets another array.
   const auto larger = MakeVolume({ { 0, 41, 0, 24, 0, 24 } });
   dragged.Filter->SetInputData(larger);
   VERIFY(dragged.Update() != nullptr);
   VERIFY_EQUAL(dragged.Filter->GetOutput()->GetNumberOfPoints(), larger->GetNumberOfPoints());
 }
 
-// A column of stiff voxels moves as a whole.
+// A column of stiff voxels moves like a rigid body.
 template <typename Array>
 void TestLabels(bool byRanges)
 {
@@ -196,7 +197,7 @@ void TestLabels(bool byRanges)
   {
     VERIFY(GetTuple(found, GetId(volume, 6, 6, k)) == glm::dvec3(1, -2, 0.5));
   }
-  // A link between the two gives way half as much as one in soft tissue.
+  // A link between a stiff and a soft voxel yields half as much as a link between soft voxels.
   VERIFY(GetTuple(found, GetId(volume, 7, 6, 11)) == glm::dvec3(0.75, -1.75, 0.25));
 }
 
@@ -217,7 +218,8 @@ void TestPinsAndCuts()
   VERIFY_EQUAL(dragged.Filter->GetNumberOfReleasedHandles(), 0);
   VERIFY(GetTuple(found, GetId(volume, 6, 5, 5)) == glm::dvec3(2, 0, 0));
   VERIFY(GetTuple(found, GetId(volume, 10, 5, 5)) == glm::dvec3(0, 0, 0));
-  // Cut between the two: the drag is possible, and nothing moves beyond the cut.
+  // With a cut between handle and pinned voxels the drag is possible, and does not move voxels
+  // beyond the cut.
   vtkNew<vtkUnsignedCharArray> active;
   active->SetName("ActiveTetrahedra");
   active->SetNumberOfTuples(volume->GetNumberOfCells());
@@ -233,7 +235,8 @@ void TestPinsAndCuts()
   VERIFY(GetTuple(found, GetId(volume, 6, 5, 5)) == glm::dvec3(5, 0, 0));
   VERIFY(GetTuple(found, GetId(volume, 8, 5, 5)) == glm::dvec3(4, 0, 0));
   VERIFY(GetTuple(found, GetId(volume, 9, 5, 5)).x < 1.0);
-  // Sewn together again, which the displacements do not allow: all is put to rest first.
+  // When the cut is closed, the displacements violate the limits of links: all voxels return to
+  // rest.
   active->Fill(31);
   active->Modified();
   dragged.Filter->SetHandlesData(nullptr);
@@ -263,15 +266,15 @@ void TestAborted()
   const unsigned long tag = dragged.Filter->AddObserver(vtkCommand::ProgressEvent, abort);
   dragged.Filter->SetHandlesData(MakeHandles({ { rest, rest + glm::dvec3(9, 0, 0) } }));
   dragged.Filter->Update();
-  VERIFY(HaveEqualBits(Copy(array), before)); // the output has no array now
+  VERIFY(HaveEqualBits(Copy(array), before)); // the array is not in the output of an aborted update
   dragged.Filter->RemoveObserver(tag);
   dragged.Filter->SetAbortExecute(0);
-  dragged.Filter->Update(); // not up to date
+  dragged.Filter->Update(); // executes again after the abort
   found = dragged.GetFloats();
   VERIFY(GetTuple(found, GetId(volume, 20, 20, 20)) == glm::dvec3(9, 0, 0));
 }
 
-// What the filter behind it makes of the displacements, step by step.
+// A vtkDeformVolumeFilter that deforms the volume by the displacements of each step.
 void TestDeformed(const Extent& extent)
 {
   const auto volume = MakeVolume(extent);
@@ -287,7 +290,7 @@ void TestDeformed(const Extent& extent)
     const glm::dvec3 drag(1.0 * step, -1.0, 2.0 - step);
     dragged.Filter->SetHandlesData(MakeHandles({ { rest, rest + drag } }));
     vtkImageData* found = chain.Update();
-    // Within the handle the volume is shifted by whole voxels.
+    // The voxels of the handle are moved by whole voxels.
     for (int i = 19; i <= 21; ++i)
     {
       const auto to = glm::ivec3(glm::dvec3(i, 16, 15) + drag);
@@ -305,20 +308,21 @@ bool IsSame(vtkFloatArray* one, vtkFloatArray* other)
     std::equal(one->Begin(), one->End(), other->Begin());
 }
 
-// An undo of drags, and of a cut that has freed something.
+// Saved states undo drags, also after a cut.
 void TestStates()
 {
   const auto volume = MakeVolume({ { 0, 30, 0, 20, 0, 20 } });
   Dragged dragged(volume);
   VERIFY(!dragged.Filter->RestoreState(0) && !dragged.Filter->RemoveState(0));
-  const vtkIdType rest = dragged.Filter->SaveState(); // before there is anything
+  const vtkIdType rest = dragged.Filter->SaveState(); // before the first execution
   const auto first = Copy(dragged.Drag({ { { 10, 10, 10 }, { 15, 10, 10 } } }));
   const vtkIdType one = dragged.Filter->SaveState();
   const auto second = Copy(dragged.Drag({ { { 20, 10, 10 }, { 20, 14, 12 } } }));
   VERIFY(rest != one && !IsSame(first, second));
   dragged.Filter->SetHandlesData(nullptr);
   VERIFY(dragged.Filter->RestoreState(one));
-  const vtkIdType again = dragged.Filter->SaveState(); // what comes back is the state already
+  const vtkIdType again =
+    dragged.Filter->SaveState(); // a restored state can be saved before an update
   VERIFY(IsSame(dragged.Update(), first));
   VERIFY(dragged.Filter->GetChangedExtent()[0] <= dragged.Filter->GetChangedExtent()[1]);
   VERIFY(dragged.Filter->RestoreState(rest));
@@ -328,7 +332,7 @@ void TestStates()
   VERIFY(IsSame(dragged.Update(), first));
   VERIFY_EQUAL(dragged.Filter->GetNumberOfStates(), 3);
   const vtkTypeInt64 memory = dragged.Filter->GetStateMemory();
-  VERIFY(memory > 6144 && memory < 2 * 60 * 6200); // blocks are shared
+  VERIFY(memory > 6144 && memory < 2 * 60 * 6200); // states share blocks
   VERIFY(dragged.Filter->RemoveState(again) && !dragged.Filter->RestoreState(again));
   VERIFY(dragged.Filter->RemoveState(one));
   VERIFY(dragged.Filter->GetStateMemory() < 100);
@@ -349,7 +353,8 @@ void TestStates()
   const vtkIdType apart = dragged.Filter->SaveState();
   const auto parted = Copy(dragged.Update());
   dragged.Filter->SetHandlesData(nullptr);
-  // The volume is whole again before the state comes back that violates it, and after.
+  // Restore a state from before the cut in the volume without the cut, and a state with the open
+  // cut in the cut volume.
   dragged.Filter->SetInputData(volume);
   VERIFY(dragged.Filter->RestoreState(whole));
   VERIFY(IsSame(dragged.Update(), first));
@@ -357,7 +362,7 @@ void TestStates()
   VERIFY(dragged.Filter->RestoreState(apart));
   VERIFY(IsSame(dragged.Update(), parted));
 
-  // Another volume has other states.
+  // In another volume only the state at rest can be restored.
   dragged.Filter->SetInputData(MakeVolume({ { 0, 20, 0, 20, 0, 20 } }));
   dragged.Update();
   VERIFY(!dragged.Filter->RestoreState(apart));
@@ -380,6 +385,6 @@ int TestChainMailDeformation(int, char*[])
   TestAborted();
   TestStates();
   TestDeformed({ { 0, 40, 0, 30, 0, 30 } });
-  TestDeformed({ { 0, 70, 0, 70, 0, 70 } }); // read where it lies
+  TestDeformed({ { 0, 70, 0, 70, 0, 70 } }); // displacements are read in place
   return GetExitCode();
 }

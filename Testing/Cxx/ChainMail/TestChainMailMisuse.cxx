@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vtkChainMailDeformation: each misuse is one error in words, and the drag goes on afterwards.
+// vtkChainMailDeformation: each misuse is one error, and the next drag works.
 #include "ChainMailTesting.h"
 
 #include <vtkShortArray.h>
@@ -169,7 +169,7 @@ int TestChainMailMisuse(int, char*[])
   TestVolumeArrays(dragged, volume);
   TestMaterials(dragged);
   TestSettings(dragged);
-  // The tissue is where the first drag has left it.
+  // The errors have not changed the displacements of the first drag.
   handles = { { glm::dvec3(9, 6, 6), glm::dvec3(9.5, 9, 6) } };
   VERIFY(HaveEqualBits(dragged.Drag(handles), undisturbed.Drag(handles)));
   VERIFY(undisturbed.Update()->GetComponent(4 + 13 * (6 + 13 * 6), 0) == 2.0);

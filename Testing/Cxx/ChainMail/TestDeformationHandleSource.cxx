@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Handles: misuse, what comes out, and that vtkChainMailDeformation takes them, one or several.
+// vtkDeformationHandleSource: misuse, its output, and drags by vtkChainMailDeformation with one or
+// several handles.
 #include "ChainMailTesting.h"
 #include "vtkDeformationHandleSource.h"
 
