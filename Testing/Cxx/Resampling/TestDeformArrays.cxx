@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Point arrays of the volume: types, components, roles, labels, background, what is not resampled.
+// Point arrays of the volume: types, components, attributes, labels, background, and cell arrays,
+// which are not resampled.
 #include "DeviceNeeds.h"
 #include "FilterTesting.h"
 
@@ -25,7 +26,8 @@ namespace
 
 const Extent Box{ { -3, 6, 2, 9, 0, 8 } };
 
-/// All bytes random; for floating-point types that makes every kind of number and of NaN.
+/// Fills an array with random bytes. Thus floating-point arrays also have denormal numbers,
+/// infinities and NaNs.
 void FillWithRandomBits(vtkDataArray* array, int components, vtkIdType tuples, unsigned int seed)
 {
   array->SetNumberOfComponents(components);
@@ -39,7 +41,8 @@ void FillWithRandomBits(vtkDataArray* array, int components, vtkIdType tuples, u
   }
 }
 
-// Every numeric type of VTK, with 1 to 4 components, comes out of no deformation bit for bit.
+// Without a deformation, arrays of each numeric type, with 1 to 4 components, do not change by a
+// bit.
 void TestIdentityOfTypes()
 {
   const int types[] = { VTK_CHAR, VTK_SIGNED_CHAR, VTK_UNSIGNED_CHAR, VTK_SHORT, VTK_UNSIGNED_SHORT,
@@ -168,7 +171,7 @@ void TestRolesAndFieldData()
   VERIFY(passed && passed->GetValue(0) == "somebody");
 }
 
-// Ids of points are those of some point, whatever arrays are categorical.
+// Global and pedigree ids are never interpolated, even if no array is categorical.
 void TestIds()
 {
   auto volume = MakeImage({ { 0, 8, 0, 8, 0, 8 } });
@@ -204,7 +207,7 @@ void TestIds()
 void TestLabels()
 {
   auto volume = MakeImage({ { 0, 8, 0, 8, 0, 8 } });
-  // Ids that float and double cannot tell apart.
+  // Ids that differ in bits which float and double do not have.
   vtkNew<vtkUnsignedLongLongArray> labels;
   labels->SetName("label");
   labels->SetNumberOfTuples(volume->GetNumberOfPoints());
@@ -241,7 +244,7 @@ void TestLabels()
     }
   }
   VERIFY(counts[0] > 50 && counts[1] > 50 && counts[2] > 50);
-  // As numbers, they are mixed.
+  // Labels that are not categorical are interpolated.
   deformed.Filter->RemoveCategoricalArray("label");
   deformed.Update();
   result = vtkUnsignedLongLongArray::SafeDownCast(deformed.GetValues());
@@ -253,7 +256,7 @@ void TestLabels()
   VERIFY(mixed > 0);
 }
 
-// Nearest interpolation: as if all arrays were categorical, with both resamplers.
+// Nearest interpolation gives the same result as categorical arrays, with both resamplers.
 void TestNearestInterpolation()
 {
   auto volume = MakeImage({ { 0, 8, 0, 8, 0, 8 } });
@@ -279,7 +282,7 @@ void TestNearestInterpolation()
     categorical.Update();
     VERIFY(HaveEqualBits(nearest.GetValues(), categorical.GetValues()));
     VERIFY(!HaveEqualBits(nearest.GetValues(), linear));
-    // And back.
+    // Back to linear interpolation.
     nearest.Filter->SetInterpolationToLinearInterpolation();
     nearest.Update();
     VERIFY(HaveEqualBits(nearest.GetValues(), linear));
@@ -297,7 +300,8 @@ void TestBackgroundAndRounding()
   both->Fill(2.0);
   volume->GetPointData()->AddArray(both);
   auto mesh = MakeMesh(volume);
-  // 10 x moved by 0.625 voxels: 3.75 at the second voxel, and so on; nearest, not cut off.
+  // The value 10 x, moved by 0.625 voxels, is 3.75 at the second voxel. It is rounded, not
+  // truncated.
   SetDisplacements(mesh, Shift(0.625, 0.0, 0.0));
   Deformed deformed(volume, mesh);
   deformed.Filter->SetPadding(1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where voxels go: directions, extents and spacings, and the output's bounds and spacing. A linear
-// function of the world position, carried by an affine map of the world, is the yardstick.
+// Positions of voxels, for volumes with any direction, extent and spacing, and bounds and spacing
+// of the output. The reference is a linear function of the world position under an affine map.
 #include "DeviceNeeds.h"
 #include "FilterTesting.h"
 
@@ -40,8 +40,8 @@ glm::dvec3 GetContinuousIndex(vtkImageData* image, const glm::dvec3& point)
   return index;
 }
 
-/// Values within the slope over 3 x 2^-9 output voxels, and coverage beyond that distance from the
-/// border of the volume.
+/// Checks that values have an error of at most the slope times 3 x 2^-9 output voxels, and that
+/// coverage is right, except near the surface of the volume.
 void CheckValues(Deformed& deformed, vtkImageData* volume, const World& world)
 {
   vtkImageData* output = deformed.Filter->GetOutput();
@@ -87,7 +87,7 @@ void CheckValues(Deformed& deformed, vtkImageData* volume, const World& world)
   }
 }
 
-/// The output's extent holds the deformed volume and not a voxel more.
+/// Checks that the extent of the output is the smallest one that contains the deformed volume.
 void CheckTightExtent(vtkImageData* output, vtkImageData* volume, const World& world)
 {
   const Extent extent = GetExtent(volume);
@@ -179,7 +179,8 @@ void TestOutputSpacing()
     CheckValues(deformed, volume, Oblique);
     CheckTightExtent(output, volume, Oblique);
   }
-  // A whole multiple of an undeformed volume: the voxels that remain are bit for bit the same.
+  // An undeformed volume with a custom spacing that is 1/2, 1 and 2 times its own: values of common
+  // voxels do not change by a bit.
   SetDisplacements(mesh, Shift(0.0, 0.0, 0.0));
   mesh->Modified();
   deformed.Filter->SetCustomSpacing(0.35, 1.3, 4.2);
@@ -216,7 +217,7 @@ void TestOutputBounds()
   VERIFY_EQUAL(GetExtent(deformed.Update()), (Extent{ { -9, 7, 1, 16, -22, -9 } }));
   deformed.Filter->SetPadding(0);
   VERIFY_EQUAL(GetExtent(deformed.Update()), GetExtent(volume));
-  // The voxels x = -7, -6 and z = -12, -11 are left behind.
+  // The volume moved away from the voxels x = -7, -6 and z = -12, -11.
   const vtkIdType expected = 11 * 12 * 8;
   VERIFY_EQUAL(deformed.Filter->GetNumberOfCoveredVoxels(), expected);
   deformed.Filter->SetOutputBoundsModeToCustomBounds();
@@ -231,7 +232,7 @@ void TestOutputBounds()
 
 void TestOutsideTheMesh()
 {
-  // A mesh round the middle of the volume only.
+  // A mesh that contains only the middle of the volume.
   const World shift{ glm::dmat3(1.25, 0, 0, 0, 1, 0, 0, 0, 1), glm::dvec3(3.5, 0.0, 1.25) };
   auto volume =
     MakeWorldVolume(shift, { { 0, 12, 0, 12, 0, 12 } }, glm::dvec3(1.0), glm::dvec3(0.0), false);
@@ -250,7 +251,7 @@ void TestOutsideTheMesh()
   deformed.Update();
   CheckValues(deformed, core, shift);
 
-  // And a field.
+  // The same with a field.
   auto field = MakeImage({ { 0, 5, 0, 6, 0, 4 } }, glm::dvec3(1.0), glm::dvec3(3.0, 3.0, 4.0));
   SetDisplacements(field, Shift(2.0, -1.0, 0.5));
   const World uniform{ glm::dmat3(1.0), glm::dvec3(2.0, -1.0, 0.5) };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Regression image: an MRI of a head, and the same head with a thumb pressed between its eyes. A
-// thumb three voxels beside its place is told from it.
+// thumb at another position, three voxels away, must give a different image.
 #include "PictureTesting.h"
 
 #include <vtkAlgorithm.h>
@@ -33,15 +33,15 @@ void AddVolume(vtkRenderWindow* window, vtkAlgorithm* source, double left, doubl
   vtkNew<vtkPiecewiseFunction> opacity;
   opacity->AddPoint(25.0, 0.0);
   opacity->AddPoint(55.0, 0.9);
-  vtkNew<vtkColorTransferFunction> colour;
-  colour->AddRGBPoint(0.0, 0.9, 0.7, 0.6);
+  vtkNew<vtkColorTransferFunction> color;
+  color->AddRGBPoint(0.0, 0.9, 0.7, 0.6);
   vtkNew<vtkVolume> volume;
   volume->SetMapper(mapper);
   volume->GetProperty()->SetScalarOpacity(opacity);
-  volume->GetProperty()->SetColor(colour);
+  volume->GetProperty()->SetColor(color);
   volume->GetProperty()->SetInterpolationTypeToLinear();
   volume->GetProperty()->ShadeOn();
-  // One baseline for all: VTK 9.1 and 9.2 differ in highlights.
+  // Highlights differ between VTK 9.1 and 9.2, and there is one baseline for all versions.
   volume->GetProperty()->SetSpecular(0.0);
   vtkNew<vtkRenderer> renderer;
   renderer->SetViewport(left, 0.0, right, 1.0);
@@ -56,10 +56,11 @@ void AddVolume(vtkRenderWindow* window, vtkAlgorithm* source, double left, doubl
   window->AddRenderer(renderer);
 }
 
-// Of two pictures that show the same: renderers differ by 0.0002, a thumb beside its place by 0.1.
+// The largest allowed difference from the baseline. Renderers differ by 0.0002, and a thumb at
+// another position makes a difference of 0.1.
 constexpr double LIMIT = 0.05;
 
-// The argument that follows another.
+// The argument that follows the option name.
 std::string GetArgument(int argc, char* argv[], const std::string& name)
 {
   for (int i = 1; i + 1 < argc; ++i)
@@ -72,7 +73,7 @@ std::string GetArgument(int argc, char* argv[], const std::string& name)
   return "";
 }
 
-// A thumb that presses a mesh in, round a place on the nose.
+// Sets displacements by a thumb that presses a point of the nose in.
 void Press(vtkUnstructuredGrid* mesh, const glm::dvec3& nose)
 {
   SetDisplacements(mesh,
@@ -109,7 +110,7 @@ int TestDeformHead(int argc, char* argv[])
   const glm::dvec3 nose(90.0, 213.0, 38.0);
   Press(mesh, nose);
 
-  // The mapper asks for the deformed head by itself.
+  // The mapper updates the filter.
   Deformed deformed(head, mesh);
   vtkNew<vtkRenderWindow> window;
   window->SetSize(600, 300);
@@ -137,7 +138,7 @@ int TestDeformHead(int argc, char* argv[])
     Press(mesh, nose + offset);
     mesh->Modified();
     const double error = Compare(Draw(window), baseline->GetOutput()).Difference;
-    std::cout << "a thumb beside its place differs by " << error << '\n';
+    std::cout << "a thumb at another position differs by " << error << '\n';
     VERIFY(error > LIMIT);
   }
   return GetExitCode();

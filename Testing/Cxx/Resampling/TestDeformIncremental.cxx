@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What GetChangedExtent() says of some updates. That updates in part equal whole ones, and that
-// nothing changes outside this extent, is left to Testing/Fuzz.
+// GetChangedExtent() after different updates. Testing/Fuzz checks that partial updates are equal to
+// whole ones, and that nothing changes outside this extent.
 #include "FilterTesting.h"
 
 #include <algorithm>
@@ -20,7 +20,8 @@ Extent GetChangedExtent(const Deformed& deformed)
   return extent;
 }
 
-// All of the output, nothing of it, and what lies round a node; nothing after an error.
+// The extent is that of the whole output, empty, or that around a moved node. It is empty after an
+// error.
 void TestChangedExtent()
 {
   const auto volume = MakeVolume({ { -3, 130, 2, 90, 0, 80 } });
@@ -45,13 +46,14 @@ void TestChangedExtent()
   vectors->Modified();
   deformed.Update();
   const Extent changed = GetChangedExtent(deformed);
-  const glm::dvec3 place = GetPoint(mesh, node);
+  const glm::dvec3 point = GetPoint(mesh, node);
   const double step[3] = { 140.0 / 11.0, 94.0 / 11.0, 86.0 / 11.0 }; // between nodes
   const int subBrick[3] = { 16, 8, 8 };
   for (int axis = 0; axis < 3; ++axis)
   {
-    const double middle = (&place.x)[axis];
-    // What moves is in it, and of the rest no more than parts of bricks that hold some of it.
+    const double middle = (&point.x)[axis];
+    // The extent contains the tetrahedra of the node, and is not larger than the sub-bricks that
+    // they intersect.
     VERIFY(changed[2 * axis] < middle && middle < changed[2 * axis + 1]);
     VERIFY(changed[2 * axis] >= middle - step[axis] - subBrick[axis] - 1.0);
     VERIFY(changed[2 * axis + 1] <= middle + step[axis] + subBrick[axis] + 2.0);
@@ -73,7 +75,7 @@ void TestChangedExtent()
   expect({ { -5, 132, 0, 92, -2, 82 } });
 }
 
-// What only some devices can do must not change what all others give.
+// The defaults of the property and of the report, and the modified time.
 void TestProperty()
 {
   vtkNew<vtkDeformVolumeFilter> filter;

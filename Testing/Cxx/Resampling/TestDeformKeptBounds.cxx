@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// BoundsGranularity: where the extent of the output ends, when it stays and when it moves; that
-// moves within it are made in part; and that its voxels are those of a filter without it.
+// BoundsGranularity: when the extent of the output is kept, and when it changes. While it is kept,
+// only a part of the output is resampled, and the result is that of a filter without
+// BoundsGranularity.
 #include "FilterTesting.h"
 
 #include <random>
@@ -22,7 +23,7 @@ void TestProperty()
   VERIFY(filter->GetMTime() > time);
 }
 
-/// A volume that is moved as a whole, and what becomes of the extent of the output.
+/// A volume that is translated, and the expected extent of the output.
 class Moved
 {
 public:
@@ -53,22 +54,22 @@ private:
   Deformed Subject;
 };
 
-// The voxels lie from x to x + 9.
+// The voxels of the moved volume are from x to x + 9.
 void TestExtents()
 {
   Moved moved;
   moved.Expect(0.0, 0, 12);
   moved.Expect(3.0, 0, 12);
-  moved.Expect(4.0, 0, 16);  // out at one side, and the other could be 4 nearer only
-  moved.Expect(0.0, 0, 16);  // now this one could
-  moved.Expect(-1.0, -4, 8); // 8 nearer is more than one granule
+  moved.Expect(4.0, 0, 16);  // grows at one end; 4 unused voxels at the other end are kept
+  moved.Expect(0.0, 0, 16);  // 4 unused voxels at the upper end are kept
+  moved.Expect(-1.0, -4, 8); // 8 unused voxels are not kept
   moved.Expect(3.0, -4, 12);
-  moved.Expect(-1.0, -4, 12); // no flicker
+  moved.Expect(-1.0, -4, 12); // does not alternate between two extents
   moved.Expect(9.0, 8, 20);
-  moved.Expect(-9.0, -12, 0); // multiples below 0, too
+  moved.Expect(-9.0, -12, 0); // negative multiples of the granularity
 }
 
-// What is kept is of these settings and this volume only.
+// Other settings, or another volume, reset the extent.
 void TestFreshStarts()
 {
   Moved moved;
@@ -80,12 +81,12 @@ void TestFreshStarts()
   };
   moved.Expect(0.0, 0, 12);
   widen();
-  filter->SetPadding(1); // counts before the rounding
+  filter->SetPadding(1); // is added before the extent is rounded
   moved.Expect(0.0, { { -4, 12, -4, 12, -4, 8 } });
   filter->SetPadding(0);
   moved.Expect(0.0, 0, 12);
   widen();
-  filter->SetOutputBoundsModeToVolumeBounds(); // for which it does not count
+  filter->SetOutputBoundsModeToVolumeBounds(); // ignores BoundsGranularity
   moved.Expect(0.0, { { 0, 9, 0, 8, 0, 7 } });
   filter->SetOutputBoundsModeToDeformedBounds();
   moved.Expect(0.0, 0, 12);
@@ -98,7 +99,7 @@ void TestFreshStarts()
   filter->SetDisplacementScale(1.0);
   moved.Expect(0.0, 0, 12);
   widen();
-  filter->SetBoundsGranularity(1); // off, as 0 is
+  filter->SetBoundsGranularity(1); // has no effect, like 0
   moved.Expect(0.0, { { 0, 9, 0, 8, 0, 7 } });
   filter->SetBoundsGranularity(4);
   moved.Expect(0.0, 0, 12);
@@ -108,7 +109,7 @@ void TestFreshStarts()
   moved.GetVolume()->SetOrigin(0.0, 0.0, 0.0);
   moved.Expect(0.0, 0, 12);
 
-  // An error in between is none of these.
+  // An error does not reset the extent.
   widen();
   moved.GetMesh()->GetPointData()->GetVectors()->SetComponent(0, 0, std::nan(""));
   moved.GetMesh()->GetPointData()->GetVectors()->Modified();
@@ -116,7 +117,7 @@ void TestFreshStarts()
   VERIFY_EQUAL(moved.GetSubject().TakeErrors(), 1);
   moved.Expect(0.0, 0, 16);
 
-  // Too large is one error, whatever makes it so.
+  // An output that is too large because of BoundsGranularity and CustomSpacing is one error.
   filter->SetBoundsGranularity(1000);
   filter->SetOutputSpacingModeToCustomSpacing();
   filter->SetCustomSpacing(1e-6, 1e-6, 1e-6);
@@ -127,7 +128,7 @@ void TestFreshStarts()
   moved.Expect(0.0, 0, 12);
 }
 
-/// Every voxel that both have is the same, and what one has beyond is background.
+/// Whether an image has the same voxels as a smaller one inside the extent of the smaller one.
 bool HaveSameVoxels(vtkImageData* larger, vtkImageData* smaller)
 {
   vtkNew<vtkImageData> cropped;
@@ -136,7 +137,7 @@ bool HaveSameVoxels(vtkImageData* larger, vtkImageData* smaller)
   return GetExtent(cropped) == GetExtent(smaller) && AreEqual(cropped, smaller);
 }
 
-// Nodes on the border of the mesh move, again and again.
+// Nodes on the boundary of the mesh move repeatedly.
 void TestMoves(int resampler)
 {
   const auto volume = MakeVolume({ { -3, 130, 2, 90, 0, 80 } });
@@ -158,12 +159,12 @@ void TestMoves(int resampler)
   VERIFY_EQUAL(GetExtent(kept.Update()), start);
   VERIFY(HaveSameVoxels(kept.Filter->GetOutput(), tight.Update()));
   int parts = 0;
-  int extents = 0; // of the other filter
+  int extents = 0; // number of changes of the extent without BoundsGranularity
   Extent last = GetExtent(tight.Filter->GetOutput());
   constexpr int moves = 20;
   for (int i = 0; i < moves; ++i)
   {
-    // A node on the side where x is greatest.
+    // A node on the side of largest x.
     const auto y = static_cast<int>(random() % 12);
     const auto z = static_cast<int>(random() % 12);
     vectors->SetTuple3((z * 12 + y) * 12 + 11, out(random), aside(random), aside(random));
@@ -178,13 +179,13 @@ void TestMoves(int resampler)
     extents += GetExtent(tight.Filter->GetOutput()) != last ? 1 : 0;
     last = GetExtent(tight.Filter->GetOutput());
   }
-  std::cout << parts << " of " << moves << " moves were made in part, " << extents
+  std::cout << parts << " of " << moves << " moves were partial updates, " << extents
             << " would have changed the extent\n";
   const bool isExact = resampler == vtkDeformVolumeFilter::EXACT;
   VERIFY_EQUAL(parts, isExact ? moves : 0);
   VERIFY(extents > 3);
 
-  // A side goes far out, and comes back.
+  // One side of the mesh moves far away, and back.
   const auto shift = [&](double x)
   {
     for (vtkIdType node = 11; node < vectors->GetNumberOfTuples(); node += 12)
@@ -199,7 +200,7 @@ void TestMoves(int resampler)
   Extent wide = start;
   wide[1] = 176;
   VERIFY_EQUAL(shift(50.0), wide);
-  VERIFY_EQUAL(shift(30.0), wide); // 160 would do
+  VERIFY_EQUAL(shift(30.0), wide); // an end of 160 would suffice
   VERIFY_EQUAL(shift(0.0), start);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An output of more than 2^31 voxels, most of them background. The deformed volume lies at the far
-// end, where 32 bits do not reach.
+// An output of more than 2^31 voxels, most of them background. The deformed volume is at the end of
+// the output, where ids of voxels need more than 32 bits.
 #include "FilterTesting.h"
 
 #include <vtkUnsignedCharArray.h>

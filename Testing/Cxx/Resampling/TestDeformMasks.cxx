@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is no source: inactive tetrahedra, hidden cells, ghost and blanked points.
+// Parts of the volume that are not deformed: inactive tetrahedra, hidden cells, ghost points and
+// blanked points.
 #include "FilterTesting.h"
 
 #include <vtkCellData.h>
@@ -58,13 +59,13 @@ void TestActiveTetrahedra()
   VERIFY_EQUAL(all, 37 * 33 * 29);
   VERIFY(deformed.TakeWarning().empty());
 
-  // Bits above the five mean nothing.
+  // Other bits than the lowest five are ignored.
   active->Fill(255);
   active->Modified();
   VERIFY_EQUAL(CountCovered(deformed), all);
 
-  // One cell of even parity, at (2, 4, 6): the voxels strictly within it that remain. Its corner
-  // tetrahedra 0 to 3 lie at the corners (0,0,1), (1,1,1), (1,0,0), (0,1,0).
+  // Samples inside one cell of even parity, at (2, 4, 6), for each mask of its tetrahedra. Its
+  // corner tetrahedra 0 to 3 are at the corners (0,0,1), (1,1,1), (1,0,0), (0,1,0).
   const int cellIndex[3] = { 2, 4, 6 };
   const vtkIdType cell =
     ((cellIndex[2] - Box[4]) * 8 + cellIndex[1] - Box[2]) * 9 + cellIndex[0] - Box[0];
@@ -83,8 +84,9 @@ void TestActiveTetrahedra()
       {
         for (int i = 1; i < 4; ++i)
         {
-          // A corner tetrahedron holds the points within the distance 1 of its corner, measured
-          // along the axes; a fourth belongs to the central one as well where it is equal to 1.
+          // A corner tetrahedron contains the points whose distance from its corner, as a sum over
+          // the axes, is at most 1. Points at a distance of at least 1 from all four corners are in
+          // the central tetrahedron.
           const glm::dvec3 p = glm::dvec3(i, j, k) / 4.0;
           bool expected = false;
           bool central = true;
@@ -109,7 +111,7 @@ void TestActiveTetrahedra()
   volume->GetCellData()->RemoveArray("ActiveTetrahedra");
   VERIFY_EQUAL(CountCovered(deformed), all);
 
-  // Bytes of no class of their own, as VTK itself makes them since 9.6.
+  // An array of bytes that is not a vtkUnsignedCharArray: VTK makes such arrays since version 9.6.
   const auto plain = vtkSmartPointer<vtkAOSDataArrayTemplate<unsigned char>>::New();
   plain->SetName("ActiveTetrahedra");
   plain->SetNumberOfTuples(volume->GetNumberOfCells());
@@ -129,7 +131,8 @@ void TestHiddenCells()
   auto ghosts = MakeBytes(vtkDataSetAttributes::GhostArrayName(), volume->GetNumberOfCells(), 0);
   ghosts->SetValue((3 * 8 + 4) * 9 + 5, vtkDataSetAttributes::HIDDENCELL);
   volume->GetCellData()->AddArray(ghosts);
-  // Only the middle of the cell; its faces belong to the neighbours, too.
+  // Only the sample in the middle of the cell is not covered: others belong to neighboring cells,
+  // too.
   VERIFY_EQUAL(CountCovered(deformed), all - 1);
 }
 
@@ -152,7 +155,7 @@ void TestHiddenAndDuplicatePoints()
     vtkImageData* output = deformed.Filter->GetOutput();
     VERIFY(!deformed.IsCovered(output->ComputePointId(inside)));
     VERIFY_EQUAL(deformed.GetValues()->GetComponent(output->ComputePointId(inside), 0), 0.0);
-    // What is blank in the volume is nothing to the output.
+    // The output does not get the ghost array of the volume.
     VERIFY(!output->GetPointData()->GetArray(vtkDataSetAttributes::GhostArrayName()));
     ghosts->Fill(0);
     ghosts->Modified();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Arrays of the volume are read where they lie, and arrays of the output serve again: what holds
-// what, and that nobody's data change under them.
+// Arrays of the volume are read in place, and memory of outputs is reused: the references that are
+// held, and that no array changes while somebody else holds it.
 #include "DeviceNeeds.h"
 #include "FilterTesting.h"
 
@@ -27,7 +27,7 @@ struct Subject
 
   void Move(double amount) { SetDisplacements(this->Mesh, Shift(amount, 0.1, 0.0)); }
 
-  /// What a filter that has never run makes of the same.
+  /// The output of a new filter with the same inputs.
   vtkSmartPointer<vtkImageData> GetFresh()
   {
     Deformed fresh(this->Volume, this->Mesh);
@@ -43,7 +43,7 @@ struct Subject
   Deformed Filtered;
 };
 
-// An output that someone holds is left as it is, also where only one array is held.
+// An output that a caller holds is not written again, even if only one of its arrays is held.
 void TestHeldOutputs()
 {
   Subject subject;
@@ -64,7 +64,7 @@ void TestHeldOutputs()
   VERIFY(HaveEqualBits(values, second->GetPointData()->GetScalars()));
 }
 
-// One that nobody holds is written again, and those after the filter see that it has changed.
+// An output that no caller holds is written again, and filters behind it detect the change.
 void TestOutputsServeAgain()
 {
   Subject subject;
@@ -94,7 +94,7 @@ void TestOutputsServeAgain()
   }
 }
 
-// Memory serves outputs of other sizes, as long as not most of it would lie idle.
+// Memory is reused for smaller outputs, unless more than half of it would be unused.
 void TestOutputsOfOtherSizes()
 {
   Subject subject;
@@ -115,7 +115,7 @@ void TestOutputsOfOtherSizes()
     VERIFY_EQUAL(values->GetVoidPointer(0), memory);
     VERIFY_EQUAL(values->GetSize(), size);
   }
-  // A little more, a last time less than half, and held by someone.
+  // A larger output, one of less than half the size, and one while the last output is held.
   VERIFY(update(1.33)->GetSize() > size);
   size = subject.Filtered.GetValues()->GetSize();
   VERIFY(update(0.9)->GetSize() < size / 2);
@@ -127,7 +127,7 @@ void TestOutputsOfOtherSizes()
   VERIFY(AreEqual(held, before));
 }
 
-// What serves again looks like a new one.
+// An array that is reused has the description of a new one.
 void TestDescriptionOfArrays()
 {
   Subject subject;
@@ -152,7 +152,8 @@ void TestDescriptionOfArrays()
   VERIFY(subject.Filtered.GetValues()->GetLookupTable() == nullptr);
 }
 
-// The volume's arrays are not copied by a processor: they are held as long as they are needed.
+// A CPU device does not copy the arrays of the volume. The filter holds references to them as long
+// as it needs them.
 void TestVolumeInPlace()
 {
   Subject subject;
@@ -165,7 +166,7 @@ void TestVolumeInPlace()
   subject.Filtered.Filter->ReleaseDeviceMemory();
   VERIFY_EQUAL(values->GetReferenceCount(), references);
 
-  // An array in another layout is copied, whatever the device.
+  // An array in another memory layout is copied on any device.
   auto soa = vtkSmartPointer<vtkSOADataArrayTemplate<double>>::New();
   soa->SetNumberOfComponents(2);
   soa->SetNumberOfTuples(subject.Volume->GetNumberOfPoints());
@@ -182,11 +183,11 @@ void TestVolumeInPlace()
   VERIFY_EQUAL(soa->GetReferenceCount(), soaReferences);
   if (inPlace)
   {
-    // 16 bytes a voxel or less by runs of the mesh, and the state; not the values.
+    // Device memory holds the static mapping and the states of vertices, not the values.
     VERIFY_EQUAL(subject.Filtered.Filter->GetDeviceMemory(), memory);
   }
 
-  // Another volume takes the place of the first one.
+  // Another volume replaces the first one, whose arrays are released.
   auto other = MakeVolume({ { 0, 24, 0, 19, 0, 18 } });
   subject.Filtered.Filter->SetInputData(other);
   subject.Volume->GetPointData()->RemoveArray("pairs");
@@ -194,7 +195,7 @@ void TestVolumeInPlace()
   VERIFY_EQUAL(values->GetReferenceCount(), references);
 }
 
-// Memory that is given up is not kept behind the back of the pipeline.
+// When the pipeline releases an output, the filter does not keep its memory.
 void TestReleasedOutputs()
 {
   for (const bool failing : { false, true })
@@ -221,8 +222,8 @@ void TestReleasedOutputs()
   }
 }
 
-// What held another deformation is let go of, and counts no more against the limit; also where the
-// volume is another one at the same time.
+// When the deformation is replaced, the memory of the previous one is released and does not count
+// toward the memory limit, even if the volume is replaced at the same time.
 void TestOtherDeformations()
 {
   for (const bool otherVolume : { false, true })

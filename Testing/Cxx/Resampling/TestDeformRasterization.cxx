@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The resampler MESH_RASTERIZATION through the filter, cubic interpolation, and AUTOMATIC.
+// The resamplers MESH_RASTERIZATION and AUTOMATIC of the filter, and cubic interpolation.
 #include "DeviceNeeds.h"
 #include "FilterTesting.h"
 
@@ -87,7 +87,7 @@ void TestMisuse()
     deformed.Filter->GetResamplerInUse(), int(vtkDeformVolumeFilter::MESH_RASTERIZATION));
 }
 
-// Both resamplers give the volume itself, or moved by whole voxels, whatever its geometry.
+// Both resamplers reproduce a volume of any geometry that is at rest, or moved by whole voxels.
 void TestUndeformed()
 {
   for (const double sign : { 1.0, -1.0 })
@@ -118,7 +118,7 @@ void TestUndeformed()
   }
 }
 
-// A linear function under an affine map of the world: its values are known everywhere.
+// A linear function under an affine map of the world.
 void TestAffineMap()
 {
   auto volume = MakeImage(Box, glm::dvec3(0.8, 1.1, -1.3), glm::dvec3(5.0, 6.0, 7.0));
@@ -126,7 +126,7 @@ void TestAffineMap()
   AddScalars<unsigned short>(volume, "integer",
     [&](const glm::dvec3& p) { return std::round(20.0 * function(p) + 2000.0); });
   const vtkSmartPointer<vtkDataArray> integer = volume->GetPointData()->GetScalars();
-  AddScalars<double>(volume, "value", function); // which takes the place of the integers
+  AddScalars<double>(volume, "value", function); // replaces the integers
   volume->GetPointData()->AddArray(integer);
   auto mesh = MakeMesh(volume, 3, 1.0);
   const glm::dmat3 matrix(1.1, 0.2, -0.1, -0.3, 0.9, 0.15, 0.05, -0.2, 1.3);
@@ -151,7 +151,7 @@ void TestAffineMap()
       outside =
         std::max({ outside, bounds[2 * axis] - rest[axis], rest[axis] - bounds[2 * axis + 1] });
     }
-    // Positions are rounded to 1/256 voxel, which moves the border.
+    // Positions are rounded to 1/256 voxel, which moves the surface.
     if (std::abs(outside) > 0.01)
     {
       wrong += deformed.IsCovered(id) != (outside < 0.0);
@@ -159,8 +159,8 @@ void TestAffineMap()
     if (deformed.IsCovered(id))
     {
       ++covered;
-      // Displacements are linear over the mesh, but for the rounding of positions (1/512 voxel on
-      // each axis) and of displacements (float).
+      // Displacements are linear over the mesh, except for the rounding of positions (1/512 voxel
+      // on each axis) and of displacements (float).
       wrong += std::abs(deformed.GetValues()->GetComponent(id, 0) - function(rest)) > 0.02;
       wrong += std::abs(integers->GetComponent(id, 0) - (20.0 * function(rest) + 2000.0)) >
         0.5 + 0.4 + 0.5;
@@ -170,7 +170,7 @@ void TestAffineMap()
   VERIFY_EQUAL(covered, deformed.Filter->GetNumberOfCoveredVoxels());
   VERIFY(covered > 5000);
 
-  // Its report: there is no static mapping, and a moved mesh uploads no volume.
+  // The report: no static mapping is built, and a moved mesh does not upload the volume again.
   VERIFY_EQUAL(GetReported(deformed.Filter, "Static mappings made"), 0);
   VERIFY_EQUAL(GetReported(deformed.Filter, "Volumes sent"), 1);
   VERIFY_EQUAL(GetReportedSeconds(deformed.Filter, "Seconds for the static mapping"), 0.0);
@@ -185,7 +185,7 @@ void TestAffineMap()
   VERIFY_EQUAL(deformed.Filter->GetNumberOfInvertedTetrahedra(), mesh->GetNumberOfCells());
   VERIFY(deformed.Filter->GetNumberOfCoveredVoxels() > 5000);
 
-  // To the other resampler and back.
+  // Change to the other resampler and back.
   deformed.Filter->SetResamplerToExact();
   deformed.Update();
   VERIFY_EQUAL(GetReported(deformed.Filter, "Static mappings made"), 1);
@@ -196,7 +196,7 @@ void TestAffineMap()
     volume->GetPointData()->GetArray("value")));
 }
 
-// In an undeformed volume the masks act at the same places with both resamplers.
+// In an undeformed volume masks hide the same samples with both resamplers.
 void TestMasks()
 {
   auto volume = MakeVolume(Box);
@@ -223,7 +223,7 @@ void TestMasks()
   VERIFY(deformed.Filter->GetNumberOfCoveredVoxels() > 1000);
   VERIFY(deformed.Filter->GetNumberOfCoveredVoxels() < exact->GetNumberOfPoints());
 
-  // A blanked point: nothing is covered that it has a weight in.
+  // With a blanked point, samples to whose value it contributes are not covered.
   volume->GetCellData()->RemoveArray("ActiveTetrahedra");
   vtkNew<vtkUnsignedCharArray> ghosts;
   ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
@@ -253,7 +253,8 @@ void TestMasks()
   }
 }
 
-// Against VTK's own cubic interpolation. That of EXACT is linear beside the border of the volume.
+// Compares cubic interpolation with that of VTK. That of EXACT is linear near the faces of the
+// volume.
 void TestCubic()
 {
   auto volume = MakeImage(Box);
@@ -295,7 +296,7 @@ void TestCubic()
   }
 }
 
-// The memory decides, for all parts of an output alike.
+// The memory limit decides which resampler AUTOMATIC chooses, for all parts of an output alike.
 void TestAutomatic()
 {
   auto volume = MakeVolume({ { 0, 63, 0, 63, 0, 63 } });
@@ -305,7 +306,7 @@ void TestAutomatic()
   deformed.Update();
   VERIFY_EQUAL(deformed.Filter->GetResamplerInUse(), int(vtkDeformVolumeFilter::EXACT));
   const vtkIdType voxels = volume->GetNumberOfPoints();
-  // The least memory that suffices at all is not enough for EXACT.
+  // The least sufficient memory limit is not enough for EXACT.
   vtkIdType limit = voxels;
   do
   {
@@ -336,7 +337,7 @@ void TestAutomatic()
   VERIFY_EQUAL(wrong, 0);
   VERIFY(output->GetNumberOfPoints() >= 34 * 35 * 19);
 
-  // What only the exact resampler can do fails with its error.
+  // Features that need the exact resampler fail with its error.
   deformed.Filter->SetOutsideModeToExtrapolate();
   VERIFY(Contains(GetError(deformed), std::to_string(limit)));
   deformed.Filter->SetOutsideModeToDiscard();

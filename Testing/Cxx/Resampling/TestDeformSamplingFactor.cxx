@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// SamplingFactor: bit by bit the same as a filter whose volume somebody else has subsampled; what
-// is kept where the factor changes and changes back; and what is asked of a source that makes
-// parts.
+// SamplingFactor. The output is equal, bit by bit, to that of a filter whose input is a subsampled
+// volume. Also: which data is kept when the factor changes, and which extents are requested from a
+// source that makes parts.
 #include "DivisionCases.h"
 
 #include <vtkCellData.h>
@@ -24,26 +24,27 @@ int RoundUp(int number, int factor)
   return number;
 }
 
-/// The point of an image at a place. (Only the class above it has this without an array, in VTK
-/// 9.4.)
+/// The id of the point of an image at a position. In VTK 9.4 vtkImageData hides the overload of
+/// vtkDataSet that takes three coordinates.
 vtkIdType FindPoint(vtkImageData* image, double x, double y, double z)
 {
-  double place[3] = { x, y, z };
-  return image->FindPoint(place);
+  double point[3] = { x, y, z };
+  return image->FindPoint(point);
 }
 
-/// Every second or fourth voxel: VTK takes the values; masks are looked up one by one.
+/// A volume of every second or fourth voxel. vtkExtractVOI copies the values; masks are computed
+/// here.
 vtkSmartPointer<vtkImageData> Subsample(vtkImageData* volume, int factor)
 {
   const Extent whole = GetExtent(volume);
-  Extent voi;  // in voxels of the volume
-  Extent left; // in those that are left
+  Extent voi;    // in indices of the volume
+  Extent coarse; // in indices of the coarse volume
   for (int axis = 0; axis < 3; ++axis)
   {
     voi[2 * axis] = RoundUp(whole[2 * axis], factor);
     voi[2 * axis + 1] = -RoundUp(-whole[2 * axis + 1], factor);
-    left[2 * axis] = voi[2 * axis] / factor;
-    left[2 * axis + 1] = voi[2 * axis + 1] / factor;
+    coarse[2 * axis] = voi[2 * axis] / factor;
+    coarse[2 * axis + 1] = voi[2 * axis + 1] / factor;
   }
   vtkNew<vtkImageData> values;
   values->ShallowCopy(volume);
@@ -58,8 +59,8 @@ vtkSmartPointer<vtkImageData> Subsample(vtkImageData* volume, int factor)
   auto made = vtkSmartPointer<vtkImageData>::New();
   made->ShallowCopy(extract->GetOutput());
   const glm::dvec3 first = GetPoint(made, 0);
-  // From another index the cells would be split otherwise.
-  made->SetExtent(left.data());
+  // How cells are split into tetrahedra depends on the parity of their indices.
+  made->SetExtent(coarse.data());
   made->SetOrigin(volume->GetOrigin());
   VERIFY(GetPoint(made, 0) == first);
   VERIFY_EQUAL(made->GetNumberOfPoints(), extract->GetOutput()->GetNumberOfPoints());
@@ -70,17 +71,17 @@ vtkSmartPointer<vtkImageData> Subsample(vtkImageData* volume, int factor)
     mask->SetName(vtkDataSetAttributes::GhostArrayName());
     for (vtkIdType id = 0; id < made->GetNumberOfPoints(); ++id)
     {
-      double place[3];
-      made->GetPoint(id, place);
+      double point[3];
+      made->GetPoint(id, point);
       mask->InsertNextValue(
-        static_cast<unsigned char>(ghosts->GetComponent(volume->FindPoint(place), 0)));
+        static_cast<unsigned char>(ghosts->GetComponent(volume->FindPoint(point), 0)));
     }
     made->GetPointData()->AddArray(mask);
   }
   vtkDataArray* active = volume->GetCellData()->GetArray("ActiveTetrahedra");
   vtkDataArray* cellGhosts = volume->GetCellGhostArray();
   vtkDataArray* crossed = volume->GetCellData()->GetArray("CutTetrahedra");
-  made->GetPointData()->RemoveArray("CutDistance"); // it has no meaning for other cells
+  made->GetPointData()->RemoveArray("CutDistance"); // is not valid for larger cells
   if (active || cellGhosts || crossed)
   {
     vtkNew<vtkUnsignedCharArray> mask;
@@ -109,7 +110,7 @@ vtkSmartPointer<vtkImageData> Subsample(vtkImageData* volume, int factor)
   return made;
 }
 
-/// A filter of the volume that is subsampled by hand.
+/// The output of a filter whose input is subsampled by Subsample().
 vtkSmartPointer<vtkImageData> DeformByHand(const Case& from, int factor)
 {
   Deformed deformed(Subsample(from.Volume, factor), from.Deformation);
@@ -151,7 +152,7 @@ void TestMisuse()
   VERIFY(deformed.Update()->GetNumberOfPoints() > 0);
 }
 
-// Some cells and voxels, few enough that most of the coarse cells are there.
+// Hides some cells and voxels, few enough that most of the coarse cells are active.
 void MaskSome(vtkImageData* volume)
 {
   vtkNew<vtkUnsignedCharArray> active;
@@ -184,7 +185,8 @@ void TestAgainstHand()
     MaskSome(few.Volume);
     cases.push_back(few);
 
-    // Arrays in other layouts and of other sizes; a spacing below 0 and another direction.
+    // Arrays in other memory layouts and with several components; a negative spacing and another
+    // direction.
     Case odd = cases[2];
     odd.Name = "Odd";
     odd.Volume = divisionCases::MakeVolume(GetExtent(odd.Volume));
@@ -236,7 +238,7 @@ void TestAgainstHand()
         VERIFY_EQUAL(output->GetSpacing()[axis], expected->GetSpacing()[axis]);
         VERIFY_EQUAL(output->GetOrigin()[axis], expected->GetOrigin()[axis]);
       }
-      // Where a quarter of the cells have a mask, hardly a coarse one is left.
+      // If masks hide tetrahedra in a quarter of the cells, hardly any coarse cell is active.
       const bool hasMasks = from.Name.find("asks") != std::string::npos;
       VERIFY(deformed.Filter->GetNumberOfCoveredVoxels() > 0 || hasMasks);
       vtkDataArray* scalars = output->GetPointData()->GetScalars();
@@ -249,10 +251,11 @@ void TestAgainstHand()
   }
 }
 
-// A vector for each voxel, of which only those are read that count: by a field of these alone.
+// A field with a vector for each voxel gives the same result as a field with vectors for the coarse
+// voxels only.
 void TestDenseField()
 {
-  const Extent extent{ { -9, 130, 3, 140, -15, 131 } }; // so large that it is read where it lies
+  const Extent extent{ { -9, 130, 3, 140, -15, 131 } }; // so large that it is read in place
   const auto volume = divisionCases::MakeVolume(extent);
   for (const Extent& ends : { extent, Extent{ { -11, 133, 2, 140, -15, 140 } } })
   {
@@ -274,7 +277,7 @@ void TestDenseField()
   }
 }
 
-// An undeformed volume gives the voxels that are left, where they lay.
+// An undeformed volume gives the values and positions of the coarse voxels.
 void TestIdentity()
 {
   const auto volume = divisionCases::MakeVolume({ { -9, 62, 3, 29, -15, 18 } }, glm::dvec3(0.7));
@@ -288,15 +291,15 @@ void TestIdentity()
     deformed.Filter->GetNumberOfCoveredVoxels(), deformed.Filter->GetOutput()->GetNumberOfPoints());
   for (vtkIdType id = 0; id < output->GetNumberOfPoints(); id += 13)
   {
-    double place[3];
-    output->GetPoint(id, place);
-    const vtkIdType from = volume->FindPoint(place);
+    double point[3];
+    output->GetPoint(id, point);
+    const vtkIdType from = volume->FindPoint(point);
     VERIFY_EQUAL(output->GetPointData()->GetArray("double")->GetComponent(id, 0),
       volume->GetPointData()->GetArray("double")->GetComponent(from, 0));
   }
 }
 
-/// A filter whose factor changes, and what it keeps.
+/// A filter whose SamplingFactor changes, and checks of the data that it keeps.
 class Switched
 {
 public:
@@ -324,12 +327,13 @@ public:
     VERIFY(filter->GetDeviceMemory() > bytes);
     for (const int factor : { 1, 2, 1, 2 })
     {
-      // Nothing is built, sent or made, though the output is another one.
+      // No static mapping is built, no volume is sent and no brick is resampled, although the
+      // output changes.
       this->Update(factor);
       VERIFY_EQUAL(GetReportedSeconds(filter, "Seconds for the static mapping"), 0.0);
       this->ExpectParts(true);
     }
-    // What moves at one factor has moved at the other.
+    // A node that moves at one factor has moved at the other, too.
     for (const int factor : { 2, 2, 1, 1, 2, 1 })
     {
       this->MoveNode();
@@ -339,7 +343,7 @@ public:
     VERIFY_EQUAL(GetReported(filter, "Static mappings made"), 2);
     VERIFY_EQUAL(GetReported(filter, "Volumes sent"), 2);
 
-    // Values and masks that change in place.
+    // Values and masks change in place.
     for (const int factor : { 2, 1, 2, 1 })
     {
       vtkDataArray* values = this->Volume->GetPointData()->GetScalars();
@@ -357,7 +361,7 @@ public:
       this->Update(factor);
     }
     VERIFY_EQUAL(GetReported(filter, "Static mappings made"), 2);
-    VERIFY_EQUAL(GetReported(filter, "Volumes sent"), 7); // the last value, at 2
+    VERIFY_EQUAL(GetReported(filter, "Volumes sent"), 7); // the last changed value, for factor 2
 
     // All memory is released, and everything is rebuilt.
     filter->ReleaseDeviceMemory();
@@ -367,7 +371,7 @@ public:
     this->Update(2);
     VERIFY_EQUAL(GetReported(filter, "Static mappings made"), 4);
 
-    // An error belongs to all factors.
+    // An error in the displacements affects all factors.
     vtkDataArray* vectors = this->Mesh->GetPointData()->GetVectors();
     vectors->SetComponent(0, 0, std::nan(""));
     vectors->Modified();
@@ -378,7 +382,7 @@ public:
     this->Update(1);
     this->Update(2);
 
-    // What is kept of a volume goes with it.
+    // When the volume is replaced, the data of the previous one is released for both factors.
     const vtkTypeInt64 both = filter->GetDeviceMemory();
     const auto other = divisionCases::MakeVolume({ { -9, 150, 3, 90, -15, 60 } });
     this->Volume = other;
@@ -422,13 +426,13 @@ private:
   int LastFactor = 0;
 };
 
-// Where the memory suffices for one factor only, the other goes.
+// If the memory limit suffices for one factor only, the data of the other factor is released.
 void TestMemory()
 {
   const auto volume = divisionCases::MakeVolume({ { 0, 99, 0, 99, 0, 99 } });
-  const auto mesh = MakeMesh(volume, 40); // so many nodes that there are links
+  const auto mesh = MakeMesh(volume, 40); // so many nodes that the static mapping has links
   SetDisplacements(mesh, Shift(0.5, 0.0, 0.25));
-  vtkTypeInt64 limit = 1000000; // what one needs, to a tenth
+  vtkTypeInt64 limit = 1000000; // becomes the need of one factor, up to 10 %
   {
     Deformed deformed(volume, mesh);
     deformed.Filter->SetResamplerToExact();
@@ -452,7 +456,7 @@ void TestMemory()
     builds = GetReported(filter, "Static mappings made");
   }
   VERIFY(builds > 2);
-  // With room for both they stay.
+  // If the limit suffices for both factors, their data is kept.
   filter->SetMemoryLimit(2 * limit);
   const auto update = [&](int factor)
   {
@@ -465,7 +469,7 @@ void TestMemory()
   VERIFY_EQUAL(update(2), builds);
 }
 
-// Of a source that makes parts, what the coarse voxels need.
+// From a source that makes parts, only the extents are requested that the coarse voxels need.
 void TestParts()
 {
   for (const Case& from : MakeCases())
@@ -494,7 +498,7 @@ void TestParts()
       cropped->Crop(streamed.Filter->GetOutput()->GetExtent());
       VERIFY(AreEqual(streamed.Filter->GetOutput(), cropped));
     }
-    if (from.Name == "Extrapolated mesh") // which needs the whole
+    if (from.Name == "Extrapolated mesh") // needs the whole volume
     {
       VERIFY_EQUAL(source->GetMost(), from.Volume->GetNumberOfPoints());
       continue;
@@ -505,7 +509,7 @@ void TestParts()
       VERIFY(std::all_of(made.begin(), made.end(), [](int end) { return end % 2 == 0; }));
     }
   }
-  // One that makes no parts is asked for the whole, as it is.
+  // A source that does not make parts is executed once, for the whole volume.
   const Case from = MakeCases()[2];
   Deformed whole;
   vtkNew<PartSource> source;

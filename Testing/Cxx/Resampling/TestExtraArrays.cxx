@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What follows the deformation beside the volume's own values: rest positions, Jacobians, and
-// densities, whose sum stays.
+// Additional arrays of the output: rest positions, Jacobians, fold counts, and densities, whose sum
+// the deformation does not change.
 #include "FilterTesting.h"
 
 #include <glm/common.hpp>
@@ -21,8 +21,8 @@ using namespace filterTesting;
 namespace
 {
 
-// A blob that fades to nothing well inside the volume, as short and as double; and a linear
-// function.
+// A volume with a blob that is 0 near the faces of the volume, as short and as double, and with a
+// linear function.
 vtkSmartPointer<vtkImageData> MakeDose(const Extent& extent = { { 0, 39, 0, 37, 0, 35 } },
   const glm::dvec3& spacing = glm::dvec3(1.0), bool isOblique = false)
 {
@@ -40,7 +40,8 @@ vtkSmartPointer<vtkImageData> MakeDose(const Extent& extent = { { 0, 39, 0, 37, 
     return square < 1.0 ? 20000.0 * (1.0 - square) * (1.0 - square) : 0.0;
   };
   AddScalars<short>(volume, "dose", blob);
-  volume->GetPointData()->SetActiveScalars(nullptr); // else they would be replaced
+  volume->GetPointData()->SetActiveScalars(
+    nullptr); // otherwise AddScalars() would replace the array
   AddScalars<double>(volume, "activity", blob);
   volume->GetPointData()->SetActiveScalars(nullptr);
   AddScalars<float>(
@@ -121,7 +122,7 @@ void TestMisuse()
   filter->SetResamplerToAutomatic();
   for (const char* name : { "Jacobian", "RestPosition", "RestPosition y" })
   {
-    volume->GetPointData()->SetActiveScalars(nullptr); // else they would be replaced
+    volume->GetPointData()->SetActiveScalars(nullptr); // otherwise the array would be replaced
     AddScalars<float>(volume, name, [](const glm::dvec3& p) { return p.x; });
     refuse("has a point array \"" + std::string(name) + "\"");
     volume->GetPointData()->RemoveArray(name);
@@ -136,7 +137,8 @@ void TestMisuse()
   VERIFY_EQUAL(output->GetPointData()->GetArray("dose")->GetDataType(), VTK_SHORT);
 }
 
-// At rest: Jacobian 1, each voxel in its place, the values as they were, integers as floats.
+// Without displacements Jacobians are 1, rest positions are those of the output, and values do not
+// change. Densities of integers are floats.
 void TestAtRest()
 {
   const auto volume = MakeDose({ { -3, 20, 2, 18, 0, 16 } }, glm::dvec3(0.7, 1.1, 2.0), true);
@@ -168,7 +170,7 @@ void TestAtRest()
   }
 }
 
-// What an affine map has to give, of all kinds of deformations, on all kinds of grids.
+// The exact results of an affine map, for all kinds of deformations and grids.
 void TestAffine()
 {
   const glm::dmat3 matrix(1.2, 0.1, -0.05, -0.15, 0.85, 0.1, 0.05, -0.1, 1.1);
@@ -181,7 +183,7 @@ void TestAffine()
   {
     const auto volume =
       MakeDose({ { 0, 29, -4, 22, 3, 27 } }, glm::dvec3(0.9, 1.1, 1.3), isOblique);
-    // The deformations end outside the volume, or within it.
+    // The mesh named tight ends inside the volume.
     const auto mesh = MakeMesh(volume, 4, 2.0);
     SetDisplacements(mesh, map);
     const auto tight = MakeMesh(volume, 5, -4.3);
@@ -218,7 +220,7 @@ void TestAffine()
           glm::dvec3 rest;
           subject.Get("RestPosition")->GetTuple(id, &rest.x);
           farthest = std::max(farthest, glm::distance(rest, back(GetPoint(output, id))));
-          // Which has been interpolated in the same way.
+          // The values of this array are interpolated like the rest position.
           VERIFY(std::abs(subject.Get("linear")->GetComponent(id, 0) -
                    (0.3 * rest.x - 0.7 * rest.y + 1.1 * rest.z)) < 1e-4);
         }
@@ -235,7 +237,7 @@ void TestAffine()
   }
 }
 
-// Presses the middle together, to half the volume at the most, and stretches what lies round it.
+// Compresses the middle to no less than half of its volume, and stretches the region around it.
 glm::dvec3 Press(const glm::dvec3& p, const glm::dvec3& middle)
 {
   const glm::dvec3 r = p - middle;
@@ -243,7 +245,7 @@ glm::dvec3 Press(const glm::dvec3& p, const glm::dvec3& middle)
   return square < 1.0 ? middle + r * (1.0 - 0.206 * (1.0 - square) * (1.0 - square)) : p;
 }
 
-// The sum of densities stays, in meshes and fields, whatever the output's grid.
+// The sum of densities does not change, with meshes and fields, and for any grid of the output.
 void TestSums()
 {
   for (const bool isOblique : { false, true })
@@ -284,10 +286,10 @@ void TestSums()
           if (!(std::abs(ratio - 1.0) < 0.005))
           {
             ++GetNumberOfFailures();
-            std::cerr << "the sum of " << name << " is " << ratio << " times what it was, in a "
+            std::cerr << "the sum of " << name << " is " << ratio << " times that at rest, with a "
                       << deformation->GetClassName() << '\n';
           }
-          // Without the division it would not.
+          // Without the division by the Jacobian the sum changes.
           VERIFY(Sum(plain.Update(), name) < 0.8 * sum);
         }
         double least = 2.0;
@@ -296,13 +298,14 @@ void TestSums()
           const double jacobian = subject.Get("Jacobian")->GetComponent(id, 0);
           least = subject.IsCovered(id) ? std::min(least, jacobian) : least;
         }
-        VERIFY(least > 0.49 && least < 0.6); // 0.5006 where the map is not made linear
+        VERIFY(least > 0.49 && least < 0.6); // 0.5006 without linear interpolation of the map
       }
     }
   }
 }
 
-// Tissue that is kept has Jacobians, too: what is pressed together beside a body that moves.
+// Tissue that is kept outside a moving body is compressed on one side and stretched on the other:
+// it has Jacobians, too.
 void TestKept()
 {
   const auto volume = MakeImage({ { 0, 49, 0, 39, 0, 35 } });
@@ -333,19 +336,19 @@ void TestKept()
     }
     double range[2];
     subject.Get("Jacobian")->GetRange(range);
-    // 1.5 times 2.5 / 9 at the steepest.
+    // The largest slope of the fading displacement is 1.5 times 2.5 / 9.
     VERIFY(range[0] > 0.55 && range[0] < 0.62 && range[1] > 1.38 && range[1] < 1.45);
-    // In the body nothing is pressed, and far away nothing moves.
+    // The Jacobian is 1 inside the body, and far away from it.
     int inside[3] = { 26, 20, 18 };
     int far[3] = { 2, 3, 33 };
-    for (int* place : { inside, far })
+    for (int* index : { inside, far })
     {
-      VERIFY_EQUAL(subject.Get("Jacobian")->GetComponent(output->ComputePointId(place), 0), 1.0);
+      VERIFY_EQUAL(subject.Get("Jacobian")->GetComponent(output->ComputePointId(index), 0), 1.0);
     }
   }
 }
 
-// Beside undefined points of a field the Jacobian is that of the points that are defined.
+// Near undefined points of a field the Jacobian is computed from the defined points only.
 void TestHoles()
 {
   const glm::dmat3 matrix(1.2, 0.1, -0.05, -0.15, 0.85, 0.1, 0.05, -0.1, 1.1);
@@ -375,7 +378,7 @@ void TestHoles()
       subject.Filter->SetFieldIsInverse(isInverse);
       subject.Expect("");
       const std::int64_t covered = subject.Filter->GetNumberOfCoveredVoxels();
-      // Whose vectors are zero, so that nothing else of the field changes.
+      // Hide three points, and set their vectors to zero.
       for (int z = 8; z < 11; ++z)
       {
         int hidden[3] = { 10, 9, z };
@@ -398,7 +401,7 @@ void TestHoles()
   }
 }
 
-// A fold: one warning says what is lost, and what is inside out has no density.
+// A fold causes one warning with the lost density. Inverted tetrahedra have no density.
 void TestFolds()
 {
   const auto volume = MakeDose();
@@ -423,14 +426,15 @@ void TestFolds()
     const double jacobian = subject.Get("Jacobian")->GetComponent(id, 0);
     VERIFY((jacobian > 0.0) == (subject.Get("dose")->GetComponent(id, 0) != -3.0));
   }
-  // Upright parts win, but their values are not those of the others.
+  // Tetrahedra that are not inverted win, and the density of inverted ones is lost.
   VERIFY(Sum(output, "activity") < 0.95 * Sum(volume, "activity"));
-  // Where the upright parts are switched off, those that are inside out show. Their background is
-  // that of voxels that are not covered, also where a float cannot hold it.
+  // If the tetrahedra that are not inverted are switched off, inverted ones are visible. They have
+  // the background of voxels that are not covered, even if a float cannot represent
+  // BackgroundValue.
   for (vtkIdType id = 0; id < active->GetNumberOfTuples(); ++id)
   {
     const vtkIdType x = id % 39;
-    const bool isUpright = x < 14 || x > 24; // not near the middle
+    const bool isUpright = x < 14 || x > 24; // not inverted
     active->SetValue(id, isUpright && id / 39 % 37 < 12 ? 0 : 31);
   }
   active->Modified();
@@ -446,7 +450,7 @@ void TestFolds()
     VERIFY((isLost || !subject.IsCovered(id)) == (value == std::numeric_limits<float>::max()));
   }
   VERIFY(lost > 500);
-  // The same share is lost where little changes.
+  // There is no other warning if the lost density changes only slightly.
   active->SetValue(0, 0);
   active->Modified();
   subject.Expect("");
@@ -456,7 +460,7 @@ void TestFolds()
   subject.Expect("");
 }
 
-// A mirror image is inside out, and hides nothing.
+// In a mirrored volume all tetrahedra are inverted, but none overlap.
 void TestMirrored()
 {
   const auto volume = MakeDose();
@@ -472,7 +476,8 @@ void TestMirrored()
   VERIFY(std::abs(range[0] + 1.0) < 1e-5);
 }
 
-// How many times a map that folds along x leads somewhere, found from where it turns.
+// Fold counts of a map that folds along x. The reference counts the intervals between voxels whose
+// images contain a sample.
 void TestFoldCounts()
 {
   const auto volume = MakeDose({ { 0, 60, 0, 12, 0, 11 } });
@@ -481,11 +486,11 @@ void TestFoldCounts()
     const double r = (x - 23.0) / 15.0;
     return x - (std::abs(r) < 1.0 ? 30.0 * r * (1.0 - r * r) * (1.0 - r * r) : 0.0);
   };
-  // Linear from voxel to voxel, as the volume is moved.
+  // The field has points at voxels, so it is linear between voxels like the deformed volume.
   const auto field = MakeImage({ { 0, 60, 0, 12, 0, 11 } });
   field->CopyStructure(volume);
   SetDisplacements(field, [&](const glm::dvec3& p) { return glm::dvec3(map(p.x), p.y, p.z); });
-  // The same in a mesh that the volume's cells divide, and one that ends within the volume.
+  // A mesh with the same displacements, whose nodes are between voxels.
   vtkNew<vtkLatticeTetrahedraSource> source;
   source->SetNumberOfNodes(62, 2, 2);
   source->EqualSpacingOff();
@@ -525,12 +530,12 @@ void TestFoldCounts()
         }
       }
       VERIFY(folded > 500);
-      // Another update, which is not made of the last one.
+      // A change of a vector, for another update.
       vtkDataArray* vectors = field->GetPointData()->GetVectors();
       vectors->SetTuple3(0, 0.0, 0.0, 0.0);
       vectors->Modified();
     }
-    // In pieces, too.
+    // Fold counts of pieces are equal to those of the whole output.
     vtkNew<vtkImageData> whole;
     whole->DeepCopy(subject.Filter->GetOutput());
     for (int piece = 0; piece < 3; ++piece)
@@ -552,19 +557,19 @@ void TestFoldCounts()
   subject.Filter->Update();
   VERIFY_EQUAL(subject.TakeErrors(), 1);
   VERIFY(subject.LastError.find("fold counts") != std::string::npos);
-  // Nothing lies over itself.
+  // Without a fold the count is 1.
   subject.Filter->SetResamplerToAutomatic();
   SetDisplacements(mesh, Shift(1.0, 0.0, 0.0));
   subject.Update()->GetPointData()->GetArray("FoldCount")->GetRange(range);
   VERIFY_EQUAL(range[1], 1.0);
 }
 
-// What changes a part of the output leaves nothing of before there: nodes, masks, values.
+// After changes of nodes, masks and values the output is equal to that of a new filter.
 void TestIncremental()
 {
   const auto volume = MakeDose();
   const auto active = AddActiveTetrahedra(volume);
-  // Without densities the output is made of the last one.
+  // The kinds 2 and 3 have no densities, so their outputs can be updated in part.
   for (const int kind : { 0, 1, 2, 3 })
   {
     const bool keeps = kind % 2 == 1;
@@ -607,7 +612,7 @@ void TestIncremental()
       VERIFY(AreEqual(subject.Filter->GetOutput(), fresh.Filter->GetOutput()));
     }
     VERIFY_EQUAL(GetReported(subject.Filter, "Static mappings made"), 1);
-    // Every second voxel, and back.
+    // Change to every second voxel, and back.
     subject.Filter->SetSamplingFactor(2);
     subject.Expect("");
     VERIFY_EQUAL(subject.Get("Jacobian")->GetNumberOfTuples(), 20 * 19 * 18);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The output on the grid of a reference image, as registration needs it. A linear function of the
-// world position, carried by an affine map of the world, is the yardstick.
+// Outputs on the grid of a reference image, as registration needs them. The reference values are
+// those of a linear function of the world position under an affine map.
 #include "FilterTesting.h"
 
 #include <vtkDataObject.h>
@@ -33,7 +33,7 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 namespace
 {
 
-/// Announces the grid of an image. It gives the image as well, and counts how often.
+/// A source that announces the grid of an image, and counts how often it is executed.
 class CountingSource : public vtkImageAlgorithm
 {
 public:
@@ -41,7 +41,7 @@ public:
   vtkTypeMacro(CountingSource, vtkImageAlgorithm);
 
   vtkSmartPointer<vtkImageData> Image;
-  /// Announced instead of the image's, where it is not empty.
+  /// Announced instead of the extent of the image, if it is not empty.
   Extent WholeExtent{ { 0, -1, 0, -1, 0, -1 } };
   int Executions = 0;
 
@@ -94,7 +94,8 @@ vtkSmartPointer<vtkImageData> MakeOblique()
   return volume;
 }
 
-/// Round the moved volume, with axes of its own.
+/// A reference image around the moved volume, with another direction. isMirrored: its axes are
+/// left-handed.
 vtkSmartPointer<vtkImageData> MakeReference(vtkImageData* volume, bool isMirrored)
 {
   const double z = isMirrored ? -1.0 : 1.0;
@@ -119,7 +120,8 @@ bool HasGridOf(vtkImageData* image, vtkImageData* reference)
       reference->GetDirectionMatrix()->GetData());
 }
 
-/// Values within the slope over 3 x 2^-9 output voxels; coverage beyond that of the border.
+/// Checks that values have an error of at most the slope times 3 x 2^-9 output voxels, and that
+/// coverage is right, except near the surface of the volume.
 void CheckValues(Deformed& deformed, vtkImageData* volume, vtkImageData* reference)
 {
   vtkImageData* output = deformed.Update();
@@ -171,13 +173,13 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeMoved(vtkImageData* volume, int nodes =
   return mesh;
 }
 
-/// Inverse or forward.
+/// An inverse or forward field of the map.
 vtkSmartPointer<vtkImageData> MakeField(vtkImageData* volume, bool isInverse)
 {
   double bounds[6];
   volume->GetBounds(bounds);
   auto field = MakeImage({ { 0, 12, 0, 12, 0, 12 } });
-  // Far enough round both.
+  // The field contains the volume at rest and the moved volume.
   field->SetOrigin(bounds[0] - 15.0, bounds[2] - 15.0, bounds[4] - 15.0);
   field->SetSpacing((bounds[1] - bounds[0] + 30.0) / 12.0, (bounds[3] - bounds[2] + 30.0) / 12.0,
     (bounds[5] - bounds[4] + 30.0) / 12.0);
@@ -206,7 +208,7 @@ void TestOwnGrid()
     VERIFY(AreEqual(same.Update(), expected));
     VERIFY(HasGridOf(same.Filter->GetOutput(), reference));
     VERIFY(same.TakeWarning().empty());
-    // And back again.
+    // Without a reference image the output is the same.
     same.Filter->SetInputConnection(3, nullptr);
     VERIFY(AreEqual(same.Update(), expected));
   }
@@ -227,7 +229,8 @@ void TestTurned()
     OnReference byInverse(volume, MakeField(volume, true), reference);
     byInverse.Filter->FieldIsInverseOn();
     CheckValues(byInverse, volume, reference);
-    // Every second voxel of the volume, all of the output. The yardstick is linear.
+    // With SamplingFactor the output still has all voxels of the reference image. The values are
+    // linear, so they do not change.
     auto even = MakeImage(
       { { -8, 8, 4, 18, -20, -8 } }, glm::dvec3(0.7, 1.3, 1.1), glm::dvec3(4.0, -5.0, 2.5));
     SetObliqueDirection(even);
@@ -238,7 +241,7 @@ void TestTurned()
   }
 }
 
-/// Without a deformation the volume itself is resampled.
+/// Without a deformation the volume at rest is resampled.
 void TestAtRest()
 {
   auto volume = MakeOblique();
@@ -264,7 +267,7 @@ void TestAtRest()
   }
 }
 
-/// A reference of opposite handedness has the same values at the same places.
+/// With a left-handed reference image the values at all positions are the same.
 void TestMirrored()
 {
   auto volume = MakeOblique();
@@ -302,7 +305,7 @@ void TestMirrored()
   VERIFY_EQUAL(wrong, 0);
 }
 
-/// The place in the volume, in continuous indices, that is seen at a point of the output.
+/// The position at rest, in continuous indices of the volume, of a point of the output.
 glm::dvec3 FindRestIndex(vtkImageData* volume, const glm::dvec3& point)
 {
   const glm::dvec3 rest = MoveBack(point);
@@ -311,8 +314,8 @@ glm::dvec3 FindRestIndex(vtkImageData* volume, const glm::dvec3& point)
   return index;
 }
 
-/// How far the place may be off on each axis of the volume: vertices are rounded to 1/256 output
-/// voxel, and at rest to 2^-16.
+/// The largest error of a position at rest on each axis of the volume: positions of vertices are
+/// multiples of 1/256 output voxel, and positions at rest are rounded to 2^-16.
 glm::dvec3 FindIndexError(vtkImageData* volume, vtkImageData* reference)
 {
   glm::dvec3 error(1e-6); // displacements are floats
@@ -332,7 +335,7 @@ glm::dvec3 FindIndexError(vtkImageData* volume, vtkImageData* reference)
   return error;
 }
 
-/// By mesh, by its tetrahedra, by a forward and by an inverse field.
+/// Filters with a mesh, with mesh rasterization, with a forward field and with an inverse field.
 std::vector<std::pair<std::string, std::function<void(OnReference&)>>> GetWays(vtkImageData* volume)
 {
   return { { "mesh",
@@ -353,7 +356,7 @@ std::vector<std::pair<std::string, std::function<void(OnReference&)>>> GetWays(v
       } } };
 }
 
-/// The largest difference between neighbouring voxels on each axis.
+/// The largest difference between neighboring voxels on each axis.
 glm::dvec3 FindSteps(vtkImageData* volume)
 {
   vtkDataArray* values = volume->GetPointData()->GetScalars();
@@ -375,8 +378,8 @@ glm::dvec3 FindSteps(vtkImageData* volume)
   return steps;
 }
 
-/// Against VTK's own cubic interpolation of the voxels, as if these had axes of their own. Those of
-/// EXACT are linear in the outermost cells.
+/// Compares cubic interpolation with that of VTK, in an image whose axes are the indices of the
+/// volume. The interpolation of EXACT is linear in the outermost cells.
 void TestCubic()
 {
   auto volume = MakeOblique();
@@ -397,8 +400,8 @@ void TestCubic()
   for (const bool isMirrored : { false, true })
   {
     auto reference = MakeReference(volume, isMirrored);
-    // The slope of Catmull-Rom is at most 1.5 times the largest difference, and on each of the two
-    // other axes the weights' absolute values add up to 1.25 at most.
+    // The slope of a Catmull-Rom spline is at most 1.5 times the largest difference. On each of the
+    // two other axes the sum of the absolute weights is at most 1.25.
     const double tolerance =
       glm::dot(steps, FindIndexError(volume, reference)) * 1.5 * 1.25 * 1.25 + 1e-9;
     for (const auto& [name, set] : GetWays(volume))
@@ -443,8 +446,8 @@ void TestCubic()
   }
 }
 
-/// What each vertex weighs at a place among the tetrahedra of a cell. Cells of odd index are mirror
-/// images of their neighbours.
+/// The weights of the vertices of the tetrahedron that contains a position. Cells of odd index are
+/// mirror images of their neighbors.
 std::map<std::array<int, 3>, double> GetWeights(const glm::dvec3& index)
 {
   const glm::dvec3 cell = glm::floor(index);
@@ -466,7 +469,8 @@ std::map<std::array<int, 3>, double> GetWeights(const glm::dvec3& index)
     const glm::dvec3 vertex = first + toSecond * corner;
     weights[{ { int(vertex.x), int(vertex.y), int(vertex.z) } }] = weight;
   };
-  // Corners with an odd sum of coordinates are cut off by the tetrahedron of the four others.
+  // Corner tetrahedra are at the corners with an odd sum of coordinates. The central tetrahedron
+  // has the other four corners.
   for (const glm::dvec3& corner : { glm::dvec3(1.0, 0.0, 0.0), glm::dvec3(0.0, 1.0, 0.0),
          glm::dvec3(0.0, 0.0, 1.0), glm::dvec3(1.0, 1.0, 1.0) })
   {
@@ -477,9 +481,9 @@ std::map<std::array<int, 3>, double> GetWeights(const glm::dvec3& index)
       set(corner, rest);
       for (int axis = 0; axis < 3; ++axis)
       {
-        glm::dvec3 neighbour = corner;
-        neighbour[axis] = 1.0 - neighbour[axis];
-        set(neighbour, distance[axis]);
+        glm::dvec3 neighbor = corner;
+        neighbor[axis] = 1.0 - neighbor[axis];
+        set(neighbor, distance[axis]);
       }
       return weights;
     }
@@ -492,8 +496,8 @@ std::map<std::array<int, 3>, double> GetWeights(const glm::dvec3& index)
   return weights;
 }
 
-/// Ids of 64 bits come from the vertex of the tetrahedron that weighs most, or, where the volume is
-/// looked up, from the nearest voxel.
+/// With nearest interpolation, ids of 64 bits are those of the vertex of largest weight. With mesh
+/// rasterization and inverse fields they are those of the nearest voxel.
 void TestNearest()
 {
   auto volume = MakeOblique();
@@ -561,7 +565,7 @@ void TestNearest()
         for (int axis = 0; axis < 3; ++axis)
         {
           index[axis] = glm::clamp(
-            index[axis], double(extent[2 * axis]), extent[2 * axis + 1] - 1e-9); // rounded
+            index[axis], double(extent[2 * axis]), extent[2 * axis + 1] - 1e-9); // rounding errors
         }
         const auto weights = GetWeights(index);
         double most = 0.0;
@@ -569,7 +573,7 @@ void TestNearest()
         {
           most = std::max(most, entry.second);
         }
-        // A weight changes by at most the distance on all axes together.
+        // The error of a weight is at most the sum of the position errors on all axes.
         const double tolerance = 2.0 * (error.x + error.y + error.z);
         const auto found = weights.find(vertex);
         const double weight = found == weights.end() ? 0.0 : found->second;
@@ -611,7 +615,6 @@ void TestPartsAndUpdates()
     cut->Crop(extent.data());
     VERIFY(AreEqual(part.Filter->GetOutput(), cut));
   }
-  // A node moves.
   auto* vectors = vtkFloatArray::SafeDownCast(mesh->GetPointData()->GetVectors());
   const vtkIdType node = 3 * 36 + 3 * 6 + 2;
   vectors->SetTypedComponent(node, 1, vectors->GetTypedComponent(node, 1) + 0.8F);
@@ -621,7 +624,7 @@ void TestPartsAndUpdates()
   VERIFY(AreEqual(whole.Update(), fresh.Update()));
   VERIFY(!AreEqual(whole.Filter->GetOutput(), expected));
   VERIFY(GetReported(whole.Filter, "Bricks resampled") > 0);
-  // Another grid of the same extent.
+  // Another reference image of the same extent.
   vtkNew<vtkImageData> shifted;
   shifted->CopyStructure(reference);
   double origin[3];
@@ -633,7 +636,7 @@ void TestPartsAndUpdates()
   VERIFY(!AreEqual(whole.Filter->GetOutput(), fresh.Filter->GetOutput()));
 }
 
-/// A layer on each axis, a row and a voxel.
+/// Reference images of one plane, one row and one voxel.
 void TestThinReferences()
 {
   auto volume = MakeOblique();
@@ -672,7 +675,7 @@ void TestDataAreNotRequested()
   deformed.Filter->SetBackgroundValue(-1000.0);
   deformed.Filter->SetReferenceConnection(source->GetOutputPort());
   CheckValues(deformed, volume, source->Image);
-  // A grid that changes in place, and an update of a part.
+  // The reference image changes, and a part of the output is requested.
   source->Image = MakeReference(volume, false);
   source->Modified();
   CheckValues(deformed, volume, source->Image);
@@ -683,7 +686,7 @@ void TestDataAreNotRequested()
   VERIFY_EQUAL(deformed.TakeErrors(), 0);
   VERIFY_EQUAL(source->Executions, 0);
 
-  // An inverse field on the grid of the reference, which is the field itself.
+  // An inverse field that is the reference image, too.
   vtkNew<CountingSource> field;
   field->Image = MakeField(volume, true);
   Deformed own(volume, nullptr);
@@ -720,10 +723,10 @@ void TestWarnings()
   }
   deformed.Filter->Modified();
   deformed.Filter->Update();
-  VERIFY(deformed.TakeWarning().empty()); // it was said
+  VERIFY(deformed.TakeWarning().empty()); // the warning is not repeated
 }
 
-/// Where nothing lands there is background, and one warning.
+/// If no voxel is covered, the output is background, and there is one warning.
 void TestNothingCovered()
 {
   auto volume = MakeOblique();
@@ -752,14 +755,14 @@ void TestNothingCovered()
   };
   for (const auto& [name, set] : GetWays(volume))
   {
-    // The grid of the inverse field does not reach the reference image either.
+    // The inverse field does not overlap the reference image.
     OnReference apart(volume, nullptr, far);
     set(apart);
     check(name, apart, name == "inverse field" ? "inverse displacement field" : "reference image");
   }
   OnReference atRest(volume, nullptr, far);
   check("at rest", atRest, "reference image");
-  // The inverse field holds the reference image, and leads beside the volume.
+  // The inverse field contains the reference image, but its displacements lead outside the volume.
   auto field = MakeImage({ { 0, 4, 0, 4, 0, 4 } }, glm::dvec3(40.0));
   field->SetOrigin(260.0, -80.0, -80.0);
   SetDisplacements(field, Shift(90.0, 0.0, 0.0));
@@ -846,7 +849,7 @@ void TestMisuse()
   deformed.Filter->SetReferenceConnection(large->GetOutputPort());
   expectError("The reference image has more than 2^48 voxels");
 
-  // Of the volume, beside a reference image.
+  // Errors in the geometry of the volume, with a reference image.
   const auto failsWith = [&](const std::function<void(vtkImageData*)>& spoil, const char* words)
   {
     vtkNew<vtkImageData> spoiltVolume;
@@ -868,11 +871,11 @@ void TestMisuse()
       other->SetNumberOfTuples(v->GetNumberOfPoints());
       other->Fill(0.0);
       v->GetPointData()->AddArray(other);
-      other->SetName("value"); // VTK does not notice
+      other->SetName("value"); // VTK does not detect the second array of this name
     },
     "several point arrays with the name \"value\"");
 
-  // Of the deformation.
+  // Errors in the deformation.
   vtkNew<vtkUnstructuredGrid> broken;
   broken->DeepCopy(mesh);
   broken->GetPointData()->GetVectors()->SetComponent(
@@ -895,7 +898,7 @@ void TestMisuse()
     expectError("not finite");
   }
 
-  // No image: one error, of the executive.
+  // A reference that is not an image: one error of the executive.
   vtkNew<vtkPolyData> surface;
   deformed.Filter->SetReferenceData(surface);
   deformed.Filter->Update();
