@@ -27,7 +27,7 @@ OutsideVoxels MakeKeptVoxels(double fadeDistance)
 namespace
 {
 
-// The longest displacement of the points on the border of a field, in world units.
+// Returns the longest displacement of the points on the border of a field, in world units.
 double GetLongestOnBorder(const DisplacementField& field, const glm::dvec3& spacing)
 {
   const std::array<int, 3>& size = field.Dimensions;
@@ -42,7 +42,7 @@ double GetLongestOnBorder(const DisplacementField& field, const glm::dvec3& spac
       for (int x = 0; x < size[0]; x += step)
       {
         const double length = glm::length(spacing * GetVector(field, point + x));
-        longest = length > longest ? length : longest; // undefined ones are not-a-number
+        longest = length > longest ? length : longest; // undefined points are not-a-number
       }
       point += size[0];
     }
@@ -75,8 +75,8 @@ std::string FindFaultOfFading(const FadedLinks& links, const std::vector<Tetrahe
       " tetrahedra of the volume outside the deformation mesh are stretched over more than 2 "
       "output voxels, ";
     text += fadeDistance > 0.0
-      ? "where the closest point of the mesh jumps, as between two bodies that move apart. Mesh "
-        "what lies between, or set a smaller FadeDistance."
+      ? "where the closest point of the mesh jumps, as between two bodies that move apart. Add "
+        "cells to the mesh between them, or set a smaller FadeDistance."
       : "as FadeDistance is 0 and the boundary of the mesh moves. Set a FadeDistance of at least "
         "twice its displacement.";
   }
@@ -95,7 +95,8 @@ std::string FindFaultOfFading(const DisplacementField& field, const IndexBounds&
   }
   const double longest = GetLongestOnBorder(field, spacing);
   const std::string border = "border of the displacement field moves";
-  // A hard edge folds or tears whatever is longer than the voxels that lie across it.
+  // Without fading, the displacement jumps at the border. A displacement longer than two voxels
+  // folds or stretches the volume there.
   if (fadeDistance == 0.0 && longest > 2.0 * std::min({ spacing.x, spacing.y, spacing.z }))
   {
     return "The " + border + " by up to " + std::to_string(longest) +

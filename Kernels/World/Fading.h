@@ -17,25 +17,28 @@
 namespace deformvolume
 {
 
-/// Voxels outside a mesh or a field that stay where they are, but for those within a distance of
-/// it. Throws an Error where the distance is none.
+/// Returns the mode in which voxels outside a mesh or a field keep their positions, except within
+/// fadeDistance, where the displacement of the border fades to 0. fadeDistance: in world units.
+/// Throws an Error if it is not finite or negative.
 DEFORMVOLUME_EXPORT OutsideVoxels MakeKeptVoxels(double fadeDistance);
 
-/// Whether space folds where the displacement of a border fades within FadeDistance: a warning, or
-/// empty. border: what moves, in words, with the verb. longest: by how much.
+/// Returns a warning if space may fold where the displacement of a border fades within
+/// FadeDistance; otherwise "". border: subject and verb of the warning, for example "border of the
+/// displacement field moves". longest: the longest displacement of the border, in world units.
 DEFORMVOLUME_EXPORT std::string FindFoldsOfFading(
   const std::string& border, double longest, double fadeDistance);
 
-/// What is wrong with how the displacement of a mesh fades outside it: tetrahedra between voxels
-/// that follow distant parts of the boundary, and folds; else empty. displacements: of the nodes,
-/// three floats each, in output voxels. spacing: of the output.
+/// Returns warnings about the fading of displacements outside a mesh: the number of tetrahedra
+/// between voxels that follow distant parts of the boundary, and possible folds. "" if there are
+/// none. displacements: three floats per node, in output voxels. spacing: the spacing of the
+/// output.
 DEFORMVOLUME_EXPORT std::string FindFaultOfFading(const FadedLinks& links,
   const std::vector<Tetrahedron>& tetrahedra, const float* displacements, const glm::dvec3& spacing,
   double fadeDistance);
 
-/// What is wrong with how a displacement fades outside a field: where the border of the field moves
-/// by too much for FadeDistance, and any of a box is outside; else empty. box: in the indices that
-/// the field takes. spacing: of the output.
+/// Returns a warning if the border of a field moves by too much for FadeDistance, and a part of a
+/// box is outside the field; otherwise "". box: in the indices that IndexToField of the field
+/// takes. spacing: the spacing of the output.
 DEFORMVOLUME_EXPORT std::string FindFaultOfFading(const DisplacementField& field,
   const IndexBounds& box, const glm::dvec3& spacing, double fadeDistance);
 

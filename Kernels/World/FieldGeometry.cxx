@@ -14,15 +14,15 @@ namespace deformvolume
 namespace
 {
 
-// Products of matrices and their inverses miss the simple numbers that are meant, and then the
-// last row of voxels is outside a field of the same extent. The grain is far below a voxel.
+// Rounds to multiples of 2^-32, far below a voxel. Products of matrices and their inverses have
+// rounding errors, which would put the last row of voxels outside a field of the same extent.
 double RoundToGrain(double value)
 {
   constexpr double grain = 4294967296.0;
   return std::round(value * grain) / grain;
 }
 
-// Makes what takes indices of the volume what takes those of the output.
+// Converts a transform that takes indices of the volume to one that takes indices of the output.
 glm::dmat4 FromOutput(const glm::dmat4& fromVolume, const OutputMap& toOutput)
 {
   const OutputTransform transform(toOutput);
@@ -84,8 +84,8 @@ int GetStep(const Extent& voxels, const std::array<double, 12>& indexToField,
 
 ImageGeometry GetGridAtRest(const ImageGeometry& volume)
 {
-  // A single cell, from one voxel before the first to one past the last: all voxels lie within it,
-  // whatever is rounded.
+  // A single cell, from one voxel before the first voxel to one voxel past the last: all voxels lie
+  // within it, even with rounding errors.
   glm::dvec3 before;
   ImageGeometry geometry = volume;
   for (int axis = 0; axis < 3; ++axis)
@@ -103,7 +103,7 @@ void SetOutside(const OutsideVoxels& outside, const glm::dvec3& spacing, Displac
   field.Extrapolate = !outside.AreDiscarded();
   if (outside.AreKept())
   {
-    // The voxels that are nearest to the field, and not in it, stay where the distance is 0.
+    // If FadeDistance is 0, already the voxels nearest to the field, outside it, do not move.
     constexpr double most = 1e6;
     for (std::size_t axis = 0; axis < 3; ++axis)
     {

@@ -16,21 +16,22 @@
 namespace deformvolume
 {
 
-/// DisplacementField::IndexToField of a field for a volume. toOutput: of an inverse field, whose
-/// matrix takes indices of the output; else null.
+/// Returns DisplacementField::IndexToField of a field for a volume. toOutput: for an inverse field,
+/// whose matrix takes indices of the output, the map from the volume to the output; null for a
+/// forward field.
 DEFORMVOLUME_EXPORT std::array<double, 12> GetIndexToField(
   const ImageGeometry& field, const ImageGeometry& volume, const OutputMap* toOutput);
 
-/// Where all voxels are points of a field and there are others between them, how many points they
-/// are apart, the same on each axis; else 1. indexToField: see DisplacementField.
+/// Returns n if every n-th point of a field on each axis is a voxel, and all voxels are points of
+/// the field; otherwise 1. indexToField: see DisplacementField.
 DEFORMVOLUME_EXPORT int GetStep(const Extent& voxels, const std::array<double, 12>& indexToField,
   const std::array<int, 3>& dimensions);
 
-/// A grid of 2 x 2 x 2 points that holds all of a volume: of the field of zeros that stands in for
-/// a deformation where there is none.
+/// Returns a grid of 2 x 2 x 2 points that contains a volume. A field of zeros on this grid is used
+/// if there is no deformation.
 DEFORMVOLUME_EXPORT ImageGeometry GetGridAtRest(const ImageGeometry& volume);
 
-/// Sets how a field treats voxels outside it. spacing: of its points, in world units.
+/// Sets how a field treats voxels outside it. spacing: the spacing of the field, in world units.
 DEFORMVOLUME_EXPORT void SetOutside(
   const OutsideVoxels& outside, const glm::dvec3& spacing, DisplacementField& field);
 

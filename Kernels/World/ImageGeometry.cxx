@@ -19,8 +19,9 @@ namespace deformvolume
 namespace
 {
 
-// Products of matrices and their inverses miss the simple numbers that are meant. What is dropped
-// is far below the 2^-16 voxel of the kernels, over 10,000 voxels as well.
+// Rounds to a multiple of 1/4096 if the value is close to one: products of matrices and their
+// inverses have rounding errors. Even over 10,000 voxels the change is far below the 2^-16 voxel of
+// the kernels.
 double DropRoundingError(double value)
 {
   constexpr double grain = 4096.0;
@@ -184,7 +185,7 @@ void CheckTransform(const ImageGeometry& geometry, const std::string& what)
 
 void CheckVolume(const ImageGeometry& volume)
 {
-  // Of each axis: the product of an extent that makes no sense may be no number.
+  // Test each axis: the number of points of an invalid extent may overflow.
   for (int axis = 0; axis < 3; ++axis)
   {
     if (GetSize(volume.PointExtent, axis) == 0)

@@ -16,62 +16,64 @@
 namespace deformvolume
 {
 
-/// Where the points of an image lie. The transform goes between world coordinates and
-/// continuous structured indices: index (0, 0, 0) is at Origin, whether the extent holds it or
-/// not.
+/// The positions of the points of an image. Its transforms convert between world coordinates and
+/// continuous structured indices. Index (0, 0, 0) is at Origin, even if the extent does not contain
+/// it.
 struct DEFORMVOLUME_EXPORT ImageGeometry
 {
   /// Structured indices of the points.
   Extent PointExtent{ { 0, -1, 0, -1, 0, -1 } };
   /// World coordinates of the index (0, 0, 0).
   glm::dvec3 Origin{ 0.0 };
-  /// The distance of neighbouring points on each axis, in world units.
+  /// The distance of neighboring points on each axis, in world units.
   glm::dvec3 Spacing{ 1.0 };
-  /// The axes in the world, as columns.
+  /// The directions of the axes in world coordinates, as columns.
   glm::dmat3 Direction{ 1.0 };
 
-  /// Takes structured indices to world coordinates.
+  /// Returns the matrix that converts structured indices to world coordinates.
   glm::dmat4 GetIndexToWorld() const;
-  /// Takes world coordinates to continuous structured indices.
+  /// Returns the matrix that converts world coordinates to continuous structured indices.
   glm::dmat4 GetWorldToIndex() const;
 
   /// Whether extent, origin, spacing and direction are equal.
   bool operator==(const ImageGeometry& other) const;
-  /// Whether one of them differs.
+  /// Whether extent, origin, spacing or direction differ.
   bool operator!=(const ImageGeometry& other) const { return !(*this == other); }
 };
 
-/// A direction matrix from its nine elements, row by row.
+/// Returns a direction matrix from its nine elements, row by row.
 DEFORMVOLUME_EXPORT glm::dmat3 MakeDirection(const double* rows);
 
-/// Whether the points of an extent lie at the same places in the world, to a thousandth of the
-/// distance between them. The second geometry must have a transform that can be inverted.
+/// Whether the points of an extent have the same world positions in two geometries, to 1/1000 of
+/// the distance between points. The transform of the second geometry must be invertible.
 DEFORMVOLUME_EXPORT bool AreSamePositions(
   const ImageGeometry& first, const ImageGeometry& second, const Extent& extent);
 
-/// What takes indices of an image to indices of another one. Rounding errors are dropped: two
-/// images whose axes are parallel have a diagonal matrix, and grids that lie over each other whole
-/// numbers.
+/// Returns the map from indices of an image to indices of another image. Rounding errors are
+/// removed: the matrix is diagonal if the axes of the images are parallel, and has whole numbers if
+/// the points of the grids coincide.
 DEFORMVOLUME_EXPORT OutputMap GetOutputMap(const ImageGeometry& image, const ImageGeometry& output);
 
-/// The world positions of the points, x varying fastest, by axes: room for a float a point each.
+/// Computes the world positions of the points, x varying fastest. positions: for each axis an array
+/// of one float per point.
 DEFORMVOLUME_EXPORT void ComputeWorldPositions(
   const ImageGeometry& image, const std::array<float*, 3>& positions);
 
-/// Origin, spacing and direction, in words for an error.
+/// Returns origin, spacing and direction as text for an error.
 DEFORMVOLUME_EXPORT std::string DescribeTransform(const ImageGeometry& geometry);
 
-/// An extent in words for an error.
+/// Returns an extent as text for an error.
 DEFORMVOLUME_EXPORT std::string DescribeExtent(const Extent& extent);
 
-/// Whether an extent holds all of another one.
+/// Whether an extent contains another extent.
 DEFORMVOLUME_EXPORT bool Contains(const Extent& extent, const Extent& other);
 
-/// Throws an Error that speaks of the image as `what` where its transform cannot be inverted.
+/// Throws an Error if the transform of an image is not finite or not invertible. what: the name of
+/// the image in the error, for example "the volume".
 DEFORMVOLUME_EXPORT void CheckTransform(const ImageGeometry& geometry, const std::string& what);
 
-/// Throws an Error unless the volume has two voxels or more on each axis and a transform that can
-/// be inverted.
+/// Throws an Error unless the volume has two voxels or more on each axis and an invertible
+/// transform.
 DEFORMVOLUME_EXPORT void CheckVolume(const ImageGeometry& volume);
 
 } // namespace deformvolume

@@ -15,7 +15,7 @@ namespace deformvolume
 namespace
 {
 
-// Adds the seconds of its life to a sum.
+// Adds the seconds between its construction and its destruction to a sum.
 class Stopwatch
 {
 public:
@@ -100,14 +100,14 @@ void MappingCache::Update(
   {
     throw Aborted();
   }
-  // The old links go first, so that two sets never stand in memory.
+  // Free the old links first, so that memory never holds two mappings.
   this->Mapping = StaticMapping();
   this->MappingKey = Key();
   const Key key{ mesh.Owner, mesh.ShapeVersion, volume };
   const StaticMappingBuilder& builder = this->GetBuilder(mesh, key);
   StaticMapping mapping = builder.Build(volume.Part, progress);
   const std::uint64_t runBytes = EstimateRunBytes(builder, volume);
-  // The same for any part that the volume is read in.
+  // The result must not depend on the part of the volume that is mapped.
   const bool holdsVoxels = mapping.NumberOfInnerVoxels > 0 || !mapping.Boundary.IsEmpty() ||
     (!volume.IsWhole() && (builder.HoldsVoxels() || EndsWithin(mesh, volume))) ||
     (volume.Outside.AreKept() && EndsWithin(mesh, volume));
@@ -118,7 +118,7 @@ void MappingCache::Update(
   if (mapping.NumberOfFlatTetrahedra == static_cast<std::int64_t>(tetrahedra.size()))
   {
     throw Error("All " + std::to_string(tetrahedra.size()) +
-      " tetrahedra of the mesh mesh are flat at rest. Use a mesh with volume.");
+      " tetrahedra of the deformation mesh are flat at rest. Use a mesh with volume.");
   }
   if (!holdsVoxels)
   {

@@ -16,15 +16,15 @@
 namespace deformvolume
 {
 
-/// What a static mapping is made for.
+/// The volume for which a static mapping is made.
 struct MappedVolume
 {
   /// The whole volume.
   ImageGeometry Whole;
-  /// The voxels to map: all of them, or a part with whole rows where voxels outside the mesh are
-  /// discarded.
+  /// The voxels to map: all voxels or, if voxels outside the mesh are discarded, a part with whole
+  /// rows.
   Extent Part{ { 0, -1, 0, -1, 0, -1 } };
-  /// What becomes of voxels outside the mesh.
+  /// The treatment of voxels outside the mesh.
   OutsideVoxels Outside;
 
   /// Whether the whole volume is mapped.
@@ -36,52 +36,54 @@ struct MappedVolume
   }
 };
 
-/// Keeps the static mapping of a volume into a deformation mesh for as long as it serves. What all
-/// parts of a volume have in common is found once.
+/// Keeps the static mapping of a volume into a deformation mesh until another mapping is needed.
+/// Data that all parts of a volume share are computed once.
 class DEFORMVOLUME_EXPORT MappingCache
 {
 public:
-  /// Bytes that the runs of the mapping of a volume and a mesh take, about; 0 where it has links.
-  /// The same before and after Update, so that what is chosen by it does not depend on what came
-  /// before.
+  /// Returns the approximate memory, in bytes, of the runs of the mapping of a volume and a mesh; 0
+  /// if the mapping has links. The result is the same before and after Update(), so that the choice
+  /// of a resampler does not depend on earlier calls.
   std::uint64_t GetRunBytes(const MeshAtRest& mesh, const MappedVolume& volume);
 
-  /// Makes the mapping that of a volume and a mesh, with its links or runs. Throws an Error where
-  /// the mesh holds no voxel of the whole volume, and Aborted where progress asked for an end.
+  /// Makes the mapping of a volume and a mesh, with links or runs, unless it is current. Throws an
+  /// Error if the mesh contains no voxel of the whole volume, and Aborted if progress returns
+  /// false.
   void Update(const MeshAtRest& mesh, const MappedVolume& volume,
     const std::function<bool(double)>& progress);
 
-  /// Whether the mapping is that of a volume and a mesh, with or without its links or runs.
+  /// Whether the mapping is the one of a volume and a mesh, even if its links or runs were
+  /// released.
   bool IsCurrent(const MeshAtRest& mesh, const MappedVolume& volume) const;
 
-  /// The mapping of the last Update().
+  /// Returns the mapping of the last Update().
   const StaticMapping& GetMapping() const { return this->Mapping; }
-  /// Its links; empty where it has runs.
+  /// Returns the links of the mapping; empty if it has runs.
   const std::vector<VertexLink>& GetLinks() const { return this->Mapping.Links; }
-  /// Its runs; empty where it has links.
+  /// Returns the runs of the mapping; empty if it has links.
   const VertexRuns& GetRuns() const { return this->Mapping.Runs; }
-  /// Whether it has runs, and not links.
+  /// Whether the mapping has runs and not links.
   bool IsByRuns() const { return this->RunBytes > 0; }
-  /// Whether the mapping has its links or runs: not after ReleaseVoxels().
+  /// Whether the mapping has links or runs. False after ReleaseVoxels().
   bool HasVoxels() const
   {
     return !this->Mapping.Links.empty() || !this->Mapping.Runs.Runs.empty();
   }
-  /// Frees the links or runs, and the boundary; those of kept voxels leave FadedLinks.
+  /// Frees the links or runs, and the boundary. FadedLinks of kept voxels are not freed.
   void ReleaseVoxels();
 
-  /// Changes with the mapping.
+  /// Returns a number that changes with the mapping.
   std::uint64_t GetVersion() const { return this->Version; }
-  /// Tetrahedra of the mesh without volume at rest.
+  /// Returns the number of tetrahedra of the mesh without volume at rest.
   std::int64_t GetNumberOfFlatTetrahedra() const { return this->Mapping.NumberOfFlatTetrahedra; }
-  /// How many mappings Update() has made.
+  /// Returns the number of mappings that Update() has made.
   std::int64_t GetNumberOfBuilds() const { return this->NumberOfBuilds; }
 
-  /// Seconds spent since the last call.
+  /// Returns the seconds spent on mappings since the last call.
   double TakeTime();
 
 private:
-  // What a mapping depends on.
+  // The data that a mapping depends on.
   struct Key
   {
     const void* Owner = nullptr;
@@ -94,14 +96,14 @@ private:
     }
   };
 
-  /// The builder for a key, made ahead by GetRunBytes or now.
+  /// Returns the builder for a key, which GetRunBytes() may have made already.
   StaticMappingBuilder& GetBuilder(const MeshAtRest& mesh, const Key& key);
 
   StaticMapping Mapping;
   Key MappingKey; // without an owner: there is no mapping
   std::uint64_t RunBytes = 0;
   std::unique_ptr<StaticMappingBuilder> Builder;
-  Key BuilderKey; // that of the whole volume
+  Key BuilderKey; // for the whole volume
   std::uint64_t Version = 0;
   std::int64_t NumberOfBuilds = 0;
   double Time = 0.0;

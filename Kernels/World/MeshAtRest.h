@@ -12,15 +12,15 @@
 namespace deformvolume
 {
 
-/// A deformation mesh at rest, which somebody else holds.
+/// A view of a deformation mesh at rest. The data must outlive this object.
 struct MeshAtRest
 {
   /// The tetrahedra of the mesh.
   const std::vector<Tetrahedron>& Tetrahedra;
-  /// The nodes in continuous indices of the volume.
+  /// The positions of the nodes, in continuous indices of the volume.
   const std::vector<glm::dvec3>& Points;
   ///@{
-  /// Who holds the mesh, and the version of its shape: together they tell it from all others.
+  /// The owner of the mesh, and the version of its shape. Together they identify the mesh.
   const void* Owner;
   std::uint64_t ShapeVersion;
   ///@}

@@ -13,12 +13,13 @@
 namespace deformvolume
 {
 
-/// Nodes of a mesh whose position or vector cannot be used. They count as zero, and are an error
-/// only where a tetrahedron uses them. Several threads may mark different nodes at a time.
+/// The nodes of a mesh whose position or vector cannot be used. Such a position or vector is
+/// replaced by zeros, and is an error only if a tetrahedron uses the node. Several threads may mark
+/// different nodes at the same time.
 class NodeFaults
 {
 public:
-  /// What is wrong with a node.
+  /// The kind of a fault.
   enum Kind : unsigned char
   {
     None,
@@ -27,21 +28,21 @@ public:
     Missing
   };
 
-  /// There are so many nodes; new ones have no fault.
+  /// Sets the number of nodes. New nodes have no fault.
   void Resize(std::size_t count) { this->Kinds.resize(count, None); }
-  /// There are no nodes.
+  /// Removes all nodes.
   void Reset()
   {
     this->Kinds.clear();
     this->Any = false;
   }
-  /// A node has a fault.
+  /// Sets the fault of a node.
   void Mark(std::int64_t node, Kind kind)
   {
     this->Kinds[static_cast<std::size_t>(node)] = kind;
     this->Any.store(true, std::memory_order_relaxed);
   }
-  /// Nodes are about to be read again.
+  /// Removes the faults of `count` nodes from `first` on, before these nodes are read again.
   void Clear(std::int64_t first, std::int64_t count)
   {
     if (this->Any.load(std::memory_order_relaxed))
@@ -49,15 +50,15 @@ public:
       std::fill_n(this->Kinds.begin() + first, count, None);
     }
   }
-  /// False: no node has a fault.
+  /// Whether a node may have a fault. If false, no node has one.
   bool MayHaveAny() const { return this->Any; }
-  /// The fault of a node, or None.
+  /// Returns the fault of a node, or None.
   Kind Get(std::int64_t node) const
   {
     return static_cast<Kind>(this->Kinds[static_cast<std::size_t>(node)]);
   }
 
-  /// The first faulty node that some tetrahedra use, or -1.
+  /// Returns the lowest faulty node that one of the tetrahedra uses, or -1.
   std::int64_t FindUsed(const std::vector<Tetrahedron>& tetrahedra) const
   {
     std::int64_t found = -1;
@@ -69,7 +70,7 @@ public:
       }
       for (const std::int32_t node : tetrahedron)
       {
-        // Nodes behind these are derived from others.
+        // Nodes with higher numbers are derived nodes, which have no faults of their own.
         if (static_cast<std::size_t>(node) < this->Kinds.size() && this->Kinds[node] != None &&
           (found < 0 || node < found))
         {

@@ -20,7 +20,7 @@ double Snap(double index)
 
 int ToIndex(double index)
 {
-  // Room is left for padding and for the sizes of extents.
+  // Far below 2^31, so that padding and sizes of extents do not overflow.
   constexpr double most = 1 << 29;
   if (!(std::abs(index) <= most))
   {
@@ -107,7 +107,7 @@ Extent GetKept(const Extent& last, const Extent& needed, int granularity)
   {
     for (int end = 0; end < 2; ++end)
     {
-      // The upper ends are the lower ones of the mirrored extents.
+      // Upper ends are handled as the lower ends of the mirrored extents.
       const int sense = end == 0 ? 1 : -1;
       const int least = sense * needed[2 * axis + end];
       const int rounded = roundDown(least);
@@ -116,7 +116,7 @@ Extent GetKept(const Extent& last, const Extent& needed, int granularity)
       kept[2 * axis + end] = sense * (serves ? before : rounded);
     }
   }
-  return GetPadded(kept, 0); // which checks its size
+  return GetPadded(kept, 0); // checks the size
 }
 
 Extent GetPadded(const Extent& extent, int padding)

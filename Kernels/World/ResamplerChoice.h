@@ -12,7 +12,7 @@
 namespace deformvolume
 {
 
-/// What is asked for.
+/// The input for the choice of a resampler.
 struct ResamplerWish
 {
   /// What deforms the volume.
@@ -24,25 +24,25 @@ struct ResamplerWish
   };
   /// What deforms the volume.
   Kinds Deformation = Kinds::Mesh;
-  /// The resampler that is asked for; none: the choice is free.
+  /// The requested resampler; none: automatic choice.
   std::optional<Resampling> Method;
-  /// What becomes of voxels outside.
+  /// The treatment of voxels outside the mesh or the field.
   OutsideVoxels Outside;
-  /// Whether the volume has a smooth cut, which Exact alone knows.
+  /// Whether the volume has a smooth cut, which only Exact supports.
   bool HasSmoothCut = false;
-  /// Whether the Jacobian is asked for, which a mesh has with Exact alone.
+  /// Whether Jacobians are requested. For a mesh, only Exact supports these.
   bool NeedsJacobian = false;
-  /// Whether folds are counted, which a mesh has with Exact alone.
+  /// Whether fold counts are requested. For a mesh, only Exact supports these.
   bool CountsFolds = false;
 };
 
-/// The resampler for a deformation. fits tells whether the memory suffices for one. Throws an Error
-/// where what is asked for does not go together.
+/// Returns the resampler for a deformation. fits: returns whether the memory suffices for a
+/// resampler. Throws an Error if the requested options cannot be combined.
 ///
-/// Where the choice is free: Exact, because its values are those of the deformed sampling mesh,
-/// except where the memory does not suffice for Exact, whose sampling mesh takes some 20 bytes a
-/// voxel, but does for MeshRasterization, and that can do the deformation: a mesh, with what is
-/// outside discarded, without a smooth cut, Jacobians and fold counts.
+/// The automatic choice is Exact, because its values are those of the deformed sampling mesh. It is
+/// MeshRasterization if the memory suffices only for that (the sampling mesh of Exact takes about
+/// 20 bytes per voxel), and if it supports the deformation: a mesh, with voxels outside it
+/// discarded, without smooth cuts, Jacobians and fold counts.
 DEFORMVOLUME_EXPORT Resampling ChooseResampler(
   const ResamplerWish& wish, const std::function<bool(Resampling)>& fits);
 

@@ -17,7 +17,7 @@ namespace deformvolume
 namespace
 {
 
-// Two ways to do it. Without branches, as there are millions.
+// Converts vectors by any matrix. There are no branches, because there can be millions of vectors.
 bool TransformVectors(
   const glm::dmat3& transform, const glm::dvec3* vectors, std::size_t count, float* displacements)
 {
@@ -27,7 +27,7 @@ bool TransformVectors(
     const glm::dvec3 move = transform * vectors[i];
     for (int axis = 0; axis < 3; ++axis)
     {
-      // Not-a-number is not near either.
+      // False for not-a-number, too.
       near &= std::abs(move[axis]) <= LargestDisplacement ? 1 : 0;
       displacements[3 * i + axis] = static_cast<float>(move[axis]);
     }
@@ -35,16 +35,16 @@ bool TransformVectors(
   return near != 0;
 }
 
-// Where axes stay axes.
+// Converts vectors by a diagonal matrix.
 bool ScaleVectors(
   const glm::dvec3& scaling, const glm::dvec3* vectors, std::size_t count, float* displacements)
 {
   static_assert(sizeof(glm::dvec3) == 3 * sizeof(double), "vectors lie side by side");
-  // The numbers of eight vectors at a time: compilers use vectors for these.
+  // The components of eight vectors at a time, so that compilers can vectorize the loops.
   constexpr std::size_t width = 24;
   const double* components = &vectors->x;
   std::array<double, width> factors;
-  std::array<double, width> far{}; // not 0 where a number is too far, or not-a-number
+  std::array<double, width> far{}; // not 0 if a component is too large or not-a-number
   for (std::size_t k = 0; k < width; ++k)
   {
     factors[k] = scaling[static_cast<int>(k % 3)];

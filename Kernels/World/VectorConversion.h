@@ -14,29 +14,30 @@
 namespace deformvolume
 {
 
-/// Takes vectors in world units, times a factor, to displacements in output voxels. Its elements
-/// are rounded (RoundFactor), so that vectors become the same displacements wherever that is done.
+/// Returns the matrix that converts vectors in world units, times a factor, to displacements in
+/// output voxels. Its elements are rounded (RoundFactor), so that the host and all devices compute
+/// the same displacements.
 DEFORMVOLUME_EXPORT glm::dmat3 GetToDisplacement(
   const ImageGeometry& volume, const OutputMap& toOutput, double factor);
 
 /// Throws an Error that says that a displacement is over LargestDisplacement.
 [[noreturn]] DEFORMVOLUME_EXPORT void ThrowTooFar();
 
-/// Makes displacements of vectors, by a matrix that takes these to them.
+/// Converts vectors to displacements by a matrix.
 class DEFORMVOLUME_EXPORT VectorConversion
 {
 public:
   /// toDisplacement: GetToDisplacement() of the volume.
   explicit VectorConversion(const glm::dmat3& toDisplacement);
 
-  /// displacements: three floats each. Returns false where one is not finite, or over
-  /// LargestDisplacement.
+  /// Converts `count` vectors to displacements of three floats each. Returns false if a
+  /// displacement is not finite or exceeds LargestDisplacement.
   bool Convert(const glm::dvec3* vectors, std::size_t count, float* displacements) const;
 
 private:
   glm::dmat3 Matrix;
   glm::dvec3 Scaling;
-  bool IsScaling; // axes stay axes
+  bool IsScaling; // the matrix is diagonal
 };
 
 } // namespace deformvolume

@@ -58,7 +58,7 @@ void VectorField::Update(const ImageGeometry& volume, const OutputMap& toOutput)
   {
     return;
   }
-  this->IsOld = true; // where it fails
+  this->IsOld = true; // in case of an exception
   if (!isSame || !this->InPlace)
   {
     this->Locate(volume, toOutput);

@@ -20,34 +20,37 @@
 namespace deformvolume
 {
 
-/// A displacement field, given in world coordinates, in the units of the kernels.
+/// Converts a displacement field in world coordinates to the units of the kernels.
 class VectorField
 {
 public:
-  /// isInverse: it leads from the output to the volume at rest. vectors: one for each point, x
-  /// varying fastest; they are borrowed until others are set. Throws an Error where the grid cannot
-  /// be used, and where it has another number of points.
+  /// Set a field. vectors: one for each point, x varying fastest; their memory must stay valid
+  /// until another field is set. isInverse: the field leads from the output to the volume at rest.
+  /// Throws an Error if the grid is empty or its transform is not invertible, or if the number of
+  /// vectors is not the number of points.
   void Set(const ImageGeometry& grid, const VectorView& vectors, bool isInverse);
-  /// A field that is not inverse, of vectors that somebody else changes: Update() follows. They are
-  /// used where they lie, but for fields whose every second point, or third, ..., is a voxel.
+  /// Set a forward field of vectors that their owner may change. Update() takes such changes into
+  /// account. The vectors are not copied, unless the field has several points per voxel
+  /// (GetStep()).
   void Set(const ImageGeometry& grid, const std::shared_ptr<DeviceVectors>& vectors);
 
-  /// Makes what follows from a volume and from where it lies in the output. Throws an Error where a
-  /// vector is not finite, or too long.
+  /// Updates the field for a volume and its map to the output. Throws an Error if a vector is not
+  /// finite or too long.
   void Update(const ImageGeometry& volume, const OutputMap& toOutput);
 
   bool IsInverse() const { return this->Inverse; }
   const ImageGeometry& GetGrid() const { return this->Grid; }
 
   ///@{
-  /// After Update. Vectors that lie on a device come to the host.
+  /// Valid after Update(). Get() copies vectors that are on a device to the host.
   DisplacementField Get(const OutsideVoxels& outside) const;
-  /// The vectors that are used where they lie, or null, and the field without them.
+  /// Returns the vectors that are used without a copy, or null. GetShape() returns the field
+  /// without vectors.
   const std::shared_ptr<DeviceVectors>& GetShared() const { return this->InPlace; }
   DisplacementField GetShape(const OutsideVoxels& outside) const;
-  /// The bounds of the deformed volume, where they can be found at less cost than from all vectors.
+  /// Returns the bounds of the deformed volume, if they can be found without reading all vectors.
   std::optional<IndexBounds> FindSharedBounds(const OutsideVoxels& outside);
-  /// Changes with the field.
+  /// Returns a number that changes with the field.
   std::uint64_t GetVersion() const { return this->Version; }
   ///@}
 
@@ -56,8 +59,8 @@ private:
     const std::shared_ptr<DeviceVectors>& shared);
   void Locate(const ImageGeometry& volume, const OutputMap& toOutput);
   void Convert(const ImageGeometry& volume, const OutputMap& toOutput);
-  /// Where all voxels are points of the field and there are others between them, makes the field
-  /// one of the former, and returns which points these are; else nothing.
+  /// If GetStep() is greater than 1, reduces the field to the points that are voxels, and returns
+  /// the indices of these points; otherwise returns an empty list.
   std::vector<std::size_t> TakeVoxels(const Extent& voxels);
 
   ImageGeometry Grid;
@@ -72,13 +75,13 @@ private:
   OutputMap ToOutput;
   std::uint64_t Version = 0;
 
-  // Vectors that somebody else changes.
+  // Vectors that their owner may change.
   std::shared_ptr<DeviceVectors> Shared;
-  std::uint64_t Revision = 0; // in this version
+  std::uint64_t Revision = 0; // the revision of Shared in this version
   std::shared_ptr<DeviceVectors> InPlace;
-  std::array<double, 9> ToDisplacement{}; // of those
+  std::array<double, 9> ToDisplacement{}; // of InPlace
   FieldScan Scan;
-  std::uint64_t ScannedRevision = 0; // 0: of other units
+  std::uint64_t ScannedRevision = 0; // 0: the last scan was for another volume or output
 };
 
 } // namespace deformvolume

@@ -10,7 +10,7 @@
 namespace deformvolume
 {
 
-/// Vectors of three floats or doubles each, one after the other, which somebody else holds.
+/// A view of consecutive vectors of three floats or three doubles each.
 struct VectorView
 {
   const void* Data = nullptr;

@@ -121,7 +121,7 @@ VolumeEdit EditFinder::CarveLabel(const LabelReader& labels, double label) const
   {
     return { FindCarvedTetrahedra(bricks, find, this->Rule, this->Progress), {}, {} };
   }
-  // The same for all voxels: the surface lies halfway between them.
+  // All voxels have the same distance: the boundary lies halfway between voxels.
   const glm::dvec3& spacing = this->Volume.Spacing;
   const double half =
     0.5 * std::min({ std::abs(spacing.x), std::abs(spacing.y), std::abs(spacing.z) });

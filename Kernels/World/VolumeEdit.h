@@ -21,10 +21,10 @@
 namespace deformvolume
 {
 
-/// What one edit does to a volume; see MaskEditor.
+/// The effect of one edit on a volume; see MaskEditor.
 struct VolumeEdit
 {
-  /// The tetrahedra that it switches off.
+  /// The tetrahedra that the edit switches off.
   TetrahedronSet Tetrahedra;
   /// The distances of vertices to a smooth boundary.
   DistanceSet Distances;
@@ -36,44 +36,45 @@ struct VolumeEdit
 /// units.
 DEFORMVOLUME_EXPORT float GetFarDistance(const Extent& volume, const glm::dvec3& spacing);
 
-/// The labels of some voxels that follow each other, x varying fastest, as doubles. The first voxel
-/// of the volume has the number 0. Called by many threads.
+/// Reads the labels of `count` consecutive voxels as doubles, x varying fastest. voxel: index of
+/// the first of these; the first voxel of the volume has index 0. Called by several threads.
 using LabelReader = std::function<void(std::int64_t voxel, std::int64_t count, double* labels)>;
 
 /// Whether a voxel of the volume has the label.
 DEFORMVOLUME_EXPORT bool HasLabel(const Extent& volume, const LabelReader& labels, double label);
 
-/// Finds what an edit that is given in world coordinates does to a volume. Functions throw Error as
-/// those of Cutting/ do that they call, and Aborted.
+/// Finds the effect of edits, given in world coordinates, on a volume. All functions throw an Error
+/// if the functions of Cutting/ do, and Aborted if Progress returns false.
 class DEFORMVOLUME_EXPORT EditFinder
 {
 public:
   /// The volume.
   ImageGeometry Volume;
-  /// Where the vertices are. It is called where it matters only, after what can be checked before.
+  /// Returns the positions of the vertices. Called only when they are needed, after all other input
+  /// was checked.
   std::function<const VertexPositions&()> GetVertices;
   /// See GetFarDistance().
   float FarDistance = 0.0F;
-  /// A sheet divides tetrahedra, and what is carved out has a boundary between the voxels.
+  /// Whether cuts divide tetrahedra, and carved regions have a boundary between voxels.
   bool IsSmooth = false;
-  /// Which tetrahedra are carved out, where the boundary is not smooth.
+  /// Which tetrahedra are carved out, if IsSmooth is false.
   CarvingRule Rule = CarvingRule::Centroid;
-  /// Called with the fraction that is done.
+  /// Called with the completed fraction.
   EditProgress Progress;
 
-  /// What a sheet cuts.
+  /// Cuts with a sheet.
   VolumeEdit Cut(const WorldSheet& sheet) const;
-  /// What a tool in world coordinates carves out.
+  /// Carves with a tool in world coordinates.
   VolumeEdit Carve(const CarvingTool& tool) const;
-  /// What a closed surface encloses.
+  /// Carves the interior of a closed surface.
   VolumeEdit CarveSurface(const WorldSheet& surface) const;
-  /// What a sphere sweeps from center to center, in world coordinates.
+  /// Carves the path of a sphere from center to center, in world coordinates.
   VolumeEdit CarveSweptSphere(const std::vector<glm::dvec3>& centers, double radius) const;
-  /// Where voxels have a label. The smooth surface lies halfway between voxels.
+  /// Carves the voxels with a label. A smooth boundary lies halfway between voxels.
   VolumeEdit CarveLabel(const LabelReader& labels, double label) const;
 
 private:
-  /// With a tool in indices of the volume.
+  /// Carves with a tool in indices of the volume.
   VolumeEdit CarveInIndices(const CarvingTool& tool) const;
 };
 

@@ -53,7 +53,8 @@ Box GetWorldBox(const ImageGeometry& geometry)
   return box;
 }
 
-// Of the nodes that tetrahedra use, which are in indices of a volume.
+// Returns the box of the nodes that tetrahedra use. transform: applied to each node, in indices of
+// a volume.
 template <typename Function>
 Box FindBox(const MeshAtRest& mesh, const Function& transform)
 {
@@ -83,8 +84,8 @@ std::string Describe(const char* what, const Box& box, const ImageGeometry& volu
 {
   return std::string("The box of the ") + what + " is " + Describe(box) +
     ", and that of the volume " + Describe(GetWorldBox(volume)) +
-    ". Give both in the same world coordinates and the same unit: metres beside millimetres is "
-    "the usual cause.";
+    ". Give both in the same world coordinates and the same unit: the usual cause is that "
+    "one is in meters and the other in millimeters.";
 }
 
 } // namespace

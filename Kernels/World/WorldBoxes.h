@@ -12,15 +12,14 @@ namespace deformvolume
 struct ImageGeometry;
 struct MeshAtRest;
 
-/// Where a displacement field and the volume that it is given for lie in the world, in words for an
-/// error.
+/// Returns the world boxes of a displacement field and of the volume, as text for an error.
 DEFORMVOLUME_EXPORT std::string DescribeBoxes(
   const ImageGeometry& field, const ImageGeometry& volume);
 
-/// Throws an Error where the boxes of a mesh at rest and of the volume do not meet.
+/// Throws an Error if the boxes of a mesh at rest and of the volume do not intersect.
 DEFORMVOLUME_EXPORT void CheckBoxes(const MeshAtRest& mesh, const ImageGeometry& volume);
 
-/// What is wrong where no voxel lies in a mesh at rest.
+/// Returns the text of the error that a mesh at rest contains no voxel.
 DEFORMVOLUME_EXPORT std::string DescribeMiss(const MeshAtRest& mesh, const ImageGeometry& volume);
 
 } // namespace deformvolume

@@ -171,7 +171,7 @@ ImageGeometry WorldDeformer::Internals::GetOutputGrid() const
   output.PointExtent = ImageGeometry().PointExtent;
   for (int axis = 0; axis < 3 && this->Settings.Spacing; ++axis)
   {
-    // A volume with negative spacing keeps its sense.
+    // The sign of the volume's spacing is kept.
     output.Spacing[axis] =
       std::copysign((*this->Settings.Spacing)[axis], this->Volume->Spacing[axis]);
   }
@@ -249,7 +249,7 @@ IndexBounds WorldDeformer::Internals::FindBounds()
   }
   if (bounds.IsEmpty())
   {
-    this->Mapping.Update(mesh, mapped, {}); // which says what is wrong
+    this->Mapping.Update(mesh, mapped, {}); // throws a more exact error
     throw Error("The deformed volume has no bounds. Check the deformation mesh.");
   }
   return bounds;

@@ -22,23 +22,23 @@
 namespace deformvolume
 {
 
-/// What says which voxels and tetrahedra of the volume there are; see VolumeDeformer. Null: all.
+/// The masks of a volume; see VolumeDeformer. Null: no mask of this kind.
 struct WorldMasks
 {
   const unsigned char* Blanked = nullptr;
   const unsigned char* ActiveTetrahedra = nullptr;
   const float* BoundaryDistances = nullptr;
-  /// A smooth cut; both or none.
+  /// A smooth cut. Set both arrays or none.
   const unsigned char* CutTetrahedra = nullptr;
   const float* CutDistances = nullptr;
 };
 
-/// Which extent and spacing the output has where there is no reference grid.
+/// The extent and spacing of the output if there is no reference grid.
 struct OutputSettings
 {
   enum class BoundsModes
   {
-    Deformed, // those of the deformed volume
+    Deformed, // the bounds of the deformed volume
     Volume,
     Custom
   };
@@ -46,15 +46,15 @@ struct OutputSettings
   /// In world coordinates: x min, x max, y min, ...
   std::array<double, 6> CustomBounds{ { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 } };
   int Padding = 0; // voxels on all sides
-  /// None: that of the volume.
+  /// The spacing of the output. None: the spacing of the volume.
   std::optional<glm::dvec3> Spacing;
 };
 
 /// An array of a volume.
 struct WorldArray : VolumeArray
 {
-  /// The values are amounts for each unit of volume: they are divided by the Jacobian, and become
-  /// floats, or stay doubles. Not for labels.
+  /// Whether the values are amounts per unit of volume. Such values are divided by the Jacobian.
+  /// The output has doubles for an array of doubles, otherwise floats. Not for categorical arrays.
   bool IsDensity = false;
 };
 
@@ -65,23 +65,27 @@ struct WorldRequest
   deformvolume::Interpolation Interpolation = deformvolume::Interpolation::Linear;
   /// All arrays are resampled as if they were categorical.
   bool IsNearest = false;
-  /// Keeps what is needed to write only what changes until the next call. Where that has the same
-  /// memory again, it must still hold what this call wrote. Not together with the arrays below.
+  /// Whether the next call may write only the voxels that changed. If the next request has the same
+  /// memory, this memory must still contain the output of this call. Not together with
+  /// RestPositions, Jacobians, FoldCounts or densities.
   bool IsIncremental = false;
-  /// Room for the output of each array, of doubles or floats for a density, and for one byte a
-  /// voxel: 1 where the deformed volume covers it, else 0.
+  /// Memory for the output of each array (see WorldArray::IsDensity for the types of densities),
+  /// and for the coverage: one byte per voxel, 1 if the deformed volume covers the voxel, otherwise
+  /// 0.
   std::vector<void*> Outputs;
   signed char* Coverage = nullptr;
   ///@{
-  /// Room for arrays besides those of the volume, or null: the world position at rest of what is
-  /// seen, three floats a voxel; the determinant of the derivative of deformed positions, a float;
-  /// how many tetrahedra of the sampling mesh hold the voxel.
+  /// Memory for additional arrays, or null. RestPositions: three floats per voxel, the world
+  /// position at rest of the point of the volume that is there. Jacobians: one float per voxel, the
+  /// determinant of the derivative of deformed positions. FoldCounts: the number of tetrahedra of
+  /// the sampling mesh that hold the voxel.
   float* RestPositions = nullptr;
   float* Jacobians = nullptr;
   std::uint32_t* FoldCounts = nullptr;
   ///@}
-  double Background = 0.0; // of these
-  /// Called in the thread that called Deform() alone, with the fraction done; false aborts.
+  double Background = 0.0; // of RestPositions and Jacobians
+  /// Called with the completed fraction, only in the thread that called Deform(). If it returns
+  /// false, Deform() throws Aborted.
   std::function<bool(double)> Progress;
 };
 
@@ -89,13 +93,14 @@ struct WorldReport : DeformReport
 {
   std::string Device;
   Resampling Method = Resampling::Exact;
-  /// One after the other; "" without such.
+  /// All warnings, separated by spaces; "" if there are none.
   std::string Warnings;
 };
 
-/// Deforms a volume that lies in the world, by a mesh or a field that does: what
-/// vtkDeformVolumeFilter does with whole data, with the same bits, without VTK. What has not
-/// changed since the last call is kept. Every failure is an Error; the object can be used again.
+/// Deforms a volume by a mesh or a field, all given in world coordinates. The output equals that of
+/// vtkDeformVolumeFilter for whole data bit for bit, but VTK is not needed. Data that did not
+/// change since the last call are kept on the device. Every failure throws an Error; the object can
+/// be used again afterwards.
 class DEFORMVOLUME_EXPORT WorldDeformer
 {
 public:
@@ -108,16 +113,17 @@ public:
   std::string SetDevice(const std::string& request);
   void SetMemoryLimit(std::uint64_t bytes);
 
-  /// Forgets arrays and masks where it is another geometry.
+  /// Set the geometry of the volume. Discards arrays and masks if the geometry changed.
   void SetVolume(const ImageGeometry& volume);
-  /// The data are borrowed until other arrays are set. They have changed, as far as is known.
+  /// Set the arrays. Their memory must stay valid until other arrays are set. Each call means that
+  /// values may have changed.
   void SetArrays(const std::vector<WorldArray>& arrays);
-  /// Borrowed as well.
+  /// Set the masks. Their memory must stay valid until other masks are set.
   void SetMasks(const WorldMasks& masks);
 
   ///@{
-  /// A mesh with displacements, or a field: the last one that was set counts. Without one all of
-  /// the volume stays where it is. See WorldMesh and VectorField.
+  /// Set a mesh with displacements, or a field. The last one that was set is used. Without a mesh
+  /// or a field, the volume is not deformed. See WorldMesh and VectorField.
   void SetMesh(const VectorView& points, MeshCells&& cells);
   void SetNodeVectors(const VectorView& vectors);
   void SetField(const ImageGeometry& grid, const VectorView& vectors, bool isInverse);

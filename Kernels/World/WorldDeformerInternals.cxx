@@ -22,8 +22,9 @@ namespace deformvolume
 namespace
 {
 
-// The part of a progress between two fractions, reported in the calling thread only. Other
-// threads learn whether an end was asked for.
+// Returns a progress function that reports to a part of `progress`, between two fractions. It calls
+// `progress` in the calling thread only. In other threads it only returns whether the work was
+// aborted.
 std::function<bool(double)> GetPart(
   const std::function<bool(double)>& progress, double from, double to)
 {
@@ -50,7 +51,7 @@ bool AreSame(const std::vector<VolumeArray>& first, const std::vector<VolumeArra
     { return a.Data == b.Data && a.Type == b.Type && a.Components == b.Components; });
 }
 
-// The data are borrowed: who gave them keeps them.
+// The array does not own its data.
 VolumeArray MakeFloatArray(const std::vector<float>& values, double background)
 {
   VolumeArray array;
@@ -172,11 +173,11 @@ std::vector<VolumeArray> WorldDeformer::Internals::MakeArrays(
   {
     this->UpdateJacobians(progress);
     arrays.push_back(MakeFloatArray(this->Jacobians, request.Background));
-    ++this->ArraysVersion; // its values are others
+    ++this->ArraysVersion; // the values have changed
   }
   for (VolumeArray& array : arrays)
   {
-    // Only the arrays of the volume may be labels.
+    // Additional arrays are never categorical.
     const auto index = static_cast<std::size_t>(&array - arrays.data());
     array.Categorical |= request.IsNearest && index < this->Arrays.size();
   }
@@ -192,7 +193,7 @@ void WorldDeformer::Internals::CheckMemory(
   const std::size_t nodes = isMesh
     ? this->Mesh.GetAtRest().Points.size()
     : static_cast<std::size_t>(GetNumberOfPoints(this->Field.GetShape(this->Outside)));
-  // The memory of the output is there already.
+  // The caller has already allocated the output.
   std::uint64_t heldBytes = 0;
   for (const VolumeArray& array : arrays)
   {
@@ -308,7 +309,7 @@ void WorldDeformer::Internals::SendMesh(const std::function<bool(double)>& progr
   }
   if (!this->Outside.AreExtrapolated())
   {
-    // Only the bounds of an extrapolated deformation need them again.
+    // Links or runs are needed again only for the bounds of an extrapolated deformation.
     this->Mapping.ReleaseVoxels();
   }
   if (!isSent || this->SentVectors != this->Mesh.GetVectorsVersion())
@@ -448,7 +449,7 @@ WorldReport WorldDeformer::Internals::Deform(const WorldRequest& request)
     this->Forget();
   }
   this->Device = report.Device;
-  this->Known = false; // unless all ends well
+  this->Known = false; // until this call has succeeded
   this->UpdateDeformation();
   const Extent whole = this->FindWholeExtent();
   const auto progress = GetPart(request.Progress, 0.0, 0.3);
@@ -471,7 +472,7 @@ WorldReport WorldDeformer::Internals::Deform(const WorldRequest& request)
   }
   if (made.Progress && !made.Progress(0.0))
   {
-    this->Known = true; // it has all that was sent
+    this->Known = true; // all data were sent
     throw Aborted();
   }
   this->LastOutputs.clear();
@@ -518,7 +519,7 @@ void WorldDeformer::Internals::Finish(const WorldRequest& request, const Extent&
   }
   for (std::size_t i = 0; i < voxels && request.FoldCounts; ++i)
   {
-    // Where nothing overlaps nothing has been counted.
+    // If nothing overlaps, the resampler does not count.
     request.FoldCounts[i] = std::max(request.FoldCounts[i], request.Coverage[i] ? 1U : 0U);
   }
 }
@@ -607,7 +608,7 @@ void WorldDeformer::Internals::Describe(
           "the output is background. Check that the field holds points of the output, that its "
           "vectors lead from there to the volume, and that all are in the same world coordinates."
         : "The deformed volume covers no voxel of the output: all of it is background. Check the "
-          "grid of the output, and that the deformation mesh holds neighbouring voxels of the "
+          "grid of the output, and that the deformation mesh holds neighboring voxels of the "
           "volume.");
   }
 }

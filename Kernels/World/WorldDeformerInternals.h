@@ -27,14 +27,14 @@ public:
   };
 
   ///@{
-  /// Brings all that follows from the settings up to date. Throws an Error where something is
-  /// missing or does not go together.
+  /// Update the deformation; return the grid of the output and its whole extent, after an update.
+  /// Throw an Error if something is missing, or if settings cannot be combined.
   void UpdateDeformation();
   ImageGeometry GetOutputGrid() const;
   Extent FindWholeExtent();
   ///@}
 
-  /// One deformation, in the order of its steps.
+  /// See WorldDeformer::Deform().
   WorldReport Deform(const WorldRequest& request);
 
   void Forget();
@@ -43,13 +43,14 @@ public:
   std::string DeviceRequest;
   std::optional<ImageGeometry> Volume;
   std::vector<WorldArray> Arrays;
-  /// Of densities of integers, as floats; empty: they have not been made, or there are none.
+  /// The values of densities of integers, as floats. Empty if there are none, or if they were not
+  /// made yet.
   std::vector<std::vector<float>> DensityCopies;
   WorldMasks Masks;
   WorldMesh Mesh;
   VectorField Field;
   Deformations Deformation = Deformations::None;
-  /// For which the field has stood in for a deformation, where there is none.
+  /// The volume for which the field of zeros was made that is used if there is no deformation.
   std::optional<ImageGeometry> VolumeAtRest;
   OutsideVoxels Outside;
   std::optional<ImageGeometry> Reference;
@@ -59,7 +60,7 @@ public:
   MappingCache Mapping;
 
   ///@{
-  /// Change with what was set.
+  /// Change with the arrays and with the masks.
   std::uint64_t ArraysVersion = 0;
   std::uint64_t MasksVersion = 0;
   ///@}
@@ -86,9 +87,10 @@ private:
   {
     return (request.Jacobians || this->HasDensities()) && !this->IsInverse();
   }
-  /// An array as it is resampled.
+  /// Returns an array in the type in which it is resampled.
   VolumeArray GetSource(std::size_t array);
-  /// The arrays that are resampled: those of the volume, and those that are made of the request.
+  /// Returns the arrays to resample: the arrays of the volume, and the additional arrays of the
+  /// request.
   std::vector<VolumeArray> MakeArrays(
     const WorldRequest& request, const std::function<bool(double)>& progress);
   void UpdateRestPositions();
@@ -101,12 +103,12 @@ private:
   void SendRestMesh();
   void SendField();
   DeformRequest MakeRequest(const WorldRequest& request, const Extent& whole, Resampling method);
-  /// Completes the arrays that are not those of the volume.
+  /// Completes additional arrays and densities after resampling.
   void Finish(const WorldRequest& request, const Extent& extent);
   void DivideDensities(const WorldRequest& request, const float* jacobians, std::int64_t voxels);
   void Describe(const WorldRequest& request, const Extent& whole, WorldReport& report);
 
-  // What is resampled besides the arrays of the volume, and what it is of.
+  // Additional arrays, and the data for which they were made.
   std::array<std::vector<float>, 3> Positions;
   std::optional<ImageGeometry> PositionsVolume;
   std::array<std::vector<float>, 3> PositionsOutput;
@@ -114,10 +116,10 @@ private:
   std::uint64_t OfMeshVersion = 0; // of the mapping
   std::vector<float> Jacobians;
   OutsideVoxels JacobiansOutside;
-  std::vector<float> JacobiansOutput;  // where only densities need them
+  std::vector<float> JacobiansOutput;  // if only densities need them
   std::int64_t NumberOfLostVoxels = 0; // of densities, in the last output
 
-  // What the device has. A call that throws leaves it unknown, and then everything is sent again.
+  // The data on the device. After an exception these are not known, and everything is sent again.
   bool Known = false;
   std::string Device;
   VoxelGrid SentGrid;
@@ -134,7 +136,7 @@ private:
   FadedMesh Faded;
   bool HasFadedMesh = false;
 
-  // The last output, where it is one that a call can begin with.
+  // The memory of the last output, if it can be updated incrementally.
   std::vector<void*> LastOutputs;
   signed char* LastCoverage = nullptr;
   Extent LastExtent{ { 0, -1, 0, -1, 0, -1 } };

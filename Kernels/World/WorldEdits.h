@@ -15,27 +15,27 @@
 namespace deformvolume
 {
 
-/// Edits of a volume that lies in the world, at rest, and the masks that it has by them: what
-/// vtkCutVolume and vtkCarveVolume do with whole data, with the same bits, without VTK.
+/// Edits of a volume at rest, given in world coordinates, and the resulting masks. The masks equal
+/// those of vtkCutVolume and vtkCarveVolume for whole data bit for bit, but VTK is not needed.
 class DEFORMVOLUME_EXPORT WorldEdits
 {
 public:
-  /// Throws Error where the volume has less than two voxels on an axis.
+  /// Throws an Error if the volume has fewer than two voxels on an axis.
   explicit WorldEdits(const ImageGeometry& volume);
 
-  /// What finds edits, without options. It is valid as long as this object.
+  /// Returns an EditFinder with default options. It is valid as long as this object.
   EditFinder MakeFinder() const;
 
-  /// The masks before all edits. They are borrowed until others are set, and their values may be
-  /// others than they were.
+  /// Set the masks before all edits. Their memory must stay valid until other masks are set. Each
+  /// call means that values may have changed.
   void SetBase(const WorldMasks& base);
-  /// The masks with the edits, in memory of the base or of this object, until something is set or
-  /// edited.
+  /// Returns the masks with all edits. The pointers lead to memory of the base or of this object,
+  /// and are valid until the base or an edit changes.
   WorldMasks GetMasks();
 
   void Add(VolumeEdit&& edit);
   ///@{
-  /// False where there is nothing to be undone or redone.
+  /// Undo or redo an edit. Return false if there is no edit to undo or redo.
   bool Undo() { return this->Editor.Undo(); }
   bool Redo() { return this->Editor.Redo(); }
   ///@}
@@ -57,7 +57,8 @@ private:
   RestPositions Vertices;
   MaskEditor Editor;
   WorldMasks Base;
-  // The editor has others. It gets them where an edit is joined with them.
+  // Whether the editor still has the distances, or the cut, of an older base. They are only set
+  // when an edit needs them.
   bool BaseDistancesAreOld = false;
   bool BaseCutIsOld = false;
 };

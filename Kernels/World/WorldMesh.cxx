@@ -18,7 +18,7 @@ namespace
 
 constexpr std::size_t NodesAtATime = 512;
 
-// Copies vectors. Those that are not finite are marked, and become zeros.
+// Copies vectors. Vectors that are not finite are marked, and replaced by zeros.
 void CopyVectors(const VectorView& from, std::vector<glm::dvec3>& to, NodeFaults& faults)
 {
   to.resize(from.Count);
@@ -91,7 +91,7 @@ void WorldMesh::Update(const ImageGeometry& volume, const OutputMap& toOutput)
   }
   if (this->DisplacementsAreOld || toOutput != this->ToOutput)
   {
-    this->DisplacementsAreOld = true; // where it fails
+    this->DisplacementsAreOld = true; // in case of an exception
     this->UpdateDisplacements(toOutput);
     this->DisplacementsAreOld = false;
     this->ToOutput = toOutput;

@@ -20,18 +20,20 @@
 namespace deformvolume
 {
 
-/// A deformation mesh and its displacements, given in world coordinates, in the units of the
+/// Converts a deformation mesh and its displacements in world coordinates to the units of the
 /// kernels.
 class WorldMesh
 {
 public:
-  /// points: at rest; they are copied. There are no displacements then.
+  /// Set the mesh. points: the nodes at rest, which are copied. Removes the displacements.
   void Set(const VectorView& points, MeshCells&& cells);
-  /// One vector for each node; they are copied. Throws an Error where their number is another one.
+  /// Set the displacements: one vector for each node. They are copied. Throws an Error if the
+  /// number of vectors is not the number of nodes.
   void SetVectors(const VectorView& vectors);
 
-  /// Makes what follows from a volume and from where it lies in the output. Throws an Error where a
-  /// point or a vector that tetrahedra use is not finite, or too long.
+  /// Updates nodes and displacements for a volume and its map to the output. Throws an Error if a
+  /// point or vector of a node that a tetrahedron uses is not finite, or a displacement is too
+  /// long.
   void Update(const ImageGeometry& volume, const OutputMap& toOutput);
 
   bool HasVectors() const { return this->VectorsAreSet; }
@@ -39,13 +41,13 @@ public:
   const MeshCells& GetCells() const { return this->Cells; }
 
   ///@{
-  /// After Update. Points and displacements are those of the nodes, and then of the derived ones.
+  /// Valid after Update(). Points and displacements of derived nodes follow those of the nodes.
   MeshAtRest GetAtRest() const
   {
     return { this->Cells.Tetrahedra, this->Points, this, this->ShapeVersion };
   }
   const std::vector<float>& GetDisplacements() const { return this->Displacements; }
-  /// Change with these.
+  /// These versions change with the points at rest, and with the displacements.
   std::uint64_t GetShapeVersion() const { return this->ShapeVersion; }
   std::uint64_t GetVectorsVersion() const { return this->VectorsVersion; }
   ///@}

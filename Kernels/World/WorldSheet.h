@@ -18,7 +18,7 @@ struct DEFORMVOLUME_EXPORT WorldSheet
 {
   /// The points.
   std::vector<glm::dvec3> Points;
-  /// The numbers of three points for each triangle.
+  /// The indices of three points for each triangle.
   std::vector<Sheet::Triangle> Triangles;
 
   /// Whether there are no triangles.
@@ -28,11 +28,13 @@ struct DEFORMVOLUME_EXPORT WorldSheet
   {
     return this->Points == other.Points && this->Triangles == other.Triangles;
   }
-  /// Adds what a straight edge sweeps between two places of its ends.
+  /// Adds two triangles for the surface that a straight edge sweeps while its ends move from fromA
+  /// and fromB to toA and toB.
   void AddSweep(
     const glm::dvec3& fromA, const glm::dvec3& fromB, const glm::dvec3& toA, const glm::dvec3& toB);
 
-  /// In continuous indices of a volume. Throws Error as Sheet does.
+  /// Returns the sheet in continuous indices of a volume. Throws an Error if the constructor of
+  /// Sheet does.
   Sheet GetSheet(const ImageGeometry& volume) const;
 };
 

@@ -41,7 +41,8 @@ PointFunction MakeSurfaceDistance(const WorldSheet& surface)
     {
       corners[k] = surface.Points[static_cast<std::size_t>(triangle[k])];
     }
-    // Of a closed surface, the edges of one without area are those of others.
+    // Ignore triangles without area. In a closed surface, their edges belong to other triangles as
+    // well.
     const glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
     if (normal != glm::dvec3(0.0))
     {
@@ -93,7 +94,7 @@ CarvingTool GetInIndices(const CarvingTool& tool, const ImageGeometry& volume)
       }
       moved.Bounds.Add(glm::dvec3(toIndex * point));
     }
-    // Rounding must not cut off what touches the bounds.
+    // Rounding must not exclude points on the bounds.
     constexpr double margin = 1e-3; // voxels
     moved.Bounds.Min -= glm::dvec3(margin);
     moved.Bounds.Max += glm::dvec3(margin);
