@@ -12,7 +12,7 @@ namespace deformvolume
 namespace
 {
 
-// Makes a part from faces whose nodes are positions in the cell's list of points.
+// Makes a part from faces whose nodes are indices in the cell's list of points.
 CellPart MakePart(const CellFaces& faces)
 {
   CellPart part;
@@ -78,7 +78,8 @@ CellParts SplitSerendipity(const CellFaces& faces)
 {
   CellParts parts;
   CellFaces rest;
-  // For each corner the mid-edge nodes around it, each with its two neighbors among them.
+  // For each corner, the mid-edge nodes around it. These form a ring; each has two neighbors in the
+  // ring.
   std::map<int, std::map<int, std::vector<int>>> rings;
   for (const std::vector<int>& face : faces)
   {
@@ -98,10 +99,10 @@ CellParts SplitSerendipity(const CellFaces& faces)
     int next = corner.second.begin()->second.front();
     while (next != ring.front())
     {
-      const std::vector<int>& neighbours = corner.second.at(next);
+      const std::vector<int>& neighbors = corner.second.at(next);
       const int last = ring.back();
       ring.push_back(next);
-      next = neighbours[0] == last ? neighbours[1] : neighbours[0];
+      next = neighbors[0] == last ? neighbors[1] : neighbors[0];
     }
     rest.push_back(ring);
     parts.push_back(MakeCone(corner.first, ring));

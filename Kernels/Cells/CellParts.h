@@ -14,18 +14,18 @@ namespace deformvolume
 /// A convex part of a cell.
 struct CellPart
 {
-  /// The nodes, as positions in the cell's list of points.
+  /// The nodes, as indices in the cell's list of points.
   std::vector<int> Nodes;
-  /// The faces, as positions in Nodes.
+  /// The faces, as indices in Nodes.
   CellFaces Faces;
-  /// If the part is split around a derived node: the weights of all nodes of the cell for it. The
-  /// faces are then triangles. Otherwise empty.
+  /// If the part is split around a derived node, the weights of all nodes of the cell for the
+  /// derived node; otherwise empty. If not empty, the faces are triangles.
   std::vector<double> CenterWeights;
 };
 /// The parts of a cell.
 using CellParts = std::vector<CellPart>;
 
-/// Returns the position in a cell's list of points of the node at a lattice point of the cell. -1:
+/// Returns the index, in a cell's list of points, of the node at a lattice point of the cell; -1 if
 /// there is no node.
 using NodeAt = std::function<int(int i, int j, int k)>;
 
@@ -41,7 +41,7 @@ using NodeAt = std::function<int(int i, int j, int k)>;
 
 /// A cell with nodes at corners and mid-edges only (serendipity). faces: nodes in VTK's order:
 /// corners in order around the face, then the mid-edge nodes in the same order. The parts are one
-/// pyramid at each corner, and the rest with the mid-edge nodes.
+/// pyramid at each corner, and one part between all mid-edge nodes.
 CellParts SplitSerendipity(const CellFaces& faces);
 
 /// A cell with mid-edge nodes, a center node, and a center node of each face, which is the last

@@ -68,7 +68,7 @@ void CellReader::CheckSize(std::int64_t cell, int type, std::int64_t count)
   }
 }
 
-// Adds a derived node, and returns its number.
+// Adds a derived node, and returns its index.
 std::int32_t CellReader::AddNode(
   const std::vector<std::int32_t>& nodes, const std::vector<double>& weights)
 {
@@ -88,22 +88,22 @@ void CellReader::AddPolyhedron(
 {
   bool complete = areComplete && faces.size() >= 4;
   std::vector<std::int32_t> nodes;
-  CellFaces positionsOfFaces;
-  std::map<std::int32_t, int> positions;
+  CellFaces facesByIndex;
+  std::map<std::int32_t, int> indices;
   for (const std::vector<std::int32_t>& points : faces)
   {
     complete &= points.size() >= 3;
     std::vector<int> face;
     for (const std::int32_t node : points)
     {
-      const auto inserted = positions.emplace(node, static_cast<int>(nodes.size()));
+      const auto inserted = indices.emplace(node, static_cast<int>(nodes.size()));
       if (inserted.second)
       {
         nodes.push_back(node);
       }
       face.push_back(inserted.first->second);
     }
-    positionsOfFaces.push_back(face);
+    facesByIndex.push_back(face);
   }
   if (!complete)
   {
@@ -115,7 +115,7 @@ void CellReader::AddPolyhedron(
     points.push_back(this->GetPosition(node));
   }
   PolyhedronSplit split;
-  if (!SplitPolyhedron(nodes, positionsOfFaces, points, this->Rounding, split))
+  if (!SplitPolyhedron(nodes, facesByIndex, points, this->Rounding, split))
   {
     throw Error("Cell " + std::to_string(cell) + " of the deformation mesh is a concave " +
       GetCellName(cellNumbers::Polyhedron) + " with " + std::to_string(nodes.size()) +

@@ -26,13 +26,13 @@ struct MeshCells
 {
   /// The tetrahedra, in the order of the cells.
   std::vector<Tetrahedron> Tetrahedra;
-  /// Additional nodes of the tetrahedra. Their numbers follow those of the nodes of the mesh.
+  /// Additional nodes of the tetrahedra. Their indices follow those of the nodes of the mesh.
   DerivedNodes Derived;
   /// Text for a warning: number and type of cells that are not three-dimensional or of an
   /// unsupported type. "" if there are none.
   std::string Ignored;
   /// Text for a warning: number of quadratic cells with a mid-side node far from the midpoint of
-  /// its edge. "" if there are none.
+  /// its edge, such as "3 of 10". "" if there are none.
   std::string FarMidSides;
 };
 
@@ -40,8 +40,8 @@ struct MeshCells
 DEFORMVOLUME_EXPORT std::vector<std::string> GetCellWarnings(
   const std::string& ignored, const std::string& farMidSides);
 
-/// Throws Error for a cell of the deformation mesh. count: number of its points. complaint: follows
-/// the number of points in the message.
+/// Throws an Error for a cell of the deformation mesh. count: number of its points. complaint: the
+/// text after the number of points in the message.
 [[noreturn]] DEFORMVOLUME_EXPORT void ThrowBadCell(
   std::int64_t cell, int type, std::int64_t count, const std::string& complaint);
 
@@ -73,9 +73,9 @@ public:
 
   /// Adds a tetrahedron without a check.
   void AddTetrahedron(const Tetrahedron& nodes) { this->Cells.Tetrahedra.push_back(nodes); }
-  /// Adds a cell of any type except Polyhedron. nodes: numbers in the mesh, in the order of the
-  /// cell. degrees: of a Lagrange cell along its axes; null: derived from the number of nodes.
-  /// Throws Error if the number of nodes is wrong, and for Bezier cells.
+  /// Adds a cell of any type except Polyhedron. nodes: indices of the nodes in the mesh, in the
+  /// order of the cell. degrees: the degrees of a Lagrange cell along its axes; null: derived from
+  /// the number of nodes. Throws Error if the number of nodes is wrong, and for Bezier cells.
   void Add(std::int64_t cell, int type, const std::vector<std::int32_t>& nodes,
     const std::array<int, 3>* degrees);
   /// The nodes of each face, in order around the face.

@@ -11,7 +11,8 @@
 namespace deformvolume
 {
 
-/// The faces of a cell, as positions in the cell's list of points, in order around the face.
+/// The faces of a cell: the points of each face, as indices in the cell's list of points, in order
+/// around the face.
 using CellFaces = std::vector<std::vector<int>>;
 
 /// Returns the faces of a hexahedron, wedge, pyramid, pentagonal prism or hexagonal prism

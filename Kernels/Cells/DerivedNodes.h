@@ -13,10 +13,11 @@ namespace deformvolume
 
 /// Additional nodes that are not points of the grids of a mesh. The position and displacement of a
 /// derived node are weighted sums of those of nodes of the grids. The weights add up to 1. The
-/// numbers of derived nodes follow those of the nodes of all grids.
+/// indices of derived nodes follow those of the nodes of all grids.
 struct DerivedNodes
 {
-  /// For each derived node the end of its range in Nodes and Weights.
+  /// For each derived node, the end of its range in Nodes and Weights. A range begins at the end of
+  /// the previous range.
   std::vector<std::uint64_t> Ends;
   /// The nodes of the sums of all derived nodes.
   std::vector<std::int32_t> Nodes;

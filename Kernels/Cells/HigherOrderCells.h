@@ -25,14 +25,15 @@ public:
   /// lie on its shape.
   static bool IsBezier(int cellType);
 
-  /// Returns the parts of a quadratic or Lagrange cell. degrees: of a Lagrange cell along its three
-  /// axes; null: one degree, derived from the number of points. Empty if a cell of that type and
-  /// degree does not have this number of points. The reference is valid as long as this object.
+  /// Returns the parts of a quadratic or Lagrange cell. degrees: the degrees of a Lagrange cell
+  /// along its three axes; null: the same degree on all axes, derived from the number of points.
+  /// Empty if a cell of that type and degree does not have this number of points. The reference is
+  /// valid as long as this object.
   const CellParts& GetParts(
     int cellType, std::int64_t numberOfPoints, const std::array<int, 3>* degrees);
 
   /// Returns the edges of a quadratic cell type that have a mid-side node: two corners and the
-  /// mid-side node, as positions in the cell's list of points. Empty for all other types.
+  /// mid-side node, as indices in the cell's list of points. Empty for all other types.
   static const std::vector<std::array<int, 3>>& GetMidSides(int cellType);
 
 private:

@@ -16,10 +16,11 @@ namespace deformvolume
 namespace
 {
 
-// Relative to the volume of a cell: by how much the volume of its tetrahedra may differ.
+// The largest difference between the volume of a cell and that of its tetrahedra, relative to the
+// volume of the cell.
 constexpr double VolumeTolerance = 5e-7;
 
-using Triangle = std::array<int, 3>; // positions in the cell's list of points
+using Triangle = std::array<int, 3>; // indices in the cell's list of points
 
 double GetVolume(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d)
 {
@@ -89,7 +90,7 @@ bool OrientFaces(CellFaces& faces)
       edges[std::minmax(a, b)].push_back({ f, a < b });
     }
   }
-  std::vector<std::vector<std::pair<std::size_t, bool>>> neighbours(faces.size());
+  std::vector<std::vector<std::pair<std::size_t, bool>>> neighbors(faces.size());
   for (const auto& edge : edges)
   {
     const std::vector<Use>& uses = edge.second;
@@ -98,8 +99,8 @@ bool OrientFaces(CellFaces& faces)
       return false;
     }
     const bool isSame = uses[0].Ascending != uses[1].Ascending;
-    neighbours[uses[0].Face].emplace_back(uses[1].Face, isSame);
-    neighbours[uses[1].Face].emplace_back(uses[0].Face, isSame);
+    neighbors[uses[0].Face].emplace_back(uses[1].Face, isSame);
+    neighbors[uses[1].Face].emplace_back(uses[0].Face, isSame);
   }
   std::vector<int> senses(faces.size(), 0);
   std::vector<std::size_t> waiting{ 0 };
@@ -108,7 +109,7 @@ bool OrientFaces(CellFaces& faces)
   {
     const std::size_t face = waiting.back();
     waiting.pop_back();
-    for (const auto& [other, isSame] : neighbours[face])
+    for (const auto& [other, isSame] : neighbors[face])
     {
       const int sense = isSame ? senses[face] : -senses[face];
       if (senses[other] == 0)
@@ -158,33 +159,33 @@ std::vector<Triangle> SplitPolygon(
     return fan;
   }
   std::vector<Triangle> ears;
-  std::vector<int> left = face;
-  while (left.size() > 3)
+  std::vector<int> remaining = face;
+  while (remaining.size() > 3)
   {
-    std::size_t ear = left.size();
-    for (std::size_t i = 0; i < left.size() && ear == left.size(); ++i)
+    std::size_t ear = remaining.size();
+    for (std::size_t i = 0; i < remaining.size() && ear == remaining.size(); ++i)
     {
-      const int before = left[(i + left.size() - 1) % left.size()];
-      const int after = left[(i + 1) % left.size()];
-      const bool isEmpty = std::none_of(left.begin(), left.end(),
+      const int before = remaining[(i + remaining.size() - 1) % remaining.size()];
+      const int after = remaining[(i + 1) % remaining.size()];
+      const bool isEmpty = std::none_of(remaining.begin(), remaining.end(),
         [&](int node)
         {
-          return node != before && node != left[i] && node != after &&
-            getTurn(before, left[i], node) >= -tolerance &&
-            getTurn(left[i], after, node) >= -tolerance &&
+          return node != before && node != remaining[i] && node != after &&
+            getTurn(before, remaining[i], node) >= -tolerance &&
+            getTurn(remaining[i], after, node) >= -tolerance &&
             getTurn(after, before, node) >= -tolerance;
         });
-      ear = isEmpty && getTurn(before, left[i], after) > tolerance ? i : ear;
+      ear = isEmpty && getTurn(before, remaining[i], after) > tolerance ? i : ear;
     }
-    if (ear == left.size())
+    if (ear == remaining.size())
     {
       return fan; // the polygon crosses itself
     }
-    ears.push_back({ { left[(ear + left.size() - 1) % left.size()], left[ear],
-      left[(ear + 1) % left.size()] } });
-    left.erase(left.begin() + static_cast<std::ptrdiff_t>(ear));
+    ears.push_back({ { remaining[(ear + remaining.size() - 1) % remaining.size()], remaining[ear],
+      remaining[(ear + 1) % remaining.size()] } });
+    remaining.erase(remaining.begin() + static_cast<std::ptrdiff_t>(ear));
   }
-  ears.push_back({ { left[0], left[1], left[2] } });
+  ears.push_back({ { remaining[0], remaining[1], remaining[2] } });
   return ears;
 }
 
@@ -215,8 +216,8 @@ std::vector<Triangle> SplitFace(const std::vector<int>& face,
   return triangles;
 }
 
-// Finds a point on the inner side of all triangles, with a large distance from them (not the
-// largest). Returns false if none is found.
+// Finds a point on the inner side of all triangles, at a large, but not the largest possible,
+// distance from them. Returns false if none is found.
 bool FindCenter(const std::vector<Triangle>& triangles, const std::vector<glm::dvec3>& points,
   double size, glm::dvec3& center)
 {
@@ -270,8 +271,8 @@ bool FindCenter(const std::vector<Triangle>& triangles, const std::vector<glm::d
   return false;
 }
 
-// Returns the weights of points that add up to 1 and give a position, with the least sum of
-// squares.
+// Returns weights of points. The weights add up to 1, the weighted sum of the points is a given
+// position, and the sum of the squared weights is minimal.
 std::vector<double> FindWeights(const std::vector<glm::dvec3>& points, const glm::dvec3& position)
 {
   const auto count = static_cast<double>(points.size());
@@ -301,7 +302,7 @@ bool SplitPolyhedron(const std::vector<std::int32_t>& nodes, const CellFaces& fa
 {
   split = PolyhedronSplit();
   SplitCell(nodes, faces, split.Tetrahedra);
-  double error = 0.0; // of the positions
+  double error = 0.0; // the largest error of the positions
   for (const glm::dvec3& point : points)
   {
     const glm::dvec3 size = glm::abs(point);
@@ -341,16 +342,16 @@ bool SplitPolyhedron(const std::vector<std::int32_t>& nodes, const CellFaces& fa
       std::swap(triangle[1], triangle[2]);
     }
   }
-  std::map<std::int32_t, int> positions;
+  std::map<std::int32_t, int> indices;
   for (std::size_t i = 0; i < nodes.size(); ++i)
   {
-    positions[nodes[i]] = static_cast<int>(i);
+    indices[nodes[i]] = static_cast<int>(i);
   }
   double filled = 0.0;
   for (const Tetrahedron& t : split.Tetrahedra)
   {
-    filled += std::abs(GetVolume(
-      at(positions[t[0]]), at(positions[t[1]]), at(positions[t[2]]), at(positions[t[3]])));
+    filled += std::abs(
+      GetVolume(at(indices[t[0]]), at(indices[t[1]]), at(indices[t[2]]), at(indices[t[3]])));
   }
   double area = 0.0;
   for (const Triangle& t : triangles)

@@ -25,7 +25,7 @@ struct PolyhedronSplit
   std::vector<std::array<std::int32_t, 3>> Triangles;
 };
 
-/// Splits a polyhedron. nodes: numbers of its nodes in the mesh. points: positions of the nodes at
+/// Splits a polyhedron. nodes: indices of its nodes in the mesh. points: positions of the nodes at
 /// rest. rounding: relative error of the positions.
 ///
 /// If the tetrahedra of SplitCell() fill the polyhedron, as in convex cells, they are the result.
