@@ -321,8 +321,7 @@ void TestStates()
   VERIFY(rest != one && !IsSame(first, second));
   dragged.Filter->SetHandlesData(nullptr);
   VERIFY(dragged.Filter->RestoreState(one));
-  const vtkIdType again =
-    dragged.Filter->SaveState(); // a restored state can be saved before an update
+  const vtkIdType again = dragged.Filter->SaveState(); // of the restored state, before an update
   VERIFY(IsSame(dragged.Update(), first));
   VERIFY(dragged.Filter->GetChangedExtent()[0] <= dragged.Filter->GetChangedExtent()[1]);
   VERIFY(dragged.Filter->RestoreState(rest));

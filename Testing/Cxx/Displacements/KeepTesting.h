@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the tests of OutsideMode KEEP have in common.
+// A filter and the fade function for the tests of OutsideMode KEEP.
 #ifndef KeepTesting_h
 #define KeepTesting_h
 
@@ -8,7 +8,7 @@
 namespace filterTesting
 {
 
-/// What is left of a displacement outside, where 1 is FadeDistance.
+/// The weight of a displacement outside the deformation. s: the distance divided by FadeDistance.
 inline double Fade(double s)
 {
   return s < 1.0 ? 1.0 - 3.0 * s * s + 2.0 * s * s * s : 0.0;

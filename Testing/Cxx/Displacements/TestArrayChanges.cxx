@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The log of an array: its ranges, and when it has none. vtkDeformVolumeFilter reads the logged
-// tuples only. Testing/Fuzz edits arrays at random with logs.
+// The log of changes of an array: logged ranges, and changes that are not logged.
+// vtkDeformVolumeFilter reads only the logged tuples. Testing/Fuzz tests random edits with logs.
 #include "FilterTesting.h"
 #include "vtkArrayChanges.h"
 
@@ -17,7 +17,7 @@ using namespace filterTesting;
 namespace
 {
 
-// First and last of each range, in one list; -1 alone where nothing is known.
+// The first and last tuples of all logged ranges, or {-1} if the log does not contain all changes.
 std::vector<vtkIdType> GetTuples(vtkArrayChanges* log, vtkMTimeType time)
 {
   vtkNew<vtkIdTypeArray> ranges;
@@ -51,7 +51,7 @@ void TestMisuse()
   VERIFY(GetTuples(log, begin).empty());
   VERIFY(GetTuples(log, begin - 1) == std::vector<vtkIdType>{ -1 });
 
-  // A copy is another array, and a log has one array, which has one log.
+  // A copy of an array has no log. An array has at most one log, and a log has one array.
   vtkNew<vtkFloatArray> copy;
   copy->DeepCopy(array);
   VERIFY(!vtkArrayChanges::FindLog(copy));
@@ -64,7 +64,7 @@ void TestMisuse()
   other->SetArray(nullptr);
   VERIFY(!vtkArrayChanges::FindLog(array));
 
-  // The array holds the log, and the log does not hold the array.
+  // The array holds a reference to the log, but the log holds none to the array.
   vtkSmartPointer<vtkFloatArray> shortLived = vtkSmartPointer<vtkFloatArray>::New();
   log->SetArray(shortLived);
   shortLived = nullptr;
@@ -92,7 +92,7 @@ void TestLog()
   VERIFY((GetTuples(log, second) == std::vector<vtkIdType>{ 7, 9, 0, 0 }));
   VERIFY(GetTuples(log, array->GetMTime()).empty());
 
-  // What somebody else modifies may be anything, until all consumers have seen it.
+  // After a change that is not logged, any tuple may have changed.
   const vtkMTimeType third = array->GetMTime();
   array->Modified();
   VERIFY(GetTuples(log, third) == std::vector<vtkIdType>{ -1 });
@@ -101,7 +101,7 @@ void TestLog()
   VERIFY(GetTuples(log, third) == std::vector<vtkIdType>{ -1 });
   VERIFY((GetTuples(log, seen) == std::vector<vtkIdType>{ 4, 4 }));
 
-  // Not all is kept.
+  // Old entries of a long log are dropped.
   constexpr vtkIdType many = 100000;
   const vtkMTimeType before = array->GetMTime();
   for (vtkIdType i = 0; i < many; ++i)
@@ -114,8 +114,8 @@ void TestLog()
   VERIFY((GetTuples(log, late) == std::vector<vtkIdType>{ 1, 2 }));
 }
 
-// What is written and not logged is not seen: the filter takes the log's word. With the next
-// modification that nobody logs it is.
+// The filter does not read changes that are missing in the log. After Modified() without a log it
+// reads all tuples.
 void TestFilter()
 {
   const auto volume = MakeImage({ { 0, 30, 0, 30, 0, 30 } });
@@ -127,7 +127,7 @@ void TestFilter()
   active->SetName("ActiveTetrahedra");
   active->SetNumberOfTuples(volume->GetNumberOfCells());
   active->FillValue(31);
-  active->SetValue(0, 1); // a mask that is as without one is not kept
+  active->SetValue(0, 1); // a mask in which all tetrahedra are active would not be stored
   volume->GetCellData()->AddArray(active);
   Deformed logged(volume, mesh);
   logged.Filter->SetResamplerToExact();
@@ -155,7 +155,7 @@ void TestFilter()
   const auto start = update();
   VERIFY(AreEqual(start, fresh()));
 
-  // Blocks of 512 nodes are looked at as a whole: these two are far apart.
+  // The filter compares blocks of 512 nodes. These two nodes are in different blocks.
   const vtkIdType here = 12 * 12 * 2 + 12 * 5 + 5;
   const vtkIdType there = 12 * 12 * 9 + 12 * 5 + 5;
   vectors->SetTuple3(here, 0.75, 0.5, 0.0);
@@ -183,7 +183,7 @@ void TestFilter()
   active->Modified();
   VERIFY(AreEqual(update(), fresh()));
 
-  // The log does not contain the cells that were hidden.
+  // The log of the mask does not contain cells that the ghost array hides.
   maskLog->AddTuples(0, 0);
   vtkNew<vtkUnsignedCharArray> ghosts;
   ghosts->SetName(vtkDataSetAttributes::GhostArrayName());

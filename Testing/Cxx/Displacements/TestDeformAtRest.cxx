@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Without a deformation on port 1 the output is the volume itself, as by a deformation of zeros.
+// Without a deformation on port 1 the output is the volume at rest, as with a deformation of zeros.
 #include "FilterTesting.h"
 
 #include <vtkCellData.h>
@@ -21,7 +21,7 @@ vtkSmartPointer<vtkImageData> MakeCutVolume()
   volume->SetSpacing(0.7, 1.1, 2.3);
   volume->SetOrigin(100.0, -50.0, 7.0);
   SetObliqueDirection(volume);
-  volume->GetPointData()->SetActiveScalars(nullptr); // else they would be replaced
+  volume->GetPointData()->SetActiveScalars(nullptr); // otherwise the array would be replaced
   AddScalars<float>(volume, "more", [](const glm::dvec3& p) { return 0.1 * p.x - p.y * p.z; });
   vtkNew<vtkUnsignedCharArray> active;
   active->SetName("ActiveTetrahedra");
@@ -34,7 +34,7 @@ vtkSmartPointer<vtkImageData> MakeCutVolume()
   return volume;
 }
 
-// A field of zeros over the voxels themselves and some beside them.
+// A field of zeros whose points are the voxels, and one more layer of points around them.
 vtkSmartPointer<vtkImageData> MakeZeros(vtkImageData* volume)
 {
   auto field = vtkSmartPointer<vtkImageData>::New();
@@ -61,7 +61,7 @@ void TestMisuse()
   VERIFY(subject.LastError.find("no deformation on input port 1") != std::string::npos);
   VERIFY_EQUAL(subject.Filter->GetOutput()->GetNumberOfPoints(), 0);
 
-  // One that is connected has to be one.
+  // A connected deformation must not be empty.
   subject.Filter->SetRestConnection(nullptr);
   for (vtkDataObject* empty : { static_cast<vtkDataObject*>(vtkUnstructuredGrid::New()),
          static_cast<vtkDataObject*>(vtkImageData::New()) })
@@ -75,7 +75,7 @@ void TestMisuse()
   subject.Filter->SetDeformationConnection(nullptr);
   VERIFY_EQUAL(GetExtent(subject.Update()), GetExtent(volume));
 
-  // What the other resampler does not do is said without a word of a field.
+  // Mesh rasterization cannot do smooth cuts, also without a deformation.
   const auto cut = MakeVolume();
   vtkNew<vtkUnsignedCharArray> crossed;
   crossed->SetName("CutTetrahedra");
@@ -117,7 +117,7 @@ void TestVolumeItself()
   }
 }
 
-// With all that may be set.
+// Different settings, without a deformation and with a deformation of zeros.
 void TestSettings()
 {
   using Setting = std::pair<const char*, std::function<void(vtkDeformVolumeFilter*)>>;
@@ -158,7 +158,7 @@ void TestSettings()
     Deformed subject;
     subject.Filter->SetInputData(volume);
     setting.second(subject.Filter);
-    // What only a deformation needs does not matter.
+    // Settings of the deformation are ignored.
     subject.Filter->PointsAreDeformedOn();
     subject.Filter->FieldIsInverseOn();
     subject.Filter->SetDisplacementScale(-3.0);
@@ -167,7 +167,7 @@ void TestSettings()
     vtkImageData* output = subject.Update();
     if (!AreEqual(output, expected.Update()) || output->GetNumberOfPoints() == 0)
     {
-      std::cerr << setting.first << ": not as a deformation of zeros\n";
+      std::cerr << setting.first << ": the output differs from that of a deformation of zeros\n";
       VERIFY(false);
     }
     VERIFY(subject.Filter->GetNumberOfCoveredVoxels() > 0);
@@ -175,7 +175,7 @@ void TestSettings()
   }
 }
 
-// A cut shows, and a deformation may come and go.
+// A cut volume at rest, and deformations that are connected and disconnected.
 void TestComingAndGoing()
 {
   const auto volume = MakeCutVolume();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Displacement fields that are read where they lie, large ones of floats over the voxels, against
-// the same numbers as doubles, which are converted: bit by bit, extents included.
+// Large displacement fields of floats, with a point at each voxel, are read in place. The result
+// must be equal, bit by bit, to that of the same field as doubles, which is converted.
 #include "Device.h"
 #include "FilterTesting.h"
 
@@ -16,7 +16,7 @@ using namespace filterTesting;
 namespace
 {
 
-// More voxels than fields are converted with, and rows of no round number.
+// Fields of this size are read in place. The sizes of its rows and planes are not powers of two.
 constexpr Extent Voxels{ { -4, 68, 3, 64, 0, 66 } };
 
 class Fields
@@ -102,7 +102,8 @@ void TestEqualBits()
     {
       Fields fields(spacing, oblique);
       fields.Compare("a field");
-      // The host holds a copy of the field that is converted, and no device one that is not.
+      // On a CPU the filter holds a copy of the converted field, and none of a field that is read
+      // in place.
       const vtkIdType bytes = 16 * fields.Floats->GetNumberOfPoints();
       VERIFY(fields.Tested.Filter->GetDeviceMemory() + bytes <=
           fields.Converted.Filter->GetDeviceMemory() ||
@@ -127,7 +128,7 @@ void TestEqualBits()
   }
 }
 
-// A field that reaches beyond the volume, and one that does not reach as far.
+// A field that is larger than the volume, and a smaller one.
 void TestOtherExtents()
 {
   Fields larger(glm::dvec3(0.7, 1.3, 0.9), false, { { -9, 70, 0, 64, -3, 70 } });
@@ -159,7 +160,7 @@ void TestMasks()
     VERIFY(GetReported(fields.Tested.Filter, "Bricks resampled") <
       GetReported(fields.Tested.Filter, "Bricks of the volume"));
   }
-  // A log says which vectors of the field have changed.
+  // Changes of vectors of the field, with a log.
   vtkNew<vtkArrayChanges> log;
   log->SetArray(fields.Floats->GetPointData()->GetVectors());
   int parts = 0;
@@ -173,8 +174,8 @@ void TestMasks()
       ? 1
       : 0;
   }
-  // A field that is read where it lies is not looked through before the first one. One that was
-  // sent to a device with memory of its own is compared with a copy of what was sent.
+  // Without a copy of the field, the first logged change causes a whole update. A device with
+  // memory of its own has a copy of the field.
   VERIFY_EQUAL(parts, deformvolume::GetDeviceAbilities("").OwnMemory ? 3 : 2);
 }
 
@@ -183,34 +184,34 @@ void TestMisuse()
   Fields fields(glm::dvec3(0.7, 1.3, 0.9));
   fields.Compare("a field");
   const vtkIdType last = fields.Floats->GetNumberOfPoints() - 1;
-  const vtkIdType places[3] = { 0, 123456, last };
-  for (const vtkIdType place : places)
+  const vtkIdType points[3] = { 0, 123456, last };
+  for (const vtkIdType point : points)
   {
     for (const float wrong : { std::numeric_limits<float>::quiet_NaN(),
            std::numeric_limits<float>::infinity(), -1e9F, 3e38F })
     {
-      float& value = fields.GetVectors()[3 * place + place % 3];
+      float& value = fields.GetVectors()[3 * point + point % 3];
       const float before = value;
       value = wrong;
       fields.Floats->GetPointData()->GetVectors()->Modified();
       fields.Tested.Filter->Update();
       VERIFY_EQUAL(fields.Tested.TakeErrors(), 1);
       VERIFY(fields.Tested.LastError.find(std::isfinite(wrong) ? "16,383"
-                                                               : "Vector " + std::to_string(place) +
+                                                               : "Vector " + std::to_string(point) +
                    " of the displacement field") != std::string::npos);
       value = before;
     }
   }
-  fields.Compare("all put right");
-  // Memory that moves is looked up again.
+  fields.Compare("all vectors valid again");
+  // The filter finds the values of another array, and values that were reallocated.
   vtkNew<vtkFloatArray> copy;
   copy->DeepCopy(fields.Floats->GetPointData()->GetVectors());
   fields.Floats->GetPointData()->SetVectors(copy);
   fields.Compare("another array");
-  copy->Resize(2 * copy->GetNumberOfTuples()); // elsewhere, and with the same time
+  copy->Resize(2 * copy->GetNumberOfTuples()); // reallocates without a new modified time
   fields.GetVectors()[5000] += 1.0F;
   fields.Volume->GetPointData()->GetScalars()->Modified();
-  fields.Compare("memory elsewhere");
+  fields.Compare("memory that was reallocated");
 }
 
 } // namespace

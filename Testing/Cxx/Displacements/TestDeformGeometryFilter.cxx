@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vtkDeformGeometryFilter: points follow a deformation and are led back.
+// vtkDeformGeometryFilter: points are moved by a deformation, and by its inverse.
 #include "KeepTesting.h"
 
 #include "vtkDeformGeometryFilter.h"
@@ -42,7 +42,7 @@ constexpr int Discard = vtkDeformGeometryFilter::DISCARD;
 constexpr int Extrapolate = vtkDeformGeometryFilter::EXTRAPOLATE;
 constexpr int Keep = vtkDeformGeometryFilter::KEEP;
 
-// The filter, with its errors and warnings caught.
+// A vtkDeformGeometryFilter, and observers of its errors and warnings.
 struct Subject
 {
   Subject()
@@ -73,15 +73,15 @@ struct Subject
     this->ExecutiveObserver->Clear();
     return this->Filter->GetOutput();
   }
-  std::vector<glm::dvec3> GetPlaces()
+  std::vector<glm::dvec3> GetPositions()
   {
     vtkPointSet* output = this->Update();
-    std::vector<glm::dvec3> places;
+    std::vector<glm::dvec3> positions;
     for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
     {
-      places.push_back(GetPoint(output, id));
+      positions.push_back(GetPoint(output, id));
     }
-    return places;
+    return positions;
   }
   bool IsValid(vtkIdType id)
   {
@@ -96,25 +96,25 @@ struct Subject
 };
 
 vtkSmartPointer<vtkPolyData> MakePoints(
-  const std::vector<glm::dvec3>& places, int precision = VTK_DOUBLE)
+  const std::vector<glm::dvec3>& positions, int precision = VTK_DOUBLE)
 {
   vtkNew<vtkPoints> points;
   points->SetDataType(precision);
-  for (const glm::dvec3& place : places)
+  for (const glm::dvec3& position : positions)
   {
-    points->InsertNextPoint(&place.x);
+    points->InsertNextPoint(&position.x);
   }
   auto made = vtkSmartPointer<vtkPolyData>::New();
   made->SetPoints(points);
   return made;
 }
 
-std::vector<glm::dvec3> MakePlaces(
+std::vector<glm::dvec3> MakePositions(
   int count, const glm::dvec3& min, const glm::dvec3& max, unsigned int seed)
 {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> between(0.0, 1.0);
-  std::vector<glm::dvec3> places;
+  std::vector<glm::dvec3> positions;
   for (int i = 0; i < count; ++i)
   {
     glm::dvec3 part;
@@ -122,9 +122,9 @@ std::vector<glm::dvec3> MakePlaces(
     {
       part[axis] = between(random);
     }
-    places.push_back(min + part * (max - min));
+    positions.push_back(min + part * (max - min));
   }
-  return places;
+  return positions;
 }
 
 vtkDoubleArray* AddArray(vtkPointSet* points, const char* name, const WorldMap& map)
@@ -148,7 +148,7 @@ glm::dvec3 GetTuple(vtkDataArray* array, vtkIdType id)
   return vector;
 }
 
-// A bend of about 3 units over 10 that folds nothing.
+// A bend of about 3 units over 10 units, without folds.
 glm::dvec3 Bend(const glm::dvec3& p)
 {
   return p +
@@ -156,7 +156,7 @@ glm::dvec3 Bend(const glm::dvec3& p)
       0.7 * std::sin(0.25 * p.x + 0.1 * p.y));
 }
 
-// A lattice on a box, its inner nodes moved at random.
+// A lattice over a cube whose inner nodes are moved at random.
 vtkSmartPointer<vtkUnstructuredGrid> MakeLattice(double side, int nodes, double jitter)
 {
   vtkNew<vtkLatticeTetrahedraSource> source;
@@ -191,13 +191,13 @@ vtkSmartPointer<vtkImageData> MakeField(double side, int points, const WorldMap&
 }
 
 //------------------------------------------------------------------------------
-// One error at each update, an empty output, and a filter that works afterwards.
+// Checks that a filter reports one error at each update, has an empty output, and works afterwards.
 class Misuse
 {
 public:
   Misuse()
   {
-    this->Points = MakePoints(MakePlaces(20, glm::dvec3(1.0), glm::dvec3(9.0), 1));
+    this->Points = MakePoints(MakePositions(20, glm::dvec3(1.0), glm::dvec3(9.0), 1));
     this->Mesh = MakeLattice(10.0, 3, 0.0);
     SetDisplacements(this->Mesh, Shift(1.0, 2.0, 3.0));
     this->Mend();
@@ -263,9 +263,9 @@ void TestMisuse()
 
   for (const double wrong : { nan, infinity })
   {
-    std::vector<glm::dvec3> places(7, glm::dvec3(2.0));
-    places[5].y = wrong;
-    filter->SetInputData(MakePoints(places));
+    std::vector<glm::dvec3> positions(7, glm::dvec3(2.0));
+    positions[5].y = wrong;
+    filter->SetInputData(MakePoints(positions));
     misuse.Expect("Point 5 of the point set on input port 0 is not finite");
   }
 
@@ -338,8 +338,8 @@ void TestMisuse()
 
 void TestMissing()
 {
-  // Without a deformation points stay to the last bit.
-  auto points = MakePoints(MakePlaces(50, glm::dvec3(-5.0), glm::dvec3(5.0), 2), VTK_FLOAT);
+  // Without a deformation points do not change by a bit.
+  auto points = MakePoints(MakePositions(50, glm::dvec3(-5.0), glm::dvec3(5.0), 2), VTK_FLOAT);
   points->GetPointData()->SetNormals(
     AddArray(points, "n", [](const glm::dvec3& p) { return 3.0 * p; }));
   Subject still;
@@ -350,7 +350,7 @@ void TestMissing()
   VERIFY(HaveEqualBits(output->GetPointData()->GetNormals(), points->GetPointData()->GetNormals()));
   VERIFY(still.IsValid(49));
 
-  // Nothing to move.
+  // No points.
   vtkNew<vtkPolyData> none;
   auto mesh = MakeLattice(10.0, 3, 0.0);
   SetDisplacements(mesh, Shift(1.0, 0.0, 0.0));
@@ -358,7 +358,7 @@ void TestMissing()
   VERIFY_EQUAL(empty.Update()->GetNumberOfPoints(), 0);
   VERIFY(empty.Warning.find("no points") != std::string::npos);
 
-  // What no cell uses need not be finite.
+  // Displacements of nodes that no cell uses may be NaN.
   vtkNew<vtkUnstructuredGrid> larger;
   larger->DeepCopy(mesh);
   const vtkIdType unused = larger->GetPoints()->InsertNextPoint(0.0, 0.0, 0.0);
@@ -366,12 +366,12 @@ void TestMissing()
     std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0);
   VERIFY_EQUAL(larger->GetNumberOfPoints(), unused + 1);
   Subject moved(MakePoints({ glm::dvec3(5.0) }), larger);
-  VERIFY_EQUAL(moved.GetPlaces()[0].x, 6.0);
+  VERIFY_EQUAL(moved.GetPositions()[0].x, 6.0);
 }
 
 void TestAbort()
 {
-  auto points = MakePoints(MakePlaces(300000, glm::dvec3(1.0), glm::dvec3(9.0), 3));
+  auto points = MakePoints(MakePositions(300000, glm::dvec3(1.0), glm::dvec3(9.0), 3));
   auto mesh = MakeLattice(10.0, 3, 0.0);
   SetDisplacements(mesh, Shift(1.0, 0.0, 0.0));
   Subject aborted(points, mesh);
@@ -398,7 +398,7 @@ void TestAbort()
 }
 
 //------------------------------------------------------------------------------
-// The lowest tetrahedron that holds a point, found among all; nothing outside.
+// Moves a point by the tetrahedron of lowest id that contains it. Returns nothing outside the mesh.
 std::optional<glm::dvec3> MoveByMesh(
   vtkUnstructuredGrid* mesh, const WorldMap& displace, const glm::dvec3& point)
 {
@@ -427,46 +427,47 @@ void TestMesh()
 {
   auto mesh = MakeLattice(10.0, 5, 0.3);
   SetDisplacements(mesh, Bend);
-  // Rounded as the array rounds them.
+  // Displacements are rounded like those of the array.
   const auto displace = [](const glm::dvec3& node)
   { return glm::dvec3(glm::vec3(Bend(node) - node)); };
-  std::vector<glm::dvec3> places = MakePlaces(2000, glm::dvec3(-1.0), glm::dvec3(11.0), 4);
+  std::vector<glm::dvec3> positions = MakePositions(2000, glm::dvec3(-1.0), glm::dvec3(11.0), 4);
   for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
   {
-    places.push_back(GetPoint(mesh, id)); // shared by many tetrahedra
+    positions.push_back(GetPoint(mesh, id)); // shared by many tetrahedra
   }
-  Subject subject(MakePoints(places), mesh);
-  const std::vector<glm::dvec3> moved = subject.GetPlaces();
+  Subject subject(MakePoints(positions), mesh);
+  const std::vector<glm::dvec3> moved = subject.GetPositions();
   vtkIdType outside = 0;
   double worst = 0.0;
-  for (std::size_t i = 0; i < places.size(); ++i)
+  for (std::size_t i = 0; i < positions.size(); ++i)
   {
-    const std::optional<glm::dvec3> expected = MoveByMesh(mesh, displace, places[i]);
+    const std::optional<glm::dvec3> expected = MoveByMesh(mesh, displace, positions[i]);
     VERIFY_EQUAL(subject.IsValid(static_cast<vtkIdType>(i)), expected.has_value());
     outside += expected ? 0 : 1;
-    worst = std::max(worst, glm::length(moved[i] - expected.value_or(places[i])));
+    worst = std::max(worst, glm::length(moved[i] - expected.value_or(positions[i])));
   }
   VERIFY(worst < 1e-12);
   VERIFY(outside > 500);
   VERIFY_EQUAL(subject.Filter->GetNumberOfOutsidePoints(), outside);
-  VERIFY(subject.Warning.find(std::to_string(outside) + " of " + std::to_string(places.size())) !=
-    std::string::npos);
+  VERIFY(subject.Warning.find(std::to_string(outside) + " of " +
+           std::to_string(positions.size())) != std::string::npos);
 
-  // The same with the deformed mesh on port 1, and with twice the displacement halved.
+  // The same deformation as a deformed mesh on port 1, and as doubled displacements with a scale of
+  // 0.5.
   vtkNew<vtkUnstructuredGrid> deformed;
   deformed->DeepCopy(mesh);
   deformed->GetPoints()->SetDataTypeToDouble();
   deformed->GetPoints()->SetNumberOfPoints(mesh->GetNumberOfPoints());
   for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
   {
-    const glm::dvec3 place = GetPoint(mesh, id) + displace(GetPoint(mesh, id));
-    deformed->GetPoints()->SetPoint(id, &place.x);
+    const glm::dvec3 position = GetPoint(mesh, id) + displace(GetPoint(mesh, id));
+    deformed->GetPoints()->SetPoint(id, &position.x);
   }
   const auto expectSame = [&](double tolerance)
   {
-    const std::vector<glm::dvec3> again = subject.GetPlaces();
+    const std::vector<glm::dvec3> again = subject.GetPositions();
     double difference = 0.0;
-    for (std::size_t i = 0; i < places.size(); ++i)
+    for (std::size_t i = 0; i < positions.size(); ++i)
     {
       difference = std::max(difference, glm::length(again[i] - moved[i]));
     }
@@ -484,7 +485,7 @@ void TestMesh()
   subject.Filter->SetDisplacementScale(0.5);
   expectSame(1e-12);
 
-  // Floats on the border of the mesh are in it.
+  // Points on the boundary of the mesh, rounded to floats, are inside.
   subject.Filter->SetInputData(MakePoints({ { 10.0 * (1.0 + 1e-7), 3.3, 4.4 } }, VTK_FLOAT));
   subject.Update();
   VERIFY(subject.IsValid(0));
@@ -492,23 +493,24 @@ void TestMesh()
 }
 
 //------------------------------------------------------------------------------
-// Vectors and normals against differences of places.
+// Vectors and normals. The reference is finite differences of positions.
 void TestArraysOf(vtkDataObject* deformation, int mode, bool inverse, bool fieldIsInverse)
 {
   constexpr double step = 1e-5;
-  const std::vector<glm::dvec3> places = MakePlaces(300, glm::dvec3(-2.0), glm::dvec3(12.0), 7);
+  const std::vector<glm::dvec3> positions =
+    MakePositions(300, glm::dvec3(-2.0), glm::dvec3(12.0), 7);
   const auto getDirection = [](const glm::dvec3& p)
   { return glm::normalize(glm::dvec3(std::sin(3.0 * p.x), std::cos(5.0 * p.y), 0.3)); };
   const auto getOther = [](const glm::dvec3& p)
   { return glm::normalize(glm::dvec3(0.2, std::sin(4.0 * p.z), std::cos(2.0 * p.x))); };
   std::vector<glm::dvec3> all;
-  for (const glm::dvec3& place : places)
+  for (const glm::dvec3& position : positions)
   {
-    const glm::dvec3 direction = getDirection(place);
-    const glm::dvec3 other = getOther(place);
+    const glm::dvec3 direction = getDirection(position);
+    const glm::dvec3 other = getOther(position);
     for (const glm::dvec3& offset : { glm::dvec3(0.0), direction, -direction, other, -other })
     {
-      all.push_back(place + step * offset);
+      all.push_back(position + step * offset);
     }
   }
   auto points = MakePoints(all);
@@ -522,11 +524,11 @@ void TestArraysOf(vtkDataObject* deformation, int mode, bool inverse, bool field
   subject.Filter->SetInverse(inverse);
   subject.Filter->SetFieldIsInverse(fieldIsInverse);
   subject.Filter->SetTransformAllInputVectors(true);
-  const std::vector<glm::dvec3> moved = subject.GetPlaces();
+  const std::vector<glm::dvec3> moved = subject.GetPositions();
   vtkPointData* output = subject.Filter->GetOutput()->GetPointData();
   int compared = 0;
   int wrong = 0;
-  for (std::size_t i = 0; i < places.size(); ++i)
+  for (std::size_t i = 0; i < positions.size(); ++i)
   {
     const std::size_t at = 5 * i;
     const auto id = static_cast<vtkIdType>(at);
@@ -539,7 +541,7 @@ void TestArraysOf(vtkDataObject* deformation, int mode, bool inverse, bool field
     {
       continue;
     }
-    // On both sides of a kink there is no derivative.
+    // Skip points at which the map is not differentiable.
     const glm::dvec3 before = (moved[at] - moved[at + 2]) / step;
     const glm::dvec3 after = (moved[at + 1] - moved[at]) / step;
     const glm::dvec3 beside = (moved[at] - moved[at + 4]) / step;
@@ -580,7 +582,7 @@ void TestArrays()
     }
   }
 
-  // Other arrays pass, and normals of cells are named.
+  // Other arrays are passed, and a warning names the normals of cells.
   auto points = MakePoints({ glm::dvec3(1.0), glm::dvec3(2.0) });
   vtkNew<vtkIntArray> ids;
   ids->SetName("ids");
@@ -605,7 +607,7 @@ void TestArrays()
   VERIFY(subject.Warning.find("\"cell normals\"") != std::string::npos);
 }
 
-// Outside a box that is shifted, all is known in closed form.
+// Outside a translated box the exact result is known in closed form.
 void TestOutside()
 {
   const glm::dvec3 shift(0.5, -0.25, 0.75);
@@ -613,31 +615,32 @@ void TestOutside()
   auto mesh = MakeLattice(side, 4, 0.2);
   SetDisplacements(mesh, Shift(shift.x, shift.y, shift.z));
   auto field = MakeField(side, 5, Shift(shift.x, shift.y, shift.z));
-  const std::vector<glm::dvec3> places = MakePlaces(3000, glm::dvec3(-8.0), glm::dvec3(16.0), 9);
+  const std::vector<glm::dvec3> positions =
+    MakePositions(3000, glm::dvec3(-8.0), glm::dvec3(16.0), 9);
   for (vtkDataObject* deformation : std::initializer_list<vtkDataObject*>{ mesh, field })
   {
     for (const double distance : { 0.0, 3.0, 5.0 })
     {
-      Subject subject(MakePoints(places), deformation);
+      Subject subject(MakePoints(positions), deformation);
       subject.Filter->SetOutsideModeToKeep();
       subject.Filter->SetFadeDistance(distance);
-      const std::vector<glm::dvec3> moved = subject.GetPlaces();
+      const std::vector<glm::dvec3> moved = subject.GetPositions();
       VERIFY(subject.Warning.empty());
       double worst = 0.0;
       int still = 0;
-      for (std::size_t i = 0; i < places.size(); ++i)
+      for (std::size_t i = 0; i < positions.size(); ++i)
       {
         const double away =
-          glm::length(places[i] - glm::clamp(places[i], glm::dvec3(0.0), glm::dvec3(side)));
+          glm::length(positions[i] - glm::clamp(positions[i], glm::dvec3(0.0), glm::dvec3(side)));
         const double weight = away == 0.0 ? 1.0 : distance > 0.0 ? Fade(away / distance) : 0.0;
-        worst = std::max(worst, glm::length(moved[i] - places[i] - weight * shift));
-        still += weight == 0.0 && moved[i] == places[i] ? 1 : 0;
-        VERIFY(weight > 0.0 || moved[i] == places[i]);
+        worst = std::max(worst, glm::length(moved[i] - positions[i] - weight * shift));
+        still += weight == 0.0 && moved[i] == positions[i] ? 1 : 0;
+        VERIFY(weight > 0.0 || moved[i] == positions[i]);
       }
       VERIFY(worst < 1e-12);
       VERIFY(still > 500);
     }
-    // The displacement is 0.94 long, and two thirds of 1.3 are 0.87.
+    // The displacement is 0.94, and the limit is 0.87, two thirds of FadeDistance.
     Subject folded(MakePoints({ glm::dvec3(-0.5) }), deformation);
     folded.Filter->SetOutsideModeToKeep();
     folded.Filter->SetFadeDistance(1.3);
@@ -647,44 +650,44 @@ void TestOutside()
     folded.Update();
     VERIFY(folded.Warning.empty()); // no point is outside
 
-    // So far away that the square of the distance is infinite.
+    // A point so far away that the square of its distance is infinite.
     for (const int mode : { Extrapolate, Keep })
     {
       Subject far(MakePoints({ glm::dvec3(1e200), glm::dvec3(4.0) }), deformation);
       far.Filter->SetOutsideMode(mode);
-      VERIFY(glm::length(far.GetPlaces()[1] - 4.0 - shift) < 1e-12);
-      VERIFY_EQUAL(far.GetPlaces()[0].x, 1e200);
+      VERIFY(glm::length(far.GetPositions()[1] - 4.0 - shift) < 1e-12);
+      VERIFY_EQUAL(far.GetPositions()[0].x, 1e200);
       far.Filter->SetInverse(true);
-      VERIFY_EQUAL(far.GetPlaces()[0].x, 1e200);
+      VERIFY_EQUAL(far.GetPositions()[0].x, 1e200);
     }
 
-    Subject subject(MakePoints(places), deformation);
+    Subject subject(MakePoints(positions), deformation);
     subject.Filter->SetOutsideModeToExtrapolate();
-    const std::vector<glm::dvec3> moved = subject.GetPlaces();
+    const std::vector<glm::dvec3> moved = subject.GetPositions();
     double worst = 0.0;
-    for (std::size_t i = 0; i < places.size(); ++i)
+    for (std::size_t i = 0; i < positions.size(); ++i)
     {
-      worst = std::max(worst, glm::length(moved[i] - places[i] - shift));
+      worst = std::max(worst, glm::length(moved[i] - positions[i] - shift));
     }
     VERIFY(worst < 1e-12);
   }
 
-  // An affine map goes on outside a mesh.
+  // An affine map is extrapolated outside a mesh.
   const glm::dmat3 matrix(1.1, 0.2, 0.0, -0.1, 0.9, 0.1, 0.05, 0.0, 1.2);
   SetDisplacements(mesh, [&](const glm::dvec3& p) { return matrix * p; });
-  Subject affine(MakePoints(places), mesh);
+  Subject affine(MakePoints(positions), mesh);
   affine.Filter->SetOutsideModeToExtrapolate();
-  const std::vector<glm::dvec3> moved = affine.GetPlaces();
+  const std::vector<glm::dvec3> moved = affine.GetPositions();
   double worst = 0.0;
-  for (std::size_t i = 0; i < places.size(); ++i)
+  for (std::size_t i = 0; i < positions.size(); ++i)
   {
-    worst = std::max(worst, glm::length(moved[i] - matrix * places[i]));
+    worst = std::max(worst, glm::length(moved[i] - matrix * positions[i]));
   }
   VERIFY(worst < 2e-5); // displacements are floats, and are extrapolated over up to 5 tetrahedra
 }
 
 //------------------------------------------------------------------------------
-// Trilinear, written down by itself.
+// Moves a point by trilinear interpolation of a field, as a reference.
 glm::dvec3 MoveByField(vtkImageData* field, const glm::dvec3& point)
 {
   int dimensions[3];
@@ -722,30 +725,31 @@ glm::dvec3 MoveByField(vtkImageData* field, const glm::dvec3& point)
 
 void TestField()
 {
-  const std::vector<glm::dvec3> places = MakePlaces(3000, glm::dvec3(-0.5), glm::dvec3(10.5), 11);
+  const std::vector<glm::dvec3> positions =
+    MakePositions(3000, glm::dvec3(-0.5), glm::dvec3(10.5), 11);
   auto field = MakeField(10.0, 8, Bend);
-  Subject subject(MakePoints(places), field);
+  Subject subject(MakePoints(positions), field);
   for (const int mode : { Discard, Extrapolate })
   {
     subject.Filter->SetOutsideMode(mode);
-    const std::vector<glm::dvec3> moved = subject.GetPlaces();
+    const std::vector<glm::dvec3> moved = subject.GetPositions();
     double worst = 0.0;
-    for (std::size_t i = 0; i < places.size(); ++i)
+    for (std::size_t i = 0; i < positions.size(); ++i)
     {
-      const bool isInside = glm::clamp(places[i], 0.0, 10.0) == places[i];
-      if (!isInside && glm::distance(glm::clamp(places[i], 0.0, 10.0), places[i]) < 0.01)
+      const bool isInside = glm::clamp(positions[i], 0.0, 10.0) == positions[i];
+      if (!isInside && glm::distance(glm::clamp(positions[i], 0.0, 10.0), positions[i]) < 0.01)
       {
-        continue; // nearly inside, see below
+        continue; // within the tolerance of the field's faces, see below
       }
       const bool isMoved = isInside || mode == Extrapolate;
       VERIFY_EQUAL(subject.IsValid(static_cast<vtkIdType>(i)), isMoved);
       worst = std::max(
-        worst, glm::length(moved[i] - (isMoved ? MoveByField(field, places[i]) : places[i])));
+        worst, glm::length(moved[i] - (isMoved ? MoveByField(field, positions[i]) : positions[i])));
     }
     VERIFY(worst < 1e-12);
   }
 
-  // Its border has the tolerance of vtkDeformVolumeFilter, 1/1000 of a cell.
+  // The faces of a field have a tolerance of 1/1000 of a cell, as in vtkDeformVolumeFilter.
   subject.Filter->SetOutsideModeToDiscard();
   const double cell = 10.0 / 7.0;
   subject.Filter->SetInputData(
@@ -754,7 +758,7 @@ void TestField()
   VERIFY(subject.IsValid(0));
   VERIFY(!subject.IsValid(1));
 
-  // Hidden points have no vector.
+  // Vectors of hidden points are undefined.
   vtkNew<vtkUnsignedCharArray> ghosts;
   ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
   ghosts->SetNumberOfTuples(field->GetNumberOfPoints());
@@ -772,7 +776,7 @@ void TestField()
   VERIFY(subject.IsValid(2));
   VERIFY(subject.IsValid(3));
 
-  // Oblique, with an extent that does not begin at 0, and doubles.
+  // An oblique field of doubles, with an extent that does not begin at 0.
   auto oblique = MakeImage({ { 2, 6, -3, 4, 5, 9 } }, { 1.5, 0.7, 2.0 }, { 3.0, 4.0, -5.0 });
   SetObliqueDirection(oblique);
   const glm::dmat3 matrix(1.1, 0.2, 0.0, -0.1, 0.9, 0.1, 0.05, 0.0, 1.2);
@@ -788,9 +792,9 @@ void TestField()
   double center[3];
   oblique->GetCenter(center);
   const glm::dvec3 middle(center[0], center[1], center[2]);
-  std::vector<glm::dvec3> inner = MakePlaces(200, middle - 1.0, middle + 1.0, 13);
+  std::vector<glm::dvec3> inner = MakePositions(200, middle - 1.0, middle + 1.0, 13);
   Subject affine(MakePoints(inner), oblique);
-  std::vector<glm::dvec3> moved = affine.GetPlaces();
+  std::vector<glm::dvec3> moved = affine.GetPositions();
   double worst = 0.0;
   for (std::size_t i = 0; i < inner.size(); ++i)
   {
@@ -799,7 +803,7 @@ void TestField()
   VERIFY(worst < 1e-12);
   affine.Filter->SetInputData(MakePoints(moved));
   affine.Filter->SetInverse(true);
-  moved = affine.GetPlaces();
+  moved = affine.GetPositions();
   worst = 0.0;
   for (std::size_t i = 0; i < inner.size(); ++i)
   {
@@ -809,7 +813,7 @@ void TestField()
 }
 
 //------------------------------------------------------------------------------
-// There and back, where nothing folds.
+// The deformation of the inverse is the identity, for deformations without folds.
 void TestInverse()
 {
   auto mesh = MakeLattice(10.0, 5, 0.2);
@@ -825,34 +829,34 @@ void TestInverse()
     for (const int mode : { Discard, Extrapolate, Keep })
     {
       const double margin = mode == Discard ? 0.0 : 5.0;
-      const std::vector<glm::dvec3> places =
-        MakePlaces(5000, glm::dvec3(-margin), glm::dvec3(10.0 + margin), 17);
-      Subject back(MakePoints(places), one.Deformation);
+      const std::vector<glm::dvec3> positions =
+        MakePositions(5000, glm::dvec3(-margin), glm::dvec3(10.0 + margin), 17);
+      Subject back(MakePoints(positions), one.Deformation);
       back.Filter->SetFieldIsInverse(one.FieldIsInverse);
       back.Filter->SetOutsideMode(mode);
       back.Filter->SetFadeDistance(6.0);
       back.Filter->SetInverse(true);
-      Subject forth(MakePoints(back.GetPlaces()), one.Deformation);
+      Subject forth(MakePoints(back.GetPositions()), one.Deformation);
       forth.Filter->SetFieldIsInverse(one.FieldIsInverse);
       forth.Filter->SetOutsideMode(mode);
       forth.Filter->SetFadeDistance(6.0);
-      const std::vector<glm::dvec3> again = forth.GetPlaces();
+      const std::vector<glm::dvec3> again = forth.GetPositions();
       double worst = 0.0;
       int compared = 0;
       int lost = 0;
-      for (std::size_t i = 0; i < places.size(); ++i)
+      for (std::size_t i = 0; i < positions.size(); ++i)
       {
         const auto id = static_cast<vtkIdType>(i);
         if (back.IsValid(id))
         {
           ++compared;
           lost += forth.IsValid(id) ? 0 : 1;
-          worst = std::max(worst, forth.IsValid(id) ? glm::length(again[i] - places[i]) : 0.0);
+          worst = std::max(worst, forth.IsValid(id) ? glm::length(again[i] - positions[i]) : 0.0);
         }
       }
       std::cout << "inverse and forward, " << (one.Deformation == mesh ? "mesh" : "field")
                 << (one.FieldIsInverse ? " that is inverse" : "") << ", mode " << mode << ": "
-                << compared << " points, at most " << worst << " away, " << lost << " lost\n";
+                << compared << " points, largest error " << worst << ", " << lost << " lost\n";
       VERIFY(worst < 1e-6);
       VERIFY_EQUAL(lost, 0);
       VERIFY(compared > (mode == Discard ? 3500 : 4900));
@@ -860,8 +864,8 @@ void TestInverse()
   }
 }
 
-// Along x, piecewise linear: all places are known. The first cells are upright, or inverted where
-// the amplitude is below -1.
+// The inverse of a map that folds along x. It is piecewise linear, so all solutions are known. The
+// first cells are inverted if the amplitude is less than -1.
 void TestFolds(double amplitude)
 {
   const auto foldAlongX = [amplitude](double x) { return x + amplitude * std::sin(x); };
@@ -878,13 +882,13 @@ void TestFolds(double amplitude)
     vectors->InsertNextTuple(&u.x);
   }
   field->GetPointData()->SetVectors(vectors);
-  const std::vector<glm::dvec3> places =
-    MakePlaces(2000, { -1.0, 0.5, 0.5 }, { 10.0, 3.5, 3.5 }, 19);
-  Subject subject(MakePoints(places), field);
+  const std::vector<glm::dvec3> positions =
+    MakePositions(2000, { -1.0, 0.5, 0.5 }, { 10.0, 3.5, 3.5 }, 19);
+  Subject subject(MakePoints(positions), field);
   subject.Filter->SetInverse(true);
-  std::vector<glm::dvec3> found = subject.GetPlaces();
+  std::vector<glm::dvec3> found = subject.GetPositions();
   int folded = 0;
-  int contested = 0; // the lowest cell is inverted, another one upright
+  int contested = 0; // the cell of lowest id is inverted, another cell is not
   int outside = 0;
   double worst = 0.0;
   const auto check = [&](std::size_t i, bool lowestFirst)
@@ -895,7 +899,7 @@ void TestFolds(double amplitude)
     {
       const double a = foldAlongX(cell * step);
       const double b = foldAlongX((cell + 1) * step);
-      const double t = (places[i].x - a) / (b - a);
+      const double t = (positions[i].x - a) / (b - a);
       if (t >= 0.0 && t <= 1.0)
       {
         (b > a ? upright : inverted).push_back((cell + t) * step);
@@ -922,10 +926,11 @@ void TestFolds(double amplitude)
       worst = std::max(worst, nearest);
     }
     worst = std::max(worst,
-      isValid ? std::max(std::abs(found[i].y - places[i].y), std::abs(found[i].z - places[i].z))
-              : 0.0);
+      isValid
+        ? std::max(std::abs(found[i].y - positions[i].y), std::abs(found[i].z - positions[i].z))
+        : 0.0);
   };
-  for (std::size_t i = 0; i < places.size(); ++i)
+  for (std::size_t i = 0; i < positions.size(); ++i)
   {
     check(i, true);
   }
@@ -933,7 +938,7 @@ void TestFolds(double amplitude)
   VERIFY(amplitude > 0.0 ? folded > 300 : contested > 100);
   VERIFY(amplitude < 0.0 || outside > 20);
 
-  // A mesh that folds in the same way.
+  // A mesh with the same fold.
   vtkNew<vtkLatticeTetrahedraSource> source;
   source->SetNumberOfNodes(points, 3, 3);
   source->EqualSpacingOff();
@@ -943,9 +948,9 @@ void TestFolds(double amplitude)
   mesh->DeepCopy(source->GetOutput());
   mesh->GetPointData()->SetVectors(vectors);
   subject.Filter->SetDeformationData(mesh);
-  found = subject.GetPlaces();
+  found = subject.GetPositions();
   worst = 0.0;
-  for (std::size_t i = 0; i < places.size(); ++i)
+  for (std::size_t i = 0; i < positions.size(); ++i)
   {
     check(i, false);
   }
@@ -953,7 +958,8 @@ void TestFolds(double amplitude)
 }
 
 //------------------------------------------------------------------------------
-// With a node at each voxel, split as the voxels are, the volume holds the very map of the mesh.
+// A mesh with a node at each voxel, and the same tetrahedra as the sampling mesh: the deformed
+// volume and the filter use the same piecewise linear map.
 void TestAgainstVolume()
 {
   const int size = 16;
@@ -962,7 +968,7 @@ void TestAgainstVolume()
   for (int axis = 0; axis < 3; ++axis)
   {
     AddScalars<double>(volume, names[axis], [axis](const glm::dvec3& p) { return p[axis]; });
-    volume->GetPointData()->SetActiveScalars(nullptr); // the next one does not take its place
+    volume->GetPointData()->SetActiveScalars(nullptr); // otherwise the array would be replaced
   }
   auto mesh = MakeLattice(size - 1.0, size, 0.0);
   for (const double amplitude : { 1.0, 6.0 }) // the second one folds
@@ -985,8 +991,8 @@ void TestAgainstVolume()
     }
     Subject back(MakePoints(centers), mesh);
     back.Filter->SetInverse(true);
-    const std::vector<glm::dvec3> rest = back.GetPlaces();
-    // Each rest position must be deformed to the voxel, up to how positions are rounded.
+    const std::vector<glm::dvec3> rest = back.GetPositions();
+    // Each rest position must be deformed to its voxel, up to the rounding of positions.
     std::vector<glm::dvec3> seen;
     std::vector<std::size_t> ids;
     int onOneSide = 0;
@@ -999,34 +1005,35 @@ void TestAgainstVolume()
       {
         continue;
       }
-      glm::dvec3 place;
+      glm::dvec3 position;
       for (int axis = 0; axis < 3; ++axis)
       {
-        place[axis] = output->GetPointData()->GetArray(names[axis])->GetComponent(id, 0);
+        position[axis] = output->GetPointData()->GetArray(names[axis])->GetComponent(id, 0);
       }
-      seen.push_back(place);
+      seen.push_back(position);
       ids.push_back(i);
-      elsewhere += glm::length(place - rest[i]) > 0.25 ? 1 : 0;
+      elsewhere += glm::length(position - rest[i]) > 0.25 ? 1 : 0;
     }
     Subject forth(MakePoints(seen), mesh);
-    const std::vector<glm::dvec3> moved = forth.GetPlaces();
+    const std::vector<glm::dvec3> moved = forth.GetPositions();
     double worst = 0.0;
     for (std::size_t i = 0; i < seen.size(); ++i)
     {
       const glm::dvec3 miss = glm::abs(moved[i] - centers[ids[i]]);
       worst = std::max({ worst, miss.x, miss.y, miss.z });
     }
-    std::cout << "amplitude " << amplitude << ": " << seen.size() << " voxels, at most " << worst
-              << " voxel away, " << onOneSide << " of only one filter, " << elsewhere
-              << " that another part wins\n";
+    std::cout << "amplitude " << amplitude << ": " << seen.size() << " voxels, largest error "
+              << worst << ", " << onOneSide << " covered by one filter only, " << elsewhere
+              << " with another winner\n";
     VERIFY(worst <= 1.0 / 256.0);
     VERIFY(seen.size() > 2000);
-    VERIFY(onOneSide <= 8);  // on the border, which positions rounded to 1/256 move
-    VERIFY(elsewhere <= 30); // likewise, between the parts of a fold
+    VERIFY(onOneSide <= 8);  // on the surface, since positions are rounded to 1/256
+    VERIFY(elsewhere <= 30); // between the parts of a fold, for the same reason
   }
 }
 
-// The largest distance of a point of a surface from another one, away from the border of a box.
+// The largest distance of the points of a surface from another surface. Points outside the box from
+// min to max are skipped.
 double GetDistance(vtkPointSet* from, vtkPointSet* to, double min, double max, int& compared)
 {
   vtkNew<vtkStaticCellLocator> locator;
@@ -1104,7 +1111,7 @@ void TestKinds()
   auto mesh = MakeLattice(10.0, 3, 0.0);
   SetDisplacements(mesh, Shift(1.0, 2.0, 3.0));
 
-  // A structured grid stays one.
+  // The output for a structured grid is a structured grid.
   vtkNew<vtkStructuredGrid> grid;
   grid->SetExtent(2, 4, 0, 2, 5, 6);
   vtkNew<vtkPoints> points;
@@ -1124,17 +1131,17 @@ void TestKinds()
     VERIFY_EQUAL(GetPoint(moved, 17).z, 5.0);
   }
 
-  // A mesh that is moved by itself.
+  // A mesh that is moved by its own displacements.
   Subject self(mesh, mesh);
   VERIFY(vtkUnstructuredGrid::SafeDownCast(self.Update()) != nullptr);
   VERIFY_EQUAL(GetPoint(self.Filter->GetOutput(), 0).y, 2.0);
   VERIFY_EQUAL(self.Filter->GetOutput()->GetNumberOfCells(), mesh->GetNumberOfCells());
 
-  // The mesh is a composite dataset; then the points are.
+  // Composite datasets as the mesh, then as the points.
   vtkNew<vtkMultiBlockDataSet> blocks;
   blocks->SetBlock(0, mesh);
   Subject composite(MakePoints({ glm::dvec3(4.0) }), blocks);
-  VERIFY_EQUAL(composite.GetPlaces()[0].z, 7.0);
+  VERIFY_EQUAL(composite.GetPositions()[0].z, 7.0);
   vtkNew<vtkMultiBlockDataSet> surfaces;
   surfaces->SetBlock(0, MakePoints({ glm::dvec3(4.0), glm::dvec3(-1.0) }));
   surfaces->SetBlock(2, MakePoints({ glm::dvec3(5.0), glm::dvec3(20.0) }));
@@ -1155,28 +1162,28 @@ void TestKinds()
   VERIFY(!each.Filter->GetExecutive()->Update());
   VERIFY(std::string(each.Observer->GetErrorMessage()).find("vtkImageData") != std::string::npos);
 
-  // What changes is read again.
+  // Changed inputs are read again.
   Subject live(MakePoints({ glm::dvec3(4.0) }), mesh);
   mesh->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), 2.5);
-  VERIFY_EQUAL(live.GetPlaces()[0].x, 5.0);
+  VERIFY_EQUAL(live.GetPositions()[0].x, 5.0);
   vtkInformation* time = live.Filter->GetOutput()->GetInformation();
   VERIFY(time->Has(vtkDataObject::DATA_TIME_STEP()));
   VERIFY_EQUAL(time->Get(vtkDataObject::DATA_TIME_STEP()), 2.5);
   SetDisplacements(mesh, Shift(2.0, 0.0, 0.0));
   mesh->Modified();
-  VERIFY_EQUAL(live.GetPlaces()[0].x, 6.0);
+  VERIFY_EQUAL(live.GetPositions()[0].x, 6.0);
   mesh->GetPointData()->GetVectors()->Fill(0.5);
   mesh->GetPointData()->GetVectors()->Modified();
-  VERIFY_EQUAL(live.GetPlaces()[0].x, 4.5);
+  VERIFY_EQUAL(live.GetPositions()[0].x, 4.5);
   live.Filter->SetInverse(true);
-  VERIFY_EQUAL(live.GetPlaces()[0].x, 3.5);
+  VERIFY_EQUAL(live.GetPositions()[0].x, 3.5);
   auto field = MakeField(10.0, 4, Shift(-1.0, 0.0, 0.0));
   live.Filter->SetDeformationData(field);
-  VERIFY(std::abs(live.GetPlaces()[0].x - 5.0) < 1e-6);
+  VERIFY(std::abs(live.GetPositions()[0].x - 5.0) < 1e-6);
   live.Filter->SetFieldIsInverse(true);
-  VERIFY_EQUAL(live.GetPlaces()[0].x, 3.0);
+  VERIFY_EQUAL(live.GetPositions()[0].x, 3.0);
   live.Filter->SetDeformationData(mesh);
-  VERIFY_EQUAL(live.GetPlaces()[0].x, 3.5);
+  VERIFY_EQUAL(live.GetPositions()[0].x, 3.5);
 }
 
 } // namespace

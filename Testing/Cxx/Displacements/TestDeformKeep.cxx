@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// OutsideMode KEEP: tissue outside the deformation mesh stays where it is, and the displacement
-// fades to zero within FadeDistance.
+// OutsideMode KEEP: tissue outside the deformation mesh is kept, and its displacement fades to zero
+// within FadeDistance.
 #include "KeepTesting.h"
 
 #include "vtkCutVolume.h"
@@ -54,7 +54,7 @@ vtkSmartPointer<vtkUnstructuredGrid> Join(vtkUnstructuredGrid* first, vtkUnstruc
   return mesh;
 }
 
-// Without the cells that have their center in a box.
+// Removes the cells whose centers are in a box.
 vtkSmartPointer<vtkUnstructuredGrid> Hollow(
   vtkUnstructuredGrid* whole, const glm::dvec3& min, const glm::dvec3& max)
 {
@@ -84,7 +84,7 @@ vtkSmartPointer<vtkUnstructuredGrid> Hollow(
   return mesh;
 }
 
-// A volume of floats and one of shorts, rough in all directions.
+// A volume with a float and a short array whose values vary in all directions.
 vtkSmartPointer<vtkImageData> MakeTissue(
   const Extent& extent, const glm::dvec3& spacing = glm::dvec3(1.0))
 {
@@ -92,7 +92,7 @@ vtkSmartPointer<vtkImageData> MakeTissue(
   AddScalars<float>(volume, "more",
     [](const glm::dvec3& p)
     { return std::sin(1.3 * p.x + p.y) * p.z + 5.0 * std::cos(p.x * p.y); });
-  volume->GetPointData()->SetActiveScalars(nullptr); // else they would be replaced
+  volume->GetPointData()->SetActiveScalars(nullptr); // otherwise the array would be replaced
   AddScalars<short>(volume, "value",
     [](const glm::dvec3& p)
     { return 400.0 * std::sin(0.7 * p.x) + 300.0 * std::cos(0.9 * p.y + 0.2 * p.z); });
@@ -155,7 +155,7 @@ void TestMisuse()
   subject.Filter->SetDeformationData(MakeBox(glm::dvec3(105.2), glm::dvec3(111.7)));
   refuse("no voxel");
   restore();
-  // A distance that is not used is not looked at, and without a deformation there is no outside.
+  // FadeDistance is not checked in other modes. Without a deformation KEEP has no effect.
   subject.Filter->SetFadeDistance(-1.0);
   subject.Filter->SetOutsideModeToDiscard();
   subject.Update();
@@ -166,7 +166,7 @@ void TestMisuse()
     subject.Update()->GetPointData()->GetScalars(), volume->GetPointData()->GetScalars()));
 }
 
-// A mesh at rest changes nothing, whatever is outside.
+// A mesh without displacements does not change the volume.
 void TestAtRest()
 {
   const auto volume = MakeTissue({ { -3, 20, 2, 18, 0, 16 } }, glm::dvec3(0.7, 1.1, 2.0));
@@ -188,8 +188,9 @@ void TestAtRest()
   }
 }
 
-// Along a row through a box that is moved: a voxel of the output shows the voxel at rest that w
-// leads there. No hole, nothing inside out, and what is far is as it was.
+// A box that moves along x: rest positions in a row through the box are compared with the inverse
+// of the fading displacement. There are no holes and no inverted tetrahedra, and values far from
+// the box do not change.
 void TestMovedBox()
 {
   const glm::dvec3 spacing(0.8, 1.25, 2.0);
@@ -214,8 +215,8 @@ void TestMovedBox()
     const auto map = [&](double x) {
       return x + Fade(std::max({ min.x - x, x - max.x, 0.0 }) / distance) * shift;
     };
-    // Between voxels w is taken to be linear, which misses by an eighth of the square of the
-    // spacing times the second derivative; positions are rounded to 1/512 voxel.
+    // The displacement is interpolated linearly between voxels. The error is one eighth of the
+    // square of the spacing times the second derivative. Positions are rounded to 1/512 voxel.
     const double error = 0.125 * spacing.x * spacing.x * 6.0 / (distance * distance) * shift;
     for (int i = 0; i <= 80; ++i)
     {
@@ -229,7 +230,7 @@ void TestMovedBox()
       }
       int voxel[3] = { i, 18, 15 };
       const double value = found->GetComponent(output->ComputePointId(voxel), 0);
-      // The map is flat by 1 - 1.5 shift / distance at the steepest.
+      // The least slope of the map is 1 - 1.5 shift / distance.
       const double steepest = 1.0 / (1.0 - 1.5 * shift / distance);
       const double rounding = spacing.x / 256.0;
       if (std::abs(value - low) > steepest * (error + rounding))
@@ -255,7 +256,7 @@ void TestMovedBox()
   }
 }
 
-// All of the volume is there, from one side of the boundary to the other, for many shapes.
+// For meshes of different shapes the output has no holes, and DEFORMED_BOUNDS contain it.
 void TestNoHoles()
 {
   const auto volume = MakeTissue({ { 0, 47, 0, 39, 0, 35 } });
@@ -278,7 +279,7 @@ void TestNoHoles()
       subject.Filter->SetOutputBoundsModeToVolumeBounds();
       subject.Filter->Update();
       VERIFY_EQUAL(subject.TakeErrors(), 0);
-      // With the longer distance the border of the volume itself moves.
+      // With the longer distance the faces of the volume move, too.
       if (distance == 7.0)
       {
         VERIFY_EQUAL(subject.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
@@ -287,7 +288,7 @@ void TestNoHoles()
       subject.Filter->SetPadding(3);
       subject.Filter->Update();
       VERIFY_EQUAL(subject.TakeErrors(), 0);
-      // The bounds hold all of it.
+      // No covered voxel is in the padding.
       vtkImageData* output = subject.Filter->GetOutput();
       const Extent extent = GetExtent(output);
       for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
@@ -303,7 +304,7 @@ void TestNoHoles()
   }
 }
 
-// What is stretched or folded for certain is said once for each change.
+// Stretched or folded tissue is reported by one warning for each change.
 void TestWarnings()
 {
   const auto volume = MakeTissue({ { 0, 47, 0, 29, 0, 25 } });
@@ -320,7 +321,7 @@ void TestWarnings()
   subject.Expect("");
   apart(3.0);
   subject.Expect("are stretched over more than 2 output voxels, where the closest point");
-  // There is still no hole.
+  // Stretched tissue has no holes.
   VERIFY(subject.Filter->GetNumberOfCoveredVoxels() >= volume->GetNumberOfPoints());
   subject.Filter->SetPadding(1);
   subject.Expect("");
@@ -339,7 +340,7 @@ void TestWarnings()
   subject.Expect("as FadeDistance is 0");
 }
 
-// Voxels outside do not move at all.
+// With a FadeDistance of 0 voxels outside the mesh do not move.
 void TestHardEdge()
 {
   const auto volume = MakeTissue({ { 0, 29, 0, 25, 0, 21 } });
@@ -386,7 +387,8 @@ void TestHardEdge()
   VERIFY(outside > 10000 && inside > 200);
 }
 
-// Some nodes move, masks change, the mesh is split: as a new filter makes it.
+// Displacements and masks change, and the mesh is split. The output must be equal to that of a new
+// filter.
 void TestIncremental()
 {
   const auto volume = MakeTissue({ { 0, 69, 0, 49, 0, 45 } }, glm::dvec3(1.0, 0.8, 1.2));
@@ -418,7 +420,7 @@ void TestIncremental()
     }
     if (step == 6 || step == 9)
     {
-      // Some tetrahedra get a node of their own in the place of another one.
+      // Some tetrahedra get a node of their own at the position of a shared node.
       vtkPoints* points = mesh->GetPoints();
       for (vtkIdType cell = step; cell < mesh->GetNumberOfCells(); cell += 400)
       {
@@ -449,12 +451,12 @@ void TestIncremental()
       subject.Filter->GetNumberOfCoveredVoxels(), fresh.Filter->GetNumberOfCoveredVoxels());
   }
   VERIFY(parts > 5);
-  // Splits keep the mapping, another distance does not.
+  // The static mapping is kept after splits, and built again for another FadeDistance.
   VERIFY_EQUAL(GetReported(subject.Filter, "Static mappings made"), 1);
   subject.Filter->SetFadeDistance(8.0);
   subject.Filter->Update();
   VERIFY_EQUAL(GetReported(subject.Filter, "Static mappings made"), 2);
-  // Many nodes more than the mapping was made for.
+  // More new nodes than the static mapping has reserve for.
   vtkDataArray* vectors = mesh->GetPointData()->GetVectors();
   for (int i = 0; i < 3000; ++i)
   {
@@ -472,8 +474,8 @@ void TestIncremental()
   VERIFY(AreEqual(subject.Filter->GetOutput(), fresh.Filter->GetOutput()));
 }
 
-// The volume is cut where kept tissue is, and a smooth cut opens there, as by a field that moves
-// each voxel so.
+// A sheet cuts kept tissue, and a smooth cut opens there. The reference is a field with the
+// displacement of each voxel.
 void TestCut()
 {
   const auto volume = MakeTissue({ { 0, 39, 0, 33, 0, 29 } });
@@ -509,7 +511,7 @@ void TestCut()
   VERIFY(HaveEqualBits(byMesh->GetOutput()->GetCellData()->GetArray("ActiveTetrahedra"),
     cut(field)->GetOutput()->GetCellData()->GetArray("ActiveTetrahedra")));
   VERIFY(byMesh->GetNumberOfSwitchedOffTetrahedra() > 3000);
-  // A node moves. The next cut is made where that has led.
+  // After a node has moved, the next cut uses the new positions of kept tissue.
   double x = 2.3;
   const auto renew = [&]
   {
@@ -526,7 +528,7 @@ void TestCut()
 
   vtkNew<vtkTest::ErrorObserver> errors;
   byMesh->AddObserver(vtkCommand::ErrorEvent, errors);
-  vtkNew<vtkTest::ErrorObserver> failures; // which the executive adds
+  vtkNew<vtkTest::ErrorObserver> failures; // errors of the executive
   byMesh->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, failures);
   byMesh->SetFadeDistance(-2.0);
   renew();
@@ -548,7 +550,7 @@ void TestCut()
     subject.Filter->GetNumberOfCoveredVoxels(), expected.Filter->GetNumberOfCoveredVoxels());
 }
 
-// In parts, coarser, with other modes in between.
+// Pieces, other outside modes in between, SamplingFactor, and a finer output.
 void TestOtherSettings()
 {
   const auto volume = MakeTissue({ { 0, 41, 0, 33, 0, 29 } });
@@ -578,7 +580,7 @@ void TestOtherSettings()
   subject.Filter->Modified();
   VERIFY(AreEqual(subject.Expect(""), whole));
 
-  // Every second voxel, as if it were the volume.
+  // Every second voxel.
   subject.Filter->SetSamplingFactor(2);
   subject.Expect("");
   VERIFY_EQUAL(subject.Filter->GetNumberOfCoveredVoxels(), 21 * 17 * 15);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// OutsideMode KEEP with displacement fields, forward and inverse: tissue beyond their grid stays
-// where it is, and the displacement of their border fades to zero within FadeDistance. The
-// expected result is that of another field, which has the displacement of each voxel.
+// OutsideMode KEEP with displacement fields, forward and inverse: tissue outside the grid of the
+// field is kept, and the displacement at the faces of the grid fades to zero within FadeDistance.
+// The reference is another field, which has the displacement of each voxel.
 #include "KeepTesting.h"
 
 #include "vtkCutVolume.h"
@@ -25,7 +25,7 @@ using namespace filterTesting;
 namespace
 {
 
-// The displacement of a field at a point in the world, in double precision.
+// The displacement of a field at a world position, in double precision.
 glm::dvec3 Displace(vtkImageData* field, double fadeDistance, const glm::dvec3& point)
 {
   double index[3];
@@ -46,30 +46,31 @@ glm::dvec3 Displace(vtkImageData* field, double fadeDistance, const glm::dvec3& 
   glm::dvec3 sum(0.0);
   for (int corner = 0; corner < 8; ++corner)
   {
-    int place[3];
+    int gridIndex[3];
     double weight = 1.0;
     for (int axis = 0; axis < 3; ++axis)
     {
       const int upper = corner >> axis & 1;
-      place[axis] = low[axis] + upper;
+      gridIndex[axis] = low[axis] + upper;
       weight *= upper ? part[axis] : 1.0 - part[axis];
     }
     glm::dvec3 vector;
-    field->GetPointData()->GetVectors()->GetTuple(field->ComputePointId(place), &vector.x);
+    field->GetPointData()->GetVectors()->GetTuple(field->ComputePointId(gridIndex), &vector.x);
     sum += weight > 0.0 ? weight * vector : glm::dvec3(0.0);
   }
   const double distance = std::sqrt(square);
   return distance > 0.0 ? (fadeDistance > 0.0 ? Fade(distance / fadeDistance) : 0.0) * sum : sum;
 }
 
-// The coordinates, by which one sees what lies where, and a rough array.
+// Adds the coordinates of each voxel as arrays, so that outputs have rest positions, and an array
+// whose values vary in all directions.
 vtkSmartPointer<vtkImageData> MakeTissue(vtkImageData* image)
 {
   const char* const names[3] = { "x", "y", "z" };
   for (int axis = 0; axis < 3; ++axis)
   {
     AddScalars<double>(image, names[axis], [axis](const glm::dvec3& p) { return p[axis]; });
-    image->GetPointData()->SetActiveScalars(nullptr); // else they would be replaced
+    image->GetPointData()->SetActiveScalars(nullptr); // otherwise the array would be replaced
   }
   AddScalars<short>(image, "value",
     [](const glm::dvec3& p)
@@ -77,7 +78,7 @@ vtkSmartPointer<vtkImageData> MakeTissue(vtkImageData* image)
   return image;
 }
 
-// A field with a bend that does not end at its border.
+// Sets a bend that is not zero at the faces of the field.
 void SetBend(vtkImageData* field, double size)
 {
   SetDisplacements(field,
@@ -90,7 +91,7 @@ void SetBend(vtkImageData* field, double size)
     });
 }
 
-// The same displacements, one for each voxel of a grid.
+// A field with the same displacements, which has a point at each voxel of a grid.
 vtkSmartPointer<vtkImageData> MakeVoxelField(
   vtkImageData* grid, vtkImageData* field, double fadeDistance)
 {
@@ -101,7 +102,7 @@ vtkSmartPointer<vtkImageData> MakeVoxelField(
   return voxels;
 }
 
-// Where both cover a voxel they show places that lie within a length of each other.
+// Checks that the rest positions of two outputs differ by at most a tolerance.
 void VerifyAlike(vtkImageData* found, vtkImageData* expected, double tolerance)
 {
   VERIFY_EQUAL(GetExtent(found), GetExtent(expected));
@@ -128,12 +129,12 @@ void VerifyAlike(vtkImageData* found, vtkImageData* expected, double tolerance)
     }
   }
   VERIFY(covered > 5000);
-  // Those on the surface of the body, where positions are rounded.
+  // Coverage may differ on the surface of the volume, since positions are rounded.
   VERIFY(others <= covered / 2000);
   if (!(worst <= tolerance))
   {
     ++GetNumberOfFailures();
-    std::cerr << "places differ by " << worst << " instead of " << tolerance << '\n';
+    std::cerr << "rest positions differ by " << worst << ", allowed is " << tolerance << '\n';
   }
 }
 
@@ -148,7 +149,7 @@ vtkSmartPointer<vtkImageData> MakeVolume(bool oblique)
   return MakeTissue(volume);
 }
 
-// A coarse grid round the middle of a volume that ends well inside it.
+// A coarse field in the middle of a volume.
 vtkSmartPointer<vtkImageData> MakeField(vtkImageData* volume, double size, bool oblique)
 {
   auto field = MakeImage({ { 4, 9, -1, 4, 2, 6 } }, glm::dvec3(3.1, 3.3, 4.7));
@@ -198,7 +199,7 @@ void TestMisuse()
   VERIFY(AreEqual(subject.Expect(""), expected));
 }
 
-// As by a field with the displacement of each voxel; all of the volume is there.
+// The output is that of a field with the displacement of each voxel, and has no holes.
 void TestForward()
 {
   for (const bool isOblique : { false, true })
@@ -210,13 +211,13 @@ void TestForward()
       Kept subject(volume, field, distance);
       Deformed reference(volume, MakeVoxelField(volume, field, distance));
       reference.Update();
-      // Positions are rounded to 1/512 voxel, and displacements are floats; where a step between
-      // voxels shrinks to a part, places differ by as many times that.
+      // Positions are rounded to 1/512 voxel, and displacements are floats. Compression of the
+      // volume multiplies the error of rest positions.
       const double tolerance = 1.4 / 256.0 * (distance == 0.0 ? 8.0 : 3.0);
       VerifyAlike(subject.Expect(""), reference.Filter->GetOutput(), tolerance);
       VERIFY_EQUAL(subject.Filter->GetNumberOfInvertedTetrahedra(),
         reference.Filter->GetNumberOfInvertedTetrahedra());
-      if (distance <= 4.0) // else the volume's border moves
+      if (distance <= 4.0) // otherwise the faces of the volume move
       {
         VERIFY_EQUAL(subject.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
       }
@@ -224,7 +225,7 @@ void TestForward()
   }
 }
 
-// Far from the field not a bit changes.
+// Far from the field values do not change by a bit.
 void TestFar()
 {
   const auto volume = MakeVolume(true);
@@ -259,7 +260,7 @@ void TestFar()
   VERIFY(far > 5000);
 }
 
-// An inverse field, on the volume's grid and on that of a reference image.
+// An inverse field, with outputs on the grid of the volume and on that of a reference image.
 void TestInverse()
 {
   for (const bool isOblique : { false, true })
@@ -290,7 +291,7 @@ void TestInverse()
         reference.Update();
         // Rest positions are rounded to 1/256 voxel.
         VerifyAlike(subject.Expect(""), reference.Filter->GetOutput(), 1.4 / 256.0);
-        // The bounds hold what is covered, and are no wider.
+        // The bounds are the smallest that contain all covered voxels.
         if (!hasReference)
         {
           subject.Filter->SetOutputBoundsModeToDeformedBounds();
@@ -315,7 +316,7 @@ void TestInverse()
   }
 }
 
-// Some vectors move, masks change, another distance: as a new filter makes it.
+// Displacements, masks and FadeDistance change. The output must be equal to that of a new filter.
 void TestIncremental()
 {
   const auto volume = MakeVolume(false);
@@ -360,7 +361,7 @@ void TestIncremental()
   VERIFY(parts > 3);
 }
 
-// Pieces, and a source that reads only what they need, give what the whole has.
+// Pieces are equal to parts of the whole output.
 void TestPieces()
 {
   const auto volume = MakeVolume(false);
@@ -385,13 +386,14 @@ void TestPieces()
   }
 }
 
-// A source that can make parts is asked for those voxels only that land in a piece, or may.
+// From a source that makes parts, only voxels that may be in the requested piece are requested.
 void TestParts()
 {
   vtkNew<vtkRTAnalyticSource> source;
   source->SetWholeExtent(-20, 25, -15, 22, -11, 30);
   const auto field = MakeImage({ { 0, 4, 0, 3, 0, 5 } }, glm::dvec3(3.3), glm::dvec3(-6.0));
-  // Farther than a piece is thick: what stays is not where the border goes.
+  // The displacement is larger than the thickness of a piece. Thus kept tissue and the faces of the
+  // field are in different pieces.
   SetDisplacements(field, Shift(1.0, -0.5, 8.0));
   Kept subject(nullptr, field, 17.0);
   subject.Filter->SetInputConnection(source->GetOutputPort());
@@ -450,10 +452,10 @@ void TestCut()
     others += found->GetValue(cell) != expected->GetValue(cell);
   }
   VERIFY(cut > 1000);
-  VERIFY(others * 500 < cut); // vertices that are next to the sheet, as displacements are floats
+  VERIFY(others * 500 < cut); // vertices near the sheet, since displacements are floats
 }
 
-// Tissue that stays does not ask for an undefined displacement of the border.
+// Tissue beyond FadeDistance does not need the undefined displacement of a corner of the field.
 void TestUndefined()
 {
   const auto volume = MakeVolume(false);
@@ -480,7 +482,7 @@ void TestUndefined()
   }
 }
 
-// What folds for certain is said once, until it is something else.
+// Folded tissue is reported by one warning for each change.
 void TestWarnings()
 {
   const auto volume = MakeVolume(false);
@@ -504,7 +506,7 @@ void TestWarnings()
     move(1.5);
     subject.Expect("");
   }
-  // Nothing is outside.
+  // No warning if the volume is inside the field.
   const auto large = MakeImage({ { 0, 1, 0, 1, 0, 1 } }, glm::dvec3(500.0), glm::dvec3(-200.0));
   SetDisplacements(large, Shift(30.0, 0.0, 0.0));
   Kept covered(volume, large, 1.0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The ways to describe one deformation give one result: displacements, rest and deformed meshes,
-// composite datasets, other cells than tetrahedra, displacement fields.
+// Different descriptions of one deformation give the same result: displacements, meshes at rest and
+// deformed, composite datasets, cells other than tetrahedra, and displacement fields.
 #include "FilterTesting.h"
 
 #include <vtkCellArray.h>
@@ -36,7 +36,8 @@ vtkSmartPointer<vtkUnstructuredGrid> Warp(vtkUnstructuredGrid* rest, const World
   return deformed;
 }
 
-/// The largest difference of scalars where both cover a voxel, and how many only one covers.
+/// Checks the largest difference of scalars of voxels that both images cover, and the number of
+/// voxels that only one image covers.
 void Compare(vtkImageData* first, vtkImageData* second, double tolerance, int border)
 {
   VERIFY_EQUAL(GetExtent(first), GetExtent(second));
@@ -79,19 +80,19 @@ void TestMeshes()
   vtkImageData* expected = byDisplacement.Update();
   VERIFY(byDisplacement.Filter->GetNumberOfCoveredVoxels() > 1000);
 
-  // Positions in float and displacements in float differ by rounding, which may move a vertex by
-  // 1/256 voxel; the volume's slope is at most 41 a voxel.
+  // Rounding differs between positions and displacements as floats. It may move a vertex by 1/256
+  // voxel. Values of the volume change by at most 41 a voxel.
   const double tolerance = 41.0 * 3.0 / 256.0;
   auto deformed = Warp(rest, Bend);
   Deformed byRestMesh(volume, deformed);
   byRestMesh.Filter->SetRestData(rest);
   Compare(byRestMesh.Update(), expected, tolerance, 12);
 
-  // With port 2 connected displacements do not count.
+  // If port 2 is connected, displacements are ignored.
   byRestMesh.Filter->SetDisplacementScale(5.0);
   Compare(byRestMesh.Update(), expected, tolerance, 12);
 
-  // The deformed mesh at rest changes nothing.
+  // The mesh at rest on both ports.
   byRestMesh.Filter->SetDeformationData(rest);
   Deformed still(volume, rest);
   still.Filter->SetDisplacementScale(0.0);
@@ -118,7 +119,7 @@ void TestChoiceOfDisplacements()
     0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "second");
   VERIFY_EQUAL(GetExtent(deformed.Update()), (Extent{ { 0, 13, -6, 5, 0, 9 } }));
 
-  // Any numeric type of three components.
+  // Displacements may have any numeric type.
   vtkNew<vtkDoubleArray> doubles;
   doubles->SetName("doubles");
   doubles->SetNumberOfComponents(3);
@@ -131,7 +132,7 @@ void TestChoiceOfDisplacements()
   deformed.Filter->SetDisplacementScale(1.0);
   VERIFY_EQUAL(GetExtent(deformed.Update()), (Extent{ { 1, 14, 1, 12, 1, 10 } }));
 
-  // Without a name: the active vectors, or else the only ones.
+  // Without a name the active vectors are used, or the only array of vectors.
   deformed.Filter->SetInputArrayToProcess(0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "");
   VERIFY_EQUAL(GetExtent(deformed.Update()), (Extent{ { 0, 13, 2, 13, 0, 9 } }));
   mesh->GetPointData()->SetActiveVectors(nullptr);
@@ -152,7 +153,7 @@ void TestCompositeDatasets()
   Deformed expected(volume, whole);
   expected.Update();
 
-  // The cells dealt out to three blocks, one of them nested, one empty.
+  // The cells are distributed to three blocks; one of them is nested. Another block is empty.
   vtkNew<vtkMultiBlockDataSet> inner;
   vtkNew<vtkMultiBlockDataSet> blocks;
   for (int part = 0; part < 3; ++part)
@@ -178,7 +179,8 @@ void TestCompositeDatasets()
   blocks->SetBlock(0, inner);
   blocks->SetBlock(1, vtkNew<vtkUnstructuredGrid>());
   Deformed composite(volume, blocks);
-  // Shared faces may go to another cell, whose affine map agrees there up to rounding.
+  // Voxels on shared faces may be linked to another cell, whose affine map is equal there up to
+  // rounding.
   Compare(composite.Update(), expected.Filter->GetOutput(), 41.0 * 3.0 / 256.0, 12);
 
   vtkNew<vtkMultiBlockDataSet> restBlocks;
@@ -193,7 +195,7 @@ void TestCompositeDatasets()
 
 void TestOtherCells()
 {
-  // An affine map is the same whichever way a cell is split.
+  // An affine map does not depend on how cells are split.
   auto volume = MakeFloatVolume();
   const WorldMap map = [](const glm::dvec3& p)
   { return glm::dvec3(1.2 * p.x + 0.1 * p.y, p.y - 0.2 * p.z, 1.1 * p.z + 0.3); };
@@ -235,7 +237,7 @@ void TestOtherCells()
   {
     mixed->InsertNextCell(VTK_PYRAMID, 5, face);
   }
-  // A surface cell among them is ignored, and said so.
+  // A surface cell is ignored with a warning.
   const vtkIdType triangle[3] = { 0, 1, 4 };
   mixed->InsertNextCell(VTK_TRIANGLE, 3, triangle);
   SetDisplacements(mixed, map);
@@ -268,7 +270,7 @@ void TestFlatTetrahedraAreCounted()
 void TestDisplacementFields()
 {
   auto volume = MakeFloatVolume();
-  // Trilinear in the position, hence the same at any resolution of the field.
+  // The map is trilinear, and hence independent of the resolution of the field.
   const WorldMap map = [](const glm::dvec3& p)
   {
     return p +
@@ -286,7 +288,7 @@ void TestDisplacementFields()
     MakeImage({ { -1, 3, 2, 5, -4, -1 } }, glm::dvec3(4.0, 5.0, 4.5), glm::dvec3(2.0, -12.0, 17.0));
   SetDisplacements(coarse, map);
   Deformed other(volume, coarse);
-  // The bounds of a coarse field may be wider than needed.
+  // The bounds by a coarse field may be larger.
   for (vtkDeformVolumeFilter* filter : { fine.Filter.Get(), other.Filter.Get() })
   {
     filter->SetOutputBoundsModeToVolumeBounds();
@@ -306,7 +308,7 @@ void TestDisplacementFields()
   other.Filter->SetInputArrayToProcess(0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "field");
   Compare(other.Update(), fine.Filter->GetOutput(), 41.0 * 3.0 / 256.0, 12);
 
-  // Scaled like the displacements of a mesh.
+  // DisplacementScale also applies to fields.
   other.Filter->SetDisplacementScale(0.0);
   other.Filter->SetOutputBoundsModeToDeformedBounds();
   other.Filter->SetPadding(0);
@@ -316,7 +318,7 @@ void TestDisplacementFields()
 
 void TestFieldWithDirection()
 {
-  // Field and volume are oblique in different ways; displacements are in world coordinates.
+  // Field and volume have different directions. Displacements are in world coordinates.
   auto volume = MakeImage({ { 0, 9, 0, 9, 0, 9 } }, glm::dvec3(1.0, 1.5, 0.5));
   SetObliqueDirection(volume);
   AddScalars<float>(volume, "value", [](const glm::dvec3& p) { return p.x + 10.0 * p.y - p.z; });

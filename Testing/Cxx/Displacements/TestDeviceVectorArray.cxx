@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vtkDeviceVectorArray by VTK's interfaces, as an array of the host and with vectors of a device.
+// The interfaces of VTK arrays for vtkDeviceVectorArray, with values on the host and with vectors
+// of a device.
 #include "FilterTesting.h"
 #include "vtkArrayChanges.h"
 #include "vtkDeviceVectorArray.h"
@@ -53,7 +54,7 @@ bool Has(vtkDataArray* array, const std::vector<float>& numbers)
   return has;
 }
 
-// Made by inserting, as any array.
+// An array on the host, made by inserting values.
 vtkSmartPointer<vtkDeviceVectorArray> MakeByInserting(std::size_t tuples)
 {
   auto array = vtkSmartPointer<vtkDeviceVectorArray>::New();
@@ -112,7 +113,7 @@ void CheckReading(vtkDeviceVectorArray* array)
   some->SetNumberOfTuples(1);
   array->GetTuples(ids, some);
   VERIFY_EQUAL(some->GetValue(1), GetNumber(13));
-  // As old interfaces have it.
+  // Interfaces of older versions of VTK.
   VERIFY(array->HasStandardMemoryLayout());
   VERIFY_EQUAL(static_cast<float*>(array->GetVoidPointer(11))[0], GetNumber(11));
   vtkSmartPointer<vtkArrayIterator> iterator;
@@ -154,7 +155,7 @@ void CheckWriting(vtkDeviceVectorArray* array)
   array->SetNumberOfTuples(4);
   array->Fill(2.5);
   VERIFY_EQUAL(array->GetComponent(3, 0), 2.5);
-  VERIFY(!array->GetVectors(deformvolume::ResolveDevice(""))); // they are none
+  VERIFY(!array->GetVectors(deformvolume::ResolveDevice(""))); // has one component
   array->Initialize();
   VERIFY_EQUAL(array->GetNumberOfTuples(), 0);
 }
@@ -170,7 +171,7 @@ void TestAsAnyArray()
   const auto array = MakeByInserting(50);
   CheckReading(array);
   CheckWriting(array);
-  // Without vectors, and with other numbers of components.
+  // None of these accesses needed vectors on a device.
   VERIFY_EQUAL(array->GetNumberOfUploads(), 0);
 }
 
@@ -187,7 +188,7 @@ void TestVectors()
   VERIFY_EQUAL(array->GetNumberOfDownloads(), ownMemory ? 1 : 0);
   VERIFY_EQUAL(array->GetVectors(vectors->GetDevice()) == vectors, ownMemory);
   VERIFY(!array->GetVectors("another device"));
-  // What the owner writes is seen when it says so.
+  // After Modified() the array has the values that the owner of the vectors has written.
   std::vector<float> numbers = MakeNumbers(50);
   numbers[31] = 100.0F;
   vectors->Write(numbers.data(), { { { 10, 11 } } });
@@ -203,7 +204,7 @@ void TestVectors()
   vectors->Write(numbers.data(), { { { 10, 11 } } });
   log->AddTuples(10, 10);
   VERIFY(Has(array, numbers));
-  // Who writes has values of the host, and the owner's are as they were.
+  // Writing to the array makes a copy on the host, and does not change the vectors of the owner.
   vectors->Write(MakeNumbers(50).data());
   array->Modified();
   CheckWriting(array);
@@ -214,7 +215,7 @@ void TestVectors()
   VERIFY(Has(array, left));
   auto* written = static_cast<float*>(array->GetVoidPointer(0));
   written[0] = 77.0F;
-  VERIFY(array->IsOf(vectors)); // nobody has said so
+  VERIFY(array->IsOf(vectors)); // before Modified()
   array->Modified();
   VERIFY(!array->IsOf(vectors));
   VERIFY_EQUAL(array->GetValue(0), 77.0F);
@@ -244,10 +245,10 @@ void TestWriter(const std::string& folder)
   VERIFY(Has(copy->GetPointData()->GetArray("vectors"), MakeNumbers(50)));
 }
 
-// The same deformation by an array of VTK's and by this one.
+// The same deformation by a vtkFloatArray and by a vtkDeviceVectorArray.
 void TestFilter(bool byField)
 {
-  const auto volume = MakeVolume({ { 0, 69, 0, 66, 0, 63 } }); // its field is read where it lies
+  const auto volume = MakeVolume({ { 0, 69, 0, 66, 0, 63 } }); // its field is read in place
   const vtkSmartPointer<vtkDataSet> floats = byField
     ? vtkSmartPointer<vtkDataSet>(MakeImage({ { 0, 69, 0, 66, 0, 63 } }))
     : vtkSmartPointer<vtkDataSet>(MakeMesh(volume, 9));
@@ -269,7 +270,8 @@ void TestFilter(bool byField)
     found.Filter->SetOutputBoundsMode(mode);
     VERIFY(AreEqual(expected.Update(), found.Update()));
   }
-  // Some tuples are written, in both arrays alike: three times without a log, then with one.
+  // The same tuples of both arrays are changed: three times without a log, then three times with
+  // one.
   const bool ownMemory = deformvolume::GetDeviceAbilities("").OwnMemory;
   constexpr int firstLogged = 3;
   vtkNew<vtkArrayChanges> expectedLog;
@@ -296,14 +298,15 @@ void TestFilter(bool byField)
       log->AddTuples(100, 109);
     }
     VERIFY(AreEqual(expected.Update(), found.Update()));
-    // A device with memory of its own resamples a part of the volume for a field with a log, from
-    // the second logged change on: the first one finds the bounds that the next are compared with.
+    // On a device with memory of its own, partial updates need a field with a log. They begin with
+    // the second logged change: the first one computes the bounds that later changes are compared
+    // with.
     const bool inPart = !ownMemory || (byField && frame > firstLogged);
     VERIFY_EQUAL(GetReported(found.Filter, "Bricks resampled"),
       inPart ? GetReported(expected.Filter, "Bricks resampled")
              : GetReported(found.Filter, "Bricks of the volume"));
   }
-  // A coarse volume, and vectors that are deformed themselves.
+  // A coarse volume, and vectors that are an array of the volume, too.
   for (Deformed* one : { &expected, &found })
   {
     one->Filter->SetSamplingFactor(2);
@@ -319,7 +322,7 @@ void TestFilter(bool byField)
     Deformed sameSelf(vectors, vectors);
     VERIFY(AreEqual(self.Update(), sameSelf.Update()));
   }
-  // Vectors of a device that somebody else writes.
+  // Vectors of a device, written by their owner.
   const auto tuples = static_cast<std::size_t>(array->GetNumberOfTuples());
   const auto shared = std::make_shared<deformvolume::DeviceVectors>("", tuples);
   shared->Write(changed->GetPointer(0));
@@ -335,7 +338,7 @@ void TestFilter(bool byField)
   changed->SetComponent(130, 1, 0.75);
   changed->Modified();
   VERIFY(AreEqual(expected.Update(), found.Update()));
-  // What is not finite is named.
+  // The error names the vector that is not finite.
   array->SetComponent(131, 2, std::nan(""));
   array->Modified();
   found.Filter->Update();

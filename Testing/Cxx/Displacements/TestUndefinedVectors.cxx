@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Displacement fields with hidden points, where they are undefined: voxels that would need one are
-// not covered, as if they were blanked, and all others are as with a field that is whole.
+// Displacement fields that are undefined at hidden points. Voxels that need such a point are not
+// covered, as if they were blanked. All other voxels are equal to those of a field without hidden
+// points.
 #include "FilterTesting.h"
 
 #include <vtkUnsignedCharArray.h>
@@ -33,7 +34,7 @@ vtkSmartPointer<vtkUnsignedCharArray> Hide(vtkImageData* image, const Choice& is
   return ghosts;
 }
 
-// What programs write at points that are undefined.
+// Sets values that programs write at undefined points.
 void Spoil(vtkImageData* field, const Choice& isHidden)
 {
   vtkDataArray* vectors = field->GetPointData()->GetVectors();
@@ -60,7 +61,7 @@ WorldMap Bend()
   { return p + glm::dvec3(0.6 * std::sin(0.4 * p.y), 0.4 * std::cos(0.5 * p.z), 0.05 * p.x); };
 }
 
-// Compares with a volume of which the voxels that need an undefined point are blanked.
+// Compares with a volume in which the voxels that need an undefined point are blanked.
 void CheckForward(vtkImageData* volume, vtkImageData* field, const Choice& isHidden,
   const Choice& isUndefined, bool extrapolate = false, int factor = 1)
 {
@@ -97,13 +98,13 @@ void CheckForward(vtkImageData* volume, vtkImageData* field, const Choice& isHid
 void TestForward()
 {
   const auto volume = MakeVolume({ { 0, 12, 0, 12, 0, 12 } });
-  // On the voxels: each needs its own point only.
+  // A field whose points are at voxels: each voxel needs only its own point.
   const auto same = MakeImage({ { 0, 12, 0, 12, 0, 12 } });
   SetDisplacements(same, Bend());
   const auto isCorner = [](const glm::dvec3& p) { return p.x > 7.0 && p.y > 5.0; };
   CheckForward(volume, same, isCorner, isCorner);
   CheckForward(volume, same, isCorner, isCorner, false, 2);
-  // Between its points.
+  // A coarse field: voxels need up to eight points.
   const auto coarse = MakeImage({ { 0, 4, 0, 4, 0, 4 } }, glm::dvec3(3.0));
   SetDisplacements(coarse, Bend());
   const glm::dvec3 middle(6.0);
@@ -114,21 +115,21 @@ void TestForward()
     return d.x < 3.0 && d.y < 3.0 && d.z < 3.0;
   };
   CheckForward(volume, coarse, isMiddle, isNear);
-  // Voxels outside follow the nearest point.
+  // With extrapolation, voxels outside need the closest points of the field.
   const auto small = MakeImage({ { 0, 2, 0, 2, 0, 2 } }, glm::dvec3(3.0), glm::dvec3(3.0));
   SetDisplacements(small, Bend());
   const auto isEnd = [](const glm::dvec3& p) { return p == glm::dvec3(9.0); };
   CheckForward(
     volume, small, isEnd, [](const glm::dvec3& p) { return p.x > 6.0 && p.y > 6.0 && p.z > 6.0; },
     true);
-  // So many points that they would be read where they lie.
+  // A field that would be read in place without hidden points.
   const auto large = MakeVolume({ { 0, 65, 0, 63, 0, 63 } });
   const auto floats = MakeImage({ { 0, 65, 0, 63, 0, 63 } });
   SetDisplacements(floats, Shift(1.0, 0.25, 0.0));
   CheckForward(large, floats, isCorner, isCorner);
 }
 
-// A point that is hidden later on takes voxels away; a vector of another one has to be finite.
+// When another point is hidden, fewer voxels are covered. Vectors of other points must be finite.
 void TestEdits()
 {
   const auto volume = MakeVolume({ { 0, 30, 0, 30, 0, 30 } });
@@ -150,10 +151,10 @@ void TestEdits()
   VERIFY(tested.LastError.find("Vector 16000 of the displacement field") != std::string::npos);
 }
 
-// Each output voxel of an inverse field is looked up in the volume, or not covered.
+// With an inverse field each output voxel has the value of its rest position, or is not covered.
 void TestInverse()
 {
-  // The last of these numbers are not those of floats, so that positions are rounded.
+  // The spacing 0.7 is not exact in floats, so positions are rounded.
   for (const double spacing : { 1.0, 0.7 })
   {
     const auto volume = MakeImage(
@@ -166,7 +167,7 @@ void TestInverse()
       const auto field = MakeImage({ { 0, last, 0, last, 0, last } }, glm::dvec3(step * spacing),
         glm::dvec3(0.1 * spacing, 0.3, 0.7));
       SetDisplacements(field, Shift(2.0 * spacing, 0.0, 0.0));
-      // Three points in a row, and all beyond voxel 9 on z.
+      // Hidden points: a part of a row along x, and all points beyond voxel 9 on z.
       const auto isHidden = [&](int i, int j, int k) {
         return (j * step == 6 && k * step == 6 && i * step >= 3 && i * step <= 9) || k * step > 9;
       };

@@ -40,8 +40,7 @@ vtkSmartPointer<vtkImageData> MakeDose(const Extent& extent = { { 0, 39, 0, 37, 
     return square < 1.0 ? 20000.0 * (1.0 - square) * (1.0 - square) : 0.0;
   };
   AddScalars<short>(volume, "dose", blob);
-  volume->GetPointData()->SetActiveScalars(
-    nullptr); // otherwise AddScalars() would replace the array
+  volume->GetPointData()->SetActiveScalars(nullptr); // otherwise the array would be replaced
   AddScalars<double>(volume, "activity", blob);
   volume->GetPointData()->SetActiveScalars(nullptr);
   AddScalars<float>(
