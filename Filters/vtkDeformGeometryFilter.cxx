@@ -117,7 +117,7 @@ void vtkDeformGeometryFilter::vtkInternals::ReadDeformation(
   {
     if (this->Self->GetNumberOfInputConnections(2) > 0)
     {
-      deformvolume::ThrowRestAlone();
+      deformvolume::ThrowRestAlone(2, 1);
     }
     this->Map = nullptr;
     return;

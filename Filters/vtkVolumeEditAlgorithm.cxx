@@ -103,6 +103,10 @@ deformvolume::EditFinder vtkVolumeEditAlgorithm::vtkEdits::MakeFinder(vtkInforma
 const deformvolume::VertexPositions& vtkVolumeEditAlgorithm::vtkEdits::GetVertices(
   vtkInformationVector** input)
 {
+  if (vtkDataObject::GetData(input[3]) && !vtkDataObject::GetData(input[2]))
+  {
+    deformvolume::ThrowRestAlone(3, 2);
+  }
   const deformvolume::DeformationSource source =
     deformvolume::ChooseDeformation(vtkDataObject::GetData(input[2]),
       vtkDataObject::GetData(input[3]), this->Self->GetInputArrayInformation(0),

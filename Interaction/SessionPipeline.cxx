@@ -251,10 +251,13 @@ void SessionPipeline::TryBeginGrab(double handle, const glm::dvec3& position)
   this->Volume->GetBounds(bounds);
   const glm::dvec3 low(bounds[0], bounds[2], bounds[4]);
   const glm::dvec3 high(bounds[1], bounds[3], bounds[5]);
+  // A visible position at the border can be outside by a fraction of a voxel. The axes of the
+  // volume may be rotated, so the largest spacing counts.
+  const double* const spacing = this->Volume->GetSpacing();
+  const double most =
+    std::max({ std::abs(spacing[0]), std::abs(spacing[1]), std::abs(spacing[2]) });
   for (int axis = 0; axis < 3; ++axis)
   {
-    // A visible position at the border can be outside by a fraction of a voxel.
-    const double most = this->Volume->GetSpacing()[axis];
     if (!(drag.Rest[axis] >= low[axis] - most && drag.Rest[axis] <= high[axis] + most))
     {
       throw std::runtime_error("There is nothing of the volume at the place that was grabbed. Grab "

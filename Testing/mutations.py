@@ -512,6 +512,8 @@ def is_of_plugin(test):
 def get_program(test):
     if not isinstance(test, str):
         return "DeformVolumeEngineTests"
+    if test.startswith("C."):
+        return test.partition(".")[2] + "C"
     return "DeformVolumeFuzz" if test == PIPELINES else "DeformVolumeCxxTests"
 
 
@@ -554,6 +556,8 @@ def get_command(test):
     if test == PIPELINES:
         # The same arguments as in CTest.
         return test, [program, "--seed", "1", "--count", "160"]
+    if isinstance(test, str) and test.startswith("C."):
+        return test, [program]
     if isinstance(test, str):
         name = test.partition(".")[2]
         command = [program, name, "-T", WORK, "-D", SOURCE / "Testing" / "Data"]

@@ -177,7 +177,7 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::MakeSourceAtRest(const Im
 {
   if (this->Self->GetNumberOfInputConnections(2) > 0)
   {
-    deformvolume::ThrowRestAlone();
+    deformvolume::ThrowRestAlone(2, 1);
   }
   if (!this->FieldAtRest || !(this->VolumeAtRest == volume))
   {

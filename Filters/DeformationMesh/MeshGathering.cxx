@@ -198,7 +198,16 @@ DeformationSource MeshGathering::Gather(const Ranks& ranks, const DeformationSou
   {
     this->PieceStamp.clear();
     Piece piece;
-    ranks.Attempt([&] { piece = this->Read(source); });
+    ranks.Attempt(
+      [&]
+      {
+        if (withRest && !source.Rest && GetNumberOfNodes(source.ShapeParts) > 0)
+        {
+          throw Error("A rank has a part of the deformation mesh, but no rest configuration, "
+                      "which other ranks have. Connect one on all ranks or on none.");
+        }
+        piece = this->Read(source);
+      });
     std::uint64_t hash = 14695981039346656037U;
     AddToHash(hash, piece.Tetrahedra);
     AddToHash(hash, piece.Derived.Nodes);

@@ -86,10 +86,11 @@ void FillDeformationPort(bool isRest, vtkInformation* info)
   }
 }
 
-void ThrowRestAlone()
+void ThrowRestAlone(int restPort, int deformationPort)
 {
-  throw Error("There is a rest configuration on input port 2, but no deformation on input port "
-              "1. Connect the deformation, or disconnect the rest configuration.");
+  throw Error("There is a rest configuration on input port " + std::to_string(restPort) +
+    ", but no deformation on input port " + std::to_string(deformationPort) +
+    ". Connect the deformation, or disconnect the rest configuration.");
 }
 
 } // namespace deformvolume

@@ -36,8 +36,9 @@ void CheckDisplacementScale(double scale);
 /// Sets the data types of the port for the deformation, or of the port for the rest configuration.
 void FillDeformationPort(bool isRest, vtkInformation* info);
 
-/// Throws the Error of filters with a rest configuration on port 2 but no deformation on port 1.
-[[noreturn]] void ThrowRestAlone();
+/// Throws the Error of filters with a rest configuration but no deformation. The numbers are those
+/// of the input ports.
+[[noreturn]] void ThrowRestAlone(int restPort, int deformationPort);
 
 } // namespace deformvolume
 

@@ -51,12 +51,14 @@ std::string GetCellName(int type)
     { 71, "lagrange tetra" },
     { 72, "lagrange hexahedron" },
     { 73, "lagrange wedge" },
+    { 74, "lagrange pyramid" },
     { 75, "bezier curve" },
     { 76, "bezier triangle" },
     { 77, "bezier quadrilateral" },
     { 78, "bezier tetra" },
     { 79, "bezier hexahedron" },
     { 80, "bezier wedge" },
+    { 81, "bezier pyramid" },
   };
   const auto found = names.find(type);
   return found == names.end() ? "cell of unknown type" : found->second;

@@ -40,8 +40,9 @@ def section(devices, picture):
     yield "## Measured\n"
     for results in devices:
         machine = results.processors if results.is_processor else results.device
+        date = format_date(results.context["date"])
         yield (f"Time of one `Update()` after the mesh has moved by up to 12 voxels. The volume has 189 x 305 x 229 "
-               f"voxels (13.2 million)\nof 16 bits. Machine: {machine}; {format_date(results.context["date"])}.\n")
+               f"voxels (13.2 million)\nof 16 bits. Machine: {machine}; {date}.\n")
         yield table(["", "ms", "relative"],
                     [[IN_TABLE[name], milliseconds, ratio if ratio != 1 else "1"]
                      for name, _, milliseconds, ratio in measured(results) if name in IN_TABLE])

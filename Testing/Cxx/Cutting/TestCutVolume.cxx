@@ -82,8 +82,9 @@ void TestMisuse()
   mesh->Modified();
   cut.Filter->SetRestData(MakeMesh(volume, 4));
   cut.Fails("the rest configuration has");
-  cut.Filter->SetRestData(nullptr);
   cut.Filter->SetDeformationData(nullptr);
+  cut.Fails("a rest configuration on input port 3, but no deformation on input port 2");
+  cut.Filter->SetRestData(nullptr);
   cut.Filter->SetSheetData(MakePlaneX(volume, 4.5));
   VERIFY_EQUAL(cut.CountOff(), 320);
   VERIFY(cut.CopyMask() == before);
