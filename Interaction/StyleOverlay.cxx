@@ -113,16 +113,16 @@ void StyleOverlay::ClearMarks()
   this->Marks.clear();
 }
 
-void StyleOverlay::AddPoint(const glm::dvec3& position, const Colour& colour)
+void StyleOverlay::AddPoint(const glm::dvec3& position, const Color& color)
 {
-  this->Marks.push_back({ { position }, colour });
+  this->Marks.push_back({ { position }, color });
 }
 
-void StyleOverlay::AddLine(const std::vector<glm::dvec3>& positions, const Colour& colour)
+void StyleOverlay::AddLine(const std::vector<glm::dvec3>& positions, const Color& color)
 {
   if (positions.size() > 1)
   {
-    this->Marks.push_back({ positions, colour });
+    this->Marks.push_back({ positions, color });
   }
 }
 

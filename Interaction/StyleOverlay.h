@@ -33,12 +33,12 @@ public:
   /// Set the renderer; null: nothing is drawn.
   void SetRenderer(vtkRenderer* renderer);
 
-  using Colour = std::array<unsigned char, 3>;
+  using Color = std::array<unsigned char, 3>;
   ///@{
   /// Marks stay until they are cleared.
   void ClearMarks();
-  void AddPoint(const glm::dvec3& position, const Colour& colour);
-  void AddLine(const std::vector<glm::dvec3>& positions, const Colour& colour);
+  void AddPoint(const glm::dvec3& position, const Color& color);
+  void AddLine(const std::vector<glm::dvec3>& positions, const Color& color);
   ///@}
 
   ///@{
@@ -52,7 +52,7 @@ private:
   struct Mark
   {
     std::vector<glm::dvec3> Positions; // one for a point
-    Colour Paint;
+    Color Paint;
   };
 
   void PutMarks();

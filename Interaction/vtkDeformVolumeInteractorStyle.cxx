@@ -35,10 +35,10 @@ vtkStandardNewMacro(vtkDeformVolumeInteractorStyle);
 namespace
 {
 
-constexpr StyleOverlay::Colour HeldColour = { { 90, 230, 120 } };
-constexpr StyleOverlay::Colour GrabbedColour = { { 255, 220, 80 } };
-constexpr StyleOverlay::Colour StrokeColour = { { 255, 110, 90 } };
-constexpr StyleOverlay::Colour MeasureColour = { { 120, 200, 255 } };
+constexpr StyleOverlay::Color HeldColor = { { 90, 230, 120 } };
+constexpr StyleOverlay::Color GrabbedColor = { { 255, 220, 80 } };
+constexpr StyleOverlay::Color StrokeColor = { { 255, 110, 90 } };
+constexpr StyleOverlay::Color MeasureColor = { { 120, 200, 255 } };
 
 constexpr int TimerMilliseconds = 15;
 
@@ -470,24 +470,24 @@ void vtkDeformVolumeInteractorStyle::UpdateOverlay()
   {
     if (handle.first != internals.Handle)
     {
-      overlay.AddPoint(handle.second, HeldColour);
+      overlay.AddPoint(handle.second, HeldColor);
     }
   }
   if (internals.Handle >= 0)
   {
-    overlay.AddPoint(internals.Held, GrabbedColour); // the session may not have moved it yet
+    overlay.AddPoint(internals.Held, GrabbedColor); // the session may not have moved it yet
   }
   std::vector<glm::dvec3> stroke;
   for (const auto& point : internals.Stroke)
   {
     stroke.push_back(GetWorld(this->CurrentRenderer, point[0], point[1], 0.5));
   }
-  overlay.AddLine(stroke, StrokeColour);
+  overlay.AddLine(stroke, StrokeColor);
   for (const glm::dvec3& worldPosition : internals.Measured)
   {
-    overlay.AddPoint(worldPosition, MeasureColour);
+    overlay.AddPoint(worldPosition, MeasureColor);
   }
-  overlay.AddLine(internals.Measured, MeasureColour);
+  overlay.AddLine(internals.Measured, MeasureColor);
   for (const glm::dvec3& center : internals.Sphere)
   {
     vtkCamera* camera = this->CurrentRenderer->GetActiveCamera();
@@ -505,7 +505,7 @@ void vtkDeformVolumeInteractorStyle::UpdateOverlay()
       circle.push_back(
         center + this->GetUsedCarveRadius() * (std::cos(angle) * right + std::sin(angle) * up));
     }
-    overlay.AddLine(circle, StrokeColour);
+    overlay.AddLine(circle, StrokeColor);
   }
 }
 

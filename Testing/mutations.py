@@ -188,7 +188,7 @@ MUTATIONS = {
     "lists-inverted": ("Kernels/Binning/EntryLists.cl", "2 * tile + IsInverted(box.y);", "2 * tile;", [LISTS]),
     "lists-box": ("Kernels/Binning/TetrahedronBinning.cl", "#define TILES_BITS_X 8", "#define TILES_BITS_X 7",
                   [LISTS]),
-    "boundary-neighbours": ("Kernels/DeformationMesh/BoundaryFinder.cxx", "this->Near.Add(i, j, k);",
+    "boundary-neighbors": ("Kernels/DeformationMesh/BoundaryFinder.cxx", "this->Near.Add(i, j, k);",
                             "i == x && j == y && k == z ? this->Near.Add(i, j, k) : (void)0;", [BOUNDARY]),
     "boundary-places": ("Kernels/DeformationMesh/BoundaryFaces.cxx", "faces[end].IsAbove != faces[i].IsAbove", "false", [BOUNDARY]),
     "boundary-border": ("Kernels/DeformationMesh/BoundaryFinder.h", "BorderTolerance = 1.0 / 512.0;",

@@ -30,7 +30,7 @@ with tempfile.TemporaryDirectory() as folder:
     replay(events, folder, "--frames", folder)
     paths = sorted(pathlib.Path(folder).glob("frame*.png"))
     frames = [Image.open(path).convert("RGB").resize((480, 360)) for path in paths]
-palette = frames[-1].quantize(96)  # one for all, so that colours do not flicker
+palette = frames[-1].quantize(96)  # one for all, so that colors do not flicker
 frames = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
 frames[0].save(here / "interaction.gif", save_all=True, append_images=frames[1:], duration=150, loop=0,
                optimize=True)

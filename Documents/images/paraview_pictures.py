@@ -47,8 +47,8 @@ def make_pipeline(folder, plugins):
     shown.SetRepresentationType("Volume")
     simple.ColorBy(shown, ("POINTS", name))
     shown.Shade = 1
-    colours = simple.GetColorTransferFunction(name)
-    colours.RGBPoints = [0.0, 0.1, 0.0, 0.0, 60.0, 0.8, 0.5, 0.3, 160.0, 1.0, 1.0, 0.9]
+    colors = simple.GetColorTransferFunction(name)
+    colors.RGBPoints = [0.0, 0.1, 0.0, 0.0, 60.0, 0.8, 0.5, 0.3, 160.0, 1.0, 1.0, 0.9]
     points = [(0.0, 0.0), (30.0, 0.0), (90.0, 0.5), (160.0, 0.9)]
     opacity = simple.GetOpacityTransferFunction(name)
     opacity.Points = [item for value, amount in points for item in (value, amount, 0.5, 0.0)]

@@ -225,7 +225,7 @@ void vtkDeformVolumeFilter::vtkInternals::RunInTurn(const Ranks& ranks, const st
   {
     const std::vector<std::uint64_t> works = ranks.Gather(hasWork ? 1 : 0);
     int leader = ranks.GetRank();
-    for (const int neighbor : ranks.GetNeighbours())
+    for (const int neighbor : ranks.GetNeighbors())
     {
       if (works[neighbor] > 0)
       {

@@ -150,7 +150,7 @@ int vtkDeformVolumeFilter::RequestInformation(
   const deformvolume::Ranks ranks;
   if (ranks.AreMany())
   {
-    ranks.GetNeighbours(); // has to be called before a device is selected
+    ranks.GetNeighbors(); // has to be called before a device is selected
   }
   vtkInformation* volumeInfo = input[0]->GetInformationObject(0);
   ImageGeometry volume;

@@ -162,7 +162,7 @@ void Ranks::Agree(Outcome outcome, const std::string& message) const
   }
 }
 
-const std::vector<int>& Ranks::GetNeighbours() const
+const std::vector<int>& Ranks::GetNeighbors() const
 {
   // Found once, since ranks do not move to other machines. A list is complete when it is inserted
   // into the map, and does not change afterwards.

@@ -76,7 +76,7 @@ public:
   /// The ranks on this machine, including this one, in ascending order. They share its processors:
   /// the first call limits the threads of this rank, on the host and on CPU devices, to its share.
   /// It has to come before a device is selected.
-  const std::vector<int>& GetNeighbours() const;
+  const std::vector<int>& GetNeighbors() const;
 
   /// Limits the threads of this rank to its share, if a device is needed before the ranks can
   /// communicate. The number of ranks on this machine is taken from an environment variable of the

@@ -43,14 +43,14 @@
 #endif
 
 // Whether a block has a neighbor on a face, and the number of that neighbor.
-INLINE int HasNeighbour(uint block, int face, const ChainMailGrid* g)
+INLINE int HasNeighbor(uint block, int face, const ChainMailGrid* g)
 {
   const int at[3] = { block % g->Blocks[0], block / g->Blocks[0] % g->Blocks[1],
     block / (g->Blocks[0] * g->Blocks[1]) };
   const int axis = face >> 1;
   return face & 1 ? at[axis] + 1 < g->Blocks[axis] : at[axis] > 0;
 }
-INLINE uint NeighbourOf(uint block, int face, const ChainMailGrid* g)
+INLINE uint NeighborOf(uint block, int face, const ChainMailGrid* g)
 {
   const uint steps[3] = { 1, g->Blocks[0], g->Blocks[0] * g->Blocks[1] };
   return face & 1 ? block + steps[face >> 1] : block - steps[face >> 1];
@@ -124,9 +124,9 @@ INLINE int FindRow(uint block, int r, int face, const ChainMailGrid* g, size_t* 
     *offset = (size_t)block * VOXELS + 8 * (face & 1 ? r + step : r - step);
     return 1;
   }
-  const int has = HasNeighbour(block, face, g);
+  const int has = HasNeighbor(block, face, g);
   *offset = has
-    ? (size_t)NeighbourOf(block, face, g) * VOXELS + 8 * (face & 1 ? r - 7 * step : r + 7 * step)
+    ? (size_t)NeighborOf(block, face, g) * VOXELS + 8 * (face & 1 ? r - 7 * step : r + 7 * step)
     : (size_t)block * VOXELS + 8 * r;
   return has;
 }
@@ -143,9 +143,9 @@ typedef struct
   int8 Displacements[3];
   uchar8 Links; // nonzero if there is a link to the neighbor
   uchar8 Materials;
-} Neighbours;
+} Neighbors;
 
-INLINE void FindNeighbours(Neighbours* n, __global const int* displacements,
+INLINE void FindNeighbors(Neighbors* n, __global const int* displacements,
   __global const uchar* links, __global const uchar* materials, uint block, int r, int face,
   const ChainMailGrid* g)
 {
@@ -164,9 +164,9 @@ INLINE void FindNeighbours(Neighbours* n, __global const int* displacements,
     }
     return;
   }
-  const int has = HasNeighbour(block, face, g);
+  const int has = HasNeighbor(block, face, g);
   const size_t beside =
-    has ? (size_t)NeighbourOf(block, face, g) * VOXELS + 8 * r + (face ? 0 : 7) : own;
+    has ? (size_t)NeighborOf(block, face, g) * VOXELS + 8 * r + (face ? 0 : 7) : own;
   const uchar8 l = vload8(0, links + own);
   const uchar8 m = vload8(0, materials + own);
   const uchar linkBeside = has ? links[beside] : 0;

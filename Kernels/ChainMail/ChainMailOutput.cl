@@ -64,8 +64,8 @@ INLINE int FindViolation(const int8* x, uchar8 m, __global const int* displaceme
   UNROLL_FACES
   for (int face = 0; face < 6; ++face)
   {
-    Neighbours n;
-    FindNeighbours(&n, displacements, links, materials, block, r, face, g);
+    Neighbors n;
+    FindNeighbors(&n, displacements, links, materials, block, r, face, g);
     const int8 there = convert_int8(n.Links) != 0;
     int8 over[3], under[3];
     FindLimitsBeside(limits, m, n.Materials, face, over, under);

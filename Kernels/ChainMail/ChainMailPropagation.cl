@@ -18,7 +18,7 @@ INLINE int8 Upright(int system, int8 x)
 }
 
 // Bounds a row by marked voxels outside the block. Returns the new bounds.
-INLINE int8 BoundByNeighbours(int8 bound, __global const int* displacements,
+INLINE int8 BoundByNeighbors(int8 bound, __global const int* displacements,
   __global const uchar* flags, __global const uchar* links, __global const uchar* materials,
   __global const int* limits, uint block, int r, int system, const ChainMailGrid* g)
 {
@@ -27,12 +27,12 @@ INLINE int8 BoundByNeighbours(int8 bound, __global const int* displacements,
   const int up = system / 3;
   for (int side = 0; side < 2; ++side)
   {
-    if (!HasNeighbour(block, side, g))
+    if (!HasNeighbor(block, side, g))
     {
       continue;
     }
     const size_t beside =
-      (size_t)NeighbourOf(block, side, g) * VOXELS + 8 * r + (side ? 0 : 7);
+      (size_t)NeighborOf(block, side, g) * VOXELS + 8 * r + (side ? 0 : 7);
     const size_t near = own + (side ? 7 : 0);
     if ((flags[beside] >> system & 1) && (links[side ? near : beside] & 1))
     {
@@ -285,7 +285,7 @@ __kernel void Propagate(__global int* displacements, __global uchar* flags,
       const int8 marked = (convert_int8(vload8(r, ownFlags)) & (1 << system)) != 0;
       const int8 bound =
         select((int8)(NO_LIMIT), Upright(system, vload8(r, own)), marked);
-      bounds[r] = BoundByNeighbours(
+      bounds[r] = BoundByNeighbors(
         bound, displacements, flags, links, materials, limits, block, r, system, &g);
       FindLimits(forward, backward, links, materials, limits, block, r, system);
     }

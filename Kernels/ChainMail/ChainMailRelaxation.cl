@@ -66,8 +66,8 @@ __kernel void Relax(__global int* displacements, __global const uchar* flags,
     UNROLL_FACES
     for (int face = 0; face < 6; ++face)
     {
-      Neighbours n;
-      FindNeighbours(&n, displacements, links, materials, block, r, face, &g);
+      Neighbors n;
+      FindNeighbors(&n, displacements, links, materials, block, r, face, &g);
       const int8 there = convert_int8(n.Links) != 0;
       const int axis = face >> 1;
       const int8 along = select((int8)(0), WeightsOf(weights, m, n.Materials), there);

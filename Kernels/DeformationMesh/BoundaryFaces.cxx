@@ -2,7 +2,7 @@
 #include "BoundaryFaces.h"
 
 #include "BarycentricMap.h"
-#include "FaceNeighbours.h"
+#include "FaceNeighbors.h"
 #include "ParallelFor.h"
 
 #include <glm/geometric.hpp>
@@ -26,7 +26,7 @@ struct Face
 {
   std::array<glm::dvec3, 3> Positions;
   bool IsAbove;         // the side of the face on which the tetrahedron lies
-  std::uint32_t Number; // as in FaceNeighbours
+  std::uint32_t Number; // as in FaceNeighbors
 
   bool operator<(const Face& other) const
   {
@@ -54,18 +54,18 @@ Face GetFace(std::size_t face, const std::vector<glm::dvec3>& points,
 std::vector<std::uint32_t> FindSingleFaces(
   const std::vector<glm::dvec3>& points, const std::vector<Tetrahedron>& tetrahedra)
 {
-  const FaceNeighbours neighbours(tetrahedra, points.size());
+  const FaceNeighbors neighbors(tetrahedra, points.size());
   constexpr std::size_t step = 65536;
-  std::vector<std::vector<Face>> parts((neighbours.GetNumberOfFaces() + step - 1) / step);
-  ParallelForParts(neighbours.GetNumberOfFaces(), step,
+  std::vector<std::vector<Face>> parts((neighbors.GetNumberOfFaces() + step - 1) / step);
+  ParallelForParts(neighbors.GetNumberOfFaces(), step,
     [&](std::size_t begin, std::size_t end)
     {
       for (std::size_t face = begin; face < end; ++face)
       {
-        const std::size_t next = neighbours.GetNext(face);
+        const std::size_t next = neighbors.GetNext(face);
         const Face here = GetFace(face, points, tetrahedra);
         // More than two faces with the same nodes are left to the second step.
-        if (next == face || !neighbours.IsShared(face) ||
+        if (next == face || !neighbors.IsShared(face) ||
           GetFace(next, points, tetrahedra).IsAbove == here.IsAbove)
         {
           parts[begin / step].push_back(here);

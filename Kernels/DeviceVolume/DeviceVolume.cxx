@@ -55,18 +55,18 @@ DeviceVolume::DeviceVolume(OpenCLContext& context, const cl::CommandQueue& queue
   // A smooth cut needs the vertices up to two voxels away. Smooth cuts are not possible if the
   // planes of these vertices do not fit into an allocation.
   this->HasRoomForCuts = planes > 5;
-  const std::uint64_t neighbours = this->HasRoomForCuts ? 5 : 3; // planes in addition to the layers
-  if (planes <= neighbours)
+  const std::uint64_t neighbors = this->HasRoomForCuts ? 5 : 3; // planes in addition to the layers
+  if (planes <= neighbors)
   {
     throw Error("A slice of the volume needs " + std::to_string(planeBytes) + " bytes, and " +
-      std::to_string(neighbours + 1) +
+      std::to_string(neighbors + 1) +
       " slices must fit into one allocation, but the device allows at most " +
       std::to_string(allocationLimit) + " bytes. Use a smaller volume or another device.");
   }
   const int beyond = this->HasRoomForCuts ? 2 : 1;
   const int layers = this->GetSize(2) - 1;
   const int step = static_cast<int>(
-    std::min<std::uint64_t>(planes - neighbours, static_cast<std::uint64_t>(layers)));
+    std::min<std::uint64_t>(planes - neighbors, static_cast<std::uint64_t>(layers)));
   for (int begin = 0; begin < layers; begin += step)
   {
     VolumeChunk chunk;

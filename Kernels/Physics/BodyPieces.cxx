@@ -3,7 +3,7 @@
 
 #include "CountedLists.h"
 #include "DisjointSets.h"
-#include "FaceNeighbours.h"
+#include "FaceNeighbors.h"
 #include "Watch.h"
 
 #include <Eigen/Core>
@@ -190,7 +190,7 @@ BodyPieces FindPieces(const ElasticBody& body, Watch* watch)
 {
   Watch none(nullptr);
   Watch& asked = watch ? *watch : none;
-  const FaceNeighbours neighbours(body.Tetrahedra, body.Points.size(), &asked);
+  const FaceNeighbors neighbors(body.Tetrahedra, body.Points.size(), &asked);
   asked.Ask();
   DisjointSets<std::int32_t> sets(body.Tetrahedra.size());
   ForItems(asked, body.Tetrahedra.size(),
@@ -199,7 +199,7 @@ BodyPieces FindPieces(const ElasticBody& body, Watch* watch)
       for (std::size_t face = 4 * t; face < 4 * t + 4; ++face)
       {
         sets.Unite(
-          static_cast<std::int32_t>(t), static_cast<std::int32_t>(neighbours.GetNext(face) / 4));
+          static_cast<std::int32_t>(t), static_cast<std::int32_t>(neighbors.GetNext(face) / 4));
       }
     });
   BodyPieces pieces;

@@ -2,7 +2,7 @@
 #include "MeshSplit.h"
 
 #include "Error.h"
-#include "FaceNeighbours.h"
+#include "FaceNeighbors.h"
 #include "IndexBounds.h"
 #include "MeshChecks.h"
 #include "NodeParts.h"
@@ -126,19 +126,18 @@ enum SplitState : unsigned char
   SplitBefore = 2
 };
 
-std::vector<unsigned char> FindSplitFaces(const SplitRegion& region,
-  const FaceNeighbours& neighbours, const SheetCrossings& crossings,
-  const std::vector<TetrahedronPair>& unparted)
+std::vector<unsigned char> FindSplitFaces(const SplitRegion& region, const FaceNeighbors& neighbors,
+  const SheetCrossings& crossings, const std::vector<TetrahedronPair>& unparted)
 {
-  std::vector<unsigned char> states(neighbours.GetNumberOfFaces(), Whole);
+  std::vector<unsigned char> states(neighbors.GetNumberOfFaces(), Whole);
   for (const TetrahedronPair& pair : unparted)
   {
     const std::size_t t = region.Find(static_cast<std::size_t>(pair[0]));
     const std::size_t other = region.Find(static_cast<std::size_t>(pair[1]));
     for (std::size_t face = 4 * t; t < region.GetNumberOfTetrahedra() && face < 4 * t + 4; ++face)
     {
-      const std::size_t next = neighbours.GetNext(face);
-      if (next / 4 == other && neighbours.IsShared(face))
+      const std::size_t next = neighbors.GetNext(face);
+      if (next / 4 == other && neighbors.IsShared(face))
       {
         states[face] = states[next] = SplitBefore;
       }
@@ -151,8 +150,8 @@ std::vector<unsigned char> FindSplitFaces(const SplitRegion& region,
       for (std::size_t face = begin; face < end; ++face)
       {
         // Handle each pair of faces once, so that no two threads write to the same state.
-        const std::size_t next = neighbours.GetNext(face);
-        if (next > face && neighbours.IsShared(face) && states[face] == Whole &&
+        const std::size_t next = neighbors.GetNext(face);
+        if (next > face && neighbors.IsShared(face) && states[face] == Whole &&
           (region.IsNear(face / 4) || region.IsNear(next / 4)) &&
           crossings.IsCrossedOddly(
             region.GetCentroid(face / 4), region.GetCentroid(next / 4), scratch))
@@ -249,14 +248,14 @@ std::vector<TetrahedronPair> FindUnparted(
 void SplitNear(const SplitRegion& region, const SheetCrossings& crossings,
   std::size_t numberOfNodes, const std::vector<TetrahedronPair>& unparted, MeshSplit& split)
 {
-  const FaceNeighbours neighbours(region.GetTetrahedra(), region.GetNumberOfNodes());
-  const std::vector<unsigned char> states = FindSplitFaces(region, neighbours, crossings, unparted);
-  const NodeParts parts = FindNodeParts(
-    region.GetTetrahedra(), neighbours, states, MarkNodesOfSplitFaces(region, states));
+  const FaceNeighbors neighbors(region.GetTetrahedra(), region.GetNumberOfNodes());
+  const std::vector<unsigned char> states = FindSplitFaces(region, neighbors, crossings, unparted);
+  const NodeParts parts =
+    FindNodeParts(region.GetTetrahedra(), neighbors, states, MarkNodesOfSplitFaces(region, states));
   SplitNodes(region, parts, numberOfNodes, split);
   for (std::size_t face = 0; face < states.size(); ++face)
   {
-    const std::size_t next = neighbours.GetNext(face);
+    const std::size_t next = neighbors.GetNext(face);
     if (states[face] == SplitNow && face < next)
     {
       ++split.NumberOfFaces;
@@ -268,7 +267,7 @@ void SplitNear(const SplitRegion& region, const SheetCrossings& crossings,
 
 void CheckCount(std::size_t numberOfTetrahedra)
 {
-  // FaceNeighbours numbers faces with 32 bits, four for each tetrahedron.
+  // FaceNeighbors numbers faces with 32 bits, four for each tetrahedron.
   if (numberOfTetrahedra > std::size_t{ 1 } << 30)
   {
     throw Error("The mesh has " + std::to_string(numberOfTetrahedra) +

@@ -17,10 +17,10 @@ constexpr std::size_t NodesOfPart = 1024;
 class PartFinder
 {
 public:
-  PartFinder(const std::vector<Tetrahedron>& tetrahedra, const FaceNeighbours& neighbours,
+  PartFinder(const std::vector<Tetrahedron>& tetrahedra, const FaceNeighbors& neighbors,
     const std::vector<unsigned char>& isSplit)
     : Tetrahedra(tetrahedra)
-    , Neighbours(neighbours)
+    , Neighbors(neighbors)
     , IsSplit(isSplit)
   {
   }
@@ -33,7 +33,7 @@ public:
     this->Sets.Reset(count);
     for (std::size_t i = 0; i < count; ++i)
     {
-      this->JoinNeighbours(begin, end, i);
+      this->JoinNeighbors(begin, end, i);
     }
     // The root of a set is its lowest corner.
     std::int32_t parts = 0;
@@ -46,14 +46,14 @@ public:
   }
 
 private:
-  void JoinNeighbours(const std::size_t* begin, const std::size_t* end, std::size_t i)
+  void JoinNeighbors(const std::size_t* begin, const std::size_t* end, std::size_t i)
   {
     const std::size_t t = begin[i] / 4;
     const std::int32_t node = this->Tetrahedra[t][begin[i] % 4];
     for (std::size_t k = 0; k < 4; ++k)
     {
       const std::size_t face = 4 * t + k;
-      const std::size_t next = this->Neighbours.GetNext(face);
+      const std::size_t next = this->Neighbors.GetNext(face);
       if (this->Tetrahedra[t][k] == node || next == face || this->IsSplit[face] != 0)
       {
         continue;
@@ -64,16 +64,15 @@ private:
   }
 
   const std::vector<Tetrahedron>& Tetrahedra;
-  const FaceNeighbours& Neighbours;
+  const FaceNeighbors& Neighbors;
   const std::vector<unsigned char>& IsSplit;
   DisjointSets<std::size_t> Sets;
 };
 
 } // namespace
 
-NodeParts FindNodeParts(const std::vector<Tetrahedron>& tetrahedra,
-  const FaceNeighbours& neighbours, const std::vector<unsigned char>& isSplit,
-  const std::vector<unsigned char>& isWanted)
+NodeParts FindNodeParts(const std::vector<Tetrahedron>& tetrahedra, const FaceNeighbors& neighbors,
+  const std::vector<unsigned char>& isSplit, const std::vector<unsigned char>& isWanted)
 {
   // The corners at each wanted node, in ascending order.
   std::vector<std::size_t> begins;
@@ -98,7 +97,7 @@ NodeParts FindNodeParts(const std::vector<Tetrahedron>& tetrahedra,
   ParallelForParts(isWanted.size(), NodesOfPart,
     [&](std::size_t first, std::size_t last)
     {
-      PartFinder finder(tetrahedra, neighbours, isSplit);
+      PartFinder finder(tetrahedra, neighbors, isSplit);
       for (std::size_t node = first; node < last; ++node)
       {
         if (isWanted[node] != 0)

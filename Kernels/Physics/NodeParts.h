@@ -2,7 +2,7 @@
 #ifndef DeformVolumeNodeParts_h
 #define DeformVolumeNodeParts_h
 
-#include "FaceNeighbours.h"
+#include "FaceNeighbors.h"
 #include "Tetrahedron.h"
 
 #include <cstddef>
@@ -26,9 +26,8 @@ struct NodeParts
 /// Finds the parts that are connected through faces which are not split. isSplit: for each face.
 /// isWanted: for each node; other nodes have one part. `tetrahedra` must include all tetrahedra of
 /// the wanted nodes.
-NodeParts FindNodeParts(const std::vector<Tetrahedron>& tetrahedra,
-  const FaceNeighbours& neighbours, const std::vector<unsigned char>& isSplit,
-  const std::vector<unsigned char>& isWanted);
+NodeParts FindNodeParts(const std::vector<Tetrahedron>& tetrahedra, const FaceNeighbors& neighbors,
+  const std::vector<unsigned char>& isSplit, const std::vector<unsigned char>& isWanted);
 
 } // namespace deformvolume
 

@@ -116,9 +116,9 @@ static int IsThere(VolumeMasks masks, const int* rest, const RasterParameters* p
     below[axis] = cell[axis] > 0 && rest[axis] == cell[axis] << p->FractionBits[axis];
     one = max(one, 1L << p->FractionBits[axis]);
   }
-  for (int neighbour = 0; neighbour < 8; ++neighbour)
+  for (int neighbor = 0; neighbor < 8; ++neighbor)
   {
-    const int step[3] = { neighbour & 1, neighbour >> 1 & 1, neighbour >> 2 };
+    const int step[3] = { neighbor & 1, neighbor >> 1 & 1, neighbor >> 2 };
     if (step[0] > below[0] || step[1] > below[1] || step[2] > below[2])
     {
       continue;

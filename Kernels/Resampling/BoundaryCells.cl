@@ -100,12 +100,12 @@ static int FindLocation(const long* rest, const int* last, RestLocation* locatio
     cell[axis] = index - p->First[axis];
     below |= (rest[axis] == (long)index << REST_BITS) << axis;
   }
-  for (int neighbour = below;; neighbour = (neighbour - 1) & below)
+  for (int neighbor = below;; neighbor = (neighbor - 1) & below)
   {
     int isCell = 1;
     for (int axis = 0; axis < 3; ++axis)
     {
-      location->Cell[axis] = cell[axis] - (neighbour >> axis & 1);
+      location->Cell[axis] = cell[axis] - (neighbor >> axis & 1);
       isCell &= location->Cell[axis] >= 0 && location->Cell[axis] < p->Size[axis] - 1;
     }
     isCell &= location->Cell[2] >= p->LayersBegin && location->Cell[2] < p->LayersEnd;
@@ -124,7 +124,7 @@ static int FindLocation(const long* rest, const int* last, RestLocation* locatio
         }
       }
     }
-    if (neighbour == 0)
+    if (neighbor == 0)
     {
       return 0;
     }

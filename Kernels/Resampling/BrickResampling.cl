@@ -71,8 +71,8 @@ static __attribute__((always_inline)) void ResampleCells(PacketCandidates* c, in
     const int cell = c->Cells.X + 2 * lane;
     if (cell >= beginX && cell < endX)
     {
-      Neighbours near;
-      const SamplingMesh keeping = KeepNeighbours(mesh, cell, c->Cells.Y, c->Cells.Z, &near);
+      Neighbors near;
+      const SamplingMesh keeping = KeepNeighbors(mesh, cell, c->Cells.Y, c->Cells.Z, &near);
       ResampleCell(&keeping, cell, c->Cells.Y, c->Cells.Z, &all, output, p ARRAY_ARGUMENTS);
     }
   }

@@ -10,7 +10,7 @@ typedef struct
   int First[3]; // local index of the first vertex
   ulong Known;  // bits of cached vertices, along x, then y, then z
   int4 Positions[64];
-} Neighbours;
+} Neighbors;
 
 #if HAS_CUT
 // A smooth cut: the vertices of the cells that it crosses (FindCutVertex). For each vertex, Positions has its
@@ -45,11 +45,11 @@ typedef struct
   // there are none.
   __local const int* Cuboid;
   int CuboidFirst[3]; // local index of the first cell
-  Neighbours* Near;   // cache for the current cell; null: none
+  Neighbors* Near;   // cache for the current cell; null: none
 } SamplingMesh;
 
 // Returns a mesh that caches the positions around a cell.
-static SamplingMesh KeepNeighbours(const SamplingMesh* mesh, int x, int y, int z, Neighbours* near)
+static SamplingMesh KeepNeighbors(const SamplingMesh* mesh, int x, int y, int z, Neighbors* near)
 {
   near->First[0] = x - 1;
   near->First[1] = y - 1;

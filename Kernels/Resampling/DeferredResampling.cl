@@ -8,8 +8,8 @@ static void ResampleUndecided(const PacketCandidates* c, const PacketFrame* fram
 {
   const Packet* const packet = &c->Cells;
   const Candidates all = AllCandidates(p);
-  Neighbours near;
-  const SamplingMesh keeping = KeepNeighbours(mesh, packet->X, packet->Y, packet->Z, &near);
+  Neighbors near;
+  const SamplingMesh keeping = KeepNeighbors(mesh, packet->X, packet->Y, packet->Z, &near);
   Cell cell;
   int isMade = -1; // -1: unknown
   // Whether the cell is inverted was counted before.
@@ -70,8 +70,8 @@ static void ResampleDeferredCell(const SamplingMesh* mesh, int x, int y, int z, 
     }
   }
   const Candidates all = AllCandidates(p);
-  Neighbours near;
-  const SamplingMesh keeping = KeepNeighbours(mesh, x, y, z, &near);
+  Neighbors near;
+  const SamplingMesh keeping = KeepNeighbors(mesh, x, y, z, &near);
   ResampleCell(&keeping, x, y, z, &all, output, p ARRAY_ARGUMENTS);
 }
 

@@ -343,8 +343,8 @@ static SELDOM int OwnsVertex(
 #endif
   const int high = vertex ^ Mirror(x, y, z, p); // bits of the axes on whose high side the vertex is
   const int shift = (high & 1) | (high >> 2 & 1) << 1 | (high >> 1 & 1) << 2;
-  Neighbours near;
-  const SamplingMesh keeping = KeepNeighbours(mesh, x, y, z, &near);
+  Neighbors near;
+  const SamplingMesh keeping = KeepNeighbors(mesh, x, y, z, &near);
   return IsOwnerOnBorder(&keeping, x, y, z, tetrahedron, 1 << vertex, shift, side, p);
 }
 

@@ -260,7 +260,7 @@ static __attribute__((noinline)) void ResampleUndecided(const PacketCandidates* 
     first[axis].Vector = c->First[axis];
     count[axis].Vector = c->Count[axis];
   }
-  Neighbours near[LANES];
+  Neighbors near[LANES];
   Cell cells[LANES];
   SamplingMesh keeping = *mesh;
   const Candidates all = AllCandidates(p);
@@ -289,7 +289,7 @@ static __attribute__((noinline)) void ResampleUndecided(const PacketCandidates* 
       // In the closed passes, MakeCell tests the sample and not the whole cell.
       if (!(begun >> lane & 1) || DEFORMVOLUME_IS_CLOSED(p->Pass))
       {
-        keeping = KeepNeighbours(mesh, cell, c->Cells.Y, c->Cells.Z, near + lane);
+        keeping = KeepNeighbors(mesh, cell, c->Cells.Y, c->Cells.Z, near + lane);
         // A whole cell is not divided, so there are no views.
         const int hasSamples = MakeCell(&keeping, cell, c->Cells.Y, c->Cells.Z,
                                  DEFORMVOLUME_IS_CLOSED(p->Pass) ? &only : &all, cells + lane, 0, output, p) &&

@@ -79,12 +79,12 @@ vtkSmartPointer<vtkVolumeProperty> MakeProperty(bool shaded)
   vtkNew<vtkPiecewiseFunction> opacity;
   opacity->AddPoint(25.0, 0.0);
   opacity->AddPoint(60.0, 0.3);
-  vtkNew<vtkColorTransferFunction> colour;
-  colour->AddRGBPoint(30.0, 0.85, 0.60, 0.50);
-  colour->AddRGBPoint(200.0, 1.0, 0.95, 0.90);
+  vtkNew<vtkColorTransferFunction> color;
+  color->AddRGBPoint(30.0, 0.85, 0.60, 0.50);
+  color->AddRGBPoint(200.0, 1.0, 0.95, 0.90);
   auto property = vtkSmartPointer<vtkVolumeProperty>::New();
   property->SetScalarOpacity(opacity);
-  property->SetColor(colour);
+  property->SetColor(color);
   property->SetInterpolationTypeToLinear();
   property->SetShade(shaded);
   return property;

@@ -149,7 +149,7 @@ def shrink(name, small):
     image = vtkImageData()
     image.SetDimensions(width // 4, height // 4, 1)
     array = numpy_to_vtk(picture.reshape(-1, 3), deep=True)
-    array.SetName("Colours")
+    array.SetName("Colors")
     image.GetPointData().SetScalars(array)
     writer = vtkPNGWriter()
     writer.SetFileName(path(small))

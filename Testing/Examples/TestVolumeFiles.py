@@ -22,7 +22,7 @@ Readers.run("VolumeFiles.py", folder)
 written_again = {f"{kind}.{suffix}" for kind, suffix in (
     ("uint8", "mha"), ("int8", "mhd"), ("uint16", "nii"), ("int16", "nii.gz"), ("uint32", "mha"),
     ("int32", "mhd"), ("uint64", "nii"), ("int64", "nii.gz"), ("float32", "mha"), ("float64", "mhd"),
-    ("colour", "mha"), ("colour", "nrrd"), ("vector", "mhd"), ("vector", "nrrd"),
+    ("color", "mha"), ("color", "nrrd"), ("vector", "mhd"), ("vector", "nrrd"),
     ("q", "nii.gz"), ("q-mirrored", "nii.gz"),
     ("both", "nii"), ("s-mirrored", "nii"), ("one-mirrored", "nii"), ("scaled-form", "nii"),
     ("unit1", "nii"), ("two", "nii.gz"), ("RAS", "nhdr"), ("las", "nrrd"))}

@@ -41,7 +41,7 @@ const std::vector<ArraySet>& GetArraySets()
 {
   static const std::vector<ArraySet> sets{ { { "value", VTK_SHORT, 1 } },
     { { "value", VTK_UNSIGNED_CHAR, 1 }, { "label", VTK_INT, 1 } }, { { "value", VTK_FLOAT, 1 } },
-    { { "value", VTK_DOUBLE, 1 }, { "colour", VTK_UNSIGNED_CHAR, 3 } },
+    { { "value", VTK_DOUBLE, 1 }, { "color", VTK_UNSIGNED_CHAR, 3 } },
     { { "value", VTK_SIGNED_CHAR, 2 }, { "label", VTK_UNSIGNED_LONG_LONG, 1 } },
     { { "value", VTK_UNSIGNED_SHORT, 1 }, { "vector", VTK_FLOAT, 3 } },
     { { "value", VTK_INT, 1 }, { "wide", VTK_UNSIGNED_INT, 1 } },

@@ -54,7 +54,7 @@ def main(baseline):
     check(representation.Representation == "Volume", f"Shown as {representation.Representation}")
     check(
         list(representation.ColorArrayName) == ["POINTS", name],
-        f"Coloured by {list(representation.ColorArrayName)}",
+        f"Colored by {list(representation.ColorArrayName)}",
     )
     check(representation.LookupTable.SMProxy == colors.SMProxy, "The colors are not the input's")
     representation.Shade = 1

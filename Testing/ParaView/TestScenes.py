@@ -35,9 +35,9 @@ def show(view, source, array=None):
         shown.DiffuseColor = [0.9, 0.75, 0.6]
     else:
         simple.ColorBy(shown, ("POINTS", array))
-        colours = simple.GetColorTransferFunction(array)
-        colours.ColorSpace = "RGB"
-        colours.RGBPoints = [50, 0.1, 0.2, 0.5, 150, 0.95, 0.9, 0.7, 280, 0.6, 0.1, 0.1]
+        colors = simple.GetColorTransferFunction(array)
+        colors.ColorSpace = "RGB"
+        colors.RGBPoints = [50, 0.1, 0.2, 0.5, 150, 0.95, 0.9, 0.7, 280, 0.6, 0.1, 0.1]
         shown.SetScalarBarVisibility(view, False)
         shown.Ambient, shown.Diffuse = 1.0, 0.0
 
@@ -101,9 +101,9 @@ def draw_hidden(view, version):
     shown = simple.Show(carve, view)
     check(shown.Representation == "Volume", f"It is shown as {shown.Representation}")
     simple.ColorBy(shown, ("POINTS", "RTData"))
-    colours = simple.GetColorTransferFunction("RTData")
-    colours.ColorSpace = "RGB"
-    colours.RGBPoints = [50, 0.1, 0.2, 0.5, 150, 0.95, 0.9, 0.7, 280, 0.6, 0.1, 0.1]
+    colors = simple.GetColorTransferFunction("RTData")
+    colors.ColorSpace = "RGB"
+    colors.RGBPoints = [50, 0.1, 0.2, 0.5, 150, 0.95, 0.9, 0.7, 280, 0.6, 0.1, 0.1]
     simple.GetOpacityTransferFunction("RTData").Points = [0, 0.7, 0.5, 0, 300, 0.9, 0.5, 0]
     shown.SetScalarBarVisibility(view, False)
     return [20.0, -80.0, 60.0], 32.0

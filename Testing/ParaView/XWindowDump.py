@@ -12,12 +12,12 @@ def read_window_dump(path):
     with open(path, "rb") as file:
         data = file.read()
     header = struct.unpack(">25I", data[:100])
-    size, width, height, bytes_per_line, colours = (header[i] for i in (0, 4, 5, 12, 19))
+    size, width, height, bytes_per_line, colors = (header[i] for i in (0, 4, 5, 12, 19))
     if header[11] != 32:
         raise ValueError(f"{path} has {header[11]} bits per pixel, not 32")
     # A table of colors, 12 bytes each, is between header and pixels.
     pixels = numpy.frombuffer(
-        data, numpy.uint8, count=bytes_per_line * height, offset=size + 12 * colours
+        data, numpy.uint8, count=bytes_per_line * height, offset=size + 12 * colors
     )
     return pixels.reshape(height, -1, 4)[:, :width, 2::-1].copy()
 

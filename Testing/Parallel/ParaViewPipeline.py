@@ -42,8 +42,8 @@ view.OrientationAxesVisibility = 0
 display = simple.Show(deformed, view)
 display.SetRepresentationType("Volume")
 simple.ColorBy(display, ("POINTS", "RTData"))
-colours = simple.GetColorTransferFunction("RTData")
-colours.RescaleTransferFunction(40.0, 280.0)
+colors = simple.GetColorTransferFunction("RTData")
+colors.RescaleTransferFunction(40.0, 280.0)
 simple.GetOpacityTransferFunction("RTData").Points = [40, 0, 0.5, 0, 120, 0.02, 0.5, 0, 280, 0.6, 0.5, 0]
 display.SetScalarBarVisibility(view, False)
 view.CameraPosition = [110, 90, 150]

@@ -52,23 +52,23 @@ vtkRenderer* AddRenderer(vtkRenderWindow* window, const glm::dvec3& center,
   return renderer;
 }
 
-vtkSmartPointer<vtkLookupTable> MakeColours(
-  double lowest, double highest, const std::vector<glm::dvec3>& colours, int number)
+vtkSmartPointer<vtkLookupTable> MakeColors(
+  double lowest, double highest, const std::vector<glm::dvec3>& colors, int number)
 {
   vtkNew<vtkColorTransferFunction> ramp;
-  for (std::size_t i = 0; i < colours.size(); ++i)
+  for (std::size_t i = 0; i < colors.size(); ++i)
   {
-    ramp->AddRGBPoint(static_cast<double>(i) / static_cast<double>(colours.size() - 1),
-      colours[i].x, colours[i].y, colours[i].z);
+    ramp->AddRGBPoint(static_cast<double>(i) / static_cast<double>(colors.size() - 1), colors[i].x,
+      colors[i].y, colors[i].z);
   }
   auto table = vtkSmartPointer<vtkLookupTable>::New();
   table->SetNumberOfTableValues(number);
   table->SetTableRange(lowest, highest);
   for (int i = 0; i < number; ++i)
   {
-    double colour[3];
-    ramp->GetColor(i / (number - 1.0), colour);
-    table->SetTableValue(i, colour[0], colour[1], colour[2]);
+    double color[3];
+    ramp->GetColor(i / (number - 1.0), color);
+    table->SetTableValue(i, color[0], color[1], color[2]);
   }
   table->SetBelowRangeColor(0.0, 0.0, 0.0, 0.0);
   table->UseBelowRangeColorOn();
@@ -76,7 +76,7 @@ vtkSmartPointer<vtkLookupTable> MakeColours(
 }
 
 void AddSlice(
-  vtkRenderer* renderer, vtkImageData* volume, const char* array, vtkLookupTable* colours)
+  vtkRenderer* renderer, vtkImageData* volume, const char* array, vtkLookupTable* colors)
 {
   vtkNew<vtkImageData> image;
   image->ShallowCopy(volume);
@@ -87,14 +87,14 @@ void AddSlice(
   mapper->SliceAtFocalPointOn();
   vtkNew<vtkImageSlice> slice;
   slice->SetMapper(mapper);
-  slice->GetProperty()->SetLookupTable(colours);
+  slice->GetProperty()->SetLookupTable(colors);
   slice->GetProperty()->UseLookupTableScalarRangeOn();
   slice->GetProperty()->SetInterpolationTypeToNearest();
   renderer->AddViewProp(slice);
 }
 
 void AddSurface(
-  vtkRenderer* renderer, vtkAlgorithmOutput* volume, const char* array, vtkLookupTable* colours)
+  vtkRenderer* renderer, vtkAlgorithmOutput* volume, const char* array, vtkLookupTable* colors)
 {
   vtkNew<vtkFlyingEdges3D> surface;
   surface->SetInputConnection(volume);
@@ -107,7 +107,7 @@ void AddSurface(
   {
     mapper->SetScalarModeToUsePointFieldData();
     mapper->SelectColorArray(array);
-    mapper->SetLookupTable(colours);
+    mapper->SetLookupTable(colors);
     mapper->UseLookupTableScalarRangeOn();
   }
   vtkNew<vtkActor> actor;

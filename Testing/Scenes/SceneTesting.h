@@ -70,17 +70,17 @@ vtkRenderer* AddRenderer(vtkRenderWindow* window, const glm::dvec3& center,
 
 /// Returns a table of colors at equal steps over a range of values. Values below it are
 /// transparent.
-vtkSmartPointer<vtkLookupTable> MakeColours(
-  double lowest, double highest, const std::vector<glm::dvec3>& colours, int number = 256);
+vtkSmartPointer<vtkLookupTable> MakeColors(
+  double lowest, double highest, const std::vector<glm::dvec3>& colors, int number = 256);
 
 /// Draws the slice z = 0 of an array, seen from above. Values below the range are not drawn.
 void AddSlice(
-  vtkRenderer* renderer, vtkImageData* volume, const char* array, vtkLookupTable* colours);
+  vtkRenderer* renderer, vtkImageData* volume, const char* array, vtkLookupTable* colors);
 
 /// Draws the isosurface of a volume at 50. An array of the volume colors it; without an array it
 /// has one color.
 void AddSurface(vtkRenderer* renderer, vtkAlgorithmOutput* volume, const char* array = nullptr,
-  vtkLookupTable* colours = nullptr);
+  vtkLookupTable* colors = nullptr);
 
 /// Sets a fine output spacing, and a padding in which isosurfaces are closed.
 void SetSampling(vtkDeformVolumeFilter* filter, double spacing, double background = 0.0);

@@ -81,14 +81,14 @@ void DrawVolumeRendering(vtkRenderWindow* window, Version version)
   vtkNew<vtkPiecewiseFunction> opacity;
   opacity->AddPoint(150.0, 0.0);
   opacity->AddPoint(165.0, 0.8);
-  vtkNew<vtkColorTransferFunction> colour;
-  colour->AddRGBPoint(150.0, 0.5, 0.75, 0.9);
-  colour->AddRGBPoint(160.0, 0.95, 0.8, 0.6);
-  colour->AddRGBPoint(175.0, 0.95, 0.5, 0.2);
+  vtkNew<vtkColorTransferFunction> color;
+  color->AddRGBPoint(150.0, 0.5, 0.75, 0.9);
+  color->AddRGBPoint(160.0, 0.95, 0.8, 0.6);
+  color->AddRGBPoint(175.0, 0.95, 0.5, 0.2);
   vtkNew<vtkVolume> shown;
   shown->SetMapper(mapper);
   shown->GetProperty()->SetScalarOpacity(opacity);
-  shown->GetProperty()->SetColor(colour);
+  shown->GetProperty()->SetColor(color);
   shown->GetProperty()->SetInterpolationTypeToLinear();
   shown->GetProperty()->ShadeOn();
   shown->GetProperty()->SetAmbient(0.2);
@@ -116,7 +116,7 @@ void DrawIsosurface(vtkRenderWindow* window, Version version)
   auto filter = Deform(volume, MakeMesh(volume, 13), Turn(turn, true), version);
   SetSampling(filter, 0.5, -20.0);
   AddSurface(AddRenderer(window, glm::dvec3(0.0), glm::dvec3(30.0, -80.0, 40.0), 46.0),
-    filter->GetOutputPort(), "height", MakeColours(-20.0, 20.0, Warm));
+    filter->GetOutputPort(), "height", MakeColors(-20.0, 20.0, Warm));
 }
 
 // SPOILED: a forward field is used as an inverse one.
@@ -130,7 +130,7 @@ void DrawSlice(vtkRenderWindow* window, Version version)
   filter->SetFieldIsInverse(version == Version::SPOILED);
   filter->Update();
   AddSlice(AddRenderer(window, glm::dvec3(0.0), glm::dvec3(0.0, 0.0, 90.0), 58.0),
-    filter->GetOutput(), "RTData", MakeColours(40.0, 280.0, Warm));
+    filter->GetOutput(), "RTData", MakeColors(40.0, 280.0, Warm));
 }
 
 // Labels (left) and values (right). SPOILED: labels are interpolated, which gives other labels at
@@ -160,7 +160,7 @@ void DrawLabels(vtkRenderWindow* window, Version version)
     filter->AddCategoricalArray("label");
   }
   filter->Update();
-  const auto labels = MakeColours(0.5, 5.5,
+  const auto labels = MakeColors(0.5, 5.5,
     { { 0.35, 0.35, 0.4 }, { 0.95, 0.8, 0.6 }, { 0.3, 0.7, 0.4 }, { 0.8, 0.3, 0.3 },
       { 0.3, 0.4, 0.9 } },
     5);
@@ -169,7 +169,7 @@ void DrawLabels(vtkRenderWindow* window, Version version)
     AddSlice(AddRenderer(window, glm::dvec3(1.0, 0.0, 0.0), glm::dvec3(0.0, 0.0, 90.0), 42.0,
                isValue ? 1 : 0, 2),
       filter->GetOutput(), isValue ? "value" : "label",
-      isValue ? MakeColours(0.0, 100.0, Warm) : labels);
+      isValue ? MakeColors(0.0, 100.0, Warm) : labels);
   }
 }
 
@@ -201,7 +201,7 @@ void DrawFold(vtkRenderWindow* window, Version version)
   SetSampling(filter, 0.125, -1.0);
   filter->Update();
   AddSlice(AddRenderer(window, glm::dvec3(0.0), glm::dvec3(0.0, 0.0, 90.0), 44.0),
-    filter->GetOutput(), "value", MakeColours(0.0, 41.0, Warm));
+    filter->GetOutput(), "value", MakeColors(0.0, 41.0, Warm));
 }
 
 } // namespace sceneTesting

@@ -46,7 +46,7 @@ void AddBlock(vtkRenderer* renderer, vtkDeformVolumeFilter* filter, double spaci
 {
   SetSampling(filter, spacing);
   AddSurface(renderer, filter->GetOutputPort(), "layer",
-    MakeColours(-1.0, 1.0, { { 0.75, 0.45, 0.35 }, { 0.95, 0.85, 0.7 } }));
+    MakeColors(-1.0, 1.0, { { 0.75, 0.45, 0.35 }, { 0.95, 0.85, 0.7 } }));
 }
 
 // Draws an edited block that a field with a vector at each voxel deforms.

@@ -21,14 +21,14 @@ namespace
 {
 
 void AddPolyData(
-  vtkRenderer* renderer, vtkAlgorithmOutput* polyData, const glm::dvec3& colour, bool isWireframe)
+  vtkRenderer* renderer, vtkAlgorithmOutput* polyData, const glm::dvec3& color, bool isWireframe)
 {
   vtkNew<vtkPolyDataMapper> mapper;
   mapper->SetInputConnection(polyData);
   mapper->ScalarVisibilityOff();
   vtkNew<vtkActor> actor;
   actor->SetMapper(mapper);
-  actor->GetProperty()->SetColor(colour.x, colour.y, colour.z);
+  actor->GetProperty()->SetColor(color.x, color.y, color.z);
   actor->GetProperty()->SetRepresentation(isWireframe ? VTK_WIREFRAME : VTK_SURFACE);
   actor->GetProperty()->SetLighting(!isWireframe);
   renderer->AddViewProp(actor);
@@ -76,7 +76,7 @@ void DrawChainMail(vtkRenderWindow* window, Version version)
   vtkRenderer* renderer =
     AddRenderer(window, glm::dvec3(0.5, 2.5, 0.0), glm::dvec3(0, 0, 90), 46.0);
   AddSlice(renderer, filter->GetOutput(), "value",
-    MakeColours(0.0, 100.0,
+    MakeColors(0.0, 100.0,
       { { 0.5, 0.25, 0.2 }, { 0.95, 0.75, 0.6 }, { 0.35, 0.4, 0.5 }, { 0.85, 0.9, 0.95 } }));
   for (const chainMailTesting::Handle& handle : handles)
   {

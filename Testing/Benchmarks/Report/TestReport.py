@@ -162,9 +162,9 @@ def check_positions():
     matrix = gpu_peers.SCALE * gpu_peers.rotation((7.0, 7.0, 7.0))
     small = (5, 7, 6)
     positions = gpu_peers.make_positions("general", small, 0)
-    centre = 0.5 * (np.array(gpu_peers.VOLUME) - 1.0)
+    center = 0.5 * (np.array(gpu_peers.VOLUME) - 1.0)
     for voxel in np.ndindex(small):
-        moved = matrix @ (positions[(slice(None), *voxel)] - centre) + 0.5 * (np.array(small) - 1.0)
+        moved = matrix @ (positions[(slice(None), *voxel)] - center) + 0.5 * (np.array(small) - 1.0)
         assert np.allclose(moved, voxel, atol=1e-4), voxel
     near = gpu_peers.make_positions("near", gpu_peers.VOLUME, 0)
     for axis, index in enumerate(np.indices(gpu_peers.VOLUME, np.float32, True)):

@@ -65,13 +65,13 @@ def make_positions(pose, shape, field):
     # Voxels of the output relative to its center, axis by axis.
     z, y, x = np.ogrid[tuple(slice(0, n) for n in shape)]
     about = [axis - 0.5 * (n - 1) for axis, n in zip((z, y, x), shape)]
-    centre = [0.5 * (n - 1) for n in VOLUME]
+    center = [0.5 * (n - 1) for n in VOLUME]
     if pose == "near":
-        at = [place + middle for place, middle in zip(about, centre)]
+        at = [place + middle for place, middle in zip(about, center)]
         moved = [at[axis] - AMPLITUDE * np.sin(FREQUENCY * at[(axis + 2) % 3] + phase) for axis in range(3)]
     else:
         inverse = np.linalg.inv(SCALE * rotation((DEGREES + phase, DEGREES, DEGREES)))
-        moved = [sum(inverse[row, axis] * about[axis] for axis in range(3)) + centre[row]
+        moved = [sum(inverse[row, axis] * about[axis] for axis in range(3)) + center[row]
                  for row in range(3)]
     positions = np.empty((3, *shape), np.float32)
     for axis in range(3):

@@ -43,8 +43,8 @@ def plot_curves(path, title, labels, curves, band=None):
     """Draws curves. curves: resampler -> (x, y). band: (lower, upper) of y."""
     _, axes = plt.subplots(figsize=(7, 4.2))
     for resampler, (x, y) in curves.items():
-        label, colour, marker = STYLES[resampler]
-        axes.plot(x, y, marker=marker, color=colour, label=label)
+        label, color, marker = STYLES[resampler]
+        axes.plot(x, y, marker=marker, color=color, label=label)
     if band:
         axes.axhspan(*band, color="tab:blue", alpha=0.12, label="Exact, ±20 %")
     axes.set_xscale("log")
@@ -61,8 +61,8 @@ def plot_bars(path, title, label, bars):
     _, axes = plt.subplots(figsize=(9, 0.36 * len(bars) + 1.3))
     names = [name for name, _, _ in bars]
     values = [value for _, value, _ in bars]
-    colours = ["tab:blue" if ours else "tab:gray" for _, _, ours in bars]
-    drawn = axes.barh(names, values, color=colours)
+    colors = ["tab:blue" if ours else "tab:gray" for _, _, ours in bars]
+    drawn = axes.barh(names, values, color=colors)
     axes.bar_label(drawn, [f"{value:.0f}" if value >= 10.0 else f"{value:.3g}" for value in values],
                    padding=3, fontsize=8)
     axes.invert_yaxis()

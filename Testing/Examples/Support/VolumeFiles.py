@@ -36,7 +36,7 @@ def make_values(kind, *shape):
     return values
 
 
-def make_colours(*shape):
+def make_colors(*shape):
     return numpy.frombuffer(make_values("uint8", *shape, 3).tobytes(),
                             [("R", "u1"), ("G", "u1"), ("B", "u1")]).reshape(shape)
 
@@ -94,7 +94,7 @@ for number, kind in enumerate(types):
                  f"{kind}{('-zip.nrrd', '.nhdr', '.nrrd', '-zip.nhdr')[number % 4]}"):
         SimpleITK.WriteImage(image, path(name), useCompression="zip" in name)
         add_itk(name)
-for name, kind, components in (("colour.mha", "uint8", 3), ("colour.nrrd", "uint8", 4),
+for name, kind, components in (("color.mha", "uint8", 3), ("color.nrrd", "uint8", 4),
                                ("vector.mhd", "float64", 3), ("vector.nrrd", "int16", 2)):
     SimpleITK.WriteImage(to_itk(make_values(kind, *size, components), oblique, True), path(name))
     add_itk(name)
@@ -220,7 +220,7 @@ write_nifti("scaled-form.nii", values, make_place(turn(0, 30), (2, 3, 4)), other
 write_nifti("neither.nii", values, pixdim=(1, 2, 3, 4, 1, 1, 1, 1))
 write_nifti("two.nii", values, oblique, kind=nibabel.Nifti2Image)
 write_nifti("two.nii.gz", values, oblique, other, kind=nibabel.Nifti2Image)
-write_nifti("colour.nii", make_colours(*size), oblique)
+write_nifti("color.nii", make_colors(*size), oblique)
 write_nifti("vectors.nii", make_values("float32", *size, 1, 3), oblique)
 big = nibabel.Nifti1Header(endianness=">")
 big.set_data_dtype(">f4")
@@ -229,7 +229,7 @@ extended = nibabel.Nifti1Image(values, oblique)
 extended.header.extensions.append(nibabel.nifti1.Nifti1Extension("comment", b"x" * 1000))
 nibabel.save(extended, path("extended.nii"))
 for name in ("q.nii.gz", "q-mirrored.nii.gz", "both.nii", "s-mirrored.nii", "one-mirrored.nii",
-             "scaled-form.nii", "neither.nii", "two.nii", "two.nii.gz", "colour.nii", "vectors.nii",
+             "scaled-form.nii", "neither.nii", "two.nii", "two.nii.gz", "color.nii", "vectors.nii",
              "big.nii", "extended.nii"):
     add_nifti(name)
 for unit, millimetres in ((1, 1000), (3, 0.001), (0, 1)):
@@ -254,8 +254,8 @@ for number, (kind, slope, result) in enumerate((
     add_nifti(f"slope{number}.nii", kind=result)
 write_nifti("time.nii.gz", make_values("int16", *size, 3), oblique)
 add_nifti("time.nii.gz", "--frame", "2", frame=2)
-write_nifti("time-colour.nii", make_colours(*size, 3), mirrored)
-add_nifti("time-colour.nii", "--frame", "1", frame=1)
+write_nifti("time-color.nii", make_colors(*size, 3), mirrored)
+add_nifti("time-color.nii", "--frame", "1", frame=1)
 write_nifti("time-vectors.nii", make_values("float32", *size, 3, 2), oblique)
 add_nifti("time-vectors.nii", "--frame", "1", frame=1)
 # Files in the package nibabel.

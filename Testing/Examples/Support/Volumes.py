@@ -20,8 +20,8 @@ def make_ball(dimensions=(25, 22, 19), spacing=(1.0, 1.5, 2.0), origin=(-3.0, 5.
     z, y, x = numpy.meshgrid(*(numpy.arange(n, dtype=float) for n in reversed(dimensions)),
                              indexing="ij")
     middle = [(n - 1) / 2 for n in dimensions]
-    radius = numpy.sqrt(sum(((index - centre) * step) ** 2
-                            for index, centre, step in zip((x, y, z), middle, spacing)))
+    radius = numpy.sqrt(sum(((index - center) * step) ** 2
+                            for index, center, step in zip((x, y, z), middle, spacing)))
     noise = numpy.random.default_rng(1).integers(0, 50, x.shape)
     values = numpy.where(radius < 9.0, 800, 0) + noise
     array = numpy_to_vtk(values.astype(numpy.int16).ravel(), deep=True)

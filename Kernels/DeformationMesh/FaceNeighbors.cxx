@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "FaceNeighbours.h"
+#include "FaceNeighbors.h"
 
 #include "CountedLists.h"
 #include "Watch.h"
@@ -40,7 +40,7 @@ std::array<std::int32_t, 3> GetSortedNodes(const Tetrahedron& tetrahedron, std::
 
 } // namespace
 
-FaceNeighbours::FaceNeighbours(
+FaceNeighbors::FaceNeighbors(
   const std::vector<Tetrahedron>& tetrahedra, std::size_t numberOfNodes, Watch* watch)
   : Next(4 * tetrahedra.size())
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef DeformVolumeFaceNeighbours_h
-#define DeformVolumeFaceNeighbours_h
+#ifndef DeformVolumeFaceNeighbors_h
+#define DeformVolumeFaceNeighbors_h
 
 #include "Tetrahedron.h"
 
@@ -15,12 +15,12 @@ class Watch;
 
 /// The faces of tetrahedra that have the same nodes. Face 4 * t + k is the face of tetrahedron t
 /// that is opposite its node k.
-class FaceNeighbours
+class FaceNeighbors
 {
 public:
   /// tetrahedra: at most 2^30, with nodes from 0 to numberOfNodes - 1. The time is proportional to
   /// the numbers of tetrahedra and nodes. watch: checks for an abort; may be null.
-  FaceNeighbours(
+  FaceNeighbors(
     const std::vector<Tetrahedron>& tetrahedra, std::size_t numberOfNodes, Watch* watch = nullptr);
 
   /// Returns the face of another tetrahedron with the same nodes, or `face` itself if there is
