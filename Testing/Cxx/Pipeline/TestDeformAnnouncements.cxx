@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sources of volumes whose information is not what their data are: the output holds all of the
-// volume, or an error or a warning says what is wrong.
+// Sources whose pipeline information differs from their data. Either the output contains the whole
+// volume, or an error or a warning states the difference.
 #include "FilterTesting.h"
 
 #include "vtkCutVolume.h"
@@ -21,7 +21,7 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 namespace
 {
 
-/// A source that outputs a volume whatever is requested, and announces what the test sets.
+/// A source that always outputs the same volume, and announces the information that a test sets.
 class CarelessSource : public vtkImageAlgorithm
 {
 public:
@@ -117,7 +117,7 @@ void TestGeometry()
 {
   const glm::dvec3 origin(10.0, -5.0, 3.0);
   const glm::dvec3 spacing(2.0, 1.5, 0.5);
-  // Nothing is announced: what is missing is read, once.
+  // Without announced geometry the filter executes the source, once.
   Careless forgetful;
   forgetful.IsRight("a source that announces nothing");
   VERIFY_EQUAL(forgetful.Source->Executions, 1);
@@ -127,10 +127,10 @@ void TestGeometry()
 
   forgetful.Source->Announced->Set(vtkDataObject::ORIGIN(), &origin.x, 3);
   forgetful.Source->Modified();
-  forgetful.IsRight("a source that forgets its spacing");
+  forgetful.IsRight("a source that announces no spacing");
   forgetful.Announce(origin, spacing);
-  forgetful.IsRight("a source that announces what it gives");
-  // As sources in single precision do.
+  forgetful.IsRight("a source that announces its geometry");
+  // The announced geometry of sources in single precision differs by rounding.
   forgetful.Announce(origin + glm::dvec3(1e-6), spacing * (1.0 + 1e-7));
   forgetful.Subject.Update();
   VERIFY_EQUAL(GetExtent(forgetful.Subject.Filter->GetOutput())[0], 1);
@@ -165,7 +165,7 @@ void TestExtents()
   careless.Source->WholeExtent = { { 5, 44, 0, 39, 0, 39 } };
   careless.Fails("another extent than announced", "asked for an extent of it, 5, 44");
 
-  // More than announced is cut, with a word.
+  // Data outside the announced whole extent is cropped, with a warning.
   careless.Source->WholeExtent = { { 10, 29, 0, 39, 0, 39 } };
   careless.Source->Modified();
   careless.Subject.Filter->Update();
@@ -189,7 +189,7 @@ void TestExtents()
   careless.Source->Modified();
   careless.IsRight("a source that is right again");
 
-  // vtkImageClip passes data on that it does not announce.
+  // vtkImageClip passes data outside its announced whole extent on.
   vtkNew<vtkImageClip> clip;
   clip->SetInputData(careless.Volume);
   clip->SetOutputWholeExtent(10, 29, 5, 34, 0, 39);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is built and sent once and kept, and what the filter reports of its work.
+// Static mappings and uploads that are kept between updates, and the reports of the filter.
 #include "FilterTesting.h"
 
 #include "Device.h"
@@ -24,7 +24,8 @@ public:
     SetDisplacements(this->Mesh, Shift(1.0, 0.0, 0.0));
   }
 
-  /// Updates, and expects so many static mappings built and uploads of the volume.
+  /// Updates the filter, and expects these numbers of static mappings built and of uploads of the
+  /// volume.
   void Expect(const char* what, int builds, int uploads)
   {
     vtkDeformVolumeFilter* filter = this->Subject.Filter;
@@ -117,19 +118,19 @@ void TestReports()
   names.TakeReference(vtkDeformVolumeFilter::GetDeviceNames());
   VERIFY(names->GetNumberOfValues() > 0);
   VERIFY_EQUAL(filter->GetDeviceInUse(), std::string(names->GetValue(0)));
-  // Volume of two bytes a voxel, and the links. A graphics card has a list besides, with four bytes
-  // for each cell of whole bricks of 192 x 16 x 16.
+  // The device holds the volume, with two bytes a voxel, and the links. A graphics card also holds
+  // a list with four bytes for each cell of all bricks of 192 x 16 x 16 cells.
   const vtkIdType list = 4 * 192 * 16 * 16 * GetReported(filter, "Bricks of the volume");
   VERIFY(filter->GetDeviceMemory() > counted.Volume->GetNumberOfPoints());
   VERIFY(filter->GetDeviceMemory() < counted.Volume->GetNumberOfPoints() * 100 + list);
 }
 
-// The budget holds before anything is allocated, and the message has both numbers.
+// The memory limit is checked before anything is allocated, and the message states the limit.
 void TestMemoryLimit()
 {
   Counted counted;
   vtkDeformVolumeFilter* filter = counted.Subject.Filter;
-  filter->SetResamplerToExact(); // left to itself, the filter would do with less
+  filter->SetResamplerToExact(); // AUTOMATIC would choose the resampler that needs less memory
   filter->SetMemoryLimit(12345);
   filter->Update();
   VERIFY_EQUAL(counted.Subject.TakeErrors(), 1);
@@ -141,7 +142,7 @@ void TestMemoryLimit()
   VERIFY(filter->GetDeviceMemory() < 100000000);
 }
 
-/// Counts how often the progress begins to speak of compilation, and stops.
+/// Counts how often the progress text changes to that of compilation, and back.
 class CompilationListener
 {
 public:
@@ -164,8 +165,8 @@ private:
   vtkDeformVolumeFilter* Filter;
 };
 
-// The first update of a process has kernels to compile, or to load; it says so, and their time is
-// no part of the others.
+// The first update of a process compiles kernels, or loads them from a cache. The progress text
+// says so, and the time for it is reported separately.
 void TestCompilation()
 {
   Counted counted;
@@ -184,8 +185,7 @@ void TestCompilation()
   VERIFY_EQUAL(listener.Begins, begins);
 }
 
-// On a processor the property changes nothing: what is in the memory of the host is an ordinary
-// array.
+// On a CPU device OutputOnDevice has no effect: the output has ordinary arrays.
 void TestOutputOnDevice()
 {
   Counted counted;
@@ -209,7 +209,7 @@ void TestOutputOnDevice()
 
 int TestDeformCaching(int, char*[])
 {
-  TestCompilation(); // first, while nothing is compiled
+  TestCompilation(); // must be the first test, since it needs kernels that are not loaded yet
   TestCounters();
   TestReports();
   TestMemoryLimit();

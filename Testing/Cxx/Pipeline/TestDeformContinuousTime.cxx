@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Deformations with a range of time and no steps, and times between steps: the output holds the
-// deformed volume at the times seen so far, and says so where it does not.
+// Deformations with a time range but no time steps, and times between steps. The extent of the
+// output contains the deformed volume at all times that were requested so far, or a warning says
+// that it does not.
 #include "FilterTesting.h"
 
 #include <vtkInformation.h>
@@ -18,7 +19,8 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 namespace
 {
 
-/// A lattice that is moved along x, by so many voxels at each time from 0 to 4. Has steps or not.
+/// A lattice that is moved along x by a number of voxels that depends on the time, from 0 to 4. It
+/// announces time steps only if Steps is not empty.
 class TimedLattice : public vtkUnstructuredGridAlgorithm
 {
 public:
@@ -62,7 +64,7 @@ protected:
 };
 vtkStandardNewMacro(TimedLattice);
 
-// Updates to a time, and verifies the extent and that nothing is cut off.
+// Updates to a time, and checks that the extent ends at last on x and contains the deformed volume.
 void CheckTime(Deformed& deformed, vtkImageData* volume, double time, int last)
 {
   deformed.Filter->UpdateTimeStep(time);
@@ -74,7 +76,7 @@ void CheckTime(Deformed& deformed, vtkImageData* volume, double time, int last)
   VERIFY_EQUAL(deformed.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
 }
 
-// A series whose steps are known only behind an interpolator, which announces their range.
+// A series with time steps behind vtkTemporalInterpolator, which announces only a time range.
 void TestInterpolatedSeries()
 {
   auto volume = MakeVolume();
@@ -100,7 +102,7 @@ void TestInterpolatedSeries()
   VERIFY(!info->Has(Pipeline::TIME_STEPS()));
   VERIFY_EQUAL(info->Get(Pipeline::TIME_RANGE())[1], 4.0);
 
-  // Steps of the interpolator's own count as they are.
+  // The interpolator can announce time steps of its own.
   interpolator->SetDiscreteTimeStepInterval(0.5);
   deformed.Filter->UpdateTimeStep(2.0);
   VERIFY_EQUAL(deformed.TakeErrors(), 0);
@@ -117,14 +119,14 @@ void TestContinuousSource()
   deformed.Filter->SetInputData(volume);
   deformed.Filter->SetDeformationConnection(lattice->GetOutputPort());
   CheckTime(deformed, volume, 3.0, 9);
-  // Once for the extent, at the begin of the range, and once for the time asked for.
+  // One execution for the extent, at the begin of the range, and one for the requested time.
   VERIFY(lattice->Executions <= 2);
 
   CheckTime(deformed, volume, 1.0, 19);
   CheckTime(deformed, volume, 1.05, 19);
   CheckTime(deformed, volume, 3.5, 19);
 
-  // With the volume's bounds nobody has to look.
+  // VOLUME_BOUNDS need no execution for the extent.
   deformed.Filter->SetOutputBoundsModeToVolumeBounds();
   lattice->Executions = 0;
   lattice->Modified();
@@ -134,7 +136,7 @@ void TestContinuousSource()
   VERIFY_EQUAL(GetExtent(deformed.Filter->GetOutput()), GetExtent(volume));
 }
 
-// Within an extent that is kept nothing is cut off, and nothing is warned of.
+// With BoundsGranularity the deformed volume at all times is inside the extent, without warnings.
 void TestKeptExtent()
 {
   auto volume = MakeVolume();
@@ -160,7 +162,7 @@ void TestKeptExtent()
   check(0.0, 32);
 }
 
-// Steps, and a request between them that the source answers with something else.
+// A request between two time steps, at which the source has another displacement than at the steps.
 void TestTimesBetweenSteps()
 {
   auto volume = MakeVolume();
@@ -175,7 +177,7 @@ void TestTimesBetweenSteps()
   CheckTime(deformed, volume, 1.0, 14);
 }
 
-// No time is asked for: what the source then gives may be of another time than before.
+// Updates without a requested time: the source may give data of another time than before.
 void TestNoTime()
 {
   auto volume = MakeVolume();

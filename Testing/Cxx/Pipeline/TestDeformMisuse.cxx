@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bad input: one error that says what is wrong, an empty output, and a filter that works again.
+// Invalid inputs: one error that says what is wrong, an empty output, and a filter that works with
+// valid inputs again.
 #include "FilterTesting.h"
 #include "PolyhedronCells.h"
 
@@ -18,7 +19,8 @@ using namespace filterTesting;
 namespace
 {
 
-/// A filter that works, gets a wrong input, reports one error, and works again with the right one.
+/// A filter that gets an invalid input, must report one error, and must work again with valid
+/// inputs.
 class Misuse
 {
 public:
@@ -53,7 +55,7 @@ public:
         std::cerr << what << ": the output looks valid\n";
       }
     }
-    this->Mend();
+    this->Restore();
     vtkImageData* output = this->Subject.Update();
     if (!AreEqual(output, this->Expected))
     {
@@ -72,7 +74,7 @@ public:
   vtkImageData* GetVolume() { return this->Volume; }
 
 private:
-  void Mend()
+  void Restore()
   {
     vtkDeformVolumeFilter* filter = this->GetFilter();
     filter->SetInputData(this->Volume);
@@ -190,7 +192,7 @@ void TestMeshes(Misuse& misuse)
   tetrahedra->InsertNextCell(4, tetrahedron);
   dangling->SetCells(VTK_TETRA, tetrahedra);
   misuse.GetFilter()->SetDeformationData(dangling);
-  misuse.Expect("a cell with a point that is not there", "1000");
+  misuse.Expect("a cell with a point that does not exist", "1000");
 
   vtkNew<vtkMultiBlockDataSet> blocks;
   misuse.GetFilter()->SetDeformationData(blocks);
@@ -199,7 +201,7 @@ void TestMeshes(Misuse& misuse)
 
 void TestCells(Misuse& misuse)
 {
-  // A good cell before and after, so that the error must have the right number.
+  // The invalid cell is between two valid ones, so that the error must have the right id.
   const vtkIdType good[4] = { 0, 1, 3, 9 };
   std::vector<vtkIdType> points(13);
   std::iota(points.begin(), points.end(), 0);
@@ -245,7 +247,7 @@ void TestCells(Misuse& misuse)
   misuse.GetFilter()->SetDeformationData(untyped);
   misuse.Expect("fewer types than cells", "1 cell types");
 
-  // Faces that are not there, too few, too small, cut off, or of a point that is not there.
+  // Faces that are missing, too few, too small, truncated, or refer to a point that does not exist.
   const struct
   {
     PolyhedronDescription Polyhedron;
@@ -275,7 +277,7 @@ void TestDisplacements(Misuse& misuse)
 
   misuse.GetFilter()->SetInputArrayToProcess(
     0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "absent");
-  misuse.Expect("an array that is not there", "absent");
+  misuse.Expect("an array that does not exist", "absent");
 
   auto pairs = misuse.CopyMesh();
   vtkNew<vtkFloatArray> two;
@@ -384,7 +386,7 @@ void TestExtentAfterFailure(vtkImageData* volume, vtkUnstructuredGrid* mesh)
   }
 }
 
-// More than any machine has: one error with the bytes, before anything is allocated.
+// An output that is larger than any memory: one error before anything is allocated.
 void TestOutputBeyondAllMemory(vtkImageData* volume, vtkUnstructuredGrid* mesh)
 {
   Deformed deformed(volume, mesh);

@@ -75,13 +75,13 @@ void TestWholeExtentDownstream()
     points = points == 0 ? direct->GetOutput()->GetNumberOfPoints() : points;
     VERIFY_EQUAL(direct->GetOutput()->GetNumberOfPoints(), points);
   }
-  // An idle update runs nothing.
+  // An update without changes does not execute the filter.
   const vtkMTimeType before = deformed.Filter->GetOutput()->GetMTime();
   surface->Update();
   VERIFY_EQUAL(deformed.Filter->GetOutput()->GetMTime(), before);
 }
 
-// A deformation that a pipeline makes, and a change at its far end.
+// A deformation from a pipeline, and a change of its source.
 void TestUpstreamPipeline()
 {
   auto volume = MakeVolume();
@@ -128,7 +128,7 @@ void TestPieces()
   VERIFY_EQUAL(GetReported(pieces.Filter, "Static mappings made"), 1);
   VERIFY_EQUAL(GetReported(pieces.Filter, "Volumes sent"), 1);
 
-  // Any box.
+  // A request for any box.
   const Extent box{ { extent[0] + 3, extent[0] + 8, 4, 4, 5, 11 } };
   pieces.Filter->UpdateExtent(box.data());
   vtkImageData* part = pieces.Filter->GetOutput();
@@ -193,7 +193,7 @@ void TestProgressAndAbort()
     aborted.Filter->Update();
     VERIFY_EQUAL(aborted.TakeErrors(), 0);
     VERIFY_EQUAL(aborted.Filter->GetOutput()->GetNumberOfPoints(), 0);
-    // The next update makes up for it.
+    // The next update gives the whole output.
     log = ProgressLog();
     aborted.Filter->SetAbortExecute(0);
     VERIFY(AreEqual(aborted.Update(), expected));

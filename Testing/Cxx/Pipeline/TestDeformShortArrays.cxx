@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Arrays that are shorter than what they describe: one error that says which, never an access
-// beyond their end, and a filter that works again. Arrays change after an update, too, when the
-// filter has buffers of the size that they had.
+// Arrays with too few tuples: one error that names the array, no access beyond its end, and a
+// filter that works again. Arrays also become shorter after an update, when the filter has buffers
+// of their previous size.
 #include "ArrayMaking.h"
 #include "FilterTesting.h"
 
@@ -21,7 +21,7 @@ namespace
 
 const char* const GHOSTS = "vtkGhostType";
 
-/// A volume and a mesh of its own for each case, deformed once before anything is spoilt.
+/// A volume and a mesh, which are deformed once before a test makes them invalid.
 struct Case
 {
   Case()
@@ -40,7 +40,8 @@ struct Case
     return mesh;
   }
 
-  /// One error with these words and an empty output; with nothing spoilt, all is as it was.
+  /// Updates the filter, which must report one error with these words and have an empty output.
+  /// Then valid inputs are set, and the output must be the expected one.
   void Fails(const char* what, const std::string& words)
   {
     this->Subject.Filter->Update();
@@ -71,7 +72,7 @@ struct Case
   vtkNew<vtkImageData> Expected;
 };
 
-// Points come and go, while displacements and cells stay as they were.
+// Points are added and removed, while displacements and cells do not change.
 void TestPointsAgainstDisplacements()
 {
   for (const int resampler :
@@ -93,15 +94,15 @@ void TestPointsAgainstDisplacements()
         spoilt.Mesh->GetPoints()->InsertNextPoint(4.0, 4.0, 4.0);
         (gridIsModified ? static_cast<vtkObject*>(spoilt.Mesh) : spoilt.Mesh->GetPoints())
           ->Modified();
-        spoilt.Fails("a point more than displacements", "27 tuples for 28 points");
+        spoilt.Fails("more points than displacements", "27 tuples for 28 points");
       }
     }
   }
   Case spoilt;
-  // Nobody says that the points have changed; the filter runs again for another reason.
+  // The points change without a call of Modified(), and the filter executes for another reason.
   spoilt.Mesh->GetPoints()->InsertNextPoint(4.0, 4.0, 4.0);
   spoilt.Subject.Filter->Modified();
-  spoilt.Fails("a point more in silence", "27 tuples for 28 points");
+  spoilt.Fails("one more point without Modified()", "27 tuples for 28 points");
 
   spoilt.Mesh->GetPoints()->SetNumberOfPoints(20);
   spoilt.Mesh->GetPoints()->Modified();
@@ -114,9 +115,9 @@ void TestPointsAgainstDisplacements()
   spoilt.Mesh->GetPointData()->GetVectors()->SetNumberOfTuples(25);
   spoilt.Subject.Filter->SetDisplacementScale(2.0);
   spoilt.Subject.Filter->SetDisplacementScale(1.0);
-  spoilt.Fails("fewer displacements in silence", "25 tuples for 27 points");
+  spoilt.Fails("fewer displacements without Modified()", "25 tuples for 27 points");
 
-  // The same memory, read in tuples of another size.
+  // The same values with another number of components.
   spoilt.Mesh->GetPoints()->GetData()->SetNumberOfComponents(1);
   spoilt.Mesh->GetPoints()->Modified();
   spoilt.Fails("points of one component", "1 components");
@@ -128,7 +129,7 @@ void TestCells()
   vtkCellArray* cells = spoilt.Mesh->GetCells();
   cells->GetConnectivityArray()->SetNumberOfTuples(cells->GetNumberOfConnectivityIds() - 3);
   spoilt.Mesh->Modified();
-  spoilt.Fails("a connectivity that is cut off", "do not fit their connectivity");
+  spoilt.Fails("a truncated connectivity", "do not fit their connectivity");
 
   cells = spoilt.Mesh->GetCells();
   cells->GetOffsetsArray()->SetComponent(3, 0, 1e6);
@@ -143,7 +144,7 @@ void TestCells()
   const vtkIdType first[4] = { 0, 1, 3, 9 };
   cells->InsertNextCell(4, first);
   spoilt.Mesh->Modified();
-  spoilt.Fails("a cell more than types", "41 cells, but 40 cell types");
+  spoilt.Fails("more cells than cell types", "41 cells, but 40 cell types");
 }
 
 void TestGhostsOfTheMesh()
@@ -160,14 +161,14 @@ void TestGhostsOfTheMesh()
   add(MakeArray<vtkIntArray>(GHOSTS, count));
   spoilt.Fails("ghosts of type int", "unsigned char");
 
-  // Short only after an update.
+  // An array that becomes shorter after an update.
   const auto ghosts = MakeArray<vtkUnsignedCharArray>(GHOSTS, count);
   add(ghosts);
   spoilt.Mesh->Modified();
   VERIFY(AreEqual(spoilt.Subject.Update(), spoilt.Expected));
   ghosts->SetNumberOfTuples(count / 2);
   spoilt.Mesh->GetPoints()->Modified();
-  spoilt.Fails("ghosts that are cut off", std::to_string(count / 2) + " tuples");
+  spoilt.Fails("truncated ghosts", std::to_string(count / 2) + " tuples");
 }
 
 void TestArraysOfTheVolume()
@@ -182,7 +183,7 @@ void TestArraysOfTheVolume()
   spoilt.Fails("fewer values than voxels", std::to_string(points - 1) + " tuples");
   spoilt.Volume->GetPointData()->AddArray(MakeArray<vtkDoubleArray>("other", 0));
   changed();
-  spoilt.Fails("an array of no value", "0 tuples");
+  spoilt.Fails("an array without values", "0 tuples");
   spoilt.Volume->GetPointData()->AddArray(MakeArray<vtkDoubleArray>(nullptr, 5));
   changed();
   spoilt.Fails("a short array without a name", "number 1");
@@ -203,7 +204,7 @@ void TestArraysOfTheVolume()
       };
       attributes()->AddArray(MakeArray<vtkUnsignedCharArray>(name, count - 1));
       changed();
-      spoilt.Fails("a mask that is short", std::to_string(count - 1) + " tuples");
+      spoilt.Fails("a short mask", std::to_string(count - 1) + " tuples");
       attributes()->AddArray(MakeArray<vtkUnsignedCharArray>(name, count, 2));
       changed();
       spoilt.Fails("a mask of two components", "2 components");
@@ -214,7 +215,7 @@ void TestArraysOfTheVolume()
       VERIFY(AreEqual(spoilt.Subject.Update(), spoilt.Expected));
       mask->SetNumberOfTuples(count / 3);
       changed();
-      spoilt.Fails("a mask that is cut off", std::to_string(count / 3) + " tuples");
+      spoilt.Fails("a truncated mask", std::to_string(count / 3) + " tuples");
     }
   }
 }
@@ -232,12 +233,12 @@ void TestRestConfiguration()
   auto rest = connect();
   rest->GetPoints()->InsertNextPoint(0.0, 0.0, 0.0);
   rest->GetPoints()->Modified();
-  spoilt.Fails("a point more at rest", "27 points");
+  spoilt.Fails("one more point at rest", "27 points");
 
   rest = connect();
   spoilt.Mesh->GetPoints()->InsertNextPoint(0.0, 0.0, 0.0);
   spoilt.Mesh->GetPoints()->Modified();
-  spoilt.Fails("a point more in the deformed mesh", "28 points");
+  spoilt.Fails("one more point in the deformed mesh", "28 points");
 
   rest = connect();
   for (vtkUnstructuredGrid* grid : { rest.Get(), spoilt.Mesh.Get() })
@@ -247,7 +248,7 @@ void TestRestConfiguration()
   }
   spoilt.Fails("fewer points in both", "the mesh has only 20 points");
 
-  // A point more in both is used by no cell.
+  // One more point in both meshes, which no cell uses, is valid.
   rest = connect();
   for (vtkUnstructuredGrid* grid : { rest.Get(), spoilt.Mesh.Get() })
   {
@@ -260,7 +261,7 @@ void TestRestConfiguration()
 
   rest->GetCells()->GetConnectivityArray()->SetNumberOfTuples(100);
   rest->Modified();
-  spoilt.Fails("a connectivity at rest that is cut off", "do not fit their connectivity");
+  spoilt.Fails("a truncated connectivity at rest", "do not fit their connectivity");
 }
 
 void TestDisplacementFields()
@@ -277,13 +278,13 @@ void TestDisplacementFields()
   auto field = connect();
   field->GetPointData()->GetVectors()->SetNumberOfTuples(1000);
   field->GetPointData()->GetVectors()->Modified();
-  spoilt.Fails("a field that is cut off", "1000 tuples for 1728 points");
+  spoilt.Fails("truncated vectors of a field", "1000 tuples for 1728 points");
   field = connect();
   field->SetExtent(-1, 20, -1, 20, -1, 20);
   spoilt.Fails("a field that has grown", "1728 tuples for 10648 points");
 }
 
-// What is not short, only unusual, is read as it is.
+// Unusual arrays that are valid.
 void TestUnusualArrays()
 {
   Case unusual;
@@ -296,7 +297,7 @@ void TestUnusualArrays()
   unusual.Mesh->GetPointData()->SetVectors(vectors);
   VERIFY(AreEqual(unusual.Subject.Update(), unusual.Expected));
 
-  vtkNew<vtkIntArray> whole; // a mesh and displacements in whole numbers
+  vtkNew<vtkIntArray> whole; // integer displacements, then integer points
   whole->SetName("displacement");
   whole->DeepCopy(unusual.Mesh->GetPointData()->GetVectors());
   unusual.Mesh->GetPointData()->SetVectors(whole);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Streaming: parts of the output, made from parts of the volume, are those of the whole to the last
-// bit; the input is asked for what is needed only, where its sources can make parts.
+// Streaming: parts of the output that are made from parts of the volume are equal to those of the
+// whole output, to the last bit. If the source of the volume can make parts, only the needed parts
+// are requested.
 #include "DeviceNeeds.h"
 #include "DivisionCases.h"
 
@@ -13,7 +14,7 @@ using namespace divisionCases;
 namespace
 {
 
-/// A filter on a case, with a source that makes parts.
+/// A filter with the inputs and settings of a case, and a source that makes parts.
 struct Streamed : Deformed
 {
   explicit Streamed(const Case& from)
@@ -52,7 +53,7 @@ bool IsPartOf(vtkImageData* part, vtkImageData* whole)
   return AreEqual(part, cropped);
 }
 
-/// What differs, in words.
+/// Describes the differences: the number of values that differ in each array. "" if there are none.
 std::string Compare(vtkImageData* part, vtkImageData* whole)
 {
   if (IsPartOf(part, whole))
@@ -77,7 +78,7 @@ std::string Compare(vtkImageData* part, vtkImageData* whole)
   return words;
 }
 
-/// Every array, by requests for pieces.
+/// Compares all arrays of pieces with those of the whole output.
 void TestPieces(const Case& from, vtkImageData* whole, int pieces, int mode)
 {
   Streamed streamed(from);
@@ -100,7 +101,7 @@ void TestPieces(const Case& from, vtkImageData* whole, int pieces, int mode)
   }
 }
 
-/// The streamer divides by itself, and takes the scalars.
+/// Compares the scalars that vtkImageDataStreamer assembles from parts.
 void TestStreamer(const Case& from, vtkImageData* whole, int divisions)
 {
   Streamed streamed(from);
@@ -114,7 +115,7 @@ void TestStreamer(const Case& from, vtkImageData* whole, int divisions)
     streamer->GetOutput()->GetPointData()->GetScalars(), whole->GetPointData()->GetScalars()));
 }
 
-// A source that says that it can make parts, and then gives others.
+// A source that announces that it can make parts, but makes other parts than requested.
 void TestWrongParts(const Case& from)
 {
   Streamed streamed(from);
@@ -125,7 +126,7 @@ void TestWrongParts(const Case& from)
   VERIFY_EQUAL(streamed.TakeErrors(), 1);
   VERIFY(streamed.LastError.find("was asked for an extent") != std::string::npos);
   VERIFY_EQUAL(streamed.Filter->GetOutput()->GetNumberOfPoints(), vtkIdType{ 0 });
-  // Mended, it goes on.
+  // With a correct source the filter works again.
   streamed.Source->GivesOtherParts = false;
   streamed.Source->Modified();
   streamed.Filter->UpdateExtent(part.data());
@@ -133,8 +134,8 @@ void TestWrongParts(const Case& from)
   VERIFY(IsPartOf(streamed.Filter->GetOutput(), MakeWhole(from)));
 }
 
-// A smooth cut needs all of the volume. Where the source has not said that there is one, the first
-// part is an error.
+// A smooth cut needs the whole volume. If the source has not announced the arrays of the cut, the
+// first update of a part fails.
 void TestCutInParts(const Case& from)
 {
   Streamed streamed(from);
@@ -153,17 +154,17 @@ void TestCutInParts(const Case& from)
   VERIFY(IsPartOf(streamed.Filter->GetOutput(), MakeWhole(from)));
 }
 
-// What the source is asked for.
+// The extents that are requested from the source.
 void TestRequests(const Case& from)
 {
   const vtkIdType all = from.Volume->GetNumberOfPoints();
   {
-    // The whole output: the whole volume, once.
+    // For the whole output the whole volume is requested, once.
     Streamed streamed(from);
     streamed.Update();
     VERIFY_EQUAL(streamed.Source->Made.size(), std::size_t{ 1 });
     VERIFY_EQUAL(streamed.Source->GetMost(), all);
-    // It is there now, and serves parts as well.
+    // Then parts of the output need no other request.
     Extent part = streamed.GetWhole();
     part[5] = part[4] + 3;
     streamed.Filter->UpdateExtent(part.data());
@@ -171,7 +172,7 @@ void TestRequests(const Case& from)
     VERIFY(IsPartOf(streamed.Filter->GetOutput(), MakeWhole(from)));
   }
   {
-    // A part: at most a third of a volume for an eighth of its output.
+    // For one eighth of the output less than one third of the volume is requested.
     Case high = from;
     high.Volume = divisionCases::MakeVolume({ { 0, 15, 0, 17, -60, 139 } });
     high.Deformation = MakeMesh(high.Volume, 6);
@@ -189,7 +190,7 @@ void TestRequests(const Case& from)
     VERIFY_EQUAL(streamed.TakeErrors(), 0);
     VERIFY(streamed.Source->Made.size() > 1);
     VERIFY(3 * streamed.Source->GetMost() < all);
-    // A filter between changes nothing.
+    // The same with another filter between source and deformation filter.
     vtkNew<vtkImageShiftScale> shift;
     shift->SetInputConnection(streamed.Source->GetOutputPort());
     shift->SetOutputScalarTypeToFloat();
@@ -201,7 +202,7 @@ void TestRequests(const Case& from)
     VERIFY(!streamed.Source->Made.empty() && 3 * streamed.Source->GetMost() < all);
   }
   {
-    // A source that cannot make parts gives the volume once.
+    // A source that cannot make parts is executed once.
     Streamed streamed(from);
     streamed.Source->CanMakeParts = false;
     TestStreamer(from, MakeWhole(from), 4);
@@ -214,7 +215,7 @@ void TestRequests(const Case& from)
     VERIFY_EQUAL(GetReported(streamed.Filter, "Static mappings made"), vtkTypeInt64{ 1 });
   }
   {
-    // Beside the volume, there is nothing to read, and all is background.
+    // Outside the deformed volume the output is background, and little is read.
     Streamed streamed(from);
     streamed.Filter->SetOutputBoundsModeToCustomBounds();
     streamed.Filter->SetCustomBounds(1000.0, 1010.0, 0.0, 9.0, 0.0, 9.0);
@@ -228,13 +229,13 @@ void TestRequests(const Case& from)
   }
 }
 
-// A mesh between the voxels leaves nothing but background, and one beside the volume is an error,
-// whatever part is asked for, and whatever was before.
-void TestMeshWithoutVoxels(const Case& from, double place, bool isBeside)
+// With a mesh between voxels the output is background. A mesh outside the volume is an error, for
+// any requested part, and after any other part.
+void TestMeshWithoutVoxels(const Case& from, double x, bool isOutside)
 {
   vtkNew<vtkLatticeTetrahedraSource> mesh;
   mesh->SetNumberOfNodes(2, 2, 2);
-  mesh->SetBounds(place, place + 0.3, 8.3, 8.6, 3.3, 3.6);
+  mesh->SetBounds(x, x + 0.3, 8.3, 8.6, 3.3, 3.6);
   mesh->Update();
   Case none = from;
   none.Deformation = mesh->GetOutput();
@@ -251,12 +252,12 @@ void TestMeshWithoutVoxels(const Case& from, double place, bool isBeside)
     for (Streamed* streamed : { &edited, &fresh })
     {
       streamed->Filter->UpdateExtent(part.data());
-      VERIFY_EQUAL(streamed->TakeErrors(), isBeside ? 1 : 0);
+      VERIFY_EQUAL(streamed->TakeErrors(), isOutside ? 1 : 0);
       VERIFY_EQUAL(streamed->Filter->GetOutput()->GetNumberOfPoints(),
-        isBeside ? 0 : vtkIdType{ deformvolume::GetNumberOfPoints(part) });
+        isOutside ? 0 : vtkIdType{ deformvolume::GetNumberOfPoints(part) });
       VERIFY_EQUAL(streamed->Filter->GetNumberOfCoveredVoxels(), vtkIdType{ 0 });
     }
-    VERIFY((fresh.LastError.find("holds no voxel") != std::string::npos) == isBeside);
+    VERIFY((fresh.LastError.find("holds no voxel") != std::string::npos) == isOutside);
   }
 }
 

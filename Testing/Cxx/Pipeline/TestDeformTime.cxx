@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A deformation that varies in time: the first picture reads one step, the output's whole extent
-// holds the steps seen so far, and each time that is asked for gives that step.
+// A deformation that varies in time. The first update reads one time step. The whole extent of the
+// output contains the deformed volume at the time steps so far, and each requested time gives its
+// step.
 #include "FilterTesting.h"
 
 #include <vtkImageShiftScale.h>
@@ -100,9 +101,9 @@ int TestDeformTime(int, char*[])
     VERIFY_EQUAL(output->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()), time);
   };
   deformed.Filter->UpdateTimeStep(0.0);
-  VERIFY_EQUAL(lattice->Executions, 1); // for the extent and the picture
+  VERIFY_EQUAL(lattice->Executions, 1); // for both the extent and the output
   check(0.0, 9);
-  // The extent grows in the update that asks for another time.
+  // The extent grows in the update that requests another time.
   deformed.Filter->UpdateTimeStep(3.0);
   check(3.0, 39);
   deformed.Filter->UpdateTimeStep(1.0);
@@ -113,15 +114,16 @@ int TestDeformTime(int, char*[])
   VERIFY_EQUAL(deformed.TakeErrors(), 0);
   VERIFY_EQUAL(GetReported(deformed.Filter, "Static mappings made"), 1);
   VERIFY_EQUAL(GetReported(deformed.Filter, "Volumes sent"), 1);
-  VERIFY_EQUAL(lattice->Executions, 4); // once for each change of the time
+  VERIFY_EQUAL(lattice->Executions, 4); // one execution for each change of the time
 
-  // Another deformation: the extent is computed again, from the time that was requested last.
+  // For another deformation the extent is computed again, at the requested time.
   lattice->Speed = 2.0;
   lattice->Modified();
   deformed.Filter->UpdateTimeStep(4.0);
   check(4.0, 17, 8);
 
-  // A consumer knows of the extent before: where the volume has gone there is nothing at first.
+  // A consumer requests the previous extent first: then a warning says that the deformed volume
+  // extends beyond it. The next update has the new extent.
   vtkNew<vtkImageShiftScale> consumer;
   consumer->SetInputConnection(deformed.Filter->GetOutputPort());
   consumer->UpdateTimeStep(4.0);
@@ -140,7 +142,7 @@ int TestDeformTime(int, char*[])
     check(time, last, 8);
   }
 
-  // The volume's bounds need no look at the time steps.
+  // VOLUME_BOUNDS need no execution for the extent.
   lattice->Executions = 0;
   lattice->Modified();
   deformed.Filter->SetOutputBoundsModeToVolumeBounds();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The filter where the environment lacks something: one error that says what to do and no output,
-// or a way round it. The environment cannot change within a process, so each case is a run of its
-// own: its name and the words that the error must hold ("none" where there must be no error) are
-// the first two arguments.
+// The filter in an environment without driver, home directory, cache or linker: it reports one
+// error that says what to do, or works without them. The environment cannot change within a
+// process, so each case is a process of its own. The first two arguments are the name of the case,
+// and words that the error must contain, or "none" if there must be no error.
 #include "FilterTesting.h"
 
 #include <vtkStringArray.h>
@@ -34,7 +34,7 @@ int TestEnvironment(int argc, char* argv[])
     return GetExitCode();
   }
 
-  // Twice, since the first failure must leave the process and the filter in order.
+  // The second update fails in the same way as the first one.
   for (int i = 0; i < 2; ++i)
   {
     deformed.Filter->Modified();
@@ -42,7 +42,7 @@ int TestEnvironment(int argc, char* argv[])
     VERIFY_EQUAL(deformed.TakeErrors(), 1);
     if (deformed.LastError.find(words) == std::string::npos)
     {
-      std::cerr << "The error does not speak of \"" << words
+      std::cerr << "The error does not contain \"" << words
                 << "\": " << deformed.LastError.substr(deformed.LastError.find("):") + 1);
       VERIFY(false);
     }
@@ -57,7 +57,7 @@ int TestEnvironment(int argc, char* argv[])
   }
   if (name == "UnknownDefaultDevice")
   {
-    // What is asked for explicitly goes before the variable.
+    // SetDevice() has priority over the environment variable.
     deformed.Filter->SetDevice("cpu");
     vtkImageData* output = deformed.Update();
     VERIFY(

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Failures: inputs that are required, one error of the filter at each update that fails, and none
-// of its sources. The list of devices to choose from.
+// Failed updates: missing required inputs, one error of the filter at each failed update, and no
+// errors of its sources. Also: the list of devices.
 #include "FilterTesting.h"
 
 #include "vtkCarveVolume.h"
@@ -23,7 +23,7 @@ using namespace filterTesting;
 namespace
 {
 
-/// Collects the text that is displayed while it lives.
+/// Collects the messages that VTK displays during its lifetime.
 class Display
 {
 public:
@@ -34,7 +34,7 @@ public:
   }
   ~Display() { vtkOutputWindow::SetInstance(nullptr); }
 
-  /// Without the errors in which the executive repeats that a request has failed.
+  /// The number of errors, without those of the executive about failed requests.
   int CountErrors() const
   {
     return this->Count("ERROR: ") - this->Count("returned failure for request");
@@ -77,8 +77,8 @@ void TestRequiredInputs(int required)
   }
 }
 
-// Sources report errors where they are asked for what they do not have: a filter whose information
-// pass has failed requests nothing.
+// After an error of the filter there are no errors of its sources: it does not request extents that
+// they do not have.
 void TestSources()
 {
   const auto volume = MakeVolume({ { 5, 12, -9, -2, 3, 9 } });
@@ -105,7 +105,7 @@ void TestMessages(vtkImageData* volume, vtkUnstructuredGrid* mesh)
   filter->SetDeformationData(mesh);
   filter->SetDevice("a device that nobody has");
   filter->UpdateInformation();
-  VERIFY_EQUAL(display.CountErrors(), 0); // another device may be about to be chosen
+  VERIFY_EQUAL(display.CountErrors(), 0); // the device may still be changed before the update
   for (int errors = 1; errors < 4; ++errors)
   {
     VERIFY(!filter->GetExecutive()->Update());
@@ -118,7 +118,7 @@ void TestMessages(vtkImageData* volume, vtkUnstructuredGrid* mesh)
   VERIFY_EQUAL(display.CountErrors(), 4);
   VERIFY(filter->GetOutput()->GetNumberOfPoints() > 0);
 
-  // A failure in the request for extents, where a part of the output is wanted.
+  // A failure in RequestUpdateExtent(), when a part of the output is requested.
   filter->SetOutputBoundsModeToVolumeBounds();
   filter->SetInputArrayToProcess(0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "absent");
   const int part[6] = { 2, 4, 2, 4, 2, 4 };

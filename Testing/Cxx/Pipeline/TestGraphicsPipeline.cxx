@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pipelines on a device that appears to be a graphics card with memory of its own: vectors stay
-// there, several filters take one copy of them, and the host gets them where it asks.
+// Pipelines on a device that appears to be a graphics card with memory of its own. Vectors stay on
+// the device, several filters share one copy, and vectors are copied to the host only when they are
+// read.
 #include "ChainMailTesting.h"
 #include "FakeDriver.h"
 #include "FilterTesting.h"
@@ -19,13 +20,13 @@ using chainMailTesting::MakeHandles;
 namespace
 {
 
-// A few numbers that the host and the device tell each other.
+// The largest size, in bytes, of parameters and results of an update.
 constexpr std::uint64_t Few = 4096;
 
-// With what a filter counts of a brick, eight numbers in each of its 24 sections; and what it asks
-// of its 48 sub-bricks, where these are and what the displacements there lie between, six numbers
-// each.
-std::uint64_t GetMostTold(const Deformed& deformed)
+// The largest number of bytes that an update may copy: parameters and results, eight counts for
+// each of the 24 sections of a brick, and bounds of positions and displacements, six numbers, for
+// each of its 48 sub-bricks.
+std::uint64_t GetLargestTransfer(const Deformed& deformed)
 {
   return Few +
     (24 * 8 + 48 * 6) * 4 *
@@ -41,7 +42,7 @@ void ResetCounts()
 const WorldMap Bend = [](const glm::dvec3& p)
 { return p + glm::dvec3(1.3 * std::sin(0.1 * p.y), 0.7, 0.9 * std::cos(0.07 * p.x)); };
 
-// A deformation whose vectors are those of another one, in a vtkDeviceVectorArray.
+// Adds a vtkDeviceVectorArray with a copy of vectors to a deformation.
 template <typename DataSet>
 vtkSmartPointer<vtkDeviceVectorArray> AddArray(DataSet* deformation, vtkDataArray* vectors)
 {
@@ -54,12 +55,12 @@ vtkSmartPointer<vtkDeviceVectorArray> AddArray(DataSet* deformation, vtkDataArra
 
 void SetOutput(Deformed& deformed)
 {
-  // Far smaller than the deformation.
+  // An output that is much smaller than the displacements.
   deformed.Filter->SetOutputBoundsModeToCustomBounds();
   deformed.Filter->SetCustomBounds(20, 24, 20, 24, 20, 24);
 }
 
-// An image and its segmentation, of another spacing.
+// An image and its segmentation, which has another spacing, with one deformation.
 void TestTwoVolumes()
 {
   const auto image = MakeVolume({ { 0, 40, 0, 40, 0, 40 } });
@@ -112,7 +113,8 @@ void TestTwoVolumes()
     {
       VERIFY(FakeDriver::Get().BytesWritten >= (isLogged ? 120 : bytes));
       VERIFY(FakeDriver::Get().BytesWritten < (isLogged ? 120 : bytes) + Few);
-      VERIFY(FakeDriver::Get().BytesRead < GetMostTold(found[0]) + GetMostTold(found[1]));
+      VERIFY(
+        FakeDriver::Get().BytesRead < GetLargestTransfer(found[0]) + GetLargestTransfer(found[1]));
       std::cout << "Frame " << frame << ": " << FakeDriver::Get().BytesWritten
                 << " bytes written for two volumes, " << bytes << " in all vectors\n";
     }
@@ -121,13 +123,13 @@ void TestTwoVolumes()
       VERIFY(AreEqual(expected[i].Filter->GetOutput(), found[i].Filter->GetOutput()));
     }
   }
-  // The bounds are found on the host, which has the vectors.
+  // With DEFORMED_BOUNDS and with mesh rasterization the host reads the vectors: it has them
+  // already.
   for (int i = 0; i < 2; ++i)
   {
     expected[i].Filter->SetOutputBoundsModeToDeformedBounds();
     found[i].Filter->SetOutputBoundsModeToDeformedBounds();
     VERIFY(AreEqual(expected[i].Update(), found[i].Update()));
-    // The other resampler has them from there, too.
     expected[i].Filter->SetResamplerToMeshRasterization();
     found[i].Filter->SetResamplerToMeshRasterization();
     VERIFY(AreEqual(expected[i].Update(), found[i].Update()));
@@ -136,7 +138,7 @@ void TestTwoVolumes()
     VERIFY(AreEqual(expected[i].Update(), found[i].Update()));
   }
   VERIFY_EQUAL(array->GetNumberOfDownloads(), 0);
-  // What is not finite is named, and the filters work again afterwards.
+  // An error names the vector that is not finite, and the filters work again afterwards.
   array->SetTypedComponent(1234, 2, static_cast<float>(std::nan("")));
   array->Modified();
   SetOutput(found[0]);
@@ -147,7 +149,7 @@ void TestTwoVolumes()
   array->SetTypedComponent(1234, 2, moved->GetTypedComponent(1234, 2));
   array->Modified();
   VERIFY(AreEqual(expected[0].Update(), found[0].Update()));
-  // An array of VTK's takes its place, and it that one's.
+  // A vtkFloatArray replaces the array, then is replaced by it.
   mesh->GetPointData()->SetVectors(moved);
   moved->SetComponent(1234, 2, 0.5);
   moved->Modified();
@@ -158,7 +160,7 @@ void TestTwoVolumes()
   VERIFY(AreEqual(expected[0].Update(), found[0].Update()));
 }
 
-// A field on the voxels, and one between them.
+// A field whose points are at voxels, and one with another spacing.
 void TestFields()
 {
   const auto volume = MakeVolume({ { 0, 66, 0, 65, 0, 64 } });
@@ -184,7 +186,7 @@ void TestFields()
       }
     }
     VERIFY_EQUAL(array->GetNumberOfUploads(), 1);
-    // What is not finite is named, with each way to find the extent.
+    // An error names the vector that is not finite, with each mode of output bounds.
     array->SetTypedComponent(5000, 2, static_cast<float>(std::nan("")));
     array->Modified();
     for (const int mode :
@@ -198,7 +200,7 @@ void TestFields()
   }
 }
 
-// ChainMail moves a volume: what passes between host and device in a drag.
+// ChainMail moves a volume: the bytes that are copied between host and device in a drag.
 void TestChainMail()
 {
   const auto volume = MakeVolume({ { 0, 47, 0, 47, 0, 47 } });
@@ -226,17 +228,17 @@ void TestChainMail()
     }
     VERIFY(array->IsOnDevice());
     VERIFY_EQUAL(array->GetNumberOfUploads(), 0);
-    if (step > 1) // in the first the volume is sent
+    if (step > 1) // the first update sends the volume
     {
-      VERIFY(moved > 4 * GetMostTold(found));
-      VERIFY(FakeDriver::Get().BytesWritten < GetMostTold(found));
-      VERIFY(FakeDriver::Get().BytesRead < GetMostTold(found));
+      VERIFY(moved > 4 * GetLargestTransfer(found));
+      VERIFY(FakeDriver::Get().BytesWritten < GetLargestTransfer(found));
+      VERIFY(FakeDriver::Get().BytesRead < GetLargestTransfer(found));
       VERIFY_EQUAL(array->GetNumberOfDownloads(), 0);
       std::cout << "Step " << step << ": " << moved << " bytes of displacements have changed, "
                 << FakeDriver::Get().BytesRead << " were read and "
                 << FakeDriver::Get().BytesWritten << " written\n";
     }
-    // Where the extent is that of the deformed volume, its bounds are found on the device.
+    // With DEFORMED_BOUNDS the device computes the bounds.
     found.Filter->SetOutputBoundsModeToDeformedBounds();
     found.Update();
     VERIFY_EQUAL(array->GetNumberOfDownloads(), 0);
@@ -247,7 +249,7 @@ void TestChainMail()
     {
       continue;
     }
-    // By a copy of the displacements on the host.
+    // The reference is a filter with a copy of the displacements on the host.
     vtkNew<vtkImageData> copied;
     copied->CopyStructure(chain->GetOutput());
     vtkNew<vtkFloatArray> floats;
@@ -263,7 +265,7 @@ void TestChainMail()
     VERIFY_EQUAL(GetExtent(whole.Update()), extent);
     if (step == 4)
     {
-      // Somebody writes to the output: the filter takes that, and the next step restores it.
+      // A tuple of the output is written: the filter uses it, and the next step restores it.
       const double tuple[3] = { 0.5, 0.25, 0.0 };
       floats->SetTuple(22 * 48 * 48 + 22 * 48 + 22, tuple);
       array->SetTuple(22 * 48 * 48 + 22 * 48 + 22, tuple);
@@ -276,7 +278,7 @@ void TestChainMail()
       VERIFY_EQUAL(array->GetNumberOfUploads(), 1);
     }
   }
-  // A step after that starts from what the model has.
+  // The next step starts from the displacements of the model, without the written tuple.
   chain->SetHandlesData(MakeHandles({ { glm::dvec3(24.0), glm::dvec3(31.5, 24.0, 24.0) } }));
   VERIFY(found.Update() != nullptr);
   vtkNew<vtkChainMailDeformation> other;
@@ -330,10 +332,10 @@ void TestParts()
 
 int main()
 {
-  FakeDriver::Get().IsGraphics = true; // before there is a context
+  FakeDriver::Get().IsGraphics = true; // before the first context is created
   if (!deformvolume::GetDeviceAbilities("").OwnMemory)
   {
-    std::cerr << "The calls of the library do not go through the fake driver.\n";
+    std::cerr << "The engine does not call the functions of the fake driver.\n";
     return EXIT_FAILURE;
   }
   TestTwoVolumes();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Outputs that stay on a device that appears to be a graphics card with memory of its own, until
-// somebody reads them.
+// Outputs that stay on a device, which appears to be a graphics card with memory of its own, until
+// they are read.
 #include "FakeDriver.h"
 #include "FilterTesting.h"
 
@@ -31,25 +31,25 @@ namespace
 {
 
 const Extent VolumeExtent{ { 0, 40, 0, 30, 0, 25 } };
-constexpr int NumberOfArrays = 6; // with the mask
-constexpr int MostUnread = 5;     // without the ids
+constexpr int NumberOfArrays = 6; // including vtkValidPointMask
+constexpr int MostUnread = 5;     // without the ids, which are always copied to the host
 
 template <typename T>
 void AddArray(vtkImageData* image, const char* name, const WorldFunction& function)
 {
-  // Else it would take the place of the scalars that there are.
+  // Otherwise AddScalars() would replace the active scalars.
   image->GetPointData()->SetActiveAttribute(-1, vtkDataSetAttributes::SCALARS);
   AddScalars<T>(image, name, function);
 }
 
-// A volume with arrays of several types, ids among them, one of two components.
+// A volume with arrays of several types, with ids, and with an array of two components.
 vtkSmartPointer<vtkImageData> MakeArrays()
 {
   const auto volume = MakeVolume(VolumeExtent);
   vtkPointData* points = volume->GetPointData();
   AddArray<double>(volume, "double", [](const glm::dvec3& p) { return p.x * 0.3 - p.y; });
   AddArray<unsigned char>(volume, "byte", [](const glm::dvec3& p) { return p.z + p.x; });
-  // Each of them other than its neighbours as a double.
+  // Consecutive ids are equal when they are rounded to doubles.
   vtkNew<vtkIdTypeArray> ids;
   ids->SetName("id");
   ids->SetNumberOfTuples(volume->GetNumberOfPoints());
@@ -108,7 +108,7 @@ struct Both
     this->Expected.Update();
     return this->Found.Update();
   }
-  // Reads all, and compares.
+  // Compares an output with the expected one, and thus reads all arrays.
   void Check(vtkImageData* image) { VERIFY(AreEqual(this->Expected.Filter->GetOutput(), image)); }
   int GetNumberOfUnread() { return GetReported(this->Found.Filter, "Arrays on the device"); }
 
@@ -136,7 +136,7 @@ vtkDataArray* GetArray(vtkImageData* image, const char* name)
   return image->GetPointData()->GetArray(name);
 }
 
-// Nothing passes the bus before somebody reads, and then what he reads, once.
+// An array is copied to the host when it is read for the first time, and only once.
 void TestReading()
 {
   Both both;
@@ -144,17 +144,17 @@ void TestReading()
   both.Update();
   both.Move(0.25);
   both.Expected.Update();
-  const std::uint64_t told = CountRead([&] { image = both.Found.Update(); });
+  const std::uint64_t copied = CountRead([&] { image = both.Found.Update(); });
   const std::uint64_t ids = GetBytes(GetArray(image, "id"));
-  VERIFY(told - ids < 30000);
+  VERIFY(copied - ids < 30000);
   VERIFY_EQUAL(both.GetNumberOfUnread(), MostUnread);
   VERIFY_EQUAL(both.Found.Filter->GetNumberOfCoveredVoxels(),
     both.Expected.Filter->GetNumberOfCoveredVoxels());
-  // What describes an array is no access.
+  // The description of an array can be read without a copy.
   vtkDataArray* value = GetArray(image, "value");
   VERIFY_EQUAL(value, image->GetPointData()->GetScalars());
   VERIFY_EQUAL(value->GetDataType(), VTK_SHORT);
-  VERIFY(vtkIdTypeArray::SafeDownCast(GetArray(image, "id")) != nullptr); // is there at once
+  VERIFY(vtkIdTypeArray::SafeDownCast(GetArray(image, "id")) != nullptr); // is always on the host
   VERIFY_EQUAL(value->GetNumberOfTuples(), image->GetNumberOfPoints());
   VERIFY_EQUAL(GetArray(image, "two")->GetNumberOfComponents(), 2);
   VERIFY_EQUAL(std::string(GetArray(image, "two")->GetComponentName(1)), "second");
@@ -177,7 +177,7 @@ void TestReading()
   VERIFY_EQUAL(both.GetNumberOfUnread(), 0);
 }
 
-// Each way to read is the first access once.
+// Each interface for reading is tested as the first access to an output.
 void TestInterfaces()
 {
   using Access = std::function<double(vtkDataArray*)>;
@@ -228,7 +228,7 @@ void TestInterfaces()
     },
     [](vtkDataArray* array)
     {
-      array->SetComponent(0, 0, 5.0); // the others are as they were
+      array->SetComponent(0, 0, 5.0); // does not change other values
       return array->GetComponent(id, 0);
     },
     [](vtkDataArray* array)
@@ -250,7 +250,7 @@ void TestInterfaces()
     },
     [](vtkDataArray* array)
     {
-      // By a value that is there: the first place that has it.
+      // Look up a value of the array: another tuple may have the same value.
       const double value = array->GetComponent(id, 0);
       const vtkIdType found = array->LookupValue(vtkVariant(static_cast<short>(value)));
       return array->GetComponent(found, 0);
@@ -272,7 +272,7 @@ void TestInterfaces()
     }
     VERIFY_EQUAL(both.GetNumberOfUnread(), MostUnread - 1);
   }
-  // What has been written there is not seen in the next output.
+  // Values that were written to an output are not in the next output.
   both.Move(0.01);
   both.Check(both.Update());
   double expected[2];
@@ -284,7 +284,7 @@ void TestInterfaces()
     two->GetRange(found, component);
     GetArray(both.Expected.Filter->GetOutput(), "two")->GetRange(expected, component);
     VERIFY(found[0] == expected[0] && found[1] == expected[1]);
-    // Of what has been written.
+    // The range of written values.
     two->SetComponent(100, 0, -5000.0);
     two->SetComponent(200, 1, std::nan(""));
     two->SetComponent(300, 1, vtkMath::Inf());
@@ -295,7 +295,7 @@ void TestInterfaces()
     VERIFY(found[1] < 1000.0);
     two->GetRange(found, 1);
     VERIFY_EQUAL(found[1], vtkMath::Inf());
-    // Of fewer, and of more.
+    // The range after the number of tuples has changed.
     two->SetNumberOfTuples(99);
     two->Modified();
     two->GetRange(found, 0);
@@ -308,7 +308,7 @@ void TestInterfaces()
   }
 }
 
-// Ranges are found where the values are.
+// The device computes ranges of arrays that are on the device.
 void TestRanges()
 {
   const auto volume = MakeVolume(VolumeExtent);
@@ -355,7 +355,7 @@ void TestRanges()
           VERIFY_EQUAL(range[0], wanted[0]);
           VERIFY_EQUAL(range[1], wanted[1]);
           VERIFY(range[0] < range[1]);
-          if (component == 0) // of others VTK counts what is infinite
+          if (component == 0) // GetRange() includes infinite values, which other components have
           {
             array->GetRange(range, component);
             VERIFY_EQUAL(range[0], wanted[0]);
@@ -366,16 +366,16 @@ void TestRanges()
     });
   VERIFY(read < 100000);
   VERIFY_EQUAL(both.GetNumberOfUnread(), 10);
-  // As is one of the only component, however it is asked for.
+  // For an array of one component, -1 is the same as 0.
   double range[2];
   GetArray(image, "uint16")->GetFiniteRange(range, -1);
   VERIFY_EQUAL(both.GetNumberOfUnread(), 10);
-  // Not so what the device does not find: infinite ones, and lengths of vectors.
+  // The device does not compute ranges with infinite values, or of lengths of vectors.
   GetArray(image, "three")->GetRange(range, 2);
   VERIFY_EQUAL(range[1], vtkMath::Inf());
   VERIFY_EQUAL(both.GetNumberOfUnread(), 9);
   both.Check(image);
-  // Each output has its own, and so has what is written.
+  // Ranges of the next output, and of written values.
   both.Move(0.4);
   image = both.Update();
   GetArray(image, "float")->GetRange(range);
@@ -383,7 +383,7 @@ void TestRanges()
   GetArray(image, "float")->SetComponent(17, 0, -100.0);
   GetArray(image, "float")->Modified();
   VERIFY_EQUAL(GetArray(image, "float")->GetRange()[0], -100.0);
-  // Nor does the device know of an array that has another shape by now.
+  // Ranges of arrays whose numbers of components or tuples have changed.
   vtkDataArray* const shaped = GetArray(image, "uint16");
   shaped->SetNumberOfComponents(3);
   VERIFY_EQUAL(shaped->GetNumberOfTuples(), image->GetNumberOfPoints() / 3);
@@ -403,13 +403,13 @@ void TestRanges()
   VERIFY_EQUAL(range[1], 255.0);
 }
 
-// It is an ordinary array after it has been emptied and filled again.
+// An array of the output that is emptied and filled again is an ordinary array.
 void TestAsAnyArray()
 {
   Both both;
   both.Update();
   vtkDataArray* two = GetArray(both.Found.Filter->GetOutput(), "two");
-  VERIFY_EQUAL(CountRead([&] { two->Initialize(); }), 0U); // nobody wants the values
+  VERIFY_EQUAL(CountRead([&] { two->Initialize(); }), 0U); // the values are not needed
   VERIFY_EQUAL(two->GetNumberOfTuples(), 0);
   VERIFY(two->GetVoidPointer(0) == nullptr);
   two->SetNumberOfComponents(3);
@@ -429,7 +429,7 @@ void TestAsAnyArray()
   both.Check(both.Update());
 }
 
-// VTK's own users.
+// Filters, copies and writers of VTK.
 void TestFilters(const std::string& folder)
 {
   Both both;
@@ -494,7 +494,7 @@ void TestFilters(const std::string& folder)
         return vtkSmartPointer<vtkDataObject>(reader->GetOutput());
       });
   }
-  // The volume of another filter on the same device.
+  // The output as the volume of another filter on the same device.
   both.Move(0.1);
   both.Update();
   Deformed again(both.Found.Filter->GetOutput(), both.Mesh);
@@ -503,7 +503,7 @@ void TestFilters(const std::string& folder)
   VERIFY(AreEqual(expected.Update(), again.Update()));
 }
 
-// Who still holds an output has that one, whatever the filter does then.
+// An output that a caller holds does not change when the filter executes again.
 void TestHeldOutputs()
 {
   Both both;
@@ -522,14 +522,14 @@ void TestHeldOutputs()
     VERIFY_EQUAL(CountRead([&] { VERIFY(AreEqual(wanted, held)); }), 0U);
   };
   hold();
-  for (int i = 0; i < 3; ++i) // a whole output, while the last one is held
+  for (int i = 0; i < 3; ++i) // another whole output, while the last one is held
   {
     both.Move(0.3);
     both.Check(both.Update());
     check();
     hold();
   }
-  both.Move(0.3, 400); // a part, in the same memory
+  both.Move(0.3, 400); // a partial update, in the same memory
   both.Check(both.Update());
   check();
   hold();
@@ -553,14 +553,14 @@ void TestHeldOutputs()
   both.Found.Filter->SetResamplerToExact();
   both.Expected.Filter->SetResamplerToExact();
   hold();
-  // An execution that fails.
+  // A failed execution.
   both.Found.Filter->SetDisplacementScale(std::nan(""));
   both.Found.Filter->Update();
   VERIFY_EQUAL(both.Found.TakeErrors(), 1);
   both.Found.Filter->SetDisplacementScale(1.0);
   check();
   hold();
-  // An output that is dropped is never read.
+  // An output that is released is not copied to the host.
   held->Initialize();
   both.Move(0.3);
   both.Expected.Update();
@@ -571,13 +571,13 @@ void TestHeldOutputs()
   VERIFY_EQUAL(both.GetNumberOfUnread(), 0);
   VERIFY_EQUAL(both.Found.Filter->GetDeviceMemory(), 0);
   check();
-  // Written by somebody, and held: the next output is another.
+  // The held output is written: the next output has other memory.
   hold();
   GetArray(held, "value")->Fill(3.0);
   both.Move(0.3, 400);
   both.Check(both.Update());
   VERIFY_EQUAL(GetArray(held, "value")->GetComponent(77, 0), 3.0);
-  // Written, and dropped: its memory holds no output.
+  // The output is written and not held: the next output must not be an update of it.
   both.Move(0.3, 400);
   both.Check(both.Update());
   vtkDataArray* value = GetArray(both.Found.Filter->GetOutput(), "value");
@@ -610,11 +610,11 @@ void TestDeletedFilter()
       Both both;
       held->ShallowCopy(both.Update());
     }
-    held->Initialize(); // and nobody has read it
+    held->Initialize(); // releases an output that was not read
   }
 }
 
-// Updates of a part work on what the device has, read or not.
+// Partial updates of outputs on the device, which were read or not.
 void TestIncremental()
 {
   const auto volume = MakeVolume({ { 0, 200, 0, 60, 0, 40 } });
@@ -645,14 +645,15 @@ void TestIncremental()
     }
   }
   VERIFY(parts > 4);
-  // Who reads each of them copies what has changed, whether he holds the one before or not.
+  // When each output is read, only changed values are copied, whether the previous output is held
+  // or not.
   vtkNew<vtkImageData> held;
   for (int step = 0; step < 6; ++step)
   {
     both.Move(0.2, 800);
     both.Expected.Update();
     const std::uint64_t read = CountRead([&] { both.Check(both.Found.Update()); });
-    if (step != 0 && step != 3) // when there is no memory, or not for two
+    if (step != 0 && step != 3) // in these steps new memory of the host is allocated
     {
       VERIFY(read < GetBytes(GetArray(both.Found.Filter->GetOutput(), "value")) / 4 + 60000);
     }
@@ -663,7 +664,7 @@ void TestIncremental()
   }
 }
 
-// Many threads read first.
+// Several threads read an output for the first time at once.
 void TestThreads()
 {
   Both both;
@@ -696,7 +697,7 @@ void TestThreads()
       });
     VERIFY_EQUAL(read, GetBytes(value));
   }
-  // One reads what the filter is about to bring to the host itself.
+  // A thread reads an array while the filter copies it to the host.
   for (int round = 0; round < 20; ++round)
   {
     both.Move(0.02);
@@ -731,7 +732,7 @@ struct Errors
         auto* errors = static_cast<Errors*>(self);
         ++errors->Number;
         errors->Text = static_cast<const char*>(text);
-        // Who shows an error may look at the array.
+        // An observer of the error may read the array.
         errors->Seen = vtkDataArray::SafeDownCast(caller)->GetComponent(5, 0);
       });
     array->AddObserver(vtkCommand::ErrorEvent, command);
@@ -762,7 +763,7 @@ void TestLostDevice()
   enum
   {
     Reads,
-    UpdatesBefore, // the filter brings the output to the host
+    UpdatesBefore, // an update copies the output to the host
     DeletesBefore
   };
   for (const int way : { Reads, UpdatesBefore, DeletesBefore })
@@ -772,7 +773,7 @@ void TestLostDevice()
       vtkNew<vtkImageData> held;
       Errors errors[2];
       const auto volume = MakeArrays();
-      volume->GetPointData()->RemoveArray("id"); // it would be read by the update
+      volume->GetPointData()->RemoveArray("id"); // the update would copy it to the host
       auto both = std::make_unique<Both>(volume);
       held->ShallowCopy(both->Update());
       errors[0].Observe(GetArray(held, "two"));
@@ -786,7 +787,7 @@ void TestLostDevice()
       if (way == UpdatesBefore)
       {
         both->Move(0.1);
-        both->Found.Update(); // itself it copies nothing
+        both->Found.Update(); // this update copies no array of its own output
       }
       VERIFY(IsAll(GetArray(held, "two"), 7.0));
       VERIFY(IsAll(GetArray(held, "vtkValidPointMask"), 0.0));
@@ -807,13 +808,13 @@ void TestLostDevice()
   }
 }
 
-// Where an array goes to the host at once the update fails, as without the property.
+// The update fails if an array that must be copied to the host cannot be copied.
 void TestFailedUpdate()
 {
   Both both;
   both.Update();
   both.Move(0.1);
-  FakeDriver::Get().ReadError = -36; // of the ids
+  FakeDriver::Get().ReadError = -36; // CL_INVALID_COMMAND_QUEUE, when the ids are copied
   both.Found.Filter->Update();
   VERIFY_EQUAL(both.Found.TakeErrors(), 1);
   VERIFY_EQUAL(both.Found.Filter->GetOutput()->GetNumberOfPoints(), 0);
@@ -823,7 +824,7 @@ void TestFailedUpdate()
   both.Check(both.Update());
 }
 
-// Where memory is short the output is held once, and an output in parts goes to the host.
+// The device memory of outputs, and a memory limit that suffices for one output only.
 void TestMemory()
 {
   Both both;
@@ -833,7 +834,7 @@ void TestMemory()
   VERIFY_EQUAL(held, both.Expected.Filter->GetDeviceMemory());
   both.Check(both.Found.Filter->GetOutput());
   VERIFY_EQUAL(both.Found.Filter->GetDeviceMemory(), held);
-  // The other resampler keeps no output itself.
+  // Mesh rasterization does not keep an output for partial updates.
   for (Deformed* one : { &both.Found, &both.Expected })
   {
     one->Filter->SetResamplerToMeshRasterization();
@@ -849,7 +850,7 @@ void TestMemory()
     both.Expected.Filter->GetDeviceMemory() + static_cast<vtkTypeInt64>(bytes));
   both.Check(both.Found.Filter->GetOutput());
   VERIFY_EQUAL(both.Found.Filter->GetDeviceMemory(), both.Expected.Filter->GetDeviceMemory());
-  // As much as an update needs, and an output is held.
+  // The limit is the memory that an update needs, and an output is held.
   for (Deformed* one : { &both.Found, &both.Expected })
   {
     one->Filter->SetResamplerToExact();
@@ -878,10 +879,10 @@ void TestMemory()
 
 int main(int argc, char* argv[])
 {
-  FakeDriver::Get().IsGraphics = true; // before there is a context
+  FakeDriver::Get().IsGraphics = true; // before the first context is created
   if (!deformvolume::GetDeviceAbilities("").OwnMemory)
   {
-    std::cerr << "The calls of the library do not go through the fake driver.\n";
+    std::cerr << "The engine does not call the functions of the fake driver.\n";
     return EXIT_FAILURE;
   }
   vtkNew<vtkDeformVolumeFilter> filter;

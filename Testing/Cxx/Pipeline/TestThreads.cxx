@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Threads: what is thrown in them reaches the caller, the settings of vtkSMPTools are respected and
-// stay as they are, and filters of several threads do not disturb each other.
+// Threads: exceptions in threads reach the caller, settings of vtkSMPTools are respected and not
+// changed, and filters in several threads do not affect each other.
 #include "FilterTesting.h"
 
 #include "ParallelFor.h"
@@ -37,7 +37,7 @@ std::size_t CountThreads(vtkIdType parts)
   return threads.size();
 }
 
-// Every item once, whatever the backend and the grain.
+// ParallelFor() processes every item once, with any backend and grain.
 void TestRange()
 {
   for (const vtkIdType grain : { 0, 1, 7, 1000 })
@@ -104,7 +104,8 @@ void TestBackends()
   }
 }
 
-// What a user has chosen holds meanwhile and afterwards.
+// The filter uses the backend and number of threads that a user has chosen, and does not change
+// them.
 void TestSettings(const std::string& usual)
 {
   auto volume = MakeVolume();
@@ -130,7 +131,7 @@ void TestSettings(const std::string& usual)
       }
       if (!VTK_SMP_DEFAULT_IMPLEMENTATION_SEQUENTIAL && backend == std::string("Sequential"))
       {
-        VERIFY_EQUAL(CountThreads(50), std::size_t{ 1 }); // VTK has threads; they are not wanted
+        VERIFY_EQUAL(CountThreads(50), std::size_t{ 1 }); // VTK has threads, but they are not used
       }
       VERIFY_EQUAL(vtkSMPTools::GetEstimatedNumberOfThreads(), estimated);
     }
@@ -139,7 +140,7 @@ void TestSettings(const std::string& usual)
   vtkSMPTools::Initialize(0);
 }
 
-// Ranks of one machine share its processors.
+// With many processes on one machine each uses one thread.
 void TestShare()
 {
   deformvolume::SetProcessesHere(1000000);
@@ -147,7 +148,7 @@ void TestShare()
   deformvolume::SetProcessesHere(1);
 }
 
-// Filters in two threads, on inputs of their own, each with results as alone.
+// Two filters in two threads, with inputs of their own, have the same results as one filter alone.
 void TestTwoThreads()
 {
   constexpr int rounds = 10;
