@@ -260,8 +260,8 @@ void SessionPipeline::TryBeginGrab(double handle, const glm::dvec3& position)
   {
     if (!(drag.Rest[axis] >= low[axis] - most && drag.Rest[axis] <= high[axis] + most))
     {
-      throw std::runtime_error("There is nothing of the volume at the place that was grabbed. Grab "
-                               "a place within the volume.");
+      throw std::runtime_error("There is nothing of the volume at the position that was grabbed. "
+                               "Grab a position within the volume.");
     }
     drag.Rest[axis] = std::clamp(drag.Rest[axis], low[axis], high[axis]);
   }

@@ -509,7 +509,7 @@ void vtkDeformVolumeInteractorStyle::UpdateOverlay()
   }
 }
 
-bool vtkDeformVolumeInteractorStyle::FindPlace(int x, int y, double worldPosition[3])
+bool vtkDeformVolumeInteractorStyle::FindPosition(int x, int y, double worldPosition[3])
 {
   if (!this->CheckInteractor() || !this->FindUsedRenderer() || !this->Internals->Output)
   {

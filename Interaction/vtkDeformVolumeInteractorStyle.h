@@ -175,7 +175,7 @@ public:
    * Get the position of the voxel of the output that is visible at a pixel of the window, in world
    * coordinates. Returns false if there is none.
    */
-  bool FindPlace(int x, int y, double place[3]);
+  bool FindPosition(int x, int y, double position[3]);
 
   ///@{
   /**

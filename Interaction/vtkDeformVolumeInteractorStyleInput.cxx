@@ -115,7 +115,7 @@ void vtkDeformVolumeInteractorStyle::OnMouseMove()
   {
     internals.Sphere.push_back(internals.Carved);
   }
-  else if (this->FindPlace(x, y, &position.x))
+  else if (this->FindPosition(x, y, &position.x))
   {
     internals.Sphere.push_back(position);
   }

@@ -77,7 +77,7 @@ void vtkDeformVolumeInteractorStyle::BeginTool()
     return;
   }
   glm::dvec3 worldPosition(0.0);
-  if (!this->FindPlace(x, y, &worldPosition.x))
+  if (!this->FindPosition(x, y, &worldPosition.x))
   {
     this->ShowMessage("There is nothing here. Press on the body.");
     return;
@@ -214,7 +214,8 @@ void vtkDeformVolumeInteractorStyle::FinishCut()
   std::vector<bool> isFound(count, false);
   for (std::size_t i = 0; i < count; ++i)
   {
-    isFound[i] = this->FindPlace(internals.Stroke[i][0], internals.Stroke[i][1], &positions[i].x);
+    isFound[i] =
+      this->FindPosition(internals.Stroke[i][0], internals.Stroke[i][1], &positions[i].x);
   }
   if (count < 2 || std::find(isFound.begin(), isFound.end(), true) == isFound.end())
   {
@@ -252,7 +253,7 @@ void vtkDeformVolumeInteractorStyle::ProbeAt(int x, int y)
 {
   vtkInternals& internals = *this->Internals;
   double worldPosition[3];
-  if (!this->FindPlace(x, y, worldPosition))
+  if (!this->FindPosition(x, y, worldPosition))
   {
     this->ShowMessage("There is nothing here.");
     return;
@@ -276,7 +277,7 @@ void vtkDeformVolumeInteractorStyle::MeasureAt(int x, int y)
 {
   vtkInternals& internals = *this->Internals;
   glm::dvec3 worldPosition(0.0);
-  this->FindPlace(x, y, &worldPosition.x);
+  this->FindPosition(x, y, &worldPosition.x);
   if (internals.Measured.size() > 1)
   {
     internals.Measured.clear();
@@ -295,7 +296,7 @@ void vtkDeformVolumeInteractorStyle::PinAt(int x, int y)
 {
   vtkInternals& internals = *this->Internals;
   glm::dvec3 worldPosition(0.0);
-  if (!this->FindPlace(x, y, &worldPosition.x))
+  if (!this->FindPosition(x, y, &worldPosition.x))
   {
     this->ShowMessage("There is nothing here. Pin a place on the body.");
     return;

@@ -184,7 +184,7 @@ void TestMisuse()
   expect("no interactor");
   style->StartSession();
   expect("no interactor");
-  VERIFY(!style->FindPlace(0, 0, place));
+  VERIFY(!style->FindPosition(0, 0, place));
   expect("no interactor");
   style->OnMouseMove();
   style->OnLeftButtonUp();
@@ -219,7 +219,7 @@ void TestMisuse()
   viewer.Replay(Viewer::Key('2'));
   VERIFY(Holds(viewer.Object->GetMessage(), "Call SetInputs() first"));
   viewer.SessionErrors->Clear();
-  VERIFY(!viewer.Object->FindPlace(200, 200, place));
+  VERIFY(!viewer.Object->FindPosition(200, 200, place));
   VERIFY(!viewer.Errors->GetError());
 
   viewer.SessionObject->SetInputs(MakeBall());
@@ -255,7 +255,7 @@ double FindHeight(Viewer& viewer, double x, double y)
   double place[3] = { 0.0, 0.0, 0.0 };
   const double pixels[2] = { 0.5 * WindowSize + PixelsPerUnit * (x - Middle[0]),
     0.5 * WindowSize + PixelsPerUnit * (y - Middle[1]) };
-  if (!viewer.Object->FindPlace(
+  if (!viewer.Object->FindPosition(
         static_cast<int>(std::lround(pixels[0])), static_cast<int>(std::lround(pixels[1])), place))
   {
     return -1.0;
@@ -321,7 +321,7 @@ void TestVisible()
   double place[3] = { 0.0, 0.0, 0.0 };
   other.Renderer->GetActiveCamera()->SetFocalPoint(middle);
   other.Renderer->GetActiveCamera()->SetPosition(middle[0], middle[1], middle[2] + 100.0);
-  VERIFY(other.Object->FindPlace(WindowSize / 2, WindowSize / 2, place));
+  VERIFY(other.Object->FindPosition(WindowSize / 2, WindowSize / 2, place));
   double index[3];
   oblique->TransformPhysicalPointToContinuousIndex(place, index);
   double outside = -10.0;
