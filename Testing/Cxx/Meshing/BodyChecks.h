@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which voxels of a volume lie in a mesh of tetrahedra, without the code that is tested.
+// Counts the voxels of a body that are inside a mesh of tetrahedra, independently of the tested
+// code.
 #ifndef DeformVolumeBodyChecks_h
 #define DeformVolumeBodyChecks_h
 
@@ -23,7 +24,7 @@ namespace bodyChecks
 struct Count
 {
   vtkIdType Body = 0;    // voxels with at least the isovalue
-  vtkIdType Outside = 0; // those of them in no tetrahedron
+  vtkIdType Outside = 0; // voxels of the body that no tetrahedron contains
 };
 
 inline Count CountVoxels(vtkImageData* volume, double isovalue, vtkUnstructuredGrid* mesh)
@@ -64,7 +65,7 @@ inline Count CountVoxels(vtkImageData* volume, double isovalue, vtkUnstructuredG
       {
         for (int x = low[0]; x <= high[0]; ++x)
         {
-          // Rounding must not make gaps between tetrahedra.
+          // The tolerance avoids gaps between tetrahedra by rounding.
           constexpr double tolerance = 1e-6;
           const glm::dvec3 w = toWeights * (glm::dvec3(x, y, z) - nodes[0]);
           if (w.x >= -tolerance && w.y >= -tolerance && w.z >= -tolerance &&

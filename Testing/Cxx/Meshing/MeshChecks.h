@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the tests of the mesh sources have in common.
+// Checks for the tests of vtkTetGenMesher and vtkLatticeTetrahedraSource.
 #ifndef DeformVolumeMeshChecks_h
 #define DeformVolumeMeshChecks_h
 
@@ -54,7 +54,7 @@ inline int& Failures()
     }                                                                                              \
   } while (false)
 
-/// Updates an algorithm and verifies that it fails once, with the text in its message and with an
+/// Updates an algorithm, and checks that it reports one error that contains a text, and has an
 /// empty output.
 class FailureCheck
 {
@@ -65,28 +65,28 @@ public:
     algorithm->AddObserver(vtkCommand::ErrorEvent, this->Errors);
     algorithm->AddObserver(vtkCommand::ErrorEvent, this->Counter);
     algorithm->AddObserver(vtkCommand::WarningEvent, this->Errors);
-    // Says once more that the algorithm failed.
+    // The executive reports each failure again.
     algorithm->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, this->ExecutiveErrors);
   }
 
   void Fails(const std::string& text) { this->FailsWithAny({ text }); }
 
-  /// For the words of a program that differ from version to version.
+  /// For messages that contain the output of a program, which differs between its versions.
   void FailsWithAny(const std::vector<std::string>& texts)
   {
     this->Algorithm->Modified();
     this->VerifyFailure(texts);
-    this->VerifyFailure(texts); // although nothing has changed
+    this->VerifyFailure(texts); // the error is reported again, although nothing has changed
   }
 
-  /// The pipeline itself refuses the request.
+  /// The executive reports the error.
   void IsRefused(const std::string& text)
   {
     this->Update();
     if (this->ExecutiveErrors->GetErrorMessage().find(text) == std::string::npos)
     {
       ++Failures();
-      std::cerr << "Expected the pipeline to say \"" << text << "\", got "
+      std::cerr << "Expected the error of the executive \"" << text << "\", got "
                 << this->ExecutiveErrors->GetErrorMessage() << '\n';
     }
     this->VerifyEmpty(text);
@@ -104,7 +104,7 @@ public:
     }
   }
 
-  /// There is an output, and a warning with the text.
+  /// There is no error, and a warning that contains the text.
   void Warns(const std::string& text)
   {
     this->Update();
@@ -180,9 +180,9 @@ struct Summary
   glm::dvec3 Centroid = glm::dvec3(0.0);
   vtkIdType BoundaryFaces = 0;
   vtkIdType OverusedFaces = 0;     // shared by more than two tetrahedra
-  vtkIdType OpenBoundaryEdges = 0; // of an odd number of boundary faces
+  vtkIdType OpenBoundaryEdges = 0; // that belong to an odd number of boundary faces
   double MeanEdge = 0.0;
-  double PoorShare = 0.0; // of tetrahedra with a radius-edge ratio over 2
+  double PoorShare = 0.0; // the share of tetrahedra with a radius-edge ratio over 2
 };
 
 inline Summary Summarize(vtkUnstructuredGrid* mesh)
@@ -200,7 +200,7 @@ inline Summary Summarize(vtkUnstructuredGrid* mesh)
     if (mesh->GetCellType(cell) != VTK_TETRA || size != 4)
     {
       ++Failures();
-      std::cerr << "Cell " << cell << " is no tetrahedron\n";
+      std::cerr << "Cell " << cell << " is not a tetrahedron\n";
       return summary;
     }
     glm::dvec3 p[4];

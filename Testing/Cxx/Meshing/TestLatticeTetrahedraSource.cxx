@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lattices over boxes and volumes: misuse, then volumes, faces and places against sums by hand.
+// Lattices over boxes and volumes: misuse, then volumes, faces and positions, compared with closed
+// forms.
 #include "vtkLatticeTetrahedraSource.h"
 #include "vtkMaterialFromVolume.h"
 
@@ -24,13 +25,13 @@ namespace
 
 void SetRotation(vtkImageData* image, double sign)
 {
-  // A rotation that moves every axis; with sign -1 a left-handed matrix.
+  // A rotation that changes every axis. With the sign -1 the matrix is left-handed.
   const double m[9] = { 2.0 / 3, -1.0 / 3, 2.0 / 3 * sign, 2.0 / 3, 2.0 / 3, -1.0 / 3 * sign,
     -1.0 / 3, 2.0 / 3, 2.0 / 3 * sign };
   image->SetDirectionMatrix(m);
 }
 
-// Two cells share a face exactly where they should: the boundary consists of the lattice's hull.
+// Checks that the mesh is conforming: the faces of one cell only are the surface of the lattice.
 void VerifyConforming(vtkUnstructuredGrid* mesh, const int nodes[3])
 {
   const Summary summary = Summarize(mesh);
@@ -112,7 +113,8 @@ void TestBox()
   vtkUnstructuredGrid* mesh = source->GetOutput();
   VerifyConforming(mesh, uneven);
   VERIFY_NEAR(Summarize(mesh).Volume, 18.0, 1e-11);
-  // Corner tetrahedra have a sixth of their cell, the central one a third, in this order.
+  // The volume of corner tetrahedra is one sixth of their cell, that of the central one, which is
+  // the last one, is one third.
   for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
   {
     vtkNew<vtkUnstructuredGrid> one;
@@ -153,7 +155,7 @@ void TestVolume()
     vtkUnstructuredGrid* mesh = source->GetOutput();
     VerifyConforming(mesh, nodes);
     VERIFY_NEAR(Summarize(mesh).Volume, (19 * 0.5) * (5 * 2.0) * (23 * 1.25), 1e-9);
-    // Each node against the volume's own transform.
+    // Compare each node with the transform of the volume.
     for (vtkIdType node = 0; node < mesh->GetNumberOfPoints(); ++node)
     {
       const vtkIdType ijk[3] = { node % nodes[0], node / nodes[0] % nodes[1],
@@ -165,18 +167,19 @@ void TestVolume()
           (extent[2 * axis + 1] - extent[2 * axis]) * static_cast<double>(ijk[axis]) /
             (nodes[axis] - 1);
       }
-      double place[3];
+      double expected[3];
       double point[3];
-      volume->TransformContinuousIndexToPhysicalPoint(index, place);
+      volume->TransformContinuousIndexToPhysicalPoint(index, expected);
       mesh->GetPoint(node, point);
       VERIFY_NEAR(
-        std::hypot(place[0] - point[0], place[1] - point[1], place[2] - point[2]), 0.0, 1e-12);
+        std::hypot(expected[0] - point[0], expected[1] - point[1], expected[2] - point[2]), 0.0,
+        1e-12);
     }
     source->SetMargin(2.0);
     check.Succeeds();
     VERIFY_NEAR(Summarize(source->GetOutput()).Volume,
       (19 * 0.5 + 4) * (5 * 2.0 + 4) * (23 * 1.25 + 4), 1e-9);
-    // Back to the box.
+    // Without a volume the bounds are used again.
     source->SetInputData(nullptr);
     source->SetMargin(0.0);
     check.Succeeds();
@@ -184,7 +187,8 @@ void TestVolume()
   }
 }
 
-// The request for the volume does not replace that of a consumer of both.
+// A volume with two consumers: the request of the lattice source must not replace that of the
+// consumer of both volume and lattice.
 void TestSharedVolume()
 {
   vtkNew<vtkRTAnalyticSource> volume;
@@ -205,7 +209,8 @@ void TestSharedVolume()
   }
 }
 
-// Cubes cover the volume, and reach as far beyond it on one side as on the other.
+// With EqualSpacing the cells are cubes. They cover the volume, and extend beyond it by the same
+// distance on both sides.
 void TestEqualSpacing()
 {
   vtkNew<vtkLatticeTetrahedraSource> source;
@@ -223,7 +228,8 @@ void TestEqualSpacing()
     source->SetInputData(volume);
     source->SetNumberOfNodes(20, 6, 5);
     check.Succeeds();
-    // 9.5, 10 and 28.75 mm: steps of 0.5, 2 and 7.1875 mm, of which the last is the longest.
+    // The volume measures 9.5, 10 and 28.75 mm. Nodes on the axes would have distances of 0.5, 2
+    // and 7.1875 mm; the largest is chosen.
     const int nodes[3] = { 3, 3, 5 };
     VERIFY(std::equal(nodes, nodes + 3, source->GetDimensions()));
     VerifyConforming(source->GetOutput(), nodes);
@@ -239,22 +245,23 @@ void TestEqualSpacing()
           (static_cast<double>(ijk[axis]) - 0.5 * (nodes[axis] - 1)) * edge /
             volume->GetSpacing()[axis];
       }
-      double place[3];
+      double expected[3];
       double point[3];
-      volume->TransformContinuousIndexToPhysicalPoint(index, place);
+      volume->TransformContinuousIndexToPhysicalPoint(index, expected);
       source->GetOutput()->GetPoint(node, point);
       VERIFY_NEAR(
-        std::hypot(place[0] - point[0], place[1] - point[1], place[2] - point[2]), 0.0, 1e-12);
+        std::hypot(expected[0] - point[0], expected[1] - point[1], expected[2] - point[2]), 0.0,
+        1e-12);
     }
     source->SetMargin(3.0);
     check.Succeeds();
-    // 15.5, 16 and 34.75 mm.
+    // With the margin the lattice has to cover 15.5, 16 and 34.75 mm.
     VERIFY(source->GetDimensions()[0] == 3 && source->GetDimensions()[2] == 5);
     VERIFY_NEAR(
       Summarize(source->GetOutput()).Volume, 2.0 * 2.0 * 4.0 * std::pow(34.75 / 4.0, 3), 1e-8);
     source->SetMargin(0.0);
   }
-  // Rounding adds no cells: thirds of a cube's edge are not exact.
+  // Rounding errors must not add cells: one third of 0.3 is not exact.
   source->SetInputData(nullptr);
   source->SetBounds(0.0, 0.1, 0.1, 0.4, 0.7, 1.0);
   source->SetNumberOfNodes(2, 4, 4);
@@ -284,7 +291,7 @@ void TestAbort()
   VERIFY_NEAR(Summarize(source->GetOutput()).Volume, 1.0, 1e-12);
 }
 
-/// All pieces together are the lattice.
+/// The pieces together are the whole lattice.
 void TestPieces()
 {
   vtkNew<vtkLatticeTetrahedraSource> source;

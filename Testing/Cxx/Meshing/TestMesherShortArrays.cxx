@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Arrays that are shorter than what they describe, given to the sources of meshes: one error that
-// says which, never an access beyond their end.
+// Arrays with too few tuples as inputs of mesh sources: one error that names the array, and no
+// access beyond its end.
 #include "ArrayMaking.h"
 #include "MeshChecks.h"
 #include "vtkLatticeTetrahedraSource.h"
@@ -45,7 +45,7 @@ void TestMeshers()
   data->GetScalars()->SetNumberOfTuples(count - 1);
   check.Fails("tuples for");
 
-  // vtkLatticeTetrahedraSource goes by the geometry of a volume only.
+  // vtkLatticeTetrahedraSource reads only the geometry of a volume.
   vtkNew<vtkLatticeTetrahedraSource> lattice;
   FailureCheck latticeCheck(lattice);
   lattice->SetInputData(volume);

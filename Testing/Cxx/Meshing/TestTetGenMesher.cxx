@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Meshes of volumes and of closed surfaces: size, place and quality against known bodies.
+// Meshes of volumes and of closed surfaces: size, position and quality of meshes of known bodies.
 #include "vtkTetGenMesher.h"
 
 #include "MeshChecks.h"
@@ -87,11 +87,11 @@ void TestBall()
   VERIFY(mesher->GetUsedIsovalue() == -radius);
   VERIFY(mesher->GetUsedTargetEdgeLength() == radius / 4);
   std::cout << "Ball: " << mesher->GetOutput()->GetNumberOfCells() << " tetrahedra, volume "
-            << summary.Volume / ball << " of the ball's, mean edge "
-            << summary.MeanEdge / (radius / 4) << " of the target, poor " << summary.PoorShare
+            << summary.Volume / ball << " of that of the ball, mean edge "
+            << summary.MeanEdge / (radius / 4) << " of TargetEdgeLength, poor " << summary.PoorShare
             << '\n';
 
-  // The same again is the same mesh.
+  // Another execution makes the same mesh.
   vtkNew<vtkUnstructuredGrid> first;
   first->DeepCopy(mesher->GetOutput());
   check.Succeeds();
@@ -154,7 +154,7 @@ void TestBodies()
   check.Succeeds();
   VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume / (4.0 / 3 * Pi * 3375.0), 1.0, 0.06);
 
-  // A body that fills the volume is closed at the border, half a voxel beyond the outermost ones.
+  // A body that fills the volume is closed half a voxel outside the outermost voxels.
   mesher->AutomaticIsovalueOff();
   mesher->SetIsovalue(50.0);
   mesher->SetSmoothingIterations(0);
@@ -172,7 +172,7 @@ void TestBodies()
   hidden->AllocatePointGhostArray();
   for (vtkIdType i = 0; i < hidden->GetNumberOfPoints(); ++i)
   {
-    if (i / (51 * 71) < 20) // below the centre
+    if (i / (51 * 71) < 20) // below the center
     {
       hidden->GetPointGhostArray()->SetValue(i, vtkDataSetAttributes::HIDDENPOINT);
     }
@@ -184,7 +184,7 @@ void TestBodies()
 
 void TestLabels()
 {
-  // Two boxes whose labels differ by one, beyond what a double can tell apart.
+  // Two boxes whose labels differ by one, but are equal as doubles.
   const vtkTypeInt64 label = vtkTypeInt64(1) << 53;
   vtkNew<vtkImageData> volume;
   volume->SetDimensions(60, 40, 40);
@@ -225,7 +225,7 @@ void TestSurfaces()
 {
   vtkNew<vtkTetGenMesher> mesher;
   FailureCheck check(mesher);
-  vtkNew<vtkCubeSource> cube; // twelve triangles, to be split
+  vtkNew<vtkCubeSource> cube; // has twelve triangles, which the mesher splits
   cube->SetCenter(1e5, 0.0, 0.0);
   mesher->SetInputConnection(cube->GetOutputPort());
   mesher->SetTargetEdgeLength(0.2);
@@ -238,7 +238,7 @@ void TestSurfaces()
   mesher->GetOutput()->GetBounds(bounds);
   VERIFY(bounds[0] == 1e5 - 0.5 && bounds[3] == 0.5);
 
-  vtkNew<vtkSphereSource> sphere; // far too fine, to be decimated
+  vtkNew<vtkSphereSource> sphere; // is too fine, so that the mesher decimates it
   sphere->SetThetaResolution(100);
   sphere->SetPhiResolution(100);
   sphere->SetRadius(1.0);
@@ -255,7 +255,7 @@ void TestSurfaces()
   VERIFY(summary.BoundaryFaces == 2 * 100 * 98);
 }
 
-/// All pieces together are the mesh, and only one of them is worked on.
+/// Piece 0 is the whole mesh. The other pieces are empty, and need no work.
 void TestPieces()
 {
   vtkNew<vtkCubeSource> cube;

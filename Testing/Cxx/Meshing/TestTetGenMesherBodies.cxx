@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The tetrahedra contain every voxel of a body with thin parts. Voxels that are left out are
+// The tetrahedra contain every voxel of bodies with thin parts. Voxels outside the mesh are
 // counted.
 #include "vtkTetGenMesher.h"
 
@@ -54,7 +54,7 @@ bool IsInBall(int x, int y, int z)
   return Square(x - 40) + Square(y - 40) + Square(z - 40) < Square(26);
 }
 
-// A nose of six voxels across, and an ear two voxels thick.
+// A ball with a nose, six voxels in diameter, and an ear, two voxels thick.
 bool IsInHead(int x, int y, int z)
 {
   const bool nose = Square(x - 40) + Square(z - 40) < 9 && y > 40 && y < 76;
@@ -62,13 +62,13 @@ bool IsInHead(int x, int y, int z)
   return IsInBall(x, y, z) || nose || ear;
 }
 
-// Sheets two voxels thick, one along the border of the volume and one oblique.
+// Sheets that are two voxels thick. One is at a face of the volume, and one is oblique.
 bool IsInSheets(int x, int y, int z)
 {
   return z < 2 || y == 30 || y == 31 || std::abs(x + y + 2 * z - 130) < 3;
 }
 
-// Vessels two voxels across, in many pieces.
+// Vessels that are two voxels in diameter, in many pieces.
 Body MakeVessels()
 {
   std::vector<bool> vessels(Size * Size * Size, false);
@@ -137,13 +137,13 @@ void TestThinParts()
 
 void TestSpecks()
 {
-  // 200 specks of 8 voxels, which do not touch each other.
+  // 200 separate specks of 8 voxels.
   const vtkIdType specks = 200 * 8;
   const vtkSmartPointer<vtkImageData> volume = MakeVolume(
     [](int x, int y, int z)
     {
-      const int place = (x / 8) + 10 * (y / 8);
-      const bool speck = x % 8 < 2 && y % 8 < 2 && place < 100 && (z / 2 == 1 || z / 2 == 38);
+      const int number = (x / 8) + 10 * (y / 8);
+      const bool speck = x % 8 < 2 && y % 8 < 2 && number < 100 && (z / 2 == 1 || z / 2 == 38);
       return IsInBall(x, y, z) || speck;
     });
   vtkNew<vtkTetGenMesher> mesher;
@@ -161,7 +161,7 @@ void TestSpecks()
   VerifyHeld(mesher, volume, 0);
   VERIFY(mesher->GetNumberOfPieces() == 201);
 
-  // A body of specks only is no speck.
+  // If a body consists of specks only, they are meshed.
   const vtkSmartPointer<vtkImageData> lonely =
     MakeVolume([](int x, int y, int z) { return x == 40 && y == 40 && z == 40; });
   mesher->SetInputData(lonely);
@@ -171,7 +171,8 @@ void TestSpecks()
   VerifyHeld(mesher, lonely, 0);
 }
 
-// Half a slice is longer than the margin: the surface ends before the first slice all the same.
+// Half of a slice is thicker than the margin. The mesh must contain the voxels of the outermost
+// slices nevertheless.
 void TestThickSlices()
 {
   const vtkSmartPointer<vtkImageData> volume =
@@ -191,7 +192,7 @@ void TestThickSlices()
 
 void TestPieceModes()
 {
-  // Voxels that touch at a corner only are one piece.
+  // Voxels that share only a corner belong to one piece.
   const vtkSmartPointer<vtkImageData> volume = MakeVolume(
     [](int x, int y, int z)
     {
@@ -217,7 +218,7 @@ void TestPieceModes()
     vtkNew<vtkTest::ErrorObserver> errors;
     other->AddObserver(vtkCommand::WarningEvent, errors);
     other->SetPieceModeToLargestPiece();
-    other->SetPieceMode(1); // was the convex hull
+    other->SetPieceMode(1); // the convex hull of previous versions
     VERIFY(errors->CheckWarningMessage("convex hull") == 0);
     VERIFY(other->GetPieceMode() == vtkTetGenMesher::ALL_PIECES);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What vtkTetGenMesher must refuse, with which words, and that it works afterwards.
+// Errors of vtkTetGenMesher: invalid inputs, their messages, and valid inputs afterwards.
 #include "vtkTetGenMesher.h"
 
 #include "MeshChecks.h"
@@ -128,25 +128,25 @@ void TestMisuseOfSurfaces()
   cube->Update();
   vtkNew<vtkPolyData> broken;
   broken->DeepCopy(cube->GetOutput());
-  for (vtkIdType i : { 0, 8, 16 }) // the same corner
+  for (vtkIdType i : { 0, 8, 16 }) // the points of one corner
   {
     broken->GetPoints()->SetPoint(i, 0.0, std::nan(""), 0.0);
   }
   mesher->SetInputData(broken);
   check.Fails("not finite");
-  vtkNew<vtkCubeSource> neighbor; // shares one edge
+  vtkNew<vtkCubeSource> neighbor; // shares one edge with the cube
   neighbor->SetCenter(1.0, 1.0, 0.0);
   vtkNew<vtkAppendPolyData> both;
   both->AddInputConnection(cube->GetOutputPort());
   both->AddInputConnection(neighbor->GetOutputPort());
   mesher->SetInputConnection(both->GetOutputPort());
   check.Fails("not manifold: 1 edges");
-  neighbor->SetCenter(0.5, 0.45, 0.4); // runs into it
+  neighbor->SetCenter(0.5, 0.45, 0.4); // intersects the cube
   check.Fails("intersects itself. TetGen says:");
-  // Words of TetGen 1.5 and 1.6.
+  // The messages of TetGen 1.5 and 1.6.
   check.FailsWithAny({ "pairs of faces are intersecting", "segments exactly intersect" });
   mesher->SetInputConnection(cube->GetOutputPort());
-  mesher->SetTargetEdgeLength(1e-9); // and does not try for hours
+  mesher->SetTargetEdgeLength(1e-9); // must fail before TetGen runs for hours
   check.Fails("limit is 20 million");
   mesher->SetTargetEdgeLength(0.0);
   check.Succeeds();
@@ -173,7 +173,7 @@ void TestMisuseOfTheProgram(const std::filesystem::path& folder)
   check.Fails("TetGen failed (exit status 3). TetGen says: the moon is wrong");
   mesher->SetTetGenExecutable(WriteScript(folder, "wordless", "kill -ABRT $$"));
   check.Fails("TetGen failed (Subprocess aborted).");
-  // More than a pipe holds.
+  // An output of TetGen that exceeds the capacity of a pipe.
   mesher->SetTetGenExecutable(
     WriteScript(folder, "talks", "yes 'Opening x.' | head -n 100000; exec tetgen \"$@\""));
   check.Succeeds();
@@ -188,8 +188,8 @@ void TestMisuseOfTheProgram(const std::filesystem::path& folder)
     "d=$(dirname $2); printf '1 3 0 0\\n0 0 0 0\\n' > $d/surface.1.node; "
     "printf '1 4 0\\n0 0 1 2 3\\n' > $d/surface.1.ele"));
   check.Fails("result cannot be read");
-  // TetGen makes flat tetrahedra where points of a surface lie in a plane but for rounding: without
-  // a volume they are of no use, and finite elements refuse them.
+  // TetGen makes flat tetrahedra if points of a surface are in one plane up to rounding. The mesher
+  // removes them, since finite elements reject tetrahedra without volume.
   mesher->SetTetGenExecutable(WriteScript(folder, "flat",
     "d=$(dirname $2); printf '5 3 0 0\\n0 0 0 0\\n1 1 0 0\\n2 0 1 0\\n3 1 1 1e-15\\n4 0 0 1\\n' > "
     "$d/surface.1.node; printf '2 4 0\\n0 0 1 2 3\\n1 0 1 2 4\\n' > $d/surface.1.ele"));
@@ -209,7 +209,7 @@ void TestMisuseOfTheProgram(const std::filesystem::path& folder)
   abort->SetCallback(
     [](vtkObject* caller, unsigned long, void*, void* amount)
     {
-      if (*static_cast<double*>(amount) > 0.31) // while the program runs
+      if (*static_cast<double*>(amount) > 0.31) // while TetGen runs
       {
         vtkAlgorithm::SafeDownCast(caller)->SetAbortExecute(1);
       }
@@ -221,7 +221,7 @@ void TestMisuseOfTheProgram(const std::filesystem::path& folder)
   VERIFY(mesher->GetOutput()->GetNumberOfPoints() == 0);
   mesher->RemoveObserver(tag);
   mesher->SetAbortExecute(0);
-  mesher->SetTetGenExecutable("tetgen"); // on PATH
+  mesher->SetTetGenExecutable("tetgen"); // found on PATH
   mesher->Update();
   VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume, 1.0, 1e-12);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Edges within refinement spheres are as short as asked for, and elsewhere as long as before.
+// Edges in refinement spheres have at most the requested length. Edges far away are as long as
+// without spheres.
 #include "vtkTetGenMesher.h"
 
 #include "MeshChecks.h"
@@ -27,10 +28,10 @@ struct Sphere
 
 struct Edges
 {
-  double Inside = 0.0;  // the longest with an end in the sphere
-  double Through = 0.0; // the longest that comes into the sphere
-  double Far = 0.0;     // the longest beyond twice its radius
-  int Number = 0;       // with an end in the sphere, counted for each tetrahedron
+  double Inside = 0.0;  // length of the longest edge with an end in the sphere
+  double Through = 0.0; // length of the longest edge that intersects the sphere
+  double Far = 0.0;     // length of the longest edge outside a sphere of twice the radius
+  int Number = 0;       // edges with an end in the sphere, counted in each tetrahedron
 };
 
 Edges Measure(vtkUnstructuredGrid* mesh, const Sphere& sphere)
@@ -80,15 +81,15 @@ void VerifyEdges(vtkTetGenMesher* mesher, const std::vector<Sphere>& spheres)
   const Summary summary = Summarize(mesher->GetOutput());
   VERIFY(summary.OverusedFaces == 0 && summary.OpenBoundaryEdges == 0);
   VERIFY(summary.SmallestVolume > 0.0);
-  // Those with long edges near the spheres are of less quality than the rest.
+  // Tetrahedra with long edges near the spheres have a lower quality than the others.
   VERIFY_NEAR(summary.PoorShare, 0.0, 0.05);
   for (const Sphere& sphere : spheres)
   {
     const Edges edges = Measure(mesher->GetOutput(), sphere);
-    // But for the rounding of positions.
+    // The tolerance is for the rounding of positions.
     VERIFY(edges.Inside <= sphere.EdgeLength * (1.0 + 1e-9));
     VERIFY(edges.Through <= sphere.EdgeLength * (1.0 + 1e-9));
-    // Not so fine as if the length were another.
+    // The edges are not much shorter than requested.
     VERIFY(edges.Inside > 0.7 * sphere.EdgeLength);
     VERIFY(edges.Number > 100);
     std::cout << "edges up to " << edges.Inside << " of " << sphere.EdgeLength << ", " << edges.Far
@@ -137,7 +138,7 @@ void TestVolume()
   check.Succeeds();
   const vtkIdType coarse = mesher->GetOutput()->GetNumberOfCells();
 
-  // As for a push of radius 50 on the skin; one far inside; and two that overlap.
+  // A sphere around a point of the surface, one in the middle of the ball, and two that overlap.
   const Sphere skin{ ball + glm::dvec3(0.0, 50.0, 0.0), 50.0, 50.0 / 6.0 };
   VERIFY(Measure(mesher->GetOutput(), skin).Inside > 2.0 * skin.EdgeLength);
   const Sphere inside{ ball, 15.0, 2.5 };
@@ -152,7 +153,7 @@ void TestVolume()
     VERIFY(Measure(mesher->GetOutput(), spheres[0]).Far > 12.0 || spheres[0].Radius > 40.0);
     mesher->ClearRefinementSpheres();
   }
-  // Longer ones than there are anyway, or elsewhere, change nothing.
+  // A sphere outside the body does not change the mesh.
   Add(mesher, { { ball + glm::dvec3(500.0, 0.0, 0.0), 50.0, 1.0 } });
   check.Succeeds();
   VERIFY(mesher->GetOutput()->GetNumberOfCells() == coarse);
@@ -174,7 +175,7 @@ void TestSurface()
   Add(mesher, spheres);
   check.Succeeds();
   VerifyEdges(mesher, spheres);
-  // The surface is the same, with more triangles.
+  // The surface has more triangles, but does not change its shape.
   VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume / volume, 1.0, 1e-9);
 
   double sphere[5];

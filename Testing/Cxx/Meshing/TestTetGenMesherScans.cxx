@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// MRI scans: no voxel of a head or a brain is lost.
+// MRI scans: the mesh contains all voxels of a head and of a brain.
 #include "vtkTetGenMesher.h"
 
 #include "BodyChecks.h"
