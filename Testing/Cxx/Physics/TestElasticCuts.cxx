@@ -11,7 +11,7 @@ using namespace elasticTesting;
 namespace
 {
 
-// A sheet across the bar: the plane x = where, from a height on.
+// A sheet across the bar, in a plane of constant x. from: its lowest z.
 vtkSmartPointer<vtkPolyData> MakeSheet(double x, double from)
 {
   auto sheet = vtkSmartPointer<vtkPolyData>::New();
@@ -27,7 +27,7 @@ vtkSmartPointer<vtkPolyData> MakeSheet(double x, double from)
   return sheet;
 }
 
-// A cut from the top to the middle; its sides are pulled apart, and the volume opens.
+// A cut from the top to the middle of the bar. Handles pull its sides apart, and the volume opens.
 template <typename Filter>
 void TestCut(const std::function<void(Simulated<Filter>&)>& settle)
 {
@@ -37,7 +37,7 @@ void TestCut(const std::function<void(Simulated<Filter>&)>& settle)
   simulated.Object->SetPoissonRatio(0.4);
   settle(simulated);
   VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), 0);
-  simulated.Object->SetSheetData(MakeSheet(50.0, 0.0)); // misses
+  simulated.Object->SetSheetData(MakeSheet(50.0, 0.0)); // does not intersect the bar
   settle(simulated);
   VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), 0);
   VERIFY_EQUAL(simulated.Object->GetOutput()->GetNumberOfPoints(), NodesOfBar<Filter>);
@@ -50,8 +50,8 @@ void TestCut(const std::function<void(Simulated<Filter>&)>& settle)
   VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), 1);
   VERIFY_EQUAL(simulated.Object->GetNumberOfSplitFaces(), 48);
   vtkUnstructuredGrid* output = simulated.Object->GetOutput();
-  // The nodes of 4 x 6 squares, each cut by a diagonal, but for the five corners and the four edges
-  // where the cut ends.
+  // The nodes of 4 x 6 squares, each divided by a diagonal, without the five corners and the four
+  // edges at the end of the cut.
   const vtkIdType appended = output->GetNumberOfPoints() - NodesOfBar<Filter>;
   VERIFY_EQUAL(appended, HasMidSides<Filter> ? 5 * 6 + 4 * 6 + 5 * 6 + 4 * 6 : 5 * 6);
   VERIFY_EQUAL(output->GetNumberOfCells(), bar->GetNumberOfCells());
@@ -68,12 +68,12 @@ void TestCut(const std::function<void(Simulated<Filter>&)>& settle)
   deform->SetDeformationConnection(simulated.Object->GetOutputPort());
   deform->OpenSplitsOn();
   deform->Update();
-  // The gap where the sides have been pulled apart is empty, and below the cut nothing is.
+  // The gap between the sides is empty. Below the cut there is no gap.
   vtkImageData* deformed = deform->GetOutput();
   const auto getValue = [&](double x, double y, double z)
   {
-    double place[3] = { x, y, z };
-    const vtkIdType voxel = deformed->FindPoint(place);
+    double point[3] = { x, y, z };
+    const vtkIdType voxel = deformed->FindPoint(point);
     return deformed->GetPointData()->GetScalars()->GetComponent(voxel, 0);
   };
   VERIFY_EQUAL(getValue(5.0, 5.0, 28.0), 0.0);
@@ -81,7 +81,7 @@ void TestCut(const std::function<void(Simulated<Filter>&)>& settle)
   VERIFY_EQUAL(getValue(10.0, 5.0, 28.0), 100.0);
   VERIFY_EQUAL(getValue(5.0, 5.0, 5.0), 100.0);
 
-  // Other materials leave the cut. It is undone, and done again by another sheet.
+  // The cut is kept when materials change. Then it is undone, and another sheet makes the same cut.
   simulated.Object->SetYoungModulus(2e4);
   settle(simulated);
   VERIFY_EQUAL(simulated.Object->GetOutput()->GetNumberOfPoints(), NodesOfBar<Filter> + appended);
@@ -100,7 +100,8 @@ void TestCut(const std::function<void(Simulated<Filter>&)>& settle)
   VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), 0);
 }
 
-// What a cut has separated falls, or stays where it is, with a warning.
+// A piece that nothing holds after a cut falls in mass-spring dynamics. Finite elements freeze it,
+// with a warning.
 void TestPieces()
 {
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
@@ -131,8 +132,8 @@ void TestPieces()
   VERIFY(elements.Copy()->GetRange(-1)[1] > 0.0);
 }
 
-// The tetrahedra of a mesh that has been cut lie where they lay at rest, and what nodes have goes
-// with them.
+// Checks that a cut does not change positions at rest of the corners of tetrahedra, and that new
+// nodes have the array values of the nodes that they were split from.
 void VerifyRestMesh(vtkUnstructuredGrid* cut, vtkUnstructuredGrid* whole)
 {
   VERIFY_EQUAL(cut->GetNumberOfCells(), whole->GetNumberOfCells());
@@ -154,7 +155,7 @@ void VerifyRestMesh(vtkUnstructuredGrid* cut, vtkUnstructuredGrid* whole)
   VERIFY_EQUAL(different, 0);
 }
 
-// An update that fails does not cut. The next one that succeeds does.
+// An update that fails does not cut. The next successful update makes the cut.
 template <typename Filter>
 void TestFailedCuts()
 {
@@ -191,8 +192,7 @@ void TestFailedCuts()
   }
 }
 
-// Also where the last cut is taken back and the body is to rest in the update that fails: both are
-// done when it succeeds.
+// A failed update after UndoCut() and Reset(): the next successful update also does both.
 void TestFailedCutAfterOthers()
 {
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1e-3);
@@ -217,7 +217,7 @@ void TestFailedCutAfterOthers()
   VERIFY_EQUAL(simulated.Copy()->GetRange(-1)[1], 0.0);
 }
 
-// Cuts through what was cut, which copy copies of nodes; and one in the place of another one.
+// Cuts that cross earlier cuts split nodes again. A cut that replaces another one.
 template <typename Filter>
 void TestCutsOfCuts()
 {
@@ -243,7 +243,7 @@ void TestCutsOfCuts()
   VERIFY(once > NodesOfBar<Filter> && twice > once && thrice > twice);
   VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), 3);
 
-  // The last one is undone and another one made in one update: as many cuts as before.
+  // The last cut is undone and another one is made in one update: the number of cuts is the same.
   simulated.Object->UndoCut();
   const vtkIdType other = cut(2.6, 22.5, true);
   VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), 3);

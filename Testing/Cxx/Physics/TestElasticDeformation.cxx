@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vtkMassSpringDeformation and vtkFiniteElementDeformation in a pipeline: misuse, closed forms in
-// both units, times, what is kept, and the volume that they deform.
+// both length units, times, simulations that continue, and the deformed volume.
 #include "ElasticTesting.h"
 
 #include <vtkCallbackCommand.h>
@@ -133,7 +133,7 @@ void TestErrorsOfTheirOwn()
   springs.Object->SetTimeStep(0.9 * stable);
   VERIFY_EQUAL(springs.TryUpdate(), std::string());
   VERIFY(springs.Object->GetTimeStepInUse() <= 0.9 * stable);
-  // A handle that is torn away in a frame.
+  // A handle that moves very far in one frame.
   springs.Object->SetHandlesData(
     MakeHandles({ { glm::dvec3(0.0, 0.0, 0.03), glm::dvec3(1e30, 0.0, 0.0) } }));
   VERIFY(Holds(springs.TryUpdate(), "diverged"));
@@ -141,7 +141,7 @@ void TestErrorsOfTheirOwn()
   VERIFY_EQUAL(springs.TryUpdate(), std::string());
   VERIFY_EQUAL(springs.Copy()->GetRange(-1)[1], 0.0);
 
-  // What only finite elements can do. Nodes without tetrahedra do not count.
+  // Conditions that only finite elements support. Nodes without tetrahedra are not counted.
   bar->GetPoints()->InsertNextPoint(0.0, 0.0, 1.0);
   bar->GetPointData()->GetArray("Fixed")->InsertNextTuple1(1.0);
   const auto pushTop = [](const glm::dvec3& p) { return glm::dvec3(0.0, 0.0, p.z > 0.01); };
@@ -165,7 +165,7 @@ void TestErrorsOfTheirOwn()
   VERIFY(Holds(elements.TryUpdate(), "nothing holds the body"));
 }
 
-// Brings the filter up to date, which has to succeed; what it warns of.
+// Updates the filter, checks that it reports no error, and returns its warning.
 template <typename Filter>
 std::string UpdateAndWarn(Simulated<Filter>& simulated)
 {
@@ -177,11 +177,11 @@ std::string UpdateAndWarn(Simulated<Filter>& simulated)
   return warning;
 }
 
-// Results that are not what they seem are warned of.
+// Warnings about a probably wrong length unit, and about inverted tetrahedra.
 template <typename Filter>
 void TestWarnings(double push)
 {
-  // A body of 30 m, and one of 30 micrometres.
+  // A body of 30 m, and one of 30 micrometers.
   for (const double unit : { 1e-3, 1e3 })
   {
     Simulated<Filter> simulated(MakeBar(unit));
@@ -191,12 +191,12 @@ void TestWarnings(double push)
   vtkNew<Filter> fresh;
   VERIFY_EQUAL(fresh->GetLengthUnit(), static_cast<int>(Filter::MILLIMETRE));
 
-  // A point that no tetrahedron uses lies nearest to the handle, which pushes a node through its
-  // neighbours.
+  // The point that is closest to the handle belongs to no tetrahedron and is ignored. The handle
+  // pushes a node through its neighbors.
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
   const glm::dvec3 top(0.005, 0.005, 0.03);
-  glm::dvec3 place = top;
-  const vtkIdType node = bar->FindPoint(&place.x);
+  glm::dvec3 point = top;
+  const vtkIdType node = bar->FindPoint(&point.x);
   bar->GetPoints()->InsertNextPoint(top.x, top.y, top.z + 1e-4);
   bar->GetPointData()->GetArray("Fixed")->InsertNextTuple1(0.0);
   Simulated<Filter> simulated(bar);
@@ -233,7 +233,7 @@ void TestWarningsOfTheirOwn()
   VERIFY(!Holds(UpdateAndWarn(live), "not in equilibrium"));
 }
 
-// A bar that hangs by its own weight is longer by rho g L^2 / 2 E.
+// The elongation of a bar that hangs by its own weight is rho g L^2 / (2 E).
 template <typename Filter, typename Settle>
 void TestHangingBar(const Settle& settle)
 {
@@ -249,10 +249,10 @@ void TestHangingBar(const Settle& settle)
     constexpr double cube = 0.0025 * 0.0025 * 0.0025;
     const auto moved = simulated.Copy();
     const double found = moved->GetComponent(12 * 25 + 12, 2);
-    // The end that is held cannot narrow.
+    // The elongation is smaller, since the fixed end cannot become narrower.
     VERIFY(found > 0.94 * expected && found < expected);
     vtkCellData* cells = simulated.Object->GetOutput()->GetCellData();
-    // At the fixed end the stress is the weight on its area: the mean of the lowest cells.
+    // The mean stress in the cells at the fixed end is the weight divided by the area.
     double stress = 0.0;
     constexpr int lowest = 4 * 4 * 5;
     for (vtkIdType cell = 0; cell < lowest; ++cell)
@@ -263,7 +263,7 @@ void TestHangingBar(const Settle& settle)
     }
     const double weight = 1000.0 * 2.0 * (0.03 - 0.5 * 0.0025);
     VERIFY(std::abs(stress - weight) < 0.05 * weight);
-    // The energy of all tetrahedra is half the work of the weight.
+    // The strain energy of all tetrahedra is half of the work of the weight.
     double energy = 0.0;
     double work = 0.0;
     for (vtkIdType cell = 0; cell < simulated.Object->GetOutput()->GetNumberOfCells(); ++cell)
@@ -274,12 +274,12 @@ void TestHangingBar(const Settle& settle)
       simulated.Object->GetOutput()->GetCellPoints(cell, nodes);
       for (vtkIdType i = 0; i < nodes->GetNumberOfIds(); ++i)
       {
-        // What part of its weight a node of a tetrahedron bears.
+        // The part of the weight of a tetrahedron that acts on this node.
         const double part = !HasMidSides<Filter> ? 0.25 : i < 4 ? -0.05 : 0.2;
         work += part * volume * 1000.0 * 2.0 * unit * moved->GetComponent(nodes->GetId(i), 2);
       }
     }
-    std::cout << "energy by half the work: " << energy / (0.5 * work) << "\n";
+    std::cout << "energy divided by half of the work: " << energy / (0.5 * work) << "\n";
     VERIFY(std::abs(energy - 0.5 * work) < 0.01 * energy);
   }
 }
@@ -301,17 +301,17 @@ void TestTimes()
     simulated.Object->GetOutput()->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()), 0.05);
   const auto whole = simulated.At(0.1);
   VERIFY(!AreEqual(half, whole));
-  // Back, at once and in the same way: the same to the last bit.
+  // Earlier times, and the same times again, give the same results to the last bit.
   VERIFY(AreEqual(simulated.At(0.05), half));
   VERIFY(AreEqual(simulated.At(0.1), whole));
   VERIFY_EQUAL(simulated.At(0.0)->GetRange(-1)[1], 0.0);
-  // Whole numbers of frames need no stops.
+  // An update over several frames gives the same result as several updates.
   VERIFY(AreEqual(simulated.At(0.1), whole));
   simulated.Object->Reset();
   VERIFY_EQUAL(simulated.Object->GetTime(), 0.0);
   VERIFY(AreEqual(simulated.At(0.05), half));
 
-  // Without times an update is a frame.
+  // Without a requested time an update advances by one frame.
   Simulated<vtkMassSpringDeformation> free(MakeBar(1.0));
   free.Object->SetGravity(3.0, 0.0, 0.0);
   free.Object->SetFrameTime(0.05);
@@ -333,7 +333,7 @@ void TestWhatIsKept()
   VERIFY_EQUAL(simulated.TryUpdate(), std::string());
   vtkDataArray* array = simulated.Object->GetOutput()->GetPointData()->GetVectors();
   VERIFY_EQUAL(std::string(array->GetName()), std::string("Displacement"));
-  // Shared, not copied, where no points are appended.
+  // Points and arrays are shared if no points are appended.
   VERIFY(HasMidSides<Filter> || simulated.Object->GetOutput()->GetPoints() == bar->GetPoints());
   VERIFY(HasMidSides<Filter> ||
     simulated.Object->GetOutput()->GetPointData()->GetArray("Fixed") ==
@@ -344,7 +344,7 @@ void TestWhatIsKept()
   simulated.Object->SetYoungModulus(2e4);
   VERIFY_EQUAL(simulated.TryUpdate(), std::string());
   VERIFY(simulated.Object->GetOutput()->GetPointData()->GetVectors() == array);
-  // An equal mesh is the same one.
+  // An equal mesh does not start the simulation again.
   vtkNew<vtkUnstructuredGrid> equal;
   equal->DeepCopy(bar);
   simulated.Object->SetInputData(equal);
@@ -365,16 +365,16 @@ void TestWhatIsKept()
     Holds(simulated.Object->GetSummary(), "Nodes: " + std::to_string(NodesOfBar<Filter>) + "\n"));
 }
 
-// Updates with an abort at so many events of progress. Returns the words of a warning of the next
-// update, which is not aborted.
+// Updates the filter and aborts at a progress event. event: the number of this event. Returns the
+// warning of the next update, which is not aborted.
 template <typename Filter>
 std::string Abort(Simulated<Filter>& simulated, int event)
 {
   struct AbortAt
   {
-    static void Execute(vtkObject* caller, unsigned long, void* left, void*)
+    static void Execute(vtkObject* caller, unsigned long, void* remaining, void*)
     {
-      if (--*static_cast<int*>(left) == 0)
+      if (--*static_cast<int*>(remaining) == 0)
       {
         static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1);
       }
@@ -399,7 +399,7 @@ std::string Abort(Simulated<Filter>& simulated, int event)
   return warning;
 }
 
-// An abort while another material is taken over.
+// An abort of the update after a change of the material.
 template <typename Filter>
 void TestAborted()
 {
@@ -436,7 +436,7 @@ void TestMisuseOfPresets()
   VERIFY_EQUAL(vtkElasticDeformation::GetMaterialPresetName(vtkElasticDeformation::LIVER),
     std::string("Liver"));
 
-  // Numbers that a preset replaces are not read, and are still there.
+  // Values that a preset replaces are not checked, and are used again with CUSTOM.
   Simulated<vtkFiniteElementDeformation> simulated(MakeBar(1.0));
   simulated.Object->SetDensity(-1.0);
   VERIFY(Holds(simulated.TryUpdate(), "density"));
@@ -447,7 +447,8 @@ void TestMisuseOfPresets()
   VERIFY(Holds(simulated.TryUpdate(), "density"));
 }
 
-// A preset is the same as its three numbers, to the last bit, and cell arrays come first.
+// A preset gives the same result as its three values, to the last bit. Cell arrays have priority
+// over presets.
 template <typename Filter>
 void TestMaterialPresets()
 {
@@ -496,7 +497,7 @@ void TestMaterialPresets()
   VERIFY(AreEqual(moved, byNumbers(3e4, 0.49, 1060.0)));
 }
 
-// Both models agree where deformations are small, and deform a volume.
+// For small deformations both models give similar displacements, which deform a volume.
 void TestDeformedVolume()
 {
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1e-3);
@@ -539,8 +540,8 @@ void TestDeformedVolume()
   VERIFY_EQUAL(deform->GetOutput()->GetDimensions()[2], 33);
 }
 
-// Handles hold what lies within the radius, in units of the mesh; the first one counts where two
-// do.
+// Handles hold the nodes within HandleRadius, in length units of the mesh. A node in the range of
+// two handles is held by the first one.
 template <typename Filter>
 void TestHeldNodes()
 {
@@ -570,7 +571,7 @@ void TestHeldNodes()
     VERIFY(isHeld || glm::distance(displacement, glm::dvec3(0.5, 0.0, 0.0)) > 1e-6);
   }
   VERIFY_EQUAL(held[0], 6);
-  VERIFY_EQUAL(held[1], 6); // of seven, one of which the first handle holds
+  VERIFY_EQUAL(held[1], 6); // seven nodes are in its range, but the first handle holds one of them
 }
 
 } // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vtkMaterialFromVolume: misuse, means against a search over all voxels, what stays shared, and a
-// simulation that bends where the volume is soft.
+// vtkMaterialFromVolume: misuse, means compared with a search of all voxels, shared arrays, and a
+// simulation with a soft and a stiff part.
 #include "ChainMailTesting.h"
 
 #include "vtkFiniteElementDeformation.h"
@@ -47,7 +47,7 @@ vtkSmartPointer<vtkImageData> MakeVolume()
   return volume;
 }
 
-// A mesh of tetrahedra in general position that holds most of the volume, and reaches beyond it.
+// A mesh of tetrahedra in general position that contains most of the volume and some space outside.
 vtkSmartPointer<vtkUnstructuredGrid> MakeMesh(vtkImageData* volume, int nodes)
 {
   vtkNew<vtkLatticeTetrahedraSource> lattice;
@@ -86,7 +86,7 @@ struct Tested
     this->Filter->SetVolumeData(volume);
     this->Filter->SetMaterialArrayName("labels");
   }
-  // The errors in words; "" where there is none.
+  // Updates the filter and returns its error message, or "" without an error.
   std::string TryUpdate()
   {
     this->Filter->Modified();
@@ -95,7 +95,7 @@ struct Tested
     VERIFY(errors.find("ERROR: ") == errors.rfind("ERROR: "));
     if (!errors.empty())
     {
-      // Although nothing has changed.
+      // The next update reports the error again, although nothing has changed.
       this->Observer->Clear();
       VERIFY(!this->Filter->GetExecutive()->Update());
       VERIFY(this->Observer->GetError());
@@ -125,7 +125,7 @@ void TestMisuse()
   tested.Filter->SetMaterialArrayName("none");
   VERIFY(Holds(tested.TryUpdate(), "no point array \"none\""));
   tested.Filter->SetMaterialArrayName("");
-  VERIFY_EQUAL(tested.TryUpdate(), std::string()); // all of the default material
+  VERIFY_EQUAL(tested.TryUpdate(), std::string()); // all tetrahedra have the default material
   VERIFY_EQUAL(tested.Get(0, 0), 1e4);
   tested.Filter->SetMaterialArrayName("labels");
 
@@ -163,7 +163,7 @@ void TestMisuse()
   tested.Filter->SetMaterial(1, 1e4, 0.3, 1000.0);
   VERIFY(Holds(tested.TryUpdate(), "for which there is no material"));
 
-  // Ghosts that do not reach to the last voxel.
+  // A ghost array that is too short.
   tested.Filter->SetMaterial(0, 100.0, 0.0, 100.0);
   for (int index = 2; index < 5; ++index)
   {
@@ -195,8 +195,8 @@ void TestMisuse()
   VERIFY_EQUAL(Tested(empty, volume).TryUpdate(), std::string());
 }
 
-// Against a search over all voxels. Nodes are rounded to 1/256 voxel: tetrahedra with a voxel that
-// is so near to a face are left out.
+// Compares means with a search of all voxels. Since nodes are rounded to 1/256 voxel, tetrahedra
+// with a voxel near one of their faces are skipped.
 void TestMeans(bool hides)
 {
   vtkSmartPointer<vtkImageData> volume = MakeVolume();
@@ -255,9 +255,9 @@ void TestMeans(bool hides)
     };
     for (vtkIdType voxel = 0; voxel < volume->GetNumberOfPoints(); ++voxel)
     {
-      glm::dvec3 place;
-      volume->GetPoint(voxel, &place.x);
-      const glm::dvec3 w = inverse * (place - p[0]);
+      glm::dvec3 point;
+      volume->GetPoint(voxel, &point.x);
+      const glm::dvec3 w = inverse * (point - p[0]);
       constexpr double margin = 0.02;
       const double least = std::min({ w.x, w.y, w.z, 1.0 - w.x - w.y - w.z });
       isNearBorder |= std::abs(least) < margin;
@@ -306,8 +306,8 @@ void TestMeans(bool hides)
       worst = std::max(worst, std::abs(tested.Get(k, cell) - wanted) / (wanted + 1e-3));
     }
   }
-  std::cout << held << " tetrahedra hold voxels, " << nearest << " have the nearest, " << outside
-            << " none, " << nearBorder << " are left out; largest relative error " << worst << "\n";
+  std::cout << held << " tetrahedra contain voxels, " << nearest << " have the nearest, " << outside
+            << " none, " << nearBorder << " are skipped; largest relative error " << worst << "\n";
   VERIFY(worst < 1e-12);
   VERIFY(held > 1000 && nearest > 100 && outside > 100);
   VERIFY(nearBorder < mesh->GetNumberOfCells() / 4);
@@ -316,7 +316,7 @@ void TestMeans(bool hides)
   VERIFY(!differs(tested.Filter->GetNumberOfTetrahedraWithoutVoxels(), nearest));
   VERIFY(!differs(tested.Filter->GetNumberOfTetrahedraOutside(), outside));
 
-  // The number of threads changes nothing.
+  // The result does not depend on the number of threads.
   vtkNew<vtkUnstructuredGrid> before;
   before->DeepCopy(output);
   vtkSMPTools::LocalScope(
@@ -331,7 +331,7 @@ void TestMeans(bool hides)
   }
 }
 
-// Ranges of values in place of labels; the first that holds a value counts.
+// Ranges of values instead of labels. If ranges overlap, the first one is used.
 void TestRanges()
 {
   vtkSmartPointer<vtkImageData> volume = MakeVolume();
@@ -354,7 +354,8 @@ void TestRanges()
   }
 }
 
-// Tissues by their names: errors that change nothing, and the same means as of their numbers.
+// Presets of tissues: errors do not change the filter, and presets give the same means as their
+// values.
 void TestPresets()
 {
   vtkSmartPointer<vtkImageData> volume = MakeVolume();
@@ -397,7 +398,7 @@ void TestPresets()
   Tested wanted(mesh, volume);
   wanted.Filter->SetMaterial(1, 1600.0, 0.49, 1040.0);
   wanted.Filter->SetMaterial(4, 18.6e9, 0.3, 1920.0);
-  // Whether numbers are set before or after.
+  // The order of SetMaterial() and SetMaterialPreset() does not matter.
   filter->SetMaterialPreset(1, vtkElasticDeformation::BRAIN);
   filter->SetMaterialPreset(4, vtkElasticDeformation::BONE);
   filter->SetMaterial(1, -1.0, 0.3, 1000.0);
@@ -409,7 +410,7 @@ void TestPresets()
   std::ostringstream printed;
   filter->Print(printed);
   VERIFY(Holds(printed.str(), "4: Bone"));
-  // The numbers are still there.
+  // With CUSTOM the values of SetMaterial() are used again.
   filter->SetMaterialPreset(1, vtkElasticDeformation::CUSTOM);
   VERIFY(Holds(tested.TryUpdate(), "Young modulus of material 1"));
   filter->SetMaterial(1, 1e4, 0.3, 1000.0);
@@ -417,7 +418,7 @@ void TestPresets()
   VERIFY_EQUAL(filter->GetNumberOfMaterialPresets(), 0);
   VERIFY(find(tested) == before);
 
-  // An index needs no other material than that of its preset.
+  // An index with a preset needs no call of SetMaterial().
   filter->ClearMaterials();
   for (int index = 0; index < 5; ++index)
   {
@@ -449,8 +450,8 @@ void TestAbort()
   VERIFY(tested.Filter->GetOutput()->GetNumberOfPoints() > 0);
 }
 
-// A bar, of which the volume says that one half is a hundred times as stiff: pulled, the other
-// half becomes longer.
+// One half of a bar is a hundred times as stiff as the other one. When the bar is pulled, the soft
+// half is elongated.
 void TestInSimulation()
 {
   vtkNew<vtkImageData> volume;
@@ -470,8 +471,8 @@ void TestInSimulation()
   lattice->Update();
   vtkNew<vtkUnstructuredGrid> bar;
   bar->ShallowCopy(lattice->GetOutput());
-  // Both ends are held, nodes in the middle of edges as well, and one is displaced by so little
-  // that all laws are linear.
+  // Both ends are fixed, with their mid-side nodes. One end is displaced so little that the
+  // deformation is linear.
   constexpr double pull = 0.02;
   vtkNew<vtkUnsignedCharArray> fixed;
   fixed->SetName("Fixed");
@@ -496,8 +497,8 @@ void TestInSimulation()
   body->SetModeToConverged();
   body->SetInputConnection(tested.Filter->GetOutputPort());
   body->Update();
-  // Stresses are the same everywhere: strains are 1 : 100, over 20 and 20, but for the tetrahedra
-  // that hold voxels of both.
+  // The stress is uniform, so strains are 1 : 100 over two lengths of 20. Tetrahedra with voxels of
+  // both materials are an exception.
   double moved[2] = { 0.0, 0.0 };
   for (vtkIdType i = 0; i < bar->GetNumberOfPoints(); ++i)
   {

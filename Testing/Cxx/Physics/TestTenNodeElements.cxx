@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The ten-node tetrahedra of vtkFiniteElementDeformation: misuse, nodes that are made, conditions
-// on nodes, cuts, and closed forms.
+// The ten-node tetrahedra of vtkFiniteElementDeformation: misuse, mid-side nodes that are added,
+// conditions on nodes, cuts, and closed forms.
 #include "ElasticTesting.h"
 #include "TenNodeCells.h"
 
@@ -30,11 +30,11 @@ namespace
 
 using Elements = Simulated<vtkFiniteElementDeformation>;
 
-constexpr int CornersOfCube = 27; // of 2 x 2 x 2 cells
-constexpr int NodesOfCube = 117;  // with those in the middle of edges
+constexpr int CornersOfCube = 27; // the cube has 2 x 2 x 2 cells
+constexpr int NodesOfCube = 117;  // corners and mid-side nodes
 constexpr double Edge = 0.03;
 
-// A cube of linear tetrahedra, held at z = 0, in metres.
+// A cube of linear tetrahedra, fixed at z = 0. Lengths are in meters.
 vtkSmartPointer<vtkUnstructuredGrid> MakeCube()
 {
   vtkNew<vtkLatticeTetrahedraSource> lattice;
@@ -61,7 +61,7 @@ std::vector<vtkIdType> GetIds(vtkUnstructuredGrid* mesh, vtkIdType cell)
   return { ids->begin(), ids->end() };
 }
 
-// Gives some cells other points.
+// Changes the points of cells.
 void ReplaceCells(
   vtkUnstructuredGrid* mesh, const std::function<void(vtkIdType, std::vector<vtkIdType>&)>& change)
 {
@@ -76,7 +76,7 @@ void ReplaceCells(
   mesh->SetCells(changed->GetCellTypesArray(), changed->GetCells());
 }
 
-// How many cells use a point.
+// The number of cells that use a point.
 int CountUsers(vtkUnstructuredGrid* mesh, vtkIdType point)
 {
   int users = 0;
@@ -106,12 +106,12 @@ void TestMisplacedNodes()
   VERIFY(Holds(TryMesh(cube),
     std::to_string(CountUsers(cube, first[4])) +
       " of 40 tetrahedra of the rest mesh overlap themselves"));
-  // Somewhat away from the middle is right.
+  // A node that is not exactly in the middle is valid.
   const glm::dvec3 curved = 0.45 * GetPoint(cube, first[0]) + 0.55 * GetPoint(cube, first[1]);
   cube->GetPoints()->SetPoint(first[4], &curved.x);
   VERIFY_EQUAL(TryMesh(cube), std::string());
 
-  // Another order of the nodes, where cells share nodes and where they do not.
+  // Another order of the nodes, with cells that share nodes and cells that do not.
   const auto swapTwo = [](vtkIdType, std::vector<vtkIdType>& ids) { std::swap(ids[4], ids[9]); };
   for (const bool separated : { false, true })
   {
@@ -127,7 +127,7 @@ void TestWrongCells()
   const auto changeFirst = [&](std::size_t i, vtkIdType id) {
     return [=](vtkIdType cell, std::vector<vtkIdType>& ids) { ids[i] = cell == 0 ? id : ids[i]; };
   };
-  // Two nodes in the middle of an edge.
+  // Two cells have different mid-side nodes on a common edge.
   const std::vector<vtkIdType> ids = GetIds(cube, 0);
   std::size_t shared = 4;
   while (CountUsers(cube, ids[shared]) == 1)
@@ -139,11 +139,11 @@ void TestWrongCells()
   cube->GetPointData()->GetArray("Fixed")->InsertNextTuple1(0.0);
   ReplaceCells(cube, changeFirst(shared, second));
   VERIFY(Holds(TryMesh(cube), "1 edges of the rest mesh have different nodes in their middle"));
-  // One that is a corner.
+  // A mid-side node that is a corner of the mesh.
   cube = MakeTenNodeCube();
   ReplaceCells(cube, changeFirst(4, GetIds(cube, 0)[2]));
   VERIFY(Holds(TryMesh(cube), "1 nodes of the rest mesh on input port 0 are in the middle"));
-  // Too few, and none.
+  // A cell with nine points, and a cell with the id of a point that does not exist.
   cube = MakeTenNodeCube();
   ReplaceCells(
     cube, [](vtkIdType cell, std::vector<vtkIdType>& ids) { ids.resize(cell == 3 ? 9 : 10); });
@@ -151,7 +151,7 @@ void TestWrongCells()
   cube = MakeTenNodeCube();
   ReplaceCells(cube, changeFirst(7, cube->GetNumberOfPoints()));
   VERIFY(Holds(TryMesh(cube), "without ten points"));
-  // Springs are linear.
+  // Springs need four-node tetrahedra.
   Simulated<vtkMassSpringDeformation> springs(MakeTenNodeCube());
   VERIFY(Holds(springs.TryUpdate(), "40 cells of the type "));
 }
@@ -162,7 +162,7 @@ void TestWrongConditions()
   for (const bool isTenNode : { false, true })
   {
     const auto make = [&] { return isTenNode ? MakeTenNodeCube() : MakeCube(); };
-    // Nodes that are fixed and slide; those in the middle of edges are no mistakes of their own.
+    // Nodes that are both fixed and sliding. Mid-side nodes that the filter adds are not counted.
     auto cube = make();
     AddPointVectors(cube, "SlidingNormal", [](const glm::dvec3&) { return glm::dvec3(0, 0, 2); });
     VERIFY(Holds(TryMesh(cube),
@@ -189,13 +189,13 @@ void TestWrongConditions()
   }
 }
 
-// What becomes of points, cells and arrays.
+// Points, cells and arrays of the output.
 void TestOutput()
 {
   auto cube = MakeCube();
   const vtkIdType triangle[3] = { 0, 1, 3 };
   cube->InsertNextCell(VTK_TRIANGLE, 3, triangle);
-  cube->GetPoints()->InsertNextPoint(1.0, 1.0, 1.0); // of no cell
+  cube->GetPoints()->InsertNextPoint(1.0, 1.0, 1.0); // no cell uses this point
   cube->GetPointData()->GetArray("Fixed")->InsertNextTuple1(1.0);
   AddPointVectors(cube, "Force", [](const glm::dvec3&) { return glm::dvec3(1e-3, 0.0, 0.0); });
   vtkNew<vtkDoubleArray> heights;
@@ -274,9 +274,9 @@ void TestOutput()
   VERIFY_EQUAL(edges, 240);
   auto* made = vtkArrayDownCast<vtkStringArray>(output->GetPointData()->GetAbstractArray("Name"));
   VERIFY(made && made->GetValue(NodesOfCube) == "node");
-  VERIFY_EQUAL(get("Displacement", before - 1), 0.0); // the point of no cell
+  VERIFY_EQUAL(get("Displacement", before - 1), 0.0); // the point that no cell uses
 
-  // The points and the cells are the same objects as long as the mesh is.
+  // Points and cells of the output are the same objects as long as the mesh does not change.
   vtkPoints* points = output->GetPoints();
   vtkCellArray* cells = output->GetCells();
   elements.Object->SetGravity(0.0, 0.0, 1.0);
@@ -293,7 +293,7 @@ void TestOutput()
   VERIFY_EQUAL(get("Force", 3), 2e-3);
   VERIFY_EQUAL(get("Force", NodesOfCube), 0.0);
 
-  // What has all nodes is passed on, and what was made can be simulated.
+  // The output is a valid mesh of ten-node tetrahedra, whose points and cells are passed.
   vtkNew<vtkUnstructuredGrid> again;
   again->DeepCopy(output);
   again->GetPointData()->RemoveArray("Displacement");
@@ -304,7 +304,7 @@ void TestOutput()
   VERIFY(second.Object->GetOutput()->GetCells() == again->GetCells());
 }
 
-// Linear and ten-node cells in one mesh: an edge of both has the node of the one.
+// Linear and ten-node cells in one mesh: common edges have the mid-side node of the ten-node cell.
 void TestMixedCells()
 {
   auto cube = MakeTenNodeCube();
@@ -323,23 +323,23 @@ void TestMixedCells()
   elements.Object->SetGravity(0.0, 0.0, 2.0);
   VERIFY_EQUAL(elements.TryUpdate(), std::string());
   vtkUnstructuredGrid* output = elements.Object->GetOutput();
-  std::set<std::vector<double>> places;
+  std::set<std::vector<double>> positions;
   std::set<vtkIdType> used;
   for (vtkIdType cell = 0; cell < output->GetNumberOfCells(); ++cell)
   {
     VERIFY_EQUAL(output->GetCellType(cell), static_cast<int>(VTK_QUADRATIC_TETRA));
     for (const vtkIdType id : GetIds(output, cell))
     {
-      const glm::dvec3 place = GetPoint(output, id);
-      places.insert({ place.x, place.y, place.z });
+      const glm::dvec3 position = GetPoint(output, id);
+      positions.insert({ position.x, position.y, position.z });
       used.insert(id);
     }
   }
-  VERIFY_EQUAL(places.size(), std::size_t{ NodesOfCube });
+  VERIFY_EQUAL(positions.size(), std::size_t{ NodesOfCube });
   VERIFY_EQUAL(used.size(), std::size_t{ NodesOfCube });
 }
 
-// Displacements by the place at rest.
+// Displacements by position at rest.
 using Found = std::map<std::array<double, 3>, glm::dvec3>;
 Found FindDisplacements(Elements& elements)
 {
@@ -348,15 +348,15 @@ Found FindDisplacements(Elements& elements)
   vtkDataArray* vectors = output->GetPointData()->GetVectors();
   for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
   {
-    const glm::dvec3 place = GetPoint(output, i);
+    const glm::dvec3 position = GetPoint(output, i);
     glm::dvec3 vector;
     vectors->GetTuple(i, &vector.x);
-    found[{ { place.x, place.y, place.z } }] = vector;
+    found[{ { position.x, position.y, position.z } }] = vector;
   }
   return found;
 }
 
-// A mesh with its own mid-side nodes deforms like that of its corners.
+// A mesh of ten-node cells with straight edges deforms like the mesh of its corners.
 void TestSameMesh()
 {
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
@@ -375,14 +375,13 @@ void TestSameMesh()
   VERIFY_EQUAL(found.size(), expected.size());
   double largest = 0.0;
   double worst = 0.0;
-  for (const auto& [place, displacement] : expected)
+  for (const auto& [position, displacement] : expected)
   {
     largest = std::max(largest, glm::length(displacement));
-    const auto same = found.find(place);
+    const auto same = found.find(position);
     worst = same == found.end() ? 1.0 : std::max(worst, glm::distance(displacement, same->second));
   }
-  std::cout << "two forms of a mesh differ by " << worst / largest
-            << " of the largest displacement\n";
+  std::cout << "the two meshes differ by " << worst / largest << " of the largest displacement\n";
   VERIFY(largest > 1e-3);
   // Forces are in equilibrium to 1e-6 of the largest one.
   VERIFY(worst < 1e-5 * largest);
@@ -390,7 +389,7 @@ void TestSameMesh()
 
 const glm::dmat3 Turn = []
 {
-  // By 0.7 rad about (1, 2, 2) / 3.
+  // A rotation by 0.7 rad about (1, 2, 2) / 3.
   const glm::dvec3 axis(1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0);
   const double c = std::cos(0.7);
   const double s = std::sin(0.7);
@@ -408,17 +407,17 @@ void TurnPoints(vtkUnstructuredGrid* mesh)
 {
   for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
   {
-    const glm::dvec3 place = Turn * GetPoint(mesh, i);
-    mesh->GetPoints()->SetPoint(i, &place.x);
+    const glm::dvec3 position = Turn * GetPoint(mesh, i);
+    mesh->GetPoints()->SetPoint(i, &position.x);
   }
 }
 
-bool IsOnBoundary(const glm::dvec3& place)
+bool IsOnBoundary(const glm::dvec3& position)
 {
   bool isOn = false;
   for (int axis = 0; axis < 3; ++axis)
   {
-    isOn |= place[axis] == 0.0 || place[axis] == Edge;
+    isOn |= position[axis] == 0.0 || position[axis] == Edge;
   }
   return isOn;
 }
@@ -426,16 +425,16 @@ bool IsOnBoundary(const glm::dvec3& place)
 double GetWorst(Elements& elements, const std::function<glm::dvec3(const glm::dvec3&)>& expected)
 {
   double worst = 0.0;
-  for (const auto& [place, displacement] : FindDisplacements(elements))
+  for (const auto& [position, displacement] : FindDisplacements(elements))
   {
-    worst = std::max(
-      worst, glm::distance(displacement, expected(glm::dvec3(place[0], place[1], place[2]))));
+    worst = std::max(worst,
+      glm::distance(displacement, expected(glm::dvec3(position[0], position[1], position[2]))));
   }
   return worst;
 }
 
-// Nodes that are displaced on the boundary by an affine map displace those inside by it; and
-// without a new start by another one.
+// If an affine map displaces the nodes of the boundary, inner nodes are displaced by the same map.
+// Then another map is prescribed, without a new start.
 void TestPrescribed()
 {
   const glm::dmat3 first(0.1, 0.02, -0.03, 0.05, -0.08, 0.01, -0.02, 0.04, 0.06);
@@ -450,20 +449,20 @@ void TestPrescribed()
         [&](const glm::dvec3& p) { return IsOnBoundary(p) ? 1e3 * (map * p) : glm::dvec3(7.0); });
     };
     prescribe(first);
-    // In millimetres.
+    // The mesh is in millimeters.
     vtkNew<vtkUnstructuredGrid> scaled;
     scaled->DeepCopy(cube);
     for (vtkIdType i = 0; i < scaled->GetNumberOfPoints(); ++i)
     {
-      const glm::dvec3 place = 1e3 * GetPoint(cube, i);
-      scaled->GetPoints()->SetPoint(i, &place.x);
+      const glm::dvec3 position = 1e3 * GetPoint(cube, i);
+      scaled->GetPoints()->SetPoint(i, &position.x);
     }
     Elements elements(scaled);
     elements.Object->SetLengthUnitToMillimetre();
     VERIFY_EQUAL(elements.TryUpdate(), std::string());
     const double worst = GetWorst(elements, [&](const glm::dvec3& p) { return first * p; });
-    std::cout << "affine map: off by " << worst << " of 30 mm\n";
-    // Forces are in equilibrium to 1e-6 of the largest one, and nodes go by up to 6 mm.
+    std::cout << "affine map: largest error " << worst << " of 30 mm\n";
+    // Forces are in equilibrium to 1e-6 of the largest force, and displacements are up to 6 mm.
     VERIFY(worst < 1e-5);
     prescribe(second);
     scaled->GetPointData()->AddArray(cube->GetPointData()->GetArray("PrescribedDisplacement"));
@@ -477,8 +476,8 @@ void TestPrescribed()
   }
 }
 
-// A cube whose bottom slides while the other sides are displaced by a map of their own axes: there
-// is no shear at the bottom, so it goes with the map. In a plane that lies obliquely.
+// A cube whose bottom slides, while a map that scales along its axes displaces the other sides.
+// There is no shear at the bottom, so the map displaces all nodes. The cube is rotated.
 void TestSliding()
 {
   const glm::dmat3 map(-0.06, 0.0, 0.0, 0.0, 0.04, 0.0, 0.0, 0.0, -0.1);
@@ -490,7 +489,7 @@ void TestSliding()
     FixPoints(cube, isSide);
     AddPointVectors(
       cube, "PrescribedDisplacement", [&](const glm::dvec3& p) { return Turn * map * p; });
-    // Normals of any length, to either side.
+    // Normals have any length, and either sign.
     AddPointVectors(cube, "SlidingNormal",
       [&](const glm::dvec3& p)
       {
@@ -503,33 +502,33 @@ void TestSliding()
     VERIFY_EQUAL(elements.TryUpdate(), std::string());
     const double worst = GetWorst(
       elements, [&](const glm::dvec3& p) { return Turn * map * glm::transpose(Turn) * p; });
-    std::cout << "sliding: off by " << worst << " of " << Edge << " m\n";
-    VERIFY(worst < 1e-8); // the same of 3 mm
-    // Which nodes slide: at the bottom, inside.
+    std::cout << "sliding: largest error " << worst << " of " << Edge << " m\n";
+    VERIFY(worst < 1e-8); // displacements are up to 3 mm
+    // The inner nodes of the bottom slide, also those that the filter adds.
     vtkUnstructuredGrid* output = elements.Object->GetOutput();
     vtkDataArray* normals = output->GetPointData()->GetArray("SlidingNormal");
     int sliding = 0;
     for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
     {
-      const glm::dvec3 place = glm::transpose(Turn) * GetPoint(output, i);
+      const glm::dvec3 position = glm::transpose(Turn) * GetPoint(output, i);
       glm::dvec3 normal;
       normals->GetTuple(i, &normal.x);
       if (normal != glm::dvec3(0.0))
       {
         ++sliding;
         constexpr double roundOff = 1e-9;
-        VERIFY(std::abs(place.z) < roundOff && place.x > roundOff && place.x < Edge - roundOff &&
-          place.y > roundOff && place.y < Edge - roundOff);
+        VERIFY(std::abs(position.z) < roundOff && position.x > roundOff &&
+          position.x < Edge - roundOff && position.y > roundOff && position.y < Edge - roundOff);
         VERIFY(glm::length(glm::cross(normal, Turn * glm::dvec3(0.0, 0.0, 1.0))) < 1e-9);
       }
     }
-    // One corner, and the middles of the edges that meet there.
+    // One corner, and the mid-side nodes of its edges in the bottom.
     VERIFY(sliding == 9 || sliding == 5);
   }
 }
 
-// An eighth of a cube whose outer sides are displaced by an affine map: nodes in two of its planes
-// of symmetry slide along the line in both, and so do those that are made there.
+// An eighth of a cube whose outer sides are displaced by an affine map. Nodes in two planes of
+// symmetry slide along the intersection of the planes, also mid-side nodes that the filter adds.
 void TestSlidingAlongLines()
 {
   const glm::dmat3 map(0.9, 0, 0, 0, 0.95, 0, 0, 0, 1.2);
@@ -539,7 +538,7 @@ void TestSlidingAlongLines()
   const auto isFixed = [&](const glm::dvec3& p) { return isOutside(p) || p == glm::dvec3(0.0); };
   FixPoints(cube, isFixed);
   AddPointVectors(cube, "PrescribedDisplacement", [&](const glm::dvec3& p) { return map * p - p; });
-  // The normals of the planes that a point lies in, one after the other.
+  // The first or second normal of the planes that contain a point.
   const auto getNormal = [&](const glm::dvec3& p, int number)
   {
     glm::dvec3 normal(0.0);
@@ -564,11 +563,12 @@ void TestSlidingAlongLines()
   Elements both(cube);
   VERIFY_EQUAL(both.TryUpdate(), std::string());
   const double worst = GetWorst(both, wanted);
-  std::cout << "sliding along lines: off by " << worst << " of " << Edge << " m\n";
+  std::cout << "sliding along lines: largest error " << worst << " of " << Edge << " m\n";
   VERIFY(worst < 1e-8);
 }
 
-// Nodes that are made have the normals of the ends of their edges, also where these are integers.
+// Mid-side nodes that the filter adds have the sliding normal of the ends of their edges, also if
+// normals are integers.
 void TestIntegerNormals()
 {
   auto cube = MakeCube();
@@ -595,10 +595,10 @@ void TestIntegerNormals()
     sliding += normal == glm::dvec3(0.0, 2.0, -1.0);
     VERIFY(normal == glm::dvec3(0.0) || normal == glm::dvec3(0.0, 2.0, -1.0));
   }
-  VERIFY_EQUAL(sliding, 6); // edges along x, the others lead out of the plane
+  VERIFY_EQUAL(sliding, 6); // of the edges along x; other edges are not in the sliding plane
 }
 
-// A handle moves a node that slides within its plane.
+// A handle moves a sliding node in its plane only.
 void TestHandleOnSliding()
 {
   auto cube = MakeCube();
@@ -613,15 +613,15 @@ void TestHandleOnSliding()
   VERIFY(
     glm::distance(found.at({ { held.x, held.y, held.z } }), glm::dvec3(1e-3, 0.0, 0.0)) < 1e-9);
   double out = 0.0;
-  for (const auto& [place, displacement] : found)
+  for (const auto& [position, displacement] : found)
   {
-    out = std::max(out, place[2] == 0.0 ? std::abs(displacement.z) : 0.0);
+    out = std::max(out, position[2] == 0.0 ? std::abs(displacement.z) : 0.0);
   }
   VERIFY(out < 1e-9);
 }
 
-// The filters behind it: while the body moves no mapping of the volume is made, and geometry
-// follows the nodes, those in the middle of edges as well.
+// vtkDeformVolumeFilter and vtkDeformGeometryFilter behind the simulation: the static mapping is
+// built once, and geometry follows corners and mid-side nodes.
 void TestFiltersBehind()
 {
   Elements elements(MakeCube());
@@ -655,7 +655,7 @@ void TestFiltersBehind()
     largest = std::max(largest, glm::length(vector));
   }
   std::cout << "geometry follows nodes within " << worst << " of " << largest << " m\n";
-  VERIFY(largest > 5e-4 && worst < 1e-9); // the rounding of floats
+  VERIFY(largest > 5e-4 && worst < 1e-9); // displacements are floats
 }
 
 vtkSmartPointer<vtkPolyData> MakeSheet(double z)
@@ -672,8 +672,9 @@ vtkSmartPointer<vtkPolyData> MakeSheet(double z)
   return sheet;
 }
 
-// A cut through the whole bar: both sides have nodes of their own, with what they had before, and
-// undone it is the bar that it was, to the last bit.
+// A cut through the whole bar: the two sides share no nodes, and new nodes have the array values of
+// the nodes that they were split from. After an undo the bar is the same as before, to the last
+// bit.
 void TestCut()
 {
   for (const bool isTenNode : { false, true })
@@ -697,7 +698,7 @@ void TestCut()
     VERIFY_EQUAL(elements.TryUpdate(), std::string());
     VERIFY_EQUAL(elements.Object->GetNumberOfFrozenPieces(), vtkIdType{ 0 });
     vtkUnstructuredGrid* cut = elements.Object->GetOutput();
-    // 25 corners, and 16 cells with four edges and one diagonal of their own, and eight of others.
+    // The cut splits 25 corners, and the mid-side nodes of 40 edges and 16 diagonals.
     VERIFY_EQUAL(cut->GetNumberOfPoints(), whole->GetNumberOfPoints() + 25 + 40 + 16);
     std::set<vtkIdType> sides[2];
     int different = 0;
@@ -727,13 +728,13 @@ void TestCut()
     std::set_intersection(sides[0].begin(), sides[0].end(), sides[1].begin(), sides[1].end(),
       std::back_inserter(common));
     VERIFY_EQUAL(common.size(), std::size_t{ 0 });
-    // The upper half goes up as a whole, but for what the weak forces bend.
+    // The upper half is translated, and slightly bent by the weak forces.
     double least = 1.0;
     for (const vtkIdType node : sides[1])
     {
       least = std::min(least, cut->GetPointData()->GetVectors()->GetComponent(node, 2));
     }
-    std::cout << "the upper half goes up by " << least << " m\n";
+    std::cout << "the upper half moves up by " << least << " m\n";
     VERIFY(least > 0.9e-3);
 
     elements.Object->UndoCut();
