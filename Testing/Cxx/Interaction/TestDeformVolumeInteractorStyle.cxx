@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vtkDeformVolumeInteractorStyle: misuse, what is visible against what is known of it, recorded
-// input against the same calls of a session, the thread, random input, and what is drawn.
+// vtkDeformVolumeInteractorStyle: misuse, positions of visible points, recorded events compared
+// with the same calls of a session, the thread, random events, and the rendered picture.
 //
 // Usage: TestDeformVolumeInteractorStyle [NUMBER OF RANDOM EVENTS] (300) [SEED] (1)
 #include "FilterTesting.h"
@@ -61,7 +61,7 @@ bool Holds(const std::string& text, const std::string& part)
   return isThere;
 }
 
-// 10, with a ball of 100 in its middle, and 0 at the border.
+// A volume of the value 10, with a ball of the value 100 in the middle. Outermost voxels are 0.
 vtkSmartPointer<vtkImageData> MakeBall()
 {
   auto volume = MakeImage(Box);
@@ -76,7 +76,8 @@ vtkSmartPointer<vtkImageData> MakeBall()
   return volume;
 }
 
-// A window that looks from above: ten pixels are one unit, and the middle of both is the same.
+// A window with a view along -z. Ten pixels are one world unit, and the middle of the window is the
+// center of the volume.
 struct Viewer
 {
   Viewer()
@@ -115,7 +116,7 @@ struct Viewer
     camera->SetClippingRange(10.0, 200.0);
   }
 
-  // Events in the words of vtkInteractorEventRecorder.
+  // Events in the format of vtkInteractorEventRecorder.
   static std::string Mouse(const char* name, double x, double y, bool isShifted = false)
   {
     std::ostringstream text;
@@ -168,7 +169,7 @@ void TestMisuse()
   vtkNew<vtkDeformVolumeInteractorStyle> style;
   vtkNew<vtkTest::ErrorObserver> errors;
   style->AddObserver(vtkCommand::ErrorEvent, errors);
-  double place[3];
+  double point[3];
   const auto expect = [&](const char* words)
   {
     VERIFY(Holds(errors->GetErrorMessage(), words));
@@ -184,7 +185,7 @@ void TestMisuse()
   expect("no interactor");
   style->StartSession();
   expect("no interactor");
-  VERIFY(!style->FindPosition(0, 0, place));
+  VERIFY(!style->FindPosition(0, 0, point));
   expect("no interactor");
   style->OnMouseMove();
   style->OnLeftButtonUp();
@@ -209,17 +210,17 @@ void TestMisuse()
   VERIFY(Holds(viewer.TakeError(), "Call SetSession() first"));
   viewer.Object->StartSession();
   VERIFY(Holds(viewer.TakeError(), "Call SetSession() first"));
-  viewer.Replay(Viewer::Key('k') + Viewer::Timer()); // no key, and no session
+  viewer.Replay(Viewer::Key('k') + Viewer::Timer()); // an unused key, and a timer without a session
   VERIFY(!viewer.Errors->GetError());
 
-  // A session without a volume: its errors are messages.
+  // Errors of a session without a volume are displayed as messages.
   viewer.Object->SetSession(viewer.SessionObject);
   viewer.Replay(Viewer::Timer() + Viewer::Mouse("LeftButtonPressEvent", 0, 0));
   VERIFY(Holds(viewer.Object->GetMessage(), "no volume yet"));
   viewer.Replay(Viewer::Key('2'));
   VERIFY(Holds(viewer.Object->GetMessage(), "Call SetInputs() first"));
   viewer.SessionErrors->Clear();
-  VERIFY(!viewer.Object->FindPosition(200, 200, place));
+  VERIFY(!viewer.Object->FindPosition(200, 200, point));
   VERIFY(!viewer.Errors->GetError());
 
   viewer.SessionObject->SetInputs(MakeBall());
@@ -249,19 +250,19 @@ void TestMisuse()
   VERIFY(!viewer.Errors->GetError() && !viewer.SessionErrors->GetError());
 }
 
-// What is visible along the axis of the view, at a place of the volume; -1 where nothing is.
+// The z coordinate of the visible point at x and y, or -1 if nothing is visible.
 double FindHeight(Viewer& viewer, double x, double y)
 {
-  double place[3] = { 0.0, 0.0, 0.0 };
+  double point[3] = { 0.0, 0.0, 0.0 };
   const double pixels[2] = { 0.5 * WindowSize + PixelsPerUnit * (x - Middle[0]),
     0.5 * WindowSize + PixelsPerUnit * (y - Middle[1]) };
   if (!viewer.Object->FindPosition(
-        static_cast<int>(std::lround(pixels[0])), static_cast<int>(std::lround(pixels[1])), place))
+        static_cast<int>(std::lround(pixels[0])), static_cast<int>(std::lround(pixels[1])), point))
   {
     return -1.0;
   }
-  VERIFY(std::abs(place[0] - x) < 1e-9 && std::abs(place[1] - y) < 1e-9);
-  return place[2];
+  VERIFY(std::abs(point[0] - x) < 1e-9 && std::abs(point[1] - y) < 1e-9);
+  return point[2];
 }
 
 void TestVisible()
@@ -277,7 +278,7 @@ void TestVisible()
   opacity->AddPoint(50.0, 0.0);
   opacity->AddPoint(60.0, 1.0);
   viewer.Object->SetVolume(viewer.VolumeObject);
-  // The ball reaches up to 9 + sqrt(36 - 2.5^2 - 0.5^2), which is 14.4.
+  // The top of the ball is at 9 + sqrt(36 - 2.5^2 - 0.5^2), which is 14.4.
   VERIFY_EQUAL(FindHeight(viewer, 15.0, 13.0), 14.0);
   VERIFY_EQUAL(FindHeight(viewer, 3.0, 4.0), -1.0);
   viewer.Object->SetPickMode(Style::ISOSURFACE);
@@ -288,13 +289,13 @@ void TestVisible()
   VERIFY_EQUAL(FindHeight(viewer, 3.0, 4.0), -1.0);
   viewer.Object->AddSlicePlane(0.0, 0.0, 2.0, 0.0, 0.0, 1.0);
   viewer.Object->AddSlicePlane(0.0, 0.0, 5.25, 0.0, 0.0, -2.0);
-  viewer.Object->AddSlicePlane(0.0, 0.0, 40.0, 0.0, 0.0, 1.0); // beyond the body
-  viewer.Object->AddSlicePlane(3.0, 0.0, 0.0, 1.0, 0.0, 0.0);  // along the view
+  viewer.Object->AddSlicePlane(0.0, 0.0, 40.0, 0.0, 0.0, 1.0); // outside the body
+  viewer.Object->AddSlicePlane(3.0, 0.0, 0.0, 1.0, 0.0, 0.0);  // parallel to the view
   VERIFY_EQUAL(FindHeight(viewer, 3.0, 4.0), 5.0);
   viewer.Object->ClearSlicePlanes();
   VERIFY_EQUAL(FindHeight(viewer, 3.0, 4.0), -1.0);
 
-  // Light that is absorbed slowly: half of what 19 voxels absorb.
+  // With low opacity the visible point is where half of the absorption of 19 voxels is reached.
   viewer.Object->SetPickMode(Style::OPACITY);
   for (const double part : { 0.02, 0.2 })
   {
@@ -304,26 +305,27 @@ void TestVisible()
     viewer.VolumeObject->GetProperty()->SetScalarOpacityUnitDistance(2.0);
     const double all = 1.0 - std::pow(1.0 - part, 19.0 / 2.0);
     const double depth = 2.0 * std::log(1.0 - std::min(0.5, 0.5 * all)) / std::log(1.0 - part);
-    VERIFY(std::abs(FindHeight(viewer, 3.0, 4.0) - (18.5 - depth)) <= 1.0); // a step and a voxel
+    VERIFY(
+      std::abs(FindHeight(viewer, 3.0, 4.0) - (18.5 - depth)) <= 1.0); // one step and one voxel
   }
   opacity->RemoveAllPoints();
   opacity->AddPoint(0.0, 0.001);
   VERIFY_EQUAL(FindHeight(viewer, 3.0, 4.0), -1.0);
 
-  // An oblique volume: what is found is a voxel of the border, and the mapper has a grid along
-  // the axes where the output is.
+  // An oblique volume: the visible point is on the surface of the volume. The mapper's image has no
+  // direction, but the volume actor transforms it to the output.
   auto oblique = MakeBall();
   SetObliqueDirection(oblique);
   Viewer other(oblique);
   other.Opacity->AddPoint(0.0, 1.0);
   double middle[3];
   oblique->GetCenter(middle);
-  double place[3] = { 0.0, 0.0, 0.0 };
+  double visible[3] = { 0.0, 0.0, 0.0 };
   other.Renderer->GetActiveCamera()->SetFocalPoint(middle);
   other.Renderer->GetActiveCamera()->SetPosition(middle[0], middle[1], middle[2] + 100.0);
-  VERIFY(other.Object->FindPosition(WindowSize / 2, WindowSize / 2, place));
+  VERIFY(other.Object->FindPosition(WindowSize / 2, WindowSize / 2, visible));
   double index[3];
-  oblique->TransformPhysicalPointToContinuousIndex(place, index);
+  oblique->TransformPhysicalPointToContinuousIndex(visible, index);
   double outside = -10.0;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -339,7 +341,7 @@ void TestVisible()
   VERIFY(glm::length(glm::dvec3(point[0], point[1], point[2]) -
            GetPoint(other.Object->GetOutput(), last)) < 1e-9);
 
-  // Air is negative, and so is what the body does not cover, unless another value is wanted.
+  // By default the background value is the least value of the volume.
   auto negative = MakeImage(Box);
   AddScalars<short>(negative, "value", [](const glm::dvec3& p) { return -1000.0 + p.x; });
   Viewer third(negative);
@@ -362,7 +364,7 @@ struct Event
   std::vector<double> Numbers;
 };
 
-// The record of a session.
+// Reads the recorded events of a session.
 std::vector<Event> ReadEvents(const std::string& fileName)
 {
   std::ifstream file(fileName);
@@ -406,7 +408,7 @@ void Cut(Session* session, const std::vector<double>& numbers)
   session->Cut(sheet);
 }
 
-// The same by calls of a session.
+// The output of a session that makes the same calls.
 vtkSmartPointer<vtkImageData> MakeDirectly(vtkImageData* volume, const std::vector<Event>& events)
 {
   vtkNew<vtkDeformVolumeSession> session;
@@ -475,7 +477,7 @@ vtkSmartPointer<vtkImageData> MakeDirectly(vtkImageData* volume, const std::vect
   return output;
 }
 
-// An event of the record that has these numbers, each with a margin.
+// An expected event of a record. Its numbers are compared with a tolerance.
 struct Wanted
 {
   const char* Name;
@@ -512,7 +514,8 @@ void TestTools(int model, const std::string& fileName)
   const auto mouse = [&](const char* name, double x, double y, bool isShifted = false)
   { events += Viewer::Mouse(name, x, y, isShifted) + timer; };
 
-  // A handle that is dragged with the wheel between, and left; a pin; a drag that is let go.
+  // A handle that is dragged, moved by the wheel, and kept when the button is released with Shift;
+  // a pin; a drag whose handle is released.
   events += Viewer::Key('g');
   mouse("LeftButtonPressEvent", 10.0, 12.0);
   mouse("MouseMoveEvent", 11.0, 13.0);
@@ -524,11 +527,11 @@ void TestTools(int model, const std::string& fileName)
   events += Viewer::Key('p', 4.0, 20.0) + timer;
   mouse("LeftButtonPressEvent", 22.0, 8.0);
   mouse("MouseMoveEvent", 21.0, 9.0);
-  // It ends with the left button, although the right one is down.
+  // The drag ends when the left button is released, although the right button is pressed.
   mouse("RightButtonPressEvent", 21.0, 9.0);
   mouse("LeftButtonReleaseEvent", 21.0, 9.0);
   mouse("RightButtonReleaseEvent", 21.0, 9.0);
-  // All again: the body is at rest, so that places are known.
+  // Reset, redo, and change to no model, so that the body is at rest and positions are known.
   events += Viewer::Key('z') + timer + Viewer::Key('y') + Viewer::Key('1') + timer;
   viewer.Replay(events);
   VERIFY(!viewer.Errors->GetError() && !viewer.SessionErrors->GetError());
@@ -567,7 +570,7 @@ void TestTools(int model, const std::string& fileName)
   VERIFY_EQUAL(at, wanted.size());
   VERIFY(AreEqual(viewer.Object->GetOutput(), MakeDirectly(volume, made)));
 
-  // At rest: a cut that begins beside the body, and a carving.
+  // At rest: a cut that begins outside the body, and a carving.
   events = Viewer::Key('c') + Viewer::Key('+');
   mouse("LeftButtonPressEvent", -6.0, 6.0);
   for (double x = -5.0; x <= 14.0; x += 0.5)
@@ -582,7 +585,7 @@ void TestTools(int model, const std::string& fileName)
   }
   mouse("LeftButtonPressEvent", 20.0, 20.0);
   mouse("MouseMoveEvent", 22.0, 22.0);
-  mouse("MouseMoveEvent", 23.0, 22.0); // too near to be an event before the button is released
+  mouse("MouseMoveEvent", 23.0, 22.0); // so near that it is recorded only at the release
   mouse("LeftButtonReleaseEvent", 23.0, 22.0);
   viewer.Replay(events);
   VERIFY(!viewer.Errors->GetError() && !viewer.SessionErrors->GetError());
@@ -610,7 +613,7 @@ void TestTools(int model, const std::string& fileName)
   VERIFY(IsWanted(made[before + 2], { "Carve", { 0, 22.0, 22.0, top, radius } }));
   VERIFY(IsWanted(made[before + 3], { "Carve", { 0, 23.0, 22.0, top, radius } }));
 
-  // The cut and carved body again by the model, and what was undone; until it rests.
+  // The model deforms the cut and carved body. Then undo and redo, until the body is at rest.
   events = Viewer::Key(static_cast<char>('1' + model)) + timer + Viewer::Key('g');
   mouse("LeftButtonPressEvent", 10.0, 8.0);
   mouse("MouseMoveEvent", 10.0, 11.0);
@@ -628,7 +631,7 @@ void TestTools(int model, const std::string& fileName)
   VERIFY_EQUAL(viewer.SessionObject->GetModel(), model);
 }
 
-// Which handles there are after undo and after events that fail.
+// The handles after undo, and after failed events.
 void TestHandles(const std::string& fileName)
 {
   Viewer viewer(MakeBall());
@@ -642,9 +645,9 @@ void TestHandles(const std::string& fileName)
   VERIFY(!release(10, 5));
   VERIFY(release(21.5, 5.5));
   VERIFY(!release(20, 5));
-  viewer.Replay(Viewer::Key('u') + timer); // the release
+  viewer.Replay(Viewer::Key('u') + timer); // undoes the release
   VERIFY(release(20, 5));
-  viewer.Replay(Viewer::Key('u') + Viewer::Key('u') + timer); // and the pin
+  viewer.Replay(Viewer::Key('u') + Viewer::Key('u') + timer); // undoes release and pin
   VERIFY(!release(20, 5));
   viewer.Replay(Viewer::Key('y') + timer);
   VERIFY(release(20, 5));
@@ -653,7 +656,7 @@ void TestHandles(const std::string& fileName)
   viewer.Replay(Viewer::Key('z') + timer);
   VERIFY(!release(5, 5) && !release(20, 5));
 
-  // Others may use the session, too.
+  // Direct calls of the session are possible, too.
   viewer.SessionObject->CarveSphere(5, 20, 18, -1.0); // fails
   viewer.SessionObject->CarveSphere(5, 20, 18, 1.0);
   viewer.Replay(timer);
@@ -663,14 +666,14 @@ void TestHandles(const std::string& fileName)
   VERIFY(!release(5, 5));
   VERIFY_EQUAL(viewer.SessionObject->GetNumberOfActions(), vtkIdType(1));
 
-  // A drag that is undone while the button is pressed ends there.
+  // Undo ends a drag while the button is pressed.
   viewer.Replay(Viewer::Key('2') + timer + Viewer::Key('g') +
     Viewer::Mouse("LeftButtonPressEvent", 8, 8) + Viewer::Mouse("MouseMoveEvent", 9, 8) + timer +
     Viewer::Key('u') + Viewer::Mouse("MouseMoveEvent", 10, 8) +
     Viewer::Mouse("LeftButtonReleaseEvent", 10, 8, true) + timer);
   VERIFY(!release(9, 8));
 
-  // Those of a session that is loaded.
+  // The handles of a loaded session.
   viewer.Replay(Viewer::Key('p', 20, 5) + timer);
   VERIFY(viewer.SessionObject->SaveSession(fileName));
   viewer.Replay(Viewer::Key('z') + timer);
@@ -697,7 +700,7 @@ void TestProbeAndMeasure()
   VERIFY(Holds(viewer.Object->GetMessage(), "value 10 at (5, 6, 17), at rest (5, 6, 17)"));
   viewer.Replay(Viewer::Mouse("MouseMoveEvent", -6.0, 6.0));
   VERIFY_EQUAL(viewer.Object->GetMessage(), std::string("There is nothing here."));
-  // Where it was dragged to, and while events wait.
+  // Probe while events are processed, and afterwards.
   viewer.Replay(Viewer::Key('2') + Viewer::Key('g') +
     Viewer::Mouse("LeftButtonPressEvent", 5.0, 6.0) + timer +
     Viewer::Mouse("MouseMoveEvent", 8.0, 6.0) + timer + Viewer::Key('b') + Viewer::Key('u') +
@@ -713,7 +716,7 @@ void TestProbeAndMeasure()
   VERIFY(!viewer.SessionErrors->GetError() && !viewer.Errors->GetError());
 }
 
-// The camera: what the right button, the wheel and r do, whatever the tool is.
+// The right and middle button and the wheel move the camera, with any tool.
 void TestCamera()
 {
   Viewer viewer(MakeBall());
@@ -739,7 +742,7 @@ void TestCamera()
   VERIFY(camera->GetParallelScale() < scale);
   viewer.Replay(Viewer::Key('h') + Viewer::Timer());
   VERIFY(viewer.Object->GetShowHelp());
-  VERIFY_EQUAL(viewer.SessionObject->GetNumberOfActions(), vtkIdType(1)); // the drag of nothing
+  VERIFY_EQUAL(viewer.SessionObject->GetNumberOfActions(), vtkIdType(1)); // a drag without motion
 }
 
 void TestThread()
@@ -775,8 +778,8 @@ void TestThread()
   VERIFY(!viewer.SessionErrors->GetError() && !viewer.Errors->GetError());
 }
 
-// Whatever is pressed and moved in a window whose size changes: no error but those that users make,
-// and the volume at rest when all is undone.
+// Random events in a window whose size changes. The only errors are those of invalid drags, and
+// after a reset the volume is at rest.
 void TestRandom(int events, unsigned seed)
 {
   Viewer viewer(MakeBall());
@@ -807,7 +810,7 @@ void TestRandom(int events, unsigned seed)
           random() % 2 == 0 ? "MouseWheelForwardEvent" : "MouseWheelBackwardEvent", x, y));
         break;
       case 5:
-        // In the middle of a drag, too. One pixel is the smallest window.
+        // Change the size, also during a drag. The smallest window has one pixel.
         viewer.Window->SetSize(
           static_cast<int>(pick(1.0, 500.0)), static_cast<int>(pick(1.0, 500.0)));
         viewer.Interactor->SetSize(viewer.Window->GetSize());
@@ -824,7 +827,8 @@ void TestRandom(int events, unsigned seed)
     VERIFY_EQUAL(viewer.TakeError(), std::string());
     const std::string error = viewer.SessionErrors->GetErrorMessage();
     viewer.SessionErrors->Clear();
-    // Two handles may want one node, what is seen may have gone since, and springs may be torn.
+    // Possible errors: two handles hold the same node, the displayed point does not exist any more,
+    // or the simulation of springs diverges.
     if (!error.empty() && error.find("holds no node") == std::string::npos &&
       error.find("has diverged") == std::string::npos &&
       error.find("nothing of the volume") == std::string::npos &&
@@ -834,7 +838,7 @@ void TestRandom(int events, unsigned seed)
     }
     ++words[viewer.Object->GetMessage()];
   }
-  VERIFY(words.size() > 5); // all kinds of things have happened
+  VERIFY(words.size() > 5); // there were different messages
   std::string timers = Viewer::Mouse("LeftButtonReleaseEvent", 0.0, 0.0);
   timers += Viewer::Key('z') + Viewer::Timer() + Viewer::Timer();
   viewer.Replay(timers);
@@ -845,10 +849,10 @@ void TestRandom(int events, unsigned seed)
 
 using Pixel = std::array<int, 3>;
 
-// Where pixels have a colour, to 4 of 255 a channel.
+// The pixels of a color, with a tolerance of 4 of 255 in each channel.
 struct Shown
 {
-  Shown(vtkRenderWindow* window, const Pixel& colour)
+  Shown(vtkRenderWindow* window, const Pixel& color)
     : IsThere(WindowSize * WindowSize)
   {
     window->Render();
@@ -859,21 +863,21 @@ struct Shown
       bool isEqual = true;
       for (int channel = 0; channel < 3; ++channel)
       {
-        isEqual = isEqual && std::abs(pixels->GetValue(3 * i + channel) - colour[channel]) <= 4;
+        isEqual = isEqual && std::abs(pixels->GetValue(3 * i + channel) - color[channel]) <= 4;
       }
       this->IsThere[i] = isEqual;
       if (isEqual)
       {
         ++this->Count;
-        this->Mean += GetPlace(i);
-        this->Left = std::min(this->Left, GetPlace(i).x);
+        this->Mean += GetPosition(i);
+        this->Left = std::min(this->Left, GetPosition(i).x);
       }
     }
     this->Mean /= std::max(this->Count, 1);
   }
 
-  // The middle of a pixel in the world.
-  static glm::dvec2 GetPlace(int pixel)
+  // The world position of the middle of a pixel.
+  static glm::dvec2 GetPosition(int pixel)
   {
     return glm::dvec2(pixel % WindowSize + 0.5 - 0.5 * WindowSize,
              pixel / WindowSize + 0.5 - 0.5 * WindowSize) /
@@ -887,8 +891,8 @@ struct Shown
   double Left = 1e9;
 };
 
-// What is drawn of a ball from above, at rest, with handles, dragged and carved. Colours are flat,
-// so that each pixel is known where no border is.
+// The picture of a ball, seen from above: at rest, with handles, dragged and carved. Colors are
+// flat, so that all pixels are known, except at outlines.
 void TestPicture()
 {
   Viewer viewer(MakeBall());
@@ -898,9 +902,9 @@ void TestPicture()
   viewer.Opacity->RemoveAllPoints();
   viewer.Opacity->AddPoint(54.0, 0.0);
   viewer.Opacity->AddPoint(56.0, 1.0);
-  vtkNew<vtkColorTransferFunction> colour;
-  colour->AddRGBPoint(0.0, 1.0, 0.8, 0.6);
-  viewer.VolumeObject->GetProperty()->SetColor(colour);
+  vtkNew<vtkColorTransferFunction> color;
+  color->AddRGBPoint(0.0, 1.0, 0.8, 0.6);
+  viewer.VolumeObject->GetProperty()->SetColor(color);
   viewer.VolumeObject->GetProperty()->SetInterpolationTypeToLinear();
   viewer.Renderer->AddVolume(viewer.VolumeObject);
   viewer.Object->ShowStatusOff();
@@ -910,15 +914,15 @@ void TestPicture()
   const std::string timer = Viewer::Timer();
   const glm::dvec2 middle(Middle[0], Middle[1]);
 
-  // The ball is symmetric about its middle, to a pixel. Its surface lies between the voxels within
-  // and without: half a voxel more or less are 17 % of the disc.
+  // The ball is symmetric about its middle, to one pixel. Its surface is between inner and outer
+  // voxels: half a voxel is 17 % of the area of the disc.
   const Shown rest(viewer.Window, body);
   VERIFY(glm::length(rest.Mean - middle) < 0.1);
   VERIFY(std::abs(rest.Count / (3.141593 * 3600.0) - 1.0) < 0.17);
   VERIFY_EQUAL(Shown(viewer.Window, handle).Count, 0);
 
-  // A handle is a square of nine pixels, in front of all; a pixel more or less on each side makes
-  // 64 to 100.
+  // A handle is a square of 9 x 9 pixels in front of all objects. If each side has one pixel more
+  // or less, it has 64 to 100 pixels.
   viewer.Replay(Viewer::Key('2') + timer + Viewer::Key('p', 15.0, 14.0) + timer);
   const Shown pinned(viewer.Window, handle);
   VERIFY(std::abs(pinned.Count - 81) <= 18);
@@ -926,7 +930,7 @@ void TestPicture()
   VERIFY(std::abs(Shown(viewer.Window, body).Count + pinned.Count - rest.Count) <= 1);
   viewer.Replay(Viewer::Key('u') + timer);
 
-  // Dragged by three units with a handle that stays, which is drawn where it is held.
+  // The ball is dragged by three units. The handle is kept, and drawn at its position.
   std::string events = Viewer::Key('g') + Viewer::Mouse("LeftButtonPressEvent", 8.0, 14.0) + timer +
     Viewer::Mouse("MouseMoveEvent", 5.0, 14.0) + timer +
     Viewer::Mouse("LeftButtonReleaseEvent", 5.0, 14.0, true);
@@ -941,35 +945,35 @@ void TestPicture()
   VERIFY(glm::length(held.Mean - glm::dvec2(5.0, 14.0)) < 0.15);
   VERIFY(dragged.Left < rest.Left - 1.0);
 
-  // What a sphere carves out is gone, and nothing else. Within two units of its middle the sphere
-  // reaches through the whole ball.
+  // A sphere carves a hole, and other pixels do not change. Within two units of its middle the
+  // sphere removes the ball at all depths.
   viewer.Object->SetCarveRadius(9.0);
   viewer.Replay(Viewer::Key('u') + timer + Viewer::Key('v') +
     Viewer::Mouse("LeftButtonPressEvent", 18.0, 13.5) +
     Viewer::Mouse("MouseMoveEvent", 18.0, 13.5) + timer);
   const Shown circle(viewer.Window, stroke);
-  VERIFY(circle.Count > 100); // round the voxel that is pressed on
+  VERIFY(circle.Count > 100); // the outline of the sphere
   for (int i = 0; i < WindowSize * WindowSize; ++i)
   {
-    const double distance = glm::length(Shown::GetPlace(i) - glm::dvec2(18.0, 14.0));
+    const double distance = glm::length(Shown::GetPosition(i) - glm::dvec2(18.0, 14.0));
     VERIFY(!circle.IsThere[i] || std::abs(distance - 9.0) < 0.2);
   }
   viewer.Replay(
     Viewer::Mouse("LeftButtonReleaseEvent", 18.0, 13.5) + timer + Viewer::Key('t') + timer);
   const Shown carved(viewer.Window, body);
-  int left = 0;
-  int lost = 0;
+  int remaining = 0;
+  int changed = 0;
   for (int i = 0; i < WindowSize * WindowSize; ++i)
   {
-    const double distance = glm::length(Shown::GetPlace(i) - glm::dvec2(18.0, 13.5));
-    left += distance < 2.0 && carved.IsThere[i];
-    lost += distance > 10.0 && carved.IsThere[i] != rest.IsThere[i];
+    const double distance = glm::length(Shown::GetPosition(i) - glm::dvec2(18.0, 13.5));
+    remaining += distance < 2.0 && carved.IsThere[i];
+    changed += distance > 10.0 && carved.IsThere[i] != rest.IsThere[i];
   }
-  VERIFY_EQUAL(left, 0);
-  VERIFY_EQUAL(lost, 0);
+  VERIFY_EQUAL(remaining, 0);
+  VERIFY_EQUAL(changed, 0);
   VERIFY(carved.Count > rest.Count / 4);
 
-  // The stroke of a cut, while the button is down.
+  // The stroke of a cut is drawn while the button is pressed.
   viewer.Replay(Viewer::Key('u') + timer + Viewer::Key('c') +
     Viewer::Mouse("LeftButtonPressEvent", 6.0, 13.5) + Viewer::Mouse("MouseMoveEvent", 12.0, 13.5) +
     timer);
@@ -994,7 +998,7 @@ void TestPicture()
 
 int TestDeformVolumeInteractorStyle(int argc, char* argv[])
 {
-  // The test driver has options of its own.
+  // The test driver passes options, which atoi() reads as 0.
   const int events = argc > 1 && std::atoi(argv[1]) > 0 ? std::atoi(argv[1]) : 300;
   const int seed = argc > 2 ? std::max(std::atoi(argv[2]), 1) : 1;
   std::string folder = ".";

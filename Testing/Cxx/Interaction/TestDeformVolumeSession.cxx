@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vtkDeformVolumeSession: misuse, a drag against filters that know no session, random sessions that
-// are undone to the start, files, and the thread.
+// vtkDeformVolumeSession: misuse, a drag compared with filters without a session, random sessions
+// that are undone completely, files, and the thread.
 //
 // Usage: TestDeformVolumeSession [NUMBER OF RANDOM EVENTS] (300) [SEED] (1)
 #include "ChainMailTesting.h"
@@ -57,7 +57,7 @@ struct Tested
     return error;
   }
 
-  // All that waits, until the body rests.
+  // Processes all waiting events and steps, until the body is at rest.
   vtkSmartPointer<vtkImageData> Finish(int steps = 300)
   {
     for (int i = 0; i < steps && this->Object->Update(); ++i)
@@ -154,7 +154,7 @@ void TestMisuse(vtkImageData* volume)
   one.Object->Redo();
   one.Finish();
 
-  // A handle that goes too far stays where it was, and so does the body.
+  // A handle that is moved too far does not move, and the body does not change.
   one.Object->ChangeModel(Session::CHAIN_MAIL);
   const int handle = one.Object->BeginGrab(10, 10, 10);
   one.Object->MoveGrab(handle, 12, 10, 10);
@@ -173,7 +173,7 @@ void TestMisuse(vtkImageData* volume)
   VERIFY(Holds(one.TakeError(), "Call Stop()"));
 }
 
-// The volume at rest is where the volume was, and covers nothing else.
+// Checks that the output is the volume at rest, and that no other voxels are covered.
 void VerifyRest(vtkImageData* output, vtkImageData* volume)
 {
   VERIFY(output);
@@ -186,8 +186,8 @@ void VerifyRest(vtkImageData* output, vtkImageData* volume)
   }
   for (vtkIdType id = 0; id < volume->GetNumberOfPoints(); ++id)
   {
-    const glm::dvec3 place = GetPoint(volume, id);
-    const vtkIdType at = output->FindPoint(place.x, place.y, place.z);
+    const glm::dvec3 point = GetPoint(volume, id);
+    const vtkIdType at = output->FindPoint(point.x, point.y, point.z);
     isEqual = isEqual && at >= 0 &&
       output->GetPointData()->GetScalars()->GetComponent(at, 0) ==
         volume->GetPointData()->GetScalars()->GetComponent(id, 0);
@@ -196,7 +196,7 @@ void VerifyRest(vtkImageData* output, vtkImageData* volume)
   VERIFY_EQUAL(covered, volume->GetNumberOfPoints());
 }
 
-// The same with filters alone.
+// A drag, compared with filters without a session.
 void TestDrag(vtkImageData* volume)
 {
   Tested one(volume);
@@ -208,7 +208,7 @@ void TestDrag(vtkImageData* volume)
 
   Dragged model(volume);
   model.Filter->SetRelaxationSweeps(5);
-  model.Update(); // the model was chosen
+  model.Update(); // the session executes the model when it is chosen
   model.Drag({ { { 10, 11, 9 }, { 14, 11, 8 } } });
   Deformed wanted(volume, model.Filter->GetOutput());
   wanted.Filter->SetOutputBoundsModeToVolumeBounds();
@@ -225,7 +225,7 @@ void TestDrag(vtkImageData* volume)
   VERIFY(one.Object->GetSimulationTime() > 0.0 && one.Object->GetResamplingTime() > 0.0);
 }
 
-// Cuts divide tetrahedra, and what is carved out ends between the voxels: as by filters alone.
+// Smooth cuts and smooth boundaries, compared with filters without a session.
 void TestSmoothTools(vtkImageData* volume)
 {
   const auto compare = [](
@@ -251,7 +251,7 @@ void TestSmoothTools(vtkImageData* volume)
   knife->Update();
   Dragged model(knife->GetOutput());
   model.Filter->SetRelaxationSweeps(5);
-  model.Update(); // the model was chosen
+  model.Update(); // the session executes the model when it is chosen
   model.Drag({ { { 12, 10, 9 }, { 15, 10, 9 } } });
   compare(cut, opened, knife->GetOutput(), model.Filter->GetOutput());
 
@@ -269,8 +269,8 @@ void TestSmoothTools(vtkImageData* volume)
   compare(carved, hollow, carve->GetOutput(), still);
 }
 
-// What holds the body, as it is asked for.
-struct HeldPlace
+// An expected handle of a session.
+struct ExpectedHandle
 {
   int Number;
   glm::dvec3 Now;
@@ -278,7 +278,7 @@ struct HeldPlace
   bool IsGrabbed;
 };
 
-bool IsHeldAt(Session* session, const std::vector<HeldPlace>& wanted)
+bool HasHandles(Session* session, const std::vector<ExpectedHandle>& wanted)
 {
   vtkNew<vtkPolyData> handles;
   session->GetHandles(handles);
@@ -286,7 +286,7 @@ bool IsHeldAt(Session* session, const std::vector<HeldPlace>& wanted)
   bool isEqual = handles->GetNumberOfPoints() == static_cast<vtkIdType>(wanted.size());
   for (vtkIdType id = 0; isEqual && id < handles->GetNumberOfPoints(); ++id)
   {
-    const HeldPlace& one = wanted[static_cast<std::size_t>(id)];
+    const ExpectedHandle& one = wanted[static_cast<std::size_t>(id)];
     glm::dvec3 rest(0.0);
     data->GetArray("RestPosition")->GetTuple(id, &rest.x);
     const double* now = handles->GetPoint(id);
@@ -302,46 +302,46 @@ void TestHandles(vtkImageData* volume, const std::string& fileName)
 {
   Tested one(volume);
   Session* session = one.Object;
-  VERIFY(IsHeldAt(session, {}));
+  VERIFY(HasHandles(session, {}));
   session->ChangeModel(Session::CHAIN_MAIL);
   const int pin = session->Pin(4, 5, 6);
   const int grab = session->BeginGrab(10, 11, 9);
   session->MoveGrab(grab, 12, 11, 9);
-  VERIFY(IsHeldAt(session, {})); // those of the last update
+  VERIFY(HasHandles(session, {})); // handles are those of the last update
   one.Step();
-  const HeldPlace pinned{ pin, { 4, 5, 6 }, { 4, 5, 6 }, false };
-  HeldPlace pulled{ grab, { 12, 11, 9 }, { 10, 11, 9 }, true };
-  VERIFY(IsHeldAt(session, { pinned, pulled }));
-  // What cannot be reached is not held there.
+  const ExpectedHandle pinned{ pin, { 4, 5, 6 }, { 4, 5, 6 }, false };
+  ExpectedHandle pulled{ grab, { 12, 11, 9 }, { 10, 11, 9 }, true };
+  VERIFY(HasHandles(session, { pinned, pulled }));
+  // A move that fails does not change the handle.
   session->MoveGrab(grab, 1e30, 11, 9);
   one.Step();
   VERIFY(!one.TakeError().empty());
-  VERIFY(IsHeldAt(session, { pinned, pulled }));
+  VERIFY(HasHandles(session, { pinned, pulled }));
   session->HoldGrab(grab);
   one.Step();
   pulled.IsGrabbed = false;
-  VERIFY(IsHeldAt(session, { pinned, pulled }));
+  VERIFY(HasHandles(session, { pinned, pulled }));
   VERIFY(session->SaveSession(fileName));
   session->Release(pin);
   one.Step();
-  VERIFY(IsHeldAt(session, { pulled }));
+  VERIFY(HasHandles(session, { pulled }));
   session->Undo();
   one.Step();
-  VERIFY(IsHeldAt(session, { pinned, pulled }));
-  // Another session knows those of the file, and lets them go.
+  VERIFY(HasHandles(session, { pinned, pulled }));
+  // Another session has the handles of a loaded file, and can release them.
   Tested other(volume);
   VERIFY(other.Object->LoadSession(fileName));
   other.Step();
-  VERIFY(IsHeldAt(other.Object, { pinned, pulled }));
+  VERIFY(HasHandles(other.Object, { pinned, pulled }));
   other.Object->Release(grab);
   other.Step();
-  VERIFY(IsHeldAt(other.Object, { pinned }));
+  VERIFY(HasHandles(other.Object, { pinned }));
   VERIFY(other.Object->SetInputs(volume));
-  VERIFY(IsHeldAt(other.Object, {}));
+  VERIFY(HasHandles(other.Object, {}));
 }
 
-// Springs that are torn, and a handle with nothing to hold: one error each, and the session goes
-// on.
+// A simulation of springs that diverges, and a handle outside the volume: one error each, and the
+// session works afterwards.
 void TestRecovery(vtkImageData* volume)
 {
   Tested one(volume);
@@ -349,11 +349,11 @@ void TestRecovery(vtkImageData* volume)
   session->ChangeModel(Session::MASS_SPRING);
   const int handle = session->BeginGrab(10, 10, 17);
   one.Step();
-  VERIFY(IsHeldAt(session, { { handle, { 10, 10, 17 }, { 10, 10, 17 }, true } }));
+  VERIFY(HasHandles(session, { { handle, { 10, 10, 17 }, { 10, 10, 17 }, true } }));
   session->MoveGrab(handle, 1e7, 10, 17);
   one.Step();
   VERIFY(Holds(one.TakeError(), "diverged"));
-  VERIFY(IsHeldAt(session, { { handle, { 10, 10, 17 }, { 10, 10, 17 }, true } }));
+  VERIFY(HasHandles(session, { { handle, { 10, 10, 17 }, { 10, 10, 17 }, true } }));
   session->MoveGrab(handle, 11, 10, 17);
   VERIFY(one.Step() != nullptr);
   VERIFY_EQUAL(one.TakeError(), std::string());
@@ -390,7 +390,7 @@ void TestModels(vtkImageData* volume)
   step(Session::MASS_SPRING);
 }
 
-// What is done twice is undone twice, with a body that is pulled apart, so that cuts are seen.
+// Actions that are made twice are undone twice. The body is pulled apart, so that cuts are visible.
 void TestTwice(vtkImageData* volume)
 {
   Tested one(volume);
@@ -402,7 +402,7 @@ void TestTwice(vtkImageData* volume)
   const int handle = one.Object->BeginGrab(20, 10, 9);
   one.Object->MoveGrab(handle, 24, 10, 9);
   one.Object->EndGrab(handle);
-  const auto whole = one.Step(); // the drag was over before the step
+  const auto whole = one.Step(); // the drag ended before the step
   VERIFY(AreEqual(whole, rest));
   const int other = one.Object->BeginGrab(20, 10, 9);
   one.Object->MoveGrab(other, 24, 10, 9);
@@ -452,8 +452,8 @@ public:
   void MakeEvent()
   {
     Session* session = this->One.Object;
-    const glm::dvec3 place = this->GetPlace();
-    // Each loading of the session does all of them again.
+    const glm::dvec3 position = this->GetPosition();
+    // Loading a session repeats all actions, so their number is limited.
     constexpr vtkIdType mostActions = 150;
     if (session->GetNumberOfActions() > mostActions)
     {
@@ -465,13 +465,13 @@ public:
         session->ChangeModel(static_cast<int>(this->Random() % 4));
         break;
       case 1:
-        session->Cut(MakePlane(place, { 0, this->GetNumber(3, 20), 2 }, { 1, 0, 9 }));
+        session->Cut(MakePlane(position, { 0, this->GetNumber(3, 20), 2 }, { 1, 0, 9 }));
         break;
       case 2:
-        session->CarveSphere(place.x, place.y, place.z, this->GetNumber(0.5, 3));
+        session->CarveSphere(position.x, position.y, position.z, this->GetNumber(0.5, 3));
         break;
       case 3:
-        session->CarveTo(place.x, place.y, place.z, this->GetNumber(0.5, 3));
+        session->CarveTo(position.x, position.y, position.z, this->GetNumber(0.5, 3));
         break;
       case 4:
       case 5:
@@ -481,7 +481,7 @@ public:
         session->Redo();
         break;
       case 7:
-        this->Handle = session->BeginGrab(place.x, place.y, place.z);
+        this->Handle = session->BeginGrab(position.x, position.y, position.z);
         break;
       case 8:
         session->EndGrab(this->Handle);
@@ -493,16 +493,16 @@ public:
         session->Release(this->Handle);
         break;
       case 11:
-        session->Pin(place.x, place.y, place.z);
+        session->Pin(position.x, position.y, position.z);
         break;
       default:
-        session->MoveGrab(this->Handle, place.x, place.y, place.z);
+        session->MoveGrab(this->Handle, position.x, position.y, position.z);
     }
     if (this->Random() % 2 == 0)
     {
       this->One.Step();
-      // Handles that are gone may be moved, two may want one node, and springs may be torn; nothing
-      // else may go wrong.
+      // Possible errors: a released handle is moved, two handles hold the same node, or the
+      // simulation of springs diverges.
       const std::string error = this->One.TakeError();
       if (!error.empty() && error.find("is not grabbed") == std::string::npos &&
         error.find("holds nothing") == std::string::npos &&
@@ -520,7 +520,7 @@ public:
   {
     return std::uniform_real_distribution<double>(low, high)(this->Random);
   }
-  glm::dvec3 GetPlace()
+  glm::dvec3 GetPosition()
   {
     return { this->GetNumber(Box[0], Box[1]), this->GetNumber(Box[2], Box[3]),
       this->GetNumber(Box[4], Box[5]) };
@@ -536,7 +536,8 @@ void TestRandom(vtkImageData* volume, int events, unsigned seed, const std::stri
   RandomSession random(volume, seed);
   Tested& one = random.One;
   const auto first = one.Finish();
-  // Less than random actions take, so that some are undone without what is kept.
+  // The memory for undo is less than random actions need, so that some are undone without saved
+  // states.
   one.Object->ChangeUndoMemory(4e6);
   for (int i = 0; i < events && GetNumberOfFailures() == 0; ++i)
   {
@@ -546,7 +547,7 @@ void TestRandom(vtkImageData* volume, int events, unsigned seed, const std::stri
   one.TakeError();
   VERIFY(one.Object->GetNumberOfActions() > 0);
 
-  // A file brings the same arrays, and all that can be undone.
+  // A session from a file has the same output and the same actions for undo and redo.
   VERIFY(one.Object->SaveSession(fileName));
   Tested other(volume);
   other.Object->Pin(3, 3, 3);
@@ -560,7 +561,7 @@ void TestRandom(vtkImageData* volume, int events, unsigned seed, const std::stri
   VERIFY_EQUAL(other.Object->GetNumberOfActions(), one.Object->GetNumberOfActions());
   VERIFY_EQUAL(other.Object->GetNumberOfUndoneActions(), one.Object->GetNumberOfUndoneActions());
 
-  // The one action by action, the other at once, and then all is made again.
+  // One session undoes all actions, the other one is reset; then both redo all actions.
   const vtkIdType actions = one.Object->GetNumberOfActions();
   for (vtkIdType i = 0; i < actions; ++i)
   {
@@ -597,7 +598,7 @@ std::string Replace(std::string text, const std::string& from, const std::string
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
-// Tissue that is pulled out of the output is cut off, with one warning.
+// Tissue that is pulled out of the extent of the output causes one warning.
 void TestPadding(vtkImageData* volume)
 {
   for (const int padding : { 8, 30 })
@@ -634,7 +635,7 @@ void TestFiles(vtkImageData* volume, const std::string& fileName)
   const std::string text = ReadText(fileName);
   for (const char* const type : { ".vti", ".vtu" })
   {
-    // Inline: there are ParaViews that cannot read raw appended data.
+    // Data is inline, since some versions of ParaView cannot read raw appended data.
     VERIFY(ReadText(fileName + type).find("<AppendedData") == std::string::npos);
   }
 
@@ -664,7 +665,7 @@ void TestFiles(vtkImageData* volume, const std::string& fileName)
   VERIFY(Holds(one.TakeError(), "cannot be read"));
   VERIFY(AreEqual(before, one.Step()));
 
-  // What was done before a session is loaded leaves no trace, whatever the model.
+  // Loading a session removes all previous actions, with any model.
   Tested used(volume);
   used.Object->ChangeModel(Session::CHAIN_MAIL);
   const int pulled = used.Object->BeginGrab(10, 10, 10);
@@ -692,7 +693,7 @@ void TestFiles(vtkImageData* volume, const std::string& fileName)
   VERIFY(!other.Object->LoadSession(fileName));
   VERIFY(Holds(other.TakeError(), "another volume"));
 
-  // A folder that is not there, and a disk that is full: the old file stays.
+  // A folder that does not exist, and a full disk: the previous file is kept.
   VERIFY(!one.Object->SaveSession("/dev/null/session"));
   VERIFY(Holds(one.TakeError(), "cannot be written"));
   VERIFY(!one.Object->SaveVolume("/dev/null/volume.vti"));
@@ -716,8 +717,8 @@ void TestFiles(vtkImageData* volume, const std::string& fileName)
   VERIFY(AreEqual(before, one.Step()));
 }
 
-// Finite elements have a lattice of half as many cells, with nodes in the middle of edges, and a
-// place is led back to rest as vtkDeformGeometryFilter leads it there.
+// Finite elements use a lattice with half as many cells on each axis and with mid-side nodes.
+// Probed rest positions are inverse to vtkDeformGeometryFilter.
 void TestTenNodeElements(vtkImageData* volume, const std::string& fileName)
 {
   Tested one(volume);
@@ -729,7 +730,7 @@ void TestTenNodeElements(vtkImageData* volume, const std::string& fileName)
   vtkNew<vtkXMLUnstructuredGridReader> reader;
   reader->SetFileName(fileName.c_str());
   reader->Update();
-  vtkNew<vtkUnstructuredGrid> mesh; // at rest
+  vtkNew<vtkUnstructuredGrid> mesh; // the mesh at rest
   mesh->DeepCopy(reader->GetOutput());
   vtkDataArray* vectors = mesh->GetPointData()->GetArray("Displacement");
   for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
@@ -739,7 +740,8 @@ void TestTenNodeElements(vtkImageData* volume, const std::string& fileName)
     const glm::dvec3 rest = GetPoint(mesh, i) - glm::dvec3(by[0], by[1], by[2]);
     mesh->GetPoints()->SetPoint(i, &rest.x);
   }
-  // A lattice of at most seven nodes on each axis, less those in the middle of its cubes.
+  // Corners and mid-side nodes are a lattice of at most seven nodes on each axis, without the
+  // centers of the cubes.
   vtkNew<vtkLatticeTetrahedraSource> lattice;
   lattice->SetInputData(volume);
   lattice->SetNumberOfNodes(4, 4, 4);
@@ -757,10 +759,10 @@ void TestTenNodeElements(vtkImageData* volume, const std::string& fileName)
 
   vtkNew<vtkPoints> points;
   std::mt19937 random(4);
-  std::uniform_real_distribution<double> place(2.0, 15.0);
+  std::uniform_real_distribution<double> coordinate(2.0, 15.0);
   for (int i = 0; i < 50; ++i)
   {
-    points->InsertNextPoint(place(random), place(random), place(random));
+    points->InsertNextPoint(coordinate(random), coordinate(random), coordinate(random));
   }
   vtkNew<vtkPolyData> geometry;
   geometry->SetPoints(points);
@@ -781,11 +783,11 @@ void TestTenNodeElements(vtkImageData* volume, const std::string& fileName)
     one.Object->GetProbedRestPosition(found);
     worst = std::max(worst, glm::distance(rest, glm::dvec3(found[0], found[1], found[2])));
   }
-  std::cout << "places that moved by up to " << most << " are led back within " << worst << "\n";
+  std::cout << "displacements of up to " << most << " are inverted within " << worst << "\n";
   VERIFY(most > 1.0 && worst < 1e-5); // points and vectors are floats
 }
 
-// A file that version 0.1 has written, with events of all kinds.
+// A file of version 0.1, with events of all kinds.
 void TestOldFile(const std::string& data, const std::string& fileName)
 {
   auto volume = MakeImage({ { 0, 13, 0, 12, 0, 11 } });
@@ -838,12 +840,12 @@ void TestThread(vtkImageData* volume, const std::string& fileName)
   VERIFY(one.Object->SaveSession(fileName));
   VERIFY_EQUAL(one.TakeError(), std::string());
 
-  // What the thread has done is replayed without one.
+  // The recorded session of the thread gives the same result without a thread.
   Tested other(volume);
   VERIFY(other.Object->LoadSession(fileName));
   VERIFY(AreEqual(one.Step(), other.Step()));
 
-  // It ends with the session, in the middle of a motion.
+  // The thread ends when the session is deleted during a motion.
   for (int i = 0; i < 5; ++i)
   {
     Tested closed(volume);
@@ -855,7 +857,7 @@ void TestThread(vtkImageData* volume, const std::string& fileName)
     VERIFY(closed.Object->GetIsBusy());
   }
 
-  // ChainMail comes to rest by itself.
+  // ChainMail comes to rest without further events.
   Tested resting(volume);
   resting.Object->ChangeModel(Session::CHAIN_MAIL);
   resting.Object->CarveSphere(4, 4, 4, 2.0);
@@ -872,7 +874,7 @@ void TestThread(vtkImageData* volume, const std::string& fileName)
 
 int TestDeformVolumeSession(int argc, char* argv[])
 {
-  // The test driver has options of its own.
+  // The test driver passes options, which atoi() reads as 0.
   const int events = argc > 1 && std::atoi(argv[1]) > 0 ? std::atoi(argv[1]) : 300;
   const int seed = argc > 2 ? std::max(std::atoi(argv[2]), 1) : 1;
   std::string folder = ".";
