@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the tests of the interface for C have in common: a deformer of C beside a filter.
+// For the tests of the interface for C: a dv_deformer that is compared with a
+// vtkDeformVolumeFilter.
 #ifndef CTesting_h
 #define CTesting_h
 
@@ -44,7 +45,7 @@ inline dv_grid MakeGrid(vtkImageData* image)
   return grid;
 }
 
-/// A deformer of C with all that a filter has.
+/// A dv_deformer, with functions that set the inputs of a filter.
 class InC
 {
 public:
@@ -172,9 +173,10 @@ public:
     Check(dv_set_reference(this->Deformer, &grid));
   }
 
-  /// Which arrays are densities. To be set before the volume.
+  /// The names of the arrays that are densities. Set them before SetVolume().
   std::set<std::string> Densities;
-  /// What is wanted besides the arrays of the volume.
+  /// Whether Deform() requests rest positions and Jacobians, fold counts, and an incremental
+  /// update.
   bool WithExtra = false;
   bool WithFolds = false;
   bool IsIncremental = false;
@@ -223,7 +225,7 @@ public:
     Check(dv_deform(this->Deformer, &request, &this->Report));
   }
 
-  /// Whether some bytes are those of an array of an image.
+  /// Whether values are equal to those of an array of an image, bit by bit.
   template <typename T>
   static bool AreBits(const std::vector<T>& made, vtkImageData* image, const char* name)
   {
@@ -236,7 +238,8 @@ public:
       std::memcmp(made.data(), array->GetVoidPointer(0), bytes) == 0;
   }
 
-  /// Deforms, and compares with what a filter makes.
+  /// Deforms, and compares all results with those of a filter. warning: a part of the warning that
+  /// both must report, or "" for none.
   void Compare(Deformed& deformed, const std::string& warning = "")
   {
     vtkImageData* wanted = deformed.Expect(warning);
@@ -273,7 +276,7 @@ public:
 private:
   double Background = 0.0;
   std::vector<std::string> Names;
-  std::vector<std::size_t> Sizes; // bytes of a voxel
+  std::vector<std::size_t> Sizes; // bytes of each voxel
   std::vector<std::vector<unsigned char>> Outputs;
   std::vector<std::int8_t> Coverage;
   std::vector<float> RestPositions;
@@ -297,7 +300,7 @@ inline vtkSmartPointer<vtkImageData> MakeManyArrays()
   const auto add = [&](auto type, const char* name, const WorldFunction& function)
   {
     AddScalars<decltype(type)>(volume, name, function);
-    // Else the next ones would take its place.
+    // Otherwise the next array would replace this one.
     volume->GetPointData()->SetActiveAttribute(-1, vtkDataSetAttributes::SCALARS);
   };
   using SignedChar = signed char;

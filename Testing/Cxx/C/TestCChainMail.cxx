@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ChainMail through the interface for C has the bits of vtkChainMailDeformation, and a deformer
-// that uses its displacements those of vtkDeformVolumeFilter behind it. Testing/C/TestChainMail.c
-// has what is refused.
+// ChainMail of the interface for C is equal, bit by bit, to vtkChainMailDeformation. A dv_deformer
+// that uses its displacements is equal to a vtkDeformVolumeFilter behind it.
+// Testing/C/TestChainMail.c tests misuse.
 #include "CTesting.h"
 #include "ChainMailTesting.h"
 #include "FilterTesting.h"
@@ -26,7 +26,7 @@ using namespace filterTesting;
 namespace
 {
 
-/// A ChainMail of C beside a filter.
+/// A dv_chainmail that is compared with a vtkChainMailDeformation.
 class MailInC
 {
 public:
@@ -40,7 +40,7 @@ public:
   MailInC(const MailInC&) = delete;
   MailInC& operator=(const MailInC&) = delete;
 
-  /// The same step as that of the filter.
+  /// Makes a step with the parameters of the filter.
   void Step(const std::vector<Handle>& handles, vtkChainMailDeformation* filter)
   {
     std::vector<double> rest;
@@ -63,7 +63,7 @@ public:
     Check(dv_chainmail_step(this->ChainMail, &request, &this->Report));
   }
 
-  /// Makes a step, and the filter one, and compares.
+  /// Makes a step, executes the filter with the same handles, and compares.
   void Compare(Dragged& dragged, const std::vector<Handle>& handles)
   {
     vtkFloatArray* wanted = dragged.Drag(handles);
@@ -119,7 +119,7 @@ std::vector<Handle> MakeDrag(vtkImageData* volume, double by)
     { other, other + by * glm::dvec3(-0.2, 0.9, 0.6) } };
 }
 
-/// Default materials, labels, ranges and pinned voxels, over several steps with relaxation.
+/// Default materials, labels, ranges and tables of materials, over several steps with relaxation.
 void TestSteps()
 {
   const auto volume = MakeManyArrays();
@@ -177,13 +177,13 @@ void TestSteps()
       inC.Compare(dragged, MakeDrag(volume, by));
       VERIFY(inC.Report.number_of_moved_voxels > 100);
     }
-    // Without handles it relaxes on.
+    // Without handles the relaxation continues.
     inC.Compare(dragged, {});
     VERIFY(inC.Report.number_of_moved_voxels > 100);
   }
 }
 
-/// Pinned voxels, a cut and a smooth cut, by the masks of a deformer.
+/// Pinned voxels, and a cut and a smooth cut by the masks of a dv_deformer.
 void TestMasks()
 {
   const auto volume = MakeManyArrays();
@@ -245,8 +245,8 @@ void TestMasks()
   }
 }
 
-/// The displacements as the deformation of a deformer, live: incremental and whole, with the grid
-/// of the volume, and with another one.
+/// The displacements as the deformation of a dv_deformer, step by step: incremental and whole, on
+/// the grid of the volume and on another one.
 void TestDeformer()
 {
   const auto volume = MakeManyArrays();
@@ -282,7 +282,7 @@ void TestDeformer()
         mail.Compare(dragged, MakeDrag(grid, by));
         inC.Compare(deformed);
       }
-      // A corner is pulled out, which makes the output larger, and smaller again.
+      // A corner is pulled out of the volume, which makes the output larger, and then smaller.
       glm::dvec3 corner;
       grid->GetPoint(0, &corner.x);
       for (const double by : { 0.4, 0.8, 0.1 })
@@ -290,7 +290,7 @@ void TestDeformer()
         mail.Compare(dragged, { { corner, corner + by * (corner - GetCenter(grid)) } });
         inC.Compare(deformed);
       }
-      // Other output voxels.
+      // Another spacing of the output.
       std::fill_n(output.spacing, 3, 1.3);
       deformed.Filter->SetCustomSpacing(1.3, 1.3, 1.3);
       deformed.Filter->SetOutputSpacingModeToCustomSpacing();
@@ -298,10 +298,10 @@ void TestDeformer()
       inC.Compare(deformed);
       mail.Compare(dragged, { { corner, corner + 0.6 * (corner - GetCenter(grid)) } });
       inC.Compare(deformed);
-      // Nothing has changed.
+      // Another call without changes.
       inC.Deform();
       VERIFY(!inC.IsIncremental || inC.Report.changed_extent[0] > inC.Report.changed_extent[1]);
-      // What needs the vectors on the host.
+      // Rest positions, Jacobians and KEEP, which need the displacements on the host.
       deformed.Filter->GenerateJacobianOn();
       deformed.Filter->GenerateRestPositionsOn();
       inC.WithExtra = true;
@@ -311,7 +311,7 @@ void TestDeformer()
       deformed.Filter->SetOutsideMode(vtkDeformVolumeFilter::KEEP);
       deformed.Filter->SetFadeDistance(60.0);
       inC.Compare(deformed);
-      // Another deformation and back.
+      // Change to another deformation, and back.
       auto mesh = MakeMesh(volume, 4);
       SetDisplacements(mesh, Bend);
       inC.SetMesh(mesh);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cuts and carvings through the interface for C have the bits of vtkCutVolume and vtkCarveVolume.
-// Testing/C/TestEdits.c has what is refused.
+// Cuts and carvings of the interface for C are equal, bit by bit, to those of vtkCutVolume and
+// vtkCarveVolume. Testing/C/TestEdits.c tests misuse.
 #include "CTesting.h"
 #include "FilterTesting.h"
 
@@ -27,7 +27,7 @@ using namespace filterTesting;
 namespace
 {
 
-/// The triangles of a vtkPolyData for C.
+/// The triangles of a vtkPolyData as dv_surface.
 struct Surface
 {
   explicit Surface(vtkAlgorithmOutput* output)
@@ -72,7 +72,7 @@ dv_masks GetMasks(dv_deformer* deformer)
   return masks;
 }
 
-/// Whether a mask is an array of an image, or neither is there.
+/// Whether a mask is equal to an array of an image, or both are null.
 bool AreSame(const void* mask, vtkDataArray* array)
 {
   if (!mask || !array)
@@ -84,7 +84,8 @@ bool AreSame(const void* mask, vtkDataArray* array)
              static_cast<std::size_t>(array->GetDataTypeSize())) == 0;
 }
 
-/// Compares the masks of a deformer with the arrays of a volume that filters have edited.
+/// Compares the masks of a dv_deformer with the arrays of a volume that filters have edited.
+/// atLeast: the least number of switched off and divided tetrahedra.
 void Compare(const InC& inC, vtkImageData* edited, std::int64_t atLeast = 1)
 {
   const dv_masks masks = GetMasks(inC.Deformer);
@@ -94,7 +95,7 @@ void Compare(const InC& inC, vtkImageData* edited, std::int64_t atLeast = 1)
   VERIFY(AreSame(masks.boundary_distances, points->GetArray("BoundaryDistance")));
   VERIFY(AreSame(masks.crossed, cells->GetArray("CutTetrahedra")));
   VERIFY(AreSame(masks.cut_distances, points->GetArray("CutDistance")));
-  // Else nothing would have been compared.
+  // Make sure that there were edits.
   VERIFY(masks.number_of_switched_off_tetrahedra + masks.number_of_divided_tetrahedra >= atLeast);
 }
 
@@ -140,13 +141,13 @@ void TestCuts()
       std::int64_t{ cut->GetNumberOfSwitchedOffTetrahedra() });
     VERIFY_EQUAL(GetMasks(inC.Deformer).number_of_divided_tetrahedra,
       std::int64_t{ cut->GetNumberOfDividedTetrahedra() });
-    // The deformed volume.
+    // Compare the deformed volume.
     auto mesh = MakeMesh(volume, 4);
     SetDisplacements(mesh, Bend);
     Deformed deformed(cut->GetOutput(), mesh);
     inC.SetMesh(mesh);
     inC.Compare(deformed);
-    // Another sheet, which meets the first one, and is undone.
+    // Another sheet, which crosses the first one, and is undone.
     const auto second = MakeSheet(volume, 2.0);
     second->SetPoint2(second->GetPoint2()[0], second->GetPoint2()[1] + 9.0, 4.0);
     const Surface other(second->GetOutputPort());
@@ -221,7 +222,7 @@ void TestBodies()
       };
       InC inC;
       inC.SetVolume(volume, 0.0);
-      // Functions, with bounds and without, in one thread and in many.
+      // Functions with and without bounds, in one thread and in several threads.
       for (vtkImplicitFunction* function : { static_cast<vtkImplicitFunction*>(sphere),
              static_cast<vtkImplicitFunction*>(box), static_cast<vtkImplicitFunction*>(cylinder) })
       {
@@ -248,7 +249,7 @@ void TestBodies()
           Check(dv_reset_edits(inC.Deformer));
         }
       }
-      // A surface, and then the way of a sphere and a label on top of it.
+      // A surface, then the path of a sphere, then a label.
       const auto filter = carve();
       filter->SetSurfaceData(surface.Data);
       filter->Update();
@@ -282,7 +283,7 @@ void TestBodies()
   }
 }
 
-/// Edits on top of the masks that the volume comes with: of all kinds.
+/// Edits of a volume that has masks of all kinds.
 void TestBase()
 {
   const auto volume = MakeManyArrays();
@@ -309,7 +310,7 @@ void TestBase()
     carve->Update();
     auto base = vtkSmartPointer<vtkImageData>::New();
     base->DeepCopy(carve->GetOutput());
-    // Masks first, then edits; and the other way round.
+    // Set the masks before the edits, or after them.
     for (const bool isBaseFirst : { true, false })
     {
       InC inC;
@@ -334,7 +335,7 @@ void TestBase()
         otherCarve->SetSmoothBoundary(isSmoothEdit);
         otherCarve->Update();
         Compare(inC, otherCarve->GetOutput(), 200);
-        // What is undone leaves the masks that were there.
+        // After undo the masks are those of the volume.
         Check(dv_undo_edit(inC.Deformer));
         Check(dv_undo_edit(inC.Deformer));
         Compare(inC, base, 0);
@@ -347,7 +348,7 @@ void TestBase()
   }
 }
 
-/// Errors are those of the thread.
+/// dv_last_error() returns the last error of the calling thread.
 void TestErrorsOfThreads()
 {
   const auto volume = MakeManyArrays();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The interface for C gives what vtkDeformVolumeFilter gives, to the last bit.
+// Results of the interface for C are equal to those of vtkDeformVolumeFilter, to the last bit.
 #include "CTesting.h"
 #include "FilterTesting.h"
 
@@ -29,26 +29,27 @@ using namespace filterTesting;
 namespace
 {
 
-/// Tetrahedra without order, as a mesher makes them: nodes moved and renumbered.
+/// An irregular mesh, as a mesher makes it: a lattice whose nodes are moved and renumbered at
+/// random.
 vtkSmartPointer<vtkUnstructuredGrid> MakeIrregularMesh(vtkImageData* volume, double margin)
 {
   auto lattice = MakeMesh(volume, 6, margin);
   std::mt19937 random(7);
-  std::vector<vtkIdType> places(static_cast<std::size_t>(lattice->GetNumberOfPoints()));
-  for (std::size_t i = 0; i < places.size(); ++i)
+  std::vector<vtkIdType> newIds(static_cast<std::size_t>(lattice->GetNumberOfPoints()));
+  for (std::size_t i = 0; i < newIds.size(); ++i)
   {
-    places[i] = static_cast<vtkIdType>(i);
+    newIds[i] = static_cast<vtkIdType>(i);
   }
-  std::shuffle(places.begin(), places.end(), random);
+  std::shuffle(newIds.begin(), newIds.end(), random);
   std::uniform_real_distribution<double> between(-0.3, 0.3);
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
   points->SetNumberOfPoints(lattice->GetNumberOfPoints());
-  for (std::size_t i = 0; i < places.size(); ++i)
+  for (std::size_t i = 0; i < newIds.size(); ++i)
   {
     const glm::dvec3 point = GetPoint(lattice, static_cast<vtkIdType>(i)) +
       glm::dvec3(between(random), between(random), between(random));
-    points->SetPoint(places[i], &point.x);
+    points->SetPoint(newIds[i], &point.x);
   }
   auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
   mesh->SetPoints(points);
@@ -61,7 +62,7 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeIrregularMesh(vtkImageData* volume, dou
     vtkIdType renumbered[4];
     for (int i = 0; i < 4; ++i)
     {
-      renumbered[i] = places[static_cast<std::size_t>(nodes[i])];
+      renumbered[i] = newIds[static_cast<std::size_t>(nodes[i])];
     }
     mesh->InsertNextCell(VTK_TETRA, 4, renumbered);
   }
@@ -83,7 +84,7 @@ void TestMeshes()
   const auto volume = MakeManyArrays();
   for (const bool isIrregular : { false, true })
   {
-    // The second one ends within the volume.
+    // The irregular mesh ends inside the volume.
     auto mesh = isIrregular ? MakeIrregularMesh(volume, -2.0) : MakeMesh(volume, 4);
     SetDisplacements(mesh, Bend);
     Deformed deformed(volume, mesh);
@@ -93,7 +94,6 @@ void TestMeshes()
     inC.SetVolume(volume, -7.4, { "labels" });
     inC.SetMesh(mesh);
     inC.Compare(deformed);
-    // Interpolations.
     deformed.Filter->SetInterpolation(vtkDeformVolumeFilter::CUBIC_INTERPOLATION);
     inC.Interpolation = DV_CUBIC;
     inC.Compare(deformed);
@@ -102,7 +102,7 @@ void TestMeshes()
     inC.Compare(deformed);
     deformed.Filter->SetInterpolation(vtkDeformVolumeFilter::LINEAR_INTERPOLATION);
     inC.Interpolation = DV_LINEAR;
-    // Other displacements, in doubles.
+    // Other displacements, as doubles.
     SetDisplacements(mesh, Shift(1.25, -2.5, 0.3));
     vtkNew<vtkDoubleArray> doubles;
     doubles->DeepCopy(mesh->GetPointData()->GetVectors());
@@ -110,7 +110,7 @@ void TestMeshes()
     mesh->Modified();
     inC.SetDisplacements(mesh);
     inC.Compare(deformed);
-    // Voxels outside.
+    // The outside modes.
     SetDisplacements(mesh, Bend);
     mesh->Modified();
     inC.SetDisplacements(mesh);
@@ -133,7 +133,7 @@ void TestGrids()
   InC inC;
   inC.SetVolume(volume, 0.0);
   inC.SetMesh(mesh);
-  // Bounds and spacings.
+  // Modes of bounds and spacing.
   dv_output output = {};
   output.struct_size = sizeof(output);
   output.bounds_mode = DV_BOUNDS_VOLUME;
@@ -163,7 +163,7 @@ void TestGrids()
   deformed.Filter->SetOutputSpacingMode(vtkDeformVolumeFilter::VOLUME_SPACING);
   deformed.Filter->SetPadding(0);
   inC.Compare(deformed);
-  // Reference grids: turned, and mirrored.
+  // Reference grids: rotated, and left-handed.
   for (const bool isMirrored : { false, true })
   {
     const auto reference = MakeReference(isMirrored);
@@ -179,7 +179,8 @@ void TestGrids()
 void TestFields()
 {
   const auto volume = MakeManyArrays();
-  // On a grid of its own; on the voxels; on twice as many points as voxels.
+  // A field on another grid, one with a point at each voxel, and one with twice as many points on
+  // each axis.
   for (int kind = 0; kind < 3; ++kind)
   {
     vtkSmartPointer<vtkImageData> field;
@@ -208,7 +209,7 @@ void TestFields()
       SetDisplacements(field, Bend);
       for (vtkIdType id = 0; kind == 2 && !isInverse && id < field->GetNumberOfPoints(); ++id)
       {
-        // What lies between the voxels is never looked at.
+        // Points between voxels are never read.
         int dimensions[3];
         field->GetDimensions(dimensions);
         const vtkIdType x = id % dimensions[0];
@@ -275,7 +276,6 @@ void TestExtraAndMasks()
   inC.WithExtra = inC.WithFolds = true;
   inC.Compare(deformed);
   VERIFY(inC.Report.number_of_inverted_tetrahedra > 0);
-  // Fields.
   auto field = vtkSmartPointer<vtkImageData>::New();
   field->CopyStructure(volume);
   SetDisplacements(field, Bend);
@@ -289,11 +289,11 @@ void TestExtraAndMasks()
   inC.Compare(deformed);
 }
 
-/// Values divided by the Jacobian: of all types, in meshes and fields of all kinds, with folds.
+/// Densities, which are divided by the Jacobian: of all types, with meshes, fields and folds.
 void TestDensities()
 {
   const auto volume = MakeManyArrays();
-  // Labels and an array of its own remain.
+  // Labels and one other array are not densities.
   const std::set<std::string> densities{ "int8", "uint16", "int64", "double", "vectors" };
   auto mesh = MakeIrregularMesh(volume, 1.0);
   SetDisplacements(mesh, Bend);
@@ -309,7 +309,7 @@ void TestDensities()
   inC.SetMesh(mesh);
   inC.Compare(deformed);
   VERIFY(deformed.Update()->GetPointData()->GetArray("uint16")->GetDataType() == VTK_FLOAT);
-  // With the Jacobian itself, and again.
+  // With the Jacobian as output, twice.
   deformed.Filter->GenerateJacobianOn();
   deformed.Filter->GenerateRestPositionsOn();
   inC.WithExtra = true;
@@ -327,7 +327,7 @@ void TestDensities()
   SetDisplacements(mesh, [](const glm::dvec3& p) { return p * glm::dvec3(0.8, 1.1, 0.9); });
   inC.SetDisplacements(mesh);
   inC.Compare(deformed);
-  // Folds: what is hidden and what is inside out.
+  // Folds, with hidden and inverted tetrahedra.
   double center[3];
   volume->GetCenter(center);
   SetDisplacements(mesh,
@@ -356,7 +356,7 @@ void TestDensities()
   deformed.Filter->FieldIsInverseOn();
   inC.SetField(field, true);
   inC.Compare(deformed);
-  // Other values in the same memory, and no densities any more.
+  // Other values in the same memory, and no densities.
   vtkDataArray* values = volume->GetPointData()->GetArray("uint16");
   values->SetComponent(values->GetNumberOfTuples() / 2, 0, 60000.0);
   values->Modified();
@@ -392,7 +392,8 @@ vtkSmartPointer<vtkUnstructuredGrid> MakePolyhedra(vtkUnstructuredGrid* hexahedr
   return polyhedra;
 }
 
-/// All types of cells that are split. In one mesh: the cells of each type fill the volume.
+/// All types of cells that are split into tetrahedra. In each mesh the cells of one type fill the
+/// volume.
 void TestCells()
 {
   const auto volume = MakeManyArrays();
@@ -411,7 +412,7 @@ void TestCells()
     source->Update();
     auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
     mesh->ShallowCopy(source->GetOutput());
-    // Over the volume, and some beyond.
+    // Scale the mesh to the bounds of the volume, and 5 % more on each side.
     double box[6];
     mesh->GetBounds(box);
     vtkNew<vtkPoints> points;
@@ -444,7 +445,7 @@ void TestCells()
       std::cerr << "with cells of the type " << type << '\n';
     }
   }
-  // Cells that are ignored, and a node that is far from the middle of its edge.
+  // Warnings: cells that are ignored, and a mid-side node that is far from the middle of its edge.
   auto mesh = MakeMesh(volume, 3);
   const vtkIdType corners[10] = { 0, 1, 3, 9, 20, 21, 22, 23, 24, 25 };
   mesh->InsertNextCell(VTK_TRIANGLE, 3, corners);
@@ -460,7 +461,7 @@ void TestCells()
   }
 }
 
-/// Without a deformation: the volume on other grids.
+/// Without a deformation the volume at rest is resampled.
 void TestAtRest()
 {
   const auto volume = MakeManyArrays();
@@ -478,7 +479,7 @@ void TestAtRest()
   inC.Compare(deformed);
 }
 
-/// Cuts and carvings: along voxels and between them.
+/// The masks of cuts and carvings, with and without smooth boundaries.
 void TestEdits()
 {
   const auto volume = MakeManyArrays();
@@ -517,7 +518,7 @@ void TestEdits()
   }
 }
 
-/// Two threads with a deformer each, which begin at the same time.
+/// Two dv_deformers in two threads at the same time.
 void TestTwoThreads()
 {
   const auto volume = MakeManyArrays();
@@ -542,7 +543,7 @@ void TestTwoThreads()
         {
           inC[i].Deform();
         }
-        // Errors are those of the thread.
+        // dv_last_error() returns the error of this thread.
         dv_set_outside(inC[i].Deformer, i == 0 ? 8 : 9, 0.0);
         errors[i] = dv_last_error();
       });
@@ -559,7 +560,7 @@ void TestTwoThreads()
   }
 }
 
-/// Live: what changes is written alone, and the result is that of a new deformer.
+/// Incremental calls after changes of displacements give the same results as a filter.
 void TestIncremental()
 {
   const auto volume = MakeManyArrays();
