@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What the tests in C have in common, each of which is one source file. */
+/* Checks for the tests in C. Each test is one source file, which has its own count of failures. */
 #ifndef Check_h
 #define Check_h
 
@@ -20,7 +20,7 @@ static int Failures = 0;
     }                                                                                              \
   } while (0)
 
-/* A call that fails with an error that holds some words. */
+/* Checks that a call fails with an error that contains these words. */
 #define REFUSED(call, words)                                                                       \
   do                                                                                               \
   {                                                                                                \

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
-# What libdeformvolume.so exports: all functions of its header, and nothing else.
+# Checks that libdeformvolume.so exports all functions of its header, and nothing else.
 #
 # Usage: CheckExports.sh <library> <header>
 set -euo pipefail
@@ -11,6 +11,6 @@ declared=$(sed -n 's/^ *DV_EXPORT .*[ *]\(dv_[a-z_0-9]*\)(.*/\1/p' "$2" | sort)
   exit 1
 }
 diff <(echo "$declared") <(echo "$exported") || {
-  echo "the functions of the header (<) are not those that the library exports (>)"
+  echo "the functions of the header (<) differ from the exported ones (>)"
   exit 1
 }

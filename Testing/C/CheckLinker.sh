@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
-# The linker of the Python package: what it refuses, and a library that it makes.
+# Tests the linker of the Python package: its errors, and a library that it makes.
 #
 # Usage: CheckLinker.sh <linker> <C compiler> <folder to work in>
 set -euo pipefail
@@ -45,7 +45,7 @@ for option in -O0 -O2; do
     "$linker" --hash-style=both -m elf_x86_64 -shared -o linked.so -L/usr/lib linked.o -lm -lgcc \
       --as-needed -lgcc_s --no-as-needed -lc
     case $extra in *hidden*)
-      # Nothing is left that could be called.
+      # With hidden visibility no symbol may be exported.
       readelf --dyn-syms --wide linked.so | grep -q ' linked_' && {
         echo "hidden names are exported"
         failed=1

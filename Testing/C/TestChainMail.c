@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /*
- * ChainMail in C: what is refused, and why; displacements in closed form; abort; a deformer that
- * follows. Testing/Cxx/C/TestCChainMail.cxx has the bits of vtkChainMailDeformation.
+ * ChainMail in C: misuse and error messages, displacements in closed form, abort, and a dv_deformer
+ * that uses the displacements. Testing/Cxx/C/TestCChainMail.cxx compares all values with those of
+ * vtkChainMailDeformation.
  */
 #include "Check.h"
 
@@ -50,7 +51,7 @@ static dv_chainmail_materials MakeMaterials(void)
   return materials;
 }
 
-/* The middle voxel, by 1.5 voxels along x, without relaxation. */
+/* Moves the middle voxel by 1.5 voxels along x, without relaxation. */
 static double Rest[3];
 static double Now[3];
 
@@ -200,7 +201,7 @@ static void TestWrongMaterials(void)
   materials.values = NULL;
   REFUSED(dv_chainmail_set_materials(chainmail, &materials), "values that the ranges are for");
   materials.values = &array;
-  /* What is no number is in no range. */
+  /* NaN is a valid value, which is in no range. */
   CHECK(dv_chainmail_set_materials(chainmail, &materials) == DV_OK);
   dv_chainmail_destroy(chainmail);
 }
@@ -267,7 +268,7 @@ static void TestWrong(void)
   dv_chainmail_destroy(chainmail);
 }
 
-/* Each link takes half a voxel of the displacement. */
+/* The displacement decreases by half a voxel at each link. */
 static void TestClosedForm(void)
 {
   dv_chainmail* chainmail = MakeChainMail();
@@ -298,7 +299,8 @@ static void TestClosedForm(void)
   CHECK(report.number_of_reduced_handles == 0 && report.number_of_released_handles == 0);
   CHECK(report.changed_extent[0] <= 4 && report.changed_extent[1] >= 8);
 
-  /* Relaxation goes on without handles; pinned voxels stay, and hold back a handle. */
+  /* A pinned voxel does not move, and reduces the motion of the handle. Without handles the
+   * relaxation continues. */
   CHECK(dv_chainmail_reset(chainmail) == DV_OK);
   pinned[MIDDLE + 2] = 1;
   CHECK(dv_chainmail_set_pinned(chainmail, pinned) == DV_OK);
@@ -316,7 +318,7 @@ static void TestClosedForm(void)
   dv_chainmail_destroy(chainmail);
 }
 
-/* What is cut moves alone. */
+/* A cut, then a smooth cut: voxels beyond the cut do not move. */
 static void TestCut(void)
 {
   dv_chainmail* chainmail = MakeChainMail();
@@ -341,7 +343,7 @@ static void TestCut(void)
     CHECK(displacements[3 * (MIDDLE + 1)] == 0.0F);
     CHECK(dv_chainmail_reset(chainmail) == DV_OK);
   }
-  /* The link comes back. */
+  /* Without the cut the link between the voxels exists again. */
   CHECK(dv_chainmail_step(chainmail, &request, NULL) == DV_OK);
   CHECK(dv_chainmail_set_active_tetrahedra(chainmail, NULL, NULL) == DV_OK);
   CHECK(dv_chainmail_step(chainmail, &request, NULL) == DV_OK);
@@ -373,7 +375,7 @@ static void TestAbort(void)
   dv_chainmail_destroy(chainmail);
 }
 
-/* A deformer follows the steps, also where the ChainMail is gone. */
+/* A dv_deformer follows the steps. Its deformation is kept when the dv_chainmail is destroyed. */
 static void TestDeform(void)
 {
   dv_chainmail* chainmail = MakeChainMail();
@@ -413,7 +415,7 @@ static void TestDeform(void)
   CHECK(dv_set_chainmail(deformer, chainmail) == DV_OK);
   CHECK(dv_deform(deformer, &wanted, NULL) == DV_OK);
   CHECK(output[MIDDLE + 1] == 7.0F);
-  /* By one voxel: tissue of x = 6 is at x = 7. */
+  /* Moved by one voxel, the tissue of x = 6 is at x = 7. */
   Now[0] = 7.0 * Spacing;
   CHECK(dv_chainmail_step(chainmail, &request, NULL) == DV_OK);
   CHECK(dv_deform(deformer, &wanted, NULL) == DV_OK);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /*
- * Deformers in C: what is refused, and why; progress and abort; parts of the output.
- * Examples/minimal-c has the ordinary case, and Testing/Cxx/C/TestCInterface.cxx the numbers.
+ * dv_deformer in C: misuse and error messages, progress and abort, densities, parts of the output.
+ * Examples/minimal-c shows the usual calls. Testing/Cxx/C/TestCInterface.cxx compares the results
+ * with those of the filter.
  */
 #include "Check.h"
 
@@ -76,7 +77,7 @@ static dv_request MakeRequest(void)
   return request;
 }
 
-/* A deformer with all that is needed. The output is as large as the volume. */
+/* A dv_deformer with all inputs. The output has the extent of the volume. */
 static dv_deformer* MakeDeformer(void)
 {
   dv_deformer* deformer = NULL;
@@ -256,7 +257,7 @@ static void TestWrong(void)
   mesh.offsets = offsets;
   mesh.types = types;
   CHECK(dv_set_mesh(deformer, &mesh) == DV_OK);
-  /* A program that knows fewer members: what is behind them is not read. */
+  /* A program that was compiled with an older header: members after struct_size are not read. */
   mesh.struct_size = offsetof(dv_mesh, degrees);
   mesh.degrees = (const int32_t*)(size_t)8;
   CHECK(dv_set_mesh(deformer, &mesh) == DV_OK);
@@ -297,7 +298,7 @@ static void TestWrong(void)
   REFUSED(dv_set_displacements(deformer, DV_FLOAT32, 8, NULL), "null");
   REFUSED(dv_set_displacements(deformer, DV_UINT8, 8, Displacements), "DV_FLOAT32");
 
-  /* What is not finite, or too far, where the deformation is used. */
+  /* Displacements and points that are not finite or too large are reported by dv_deform(). */
   Displacements[6][1] = (float)(infinity - infinity);
   CHECK(dv_set_displacements(deformer, DV_FLOAT32, 8, Displacements) == DV_OK);
   REFUSED(dv_deform(deformer, &request, NULL), "Displacement 6");
@@ -328,7 +329,7 @@ static void TestWrong(void)
   field.vectors = Values;
   field.type = DV_INT16;
   REFUSED(dv_set_field(deformer, &field), "DV_FLOAT32");
-  CHECK(dv_deform(deformer, &request, NULL) == DV_OK); /* by the mesh */
+  CHECK(dv_deform(deformer, &request, NULL) == DV_OK); /* still by the mesh */
 
   /* Masks. */
   REFUSED(dv_set_smooth_cut(deformer, (const uint8_t*)Coverage, NULL), "both, or none");
@@ -392,7 +393,7 @@ static void TestWrong(void)
   dv_destroy(deformer);
 }
 
-/* Aborts at the call with some number; -1: never. */
+/* Counts calls of progress. AbortAt: the number of the call that aborts, or -1 for none. */
 struct Progress
 {
   int Calls;
@@ -430,7 +431,7 @@ static void TestProgress(void)
     progress.Last = 0.0;
     CHECK(dv_deform(other, &request, NULL) == DV_ABORTED);
     CHECK(progress.Calls == i + 1);
-    /* Then as if nothing had been. */
+    /* The next call without an abort gives the whole output. */
     progress.AbortAt = -1;
     progress.Last = 0.0;
     memset(Output, 0, sizeof(Output));
@@ -441,7 +442,7 @@ static void TestProgress(void)
   dv_destroy(deformer);
 }
 
-/* A volume that becomes twice as large has half the density; one pressed flat has none. */
+/* When the volume becomes larger, densities become smaller. Inverted tetrahedra have no density. */
 static void TestDensity(void)
 {
   dv_deformer* deformer = MakeDeformer();
@@ -457,7 +458,7 @@ static void TestDensity(void)
   int i = 0;
   for (i = 0; i < 8; ++i)
   {
-    /* Twice as long along x, to the left, so that voxel 11 stays. */
+    /* Stretch the volume along x, toward lower indices, so that voxel 11 does not move. */
     displacements[i][0] = i & 1 ? 0.0F : -2.0F * (SIZE - 1);
     displacements[i][1] = displacements[i][2] = 0.0F;
   }
@@ -490,7 +491,7 @@ static void TestDensity(void)
     CHECK(!Coverage[i] || ((double*)outputs[1])[i] == 1.5);
     CHECK(Coverage[i] || densities[i] == -5.0F);
   }
-  /* The same as floats that are not divided. */
+  /* The same values as floats that are not densities: densities are half of them. */
   array.type = DV_FLOAT32;
   array.data = values;
   for (i = 0; i < VOXELS; ++i)
@@ -505,7 +506,7 @@ static void TestDensity(void)
   {
     CHECK(!Coverage[i] || densities[i] == 0.5F * ((float*)outputs[0])[i]);
   }
-  /* Inside out. */
+  /* Invert all tetrahedra. */
   for (i = 0; i < 8; ++i)
   {
     displacements[i][0] = i & 1 ? -2.0F * (SIZE - 1) : 2.0F * (SIZE - 1);
@@ -519,7 +520,7 @@ static void TestDensity(void)
   dv_destroy(deformer);
 }
 
-/* Parts of the output hold what the whole has there, and memory of the device can be freed. */
+/* A part of the output is equal to that of the whole. Memory of the device can be released. */
 static void TestParts(void)
 {
   dv_deformer* deformer = MakeDeformer();

@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A driver that is refused, and why. */
+/* Checks that a driver is rejected, and the reason in the error message. */
 static void RefuseDriver(const char* path, const char* reason)
 {
   const int32_t count = dv_device_count();
@@ -55,7 +55,7 @@ int main(int argc, char* argv[])
   }
 
 #ifdef POCL_LIBRARY
-  /* The same driver again: no device is there twice. */
+  /* If the same driver is added again, its devices are listed once. */
   CHECK(dv_add_driver(POCL_LIBRARY) == DV_OK);
   CHECK(dv_add_driver(POCL_LIBRARY) == DV_OK);
   CHECK(dv_device_count() == (has_none ? 1 : count));

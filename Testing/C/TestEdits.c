@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /*
- * Cutting and carving in C: what is refused, and why; abort; counts of tetrahedra that follow from
- * the grid alone; undo. Testing/Cxx/C/TestCEdits.cxx has the bits of the filters.
+ * Cutting and carving in C: misuse and error messages, numbers of tetrahedra in closed form, undo,
+ * the output, and abort. Testing/Cxx/C/TestCEdits.cxx compares all masks with those of the filters.
  */
 #include "Check.h"
 
@@ -62,7 +62,7 @@ static dv_masks GetMasks(dv_deformer* deformer)
   return masks;
 }
 
-/* A sheet across the volume at x = 4.5 voxels, and beyond it. */
+/* A sheet at x = 4.5 voxels that is larger than the volume. */
 static double SheetPoints[4][3];
 static const int64_t SheetTriangles[2][3] = { { 0, 1, 2 }, { 0, 2, 3 } };
 
@@ -114,7 +114,7 @@ static dv_surface MakeBox(void)
   return box;
 }
 
-/* Below x = 4.5 voxels. user: counts points. */
+/* The half-space below x = 4.5 voxels. user: the number of points is added to this int64_t. */
 static void FindHalfSpace(int64_t count, const double* points, double* values, void* user)
 {
   int64_t i = 0;
@@ -280,7 +280,7 @@ static void TestWrong(void)
   REFUSED(dv_carve_function(deformer, &body, NULL), "struct_size of the body is 16");
   CHECK(count == 0);
 
-  /* None of it has left a trace. */
+  /* None of these errors has changed the masks. */
   masks = GetMasks(deformer);
   CHECK(masks.active == NULL && masks.boundary_distances == NULL && masks.crossed == NULL);
   CHECK(masks.number_of_edits == 0 && masks.number_of_switched_off_tetrahedra == 0);
@@ -330,7 +330,7 @@ static void TestCut(void)
   CHECK(dv_reset_edits(deformer) == DV_OK);
   REFUSED(dv_undo_edit(deformer), "no edit to be undone");
 
-  /* Smoothly nothing is lost. Distances are in voxels. */
+  /* A smooth cut switches off no tetrahedra. Distances are in voxels. */
   CHECK(dv_cut(deformer, &sheet, &smooth) == DV_OK);
   masks = GetMasks(deformer);
   CHECK(masks.number_of_switched_off_tetrahedra == 0);
@@ -339,7 +339,7 @@ static void TestCut(void)
   CHECK(fabs(masks.cut_distances[4]) == 0.5 && masks.cut_distances[5] == -masks.cut_distances[4]);
   CHECK(masks.cut_distances[3] == 0.0 && masks.cut_distances[6] == 0.0);
 
-  /* What is set before edits is joined, and stays when they go. */
+  /* The mask of the volume is combined with edits, and both can be set in any order. */
   CHECK(dv_reset_edits(deformer) == DV_OK);
   CHECK(dv_set_active_tetrahedra(deformer, none) == DV_OK);
   CHECK(GetMasks(deformer).active == none);
@@ -350,7 +350,7 @@ static void TestCut(void)
   CHECK(memcmp(GetMasks(deformer).active, active, CELLS) == 0);
   CHECK(GetMasks(deformer).number_of_switched_off_tetrahedra == 11 * 11 * 5);
 
-  /* A sheet beside the volume is an edit that does nothing. */
+  /* A sheet outside the volume is an edit that does not change the mask. */
   SheetPoints[0][0] = SheetPoints[1][0] = SheetPoints[2][0] = SheetPoints[3][0] = -9.0;
   CHECK(dv_cut(deformer, &sheet, NULL) == DV_OK);
   CHECK(GetMasks(deformer).number_of_edits == 2);
@@ -380,7 +380,7 @@ static void TestCarve(void)
   CHECK(GetMasks(deformer).active[(3 * 11 + 3) * 11 + 3] == 0);
   CHECK(GetMasks(deformer).active[(3 * 11 + 3) * 11 + 2] == 31);
 
-  /* Half of the volume: 4 layers of cells, and one more that the boundary passes through. */
+  /* A half-space: 4 layers of cells, and one more layer that its boundary crosses. */
   CHECK(dv_reset_edits(deformer) == DV_OK);
   CHECK(dv_carve_function(deformer, &body, &minimal) == DV_OK);
   CHECK(GetMasks(deformer).number_of_switched_off_tetrahedra == 4 * 11 * 11 * 5);
@@ -389,21 +389,21 @@ static void TestCarve(void)
   CHECK(dv_carve_function(deformer, &body, &conservative) == DV_OK);
   CHECK(GetMasks(deformer).number_of_switched_off_tetrahedra == 5 * 11 * 11 * 5);
   CHECK(dv_undo_edit(deformer) == DV_OK);
-  /* Smoothly: values as distances. */
+  /* With a smooth boundary, values are distances. */
   CHECK(dv_carve_function(deformer, &body, &smooth) == DV_OK);
   masks = GetMasks(deformer);
   CHECK(masks.number_of_switched_off_tetrahedra == 4 * 11 * 11 * 5);
   CHECK(masks.boundary_distances[4] == -1.0F && masks.boundary_distances[5] == 1.0F);
   CHECK(dv_undo_edit(deformer) == DV_OK);
   CHECK(GetMasks(deformer).boundary_distances == NULL);
-  /* Beyond its bounds nothing is looked at. */
+  /* With bounds outside the volume the function is not called. */
   count = 0;
   body.bounds[0] = body.bounds[2] = body.bounds[4] = -9.0;
   body.bounds[1] = body.bounds[3] = body.bounds[5] = -8.0;
   CHECK(dv_carve_function(deformer, &body, NULL) == DV_OK);
   CHECK(count == 0 && GetMasks(deformer).number_of_switched_off_tetrahedra == 0);
 
-  /* All voxels of a slice below which there are 5 layers of cells. */
+  /* The voxels of one label, up to index 4 on x: 4 layers of cells. */
   CHECK(dv_reset_edits(deformer) == DV_OK);
   for (i = 0; i < VOXELS; ++i)
   {
@@ -419,14 +419,14 @@ static void TestCarve(void)
   CHECK(dv_carve_label(deformer, &array, -3.0, &conservative) == DV_OK);
   CHECK(CountBits(GetMasks(deformer).active) == 0);
 
-  /* A sphere of a radius of 3.5 voxels, to within a few percent. */
+  /* A sphere of a radius of 3.5 voxels. Its volume is right to a few percent. */
   CHECK(dv_reset_edits(deformer) == DV_OK);
   CHECK(dv_carve_sphere(deformer, 1, center, 7.0, NULL) == DV_OK);
   masks = GetMasks(deformer);
   CHECK(masks.number_of_switched_off_tetrahedra > 850 &&
     masks.number_of_switched_off_tetrahedra < 950); /* 5 * 4 / 3 * pi * 3.5^3 = 898 */
 
-  /* The same grid keeps edits, another one forgets them. */
+  /* Edits are kept for the same grid, and removed for another grid. */
   CHECK(dv_set_volume(deformer, &grid) == DV_OK);
   CHECK(GetMasks(deformer).number_of_edits == 1);
   grid.origin[0] = 1.0;
@@ -435,7 +435,7 @@ static void TestCarve(void)
   dv_destroy(deformer);
 }
 
-/* A smooth edit shows in the output, and after it is undone everything is back. */
+/* The output has a hole after an edit, and none after undo. */
 static void TestDeform(void)
 {
   dv_deformer* deformer = MakeDeformer();
@@ -464,7 +464,7 @@ static void TestDeform(void)
   CHECK(report.number_of_covered_voxels == VOXELS);
   CHECK(dv_carve_surface(deformer, &box, NULL) == DV_OK);
   CHECK(dv_deform(deformer, &request, &report) == DV_OK);
-  /* The voxels within, 4 to 6 on each axis; of those on the faces some. */
+  /* The inner voxels, 4 to 6 on each axis, and some of those on the faces are not covered. */
   CHECK(coverage[(5 * SIZE + 5) * SIZE + 5] == 0);
   CHECK(report.number_of_covered_voxels <= VOXELS - 3 * 3 * 3 &&
     report.number_of_covered_voxels >= VOXELS - 5 * 5 * 5);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which drivers the engine's own loader finds, and that calls reach them.
+// The engine's loader: the drivers that it finds, and calls of their functions.
 #include "SystemDrivers.h"
 
 #define CL_TARGET_OPENCL_VERSION 120
@@ -46,10 +46,11 @@ protected:
 
 } // namespace
 
-TEST_F(Loader, NoSuchPlace)
+TEST_F(Loader, MissingPath)
 {
   setenv("OCL_ICD_VENDORS", (this->Folder + "/none").c_str(), 1);
-  EXPECT_EQ(deformvolume::FindSystemDrivers(), Names{ this->Folder + "/none" }); // a library
+  EXPECT_EQ(
+    deformvolume::FindSystemDrivers(), Names{ this->Folder + "/none" }); // the name of a library
   setenv("OCL_ICD_VENDORS", (this->Folder + "/none.icd").c_str(), 1);
   EXPECT_EQ(deformvolume::FindSystemDrivers(), Names());
   unsetenv("OCL_ICD_VENDORS");
@@ -79,7 +80,7 @@ TEST_F(Loader, Files)
     deformvolume::FindSystemDrivers(), (Names{ "libx.so", "/opt/liby.so", "libpocl.so.2" }));
 }
 
-// With null in place of an object, as wrappers do that were never given one.
+// Calls with null instead of an object return errors.
 TEST_F(Loader, NoObject)
 {
   cl_int error = CL_SUCCESS;
@@ -97,8 +98,8 @@ TEST_F(Loader, NoObject)
   EXPECT_EQ(clWaitForEvents(0, nullptr), CL_INVALID_VALUE);
 }
 
-// The last one, as drivers are looked for once: a library that is missing, one that is no driver,
-// and a driver. What the device computes arrives.
+// A missing library, a library that is not a driver, and a driver, whose device executes a kernel.
+// This must be the last test, since the loader searches for drivers only once.
 TEST_F(Loader, Devices)
 {
   cl_uint count = 0;

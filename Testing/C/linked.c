@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* All that the linker has to know: functions and data, of this object and of the C library. */
+/* All kinds of symbols that the linker supports: functions and data of this object and of the C
+ * library. */
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
