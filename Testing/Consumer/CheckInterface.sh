@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
-# The interface of an installed DeformVolume::Kernels: every header compiles by itself, none names
-# OpenCL or VTK, and the library hides all that is not in them.
+# Checks the interface of an installed DeformVolume::Kernels: every header compiles alone, no header uses
+# OpenCL or VTK, and the library exports only symbols of these headers.
 #
 # Usage: CheckInterface.sh <library> <include directory> <compiler>
 set -euo pipefail
@@ -18,16 +18,16 @@ for header in "${headers[@]}"; do
   "$compiler" -std=c++17 -fsyntax-only -Wall -Wextra -Werror -x c++ -I "$include" \
     -include "$header" /dev/null || failed=1
 done
-# Comments may name what they like.
+# Comments may contain these names.
 if sed 's|//.*||' "${headers[@]}" | grep -n 'cl::\|cl_[a-z]\|CL/\|vtk'; then
-  echo "a header names OpenCL or VTK"
+  echo "a header uses OpenCL or VTK"
   failed=1
 fi
 
-# Templates of the standard library and of GLM are weak symbols, which all libraries share.
+# Templates of the standard library and of GLM are weak symbols, which are not listed here.
 symbols=$(nm --dynamic --demangle --defined-only "$library" | grep ' [TDBR] ')
 if others=$(grep -v ' deformvolume::' <<<"$symbols"); then
-  printf 'exported, but not of this library:\n%s\n' "$others"
+  printf 'exported, but not in the namespace deformvolume:\n%s\n' "$others"
   failed=1
 fi
 if hidden=$(grep 'cl::\|OpenCLContext\|Internals\|DeviceVolume\|OutputSlab' <<<"$symbols"); then

@@ -2,14 +2,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Usage: RunInUsrLocal.sh PREFIX COMMAND...
 #
-# Runs a command that finds what is installed under PREFIX in /usr/local, where nothing else is, and
-# without PYTHONPATH. Nobody else sees that.
+# Runs a command in a mount namespace in which /usr/local contains only the files of PREFIX, and without
+# PYTHONPATH.
 set -u
 
 prefix=$1
 shift
 if ! unshare --map-root-user --mount true; then
-  echo "Skipped: this system allows no mount namespace"
+  echo "Skipped: this system does not allow mount namespaces"
   exit 125
 fi
 unset PYTHONPATH

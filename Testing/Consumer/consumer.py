@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Imports the installed package, and makes sure that it is the installed one that came."""
+"""Imports the package, and checks that package and libraries are those of the installation prefix."""
 import os
 import sys
 
@@ -10,6 +10,6 @@ assert os.path.realpath(deformvolume_vtk.__file__).startswith(prefix), deformvol
 devices = deformvolume_vtk.vtkDeformVolumeFilter.GetDeviceNames()
 assert devices.GetNumberOfValues() > 0
 with open("/proc/self/maps", encoding="utf-8") as maps:
-    # The Python modules have the libraries in them where these are static.
+    # With static libraries, these are the Python modules.
     libraries = {line.split()[-1] for line in maps if "vtkDeformVolume" in line}
 assert libraries and all(name.startswith(prefix) for name in libraries), libraries
