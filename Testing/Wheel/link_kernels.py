@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Links all kernels by the linker of the Python package, and loads them, as PoCL does.
+"""Links all kernels with the linker of the Python package, and loads them, as PoCL does.
 
     link_kernels.py SOURCES PROGRAM DRIVER LINKER FOLDER
 
 SOURCES: the folder Kernels. PROGRAM: KernelTexts. DRIVER: PoCL of the package pocl-binary-distribution. LINKER: the
-folder of the program ld. FOLDER: to work in.
+folder of the program ld. FOLDER: a folder for temporary files.
 
-The driver compiles and links the programs for a processor, and those for graphics cards besides. That is complete:
+PROGRAM deforms volumes by links, runs and fields, with and without a cut, with arrays of all types. Its driver compiles
+and links the kernels for CPUs and for graphics cards. This script checks that
 - each function of the sources that begins with __kernel has been linked;
-- the processor has deformed volumes by links, runs and fields, with and without a cut, and arrays of all types;
 - each library was made by this linker, and can be loaded: the C library and libm have all of its symbols.
-Where one of these is not so, this fails, and names the kernels.
+Otherwise it fails, and names the kernels.
 """
 
 import ctypes
@@ -34,7 +34,7 @@ def find_kernels():
                 continue
             with open(os.path.join(folder, file), encoding="utf-8") as stream:
                 text = stream.read()
-            # Those that macros make: the first argument is the name.
+            # Kernels that macros define: the first argument is the name.
             for macro, body in re.findall(r"#define (\w+)\(NAME\b((?:[^\n]*\\\n)*[^\n]*)", text):
                 if re.search(r"__kernel\b[^(]*\bvoid NAME\(", body):
                     names.update(re.findall(rf"^{macro}\((\w+)", text, re.MULTILINE))
@@ -44,7 +44,7 @@ def find_kernels():
 
 
 def link(device):
-    """Has the driver link what a device gets. Returns the names of the kernels, and the libraries."""
+    """Starts PROGRAM, whose driver compiles and links the kernels of a device. Returns the process."""
     work = os.path.join(FOLDER, device)
     shutil.rmtree(work, ignore_errors=True)
     os.makedirs(work + "/texts")
@@ -55,7 +55,7 @@ def link(device):
 
 
 def check(device):
-    """Returns the names of the kernels that were linked, and how many libraries there are."""
+    """Checks the libraries of a device. Returns the name of the kernel of each library."""
     work = os.path.join(FOLDER, device)
     with open(work + "/texts/kernels.txt", encoding="utf-8") as stream:
         wanted = [line.split()[1] for line in stream]
@@ -67,7 +67,7 @@ def check(device):
             path = os.path.join(folder, file)
             with open(path, "rb") as stream:
                 header = stream.read(64)
-            # Other linkers write sections, which nobody needs.
+            # Unlike other linkers, this linker writes no sections.
             if struct.unpack_from("<H", header, 60)[0] != 0:
                 sys.exit(f"{path} was made by another linker.")
             try:
@@ -75,7 +75,7 @@ def check(device):
             except OSError as error:
                 sys.exit(f"{path} cannot be loaded: {error}")
             linked.append(file[: -len(".so")])
-    # A kernel of several programs is linked for each.
+    # A kernel that several programs contain is linked once for each program.
     missing = {name for name in wanted if linked.count(name) < wanted.count(name)}
     if missing:
         sys.exit(f"Not linked in each program of device {device}: {sorted(missing)}")
@@ -91,8 +91,8 @@ def main():
     missing = kernels - set(linked)
     if missing:
         sys.exit(
-            f"Not linked: {sorted(missing)}. Have Testing/Kernels/KernelTexts.cxx deform a volume in the way that "
-            "needs them."
+            f"Not linked: {sorted(missing)}. Add to Testing/Kernels/KernelTexts.cxx a deformation that uses these "
+            "kernels."
         )
     print(f"{len(kernels)} kernels linked and loaded, as {len(linked)} libraries")
 

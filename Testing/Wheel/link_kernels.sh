@@ -1,8 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Links all kernels by the linker of the Python package, with PoCL of the package
-# pocl-binary-distribution: see link_kernels.py. From the build of preset vtk; DEFORMVOLUME_BUILD: another
-# build directory. The driver comes from PyPI once.
+# Links all kernels with the linker of the Python package and PoCL of the package
+# pocl-binary-distribution: see link_kernels.py. The programs are those of the preset vtk, or of the build
+# directory in DEFORMVOLUME_BUILD. PoCL is downloaded from PyPI once.
 #
 # Usage: link_kernels.sh [FOLDER]    (default: build/wheel)
 set -euo pipefail

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Deforms a small volume by the package of the wheel."""
+"""A small deformation, for the tests of the wheel."""
 
 import numpy
 
@@ -9,8 +9,9 @@ SIZE = 16
 
 
 def deform(shift=(0.0, 0.0, 0.0)):
-    """A volume of random int16 of which a cube of tetrahedra, all of the volume, moves by shift, in voxels: the
-    volume, the deformed volume on the same grid (background -1), and its coverage. Axes z, y, x."""
+    """Shifts a volume of random int16 by a mesh of five tetrahedra over the whole volume. shift: in voxels, along x, y
+    and z. Returns the volume, the deformed volume on the same grid, with the background -1, and its coverage. The axes
+    of these arrays are z, y, x."""
     volume = numpy.random.RandomState(1).randint(0, 1000, (SIZE, SIZE, SIZE)).astype(numpy.int16)
     last = SIZE - 1.0
     points = numpy.array([[last * (i & 1), last * (i >> 1 & 1), last * (i >> 2)] for i in range(8)])

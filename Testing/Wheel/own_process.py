@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests that have a volume deformed by the driver from PyPI in a process of its own, with an empty kernel
+"""A base class of tests that deform a volume with the driver from PyPI in another process, with an empty kernel
 cache."""
 
 import os
@@ -11,7 +11,7 @@ import unittest
 
 FOLDER = os.path.dirname(os.path.abspath(__file__))
 
-# Prints what becomes of it.
+# Deforms a volume, and prints "deformed", or the error.
 PROGRAM = """
 import ctypes, sys
 sys.path.insert(0, {folder!r})
@@ -40,7 +40,7 @@ class OwnProcess(unittest.TestCase):
         shutil.rmtree(self.folder)
 
     def run_program(self, **variables):
-        """What PROGRAM prints with these environment variables. It must not end by a signal or a traceback."""
+        """Runs PROGRAM with these environment variables, and returns its output. Its exit status must be 0."""
         environment = dict(os.environ, POCL_CACHE_DIR=os.path.join(self.folder, "cache"))
         environment["DEFORMVOLUME_DRIVER"] = "pypi"
         environment.update(variables)

@@ -1,15 +1,15 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Builds the wheel of the Python package and runs it in a pristine Debian, as a user without rights,
-# without OpenCL, a compiler, a linker or a network, with VTK from PyPI, alone and without libraries for
-# windows. As root, on Debian; that system and the packages of the wheel come from the archives that
-# this system uses, once.
+# Builds the wheel of the Python package, and tests it in a minimal Debian system: as a user without
+# privileges, without OpenCL, compiler, linker and network, with VTK from PyPI, but without the libraries
+# for windows that VTK uses. Run this as root on Debian. The minimal system comes from the Debian archive
+# that apt uses here, the packages come from PyPI. Both are downloaded once.
 #
 # Usage: pristine.sh [--wheel FILE] [SUITE [VTK]]
 #   SUITE   a release of Debian: bullseye (the default), with the oldest versions of glibc, Python and VTK
 #           that the package supports: 2.31, 3.9 and 9.3.0
-#   VTK     a version of VTK on PyPI, for other releases: the newest one
-#   --wheel has this wheel tried, and builds none
+#   VTK     a version of VTK on PyPI (the default for other releases: the newest one)
+#   --wheel tests this wheel, and does not build one
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 wheel=
@@ -45,7 +45,7 @@ make_system()
   touch "$root.made"
 }
 
-download() # options and packages of pip, for the Python of that system
+download() # options and packages of pip; downloads them for the Python of the minimal system
 {
   python3 -m pip download --quiet --disable-pip-version-check --only-binary=:all: \
     --python-version "$python" --platform manylinux_2_28_x86_64 --platform manylinux2014_x86_64 \
@@ -66,7 +66,7 @@ python=$(chroot "$root" python3 -c 'import sys; print("%d.%d" % sys.version_info
 download numpy pocl-binary-distribution
 download --no-deps "vtk${vtk:+==$vtk}"
 
-# Nothing of this system's environment, user or network.
+# Runs a command in the minimal system, without the environment, the user and the network of this one.
 inside() # command...
 {
   unshare --mount --net --pid --fork --kill-child bash -c '
@@ -102,7 +102,7 @@ inside bash -c '
   python3 -m venv venv
   pip="venv/bin/pip install --quiet --no-index --find-links /wheels"
   $pip deformvolume
-  # What VTK wants besides, it wants to draw.
+  # The dependencies of VTK are only needed for rendering.
   $pip --no-deps --no-compile "vtk$0"
   for test in /tests/test_*.py; do
     echo "== $test"

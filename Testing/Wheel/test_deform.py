@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A volume is deformed, with the driver from PyPI."""
+"""Deforms a volume with the driver from PyPI."""
 
 import unittest
 
@@ -23,12 +23,12 @@ class Deform(unittest.TestCase):
         numpy.testing.assert_array_equal(coverage, covered)
         self.assertTrue((output[covered == 0] == -1).all())
 
-    # Both load drivers, and PyPI's PoCL lies in pyopencl's folder: neither disturbs the other.
+    # pyopencl also loads PoCL, which is in the folder of pyopencl. The two packages must not affect each other.
     def test_beside_pyopencl(self):
         try:
             from pyopencl import get_platforms
         except ImportError:
-            self.skipTest("there is no pyopencl")
+            self.skipTest("pyopencl is not installed")
         before = [platform.name for platform in get_platforms()]
         volume, output, _ = deform()
         numpy.testing.assert_array_equal(output, volume)

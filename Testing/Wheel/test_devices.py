@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Devices and drivers, where the system has no driver: the one from PyPI, and what environment variables
-change. Each case in a process of its own, as drivers are chosen once."""
+"""Devices and drivers on a system without a driver: the driver from PyPI, and environment variables. Each case is a
+process of its own, since a process chooses its drivers once."""
 
 import os
 import subprocess
@@ -23,7 +23,7 @@ POCL = "(Portable Computing Language)|True|False|True"
 
 
 def run(**variables):
-    """What PROGRAM prints with these environment variables, line by line."""
+    """Runs PROGRAM with these environment variables, and returns the lines of its output."""
     environment = {
         name: value
         for name, value in os.environ.items()
@@ -55,13 +55,13 @@ class Devices(unittest.TestCase):
         self.assertEqual(len(lines), 1, lines)
         self.assertRegex(lines[0], "^Error: .*" + words)
 
-    def test_driver_that_is_not_there(self):
+    def test_missing_driver(self):
         self.expect_error("/nowhere/lib.so.* cannot be loaded", DEFORMVOLUME_DRIVER="/nowhere/lib.so")
 
-    def test_driver_that_is_none(self):
+    def test_file_that_is_not_a_driver(self):
         self.expect_error("not a usable OpenCL driver.*invalid ELF", DEFORMVOLUME_DRIVER="/etc/passwd")
 
-    def test_unknown_word(self):
+    def test_unknown_value(self):
         self.expect_error('DEFORMVOLUME_DRIVER is "pocl"', DEFORMVOLUME_DRIVER="pocl")
 
     def test_no_driver(self):
@@ -84,8 +84,8 @@ class Devices(unittest.TestCase):
         self.expect_pocl(DEFORMVOLUME_DRIVER="pypi", OCL_ICD_VENDORS="/nowhere")
         self.expect_pocl(DEFORMVOLUME_DRIVER=find_driver())
 
-    # Where the system has a driver for processors, no other one is added; one that is there twice has
-    # its devices once.
+    # If the system has a driver for CPUs, the driver from PyPI is not added. Devices of a driver that is listed twice
+    # are listed once.
     def test_driver_of_the_system(self):
         self.expect_pocl(OCL_ICD_VENDORS=find_driver())
         self.expect_pocl(OCL_ICD_VENDORS=find_driver(), DEFORMVOLUME_DRIVER="pypi")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""PoCL links what it compiles, where no linker works: with that of the package, and only with it, and no
-failure ends the process."""
+"""PoCL compiles kernels on a system without a working linker: the linker of the package is used. Failures are errors,
+and do not end the process."""
 
 import os
 import unittest
@@ -15,7 +15,7 @@ class Linker(OwnProcess):
             file.write(text)
         os.chmod(path, 0o755)
 
-    def test_unknown_word(self):
+    def test_unknown_value(self):
         self.assertRegex(
             self.run_program(DEFORMVOLUME_LINKER="ld"), 'Error: .*DEFORMVOLUME_LINKER is "ld"'
         )
@@ -24,7 +24,7 @@ class Linker(OwnProcess):
         output = self.run_program(DEFORMVOLUME_LINKER="system", PATH=self.folder)
         self.assertRegex(output, 'Error: The kernels cannot be compiled: .*"ld".*cannot be run')
 
-    # It is there, but it does not link.
+    # The system has a linker that fails.
     def test_linker_that_fails(self):
         self.write_program("ld", "#!/bin/sh\necho ld: cannot find -lgcc >&2\nexit 1\n")
         output = self.run_program(DEFORMVOLUME_LINKER="system", PATH=self.folder)
@@ -32,7 +32,7 @@ class Linker(OwnProcess):
 
     def test_own_linker(self):
         self.assertEqual(self.run_program(PATH=self.folder), "deformed\n")
-        # What was linked serves later processes.
+        # The next process uses the kernels in the cache.
         self.assertEqual(self.run_program(PATH=self.folder), "deformed\n")
 
     def test_own_linker_in_place_of_one_that_fails(self):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What users do by mistake: an exception says what is wrong, nothing ends the process, and the next call works."""
+"""Misuse: an exception says what is wrong, the process does not end, and the next call works."""
 
 import os
 import signal
@@ -61,7 +61,7 @@ class Misuse(unittest.TestCase):
         self.refuse(deformvolume.Error, "", mesh=Mesh(POINTS, CELLS, MOVED * 1e9))
         field = deformvolume.Field(numpy.full((2, 2, 2, 3), numpy.nan), AFFINE)
         self.refuse(deformvolume.Error, "finite", mesh=field)
-        # NaN in a volume is a value as others.
+        # NaN is a valid value of a volume.
         volume = make_volume()
         volume[4] = numpy.nan
         field = deformvolume.Field(numpy.zeros((2, 2, 2, 3)), numpy.diag([30.0, 30.0, 30.0, 1.0]))
@@ -100,13 +100,13 @@ class Misuse(unittest.TestCase):
             array.flags.writeable = False
             numpy.testing.assert_array_equal(deformvolume.deform(array, mesh, AFFINE).array, wanted)
             numpy.testing.assert_array_equal(array, before)
-        # A view of a part is not taken for the whole, and read-only points and cells will do.
+        # Views with other strides, and read-only points and cells, are valid.
         for array in (POINTS, CELLS, MOVED):
             array.flags.writeable = False
         turned = Mesh(numpy.asfortranarray(POINTS), CELLS[:, ::-1][:, ::-1], MOVED[::-1][::-1])
         numpy.testing.assert_array_equal(deformvolume.deform(fortran, turned, AFFINE).array, wanted)
 
-    # The deformer reads a Fortran array where it is.
+    # The deformer reads a Fortran array in place.
     def test_borrowed_memory(self):
         deformer = deformvolume.Deformer()
         volume = make_volume()
@@ -121,12 +121,12 @@ class Misuse(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "resize"):
             vectors.base.resize((9, 9, 9, 9), refcheck=False)
         deformer.set_deformation(Mesh(POINTS, CELLS, MOVED))
-        # Other values in the same memory are to be set again.
+        # After values change in place, set_volume() must be called again.
         volume *= 2
         deformer.deform()
         deformer.set_volume(volume, AFFINE)
         numpy.testing.assert_array_equal(deformer.deform().array, 2 * wanted)
-        # It lives as long as it is needed.
+        # The deformer keeps the array alive.
         del volume
         deformer.set_deformation(Mesh(POINTS, CELLS, MOVED))
         numpy.testing.assert_array_equal(deformer.deform().array, 2 * wanted)
@@ -152,7 +152,7 @@ class Misuse(unittest.TestCase):
             thread.join()
         self.assertEqual(equal, 12 * [True])
 
-    # The driver's threads are not in a forked process, and its calls would wait for them.
+    # A forked process has no threads of the driver, so its calls would wait forever. They raise an error instead.
     def test_fork(self):
         shared = deformvolume.Deformer()
         shared.set_volume(make_volume(), AFFINE)

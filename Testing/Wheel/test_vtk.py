@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The filter for VTK pipelines, where there is VTK."""
+"""The filter for VTK pipelines. The tests are skipped without VTK."""
 
 import unittest
 
@@ -37,7 +37,7 @@ def make_field(shift):
 
 
 def make_mesh(shift, kind=None):
-    """A box of the volume's size, as one cell."""
+    """A box of the size of the volume, as one cell."""
     from vtkmodules.util.numpy_support import numpy_to_vtk
     from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints
     from vtkmodules.vtkCommonDataModel import VTK_HEXAHEDRON, vtkUnstructuredGrid
@@ -58,9 +58,9 @@ class Pipeline(unittest.TestCase):
     SHIFT = [3.0, -2.0, 1.0]
 
     def setUp(self):
-        # Not the whole class: Python 3.12.1 takes a program without tests for one that failed.
+        # Skip each test and not the class: Python 3.12.1 reports a failure if a program has no tests.
         if vtkRTAnalyticSource is None:
-            self.skipTest("there is no VTK")
+            self.skipTest("VTK is not installed")
         from deformvolume.vtk import DeformVolume
 
         self.source = vtkRTAnalyticSource()
@@ -76,7 +76,7 @@ class Pipeline(unittest.TestCase):
         from vtkmodules.vtkImagingCore import vtkImageFlip
 
         self.filter.SetDeformationData(make_field(self.SHIFT))
-        # A filter behind it, so that VTK asks for information, extents and data.
+        # With a filter behind it, VTK requests information, extents and data.
         flip = vtkImageFlip()
         flip.SetInputConnection(self.filter.GetOutputPort())
         flip.Update()
@@ -88,7 +88,7 @@ class Pipeline(unittest.TestCase):
         self.filter.SetDeformationData(make_mesh(self.SHIFT))
         self.filter.Update()
         self.expect_shift()
-        # It moves on.
+        # Another deformation.
         self.filter.SetDeformationData(make_mesh([0.0, 0.0, 0.0]))
         self.filter.Update()
         numpy.testing.assert_array_equal(values(self.filter.GetOutputDataObject(0)), values(self.source.GetOutput()))
@@ -98,7 +98,7 @@ class Pipeline(unittest.TestCase):
         with self.assertRaisesRegex(Exception, words):
             self.filter.Update()
 
-    # VTK prints its own lines of each, too.
+    # VTK prints these errors, too.
     def test_misuse(self):
         from vtkmodules.vtkCommonDataModel import VTK_TRIANGLE_STRIP, vtkImageData, vtkPolyData, vtkUnstructuredGrid
 
@@ -112,7 +112,7 @@ class Pipeline(unittest.TestCase):
         mesh = make_mesh(self.SHIFT)
         mesh.GetPointData().Initialize()
         self.expect_error("no active vectors", mesh)
-        # And then as if nothing had been.
+        # The filter works again with a valid deformation.
         self.filter.SetDeformationData(make_mesh(self.SHIFT))
         self.filter.Update()
         self.expect_shift()

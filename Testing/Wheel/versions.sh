@@ -1,9 +1,10 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
-# The wheel in build/wheel (Python/wheel.sh), with each version of Python that is here, with several of
-# VTK, and beside pyopencl. Packages come from PyPI into a folder of each, which is removed where its
-# tests pass. And with the Python and the newest VTK of later releases of Debian, each made for it by
-# pristine.sh and removed where its tests pass. Prints a table.
+# Tests the wheel in build/wheel, which Python/wheel.sh has built, with each installed version of Python,
+# with several versions of VTK, and with pyopencl. pip installs the packages from PyPI into a virtual
+# environment, which is removed if its tests pass. The wheel is also tested by pristine.sh with the Python
+# of later releases of Debian and the newest VTK. These systems are removed if their tests pass, too.
+# Prints a table.
 #
 # Usage: versions.sh [PYTHON | SUITE]...    (default: all of Python 3.9 and later on the PATH and in
 #                                           ~/.pyenv, trixie and forky)
@@ -24,7 +25,7 @@ done
 if [ $# -eq 0 ]; then
   suites=(trixie forky)
   for minor in 9 10 11 12 13 14; do
-    # The newest one of each.
+    # The newest patch release of each version.
     for python in "/usr/bin/python3.$minor" \
       $(printf '%s\n' ~/.pyenv/versions/3."$minor".*/bin/python | sort -rV); do
       if [ -x "$python" ]; then
@@ -37,19 +38,19 @@ fi
 
 failed=0
 rows=()
-try() # python, further packages: those that cannot be had for a version of Python are reported
+try() # python, additional packages: the table says if they are not available for this Python
 {
   local python=$1 venv=$folder/versions result
   rm -rf "$venv"
   "$python" -m venv "$venv"
   if ! "$venv/bin/pip" install --quiet --disable-pip-version-check --only-binary=:all: \
     "$wheel" "${@:2}" >"$venv.log" 2>&1; then
-    result="not to be had"
+    result="not available"
   else
     result=passed
     local test
     for test in Testing/Wheel/test_{devices,deform,misuse,vtk}.py; do
-      # What this system has for drivers is not looked for.
+      # Drivers of this system are not used.
       env -u OCL_ICD_VENDORS -u OCL_ICD_FILENAMES OPENCL_VENDOR_PATH=/nowhere \
         "$venv/bin/python" "$test" >>"$venv.log" 2>&1 || result=failed
     done
