@@ -449,7 +449,7 @@ void TestDeformedVolume()
   VERIFY(Arrays(seen) == expected);
 }
 
-void TestOthers()
+void TestChainMailAndCoarseVolume()
 {
   auto volume = MakeVolume(Box);
   Edited<vtkCutVolume> smooth;
@@ -492,6 +492,6 @@ int TestSmoothCut(int, char*[])
   TestEdits();
   TestTool();
   TestDeformedVolume();
-  TestOthers();
+  TestChainMailAndCoarseVolume();
   return GetExitCode();
 }

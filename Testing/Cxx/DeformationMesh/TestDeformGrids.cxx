@@ -449,7 +449,7 @@ void TestFloats()
 
 // Nodes and cells in random order. With a margin of 0 nodes are at voxels, which thus belong to
 // several tetrahedra.
-void TestNumbers()
+void TestRenumbering()
 {
   const auto volume = MakeVolume({ { 0, 40, 0, 24, 0, 32 } });
   for (const double margin : { 0.0, 0.37 })
@@ -524,6 +524,6 @@ int TestDeformGrids(int, char*[])
   TestTwoMeshes();
   TestOtherParts();
   TestFloats();
-  TestNumbers();
+  TestRenumbering();
   return GetExitCode();
 }

@@ -176,7 +176,7 @@ void TestSettings()
 }
 
 // A cut volume at rest, and deformations that are connected and disconnected.
-void TestComingAndGoing()
+void TestConnecting()
 {
   const auto volume = MakeCutVolume();
   auto whole = vtkSmartPointer<vtkImageData>::New();
@@ -209,6 +209,6 @@ int TestDeformAtRest(int, char*[])
   TestMisuse();
   TestVolumeItself();
   TestSettings();
-  TestComingAndGoing();
+  TestConnecting();
   return GetExitCode();
 }

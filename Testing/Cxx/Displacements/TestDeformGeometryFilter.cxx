@@ -200,7 +200,7 @@ public:
     this->Points = MakePoints(MakePositions(20, glm::dvec3(1.0), glm::dvec3(9.0), 1));
     this->Mesh = MakeLattice(10.0, 3, 0.0);
     SetDisplacements(this->Mesh, Shift(1.0, 2.0, 3.0));
-    this->Mend();
+    this->Restore();
     this->Tested.Update();
   }
 
@@ -229,13 +229,13 @@ public:
       this->Tested.ExecutiveObserver->Clear();
       VERIFY_EQUAL(this->Tested.Filter->GetOutput()->GetNumberOfPoints(), 0);
     }
-    this->Mend();
+    this->Restore();
     const glm::dvec3 moved = GetPoint(this->Tested.Update(), 3);
     VERIFY(glm::length(moved - GetPoint(this->Points, 3) - glm::dvec3(1.0, 2.0, 3.0)) < 1e-6);
   }
 
 private:
-  void Mend()
+  void Restore()
   {
     vtkDeformGeometryFilter* filter = this->GetFilter();
     filter->SetInputData(this->Points);
@@ -1106,7 +1106,7 @@ void TestIsosurface()
 }
 
 //------------------------------------------------------------------------------
-void TestKinds()
+void TestDataTypes()
 {
   auto mesh = MakeLattice(10.0, 3, 0.0);
   SetDisplacements(mesh, Shift(1.0, 2.0, 3.0));
@@ -1202,6 +1202,6 @@ int TestDeformGeometryFilter(int, char*[])
   TestFolds(-2.5);
   TestAgainstVolume();
   TestIsosurface();
-  TestKinds();
+  TestDataTypes();
   return GetExitCode();
 }

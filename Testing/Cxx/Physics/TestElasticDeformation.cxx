@@ -120,7 +120,7 @@ void TestMisuse()
   VERIFY_EQUAL(simulated.TryUpdate(), std::string());
 }
 
-void TestErrorsOfTheirOwn()
+void TestErrorsOfSubclasses()
 {
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
   Simulated<vtkMassSpringDeformation> springs(bar);
@@ -210,7 +210,7 @@ void TestWarnings(double push)
   VERIFY_EQUAL(simulated.Copy()->GetComponent(bar->GetNumberOfPoints() - 1, 2), 0.0);
 }
 
-void TestWarningsOfTheirOwn()
+void TestWarningsOfSubclasses()
 {
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
   Simulated<vtkMassSpringDeformation> springs(bar);
@@ -325,7 +325,7 @@ void TestTimes()
 
 // A simulation continues with other materials, and starts again with another mesh.
 template <typename Filter>
-void TestWhatIsKept()
+void TestContinuedSimulation()
 {
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
   Simulated<Filter> simulated(bar);
@@ -580,10 +580,10 @@ int TestElasticDeformation(int, char*[])
 {
   TestMisuse<vtkMassSpringDeformation>();
   TestMisuse<vtkFiniteElementDeformation>();
-  TestErrorsOfTheirOwn();
+  TestErrorsOfSubclasses();
   TestWarnings<vtkMassSpringDeformation>(0.008);
   TestWarnings<vtkFiniteElementDeformation>(0.02);
-  TestWarningsOfTheirOwn();
+  TestWarningsOfSubclasses();
   TestMisuseOfPresets();
   TestMaterialPresets<vtkMassSpringDeformation>();
   TestMaterialPresets<vtkFiniteElementDeformation>();
@@ -601,8 +601,8 @@ int TestElasticDeformation(int, char*[])
       simulated.Object->Update();
     });
   TestTimes();
-  TestWhatIsKept<vtkMassSpringDeformation>();
-  TestWhatIsKept<vtkFiniteElementDeformation>();
+  TestContinuedSimulation<vtkMassSpringDeformation>();
+  TestContinuedSimulation<vtkFiniteElementDeformation>();
   TestAborted<vtkMassSpringDeformation>();
   TestAborted<vtkFiniteElementDeformation>();
   TestHeldNodes<vtkFiniteElementDeformation>();

@@ -318,7 +318,7 @@ void TestDisplacements(Misuse& misuse)
   auto besides = MakeImage({ { 0, 4, 0, 4, 0, 4 } }, glm::dvec3(1.0), glm::dvec3(500.0, 0.0, 0.0));
   SetDisplacements(besides, Shift(0.0, 0.0, 0.0));
   misuse.GetFilter()->SetDeformationData(besides);
-  misuse.Expect("a displacement field beside the volume", "no voxel of the volume");
+  misuse.Expect("a displacement field outside the volume", "no voxel of the volume");
 }
 
 void TestRestMeshes(Misuse& misuse)

@@ -70,7 +70,7 @@ void TestExtents()
 }
 
 // Other settings, or another volume, reset the extent.
-void TestFreshStarts()
+void TestResets()
 {
   Moved moved;
   vtkDeformVolumeFilter* filter = moved.GetFilter();
@@ -210,7 +210,7 @@ int TestDeformKeptBounds(int, char*[])
 {
   TestProperty();
   TestExtents();
-  TestFreshStarts();
+  TestResets();
   TestMoves(vtkDeformVolumeFilter::EXACT);
   TestMoves(vtkDeformVolumeFilter::MESH_RASTERIZATION);
   return GetExitCode();

@@ -65,7 +65,7 @@ void TestHeldOutputs()
 }
 
 // An output that no caller holds is written again, and filters behind it detect the change.
-void TestOutputsServeAgain()
+void TestReusedOutputs()
 {
   Subject subject;
   vtkNew<vtkImageShiftScale> after;
@@ -265,7 +265,7 @@ int TestDeformMemory(int, char*[])
     return 125; // VTK_SKIP_RETURN_CODE
   }
   TestHeldOutputs();
-  TestOutputsServeAgain();
+  TestReusedOutputs();
   TestOutputsOfOtherSizes();
   TestDescriptionOfArrays();
   TestVolumeInPlace();

@@ -111,7 +111,7 @@ vtkSmartPointer<vtkImageData> Subsample(vtkImageData* volume, int factor)
 }
 
 /// The output of a filter whose input is subsampled by Subsample().
-vtkSmartPointer<vtkImageData> DeformByHand(const Case& from, int factor)
+vtkSmartPointer<vtkImageData> DeformSubsampled(const Case& from, int factor)
 {
   Deformed deformed(Subsample(from.Volume, factor), from.Deformation);
   from.Set(deformed.Filter);
@@ -175,7 +175,7 @@ void MaskSome(vtkImageData* volume)
   volume->GetPointData()->AddArray(ghosts);
 }
 
-void TestAgainstHand()
+void TestAgainstSubsampled()
 {
   std::vector<Case> cases = MakeCases();
   {
@@ -231,7 +231,7 @@ void TestAgainstHand()
       const int failures = GetNumberOfFailures();
       deformed.Filter->SetSamplingFactor(factor);
       vtkImageData* output = deformed.Update();
-      const auto expected = DeformByHand(from, factor);
+      const auto expected = DeformSubsampled(from, factor);
       VERIFY(AreEqual(output, expected));
       for (int axis = 0; axis < 3; ++axis)
       {
@@ -480,7 +480,7 @@ void TestParts()
       continue;
     }
     const int factor = 2;
-    const auto whole = DeformByHand(from, factor);
+    const auto whole = DeformSubsampled(from, factor);
     Deformed streamed;
     vtkNew<PartSource> source;
     source->SetVolume(from.Volume);
@@ -530,7 +530,7 @@ int TestDeformSamplingFactor(int, char*[])
 {
   TestMisuse();
   TestIdentity();
-  TestAgainstHand();
+  TestAgainstSubsampled();
   TestDenseField();
   Switched().Run();
   TestMemory();

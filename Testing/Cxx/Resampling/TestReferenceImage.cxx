@@ -214,7 +214,7 @@ void TestOwnGrid()
   }
 }
 
-void TestTurned()
+void TestRotated()
 {
   auto volume = MakeOblique();
   for (const bool isMirrored : { false, true })
@@ -768,7 +768,7 @@ void TestNothingCovered()
   SetDisplacements(field, Shift(90.0, 0.0, 0.0));
   OnReference beside(volume, field, far);
   beside.Filter->FieldIsInverseOn();
-  check("beside", beside, "inverse displacement field");
+  check("outside", beside, "inverse displacement field");
 }
 
 void TestMisuse()
@@ -779,7 +779,7 @@ void TestMisuse()
   OnReference deformed(volume, mesh, good);
   vtkNew<vtkImageData> expected;
   expected->DeepCopy(deformed.Update());
-  const auto mend = [&]
+  const auto restore = [&]
   {
     deformed.Filter->SetInputData(volume);
     deformed.Filter->SetDeformationData(mesh);
@@ -800,7 +800,7 @@ void TestMisuse()
                 << deformed.LastError << '\n';
     }
     VERIFY_EQUAL(deformed.Filter->GetOutput()->GetNumberOfPoints(), 0);
-    mend();
+    restore();
     VERIFY(AreEqual(deformed.Update(), expected));
     VERIFY(deformed.TakeWarning().empty());
   };
@@ -916,7 +916,7 @@ void TestMisuse()
 int TestReferenceImage(int, char*[])
 {
   TestOwnGrid();
-  TestTurned();
+  TestRotated();
   TestAtRest();
   TestMirrored();
   TestCubic();

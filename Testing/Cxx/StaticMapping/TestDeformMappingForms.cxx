@@ -95,7 +95,7 @@ void TestSmoothDeformation()
 }
 
 // A coarse mesh, a finer mesh, the coarse mesh again, and other displacements of it.
-void TestFormsTakeTurns()
+void TestChangesOfForm()
 {
   auto volume = MakeVolume(Voxels);
   auto coarse = MakeMesh(volume, 4);
@@ -149,7 +149,7 @@ int TestDeformMappingForms(int, char*[])
 {
   TestWholeVoxels();
   TestSmoothDeformation();
-  TestFormsTakeTurns();
+  TestChangesOfForm();
   TestMemoryLimit();
   return GetExitCode();
 }
