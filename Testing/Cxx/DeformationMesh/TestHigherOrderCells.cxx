@@ -257,7 +257,7 @@ Grid MakeMixedMesh(const Types& types)
   return mesh.Mesh;
 }
 
-void TestNeighbours()
+void TestNeighbors()
 {
   // Cells of these types have the same nodes on the faces between them. The surface consists of
   // four faces of the cube, two triangles and two sides of the wedge, three sides of the pyramid,
@@ -963,7 +963,7 @@ int TestHigherOrderCells(int, char*[])
   TestTables();
   TestLattices();
   TestErrors();
-  TestNeighbours();
+  TestNeighbors();
   TestBlocks();
   TestDegrees();
   TestConvergence();
