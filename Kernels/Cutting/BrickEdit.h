@@ -26,7 +26,7 @@ public:
   /// The vertices of each tetrahedron of a cell, as indices into the arrays of vertices.
   using CellTetrahedra = std::array<std::array<std::size_t, 4>, 5>;
 
-  /// Sets the brick. Positions and hits stay as they were.
+  /// Sets the brick. Does not change positions and hits.
   void Set(const CellBricks& bricks, std::size_t brick);
   /// Sets the brick and the positions of its vertices.
   void Set(const VertexPositions& positions, std::size_t brick);
@@ -82,7 +82,8 @@ public:
     this->HasHits = true;
   }
 
-  /// Calls a function for some bricks in parallel, and collects the hits.
+  /// Calls a function for the bricks 0 to `bricks` - 1 in parallel, and returns the tetrahedra that
+  /// it hits. Throws Aborted if `progress` returns false.
   static TetrahedronSet ForEachBrick(std::size_t bricks,
     const std::function<void(std::size_t brick, BrickEdit& edit)>& function,
     const EditProgress& progress);

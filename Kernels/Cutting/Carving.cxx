@@ -129,7 +129,7 @@ CarvingTool MakeSweptSphere(const std::vector<glm::dvec3>& centers, const glm::d
     throw Error("The radius of a carving tool is not greater than 0, or not finite.");
   }
   CarvingTool tool;
-  std::vector<glm::dvec3> path; // in radii
+  std::vector<glm::dvec3> path; // in units of the radii
   for (const glm::dvec3& center : centers)
   {
     if (!IsFinite(center))

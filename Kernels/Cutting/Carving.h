@@ -37,8 +37,8 @@ struct CarvingTool
   /// by several threads.
   std::function<void(const glm::dvec3* points, std::size_t count, double* values)> Function;
   /// Computes the distances of points from the boundary of the body, not negative, in the unit of
-  /// all edits; they need to be accurate near the boundary only. Null: the absolute values of
-  /// Function are used.
+  /// boundary distances; they need to be accurate near the boundary only. Null: the absolute values
+  /// of Function are used.
   std::function<void(const glm::dvec3* points, std::size_t count, double* distances)> Distance;
   /// No point outside these bounds is inside the tool. Bricks outside are skipped.
   IndexBounds Bounds;
@@ -52,8 +52,8 @@ struct CarvingTool
 DEFORMVOLUME_EXPORT IndexBounds GetUnlimitedBounds();
 
 /// Makes a tool from the path of a sphere: the capsules between consecutive centers, or a single
-/// sphere. radii: the radii of the sphere on each axis, in voxels. Throws an Error if there is no
-/// center, a value is not finite, or a radius is not greater than 0.
+/// sphere. radii: the radii of the sphere on each axis, in the unit of centers. Throws an Error if
+/// there is no center, a value is not finite, or a radius is not greater than 0.
 DEFORMVOLUME_EXPORT CarvingTool MakeSweptSphere(
   const std::vector<glm::dvec3>& centers, const glm::dvec3& radii);
 

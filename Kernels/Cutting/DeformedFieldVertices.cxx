@@ -17,8 +17,8 @@ namespace deformvolume
 namespace
 {
 
-// The limits of the components of vectors, given in short rows of equal length. Each index in a row
-// has its own limits, so that compilers can vectorize the comparisons.
+// The limits of the components of vectors. Vectors are compared in groups of nine, and each
+// component in a group has its own limits, so that compilers can vectorize the comparisons.
 class ComponentsOfRows
 {
 public:
@@ -105,7 +105,7 @@ void DeformedFieldVertices::FindRow(
 
 // Returns the limits of the displacements at all points of the field that affect a vertex.
 // Displacements of vertices lie within these limits, because weights are between 0 and 1 and add up
-// to 1. Rounding can miss a point whose weight is almost 0.
+// to 1. Rounding errors can omit a point whose weight is almost 0.
 DisplacementLimits DeformedFieldVertices::GetLimits(std::size_t brick) const
 {
   const Extent vertices = this->Bricks.GetVertices(brick);
@@ -191,8 +191,8 @@ std::vector<unsigned char> DeformedFieldVertices::SetField(
   return marked;
 }
 
-// Marks the bricks of the vertices that are given points of the field. A vertex on the common face
-// of two bricks belongs to both bricks.
+// Marks the bricks of the vertices at the given points of the field. A vertex on the common face of
+// two bricks belongs to both bricks.
 void DeformedFieldVertices::MarkRow(const Extent& points, std::vector<unsigned char>& bricks) const
 {
   Extent cells;

@@ -53,7 +53,7 @@ private:
   SnappedBox FindExactBox(std::size_t brick) const;
 
   std::unique_ptr<DeformedVertices> Vertices;
-  // Vertices as its own class; one of these pointers is null.
+  // Vertices as a pointer to its derived class; one of these two pointers is null.
   DeformedMeshVertices* OfMesh = nullptr;
   DeformedFieldVertices* OfField = nullptr;
   std::vector<SnappedBox> Boxes;

@@ -12,7 +12,7 @@
 namespace deformvolume
 {
 
-/// Collects the distances of the vertices of bricks of cells into a set for a volume. Add may be
+/// Collects the distances of the vertices of bricks of cells into a set for a volume. Add() may be
 /// called by several threads.
 class DistanceGatherer
 {

@@ -21,9 +21,9 @@ constexpr std::int64_t PointsPerStep = 4;
 // overflow.
 constexpr std::int64_t Beyond = std::int64_t{ 1 } << 60;
 
-// A triangle for rays along x. Predicates are exact in 64 bits: differences on y and z are at most
-// 2^19, the length of a triangle (Sheet::LongestTriangle) in quarters of a step. The same holds for
-// x: if x of the point is outside the box of the triangle, no product is needed.
+// A triangle that rays along x may cross. Predicates are exact in 64 bits: differences on y and z
+// are at most 2^19, the length of a triangle (Sheet::LongestTriangle) in quarters of a step. The
+// same holds for x: if x of the point is outside the box of the triangle, no product is needed.
 class RayTriangle
 {
 public:

@@ -13,17 +13,17 @@ namespace deformvolume
 
 /// Decides exactly whether a triangle of a sheet crosses tetrahedra.
 ///
-/// All vertices of the sampling mesh are shifted symbolically by (e, e^2, e^3) with infinitesimal e
-/// > 0. Then no vertex lies in the plane of a triangle, no edge meets an edge, and a triangle
-/// either crosses a tetrahedron or is apart from it. The whole mesh is shifted, so decisions for
-/// tetrahedra that share a face are consistent. Decisions do not depend on the order of the points
-/// of a triangle or of the vertices. If a predicate is 0, the sign of its derivative in the
-/// direction of the shift decides.
+/// All vertices of the sampling mesh are shifted symbolically by (e, e^2, e^3), e > 0 being
+/// infinitesimal. Then no vertex lies in the plane of a triangle, no edge meets an edge, and a
+/// triangle either crosses a tetrahedron or is apart from it. The whole mesh is shifted, so
+/// decisions for tetrahedra that share a face are consistent. Decisions do not depend on the order
+/// of the points of a triangle or of the vertices. If a predicate is 0, the sign of its derivative
+/// in the direction of the shift decides.
 ///
 /// Exact in 64 bits: a difference D between points is at most 2^20 steps if the triangle is not
 /// longer than 2^17 (Sheet::LongestTriangle), the vertices lie within 2^19 (LargestBox) of each
-/// other, and their boxes overlap. A component of a cross product is then at most 2 D^2, and a
-/// triple product with its partial sums at most 6 D^3 < 2^63.
+/// other, and the boxes of the triangle and of the vertices overlap. A component of a cross product
+/// is then at most 2 D^2, and a triple product with its partial sums at most 6 D^3 < 2^63.
 class TriangleCrossing
 {
 public:
