@@ -14,7 +14,7 @@ namespace deformvolume
 
 /// Divides the cells of a volume into bricks of 8 x 8 x 8 cells, the unit of work of edits. Bricks
 /// are small, so that most cells that an edit does not hit are skipped as whole bricks. Bricks are
-/// numbered along x, then y, then z.
+/// numbered along x, then y, then z. Local indices count from 0 at the first cell of the volume.
 class CellBricks
 {
 public:

@@ -27,7 +27,7 @@ struct CrossingSet
     /// Bit t: an edge of tetrahedron t is crossed more than once.
     std::uint32_t IsMultiple = 0;
 
-    /// Adds the crossings of another edit.
+    /// Adds the crossings of another triangle or edit.
     void Join(const Cell& other)
     {
       const std::uint32_t both = this->Edges & other.Edges;
@@ -57,7 +57,7 @@ struct CrossingSet
   bool IsEmpty() const { return this->Bricks.empty(); }
 };
 
-/// The distance of a vertex that is no end of a crossed edge.
+/// The distance of a vertex that is not an end of a crossed edge.
 constexpr float FarFromSheets = std::numeric_limits<float>::infinity();
 
 /// Joins the distances of a vertex from two triangles, or from two edits.

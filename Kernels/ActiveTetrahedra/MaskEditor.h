@@ -88,7 +88,6 @@ public:
   bool HasSmoothCuts() const;
   /// Returns the divided tetrahedra of all edits and of the cut before all edits.
   SmoothCrossings& GetSmoothCrossings() { return this->Crossings; }
-  /// The same, for constant editors.
   const SmoothCrossings& GetSmoothCrossings() const { return this->Crossings; }
 
   /// Whether an edit has boundary distances.
