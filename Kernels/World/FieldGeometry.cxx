@@ -103,7 +103,7 @@ void SetOutside(const OutsideVoxels& outside, const glm::dvec3& spacing, Displac
   field.Extrapolate = !outside.AreDiscarded();
   if (outside.AreKept())
   {
-    // If FadeDistance is 0, already the voxels nearest to the field, outside it, do not move.
+    // If FadeDistance is 0, even voxels very close to the field do not move.
     constexpr double most = 1e6;
     for (std::size_t axis = 0; axis < 3; ++axis)
     {

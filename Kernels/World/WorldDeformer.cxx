@@ -38,7 +38,7 @@ void WorldDeformer::SetMemoryLimit(std::uint64_t bytes)
 void WorldDeformer::SetVolume(const ImageGeometry& volume)
 {
   CheckVolume(volume);
-  GetPadded(volume.PointExtent, 0); // which checks its size
+  GetPadded(volume.PointExtent, 0); // checks the size
   if (this->Impl->Volume != volume)
   {
     this->Impl->Volume = volume;
@@ -112,7 +112,7 @@ void WorldDeformer::SetReference(const std::optional<ImageGeometry>& reference)
         DescribeExtent(reference->PointExtent) + ". Give one with voxels.");
     }
     CheckTransform(*reference, "the reference grid");
-    GetPadded(reference->PointExtent, 0); // which checks its size
+    GetPadded(reference->PointExtent, 0); // checks the size
   }
   this->Impl->Reference = reference;
 }

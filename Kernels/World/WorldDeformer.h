@@ -63,11 +63,11 @@ struct WorldRequest
   /// Empty: the whole output.
   Extent OutputExtent{ { 0, -1, 0, -1, 0, -1 } };
   deformvolume::Interpolation Interpolation = deformvolume::Interpolation::Linear;
-  /// All arrays are resampled as if they were categorical.
+  /// Whether all arrays are resampled as if they were categorical.
   bool IsNearest = false;
   /// Whether the next call may write only the voxels that changed. If the next request has the same
-  /// memory, this memory must still contain the output of this call. Not together with
-  /// RestPositions, Jacobians, FoldCounts or densities.
+  /// memory, this memory must still contain the output of this call. Cannot be combined
+  /// with RestPositions, Jacobians, FoldCounts or densities.
   bool IsIncremental = false;
   /// Memory for the output of each array (see WorldArray::IsDensity for the types of densities),
   /// and for the coverage: one byte per voxel, 1 if the deformed volume covers the voxel, otherwise
@@ -75,10 +75,10 @@ struct WorldRequest
   std::vector<void*> Outputs;
   signed char* Coverage = nullptr;
   ///@{
-  /// Memory for additional arrays, or null. RestPositions: three floats per voxel, the world
-  /// position at rest of the point of the volume that is there. Jacobians: one float per voxel, the
-  /// determinant of the derivative of deformed positions. FoldCounts: the number of tetrahedra of
-  /// the sampling mesh that hold the voxel.
+  /// Memory for additional arrays, or null. RestPositions: three floats per voxel, the position at
+  /// rest, in world coordinates, of the point of the volume that is deformed to the voxel.
+  /// Jacobians: one float per voxel, the determinant of the derivative of deformed positions.
+  /// FoldCounts: the number of tetrahedra of the sampling mesh that hold the voxel.
   float* RestPositions = nullptr;
   float* Jacobians = nullptr;
   std::uint32_t* FoldCounts = nullptr;
@@ -131,11 +131,11 @@ public:
   ///@}
 
   void SetOutside(const OutsideVoxels& outside);
-  /// The grid of the output, with its whole extent.
+  /// Set the grid of the output, with its whole extent. None: see OutputSettings.
   void SetReference(const std::optional<ImageGeometry>& reference);
   void SetOutput(const OutputSettings& settings);
 
-  /// The grid of the output, with its whole extent.
+  /// Returns the grid of the output, with its whole extent.
   ImageGeometry FindOutput();
   WorldReport Deform(const WorldRequest& request);
 

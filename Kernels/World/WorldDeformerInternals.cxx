@@ -22,9 +22,9 @@ namespace deformvolume
 namespace
 {
 
-// Returns a progress function that reports to a part of `progress`, between two fractions. It calls
-// `progress` in the calling thread only. In other threads it only returns whether the work was
-// aborted.
+// Returns a progress function that maps its fractions, 0 to 1, to fractions of `progress` between
+// `from` and `to`. It calls `progress` in the calling thread only. In other threads it only returns
+// whether the work was aborted.
 std::function<bool(double)> GetPart(
   const std::function<bool(double)>& progress, double from, double to)
 {

@@ -26,13 +26,13 @@ public:
     Field
   };
 
-  ///@{
-  /// Update the deformation; return the grid of the output and its whole extent, after an update.
-  /// Throw an Error if something is missing, or if settings cannot be combined.
+  /// Updates the deformation for the volume and the output. Throws an Error if the volume or the
+  /// displacements are missing or cannot be used.
   void UpdateDeformation();
+  /// Returns the grid of the output. Its extent is empty if there is no reference grid.
   ImageGeometry GetOutputGrid() const;
+  /// Returns the whole extent of the output. Must be called after UpdateDeformation().
   Extent FindWholeExtent();
-  ///@}
 
   /// See WorldDeformer::Deform().
   WorldReport Deform(const WorldRequest& request);
@@ -50,7 +50,8 @@ public:
   WorldMesh Mesh;
   VectorField Field;
   Deformations Deformation = Deformations::None;
-  /// The volume for which the field of zeros was made that is used if there is no deformation.
+  /// The volume for which the field of zeros was made. This field is used if there is no
+  /// deformation.
   std::optional<ImageGeometry> VolumeAtRest;
   OutsideVoxels Outside;
   std::optional<ImageGeometry> Reference;
@@ -82,7 +83,8 @@ private:
   IndexBounds FindBounds();
 
   bool HasDensities() const;
-  /// Whether Jacobians are resampled, which are arrays of the volume.
+  /// Whether Jacobians are computed at the voxels of the volume, and resampled like its arrays.
+  /// Jacobians of inverse fields are computed in the output.
   bool ResamplesJacobians(const WorldRequest& request) const
   {
     return (request.Jacobians || this->HasDensities()) && !this->IsInverse();
