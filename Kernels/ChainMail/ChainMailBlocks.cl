@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Code that the ChainMail kernels share: blocks of voxels, their links, and their rows in the output.
 //
-// A work-group handles a block of the list, and its work-items share the rows of eight voxels. On CPUs a work-group
+// A work-group processes a block of the list, and its work-items share the rows of eight voxels. On CPUs a work-group
 // is a single work-item, and SERIAL is 1.
 //
 // displacements: for each block, 512 integers for each axis. flags, links, materials: for each block, 512 bytes.
@@ -73,7 +73,7 @@ INLINE int8 LookUp(__global const int* table, uchar8 m)
     table[m.s6], table[m.s7]);
 }
 
-// Whether all of eight materials, and all of eight others, are the same.
+// Whether the 16 materials of a and b are all the same.
 INLINE int AreAlike(uchar8 a, uchar8 b)
 {
   const ulong all = as_ulong(a);
@@ -105,7 +105,8 @@ INLINE void FindLimitsBeside(
   }
 }
 
-// Returns the limits of eight links from the values of their two voxels. links: of the voxels at the lower ends.
+// Returns the limits of eight links from the values of their two voxels. links: the bytes of the voxels at the lower
+// ends.
 INLINE int8 LinkLimits(int8 a, int8 b, uchar8 links, int axis)
 {
   const int8 there = (convert_int8(links) & (1 << axis)) != 0;
@@ -184,8 +185,8 @@ INLINE void FindNeighbors(Neighbors* n, __global const int* displacements,
   }
 }
 
-// Returns the number of voxels of a block's row that lie in the volume. word: set to the offset of the first one in the
-// output.
+// Returns the number of voxels of a block's row that lie in the volume. word: set to the offset of the first of them in
+// the output.
 INLINE int FindOutputRow(uint block, int r, const ChainMailGrid* g, size_t* word)
 {
   const int x = block % g->Blocks[0] * 8;

@@ -15,8 +15,9 @@
 // and the sum of two such limits does not overflow.
 #define DEFORMVOLUME_NO_LIMIT (1 << 29)
 
-// Flags of a voxel during a step. Bit "system": the system has moved the voxel. The number of a
-// system is the axis of the displacement, plus 3 if voxels are pushed up rather than pulled down.
+// Flags of a voxel during a step. Bit "system": the system or a handle has moved the voxel, which
+// therefore bounds other voxels in this system. The number of a system is the axis of the
+// displacement, plus 3 if voxels are pushed up rather than pulled down.
 #define DEFORMVOLUME_SYSTEMS 6
 #define DEFORMVOLUME_ALL_SYSTEMS 63
 #define DEFORMVOLUME_HELD 64   // held by a handle: other voxels do not move it
@@ -45,8 +46,8 @@
 
 typedef struct
 {
-  int Size[3];   // voxels
-  int Blocks[3]; // blocks of these voxels
+  int Size[3];   // number of voxels on each axis
+  int Blocks[3]; // number of blocks on each axis
   float ToWorld[9];
 } ChainMailGrid;
 

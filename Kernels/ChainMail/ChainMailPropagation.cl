@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Propagates the motion of handles to other voxels. This text comes after ChainMailBlocks.cl.
 //
-// A system is one component of the displacements in one direction. When handles move, the links bound the
-// displacement of each voxel: it is at most the displacement of a handle plus the limits of the links on any path
-// from there, and at least that displacement minus the limits. Voxels beyond their bound are moved to the bound and
-// marked. Only marked voxels bound others. A visit computes the bounds in a block, from its marked voxels and those
-// around it, until they do not change any more. Bounds are minima of sums of integers, so the final bounds do not
-// depend on the order of visits and rows.
+// A system is one component of the displacements in one direction. When handles move, the links bound the displacement
+// of each voxel: it is at most the displacement of a handle plus the limits of the links on any path from there, and at
+// least that displacement minus the limits. The voxels of handles are marked. Voxels beyond their bound are moved to
+// the bound and marked. Only marked voxels bound others. A visit computes the bounds in a block, from its marked voxels
+// and those around it, until they do not change any more. Bounds are minima of sums of integers, so the final bounds do
+// not depend on the order of visits and rows.
 //
-// Blocks that share a face are not visited in the same launch. Without SERIAL, neighboring rows are not handled between
+// Blocks that share a face are not visited in the same launch. Without SERIAL, neighboring rows are not updated between
 // the same two barriers. Therefore no work-item reads what another one writes.
 
-// The systems "pushed up" are those "pulled down" with the sign reversed.
+// Systems that push voxels up are computed like systems that pull voxels down, with reversed signs.
 INLINE int8 Upright(int system, int8 x)
 {
   return system < 3 ? x : -x;
@@ -102,7 +102,7 @@ INLINE int IsAny(int8 a)
   return (two.x | two.y) != 0;
 }
 
-// Handles one row in a sweep. Returns whether it changed.
+// Updates the bounds of one row in a sweep. Returns whether they changed.
 INLINE int SweepRow(__local int8* bounds, __local int8* forward, __local int8* backward,
   int backwardAxis, int r, int first)
 {

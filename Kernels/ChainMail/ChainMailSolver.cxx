@@ -265,7 +265,7 @@ void ChainMailSolver::ResolveInOrder(const ChainMailHandles& handles, ChainMailR
 {
   const std::size_t count = handles.GetNumberOfHandles();
   std::vector<HandleTask> accepted(count, HandleTask{ { { 0, 0, 0 } }, 0 });
-  bool isRestored = true; // whether the voxels are as before the step, plus the accepted handles
+  bool isRestored = true; // whether only accepted handles have moved voxels in this step
   for (std::size_t i = 0; i < count; ++i)
   {
     if (!handles.HasVoxels(i))

@@ -60,7 +60,9 @@ private:
   ChainMailState& State;
   ChainMailBlocks Blocks;
   ActiveBlocks Active;
-  std::vector<unsigned char> IsSaved, IsDisplaced, IsRecent; // for each block
+  // The blocks saved in this step, those with displaced voxels, and those that still relax: as one
+  // byte for each block, and as lists.
+  std::vector<unsigned char> IsSaved, IsDisplaced, IsRecent;
   std::vector<std::uint32_t> Saved, Displaced, Recent;
   std::vector<std::int64_t> LastTouched; // for each block, the number of the step
   std::vector<std::uint32_t> PutBack;    // blocks that changed between steps

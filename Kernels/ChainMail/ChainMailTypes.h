@@ -14,7 +14,8 @@ namespace deformvolume
 {
 
 /// The limits of the links of a voxel, as fractions of the spacing. A link between two materials
-/// has the mean of their limits. The default is a soft tissue. All limits are engineering values.
+/// has the mean of their limits. The default is a soft tissue. All limits are engineering values,
+/// not measurements.
 struct ChainMailMaterial
 {
   /// The shortest length of a link along its axis, 0 to 1.
