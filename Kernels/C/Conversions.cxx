@@ -31,7 +31,7 @@ ImageGeometry MakeGeometry(const dv_grid* given, const char* name)
   {
     const int first = grid.extent[2 * axis];
     const int last = grid.extent[2 * axis + 1];
-    // The same limit as for outputs (OutputExtent.h): sizes cannot overflow.
+    // The same limit as for outputs (OutputExtent.cxx): sizes cannot overflow.
     constexpr int most = 1 << 29;
     if (first < -most || last > most || first > last)
     {

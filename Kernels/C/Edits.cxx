@@ -73,7 +73,7 @@ void SetOptions(const dv_edit* given, EditFinder& finder)
   finder.Progress = MakeProgress(edit.progress, edit.user);
 }
 
-// Makes an edit. find: finds the edit, and may throw. The edits are then unchanged.
+// Makes an edit. find: finds the edit. If it throws, the edits do not change.
 template <typename Find>
 std::int32_t Edit(dv_deformer* deformer, const dv_edit* options, const Find& find)
 {

@@ -54,7 +54,7 @@ DEFORMVOLUME_EXPORT void CheckCellPoint(
 class DEFORMVOLUME_EXPORT CellReader
 {
 public:
-  /// Returns the position of a node at rest. Called for few cells.
+  /// Returns the position of a node at rest. Called for the nodes of quadratic cells and polyhedra.
   using Positions = std::function<glm::dvec3(std::int32_t node)>;
 
   /// rounding: relative error of positions.

@@ -26,7 +26,7 @@ constexpr double LastCellStep = 1e-12;
 constexpr double CellFaceTolerance = 1e-9;
 // Largest distance from the solution, in cells, at which Newton's method counts as converged.
 constexpr double CellSolutionTolerance = 1e-8;
-// A smaller weight may be a rounding error of the position: the vector of the point is not needed.
+// Points of the field with a smaller weight are ignored: the weight may be a rounding error.
 constexpr double LeastWeight = 1e-5;
 
 /// Values at the corners of a cell. Bits 0, 1 and 2 of a corner's number: upper x, y and z.
