@@ -88,12 +88,14 @@ public:
   bool HasSmoothCuts() const;
   /// Returns the divided tetrahedra of all edits and of the cut before all edits.
   SmoothCrossings& GetSmoothCrossings() { return this->Crossings; }
+  /// Returns the same for reading.
   const SmoothCrossings& GetSmoothCrossings() const { return this->Crossings; }
 
   /// Whether an edit has boundary distances.
   bool HasDistanceEdits() const;
   /// Returns the boundary distances of all edits and of the base.
   BoundaryDistances& GetBoundaryDistances() { return this->Distances; }
+  /// Returns the same for reading.
   const BoundaryDistances& GetBoundaryDistances() const { return this->Distances; }
 
   /// Returns the number of blocks of tetrahedra and crossings that were joined, a measure of the
