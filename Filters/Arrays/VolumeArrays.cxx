@@ -29,7 +29,8 @@ namespace
 
 const char* const VOLUME = "volume"; // in messages
 
-// Finds the element type of the same size and kind: VTK has several types for most of them.
+// Finds the element type with the size and kind of T. Several types of VTK can have the same
+// element type.
 template <typename T>
 constexpr bool FindElementType(ElementType& type)
 {
