@@ -12,7 +12,7 @@
 namespace deformvolume
 {
 
-/// Positions of a tool, and those of them along which it has already been moved.
+/// Positions of a tool, and the positions along which the tool has already been moved.
 class ToolPath
 {
 public:
@@ -24,7 +24,8 @@ public:
   std::size_t GetNumberOfPositions() const { return this->Positions.size(); }
 
   /// The positions along which the tool has to be moved: from the last position of the previous
-  /// stroke on, or all positions if they do not continue the previous ones. Empty: nothing is new.
+  /// stroke on, or all positions if they do not continue the previous ones. Empty: there are no
+  /// new positions.
   std::vector<Position> GetStroke() const
   {
     const std::vector<Position>& all = this->Positions;

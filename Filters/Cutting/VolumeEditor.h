@@ -90,7 +90,7 @@ private:
   Stamp BaseDistancesStamp; // of the distances that Mask has
   Stamp CutStamp;           // of the smooth cut of the volume
   Stamp BaseCutStamp;       // of the smooth cut that Mask has
-  // // Arrays of the output.
+  // Arrays of the output.
   vtkSmartPointer<vtkUnsignedCharArray> Active;
   vtkSmartPointer<vtkFloatArray> Distances;
   vtkSmartPointer<vtkUnsignedCharArray> CutTetrahedra;
@@ -102,7 +102,7 @@ private:
   MappingCache Mapping;
   FadedMesh Faded; // the mesh of the mapping, if voxels outside the deformation mesh are kept
   std::unique_ptr<DeformedPositions> Deformed;
-  // // What Deformed was computed from.
+  // What Deformed was computed from.
   struct PositionsKey
   {
     std::uint64_t Mapping = 0; // a version
