@@ -87,8 +87,8 @@ struct ExecutionState
   RegionsKey KeyOfRegions;
   std::unique_ptr<RestRegions> Regions;
 
-  // The extent of the volume that was needed last, and for which part of the output of which
-  // volume.
+  // The extent of the volume that was needed last. A Share identifies the part of the output and
+  // the volume that the extent belongs to.
   struct Share
   {
     Extent Asked{ { 0, -1, 0, -1, 0, -1 } }; // empty: all

@@ -101,7 +101,7 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ComputeBounds(
   }
   if (bounds.IsEmpty())
   {
-    // // Throws an Error that says what is wrong with the mesh.
+    // Throws an Error that says what is wrong with the mesh.
     this->State->Mapping.Update(mesh.GetMeshAtRest(), mapped, {});
     throw Error("The deformed volume has no bounds. Check the deformation mesh.");
   }

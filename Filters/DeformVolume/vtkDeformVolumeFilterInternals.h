@@ -108,14 +108,15 @@ public:
   /// With DEFORMED_BOUNDS the bounds hold the deformed volume at all times requested so far. If the
   /// deformed volume leaves them at the requested time, the bounds grow, and the filter is out of
   /// date in the next update, in which its consumers get the new extent. HoldTime() is called
-  /// before extents are requested, so that an update of this filter alone gives the whole new
-  /// extent. KeepInBounds() is called with the data, for updates without that pass or without a
-  /// time. Collective.
+  /// in the pass for time-dependent information, before extents are requested, so that an update of
+  /// this filter alone gives the whole new extent. KeepInBounds() is called in RequestData(), for
+  /// updates without that pass or without a time. Collective.
   void HoldTime(vtkInformation* volumeInfo, vtkInformation* output);
   void KeepInBounds(const deformvolume::Ranks& ranks, const deformvolume::ImageGeometry& volume,
     const deformvolume::DeformationSource& source, vtkInformation* output);
   ///@}
-  /// Warns if a consumer requests the whole extent from before it has grown.
+  /// Warns if the whole extent has grown in this update, but a consumer still requests the previous
+  /// one.
   void WarnOfCut(vtkInformation* output);
 
   /// The extent of the volume that the requested output needs. This is a part of the volume only if

@@ -220,7 +220,8 @@ int vtkDeformVolumeFilter::RequestUpdateExtent(
   }
   this->Internals->SelectState();
   const deformvolume::Ranks ranks;
-  // Before the other ports: one with the same source requests more from it.
+  // Before the requests for the other ports: if one of these has the same source, its request
+  // replaces this one.
   if (input[ReferencePort]->GetNumberOfInformationObjects() > 0)
   {
     deformvolume::RequestNothing(input[ReferencePort]->GetInformationObject(0));
