@@ -230,8 +230,8 @@ CellMemory GetCellMemory(vtkUnstructuredGrid* grid)
   return memory;
 }
 
-// For each block of cells of a part whether it was written. Empty: unknown. count: number of
-// tetrahedra of the part.
+// Returns for each block of cells of a part whether the block was written. Empty: unknown. count:
+// number of tetrahedra of the part.
 std::vector<unsigned char> FindWrittenBlocks(
   vtkUnstructuredGrid* grid, const CellMemory& last, std::size_t count)
 {

@@ -24,9 +24,10 @@ std::vector<CellMemory> GetCellMemories(const MeshParts& parts);
 /// Compares the cells of a mesh with tetrahedra that were read from it before. Returns those with
 /// other nodes, in ascending order. Returns nothing if a comparison of memory does not suffice: for
 /// cells other than tetrahedra, another number of cells, ghost cells, uncommon layouts, nodes that
-/// do not exist, or so many changes that reading the cells is faster. memories: GetCellMemories()
-/// of when the tetrahedra were read. If a log of the connectivity (vtkArrayChanges) has the cells
-/// that were written since, only these are compared. Empty: all cells are compared.
+/// do not exist, or so many changes that reading the cells is faster. memories: the
+/// result of GetCellMemories() when the tetrahedra were read. If a log of the connectivity
+/// (vtkArrayChanges) has the cells that were written since then, only these cells are compared.
+/// With empty memories, all cells are compared.
 std::optional<std::vector<TetrahedronChange>> FindDifferences(const MeshParts& parts,
   const std::vector<Tetrahedron>& tetrahedra, const std::vector<CellMemory>& memories);
 
