@@ -119,12 +119,12 @@ private:
   bool HasSameUnits(const DeformationSource& source) const;
   /// Calls its argument with all displacements in world units.
   using VectorSource = std::function<void(const VectorTaker&)>;
-  /// Sets the displacements. count: number of vectors that `read` gives. It throws an Error if some
-  /// cannot be used. derived: the derived nodes, whose displacements follow from these; null: there
-  /// are none.
+  /// Sets the displacements. read: throws an Error if vectors cannot be used. count: number of
+  /// vectors that `read` gives. derived: the derived nodes, whose displacements are computed from
+  /// these vectors; null: there are none.
   void SetVectors(std::size_t count, const VectorSource& read, double factor,
     const DeformationSource& source, const DerivedNodes* derived = nullptr);
-  /// The same without a new version.
+  /// Like SetVectors(), but VectorsVersion does not change.
   void ReplaceVectors(std::size_t count, const VectorSource& read, double factor,
     const DeformationSource& source, const DerivedNodes* derived = nullptr);
   /// Computes the displacements of derived nodes, which follow `count` other displacements.
