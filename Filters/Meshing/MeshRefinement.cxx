@@ -204,8 +204,8 @@ private:
   std::vector<Simplex> Simplices;
 };
 
-// Whether another sphere has points here: one with a shorter edge length, or an earlier one with
-// the same.
+// Whether a point lies in or near another sphere that has its own lattice points there. This is a
+// sphere with a shorter edge length, or an earlier sphere with the same edge length.
 bool IsTaken(
   const glm::dvec3& point, const std::vector<RefinementSphere>& spheres, std::size_t index)
 {
@@ -213,7 +213,7 @@ bool IsTaken(
   {
     const bool finer = spheres[i].EdgeLength < spheres[index].EdgeLength ||
       (spheres[i].EdgeLength == spheres[index].EdgeLength && i < index);
-    // The radius of the lattice of that sphere, and some clearance.
+    // The lattice of the other sphere extends beyond its radius. Points keep some distance from it.
     if (finer &&
       glm::distance(point, spheres[i].Center) < spheres[i].Radius + 1.5 * spheres[i].EdgeLength)
     {
