@@ -29,8 +29,8 @@ vtkSmartPointer<vtkDataArray> MakeMask(vtkIdType numberOfTuples)
 }
 
 // Whether an array of an earlier output can be used for an array like `wanted`, which has no
-// tuples. Its memory may be somewhat smaller or larger, since the size of the output changes with
-// the deformation.
+// tuples. The memory of the array may be smaller than needed, or up to twice as large, since the
+// size of the output changes with the deformation.
 bool CanServe(vtkDataArray* last, vtkDataArray* wanted, vtkIdType numberOfTuples)
 {
   constexpr vtkIdType mostWaste = 2;
@@ -178,7 +178,7 @@ void OutputArrays::Make(const std::vector<SourceArray>& sources, DeformRequest& 
     {
       if (made->GetNumberOfTuples() != this->NumberOfTuples)
       {
-        SetSize(made, this->NumberOfTuples); // it no longer holds the values of that output
+        SetSize(made, this->NumberOfTuples); // loses the values of the earlier output
         serving.Values = nullptr;
       }
       CopyDescription(made, isMask ? MakeMask(0) : MakeLike(sources[i].Array, 0));

@@ -19,8 +19,8 @@ namespace deformvolume
 
 /// The arrays of a filter's output. The arrays of the last execution are used again if nobody else
 /// holds references to them: writing to new memory for the first time costs more than deforming a
-/// volume. If somebody does, as mappers do, two sets of arrays alternate: those of the execution
-/// before the last one are used.
+/// volume. If others hold references, as mappers do, the arrays of the execution before the last
+/// one are used, so that two sets of arrays alternate.
 class OutputArrays
 {
 public:

@@ -95,7 +95,7 @@ protected:
   /// Mappers request ranges of each new output. Ranges of components are computed on the device.
   /// Other ranges are computed by Host, which does not read the values as doubles.
 #ifdef DEFORMVOLUME_RANGES_OF_GHOSTS
-  // // VTK calls these also for ranges without ghosts.
+  // VTK calls these also for ranges without ghosts.
   void ComputeRange(double range[2], int component, const unsigned char* ghosts,
     unsigned char ghostsToSkip = 0xff) override;
   void ComputeFiniteRange(double range[2], int component, const unsigned char* ghosts,
