@@ -26,9 +26,9 @@ namespace deformvolume
 vtkDataObject* UpdateInput(
   vtkAlgorithm* filter, int port, vtkInformation* output, const double* time, const Ranks& ranks);
 
-/// Requests the same data from an input in the pass for update extents: the whole of an image, or
-/// the piece of this rank of other data. The request does not depend on the requested part of the
-/// output.
+/// For the pass for update extents: requests the data that UpdateInput() returns, which are the
+/// whole of an image, or the piece of this rank of other data. The request does not depend on the
+/// requested part of the output.
 void RequestInput(vtkInformation* input, const Ranks& ranks);
 
 /// Requests an extent as one piece without ghost levels.

@@ -18,7 +18,7 @@ public:
   /// into an output remain there.
   int Run(vtkAlgorithm* algorithm, const char* noMemory, const std::function<void()>& body);
 
-  /// Whether a request has failed since Renew(), which the executive calls before each update.
+  /// Whether a request has failed since Renew() was last called, which happens before each update.
   bool HasFailed() const { return this->Failed; }
 
   /// For ComputePipelineMTime: the executive regards the output of an execution that failed or was
