@@ -115,7 +115,7 @@ void vtkElasticDeformation::SetSheetData(vtkDataObject* data)
 void vtkElasticDeformation::UndoCut()
 {
   std::size_t& cuts = this->Internals->CutsToUndo;
-  cuts = std::max(cuts, cuts + 1); // does not overflow after ClearCuts()
+  cuts = std::max(cuts, cuts + 1); // keeps the maximum that ClearCuts() sets
   this->Modified();
 }
 
@@ -189,7 +189,7 @@ int vtkElasticDeformation::RequestInformation(
   output->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
   if (HasTimes(input[0]->GetInformationObject(0)))
   {
-    return 1; // the executive has passed them on
+    return 1; // the executive has copied them to the output
   }
   vtkInformation* handles = input[1]->GetInformationObject(0);
   if (HasTimes(handles))

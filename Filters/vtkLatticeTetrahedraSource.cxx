@@ -160,8 +160,8 @@ int vtkLatticeTetrahedraSource::ComputePipelineMTime(vtkInformation* request,
   vtkInformationVector** inputVector, vtkInformationVector* outputVector, int requestFromOutputPort,
   vtkMTimeType* mtime)
 {
-  // The executive regards an output that was not completed as up to date. Later than here, it would
-  // not notice a change of the modification time.
+  // The executive regards an output that was not completed as up to date. It would not notice a
+  // change of the modification time in a later request.
   if (this->Incomplete)
   {
     this->Incomplete = false;

@@ -223,8 +223,8 @@ int vtkTetGenMesher::ComputePipelineMTime(vtkInformation* request,
   vtkInformationVector** inputVector, vtkInformationVector* outputVector, int requestFromOutputPort,
   vtkMTimeType* mtime)
 {
-  // The executive regards the output of an execution that failed or was aborted as up to date.
-  // Later than here, it would not notice a change of the modification time.
+  // The executive regards the output of an execution that failed or was aborted as up to date. It
+  // would not notice a change of the modification time in a later request.
   if (this->Incomplete)
   {
     this->Incomplete = false;
