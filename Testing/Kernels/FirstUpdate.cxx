@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Prints the times of the first and of a later execution of a process on a device. The difference
 // is the time of compilation. Testing/drivers.sh makes a table of it. Prints a line "later:"
-// between the two, which separates the output of drivers: Testing/gpu-compilers.sh counts
-// instructions by it.
+// between the two executions: Testing/gpu_tables.py reads only the counts of instructions that
+// Oclgrind prints after this line.
 //
 // Usage: FirstUpdate [still | jittered | folded] [cells | columns] [runs] [mesh CELLS] [VOXELS]
 // [DEVICE]

@@ -154,7 +154,7 @@ TEST(MaskEditor, WorkDoesNotGrowWithTheNumberOfEdits)
   }
   other.Add(std::move(all));
   EXPECT_EQ(editor.GetNumberOfEdits(), 10000U);
-  // Edges that several edits cross switch off additional tetrahedra.
+  // Tetrahedra with an edge that several edits cross are switched off, too.
   for (std::size_t cell = 0; cell < other.GetMask().size(); ++cell)
   {
     ASSERT_EQ(editor.GetMask()[cell],

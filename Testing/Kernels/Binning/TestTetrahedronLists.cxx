@@ -380,8 +380,8 @@ TEST_F(TetrahedronListing, LargeTetrahedra)
   std::swap(large.Tetrahedra.back()[2], large.Tetrahedra.back()[3]); // inverted
   large.AddLarge();
   EXPECT_GT(this->ExpectEqualsReference(large), 3 * large.GetNumberOfTiles());
-  // As many tiles on each axis as a tetrahedron can have there: the box of the tetrahedron must
-  // have enough bits for them.
+  // The largest number of tiles that a tetrahedron can meet on each axis: the packed counts of
+  // tiles (TetrahedronBinning.cl) must have enough bits for it.
   for (std::size_t axis = 0; axis < 3; ++axis)
   {
     std::array<int, 3> size{ { 3, 3, 3 } };

@@ -55,7 +55,7 @@ TEST(ChainMail, MisuseIsAnError)
   request.PlasticityThreshold = -1.0;
   EXPECT_THROW(subject.Model.Step(request), Error);
   EXPECT_EQ(subject.Output, before);
-  // A drag that continues after an error equals a drag without one.
+  // A drag that continues after errors equals a drag without errors.
   Subject other(extent);
   other.Step({ good });
   const ChainMailHandle further = MakeHandle({ { 4, 4, 4 } }, { { -1, 3, 0 } });
@@ -198,8 +198,8 @@ TEST(ChainMail, SeparatedBodiesNeverInteract)
   EXPECT_GT(still, 1000U);
 }
 
-// A rigid path that turns at each voxel: a sweep over a block advances along it by one voxel only.
-// It takes more sweeps than a visit has.
+// A rigid path that turns at each voxel. A sweep over a block advances along the path by one voxel
+// only, so the path takes more sweeps than one visit of the block has.
 TEST(ChainMail, LongPathsWithinABlock)
 {
   const Extent extent{ { 0, 8, 0, 8, 0, 8 } };
@@ -398,7 +398,8 @@ TEST(ChainMail, SavedStatesAreRestored)
   EXPECT_THROW(ChainMailModel().TakeSnapshot(), Error);
 }
 
-// Cut links have no limits. A snapshot of that state may violate them after they are restored.
+// Cut links have no limits. Displacements in a snapshot with cut links may violate the limits of
+// these links when the links are active again.
 TEST(ChainMail, SavedStatesThatViolateLinks)
 {
   const Extent extent{ { 0, 20, 0, 9, 0, 9 } };
@@ -417,7 +418,8 @@ TEST(ChainMail, SavedStatesThatViolateLinks)
   subject.Model.Restore(*apart);
   EXPECT_FALSE(subject.Step({}).WasReset);
   EXPECT_EQ(subject.Output, before);
-  // Restore the snapshot and then the links, or the links first: all displacements are set to 0.
+  // Restores the snapshot and then the links, or the links first. In both orders all displacements
+  // are set to 0.
   for (const bool linksFirst : { false, true })
   {
     subject.Model.SetActiveTetrahedra(cut.data());

@@ -195,8 +195,9 @@ TEST(DeformedCutting, FindsDeformedPositions)
           {
             ASSERT_TRUE(found.HasPosition[i]);
             const glm::dvec3 p(x, y, z);
-            // The error of rounding is half a step. Weights and displacements are floats with an
-            // error of 2^-20 of at most 32 voxels, which adds less than a hundredth.
+            // The error of rounding is half a step. Displacements of at most 32 voxels have a
+            // relative error of 2^-20, because they and the weights are floats. This adds less than
+            // a hundredth of a step.
             const glm::dvec3 error = 256.0 * (p + move(p)) - glm::dvec3(found.Points[i]);
             ASSERT_LT(
               glm::max(glm::abs(error.x), glm::max(glm::abs(error.y), glm::abs(error.z))), 0.51);

@@ -687,7 +687,8 @@ TEST(MeshBoundaries, NodeFarAway)
     { 1e8, 10.2, 9.1 } };
   const MeshBoundary boundary = FindMeshBoundary(Volume, Volume, points, { { { 0, 1, 2, 3 } } });
   ASSERT_FALSE(boundary.IsEmpty());
-  // Parts of at most 4,096 cells are divided five times, across into 32 x 32.
+  // Bisections lead to parts of at most 4,096 cells on an axis. The edges of these parts are halved
+  // five times, to at most 128 cells, so a cross-section has 32 x 32 pieces.
   EXPECT_LT(boundary.Pieces.size(), 10U * 32U * 32U);
   const auto isInside = [](const auto& corners, const glm::dvec3& point)
   {

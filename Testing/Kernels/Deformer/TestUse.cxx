@@ -211,8 +211,8 @@ TEST_F(Use, NotEnoughMemory)
 // Memory for winners is requested only if tetrahedra overlap.
 TEST_F(Use, NotEnoughMemoryForAFold)
 {
-  // The output is so large that its winners do not fit into memory that was counted but is not
-  // used.
+  // CheckMemory() also counts memory that this case does not use. The output is so large that its
+  // winners do not fit into that memory.
   const DeformerCase folded =
     MakeCase(this->Case.VoxelGrid.VertexExtent, { { 1, 1, 1 } }, MakeJitter(3, 1.0), 10);
   const auto nodes = static_cast<std::size_t>(this->Case.GetNumberOfVoxels());

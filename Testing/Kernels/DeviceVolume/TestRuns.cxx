@@ -604,7 +604,8 @@ TEST_F(RunsMisuse, MemoryIsThatOfTheRuns)
   const std::uint64_t voxels = 8000000;
   const std::uint64_t runBytes = GetRunBytes(voxels / 10, 40000, 1000);
   // 4 bytes per voxel for the volume, 3 for states and masks, and 5 for the output if the device
-  // does not work in place. There is no room for another 16 bytes per voxel, but for runs there is.
+  // does not work in place. The remaining memory suffices for runs, but not for links of 16 bytes
+  // per voxel.
   this->Deformer.SetMemoryLimit(voxels * 22);
   EXPECT_NO_THROW(this->Deformer.CheckMemory(
     voxelGrid, this->Arrays, voxelGrid.VertexExtent, 100, 200, false, runBytes));

@@ -278,8 +278,8 @@ TEST_P(ElementModels, TangentIsNeverNegative)
       direction[node] = glm::dvec3(normal(random), normal(random), normal(random));
     }
     elements.AssembleTangent(watch, displacements, true, matrix);
-    // Power iterations converge to the least eigenvalue: each adds minus the product of the last
-    // direction.
+    // Power iterations with the identity minus a multiple of the matrix converge to the direction
+    // of the least eigenvalue.
     for (int i = 0; i < 20; ++i)
     {
       matrix.Multiply(0, nodes, isFree.data(), direction.data(), product.data());

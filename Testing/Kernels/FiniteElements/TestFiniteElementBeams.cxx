@@ -314,8 +314,8 @@ TEST(FiniteElementBeams, SimpleShear)
 }
 
 // Cauchy stresses of the corotational law in a simple shear of 0.5 and a stretch normal to its
-// plane. Lambda up to 4 mu acts on tr(S - 1). The part above, as for a Poisson ratio of 0.49, acts
-// on J - 1.
+// plane. The part of lambda up to 4 mu acts on tr(S - 1). The rest, which is greater than 0 for a
+// Poisson ratio of 0.49, acts on J - 1.
 TEST(FiniteElementBeams, CorotationalShear)
 {
   for (const double poissonRatio : { 0.3, 0.49 })

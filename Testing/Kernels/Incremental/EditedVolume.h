@@ -119,8 +119,8 @@ protected:
     volume.Method = GetMethod();
     return volume;
   }
-  /// Reduces a number of edits to what there is time for. By cells there are fewer, and on graphics
-  /// cards fewest, because the whole outputs are also made by cells there.
+  /// Reduces a number of edits to limit the time of a test. Tests by cells have fewer edits. Tests
+  /// on graphics cards have the fewest, because their whole outputs are also computed by cells.
   static int GetNumberOf(int edits)
   {
     constexpr int byCell = 7;

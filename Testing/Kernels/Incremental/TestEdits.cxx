@@ -19,8 +19,8 @@ using namespace deformvolume;
 namespace
 {
 
-/// Memory for an output. The memory of the first array may begin at an odd address, where no CPU
-/// writes 2-byte numbers.
+/// Memory for an output. The memory of the first array may begin at an odd address. Such memory is
+/// not aligned for 2-byte numbers, so it is not written in place.
 struct Memory
 {
   Memory(const EditedVolume& volume, bool isAligned)

@@ -175,7 +175,7 @@ TEST_P(Incremental, LocalEditsRunFewBricks)
 namespace
 {
 
-// Changes a mask at one voxel or cell near a corner where eight sub-bricks meet, at one after the
+// Changes a mask at single voxels or cells near a corner where eight sub-bricks meet, one after the
 // other.
 class IncrementalMasks : public testing::Test
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compilers may fuse multiplications and additions, and some compilers do so even if they are told
-// not to. Results must be the same bit for bit with every driver.
+// Compilers may fuse multiplications and additions, and some compilers do so even if the program
+// forbids it. Results must be the same bit for bit with every driver.
 //
 // Programs are compiled once in a process. The test therefore runs itself twice, with compilers
 // that must not fuse and with compilers that must fuse (FakeDriver), and compares the results.

@@ -166,7 +166,7 @@ TEST(MidSideNodes, Misuse)
     getError(body), "2 of 40 tetrahedra of the rest mesh are flat, the first one being number 4.");
 }
 
-// One of the linear tetrahedra that this element is divided into is inverted, although the
+// A ten-node tetrahedron is divided into linear tetrahedra. One of them is inverted, although the
 // determinant at the integration points is far from 0. A volume cannot be deformed by such a mesh.
 TEST(MidSideNodes, InvertedPartsAreAnError)
 {

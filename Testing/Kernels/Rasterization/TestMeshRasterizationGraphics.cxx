@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the lists of tetrahedra copy from and to a device with memory of its own.
+// Copies from and to a device with memory of its own while it makes the lists of tetrahedra.
 #include "DeviceNeeds.h"
 #include "FakeDriver.h"
 #include "Tetrahedron.h"

@@ -107,7 +107,8 @@ Expected Interpolate(const DeformerCase& deformerCase, const reference::Containi
     largest = std::max(largest, std::fabs(value));
     farthest = std::max(farthest, std::fabs(value - expected.First));
   }
-  // The kernels add up the differences of 64-bit integers from one of them, if these are small.
+  // If the differences of 64-bit integers from one of them are small, the kernels add up these
+  // differences instead of the integers.
   const bool byDifferences = std::is_integral<T>::value && sizeof(T) == 8 && farthest < 0x1p57L;
   // Bounds the rounding errors of a few dozen operations on weights and sums.
   expected.Error =

@@ -112,11 +112,11 @@ TEST(SmoothCuts, InvisibleAtRest)
   }
 }
 
-// A copy of a divided tetrahedron must win an overlap also if no vertex of the cells in its
+// A copy of a divided tetrahedron must win an overlap even if no vertex of the cells in its
 // work-group is near the voxel. One side of the cut was moved across the other side and away from
-// it. The copies of the other side extend beyond all of these vertices, to patches of the output of
-// their own. Inverted cells that come first there lose the overlap. No cell is aligned, and no
-// sample lies on a face: those are other reasons to examine a patch.
+// it. The copies of the other side extend beyond all of these vertices, into patches of the output
+// without such vertices. There they win over inverted cells that come first. No cell is aligned,
+// and no sample lies on a face, because these are other reasons to examine a patch.
 TEST(SmoothCuts, CopiesBeyondTheVerticesOfTheirCellsWin)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
