@@ -37,8 +37,8 @@ void EndUpdate(vtkObject* view, unsigned long, void*, void*)
   }
 }
 
-// Otherwise state files would save the values of removed properties again, although the filter
-// ignores them with a warning (vtkDeformVolumeFilter::SetFromState()).
+// Without this reset, state files would save the values of removed properties again, although the
+// filter ignores these values with a warning (vtkDeformVolumeFilter::SetFromState()).
 void ResetRemovedProperties(vtkSMProxy* proxy)
 {
   for (const char* name :

@@ -14,7 +14,7 @@ namespace deformvolume
 {
 
 /**
- * Adds these observers to the proxies and views of all present and future sessions of this client.
+ * Adds the observers to the proxies and views of all present and future sessions of this client.
  * A second call has no effect.
  */
 void RefreshInformation();
