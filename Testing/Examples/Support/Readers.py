@@ -11,7 +11,7 @@ from Volumes import call, read_vti
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 here = os.path.dirname(os.path.abspath(__file__))
-python = os.path.join(here, "..", "..", "build", "readers", "bin", "python")
+python = os.path.join(here, "..", "..", "..", "build", "readers", "bin", "python")
 # A push that moves no voxel by as much as 1/512 voxel, so that values do not change.
 still = ("--lattice", "3,3,3", "--push", "0,0,0,1e-7,0,0,1e6", "--bounds", "volume", "--quiet")
 
