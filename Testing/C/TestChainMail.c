@@ -415,7 +415,7 @@ static void TestDeform(void)
   CHECK(dv_set_chainmail(deformer, chainmail) == DV_OK);
   CHECK(dv_deform(deformer, &wanted, NULL) == DV_OK);
   CHECK(output[MIDDLE + 1] == 7.0F);
-  /* Moved by one voxel, the tissue of x = 6 is at x = 7. */
+  /* The handle moves the voxel at x = 6 to x = 7. */
   Now[0] = 7.0 * Spacing;
   CHECK(dv_chainmail_step(chainmail, &request, NULL) == DV_OK);
   CHECK(dv_deform(deformer, &wanted, NULL) == DV_OK);

@@ -329,7 +329,7 @@ static void TestWrong(void)
   field.vectors = Values;
   field.type = DV_INT16;
   REFUSED(dv_set_field(deformer, &field), "DV_FLOAT32");
-  CHECK(dv_deform(deformer, &request, NULL) == DV_OK); /* still by the mesh */
+  CHECK(dv_deform(deformer, &request, NULL) == DV_OK); /* The mesh is still the deformation. */
 
   /* Masks. */
   REFUSED(dv_set_smooth_cut(deformer, (const uint8_t*)Coverage, NULL), "both, or none");

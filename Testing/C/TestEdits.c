@@ -464,7 +464,7 @@ static void TestDeform(void)
   CHECK(report.number_of_covered_voxels == VOXELS);
   CHECK(dv_carve_surface(deformer, &box, NULL) == DV_OK);
   CHECK(dv_deform(deformer, &request, &report) == DV_OK);
-  /* The inner voxels, 4 to 6 on each axis, and some of those on the faces are not covered. */
+  /* The voxels inside the box, 4 to 6 on each axis, and some on its faces are not covered. */
   CHECK(coverage[(5 * SIZE + 5) * SIZE + 5] == 0);
   CHECK(report.number_of_covered_voxels <= VOXELS - 3 * 3 * 3 &&
     report.number_of_covered_voxels >= VOXELS - 5 * 5 * 5);

@@ -10,6 +10,6 @@ assert os.path.realpath(deformvolume_vtk.__file__).startswith(prefix), deformvol
 devices = deformvolume_vtk.vtkDeformVolumeFilter.GetDeviceNames()
 assert devices.GetNumberOfValues() > 0
 with open("/proc/self/maps", encoding="utf-8") as maps:
-    # With static libraries, these are the Python modules.
+    # If the libraries are static, only the Python modules have such names.
     libraries = {line.split()[-1] for line in maps if "vtkDeformVolume" in line}
 assert libraries and all(name.startswith(prefix) for name in libraries), libraries

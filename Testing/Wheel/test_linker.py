@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""PoCL compiles kernels on a system without a working linker: the linker of the package is used. Failures are errors,
-and do not end the process."""
+"""On a system without a working linker, PoCL uses the linker of the package. If that is disabled, a failure raises an
+error and does not end the process."""
 
 import os
 import unittest

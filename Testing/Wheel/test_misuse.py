@@ -79,7 +79,7 @@ class Misuse(unittest.TestCase):
         refuse("no tetrahedra", [5], [[0, 1, 2]])  # a triangle
         refuse("no tetrahedra", [0], [[]])
         refuse("", [10], [[0, 1, 2]])  # a tetrahedron of three points
-        refuse("", [12], [[0, 1, 2, 3]])  # a hexahedron of four
+        refuse("", [12], [[0, 1, 2, 3]])  # a hexahedron of four points
         refuse("", [10, 24], [[0, 1, 2, 3], [0, 1, 2, 3]])
         refuse("", [42], [[0, 1, 2, 3]])  # a polyhedron without faces
         refuse("", [78], [[0, 1, 2, 3]])  # a Bezier cell

@@ -76,7 +76,7 @@ class Pipeline(unittest.TestCase):
         from vtkmodules.vtkImagingCore import vtkImageFlip
 
         self.filter.SetDeformationData(make_field(self.SHIFT))
-        # With a filter behind it, VTK requests information, extents and data.
+        # With a filter downstream, VTK requests information, extents and data.
         flip = vtkImageFlip()
         flip.SetInputConnection(self.filter.GetOutputPort())
         flip.Update()

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // ChainMail of the interface for C is equal, bit by bit, to vtkChainMailDeformation. A dv_deformer
-// that uses its displacements is equal to a vtkDeformVolumeFilter behind it.
+// that uses its displacements is equal to a vtkDeformVolumeFilter downstream of the filter.
 // Testing/C/TestChainMail.c tests misuse.
 #include "CTesting.h"
 #include "ChainMailTesting.h"

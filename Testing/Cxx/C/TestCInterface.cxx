@@ -309,7 +309,7 @@ void TestDensities()
   inC.SetMesh(mesh);
   inC.Compare(deformed);
   VERIFY(deformed.Update()->GetPointData()->GetArray("uint16")->GetDataType() == VTK_FLOAT);
-  // With the Jacobian as output, twice.
+  // Request the Jacobian. The second call has no changes.
   deformed.Filter->GenerateJacobianOn();
   deformed.Filter->GenerateRestPositionsOn();
   inC.WithExtra = true;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vtkChainMailDeformation: closed forms in world coordinates, materials, pinned voxels and cuts by
-// arrays, states between executions, and vtkDeformVolumeFilter behind it.
+// arrays, states between executions, and a vtkDeformVolumeFilter downstream.
 #include "ChainMailTesting.h"
 
 #include <vtkCallbackCommand.h>
@@ -144,7 +144,7 @@ void TestKept()
   VERIFY(GetTuple(found, GetId(volume, 8, 12, 12)) == glm::dvec3(2, 0, 0));
   VERIFY(GetTuple(found, GetId(volume, 34, 12, 12)) == glm::dvec3(0, -1, 0));
   VERIFY_EQUAL(getChanges(), (Extent{ { 32, 39, 8, 15, 8, 15 } }));
-  // Relaxation moves voxels back that no handle holds.
+  // Relaxation moves back the voxels that no handle holds.
   dragged.Filter->SetHandlesData(nullptr);
   dragged.Filter->SetRelaxationSweeps(50);
   dragged.Update();

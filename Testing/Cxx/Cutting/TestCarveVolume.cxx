@@ -337,7 +337,7 @@ void TestBlankCells()
   VERIFY(counts[1] > 100);
   VERIFY_EQUAL(static_cast<int>(ghosts->GetValue(5)), 32);
 
-  // Without edits no other cells than those of the volume are hidden.
+  // Without edits only the cells that the volume hides are hidden.
   carve.Filter->ClearToolPositions();
   carve.Filter->Reset();
   cut.Filter->Reset();

@@ -2,10 +2,11 @@
 // Random cuts, carvings, drags, undo and redo in one pipeline. After each step it is compared with
 // filters without a history: new filters make the masks from all edits, a second ChainMail model
 // computes displacements from copies without logs, and a second deformation filter resamples the
-// whole volume. At the end all edits are undone, and the output must be that without edits, bit by
-// bit.
+// whole volume. At the end all edits are undone, and the output must be equal, bit by bit, to the
+// output without edits.
 //
-// Usage: TestEditSequences [NUMBER OF SEQUENCES] (1) [FIRST SEED] (0), each of 150 steps
+// Usage: TestEditSequences [NUMBER OF SEQUENCES] (1) [FIRST SEED] (0)
+// Each sequence has 150 steps.
 #include "ChainMailTesting.h"
 #include "EditChecks.h"
 
@@ -184,7 +185,7 @@ public:
     VERIFY(std::all_of(mask->GetPointer(0), mask->GetPointer(0) + mask->GetNumberOfTuples(),
       [](unsigned char byte) { return byte == 31; }));
     VERIFY(HaveSameOthers(this->Carve->GetOutput(), this->Volume));
-    // The output must be that of the volume without edits.
+    // The output must be equal to the output of the volume without edits.
     Deformed rest(this->Volume, this->Twin.Filter->GetOutput());
     SetBounds(rest.Filter);
     VERIFY(AreEqual(this->Output.Filter->GetOutput(), rest.Update()));

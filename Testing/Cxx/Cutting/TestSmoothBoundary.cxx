@@ -102,7 +102,7 @@ void TestMisuse()
   deformed.Filter->SetInputConnection(carve.Filter->GetOutputPort());
   deformed.Filter->SetDeformationData(mesh);
   deformed.Update();
-  // The output of the deformation has no such array.
+  // The output of the deformation filter has no array of distances.
   VERIFY(GetDistances(deformed.Filter->GetOutput()) == nullptr);
 }
 

@@ -77,7 +77,7 @@ Grid MakeReference(vtkUnstructuredGrid* tenNodes)
     points->InsertNextPoint(&point.x);
     vectors->InsertNextTuple(&vector.x);
   }
-  // The order of nodes is that of ReadCells(): the maps of tetrahedra depend on it by rounding.
+  // Use the order of nodes of ReadCells(), because it affects the rounding of the affine maps.
   for (const Tetrahedron& nodes : deformvolume::ReadCells({ tenNodes }, { tenNodes }).Tetrahedra)
   {
     const vtkIdType ids[4] = { nodes[0], nodes[1], nodes[2], nodes[3] };
@@ -316,8 +316,9 @@ void TestAccuracy()
   }
   std::cout << "Error relative to that of a four-node tetrahedron: " << worst << '\n';
   // The error of linear interpolation is proportional to the squares of edge lengths. In a regular
-  // cell whose edges have the length 1, the edges of the twelve tetrahedra have the length 1 / 2,
-  // and sqrt(1 / 8) to the center. The bound is larger than 1 / 4, since this cell is not regular.
+  // cell with edges of length 1, the edges of the twelve tetrahedra have the length 1 / 2, or
+  // sqrt(1 / 8) if they end at the center. The bound is larger than 1 / 4, since the cells of this
+  // test are not regular.
   VERIFY(worst < 0.35);
 }
 

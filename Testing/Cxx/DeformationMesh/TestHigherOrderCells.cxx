@@ -69,8 +69,8 @@ std::vector<glm::dvec3> GetPoints(vtkUnstructuredGrid* grid, const deformvolume:
 }
 
 // Checks that the tetrahedra of a grid are a conforming mesh. Each face belongs to one or two
-// tetrahedra. The faces of one tetrahedron only have this total area. The tetrahedra have this
-// total volume, and use every node.
+// tetrahedra. area: the total area of the faces that belong to only one tetrahedron. volume: the
+// total volume of the tetrahedra, which must use every node.
 void CheckFilled(const std::string& what, vtkUnstructuredGrid* grid, double volume, double area)
 {
   const deformvolume::MeshCells cells = deformvolume::ReadCells({ grid }, { grid });

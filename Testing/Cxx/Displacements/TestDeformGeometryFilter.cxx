@@ -485,7 +485,7 @@ void TestMesh()
   subject.Filter->SetDisplacementScale(0.5);
   expectSame(1e-12);
 
-  // Points on the boundary of the mesh, rounded to floats, are inside.
+  // A point on the boundary of the mesh counts as inside, although floats round its position.
   subject.Filter->SetInputData(MakePoints({ { 10.0 * (1.0 + 1e-7), 3.3, 4.4 } }, VTK_FLOAT));
   subject.Update();
   VERIFY(subject.IsValid(0));

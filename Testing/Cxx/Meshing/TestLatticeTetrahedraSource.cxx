@@ -31,7 +31,7 @@ void SetRotation(vtkImageData* image, double sign)
   image->SetDirectionMatrix(m);
 }
 
-// Checks that the mesh is conforming: the faces of one cell only are the surface of the lattice.
+// Checks that the mesh is conforming: faces that belong to only one cell form the surface.
 void VerifyConforming(vtkUnstructuredGrid* mesh, const int nodes[3])
 {
   const Summary summary = Summarize(mesh);

@@ -217,7 +217,7 @@ void TestFailedCutAfterOthers()
   VERIFY_EQUAL(simulated.Copy()->GetRange(-1)[1], 0.0);
 }
 
-// Cuts that cross earlier cuts split nodes again. A cut that replaces another one.
+// Cuts that cross earlier cuts split nodes again. A new cut replaces an undone one.
 template <typename Filter>
 void TestCutsOfCuts()
 {

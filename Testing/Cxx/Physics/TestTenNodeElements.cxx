@@ -620,8 +620,8 @@ void TestHandleOnSliding()
   VERIFY(out < 1e-9);
 }
 
-// vtkDeformVolumeFilter and vtkDeformGeometryFilter behind the simulation: the static mapping is
-// built once, and geometry follows corners and mid-side nodes.
+// vtkDeformVolumeFilter and vtkDeformGeometryFilter downstream of the simulation: the static
+// mapping is built once, and geometry follows corners and mid-side nodes.
 void TestFiltersBehind()
 {
   Elements elements(MakeCube());

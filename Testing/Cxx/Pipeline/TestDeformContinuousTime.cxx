@@ -76,7 +76,7 @@ void CheckTime(Deformed& deformed, vtkImageData* volume, double time, int last)
   VERIFY_EQUAL(deformed.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
 }
 
-// A series with time steps behind vtkTemporalInterpolator, which announces only a time range.
+// A series with time steps, passed through vtkTemporalInterpolator, which announces only a range.
 void TestInterpolatedSeries()
 {
   auto volume = MakeVolume();
@@ -119,7 +119,7 @@ void TestContinuousSource()
   deformed.Filter->SetInputData(volume);
   deformed.Filter->SetDeformationConnection(lattice->GetOutputPort());
   CheckTime(deformed, volume, 3.0, 9);
-  // One execution for the extent, at the begin of the range, and one for the requested time.
+  // One execution for the extent, at the beginning of the range, and one for the requested time.
   VERIFY(lattice->Executions <= 2);
 
   CheckTime(deformed, volume, 1.0, 19);

@@ -64,7 +64,7 @@ void TestHeldOutputs()
   VERIFY(HaveEqualBits(values, second->GetPointData()->GetScalars()));
 }
 
-// An output that no caller holds is written again, and filters behind it detect the change.
+// An output that no caller holds is written again, and downstream filters detect the change.
 void TestReusedOutputs()
 {
   Subject subject;
