@@ -57,7 +57,8 @@ void RegisterVoxels(const EvaluationSize& size);
 /// Preprocess/<dimensions>/<nodes>: the static mapping.
 void RegisterPreprocessing(const EvaluationSize& size);
 
-/// One mesh in other grids and with other numbers, and a displacement for each voxel.
+/// Given/<form>: one mesh with displacements, in a new grid with the same arrays, or as two meshes,
+/// and a displacement for each voxel.
 void RegisterGivenMeshes(const EvaluationSize& size);
 
 /// Incremental/<whole or local>: a mesh that moves in one place only.
@@ -73,7 +74,7 @@ void RegisterEdits(const EvaluationSize& size);
 void RegisterMasks(const EvaluationSize& size);
 
 /// ChainMail/<dimensions>/<part or whole>: frames of a drag, the volume updated in part or whole.
-/// ChainMailStep/<voxels>/step: steps alone, that move about so many voxels.
+/// ChainMailStep/<voxels>/step: steps alone, which move about <voxels> voxels.
 void RegisterChainMail(const EvaluationSize& size);
 
 /// Physics/<body>/frame: frames of springs and of finite elements.
@@ -89,7 +90,6 @@ struct NamedResampler
   const char* Name;
   int Resampler;
 };
-/// The volume of the limits (demands.py).
 inline constexpr NamedResampler ExactResampler{ "exact", vtkDeformVolumeFilter::EXACT };
 inline constexpr NamedResampler MeshRasterizationResampler{ "mesh-rasterization",
   vtkDeformVolumeFilter::MESH_RASTERIZATION };

@@ -3,9 +3,10 @@
 // forces.
 //
 // Usage: FiniteElementFrames [FRAMES [NEWTON [ITERATIONS [SCENE [MODEL]]]]]. Times are in
-// milliseconds. The body is a block that is fixed at its lower end; in the middle of the other end
-// a handle of 2 x 2 cm, or as large as one cell, goes along a circle, by 0.005 of the length in
-// each frame, or the body bends under its weight. MODEL: 0 stable neo-Hookean, 1 corotational.
+// milliseconds. The body is a block that is fixed at its lower end. In some scenes a handle of
+// 2 x 2 cm, or as large as one cell, in the middle of the other end moves along a circle, by 0.005
+// of the length of the body in each frame. In the other scenes the body bends under its weight.
+// MODEL: 0 stable neo-Hookean, 1 corotational.
 #include "FiniteElementModel.h"
 #include "LatticeBody.h"
 #include "Timing.h"

@@ -178,7 +178,8 @@ private:
     this->Resample.setArg(6, cl_int4{ { size[0], size[1], size[2], 0 } });
   }
 
-  // Launches a kernel for all vertices (less: 0) or for all cells (less: 1).
+  // Launches a kernel for all vertices (less: 0) or for all cells (less: 1, because an axis has one
+  // cell less than vertices).
   void Launch(const cl::Kernel& kernel, int less, cl::Event& event)
   {
     constexpr std::size_t group = 64;
@@ -196,7 +197,7 @@ private:
   cl::Kernel Resample = MakeKernel("Resample");
   std::array<int, 3> Dimensions;
   std::vector<glm::dvec3> Rest;
-  std::vector<cl::Buffer> Sent; // buffers that kernels use, which do not own them
+  std::vector<cl::Buffer> Sent; // keeps these buffers while kernels refer to them
   cl::Buffer Displacements;
   cl::Buffer Positions;
   cl::Buffer Values;

@@ -11,7 +11,7 @@ from sections import PEERS, table
 
 POSE = "near"
 OURS = f"Deform/{POSE}/2197/exact"
-# Rows of the table, with their labels. The plot has more.
+# Rows of the table, with their labels. The plot has further rows.
 IN_TABLE = {
     OURS: "DeformVolume, mesh of 2,197 nodes",
     f"Deform/{POSE}/512000/exact": "DeformVolume, mesh of 512,000 nodes",
