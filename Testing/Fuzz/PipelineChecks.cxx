@@ -163,14 +163,14 @@ std::string Pipeline::Check()
   fuzz::Settings settings = this->Settings;
   settings.Incremental = settings.Incremental && this->Random.Chance(0.5);
   Apply(settings, other.GetFilter());
-  // If only a part of the volume is read, it is no error that the mesh contains no voxel of it. So
-  // the other filter has to read the same part.
+  // A mesh that contains no voxel of the volume is an error only if the whole volume is read. So
+  // both filters have to read the same part.
   const bool streamed =
     this->VolumeInParts && this->Settings.OutputBoundsMode == vtkDeformVolumeFilter::CUSTOM_BOUNDS;
   this->Connect(other, this->Random.Chance(0.3) && !streamed);
   Outcome fresh = other.Update(nullptr, time);
 
-  // Update the whole output or a part of it. Sometimes something holds the last output.
+  // Update the whole output or a part of it. Sometimes another image shares its arrays.
   vtkNew<vtkImageData> held;
   vtkNew<vtkImageData> before;
   if (this->Random.Chance(0.3))
