@@ -195,7 +195,7 @@ def check_values(cls, proxy):
         if not command.startswith("Set") or "Get" + attribute not in own_names(cls):
             continue
         if prop.tag == "ProxyProperty":
-            continue  # an object: the default is the first one of a list of ParaView's
+            continue  # an object: the default is the first proxy in the list of its domain
         if prop.get("repeat_command"):
             continue  # a list, whose getter needs an index
         value = getattr(instance, "Get" + attribute)()

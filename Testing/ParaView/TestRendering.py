@@ -87,7 +87,7 @@ def main(baseline):
     check_messages(texts, ["Not enough memory"])
     simple.Delete(failing)
 
-    # With valid settings the output is shown again, whatever error there was before.
+    # With valid settings the output is shown, also after an error.
     volume = wavelet(6)
     small = simple.DeformVolume(Volume=volume, Deformation=bent_lattice(volume))
     representation = simple.Show(small, view)

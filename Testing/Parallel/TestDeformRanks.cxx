@@ -478,8 +478,8 @@ void TestPoints(vtkUnstructuredGrid* mesh)
         VERIFY(output != nullptr);
         for (vtkIdType id = 0; output && id < output->GetNumberOfPoints(); ++id)
         {
-          // With pieces, tetrahedra have other numbers, so points on faces may follow another
-          // tetrahedron.
+          // In a mesh that is divided into pieces, tetrahedra have other ids. So points on a face
+          // may follow the tetrahedron on its other side.
           const glm::dvec3 miss = GetPoint(output, id) - GetPoint(getBlock(alone, block), id);
           VERIFY(std::abs(miss.x) + std::abs(miss.y) + std::abs(miss.z) < 1e-5);
         }
