@@ -269,7 +269,7 @@ assert (values[:2] == before[:2]).all() and not (values == before).all()
 fails(2, "excludes", path("in.vti"), *lattice, *push, "--keep", "3", "--outside", "discard", "-o", path("o.vti"))
 fails(2, "--keep", path("in.vti"), *lattice, *push, "--keep", "-1", "-o", path("o.vti"))
 
-# Labels are never mixed.
+# Labels are not interpolated.
 call(program, path("in.vti"), *lattice, *push, "-o", path("labels.vti"), "--labels", "--padding",
      "2")
 labels = get_values(read_vti(path("labels.vti")), "Values")

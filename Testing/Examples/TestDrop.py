@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests that a recording is replayed if it is dropped onto the window of deform-interactive, as file managers do it.
-The program that drops it ends before the replay. Usage: TestDrop.py PROGRAM FOLDER"""
+"""Tests that deform-interactive replays a recording that is dropped onto its window, as file managers drop files. The
+client that drops the file disconnects before the replay. Usage: TestDrop.py PROGRAM FOLDER"""
 import os
 import subprocess
 import sys
