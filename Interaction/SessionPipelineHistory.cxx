@@ -55,8 +55,8 @@ void SessionPipeline::ForgetStates(Action& action)
   }
 }
 
-// Removes saved states while they need too much memory. Begins with the states that are the most
-// steps of undo or redo away.
+// Removes saved states while they need more than UndoMemory. Begins with the states that need the
+// most undo or redo steps to return to.
 void SessionPipeline::LimitStates()
 {
   for (Actions* actions : { &this->Done, &this->Undone })

@@ -39,8 +39,9 @@ struct SlicePlane
 /// Each returns the voxel on a line of sight that is visible in an output of vtkDeformVolumeFilter,
 /// or -1. Voxels outside the deformed volume are not visible.
 
-/// The voxel by which half of the light is absorbed that all voxels together absorb; -1 if that is
-/// less than a tenth of the light. opacity: opacity per unitDistance; null: each voxel is opaque.
+/// The first voxel after which at least half of the absorbed light has been absorbed; -1 if all
+/// voxels together absorb less than a tenth of the light. opacity: opacity per unitDistance; null:
+/// each voxel is opaque.
 vtkIdType FindAbsorbingVoxel(
   vtkImageData* image, const LineOfSight& line, vtkPiecewiseFunction* opacity, double unitDistance);
 

@@ -368,7 +368,8 @@ bool vtkDeformVolumeInteractorStyle::Poll()
   {
     session->Update();
   }
-  const bool isBusy = session->GetIsBusy(); // asked first: a session at rest has its last output
+  // Call GetIsBusy() before TakeOutput(): if the session is not busy, its last output is available.
+  const bool isBusy = session->GetIsBusy();
   if (auto output = vtkSmartPointer<vtkImageData>::Take(session->TakeOutput()))
   {
     internals.Output = output;

@@ -71,7 +71,7 @@ public:
   bool RunOnce();
 
   // Processes and records an event. Failed events are recorded, too, because a failed step moves
-  // handles back. They fail again in a replay.
+  // handles back. In a replay, the same events fail again.
   void Make(deformvolume::SessionEvent event, std::vector<std::string>& errors);
 
   void Begin(vtkImageData* volume, vtkUnstructuredGrid* mesh);
