@@ -30,8 +30,9 @@ public:
   void Check(const std::string& doing, bool succeeded = true);
 
   /// While a file is read, generic warnings of VTK are errors, because readers report damaged data
-  /// with them. All other warnings are kept: EndReading() prints them, unless TakeError() finds an
-  /// error before. Their text replaces that of an error that names code.
+  /// with them. All other warnings are kept until EndReading() prints them. If there is an error,
+  /// TakeError() discards the kept warnings. If the text of the error names code, TakeError()
+  /// returns the first kept warning instead.
   void BeginReading();
   void EndReading();
 

@@ -19,7 +19,7 @@ struct FieldOptions
 /// Reads a displacement field in the formats of volumes, and converts its positions and its vectors
 /// to the world coordinates of a volume. Lengths are in mm, and vectors are as follows:
 /// - NIfTI: shape (X, Y, Z, 1, 3), right-anterior-superior with intent 1006
-/// (NIFTI_INTENT_DISPVECT),
+///   (NIFTI_INTENT_DISPVECT),
 ///   left-posterior-superior with intent 1007 (NIFTI_INTENT_VECTOR, as written by ITK).
 /// - MetaImage: left-posterior-superior.
 /// - NRRD: in the space of the file, with its measurement frame.

@@ -7,12 +7,13 @@
 
 namespace
 {
-// The file name without its folder; the second function replaces its extension by suffix.
+// Returns the file name without its folder.
 std::string GetName(const std::string& path)
 {
   return vtksys::SystemTools::GetFilenameName(path);
 }
 
+// Returns the file name without its folder, and with the extension `suffix`.
 std::string GetName(const std::string& path, const std::string& suffix)
 {
   return vtksys::SystemTools::GetFilenameWithoutLastExtension(path) + suffix;

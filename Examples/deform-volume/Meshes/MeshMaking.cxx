@@ -26,8 +26,9 @@
 
 namespace
 {
-// In world units; 0: the default of the mesher. With --model fem, twice the default: finite
-// elements have mid-side nodes, so that edges twice as long give as many nodes.
+// Returns the edge length in world units; 0: the default of the mesher. Without --edge-length,
+// --model fem uses twice the default of the mesher: finite elements have mid-side nodes, so that
+// edges twice as long give as many nodes.
 double GetEdgeLength(const Options& options, vtkImageData* volume)
 {
   if (options.EdgeLength != 0.0 || !options.HasMidSideNodes())

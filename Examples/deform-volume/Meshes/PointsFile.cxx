@@ -81,8 +81,9 @@ vtkSmartPointer<vtkPointSet> Deform(const PointsFile& file, const Options& optio
   vtkNew<vtkDeformGeometryFilter> filter;
   filter->SetInputData(file.Points);
   SetDeformation(filter.Get(), options, deformation);
-  // Ignore the filter's warnings: they name properties of the filter, those about the mesh were
-  // printed when the volume was deformed, and the warning below replaces the others.
+  // Ignore the filter's warnings, because they name properties of the filter. Warnings about the
+  // mesh were printed when the volume was deformed. The warning below replaces the one about points
+  // outside the deformation.
   const vtkNew<vtkCallbackCommand> ignored;
   filter->AddObserver(vtkCommand::WarningEvent, ignored);
   const ProgressBar bar(filter, "moving points", !options.Quiet);

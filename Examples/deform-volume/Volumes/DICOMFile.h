@@ -19,7 +19,8 @@ public:
   bool IsDICOM() const { return this->Begin >= 0; }
   /// False if the file ends within an element or a sequence.
   bool IsComplete() const { return this->Complete; }
-  /// Whether all elements after the first ones (group 2) are compressed. They are not read then.
+  /// Whether all elements after the first ones (group 2) are compressed. Compressed
+  /// elements are not read.
   bool IsDeflated() const;
   bool HasPixels() const { return this->Pixels; }
 

@@ -77,7 +77,8 @@ int GetType(itk::ImageIOBase* io)
 }
 
 // Reads all values. Returns true if the last value is missing, because the file is truncated or
-// damaged: a byte of this value then keeps the two marks that it has before two readings.
+// damaged. To find that out, fills the last value with a mark and reads the file, twice with
+// different marks. A byte that keeps both marks was not read.
 bool LacksLastValue(itk::ImageIOBase* io, vtkDataArray* values)
 {
   const auto size = static_cast<std::size_t>(values->GetDataTypeSize());
