@@ -8,6 +8,7 @@
 #include "MeshGathering.h"
 #include "MeshGrids.h"
 #include "MeshPointMap.h"
+#include "NewWarnings.h"
 #include "OutsideMode.h"
 #include "ParallelFor.h"
 #include "PipelineExecution.h"
@@ -411,16 +412,11 @@ void vtkDeformGeometryFilter::vtkInternals::WarnOfIgnored(const std::vector<vtkP
   {
     deformvolume::AddCellWarnings(this->Deformation.GetRestMesh(), this->Gathering, warnings);
   }
-  std::string news;
-  for (const std::string& warning : warnings)
-  {
-    news += this->WarnedOf.count(warning) > 0 ? "" : (news.empty() ? "" : " ") + warning;
-  }
+  const std::string news = deformvolume::ReplaceWarnings(this->WarnedOf, std::move(warnings));
   if (!news.empty())
   {
     vtkWarningWithObjectMacro(this->Self, << news);
   }
-  this->WarnedOf = warnings;
 }
 
 //------------------------------------------------------------------------------

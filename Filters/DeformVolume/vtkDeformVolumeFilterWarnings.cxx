@@ -5,6 +5,7 @@
 #include "Densities.h"
 #include "Fading.h"
 #include "IndexBounds.h"
+#include "NewWarnings.h"
 #include "VolumeArrays.h"
 
 #include "vtkDataArray.h"
@@ -13,6 +14,8 @@
 #include "vtkPointData.h"
 
 #include <glm/common.hpp>
+
+#include <utility>
 
 //------------------------------------------------------------------------------
 void vtkDeformVolumeFilter::vtkInternals::WarnOfIgnored(
@@ -57,16 +60,11 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfIgnored(
     deformvolume::AddCellWarnings(
       this->State->Deformation.GetRestMesh(), this->Gathering, warnings);
   }
-  std::string news;
-  for (const std::string& warning : warnings)
-  {
-    news += this->WarnedOf.count(warning) > 0 ? "" : (news.empty() ? "" : " ") + warning;
-  }
+  const std::string news = deformvolume::ReplaceWarnings(this->WarnedOf, std::move(warnings));
   if (!news.empty())
   {
     vtkWarningWithObjectMacro(this->Self, << news);
   }
-  this->WarnedOf = warnings;
 }
 
 //------------------------------------------------------------------------------
