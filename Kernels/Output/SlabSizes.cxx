@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SlabSizes.h"
 
-#include "Error.h"
 #include "HostMemory.h"
 #include "OutputWinners.h"
 
 #include <algorithm>
-#include <string>
 
 namespace deformvolume
 {
@@ -26,13 +24,9 @@ std::vector<Extent> SplitIntoSlabs(const Extent& output, const std::vector<Volum
   }
   const std::uint64_t plane = static_cast<std::uint64_t>(GetSize(output, 0)) *
     static_cast<std::uint64_t>(GetSize(output, 1)) * widest;
+  CheckAllocation(
+    plane, allocationLimit, "The values of a slice of the output", "Use smaller output bounds");
   const std::uint64_t planes = allocationLimit / plane;
-  if (planes == 0)
-  {
-    throw Error("A slice of the output needs " + std::to_string(plane) +
-      " bytes, and the device allows at most " + std::to_string(allocationLimit) +
-      " bytes in one allocation. Use smaller output bounds or another device.");
-  }
   std::vector<Extent> slabs;
   for (std::int64_t z = output[4]; z <= output[5];)
   {
