@@ -403,13 +403,20 @@ GridTetrahedra ReadTetrahedra(vtkUnstructuredGrid* grid, bool takesQuadratic)
     vtkIdType size = 0;
     const vtkIdType* points = nullptr;
     grid->GetCells()->GetCellAtId(cell, size, points);
-    if (size != (isQuadratic ? 10 : 4) ||
-      std::any_of(points, points + size,
-        [&](vtkIdType point) { return point < 0 || point >= grid->GetNumberOfPoints(); }))
+    if (size != (isQuadratic ? 10 : 4))
     {
-      throw Error("Cell " + std::to_string(cell) + " of the " + MESH + " is a " +
-        (isQuadratic ? "quadratic tetrahedron without ten" : "tetrahedron without four") +
-        " points of the mesh.");
+      throw Error("Cell " + std::to_string(cell) + " of the " + MESH + " has " +
+        std::to_string(size) + " points, but a " +
+        (isQuadratic ? "quadratic tetrahedron has ten." : "tetrahedron has four.") +
+        " Correct the cell.");
+    }
+    const vtkIdType* const missing = std::find_if(points, points + size,
+      [&](vtkIdType point) { return point < 0 || point >= grid->GetNumberOfPoints(); });
+    if (missing != points + size)
+    {
+      throw Error("Cell " + std::to_string(cell) + " of the " + MESH + " refers to point " +
+        std::to_string(*missing) + ", but the mesh has only " +
+        std::to_string(grid->GetNumberOfPoints()) + " points. Correct the cell.");
     }
     const auto getPoint = [&](std::size_t i) { return static_cast<std::int32_t>(points[i]); };
     read.Tetrahedra.push_back({ { getPoint(0), getPoint(1), getPoint(2), getPoint(3) } });

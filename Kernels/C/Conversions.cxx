@@ -18,7 +18,9 @@ std::size_t GetProduct(std::int64_t count, std::size_t factor, const char* what)
   if (count < 0 ||
     static_cast<std::uint64_t>(count) > std::numeric_limits<std::size_t>::max() / factor)
   {
-    throw Error(std::string("The number of ") + what + " is " + std::to_string(count) + ".");
+    throw Error(std::string("The number of ") + what + " is " + std::to_string(count) +
+      ". Give a number from 0 to " +
+      std::to_string(std::numeric_limits<std::size_t>::max() / factor) + ".");
   }
   return static_cast<std::size_t>(count);
 }

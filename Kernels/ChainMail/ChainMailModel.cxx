@@ -180,7 +180,8 @@ void ChainMailModel::SetVoxelGrid(const Extent& extent, const std::array<double,
     spacing[axis] = std::hypot(indexToWorld[axis], indexToWorld[axis + 3], indexToWorld[axis + 6]);
     if (!(spacing[axis] > 0.0) || !std::isfinite(spacing[axis]))
     {
-      throw Error("The spacing of the volume must be greater than 0 on each axis.");
+      throw Error("The spacing of the volume on axis " + std::to_string(axis) + " is " +
+        std::to_string(spacing[axis]) + ". It must be finite and greater than 0.");
     }
   }
   Internals& impl = *this->Impl;

@@ -247,8 +247,12 @@ void MassSpringModel::SplitNodes(const ElasticBody& body, const std::vector<std:
     std::any_of(origins.begin(), origins.end(),
       [&](std::int32_t node) { return node < 0 || static_cast<std::size_t>(node) >= before; }))
   {
-    throw Error("Nodes can only be split if the number of tetrahedra stays the same, and if each "
-                "appended node is a copy of an old node.");
+    throw Error("A body of " + std::to_string(before) + " nodes and " +
+      std::to_string(impl.Body.Tetrahedra.size()) + " tetrahedra cannot be split into one of " +
+      std::to_string(body.Points.size()) + " nodes and " + std::to_string(body.Tetrahedra.size()) +
+      " tetrahedra with " + std::to_string(origins.size()) +
+      " origins. The number of tetrahedra must stay the same, "
+      "and each appended node must have one of the old nodes as its origin.");
   }
   impl.Guard(
     [&]
