@@ -401,7 +401,8 @@ private:
     }
     if (symbol.st_shndx == SHN_UNDEF)
     {
-      return 0; // symbol 0, which means "no symbol"
+      // This is symbol 0. The value of such a relocation does not depend on the load address.
+      throw std::runtime_error("relocations without a symbol are not supported");
     }
     if (symbol.st_shndx >= object.Sections.size() || !object.Sections[symbol.st_shndx].IsLoaded())
     {
@@ -434,6 +435,10 @@ private:
     const auto type = static_cast<std::uint32_t>(ELF64_R_TYPE(relocation.r_info));
     const auto index = static_cast<std::uint32_t>(ELF64_R_SYM(relocation.r_info));
     const std::string& name = object.Names[index];
+    if (type == R_X86_64_NONE)
+    {
+      return;
+    }
     const bool isDefined = this->IsDefined(object, index);
     const bool isLocal = ELF64_ST_BIND(object.Symbols[index].st_info) == STB_LOCAL;
     std::uint64_t address = 0;
@@ -447,10 +452,6 @@ private:
     if (relocation.r_offset >= section.Header.sh_size)
     {
       throw std::runtime_error("a relocation is outside its section");
-    }
-    if (type == R_X86_64_NONE)
-    {
-      return;
     }
     if (type == R_X86_64_64)
     {
