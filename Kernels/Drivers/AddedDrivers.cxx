@@ -55,14 +55,14 @@ void AddedDrivers::Add(const std::string& path)
     try
     {
       cl::Platform(platform).getDevices(CL_DEVICE_TYPE_ALL, &devices);
-      for (const cl::Device& device : devices)
-      {
-        this->Processors[device()] = SetKernelProcessor(library, device, maySetProcessor);
-      }
     }
     catch (const cl::Error&)
     {
       continue; // a platform without devices
+    }
+    for (const cl::Device& device : devices)
+    {
+      this->Processors[device()] = SetKernelProcessor(library, device, maySetProcessor);
     }
   }
 }

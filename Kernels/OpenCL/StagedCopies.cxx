@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 
 namespace deformvolume
 {
@@ -197,16 +198,16 @@ cl_int StagedCopies::Copy(const cl::CommandQueue& queue, const cl::Buffer& buffe
     std::min({ std::size_t{ MostThreads }, static_cast<std::size_t>(GetProcessorShare()),
       portions.GetNumber() / PortionsWorthAThread }));
   std::array<cl_int, MostThreads> errors{};
-  RunOnOwnThreads(
-    0, static_cast<std::int64_t>(threads), 1,
-    [&](std::int64_t begin, std::int64_t end)
+  const auto copy = [&](std::int64_t begin, std::int64_t end)
+  {
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
     {
-      for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
-      {
-        errors[i] = CopyPortions(transfer, portions, i, threads, this->Memory + i * 2 * HalfBytes);
-      }
-    },
-    static_cast<int>(threads));
+      errors[i] = CopyPortions(transfer, portions, i, threads, this->Memory + i * 2 * HalfBytes);
+    }
+  };
+  // A std::function of a reference allocates no memory, so it cannot throw.
+  RunOnOwnThreads(
+    0, static_cast<std::int64_t>(threads), 1, std::cref(copy), static_cast<int>(threads));
   for (const cl_int error : errors)
   {
     if (error != CL_SUCCESS)
