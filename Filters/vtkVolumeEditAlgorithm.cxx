@@ -64,7 +64,8 @@ void HideEditedCells(vtkImageData* image)
         constexpr unsigned char Hidden = vtkDataSetAttributes::HIDDENCELL;
         const unsigned char value = before ? before[i] : 0;
         constexpr unsigned char All = DEFORMVOLUME_ALL_TETRAHEDRA;
-        const bool isEdited = (active[i] & All) != All || (divided && (divided[i] & All) != 0);
+        const bool isEdited =
+          (active && (active[i] & All) != All) || (divided && (divided[i] & All) != 0);
         values[i] = isEdited && (value & Hidden) == 0
           ? static_cast<unsigned char>(value | Hidden | deformvolume::HiddenByEdit)
           : value;

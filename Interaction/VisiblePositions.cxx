@@ -143,7 +143,7 @@ vtkIdType deformvolume::FindAbsorbingVoxel(
   {
     return -1;
   }
-  const auto found = std::lower_bound(absorbed.begin(), absorbed.end(), std::min(0.5, 0.5 * sum));
+  const auto found = std::lower_bound(absorbed.begin(), absorbed.end(), 0.5 * sum);
   return voxels.FindVoxelOfStep(found - absorbed.begin());
 }
 

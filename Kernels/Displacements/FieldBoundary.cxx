@@ -67,7 +67,7 @@ MeshBoundary FindFieldBoundary(
   // voxels up to FieldTolerance outside the field as inside.
   const double finest =
     std::min({ glm::length(toIndex[0]), glm::length(toIndex[1]), glm::length(toIndex[2]) });
-  if (!finder.Cross(faces, std::min(BorderTolerance, 0.5e-3 * finest)))
+  if (!finder.Cross(faces, std::min(BorderTolerance, 0.5 * FieldTolerance * finest)))
   {
     return MeshBoundary();
   }

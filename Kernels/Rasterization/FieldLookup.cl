@@ -214,7 +214,8 @@ static uint FindRowRests(__global const float* vectors, VoxelBox tile, const int
 
 __kernel void LookUpField(__global const float* vectors, const LookupParameters f,
   __global const uchar* active, __global const uchar* blanked, __global const float* distances,
-  __global const ulong* backgrounds, __global char* coverage, __global uint* counters, const RasterParameters p ARRAY_PARAMETERS)
+  __global const ulong* backgrounds, __global char* coverage, __global uint* counters,
+  const RasterParameters p ARRAY_PARAMETERS)
 {
   __local int rests[RESTS];
   __local uint covered[DEFORMVOLUME_TILE_ROWS];

@@ -199,7 +199,11 @@ vtkSmartPointer<vtkDataObject> ReadExodus(const Source& source)
 bool HasTimeSteps(const std::string& path)
 {
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-  const bool hasSteps = file >= 0 && H5Lexists(file, "/VTKHDF/Steps", H5P_DEFAULT) > 0;
+  if (file < 0)
+  {
+    return false;
+  }
+  const bool hasSteps = H5Lexists(file, "/VTKHDF/Steps", H5P_DEFAULT) > 0;
   H5Fclose(file);
   return hasSteps;
 }
