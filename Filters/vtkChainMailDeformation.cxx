@@ -203,7 +203,7 @@ int vtkChainMailDeformation::RequestData(
   request.Elasticity = this->Elasticity;
   request.PlasticityThreshold = this->PlasticityThreshold;
   deformvolume::ProgressReport progress(this);
-  request.Progress = [&] { return progress.Tell(); };
+  request.Progress = [&] { return progress.Report(); };
   std::fill_n(this->ChangedExtent, 6, -1);
   this->ChangedExtent[0] = this->ChangedExtent[2] = this->ChangedExtent[4] = 0;
   return this->Internals->Execution.Run(this,

@@ -205,7 +205,7 @@ void vtkDeformGeometryFilter::vtkInternals::RunInParts(std::size_t size, Body&& 
   for (std::size_t begin = 0; begin < size; begin += PointsPerReport)
   {
     const std::size_t some = std::min(PointsPerReport, size - begin);
-    if (!progress.Tell(
+    if (!progress.Report(
           static_cast<double>(this->NumberDone) / static_cast<double>(this->NumberOfPoints)))
     {
       throw deformvolume::Aborted();

@@ -262,7 +262,7 @@ void vtkElasticDeformation::Execute(
   ElasticSimulation& simulation = this->PrepareSimulation();
   settings.IsQuadratic = simulation.IsQuadratic();
   deformvolume::ProgressReport progress(this);
-  if (session.Update(simulation, grid, settings, [&] { return progress.Tell(0.0); }))
+  if (session.Update(simulation, grid, settings, [&] { return progress.Report(0.0); }))
   {
     vtkWarningMacro(
       "The simulation starts again from rest, because the points or cells of the rest mesh have "
@@ -286,7 +286,7 @@ void vtkElasticDeformation::Execute(
     // The sheet cuts in the next update that succeeds.
     if (session.Time == time || (wasToReset && internals.IsToReset))
     {
-      this->TakeBackCuts(simulation, cuts);
+      this->RevertCuts(simulation, cuts);
       internals.IsToReset = wasToReset;
     }
     throw;
@@ -354,7 +354,7 @@ void vtkElasticDeformation::Advance(ElasticSimulation& simulation, vtkPointSet* 
   for (double done = 0.0; done < frames; done += 1.0)
   {
     frame.Duration = std::min(longest, std::max(0.0, end - session.Time));
-    frame.Progress = [&](double fraction) { return progress.Tell((done + fraction) / frames); };
+    frame.Progress = [&](double fraction) { return progress.Report((done + fraction) / frames); };
     simulation.Advance(frame);
     session.HasMoved = true;
     session.Time = done + 1.0 == frames ? end : session.Time + frame.Duration;
@@ -376,7 +376,7 @@ void vtkElasticDeformation::CheckSize(double size)
   this->Internals->CheckedSize = size;
 }
 
-void vtkElasticDeformation::TakeBackCuts(ElasticSimulation& simulation, std::size_t left)
+void vtkElasticDeformation::RevertCuts(ElasticSimulation& simulation, std::size_t left)
 {
   deformvolume::ElasticSession& session = this->Internals->Session;
   if (!simulation.HasBody())
@@ -386,7 +386,7 @@ void vtkElasticDeformation::TakeBackCuts(ElasticSimulation& simulation, std::siz
   }
   try
   {
-    session.TakeBackNewCuts(left);
+    session.RevertNewCuts(left);
   }
   catch (...)
   {

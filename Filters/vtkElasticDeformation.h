@@ -347,7 +347,7 @@ private:
   void Execute(vtkInformationVector** input, vtkInformationVector* output);
   /// Undoes cuts, and cuts with the sheet. Returns the number of cuts before that of the sheet.
   std::size_t UpdateCuts(vtkPolyData* sheet);
-  void TakeBackCuts(deformvolume::ElasticSimulation& simulation, std::size_t left);
+  void RevertCuts(deformvolume::ElasticSimulation& simulation, std::size_t left);
   /// Advances to the requested time, if any.
   void Advance(deformvolume::ElasticSimulation& simulation, vtkPointSet* handles,
     vtkInformation* info, deformvolume::ProgressReport& progress);

@@ -226,7 +226,7 @@ void vtkMaterialFromVolume::Execute(
     : std::vector<glm::dvec3>();
   deformvolume::ProgressReport progress(this);
   const deformvolume::MaterialMeans means = deformvolume::FindMaterialMeans(
-    volume, points, read.Tetrahedra, [&](double done) { return progress.Tell(done); });
+    volume, points, read.Tetrahedra, [&](double done) { return progress.Report(done); });
   this->NumberOfTetrahedraWithoutVoxels = means.NumberWithNearest;
   this->NumberOfTetrahedraOutside = means.NumberWithDefault;
 

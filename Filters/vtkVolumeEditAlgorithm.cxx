@@ -266,7 +266,7 @@ int vtkVolumeEditAlgorithm::RequestData(
     return 1;
   }
   deformvolume::ProgressReport progress(this);
-  this->Edits->Progress = [&](double done) { return progress.Tell(done); };
+  this->Edits->Progress = [&](double done) { return progress.Report(done); };
   const int result = this->Edits->Execution.Run(this,
     "The memory of this machine does not suffice for the edits. Use a smaller volume.",
     [&]

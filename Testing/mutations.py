@@ -261,7 +261,7 @@ MUTATIONS = {
                        "this->State.ReadOutput(changes);", "",
                        [("TestChainMailSequences@gpu-like-no-double", "*")]),
     "chainmail-told": ("Kernels/ChainMail/ChainMailSolver.cxx",
-                       "this->State.TellOfChanges(report.Changes);", "", [VECTORS]),
+                       "this->State.MarkChanges(report.Changes);", "", [VECTORS]),
     "log-begin": ("Kernels/Common/RangeLog.cxx", "this->Begin = this->Entries.front().Revision;", "", [VECTORS]),
     "vectors-turns": ("Kernels/Displacements/DisplacementSource.cxx",
                       "this->Reading.Forget();\n  this->SendNodes", "this->SendNodes", [VECTORS]),

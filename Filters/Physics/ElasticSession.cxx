@@ -210,7 +210,7 @@ void ElasticSession::Cut(const WorldSheet& sheet)
   this->Sheet = sheet;
 }
 
-void ElasticSession::TakeBackNewCuts(std::size_t left)
+void ElasticSession::RevertNewCuts(std::size_t left)
 {
   if (left < this->Cuts.size())
   {

@@ -35,7 +35,7 @@ public:
   /// becomes that before the removed cuts. The time does not change.
   void RemoveCuts(std::size_t left);
   /// Like RemoveCuts(), but after an error: the same sheet then cuts again in the next call.
-  void TakeBackNewCuts(std::size_t left);
+  void RevertNewCuts(std::size_t left);
   /// Discards a body in an unknown state: the next Update() begins with a new one.
   void Lose();
   std::size_t GetNumberOfCuts() const { return this->Cuts.size(); }

@@ -22,7 +22,7 @@ public:
   }
 
   /// done: 0 to 1. Returns false if the execution has to be aborted.
-  bool Tell(double done)
+  bool Report(double done)
   {
     if (this->IsDue())
     {
@@ -31,7 +31,7 @@ public:
     return !IsAborted(this->Algorithm);
   }
   /// The same for executions of unknown length: each report adds a tenth of the rest.
-  bool Tell()
+  bool Report()
   {
     if (this->IsDue())
     {

@@ -57,7 +57,7 @@ public:
     }
   }
   /// Joins the blocks of an edit, but only those of the bricks in `wanted`.
-  void AddAgain(const std::vector<std::size_t>& wanted, const std::vector<std::size_t>& bricks,
+  void Rejoin(const std::vector<std::size_t>& wanted, const std::vector<std::size_t>& bricks,
     const std::vector<Block>& blocks)
   {
     for (const std::size_t brick : wanted)

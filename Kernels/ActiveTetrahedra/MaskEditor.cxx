@@ -164,7 +164,7 @@ bool MaskEditor::Remove(std::uint64_t edit)
   }
   std::list<Edit> removed;
   removed.splice(removed.end(), this->Edits, found);
-  this->TakeBack(removed.front());
+  this->Revert(removed.front());
   return true;
 }
 
@@ -175,7 +175,7 @@ bool MaskEditor::Undo()
     return false;
   }
   this->Undone.splice(this->Undone.end(), this->Edits, std::prev(this->Edits.end()));
-  this->TakeBack(this->Undone.back());
+  this->Revert(this->Undone.back());
   return true;
 }
 
@@ -260,12 +260,12 @@ void MaskEditor::Apply(const Edit& edit)
   this->Update(this->Crossings.Add(edit.Crossings));
 }
 
-void MaskEditor::TakeBack(const Edit& edit)
+void MaskEditor::Revert(const Edit& edit)
 {
   this->Hits.Forget(edit.Set.Bricks);
   for (const Edit& other : this->Edits)
   {
-    this->Hits.AddAgain(edit.Set.Bricks, other.Set.Bricks, other.Set.Blocks);
+    this->Hits.Rejoin(edit.Set.Bricks, other.Set.Bricks, other.Set.Blocks);
   }
   this->Update(edit.Set.Bricks);
   this->Distances.Update(edit.Distances.Bricks, this->GetSets(&Edit::Distances));

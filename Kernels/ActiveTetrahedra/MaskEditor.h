@@ -123,7 +123,7 @@ private:
   void Update(const std::vector<std::size_t>& bricks);
   /// Update the masks, distances and crossings of the bricks that an added or removed edit hits.
   void Apply(const Edit& edit);
-  void TakeBack(const Edit& edit);
+  void Revert(const Edit& edit);
   /// Returns the sets of one kind of all edits, without empty sets.
   template <typename Set>
   std::vector<const Set*> GetSets(Set Edit::*set) const;

@@ -211,14 +211,13 @@ std::vector<std::size_t> SmoothCrossings::Remove(
 {
   this->Cells.Forget(edit.Bricks);
   this->VertexDistances.Forget(edit.Distances.Bricks);
-  const auto joinAgain = [&](const CrossingSet& set)
+  const auto rejoin = [&](const CrossingSet& set)
   {
-    this->Cells.AddAgain(edit.Bricks, set.Bricks, set.Blocks);
-    this->VertexDistances.AddAgain(
-      edit.Distances.Bricks, set.Distances.Bricks, set.Distances.Blocks);
+    this->Cells.Rejoin(edit.Bricks, set.Bricks, set.Blocks);
+    this->VertexDistances.Rejoin(edit.Distances.Bricks, set.Distances.Bricks, set.Distances.Blocks);
   };
-  joinAgain(this->Base);
-  std::for_each(sets.begin(), sets.end(), [&](const CrossingSet* set) { joinAgain(*set); });
+  rejoin(this->Base);
+  std::for_each(sets.begin(), sets.end(), [&](const CrossingSet* set) { rejoin(*set); });
   return this->Update(edit);
 }
 

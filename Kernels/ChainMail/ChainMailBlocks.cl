@@ -229,7 +229,7 @@ __kernel void ClearFlags(__global uchar* flags, __global const uint* list)
   }
 }
 
-__kernel void PutToRest(__global int* displacements, __global const uint* list)
+__kernel void ResetDisplacements(__global int* displacements, __global const uint* list)
 {
   const uint block = list[2 * get_group_id(0)];
   FOR_ROWS(r)

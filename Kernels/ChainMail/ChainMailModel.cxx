@@ -308,7 +308,7 @@ void ChainMailModel::SetOutput(const std::shared_ptr<DeviceVectors>& output)
       impl.State->SetOutput(output);
       impl.State->WriteOutput(GetAll(*impl.Blocks));
       impl.State->ReadOutput({ impl.Blocks->GetExtent() });
-      impl.State->TellOfChanges({ impl.Blocks->GetExtent() });
+      impl.State->MarkChanges({ impl.Blocks->GetExtent() });
     });
 }
 
@@ -348,7 +348,7 @@ ChainMailReport ChainMailModel::Step(const ChainMailRequest& request)
 void ChainMailModel::Reset()
 {
   this->Impl->CheckIsSet();
-  this->Impl->Guard([&] { this->Impl->Solver->PutToRest(); });
+  this->Impl->Guard([&] { this->Impl->Solver->ResetDisplacements(); });
 }
 
 std::shared_ptr<const ChainMailSnapshot> ChainMailModel::TakeSnapshot(

@@ -77,10 +77,10 @@ void ChainMailSolver::Touch(const std::vector<std::uint32_t>& blocks)
   }
 }
 
-void ChainMailSolver::PutToRest()
+void ChainMailSolver::ResetDisplacements()
 {
   std::sort(this->Displaced.begin(), this->Displaced.end());
-  this->State.PutToRest(this->Displaced);
+  this->State.ResetDisplacements(this->Displaced);
   this->PublishChanges(this->Displaced);
   std::fill(this->IsDisplaced.begin(), this->IsDisplaced.end(), static_cast<unsigned char>(0));
   std::fill(this->IsRecent.begin(), this->IsRecent.end(), static_cast<unsigned char>(0));
@@ -97,7 +97,7 @@ void ChainMailSolver::PublishChanges(const std::vector<std::uint32_t>& blocks)
     this->State.WriteOutput(blocks);
     const std::vector<Extent> changes = this->Blocks.Join(blocks);
     this->State.ReadOutput(changes);
-    this->State.TellOfChanges(changes);
+    this->State.MarkChanges(changes);
   }
   this->PutBack.insert(this->PutBack.end(), blocks.begin(), blocks.end());
 }
@@ -139,7 +139,7 @@ void ChainMailSolver::Restore(const ChainMailSnapshot& snapshot)
   blocks.insert(blocks.end(), snapshot.Numbers.begin(), snapshot.Numbers.end());
   std::sort(blocks.begin(), blocks.end());
   blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
-  this->State.PutToRest(blocks);
+  this->State.ResetDisplacements(blocks);
   this->State.WriteBlocks(snapshot.Numbers, snapshot.Blocks);
   this->PublishChanges(blocks);
   std::fill(this->IsDisplaced.begin(), this->IsDisplaced.end(), static_cast<unsigned char>(0));
@@ -163,7 +163,7 @@ void ChainMailSolver::CheckDisplacements(const std::vector<std::uint32_t>& block
   this->State.Check(blocks);
   if (this->State.TakeShared()[DEFORMVOLUME_VIOLATION] > 0)
   {
-    this->PutToRest();
+    this->ResetDisplacements();
   }
 }
 
@@ -414,7 +414,7 @@ void ChainMailSolver::Finish(ChainMailReport& report)
   // Blocks that were saved but did not move must be read, too: the output holds their saved state
   // until then.
   this->State.ReadOutput(this->Blocks.Join(this->Saved));
-  this->State.TellOfChanges(report.Changes);
+  this->State.MarkChanges(report.Changes);
   report.WasReset = this->WasReset;
   this->WasReset = false;
   this->PutBack.clear();

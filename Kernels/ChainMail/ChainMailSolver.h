@@ -30,7 +30,7 @@ public:
   /// Lets these blocks relax in the next steps.
   void Touch(const std::vector<std::uint32_t>& blocks);
   /// Sets all displacements to 0.
-  void PutToRest();
+  void ResetDisplacements();
   /// Sets all displacements to 0 if any of them violates a limit in these blocks.
   void CheckDisplacements(const std::vector<std::uint32_t>& blocks);
   /// Sets all displacements to 0 if any of them violates a limit.

@@ -132,7 +132,7 @@ void ChainMailState::SetOutput(const std::shared_ptr<DeviceVectors>& output)
   this->Output.Bind(this->Device.GetContext(), output);
 }
 
-void ChainMailState::TellOfChanges(const std::vector<Extent>& changes)
+void ChainMailState::MarkChanges(const std::vector<Extent>& changes)
 {
   DeviceVectors::Internals* const vectors = this->Output.GetVectors();
   if (!vectors || changes.empty())
@@ -263,9 +263,9 @@ void ChainMailState::ClearFlags(const std::vector<std::uint32_t>& list)
   this->Run(MakeKernel(this->Program, "ClearFlags", this->Flags, this->List), list);
 }
 
-void ChainMailState::PutToRest(const std::vector<std::uint32_t>& list)
+void ChainMailState::ResetDisplacements(const std::vector<std::uint32_t>& list)
 {
-  this->Run(MakeKernel(this->Program, "PutToRest", this->Displacements, this->List), list);
+  this->Run(MakeKernel(this->Program, "ResetDisplacements", this->Displacements, this->List), list);
 }
 
 void ChainMailState::WriteOutput(const std::vector<std::uint32_t>& list)

@@ -74,14 +74,14 @@ public:
   /// host memory.
   void ReadOutput(const std::vector<Extent>& changes);
   /// Marks rows of blocks as changed in the output vectors.
-  void TellOfChanges(const std::vector<Extent>& changes);
+  void MarkChanges(const std::vector<Extent>& changes);
 
   /// The following functions run a kernel on blocks.
   void Save(const std::vector<std::uint32_t>& list);
   /// isEnd: whether `saved` must become the output again, as the step ends.
   void Restore(const std::vector<std::uint32_t>& list, bool isEnd = false);
   void ClearFlags(const std::vector<std::uint32_t>& list);
-  void PutToRest(const std::vector<std::uint32_t>& list);
+  void ResetDisplacements(const std::vector<std::uint32_t>& list);
   void WriteOutput(const std::vector<std::uint32_t>& list);
   void Check(const std::vector<std::uint32_t>& list);
   ///@{

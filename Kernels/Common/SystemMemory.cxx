@@ -18,7 +18,7 @@ constexpr std::int64_t NoLimit = std::numeric_limits<std::int64_t>::max();
 
 // Returns the memory that a control group has left. all: the memory of the system. Limits of at
 // least `all` have no effect: then the usage, which is slow to read, is not needed.
-std::int64_t GetLeft(const std::string& folder, std::int64_t all)
+std::int64_t GetAvailable(const std::string& folder, std::int64_t all)
 {
   const std::int64_t limit = std::min(ReadNumber(folder + "/memory.max").value_or(NoLimit),
     ReadNumber(folder + "/memory.high").value_or(NoLimit));
@@ -53,7 +53,7 @@ std::uint64_t GetSystemMemory(const std::string& root)
   const std::vector<std::string> groups = root.empty() ? ownGroups : FindControlGroups(root);
   for (const std::string& folder : groups)
   {
-    left = std::min(left, GetLeft(folder, all));
+    left = std::min(left, GetAvailable(folder, all));
   }
   return left == NoLimit ? 0 : static_cast<std::uint64_t>(std::max<std::int64_t>(1, left));
 }

@@ -36,7 +36,7 @@ void MakeSlabs(SlabResampler& resampler, WorkDevice& device, const DeviceVolume&
     resampler.Make(request, plan, slab, report);
     if (stays)
     {
-      report.DeviceOutputs = resampler.Leave(request, plan.GetTarget(slab));
+      report.DeviceOutputs = resampler.KeepOnDevice(request, plan.GetTarget(slab));
       continue;
     }
     const Clock::time_point begin = Clock::now();

@@ -146,8 +146,8 @@ DeformationSize VolumeDeformer::Internals::Parts::GetSize(const DeformRequest& r
 DeformReport VolumeDeformer::Internals::Parts::Deform(const DeformRequest& request)
 {
   this->BringOutput(); // the next output uses the same memory
-  this->Volume.GetArrays().ReadAgain();
-  this->Source.ReadFieldAgain();
+  this->Volume.GetArrays().Reread();
+  this->Source.RereadField();
   const std::uint64_t spare = CheckDeviceMemory(this->Device, this->Budget, this->GetSize(request),
     GetOutputBytesPerVoxel(this->Device.GetContext(), this->Volume.GetArrays().Get(), request));
   const bool isRasterized = request.Method == Resampling::MeshRasterization;
@@ -170,7 +170,7 @@ DeformReport VolumeDeformer::Internals::Parts::Resample(
     MakeSlabs(this->Exact, this->Device, this->Volume, request, spare, report);
     report.NumberOfResampledBricks = report.NumberOfBricks;
     report.ChangedExtent = request.OutputExtent;
-    if (request.Incremental && this->Exact.CanMakeAgain())
+    if (request.Incremental && this->Exact.CanUpdateOutput())
     {
       this->Incremental.Start(request, this->Source, report);
     }

@@ -132,7 +132,7 @@ static int FindBridges(
 
 // Computes the mask `joined` of the cells of cuboids. changed: set to 1 for each cuboid of the list in which the mask
 // of a cell has changed.
-__kernel void LeaveOutBridges(MAPPING_PARAMETERS, __global const int* owners,
+__kernel void ExcludeBridges(MAPPING_PARAMETERS, __global const int* owners,
   __global const int4* tetrahedraOfMesh, __global const int* coincidentNodes, const int hasCoincidentNodes,
   __global const uchar* boundary, const int hasBoundary, __global const uchar* active, const int hasActive,
   __global const uint* cutRows, __global const CutVertex* cutVertices,

@@ -93,7 +93,7 @@ void BridgeMask::Update(OpenCLContext& context, const cl::CommandQueue& queue,
   const cl::Buffer list(context.GetContext(), CL_MEM_READ_ONLY, atOnce * sizeof(cl_uint));
   const cl::Buffer changed(context.GetContext(), CL_MEM_READ_WRITE, atOnce * sizeof(cl_uint));
   const QueueGuard guard(queue);
-  cl::Kernel kernel(source.Program, "LeaveOutBridges");
+  cl::Kernel kernel(source.Program, "ExcludeBridges");
   cl_uint i = source.SetMapping(kernel);
   kernel.setArg(i++, source.Owners);
   kernel.setArg(i++, source.Tetrahedra() ? source.Tetrahedra : source.Other);

@@ -24,7 +24,7 @@ DeviceArrays::DeviceArrays(const OpenCLContext& context, const cl::CommandQueue&
 {
 }
 
-void DeviceArrays::Leave()
+void DeviceArrays::ReleaseBuffersInPlace()
 {
   if (this->ChunkInPlace)
   {
@@ -51,7 +51,7 @@ BufferInPlace DeviceArrays::FindOverlapping(const void* data, std::uint64_t byte
 void DeviceArrays::Set(const std::vector<VolumeArray>& arrays, const BufferInPlace& field)
 {
   const QueueGuard guard(this->Queue);
-  this->Leave();
+  this->ReleaseBuffersInPlace();
   this->BuffersInPlace.assign(arrays.size(), BufferInPlace());
   this->Described.clear(); // no arrays are set after an exception
   const std::int64_t plane = static_cast<std::int64_t>(this->Size[0]) * this->Size[1];
@@ -127,7 +127,7 @@ bool DeviceArrays::SetOptions(const std::vector<VolumeArray>& arrays)
   return changed;
 }
 
-void DeviceArrays::ReadAgain() const
+void DeviceArrays::Reread() const
 {
   // If there are several chunks, GetBuffers() makes new buffers for each.
   if (this->Chunks.size() == 1)
@@ -145,7 +145,7 @@ const std::vector<cl::Buffer>& DeviceArrays::GetBuffers(const VolumeChunk& chunk
   {
     return chunk.Arrays;
   }
-  this->Leave();
+  this->ReleaseBuffersInPlace();
   VolumeChunk& placed = this->Chunks[static_cast<std::size_t>(&chunk - this->Chunks.data())];
   this->ChunkInPlace = &placed;
   for (std::size_t i = 0; i < this->BuffersInPlace.size(); ++i)

@@ -42,7 +42,7 @@ public:
   /// volume is one chunk. Bytes is 0 if there is no such array.
   BufferInPlace FindOverlapping(const void* data, std::uint64_t bytes) const;
   /// Updates the arrays in place after their memory has been written.
-  void ReadAgain() const;
+  void Reread() const;
   /// Returns the buffers of a chunk. The arrays in place of several chunks overlap, so only one
   /// chunk at a time has buffers for them. If another chunk had them before, the function waits for
   /// all commands of the queue.
@@ -50,7 +50,7 @@ public:
 
 private:
   /// Releases the buffers that use host memory.
-  void Leave();
+  void ReleaseBuffersInPlace();
 
   const OpenCLContext& Context;
   cl::CommandQueue Queue;

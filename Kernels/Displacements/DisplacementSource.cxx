@@ -400,7 +400,7 @@ BufferInPlace DisplacementSource::GetFieldInPlace() const
                                   : BufferInPlace();
 }
 
-void DisplacementSource::ReadFieldAgain() const
+void DisplacementSource::RereadField() const
 {
   UpdateFromHost(this->Device.GetContext(), this->Device.GetQueue(), this->GetFieldInPlace());
 }

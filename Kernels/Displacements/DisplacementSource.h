@@ -112,7 +112,7 @@ public:
   /// field.
   BufferInPlace GetFieldInPlace() const;
   /// Updates the field that is read in place after its memory has been written.
-  void ReadFieldAgain() const;
+  void RereadField() const;
 
   /// Bytes on the device.
   std::uint64_t GetMemory() const;

@@ -187,7 +187,7 @@ Extent IncrementalOutput::GetMissing(std::uint64_t held) const
   return missing;
 }
 
-std::vector<std::shared_ptr<DeviceOutput>> IncrementalOutput::Leave(
+std::vector<std::shared_ptr<DeviceOutput>> IncrementalOutput::KeepOnDevice(
   const DeformRequest& request, ExactResampler& resampler) const
 {
   std::vector<Extent> parts;
@@ -195,7 +195,7 @@ std::vector<std::shared_ptr<DeviceOutput>> IncrementalOutput::Leave(
   {
     parts.push_back(this->GetMissing(request.HeldRevisions.empty() ? 0 : request.HeldRevisions[i]));
   }
-  return resampler.LeaveParts(request, parts);
+  return resampler.KeepPartsOnDevice(request, parts);
 }
 
 bool IncrementalOutput::Update(const DeformRequest& request, const DisplacementSource& source,
@@ -258,13 +258,13 @@ bool IncrementalOutput::TryUpdate(const DeformRequest& request, const Displaceme
   }
   const std::uint64_t before = countCovered();
   report.ResamplingTime += GetSecondsSince(begin);
-  const std::optional<ExactResampler::Again> again =
-    resampler.MakeAgain(request, plan.Bricks, plan.Patches);
-  if (!again)
+  const std::optional<ExactResampler::UpdatedOutput> updated =
+    resampler.UpdateOutput(request, plan.Bricks, plan.Patches);
+  if (!updated)
   {
     return false;
   }
-  const SlabCounts& counts = again->Counts;
+  const SlabCounts& counts = updated->Counts;
   const auto done = Clock::now();
   const Extent changed = this->Changes.GetChangedExtent();
   if (!stays)
@@ -290,7 +290,7 @@ bool IncrementalOutput::TryUpdate(const DeformRequest& request, const Displaceme
   }
   if (stays)
   {
-    report.DeviceOutputs = this->Leave(request, resampler);
+    report.DeviceOutputs = this->KeepOnDevice(request, resampler);
   }
   this->LastCovered = covered;
   report.ChangedExtent = changed;
@@ -303,7 +303,7 @@ bool IncrementalOutput::TryUpdate(const DeformRequest& request, const Displaceme
     static_cast<std::int64_t>(counts.Inverted) + boundary.GetCounts().Inverted;
   report.NumberOfOverstretchedCells =
     static_cast<std::int64_t>(counts.Overstretched) + boundary.GetCounts().Overstretched;
-  report.Overlapping = again->Overlapping;
+  report.Overlapping = updated->Overlapping;
   report.NumberOfCoveredVoxels = static_cast<std::int64_t>(covered);
   report.NumberOfResampledBricks = static_cast<std::int64_t>(plan.Bricks.size());
   return true;

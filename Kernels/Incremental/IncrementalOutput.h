@@ -56,7 +56,7 @@ private:
   /// Returns the part of the last output that memory with the output of revision `held` lacks.
   Extent GetMissing(std::uint64_t held) const;
   /// Leaves the updated output on the device.
-  std::vector<std::shared_ptr<DeviceOutput>> Leave(
+  std::vector<std::shared_ptr<DeviceOutput>> KeepOnDevice(
     const DeformRequest& request, ExactResampler& resampler) const;
   /// See IncrementalUpdate::IsInside.
   bool IsChangeInside() const;

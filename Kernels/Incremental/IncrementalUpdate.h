@@ -16,7 +16,7 @@
 namespace deformvolume
 {
 
-/// Finds the parts of an output that must be made again after a change of the deformation or the
+/// Finds the parts of an output that must be updated after a change of the deformation or the
 /// masks.
 ///
 /// A sub-brick of cells changes if a point that moves its vertices changes, or a mask near it. All
@@ -25,8 +25,8 @@ namespace deformvolume
 /// displacements across the sheet. Patches of the output that intersect the boxes of changed
 /// sub-bricks, before or after the change, are cleared. Then all sections are resampled that have a
 /// sub-brick whose box intersects a cleared patch. Outside the cleared patches these sections write
-/// the same values as before. (If the volume overlaps itself, ExactResampler::MakeAgain keeps the
-/// other patches unchanged.)
+/// the same values as before. (If the volume overlaps itself, ExactResampler::UpdateOutput keeps
+/// the other patches unchanged.)
 ///
 /// If all vertices of the changed sub-bricks are inside the sampling mesh, nothing is cleared, and
 /// only the changed sub-bricks are resampled. Their cells fill the same space as before, between
@@ -35,7 +35,7 @@ namespace deformvolume
 class IncrementalUpdate : public DisplacementObserver
 {
 public:
-  /// The parts to make again.
+  /// The parts to update.
   struct Plan
   {
     std::vector<std::uint32_t> Bricks;  // in the format of DEFORMVOLUME_BRICK_BITS

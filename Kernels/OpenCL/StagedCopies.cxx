@@ -196,7 +196,7 @@ cl_int StagedCopies::Copy(const cl::CommandQueue& queue, const cl::Buffer& buffe
   const Portions portions(box);
   const std::size_t threads = std::max<std::size_t>(1,
     std::min({ std::size_t{ MostThreads }, static_cast<std::size_t>(GetProcessorShare()),
-      portions.GetNumber() / PortionsWorthAThread }));
+      portions.GetNumber() / LeastPortionsPerThread }));
   std::array<cl_int, MostThreads> errors{};
   const auto copy = [&](std::int64_t begin, std::int64_t end)
   {

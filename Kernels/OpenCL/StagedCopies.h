@@ -25,7 +25,7 @@ class StagedCopies
 public:
   static constexpr std::size_t HalfBytes = std::size_t{ 1 } << 20;
   static constexpr std::size_t MostThreads = 8;
-  static constexpr std::size_t PortionsWorthAThread = 2;
+  static constexpr std::size_t LeastPortionsPerThread = 2;
   /// Staging does not make smaller copies faster.
   static constexpr std::size_t LeastBytes = std::size_t{ 1 } << 16;
 

@@ -79,8 +79,8 @@ bool OutputSlab::HoldsLastOutput(const OpenCLContext& context, const DeformReque
   return all;
 }
 
-void OutputSlab::PrepareAgain(OpenCLContext& context, const cl::CommandQueue& queue,
-  const DeformRequest& request, const std::vector<VolumeArray>& arrays, const PartToMake& part,
+void OutputSlab::PrepareUpdate(OpenCLContext& context, const cl::CommandQueue& queue,
+  const DeformRequest& request, const std::vector<VolumeArray>& arrays, const PartToUpdate& part,
   std::vector<cl::Event>& events)
 {
   this->Finish();
@@ -123,7 +123,7 @@ void OutputSlab::PrepareAgain(OpenCLContext& context, const cl::CommandQueue& qu
   }
   if (withWinners)
   {
-    this->Winners.PrepareAgain(context, part.Patches, this->PatchList, p, events);
+    this->Winners.PrepareUpdate(context, part.Patches, this->PatchList, p, events);
   }
   if (!part.Bricks.empty())
   {
@@ -180,9 +180,10 @@ void OutputSlab::Clear(OpenCLContext& context, const std::vector<VolumeArray>& a
     events);
 }
 
-void OutputSlab::ExpandCoverage(OpenCLContext& context, bool again, std::vector<cl::Event>& events)
+void OutputSlab::ExpandCoverage(
+  OpenCLContext& context, bool isUpdate, std::vector<cl::Event>& events)
 {
-  if (!again)
+  if (!isUpdate)
   {
     deformvolume::ExpandCoverage(
       context, this->Queue, this->CoverageBits, this->Coverage, this->NumberOfVoxels, events);
@@ -197,14 +198,14 @@ void OutputSlab::ExpandCoverage(OpenCLContext& context, bool again, std::vector<
 }
 
 void OutputSlab::Complete(OpenCLContext& context, const std::vector<VolumeArray>& arrays,
-  bool again, std::vector<cl::Event>& events)
+  bool isUpdate, std::vector<cl::Event>& events)
 {
   if (!this->BitsUsed)
   {
     return;
   }
-  this->ExpandCoverage(context, again, events);
-  for (std::size_t i = 0; i < arrays.size() && !again; ++i)
+  this->ExpandCoverage(context, isUpdate, events);
+  for (std::size_t i = 0; i < arrays.size() && !isUpdate; ++i)
   {
     FillUncovered(context, this->Queue, this->Arrays[i], GetBackground(arrays[i]),
       this->NumberOfVoxels, static_cast<std::size_t>(arrays[i].Components), this->CoverageBits,
@@ -331,7 +332,7 @@ void OutputSlab::Read(
   queue.flush();
 }
 
-std::vector<std::shared_ptr<DeviceOutput>> OutputSlab::Leave(const cl::CommandQueue& queue,
+std::vector<std::shared_ptr<DeviceOutput>> OutputSlab::KeepOnDevice(const cl::CommandQueue& queue,
   const DeformRequest& request, const std::vector<VolumeArray>& arrays,
   const std::vector<Extent>& parts) const
 {

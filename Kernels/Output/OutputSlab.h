@@ -36,16 +36,16 @@ public:
   void Clear(OpenCLContext& context, const std::vector<VolumeArray>& arrays, bool coverageBits,
     std::vector<cl::Event>& events);
   /// If coverage is stored as bits: expands the bits to bytes, and fills voxels that are not
-  /// covered with the background. again: only the patches that PrepareAgain() cleared have changed.
-  void Complete(OpenCLContext& context, const std::vector<VolumeArray>& arrays, bool again,
+  /// covered with the background. isUpdate: only patches that PrepareUpdate() cleared have changed.
+  void Complete(OpenCLContext& context, const std::vector<VolumeArray>& arrays, bool isUpdate,
     std::vector<cl::Event>& events);
 
   /// Whether the last output, for the same extent, is available: in the memory of this request for
   /// arrays that are written in place, otherwise on the device.
   bool HoldsLastOutput(const OpenCLContext& context, const DeformRequest& request,
     const std::vector<VolumeArray>& arrays) const;
-  /// The parts of an output that an incremental update computes again (see IncrementalUpdate).
-  struct PartToMake
+  /// The parts of an output that an incremental update computes (see IncrementalUpdate).
+  struct PartToUpdate
   {
     const std::vector<cl_uint>& Bricks;
     const cl::Buffer& BrickList; // Bricks on the device, unless empty
@@ -55,8 +55,8 @@ public:
   /// Replaces Bind() and Clear() for an incremental update. The last output and its counters must
   /// be available. Clears the patches, the counters of the bricks, and the counters by which the
   /// passes for winners find their work. Other patches keep their winners.
-  void PrepareAgain(OpenCLContext& context, const cl::CommandQueue& queue,
-    const DeformRequest& request, const std::vector<VolumeArray>& arrays, const PartToMake& part,
+  void PrepareUpdate(OpenCLContext& context, const cl::CommandQueue& queue,
+    const DeformRequest& request, const std::vector<VolumeArray>& arrays, const PartToUpdate& part,
     std::vector<cl::Event>& events);
 
   OutputWinners& GetWinners() { return this->Winners; }
@@ -95,10 +95,10 @@ public:
   /// Begins to copy a part of the finished slab to the memory of the request, in a separate queue.
   void Read(const cl::CommandQueue& queue, const DeformRequest& request, const Extent& part);
   /// Leaves the finished slab, which must be the whole output, on the device. The returned outputs
-  /// must be copied to the host before Bind() or PrepareAgain() is called. queue: for these copies.
-  /// parts: for each array, then for the coverage, the extent in which the memory of the request
-  /// does not have the current values.
-  std::vector<std::shared_ptr<DeviceOutput>> Leave(const cl::CommandQueue& queue,
+  /// must be copied to the host before Bind() or PrepareUpdate() is called. queue: for these
+  /// copies. parts: for each array, then for the coverage, the extent in which the memory of the
+  /// request does not have the current values.
+  std::vector<std::shared_ptr<DeviceOutput>> KeepOnDevice(const cl::CommandQueue& queue,
     const DeformRequest& request, const std::vector<VolumeArray>& arrays,
     const std::vector<Extent>& parts) const;
   /// Waits until the slab is in the memory of the request. Throws cl::Error if a copy failed.
@@ -113,7 +113,7 @@ private:
   void BindArrays(
     OpenCLContext& context, const DeformRequest& request, const std::vector<VolumeArray>& arrays);
   void SendPatches(OpenCLContext& context, const std::vector<std::uint32_t>& patches);
-  void ExpandCoverage(OpenCLContext& context, bool again, std::vector<cl::Event>& events);
+  void ExpandCoverage(OpenCLContext& context, bool isUpdate, std::vector<cl::Event>& events);
   std::uint64_t GetOffset(const DeformRequest& request) const;
 
   cl::CommandQueue Queue;

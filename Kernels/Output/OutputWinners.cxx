@@ -24,7 +24,7 @@ void OutputWinners::Start(
   this->Output = output;
   this->KeySize = GetWinnerSize(voxelGrid);
   this->KeyBytes = static_cast<std::uint64_t>(GetNumberOfPoints(output)) * this->KeySize;
-  this->IsAgain = false;
+  this->IsUpdate = false;
   if (!this->HasBuffers())
   {
     this->Keys = cl::Buffer();
@@ -69,7 +69,7 @@ void OutputWinners::Prepare(OpenCLContext& context, std::vector<cl::Event>& even
   Fill(context, this->Queue, this->Patches, ElementBytes::Of(cl_uchar{ 0 }), patchBytes, events);
 }
 
-void OutputWinners::PrepareAgain(OpenCLContext& context, const std::vector<std::uint32_t>& patches,
+void OutputWinners::PrepareUpdate(OpenCLContext& context, const std::vector<std::uint32_t>& patches,
   const cl::Buffer& list, const KernelParameters& parameters, std::vector<cl::Event>& events)
 {
   if (!patches.empty())
@@ -79,7 +79,7 @@ void OutputWinners::PrepareAgain(OpenCLContext& context, const std::vector<std::
       patches.size(), parameters, events);
   }
   const MappedBuffer<unsigned char> known(this->Queue, this->Patches, CL_MAP_READ | CL_MAP_WRITE);
-  this->IsAgain = true;
+  this->IsUpdate = true;
   const std::uint64_t all = this->CountPatches();
   std::fill_n(known.Get(), all, static_cast<unsigned char>(DEFORMVOLUME_PATCH_KEPT));
   for (const std::uint32_t patch : patches)

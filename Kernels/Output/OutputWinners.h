@@ -32,7 +32,7 @@ public:
   void Prepare(OpenCLContext& context, std::vector<cl::Event>& events);
   /// Resets the winners of some patches. Other patches keep the winners of the last output. list:
   /// the patch numbers on the device. parameters: with the extent of the output.
-  void PrepareAgain(OpenCLContext& context, const std::vector<std::uint32_t>& patches,
+  void PrepareUpdate(OpenCLContext& context, const std::vector<std::uint32_t>& patches,
     const cl::Buffer& list, const KernelParameters& parameters, std::vector<cl::Event>& events);
   /// Finds the unsettled voxels: voxels whose winner must still be chosen, and voxels that no cell
   /// has written but some cell may win. Call this after the pass in which cells claim voxels, or
@@ -51,7 +51,7 @@ public:
   ///@}
 
   /// Whether some patches of the output keep their values.
-  bool KeepsPatches() const { return this->IsAgain; }
+  bool KeepsPatches() const { return this->IsUpdate; }
   /// The buffers; null if not allocated.
   const cl::Buffer& GetKeys() const { return this->Keys; }
   const cl::Buffer& GetPatches() const { return this->Patches; }
@@ -68,7 +68,7 @@ private:
   std::size_t KeySize = 4;
   cl::Buffer Keys;
   cl::Buffer Patches; // a state for each, then whether each has contested voxels
-  bool IsAgain = false;
+  bool IsUpdate = false;
 };
 
 } // namespace deformvolume

@@ -296,10 +296,10 @@ void MeshRasterizer::Read(const DeformRequest&, std::size_t target)
   this->Targets[target]->Read(this->Device->GetReadQueue());
 }
 
-std::vector<std::shared_ptr<DeviceOutput>> MeshRasterizer::Leave(
+std::vector<std::shared_ptr<DeviceOutput>> MeshRasterizer::KeepOnDevice(
   const DeformRequest&, std::size_t target)
 {
-  return this->Targets[target]->Leave(this->Device->GetReadQueue());
+  return this->Targets[target]->KeepOnDevice(this->Device->GetReadQueue());
 }
 
 void MeshRasterizer::FinishReading()

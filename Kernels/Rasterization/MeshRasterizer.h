@@ -65,7 +65,7 @@ public:
   void Make(const DeformRequest& request, const SlabPlan& plan, std::size_t slab,
     DeformReport& report) override;
   void Read(const DeformRequest& request, std::size_t target) override;
-  std::vector<std::shared_ptr<DeviceOutput>> Leave(
+  std::vector<std::shared_ptr<DeviceOutput>> KeepOnDevice(
     const DeformRequest& request, std::size_t target) override;
   void FinishReading() override;
   void Finish() noexcept override;

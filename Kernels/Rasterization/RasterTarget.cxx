@@ -51,7 +51,8 @@ void RasterTarget::Read(const cl::CommandQueue& queue)
   queue.flush();
 }
 
-std::vector<std::shared_ptr<DeviceOutput>> RasterTarget::Leave(const cl::CommandQueue& queue) const
+std::vector<std::shared_ptr<DeviceOutput>> RasterTarget::KeepOnDevice(
+  const cl::CommandQueue& queue) const
 {
   std::vector<std::shared_ptr<DeviceOutput>> outputs;
   for (const Memory& memory : this->Memories)

@@ -38,7 +38,7 @@ public:
   void Read(const cl::CommandQueue& queue);
   void FinishReading() { this->Reads.Check(); }
   /// Leaves the slab, which must be the whole output, on the device. queue: for copying it later.
-  std::vector<std::shared_ptr<DeviceOutput>> Leave(const cl::CommandQueue& queue) const;
+  std::vector<std::shared_ptr<DeviceOutput>> KeepOnDevice(const cl::CommandQueue& queue) const;
 
 private:
   /// The memory of an array or of the coverage: on the device, and in the request.

@@ -181,7 +181,7 @@ static __attribute__((always_inline)) void MapSixteen(const MappedRow* row, int 
 
 // Returns how many vertices must be mapped again so that the last sixteen vertices end at `end`. The first of these
 // must have an even slot.
-static int CountAgain(int x, int begin, int end, int i)
+static int CountRepeated(int x, int begin, int end, int i)
 {
   if (x + 1 >= end || x + 16 <= end)
   {
@@ -228,7 +228,7 @@ static RowFlags MapRow(const SamplingMesh* mesh, int x, int end, int i, int y, i
   __global const uchar* const rowState = mesh->State + row.Chunk;
   while (x < end)
   {
-    const int again = CountAgain(x, begin, end, i);
+    const int again = CountRepeated(x, begin, end, i);
     const ulong states = x - again + 16 <= end ? StatesOf(rowState, x - again, rowInside, p) : 0;
     if (((i - again) & 1) || (states & SOURCES) != SOURCES)
     {

@@ -19,7 +19,7 @@
 // Removes the cells of a packet that have a value that IS_SPECIAL from Fit and Some, so that ResampleCell takes them.
 // The values are tested again because a flag of a row is for eight vertices, and depends on where the mapped part of
 // the row begins and ends.
-static SELDOM void LeaveSpecials(PacketCandidates* c)
+static SELDOM void ExcludeSpecials(PacketCandidates* c)
 {
   const Packet* const packet = &c->Cells;
   INTS special = 0;
@@ -47,7 +47,7 @@ static __attribute__((always_inline)) void ResampleCells(PacketCandidates* c, in
   }
   if (special)
   {
-    LeaveSpecials(c);
+    ExcludeSpecials(c);
   }
   UndecidedSamples undecidedSamples;
   const Outcome outcome = ResampleByFloats(c, mesh, output, found, &undecidedSamples, p ARRAY_ARGUMENTS);

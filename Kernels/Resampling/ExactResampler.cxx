@@ -207,18 +207,18 @@ void ExactResampler::Read(const DeformRequest& request, std::size_t target)
     this->Device.GetReadQueue(), request, this->Targets[target].GetExtent());
 }
 
-std::vector<std::shared_ptr<DeviceOutput>> ExactResampler::Leave(
+std::vector<std::shared_ptr<DeviceOutput>> ExactResampler::KeepOnDevice(
   const DeformRequest& request, std::size_t target)
 {
   const OutputSlab& output = this->Targets[target];
-  return output.Leave(this->Device.GetReadQueue(), request, this->Volume.GetArrays().Get(),
+  return output.KeepOnDevice(this->Device.GetReadQueue(), request, this->Volume.GetArrays().Get(),
     std::vector<Extent>(request.Outputs.size() + 1, output.GetExtent()));
 }
 
-std::vector<std::shared_ptr<DeviceOutput>> ExactResampler::LeaveParts(
+std::vector<std::shared_ptr<DeviceOutput>> ExactResampler::KeepPartsOnDevice(
   const DeformRequest& request, const std::vector<Extent>& parts)
 {
-  return this->Targets[0].Leave(
+  return this->Targets[0].KeepOnDevice(
     this->Device.GetReadQueue(), request, this->Volume.GetArrays().Get(), parts);
 }
 
@@ -251,30 +251,31 @@ void ExactResampler::Finish() noexcept
 
 bool ExactResampler::HoldsLastOutput(const DeformRequest& request)
 {
-  return this->CanMakeAgain() &&
+  return this->CanUpdateOutput() &&
     this->Targets[0].HoldsLastOutput(
       this->Device.GetContext(), request, this->Volume.GetArrays().Get());
 }
 
-std::optional<ExactResampler::Again> ExactResampler::MakeAgain(const DeformRequest& request,
-  const std::vector<cl_uint>& bricks, const std::vector<std::uint32_t>& patches)
+std::optional<ExactResampler::UpdatedOutput> ExactResampler::UpdateOutput(
+  const DeformRequest& request, const std::vector<cl_uint>& bricks,
+  const std::vector<std::uint32_t>& patches)
 {
   OutputSlab& output = this->Targets[0];
   const bool won = this->HasWinners();
   const int pass = won ? DEFORMVOLUME_PASS_OWNERS : DEFORMVOLUME_PASS_DIRECT;
   const cl::Buffer list = bricks.empty() ? cl::Buffer() : this->Exact.SendBricks(bricks);
-  output.PrepareAgain(this->Device.GetContext(), this->Device.GetQueue(), request,
+  output.PrepareUpdate(this->Device.GetContext(), this->Device.GetQueue(), request,
     this->Volume.GetArrays().Get(), { bricks, list, patches, won },
     this->Launched.GetResamplingEvents());
   this->Source.PrepareMapping(this->Launched.GetMappingEvents(), &bricks);
   this->RunPass(request, output, pass, false, &bricks);
-  Again again;
-  again.Counts = output.ReadCounts(this->Device, false, this->Launched.GetResamplingEvents());
-  const bool hasLargeCells = again.Counts.HasLarge;
+  UpdatedOutput updated;
+  updated.Counts = output.ReadCounts(this->Device, false, this->Launched.GetResamplingEvents());
+  const bool hasLargeCells = updated.Counts.HasLarge;
   if (hasLargeCells)
   {
     this->Exact.RunLargeCells(request, output, pass);
-    again.Counts = output.ReadCounts(this->Device, false, this->Launched.GetResamplingEvents());
+    updated.Counts = output.ReadCounts(this->Device, false, this->Launched.GetResamplingEvents());
   }
   const auto complete = [&]
   {
@@ -289,7 +290,7 @@ std::optional<ExactResampler::Again> ExactResampler::MakeAgain(const DeformReque
   if (!won)
   {
     complete();
-    return again;
+    return updated;
   }
   if (!bricks.empty())
   {
@@ -297,9 +298,9 @@ std::optional<ExactResampler::Again> ExactResampler::MakeAgain(const DeformReque
       this->Volume.GetParameters(this->Volume.GetChunks().front()),
       this->Launched.GetResamplingEvents());
   }
-  again.Overlapping = output.GetWinners().HasContested();
-  if (again.Counts.Overstretched > 0 ||
-    !(again.Overlapping || again.Counts.Inverted > 0 || again.Counts.MissingWhereAssumed))
+  updated.Overlapping = output.GetWinners().HasContested();
+  if (updated.Counts.Overstretched > 0 ||
+    !(updated.Overlapping || updated.Counts.Inverted > 0 || updated.Counts.MissingWhereAssumed))
   {
     return std::nullopt;
   }
@@ -308,7 +309,7 @@ std::optional<ExactResampler::Again> ExactResampler::MakeAgain(const DeformReque
     this->WriteWinners(request, output, hasLargeCells, true);
   }
   complete();
-  return again;
+  return updated;
 }
 
 std::uint64_t ExactResampler::GetMemory() const

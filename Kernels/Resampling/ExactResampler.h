@@ -40,36 +40,36 @@ public:
   void Make(const DeformRequest& request, const SlabPlan& plan, std::size_t slab,
     DeformReport& report) override;
   void Read(const DeformRequest& request, std::size_t target) override;
-  std::vector<std::shared_ptr<DeviceOutput>> Leave(
+  std::vector<std::shared_ptr<DeviceOutput>> KeepOnDevice(
     const DeformRequest& request, std::size_t target) override;
   void FinishReading() override;
   void Finish() noexcept override;
 
-  /// Whether the last output was made in one slab from one chunk, so that MakeAgain can make parts
-  /// of it again.
-  bool CanMakeAgain() const { return this->Last != LastOutput::Unknown; }
+  /// Whether the last output was made in one slab from one chunk, so that UpdateOutput() can update
+  /// parts of it.
+  bool CanUpdateOutput() const { return this->Last != LastOutput::Unknown; }
   /// Whether the last output, of a request for the same extent and by the same method, is still
   /// available.
   bool HoldsLastOutput(const DeformRequest& request);
   /// Whether the last output chose winners.
   bool HasWinners() const { return this->Last == LastOutput::Won; }
-  /// The result of MakeAgain.
-  struct Again
+  /// The result of UpdateOutput().
+  struct UpdatedOutput
   {
     SlabCounts Counts;        // over all bricks
     bool Overlapping = false; // only set if winners were chosen
   };
-  /// Makes some bricks of the last output again, in target 0. The memory of the request must hold
+  /// Resamples some bricks of the last output, in target 0. The memory of the request must hold
   /// the last output. First clears some patches of the output. Chooses winners if the last output
   /// chose them. Returns nothing if there are no winners any more, so that the whole output must be
   /// made.
-  std::optional<Again> MakeAgain(const DeformRequest& request, const std::vector<cl_uint>& bricks,
-    const std::vector<std::uint32_t>& patches);
+  std::optional<UpdatedOutput> UpdateOutput(const DeformRequest& request,
+    const std::vector<cl_uint>& bricks, const std::vector<std::uint32_t>& patches);
   /// Counts the covered voxels of some patches of the last output, on the device.
   std::uint64_t CountCovered(const std::vector<std::uint32_t>& patches);
-  /// Like Leave(), but only a part of each array and of the coverage must be copied when it is
-  /// read.
-  std::vector<std::shared_ptr<DeviceOutput>> LeaveParts(
+  /// Like KeepOnDevice(), but only a part of each array and of the coverage must be copied when it
+  /// is read.
+  std::vector<std::shared_ptr<DeviceOutput>> KeepPartsOnDevice(
     const DeformRequest& request, const std::vector<Extent>& parts);
   /// Begins to copy a part of the output to the memory of the request, like Read().
   void ReadPart(const DeformRequest& request, const Extent& part);

@@ -40,7 +40,7 @@ public:
   /// have to do the copy.
   virtual void Read(const DeformRequest& request, std::size_t target) = 0;
   /// Leaves a target, which must be the whole output, on the device.
-  virtual std::vector<std::shared_ptr<DeviceOutput>> Leave(
+  virtual std::vector<std::shared_ptr<DeviceOutput>> KeepOnDevice(
     const DeformRequest& request, std::size_t target) = 0;
   /// Waits until all copies are finished. Throws cl::Error if a copy failed.
   virtual void FinishReading() = 0;
