@@ -226,7 +226,7 @@ void TestSpread(const Case& from, vtkImageData* whole)
 /// Tests that an error which one rank causes is reported on all ranks with the same text, and that
 /// the filter works when the cause is removed.
 void TestError(const Case& from, vtkImageData* whole, const std::string& words,
-  const std::function<void(Parallel&)>& spoil, const std::function<void(Parallel&)>& mend)
+  const std::function<void(Parallel&)>& spoil, const std::function<void(Parallel&)>& restore)
 {
   Parallel parallel(from);
   if (GetRank() == GetRanks() - 1)
@@ -235,14 +235,9 @@ void TestError(const Case& from, vtkImageData* whole, const std::string& words,
   }
   parallel.Filter->UpdatePiece(GetRank(), GetRanks(), 0);
   VERIFY_EQUAL(parallel.TakeErrors(), 1);
-  const bool told = parallel.LastError.find(words) != std::string::npos;
-  VERIFY(told);
-  if (!told)
-  {
-    std::cerr << "instead of \"" << words << "\": " << parallel.LastError << '\n';
-  }
+  VERIFY_CONTAINS(parallel.LastError, words);
   VERIFY_EQUAL(parallel.Filter->GetOutput()->GetNumberOfPoints(), vtkIdType{ 0 });
-  mend(parallel);
+  restore(parallel);
   Check(parallel, whole, words);
 }
 
@@ -250,7 +245,7 @@ void TestError(const Case& from, vtkImageData* whole, const std::string& words,
 void TestReferenceErrors(const Case& from, vtkImageData* whole)
 {
   const auto good = MakeReference(from.Volume, true);
-  const auto mend = [&](Parallel& parallel)
+  const auto restore = [&](Parallel& parallel)
   {
     parallel.Filter->SetReferenceData(good);
     parallel.Filter->Modified(); // on all ranks
@@ -264,14 +259,14 @@ void TestReferenceErrors(const Case& from, vtkImageData* whole)
       flat->SetSpacing(1.0, 0.0, 1.0);
       parallel.Filter->SetReferenceData(flat);
     },
-    mend);
+    restore);
   if (GetRanks() == 1)
   {
     return;
   }
   TestError(
     from, whole, "different grids on different ranks",
-    [](Parallel& parallel) { parallel.Filter->SetReferenceData(nullptr); }, mend);
+    [](Parallel& parallel) { parallel.Filter->SetReferenceData(nullptr); }, restore);
   TestError(
     from, whole, "different grids on different ranks",
     [&](Parallel& parallel)
@@ -281,7 +276,7 @@ void TestReferenceErrors(const Case& from, vtkImageData* whole)
       shifted->SetOrigin(0.0, 1e-9, 0.0);
       parallel.Filter->SetReferenceData(shifted);
     },
-    mend);
+    restore);
 }
 
 /// Tests an output that is background only: each rank that has a piece warns once.
@@ -359,7 +354,7 @@ void TestErrors(const Case& from, vtkImageData* whole)
     parallel.Filter->SetDeformationData(vtkSmartPointer<vtkUnstructuredGrid>::New());
     parallel.Filter->UpdatePiece(GetRank(), GetRanks(), 0);
     VERIFY_EQUAL(parallel.TakeErrors(), 1);
-    VERIFY(parallel.LastError.find("has no points") != std::string::npos);
+    VERIFY_CONTAINS(parallel.LastError, "has no points");
   }
 }
 
@@ -496,7 +491,7 @@ void TestPoints(vtkUnstructuredGrid* mesh)
       }
       filter->Modified();
       filter->UpdatePiece(GetRank(), GetRanks(), 0);
-      VERIFY(observer->GetErrorMessage().find("Point 5") != std::string::npos);
+      VERIFY_CONTAINS(observer->GetErrorMessage(), "Point 5");
       observer->Clear();
       first->GetPoints()->SetPoint(5, &before.x);
       first->GetPoints()->Modified();

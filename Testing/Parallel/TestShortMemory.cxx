@@ -112,7 +112,7 @@ public:
     while (allocations < most && this->Update(allocations))
     {
       VERIFY_EQUAL(this->Tested.TakeErrors(), 1);
-      VERIFY(this->Tested.LastError.find("memory") != std::string::npos);
+      VERIFY_CONTAINS(this->Tested.LastError, "memory");
       VERIFY_EQUAL(this->Tested.Filter->GetOutput()->GetNumberOfPoints(), vtkIdType{ 0 });
       VERIFY(!this->Update(-1));
       VERIFY_EQUAL(this->Tested.TakeErrors(), 0);

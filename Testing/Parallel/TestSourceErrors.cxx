@@ -119,13 +119,7 @@ void TestFailure(Pipeline& pipeline, Source* source, Failure how, vtkMPIControll
   };
   source->Fail(rank == ranks - 1 ? how : Failure::None);
   VERIFY_EQUAL(update(), 1);
-  const bool told = pipeline.LastError.find(words) != std::string::npos;
-  VERIFY(told);
-  if (!told)
-  {
-    std::cerr << "rank " << rank << ", instead of \"" << words << "\": " << pipeline.LastError
-              << '\n';
-  }
+  VERIFY_CONTAINS(pipeline.LastError, words);
   VERIFY_EQUAL(pipeline.Filter->GetOutput()->GetNumberOfPoints(), vtkIdType{ 0 });
   source->Fail(Failure::None);
   VERIFY_EQUAL(update(), 0);

@@ -265,8 +265,11 @@ public:
     VERIFY_EQUAL(
       this->Report.number_of_flat_tetrahedra, deformed.Filter->GetNumberOfFlatTetrahedra());
     VERIFY_EQUAL(std::string(this->Report.device), deformed.Filter->GetDeviceInUse());
-    VERIFY(warning.empty() ? std::string(this->Report.warnings).empty()
-                           : std::string(this->Report.warnings).find(warning) != std::string::npos);
+    if (warning.empty())
+    {
+      VERIFY_EQUAL(std::string(this->Report.warnings), std::string());
+    }
+    VERIFY_CONTAINS(this->Report.warnings, warning);
   }
 
   dv_deformer* Deformer = nullptr;

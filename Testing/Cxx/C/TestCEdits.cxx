@@ -371,8 +371,8 @@ void TestErrorsOfThreads()
   {
     thread.join();
   }
-  VERIFY(errors[0].find("is 7") != std::string::npos);
-  VERIFY(errors[1].find("is 8") != std::string::npos);
+  VERIFY_CONTAINS(errors[0], "is 7");
+  VERIFY_CONTAINS(errors[1], "is 8");
 }
 
 } // namespace

@@ -552,8 +552,8 @@ void TestTwoThreads()
   {
     thread.join();
   }
-  VERIFY(errors[0].find("is 8") != std::string::npos);
-  VERIFY(errors[1].find("is 9") != std::string::npos);
+  VERIFY_CONTAINS(errors[0], "is 8");
+  VERIFY_CONTAINS(errors[1], "is 9");
   for (InC& one : inC)
   {
     one.Compare(deformed);

@@ -25,7 +25,7 @@ void TestMisuse()
   for (int repeat = 0; repeat < 2; ++repeat)
   {
     VERIFY(!source->GetExecutive()->Update());
-    VERIFY(observer->GetErrorMessage().find("not finite") != std::string::npos);
+    VERIFY_CONTAINS(observer->GetErrorMessage(), "not finite");
     VERIFY_EQUAL(source->GetOutput()->GetNumberOfPoints(), 0);
     observer->Clear();
   }

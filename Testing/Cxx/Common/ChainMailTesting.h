@@ -39,17 +39,6 @@ inline vtkSmartPointer<vtkPolyData> MakeHandles(const std::vector<Handle>& handl
   return data;
 }
 
-/// Whether text contains part. If not, both are printed.
-inline bool Holds(const std::string& text, const std::string& part)
-{
-  if (text.find(part) == std::string::npos)
-  {
-    std::cerr << "not in the error: " << part << "\nthe error: " << text << "\n";
-    return false;
-  }
-  return true;
-}
-
 /// A vtkChainMailDeformation of a volume, and observers of its errors and warnings.
 struct Dragged
 {

@@ -116,11 +116,7 @@ struct Edited
       VERIFY(!this->Filter->GetExecutive()->Update());
       const std::string message = this->Observer->GetErrorMessage();
       const std::size_t first = message.find("ERROR: ");
-      if (message.find(words) == std::string::npos)
-      {
-        std::cerr << "\"" << words << "\" is not in: " << message << "\n";
-      }
-      VERIFY(message.find(words) != std::string::npos);
+      VERIFY_CONTAINS(message, words);
       VERIFY(first != std::string::npos && message.find("ERROR: ", first + 1) == std::string::npos);
       VERIFY_EQUAL(this->Filter->GetOutput()->GetNumberOfPoints(), 0);
       this->Observer->Clear();

@@ -4,6 +4,8 @@
 #ifndef FilterTesting_h
 #define FilterTesting_h
 
+#include "CheckedCondition.h"
+
 #include "../../Reported.h"
 
 #include "vtkDeformVolumeFilter.h"
@@ -52,15 +54,7 @@ inline int GetExitCode()
   return GetNumberOfFailures() == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
-#define VERIFY(condition)                                                                          \
-  do                                                                                               \
-  {                                                                                                \
-    if (!(condition))                                                                              \
-    {                                                                                              \
-      ++filterTesting::GetNumberOfFailures();                                                      \
-      std::cerr << __FILE__ << ':' << __LINE__ << ": not true: " << #condition << '\n';            \
-    }                                                                                              \
-  } while (false)
+#define VERIFY(condition) CHECK_CONDITION(condition, filterTesting::GetNumberOfFailures())
 
 #define VERIFY_EQUAL(actual, expected)                                                             \
   do                                                                                               \
@@ -74,6 +68,25 @@ inline int GetExitCode()
                 << " instead of " << verifiedExpected << '\n';                                     \
     }                                                                                              \
   } while (false)
+
+/// Checks that a text contains a part.
+#define VERIFY_CONTAINS(text, part)                                                                \
+  filterTesting::VerifyPartOfText(__FILE__, __LINE__, (text), (part), true)
+
+/// Checks that a text does not contain a part.
+#define VERIFY_CONTAINS_NOT(text, part)                                                            \
+  filterTesting::VerifyPartOfText(__FILE__, __LINE__, (text), (part), false)
+
+inline void VerifyPartOfText(
+  const char* file, int line, const std::string& text, const std::string& part, bool isExpected)
+{
+  if ((text.find(part) != std::string::npos) != isExpected)
+  {
+    ++GetNumberOfFailures();
+    std::cerr << file << ':' << line << ": expected a text " << (isExpected ? "with" : "without")
+              << " \"" << part << "\" instead of \"" << text << "\"\n";
+  }
+}
 
 using Extent = std::array<int, 6>;
 
@@ -256,7 +269,9 @@ struct Deformed
     if (words.empty() ? !warning.empty() : warning.find(words) == std::string::npos)
     {
       ++GetNumberOfFailures();
-      std::cerr << "expected \"" << words << "\" in the warning \"" << warning << "\"\n";
+      std::cerr << "expected "
+                << (words.empty() ? "no warning" : "a warning with \"" + words + "\"")
+                << " instead of \"" << warning << "\"\n";
     }
     VERIFY_EQUAL(this->TakeErrors(), 0);
     return this->Filter->GetOutput();

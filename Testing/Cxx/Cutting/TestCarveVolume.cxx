@@ -97,7 +97,7 @@ void TestMisuse()
   carve.Filter->SetLabelArrayName("value");
   carve.Filter->SetLabel(-12345);
   carve.Filter->Update();
-  VERIFY(carve.Observer->GetWarningMessage().find("No voxel has the label") != std::string::npos);
+  VERIFY_CONTAINS(carve.Observer->GetWarningMessage(), "No voxel has the label");
   carve.Observer->Clear();
   carve.Filter->Modified();
   VERIFY(carve.CopyMask() == before);

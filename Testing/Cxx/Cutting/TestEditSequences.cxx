@@ -332,7 +332,7 @@ int TestEditSequences(int argc, char* argv[])
     sequence.UndoAll();
     if (GetNumberOfFailures() > 0)
     {
-      std::cerr << "in sequence " << seed << ", after step " << step << "\n";
+      std::cerr << "failed in sequence " << seed << ", in step " << step << " or before\n";
     }
     parts += sequence.Parts;
     foldedParts += sequence.FoldedParts;

@@ -92,7 +92,7 @@ void TestMisuse()
     filterTesting::Deformed deformed(wrong, mesh);
     deformed.Filter->Update();
     VERIFY_EQUAL(deformed.TakeErrors(), 1);
-    VERIFY(deformed.LastError.find("\"BoundaryDistance\"") != std::string::npos);
+    VERIFY_CONTAINS(deformed.LastError, "\"BoundaryDistance\"");
   }
   carve.Filter->SetInputData(volume);
   VERIFY(carve.CopyMask() == mask);

@@ -113,7 +113,7 @@ void TestMisuse()
     filterTesting::Deformed deformed(bad, field);
     deformed.Filter->Update();
     VERIFY_EQUAL(deformed.TakeErrors(), 1);
-    VERIFY(deformed.LastError.find(words) != std::string::npos);
+    VERIFY_CONTAINS(deformed.LastError, words);
     Edited<vtkCutVolume> next;
     SetUp(next, bad, 8.1);
     next.Fails(words);
@@ -127,7 +127,7 @@ void TestMisuse()
   deformed.Filter->SetResamplerToMeshRasterization();
   deformed.Filter->Update();
   VERIFY_EQUAL(deformed.TakeErrors(), 1);
-  VERIFY(deformed.LastError.find("smooth cuts") != std::string::npos);
+  VERIFY_CONTAINS(deformed.LastError, "smooth cuts");
   deformed.Filter->SetResamplerToAutomatic();
   deformed.Filter->SetInterpolationToCubicInterpolation();
   deformed.Update();

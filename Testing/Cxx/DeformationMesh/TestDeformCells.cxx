@@ -233,7 +233,7 @@ void TestUpdates()
   vectors->Modified();
   tested.Filter->Update();
   VERIFY_EQUAL(tested.TakeErrors(), 1);
-  VERIFY(tested.LastError.find("16,383") != std::string::npos);
+  VERIFY_CONTAINS(tested.LastError, "16,383");
 }
 
 // Cells that share no nodes, and move apart.
@@ -342,7 +342,7 @@ void TestMidSides()
   mesh->Modified();
   deformed.Filter->Update();
   const std::string warning = deformed.TakeWarning();
-  VERIFY(warning.find("7 of " + std::to_string(cells) + " quadratic cells") != std::string::npos);
+  VERIFY_CONTAINS(warning, "7 of " + std::to_string(cells) + " quadratic cells");
   deformed.Filter->Modified();
   deformed.Filter->Update();
   VERIFY_EQUAL(deformed.TakeWarning(), std::string());

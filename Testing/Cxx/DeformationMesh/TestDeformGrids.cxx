@@ -101,7 +101,7 @@ public:
     this->Builds = built;
     if (GetNumberOfFailures() > failures)
     {
-      std::cerr << "with " << what << '\n';
+      std::cerr << "failed with " << what << '\n';
     }
   }
 
@@ -331,7 +331,7 @@ void TestTwoMeshes()
   shape->Modified();
   meshes.Tested.Filter->Update();
   VERIFY_EQUAL(meshes.Tested.TakeErrors(), 1);
-  VERIFY(meshes.Tested.LastError.find("Point 30") != std::string::npos);
+  VERIFY_CONTAINS(meshes.Tested.LastError, "Point 30");
   shape->GetPoints()->GetData()->SetComponent(30, 2, 5.0);
   shape->Modified();
   meshes.Expect("the point restored", 0);
@@ -436,7 +436,7 @@ void TestFloats()
           const std::string expected = std::isfinite(wrong)
             ? "more than 16,383 output voxels"
             : "Displacement " + std::to_string(node) + " of";
-          VERIFY(first.LastError.find(expected) != std::string::npos);
+          VERIFY_CONTAINS(first.LastError, expected);
           floats->SetComponent(node, axis, right);
           floats->Modified();
         }

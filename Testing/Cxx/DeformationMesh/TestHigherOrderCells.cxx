@@ -118,10 +118,11 @@ void CheckFilled(const std::string& what, vtkUnstructuredGrid* grid, double volu
     used.size() != points.size())
   {
     ++GetNumberOfFailures();
-    std::cerr << what << ": " << tetrahedra.size() << " tetrahedra of volume " << sum
-              << " instead of " << volume << ", the smallest " << least << ", surface " << surface
-              << " instead of " << area << ", up to " << most << " at a face, " << used.size()
-              << " of " << points.size() << " nodes\n";
+    std::cerr << what << ": " << tetrahedra.size() << " tetrahedra have the volume " << sum
+              << " instead of " << volume << " and the surface area " << surface << " instead of "
+              << area << ". The smallest volume is " << least << ". A face belongs to up to "
+              << most << " tetrahedra, at most 2 are allowed. " << used.size() << " of "
+              << points.size() << " points are used.\n";
   }
 }
 
@@ -427,8 +428,7 @@ void TestDegrees()
     }
     catch (const deformvolume::Error& error)
     {
-      VERIFY(std::string(error.what()).find("0 tuples of 3 components for 1 cells") !=
-        std::string::npos);
+      VERIFY_CONTAINS(std::string(error.what()), "0 tuples of 3 components for 1 cells");
     }
   }
 }
@@ -517,15 +517,17 @@ void TestConvergence()
   {
     const double coarse = FindDifference(shape, 2);
     const double fine = FindDifference(shape, 4);
-    std::cout << shape.Name << ": " << coarse << ", half the size " << fine << ", order "
-              << std::log2(coarse / fine) << '\n';
+    std::cout << shape.Name << ": the error is " << coarse << ", and " << fine
+              << " with cells of half the size: order " << std::log2(coarse / fine) << '\n';
     // The order is less than 2, since terms of higher order matter in cells of this size. Linear
     // cells are exact.
     const bool linear = shape.Type == VTK_LAGRANGE_TETRAHEDRON && shape.Order == 1;
     if (linear ? fine > 1e-12 : !(std::log2(coarse / fine) > 1.7 && fine < 0.05))
     {
       ++GetNumberOfFailures();
-      std::cerr << shape.Name << " do not converge\n";
+      std::cerr << shape.Name
+                << (linear ? ": expected an error of at most 1e-12\n"
+                           : ": expected an error below 0.05 and an order above 1.7\n");
     }
   }
 }
@@ -543,15 +545,12 @@ void ExpectError(int type, vtkIdType count, const std::string& words)
   {
     deformvolume::ReadCells({ grid }, { grid });
     ++GetNumberOfFailures();
-    std::cerr << "no error of " << count << " points of type " << type << '\n';
+    std::cerr << "expected the error \"" << words << "\" for a cell of type " << type << " with "
+              << count << " points, but there was none\n";
   }
   catch (const deformvolume::Error& error)
   {
-    if (std::string(error.what()).find(words) == std::string::npos)
-    {
-      ++GetNumberOfFailures();
-      std::cerr << error.what() << ", expected: " << words << '\n';
-    }
+    VERIFY_CONTAINS(error.what(), words);
   }
 }
 
@@ -784,9 +783,8 @@ void TestConcavePolyhedra()
     }
     catch (const deformvolume::Error& error)
     {
-      VERIFY(std::string(error.what())
-               .find("Cell 0 of the deformation mesh is a concave polyhedron with 16 points") !=
-        std::string::npos);
+      VERIFY_CONTAINS(std::string(error.what()),
+        "Cell 0 of the deformation mesh is a concave polyhedron with 16 points");
     }
   }
   // Convex cells are split without derived nodes: all their tetrahedra have the node of lowest id.

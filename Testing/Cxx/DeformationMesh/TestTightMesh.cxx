@@ -290,7 +290,7 @@ int TestTightMesh(int, char*[])
       false);
     if (GetNumberOfFailures() > before)
     {
-      std::cerr << "with body " << body.Name << '\n';
+      std::cerr << "failed with the body " << body.Name << '\n';
     }
   }
   return GetExitCode();

@@ -30,7 +30,7 @@ inline bool CompareWithFresh(Deformed& tested, Deformed& fresh, const std::strin
     : 0;
   if (GetNumberOfFailures() > failures)
   {
-    std::cerr << "after " << what << '\n';
+    std::cerr << "failed after the edit: " << what << '\n';
     return false;
   }
   return true;

@@ -58,7 +58,7 @@ void TestMisuse()
   subject.Filter->SetRestData(mesh);
   VERIFY(!subject.Filter->GetExecutive()->Update());
   VERIFY_EQUAL(subject.TakeErrors(), 1);
-  VERIFY(subject.LastError.find("no deformation on input port 1") != std::string::npos);
+  VERIFY_CONTAINS(subject.LastError, "no deformation on input port 1");
   VERIFY_EQUAL(subject.Filter->GetOutput()->GetNumberOfPoints(), 0);
 
   // A connected deformation must not be empty.
@@ -88,7 +88,7 @@ void TestMisuse()
   subject.Filter->SetResamplerToMeshRasterization();
   VERIFY(!subject.Filter->GetExecutive()->Update());
   VERIFY_EQUAL(subject.TakeErrors(), 1);
-  VERIFY(subject.LastError.find("cannot do smooth cuts") != std::string::npos);
+  VERIFY_CONTAINS(subject.LastError, "cannot do smooth cuts");
   subject.Filter->SetResamplerToAutomatic();
   subject.Update();
   VERIFY_EQUAL(subject.Filter->GetNumberOfCoveredVoxels(), cut->GetNumberOfPoints());
@@ -96,7 +96,7 @@ void TestMisuse()
   // The volume is still required.
   Deformed nothing;
   nothing.Filter->Update();
-  VERIFY(nothing.ExecutiveObserver->GetErrorMessage().find("not optional") != std::string::npos);
+  VERIFY_CONTAINS(nothing.ExecutiveObserver->GetErrorMessage(), "not optional");
 }
 
 void TestVolumeItself()

@@ -75,7 +75,7 @@ public:
     this->CompareOutputs();
     if (GetNumberOfFailures() > failures)
     {
-      std::cerr << "with " << what << '\n';
+      std::cerr << "failed with " << what << '\n';
     }
   }
   void CompareOutputs()
@@ -196,9 +196,9 @@ void TestMisuse()
       fields.Floats->GetPointData()->GetVectors()->Modified();
       fields.Tested.Filter->Update();
       VERIFY_EQUAL(fields.Tested.TakeErrors(), 1);
-      VERIFY(fields.Tested.LastError.find(std::isfinite(wrong) ? "16,383"
-                                                               : "Vector " + std::to_string(point) +
-                   " of the displacement field") != std::string::npos);
+      VERIFY_CONTAINS(fields.Tested.LastError,
+        std::isfinite(wrong) ? "16,383"
+                             : "Vector " + std::to_string(point) + " of the displacement field");
       value = before;
     }
   }

@@ -223,7 +223,7 @@ public:
         message.find(text) == std::string::npos)
       {
         ++GetNumberOfFailures();
-        std::cerr << "expected one error with \"" << text << "\": " << message << '\n';
+        std::cerr << "expected one error with \"" << text << "\" instead of: " << message << '\n';
       }
       this->Tested.Observer->Clear();
       this->Tested.ExecutiveObserver->Clear();
@@ -356,7 +356,7 @@ void TestMissing()
   SetDisplacements(mesh, Shift(1.0, 0.0, 0.0));
   Subject empty(none, mesh);
   VERIFY_EQUAL(empty.Update()->GetNumberOfPoints(), 0);
-  VERIFY(empty.Warning.find("no points") != std::string::npos);
+  VERIFY_CONTAINS(empty.Warning, "no points");
 
   // Displacements of nodes that no cell uses may be NaN.
   vtkNew<vtkUnstructuredGrid> larger;
@@ -449,8 +449,8 @@ void TestMesh()
   VERIFY(worst < 1e-12);
   VERIFY(outside > 500);
   VERIFY_EQUAL(subject.Filter->GetNumberOfOutsidePoints(), outside);
-  VERIFY(subject.Warning.find(std::to_string(outside) + " of " +
-           std::to_string(positions.size())) != std::string::npos);
+  VERIFY_CONTAINS(
+    subject.Warning, std::to_string(outside) + " of " + std::to_string(positions.size()));
 
   // The same deformation as a deformed mesh on port 1, and as doubled displacements with a scale of
   // 0.5.
@@ -604,7 +604,7 @@ void TestArrays()
   VERIFY(output->GetPointData()->GetArray("ids") == ids);
   VERIFY(output->GetPointData()->GetArray("v") == vectors); // not active
   VERIFY_EQUAL(output->GetNumberOfCells(), 1);
-  VERIFY(subject.Warning.find("\"cell normals\"") != std::string::npos);
+  VERIFY_CONTAINS(subject.Warning, "\"cell normals\"");
 }
 
 // Outside a translated box the exact result is known in closed form.
@@ -645,7 +645,7 @@ void TestOutside()
     folded.Filter->SetOutsideModeToKeep();
     folded.Filter->SetFadeDistance(1.3);
     folded.Update();
-    VERIFY(folded.Warning.find("moves by up to 0.935") != std::string::npos);
+    VERIFY_CONTAINS(folded.Warning, "moves by up to 0.935");
     folded.Filter->SetInputData(MakePoints({ glm::dvec3(1.0) }));
     folded.Update();
     VERIFY(folded.Warning.empty()); // no point is outside
@@ -1155,12 +1155,11 @@ void TestDataTypes()
     VERIFY_EQUAL(GetPoint(vtkDataSet::SafeDownCast(output->GetBlock(2)), 0).x, 6.0);
   }
   VERIFY_EQUAL(each.Filter->GetNumberOfOutsidePoints(), 2);
-  VERIFY(
-    std::string(each.Observer->GetWarningMessage()).find("2 of 4 points") != std::string::npos);
+  VERIFY_CONTAINS(std::string(each.Observer->GetWarningMessage()), "2 of 4 points");
   each.Observer->Clear();
   surfaces->SetBlock(1, MakeVolume());
   VERIFY(!each.Filter->GetExecutive()->Update());
-  VERIFY(std::string(each.Observer->GetErrorMessage()).find("vtkImageData") != std::string::npos);
+  VERIFY_CONTAINS(std::string(each.Observer->GetErrorMessage()), "vtkImageData");
 
   // Changed inputs are read again.
   Subject live(MakePoints({ glm::dvec3(4.0) }), mesh);

@@ -123,11 +123,7 @@ void TestMisuse()
     {
       subject.Filter->Update();
       VERIFY_EQUAL(subject.TakeErrors(), 1);
-      if (subject.LastError.find(words) == std::string::npos)
-      {
-        ++GetNumberOfFailures();
-        std::cerr << words << " is not in " << subject.LastError << '\n';
-      }
+      VERIFY_CONTAINS(subject.LastError, words);
       VERIFY_EQUAL(subject.Filter->GetOutput()->GetNumberOfPoints(), 0);
     }
   };
@@ -236,7 +232,8 @@ void TestMovedBox()
       if (std::abs(value - low) > steepest * (error + rounding))
       {
         ++GetNumberOfFailures();
-        std::cerr << "voxel " << i << ": " << value << " instead of " << low << '\n';
+        std::cerr << "voxel " << i << " has the value " << value << " instead of " << low
+                  << " within " << steepest * (error + rounding) << '\n';
       }
     }
     vtkDataArray* before = volume->GetPointData()->GetArray("value");
@@ -533,7 +530,7 @@ void TestCut()
   byMesh->SetFadeDistance(-2.0);
   renew();
   byMesh->Update();
-  VERIFY(errors->GetErrorMessage().find("FadeDistance is -2") != std::string::npos);
+  VERIFY_CONTAINS(errors->GetErrorMessage(), "FadeDistance is -2");
   errors->Clear();
   byMesh->SetFadeDistance(2.0);
   byMesh->SetDeformationData(nullptr);

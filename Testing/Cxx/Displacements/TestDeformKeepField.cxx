@@ -185,7 +185,7 @@ void TestMisuse()
       subject.Filter->SetFadeDistance(distance);
       subject.Filter->Update();
       VERIFY_EQUAL(subject.TakeErrors(), 1);
-      VERIFY(subject.LastError.find("FadeDistance is ") != std::string::npos);
+      VERIFY_CONTAINS(subject.LastError, "FadeDistance is ");
       VERIFY_EQUAL(subject.Filter->GetOutput()->GetNumberOfPoints(), 0);
     }
   }
@@ -194,7 +194,7 @@ void TestMisuse()
   subject.Filter->SetResamplerToMeshRasterization();
   subject.Filter->Update();
   VERIFY_EQUAL(subject.TakeErrors(), 1);
-  VERIFY(subject.LastError.find("forward displacement fields") != std::string::npos);
+  VERIFY_CONTAINS(subject.LastError, "forward displacement fields");
   subject.Filter->SetResamplerToAutomatic();
   VERIFY(AreEqual(subject.Expect(""), expected));
 }

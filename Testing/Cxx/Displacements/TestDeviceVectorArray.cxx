@@ -343,7 +343,7 @@ void TestFilter(bool byField)
   array->Modified();
   found.Filter->Update();
   VERIFY_EQUAL(found.TakeErrors(), 1);
-  VERIFY(found.LastError.find(" 131 ") != std::string::npos);
+  VERIFY_CONTAINS(found.LastError, " 131 ");
   array->SetComponent(131, 2, changed->GetComponent(131, 2));
   array->Modified();
   VERIFY(AreEqual(expected.Update(), found.Update()));

@@ -148,7 +148,7 @@ void TestEdits()
   field->GetPointData()->GetVectors()->Modified();
   tested.Filter->Update();
   VERIFY_EQUAL(tested.TakeErrors(), 1);
-  VERIFY(tested.LastError.find("Vector 16000 of the displacement field") != std::string::npos);
+  VERIFY_CONTAINS(tested.LastError, "Vector 16000 of the displacement field");
 }
 
 // With an inverse field each output voxel has the value of its rest position, or is not covered.

@@ -51,16 +51,6 @@ constexpr int WindowSize = 400;
 constexpr double PixelsPerUnit = 10.0;
 constexpr double Middle[3] = { 12.5, 13.5, 9.0 };
 
-bool Holds(const std::string& text, const std::string& part)
-{
-  const bool isThere = text.find(part) != std::string::npos;
-  if (!isThere)
-  {
-    std::cerr << "not there: " << part << "\nthe text: " << text << "\n";
-  }
-  return isThere;
-}
-
 // A volume of the value 10, with a ball of the value 100 in the middle. Outermost voxels are 0.
 vtkSmartPointer<vtkImageData> MakeBall()
 {
@@ -172,7 +162,7 @@ void TestMisuse()
   double point[3];
   const auto expect = [&](const char* words)
   {
-    VERIFY(Holds(errors->GetErrorMessage(), words));
+    VERIFY_CONTAINS(errors->GetErrorMessage(), words);
     errors->Clear();
   };
   style->OnLeftButtonDown();
@@ -201,24 +191,24 @@ void TestMisuse()
 
   Viewer viewer;
   viewer.Replay(Viewer::Mouse("LeftButtonPressEvent", 0, 0));
-  VERIFY(Holds(viewer.TakeError(), "no renderer"));
+  VERIFY_CONTAINS(viewer.TakeError(), "no renderer");
   viewer.AddRenderer();
   viewer.Object->SetTool(Style::GRAB);
   viewer.Replay(Viewer::Mouse("LeftButtonPressEvent", 0, 0));
-  VERIFY(Holds(viewer.TakeError(), "Call SetSession() first"));
+  VERIFY_CONTAINS(viewer.TakeError(), "Call SetSession() first");
   viewer.Replay(Viewer::Key('u'));
-  VERIFY(Holds(viewer.TakeError(), "Call SetSession() first"));
+  VERIFY_CONTAINS(viewer.TakeError(), "Call SetSession() first");
   viewer.Object->StartSession();
-  VERIFY(Holds(viewer.TakeError(), "Call SetSession() first"));
+  VERIFY_CONTAINS(viewer.TakeError(), "Call SetSession() first");
   viewer.Replay(Viewer::Key('k') + Viewer::Timer()); // an unused key, and a timer without a session
   VERIFY(!viewer.Errors->GetError());
 
   // Errors of a session without a volume are displayed as messages.
   viewer.Object->SetSession(viewer.SessionObject);
   viewer.Replay(Viewer::Timer() + Viewer::Mouse("LeftButtonPressEvent", 0, 0));
-  VERIFY(Holds(viewer.Object->GetMessage(), "no volume yet"));
+  VERIFY_CONTAINS(viewer.Object->GetMessage(), "no volume yet");
   viewer.Replay(Viewer::Key('2'));
-  VERIFY(Holds(viewer.Object->GetMessage(), "Call SetInputs() first"));
+  VERIFY_CONTAINS(viewer.Object->GetMessage(), "Call SetInputs() first");
   viewer.SessionErrors->Clear();
   VERIFY(!viewer.Object->FindPosition(200, 200, point));
   VERIFY(!viewer.Errors->GetError());
@@ -227,22 +217,22 @@ void TestMisuse()
   vtkNew<vtkVolume> volume;
   viewer.Object->SetVolume(volume);
   viewer.Replay(Viewer::Timer());
-  VERIFY(Holds(viewer.Object->GetMessage(), "no vtkVolumeMapper"));
+  VERIFY_CONTAINS(viewer.Object->GetMessage(), "no vtkVolumeMapper");
   viewer.Object->SetVolume(nullptr);
   for (const char* key : { "g", "v", "m", "p" })
   {
     viewer.Replay(Viewer::Key(*key, -5, -5) + Viewer::Mouse("LeftButtonPressEvent", -5, -5) +
       Viewer::Mouse("LeftButtonReleaseEvent", -5, -5));
-    VERIFY(Holds(viewer.Object->GetMessage(), "nothing here"));
+    VERIFY_CONTAINS(viewer.Object->GetMessage(), "nothing here");
   }
   viewer.Replay(Viewer::Key('c') + Viewer::Mouse("LeftButtonPressEvent", -5, -5) +
     Viewer::Mouse("MouseMoveEvent", -5, 20) + Viewer::Mouse("LeftButtonReleaseEvent", -5, 20));
-  VERIFY(Holds(viewer.Object->GetMessage(), "misses the body"));
+  VERIFY_CONTAINS(viewer.Object->GetMessage(), "misses the body");
   viewer.Replay(Viewer::Key('x'));
-  VERIFY(Holds(viewer.Object->GetMessage(), "no handle"));
+  VERIFY_CONTAINS(viewer.Object->GetMessage(), "no handle");
   viewer.Replay(Viewer::Key('g') + Viewer::Mouse("LeftButtonPressEvent", 10, 10) +
     Viewer::Mouse("LeftButtonReleaseEvent", 10, 10));
-  VERIFY(Holds(viewer.Object->GetMessage(), "Press 2, 3 or 4"));
+  VERIFY_CONTAINS(viewer.Object->GetMessage(), "Press 2, 3 or 4");
   viewer.Object->SetTool(99);
   VERIFY_EQUAL(viewer.Object->GetTool(), int(Style::MEASURE));
   viewer.Object->SetCutDepth(-1.0);
@@ -493,12 +483,19 @@ bool IsWanted(const Event& event, const Wanted& wanted)
   }
   if (!isEqual)
   {
-    std::cerr << event.Name;
-    for (const double number : event.Numbers)
+    const auto print = [](const auto& name, const std::vector<double>& numbers)
     {
-      std::cerr << ' ' << number;
-    }
-    std::cerr << " is not " << wanted.Name << '\n';
+      std::cerr << name;
+      for (const double number : numbers)
+      {
+        std::cerr << ' ' << number;
+      }
+    };
+    std::cerr << "the event is ";
+    print(event.Name, event.Numbers);
+    std::cerr << " instead of ";
+    print(wanted.Name, wanted.Numbers);
+    std::cerr << '\n';
   }
   return isEqual;
 }
@@ -660,7 +657,7 @@ void TestHandles(const std::string& fileName)
   viewer.SessionObject->CarveSphere(5, 20, 18, -1.0); // fails
   viewer.SessionObject->CarveSphere(5, 20, 18, 1.0);
   viewer.Replay(timer);
-  VERIFY(Holds(viewer.Object->GetMessage(), "radius"));
+  VERIFY_CONTAINS(viewer.Object->GetMessage(), "radius");
   viewer.SessionErrors->Clear();
   viewer.Replay(Viewer::Key('p', 5, 5) + timer + Viewer::Key('u') + timer);
   VERIFY(!release(5, 5));
@@ -697,7 +694,7 @@ void TestProbeAndMeasure()
   VERIFY_EQUAL(viewer.Object->GetMessage(), std::string("distance 5"));
 
   viewer.Replay(Viewer::Key('b') + Viewer::Mouse("MouseMoveEvent", 5.0, 6.0));
-  VERIFY(Holds(viewer.Object->GetMessage(), "value 10 at (5, 6, 17), at rest (5, 6, 17)"));
+  VERIFY_CONTAINS(viewer.Object->GetMessage(), "value 10 at (5, 6, 17), at rest (5, 6, 17)");
   viewer.Replay(Viewer::Mouse("MouseMoveEvent", -6.0, 6.0));
   VERIFY_EQUAL(viewer.Object->GetMessage(), std::string("There is nothing here."));
   // Probe while events are processed, and afterwards.
@@ -705,14 +702,14 @@ void TestProbeAndMeasure()
     Viewer::Mouse("LeftButtonPressEvent", 5.0, 6.0) + timer +
     Viewer::Mouse("MouseMoveEvent", 8.0, 6.0) + timer + Viewer::Key('b') + Viewer::Key('u') +
     Viewer::Mouse("MouseMoveEvent", 8.0, 6.0));
-  VERIFY(Holds(viewer.Object->GetMessage(), "moving"));
+  VERIFY_CONTAINS(viewer.Object->GetMessage(), "moving");
   std::string timers;
   for (int i = 0; i < 300; ++i)
   {
     timers += Viewer::Mouse("TimerEvent", 8.0, 6.0);
   }
   viewer.Replay(timers);
-  VERIFY(Holds(viewer.Object->GetMessage(), "value 10"));
+  VERIFY_CONTAINS(viewer.Object->GetMessage(), "value 10");
   VERIFY(!viewer.SessionErrors->GetError() && !viewer.Errors->GetError());
 }
 

@@ -74,7 +74,7 @@ struct Tested
   void ExpectError(const std::string& words)
   {
     this->Object->Update();
-    VERIFY(Holds(this->TakeError(), words));
+    VERIFY_CONTAINS(this->TakeError(), words);
   }
 
   vtkSmartPointer<vtkImageData> Volume;
@@ -111,7 +111,7 @@ void TestMisuse(vtkImageData* volume)
   vtkNew<vtkTest::ErrorObserver> observer;
   none->AddObserver(vtkCommand::ErrorEvent, observer);
   VERIFY_EQUAL(none->BeginGrab(0, 0, 0), -1);
-  VERIFY(Holds(observer->GetErrorMessage(), "Call SetInputs() first"));
+  VERIFY_CONTAINS(observer->GetErrorMessage(), "Call SetInputs() first");
   VERIFY(!none->SetInputs(nullptr) && !none->Update() && !none->SaveSession("nothing"));
   none->Start();
   VERIFY(!none->GetIsRunning());
@@ -121,7 +121,7 @@ void TestMisuse(vtkImageData* volume)
   one.Finish();
   const double nan = std::numeric_limits<double>::quiet_NaN();
   VERIFY_EQUAL(one.Object->BeginGrab(nan, 0, 0), -1);
-  VERIFY(Holds(one.TakeError(), "not finite"));
+  VERIFY_CONTAINS(one.TakeError(), "not finite");
   one.Object->MoveGrab(3, 1, 1, 1);
   one.ExpectError("Handle 3 is not grabbed");
   one.Object->Release(2);
@@ -129,9 +129,9 @@ void TestMisuse(vtkImageData* volume)
   one.Object->BeginGrab(-40, 0, 0);
   one.ExpectError("nothing of the volume");
   one.Object->Cut(nullptr);
-  VERIFY(Holds(one.TakeError(), "no triangles"));
+  VERIFY_CONTAINS(one.TakeError(), "no triangles");
   one.Object->Cut(MakePlane({ 8, 8, 8 }, { 9, 0, 0 }, { 0, 9, 0 }, false));
-  VERIFY(Holds(one.TakeError(), "is not a triangle"));
+  VERIFY_CONTAINS(one.TakeError(), "is not a triangle");
   one.Object->CarveSphere(8, 8, 8, 0.0);
   one.ExpectError("radius");
   one.Object->ChangeModel(9);
@@ -149,7 +149,7 @@ void TestMisuse(vtkImageData* volume)
   one.Object->SetMovingSamplingFactor(1);
   VERIFY_EQUAL(one.Object->GetNumberOfActions(), vtkIdType(0));
   VERIFY(!one.Object->SaveMesh("nothing"));
-  VERIFY(Holds(one.TakeError(), "no mesh"));
+  VERIFY_CONTAINS(one.TakeError(), "no mesh");
   one.Object->Undo();
   one.Object->Redo();
   one.Finish();
@@ -170,7 +170,7 @@ void TestMisuse(vtkImageData* volume)
   one.Object->Start();
   VERIFY(one.Object->GetIsRunning());
   VERIFY(!one.Object->Update());
-  VERIFY(Holds(one.TakeError(), "Call Stop()"));
+  VERIFY_CONTAINS(one.TakeError(), "Call Stop()");
 }
 
 // Checks that the output is the volume at rest, and that no other voxels are covered.
@@ -352,7 +352,7 @@ void TestRecovery(vtkImageData* volume)
   VERIFY(HasHandles(session, { { handle, { 10, 10, 17 }, { 10, 10, 17 }, true } }));
   session->MoveGrab(handle, 1e7, 10, 17);
   one.Step();
-  VERIFY(Holds(one.TakeError(), "diverged"));
+  VERIFY_CONTAINS(one.TakeError(), "diverged");
   VERIFY(HasHandles(session, { { handle, { 10, 10, 17 }, { 10, 10, 17 }, true } }));
   session->MoveGrab(handle, 11, 10, 17);
   VERIFY(one.Step() != nullptr);
@@ -363,8 +363,8 @@ void TestRecovery(vtkImageData* volume)
   session->HoldGrab(nowhere);
   one.Step();
   const std::string error = one.TakeError();
-  VERIFY(Holds(error, "nothing of the volume"));
-  VERIFY(error.find("not grabbed") == std::string::npos);
+  VERIFY_CONTAINS(error, "nothing of the volume");
+  VERIFY_CONTAINS_NOT(error, "not grabbed");
   session->Reset();
   VerifyRest(one.Finish(), volume);
   VERIFY_EQUAL(one.TakeError(), std::string());
@@ -594,7 +594,7 @@ void WriteText(const std::string& fileName, const std::string& text)
 std::string Replace(std::string text, const std::string& from, const std::string& to)
 {
   const std::size_t at = text.find(from);
-  VERIFY(at != std::string::npos);
+  VERIFY_CONTAINS(text, from);
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
@@ -614,7 +614,14 @@ void TestPadding(vtkImageData* volume)
     VERIFY(!warnings->GetWarning());
     one.Object->MoveGrab(handle, 10, 10, 45);
     one.Finish();
-    VERIFY_EQUAL(Holds(warnings->GetWarningMessage(), "larger Padding"), padding == 8);
+    if (padding == 8)
+    {
+      VERIFY_CONTAINS(warnings->GetWarningMessage(), "larger Padding");
+    }
+    else
+    {
+      VERIFY_CONTAINS_NOT(warnings->GetWarningMessage(), "larger Padding");
+    }
     warnings->Clear();
     one.Object->MoveGrab(handle, 10, 10, 46);
     one.Finish();
@@ -636,7 +643,7 @@ void TestFiles(vtkImageData* volume, const std::string& fileName)
   for (const char* const type : { ".vti", ".vtu" })
   {
     // Data is inline, since some versions of ParaView cannot read raw appended data.
-    VERIFY(ReadText(fileName + type).find("<AppendedData") == std::string::npos);
+    VERIFY_CONTAINS_NOT(ReadText(fileName + type), "<AppendedData");
   }
 
   const std::string damaged = fileName + ".damaged";
@@ -659,10 +666,10 @@ void TestFiles(vtkImageData* volume, const std::string& fileName)
   {
     WriteText(damaged, wrong.Text);
     VERIFY(!one.Object->LoadSession(damaged));
-    VERIFY(Holds(one.TakeError(), wrong.Words));
+    VERIFY_CONTAINS(one.TakeError(), wrong.Words);
   }
   VERIFY(!one.Object->LoadSession(fileName + ".missing"));
-  VERIFY(Holds(one.TakeError(), "cannot be read"));
+  VERIFY_CONTAINS(one.TakeError(), "cannot be read");
   VERIFY(AreEqual(before, one.Step()));
 
   // Loading a session removes all previous actions, with any model.
@@ -685,19 +692,19 @@ void TestFiles(vtkImageData* volume, const std::string& fileName)
 
   Tested foreign(MakeVolume({ { 0, 9, 0, 8, 0, 7 } }));
   VERIFY(!foreign.Object->LoadSession(fileName));
-  VERIFY(Holds(foreign.TakeError(), "another volume"));
+  VERIFY_CONTAINS(foreign.TakeError(), "another volume");
   vtkNew<vtkImageData> stretched;
   stretched->ShallowCopy(volume);
   stretched->SetSpacing(1.0, 1.0, 1.5 * volume->GetSpacing()[2]);
   Tested other(stretched);
   VERIFY(!other.Object->LoadSession(fileName));
-  VERIFY(Holds(other.TakeError(), "another volume"));
+  VERIFY_CONTAINS(other.TakeError(), "another volume");
 
   // A folder that does not exist, and a full disk: the previous file is kept.
   VERIFY(!one.Object->SaveSession("/dev/null/session"));
-  VERIFY(Holds(one.TakeError(), "cannot be written"));
+  VERIFY_CONTAINS(one.TakeError(), "cannot be written");
   VERIFY(!one.Object->SaveVolume("/dev/null/volume.vti"));
-  VERIFY(Holds(one.TakeError(), "cannot be written"));
+  VERIFY_CONTAINS(one.TakeError(), "cannot be written");
   struct rlimit limit;
   getrlimit(RLIMIT_FSIZE, &limit);
   std::signal(SIGXFSZ, SIG_IGN);
@@ -710,7 +717,7 @@ void TestFiles(vtkImageData* volume, const std::string& fileName)
   const bool isVolumeSaved = one.Object->SaveVolume(fileName + ".vti");
   setrlimit(RLIMIT_FSIZE, &limit);
   VERIFY(!isSaved && !isVolumeSaved);
-  VERIFY(Holds(one.TakeError(), "cannot be written"));
+  VERIFY_CONTAINS(one.TakeError(), "cannot be written");
   VERIFY_EQUAL(ReadText(fileName), text);
   VERIFY(!vtksys::SystemTools::FileExists(fileName + ".part"));
   VERIFY(one.Object->LoadSession(fileName));
@@ -813,7 +820,7 @@ void TestOldFile(const std::string& data, const std::string& fileName)
   VERIFY(one.Object->SaveSession(fileName));
   const std::string text = ReadText(data + "/Session-0.1.xml");
   const std::size_t events = text.find("  <Event");
-  VERIFY(Holds(ReadText(fileName), text.substr(events, text.rfind("</") - events).c_str()));
+  VERIFY_CONTAINS(ReadText(fileName), text.substr(events, text.rfind("</") - events).c_str());
 }
 
 void TestThread(vtkImageData* volume, const std::string& fileName)

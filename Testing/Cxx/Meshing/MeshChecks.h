@@ -3,6 +3,8 @@
 #ifndef DeformVolumeMeshChecks_h
 #define DeformVolumeMeshChecks_h
 
+#include "../Common/CheckedCondition.h"
+
 #include <vtkAlgorithm.h>
 #include <vtkCellArray.h>
 #include <vtkExecutive.h>
@@ -32,13 +34,18 @@ inline int& Failures()
   return failures;
 }
 
-#define VERIFY(condition)                                                                          \
+#define VERIFY(condition) CHECK_CONDITION(condition, meshChecks::Failures())
+
+#define VERIFY_CONTAINS(text, part)                                                                \
   do                                                                                               \
   {                                                                                                \
-    if (!(condition))                                                                              \
+    const std::string foundText = (text);                                                          \
+    const std::string expectedPart = (part);                                                       \
+    if (foundText.find(expectedPart) == std::string::npos)                                         \
     {                                                                                              \
       ++meshChecks::Failures();                                                                    \
-      std::cerr << __FILE__ << ':' << __LINE__ << ": not so: " << #condition << '\n';              \
+      std::cerr << __FILE__ << ':' << __LINE__ << ": expected a text with \"" << expectedPart      \
+                << "\" instead of \"" << foundText << "\"\n";                                      \
     }                                                                                              \
   } while (false)
 
@@ -98,7 +105,7 @@ public:
     if (this->Errors->GetError() || this->Errors->GetWarning() || this->ExecutiveErrors->GetError())
     {
       ++Failures();
-      std::cerr << "Unexpected: " << this->Errors->GetErrorMessage()
+      std::cerr << "Expected no error and no warning, got: " << this->Errors->GetErrorMessage()
                 << this->Errors->GetWarningMessage() << this->ExecutiveErrors->GetErrorMessage()
                 << '\n';
     }
@@ -163,7 +170,9 @@ private:
     if (output && (output->GetNumberOfCells() || output->GetNumberOfPoints()))
     {
       ++Failures();
-      std::cerr << "Output that looks valid after \"" << text << "\"\n";
+      std::cerr << "Expected an empty output after the error \"" << text << "\", got "
+                << output->GetNumberOfCells() << " cells and " << output->GetNumberOfPoints()
+                << " points\n";
     }
   }
 
@@ -200,7 +209,8 @@ inline Summary Summarize(vtkUnstructuredGrid* mesh)
     if (mesh->GetCellType(cell) != VTK_TETRA || size != 4)
     {
       ++Failures();
-      std::cerr << "Cell " << cell << " is not a tetrahedron\n";
+      std::cerr << "Cell " << cell << " has the type " << mesh->GetCellType(cell) << " and " << size
+                << " points instead of VTK_TETRA and 4\n";
       return summary;
     }
     glm::dvec3 p[4];

@@ -343,6 +343,6 @@ int TestLatticeTetrahedraSource(int, char*[])
   vtkNew<vtkLatticeTetrahedraSource> source;
   std::ostringstream text;
   source->Print(text);
-  VERIFY(text.str().find("NumberOfNodes: 13 13 13") != std::string::npos);
+  VERIFY_CONTAINS(text.str(), "NumberOfNodes: 13 13 13");
   return Failures() ? EXIT_FAILURE : EXIT_SUCCESS;
 }

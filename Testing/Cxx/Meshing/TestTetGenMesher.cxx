@@ -282,6 +282,6 @@ int TestTetGenMesher(int, char*[])
   vtkNew<vtkTetGenMesher> mesher;
   std::ostringstream text;
   mesher->Print(text);
-  VERIFY(text.str().find("RadiusEdgeRatio: 1.414") != std::string::npos);
+  VERIFY_CONTAINS(text.str(), "RadiusEdgeRatio: 1.414");
   return Failures() ? EXIT_FAILURE : EXIT_SUCCESS;
 }

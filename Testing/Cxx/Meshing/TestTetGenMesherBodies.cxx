@@ -152,7 +152,7 @@ void TestSpecks()
   check.Succeeds();
   VerifyHeld(mesher, volume, specks);
   VERIFY(mesher->GetNumberOfPieces() == 1);
-  VERIFY(mesher->GetSummary().find("Voxels of specks: 1,600") != std::string::npos);
+  VERIFY_CONTAINS(mesher->GetSummary(), "Voxels of specks: 1,600");
   mesher->SetSpeckSize(8);
   check.Succeeds();
   VerifyHeld(mesher, volume, specks);
@@ -226,7 +226,7 @@ void TestPieceModes()
               "pieces");
   VERIFY(mesher->GetNumberOfBodyVoxels() == first + second);
   VERIFY(mesher->GetNumberOfBodyVoxelsOutside() == first);
-  VERIFY(mesher->GetSummary().find("Body voxels outside the mesh: 1,125") != std::string::npos);
+  VERIFY_CONTAINS(mesher->GetSummary(), "Body voxels outside the mesh: 1,125");
 }
 
 } // namespace

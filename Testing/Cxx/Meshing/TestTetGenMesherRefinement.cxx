@@ -186,7 +186,7 @@ void TestSurface()
   VERIFY(mesher->GetNumberOfRefinementSpheres() == 1);
   std::ostringstream text;
   mesher->Print(text);
-  VERIFY(text.str().find("Center: 10 0 0, Radius: 6, EdgeLength: 1") != std::string::npos);
+  VERIFY_CONTAINS(text.str(), "Center: 10 0 0, Radius: 6, EdgeLength: 1");
 }
 
 } // namespace

@@ -125,7 +125,7 @@ void TestPieces()
   elements.Object->SetSheetData(sheet);
   elements.Object->SetGravity(0.0, 0.0, 9.81);
   elements.Object->Update();
-  VERIFY(Holds(elements.Observer->GetWarningMessage(), "1 pieces of the mesh are not held"));
+  VERIFY_CONTAINS(elements.Observer->GetWarningMessage(), "1 pieces of the mesh are not held");
   elements.Observer->Clear();
   VERIFY_EQUAL(elements.Object->GetNumberOfFrozenPieces(), 1);
   VERIFY_EQUAL(elements.Copy()->GetComponent(324, 2), 0.0F);
@@ -180,7 +180,7 @@ void TestFailedCuts()
   prepare(simulated);
   simulated.Object->SetSheetData(sheet);
   simulated.Object->SetHandlesData(MakeHandles({ { glm::dvec3(1e3), glm::dvec3(1e3) } }));
-  VERIFY(Holds(simulated.TryUpdate(), "holds no node that could move"));
+  VERIFY_CONTAINS(simulated.TryUpdate(), "holds no node that could move");
   VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), vtkIdType{ 0 });
   simulated.Object->SetHandlesData(handles);
   VERIFY_EQUAL(simulated.TryUpdate(), std::string());
@@ -209,7 +209,7 @@ void TestFailedCutAfterOthers()
   simulated.Object->Reset();
   simulated.Object->SetSheetData(MakeSheet(5.0, 20.0));
   simulated.Object->SetHandlesData(MakeHandles({ { glm::dvec3(1e3), glm::dvec3(1e3) } }));
-  VERIFY(Holds(simulated.TryUpdate(), "holds no node that could move"));
+  VERIFY_CONTAINS(simulated.TryUpdate(), "holds no node that could move");
   VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), vtkIdType{ 0 });
   simulated.Object->SetHandlesData(nullptr);
   VERIFY_EQUAL(simulated.TryUpdate(), std::string());

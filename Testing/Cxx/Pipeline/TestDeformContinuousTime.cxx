@@ -193,7 +193,7 @@ void TestNoTime()
   lattice->UpdateTimeStep(4.0);
   deformed.Filter->SetBackgroundValue(1.0);
   deformed.Filter->Update();
-  VERIFY(deformed.TakeWarning().find("extends beyond the extent") != std::string::npos);
+  VERIFY_CONTAINS(deformed.TakeWarning(), "extends beyond the extent");
   deformed.Update();
   VERIFY_EQUAL(GetExtent(deformed.Filter->GetOutput()), (Extent{ { 0, 14, 0, 8, 0, 7 } }));
   VERIFY_EQUAL(deformed.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());

@@ -52,7 +52,9 @@ public:
       if (output->GetNumberOfPoints() != 0 || output->GetPointData()->GetNumberOfArrays() != 0)
       {
         ++GetNumberOfFailures();
-        std::cerr << what << ": the output looks valid\n";
+        std::cerr << what << ": expected an empty output after the error instead of one with "
+                  << output->GetNumberOfPoints() << " points and "
+                  << output->GetPointData()->GetNumberOfArrays() << " arrays\n";
       }
     }
     this->Restore();
@@ -60,7 +62,7 @@ public:
     if (!AreEqual(output, this->Expected))
     {
       ++GetNumberOfFailures();
-      std::cerr << what << ": the filter does not work afterwards\n";
+      std::cerr << what << ": without the error the output differs from the one before the error\n";
     }
   }
 
@@ -394,7 +396,7 @@ void TestOutputBeyondAllMemory(vtkImageData* volume, vtkUnstructuredGrid* mesh)
   deformed.Filter->SetCustomBounds(0.0, 20000.0, 0.0, 20000.0, 0.0, 20000.0);
   deformed.Filter->Update();
   VERIFY_EQUAL(deformed.TakeErrors(), 1);
-  VERIFY(deformed.LastError.find("Not enough memory") != std::string::npos);
+  VERIFY_CONTAINS(deformed.LastError, "Not enough memory");
 }
 
 } // namespace

@@ -134,8 +134,8 @@ int TestDeformTime(int, char*[])
     consumer->UpdateTimeStep(time);
     VERIFY(GetExtent(consumer->GetOutput())[1] < last);
     const std::string warning = deformed.TakeWarning();
-    VERIFY(warning.find("extends beyond the extent") != std::string::npos);
-    VERIFY(warning.find("CUSTOM_BOUNDS") != std::string::npos);
+    VERIFY_CONTAINS(warning, "extends beyond the extent");
+    VERIFY_CONTAINS(warning, "CUSTOM_BOUNDS");
     consumer->UpdateTimeStep(time);
     VERIFY_EQUAL(GetExtent(consumer->GetOutput())[1], last);
     VERIFY(deformed.TakeWarning().empty());

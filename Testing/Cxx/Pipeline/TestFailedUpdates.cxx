@@ -65,8 +65,8 @@ void TestRequiredInputs(int required)
   for (int repeat = 0; repeat < 2; ++repeat)
   {
     VERIFY(!algorithm->GetExecutive()->Update());
-    VERIFY(observer->GetErrorMessage().find("Input port 0") != std::string::npos);
-    VERIFY(observer->GetErrorMessage().find("is not optional") != std::string::npos);
+    VERIFY_CONTAINS(observer->GetErrorMessage(), "Input port 0");
+    VERIFY_CONTAINS(observer->GetErrorMessage(), "is not optional");
     observer->Clear();
   }
   for (int port = 0; port < algorithm->GetNumberOfInputPorts(); ++port)

@@ -145,7 +145,7 @@ void TestTwoVolumes()
   SetOutput(expected[0]);
   found[0].Filter->Update();
   VERIFY_EQUAL(found[0].TakeErrors(), 1);
-  VERIFY(found[0].LastError.find("node 1234 ") != std::string::npos);
+  VERIFY_CONTAINS(found[0].LastError, "node 1234 ");
   array->SetTypedComponent(1234, 2, moved->GetTypedComponent(1234, 2));
   array->Modified();
   VERIFY(AreEqual(expected[0].Update(), found[0].Update()));
@@ -195,7 +195,7 @@ void TestFields()
       found.Filter->SetOutputBoundsMode(mode);
       found.Filter->Update();
       VERIFY_EQUAL(found.TakeErrors(), 1);
-      VERIFY(found.LastError.find(" 5000 ") != std::string::npos);
+      VERIFY_CONTAINS(found.LastError, " 5000 ");
     }
   }
 }

@@ -267,7 +267,7 @@ void TestInterfaces()
       GetArray(both.Expected.Filter->GetOutput(), "value")->GetComponent(id, 0);
     if (found != expected)
     {
-      std::cerr << "Access " << i << ": ";
+      std::cerr << "in accesses[" << i << "]: ";
       VERIFY_EQUAL(found, expected);
     }
     VERIFY_EQUAL(both.GetNumberOfUnread(), MostUnread - 1);
@@ -797,8 +797,8 @@ void TestLostDevice()
       VERIFY_EQUAL(errors[0].Number, 1);
       VERIFY_EQUAL(errors[1].Number, 1);
       VERIFY_EQUAL(errors[0].Seen, 7.0);
-      VERIFY(errors[0].Text.find("The OpenCL device was lost") != std::string::npos);
-      VERIFY(errors[0].Text.find("background") != std::string::npos);
+      VERIFY_CONTAINS(errors[0].Text, "The OpenCL device was lost");
+      VERIFY_CONTAINS(errors[0].Text, "background");
       if (both)
       {
         both->Move(0.1);

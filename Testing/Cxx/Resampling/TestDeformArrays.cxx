@@ -76,8 +76,9 @@ void TestIdentityOfTypes()
           output->GetPointData()->GetArray(name.c_str())))
     {
       ++GetNumberOfFailures();
-      std::cerr << "not the same bits: " << name << ", "
-                << volume->GetPointData()->GetArray(name.c_str())->GetDataTypeAsString() << '\n';
+      std::cerr << "the array \"" << name << "\" of type "
+                << volume->GetPointData()->GetArray(name.c_str())->GetDataTypeAsString()
+                << " has not the same bits as that of the volume\n";
     }
   }
   vtkDataArray* mask = output->GetPointData()->GetArray("vtkValidPointMask");
@@ -156,7 +157,7 @@ void TestRolesAndFieldData()
   Deformed deformed(volume, mesh);
   deformed.Filter->Update();
   const std::string warning = deformed.TakeWarning();
-  VERIFY(warning.find("words") != std::string::npos);
+  VERIFY_CONTAINS(warning, "words");
   vtkImageData* output = deformed.Filter->GetOutput();
   vtkPointData* result = output->GetPointData();
   VERIFY(result->GetScalars() == result->GetArray("value") && result->GetScalars());
@@ -363,7 +364,7 @@ void TestCellArraysAreNamedInAWarning()
   Deformed deformed(volume, mesh);
   deformed.Filter->Update();
   const std::string warning = deformed.TakeWarning();
-  VERIFY(warning.find("pressure") != std::string::npos);
+  VERIFY_CONTAINS(warning, "pressure");
   VERIFY(deformed.Filter->GetOutput()->GetCellData()->GetNumberOfArrays() == 0);
   VERIFY_EQUAL(deformed.TakeErrors(), 0);
 }

@@ -136,7 +136,7 @@ void TestMisuse()
     VERIFY_EQUAL(deformed.Filter->GetSamplingFactor(), factor);
     deformed.Filter->Update();
     VERIFY_EQUAL(deformed.TakeErrors(), 1);
-    VERIFY(deformed.LastError.find("Set 1, 2 or 4.") != std::string::npos);
+    VERIFY_CONTAINS(deformed.LastError, "Set 1, 2 or 4.");
     VERIFY_EQUAL(deformed.Filter->GetOutput()->GetNumberOfPoints(), 0);
     deformed.Filter->SetSamplingFactor(1);
     VERIFY(deformed.Update()->GetNumberOfPoints() > 0);
@@ -147,7 +147,7 @@ void TestMisuse()
   deformed.Filter->SetInputData(divisionCases::MakeVolume({ { 1, 7, 0, 9, -3, 9 } }));
   deformed.Filter->Update();
   VERIFY_EQUAL(deformed.TakeErrors(), 1);
-  VERIFY(deformed.LastError.find("With SamplingFactor 4 fewer than two") != std::string::npos);
+  VERIFY_CONTAINS(deformed.LastError, "With SamplingFactor 4 fewer than two");
   deformed.Filter->SetSamplingFactor(2);
   VERIFY(deformed.Update()->GetNumberOfPoints() > 0);
 }
@@ -245,7 +245,8 @@ void TestAgainstSubsampled()
       VERIFY(scalars && scalars->GetName() == std::string("float"));
       if (GetNumberOfFailures() > failures)
       {
-        std::cerr << "in the case " << from.Name << " with " << factor << '\n';
+        std::cerr << "failed in the case " << from.Name << " with SamplingFactor " << factor
+                  << '\n';
       }
     }
   }

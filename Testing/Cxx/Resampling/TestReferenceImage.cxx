@@ -437,7 +437,7 @@ void TestCubic()
       }
       if (wrong > 0)
       {
-        std::cerr << name << (isMirrored ? ", mirrored\n" : "\n");
+        std::cerr << "failed with: " << name << (isMirrored ? ", mirrored\n" : "\n");
       }
       VERIFY_EQUAL(wrong, 0);
       VERIFY(compared > 1500);
@@ -587,7 +587,7 @@ void TestNearest()
       }
       if (wrong > 0)
       {
-        std::cerr << name << (isMirrored ? ", mirrored\n" : "\n");
+        std::cerr << "failed with: " << name << (isMirrored ? ", mirrored\n" : "\n");
       }
       VERIFY_EQUAL(wrong, 0);
       VERIFY(covered > 2000);
@@ -719,7 +719,7 @@ void TestWarnings()
   for (const char* name :
     { "Padding", "BoundsGranularity", "OutputBoundsMode", "OutputSpacingMode" })
   {
-    VERIFY(warning.find(name) != std::string::npos);
+    VERIFY_CONTAINS(warning, name);
   }
   deformed.Filter->Modified();
   deformed.Filter->Update();
@@ -744,7 +744,8 @@ void TestNothingCovered()
       warnings.find(words) == std::string::npos)
     {
       ++GetNumberOfFailures();
-      std::cerr << name << ": expected one warning with " << words << ", not " << warnings << '\n';
+      std::cerr << name << ": expected one warning with \"" << words
+                << "\" instead of: " << warnings << '\n';
     }
     VERIFY(HasGridOf(apart.Filter->GetOutput(), far));
     VERIFY_EQUAL(apart.Filter->GetNumberOfCoveredVoxels(), 0);
@@ -796,7 +797,7 @@ void TestMisuse()
     if (errors != 1 || deformed.LastError.find(words) == std::string::npos)
     {
       ++GetNumberOfFailures();
-      std::cerr << errors << " errors, expected one with " << words << '\n'
+      std::cerr << errors << " errors, expected one with \"" << words << "\"\n"
                 << deformed.LastError << '\n';
     }
     VERIFY_EQUAL(deformed.Filter->GetOutput()->GetNumberOfPoints(), 0);
@@ -904,7 +905,7 @@ void TestMisuse()
   deformed.Filter->Update();
   const std::string all =
     deformed.Observer->GetErrorMessage() + deformed.ExecutiveObserver->GetErrorMessage();
-  VERIFY(all.find("ERROR: ") != std::string::npos);
+  VERIFY_CONTAINS(all, "ERROR: ");
   VERIFY_EQUAL(all.find("ERROR: "), all.rfind("ERROR: "));
   deformed.TakeErrors();
   deformed.Filter->SetReferenceData(good);

@@ -140,7 +140,7 @@ void TestMemoryLimit()
   links.Filter->SetMemoryLimit(limit);
   links.Filter->Update();
   VERIFY(links.TakeErrors() >= 1);
-  VERIFY(links.LastError.find("bytes are needed") != std::string::npos);
+  VERIFY_CONTAINS(links.LastError, "bytes are needed");
 }
 
 } // namespace

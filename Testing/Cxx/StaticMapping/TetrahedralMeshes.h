@@ -22,7 +22,7 @@
   {                                                                                                \
     if (!(condition) && ++tetrahedralMeshes::Failures() <= 20)                                     \
     {                                                                                              \
-      std::cerr << __FILE__ << ':' << __LINE__ << ": " << #condition << '\n';                      \
+      std::cerr << __FILE__ << ':' << __LINE__ << ": not true: " << #condition << '\n';            \
     }                                                                                              \
   } while (false)
 
