@@ -272,7 +272,7 @@ double FindError(bool tenNodes, const std::array<glm::dvec3, 4>& corners, int ki
   // The values of the volume are x at rest, and it moves along x. Thus values of the output are
   // rest positions.
   auto volume = MakeImage({ { 0, 40, 0, 40, 0, 40 } });
-  AddScalars<float>(volume, "value", [](const glm::dvec3& p) { return p.z; });
+  AddScalars<float>(volume, "value", [](const glm::dvec3& p) { return p.x; });
   Grid linear = Grid::New();
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
@@ -286,7 +286,6 @@ double FindError(bool tenNodes, const std::array<glm::dvec3, 4>& corners, int ki
   const Grid mesh = tenNodes ? MakeTenNodes(linear) : linear;
   SetDisplacements(mesh, [&](const glm::dvec3& p) { return p + glm::dvec3(move(p), 0.0, 0.0); });
   Deformed deformed(volume, mesh);
-  AddScalars<float>(volume, "value", [](const glm::dvec3& p) { return p.x; });
   vtkImageData* output = deformed.Update();
   double sum = 0.0;
   int count = 0;

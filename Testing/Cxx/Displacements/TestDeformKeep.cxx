@@ -179,8 +179,6 @@ void TestAtRest()
   {
     Kept subject(volume, mesh, distance);
     VERIFY(AreEqual(subject.Expect(""), expected));
-    subject.Filter->SetInputArrayToProcess(
-      0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "displacement");
   }
 }
 
