@@ -41,22 +41,34 @@ inline filterTesting::Extent GetPiece(
 
 /// Whether an image is a part of another one, bit by bit. Arrays are compared by name, because
 /// their order changes when images are sent to other ranks.
-inline bool IsPartOf(vtkImageData* part, vtkImageData* whole)
+inline filterTesting::Equality IsPartOf(vtkImageData* part, vtkImageData* whole)
 {
   using namespace filterTesting;
   vtkNew<vtkImageData> cropped;
   cropped->ShallowCopy(whole);
   cropped->Crop(part->GetExtent());
   vtkPointData* expected = cropped->GetPointData();
-  bool equal = GetExtent(part) == GetExtent(cropped) &&
-    GetPoint(part, part->GetNumberOfPoints() - 1) ==
-      GetPoint(cropped, part->GetNumberOfPoints() - 1);
+  if (GetExtent(part) != GetExtent(cropped) ||
+    GetPoint(part, part->GetNumberOfPoints() - 1) !=
+      GetPoint(cropped, part->GetNumberOfPoints() - 1))
+  {
+    return { "the extents or the points differ" };
+  }
+  if (expected->GetNumberOfArrays() < 2)
+  {
+    return { "the whole image has less than two arrays" };
+  }
   for (int i = 0; i < expected->GetNumberOfArrays(); ++i)
   {
     vtkDataArray* array = expected->GetArray(i);
-    equal = equal && HaveEqualBits(array, part->GetPointData()->GetArray(array->GetName()));
+    const Equality equality =
+      HaveEqualBits(array, part->GetPointData()->GetArray(array->GetName()));
+    if (!equality)
+    {
+      return equality;
+    }
   }
-  return equal && expected->GetNumberOfArrays() > 1;
+  return {};
 }
 
 #endif

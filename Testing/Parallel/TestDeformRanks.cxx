@@ -97,9 +97,9 @@ void Check(Deformed& deformed, vtkImageData* whole, const std::string& name, int
     return;
   }
   VERIFY_EQUAL(GetExtent(output), piece);
-  const bool equal = IsPartOf(output, whole);
-  VERIFY(equal);
-  if (!equal)
+  const Equality equality = IsPartOf(output, whole);
+  VERIFY(equality);
+  if (!equality)
   {
     std::cerr << name << " differs on rank " << GetRank() << " of " << GetRanks() << '\n';
   }

@@ -150,9 +150,9 @@ void TestSteps()
     vtkImageData* output = mine.Deform->GetOutput();
     const Extent piece = GetPiece(Controller, GetExtent(expected), 0);
     VERIFY_EQUAL(GetExtent(output), piece);
-    const bool equal = IsPartOf(output, expected);
-    VERIFY(equal);
-    if (!equal)
+    const Equality equality = IsPartOf(output, expected);
+    VERIFY(equality);
+    if (!equality)
     {
       std::cerr << step.Name << " differs on rank " << rank << " of " << ranks << '\n';
     }

@@ -50,13 +50,18 @@ std::string ToText(const T& value)
   return text.str();
 }
 
-/// The result of a condition. If it is a comparison that is not true, also a text with the values
-/// of both sides.
+/// The result of a condition. If the condition is not true, also a text: the values of both sides
+/// of a comparison, or the object that is converted to a bool.
 class Condition
 {
 public:
   Condition(bool isTrue)
     : IsTrue(isTrue)
+  {
+  }
+  Condition(bool isTrue, const std::string& text)
+    : IsTrue(isTrue)
+    , Values(" (" + text + ")")
   {
   }
   template <typename Left, typename Right>
@@ -90,7 +95,18 @@ public:
   {
   }
   explicit operator bool() const { return this->Value ? true : false; }
-  operator Condition() const { return { static_cast<bool>(*this) }; }
+  operator Condition() const
+  {
+    const bool isTrue = static_cast<bool>(*this);
+    if constexpr (std::is_class_v<Left> && IsStreamable<Left>::value)
+    {
+      return isTrue ? Condition(true) : Condition(false, ToText(this->Value));
+    }
+    else
+    {
+      return { isTrue };
+    }
+  }
   template <typename Right>
   Condition operator==(const Right& right) const
   {

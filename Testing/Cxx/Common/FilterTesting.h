@@ -36,7 +36,9 @@
 #include <cstdlib>
 #include <cstring>
 #include <functional>
+#include <iomanip>
 #include <iostream>
+#include <sstream>
 #include <string>
 
 namespace filterTesting
@@ -289,18 +291,66 @@ struct Deformed
   std::string LastError;
 };
 
+/// The result of a comparison: a text that says where two objects differ, or "" if they are equal.
+struct Equality
+{
+  operator bool() const { return this->Difference.empty(); }
+
+  std::string Difference;
+};
+
+inline std::ostream& operator<<(std::ostream& stream, const Equality& equality)
+{
+  return stream << equality.Difference;
+}
+
+inline std::string DescribeArray(vtkDataArray* array)
+{
+  if (!array)
+  {
+    return "none";
+  }
+  std::ostringstream text;
+  text << (array->GetName() ? array->GetName() : "without a name") << ", "
+       << array->GetDataTypeAsString() << ", " << array->GetNumberOfTuples() << " tuples of "
+       << array->GetNumberOfComponents() << " components";
+  return text.str();
+}
+
 /// Whether two arrays have the same type, size and bits.
-inline bool HaveEqualBits(vtkDataArray* first, vtkDataArray* second)
+inline Equality HaveEqualBits(vtkDataArray* first, vtkDataArray* second)
 {
   if (!first || !second || first->GetDataType() != second->GetDataType() ||
     first->GetNumberOfComponents() != second->GetNumberOfComponents() ||
     first->GetNumberOfTuples() != second->GetNumberOfTuples())
   {
-    return false;
+    return { "first array: " + DescribeArray(first) + "; second array: " + DescribeArray(second) };
   }
-  const std::size_t bytes = static_cast<std::size_t>(first->GetNumberOfValues()) *
-    static_cast<std::size_t>(first->GetDataTypeSize());
-  return std::memcmp(first->GetVoidPointer(0), second->GetVoidPointer(0), bytes) == 0;
+  const auto size = static_cast<std::size_t>(first->GetDataTypeSize());
+  const auto values = static_cast<std::size_t>(first->GetNumberOfValues());
+  const auto* const firstBytes = static_cast<const char*>(first->GetVoidPointer(0));
+  const auto* const secondBytes = static_cast<const char*>(second->GetVoidPointer(0));
+  if (std::memcmp(firstBytes, secondBytes, values * size) == 0)
+  {
+    return {};
+  }
+  std::ostringstream text;
+  text << DescribeArray(first) << ": " << std::setprecision(17);
+  std::size_t differences = 0;
+  for (std::size_t i = 0; i < values; ++i)
+  {
+    if (std::memcmp(firstBytes + i * size, secondBytes + i * size, size) != 0 && ++differences == 1)
+    {
+      const int components = first->GetNumberOfComponents();
+      const auto tuple = static_cast<vtkIdType>(i) / components;
+      const auto component = static_cast<int>(static_cast<vtkIdType>(i) % components);
+      text << "tuple " << tuple << ", component " << component << " is "
+           << first->GetComponent(tuple, component) << " in the first array and "
+           << second->GetComponent(tuple, component) << " in the second array, ";
+    }
+  }
+  text << differences << " of " << values << " values differ";
+  return { text.str() };
 }
 
 /// Adds a mask in which all tetrahedra are active.
@@ -336,17 +386,40 @@ inline void VerifyPart(vtkImageData* part, vtkImageData* whole)
 }
 
 /// Whether two images have equal point arrays, extents, origins, spacings and directions.
-inline bool AreEqual(vtkImageData* first, vtkImageData* second)
+inline Equality AreEqual(vtkImageData* first, vtkImageData* second)
 {
-  bool equal = GetExtent(first) == GetExtent(second) &&
-    GetPoint(first, first->GetNumberOfPoints() - 1) ==
-      GetPoint(second, second->GetNumberOfPoints() - 1) &&
-    first->GetPointData()->GetNumberOfArrays() == second->GetPointData()->GetNumberOfArrays();
-  for (int i = 0; equal && i < first->GetPointData()->GetNumberOfArrays(); ++i)
+  std::ostringstream text;
+  if (GetExtent(first) != GetExtent(second))
   {
-    equal = HaveEqualBits(first->GetPointData()->GetArray(i), second->GetPointData()->GetArray(i));
+    text << "the extents are " << GetExtent(first) << "and " << GetExtent(second);
+    return { text.str() };
   }
-  return equal;
+  const glm::dvec3 firstPoint = GetPoint(first, first->GetNumberOfPoints() - 1);
+  const glm::dvec3 secondPoint = GetPoint(second, second->GetNumberOfPoints() - 1);
+  if (firstPoint != secondPoint)
+  {
+    text << std::setprecision(17) << "the last points are " << firstPoint.x << ' ' << firstPoint.y
+         << ' ' << firstPoint.z << " and " << secondPoint.x << ' ' << secondPoint.y << ' '
+         << secondPoint.z;
+    return { text.str() };
+  }
+  const int arrays = first->GetPointData()->GetNumberOfArrays();
+  if (arrays != second->GetPointData()->GetNumberOfArrays())
+  {
+    text << "the numbers of point arrays are " << arrays << " and "
+         << second->GetPointData()->GetNumberOfArrays();
+    return { text.str() };
+  }
+  for (int i = 0; i < arrays; ++i)
+  {
+    const Equality equality =
+      HaveEqualBits(first->GetPointData()->GetArray(i), second->GetPointData()->GetArray(i));
+    if (!equality)
+    {
+      return equality;
+    }
+  }
+  return {};
 }
 
 } // namespace filterTesting

@@ -45,7 +45,7 @@ vtkSmartPointer<vtkImageData> MakeWhole(const Case& from)
   return image;
 }
 
-bool IsPartOf(vtkImageData* part, vtkImageData* whole)
+Equality IsPartOf(vtkImageData* part, vtkImageData* whole)
 {
   vtkNew<vtkImageData> cropped;
   cropped->ShallowCopy(whole);
