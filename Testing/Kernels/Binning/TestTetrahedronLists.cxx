@@ -247,8 +247,8 @@ protected:
     {
       this->Device.SetWorkGroupSize(size);
       std::int64_t inverted = 0;
-      EXPECT_TRUE(this->Make(c, inverted) == expected) << "work-groups of " << size;
-      EXPECT_EQ(inverted, expectedInverted) << "work-groups of " << size;
+      EXPECT_TRUE(this->Make(c, inverted) == expected) << "work-groups of " << size << " items";
+      EXPECT_EQ(inverted, expectedInverted) << "work-groups of " << size << " items";
     }
     return std::accumulate(expected.begin(), expected.end(), std::size_t{ 0 },
       [](std::size_t sum, const std::vector<int>& list) { return sum + list.size(); });

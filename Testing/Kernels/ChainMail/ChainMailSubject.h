@@ -87,9 +87,9 @@ inline void ExpectSame(const std::vector<ChainMailHandleReport>& found,
   ASSERT_EQ(found.size(), expected.size());
   for (std::size_t h = 0; h < found.size(); ++h)
   {
-    EXPECT_EQ(found[h].NumberOfVoxels, expected[h].NumberOfVoxels) << h;
-    EXPECT_EQ(found[h].IsHeld, expected[h].IsHeld) << h;
-    EXPECT_EQ(found[h].Reduction, expected[h].Reduction) << h;
+    EXPECT_EQ(found[h].NumberOfVoxels, expected[h].NumberOfVoxels) << "handle " << h;
+    EXPECT_EQ(found[h].IsHeld, expected[h].IsHeld) << "handle " << h;
+    EXPECT_EQ(found[h].Reduction, expected[h].Reduction) << "handle " << h;
   }
 }
 

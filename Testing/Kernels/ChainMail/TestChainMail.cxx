@@ -13,19 +13,19 @@ TEST(ChainMail, MisuseIsAnError)
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   const Extent extent{ { 0, 8, 0, 8, 0, 8 } };
   ChainMailModel empty;
-  EXPECT_THROW(empty.SetMaterials(Tissues), Error) << "no volume";
+  EXPECT_THROW(empty.SetMaterials(Tissues), Error) << "without a volume";
   EXPECT_THROW(empty.SetOutput(nullptr), Error);
   EXPECT_THROW(empty.SetPinned(nullptr), Error);
   EXPECT_THROW(empty.SetActiveTetrahedra(nullptr), Error);
   EXPECT_THROW(empty.Reset(), Error);
   EXPECT_THROW(empty.Step({}), Error);
-  EXPECT_THROW(empty.SetVoxelGrid({ { 0, 8, 0, 8, 3, 3 } }), Error) << "flat";
+  EXPECT_THROW(empty.SetVoxelGrid({ { 0, 8, 0, 8, 3, 3 } }), Error) << "one voxel on z";
   EXPECT_THROW(empty.SetVoxelGrid(extent, { { 1, 0, 0, 0, 0, 0, 0, 0, 1 } }), Error);
   empty.SetMemoryLimit(1000);
-  EXPECT_THROW(empty.SetVoxelGrid(extent), Error) << "no memory";
+  EXPECT_THROW(empty.SetVoxelGrid(extent), Error) << "more memory than the limit of 1000 bytes";
   empty.SetMemoryLimit(0);
   empty.SetVoxelGrid(extent);
-  EXPECT_THROW(empty.Step({}), Error) << "no output";
+  EXPECT_THROW(empty.Step({}), Error) << "without an output";
 
   Subject subject(extent);
   const ChainMailHandle good = MakeHandle({ { 4, 4, 4 } }, { { 2, 0, 0 } });
@@ -42,7 +42,8 @@ TEST(ChainMail, MisuseIsAnError)
   std::vector<unsigned char> materials(729);
   materials[700] = 1;
   EXPECT_THROW(subject.Model.SetMaterials({ ChainMailMaterial() }, materials.data()), Error);
-  EXPECT_THROW(subject.Step({ MakeHandle({ { 9, 4, 4 } }, { { 1, 0, 0 } }) }), Error) << "outside";
+  EXPECT_THROW(subject.Step({ MakeHandle({ { 9, 4, 4 } }, { { 1, 0, 0 } }) }), Error)
+    << "a handle outside the volume";
   EXPECT_THROW(subject.Step({ good, MakeHandle({ { 4, -1, 4 } }, { { 1, 0, 0 } }) }), Error);
   EXPECT_THROW(subject.Step({ MakeHandle({ { 4, nan, 4 } }, { { 1, 0, 0 } }) }), Error);
   EXPECT_THROW(subject.Step({ MakeHandle({ { 4, 4, 4 } }, { { 1, nan, 0 } }) }), Error);
@@ -85,7 +86,7 @@ TEST(ChainMail, ClosedFormOfAChain)
         drag < 0 ? -std::max(0.0, 5.5 - n * 0.125) : std::max(0.0, 5.5 - n * 0.25);
       for (std::size_t row = 0; row < 4; ++row)
       {
-        EXPECT_EQ(subject.Get(i + 58 * row, 0), expected) << i;
+        EXPECT_EQ(subject.Get(i + 58 * row, 0), expected) << "voxel " << i << " of row " << row;
         EXPECT_EQ(subject.Get(i + 58 * row, 1), 0.0);
         EXPECT_EQ(subject.Get(i + 58 * row, 2), 0.0);
         moved += expected != 0.0;

@@ -255,9 +255,10 @@ TEST(ChainMailRelaxation, PlasticityThreshold)
   subject.Request.Handles = { GetDrag() };
   subject.Step(0);
   const std::vector<float> before = subject.Output;
-  EXPECT_EQ(subject.Step(10, 0.0).NumberOfMovedVoxels, 0) << "no elasticity";
+  EXPECT_EQ(subject.Step(10, 0.0).NumberOfMovedVoxels, 0) << "with an elasticity of 0";
   EXPECT_EQ(subject.Output, before);
-  EXPECT_EQ(subject.Step(10, 1.0, 10.0).NumberOfMovedVoxels, 0) << "all is plastic";
+  EXPECT_EQ(subject.Step(10, 1.0, 10.0).NumberOfMovedVoxels, 0)
+    << "with a plasticity threshold of 10";
   EXPECT_EQ(subject.Output, before);
   EXPECT_GT(subject.Step(10, 1.0, 0.001).NumberOfMovedVoxels, 0);
   EXPECT_NE(subject.Output, before);

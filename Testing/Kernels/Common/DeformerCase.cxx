@@ -52,7 +52,8 @@ reference::Position GetRestPosition(const VoxelGrid& voxelGrid, int x, int y, in
       exact += 256.0 * voxelGrid.ToOutput.Get(axis, column) * index[column];
     }
     position[axis] = std::llround(exact);
-    EXPECT_EQ(static_cast<double>(position[axis]), exact) << "a scale that makes the test inexact";
+    EXPECT_EQ(static_cast<double>(position[axis]), exact)
+      << "the scale of the test makes positions inexact";
   }
   return position;
 }
@@ -189,7 +190,7 @@ void ExpectArrayEqualsReference(const reference::Result& reference, const Volume
       {
         if (std::memcmp(&value, &background, sizeof(T)) != 0)
         {
-          message = "not the background value";
+          message = "expected the background value";
         }
       }
       else
@@ -203,7 +204,7 @@ void ExpectArrayEqualsReference(const reference::Result& reference, const Volume
       }
     }
   }
-  EXPECT_EQ(failures, 0) << "values of array " << index;
+  EXPECT_EQ(failures, 0) << "number of wrong values of array " << index;
 }
 
 } // namespace
@@ -342,7 +343,8 @@ std::vector<float> DeformerCase::GetDisplacements() const
 
 void MoveByField(VolumeDeformer& deformer, const DeformerCase& deformerCase)
 {
-  ASSERT_TRUE(deformerCase.Unlinked.empty()) << "a field at the voxels links them all";
+  ASSERT_TRUE(deformerCase.Unlinked.empty())
+    << "a field with a point at each voxel links all voxels";
   const std::vector<float> displacements = deformerCase.GetDisplacements();
   DisplacementField field;
   for (int axis = 0; axis < 3; ++axis)
@@ -466,9 +468,9 @@ void ExpectEqualsReference(const DeformerCase& deformerCase, const reference::Re
     extra += !covered && mark == 1 ? 1 : 0;
     other += mark != 0 && mark != 1 ? 1 : 0;
   }
-  EXPECT_EQ(holes, 0) << "holes";
-  EXPECT_EQ(extra, 0) << "voxels covered by no tetrahedron";
-  EXPECT_EQ(other, 0) << "coverage is neither 0 nor 1";
+  EXPECT_EQ(holes, 0) << "voxels in a tetrahedron that are not covered";
+  EXPECT_EQ(extra, 0) << "covered voxels that are in no tetrahedron";
+  EXPECT_EQ(other, 0) << "voxels whose coverage is neither 0 nor 1";
   EXPECT_EQ(deformed.Report.NumberOfCoveredVoxels, reference.NumberOfCoveredVoxels);
   EXPECT_EQ(deformed.Report.NumberOfInvertedTetrahedra, reference.NumberOfInvertedTetrahedra);
   // Without overlap every covered voxel has been written once: the deformer compares the number of
@@ -493,27 +495,30 @@ void ExpectEqualsReference(const DeformerCase& deformerCase, const reference::Re
   }
   if (deformed.ByColumns)
   {
-    SCOPED_TRACE("by columns");
+    SCOPED_TRACE("Resampling::ExactByColumns");
     ExpectEqualsReference(deformerCase, reference, arrays, *deformed.ByColumns);
     if (HasVectors())
     {
       for (std::size_t array = 0; array < arrays.size(); ++array)
       {
-        EXPECT_TRUE(deformed.Outputs[array] == deformed.ByColumns->Outputs[array]) << array;
+        EXPECT_TRUE(deformed.Outputs[array] == deformed.ByColumns->Outputs[array])
+          << "array " << array << " differs between ExactByLanes and ExactByColumns";
       }
     }
   }
   if (deformed.ByCell)
   {
-    SCOPED_TRACE("cell by cell");
+    SCOPED_TRACE("Resampling::ExactByCell");
     ExpectEqualsReference(deformerCase, reference, arrays, *deformed.ByCell);
   }
 }
 
 void ExpectEmbedding(const reference::Result& reference)
 {
-  ASSERT_EQ(reference.NumberOfInvertedTetrahedra, 0) << "the test needs another deformation";
-  ASSERT_EQ(reference.NumberOfTouchedVoxels, 0) << "the test needs another deformation";
+  ASSERT_EQ(reference.NumberOfInvertedTetrahedra, 0)
+    << "the deformation that this test chooses must not invert tetrahedra";
+  ASSERT_EQ(reference.NumberOfTouchedVoxels, 0)
+    << "the deformation that this test chooses must not make separate parts touch";
 }
 
 UsualArrays::UsualArrays(std::size_t voxels)

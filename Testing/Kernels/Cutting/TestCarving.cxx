@@ -210,7 +210,8 @@ TEST(Carving, SweptSpheresEqualTheReference)
     const reference::Mask expected = CarveSlowly(positions, rule, isInside);
     if (isCertain)
     {
-      ASSERT_EQ(Carve(positions, MakeSweptSphere(centers, radii), rule), expected) << round;
+      ASSERT_EQ(Carve(positions, MakeSweptSphere(centers, radii), rule), expected)
+        << "round " << round;
       carved += reference::Count(expected);
     }
   }
@@ -255,7 +256,7 @@ TEST(Carving, PlanesEqualTheReference)
     for (const bool isLinear : { false, true })
     {
       plane.IsLinear = isLinear;
-      ASSERT_EQ(Carve(positions, plane, rule), expected) << round;
+      ASSERT_EQ(Carve(positions, plane, rule), expected) << "round " << round;
     }
     carved += reference::Count(expected);
   }
@@ -323,7 +324,7 @@ TEST(Carving, ClosedSurfacesEqualTheReference)
     if (isCertain)
     {
       ASSERT_EQ(Carve(positions, MakeSurfaceInterior(surface, positions.GetBox()), rule), expected)
-        << round;
+        << "round " << round;
       carved += reference::Count(expected);
     }
   }

@@ -110,7 +110,7 @@ TEST(Cutting, MisuseIsAnError)
   EXPECT_THROW(Sheet(points, { { { 0, -1, 2 } } }), Error);
   for (const std::int64_t bad : { 3, 4, 5 })
   {
-    EXPECT_THROW(Sheet(points, { { { 0, 1, bad } } }), Error) << bad;
+    EXPECT_THROW(Sheet(points, { { { 0, 1, bad } } }), Error) << "point " << bad;
   }
   // Points without triangles are ignored. An empty sheet, triangles without area and triangles
   // outside the volume cut nothing.

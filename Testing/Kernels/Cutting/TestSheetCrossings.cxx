@@ -389,17 +389,17 @@ TEST(SheetCrossings, EditsAreUndoneBitForBit)
     {
       sheets.push_back(edit.second);
     }
-    ASSERT_TRUE(Cut(positions, sheets) == states.back()) << round;
+    ASSERT_TRUE(Cut(positions, sheets) == states.back()) << "cut " << round;
   }
   for (std::size_t i = states.size() - 1; i-- > 0;)
   {
     ASSERT_TRUE(editor.Undo());
-    ASSERT_TRUE(Made(editor) == states[i]) << i;
+    ASSERT_TRUE(Made(editor) == states[i]) << "state " << i;
   }
   for (std::size_t i = 1; i < states.size(); ++i)
   {
     ASSERT_TRUE(editor.Redo());
-    ASSERT_TRUE(Made(editor) == states[i]) << i;
+    ASSERT_TRUE(Made(editor) == states[i]) << "state " << i;
   }
   // Remove an edit in the middle, change the base mask, then remove all edits.
   EXPECT_TRUE(editor.Remove(edits[3].first));

@@ -113,8 +113,8 @@ void Check(const Function& function, bool withDistance)
       expected = std::min(static_cast<float>(value), Far);
       expected = inside[i] ? -std::max(expected, std::numeric_limits<float>::min()) : expected;
     }
-    ASSERT_EQ(distances[i], expected) << v;
-    ASSERT_EQ(distances[i] < 0.0F, inside[i]) << v;
+    ASSERT_EQ(distances[i], expected) << "voxel " << v;
+    ASSERT_EQ(distances[i] < 0.0F, inside[i]) << "voxel " << v;
   }
   // The tetrahedra with all vertices inside are switched off.
   const TetrahedronSet minimal = FindCarvedTetrahedra(rest, tool, CarvingRule::Minimal);

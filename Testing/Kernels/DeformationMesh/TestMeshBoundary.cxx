@@ -429,9 +429,9 @@ TEST_P(TightMeshes, Parts)
   for (std::size_t i = 0; i < output.Values.size(); ++i)
   {
     const std::size_t there = i + static_cast<std::size_t>(first);
-    ASSERT_EQ(output.Coverage[i], whole.Coverage[there]) << i;
-    ASSERT_EQ(output.Values[i], whole.Values[there]) << i;
-    ASSERT_EQ(output.Labels[i], whole.Labels[there]) << i;
+    ASSERT_EQ(output.Coverage[i], whole.Coverage[there]) << "voxel " << i;
+    ASSERT_EQ(output.Values[i], whole.Values[there]) << "voxel " << i;
+    ASSERT_EQ(output.Labels[i], whole.Labels[there]) << "voxel " << i;
   }
 }
 
@@ -571,8 +571,8 @@ TEST_P(TightMeshes, UprightBeforeInvertedInAllChunks)
   for (std::size_t i = 17 * plane; i < 18 * plane; ++i)
   {
     covered += beside.Coverage[i] == 1 ? 1U : 0U;
-    ASSERT_EQ(whole.Coverage[i], beside.Coverage[i]) << i;
-    ASSERT_EQ(whole.Labels[i], beside.Labels[i]) << i;
+    ASSERT_EQ(whole.Coverage[i], beside.Coverage[i]) << "voxel " << i;
+    ASSERT_EQ(whole.Labels[i], beside.Labels[i]) << "voxel " << i;
   }
   EXPECT_EQ(covered, 12U * 11U);
   VolumeDeformer deformer;

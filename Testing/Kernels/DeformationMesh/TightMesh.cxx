@@ -481,8 +481,8 @@ void ExpectTight(const TightMesh& mesh, const TightOutput& output, double bound)
     wrongValues += difference > bound ? 1 : 0;
     wrongLabels += best - second > bound && label != output.Labels[i] ? 1 : 0;
   }
-  EXPECT_EQ(wrongCoverage, 0U) << "of " << voxels.size() << " voxels";
-  EXPECT_EQ(wrongValues, 0U) << "the largest difference is " << largest;
+  EXPECT_EQ(wrongCoverage, 0U) << "voxels with wrong coverage, of " << voxels.size();
+  EXPECT_EQ(wrongValues, 0U) << "voxels with a wrong value; the largest difference is " << largest;
   EXPECT_EQ(wrongLabels, 0U);
   EXPECT_GT(covered, 20U);
   EXPECT_LT(open, voxels.size() / 4);

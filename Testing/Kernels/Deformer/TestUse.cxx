@@ -27,10 +27,11 @@ std::string GetError(const std::function<void()>& function)
   }
   catch (const Error& error)
   {
-    EXPECT_GT(std::strlen(error.what()), 20U) << "an error has to say what is wrong";
+    EXPECT_GT(std::strlen(error.what()), 20U)
+      << "the message is too short to say what is wrong: " << error.what();
     return error.what();
   }
-  ADD_FAILURE() << "no error";
+  ADD_FAILURE() << "expected an error, but none was thrown";
   return "";
 }
 
@@ -57,7 +58,7 @@ protected:
   /// Checks that the deformer works after any error.
   void ExpectUsable()
   {
-    SCOPED_TRACE("used again");
+    SCOPED_TRACE("after the error");
     ASSERT_NO_THROW(Load(this->Deformer, this->Case, this->Arrays, Route::Field));
     ExpectEqualsReference(this->Case, this->Reference, this->Arrays,
       RunDeformer(this->Deformer, this->Case, this->Arrays));
@@ -279,7 +280,8 @@ TEST_F(Use, AbortedByProgress)
   {
     int left = allowed;
     request.Progress = [&left](double) { return left-- > 0; };
-    EXPECT_THROW(this->Deformer.Deform(request), Aborted) << allowed << " of " << calls;
+    EXPECT_THROW(this->Deformer.Deform(request), Aborted)
+      << "abort after " << allowed << " of " << calls << " calls";
   }
   // The data need not be loaded again.
   ExpectEqualsReference(this->Case, this->Reference, this->Arrays,

@@ -108,7 +108,7 @@ TEST(Mapping, VoxelsOutsideTheField)
   field.Extrapolate = true;
   deformer.SetDisplacementField(field);
   {
-    SCOPED_TRACE("extrapolated");
+    SCOPED_TRACE("voxels outside the field are extrapolated");
     ExpectEqualsReference(
       partial, ResampleByReference(partial), arrays, RunDeformer(deformer, partial, arrays));
   }
@@ -124,7 +124,7 @@ TEST(Mapping, VoxelsOutsideTheField)
       }
     }
   }
-  SCOPED_TRACE("discarded");
+  SCOPED_TRACE("voxels outside the field are discarded");
   const reference::Result reference = ResampleByReference(partial);
   EXPECT_LT(reference.NumberOfCoveredVoxels, 5 * 4 * 4 + 1);
   ExpectEqualsReference(partial, reference, arrays, RunDeformer(deformer, partial, arrays));

@@ -318,7 +318,7 @@ void ExpectPositionsWithinBound(
     const std::int32_t record = runCase.Runs.Runs[run].Tetrahedron;
     if (record < 0)
     {
-      ASSERT_EQ(mapped.Positions[voxel][0], INT_MIN) << voxel;
+      ASSERT_EQ(mapped.Positions[voxel][0], INT_MIN) << "voxel " << voxel;
       continue;
     }
     const RestTetrahedron& rest = runCase.Runs.Tetrahedra[record];
@@ -398,7 +398,7 @@ TEST(Runs, PositionsAreThoseOfLinks)
           // In 1/256 voxel. Both results have an error of at most 1/1024 voxel before they are
           // rounded.
           ASSERT_LE(std::abs(byRuns.Positions[voxel][axis] - byLinks.Positions[voxel][axis]), 1)
-            << voxel;
+            << "voxel " << voxel;
         }
       }
     }
@@ -501,7 +501,7 @@ protected:
       EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
       return;
     }
-    ADD_FAILURE() << "no error: " << words;
+    ADD_FAILURE() << "expected the error \"" << words << "\", but none was thrown";
   }
 };
 

@@ -132,9 +132,9 @@ TEST_F(WideLanes, ElementsAndProducts)
     {
       const Sums wide = FindSums(lattice, displacements, model);
       const Sums plain = CallPlain([&] { return FindSums(lattice, displacements, model); });
-      EXPECT_TRUE(HasSameBits(wide.Forces, plain.Forces)) << size;
-      EXPECT_TRUE(HasSameBits(wide.Energy, plain.Energy)) << size;
-      EXPECT_TRUE(HasSameBits(wide.Product, plain.Product)) << size;
+      EXPECT_TRUE(HasSameBits(wide.Forces, plain.Forces)) << "noise of size " << size;
+      EXPECT_TRUE(HasSameBits(wide.Energy, plain.Energy)) << "noise of size " << size;
+      EXPECT_TRUE(HasSameBits(wide.Product, plain.Product)) << "noise of size " << size;
     }
   }
 }

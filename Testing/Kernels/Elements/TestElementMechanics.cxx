@@ -330,7 +330,8 @@ TEST_P(ElementModels, StressIsThatOfTheForces)
     wanted /= volume * results.Determinant;
     const std::array<double, 6>& s = results.Stress;
     const glm::dmat3 stress(s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2]);
-    EXPECT_LT(LargestOfMatrix(stress - wanted), 1e-9 * LargestOfMatrix(wanted)) << height;
+    EXPECT_LT(LargestOfMatrix(stress - wanted), 1e-9 * LargestOfMatrix(wanted))
+      << "height " << height;
   }
 }
 

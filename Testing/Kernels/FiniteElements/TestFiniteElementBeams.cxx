@@ -115,8 +115,9 @@ std::string MakeName(double poissonRatio, std::int32_t cells)
 void Expect(double value, double byNumpy, double converged, double percent, const std::string& name)
 {
   RecordMeasured(name, value);
-  EXPECT_NEAR(value, byNumpy, 1e-4 * std::max(1.0, std::abs(byNumpy))) << name;
-  EXPECT_NEAR(value / converged, 1.0, 0.01 * percent) << name;
+  EXPECT_NEAR(value, byNumpy, 1e-4 * std::max(1.0, std::abs(byNumpy)))
+    << name << ", compared with the value of NumPy";
+  EXPECT_NEAR(value / converged, 1.0, 0.01 * percent) << name << ", divided by the converged value";
 }
 
 } // namespace
@@ -229,7 +230,8 @@ void ExpectHomogeneous(const HomogeneousState& state, bool areTwo)
   }
   FiniteElementModel model;
   model.SetBody(body);
-  EXPECT_TRUE(model.Solve(request).IsConverged) << state.PoissonRatio << " " << state.Stretch;
+  EXPECT_TRUE(model.Solve(request).IsConverged)
+    << "Poisson ratio " << state.PoissonRatio << ", stretch " << state.Stretch;
 
   const glm::dvec3 stretches(state.Stretch, areTwo ? state.Stretch : state.Free, state.Free);
   const std::vector<glm::dvec3> wanted = MapPoints(
@@ -237,7 +239,7 @@ void ExpectHomogeneous(const HomogeneousState& state, bool areTwo)
   // The stretches of the free axes are given with seven digits.
   const double error = LargestDifference(model.GetDisplacements(), wanted);
   RecordMeasured("error", error);
-  EXPECT_LT(error, 1e-6) << state.PoissonRatio << " " << state.Stretch;
+  EXPECT_LT(error, 1e-6) << "Poisson ratio " << state.PoissonRatio << ", stretch " << state.Stretch;
   for (const ElementResults& result : model.GetElementResults())
   {
     const double nominal = result.Stress[0] * stretches.y * stretches.z;

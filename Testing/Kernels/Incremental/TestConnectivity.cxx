@@ -35,9 +35,9 @@ TEST_P(Connectivity, MisuseIsAnError)
   SKIP_WITHOUT_DOUBLE_PRECISION()
   const EditedVolume volume;
   VolumeDeformer deformer;
-  EXPECT_THROW(SetConnectivity(deformer, volume, nullptr), Error) << "no volume";
+  EXPECT_THROW(SetConnectivity(deformer, volume, nullptr), Error) << "without a volume";
   deformer.SetVoxelGrid(volume.Shape);
-  EXPECT_THROW(SetConnectivity(deformer, volume, nullptr), Error) << "no mesh";
+  EXPECT_THROW(SetConnectivity(deformer, volume, nullptr), Error) << "without a mesh";
   volume.SendAll(deformer, GetParam());
   EXPECT_THROW(deformer.ChangeConnectivity(
                  volume.Tetrahedra.data(), volume.Tetrahedra.size() - 1, volume.GetNumberOfNodes()),
@@ -45,7 +45,7 @@ TEST_P(Connectivity, MisuseIsAnError)
     << "fewer tetrahedra";
   EXPECT_THROW(
     deformer.ChangeConnectivity(volume.Tetrahedra.data(), volume.Tetrahedra.size(), 0), Error)
-    << "no nodes";
+    << "0 nodes";
   TetrahedronChange change{ 3, volume.Tetrahedra[3], volume.Tetrahedra[3] };
   change.After[1] = static_cast<std::int32_t>(volume.GetNumberOfNodes());
   std::vector<TetrahedronChange> changes{ change };
@@ -54,7 +54,8 @@ TEST_P(Connectivity, MisuseIsAnError)
   for (const int number : { -1, static_cast<int>(volume.Tetrahedra.size()) })
   {
     changes.front().Number = number;
-    EXPECT_THROW(SetConnectivity(deformer, volume, &changes), Error) << "no such tetrahedron";
+    EXPECT_THROW(SetConnectivity(deformer, volume, &changes), Error)
+      << "a tetrahedron that does not exist";
   }
   // The errors have changed nothing.
   VolumeDeformer other;

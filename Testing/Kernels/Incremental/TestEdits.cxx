@@ -358,7 +358,8 @@ protected:
     EXPECT_EQ(wanted.ChangedExtent, this->Volume.Output);
     if (this->Last && memory != this->Last)
     {
-      EXPECT_TRUE(this->Last->Holds(*this->LastExpected)) << "the last output was written to";
+      EXPECT_TRUE(this->Last->Holds(*this->LastExpected))
+        << "an update changed the previous output";
     }
     if (this->Last && this->HasSameExtent && !this->Aborts)
     {

@@ -83,7 +83,8 @@ TEST_P(IncrementalBorders, OneSideMovesOutTheOtherIn)
       this->At(x, y, 16)[2] = -1.0F;
     }
   }
-  EXPECT_TRUE(this->Update()) << "one plane more, another one less";
+  EXPECT_TRUE(this->Update())
+    << "the number of covered voxels must not change: one plane is added, another one is removed";
   EXPECT_EQ(this->Parts, 1);
 }
 
@@ -101,7 +102,7 @@ TEST_P(IncrementalBorders, MovingHole)
       same += this->Update();
     }
   }
-  EXPECT_GT(same, 0) << "each edit changed the number of covered voxels";
+  EXPECT_GT(same, 0) << "no edit kept the number of covered voxels";
   EXPECT_EQ(this->Parts, 12);
 }
 
@@ -119,7 +120,7 @@ TEST_P(IncrementalBorders, MaskChangesWhileTheInsideMoves)
     *this->At(4, 4, 4) = 0.25F * static_cast<float>(step);
     same += this->Update();
   }
-  EXPECT_GT(same, 0) << "each edit changed the number of covered voxels";
+  EXPECT_GT(same, 0) << "no edit kept the number of covered voxels";
   EXPECT_EQ(this->Parts, 3);
 }
 
@@ -149,7 +150,7 @@ TEST_P(Incremental, LocalEditsRunFewBricks)
   for (int end = 0; end < 6; ++end)
   {
     const int beyond = second.ChangedExtent[end] - near[end];
-    EXPECT_GE(end % 2 ? -beyond : beyond, 0) << end;
+    EXPECT_GE(end % 2 ? -beyond : beyond, 0) << "extent bound " << end;
   }
   EXPECT_GE(GetNumberOfPoints(second.ChangedExtent), 8 * 8 * 8);
   EXPECT_EQ(second.NumberOfCoveredVoxels, first.NumberOfCoveredVoxels);
@@ -254,10 +255,12 @@ TEST_F(IncrementalMasks, MaskChangesBesideASubBrick)
   for (const auto interpolation :
     { deformvolume::Interpolation::Linear, deformvolume::Interpolation::Cubic })
   {
-    SCOPED_TRACE(interpolation == deformvolume::Interpolation::Cubic ? "cubic" : "linear");
+    SCOPED_TRACE(interpolation == deformvolume::Interpolation::Cubic ? "cubic interpolation"
+                                                                     : "linear interpolation");
     this->Interpolation = interpolation;
     ASSERT_NO_FATAL_FAILURE(this->Update(blanked, active));
-    EXPECT_EQ(this->Parts, changes) << "another interpolation did not resample everything";
+    EXPECT_EQ(this->Parts, changes)
+      << "an update with another interpolation must resample everything";
     for (const int y : { 0, 20 })
     {
       // Sub-bricks meet at x = 32.

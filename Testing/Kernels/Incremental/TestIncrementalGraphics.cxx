@@ -69,20 +69,20 @@ TEST_P(IncrementalGraphics, LocalEditsReadLittle)
   this->At(12, 6, 5)[0] = 0.5F;
   this->UpdatePart(); // also reads the static mapping, to find what the nodes move
   this->At(12, 6, 5)[0] = -0.5F;
-  EXPECT_LT(this->UpdatePart(), 0.05) << "inside";
+  EXPECT_LT(this->UpdatePart(), 0.05) << "edit inside the volume";
   EXPECT_EQ(this->Update().NumberOfResampledBricks, 0);
-  EXPECT_LT(FakeDriver::Get().BytesRead, 100000U) << "nothing";
+  EXPECT_LT(FakeDriver::Get().BytesRead, 100000U) << "bytes read without an edit";
   this->At(12, 6, 0)[2] = 1.5F;
-  EXPECT_LT(this->UpdatePart(), 0.05) << "on a side";
+  EXPECT_LT(this->UpdatePart(), 0.05) << "edit on a side of the volume";
   this->Edited.Blanked[(40 * 101 + 50) * 146 + 70] = 1;
-  EXPECT_LT(this->UpdatePart(), 0.05) << "a mask";
+  EXPECT_LT(this->UpdatePart(), 0.05) << "edit of a mask";
   // The first update after a fold is a whole one.
   this->At(4, 5, 5)[0] = 14.0F;
   EXPECT_TRUE(this->Update().Overlapping);
   this->At(14, 3, 3)[0] = 0.5F;
-  EXPECT_LT(this->UpdatePart(), 0.05) << "beside a fold";
+  EXPECT_LT(this->UpdatePart(), 0.05) << "edit beside a fold";
   this->At(4, 5, 5)[1] = 2.0F;
-  EXPECT_LT(this->UpdatePart(), 0.05) << "a fold";
+  EXPECT_LT(this->UpdatePart(), 0.05) << "edit in a fold";
 }
 
 // Volumes or outputs that must be divided into chunks or slabs get no partial updates.

@@ -102,7 +102,7 @@ TEST(MassSpring, InvalidBodies)
 {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   MassSpringModel model;
-  EXPECT_THROW(model.Advance(For(1.0)), Error) << "no body";
+  EXPECT_THROW(model.Advance(For(1.0)), Error) << "without a body";
   EXPECT_THROW(model.GetStableTimeStep(), Error);
   EXPECT_THROW(model.Reset(), Error);
   EXPECT_THROW(model.SetBody({}), Error) << "no tetrahedra";
@@ -133,12 +133,12 @@ TEST(MassSpring, InvalidBodies)
       });
   }
   model.SetMemoryLimit(1000);
-  EXPECT_THROW(model.SetBody(MakeSmallBody()), Error) << "no memory";
+  EXPECT_THROW(model.SetBody(MakeSmallBody()), Error) << "more memory than the limit of 1000 bytes";
   model.SetMemoryLimit(0);
   ElasticBody fixed = MakeSmallBody();
   FixNodes(fixed, [](const glm::dvec3&) { return true; });
   model.SetBody(fixed);
-  EXPECT_THROW(model.Advance(For(1.0)), Error) << "nothing moves";
+  EXPECT_THROW(model.Advance(For(1.0)), Error) << "all nodes are fixed";
 }
 
 // Only tetrahedra that are fifths of equal cubes are accepted.
@@ -386,7 +386,7 @@ TEST(MassSpring, HandlesArriveAndAreReleased)
   for (std::size_t axis = 0; axis < 3; ++axis)
   {
     EXPECT_EQ(now[3 * held + axis], static_cast<float>(wanted[static_cast<int>(axis)]));
-    EXPECT_EQ(now[axis], 0.0F) << "fixed";
+    EXPECT_EQ(now[axis], 0.0F) << "displacement of the fixed node 0 on axis " << axis;
   }
   const std::size_t beside = GetNode(SmallLattice, 3, 1, 1);
   EXPECT_GT(now[3 * beside + 1], 0.1F * static_cast<float>(Spacing));
@@ -434,7 +434,7 @@ TEST(MassSpring, StableTimeStep)
     words = error.what();
   }
   EXPECT_NE(words.find("diverged"), std::string::npos) << words;
-  EXPECT_EQ(model.GetDisplacements(), at) << "not the state before the call";
+  EXPECT_EQ(model.GetDisplacements(), at) << "the failed call must not change the state";
   EXPECT_EQ(model.GetVelocities(), velocities);
 }
 
@@ -455,7 +455,7 @@ TEST(MassSpring, ResultsDoNotDependOnWorkGroups)
     model.Advance(request);
     const std::vector<float> found = model.GetDisplacements();
     expected = expected.empty() ? found : expected;
-    EXPECT_EQ(found, expected) << size;
+    EXPECT_EQ(found, expected) << "work-groups of " << size << " items";
   }
 }
 
@@ -557,7 +557,7 @@ TEST(MassSpring, SplitNodesKeepTheirState)
   EXPECT_TRUE(std::equal(expected.begin(), expected.begin() + 12, parted.begin()));
   // Remove the copies again, as when a split is undone.
   const std::vector<float> together = model.GetDisplacements();
-  EXPECT_THROW(model.SplitNodes(body, { 1 }), Error) << "too few nodes";
+  EXPECT_THROW(model.SplitNodes(body, { 1 }), Error) << "fewer nodes than before";
   EXPECT_EQ(model.GetDisplacements(), together);
   model.SplitNodes(body, {});
   EXPECT_EQ(model.GetDisplacements(), std::vector<float>(together.begin(), together.begin() + 15));

@@ -284,7 +284,7 @@ TEST(MassSpringStatics, StressIsThatOfTheForces)
     }
     for (std::size_t i = 0; i < 6; ++i)
     {
-      EXPECT_NEAR(results.Stress[i], wanted[i], 1e-5 * largest) << height;
+      EXPECT_NEAR(results.Stress[i], wanted[i], 1e-5 * largest) << "height " << height;
     }
   }
 }

@@ -144,7 +144,7 @@ TEST_F(Compilation, TimeIsReportedSeparately)
   EXPECT_GE(first.Calls.size(), 2U);
   for (std::size_t i = 0; i < first.Calls.size(); ++i)
   {
-    EXPECT_EQ(first.Calls[i], i % 2 == 0) << "an end for each begin";
+    EXPECT_EQ(first.Calls[i], i % 2 == 0) << "call " << i << ": begin and end must alternate";
   }
   EXPECT_EQ(second.Report.CompilationTime, 0.0);
   EXPECT_TRUE(second.Calls.empty());

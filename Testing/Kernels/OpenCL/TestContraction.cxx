@@ -317,7 +317,7 @@ TEST(Contraction, ChangesNothing)
   {
     if (name != "fused")
     {
-      EXPECT_EQ(result, fused.at(name)) << name;
+      EXPECT_EQ(result, fused.at(name)) << "kernel results " << name;
     }
   }
   if (fused.at("fused") == "no")

@@ -157,7 +157,7 @@ TEST(RangeLog, RemembersTheLastRanges)
   RangeLog log;
   EXPECT_EQ(log.GetRevision(), 0U);
   EXPECT_EQ(log.GetSince(0), PointRanges());
-  EXPECT_FALSE(log.GetSince(1)) << "a future revision";
+  EXPECT_FALSE(log.GetSince(1)) << "the revision is not yet reached";
   log.Add({ { { 3, 5 } }, { { 9, 10 } } });
   const std::uint64_t first = log.GetRevision();
   EXPECT_GT(first, 0U);
@@ -192,7 +192,7 @@ TEST(DeviceVectors, Misuse)
   const Subject subject(Extent{ { 0, 4, 0, 4, 0, 4 } });
   const Vectors few = std::make_shared<DeviceVectors>("", subject.Points - 1);
   VolumeDeformer deformer;
-  EXPECT_NE(GetError([&] { deformer.SetNodeDisplacements(few); }), "") << "no volume";
+  EXPECT_NE(GetError([&] { deformer.SetNodeDisplacements(few); }), "") << "without a volume";
   deformer.SetVoxelGrid(subject.Case.VoxelGrid);
   EXPECT_NE(
     GetError([&] { deformer.SetNodeDisplacements(few); }).find("SetMesh"), std::string::npos);
@@ -286,10 +286,12 @@ TEST_P(DeviceVectorsRoutes, EqualsHost)
         vectors.begin() + 3 * static_cast<std::ptrdiff_t>(end), 0.125F * static_cast<float>(frame));
       shared->Write(vectors.data(), { { { first, end } } });
       subject.Move(deformer, GetParam(), shared, matrix);
-      EXPECT_EQ(subject.Run(deformer), subject.RunFresh(GetParam(), vectors, matrix)) << frame;
+      EXPECT_EQ(subject.Run(deformer), subject.RunFresh(GetParam(), vectors, matrix))
+        << "frame " << frame;
     }
     subject.Move(deformer, GetParam(), shared, matrix);
-    EXPECT_EQ(subject.Run(deformer), subject.RunFresh(GetParam(), vectors, matrix)) << "nothing";
+    EXPECT_EQ(subject.Run(deformer), subject.RunFresh(GetParam(), vectors, matrix))
+      << "after an update without a change";
   }
 }
 
@@ -328,7 +330,8 @@ TEST_P(DeviceVectorsRoutes, AlternateWithOtherVectors)
   }
   subject.LoadInto(deformer, Route::Mesh);
   deformer.SetNodeDisplacements(first, Turned);
-  EXPECT_EQ(subject.Run(deformer), subject.RunFresh(Route::Mesh, one, Turned)) << "another mesh";
+  EXPECT_EQ(subject.Run(deformer), subject.RunFresh(Route::Mesh, one, Turned))
+    << "after another mesh was set";
 }
 
 TEST_P(DeviceVectorsRoutes, NonFiniteVectors)
@@ -475,7 +478,7 @@ TEST(DeviceVectors, OutputOfChainMail)
   ChainMailModel models[2];
   std::vector<float> host(3 * subject.Points);
   const auto output = std::make_shared<DeviceVectors>("", subject.Points);
-  EXPECT_NE(GetError([&] { models[0].SetOutput(output); }), "") << "no volume";
+  EXPECT_NE(GetError([&] { models[0].SetOutput(output); }), "") << "without a volume";
   for (ChainMailModel& model : models)
   {
     model.SetVoxelGrid(extent, toWorld);

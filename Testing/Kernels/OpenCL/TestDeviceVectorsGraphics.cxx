@@ -62,11 +62,12 @@ TEST_F(Transfers, WrittenVectorsAreCopiedOnce)
   EXPECT_EQ(FakeDriver::Get().BytesRead, this->Bytes);
   vectors->Write(this->Displacements.data(), { { { 200, 205 } }, { { 208, 210 } } });
   vectors->Read();
-  EXPECT_EQ(FakeDriver::Get().BytesRead, this->Bytes + 10 * 12) << "more than the changed vectors";
+  EXPECT_EQ(FakeDriver::Get().BytesRead, this->Bytes + 10 * 12)
+    << "only the changed vectors must be read";
   this->Reset();
   vectors->Write(this->Displacements.data(), { { { 7000, 7005 } }, { { 208, 210 } } });
   vectors->Read();
-  EXPECT_EQ(FakeDriver::Get().BytesRead, 7U * 12U) << "more than the two ranges";
+  EXPECT_EQ(FakeDriver::Get().BytesRead, 7U * 12U) << "only the two ranges must be read";
   EXPECT_EQ(std::memcmp(vectors->Read(), this->Displacements.data(), this->Bytes), 0);
 }
 
@@ -205,7 +206,7 @@ TEST_F(Transfers, PartsOfAFieldUpdatePartsOfTheOutput)
     edited.SendAll(fresh, Route::Field);
     EditedOutputs expected(edited);
     ExpectSame(report, fresh.Deform(expected.MakeRequest(edited)));
-    ASSERT_TRUE(outputs == expected) << edit;
+    ASSERT_TRUE(outputs == expected) << "edit " << edit;
     parts += report.NumberOfResampledBricks < report.NumberOfBricks ? 1 : 0;
   }
   EXPECT_GE(parts, 7);

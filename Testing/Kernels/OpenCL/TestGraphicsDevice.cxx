@@ -125,7 +125,7 @@ TEST_F(GraphicsDevice, VectorsOfTheDevice)
   const Deformed expected = RunDeformer(this->Deformer, this->Case, this->Arrays);
   FakeDriver::Get().BytesRead = 0;
   this->Deformer.SetNodeDisplacements(vectors);
-  EXPECT_LT(FakeDriver::Get().BytesRead, 256U) << "without a matrix nothing is read";
+  EXPECT_LT(FakeDriver::Get().BytesRead, 256U) << "without a matrix no vectors must be read";
   EXPECT_EQ(RunDeformer(this->Deformer, this->Case, this->Arrays).Outputs, expected.Outputs);
   for (float& component : displacements)
   {

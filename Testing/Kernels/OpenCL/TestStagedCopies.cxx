@@ -158,7 +158,8 @@ TEST_F(Staged, ReadsThatFail)
   {
     for (int good = 0; good <= portions; ++good)
     {
-      SCOPED_TRACE(testing::Message() << "at once " << atOnce << " after " << good);
+      SCOPED_TRACE(
+        testing::Message() << "fails at once: " << atOnce << ", good copies before: " << good);
       driver.FailsAtOnce = atOnce;
       driver.ReadError = Failure;
       driver.ReadsBeforeError = good;
@@ -170,7 +171,7 @@ TEST_F(Staged, ReadsThatFail)
         try
         {
           reads.Check();
-          ADD_FAILURE() << "nothing was thrown";
+          ADD_FAILURE() << "expected an exception, but none was thrown";
         }
         catch (const cl::Error& error)
         {
@@ -212,7 +213,7 @@ TEST_F(Staged, ReadsBesideOneThatFails)
         }
         if (checks && good < 9)
         {
-          EXPECT_THROW(reads.Check(), cl::Error) << good;
+          EXPECT_THROW(reads.Check(), cl::Error) << "after " << good << " good reads";
         }
         else if (checks)
         {
@@ -237,7 +238,8 @@ TEST_F(Staged, WritesThatFail)
   {
     for (int good = 0; good <= 5; ++good)
     {
-      SCOPED_TRACE(testing::Message() << "at once " << atOnce << " after " << good);
+      SCOPED_TRACE(
+        testing::Message() << "fails at once: " << atOnce << ", good copies before: " << good);
       const cl::Buffer buffer = this->MakeBuffer(bytes.size());
       driver.FailsAtOnce = atOnce;
       driver.WriteError = Failure;
@@ -266,10 +268,12 @@ TEST_F(StagedOutputs, ArraysThatFail)
   {
     driver.WriteError = Failure;
     driver.WritesBeforeError = good;
-    EXPECT_THROW(this->Deformer.SetArrays(this->Arrays), Error) << good;
+    EXPECT_THROW(this->Deformer.SetArrays(this->Arrays), Error)
+      << "after " << good << " good writes";
     driver.WriteError = 0;
     std::vector<Bytes> memory;
-    EXPECT_THROW(this->Deformer.Deform(this->MakeRequest(memory)), Error) << good;
+    EXPECT_THROW(this->Deformer.Deform(this->MakeRequest(memory)), Error)
+      << "after " << good << " good writes";
     Load(this->Deformer, this->Case, this->Arrays, Route::Mesh);
     ExpectEqualsReference(
       this->Case, reference, this->Arrays, RunDeformer(this->Deformer, this->Case, this->Arrays));
@@ -285,7 +289,7 @@ TEST_F(StagedOutputs, PortionsOfSlabsThatFail)
   {
     for (const int good : { 0, 1, 2, 4 })
     {
-      SCOPED_TRACE(testing::Message() << "planes " << planes << " after " << good);
+      SCOPED_TRACE(testing::Message() << "planes: " << planes << ", good reads before: " << good);
       this->LoadInPlanes(planes);
       std::vector<Bytes> memory;
       const DeformRequest request = this->MakeRequest(memory);
@@ -434,7 +438,7 @@ TEST_F(Staged, Boxes)
       large += driver.Reads > 1 ? 1 : 0;
     }
   }
-  EXPECT_GT(large, 40) << "boxes in several portions";
+  EXPECT_GT(large, 40) << "number of boxes in several portions";
 }
 
 // Boxes that are contiguous on both sides are copied as one range.
@@ -509,7 +513,7 @@ TEST_F(StagedOutputs, Slabs)
     const DeformRequest request = this->MakeRequest(memory);
     FakeDriver::Get().Reads = 0;
     this->Deformer.Deform(request);
-    EXPECT_GT(FakeDriver::Get().Reads, 4) << "portions";
+    EXPECT_GT(FakeDriver::Get().Reads, 4) << "the output must be read in several portions";
     for (const Bytes& one : memory)
     {
       EXPECT_EQ(one.front(), 77);
@@ -539,7 +543,8 @@ TEST_F(Staged, SmallWritesThatFail)
       driver.WritesBeforeError = good;
       if (good < 2)
       {
-        EXPECT_THROW(vectors.Write(values.data(), ranges), Error) << atOnce << " after " << good;
+        EXPECT_THROW(vectors.Write(values.data(), ranges), Error)
+          << "fails at once: " << atOnce << ", good writes before: " << good;
       }
       else
       {

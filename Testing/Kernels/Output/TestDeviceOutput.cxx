@@ -354,7 +354,7 @@ TEST_P(OnDevice, CopiesThatFail)
     EXPECT_THROW(outputs[0]->Read(), Error);
     FakeDriver::Get().ReadError = 0;
     FakeDriver::Get().FailsAtOnce = false;
-    EXPECT_THROW(outputs[0]->Read(), Error) << "a second call must fail, too";
+    EXPECT_THROW(outputs[0]->Read(), Error) << "the second call must fail like the first one";
     EXPECT_FALSE(outputs[0]->IsOnDevice());
     EXPECT_FALSE(outputs[0]->IsRead());
     EXPECT_EQ(std::count(this->Outputs.First.begin(), this->Outputs.First.end(), 3),

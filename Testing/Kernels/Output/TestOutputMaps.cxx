@@ -118,7 +118,7 @@ void ExpectSameOutput(const Deformed& one, const Deformed& other)
   ASSERT_EQ(one.Outputs.size(), other.Outputs.size());
   for (std::size_t array = 0; array < one.Outputs.size(); ++array)
   {
-    EXPECT_TRUE(one.Outputs[array] == other.Outputs[array]) << array;
+    EXPECT_TRUE(one.Outputs[array] == other.Outputs[array]) << "array " << array;
   }
 }
 
@@ -154,8 +154,8 @@ TEST(OutputMaps, EqualTheReference)
   {
     for (const Route route : { Route::Field, Route::Mesh, Route::Runs })
     {
-      SCOPED_TRACE(testing::Message()
-        << map.Matrix[0] << " " << map.Matrix[3] << " by route " << static_cast<int>(route));
+      SCOPED_TRACE(testing::Message() << "matrix elements " << map.Matrix[0] << " and "
+                                      << map.Matrix[3] << ", route " << static_cast<int>(route));
       const DeformerCase jittered = MakeJittered(map, 7 + static_cast<unsigned int>(route), 0.08);
       ExpectEmbedding(ResampleByReference(jittered));
       ExpectEqualsReference(jittered, route);

@@ -82,7 +82,7 @@ public:
   double GetLongestPause()
   {
     this->Look();
-    std::cout << 1e3 * this->Longest << " ms without a question\n";
+    std::cout << 1e3 * this->Longest << " ms at most between two calls of Progress\n";
     return this->Longest;
   }
 

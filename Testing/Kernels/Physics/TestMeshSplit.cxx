@@ -21,7 +21,7 @@ void ExpectError(Function&& function, const std::string& words)
   try
   {
     function();
-    ADD_FAILURE() << "no error: " << words;
+    ADD_FAILURE() << "expected the error \"" << words << "\", but none was thrown";
   }
   catch (const Error& error)
   {

@@ -70,7 +70,8 @@ void ExpectValues(const RasterCase& c, const reference::RasterResult& reference,
                      sizeof(T)) == 0;
         }
         failures += found ? 0 : 1;
-        EXPECT_TRUE(found) << "array " << index << " voxel " << voxel;
+        EXPECT_TRUE(found) << "the value is that of no containing tetrahedron: array " << index
+                           << " voxel " << voxel;
         continue;
       }
       long double sum = 0.0L;

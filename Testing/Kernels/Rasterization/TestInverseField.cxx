@@ -389,7 +389,8 @@ TEST(InverseField, InvertedTetrahedra)
         c.Vectors[3 * point + axis] = -factor * at[axis];
       }
       c.Field.Vectors = c.Vectors.data();
-      EXPECT_EQ(CountInvertedTetrahedra(c.Field), factor < 1.0F ? 0 : 5L * 3 * 2 * 4) << axis;
+      EXPECT_EQ(CountInvertedTetrahedra(c.Field), factor < 1.0F ? 0 : 5L * 3 * 2 * 4)
+        << "axis " << axis << ", factor " << factor;
     }
   }
   // From a few inverted tetrahedra to many.
@@ -397,13 +398,15 @@ TEST(InverseField, InvertedTetrahedra)
   {
     InverseCase c = MakeCase(Volume, { { 9, 8, 7 } }, strength);
     c.Field.Vectors = c.Vectors.data();
-    EXPECT_EQ(CountInvertedTetrahedra(c.Field), CountInvertedByDefinition(c.Field)) << strength;
+    EXPECT_EQ(CountInvertedTetrahedra(c.Field), CountInvertedByDefinition(c.Field))
+      << "strength " << strength;
     // Tetrahedra with an undefined vertex are not counted.
     for (const std::size_t point : { 0U, 100U, 101U, 163U, 300U })
     {
       std::fill_n(&c.Vectors[3 * point], 3, std::nanf(""));
     }
-    EXPECT_EQ(CountInvertedTetrahedra(c.Field), CountInvertedByDefinition(c.Field)) << strength;
+    EXPECT_EQ(CountInvertedTetrahedra(c.Field), CountInvertedByDefinition(c.Field))
+      << "strength " << strength;
   }
 }
 

@@ -30,7 +30,7 @@ std::string GetError(const std::function<void()>& function)
   {
     return error.what();
   }
-  ADD_FAILURE() << "no error";
+  ADD_FAILURE() << "expected an error, but none was thrown";
   return "";
 }
 
@@ -203,7 +203,7 @@ TEST(MeshRasterization, UndeformedAtAnotherSpacingKeepsTheVoxels)
             GetSize(finer.Output, 0) +
           3 * x - finer.Output[0];
         ASSERT_EQ(std::memcmp(&deformed.GetOutput<float>(0)[target], &values[voxel], 4), 0)
-          << voxel;
+          << "voxel " << voxel;
       }
     }
   }
@@ -368,8 +368,8 @@ TEST(MeshRasterization, ResultDoesNotDependOnTheDivisionOfWork)
   {
     deformer.SetWorkGroupSize(group);
     const Deformed other = Rasterize(deformer, folded, arrays);
-    EXPECT_EQ(other.Outputs, whole.Outputs) << group;
-    EXPECT_EQ(other.Coverage, whole.Coverage) << group;
+    EXPECT_EQ(other.Outputs, whole.Outputs) << "work-groups of " << group << " items";
+    EXPECT_EQ(other.Coverage, whole.Coverage) << "work-groups of " << group << " items";
   }
   deformer.SetWorkGroupSize(0);
   // Slabs of a few planes.
@@ -402,7 +402,7 @@ TEST(MeshRasterization, ResultDoesNotDependOnTheDivisionOfWork)
       continue;
     }
     EXPECT_EQ(deformer.Deform(request).NumberOfCoveredVoxels, whole.Report.NumberOfCoveredVoxels);
-    EXPECT_LT(left, 1000 - 2 * 32) << "at most two slabs";
+    EXPECT_LT(left, 1000 - 2 * 32) << "Progress was called too rarely for more than two slabs";
     EXPECT_EQ(std::memcmp(first->data() + 1, whole.Outputs[0].data(), bytes[0]), 0);
     EXPECT_EQ(std::memcmp(second->data() + 1, whole.Outputs[1].data(), bytes[1]), 0);
     EXPECT_EQ(coverage, whole.Coverage);

@@ -185,7 +185,7 @@ void ExpectArray(const DeformerCase& deformerCase, const reference::Result& refe
       }
     }
   }
-  EXPECT_EQ(failures, 0) << "values of array " << index;
+  EXPECT_EQ(failures, 0) << "number of wrong values of array " << index;
 }
 
 } // namespace
@@ -240,7 +240,7 @@ std::int64_t ExpectEqualsCubicReference(const DeformerCase& deformerCase,
     wrong += (deformed.Coverage[voxel] != 0) != !containing.empty();
     cubic += !containing.empty() && IsCubicCell(deformerCase, containing.front().Cell);
   }
-  EXPECT_EQ(wrong, 0) << "coverage";
+  EXPECT_EQ(wrong, 0) << "voxels with wrong coverage";
   for (std::size_t array = 0; array < arrays.size(); ++array)
   {
     switch (arrays[array].Type)

@@ -137,7 +137,7 @@ struct AffineCase
     EXPECT_EQ(holes, 0);
     EXPECT_EQ(extra, 0);
     EXPECT_LE(worst, tolerance);
-    EXPECT_GT(worst, 0.0) << "nothing was interpolated";
+    EXPECT_GT(worst, 0.0) << "the largest error must not be 0: else nothing was interpolated";
   }
 };
 

@@ -121,7 +121,8 @@ TEST(BoundaryDistances, PlaneLiesBetweenVoxels)
         for (int x = fine.Output[0]; x <= fine.Output[1]; ++x, ++voxel)
         {
           const bool covered = x >= 16.0 * place && x <= 96 && y >= 0 && y <= 8 && z >= 0 && z <= 6;
-          ASSERT_EQ(deformed.Coverage[voxel] != 0, covered) << x << " " << y << " " << z;
+          ASSERT_EQ(deformed.Coverage[voxel] != 0, covered)
+            << "voxel " << x << " " << y << " " << z;
         }
       }
     }

@@ -113,7 +113,7 @@ TEST(Columns, UnsupportedOutputs)
   try
   {
     RunDeformer(deformer, far, arrays, Resampling::ExactByColumns);
-    FAIL() << "no error";
+    FAIL() << "expected an error, but none was thrown";
   }
   catch (const Error& error)
   {

@@ -137,7 +137,7 @@ TEST(Cubic, VoxelsComeOutBitForBit)
     {
       EXPECT_EQ(
         std::memcmp(deformed.Outputs[i].data(), arrays[i].Data, deformed.Outputs[i].size()), 0)
-        << i;
+        << "array " << i;
     }
     EXPECT_EQ(deformed.Report.NumberOfCoveredVoxels, made.GetNumberOfVoxels());
   }
@@ -207,7 +207,8 @@ TEST(Cubic, QuadraticsAreReproduced)
       });
     EXPECT_GT(compared, 2000);
     EXPECT_LT(largest, 1e-9); // the values are up to several thousand
-    EXPECT_GT(largestOfLinear, 1.0) << "the linear interpolation is as good";
+    EXPECT_GT(largestOfLinear, 1.0)
+      << "largest error of linear interpolation, which must be larger";
   }
 }
 
@@ -332,7 +333,7 @@ TEST(Cubic, LinearWhereVoxelsAreMissing)
       linears += !IsCubicCell(made, i);
     }
     linearCells = defect.Cells == 0 ? linears : linearCells;
-    EXPECT_EQ(linears, linearCells + defect.Cells) << "the test needs another position";
+    EXPECT_EQ(linears, linearCells + defect.Cells) << "cells that must be interpolated linearly";
     const reference::Result reference = ResampleByReference(made);
     const Deformed linear = RunLinear(made, arrays, defect.Way);
     const Deformed cubic = RunCubic(made, arrays, defect.Way);

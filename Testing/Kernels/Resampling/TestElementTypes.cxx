@@ -186,7 +186,8 @@ TEST(ElementTypes, IntegersAreRoundedToNearestEvenAndStayInRange)
   const std::array<std::uint8_t, 6> expected{ { 9, 0, 2, 128, 255, 9 } };
   for (std::int64_t voxel = 0; voxel < GetNumberOfPoints(half.Output); ++voxel)
   {
-    EXPECT_EQ(+deformed.GetOutput<std::uint8_t>(0)[voxel], +expected[voxel % 6]) << voxel;
+    EXPECT_EQ(+deformed.GetOutput<std::uint8_t>(0)[voxel], +expected[voxel % 6])
+      << "voxel " << voxel;
   }
 }
 

@@ -262,7 +262,7 @@ TEST_P(ExactResampling, EqualsTheReference)
     ? (random() % 2 ? Route::Mesh : Route::Runs)
     : std::array<Route, 3>{ { Route::Field, Route::Mesh, Route::Runs } }[random() % 3];
   ExpectEqualsReference(made, reference, arrays, LoadAndRun(made, arrays, route));
-  SCOPED_TRACE("cubic");
+  SCOPED_TRACE("cubic interpolation");
   VolumeDeformer deformer;
   Load(deformer, made, arrays, route);
   const std::int64_t cubic = ExpectEqualsCubicReference(made, reference, arrays,

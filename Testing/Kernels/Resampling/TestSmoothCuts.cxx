@@ -216,7 +216,8 @@ TEST(SmoothCuts, NothingIsLostBetweenThePlanesOfAGap)
           const bool covered =
             (isIn(low) && sheet(low) < -rounding) || (isIn(high) && sheet(high) >= -rounding);
           expected += covered ? 1 : 0;
-          ASSERT_EQ(deformed.Coverage[voxel] != 0, covered) << x << " " << y << " " << z;
+          ASSERT_EQ(deformed.Coverage[voxel] != 0, covered)
+            << "voxel " << x << " " << y << " " << z;
         }
       }
     }
@@ -351,11 +352,12 @@ TEST(SmoothCuts, NothingTearsAtTheEndOfACut)
         // two cells.
         if (!inVolume || !inGap)
         {
-          ASSERT_EQ(deformed.Coverage[voxel] != 0, inVolume) << x << " " << y << " " << z;
+          ASSERT_EQ(deformed.Coverage[voxel] != 0, inVolume)
+            << "voxel " << x << " " << y << " " << z;
         }
         else if (y < 8)
         {
-          ASSERT_EQ(deformed.Coverage[voxel], 0) << x << " " << y << " " << z;
+          ASSERT_EQ(deformed.Coverage[voxel], 0) << "voxel " << x << " " << y << " " << z;
         }
       }
     }
