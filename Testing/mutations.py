@@ -151,7 +151,7 @@ MUTATIONS = {
     "links-half-set": ("Kernels/DeviceVolume/DeviceMapping.cxx", "this->WithLinks = false; // until all links are copied",
                        "this->WithLinks = true;", [FAULTS]),
     "far-output": ("Kernels/Output/OutputSlab.cxx", "farthest = 1 << 22;", "farthest = 1 << 28;",
-                   [("TestUse", "Use.OutputsFarAway")]),
+                   [("TestUse", "DeformerUse.OutputsFarAway")]),
     "null-group": ("Kernels/Output/OutputFilling.cxx",
                    "queue, kernel, cl::NDRange((items + group - 1) / group * group), cl::NDRange(group)));",
                    "queue, kernel, cl::NDRange(items), cl::NullRange));", [GRAPHICS]),

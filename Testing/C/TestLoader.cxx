@@ -58,7 +58,7 @@ TEST_F(Loader, MissingPath)
   EXPECT_EQ(deformvolume::FindSystemDrivers(), Names());
 }
 
-TEST_F(Loader, Files)
+TEST_F(Loader, ReadsVendorFiles)
 {
   this->Write("b.icd", "libb.so\n");
   this->Write("a.icd", " /opt/liba.so \r\nsecond line\n");
@@ -81,7 +81,7 @@ TEST_F(Loader, Files)
 }
 
 // Calls with null instead of an object return errors.
-TEST_F(Loader, NoObject)
+TEST_F(Loader, NullObjectsAreErrors)
 {
   cl_int error = CL_SUCCESS;
   std::size_t size = 0;
@@ -100,7 +100,7 @@ TEST_F(Loader, NoObject)
 
 // A missing library, a library that is not a driver, and a driver, whose device executes a kernel.
 // This must be the last test, since the loader searches for drivers only once.
-TEST_F(Loader, Devices)
+TEST_F(Loader, ExecutesAKernel)
 {
   cl_uint count = 0;
   setenv("OCL_ICD_FILENAMES", "/nowhere/lib.so:libm.so.6", 1);

@@ -419,7 +419,7 @@ TEST_F(TetrahedronListing, EqualFromRunToRun)
 }
 
 // Small enough for Oclgrind, an interpreter of kernels.
-TEST_F(TetrahedronListing, Tiny)
+TEST_F(TetrahedronListing, TinyEqualsReference)
 {
   ListCase tiny({ { -5, 3, 0 } }, { { 70, 12, 70 } });
   tiny.AddRandom(60, 10, 11);

@@ -91,7 +91,7 @@ void RunSequence(unsigned int seed, const Extent& extent, int steps)
 
 } // namespace
 
-TEST(ChainMailSequences, Random)
+TEST(ChainMailSequences, RandomEqualsReference)
 {
   for (unsigned int seed = 0; seed < 60; ++seed)
   {
@@ -101,7 +101,7 @@ TEST(ChainMailSequences, Random)
 }
 
 // Small enough for Oclgrind, an interpreter of kernels.
-TEST(ChainMailSequences, Tiny)
+TEST(ChainMailSequences, TinyEqualsReference)
 {
   RunSequence(3, { { 0, 9, 0, 8, 0, 4 } }, 10);
 }

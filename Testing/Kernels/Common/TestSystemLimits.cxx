@@ -71,13 +71,13 @@ std::string InBytes(std::uint64_t mebibytes)
 
 } // namespace
 
-TEST_F(SystemLimits, WithoutGroups)
+TEST_F(SystemLimits, MemoryWithoutCgroups)
 {
   EXPECT_EQ(this->GetMemory(), 8000U);
   EXPECT_EQ(GetSystemMemory(this->Root + "/nothing"), 0U);
 }
 
-TEST_F(SystemLimits, UnifiedGroup)
+TEST_F(SystemLimits, MemoryLimitsOfCgroups)
 {
   this->MountUnified();
   this->Write("/proc/self/cgroup", "0::/user.slice/app\n");
@@ -115,7 +115,7 @@ TEST_F(SystemLimits, UnifiedGroup)
 }
 
 // A container sees its own group as the root, whatever its name is outside.
-TEST_F(SystemLimits, UnifiedContainer)
+TEST_F(SystemLimits, MemoryLimitsOfContainers)
 {
   this->MountUnified();
   this->Write("/proc/self/cgroup", "0::/\n");
@@ -133,7 +133,7 @@ TEST_F(SystemLimits, UnifiedContainer)
   EXPECT_EQ(this->GetMemory(), 300U);
 }
 
-TEST_F(SystemLimits, Processors)
+TEST_F(SystemLimits, ProcessorQuotaOfACgroup)
 {
   const int all = GetProcessorShare(1, this->Root);
   EXPECT_GE(all, 1);
@@ -147,7 +147,7 @@ TEST_F(SystemLimits, Processors)
   EXPECT_EQ(GetProcessorShare(1, this->Root), 1);
 }
 
-TEST_F(SystemLimits, BoundProcess)
+TEST_F(SystemLimits, ProcessorAffinity)
 {
   cpu_set_t all;
   ASSERT_EQ(sched_getaffinity(0, sizeof(all), &all), 0);
@@ -166,7 +166,7 @@ TEST_F(SystemLimits, BoundProcess)
 }
 
 // Ranks on the same machine share its memory.
-TEST_F(SystemLimits, Share)
+TEST_F(SystemLimits, ProcessesShareTheProcessors)
 {
   const int all = GetProcessorShare(1, "");
   EXPECT_EQ(GetProcessorShare(), all);
@@ -184,7 +184,7 @@ TEST_F(SystemLimits, Share)
 // An exception in a thread reaches the caller once, and the remaining parts are skipped. Later
 // parts take a millisecond each: the thread that throws may not get a processor for a while, and
 // the other threads must not finish all parts before.
-TEST(ParallelFor, Exceptions)
+TEST(ParallelFor, ExceptionsReachTheCaller)
 {
   constexpr std::int64_t quickParts = 1000;
   for (const int threads : { 1, 4 })
@@ -218,7 +218,7 @@ TEST(ParallelFor, Exceptions)
 }
 
 // Each item is handled once, in parts of the requested size.
-TEST(ParallelFor, Range)
+TEST(ParallelFor, HandlesEachItemOnce)
 {
   for (const std::int64_t grain : { 0, 1, 7, 1000 })
   {
@@ -246,7 +246,7 @@ TEST(ParallelFor, Range)
 }
 
 // A loop that the program provides is used instead. Exceptions do not leave it.
-TEST(ParallelFor, Loop)
+TEST(ParallelFor, UsesTheLoopOfTheProgram)
 {
   static int calls = 0;
   static bool left = false;

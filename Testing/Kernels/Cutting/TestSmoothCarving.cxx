@@ -159,7 +159,7 @@ TEST(SmoothCarving, DistancesAreThoseNearTheBoundary)
   }
 }
 
-TEST(SmoothCarving, LinearToolsAndBoundsChangeNothing)
+TEST(SmoothCarving, LinearToolsAndBoundsDoNotChangeDistances)
 {
   const Function plane = [](const glm::dvec3& p) { return 0.6 * p.x + 0.8 * p.z - 4.9; };
   const RestPositions rest(Volume);

@@ -617,7 +617,7 @@ TEST(MeshBoundaries, NoneBetweenUnmergedParts)
 
 // A mesh whose tetrahedra are listed twice, and a flat tetrahedron on its surface, do not change
 // the boundary.
-TEST(MeshBoundaries, FacesOnOneSideOnly)
+TEST(MeshBoundaries, DuplicateAndFlatTetrahedraChangeNothing)
 {
   const TightMesh mesh = MakeBall(3.1);
   const MeshBoundary once = FindMeshBoundary(Volume, Volume, mesh.Points, mesh.Tetrahedra);
@@ -681,7 +681,7 @@ TEST(MeshBoundaries, NoneIfTheMeshContainsTheVolume)
 
 // A tetrahedron that extends far beyond the volume is divided into few pieces, which fill it within
 // the volume.
-TEST(MeshBoundaries, NodeFarAway)
+TEST(MeshBoundaries, LargeTetrahedraHaveFewPieces)
 {
   const std::vector<glm::dvec3> points{ { 0.3, 5.1, 3.2 }, { 0.2, 20.4, 5.3 }, { 0.4, 8.7, 18.6 },
     { 1e8, 10.2, 9.1 } };

@@ -137,7 +137,7 @@ private:
 };
 
 // Kernels that access memory beyond the end of arrays or outputs in place would crash here.
-TEST_F(HostMemory, ArraysAtTheEndOfTheirMemory)
+TEST_F(HostMemory, NothingBeyondTheEndIsAccessed)
 {
   for (const int size : { 1, 2, 7, 8, 9, 15, 16, 31, 33, 64, 65, 70 })
   {

@@ -35,7 +35,7 @@ std::string GetError(const std::function<void()>& function)
   return "";
 }
 
-class Use : public testing::Test
+class DeformerUse : public testing::Test
 {
 protected:
   DeformerCase Case = MakeSmallCase();
@@ -67,7 +67,7 @@ protected:
 
 } // namespace
 
-TEST_F(Use, DeformBeforeAnythingIsSet)
+TEST_F(DeformerUse, DeformBeforeAnythingIsSet)
 {
   GetError([&] { this->Deformer.Deform(this->MakeRequest()); });
   this->Deformer.SetDevice("");
@@ -79,7 +79,7 @@ TEST_F(Use, DeformBeforeAnythingIsSet)
   this->ExpectUsable();
 }
 
-TEST_F(Use, MeshWithoutDisplacements)
+TEST_F(DeformerUse, MeshWithoutDisplacements)
 {
   Load(this->Deformer, this->Case, this->Arrays, Route::Mesh);
   const std::vector<VertexLink> links(this->Case.GetNumberOfVoxels());
@@ -89,14 +89,14 @@ TEST_F(Use, MeshWithoutDisplacements)
   this->ExpectUsable();
 }
 
-TEST_F(Use, SettersInAnyOrder)
+TEST_F(DeformerUse, SettersInAnyOrder)
 {
   GetError([&] { this->Deformer.SetArrays(this->Arrays); });
   GetError([&] { this->Deformer.SetNodeDisplacements(this->Values.data()); });
   this->ExpectUsable();
 }
 
-TEST_F(Use, WrongNumberOfOutputs)
+TEST_F(DeformerUse, WrongNumberOfOutputs)
 {
   Load(this->Deformer, this->Case, this->Arrays, Route::Field);
   DeformRequest request = this->MakeRequest();
@@ -107,7 +107,7 @@ TEST_F(Use, WrongNumberOfOutputs)
   this->ExpectUsable();
 }
 
-TEST_F(Use, EmptyExtents)
+TEST_F(DeformerUse, EmptyExtents)
 {
   Load(this->Deformer, this->Case, this->Arrays, Route::Field);
   DeformRequest request = this->MakeRequest();
@@ -120,7 +120,7 @@ TEST_F(Use, EmptyExtents)
   this->ExpectUsable();
 }
 
-TEST_F(Use, IndicesOutsideTheMesh)
+TEST_F(DeformerUse, IndicesOutsideTheMesh)
 {
   Load(this->Deformer, this->Case, this->Arrays, Route::Field);
   std::vector<VertexLink> links(this->Case.GetNumberOfVoxels());
@@ -133,7 +133,7 @@ TEST_F(Use, IndicesOutsideTheMesh)
 }
 
 // Positions relative to an output that is 2^24 voxels away overflow 32 bits.
-TEST_F(Use, OutputsFarAway)
+TEST_F(DeformerUse, OutputsFarAway)
 {
   Load(this->Deformer, this->Case, this->Arrays, Route::Field);
   for (int axis = 0; axis < 3; ++axis)
@@ -157,7 +157,7 @@ TEST_F(Use, OutputsFarAway)
   this->ExpectUsable();
 }
 
-TEST_F(Use, UnknownDevice)
+TEST_F(DeformerUse, UnknownDevice)
 {
   const std::string error = GetError([&] { this->Deformer.SetDevice("no such device"); });
   EXPECT_NE(error.find("no such device"), std::string::npos) << error;
@@ -165,7 +165,7 @@ TEST_F(Use, UnknownDevice)
   this->ExpectUsable();
 }
 
-TEST_F(Use, DeviceNames)
+TEST_F(DeformerUse, DeviceNames)
 {
   const std::vector<std::string> names = GetDeviceNames();
   ASSERT_FALSE(names.empty());
@@ -174,7 +174,7 @@ TEST_F(Use, DeviceNames)
   this->ExpectUsable();
 }
 
-TEST_F(Use, NotEnoughMemory)
+TEST_F(DeformerUse, NotEnoughMemory)
 {
   this->Deformer.SetDevice("");
   this->Deformer.SetMemoryLimit(12345);
@@ -210,7 +210,7 @@ TEST_F(Use, NotEnoughMemory)
 }
 
 // Memory for winners is requested only if tetrahedra overlap.
-TEST_F(Use, NotEnoughMemoryForAFold)
+TEST_F(DeformerUse, NotEnoughMemoryForAFold)
 {
   // CheckMemory() also counts memory that this case does not use. The output is so large that its
   // winners do not fit into that memory.
@@ -247,7 +247,7 @@ TEST_F(Use, NotEnoughMemoryForAFold)
   this->ExpectUsable();
 }
 
-TEST_F(Use, MemoryIsCountedAndReleased)
+TEST_F(DeformerUse, MemoryIsCountedAndReleased)
 {
   EXPECT_EQ(this->Deformer.GetDeviceMemory(), 0U);
   this->ExpectUsable();
@@ -260,7 +260,7 @@ TEST_F(Use, MemoryIsCountedAndReleased)
   this->ExpectUsable();
 }
 
-TEST_F(Use, AbortedByProgress)
+TEST_F(DeformerUse, AbortedByProgress)
 {
   Load(this->Deformer, this->Case, this->Arrays, Route::Field);
   DeformRequest request = this->MakeRequest();
@@ -288,7 +288,7 @@ TEST_F(Use, AbortedByProgress)
     RunDeformer(this->Deformer, this->Case, this->Arrays));
 }
 
-TEST_F(Use, ManyUpdates)
+TEST_F(DeformerUse, ManyUpdates)
 {
   Load(this->Deformer, this->Case, this->Arrays, Route::Mesh);
   for (unsigned int seed = 10; seed < 14; ++seed)
@@ -309,7 +309,7 @@ TEST_F(Use, ManyUpdates)
   }
 }
 
-TEST_F(Use, MasksAreSetAndRemoved)
+TEST_F(DeformerUse, MasksAreSetAndRemoved)
 {
   Load(this->Deformer, this->Case, this->Arrays, Route::Field);
   const auto check = [this]
@@ -339,7 +339,7 @@ TEST_F(Use, MasksAreSetAndRemoved)
   EXPECT_EQ(check(), all);
 }
 
-TEST_F(Use, ArraysAreReplaced)
+TEST_F(DeformerUse, ArraysAreReplaced)
 {
   this->ExpectUsable();
   const auto labels = MakeRandomValues<std::uint64_t>(this->Values.size() * 2, 4);
@@ -349,7 +349,7 @@ TEST_F(Use, ArraysAreReplaced)
     this->Case, this->Reference, arrays, RunDeformer(this->Deformer, this->Case, arrays));
 }
 
-TEST_F(Use, TimesAreMeasured)
+TEST_F(DeformerUse, TimesAreMeasured)
 {
   Load(this->Deformer, this->Case, this->Arrays, Route::Field);
   const DeformReport report = RunDeformer(this->Deformer, this->Case, this->Arrays).Report;
@@ -359,7 +359,7 @@ TEST_F(Use, TimesAreMeasured)
   EXPECT_LT(report.ResamplingTime + report.TransferTime, 60.0);
 }
 
-TEST_F(Use, TwoDeformersSideBySide)
+TEST_F(DeformerUse, TwoDeformersSideBySide)
 {
   VolumeDeformer other;
   const DeformerCase otherCase = MakeSmallCase(99);

@@ -477,7 +477,7 @@ TEST(Runs, ChunksAndBlankedVoxels)
 namespace
 {
 
-class RunsMisuse : public testing::Test
+class DeformerRuns : public testing::Test
 {
 protected:
   DeformerCase Case = MakeCase({ { 0, 7, 0, 6, 0, 5 } }, { { 1, 1, 1 } }, MakeJitter(1, 0.15));
@@ -507,7 +507,7 @@ protected:
 
 } // namespace
 
-TEST_F(RunsMisuse, WrongRuns)
+TEST_F(DeformerRuns, MisuseIsAnError)
 {
   const auto change = [this](auto&& function)
   {
@@ -550,7 +550,7 @@ TEST_F(RunsMisuse, WrongRuns)
     this->Case, reference, this->Arrays, RunDeformer(this->Deformer, this->Case, this->Arrays));
 }
 
-TEST_F(RunsMisuse, DisplacementsAreNeededAgain)
+TEST_F(DeformerRuns, NewMeshNeedsNewDisplacements)
 {
   const auto nodes = static_cast<std::size_t>(this->Case.GetNumberOfVoxels());
   const std::vector<Tetrahedron> tetrahedra(nodes, Tetrahedron{ { 0, 1, 2, 3 } });
@@ -558,7 +558,7 @@ TEST_F(RunsMisuse, DisplacementsAreNeededAgain)
   EXPECT_THROW(RunDeformer(this->Deformer, this->Case, this->Arrays), Error);
 }
 
-TEST_F(RunsMisuse, NoVoxelInTheMesh)
+TEST_F(DeformerRuns, NoVoxelInTheMesh)
 {
   VertexRuns outside;
   for (std::uint32_t row = 0; row < 42; ++row)
@@ -576,7 +576,7 @@ TEST_F(RunsMisuse, NoVoxelInTheMesh)
 
 // Sets runs, links, a field and runs again on one deformer. Data of the previous form must have no
 // effect.
-TEST_F(RunsMisuse, FormsAlternate)
+TEST_F(DeformerRuns, RunsLinksAndFieldsAlternate)
 {
   const reference::Result reference = ResampleByReference(this->Case);
   for (const Route route : { Route::Runs, Route::Mesh, Route::Runs, Route::Field, Route::Runs })
@@ -596,7 +596,7 @@ TEST_F(RunsMisuse, FormsAlternate)
     this->Case.GetNumberOfVoxels());
 }
 
-TEST_F(RunsMisuse, MemoryIsThatOfTheRuns)
+TEST_F(DeformerRuns, MemoryCheckCountsRuns)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
   VoxelGrid voxelGrid;

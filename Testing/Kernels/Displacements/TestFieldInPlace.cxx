@@ -144,7 +144,7 @@ TEST(FieldInPlace, ChangesInAnyOrder)
 }
 
 // The matrix applies to copied fields, too.
-TEST(FieldInPlace, MatrixIsThatOfScaledVectors)
+TEST(FieldInPlace, MatrixEqualsScaledVectors)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
   const EditedVolume volume;
@@ -163,7 +163,7 @@ TEST(FieldInPlace, MatrixIsThatOfScaledVectors)
 }
 
 // Vectors that are read in place may have any values. Voxels with invalid vectors are discarded.
-TEST(FieldInPlace, AnyVectors)
+TEST(FieldInPlace, InvalidVectorsDiscardVoxels)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
   const EditedVolume volume;

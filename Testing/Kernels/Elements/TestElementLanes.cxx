@@ -121,7 +121,7 @@ std::vector<glm::dvec3> SolveFrames(const LatticeBody& lattice, EquilibriumMode 
 
 } // namespace
 
-TEST_F(WideLanes, ElementsAndProducts)
+TEST_F(WideLanes, ForcesAndProductsHaveTheSameBits)
 {
   const QuadraticLattice lattice = MakeBar({ 3, 3, 4 });
   for (const double size : { 0.0, 1e-9, 1e-3, 6e-3 })
@@ -140,7 +140,7 @@ TEST_F(WideLanes, ElementsAndProducts)
 }
 
 // The bodies need block Jacobi, and several multigrid levels in single precision.
-TEST_F(WideLanes, Solutions)
+TEST_F(WideLanes, SolutionsHaveTheSameBits)
 {
   for (const Place& nodes : { Place{ 3, 3, 5 }, Place{ 6, 7, 8 } })
   {

@@ -139,7 +139,7 @@ TEST(FiniteElements, Misuse)
   EXPECT_EQ(LargestOf(model.GetDisplacements()), 0.0);
 }
 
-TEST(FiniteElements, AtRest)
+TEST(FiniteElements, UnloadedBodyStaysAtRest)
 {
   const LatticeBody lattice = MakeBlock({ 3, 3, 3 });
   FiniteElementModel model;
@@ -366,7 +366,7 @@ TEST(FiniteElements, HingeWithAHandle)
 
 // The body has more pieces than the coarsest level has aggregates. Each piece is held by the nodes
 // of one side.
-TEST(FiniteElements, ManyPieces)
+TEST(FiniteElements, MorePiecesThanAggregates)
 {
   LatticeBody lattice = MakeLinearBlock({ 3, 3, 3 });
   ElasticBody body = lattice.Body;
@@ -454,7 +454,7 @@ TEST(FiniteElements, UnconnectedFreeNodes)
   }
 }
 
-TEST(FiniteElements, Divergence)
+TEST(FiniteElements, DivergenceKeepsTheDisplacements)
 {
   const LatticeBody lattice = MakeBlock({ 4, 4, 4 });
   FiniteElementModel model;
@@ -479,7 +479,7 @@ TEST(FiniteElements, Divergence)
   EXPECT_TRUE(model.Solve(request).IsConverged);
 }
 
-TEST(FiniteElements, Abort)
+TEST(FiniteElements, AbortKeepsTheDisplacements)
 {
   const LatticeBody lattice = MakeBlock({ 8, 8, 16 });
   FiniteElementModel model;
@@ -556,7 +556,7 @@ std::vector<glm::dvec3> RunFrames(const LatticeBody& lattice, ParallelLoop loop)
 
 } // namespace
 
-TEST(FiniteElements, Threads)
+TEST(FiniteElements, ResultsDoNotDependOnThreads)
 {
   // The second body is large enough for several levels.
   for (const Place& nodes : { Place{ 3, 3, 3 }, Place{ 6, 7, 8 } })
@@ -570,7 +570,7 @@ TEST(FiniteElements, Threads)
   }
 }
 
-TEST(FiniteElements, WarmFramesReachTheColdSolution)
+TEST(FiniteElements, FramesReachTheSolutionFromRest)
 {
   for (const Place& nodes : { Place{ 3, 3, 5 }, Place{ 6, 6, 8 } })
   {
@@ -599,7 +599,7 @@ TEST(FiniteElements, WarmFramesReachTheColdSolution)
 
 // A handle that rotates and jumps. Residuals of frames are within the reported tolerance, and
 // frames without motion reduce them.
-TEST(FiniteElements, FramesOfAJumpingHandle)
+TEST(FiniteElements, JumpingHandleKeepsResidualsWithinTolerance)
 {
   const Place nodes{ 6, 6, 8 };
   const LatticeBody lattice = MakeBlock(nodes, 0.45);
@@ -633,7 +633,7 @@ TEST(FiniteElements, FramesOfAJumpingHandle)
 }
 
 // If the body bends far, the tangent of the previous frame cannot be reused.
-TEST(FiniteElements, FramesOfABendingBody)
+TEST(FiniteElements, BendingBodyConvergesInFewFrames)
 {
   const LatticeBody lattice = MakeBlock({ 3, 3, 20 });
   FiniteElementModel model;
@@ -649,7 +649,7 @@ TEST(FiniteElements, FramesOfABendingBody)
 }
 
 // Earlier motions of a handle predict its next motion, so few iterations are needed.
-TEST(FiniteElements, FramesOfAMovingHandle)
+TEST(FiniteElements, MovingHandleNeedsFewIterations)
 {
   const Place nodes{ 6, 6, 8 };
   const LatticeBody lattice = MakeBlock(nodes, 0.45);
@@ -672,7 +672,7 @@ TEST(FiniteElements, FramesOfAMovingHandle)
   EXPECT_LT(iterations / 20.0, 6.0);
 }
 
-TEST(FiniteElements, Materials)
+TEST(FiniteElements, ChangedMaterialsEqualANewBody)
 {
   LatticeBody lattice = MakeBlock({ 3, 3, 5 });
   EquilibriumRequest request = MakeConverged();

@@ -88,7 +88,7 @@ Vectors Combine(double a, const Vectors& first, double b, const Vectors& second)
 
 } // namespace
 
-TEST(SolutionHistory, StartsFromCombinations)
+TEST(SolutionHistory, GuessesAreCombinationsOfSolutions)
 {
   System system;
   SolutionHistory history;
@@ -151,7 +151,7 @@ TEST(SolutionHistory, SkipsDependentSolutions)
     1e-12 * Length(right));
 }
 
-TEST(SolutionHistory, FollowsTheMatrix)
+TEST(SolutionHistory, ProductsFollowAChangedMatrix)
 {
   System soft;
   System stiff(7e4);

@@ -14,7 +14,7 @@ using namespace deformvolume;
 namespace
 {
 
-class IncrementalCutWays : public WayTest
+class IncrementalCutMotions : public WayTest
 {
 };
 
@@ -22,7 +22,7 @@ class IncrementalCutWays : public WayTest
 
 // If tetrahedra extend over many voxels, an affine map is extrapolated exactly across the sheet:
 // the output is the same as without a cut.
-TEST_P(IncrementalCutWays, AffineMotionsShowNoCut)
+TEST_P(IncrementalCutMotions, AffineMotionsShowNoCut)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
   EditedVolume volume = MakeVolume();
@@ -266,4 +266,4 @@ TEST(IncrementalCuts, CopiesInTheNextBrickMove)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Ways, IncrementalCutWays, GetWays(), GetWayName);
+INSTANTIATE_TEST_SUITE_P(Ways, IncrementalCutMotions, GetWays(), GetWayName);

@@ -535,7 +535,7 @@ TEST(DeviceVectors, OutputOfChainMail)
   EXPECT_EQ(other, host);
 }
 
-TEST(DeviceVectors, Tiny)
+TEST(DeviceVectors, TinyEqualsHost)
 {
   const Subject subject(Extent{ { 0, 3, 0, 3, 0, 3 } });
   const std::vector<float> vectors = MakeVectors(subject.Points, 1);

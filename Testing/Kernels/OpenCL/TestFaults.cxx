@@ -214,7 +214,7 @@ TEST_F(Faults, BuffersOverTheSameMemory)
 }
 
 // The vectors of a field may also be an array of the volume.
-TEST_F(Faults, FieldThatIsAnArray)
+TEST_F(Faults, FieldInTheMemoryOfAnArray)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
   FakeDriver::Get().RefusesOverlaps = true;

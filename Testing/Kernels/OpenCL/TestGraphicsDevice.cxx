@@ -115,7 +115,7 @@ TEST_F(GraphicsDevice, IntegersBeyondSinglePrecision)
 }
 
 // A matrix is applied in double precision. If the device has none, it is applied on the host.
-TEST_F(GraphicsDevice, VectorsOfTheDevice)
+TEST_F(GraphicsDevice, MatricesApplyToDeviceVectors)
 {
   const auto vectors =
     std::make_shared<DeviceVectors>("", static_cast<std::size_t>(this->Case.GetNumberOfVoxels()));

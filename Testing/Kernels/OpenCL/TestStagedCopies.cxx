@@ -558,7 +558,7 @@ TEST_F(Staged, SmallWritesThatFail)
 }
 
 // Writes and reads vectors, some of them or all.
-TEST_F(Staged, VectorsOfTheDevice)
+TEST_F(Staged, ChangedVectorsAreCopied)
 {
   const std::size_t points = 400001;
   std::vector<float> values = MakeRandomValues<float>(3 * points, 5);

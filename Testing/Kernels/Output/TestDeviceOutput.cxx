@@ -22,7 +22,7 @@ namespace
 
 using DeviceOutputs = std::vector<std::shared_ptr<DeviceOutput>>;
 
-class OnDevice : public testing::TestWithParam<Route>
+class OutputOnDevice : public testing::TestWithParam<Route>
 {
 protected:
   void SetUp() override
@@ -78,7 +78,7 @@ protected:
 
 } // namespace
 
-TEST_P(OnDevice, MisuseIsAnError)
+TEST_P(OutputOnDevice, MisuseIsAnError)
 {
   this->Request.HeldRevisions = { 1, 2 }; // without one of the coverage
   EXPECT_THROW(this->Deformer->Deform(this->Request), Error);
@@ -89,7 +89,7 @@ TEST_P(OnDevice, MisuseIsAnError)
   EXPECT_TRUE(this->Outputs == this->MakeExpected());
 }
 
-TEST_P(OnDevice, IsReadOnce)
+TEST_P(OutputOnDevice, IsReadOnce)
 {
   this->Update();
   this->Update(); // also reads the static mapping, to find what the nodes move
@@ -126,7 +126,7 @@ TEST_P(OnDevice, IsReadOnce)
   EXPECT_TRUE(this->Outputs == this->MakeExpected());
 }
 
-TEST_P(OnDevice, RangesNeedNoReading)
+TEST_P(OutputOnDevice, RangesNeedNoReading)
 {
   const auto check = [this](const DeviceOutputs& outputs)
   {
@@ -163,7 +163,7 @@ TEST_P(OnDevice, RangesNeedNoReading)
 }
 
 // Outputs on the device when the deformer overwrites or releases its memory, or is deleted.
-TEST_P(OnDevice, OutlivesLaterUpdates)
+TEST_P(OutputOnDevice, OutlivesLaterUpdates)
 {
   enum
   {
@@ -231,7 +231,7 @@ TEST_P(OnDevice, OutlivesLaterUpdates)
 
 // Random edits, with whole and partial updates. Each output goes to one of three memories, which
 // hold earlier outputs, and is read or not.
-TEST_P(OnDevice, EqualsWholeOutputs)
+TEST_P(OutputOnDevice, EqualsWholeOutputs)
 {
   std::mt19937 random(static_cast<unsigned>(GetParam()) + 1);
   std::vector<EditedOutputs> memories(3, EditedOutputs(this->Edited));
@@ -283,7 +283,7 @@ TEST_P(OnDevice, EqualsWholeOutputs)
   EXPECT_GT(parts, GetNumberOfCases(40) / 3);
 }
 
-TEST_P(OnDevice, LocalEditsReadLittle)
+TEST_P(OutputOnDevice, LocalEditsReadLittle)
 {
   DeformReport report = this->Update();
   Read(report.DeviceOutputs);
@@ -302,7 +302,7 @@ TEST_P(OnDevice, LocalEditsReadLittle)
   EXPECT_TRUE(this->Outputs == this->MakeExpected());
 }
 
-TEST_P(OnDevice, OutputsInPartsGoToTheHost)
+TEST_P(OutputOnDevice, OutputsInPartsGoToTheHost)
 {
   // Memory for 15 planes of the array of two doubles per voxel.
   this->Deformer->SetAllocationLimit(16 *
@@ -313,7 +313,7 @@ TEST_P(OnDevice, OutputsInPartsGoToTheHost)
   EXPECT_TRUE(this->Outputs == this->MakeExpected());
 }
 
-TEST_P(OnDevice, ManyThreadsReadAtOnce)
+TEST_P(OutputOnDevice, ManyThreadsReadAtOnce)
 {
   for (int i = 0; i < 10; ++i)
   {
@@ -343,7 +343,7 @@ TEST_P(OnDevice, ManyThreadsReadAtOnce)
   }
 }
 
-TEST_P(OnDevice, CopiesThatFail)
+TEST_P(OutputOnDevice, CopiesThatFail)
 {
   for (const bool atOnce : { false, true })
   {
@@ -369,4 +369,4 @@ TEST_P(OnDevice, CopiesThatFail)
 }
 
 INSTANTIATE_TEST_SUITE_P(
-  Routes, OnDevice, testing::Values(Route::Mesh, Route::Runs, Route::Field), GetRouteName);
+  Routes, OutputOnDevice, testing::Values(Route::Mesh, Route::Runs, Route::Field), GetRouteName);

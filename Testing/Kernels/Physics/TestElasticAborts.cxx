@@ -103,7 +103,7 @@ private:
 
 } // namespace
 
-TEST(ElasticAborts, FiniteElementBodies)
+TEST(ElasticAborts, FiniteElementsCallProgressOften)
 {
   const ElasticBody body = MakeBody({ 16, 16, 31 });
   FiniteElementModel model;
@@ -322,7 +322,7 @@ TEST(ElasticAborts, AbortedHierarchiesAreRebuilt)
   EXPECT_EQ(model.GetDisplacements(), fresh.GetDisplacements());
 }
 
-TEST(ElasticAborts, BodiesOfSprings)
+TEST(ElasticAborts, AbortedSpringBodiesKeepTheLastBody)
 {
   const Place nodes{ { 40 / Shrinking, 40 / Shrinking, 80 / Shrinking } };
   const ElasticBody body = LatticeBody(nodes, 0.01, MakeMaterial(1e4, 0.4)).Body;

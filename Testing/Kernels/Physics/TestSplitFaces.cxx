@@ -58,7 +58,7 @@ TEST(SplitFaces, NoPieceOnBothSides)
   }
 }
 
-TEST(SplitFaces, EvenCrossings)
+TEST(SplitFaces, EvenNumbersOfCrossingsDoNotSplit)
 {
   const ElasticBody body = MakeLattice();
   SheetSurface twice = MakePlaneX(4.0);
@@ -85,7 +85,7 @@ TEST(SplitFaces, EvenCrossings)
   ExpectPieces(Apply(first, Split(first, down)), 4);
 }
 
-TEST(SplitFaces, OrderAndOrientation)
+TEST(SplitFaces, OrderAndOrientationOfTrianglesDoNotMatter)
 {
   const ElasticBody body = MakeLattice();
   SheetSurface sheet = MakeSheet({ -1.0, -1.0, 4.5 }, { 10.0, 0.0, 1.5 }, { 0.0, 10.0, -1.5 });
@@ -120,7 +120,7 @@ TEST(SplitFaces, OrderAndOrientation)
   ExpectSame(alone, expected);
 }
 
-TEST(SplitFaces, SegmentsOutside)
+TEST(SplitFaces, SegmentsBetweenCentroidsOutsideTetrahedra)
 {
   ElasticBody body;
   body.Points = { { 0.0, 0.0, 0.0 }, { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { 10.0, 1.0, 1.0 },
@@ -165,7 +165,7 @@ TEST(SplitFaces, FacesOfSeveralTetrahedra)
   EXPECT_EQ(CountComponents(FindFaceComponents(body.Tetrahedra)), 1U);
 }
 
-TEST(SplitFaces, Random)
+TEST(SplitFaces, RandomSheetsEqualTheReference)
 {
   constexpr std::array<int, 3> nodes{ { 4, 5, 4 } };
   int compared = 0;

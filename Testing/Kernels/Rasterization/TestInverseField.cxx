@@ -410,7 +410,7 @@ TEST(InverseField, InvertedTetrahedra)
   }
 }
 
-TEST(InverseField, Tiny)
+TEST(InverseField, TinyEqualsReference)
 {
   const Extent volume{ { 0, 4, -2, 1, 1, 4 } };
   InverseCase c = MakeCase(volume, { { 3, 1, 2 } }, 0.0005F);

@@ -450,7 +450,7 @@ TEST(MeshRasterization, NotANumberStaysWithinItsCells)
 
 // Small enough for an interpreter of kernels. It covers folds, masks, arrays in single and double
 // precision, and work-groups of several items.
-TEST(MeshRasterization, Tiny)
+TEST(MeshRasterization, TinyEqualsReference)
 {
   RasterCase tiny = MakeRasterCase({ { { 0, 6, -2, 3, 1, 5 } }, { { 1, 1, 1 } } },
     glm::dvec3(0.0, -2.0, 1.0), glm::dvec3(6.0, 3.0, 5.0), 1, MakeJitter(3, 2.0), 0);
