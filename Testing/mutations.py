@@ -147,7 +147,7 @@ MUTATIONS = {
                      "std::min(all, system) : all + this->CountHeld();", [GRAPHICS]),
     "arrays-half-set": ("Kernels/DeviceVolume/DeviceArrays.cxx",
                         "this->Described.clear(); // no arrays are set after an exception", "", [FAULTS]),
-    "pressed-flat": ("Kernels/Displacements/FieldFolds.cxx", "sum < 0.999", "sum < 1.1", [("TestInverseField", "*")]),
+    "pressed-flat": ("Kernels/Displacements/FieldFolds.cxx", "LargestChange = 0.999F;", "LargestChange = 1.1F;", [("TestInverseField", "*")]),
     "links-half-set": ("Kernels/DeviceVolume/DeviceMapping.cxx", "this->WithLinks = false; // until all links are copied",
                        "this->WithLinks = true;", [FAULTS]),
     "far-output": ("Kernels/Output/OutputSlab.cxx", "farthest = 1 << 22;", "farthest = 1 << 28;",

@@ -13,6 +13,8 @@
 #include <atomic>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace deformvolume
@@ -20,14 +22,19 @@ namespace deformvolume
 namespace
 {
 
-// The displacements of a row of points along x, in steps between points of the field.
-struct Row
+// Less than 1 by far more than rounding errors of floats.
+constexpr float LargestChange = 0.999F;
+
+// Loops with std::min() and std::max(), which return references, are not vectorized.
+float Lesser(float a, float b)
 {
-  std::array<std::vector<double>, 3> Components;
-  bool IsFinite = true;
-  int Y = -1;
-  int Z = -1;
-};
+  return a < b ? a : b;
+}
+
+float Greater(float a, float b)
+{
+  return a > b ? a : b;
+}
 
 /// Counts the inverted tetrahedra in rows of cells.
 class RowCounter
@@ -37,70 +44,67 @@ public:
   std::int64_t Count(int y, int z);
 
 private:
-  void Read(Row& row, int y, int z) const;
-  void FindRegularCells();
+  const float* GetRow(int y, int z) const;
+  void FindChanges();
+  bool IsRegular(std::size_t x) const;
   int CountInCell(int x, int y, int z) const;
 
   const DisplacementField& Field;
   const std::size_t Size; // points on x
   const glm::dmat3 ToField;
-  // Indexed by the parities of y and z, so that the next row of cells can reuse two rows.
-  std::array<std::array<Row, 2>, 2> Rows;
-  // Largest change of one component along the edges on y, and on z, at each x.
-  std::vector<double> ChangeAcross[2];
-  // For each cell of the row: whether the changes along its edges prove that no tetrahedron is
-  // inverted.
-  std::vector<unsigned char> IsRegular;
+  // Absolute values of the matrix, by component of the displacement, and by component of the
+  // vectors of the field.
+  std::array<std::array<float, 3>, 3> Factors;
+  // Whether the vectors have the axes of the field.
+  bool IsAligned = true;
+  // The vectors of a row of cells, by the parities of y and z. Three floats for each point.
+  std::array<std::array<const float*, 2>, 2> Rows{};
+  // The largest change of each component of the vectors along the edges on y, and on z, at each
+  // point on x.
+  std::vector<float> ChangesAcross[2];
+  // All cells are regular if no element of Changes is larger.
+  float LargestForAll = 0.0F;
+  // For each cell and each component of the vectors: see FindChanges().
+  std::vector<float> Changes;
+  // Whether the vectors of the rows are finite, and whether all cells of the row are regular.
+  bool AreFinite = false;
+  bool AreRegular = false;
 };
 
 RowCounter::RowCounter(const DisplacementField& field)
   : Field(field)
   , Size(static_cast<std::size_t>(field.Dimensions[0]))
   , ToField(GetVoxelsToField(field))
-  , IsRegular(this->Size)
+  , Changes(3 * this->Size)
 {
-  for (auto& rows : this->Rows)
+  float largestSum = 0.0F;
+  for (int i = 0; i < 3; ++i)
   {
-    for (Row& row : rows)
+    float sum = 0.0F;
+    for (int j = 0; j < 3; ++j)
     {
-      for (auto& component : row.Components)
-      {
-        component.resize(this->Size);
-      }
+      this->Factors[i][j] = static_cast<float>(std::abs(this->ToField[j][i]));
+      this->IsAligned = this->IsAligned && (i == j || this->Factors[i][j] == 0.0F);
+      sum += this->Factors[i][j];
     }
+    largestSum = std::max(largestSum, sum);
   }
-  for (auto& change : this->ChangeAcross)
+  this->LargestForAll = LargestChange / largestSum;
+  for (auto& changes : this->ChangesAcross)
   {
-    change.resize(this->Size);
+    changes.resize(3 * this->Size);
   }
 }
 
-void RowCounter::Read(Row& row, int y, int z) const
+const float* RowCounter::GetRow(int y, int z) const
 {
-  if (row.Y == y && row.Z == z)
-  {
-    return;
-  }
   const auto& size = this->Field.Dimensions;
-  const std::int64_t first = (static_cast<std::int64_t>(z) * size[1] + y) * size[0];
-  double zero = 0.0;
-  for (std::size_t x = 0; x < this->Size; ++x)
-  {
-    const glm::dvec3 vector =
-      this->ToField * GetVector(this->Field.Vectors, first + static_cast<std::int64_t>(x));
-    for (int i = 0; i < 3; ++i)
-    {
-      row.Components[i][x] = vector[i];
-      zero += 0.0 * vector[i];
-    }
-  }
-  row.IsFinite = zero == 0.0;
-  row.Y = y;
-  row.Z = z;
+  return this->Field.Vectors + 3 * ((static_cast<std::int64_t>(z) * size[1] + y) * size[0]);
 }
 
-// Finds cells that certainly have no inverted tetrahedron, with vector instructions. In most fields
-// it finds most cells.
+// Finds, for each cell and component, a number from which IsRegular() proves that the cell has no
+// inverted tetrahedron, and sets AreFinite and AreRegular. Works on neighboring floats, so that
+// compilers use vector instructions.
 //
 // The derivative of the map in a tetrahedron is I + D. In a corner tetrahedron, column j of D is
 // the change of the displacement along an edge of the cell on axis j. In the central tetrahedron,
@@ -108,41 +112,57 @@ void RowCounter::Read(Row& row, int y, int z) const
 // changes along two edges on one of the other two axes, no matter which. If the absolute values in
 // each row of D add up to less than 1, the determinant of I + D is positive. Let X, Y and Z be the
 // largest changes of a component along the edges of a cell on each axis. If X + Y + Z + min(Y, Z) +
-// min(X, Z) + min(X, Y) < 1 for all three components, none of the five tetrahedra is inverted.
-void RowCounter::FindRegularCells()
+// min(X, Z) + min(X, Y) < 1 for all three components of the displacement, none of the five
+// tetrahedra is inverted.
+//
+// If the vectors of the field have other axes than its grid, each component of the displacement is
+// a sum over components of the vectors. Then the bound 2 (X + Y + Z) is used instead, which is
+// linear.
+void RowCounter::FindChanges()
 {
-  bool areFinite = true;
-  for (const auto& rows : this->Rows)
+  const float* const rows[4] = { this->Rows[0][0], this->Rows[1][0], this->Rows[0][1],
+    this->Rows[1][1] };
+  float* const changeY = this->ChangesAcross[0].data();
+  float* const changeZ = this->ChangesAcross[1].data();
+  int infinite = 0;
+  for (std::size_t k = 0; k < 3 * this->Size; ++k)
   {
-    areFinite = areFinite && rows[0].IsFinite && rows[1].IsFinite;
+    // The sum is not finite if one of the four vectors is not.
+    const float all = std::abs(rows[1][k] - rows[0][k]) + std::abs(rows[3][k] - rows[2][k]);
+    infinite |= all <= std::numeric_limits<float>::max() ? 0 : 1;
+    changeY[k] = Greater(std::abs(rows[1][k] - rows[0][k]), std::abs(rows[3][k] - rows[2][k]));
+    changeZ[k] = Greater(std::abs(rows[2][k] - rows[0][k]), std::abs(rows[3][k] - rows[1][k]));
   }
-  std::fill(
-    this->IsRegular.begin(), this->IsRegular.end(), static_cast<unsigned char>(areFinite ? 1 : 0));
-  for (int i = 0; i < 3; ++i)
+  float* const changes = this->Changes.data();
+  const float weight = this->IsAligned ? 1.0F : 0.0F;
+  const float largest = this->LargestForAll;
+  int larger = 0;
+  for (std::size_t k = 0; k < 3 * (this->Size - 1); ++k)
   {
-    const double* rows[4] = { this->Rows[0][0].Components[i].data(),
-      this->Rows[1][0].Components[i].data(), this->Rows[0][1].Components[i].data(),
-      this->Rows[1][1].Components[i].data() };
-    double* changeY = this->ChangeAcross[0].data();
-    double* changeZ = this->ChangeAcross[1].data();
-    for (std::size_t x = 0; x < this->Size; ++x)
-    {
-      changeY[x] = std::max(std::abs(rows[1][x] - rows[0][x]), std::abs(rows[3][x] - rows[2][x]));
-      changeZ[x] = std::max(std::abs(rows[2][x] - rows[0][x]), std::abs(rows[3][x] - rows[1][x]));
-    }
-    unsigned char* isRegular = this->IsRegular.data();
-    for (std::size_t x = 0; x + 1 < this->Size; ++x)
-    {
-      const double alongX = std::max(
-        std::max(std::abs(rows[0][x + 1] - rows[0][x]), std::abs(rows[1][x + 1] - rows[1][x])),
-        std::max(std::abs(rows[2][x + 1] - rows[2][x]), std::abs(rows[3][x + 1] - rows[3][x])));
-      const double alongY = std::max(changeY[x], changeY[x + 1]);
-      const double alongZ = std::max(changeZ[x], changeZ[x + 1]);
-      const double sum = alongX + alongY + alongZ + std::min(alongY, alongZ) +
-        std::min(alongX, alongZ) + std::min(alongX, alongY);
-      isRegular[x] &= sum < 0.999 ? 1 : 0; // the margin to 1 is far larger than rounding errors
-    }
+    const float alongX =
+      Greater(Greater(std::abs(rows[0][k + 3] - rows[0][k]), std::abs(rows[1][k + 3] - rows[1][k])),
+        Greater(std::abs(rows[2][k + 3] - rows[2][k]), std::abs(rows[3][k + 3] - rows[3][k])));
+    const float alongY = Greater(changeY[k], changeY[k + 3]);
+    const float alongZ = Greater(changeZ[k], changeZ[k + 3]);
+    const float sum = alongX + alongY + alongZ;
+    const float least = Lesser(alongY, alongZ) + Lesser(alongX, alongZ) + Lesser(alongX, alongY);
+    changes[k] = sum + weight * least + (1.0F - weight) * sum;
+    larger |= changes[k] < largest ? 0 : 1;
   }
+  this->AreFinite = infinite == 0;
+  this->AreRegular = this->AreFinite && larger == 0;
+}
+
+// Whether the changes in a cell prove that no tetrahedron is inverted.
+bool RowCounter::IsRegular(std::size_t x) const
+{
+  const float* const changes = this->Changes.data() + 3 * x;
+  return std::all_of(this->Factors.begin(), this->Factors.end(),
+    [changes](const std::array<float, 3>& factors)
+    {
+      return factors[0] * changes[0] + factors[1] * changes[1] + factors[2] * changes[2] <
+        LargestChange;
+    });
 }
 
 int RowCounter::CountInCell(int x, int y, int z) const
@@ -156,11 +176,8 @@ int RowCounter::CountInCell(int x, int y, int z) const
     // point.
     const glm::ivec3 parity(vertex & 1, vertex >> 2 & 1, vertex >> 1 & 1);
     const glm::ivec3 point = cell + (parity ^ (cell & 1));
-    const Row& row = this->Rows[parity.y][parity.z];
-    for (int i = 0; i < 3; ++i)
-    {
-      moved[vertex][i] = point[i] + row.Components[i][static_cast<std::size_t>(point.x)];
-    }
+    const float* const row = this->Rows[parity.y][parity.z];
+    moved[vertex] = glm::dvec3(point) + this->ToField * GetVector(row, point.x);
   }
   const bool isOdd = ((x + y + z) & 1) != 0;
   int inverted = 0;
@@ -180,13 +197,18 @@ std::int64_t RowCounter::Count(int y, int z)
   {
     const int pointY = y + (point & 1);
     const int pointZ = z + (point >> 1);
-    this->Read(this->Rows[pointY & 1][pointZ & 1], pointY, pointZ);
+    this->Rows[pointY & 1][pointZ & 1] = this->GetRow(pointY, pointZ);
   }
-  this->FindRegularCells();
+  this->FindChanges();
+  if (this->AreRegular)
+  {
+    return 0;
+  }
   std::int64_t inverted = 0;
   for (std::size_t x = 0; x + 1 < this->Size; ++x)
   {
-    inverted += this->IsRegular[x] ? 0 : this->CountInCell(static_cast<int>(x), y, z);
+    inverted +=
+      this->AreFinite && this->IsRegular(x) ? 0 : this->CountInCell(static_cast<int>(x), y, z);
   }
   return inverted;
 }

@@ -193,6 +193,149 @@ static __attribute__((always_inline)) void FindTileRests(__global const float* v
   }
 }
 #else
+#define REALS LANES_OF(REAL)
+#define TO_REALS JOIN(convert_, REALS)
+#define LONGS LANES_OF(long)
+#define TO_LONGS JOIN(convert_, LONGS)
+// Rounds numbers toward 0. Converts the results of comparisons of REALS.
+#define REALS_TO_INTS JOIN(convert_, INTS)
+
+// Every third element of three vectors in a row, from the first, the second or the third one on.
+#if LANES == 16
+#define THIRDS_0(a, b, c) (FLOATS)(a.s0369, a.scf, b.s258b, b.se, c.s147a, c.sd)
+#define THIRDS_1(a, b, c) (FLOATS)(a.s147a, a.sd, b.s0369, b.scf, c.s258b, c.se)
+#define THIRDS_2(a, b, c) (FLOATS)(a.s258b, a.se, b.s147a, b.sd, c.s0369, c.scf)
+#elif LANES == 8
+#define THIRDS_0(a, b, c) (FLOATS)(a.s036, b.s147, c.s25)
+#define THIRDS_1(a, b, c) (FLOATS)(a.s147, b.s25, c.s036)
+#define THIRDS_2(a, b, c) (FLOATS)(a.s25, b.s036, c.s147)
+#else
+#define THIRDS_0(a, b, c) (FLOATS)(a.s03, b.s2, c.s1)
+#define THIRDS_1(a, b, c) (FLOATS)(a.s1, b.s03, c.s2)
+#define THIRDS_2(a, b, c) (FLOATS)(a.s2, b.s1, c.s03)
+#endif
+
+#define LOAD_COMPONENT(k, axis) vectors[3 * points[k] + axis]
+
+// Loads the vectors of LANES points. Points of a field on the grid of the output are neighbors.
+static void LoadVectors(__global const float* vectors, LONGS numbers, REALS* loaded)
+{
+  long points[LANES];
+  STORE(numbers, points);
+  if (all(numbers == points[0] + TO_LONGS(LANE_INDEX)))
+  {
+    __global const float* const first = vectors + 3 * points[0];
+    const FLOATS a = LOAD(first);
+    const FLOATS b = LOAD(first + LANES);
+    const FLOATS c = LOAD(first + 2 * LANES);
+    loaded[0] = TO_REALS(THIRDS_0(a, b, c));
+    loaded[1] = TO_REALS(THIRDS_1(a, b, c));
+    loaded[2] = TO_REALS(THIRDS_2(a, b, c));
+    return;
+  }
+  loaded[0] = TO_REALS((FLOATS)(GATHER(LOAD_COMPONENT, 0)));
+  loaded[1] = TO_REALS((FLOATS)(GATHER(LOAD_COMPONENT, 1)));
+  loaded[2] = TO_REALS((FLOATS)(GATHER(LOAD_COMPONENT, 2)));
+}
+
+// Does the same as InterpolateField for LANES positions. If none of them is between points, only one vector is read
+// for each.
+static void InterpolateLanes(
+  __global const float* vectors, const REALS* position, REALS* vector, const LookupParameters* f)
+{
+  LONGS point[3];
+  REALS between[3];
+  LONGS next[3]; // the step to the next point on each axis; 0 if that point has no weight
+  const LONGS steps[3] = { 1, f->Dimensions[0], (long)f->Dimensions[0] * f->Dimensions[1] };
+  INTS isBetween = 0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const INTS low = REALS_TO_INTS(position[axis]);
+    point[axis] = TO_LONGS(low);
+    between[axis] = position[axis] - TO_REALS(low);
+    const INTS hasNext = REALS_TO_INTS(between[axis] > 0);
+    next[axis] = TO_LONGS(hasNext) & steps[axis];
+    isBetween |= hasNext;
+  }
+  const LONGS first = point[2] * steps[2] + point[1] * steps[1] + point[0];
+  if (!LaneBits(isBetween))
+  {
+    LoadVectors(vectors, first, vector);
+    return;
+  }
+  REALS rows[4][3];
+  for (int row = 0; row < 4; ++row)
+  {
+    const LONGS begin = first + (row & 1 ? next[1] : 0) + (row & 2 ? next[2] : 0);
+    REALS high[3];
+    LoadVectors(vectors, begin, rows[row]);
+    LoadVectors(vectors, begin + next[0], high);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      rows[row][axis] = MIX(rows[row][axis], high[axis], between[0]);
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const REALS low = MIX(rows[0][axis], rows[1][axis], between[1]);
+    const REALS upper = MIX(rows[2][axis], rows[3][axis], between[1]);
+    vector[axis] = MIX(low, upper, between[2]);
+  }
+}
+
+// Does the same as LookUpRest for the LANES voxels from x on of a row, if all wanted ones are inside the field and no
+// vector is undefined. wanted: bits of voxels, relative to x. found: receives the bits of voxels that have a rest
+// coordinate. Returns 0 if LookUpRest must be called for each voxel.
+static int LookUpRests(__global const float* vectors, const LookupRow* row, const int* voxel, int x, uint wanted,
+  __local int* rests, uint* found, const LookupParameters* f, const RasterParameters* p)
+{
+  const REALS lane = TO_REALS(LANE_INDEX + x);
+  REALS position[3];
+  INTS inside = -1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const REAL last = (REAL)(f->Dimensions[axis] - 1);
+    const REALS here = MULTIPLY_ADD_REAL(lane, (REALS)row->Steps[axis], (REALS)row->Start[axis]);
+    inside &= REALS_TO_INTS((here >= -(REAL)DEFORMVOLUME_LOOKUP_TOLERANCE) &
+      (here <= last + (REAL)DEFORMVOLUME_LOOKUP_TOLERANCE));
+    position[axis] = clamp(here, (REAL)0, last);
+  }
+  if (~LaneBits(inside) & wanted)
+  {
+    return 0;
+  }
+  REALS vector[3];
+  InterpolateLanes(vectors, position, vector, f);
+  if (LaneBits(REALS_TO_INTS(isnan(vector[0]))) & wanted)
+  {
+    return 0;
+  }
+  REALS at[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    at[axis] = vector[axis] + ((REALS)voxel[axis] + (axis == 0 ? lane : (REALS)0));
+  }
+  inside = -1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    REALS inVolume = MULTIPLY_ADD_REAL(at[axis], (REALS)row->Inverse[axis][axis], (REALS)-row->First[axis]);
+    if (p->HasTurnedAxes)
+    {
+      const int second = axis == 0 ? 1 : 0;
+      const int third = axis == 2 ? 1 : 2;
+      inVolume = MULTIPLY_ADD_REAL(at[second], (REALS)row->Inverse[axis][second], inVolume);
+      inVolume = MULTIPLY_ADD_REAL(at[third], (REALS)row->Inverse[axis][third], inVolume);
+    }
+    const int most = (p->Size[axis] - 1) << p->FractionBits[axis];
+    inside &= REALS_TO_INTS((inVolume >= (REAL)-p->Tolerance[axis]) &
+      (inVolume <= (REAL)most + (REAL)p->Tolerance[axis]));
+    STORE(REALS_TO_INTS(clamp(inVolume, (REAL)0, (REAL)most) + (REAL)0.5),
+      rests + axis * REST_AXIS_STEP + x * REST_STEP);
+  }
+  *found = LaneBits(inside) & wanted;
+  return 1;
+}
+
 // Finds the rest coordinates of a row of a tile. Returns the bits of the voxels that have one.
 static uint FindRowRests(__global const float* vectors, VoxelBox tile, const int* origin, int row,
   __local int* rowRests, const LookupParameters* f, const RasterParameters* p)
@@ -203,9 +346,20 @@ static uint FindRowRests(__global const float* vectors, VoxelBox tile, const int
   if (voxel[1] >= tile.Low.y && voxel[1] <= tile.High.y && voxel[2] >= tile.Low.z && voxel[2] <= tile.High.z)
   {
     const LookupRow common = MakeLookupRow(voxel, f, p);
-    for (int x = tile.Low.x - origin[0]; x <= tile.High.x - origin[0]; ++x)
+    const int from = tile.Low.x - origin[0];
+    const int to = tile.High.x - origin[0];
+    for (int first = from & -LANES; first <= to; first += LANES)
     {
-      found |= (uint)LookUpRest(vectors, &common, voxel, x, rowRests, f, p) << x;
+      const uint wanted = (uint)(((ulong)2 << min(to - first, LANES - 1)) - ((ulong)1 << max(from - first, 0)));
+      uint those = 0;
+      if (!LookUpRests(vectors, &common, voxel, first, wanted, rowRests, &those, f, p))
+      {
+        for (int x = max(first, from); x <= min(to, first + LANES - 1); ++x)
+        {
+          those |= (uint)LookUpRest(vectors, &common, voxel, x, rowRests, f, p) << (x - first);
+        }
+      }
+      found |= those << first;
     }
   }
   return found;

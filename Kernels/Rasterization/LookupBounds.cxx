@@ -23,6 +23,19 @@ constexpr int BlockSize = 8;
 /// A margin that is larger than any output, in steps between points of the field.
 constexpr double Infinity = 1e9;
 
+bool IsInside(const IndexBounds& bounds, const IndexBounds& box)
+{
+  return !bounds.IsEmpty() && glm::all(glm::greaterThanEqual(box.Min, bounds.Min)) &&
+    glm::all(glm::lessThanEqual(box.Max, bounds.Max));
+}
+
+/// Returns the voxels in a box.
+IndexBounds RoundToVoxels(const IndexBounds& box)
+{
+  constexpr double rounding = 1e-6;
+  return { glm::ceil(box.Min - rounding), glm::floor(box.Max + rounding) };
+}
+
 /// The lookup of output voxels in a volume through a field.
 class Lookup
 {
@@ -50,11 +63,19 @@ public:
     return glm::max(glm::ivec3(1), (glm::ivec3(this->Last) + BlockSize - 1) / BlockSize);
   }
 
-  /// Returns the output voxels that a block of the field may map into the volume.
-  IndexBounds GetCandidates(const glm::ivec3& block) const
+  /// Returns the output voxels in a block of the field that may be mapped into the volume. Returns
+  /// an empty box if they are all in `known`.
+  IndexBounds GetCandidates(const glm::ivec3& block, const IndexBounds& known) const
   {
     const glm::ivec3 first = block * BlockSize;
     const glm::ivec3 last = glm::min(first + BlockSize, glm::ivec3(this->Last));
+    bool hasBorder = false;
+    IndexBounds box = this->GetBlock(first, last, hasBorder);
+    // Most blocks are skipped before their vectors are read.
+    if (IsInside(known, RoundToVoxels(box)))
+    {
+      return IndexBounds();
+    }
     IndexBounds vectors;
     for (int z = first.z; z <= last.z; ++z)
     {
@@ -70,34 +91,14 @@ public:
         }
       }
     }
-    bool hasBorder = false;
-    IndexBounds box;
-    for (int corner = 0; corner < 8; ++corner)
-    {
-      glm::dvec3 point;
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        const bool upper = (corner >> axis & 1) != 0;
-        const int gridPoint = upper ? last[axis] : first[axis];
-        const bool isBorder = gridPoint == (upper ? static_cast<int>(this->Last[axis]) : 0);
-        const double margin =
-          isBorder ? (this->Field.Extrapolate ? Infinity : DEFORMVOLUME_LOOKUP_TOLERANCE) : 0.0;
-        point[axis] = gridPoint + (upper ? margin : -margin);
-        hasBorder = hasBorder || isBorder;
-      }
-      box.Add(this->FromField * (point - this->Offset));
-    }
     if (hasBorder && IsFading(this->Field))
     {
       vectors.Add(glm::dvec3(0.0));
     }
-    constexpr double rounding = 1e-6;
     const IndexBounds volume = this->Transform.ToOutput(this->Volume);
     box.Min = glm::max(box.Min, volume.Min - vectors.Max);
     box.Max = glm::min(box.Max, volume.Max - vectors.Min);
-    box.Min = glm::ceil(box.Min - rounding);
-    box.Max = glm::floor(box.Max + rounding);
-    return box;
+    return RoundToVoxels(box);
   }
 
   bool IsCovered(const glm::dvec3& voxel) const
@@ -124,6 +125,29 @@ public:
   }
 
 private:
+  /// Returns the box of a block of the field, in indices of the output. first, last: points of the
+  /// field. hasBorder: set to whether the block has a border of the field.
+  IndexBounds GetBlock(const glm::ivec3& first, const glm::ivec3& last, bool& hasBorder) const
+  {
+    IndexBounds box;
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      glm::dvec3 point;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const bool upper = (corner >> axis & 1) != 0;
+        const int gridPoint = upper ? last[axis] : first[axis];
+        const bool isBorder = gridPoint == (upper ? static_cast<int>(this->Last[axis]) : 0);
+        const double margin =
+          isBorder ? (this->Field.Extrapolate ? Infinity : DEFORMVOLUME_LOOKUP_TOLERANCE) : 0.0;
+        point[axis] = gridPoint + (upper ? margin : -margin);
+        hasBorder = hasBorder || isBorder;
+      }
+      box.Add(this->FromField * (point - this->Offset));
+    }
+    return box;
+  }
+
   glm::dvec3 GetPoint(int x, int y, int z) const
   {
     const auto& size = this->Field.Dimensions;
@@ -145,12 +169,6 @@ private:
   glm::dvec3 Offset{ 0.0 };
   glm::dvec3 Last{ 0.0 };
 };
-
-bool IsInside(const IndexBounds& bounds, const IndexBounds& box)
-{
-  return !bounds.IsEmpty() && glm::all(glm::greaterThanEqual(box.Min, bounds.Min)) &&
-    glm::all(glm::lessThanEqual(box.Max, bounds.Max));
-}
 
 /// Adds the covered voxels of a box to bounds. Tests only voxels that would extend the bounds.
 void AddCovered(const Lookup& lookup, const IndexBounds& box, IndexBounds& bounds)
@@ -205,7 +223,7 @@ IndexBounds ComputeLookupBounds(const VoxelGrid& voxelGrid, const DisplacementFi
         for (int x = 0; x < blocks.x; ++x)
         {
           const IndexBounds candidates = lookup.GetCandidates(
-            { x, static_cast<int>(row % blocks.y), static_cast<int>(row / blocks.y) });
+            { x, static_cast<int>(row % blocks.y), static_cast<int>(row / blocks.y) }, known);
           if (glm::all(glm::lessThanEqual(candidates.Min, candidates.Max)) &&
             !IsInside(known, candidates))
           {

@@ -199,7 +199,9 @@ void ExpectLookedUpInSlabs(InverseCase& c)
   const Deformed first = RunCase(deformer, c, arrays);
   ExpectLookedUp(c, values, integers, first);
   ExpectLookedUp(c, values, integers, RunCase(deformer, c, arrays, Interpolation::Cubic), true);
-  deformer.SetAllocationLimit(8 * GetNumberOfPoints(Volume));
+  // The vectors of the field need one allocation.
+  deformer.SetAllocationLimit(
+    std::max<std::uint64_t>(8 * GetNumberOfPoints(Volume), c.Vectors.size() * sizeof(float)));
   deformer.SetWorkGroupSize(3);
   const Deformed second = RunCase(deformer, c, arrays);
   EXPECT_EQ(first.Coverage, second.Coverage);
@@ -273,6 +275,25 @@ TEST(InverseField, EqualsReferenceOnATurnedGrid)
       c.Field.IndexToField[4 * axis + 3] = (axis == 1 ? -1.3 : 0.2) - step * low;
     }
     ExpectLookedUpInSlabs(c);
+  }
+}
+
+// The points of the field are voxels of the output, as registrations compute it, or lie halfway
+// between neighbors on x.
+TEST(InverseField, EqualsReferenceOnTheGridOfTheOutput)
+{
+  for (const double shift : { 0.0, 0.5 })
+  {
+    for (const bool hasUndefined : { false, true })
+    {
+      InverseCase c = MakeCase(Volume, { { 33, 20, 22 } }, 0.002F);
+      c.Field.IndexToField = { { 1, 0, 0, 6 + shift, 0, 1, 0, 1, 0, 0, 1, 12 } };
+      for (std::size_t point = 0; hasUndefined && point < c.Vectors.size() / 3; point += 101)
+      {
+        std::fill_n(&c.Vectors[3 * point], 3, std::nanf(""));
+      }
+      ExpectLookedUpInSlabs(c);
+    }
   }
 }
 
@@ -393,20 +414,28 @@ TEST(InverseField, InvertedTetrahedra)
         << "axis " << axis << ", factor " << factor;
     }
   }
-  // From a few inverted tetrahedra to many.
-  for (const float strength : { 0.0F, 0.0003F, 0.0005F, 0.0007F, 0.001F, 0.005F })
+  // From a few inverted tetrahedra to many, on a grid that is rotated slightly, and on one that is
+  // not.
+  for (const float strength : { 0.0F, 0.0001F, 0.0003F, 0.0005F, 0.0007F, 0.001F, 0.005F })
   {
-    InverseCase c = MakeCase(Volume, { { 9, 8, 7 } }, strength);
-    c.Field.Vectors = c.Vectors.data();
-    EXPECT_EQ(CountInvertedTetrahedra(c.Field), CountInvertedByDefinition(c.Field))
-      << "strength " << strength;
-    // Tetrahedra with an undefined vertex are not counted.
-    for (const std::size_t point : { 0U, 100U, 101U, 163U, 300U })
+    for (const bool isAligned : { false, true })
     {
-      std::fill_n(&c.Vectors[3 * point], 3, std::nanf(""));
+      InverseCase c = MakeCase(Volume, { { 9, 8, 7 } }, strength);
+      if (isAligned)
+      {
+        c.Field.IndexToField = { { 0.4, 0, 0, 0, 0, 1.7, 0, 0, 0, 0, 0.9, 0 } };
+      }
+      c.Field.Vectors = c.Vectors.data();
+      EXPECT_EQ(CountInvertedTetrahedra(c.Field), CountInvertedByDefinition(c.Field))
+        << "strength " << strength << ", aligned " << isAligned;
+      // Tetrahedra with an undefined vertex are not counted.
+      for (const std::size_t point : { 0U, 100U, 101U, 163U, 300U })
+      {
+        std::fill_n(&c.Vectors[3 * point], 3, std::nanf(""));
+      }
+      EXPECT_EQ(CountInvertedTetrahedra(c.Field), CountInvertedByDefinition(c.Field))
+        << "with undefined vectors, strength " << strength << ", aligned " << isAligned;
     }
-    EXPECT_EQ(CountInvertedTetrahedra(c.Field), CountInvertedByDefinition(c.Field))
-      << "strength " << strength;
   }
 }
 
