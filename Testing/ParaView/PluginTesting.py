@@ -76,20 +76,20 @@ def messages():
 
 
 def check_one_message(texts, words):
-    check(len(texts) == 1, f"Not one message but {len(texts)}:\n" + "\n".join(texts))
+    check(len(texts) == 1, f"Expected one message, not {len(texts)}:\n" + "\n".join(texts))
     for word in words:
         check(word in texts[0], f'"{word}" is missing in: {texts[0]}')
 
 
 def check_messages(texts, words):
     """Checks messages that views display at each of their updates: all must contain the words."""
-    check(texts, "No message")
+    check(texts, f"Expected messages with {words}, but there are none")
     for text in texts:
         check_one_message([text], words)
 
 
 def check_silent(texts):
-    check(not texts, "Unexpected: " + "\n".join(texts))
+    check(not texts, "Expected no messages, but there are: " + "\n".join(texts))
 
 
 def arrays_of(data):
@@ -114,12 +114,18 @@ def check_equal_images(first, second, what):
         [image.GetDirectionMatrix().GetElement(i, j) for i in range(3) for j in range(3)]
         for image in (first, second)
     ]
-    check(directions[0] == directions[1], f"{what}: directions {directions}")
+    check(directions[0] == directions[1], f"{what}: the directions {directions} differ")
     one, other = arrays_of(first), arrays_of(second)
-    check(one and list(one) == list(other), f"{what}: arrays {list(one)} and {list(other)}")
+    check(one and list(one) == list(other), f"{what}: the arrays {list(one)} and {list(other)} differ")
     for name, values in one.items():
-        check(values.dtype == other[name].dtype, f"{what}: {name} changes its type")
-        check(numpy.array_equal(values, other[name]), f"{what}: {name} differs")
+        check(
+            values.dtype == other[name].dtype,
+            f"{what}: the types of {name} are {values.dtype} and {other[name].dtype}",
+        )
+        check(
+            numpy.array_equal(values, other[name]),
+            f"{what}: {numpy.sum(values != other[name])} of {values.size} values of {name} differ",
+        )
 
 
 def wavelet(half=10):

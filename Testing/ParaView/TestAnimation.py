@@ -110,7 +110,7 @@ def main():
     scene.PlayMode = "Snap To TimeSteps"
     keeper = simple.GetTimeKeeper()
     times = [0.5 * step for step in range(STEPS)]
-    check(list(keeper.TimestepValues) == times, f"ParaView sees {list(keeper.TimestepValues)}")
+    check(list(keeper.TimestepValues) == times, f"ParaView has the times {list(keeper.TimestepValues)}, not {times}")
 
     play(filter_)
     seen = []
@@ -133,9 +133,9 @@ def main():
         for name, values in arrays_of(fresh.GetOutput()).items():
             check(numpy.array_equal(arrays_of(got)[name], values), f"step {step}: {name} differs")
         seen.append(arrays_of(got)["RTData"].copy())
-    check(numpy.array_equal(seen[2], seen[-1]), "Step 2 differs the second time")
+    check(numpy.array_equal(seen[2], seen[-1]), "RTData of step 2 differs after the animation has gone back")
     different = {values.tobytes() for values in seen}
-    check(len(different) == STEPS, f"Only {len(different)} of the steps differ")
+    check(len(different) == STEPS, f"{len(different)} of {STEPS} steps have different values")
 
     filter_.UpdatePipelineInformation()
     check("Static mappings made: 1\n" in filter_.Summary, filter_.Summary)

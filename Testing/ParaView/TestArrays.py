@@ -66,11 +66,11 @@ def test_mri():
     check_equal_images(fetch(filter_), plain.GetOutput(), "MRI")
     check(
         filter_.CoveredVoxels == plain.GetNumberOfCoveredVoxels() > 7e6,
-        f"{filter_.CoveredVoxels} voxels are covered",
+        f"CoveredVoxels is {filter_.CoveredVoxels}, not {plain.GetNumberOfCoveredVoxels()}",
     )
     name = list(arrays_of(head))[0]
-    check(fetch(filter_).GetPointData().GetScalars().GetName() == name, "Active scalars are lost")
-    check(plain.GetOutput().GetExtent() != head.GetExtent(), "Nothing has moved")
+    check(fetch(filter_).GetPointData().GetScalars().GetName() == name, f"The active scalars are not {name}")
+    check(plain.GetOutput().GetExtent() != head.GetExtent(), "The extent has not changed")
 
 
 def test_wavelet():
@@ -133,10 +133,13 @@ def test_wavelet():
     plain = deformvolume_vtk.vtkTetGenMesher()
     plain.SetInputData(fetch(volume))
     plain.Update()
-    check(mesher.UsedIsovalue == plain.GetUsedIsovalue() != 0.0, f"{mesher.UsedIsovalue}")
+    check(
+        mesher.UsedIsovalue == plain.GetUsedIsovalue() != 0.0,
+        f"UsedIsovalue is {mesher.UsedIsovalue}, not {plain.GetUsedIsovalue()}",
+    )
     check(
         fetch(mesher).GetNumberOfCells() == plain.GetOutput().GetNumberOfCells() > 100,
-        "TetGen gives another mesh",
+        "The proxy and the VTK class have other numbers of tetrahedra",
     )
 
 
@@ -156,11 +159,17 @@ def test_geometry():
         return numpy_support.vtk_to_numpy(data.GetPoints().GetData())
 
     at_rest, expected = points_of(fetch(ball)), points_of(plain.GetOutput())
-    check(numpy.abs(expected - at_rest).max() > 0.5, "Nothing moves")
-    check(numpy.array_equal(points_of(fetch(moved)), expected), "The proxy moves otherwise")
-    check(numpy.abs(points_of(fetch(back)) - at_rest).max() < 1e-5, "Not led back")
+    check(numpy.abs(expected - at_rest).max() > 0.5, "The VTK class moves points by at most 0.5")
+    check(
+        numpy.array_equal(points_of(fetch(moved)), expected),
+        "The proxy and the VTK class move points to other positions",
+    )
+    check(
+        numpy.abs(points_of(fetch(back)) - at_rest).max() < 1e-5,
+        "With Inverse, points differ from those at rest by 1e-5 or more",
+    )
     normals = arrays_of(fetch(moved))["Normals"]
-    check(numpy.abs(normals - arrays_of(fetch(ball))["Normals"]).max() > 0.1, "Normals stay")
+    check(numpy.abs(normals - arrays_of(fetch(ball))["Normals"]).max() > 0.1, "Normals change by at most 0.1")
     # A composite dataset, one block of which is outside the mesh.
     beside = simple.Sphere(Radius=1, Center=[30, 0, 0])
     group = simple.GroupDatasets(Input=[ball, beside])
@@ -168,13 +177,16 @@ def test_geometry():
         blocks = fetch(simple.DeformGeometry(Input=group, Deformation=mesh))
     count = fetch(beside).GetNumberOfPoints()
     check_one_message(texts, [f"{count} of {count + len(at_rest)} points lie outside"])
-    check(numpy.array_equal(points_of(blocks.GetBlock(0)), expected), "Blocks move otherwise")
-    check(not arrays_of(blocks.GetBlock(1))["vtkValidPointMask"].any(), "What is beside is valid")
+    check(
+        numpy.array_equal(points_of(blocks.GetBlock(0)), expected),
+        "A block moves to other positions than a single surface",
+    )
+    check(not arrays_of(blocks.GetBlock(1))["vtkValidPointMask"].any(), "Points outside the mesh are marked as valid")
 
 
 def main():
     load_plugin()
-    check(isinstance(fetch(wavelet(2)), vtkImageData), "A wavelet is no image")
+    check(isinstance(fetch(wavelet(2)), vtkImageData), "The wavelet is not a vtkImageData")
     test_wavelet()
     test_geometry()
     test_mri()

@@ -106,9 +106,9 @@ def check_picture(picture, what):
     """Checks that a large part of the picture is drawn, and in more than one color."""
     background = numpy.median(picture.reshape(-1, 3), axis=0)
     covered = numpy.abs(picture - background).max(axis=2) > 30.0
-    check(covered.mean() > 0.1, f"{what} shows nothing: {covered.mean()}")
+    check(covered.mean() > 0.1, f"{what} is drawn in {covered.mean()} of the pixels only")
     spread = picture[covered].std(axis=0).max()
-    check(spread > 10.0, f"{what} has one color: {spread}")
+    check(spread > 10.0, f"{what} has one color only: the standard deviation is {spread}")
 
 
 def main():
@@ -124,7 +124,7 @@ def main():
                 client.poll() is None
                 and time.monotonic() < end
                 and "Traceback" not in client_log(),
-                f"No client: {client_log()}",
+                f"The client has not started: {client_log()}",
             )
             time.sleep(0.2)
         # The event loop continues meanwhile: the client fills panels and draws the view.
@@ -140,7 +140,7 @@ def main():
         client.wait(timeout=30)
     write_png(window, os.path.join(FOLDER, "window.png"))
     check_picture(window.astype(float), "The client's window")
-    check(len(numpy.unique(window.reshape(-1, 3), axis=0)) > 1000, "The window is empty")
+    check(len(numpy.unique(window.reshape(-1, 3), axis=0)) > 1000, "The window has 1000 colors or fewer")
 
     shown = read_png(os.path.join(FOLDER, "client.png"))
     check_picture(shown, "The client's view")
@@ -152,7 +152,7 @@ def main():
               if "returned failure for request" not in error]
     check(
         errors and all("no deformation on input port 1" in error for error in errors),
-        f"No messages about the missing deformation alone: {client_log()}",
+        f"Expected errors about the missing deformation only: {client_log()}",
     )
 
 

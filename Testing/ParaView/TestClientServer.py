@@ -32,31 +32,43 @@ def check_session():
     load_plugin(remote=True)
     load_plugin()
     here = deformvolume_vtk.vtkDeformVolumeFilter.GetDeviceNames()
-    check(here.GetNumberOfValues() == 0, "The client has devices: it proves nothing")
+    check(
+        here.GetNumberOfValues() == 0,
+        "The client has OpenCL devices, so the test cannot show that the server computes",
+    )
 
     volume = wavelet(9)
     mesh = bent_lattice(volume)
     filter_ = simple.DeformVolume(Volume=volume, Deformation=mesh)
-    check(list(filter_.DisplacementArray) == ["POINTS", "Displacement"], "No array was found")
+    check(
+        list(filter_.DisplacementArray) == ["POINTS", "Displacement"],
+        f"DisplacementArray is {list(filter_.DisplacementArray)}",
+    )
     least = volume.PointData["RTData"].GetRange()[0]
-    check(filter_.BackgroundValue == least, f"The background is {filter_.BackgroundValue}")
+    check(filter_.BackgroundValue == least, f"BackgroundValue is {filter_.BackgroundValue}, not {least}")
     filter_.Device = "cpu"
     filter_.Padding = 1
     filter_.CategoricalArrays = ["RTData"]
     filter_.UpdatePipeline()
     shown = filter_.SMProxy.GetProperty("NumberOfCoveredVoxels").GetElement(0)
-    check(shown > 1000.0, f"Without asking, {shown} covered voxels are shown")
+    check(shown > 1000.0, f"Before a request for information, {shown} covered voxels are shown")
     filter_.UpdatePipelineInformation()
-    check(filter_.DeviceInUse, "No device of the server is in use")
-    check(filter_.CoveredVoxels > 1000.0 and "Device" in filter_.Summary, "No information")
-    check(filter_.GetClientSideObject() is None, "The filter is in the client")
+    check(filter_.DeviceInUse, "DeviceInUse is empty")
+    check(
+        filter_.CoveredVoxels > 1000.0 and "Device" in filter_.Summary,
+        f"CoveredVoxels is {filter_.CoveredVoxels}, Summary is {filter_.Summary}",
+    )
+    check(filter_.GetClientSideObject() is None, "The filter is an object of the client")
 
     # The client gets the voxels that the server computes: without a displacement, those of the volume.
     filter_.DisplacementScale = 0.0
     filter_.Padding = 0
     filter_.UpdatePipeline()
     at_rest = arrays_of(fetch(filter_))["RTData"]
-    check((at_rest == arrays_of(fetch(volume))["RTData"]).all(), "The volume at rest differs")
+    check(
+        (at_rest == arrays_of(fetch(volume))["RTData"]).all(),
+        "Without a displacement, RTData differs from that of the volume",
+    )
     filter_.DisplacementScale = 1.0
     first = fetch(deformed(volume, mesh, CategoricalArrays=["RTData"]))
     filter_.UpdatePipeline()
@@ -67,10 +79,10 @@ def check_session():
     with messages() as texts:
         filter_.UpdatePipeline()
     check_one_message(texts, ['no OpenCL device "no such device"'])
-    check(filter_.GetDataInformation().GetNumberOfPoints() == 0, "An error and an output")
+    check(filter_.GetDataInformation().GetNumberOfPoints() == 0, "The output is not empty after an error")
     filter_.Device = "best"
     filter_.UpdatePipeline()
-    check(filter_.GetDataInformation().GetNumberOfPoints() > 0, "It does not work again")
+    check(filter_.GetDataInformation().GetNumberOfPoints() > 0, "With a valid device the output is still empty")
 
 
 def client(port):

@@ -25,7 +25,7 @@ def update(filter_):
 
 def check_works(filter_):
     check_silent(update(filter_))
-    check(filter_.GetDataInformation().GetNumberOfPoints() > 0, "There is no output")
+    check(filter_.GetDataInformation().GetNumberOfPoints() > 0, "The output is empty")
 
 
 def main():
@@ -39,7 +39,7 @@ def main():
     with messages():
         filter_ = simple.DeformVolume(Deformation=mesh)
     check_messages(update(filter_), ["Input port 0", "is not optional"])
-    check(filter_.GetDataInformation().GetNumberOfPoints() == 0, "An error and an output")
+    check(filter_.GetDataInformation().GetNumberOfPoints() == 0, "The output is not empty after an error")
     filter_.Volume = volume
     check_works(filter_)
 
@@ -47,9 +47,12 @@ def main():
     simple.SetActiveSource(None)
     filter_ = simple.DeformVolume(Volume=volume)
     texts = update(filter_)
-    check(not texts, f"Without a deformation: {texts}")
+    check(not texts, f"Messages without a deformation: {texts}")
     points = volume.GetDataInformation().GetNumberOfPoints()
-    check(filter_.GetDataInformation().GetNumberOfPoints() == points, "Not the volume itself")
+    check(
+        filter_.GetDataInformation().GetNumberOfPoints() == points,
+        "Without a deformation the output has other points than the volume",
+    )
     filter_.Deformation = mesh
     check_works(filter_)
 
@@ -84,7 +87,7 @@ def main():
     surface.UpdatePipeline()
     filter_.Deformation = surface
     texts = update(filter_)
-    check(len(texts) >= 1 and "vtkPolyData" in texts[0], f"A surface deforms: {texts}")
+    check(len(texts) >= 1 and "vtkPolyData" in texts[0], f"A surface as the deformation must be an error: {texts}")
     filter_.Deformation = mesh
     check_works(filter_)
 
@@ -110,7 +113,7 @@ def main():
     mesher.AutomaticIsovalue = 0
     mesher.Isovalue = 1e6
     check_one_message(update(mesher), ["sovalue"])
-    check(deformed(volume, mesh).CoveredVoxels > 0, "The process does not work on")
+    check(deformed(volume, mesh).CoveredVoxels > 0, "After the errors a filter covers no voxels")
 
 
 main()

@@ -14,7 +14,7 @@ def main():
     with messages() as texts:
         filter_.UpdatePipeline()
     check_one_message(texts, ["no OpenCL", "pocl-opencl-icd"])
-    check(mesh.GetDataInformation().GetNumberOfPoints() == 216, "The process does not work on")
+    check(mesh.GetDataInformation().GetNumberOfPoints() == 216, "After the error the lattice does not have 216 points")
 
 
 main()

@@ -53,7 +53,7 @@ def check_file(load, path, expected):
         BackgroundValue=0,  # the default of version 0.1
     )
     expected_image = fetch(fresh)
-    check(arrays_of(expected_image)["vtkValidPointMask"].sum() > 1000, "No voxels")
+    check(arrays_of(expected_image)["vtkValidPointMask"].sum() > 1000, "1000 voxels or fewer are covered")
     check_equal_images(fetch(loaded), expected_image, path)
     simple.Delete(fresh)
     return loaded
@@ -91,7 +91,7 @@ def check_elements():
     simple.SaveState(path)
     with open(path, encoding="utf-8") as file:
         text = file.read()
-    check(text.count('type="FiniteElementDeformation"') == 1, "no filter in the state")
+    check(text.count('type="FiniteElementDeformation"') == 1, "The state does not have one FiniteElementDeformation")
     with open(path, "w", encoding="utf-8") as file:
         file.write(text.replace('type="FiniteElementDeformation"', 'type="CorotationalDeformation"'))
     for source in reversed(list(simple.GetSources().values())):

@@ -239,7 +239,7 @@ def check_reach(proxy, sources):
                        f"{label} = {elements}")
         set_elements(smproperty, shown)
         proxy.SMProxy.UpdateVTKObjects()
-        check(read_all() == before, f"{label}: the default does not come back")
+        check(read_all() == before, f"{label}: resetting does not restore the defaults")
 
 
 def comes_from(made):
@@ -442,37 +442,40 @@ def check_places():
         places.append(carve.Body.Center)
     carve.Body = "Plane"
     places.append(carve.Body.Origin)
-    check(all(list(place) == [5, 10, 15] for place in places), f"{places}")
+    check(all(list(place) == [5, 10, 15] for place in places), f"The default places are {places}")
     carve.Body = "Box"
-    check(list(carve.Body.Length) == [10, 20, 30], f"{list(carve.Body.Length)}")
+    check(list(carve.Body.Length) == [10, 20, 30], f"The default length is {list(carve.Body.Length)}")
 
 
 def check_defaults(volume):
     # If there is only one array of vectors, it is found, whatever its name and whatever other arrays there are.
     mesh = bent_lattice(volume, array="u")
     filter_ = deformed(volume, mesh)
-    check(list(filter_.DisplacementArray) == ["POINTS", "u"], f"{filter_.DisplacementArray}")
-    check(list(filter_.CustomBounds) == [-6.0, 6.0] * 3, f"{list(filter_.CustomBounds)}")
-    check(filter_.Device == "best", filter_.Device)
-    check(list(filter_.CategoricalArrays) == [], f"{list(filter_.CategoricalArrays)}")
+    check(list(filter_.DisplacementArray) == ["POINTS", "u"], f"DisplacementArray is {filter_.DisplacementArray}")
+    check(list(filter_.CustomBounds) == [-6.0, 6.0] * 3, f"CustomBounds is {list(filter_.CustomBounds)}")
+    check(filter_.Device == "best", f"Device is {filter_.Device}")
+    check(list(filter_.CategoricalArrays) == [], f"CategoricalArrays is {list(filter_.CategoricalArrays)}")
     # Of several arrays of vectors, the active one is chosen.
     two = simple.Calculator(Input=mesh)
     two.ResultArrayName = "a"
     two.Function = "2*coordsX*iHat"
     two.UpdatePipeline()
     filter_ = deformed(volume, two)
-    check(list(filter_.DisplacementArray) == ["POINTS", "a"], f"{filter_.DisplacementArray}")
+    check(list(filter_.DisplacementArray) == ["POINTS", "a"], f"DisplacementArray is {filter_.DisplacementArray}")
     filter_.DisplacementArray = ["POINTS", "u"]
     check_silent(update(filter_))
     # Information properties about the last update.
     check(filter_.DeviceInUse, "No device is in use")
-    check(filter_.ResamplerInUse == "Exact", f"{filter_.ResamplerInUse}")
-    check(filter_.InvertedTetrahedra == 0.0, f"{filter_.InvertedTetrahedra}")
-    check(filter_.CoveredVoxels > 1000.0, f"{filter_.CoveredVoxels}")
+    check(filter_.ResamplerInUse == "Exact", f"ResamplerInUse is {filter_.ResamplerInUse}")
+    check(filter_.InvertedTetrahedra == 0.0, f"InvertedTetrahedra is {filter_.InvertedTetrahedra}")
+    check(filter_.CoveredVoxels > 1000.0, f"CoveredVoxels is {filter_.CoveredVoxels}")
     extent = filter_.GetDataInformation().GetExtent()
-    check(list(filter_.ChangedExtent) == list(extent), f"{list(filter_.ChangedExtent)} changed")
+    check(
+        list(filter_.ChangedExtent) == list(extent),
+        f"ChangedExtent is {list(filter_.ChangedExtent)}, not {list(extent)}",
+    )
     check("Seconds for resampling" in filter_.Summary, filter_.Summary)
-    check(filter_.DeviceMemory > 0.0, "No memory")
+    check(filter_.DeviceMemory > 0.0, f"DeviceMemory is {filter_.DeviceMemory}")
     filter_.ReleaseDeviceMemory()
     filter_.UpdatePipelineInformation()
     check(filter_.DeviceMemory == 0.0, f"{filter_.DeviceMemory} bytes are left")
@@ -482,7 +485,10 @@ def check_defaults(volume):
 
     stretched = bent_lattice(volume, function="0.5*coordsX*iHat")
     filter_ = simple.DeformVolume(Volume=volume, Deformation=stretched)
-    check(shown("NumberOfCoveredVoxels") == 0.0 and shown("Summary") == "", "Nothing was updated")
+    check(
+        shown("NumberOfCoveredVoxels") == 0.0 and shown("Summary") == "",
+        "Before an update NumberOfCoveredVoxels and Summary must be empty",
+    )
     for scale, covered in ((0.0, 13 * 13 * 13), (2.0, 25 * 13 * 13)):
         filter_.DisplacementScale = scale
         filter_.UpdatePipeline()
@@ -498,7 +504,10 @@ def check_defaults(volume):
     filter_.DisplacementScale = -1.0
     filter_.UpdatePipeline()
     filter_.UpdatePipelineInformation()
-    check(filter_.InvertedTetrahedra == 5 * 12**3, f"{filter_.InvertedTetrahedra} are inverted")
+    check(
+        filter_.InvertedTetrahedra == 5 * 12**3,
+        f"InvertedTetrahedra is {filter_.InvertedTetrahedra}, not {5 * 12**3}",
+    )
 
 
 def main():
@@ -553,7 +562,7 @@ def main():
     tried = 0
     for element in plugin_proxies():
         name = element.get("name")
-        check(name in makers, f"{name} is not tried")
+        check(name in makers, f"There is no test of {name}")
         tried += check_extremes(makers[name], None)
         check_limits(makers[name])
         check_shown(makers[name])
@@ -563,9 +572,9 @@ def main():
     tried += check_extremes(lambda: simple.TetGenMesher(Input=ball), ["TargetEdgeLength"])
     check(tried > 500, f"Only {tried} values were tried")
     lattice = simple.TetrahedralLattice(NumberOfNodes=[-5, 2**31 - 1, 0])
-    check(len(update(lattice)) == 1, "Too few nodes are no error")
+    check(len(update(lattice)) == 1, "Too few nodes must be one error")
     lattice.NumberOfNodes = [2**31 - 1] * 3
-    check(len(update(lattice)) == 1, "Too many nodes are no error")
+    check(len(update(lattice)) == 1, "Too many nodes must be one error")
     check_defaults(volume)
     check_background(volume)
     check_places()

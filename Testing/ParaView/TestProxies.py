@@ -133,14 +133,14 @@ def check_words(proxy):
     check((documentation.text or "").strip(), f"{name}: no description")
     menu = proxy.find("Hints/ShowInMenu")
     if name in FORMER_PROXIES:
-        check(menu is None, f"{name}: in the menu")
+        check(menu is None, f"{name}: a former proxy is in the menu")
     else:
         right = menu is not None and menu.get("category") == "Deform Volume"
         check(right, f"{name}: not in the menu")
     grouped = [entry.get("name") for entry in proxy.findall("PropertyGroup/Property")]
     names = [prop.get("name") for prop in properties_of(proxy)]
     check(len(set(grouped)) == len(grouped), f"{name}: a property in two groups")
-    check(set(grouped) <= set(names), f"{name}: groups hold {set(grouped) - set(names)}")
+    check(set(grouped) <= set(names), f"{name}: groups contain unknown {set(grouped) - set(names)}")
     for prop in properties_of(proxy):
         text = prop.find("Documentation")
         label = f"{name}.{prop.get('name')}"
@@ -150,7 +150,7 @@ def check_words(proxy):
             check(other is None or other in names, f"{label}: decorated by the unknown {other}")
         for required in prop.iter("RequiredProperties"):
             for entry in required:
-                check(entry.get("name") in names, f"{label}: requires {entry.get('name')}")
+                check(entry.get("name") in names, f"{label}: requires the unknown {entry.get('name')}")
 
 
 def is_set_by_user(prop):
@@ -184,7 +184,7 @@ def check_panel(proxy):
             text = " ".join(prop.find("Documentation").text.split())
             check("Default: " in text, f"{label}: the documentation does not say the default")
         if re.search("Arrays?(Name)?$", prop.get("name")):
-            check(prop.find("ArrayListDomain") is not None, f"{label}: no list of arrays")
+            check(prop.find("ArrayListDomain") is not None, f"{label}: no ArrayListDomain")
 
 
 def check_values(cls, proxy):
@@ -205,7 +205,7 @@ def check_values(cls, proxy):
             entries = {int(entry.get("value")): entry.get("text") for entry in prop.iter("Entry")}
             if entries:
                 numbers = set(range(low, high + 1)) - REMOVED_VALUES.get(attribute, set())
-                check(set(entries) == numbers, f"{label}: entries {entries}")
+                check(set(entries) == numbers, f"{label}: the entries are {entries}, but the class has {numbers}")
                 for number, text in entries.items():
                     setter = f"Set{attribute}To{re.sub('[ -]', '', text)}"
                     setter = setter if hasattr(instance, setter) else setter + attribute
@@ -217,12 +217,18 @@ def check_values(cls, proxy):
                     check(got == number, f"{label}: {text} is {got}, not {number}")
             else:
                 ranges = [child for child in prop if child.tag.endswith("RangeDomain")]
-                check(len(ranges) == 1, f"{label}: no range")
-                check(float(ranges[0].get("min")) == low, f"{label}: the least is {low}")
+                check(len(ranges) == 1, f"{label}: expected one range domain, not {len(ranges)}")
+                check(float(ranges[0].get("min")) == low, f"{label}: min of the range is not {low}, that of the class")
                 if high < 2**31:
-                    check(float(ranges[0].get("max")) == high, f"{label}: the greatest is {high}")
+                    check(
+                        float(ranges[0].get("max")) == high,
+                        f"{label}: max of the range is not {high}, that of the class",
+                    )
         elif isinstance(value, bool):
-            check(prop.find("BooleanDomain") is not None, f"{label}: no check box")
+            check(
+                prop.find("BooleanDomain") is not None,
+                f"{label}: the class has a bool, but there is no BooleanDomain",
+            )
 
 
 def main():

@@ -94,7 +94,10 @@ def main(script, baseline, is_update):
     check(difference < limit, f"{picture} differs from {baseline} by {difference} of 255")
     for name, array, shift in (("other", "V", 0), ("shifted", "U", SPACING)):
         other = find_difference(draw(script, image, array, shift, name), baselines)
-        check(other > 2 * limit, f"{name}: the picture differs by {other} of 255 only")
+        check(
+            other > 2 * limit,
+            f"{name}: the spoiled picture must differ by more than {2 * limit}, not {other} of 255",
+        )
 
 
 main(sys.argv[1], sys.argv[2], "--update" in sys.argv)

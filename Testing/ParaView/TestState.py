@@ -61,7 +61,7 @@ def check_restored(kind):
     filters = [
         source for source in simple.GetSources().values() if source.GetXMLName() == "DeformVolume"
     ]
-    check(len(filters) == 1, f"{kind}: {len(filters)} filters")
+    check(len(filters) == 1, f"{kind}: expected one filter, not {len(filters)}")
     filter_ = filters[0]
     with open(EXPECTED + ".json", encoding="utf-8") as file:
         expected = json.load(file)
@@ -74,9 +74,9 @@ def check_restored(kind):
         check(numpy.array_equal(voxels[name], values), f"{kind}: {name} differs")
     for proxy, value in (("TetGenMesher", 250.0), ("TetrahedralLattice", 3.0)):
         made = [item for item in simple.GetSources().values() if item.GetXMLName() == proxy]
-        check(len(made) == 1, f"{kind}: {len(made)} of {proxy}")
+        check(len(made) == 1, f"{kind}: expected one {proxy}, not {len(made)}")
         other = made[0].Isovalue if proxy == "TetGenMesher" else made[0].Margin
-        check(other == value, f"{kind}: {proxy} has {other}")
+        check(other == value, f"{kind}: {proxy} has the value {other}, not {value}")
 
 
 def save():
@@ -84,7 +84,10 @@ def save():
     mesh = bent_lattice(volume)
     filter_ = deformed(volume, mesh, **PROPERTIES)
     # A value that ParaView's domain would not choose by default.
-    check(get_properties(filter_)["CustomBounds"] == PROPERTIES["CustomBounds"], "Not set")
+    check(
+        get_properties(filter_)["CustomBounds"] == PROPERTIES["CustomBounds"],
+        f"CustomBounds is {get_properties(filter_)['CustomBounds']}",
+    )
     simple.TetGenMesher(Input=volume, AutomaticIsovalue=0, Isovalue=250.0, Labels=[1.0, 5.0])
     simple.TetrahedralLattice(Margin=3.0)
     with open(EXPECTED + ".json", "w", encoding="utf-8") as file:

@@ -12,13 +12,14 @@ from paraview import servermanager, simple
 plugin, prefix, volume_file, mesh_file, ranks = sys.argv[1:]
 simple.LoadPlugin(plugin, remote=False, ns=globals())
 if servermanager.vtkProcessModule.GetProcessModule().GetNumberOfLocalPartitions() != int(ranks):
-    sys.exit(f"not {ranks} ranks")
+    sys.exit(f"pvbatch does not run on {ranks} ranks")
 
 volume = simple.XMLImageDataReader(FileName=[volume_file])
 lattice = TetrahedralLattice(NumberOfNodes=[7, 7, 7], EqualSpacing=False, Bounds=[-32, 32, -31, 31, -33, 33])
 lattice.UpdatePipeline()
 if lattice.GetDataInformation().GetNumberOfCells() != 5 * 6**3:
-    sys.exit(f"{ranks} ranks make {lattice.GetDataInformation().GetNumberOfCells()} cells")
+    sys.exit(f"on {ranks} ranks the lattice has {lattice.GetDataInformation().GetNumberOfCells()} cells, "
+             f"not {5 * 6**3}")
 # ParaView distributes the pieces of the file over the ranks.
 mesh = simple.XMLPartitionedUnstructuredGridReader(FileName=[mesh_file])
 deformed = DeformVolume(Volume=volume, Deformation=mesh)

@@ -106,16 +106,22 @@ def main(port, ranks):
     volume = wavelet(9)
     mesh = bent_lattice(volume)
     cells = mesh.GetDataInformation().GetNumberOfCells()
-    check(cells == 5 * 5**3, f"The ranks have {cells} cells")
+    check(cells == 5 * 5**3, f"All ranks together have {cells} cells, not {5 * 5**3}")
     expected = expected_output(fetch(mesh))
 
     filter_ = simple.DeformVolume(Volume=volume, Deformation=mesh)
-    check(list(filter_.DisplacementArray) == ["POINTS", "Displacement"], "No array was found")
+    check(
+        list(filter_.DisplacementArray) == ["POINTS", "Displacement"],
+        f"DisplacementArray is {list(filter_.DisplacementArray)}",
+    )
     check_silent(update(filter_))
     check_equal_images(whole_image(filter_), expected, "three ranks")
     covered = int(numpy.sum(arrays_of(expected)["vtkValidPointMask"]))
     # Voxels on the planes between two pieces are counted twice.
-    check(covered < filter_.CoveredVoxels < 1.5 * covered, f"{filter_.CoveredVoxels} of {covered}")
+    check(
+        covered < filter_.CoveredVoxels < 1.5 * covered,
+        f"CoveredVoxels is {filter_.CoveredVoxels}, that of one process is {covered}",
+    )
     check(f"Covered voxels: {int(filter_.CoveredVoxels):,}" in filter_.Summary, filter_.Summary)
     for rank in (ranks - 1, 0):
         one = on_rank(mesh, rank)
@@ -128,7 +134,7 @@ def main(port, ranks):
     check_one_message(update(none), ["no points"])
     filter_.Device = "no such device"
     check_one_message(update(filter_), ['no OpenCL device "no such device"'])
-    check(filter_.GetDataInformation().GetNumberOfPoints() == 0, "An error and an output")
+    check(filter_.GetDataInformation().GetNumberOfPoints() == 0, "The output is not empty after an error")
     filter_.Device = "best"
     filter_.DisplacementScale = 1.0
     check_silent(update(filter_))

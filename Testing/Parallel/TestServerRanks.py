@@ -32,4 +32,4 @@ for path in glob.glob(f"{glob.escape(log)}.*"):
 # Count errors, except those of the executives.
 counts = [len(re.findall(r"ERR\|(?!.*returned failure for request)", text)) for text in ranks]
 if counts != [2] * RANKS:
-    sys.exit(f"Not two errors on each rank, but {counts}: {ranks}")
+    sys.exit(f"Expected two errors on each of {RANKS} ranks, not {counts}: {ranks}")
