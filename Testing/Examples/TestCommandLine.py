@@ -167,7 +167,7 @@ for option in ("--mesh", "--displacement", "--rest", "--tetgen", "--lattice", "-
                "world units", "Exit codes"):
     assert option in output, option
 output, _ = call(program, "--list-devices")
-assert output.strip(), "no device"
+assert output.strip(), "--list-devices lists no device"
 
 # A push moves voxels near its center by its displacement, and no voxel beyond its radius.
 output, errors = call(program, path("in.vti"), *lattice, *push, "-o", path("pushed.vti"),
@@ -175,7 +175,7 @@ output, errors = call(program, path("in.vti"), *lattice, *push, "-o", path("push
 # Cubes of 4.5 over 24 x 31.5 x 36: 7 x 8 x 9 nodes.
 for word in ("step", "Seconds for resampling", "total", "25 x 22 x 19", "504 nodes"):
     assert word in output, word
-assert "\r" not in errors, "a progress bar without a terminal"
+assert "\r" not in errors, "a progress bar is written although there is no terminal"
 pushed = read_vti(path("pushed.vti"))
 before = get_values(volume)
 after = get_values(pushed, "Values")

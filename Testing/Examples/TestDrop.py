@@ -34,7 +34,7 @@ def wait_for(find):
             return found
         assert running.poll() is None, (running.returncode, running.communicate())
         time.sleep(0.05)
-    raise AssertionError("nothing came of it in time")
+    raise AssertionError(f"the expected result was not there within {PATIENCE} seconds")
 
 
 class Source:

@@ -106,7 +106,7 @@ def check(volume_name, field_name, *options, scale=1.0):
     index = numpy.linalg.solve(axes, (rest - origin).reshape(-1, 3).T).T.reshape(rest.shape)
     inside = ((index > 0.01) & (index < numpy.array(size) - 1.01)).all(axis=-1)
     assert inside.sum() > 1000, inside.sum()
-    assert covered[inside].all(), "holes"
+    assert covered[inside].all(), f"{(~covered[inside]).sum()} voxels inside the volume are not covered"
     assert not covered[((index < -0.01) | (index > numpy.array(size) - 0.99)).any(axis=-1)].any()
     assert wrong.max() < bound, (wrong.max(), bound)
 

@@ -40,7 +40,7 @@ def get_matrix(image):
 
 
 def same(image, values, matrix):
-    assert numpy.array_equal(get_values(image), values), "values"
+    assert numpy.array_equal(get_values(image), values), "the values differ"
     assert numpy.allclose(get_matrix(image), matrix, atol=1e-5), (get_matrix(image), matrix)
 
 

@@ -67,7 +67,7 @@ gently = [part.replace(",6,0,2,3", ",2,0,1,3") for part in common]
 output, errors = call(program, path("in.vti"), "--model", "mass-spring", *gently, "--duration", "0.05",
                       "--movie", path("m.ogv"), "--frames", "2", code=None)
 if "Ogg Theora" in errors:
-    print("this VTK writes no Ogg Theora")
+    print("movies are not tested: this VTK cannot write Ogg Theora")
 else:
     assert errors == "" and "deform and draw frames" in output, errors + output
     # After three packets of headers there is one for each frame.

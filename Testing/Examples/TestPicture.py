@@ -34,12 +34,12 @@ def is_ball(half):
 
 
 left, right = draw("still.png", "0,0,0,0.0001,0,0,1000")
-assert 0.1 < is_ball(left).mean() < 0.8, "the ball fills too little or too much of the picture"
+assert 0.1 < is_ball(left).mean() < 0.8, f"the ball fills {is_ball(left).mean()} of the picture"
 # If no voxel moves, single pixels at the rim of the ball may change.
 assert (numpy.abs(left - right).max(axis=2) > 8).mean() < 0.002
 
 # Pushed from above, towards -z.
 left, right = draw("pushed.png", "17,22.5,31,0,0,-8,16")
-assert (numpy.abs(left - right).max(axis=2) > 8).mean() > 0.02, "no difference"
+assert (numpy.abs(left - right).max(axis=2) > 8).mean() > 0.02, "the push changes 2 % of the pixels or less"
 top = [numpy.flatnonzero(is_ball(half).any(axis=1)).max() for half in (left, right)]
 assert top[1] < top[0] - 20, top

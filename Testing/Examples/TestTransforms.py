@@ -104,8 +104,8 @@ def check(volume, name, *files, reference=None):
     if reference and reference.startswith("mirrored") and reference.endswith(".nii.gz"):
         # The reader of NIfTI files reverses the order of slices.
         values, covered, parts = values[::-1], covered[::-1], parts[::-1]
-    assert covered[depth > 0.001].all(), (name, "holes")
-    assert not covered[depth < -0.01].any(), (name, "outside")
+    assert covered[depth > 0.001].all(), (name, "voxels inside the volume are not covered")
+    assert not covered[depth < -0.01].any(), (name, "voxels outside the volume are covered")
     assert (depth > 0.001).sum() > (2000 if reference else 5000), (name, (depth > 0.001).sum())
     inside = depth > 0.001
     wrong = numpy.abs(values - expected[name])[inside].max()

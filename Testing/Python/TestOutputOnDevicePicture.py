@@ -113,6 +113,6 @@ lattice = make_mesh(volume, 6)
 for mapper_kind in (vtkGPUVolumeRayCastMapper, vtkFixedPointVolumeRayCastMapper, vtkSliceMapper):
     found, expected = (draw(mapper_kind, volume, lattice, way) for way in (True, False))
     for picture, wanted in zip(found, expected):
-        assert wanted.std() > 10, "an empty picture"
+        assert wanted.std() > 10, f"the picture is empty: its standard deviation is {wanted.std()}"
         assert np.array_equal(picture, wanted), mapper_kind.__name__
     assert not np.array_equal(found[0], found[1]) and not np.array_equal(found[1], found[2])

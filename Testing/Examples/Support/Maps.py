@@ -43,8 +43,9 @@ def check(folder, volume, result, field, jacobian, background):
     moving, result, field, jacobian = read(volume), read(result), read(field), read(jacobian)
     assert field.GetSize() == result.GetSize() == jacobian.GetSize()
     for image in (result, jacobian):
-        assert numpy.allclose(image.GetOrigin(), field.GetOrigin(), atol=1e-4), "origin"
-        assert numpy.allclose(image.GetDirection(), field.GetDirection(), atol=1e-6), "direction"
+        assert numpy.allclose(image.GetOrigin(), field.GetOrigin(), atol=1e-4), (image.GetOrigin(), field.GetOrigin())
+        directions = image.GetDirection(), field.GetDirection()
+        assert numpy.allclose(*directions, atol=1e-6), directions
     field = sitk.Cast(field, sitk.sitkVectorFloat64)
     # The Jacobian determinant of the position at rest with respect to the index. SimpleITK's filter cannot be used,
     # because it ignores the direction of the image.
@@ -72,8 +73,8 @@ def check(folder, volume, result, field, jacobian, background):
     ratio = (expected * sitk.GetArrayFromImage(jacobian))[inner]
     assert numpy.abs(ratio - 1).max() < 0.03 and abs(ratio.mean() - 1) < 0.002, (ratio.min(), ratio.max())
     jacobians = sitk.GetArrayFromImage(jacobian)[inner]
-    assert jacobians.min() < 0.9 and jacobians.max() > 1.1, "it deforms"
-    assert (vectors[~covered] == 0).all(), "uncovered"
+    assert jacobians.min() < 0.9 and jacobians.max() > 1.1, (jacobians.min(), jacobians.max())
+    assert (vectors[~covered] == 0).all(), "vectors of voxels that are not covered must be 0"
 
 
 if sys.argv[1] == "make":

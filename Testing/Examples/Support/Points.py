@@ -51,10 +51,11 @@ def make(folder):
 def check(folder, transform, before, after, limit):
     before, after = (numpy.load(os.path.join(folder, name)) for name in (before, after))
     assert len(before) == len(after) > 30, (before.shape, after.shape)
-    assert numpy.linalg.norm(after - before, axis=1).max() > 1, "it moves"
+    moved = numpy.linalg.norm(after - before, axis=1).max()
+    assert moved > 1, f"expected a point that moves by more than 1, but the largest movement is {moved}"
     back = numpy.array([transform.TransformPoint(point.tolist()) for point in after])
     wrong = numpy.linalg.norm(back - before, axis=1).max()
-    print(wrong)
+    print(f"largest error {wrong}, allowed is {limit}")
     assert wrong < limit, wrong
 
 
