@@ -15,7 +15,8 @@ static int Failures = 0;
   {                                                                                                \
     if (!(condition))                                                                              \
     {                                                                                              \
-      printf("line %d: %s is false. Last error: %s\n", __LINE__, #condition, dv_last_error());     \
+      printf(                                                                                      \
+        "%s:%d: not true: %s. Last error: %s\n", __FILE__, __LINE__, #condition, dv_last_error()); \
       ++Failures;                                                                                  \
     }                                                                                              \
   } while (0)

@@ -53,18 +53,21 @@ std::string CompareGeometry(vtkImageData* part, vtkImageData* whole)
     if (part->GetOrigin()[axis] != whole->GetOrigin()[axis] ||
       part->GetSpacing()[axis] != whole->GetSpacing()[axis])
     {
-      return "origin or spacing differs";
+      return "origin " + std::to_string(part->GetOrigin()[axis]) + " and spacing " +
+        std::to_string(part->GetSpacing()[axis]) + " on axis " + std::to_string(axis) +
+        " instead of " + std::to_string(whole->GetOrigin()[axis]) + " and " +
+        std::to_string(whole->GetSpacing()[axis]);
     }
     if (part->GetExtent()[2 * axis] < whole->GetExtent()[2 * axis] ||
       part->GetExtent()[2 * axis + 1] > whole->GetExtent()[2 * axis + 1])
     {
-      return "extent " + DescribeExtent(part) + "instead of " + DescribeExtent(whole);
+      return "extent " + DescribeExtent(part) + "is not within " + DescribeExtent(whole);
     }
   }
   if (!std::equal(part->GetDirectionMatrix()->GetData(), part->GetDirectionMatrix()->GetData() + 9,
         whole->GetDirectionMatrix()->GetData()))
   {
-    return "direction differs";
+    return "the direction matrices differ";
   }
   if (part->GetPointData()->GetNumberOfArrays() != whole->GetPointData()->GetNumberOfArrays())
   {
@@ -93,7 +96,8 @@ std::string CompareBits(vtkImageData* part, vtkImageData* whole)
       first->GetNumberOfTuples() != part->GetNumberOfPoints() ||
       std::string(first->GetName() ? first->GetName() : "?") != name)
     {
-      return "array " + name + " is another one";
+      return "point array " + std::to_string(i) + " is not \"" + name +
+        "\" with the same type and size";
     }
     const auto size = static_cast<std::size_t>(first->GetNumberOfComponents()) *
       static_cast<std::size_t>(first->GetDataTypeSize());
@@ -126,7 +130,7 @@ std::string CheckValues(vtkImageData* output, vtkImageData* volume, const Settin
   vtkDataArray* mask = output->GetPointData()->GetArray("vtkValidPointMask");
   if (!mask || mask->GetNumberOfTuples() != output->GetNumberOfPoints())
   {
-    return "no vtkValidPointMask";
+    return "vtkValidPointMask is missing or has another size than the output";
   }
   for (int i = 0; i < output->GetPointData()->GetNumberOfArrays(); ++i)
   {
@@ -163,7 +167,8 @@ std::string CheckValues(vtkImageData* output, vtkImageData* volume, const Settin
         const double value = array->GetComponent(id, component);
         if (covered != 0.0 && covered != 1.0)
         {
-          return "a mask of " + std::to_string(covered);
+          return "vtkValidPointMask is " + std::to_string(covered) + " at point " +
+            std::to_string(id) + " instead of 0 or 1";
         }
         const bool right = covered == 0.0
           ? std::isnan(settings.BackgroundValue) ||
@@ -175,8 +180,12 @@ std::string CheckValues(vtkImageData* output, vtkImageData* volume, const Settin
                    : value >= *least - slack && value <= *most + slack);
         if (!right)
         {
-          return "array " + name + " has " + std::to_string(value) + " at point " +
-            std::to_string(id) + (covered == 0.0 ? ", not covered" : ", covered");
+          return "array " + name + " has the value " + std::to_string(value) + " at point " +
+            std::to_string(id) +
+            (covered == 0.0 ? ", which is not covered, instead of the background value " +
+                  std::to_string(settings.BackgroundValue)
+                            : ", which is covered. The volume has values from " +
+                  std::to_string(*least) + " to " + std::to_string(*most));
         }
       }
     }

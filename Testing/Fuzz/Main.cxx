@@ -171,7 +171,7 @@ void RunOne(
   const std::string said = stray->Take();
   if (wrong.empty() && !said.empty())
   {
-    wrong = "an object other than the filter said: " + said;
+    wrong = "an object other than the filter reported: " + said;
   }
   if (!wrong.empty())
   {
@@ -217,12 +217,13 @@ int main(int argc, char* argv[])
     (5 * live.Parts < live.All || 40 * live.FoldedParts < live.All ||
       40 * live.SplitParts < live.All))
   {
-    std::cout << "There were too few updates in part.\n";
+    std::cout << "Too few updates in part: expected at least a fifth of all updates in part, a "
+                 "fortieth folded, and a fortieth of split meshes.\n";
     return EXIT_FAILURE;
   }
   if (totals.Outputs == 0 && arguments.Count > 1)
   {
-    std::cout << "There was no output at all.\n";
+    std::cout << "No pipeline had an output: all had errors.\n";
     return EXIT_FAILURE;
   }
   return totals.Failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;

@@ -85,15 +85,17 @@ std::string Pipeline::CheckError(const Outcome& tested, const Outcome& fresh)
   this->Shown = nullptr;
   if (fresh.Errors.size() != 1 || fresh.Errors[0].size() < 20)
   {
-    return "a fresh filter has " + std::to_string(fresh.Errors.size()) + " errors, the last \"" +
-      (fresh.Errors.empty() ? "" : fresh.Errors.back()) + "\", the edited one " +
+    return "expected one error of a fresh filter, with at least 20 characters, instead of " +
+      std::to_string(fresh.Errors.size()) + ", the last \"" +
+      (fresh.Errors.empty() ? "" : fresh.Errors.back()) +
+      "\". The last error of the edited filter: " +
       (tested.Errors.empty() ? "none" : tested.Errors.back());
   }
   if (tested.Errors.size() != 1 || !AreAlike(tested.Errors[0], fresh.Errors[0]))
   {
-    return std::to_string(tested.Errors.size()) + " errors, the last \"" +
-      (tested.Errors.empty() ? "" : tested.Errors.back()) + "\", but of a fresh filter \"" +
-      fresh.Errors[0] + "\"";
+    return "expected one error, that of a fresh filter, \"" + fresh.Errors[0] + "\", instead of " +
+      std::to_string(tested.Errors.size()) + ", the last \"" +
+      (tested.Errors.empty() ? "" : tested.Errors.back()) + "\"";
   }
   this->Log << "  error: " << fresh.Errors[0] << '\n';
   for (const Outcome* outcome : { &tested, &fresh })
@@ -101,7 +103,9 @@ std::string Pipeline::CheckError(const Outcome& tested, const Outcome& fresh)
     if (outcome->Output->GetNumberOfPoints() != 0 ||
       outcome->Output->GetPointData()->GetNumberOfArrays() != 0)
     {
-      return "an error and an output";
+      return "expected an empty output after the error instead of " +
+        std::to_string(outcome->Output->GetNumberOfPoints()) + " points and " +
+        std::to_string(outcome->Output->GetPointData()->GetNumberOfArrays()) + " arrays";
     }
   }
   return "";
@@ -124,14 +128,14 @@ std::string Pipeline::CheckOutput(const Outcome& tested, const Outcome& fresh, b
     !std::equal(
       tested.Output->GetExtent(), tested.Output->GetExtent() + 6, fresh.Output->GetExtent()))
   {
-    return "another extent";
+    return "the extent differs from that of a fresh filter";
   }
   const bool whole = tested.Output->GetNumberOfPoints() == fresh.Output->GetNumberOfPoints();
   if (whole &&
     (tested.Covered != fresh.Covered || tested.Inverted != fresh.Inverted ||
       tested.Flat != fresh.Flat))
   {
-    return "counts of covered, inverted and flat " + std::to_string(tested.Covered) + ' ' +
+    return "covered voxels, inverted and flat tetrahedra: " + std::to_string(tested.Covered) + ' ' +
       std::to_string(tested.Inverted) + ' ' + std::to_string(tested.Flat) + " instead of " +
       std::to_string(fresh.Covered) + ' ' + std::to_string(fresh.Inverted) + ' ' +
       std::to_string(fresh.Flat);
@@ -200,7 +204,7 @@ std::string Pipeline::Check()
   const Outcome tested = this->Tested.Update(divided ? part : nullptr, time);
   if (held->GetNumberOfPoints() > 0 && !CompareBits(held, before).empty())
   {
-    return "an output that is held has changed";
+    return "the update has changed an image that shares the arrays of the last output";
   }
   // A filter that has read a smooth cut in a part of the volume requests the whole volume after
   // that.

@@ -238,8 +238,9 @@ std::string CompareArrays(const reference::Result& result, vtkImageData* output,
     const bool covered = mask->GetComponent(static_cast<vtkIdType>(voxel), 0) != 0.0;
     if (covered == result.Voxels[voxel].empty())
     {
-      return "point " + std::to_string(voxel) + (covered ? " is covered" : " is not covered") +
-        ", other than by the reference";
+      return "point " + std::to_string(voxel) +
+        (covered ? " is covered, but not by the reference"
+                 : " is not covered, but it is by the reference");
     }
   }
   std::string message;

@@ -87,7 +87,7 @@ int main(int argc, char* argv[])
   VERIFY_EQUAL(writer->Write(), 1);
   VERIFY_EQUAL(deformed.TakeErrors(), 0);
   const double peak = GetPeakMemory();
-  std::cout << "peak " << peak << " MB\n";
+  std::cout << "peak memory: " << peak << " MB\n";
   VERIFY(peak > 0.0 && peak < 1500.0);
   // Whole input and output would have needed more memory.
   VERIFY(2.0 * inputMegabytes > 1500.0);

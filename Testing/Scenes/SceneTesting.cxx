@@ -55,9 +55,10 @@ bool Test(const Scene& scene, const std::string& baselines, const std::string& o
     // SPOILED and SHIFTED must differ by at least twice the limit.
     const bool isRight =
       version == Version::INTACT ? isEqual : comparison.Difference >= 2.0 * scene.Limit;
-    std::cout << scene.Name << ' ' << words << ": difference " << comparison.Difference
-              << (isEqual ? ", within" : ", beyond") << " the limit of " << scene.Limit
-              << (isRight ? "\n" : ": wrong\n");
+    std::cout << (isRight ? "" : "FAILED: ") << scene.Name << ' ' << words
+              << ": the difference from the baseline is " << comparison.Difference << ", must be "
+              << (version == Version::INTACT ? "at most " : "at least ")
+              << (version == Version::INTACT ? 1.0 : 2.0) * scene.Limit << "\n";
     if (!isRight)
     {
       passes = false;
@@ -71,7 +72,7 @@ bool Test(const Scene& scene, const std::string& baselines, const std::string& o
       }
     }
   };
-  check(Version::INTACT, "", "as it is");
+  check(Version::INTACT, "", "intact");
   check(Version::SPOILED, ".spoiled", "spoiled");
   check(Version::SHIFTED, ".shifted", "shifted by one voxel");
   return passes;

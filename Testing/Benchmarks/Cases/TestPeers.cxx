@@ -29,7 +29,8 @@ double GetLargestDifference(vtkImageData* ours, vtkImageData* theirs)
   vtkDataArray* b = theirs->GetPointData()->GetScalars();
   if (!b || b->GetNumberOfTuples() != a->GetNumberOfTuples())
   {
-    std::cerr << "the output of the peer has another size\n";
+    std::cerr << "the output of the peer has " << (b ? b->GetNumberOfTuples() : 0)
+              << " values instead of " << a->GetNumberOfTuples() << "\n";
     return -1.0;
   }
   int extent[6];
@@ -80,7 +81,9 @@ bool Check(
     std::cout << name << ", " << GetName(pose) << ": largest difference " << difference << "\n";
     if (difference < 0.0 || difference > tolerance)
     {
-      std::cerr << name << " has another output than the filter\n";
+      std::cerr << name
+                << ": the largest difference from the output of the filter must be from 0 to "
+                << tolerance << "\n";
       return false;
     }
   }
