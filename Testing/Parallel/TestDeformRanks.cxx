@@ -422,7 +422,7 @@ void TestKeptExtent(const Case& from)
 
 /// Tests vtkDeformGeometryFilter: each rank moves its own points as one process does, whichever
 /// rank has the mesh.
-void TestPoints(vtkUnstructuredGrid* mesh)
+void TestGeometryFilter(vtkUnstructuredGrid* mesh)
 {
   vtkNew<vtkMultiBlockDataSet> blocks;
   for (int block = 0; block <= GetRank(); ++block) // different numbers
@@ -527,7 +527,7 @@ void TestAll()
       TestErrors(from, whole);
       TestSmallAndMoving(from);
       TestKeptExtent(from);
-      TestPoints(vtkUnstructuredGrid::SafeDownCast(from.Deformation));
+      TestGeometryFilter(vtkUnstructuredGrid::SafeDownCast(from.Deformation));
       // Cells with derived nodes.
       Case quadratic = from;
       const auto mesh = MakeTenNodes(vtkUnstructuredGrid::SafeDownCast(from.Deformation));

@@ -185,7 +185,7 @@ void TestSlit()
   VERIFY_EQUAL(countEmpty(38), 0);
 }
 
-void TestProperty()
+void TestOpenSplitsProperty()
 {
   vtkNew<vtkDeformVolumeFilter> filter;
   VERIFY(!filter->GetOpenSplits());
@@ -198,7 +198,7 @@ void TestProperty()
 
 int TestDeformSplits(int, char*[])
 {
-  TestProperty();
+  TestOpenSplitsProperty();
   TestPulledApart({ { 40, 20, 10 } }, 4.0); // by runs
   TestPulledApart({ { 40, 20, 10 } }, 1.5); // by links
   TestSlit();

@@ -76,7 +76,7 @@ void TestChangedExtent()
 }
 
 // The defaults of the property and of the report, and the modified time.
-void TestProperty()
+void TestIncrementalProperty()
 {
   vtkNew<vtkDeformVolumeFilter> filter;
   VERIFY(filter->GetIncremental());
@@ -91,7 +91,7 @@ void TestProperty()
 
 int TestDeformIncremental(int, char*[])
 {
-  TestProperty();
+  TestIncrementalProperty();
   TestChangedExtent();
   return GetExitCode();
 }

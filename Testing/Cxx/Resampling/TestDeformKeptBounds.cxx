@@ -11,7 +11,7 @@ using namespace filterTesting;
 namespace
 {
 
-void TestProperty()
+void TestBoundsGranularityProperty()
 {
   vtkNew<vtkDeformVolumeFilter> filter;
   VERIFY_EQUAL(filter->GetBoundsGranularity(), 0);
@@ -208,7 +208,7 @@ void TestMoves(int resampler)
 
 int TestDeformKeptBounds(int, char*[])
 {
-  TestProperty();
+  TestBoundsGranularityProperty();
   TestExtents();
   TestResets();
   TestMoves(vtkDeformVolumeFilter::EXACT);
