@@ -72,8 +72,9 @@ int main()
   {
     if (extent[2 * axis] != Shift[axis] || extent[2 * axis + 1] != Shift[axis] + Size[axis] - 1)
     {
-      std::cerr << "The output spans " << extent[2 * axis] << " to " << extent[2 * axis + 1]
-                << " on axis " << axis << ".\n";
+      std::cerr << "The extent of the output on axis " << axis << " is " << extent[2 * axis]
+                << " to " << extent[2 * axis + 1] << " instead of " << Shift[axis] << " to "
+                << Shift[axis] + Size[axis] - 1 << ".\n";
       return 1;
     }
   }
@@ -92,7 +93,11 @@ int main()
   }
 #ifdef HAS_INTERACTION
   vtkNew<vtkDeformVolumeSession> session;
-  wrong += session->SetInputs(volume) ? 0 : 1;
+  if (!session->SetInputs(volume))
+  {
+    std::cerr << "vtkDeformVolumeSession::SetInputs() fails.\n";
+    return 1;
+  }
 #endif
   std::cout << wrong << " of " << volume->GetNumberOfPoints() << " voxels are wrong.\n";
   return wrong == 0 ? 0 : 1;

@@ -28,14 +28,14 @@ std::vector<deformvolume::Resampling> GetExactMethods();
 #define SKIP_WITHOUT_VECTORS()                                                                     \
   if (!HasVectors())                                                                               \
   {                                                                                                \
-    GTEST_SKIP() << "work-items of the device have no vector registers for themselves";            \
+    GTEST_SKIP() << "the device does not support Resampling::ExactByLanes";                        \
   }
 
 /// For tests that include FakeDriver.h.
 #define SKIP_UNLESS_GRAPHICS()                                                                     \
   if (!FakeDriver::Get().IsGraphics)                                                               \
   {                                                                                                \
-    GTEST_SKIP() << "for --device=gpu-like";                                                       \
+    GTEST_SKIP() << "this test needs --device=gpu-like";                                           \
   }
 
 #endif

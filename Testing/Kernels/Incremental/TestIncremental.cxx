@@ -348,7 +348,7 @@ TEST_P(IncrementalFolds, EqualWholeUpdates)
   constexpr int edits = 30;
   if (GetNumberOf(edits) < edits)
   {
-    GTEST_SKIP() << "edits take too long here";
+    GTEST_SKIP() << "30 edits take too long on this device with this resampling method";
   }
   EditedVolume& edited = this->Edited;
   edited.Blanked.resize(GetNumberOfPoints(edited.Shape.VertexExtent));

@@ -126,7 +126,7 @@ TEST_F(Compilation, TimeIsReportedSeparately)
 {
   if (IsEmulated(FindDevice("").Description))
   {
-    GTEST_SKIP() << "an emulated device works as slowly as it compiles";
+    GTEST_SKIP() << "on an emulated device the kernels run for as long as their compilation takes";
   }
   const DeformerCase deformerCase =
     MakeCase({ { 0, 15, 0, 15, 0, 15 } }, { { 1, 1, 1 } }, MakeJitter(1, 0.15));
@@ -195,7 +195,7 @@ TEST_F(Compilation, NoWarnings)
 {
   if (!IsDevice("Portable Computing Language"))
   {
-    GTEST_SKIP() << "other drivers say nothing on the terminal";
+    GTEST_SKIP() << "only PoCL writes warnings to the terminal";
   }
   OpenCLContext& context = GetContext();
   const std::vector<VolumeArray> linear = MakeArrays(GetAllTypes(), false);

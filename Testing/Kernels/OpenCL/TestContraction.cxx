@@ -322,6 +322,6 @@ TEST(Contraction, ChangesNothing)
   }
   if (fused.at("fused") == "no")
   {
-    GTEST_SKIP() << "the driver fuses no products, whatever it is told";
+    GTEST_SKIP() << "the driver does not contract products and sums even if it may";
   }
 }
