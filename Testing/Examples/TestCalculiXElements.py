@@ -184,7 +184,7 @@ def check(mesh, poisson_ratio):
         expected.append(("same mesh", LIMIT_SAME_MESH,
                          run_calculix("same", places, is_fixed, cells, nodes, poisson_ratio)))
     for model, (_, _, moves) in results.items():
-        assert get_largest_strain(places, cells, moves) < 1e-5
+        assert get_largest_strain(places, cells, moves) < 1e-5, get_largest_strain(places, cells, moves)
         for name, limit, others in expected:
             compare(f"Poisson ratio {poisson_ratio}, {model}, {name}", moves[nodes], others, limit)
 

@@ -179,7 +179,7 @@ assert "\r" not in errors, "a progress bar is written although there is no termi
 pushed = read_vti(path("pushed.vti"))
 before = get_values(volume)
 after = get_values(pushed, "Values")
-assert pushed.GetDimensions() == volume.GetDimensions()
+assert pushed.GetDimensions() == volume.GetDimensions(), (pushed.GetDimensions(), volume.GetDimensions())
 assert not numpy.array_equal(before, after)
 mask = get_values(pushed, "vtkValidPointMask")
 assert numpy.array_equal(after[mask == 0], numpy.full((mask == 0).sum(), -7))
@@ -254,10 +254,10 @@ assert numpy.array_equal(get_values(volume, "Values"), get_values(read_vti(path(
 output, _ = call(program, path("in.vti"), "--tetgen", "--isovalue", "400", "--edge-length", "5",
                  *push, "--quiet", "-o", path("ball.vti"), "--padding",
                  "2")
-assert output == ""
+assert output == "", output
 ball = read_vti(path("ball.vti"))
 mask = get_values(ball, "vtkValidPointMask")
-assert 0 < mask.sum() < mask.size
+assert 0 < mask.sum() < mask.size, (mask.sum(), mask.size)
 assert get_values(ball, "Values")[mask == 1].max() >= 800
 # With --keep voxels outside the mesh are kept.
 call(program, path("in.vti"), "--tetgen", "--isovalue", "400", "--edge-length", "5", "--push",

@@ -84,7 +84,7 @@ class Source:
             target=request.target, property=request.property))
         self.display.flush()
         answer = self.await_event(X.ClientMessage)
-        assert answer.client_type == self.atom("XdndFinished")
+        assert answer.client_type == self.atom("XdndFinished"), (answer.client_type, self.atom("XdndFinished"))
         self.display.close()
 
 

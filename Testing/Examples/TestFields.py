@@ -171,7 +171,7 @@ for volume_name in ("volume.nii.gz", "volume.mhd"):
     points, values, covered = deform(volume_name, "inverse.nii", "--field-is-inverse")
     points = points @ flip if volume_name.endswith(".mhd") else points
     rest = (points - middle - shift) @ back.T + middle
-    assert covered.sum() > 1000
+    assert covered.sum() > 1000, covered.sum()
     # Points up to 1/256 voxel outside the volume are covered, with the values of the border.
     index = numpy.linalg.solve(axes, (rest - origin).reshape(-1, 3).T).T.reshape(rest.shape)
     inside = covered & (index >= 0).all(axis=-1) & (index <= numpy.array(size) - 1).all(axis=-1)

@@ -153,7 +153,7 @@ for slice_number, pixels in enumerate(series):
                    meta + data)
 call(program, path("series"), *still, "-o", path("s.vti"), "--quiet", "--bounds", "volume")
 result = read_vti(path("s.vti"))
-assert result.GetDimensions() == (4, 5, 6)
+assert result.GetDimensions() == (4, 5, 6), result.GetDimensions()
 assert numpy.allclose(result.GetSpacing(), (2, 2, 3))
 expected = numpy.array([[2, 0, 0, -10], [0, 2, 0, -20], [0, 0, 3, 30]])
 same(result, series, expected)

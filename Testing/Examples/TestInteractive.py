@@ -68,7 +68,7 @@ def count_events(name):
 
 
 rest = replay("rest")
-assert rest.GetExtent() == (-8, 38, -8, 35, -8, 32)
+assert rest.GetExtent() == (-8, 38, -8, 35, -8, 32), rest.GetExtent()
 covered = get_values(rest, "vtkValidPointMask") != 0
 assert numpy.array_equal(get_values(rest)[covered], get_values(ball).ravel())
 
@@ -85,16 +85,16 @@ assert session.SetInputs(read_vti(path("ball.vti")))
 assert session.LoadSession(path("all.xml"))
 assert session.SaveVolume(path("loaded.vti"))
 session.Update()
-assert session.GetNumberOfActions() == 5  # the model, a drag, a pin, a cut, a carving
+assert session.GetNumberOfActions() == 5, session.GetNumberOfActions()  # the model, a drag, a pin, a cut, a carving
 assert are_equal(made, read_vti(path("loaded.vti"))) and not are_equal(made, rest)
 counts = count_events("all.xml")
 for name, count in (("BeginGrab", 2), ("Hold", 2), ("Cut", 1), ("Model", 1)):
     assert counts[name] == count, counts
 before, after = read_picture(path("rest.png")), read_picture(path("all.png"))
-assert before.shape == after.shape == (200, 200, 3)
+assert before.shape == after.shape == (200, 200, 3), (before.shape, after.shape)
 is_ball = before[..., 0] > before[..., 2] + 15
-assert 0.05 < is_ball.mean() < 0.8
-assert (numpy.abs(after - before).max(axis=2) > 30).mean() > 0.02
+assert 0.05 < is_ball.mean() < 0.8, is_ball.mean()
+assert (numpy.abs(after - before).max(axis=2) > 30).mean() > 0.02, (numpy.abs(after - before).max(axis=2) > 30).mean()
 
 # The session that was saved in the window is opened in the window and by an option, and all actions are undone.
 WindowEvents().keys("io" + path("saved.xml") + "\r").wait(2).write(path("opened.log"))

@@ -62,7 +62,7 @@ assert not arrays.HasArray("Jacobian") and not arrays.HasArray("RestPosition")
 vectors, covered = Readers.get_array(inverse), get_values(result, "vtkValidPointMask") != 0
 call(program, path("moving.nii.gz"), *Readers.still, "-o", path("rest.vti"))
 rest = read_vti(path("rest.vti"))
-assert covered.sum() > 10000
+assert covered.sum() > 10000, covered.sum()
 indices = numpy.argwhere(covered)[::997]
 for k, j, i in indices.tolist():
     extent = result.GetExtent()

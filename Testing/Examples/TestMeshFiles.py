@@ -367,7 +367,7 @@ def check_formats_of_meshes():
     """Checks that all formats give the same result. All of them store displacements in double precision, and the nodes
     exactly."""
     expected = deform(*as_mesh("mesh.vtu"))
-    assert 1000 < expected[1].sum() < expected[1].size - 1000
+    assert 1000 < expected[1].sum() < expected[1].size - 1000, (expected[1].sum(), expected[1].size - 1000)
     for name in ("binary.vtk", "old.vtk", "mesh.pvtu", "mesh.vtm", "one.pvd", "parts.pvd", "mesh.e",
                  "mesh.ex2", "mesh.vtkhdf"):
         check_same(expected, *as_mesh(name))
@@ -386,7 +386,7 @@ def check_formats_of_meshes():
           path("moved.vtk"), SetFileType=2)
     pair = deform("--mesh", path("moved.vtk"), "--rest", path("mesh.vtu"))
     check_same(pair, "--mesh", path("moved.vtk"), "--rest", path("mesh.vtkhdf"))
-    assert (pair[0] != expected[0]).mean() < 1e-3  # because sums are rounded
+    assert (pair[0] != expected[0]).mean() < 1e-3, (pair[0] != expected[0]).mean()  # because sums are rounded
 
 
 def check_formats_of_sheets():

@@ -22,7 +22,7 @@ call(program, source, first)
 call(sys.executable, script, source, second)
 result = read_vti(first)
 other = read_vti(second)
-assert result.GetExtent() == other.GetExtent()
+assert result.GetExtent() == other.GetExtent(), (result.GetExtent(), other.GetExtent())
 assert numpy.array_equal(get_values(result, "Values"), get_values(other, "Values"))
 
 # Each slice is shifted along x by a sine of its height, which is linear between the 20 nodes of the mesh. The amplitude

@@ -28,7 +28,7 @@ def read(name):
     reader = vtkPNGReader()
     reader.SetFileName(path(name))
     reader.Update()
-    assert reader.GetOutput().GetDimensions() == (1400, 700, 1)
+    assert reader.GetOutput().GetDimensions() == (1400, 700, 1), reader.GetOutput().GetDimensions()
     picture = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
     return picture.reshape(700, 1400, -1).astype(int)
 
@@ -44,7 +44,7 @@ def count_packets(name):
         lengths = data[begin + 27:begin + 27 + data[begin + 26]]
         packets += sum(length < 255 for length in lengths)
         begin += 27 + len(lengths) + sum(lengths)
-    assert begin == len(data)
+    assert begin == len(data), (begin, len(data))
     return packets
 
 
@@ -71,4 +71,4 @@ if "Ogg Theora" in errors:
 else:
     assert errors == "" and "deform and draw frames" in output, errors + output
     # After three packets of headers there is one for each frame.
-    assert count_packets(path("m.ogv")) == 3 + 2
+    assert count_packets(path("m.ogv")) == 3 + 2, (count_packets(path("m.ogv")), 3 + 2)

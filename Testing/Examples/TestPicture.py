@@ -21,7 +21,7 @@ def draw(name, push, *arguments):
     reader = vtkPNGReader()
     reader.SetFileName(file)
     reader.Update()
-    assert reader.GetOutput().GetDimensions() == (1400, 700, 1)
+    assert reader.GetOutput().GetDimensions() == (1400, 700, 1), reader.GetOutput().GetDimensions()
     picture = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
     picture = picture.reshape(700, 1400, -1).astype(int)
     # Without the captions.
@@ -36,7 +36,7 @@ def is_ball(half):
 left, right = draw("still.png", "0,0,0,0.0001,0,0,1000")
 assert 0.1 < is_ball(left).mean() < 0.8, f"the ball fills {is_ball(left).mean()} of the picture"
 # If no voxel moves, single pixels at the rim of the ball may change.
-assert (numpy.abs(left - right).max(axis=2) > 8).mean() < 0.002
+assert (numpy.abs(left - right).max(axis=2) > 8).mean() < 0.002, (numpy.abs(left - right).max(axis=2) > 8).mean()
 
 # Pushed from above, towards -z.
 left, right = draw("pushed.png", "17,22.5,31,0,0,-8,16")

@@ -329,7 +329,7 @@ def check_middles(name, options):
     weights = numpy.array([0.25] * 4 if size == 4 else [-0.125] * 4 + [0.25] * 6)[:, None]
     middles = (weights * nodes[cells]).sum(axis=1)
     ends = (weights * (nodes + vtk_to_numpy(mesh.GetPointData().GetArray("Displacement")))[cells]).sum(axis=1)
-    assert numpy.abs(ends - middles).max() > 0.5
+    assert numpy.abs(ends - middles).max() > 0.5, numpy.abs(ends - middles).max()
     write("middles.csv", make_table(middles))
     move("moving.mha", options, ["middles.csv"])
     assert numpy.abs(read_table("moved-middles.csv") - ends).max() < 1e-5, name

@@ -10,8 +10,8 @@ from PictureTwins import check_twins
 
 def check_panels(rest, elements, springs):
     # The pictures of the pulled head differ from that of the head at rest.
-    assert numpy.abs(elements - rest).mean() > 2.0
-    assert numpy.abs(springs - rest).mean() > 2.0
+    assert numpy.abs(elements - rest).mean() > 2.0, numpy.abs(elements - rest).mean()
+    assert numpy.abs(springs - rest).mean() > 2.0, numpy.abs(springs - rest).mean()
 
 
 def check_words(output):

@@ -121,9 +121,9 @@ smooth_cutter.SetInputData(volume)
 smooth_cutter.SetSheetData(sheet)
 smooth_cutter.SmoothCutOn()
 smooth_cutter.Update()
-assert smooth_cutter.GetNumberOfSwitchedOffTetrahedra() == 0
+assert smooth_cutter.GetNumberOfSwitchedOffTetrahedra() == 0, smooth_cutter.GetNumberOfSwitchedOffTetrahedra()
 divided = smooth_cutter.GetNumberOfDividedTetrahedra()
-assert divided == cutter.GetNumberOfSwitchedOffTetrahedra()
+assert divided == cutter.GetNumberOfSwitchedOffTetrahedra(), (divided, cutter.GetNumberOfSwitchedOffTetrahedra())
 output, covered = check("smooth.vti", deform(smooth_cutter.GetOutput()), *cut, "--smooth-cut")
 assert f"0 tetrahedra of the volume are off, {divided} divided" in output
 assert covered.all()
@@ -138,7 +138,7 @@ carver.SetInputConnection(cutter.GetOutputPort())
 carver.SetImplicitFunction(sphere)
 carver.Update()
 _, covered = check("carved.vti", deform(carver.GetOutput()), *cut, *carve)
-assert 20 < (covered == 0).sum() < 1000
+assert 20 < (covered == 0).sum() < 1000, (covered == 0).sum()
 
 # A volume that is cut, carved, and pulled by ChainMail.
 handles = vtkPolyData()
@@ -155,7 +155,7 @@ chain_mail.SetInputConnection(carver.GetOutputPort())
 chain_mail.SetHandlesData(handles)
 chain_mail.SetHandleRadius(numbers[6])
 chain_mail.Update()
-assert chain_mail.GetNumberOfMovedVoxels() > 50
+assert chain_mail.GetNumberOfMovedVoxels() > 50, chain_mail.GetNumberOfMovedVoxels()
 output, _ = check("pulled.vti", deform(carver.GetOutput(), chain_mail.GetOutput()), *cut, *carve,
                   *pull)
 assert f"{chain_mail.GetNumberOfMovedVoxels()} voxels moved" in output

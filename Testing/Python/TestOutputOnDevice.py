@@ -58,7 +58,7 @@ def names(image):
 
 
 def check_equal(found, expected):
-    assert names(found) == names(expected)
+    assert names(found) == names(expected), (names(found), names(expected))
     for name in names(found):
         values = vtk_to_numpy(found.GetPointData().GetArray(name))
         wanted = vtk_to_numpy(expected.GetPointData().GetArray(name))
@@ -71,7 +71,7 @@ def test_numpy():
     mesh = make_mesh(image, 4)
     found = make_filter(image, mesh, True)
     expected = make_filter(image, mesh, False)
-    assert reported(found, "Arrays on the device") == 0
+    assert reported(found, "Arrays on the device") == 0, reported(found, "Arrays on the device")
     kept = []
     for amount in (0.1, 0.2, 0.15):
         move(mesh, amount)
@@ -79,9 +79,9 @@ def test_numpy():
         expected.Update()
         arrays = len(names(found.GetOutput()))
         assert reported(found, "Arrays on the device") == arrays - 2  # the integers of 64 bits
-        assert reported(expected, "Arrays on the device") == 0
+        assert reported(expected, "Arrays on the device") == 0, reported(expected, "Arrays on the device")
         check_equal(found.GetOutput(), expected.GetOutput())
-        assert reported(found, "Arrays on the device") == 0
+        assert reported(found, "Arrays on the device") == 0, reported(found, "Arrays on the device")
         # An output that numpy refers to is not overwritten.
         values = vtk_to_numpy(found.GetOutput().GetPointData().GetArray("two"))
         kept.append((values, values.copy()))

@@ -121,7 +121,7 @@ def compare(name, image, deformation, rest=None, reference=None, **properties):
         assert a.dtype == b.dtype and a.tobytes() == b.tobytes(), f"{name}: {array} differs"
     mask = vtk_to_numpy(ours.GetPointData().GetArray("vtkValidPointMask"))
     assert 0 < mask.sum(), name
-    assert ours.GetPointData().GetScalars().GetName() == "values"
+    assert ours.GetPointData().GetScalars().GetName() == "values", ours.GetPointData().GetScalars().GetName()
     return ours
 
 
@@ -363,8 +363,8 @@ def test_threads_and_processes():
 def test_examples():
     for module in (dv, dv._deformer):
         failed, tried = doctest.testmod(module)
-        assert failed == 0
-    assert tried > 0
+        assert failed == 0, failed
+    assert tried > 0, tried
 
 
 test_misuse()

@@ -89,8 +89,8 @@ names = run(of_classes)
 rest = names["volume"].GetOutput()
 result = names["result"]
 # The volume is bent to one side by up to 5 voxels at both ends: 21 voxels on each axis become 26 or 27 on x.
-assert rest.GetDimensions() == (21, 21, 21)
+assert rest.GetDimensions() == (21, 21, 21), rest.GetDimensions()
 low, high = result.GetBounds()[:2]
 assert (low, high) == (-10, 15), (low, high)
 assert names["deform"].GetNumberOfCoveredVoxels() > 0.95 * 21 ** 3
-assert names["deform"].GetNumberOfInvertedTetrahedra() == 0
+assert names["deform"].GetNumberOfInvertedTetrahedra() == 0, names["deform"].GetNumberOfInvertedTetrahedra()

@@ -68,10 +68,10 @@ def test_shift():
     assert output.GetExtent() == (2, 9, -1, 5, 3, 8), output.GetExtent()
     assert np.array_equal(to_numpy(output, "value"), values)
     assert np.array_equal(to_numpy(output, "label"), labels)
-    assert to_numpy(output, "label").dtype == np.int64
+    assert to_numpy(output, "label").dtype == np.int64, (to_numpy(output, "label").dtype, np.int64)
     assert to_numpy(output, "vtkValidPointMask").all()
-    assert output.GetPointData().GetScalars().GetName() == "value"
-    assert deform.GetNumberOfCoveredVoxels() == values.size
+    assert output.GetPointData().GetScalars().GetName() == "value", output.GetPointData().GetScalars().GetName()
+    assert deform.GetNumberOfCoveredVoxels() == values.size, (deform.GetNumberOfCoveredVoxels(), values.size)
 
 
 def test_half_a_voxel():
@@ -104,7 +104,7 @@ def test_errors():
     deform.SetDevice("there is no such device")
     deform.Update()
     assert len(messages) == 1 and "there is no such device" in messages[0], messages
-    assert deform.GetOutput().GetNumberOfPoints() == 0
+    assert deform.GetOutput().GetNumberOfPoints() == 0, deform.GetOutput().GetNumberOfPoints()
     deform.SetDevice("")
     deform.Update()
     assert len(messages) == 1, messages
@@ -113,7 +113,7 @@ def test_errors():
 
 def test_devices():
     names = deformvolume_vtk.vtkDeformVolumeFilter.GetDeviceNames()
-    assert names.GetNumberOfValues() > 0
+    assert names.GetNumberOfValues() > 0, names.GetNumberOfValues()
     image, _, _ = make_volume((3, 3, 3))
     for index in range(names.GetNumberOfValues()):
         deform = deformvolume_vtk.vtkDeformVolumeFilter()
@@ -122,7 +122,7 @@ def test_devices():
         deform.SetDevice(names.GetValue(index))
         deform.Update()
         assert deform.GetDeviceInUse() == names.GetValue(index), deform.GetDeviceInUse()
-        assert reported(deform, "Seconds for resampling") > 0
+        assert reported(deform, "Seconds for resampling") > 0, reported(deform, "Seconds for resampling")
 
 
 def test_values_in_place():
@@ -141,8 +141,8 @@ def test_values_in_place():
     scalars.Modified()
     deform.Update()
     assert np.array_equal(to_numpy(deform.GetOutput(), "value").ravel(), values)
-    assert reported(deform, "Volumes sent") == 2
-    assert reported(deform, "Static mappings made") == 1
+    assert reported(deform, "Volumes sent") == 2, reported(deform, "Volumes sent")
+    assert reported(deform, "Static mappings made") == 1, reported(deform, "Static mappings made")
 
 
 if __name__ == "__main__":

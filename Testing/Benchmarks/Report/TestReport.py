@@ -158,7 +158,7 @@ def check_document(names):
 def check_positions():
     """Checks that the positions of the peers are those of the inverse general pose, and near identity."""
     shape = gpu_peers.get_output_shape(27.5e6)
-    assert abs(np.prod(shape) - 27.5e6) < 0.01 * 27.5e6
+    assert abs(np.prod(shape) - 27.5e6) < 0.01 * 27.5e6, (abs(np.prod(shape) - 27.5e6), 0.01 * 27.5e6)
     matrix = gpu_peers.SCALE * gpu_peers.rotation((7.0, 7.0, 7.0))
     small = (5, 7, 6)
     positions = gpu_peers.make_positions("general", small, 0)

@@ -24,7 +24,7 @@ def read_baselines(path):
 def find_difference(path, baselines):
     """Returns the mean difference of the color components (0 to 255) from the most similar baseline."""
     drawn = read_picture(path)
-    assert drawn.shape == baselines[0].shape
+    assert drawn.shape == baselines[0].shape, (drawn.shape, baselines[0].shape)
     difference = min(numpy.abs(drawn - expected).mean() for expected in baselines)
     print(f"{path} differs from the baseline by {difference}")
     return difference

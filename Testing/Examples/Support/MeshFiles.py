@@ -166,7 +166,7 @@ def write_exodus(mesh, path, times=(1.0,)):
         writer.SetInputData(mesh)
     writer.WriteAllTimeStepsOn()
     assert writer.Write(), path
-    assert os.path.getsize(path) > 1000
+    assert os.path.getsize(path) > 1000, os.path.getsize(path)
 
 
 def write_hdf(path, places, moves, **settings):

@@ -35,6 +35,6 @@ def check_twins(name, volume, check_panels, check_words=None):
         if check_words:
             check_words(output)
         made = read_picture(path)
-        assert made.shape == (SIZE, 3 * SIZE, 3)
+        assert made.shape == (SIZE, 3 * SIZE, 3), (made.shape, (SIZE, 3 * SIZE, 3))
         check_panels(*(made[:, SIZE * k:SIZE * (k + 1)] for k in range(3)))
         assert find_difference(path, baselines) < LIMIT

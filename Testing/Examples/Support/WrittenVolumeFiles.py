@@ -24,7 +24,7 @@ def read_itk(name):
 
 def read_nrrd(name):
     values, header = nrrd.read(name)
-    assert header["space"] == "left-posterior-superior"
+    assert header["space"] == "left-posterior-superior", header["space"]
     directions = header["space directions"]
     place = numpy.eye(4)
     place[:3, :3] = directions[~numpy.isnan(directions).any(axis=1)].T
@@ -36,7 +36,7 @@ def read_nrrd(name):
 def read_nifti(name, source, padding):
     image = nibabel.load(name)
     header = image.header
-    assert header.get_xyzt_units()[0] == "mm"
+    assert header.get_xyzt_units()[0] == "mm", header.get_xyzt_units()[0]
     assert numpy.isnan(header["scl_slope"]) or header["scl_slope"] in (0, 1)
     if ".nii" in source:
         # The file has both forms of the source, with their codes. If VTK reverses the order of slices, the q-form
