@@ -14,10 +14,10 @@ failed=0
 refuse() # words of the message, arguments
 {
   if "$linker" "${@:2}" >message 2>&1; then
-    echo "not refused: ${*:2}"
+    echo "expected an error with \"$1\", but there was none: ${*:2}"
     failed=1
   elif ! grep -q "$1" message; then
-    echo "another message than \"$1\" for ${*:2}: $(cat message)"
+    echo "expected an error with \"$1\" instead of \"$(cat message)\": ${*:2}"
     failed=1
   fi
 }
@@ -47,7 +47,7 @@ for option in -O0 -O2; do
     case $extra in *hidden*)
       # With hidden visibility no symbol may be exported.
       readelf --dyn-syms --wide linked.so | grep -q ' linked_' && {
-        echo "hidden names are exported"
+        echo "$option $extra: the library exports symbols with hidden visibility"
         failed=1
       }
       continue ;;

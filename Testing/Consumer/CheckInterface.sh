@@ -20,7 +20,7 @@ for header in "${headers[@]}"; do
 done
 # Comments may contain these names.
 if sed 's|//.*||' "${headers[@]}" | grep -n 'cl::\|cl_[a-z]\|CL/\|vtk'; then
-  echo "a header uses OpenCL or VTK"
+  echo "the installed headers must not use OpenCL or VTK in the lines above"
   failed=1
 fi
 

@@ -24,7 +24,7 @@ OCL_ICD_VENDORS="$library" DEFORMVOLUME_DEVICE=oclgrind OCLGRIND_LOG="$log" \
   OCLGRIND_LOCAL_MEM_SIZE="${OCLGRIND_LOCAL_MEM_SIZE:-1048576}" "$@" || exit 1
 
 if [ ! -e "$log" ]; then
-  echo "Oclgrind left no log"
+  echo "Oclgrind has not written $log"
   exit 1
 fi
 if [ -s "$log" ]; then

@@ -97,7 +97,7 @@ cp Testing/Wheel/*.py "$root/tests"
 inside bash -c '
   set -e
   for program in ld gcc cc clang c++; do
-    ! command -v $program || { echo "there is a $program"; exit 1; }
+    ! command -v $program || { echo "$program is installed, but this test is for systems without it"; exit 1; }
   done
   python3 -m venv venv
   pip="venv/bin/pip install --quiet --no-index --find-links /wheels"
