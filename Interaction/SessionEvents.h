@@ -25,7 +25,7 @@ struct SessionEvent
     END_GRAB,   // handle
     HOLD,       // handle
     RELEASE,    // handle
-    CUT,        // points, their coordinates, then the points of each triangle
+    CUT,        // number of points, their coordinates, then the point ids of each triangle
     CARVE,      // 1 for a new stroke, x, y, z, radius
     UNDO,
     REDO,
@@ -33,7 +33,7 @@ struct SessionEvent
     MODEL,         // one of vtkDeformVolumeSession::Models
     HANDLE_RADIUS, // world units
     RELAXATION,    // sweeps
-    LATTICE,       // nodes on each axis
+    LATTICE,       // maximum number of nodes on an axis
     UNDO_MEMORY,   // bytes
     STEP           // one step of the simulation
   };

@@ -46,8 +46,8 @@ public:
   /// Begins a new session. mesh: null for a lattice. Volume and mesh must not be modified any more.
   void SetInputs(vtkImageData* volume, vtkUnstructuredGrid* mesh);
 
-  /// Applies an event. Throws std::runtime_error if that fails; the actions are then the same as
-  /// before. If the model or the lattice cannot be changed, the body is rebuilt from rest.
+  /// Applies an event. Throws std::runtime_error if the event fails; the actions are then the same
+  /// as before. If the model or the lattice cannot be changed, the body is rebuilt from rest.
   void Apply(const SessionEvent& event);
 
   /// Simulates one step. Returns whether the body still moves. If the positions of the handles are

@@ -53,8 +53,11 @@ int FindChoice(const std::array<Choice, Count>& choices, char key)
   return -1;
 }
 
+///@{
+/// Return numbers with up to four significant digits. The numbers of a position are in parentheses.
 std::string Format(double number);
 std::string Format(const double position[3]);
+///@}
 
 } // namespace deformvolume
 

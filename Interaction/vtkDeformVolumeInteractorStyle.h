@@ -27,15 +27,16 @@
  * the camera, h shows help, q ends the interaction. Texts need VTK's module RenderingFreeType.
  *
  * @par Visible voxels:
- * With PickMode OPACITY, the visible voxel is the one by which half of the light is absorbed that
- * all voxels along the ray absorb, by the scalar opacity of the property of Volume. There is none
- * if they absorb less than a tenth of the light. With ISOSURFACE, it is the first voxel whose value
- * is at least Isovalue; with SLICES, the first voxel on one of the slice planes. Without Volume,
- * OPACITY finds the first voxel that the body covers. Values are the first component of the
- * scalars.
+ * With PickMode OPACITY, voxels along a ray absorb light, by the scalar opacity of the property of
+ * Volume. The visible voxel is the one at which half of the light that the ray loses in total has
+ * been absorbed. No voxel is visible if the ray loses less than a tenth of its light. Without
+ * Volume, the first voxel that the body covers is visible. With ISOSURFACE, the first voxel whose
+ * value is at least Isovalue is visible; with SLICES, the first voxel on one of the slice planes.
+ * Values are the first component of the scalars.
  *
  * @par Events:
- * UpdateDataEvent: after each new output. UpdateInformationEvent: when GetStatus() has changed.
+ * UpdateDataEvent: after each new output. UpdateInformationEvent: when the status text that the
+ * window shows has changed.
  * StartInteractionEvent and EndInteractionEvent: when the button of a tool is pressed and released.
  *
  * @par Errors:
@@ -214,8 +215,8 @@ public:
 
   ///@{
   /**
-   * Set/Get the last message, and get the whole status text, which contains it. A viewer may show
-   * its own messages.
+   * Set/Get the last message, and get the whole status text, which contains the message. A viewer
+   * may show its own messages.
    */
   void ShowMessage(const std::string& message);
   vtkGetMacro(Message, std::string);

@@ -37,7 +37,7 @@ public:
   // The tool while the button is pressed.
   bool IsPressed = false;
   int Handle = -1;                       // the handle that is dragged; -1: none
-  glm::dvec3 Held{ 0.0 };                // its position
+  glm::dvec3 Held{ 0.0 };                // position of this handle
   std::array<int, 2> Cursor{ { 0, 0 } }; // last position of the cursor, in pixels
   std::vector<std::array<int, 2>> Stroke;
   vtkSmartPointer<vtkImageData> CarvedImage; // the output before the stroke

@@ -48,12 +48,12 @@
  * @par Errors:
  * Each error is one vtkErrorMacro, which says what is wrong and what to do, and GetErrorMessage().
  * An event that fails changes nothing; but if the model or the lattice cannot be changed, or if a
- * simulation diverges, the body is rebuilt from rest. Calls for a handle that could not be grabbed
- * have no effect. Errors of events are reported by Update() and TakeOutput(). Errors are: no
- * inputs; positions that are not finite, or without tissue to grab; a handle that is not grabbed,
- * or that cannot be moved so far; a sheet that is empty or not made of triangles; errors of the
- * filters; files that cannot be written or read, are damaged, or belong to another version or
- * volume.
+ * simulation diverges, the body is rebuilt from rest. MoveGrab(), EndGrab() and HoldGrab() of a
+ * handle that could not be grabbed have no effect. Errors of events are reported by Update() and
+ * TakeOutput(). Errors are: no inputs; positions that are not finite, or without tissue to grab; a
+ * handle that is not grabbed, or that cannot be moved so far; a sheet that is empty or not made of
+ * triangles; errors of the filters; files that cannot be written or read, are damaged, or belong to
+ * another version or volume.
  *
  * @sa vtkDeformVolumeFilter vtkChainMailDeformation vtkCutVolume vtkCarveVolume
  */
@@ -86,9 +86,9 @@ public:
 
   /**
    * Begin a session with a volume at rest, of at least two voxels on each axis, and optionally a
-   * mesh of vtkTetra cells, as vtkElasticDeformation reads it. Removes all actions, and sets the
-   * model to NONE. Settings do not change. The arrays of the volume are shared, and must not be
-   * modified; the mesh is copied. Returns false after an error.
+   * mesh, the input of vtkMassSpringDeformation or vtkFiniteElementDeformation. Removes all
+   * actions, and sets the model to NONE. Settings do not change. The arrays of the volume are
+   * shared, and must not be modified; the mesh is copied. Returns false after an error.
    */
   bool SetInputs(vtkImageData* volume, vtkUnstructuredGrid* mesh = nullptr);
 
@@ -212,7 +212,7 @@ public:
   /**
    * Set/Get the value of uncovered voxels of the output, in all arrays (BackgroundValue of
    * vtkDeformVolumeFilter). SetInputs() sets it to the minimum of the first component of the
-   * scalars, which is air in CT, or to 0 if that is less.
+   * scalars, which is air in CT, but to 0 if the minimum is greater than 0.
    */
   void SetBackgroundValue(double value);
   double GetBackgroundValue();

@@ -54,7 +54,7 @@ public:
   PublishedState State;
   bool IsBusy = false; // the body moves, or events are processed
   bool IsToStop = false;
-  int Waiting = 0;                                  // number of callers that wait for the pipeline
+  int Waiting = 0; // number of callers that wait for the pipeline or use it
   deformvolume::SessionPipeline::Sampling Sampling; // while the body moves
   std::thread Worker;
   int LastHandle = -1;
@@ -92,8 +92,8 @@ public:
   // The function of the thread.
   void Work();
 
-  // Locks PipelineMutex between two steps of the thread. Waiting keeps the thread from locking it
-  // again at once.
+  // Locks PipelineMutex between two steps of the thread. The thread does not begin a step while the
+  // member Waiting is not 0.
   class Access
   {
   public:
