@@ -130,7 +130,8 @@ SessionEvent deformvolume::MakeCutEvent(vtkPolyData* sheet)
     {
       if (!std::isfinite(coordinate))
       {
-        throw std::runtime_error("A point of the sheet is not finite. Set finite coordinates.");
+        throw std::runtime_error(
+          "Point " + std::to_string(id) + " of the sheet is not finite. Set finite coordinates.");
       }
       event.Numbers.push_back(coordinate);
     }
@@ -146,13 +147,19 @@ SessionEvent deformvolume::MakeCutEvent(vtkPolyData* sheet)
     }
     for (vtkIdType i = 0; i < 3; ++i)
     {
+      if (ids->GetId(i) < 0 || ids->GetId(i) >= sheet->GetNumberOfPoints())
+      {
+        throw std::runtime_error("Cell " + std::to_string(cell) + " of the sheet refers to point " +
+          std::to_string(ids->GetId(i)) + ", but the sheet has only " +
+          std::to_string(sheet->GetNumberOfPoints()) + " points. Correct the cell.");
+      }
       event.Numbers.push_back(static_cast<double>(ids->GetId(i)));
     }
   }
   if (!IsComplete(event))
   {
-    throw std::runtime_error(
-      "A cell of the sheet refers to a point that the sheet does not have. Correct the cells.");
+    throw std::runtime_error("The sheet has only " + std::to_string(sheet->GetNumberOfPoints()) +
+      " points. A triangle needs three.");
   }
   return event;
 }

@@ -144,7 +144,7 @@ deformvolume::SessionEvents deformvolume::ReadEvents(
   errno = 0;
   vtksys::ifstream file(fileName.c_str(), std::ios::binary);
   std::ostringstream text;
-  if (!(text << file.rdbuf()))
+  if (!(text << file.rdbuf()) && errno != 0) // empty files are reported below
   {
     throw std::runtime_error("The session " + fileName + " cannot be read" + GetReason() + ".");
   }

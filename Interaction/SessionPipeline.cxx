@@ -2,6 +2,7 @@
 #include "SessionPipeline.h"
 
 #include "SessionPositions.h"
+#include "StyleText.h"
 #include "vtkDeformVolumeSession.h"
 
 #include "vtkCallbackCommand.h"
@@ -199,7 +200,8 @@ void SessionPipeline::Apply(const SessionEvent& event)
     case SessionEvent::HANDLE_RADIUS:
       if (!(event.Numbers[0] >= 0.0))
       {
-        throw std::runtime_error("The radius of handles is negative. Set 0 or more.");
+        throw std::runtime_error(
+          "The handle radius is " + Format(event.Numbers[0]) + ". Set 0 or more.");
       }
       this->HandleRadius = event.Numbers[0];
       return;
@@ -211,7 +213,8 @@ void SessionPipeline::Apply(const SessionEvent& event)
     case SessionEvent::UNDO_MEMORY:
       if (!(event.Numbers[0] >= 0.0))
       {
-        throw std::runtime_error("The memory for undo is negative. Set 0 or more bytes.");
+        throw std::runtime_error(
+          "The memory for undo is " + Format(event.Numbers[0]) + " bytes. Set 0 or more.");
       }
       this->UndoMemory = event.Numbers[0];
       this->LimitStates();
@@ -240,7 +243,8 @@ void SessionPipeline::TryBeginGrab(double handle, const glm::dvec3& position)
   {
     if (action.Kind == Action::DRAG && action.Handle == handle)
     {
-      throw std::runtime_error("A handle with this number already exists. Use another number.");
+      throw std::runtime_error("Handle " + std::to_string(static_cast<int>(handle)) +
+        " already exists. Use another number.");
     }
   }
   Action drag;
@@ -260,8 +264,8 @@ void SessionPipeline::TryBeginGrab(double handle, const glm::dvec3& position)
   {
     if (!(drag.Rest[axis] >= low[axis] - most && drag.Rest[axis] <= high[axis] + most))
     {
-      throw std::runtime_error("There is nothing of the volume at the position that was grabbed. "
-                               "Grab a position within the volume.");
+      throw std::runtime_error("The grabbed position " + Format(&position.x) +
+        " is outside the deformed volume. Grab a position within it.");
     }
     drag.Rest[axis] = std::clamp(drag.Rest[axis], low[axis], high[axis]);
   }
@@ -309,7 +313,8 @@ void SessionPipeline::Release(double handle)
   if (std::none_of(
         held.begin(), held.end(), [=](const Action& one) { return one.Handle == handle; }))
   {
-    throw std::runtime_error("The handle was released already.");
+    throw std::runtime_error(
+      "Handle " + std::to_string(static_cast<int>(handle)) + " was released already.");
   }
   Action release;
   release.Kind = Action::RELEASE;
@@ -390,7 +395,8 @@ void SessionPipeline::Carve(const SessionEvent& event)
   const glm::dvec3 position = GetPosition(event, 1);
   if (!(event.Numbers[4] > 0.0))
   {
-    throw std::runtime_error("The carving radius is not greater than 0. Set a greater radius.");
+    throw std::runtime_error(
+      "The carving radius is " + Format(event.Numbers[4]) + ". Set a radius greater than 0.");
   }
   const bool isNew = event.Numbers[0] != 0.0 || !this->IsStroke;
   if (isNew)

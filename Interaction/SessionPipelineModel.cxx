@@ -172,7 +172,7 @@ void SessionPipeline::SetLattice(int nodes)
       this->Rebuild();
     }
   }
-  catch (...) // handles hold no nodes of this lattice
+  catch (...) // for example, a handle holds no node of this lattice
   {
     this->NumberOfNodes = former;
     this->TakeRestMesh();
@@ -399,8 +399,9 @@ bool SessionPipeline::Step()
   return this->FindMotion();
 }
 
-// Returns whether the body still moves. A body with inertia also stands still while it changes its
-// direction, so that mass-spring dynamics need several steps without motion.
+// Returns whether the body still moves. A body with inertia stops for a moment when it changes its
+// direction. With MASS_SPRING, the body is therefore at rest only after several steps without
+// motion.
 bool SessionPipeline::FindMotion()
 {
   if (this->Model == Session::CHAIN_MAIL)
@@ -451,8 +452,8 @@ void SessionPipeline::CheckHandles()
       if (index[axis] < extent[2 * axis] - 0.5 || index[axis] > extent[2 * axis + 1] + 0.5)
       {
         this->HasWarnedOfPadding = true;
-        this->Warnings.emplace_back(
-          "A handle lies outside the output: tissue there is cut off. Set a larger Padding.");
+        this->Warnings.emplace_back("Handle " + std::to_string(handle.Number) +
+          " lies outside the output, where tissue is cut off. Set a larger Padding.");
         return;
       }
     }

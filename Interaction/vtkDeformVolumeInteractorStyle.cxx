@@ -46,10 +46,10 @@ constexpr const char* KeyHelp =
   "left button   the tool            right button  turn the camera\n"
   "wheel         depth, radius       middle button move the camera\n"
   "t turn   g grab: drag what is under the cursor; the wheel moves it in depth;\n"
-  "         with Shift the handle stays where it is left\n"
-  "c cut:   draw a stroke; the wheel changes how deep it cuts\n"
-  "v carve: sweep a sphere; the wheel changes its radius\n"
-  "b probe  m measure: press on two places\n"
+  "         release the button with Shift to keep the handle there\n"
+  "c cut:   draw a stroke; the wheel changes the depth\n"
+  "v carve: sweep a sphere; the wheel changes the radius\n"
+  "b probe  m measure: click two points\n"
   "p pin what is under the cursor   x release the handle under the cursor\n"
   "1 2 3 4 the model   u undo   y redo   z undo all   + - like the wheel\n"
   "r reset the camera   h this help   q quit";
@@ -132,7 +132,7 @@ vtkDeformVolumeInteractorStyle::vtkDeformVolumeInteractorStyle()
         return;
       }
       const int percent = static_cast<int>(100.0 * *static_cast<double*>(call));
-      style->ShowMessage("The session is replayed: " + std::to_string(percent) + " %");
+      style->ShowMessage("Replaying the session: " + std::to_string(percent) + " %");
     });
 }
 
@@ -230,7 +230,8 @@ bool vtkDeformVolumeInteractorStyle::CheckInteractor()
   if (!this->Interactor || !this->Interactor->GetRenderWindow())
   {
     vtkErrorMacro(
-      "There is no interactor with a window. Call SetInteractorStyle() of an interactor.");
+      "There is no interactor with a window. Call SetInteractorStyle() of an interactor that has a "
+      "render window.");
     return false;
   }
   return true;
@@ -345,7 +346,7 @@ std::string vtkDeformVolumeInteractorStyle::GetStatus()
   if (internals.Session)
   {
     text += ListChoices(ModelChoices, internals.GetModel()) + "  " +
-      std::to_string(internals.Session->GetNumberOfActions()) + " done, " +
+      std::to_string(internals.Session->GetNumberOfActions()) + " actions, " +
       std::to_string(internals.Session->GetNumberOfUndoneActions()) + " undone" +
       (internals.Session->GetIsBusy() ? ", moving" : "");
     // Finite elements need several frames to reach equilibrium.

@@ -94,7 +94,7 @@ void vtkDeformVolumeInteractorStyle::BeginTool()
         internals.Cursor = { { x, y } };
         if (internals.GetModel() == Session::NONE)
         {
-          this->ShowMessage("Nothing follows without a model. Press 2, 3 or 4 for one.");
+          this->ShowMessage("Without a model, no tissue follows. Press 2, 3 or 4 to choose one.");
         }
       }
       break;
@@ -217,7 +217,12 @@ void vtkDeformVolumeInteractorStyle::FinishCut()
     isFound[i] =
       this->FindPosition(internals.Stroke[i][0], internals.Stroke[i][1], &positions[i].x);
   }
-  if (count < 2 || std::find(isFound.begin(), isFound.end(), true) == isFound.end())
+  if (count < 2)
+  {
+    this->ShowMessage("The stroke is too short. Draw it over the body.");
+    return;
+  }
+  if (std::find(isFound.begin(), isFound.end(), true) == isFound.end())
   {
     this->ShowMessage("The stroke misses the body. Draw it over the body.");
     return;
@@ -285,7 +290,7 @@ void vtkDeformVolumeInteractorStyle::MeasureAt(int x, int y)
   internals.Measured.push_back(worldPosition);
   if (internals.Measured.size() == 1)
   {
-    this->ShowMessage("Press on the other place.");
+    this->ShowMessage("Click the second point.");
     return;
   }
   this->MeasuredDistance = glm::length(internals.Measured[1] - internals.Measured[0]);
@@ -298,7 +303,7 @@ void vtkDeformVolumeInteractorStyle::PinAt(int x, int y)
   glm::dvec3 worldPosition(0.0);
   if (!this->FindPosition(x, y, &worldPosition.x))
   {
-    this->ShowMessage("There is nothing here. Pin a place on the body.");
+    this->ShowMessage("There is nothing here. Move the cursor to the body to pin it.");
     return;
   }
   internals.Session->Pin(worldPosition.x, worldPosition.y, worldPosition.z);

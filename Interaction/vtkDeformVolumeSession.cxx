@@ -20,12 +20,39 @@
 #include <cmath>
 #include <exception>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
 using deformvolume::SessionEvent;
 using deformvolume::SessionEvents;
+
+namespace
+{
+
+// Returns an error message, or "".
+std::string CheckVolume(vtkImageData* volume)
+{
+  if (!volume)
+  {
+    return "The volume is null. Set a vtkImageData.";
+  }
+  if (!volume->GetPointData()->GetScalars())
+  {
+    return "The volume has no active point scalars. Call SetScalars() of its point data.";
+  }
+  if (volume->GetDataDimension() != 3)
+  {
+    const int* dimensions = volume->GetDimensions();
+    return "The volume has " + std::to_string(dimensions[0]) + " x " +
+      std::to_string(dimensions[1]) + " x " + std::to_string(dimensions[2]) +
+      " voxels. It must have at least two voxels on each axis.";
+  }
+  return "";
+}
+
+} // namespace
 
 vtkStandardNewMacro(vtkDeformVolumeSession);
 
@@ -66,9 +93,10 @@ void vtkDeformVolumeSession::ReportErrors()
 
 bool vtkDeformVolumeSession::SetInputs(vtkImageData* volume, vtkUnstructuredGrid* mesh)
 {
-  if (!volume || !volume->GetPointData()->GetScalars() || volume->GetDataDimension() != 3)
+  const std::string fault = CheckVolume(volume);
+  if (!fault.empty())
   {
-    this->Report("There is no volume of at least two voxels on each axis with scalars. Give one.");
+    this->Report(fault);
     return false;
   }
   const bool wasRunning = this->GetIsRunning();
@@ -310,7 +338,7 @@ bool vtkDeformVolumeSession::Update()
   }
   if (this->GetIsRunning())
   {
-    this->Report("The thread of the session runs. Call Stop() before Update().");
+    this->Report("The thread of the session is active. Call Stop() before Update().");
     return false;
   }
   bool isMoving = false;

@@ -72,7 +72,8 @@ bool vtkDeformVolumeSession::vtkInternals::RunOnce()
   this->Make({ SessionEvent::STEP, {} }, errors);
   if (sampling.Factor != 1 && sampling.Factor != 2 && sampling.Factor != 4)
   {
-    errors.emplace_back("MovingSamplingFactor is not 1, 2 or 4. Set one of these.");
+    errors.emplace_back(
+      "MovingSamplingFactor is " + std::to_string(sampling.Factor) + ". Set 1, 2 or 4.");
     sampling.Factor = 1;
   }
   sampling.Factor = this->IsMoving ? sampling.Factor : 1;
