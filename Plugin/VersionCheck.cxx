@@ -30,15 +30,15 @@ void CheckParaViewVersion()
   {
     vtkErrorWithObjectMacro(
       nullptr, << "The plugin DeformVolume was built for ParaView " << text(built)
-               << ", and this is ParaView " << text(running)
-               << ". Its filters may fail or end this program. Build the plugin for ParaView "
+               << ", but this is ParaView " << text(running)
+               << ". The plugin may fail or crash ParaView. Build the plugin for ParaView "
                << text(running) << ", or load it into ParaView " << text(built) << ".");
   }
   else if (built[2] != running[2])
   {
     vtkGenericWarningMacro("The plugin DeformVolume was built for ParaView "
-      << text(built) << ", and this is ParaView " << text(running)
-      << ". If its filters fail, build the plugin for this ParaView.");
+      << text(built) << ", but this is ParaView " << text(running)
+      << ". If the plugin fails, build it for ParaView " << text(running) << ".");
   }
 }
 
