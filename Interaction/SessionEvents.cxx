@@ -115,9 +115,14 @@ SessionEvent deformvolume::ParseEvent(const std::string& text)
 
 SessionEvent deformvolume::MakeCutEvent(vtkPolyData* sheet)
 {
-  if (!sheet || !sheet->GetPoints() || sheet->GetNumberOfPolys() == 0)
+  if (!sheet || !sheet->GetPoints() || sheet->GetNumberOfPolys() + sheet->GetNumberOfStrips() == 0)
   {
     throw std::runtime_error("The sheet has no triangles. Use a vtkPolyData of triangles.");
+  }
+  if (sheet->GetNumberOfStrips() > 0)
+  {
+    throw std::runtime_error("The sheet has " + std::to_string(sheet->GetNumberOfStrips()) +
+      " triangle strips. Use vtkTriangleFilter.");
   }
   SessionEvent event;
   event.Kind = SessionEvent::CUT;

@@ -56,8 +56,9 @@ std::string FormatEvent(const SessionEvent& event);
 SessionEvent ParseEvent(const std::string& text);
 
 /// Convert the triangles of a surface to an event, and back. MakeCutEvent() throws
-/// std::runtime_error if there are no triangles, if a cell is not a triangle or refers to a missing
-/// point, or if a point is not finite.
+/// std::runtime_error if there are no triangles, if a polygon is not a triangle or refers to a
+/// missing point, if there are triangle strips, or if a point is not finite. Vertices and lines are
+/// ignored.
 SessionEvent MakeCutEvent(vtkPolyData* sheet);
 vtkSmartPointer<vtkPolyData> MakeSheet(const SessionEvent& cut);
 

@@ -150,6 +150,7 @@ void SessionPipeline::SetModel(int model)
   {
     this->Model = change.FormerModel;
     this->RestoreState(this->Done.back().Before);
+    this->ForgetStates(this->Done.back());
     this->Done = done;
     this->Undone = undone;
     throw;

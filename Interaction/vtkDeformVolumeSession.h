@@ -132,9 +132,10 @@ public:
   int Pin(double x, double y, double z);
 
   /**
-   * Cut along a sheet of triangles, which is copied. NONE and CHAIN_MAIL divide the tetrahedra that
-   * the sheet crosses (SmoothCut of vtkCutVolume): no tissue is lost, and a cut is visible only
-   * when it opens. The other models split their mesh along the faces of its tetrahedra.
+   * Cut along a sheet of triangles, which is copied; its vertices and lines are ignored. NONE and
+   * CHAIN_MAIL divide the tetrahedra that the sheet crosses (SmoothCut of vtkCutVolume): no tissue
+   * is lost, and a cut is visible only when it opens. The other models split their mesh along the
+   * faces of its tetrahedra.
    */
   void Cut(vtkPolyData* sheet);
 

@@ -142,6 +142,12 @@ void TestMisuse(vtkImageData* volume)
   one.Object->Cut(MakePlane({ 8, 8, 8 }, { 9, 0, 0 }, { 0, 9, 0 }, false));
   VERIFY_CONTAINS(one.TakeError(), "is not a triangle");
   const auto sheet = MakePlane({ 8, 8, 8 }, { 9, 0, 0 }, { 0, 9, 0 });
+  vtkNew<vtkCellArray> strips;
+  strips->InsertNextCell({ 0, 1, 3, 4 });
+  sheet->SetStrips(strips);
+  one.Object->Cut(sheet);
+  VERIFY_CONTAINS(one.TakeError(), "has 1 triangle strips");
+  sheet->SetStrips(nullptr);
   sheet->GetPoints()->SetPoint(4, 8.0, nan, 8.0);
   one.Object->Cut(sheet);
   VERIFY_CONTAINS(one.TakeError(), "Point 4 of the sheet is not finite");
