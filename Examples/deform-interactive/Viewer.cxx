@@ -28,7 +28,7 @@ constexpr float BeforeStyle = 10.0F; // priority of observers that get events be
 
 constexpr const char* ProgramKeys =
   "d volume, isosurface, slices    PageUp PageDown move the slice\n"
-  "f functions: automatic, CT bone, CT soft tissue, MR\n"
+  "f opacity and colors: automatic, CT bone, CT soft tissue, MR\n"
   "arrows: level and width, or drag the plot at the lower right\n"
   "o open a volume, session .xml or recording .log (or drop one)\n"
   "s save: volume .vti, mesh .vtu, session .xml, picture .png\n"
@@ -115,6 +115,11 @@ void Viewer::Run()
   }
   if (!this->Asked.Session.empty())
   {
+    if (!this->Values)
+    {
+      throw Failure("cannot load " + this->Asked.Session +
+        ": there is no volume. Give the volume of the session as an argument");
+    }
     if (!this->Session->LoadSession(this->Asked.Session))
     {
       throw Failure(this->Session->GetErrorMessage());
@@ -278,9 +283,9 @@ bool Viewer::OnMouseMove(vtkObject*, unsigned long, void*)
   return true;
 }
 
-// A timer opens the file later: the program that it was dropped from waits until this function
-// returns, and VTK exits if that program has ended by then. The style's timer cannot be used,
-// because it ends with the session, and no timer may be destroyed by its own event.
+// A timer opens the file later, because the file manager waits until this function returns, and VTK
+// exits if the file manager has ended by then. The timer of the style cannot be used: Open()
+// destroys it, and no timer may be destroyed in its own event.
 void Viewer::OnDrop(vtkObject*, unsigned long, void* files)
 {
   auto* const paths = static_cast<vtkStringArray*>(files);
@@ -356,7 +361,7 @@ void Viewer::ChoosePreset(Transfer::Preset preset)
   {
     this->Shown = Transfer(preset, *this->Values);
     this->ShowTransfer();
-    this->Style->ShowMessage("functions: " + this->Shown.GetName());
+    this->Style->ShowMessage("opacity and colors: " + this->Shown.GetName());
   }
 }
 

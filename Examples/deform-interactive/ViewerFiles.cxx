@@ -64,6 +64,10 @@ void Viewer::OpenVolume(const std::string& path)
 
 void Viewer::LoadSession(const std::string& path)
 {
+  if (!this->Values)
+  {
+    throw Failure("Cannot load " + path + ": there is no volume. Open the volume of the session.");
+  }
   this->Announce("Replaying " + path);
   if (this->Session->LoadSession(path))
   {
@@ -169,7 +173,7 @@ void Viewer::StartRecording(const std::string& path)
   this->Recorder->SetFileName(path.c_str());
   this->Recorder->EnabledOn();
   this->Recorder->Record();
-  this->Style->ShowMessage("Events are recorded to " + path + ", j stops it");
+  this->Style->ShowMessage("Recording events to " + path + ". Press j to stop.");
 }
 
 void Viewer::ToggleRecording()
@@ -181,8 +185,8 @@ void Viewer::ToggleRecording()
   }
   this->Recorder->Stop();
   this->Recorder->EnabledOff();
-  this->Style->ShowMessage(
-    std::string("Recorded: ") + this->Recorder->GetFileName() + ", open it to replay it");
+  this->Style->ShowMessage(std::string("Events were recorded to ") + this->Recorder->GetFileName() +
+    ". Press o to replay.");
   this->Recorder = nullptr;
 }
 

@@ -48,7 +48,7 @@ public:
   /// Renders with fewer rays and samples. Used during interaction.
   void SetCoarse(bool isCoarse);
 
-  /// Moves the slice whose normal is closest to the view direction. part: fraction of the extent.
+  /// Moves the slice whose normal is closest to the view direction, by a fraction of the extent.
   void MoveSlice(vtkRenderer* renderer, double part);
 
 private:
