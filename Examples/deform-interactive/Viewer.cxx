@@ -216,6 +216,7 @@ bool Viewer::OnChar(vtkObject*, unsigned long, void*)
   if (this->Prompt.IsActive())
   {
     this->Prompt.Type(key);
+    this->ShowTexts();
     this->IsChanged = true;
     return true;
   }
