@@ -267,7 +267,7 @@ private:
   void ReleaseAt(int x, int y);
   void PinAt(int x, int y);
   void MeasureAt(int x, int y);
-  void Turn(int notches);
+  void TurnWheel(int notches);
   bool ResizeTool(int notches);
   double GetDiagonal();
   double GetUsedCutDepth();

@@ -124,15 +124,15 @@ void vtkDeformVolumeInteractorStyle::OnMouseMove()
 
 void vtkDeformVolumeInteractorStyle::OnMouseWheelForward()
 {
-  this->Turn(1);
+  this->TurnWheel(1);
 }
 
 void vtkDeformVolumeInteractorStyle::OnMouseWheelBackward()
 {
-  this->Turn(-1);
+  this->TurnWheel(-1);
 }
 
-void vtkDeformVolumeInteractorStyle::Turn(int notches)
+void vtkDeformVolumeInteractorStyle::TurnWheel(int notches)
 {
   if (!this->CheckInteractor() || !this->FindUsedRenderer() || this->ResizeTool(notches))
   {
