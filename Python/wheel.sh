@@ -45,7 +45,7 @@ PATH=$tools/bin:$PATH "$tools/bin/auditwheel" repair --plat manylinux_2_28_x86_6
 
 wheel=$(echo "$folder"/*.whl)
 [[ "$wheel" == *-py3-none-manylinux_2_28_x86_64.whl ]] || {
-  echo "The wheel has another name than it should: $wheel"
+  echo "$wheel: the name must end in -py3-none-manylinux_2_28_x86_64.whl."
   exit 1
 }
 rm -rf "$folder/content"
@@ -55,7 +55,7 @@ bash Testing/C/CheckExports.sh "$folder/content/deformvolume/libdeformvolume.so"
 for file in "$folder"/content/deformvolume/*.so; do
   needed=$(readelf --dynamic "$file" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p')
   if grep -vx 'lib\(c\|m\|dl\|pthread\|rt\)\.so\.[0-9]\|ld-linux-x86-64\.so\.2' <<<"$needed"; then
-    echo "$file needs these libraries, which not every system has"
+    echo "$file needs the libraries above. It may only need libraries of glibc."
     exit 1
   fi
   newest=$(readelf --version-info "$file" | grep -o 'GLIBC_[0-9.]*' | sort -uV | tail -1)
@@ -63,7 +63,7 @@ for file in "$folder"/content/deformvolume/*.so; do
 done
 bytes=$(stat --format %s "$wheel")
 [ "$bytes" -le 5000000 ] || {
-  echo "The wheel has $bytes bytes, and 5000000 is the limit."
+  echo "The wheel has $bytes bytes. The limit is 5000000 bytes."
   exit 1
 }
 echo "$wheel: $bytes bytes"

@@ -32,7 +32,7 @@ def image(array, what: str, components: Tuple[int, ...] = ()) -> numpy.ndarray:
     """
     array = native(array, what)
     if array.ndim not in ((4,) if components else (3, 4)):
-        axes = "x, y, z and components" if components else "x, y, z and perhaps components"
+        axes = "x, y, z and components" if components else "x, y, z and, optionally, components"
         raise ValueError(f"{what} has the shape {array.shape}. Its axes must be {axes}.")
     if components and array.shape[3] not in components:
         wanted = " or ".join(map(str, components))
@@ -60,7 +60,7 @@ def vectors(array, number, what: str) -> numpy.ndarray:
     array = native(array, what)
     if array.ndim != 2 or array.shape[1] != 3 or (number is not None and array.shape[0] != number):
         wanted = f"({'n' if number is None else number}, 3)"
-        raise ValueError(f"{what} has the shape {array.shape}. It must be {wanted}.")
+        raise ValueError(f"{what} has the shape {array.shape}. It must have the shape {wanted}.")
     if array.dtype not in (numpy.float32, numpy.float64):
         array = array.astype(numpy.float64)
     return numpy.ascontiguousarray(array)
@@ -69,8 +69,10 @@ def vectors(array, number, what: str) -> numpy.ndarray:
 def affine(matrix, what: str) -> numpy.ndarray:
     """Returns a checked 4 x 4 matrix from indices of voxels to world coordinates."""
     matrix = numpy.asarray(matrix, dtype=numpy.float64)
-    if matrix.shape != (4, 4) or not numpy.array_equal(matrix[3], (0, 0, 0, 1)):
-        raise ValueError(f"{what} must be a matrix of 4 x 4 whose last row is 0, 0, 0, 1.")
+    if matrix.shape != (4, 4):
+        raise ValueError(f"The shape of {what} is {matrix.shape}. It must be a 4 x 4 matrix.")
+    if not numpy.array_equal(matrix[3], (0, 0, 0, 1)):
+        raise ValueError(f"The last row of {what} is {matrix[3].tolist()}. It must be [0, 0, 0, 1].")
     return matrix
 
 
@@ -78,7 +80,7 @@ def split_affine(matrix: numpy.ndarray) -> Tuple[numpy.ndarray, numpy.ndarray, n
     """Returns the origin, spacing and direction (its columns are the axes) of an affine matrix."""
     axes = matrix[:3, :3]
     spacing = numpy.sqrt((axes * axes).sum(axis=0))
-    # The library reports columns of length 0.
+    # The library raises an error for columns of length 0.
     direction = axes / numpy.where(spacing > 0, spacing, 1.0)
     return matrix[:3, 3].copy(), spacing, direction
 

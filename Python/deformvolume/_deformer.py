@@ -122,15 +122,18 @@ def _cells(cells):
         types = numpy.ascontiguousarray(types, dtype=numpy.uint8)
         lengths = [len(points) for points in lists]
         if types.ndim != 1 or len(types) != len(lengths):
-            raise ValueError(f"There are {types.size} types of cells, but {len(lengths)} cells.")
+            raise ValueError(
+                f"The array of cell types has the shape {types.shape}. It must have the shape ({len(lengths)},): one "
+                "type for each cell."
+            )
         offsets = numpy.concatenate(([0], numpy.cumsum(lengths, dtype=numpy.int64))).astype(numpy.int64)
         flat = [numpy.asarray(points, dtype=numpy.int64) for points in lists]
         return numpy.concatenate(flat) if flat else numpy.zeros(0, numpy.int64), types, offsets
     cells = numpy.asarray(cells)
     if cells.ndim != 2 or cells.shape[1] != 4 or cells.dtype.kind not in "iu":
         raise ValueError(
-            f"The cells have the shape {cells.shape} and the type {cells.dtype}. Give integers of the shape (m, 4) for "
-            "tetrahedra, or a pair (types, cells)."
+            f"The array of cells has the shape {cells.shape} and the type {cells.dtype}. Give an integer array of the "
+            "shape (m, 4) for tetrahedra, or a pair (types, cells) for other cells."
         )
     return numpy.ascontiguousarray(cells, dtype=numpy.int64), None, None
 
@@ -171,8 +174,9 @@ class Deformer:
     def _call(self, name: str, *arguments) -> None:
         if os.getpid() != self._process:
             raise _native.Error(
-                "The deformer belongs to another process: OpenCL does not survive a fork. Make a deformer in each "
-                'process, or start processes by "spawn".'
+                "This deformer was created before the process was forked, and OpenCL does not work after a fork. Start "
+                'processes with the start method "spawn" or "forkserver" (multiprocessing.set_start_method), and '
+                "create a deformer in each process."
             )
         with self._lock:
             _native.check(getattr(_native.library, name)(self._handle, *arguments))
@@ -204,9 +208,11 @@ class Deformer:
         for number, image in enumerate(images):
             if image.shape[2::-1] != shape:
                 raise ValueError(
-                    f"Array {number} of the volume has {image.shape[2::-1]} voxels, but array 0 has {shape}."
+                    f"Array {number} of the volume has {image.shape[2::-1]} voxels, but array 0 has {shape}. Give "
+                    "arrays on the same grid."
                 )
-        self.set_volume_grid(_grid_of(shape, affine, "The affine of the volume"), images, categorical, background)
+        grid = _grid_of(shape, affine, "the affine matrix of the volume")
+        self.set_volume_grid(grid, images, categorical, background)
 
     def set_volume_grid(
         self, grid: _structs.Grid, images: List[numpy.ndarray], categorical=False, background=0.0
@@ -216,7 +222,10 @@ class Deformer:
         def each(value, what):
             values = list(value) if isinstance(value, (list, tuple, numpy.ndarray)) else [value] * len(images)
             if len(values) != len(images):
-                raise ValueError(f"There are {len(values)} values of {what}, but {len(images)} arrays.")
+                raise ValueError(
+                    f"{what} has {len(values)} values, but the volume has {len(images)} arrays. Give one value, or one "
+                    "for each array."
+                )
             return values
 
         labels = each(categorical, "categorical")
@@ -257,9 +266,14 @@ class Deformer:
         def take(array, shape, dtype, what):
             if array is None:
                 return None
+            if self._shape is None:
+                raise ValueError(f"There is no volume. Set it before the mask of {what}.")
             array = numpy.ascontiguousarray(array, dtype=dtype)
             if array.shape != shape[::-1]:
-                raise ValueError(f"The mask of {what} has the shape {array.shape[::-1]}. It must have {shape}.")
+                raise ValueError(
+                    f"The mask of {what} has the shape {array.shape[::-1]}. For this volume it must have the shape "
+                    f"{shape}."
+                )
             return array
 
         masks = (
@@ -287,10 +301,10 @@ class Deformer:
             raise TypeError(f"The deformation is a {type(deformation).__name__}. Give a Mesh or a Field.")
 
     def _set_mesh(self, mesh: Mesh) -> None:
-        points = _arrays.vectors(mesh.points, None, "The points of the mesh")
+        points = _arrays.vectors(mesh.points, None, "The array of points")
         displacements = mesh.displacements
         if displacements is not None:
-            displacements = _arrays.vectors(displacements, len(points), "The displacements of the mesh")
+            displacements = _arrays.vectors(displacements, len(points), "The array of displacements")
         with self._lock:
             self.set_mesh_arrays(points, *_cells(mesh.cells))
             if displacements is not None:
@@ -299,14 +313,17 @@ class Deformer:
     def set_mesh_arrays(self, points, connectivity, types=None, offsets=None) -> None:
         """Sets a mesh in the form of the library: the point indices of all cells, and the offsets of the cells. Types
         and offsets are None if all cells are tetrahedra."""
-        points = _arrays.vectors(points, None, "The points of the mesh")
+        points = _arrays.vectors(points, None, "The array of points")
         if offsets is not None and (
             len(offsets) != len(types) + 1
             or offsets[0] != 0
             or offsets[-1] != len(connectivity)
             or (numpy.diff(offsets) < 0).any()
         ):
-            raise ValueError("The offsets of the cells do not lead through their connectivity.")
+            raise ValueError(
+                f"The mesh has {len(types)} cells with {len(connectivity)} point indices in all, so it needs "
+                f"{len(types) + 1} offsets that do not decrease, from 0 to {len(connectivity)}."
+            )
         struct = _structs.Mesh(
             number_of_points=len(points),
             points=points.ctypes.data,
@@ -323,20 +340,24 @@ class Deformer:
 
     def set_displacements(self, displacements) -> None:
         """Sets the displacements of the points of the mesh: shape (n, 3), in world units."""
-        vectors = _arrays.vectors(displacements, self._points, "The displacements of the mesh")
+        # Without a mesh, the library raises the error.
+        vectors = _arrays.vectors(displacements, self._points or None, "The array of displacements")
         self._call("dv_set_displacements", _structs.type_of(vectors), len(vectors), _structs.address(vectors))
 
     def _set_field(self, deformation: Field) -> None:
         vectors = _arrays.image(deformation.vectors, "The field", (3,))
         if vectors.dtype not in (numpy.float32, numpy.float64):
             vectors = vectors.astype(numpy.float64)
-        grid = _grid_of(vectors.shape[2::-1], deformation.affine, "The affine of the field")
+        grid = _grid_of(vectors.shape[2::-1], deformation.affine, "the affine matrix of the field")
         self.set_field_grid(grid, vectors, deformation.inverse)
 
     def set_field_grid(self, grid: _structs.Grid, vectors: numpy.ndarray, inverse: bool) -> None:
         """Sets a field with a grid of the library, and vectors with the axes z, y, x and an axis of components."""
         struct = _structs.Field(
-            grid=ctypes.pointer(grid), vectors=vectors.ctypes.data, type=_structs.type_of(vectors), inverse=int(bool(inverse))
+            grid=ctypes.pointer(grid),
+            vectors=vectors.ctypes.data,
+            type=_structs.type_of(vectors),
+            inverse=int(bool(inverse)),
         )
         with self._lock:
             self._call("dv_set_field", ctypes.byref(struct))
@@ -361,8 +382,8 @@ class Deformer:
             return
         shape, matrix = reference
         if len(shape) != 3 or min(shape) < 1:
-            raise ValueError(f"The shape of the reference is {tuple(shape)}. It must have three numbers, 1 or more.")
-        self.set_reference_grid(_grid_of(shape, matrix, "The affine of the reference"))
+            raise ValueError(f"The shape of the reference is {tuple(shape)}. Give three numbers of at least 1.")
+        self.set_reference_grid(_grid_of(shape, matrix, "the affine matrix of the reference"))
 
     def set_reference_grid(self, grid: _structs.Grid) -> None:
         """Like set_reference(), for a grid of the library."""
@@ -389,7 +410,10 @@ class Deformer:
             struct.bounds_mode = _choose(bounds, names, "bounds")
         else:
             if len(bounds) != 6:
-                raise ValueError(f"There are {len(bounds)} bounds. Give six, or a name.")
+                raise ValueError(
+                    f"bounds has {len(bounds)} numbers. Give six (x min, x max, y min, y max, z min, z max), "
+                    '"deformed" or "volume".'
+                )
             struct.bounds_mode = _structs.BOUNDS["custom"]
             struct.custom_bounds[:] = [float(bound) for bound in bounds]
         if spacing is not None:
@@ -421,7 +445,7 @@ class Deformer:
                 voxel's value.
             rest_positions, jacobian, fold_count: whether to compute these arrays, see Deformed.
             extra_background: value of rest_positions and jacobian for voxels outside the deformed volume.
-            progress: called with the fraction done. If it returns False, the call ends with KeyboardInterrupt, as by
+            progress: called with the fraction done. If it returns False, the call raises KeyboardInterrupt, as for
                 Ctrl-C. If it raises an exception, the call ends with that exception.
 
         Warns:
@@ -475,7 +499,8 @@ class Deformer:
         extra_background=0.0,
         progress=None,
     ) -> _structs.Report:
-        """Deforms the volume into given arrays with the axes z, y, x."""
+        """Like deform(), but writes into given arrays with the axes z, y, x. Returns the report of the library, and
+        raises no warnings."""
         extra = extra or {}
         failure = []
 
@@ -575,7 +600,9 @@ def deform(
     if reference is None:
         deformer.set_output(bounds, padding=padding, spacing=spacing)
     elif bounds != "deformed" or padding != 0 or spacing is not None:
-        raise ValueError("The reference says the grid of the output. Leave out bounds, padding and spacing.")
+        raise ValueError(
+            "The output has the grid of the reference. Do not give bounds, padding or spacing with a reference."
+        )
     return deformer.deform(
         interpolation=interpolation,
         rest_positions=rest_positions,

@@ -117,8 +117,8 @@ def _add_driver() -> None:
         _add(path)
     elif choice == "pypi":
         raise _native.Error(
-            f'DEFORMVOLUME_DRIVER is "pypi", but the package {_PACKAGE} is not installed: '
-            f"pip install {_PACKAGE}"
+            f'DEFORMVOLUME_DRIVER is "pypi", but the package {_PACKAGE} is not installed. '
+            f'Install it with "pip install {_PACKAGE}".'
         )
 
 
@@ -128,9 +128,9 @@ def prepare() -> None:
     # Check this before the lock is taken: another thread may have held it when the process was forked.
     if _process is not None and os.getpid() != _process:
         raise _native.Error(
-            "This process was forked from one that had used OpenCL, which does not survive that: its calls would wait "
-            'forever. Start processes by "spawn" or "forkserver" (multiprocessing.set_start_method), or before the '
-            "first use of deformvolume."
+            "This process was forked from a process that had used OpenCL. OpenCL does not work after a fork: calls "
+            'would wait forever. Start processes with the start method "spawn" or "forkserver" '
+            "(multiprocessing.set_start_method), or fork before the first use of deformvolume."
         )
     with _lock:
         if not _ready:

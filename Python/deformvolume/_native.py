@@ -44,7 +44,7 @@ def _load():
     found = loaded.dv_abi_version()
     if found != ABI_VERSION:
         raise ImportError(
-            f"{path} has version {found} of its interface, and this package needs {ABI_VERSION}. "
+            f"{path} has the ABI version {found}, but this package needs the ABI version {ABI_VERSION}. "
             "Install the package again."
         )
     return loaded

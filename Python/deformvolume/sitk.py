@@ -4,13 +4,13 @@
 import numpy
 import SimpleITK
 
-from . import _deformer
+from . import _arrays, _deformer
 
 
-def _grid_of(image) -> "_deformer._structs.Grid":
+def _grid_of(image, what: str) -> "_deformer._structs.Grid":
     size = image.GetSize()
     if len(size) != 3:
-        raise ValueError(f"The image has {len(size)} dimensions. It must have 3.")
+        raise ValueError(f"{what} has {len(size)} dimensions. It must have 3.")
     extent = [0, size[0] - 1, 0, size[1] - 1, 0, size[2] - 1]
     return _deformer.make_grid(extent, image.GetOrigin(), image.GetSpacing(), image.GetDirection())
 
@@ -32,7 +32,7 @@ def deform(
 
     Args:
         image: three dimensions, pixels of any number type, scalars or vectors.
-        deformation: a SimpleITK image of vectors of three components, or a DisplacementFieldTransform, in mm; a
+        deformation: a SimpleITK image of vectors of three components, in mm; a DisplacementFieldTransform; or a
             deformvolume.Mesh or Field, in the world coordinates of the image (LPS).
         inverse: the direction of a field of SimpleITK. True (default): from the output to the image, as in
             registrations and SimpleITK.Resample. False: from the image to the deformed image.
@@ -44,26 +44,30 @@ def deform(
         SimpleITK.Image: the deformed image, of the same pixel type.
     """
     deformer = _deformer.Deformer(device)
-    pixels = numpy.ascontiguousarray(SimpleITK.GetArrayViewFromImage(image))
-    deformer.set_volume_grid(_grid_of(image), [pixels], categorical, background)
+    pixels = numpy.ascontiguousarray(_arrays.native(SimpleITK.GetArrayViewFromImage(image), "The image"))
+    deformer.set_volume_grid(_grid_of(image, "The image"), [pixels], categorical, background)
     if isinstance(deformation, SimpleITK.Transform):
         deformation = SimpleITK.DisplacementFieldTransform(deformation).GetDisplacementField()
     is_inverse = False
     if isinstance(deformation, SimpleITK.Image):
         vectors = numpy.ascontiguousarray(SimpleITK.GetArrayViewFromImage(deformation))
         if vectors.ndim != 4 or vectors.shape[3] != 3:
-            raise ValueError("The displacement field must have three dimensions and vectors of three components.")
+            raise ValueError(
+                f"The displacement field has {deformation.GetDimension()} dimensions and pixels of "
+                f"{deformation.GetNumberOfComponentsPerPixel()} components. It must have three dimensions and vectors "
+                "of three components."
+            )
         if vectors.dtype not in (numpy.float32, numpy.float64):
             vectors = vectors.astype(numpy.float64)
         is_inverse = bool(inverse)
-        deformer.set_field_grid(_grid_of(deformation), vectors, is_inverse)
+        deformer.set_field_grid(_grid_of(deformation, "The displacement field"), vectors, is_inverse)
     else:
         deformer.set_deformation(deformation)
     deformer.set_outside(outside, fade_distance)
     if reference is not None:
-        deformer.set_reference_grid(_grid_of(reference))
+        deformer.set_reference_grid(_grid_of(reference, "The reference"))
     elif is_inverse:
-        deformer.set_reference_grid(_grid_of(image))
+        deformer.set_reference_grid(_grid_of(image, "The image"))
     deformed = deformer.deform(interpolation=interpolation)
     array = deformed.array.transpose((2, 1, 0, 3)[: deformed.array.ndim])
     result = SimpleITK.GetImageFromArray(array, isVector=array.ndim == 4)

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """DeformVolume, a filter for VTK pipelines in Python, for VTK 9.1 and later.
 
-It has the names of vtkDeformVolumeFilter, a C++ class that must be compiled for one version of VTK, and its results are
-bitwise equal. It has only the properties that are listed in DeformVolume. Others raise AttributeError.
+Its methods and constants have the names of those of the C++ class vtkDeformVolumeFilter, which must be compiled for one
+version of VTK. Its results are bitwise equal to those of that class. It has only the properties that are listed in
+DeformVolume: methods of other properties raise AttributeError.
 """
 
 import numpy
@@ -50,7 +51,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
         1, optional: vtkUnstructuredGrid with displacements of its points; or vtkImageData with vectors, a displacement
             field. Without it the output is the volume itself.
             SetInputArrayToProcess(0, 1, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, name) chooses the array of three
-            components, in world units. The default are the active vectors, or else the only array of three components.
+            components, in world units. Default: the active vectors, or else the only array of three components.
         2, optional: vtkUnstructuredGrid, the mesh at rest. The points of port 1 are then deformed positions.
         3, optional: vtkImageData with the grid of the output.
 
@@ -108,8 +109,8 @@ class DeformVolume(VTKPythonAlgorithmBase):
             if name.endswith(ending) and isinstance(settings.get(stem), bool):
                 return lambda: self._set(stem, value)
         raise AttributeError(
-            f"DeformVolume has no {name}. The C++ class vtkDeformVolumeFilter, in the Python package deformvolume_vtk, "
-            "may have it; it is built from source."
+            f"DeformVolume has no {name}. The C++ class vtkDeformVolumeFilter may have it. That class is in the Python "
+            "package deformvolume_vtk, which must be built from source."
         )
 
     def _set(self, name, value):
@@ -261,7 +262,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
 
     def _prepare_volume(self, image):
         if image is None:
-            raise ValueError("There is no volume on port 0.")
+            raise ValueError("There is no volume on port 0. Set it with SetInputConnection().")
         data = image.GetPointData()
         arrays = [data.GetArray(number) for number in range(data.GetNumberOfArrays())]
         # Arrays of ghosts and of edits are masks of the volume, and are not resampled.
@@ -314,7 +315,9 @@ class DeformVolume(VTKPythonAlgorithmBase):
         if name:
             array = points.GetArray(name)
             if array is None:
-                raise ValueError(f'The deformation on port 1 has no point array "{name}".')
+                raise ValueError(
+                    f'The deformation on port 1 has no point array "{name}". Choose one with SetInputArrayToProcess().'
+                )
         else:
             array = points.GetVectors()
             found = [points.GetArray(i) for i in range(points.GetNumberOfArrays())]
@@ -324,12 +327,12 @@ class DeformVolume(VTKPythonAlgorithmBase):
             if array is None:
                 raise ValueError(
                     f"The deformation on port 1 has no active vectors, and {len(found)} point arrays of three "
-                    "components. Choose one with SetInputArrayToProcess()."
+                    "components. Set active vectors, or choose an array with SetInputArrayToProcess()."
                 )
         if array.GetNumberOfComponents() != 3:
             raise ValueError(
                 f'The array "{array.GetName()}" on port 1 has {array.GetNumberOfComponents()} components. '
-                "Displacements have 3."
+                "Displacements must have 3."
             )
         return array
 
@@ -347,7 +350,9 @@ class DeformVolume(VTKPythonAlgorithmBase):
 
     def _prepare_field(self, data, rest):
         if rest is not None:
-            raise ValueError("A displacement field on port 1 has no rest configuration. Disconnect port 2.")
+            raise ValueError(
+                "Port 1 has a displacement field, which cannot be used with a mesh at rest. Disconnect port 2."
+            )
         array = self._find_vectors(data)
         inverse = self._settings["FieldIsInverse"]
         if self._changed("deformation", _stamp(data, array), inverse):
@@ -359,7 +364,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
     def _prepare_mesh(self, data, rest):
         mesh = data if rest is None else rest
         if mesh.GetPoints() is None or mesh.GetNumberOfCells() == 0:
-            raise ValueError("The deformation mesh has no cells.")
+            raise ValueError(f"The mesh on port {1 if rest is None else 2} has no cells.")
         points = vtk_to_numpy(mesh.GetPoints().GetData())
         if self._changed("deformation", _stamp(mesh.GetPoints(), mesh.GetCells()), "mesh"):
             self._stamps.pop("displacements", None)
@@ -376,7 +381,8 @@ class DeformVolume(VTKPythonAlgorithmBase):
         elif self._changed("displacements", _stamp(data.GetPoints(), mesh.GetPoints())):
             if data.GetNumberOfPoints() != len(points):
                 raise ValueError(
-                    f"The mesh on port 1 has {data.GetNumberOfPoints()} points, but that on port 2 has {len(points)}."
+                    f"The mesh on port 1 has {data.GetNumberOfPoints()} points, but the mesh at rest on port 2 has "
+                    f"{len(points)}. Both must have the same points."
                 )
             moved = vtk_to_numpy(data.GetPoints().GetData()).astype(numpy.float64)
             self._deformer.set_displacements(moved - points)

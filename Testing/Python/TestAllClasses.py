@@ -105,10 +105,10 @@ def check_properties(cls):
                 other = min(max(other, low), high)
             check(got == other, f"{label}: {other} was set, {got} is read")
             if other != value:
-                check(instance.GetMTime() > before, f"{label}: setting {other} modifies nothing")
+                check(instance.GetMTime() > before, f"{label}: setting {other} does not change the MTime")
             before = instance.GetMTime()
             set_(*other) if isinstance(other, tuple) and len(other) > 1 else set_(other)
-            check(instance.GetMTime() == before, f"{label}: setting the same again modifies")
+            check(instance.GetMTime() == before, f"{label}: setting {other} again changes the MTime")
             value = got
         if hasattr(cls, f"Get{name}MaxValue"):
             low = getattr(instance, f"Get{name}MinValue")()
@@ -166,7 +166,7 @@ def check_empty_input(cls):
             if instance.GetNumberOfInputPorts() and messages.errors:
                 check(
                     output.GetNumberOfElements(0) == 0 or not output.GetPointData().GetNumberOfArrays(),
-                    f"{cls.__name__} with {label}: an error and an output",
+                    f"{cls.__name__} with {label}: there is an error, but port {port} has data",
                 )
         return messages.errors
 
@@ -198,7 +198,7 @@ def check_header(name):
         (rf"#ifndef {name}_h\s+#define {name}_h", "a guard"),
     ):
         check(re.search(pattern, header), f"{name}.h: {what} is missing")
-    check(header.startswith("// SPDX-License-Identifier: "), f"{name}.h: no licence")
+    check(header.startswith("// SPDX-License-Identifier: "), f"{name}.h: the first line is not a license")
 
 
 def check_abstract(cls):
@@ -218,7 +218,7 @@ def main():
         if re.fullmatch(r"vtk\w+\.h", name) and not name.endswith("Internals.h")
     )
     names = [cls.__name__ for cls in classes]
-    check(names == headers, f"The package has {names}, {FOLDERS} have {headers}")
+    check(names == headers, f"The package has the classes {names}, but the folders {FOLDERS} have {headers}")
     for cls in classes:
         check_header(cls.__name__)
         if is_abstract(cls):

@@ -37,7 +37,7 @@ def expect(kind, text, call):
     except kind as error:
         assert text in str(error), f'"{text}" is not in "{error}"'
         return
-    raise AssertionError(f'nothing was raised that says "{text}"')
+    raise AssertionError(f'no {kind.__name__} with "{text}" was raised')
 
 
 def make_image(first=3, size=(30, 25, 20), spacing=(1.5, 2.0, 2.5), direction=TURNED):
@@ -154,7 +154,7 @@ def test_misuse():
         (ValueError, "reference", lambda: dv.deform(volume, mesh, reference=dv.Grid((2, 2, 2), affine), padding=1)),
         (dv.Error, "", lambda: dv.deform(volume, mesh, device="no such device")),
         (AttributeError, "vtkDeformVolumeFilter", lambda: DeformVolume().SetSamplingFactor(2)),
-        (ValueError, "types of cells", lambda: dv.deform(volume, dv.Mesh(mesh.points, ([10, 10], [[0, 1, 2, 3]])))),
+        (ValueError, "one type for each cell", lambda: dv.deform(volume, dv.Mesh(mesh.points, ([10, 10], [[0, 1, 2, 3]])))),
         (ValueError, "no volume", lambda: DeformVolume()._prepare()),
     ):
         expect(kind, text, call)

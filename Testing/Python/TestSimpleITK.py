@@ -29,7 +29,7 @@ def expect(kind, text, call):
     except kind as error:
         assert text in str(error), error
         return
-    raise AssertionError(f'nothing was raised that says "{text}"')
+    raise AssertionError(f'no {kind.__name__} with "{text}" was raised')
 
 
 image = make_image(random.normal(size=(20, 25, 30)).astype("f4"), (-5, 7, 3), (1.5, 2.0, 2.5))

@@ -83,7 +83,7 @@ class Misuse(unittest.TestCase):
         refuse("", [10, 24], [[0, 1, 2, 3], [0, 1, 2, 3]])
         refuse("", [42], [[0, 1, 2, 3]])  # a polyhedron without faces
         refuse("", [78], [[0, 1, 2, 3]])  # a Bezier cell
-        refuse("types of cells", [10, 10], [[0, 1, 2, 3]])
+        refuse("one type for each cell", [10, 10], [[0, 1, 2, 3]])
         refuse("9", [10], [[0, 1, 2, 9]])
 
     def test_orders(self):
