@@ -119,15 +119,22 @@ def _cells(cells):
     """Returns connectivity, types and offsets. Types and offsets are None for tetrahedra."""
     if isinstance(cells, tuple) and len(cells) == 2:
         types, lists = cells
-        types = numpy.ascontiguousarray(types, dtype=numpy.uint8)
+        types = numpy.asarray(types)
         lengths = [len(points) for points in lists]
         if types.ndim != 1 or len(types) != len(lengths):
             raise ValueError(
                 f"The array of cell types has the shape {types.shape}. It must have the shape ({len(lengths)},): one "
                 "type for each cell."
             )
+        if types.size > 0 and (types.dtype.kind not in "iu" or types.min() < 0 or types.max() > 255):
+            raise ValueError("Cell types must be integers from 0 to 255, as VTK's cell types are.")
+        types = numpy.ascontiguousarray(types, dtype=numpy.uint8)
         offsets = numpy.concatenate(([0], numpy.cumsum(lengths, dtype=numpy.int64))).astype(numpy.int64)
-        flat = [numpy.asarray(points, dtype=numpy.int64) for points in lists]
+        flat = [numpy.asarray(points) for points in lists]
+        for number, points in enumerate(flat):
+            if points.ndim != 1 or (points.size > 0 and points.dtype.kind not in "iu"):
+                raise ValueError(f"Cell {number} is {points.tolist()}. Give a list of the indices of its points.")
+        flat = [points.astype(numpy.int64) for points in flat]
         return numpy.concatenate(flat) if flat else numpy.zeros(0, numpy.int64), types, offsets
     cells = numpy.asarray(cells)
     if cells.ndim != 2 or cells.shape[1] != 4 or cells.dtype.kind not in "iu":

@@ -9,7 +9,7 @@ DeformVolume: methods of other properties raise AttributeError.
 import numpy
 from vtkmodules.util.numpy_support import get_vtk_array_type, vtk_to_numpy
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
-from vtkmodules.vtkCommonCore import VTK_CHAR, vtkDataArray, vtkOutputWindow
+from vtkmodules.vtkCommonCore import VTK_BIT, VTK_CHAR, vtkDataArray, vtkOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSetAttributes, vtkImageData, vtkUnstructuredGrid
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm, vtkStreamingDemandDrivenPipeline
 
@@ -35,6 +35,12 @@ def _grid_of(image):
 def _view(array, shape):
     """Returns a numpy view of a VTK array over a grid. Axes: z, y, x and, for several components, an axis of these."""
     components = array.GetNumberOfComponents()
+    count = int(numpy.prod(shape))
+    if array.GetNumberOfTuples() != count:
+        raise ValueError(
+            f'The array "{array.GetName()}" has {array.GetNumberOfTuples()} tuples, but its grid needs {count}. Remove '
+            "the array, or give it one tuple for each point or cell."
+        )
     return vtk_to_numpy(array).reshape(tuple(shape) + ((components,) if components > 1 else ()))
 
 
@@ -268,6 +274,12 @@ class DeformVolume(VTKPythonAlgorithmBase):
         # Arrays of ghosts and of edits are masks of the volume, and are not resampled.
         masks = ("vtkGhostType", "BoundaryDistance", "CutDistance")
         arrays = [array for array in arrays if array is not None and array.GetName() not in masks]
+        # numpy_support copies arrays of bits, so that the library could not write their output.
+        arrays = [array for array in arrays if array.GetDataType() != VTK_BIT]
+        if not arrays:
+            raise ValueError(
+                "The volume on port 0 has no numeric point array. Connect a vtkImageData with point scalars."
+            )
         for number, array in enumerate(arrays):
             if any(other.GetName() == array.GetName() for other in arrays[:number]):
                 raise ValueError(f'Two arrays of the volume are named "{array.GetName()}". Rename one of them.')

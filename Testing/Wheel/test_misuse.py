@@ -85,6 +85,10 @@ class Misuse(unittest.TestCase):
         refuse("", [78], [[0, 1, 2, 3]])  # a Bezier cell
         refuse("one type for each cell", [10, 10], [[0, 1, 2, 3]])
         refuse("9", [10], [[0, 1, 2, 9]])
+        refuse("from 0 to 255", numpy.array([266]), [[0, 1, 2, 3]])
+        refuse("from 0 to 255", [10.0], [[0, 1, 2, 3]])
+        refuse("Cell 1 is", [10, 10], [[0, 1, 2, 3], [0.0, 1.0, 2.0, 3.5]])
+        refuse("Cell 0 is", [10], [[[0, 1], [2, 3]]])
 
     def test_orders(self):
         mesh = Mesh(POINTS, CELLS, MOVED)

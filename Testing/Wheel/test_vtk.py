@@ -98,6 +98,24 @@ class Pipeline(unittest.TestCase):
         with self.assertRaisesRegex(Exception, words):
             self.filter.Update()
 
+    # As in the C++ filter, arrays of bits are left out.
+    def test_bits(self):
+        from vtkmodules.vtkCommonCore import vtkBitArray
+
+        self.source.Update()
+        volume = self.source.GetOutput()
+        bits = vtkBitArray()
+        bits.SetName("bits")
+        bits.SetNumberOfTuples(volume.GetNumberOfPoints())
+        volume.GetPointData().AddArray(bits)
+        self.filter.SetInputDataObject(0, volume)
+        self.filter.SetDeformationData(make_field(self.SHIFT))
+        self.filter.Update()
+        self.expect_shift()
+        self.assertFalse(self.filter.GetOutputDataObject(0).GetPointData().HasArray("bits"))
+        volume.GetPointData().RemoveArray("RTData")
+        self.expect_error("no numeric point array", make_field(self.SHIFT))
+
     # VTK prints these errors, too.
     def test_misuse(self):
         from vtkmodules.vtkCommonDataModel import VTK_TRIANGLE_STRIP, vtkImageData, vtkPolyData, vtkUnstructuredGrid
@@ -109,6 +127,9 @@ class Pipeline(unittest.TestCase):
         self.expect_error("vtkPolyData", vtkPolyData())
         self.expect_error("is not finite", make_mesh([numpy.nan, 0.0, 0.0]))
         self.expect_error("no tetrahedra, but 1 triangle strip", make_mesh(self.SHIFT, VTK_TRIANGLE_STRIP))
+        field = make_field(self.SHIFT)
+        field.SetDimensions(3, 2, 2)
+        self.expect_error('"vectors" has 8 tuples, but its grid needs 12', field)
         mesh = make_mesh(self.SHIFT)
         mesh.GetPointData().Initialize()
         self.expect_error("no active vectors", mesh)
