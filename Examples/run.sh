@@ -26,7 +26,7 @@ templates=/usr/share/mricron/templates
 mkdir -p build/demo/kernel-cache
 export POCL_CACHE_DIR="${POCL_CACHE_DIR:-$PWD/build/demo/kernel-cache}"
 
-deform() # VOLUME RESULT PICTURE OPTION...: OPTION is one of deform-volume
+deform() # VOLUME RESULT PICTURE OPTION...: OPTION is an option of deform-volume
 {
   local volume=$1 result=$2 image=$3
   shift 3

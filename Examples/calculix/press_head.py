@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Presses a head from its right in CalculiX, and deforms its scan: press_head.py VOLUME FOLDER [OPTIONS]
+"""Presses a head from its right side in CalculiX, and deforms its scan: press_head.py VOLUME FOLDER [OPTIONS]
 
 1. deform-volume meshes the head with tetrahedra (TetGen).
 2. This script writes the mesh, as ten-node tetrahedra, and a load to FOLDER/head.inp.
@@ -38,7 +38,7 @@ def call(*command, folder=None):
     result = subprocess.run([str(word) for word in command], cwd=folder, text=True, check=False,
                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     if result.returncode != 0:
-        sys.exit(f"{result.stdout[-1000:]}\n{command[0]} has failed (exit code {result.returncode})")
+        sys.exit(f"{result.stdout[-1000:]}\n{command[0]} failed with the exit code {result.returncode}")
     return result.stdout
 
 
@@ -93,8 +93,8 @@ def write_input(path, positions, cells):
     landmarks = {name: int(numpy.linalg.norm(positions - position, axis=1).argmin())
                  for name, position in LANDMARKS.items()}
     if len(neck) < 3 or len(pressed) < 3:
-        sys.exit(f"press_head.py: {len(neck)} nodes to hold and {len(pressed)} nodes to press: is the volume a head, "
-                 "placed as ch2.nii.gz is?")
+        sys.exit(f"press_head.py: the mesh has {len(neck)} nodes below z = {NECK} and {len(pressed)} nodes in the "
+                 "dent, but needs at least 3 of both. The volume must be a head at the position of ch2.nii.gz")
     with open(path, "w", encoding="ascii") as file:
         file.write("*NODE, NSET=ALL\n")
         for node, position in enumerate(positions, 1):
@@ -118,20 +118,21 @@ def write_input(path, positions, cells):
 
 
 def read_printed(path):
-    """Reads the displacements at the last time from a .dat file. Maps nodes, counted from 0, to vectors."""
+    """Returns the displacements at the last time in a .dat file, by node. Nodes are counted from 0."""
     with open(path, encoding="ascii") as file:
         last = file.read().split("displacements")[-1]
     rows = re.findall(r"^ +(\d+)" + r" +(-?\d\.\d+E[-+]\d+)" * 3 + "$", last, flags=re.MULTILINE)
     return {int(row[0]) - 1: numpy.array(row[1:], dtype=float) for row in rows}
 
 
-parser = argparse.ArgumentParser(description="Presses a head from its right by CalculiX, and deforms its scan.")
-parser.add_argument("volume")
-parser.add_argument("folder", help="where all files are written")
-parser.add_argument("--edge-length", type=float, default=20.0, help="of the tetrahedra, in mm (default: %(default)s)")
+parser = argparse.ArgumentParser(description="Presses a head from its right side in CalculiX, and deforms its scan.")
+parser.add_argument("volume", help="scan of the head, in a format of deform-volume")
+parser.add_argument("folder", help="folder for all files that are written")
+parser.add_argument("--edge-length", type=float, default=20.0,
+                    help="edge length of the tetrahedra, in mm (default: %(default)s)")
 parser.add_argument("--deform-volume", default="deform-volume", help="path of this program, if it is not in PATH")
 arguments = parser.parse_args()
-deform_volume = find_program(arguments.deform_volume, "build this project, and see --deform-volume")
+deform_volume = find_program(arguments.deform_volume, "build this project, or give its path with --deform-volume")
 ccx = find_program("ccx", "install CalculiX (Debian: calculix-ccx)")
 ccx2paraview = find_program("ccx2paraview", "pip install ccx2paraview, beside VTK's Python package")
 volume = os.path.abspath(arguments.volume)

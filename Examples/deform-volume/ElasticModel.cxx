@@ -66,7 +66,8 @@ void AddFixedNodes(const Options& options, vtkImageData* volume, vtkUnstructured
     }
     if (!isAny)
     {
-      throw Failure("--fix " + fixation.Text + " fixes no node of the mesh");
+      throw Failure("--fix " + fixation.Text +
+        " fixes no node of the mesh. Positions are world coordinates of the volume");
     }
   }
   mesh->GetPointData()->AddArray(fixed);
@@ -163,7 +164,7 @@ void DeformByElasticModel(const Options& options, const Volume& volume, vtkUnstr
       if (model->GetNumberOfSplitFaces() == 0)
       {
         messages.DisplayWarningText(
-          "--cut crosses nothing of the mesh. Is it in the world coordinates of the volume?");
+          "No sheet of --cut crosses the mesh. Are they in the world coordinates of the volume?");
       }
     }
   };

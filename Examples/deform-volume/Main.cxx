@@ -48,8 +48,8 @@ void ListDevices()
   const auto names = vtkSmartPointer<vtkStringArray>::Take(vtkDeformVolumeFilter::GetDeviceNames());
   if (names->GetNumberOfValues() == 0)
   {
-    throw Failure("there is no OpenCL device. Install an OpenCL driver; for the processor that is "
-                  "PoCL (on Debian and Ubuntu the package pocl-opencl-icd)");
+    throw Failure("there is no OpenCL device. Install an OpenCL driver, such as PoCL for CPUs (on "
+                  "Debian and Ubuntu the package pocl-opencl-icd)");
   }
   for (vtkIdType i = 0; i < names->GetNumberOfValues(); ++i)
   {
@@ -239,7 +239,7 @@ Volume ReadReference(const Options& options, const Volume& volume, Messages& mes
   return reference;
 }
 
-// Throws a Failure if the voxels have no numbers. Sets the active scalars if there are none,
+// Throws a Failure if there is no numeric point array. Sets the active scalars if there are none,
 // because all later steps need scalars.
 void CheckValues(vtkImageData* image, const std::string& path)
 {
@@ -251,9 +251,9 @@ void CheckValues(vtkImageData* image, const std::string& path)
   }
   if (first == arrays->GetNumberOfArrays())
   {
-    throw Failure("cannot use " + path + ": its voxels have no numbers" +
+    throw Failure("cannot use " + path + ": its voxels have no numeric array" +
       (image->GetCellData()->GetNumberOfArrays() > 0
-          ? ". Its cells have: convert them with ParaView's filter Cell Data to Point Data"
+          ? ". Convert its cell arrays with ParaView's filter Cell Data to Point Data"
           : ""));
   }
   if (!arrays->GetScalars())

@@ -113,6 +113,6 @@ void Messages::Check(const std::string& doing, bool succeeded)
   }
   if (!succeeded)
   {
-    throw Failure(doing + " failed without saying why");
+    throw Failure(doing + ": no reason was reported. Is there enough free disk space?");
   }
 }

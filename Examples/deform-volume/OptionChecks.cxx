@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -135,7 +136,7 @@ void CheckModel(const Options& options)
   }
   if (options.Model == "chainmail" && !options.MeshOutput.empty())
   {
-    throw UsageError("--write-mesh goes with --tetgen or --lattice. --model chainmail has no mesh");
+    throw UsageError("--write-mesh requires --tetgen or --lattice. --model chainmail has no mesh");
   }
   if (options.Model == "chainmail" && options.Pulls.empty())
   {
@@ -145,7 +146,10 @@ void CheckModel(const Options& options)
   {
     if (pull.Radius != options.Pulls.front().Radius)
     {
-      throw UsageError("all --pull must have the same radius");
+      std::ostringstream text;
+      text << "all --pull must have the same radius, but the radii " << options.Pulls.front().Radius
+           << " and " << pull.Radius << " are given";
+      throw UsageError(text.str());
     }
   }
 }
@@ -161,7 +165,7 @@ void CheckDeformation(const Options& options)
   {
     if (!options.MeshOutput.empty())
     {
-      throw UsageError("--write-mesh goes with --tetgen or --lattice");
+      throw UsageError("--write-mesh requires --tetgen or --lattice");
     }
     if (!options.Displacement.empty() || options.Scale != 1.0 || !options.Pushes.empty())
     {
@@ -185,7 +189,7 @@ void CheckDeformation(const Options& options)
     if (!options.Pushes.empty())
     {
       throw UsageError(
-        "--push goes with --tetgen or --lattice. The displacements of a --mesh are in its file");
+        "--push requires --tetgen or --lattice. The displacements of a --mesh are in its file");
     }
   }
   else if (!options.Field.empty())
@@ -198,17 +202,17 @@ void CheckDeformation(const Options& options)
     if (!options.Pushes.empty())
     {
       throw UsageError(
-        "--push goes with --tetgen or --lattice. The displacements of a --field are in its file");
+        "--push requires --tetgen or --lattice. The displacements of a --field are in its file");
     }
   }
   else if (!options.Transforms.empty() && !options.Pushes.empty())
   {
     throw UsageError(
-      "--push goes with --tetgen or --lattice. The displacements of a --transform are in its file");
+      "--push requires --tetgen or --lattice. The displacements of a --transform are in its file");
   }
   else if (options.Model == "chainmail" && !options.Pushes.empty())
   {
-    throw UsageError("--push goes with --tetgen or --lattice. Use --pull with --model chainmail");
+    throw UsageError("--push requires --tetgen or --lattice. Use --pull with --model chainmail");
   }
   else if (!options.Displacement.empty() || options.Scale != 1.0)
   {
@@ -238,7 +242,7 @@ void CheckResampler(const Options& options, bool isForwardField)
     if (options.SmoothCut)
     {
       throw UsageError(
-        "--smooth-cut goes with a mesh or a forward field. An inverse field (--field-is-inverse or "
+        "--smooth-cut requires a mesh or a forward field. An inverse field (--field-is-inverse or "
         "--transform) has no positions for the two sides of a cut");
     }
     return;
@@ -281,7 +285,8 @@ void CheckOptions(const Options& options)
   }
   if (!options.WritesResult() && options.MeshOutput.empty())
   {
-    throw UsageError("nothing to write. Give --output, --image, --movie or --write-mesh");
+    throw UsageError(
+      "nothing to write. Give an output such as --output, --image, --movie or --write-mesh");
   }
   if (!options.Movie.empty() && !CanWriteMovie(options.Movie))
   {

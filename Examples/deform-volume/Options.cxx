@@ -551,8 +551,8 @@ void AddOutput(CLI::App& program, Options& options, RawOptions& raw)
     ->group(group);
   program
     .add_option("--frames", options.Frames,
-      "Number of frames of --movie. Handles move in this number of steps, and mass-spring divides "
-      "--duration into it")
+      "Number of frames of --movie: the number of steps in which handles move, and into which "
+      "mass-spring divides --duration")
     ->check(CLI::Range(1, 9999))
     ->type_name("NUMBER")
     ->group(group);
@@ -564,12 +564,11 @@ void AddOutput(CLI::App& program, Options& options, RawOptions& raw)
     ->group(group);
   program
     .add_option("--view", raw.View,
-      "Direction from the volume to the viewer of the picture [slightly from the side of the face, "
-      "which looks at the viewer]")
+      "Direction from the volume to the viewer of the picture [from in front of a head, slightly "
+      "to its side]")
     ->type_name("X,Y,Z")
     ->group(group);
-  program.add_flag("-q,--quiet", options.Quiet, "Print no progress bar and no table of times")
-    ->group(group);
+  program.add_flag("-q,--quiet", options.Quiet, "Print only warnings and errors")->group(group);
 }
 }
 
@@ -588,7 +587,7 @@ std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)
   program.footer(
     "World coordinates are those of the file, usually in mm. NIfTI files are placed by their " +
     placed +
-    "All lengths are in these units. A --field\n"
+    "All lengths are in world units. A --field\n"
     "is converted to the world coordinates of the volume, including its vectors.\n\n"
     "Exit codes: 0 success, 1 failure, 2 wrong usage.\n\n"
     "Example: dent a head to a depth of 15 mm\n"

@@ -46,7 +46,7 @@ std::vector<std::string> CutAndCarve(const Options& options, Volume& volume, Mes
     if (off == 0 && divided == 0)
     {
       messages.DisplayWarningText(("The sheet " + path +
-        " crosses nothing of the volume. Is it in the world coordinates of the volume?")
+        " does not cross the volume. Is it in the world coordinates of the volume?")
                                     .c_str());
     }
     done.push_back(Describe(path, off, divided));
@@ -66,8 +66,11 @@ std::vector<std::string> CutAndCarve(const Options& options, Volume& volume, Mes
     const vtkIdType off = carve->GetNumberOfSwitchedOffTetrahedra();
     if (off == 0)
     {
-      messages.DisplayWarningText(
-        "A sphere of --carve holds nothing of the volume. Are its coordinates those of the file?");
+      std::ostringstream text;
+      text << "The sphere of --carve at " << carving.Center[0] << ", " << carving.Center[1] << ", "
+           << carving.Center[2] << " with the radius " << carving.Radius
+           << " contains no part of the volume. Is it in the world coordinates of the volume?";
+      messages.DisplayWarningText(text.str().c_str());
     }
     done.push_back(Describe("sphere", off));
   }

@@ -52,8 +52,8 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeMesh(vtkAlgorithmOutput* volume, int ce
   vtkNew<vtkLatticeTetrahedraSource> lattice;
   lattice->SetInputConnection(volume);
   lattice->SetNumberOfNodes(cells + 1, cells / 5 * 6 + 1, cells + 1);
-  // The outermost voxels of the skin are as dark as bone. They get the value of a brighter
-  // neighbor. Bone is too thick to disappear by that.
+  // The outermost voxels of the skin are as dark as bone. The dilation gives them the value of a
+  // brighter neighbor. Bone is thick enough to remain.
   vtkNew<vtkImageContinuousDilate3D> brighter;
   brighter->SetInputConnection(volume);
   brighter->SetKernelSize(3, 3, 3);
@@ -245,12 +245,13 @@ int main(int argc, char* argv[])
   writer->Write();
 
   std::cout << mesh->GetNumberOfCells() << " tetrahedra in equilibrium after "
-            << elements->GetNumberOfNewtonSteps() << " steps, the springs at most "
+            << elements->GetNumberOfNewtonSteps()
+            << " Newton steps. Displacements by springs differ by up to "
             << 0.1 *
       std::round(10.0 * FindLargestDifference(elements->GetOutput(), springs->GetOutput()))
-            << " mm from there, "
+            << " mm. "
             << byElements->GetNumberOfInvertedTetrahedra() +
       bySprings->GetNumberOfInvertedTetrahedra()
-            << " tetrahedra inverted\n";
+            << " tetrahedra are inverted.\n";
   return writer->GetErrorCode() == 0 && elements->GetIsConverged() ? 0 : 1;
 }

@@ -41,8 +41,8 @@ def make_mesh(volume, cells):
     lattice = deformvolume_vtk.vtkLatticeTetrahedraSource()
     lattice.SetInputConnection(volume)
     lattice.SetNumberOfNodes(cells + 1, cells // 5 * 6 + 1, cells + 1)
-    # The outermost voxels of the skin are as dark as bone. They get the value of a brighter
-    # neighbor. Bone is too thick to disappear by that.
+    # The outermost voxels of the skin are as dark as bone. The dilation gives them the value of a
+    # brighter neighbor. Bone is thick enough to remain.
     brighter = vtkImageContinuousDilate3D()
     brighter.SetInputConnection(volume)
     brighter.SetKernelSize(3, 3, 3)
@@ -191,6 +191,5 @@ writer.Write()
 inverted = (by_elements.GetNumberOfInvertedTetrahedra() +
             by_springs.GetNumberOfInvertedTetrahedra())
 print(f"{mesh.GetNumberOfCells()} tetrahedra in equilibrium after "
-      f"{elements.GetNumberOfNewtonSteps()} steps, the springs at most "
-      f"{find_largest_difference(elements, springs):.1f} mm from there, "
-      f"{inverted} tetrahedra inverted")
+      f"{elements.GetNumberOfNewtonSteps()} Newton steps. Displacements by springs differ by up to "
+      f"{find_largest_difference(elements, springs):.1f} mm. {inverted} tetrahedra are inverted.")

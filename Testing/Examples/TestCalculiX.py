@@ -50,7 +50,7 @@ def check_misuse():
     writer.Write()
     _, errors = call(sys.executable, script, path("ball.nii"), path("ball"), "--edge-length", 5, "--deform-volume",
                      program, code=1, environment=environment)
-    assert "is the volume a head" in errors, errors
+    assert "The volume must be a head" in errors, errors
 
 
 def read_result():

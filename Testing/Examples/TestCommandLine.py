@@ -52,7 +52,7 @@ fails(2, "nothing to write", path("in.vti"), *lattice, *push)
 fails(2, "at least one --push", path("in.vti"), *lattice)
 fails(2, "at least one --push", path("in.vti"), *lattice, "-o", path("o.vti"), "--write-mesh",
       path("m.vtu"))
-fails(2, "--write-mesh goes with --tetgen or --lattice", path("in.vti"), "--carve",
+fails(2, "--write-mesh requires --tetgen or --lattice", path("in.vti"), "--carve",
       "sphere:9,20,25,5", "-o", path("o.vti"), "--write-mesh", path("m.vtu"))
 fails(2, "must end in .vti", path("in.vti"), *lattice, *push, "-o", path("o.jpg"))
 fails(2, "must end in .png", path("in.vti"), *lattice, *push, "--image", path("o.jpg"))
@@ -76,7 +76,7 @@ for deformation, option, expected in (
         (mesh, ("--radius-edge-ratio", "2"), "--radius-edge-ratio requires --tetgen"),
         (mesh, ("--tetgen-executable", "t"), "--tetgen-executable requires --tetgen"),
         (mesh, ("--write-mesh", path("o.vtu")), "excludes"),
-        (mesh, push, "--push goes with"),
+        (mesh, push, "--push requires"),
         (("--mesh", path("m.vtu"), "--rest", path("r.vtu")), ("--scale", "2"), "excludes"),
         (("--mesh", path("m.vtu"), "--rest", path("r.vtu")), ("--points-are-deformed",), "excludes"),
         ((*lattice, *push), ("--points-are-deformed",), "--points-are-deformed requires --mesh"),

@@ -254,7 +254,7 @@ with open(path("transform.h5"), "wb") as file:
     file.write(b"x")
 fails("convert", "transform.h5")
 fails("--displacement names", "ras.nii", "--displacement", "U", code=2)
-fails("--push goes with", "ras.nii", "--push", "1,2,3,4,5,6,7", code=2)
+fails("--push requires", "ras.nii", "--push", "1,2,3,4,5,6,7", code=2)
 fails("excludes", "ras.nii", "--file-coordinates", code=2)
 fails("excludes", "ras.nii", "--write-mesh", path("m.vtu"), code=2)
 fails("exactly one of", "ras.nii", "--lattice", "3,3,3", code=2)

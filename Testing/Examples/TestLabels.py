@@ -108,7 +108,7 @@ for change, expected in (
 
 # Arrays that are not labels.
 write_vti(make_labels(), path("none_inside.vti"))
-refuses(1, "its voxels have no numbers", "none_inside.vti")
+refuses(1, "its voxels have no numeric array", "none_inside.vti")
 for kind, bad in (("float32", 0.5), ("float64", 1e-3), ("float64", numpy.nan), ("float32", numpy.inf)):
     fractions = all_types[kind].copy()
     fractions[number // 2] = bad

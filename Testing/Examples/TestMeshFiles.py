@@ -274,7 +274,7 @@ def check_misuse_of_meshes():
     # Arrays.
     known = '"Temperature" (1 component), "Reaction" (3 components), "Displacement" (3 components)'
     fails(1, ['no point array "u"', known], *as_mesh("mesh.vtu", "u"))
-    fails(1, ['the point array "Temperature" has', "1 component, where displacements have 3", known],
+    fails(1, ['the point array "Temperature" has', "1 component, but displacements have 3", known],
           *as_mesh("mesh.vtu", "Temperature"))
     fails(1, ['block "left"', 'no point array "u"', known], *as_mesh("mesh.vtm", "u"))
     fails(1, ['no point array "u"', '"Temperature" (1 component)'], *as_mesh("mesh.e", "u"))
@@ -492,7 +492,7 @@ def check_files_that_say_their_space():
                    expected_warnings=[f"--mesh-space ras is not used: {path(name)} states that "
                                       "it is lps"])
     check_same(expected, *as_mesh("strange.vtu"), source="in.nii.gz",
-               expected_warnings=['says "scanner", which is neither LPS nor RAS'])
+               expected_warnings=['is "scanner", which is neither LPS nor RAS'])
     # A volume whose file does not state its world.
     fails(1, ["--mesh-space lps", "does not state"], *as_mesh("mesh.vtu"), "--mesh-space", "lps")
     write(vtkXMLUnstructuredGridWriter(), state_space(make_unstructured(places, moves), "LPS"),

@@ -142,7 +142,7 @@ for name, text, words in (
         ("unnamed.csv", "1,2,3\n4,5,6\n", 'its first line is "1,2,3". It must name the columns'),
         ("order.csv", "label,x,y,z\na,1,2,3\n", 'its first line is "label,x,y,z"'),
         ("two.csv", "x,y\n1,2\n", "the first three must be x,y,z"),
-        ("short.csv", "x,y,z,t\n1,2,3,0\n\n1,2,3\n", "its line 4 has 3 columns, and its first line names 4"),
+        ("short.csv", "x,y,z,t\n1,2,3,0\n\n1,2,3\n", "its line 4 has 3 columns, but its first line names 4"),
         ("long.csv", "x,y,z\n1,2,3,4\n", "its line 2 has 4 columns"),
         ("nan.csv", "x,y,z\r\n1,2,3\r\n1,nan,3\r\n", 'its line 3 has "nan" as y, which is not a number'),
         ("inf.csv", "x,y,z\n1,2,1e999\n", 'its line 2 has "1e999" as z'),
@@ -156,7 +156,7 @@ write_geometry("grid.vtu", some)
 os.replace(path("grid.vtu"), path("grid.vtp"))
 write_geometry("none.vtp", [])
 write_geometry("nan.vtp", [*some, [1, numpy.nan, 2]])
-for name, words in (("broken.vtp", "damaged or cut off"), ("words.vtp", "it is no valid XML file"),
+for name, words in (("broken.vtp", "damaged or cut off"), ("words.vtp", "it is not a valid XML file"),
                     ("grid.vtp", "it does not hold polygonal data"), ("none.vtp", "it has no points"),
                     ("nan.vtp", "its point 2, counted from 0, is 1, nan, 2")):
     fails(words, name, "no.vtp")

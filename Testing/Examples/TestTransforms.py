@@ -72,7 +72,7 @@ fails("--volume-space", *affine, volume="unknown.vti")
 fails("expected FILE or FILE,invert", "--transform", path("affine.h5,inverse"), code=2)
 fails("exactly one of", *affine, "--field", path("warp.nii.gz"), code=2)
 fails("exactly one of", *affine, "--lattice", "3,3,3", code=2)
-fails("--push goes with", *affine, "--push", "1,2,3,4,5,6,7", code=2)
+fails("--push requires", *affine, "--push", "1,2,3,4,5,6,7", code=2)
 fails("excludes", *affine, "--file-coordinates", code=2)
 fails("excludes", *affine, "--write-mesh", path("no.vtu"), code=2)
 fails("excludes", "--lattice", "3,3,3", "--push", "1,2,3,4,5,6,7", "--reference", path("fixed.mha"),

@@ -68,7 +68,7 @@ bool IsRightAnterior(vtkNIFTIImageHeader* header, const std::string& what)
   {
     throw Failure(what + ": its unit of length is " +
       (unit == vtkNIFTIImageHeader::UnitsMeter ? "the metre" : "the micrometre") +
-      ", which leaves open what its vectors are in. Write it in mm");
+      ", so the unit of its vectors is not known. Write the file in mm");
   }
   const auto intent = static_cast<int>(header->GetIntentCode());
   const char* const name = header->GetIntentName();
@@ -110,7 +110,7 @@ void CheckKind(const Volume& field, const std::string& path, bool isInverse, Mes
   if ((kind == "resampling" && !isInverse) || (kind == "modeling" && isInverse))
   {
     messages.DisplayWarningText(("The displacement field type of " + path + " is \"" + kind +
-      (isInverse ? "\": it is forward, so --field-is-inverse is wrong for it."
+      (isInverse ? "\": it is a forward field. Remove --field-is-inverse."
                  : "\": it leads from the deformed volume to the volume at rest, and needs "
                    "--field-is-inverse."))
                                   .c_str());
@@ -271,13 +271,13 @@ vtkSmartPointer<vtkImageData> ReadField(const std::string& path, const Volume& v
   if (components != 3)
   {
     throw Failure(what + ": it has " + std::to_string(components) +
-      " components for each voxel, where a displacement has three");
+      " components for each voxel, but displacements have three");
   }
   if (field.Axes == WorldAxes::Unknown && options.Space.empty())
   {
     throw Failure(what +
-      ": its header does not say where it lies in the world. As NIfTI it needs a q-form or s-form, "
-      "as NRRD a space such as left-posterior-superior or right-anterior-superior; or say it with "
+      ": its header does not state its world coordinates. A NIfTI file needs a q-form or s-form, "
+      "an NRRD file a space such as left-posterior-superior or right-anterior-superior. Or give "
       "--field-space");
   }
   if (isFlipped)

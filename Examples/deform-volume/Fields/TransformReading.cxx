@@ -181,7 +181,7 @@ ItkTransform::Pointer ReadTransform(const TransformFile& file, const std::string
   if (!transform)
   {
     throw Failure(what + ": it holds " + list->front()->GetTransformTypeAsString() +
-      ", but a transform of points in space is needed");
+      ", but a transform of points in three dimensions is needed");
   }
   if (!file.IsInverted)
   {
@@ -192,8 +192,8 @@ ItkTransform::Pointer ReadTransform(const TransformFile& file, const std::string
   if (!points)
   {
     throw Failure(what + ": a " + transform->GetNameOfClass() +
-      " cannot be inverted. Only matrices can, and what was written with its inverse; registration "
-      "programs can write the transform of the other direction");
+      " cannot be inverted. Only matrices can be inverted, and transforms that were written with "
+      "their inverse. Let the registration program write the transform of the opposite direction");
   }
   return points;
 }

@@ -143,7 +143,7 @@ void ReadTable(const std::string& path, LandmarkFile& file)
     {
       Fail(path,
         thisLine + " has " + std::to_string(columns.size()) +
-          " columns, and its first line names " + std::to_string(expected));
+          " columns, but its first line names " + std::to_string(expected));
     }
     double point[3];
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -364,6 +364,7 @@ void WriteLandmarks(const LandmarkFile& file, vtkPointSet* moved, const std::str
   stream << text << std::flush;
   if (!stream)
   {
-    throw Failure("cannot write " + path);
+    throw Failure(
+      "cannot write " + path + ": no reason was reported. Is there enough free disk space?");
   }
 }

@@ -137,7 +137,7 @@ void CheckArray(const MeshPart& part, const std::string& name, const std::string
   {
     throw Failure(what + "the point array \"" + name + "\" has " +
       Count(array->GetNumberOfComponents(), "component", "components") +
-      ", where displacements have 3; " + DescribeArrays(part.Data->GetPointData()));
+      ", but displacements have 3; " + DescribeArrays(part.Data->GetPointData()));
   }
 }
 
@@ -256,7 +256,7 @@ void CheckField(vtkImageData* field, const std::string& displacement, const std:
   if (!arrays->GetVectors() && vectors != 1)
   {
     throw Failure("cannot use " + path + ": " +
-      (vectors == 0 ? "displacements are a point array with 3 components, which it lacks"
+      (vectors == 0 ? "it has no point array with 3 components for the displacements"
                     : "name the array of displacements with --displacement") +
       "; " + DescribeArrays(arrays));
   }

@@ -64,12 +64,12 @@ std::string GetMeshConversion(const std::string& path)
   }
   if (HasSuffix(path, { ".odb", ".op2", ".rst", ".d3plot", ".case", ".foam", ".pvsm" }))
   {
-    return "Open it in ParaView, if that reads it, and save the data as .vtu (File > Save Data)";
+    return "If ParaView can read it, open it there and save the data as .vtu (File > Save Data)";
   }
   if (HasSuffix(path, { ".inp", ".bdf", ".nas", ".fem" }))
   {
-    return "It holds a mesh without results: convert the results of the simulation; or, for "
-           "--rest, the mesh with meshio (pip install meshio): meshio convert " +
+    return "It holds a mesh without results. Convert the file of the results instead. For --rest, "
+           "convert this file with meshio (pip install meshio): meshio convert " +
       GetName(path) + " " + GetName(path, ".vtu");
   }
   if (HasSuffix(path, { ".series" }))

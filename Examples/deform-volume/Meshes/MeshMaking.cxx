@@ -15,6 +15,7 @@
 #include <vtkBoundingBox.h>
 #include <vtkImageData.h>
 #include <vtkLatticeTetrahedraSource.h>
+#include <vtkMath.h>
 #include <vtkNew.h>
 #include <vtkTetGenMesher.h>
 #include <vtkUnstructuredGrid.h>
@@ -93,8 +94,8 @@ vtkSmartPointer<vtkUnstructuredGrid> Mesh(
   messages.Check("cannot mesh the body");
   std::ostringstream body;
   body << mesher->GetNumberOfBodyVoxels() << " voxels in " << mesher->GetNumberOfPieces()
-       << " pieces, " << mesher->GetNumberOfBodyVoxelsOutside() << " of them outside the mesh; "
-       << mesher->GetNumberOfSpeckVoxels() << " voxels in specks";
+       << " pieces, " << mesher->GetNumberOfBodyVoxelsOutside() << " voxels outside the mesh; "
+       << mesher->GetNumberOfSpeckVoxels() << " voxels in specks left out";
   deformation.Body = body.str();
   std::ostringstream edges;
   edges.precision(3);
@@ -122,7 +123,8 @@ void CheckEdges(
     std::ostringstream warning;
     warning.precision(3);
     warning << "Edges of tetrahedra are up to " << longest << " long within a push of radius "
-            << push.Radius << ". Edges longer than a sixth of the radius can show as facets. Give "
+            << push.Radius
+            << ". Edges longer than a sixth of the radius can be visible as facets. Give "
             << "--lattice more nodes, or use --tetgen.";
     messages.DisplayWarningText(warning.str().c_str());
   }
@@ -136,15 +138,18 @@ void PushNodes(const Options& options, const vtkSmartPointer<vtkUnstructuredGrid
   {
     if (push.Folds())
     {
-      messages.DisplayWarningText(
-        "The displacement of a push is too large for its radius: the volume folds over itself.");
+      std::ostringstream text;
+      text << "The displacement of a --push is " << vtkMath::Norm(push.Displacement.data())
+           << " long, which is too large for its radius " << push.Radius
+           << ": the volume folds over itself.";
+      messages.DisplayWarningText(text.str().c_str());
     }
     CheckEdges(push, mesh, messages, deformation);
   }
   if (ApplyPushes(options.Pushes, mesh) == 0 && !options.Pushes.empty())
   {
     messages.DisplayWarningText("No node of the mesh is within the radius of a push, so nothing "
-                                "moves. Are its coordinates those of the file?");
+                                "moves. Are X,Y,Z of --push world coordinates of the volume?");
   }
   deformation.Data = mesh;
   deformation.Displacement = PushArrayName;
@@ -159,7 +164,7 @@ void CheckMeshOptions(const Options& options, const Deformation& deformation)
     if (deformation.Rest || options.PointsAreDeformed)
     {
       throw Failure(std::string(deformation.Rest ? "--rest" : "--points-are-deformed") +
-        " goes with a mesh, and " + (isField ? options.Mesh : options.Rest) +
+        " requires a mesh, but " + (isField ? options.Mesh : options.Rest) +
         " is a displacement field, whose points are always at rest");
     }
     CheckResampler(options, true);
@@ -170,9 +175,9 @@ void CheckMeshOptions(const Options& options, const Deformation& deformation)
     const vtkIdType rest = deformation.Rest->GetNumberOfElements(vtkDataObject::POINT);
     if (deformed != rest)
     {
-      throw Failure("cannot use " + options.Rest + " as the rest of " + options.Mesh + ": it has " +
-        std::to_string(rest) + " points, and the deformed mesh has " + std::to_string(deformed) +
-        ". Both must be the same mesh");
+      throw Failure("cannot use " + options.Rest + " as the mesh at rest: it has " +
+        std::to_string(rest) + " points, but " + options.Mesh + " has " + std::to_string(deformed) +
+        ". Both files must hold the same mesh");
     }
   }
 }

@@ -63,7 +63,7 @@ void CheckReading(const Source& source, const std::string& format)
   if (!words.empty())
   {
     // VTK's messages about infinite numbers in XML files name classes.
-    throw Failure("cannot read " + source.Path + ": it is no valid " + format +
+    throw Failure("cannot read " + source.Path + ": it is not a valid " + format +
       ", or it is damaged or cut off" +
       (NamesCode(words) ? ", or has numbers that are not finite" : " (" + words + ")"));
   }
@@ -147,7 +147,7 @@ vtkSmartPointer<vtkDataObject> ReadLegacy(const Source& source)
   {
     source.Log.DisplayWarningText((source.Path +
       " is an export of FEBio Studio, which writes deformed points. Give --points-are-deformed; "
-      "without it the displacements are added once more.")
+      "without that option, the displacements are added twice.")
                                     .c_str());
   }
   return data;

@@ -38,8 +38,8 @@ WorldAxes GetSpace(vtkDataObject* object, const std::string& path, Messages& mes
   const WorldAxes space = FindSpace(array->GetValue(0), "");
   if (space == WorldAxes::Unknown)
   {
-    messages.DisplayWarningText(("The space of " + path + " is not used: it says \"" +
-      array->GetValue(0) + "\", which is neither LPS nor RAS.")
+    messages.DisplayWarningText(("The space of " + path + " is \"" + array->GetValue(0) +
+      "\", which is neither LPS nor RAS. It is not used.")
                                   .c_str());
   }
   return space;
@@ -54,7 +54,7 @@ WorldAxes Choose(const std::string& said, const std::string& path, WorldAxes ofF
     messages.DisplayWarningText(
       (path + " is " + (ofFile == WorldAxes::RightAnteriorSuperior ? "ras" : "lps") +
         ". This is not used, because the file of the volume does not state whether its world "
-        "coordinates are lps or ras.")
+        "coordinates are lps or ras. Give --volume-space.")
         .c_str());
     return ofVolume;
   }

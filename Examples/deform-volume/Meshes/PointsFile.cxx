@@ -69,7 +69,7 @@ void WarnOfCellArrays(vtkPointSet* points, const std::string& path, Messages& me
     {
       messages.DisplayWarningText(("The array \"" +
         std::string(array->GetName() ? array->GetName() : "") + "\" of the cells of " + path +
-        " is not transformed: only normals and vectors of points are.")
+        " is not transformed: only normals and vectors of points are transformed.")
                                     .c_str());
     }
   }

@@ -27,7 +27,7 @@
 namespace
 {
 const char* const Advice =
-  ". dcm2niix, or 3D Slicer, converts such series into a NIfTI or NRRD file";
+  ". dcm2niix or 3D Slicer can convert such a series into a NIfTI or NRRD file";
 
 struct Slice
 {
@@ -42,6 +42,11 @@ struct Slice
   double Position[3];
   double Along = 0.0; // the position on the normal
 };
+
+std::string GetSizeText(const Slice& slice)
+{
+  return std::to_string(slice.Size[0]) + " x " + std::to_string(slice.Size[1]);
+}
 
 class Series
 {
@@ -124,7 +129,7 @@ void Series::AddFile(const std::string& name)
   }
   if (file.IsDeflated())
   {
-    this->Fail(name + " is compressed as a whole (deflated), which is not read");
+    this->Fail(name + " is compressed as a whole (deflated), which this program cannot read");
   }
   if (!file.HasPixels())
   {
@@ -142,7 +147,7 @@ void Series::AddFile(const std::string& name)
   const bool isDose = file.GetText(0x00080016) == "1.2.840.10008.5.1.4.1.1.481.2";
   if ((file.GetNumbers(0x00280008, 1, &frames) && frames != 1.0) || isDose)
   {
-    this->Fail(name + " holds several frames, where each slice is expected in a file of its own");
+    this->Fail(name + " holds several frames, but each slice must be in a file of its own");
   }
   double orientation[6];
   if (!file.GetNumbers(0x00200032, 3, slice.Position) ||
@@ -163,7 +168,7 @@ void Series::AddFile(const std::string& name)
   double spacing[2];
   if (!file.GetNumbers(0x00280030, 2, spacing) || !(spacing[0] > 0.0) || !(spacing[1] > 0.0))
   {
-    this->Fail(name + " does not say how far its pixels are apart (0028,0030)");
+    this->Fail(name + " has no valid pixel spacing (0028,0030)");
   }
   // The first number is the distance between rows.
   slice.Spacing[0] = spacing[1];
@@ -225,13 +230,19 @@ void Series::CheckShapes() const
     {
       if (slice.Size[axis] != this->First().Size[axis])
       {
-        this->Fail("the slices " + both + " differ in size");
+        this->Fail("the slices " + both + " differ in size: " + GetSizeText(this->First()) +
+          " and " + GetSizeText(slice) + " pixels");
       }
       constexpr double rounding = 1e-6;
       if (std::abs(slice.Spacing[axis] - this->First().Spacing[axis]) >
         rounding * slice.Spacing[axis])
       {
-        this->Fail("the slices " + both + " differ in the spacing of pixels");
+        std::ostringstream text;
+        text.precision(9);
+        text << "the slices " << both
+             << " differ in the spacing of pixels: " << this->First().Spacing[axis] << " and "
+             << slice.Spacing[axis] << " mm";
+        this->Fail(text.str());
       }
     }
     if (differs(slice.Row, this->First().Row) || differs(slice.Column, this->First().Column))
@@ -273,7 +284,8 @@ void Series::CheckSteps() const
     {
       std::ostringstream text;
       text << "between the slices " << both << " about " << std::lround(steps[i] / usual) - 1
-           << " are missing: they are " << steps[i] << " mm apart, and others " << usual;
+           << " are missing: they are " << steps[i] << " mm apart, and other slices " << usual
+           << " mm";
       this->Fail(text.str());
     }
   }
@@ -305,7 +317,7 @@ void Series::CheckPlaces(Messages& messages) const
   constexpr double most = 0.1;
   std::ostringstream text;
   text << name << " lies " << farthest
-       << " mm from where it would lie among even slices, which are " << vtkMath::Norm(step)
+       << " mm from where it would lie in evenly spaced slices, which are " << vtkMath::Norm(step)
        << " mm apart";
   if (farthest > most * vtkMath::Norm(step))
   {
@@ -314,7 +326,7 @@ void Series::CheckPlaces(Messages& messages) const
   if (farthest > rounding * vtkMath::Norm(step))
   {
     messages.DisplayWarningText(("The slices in " + this->Folder +
-      " are taken as evenly spaced, although they are not quite: " + text.str() + ".")
+      " are not quite evenly spaced, but are read as if they were: " + text.str() + ".")
                                   .c_str());
   }
 }
@@ -338,8 +350,8 @@ void Series::Sort(Messages& messages)
   this->CheckPlaces(messages);
   if (this->First().Photometric == "MONOCHROME1")
   {
-    messages.DisplayWarningText(("The slices in " + this->Folder +
-      " show large values dark (MONOCHROME1): their values are inverted.")
+    messages.DisplayWarningText(("The values of the slices in " + this->Folder +
+      " are inverted, because large values are dark in these files (MONOCHROME1).")
                                   .c_str());
   }
 }
@@ -370,7 +382,11 @@ vtkSmartPointer<vtkImageData> Series::Read(bool showProgress) const
     const int components = values->GetNumberOfComponents();
     if (values->GetNumberOfTuples() != count || (all && all->GetNumberOfComponents() != components))
     {
-      this->Fail("the image of " + this->Slices[i].Name + " has not the size that is expected");
+      this->Fail("the image of " + this->Slices[i].Name + " has " +
+        std::to_string(values->GetNumberOfTuples()) + " pixels of " + std::to_string(components) +
+        " components, but " + std::to_string(count) + " pixels of " +
+        std::to_string(all ? all->GetNumberOfComponents() : components) +
+        " components are expected");
     }
     if (!all || (all->GetDataType() != values->GetDataType() && all->GetDataType() != VTK_DOUBLE))
     {

@@ -146,9 +146,9 @@ void SetAxes(vtkImageData* image, vtkMatrix4x4* axes, const std::string& path, M
       std::ostringstream text;
       text.precision(4);
       text << "The axes of " << path << " are sheared by " << shear
-           << ". A volume of VTK has perpendicular axes: the nearest ones are used, and voxels lie "
-              "up to "
-           << farthest << " from where the file puts them.";
+           << ". A volume of VTK has perpendicular axes: the nearest ones are used, which moves "
+              "voxels by up to "
+           << farthest << ".";
       messages.DisplayWarningText(text.str().c_str());
     }
   }

@@ -188,7 +188,7 @@ LabelVolume::LabelVolume(const Options& options, const Volume& volume, Messages&
   }
   if (this->Arrays.empty())
   {
-    throw Failure("cannot use the labels " + path + ": its voxels have no numbers");
+    throw Failure("cannot use the labels " + path + ": its voxels have no numeric array");
   }
   vtkDataArray* scalars = arrays->GetScalars();
   this->Scalars =

@@ -229,7 +229,8 @@ void Place(Volume& volume, vtkNIFTIImageReader* reader, const std::string& path,
         i / 3, i % 3, axes->GetElement(i / 3, i % 3) * (spacing[i % 3] < 0.0 ? -1.0 : 1.0));
     }
     SetAxes(volume.Image, axes, path, messages,
-      qform ? ". That is its s-form; it has a q-form, too: if that is right, set sform_code to 0"
+      qform ? ". These are the axes of its s-form. It also has a q-form: to use that, set "
+              "sform_code to 0"
             : "");
   }
   else if (qform)

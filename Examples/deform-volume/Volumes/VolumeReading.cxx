@@ -22,7 +22,7 @@
 namespace
 {
 const char* const OtherFiles = HasITK
-  ? ". Other programs convert into these, for example 3D Slicer, or mri_convert for .mgz"
+  ? ". Convert it to one of these, for example with 3D Slicer, or mri_convert for .mgz"
   : ". This program was built without ITK, which reads other formats";
 
 Volume ReadVTI(const std::string& path, Messages& messages, bool showProgress)
@@ -105,7 +105,7 @@ Volume ReadVolume(
   }
   catch (const std::bad_alloc&)
   {
-    throw Failure("cannot read " + path + ": by its header it needs more memory than there is");
+    throw Failure("cannot read " + path + ": by its header it needs more memory than is available");
   }
   int dimensions[3];
   volume.Image->GetDimensions(dimensions);

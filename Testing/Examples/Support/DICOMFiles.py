@@ -239,13 +239,13 @@ for name, words, fields in (
         ("position", "no position", {"ImagePositionPatient": None}),
         ("direction", "no orientation", {"ImageOrientationPatient": None}),
         ("parallel", "has no two directions", {"ImageOrientationPatient": [1, 0, 0, 1, 0, 0]}),
-        ("no-spacing", "how far its pixels are apart", {"PixelSpacing": None}),
-        ("empty-spacing", "how far its pixels are apart", {"PixelSpacing": ""}),
-        ("no-distance", "how far its pixels are apart", {"PixelSpacing": [0, 0]}),
+        ("no-spacing", "no valid pixel spacing", {"PixelSpacing": None}),
+        ("empty-spacing", "no valid pixel spacing", {"PixelSpacing": ""}),
+        ("no-distance", "no valid pixel spacing", {"PixelSpacing": [0, 0]}),
         ("short", "missing, damaged, or not complete", {"PixelData": bytes(20)}),
         ("frames", "several frames", {"NumberOfFrames": 3, "PixelData": bytes(3 * 6 * 8 * 2)})):
     add_wrong(name, words, change=set_fields(2, **fields))
-add_wrong("all-spacing", "how far its pixels are apart",
+add_wrong("all-spacing", "no valid pixel spacing",
           change=set_fields(PixelSpacing=None, ImagerPixelSpacing=[0.7, 0.9]))
 add_wrong("nan", "no position", change=lambda data, number: data.add_new(0x00200032, "UN", rb"nan\0\0 "))
 add_wrong("sheared-rows", "sheared by 0.57", change=set_fields(

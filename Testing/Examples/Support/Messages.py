@@ -26,7 +26,7 @@ def fails(program, code, expected, *arguments, warnings=0):
     assert output == "", output
     assert errors.splitlines()[-1].startswith("deform-volume: "), errors
     assert errors.count("\n") == 1 + warnings, errors
-    assert "without saying why" not in errors, errors
+    assert "no reason was reported" not in errors, errors
     for text in [expected] if isinstance(expected, str) else expected:
         assert text in errors, f"{text} is not in {errors}"
     check_words(errors)

@@ -111,7 +111,7 @@ for i in (0, 1, 3, 4):
 for name, words, data, *arguments in (
         ("none.mha", "no voxels", make_meta(DimSize="7 0 5")),
         ("negative.mha", "impossible size", make_meta(DimSize="7 -6 5")),
-        ("huge.mha", "more memory than there is", make_meta(DimSize="100000 100000 100000")),
+        ("huge.mha", "more memory than is available", make_meta(DimSize="100000 100000 100000")),
         ("type.mha", "of the type", make_meta(ElementType="MET_FOO")),
         ("no-type.mha", no_header, make_meta(ElementType=None)),
         ("no-size.mha", no_header, make_meta(DimSize=None)),
