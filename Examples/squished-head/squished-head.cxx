@@ -252,6 +252,6 @@ int main(int argc, char* argv[])
             << " mm. "
             << byElements->GetNumberOfInvertedTetrahedra() +
       bySprings->GetNumberOfInvertedTetrahedra()
-            << " tetrahedra are inverted.\n";
+            << " tetrahedra inverted\n";
   return writer->GetErrorCode() == 0 && elements->GetIsConverged() ? 0 : 1;
 }

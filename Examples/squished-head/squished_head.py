@@ -192,4 +192,4 @@ inverted = (by_elements.GetNumberOfInvertedTetrahedra() +
             by_springs.GetNumberOfInvertedTetrahedra())
 print(f"{mesh.GetNumberOfCells()} tetrahedra in equilibrium after "
       f"{elements.GetNumberOfNewtonSteps()} Newton steps. Displacements by springs differ by up to "
-      f"{find_largest_difference(elements, springs):.1f} mm. {inverted} tetrahedra are inverted.")
+      f"{find_largest_difference(elements, springs):.1f} mm. {inverted} tetrahedra inverted")
