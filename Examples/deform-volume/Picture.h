@@ -44,7 +44,7 @@ public:
   enum class Aim
   {
     Tight, // as close as possible to all visible voxels of both volumes
-    Fixed  // the camera of the first call, with a margin around the volume before
+    Fixed  // the camera of the first call, with a margin around the undeformed volume
   };
   /// Draws both volumes. The returned image is valid until the next call.
   vtkImageData* Draw(vtkImageData* after, Aim aim, Messages& messages);

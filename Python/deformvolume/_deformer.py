@@ -169,7 +169,6 @@ class Deformer:
         self._process = os.getpid()
         self._borrowed: Dict[str, object] = {}
         self._arrays: List[numpy.ndarray] = []
-        self._is_4d: List[bool] = []
         self._shape: Optional[Tuple[int, int, int]] = None
         self._points = 0
         handle = ctypes.c_void_p()
@@ -511,7 +510,7 @@ class Deformer:
         extra = extra or {}
         failure = []
 
-        def tell(fraction, _):
+        def report_progress(fraction, _):
             # Python checks for Ctrl-C when it executes this callback.
             try:
                 return 1 if progress is not None and progress(fraction) is False else 0
@@ -526,7 +525,7 @@ class Deformer:
             outputs=ctypes.cast(addresses, ctypes.POINTER(ctypes.c_void_p)),
             coverage=coverage.ctypes.data_as(ctypes.POINTER(ctypes.c_int8)),
             extra_background=float(extra_background),
-            progress=_structs.PROGRESS(tell),
+            progress=_structs.PROGRESS(report_progress),
         )
         kinds = {"rest_positions": ctypes.c_float, "jacobian": ctypes.c_float, "fold_count": ctypes.c_uint32}
         for name, array in extra.items():

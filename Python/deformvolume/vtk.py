@@ -437,7 +437,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
             interpolation=_INTERPOLATION[self._settings["Interpolation"]],
             extra=extra,
             extra_background=self._settings["BackgroundValue"],
-            progress=self._tell,
+            progress=self._report_progress,
         )
         for role in range(vtkDataSetAttributes.NUM_ATTRIBUTES):
             array = data.GetAbstractAttribute(role)
@@ -448,6 +448,6 @@ class DeformVolume(VTKPythonAlgorithmBase):
             text = report.warnings.decode("utf-8", "replace")
             vtkOutputWindow.GetInstance().DisplayWarningText(f"Warning: DeformVolume: {text}\n")
 
-    def _tell(self, fraction):
+    def _report_progress(self, fraction):
         self.UpdateProgress(fraction)
         return not self.GetAbortExecute()

@@ -309,9 +309,9 @@ def test_arrays():
 def test_progress_and_warnings():
     big = np.zeros((120, 120, 120), np.float32)
     field = dv.Field(random.normal(size=(4, 4, 4, 3)), np.diag([40.0, 40.0, 40.0, 1.0]))
-    told = []
-    dv.deform(big, field, progress=told.append)
-    assert told and all(0.0 <= fraction <= 1.0 for fraction in told)
+    fractions = []
+    dv.deform(big, field, progress=fractions.append)
+    assert fractions and all(0.0 <= fraction <= 1.0 for fraction in fractions)
     expect(KeyboardInterrupt, "", lambda: dv.deform(big, field, progress=lambda fraction: False))
 
     def fail(fraction):

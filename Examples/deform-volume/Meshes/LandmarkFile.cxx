@@ -207,15 +207,15 @@ Json::Value ParseJson(const std::string& path, const std::string& text)
 std::string GetSpace(const std::string& path, const std::string& text, const Json::Value& markup)
 {
   const Json::Value& space = markup["coordinateSystem"];
-  const std::string said = space.isString() || space.isInt() ? space.asString() : "";
-  if (space.isNull() || said == "LPS" || said == "1")
+  const std::string name = space.isString() || space.isInt() ? space.asString() : "";
+  if (space.isNull() || name == "LPS" || name == "1")
   {
     return "LPS"; // the default of 3D Slicer
   }
-  if (said != "RAS" && said != "0")
+  if (name != "RAS" && name != "0")
   {
     Fail(path,
-      "the coordinateSystem in its line " + std::to_string(GetLine(text, space)) + " is \"" + said +
+      "the coordinateSystem in its line " + std::to_string(GetLine(text, space)) + " is \"" + name +
         "\", which is neither LPS nor RAS");
   }
   return "RAS";

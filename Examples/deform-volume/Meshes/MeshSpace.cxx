@@ -46,10 +46,10 @@ WorldAxes GetSpace(vtkDataObject* object, const std::string& path, Messages& mes
 }
 
 /// Chooses the world axes of a part. ofFile: the axes that its file states.
-WorldAxes Choose(const std::string& said, const std::string& path, WorldAxes ofFile,
+WorldAxes Choose(const std::string& ofOption, const std::string& path, WorldAxes ofFile,
   WorldAxes ofVolume, Messages& messages)
 {
-  if (said.empty() && ofVolume == WorldAxes::Unknown && ofFile != ofVolume)
+  if (ofOption.empty() && ofVolume == WorldAxes::Unknown && ofFile != ofVolume)
   {
     messages.DisplayWarningText(
       (path + " is " + (ofFile == WorldAxes::RightAnteriorSuperior ? "ras" : "lps") +
@@ -58,7 +58,7 @@ WorldAxes Choose(const std::string& said, const std::string& path, WorldAxes ofF
         .c_str());
     return ofVolume;
   }
-  return ChooseSpace("--mesh-space", said, path, ofFile, ofVolume, messages);
+  return ChooseSpace("--mesh-space", ofOption, path, ofFile, ofVolume, messages);
 }
 
 vtkSmartPointer<vtkDataArray> Negate(vtkDataArray* array, int components)
@@ -123,7 +123,7 @@ void KeepSpace(vtkDataObject* object, const char* header)
 }
 
 bool TurnIntoWorld(vtkDataObject* object, const std::vector<std::string>& vectors,
-  const std::string& said, const std::string& path, WorldAxes ofVolume, Messages& messages)
+  const std::string& ofOption, const std::string& path, WorldAxes ofVolume, Messages& messages)
 {
   bool isTurned = false;
   const WorldAxes ofAll = GetSpace(object, path, messages);
@@ -135,7 +135,7 @@ bool TurnIntoWorld(vtkDataObject* object, const std::vector<std::string>& vector
     ofFile = ofFile != WorldAxes::Unknown ? ofFile : ofAll;
     if (chosen.count(ofFile) == 0)
     {
-      chosen[ofFile] = Choose(said, path, ofFile, ofVolume, messages);
+      chosen[ofFile] = Choose(ofOption, path, ofFile, ofVolume, messages);
     }
     if (chosen[ofFile] != ofVolume)
     {

@@ -16,12 +16,12 @@ class vtkDataSet;
 void KeepSpace(vtkDataObject* object, const char* header);
 
 /// Converts a mesh or a sheet of a file to the world coordinates of the volume: the points, and the
-/// point arrays of vectors with the given names; "" is ignored. said: the value of --mesh-space, or
-/// "". The field data of the object or of a block take precedence over it. Returns whether anything
-/// was converted. Throws a Failure if the option is given and the world axes of the volume are not
-/// known.
+/// point arrays of vectors with the given names; "" is ignored. ofOption: the value of the option
+/// --mesh-space, or "". The field data of the object or of a block take precedence over the option.
+/// Returns whether anything was converted. Throws a Failure if the option is given and the world
+/// axes of the volume are not known.
 bool TurnIntoWorld(vtkDataObject* object, const std::vector<std::string>& vectors,
-  const std::string& said, const std::string& path, WorldAxes ofVolume, Messages& messages);
+  const std::string& ofOption, const std::string& path, WorldAxes ofVolume, Messages& messages);
 
 /// Exchanges right-anterior-superior and left-posterior-superior, in points and in the point arrays
 /// of the given names.

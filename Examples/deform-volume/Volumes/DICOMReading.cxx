@@ -56,7 +56,7 @@ public:
   // Sorts the slices by their positions along the normal, and checks them.
   void Sort(Messages& messages);
   vtkSmartPointer<vtkImageData> Read(bool showProgress) const;
-  // The columns: directions of the axes, and the position of the first voxel.
+  // Sets the columns of a matrix: the directions of the axes, and the position of the first voxel.
   void GetPlace(vtkMatrix4x4* place) const;
 
 private:

@@ -4,34 +4,34 @@
 #include "Failure.h"
 #include "Messages.h"
 
-WorldAxes HeedSpace(const std::string& option, const std::string& said, const std::string& path,
+WorldAxes HeedSpace(const std::string& option, const std::string& ofOption, const std::string& path,
   WorldAxes ofFile, Messages& messages)
 {
-  if (said.empty())
+  if (ofOption.empty())
   {
     return ofFile;
   }
   const WorldAxes axes =
-    said == "ras" ? WorldAxes::RightAnteriorSuperior : WorldAxes::LeftPosteriorSuperior;
+    ofOption == "ras" ? WorldAxes::RightAnteriorSuperior : WorldAxes::LeftPosteriorSuperior;
   if (ofFile != WorldAxes::Unknown && ofFile != axes)
   {
-    messages.DisplayWarningText((option + " " + said + " is not used: " + path +
-      " states that it is " + (said == "ras" ? "lps." : "ras."))
+    messages.DisplayWarningText((option + " " + ofOption + " is not used: " + path +
+      " states that it is " + (ofOption == "ras" ? "lps." : "ras."))
                                   .c_str());
     return ofFile;
   }
   return axes;
 }
 
-WorldAxes ChooseSpace(const std::string& option, const std::string& said, const std::string& path,
-  WorldAxes ofFile, WorldAxes ofVolume, Messages& messages)
+WorldAxes ChooseSpace(const std::string& option, const std::string& ofOption,
+  const std::string& path, WorldAxes ofFile, WorldAxes ofVolume, Messages& messages)
 {
-  if (!said.empty() && ofVolume == WorldAxes::Unknown)
+  if (!ofOption.empty() && ofVolume == WorldAxes::Unknown)
   {
-    throw Failure(option + " " + said +
+    throw Failure(option + " " + ofOption +
       ": the file of the volume does not state whether its world coordinates are lps or ras, so " +
       path + " cannot be converted to them. Give --volume-space");
   }
-  const WorldAxes axes = HeedSpace(option, said, path, ofFile, messages);
+  const WorldAxes axes = HeedSpace(option, ofOption, path, ofFile, messages);
   return axes != WorldAxes::Unknown ? axes : ofVolume;
 }
