@@ -280,8 +280,8 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
   program
     .add_option("--pull", raw.Pulls,
       "With --model: move the voxels or nodes within RADIUS of X,Y,Z (world coordinates) by "
-      "DX,DY,DZ (world units). Without RADIUS, only the nearest one is moved. May be given several "
-      "times")
+      "DX,DY,DZ (world units). Without RADIUS, only the nearest voxel or node is moved. May be "
+      "given several times")
     ->type_name("X,Y,Z,DX,DY,DZ[,RADIUS]")
     ->take_all()
     ->expected(1)
@@ -581,14 +581,15 @@ std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)
     ? "s-form,\nor else their q-form (x to the right, y to the front, z to the head); DICOM "
       "series, MetaImage\nand NRRD files by origin and direction (x to the left, y to the back, z "
       "to the head, unless an\nNRRD file states another space); .vti files by origin and "
-      "direction. "
+      "direction.\n"
     : "s-form,\nor else their q-form (x to the right, y to the front, z to the head); .vti files "
       "by origin and\ndirection.\n";
   program.footer(
     "World coordinates are those of the file, usually in mm. NIfTI files are placed by their " +
     placed +
-    "All lengths are in world units. A --field\n"
-    "is converted to the world coordinates of the volume, including its vectors.\n\n"
+    "All lengths are in world units. A --field is converted to the world coordinates of the\n"
+    "volume, including its vectors.\n\n"
+    "Square brackets in the description of an option hold its default.\n\n"
     "Exit codes: 0 success, 1 failure, 2 wrong usage.\n\n"
     "Example: dent a head to a depth of 15 mm\n"
     "  deform-volume head.nii.gz --tetgen --push 0,88,-50,0,-15,0,30 -o dented.nii.gz");
@@ -611,7 +612,7 @@ std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)
     ->type_name("SPACE");
   program
     .add_option("--label-volume", options.LabelVolume,
-      "Labels of the voxels of VOLUME, on the same grid, in a file of the same formats. Labels "
+      "Labels of the voxels of VOLUME, on the same grid, in one of the formats of VOLUME. Labels "
       "must be integers. They are deformed with VOLUME, and not interpolated")
     ->type_name("FILE");
   program
