@@ -254,7 +254,8 @@ class Deformer:
 
     def set_blanked(self, blanked: Optional[numpy.ndarray]) -> None:
         """Sets a mask of voxels that are left out (True); axes x, y, z. None: no voxel is left out."""
-        self.set_masks(blanked=None if blanked is None else _arrays.image(blanked, "The mask of blanked voxels"))
+        # Compared with 0 before the conversion to 8 bits, in which 256 would be 0.
+        self.set_masks(blanked=None if blanked is None else _arrays.image(blanked, "The mask of blanked voxels") != 0)
 
     def set_masks(self, *, blanked=None, active=None, boundary=None, cut=None, cut_distances=None) -> None:
         """Sets masks with the axes z, y, x. None: no mask.

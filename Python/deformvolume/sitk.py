@@ -47,7 +47,13 @@ def deform(
     pixels = numpy.ascontiguousarray(_arrays.native(SimpleITK.GetArrayViewFromImage(image), "The image"))
     deformer.set_volume_grid(_grid_of(image, "The image"), [pixels], categorical, background)
     if isinstance(deformation, SimpleITK.Transform):
-        deformation = SimpleITK.DisplacementFieldTransform(deformation).GetDisplacementField()
+        try:
+            deformation = SimpleITK.DisplacementFieldTransform(deformation).GetDisplacementField()
+        except RuntimeError as error:
+            raise TypeError(
+                f"The deformation is a transform of the type {deformation.GetName()}. Give a DisplacementFieldTransform, "
+                "or the image that SimpleITK.TransformToDisplacementField() makes of the transform."
+            ) from error
     is_inverse = False
     if isinstance(deformation, SimpleITK.Image):
         vectors = numpy.ascontiguousarray(SimpleITK.GetArrayViewFromImage(deformation))

@@ -40,6 +40,10 @@ fixed = make_image(np.zeros((22, 27, 18), "u1"), (-30, 56, 7), (1.9, 2.1, 1.8), 
 expect(ValueError, "2 dimensions", lambda: ds.deform(sitk.Image(4, 4, sitk.sitkUInt8), field))
 expect(ValueError, "three components", lambda: ds.deform(image, image))
 expect(TypeError, "Give a Mesh or a Field", lambda: ds.deform(image, "field"))
+expect(TypeError, "Euler3DTransform", lambda: ds.deform(image, sitk.Euler3DTransform()))
+expect(TypeError, "complex64", lambda: ds.deform(sitk.Image(4, 4, 4, sitk.sitkComplexFloat32), field))
+flat = sitk.DisplacementFieldTransform(sitk.Image([4, 4], sitk.sitkVectorFloat64))
+expect(ValueError, "2 dimensions", lambda: ds.deform(image, flat))
 
 for reference in (None, fixed):
     for interpolation, wanted in (("linear", sitk.sitkLinear), ("nearest", sitk.sitkNearestNeighbor)):

@@ -110,6 +110,25 @@ class Misuse(unittest.TestCase):
         turned = Mesh(numpy.asfortranarray(POINTS), CELLS[:, ::-1][:, ::-1], MOVED[::-1][::-1])
         numpy.testing.assert_array_equal(deformvolume.deform(fortran, turned, AFFINE).array, wanted)
 
+    def test_blanked_integers(self):
+        deformer = deformvolume.Deformer()
+        with self.assertRaisesRegex(ValueError, "There is no volume"):
+            deformer.set_blanked(numpy.zeros((10, 11, 12), bool))
+        with self.assertRaisesRegex(deformvolume.Error, "no deformation mesh"):
+            deformer.set_displacements(MOVED)
+        deformer.set_volume(make_volume(), AFFINE)
+        deformer.set_deformation(Mesh(POINTS, CELLS, MOVED))
+        with self.assertRaisesRegex(ValueError, r"must have the shape \(10, 11, 12\)"):
+            deformer.set_blanked(numpy.zeros((10, 11, 11), bool))
+        blanked = numpy.zeros((10, 11, 12), int)
+        blanked[2:4] = 256
+        deformer.set_blanked(blanked)
+        some = deformer.deform().coverage.sum()
+        deformer.set_blanked(blanked != 0)
+        self.assertEqual(some, deformer.deform().coverage.sum())
+        deformer.set_blanked(None)
+        self.assertLess(some, deformer.deform().coverage.sum())
+
     # The deformer reads a Fortran array in place.
     def test_borrowed_memory(self):
         deformer = deformvolume.Deformer()
