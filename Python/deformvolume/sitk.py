@@ -51,7 +51,7 @@ def deform(
             deformation = SimpleITK.DisplacementFieldTransform(deformation).GetDisplacementField()
         except RuntimeError as error:
             raise TypeError(
-                f"The deformation is a transform of the type {deformation.GetName()}. Give a DisplacementFieldTransform, "
+                f"The transform is of the type {deformation.GetName()}. Give a DisplacementFieldTransform, "
                 "or the image that SimpleITK.TransformToDisplacementField() makes of the transform."
             ) from error
     is_inverse = False
