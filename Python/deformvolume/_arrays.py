@@ -11,6 +11,8 @@ from . import _structs
 
 def native(array, what: str) -> numpy.ndarray:
     """Returns an array of a type that the library supports. Bool becomes uint8, and other byte orders are converted."""
+    if isinstance(array, numpy.ma.MaskedArray):
+        raise TypeError(f"{what} is a masked array. Replace the masked values, for example with array.filled(0).")
     array = numpy.asarray(array)
     if array.dtype == numpy.bool_:
         array = array.view(numpy.uint8)

@@ -3,6 +3,7 @@
 
 import ctypes
 import os
+import signal
 import threading
 import warnings as python_warnings
 import weakref
@@ -33,7 +34,7 @@ class Mesh:
 
     Attributes:
         points: shape (n, 3), world coordinates at rest; float32 or float64, other types become float64.
-        cells: tetrahedra, shape (m, 4), indices of points; or a pair (types, cells): VTK's cell types, such as
+        cells: tetrahedra, shape (m, 4), indices of points; or a tuple (types, cells): VTK's cell types, such as
             hexahedra (12) and quadratic tetrahedra (24), and a list with the point indices of each cell.
         displacements: shape (n, 3), in world units; None: set later by Deformer.set_displacements().
     """
@@ -74,7 +75,10 @@ class Deformed:
         jacobian: float32: Jacobian determinant of the deformation (deformed by undeformed volume). None unless
             requested.
         fold_count: uint32: number of tetrahedra of the sampling mesh that cover the voxel. None unless requested.
-        counts: numbers of covered voxels, inverted tetrahedra and others, by their names in deformvolume.h.
+        counts: "number_of_covered_voxels"; "number_of_inverted_tetrahedra": more than 0 if the deformation folds;
+            "number_of_flat_tetrahedra": cells of the mesh without volume; "number_of_overstretched_cells": cells of
+            the volume that are stretched over more than 4,000 voxels and left out in part; "number_of_hidden_samples":
+            samples that other parts of a folded volume hide.
         device: the name of the device.
     """
 
@@ -91,6 +95,40 @@ class Deformed:
     def array(self) -> numpy.ndarray:
         """The first array."""
         return self.arrays[0]
+
+
+def _flag(value, what: str) -> int:
+    """Returns 0 or 1. Texts such as "False" are refused."""
+    if not isinstance(value, (bool, int, numpy.bool_, numpy.integer)):
+        raise TypeError(f"{what} is {value!r}. Give True or False.")
+    return int(bool(value))
+
+
+class _Interrupts:
+    """Delays Ctrl-C while the library runs, because Python loses exceptions of signal handlers that run when the
+    library calls Python. call() runs the handlers of signals that have come meanwhile."""
+
+    def __init__(self):
+        self._signals = []
+        self._before = None
+
+    def __enter__(self):
+        # Python runs signal handlers in the main thread only.
+        if threading.current_thread() is threading.main_thread():
+            before = signal.getsignal(signal.SIGINT)
+            if callable(before):
+                signal.signal(signal.SIGINT, lambda number, frame: self._signals.append((number, frame)))
+                self._before = before
+        return self
+
+    def __exit__(self, *_):
+        if self._before is not None:
+            signal.signal(signal.SIGINT, self._before)
+
+    def call(self):
+        """Raises KeyboardInterrupt after Ctrl-C, if the program has not set another handler."""
+        while self._signals:
+            self._before(*self._signals.pop(0))
 
 
 def _choose(value: str, choices: Dict[str, int], what: str) -> int:
@@ -171,21 +209,33 @@ class Deformer:
         self._arrays: List[numpy.ndarray] = []
         self._shape: Optional[Tuple[int, int, int]] = None
         self._points = 0
+        self._is_running = False
+        if not isinstance(device, str):
+            raise TypeError(f"The device is {device!r}. Give its name, a part of the name, or an empty string.")
         handle = ctypes.c_void_p()
         _native.check(_native.library.dv_create(ctypes.byref(handle)))
         self._handle = handle
         self._finalizer = weakref.finalize(self, _destroy, handle.value, os.getpid())
         self._call("dv_set_device", device.encode())
 
-    def _call(self, name: str, *arguments) -> None:
+    def _check_use(self) -> None:
+        """Raises an error if the library must not be called now. The lock must be held."""
+        if self._is_running:
+            raise _native.Error("deform() is running. Its progress callback must not call the same deformer.")
         if os.getpid() != self._process:
             raise _native.Error(
                 "This deformer was created before the process was forked, and OpenCL does not work after a fork. Start "
                 'processes with the start method "spawn" or "forkserver" (multiprocessing.set_start_method), and '
                 "create a deformer in each process."
             )
+
+    def _call(self, name: str, *arguments) -> None:
         with self._lock:
+            self._check_use()
             _native.check(getattr(_native.library, name)(self._handle, *arguments))
+
+    def __reduce_ex__(self, _):
+        raise TypeError("A Deformer cannot be copied or pickled. Create another one.")
 
     def set_volume(
         self,
@@ -199,8 +249,9 @@ class Deformer:
 
         Args:
             arrays: one or several arrays on the same grid. Axes: x, y, z and, optionally, an axis of components. Types:
-                all integer types, float32, float64 and bool. Arrays in Fortran order are not copied, and must not
-                change until other arrays are set. For arrays with the axes z, y, x, such as SimpleITK's, give array.T.
+                all integer types, float32, float64 and bool, which becomes uint8. Arrays in Fortran order are not
+                copied, and must not change until other arrays are set. For arrays with the axes z, y, x, such as
+                SimpleITK's, give array.T.
             affine: 4 x 4 matrix from the index (i, j, k, 1) of a voxel to world coordinates.
             categorical: whether arrays hold labels, which are not interpolated; one value for all arrays, or one for
                 each.
@@ -242,7 +293,7 @@ class Deformer:
             struct.data = image.ctypes.data
             struct.type = _structs.type_of(image)
             struct.components = image.shape[3] if image.ndim == 4 else 1
-            struct.categorical = int(bool(is_label))
+            struct.categorical = _flag(is_label, "categorical")
             struct.background = float(value)
         with self._lock:
             self._call("dv_set_volume", ctypes.byref(grid))
@@ -275,7 +326,10 @@ class Deformer:
                 return None
             if self._shape is None:
                 raise ValueError(f"There is no volume. Set it before the mask of {what}.")
-            array = numpy.ascontiguousarray(array, dtype=dtype)
+            given = numpy.asarray(array)
+            array = numpy.ascontiguousarray(given, dtype=dtype)
+            if dtype == numpy.uint8 and not numpy.array_equal(array, given):
+                raise ValueError(f"The mask of {what} has values that are not integers from 0 to 255.")
             if array.shape != shape[::-1]:
                 raise ValueError(
                     f"The mask of {what} has the shape {array.shape[::-1]}. For this volume it must have the shape "
@@ -284,7 +338,7 @@ class Deformer:
             return array
 
         masks = (
-            take(blanked, voxels, numpy.uint8, "blanked voxels"),
+            take(None if blanked is None else numpy.asarray(blanked) != 0, voxels, numpy.uint8, "blanked voxels"),
             take(active, cells, numpy.uint8, "active tetrahedra"),
             take(boundary, voxels, numpy.float32, "boundary distances"),
             take(cut, cells, numpy.uint8, "cut tetrahedra"),
@@ -346,7 +400,7 @@ class Deformer:
             self._borrowed.pop("field", None)
 
     def set_displacements(self, displacements) -> None:
-        """Sets the displacements of the points of the mesh: shape (n, 3), in world units."""
+        """Sets the displacements of the points of the mesh: shape (n, 3), in world units, not in voxels."""
         # Without a mesh, the library raises the error.
         vectors = _arrays.vectors(displacements, self._points or None, "The array of displacements")
         self._call("dv_set_displacements", _structs.type_of(vectors), len(vectors), _structs.address(vectors))
@@ -387,6 +441,11 @@ class Deformer:
         if reference is None:
             self._call("dv_set_reference", None)
             return
+        if not isinstance(reference, (tuple, list)) or len(reference) != 2:
+            raise TypeError(
+                f"The reference is a {type(reference).__name__}. Give a Grid, or a pair of a shape and an affine "
+                "matrix, such as (image.shape, image.affine)."
+            )
         shape, matrix = reference
         if len(shape) != 3 or min(shape) < 1:
             raise ValueError(f"The shape of the reference is {tuple(shape)}. Give three numbers of at least 1.")
@@ -411,6 +470,8 @@ class Deformer:
             padding: width of a border on each side, in voxels.
             spacing: three numbers in world units; None: that of the volume.
         """
+        if not -(2**31) < padding < 2**31:
+            raise ValueError(f"The padding is {padding} voxels. Give a smaller number.")
         struct = _structs.Output(padding=int(padding))
         if isinstance(bounds, str):
             names = {name: _structs.BOUNDS[name] for name in ("deformed", "volume")}
@@ -424,8 +485,8 @@ class Deformer:
             struct.bounds_mode = _structs.BOUNDS["custom"]
             struct.custom_bounds[:] = [float(bound) for bound in bounds]
         if spacing is not None:
-            if len(spacing) != 3:
-                raise ValueError(f"The spacing has {len(spacing)} numbers. Give three.")
+            if numpy.shape(spacing) != (3,):
+                raise ValueError(f"The spacing is {spacing}. Give three numbers.")
             struct.spacing[:] = [float(value) for value in spacing]
         self._call("dv_set_output", ctypes.byref(struct))
 
@@ -448,15 +509,18 @@ class Deformer:
         """Deforms the volume into new arrays.
 
         Args:
-            interpolation: "linear", "cubic" (Catmull-Rom) or "nearest". Categorical arrays always take the nearest
-                voxel's value.
+            interpolation: "linear": linear in each of the five tetrahedra between eight neighboring voxels, with an
+                inverse field trilinear. "cubic": Catmull-Rom. "nearest": all arrays are treated as categorical.
+                Categorical arrays take the value of one voxel: of the vertex with the largest weight in the
+                tetrahedron, with an inverse field of the nearest voxel.
             rest_positions, jacobian, fold_count: whether to compute these arrays, see Deformed.
             extra_background: value of rest_positions and jacobian for voxels outside the deformed volume.
             progress: called with the fraction done. If it returns False, the call raises KeyboardInterrupt, as for
                 Ctrl-C. If it raises an exception, the call ends with that exception.
 
         Warns:
-            DeformationWarning: folds, tissue that is left out, settings without an effect.
+            DeformationWarning: cells of the mesh are ignored, or a part of the volume cannot be deformed. Folds cause
+                no warning: see Deformed.counts["number_of_inverted_tetrahedra"].
         """
         with self._lock:
             grid = self.find_output_grid()
@@ -512,9 +576,10 @@ class Deformer:
         failure = []
 
         def report_progress(fraction, _):
-            # Python checks for Ctrl-C when it executes this callback.
             try:
-                return 1 if progress is not None and progress(fraction) is False else 0
+                interrupts.call()
+                result = None if progress is None else progress(fraction)
+                return 1 if isinstance(result, (bool, numpy.bool_)) and not result else 0
             except BaseException as error:  # pylint: disable=broad-except
                 failure.append(error)
                 return 1
@@ -532,12 +597,18 @@ class Deformer:
         for name, array in extra.items():
             setattr(request, name, array.ctypes.data_as(ctypes.POINTER(kinds[name])))
         report = _structs.Report()
-        try:
-            self._call("dv_deform", ctypes.byref(request), ctypes.byref(report))
-        except KeyboardInterrupt:
-            if failure:
-                raise failure[0]  # pylint: disable=raise-missing-from
-            raise
+        with self._lock:
+            self._check_use()
+            with _Interrupts() as interrupts:
+                self._is_running = True
+                try:
+                    status = _native.library.dv_deform(self._handle, ctypes.byref(request), ctypes.byref(report))
+                finally:
+                    self._is_running = False
+        interrupts.call()
+        if failure:
+            raise failure[0]
+        _native.check(status)
         return report
 
     def release_memory(self) -> None:
