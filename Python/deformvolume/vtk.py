@@ -6,6 +6,8 @@ version of VTK. Its results are bitwise equal to those of that class. It has onl
 DeformVolume: methods of other properties raise AttributeError.
 """
 
+import numbers
+
 import numpy
 from vtkmodules.util.numpy_support import get_vtk_array_type, vtk_to_numpy
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
@@ -45,7 +47,15 @@ def _view(array, shape):
 
 
 def _stamp(*objects):
-    return tuple((id(one), one.GetMTime() if one is not None else 0) for one in objects)
+    # __this__ has the address of the VTK object. id() differs each time Python wraps it.
+    return tuple((one.__this__, one.GetMTime()) if one is not None else None for one in objects)
+
+
+def _cell_types(mesh):
+    try:
+        return mesh.GetCellTypes()  # from VTK 9.6 on
+    except TypeError:
+        return mesh.GetCellTypesArray()
 
 
 class DeformVolume(VTKPythonAlgorithmBase):
@@ -101,8 +111,19 @@ class DeformVolume(VTKPythonAlgorithmBase):
         self._deformer = None
         self._stamps = {}
         self._error = None
+        self._messages = []
+        self._last_error = None
 
     # ---- Properties
+
+    def __setattr__(self, name, value):
+        # Python would accept attributes that no method reads, such as filter.OutsideMode = 2.
+        if name.startswith("_") or name in ("InputType", "OutputType") or hasattr(type(self), name):
+            super().__setattr__(name, value)
+        else:
+            raise AttributeError(
+                f"DeformVolume has no attribute {name}. Set properties by methods, such as SetOutsideMode()."
+            )
 
     def __getattr__(self, name):
         settings = self.__dict__.get("_settings", {})
@@ -121,6 +142,10 @@ class DeformVolume(VTKPythonAlgorithmBase):
 
     def _set(self, name, value):
         before = self._settings[name]
+        kinds = {str: str, float: numbers.Real, int: numbers.Integral, bool: (numbers.Integral, numpy.bool_)}
+        if not isinstance(value, kinds[type(before)]):
+            names = {str: "a text", float: "a number", int: "an integer", bool: "True or False"}
+            raise TypeError(f"{name} is {value!r}. Give {names[type(before)]}.")
         value = type(before)(value)
         largest = {"OutsideMode": 2, "Interpolation": 2, "OutputBoundsMode": 1}
         if name in largest:
@@ -142,6 +167,14 @@ class DeformVolume(VTKPythonAlgorithmBase):
         if self._categorical:
             self._categorical.clear()
             self.Modified()
+
+    def SetInputData(self, data):
+        """Sets the data of port 0."""
+        self.SetInputDataObject(0, data)
+
+    def GetOutput(self):
+        """Returns the output, a vtkImageData."""
+        return self.GetOutputDataObject(0)
 
     def SetDeformationConnection(self, output):
         """Sets the connection of port 1."""
@@ -170,11 +203,35 @@ class DeformVolume(VTKPythonAlgorithmBase):
     # ---- Pipeline
 
     def Update(self, *arguments):
-        """Updates the output. Raises an exception after an error."""
+        """Updates the output. Raises an exception after an error, also if an input cannot be updated. The output is
+        then empty."""
         self._error = None
-        super().Update(*arguments)
-        if self._error is not None:
-            raise self._error
+        self._messages = []
+        if arguments:
+            super().Update(*arguments)
+            succeeded = self._error is None
+        else:
+            executive = self.GetExecutive()
+            observer = executive.AddObserver("ErrorEvent", self._take_message)
+            try:
+                succeeded = executive.Update()
+            finally:
+                executive.RemoveObserver(observer)
+        if succeeded:
+            self._last_error = None
+        else:
+            self.GetOutputDataObject(0).Initialize()
+            # VTK does not call the filter again if nothing has changed since an error.
+            self._last_error = self._error or (None if self._messages else self._last_error)
+            if self._last_error is not None:
+                raise self._last_error
+            raise _native.Error(" ".join(self._messages) or "An input cannot be updated. VTK has displayed the reason.")
+
+    def _take_message(self, _, __, text):
+        # VTK begins messages with the file and the object.
+        self._messages.append(text.strip().rpartition("): ")[2])
+
+    _take_message.CallDataType = "string0"
 
     def FillInputPortInformation(self, port, info):
         """Sets the data type of each port."""
@@ -203,20 +260,53 @@ class DeformVolume(VTKPythonAlgorithmBase):
 
     def RequestData(self, request, inInfo, outInfo):
         """Computes the output."""
-        output = vtkDataObject.GetData(outInfo.GetInformationObject(0))
+        info = outInfo.GetInformationObject(0)
+        output = vtkDataObject.GetData(info)
         output.Initialize()
-        return self._guard(lambda: self._deform(output))
+
+        def deform():
+            self._check_time(info, inInfo)
+            self._deform(output)
+
+        if self._guard(deform):
+            return 1
+        output.Initialize()
+        return 0
 
     def _guard(self, work):
         try:
             work()
-        except Exception as error:  # pylint: disable=broad-except
+        except BaseException as error:  # pylint: disable=broad-except
             # VTK does not propagate exceptions: Update() raises the error again.
             if self._error is None:
-                vtkOutputWindow.GetInstance().DisplayErrorText(f"ERROR: DeformVolume: {error}\n")
+                text = "The execution was aborted." if isinstance(error, KeyboardInterrupt) else error
+                vtkOutputWindow.GetInstance().DisplayErrorText(f"ERROR: DeformVolume: {text}\n")
             self._error = error
             return 0
         return 1
+
+    @staticmethod
+    def _check_time(info, inInfo):
+        """Raises an error if data of another time are needed: the filter reads its inputs at one time step."""
+        key = vtkStreamingDemandDrivenPipeline.UPDATE_TIME_STEP()
+        steps = vtkStreamingDemandDrivenPipeline.TIME_STEPS()
+        if not info.Has(key):
+            return
+        wanted = info.Get(key)
+        for port in range(3):
+            for number in range(inInfo[port].GetNumberOfInformationObjects()):
+                source = inInfo[port].GetInformationObject(number)
+                data = vtkDataObject.GetData(source)
+                time = vtkDataObject.DATA_TIME_STEP()
+                if data is None or not source.Has(steps) or not data.GetInformation().Has(time):
+                    continue
+                here = data.GetInformation().Get(time)
+                nearest = min(source.Get(steps), key=lambda step: abs(step - wanted))
+                if abs(here - wanted) > abs(nearest - wanted):
+                    raise ValueError(
+                        f"Time {wanted} was requested, but the data on port {port} are of time {here}. Update the "
+                        f"source first: source.UpdateTimeStep({nearest}), then filter.Update()."
+                    )
 
     def _input(self, port):
         return self.GetInputDataObject(port, 0) if self.GetNumberOfInputConnections(port) > 0 else None
@@ -225,7 +315,10 @@ class DeformVolume(VTKPythonAlgorithmBase):
         for port in (0, 1, 2):
             if self.GetNumberOfInputConnections(port) > 0:
                 connection = self.GetInputConnection(port, 0)
-                connection.GetProducer().Update(connection.GetIndex())
+                if not connection.GetProducer().GetExecutive().Update(connection.GetIndex()):
+                    raise _native.Error(
+                        f"The input on port {port} cannot be updated: {connection.GetProducer().GetClassName()} failed."
+                    )
         self._prepare()
         grid = self._deformer.find_output_grid()
         info.Set(vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT(), grid.extent[:], 6)
@@ -260,11 +353,12 @@ class DeformVolume(VTKPythonAlgorithmBase):
             self._deformer.set_reference(None)
             self._deformer.set_output(_BOUNDS[settings["OutputBoundsMode"]])
 
-    def _changed(self, name, *stamp):
-        if self._stamps.get(name) == stamp:
-            return False
-        self._stamps[name] = stamp
-        return True
+    def _send(self, name, stamp, send):
+        """Calls send() if the stamp differs from that of the last call that succeeded."""
+        if self._stamps.get(name) != stamp:
+            self._stamps.pop(name, None)
+            send()
+            self._stamps[name] = stamp
 
     def _prepare_volume(self, image):
         if image is None:
@@ -281,22 +375,23 @@ class DeformVolume(VTKPythonAlgorithmBase):
                 "The volume on port 0 has no numeric point array. Connect a vtkImageData with point scalars."
             )
         for number, array in enumerate(arrays):
-            if any(other.GetName() == array.GetName() for other in arrays[:number]):
+            if array.GetName() and any(other.GetName() == array.GetName() for other in arrays[:number]):
                 raise ValueError(f'Two arrays of the volume are named "{array.GetName()}". Rename one of them.')
         edits = [data.GetArray(name) for name in masks]
         cells = image.GetCellData()
         edits += [cells.GetArray(name) for name in ("ActiveTetrahedra", "CutTetrahedra", "vtkGhostType")]
         labels = [array.GetName() in self._categorical for array in arrays]
         background = self._settings["BackgroundValue"]
-        if not self._changed("volume", _stamp(image, *arrays, *edits), tuple(labels), background):
-            return
-        self._stamps.pop("deformation", None)
-        self._names = [array.GetName() for array in arrays]
-        shape = image.GetDimensions()[::-1]
-        self._deformer.set_volume_grid(
-            _grid_of(image), [numpy.ascontiguousarray(_view(array, shape)) for array in arrays], labels, background
-        )
-        self._prepare_masks(shape, *edits)
+        self._arrays = arrays
+
+        def send():
+            self._stamps.pop("deformation", None)
+            shape = image.GetDimensions()[::-1]
+            views = [numpy.ascontiguousarray(_view(array, shape)) for array in arrays]
+            self._deformer.set_volume_grid(_grid_of(image), views, labels, background)
+            self._prepare_masks(shape, *edits)
+
+        self._send("volume", (_stamp(image, *arrays, *edits), tuple(labels), background), send)
 
     def _prepare_masks(self, shape, ghosts, boundary, cut_distances, active, cut, cell_ghosts):
         cells = tuple(number - 1 for number in shape)
@@ -367,37 +462,47 @@ class DeformVolume(VTKPythonAlgorithmBase):
             )
         array = self._find_vectors(data)
         inverse = self._settings["FieldIsInverse"]
-        if self._changed("deformation", _stamp(data, array), inverse):
+
+        def send():
             vectors = _view(array, data.GetDimensions()[::-1])
             if vectors.dtype not in (numpy.float32, numpy.float64):
                 vectors = vectors.astype(numpy.float64)
             self._deformer.set_field_grid(_grid_of(data), numpy.ascontiguousarray(vectors), inverse)
+
+        self._send("deformation", (_stamp(data, array), inverse), send)
 
     def _prepare_mesh(self, data, rest):
         mesh = data if rest is None else rest
         if mesh.GetPoints() is None or mesh.GetNumberOfCells() == 0:
             raise ValueError(f"The mesh on port {1 if rest is None else 2} has no cells.")
         points = vtk_to_numpy(mesh.GetPoints().GetData())
-        if self._changed("deformation", _stamp(mesh.GetPoints(), mesh.GetCells()), "mesh"):
+
+        def send_mesh():
             self._stamps.pop("displacements", None)
-            types = numpy.ascontiguousarray(vtk_to_numpy(mesh.GetCellTypesArray()))
-            connectivity = numpy.ascontiguousarray(
-                vtk_to_numpy(mesh.GetCells().GetConnectivityArray()), dtype=numpy.int64
-            )
-            offsets = numpy.ascontiguousarray(vtk_to_numpy(mesh.GetCells().GetOffsetsArray()), dtype=numpy.int64)
+            types = numpy.ascontiguousarray(vtk_to_numpy(_cell_types(mesh)))
+            cells = mesh.GetCells()
+            connectivity = numpy.ascontiguousarray(vtk_to_numpy(cells.GetConnectivityArray()), dtype=numpy.int64)
+            offsets = numpy.ascontiguousarray(vtk_to_numpy(cells.GetOffsetsArray()), dtype=numpy.int64)
             self._deformer.set_mesh_arrays(points, connectivity, types, offsets)
+
+        self._send("deformation", (_stamp(mesh.GetPoints(), mesh.GetCells(), _cell_types(mesh)), "mesh"), send_mesh)
         if rest is None:
             array = self._find_vectors(data)
-            if self._changed("displacements", _stamp(array)):
-                self._deformer.set_displacements(vtk_to_numpy(array))
-        elif self._changed("displacements", _stamp(data.GetPoints(), mesh.GetPoints())):
-            if data.GetNumberOfPoints() != len(points):
-                raise ValueError(
-                    f"The mesh on port 1 has {data.GetNumberOfPoints()} points, but the mesh at rest on port 2 has "
-                    f"{len(points)}. Both must have the same points."
-                )
+            self._send(
+                "displacements", _stamp(array), lambda: self._deformer.set_displacements(vtk_to_numpy(array))
+            )
+            return
+        if data.GetNumberOfPoints() != len(points):
+            raise ValueError(
+                f"The mesh on port 1 has {data.GetNumberOfPoints()} points, but the mesh at rest on port 2 has "
+                f"{len(points)}. Both must have the same points."
+            )
+
+        def send_difference():
             moved = vtk_to_numpy(data.GetPoints().GetData()).astype(numpy.float64)
             self._deformer.set_displacements(moved - points)
+
+        self._send("displacements", _stamp(data.GetPoints(), mesh.GetPoints()), send_difference)
 
     def _deform(self, output):
         self._prepare()
@@ -411,7 +516,8 @@ class DeformVolume(VTKPythonAlgorithmBase):
 
         def add(name, dtype, components=1, vtk_type=None):
             array = vtkDataArray.CreateDataArray(vtk_type or get_vtk_array_type(dtype))
-            array.SetName(name)
+            if name:
+                array.SetName(name)
             array.SetNumberOfComponents(components)
             array.SetNumberOfTuples(shape[0] * shape[1] * shape[2])
             output.GetPointData().AddArray(array)
@@ -419,9 +525,8 @@ class DeformVolume(VTKPythonAlgorithmBase):
 
         data = volume.GetPointData()
         outputs = []
-        for name in self._names:
-            source = data.GetArray(name)
-            outputs.append(add(name, None, source.GetNumberOfComponents(), source.GetDataType()))
+        for source in self._arrays:
+            outputs.append(add(source.GetName(), None, source.GetNumberOfComponents(), source.GetDataType()))
         mask = add("vtkValidPointMask", None, vtk_type=VTK_CHAR)
         extra = {}
         if self._settings["GenerateRestPositions"]:
@@ -441,9 +546,10 @@ class DeformVolume(VTKPythonAlgorithmBase):
         )
         for role in range(vtkDataSetAttributes.NUM_ATTRIBUTES):
             array = data.GetAbstractAttribute(role)
-            if array is not None and array.GetName() in self._names:
-                output.GetPointData().SetActiveAttribute(array.GetName(), role)
-        output.SetFieldData(volume.GetFieldData())
+            for number, one in enumerate(self._arrays):
+                if one is array:
+                    output.GetPointData().SetActiveAttribute(number, role)
+        output.GetFieldData().PassData(volume.GetFieldData())
         if report.warnings:
             text = report.warnings.decode("utf-8", "replace")
             vtkOutputWindow.GetInstance().DisplayWarningText(f"Warning: DeformVolume: {text}\n")
