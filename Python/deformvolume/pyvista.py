@@ -2,6 +2,7 @@
 """`image.deformvolume.deform(mesh)` for pyvista's images. Importing this module registers it."""
 
 import pyvista
+from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from .vtk import DeformVolume
 
@@ -42,6 +43,9 @@ class DeformVolumeAccessor:
 
 def deform(image, deformation, *, vectors=None, rest=None, reference=None, categorical=(), **properties):
     """Does the same as DeformVolumeAccessor.deform(), for versions of pyvista without accessors."""
+    for what, given in (("image", image), ("deformation", deformation), ("rest", rest), ("reference", reference)):
+        if given is not None and not isinstance(given, vtkDataObject):
+            raise TypeError(f"{what} is a {type(given).__name__}. Give a data set of pyvista or VTK.")
     deformer = DeformVolume()
     deformer.SetInputDataObject(0, image)
     deformer.SetDeformationData(deformation)

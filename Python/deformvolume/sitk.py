@@ -7,7 +7,16 @@ import SimpleITK
 from . import _arrays, _deformer
 
 
+def _check_image(image, what: str) -> None:
+    if not isinstance(image, SimpleITK.Image):
+        raise TypeError(f"{what} is a {type(image).__name__}. Give a SimpleITK.Image.")
+    # SimpleITK ends the process if numpy reads a label map.
+    if "label" in image.GetPixelIDTypeAsString():
+        raise TypeError(f"{what} is a label map. Convert it with SimpleITK.LabelMapToLabel().")
+
+
 def _grid_of(image, what: str) -> "_deformer._structs.Grid":
+    _check_image(image, what)
     size = image.GetSize()
     if len(size) != 3:
         raise ValueError(f"{what} has {len(size)} dimensions. It must have 3.")
@@ -35,7 +44,8 @@ def deform(
         deformation: a SimpleITK image of vectors of three components, in mm; a DisplacementFieldTransform; or a
             deformvolume.Mesh or Field, in the world coordinates of the image (LPS).
         inverse: the direction of a field of SimpleITK. True (default): from the output to the image, as in
-            registrations and SimpleITK.Resample. False: from the image to the deformed image.
+            registrations and SimpleITK.Resample. False: from the image to the deformed image. Outside the field,
+            SimpleITK.Resample keeps the image as it is; so does outside="keep".
         reference: an image with the grid of the output; None: the grid of the image with an inverse field, otherwise a
             grid that holds the deformed image.
         categorical, background, outside, fade_distance, interpolation, device: see deformvolume.deform().
@@ -43,6 +53,7 @@ def deform(
     Returns:
         SimpleITK.Image: the deformed image, of the same pixel type.
     """
+    _check_image(image, "The image")
     deformer = _deformer.Deformer(device)
     pixels = numpy.ascontiguousarray(_arrays.native(SimpleITK.GetArrayViewFromImage(image), "The image"))
     deformer.set_volume_grid(_grid_of(image, "The image"), [pixels], categorical, background)
@@ -56,6 +67,7 @@ def deform(
             ) from error
     is_inverse = False
     if isinstance(deformation, SimpleITK.Image):
+        _check_image(deformation, "The displacement field")
         vectors = numpy.ascontiguousarray(SimpleITK.GetArrayViewFromImage(deformation))
         if vectors.ndim != 4 or vectors.shape[3] != 3:
             raise ValueError(

@@ -47,8 +47,18 @@ def _view(array, shape):
 
 
 def _stamp(*objects):
-    # __this__ has the address of the VTK object. id() differs each time Python wraps it.
-    return tuple((one.__this__, one.GetMTime()) if one is not None else None for one in objects)
+    """Returns a value that differs after an object has been replaced or modified."""
+
+    def stamp(one):
+        # __this__ has the address of the VTK object. id() differs each time Python wraps it.
+        stamps = (one.__this__, one.GetMTime())
+        if isinstance(one, vtkDataArray):
+            # Arrays are borrowed. Resizing allocates other memory, but does not always change the time.
+            values = vtk_to_numpy(one)
+            stamps += (values.ctypes.data, values.size)
+        return stamps
+
+    return tuple(None if one is None else stamp(one) for one in objects)
 
 
 def _cell_types(mesh):
@@ -85,8 +95,10 @@ class DeformVolume(VTKPythonAlgorithmBase):
     AddCategoricalArray(name) and ClearCategoricalArrays() choose arrays of labels.
 
     The output is vtkImageData with the arrays of the volume and "vtkValidPointMask": 1 for voxels that the deformed
-    volume covers. Updates read the whole inputs, at one time step. Update() raises an exception for each error. If the
-    filter is updated by a downstream filter, VTK prints the error.
+    volume covers. Updates read the whole inputs. If they have several time steps, the grid of the output must be the
+    same at all of them: use VOLUME_BOUNDS or a reference image. Update() raises an exception for each error, and
+    KeyboardInterrupt after Ctrl-C or SetAbortExecute(1); the output is then empty. If the filter is updated by a
+    downstream filter, VTK prints the error.
     """
 
     DISCARD, EXTRAPOLATE, KEEP = range(3)
@@ -113,6 +125,8 @@ class DeformVolume(VTKPythonAlgorithmBase):
         self._error = None
         self._messages = []
         self._last_error = None
+        self._announced = b""
+        self._inputs = ()
 
     # ---- Properties
 
@@ -207,6 +221,10 @@ class DeformVolume(VTKPythonAlgorithmBase):
         then empty."""
         self._error = None
         self._messages = []
+        # VTK does not see that the data of an input have changed if another consumer has updated it.
+        inputs = _stamp(*[self._input(port) for port in range(3)])
+        if inputs != self._inputs:
+            self.Modified()
         if arguments:
             super().Update(*arguments)
             succeeded = self._error is None
@@ -265,8 +283,10 @@ class DeformVolume(VTKPythonAlgorithmBase):
         output.Initialize()
 
         def deform():
-            self._check_time(info, inInfo)
+            time = self._check_time(info, inInfo)
             self._deform(output)
+            if time is not None:
+                output.GetInformation().Set(vtkDataObject.DATA_TIME_STEP(), time)
 
         if self._guard(deform):
             return 1
@@ -285,28 +305,27 @@ class DeformVolume(VTKPythonAlgorithmBase):
             return 0
         return 1
 
-    @staticmethod
-    def _check_time(info, inInfo):
-        """Raises an error if data of another time are needed: the filter reads its inputs at one time step."""
-        key = vtkStreamingDemandDrivenPipeline.UPDATE_TIME_STEP()
+    def _check_time(self, info, inInfo):
+        """Raises an error if the data of an input are not of the requested time. Returns their time, or None."""
         steps = vtkStreamingDemandDrivenPipeline.TIME_STEPS()
-        if not info.Has(key):
-            return
-        wanted = info.Get(key)
+        request = vtkStreamingDemandDrivenPipeline.UPDATE_TIME_STEP()
+        found = None
         for port in range(3):
-            for number in range(inInfo[port].GetNumberOfInformationObjects()):
-                source = inInfo[port].GetInformationObject(number)
-                data = vtkDataObject.GetData(source)
-                time = vtkDataObject.DATA_TIME_STEP()
-                if data is None or not source.Has(steps) or not data.GetInformation().Has(time):
-                    continue
-                here = data.GetInformation().Get(time)
+            data = self._input(port)
+            if data is None or not data.GetInformation().Has(vtkDataObject.DATA_TIME_STEP()):
+                continue
+            source = inInfo[port].GetInformationObject(0)
+            time = data.GetInformation().Get(vtkDataObject.DATA_TIME_STEP())
+            found = time if found is None else found
+            if info.Has(request) and source.Has(steps):
+                wanted = info.Get(request)
                 nearest = min(source.Get(steps), key=lambda step: abs(step - wanted))
-                if abs(here - wanted) > abs(nearest - wanted):
+                if abs(time - wanted) > abs(nearest - wanted):
                     raise ValueError(
-                        f"Time {wanted} was requested, but the data on port {port} are of time {here}. Update the "
+                        f"Time {wanted} was requested, but the data on port {port} are of time {time}. Update the "
                         f"source first: source.UpdateTimeStep({nearest}), then filter.Update()."
                     )
+        return found
 
     def _input(self, port):
         return self.GetInputDataObject(port, 0) if self.GetNumberOfInputConnections(port) > 0 else None
@@ -321,6 +340,13 @@ class DeformVolume(VTKPythonAlgorithmBase):
                     )
         self._prepare()
         grid = self._deformer.find_output_grid()
+        self._announced = bytes(grid)
+        for port in (0, 1, 2):
+            # VTK passes on the times of port 0 only. A filter without times is not executed for another time.
+            source = self.GetInputInformation(port, 0) if self.GetNumberOfInputConnections(port) > 0 else None
+            for key in (vtkStreamingDemandDrivenPipeline.TIME_STEPS(), vtkStreamingDemandDrivenPipeline.TIME_RANGE()):
+                if source is not None and source.Has(key) and not info.Has(key):
+                    info.Set(key, source.Get(key), len(source.Get(key)))
         info.Set(vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT(), grid.extent[:], 6)
         info.Set(vtkDataObject.ORIGIN(), grid.origin[:], 3)
         info.Set(vtkDataObject.SPACING(), grid.spacing[:], 3)
@@ -506,7 +532,14 @@ class DeformVolume(VTKPythonAlgorithmBase):
 
     def _deform(self, output):
         self._prepare()
+        self._inputs = _stamp(*[self._input(port) for port in range(3)])
         grid = self._deformer.find_output_grid()
+        if bytes(grid) != self._announced:
+            self.Modified()
+            raise ValueError(
+                "The output has another grid at this time. Set OutputBoundsMode to VOLUME_BOUNDS, connect a reference "
+                "image, or update again."
+            )
         output.SetExtent(grid.extent[:])
         output.SetOrigin(grid.origin[:])
         output.SetSpacing(grid.spacing[:])

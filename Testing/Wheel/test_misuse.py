@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Misuse: an exception says what is wrong, the process does not end, and the next call works."""
 
+import copy
 import os
 import signal
 import threading
@@ -154,6 +155,61 @@ class Misuse(unittest.TestCase):
         deformer.set_deformation(Mesh(POINTS, CELLS, MOVED))
         numpy.testing.assert_array_equal(deformer.deform().array, 2 * wanted)
         deformer.set_volume(make_volume(), AFFINE)
+        numpy.testing.assert_array_equal(deformer.deform().array, wanted)
+
+    def test_flags_and_options(self):
+        self.refuse(TypeError, "categorical is 'False'", categorical="False")
+        self.refuse(TypeError, "The device is None", device=None)
+        self.refuse(TypeError, "The reference is a ndarray", reference=AFFINE)
+        self.refuse(ValueError, "The spacing is 1.0", spacing=1.0)
+        self.refuse(ValueError, "padding is", padding=2**40)
+        self.refuse(TypeError, "masked array", numpy.ma.masked_less(make_volume(), 0.5))
+
+    # Any value other than 0 blanks a voxel.
+    def test_blanked(self):
+        deformer = deformvolume.Deformer()
+        deformer.set_volume(make_volume(), AFFINE)
+        deformer.set_deformation(Mesh(POINTS, CELLS, MOVED))
+        for value in (0.5, 256, True):
+            deformer.set_blanked(numpy.full((10, 11, 12), value))
+            with self.assertWarns(deformvolume.DeformationWarning):
+                self.assertFalse(deformer.deform().coverage.any())
+
+    # Python loses exceptions of signal handlers that run when the library calls Python.
+    def test_interrupt(self):
+        deformer = deformvolume.Deformer()
+        deformer.set_volume(make_volume(), AFFINE)
+        deformer.set_deformation(Mesh(POINTS, CELLS, MOVED))
+        before = signal.getsignal(signal.SIGINT)
+        for _ in range(20):
+            with self.assertRaises(KeyboardInterrupt):
+                deformer.deform(progress=lambda _: os.kill(os.getpid(), signal.SIGINT))
+            self.assertIs(signal.getsignal(signal.SIGINT), before)
+        # A handler of the program is called, and does not end the call.
+        numbers = []
+        signal.signal(signal.SIGINT, lambda number, _: numbers.append(number))
+        try:
+            self.assertTrue(
+                deformer.deform(progress=lambda _: os.kill(os.getpid(), signal.SIGINT)).coverage.any()
+            )
+        finally:
+            signal.signal(signal.SIGINT, before)
+        self.assertEqual(set(numbers), {signal.SIGINT})
+        for stop in (False, numpy.bool_(False)):
+            with self.assertRaises(KeyboardInterrupt):
+                deformer.deform(progress=lambda _, stop=stop: stop)
+
+    def test_callbacks_and_copies(self):
+        deformer = deformvolume.Deformer()
+        deformer.set_volume(make_volume(), AFFINE)
+        deformer.set_deformation(Mesh(POINTS, CELLS, MOVED))
+        wanted = deformer.deform().array
+        for call in (deformer.deform, lambda: deformer.set_volume(make_volume(), AFFINE), deformer.release_memory):
+            with self.assertRaisesRegex(deformvolume.Error, "is running"):
+                deformer.deform(progress=lambda _, call=call: call())
+        for copied in (copy.copy, copy.deepcopy):
+            with self.assertRaisesRegex(TypeError, "cannot be copied"):
+                copied(deformer)
         numpy.testing.assert_array_equal(deformer.deform().array, wanted)
 
     def test_threads(self):

@@ -93,6 +93,168 @@ class Pipeline(unittest.TestCase):
         self.filter.Update()
         numpy.testing.assert_array_equal(values(self.filter.GetOutputDataObject(0)), values(self.source.GetOutput()))
 
+    def test_names(self):
+        from deformvolume.vtk import DeformVolume
+        from vtkmodules.vtkCommonCore import vtkStringArray
+
+        self.source.Update()
+        volume = self.source.GetOutput().NewInstance()
+        volume.ShallowCopy(self.source.GetOutput())
+        text = vtkStringArray()
+        text.SetName("patient")
+        text.InsertNextValue("A")
+        volume.GetFieldData().AddArray(text)
+        volume.GetPointData().GetScalars().SetName(None)
+        other = DeformVolume()
+        other.SetInputData(volume)
+        other.SetOutputBoundsMode(DeformVolume.VOLUME_BOUNDS)
+        for shift in (0.0, 1.0):
+            other.SetDeformationData(make_mesh([shift, 0.0, 0.0]))
+            other.Update()
+            for image in (volume, other.GetOutput()):
+                self.assertEqual(image.GetFieldData().GetNumberOfArrays(), 1)
+        numpy.testing.assert_array_equal(values(other.GetOutput())[:, :, 1:], values(volume)[:, :, :-1])
+        for name in ("FieldIsInverse", "outside", "Update2"):
+            with self.assertRaisesRegex(AttributeError, "has no attribute"):
+                setattr(other, name, 1)
+        for name, value in {"FieldIsInverse": "False", "OutsideMode": "keep", "Device": None}.items():
+            with self.assertRaisesRegex(TypeError, f"{name} is "):
+                getattr(other, "Set" + name)(value)
+
+    # The volume and the mesh are sent once, and displacements in each update.
+    def test_only_changes_are_sent(self):
+        sent = []
+        mesh = make_mesh(self.SHIFT)
+        self.filter.SetDeformationData(mesh)
+        self.filter.Update()
+        deformer = self.filter._deformer
+        for name in ("set_volume_grid", "set_mesh_arrays", "set_displacements"):
+
+            def call(*arguments, name=name, before=getattr(deformer, name)):
+                sent.append(name)
+                return before(*arguments)
+
+            setattr(deformer, name, call)
+        for _ in range(3):
+            mesh.GetPointData().GetVectors().Modified()
+            self.filter.Update()
+        self.assertEqual(sent, 3 * ["set_displacements"])
+        self.source.SetXFreq(50)
+        self.filter.Update()
+        self.assertIn("set_volume_grid", sent)
+        self.expect_shift()
+
+    # Resizing allocates other memory, but does not change the time of modification.
+    def test_resized_array(self):
+        from deformvolume.vtk import DeformVolume
+
+        self.source.Update()
+        volume = self.source.GetOutput().NewInstance()
+        volume.DeepCopy(self.source.GetOutput())
+        other = DeformVolume()
+        other.SetInputData(volume)
+        other.SetDeformationData(make_mesh(self.SHIFT))
+        other.Update()
+        volume.GetPointData().GetScalars().SetNumberOfTuples(10)
+        volume.GetPointData().GetScalars().Squeeze()
+        other.SetDeformationData(make_mesh([0.0, 0.0, 0.0]))
+        with self.assertRaisesRegex(ValueError, "10 tuples"):
+            other.Update()
+
+    # Each update raises, and its output is empty, also if VTK finds the error or the input has one.
+    def test_inputs_that_cannot_be_updated(self):
+        from deformvolume.vtk import DeformVolume
+        from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkRectilinearGrid
+
+        self.filter.SetDeformationData(make_mesh(self.SHIFT))
+        broken = DeformVolume()
+        broken.SetInputConnection(self.source.GetOutputPort())
+        broken.SetDeformationData(make_mesh([numpy.nan, 0.0, 0.0]))
+
+        def expect(words):
+            for _ in range(2):
+                with self.assertRaisesRegex(Exception, words):
+                    self.filter.Update()
+                self.assertEqual(self.filter.GetOutput().GetNumberOfPoints(), 0)
+
+        def work():
+            self.filter.SetInputConnection(self.source.GetOutputPort())
+            self.filter.SetRestData(None)
+            self.filter.Update()
+            self.expect_shift()
+
+        work()
+        self.filter.SetInputData(vtkRectilinearGrid())
+        expect("vtkRectilinearGrid")
+        work()
+        self.filter.SetInputData(None)
+        expect("port 0")
+        work()
+        self.filter.SetRestData(vtkPolyData())
+        expect("vtkPolyData")
+        work()
+        self.filter.SetInputConnection(broken.GetOutputPort())
+        expect("cannot be updated")
+        work()
+
+    def test_abort(self):
+        self.filter.SetDeformationData(make_mesh(self.SHIFT))
+        observer = self.filter.AddObserver("ProgressEvent", lambda *_: self.filter.SetAbortExecute(1))
+        for _ in range(2):
+            with self.assertRaises(KeyboardInterrupt):
+                self.filter.Update()
+            self.assertEqual(self.filter.GetOutput().GetNumberOfPoints(), 0)
+        self.filter.RemoveObserver(observer)
+        self.filter.SetAbortExecute(0)  # later versions of VTK do not reset it
+        self.filter.Update()
+        self.expect_shift()
+
+    def test_time(self):
+        from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
+        from vtkmodules.vtkCommonDataModel import vtkDataObject
+        from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline as pipeline
+        from vtkmodules.vtkImagingCore import vtkImageFlip
+
+        class Moving(VTKPythonAlgorithmBase):
+            """A mesh that moves by 1 on x in each step of time."""
+
+            def __init__(self):
+                VTKPythonAlgorithmBase.__init__(self, nInputPorts=0, outputType="vtkUnstructuredGrid")
+
+            def RequestInformation(self, request, inInfo, outInfo):
+                info = outInfo.GetInformationObject(0)
+                info.Set(pipeline.TIME_STEPS(), [0.0, 1.0, 2.0], 3)
+                info.Set(pipeline.TIME_RANGE(), [0.0, 2.0], 2)
+                return 1
+
+            def RequestData(self, request, inInfo, outInfo):
+                info = outInfo.GetInformationObject(0)
+                time = info.Get(pipeline.UPDATE_TIME_STEP()) if info.Has(pipeline.UPDATE_TIME_STEP()) else 0.0
+                output = vtkDataObject.GetData(info)
+                output.ShallowCopy(make_mesh([time, 0.0, 0.0]))
+                output.GetInformation().Set(vtkDataObject.DATA_TIME_STEP(), time)
+                return 1
+
+        moving = Moving()
+        self.filter.SetDeformationConnection(moving.GetOutputPort())
+        flip = vtkImageFlip()
+        flip.SetInputConnection(self.filter.GetOutputPort())
+
+        def expect(time, output):
+            volume = values(self.source.GetOutput())
+            numpy.testing.assert_array_equal(output[:, :, time:], volume[:, :, : volume.shape[2] - time])
+
+        for time in (0, 2, 1):
+            moving.UpdateTimeStep(float(time))
+            self.filter.Update()
+            expect(time, values(self.filter.GetOutput()))
+        for time in (2, 0, 1):
+            self.filter.UpdateTimeStep(float(time))
+            expect(time, values(self.filter.GetOutput()))
+        for time in (2, 0, 1):
+            flip.UpdateTimeStep(float(time))
+            expect(time, values(flip.GetOutput())[:, :, ::-1])
+
     def expect_error(self, words, deformation):
         self.filter.SetDeformationData(deformation)
         with self.assertRaisesRegex(Exception, words):
