@@ -105,30 +105,32 @@ def _flag(value, what: str) -> int:
 
 
 class _Interrupts:
-    """Delays Ctrl-C while the library runs, because Python loses exceptions of signal handlers that run when the
-    library calls Python. call() runs the handlers of signals that have come meanwhile."""
+    """Delays the handlers of signals, such as that of Ctrl-C, while the library runs: Python loses exceptions of
+    handlers that run when the library calls Python. call() runs the handlers of signals that have come meanwhile."""
 
     def __init__(self):
         self._signals = []
-        self._before = None
+        self._handlers = {}
 
     def __enter__(self):
-        # Python runs signal handlers in the main thread only.
+        # Python runs handlers in the main thread only.
         if threading.current_thread() is threading.main_thread():
-            before = signal.getsignal(signal.SIGINT)
-            if callable(before):
-                signal.signal(signal.SIGINT, lambda number, frame: self._signals.append((number, frame)))
-                self._before = before
+            for number in signal.valid_signals():
+                handler = signal.getsignal(number)
+                if callable(handler):
+                    self._handlers[number] = handler
+                    signal.signal(number, lambda *arguments: self._signals.append(arguments))
         return self
 
     def __exit__(self, *_):
-        if self._before is not None:
-            signal.signal(signal.SIGINT, self._before)
+        for number, handler in self._handlers.items():
+            signal.signal(number, handler)
 
     def call(self):
-        """Raises KeyboardInterrupt after Ctrl-C, if the program has not set another handler."""
+        """Calls the handlers, which may raise exceptions: that of Ctrl-C raises KeyboardInterrupt."""
         while self._signals:
-            self._before(*self._signals.pop(0))
+            number, frame = self._signals.pop(0)
+            self._handlers[number](number, frame)
 
 
 def _choose(value: str, choices: Dict[str, int], what: str) -> int:

@@ -61,6 +61,15 @@ def _stamp(*objects):
     return tuple(None if one is None else stamp(one) for one in objects)
 
 
+def _shape_stamp(mesh):
+    """Returns a stamp of the points and cells of a mesh, without its arrays."""
+    cells = mesh.GetCells()
+    parts = (mesh.GetPoints(), cells, cells.GetConnectivityArray(), cells.GetOffsetsArray(), _cell_types(mesh))
+    # Modified() of the mesh stands for all that it has, but GetMTime() is also that of its arrays.
+    arrays = max(mesh.GetPointData().GetMTime(), mesh.GetCellData().GetMTime(), mesh.GetFieldData().GetMTime())
+    return _stamp(*parts) + (mesh.__this__, mesh.GetMTime() if mesh.GetMTime() > arrays else 0)
+
+
 def _cell_types(mesh):
     try:
         return mesh.GetCellTypes()  # from VTK 9.6 on
@@ -127,6 +136,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
         self._last_error = None
         self._announced = b""
         self._inputs = ()
+        self._is_updating = False
 
     # ---- Properties
 
@@ -219,31 +229,48 @@ class DeformVolume(VTKPythonAlgorithmBase):
     def Update(self, *arguments):
         """Updates the output. Raises an exception after an error, also if an input cannot be updated. The output is
         then empty."""
+        if self._is_updating:
+            raise _native.Error("The filter is being updated. Its observers must not call Update().")
+        # VTK does not see that the data of an input have changed if another consumer has updated it.
+        if _stamp(*[self._input(port) for port in range(3)]) != self._inputs:
+            self.Modified()
         self._error = None
         self._messages = []
-        # VTK does not see that the data of an input have changed if another consumer has updated it.
-        inputs = _stamp(*[self._input(port) for port in range(3)])
-        if inputs != self._inputs:
-            self.Modified()
-        if arguments:
-            super().Update(*arguments)
-            succeeded = self._error is None
-        else:
-            executive = self.GetExecutive()
-            observer = executive.AddObserver("ErrorEvent", self._take_message)
-            try:
-                succeeded = executive.Update()
-            finally:
-                executive.RemoveObserver(observer)
+        self._is_updating = True
+        try:
+            succeeded = self._update(arguments)
+        finally:
+            self._is_updating = False
         if succeeded:
             self._last_error = None
-        else:
-            self.GetOutputDataObject(0).Initialize()
+            return
+        self.GetOutputDataObject(0).Initialize()
+        error, self._error = self._error, None
+        state = self.GetMTime(), self.GetExecutive().GetPipelineMTime()
+        if error is not None:
+            # Its traceback would keep the filter alive.
+            self._last_error = state, type(error), error.args
+        elif self._messages:
+            error = _native.Error(" ".join(self._messages))
+        elif self._last_error is not None and self._last_error[0] == state:
             # VTK does not call the filter again if nothing has changed since an error.
-            self._last_error = self._error or (None if self._messages else self._last_error)
-            if self._last_error is not None:
-                raise self._last_error
-            raise _native.Error(" ".join(self._messages) or "An input cannot be updated. VTK has displayed the reason.")
+            error = self._last_error[1](*self._last_error[2])
+        else:
+            error = _native.Error("An input cannot be updated. VTK has displayed the reason.")
+        try:
+            raise error
+        finally:
+            del error
+
+    def _update(self, arguments):
+        if arguments not in ((), (0,)):
+            return super().Update(*arguments) != 0 and self._error is None
+        executive = self.GetExecutive()
+        observer = executive.AddObserver("ErrorEvent", self._take_message)
+        try:
+            return executive.Update()
+        finally:
+            executive.RemoveObserver(observer)
 
     def _take_message(self, _, __, text):
         # VTK begins messages with the file and the object.
@@ -288,20 +315,19 @@ class DeformVolume(VTKPythonAlgorithmBase):
             if time is not None:
                 output.GetInformation().Set(vtkDataObject.DATA_TIME_STEP(), time)
 
-        if self._guard(deform):
-            return 1
-        output.Initialize()
-        return 0
+        return self._guard(deform)
 
     def _guard(self, work):
         try:
             work()
         except BaseException as error:  # pylint: disable=broad-except
             # VTK does not propagate exceptions: Update() raises the error again.
-            if self._error is None:
-                text = "The execution was aborted." if isinstance(error, KeyboardInterrupt) else error
-                vtkOutputWindow.GetInstance().DisplayErrorText(f"ERROR: DeformVolume: {text}\n")
-            self._error = error
+            text = "The execution was aborted." if isinstance(error, KeyboardInterrupt) else error
+            vtkOutputWindow.GetInstance().DisplayErrorText(f"ERROR: DeformVolume: {text}\n")
+            output = self.GetOutputDataObject(0)
+            if output is not None:
+                output.Initialize()
+            self._error = error if self._is_updating else None
             return 0
         return 1
 
@@ -319,11 +345,14 @@ class DeformVolume(VTKPythonAlgorithmBase):
             found = time if found is None else found
             if info.Has(request) and source.Has(steps):
                 wanted = info.Get(request)
-                nearest = min(source.Get(steps), key=lambda step: abs(step - wanted))
-                if abs(time - wanted) > abs(nearest - wanted):
+                times = sorted(source.Get(steps))
+                # Sources choose the time step before or after the request.
+                before = max([step for step in times if step <= wanted], default=times[0])
+                after = min([step for step in times if step >= wanted], default=times[-1])
+                if not before <= time <= after:
                     raise ValueError(
                         f"Time {wanted} was requested, but the data on port {port} are of time {time}. Update the "
-                        f"source first: source.UpdateTimeStep({nearest}), then filter.Update()."
+                        f"source first: source.UpdateTimeStep({wanted}), then filter.Update()."
                     )
         return found
 
@@ -381,10 +410,15 @@ class DeformVolume(VTKPythonAlgorithmBase):
 
     def _send(self, name, stamp, send):
         """Calls send() if the stamp differs from that of the last call that succeeded."""
-        if self._stamps.get(name) != stamp:
-            self._stamps.pop(name, None)
+        if self._stamps.get(name) == stamp:
+            return
+        try:
             send()
-            self._stamps[name] = stamp
+        except BaseException:
+            # The deformer has a part of the new data, or none.
+            self._deformer = None
+            raise
+        self._stamps[name] = stamp
 
     def _prepare_volume(self, image):
         if image is None:
@@ -487,6 +521,12 @@ class DeformVolume(VTKPythonAlgorithmBase):
                 "Port 1 has a displacement field, which cannot be used with a mesh at rest. Disconnect port 2."
             )
         array = self._find_vectors(data)
+        ghosts = data.GetPointData().GetArray("vtkGhostType")
+        if ghosts is not None and (vtk_to_numpy(ghosts) & vtkDataSetAttributes.HIDDENPOINT).any():
+            raise ValueError(
+                "The displacement field on port 1 has hidden points. Only the C++ class vtkDeformVolumeFilter supports "
+                "them."
+            )
         inverse = self._settings["FieldIsInverse"]
 
         def send():
@@ -511,11 +551,11 @@ class DeformVolume(VTKPythonAlgorithmBase):
             offsets = numpy.ascontiguousarray(vtk_to_numpy(cells.GetOffsetsArray()), dtype=numpy.int64)
             self._deformer.set_mesh_arrays(points, connectivity, types, offsets)
 
-        self._send("deformation", (_stamp(mesh.GetPoints(), mesh.GetCells(), _cell_types(mesh)), "mesh"), send_mesh)
+        self._send("deformation", (_shape_stamp(mesh), "mesh"), send_mesh)
         if rest is None:
             array = self._find_vectors(data)
             self._send(
-                "displacements", _stamp(array), lambda: self._deformer.set_displacements(vtk_to_numpy(array))
+                "displacements", _stamp(array, data), lambda: self._deformer.set_displacements(vtk_to_numpy(array))
             )
             return
         if data.GetNumberOfPoints() != len(points):
@@ -528,7 +568,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
             moved = vtk_to_numpy(data.GetPoints().GetData()).astype(numpy.float64)
             self._deformer.set_displacements(moved - points)
 
-        self._send("displacements", _stamp(data.GetPoints(), mesh.GetPoints()), send_difference)
+        self._send("displacements", _stamp(data.GetPoints(), data, mesh.GetPoints(), mesh), send_difference)
 
     def _deform(self, output):
         self._prepare()

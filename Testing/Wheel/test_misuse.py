@@ -192,6 +192,15 @@ class Misuse(unittest.TestCase):
         signal.signal(signal.SIGINT, lambda number, _: numbers.append(number))
         self.assertTrue(deformer.deform(progress=lambda _: os.kill(os.getpid(), signal.SIGINT)).coverage.any())
         self.assertEqual(set(numbers), {signal.SIGINT})
+        # A handler of another signal raises its own exception.
+        def raise_timeout(*_):
+            raise TimeoutError
+
+        signal.signal(signal.SIGUSR1, raise_timeout)
+        self.addCleanup(signal.signal, signal.SIGUSR1, signal.SIG_DFL)
+        for _ in range(20):
+            with self.assertRaises(TimeoutError):
+                deformer.deform(progress=lambda _: os.kill(os.getpid(), signal.SIGUSR1))
         for stop in (False, numpy.bool_(False)):
             with self.assertRaises(KeyboardInterrupt):
                 deformer.deform(progress=lambda _, stop=stop: stop)

@@ -144,6 +144,69 @@ class Pipeline(unittest.TestCase):
         self.assertIn("set_volume_grid", sent)
         self.expect_shift()
 
+    # A failed update may have passed on a part of its input.
+    def test_deformation_that_is_removed_after_an_error(self):
+        self.filter.SetDeformationData(make_mesh(self.SHIFT))
+        self.filter.Update()
+        for wrong in (make_mesh([numpy.nan, 0.0, 0.0]), make_field([numpy.nan, 0.0, 0.0])):
+            self.filter.SetDeformationData(wrong)
+            with self.assertRaisesRegex(Exception, "is not finite"):
+                self.filter.Update(0)
+            self.filter.SetDeformationData(None)
+            self.filter.Update()
+            numpy.testing.assert_array_equal(values(self.filter.GetOutput()), values(self.source.GetOutput()))
+
+    def test_arrays_that_change_in_place(self):
+        from vtkmodules.util.numpy_support import vtk_to_numpy
+
+        mesh = make_mesh([0.0, 0.0, 0.0])
+        self.filter.SetDeformationData(mesh)
+        self.filter.Update()
+        vtk_to_numpy(mesh.GetPointData().GetVectors())[:] = self.SHIFT
+        mesh.Modified()
+        self.filter.Update()
+        self.expect_shift()
+        vtk_to_numpy(mesh.GetPoints().GetData())[:, 0] += 100.0
+        mesh.Modified()
+        with self.assertRaisesRegex(Exception, "holds no voxel"):
+            self.filter.Update()
+
+    def test_nested_update(self):
+        self.filter.SetDeformationData(make_mesh(self.SHIFT))
+        errors = []
+
+        def update(*_):
+            try:
+                self.filter.Update()
+            except Exception as error:  # pylint: disable=broad-except
+                errors.append(str(error))
+
+        observer = self.filter.AddObserver("ProgressEvent", update)
+        self.filter.Update()
+        self.filter.RemoveObserver(observer)
+        self.expect_shift()
+        self.assertIn("must not call Update()", errors[0])
+
+    # Exceptions must not keep the filter alive.
+    def test_is_destroyed(self):
+        import gc
+        import weakref
+
+        from deformvolume.vtk import DeformVolume
+
+        for shift in (self.SHIFT, [numpy.nan, 0.0, 0.0]):
+            other = DeformVolume()
+            other.SetInputConnection(self.source.GetOutputPort())
+            other.SetDeformationData(make_mesh(shift))
+            try:
+                other.Update()
+            except Exception:  # pylint: disable=broad-except
+                pass
+            reference = weakref.ref(other)
+            del other
+            gc.collect()
+            self.assertIsNone(reference())
+
     # Resizing allocates other memory, but does not change the time of modification.
     def test_resized_array(self):
         from deformvolume.vtk import DeformVolume
@@ -230,6 +293,7 @@ class Pipeline(unittest.TestCase):
             def RequestData(self, request, inInfo, outInfo):
                 info = outInfo.GetInformationObject(0)
                 time = info.Get(pipeline.UPDATE_TIME_STEP()) if info.Has(pipeline.UPDATE_TIME_STEP()) else 0.0
+                time = numpy.floor(time)
                 output = vtkDataObject.GetData(info)
                 output.ShallowCopy(make_mesh([time, 0.0, 0.0]))
                 output.GetInformation().Set(vtkDataObject.DATA_TIME_STEP(), time)
@@ -251,6 +315,8 @@ class Pipeline(unittest.TestCase):
         for time in (2, 0, 1):
             self.filter.UpdateTimeStep(float(time))
             expect(time, values(self.filter.GetOutput()))
+        self.filter.UpdateTimeStep(1.7)  # the source takes the step before it
+        expect(1, values(self.filter.GetOutput()))
         for time in (2, 0, 1):
             flip.UpdateTimeStep(float(time))
             expect(time, values(flip.GetOutput())[:, :, ::-1])
@@ -287,6 +353,10 @@ class Pipeline(unittest.TestCase):
         self.expect_error("no active vectors", vtkImageData())
         self.expect_error("no cells", vtkUnstructuredGrid())
         self.expect_error("vtkPolyData", vtkPolyData())
+        field = make_field(self.SHIFT)
+        field.AllocatePointGhostArray()
+        field.GetPointGhostArray().SetValue(0, 2)  # HIDDENPOINT
+        self.expect_error("hidden points", field)
         self.expect_error("is not finite", make_mesh([numpy.nan, 0.0, 0.0]))
         self.expect_error("no tetrahedra, but 1 triangle strip", make_mesh(self.SHIFT, VTK_TRIANGLE_STRIP))
         field = make_field(self.SHIFT)

@@ -84,7 +84,7 @@ public:
   bool HasDone() const { return !this->Done.empty(); }
 
   /// The output of a new filter with the same edits.
-  vtkSmartPointer<vtkImageData> MakeAgain(vtkImageData* volume) const
+  vtkSmartPointer<vtkImageData> Repeat(vtkImageData* volume) const
   {
     Edited<FilterT> fresh;
     fresh.Filter->AccumulateOn();
@@ -273,8 +273,8 @@ private:
     const bool isPart = GetReported(this->Output.Filter, "Bricks resampled") <
       GetReported(this->Output.Filter, "Bricks of the volume");
 
-    const auto cut = this->Cuts.MakeAgain(this->Volume);
-    const auto edited = this->Carvings.MakeAgain(cut);
+    const auto cut = this->Cuts.Repeat(this->Volume);
+    const auto edited = this->Carvings.Repeat(cut);
     VERIFY(HaveEqualBits(GetMask(this->Cut->GetOutput()), GetMask(cut)));
     VERIFY(HaveEqualBits(GetMask(this->Carve->GetOutput()), GetMask(edited)));
     VERIFY(HaveSameOthers(this->Carve->GetOutput(), edited));
