@@ -9,6 +9,8 @@ import vtkmodules.vtkRenderingFreeType  # noqa: F401 (draws texts)
 import vtkmodules.vtkRenderingVolumeOpenGL2  # noqa: F401 (draws volumes)
 from vtkmodules import vtkIOImage, vtkRenderingCore, vtkRenderingVolume
 
+if len(sys.argv) not in (2, 4):
+    sys.exit(__doc__)
 reader = vtkIOImage.vtkNIFTIImageReader()
 reader.SetFileName(sys.argv[1])
 reader.Update()
