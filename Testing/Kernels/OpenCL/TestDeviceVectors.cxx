@@ -325,6 +325,9 @@ TEST_P(DeviceVectorsRoutes, AlternateWithOtherVectors)
       deformer.SetNodeDisplacements(displacements.data());
     }
     EXPECT_EQ(subject.Run(deformer), subject.RunFresh(GetParam(), host, Identity));
+    // The vectors have not changed, but the deformer has other displacements now.
+    subject.Move(deformer, GetParam(), second, Turned);
+    EXPECT_EQ(subject.Run(deformer), subject.RunFresh(GetParam(), two, Turned));
     one[30] = 0.25F;
     first->Write(one.data(), { { { 10, 11 } } });
   }
