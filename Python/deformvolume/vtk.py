@@ -166,10 +166,14 @@ class DeformVolume(VTKPythonAlgorithmBase):
 
     def _set(self, name, value):
         before = self._settings[name]
-        kinds = {str: str, float: numbers.Real, int: numbers.Integral, bool: (numbers.Integral, numpy.bool_)}
-        if not isinstance(value, kinds[type(before)]):
-            names = {str: "a text", float: "a number", int: "an integer", bool: "True or False"}
-            raise TypeError(f"{name} is {value!r}. Give {names[type(before)]}.")
+        accepted, wanted = {
+            str: (str, "a text"),
+            float: (numbers.Real, "a number"),
+            int: (numbers.Integral, "an integer"),
+            bool: ((numbers.Integral, numpy.bool_), "True or False"),
+        }[type(before)]
+        if not isinstance(value, accepted):
+            raise TypeError(f"{name} is {value!r}. Give {wanted}.")
         value = type(before)(value)
         largest = {"OutsideMode": 2, "Interpolation": 2, "OutputBoundsMode": 1}
         if name in largest:
@@ -232,7 +236,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
         if self._is_updating:
             raise _native.Error("The filter is being updated. Its observers must not call Update().")
         # VTK does not see that the data of an input have changed if another consumer has updated it.
-        if _stamp(*[self._input(port) for port in range(3)]) != self._inputs:
+        if self._stamp_inputs() != self._inputs:
             self.Modified()
         self._error = None
         self._messages = []
@@ -359,7 +363,11 @@ class DeformVolume(VTKPythonAlgorithmBase):
     def _input(self, port):
         return self.GetInputDataObject(port, 0) if self.GetNumberOfInputConnections(port) > 0 else None
 
+    def _stamp_inputs(self):
+        return _stamp(*[self._input(port) for port in (0, 1, 2)])
+
     def _announce(self, info):
+        sources = []
         for port in (0, 1, 2):
             if self.GetNumberOfInputConnections(port) > 0:
                 connection = self.GetInputConnection(port, 0)
@@ -367,15 +375,17 @@ class DeformVolume(VTKPythonAlgorithmBase):
                     raise _native.Error(
                         f"The input on port {port} cannot be updated: {connection.GetProducer().GetClassName()} failed."
                     )
+                sources.append(self.GetInputInformation(port, 0))
         self._prepare()
         grid = self._deformer.find_output_grid()
         self._announced = bytes(grid)
-        for port in (0, 1, 2):
-            # VTK passes on the times of port 0 only. A filter without times is not executed for another time.
-            source = self.GetInputInformation(port, 0) if self.GetNumberOfInputConnections(port) > 0 else None
-            for key in (vtkStreamingDemandDrivenPipeline.TIME_STEPS(), vtkStreamingDemandDrivenPipeline.TIME_RANGE()):
-                if source is not None and source.Has(key) and not info.Has(key):
-                    info.Set(key, source.Get(key), len(source.Get(key)))
+        # VTK passes on the times of port 0 only. A filter without times is not executed for another time.
+        for key in (vtkStreamingDemandDrivenPipeline.TIME_STEPS(), vtkStreamingDemandDrivenPipeline.TIME_RANGE()):
+            times = next((source.Get(key) for source in sources if source.Has(key)), None)
+            if times is None:
+                info.Remove(key)
+            else:
+                info.Set(key, times, len(times))
         info.Set(vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT(), grid.extent[:], 6)
         info.Set(vtkDataObject.ORIGIN(), grid.origin[:], 3)
         info.Set(vtkDataObject.SPACING(), grid.spacing[:], 3)
@@ -522,20 +532,20 @@ class DeformVolume(VTKPythonAlgorithmBase):
             )
         array = self._find_vectors(data)
         ghosts = data.GetPointData().GetArray("vtkGhostType")
-        if ghosts is not None and (vtk_to_numpy(ghosts) & vtkDataSetAttributes.HIDDENPOINT).any():
-            raise ValueError(
-                "The displacement field on port 1 has hidden points. Only the C++ class vtkDeformVolumeFilter supports "
-                "them."
-            )
         inverse = self._settings["FieldIsInverse"]
 
         def send():
+            if ghosts is not None and (vtk_to_numpy(ghosts) & vtkDataSetAttributes.HIDDENPOINT).any():
+                raise ValueError(
+                    "The displacement field on port 1 has hidden points. Only the C++ class vtkDeformVolumeFilter "
+                    "supports them."
+                )
             vectors = _view(array, data.GetDimensions()[::-1])
             if vectors.dtype not in (numpy.float32, numpy.float64):
                 vectors = vectors.astype(numpy.float64)
             self._deformer.set_field_grid(_grid_of(data), numpy.ascontiguousarray(vectors), inverse)
 
-        self._send("deformation", (_stamp(data, array), inverse), send)
+        self._send("deformation", (_stamp(data, array, ghosts), inverse), send)
 
     def _prepare_mesh(self, data, rest):
         mesh = data if rest is None else rest
@@ -572,7 +582,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
 
     def _deform(self, output):
         self._prepare()
-        self._inputs = _stamp(*[self._input(port) for port in range(3)])
+        self._inputs = self._stamp_inputs()
         grid = self._deformer.find_output_grid()
         if bytes(grid) != self._announced:
             self.Modified()
