@@ -7,8 +7,11 @@
 #include "MemoryBudget.h"
 #include "MeshRasterizer.h"
 #include "SlabSizes.h"
+#include "VectorReading.h"
 #include "VertexLink.h"
 #include "WorkDevice.h"
+
+#include <algorithm>
 
 namespace deformvolume
 {
@@ -49,10 +52,14 @@ std::uint64_t CountDeviceMemory(
   const std::uint64_t deferred =
     DeferredCells::GetMemory(device, BrickGrid(size.Grid).GetNumberOfBricks());
   const std::uint64_t bits = deferred > 0 ? CountWords(outputVoxels) * 4 : 0;
+  // Vectors of a field that a kernel converts (GPUs).
+  const std::uint64_t vectors = device.GetDevice().IsProcessor || size.NumberOfTetrahedra > 0
+    ? 0
+    : std::min(size.NumberOfNodes, VectorReading::PointsOfPortion) * 3 * sizeof(float);
   // Arrays, states, active tetrahedra and blanking; links or runs of a mesh; arrays and coverage of
   // the output; displacements and tetrahedra.
   return voxels * (sent + 3) + size.MappingBytes + outputVoxels * outputBytesPerVoxel + deferred +
-    bits + (size.NumberOfNodes + size.NumberOfTetrahedra) * 16;
+    bits + vectors + (size.NumberOfNodes + size.NumberOfTetrahedra) * 16;
 }
 
 } // namespace

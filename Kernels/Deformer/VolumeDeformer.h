@@ -166,7 +166,7 @@ public:
     const std::array<double, 9>& toDisplacement = DisplacementField().ToDisplacement);
 
   /// Set a displacement field. changes: the points that may have changed since the last field;
-  /// ignored if the last field had another grid. Null: all may have changed.
+  /// ignored if the last field had another grid or another matrix. Null: all may have changed.
   void SetDisplacementField(const DisplacementField& field, const PointRanges* changes = nullptr);
 
   /// The same with vectors on the device of the volume. Vectors and Owner of `field` are ignored.

@@ -37,6 +37,23 @@ bool IsSameMapping(const FieldParameters& a, const FieldParameters& b)
     std::equal(a.Fading, a.Fading + 3, b.Fading);
 }
 
+bool HasSameMatrix(const FieldParameters& a, const FieldParameters& b)
+{
+  return std::equal(a.ToDisplacement, a.ToDisplacement + 18, b.ToDisplacement);
+}
+
+// Returns the smallest range that contains ranges of points, of `count` points.
+std::array<std::size_t, 2> GetHull(const PointRanges& ranges, std::size_t count)
+{
+  std::array<std::size_t, 2> hull{ { count, 0 } };
+  for (const auto& range : ranges)
+  {
+    hull[0] = std::min(hull[0], range[0]);
+    hull[1] = std::max(hull[1], std::min(range[1], count));
+  }
+  return hull;
+}
+
 } // namespace
 
 DisplacementSource::DisplacementSource(
@@ -129,7 +146,7 @@ void DisplacementSource::SetNodeDisplacements(
   field.ToDisplacement = toDisplacement;
   const std::optional<PointRanges> changes =
     this->Reading.Begin(vectors, field, this->NumberOfNodes);
-  if (!this->Reading.CanConvert())
+  if (!this->Reading.CanConvert(field))
   {
     this->SendNodes(this->Reading.GetDisplacements(changes), changes ? &*changes : nullptr, false);
     return;
@@ -163,8 +180,22 @@ void DisplacementSource::SendNodes(
 
 void DisplacementSource::SetField(const DisplacementField& field, const PointRanges* changes)
 {
-  this->Reading.Forget();
-  this->UseField(field, changes);
+  if (GetNumberOfPoints(field) < VectorReading::LeastPoints || !this->Reading.CanConvert(field))
+  {
+    this->Reading.Forget();
+    this->UseField(field, changes);
+    return;
+  }
+  const PointRanges* news = this->LastSent ? changes : nullptr;
+  this->ConvertField(field, news,
+    [&](const cl::Buffer& displacements, bool partly)
+    {
+      const std::array<std::size_t, 2> range = partly
+        ? GetHull(*news, this->NumberOfNodes)
+        : std::array<std::size_t, 2>{ { 0, this->NumberOfNodes } };
+      this->Reading.Convert(field, range, displacements, "point");
+    });
+  this->LastSent = true;
 }
 
 void DisplacementSource::SetField(
@@ -172,7 +203,7 @@ void DisplacementSource::SetField(
 {
   const auto points = static_cast<std::size_t>(GetNumberOfPoints(field));
   const std::optional<PointRanges> changes = this->Reading.Begin(vectors, field, points);
-  if (!this->Reading.CanConvert())
+  if (!this->Reading.CanConvert(field))
   {
     this->Reading.Check(changes, "point"); // vectors that are read in place are not checked later
     DisplacementField read = field;
@@ -181,19 +212,40 @@ void DisplacementSource::SetField(
     this->UseField(read, changes ? &*changes : nullptr);
     return;
   }
+  this->ConvertField(field, changes ? &*changes : nullptr,
+    [this](const cl::Buffer& displacements, bool)
+    { this->Reading.Convert(displacements, "point"); });
+}
+
+void DisplacementSource::ConvertField(const DisplacementField& field, const PointRanges* changes,
+  const std::function<void(const cl::Buffer&, bool)>& convert)
+{
   const FieldParameters parameters = this->BeginField(field);
   this->CheckFieldSize();
-  const bool isSame = this->IsConverted && this->FieldVectors.GetNumberOfPoints() == points &&
-    IsSameMapping(parameters, this->Field);
-  if (this->FieldInPlace.Owner || this->FieldVectors.GetNumberOfPoints() != points)
+  const bool hasRoom = this->FieldVectors.GetNumberOfPoints() == this->NumberOfNodes;
+  const bool isSame = this->IsConverted && hasRoom && IsSameMapping(parameters, this->Field) &&
+    HasSameMatrix(parameters, this->Field);
+  if (this->FieldInPlace.Owner || !hasRoom)
   {
     this->ForgetField();
   }
   this->Field = parameters;
   this->LastSent = false;
+  this->WrittenInPart = isSame && changes;
+  this->BoundsOfSubBricks.clear();
   try
   {
-    this->ConvertField(isSame && changes ? &*changes : nullptr);
+    if (!this->WrittenInPart)
+    {
+      convert(this->FieldVectors.ReserveFor(this->NumberOfNodes), false);
+      this->IsConverted = true;
+      return;
+    }
+    convert(this->FieldVectors.Get(), true);
+    if (!this->NotifyOfChanges(*changes, [this] { return Join(this->FindBoundsOfSubBricks()); }))
+    {
+      this->Observer.MoveAll({});
+    }
   }
   catch (...)
   {
@@ -201,23 +253,6 @@ void DisplacementSource::SetField(
     this->Observer.MoveAll({});
     throw;
   }
-}
-
-void DisplacementSource::ConvertField(const PointRanges* changes)
-{
-  this->WrittenInPart = changes != nullptr;
-  this->BoundsOfSubBricks.clear();
-  if (changes)
-  {
-    this->Reading.Convert(this->FieldVectors.Get(), "point");
-    if (!this->NotifyOfChanges(*changes, [this] { return Join(this->FindBoundsOfSubBricks()); }))
-    {
-      this->Observer.MoveAll({});
-    }
-    return;
-  }
-  this->Reading.Convert(this->FieldVectors.ReserveFor(this->NumberOfNodes), "point");
-  this->IsConverted = true;
 }
 
 const std::vector<DisplacementBounds>& DisplacementSource::FindBoundsOfSubBricks() const
@@ -252,7 +287,6 @@ FieldParameters DisplacementSource::BeginField(const DisplacementField& field)
 void DisplacementSource::UseField(const DisplacementField& field, const PointRanges* changes)
 {
   this->IsConverted = false;
-  CountPoints(field); // throws if there are none
   const FieldParameters parameters = this->BeginField(field);
   if (this->CanReadInPlace(field, parameters))
   {
@@ -285,7 +319,7 @@ void DisplacementSource::SendField(
 {
   const std::size_t points = this->NumberOfNodes;
   const PointRanges* news = this->LastSent && this->FieldVectors.GetNumberOfPoints() == points &&
-      HasSameDimensions(parameters, this->Field)
+      HasSameDimensions(parameters, this->Field) && HasSameMatrix(parameters, this->Field)
     ? changes
     : nullptr;
   this->LastSent = false;
@@ -430,6 +464,7 @@ void DisplacementSource::Forget()
   this->Volume.ForgetMesh();
   this->ForgetNodes();
   this->ForgetField();
+  this->Reading.Forget();
   this->Observer.ForgetMapping();
 }
 
@@ -536,7 +571,7 @@ void DisplacementSource::Visit(
 std::uint64_t DisplacementSource::GetMemory() const
 {
   return deformvolume::GetMemory(this->Tetrahedra) + deformvolume::GetMemory(this->Nodes.Get()) +
-    deformvolume::GetMemory(this->FieldVectors.Get());
+    deformvolume::GetMemory(this->FieldVectors.Get()) + this->Reading.GetMemory();
 }
 
 } // namespace deformvolume

@@ -140,9 +140,11 @@ private:
   bool ChangeInPlace(const DisplacementField& field, const PointRanges& changes);
   void SetFieldInPlace(const DisplacementField& field);
   void CheckFieldSize() const;
-  /// Converts the vectors of the field to displacements, by a kernel. changes: points that may have
-  /// changed; null: all.
-  void ConvertField(const PointRanges* changes);
+  /// Sets a field whose displacements are written by a kernel. changes: points that may have
+  /// changed; null: all. convert(displacements, partly): writes the displacements to the buffer;
+  /// partly: at least those of `changes`.
+  void ConvertField(const DisplacementField& field, const PointRanges* changes,
+    const std::function<void(const cl::Buffer&, bool)>& convert);
   const std::vector<DisplacementBounds>& FindBoundsOfSubBricks() const;
   /// Notifies the observer of changed points. after: computes the bounds of their new
   /// displacements. Returns false if all points must count as changed.

@@ -15,17 +15,18 @@ static float3 ConvertVector(float3 v, const FieldParameters* field)
   return v;
 }
 
-// Converts vectors to displacements of four floats per point. firstBad: set to the first point whose displacement is
-// not finite or exceeds `largest`. A work-item processes one point.
-__kernel void ConvertVectors(__global const float* vectors, const FieldParameters field, const ulong count,
-  const float largest, __global float4* displacements, __global uint* firstBad)
+// Converts the vectors of `count` points, beginning at point `first`, to displacements of four floats per point.
+// displacements: of all points. firstBad: set to the first point whose displacement is not finite or exceeds `largest`.
+// A work-item processes one point.
+__kernel void ConvertVectors(__global const float* vectors, const FieldParameters field, const ulong first,
+  const ulong count, const float largest, __global float4* displacements, __global uint* firstBad)
 {
-  const size_t point = get_global_id(0);
-  if (point >= count)
+  if (get_global_id(0) >= count)
   {
     return;
   }
-  const float3 moved = ConvertVector(vload3(point, vectors), &field);
+  const size_t point = first + get_global_id(0);
+  const float3 moved = ConvertVector(vload3(get_global_id(0), vectors), &field);
   // True for NaN, too.
   if (!all(fabs(moved) <= largest))
   {

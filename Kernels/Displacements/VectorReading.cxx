@@ -20,7 +20,54 @@ namespace deformvolume
 namespace
 {
 
+constexpr std::size_t VectorSize = 3 * sizeof(float);
 constexpr cl_uint NoPoint = 0xFFFFFFFFU;
+
+// Converts vectors on the device to displacements, four floats per point.
+class Conversion
+{
+public:
+  Conversion(WorkDevice& device, const DisplacementField& field, const cl::Buffer& displacements)
+    : Device(device)
+    , FirstBad(device.GetContext().GetContext(), CL_MEM_READ_WRITE, sizeof(NoPoint))
+    , Guard(device.GetQueue())
+    , Kernel(GetConversionProgram(device.GetContext()), "ConvertVectors")
+  {
+    device.GetQueue().enqueueFillBuffer(this->FirstBad, NoPoint, 0, sizeof(NoPoint));
+    this->Kernel.setArg(1, MakeMatrixParameters(field));
+    this->Kernel.setArg(4, static_cast<cl_float>(LargestDisplacement));
+    this->Kernel.setArg(5, displacements);
+    this->Kernel.setArg(6, this->FirstBad);
+  }
+
+  // Begins to convert the vectors of `count` points, beginning at point `first`.
+  void Launch(const cl::Buffer& vectors, std::size_t first, std::size_t count)
+  {
+    this->Kernel.setArg(0, vectors);
+    this->Kernel.setArg(2, cl_ulong{ first });
+    this->Kernel.setArg(3, cl_ulong{ count });
+    const std::size_t group = this->Device.GetGroupSize(this->Kernel);
+    this->Device.GetContext().Launch(this->Device.GetQueue(), this->Kernel,
+      cl::NDRange((count + group - 1) / group * group), cl::NDRange(group));
+  }
+
+  // Waits for the launches. Throws Error if a displacement is too large or not finite.
+  void Finish(const char* what)
+  {
+    cl_uint bad = NoPoint;
+    this->Device.GetQueue().enqueueReadBuffer(this->FirstBad, CL_TRUE, 0, sizeof(bad), &bad);
+    if (bad != NoPoint)
+    {
+      ThrowBadDisplacement(what, bad);
+    }
+  }
+
+private:
+  WorkDevice& Device;
+  cl::Buffer FirstBad;
+  QueueGuard Guard;
+  cl::Kernel Kernel;
+};
 
 } // namespace
 
@@ -31,6 +78,7 @@ std::optional<PointRanges> VectorReading::Begin(const std::shared_ptr<DeviceVect
   const bool isSame =
     this->Vectors == vectors && this->Field.ToDisplacement == field.ToDisplacement;
   std::optional<PointRanges> changes = isSame ? vectors->GetChanges(this->Revision) : std::nullopt;
+  this->Portion = cl::Buffer();
   this->Vectors = vectors;
   this->Field.ToDisplacement = field.ToDisplacement;
   this->Revision = vectors->GetRevision();
@@ -39,43 +87,46 @@ std::optional<PointRanges> VectorReading::Begin(const std::shared_ptr<DeviceVect
 
 void VectorReading::Forget()
 {
+  this->ForgetVectors();
+  this->Portion = cl::Buffer();
+}
+
+void VectorReading::ForgetVectors()
+{
   this->Vectors.reset();
   std::vector<float>().swap(this->Displacements);
 }
 
-bool VectorReading::CanConvert() const
+bool VectorReading::CanConvert(const DisplacementField& field) const
 {
-  return !this->Vectors->AreInHostMemory() &&
-    (HasDouble(this->Device.GetContext()) || HasDisplacements(this->Field));
+  return !this->Device.GetDevice().IsProcessor &&
+    (HasDouble(this->Device.GetContext()) || HasDisplacements(field));
 }
 
 void VectorReading::Convert(const cl::Buffer& displacements, const char* what)
 {
-  OpenCLContext& context = this->Device.GetContext();
-  const cl::CommandQueue& queue = this->Device.GetQueue();
-  const std::size_t count = this->Vectors->GetNumberOfPoints();
-  const cl::Buffer& vectors = this->Vectors->GetInternals().GetBuffer();
-  cl_uint bad = NoPoint;
-  const cl::Buffer firstBad(context.GetContext(), CL_MEM_READ_WRITE, sizeof(bad));
-  const QueueGuard guard(queue);
-  queue.enqueueFillBuffer(firstBad, bad, 0, sizeof(bad));
-  cl::Kernel kernel(GetConversionProgram(context), "ConvertVectors");
-  cl_uint i = 0;
-  kernel.setArg(i++, vectors);
-  kernel.setArg(i++, MakeMatrixParameters(this->Field));
-  kernel.setArg(i++, cl_ulong{ count });
-  kernel.setArg(i++, static_cast<cl_float>(LargestDisplacement));
-  kernel.setArg(i++, displacements);
-  kernel.setArg(i++, firstBad);
-  const std::size_t group = this->Device.GetGroupSize(kernel);
-  context.Launch(
-    queue, kernel, cl::NDRange((count + group - 1) / group * group), cl::NDRange(group));
-  // This read also waits for the kernel, since the vectors may be written after the return.
-  queue.enqueueReadBuffer(firstBad, CL_TRUE, 0, sizeof(bad), &bad);
-  if (bad != NoPoint)
+  Conversion conversion(this->Device, this->Field, displacements);
+  conversion.Launch(
+    this->Vectors->GetInternals().GetBuffer(), 0, this->Vectors->GetNumberOfPoints());
+  // Also waits for the kernel, since the vectors may be written after the return.
+  conversion.Finish(what);
+}
+
+void VectorReading::Convert(const DisplacementField& field, const std::array<std::size_t, 2>& range,
+  const cl::Buffer& displacements, const char* what)
+{
+  this->ForgetVectors();
+  const std::size_t most =
+    std::min(static_cast<std::size_t>(GetNumberOfPoints(field)), PointsOfPortion);
+  Reserve(this->Device.GetContext(), this->Portion, most * VectorSize);
+  Conversion conversion(this->Device, field, displacements);
+  for (std::size_t first = range[0]; first < range[1]; first += most)
   {
-    ThrowBadDisplacement(what, bad);
+    const std::size_t count = std::min(most, range[1] - first);
+    Write(this->Device.GetQueue(), this->Portion, 0, count * VectorSize, field.Vectors + 3 * first);
+    conversion.Launch(this->Portion, first, count);
   }
+  conversion.Finish(what);
 }
 
 void VectorReading::Check(const std::optional<PointRanges>& changes, const char* what)

@@ -6,6 +6,7 @@
 #include "DeviceVectors.h"
 #include "EditedVolume.h"
 #include "FakeDriver.h"
+#include "VectorReading.h"
 
 #include <gtest/gtest.h>
 
@@ -13,8 +14,10 @@
 #include <cstdint>
 #include <cstring>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <random>
+#include <string>
 #include <vector>
 
 using namespace deformvolume;
@@ -232,4 +235,159 @@ TEST_F(Transfers, PartsOfAFieldUpdatePartsOfTheOutput)
   edited.SendAll(fresh, Route::Field);
   fresh.Deform(expected.MakeRequest(edited));
   EXPECT_TRUE(outputs == expected);
+}
+
+namespace
+{
+
+// A large field, whose vectors a kernel converts in two portions, and a volume where they meet.
+class LargeField : public testing::Test
+{
+protected:
+  void SetUp() override
+  {
+    SKIP_UNLESS_GRAPHICS();
+    SKIP_WITHOUT_DOUBLE_PRECISION();
+    this->Field.Dimensions = { { Size, Size, Size } };
+    this->Field.Vectors = this->Vectors.data();
+    this->Field.ToDisplacement = { { 0.5, 0.1, 0, -0.1, 0.25, 0, 0, 0.2, 0.5 } };
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> vector(-0.3F, 0.3F);
+    std::generate(this->Vectors.begin(), this->Vectors.end(), [&] { return vector(random); });
+    this->Grid.VertexExtent = { { 0, Size - 1, 0, Size - 1, 108, Size - 1 } };
+    this->Load(this->Deformer);
+    this->Request.OutputExtent = this->Grid.VertexExtent;
+    this->Request.Outputs = { this->Output.data() };
+    this->Request.Coverage = this->Coverage.data();
+  }
+
+  void Load(VolumeDeformer& deformer) const
+  {
+    deformer.SetVoxelGrid(this->Grid);
+    deformer.SetArrays({ MakeArray(this->Values) });
+  }
+
+  // Deforms the volume, and expects the output of vectors that are on the device.
+  DeformReport Deform()
+  {
+    const DeformReport report = this->Deformer.Deform(this->Request);
+    const auto vectors = std::make_shared<DeviceVectors>("", Points);
+    vectors->Write(this->Vectors.data());
+    VolumeDeformer other;
+    this->Load(other);
+    other.SetDisplacementField(this->Field, vectors);
+    std::vector<std::uint8_t> output(Voxels);
+    std::vector<signed char> coverage(Voxels);
+    DeformRequest request = this->Request;
+    request.Incremental = false;
+    request.Outputs = { output.data() };
+    request.Coverage = coverage.data();
+    other.Deform(request);
+    EXPECT_TRUE(this->Output == output);
+    EXPECT_TRUE(this->Coverage == coverage);
+    EXPECT_GT(std::count(coverage.begin(), coverage.end(), 1), static_cast<int>(Voxels) / 2);
+    return report;
+  }
+
+  static constexpr int Size = 130;
+  static constexpr std::size_t Points = std::size_t{ Size } * Size * Size;
+  static constexpr std::size_t Voxels = std::size_t{ Size } * Size * 22;
+  VoxelGrid Grid;
+  std::vector<std::uint8_t> Values = MakeRandomValues<std::uint8_t>(Voxels, 5);
+  std::vector<float> Vectors = std::vector<float>(3 * Points);
+  DisplacementField Field;
+  VolumeDeformer Deformer;
+  DeformRequest Request;
+  std::vector<std::uint8_t> Output = std::vector<std::uint8_t>(Voxels);
+  std::vector<signed char> Coverage = std::vector<signed char>(Voxels);
+};
+
+} // namespace
+
+TEST_F(LargeField, IsConvertedOnTheDevice)
+{
+  ASSERT_GT(Points, VectorReading::PointsOfPortion);
+  FakeDriver::Get().BytesWritten = 0;
+  this->Deformer.SetDisplacementField(this->Field);
+  EXPECT_LE(FakeDriver::Get().BytesWritten, 12 * Points + Few);
+  this->Deform();
+  // Another matrix. The caller states that no vector has changed.
+  this->Field.ToDisplacement[0] = 0.25;
+  const PointRanges none;
+  this->Deformer.SetDisplacementField(this->Field, &none);
+  this->Deform();
+}
+
+TEST_F(LargeField, OnlyStatedChangesAreSent)
+{
+  this->Deformer.SetDisplacementField(this->Field);
+  this->Request.Incremental = true;
+  this->Deform();
+  this->Request.LastOutputs = { this->Output.data() };
+  this->Request.LastCoverage = this->Coverage.data();
+  // On both sides of the border between portions, and in the next row.
+  const std::size_t first = VectorReading::PointsOfPortion - 20;
+  const PointRanges changes{ { { first + Size + 5, first + Size + 10 } },
+    { { first, first + 25 } } };
+  DeformReport report;
+  for (int edit = 0; edit < 2; ++edit) // the first one finds which points move which bricks
+  {
+    for (const auto& range : changes)
+    {
+      for (std::size_t i = 3 * range[0]; i < 3 * range[1]; ++i)
+      {
+        this->Vectors[i] += 0.25F;
+      }
+    }
+    FakeDriver::Get().BytesWritten = 0;
+    this->Deformer.SetDisplacementField(this->Field, &changes);
+    EXPECT_LE(FakeDriver::Get().BytesWritten, 100000U);
+    report = this->Deform();
+  }
+  EXPECT_LT(report.NumberOfResampledBricks, report.NumberOfBricks / 2);
+}
+
+// Vectors on the device whose changes are known, after a field from the host.
+TEST_F(LargeField, VectorsOnTheDeviceFollow)
+{
+  const auto vectors = std::make_shared<DeviceVectors>("", Points);
+  vectors->Write(this->Vectors.data());
+  this->Deformer.SetDisplacementField(this->Field, vectors);
+  const std::vector<float> before = this->Vectors;
+  std::reverse(this->Vectors.begin(), this->Vectors.end());
+  this->Deformer.SetDisplacementField(this->Field);
+  this->Deform();
+  this->Vectors = before;
+  this->Vectors[3 * Points - 3] += 0.25F;
+  vectors->Write(this->Vectors.data(), { { { Points - 1, Points } } });
+  this->Deformer.SetDisplacementField(this->Field, vectors);
+  this->Deform();
+}
+
+TEST_F(LargeField, UnusableVectorsAreErrors)
+{
+  this->Deformer.SetDisplacementField(this->Field);
+  float& last = this->Vectors.back();
+  const float was = last;
+  for (const float bad : { 40000.0F, std::numeric_limits<float>::quiet_NaN() })
+  {
+    last = bad;
+    const PointRanges changes{ { { Points - 1, Points } } };
+    try
+    {
+      this->Deformer.SetDisplacementField(this->Field, &changes);
+      ADD_FAILURE() << "no error for " << bad;
+    }
+    catch (const Error& error)
+    {
+      EXPECT_NE(std::string(error.what()).find("point " + std::to_string(Points - 1) + " "),
+        std::string::npos)
+        << error.what();
+    }
+    EXPECT_THROW(this->Deformer.Deform(this->Request), Error);
+    // All vectors are sent again.
+    last = was;
+    this->Deformer.SetDisplacementField(this->Field, &changes);
+    this->Deform();
+  }
 }
