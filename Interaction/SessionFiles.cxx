@@ -3,7 +3,9 @@
 
 #include "vtkCallbackCommand.h"
 #include "vtkCellArray.h"
+#include "vtkCellData.h"
 #include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkMatrix3x3.h"
 #include "vtkNew.h"
@@ -57,6 +59,21 @@ public:
       static_cast<std::size_t>(array->GetNumberOfValues()) *
         static_cast<std::size_t>(array->GetDataTypeSize()));
   }
+  void Add(vtkDataSetAttributes* arrays, bool withNames)
+  {
+    for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+    {
+      vtkDataArray* array = arrays->GetArray(i); // null for texts
+      if (array && array->GetName() && withNames)
+      {
+        this->Add(array->GetName(), std::strlen(array->GetName()));
+      }
+      if (array)
+      {
+        this->Add(array);
+      }
+    }
+  }
   std::string Finish()
   {
     char digits[33] = {};
@@ -99,17 +116,14 @@ std::string deformvolume::HashInputs(vtkImageData* volume, vtkUnstructuredGrid* 
   hash.Add(volume->GetOrigin(), 3 * sizeof(double));
   hash.Add(volume->GetSpacing(), 3 * sizeof(double));
   hash.Add(volume->GetDirectionMatrix()->GetData(), 9 * sizeof(double));
-  for (int i = 0; i < volume->GetPointData()->GetNumberOfArrays(); ++i)
-  {
-    if (vtkDataArray* array = volume->GetPointData()->GetArray(i))
-    {
-      hash.Add(array);
-    }
-  }
+  hash.Add(volume->GetPointData(), false);
   if (mesh && mesh->GetPoints() && mesh->GetCells())
   {
     hash.Add(mesh->GetPoints()->GetData());
     hash.Add(mesh->GetCells()->GetConnectivityArray());
+    // The model finds its arrays, such as Fixed, by their names.
+    hash.Add(mesh->GetPointData(), true);
+    hash.Add(mesh->GetCellData(), true);
   }
   return hash.Finish();
 }

@@ -728,6 +728,25 @@ void TestFiles(vtkImageData* volume, const std::string& fileName)
   VERIFY(!other.Object->LoadSession(fileName));
   VERIFY_CONTAINS(other.TakeError(), "another volume");
 
+  // The same mesh with other fixed nodes.
+  const auto mesh = MakeMesh(volume, 2, 1.0);
+  vtkNew<vtkUnsignedCharArray> fixed;
+  fixed->SetName("Fixed");
+  fixed->SetNumberOfTuples(mesh->GetNumberOfPoints());
+  fixed->Fill(0);
+  fixed->SetValue(0, 1);
+  mesh->GetPointData()->AddArray(fixed);
+  VERIFY(other.Object->SetInputs(volume, mesh) && other.Object->SaveSession(fileName + ".mesh"));
+  VERIFY(other.Object->SetInputs(volume, mesh) && other.Object->LoadSession(fileName + ".mesh"));
+  fixed->SetValue(1, 1);
+  VERIFY(other.Object->SetInputs(volume, mesh));
+  VERIFY(!other.Object->LoadSession(fileName + ".mesh"));
+  VERIFY_CONTAINS(other.TakeError(), "another volume or mesh");
+  mesh->GetPointData()->RemoveArray("Fixed");
+  VERIFY(other.Object->SetInputs(volume, mesh));
+  VERIFY(!other.Object->LoadSession(fileName + ".mesh"));
+  VERIFY_CONTAINS(other.TakeError(), "another volume or mesh");
+
   // A folder that does not exist, and a full disk: the previous file is kept.
   VERIFY(!one.Object->SaveSession("/dev/null/session"));
   VERIFY_CONTAINS(one.TakeError(), "cannot be written");
