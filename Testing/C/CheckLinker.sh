@@ -31,7 +31,7 @@ refuse "defined twice" -shared -o x.so linked.o linked.o
 refuse "not an object file" -shared -o x.so "$source"
 refuse "truncated" -shared -o x.so /dev/null
 head -c 1000 linked.o >cut.o
-refuse "" -shared -o x.so cut.o
+refuse "truncated" -shared -o x.so cut.o
 "$compiler" -O2 -fno-PIC -mcmodel=large -c "$source" -o large.o
 refuse "not compiled with -fPIC" -shared -o x.so large.o
 echo '__thread int x; int f(void) { return x; }' >thread.c
