@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FieldScan.h"
 
+#include "Lanes.h"
+#include "ParallelFor.h"
 #include "VectorComponents.h"
-
-#include <glm/common.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace deformvolume
@@ -24,7 +26,98 @@ int CountBlocksOfPlane(const DisplacementField& field)
   return (field.Dimensions[1] + RowsOfBlock - 1) / RowsOfBlock;
 }
 
-// Checks blocks of a field and computes their bounds.
+// Points of a row of a field. The position of a point at rest is the sum of Row, Plane, and for
+// each axis its element of Along.
+struct RowPoints
+{
+  const float* Vectors; // of the whole row
+  std::array<const double*, 3> Along;
+  glm::dvec3 Row;
+  glm::dvec3 Plane;
+  int Begin;
+  int End;
+};
+
+// The bounds of deformed points, of each lane.
+struct ScanResult
+{
+  Lanes Least[3] = { MakeLanes(Far), MakeLanes(Far), MakeLanes(Far) };
+  Lanes Greatest[3] = { MakeLanes(-Far), MakeLanes(-Far), MakeLanes(-Far) };
+  Lanes Faults = MakeLanes(0.0); // not 0 after a vector that is not usable
+
+  static constexpr double Far = std::numeric_limits<double>::max();
+};
+
+// Adds the deformed positions of four points. numbers: their numbers in the row. The operations are
+// those of GetDisplacement(), in the same order.
+DEFORMVOLUME_ALWAYS_INLINE void AddPoints(const DisplacementFactors& factors, const RowPoints& row,
+  const std::array<int, 4>& numbers, ScanResult& result)
+{
+  Lanes vectors[3];
+  for (int lane = 0; lane < NumberOfLanes; ++lane)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      vectors[axis][lane] = static_cast<double>(row.Vectors[3 * numbers[lane] + axis]);
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const Lanes exact = factors[3 * axis] * vectors[0] + factors[3 * axis + 1] * vectors[1] +
+      factors[3 * axis + 2] * vectors[2];
+    const Lanes displacement =
+      __builtin_convertvector(__builtin_convertvector(exact, FloatLanes), Lanes);
+    Lanes position;
+    for (int lane = 0; lane < NumberOfLanes; ++lane)
+    {
+      position[lane] = row.Along[axis][numbers[lane]];
+    }
+    position = position + row.Row[axis] + row.Plane[axis] + displacement;
+    result.Least[axis] = position < result.Least[axis] ? position : result.Least[axis];
+    result.Greatest[axis] = position > result.Greatest[axis] ? position : result.Greatest[axis];
+    // Not-a-number is a fault, too.
+    result.Faults = Absolute(displacement) <= LargestDisplacement ? result.Faults : MakeLanes(1.0);
+  }
+}
+
+DEFORMVOLUME_ALWAYS_INLINE void AddRowInline(
+  const DisplacementFactors& factors, const RowPoints& row, ScanResult& result)
+{
+  ScanResult all = result;
+  int i = row.Begin;
+  for (; i + NumberOfLanes <= row.End; i += NumberOfLanes)
+  {
+    AddPoints(factors, row, { { i, i + 1, i + 2, i + 3 } }, all);
+  }
+  if (i < row.End)
+  {
+    const int last = row.End - 1;
+    AddPoints(factors, row, { { i, std::min(i + 1, last), std::min(i + 2, last), last } }, all);
+  }
+  result = all;
+}
+
+#if DEFORMVOLUME_HAS_AVX2_CODE
+DEFORMVOLUME_FOR_AVX2 void AddRowWide(
+  const DisplacementFactors& factors, const RowPoints& row, ScanResult& result)
+{
+  AddRowInline(factors, row, result);
+}
+#endif
+
+void AddRow(const DisplacementFactors& factors, const RowPoints& row, ScanResult& result)
+{
+#if DEFORMVOLUME_HAS_AVX2_CODE
+  if (HasWideLanes())
+  {
+    AddRowWide(factors, row, result);
+    return;
+  }
+#endif
+  AddRowInline(factors, row, result);
+}
+
+// Checks blocks of a field and computes the bounds of their deformed voxels.
 class BlockScanner
 {
 public:
@@ -44,112 +137,61 @@ public:
           (axis == 0 ? transform.GetShift() : glm::dvec3(0.0)));
       }
     }
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      for (const glm::dvec3& place : this->Rest[0])
+      {
+        this->Along[axis].push_back(place[axis]);
+      }
+    }
   }
 
-  // Calls body(y, z) for the rows of a block.
-  template <typename Body>
-  void ForRows(std::size_t block, Body&& body) const
+  // Returns the bounds of the deformed voxels of a block. usable: set to false if a vector of the
+  // block is not usable.
+  IndexBounds Scan(std::size_t block, bool& usable) const
   {
+    ScanResult voxels;
+    ScanResult others;
     const auto blocks = static_cast<std::size_t>(CountBlocksOfPlane(this->Field));
     const int z = static_cast<int>(block / blocks);
     const int first = static_cast<int>(block % blocks) * RowsOfBlock;
     for (int y = first; y < std::min(first + RowsOfBlock, this->Field.Dimensions[1]); ++y)
     {
-      body(y, z);
+      const std::int64_t point =
+        (static_cast<std::int64_t>(z) * this->Field.Dimensions[1] + y) * this->Field.Dimensions[0];
+      RowPoints row{ this->Field.Vectors + 3 * point,
+        { { this->Along[0].data(), this->Along[1].data(), this->Along[2].data() } },
+        this->Rest[1][y], this->Rest[2][z], 0, 0 };
+      const bool hasVoxels = this->HasVoxels(y, z);
+      const std::array<int, 4> ends{ { 0, hasVoxels ? this->Begin[0] : 0,
+        hasVoxels ? this->End[0] : 0, this->Field.Dimensions[0] } };
+      for (int range = 0; range < 3; ++range)
+      {
+        row.Begin = ends[range];
+        row.End = ends[range + 1];
+        AddRow(this->Factors, row, range == 1 ? voxels : others);
+      }
     }
-  }
-
-  // Returns a box that contains the deformed voxels of a block. usable: set to false if a vector is
-  // not usable.
-  IndexBounds Scan(std::size_t block, bool& usable) const
-  {
-    IndexBounds box;
-    this->ForRows(block,
-      [&](int y, int z)
-      {
-        const bool hasVoxels = this->HasVoxels(y, z);
-        const std::array<int, 4> ends{ { 0, hasVoxels ? this->Begin[0] : 0,
-          hasVoxels ? this->End[0] : 0, this->Field.Dimensions[0] } };
-        for (int range = 0; range < 3; ++range)
-        {
-          for (int x = ends[range]; x < ends[range + 1]; x += Step)
-          {
-            const int end = std::min(x + Step, ends[range + 1]);
-            usable = this->AddSome(x, end, y, z, range == 1, box) && usable;
-          }
-        }
-      });
-    return box;
-  }
-
-  // Returns the exact bounds of the deformed voxels of a block.
-  IndexBounds FindBounds(std::size_t block) const
-  {
+    usable = SumOfLanes(voxels.Faults + others.Faults) == 0.0;
     IndexBounds bounds;
-    this->ForRows(block,
-      [&](int y, int z)
+    for (int lane = 0; lane < NumberOfLanes && usable; ++lane)
+    {
+      IndexBounds one;
+      for (int axis = 0; axis < 3; ++axis)
       {
-        for (int x = this->Begin[0]; this->HasVoxels(y, z) && x < this->End[0]; ++x)
-        {
-          bounds.Add(this->GetPosition(x, y, z) + GetVector(this->Field, this->GetPoint(x, y, z)));
-        }
-      });
+        one.Min[axis] = voxels.Least[axis][lane];
+        one.Max[axis] = voxels.Greatest[axis][lane];
+      }
+      bounds.Add(one); // nothing if there are no voxels
+    }
     return bounds;
   }
 
 private:
-  static constexpr int Step = 64; // points of a row that are processed together
-
-  std::int64_t GetPoint(int x, int y, int z) const
-  {
-    return (static_cast<std::int64_t>(z) * this->Field.Dimensions[1] + y) *
-      this->Field.Dimensions[0] +
-      x;
-  }
-  glm::dvec3 GetPosition(int x, int y, int z) const
-  {
-    return this->Rest[0][x] + this->Rest[1][y] + this->Rest[2][z];
-  }
   // Whether a row of points contains voxels.
   bool HasVoxels(int y, int z) const
   {
     return y >= this->Begin[1] && y < this->End[1] && z >= this->Begin[2] && z < this->End[2];
-  }
-
-  // Checks the points x to end - 1 of a row. If they are voxels, adds their deformed positions to
-  // the box. Returns whether all vectors are usable.
-  bool AddSome(int x, int end, int y, int z, bool areVoxels, IndexBounds& box) const
-  {
-    const VectorComponents components = FindComponents(
-      this->Field.Vectors + 3 * this->GetPoint(x, y, z), 3 * static_cast<std::size_t>(end - x));
-    if (!components.AreFinite)
-    {
-      return false;
-    }
-    const DisplacementRange range = GetRange(this->Factors, components);
-    bool near = true;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      near = near && range.Least[axis] >= -LargestDisplacement &&
-        range.Greatest[axis] <= LargestDisplacement;
-    }
-    for (int at = x; !near && at < end; ++at)
-    {
-      const glm::dvec3 moved = glm::abs(GetVector(this->Field, this->GetPoint(at, y, z)));
-      if (!(std::max({ moved.x, moved.y, moved.z }) <= LargestDisplacement))
-      {
-        return false;
-      }
-    }
-    if (areVoxels)
-    {
-      IndexBounds positions;
-      positions.Add(this->GetPosition(x, y, z));
-      positions.Add(this->GetPosition(end - 1, y, z));
-      box.Add(positions.Min + glm::dvec3(range.Least[0], range.Least[1], range.Least[2]));
-      box.Add(positions.Max + glm::dvec3(range.Greatest[0], range.Greatest[1], range.Greatest[2]));
-    }
-    return true;
   }
 
   const DisplacementField& Field;
@@ -159,6 +201,7 @@ private:
   std::array<int, 3> End;
   // The position of a voxel is the sum of one element for each axis, by the index of its point.
   std::array<std::vector<glm::dvec3>, 3> Rest;
+  std::array<std::vector<double>, 3> Along; // the components of Rest[0]
 };
 
 } // namespace
@@ -211,22 +254,29 @@ FieldState FieldScan::Look(
   const VoxelGrid& voxelGrid, const DisplacementField& field, const PointRanges* changes)
 {
   const std::vector<unsigned char> changed = this->FindChanged(field, changes);
-  this->Bounds.Resize(changed.size());
+  this->Bounds.resize(changed.size());
   this->AreUsable.resize(changed.size());
   const BlockScanner scanner(voxelGrid, field);
-  FieldState state;
-  state.Bounds = this->Bounds.Compute(
-    changed,
-    [&](std::size_t block)
+  ParallelForParts(changed.size(), 16,
+    [&](std::size_t begin, std::size_t end)
     {
-      bool usable = true;
-      const IndexBounds box = scanner.Scan(block, usable);
-      this->AreUsable[block] = usable ? 1 : 0;
-      return usable ? box : IndexBounds();
-    },
-    [&](std::size_t block) { return scanner.FindBounds(block); });
+      for (std::size_t block = begin; block < end; ++block)
+      {
+        if (changed[block])
+        {
+          bool usable = true;
+          this->Bounds[block] = scanner.Scan(block, usable);
+          this->AreUsable[block] = usable ? 1 : 0;
+        }
+      }
+    });
+  FieldState state;
   state.IsUsable =
     std::find(this->AreUsable.begin(), this->AreUsable.end(), 0) == this->AreUsable.end();
+  for (const IndexBounds& bounds : this->Bounds)
+  {
+    state.Bounds.Add(bounds);
+  }
   return state;
 }
 

@@ -2,7 +2,6 @@
 #ifndef DeformVolumeFieldScan_h
 #define DeformVolumeFieldScan_h
 
-#include "BlockBounds.h"
 #include "DeformVolumeExport.h"
 #include "DisplacementField.h"
 #include "IndexBounds.h"
@@ -42,7 +41,7 @@ private:
     const DisplacementField& field, const PointRanges* changes) const;
 
   // One element for each block of rows.
-  BlockBounds Bounds;
+  std::vector<IndexBounds> Bounds;
   std::vector<unsigned char> AreUsable;
 };
 

@@ -32,6 +32,8 @@ constexpr int NumberOfLanes = 4;
 using Lanes = double __attribute__((
   vector_size(NumberOfLanes * sizeof(double)), aligned(NumberOfLanes * sizeof(double))));
 
+using FloatLanes = float __attribute__((vector_size(NumberOfLanes * sizeof(float))));
+
 /// Whether the processor has AVX2 and the AVX2 code is in use.
 bool HasWideLanes();
 
