@@ -263,8 +263,7 @@ deformvolume::Extent vtkDeformVolumeFilter::vtkInternals::GetDeformedExtent(
 }
 
 //------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::vtkInternals::HoldTime(
-  vtkInformation* volumeInfo, vtkInformation* output)
+void vtkDeformVolumeFilter::vtkInternals::HoldTime(vtkInformation* output)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
   this->ExtentBefore.reset();
@@ -279,7 +278,7 @@ void vtkDeformVolumeFilter::vtkInternals::HoldTime(
   }
   const double time = output->Get(Pipeline::UPDATE_TIME_STEP());
   const ImageGeometry volume =
-    this->GetCoarseGeometry(this->GetVolumeGeometry(ranks, volumeInfo, output));
+    this->GetCoarseGeometry(this->VolumeGeometry.Find(this->Self, 0, output, ranks));
   const IndexBounds bounds = this->ReadBounds(ranks, volume, output, &time);
   this->State->TimesInBounds.insert(time);
   const deformvolume::Extent before = this->FindExtent(this->State->Bounds);

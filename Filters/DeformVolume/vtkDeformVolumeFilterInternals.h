@@ -4,6 +4,7 @@
 
 #include "ExecutionState.h"
 #include "ImageGeometry.h"
+#include "InputGeometry.h"
 #include "MeshGathering.h"
 #include "MeshGrids.h"
 #include "PipelineExecution.h"
@@ -29,6 +30,10 @@ class vtkImageData;
 class vtkDeformVolumeFilter::vtkInternals
 {
 public:
+  /// Only the grid of the reference image is read, while the ports before it are read with their
+  /// data.
+  static constexpr int ReferencePort = 3;
+
   explicit vtkInternals(vtkDeformVolumeFilter* self)
     : State(&this->States[1])
     , Self(self)
@@ -53,11 +58,9 @@ public:
   /// Device memory of all states, in bytes.
   std::uint64_t GetDeviceMemory() const;
 
-  /// Reads the grid of the reference image from its pipeline information; null: there is no
-  /// reference image. Throws an Error if the grid is not valid.
-  void ReadReference(vtkInformation* reference);
-  /// Throws an Error if the ranks have reference images with different grids. Collective.
-  void CheckReferenceOfRanks(const deformvolume::Ranks& ranks) const;
+  /// Finds the grid of the reference image, if one is connected. Throws an Error if the grid is not
+  /// valid, or not the same on all ranks. Collective.
+  void ReadReference(const deformvolume::Ranks& ranks, vtkInformation* output);
   /// Warns of properties that have no effect because of the reference image.
   void WarnOfReference();
   /// Warns that the whole output is background.
@@ -92,11 +95,6 @@ public:
   /// axis.
   deformvolume::ImageGeometry GetCoarseGeometry(const deformvolume::ImageGeometry& volume) const;
 
-  /// The geometry of the whole volume. Origin, spacing and direction are taken from the data if the
-  /// source does not announce them. Collective.
-  deformvolume::ImageGeometry GetVolumeGeometry(
-    const deformvolume::Ranks& ranks, vtkInformation* volumeInfo, vtkInformation* output);
-
   /// The whole extent of an output that holds the deformed volume and Padding. With
   /// BoundsGranularity, the extent of the last call is kept if possible. Collective.
   deformvolume::Extent GetDeformedExtent(const deformvolume::Ranks& ranks,
@@ -111,7 +109,7 @@ public:
   /// in the pass for time-dependent information, before extents are requested, so that an update of
   /// this filter alone gives the whole new extent. KeepInBounds() is called in RequestData(), for
   /// updates without that pass or without a time. Collective.
-  void HoldTime(vtkInformation* volumeInfo, vtkInformation* output);
+  void HoldTime(vtkInformation* output);
   void KeepInBounds(const deformvolume::Ranks& ranks, const deformvolume::ImageGeometry& volume,
     const deformvolume::DeformationSource& source, vtkInformation* output);
   ///@}
@@ -197,6 +195,8 @@ public:
   /// Information of the reference image, while it is hidden from the executive; see
   /// ModifyRequest().
   vtkSmartPointer<vtkInformation> ReferenceInfo;
+  /// The whole volume.
+  deformvolume::InputGeometry VolumeGeometry;
   /// The grid of the reference image, with its whole extent.
   std::optional<deformvolume::ImageGeometry> Reference;
   /// The exception that the last request for information has thrown.
@@ -249,9 +249,7 @@ private:
   vtkSmartPointer<vtkImageData> FieldAtRest;
   deformvolume::ImageGeometry VolumeAtRest;
 
-  // The last result of GetVolumeGeometry(), and the stamp of the source at that time.
-  deformvolume::ImageGeometry VolumeGeometry;
-  std::pair<const void*, vtkMTimeType> VolumeStamp;
+  deformvolume::InputGeometry ReferenceGeometry;
   // The volume that CutToWhole() has cropped, and the stamp of the volume that it was cropped from.
   vtkSmartPointer<vtkImageData> CutVolume;
   std::pair<const void*, vtkMTimeType> CutStamp;

@@ -142,7 +142,7 @@ Extent vtkDeformVolumeFilter::vtkInternals::KeepNeeded(
 Extent vtkDeformVolumeFilter::vtkInternals::GetNeededExtent(
   const Ranks& ranks, vtkInformation* volumeInfo, vtkInformation* output)
 {
-  const ImageGeometry fine = this->GetVolumeGeometry(ranks, volumeInfo, output);
+  const ImageGeometry fine = this->VolumeGeometry.Find(this->Self, 0, output, ranks);
   Extent needed = fine.PointExtent;
   if (!ranks.IsAny(this->WantsPart(output)))
   {

@@ -14,21 +14,11 @@
 using deformvolume::Error;
 using deformvolume::ImageGeometry;
 
-//------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::vtkInternals::ReadReference(vtkInformation* reference)
+namespace
 {
-  const std::optional<ImageGeometry> last = this->Reference;
-  this->Reference.reset();
-  if (!reference)
-  {
-    return;
-  }
-  if (!reference->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
-  {
-    throw Error("The reference image on input port 3 announces no whole extent. Connect a "
-                "vtkImageData; from a composite dataset, extract one block.");
-  }
-  const ImageGeometry geometry = deformvolume::GetGeometry(reference);
+
+void CheckReference(const ImageGeometry& geometry)
+{
   if (deformvolume::GetNumberOfPoints(geometry.PointExtent) == 0)
   {
     throw Error("The reference image is empty: its extent is " +
@@ -45,26 +35,11 @@ void vtkDeformVolumeFilter::vtkInternals::ReadReference(vtkInformation* referenc
     throw Error("The reference image has more than 2^48 voxels: its extent is " +
       deformvolume::DescribeExtent(geometry.PointExtent) + ". Connect a smaller one.");
   }
-  this->Reference = geometry;
-  if (this->Reference != last)
-  {
-    // Another grid needs other voxels, and no longer the previous ones.
-    for (auto& state : this->States)
-    {
-      state.second.LastShare = {};
-    }
-  }
 }
 
-//------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::vtkInternals::CheckReferenceOfRanks(
-  const deformvolume::Ranks& ranks) const
+// Whether all ranks have the same grid. Collective.
+bool AreEqual(const deformvolume::Ranks& ranks, const ImageGeometry& grid)
 {
-  if (!ranks.AreMany() || !ranks.IsAny(this->Reference.has_value()))
-  {
-    return;
-  }
-  const ImageGeometry grid = this->Reference.value_or(ImageGeometry());
   std::vector<double> numbers(grid.PointExtent.begin(), grid.PointExtent.end());
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -81,10 +56,58 @@ void vtkDeformVolumeFilter::vtkInternals::CheckReferenceOfRanks(
     std::memcpy(&bits, &number, sizeof(bits));
     areEqual = ranks.AreEqual(bits) && areEqual;
   }
-  if (!areEqual)
+  return areEqual;
+}
+
+[[noreturn]] void ThrowDifferentReferences()
+{
+  throw Error("The reference image on input port 3 has different grids on different ranks. Connect "
+              "a source that announces the same grid on all.");
+}
+
+} // namespace
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::ReadReference(
+  const deformvolume::Ranks& ranks, vtkInformation* output)
+{
+  const std::optional<ImageGeometry> last = this->Reference;
+  this->Reference.reset();
+  vtkInformation* info = this->Self->GetNumberOfInputConnections(ReferencePort) > 0
+    ? this->Self->GetInputInformation(ReferencePort, 0)
+    : nullptr;
+  if (!ranks.IsAny(info != nullptr))
   {
-    throw Error("The reference image on input port 3 has different grids on different ranks. "
-                "Connect a source that announces the same grid on all.");
+    return;
+  }
+  ranks.Attempt(
+    [&]
+    {
+      if (info && !info->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
+      {
+        throw Error("The reference image on input port 3 announces no whole extent. Connect a "
+                    "vtkImageData; from a composite dataset, extract one block.");
+      }
+    });
+  if (!ranks.AreEqual(info ? 1 : 0))
+  {
+    ThrowDifferentReferences();
+  }
+  const ImageGeometry& geometry =
+    this->ReferenceGeometry.Find(this->Self, ReferencePort, output, ranks);
+  ranks.Attempt([&] { CheckReference(geometry); });
+  if (!AreEqual(ranks, geometry))
+  {
+    ThrowDifferentReferences();
+  }
+  this->Reference = geometry;
+  if (this->Reference != last)
+  {
+    // Another grid needs other voxels, and no longer the previous ones.
+    for (auto& state : this->States)
+    {
+      state.second.LastShare = {};
+    }
   }
 }
 

@@ -34,15 +34,6 @@ using deformvolume::Error;
 using deformvolume::Extent;
 using deformvolume::ImageGeometry;
 
-namespace
-{
-
-// The port of the reference image. Only its grid is read, while the ports before it are read with
-// their data.
-constexpr int ReferencePort = 3;
-
-} // namespace
-
 //------------------------------------------------------------------------------
 vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
   vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output)
@@ -56,7 +47,7 @@ vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
     result = this->Superclass::ProcessRequest(request, input, output);
     if (request->Has(Pipeline::REQUEST_TIME_DEPENDENT_INFORMATION()))
     {
-      this->Internals->HoldTime(input[0]->GetInformationObject(0), outInfo);
+      this->Internals->HoldTime(outInfo);
     }
     done = true;
   };
@@ -120,7 +111,8 @@ int vtkDeformVolumeFilter::ModifyRequest(vtkInformation* request, int when)
   // extent.
   if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
   {
-    vtkInformationVector* reference = this->GetExecutive()->GetInputInformation(ReferencePort);
+    vtkInformationVector* reference =
+      this->GetExecutive()->GetInputInformation(vtkInternals::ReferencePort);
     if (when == vtkExecutive::BeforeForward && reference->GetNumberOfInformationObjects() > 0)
     {
       this->Internals->ReferenceInfo = reference->GetInformationObject(0);
@@ -159,15 +151,14 @@ int vtkDeformVolumeFilter::RequestInformation(
     [&]
     {
       this->Internals->SelectState();
-      this->Internals->ReadReference(input[ReferencePort]->GetInformationObject(0));
       if (!volumeInfo->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
       {
         throw Error("The volume on input port 0 announces no whole extent. Connect a "
                     "vtkImageData; from a composite dataset, extract one block.");
       }
     });
-  this->Internals->CheckReferenceOfRanks(ranks);
-  volume = this->Internals->GetVolumeGeometry(ranks, volumeInfo, outInfo);
+  this->Internals->ReadReference(ranks, outInfo);
+  volume = this->Internals->VolumeGeometry.Find(this, 0, outInfo, ranks);
   ranks.Attempt(
     [&]
     {
@@ -178,7 +169,7 @@ int vtkDeformVolumeFilter::RequestInformation(
       // RequestData() fails after this pass has succeeded.
       deformvolume::DeviceSession::CheckDevice(this->Device);
     });
-  deformvolume::MergeTimes(this, ReferencePort, outInfo);
+  deformvolume::MergeTimes(this, vtkInternals::ReferencePort, outInfo);
 
   Extent whole;
   if (this->Internals->Reference)
@@ -222,11 +213,11 @@ int vtkDeformVolumeFilter::RequestUpdateExtent(
   const deformvolume::Ranks ranks;
   // Before the requests for the other ports: if one of these has the same source, its request
   // replaces this one.
-  if (input[ReferencePort]->GetNumberOfInformationObjects() > 0)
+  if (input[vtkInternals::ReferencePort]->GetNumberOfInformationObjects() > 0)
   {
-    deformvolume::RequestNothing(input[ReferencePort]->GetInformationObject(0));
+    deformvolume::RequestNothing(input[vtkInternals::ReferencePort]->GetInformationObject(0));
   }
-  for (int port = 1; port < ReferencePort; ++port)
+  for (int port = 1; port < vtkInternals::ReferencePort; ++port)
   {
     if (input[port]->GetNumberOfInformationObjects() > 0)
     {
@@ -238,7 +229,7 @@ int vtkDeformVolumeFilter::RequestUpdateExtent(
     this->Internals->GetNeededExtent(ranks, volumeInfo, output->GetInformationObject(0)));
   if (ranks.AreMany())
   {
-    deformvolume::UpdateRequested(this, ReferencePort, input, ranks);
+    deformvolume::UpdateRequested(this, vtkInternals::ReferencePort, input, ranks);
   }
   return 1;
 }

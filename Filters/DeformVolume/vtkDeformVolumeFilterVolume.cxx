@@ -2,7 +2,6 @@
 // The volume of vtkDeformVolumeFilter: the information that its source announces, and its data.
 #include "vtkDeformVolumeFilterInternals.h"
 
-#include "InputUpdate.h"
 #include "PipelineGeometry.h"
 
 #include "vtkAbstractArray.h"
@@ -13,12 +12,9 @@
 #include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
-#include <algorithm>
-
 using deformvolume::Error;
 using deformvolume::Extent;
 using deformvolume::ImageGeometry;
-using deformvolume::Ranks;
 
 namespace
 {
@@ -41,57 +37,12 @@ void CheckSizes(vtkDataSetAttributes* attributes, vtkIdType size, const std::str
 } // namespace
 
 //------------------------------------------------------------------------------
-ImageGeometry vtkDeformVolumeFilter::vtkInternals::GetVolumeGeometry(
-  const Ranks& ranks, vtkInformation* volumeInfo, vtkInformation* output)
-{
-  const ImageGeometry announced = deformvolume::GetGeometry(volumeInfo);
-  const std::pair<const void*, vtkMTimeType> stamp = deformvolume::GetInputStamp(this->Self, 0);
-  const bool hasOrigin = volumeInfo->Has(vtkDataObject::ORIGIN()) != 0;
-  const bool hasSpacing = volumeInfo->Has(vtkDataObject::SPACING()) != 0;
-  const bool isKnown =
-    stamp == this->VolumeStamp && announced.PointExtent == this->VolumeGeometry.PointExtent;
-  if (!ranks.IsAny((!hasOrigin || !hasSpacing) && !isKnown))
-  {
-    if (hasOrigin && hasSpacing)
-    {
-      this->VolumeGeometry = announced;
-      this->VolumeStamp = stamp;
-    }
-    return this->VolumeGeometry;
-  }
-  // A source that does not announce origin or spacing may rely on the defaults, or may have omitted
-  // other values by mistake. Only its data have the right ones. Most sources announce no direction,
-  // so that a missing direction alone means nothing.
-  Extent part = announced.PointExtent;
-  if (deformvolume::CanProduceParts(this->Self, 0))
-  {
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      part[2 * axis + 1] = std::min(part[2 * axis + 1], part[2 * axis] + 1);
-    }
-  }
-  vtkImageData* volume =
-    vtkImageData::SafeDownCast(deformvolume::UpdateInputPart(this->Self, 0, output, part, ranks));
-  this->VolumeGeometry = announced;
-  this->VolumeStamp = stamp;
-  if (volume && volume->GetNumberOfPoints() > 0)
-  {
-    const ImageGeometry given = deformvolume::GetGeometry(volume);
-    this->VolumeGeometry.Origin = hasOrigin ? announced.Origin : given.Origin;
-    this->VolumeGeometry.Spacing = hasSpacing ? announced.Spacing : given.Spacing;
-    this->VolumeGeometry.Direction =
-      volumeInfo->Has(vtkDataObject::DIRECTION()) ? announced.Direction : given.Direction;
-  }
-  return this->VolumeGeometry;
-}
-
-//------------------------------------------------------------------------------
 deformvolume::MappedVolume vtkDeformVolumeFilter::vtkInternals::GetMappedVolume(
   vtkImageData* volume, vtkInformation* info) const
 {
   const ImageGeometry given = deformvolume::GetGeometry(volume);
   deformvolume::MappedVolume mapped;
-  mapped.Whole = this->VolumeGeometry;
+  mapped.Whole = this->VolumeGeometry.Get();
   mapped.Part = given.PointExtent;
   mapped.Outside = this->GetOutside();
   Extent asked = mapped.Whole.PointExtent;

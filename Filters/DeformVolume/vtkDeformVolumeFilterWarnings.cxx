@@ -15,7 +15,11 @@
 
 #include <glm/common.hpp>
 
+#include <algorithm>
+#include <iterator>
+#include <string>
 #include <utility>
+#include <vector>
 
 //------------------------------------------------------------------------------
 void vtkDeformVolumeFilter::vtkInternals::WarnOfIgnored(
@@ -42,6 +46,17 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfIgnored(
     warnings.insert(
       "These point arrays of the volume are left out, because their types cannot be resampled: " +
       list(leftOut) + ".");
+  }
+  std::vector<std::string> unknown;
+  std::copy_if(this->CategoricalArrays.begin(), this->CategoricalArrays.end(),
+    std::back_inserter(unknown),
+    [&](const std::string& name) { return !volume->GetPointData()->HasArray(name.c_str()); });
+  if (!unknown.empty())
+  {
+    warnings.insert(
+      "The volume has no point arrays with these names of categorical arrays: " + list(unknown) +
+      ". Labels in other arrays are interpolated like intensities. Correct the names with "
+      "AddCategoricalArray() and RemoveCategoricalArray().");
   }
   using Attributes = vtkDataSetAttributes;
   for (const auto& [role, kind] : { std::pair(Attributes::VECTORS, "vectors"),

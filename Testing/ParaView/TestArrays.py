@@ -2,18 +2,23 @@
 """Compares results of the proxies with those of the classes without ParaView's server manager: for the MRI of a head,
 and for ParaView's wavelet with several arrays and all types of deformations."""
 
+import os
+
 import deformvolume_vtk
 import numpy
 from paraview import simple
 from vtkmodules.util import numpy_support
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkImageData
+from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
 from PluginTesting import (
+    OUTPUT,
     arrays_of,
     bent_lattice,
     check,
     check_equal_images,
     check_one_message,
+    check_silent,
     deformed,
     fetch,
     head_file,
@@ -184,11 +189,67 @@ def test_geometry():
     check(not arrays_of(blocks.GetBlock(1))["vtkValidPointMask"].any(), "Points outside the mesh are marked as valid")
 
 
+def test_direction():
+    """Tests an oblique image of a reader, as the volume and as the reference image. ParaView does not pass on the
+    direction that a reader announces."""
+    image = vtkImageData()
+    image.SetDimensions(12, 11, 10)
+    image.SetOrigin(3.0, -2.0, -5.0)
+    image.SetSpacing(1.0, 1.5, -2.0)
+    image.SetDirectionMatrix([0.6, -0.8, 0.0, 0.8, 0.6, 0.0, 0.0, 0.0, -1.0])
+    values = numpy_support.numpy_to_vtk(numpy.arange(12 * 11 * 10, dtype=numpy.int16), deep=1)
+    values.SetName("Values")
+    image.GetPointData().SetScalars(values)
+    path = os.path.join(OUTPUT, "oblique.vti")
+    writer = vtkXMLImageDataWriter()
+    writer.SetFileName(path)
+    writer.SetInputData(image)
+    writer.SetDataModeToAscii()
+    writer.Write()
+
+    reader = simple.OpenDataFile(path)
+    reader.UpdatePipeline()
+    with messages() as texts:
+        at_rest = fetch(simple.DeformVolume(Volume=reader))
+        edited = fetch(simple.EditedVolume(Volume=simple.CarveVolume(Volume=reader, Body="None")))
+    check_silent(texts)
+    for output in (at_rest, edited):
+        check_equal_grids(output, image)
+        check(numpy.array_equal(arrays_of(output)["Values"], arrays_of(image)["Values"]), "Values have changed")
+    # The volume moves by two voxels on the first axis of the image.
+    mesh = bent_lattice(reader, function="1.2*iHat+1.6*jHat")
+    with messages() as texts:
+        moved = fetch(deformed(reader, mesh, ReferenceImage=reader))
+    check_silent(texts)
+    check_equal_grids(moved, image)
+    values = arrays_of(image)["Values"].reshape(10, 11, 12)
+    expected = numpy.zeros_like(values)
+    expected[:, :, 2:] = values[:, :, :-2]
+    difference = numpy.abs(arrays_of(moved)["Values"].reshape(values.shape) - expected)
+    check(difference.max() <= 1, f"Values differ by {difference.max()} from those moved by two voxels")
+    # Another volume on this grid.
+    with messages() as texts:
+        other = fetch(simple.DeformVolume(Volume=wavelet(6), ReferenceImage=reader))
+    check_silent(texts)
+    check_equal_grids(other, image)
+
+
+def check_equal_grids(output, image):
+    check(
+        output.GetExtent() == image.GetExtent()
+        and numpy.allclose(output.GetOrigin(), image.GetOrigin())
+        and numpy.allclose(output.GetSpacing(), image.GetSpacing())
+        and numpy.allclose(output.GetPoint(1234), image.GetPoint(1234)),
+        f"The grid of the output is {output}, not that of {image}",
+    )
+
+
 def main():
     load_plugin()
     check(isinstance(fetch(wavelet(2)), vtkImageData), "The wavelet is not a vtkImageData")
     test_wavelet()
     test_geometry()
+    test_direction()
     test_mri()
 
 

@@ -144,15 +144,48 @@ void TestGeometry()
   forgetful.Fails("a wrong origin", "announced origin 0, 0, 0");
   forgetful.Announce(origin, spacing);
   forgetful.IsRight("a source that is right again");
+
+  // The executive and ParaView do not pass on directions.
   SetObliqueDirection(forgetful.Volume);
-  forgetful.Fails("a direction that is not announced", "Set ORIGIN(), SPACING() and DIRECTION()");
-  forgetful.Source->Announced->Set(
-    vtkDataObject::DIRECTION(), forgetful.Volume->GetDirectionMatrix()->GetData(), 9);
   forgetful.Mesh->ShallowCopy(MakeMesh(forgetful.Volume));
   SetDisplacements(forgetful.Mesh, Shift(0.0, 0.0, 0.0));
-  forgetful.Source->Modified();
-  VERIFY_EQUAL(GetExtent(forgetful.Subject.Update()), GetExtent(forgetful.Volume));
-  VERIFY_EQUAL(forgetful.Subject.Filter->GetNumberOfCoveredVoxels(), 64000);
+  const auto isOblique = [&]
+  {
+    forgetful.Source->Modified();
+    vtkImageData* output = forgetful.Subject.Update();
+    VERIFY_EQUAL(GetExtent(output), GetExtent(forgetful.Volume));
+    VERIFY(GetPoint(output, 63999) == GetPoint(forgetful.Volume, 63999));
+    VERIFY_EQUAL(forgetful.Subject.Filter->GetNumberOfCoveredVoxels(), 64000);
+  };
+  isOblique();
+  const double straight[9] = { 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0 };
+  forgetful.Source->Announced->Set(vtkDataObject::DIRECTION(), straight, 9);
+  forgetful.Fails("a wrong direction", "Set ORIGIN(), SPACING() and DIRECTION()");
+  forgetful.Source->Announced->Set(
+    vtkDataObject::DIRECTION(), forgetful.Volume->GetDirectionMatrix()->GetData(), 9);
+  isOblique();
+}
+
+// A reference image of which only the extent is announced.
+void TestReference()
+{
+  const auto grid =
+    MakeImage({ { -2, 17, 3, 22, 0, 9 } }, glm::dvec3(3.0, 2.0, 1.5), glm::dvec3(12.0, -3.0, 4.0));
+  SetObliqueDirection(grid);
+  const vtkNew<CarelessSource> source;
+  source->Volume = grid;
+  source->WholeExtent = GetExtent(grid);
+  Careless careless;
+  careless.Subject.Filter->SetReferenceConnection(source->GetOutputPort());
+  for (int update = 0; update < 2; ++update)
+  {
+    careless.Mesh->Modified();
+    vtkImageData* output = careless.Subject.Update();
+    VERIFY_EQUAL(GetExtent(output), GetExtent(grid));
+    VERIFY(GetPoint(output, 0) == GetPoint(grid, 0));
+    VERIFY(GetPoint(output, 3999) == GetPoint(grid, 3999));
+    VERIFY_EQUAL(source->Executions, 1);
+  }
 }
 
 void TestExtents()
@@ -245,6 +278,7 @@ void TestAnnounced(vtkImageAlgorithm* filter)
 int TestDeformAnnouncements(int, char*[])
 {
   TestGeometry();
+  TestReference();
   TestAnnounced(vtkNew<vtkDeformVolumeFilter>());
   TestAnnounced(vtkNew<vtkCutVolume>());
   TestExtents();
