@@ -256,7 +256,8 @@ public:
   ///@{
   /**
    * Names of point arrays that hold labels. Labels are not interpolated: each is that of one voxel
-   * of the cell, usually the nearest one. Labels of 64 bits keep all bits. Default: none.
+   * of the cell, usually the nearest one. Labels of 64 bits keep all bits. A name that the volume
+   * does not have is a warning. Default: none.
    */
   void AddCategoricalArray(const char* name);
   void RemoveCategoricalArray(const char* name);

@@ -255,6 +255,14 @@ void TestLabels()
     mixed += deformed.IsCovered(id) && (result->GetValue(id) - base) % 2 != 0 ? 1 : 0;
   }
   VERIFY(mixed > 0);
+  // A misspelled name is a warning, once.
+  deformed.Filter->AddCategoricalArray("Label");
+  deformed.Filter->Update();
+  VERIFY_CONTAINS(
+    deformed.TakeWarning(), "no point arrays with these names of categorical arrays: Label");
+  mesh->Modified();
+  deformed.Filter->Update();
+  VERIFY(deformed.TakeWarning().empty());
 }
 
 // Nearest interpolation gives the same result as categorical arrays, with both resamplers.
