@@ -62,8 +62,8 @@ SessionEvent ParseEvent(const std::string& text);
 SessionEvent MakeCutEvent(vtkPolyData* sheet);
 vtkSmartPointer<vtkPolyData> MakeSheet(const SessionEvent& cut);
 
-/// Returns a hash of the geometry and all point arrays of a volume, and of the points, cells and
-/// arrays of a mesh if it is not null.
+/// Returns a hash of the geometry and all point arrays of a volume, and of the points and cells of
+/// a mesh if it is not null; then a space, and a hash of the arrays of the mesh.
 std::string HashInputs(vtkImageData* volume, vtkUnstructuredGrid* mesh);
 
 ///@{

@@ -121,11 +121,17 @@ std::string deformvolume::HashInputs(vtkImageData* volume, vtkUnstructuredGrid* 
   {
     hash.Add(mesh->GetPoints()->GetData());
     hash.Add(mesh->GetCells()->GetConnectivityArray());
-    // The model finds its arrays, such as Fixed, by their names.
-    hash.Add(mesh->GetPointData(), true);
-    hash.Add(mesh->GetCellData(), true);
   }
-  return hash.Finish();
+  std::string text = hash.Finish();
+  if (mesh)
+  {
+    // The model finds its arrays, such as Fixed, by their names.
+    Hash arrays;
+    arrays.Add(mesh->GetPointData(), true);
+    arrays.Add(mesh->GetCellData(), true);
+    text += ' ' + arrays.Finish();
+  }
+  return text;
 }
 
 void deformvolume::WriteEvents(
@@ -195,7 +201,9 @@ deformvolume::SessionEvents deformvolume::ReadEvents(
     throw std::runtime_error(
       "The session " + fileName + " is damaged: its checksum does not match its events.");
   }
-  if (GetAttribute(root, "inputs") != inputHash)
+  // Files of version 0.1 have no hash of the arrays of a mesh.
+  const std::string inputs = GetAttribute(root, "inputs");
+  if (inputs != inputHash && inputs != inputHash.substr(0, inputHash.find(' ')))
   {
     throw std::runtime_error("The session " + fileName +
       " was recorded with another volume or mesh. Open the volume and mesh that it was recorded "
