@@ -83,9 +83,9 @@ std::string FrameOfVolume(
     const int last = extent[2 * axis + 1];
     if (last <= first)
     {
-      return "The volume has " + std::to_string(std::max(last - first + 1, 0)) +
-        " voxels on axis " + std::to_string(axis) +
-        ". A lattice needs at least two on every axis; set Bounds and disconnect the volume to "
+      return "The volume has fewer than two voxels on axis " + std::to_string(axis) +
+        ". A lattice of a volume needs two on every axis; set Bounds and disconnect the volume (in "
+        "ParaView, take the source Tetrahedral Lattice) to "
         "mesh a box of your own.";
     }
     const glm::dvec3 unit(direction->GetElement(0, axis), direction->GetElement(1, axis),

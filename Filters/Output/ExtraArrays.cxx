@@ -72,8 +72,9 @@ void ExtraArrays::Select(const ExtraArraysWish& wish, const ImageGeometry& volum
     if (found->Categorical)
     {
       throw Error("The density array \"" + name +
-        "\" is categorical, and labels cannot be divided by the Jacobian. Remove it from one of "
-        "the two lists, or set Interpolation to LINEAR_INTERPOLATION.");
+        "\" is categorical, and labels cannot be divided by the Jacobian. Remove it from the "
+        "density arrays or from the categorical arrays. With NEAREST_INTERPOLATION all arrays are "
+        "categorical.");
     }
     found->Array = this->FindFloats(found->Array);
   }

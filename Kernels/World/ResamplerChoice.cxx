@@ -28,17 +28,21 @@ Resampling ChooseResampler(const ResamplerWish& wish, const std::function<bool(R
     return Resampling::MeshRasterization;
   }
   const std::string obstacle = wish.Deformation == ResamplerWish::Kinds::ForwardField
-    ? "forward displacement fields. Connect a tetrahedral mesh to input port 1"
-    : wish.Outside.AreExtrapolated() ? "the outside mode EXTRAPOLATE. Set OutsideMode to DISCARD"
-    : wish.Outside.AreKept()         ? "the outside mode KEEP. Set OutsideMode to DISCARD"
-    : wish.HasSmoothCut              ? "smooth cuts. Set SmoothCut of vtkCutVolume to off"
-    : wish.NeedsJacobian ? "Jacobians of meshes. Set GenerateJacobian off and remove density arrays"
-    : wish.CountsFolds   ? "fold counts of meshes. Set GenerateFoldCount off"
-                         : "";
+    ? "forward displacement fields. Set Resampler to EXACT, or connect a tetrahedral mesh"
+    : wish.Outside.AreExtrapolated()
+    ? "the outside mode EXTRAPOLATE. Set Resampler to EXACT, or OutsideMode to DISCARD"
+    : wish.Outside.AreKept()
+    ? "the outside mode KEEP. Set Resampler to EXACT, or OutsideMode to DISCARD"
+    : wish.HasSmoothCut ? "smooth cuts. Set Resampler to EXACT, or SmoothCut of vtkCutVolume to off"
+    : wish.NeedsJacobian
+    ? "Jacobians of meshes. Set Resampler to EXACT, or GenerateJacobian to off and no density "
+      "arrays"
+    : wish.CountsFolds
+    ? "fold counts of meshes. Set Resampler to EXACT, or GenerateFoldCount to off"
+    : "";
   if (!obstacle.empty() && wish.Method == Resampling::MeshRasterization)
   {
-    throw Error(
-      "The resampler MESH_RASTERIZATION cannot do " + obstacle + ", or Resampler to EXACT.");
+    throw Error("The resampler MESH_RASTERIZATION cannot do " + obstacle + ".");
   }
   if (wish.Method)
   {

@@ -72,10 +72,10 @@ void TestMisuse()
   vtkNew<vtkImageData> slice;
   slice->SetExtent(3, 12, -4, 5, 7, 7);
   source->SetInputData(slice);
-  check.Fails("1 voxels on axis 2");
+  check.Fails("fewer than two voxels on axis 2");
   vtkNew<vtkImageData> empty;
   source->SetInputData(empty);
-  check.Fails("0 voxels on axis 0");
+  check.Fails("fewer than two voxels on axis 0");
   vtkNew<vtkImageData> flat;
   flat->SetDimensions(4, 4, 4);
   const double singular[9] = { 1, 0, 0, 0, 1, 1, 0, 0, 0 };

@@ -352,16 +352,26 @@ TEST_F(LargeField, VectorsOnTheDeviceFollow)
 {
   const auto vectors = std::make_shared<DeviceVectors>("", Points);
   vectors->Write(this->Vectors.data());
-  this->Deformer.SetDisplacementField(this->Field, vectors);
+  this->Request.Incremental = true;
+  this->Request.LastOutputs = { this->Output.data() };
+  this->Request.LastCoverage = this->Coverage.data();
+  const auto moveLast = [&]
+  {
+    this->Vectors[3 * Points - 3] += 0.25F;
+    vectors->Write(this->Vectors.data(), { { { Points - 1, Points } } });
+    this->Deformer.SetDisplacementField(this->Field, vectors);
+    return this->Deform();
+  };
+  moveLast();
+  moveLast();
+  const DeformReport report = moveLast();
+  EXPECT_LT(report.NumberOfResampledBricks, report.NumberOfBricks);
   const std::vector<float> before = this->Vectors;
   std::reverse(this->Vectors.begin(), this->Vectors.end());
   this->Deformer.SetDisplacementField(this->Field);
   this->Deform();
   this->Vectors = before;
-  this->Vectors[3 * Points - 3] += 0.25F;
-  vectors->Write(this->Vectors.data(), { { { Points - 1, Points } } });
-  this->Deformer.SetDisplacementField(this->Field, vectors);
-  this->Deform();
+  moveLast();
 }
 
 TEST_F(LargeField, UnusableVectorsAreErrors)
