@@ -14,6 +14,13 @@ void ExecutionState::Release()
   this->ArraysInUse.clear();
 }
 
+void ExecutionState::ForgetValues()
+{
+  this->Device.ForgetValues();
+  this->Extra.Forget();
+  this->Volume.Forget();
+}
+
 bool ExecutionState::BoundsKey::operator==(const BoundsKey& other) const
 {
   return this->Inputs == other.Inputs && this->Volume == other.Volume &&

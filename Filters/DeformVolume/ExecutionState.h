@@ -35,6 +35,8 @@ struct ExecutionState
 
   /// Frees the memory on the device, and all host memory with the size of a volume.
   void Release();
+  /// The values of the volume may have changed, although its arrays have not been modified.
+  void ForgetValues();
   bool HoldsMemory() const { return !this->ArraysInUse.empty(); }
 
   // What the member Bounds was computed for.

@@ -199,6 +199,9 @@ public:
   deformvolume::InputGeometry VolumeGeometry;
   /// The grid of the reference image, with its whole extent.
   std::optional<deformvolume::ImageGeometry> Reference;
+  /// Makes the filter read an image in memory again that has been modified. Programs write the
+  /// values of an image, and call Modified() of the image only.
+  void FollowImage(vtkImageData* volume);
   /// The exception that the last request for information has thrown.
   std::exception_ptr InformationFailure;
   /// Whether the extent of the output was too small, so that the next update has to execute the
@@ -250,6 +253,8 @@ private:
   deformvolume::ImageGeometry VolumeAtRest;
 
   deformvolume::InputGeometry ReferenceGeometry;
+  // The last image in memory, and its own modification time.
+  std::pair<const void*, vtkMTimeType> ImageInMemory;
   // The volume that CutToWhole() has cropped, and the stamp of the volume that it was cropped from.
   vtkSmartPointer<vtkImageData> CutVolume;
   std::pair<const void*, vtkMTimeType> CutStamp;

@@ -2,6 +2,7 @@
 // The volume of vtkDeformVolumeFilter: the information that its source announces, and its data.
 #include "vtkDeformVolumeFilterInternals.h"
 
+#include "InputUpdate.h"
 #include "PipelineGeometry.h"
 
 #include "vtkAbstractArray.h"
@@ -68,6 +69,25 @@ deformvolume::MappedVolume vtkDeformVolumeFilter::vtkInternals::GetMappedVolume(
   mapped.Whole = this->GetCoarseGeometry(mapped.Whole);
   mapped.Part = deformvolume::GetCoarse(mapped.Part, this->Self->SamplingFactor);
   return mapped;
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::FollowImage(vtkImageData* volume)
+{
+  if (!deformvolume::IsInMemory(this->Self, 0))
+  {
+    this->ImageInMemory = {};
+    return;
+  }
+  const std::pair<const void*, vtkMTimeType> now(volume, volume->vtkObject::GetMTime());
+  if (this->ImageInMemory.first == now.first && this->ImageInMemory.second != now.second)
+  {
+    for (auto& state : this->States)
+    {
+      state.second.ForgetValues();
+    }
+  }
+  this->ImageInMemory = now;
 }
 
 //------------------------------------------------------------------------------

@@ -390,13 +390,18 @@ void DeviceSession::ReleaseMemory()
   this->Known = false;
 }
 
+void DeviceSession::ForgetValues()
+{
+  this->SentArrays.clear();
+  this->SentMasks.clear();
+  this->MasksAreSet = false;
+}
+
 void DeviceSession::Forget()
 {
   this->SentGrid = VoxelGrid();
   this->SentWidth = 0;
-  this->SentArrays.clear();
-  this->SentMasks.clear();
-  this->MasksAreSet = false;
+  this->ForgetValues();
   this->HasMesh = false;
   this->HasField = false;
   this->HasInverseField = false;

@@ -67,6 +67,9 @@ public:
 
   std::int64_t GetNumberOfVolumeUploads() const { return this->NumberOfVolumeUploads; }
 
+  /// The arrays and masks of the volume may have changed, although their times have not.
+  void ForgetValues();
+
 private:
   class Transfer;
 

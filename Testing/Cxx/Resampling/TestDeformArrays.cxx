@@ -334,6 +334,42 @@ void TestBackgroundAndRounding()
   }
 }
 
+// Programs write the values of an image, and call Modified() of the image only.
+void TestWrittenValues()
+{
+  auto volume = MakeImage({ { 0, 7, 0, 7, 0, 7 } });
+  AddScalars<int>(volume, "dose", [](const glm::dvec3&) { return 1.0; });
+  const vtkSmartPointer<vtkDataArray> dose = volume->GetPointData()->GetScalars();
+  AddScalars<int>(volume, "value", [](const glm::dvec3&) { return 1.0; });
+  volume->GetPointData()->AddArray(dose);
+  auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, Shift(0.0, 0.0, 0.0));
+  Deformed deformed(volume, mesh);
+  deformed.Filter->AddDensityArray("dose");
+  for (const int factor : { 1, 2, 1 })
+  {
+    deformed.Filter->SetSamplingFactor(factor);
+    for (int value = 2; value < 5; ++value)
+    {
+      for (const char* const name : { "value", "dose" })
+      {
+        static_cast<int*>(volume->GetPointData()->GetArray(name)->GetVoidPointer(0))[0] = value;
+      }
+      volume->Modified();
+      vtkPointData* output = deformed.Update()->GetPointData();
+      VERIFY_EQUAL(output->GetArray("value")->GetTuple1(0), value);
+      VERIFY_EQUAL(output->GetArray("dose")->GetTuple1(0), value);
+    }
+  }
+  // An image that has not been modified is not read again.
+  deformed.Filter->RemoveDensityArray("dose");
+  deformed.Update();
+  const vtkIdType sent = GetReported(deformed.Filter, "Volumes sent");
+  mesh->Modified();
+  deformed.Update();
+  VERIFY_EQUAL(GetReported(deformed.Filter, "Volumes sent"), sent);
+}
+
 void TestNotANumberStaysWithinItsTetrahedra()
 {
   auto volume = MakeImage({ { 0, 7, 0, 7, 0, 7 } });
@@ -393,6 +429,7 @@ int TestDeformArrays(int, char*[])
   TestLabels();
   TestNearestInterpolation();
   TestBackgroundAndRounding();
+  TestWrittenValues();
   TestNotANumberStaysWithinItsTetrahedra();
   TestCellArraysAreNamedInAWarning();
   return GetExitCode();
