@@ -155,7 +155,7 @@ check("volume.nii.gz", "lps.vti", "--field-space", "lps")
 write_nrrd(path("any.nrrd"), double, field, space="3D-right-handed")
 for volume_name in ("volume.nii.gz", "volume.mhd"):
     check(volume_name, "any.nrrd", "--field-space", "ras")
-# VTK's reader of NIfTI files reverses the order of slices if the axes of the file are left-handed.
+# The axes of the file are left-handed.
 mirrored = field.copy()
 mirrored[:, 3] += 4 * mirrored[:, 2]
 mirrored[:, 2] *= -1

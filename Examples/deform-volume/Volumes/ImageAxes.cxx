@@ -4,9 +4,11 @@
 #include "Failure.h"
 #include "Messages.h"
 
+#include <vtkDataArray.h>
 #include <vtkImageData.h>
 #include <vtkMath.h>
 #include <vtkMatrix3x3.h>
+#include <vtkPointData.h>
 
 #include <algorithm>
 #include <cmath>
@@ -181,4 +183,30 @@ void FlipWorldAxes(vtkImageData* image)
   image->SetDirectionMatrix(direction);
   const double* const origin = image->GetOrigin();
   image->SetOrigin(0.0 - origin[0], 0.0 - origin[1], origin[2]);
+}
+
+void ReverseSlices(vtkImageData* image)
+{
+  int size[3];
+  image->GetDimensions(size);
+  const vtkIdType slice = vtkIdType{ size[0] } * size[1];
+  vtkDataArray* const values = image->GetPointData()->GetScalars();
+  const auto reversed = vtkSmartPointer<vtkDataArray>::Take(values->NewInstance());
+  reversed->SetName(values->GetName());
+  reversed->SetNumberOfComponents(values->GetNumberOfComponents());
+  reversed->SetNumberOfTuples(values->GetNumberOfTuples());
+  for (int z = 0; z < size[2]; ++z)
+  {
+    reversed->InsertTuples(z * slice, slice, (size[2] - 1 - z) * slice, values);
+  }
+  image->GetPointData()->SetScalars(reversed);
+}
+
+void ReverseSlices(vtkMatrix4x4* axes, double depth)
+{
+  for (int row = 0; row < 3; ++row)
+  {
+    axes->SetElement(row, 3, axes->GetElement(row, 3) + axes->GetElement(row, 2) * depth);
+    axes->SetElement(row, 2, -axes->GetElement(row, 2));
+  }
 }

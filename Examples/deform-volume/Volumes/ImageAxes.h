@@ -29,4 +29,11 @@ void SetAxes(vtkImageData* image, vtkMatrix4x4* axes, const std::string& path, M
 void FlipWorldAxes(vtkMatrix4x4* axes);
 void FlipWorldAxes(vtkImageData* image);
 
+/// Reverses the order of the slices of an image in its scalars.
+void ReverseSlices(vtkImageData* image);
+
+/// Changes the axes of an image to those with the slices in reverse order. depth: distance of the
+/// last slice from the first one.
+void ReverseSlices(vtkMatrix4x4* axes, double depth);
+
 #endif

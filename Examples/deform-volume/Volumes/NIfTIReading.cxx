@@ -206,6 +206,9 @@ void Place(Volume& volume, vtkNIFTIImageReader* reader, const std::string& path,
     length *= millimetres;
   }
   volume.Image->SetSpacing(std::abs(spacing[0]), std::abs(spacing[1]), std::abs(spacing[2]));
+  // The forms of the reader are those of the slices in its order.
+  const bool isReversed = reader->GetQFac() < 0.0;
+  const int steps = volume.Image->GetDimensions()[2] - 1;
   vtkMatrix4x4* const sform = reader->GetSFormMatrix();
   vtkMatrix4x4* const qform = reader->GetQFormMatrix();
   if (qform)
@@ -215,6 +218,10 @@ void Place(Volume& volume, vtkNIFTIImageReader* reader, const std::string& path,
     volume.Forms.QForm->DeepCopy(qform);
     ScalePlace(volume.Forms.QForm, millimetres);
     std::copy_n(spacing, 3, volume.Forms.QSpacing);
+    if (isReversed)
+    {
+      ReverseSlices(volume.Forms.QForm, steps * spacing[2]);
+    }
   }
   if (sform)
   {
@@ -227,6 +234,10 @@ void Place(Volume& volume, vtkNIFTIImageReader* reader, const std::string& path,
       // The reader has divided by the signed spacing, but the spacing of the image is positive.
       axes->SetElement(
         i / 3, i % 3, axes->GetElement(i / 3, i % 3) * (spacing[i % 3] < 0.0 ? -1.0 : 1.0));
+    }
+    if (isReversed)
+    {
+      ReverseSlices(axes, steps * std::abs(spacing[2]));
     }
     SetAxes(volume.Image, axes, path, messages,
       qform ? ". These are the axes of its s-form. It also has a q-form: to use that, set "
@@ -287,6 +298,12 @@ Volume ReadNIfTI(
   if (IsScaled(volume.NIfTIHeader) && (slope != 1.0 || intercept != 0.0))
   {
     Rescale(volume.Image, slope, intercept);
+  }
+  // If the axes of the q-form are left-handed, the reader reverses the order of the slices. The
+  // result shall have the grid of the file.
+  if (reader->GetQFac() < 0.0)
+  {
+    ReverseSlices(volume.Image);
   }
   if (!options.FileCoordinates)
   {

@@ -129,6 +129,22 @@ void MoveQForm(const Volume& volume, vtkMatrix4x4* qform)
   vtkMatrix4x4::Multiply4x4(volume.Forms.QForm, shift, qform);
 }
 
+// Returns the intent code of the volume, or that of its file. ITK reads several components as a
+// vector only if the intent says so; colors have types of their own.
+int GetIntentCode(const Volume& volume, vtkDataArray* values)
+{
+  const int components = values->GetNumberOfComponents();
+  const bool areColors =
+    values->GetDataType() == VTK_UNSIGNED_CHAR && (components == 3 || components == 4);
+  if (volume.IntentCode != 0 || components == 1 || areColors)
+  {
+    return volume.IntentCode;
+  }
+  const auto ofFile =
+    volume.NIfTIHeader ? static_cast<int>(volume.NIfTIHeader->GetIntentCode()) : 0;
+  return ofFile != 0 ? ofFile : NIfTIIntentVector;
+}
+
 void WriteNIfTI(
   const Volume& volume, const std::string& path, Messages& messages, bool showProgress)
 {
@@ -148,25 +164,34 @@ void WriteNIfTI(
   const bool keepsForms = forms.SFormCode != 0 || forms.QFormCode != 0;
   vtkNew<vtkNIFTIImageHeader> header;
   header->SetXYZTUnits(vtkNIFTIImageHeader::UnitsMM);
-  header->SetIntentCode(volume.IntentCode);
+  header->SetIntentCode(GetIntentCode(volume, values));
   vtkNew<vtkNIFTIImageWriter> writer;
   writer->SetInputData(image);
   writer->SetFileName(plain.c_str());
   writer->SetNIFTIHeader(header);
-  if (!keepsForms || forms.SFormCode != 0)
-  {
-    writer->SetSFormMatrix(axes);
-  }
   vtkNew<vtkMatrix4x4> qform;
   qform->DeepCopy(axes);
   if (forms.QForm)
   {
     MoveQForm(volume, qform);
   }
-  // A q-form cannot hold a reflection.
-  if ((!keepsForms && axes->Determinant() > 0.0) || forms.QForm)
+  if (!keepsForms || forms.QForm)
   {
+    // If the axes of the q-form are left-handed, the writer wants its data in reverse order, and
+    // reverses them again.
+    if (qform->Determinant() < 0.0)
+    {
+      const int steps = image->GetDimensions()[2] - 1;
+      ReverseSlices(image);
+      ReverseSlices(axes, steps * image->GetSpacing()[2]);
+      ReverseSlices(qform, steps * (forms.QForm ? forms.QSpacing : image->GetSpacing())[2]);
+      writer->SetQFac(-1.0);
+    }
     writer->SetQFormMatrix(qform);
+  }
+  if (!keepsForms || forms.SFormCode != 0)
+  {
+    writer->SetSFormMatrix(axes);
   }
   {
     const ProgressBar bar(writer, "writing", showProgress);
