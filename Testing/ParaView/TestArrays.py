@@ -211,7 +211,7 @@ def test_direction():
     reader.UpdatePipeline()
     with messages() as texts:
         at_rest = fetch(simple.DeformVolume(Volume=reader))
-        edited = fetch(simple.EditedVolume(Volume=simple.CarveVolume(Volume=reader, Body="None")))
+        edited = fetch(simple.DeformVolume(Volume=simple.CarveVolume(Volume=reader, Body="None")))
     check_silent(texts)
     for output in (at_rest, edited):
         check_equal_grids(output, image)

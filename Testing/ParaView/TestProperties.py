@@ -545,7 +545,6 @@ def main():
         "CarveVolumeWithSurface": lambda: simple.CarveVolumeWithSurface(Surface=surface, **edited),
         "ChainMailDeformation": lambda: simple.ChainMailDeformation(Volume=volume, Handles=handle),
         "CorotationalDeformation": lambda: simple.CorotationalDeformation(**elastic),
-        "EditedVolume": lambda: simple.EditedVolume(Volume=simple.CarveVolume(ToolPositions=[1, 2, 3], **edited)),
         "FiniteElementDeformation": lambda: simple.FiniteElementDeformation(**elastic),
         "CutVolume": lambda: simple.CutVolume(Sheet=plane, **edited),
         "CutVolumeWithPlane": lambda: simple.CutVolumeWithPlane(**edited),
