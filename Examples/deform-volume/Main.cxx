@@ -26,6 +26,7 @@
 #include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <map>
 #include <optional>
@@ -115,6 +116,22 @@ double FindBackground(const Options& options, vtkImageData* volume)
   return range[0] <= range[1] ? range[0] : 0.0;
 }
 
+// Integers hold no NaN, and 0 may be tissue.
+void CheckBackground(const Options& options, vtkImageData* volume)
+{
+  for (int i = 0; i < volume->GetPointData()->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = volume->GetPointData()->GetArray(i);
+    if (options.Background && std::isnan(*options.Background) && array &&
+      array->GetDataType() != VTK_FLOAT && array->GetDataType() != VTK_DOUBLE)
+    {
+      throw Failure(std::string("--background nan needs a volume of real numbers, and its values "
+                                "are of the type ") +
+        array->GetDataTypeAsString());
+    }
+  }
+}
+
 void SetUp(vtkDeformVolumeFilter* filter, const Options& options, vtkImageData* volume,
   const LabelVolume& labels, vtkImageData* reference, const Deformation& deformation)
 {
@@ -127,6 +144,7 @@ void SetUp(vtkDeformVolumeFilter* filter, const Options& options, vtkImageData* 
       ? vtkDeformVolumeFilter::VOLUME_BOUNDS
       : vtkDeformVolumeFilter::DEFORMED_BOUNDS);
   filter->SetPadding(options.Padding);
+  CheckBackground(options, volume);
   filter->SetBackgroundValue(options.Background.value_or(FindBackground(options, volume)));
   const std::map<std::string, int> resamplers{ { "automatic", vtkDeformVolumeFilter::AUTOMATIC },
     { "exact", vtkDeformVolumeFilter::EXACT },

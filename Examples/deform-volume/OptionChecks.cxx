@@ -177,7 +177,7 @@ void CheckDeformation(const Options& options)
   if (deformations != 1)
   {
     throw UsageError("exactly one of --mesh, --field, --transform, --tetgen, --lattice and --model "
-                     "chainmail must be given");
+                     "chainmail must be given; none is needed with --cut or --carve");
   }
   if (!options.Mesh.empty())
   {

@@ -305,7 +305,9 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
     ->group(tools);
   program
     .add_option("--carve", raw.Carvings,
-      "Carve a sphere out of the volume (world coordinates and units). May be given several times")
+      "Carve a sphere out of the volume (world coordinates and units). Voxels within about one "
+      "voxel "
+      "of its surface may stay. May be given several times")
     ->type_name("sphere:X,Y,Z,RADIUS")
     ->take_all()
     ->expected(1)
@@ -432,7 +434,7 @@ void AddResampling(CLI::App& program, Options& options, RawOptions& raw)
   program
     .add_option("--background", options.Background,
       "Value of voxels outside the deformed volume [the minimum of the volume if its type has "
-      "negative values, such as air in CT, otherwise 0]")
+      "negative values, such as air in CT, otherwise 0; 0 with --labels]")
     ->type_name("NUMBER")
     ->group(group);
   program

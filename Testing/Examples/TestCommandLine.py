@@ -49,6 +49,8 @@ fails(2, "radius", path("in.vti"), *lattice, "--push", "1,2,3,4,5,6,0", "-o", pa
 fails(2, "at least 2 nodes", path("in.vti"), "--lattice", "3,1,3", *push, "-o", path("o.vti"))
 fails(2, "three node counts", path("in.vti"), "--lattice", "3,3", *push, "-o", path("o.vti"))
 fails(2, "nothing to write", path("in.vti"), *lattice, *push)
+fails(1, "--background nan needs a volume of real numbers", path("in.vti"), *lattice, *push, "--background", "nan",
+      "-o", path("o.vti"))
 fails(2, "at least one --push", path("in.vti"), *lattice)
 fails(2, "at least one --push", path("in.vti"), *lattice, "-o", path("o.vti"), "--write-mesh",
       path("m.vtu"))

@@ -165,6 +165,10 @@ def check_units():
     none = "covers no voxel of the output"
     deform(*mesh("metres.vtk"), *displacement, warnings=[words, none])
     deform(*mesh("metres.vtk"), *displacement, "--keep", "1", warnings=[words])
+    # A point that no cell uses does not count.
+    write_febio(path("stray.vtk"), numpy.vstack([places, [[1e5, 0, 0]]]), numpy.vstack([moves, [[0, 0, 0]]]), cells,
+                1.0)
+    deform(*mesh("stray.vtk"), *displacement)
     # A mesh elsewhere contains no voxel, and the error states both boxes.
     write_febio(path("aside.vtk"), 1e-3 * places + 40.0, 1e-3 * moves, cells, 1.0)
     fails(["holds no voxel of the volume", "x from 39.988 to 40.012", "x from -12 to 12", "millimetres"],

@@ -24,7 +24,8 @@ written_again = {f"{kind}.{suffix}" for kind, suffix in (
     ("int32", "mhd"), ("uint64", "nii"), ("int64", "nii.gz"), ("float32", "mha"), ("float64", "mhd"),
     ("color", "mha"), ("color", "nrrd"), ("vector", "mhd"), ("vector", "nrrd"),
     ("q", "nii.gz"), ("q-mirrored", "nii.gz"),
-    ("both", "nii"), ("s-mirrored", "nii"), ("one-mirrored", "nii"), ("scaled-form", "nii"),
+    ("both", "nii"), ("s-mirrored", "nii"), ("one-mirrored", "nii"), ("both-mirrored", "nii.gz"),
+    ("scaled-form", "nii"),
     ("unit1", "nii"), ("two", "nii.gz"), ("RAS", "nhdr"), ("las", "nrrd"))}
 suffixes = ("nii", "nii.gz", "mha", "mhd", "nrrd", "nhdr")
 written = []
@@ -56,6 +57,14 @@ place = numpy.array(both["place"])
 place[:3, 3] -= place[:3, :3] @ [2, 2, 2]
 written.append({**both, "values": "padded.npy", "outputs": [path("padded.again.nii.gz")], "padding": 2,
                 "place": place.tolist()})
+# A result on the grid of a left-handed file is that file.
+with open(path("nothing.tfm"), "w", encoding="ascii") as file:
+    file.write("#Insight Transform File V1.0\n#Transform 0\nTransform: TranslationTransform_double_3_3\n"
+               "Parameters: 0 0 0\nFixedParameters:\n")
+left = path("both-mirrored.nii.gz")
+call(program, left, "--transform", path("nothing.tfm"), "--reference", left, "-q", "-o", path("same.again.nii.gz"))
+written.append({**[case for case in written if case["file"] == "both-mirrored.nii.gz"][0],
+                "outputs": [path("same.again.nii.gz")]})
 with open(path("written.json"), "w", encoding="utf-8") as file:
     json.dump(written, file)
 Readers.run("WrittenVolumeFiles.py", folder)

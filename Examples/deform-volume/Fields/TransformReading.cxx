@@ -8,9 +8,11 @@
 #include "Messages.h"
 #include "ProgressBar.h"
 
+#include <itkBSplineTransform.h>
 #include <itkHDF5TransformIOFactory.h>
 #include <itkMatlabTransformIOFactory.h>
 #include <itkTransform.h>
+#include <itkTransformFactory.h>
 #include <itkTransformFileReader.h>
 #include <itkTxtTransformIOFactory.h>
 
@@ -157,6 +159,9 @@ ItkTransform::Pointer ReadTransform(const TransformFile& file, const std::string
     itk::HDF5TransformIOFactory::RegisterOneFactory();
     itk::MatlabTransformIOFactory::RegisterOneFactory();
     itk::TxtTransformIOFactory::RegisterOneFactory();
+    // ITK itself knows order 3 only.
+    itk::TransformFactory<itk::BSplineTransform<double, 3, 1>>::RegisterTransform();
+    itk::TransformFactory<itk::BSplineTransform<double, 3, 2>>::RegisterTransform();
     return true;
   }();
   static_cast<void>(areFormatsKnown);
@@ -169,7 +174,7 @@ ItkTransform::Pointer ReadTransform(const TransformFile& file, const std::string
   }
   catch (const std::exception&) // its message is about ITK's source code
   {
-    throw Failure(what + ": it holds no transform of ITK, ANTs or 3D Slicer");
+    throw Failure(what + ": it is damaged, or holds no transform that ITK can read");
   }
   if (list->size() != 1)
   {

@@ -267,9 +267,20 @@ double GetMeshLength(vtkDataObject* mesh)
   vtkBoundingBox box;
   for (const MeshPart& part : FindParts(mesh))
   {
-    if (vtkImageData::SafeDownCast(part.Data) || HasVolumeCells(part.Data))
+    if (vtkImageData::SafeDownCast(part.Data))
     {
       box.AddBounds(part.Data->GetBounds());
+      continue;
+    }
+    CellDimensions dimensions;
+    for (vtkIdType cell = 0; cell < part.Data->GetNumberOfCells(); ++cell)
+    {
+      if (dimensions.Get(part.Data->GetCellType(cell)) == 3)
+      {
+        double bounds[6];
+        part.Data->GetCellBounds(cell, bounds);
+        box.AddBounds(bounds);
+      }
     }
   }
   return box.IsValid() ? box.GetMaxLength() : 0.0;

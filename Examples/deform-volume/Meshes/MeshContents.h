@@ -28,7 +28,7 @@ bool HasVolumeCells(vtkDataSet* data);
 /// the point array of displacements. displacement: name of the array, or "" if none is needed.
 void CheckMesh(vtkDataObject* mesh, const std::string& displacement, const std::string& path);
 
-/// The longest side of the bounding box of all parts that can deform a volume.
+/// The longest side of the bounding box of all images and three-dimensional cells.
 double GetMeshLength(vtkDataObject* mesh);
 
 /// Throws a Failure if an image does not have the point array of displacements. If displacement is

@@ -61,6 +61,8 @@ euler = sitk.Euler3DTransform(middle, 0.1, -0.05, 0.2, (0.5, 1.0, -1.5))
 spline = sitk.BSplineTransformInitializer(moving, (5, 4, 4), 3)
 parameters = random.normal(scale=1.5, size=len(spline.GetParameters()))
 spline.SetParameters(parameters.tolist())
+quadratic = sitk.BSplineTransformInitializer(moving, (5, 4, 4), 2)
+quadratic.SetParameters(random.normal(scale=1.5, size=len(quadratic.GetParameters())).tolist())
 
 
 def make_field():
@@ -86,8 +88,8 @@ displacement = sitk.DisplacementFieldTransform(sitk.Image(field))
 composite = sitk.CompositeTransform([affine, displacement])
 nested = sitk.CompositeTransform([euler, spline])
 
-transforms = {"affine": affine, "euler": euler, "spline": spline, "displacement": displacement,
-              "composite": composite, "nested": nested}
+transforms = {"affine": affine, "euler": euler, "spline": spline, "quadratic": quadratic,
+              "displacement": displacement, "composite": composite, "nested": nested}
 for name, transform in transforms.items():
     for suffix in ("h5", "tfm", "txt", "mat"):
         try:

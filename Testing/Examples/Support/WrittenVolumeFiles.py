@@ -52,7 +52,9 @@ def read_nifti(name, source, padding):
     values = numpy.asanyarray(image.dataobj)
     if values.dtype.fields:
         values = numpy.stack([values[name] for name in values.dtype.names], axis=-1)
-    values = values[:, :, :, 0] if values.ndim == 5 else values
+    if values.ndim == 5:
+        values = values[:, :, :, 0]
+        assert SimpleITK.ReadImage(name).GetNumberOfComponentsPerPixel() == values.shape[3], name
     return values.transpose(2, 1, 0, *range(3, values.ndim)), image.affine
 
 
