@@ -370,11 +370,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
         sources = []
         for port in (0, 1, 2):
             if self.GetNumberOfInputConnections(port) > 0:
-                connection = self.GetInputConnection(port, 0)
-                if not connection.GetProducer().GetExecutive().Update(connection.GetIndex()):
-                    raise _native.Error(
-                        f"The input on port {port} cannot be updated: {connection.GetProducer().GetClassName()} failed."
-                    )
+                self._update_input(port)
                 sources.append(self.GetInputInformation(port, 0))
         self._prepare()
         grid = self._deformer.find_output_grid()
@@ -391,6 +387,13 @@ class DeformVolume(VTKPythonAlgorithmBase):
         info.Set(vtkDataObject.SPACING(), grid.spacing[:], 3)
         info.Set(vtkDataObject.DIRECTION(), grid.direction[:], 9)
 
+    def _update_input(self, port):
+        connection = self.GetInputConnection(port, 0)
+        if not connection.GetProducer().GetExecutive().Update(connection.GetIndex()):
+            raise _native.Error(
+                f"The input on port {port} cannot be updated: {connection.GetProducer().GetClassName()} failed."
+            )
+
     def _prepare(self):
         """Passes changed inputs and properties to the deformer."""
         is_deformed = self._input(1) is not None
@@ -403,6 +406,10 @@ class DeformVolume(VTKPythonAlgorithmBase):
         self._deformer.set_outside(_OUTSIDE[settings["OutsideMode"]], settings["FadeDistance"])
         if self.GetNumberOfInputConnections(3) > 0:
             info = self.GetInputInformation(3, 0)
+            if not all(
+                info.Has(key) for key in (vtkDataObject.ORIGIN(), vtkDataObject.SPACING(), vtkDataObject.DIRECTION())
+            ):
+                self._update_input(3)  # only its data have what its source does not announce
             extent = info.Get(vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT())
             image = self._input(3)
             get = lambda key, value: info.Get(key) if info.Has(key) else value  # noqa: E731

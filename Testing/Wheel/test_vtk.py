@@ -326,6 +326,25 @@ class Pipeline(unittest.TestCase):
         with self.assertRaisesRegex(Exception, words):
             self.filter.Update()
 
+    # VTK's executive does not pass on the direction of an image.
+    def test_reference_without_direction(self):
+        from vtkmodules.vtkCommonDataModel import vtkImageData
+        from vtkmodules.vtkFiltersCore import vtkElevationFilter
+
+        grid = vtkImageData()
+        grid.SetExtent(2, 7, -1, 4, 0, 5)
+        grid.SetOrigin(1.0, 2.0, -3.0)
+        grid.SetDirectionMatrix([0.6, -0.8, 0.0, 0.8, 0.6, 0.0, 0.0, 0.0, 1.0])
+        heights = vtkElevationFilter()
+        heights.SetInputDataObject(grid)
+        self.filter.SetDeformationData(make_field(self.SHIFT))
+        self.filter.SetReferenceConnection(heights.GetOutputPort())
+        self.filter.Update()
+        output = self.filter.GetOutputDataObject(0)
+        self.assertEqual(output.GetExtent(), grid.GetExtent())
+        for number in (0, 5, 215):
+            numpy.testing.assert_allclose(output.GetPoint(number), grid.GetPoint(number), atol=1e-12)
+
     # As in the C++ filter, arrays of bits are left out.
     def test_bits(self):
         from vtkmodules.vtkCommonCore import vtkBitArray
