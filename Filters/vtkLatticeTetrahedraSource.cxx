@@ -85,8 +85,7 @@ std::string FrameOfVolume(
     {
       return "The volume has fewer than two voxels on axis " + std::to_string(axis) +
         ". A lattice of a volume needs two on every axis; set Bounds and disconnect the volume (in "
-        "ParaView, take the source Tetrahedral Lattice) to "
-        "mesh a box of your own.";
+        "ParaView, take the source Tetrahedral Lattice) to mesh a box of your own.";
     }
     const glm::dvec3 unit(direction->GetElement(0, axis), direction->GetElement(1, axis),
       direction->GetElement(2, axis));

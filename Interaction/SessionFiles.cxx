@@ -22,6 +22,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <map>
 #include <sstream>
 #include <stdexcept>
 
@@ -59,19 +60,22 @@ public:
       static_cast<std::size_t>(array->GetNumberOfValues()) *
         static_cast<std::size_t>(array->GetDataTypeSize()));
   }
-  void Add(vtkDataSetAttributes* arrays, bool withNames)
+  // The order of the arrays does not matter.
+  void AddByName(vtkDataSetAttributes* arrays)
   {
+    std::map<std::string, vtkDataArray*> named;
     for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
     {
       vtkDataArray* array = arrays->GetArray(i); // null for texts
-      if (array && array->GetName() && withNames)
+      if (array && array->GetName())
       {
-        this->Add(array->GetName(), std::strlen(array->GetName()));
+        named[array->GetName()] = array;
       }
-      if (array)
-      {
-        this->Add(array);
-      }
+    }
+    for (const auto& [name, array] : named)
+    {
+      this->Add(name.data(), name.size());
+      this->Add(array);
     }
   }
   std::string Finish()
@@ -116,7 +120,13 @@ std::string deformvolume::HashInputs(vtkImageData* volume, vtkUnstructuredGrid* 
   hash.Add(volume->GetOrigin(), 3 * sizeof(double));
   hash.Add(volume->GetSpacing(), 3 * sizeof(double));
   hash.Add(volume->GetDirectionMatrix()->GetData(), 9 * sizeof(double));
-  hash.Add(volume->GetPointData(), false);
+  for (int i = 0; i < volume->GetPointData()->GetNumberOfArrays(); ++i)
+  {
+    if (vtkDataArray* array = volume->GetPointData()->GetArray(i))
+    {
+      hash.Add(array);
+    }
+  }
   if (mesh && mesh->GetPoints() && mesh->GetCells())
   {
     hash.Add(mesh->GetPoints()->GetData());
@@ -127,8 +137,8 @@ std::string deformvolume::HashInputs(vtkImageData* volume, vtkUnstructuredGrid* 
   {
     // The model finds its arrays, such as Fixed, by their names.
     Hash arrays;
-    arrays.Add(mesh->GetPointData(), true);
-    arrays.Add(mesh->GetCellData(), true);
+    arrays.AddByName(mesh->GetPointData());
+    arrays.AddByName(mesh->GetCellData());
     text += ' ' + arrays.Finish();
   }
   return text;

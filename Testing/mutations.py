@@ -399,7 +399,7 @@ MUTATIONS = {
                       ["Cxx.TestDeformVolumeSession"]),
     "session-hash": ("Interaction/SessionFiles.cxx", "hash.Add(volume->GetSpacing(), 3 * sizeof(double));", "",
                      ["Cxx.TestDeformVolumeSession"]),
-    "session-fixed": ("Interaction/SessionFiles.cxx", "    arrays.Add(mesh->GetPointData(), true);\n", "",
+    "session-fixed": ("Interaction/SessionFiles.cxx", "    arrays.AddByName(mesh->GetPointData());\n", "",
                       ["Cxx.TestDeformVolumeSession"]),
     "session-field": ("Interaction/SessionPositions.cxx", "step == 1 ? part[axis] : 1.0 - part[axis]",
                       "step == 0 ? part[axis] : 1.0 - part[axis]", ["Cxx.TestDeformVolumeSession"]),

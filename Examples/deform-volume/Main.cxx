@@ -116,22 +116,6 @@ double FindBackground(const Options& options, vtkImageData* volume)
   return range[0] <= range[1] ? range[0] : 0.0;
 }
 
-// Integers hold no NaN, and 0 may be tissue.
-void CheckBackground(const Options& options, vtkImageData* volume)
-{
-  for (int i = 0; i < volume->GetPointData()->GetNumberOfArrays(); ++i)
-  {
-    vtkDataArray* array = volume->GetPointData()->GetArray(i);
-    if (options.Background && std::isnan(*options.Background) && array &&
-      array->GetDataType() != VTK_FLOAT && array->GetDataType() != VTK_DOUBLE)
-    {
-      throw Failure(std::string("--background nan needs a volume of real numbers, and its values "
-                                "are of the type ") +
-        array->GetDataTypeAsString());
-    }
-  }
-}
-
 void SetUp(vtkDeformVolumeFilter* filter, const Options& options, vtkImageData* volume,
   const LabelVolume& labels, vtkImageData* reference, const Deformation& deformation)
 {
@@ -144,7 +128,6 @@ void SetUp(vtkDeformVolumeFilter* filter, const Options& options, vtkImageData* 
       ? vtkDeformVolumeFilter::VOLUME_BOUNDS
       : vtkDeformVolumeFilter::DEFORMED_BOUNDS);
   filter->SetPadding(options.Padding);
-  CheckBackground(options, volume);
   filter->SetBackgroundValue(options.Background.value_or(FindBackground(options, volume)));
   const std::map<std::string, int> resamplers{ { "automatic", vtkDeformVolumeFilter::AUTOMATIC },
     { "exact", vtkDeformVolumeFilter::EXACT },
@@ -280,6 +263,18 @@ void CheckValues(vtkImageData* image, const std::string& path)
   }
 }
 
+// Integers hold no NaN, and 0 may be tissue.
+void CheckBackground(const Options& options, vtkDataArray* scalars)
+{
+  const int type = scalars->GetDataType();
+  if (options.Background && std::isnan(*options.Background) && type != VTK_FLOAT &&
+    type != VTK_DOUBLE)
+  {
+    throw Failure("--background nan needs a volume of real numbers, and the values of " +
+      options.Volume + " are of the type " + scalars->GetDataTypeAsString());
+  }
+}
+
 void DeformVolume(const Options& options, Messages& messages)
 {
   CheckOutputs(options);
@@ -289,6 +284,7 @@ void DeformVolume(const Options& options, Messages& messages)
   const ReadingOptions readingOptions{ options.FileCoordinates, options.Frame };
   Volume volume = ReadVolume(options.Volume, readingOptions, messages, !options.Quiet);
   CheckValues(volume.Image, options.Volume);
+  CheckBackground(options, volume.Image->GetPointData()->GetScalars());
   volume.Axes =
     HeedSpace("--volume-space", options.VolumeSpace, options.Volume, volume.Axes, messages);
   const LabelVolume labels(options, volume, messages);

@@ -306,8 +306,7 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
   program
     .add_option("--carve", raw.Carvings,
       "Carve a sphere out of the volume (world coordinates and units). Voxels within about one "
-      "voxel "
-      "of its surface may stay. May be given several times")
+      "voxel of its surface may stay. May be given several times")
     ->type_name("sphere:X,Y,Z,RADIUS")
     ->take_all()
     ->expected(1)
@@ -433,8 +432,9 @@ void AddResampling(CLI::App& program, Options& options, RawOptions& raw)
     ->group(group);
   program
     .add_option("--background", options.Background,
-      "Value of voxels outside the deformed volume [the minimum of the volume if its type has "
-      "negative values, such as air in CT, otherwise 0; 0 with --labels]")
+      "Value of voxels outside the deformed volume [0 with --labels or if the type of the volume "
+      "has "
+      "no negative values, otherwise the minimum of the volume, such as air in CT]")
     ->type_name("NUMBER")
     ->group(group);
   program

@@ -76,7 +76,6 @@ void vtkDeformVolumeFilter::vtkInternals::FollowImage(vtkImageData* volume)
 {
   if (!deformvolume::IsInMemory(this->Self, 0))
   {
-    this->ImageInMemory = {};
     return;
   }
   const std::pair<const void*, vtkMTimeType> now(volume, volume->vtkObject::GetMTime());

@@ -32,6 +32,7 @@ const ImageGeometry& InputGeometry::Find(
   }
   if (ranks.IsAny(!hasAll && !isKnown && GetNumberOfPoints(announced.PointExtent) > 0))
   {
+    this->Stamp = {}; // in case of an exception
     Extent part = announced.PointExtent;
     if (CanProduceParts(filter, port))
     {

@@ -30,6 +30,13 @@ std::uint64_t CountVoxelsOfSlab(WorkDevice& device, const DeformationSize& size)
   return static_cast<std::uint64_t>(GetNumberOfPoints(slabs.front()));
 }
 
+// Whether a kernel converts the vectors of a field.
+bool IsConvertedByKernel(WorkDevice& device, const DeformationSize& size)
+{
+  return !device.GetDevice().IsProcessor && size.NumberOfTetrahedra == 0 &&
+    size.NumberOfNodes >= VectorReading::LeastPoints;
+}
+
 std::uint64_t CountDeviceMemory(
   WorkDevice& device, const DeformationSize& size, std::uint64_t outputBytesPerVoxel)
 {
@@ -52,10 +59,9 @@ std::uint64_t CountDeviceMemory(
   const std::uint64_t deferred =
     DeferredCells::GetMemory(device, BrickGrid(size.Grid).GetNumberOfBricks());
   const std::uint64_t bits = deferred > 0 ? CountWords(outputVoxels) * 4 : 0;
-  // Vectors of a field that a kernel converts (GPUs).
-  const std::uint64_t vectors = device.GetDevice().IsProcessor || size.NumberOfTetrahedra > 0
-    ? 0
-    : std::min(size.NumberOfNodes, VectorReading::PointsOfPortion) * 3 * sizeof(float);
+  const std::uint64_t vectors = IsConvertedByKernel(device, size)
+    ? std::min(size.NumberOfNodes, VectorReading::PointsOfPortion) * 3 * sizeof(float)
+    : 0;
   // Arrays, states, active tetrahedra and blanking; links or runs of a mesh; arrays and coverage of
   // the output; displacements and tetrahedra.
   return voxels * (sent + 3) + size.MappingBytes + outputVoxels * outputBytesPerVoxel + deferred +
@@ -95,7 +101,8 @@ void CheckMemory(
   CheckDeviceMemory(device, budget, size, outputBytesPerVoxel);
   // Host memory that the caller holds; a CPU device shares it. For other devices, there is a copy
   // of the displacements (DisplacementBuffer).
-  const std::uint64_t copied = shared || size.IsRasterized ? 0 : size.NumberOfNodes * 16;
+  const std::uint64_t copied =
+    shared || size.IsRasterized || IsConvertedByKernel(device, size) ? 0 : size.NumberOfNodes * 16;
   const std::uint64_t host = size.MappingBytes + copied +
     static_cast<std::uint64_t>(GetNumberOfPoints(size.OutputExtent)) * (tuple + 1);
   const std::uint64_t onDevice = shared ? CountDeviceMemory(device, size, outputBytesPerVoxel) : 0;

@@ -180,7 +180,8 @@ void DisplacementSource::SendNodes(
 
 void DisplacementSource::SetField(const DisplacementField& field, const PointRanges* changes)
 {
-  if (GetNumberOfPoints(field) < VectorReading::LeastPoints || !this->Reading.CanConvert(field))
+  if (static_cast<std::size_t>(GetNumberOfPoints(field)) < VectorReading::LeastPoints ||
+    !this->Reading.CanConvert(field))
   {
     this->Reading.Forget();
     this->UseField(field, changes);

@@ -51,7 +51,7 @@ public:
   ///@}
   /// Least number of points for which Convert() of a field is worth it: it takes less time than the
   /// host needs to find the vectors that have changed.
-  static constexpr std::int64_t LeastPoints = std::int64_t{ 1 } << 20;
+  static constexpr std::size_t LeastPoints = std::size_t{ 1 } << 20;
   /// Most points whose vectors are on the device at a time, if they come from host memory.
   static constexpr std::size_t PointsOfPortion = std::size_t{ 1 } << 21;
   /// Bytes on the device.

@@ -90,6 +90,9 @@ call(program, path("a.nii.gz"), *still, "-o", path("f.vti"), "--quiet", "--bound
      "--file-coordinates")
 plain = numpy.column_stack([numpy.diag(volume.GetSpacing()), (0, 0, 0)])
 same(read_vti(path("f.vti")), values, plain)
+call(program, path("mirrored.nii.gz"), *still, "-o", path("f.vti"), "--quiet", "--bounds", "volume",
+     "--file-coordinates")
+same(read_vti(path("f.vti")), get_values(mirrored)[::-1], plain)
 
 # An NRRD file, which the test writes.
 columns = matrix[:, :3]

@@ -25,7 +25,7 @@ written_again = {f"{kind}.{suffix}" for kind, suffix in (
     ("color", "mha"), ("color", "nrrd"), ("vector", "mhd"), ("vector", "nrrd"),
     ("q", "nii.gz"), ("q-mirrored", "nii.gz"),
     ("both", "nii"), ("s-mirrored", "nii"), ("one-mirrored", "nii"), ("both-mirrored", "nii.gz"),
-    ("scaled-form", "nii"),
+    ("scaled-mirrored", "nii"), ("scaled-form", "nii"),
     ("unit1", "nii"), ("two", "nii.gz"), ("RAS", "nhdr"), ("las", "nrrd"))}
 suffixes = ("nii", "nii.gz", "mha", "mhd", "nrrd", "nhdr")
 written = []

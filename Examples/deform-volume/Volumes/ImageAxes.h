@@ -32,8 +32,8 @@ void FlipWorldAxes(vtkImageData* image);
 /// Reverses the order of the slices of an image in its scalars.
 void ReverseSlices(vtkImageData* image);
 
-/// Changes the axes of an image to those with the slices in reverse order. depth: distance of the
-/// last slice from the first one.
+/// Adapts the axes of an image to slices in reverse order. depth: distance of the last slice from
+/// the first one.
 void ReverseSlices(vtkMatrix4x4* axes, double depth);
 
 #endif

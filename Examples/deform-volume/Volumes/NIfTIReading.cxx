@@ -299,15 +299,16 @@ Volume ReadNIfTI(
   {
     Rescale(volume.Image, slope, intercept);
   }
-  // If the axes of the q-form are left-handed, the reader reverses the order of the slices. The
-  // result shall have the grid of the file.
+  if (options.FileCoordinates)
+  {
+    return volume;
+  }
+  // If the axes of the q-form are left-handed, or without a q-form those of the s-form, the reader
+  // reverses the order of the slices. The result shall have the grid of the file.
   if (reader->GetQFac() < 0.0)
   {
     ReverseSlices(volume.Image);
   }
-  if (!options.FileCoordinates)
-  {
-    Place(volume, reader, path, millimetres, messages);
-  }
+  Place(volume, reader, path, millimetres, messages);
   return volume;
 }

@@ -181,10 +181,11 @@ void WriteNIfTI(
     // reverses them again.
     if (qform->Determinant() < 0.0)
     {
-      const int steps = image->GetDimensions()[2] - 1;
+      // The writer moves both forms back by the spacing of the image.
+      const double depth = (image->GetDimensions()[2] - 1) * image->GetSpacing()[2];
       ReverseSlices(image);
-      ReverseSlices(axes, steps * image->GetSpacing()[2]);
-      ReverseSlices(qform, steps * (forms.QForm ? forms.QSpacing : image->GetSpacing())[2]);
+      ReverseSlices(axes, depth);
+      ReverseSlices(qform, depth);
       writer->SetQFac(-1.0);
     }
     writer->SetQFormMatrix(qform);

@@ -217,6 +217,7 @@ write_nifti("both.nii", values, oblique, other, codes=(4, 1))
 write_nifti("s-mirrored.nii", values, mirrored, other)
 write_nifti("one-mirrored.nii", values, oblique, mirrored)
 write_nifti("both-mirrored.nii.gz", values, mirrored, mirrored)
+write_nifti("scaled-mirrored.nii", values, make_place(turn(0, 30), (2, 3, 4)), mirrored, codes=(2, 1))
 write_nifti("scaled-form.nii", values, make_place(turn(0, 30), (2, 3, 4)), other, codes=(2, 1))
 write_nifti("neither.nii", values, pixdim=(1, 2, 3, 4, 1, 1, 1, 1))
 write_nifti("two.nii", values, oblique, kind=nibabel.Nifti2Image)
@@ -230,7 +231,7 @@ extended = nibabel.Nifti1Image(values, oblique)
 extended.header.extensions.append(nibabel.nifti1.Nifti1Extension("comment", b"x" * 1000))
 nibabel.save(extended, path("extended.nii"))
 for name in ("q.nii.gz", "q-mirrored.nii.gz", "both.nii", "s-mirrored.nii", "one-mirrored.nii",
-             "both-mirrored.nii.gz", "scaled-form.nii", "neither.nii", "two.nii", "two.nii.gz", "color.nii",
+             "both-mirrored.nii.gz", "scaled-mirrored.nii", "scaled-form.nii", "neither.nii", "two.nii", "two.nii.gz", "color.nii",
              "vectors.nii", "big.nii", "extended.nii"):
     add_nifti(name)
 for unit, millimetres in ((1, 1000), (3, 0.001), (0, 1)):
