@@ -370,6 +370,13 @@ TEST_F(LargeField, VectorsOnTheDeviceFollow)
   std::reverse(this->Vectors.begin(), this->Vectors.end());
   this->Deformer.SetDisplacementField(this->Field);
   this->Deform();
+  const PointRanges first{ { { 0, 1 } } };
+  for (int edit = 0; edit < 2; ++edit)
+  {
+    this->Vectors[0] += 0.25F;
+    this->Deformer.SetDisplacementField(this->Field, &first);
+    this->Deform();
+  }
   this->Vectors = before;
   moveLast();
 }
