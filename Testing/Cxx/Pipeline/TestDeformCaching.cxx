@@ -78,8 +78,9 @@ void TestCounters()
   counted.Volume->GetPointData()->GetScalars()->SetComponent(5, 0, 17.0);
   counted.Volume->GetPointData()->GetScalars()->Modified();
   counted.Expect("values of the volume", 0, 1);
+  // The time of an image in memory may also stand for values that were written.
   counted.Volume->SetOrigin(0.5, 0.0, 0.0);
-  counted.Expect("origin of the volume", 1, 0);
+  counted.Expect("origin of the volume", 1, 1);
 
   counted.Mesh->GetPoints()->SetPoint(0, -2.0, -2.0, -2.0);
   counted.Mesh->GetPoints()->Modified();
