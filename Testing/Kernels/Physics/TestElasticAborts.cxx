@@ -34,6 +34,8 @@ constexpr int Shrinking = 2;
 constexpr double LongestPause = 0.05;
 constexpr int Shrinking = 1;
 #endif
+// On slow machines: as a part of the time of the whole call.
+constexpr double LongestShare = 0.1;
 
 // A lattice with randomly moved nodes, fixed at one end.
 ElasticBody MakeBody(const Place& nodes)
@@ -86,6 +88,14 @@ public:
     return this->Longest;
   }
 
+  /// Returns the longest time, relative to that which is allowed.
+  double GetExcess()
+  {
+    const double longest = this->GetLongestPause();
+    const double all = static_cast<double>(this->Last - this->First) / CLOCKS_PER_SEC;
+    return longest / std::max(LongestPause, LongestShare * all);
+  }
+
   int Allowed = std::numeric_limits<int>::max();
   int Number = 0;
 
@@ -97,14 +107,15 @@ private:
     this->Last = now;
   }
 
-  std::clock_t Last = std::clock();
+  std::clock_t First = std::clock();
+  std::clock_t Last = this->First;
   double Longest = 0.0;
 };
 
 } // namespace
 
-// On a virtual machine, the processor time also contains that of other machines. What remains in
-// the shortest of three runs is that of the model.
+// Virtual machines may take several times as long to provide memory, so that the shortest pauses of
+// three runs count.
 TEST(ElasticAborts, FiniteElementsCallProgressOften)
 {
   const ElasticBody body = MakeBody({ 16, 16, 31 });
@@ -116,7 +127,7 @@ TEST(ElasticAborts, FiniteElementsCallProgressOften)
     {
       Questions questions;
       model.SetBody(body, [&] { return questions.Ask(); });
-      ofBody = std::min(ofBody, questions.GetLongestPause());
+      ofBody = std::min(ofBody, questions.GetExcess());
       EXPECT_GT(questions.Number, 5);
     }
     // The first linear system builds the multigrid hierarchy.
@@ -127,11 +138,12 @@ TEST(ElasticAborts, FiniteElementsCallProgressOften)
     Questions questions;
     request.Progress = [&] { return questions.Ask(); };
     model.Solve(request);
-    ofSolution = std::min(ofSolution, questions.GetLongestPause());
+    ofSolution = std::min(ofSolution, questions.GetExcess());
     EXPECT_GT(questions.Number, 10);
   }
-  EXPECT_LT(ofBody, LongestPause);
-  EXPECT_LT(ofSolution, LongestPause);
+  std::cout << ofBody << " and " << ofSolution << " of the allowed pauses\n";
+  EXPECT_LT(ofBody, 1.0);
+  EXPECT_LT(ofSolution, 1.0);
 }
 
 TEST(ElasticAborts, AbortedSettersKeepTheLastBody)
