@@ -2,17 +2,14 @@
 #include "KernelProcessor.h"
 
 #include "Error.h"
+#include "InstructionSets.h"
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
-#include <initializer_list>
 
-#if defined(__x86_64__) && defined(__GNUC__)
-#include <cpuid.h>
-#endif
 #include <dlfcn.h>
 #include <elf.h>
 #include <fcntl.h>
@@ -24,68 +21,14 @@ namespace deformvolume
 namespace
 {
 
-#if defined(__x86_64__) && defined(__GNUC__)
-struct Registers
-{
-  unsigned int A = 0;
-  unsigned int B = 0;
-  unsigned int C = 0;
-  unsigned int D = 0;
-};
-
-Registers Ask(unsigned int leaf)
-{
-  Registers registers;
-  __get_cpuid_count(leaf, 0, &registers.A, &registers.B, &registers.C, &registers.D);
-  return registers;
-}
-
-bool HasBits(unsigned int value, std::initializer_list<int> bits)
-{
-  return std::all_of(bits.begin(), bits.end(), [&](int bit) { return value >> bit & 1U; });
-}
-
-/// Returns the register sets that the operating system saves (XCR0). Programs cannot use the other
-/// register sets.
-unsigned int GetSavedRegisters()
-{
-  unsigned int low = 0;
-  unsigned int high = 0;
-  __asm__("xgetbv" : "=a"(low), "=d"(high) : "c"(0));
-  return low;
-}
-
 /// Returns the processor of the built-in functions that PoCL selects, by the rules of
 /// getX86KernelLibName in PoCL's pocl_llvm_build.cc. Null for processors without AVX2, all of which
 /// LLVM 14 recognizes.
 const char* GetProcessor()
 {
-  const unsigned int first = Ask(1).C;
-  const unsigned int seventh = Ask(7).B;
-  if (!HasBits(first, { 27 })) // OSXSAVE
-  {
-    return nullptr;
-  }
-  const unsigned int saved = GetSavedRegisters();
-  const bool hasAVX = HasBits(first, { 28 }) && HasBits(saved, { 1, 2 });
-  if (hasAVX && HasBits(seventh, { 16 }) && HasBits(saved, { 5, 6, 7 }))
-  {
-    return "skylake-avx512";
-  }
-  // Leaf 1: FMA, CMPXCHG16B, POPCNT, F16C. Leaf 7: BMI1, AVX2, BMI2. Leaf 0x80000001: LZCNT.
-  if (hasAVX && HasBits(first, { 12, 13, 23, 29 }) && HasBits(seventh, { 3, 5, 8 }) &&
-    HasBits(Ask(0x80000001).C, { 5 }))
-  {
-    return "haswell";
-  }
-  return nullptr;
+  const InstructionSets sets = FindInstructionSets();
+  return sets.AVX512 ? "skylake-avx512" : sets.Haswell ? "haswell" : nullptr;
 }
-#else
-const char* GetProcessor()
-{
-  return nullptr;
-}
-#endif
 
 /// Whether kernels that are compiled for a processor can call built-in functions with AVX-512. If
 /// they cannot, LLVM terminates the process. recognized: the name of the processor in LLVM 14.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Lanes.h"
 
+#include "InstructionSets.h"
+
 #include <atomic>
 
 namespace deformvolume
@@ -10,11 +12,7 @@ namespace
 
 bool FindWideLanes()
 {
-#if DEFORMVOLUME_HAS_AVX2_CODE
-  return __builtin_cpu_supports("avx2");
-#else
-  return false;
-#endif
+  return DEFORMVOLUME_HAS_AVX2_CODE && FindInstructionSets().AVX2;
 }
 
 std::atomic<bool>& AreUsed()

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The memory and processors that a process may use, under the limits of control groups as systems
-// and containers set them; and exceptions in threads.
+// and containers set them; instruction sets; and exceptions in threads.
 #include "ControlGroups.h"
+#include "InstructionSets.h"
 #include "ParallelFor.h"
 #include "Processors.h"
 #include "SystemMemory.h"
@@ -15,7 +16,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <new>
+#include <set>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -179,6 +183,28 @@ TEST_F(SystemLimits, ProcessesShareTheProcessors)
     0, 50, 1, [&](std::int64_t, std::int64_t) { EXPECT_EQ(std::this_thread::get_id(), here); });
   SetProcessesHere(1);
   EXPECT_EQ(GetProcessorShare(), all);
+}
+
+// The kernel of the system lists the instruction sets that programs may use.
+TEST(InstructionSets, AreThoseThatTheSystemLists)
+{
+  std::ifstream file("/proc/cpuinfo");
+  std::string line;
+  while (std::getline(file, line) && line.rfind("flags\t", 0) != 0)
+  {
+  }
+  std::istringstream words(line);
+  const std::set<std::string> flags{ std::istream_iterator<std::string>(words), {} };
+  const auto hasAll = [&](const std::vector<std::string>& names)
+  {
+    return std::all_of(
+      names.begin(), names.end(), [&](const std::string& name) { return flags.count(name) != 0; });
+  };
+  const InstructionSets sets = FindInstructionSets();
+  EXPECT_EQ(sets.AVX2, hasAll({ "avx2" }));
+  EXPECT_EQ(
+    sets.Haswell, hasAll({ "avx2", "fma", "bmi1", "bmi2", "abm", "f16c", "popcnt", "cx16" }));
+  EXPECT_EQ(sets.AVX512, hasAll({ "avx512f" }));
 }
 
 // An exception in a thread reaches the caller once, and the remaining parts are skipped. Later
