@@ -3,10 +3,51 @@
 
 #include "Error.h"
 
+#include <optional>
 #include <string>
 
 namespace deformvolume
 {
+namespace
+{
+
+/// What mesh rasterization cannot do, and how it becomes possible.
+struct Obstacle
+{
+  const char* Subject;
+  const char* Remedy;
+};
+
+std::optional<Obstacle> FindObstacle(const ResamplerWish& wish)
+{
+  if (wish.Deformation == ResamplerWish::Kinds::ForwardField)
+  {
+    return Obstacle{ "forward displacement fields", "connect a tetrahedral mesh" };
+  }
+  if (wish.Outside.AreExtrapolated())
+  {
+    return Obstacle{ "the outside mode EXTRAPOLATE", "OutsideMode to DISCARD" };
+  }
+  if (wish.Outside.AreKept())
+  {
+    return Obstacle{ "the outside mode KEEP", "OutsideMode to DISCARD" };
+  }
+  if (wish.HasSmoothCut)
+  {
+    return Obstacle{ "smooth cuts", "SmoothCut of vtkCutVolume to off" };
+  }
+  if (wish.NeedsJacobian)
+  {
+    return Obstacle{ "Jacobians of meshes", "GenerateJacobian to off and no density arrays" };
+  }
+  if (wish.CountsFolds)
+  {
+    return Obstacle{ "fold counts of meshes", "GenerateFoldCount to off" };
+  }
+  return std::nullopt;
+}
+
+} // namespace
 
 Resampling ChooseResampler(const ResamplerWish& wish, const std::function<bool(Resampling)>& fits)
 {
@@ -27,28 +68,17 @@ Resampling ChooseResampler(const ResamplerWish& wish, const std::function<bool(R
     }
     return Resampling::MeshRasterization;
   }
-  const std::string obstacle = wish.Deformation == ResamplerWish::Kinds::ForwardField
-    ? "forward displacement fields. Set Resampler to EXACT, or connect a tetrahedral mesh"
-    : wish.Outside.AreExtrapolated()
-    ? "the outside mode EXTRAPOLATE. Set Resampler to EXACT, or OutsideMode to DISCARD"
-    : wish.Outside.AreKept()
-    ? "the outside mode KEEP. Set Resampler to EXACT, or OutsideMode to DISCARD"
-    : wish.HasSmoothCut ? "smooth cuts. Set Resampler to EXACT, or SmoothCut of vtkCutVolume to off"
-    : wish.NeedsJacobian
-    ? "Jacobians of meshes. Set Resampler to EXACT, or GenerateJacobian to off and no density "
-      "arrays"
-    : wish.CountsFolds
-    ? "fold counts of meshes. Set Resampler to EXACT, or GenerateFoldCount to off"
-    : "";
-  if (!obstacle.empty() && wish.Method == Resampling::MeshRasterization)
+  const std::optional<Obstacle> obstacle = FindObstacle(wish);
+  if (obstacle && wish.Method == Resampling::MeshRasterization)
   {
-    throw Error("The resampler MESH_RASTERIZATION cannot do " + obstacle + ".");
+    throw Error(std::string("The resampler MESH_RASTERIZATION cannot do ") + obstacle->Subject +
+      ". Set Resampler to EXACT, or " + obstacle->Remedy + ".");
   }
   if (wish.Method)
   {
     return *wish.Method;
   }
-  return obstacle.empty() && !fits(Resampling::Exact) && fits(Resampling::MeshRasterization)
+  return !obstacle && !fits(Resampling::Exact) && fits(Resampling::MeshRasterization)
     ? Resampling::MeshRasterization
     : Resampling::Exact;
 }
