@@ -100,13 +100,30 @@ private:
   void CompareRow(const MaskValues& last, const MaskValues& next, int y, int z)
   {
     const std::size_t index = this->GetIndex(y, z);
-    for (int x = 0; x < this->Size[0]; ++x)
+    for (std::size_t cuboid = 0; cuboid < this->Boxes.size(); ++cuboid)
     {
-      const std::size_t i = index + static_cast<std::size_t>(x);
-      if (last.Get(i) != next.Get(i))
+      int first = static_cast<int>(cuboid) * DEFORMVOLUME_CUBOID_X;
+      int end = std::min(first + DEFORMVOLUME_CUBOID_X, this->Size[0]);
+      if (!AreDifferent(last, next, index + static_cast<std::size_t>(first),
+            static_cast<std::size_t>(end - first)))
       {
-        Add(this->Boxes[static_cast<std::size_t>(x / DEFORMVOLUME_CUBOID_X)], x, y, z);
+        continue;
       }
+      const auto isSame = [&](int x)
+      {
+        const std::size_t i = index + static_cast<std::size_t>(x);
+        return last.Get(i) == next.Get(i);
+      };
+      while (isSame(first))
+      {
+        ++first;
+      }
+      while (isSame(end - 1))
+      {
+        --end;
+      }
+      Add(this->Boxes[cuboid], first, y, z);
+      Add(this->Boxes[cuboid], end - 1, y, z);
     }
   }
 
