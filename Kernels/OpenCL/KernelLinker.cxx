@@ -207,7 +207,11 @@ bool CheckKernelLinker(const std::string& version, bool isAdded)
   }
   static std::once_flag isChecked;
   static auto* const problem = new std::string;
-  std::call_once(isChecked, [] { *problem = Try("ld"); });
+  // Without the variable, this library would search the default path of the system, and PoCL
+  // nothing: it would terminate the process.
+  std::call_once(isChecked,
+    []
+    { *problem = std::getenv("PATH") ? Try("ld") : "the environment variable PATH is not set"; });
   std::string words = *problem;
   if (words.empty() && choice != "own")
   {
