@@ -2,8 +2,11 @@
 """The class Deformer, which keeps a volume on a device, and the function deform()."""
 
 import ctypes
+import math
+import operator
 import os
 import signal
+import sys
 import threading
 import warnings as python_warnings
 import weakref
@@ -28,7 +31,7 @@ class Grid(NamedTuple):
     """4 x 4 matrix from the index (i, j, k, 1) of a voxel to its world coordinates"""
 
 
-@dataclass
+@dataclass(eq=False)  # "==" of arrays is not True or False
 class Mesh:
     """A deformation mesh: points at rest, cells, and displacements of the points.
 
@@ -44,7 +47,7 @@ class Mesh:
     displacements: Optional[numpy.ndarray] = None
 
 
-@dataclass
+@dataclass(eq=False)
 class Field:
     """A displacement field: a vector at each point of its grid, with linear interpolation between the points.
 
@@ -61,7 +64,7 @@ class Field:
     inverse: bool = False
 
 
-@dataclass
+@dataclass(eq=False)
 class Deformed:
     """The result of deform().
 
@@ -102,6 +105,16 @@ def _flag(value, what: str) -> int:
     if not isinstance(value, (bool, int, numpy.bool_, numpy.integer)):
         raise TypeError(f"{what} is {value!r}. Give True or False.")
     return int(bool(value))
+
+
+def _warn(text: str) -> None:
+    """Warns about the line that has called this package."""
+    level = 2
+    caller = sys._getframe(1)  # pylint: disable=protected-access
+    while caller is not None and os.path.dirname(caller.f_code.co_filename) == os.path.dirname(__file__):
+        caller = caller.f_back
+        level += 1
+    python_warnings.warn(text, DeformationWarning, stacklevel=level)
 
 
 class _Interrupts:
@@ -157,7 +170,8 @@ def _grid_of(shape: Sequence[int], matrix, what: str) -> _structs.Grid:
 
 def _cells(cells):
     """Returns connectivity, types and offsets. Types and offsets are None for tetrahedra."""
-    if isinstance(cells, tuple) and len(cells) == 2:
+    # Two tetrahedra may be a tuple, too; then the elements of the second one are numbers.
+    if isinstance(cells, tuple) and len(cells) == 2 and not (len(cells[1]) == 4 and numpy.ndim(cells[1]) == 1):
         types, lists = cells
         types = numpy.asarray(types)
         lengths = [len(points) for points in lists]
@@ -257,7 +271,10 @@ class Deformer:
             affine: 4 x 4 matrix from the index (i, j, k, 1) of a voxel to world coordinates.
             categorical: whether arrays hold labels, which are not interpolated; one value for all arrays, or one for
                 each.
-            background: value of voxels outside the deformed volume; one value for all arrays, or one for each.
+            background: value of voxels outside the deformed volume; one value for all arrays, or one for each. In
+                arrays of integers it is rounded, and limited to the range of the type.
+
+        Masks and the deformation are kept if the grid stays the same. Masks are removed if it changes.
         """
         listed = list(arrays) if isinstance(arrays, (list, tuple)) else [arrays]
         images = [_arrays.image(array, f"Array {number} of the volume") for number, array in enumerate(listed)]
@@ -297,6 +314,8 @@ class Deformer:
             struct.components = image.shape[3] if image.ndim == 4 else 1
             struct.categorical = _flag(is_label, "categorical")
             struct.background = float(value)
+            if math.isnan(struct.background) and image.dtype.kind in "iu":
+                raise ValueError(f"The background is {value}, which an array of the type {image.dtype} cannot hold.")
         with self._lock:
             self._call("dv_set_volume", ctypes.byref(grid))
             self._call("dv_set_arrays", len(images), structs)
@@ -306,9 +325,14 @@ class Deformer:
             self._shape = tuple(extent[2 * axis + 1] - extent[2 * axis] + 1 for axis in range(3))
 
     def set_blanked(self, blanked: Optional[numpy.ndarray]) -> None:
-        """Sets a mask of voxels that are left out (True); axes x, y, z. None: no voxel is left out."""
-        # Compared with 0 before the conversion to 8 bits, in which 256 would be 0.
-        self.set_masks(blanked=None if blanked is None else _arrays.image(blanked, "The mask of blanked voxels") != 0)
+        """Sets a mask of voxels that are left out (True); axes x, y, z. None: no voxel is left out. Other masks stay
+        as they are."""
+        mask = None
+        if blanked is not None:
+            # Compared with 0 before the conversion to 8 bits, in which 256 would be 0.
+            blanked = _arrays.image(blanked, "The mask of blanked voxels") != 0
+            mask = self._take_mask(blanked, self._shape or (), numpy.uint8, "blanked voxels")
+        self._set_mask("dv_set_blanked", mask)
 
     def set_masks(self, *, blanked=None, active=None, boundary=None, cut=None, cut_distances=None) -> None:
         """Sets masks with the axes z, y, x. None: no mask.
@@ -320,39 +344,41 @@ class Deformer:
             cut: bits of the tetrahedra of each cell that a smooth cut crosses.
             cut_distances: signed distances of voxels from the sheet of that cut.
         """
-        voxels = self._shape or (0, 0, 0)
-        cells = tuple(max(0, number - 1) for number in voxels)
-
-        def take(array, shape, dtype, what):
-            if array is None:
-                return None
-            if self._shape is None:
-                raise ValueError(f"There is no volume. Set it before the mask of {what}.")
-            given = numpy.asarray(array)
-            array = numpy.ascontiguousarray(given, dtype=dtype)
-            if dtype == numpy.uint8 and not numpy.array_equal(array, given):
-                raise ValueError(f"The mask of {what} has values that are not integers from 0 to 255.")
-            if array.shape != shape[::-1]:
-                raise ValueError(
-                    f"The mask of {what} has the shape {array.shape[::-1]}. For this volume it must have the shape "
-                    f"{shape}."
-                )
-            return array
-
+        voxels = self._shape or ()
+        cells = tuple(number - 1 for number in voxels)
+        blanked = None if blanked is None else numpy.asarray(blanked) != 0
         masks = (
-            take(None if blanked is None else numpy.asarray(blanked) != 0, voxels, numpy.uint8, "blanked voxels"),
-            take(active, cells, numpy.uint8, "active tetrahedra"),
-            take(boundary, voxels, numpy.float32, "boundary distances"),
-            take(cut, cells, numpy.uint8, "cut tetrahedra"),
-            take(cut_distances, voxels, numpy.float32, "cut distances"),
+            self._take_mask(blanked, voxels, numpy.uint8, "blanked voxels"),
+            self._take_mask(active, cells, numpy.uint8, "active tetrahedra"),
+            self._take_mask(boundary, voxels, numpy.float32, "boundary distances"),
+            self._take_mask(cut, cells, numpy.uint8, "cut tetrahedra"),
+            self._take_mask(cut_distances, voxels, numpy.float32, "cut distances"),
         )
-        pointers = [None if mask is None else _structs.address(mask) for mask in masks]
         with self._lock:
-            self._call("dv_set_blanked", pointers[0])
-            self._call("dv_set_active_tetrahedra", pointers[1])
-            self._call("dv_set_boundary_distances", pointers[2])
-            self._call("dv_set_smooth_cut", pointers[3], pointers[4])
-            self._borrowed["masks"] = masks, [_arrays.pin(mask) for mask in masks if mask is not None]
+            self._set_mask("dv_set_blanked", masks[0])
+            self._set_mask("dv_set_active_tetrahedra", masks[1])
+            self._set_mask("dv_set_boundary_distances", masks[2])
+            self._set_mask("dv_set_smooth_cut", masks[3], masks[4])
+
+    def _take_mask(self, mask, shape, dtype, what):
+        """Returns a checked mask with the axes z, y, x. shape: x, y, z."""
+        if mask is None:
+            return None
+        if self._shape is None:
+            raise ValueError(f"There is no volume. Set it before the mask of {what}.")
+        taken = numpy.ascontiguousarray(mask, dtype=dtype)
+        if dtype == numpy.uint8 and not numpy.array_equal(taken, mask):
+            raise ValueError(f"The mask of {what} has values that are not integers from 0 to 255.")
+        if taken.shape != shape[::-1]:
+            raise ValueError(
+                f"The mask of {what} has the shape {taken.shape[::-1]}. For this volume it must have the shape {shape}."
+            )
+        return taken
+
+    def _set_mask(self, function: str, *masks) -> None:
+        with self._lock:
+            self._call(function, *[None if mask is None else _structs.address(mask) for mask in masks])
+            self._borrowed[function] = masks, [_arrays.pin(mask) for mask in masks if mask is not None]
 
     def set_deformation(self, deformation: Union[Mesh, Field]) -> None:
         """Sets the mesh or the field that deforms the volume. Replaces the previous one."""
@@ -420,7 +446,7 @@ class Deformer:
             grid=ctypes.pointer(grid),
             vectors=vectors.ctypes.data,
             type=_structs.type_of(vectors),
-            inverse=int(bool(inverse)),
+            inverse=_flag(inverse, "inverse"),
         )
         with self._lock:
             self._call("dv_set_field", ctypes.byref(struct))
@@ -434,8 +460,10 @@ class Deformer:
             mode: "discard": they are left out. "extrapolate": they move with the nearest part of the mesh or field.
                 "keep": they stay where they are, and the displacement of the boundary fades to zero over
                 fade_distance.
-            fade_distance: in world units, 0 or more. With 0, nothing outside moves.
+            fade_distance: in world units, 0 or more. With 0, nothing outside moves. Only for "keep".
         """
+        if mode != "keep" and fade_distance != 0:
+            raise ValueError(f'The fade distance is {fade_distance}, but has no effect with outside="{mode}".')
         self._call("dv_set_outside", _choose(mode, _structs.OUTSIDE, "outside"), float(fade_distance))
 
     def set_reference(self, reference: Optional[Grid]) -> None:
@@ -449,8 +477,9 @@ class Deformer:
                 "matrix, such as (image.shape, image.affine)."
             )
         shape, matrix = reference
+        shape = tuple(map(operator.index, shape))
         if len(shape) != 3 or min(shape) < 1:
-            raise ValueError(f"The shape of the reference is {tuple(shape)}. Give three numbers of at least 1.")
+            raise ValueError(f"The shape of the reference is {shape}. Give three numbers of at least 1.")
         self.set_reference_grid(_grid_of(shape, matrix, "the affine matrix of the reference"))
 
     def set_reference_grid(self, grid: _structs.Grid) -> None:
@@ -469,12 +498,13 @@ class Deformer:
         Args:
             bounds: "deformed": those of the deformed volume. "volume": those of the volume at rest. Or six numbers: x
                 min, x max, y min, y max, z min, z max, in world coordinates.
-            padding: width of a border on each side, in voxels.
+            padding: width of a border on each side, in voxels. A negative width crops the output.
             spacing: three numbers in world units; None: that of the volume.
         """
+        padding = operator.index(padding)
         if not -(2**31) < padding < 2**31:
             raise ValueError(f"The padding is {padding} voxels. Give a smaller number.")
-        struct = _structs.Output(padding=int(padding))
+        struct = _structs.Output(padding=padding)
         if isinstance(bounds, str):
             names = {name: _structs.BOUNDS[name] for name in ("deformed", "volume")}
             struct.bounds_mode = _choose(bounds, names, "bounds")
@@ -524,6 +554,11 @@ class Deformer:
             DeformationWarning: cells of the mesh are ignored, or a part of the volume cannot be deformed. Folds cause
                 no warning: see Deformed.counts["number_of_inverted_tetrahedra"].
         """
+        wanted = {
+            "rest_positions": _flag(rest_positions, "rest_positions"),
+            "jacobian": _flag(jacobian, "jacobian"),
+            "fold_count": _flag(fold_count, "fold_count"),
+        }
         with self._lock:
             grid = self.find_output_grid()
             shape = tuple(grid.extent[2 * axis + 1] - grid.extent[2 * axis] + 1 for axis in range(3))
@@ -532,9 +567,9 @@ class Deformer:
             ]
             coverage = numpy.empty(shape[::-1], numpy.int8)
             extra = {
-                "rest_positions": numpy.empty(shape[::-1] + (3,), numpy.float32) if rest_positions else None,
-                "jacobian": numpy.empty(shape[::-1], numpy.float32) if jacobian else None,
-                "fold_count": numpy.zeros(shape[::-1], numpy.uint32) if fold_count else None,
+                "rest_positions": numpy.empty(shape[::-1] + (3,), numpy.float32) if wanted["rest_positions"] else None,
+                "jacobian": numpy.empty(shape[::-1], numpy.float32) if wanted["jacobian"] else None,
+                "fold_count": numpy.zeros(shape[::-1], numpy.uint32) if wanted["fold_count"] else None,
             }
             report = self.run(
                 outputs,
@@ -547,7 +582,7 @@ class Deformer:
             text = report.warnings.decode("utf-8", "replace") if report.warnings else ""
             device = report.device.decode("utf-8", "replace") if report.device else ""
         if text:
-            python_warnings.warn(text, DeformationWarning, stacklevel=2)
+            _warn(text)
         origin = numpy.asarray(grid.origin[:])
         direction = numpy.asarray(grid.direction[:]).reshape(3, 3)
         first = numpy.asarray(grid.spacing[:]) * numpy.asarray(grid.extent[0::2])
@@ -641,6 +676,7 @@ def deform(
     rest_positions: bool = False,
     jacobian: bool = False,
     fold_count: bool = False,
+    extra_background: float = 0.0,
     device: str = "",
     progress: Optional[Callable[[float], object]] = None,
 ) -> Deformed:
@@ -653,7 +689,7 @@ def deform(
         reference: the grid of the output; None: given by bounds, padding and spacing, see Deformer.set_output().
         categorical, background: see Deformer.set_volume().
         outside, fade_distance: see Deformer.set_outside().
-        interpolation, rest_positions, jacobian, fold_count, progress: see Deformer.deform().
+        interpolation, rest_positions, jacobian, fold_count, extra_background, progress: see Deformer.deform().
         device: see Deformer.
 
     Returns:
@@ -688,5 +724,6 @@ def deform(
         rest_positions=rest_positions,
         jacobian=jacobian,
         fold_count=fold_count,
+        extra_background=extra_background,
         progress=progress,
     )

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """`image.deformvolume.deform(mesh)` for pyvista's images. Importing this module registers it."""
 
+from collections.abc import Iterable
+
 import pyvista
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
@@ -46,6 +48,12 @@ def deform(image, deformation, *, vectors=None, rest=None, reference=None, categ
     for what, given in (("image", image), ("deformation", deformation), ("rest", rest), ("reference", reference)):
         if given is not None and not isinstance(given, vtkDataObject):
             raise TypeError(f"{what} is a {type(given).__name__}. Give a data set of pyvista or VTK.")
+    if isinstance(categorical, str) or not isinstance(categorical, Iterable):
+        raise TypeError(f"categorical is {categorical!r}. Give a list of names of arrays.")
+    categorical = list(categorical)
+    unknown = [name for name in categorical if name not in image.point_data]
+    if unknown:
+        raise ValueError(f"The image has no point arrays {unknown}, which categorical names.")
     deformer = DeformVolume()
     deformer.SetInputDataObject(0, image)
     deformer.SetDeformationData(deformation)

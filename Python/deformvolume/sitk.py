@@ -65,7 +65,7 @@ def deform(
                 f"The transform is of the type {deformation.GetName()}. Give a DisplacementFieldTransform, "
                 "or the image that SimpleITK.TransformToDisplacementField() makes of the transform."
             ) from error
-    is_inverse = False
+    is_inverse = isinstance(deformation, _deformer.Field) and deformation.inverse
     if isinstance(deformation, SimpleITK.Image):
         _check_image(deformation, "The displacement field")
         vectors = numpy.ascontiguousarray(SimpleITK.GetArrayViewFromImage(deformation))
@@ -77,7 +77,7 @@ def deform(
             )
         if vectors.dtype not in (numpy.float32, numpy.float64):
             vectors = vectors.astype(numpy.float64)
-        is_inverse = bool(inverse)
+        is_inverse = inverse
         deformer.set_field_grid(_grid_of(deformation, "The displacement field"), vectors, is_inverse)
     else:
         deformer.set_deformation(deformation)

@@ -95,7 +95,8 @@ class DeformVolume(VTKPythonAlgorithmBase):
         FadeDistance: with KEEP, the distance over which the displacement of the boundary fades to zero, in world units;
             0 by default.
         Interpolation: LINEAR_INTERPOLATION (default), CUBIC_INTERPOLATION or NEAREST_INTERPOLATION.
-        BackgroundValue: value of voxels outside the deformed volume; 0 by default.
+        BackgroundValue: value of voxels outside the deformed volume; 0 by default. In arrays of integers it is
+            rounded, and limited to the range of the type; NaN becomes 0.
         FieldIsInverse: whether a field leads from the output to the volume; off by default.
         OutputBoundsMode: DEFORMED_BOUNDS (default) or VOLUME_BOUNDS.
         GenerateRestPositions, GenerateJacobian, GenerateFoldCount: whether the output has the arrays RestPosition,
@@ -105,9 +106,9 @@ class DeformVolume(VTKPythonAlgorithmBase):
 
     The output is vtkImageData with the arrays of the volume and "vtkValidPointMask": 1 for voxels that the deformed
     volume covers. Updates read the whole inputs. If they have several time steps, the grid of the output must be the
-    same at all of them: use VOLUME_BOUNDS or a reference image. Update() raises an exception for each error, and
-    KeyboardInterrupt after Ctrl-C or SetAbortExecute(1); the output is then empty. If the filter is updated by a
-    downstream filter, VTK prints the error.
+    same at all of them: use VOLUME_BOUNDS or a reference image. Update() and UpdateTimeStep(), UpdateWholeExtent(),
+    UpdateExtent() and UpdatePiece() raise an exception for each error, and KeyboardInterrupt after Ctrl-C or
+    SetAbortExecute(1); the output is then empty. If the filter is updated by a downstream filter, VTK prints the error.
     """
 
     DISCARD, EXTRAPOLATE, KEEP = range(3)
@@ -186,6 +187,8 @@ class DeformVolume(VTKPythonAlgorithmBase):
 
     def AddCategoricalArray(self, name):
         """Treats the array of this name as labels, which are not interpolated."""
+        if not isinstance(name, str):
+            raise TypeError(f"The name of the array is {name!r}. Give a text.")
         if name not in self._categorical:
             self._categorical.add(name)
             self.Modified()
@@ -233,6 +236,29 @@ class DeformVolume(VTKPythonAlgorithmBase):
     def Update(self, *arguments):
         """Updates the output. Raises an exception after an error, also if an input cannot be updated. The output is
         then empty."""
+        if arguments in ((), (0,)):
+            self._update(self.GetExecutive().Update)
+        else:
+            self._update(lambda: super(DeformVolume, self).Update(*arguments))
+
+    def UpdateExtent(self, *arguments):
+        """Like Update(), for an extent. Returns 1."""
+        return self._update(lambda: super(DeformVolume, self).UpdateExtent(*arguments))
+
+    def UpdatePiece(self, *arguments):
+        """Like Update(), for a piece. Returns 1."""
+        return self._update(lambda: super(DeformVolume, self).UpdatePiece(*arguments))
+
+    def UpdateTimeStep(self, *arguments):
+        """Like Update(), at a time. Returns 1."""
+        return self._update(lambda: super(DeformVolume, self).UpdateTimeStep(*arguments))
+
+    def UpdateWholeExtent(self):
+        """Like Update(), for the whole extent. Returns 1."""
+        return self._update(super().UpdateWholeExtent)
+
+    def _update(self, update):
+        """Calls a method of the superclass that updates the output. Raises an exception if it fails."""
         if self._is_updating:
             raise _native.Error("The filter is being updated. Its observers must not call Update().")
         # VTK does not see that the data of an input have changed if another consumer has updated it.
@@ -241,13 +267,17 @@ class DeformVolume(VTKPythonAlgorithmBase):
         self._error = None
         self._messages = []
         self._is_updating = True
+        executive = self.GetExecutive()
+        observer = executive.AddObserver("ErrorEvent", self._take_message)
         try:
-            succeeded = self._update(arguments)
+            # UpdateWholeExtent() returns 1 also if VTK reports an error of the inputs.
+            succeeded = update() not in (0, False) and self._error is None and not self._messages
         finally:
+            executive.RemoveObserver(observer)
             self._is_updating = False
         if succeeded:
             self._last_error = None
-            return
+            return 1
         self.GetOutputDataObject(0).Initialize()
         error, self._error = self._error, None
         state = self.GetMTime(), self.GetExecutive().GetPipelineMTime()
@@ -265,16 +295,6 @@ class DeformVolume(VTKPythonAlgorithmBase):
             raise error
         finally:
             del error
-
-    def _update(self, arguments):
-        if arguments not in ((), (0,)):
-            return super().Update(*arguments) != 0 and self._error is None
-        executive = self.GetExecutive()
-        observer = executive.AddObserver("ErrorEvent", self._take_message)
-        try:
-            return executive.Update()
-        finally:
-            executive.RemoveObserver(observer)
 
     def _take_message(self, _, __, text):
         # VTK begins messages with the file and the object.
@@ -403,7 +423,8 @@ class DeformVolume(VTKPythonAlgorithmBase):
         self._prepare_volume(self._input(0))
         self._prepare_deformation(self._input(1), self._input(2))
         settings = self._settings
-        self._deformer.set_outside(_OUTSIDE[settings["OutsideMode"]], settings["FadeDistance"])
+        mode = _OUTSIDE[settings["OutsideMode"]]
+        self._deformer.set_outside(mode, settings["FadeDistance"] if mode == "keep" else 0.0)
         if self.GetNumberOfInputConnections(3) > 0:
             info = self.GetInputInformation(3, 0)
             if not all(
@@ -465,7 +486,9 @@ class DeformVolume(VTKPythonAlgorithmBase):
             self._stamps.pop("deformation", None)
             shape = image.GetDimensions()[::-1]
             views = [numpy.ascontiguousarray(_view(array, shape)) for array in arrays]
-            self._deformer.set_volume_grid(_grid_of(image), views, labels, background)
+            # NaN becomes 0 in integers, as in the C++ class.
+            values = [0.0 if view.dtype.kind in "iu" and background != background else background for view in views]
+            self._deformer.set_volume_grid(_grid_of(image), views, labels, values)
             self._prepare_masks(shape, *edits)
 
         self._send("volume", (_stamp(image, *arrays, *edits), tuple(labels), background), send)
@@ -640,8 +663,12 @@ class DeformVolume(VTKPythonAlgorithmBase):
                 if one is array:
                     output.GetPointData().SetActiveAttribute(number, role)
         output.GetFieldData().PassData(volume.GetFieldData())
-        if report.warnings:
-            text = report.warnings.decode("utf-8", "replace")
+        texts = [report.warnings.decode("utf-8", "replace")] if report.warnings else []
+        unknown = sorted(self._categorical - {array.GetName() for array in self._arrays})
+        if unknown:
+            names = ", ".join(unknown)
+            texts.append(f"The volume has no point arrays with these names of categorical arrays: {names}.")
+        for text in texts:
             vtkOutputWindow.GetInstance().DisplayWarningText(f"Warning: DeformVolume: {text}\n")
 
     def _report_progress(self, fraction):

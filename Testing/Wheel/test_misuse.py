@@ -164,6 +164,41 @@ class Misuse(unittest.TestCase):
         self.refuse(ValueError, "The spacing is 1.0", spacing=1.0)
         self.refuse(ValueError, "padding is", padding=2**40)
         self.refuse(TypeError, "masked array", numpy.ma.masked_less(make_volume(), 0.5))
+        self.refuse(TypeError, "integer", padding=1.5)
+        self.refuse(TypeError, "integer", reference=((5.5, 5, 5), AFFINE))
+        self.refuse(TypeError, "jacobian is 'no'", jacobian="no")
+        self.refuse(ValueError, "no effect", fade_distance=3.0)
+        self.refuse(ValueError, "int16 cannot hold", make_volume().astype("int16"), background=numpy.nan)
+        field = deformvolume.Field(numpy.zeros((2, 2, 2, 3)), AFFINE, inverse="False")
+        self.refuse(TypeError, "inverse is 'False'", mesh=field)
+
+    def test_two_tetrahedra(self):
+        cells = ((0, 1, 2, 3), (0, 1, 2, 3))
+        mesh = Mesh(POINTS, cells, MOVED)
+        wanted = deformvolume.deform(make_volume(), Mesh(POINTS, numpy.array(cells), MOVED), AFFINE)
+        numpy.testing.assert_array_equal(deformvolume.deform(make_volume(), mesh, AFFINE).array, wanted.array)
+        self.assertNotEqual(mesh, Mesh(POINTS, cells, MOVED))
+
+    # Warnings name the line of the user, so that Python shows each once.
+    def test_place_of_warnings(self):
+        deformer = deformvolume.Deformer()
+        deformer.set_volume(make_volume(), AFFINE)
+        deformer.set_blanked(numpy.ones((10, 11, 12), bool))
+        with self.assertWarns(deformvolume.DeformationWarning) as caught:
+            deformer.deform()
+        self.assertEqual(caught.filename, __file__)
+
+    def test_mask_keeps_other_masks(self):
+        deformer = deformvolume.Deformer()
+        deformer.set_volume(make_volume(), AFFINE)
+        active = numpy.full((11, 10, 9), 31, numpy.uint8)
+        active[:, :5] = 0
+        deformer.set_masks(active=active)
+        some = deformer.deform().coverage.sum()
+        deformer.set_blanked(numpy.zeros((10, 11, 12), bool))
+        self.assertEqual(some, deformer.deform().coverage.sum())
+        deformer.set_masks()
+        self.assertLess(some, deformer.deform().coverage.sum())
 
     # Any value other than 0 blanks a voxel.
     def test_blanked(self):

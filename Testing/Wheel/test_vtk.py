@@ -235,9 +235,17 @@ class Pipeline(unittest.TestCase):
         broken.SetDeformationData(make_mesh([numpy.nan, 0.0, 0.0]))
 
         def expect(words):
-            for _ in range(2):
+            updates = (
+                self.filter.Update,
+                self.filter.Update,
+                self.filter.UpdateWholeExtent,
+                lambda: self.filter.UpdateTimeStep(0.0),
+                lambda: self.filter.UpdatePiece(0, 1, 0),
+                lambda: self.filter.UpdateExtent((0, 1, 0, 1, 0, 1)),
+            )
+            for update in updates:
                 with self.assertRaisesRegex(Exception, words):
-                    self.filter.Update()
+                    update()
                 self.assertEqual(self.filter.GetOutput().GetNumberOfPoints(), 0)
 
         def work():
