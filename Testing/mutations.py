@@ -399,6 +399,8 @@ MUTATIONS = {
                       ["Cxx.TestDeformVolumeSession"]),
     "session-hash": ("Interaction/SessionFiles.cxx", "hash.Add(volume->GetSpacing(), 3 * sizeof(double));", "",
                      ["Cxx.TestDeformVolumeSession"]),
+    "small-mesh": ("Kernels/World/WorldBoxes.cxx", "    if (!IsSmall(box, volume))", "    if (true)",
+                   ["Cxx.TestDeformMisuse"]),
     "session-fixed": ("Interaction/SessionFiles.cxx", "    arrays.AddByName(mesh->GetPointData());\n", "",
                       ["Cxx.TestDeformVolumeSession"]),
     "session-field": ("Interaction/SessionPositions.cxx", "step == 1 ? part[axis] : 1.0 - part[axis]",

@@ -150,7 +150,8 @@ public:
   void AddUpCounts(const deformvolume::Ranks& ranks);
 
   /// Warns of arrays and cells that are ignored, if they were not in the last call.
-  void WarnOfIgnored(vtkImageData* volume, const std::vector<std::string>& leftOut);
+  void WarnOfIgnored(
+    vtkImageData* volume, const std::vector<std::string>& leftOut, const std::string& smallness);
 
   /// The requested arrays besides those of the volume.
   deformvolume::ExtraArraysWish GetExtraArrays() const

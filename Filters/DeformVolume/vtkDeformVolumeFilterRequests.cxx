@@ -286,7 +286,11 @@ int vtkDeformVolumeFilter::RequestData(
       {
         array.Categorical |= this->Interpolation == NEAREST_INTERPOLATION;
       }
-      this->Internals->WarnOfIgnored(volume, leftOut);
+      auto* const field = vtkImageData::SafeDownCast(source.Shape);
+      this->Internals->WarnOfIgnored(volume, leftOut,
+        mapped.Outside.AreExtrapolated() ? ""
+          : field ? deformvolume::DescribeSmallness(deformvolume::GetGeometry(field), geometry)
+                  : deformvolume::DescribeSmallness(deformation.GetMeshAtRest(), geometry));
       this->Internals->ReleaseOldVolumes(arrays);
       worked = state.Volume.Update(volume, this->SamplingFactor, arrays);
       ImageGeometry part = mapped.Whole;

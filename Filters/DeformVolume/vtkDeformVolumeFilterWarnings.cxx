@@ -23,7 +23,7 @@
 
 //------------------------------------------------------------------------------
 void vtkDeformVolumeFilter::vtkInternals::WarnOfIgnored(
-  vtkImageData* volume, const std::vector<std::string>& leftOut)
+  vtkImageData* volume, const std::vector<std::string>& leftOut, const std::string& smallness)
 {
   const auto list = [](const std::vector<std::string>& names)
   {
@@ -57,6 +57,10 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfIgnored(
       "The volume has no point arrays with these names of categorical arrays: " + list(unknown) +
       ". Labels in other arrays are interpolated like intensities. Correct the names with "
       "AddCategoricalArray() and RemoveCategoricalArray().");
+  }
+  if (!smallness.empty())
+  {
+    warnings.insert(smallness);
   }
   using Attributes = vtkDataSetAttributes;
   for (const auto& [role, kind] : { std::pair(Attributes::VECTORS, "vectors"),

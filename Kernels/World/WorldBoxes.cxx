@@ -7,6 +7,7 @@
 
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <limits>
 #include <sstream>
@@ -37,7 +38,8 @@ Box GetIndexBox(const Extent& extent)
   return box;
 }
 
-Box GetWorldBox(const ImageGeometry& geometry)
+// transform: applied to the indices of the points.
+Box FindBox(const ImageGeometry& geometry, const glm::dmat4& transform)
 {
   const Box indices = GetIndexBox(geometry.PointExtent);
   Box box;
@@ -48,9 +50,14 @@ Box GetWorldBox(const ImageGeometry& geometry)
     {
       index[axis] = (corner >> axis) % 2 == 0 ? indices.Least[axis] : indices.Most[axis];
     }
-    box.Add(glm::dvec3(geometry.GetIndexToWorld() * glm::dvec4(index, 1.0)));
+    box.Add(glm::dvec3(transform * glm::dvec4(index, 1.0)));
   }
   return box;
+}
+
+Box GetWorldBox(const ImageGeometry& geometry)
+{
+  return FindBox(geometry, geometry.GetIndexToWorld());
 }
 
 // Returns the box of the nodes that tetrahedra use. transform: applied to each node, in indices of
@@ -67,6 +74,14 @@ Box FindBox(const MeshAtRest& mesh, const Function& transform)
     }
   }
   return box;
+}
+
+// volume: that whose indices are the coordinates of the mesh.
+Box GetWorldBox(const MeshAtRest& mesh, const ImageGeometry& volume)
+{
+  const glm::dmat4 toWorld = volume.GetIndexToWorld();
+  return FindBox(
+    mesh, [&](const glm::dvec3& point) { return glm::dvec3(toWorld * glm::dvec4(point, 1.0)); });
 }
 
 std::string Describe(const Box& box)
@@ -88,7 +103,46 @@ std::string Describe(const char* what, const Box& box, const ImageGeometry& volu
     "one is in meters and the other in millimeters.";
 }
 
+// Whether a box in indices of a volume is smaller than two voxels, and than a fourth of the volume,
+// on each axis.
+bool IsSmall(const Box& box, const ImageGeometry& volume)
+{
+  const Box voxels = GetIndexBox(volume.PointExtent);
+  const glm::dvec3 most = glm::min(glm::dvec3(2.0), 0.25 * (voxels.Most - voxels.Least));
+  return glm::all(glm::lessThan(box.Most - box.Least, most));
+}
+
+std::string DescribeSmallness(const char* what, const Box& box, const ImageGeometry& volume)
+{
+  return std::string("The ") + what + " is smaller than two voxels of the volume on each axis. " +
+    Describe(what, box, volume);
+}
+
 } // namespace
+
+std::string DescribeSmallness(const ImageGeometry& field, const ImageGeometry& volume)
+{
+  const Box box = FindBox(field, volume.GetWorldToIndex() * field.GetIndexToWorld());
+  return IsSmall(box, volume) ? DescribeSmallness("field", GetWorldBox(field), volume) : "";
+}
+
+std::string DescribeSmallness(const MeshAtRest& mesh, const ImageGeometry& volume)
+{
+  Box box;
+  for (const Tetrahedron& tetrahedron : mesh.Tetrahedra)
+  {
+    for (const std::int32_t node : tetrahedron)
+    {
+      box.Add(mesh.Points[static_cast<std::size_t>(node)]);
+    }
+    if (!IsSmall(box, volume))
+    {
+      return ""; // mostly after a few tetrahedra
+    }
+  }
+  return box.Least.x <= box.Most.x ? DescribeSmallness("mesh", GetWorldBox(mesh, volume), volume)
+                                   : "";
+}
 
 std::string DescribeBoxes(const ImageGeometry& field, const ImageGeometry& volume)
 {
@@ -110,9 +164,7 @@ void CheckBoxes(const MeshAtRest& mesh, const ImageGeometry& volume)
 
 std::string DescribeMiss(const MeshAtRest& mesh, const ImageGeometry& volume)
 {
-  const glm::dmat4 toWorld = volume.GetIndexToWorld();
-  const Box box = FindBox(
-    mesh, [&](const glm::dvec3& point) { return glm::dvec3(toWorld * glm::dvec4(point, 1.0)); });
+  const Box box = GetWorldBox(mesh, volume);
   return "The deformation mesh at rest holds no voxel of the volume. " +
     Describe("mesh", box, volume) +
     " Check also that the deformation mesh or, where one is given, the rest configuration is "

@@ -573,6 +573,11 @@ void WorldDeformer::Internals::Describe(
       "voxels; these tetrahedra are skipped. Check the deformation, or set a greater output "
       "spacing.");
   }
+  if (this->Deformation != Deformations::None && !this->Outside.AreExtrapolated())
+  {
+    warn(this->IsMesh() ? DescribeSmallness(this->Mesh.GetAtRest(), *this->Volume)
+                        : DescribeSmallness(this->Field.GetGrid(), *this->Volume));
+  }
   if (this->IsMesh())
   {
     const MeshCells& cells = this->Mesh.GetCells();

@@ -6,6 +6,7 @@ import os
 import signal
 import threading
 import unittest
+import warnings
 
 import numpy
 
@@ -187,6 +188,20 @@ class Misuse(unittest.TestCase):
         with self.assertWarns(deformvolume.DeformationWarning) as caught:
             deformer.deform()
         self.assertEqual(caught.filename, __file__)
+
+    # The origin of the world is a voxel of many scans, so that a mesh in meters holds a voxel.
+    def test_units(self):
+        affine = numpy.eye(4)
+        affine[:3, 3] = -4.0
+        corners = numpy.array([[-0.1, -0.1, -0.1], [0.3, 0, 0], [0, 0.3, 0], [0, 0, 0.3]])
+        field = deformvolume.Field(numpy.zeros((2, 2, 2, 3)), numpy.diag([0.5, 0.5, 0.5, 1.0]))
+        for deformation, outside in ((Mesh(corners, CELLS[:1], 0.01 * corners), "keep"), (field, "discard")):
+            with self.assertWarnsRegex(deformvolume.DeformationWarning, "meters"):
+                deformvolume.deform(make_volume(), deformation, affine, outside=outside)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            deformvolume.deform(make_volume(), Mesh(corners, CELLS[:1], 0.01 * corners), affine, outside="extrapolate")
+            deformvolume.deform(make_volume(), Mesh(9 * corners, CELLS[:1], 0.01 * corners), affine, outside="keep")
 
     def test_mask_keeps_other_masks(self):
         deformer = deformvolume.Deformer()

@@ -388,6 +388,43 @@ void TestExtentAfterFailure(vtkImageData* volume, vtkUnstructuredGrid* mesh)
   }
 }
 
+// The origin of the world is a voxel of many scans. So a mesh or a field in meters holds a voxel of
+// a volume in millimeters, and only a warning can tell.
+void TestUnits()
+{
+  const auto volume =
+    MakeImage({ { 0, 40, 0, 40, 0, 40 } }, glm::dvec3(1.0), glm::dvec3(-20.0, -20.0, -20.0));
+  AddScalars<float>(volume, "values", [](const glm::dvec3& p) { return p.x; });
+  const auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, Shift(1.0, 0.0, 0.0));
+  Deformed deformed(volume, mesh);
+  deformed.Filter->SetOutsideModeToKeep();
+  deformed.Filter->Update();
+  VERIFY(deformed.TakeWarning().empty());
+  for (vtkIdType point = 0; point < mesh->GetNumberOfPoints(); ++point)
+  {
+    const glm::dvec3 inMeters = 0.001 * GetPoint(mesh, point);
+    mesh->GetPoints()->SetPoint(point, &inMeters.x);
+  }
+  mesh->GetPoints()->Modified();
+  SetDisplacements(mesh, Shift(0.001, 0.0, 0.0));
+  deformed.Filter->Update();
+  VERIFY_CONTAINS(deformed.TakeWarning(), "meters");
+  deformed.Filter->Modified();
+  deformed.Filter->Update();
+  VERIFY(deformed.TakeWarning().empty()); // the warning is not repeated
+  const auto field =
+    MakeImage({ { 0, 4, 0, 4, 0, 4 } }, glm::dvec3(0.01), glm::dvec3(-0.02, -0.02, -0.02));
+  SetDisplacements(field, Shift(0.001, 0.0, 0.0));
+  deformed.Filter->SetDeformationData(field);
+  deformed.Filter->Update();
+  VERIFY_CONTAINS(deformed.TakeWarning(), "meters");
+  deformed.Filter->SetOutsideModeToExtrapolate();
+  deformed.Filter->SetDeformationData(mesh);
+  deformed.Filter->Update();
+  VERIFY(deformed.TakeWarning().empty());
+}
+
 // An output that is larger than any memory: one error before anything is allocated.
 void TestOutputBeyondAllMemory(vtkImageData* volume, vtkUnstructuredGrid* mesh)
 {
@@ -410,6 +447,7 @@ int TestDeformMisuse(int, char*[])
   TestDisplacements(misuse);
   TestRestMeshes(misuse);
   TestSettings(misuse);
+  TestUnits();
   auto mesh = misuse.CopyMesh();
   TestExtentAfterFailure(misuse.GetVolume(), mesh);
   TestOutputBeyondAllMemory(misuse.GetVolume(), mesh);
