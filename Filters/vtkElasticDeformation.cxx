@@ -338,6 +338,11 @@ void vtkElasticDeformation::Advance(ElasticSimulation& simulation, vtkPointSet* 
   const double roundOff = 1e-6 * this->FrameTime;
   if (info->Has(Pipeline::UPDATE_TIME_STEP()))
   {
+    if (simulation.HasFrames() && !HasTimes(info))
+    {
+      vtkWarningMacro("A time is requested, but the output has no time range, so that VTK does not "
+                      "update it for other times. Set EndTime to the end of the simulation.");
+    }
     end = info->Get(Pipeline::UPDATE_TIME_STEP());
     if (end < session.Time - roundOff)
     {

@@ -53,10 +53,11 @@
  *
  * @par Time:
  * If a time is requested (UpdateTimeStep(), or ParaView's play button), the simulation advances to
- * it in frames of FrameTime. If the time is earlier than the last one, the simulation restarts from
- * rest and advances to the time with the current handles and loads. Handles move to their final
- * positions in the first frame. The subclasses describe updates without a time. The output has the
- * time range from 0 to EndTime, unless the inputs have times.
+ * it in frames of FrameTime. Set EndTime before, unless the inputs have times: VTK updates an
+ * output for another time only if it has a time range. If the time is earlier than the last one,
+ * the simulation restarts from rest and advances to the time with the current handles and loads.
+ * Handles move to their final positions in the first frame. The subclasses describe updates without
+ * a time. The output has the time range from 0 to EndTime, unless the inputs have times.
  *
  * @par Changes:
  * If the points or cells of the rest mesh change, the simulation restarts from rest, with a
@@ -277,8 +278,8 @@ public:
   ///@{
   /**
    * Set/Get the end of the time range of the output, in s, used if the inputs have no times.
-   * Consumers then request a time in each update. Default: 0, no time range. In ParaView the
-   * default is 1.
+   * Consumers then request a time in each update. Default: 0, no time range, with which
+   * UpdateTimeStep() has an effect only once: a warning says so. In ParaView the default is 1.
    */
   vtkSetClampMacro(EndTime, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(EndTime, double);

@@ -187,6 +187,7 @@ void DeformByElasticModel(const Options& options, const Volume& volume, vtkUnstr
   {
     vtkNew<vtkMassSpringDeformation> model;
     model->SetDevice(options.Device);
+    model->SetEndTime(options.Duration); // without a time range, VTK ignores all but the first time
     model->SetHandlesData(MakeHandles(options.Pulls));
     run(model, [&](double part) { model->UpdateTimeStep(part * options.Duration); });
     text << options.Duration << " s, in steps of " << 1e3 * model->GetTimeStepInUse() << " ms";

@@ -291,6 +291,10 @@ void TestTimes()
 {
   Simulated<vtkMassSpringDeformation> simulated(MakeBar(1.0));
   simulated.Object->SetGravity(3.0, 0.0, 0.0);
+  // VTK would ignore the next time.
+  simulated.At(0.0);
+  VERIFY_CONTAINS(simulated.Observer->GetWarningMessage(), "EndTime");
+  simulated.Observer->Clear();
   simulated.Object->SetEndTime(1.0);
   simulated.Object->UpdateInformation();
   const double* range =
@@ -461,6 +465,7 @@ void TestMaterialPresets()
     Simulated<Filter> simulated(bar);
     simulated.Object->SetGravity(1.0, 0.0, 2.0);
     simulated.Object->SetFrameTime(1e-3);
+    simulated.Object->SetEndTime(1.0);
     change(simulated.Object.Get());
     simulated.Object->UpdateTimeStep(2e-3);
     VERIFY(!simulated.Observer->GetError());
