@@ -124,11 +124,6 @@ void CheckModel(const Options& options)
       throw UsageError("--push cannot be used with --model " + options.Model + ". Use --pull");
     }
   }
-  else if (!options.Fixations.empty() || !options.Materials.empty() || !options.Tissue.empty())
-  {
-    throw UsageError(std::string(options.Fixations.empty() ? "--material" : "--fix") +
-      " requires --model fem or --model mass-spring");
-  }
   if (options.CutsMesh() && options.SmoothCut)
   {
     throw UsageError("--smooth-cut cannot be used with --model " + options.Model +

@@ -57,6 +57,23 @@ void SetTissue(const CLI::App& program, const std::string& tissue, Options& opti
   options.Density = values[2];
 }
 
+/// Refuses options that are given but have no effect with this model.
+void CheckModelOptions(const CLI::App& program, const Options& options)
+{
+  for (const char* option :
+    { "--fix", "--material", "--gravity", "--young", "--poisson", "--density" })
+  {
+    if (program.count(option) && !options.HasElasticModel())
+    {
+      throw UsageError(std::string(option) + " requires --model fem or --model mass-spring");
+    }
+  }
+  if (program.count("--duration") && options.Model != "mass-spring")
+  {
+    throw UsageError("--duration requires --model mass-spring");
+  }
+}
+
 void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
 {
   if (!raw.Lattice.empty())
@@ -129,6 +146,7 @@ void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
     }
     options.FieldIsInverse = true;
   }
+  CheckModelOptions(program, options);
   CheckOptions(options);
 }
 

@@ -46,7 +46,8 @@ std::vector<std::string> CutAndCarve(const Options& options, Volume& volume, Mes
     if (off == 0 && divided == 0)
     {
       messages.DisplayWarningText(("The sheet " + path +
-        " does not cross the volume. Is it in the world coordinates of the volume?")
+        " changes nothing: it does not cross the volume, or crosses only what is cut or carved "
+        "already. Is it in the world coordinates of the volume?")
                                     .c_str());
     }
     done.push_back(Describe(path, off, divided));
@@ -69,7 +70,8 @@ std::vector<std::string> CutAndCarve(const Options& options, Volume& volume, Mes
       std::ostringstream text;
       text << "The sphere of --carve at " << carving.Center[0] << ", " << carving.Center[1] << ", "
            << carving.Center[2] << " with the radius " << carving.Radius
-           << " contains no part of the volume. Is it in the world coordinates of the volume?";
+           << " changes nothing: it contains no part of the volume, or only what is cut or carved "
+              "already. Is it in the world coordinates of the volume?";
       messages.DisplayWarningText(text.str().c_str());
     }
     done.push_back(Describe("sphere", off));

@@ -53,6 +53,9 @@ for model in ("fem", "mass-spring"):
     fails(1, "Poisson ratio", "--model", model, *lattice, *fix, "--poisson", "0.5")
 fails(1, "No constraints", "--model", "fem", *lattice, "--gravity", "0,0,-9.81")
 fails(2, "--fix requires", "--model", "chainmail", *fix, *pull)
+for option, value in (("--gravity", "0,0,1"), ("--young", "5"), ("--poisson", "0.2"), ("--density", "900")):
+    fails(2, option + " requires --model fem", "--model", "chainmail", "--pull", "9,20,25,3,0,0,15", option, value)
+fails(2, "--duration requires --model mass-spring", "--model", "fem", *lattice, *fix, "--duration", "2")
 fails(2, "--young requires --model", *lattice, "--push", "9,20,25,3,0,0,15", "--young", "5")
 for text in ("5=1", "1:2", "1:2=", "1:2=3,", "1:2=3,0.3,1,4", "2:1=3", "a:2=3"):
     fails(2, f"--material {text}" if text[0] in "25" else "--material", "--model", "fem", *lattice, *fix,

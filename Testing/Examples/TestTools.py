@@ -163,9 +163,9 @@ assert f"{chain_mail.GetNumberOfMovedVoxels()} voxels moved" in output
 # Tools beside the volume do nothing, with a warning.
 write_sheet("far.vtp", bounds[1] + 100)
 _, errors = call(program, path("in.vti"), "--cut", path("far.vtp"), "-o", path("far.vti"))
-assert "does not cross the volume" in errors, errors
+assert "it does not cross the volume" in errors, errors
 _, errors = call(program, path("in.vti"), "--carve", "sphere:500,500,500,3", "-o", path("far.vti"))
-assert "contains no part of the volume" in errors, errors
+assert "it contains no part of the volume" in errors, errors
 
 # A mesh deforms a volume that has been cut.
 call(program, path("in.vti"), *cut, "--lattice", "9,9,9", "--push", "9,20,25,3,0,0,15", "-o",

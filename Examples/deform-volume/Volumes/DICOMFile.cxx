@@ -150,6 +150,9 @@ void DICOMFile::Read()
       continue;
     }
     this->Pixels = this->Pixels || (element.Tag == PixelData && depth == 0);
+    constexpr std::uint32_t modalityTable = 0x00283000;
+    this->ModalityTable =
+      this->ModalityTable || (element.Tag == modalityTable && depth == 0 && element.Length > 0);
     if (element.Tag == ItemEnd || element.Tag == SequenceEnd)
     {
       --depth;

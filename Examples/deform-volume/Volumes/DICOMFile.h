@@ -23,6 +23,8 @@ public:
   /// elements are not read.
   bool IsDeflated() const;
   bool HasPixels() const { return this->Pixels; }
+  /// Whether values are to be looked up in a table (modality LUT sequence, PS3.3 C.11.1).
+  bool HasModalityTable() const { return this->ModalityTable; }
 
   /// Get an element by its tag: 0x00200032 is (0020,0032). "" or 0 if it is missing or empty.
   std::string GetText(std::uint32_t tag) const;
@@ -47,6 +49,7 @@ private:
   bool IsBigEndian = false;
   bool Complete = true;
   bool Pixels = false;
+  bool ModalityTable = false;
   std::map<std::uint32_t, std::string> Texts;
 };
 

@@ -149,6 +149,18 @@ void Series::AddFile(const std::string& name)
   {
     this->Fail(name + " holds several frames, but each slice must be in a file of its own");
   }
+  if (file.HasModalityTable())
+  {
+    this->Fail(name + " has a table of values (modality LUT, 0028,3000), which is not supported");
+  }
+  if (slice.Photometric == "MONOCHROME1" && file.GetShort(0x00280101) == 12 &&
+    file.GetShort(0x00280103) == 1)
+  {
+    // GDCM would terminate the program.
+    this->Fail(name +
+      " has inverted values (MONOCHROME1) of 12 bits with a sign, which cannot be "
+      "read");
+  }
   double orientation[6];
   if (!file.GetNumbers(0x00200032, 3, slice.Position) ||
     !file.GetNumbers(0x00200037, 6, orientation))

@@ -247,6 +247,9 @@ for name, words, fields in (
     add_wrong(name, words, change=set_fields(2, **fields))
 add_wrong("all-spacing", "no valid pixel spacing",
           change=set_fields(PixelSpacing=None, ImagerPixelSpacing=[0.7, 0.9]))
+add_wrong("table", "table of values (modality LUT", change=set_fields(ModalityLUTSequence=[pydicom.Dataset()]))
+add_wrong("signed12", "inverted values (MONOCHROME1) of 12 bits", change=set_fields(
+    PhotometricInterpretation="MONOCHROME1", BitsStored=12, HighBit=11))
 add_wrong("nan", "no position", change=lambda data, number: data.add_new(0x00200032, "UN", rb"nan\0\0 "))
 add_wrong("sheared-rows", "sheared by 0.57", change=set_fields(
     ImageOrientationPatient=[1, 0, 0, 0.01, 1, 0]))
