@@ -19,11 +19,12 @@ DEFORMVOLUME_EXPORT std::string DescribeBoxes(
 /// Throws an Error if the boxes of a mesh at rest and of the volume do not intersect.
 DEFORMVOLUME_EXPORT void CheckBoxes(const MeshAtRest& mesh, const ImageGeometry& volume);
 
-/// Returns a warning if a displacement field or a mesh at rest is so small that its unit is
-/// probably not that of the volume: on each axis of the volume smaller than two voxels, and than a
-/// fourth of the volume. Returns "" if it is not.
+/// Returns a warning if a displacement field is so small that its unit is probably not that of the
+/// volume: on each axis of the volume smaller than two voxels, and than a fourth of the volume.
+/// Returns "" if it is not.
 DEFORMVOLUME_EXPORT std::string DescribeSmallness(
   const ImageGeometry& field, const ImageGeometry& volume);
+/// Returns such a warning for a mesh at rest.
 DEFORMVOLUME_EXPORT std::string DescribeSmallness(
   const MeshAtRest& mesh, const ImageGeometry& volume);
 
