@@ -171,7 +171,8 @@ def _grid_of(shape: Sequence[int], matrix, what: str) -> _structs.Grid:
 def _cells(cells):
     """Returns connectivity, types and offsets. Types and offsets are None for tetrahedra."""
     # Two tetrahedra may be a tuple, too; then the elements of the second one are numbers.
-    if isinstance(cells, tuple) and len(cells) == 2 and not (len(cells[1]) == 4 and numpy.ndim(cells[1]) == 1):
+    is_pair = isinstance(cells, tuple) and len(cells) == 2
+    if is_pair and not (len(cells[1]) == 4 and all(numpy.ndim(point) == 0 for point in cells[1])):
         types, lists = cells
         types = numpy.asarray(types)
         lengths = [len(points) for points in lists]

@@ -179,6 +179,11 @@ class Misuse(unittest.TestCase):
         wanted = deformvolume.deform(make_volume(), Mesh(POINTS, numpy.array(cells), MOVED), AFFINE)
         numpy.testing.assert_array_equal(deformvolume.deform(make_volume(), mesh, AFFINE).array, wanted.array)
         self.assertNotEqual(mesh, Mesh(POINTS, cells, MOVED))
+        # Four cells of different types.
+        lists = [[0, 1, 2, 3], [0, 1, 2], [0, 1, 2, 3], [0]]
+        with self.assertWarns(deformvolume.DeformationWarning):
+            result = deformvolume.deform(make_volume(), Mesh(POINTS, ([10, 5, 10, 1], lists), MOVED), AFFINE)
+        numpy.testing.assert_array_equal(result.array, wanted.array)
 
     # Warnings name the line of the user, so that Python shows each once.
     def test_place_of_warnings(self):
