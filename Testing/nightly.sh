@@ -51,7 +51,7 @@ run "configuration of long tests" cmake --preset vtk -DDEFORMVOLUME_LONG_TESTS=O
 run "long tests" ctest --preset vtk -R Oclgrind
 run "configuration" cmake --preset vtk -DDEFORMVOLUME_LONG_TESTS=OFF
 run "edits by cell, as on a GPU" build/vtk/bin/DeformVolumeEngineTests --device=gpu-like \
-  --files=TestEdits,TestIncremental '--gtest_filter=*ByCell'
+  --files=TestEdits,TestIncremental,TestOutputMaps '--gtest_filter=*ByCell'
 seed=$(date +%s)
 run "edits from seed $((seed % 99999))" build/vtk/bin/DeformVolumeEngineTests --files=TestEdits \
   --gtest_random_seed=$((seed % 99999))
