@@ -16,6 +16,7 @@
 #include <vtkNIFTIImageReader.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtk_zlib.h>
 
 #include <algorithm>
 #include <cmath>
@@ -54,6 +55,35 @@ double GetMillimetres(vtkNIFTIImageHeader* header)
   throw Failure("cannot read " + path + ": " + reason);
 }
 
+// Refuses types of values that VTK's reader does not know: it may crash when it reads the header.
+// So this function reads the type itself, from version 1 or 2, in either byte order.
+void CheckType(const std::string& path)
+{
+  constexpr std::size_t size = 72;
+  unsigned char bytes[size] = {};
+  if (const gzFile file = gzopen(path.c_str(), "rb"))
+  {
+    gzread(file, bytes, size);
+    gzclose(file);
+  }
+  // The header begins with its size: 348 or 540, in four bytes.
+  const bool isBigEndian = bytes[0] == 0;
+  const bool isSecond = bytes[isBigEndian ? 3 : 0] == 540 % 256;
+  const unsigned char* const place = bytes + (isSecond ? 12 : 70);
+  using Header = vtkNIFTIImageHeader;
+  const int types[] = { Header::TypeUInt8, Header::TypeInt8, Header::TypeUInt16, Header::TypeInt16,
+    Header::TypeUInt32, Header::TypeInt32, Header::TypeUInt64, Header::TypeInt64,
+    Header::TypeFloat32, Header::TypeFloat64, Header::TypeRGB24, Header::TypeRGBA32 };
+  const int type = isBigEndian ? place[0] << 8 | place[1] : place[1] << 8 | place[0];
+  if (std::find(std::begin(types), std::end(types), type) == std::end(types))
+  {
+    const bool isComplex = type == Header::TypeComplex64 || type == Header::TypeComplex128;
+    Fail(path,
+      "its values are " + (isComplex ? "complex" : "of NIfTI's type " + std::to_string(type)) +
+        ", which a volume of VTK cannot hold");
+  }
+}
+
 // Refuses files that VTK's reader misreads without an error.
 void CheckHeader(vtkNIFTIImageHeader* header, const std::string& path)
 {
@@ -76,18 +106,6 @@ void CheckHeader(vtkNIFTIImageHeader* header, const std::string& path)
         "it has " + std::to_string(axes) +
           " axes. A volume has three axes of space, one of time and one of components");
     }
-  }
-  using Header = vtkNIFTIImageHeader;
-  const int types[] = { Header::TypeUInt8, Header::TypeInt8, Header::TypeUInt16, Header::TypeInt16,
-    Header::TypeUInt32, Header::TypeInt32, Header::TypeUInt64, Header::TypeInt64,
-    Header::TypeFloat32, Header::TypeFloat64, Header::TypeRGB24, Header::TypeRGBA32 };
-  const int type = header->GetDataType();
-  if (std::find(std::begin(types), std::end(types), type) == std::end(types))
-  {
-    const bool isComplex = type == Header::TypeComplex64 || type == Header::TypeComplex128;
-    Fail(path,
-      "its values are " + (isComplex ? "complex" : "of NIfTI's type " + std::to_string(type)) +
-        ", which a volume of VTK cannot hold");
   }
   const vtkTypeInt64 headerSize = magic == "n+1" ? 352 : 544;
   if (header->GetVoxOffset() < headerSize)
@@ -264,6 +282,7 @@ Volume ReadNIfTI(
   {
     Fail(path, "it is not a NIfTI file");
   }
+  CheckType(path);
   reader->SetFileName(path.c_str());
   reader->UpdateInformation();
   Volume volume;
