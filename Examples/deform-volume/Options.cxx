@@ -382,9 +382,7 @@ void AddDependencies(CLI::App& program)
   needs("--field", { "--field-is-inverse" });
   needs("--tetgen",
     { "--isovalue", "--pieces", "--edge-length", "--radius-edge-ratio", "--tetgen-executable" });
-  needs("--model",
-    { "--pull", "--fix", "--gravity", "--material", "--young", "--poisson", "--density",
-      "--duration", "--frames", "--movie" });
+  needs("--model", { "--pull", "--frames", "--movie" }); // CheckModelOptions() has the others
   needs("--label-volume", { "--label-output" });
   needs("--label-output", { "--label-volume" });
   needs("--points", { "--points-output" });

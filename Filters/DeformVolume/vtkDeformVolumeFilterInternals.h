@@ -149,8 +149,9 @@ public:
   /// Sums the counters over all ranks. Collective.
   void AddUpCounts(const deformvolume::Ranks& ranks);
 
-  /// Warns of arrays and cells that are ignored, if they were not in the last call.
-  void WarnOfIgnored(
+  /// Warns of inputs that are ignored or dubious, if they were not in the last call. smallness: the
+  /// text of DescribeSmallness().
+  void WarnOfInputs(
     vtkImageData* volume, const std::vector<std::string>& leftOut, const std::string& smallness);
 
   /// The requested arrays besides those of the volume.

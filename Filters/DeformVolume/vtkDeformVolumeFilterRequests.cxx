@@ -287,7 +287,7 @@ int vtkDeformVolumeFilter::RequestData(
         array.Categorical |= this->Interpolation == NEAREST_INTERPOLATION;
       }
       auto* const field = vtkImageData::SafeDownCast(source.Shape);
-      this->Internals->WarnOfIgnored(volume, leftOut,
+      this->Internals->WarnOfInputs(volume, leftOut,
         mapped.Outside.AreExtrapolated() ? ""
           : field ? deformvolume::DescribeSmallness(deformvolume::GetGeometry(field), geometry)
                   : deformvolume::DescribeSmallness(deformation.GetMeshAtRest(), geometry));

@@ -22,7 +22,7 @@
 #include <vector>
 
 //------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::vtkInternals::WarnOfIgnored(
+void vtkDeformVolumeFilter::vtkInternals::WarnOfInputs(
   vtkImageData* volume, const std::vector<std::string>& leftOut, const std::string& smallness)
 {
   const auto list = [](const std::vector<std::string>& names)

@@ -275,7 +275,7 @@ class Deformer:
             background: value of voxels outside the deformed volume; one value for all arrays, or one for each. In
                 arrays of integers it is rounded, and limited to the range of the type.
 
-        Masks and the deformation are kept if the grid stays the same. Masks are removed if it changes.
+        If the grid changes, masks are removed.
         """
         listed = list(arrays) if isinstance(arrays, (list, tuple)) else [arrays]
         images = [_arrays.image(array, f"Array {number} of the volume") for number, array in enumerate(listed)]

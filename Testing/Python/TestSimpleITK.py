@@ -69,8 +69,13 @@ for reference in (None, fixed):
             # Labels may differ at points where two voxels are equally near.
             assert (error > 0).mean() < 1e-3, (error > 0).mean()
 
-# A forward field: a shift moves the image.
 shift = np.tile([3.0, 0.0, 0.0], (2, 2, 2, 1))
+
+# The result of an inverse Field has the grid of the image, too.
+ours = ds.deform(image, dv.Field(shift, np.diag([200.0, 200.0, 200.0, 1.0]), inverse=True))
+assert ours.GetSize() == image.GetSize() and np.allclose(ours.GetOrigin(), image.GetOrigin()), ours.GetSize()
+
+# A forward field: a shift moves the image.
 box = sitk.GetImageFromArray(np.pad(np.full((4, 4, 4), 200, "u1"), 8))
 moved = ds.deform(box, dv.Field(shift, np.diag([19.0, 19.0, 19.0, 1.0])))
 x = moved.TransformPhysicalPointToIndex((12.0, 10.0, 10.0))

@@ -157,9 +157,8 @@ void Series::AddFile(const std::string& name)
     file.GetShort(0x00280103) == 1)
   {
     // GDCM would terminate the program.
-    this->Fail(name +
-      " has inverted values (MONOCHROME1) of 12 bits with a sign, which cannot be "
-      "read");
+    this->Fail(
+      name + " has inverted values (MONOCHROME1) of 12 bits with a sign, which cannot be read");
   }
   double orientation[6];
   if (!file.GetNumbers(0x00200032, 3, slice.Position) ||
