@@ -206,7 +206,7 @@ assert get_values(read_vti(path("labels.vti")), "parts")[~left].any()
 # reads voxels in the order in which they are stored.
 still = ("--lattice", "3,3,3", "--push", "0,0,0,1e-7,0,0,1e6", "--bounds", "volume", "--quiet")
 call(program, path("in.vti"), *still, "-o", path("in.nii.gz"))
-for kind in TYPES:
+for kind in ("uint8", "int16"):
     write_vti(make_labels(parts=all_types[kind]), path("kind.vti"))
     call(program, path("kind.vti"), *still, "-o", path("kind.nii.gz"), "--labels")
     deform("--lattice", "9,9,9", "--push", "9,20,25,3,0,0,15", "-o", path("v.nii.gz"), source="in.nii.gz",

@@ -292,30 +292,60 @@ inline glm::dvec3 Bend(const glm::dvec3& p)
   return p + glm::dvec3(0.02 * p.z * p.z, 1.5 * std::sin(0.3 * p.x), 0.05 * p.x * p.y);
 }
 
-/// Values, labels, vectors and colors on an oblique grid.
-inline vtkSmartPointer<vtkImageData> MakeManyArrays()
+/// A volume without arrays, on an oblique grid.
+inline vtkSmartPointer<vtkImageData> MakeObliqueVolume()
 {
   auto volume =
     MakeImage({ { -7, 12, 3, 20, -9, 8 } }, glm::dvec3(0.7, -1.1, 0.9), glm::dvec3(3.0, -4.0, 2.0));
   SetObliqueDirection(volume);
-  const WorldFunction wave = [](const glm::dvec3& p)
-  { return 60.0 * std::sin(0.7 * p.x) + 40.0 * std::cos(0.9 * p.y) + 5.0 * p.z; };
-  const auto add = [&](auto type, const char* name, const WorldFunction& function)
-  {
-    AddScalars<decltype(type)>(volume, name, function);
-    // Otherwise the next array would replace this one.
-    volume->GetPointData()->SetActiveAttribute(-1, vtkDataSetAttributes::SCALARS);
-  };
+  return volume;
+}
+
+/// Adds an array of the type of the first argument.
+template <typename T>
+void AddValues(vtkImageData* volume, T, const char* name, const WorldFunction& function)
+{
+  AddScalars<T>(volume, name, function);
+  // Otherwise the next array would replace this one.
+  volume->GetPointData()->SetActiveAttribute(-1, vtkDataSetAttributes::SCALARS);
+}
+
+inline double Wave(const glm::dvec3& p)
+{
+  return 60.0 * std::sin(0.7 * p.x) + 40.0 * std::cos(0.9 * p.y) + 5.0 * p.z;
+}
+
+/// Adds the labels 0 to 6.
+inline void AddLabels(vtkImageData* volume)
+{
+  AddValues(volume, static_cast<unsigned char>(0), "labels",
+    [](const glm::dvec3& p) { return std::fmod(std::abs(Wave(p)), 7.0); });
+}
+
+/// A volume with an array of shorts and one of floats, for tests that do not depend on types. The
+/// kernels for many arrays take seconds to compile.
+inline vtkSmartPointer<vtkImageData> MakeTwoArrays()
+{
+  auto volume = MakeObliqueVolume();
+  AddValues(volume, short{}, "int16", Wave);
+  AddValues(volume, float{}, "float", [](const glm::dvec3& p) { return 0.1 * Wave(p); });
+  return volume;
+}
+
+/// A volume with arrays of many types: values, labels and vectors.
+inline vtkSmartPointer<vtkImageData> MakeManyArrays()
+{
+  auto volume = MakeObliqueVolume();
   using SignedChar = signed char;
-  add(SignedChar{}, "int8", wave);
+  AddValues(volume, SignedChar{}, "int8", Wave);
   using Unsigned = unsigned short;
-  add(Unsigned{}, "uint16", [&](const glm::dvec3& p) { return 200.0 * (wave(p) + 150.0); });
-  add(int{}, "int32", wave);
+  AddValues(
+    volume, Unsigned{}, "uint16", [](const glm::dvec3& p) { return 200.0 * (Wave(p) + 150.0); });
+  AddValues(volume, int{}, "int32", Wave);
   using Long = long long;
-  add(Long{}, "int64", [&](const glm::dvec3& p) { return 1e10 * wave(p); });
-  add(double{}, "double", wave);
-  using Byte = unsigned char;
-  add(Byte{}, "labels", [&](const glm::dvec3& p) { return std::fmod(std::abs(wave(p)), 7.0); });
+  AddValues(volume, Long{}, "int64", [](const glm::dvec3& p) { return 1e10 * Wave(p); });
+  AddValues(volume, double{}, "double", Wave);
+  AddLabels(volume);
   vtkNew<vtkFloatArray> vectors;
   vectors->SetName("vectors");
   vectors->SetNumberOfComponents(2);

@@ -186,7 +186,7 @@ void TestSteps()
 /// Pinned voxels, and a cut and a smooth cut by the masks of a dv_deformer.
 void TestMasks()
 {
-  const auto volume = MakeManyArrays();
+  const auto volume = MakeTwoArrays();
   vtkNew<vtkUnsignedCharArray> pinned;
   pinned->SetName("Pinned");
   pinned->SetNumberOfTuples(volume->GetNumberOfPoints());
@@ -249,7 +249,7 @@ void TestMasks()
 /// the grid of the volume and on another one.
 void TestDeformer()
 {
-  const auto volume = MakeManyArrays();
+  const auto volume = MakeTwoArrays();
   auto coarse = MakeImage({ { 0, 13, 0, 15, 0, 14 } }, glm::dvec3(2.0), glm::dvec3(0.0));
   double bounds[6];
   volume->GetBounds(bounds);

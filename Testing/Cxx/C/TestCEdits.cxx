@@ -122,7 +122,7 @@ vtkSmartPointer<vtkSphereSource> MakeBall(vtkImageData* volume)
 
 void TestCuts()
 {
-  const auto volume = MakeManyArrays();
+  const auto volume = MakeTwoArrays();
   const auto source = MakeSheet(volume, 0.0);
   const Surface sheet(source->GetOutputPort());
   for (const bool isSmooth : { false, true })
@@ -191,7 +191,8 @@ void FindGradients(std::int64_t count, const double* points, double* values, voi
 
 void TestBodies()
 {
-  const auto volume = MakeManyArrays();
+  const auto volume = MakeTwoArrays();
+  AddLabels(volume);
   double center[3];
   volume->GetCenter(center);
   vtkNew<vtkSphere> sphere;
@@ -286,7 +287,7 @@ void TestBodies()
 /// Edits of a volume that has masks of all kinds.
 void TestBase()
 {
-  const auto volume = MakeManyArrays();
+  const auto volume = MakeTwoArrays();
   const auto first = MakeSheet(volume, -3.0);
   const auto second = MakeSheet(volume, 3.0);
   second->SetPoint2(second->GetPoint2()[0], second->GetPoint2()[1] + 9.0, 4.0);
@@ -351,7 +352,7 @@ void TestBase()
 /// dv_last_error() returns the last error of the calling thread.
 void TestErrorsOfThreads()
 {
-  const auto volume = MakeManyArrays();
+  const auto volume = MakeTwoArrays();
   std::array<InC, 2> inC;
   std::array<std::string, 2> errors;
   std::array<std::thread, 2> threads;

@@ -18,12 +18,8 @@ const std::array<double, 3> NoScale{ { 1, 1, 1 } };
 /// bit. If asLanes is true, also compares with the kernel by lanes.
 void Check(const DeformerCase& deformerCase, bool asLanes = true)
 {
-  const auto voxels = static_cast<std::size_t>(deformerCase.GetNumberOfVoxels());
-  const auto shorts = MakeRandomValues<std::int16_t>(voxels, 2);
-  const auto floats = MakeRandomValues<float>(voxels, 3);
-  const auto labels = MakeRandomValues<std::uint8_t>(voxels, 4);
-  const std::vector<VolumeArray> arrays{ MakeArray(shorts, 1, false, -7.0),
-    MakeArray(floats, 1, false, 5.0), MakeArray(labels, 1, true, 9.0) };
+  const UsualArrays usual(deformerCase.GetNumberOfVoxels());
+  const std::vector<VolumeArray> arrays = usual.Get();
   const reference::Result reference = ResampleByReference(deformerCase);
   VolumeDeformer deformer;
   Load(deformer, deformerCase, arrays, Route::Field);
@@ -92,9 +88,8 @@ TEST(Columns, MoreBricksThanALaunchTakes)
 {
   const Extent tall{ { 0, 2, 0, 2, 0, 12000 } };
   DeformerCase tallCase = MakeCase(tall, NoScale, MakeJitter(5, 0.15));
-  const auto values =
-    MakeRandomValues<std::uint16_t>(static_cast<std::size_t>(tallCase.GetNumberOfVoxels()), 2);
-  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  const UsualArrays usual(tallCase.GetNumberOfVoxels());
+  const std::vector<VolumeArray> arrays = usual.Get();
   VolumeDeformer deformer;
   Load(deformer, tallCase, arrays, Route::Field);
   ExpectEqualsReference(tallCase, ResampleByReference(tallCase), arrays,
@@ -106,8 +101,8 @@ TEST(Columns, UnsupportedOutputs)
   DeformerCase far = MakeSheared({ { 0, 4, 0, 4, 0, 4 } }, 1.0, 0.0);
   far.Output[4] += 5000000;
   far.Output[5] += 5000000;
-  const std::vector<float> values(static_cast<std::size_t>(far.GetNumberOfVoxels()), 1.0F);
-  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  const UsualArrays usual(far.GetNumberOfVoxels());
+  const std::vector<VolumeArray> arrays = usual.Get();
   VolumeDeformer deformer;
   Load(deformer, far, arrays, Route::Field);
   try

@@ -98,9 +98,8 @@ DeformerCase MakeStretchedCell(int parity, double size, double part, unsigned in
 
 TEST(LargeCells, OneCellLargerThanTheOutput)
 {
-  const auto values = MakeRandomValues<std::uint16_t>(8, 2);
-  const auto labels = MakeRandomValues<std::uint8_t>(8, 3);
-  const std::vector<VolumeArray> arrays{ MakeArray(values), MakeArray(labels, 1, true, 12.0) };
+  const UsualArrays usual(8);
+  const std::vector<VolumeArray> arrays = usual.Get();
   // Slightly bent; strongly bent, but upright; with inverted tetrahedra.
   for (const double part : { 0.02, 0.25, 0.7 })
   {
@@ -131,9 +130,8 @@ TEST(LargeCells, MaskedCellsThatOverlap)
   {
     cells.Active.push_back(static_cast<unsigned char>(random() % 3 ? 31 : random() % 32));
   }
-  const auto values =
-    MakeRandomValues<std::uint16_t>(static_cast<std::size_t>(cells.GetNumberOfVoxels()), 2);
-  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  const UsualArrays usual(cells.GetNumberOfVoxels());
+  const std::vector<VolumeArray> arrays = usual.Get();
   const reference::Result reference = ResampleByReference(cells);
   EXPECT_GT(reference.NumberOfOverlappedVoxels, 0);
   ExpectEqualsReference(cells, reference, arrays, LoadAndRun(cells, arrays));
@@ -149,9 +147,8 @@ TEST(LargeCells, InChunksAndSlabs)
       const bool pulled = index == glm::dvec3(5, 6, 3) || index == glm::dvec3(8, 4, 25);
       return 1.25 * index + (pulled ? glm::dvec3(55.5, 60.25, 48.0) : glm::dvec3(0.0));
     });
-  const auto values =
-    MakeRandomValues<std::uint8_t>(static_cast<std::size_t>(cells.GetNumberOfVoxels()), 2);
-  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  const UsualArrays usual(cells.GetNumberOfVoxels());
+  const std::vector<VolumeArray> arrays = usual.Get();
   const reference::Result reference = ResampleByReference(cells);
   VolumeDeformer deformer;
   deformer.SetDevice("");
@@ -182,8 +179,8 @@ TEST(LargeCells, TimeIsThatOfTheirSamples)
   // Writing the background values takes time, too.
   DeformerCase nothing = thin;
   nothing.Blanked.assign(8, 1);
-  const std::vector<std::uint8_t> values{ 1, 2, 3, 4, 5, 6, 7, 8 };
-  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  const UsualArrays usual(8);
+  const std::vector<VolumeArray> arrays = usual.Get();
   for (const Resampling method : GetExactMethods())
   {
     SCOPED_TRACE(int(method));

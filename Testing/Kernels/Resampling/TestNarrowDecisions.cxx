@@ -126,9 +126,8 @@ DeformerCase MakeCells(
 /// Compares the kernels by lanes and by cells with the reference.
 void Check(const DeformerCase& cells)
 {
-  const auto values =
-    MakeRandomValues<std::uint8_t>(static_cast<std::size_t>(cells.GetNumberOfVoxels()), 1);
-  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  const UsualArrays usual(cells.GetNumberOfVoxels());
+  const std::vector<VolumeArray> arrays = usual.Get();
   const reference::Result reference = ResampleByReference(cells);
   ExpectEmbedding(reference);
   EXPECT_GT(reference.NumberOfCoveredVoxels, 0);

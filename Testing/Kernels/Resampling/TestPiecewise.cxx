@@ -18,17 +18,10 @@ using namespace deformvolume;
 namespace
 {
 
-/// Compares arrays that are resampled by lanes on CPUs, and others.
 void Check(const DeformerCase& deformerCase, Route route = Route::Field)
 {
-  const std::size_t size = deformerCase.GetNumberOfVoxels();
-  const auto values = MakeRandomValues<std::int16_t>(size * 2, 2);
-  const auto labels = MakeRandomValues<std::int32_t>(size, 3);
-  const auto bytes = MakeRandomValues<std::uint8_t>(size, 4);
-  const auto floats = MakeRandomValues<float>(size, 5);
-  const std::vector<VolumeArray> arrays{ MakeArray(bytes, 1, false, 5.0),
-    MakeArray(values, 2, false, -3.0), MakeArray(labels, 1, true, 12.0),
-    MakeArray(floats, 1, false, -3.0) };
+  const UsualArrays usual(deformerCase.GetNumberOfVoxels());
+  const std::vector<VolumeArray> arrays = usual.Get();
   const reference::Result reference = ResampleByReference(deformerCase);
   ExpectEmbedding(reference);
   EXPECT_GT(reference.NumberOfCoveredVoxels, 0);
@@ -237,8 +230,8 @@ TEST(Piecewise, OutputBesideTheDeformedVolume)
 {
   DeformerCase jittered = MakeCase({ { 0, 5, 0, 5, 0, 5 } }, NoScale, MakeJitter(6, 0.15));
   jittered.Output = { { 20, 25, 0, 3, -100, -98 } };
-  const std::vector<float> values(jittered.GetNumberOfVoxels(), 1.0F);
-  const std::vector<VolumeArray> arrays{ MakeArray(values, 1, false, 4.0) };
+  const UsualArrays usual(jittered.GetNumberOfVoxels());
+  const std::vector<VolumeArray> arrays = usual.Get();
   ExpectEqualsReference(
     jittered, ResampleByReference(jittered), arrays, LoadAndRun(jittered, arrays));
 }
