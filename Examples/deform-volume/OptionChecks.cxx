@@ -12,6 +12,7 @@
 #include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 #include <string>
@@ -317,4 +318,10 @@ void CheckOptions(const Options& options)
   }
   CheckNumbers(options);
   CheckOverwriting(options);
+  if (options.HasElasticModel() && options.WritesResult() && options.Pulls.empty() &&
+    options.Gravity == std::array<double, 3>{})
+  {
+    throw UsageError(
+      "--model " + options.Model + " needs a --pull or --gravity, without which nothing moves");
+  }
 }

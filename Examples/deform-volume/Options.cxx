@@ -379,7 +379,7 @@ void AddDependencies(CLI::App& program)
     }
   };
   needs("--mesh", { "--rest", "--points-are-deformed" });
-  needs("--field", { "--field-is-inverse" });
+  needs("--field", { "--field-is-inverse", "--field-space" });
   needs("--tetgen",
     { "--isovalue", "--pieces", "--edge-length", "--radius-edge-ratio", "--tetgen-executable" });
   needs("--model", { "--pull", "--frames", "--movie" }); // CheckModelOptions() has the others

@@ -261,6 +261,7 @@ fails("exactly one of", "ras.nii", "--lattice", "3,3,3", code=2)
 _, errors = call(program, path("volume.nii.gz"), "--mesh", path("ras.nii"), "--displacement", "U",
                  "-o", path("no.vti"), code=1)
 assert "--field" in errors, errors
-_, errors = call(program, path("volume.nii.gz"), "--lattice", "3,3,3", "--push", "1,2,3,4,5,6,7",
-                 "--field-is-inverse", "-o", path("no.vti"), code=2)
-assert "--field-is-inverse requires --field" in errors, errors
+for option in (("--field-is-inverse",), ("--field-space", "lps")):
+    _, errors = call(program, path("volume.nii.gz"), "--lattice", "3,3,3", "--push", "1,2,3,4,5,6,7",
+                     *option, "-o", path("no.vti"), code=2)
+    assert f"{option[0]} requires --field" in errors, errors

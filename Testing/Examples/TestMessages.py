@@ -209,7 +209,7 @@ def check_sheets():
     infinite.DeepCopy(sheet)
     infinite.GetPoints().SetPoint(1, float("nan"), 0, 0)
     write(vtkXMLPolyDataWriter(), infinite, path("infinite.vtp"), **XML)
-    model = ("--model", "fem", *lattice, "--fix", "below:8")
+    model = ("--model", "fem", *lattice, "--fix", "below:8", "--gravity", "0,0,-1")
     for name, expected in (("bad.vtp", "99"), ("infinite.vtp", "not finite")):
         fails(1, expected, "--cut", path(name))
         fails(1, expected, "--cut", path(name), *model)
@@ -236,18 +236,19 @@ def check_meshers():
 
 def check_models():
     fem, springs = ("--model", "fem", *lattice), ("--model", "mass-spring", *lattice)
+    gravity = ("--gravity", "0,0,-1")
     for model in (fem, springs):
         fails(1, "radius", *model, "--fix", "below:90", "--pull", "9,20,25,1,0,0,0.001")
         fails(1, "radius", *model, "--fix", "below:90", "--pull", "9,20,25,1,0,0")
-        fails(1, "fixes no node", *model, "--fix", "below:-90")
-        fails(1, "Poisson ratio", *model, "--fix", "below:8", "--poisson", "0.7")
-        fails(1, "Young modulus", *model, "--fix", "below:8", "--young", "-1")
-    warns("finite elements", *springs, "--fix", "below:8", "--poisson", "0.1", "--duration", "0.01")
+        fails(1, "fixes no node", *model, *gravity, "--fix", "below:-90")
+        fails(1, "Poisson ratio", *model, *gravity, "--fix", "below:8", "--poisson", "0.7")
+        fails(1, "Young modulus", *model, *gravity, "--fix", "below:8", "--young", "-1")
+    warns("finite elements", *springs, *gravity, "--fix", "below:8", "--poisson", "0.1", "--duration", "0.01")
     fails(1, "nothing holds the body", *fem, "--pull", "9,20,25,1,0,0")
     image = make_ball(spacing=(1e-3, 1.5e-3, 2e-3), origin=(0, 0, 0))
     write_vti(image, path("metres.vti"))
     warns("millimeter", "--model", "fem", "--lattice", "5,5,5", "--fix", "below:0.001",
-          volume="metres.vti")
+          *gravity, volume="metres.vti")
     fails(1, "OpenCL", *mesh, "--device", "no-such-device")
 
 

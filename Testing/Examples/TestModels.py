@@ -30,6 +30,7 @@ pull_text = f"{middle[0]},{middle[1]},{bounds[5]},3,1,2,4"
 lattice = ("--lattice", "7,7,7")
 fix = ("--fix", f"below:{height}")
 pull = ("--pull", pull_text)
+gravity = ("--gravity", "0,0,-1")
 
 
 def fails(code, expected, *arguments):
@@ -49,9 +50,11 @@ for model in ("fem", "mass-spring"):
     fails(2, "a number", "--model", model, *lattice, "--fix", "below:")
     fails(2, "three numbers", "--model", model, *lattice, *fix, "--gravity", "1,2")
     fails(2, "--young", "--model", model, *lattice, *fix, "--young", "nan")
-    fails(1, "fixes no node", "--model", model, *lattice, "--fix", "below:-1e6")
-    fails(1, "Poisson ratio", "--model", model, *lattice, *fix, "--poisson", "0.5")
+    fails(1, "fixes no node", "--model", model, *lattice, *gravity, "--fix", "below:-1e6")
+    fails(1, "Poisson ratio", "--model", model, *lattice, *fix, *gravity, "--poisson", "0.5")
 fails(1, "No constraints", "--model", "fem", *lattice, "--gravity", "0,0,-9.81")
+for model in ("fem", "mass-spring"):
+    fails(2, "needs a --pull or --gravity", "--model", model, *lattice, *fix)
 fails(2, "--fix requires", "--model", "chainmail", *fix, *pull)
 for option, value in (("--gravity", "0,0,1"), ("--young", "5"), ("--poisson", "0.2"), ("--density", "900")):
     fails(2, option + " requires --model fem", "--model", "chainmail", "--pull", "9,20,25,3,0,0,15", option, value)
@@ -68,9 +71,9 @@ fails(2, "--material fat: --material liver already sets the tissue of the body",
       "--material", "liver", "--material", "fat")
 fails(2, "--material requires", "--model", "chainmail", *pull, "--material", "liver")
 fails(2, "--material requires --model", *lattice, "--push", "9,20,25,3,0,0,15", "--material", "liver")
-fails(1, "Young modulus of material 0", "--model", "fem", *lattice, *fix, "--material", "0:9=-1")
+fails(1, "Young modulus of material 0", "--model", "fem", *lattice, *fix, *gravity, "--material", "0:9=-1")
 fails(2, "--material requires", "--model", "chainmail", *pull, "--material", "0:9=1")
-fails(1, "no such file", "--model", "fem", *lattice, *fix, "--cut", path("none.vtp"))
+fails(1, "no such file", "--model", "fem", *lattice, *fix, *gravity, "--cut", path("none.vtp"))
 fails(2, "--smooth-cut cannot be used with --model fem", "--model", "fem", *lattice, *fix, "--cut", "x.vtp",
       "--smooth-cut")
 fails(2, "--movie requires --frames", "--model", "fem", *lattice, *fix, "--movie", "x.png")
@@ -79,7 +82,7 @@ fails(2, "must end in .png", "--model", "fem", *lattice, *fix, "--movie", "x.mp4
 fails(2, "--frames", "--model", "fem", *lattice, *fix, "--movie", "x.png", "--frames", "0")
 fails(2, "--movie requires --model", *lattice, "--push", "9,20,25,3,0,0,15", "--movie", "x.png",
       "--frames", "3")
-fails(1, "there is no folder", "--model", "fem", *lattice, *fix, "--movie",
+fails(1, "there is no folder", "--model", "fem", *lattice, *fix, *gravity, "--movie",
       path("none/x.png"), "--frames", "3")
 fails(2, "needs the cubes of --lattice", "--model", "mass-spring", "--tetgen", *fix)
 fails(2, "--model chainmail has no mesh", "--model", "chainmail", *pull, "--write-mesh", path("m.vtu"))
