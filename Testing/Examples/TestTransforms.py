@@ -47,6 +47,13 @@ write("broken.h5", "x")
 with open(path("affine.tfm"), encoding="ascii") as file:
     one = file.read()
 write("two.tfm", one + one.split("\n", 1)[1].replace("#Transform 0", "#Transform 1"))
+write("thin.tfm", one.replace("AffineTransform_", "ThinPlateSplineKernelTransform_"))
+# A file that is cut off.
+write("cut.tfm", one[:one.index("FixedParameters")])
+write("cut.txt", one[:one.index("Parameters:")])
+with open(path("composite.tfm"), encoding="ascii") as file:
+    several = file.read()
+write("within.tfm", several[:several.index("FixedParameters")])
 write("words.xyz", "some words\n")
 write_vti(make_ball(), path("unknown.vti"))
 for name, words in {
@@ -60,6 +67,10 @@ for name, words in {
         "TransformParameters.0.txt": "transformix -def all",
         "empty.txt": "it is damaged, or holds no transform",
         "words.tfm": "it is damaged, or holds no transform",
+        "thin.tfm": "it holds ThinPlateSplineKernelTransform_double_3_3, a type",
+        "cut.tfm": 'The line "FixedParameters:" of AffineTransform_double_3_3 is missing',
+        "cut.txt": 'The line "Parameters:" of AffineTransform_double_3_3 is missing',
+        "within.tfm": 'The line "FixedParameters:" of AffineTransform_double_3_3 is missing',
         "broken.h5": "it is damaged, or holds no transform",
         "two.tfm": "it holds 2 transforms",
         "planar.tfm": "AffineTransform_double_2_2",
@@ -67,6 +78,7 @@ for name, words in {
         "spline.h5,invert": "a BSplineTransform cannot be inverted",
         "warp.nii.gz,invert": "the file InverseWarp"}.items():
     fails(words, "--transform", path(name))
+fails("write FILE,invert", "--transform", f"[{path('warp.mha')},1]")  # as for ANTs
 affine = ("--transform", path("affine.h5"))
 fails("--volume-space", *affine, volume="unknown.vti")
 fails("expected FILE or FILE,invert", "--transform", path("affine.h5,inverse"), code=2)
@@ -118,7 +130,7 @@ def check(volume, name, *files, reference=None):
 
 
 formats = ("h5", "tfm", "txt", "mat")
-names = ("affine", "euler", "spline", "quadratic", "displacement", "composite", "nested")
+names = ("affine", "versor", "euler", "spline", "quadratic", "displacement", "composite", "nested", "rotations")
 for name, suffix in itertools.product(names, formats):
     if os.path.exists(path(f"{name}.{suffix}")):
         # The world of the volume alternates between RAS and LPS.
@@ -126,6 +138,7 @@ for name, suffix in itertools.product(names, formats):
         check(volume, name, f"{name}.{suffix}")
     else:
         assert suffix not in ("h5", "tfm"), (name, suffix)
+check("moving.mha", "affine", "c3d.txt")
 check("moving.nrrd", "affine,invert", "affine.mat,invert")
 for volume in ("moving.nii.gz", "moving.mha"):
     check(volume, "displacement", "warp.nii.gz")

@@ -9,12 +9,15 @@
 #include "ProgressBar.h"
 
 #include <itkBSplineTransform.h>
+#include <itkCompositeTransform.h>
 #include <itkHDF5TransformIOFactory.h>
 #include <itkMatlabTransformIOFactory.h>
+#include <itkMatrixOffsetTransformBase.h>
 #include <itkTransform.h>
 #include <itkTransformFactory.h>
 #include <itkTransformFileReader.h>
 #include <itkTxtTransformIOFactory.h>
+#include <itk_H5Cpp.h>
 
 #include <vtkFloatArray.h>
 #include <vtkImageInterpolator.h>
@@ -146,6 +149,73 @@ void CheckProgram(const std::string& path, const std::string& what)
   }
 }
 
+// Throws a Failure if a transform of a text file lacks its parameters, as in a file that is cut
+// off. ITK makes such a transform the identity.
+void CheckText(const std::string& path, const std::string& what)
+{
+  std::ifstream file(path);
+  std::string name;
+  bool hasParameters = true;
+  bool hasFixedParameters = true;
+  const auto check = [&]
+  {
+    if (!hasParameters || !hasFixedParameters)
+    {
+      throw Failure(what + ": it is damaged or cut off. The line \"" +
+        (hasParameters ? "FixedParameters" : "Parameters") + ":\" of " + name + " is missing");
+    }
+  };
+  for (std::string line; std::getline(file, line);)
+  {
+    const std::size_t colon = line.find(':');
+    const std::string key = line.substr(0, colon);
+    if (key == "Transform")
+    {
+      check();
+      name.clear();
+      std::istringstream(line.substr(std::min(colon, line.size() - 1) + 1)) >> name;
+      hasParameters = hasFixedParameters = name.rfind("CompositeTransform", 0) == 0;
+    }
+    hasParameters = hasParameters || key == "Parameters";
+    hasFixedParameters = hasFixedParameters || key == "FixedParameters";
+  }
+  check();
+}
+
+// Makes the center of a transform effective. ITK's VersorTransform ignores that of its file.
+void ApplyCenter(ItkTransform* transform)
+{
+  if (auto* const composite = dynamic_cast<itk::CompositeTransform<double, 3>*>(transform))
+  {
+    for (itk::SizeValueType i = 0; i < composite->GetNumberOfTransforms(); ++i)
+    {
+      ApplyCenter(composite->GetNthTransformModifiablePointer(i));
+    }
+  }
+  else if (auto* const matrix =
+             dynamic_cast<itk::MatrixOffsetTransformBase<double, 3, 3>*>(transform))
+  {
+    const auto center = matrix->GetCenter();
+    matrix->SetCenter(center);
+  }
+}
+
+// Returns why ITK could not read a file. Its own message is about ITK's source code.
+std::string Explain(const std::exception& error)
+{
+  const std::string text = error.what();
+  const std::string before = "Could not create an instance of \"";
+  const std::size_t found = text.find(before);
+  if (found == std::string::npos)
+  {
+    return "it is damaged, or holds no transform that ITK can read";
+  }
+  const std::size_t begin = found + before.size();
+  return "it holds " + text.substr(begin, text.find('"', begin) - begin) +
+    ", a type of transform that ITK cannot read. Let the registration program write an affine "
+    "transform, a B-spline transform or a displacement field";
+}
+
 ItkTransform::Pointer ReadTransform(const TransformFile& file, const std::string& what)
 {
   if (!HasSuffix(file.Path, { ".h5", ".hdf5", ".tfm", ".txt", ".mat" }))
@@ -159,12 +229,18 @@ ItkTransform::Pointer ReadTransform(const TransformFile& file, const std::string
     itk::HDF5TransformIOFactory::RegisterOneFactory();
     itk::MatlabTransformIOFactory::RegisterOneFactory();
     itk::TxtTransformIOFactory::RegisterOneFactory();
-    // ITK itself knows order 3 only.
+    itk::TransformFactory<itk::MatrixOffsetTransformBase<double, 3, 3>>::RegisterTransform();
+    // Of B-splines ITK itself knows order 3 only.
     itk::TransformFactory<itk::BSplineTransform<double, 3, 1>>::RegisterTransform();
     itk::TransformFactory<itk::BSplineTransform<double, 3, 2>>::RegisterTransform();
+    H5::Exception::dontPrint();
     return true;
   }();
   static_cast<void>(areFormatsKnown);
+  if (HasSuffix(file.Path, { ".tfm", ".txt" }))
+  {
+    CheckText(file.Path, what);
+  }
   const auto reader = itk::TransformFileReader::New();
   reader->SetFileName(file.Path);
   const auto* const list = reader->GetTransformList();
@@ -172,9 +248,9 @@ ItkTransform::Pointer ReadTransform(const TransformFile& file, const std::string
   {
     reader->Update();
   }
-  catch (const std::exception&) // its message is about ITK's source code
+  catch (const std::exception& error)
   {
-    throw Failure(what + ": it is damaged, or holds no transform that ITK can read");
+    throw Failure(what + ": " + Explain(error));
   }
   if (list->size() != 1)
   {
@@ -188,6 +264,7 @@ ItkTransform::Pointer ReadTransform(const TransformFile& file, const std::string
     throw Failure(what + ": it holds " + list->front()->GetTransformTypeAsString() +
       ", but a transform of points in three dimensions is needed");
   }
+  ApplyCenter(transform);
   if (!file.IsInverted)
   {
     return transform;
@@ -209,7 +286,10 @@ std::unique_ptr<PointMap> ReadMap(
   const std::string what = "cannot use the transform " + file.Path;
   if (!vtksys::SystemTools::FileExists(file.Path, true))
   {
-    throw Failure(what + ": there is no such file");
+    throw Failure(what + ": there is no such file" +
+      (file.Path == "0" || file.Path == "1"
+          ? ". In place of [FILE,1] of ANTs write FILE,invert, and in place of [FILE,0] only FILE"
+          : ""));
   }
   if (IsFieldFile(file.Path) && !IsVTKFile(file.Path))
   {

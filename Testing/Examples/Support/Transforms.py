@@ -56,6 +56,9 @@ affine.SetMatrix((turn(1, 8) @ numpy.diag([1.05, 0.96, 1.02])).ravel().tolist())
 affine.SetCenter(middle)
 affine.SetTranslation((1.5, -2.0, 0.7))
 
+# ITK reads the center of a versor, but does not apply it.
+versor = sitk.VersorTransform((1.0, 2.0, 3.0), 0.3, middle)
+
 euler = sitk.Euler3DTransform(middle, 0.1, -0.05, 0.2, (0.5, 1.0, -1.5))
 
 spline = sitk.BSplineTransformInitializer(moving, (5, 4, 4), 3)
@@ -88,8 +91,10 @@ displacement = sitk.DisplacementFieldTransform(sitk.Image(field))
 composite = sitk.CompositeTransform([affine, displacement])
 nested = sitk.CompositeTransform([euler, spline])
 
-transforms = {"affine": affine, "euler": euler, "spline": spline, "quadratic": quadratic,
-              "displacement": displacement, "composite": composite, "nested": nested}
+rotations = sitk.CompositeTransform([versor, euler])
+
+transforms = {"affine": affine, "versor": versor, "euler": euler, "spline": spline, "quadratic": quadratic,
+              "displacement": displacement, "composite": composite, "nested": nested, "rotations": rotations}
 for name, transform in transforms.items():
     for suffix in ("h5", "tfm", "txt", "mat"):
         try:
@@ -99,6 +104,11 @@ for name, transform in transforms.items():
             # This format cannot store the transform, or ITK cannot read the file.
             if os.path.exists(path(f"{name}.{suffix}")):
                 os.remove(path(f"{name}.{suffix}"))
+# The type that c3d_affine_tool writes.
+with open(path("affine.tfm"), encoding="ascii") as file:
+    text = file.read()
+with open(path("c3d.txt"), "w", encoding="ascii") as file:
+    file.write(text.replace("AffineTransform_", "MatrixOffsetTransformBase_"))
 planar = sitk.AffineTransform(2)
 sitk.WriteTransform(planar, path("planar.tfm"))
 
