@@ -228,8 +228,9 @@ public:
   /**
    * Set/Get the interpolation of arrays that are not categorical: linear; cubic (Catmull-Rom, over
    * four voxels on each axis; linear if one of these 64 voxels does not exist, or if they lie on
-   * different sides of a cut); or nearest, which treats every array as categorical. Integers are
-   * rounded to the nearest. Default: LINEAR_INTERPOLATION.
+   * different sides of a cut); or nearest, which treats every array as categorical. With an inverse
+   * field or MESH_RASTERIZATION, voxels beyond the border are extrapolated linearly instead.
+   * Integers are rounded to the nearest. Default: LINEAR_INTERPOLATION.
    */
   enum Interpolations
   {

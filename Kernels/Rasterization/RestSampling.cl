@@ -4,8 +4,8 @@
 // voxels.
 //
 // Rest coordinates are integers: the index relative to the volume's first voxel times 2^FractionBits. Interpolation
-// is that of VoxelTaps.cl, linear or cubic. Beyond the border of the volume, cubic interpolation repeats the border
-// voxels.
+// is that of VoxelTaps.cl, linear or cubic. Beyond the border of the volume, cubic interpolation extrapolates voxels
+// linearly, so that an array that is linear in space stays linear.
 //
 // Linear arrays of one component, of type float or 8- or 16-bit integer, are handled in lanes (LaneSampling.cl). All
 // other arrays are handled voxel by voxel in REAL.
@@ -33,7 +33,7 @@ static AxisTaps MakeAxisTaps(int rest, int bits, int size, int* nearest)
     AddTap(&taps, voxel + (fraction != 0), 1);
     return taps;
   }
-  AddCubicTaps(&taps, max(voxel - 1, 0), voxel, min(voxel + 2, size - 1), f);
+  AddCubicTaps(&taps, voxel, voxel > 0, voxel < size - 2, f);
 #else
   AddTap(&taps, voxel, 1 - f);
   AddTap(&taps, voxel + 1, f);

@@ -97,7 +97,7 @@ static AxisTaps MakeAxisTaps(const Sample* s, int axis)
   }
   else
   {
-    AddCubicTaps(&taps, voxel - 1, voxel, voxel + 2, (REAL)s->Along[axis] * s->Scale);
+    AddCubicTaps(&taps, voxel, 1, 1, (REAL)s->Along[axis] * s->Scale);
   }
   return taps;
 }

@@ -28,16 +28,34 @@ static void AddTap(AxisTaps* taps, int voxel, REAL weight)
 }
 
 #if CUBIC
-// Adds the taps for a position between `voxel` and voxel + 1, at the fraction f. before, after: the voxels before and
-// after these two.
-static void AddCubicTaps(AxisTaps* taps, int before, int voxel, int after, REAL f)
+// Adds the taps for a position between `voxel` and voxel + 1, at the fraction f. hasBefore, hasAfter: whether there is a
+// voxel before and after these two. If not, its value is extrapolated linearly from the two.
+static void AddCubicTaps(AxisTaps* taps, int voxel, int hasBefore, int hasAfter, REAL f)
 {
-  AddTap(taps, before, MULTIPLY_ADD_REAL(2 - f, f, (REAL)-1) * f / 2);
-  AddTap(
-    taps, voxel, MULTIPLY_ADD_REAL(MULTIPLY_ADD_REAL((REAL)3, f, (REAL)-5) * f, f, (REAL)2) / 2);
-  AddTap(taps, voxel + 1,
-    MULTIPLY_ADD_REAL(MULTIPLY_ADD_REAL((REAL)-3, f, (REAL)4), f, (REAL)1) * f / 2);
-  AddTap(taps, after, (f - 1) * f * f / 2);
+  const REAL before = MULTIPLY_ADD_REAL(2 - f, f, (REAL)-1) * f / 2;
+  const REAL after = (f - 1) * f * f / 2;
+  REAL low = MULTIPLY_ADD_REAL(MULTIPLY_ADD_REAL((REAL)3, f, (REAL)-5) * f, f, (REAL)2) / 2;
+  REAL high = MULTIPLY_ADD_REAL(MULTIPLY_ADD_REAL((REAL)-3, f, (REAL)4), f, (REAL)1) * f / 2;
+  if (hasBefore)
+  {
+    AddTap(taps, voxel - 1, before);
+  }
+  else
+  {
+    low = MULTIPLY_ADD_REAL((REAL)2, before, low);
+    high -= before;
+  }
+  if (!hasAfter)
+  {
+    low -= after;
+    high = MULTIPLY_ADD_REAL((REAL)2, after, high);
+  }
+  AddTap(taps, voxel, low);
+  AddTap(taps, voxel + 1, high);
+  if (hasAfter)
+  {
+    AddTap(taps, voxel + 2, after);
+  }
 }
 #endif
 

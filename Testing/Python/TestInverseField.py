@@ -316,6 +316,17 @@ wrong = np.abs(results[0][0] - results[1][0])[both].max()
 rounding = np.abs(slope @ np.linalg.inv(np.eye(3) + gradient) @ grid.matrix).sum() / 512
 assert wrong < rounding + 1e-4, (wrong, rounding)
 
+# Rest positions and linear values are the same with cubic interpolation, in the outermost voxels as well.
+affine.GenerateRestPositionsOn()
+affine.SetInterpolationToCubicInterpolation()
+affine.Update()
+inverted = middle + (grid.get_points() - middle) @ np.linalg.inv(np.eye(3) + gradient).T
+covered = get(affine.GetOutput(), "vtkValidPointMask") != 0
+wrong = np.abs(get(affine.GetOutput(), "RestPosition") - inverted)[covered].max()
+assert wrong < 0.01, wrong
+wrong = np.abs(get(affine.GetOutput(), "ramp") - results[1][0])[covered].max()
+assert wrong < 1e-4, wrong
+
 # A reflection inverts all tetrahedra of the field's grid, five for each cell.
 mirror = field_grid.make_image(b=(-2.0 * away[..., :1]) * np.array([1.0, 0.0, 0.0]))
 mirrored = make_filter(ramp, mirror)

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 using namespace deformvolume;
 
@@ -279,6 +280,7 @@ std::vector<std::pair<std::int64_t, long double>> GetWeights(
   {
     const std::int64_t size = GetSize(volume, axis);
     const auto whole = static_cast<std::int64_t>(std::floor(rest[axis]));
+    std::map<std::int64_t, long double> ofVoxels;
     for (std::int64_t voxel = whole - 1; voxel <= whole + 2; ++voxel)
     {
       // The Catmull-Rom and the linear interpolation kernel, as functions of the distance.
@@ -290,9 +292,23 @@ std::vector<std::pair<std::int64_t, long double>> GetWeights(
           : x < 2.0L      ? -0.5L * x * x * x + 2.5L * x * x - 4.0L * x + 2.0L
                           : 0.0L;
       }
-      if (weight != 0.0L)
+      // A voxel beyond the border is extrapolated linearly from the two voxels next to it.
+      if (voxel < 0 || voxel >= size)
       {
-        axes[axis].emplace_back(std::min(std::max<std::int64_t>(voxel, 0), size - 1), weight);
+        const std::int64_t border = voxel < 0 ? 0 : size - 1;
+        ofVoxels[border] += 2.0L * weight;
+        ofVoxels[voxel < 0 ? 1 : size - 2] -= weight;
+      }
+      else
+      {
+        ofVoxels[voxel] += weight;
+      }
+    }
+    for (const auto& weight : ofVoxels)
+    {
+      if (weight.second != 0.0L)
+      {
+        axes[axis].push_back(weight);
       }
     }
   }
