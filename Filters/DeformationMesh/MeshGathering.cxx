@@ -101,7 +101,7 @@ struct MeshGathering::Piece
   /// Deformed positions if there is a rest configuration, else displacements.
   std::vector<glm::dvec3> Vectors;
   std::string IgnoredCells;
-  std::string FarMidSides;
+  std::string WrongOrder;
 };
 
 MeshGathering::Piece MeshGathering::Read(const DeformationSource& source) const
@@ -129,7 +129,7 @@ MeshGathering::Piece MeshGathering::Read(const DeformationSource& source) const
   piece.Tetrahedra = std::move(cells.Tetrahedra);
   piece.Derived = std::move(cells.Derived);
   piece.IgnoredCells = std::move(cells.Ignored);
-  piece.FarMidSides = std::move(cells.FarMidSides);
+  piece.WrongOrder = std::move(cells.WrongOrder);
   piece.RestPoints = ReadPoints(rest, source.Rest ? REST_NAME : MESH_NAME, piece.Tetrahedra);
   if (source.Rest)
   {
@@ -215,7 +215,7 @@ DeformationSource MeshGathering::Gather(const Ranks& ranks, const DeformationSou
     AddToHash(hash, piece.RestPoints);
     AddToHash(hash, piece.Vectors);
     this->IgnoredCells = piece.IgnoredCells;
-    this->FarMidSides = piece.FarMidSides;
+    this->WrongOrder = piece.WrongOrder;
     if (!ranks.AreEqual(hash))
     {
       // The sum over the ranks before this one, and the sum over all ranks.
@@ -284,9 +284,9 @@ void AddCellWarnings(
 {
   const std::string& ignored = mesh.GetIgnoredCells();
   const std::string& cells = ignored.empty() ? gathering.GetIgnoredCells() : ignored;
-  const std::string& far = mesh.GetFarMidSides();
-  const std::string& midSides = far.empty() ? gathering.GetFarMidSides() : far;
-  for (const std::string& warning : GetCellWarnings(cells, midSides))
+  const std::string& wrong = mesh.GetWrongOrder();
+  const std::string& order = wrong.empty() ? gathering.GetWrongOrder() : wrong;
+  for (const std::string& warning : GetCellWarnings(cells, order))
   {
     warnings.insert(warning);
   }

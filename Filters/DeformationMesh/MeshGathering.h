@@ -32,8 +32,8 @@ public:
 
   /// Describes the cells of this rank's piece that were ignored; "": none were.
   const std::string& GetIgnoredCells() const { return this->IgnoredCells; }
-  /// See RestMesh::GetFarMidSides().
-  const std::string& GetFarMidSides() const { return this->FarMidSides; }
+  /// See RestMesh::GetWrongOrder().
+  const std::string& GetWrongOrder() const { return this->WrongOrder; }
 
 private:
   struct Piece;
@@ -48,7 +48,7 @@ private:
   DerivedNodes
     Derived; // used by the cells of Shape and Rest; their indices follow those of the points
   std::string IgnoredCells;
-  std::string FarMidSides;
+  std::string WrongOrder;
 };
 
 /// Adds warnings about cells of a mesh that are ignored, or that are probably wrong.

@@ -174,7 +174,7 @@ RestMesh::CellReading RestMesh::ReadCells(const MeshParts& shape, const MeshPart
   const bool sameShape = shapeCells.IsThatOf(this->ShapeCells);
   CellReading reading;
   reading.Ignored = this->IgnoredCells;
-  reading.FarMidSides = this->FarMidSides;
+  reading.WrongOrder = this->WrongOrder;
   if (sameRest && (sameShape || shared))
   {
     reading.Differences = Changes();
@@ -198,7 +198,7 @@ RestMesh::CellReading RestMesh::ReadCells(const MeshParts& shape, const MeshPart
                   "Use two configurations of one mesh.");
     }
     reading.Ignored = cells.Ignored;
-    reading.FarMidSides = cells.FarMidSides;
+    reading.WrongOrder = cells.WrongOrder;
     if (!(cells.Derived == this->Derived))
     {
       reading.Derived = std::move(cells.Derived);
@@ -320,7 +320,7 @@ void RestMesh::SetShape(CellReading&& cells)
     Apply(*cells.Differences, this->Tetrahedra);
   }
   this->IgnoredCells = cells.Ignored;
-  this->FarMidSides = cells.FarMidSides;
+  this->WrongOrder = cells.WrongOrder;
   ++this->ShapeVersion;
   this->LogBegin = ++this->ConnectivityVersion;
   this->Log.clear();

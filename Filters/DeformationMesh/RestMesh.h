@@ -58,8 +58,8 @@ public:
 
   /// Describes ignored cells for a warning; "": no cells were ignored.
   const std::string& GetIgnoredCells() const { return this->IgnoredCells; }
-  /// Describes quadratic cells with a node far from the middle of its edge; "": there are none.
-  const std::string& GetFarMidSides() const { return this->FarMidSides; }
+  /// Describes cells whose nodes are probably not in VTK's order; "": there are none.
+  const std::string& GetWrongOrder() const { return this->WrongOrder; }
 
 private:
   using Changes = std::vector<TetrahedronChange>;
@@ -71,7 +71,7 @@ private:
     std::vector<Tetrahedron> All;        // empty: Differences suffice
     std::optional<DerivedNodes> Derived; // nothing: they have not changed
     std::string Ignored;
-    std::string FarMidSides;
+    std::string WrongOrder;
   };
 
   CellReading ReadCells(const MeshParts& shape, const MeshParts& rest, const DerivedNodes* derived,
@@ -98,7 +98,7 @@ private:
   DerivedNodes Derived;
   NodeFaults PointFaults;
   std::string IgnoredCells;
-  std::string FarMidSides;
+  std::string WrongOrder;
   std::uint64_t ShapeVersion = 0;
   std::uint64_t ConnectivityVersion = 0;
   bool ShapeIsOld = false; // a failed reading has left points that do not belong to ShapeVersion

@@ -8,13 +8,15 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
 namespace deformvolume
 {
 
-std::vector<std::string> GetCellWarnings(const std::string& ignored, const std::string& farMidSides)
+std::vector<std::string> GetCellWarnings(const std::string& ignored, const std::string& wrongOrder)
 {
   std::vector<std::string> warnings;
   if (!ignored.empty())
@@ -24,13 +26,9 @@ std::vector<std::string> GetCellWarnings(const std::string& ignored, const std::
       "cannot be split into tetrahedra, are ignored: " +
       ignored + ".");
   }
-  if (!farMidSides.empty())
+  if (!wrongOrder.empty())
   {
-    warnings.push_back(farMidSides +
-      " quadratic cells of the deformation mesh have a mid-side node that is farther from the "
-      "middle of its edge than 30 % of the length of the edge. Check that the nodes of the cells "
-      "are in VTK's "
-      "order.");
+    warnings.push_back(wrongOrder + " Check that the nodes of the cells are in VTK's order.");
   }
   return warnings;
 }
@@ -188,6 +186,30 @@ void CellReader::AddHigherOrder(std::int64_t cell, int type, const std::vector<s
   this->NumberOfFarMidSides += this->HasNearMidSides(type, nodes) ? 0 : 1;
 }
 
+// Splits a linear cell, and counts it if it overlaps itself: if more than a tenth of the volume of
+// its tetrahedra has the other orientation. In a cube with the nodes in the order of a voxel it is
+// half of the volume.
+void CellReader::SplitLinear(const std::vector<std::int32_t>& nodes, const CellFaces& faces)
+{
+  const std::size_t first = this->Cells.Tetrahedra.size();
+  SplitCell(nodes, faces, this->Cells.Tetrahedra);
+  double ofOneSign = 0.0;
+  double ofOtherSign = 0.0;
+  for (std::size_t t = first; t < this->Cells.Tetrahedra.size(); ++t)
+  {
+    const Tetrahedron& tetrahedron = this->Cells.Tetrahedra[t];
+    const glm::dvec3 apex = this->GetPosition(tetrahedron[0]);
+    const double volume = glm::dot(this->GetPosition(tetrahedron[1]) - apex,
+      glm::cross(
+        this->GetPosition(tetrahedron[2]) - apex, this->GetPosition(tetrahedron[3]) - apex));
+    (volume > 0.0 ? ofOneSign : ofOtherSign) += std::abs(volume);
+  }
+  constexpr double most = 0.1;
+  ++this->NumberOfSplitCells;
+  this->NumberOfFoldedCells +=
+    std::min(ofOneSign, ofOtherSign) > most * (ofOneSign + ofOtherSign) ? 1 : 0;
+}
+
 void CellReader::Add(std::int64_t cell, int type, const std::vector<std::int32_t>& nodes,
   const std::array<int, 3>* degrees)
 {
@@ -202,11 +224,11 @@ void CellReader::Add(std::int64_t cell, int type, const std::vector<std::int32_t
     std::vector<std::int32_t> swapped = nodes;
     std::swap(swapped[2], swapped[3]);
     std::swap(swapped[6], swapped[7]);
-    SplitCell(swapped, *GetCellFaces(cellNumbers::Hexahedron), this->Cells.Tetrahedra);
+    this->SplitLinear(swapped, *GetCellFaces(cellNumbers::Hexahedron));
   }
   else if (const CellFaces* faces = GetCellFaces(type))
   {
-    SplitCell(nodes, *faces, this->Cells.Tetrahedra);
+    this->SplitLinear(nodes, *faces);
   }
   else if (HigherOrderCells::Contain(type))
   {
@@ -233,8 +255,18 @@ MeshCells CellReader::Finish()
   }
   if (this->NumberOfFarMidSides > 0)
   {
-    this->Cells.FarMidSides = std::to_string(this->NumberOfFarMidSides) + " of " +
-      std::to_string(this->NumberOfQuadraticCells);
+    this->Cells.WrongOrder = std::to_string(this->NumberOfFarMidSides) + " of " +
+      std::to_string(this->NumberOfQuadraticCells) +
+      " quadratic cells of the deformation mesh have a mid-side node that is farther from the "
+      "middle of its edge than 30 % of the length of the edge.";
+  }
+  if (this->NumberOfFoldedCells > 0)
+  {
+    this->Cells.WrongOrder += (this->Cells.WrongOrder.empty() ? "" : " ") +
+      std::to_string(this->NumberOfFoldedCells) + " of " +
+      std::to_string(this->NumberOfSplitCells) +
+      " hexahedra, wedges, pyramids and prisms of the deformation mesh overlap themselves at rest, "
+      "so that voxels in them may be lost.";
   }
   return std::move(this->Cells);
 }

@@ -31,14 +31,13 @@ struct MeshCells
   /// Text for a warning: number and type of cells that are not three-dimensional or of an
   /// unsupported type. "" if there are none.
   std::string Ignored;
-  /// Text for a warning: number of quadratic cells with a mid-side node far from the midpoint of
-  /// its edge, such as "3 of 10". "" if there are none.
-  std::string FarMidSides;
+  /// Text for a warning: cells whose nodes are probably not in VTK's order. "" if there are none.
+  std::string WrongOrder;
 };
 
-/// Returns the warnings for MeshCells::Ignored and MeshCells::FarMidSides.
+/// Returns the warnings for MeshCells::Ignored and MeshCells::WrongOrder.
 DEFORMVOLUME_EXPORT std::vector<std::string> GetCellWarnings(
-  const std::string& ignored, const std::string& farMidSides);
+  const std::string& ignored, const std::string& wrongOrder);
 
 /// Throws an Error for a cell of the deformation mesh. count: number of its points. complaint: the
 /// text after the number of points in the message.
@@ -54,7 +53,7 @@ DEFORMVOLUME_EXPORT void CheckCellPoint(
 class DEFORMVOLUME_EXPORT CellReader
 {
 public:
-  /// Returns the position of a node at rest. Called for the nodes of quadratic cells and polyhedra.
+  /// Returns the position of a node at rest. Called for the nodes of cells that are split.
   using Positions = std::function<glm::dvec3(std::int32_t node)>;
 
   /// rounding: relative error of positions.
@@ -93,6 +92,7 @@ private:
   void AddHigherOrder(std::int64_t cell, int type, const std::vector<std::int32_t>& nodes,
     const std::array<int, 3>* degrees);
   bool HasNearMidSides(int type, const std::vector<std::int32_t>& nodes) const;
+  void SplitLinear(const std::vector<std::int32_t>& nodes, const CellFaces& faces);
 
   const std::int32_t NumberOfNodes;
   const Positions GetPosition;
@@ -102,6 +102,8 @@ private:
   std::map<int, std::int64_t> Ignored;
   std::int64_t NumberOfQuadraticCells = 0;
   std::int64_t NumberOfFarMidSides = 0;
+  std::int64_t NumberOfSplitCells = 0;
+  std::int64_t NumberOfFoldedCells = 0;
 };
 
 } // namespace deformvolume

@@ -581,7 +581,7 @@ void WorldDeformer::Internals::Describe(
   if (this->IsMesh())
   {
     const MeshCells& cells = this->Mesh.GetCells();
-    for (const std::string& warning : GetCellWarnings(cells.Ignored, cells.FarMidSides))
+    for (const std::string& warning : GetCellWarnings(cells.Ignored, cells.WrongOrder))
     {
       warn(warning);
     }

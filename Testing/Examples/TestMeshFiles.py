@@ -235,6 +235,10 @@ def check_misuse_of_meshes():
     fails(1, [path("gone.vtu"), "no such file"], *as_mesh("broken.pvd"))
     write_collection(path("times.pvd"), [("later", "mesh.vtu")])
     fails(1, '"later" of a file is not a number', *as_mesh("times.pvd"))
+    write_text("untimed.pvd", '<VTKFile type="Collection"><Collection><DataSet file="mesh.vtu"/>'
+               '<DataSet file="before.vtu"/></Collection></VTKFile>\n')
+    Messages.warns(program, "names 2 files without the attribute timestep", path("in.vti"), *as_mesh("untimed.pvd"),
+                   "-o", path("untimed.vti"))
     write_collection(path("nested.pvd"), [(0, "one.pvd")])
     fails(1, "another .pvd file", *as_mesh("nested.pvd"))
     write_collection(path("msh.pvd"), [(0, "fe.msh")])
@@ -342,7 +346,7 @@ def check_misuse_of_sheets():
     write(vtkXMLPolyDataWriter(), lines, path("lines.vtp"), **XML)
     fails(1, ["60 points and 1 line", "triangles"], *sheet("lines.vtp"))
     fails(1, ["60 points and 1 line", "triangles"], *sheet("lines.vtp"), "--model", "fem",
-          "--lattice", "5,5,5", "--fix", "below:8")
+          "--lattice", "5,5,5", "--gravity", "0,0,-1", "--fix", "below:8")
 
 
 def deform(*arguments, expected_warnings=(), source="in.vti"):

@@ -5,6 +5,7 @@
 
 #include <vtkBoundingBox.h>
 #include <vtkCell.h>
+#include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
 #include <vtkCompositeDataIterator.h>
@@ -141,6 +142,30 @@ void CheckArray(const MeshPart& part, const std::string& name, const std::string
   }
 }
 
+// Throws a Failure if a cell uses a point that does not exist.
+void CheckCells(vtkUnstructuredGrid* grid, const std::string& path)
+{
+  vtkCellArray* cells = grid->GetCells();
+  if (!cells->IsValid())
+  {
+    throw Failure("cannot use " + path + ": the offsets of its cells do not fit their points");
+  }
+  vtkNew<vtkIdList> points;
+  for (vtkIdType cell = 0; cell < cells->GetNumberOfCells(); ++cell)
+  {
+    cells->GetCellAtId(cell, points);
+    for (const vtkIdType point : *points)
+    {
+      if (point < 0 || point >= grid->GetNumberOfPoints())
+      {
+        throw Failure("cannot use " + path + ": cell " + std::to_string(cell) + " uses point " +
+          std::to_string(point) + ", but the file has only " +
+          Count(grid->GetNumberOfPoints(), "point", "points") + ", numbered from 0");
+      }
+    }
+  }
+}
+
 // Throws a Failure if polyhedra have no faces: earlier readers ignore those that VTK 9.4 and later
 // write.
 void CheckPolyhedra(vtkUnstructuredGrid* grid, const std::string& path)
@@ -224,6 +249,7 @@ void CheckMesh(vtkDataObject* mesh, const std::string& displacement, const std::
       deforms = true;
       if (auto* grid = vtkUnstructuredGrid::SafeDownCast(part.Data))
       {
+        CheckCells(grid, path);
         CheckPolyhedra(grid, path);
       }
       if (!displacement.empty())

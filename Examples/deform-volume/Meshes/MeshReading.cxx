@@ -250,6 +250,7 @@ std::map<double, std::vector<std::string>> FindFiles(const Source& source)
   std::string folder = vtksys::SystemTools::GetFilenamePath(source.Path);
   folder = folder.empty() ? "." : folder;
   std::map<double, std::vector<std::string>> files;
+  int withoutTime = 0;
   for (int i = 0; i < collection->GetNumberOfNestedElements(); ++i)
   {
     vtkXMLDataElement* entry = collection->GetNestedElement(i);
@@ -265,11 +266,18 @@ std::map<double, std::vector<std::string>> FindFiles(const Source& source)
       throw Failure("cannot read " + source.Path + ": the time step \"" + text +
         "\" of a file is not a number");
     }
+    withoutTime += text || entry->GetAttribute("part") ? 0 : 1;
     files[time].push_back(vtksys::SystemTools::CollapseFullPath(file, folder));
   }
   if (files.empty())
   {
     throw Failure("cannot read " + source.Path + ": it names no files");
+  }
+  if (withoutTime > 1)
+  {
+    source.Log.DisplayWarningText((source.Path + " names " + std::to_string(withoutTime) +
+      " files without the attribute timestep. They are read as parts of one mesh.")
+                                    .c_str());
   }
   return files;
 }

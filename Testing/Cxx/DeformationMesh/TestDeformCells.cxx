@@ -347,6 +347,36 @@ void TestMidSides()
   VERIFY_EQUAL(deformed.TakeWarning(), std::string());
 }
 
+// So does a hexahedron with the nodes in the order of a voxel, but not a turned or mirrored one.
+void TestOrderOfHexahedra()
+{
+  const auto volume = MakeVolume();
+  double bounds[6];
+  volume->GetBounds(bounds);
+  const std::pair<std::array<vtkIdType, 8>, bool> orders[] = {
+    { { { 0, 1, 3, 2, 4, 5, 7, 6 } }, false }, { { { 1, 3, 2, 0, 5, 7, 6, 4 } }, false },
+    { { { 0, 2, 3, 1, 4, 6, 7, 5 } }, false }, { { { 0, 1, 2, 3, 4, 5, 6, 7 } }, true }
+  };
+  for (const auto& [order, isWrong] : orders)
+  {
+    vtkNew<vtkPoints> points;
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      points->InsertNextPoint(
+        bounds[corner & 1], bounds[2 + (corner >> 1 & 1)], bounds[4 + (corner >> 2)]);
+    }
+    const auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
+    mesh->SetPoints(points);
+    mesh->InsertNextCell(VTK_HEXAHEDRON, 8, order.data());
+    SetDisplacements(mesh, Shift(0.5, 0.0, 0.0));
+    Deformed deformed(volume, mesh);
+    deformed.Filter->Update();
+    const std::string warning = deformed.TakeWarning();
+    VERIFY_EQUAL(warning.find("1 of 1 hexahedra") != std::string::npos, isWrong);
+    VERIFY_EQUAL(warning.empty(), !isWrong);
+  }
+}
+
 } // namespace
 
 int TestDeformCells(int, char*[])
@@ -356,5 +386,6 @@ int TestDeformCells(int, char*[])
   TestSplits();
   TestAccuracy();
   TestMidSides();
+  TestOrderOfHexahedra();
   return GetExitCode();
 }
