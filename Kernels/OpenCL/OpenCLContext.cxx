@@ -356,8 +356,8 @@ cl::Program OpenCLContext::Build(const std::string& source, const std::string& o
   return program;
 }
 
-bool OpenCLContext::IsNew(
-  const cl::Kernel& kernel, const cl::NDRange& items, const cl::NDRange& group)
+OpenCLContext::LaunchKey OpenCLContext::MakeLaunchKey(
+  const cl::Kernel& kernel, const cl::NDRange& items, const cl::NDRange& group) const
 {
   std::string name = kernel.getInfo<CL_KERNEL_FUNCTION_NAME>();
   for (cl::size_type axis = 0; axis < group.dimensions(); ++axis)
@@ -370,15 +370,27 @@ bool OpenCLContext::IsNew(
   {
     name += " of " + std::to_string(items[axis]);
   }
+  return { kernel.getInfo<CL_KERNEL_PROGRAM>()(), name };
+}
+
+bool OpenCLContext::WasLaunched(const LaunchKey& key)
+{
   const std::lock_guard<std::mutex> lock(this->Mutex);
-  return this->Launched.insert({ kernel.getInfo<CL_KERNEL_PROGRAM>()(), name }).second;
+  return this->Launched.count(key) > 0;
+}
+
+void OpenCLContext::AddLaunched(const LaunchKey& key)
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  this->Launched.insert(key);
 }
 
 cl::Event OpenCLContext::Launch(const cl::CommandQueue& queue, const cl::Kernel& kernel,
   const cl::NDRange& items, const cl::NDRange& group)
 {
   cl::Event event;
-  if (!this->IsNew(kernel, items, group))
+  const LaunchKey key = this->MakeLaunchKey(kernel, items, group);
+  if (this->WasLaunched(key))
   {
     queue.enqueueNDRangeKernel(kernel, cl::NullRange, items, group, nullptr, &event);
     return event;
@@ -389,19 +401,22 @@ cl::Event OpenCLContext::Launch(const cl::CommandQueue& queue, const cl::Kernel&
   queue.enqueueNDRangeKernel(kernel, cl::NullRange, items, group, nullptr, &event);
   event.wait();
   compilation.Exclude(GetSeconds(event));
+  this->AddLaunched(key);
   return event;
 }
 
 void OpenCLContext::Prepare(
   const cl::CommandQueue& queue, const cl::Kernel& kernel, const cl::NDRange& group)
 {
-  if (this->IsNew(kernel, group, group))
+  const LaunchKey key = this->MakeLaunchKey(kernel, group, group);
+  if (!this->WasLaunched(key))
   {
     queue.finish();
     const KernelLinkerScope linker(this->OwnLinker);
     const CompilationWatch::Compilation compilation;
     queue.enqueueNDRangeKernel(kernel, cl::NullRange, group, group);
     queue.finish();
+    this->AddLaunched(key);
   }
 }
 

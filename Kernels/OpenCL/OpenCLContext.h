@@ -93,8 +93,13 @@ private:
   /// Returns the entry of a program, whose address does not change.
   BuiltProgram& FindProgram(const ProgramText& source, const std::string& options);
   cl::Program Build(const std::string& source, const std::string& options) const;
-  /// Whether this is the first call for this kernel and group size.
-  bool IsNew(const cl::Kernel& kernel, const cl::NDRange& items, const cl::NDRange& group);
+  /// The driver compiles a kernel when it is launched first with a key: a program, and the name of
+  /// the kernel with its group size.
+  using LaunchKey = std::pair<cl_program, std::string>;
+  LaunchKey MakeLaunchKey(
+    const cl::Kernel& kernel, const cl::NDRange& items, const cl::NDRange& group) const;
+  bool WasLaunched(const LaunchKey& key);
+  void AddLaunched(const LaunchKey& key);
 
   OpenCLDevice Device;
   cl::Context Context;
@@ -104,7 +109,7 @@ private:
   std::mutex Mutex;
   std::map<std::pair<std::string, ProgramText>, BuiltProgram*> Requested; // by options and text
   std::map<std::string, BuiltProgram> Programs;
-  std::set<std::pair<cl_program, std::string>> Launched;
+  std::set<LaunchKey> Launched;
   std::mutex StagingMutex;
   std::unique_ptr<StagedCopies> Staging;
 };

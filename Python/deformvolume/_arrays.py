@@ -13,6 +13,8 @@ def native(array, what: str) -> numpy.ndarray:
     """Returns an array of a type that the library supports. Bool becomes uint8, and other byte orders are converted."""
     if isinstance(array, numpy.ma.MaskedArray):
         raise TypeError(f"{what} is a masked array. Replace the masked values, for example with array.filled(0).")
+    if hasattr(array, "dataobj"):  # an image of nibabel
+        raise TypeError(f"{what} is a {type(array).__name__}. Give its values, numpy.asarray(image.dataobj).")
     array = numpy.asarray(array)
     if array.dtype == numpy.bool_:
         array = array.view(numpy.uint8)
@@ -35,7 +37,10 @@ def image(array, what: str, components: Tuple[int, ...] = ()) -> numpy.ndarray:
     array = native(array, what)
     if array.ndim not in ((4,) if components else (3, 4)):
         axes = "x, y, z and components" if components else "x, y, z and, optionally, components"
-        raise ValueError(f"{what} has the shape {array.shape}. Its axes must be {axes}.")
+        hint = ""
+        if components and array.ndim == 5 and array.shape[3] == 1:  # NIfTI with the intent of vectors
+            hint = " Remove axis 3 with array[:, :, :, 0], and note the directions of the vectors, see Field."
+        raise ValueError(f"{what} has the shape {array.shape}. Its axes must be {axes}.{hint}")
     if components and array.shape[3] not in components:
         wanted = " or ".join(map(str, components))
         raise ValueError(f"{what} has {array.shape[3]} components. It must have {wanted}.")

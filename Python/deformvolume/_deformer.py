@@ -52,7 +52,8 @@ class Field:
     """A displacement field: a vector at each point of its grid, with linear interpolation between the points.
 
     Attributes:
-        vectors: shape (nx, ny, nz, 3), in world units; float32 or float64.
+        vectors: shape (nx, ny, nz, 3), in world units; float32 or float64. They have the axes of the world. Files of
+            ITK and ANTs have the world LPS and nibabel has RAS: multiply vectors of such files by (-1, -1, 1).
         affine: 4 x 4 matrix from an index of the field to world coordinates.
         inverse: False: vectors lead from rest positions to deformed positions, as computed by simulations. True:
             vectors lead from positions of the output to rest positions, as computed by registrations ("resampling

@@ -45,13 +45,13 @@ def deform(
             deformvolume.Mesh or Field, in the world coordinates of the image (LPS).
         inverse: the direction of a field of SimpleITK. True (default): from the output to the image, as in
             registrations and SimpleITK.Resample. False: from the image to the deformed image. Outside the field,
-            SimpleITK.Resample keeps the image as it is; so does outside="keep".
+            outside="keep" keeps the image as it is; SimpleITK.Resample does so from half a voxel outside the field.
         reference: an image with the grid of the output; None: the grid of the image with an inverse field, otherwise a
             grid that holds the deformed image.
         categorical, background, outside, fade_distance, interpolation, device: see deformvolume.deform().
 
     Returns:
-        SimpleITK.Image: the deformed image, of the same pixel type.
+        SimpleITK.Image: the deformed image, of the same pixel type, without the metadata of the image.
     """
     _check_image(image, "The image")
     deformer = _deformer.Deformer(device)

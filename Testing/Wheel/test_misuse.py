@@ -50,6 +50,13 @@ class Misuse(unittest.TestCase):
     def test_types(self):
         for kind in (complex, object, "U3", "datetime64[s]", numpy.float16):
             self.refuse(TypeError, "Give integers", numpy.zeros((3, 3, 3), kind))
+
+        class Image:  # as of nibabel
+            dataobj = numpy.zeros((3, 3, 3))
+
+        self.refuse(TypeError, r"is a Image. Give its values, numpy.asarray\(image.dataobj\)", Image())
+        of_nifti = deformvolume.Field(numpy.zeros((3, 3, 3, 1, 3)), AFFINE)
+        self.refuse(ValueError, "Remove axis 3", mesh=of_nifti)
         self.refuse(TypeError, "Give integers", mesh=Mesh(POINTS.astype(complex), CELLS, MOVED))
         self.refuse(ValueError, "float64", mesh=Mesh(POINTS, CELLS.astype(float), MOVED))
         with self.assertRaisesRegex(TypeError, "Give a Mesh or a Field"):
