@@ -21,10 +21,8 @@ const ImageGeometry& InputGeometry::Find(
   vtkInformation* info = filter->GetInputInformation(port, 0);
   const ImageGeometry announced = GetGeometry(info);
   const std::pair<const void*, vtkMTimeType> stamp = GetInputStamp(filter, port);
-  const bool hasOrigin = info->Has(vtkDataObject::ORIGIN()) != 0;
-  const bool hasSpacing = info->Has(vtkDataObject::SPACING()) != 0;
-  const bool hasDirection = info->Has(vtkDataObject::DIRECTION()) != 0;
-  const bool hasAll = hasOrigin && hasSpacing && hasDirection;
+  const bool hasAll = info->Has(vtkDataObject::ORIGIN()) && info->Has(vtkDataObject::SPACING()) &&
+    info->Has(vtkDataObject::DIRECTION());
   const bool isKnown = stamp == this->Stamp && announced.PointExtent == this->Geometry.PointExtent;
   if (hasAll || !isKnown)
   {
@@ -46,9 +44,9 @@ const ImageGeometry& InputGeometry::Find(
     if (image && image->GetNumberOfPoints() > 0)
     {
       const ImageGeometry given = GetGeometry(image);
-      this->Geometry.Origin = hasOrigin ? announced.Origin : given.Origin;
-      this->Geometry.Spacing = hasSpacing ? announced.Spacing : given.Spacing;
-      this->Geometry.Direction = hasDirection ? announced.Direction : given.Direction;
+      this->Geometry.Origin = given.Origin;
+      this->Geometry.Spacing = given.Spacing;
+      this->Geometry.Direction = given.Direction;
     }
   }
   this->Stamp = stamp;

@@ -15,9 +15,12 @@
 #include "vtkInformationIntegerVectorKey.h"
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
+#include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTrivialProducer.h"
 
+#include <array>
+#include <map>
 #include <set>
 #include <string>
 
@@ -28,6 +31,12 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 namespace
 {
+
+std::array<vtkInformationIntegerKey*, 3> GetPieceKeys()
+{
+  return { { Pipeline::UPDATE_PIECE_NUMBER(), Pipeline::UPDATE_NUMBER_OF_PIECES(),
+    Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS() } };
+}
 
 void RequestPiece(vtkInformation* request, int piece, int pieces)
 {
@@ -102,6 +111,50 @@ bool CanProduceParts(vtkAlgorithm* producer, int index, int depth)
   return inputs > 0;
 }
 
+/// Restores the requests of all producers upstream of a connection. Without that, an update of such
+/// a producer by itself, as by ParaView, would make the part again that was requested last.
+class RequestKeeper
+{
+public:
+  explicit RequestKeeper(vtkAlgorithmOutput* source) { this->Keep(source); }
+  ~RequestKeeper()
+  {
+    for (const auto& [request, before] : this->Kept)
+    {
+      request->CopyEntry(before, Pipeline::UPDATE_EXTENT());
+      for (vtkInformationIntegerKey* key : GetPieceKeys())
+      {
+        request->CopyEntry(before, key);
+      }
+    }
+  }
+  RequestKeeper(const RequestKeeper&) = delete;
+  RequestKeeper& operator=(const RequestKeeper&) = delete;
+
+private:
+  void Keep(vtkAlgorithmOutput* source)
+  {
+    vtkInformation* request = source->GetProducer()->GetOutputInformation(source->GetIndex());
+    auto& before = this->Kept[request];
+    if (before)
+    {
+      return;
+    }
+    before = vtkSmartPointer<vtkInformation>::New();
+    before->Copy(request);
+    vtkAlgorithm* producer = source->GetProducer();
+    for (int port = 0; port < producer->GetNumberOfInputPorts(); ++port)
+    {
+      for (int i = 0; i < producer->GetNumberOfInputConnections(port); ++i)
+      {
+        this->Keep(producer->GetInputConnection(port, i));
+      }
+    }
+  }
+
+  std::map<vtkSmartPointer<vtkInformation>, vtkSmartPointer<vtkInformation>> Kept;
+};
+
 } // namespace
 
 vtkDataObject* UpdateInput(
@@ -130,6 +183,7 @@ vtkDataObject* UpdateInputPart(
   vtkNew<vtkInformation> request;
   RequestExtent(request, part);
   request->CopyEntry(output, Pipeline::UPDATE_TIME_STEP());
+  const RequestKeeper keeper(filter->GetInputConnection(port, 0));
   return Update(filter, port, request, ranks);
 }
 
@@ -144,9 +198,7 @@ void UpdateRequested(
     }
     vtkInformation* requested = input[port]->GetInformationObject(0);
     vtkNew<vtkInformation> request;
-    for (vtkInformationIntegerKey* key :
-      std::initializer_list<vtkInformationIntegerKey*>{ Pipeline::UPDATE_PIECE_NUMBER(),
-        Pipeline::UPDATE_NUMBER_OF_PIECES(), Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS() })
+    for (vtkInformationIntegerKey* key : GetPieceKeys())
     {
       request->CopyEntry(requested, key);
     }

@@ -7,10 +7,12 @@
 
 #include <vtkImageAlgorithm.h>
 #include <vtkImageClip.h>
+#include <vtkImageShiftScale.h>
 #include <vtkInformation.h>
 #include <vtkInformationDoubleVectorKey.h>
 #include <vtkInformationVector.h>
 #include <vtkObjectFactory.h>
+#include <vtkRTAnalyticSource.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 
 #include <algorithm>
@@ -119,6 +121,7 @@ void TestGeometry()
 {
   const glm::dvec3 origin(10.0, -5.0, 3.0);
   const glm::dvec3 spacing(2.0, 1.5, 0.5);
+  const double straight[9] = { 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0 };
   // Without announced geometry the filter executes the source, once.
   Careless forgetful;
   forgetful.IsRight("a source that announces nothing");
@@ -138,12 +141,19 @@ void TestGeometry()
   VERIFY_EQUAL(GetExtent(forgetful.Subject.Filter->GetOutput())[0], 1);
   VERIFY_EQUAL(GetExtent(forgetful.Subject.Filter->GetOutput())[1], 40);
 
+  // Without a direction the data count, with one what is announced.
+  forgetful.Announce(origin, glm::dvec3(1.0));
+  forgetful.IsRight("a wrong spacing without a direction");
+  forgetful.Announce(glm::dvec3(0.0), spacing);
+  forgetful.IsRight("a wrong origin without a direction");
+  forgetful.Source->Announced->Set(vtkDataObject::DIRECTION(), straight, 9);
   forgetful.Announce(origin, glm::dvec3(1.0));
   forgetful.Fails("a wrong spacing", "spacing 2, 1.5, 0.5 and direction 1");
   forgetful.Announce(glm::dvec3(0.0), spacing);
   forgetful.Fails("a wrong origin", "announced origin 0, 0, 0");
   forgetful.Announce(origin, spacing);
   forgetful.IsRight("a source that is right again");
+  forgetful.Source->Announced->Remove(vtkDataObject::DIRECTION());
 
   // The executive and ParaView do not pass on directions.
   SetObliqueDirection(forgetful.Volume);
@@ -158,12 +168,33 @@ void TestGeometry()
     VERIFY_EQUAL(forgetful.Subject.Filter->GetNumberOfCoveredVoxels(), 64000);
   };
   isOblique();
-  const double straight[9] = { 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0 };
   forgetful.Source->Announced->Set(vtkDataObject::DIRECTION(), straight, 9);
   forgetful.Fails("a wrong direction", "Set ORIGIN(), SPACING() and DIRECTION()");
   forgetful.Source->Announced->Set(
     vtkDataObject::DIRECTION(), forgetful.Volume->GetDirectionMatrix()->GetData(), 9);
   isOblique();
+}
+
+// The part of the volume from which the filter takes the direction is not what an update of a
+// source by itself makes afterwards.
+void TestRequests()
+{
+  vtkNew<vtkRTAnalyticSource> source;
+  vtkNew<vtkImageShiftScale> shift;
+  shift->SetInputConnection(source->GetOutputPort());
+  const auto mesh = MakeMesh(MakeImage({ { -10, 10, -10, 10, -10, 10 } }));
+  SetDisplacements(mesh, Shift(2.0, 0.0, 0.0));
+  Deformed subject;
+  subject.Filter->SetInputConnection(shift->GetOutputPort());
+  subject.Filter->SetDeformationData(mesh);
+  subject.Filter->UpdateInformation();
+  VERIFY_EQUAL(GetExtent(shift->GetOutput()), (Extent{ { -10, -9, -10, -9, -10, -9 } }));
+  source->Update();
+  VERIFY_EQUAL(GetExtent(source->GetOutput()), (Extent{ { -10, 10, -10, 10, -10, 10 } }));
+  shift->Update();
+  VERIFY_EQUAL(GetExtent(shift->GetOutput()), (Extent{ { -10, 10, -10, 10, -10, 10 } }));
+  subject.Update();
+  VERIFY_EQUAL(subject.Filter->GetNumberOfCoveredVoxels(), 9261);
 }
 
 // A reference image of which only the extent is announced.
@@ -278,6 +309,7 @@ void TestAnnounced(vtkImageAlgorithm* filter)
 int TestDeformAnnouncements(int, char*[])
 {
   TestGeometry();
+  TestRequests();
   TestReference();
   TestAnnounced(vtkNew<vtkDeformVolumeFilter>());
   TestAnnounced(vtkNew<vtkCutVolume>());
