@@ -46,8 +46,6 @@ struct MappingSurvey
 {
   /// The requested form.
   StaticMappingForm Form = StaticMappingForm::Automatic;
-  /// Whether voxels outside the mesh have links.
-  bool IsOutsideLinked = false;
   /// Number of tetrahedra of the mesh.
   std::int64_t NumberOfTetrahedra = 0;
   /// Number of tetrahedra without volume at rest.

@@ -53,7 +53,6 @@ StaticMappingBuilder::StaticMappingBuilder(const Extent& voxels, const glm::dvec
   this->Linker = std::make_unique<VoxelLinker>(this->Voxels, restPoints, tetrahedra);
   const TetrahedronTiles& tiles = this->Linker->GetTiles();
   this->Survey.Form = form;
-  this->Survey.IsOutsideLinked = !outside.AreDiscarded();
   this->Survey.NumberOfTetrahedra = static_cast<std::int64_t>(tetrahedra.size());
   this->Survey.NumberOfFlatTetrahedra = tiles.GetNumberOfFlatTetrahedra();
   this->Survey.NumberOfEntries = tiles.GetNumberOfEntries();

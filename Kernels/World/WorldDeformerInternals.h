@@ -117,7 +117,6 @@ private:
   VoxelJacobians OfMesh;
   std::uint64_t OfMeshVersion = 0; // of the mapping
   std::vector<float> Jacobians;
-  OutsideVoxels JacobiansOutside;
   std::vector<float> JacobiansOutput;  // if only densities need them
   std::int64_t NumberOfLostVoxels = 0; // of densities, in the last output
 
