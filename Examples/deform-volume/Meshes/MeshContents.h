@@ -24,8 +24,9 @@ std::vector<MeshPart> FindParts(vtkDataObject* object);
 bool HasVolumeCells(vtkDataSet* data);
 
 /// Throws a Failure, which says what the file holds, if it cannot deform a volume: it has no
-/// three-dimensional cells and is not an image, a cell uses a point that does not exist, a polyhedron
-/// has no faces, or a part does not have the point array of displacements. displacement: name of the array, or "" if none is needed.
+/// three-dimensional cells and is not an image, a cell uses a point that does not exist, a
+/// polyhedron has no faces, or a part does not have the point array of displacements. displacement:
+/// name of the array, or "" if none is needed.
 void CheckMesh(vtkDataObject* mesh, const std::string& displacement, const std::string& path);
 
 /// The longest side of the bounding box of all images and three-dimensional cells.
