@@ -88,72 +88,52 @@ extern "C"
                                         : CL_INVALID_VALUE;
   }
 
-  cl_int CL_API_CALL clGetPlatformInfo(
-    cl_platform_id platform, cl_platform_info name, size_t size, void* value, size_t* needed)
-  {
-    return platform ? Functions(platform).clGetPlatformInfo(platform, name, size, value, needed)
-                    : CL_INVALID_PLATFORM;
+  // Functions that take only an object.
+#define FORWARD(name, type, error)                                                                 \
+  cl_int CL_API_CALL name(type object)                                                             \
+  {                                                                                                \
+    return object ? Functions(object).name(object) : error;                                        \
   }
+  FORWARD(clRetainDevice, cl_device_id, CL_INVALID_DEVICE)
+  FORWARD(clReleaseDevice, cl_device_id, CL_INVALID_DEVICE)
+  FORWARD(clRetainContext, cl_context, CL_INVALID_CONTEXT)
+  FORWARD(clReleaseContext, cl_context, CL_INVALID_CONTEXT)
+  FORWARD(clRetainCommandQueue, cl_command_queue, CL_INVALID_COMMAND_QUEUE)
+  FORWARD(clReleaseCommandQueue, cl_command_queue, CL_INVALID_COMMAND_QUEUE)
+  FORWARD(clFlush, cl_command_queue, CL_INVALID_COMMAND_QUEUE)
+  FORWARD(clFinish, cl_command_queue, CL_INVALID_COMMAND_QUEUE)
+  FORWARD(clRetainMemObject, cl_mem, CL_INVALID_MEM_OBJECT)
+  FORWARD(clReleaseMemObject, cl_mem, CL_INVALID_MEM_OBJECT)
+  FORWARD(clRetainProgram, cl_program, CL_INVALID_PROGRAM)
+  FORWARD(clReleaseProgram, cl_program, CL_INVALID_PROGRAM)
+  FORWARD(clRetainKernel, cl_kernel, CL_INVALID_KERNEL)
+  FORWARD(clReleaseKernel, cl_kernel, CL_INVALID_KERNEL)
+  FORWARD(clRetainEvent, cl_event, CL_INVALID_EVENT)
+  FORWARD(clReleaseEvent, cl_event, CL_INVALID_EVENT)
+#undef FORWARD
+
+  // Functions that return information about an object.
+#define FORWARD_INFO(name, type, info, error)                                                      \
+  cl_int CL_API_CALL name(type object, info key, size_t size, void* value, size_t* needed)         \
+  {                                                                                                \
+    return object ? Functions(object).name(object, key, size, value, needed) : error;              \
+  }
+  FORWARD_INFO(clGetPlatformInfo, cl_platform_id, cl_platform_info, CL_INVALID_PLATFORM)
+  FORWARD_INFO(clGetDeviceInfo, cl_device_id, cl_device_info, CL_INVALID_DEVICE)
+  FORWARD_INFO(
+    clGetCommandQueueInfo, cl_command_queue, cl_command_queue_info, CL_INVALID_COMMAND_QUEUE)
+  FORWARD_INFO(clGetMemObjectInfo, cl_mem, cl_mem_info, CL_INVALID_MEM_OBJECT)
+  FORWARD_INFO(clGetProgramInfo, cl_program, cl_program_info, CL_INVALID_PROGRAM)
+  FORWARD_INFO(clGetKernelInfo, cl_kernel, cl_kernel_info, CL_INVALID_KERNEL)
+  FORWARD_INFO(clGetEventInfo, cl_event, cl_event_info, CL_INVALID_EVENT)
+  FORWARD_INFO(clGetEventProfilingInfo, cl_event, cl_profiling_info, CL_INVALID_EVENT)
+#undef FORWARD_INFO
 
   cl_int CL_API_CALL clGetDeviceIDs(cl_platform_id platform, cl_device_type type, cl_uint room,
     cl_device_id* devices, cl_uint* found)
   {
     return platform ? Functions(platform).clGetDeviceIDs(platform, type, room, devices, found)
                     : CL_INVALID_PLATFORM;
-  }
-
-  cl_int CL_API_CALL clGetDeviceInfo(
-    cl_device_id device, cl_device_info name, size_t size, void* value, size_t* needed)
-  {
-    return device ? Functions(device).clGetDeviceInfo(device, name, size, value, needed)
-                  : CL_INVALID_DEVICE;
-  }
-
-  cl_int CL_API_CALL clRetainDevice(cl_device_id device)
-  {
-    return device ? Functions(device).clRetainDevice(device) : CL_INVALID_DEVICE;
-  }
-
-  cl_int CL_API_CALL clReleaseDevice(cl_device_id device)
-  {
-    return device ? Functions(device).clReleaseDevice(device) : CL_INVALID_DEVICE;
-  }
-
-  cl_int CL_API_CALL clRetainContext(cl_context context)
-  {
-    return context ? Functions(context).clRetainContext(context) : CL_INVALID_CONTEXT;
-  }
-
-  cl_int CL_API_CALL clReleaseContext(cl_context context)
-  {
-    return context ? Functions(context).clReleaseContext(context) : CL_INVALID_CONTEXT;
-  }
-
-  cl_int CL_API_CALL clGetCommandQueueInfo(
-    cl_command_queue queue, cl_command_queue_info name, size_t size, void* value, size_t* needed)
-  {
-    return queue ? Functions(queue).clGetCommandQueueInfo(queue, name, size, value, needed)
-                 : CL_INVALID_COMMAND_QUEUE;
-  }
-
-  cl_int CL_API_CALL clRetainCommandQueue(cl_command_queue queue)
-  {
-    return queue ? Functions(queue).clRetainCommandQueue(queue) : CL_INVALID_COMMAND_QUEUE;
-  }
-
-  cl_int CL_API_CALL clReleaseCommandQueue(cl_command_queue queue)
-  {
-    return queue ? Functions(queue).clReleaseCommandQueue(queue) : CL_INVALID_COMMAND_QUEUE;
-  }
-
-  cl_int CL_API_CALL clFlush(cl_command_queue queue)
-  {
-    return queue ? Functions(queue).clFlush(queue) : CL_INVALID_COMMAND_QUEUE;
-  }
-
-  cl_int CL_API_CALL clFinish(cl_command_queue queue)
-  {
-    return queue ? Functions(queue).clFinish(queue) : CL_INVALID_COMMAND_QUEUE;
   }
 
   cl_int CL_API_CALL clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking,
@@ -227,23 +207,6 @@ extern "C"
                  : CL_INVALID_COMMAND_QUEUE;
   }
 
-  cl_int CL_API_CALL clGetMemObjectInfo(
-    cl_mem memory, cl_mem_info name, size_t size, void* value, size_t* needed)
-  {
-    return memory ? Functions(memory).clGetMemObjectInfo(memory, name, size, value, needed)
-                  : CL_INVALID_MEM_OBJECT;
-  }
-
-  cl_int CL_API_CALL clRetainMemObject(cl_mem memory)
-  {
-    return memory ? Functions(memory).clRetainMemObject(memory) : CL_INVALID_MEM_OBJECT;
-  }
-
-  cl_int CL_API_CALL clReleaseMemObject(cl_mem memory)
-  {
-    return memory ? Functions(memory).clReleaseMemObject(memory) : CL_INVALID_MEM_OBJECT;
-  }
-
   cl_int CL_API_CALL clBuildProgram(cl_program program, cl_uint count, const cl_device_id* devices,
     const char* options, void(CL_CALLBACK* notify)(cl_program, void*), void* data)
   {
@@ -252,36 +215,12 @@ extern "C"
       : CL_INVALID_PROGRAM;
   }
 
-  cl_int CL_API_CALL clGetProgramInfo(
-    cl_program program, cl_program_info name, size_t size, void* value, size_t* needed)
-  {
-    return program ? Functions(program).clGetProgramInfo(program, name, size, value, needed)
-                   : CL_INVALID_PROGRAM;
-  }
-
   cl_int CL_API_CALL clGetProgramBuildInfo(cl_program program, cl_device_id device,
     cl_program_build_info name, size_t size, void* value, size_t* needed)
   {
     return program
       ? Functions(program).clGetProgramBuildInfo(program, device, name, size, value, needed)
       : CL_INVALID_PROGRAM;
-  }
-
-  cl_int CL_API_CALL clRetainProgram(cl_program program)
-  {
-    return program ? Functions(program).clRetainProgram(program) : CL_INVALID_PROGRAM;
-  }
-
-  cl_int CL_API_CALL clReleaseProgram(cl_program program)
-  {
-    return program ? Functions(program).clReleaseProgram(program) : CL_INVALID_PROGRAM;
-  }
-
-  cl_int CL_API_CALL clGetKernelInfo(
-    cl_kernel kernel, cl_kernel_info name, size_t size, void* value, size_t* needed)
-  {
-    return kernel ? Functions(kernel).clGetKernelInfo(kernel, name, size, value, needed)
-                  : CL_INVALID_KERNEL;
   }
 
   cl_int CL_API_CALL clGetKernelWorkGroupInfo(cl_kernel kernel, cl_device_id device,
@@ -296,40 +235,6 @@ extern "C"
   {
     return kernel ? Functions(kernel).clSetKernelArg(kernel, index, size, value)
                   : CL_INVALID_KERNEL;
-  }
-
-  cl_int CL_API_CALL clRetainKernel(cl_kernel kernel)
-  {
-    return kernel ? Functions(kernel).clRetainKernel(kernel) : CL_INVALID_KERNEL;
-  }
-
-  cl_int CL_API_CALL clReleaseKernel(cl_kernel kernel)
-  {
-    return kernel ? Functions(kernel).clReleaseKernel(kernel) : CL_INVALID_KERNEL;
-  }
-
-  cl_int CL_API_CALL clGetEventInfo(
-    cl_event event, cl_event_info name, size_t size, void* value, size_t* needed)
-  {
-    return event ? Functions(event).clGetEventInfo(event, name, size, value, needed)
-                 : CL_INVALID_EVENT;
-  }
-
-  cl_int CL_API_CALL clGetEventProfilingInfo(
-    cl_event event, cl_profiling_info name, size_t size, void* value, size_t* needed)
-  {
-    return event ? Functions(event).clGetEventProfilingInfo(event, name, size, value, needed)
-                 : CL_INVALID_EVENT;
-  }
-
-  cl_int CL_API_CALL clRetainEvent(cl_event event)
-  {
-    return event ? Functions(event).clRetainEvent(event) : CL_INVALID_EVENT;
-  }
-
-  cl_int CL_API_CALL clReleaseEvent(cl_event event)
-  {
-    return event ? Functions(event).clReleaseEvent(event) : CL_INVALID_EVENT;
   }
 
   cl_mem CL_API_CALL clCreateBuffer(

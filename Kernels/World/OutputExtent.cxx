@@ -44,7 +44,9 @@ Extent GetExtentInside(const IndexBounds& bounds)
     {
       throw Error(std::string("The deformed volume lies between two layers of output voxels on "
                               "axis ") +
-        "xyz"[axis] + " and covers none. Check the deformation, or set a smaller output spacing.");
+        "xyz"[axis] +
+        " and covers none. Check the deformation and its units (are they meters in place of "
+        "millimeters?), or set a smaller output spacing.");
     }
   }
   return extent;
