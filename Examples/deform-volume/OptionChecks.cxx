@@ -95,7 +95,9 @@ void CheckPoints(const Options& options)
     const std::string format = GetPointFormat(options.Points[i]);
     if (format.empty())
     {
-      throw UsageError("--points " + options.Points[i] + ": the name must end in " + PointFormats);
+      throw UsageError("--points " + options.Points[i] + ": the name must end in " + PointFormats +
+        (HasSuffix(options.Points[i], { ".fcsv" }) ? ". In 3D Slicer, save the points as .mrk.json"
+                                                   : ""));
     }
     if (GetPointFormat(options.PointsOutputs[i]) != format)
     {

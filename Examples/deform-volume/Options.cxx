@@ -11,6 +11,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <cstdlib>
 #include <initializer_list>
 #include <iostream>
 
@@ -31,6 +32,11 @@ struct RawOptions
   std::string Outside = "discard";
   std::string Bounds = "deformed";
 };
+
+/// Refuses negative numbers. CLI::NonNegativeNumber prints the largest double in its message.
+const CLI::Validator NotNegative([](std::string& text)
+  { return std::strtod(text.c_str(), nullptr) < 0.0 ? text + " is negative" : std::string(); },
+  "");
 
 /// Sets the tissue of voxels that are in no range of --material.
 void SetTissue(const CLI::App& program, const std::string& tissue, Options& options)
@@ -350,7 +356,7 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
       "diagonal of the volume, or with --model fem a tenth, because fem adds nodes in the middle "
       "of edges. Within a --push, edges are not longer than a sixth of its radius")
     ->capture_default_str()
-    ->check(CLI::NonNegativeNumber)
+    ->check(NotNegative)
     ->type_name("NUMBER")
     ->group(tetgen);
   program
@@ -423,7 +429,7 @@ void AddResampling(CLI::App& program, Options& options, RawOptions& raw)
     .add_option("--keep", options.KeepDistance,
       "Tissue outside the mesh or field stays where it is. The displacement of the boundary fades "
       "to zero over DISTANCE (world units). With 0, nothing outside moves")
-    ->check(CLI::NonNegativeNumber)
+    ->check(NotNegative)
     ->type_name("DISTANCE")
     ->group(group);
   program
@@ -621,7 +627,7 @@ std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)
       std::string(
         "Index of the volume to read from a file with several time steps, counted from 0 (NIfTI") +
         (HasITK ? ", MetaImage, NRRD)" : ")"))
-    ->check(CLI::NonNegativeNumber)
+    ->check(NotNegative)
     ->type_name("NUMBER");
   program
     .add_option("--volume-space", options.VolumeSpace,

@@ -226,6 +226,11 @@ def check_misuse_of_meshes():
             cut_off("cut-off-" + source, source, part)
             fails(1, [path("cut-off-" + source), "cannot read", "damaged or cut off"],
                   *as_mesh("cut-off-" + source))
+    # VTK cannot read NaN from text.
+    write_text("nan.vtk", "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n"
+               "0 0 0 9 0 0 0 9 0 0 0 9\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\nPOINT_DATA 4\n"
+               "VECTORS Displacement float\n1 0 0 nan 0 0 0 0 0 0 0 0\n")
+    fails(1, [path("nan.vtk"), "numbers that are not finite"], *as_mesh("nan.vtk"))
     # Collections.
     write_text("other.pvd", '<VTKFile type="UnstructuredGrid"></VTKFile>\n')
     fails(1, "not a collection", *as_mesh("other.pvd"))

@@ -220,6 +220,7 @@ def check_sheets():
 
 
 def check_meshers():
+    fails(2, "--keep: -1 is negative", *mesh, "--keep", "-1")
     tetgen = ("--tetgen", *push)
     fails(1, "isovalue", *tetgen, "--isovalue", "5000")
     image = make_ball()

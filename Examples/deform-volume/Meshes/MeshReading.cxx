@@ -62,10 +62,13 @@ void CheckReading(const Source& source, const std::string& format)
   const std::string words = source.Log.TakeError();
   if (!words.empty())
   {
-    // VTK's messages about infinite numbers in XML files name classes.
+    // VTK's messages about infinite numbers in XML files name classes. In text of legacy files it
+    // cannot read such numbers.
+    const bool mayBeInfinite =
+      NamesCode(words) || words.find("Error reading ascii data") != std::string::npos;
     throw Failure("cannot read " + source.Path + ": it is not a valid " + format +
       ", or it is damaged or cut off" +
-      (NamesCode(words) ? ", or has numbers that are not finite" : " (" + words + ")"));
+      (mayBeInfinite ? ", or has numbers that are not finite" : " (" + words + ")"));
   }
 }
 
