@@ -17,9 +17,8 @@ const std::array<double, 3> NoScale{ { 1, 1, 1 } };
 
 void Check(const DeformerCase& tiny, Route route, bool embedding = true)
 {
-  const auto values = MakeRandomValues<std::uint16_t>(tiny.GetNumberOfVoxels(), 2);
-  const auto labels = MakeRandomValues<std::int64_t>(tiny.GetNumberOfVoxels(), 3);
-  const std::vector<VolumeArray> arrays{ MakeArray(values), MakeArray(labels, 1, true) };
+  const UsualArrays usual(tiny.GetNumberOfVoxels());
+  const std::vector<VolumeArray> arrays = usual.Get();
   const reference::Result reference = ResampleByReference(tiny);
   if (embedding)
   {
