@@ -10,10 +10,10 @@
  * conventions and all errors.
  *
  * @par Port 0, the volume:
- * vtkImageData at rest with at least two voxels on each axis. The source must announce its extent
- * and direction. All numeric point arrays are deformed, and attributes keep their role; field data
- * pass. Points that vtkGhostType marks as hidden or duplicate are not used. These arrays are read,
- * too, if they exist:
+ * vtkImageData at rest with at least two voxels on each axis. The source must announce its extent.
+ * All numeric point arrays are deformed, and attributes keep their role; field data pass. Points
+ * that vtkGhostType marks as hidden or duplicate are not used. These arrays are read, too, if they
+ * exist:
  * - "ActiveTetrahedra" (cells, unsigned char): bit i is 1 if tetrahedron i of the cell is active.
  *   Cells that vtkGhostType hides have no active tetrahedra, except cells that are hidden by
  *   vtkVolumeEditAlgorithm::BlankCells.

@@ -28,7 +28,8 @@ void CheckNumbers(const Options& options)
     { "--isovalue", options.Isovalue.value_or(0.0) }, { "--edge-length", options.EdgeLength },
     { "--radius-edge-ratio", options.RadiusEdgeRatio }, { "--young", options.YoungModulus },
     { "--poisson", options.PoissonRatio }, { "--density", options.Density },
-    { "--duration", options.Duration }, { "--threshold", options.Threshold.value_or(0.0) } };
+    { "--duration", options.Duration }, { "--threshold", options.Threshold.value_or(0.0) },
+    { "--keep", options.KeepDistance.value_or(0.0) } };
   for (const auto& [option, number] : numbers)
   {
     if (!std::isfinite(number))

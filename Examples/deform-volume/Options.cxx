@@ -490,7 +490,7 @@ void AddResampling(CLI::App& program, Options& options, RawOptions& raw)
     .add_option("--interpolation", options.Interpolation,
       "linear; nearest, which takes the value of the nearest voxel, as --labels does; or cubic, "
       "which uses 64 voxels. Where some of them are missing or cut off it is linear; with an "
-      "inverse field, voxels beyond the border are extrapolated linearly")
+      "inverse field or mesh-rasterization, voxels beyond the border are extrapolated linearly")
     ->capture_default_str()
     ->check(CLI::IsMember({ "nearest", "linear", "cubic" }))
     ->type_name("NAME")

@@ -46,7 +46,7 @@ void CheckStructure(vtkUnstructuredGrid* grid)
   }
 }
 
-// Positions of the nodes of a mesh. They are read one by one, since few cells need them.
+// Positions of the nodes of a mesh. They are read one by one, since tetrahedra need none.
 class NodePositions
 {
 public:

@@ -146,7 +146,8 @@ void RestMesh::Read(const MeshParts& shape, const MeshParts& rest, const Deforma
 std::optional<RestMesh::Changes> RestMesh::CompareCells(
   const MeshParts& shape, const MeshParts& rest, bool sameRest, bool sameShape, bool shared) const
 {
-  if (!this->IgnoredCells.empty() || this->Derived.GetCount() > 0 || this->Tetrahedra.empty())
+  if (!this->IgnoredCells.empty() || !this->WrongOrder.empty() || this->Derived.GetCount() > 0 ||
+    this->Tetrahedra.empty())
   {
     return {};
   }

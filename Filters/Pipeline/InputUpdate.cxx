@@ -111,8 +111,9 @@ bool CanProduceParts(vtkAlgorithm* producer, int index, int depth)
   return inputs > 0;
 }
 
-/// Restores the requests of all producers upstream of a connection. Without that, an update of such
-/// a producer by itself, as by ParaView, would make the part again that was requested last.
+/// Restores the requested extents and pieces of all producers upstream of a connection. Without
+/// that, an update of such a producer by itself, as by ParaView, would make the part again that was
+/// requested last.
 class RequestKeeper
 {
 public:
@@ -121,28 +122,33 @@ public:
   {
     for (const auto& [request, before] : this->Kept)
     {
-      request->CopyEntry(before, Pipeline::UPDATE_EXTENT());
-      for (vtkInformationIntegerKey* key : GetPieceKeys())
-      {
-        request->CopyEntry(before, key);
-      }
+      Copy(before, request);
     }
   }
   RequestKeeper(const RequestKeeper&) = delete;
   RequestKeeper& operator=(const RequestKeeper&) = delete;
 
 private:
+  static void Copy(vtkInformation* from, vtkInformation* to)
+  {
+    to->CopyEntry(from, Pipeline::UPDATE_EXTENT());
+    for (vtkInformationIntegerKey* key : GetPieceKeys())
+    {
+      to->CopyEntry(from, key);
+    }
+  }
+
   void Keep(vtkAlgorithmOutput* source)
   {
-    vtkInformation* request = source->GetProducer()->GetOutputInformation(source->GetIndex());
-    auto& before = this->Kept[request];
-    if (before)
+    vtkAlgorithm* producer = source->GetProducer();
+    vtkInformation* request = producer->GetOutputInformation(source->GetIndex());
+    if (!request || this->Kept.count(request) > 0)
     {
       return;
     }
-    before = vtkSmartPointer<vtkInformation>::New();
-    before->Copy(request);
-    vtkAlgorithm* producer = source->GetProducer();
+    const auto before = vtkSmartPointer<vtkInformation>::New();
+    Copy(request, before);
+    this->Kept[request] = before;
     for (int port = 0; port < producer->GetNumberOfInputPorts(); ++port)
     {
       for (int i = 0; i < producer->GetNumberOfInputConnections(port); ++i)

@@ -6,6 +6,7 @@
 #include "Error.h"
 #include "PolyhedronSplit.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -188,26 +189,46 @@ void CellReader::AddHigherOrder(std::int64_t cell, int type, const std::vector<s
 
 // Splits a linear cell, and counts it if it overlaps itself: if more than a tenth of the volume of
 // its tetrahedra has the other orientation. In a cube with the nodes in the order of a voxel it is
-// half of the volume.
+// half of the volume. The volume of a flat cell, as of a layer between two bodies, is only
+// rounding.
 void CellReader::SplitLinear(const std::vector<std::int32_t>& nodes, const CellFaces& faces)
 {
   const std::size_t first = this->Cells.Tetrahedra.size();
   SplitCell(nodes, faces, this->Cells.Tetrahedra);
+  std::vector<glm::dvec3>& points = this->Points;
+  points.clear();
+  glm::dvec3 low(std::numeric_limits<double>::infinity());
+  glm::dvec3 high(-std::numeric_limits<double>::infinity());
+  for (const std::int32_t node : nodes)
+  {
+    points.push_back(this->GetPosition(node));
+    low = glm::min(low, points.back());
+    high = glm::max(high, points.back());
+  }
+  const auto at = [&](std::int32_t node) -> const glm::dvec3&
+  {
+    return points[static_cast<std::size_t>(
+      std::find(nodes.begin(), nodes.end(), node) - nodes.begin())];
+  };
   double ofOneSign = 0.0;
   double ofOtherSign = 0.0;
   for (std::size_t t = first; t < this->Cells.Tetrahedra.size(); ++t)
   {
     const Tetrahedron& tetrahedron = this->Cells.Tetrahedra[t];
-    const glm::dvec3 apex = this->GetPosition(tetrahedron[0]);
-    const double volume = glm::dot(this->GetPosition(tetrahedron[1]) - apex,
-      glm::cross(
-        this->GetPosition(tetrahedron[2]) - apex, this->GetPosition(tetrahedron[3]) - apex));
+    const glm::dvec3& apex = at(tetrahedron[0]);
+    const double volume = glm::dot(
+      at(tetrahedron[1]) - apex, glm::cross(at(tetrahedron[2]) - apex, at(tetrahedron[3]) - apex));
     (volume > 0.0 ? ofOneSign : ofOtherSign) += std::abs(volume);
   }
+  const double volume = ofOneSign + ofOtherSign;
+  const double length = glm::distance(low, high);
+  const double farthest = std::max(glm::length(low), glm::length(high));
   constexpr double most = 0.1;
   ++this->NumberOfSplitCells;
-  this->NumberOfFoldedCells +=
-    std::min(ofOneSign, ofOtherSign) > most * (ofOneSign + ofOtherSign) ? 1 : 0;
+  this->NumberOfFoldedCells += std::min(ofOneSign, ofOtherSign) > most * volume &&
+      volume > 100.0 * this->Rounding * farthest * length * length
+    ? 1
+    : 0;
 }
 
 void CellReader::Add(std::int64_t cell, int type, const std::vector<std::int32_t>& nodes,

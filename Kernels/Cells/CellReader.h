@@ -99,6 +99,7 @@ private:
   const double Rounding;
   MeshCells Cells;
   HigherOrderCells HigherOrder;
+  std::vector<glm::dvec3> Points; // of a cell, kept to save allocations
   std::map<int, std::int64_t> Ignored;
   std::int64_t NumberOfQuadraticCells = 0;
   std::int64_t NumberOfFarMidSides = 0;

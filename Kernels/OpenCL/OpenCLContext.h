@@ -93,8 +93,8 @@ private:
   /// Returns the entry of a program, whose address does not change.
   BuiltProgram& FindProgram(const ProgramText& source, const std::string& options);
   cl::Program Build(const std::string& source, const std::string& options) const;
-  /// The driver compiles a kernel when it is launched first with a key: a program, and the name of
-  /// the kernel with its group size.
+  /// The driver compiles a kernel when it is launched first with a key: a program, and a text of
+  /// the name of the kernel, the group size and, if OwnLinker is set, the number of work-items.
   using LaunchKey = std::pair<cl_program, std::string>;
   LaunchKey MakeLaunchKey(
     const cl::Kernel& kernel, const cl::NDRange& items, const cl::NDRange& group) const;

@@ -427,21 +427,16 @@ class DeformVolume(VTKPythonAlgorithmBase):
         self._deformer.set_outside(mode, settings["FadeDistance"] if mode == "keep" else 0.0)
         if self.GetNumberOfInputConnections(3) > 0:
             info = self.GetInputInformation(3, 0)
-            if not all(
-                info.Has(key) for key in (vtkDataObject.ORIGIN(), vtkDataObject.SPACING(), vtkDataObject.DIRECTION())
-            ):
-                self._update_input(3)  # only its data have what its source does not announce
+            keys = (vtkDataObject.ORIGIN(), vtkDataObject.SPACING(), vtkDataObject.DIRECTION())
+            if all(info.Has(key) for key in keys):
+                geometry = [info.Get(key) for key in keys]
+            else:
+                # A source that does not announce all may announce the origin and spacing of its input.
+                self._update_input(3)
+                image = self._input(3)
+                geometry = [image.GetOrigin(), image.GetSpacing(), _direction(image)]
             extent = info.Get(vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT())
-            image = self._input(3)
-            get = lambda key, value: info.Get(key) if info.Has(key) else value  # noqa: E731
-            self._deformer.set_reference_grid(
-                _deformer.make_grid(
-                    extent,
-                    get(vtkDataObject.ORIGIN(), image.GetOrigin()),
-                    get(vtkDataObject.SPACING(), image.GetSpacing()),
-                    get(vtkDataObject.DIRECTION(), _direction(image)),
-                )
-            )
+            self._deformer.set_reference_grid(_deformer.make_grid(extent, *geometry))
         else:
             self._deformer.set_reference(None)
             self._deformer.set_output(_BOUNDS[settings["OutputBoundsMode"]])

@@ -121,10 +121,16 @@ std::string DescribeArrays(vtkPointData* arrays)
   return text.empty() ? "there are no point arrays" : "there are " + text;
 }
 
+// The beginning of a message about a part of a mesh.
+std::string MakeBeginning(const MeshPart& part, const std::string& path)
+{
+  return "cannot use " + path + ": " +
+    (part.Block.empty() ? "" : "in its block " + part.Block + " ");
+}
+
 void CheckArray(const MeshPart& part, const std::string& name, const std::string& path)
 {
-  const std::string what =
-    "cannot use " + path + ": " + (part.Block.empty() ? "" : "in its block " + part.Block + " ");
+  const std::string what = MakeBeginning(part, path);
   vtkDataArray* array = part.Data->GetPointData()->GetArray(name.c_str());
   if (!array)
   {
@@ -143,12 +149,12 @@ void CheckArray(const MeshPart& part, const std::string& name, const std::string
 }
 
 // Throws a Failure if a cell uses a point that does not exist.
-void CheckCells(vtkUnstructuredGrid* grid, const std::string& path)
+void CheckCells(const MeshPart& part, vtkUnstructuredGrid* grid, const std::string& path)
 {
   vtkCellArray* cells = grid->GetCells();
   if (!cells->IsValid())
   {
-    throw Failure("cannot use " + path + ": the offsets of its cells do not fit their points");
+    throw Failure(MakeBeginning(part, path) + "the offsets of the cells do not fit their points");
   }
   vtkNew<vtkIdList> points;
   for (vtkIdType cell = 0; cell < cells->GetNumberOfCells(); ++cell)
@@ -158,8 +164,8 @@ void CheckCells(vtkUnstructuredGrid* grid, const std::string& path)
     {
       if (point < 0 || point >= grid->GetNumberOfPoints())
       {
-        throw Failure("cannot use " + path + ": cell " + std::to_string(cell) + " uses point " +
-          std::to_string(point) + ", but the file has only " +
+        throw Failure(MakeBeginning(part, path) + "cell " + std::to_string(cell) + " uses point " +
+          std::to_string(point) + ", but there are only " +
           Count(grid->GetNumberOfPoints(), "point", "points") + ", numbered from 0");
       }
     }
@@ -249,7 +255,7 @@ void CheckMesh(vtkDataObject* mesh, const std::string& displacement, const std::
       deforms = true;
       if (auto* grid = vtkUnstructuredGrid::SafeDownCast(part.Data))
       {
-        CheckCells(grid, path);
+        CheckCells(part, grid, path);
         CheckPolyhedra(grid, path);
       }
       if (!displacement.empty())

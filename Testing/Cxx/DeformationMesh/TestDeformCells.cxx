@@ -18,6 +18,8 @@
 #include <glm/common.hpp>
 
 #include <algorithm>
+#include <array>
+#include <random>
 
 using namespace filterTesting;
 using deformvolume::Tetrahedron;
@@ -347,7 +349,8 @@ void TestMidSides()
   VERIFY_EQUAL(deformed.TakeWarning(), std::string());
 }
 
-// So does a hexahedron with the nodes in the order of a voxel, but not a turned or mirrored one.
+// A hexahedron with the nodes in the order of a voxel causes a warning. A turned, a mirrored and a
+// flat one do not.
 void TestOrderOfHexahedra()
 {
   const auto volume = MakeVolume();
@@ -375,6 +378,28 @@ void TestOrderOfHexahedra()
     VERIFY_EQUAL(warning.find("1 of 1 hexahedra") != std::string::npos, isWrong);
     VERIFY_EQUAL(warning.empty(), !isWrong);
   }
+  // Layers without thickness between two bodies.
+  const Grid layers = MakeMesh(volume);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-5.0, 5.0);
+  for (int layer = 0; layer < 200; ++layer)
+  {
+    const auto draw = [&] { return glm::dvec3(uniform(random), uniform(random), uniform(random)); };
+    const glm::dvec3 corner = draw();
+    const glm::dvec3 one = draw();
+    const glm::dvec3 other = draw();
+    vtkIdType nodes[8];
+    for (int i = 0; i < 8; ++i)
+    {
+      const glm::dvec3 point = corner + (i % 4 == 1 || i % 4 == 2 ? one : glm::dvec3(0.0)) +
+        (i % 4 >= 2 ? other : glm::dvec3(0.0));
+      nodes[i] = layers->GetPoints()->InsertNextPoint(&point.x);
+    }
+    layers->InsertNextCell(VTK_HEXAHEDRON, 8, nodes);
+  }
+  const deformvolume::MeshCells cells = deformvolume::ReadCells({ layers }, { layers });
+  VERIFY_EQUAL(cells.WrongOrder, std::string());
+  VERIFY(cells.Tetrahedra.size() > 1000);
 }
 
 } // namespace
