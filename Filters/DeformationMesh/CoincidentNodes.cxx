@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CoincidentNodes.h"
 
+#include "CoincidentPoints.h"
 #include "RestMesh.h"
 
 #include <algorithm>
-#include <numeric>
-#include <tuple>
 
 namespace deformvolume
 {
@@ -64,23 +63,15 @@ void CoincidentNodes::Update(const RestMesh& mesh)
   }
   else
   {
-    std::vector<std::int32_t> order(points.size());
-    std::iota(order.begin(), order.end(), 0);
-    const auto number = [&](std::int32_t node)
-    { return std::make_tuple(points[node].x, points[node].y, points[node].z); };
-    std::sort(order.begin(), order.end(),
-      [&](std::int32_t a, std::int32_t b)
-      { return std::make_tuple(number(a), a) < std::make_tuple(number(b), b); });
-    this->Numbers.resize(points.size());
+    this->Numbers = FindCoincidentPoints(points);
     this->Shares.assign(points.size(), 0);
     this->AnyShared = false;
-    for (std::size_t i = 0; i < order.size(); ++i)
+    for (std::size_t node = 0; node < points.size(); ++node)
     {
-      const bool shares = i > 0 && points[order[i]] == points[order[i - 1]];
-      this->Numbers[order[i]] = shares ? this->Numbers[order[i - 1]] : order[i];
-      if (shares)
+      const auto first = static_cast<std::size_t>(this->Numbers[node]);
+      if (first != node)
       {
-        this->Shares[order[i - 1]] = this->Shares[order[i]] = 1;
+        this->Shares[first] = this->Shares[node] = 1;
         this->AnyShared = true;
       }
     }

@@ -11,7 +11,7 @@ namespace deformvolume
 /// Reads the tetrahedra of a mesh, and splits its other three-dimensional cells into tetrahedra.
 /// All nodes of quadratic and Lagrange cells become nodes of tetrahedra. Cells that vtkGhostType
 /// marks as hidden or duplicate are skipped. rest: the same mesh with its points at rest, on which
-/// the split of concave polyhedra depends. derived: the derived nodes that the cells of a single
+/// splits depend (MeshCells::DependOnPoints). derived: the derived nodes that the cells of a single
 /// grid use already; else null. Throws an Error if a cell has a wrong number of points, points that
 /// do not exist or incomplete faces, is a Bezier cell, or is a polyhedron that cannot be split.
 MeshCells ReadCells(

@@ -44,10 +44,6 @@ Stamp GetCellFormStamp(vtkUnstructuredGrid* grid)
   if (HasPolyhedronFaces(grid))
   {
     stamp.emplace_back(grid, grid->vtkObject::GetMTime()); // changes with the faces
-    // The split of concave polyhedra depends on the positions of their points.
-    vtkPoints* points = grid->GetPoints();
-    stamp.emplace_back(points, points ? points->vtkObject::GetMTime() : 0);
-    AddArray(stamp, points ? points->GetData() : nullptr);
   }
   return stamp;
 }

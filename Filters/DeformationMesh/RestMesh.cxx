@@ -93,7 +93,7 @@ void RestMesh::Read(const MeshParts& shape, const MeshParts& rest, const Deforma
 {
   const MeshStamp restCells = MeshStamp::OfCells(rest, IsRestMade(source));
   const MeshStamp shapeCells = MeshStamp::OfCells(shape, source.ShapeIsMade);
-  CellReading cells = this->ReadCells(shape, rest, source.Derived, restCells, shapeCells);
+  CellReading cells = this->ReadCells(shape, rest, source, restCells, shapeCells);
   std::vector<CellMemory> cellMemories = GetCellMemories(rest);
   const std::size_t nodes = GetNumberOfNodes(rest);
   const std::size_t nodesBefore = this->Points.size() - this->Derived.GetCount();
@@ -138,6 +138,7 @@ void RestMesh::Read(const MeshParts& shape, const MeshParts& rest, const Deforma
   this->ShapeIsOld = true; // stays true if the check throws
   CheckPoints(rest, source.Rest ? REST_NAME : MESH_NAME, this->PointFaults, this->Tetrahedra);
   this->ShapeIsOld = false;
+  this->CellsDependOnPoints = cells.DependOnPoints;
   this->RestCells = restCells;
   this->ShapeCells = shapeCells;
   this->RestCellMemories = std::move(cellMemories);
@@ -167,8 +168,46 @@ std::optional<RestMesh::Changes> RestMesh::CompareCells(
   return differences;
 }
 
+bool RestMesh::HavePointsChanged(const MeshParts& rest, const DeformationSource& source) const
+{
+  if (!(source.Volume == this->Volume) ||
+    GetNumberOfNodes(rest) + this->Derived.GetCount() != this->Points.size())
+  {
+    return true;
+  }
+  if (MeshStamp::OfPoints(rest, IsRestMade(source)).IsThatOf(this->PointsStamp))
+  {
+    return false;
+  }
+  const glm::dmat4 transform = source.Volume.GetWorldToIndex();
+  std::atomic<bool> have{ false };
+  const glm::dvec3* last = this->Points.data();
+  for (vtkUnstructuredGrid* grid : rest)
+  {
+    if (grid->GetNumberOfPoints() == 0)
+    {
+      continue;
+    }
+    ReadVectors(
+      grid->GetPoints()->GetData(),
+      [&](vtkIdType begin, const glm::dvec3* points, vtkIdType count)
+      {
+        for (vtkIdType i = 0; i < count; ++i)
+        {
+          if (glm::dvec3(transform * glm::dvec4(points[i], 1.0)) != last[begin + i])
+          {
+            have.store(true, std::memory_order_relaxed);
+          }
+        }
+      },
+      "Point", "", nullptr, [](vtkIdType) {}); // a point that is not finite was read as zeros
+    last += grid->GetNumberOfPoints();
+  }
+  return have;
+}
+
 RestMesh::CellReading RestMesh::ReadCells(const MeshParts& shape, const MeshParts& rest,
-  const DerivedNodes* derived, const MeshStamp& restCells, const MeshStamp& shapeCells)
+  const DeformationSource& source, const MeshStamp& restCells, const MeshStamp& shapeCells)
 {
   const bool shared = shapeCells.HasArraysOf(restCells);
   const bool sameRest = restCells.IsThatOf(this->RestCells);
@@ -176,7 +215,12 @@ RestMesh::CellReading RestMesh::ReadCells(const MeshParts& shape, const MeshPart
   CellReading reading;
   reading.Ignored = this->IgnoredCells;
   reading.WrongOrder = this->WrongOrder;
-  if (sameRest && (sameShape || shared))
+  reading.DependOnPoints = this->CellsDependOnPoints;
+  if (this->CellsDependOnPoints && this->HavePointsChanged(rest, source))
+  {
+    reading.Differences.reset(); // read all cells
+  }
+  else if (sameRest && (sameShape || shared))
   {
     reading.Differences = Changes();
   }
@@ -186,20 +230,22 @@ RestMesh::CellReading RestMesh::ReadCells(const MeshParts& shape, const MeshPart
   }
   if (!reading.Differences)
   {
-    MeshCells cells = deformvolume::ReadCells(rest, rest, derived);
+    MeshCells cells = deformvolume::ReadCells(rest, rest, source.Derived);
     if (cells.Tetrahedra.empty())
     {
       throw Error("The deformation mesh has no tetrahedra" +
         (cells.Ignored.empty() ? std::string() : ", but " + cells.Ignored) +
         ". Use a mesh of three-dimensional cells that can be split into tetrahedra.");
     }
-    if (!shared && deformvolume::ReadCells(shape, rest, derived).Tetrahedra != cells.Tetrahedra)
+    if (!shared &&
+      deformvolume::ReadCells(shape, rest, source.Derived).Tetrahedra != cells.Tetrahedra)
     {
       throw Error("The cells of the deformation mesh are not those of the rest configuration. "
                   "Use two configurations of one mesh.");
     }
     reading.Ignored = cells.Ignored;
     reading.WrongOrder = cells.WrongOrder;
+    reading.DependOnPoints = cells.DependOnPoints;
     if (!(cells.Derived == this->Derived))
     {
       reading.Derived = std::move(cells.Derived);

@@ -72,15 +72,18 @@ private:
     std::optional<DerivedNodes> Derived; // nothing: they have not changed
     std::string Ignored;
     std::string WrongOrder;
+    bool DependOnPoints = false;
   };
 
-  CellReading ReadCells(const MeshParts& shape, const MeshParts& rest, const DerivedNodes* derived,
-    const MeshStamp& restCells, const MeshStamp& shapeCells);
+  CellReading ReadCells(const MeshParts& shape, const MeshParts& rest,
+    const DeformationSource& source, const MeshStamp& restCells, const MeshStamp& shapeCells);
   /// The differences of the cells from the last ones; nothing if a comparison of memory does not
   /// suffice. sameRest, sameShape: whether these cells are unchanged. shared: whether both meshes
   /// have the same arrays of cells.
   std::optional<Changes> CompareCells(const MeshParts& shape, const MeshParts& rest, bool sameRest,
     bool sameShape, bool shared) const;
+  /// Whether the nodes differ from the last ones in number or position.
+  bool HavePointsChanged(const MeshParts& rest, const DeformationSource& source) const;
   /// Whether the cells are as many tetrahedra as before, with the same positions at rest.
   bool HaveSameShape(const CellReading& cells) const;
   /// before: number of nodes before. Returns false if nothing had to be read.
@@ -103,6 +106,7 @@ private:
   std::uint64_t ConnectivityVersion = 0;
   bool ShapeIsOld = false; // a failed reading has left points that do not belong to ShapeVersion
   bool KeptPoints = false;
+  bool CellsDependOnPoints = false; // see MeshCells
 
   // Log: the last changes of the connectivity, each with the version after it. LogBegin: the
   // version before the first change.

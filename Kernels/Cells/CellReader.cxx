@@ -3,6 +3,7 @@
 
 #include "CellNumbers.h"
 #include "CellParts.h"
+#include "CoincidentPoints.h"
 #include "Error.h"
 #include "PolyhedronSplit.h"
 
@@ -67,6 +68,30 @@ void CellReader::CheckSize(std::int64_t cell, int type, std::int64_t count)
   }
 }
 
+// Returns the nodes of a cell that is split, until the next call.
+const std::vector<CellNode>& CellReader::GetNodes(const std::vector<std::int32_t>& numbers)
+{
+  if (this->Places.empty())
+  {
+    std::vector<glm::dvec3> points(static_cast<std::size_t>(this->NumberOfNodes));
+    for (std::int32_t node = 0; node < this->NumberOfNodes; ++node)
+    {
+      points[static_cast<std::size_t>(node)] = this->GetPosition(node);
+    }
+    this->Places = FindCoincidentPoints(points);
+    this->Cells.DependOnPoints = true;
+  }
+  this->Nodes.clear();
+  for (const std::int32_t number : numbers)
+  {
+    // Cells may also use derived nodes of the mesh.
+    this->Nodes.push_back(
+      { number < this->NumberOfNodes ? this->Places[static_cast<std::size_t>(number)] : number,
+        number });
+  }
+  return this->Nodes;
+}
+
 // Adds a derived node, and returns its index.
 std::int32_t CellReader::AddNode(
   const std::vector<std::int32_t>& nodes, const std::vector<double>& weights)
@@ -114,7 +139,7 @@ void CellReader::AddPolyhedron(
     points.push_back(this->GetPosition(node));
   }
   PolyhedronSplit split;
-  if (!SplitPolyhedron(nodes, facesByIndex, points, this->Rounding, split))
+  if (!SplitPolyhedron(this->GetNodes(nodes), facesByIndex, points, this->Rounding, split))
   {
     throw Error("Cell " + std::to_string(cell) + " of the deformation mesh is a concave " +
       GetCellName(cellNumbers::Polyhedron) + " with " + std::to_string(nodes.size()) +
@@ -173,7 +198,7 @@ void CellReader::AddHigherOrder(std::int64_t cell, int type, const std::vector<s
     }
     if (part.CenterWeights.empty())
     {
-      SplitCell(some, part.Faces, tetrahedra);
+      SplitCell(this->GetNodes(some), part.Faces, tetrahedra);
       continue;
     }
     const std::int32_t center = this->AddNode(nodes, part.CenterWeights);
@@ -194,7 +219,7 @@ void CellReader::AddHigherOrder(std::int64_t cell, int type, const std::vector<s
 void CellReader::SplitLinear(const std::vector<std::int32_t>& nodes, const CellFaces& faces)
 {
   const std::size_t first = this->Cells.Tetrahedra.size();
-  SplitCell(nodes, faces, this->Cells.Tetrahedra);
+  SplitCell(this->GetNodes(nodes), faces, this->Cells.Tetrahedra);
   std::vector<glm::dvec3>& points = this->Points;
   points.clear();
   glm::dvec3 low(std::numeric_limits<double>::infinity());

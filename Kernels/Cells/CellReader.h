@@ -33,6 +33,8 @@ struct MeshCells
   std::string Ignored;
   /// Text for a warning: cells whose nodes are probably not in VTK's order. "" if there are none.
   std::string WrongOrder;
+  /// Whether the split of a cell depends on the positions of nodes at rest.
+  bool DependOnPoints = false;
 };
 
 /// Returns the warnings for MeshCells::Ignored and MeshCells::WrongOrder.
@@ -53,7 +55,7 @@ DEFORMVOLUME_EXPORT void CheckCellPoint(
 class DEFORMVOLUME_EXPORT CellReader
 {
 public:
-  /// Returns the position of a node at rest. Called for the nodes of cells that are split.
+  /// Returns the position of a node at rest. Called if there are cells that are split.
   using Positions = std::function<glm::dvec3(std::int32_t node)>;
 
   /// rounding: relative error of positions.
@@ -88,6 +90,7 @@ public:
   MeshCells Finish();
 
 private:
+  const std::vector<CellNode>& GetNodes(const std::vector<std::int32_t>& numbers);
   std::int32_t AddNode(const std::vector<std::int32_t>& nodes, const std::vector<double>& weights);
   void AddHigherOrder(std::int64_t cell, int type, const std::vector<std::int32_t>& nodes,
     const std::array<int, 3>* degrees);
@@ -99,7 +102,9 @@ private:
   const double Rounding;
   MeshCells Cells;
   HigherOrderCells HigherOrder;
-  std::vector<glm::dvec3> Points; // of a cell, kept to save allocations
+  std::vector<std::int32_t> Places; // CellNode::Place of each node; empty until a cell is split
+  std::vector<CellNode> Nodes;      // of a cell, kept to save allocations
+  std::vector<glm::dvec3> Points;   // of a cell, kept to save allocations
   std::map<int, std::int64_t> Ignored;
   std::int64_t NumberOfQuadraticCells = 0;
   std::int64_t NumberOfFarMidSides = 0;

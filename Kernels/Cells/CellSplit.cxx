@@ -78,11 +78,11 @@ int GetNumberOfCellPoints(int cellType)
   }
 }
 
-void SplitCell(const std::vector<std::int32_t>& nodes, const CellFaces& faces,
-  std::vector<Tetrahedron>& tetrahedra)
+void SplitCell(
+  const std::vector<CellNode>& nodes, const CellFaces& faces, std::vector<Tetrahedron>& tetrahedra)
 {
-  const std::int32_t apex = *std::min_element(nodes.begin(), nodes.end());
-  const auto node = [&](const std::vector<int>& face, std::size_t i)
+  const std::int32_t apex = std::min_element(nodes.begin(), nodes.end())->Number;
+  const auto node = [&](const std::vector<int>& face, std::size_t i) -> const CellNode&
   { return nodes[static_cast<std::size_t>(face[i % face.size()])]; };
   for (const std::vector<int>& face : faces)
   {
@@ -91,14 +91,14 @@ void SplitCell(const std::vector<std::int32_t>& nodes, const CellFaces& faces,
     {
       lowest = node(face, i) < node(face, lowest) ? i : lowest;
     }
-    if (face.empty() || node(face, lowest) == apex)
+    if (face.empty() || node(face, lowest).Number == apex)
     {
       continue;
     }
     for (std::size_t i = 1; i + 1 < face.size(); ++i)
     {
-      tetrahedra.push_back(
-        { { apex, node(face, lowest), node(face, lowest + i), node(face, lowest + i + 1) } });
+      tetrahedra.push_back({ { apex, node(face, lowest).Number, node(face, lowest + i).Number,
+        node(face, lowest + i + 1).Number } });
     }
   }
 }

@@ -24,13 +24,28 @@ DEFORMVOLUME_EXPORT const CellFaces* GetCellFaces(int cellType);
 /// number of points. 0 for all other types.
 DEFORMVOLUME_EXPORT int GetNumberOfCellPoints(int cellType);
 
+/// A node of a cell. The order of the nodes decides how cells are split.
+struct CellNode
+{
+  /// The lowest number of a node with the same position at rest.
+  std::int32_t Place;
+  /// Index in the mesh.
+  std::int32_t Number;
+
+  bool operator<(const CellNode& other) const
+  {
+    return this->Place != other.Place ? this->Place < other.Place : this->Number < other.Number;
+  }
+};
+
 /// Splits a convex cell into tetrahedra between its own points, and appends these.
 ///
-/// The node with the lowest number is connected to all faces that do not contain it. Each of these
-/// faces is split into a fan of triangles around its own lowest node. So the split of a face
-/// depends only on its nodes, and cells that share a face split it in the same way.
-void SplitCell(const std::vector<std::int32_t>& nodes, const CellFaces& faces,
-  std::vector<Tetrahedron>& tetrahedra);
+/// The lowest node is connected to all faces that do not contain it. Each of these faces is split
+/// into a fan of triangles around its own lowest node. So the split of a face depends only on its
+/// nodes, and cells that share a face split it in the same way, also if each of them has nodes of
+/// its own at the same positions.
+void SplitCell(
+  const std::vector<CellNode>& nodes, const CellFaces& faces, std::vector<Tetrahedron>& tetrahedra);
 
 } // namespace deformvolume
 

@@ -191,16 +191,15 @@ std::vector<Triangle> SplitPolygon(
 
 // Splits a face into triangles with its orientation. The split does not depend on the first node or
 // on the orientation of the face.
-std::vector<Triangle> SplitFace(const std::vector<int>& face,
-  const std::vector<std::int32_t>& nodes, const std::vector<glm::dvec3>& points)
+std::vector<Triangle> SplitFace(const std::vector<int>& face, const std::vector<CellNode>& nodes,
+  const std::vector<glm::dvec3>& points)
 {
-  const auto number = [&](int node) { return nodes[static_cast<std::size_t>(node)]; };
+  const auto isLess = [&](int a, int b)
+  { return nodes[static_cast<std::size_t>(a)] < nodes[static_cast<std::size_t>(b)]; };
   std::vector<int> canonical = face;
-  std::rotate(canonical.begin(),
-    std::min_element(
-      canonical.begin(), canonical.end(), [&](int a, int b) { return number(a) < number(b); }),
+  std::rotate(canonical.begin(), std::min_element(canonical.begin(), canonical.end(), isLess),
     canonical.end());
-  const bool isReversed = number(canonical.back()) < number(canonical[1]);
+  const bool isReversed = isLess(canonical.back(), canonical[1]);
   if (isReversed)
   {
     std::reverse(canonical.begin() + 1, canonical.end());
@@ -297,7 +296,7 @@ std::vector<double> FindWeights(const std::vector<glm::dvec3>& points, const glm
 
 } // namespace
 
-bool SplitPolyhedron(const std::vector<std::int32_t>& nodes, const CellFaces& faces,
+bool SplitPolyhedron(const std::vector<CellNode>& nodes, const CellFaces& faces,
   const std::vector<glm::dvec3>& points, double rounding, PolyhedronSplit& split)
 {
   split = PolyhedronSplit();
@@ -345,7 +344,7 @@ bool SplitPolyhedron(const std::vector<std::int32_t>& nodes, const CellFaces& fa
   std::map<std::int32_t, int> indices;
   for (std::size_t i = 0; i < nodes.size(); ++i)
   {
-    indices[nodes[i]] = static_cast<int>(i);
+    indices[nodes[i].Number] = static_cast<int>(i);
   }
   double filled = 0.0;
   for (const Tetrahedron& t : split.Tetrahedra)
@@ -373,8 +372,9 @@ bool SplitPolyhedron(const std::vector<std::int32_t>& nodes, const CellFaces& fa
   split.CenterWeights = FindWeights(points, center);
   for (const Triangle& t : triangles)
   {
-    split.Triangles.push_back({ { nodes[static_cast<std::size_t>(t[0])],
-      nodes[static_cast<std::size_t>(t[1])], nodes[static_cast<std::size_t>(t[2])] } });
+    split.Triangles.push_back({ { nodes[static_cast<std::size_t>(t[0])].Number,
+      nodes[static_cast<std::size_t>(t[1])].Number,
+      nodes[static_cast<std::size_t>(t[2])].Number } });
   }
   return true;
 }

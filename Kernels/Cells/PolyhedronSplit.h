@@ -25,15 +25,15 @@ struct PolyhedronSplit
   std::vector<std::array<std::int32_t, 3>> Triangles;
 };
 
-/// Splits a polyhedron. nodes: indices of its nodes in the mesh. points: positions of the nodes at
-/// rest. rounding: relative error of the positions.
+/// Splits a polyhedron. points: positions of the nodes at rest. rounding: relative error of the
+/// positions.
 ///
 /// If the tetrahedra of SplitCell() fill the polyhedron, as in convex cells, they are the result.
 /// Otherwise the triangles of the faces are connected to a point inside from which all triangles
 /// are visible. Returns false if no such point is found. The triangles of a face depend only on its
 /// nodes and their positions, so cells that share a face split it in the same way. A polyhedron
 /// that is not closed is split by SplitCell().
-bool SplitPolyhedron(const std::vector<std::int32_t>& nodes, const CellFaces& faces,
+bool SplitPolyhedron(const std::vector<CellNode>& nodes, const CellFaces& faces,
   const std::vector<glm::dvec3>& points, double rounding, PolyhedronSplit& split);
 
 } // namespace deformvolume

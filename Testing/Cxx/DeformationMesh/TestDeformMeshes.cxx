@@ -23,6 +23,7 @@
 
 #include <glm/common.hpp>
 
+#include <algorithm>
 #include <limits>
 
 using namespace filterTesting;
@@ -452,6 +453,72 @@ void TestGrid(vtkDataSet* grid)
   VERIFY(AreEqual(expected.Update(), found.Update()));
 }
 
+// Two blocks of hexahedra meet at a curved face. Each has points of its own there, in another
+// order. apart: the distance of the second block from the first one.
+vtkSmartPointer<vtkMultiBlockDataSet> MakeMeetingBlocks(vtkUnstructuredGrid* whole, double apart)
+{
+  auto blocks = vtkSmartPointer<vtkMultiBlockDataSet>::New();
+  const vtkIdType count = whole->GetNumberOfPoints();
+  for (const bool second : { false, true })
+  {
+    const auto number = [&](vtkIdType id) { return second ? 7 * id % count : id; };
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    points->SetNumberOfPoints(count);
+    for (vtkIdType id = 0; id < count; ++id)
+    {
+      const glm::dvec3 point = GetPoint(whole, id) + glm::dvec3(0.0, 0.0, second ? apart : 0.0);
+      points->SetPoint(number(id), &point.x);
+    }
+    vtkNew<vtkUnstructuredGrid> block;
+    block->SetPoints(points);
+    for (vtkIdType cell = 0; cell < whole->GetNumberOfCells(); ++cell)
+    {
+      if (second != (2 * cell >= whole->GetNumberOfCells()))
+      {
+        continue;
+      }
+      vtkNew<vtkIdList> ids;
+      whole->GetCellPoints(cell, ids);
+      std::transform(ids->begin(), ids->end(), ids->begin(), number);
+      block->InsertNextCell(whole->GetCellType(cell), ids);
+    }
+    SetDisplacements(block, Shift(0.0, 0.5, 0.0));
+    blocks->SetBlock(second ? 1 : 0, block);
+  }
+  return blocks;
+}
+
+void TestMeetingBlocks()
+{
+  const auto volume = MakeVolume({ { 0, 39, 0, 39, 0, 39 } });
+  const auto curved = MakeStructuredGrid();
+  for (vtkIdType id = 0; id < curved->GetNumberOfPoints(); ++id)
+  {
+    glm::dvec3 point = GetPoint(curved, id);
+    point.z += 0.8 * std::sin(2.0 * point.x) * std::cos(1.5 * point.y);
+    point *= 4.0;
+    curved->GetPoints()->SetPoint(id, &point.x);
+  }
+  const Grid whole = MakeHexahedra(curved, [](int) { return false; });
+  SetDisplacements(whole, Shift(0.0, 0.5, 0.0));
+  Deformed expected(volume, whole);
+  expected.Update();
+  // Points that move can begin to coincide.
+  const auto blocks = MakeMeetingBlocks(whole, 9.0);
+  Deformed found(volume, blocks);
+  found.Update();
+  VERIFY(found.Filter->GetNumberOfCoveredVoxels() != expected.Filter->GetNumberOfCoveredVoxels());
+  auto* second = vtkUnstructuredGrid::SafeDownCast(blocks->GetBlock(1));
+  second->GetPoints()->DeepCopy(
+    vtkUnstructuredGrid::SafeDownCast(MakeMeetingBlocks(whole, 0.0)->GetBlock(1))->GetPoints());
+  second->GetPoints()->Modified();
+  blocks->Modified();
+  found.Update();
+  VERIFY_EQUAL(
+    found.Filter->GetNumberOfCoveredVoxels(), expected.Filter->GetNumberOfCoveredVoxels());
+}
+
 void TestGrids()
 {
   TestGrid(MakeRectilinearGrid());
@@ -646,6 +713,7 @@ int TestDeformMeshes(int, char*[])
   TestUnusedNodesThatChange();
   TestBlocks();
   TestGrids();
+  TestMeetingBlocks();
   TestDeformedPoints();
   TestUnits();
   TestDirections();

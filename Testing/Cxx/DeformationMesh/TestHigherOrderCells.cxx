@@ -68,16 +68,36 @@ std::vector<glm::dvec3> GetPoints(vtkUnstructuredGrid* grid, const deformvolume:
   return AddDerived(points, cells);
 }
 
-// Checks that the tetrahedra of a grid are a conforming mesh. Each face belongs to one or two
-// tetrahedra. area: the total area of the faces that belong to only one tetrahedron. volume: the
-// total volume of the tetrahedra, which must use every node.
+// Returns a number for each point, which is the same for points with the same position.
+std::vector<std::int32_t> FindPlaces(const std::vector<glm::dvec3>& points)
+{
+  std::map<std::array<double, 3>, std::int32_t> known;
+  std::vector<std::int32_t> places;
+  for (const glm::dvec3& point : points)
+  {
+    const auto number = static_cast<std::int32_t>(known.size());
+    places.push_back(
+      known.emplace(std::array<double, 3>{ { point.x, point.y, point.z } }, number).first->second);
+  }
+  return places;
+}
+
+// Checks that the tetrahedra of a grid are a conforming mesh if coincident points are merged. Each
+// face belongs to one or two tetrahedra. area: the total area of the faces that belong to only one
+// tetrahedron. volume: the total volume of the tetrahedra, which must use every node.
 void CheckFilled(const std::string& what, vtkUnstructuredGrid* grid, double volume, double area)
 {
   const deformvolume::MeshCells cells = deformvolume::ReadCells({ grid }, { grid });
   const std::vector<Tetrahedron>& tetrahedra = cells.Tetrahedra;
   const std::vector<glm::dvec3> points = GetPoints(grid, cells);
+  const std::vector<std::int32_t> places = FindPlaces(points);
   std::set<std::int32_t> used;
-  std::map<std::array<std::int32_t, 3>, int> faces;
+  struct Face
+  {
+    double Area;
+    int Count;
+  };
+  std::map<std::array<std::int32_t, 3>, Face> faces;
   double sum = 0.0;
   double least = volume;
   for (const Tetrahedron& tetrahedron : tetrahedra)
@@ -86,15 +106,19 @@ void CheckFilled(const std::string& what, vtkUnstructuredGrid* grid, double volu
     for (std::size_t opposite = 0; opposite < 4; ++opposite)
     {
       std::array<std::int32_t, 3> face;
+      std::array<glm::dvec3, 3> corners;
       for (std::size_t i = 0, j = 0; i < 4; ++i)
       {
         if (i != opposite)
         {
-          face[j++] = tetrahedron[i];
+          corners[j] = points[tetrahedron[i]];
+          face[j++] = places[tetrahedron[i]];
         }
       }
       std::sort(face.begin(), face.end());
-      ++faces[face];
+      const double faceArea =
+        0.5 * glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+      ++faces.emplace(face, Face{ faceArea, 0 }).first->second.Count;
     }
     const double part = GetVolume(points, tetrahedron);
     sum += part;
@@ -104,13 +128,8 @@ void CheckFilled(const std::string& what, vtkUnstructuredGrid* grid, double volu
   int most = 0;
   for (const auto& face : faces)
   {
-    most = std::max(most, face.second);
-    if (face.second == 1)
-    {
-      const glm::dvec3 origin = points[face.first[0]];
-      surface += 0.5 *
-        glm::length(glm::cross(points[face.first[1]] - origin, points[face.first[2]] - origin));
-    }
+    most = std::max(most, face.second.Count);
+    surface += face.second.Count == 1 ? face.second.Area : 0.0;
   }
   // The tolerance allows for rounding in sums of some thousand numbers of order one.
   if (std::abs(sum - volume) > 1e-10 * volume || std::abs(surface - area) > 1e-10 * area ||
@@ -154,6 +173,38 @@ Grid Shuffle(vtkUnstructuredGrid* grid, unsigned int seed)
   }
   shuffled->GetCellData()->ShallowCopy(grid->GetCellData());
   return shuffled;
+}
+
+// The same cells, each with points of its own.
+Grid Separate(vtkUnstructuredGrid* grid)
+{
+  Grid separated = Grid::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
+  {
+    vtkNew<vtkIdList> ids;
+    grid->GetCellPoints(cell, ids);
+    for (vtkIdType& id : *ids)
+    {
+      id = points->InsertNextPoint(grid->GetPoint(id));
+    }
+    separated->InsertNextCell(grid->GetCellType(cell), ids);
+  }
+  separated->SetPoints(points);
+  return separated;
+}
+
+// Checks a grid with its points in several orders, and with each cell separated from the others.
+void CheckOrders(const std::string& what, vtkUnstructuredGrid* grid, double volume, double area,
+  unsigned int seeds)
+{
+  const Grid separated = Separate(grid);
+  for (unsigned int seed = 0; seed < seeds; ++seed)
+  {
+    CheckFilled(what, Shuffle(grid, seed), volume, area);
+    CheckFilled(what + ", separated", Shuffle(separated, seed), volume, area);
+  }
 }
 
 // Makes quadratic cells from their corners: adds nodes in the middle of edges, of faces and of the
@@ -272,11 +323,8 @@ void TestNeighbors()
   for (const Types& types : { Types{ VTK_QUADRATIC_TETRA, VTK_QUADRATIC_HEXAHEDRON,
          VTK_QUADRATIC_WEDGE, VTK_QUADRATIC_PYRAMID } })
   {
-    const Grid mesh = MakeMixedMesh(types);
-    for (unsigned int seed = 0; seed < 50; ++seed)
-    {
-      CheckFilled("a mixed mesh", Shuffle(mesh, seed), 1.0 + 1.0 / 3.0 + 0.5 + tetrahedron, area);
-    }
+    CheckOrders(
+      "a mixed mesh", MakeMixedMesh(types), 1.0 + 1.0 / 3.0 + 0.5 + tetrahedron, area, 50);
   }
   // Cells whose faces have a node in their middle.
   for (const int hexahedron : { VTK_TRIQUADRATIC_HEXAHEDRON, VTK_BIQUADRATIC_QUADRATIC_HEXAHEDRON })
@@ -285,10 +333,7 @@ void TestNeighbors()
       { 1, 1, 1 }, { 0, 1, 1 }, { 2, 0, 0 }, { 2, 0, 1 } });
     mesh.Add(hexahedron, { 0, 1, 2, 3, 4, 5, 6, 7 });
     mesh.Add(VTK_BIQUADRATIC_QUADRATIC_WEDGE, { 1, 8, 2, 5, 9, 6 });
-    for (unsigned int seed = 0; seed < 50; ++seed)
-    {
-      CheckFilled("hexahedron and wedge", Shuffle(mesh.Mesh, seed), 1.5, 7.0 + std::sqrt(2.0));
-    }
+    CheckOrders("hexahedron and wedge", mesh.Mesh, 1.5, 7.0 + std::sqrt(2.0), 50);
   }
   Elevation center({ { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { 1, 0, 1 },
     { 1, 1, 1 }, { 0, 1, 1 }, { 0.5, 0.5, 2 } });
@@ -298,12 +343,9 @@ void TestNeighbors()
     { 0, 0, 2 }, { 1, 0, 2 }, { 0, 1, 2 } });
   linear.Add(VTK_QUADRATIC_LINEAR_WEDGE, { 0, 1, 2, 3, 4, 5 });
   linear.Add(VTK_QUADRATIC_LINEAR_WEDGE, { 3, 4, 5, 6, 7, 8 });
-  for (unsigned int seed = 0; seed < 50; ++seed)
-  {
-    CheckFilled("hexahedron and pyramid", Shuffle(center.Mesh, seed), 1.0 + 1.0 / 3.0,
-      5.0 + 4.0 * triangle(a, b, c));
-    CheckFilled("linear wedges", Shuffle(linear.Mesh, seed), 1.0, 1.0 + 4.0 + 2.0 * std::sqrt(2.0));
-  }
+  CheckOrders(
+    "hexahedron and pyramid", center.Mesh, 1.0 + 1.0 / 3.0, 5.0 + 4.0 * triangle(a, b, c), 50);
+  CheckOrders("linear wedges", linear.Mesh, 1.0, 1.0 + 4.0 + 2.0 * std::sqrt(2.0), 50);
 }
 
 Grid MakeBlocks(int type, int order, bool complete, int blocks)
@@ -374,11 +416,7 @@ void TestBlocks()
 {
   for (const Shape& shape : GetShapes())
   {
-    const Grid grid = MakeBlocks(shape.Type, shape.Order, shape.Complete, 2);
-    for (unsigned int seed = 0; seed < 5; ++seed)
-    {
-      CheckFilled(shape.Name, Shuffle(grid, seed), 8.0, 24.0);
-    }
+    CheckOrders(shape.Name, MakeBlocks(shape.Type, shape.Order, shape.Complete, 2), 8.0, 24.0, 5);
   }
 }
 
@@ -661,22 +699,22 @@ private:
 
 using Polygon = std::vector<std::array<double, 2>>;
 
-// Prisms over a polygon, one above another.
-Grid MakePrisms(const Polygon& polygon, int layers, unsigned int seed)
+// Prisms over a polygon, one above another. separated: each prism has points of its own.
+Grid MakePrisms(const Polygon& polygon, int layers, unsigned int seed, bool separated = false)
 {
   const auto count = static_cast<int>(polygon.size());
   std::vector<glm::dvec3> points;
-  for (int layer = 0; layer <= layers; ++layer)
+  for (int ring = 0; ring < (separated ? 2 * layers : layers + 1); ++ring)
   {
     for (const auto& corner : polygon)
     {
-      points.emplace_back(corner[0], corner[1], layer);
+      points.emplace_back(corner[0], corner[1], separated ? (ring + 1) / 2 : ring);
     }
   }
   PolyhedralMesh mesh(points, seed);
   for (int layer = 0; layer < layers; ++layer)
   {
-    const int first = layer * count;
+    const int first = (separated ? 2 * layer : layer) * count;
     std::vector<std::vector<int>> faces(2);
     for (int i = 0; i < count; ++i)
     {
@@ -739,6 +777,8 @@ void TestConcavePolyhedra()
       CheckFilled("a concave prism", MakePrisms(polygon, 1, seed), area, 2.0 * area + length);
       CheckFilled(
         "concave prisms", MakePrisms(polygon, 3, seed), 3.0 * area, 2.0 * area + 3.0 * length);
+      CheckFilled("separated concave prisms", MakePrisms(polygon, 3, seed, true), 3.0 * area,
+        2.0 * area + 3.0 * length);
     }
   }
   // Spikes on the faces of a cube.
