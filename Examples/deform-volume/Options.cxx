@@ -255,8 +255,9 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
     ->group(group);
   program
     .add_option("--mesh-space", options.MeshSpace,
-      "World coordinates of files of --mesh, --rest, --cut and --points (.vtp, .vtu) that do not "
-      "state them (files of 3D Slicer do): lps (x to the left, y to the back, z to the head) or "
+      "World coordinates of files of --mesh, --rest, --cut and --points (.vtp, .vtu, .stl, .ply) "
+      "that do not state them (files of 3D Slicer do): lps (x to the left, y to the back, z to the "
+      "head) or "
       "ras (x to the right, y to the front, z to the head) [those of the volume]")
     ->check(CLI::IsMember({ "lps", "ras" }))
     ->type_name("SPACE")

@@ -12,7 +12,9 @@ import Readers
 from Volumes import call, make_ball, make_folder, write_vti
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
-from vtkmodules.vtkCommonDataModel import VTK_VERTEX, vtkPolyData, vtkUnstructuredGrid
+from vtkmodules.vtkCommonDataModel import VTK_TRIANGLE, VTK_VERTEX, vtkPolyData, vtkUnstructuredGrid
+from vtkmodules.vtkIOGeometry import vtkSTLReader, vtkSTLWriter
+from vtkmodules.vtkIOPLY import vtkPLYReader, vtkPLYWriter
 from vtkmodules.vtkIOXML import (vtkXMLPolyDataReader, vtkXMLPolyDataWriter, vtkXMLUnstructuredGridReader,
                                  vtkXMLUnstructuredGridWriter)
 
@@ -65,8 +67,35 @@ def write_geometry(name, points, space=None, vectors=None, normals=None):
     assert writer.Write(), name
 
 
+def write_surface(name, points, space=None):
+    """Writes triangles of three consecutive points each. A .ply file also has colors."""
+    surface = vtkPolyData()
+    places = vtkPoints()
+    places.SetData(numpy_to_vtk(numpy.array(points, dtype=numpy.float32), deep=True))
+    surface.SetPoints(places)
+    surface.AllocateExact(len(points), 3)
+    for i in range(0, len(points) - 2):
+        surface.InsertNextCell(VTK_TRIANGLE, 3, [i, i + 1, i + 2])
+    writer = vtkSTLWriter() if name.endswith(".stl") else vtkPLYWriter()
+    writer.SetInputData(surface)
+    writer.SetFileName(path(name))
+    if name.endswith(".stl"):
+        writer.SetHeader(f"3D Slicer output. SPACE={space}" if space else "made by a test")
+        writer.SetFileTypeToBinary()
+    else:
+        colors = numpy_to_vtk(numpy.arange(3 * len(points), dtype=numpy.uint8).reshape(-1, 3), deep=True)
+        colors.SetName("colors")
+        surface.GetPointData().AddArray(colors)
+        writer.SetArrayName("colors")
+        if space:
+            writer.AddComment(f"SPACE={space}")
+    assert writer.Write(), name
+
+
 def read_geometry(name):
-    reader = vtkXMLPolyDataReader() if name.endswith(".vtp") else vtkXMLUnstructuredGridReader()
+    readers = {"vtp": vtkXMLPolyDataReader, "vtu": vtkXMLUnstructuredGridReader, "stl": vtkSTLReader,
+               "ply": vtkPLYReader}
+    reader = readers[name[-3:]]()
     reader.SetFileName(path(name))
     reader.Update()
     return reader.GetOutput()
@@ -129,8 +158,9 @@ for arguments, words in ((("--points", path("some.csv")), "--points-output"),
     Messages.fails(program, 2, words, path("ball.vti"), *lattice, "-o", path("no.vti"), *arguments)
 fails("must end in .csv, as that of", "some.csv", "no.vtp", code=2)
 fails("must end in .vtp, as that of", "some.vtp", "no.stl", code=2)
+fails("must end in .stl, as that of", "some.stl", "no.ply", code=2)
 fails("In 3D Slicer, save the points as .mrk.json", "some.fcsv", "no.fcsv", code=2)
-fails("must end in .vtp, .vtu, .csv", "some.xyz", "no.xyz", code=2)
+fails("must end in .vtp, .vtu, .stl, .ply, .csv", "some.xyz", "no.xyz", code=2)
 fails("is written twice", "some.csv", "no.csv", 2, ("--points", path("some.csv"), "--points-output", path("no.csv")))
 fails("there is no folder", "some.csv", "none/no.csv")
 fails("--mesh-space requires", "some.csv", code=2, more=("--mesh-space", "lps"))
@@ -151,6 +181,13 @@ for name, text, words in (
         ("words.csv", "x,y,z\n1.5mm,2,3\n", 'its line 2 has "1.5mm" as x')):
     write(name, text)
     fails(words, name)
+for name in ("some.stl", "some.ply"):
+    write_surface(name, [*some, [1.0, 2.0, 3.0]])
+    with open(path(name), "rb") as file:
+        content = file.read()
+    with open(path("broken" + name[-4:]), "wb") as file:
+        file.write(content[:-5])
+    fails("cannot read", "broken" + name[-4:], "no" + name[-4:])
 write("broken.vtp", read("some.vtp")[:400])
 write("words.vtp", "some words")
 write_geometry("grid.vtu", some)
@@ -288,6 +325,28 @@ for volume, of_volume in (("moving.nii.gz", "RAS"), ("moving.mha", "LPS"), ("mov
         numpy.save(path("starts.npy"), numpy.concatenate([start] * len(ends)))
         numpy.save(path("ends.npy"), numpy.concatenate(ends))
         Readers.run("Points.py", "check", folder, transform, "starts.npy", "ends.npy")
+
+# Surfaces: with a comment that states their world, or in that of the volume. The output has the same triangles, colors
+# and comment, in single precision.
+for volume, of_volume in (("moving.nii.gz", flip), ("moving.mha", 1)):
+    ends = []
+    for suffix in (".stl", ".ply"):
+        for name, space, factor in (("RAS", "RAS", flip), ("LPS", "LPS", 1), ("none", None, of_volume)):
+            write_surface(name + suffix, start * factor, space)
+            move(volume, ("--transform", path("affine.tfm"), "--reference", path("fixed.mha")), [name + suffix])
+            before = read_geometry(name + suffix)
+            after = read_geometry("moved-" + name + suffix)
+            assert (vtk_to_numpy(before.GetPolys().GetData()) == vtk_to_numpy(after.GetPolys().GetData())).all()
+            with open(path("moved-" + name + suffix), "rb") as file:
+                assert (f"SPACE={space}".encode() in file.read()) == (space is not None), name + suffix
+            if suffix == ".ply":
+                colors = [vtk_to_numpy(data.GetPointData().GetArray("RGB")) for data in (before, after)]
+                assert (colors[0] == colors[1]).all() and len(colors[0]) == len(start)
+            ends.append(get_points(after) * factor)
+    for end in ends:
+        numpy.save(path("starts.npy"), start)
+        numpy.save(path("ends.npy"), end)
+        Readers.run("Points.py", "check", folder, "affine.tfm", "starts.npy", "ends.npy")
 
 # Vectors are multiplied by the inverse of the transform's matrix, and normals by its transpose.
 parameters = re.findall(r"^Parameters: (.*)", read("affine.tfm"), re.M)[0].split()

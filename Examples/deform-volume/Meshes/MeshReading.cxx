@@ -442,9 +442,11 @@ vtkSmartPointer<vtkPointSet> ReadGeometry(
   const std::string& path, const Options& options, Messages& messages)
 {
   CheckFile(path);
-  const vtkSmartPointer<vtkDataObject> object =
-    ReadXML({ path, "reading points", messages, !options.Quiet });
-  const bool isSurface = HasSuffix(path, { ".vtp" });
+  const Source source{ path, "reading points", messages, !options.Quiet };
+  const vtkSmartPointer<vtkDataObject> object = HasSuffix(path, { ".stl" }) ? ReadSTL(source)
+    : HasSuffix(path, { ".ply" })                                           ? ReadPLY(source)
+                                                                            : ReadXML(source);
+  const bool isSurface = !HasSuffix(path, { ".vtu" });
   if (!object || !object->IsA(isSurface ? "vtkPolyData" : "vtkUnstructuredGrid"))
   {
     throw Failure("cannot read " + path + ": it does not hold " +

@@ -122,6 +122,13 @@ void KeepSpace(vtkDataObject* object, const char* header)
   }
 }
 
+std::string GetSpaceComment(vtkDataObject* object)
+{
+  auto* array = vtkStringArray::SafeDownCast(object->GetFieldData()->GetAbstractArray(SpaceName));
+  return array && array->GetNumberOfValues() > 0 ? std::string(SpaceName) + "=" + array->GetValue(0)
+                                                 : std::string();
+}
+
 bool TurnIntoWorld(vtkDataObject* object, const std::vector<std::string>& vectors,
   const std::string& ofOption, const std::string& path, WorldAxes ofVolume, Messages& messages)
 {

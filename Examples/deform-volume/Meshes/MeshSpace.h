@@ -15,6 +15,9 @@ class vtkDataSet;
 /// data, in the form in which 3D Slicer writes it to files that have field data.
 void KeepSpace(vtkDataObject* object, const char* header);
 
+/// Returns the comment that states the axes that KeepSpace() has stored, or "".
+std::string GetSpaceComment(vtkDataObject* object);
+
 /// Converts a mesh or a sheet of a file to the world coordinates of the volume: the points, and the
 /// point arrays of vectors with the given names; "" is ignored. ofOption: the value of the option
 /// --mesh-space, or "". The field data of the object or of a block take precedence over the option.

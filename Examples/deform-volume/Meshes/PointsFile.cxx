@@ -17,7 +17,9 @@
 #include <vtkDataArray.h>
 #include <vtkDeformGeometryFilter.h>
 #include <vtkNew.h>
+#include <vtkPLYWriter.h>
 #include <vtkPointData.h>
+#include <vtkSTLWriter.h>
 #include <vtkXMLPolyDataWriter.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
@@ -99,11 +101,38 @@ vtkSmartPointer<vtkPointSet> Deform(const PointsFile& file, const Options& optio
   return filter->GetOutput();
 }
 
+void WriteSTL(vtkPointSet* surface, const std::string& path, Messages& messages)
+{
+  vtkNew<vtkSTLWriter> writer;
+  writer->SetFileTypeToBinary();
+  writer->SetHeader(("deform-volume. " + GetSpaceComment(surface)).c_str());
+  Write(writer.Get(), surface, path, messages);
+}
+
+void WritePLY(vtkPointSet* surface, const std::string& path, Messages& messages)
+{
+  vtkNew<vtkPLYWriter> writer;
+  const std::string space = GetSpaceComment(surface);
+  if (!space.empty())
+  {
+    writer->AddComment(space);
+  }
+  for (const char* colors : { "RGB", "RGBA" }) // the names of VTK's reader
+  {
+    if (surface->GetPointData()->HasArray(colors))
+    {
+      writer->SetArrayName(colors);
+      writer->SetEnableAlpha(std::string(colors) == "RGBA");
+    }
+  }
+  Write(writer.Get(), surface, path, messages);
+}
+
 }
 
 std::string GetPointFormat(const std::string& path)
 {
-  for (const char* suffix : { ".vtp", ".vtu", ".csv", ".mrk.json" })
+  for (const char* suffix : { ".vtp", ".vtu", ".stl", ".ply", ".csv", ".mrk.json" })
   {
     if (HasSuffix(path, { suffix }) && (HasJson || !HasSuffix(path, { ".mrk.json" })))
     {
@@ -153,6 +182,14 @@ void WriteDeformedPoints(const std::vector<PointsFile>& files, const Options& op
     if (IsLandmarkFile(output))
     {
       WriteLandmarks(files[i].Landmarks, moved, output);
+    }
+    else if (HasSuffix(output, { ".stl" }))
+    {
+      WriteSTL(moved, output, messages);
+    }
+    else if (HasSuffix(output, { ".ply" }))
+    {
+      WritePLY(moved, output, messages);
     }
     else if (HasSuffix(output, { ".vtp" }))
     {

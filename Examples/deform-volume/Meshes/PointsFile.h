@@ -19,7 +19,7 @@ struct Volume;
 struct PointsFile
 {
   std::string Path;
-  /// In the world coordinates of the volume, with the cells and arrays of a .vtp or .vtu file.
+  /// In the world coordinates of the volume, with the cells and arrays of the file.
   vtkSmartPointer<vtkPointSet> Points;
   /// Whether the points were converted from other world coordinates.
   bool IsTurned = false;
@@ -29,7 +29,7 @@ struct PointsFile
 
 /// The file extensions that can be read and written.
 inline constexpr const char* PointFormats =
-  HasJson ? ".vtp, .vtu, .csv or .mrk.json" : ".vtp, .vtu or .csv";
+  HasJson ? ".vtp, .vtu, .stl, .ply, .csv or .mrk.json" : ".vtp, .vtu, .stl, .ply or .csv";
 
 /// The extension of a file name, or "" if it is not one of PointFormats.
 std::string GetPointFormat(const std::string& path);
