@@ -32,6 +32,7 @@ struct CellNode
   /// Index in the mesh.
   std::int32_t Number;
 
+  /// Coincident nodes are in the order of their numbers.
   bool operator<(const CellNode& other) const
   {
     return this->Place != other.Place ? this->Place < other.Place : this->Number < other.Number;
