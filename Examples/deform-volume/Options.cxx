@@ -429,7 +429,7 @@ void AddResampling(CLI::App& program, Options& options, RawOptions& raw)
   program
     .add_option("--keep", options.KeepDistance,
       "Tissue outside the mesh or field stays where it is. The displacement of the boundary fades "
-      "to zero over DISTANCE (world units). With 0, nothing outside moves")
+      "to zero over DISTANCE, the fade distance (world units). With 0, nothing outside moves")
     ->check(NotNegative)
     ->type_name("DISTANCE")
     ->group(group);

@@ -17,7 +17,7 @@ OutsideVoxels MakeKeptVoxels(double fadeDistance)
 {
   if (!std::isfinite(fadeDistance) || fadeDistance < 0.0)
   {
-    throw Error("FadeDistance is " + std::to_string(fadeDistance) +
+    throw Error("The fade distance is " + std::to_string(fadeDistance) +
       ". Set a distance in world units, or 0, with which nothing outside the mesh or the field "
       "moves.");
   }
@@ -60,8 +60,8 @@ std::string FindFoldsOfFading(const std::string& border, double longest, double 
     return "";
   }
   return "The " + border + " by up to " + std::to_string(longest) +
-    ", more than two thirds of FadeDistance, " + std::to_string(fadeDistance) +
-    ": what lies outside may fold over. Set FadeDistance to at least twice that displacement.";
+    ", more than two thirds of the fade distance, " + std::to_string(fadeDistance) +
+    ": what lies outside may fold over. Set a fade distance of at least twice that displacement.";
 }
 
 std::string FindFaultOfFading(const FadedLinks& links, const std::vector<Tetrahedron>& tetrahedra,
@@ -76,9 +76,9 @@ std::string FindFaultOfFading(const FadedLinks& links, const std::vector<Tetrahe
       "output voxels, ";
     text += fadeDistance > 0.0
       ? "where the closest point of the mesh jumps, as between two bodies that move apart. Add "
-        "cells to the mesh between them, or set a smaller FadeDistance."
-      : "as FadeDistance is 0 and the boundary of the mesh moves. Set a FadeDistance of at least "
-        "twice its displacement.";
+        "cells to the mesh between them, or set a smaller fade distance."
+      : "as the fade distance is 0 and the boundary of the mesh moves. Set a fade distance of at "
+        "least twice its displacement.";
   }
   const double longest = links.GetLongestDisplacement(tetrahedra, displacements, spacing);
   const std::string folds =
@@ -100,8 +100,9 @@ std::string FindFaultOfFading(const DisplacementField& field, const IndexBounds&
   if (fadeDistance == 0.0 && longest > 2.0 * std::min({ spacing.x, spacing.y, spacing.z }))
   {
     return "The " + border + " by up to " + std::to_string(longest) +
-      ", and as FadeDistance is 0 the volume is stretched or folded there. Set FadeDistance to at "
-      "least twice that displacement.";
+      ", and as the fade distance is 0 the volume is stretched or folded there. Set a fade "
+      "distance "
+      "of at least twice that displacement.";
   }
   return FindFoldsOfFading(border, longest, fadeDistance);
 }

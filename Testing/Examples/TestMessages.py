@@ -234,6 +234,8 @@ def check_meshers():
     write_vti(image, path("labels.vti"))
     fails(1, "label other than 0", *tetgen, "--labels", volume="labels.vti")
     fails(1, "edge length", *tetgen, "--edge-length", "0.001")
+    ball = (*tetgen, "--isovalue", "400", "--edge-length", "5")
+    warns("two thirds of the fade distance", *ball, "--keep", "0.1")
     fails(1, "Cannot run TetGen", *tetgen, "--tetgen-executable", path("none"))
     fails(1, "TetGen failed", *tetgen, "--tetgen-executable", "/bin/false")
     fails(1, "fewer nodes", "--lattice", "100000,100000,100000", *push)

@@ -120,7 +120,7 @@ void TestMeshes()
     deformed.Filter->SetOutsideMode(vtkDeformVolumeFilter::KEEP);
     deformed.Filter->SetFadeDistance(3.5);
     Check(dv_set_outside(inC.Deformer, DV_OUTSIDE_KEEP, 3.5));
-    inC.Compare(deformed, isIrregular ? "FadeDistance" : "");
+    inC.Compare(deformed, isIrregular ? "fade distance" : "");
   }
 }
 

@@ -319,7 +319,7 @@ void TestMisuse()
   {
     filter->SetOutsideModeToKeep();
     filter->SetFadeDistance(wrong);
-    misuse.Expect("FadeDistance is ");
+    misuse.Expect("fade distance is ");
   }
 
   auto field = MakeField(10.0, 4, Shift(1.0, 2.0, 3.0));

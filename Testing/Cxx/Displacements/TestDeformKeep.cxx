@@ -139,7 +139,7 @@ void TestMisuse()
     { -1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity() })
   {
     subject.Filter->SetFadeDistance(distance);
-    refuse("FadeDistance is ");
+    refuse("fade distance is ");
     restore();
   }
   subject.Filter->SetResamplerToMeshRasterization();
@@ -327,12 +327,12 @@ void TestWarnings()
   apart(1.6);
   subject.Expect("");
   apart(1.7);
-  subject.Expect("more than two thirds of FadeDistance");
+  subject.Expect("more than two thirds of the fade distance");
   subject.Filter->SetFadeDistance(0.0);
   apart(1.9);
   subject.Expect("");
   apart(2.1);
-  subject.Expect("as FadeDistance is 0");
+  subject.Expect("as the fade distance is 0");
 }
 
 // With a FadeDistance of 0 voxels outside the mesh do not move.
@@ -528,7 +528,7 @@ void TestCut()
   byMesh->SetFadeDistance(-2.0);
   renew();
   byMesh->Update();
-  VERIFY_CONTAINS(errors->GetErrorMessage(), "FadeDistance is -2");
+  VERIFY_CONTAINS(errors->GetErrorMessage(), "fade distance is -2");
   errors->Clear();
   byMesh->SetFadeDistance(2.0);
   byMesh->SetDeformationData(nullptr);

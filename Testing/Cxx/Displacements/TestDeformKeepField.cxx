@@ -185,7 +185,7 @@ void TestMisuse()
       subject.Filter->SetFadeDistance(distance);
       subject.Filter->Update();
       VERIFY_EQUAL(subject.TakeErrors(), 1);
-      VERIFY_CONTAINS(subject.LastError, "FadeDistance is ");
+      VERIFY_CONTAINS(subject.LastError, "fade distance is ");
       VERIFY_EQUAL(subject.Filter->GetOutput()->GetNumberOfPoints(), 0);
     }
   }
@@ -502,7 +502,7 @@ void TestWarnings()
     subject.Filter->SetFadeDistance(5.0);
     subject.Expect("");
     subject.Filter->SetFadeDistance(0.0);
-    subject.Expect("as FadeDistance is 0");
+    subject.Expect("as the fade distance is 0");
     move(1.5);
     subject.Expect("");
   }

@@ -887,7 +887,7 @@ void TestMisuse()
   {
     deformed.Filter->SetOutsideModeToKeep();
     deformed.Filter->SetFadeDistance(distance);
-    expectError("FadeDistance is ");
+    expectError("fade distance is ");
   }
   for (const bool isInverse : { false, true })
   {
