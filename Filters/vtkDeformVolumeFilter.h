@@ -12,8 +12,9 @@
  * @par Port 0, the volume:
  * vtkImageData at rest with at least two voxels on each axis. The source must announce its extent.
  * All numeric point arrays are deformed, and attributes keep their role; field data pass. Points
- * that vtkGhostType marks as hidden or duplicate are not used. These arrays are read, too, if they
- * exist:
+ * that vtkGhostType marks as hidden or duplicate are not used, nor are points whose
+ * vtkValidPointMask is 0, such as those that an earlier filter of this class has not covered. These
+ * arrays are read, too, if they exist:
  * - "ActiveTetrahedra" (cells, unsigned char): bit i is 1 if tetrahedron i of the cell is active.
  *   Cells that vtkGhostType hides have no active tetrahedra, except cells that are hidden by
  *   vtkVolumeEditAlgorithm::BlankCells.
@@ -32,8 +33,9 @@
  *   are a point array of three components in world units; or they are deformed, see port 2 and
  *   PointsAreDeformed.
  * - a displacement field: vtkImageData with a point array of three components in world units. It
- *   may have another grid than the volume. Points that vtkGhostType hides are undefined: voxels
- *   whose interpolation needs one are not covered. See also FieldIsInverse.
+ *   may have another grid than the volume. Points that vtkGhostType hides, or whose
+ *   vtkValidPointMask is 0, are undefined: voxels whose interpolation needs one are not covered.
+ *   See also FieldIsInverse.
  *
  * SetInputArrayToProcess(0, 1, 0, POINTS, name) chooses the displacements. The default is the
  * active vectors. An empty name means the active vectors, or else the only array of three

@@ -218,7 +218,8 @@ void vtkMaterialFromVolume::Execute(
     deformvolume::FindMaterialArray(image, this->MaterialArrayName, !table.Ranges.empty());
   volume.Indices = deformvolume::ReadMaterials(
     array, image->GetNumberOfPoints(), table.Ranges, this->DefaultMaterial, table.Exists);
-  volume.Ghosts = deformvolume::FindPointGhosts(image);
+  const deformvolume::PointGhosts ghosts = deformvolume::FindPointGhosts(image, "volume");
+  volume.Ghosts = ghosts.Values;
 
   const deformvolume::GridTetrahedra read = deformvolume::ReadTetrahedra(mesh, true);
   const std::vector<glm::dvec3> points = mesh->GetNumberOfPoints() > 0

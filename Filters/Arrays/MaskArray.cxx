@@ -108,11 +108,45 @@ CutValues FindCut(vtkImageData* volume)
   return cut;
 }
 
-const unsigned char* FindPointGhosts(vtkImageData* volume)
+PointGhosts FindPointGhosts(vtkImageData* image, const std::string& owner)
 {
-  ByteArray* ghosts = FindMask(volume->GetPointData(), vtkDataSetAttributes::GhostArrayName(),
-    volume->GetNumberOfPoints(), "point", "volume");
-  return ghosts ? ghosts->GetPointer(0) : nullptr;
+  const vtkIdType size = image->GetNumberOfPoints();
+  ByteArray* array = FindMask(
+    image->GetPointData(), vtkDataSetAttributes::GhostArrayName(), size, "point", owner);
+  PointGhosts ghosts;
+  ghosts.Values = array ? array->GetPointer(0) : nullptr;
+  auto* mask = image->GetPointData()->GetArray(ValidPointMaskName);
+  if (!mask || mask->GetNumberOfComponents() != 1 || mask->GetNumberOfTuples() != size)
+  {
+    return ghosts; // not a mask of VTK
+  }
+  const auto hide = [&](const auto& valid)
+  {
+    if (std::find(valid.begin(), valid.end(), 0) == valid.end())
+    {
+      return;
+    }
+    if (ghosts.Values)
+    {
+      ghosts.Joined.assign(ghosts.Values, ghosts.Values + size);
+    }
+    ghosts.Joined.resize(static_cast<std::size_t>(size));
+    auto value = ghosts.Joined.begin();
+    for (const auto isValid : valid)
+    {
+      *value++ |= isValid == 0 ? vtkDataSetAttributes::HIDDENPOINT : 0;
+    }
+    ghosts.Values = ghosts.Joined.data();
+  };
+  if (auto* chars = vtkArrayDownCast<vtkAOSDataArrayTemplate<char>>(mask))
+  {
+    hide(vtk::DataArrayValueRange<1>(chars));
+  }
+  else
+  {
+    hide(vtk::DataArrayValueRange<1>(mask));
+  }
+  return ghosts;
 }
 
 } // namespace deformvolume

@@ -31,7 +31,8 @@ constexpr const char* CutTetrahedraName = "CutTetrahedra";
 constexpr const char* CutDistanceName = "CutDistance";
 ///@}
 
-/// Name of the point array that marks the covered points of an output, as in vtkProbeFilter.
+/// Name of the point array that marks the covered points of an output, as in vtkProbeFilter. In an
+/// input it marks the points that have a value.
 constexpr const char* ValidPointMaskName = "vtkValidPointMask";
 
 /// Bit of the vtkGhostType of a cell, set together with HIDDENCELL if the cell is hidden only
@@ -72,9 +73,16 @@ CutValues FindCut(vtkImageData* volume);
 ByteArray* FindMask(vtkDataSetAttributes* attributes, const char* name, vtkIdType size,
   const std::string& what, const std::string& owner);
 
-/// The vtkGhostType of a volume's points, one byte each; null if there is none. Throws like
-/// FindMask().
-const unsigned char* FindPointGhosts(vtkImageData* volume);
+/// The vtkGhostType of the points of an image, one byte each. Points whose vtkValidPointMask is 0
+/// are hidden as well.
+struct PointGhosts
+{
+  const unsigned char* Values = nullptr; // null: no point is a ghost
+  std::vector<unsigned char> Joined;     // storage of Values, if both arrays are used
+};
+
+/// Finds the ghosts of an image. owner: words for messages. Throws like FindMask().
+PointGhosts FindPointGhosts(vtkImageData* image, const std::string& owner);
 
 } // namespace deformvolume
 

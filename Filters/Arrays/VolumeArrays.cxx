@@ -87,6 +87,7 @@ std::string GetLabel(vtkAbstractArray* array, int index)
 enum Mask
 {
   BlankedPoints,
+  ValidPoints,
   HiddenCells,
   ActiveCells,
   Distances,
@@ -106,6 +107,7 @@ std::array<vtkAbstractArray*, NumberOfMasks> FindMasks(vtkImageData* volume)
 {
   const char* ghostName = vtkDataSetAttributes::GhostArrayName();
   return { { volume->GetPointData()->GetAbstractArray(ghostName),
+    volume->GetPointData()->GetAbstractArray(ValidPointMaskName),
     volume->GetCellData()->GetAbstractArray(ghostName),
     volume->GetCellData()->GetAbstractArray(ActiveTetrahedraName),
     volume->GetPointData()->GetAbstractArray(BoundaryDistanceName),
@@ -277,14 +279,13 @@ void CopyRoles(
 VolumeMasks ReadMasks(vtkImageData* volume, const Stamp& last)
 {
   const char* ghostName = vtkDataSetAttributes::GhostArrayName();
-  const vtkIdType numberOfPoints = volume->GetNumberOfPoints();
   const vtkIdType numberOfCells = volume->GetNumberOfCells();
   VolumeMasks masks;
 
-  if (const auto ghosts =
-        FindMask(volume->GetPointData(), ghostName, numberOfPoints, "point", VOLUME))
+  masks.Ghosts = FindPointGhosts(volume, VOLUME);
+  if (masks.Ghosts.Values)
   {
-    masks.Blanked = ghosts->GetPointer(0);
+    masks.Blanked = masks.Ghosts.Values;
     masks.BlankedBits = vtkDataSetAttributes::DUPLICATEPOINT | vtkDataSetAttributes::HIDDENPOINT;
   }
 
@@ -314,7 +315,10 @@ VolumeMasks ReadMasks(vtkImageData* volume, const Stamp& last)
   masks.Cut = FindCut(volume);
   const std::array<vtkAbstractArray*, NumberOfMasks> arrays = FindMasks(volume);
   masks.WrittenDistances = FindWrittenMask(arrays, Distances, last);
-  masks.WrittenBlanked = FindWrittenMask(arrays, BlankedPoints, last);
+  if (!arrays[ValidPoints] && HasSameMask(arrays, ValidPoints, last))
+  {
+    masks.WrittenBlanked = FindWrittenMask(arrays, BlankedPoints, last);
+  }
   if (masks.Joined.empty() && !arrays[HiddenCells] && HasSameMask(arrays, HiddenCells, last))
   {
     masks.WrittenActive = FindWrittenMask(arrays, ActiveCells, last);

@@ -73,6 +73,7 @@ struct VolumeMasks
   /// One byte for each cell, with a bit for each of its tetrahedra; null if all are active.
   const unsigned char* Active = nullptr;
   std::vector<unsigned char> Joined; // storage of Active, if cells are hidden
+  PointGhosts Ghosts;                // storage of Blanked
   DistanceValues Distances;
   CutValues Cut;
 

@@ -15,6 +15,7 @@
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkPointData.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <array>
@@ -70,9 +71,8 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
   const int step = source.FieldIsInverse
     ? 1
     : GetStep(source.Volume.PointExtent, this->IndexToField, this->FieldDimensions);
-  vtkDataArray* ghosts = FindFieldGhosts(image);
+  std::vector<unsigned char> undefined = FindHiddenPoints(image);
   vtkSmartPointer<vtkDataArray> taken;
-  vtkSmartPointer<vtkDataArray> takenGhosts;
   if (step > 1)
   {
     // Take only the vectors at the voxels: those between them are not used.
@@ -89,10 +89,15 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
     }
     taken = TakeTuples(array, points, voxels, step);
     array = taken;
-    takenGhosts = ghosts ? TakeTuples(ghosts, points, voxels, step) : nullptr;
-    ghosts = takenGhosts;
+    if (!undefined.empty())
+    {
+      vtkNew<vtkUnsignedCharArray> all;
+      all->SetArray(undefined.data(), static_cast<vtkIdType>(undefined.size()), 1);
+      const auto some = TakeTuples(all, points, voxels, step);
+      const auto* values = static_cast<unsigned char*>(some->GetVoidPointer(0));
+      undefined = std::vector<unsigned char>(values, values + some->GetNumberOfTuples());
+    }
   }
-  std::vector<unsigned char> undefined = FindHiddenPoints(ghosts);
   if (undefined != this->UndefinedPoints || lastDimensions != this->FieldDimensions ||
     lastIndexToField != this->IndexToField)
   {

@@ -37,20 +37,14 @@ vtkDataArray* FindFieldVectors(vtkImageData* image, const DeformationSource& sou
   return FindVectors(image, source.Selector, source.Wanted, std::string("the ") + FIELD);
 }
 
-vtkDataArray* FindFieldGhosts(vtkImageData* image)
+std::vector<unsigned char> FindHiddenPoints(vtkImageData* image)
 {
-  return FindMask(image->GetPointData(), vtkDataSetAttributes::GhostArrayName(),
-    image->GetNumberOfPoints(), "point", FIELD);
-}
-
-std::vector<unsigned char> FindHiddenPoints(vtkDataArray* ghosts)
-{
+  const PointGhosts ghosts = FindPointGhosts(image, FIELD);
   std::vector<unsigned char> hidden;
   bool any = false;
-  for (vtkIdType i = 0; ghosts && i < ghosts->GetNumberOfTuples(); ++i)
+  for (vtkIdType i = 0; ghosts.Values && i < image->GetNumberOfPoints(); ++i)
   {
-    const auto kinds = static_cast<int>(ghosts->GetComponent(i, 0));
-    hidden.push_back((kinds & vtkDataSetAttributes::HIDDENPOINT) != 0 ? 1 : 0);
+    hidden.push_back((ghosts.Values[i] & vtkDataSetAttributes::HIDDENPOINT) != 0 ? 1 : 0);
     any = any || hidden.back() != 0;
   }
   return any ? hidden : std::vector<unsigned char>();

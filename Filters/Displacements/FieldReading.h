@@ -18,11 +18,9 @@ struct DeformationSource;
 /// vectors, or if its transform cannot be inverted.
 vtkDataArray* FindFieldVectors(vtkImageData* image, const DeformationSource& source);
 
-/// vtkGhostType of the points of a displacement field, or null. Throws like FindMask().
-vtkDataArray* FindFieldGhosts(vtkImageData* image);
-
-/// The hidden points, one byte each; empty if there are none. ghosts: may be null.
-std::vector<unsigned char> FindHiddenPoints(vtkDataArray* ghosts);
+/// The hidden points of a displacement field (FindPointGhosts()), one byte each; empty if there are
+/// none. Throws like FindMask().
+std::vector<unsigned char> FindHiddenPoints(vtkImageData* image);
 
 /// Reads the vectors of a field. Vectors of undefined points become zero. undefined: one byte for
 /// each point; empty: all points are defined. Throws an Error if a vector of a defined point is not

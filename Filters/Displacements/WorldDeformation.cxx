@@ -95,11 +95,10 @@ void WorldDeformation::ReadMesh(const DeformationSource& source)
 void WorldDeformation::ReadField(vtkImageData* image, const DeformationSource& source)
 {
   vtkDataArray* array = FindFieldVectors(image, source);
-  vtkDataArray* ghosts = FindFieldGhosts(image);
   const float* floats = FindFloats(array);
   const Stamp stamp{ { image, image->GetMTime() }, { array, array->GetMTime() },
     { floats, static_cast<vtkMTimeType>(array->GetNumberOfValues()) },
-    { ghosts, ghosts ? ghosts->GetMTime() : 0 } };
+    { image->GetPointData(), image->GetPointData()->GetMTime() } };
   if (this->Field && this->IsCurrent(stamp, source))
   {
     return;
@@ -107,7 +106,7 @@ void WorldDeformation::ReadField(vtkImageData* image, const DeformationSource& s
   this->LastStamp.clear();
   this->Field = true;
   this->Array = array;
-  this->Undefined = FindHiddenPoints(ghosts);
+  this->Undefined = FindHiddenPoints(image);
   this->Converted.clear();
   this->Converted.resize(floats ? 0 : static_cast<std::size_t>(array->GetNumberOfValues()));
   // All vectors are read even if they are not copied: those that are not finite are an error.

@@ -77,10 +77,10 @@ double FindIsovalue(vtkImageData* volume, vtkDataArray* array, double resolution
     count *= (size[axis] + factor[axis] - 1) / factor[axis];
   }
   std::vector<Block> blocks(count);
-  const unsigned char* ghosts = FindPointGhosts(volume);
-  if (!vtkArrayDispatch::Dispatch::Execute(array, SumBlocks{}, ghosts, size, factor, blocks))
+  const PointGhosts ghosts = FindPointGhosts(volume, "volume");
+  if (!vtkArrayDispatch::Dispatch::Execute(array, SumBlocks{}, ghosts.Values, size, factor, blocks))
   {
-    SumBlocks{}(array, ghosts, size, factor, blocks);
+    SumBlocks{}(array, ghosts.Values, size, factor, blocks);
   }
   blocks.erase(std::remove_if(
                  blocks.begin(), blocks.end(), [](const Block& block) { return block.Count == 0; }),

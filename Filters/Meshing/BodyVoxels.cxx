@@ -122,10 +122,10 @@ BodyVoxels FindBodyVoxels(vtkImageData* volume, vtkDataArray* array, const BodyC
   volume->GetSpacing(&body.Spacing.x);
   body.Spacing = glm::abs(body.Spacing);
   body.RowStarts.assign(body.NumberOfRows() + 1, 0);
-  const unsigned char* ghosts = FindPointGhosts(volume);
-  if (!vtkArrayDispatch::Dispatch::Execute(array, FindRuns{}, ghosts, criterion, body))
+  const PointGhosts ghosts = FindPointGhosts(volume, "volume");
+  if (!vtkArrayDispatch::Dispatch::Execute(array, FindRuns{}, ghosts.Values, criterion, body))
   {
-    FindRuns{}(array, ghosts, criterion, body);
+    FindRuns{}(array, ghosts.Values, criterion, body);
   }
   return body;
 }

@@ -81,8 +81,8 @@ class DeformVolume(VTKPythonAlgorithmBase):
     """Deforms a volume by a tetrahedral mesh or a displacement field.
 
     Ports:
-        0: vtkImageData, the volume. Ghost points, and tetrahedra that vtkCutVolume and vtkCarveVolume have switched
-            off, are left out.
+        0: vtkImageData, the volume. Ghost points, points whose vtkValidPointMask is 0, and tetrahedra that
+            vtkCutVolume and vtkCarveVolume have switched off, are left out.
         1, optional: vtkUnstructuredGrid with displacements of its points; or vtkImageData with vectors, a displacement
             field. Without it the output is the volume itself.
             SetInputArrayToProcess(0, 1, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, name) chooses the array of three
@@ -459,7 +459,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
         data = image.GetPointData()
         arrays = [data.GetArray(number) for number in range(data.GetNumberOfArrays())]
         # Arrays of ghosts and of edits are masks of the volume, and are not resampled.
-        masks = ("vtkGhostType", "BoundaryDistance", "CutDistance")
+        masks = ("vtkGhostType", "vtkValidPointMask", "BoundaryDistance", "CutDistance")
         arrays = [array for array in arrays if array is not None and array.GetName() not in masks]
         # numpy_support copies arrays of bits, so that the library could not write their output.
         arrays = [array for array in arrays if array.GetDataType() != VTK_BIT]
@@ -488,7 +488,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
 
         self._send("volume", (_stamp(image, *arrays, *edits), tuple(labels), background), send)
 
-    def _prepare_masks(self, shape, ghosts, boundary, cut_distances, active, cut, cell_ghosts):
+    def _prepare_masks(self, shape, ghosts, valid, boundary, cut_distances, active, cut, cell_ghosts):
         cells = tuple(number - 1 for number in shape)
 
         def view(array, over):
@@ -502,8 +502,12 @@ class DeformVolume(VTKPythonAlgorithmBase):
             tetrahedra = numpy.where(hidden, 0, tetrahedra)
         else:
             tetrahedra = view(active, cells)
+        blanked = None if ghosts is None else (_view(ghosts, shape) & _NO_SOURCE) != 0
+        if valid is not None:
+            invalid = _view(valid, shape) == 0
+            blanked = invalid if blanked is None else blanked | invalid
         self._deformer.set_masks(
-            blanked=None if ghosts is None else (_view(ghosts, shape) & _NO_SOURCE) != 0,
+            blanked=blanked,
             active=tetrahedra,
             boundary=view(boundary, shape),
             cut=view(cut, cells),
@@ -557,10 +561,12 @@ class DeformVolume(VTKPythonAlgorithmBase):
             )
         array = self._find_vectors(data)
         ghosts = data.GetPointData().GetArray("vtkGhostType")
+        valid = data.GetPointData().GetArray("vtkValidPointMask")
         inverse = self._settings["FieldIsInverse"]
 
         def send():
-            if ghosts is not None and (vtk_to_numpy(ghosts) & vtkDataSetAttributes.HIDDENPOINT).any():
+            hidden = ghosts is not None and (vtk_to_numpy(ghosts) & vtkDataSetAttributes.HIDDENPOINT).any()
+            if hidden or (valid is not None and not vtk_to_numpy(valid).all()):
                 raise ValueError(
                     "The displacement field on port 1 has hidden points. Only the C++ class vtkDeformVolumeFilter "
                     "supports them."
@@ -570,7 +576,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
                 vectors = vectors.astype(numpy.float64)
             self._deformer.set_field_grid(_grid_of(data), numpy.ascontiguousarray(vectors), inverse)
 
-        self._send("deformation", (_stamp(data, array, ghosts), inverse), send)
+        self._send("deformation", (_stamp(data, array, ghosts, valid), inverse), send)
 
     def _prepare_mesh(self, data, rest):
         mesh = data if rest is None else rest

@@ -3,8 +3,11 @@
 // blanked points.
 #include "FilterTesting.h"
 
+#include <vtkArrayChanges.h>
 #include <vtkCellData.h>
+#include <vtkCharArray.h>
 #include <vtkDataSetAttributes.h>
+#include <vtkIntArray.h>
 #include <vtkUniformGrid.h>
 #include <vtkUnsignedCharArray.h>
 
@@ -177,6 +180,105 @@ void TestBlankingByUniformGrid()
   VERIFY(!deformed.IsCovered(volume->ComputePointId(inside)));
 }
 
+template <typename Array>
+vtkSmartPointer<Array> MakeValidMask(vtkIdType size)
+{
+  auto mask = vtkSmartPointer<Array>::New();
+  mask->SetName("vtkValidPointMask");
+  mask->SetNumberOfValues(size);
+  mask->Fill(1);
+  return mask;
+}
+
+// Points whose vtkValidPointMask is 0 are hidden, with and without other hidden points.
+template <typename Array>
+void TestValidPoints()
+{
+  const auto volume = MakeVolume(Box);
+  const auto mesh = MakeStillMesh(volume);
+  const auto valid = MakeValidMask<Array>(volume->GetNumberOfPoints());
+  volume->GetPointData()->AddArray(valid);
+  Deformed deformed(volume, mesh);
+  const vtkIdType all = CountCovered(deformed);
+  VERIFY_EQUAL(all, volume->GetNumberOfPoints());
+  int inside[3] = { 3, 4, 7 };
+  int other[3] = { 5, 2, 5 };
+  valid->SetValue(volume->ComputePointId(inside), 0);
+  valid->Modified();
+  VERIFY_EQUAL(CountCovered(deformed), all - 1);
+  VERIFY(!deformed.IsCovered(volume->ComputePointId(inside)));
+  auto ghosts = MakeBytes(vtkDataSetAttributes::GhostArrayName(), volume->GetNumberOfPoints(), 0);
+  ghosts->SetValue(volume->ComputePointId(other), vtkDataSetAttributes::HIDDENPOINT);
+  volume->GetPointData()->AddArray(ghosts);
+  VERIFY_EQUAL(CountCovered(deformed), all - 2);
+  valid->Fill(1);
+  valid->Modified();
+  VERIFY_EQUAL(CountCovered(deformed), all - 1);
+  VERIFY(deformed.IsCovered(volume->ComputePointId(inside)));
+  // A log of the ghosts does not keep points hidden that have become valid.
+  vtkNew<vtkArrayChanges> changes;
+  changes->SetArray(ghosts);
+  CountCovered(deformed);
+  valid->SetValue(volume->ComputePointId(inside), 0);
+  valid->Modified();
+  VERIFY_EQUAL(CountCovered(deformed), all - 2);
+  valid->Fill(1);
+  valid->Modified();
+  ghosts->SetValue(volume->ComputePointId(other), 0);
+  changes->AddTuples(volume->ComputePointId(other), volume->ComputePointId(other));
+  VERIFY_EQUAL(CountCovered(deformed), all);
+}
+
+// The second filter does not take the background of the first one for values of the volume.
+void TestChain()
+{
+  const auto volume = MakeImage({ { 0, 19, 0, 19, 0, 19 } });
+  AddScalars<short>(volume, "value", [](const glm::dvec3&) { return 1000.0; });
+  const auto mesh = MakeMesh(volume, 3, -4.25);
+  SetDisplacements(mesh, Shift(1.5, 0.0, 0.0));
+  Deformed first(volume, mesh);
+  first.Filter->SetBackgroundValue(-1000.0);
+  first.Filter->SetOutputBoundsModeToVolumeBounds();
+  Deformed second;
+  second.Filter->SetInputConnection(first.Filter->GetOutputPort());
+  second.Filter->SetDeformationData(mesh);
+  second.Filter->SetBackgroundValue(-1000.0);
+  second.Update();
+  VERIFY(second.Filter->GetNumberOfCoveredVoxels() > 300);
+  VERIFY(second.Filter->GetNumberOfCoveredVoxels() < first.Filter->GetNumberOfCoveredVoxels());
+  int wrong = 0;
+  for (vtkIdType id = 0; id < second.Filter->GetOutput()->GetNumberOfPoints(); ++id)
+  {
+    wrong += second.GetValues()->GetComponent(id, 0) != (second.IsCovered(id) ? 1000.0 : -1000.0);
+  }
+  VERIFY_EQUAL(wrong, 0);
+}
+
+// Vectors of a field where the mask is 0 are undefined, as those of hidden points are.
+void TestValidVectors()
+{
+  const auto volume = MakeVolume(Box);
+  for (const bool inverse : { false, true })
+  {
+    const auto field = MakeImage(Box);
+    SetDisplacements(field, Shift(0.5, 0.0, 0.0));
+    Deformed deformed(volume, field);
+    deformed.Filter->SetFieldIsInverse(inverse);
+    const vtkIdType all = CountCovered(deformed);
+    const auto valid = MakeValidMask<vtkCharArray>(field->GetNumberOfPoints());
+    int inside[3] = { 3, 4, 7 };
+    valid->SetValue(field->ComputePointId(inside), 0);
+    field->GetPointData()->AddArray(valid);
+    const vtkIdType less = CountCovered(deformed);
+    VERIFY(less < all);
+    auto ghosts = MakeBytes(vtkDataSetAttributes::GhostArrayName(), field->GetNumberOfPoints(), 0);
+    ghosts->SetValue(field->ComputePointId(inside), vtkDataSetAttributes::HIDDENPOINT);
+    field->GetPointData()->RemoveArray("vtkValidPointMask");
+    field->GetPointData()->AddArray(ghosts);
+    VERIFY_EQUAL(CountCovered(deformed), less);
+  }
+}
+
 } // namespace
 
 int TestDeformMasks(int, char*[])
@@ -185,5 +287,9 @@ int TestDeformMasks(int, char*[])
   TestHiddenCells();
   TestHiddenAndDuplicatePoints();
   TestBlankingByUniformGrid();
+  TestValidPoints<vtkCharArray>();
+  TestValidPoints<vtkIntArray>();
+  TestChain();
+  TestValidVectors();
   return GetExitCode();
 }
