@@ -339,7 +339,12 @@ MassSpringReport MassSpringModel::Advance(const MassSpringRequest& request)
         report.TimeStep = request.Duration / steps;
         MassSpringStep step{};
         step.TimeStep = static_cast<float>(report.TimeStep);
+        // The exact solution of dv/dt = a - damping * v for a constant acceleration a, so that the
+        // velocity tends to a / damping whatever the time step is.
         step.Retained = static_cast<float>(std::exp(-request.Damping * report.TimeStep));
+        step.Impulse = static_cast<float>(request.Damping > 0.0
+            ? -std::expm1(-request.Damping * report.TimeStep) / request.Damping
+            : report.TimeStep);
         for (int axis = 0; axis < 3; ++axis)
         {
           step.Gravity[axis] = static_cast<float>(request.Loads.Gravity[axis]);

@@ -50,7 +50,7 @@ __kernel void MoveNodes(__global const uint* begins, __global const uint* forceI
   }
   const float3 gravity = (float3)(step.Gravity[0], step.Gravity[1], step.Gravity[2]);
   const float3 acceleration = force * mobility + gravity;
-  const float3 velocity = vload3(node, velocities) * step.Retained + acceleration * step.TimeStep;
+  const float3 velocity = vload3(node, velocities) * step.Retained + acceleration * step.Impulse;
   const float3 displacement = vload3(node, displacements) + velocity * step.TimeStep;
   vstore3(velocity, node, velocities);
   vstore3(displacement, node, displacements);

@@ -8,6 +8,7 @@ typedef struct
 {
   float TimeStep;
   float Retained;   // the factor by which damping reduces the velocity in a step
+  float Impulse;    // velocity that an acceleration of 1 adds in a step, which damping reduces too
   float Gravity[3]; // m/s^2
   float Limit;      // larger displacements mean that the simulation diverged
   int NumberOfNodes;

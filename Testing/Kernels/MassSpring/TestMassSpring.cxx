@@ -316,6 +316,21 @@ TEST(MassSpring, Damping)
   EXPECT_NEAR(model.GetVelocities().front(), 0.1 * std::exp(-damping * duration), 1e-5);
 }
 
+// A free body tends to the speed gravity / damping, also if the damping is strong for a time step.
+TEST(MassSpring, TerminalSpeed)
+{
+  const ElasticBody body = MakeSmallBody();
+  MassSpringModel model;
+  model.SetBody(body);
+  for (const double damping : { 100.0, 1000.0, 1e5 })
+  {
+    MassSpringRequest request = For(20.0 / damping, 0.0, damping);
+    request.Loads.Gravity = glm::dvec3(0.0, 0.0, -9.81);
+    model.Advance(request);
+    EXPECT_NEAR(model.GetVelocities()[2], -9.81 / damping, 1e-4 * 9.81 / damping);
+  }
+}
+
 TEST(MassSpring, MomentumOfAFreeBody)
 {
   const ElasticBody body = MakeSmallBody();
