@@ -161,7 +161,7 @@ const char* vtkElasticDeformation::GetMaterialPresetSource(int preset)
 bool vtkElasticDeformation::GetMaterialPresetValues(int preset, double values[3])
 {
   const auto* found = deformvolume::FindMaterialPreset(preset);
-  if (!found)
+  if (!found || !values)
   {
     return false;
   }
@@ -265,8 +265,8 @@ void vtkElasticDeformation::Execute(
   if (session.Update(simulation, grid, settings, [&] { return progress.Report(0.0); }))
   {
     vtkWarningMacro(
-      "The simulation starts again from rest, because the points or cells of the rest mesh have "
-      "changed, or because a failed update lost the state of the body.");
+      "The simulation starts again from rest, because the points, the cells or the unit of length "
+      "of the rest mesh have changed, or because a failed update lost the state of the body.");
   }
   this->CheckSize(session.GetMesh().Size);
   const bool wasToReset = internals.IsToReset;

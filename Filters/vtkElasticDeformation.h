@@ -60,8 +60,8 @@
  * a time. The output has the time range from 0 to EndTime, unless the inputs have times.
  *
  * @par Changes:
- * If the points or cells of the rest mesh change, the simulation restarts from rest, with a
- * warning. If materials, fixed or sliding nodes, forces or prescribed displacements change, it
+ * If the points or cells of the rest mesh or LengthUnit change, the simulation restarts from rest,
+ * with a warning. If materials, fixed or sliding nodes, forces or prescribed displacements change, it
  * continues.
  *
  * @par Abort:
@@ -278,8 +278,9 @@ public:
   ///@{
   /**
    * Set/Get the end of the time range of the output, in s, used if the inputs have no times.
-   * Consumers then request a time in each update. Default: 0, no time range, with which
-   * UpdateTimeStep() has an effect only once: a warning says so. In ParaView the default is 1.
+   * Consumers then request a time in each update. Default: 0, no time range, with which VTK ignores
+   * UpdateTimeStep() after the first update. If the first update requests a time, a warning says
+   * so. In ParaView the default is 1.
    */
   vtkSetClampMacro(EndTime, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(EndTime, double);
@@ -299,7 +300,8 @@ public:
   ///@}
 
   /**
-   * Reset the body to rest, and its time to 0, before the next execution.
+   * Reset the body to rest, and its time to 0, before the next execution. VTK keeps the last
+   * requested time: after UpdateTimeStep(t), Update() advances to t again.
    */
   void Reset();
 

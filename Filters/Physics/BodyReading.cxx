@@ -346,6 +346,17 @@ void Hold(const glm::dvec3& position, double radius, const glm::dvec3& displacem
   }
   if (radius == 0.0)
   {
+    IndexBounds box;
+    for (const glm::dvec3& point : body.Points)
+    {
+      box.Add(point);
+    }
+    // A handle that far away is in other units or in another world.
+    if (least > glm::distance(box.Min, box.Max))
+    {
+      throw Error("The rest position of a handle is farther from the body than the body is long. "
+                  "Give it in the coordinates and the unit of length of the mesh at rest.");
+    }
     add(nearest);
   }
   if (held.size() == before)
@@ -368,6 +379,9 @@ Stamp GetBodyStamp(vtkUnstructuredGrid* grid)
   { stamp.emplace_back(object, object ? object->GetMTime() : 0); };
   add(grid->GetPoints());
   add(grid->GetCells());
+  // The modification time of cells does not change if their arrays are modified.
+  add(grid->GetCells() ? grid->GetCells()->GetConnectivityArray() : nullptr);
+  add(grid->GetCells() ? grid->GetCells()->GetOffsetsArray() : nullptr);
   add(GetCellTypes(grid));
   for (const char* name : { YoungModulusName, PoissonRatioName, DensityName })
   {

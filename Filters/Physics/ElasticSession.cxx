@@ -59,9 +59,15 @@ void AppendCopies(std::vector<Value>& values, const std::vector<std::int32_t>& o
 
 Stamp GetMeshStamp(vtkUnstructuredGrid* grid)
 {
-  vtkDataArray* types = GetCellTypes(grid);
-  return { { grid->GetPoints(), grid->GetPoints()->GetMTime() },
-    { grid->GetCells(), grid->GetCells()->GetMTime() }, { types, types ? types->GetMTime() : 0 } };
+  Stamp stamp{ { grid->GetPoints(), grid->GetPoints()->GetMTime() },
+    { grid->GetCells(), grid->GetCells()->GetMTime() } };
+  // The modification time of cells does not change if their arrays are modified.
+  for (vtkDataArray* array : { GetCellTypes(grid), grid->GetCells()->GetConnectivityArray(),
+         grid->GetCells()->GetOffsetsArray() })
+  {
+    stamp.emplace_back(array, array ? array->GetMTime() : 0);
+  }
+  return stamp;
 }
 
 Stamp GetDataStamp(vtkUnstructuredGrid* grid)

@@ -139,6 +139,10 @@ void TestErrorsOfSubclasses()
   springs.Object->SetHandlesData(
     MakeHandles({ { glm::dvec3(0.0, 0.0, 0.03), glm::dvec3(1e30, 0.0, 0.0) } }));
   VERIFY_CONTAINS(springs.TryUpdate(), "diverged");
+  // A handle in other units.
+  springs.Object->SetHandlesData(
+    MakeHandles({ { glm::dvec3(0.0, 0.0, 30.0), glm::dvec3(0.0, 0.0, 31.0) } }));
+  VERIFY_CONTAINS(springs.TryUpdate(), "farther from the body than the body is long");
   springs.Object->SetHandlesData(nullptr);
   VERIFY_EQUAL(springs.TryUpdate(), std::string());
   VERIFY_EQUAL(springs.Copy()->GetRange(-1)[1], 0.0);
@@ -368,6 +372,27 @@ void TestContinuedSimulation()
   }();
   VERIFY_CONTAINS(warning, "starts again from rest");
   VERIFY_EQUAL(simulated.Copy()->GetRange(-1)[1], 0.0);
+  // Cells that are written in place are another mesh, too.
+  VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+  vtkNew<vtkIdList> nodes;
+  other->GetCellPoints(0, nodes);
+  const vtkIdType copy = other->GetPoints()->InsertNextPoint(other->GetPoint(nodes->GetId(0)));
+  for (int i = 0; i < other->GetPointData()->GetNumberOfArrays(); ++i)
+  {
+    other->GetPointData()->GetArray(i)->InsertNextTuple(
+      nodes->GetId(0), other->GetPointData()->GetArray(i));
+  }
+  other->GetCells()->GetConnectivityArray()->SetComponent(0, 0, static_cast<double>(copy));
+  other->GetCells()->GetConnectivityArray()->Modified();
+  other->Modified();
+  simulated.Object->Update();
+  VERIFY_CONTAINS(std::string(simulated.Observer->GetWarningMessage()), "starts again from rest");
+  simulated.Observer->Clear();
+  VERIFY_EQUAL(simulated.Object->GetOutput()->GetNumberOfPoints(),
+    simulated.Object->GetOutput()->GetPointData()->GetVectors()->GetNumberOfTuples());
+  simulated.Object->SetInputData(bar);
+  simulated.Object->Update();
+  simulated.Observer->Clear();
   VERIFY_CONTAINS(
     simulated.Object->GetSummary(), "Nodes: " + std::to_string(NodesOfBar<Filter>) + "\n");
 }
