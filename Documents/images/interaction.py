@@ -9,7 +9,7 @@ import tempfile
 from PIL import Image
 
 here = pathlib.Path(__file__).parent
-sys.path.insert(0, str(here / ".." / ".." / "Testing" / "Examples"))
+sys.path.insert(0, str(here / ".." / ".." / "Testing" / "Examples" / "Support"))
 from WindowEvents import WindowEvents  # noqa: E402
 
 SIZE = (800, 600)

@@ -19,6 +19,9 @@
 #include <vtkWindowToImageFilter.h>
 #include <vtksys/SystemTools.hxx>
 
+#include <fstream>
+#include <string>
+
 namespace
 {
 const char* const RecordPath = "deform-interactive.log";
@@ -197,6 +200,12 @@ void Viewer::Replay(const std::string& path)
   if (!vtksys::SystemTools::FileExists(path, true))
   {
     throw Failure("cannot replay " + path + ": there is no such file");
+  }
+  std::string line;
+  std::getline(std::ifstream(path), line);
+  if (line.rfind("# StreamVersion", 0) != 0)
+  {
+    throw Failure("cannot replay " + path + ": it is not a recording of --record or of the key j");
   }
   if (this->IsReplaying)
   {

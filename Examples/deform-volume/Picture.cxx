@@ -260,7 +260,8 @@ void CheckDisplay()
     throw Failure("cannot draw a picture: there is no X display. Set DISPLAY, or start the program "
                   "with xvfb-run -a -s \"-noreset -screen 0 1400x1024x24\" in front");
   }
-  XCloseDisplay(display);
+  // The connection stays open: when its last client leaves, an X server starts again, and refuses
+  // the connection of the window meanwhile.
 #endif
 }
 

@@ -16,8 +16,11 @@ std::string DescribeLoss(
     const auto samples = static_cast<double>(hidden);
     std::ostringstream share;
     share << std::setprecision(2) << 100.0 * samples / (samples + static_cast<double>(covered));
-    text = "The deformation folds the volume over. The sums of density arrays lack the " +
-      share.str() + " % of the deformed volume that other parts of it hide.";
+    text = "The deformation folds the volume over. The sums of density arrays lack the tissue that "
+           "other parts hide, " +
+      share.str() +
+      " % of the deformed volume. This can be a larger share of a sum, since densities are high "
+      "where the volume is compressed.";
   }
   if (lost > 0)
   {

@@ -234,6 +234,9 @@ assert "does not state whether its world coordinates are lps or ras" in errors, 
 _, errors = call(program, path("volume.nii.gz"), "--field", path("ras.nii"), "--field-space", "lps",
                  "-o", path("out.vti"), "--quiet")
 assert "ras.nii states that it is ras" in errors, errors
+_, errors = call(program, path("volume.nii.gz"), "--field", path("lps.nii.gz"), "--field-space", "ras",
+                 "-o", path("out.vti"), "--quiet")
+assert "By the intent 1007 of" in errors and "its vectors are lps" in errors, errors
 write_nrrd(path("wrong.nrrd"), single, in_lps, encoding="bzip2")
 fails("bzip2", "wrong.nrrd")
 write_nrrd(path("wrong.nrrd"), single, in_lps, encoding="gzip")

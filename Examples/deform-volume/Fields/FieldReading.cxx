@@ -259,6 +259,14 @@ vtkSmartPointer<vtkImageData> ReadField(const std::string& path, const Volume& v
     if (!IsRightAnterior(field.NIfTIHeader, what))
     {
       FlipWorldAxes(matrix);
+      if (!options.Space.empty())
+      {
+        messages.DisplayWarningText(
+          ("By the intent 1007 of " + path +
+            " its vectors are lps, whatever --field-space is. If they are ras, give the file the "
+            "intent 1006.")
+            .c_str());
+      }
     }
   }
   else if (field.MeasurementFrame)

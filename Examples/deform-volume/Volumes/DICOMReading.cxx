@@ -77,6 +77,7 @@ private:
   std::string Folder;
   std::vector<Slice> Slices;
   std::vector<std::string> WithoutImage;
+  std::vector<std::string> Doses;
   std::vector<std::string> Others; // files in other formats
 };
 
@@ -99,6 +100,13 @@ Series::Series(const std::string& folder, Messages& messages)
     {
       this->AddFile(name);
     }
+  }
+  if (this->Slices.empty() && !this->Doses.empty())
+  {
+    throw Failure("cannot read " + folder + ": " + this->Doses.front() +
+      " is an RT Dose, which this program does not read. Write the dose into a NIfTI or NRRD file: "
+      "SimpleITK reads the grid of a dose with all planes in one file, and its values have to be "
+      "multiplied by DoseGridScaling (3004,000E). dcm2niix ignores that factor");
   }
   if (this->Slices.empty())
   {
@@ -144,8 +152,12 @@ void Series::AddFile(const std::string& name)
   slice.Size[0] = file.GetShort(0x00280011);
   slice.Size[1] = file.GetShort(0x00280010);
   double frames = 1.0;
-  const bool isDose = file.GetText(0x00080016) == "1.2.840.10008.5.1.4.1.1.481.2";
-  if ((file.GetNumbers(0x00280008, 1, &frames) && frames != 1.0) || isDose)
+  if (file.GetText(0x00080016) == "1.2.840.10008.5.1.4.1.1.481.2")
+  {
+    this->Doses.push_back(name);
+    return;
+  }
+  if (file.GetNumbers(0x00280008, 1, &frames) && frames != 1.0)
   {
     this->Fail(name + " holds several frames, but each slice must be in a file of its own");
   }
@@ -199,13 +211,17 @@ void Series::WarnOfLeftOut(Messages& messages) const
       names.push_back(name);
     }
   }
-  if (!names.empty())
+  const auto warn = [&](const char* what, const std::vector<std::string>& which)
   {
-    messages.DisplayWarningText(("Files of " + this->Folder +
-      " that hold no DICOM image are left out: " + std::to_string(names.size()) + ", such as " +
-      names.front() + ".")
-                                  .c_str());
-  }
+    if (!which.empty())
+    {
+      messages.DisplayWarningText(("Files of " + this->Folder + " that hold " + what +
+        " are left out: " + std::to_string(which.size()) + ", such as " + which.front() + ".")
+                                    .c_str());
+    }
+  };
+  warn("no DICOM image", names);
+  warn("an RT Dose", this->Doses);
 }
 
 void Series::CheckSeries() const

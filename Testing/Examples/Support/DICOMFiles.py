@@ -64,7 +64,7 @@ def read(name):
     decoder for them."""
     slices = [pydicom.dcmread(path(name, file)) for file in os.listdir(path(name)) if "dcm" in file
               or "IM" in file]
-    slices = [data for data in slices if "PixelData" in data]
+    slices = [data for data in slices if "PixelData" in data and data.SOPClassUID != uid.RTDoseStorage]
     row, column = numpy.array(slices[0].ImageOrientationPatient, float).reshape(2, 3)
     positions = [numpy.array(data.ImagePositionPatient, float) for data in slices]
     order = numpy.argsort(positions @ numpy.cross(row, column))
@@ -85,7 +85,8 @@ def read(name):
 
 def read_itk(name):
     reader = SimpleITK.ImageSeriesReader()
-    reader.SetFileNames(reader.GetGDCMSeriesFileNames(path(name), reader.GetGDCMSeriesIDs(path(name))[0]))
+    series = [reader.GetGDCMSeriesFileNames(path(name), one) for one in reader.GetGDCMSeriesIDs(path(name))]
+    reader.SetFileNames(max(series, key=len))
     image = reader.Execute()
     place = numpy.eye(4)
     place[:3, :3] = numpy.array(image.GetDirection()).reshape(3, 3) * image.GetSpacing()
@@ -155,6 +156,9 @@ shutil.copy(os.path.join(package, "dicomdirtests", "DICOMDIR"), path("other", "D
 with open(path("other", "LICENSE"), "w", encoding="utf-8") as file:
     file.write("text")
 add("other", "hold no DICOM image are left out: 1, such as report.dcm")
+write("planned")
+shutil.copy(os.path.join(package, "rtdose.dcm"), path("planned", "dose.dcm"))
+add("planned", "hold an RT Dose are left out: 1, such as dose.dcm")
 write("zero")
 with open(path("zero", "notes.dcm"), "w", encoding="utf-8") as file:
     file.write("")
@@ -255,7 +259,7 @@ add_wrong("sheared-rows", "sheared by 0.57", change=set_fields(
     ImageOrientationPatient=[1, 0, 0, 0.01, 1, 0]))
 add_wrong("one", "it has one slice, 000.dcm", count=1)
 # An enhanced image, a dose, a file that is compressed as a whole, and a truncated file.
-for name, words in (("liver_1frame", "no position"), ("rtdose_1frame", "several frames"),
+for name, words in (("liver_1frame", "no position"), ("rtdose_1frame", "is an RT Dose"),
                     ("image_dfl", "deflated"), ("MR_truncated", "it is not complete")):
     os.makedirs(path(name))
     shutil.copy(os.path.join(package, f"{name}.dcm"), path(name))
