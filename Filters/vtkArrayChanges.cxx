@@ -113,6 +113,11 @@ bool vtkArrayChanges::GetTuplesSince(
 //------------------------------------------------------------------------------
 bool vtkArrayChanges::GetTuplesSince(vtkMTimeType time, vtkIdTypeArray* ranges)
 {
+  if (!ranges)
+  {
+    vtkErrorMacro("The second argument of GetTuplesSince() is null. Give a vtkIdTypeArray.");
+    return false;
+  }
   std::vector<std::array<std::size_t, 2>> found;
   const bool isKnown = this->GetTuplesSince(time, found);
   ranges->SetNumberOfComponents(2);

@@ -15,6 +15,7 @@
 #include "vtkRenderer.h"
 #include "vtkTextActor.h"
 #include "vtkTextProperty.h"
+#include "vtkTextRenderer.h"
 #include "vtkUnsignedCharArray.h"
 
 namespace
@@ -45,7 +46,8 @@ bool SetText(vtkTextActor* actor, const std::string& text)
   const char* former = actor->GetInput();
   const bool isNew = text != (former ? former : "");
   actor->SetInput(text.c_str());
-  actor->SetVisibility(text.empty() ? 0 : 1);
+  // Without VTK's module RenderingFreeType, drawing a text would end the program.
+  actor->SetVisibility(text.empty() || !vtkTextRenderer::GetInstance() ? 0 : 1);
   return isNew;
 }
 

@@ -282,6 +282,11 @@ void vtkDeformVolumeSession::ChangeUndoMemory(double bytes)
 
 void vtkDeformVolumeSession::SetMovingSamplingFactor(int factor)
 {
+  if (factor != 1 && factor != 2 && factor != 4)
+  {
+    this->Report("MovingSamplingFactor is " + std::to_string(factor) + ". Set 1, 2 or 4.");
+    return;
+  }
   const std::lock_guard<std::mutex> lock(this->Internals->QueueMutex);
   if (factor != this->Internals->Sampling.Factor)
   {
@@ -433,6 +438,11 @@ bool vtkDeformVolumeSession::Probe(double x, double y, double z)
 
 void vtkDeformVolumeSession::GetHandles(vtkPolyData* handles)
 {
+  if (!handles)
+  {
+    this->Report("The argument of GetHandles() is null. Give a vtkPolyData to write to.");
+    return;
+  }
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
   vtkNew<vtkIntArray> numbers;

@@ -114,7 +114,11 @@ public:
   ///@{
   /**
    * Grab the tissue at a position, move the handle, and end the grab. BeginGrab() returns the
-   * number of the handle, or -1 after an error. Several handles may be grabbed at the same time.
+   * number of the handle, or -1 if there is no volume or a number is not finite; other errors, such
+   * as a position outside the tissue, are reported by the next update. MASS_SPRING and
+   * FINITE_ELEMENTS hold the nodes within the radius of ChangeHandleRadius() or, if there is none,
+   * the nearest node: the tissue at the position itself follows only in part if no node is near
+   * it. With the model NONE a grab has no effect. Several handles may be grabbed at the same time.
    * EndGrab() removes the handle. HoldGrab() ends the grab and keeps the handle at its position;
    * Release() removes such a handle.
    */
@@ -194,7 +198,7 @@ public:
   ///@{
   /**
    * Set/Get the SamplingFactor of vtkDeformVolumeFilter while the body moves: 1, 2 or 4. Other
-   * values are errors. At rest, the output has full resolution. Default 1.
+   * values are errors and change nothing. At rest, the output has full resolution. Default 1.
    */
   void SetMovingSamplingFactor(int factor);
   int GetMovingSamplingFactor();
@@ -261,7 +265,9 @@ public:
   /**
    * Write the record of all events to a file, or replay the record of a file (ProgressEvent reports
    * the progress). SaveSession() processes pending events first; LoadSession() discards them. Both
-   * return false after an error, which does not change the session or an existing file.
+   * return false after an error, which does not change the session or an existing file. The
+   * functions that return the state of the last update, such as GetModel(), GetHandles() and
+   * TakeOutput(), know the loaded session after the next Update() or step of the thread.
    */
   bool SaveSession(const std::string& fileName);
   bool LoadSession(const std::string& fileName);
@@ -269,8 +275,8 @@ public:
 
   ///@{
   /**
-   * Write the deformed volume at full resolution (.vti), or the deformed mesh of the model (.vtu).
-   * Both return false after an error.
+   * Write the deformed volume at full resolution, or the deformed mesh of the model. The file name
+   * must end in .vti or .vtu, respectively. Both return false after an error.
    */
   bool SaveVolume(const std::string& fileName);
   bool SaveMesh(const std::string& fileName);

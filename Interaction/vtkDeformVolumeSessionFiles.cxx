@@ -13,6 +13,7 @@
 #include "vtkUnstructuredGrid.h"
 #include "vtkXMLImageDataWriter.h"
 #include "vtkXMLUnstructuredGridWriter.h"
+#include "vtksys/SystemTools.hxx"
 
 #include <algorithm>
 #include <exception>
@@ -130,6 +131,13 @@ bool vtkDeformVolumeSession::Save(const std::string& fileName, bool isMesh)
 {
   if (!this->CheckInputs())
   {
+    return false;
+  }
+  const char* const suffix = isMesh ? ".vtu" : ".vti";
+  if (vtksys::SystemTools::LowerCase(
+        vtksys::SystemTools::GetFilenameLastExtension(fileName)) != suffix)
+  {
+    this->Report("Cannot write " + fileName + ": the name must end in " + suffix + ".");
     return false;
   }
   const vtkInternals::Access access(*this->Internals);

@@ -70,12 +70,6 @@ bool vtkDeformVolumeSession::vtkInternals::RunOnce()
     this->Make(std::move(event), errors);
   }
   this->Make({ SessionEvent::STEP, {} }, errors);
-  if (sampling.Factor != 1 && sampling.Factor != 2 && sampling.Factor != 4)
-  {
-    errors.emplace_back(
-      "MovingSamplingFactor is " + std::to_string(sampling.Factor) + ". Set 1, 2 or 4.");
-    sampling.Factor = 1;
-  }
   sampling.Factor = this->IsMoving ? sampling.Factor : 1;
   state.SimulationTime = GetSeconds() - begin;
 

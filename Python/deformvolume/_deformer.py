@@ -389,7 +389,11 @@ class Deformer:
         elif isinstance(deformation, Field):
             self._set_field(deformation)
         else:
-            raise TypeError(f"The deformation is a {type(deformation).__name__}. Give a Mesh or a Field.")
+            kind = type(deformation)
+            raise TypeError(
+                f"The deformation is a {kind.__module__}.{kind.__qualname__}. Give a Mesh or a Field of this package, "
+                "made from arrays."
+            )
 
     def _set_mesh(self, mesh: Mesh) -> None:
         points = _arrays.vectors(mesh.points, None, "The array of points")
@@ -563,7 +567,8 @@ class Deformer:
         }
         with self._lock:
             grid = self.find_output_grid()
-            shape = tuple(grid.extent[2 * axis + 1] - grid.extent[2 * axis] + 1 for axis in range(3))
+            # If the extent is empty, the library says why.
+            shape = tuple(max(0, grid.extent[2 * axis + 1] - grid.extent[2 * axis] + 1) for axis in range(3))
             outputs = [
                 numpy.empty(shape[::-1] + array.shape[3:], array.dtype) for array in self._arrays
             ]

@@ -174,10 +174,16 @@ void TestMisuse(vtkImageData* volume)
   one.ExpectError("The handle radius is -1");
   one.Object->SetMovingSamplingFactor(3);
   one.ExpectError("MovingSamplingFactor is 3");
-  one.Object->SetMovingSamplingFactor(1);
   VERIFY_EQUAL(one.Object->GetNumberOfActions(), vtkIdType(0));
-  VERIFY(!one.Object->SaveMesh("nothing"));
+  VERIFY_EQUAL(one.Object->GetMovingSamplingFactor(), 1);
+  VERIFY(!one.Object->SaveMesh("nothing.vtu"));
   VERIFY_CONTAINS(one.TakeError(), "no mesh");
+  VERIFY(!one.Object->SaveMesh("nothing"));
+  VERIFY_CONTAINS(one.TakeError(), "must end in .vtu");
+  VERIFY(!one.Object->SaveVolume("nothing.nii"));
+  VERIFY_CONTAINS(one.TakeError(), "must end in .vti");
+  one.Object->GetHandles(nullptr);
+  VERIFY_CONTAINS(one.TakeError(), "GetHandles() is null");
   one.Object->Undo();
   one.Object->Redo();
   one.Finish();
