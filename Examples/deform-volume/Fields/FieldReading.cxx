@@ -261,11 +261,10 @@ vtkSmartPointer<vtkImageData> ReadField(const std::string& path, const Volume& v
       FlipWorldAxes(matrix);
       if (!options.Space.empty())
       {
-        messages.DisplayWarningText(
-          ("By the intent 1007 of " + path +
-            " its vectors are lps, whatever --field-space is. If they are ras, give the file the "
-            "intent 1006.")
-            .c_str());
+        messages.DisplayWarningText(("By the intent 1007 of " + path +
+          " its vectors are lps, whatever --field-space is. If they are ras, give the file the "
+          "intent 1006.")
+                                      .c_str());
       }
     }
   }
