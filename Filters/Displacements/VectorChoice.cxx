@@ -22,6 +22,11 @@ namespace
 // Sets Selector, Wanted and Choice of a source.
 void ChooseVectors(DeformationSource& source, vtkInformation* choice, const ArrayFinder& find)
 {
+  if (choice->Get(vtkDataObject::FIELD_ASSOCIATION()) == vtkDataObject::FIELD_ASSOCIATION_CELLS)
+  {
+    throw Error("The displacements are chosen among the arrays of cells. Choose an array of points "
+                "with SetInputArrayToProcess().");
+  }
   const char* name = choice->Get(vtkDataObject::FIELD_NAME());
   const bool unnamed = name && !*name;
   source.Selector = [find, unnamed](vtkDataSet* dataSet)

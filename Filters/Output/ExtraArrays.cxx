@@ -73,7 +73,7 @@ void ExtraArrays::Select(const ExtraArraysWish& wish, const ImageGeometry& volum
     {
       throw Error("The density array \"" + name +
         "\" is categorical, and labels cannot be divided by the Jacobian. Remove it from the "
-        "density arrays or from the categorical arrays. With NEAREST_INTERPOLATION all arrays are "
+        "density arrays or from the categorical arrays. With nearest interpolation all arrays are "
         "categorical.");
     }
     found->Array = this->FindFloats(found->Array);

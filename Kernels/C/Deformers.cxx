@@ -173,6 +173,11 @@ WorldRequest MakeRequest(const dv_request& given)
   for (std::int32_t i = 0; i < given.number_of_outputs; ++i)
   {
     CheckPointer(given.outputs[i], ("Output " + std::to_string(i)).c_str());
+    if (std::count(given.outputs, given.outputs + i, given.outputs[i]) > 0)
+    {
+      throw Error("Output " + std::to_string(i) +
+        " has the memory of another output. Give each output its own memory.");
+    }
     request.Outputs.push_back(given.outputs[i]);
   }
   CheckPointer(given.coverage, "The memory for the coverage");
@@ -451,6 +456,10 @@ std::int32_t dv_deform(dv_deformer* deformer, const dv_request* given, dv_report
       const WorldReport done = world.Deform(request);
       deformer->Device = done.Device;
       deformer->Warnings = done.Warnings;
+      if (request.Progress)
+      {
+        request.Progress(1.0);
+      }
       if (report)
       {
         dv_report made = {};

@@ -6,6 +6,7 @@
 #include "deformvolume.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstddef>
 #include <cstring>
 #include <string>
@@ -18,7 +19,9 @@ inline void CheckPointer(const void* pointer, const char* name)
 {
   if (!pointer)
   {
-    throw Error(std::string(name) + " is null.");
+    std::string what = name;
+    what.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(what.front())));
+    throw Error(what + " is null.");
   }
 }
 

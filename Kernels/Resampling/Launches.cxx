@@ -31,6 +31,7 @@ void Launches::Start()
   this->Last = cl::Event();
   this->Done = 0;
   this->Expected = 1;
+  this->Reported = 0.0;
 }
 
 void Launches::ExpectAtLeast(std::size_t launches)
@@ -50,9 +51,11 @@ void Launches::Run(const DeformRequest& request, const cl::Kernel& kernel, const
   }
   this->Last = this->ResamplingEvents.back();
   ++this->Done;
-  if (request.Progress &&
-    !request.Progress(
-      std::min(1.0, static_cast<double>(this->Done) / static_cast<double>(this->Expected))))
+  // The expected number may grow later.
+  constexpr double most = 0.99;
+  this->Reported = std::max(this->Reported,
+    std::min(most, static_cast<double>(this->Done) / static_cast<double>(this->Expected)));
+  if (request.Progress && !request.Progress(this->Reported))
   {
     queue.finish();
     throw Aborted();

@@ -52,6 +52,7 @@ private:
   cl::Event Last;
   std::size_t Done = 0;
   std::size_t Expected = 1; // estimated total, including Done
+  double Reported = 0.0;    // the last progress
 };
 
 } // namespace deformvolume

@@ -85,7 +85,7 @@ IndexBounds GetWorldBoxBounds(const double* box, const ImageGeometry& image)
       box[2 * axis] <= box[2 * axis + 1];
     if (!isBox)
     {
-      throw Error(std::string("CustomBounds are no box on axis ") + "xyz"[axis] + ": " +
+      throw Error(std::string("The bounds of the output are no box on axis ") + "xyz"[axis] + ": " +
         std::to_string(box[2 * axis]) + " to " + std::to_string(box[2 * axis + 1]) +
         ". Set a minimum no greater than the maximum.");
     }

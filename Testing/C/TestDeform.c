@@ -125,12 +125,12 @@ static void TestNull(void)
   dv_destroy(NULL);
 
   CHECK(dv_create(&deformer) == DV_OK);
-  REFUSED(dv_set_volume(deformer, NULL), "the volume is null");
-  REFUSED(dv_set_arrays(deformer, 1, NULL), "the array is null");
-  REFUSED(dv_set_mesh(deformer, NULL), "the mesh is null");
-  REFUSED(dv_set_field(deformer, NULL), "the field is null");
-  REFUSED(dv_output_grid(deformer, NULL), "the grid is null");
-  REFUSED(dv_deform(deformer, NULL, NULL), "the request is null");
+  REFUSED(dv_set_volume(deformer, NULL), "The volume is null");
+  REFUSED(dv_set_arrays(deformer, 1, NULL), "The array is null");
+  REFUSED(dv_set_mesh(deformer, NULL), "The mesh is null");
+  REFUSED(dv_set_field(deformer, NULL), "The field is null");
+  REFUSED(dv_output_grid(deformer, NULL), "The grid is null");
+  REFUSED(dv_deform(deformer, NULL, NULL), "The request is null");
   REFUSED(dv_device_memory(deformer, NULL), "null");
   REFUSED(dv_set_device(deformer, "no such device"), "no such device");
   dv_destroy(deformer);
@@ -325,7 +325,7 @@ static void TestWrong(void)
   field.type = DV_FLOAT32;
   REFUSED(dv_set_field(deformer, &field), "grid of the field is null");
   field.grid = &grid;
-  REFUSED(dv_set_field(deformer, &field), "vectors of the field is null");
+  REFUSED(dv_set_field(deformer, &field), "Vectors of the field is null");
   field.vectors = Values;
   field.type = DV_INT16;
   REFUSED(dv_set_field(deformer, &field), "DV_FLOAT32");
@@ -337,7 +337,7 @@ static void TestWrong(void)
   /* Settings. */
   REFUSED(dv_set_outside(deformer, 3, 0.0), "outside mode is 3");
   REFUSED(dv_set_outside(deformer, DV_OUTSIDE_KEEP, -1.0), "-1");
-  REFUSED(dv_set_outside(deformer, DV_OUTSIDE_KEEP, infinity - infinity), "FadeDistance");
+  REFUSED(dv_set_outside(deformer, DV_OUTSIDE_KEEP, infinity - infinity), "fade distance");
   memset(&output, 0, sizeof(output));
   REFUSED(dv_set_output(deformer, &output), "struct_size");
   output.struct_size = sizeof(output);
@@ -484,6 +484,9 @@ static void TestDensity(void)
   request.interpolation = DV_NEAREST;
   REFUSED(dv_deform(deformer, &request, NULL), "nearest");
   request.interpolation = DV_LINEAR;
+  outputs[0] = outputs[1];
+  REFUSED(dv_deform(deformer, &request, NULL), "Output 1 has the memory of another output");
+  outputs[0] = densities;
   CHECK(dv_deform(deformer, &request, &report) == DV_OK);
   CHECK(report.number_of_covered_voxels > 0 && strcmp(report.warnings, "") == 0);
   for (i = 0; i < VOXELS; ++i)

@@ -300,6 +300,9 @@ void TestMisuse()
 
   filter->SetInputArrayToProcess(0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "none");
   misuse.Expect("no point array \"none\"");
+  filter->SetInputArrayToProcess(0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "none");
+  misuse.Expect("chosen among the arrays of cells");
+  filter->SetInputArrayToProcess(0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "none");
 
   filter->SetRestData(misuse.CopyMesh());
   filter->SetDeformationData(nullptr);

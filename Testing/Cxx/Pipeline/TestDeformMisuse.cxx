@@ -364,7 +364,7 @@ void TestSettings(Misuse& misuse)
 
   misuse.GetFilter()->SetOutputBoundsModeToCustomBounds();
   misuse.GetFilter()->SetCustomBounds(5.0, 1.0, 0.0, 1.0, 0.0, 1.0);
-  misuse.Expect("bounds the wrong way round", "CustomBounds");
+  misuse.Expect("bounds the wrong way round", "bounds of the output are no box");
 }
 
 // A correction after a failure may also change the extent of the output.
