@@ -107,7 +107,8 @@ double FindBackground(const Options& options, vtkImageData* volume)
       std::find(names.begin(), names.end(), scalars->GetName()) != names.end();
   };
   if (options.Labels || !scalars || isAmong(options.CategoricalArrays) ||
-    isAmong(options.DensityArrays) || scalars->GetNumberOfComponents() != 1 || scalars->GetDataTypeMin() >= 0.0)
+    isAmong(options.DensityArrays) || scalars->GetNumberOfComponents() != 1 ||
+    scalars->GetDataTypeMin() >= 0.0)
   {
     return 0.0;
   }

@@ -243,7 +243,7 @@ def move(volume, options, pairs, warnings=()):
 # Only coordinates change, and numbers are written such that reading them gives the same double. Points outside the
 # deformation do not change, character by character.
 table = ('\ufeffX,"y", z,t,label,"a, b"\r\n0.1,0.30000000000000004,-0.0,0,7,"some, ""words"""\r\n\r\n'
-         '1e3, 2.50 ,-1.2345678901234567E15,x,,-\r\n')
+         '"1e3", 2.50 ,"-1.2345678901234567E15",x,,-\r\n')
 write("still.csv", table)
 numbers = [[0.1, 0.30000000000000004, 0.0], [1 / 3, -2e-300, 4e15]]
 write_markups("still.mrk.json", make_markups(numbers, "1"))

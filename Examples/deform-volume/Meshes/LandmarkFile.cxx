@@ -148,14 +148,21 @@ void ReadTable(const std::string& path, LandmarkFile& file)
     double point[3];
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
-      const std::string number = GetText(text, columns[axis]);
+      Range column = columns[axis];
+      if (column.second - column.first > 1 && text[column.first] == '"' &&
+        text[column.second - 1] == '"')
+      {
+        ++column.first;
+        --column.second;
+      }
+      const std::string number = GetText(text, column);
       point[axis] = GetNumber(number);
       if (!std::isfinite(point[axis]))
       {
         Fail(
           path, thisLine + " has \"" + number + "\" as " + "xyz"[axis] + ", which is not a number");
       }
-      file.Numbers.push_back(columns[axis]);
+      file.Numbers.push_back(column);
     }
     file.Points->GetPoints()->InsertNextPoint(point);
   }
