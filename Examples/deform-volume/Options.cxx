@@ -455,7 +455,8 @@ void AddResampling(CLI::App& program, Options& options, RawOptions& raw)
     ->group(group);
   program
     .add_option("--background", options.Background,
-      "Value of voxels outside the deformed volume [0 with --labels, with --density-array or if the "
+      "Value of voxels outside the deformed volume [0 with --labels, with --density-array or if "
+      "the "
       "type of the volume has no negative values, otherwise the minimum of the volume, such as air "
       "in CT]")
     ->type_name("NUMBER")

@@ -20,6 +20,7 @@ import deformvolume as dv  # noqa: E402
 from deformvolume.vtk import DeformVolume  # noqa: E402
 import deformvolume_vtk  # noqa: E402
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy  # noqa: E402
+from vtkmodules.vtkCommonCore import vtkCharArray  # noqa: E402
 from vtkmodules.vtkCommonDataModel import vtkImageData, vtkUnstructuredGrid  # noqa: E402
 from vtkmodules.vtkFiltersSources import vtkPlaneSource, vtkSphereSource  # noqa: E402
 
@@ -226,6 +227,13 @@ def test_pipelines():
     ghosts.AllocateCellGhostArray()
     ghosts.GetCellGhostArray().SetValue(7000, 32)
     compare("ghosts", ghosts, mesh)
+    valid = vtkCharArray()
+    valid.SetName("vtkValidPointMask")
+    valid.SetNumberOfValues(image.GetNumberOfPoints())
+    valid.FillComponent(0, 1)
+    valid.SetValue(6000, "\0")
+    ghosts.GetPointData().AddArray(valid)
+    compare("ghosts and invalid points", ghosts, mesh)
     compare("nothing", image, None)
     compare("nothing, reference", image, None, reference=make_reference())
 
