@@ -61,8 +61,8 @@
  *
  * @par Changes:
  * If the points or cells of the rest mesh or LengthUnit change, the simulation restarts from rest,
- * with a warning. If materials, fixed or sliding nodes, forces or prescribed displacements change, it
- * continues.
+ * with a warning. If materials, fixed or sliding nodes, forces or prescribed displacements change,
+ * it continues.
  *
  * @par Abort:
  * An aborted execution ends within about 50 ms, with an empty output. The simulated state is kept.

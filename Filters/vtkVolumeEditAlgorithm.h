@@ -170,8 +170,8 @@ public:
    * switched off or divided, in addition to cells that are hidden in the volume. Volume rendering
    * on a GPU and the extraction of surfaces (vtkDataSetSurfaceFilter) leave out hidden cells, so
    * that edits are visible in the volume itself, with the resolution of a cell. Contours, slices,
-   * clips, thresholds and ray casting on a CPU show hidden cells of an image. These cells also have the bit 128, so that vtkDeformVolumeFilter does not
-   * treat them as hidden. Default: off.
+   * clips, thresholds and ray casting on a CPU show hidden cells of an image. These cells also have
+   * the bit 128, so that vtkDeformVolumeFilter does not treat them as hidden. Default: off.
    */
   vtkSetMacro(BlankCells, bool);
   vtkGetMacro(BlankCells, bool);

@@ -134,8 +134,8 @@ bool vtkDeformVolumeSession::Save(const std::string& fileName, bool isMesh)
     return false;
   }
   const char* const suffix = isMesh ? ".vtu" : ".vti";
-  if (vtksys::SystemTools::LowerCase(
-        vtksys::SystemTools::GetFilenameLastExtension(fileName)) != suffix)
+  if (vtksys::SystemTools::LowerCase(vtksys::SystemTools::GetFilenameLastExtension(fileName)) !=
+    suffix)
   {
     this->Report("Cannot write " + fileName + ": the name must end in " + suffix + ".");
     return false;

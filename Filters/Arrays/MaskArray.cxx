@@ -111,8 +111,8 @@ CutValues FindCut(vtkImageData* volume)
 PointGhosts FindPointGhosts(vtkImageData* image, const std::string& owner)
 {
   const vtkIdType size = image->GetNumberOfPoints();
-  ByteArray* array = FindMask(
-    image->GetPointData(), vtkDataSetAttributes::GhostArrayName(), size, "point", owner);
+  ByteArray* array =
+    FindMask(image->GetPointData(), vtkDataSetAttributes::GhostArrayName(), size, "point", owner);
   PointGhosts ghosts;
   ghosts.Values = array ? array->GetPointer(0) : nullptr;
   auto* mask = image->GetPointData()->GetArray(ValidPointMaskName);
