@@ -94,21 +94,20 @@ void CheckOutputs(const Options& options)
   }
 }
 
-// The default background: 0 for labels, for densities, which are 0 where there is nothing, and for
-// types without negative values. Otherwise the minimum of the volume, since 0 may be tissue: in CT,
-// the minimum is air.
+// The default background: 0 for labels and for types without negative values. Otherwise the minimum
+// of the volume, since 0 may be tissue: in CT, the minimum is air.
 double FindBackground(const Options& options, vtkImageData* volume)
 {
   vtkDataArray* scalars = volume->GetPointData()->GetScalars();
   scalars = scalars ? scalars : volume->GetPointData()->GetArray(0);
-  const auto isAmong = [scalars](const std::vector<std::string>& names)
+  const auto isCategorical = [&options](const char* name)
   {
-    return scalars->GetName() &&
-      std::find(names.begin(), names.end(), scalars->GetName()) != names.end();
+    return name &&
+      std::find(options.CategoricalArrays.begin(), options.CategoricalArrays.end(), name) !=
+      options.CategoricalArrays.end();
   };
-  if (options.Labels || !scalars || isAmong(options.CategoricalArrays) ||
-    isAmong(options.DensityArrays) || scalars->GetNumberOfComponents() != 1 ||
-    scalars->GetDataTypeMin() >= 0.0)
+  if (options.Labels || !scalars || isCategorical(scalars->GetName()) ||
+    scalars->GetNumberOfComponents() != 1 || scalars->GetDataTypeMin() >= 0.0)
   {
     return 0.0;
   }

@@ -455,10 +455,9 @@ void AddResampling(CLI::App& program, Options& options, RawOptions& raw)
     ->group(group);
   program
     .add_option("--background", options.Background,
-      "Value of voxels outside the deformed volume [0 with --labels, with --density-array or if "
-      "the "
-      "type of the volume has no negative values, otherwise the minimum of the volume, such as air "
-      "in CT]")
+      "Value of voxels outside the deformed volume; arrays of --density-array are 0 there [0 with "
+      "--labels or if the type of the volume has no negative values, otherwise the minimum of the "
+      "volume, such as air in CT]")
     ->type_name("NUMBER")
     ->group(group);
   program

@@ -209,7 +209,7 @@ std::vector<VolumeArray> MakeVolumeArrays(const std::vector<SourceArray>& arrays
     }
     array.Components = source.Array->GetNumberOfComponents();
     array.Categorical = source.Categorical;
-    array.Background = background;
+    array.Background = source.IsDensity ? 0.0 : background; // no amount where there is nothing
     described.push_back(array);
   }
   return described;

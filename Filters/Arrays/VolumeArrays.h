@@ -30,6 +30,7 @@ struct SourceArray
   /// Index among the point arrays of the volume.
   int Index = 0;
   bool Categorical = false;
+  bool IsDensity = false;
 };
 
 /// Selects the point arrays of a volume that can be resampled. categorical: names of arrays that

@@ -91,7 +91,7 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfLoss(const deformvolume::ExtraAr
 {
   const std::string text =
     deformvolume::DescribeLoss(this->DensityArrays.empty() ? 0 : this->Report.NumberOfHiddenSamples,
-      this->Report.NumberOfCoveredVoxels, loss.NumberOfVoxels, "BackgroundValue");
+      this->Report.NumberOfCoveredVoxels, loss.NumberOfVoxels, "0");
   if (!text.empty() && text != this->WarnedOfLoss)
   {
     vtkWarningWithObjectMacro(this->Self, << text);

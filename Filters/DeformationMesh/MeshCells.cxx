@@ -194,7 +194,8 @@ void ReadPart(
 
 } // namespace
 
-MeshCells ReadCells(const MeshParts& parts, const MeshParts& rest, const DerivedNodes* derived)
+MeshCells ReadCells(const MeshParts& parts, const MeshParts& rest, const DerivedNodes* derived,
+  const std::vector<std::int32_t>* places)
 {
   std::size_t numberOfCells = 0;
   vtkIdType numberOfNodes = 0;
@@ -210,6 +211,10 @@ MeshCells ReadCells(const MeshParts& parts, const MeshParts& rest, const Derived
   if (derived)
   {
     reader.SetDerived(*derived);
+  }
+  if (places)
+  {
+    reader.SetPlaces(*places);
   }
   reader.Reserve(numberOfCells);
   std::int32_t firstNode = 0;

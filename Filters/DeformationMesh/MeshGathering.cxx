@@ -2,6 +2,7 @@
 #include "MeshGathering.h"
 
 #include "CellReader.h"
+#include "CoincidentPoints.h"
 #include "MeshCells.h"
 #include "MeshStamp.h"
 #include "RestMesh.h"
@@ -20,6 +21,7 @@
 #include <array>
 #include <cstring>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace deformvolume
@@ -91,6 +93,52 @@ vtkSmartPointer<vtkDoubleArray> MakeArray(const std::vector<glm::dvec3>& vectors
   return array;
 }
 
+// Whether a piece has other cells than tetrahedra.
+bool HasOtherCells(const MeshParts& parts)
+{
+  return std::any_of(parts.begin(), parts.end(),
+    [](vtkUnstructuredGrid* grid)
+    {
+      vtkIdType cell = 0;
+      for (; cell < grid->GetNumberOfCells() && grid->GetCellType(cell) == VTK_TETRA; ++cell)
+      {
+      }
+      return cell < grid->GetNumberOfCells();
+    });
+}
+
+// Returns CellNode::Place of each node of this rank's piece, so that cells of different ranks split
+// a common face alike. Collective.
+std::vector<std::int32_t> FindPlaces(const Ranks& ranks, const MeshParts& parts)
+{
+  std::vector<glm::dvec3> points;
+  ranks.Attempt(
+    [&]
+    {
+      for (vtkUnstructuredGrid* grid : parts)
+      {
+        for (vtkIdType id = 0; id < grid->GetNumberOfPoints(); ++id)
+        {
+          points.emplace_back();
+          grid->GetPoint(id, &points.back().x);
+        }
+      }
+    });
+  const std::size_t mine = points.size();
+  const std::vector<std::uint64_t> counts = ranks.Gather(mine);
+  const auto first = static_cast<std::ptrdiff_t>(
+    std::accumulate(counts.begin(), counts.begin() + ranks.GetRank(), std::uint64_t{ 0 }));
+  GatherVector(ranks, points, MESH_NAME);
+  std::vector<std::int32_t> places;
+  ranks.Attempt(
+    [&]
+    {
+      const std::vector<std::int32_t> all = FindCoincidentPoints(points);
+      places.assign(all.begin() + first, all.begin() + first + static_cast<std::ptrdiff_t>(mine));
+    });
+  return places;
+}
+
 } // namespace
 
 struct MeshGathering::Piece
@@ -104,7 +152,8 @@ struct MeshGathering::Piece
   std::string WrongOrder;
 };
 
-MeshGathering::Piece MeshGathering::Read(const DeformationSource& source) const
+MeshGathering::Piece MeshGathering::Read(
+  const DeformationSource& source, const std::vector<std::int32_t>* places) const
 {
   const MeshParts& shape = source.ShapeParts;
   const MeshParts& rest = source.Rest ? source.RestParts : shape;
@@ -120,8 +169,8 @@ MeshGathering::Piece MeshGathering::Read(const DeformationSource& source) const
   {
     return piece;
   }
-  MeshCells cells = ReadCells(rest, rest);
-  if (source.Rest && ReadCells(shape, rest).Tetrahedra != cells.Tetrahedra)
+  MeshCells cells = ReadCells(rest, rest, nullptr, places);
+  if (source.Rest && ReadCells(shape, rest, nullptr, places).Tetrahedra != cells.Tetrahedra)
   {
     throw Error("The cells of the deformation mesh are not those of the rest configuration. "
                 "Use two configurations of one mesh, split alike.");
@@ -197,6 +246,10 @@ DeformationSource MeshGathering::Gather(const Ranks& ranks, const DeformationSou
   if (ranks.IsAny(stamp != this->PieceStamp || source.Choice != this->Choice))
   {
     this->PieceStamp.clear();
+    const MeshParts& rest = source.Rest ? source.RestParts : source.ShapeParts;
+    const bool areSplit = ranks.IsAny(HasOtherCells(rest));
+    const std::vector<std::int32_t> places =
+      areSplit ? FindPlaces(ranks, rest) : std::vector<std::int32_t>();
     Piece piece;
     ranks.Attempt(
       [&]
@@ -206,7 +259,7 @@ DeformationSource MeshGathering::Gather(const Ranks& ranks, const DeformationSou
           throw Error("A rank has a part of the deformation mesh, but no rest configuration, "
                       "which other ranks have. Connect one on all ranks or on none.");
         }
-        piece = this->Read(source);
+        piece = this->Read(source, areSplit ? &places : nullptr);
       });
     std::uint64_t hash = 14695981039346656037U;
     AddToHash(hash, piece.Tetrahedra);

@@ -38,7 +38,8 @@ public:
 private:
   struct Piece;
 
-  Piece Read(const DeformationSource& source) const;
+  /// places: CellNode::Place of each node of the piece; null: it has tetrahedra only.
+  Piece Read(const DeformationSource& source, const std::vector<std::int32_t>* places) const;
   void Make(const Piece& whole, bool withRest);
 
   Stamp PieceStamp; // empty: there is no mesh

@@ -77,6 +77,7 @@ void ExtraArrays::Select(const ExtraArraysWish& wish, const ImageGeometry& volum
         "categorical.");
     }
     found->Array = this->FindFloats(found->Array);
+    found->IsDensity = true;
   }
   const auto checkName = [&](const char* name)
   {
@@ -303,9 +304,9 @@ ExtraArrays::Loss ExtraArrays::FinishDensities(const Deformation& deformation,
     const void* values = resampled->GetVoidPointer(0);
     loss.NumberOfVoxels = resampled->GetDataType() == VTK_DOUBLE
       ? DivideByJacobian(static_cast<const double*>(values), components, jacobians, valid, voxels,
-          background, static_cast<double*>(divided->GetVoidPointer(0)))
+          0.0, static_cast<double*>(divided->GetVoidPointer(0)))
       : DivideByJacobian(static_cast<const float*>(values), components, jacobians, valid, voxels,
-          ClampTo<float>(background), static_cast<float*>(divided->GetVoidPointer(0)));
+          0.0F, static_cast<float*>(divided->GetVoidPointer(0)));
     pointData->AddArray(divided);
   }
   if (!this->Wish.Jacobian)

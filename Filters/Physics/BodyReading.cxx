@@ -346,13 +346,8 @@ void Hold(const glm::dvec3& position, double radius, const glm::dvec3& displacem
   }
   if (radius == 0.0)
   {
-    IndexBounds box;
-    for (const glm::dvec3& point : body.Points)
-    {
-      box.Add(point);
-    }
     // A handle that far away is in other units or in another world.
-    if (least > glm::distance(box.Min, box.Max))
+    if (least > mesh.Size)
     {
       throw Error("The rest position of a handle is farther from the body than the body is long. "
                   "Give it in the coordinates and the unit of length of the mesh at rest.");
@@ -490,6 +485,10 @@ BodyMesh ReadBody(vtkUnstructuredGrid* grid, const BodySettings& settings)
 std::vector<HeldNode> ReadHandles(
   vtkPointSet* handles, double radius, const BodyMesh& mesh, const BodySettings& settings)
 {
+  if (!(radius >= 0.0))
+  {
+    throw Error("HandleRadius is not a number. Set a radius of at least 0.");
+  }
   std::vector<HeldNode> held;
   const HandlePositions positions = ReadHandlePositions(handles, "mesh");
   std::vector<unsigned char> isTaken(mesh.Body.Points.size(), 0);

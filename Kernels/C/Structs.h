@@ -6,7 +6,6 @@
 #include "deformvolume.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstddef>
 #include <cstring>
 #include <string>
@@ -19,9 +18,7 @@ inline void CheckPointer(const void* pointer, const char* name)
 {
   if (!pointer)
   {
-    std::string what = name;
-    what.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(what.front())));
-    throw Error(what + " is null.");
+    throw Error(std::string(name) + " is null.");
   }
 }
 

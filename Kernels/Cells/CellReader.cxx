@@ -79,8 +79,8 @@ const std::vector<CellNode>& CellReader::GetNodes(const std::vector<std::int32_t
       points[static_cast<std::size_t>(node)] = this->GetPosition(node);
     }
     this->Places = FindCoincidentPoints(points);
-    this->Cells.DependOnPoints = true;
   }
+  this->Cells.DependOnPoints = true;
   this->Nodes.clear();
   for (const std::int32_t number : numbers)
   {

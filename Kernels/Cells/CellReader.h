@@ -66,6 +66,8 @@ public:
   {
     this->Cells.Tetrahedra.reserve(numberOfTetrahedra);
   }
+  /// Set CellNode::Place of each node. Otherwise they follow from the positions.
+  void SetPlaces(const std::vector<std::int32_t>& places) { this->Places = places; }
   /// Set the derived nodes that the cells already use.
   void SetDerived(const DerivedNodes& derived) { this->Cells.Derived = derived; }
 
@@ -102,7 +104,7 @@ private:
   const double Rounding;
   MeshCells Cells;
   HigherOrderCells HigherOrder;
-  std::vector<std::int32_t> Places; // CellNode::Place of each node; empty until a cell is split
+  std::vector<std::int32_t> Places; // CellNode::Place of each node; may be empty until it is used
   std::vector<CellNode> Nodes;      // of a cell, kept to save allocations
   std::vector<glm::dvec3> Points;   // of a cell, kept to save allocations
   std::map<int, std::int64_t> Ignored;

@@ -98,7 +98,7 @@ static void TestNull(void)
   const float* displacements = NULL;
   uint64_t bytes = 0;
   REFUSED(dv_chainmail_create(&grid, NULL, 0, NULL), "null");
-  REFUSED(dv_chainmail_create(NULL, NULL, 0, &chainmail), "The volume is null");
+  REFUSED(dv_chainmail_create(NULL, NULL, 0, &chainmail), "the volume is null");
   CHECK(chainmail == NULL);
   REFUSED(dv_chainmail_set_materials(NULL, &materials), "ChainMail is null");
   REFUSED(dv_chainmail_set_pinned(NULL, NULL), "ChainMail is null");
@@ -112,8 +112,8 @@ static void TestNull(void)
   dv_chainmail_destroy(NULL);
 
   chainmail = MakeChainMail();
-  REFUSED(dv_chainmail_set_materials(chainmail, NULL), "The materials is null");
-  REFUSED(dv_chainmail_step(chainmail, NULL, NULL), "The request is null");
+  REFUSED(dv_chainmail_set_materials(chainmail, NULL), "the materials is null");
+  REFUSED(dv_chainmail_step(chainmail, NULL, NULL), "the request is null");
   REFUSED(dv_chainmail_displacements(chainmail, NULL), "null");
   REFUSED(dv_chainmail_device_memory(chainmail, NULL), "null");
   dv_chainmail_destroy(chainmail);
@@ -234,10 +234,10 @@ static void TestWrong(void)
   REFUSED(dv_chainmail_step(chainmail, &request, NULL), "handles is -1");
   request = MakeRequest();
   request.rest_positions = NULL;
-  REFUSED(dv_chainmail_step(chainmail, &request, NULL), "Rest positions of handles is null");
+  REFUSED(dv_chainmail_step(chainmail, &request, NULL), "rest positions of handles is null");
   request = MakeRequest();
   request.positions = NULL;
-  REFUSED(dv_chainmail_step(chainmail, &request, NULL), "Positions of handles is null");
+  REFUSED(dv_chainmail_step(chainmail, &request, NULL), "positions of handles is null");
   request = MakeRequest();
   Rest[1] = -4.0;
   REFUSED(dv_chainmail_step(chainmail, &request, NULL), "outside the volume");

@@ -125,12 +125,12 @@ static void TestNull(void)
   dv_destroy(NULL);
 
   CHECK(dv_create(&deformer) == DV_OK);
-  REFUSED(dv_set_volume(deformer, NULL), "The volume is null");
-  REFUSED(dv_set_arrays(deformer, 1, NULL), "The array is null");
-  REFUSED(dv_set_mesh(deformer, NULL), "The mesh is null");
-  REFUSED(dv_set_field(deformer, NULL), "The field is null");
-  REFUSED(dv_output_grid(deformer, NULL), "The grid is null");
-  REFUSED(dv_deform(deformer, NULL, NULL), "The request is null");
+  REFUSED(dv_set_volume(deformer, NULL), "the volume is null");
+  REFUSED(dv_set_arrays(deformer, 1, NULL), "the array is null");
+  REFUSED(dv_set_mesh(deformer, NULL), "the mesh is null");
+  REFUSED(dv_set_field(deformer, NULL), "the field is null");
+  REFUSED(dv_output_grid(deformer, NULL), "the grid is null");
+  REFUSED(dv_deform(deformer, NULL, NULL), "the request is null");
   REFUSED(dv_device_memory(deformer, NULL), "null");
   REFUSED(dv_set_device(deformer, "no such device"), "no such device");
   dv_destroy(deformer);
@@ -325,7 +325,7 @@ static void TestWrong(void)
   field.type = DV_FLOAT32;
   REFUSED(dv_set_field(deformer, &field), "grid of the field is null");
   field.grid = &grid;
-  REFUSED(dv_set_field(deformer, &field), "Vectors of the field is null");
+  REFUSED(dv_set_field(deformer, &field), "vectors of the field is null");
   field.vectors = Values;
   field.type = DV_INT16;
   REFUSED(dv_set_field(deformer, &field), "DV_FLOAT32");

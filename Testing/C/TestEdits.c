@@ -161,12 +161,12 @@ static void TestNull(void)
   dv_destroy(deformer);
 
   deformer = MakeDeformer();
-  REFUSED(dv_cut(deformer, NULL, NULL), "The sheet is null");
-  REFUSED(dv_carve_surface(deformer, NULL, NULL), "The surface is null");
-  REFUSED(dv_carve_sphere(deformer, 1, NULL, 1.0, NULL), "Centers of the sphere is null");
-  REFUSED(dv_carve_label(deformer, NULL, 1.0, NULL), "The labels is null");
-  REFUSED(dv_carve_function(deformer, NULL, NULL), "The body is null");
-  REFUSED(dv_get_masks(deformer, NULL), "The masks is null");
+  REFUSED(dv_cut(deformer, NULL, NULL), "the sheet is null");
+  REFUSED(dv_carve_surface(deformer, NULL, NULL), "the surface is null");
+  REFUSED(dv_carve_sphere(deformer, 1, NULL, 1.0, NULL), "centers of the sphere is null");
+  REFUSED(dv_carve_label(deformer, NULL, 1.0, NULL), "the labels is null");
+  REFUSED(dv_carve_function(deformer, NULL, NULL), "the body is null");
+  REFUSED(dv_get_masks(deformer, NULL), "the masks is null");
   dv_destroy(deformer);
 }
 
@@ -206,7 +206,7 @@ static void TestWrong(void)
   REFUSED(dv_cut(deformer, &sheet, NULL), "DV_FLOAT64");
   sheet = MakeSheet();
   sheet.points = NULL;
-  REFUSED(dv_cut(deformer, &sheet, NULL), "Points of the sheet is null");
+  REFUSED(dv_cut(deformer, &sheet, NULL), "points of the sheet is null");
   sheet.number_of_points = 0;
   REFUSED(dv_cut(deformer, &sheet, NULL), "there are 0 points");
   sheet.number_of_points = -1;

@@ -236,7 +236,7 @@ _, errors = call(program, path("volume.nii.gz"), "--field", path("ras.nii"), "--
 assert "ras.nii states that it is ras" in errors, errors
 _, errors = call(program, path("volume.nii.gz"), "--field", path("lps.nii.gz"), "--field-space", "ras",
                  "-o", path("out.vti"), "--quiet")
-assert "By the intent 1007 of" in errors and "its vectors are lps" in errors, errors
+assert "are lps, as its intent 1007 says" in errors, errors
 write_nrrd(path("wrong.nrrd"), single, in_lps, encoding="bzip2")
 fails("bzip2", "wrong.nrrd")
 write_nrrd(path("wrong.nrrd"), single, in_lps, encoding="gzip")

@@ -502,6 +502,70 @@ void TestGeometryFilter(vtkUnstructuredGrid* mesh)
   }
 }
 
+/// Returns the part of rank `rank` of a curved lattice of hexahedra over the bounds of a volume.
+/// Each part has all points, in an order of its own.
+vtkSmartPointer<vtkUnstructuredGrid> MakeHexahedra(vtkImageData* volume, int rank)
+{
+  constexpr vtkIdType n = 6; // nodes on each axis
+  constexpr vtkIdType count = n * n * n;
+  constexpr vtkIdType factors[] = { 5, 7, 11, 13 }; // without common divisors with count
+  const auto number = [&](vtkIdType id) { return factors[rank % 4] * id % count; };
+  double bounds[6];
+  volume->GetBounds(bounds);
+  auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(count);
+  mesh->SetPoints(points);
+  std::vector<vtkIdType> cells; // the first node of each cell
+  for (vtkIdType id = 0; id < count; ++id)
+  {
+    const glm::dvec3 at(id % n, id / n % n, id / (n * n));
+    const double wave = 0.25 * std::sin(2.5 * at.x) * std::cos(1.9 * at.y);
+    const glm::dvec3 part = (at + glm::dvec3(0.0, 0.0, wave)) / (n - 1.0);
+    points->SetPoint(number(id), bounds[0] + part.x * (bounds[1] - bounds[0]),
+      bounds[2] + part.y * (bounds[3] - bounds[2]), bounds[4] + part.z * (bounds[5] - bounds[4]));
+    if (id % n + 1 < n && id / n % n + 1 < n && id / (n * n) + 1 < n)
+    {
+      cells.push_back(id);
+    }
+  }
+  const std::size_t end = cells.size() * (rank + 1) / GetRanks();
+  for (std::size_t cell = cells.size() * rank / GetRanks(); cell < end; ++cell)
+  {
+    vtkIdType ids[8];
+    for (int i = 0; i < 8; ++i)
+    {
+      const int x = i % 4 == 1 || i % 4 == 2 ? 1 : 0;
+      ids[i] = number(cells[cell] + x + (i % 4 / 2) * n + (i / 4) * n * n);
+    }
+    mesh->InsertNextCell(VTK_HEXAHEDRON, 8, ids);
+  }
+  SetDisplacements(mesh, Bend(volume));
+  return mesh;
+}
+
+/// Hexahedra of several ranks split a common face alike, as those of blocks in one process do.
+void TestHexahedra(const Case& from)
+{
+  Case blocks = from;
+  blocks.Name = "Hexahedra";
+  vtkNew<vtkMultiBlockDataSet> all;
+  for (int rank = 0; rank < GetRanks(); ++rank)
+  {
+    all->SetBlock(rank, MakeHexahedra(from.Volume, rank));
+  }
+  blocks.Set = [&](vtkDeformVolumeFilter* filter)
+  {
+    from.Set(filter);
+    filter->SetDeformationData(all.Get());
+  };
+  const auto whole = MakeWhole(blocks);
+  Parallel parallel(blocks);
+  parallel.Filter->SetDeformationData(MakeHexahedra(from.Volume, GetRank()));
+  Check(parallel, whole, blocks.Name);
+}
+
 void TestAll()
 {
   for (const Case& from : MakeCases())
@@ -528,6 +592,7 @@ void TestAll()
       TestSmallAndMoving(from);
       TestKeptExtent(from);
       TestGeometryFilter(vtkUnstructuredGrid::SafeDownCast(from.Deformation));
+      TestHexahedra(from);
       // Cells with derived nodes.
       Case quadratic = from;
       const auto mesh = MakeTenNodes(vtkUnstructuredGrid::SafeDownCast(from.Deformation));

@@ -259,11 +259,11 @@ vtkSmartPointer<vtkImageData> ReadField(const std::string& path, const Volume& v
     if (!IsRightAnterior(field.NIfTIHeader, what))
     {
       FlipWorldAxes(matrix);
-      if (!options.Space.empty())
+      if (options.Space == "ras")
       {
-        messages.DisplayWarningText(("By the intent 1007 of " + path +
-          " its vectors are lps, whatever --field-space is. If they are ras, give the file the "
-          "intent 1006.")
+        messages.DisplayWarningText(("The vectors of " + path +
+          " are lps, as its intent 1007 says; --field-space does not change this. If they are ras, "
+          "set the intent to 1006.")
                                       .c_str());
       }
     }

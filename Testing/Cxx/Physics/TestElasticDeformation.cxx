@@ -143,6 +143,9 @@ void TestErrorsOfSubclasses()
   springs.Object->SetHandlesData(
     MakeHandles({ { glm::dvec3(0.0, 0.0, 30.0), glm::dvec3(0.0, 0.0, 31.0) } }));
   VERIFY_CONTAINS(springs.TryUpdate(), "farther from the body than the body is long");
+  springs.Object->SetHandleRadius(std::numeric_limits<double>::quiet_NaN());
+  VERIFY_CONTAINS(springs.TryUpdate(), "HandleRadius is not a number");
+  springs.Object->SetHandleRadius(0.0);
   springs.Object->SetHandlesData(nullptr);
   VERIFY_EQUAL(springs.TryUpdate(), std::string());
   VERIFY_EQUAL(springs.Copy()->GetRange(-1)[1], 0.0);
