@@ -20,8 +20,8 @@
  * @par Port 1, the volume:
  * vtkImageData of at least two voxels on each axis: any extent, origin, spacing and direction
  * matrix. The whole volume is requested. A point array of one component and any numeric type has
- * the materials, see MaterialArrayName. Points that vtkGhostType marks as hidden or duplicate are
- * ignored.
+ * the materials, see MaterialArrayName. Points that vtkGhostType marks as hidden or duplicate, or
+ * whose vtkValidPointMask is 0, are ignored.
  *
  * @par Output:
  * The mesh, with the cell arrays "YoungModulus" (Pa), "PoissonRatio" and "Density" (kg/m^3) of

@@ -11,11 +11,11 @@
  *
  * @par What the mesh of a volume holds:
  * A voxel is a voxel of the body if its value is finite and at least the isovalue, or one of the
- * labels, and if vtkGhostType does not hide it. A piece is a connected component of the body:
- * voxels that share a face, an edge or a corner are connected. A speck is a piece of at most
- * SpeckSize voxels. It is not meshed, and its voxels are not counted as voxels of the body. A voxel
- * is inside the mesh if its center is in a tetrahedron, or on its surface, to within 1/256 of a
- * voxel.
+ * labels, and if neither vtkGhostType nor a vtkValidPointMask of 0 hides it. A piece is a connected
+ * component of the body: voxels that share a face, an edge or a corner are connected. A speck is a
+ * piece of at most SpeckSize voxels. It is not meshed, and its voxels are not counted as voxels of
+ * the body. A voxel is inside the mesh if its center is in a tetrahedron, or on its surface, to
+ * within 1/256 of a voxel.
  * @par
  * The surface follows the body at the distance of Margin. If smoothing or decimation cuts off
  * voxels, vertices of the surface are moved outwards until the tetrahedra contain them. Except for
@@ -27,7 +27,7 @@
  * - vtkImageData, the volume, with at least two voxels on each axis; origin, spacing, direction
  *   matrix and an extent that does not start at 0 are taken into account. SetInputArrayToProcess(0,
  *   0, 0, POINTS, name) chooses the array, by default the active scalars; of several components the
- *   first is used. Points that vtkGhostType hides are outside the body. If the volume's border cuts
+ *   first is used. Hidden points are outside the body. If the volume's border cuts
  *   off the body, the surface is closed there.
  * - vtkPolyData, a closed surface without self-intersections. Coincident points are merged and
  *   polygons split into triangles. Shells inside others are kept as surfaces, and their insides

@@ -5,6 +5,7 @@
 
 #include "vtkCellData.h"
 #include "vtkDataArrayRange.h"
+#include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -108,17 +109,24 @@ CutValues FindCut(vtkImageData* volume)
   return cut;
 }
 
-PointGhosts FindPointGhosts(vtkImageData* image, const std::string& owner)
+PointGhosts FindPointGhosts(vtkDataSet* data, const std::string& owner)
 {
-  const vtkIdType size = image->GetNumberOfPoints();
+  const vtkIdType size = data->GetNumberOfPoints();
   ByteArray* array =
-    FindMask(image->GetPointData(), vtkDataSetAttributes::GhostArrayName(), size, "point", owner);
+    FindMask(data->GetPointData(), vtkDataSetAttributes::GhostArrayName(), size, "point", owner);
   PointGhosts ghosts;
   ghosts.Values = array ? array->GetPointer(0) : nullptr;
-  auto* mask = image->GetPointData()->GetArray(ValidPointMaskName);
-  if (!mask || mask->GetNumberOfComponents() != 1 || mask->GetNumberOfTuples() != size)
+  auto* mask = data->GetPointData()->GetArray(ValidPointMaskName);
+  if (!mask)
   {
-    return ghosts; // not a mask of VTK
+    return ghosts;
+  }
+  if (mask->GetNumberOfComponents() != 1 || mask->GetNumberOfTuples() != size)
+  {
+    throw Error(std::string("The point array \"") + ValidPointMaskName + "\" of the " + owner +
+      " has " + std::to_string(mask->GetNumberOfTuples()) + " tuples of " +
+      std::to_string(mask->GetNumberOfComponents()) +
+      " components. Give it one component and one tuple for each point, or remove it.");
   }
   const auto hide = [&](const auto& valid)
   {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+class vtkDataSet;
 class vtkDataSetAttributes;
 class vtkImageData;
 class vtkInformation;
@@ -73,7 +74,7 @@ CutValues FindCut(vtkImageData* volume);
 ByteArray* FindMask(vtkDataSetAttributes* attributes, const char* name, vtkIdType size,
   const std::string& what, const std::string& owner);
 
-/// The vtkGhostType of the points of an image, one byte each. Points whose vtkValidPointMask is 0
+/// The vtkGhostType of the points of a dataset, one byte each. Points whose vtkValidPointMask is 0
 /// are hidden as well.
 struct PointGhosts
 {
@@ -81,8 +82,9 @@ struct PointGhosts
   std::vector<unsigned char> Joined;     // storage of Values, if both arrays are used
 };
 
-/// Finds the ghosts of an image. owner: words for messages. Throws like FindMask().
-PointGhosts FindPointGhosts(vtkImageData* image, const std::string& owner);
+/// Finds the ghosts of a dataset. owner: words for messages. Throws like FindMask(), also if the
+/// valid point mask does not have one component and one tuple for each point.
+PointGhosts FindPointGhosts(vtkDataSet* data, const std::string& owner);
 
 } // namespace deformvolume
 

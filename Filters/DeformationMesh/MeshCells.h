@@ -13,8 +13,9 @@ namespace deformvolume
 /// marks as hidden or duplicate are skipped. rest: the same mesh with its points at rest, on which
 /// splits depend (MeshCells::DependOnPoints). derived: the derived nodes that the cells of a single
 /// grid use already; else null. places: CellNode::Place of each node, among the nodes of all ranks;
-/// null: among those of this mesh. Throws an Error if a cell has a wrong number of points, points that
-/// do not exist or incomplete faces, is a Bezier cell, or is a polyhedron that cannot be split.
+/// null: among those of this mesh. Throws an Error if a cell has a wrong number of points, points
+/// that do not exist or incomplete faces, is a Bezier cell, or is a polyhedron that cannot be
+/// split.
 MeshCells ReadCells(const MeshParts& parts, const MeshParts& rest,
   const DerivedNodes* derived = nullptr, const std::vector<std::int32_t>* places = nullptr);
 

@@ -70,19 +70,15 @@ void AddArray(Stamp& stamp, vtkAbstractArray* array)
   stamp.emplace_back(nullptr, array ? static_cast<vtkMTimeType>(array->GetNumberOfValues()) : 0);
 }
 
-ByteArray* FindGhosts(vtkDataSetAttributes* attributes, vtkIdType count, const char* kind)
-{
-  return FindMask(
-    attributes, vtkDataSetAttributes::GhostArrayName(), count, kind, "deformation mesh");
-}
-
 // Adds all cells of a grid, except those that are hidden or duplicate, or have a hidden point.
 void MakeCells(vtkDataSet* source, vtkUnstructuredGrid* grid)
 {
-  ByteArray* cellGhosts = FindGhosts(source->GetCellData(), source->GetNumberOfCells(), "cell");
-  ByteArray* pointGhosts = FindGhosts(source->GetPointData(), source->GetNumberOfPoints(), "point");
-  const auto isSkipped = [](ByteArray* ghosts, vtkIdType id, int kinds)
-  { return ghosts && (ghosts->GetValue(id) & kinds) != 0; };
+  ByteArray* cellArray = FindMask(source->GetCellData(), vtkDataSetAttributes::GhostArrayName(),
+    source->GetNumberOfCells(), "cell", "deformation mesh");
+  const unsigned char* cellGhosts = cellArray ? cellArray->GetPointer(0) : nullptr;
+  const PointGhosts pointGhosts = FindPointGhosts(source, "deformation mesh");
+  const auto isSkipped = [](const unsigned char* ghosts, vtkIdType id, int kinds)
+  { return ghosts && (ghosts[id] & kinds) != 0; };
   vtkNew<vtkUnsignedCharArray> types;
   vtkNew<vtkCellArray> cells;
   vtkNew<vtkIdList> ids;
@@ -93,7 +89,7 @@ void MakeCells(vtkDataSet* source, vtkUnstructuredGrid* grid)
           vtkDataSetAttributes::HIDDENCELL | vtkDataSetAttributes::DUPLICATECELL) &&
       std::none_of(ids->begin(), ids->end(),
         [&](vtkIdType id)
-        { return isSkipped(pointGhosts, id, vtkDataSetAttributes::HIDDENPOINT); }))
+        { return isSkipped(pointGhosts.Values, id, vtkDataSetAttributes::HIDDENPOINT); }))
     {
       types->InsertNextValue(static_cast<unsigned char>(source->GetCellType(cell)));
       cells->InsertNextCell(ids);
@@ -199,6 +195,7 @@ void MeshGrids::Update(Conversion& conversion, vtkDataSet* source, bool made)
   const char* const ghosts = vtkDataSetAttributes::GhostArrayName();
   AddArray(cells, source->GetCellData()->GetAbstractArray(ghosts));
   AddArray(cells, source->GetPointData()->GetAbstractArray(ghosts));
+  AddArray(cells, source->GetPointData()->GetAbstractArray(ValidPointMaskName));
   if (straight)
   {
     AddArray(points, straight->GetXCoordinates());

@@ -216,17 +216,12 @@ RestMesh::CellReading RestMesh::ReadCells(const MeshParts& shape, const MeshPart
   reading.Ignored = this->IgnoredCells;
   reading.WrongOrder = this->WrongOrder;
   reading.DependOnPoints = this->CellsDependOnPoints;
-  if (this->CellsDependOnPoints && this->HavePointsChanged(rest, source))
+  // Otherwise all cells are read.
+  if (!this->CellsDependOnPoints || !this->HavePointsChanged(rest, source))
   {
-    reading.Differences.reset(); // read all cells
-  }
-  else if (sameRest && (sameShape || shared))
-  {
-    reading.Differences = Changes();
-  }
-  else
-  {
-    reading.Differences = this->CompareCells(shape, rest, sameRest, sameShape, shared);
+    reading.Differences = sameRest && (sameShape || shared)
+      ? Changes()
+      : this->CompareCells(shape, rest, sameRest, sameShape, shared);
   }
   if (!reading.Differences)
   {

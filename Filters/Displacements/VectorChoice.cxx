@@ -22,18 +22,20 @@ namespace
 // Sets Selector, Wanted and Choice of a source.
 void ChooseVectors(DeformationSource& source, vtkInformation* choice, const ArrayFinder& find)
 {
-  if (choice->Get(vtkDataObject::FIELD_ASSOCIATION()) == vtkDataObject::FIELD_ASSOCIATION_CELLS)
+  const int association = choice->Get(vtkDataObject::FIELD_ASSOCIATION());
+  if (association != vtkDataObject::FIELD_ASSOCIATION_POINTS &&
+    association != vtkDataObject::FIELD_ASSOCIATION_POINTS_THEN_CELLS)
   {
-    throw Error("The displacements are chosen among the arrays of cells. Choose an array of points "
-                "with SetInputArrayToProcess().");
+    throw Error("The displacements are not chosen among the arrays of points. Choose an array with "
+                "SetInputArrayToProcess() and FIELD_ASSOCIATION_POINTS.");
   }
   const char* name = choice->Get(vtkDataObject::FIELD_NAME());
   const bool unnamed = name && !*name;
   source.Selector = [find, unnamed](vtkDataSet* dataSet)
   {
-    int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
-    vtkDataArray* array = unnamed ? FindVectors(dataSet) : find(dataSet, association);
-    return association == vtkDataObject::FIELD_ASSOCIATION_POINTS ? array : nullptr;
+    int found = vtkDataObject::FIELD_ASSOCIATION_POINTS;
+    vtkDataArray* array = unnamed ? FindVectors(dataSet) : find(dataSet, found);
+    return found == vtkDataObject::FIELD_ASSOCIATION_POINTS ? array : nullptr;
   };
   if (name && *name)
   {

@@ -97,8 +97,7 @@ void WorldDeformation::ReadField(vtkImageData* image, const DeformationSource& s
   vtkDataArray* array = FindFieldVectors(image, source);
   const float* floats = FindFloats(array);
   const Stamp stamp{ { image, image->GetMTime() }, { array, array->GetMTime() },
-    { floats, static_cast<vtkMTimeType>(array->GetNumberOfValues()) },
-    { image->GetPointData(), image->GetPointData()->GetMTime() } };
+    { floats, static_cast<vtkMTimeType>(array->GetNumberOfValues()) } };
   if (this->Field && this->IsCurrent(stamp, source))
   {
     return;

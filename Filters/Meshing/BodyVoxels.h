@@ -53,8 +53,8 @@ struct BodyVoxels
   vtkIdType CountPieces(PieceKind kind) const;
 };
 
-/// Finds the voxels that meet the criterion, are finite, and are not hidden by vtkGhostType. Does
-/// not find the pieces.
+/// Finds the voxels that meet the criterion, are finite, and are not hidden (FindPointGhosts()).
+/// Does not find the pieces.
 BodyVoxels FindBodyVoxels(
   vtkImageData* volume, vtkDataArray* array, const BodyCriterion& criterion);
 

@@ -22,7 +22,7 @@ struct VolumeMaterials
   /// For each voxel an index into Table. x varies fastest.
   std::vector<unsigned char> Indices;
   std::vector<ElasticMaterial> Table;
-  /// vtkGhostType of the voxels (FindPointGhosts()). Hidden and duplicate voxels are ignored.
+  /// Ghosts of the voxels (FindPointGhosts()). Hidden and duplicate voxels are ignored.
   const unsigned char* Ghosts = nullptr;
   /// Material of tetrahedra for which no voxel is found.
   ElasticMaterial Default;

@@ -375,11 +375,10 @@ extern "C"
     DV_NEAREST = 2 /**< none: all arrays are treated as categorical */
   };
 
-  /** A progress callback. fraction: the completed fraction of the work, 0 to 1, which does not
-   * decrease. At 1 the work is done, and cannot be aborted. user: the pointer that was given with
-   * the callback. It is called in the thread that called the library. Return 0 to continue;
-   * otherwise the library function aborts and returns DV_ABORTED. The callback must neither throw
-   * nor call functions for the same object. */
+  /** A progress callback. fraction: the completed fraction of the work, 0 to 1. user: the pointer
+   * that was given with the callback. It is called in the thread that called the library. Return 0
+   * to continue; otherwise the library function aborts and returns DV_ABORTED. The callback must
+   * neither throw nor call functions for the same object. */
   typedef int32_t (*dv_progress)(double fraction, void* user);
 
   /** The input of dv_deform(), and the memory that it writes during the call. */
@@ -416,7 +415,8 @@ extern "C"
     uint32_t* fold_count;
     /** The value of rest_positions and jacobian at voxels that are not covered. */
     double extra_background;
-    /** The progress callback; null: none. */
+    /** The progress callback; null: none. Its fraction does not decrease. At 1 the work is done,
+     * and the result of the callback is ignored. */
     dv_progress progress;
     /** The argument `user` of the callback. */
     void* user;

@@ -553,8 +553,9 @@ class Deformer:
                 tetrahedron, with an inverse field of the nearest voxel.
             rest_positions, jacobian, fold_count: whether to compute these arrays, see Deformed.
             extra_background: value of rest_positions and jacobian for voxels outside the deformed volume.
-            progress: called with the fraction done. If it returns False, the call raises KeyboardInterrupt, as for
-                Ctrl-C. If it raises an exception, the call ends with that exception.
+            progress: called with the fraction done, which does not decrease and ends with 1. If it returns False
+                before 1, the call raises KeyboardInterrupt, as for Ctrl-C. If it raises an exception, the call ends
+                with that exception.
 
         Warns:
             DeformationWarning: cells of the mesh are ignored, or a part of the volume cannot be deformed. Folds cause

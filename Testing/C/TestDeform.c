@@ -421,8 +421,18 @@ static void TestProgress(void)
   request.user = &progress;
   CHECK(dv_deform(deformer, &request, NULL) == DV_OK);
   CHECK(progress.Last == 1.0);
-  memcpy(expected, Output, sizeof(expected));
   calls = progress.Calls;
+  /* At 1 the result of the callback is ignored. */
+  progress.Calls = 0;
+  progress.Last = 0.0;
+  CHECK(dv_deform(deformer, &request, NULL) == DV_OK);
+  progress.AbortAt = progress.Calls - 1;
+  progress.Calls = 0;
+  progress.Last = 0.0;
+  CHECK(dv_deform(deformer, &request, NULL) == DV_OK);
+  CHECK(progress.Calls == progress.AbortAt + 1);
+  progress.AbortAt = -1;
+  memcpy(expected, Output, sizeof(expected));
   for (i = 0; i < calls - 1; ++i)
   {
     dv_deformer* other = MakeDeformer();

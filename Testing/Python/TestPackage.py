@@ -317,9 +317,12 @@ def test_arrays():
 def test_progress_and_warnings():
     big = np.zeros((120, 120, 120), np.float32)
     field = dv.Field(random.normal(size=(4, 4, 4, 3)), np.diag([40.0, 40.0, 40.0, 1.0]))
-    fractions = []
-    dv.deform(big, field, progress=fractions.append)
-    assert fractions and all(0.0 <= fraction <= 1.0 for fraction in fractions)
+    folding = dv.Field(30.0 * random.normal(size=(4, 4, 4, 3)), np.diag([40.0, 40.0, 40.0, 1.0]))
+    for deformation in (field, folding):
+        fractions = []
+        deformed = dv.deform(big, deformation, progress=fractions.append)
+        assert (deformed.counts["number_of_inverted_tetrahedra"] > 0) == (deformation is folding)
+        assert fractions == sorted(fractions) and 0 < fractions[0] <= fractions[-2] < fractions[-1] == 1, fractions
     expect(KeyboardInterrupt, "", lambda: dv.deform(big, field, progress=lambda fraction: False))
 
     def fail(fraction):

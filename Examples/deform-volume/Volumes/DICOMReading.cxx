@@ -104,9 +104,10 @@ Series::Series(const std::string& folder, Messages& messages)
   if (this->Slices.empty() && !this->Doses.empty())
   {
     throw Failure("cannot read " + folder + ": " + this->Doses.front() +
-      " is an RT Dose, which this program does not read. Write the dose into a NIfTI or NRRD file: "
-      "SimpleITK reads the grid of a dose with all planes in one file, and its values have to be "
-      "multiplied by DoseGridScaling (3004,000E). dcm2niix ignores that factor");
+      " is an RT Dose, which this program does not read. Read it with SimpleITK, multiply its "
+      "values "
+      "by DoseGridScaling (3004,000E), and write a NIfTI or NRRD file. dcm2niix ignores that "
+      "factor");
   }
   if (this->Slices.empty())
   {

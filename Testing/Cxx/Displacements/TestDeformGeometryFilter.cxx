@@ -301,7 +301,7 @@ void TestMisuse()
   filter->SetInputArrayToProcess(0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "none");
   misuse.Expect("no point array \"none\"");
   filter->SetInputArrayToProcess(0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "none");
-  misuse.Expect("chosen among the arrays of cells");
+  misuse.Expect("not chosen among the arrays of points");
   filter->SetInputArrayToProcess(0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "none");
 
   filter->SetRestData(misuse.CopyMesh());

@@ -3,11 +3,17 @@
 // blanked points.
 #include "FilterTesting.h"
 
+#include "vtkDeformGeometryFilter.h"
+
 #include <vtkArrayChanges.h>
 #include <vtkCellData.h>
 #include <vtkCharArray.h>
 #include <vtkDataSetAttributes.h>
+#include <vtkDoubleArray.h>
 #include <vtkIntArray.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkRectilinearGrid.h>
 #include <vtkUniformGrid.h>
 #include <vtkUnsignedCharArray.h>
 
@@ -227,6 +233,16 @@ void TestValidPoints()
   ghosts->SetValue(volume->ComputePointId(other), 0);
   changes->AddTuples(volume->ComputePointId(other), volume->ComputePointId(other));
   VERIFY_EQUAL(CountCovered(deformed), all);
+  // With a sampling factor only every other point counts.
+  deformed.Filter->SetSamplingFactor(2);
+  const vtkIdType coarse = CountCovered(deformed);
+  valid->SetValue(volume->ComputePointId(inside), 0); // not sampled
+  valid->Modified();
+  VERIFY_EQUAL(CountCovered(deformed), coarse);
+  int sampled[3] = { 2, 4, 6 };
+  valid->SetValue(volume->ComputePointId(sampled), 0);
+  valid->Modified();
+  VERIFY(CountCovered(deformed) < coarse);
 }
 
 // The second filter does not take the background of the first one for values of the volume.
@@ -254,29 +270,88 @@ void TestChain()
   VERIFY_EQUAL(wrong, 0);
 }
 
-// Vectors of a field where the mask is 0 are undefined, as those of hidden points are.
-void TestValidVectors()
+// Vectors of a field where the mask is 0 are undefined, as those of hidden points are. fine: the
+// field has twice the resolution of the volume, so that only some of its points are read.
+void TestValidVectors(bool inverse, bool fine)
 {
   const auto volume = MakeVolume(Box);
-  for (const bool inverse : { false, true })
+  const Extent extent = fine ? Extent{ { -2, 16, 0, 16, 6, 20 } } : Box;
+  const auto field = MakeImage(extent, glm::dvec3(fine ? 0.5 : 1.0));
+  SetDisplacements(field, Shift(0.5, 0.0, 0.0));
+  const auto valid = MakeValidMask<vtkCharArray>(field->GetNumberOfPoints());
+  field->GetPointData()->AddArray(valid);
+  Deformed deformed(volume, field);
+  deformed.Filter->SetFieldIsInverse(inverse);
+  const vtkIdType all = CountCovered(deformed);
+  const vtkIdType point = field->FindPoint(3.0, 4.0, 7.0);
+  valid->SetValue(point, 0);
+  valid->Modified();
+  const vtkIdType less = CountCovered(deformed);
+  VERIFY(less < all);
+  vtkNew<vtkDeformGeometryFilter> points;
+  vtkNew<vtkPolyData> surface;
+  vtkNew<vtkPoints> positions;
+  positions->InsertNextPoint(3.0, 4.0, 7.0);
+  surface->SetPoints(positions);
+  points->SetInputData(surface);
+  points->SetDeformationData(field);
+  points->SetFieldIsInverse(inverse);
+  points->Update();
+  const vtkIdType outside = points->GetNumberOfOutsidePoints();
+  VERIFY(outside == 1 || inverse);
+  valid->SetValue(point, 1);
+  valid->Modified();
+  VERIFY_EQUAL(CountCovered(deformed), all);
+  points->Update();
+  VERIFY_EQUAL(points->GetNumberOfOutsidePoints(), vtkIdType{ 0 });
+  auto ghosts = MakeBytes(vtkDataSetAttributes::GhostArrayName(), field->GetNumberOfPoints(), 0);
+  ghosts->SetValue(point, vtkDataSetAttributes::HIDDENPOINT);
+  field->GetPointData()->AddArray(ghosts);
+  VERIFY_EQUAL(CountCovered(deformed), less);
+}
+
+// Cells of a rectilinear mesh that have a point whose mask is 0 are left out.
+void TestValidNodes()
+{
+  const auto volume = MakeVolume(Box);
+  vtkNew<vtkRectilinearGrid> mesh;
+  vtkNew<vtkDoubleArray> coordinates[3];
+  for (int axis = 0; axis < 3; ++axis)
   {
-    const auto field = MakeImage(Box);
-    SetDisplacements(field, Shift(0.5, 0.0, 0.0));
-    Deformed deformed(volume, field);
-    deformed.Filter->SetFieldIsInverse(inverse);
-    const vtkIdType all = CountCovered(deformed);
-    const auto valid = MakeValidMask<vtkCharArray>(field->GetNumberOfPoints());
-    int inside[3] = { 3, 4, 7 };
-    valid->SetValue(field->ComputePointId(inside), 0);
-    field->GetPointData()->AddArray(valid);
-    const vtkIdType less = CountCovered(deformed);
-    VERIFY(less < all);
-    auto ghosts = MakeBytes(vtkDataSetAttributes::GhostArrayName(), field->GetNumberOfPoints(), 0);
-    ghosts->SetValue(field->ComputePointId(inside), vtkDataSetAttributes::HIDDENPOINT);
-    field->GetPointData()->RemoveArray("vtkValidPointMask");
-    field->GetPointData()->AddArray(ghosts);
-    VERIFY_EQUAL(CountCovered(deformed), less);
+    for (int i = 0; i < 5; ++i)
+    {
+      coordinates[axis]->InsertNextValue(
+        Box[2 * axis] - 0.5 + i * (Box[2 * axis + 1] - Box[2 * axis] + 1.0) / 4.0);
+    }
   }
+  mesh->SetDimensions(5, 5, 5);
+  mesh->SetXCoordinates(coordinates[0]);
+  mesh->SetYCoordinates(coordinates[1]);
+  mesh->SetZCoordinates(coordinates[2]);
+  SetDisplacements(mesh, Shift(0.0, 0.0, 0.0));
+  Deformed deformed(volume, mesh);
+  const vtkIdType all = CountCovered(deformed);
+  const auto valid = MakeValidMask<vtkCharArray>(mesh->GetNumberOfPoints());
+  valid->SetValue(62, 0); // the middle
+  mesh->GetPointData()->AddArray(valid);
+  const vtkIdType less = CountCovered(deformed);
+  VERIFY(less < all);
+  auto ghosts = MakeBytes(vtkDataSetAttributes::GhostArrayName(), mesh->GetNumberOfPoints(), 0);
+  ghosts->SetValue(62, vtkDataSetAttributes::HIDDENPOINT);
+  mesh->GetPointData()->RemoveArray("vtkValidPointMask");
+  mesh->GetPointData()->AddArray(ghosts);
+  VERIFY_EQUAL(CountCovered(deformed), less);
+}
+
+void TestValidMisuse()
+{
+  const auto volume = MakeVolume(Box);
+  const auto mesh = MakeStillMesh(volume);
+  volume->GetPointData()->AddArray(MakeValidMask<vtkCharArray>(3));
+  Deformed deformed(volume, mesh);
+  deformed.Filter->Update();
+  VERIFY_EQUAL(deformed.TakeErrors(), 1);
+  VERIFY_CONTAINS(deformed.LastError, "\"vtkValidPointMask\" of the volume has 3 tuples");
 }
 
 } // namespace
@@ -290,6 +365,12 @@ int TestDeformMasks(int, char*[])
   TestValidPoints<vtkCharArray>();
   TestValidPoints<vtkIntArray>();
   TestChain();
-  TestValidVectors();
+  for (const bool inverse : { false, true })
+  {
+    TestValidVectors(inverse, false);
+    TestValidVectors(inverse, true);
+  }
+  TestValidNodes();
+  TestValidMisuse();
   return GetExitCode();
 }
