@@ -13,7 +13,7 @@
  * - the connectivity of the cells of the mesh (vtkCellArray::GetConnectivityArray(), one component:
  *   the tuples 4 c to 4 c + 3 are the nodes of tetrahedron c),
  * - "ActiveTetrahedra", "BoundaryDistance" and, unless there is a vtkValidPointMask, vtkGhostType
- * of the points of the volume (port 0).
+ *   of the points of the volume (port 0).
  *
  * @code{.cpp}
  * vtkNew<vtkArrayChanges> changes;
