@@ -70,8 +70,8 @@ def other_values(value):
     return None
 
 
-# Numbers of removed enumerators. Setting such a number sets another value, with a warning.
-REMOVED_VALUES = {"vtkTetGenMesher.PieceMode": 1}
+# Numbers of removed enumerators, which set another value with a warning, and numbers that are errors.
+REFUSED_VALUES = {"vtkTetGenMesher.PieceMode": 1, "vtkDeformVolumeSession.MovingSamplingFactor": 0}
 
 
 def check_properties(cls):
@@ -92,7 +92,7 @@ def check_properties(cls):
         others = other_values(value)
         check(others is not None, f"{label}: other_values() has no values of type {type(value)}")
         for other in others or []:
-            if other == REMOVED_VALUES.get(label):
+            if other == REFUSED_VALUES.get(label):
                 continue
             before = instance.GetMTime()
             set_(*other) if isinstance(other, tuple) and len(other) > 1 else set_(other)

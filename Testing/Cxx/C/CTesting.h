@@ -80,8 +80,8 @@ public:
       array.type = Types.at(values->GetDataType());
       array.components = values->GetNumberOfComponents();
       array.categorical = categorical.count(values->GetName()) > 0 ? 1 : 0;
-      array.background = background;
       array.density = this->Densities.count(values->GetName()) > 0 ? 1 : 0;
+      array.background = array.density != 0 ? 0.0 : background; // as in vtkDeformVolumeFilter
       arrays.push_back(array);
       this->Names.emplace_back(values->GetName());
       const bool isFloats = array.density != 0 && array.type != DV_FLOAT64;
