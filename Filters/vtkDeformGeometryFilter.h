@@ -32,8 +32,8 @@
  *   If ports 0 and 1 are connected to the same source, the active vectors are the displacements:
  *   choose other active vectors if the displacements must not change.
  * - "vtkValidPointMask" (char) is 1 for points that the deformation moves, and 0 for points outside
- *   (see OutsideMode). Points outside keep their positions, normals and vectors, and a warning has
- *   their number.
+ *   (see OutsideMode). It replaces an array of this name of the input. Points outside keep their
+ *   positions, normals and vectors, and a warning has their number.
  *
  * Transformed arrays are of type float if those of the input are, else double. The deformation
  * gradient is the derivative of deformed by rest positions, with Inverse of rest by deformed ones.

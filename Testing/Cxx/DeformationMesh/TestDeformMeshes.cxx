@@ -517,6 +517,32 @@ void TestMeetingBlocks()
   found.Update();
   VERIFY_EQUAL(
     found.Filter->GetNumberOfCoveredVoxels(), expected.Filter->GetNumberOfCoveredVoxels());
+  // An update that fails, and one that succeeds.
+  const vtkIdType used = second->GetCell(0)->GetPointId(0);
+  double point[3];
+  second->GetPoint(used, point);
+  second->GetPoints()->SetPoint(used, nan, 0.0, 0.0);
+  second->GetPoints()->Modified();
+  blocks->Modified();
+  Expect(found, "is not finite");
+  second->GetPoints()->SetPoint(used, point);
+  second->GetPoints()->Modified();
+  blocks->Modified();
+  vtkImageData* output = found.Update();
+  // The other two ways to give the mesh at rest and deformed.
+  vtkNew<vtkMultiBlockDataSet> moved;
+  for (unsigned int i = 0; i < 2; ++i)
+  {
+    moved->SetBlock(i, MoveToDeformed(vtkUnstructuredGrid::SafeDownCast(blocks->GetBlock(i))));
+  }
+  Deformed two(volume, moved);
+  two.Filter->SetRestData(blocks);
+  VERIFY(AreEqual(output, two.Update()));
+  Deformed deformedPoints(volume, moved);
+  deformedPoints.Filter->PointsAreDeformedOn();
+  deformedPoints.Update();
+  VERIFY_EQUAL(
+    deformedPoints.Filter->GetNumberOfCoveredVoxels(), expected.Filter->GetNumberOfCoveredVoxels());
 }
 
 void TestGrids()
