@@ -516,6 +516,13 @@ class DeformVolume(VTKPythonAlgorithmBase):
 
     def _find_vectors(self, data):
         info = self.GetInputArrayInformation(0)
+        key = vtkDataObject.FIELD_ASSOCIATION()
+        points_only = vtkDataObject.FIELD_ASSOCIATION_POINTS, vtkDataObject.FIELD_ASSOCIATION_POINTS_THEN_CELLS
+        if info.Has(key) and info.Get(key) not in points_only:
+            raise ValueError(
+                "The displacements are not chosen among the arrays of points. Choose an array with "
+                "SetInputArrayToProcess() and FIELD_ASSOCIATION_POINTS."
+            )
         name = info.Get(vtkDataObject.FIELD_NAME()) if info.Has(vtkDataObject.FIELD_NAME()) else None
         points = data.GetPointData()
         if name:

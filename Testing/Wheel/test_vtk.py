@@ -373,7 +373,14 @@ class Pipeline(unittest.TestCase):
 
     # VTK prints these errors, too.
     def test_misuse(self):
-        from vtkmodules.vtkCommonDataModel import VTK_TRIANGLE_STRIP, vtkImageData, vtkPolyData, vtkUnstructuredGrid
+        from vtkmodules.util.numpy_support import numpy_to_vtk
+        from vtkmodules.vtkCommonDataModel import (
+            VTK_TRIANGLE_STRIP,
+            vtkDataObject,
+            vtkImageData,
+            vtkPolyData,
+            vtkUnstructuredGrid,
+        )
 
         with self.assertRaisesRegex(AttributeError, "has no SetSamplingFactor"):
             self.filter.SetSamplingFactor(2)
@@ -384,6 +391,14 @@ class Pipeline(unittest.TestCase):
         field.AllocatePointGhostArray()
         field.GetPointGhostArray().SetValue(0, 2)  # HIDDENPOINT
         self.expect_error("hidden points", field)
+        field = make_field(self.SHIFT)
+        valid = numpy_to_vtk(numpy.arange(8, dtype=numpy.int8), deep=True)  # 0 at the first point
+        valid.SetName("vtkValidPointMask")
+        field.GetPointData().AddArray(valid)
+        self.expect_error("hidden points", field)
+        self.filter.SetInputArrayToProcess(0, 1, 0, vtkDataObject.FIELD_ASSOCIATION_CELLS, "vectors")
+        self.expect_error("not chosen among the arrays of points", make_field(self.SHIFT))
+        self.filter.SetInputArrayToProcess(0, 1, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, "")
         self.expect_error("is not finite", make_mesh([numpy.nan, 0.0, 0.0]))
         self.expect_error("no tetrahedra, but 1 triangle strip", make_mesh(self.SHIFT, VTK_TRIANGLE_STRIP))
         field = make_field(self.SHIFT)
