@@ -41,13 +41,17 @@ vtkSmartPointer<vtkTextActor> MakeText(bool isTop)
   return actor;
 }
 
+// actor: null if there is no text renderer.
 bool SetText(vtkTextActor* actor, const std::string& text)
 {
+  if (!actor)
+  {
+    return false;
+  }
   const char* former = actor->GetInput();
   const bool isNew = text != (former ? former : "");
   actor->SetInput(text.c_str());
-  // Without VTK's module RenderingFreeType, drawing a text would end the program.
-  actor->SetVisibility(text.empty() || !vtkTextRenderer::GetInstance() ? 0 : 1);
+  actor->SetVisibility(text.empty() ? 0 : 1);
   return isNew;
 }
 
@@ -82,7 +86,8 @@ void StyleOverlay::SetRenderer(vtkRenderer* renderer)
   {
     return;
   }
-  if (!this->Status)
+  // Without VTK's module RenderingFreeType, drawing a text would end the program.
+  if (!this->Status && vtkTextRenderer::GetInstance())
   {
     this->Status = MakeText(false);
     this->Help = MakeText(true);
@@ -90,11 +95,11 @@ void StyleOverlay::SetRenderer(vtkRenderer* renderer)
   for (vtkActor2D* actor : { this->MarkActor.Get(), static_cast<vtkActor2D*>(this->Status),
          static_cast<vtkActor2D*>(this->Help) })
   {
-    if (this->Renderer)
+    if (actor && this->Renderer)
     {
       this->Renderer->RemoveViewProp(actor);
     }
-    if (renderer)
+    if (actor && renderer)
     {
       renderer->AddViewProp(actor);
     }
