@@ -366,7 +366,7 @@ MUTATIONS = {
     "mask-valid": ("Filters/Arrays/MaskArray.cxx", "isValid == 0 ? vtkDataSetAttributes::HIDDENPOINT : 0", "0",
                    ["Cxx.TestDeformMasks"]),
     "elastic-cells": ("Filters/Physics/BodyReading.cxx",
-                      "add(grid->GetCells() ? grid->GetCells()->GetConnectivityArray() : nullptr);", "",
+                      "Stamp stamp = GetCellArraysStamp({ grid });", "Stamp stamp;",
                       ["Cxx.TestElasticDeformation"]),
     "editor-held": ("Filters/Cutting/VolumeEditor.cxx", "array && array->GetReferenceCount() == 1", "array",
                     ["Cxx.TestCutVolume", "Cxx.TestCarveVolume"]),

@@ -21,7 +21,6 @@
 #include <array>
 #include <cstring>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 namespace deformvolume
@@ -96,15 +95,30 @@ vtkSmartPointer<vtkDoubleArray> MakeArray(const std::vector<glm::dvec3>& vectors
 // Whether a piece has other cells than tetrahedra.
 bool HasOtherCells(const MeshParts& parts)
 {
-  return std::any_of(parts.begin(), parts.end(),
-    [](vtkUnstructuredGrid* grid)
+  for (vtkUnstructuredGrid* grid : parts)
+  {
+    for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
     {
-      vtkIdType cell = 0;
-      for (; cell < grid->GetNumberOfCells() && grid->GetCellType(cell) == VTK_TETRA; ++cell)
+      if (grid->GetCellType(cell) != VTK_TETRA)
       {
+        return true;
       }
-      return cell < grid->GetNumberOfCells();
-    });
+    }
+  }
+  return false;
+}
+
+// Returns the sum over the ranks before this one, and the sum over all ranks. Collective.
+std::array<std::uint64_t, 2> Count(const Ranks& ranks, std::size_t mine)
+{
+  std::array<std::uint64_t, 2> counts{};
+  const std::vector<std::uint64_t> numbers = ranks.Gather(mine);
+  for (int rank = 0; rank < ranks.GetCount(); ++rank)
+  {
+    counts[0] += rank < ranks.GetRank() ? numbers[rank] : 0;
+    counts[1] += numbers[rank];
+  }
+  return counts;
 }
 
 // Returns CellNode::Place of each node of this rank's piece, so that cells of different ranks split
@@ -125,9 +139,7 @@ std::vector<std::int32_t> FindPlaces(const Ranks& ranks, const MeshParts& parts)
       }
     });
   const std::size_t mine = points.size();
-  const std::vector<std::uint64_t> counts = ranks.Gather(mine);
-  const auto first = static_cast<std::ptrdiff_t>(
-    std::accumulate(counts.begin(), counts.begin() + ranks.GetRank(), std::uint64_t{ 0 }));
+  const auto first = static_cast<std::ptrdiff_t>(Count(ranks, mine)[0]);
   GatherVector(ranks, points, MESH_NAME);
   std::vector<std::int32_t> places;
   ranks.Attempt(
@@ -271,22 +283,10 @@ DeformationSource MeshGathering::Gather(const Ranks& ranks, const DeformationSou
     this->WrongOrder = piece.WrongOrder;
     if (!ranks.AreEqual(hash))
     {
-      // The sum over the ranks before this one, and the sum over all ranks.
-      const auto count = [&](std::size_t mine)
-      {
-        std::array<std::uint64_t, 2> counts{};
-        const std::vector<std::uint64_t> numbers = ranks.Gather(mine);
-        for (int rank = 0; rank < ranks.GetCount(); ++rank)
-        {
-          counts[0] += rank < ranks.GetRank() ? numbers[rank] : 0;
-          counts[1] += numbers[rank];
-        }
-        return counts;
-      };
       const std::size_t mine = piece.RestPoints.size();
-      const auto [first, sum] = count(mine);
-      const auto [firstDerived, sumOfDerived] = count(piece.Derived.GetCount());
-      const std::uint64_t firstWeight = count(piece.Derived.Weights.size())[0];
+      const auto [first, sum] = Count(ranks, mine);
+      const auto [firstDerived, sumOfDerived] = Count(ranks, piece.Derived.GetCount());
+      const std::uint64_t firstWeight = Count(ranks, piece.Derived.Weights.size())[0];
       if (sum + sumOfDerived > static_cast<std::uint64_t>(std::numeric_limits<std::int32_t>::max()))
       {
         throw Error("The " + std::string(MESH_NAME) +

@@ -6,6 +6,7 @@
 #include "Error.h"
 #include "HandlePositions.h"
 #include "IndexBounds.h"
+#include "MeshStamp.h"
 #include "ShapedArray.h"
 #include "VectorArray.h"
 
@@ -369,15 +370,10 @@ void Hold(const glm::dvec3& position, double radius, const glm::dvec3& displacem
 
 Stamp GetBodyStamp(vtkUnstructuredGrid* grid)
 {
-  Stamp stamp;
+  Stamp stamp = GetCellArraysStamp({ grid });
   const auto add = [&](vtkObject* object)
   { stamp.emplace_back(object, object ? object->GetMTime() : 0); };
   add(grid->GetPoints());
-  add(grid->GetCells());
-  // The modification time of cells does not change if their arrays are modified.
-  add(grid->GetCells() ? grid->GetCells()->GetConnectivityArray() : nullptr);
-  add(grid->GetCells() ? grid->GetCells()->GetOffsetsArray() : nullptr);
-  add(GetCellTypes(grid));
   for (const char* name : { YoungModulusName, PoissonRatioName, DensityName })
   {
     add(grid->GetCellData()->GetAbstractArray(name));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ElasticSession.h"
 
-#include "CellTypes.h"
+#include "MeshStamp.h"
 #include "MidSideNodes.h"
 
 #include "vtkCellArray.h"
@@ -59,14 +59,8 @@ void AppendCopies(std::vector<Value>& values, const std::vector<std::int32_t>& o
 
 Stamp GetMeshStamp(vtkUnstructuredGrid* grid)
 {
-  Stamp stamp{ { grid->GetPoints(), grid->GetPoints()->GetMTime() },
-    { grid->GetCells(), grid->GetCells()->GetMTime() } };
-  // The modification time of cells does not change if their arrays are modified.
-  for (vtkDataArray* array : { GetCellTypes(grid), grid->GetCells()->GetConnectivityArray(),
-         grid->GetCells()->GetOffsetsArray() })
-  {
-    stamp.emplace_back(array, array ? array->GetMTime() : 0);
-  }
+  Stamp stamp = GetCellArraysStamp({ grid });
+  stamp.emplace_back(grid->GetPoints(), grid->GetPoints()->GetMTime());
   return stamp;
 }
 
