@@ -257,8 +257,7 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
     .add_option("--mesh-space", options.MeshSpace,
       "World coordinates of files of --mesh, --rest, --cut and --points (.vtp, .vtu, .stl, .ply) "
       "that do not state them (files of 3D Slicer do): lps (x to the left, y to the back, z to the "
-      "head) or "
-      "ras (x to the right, y to the front, z to the head) [those of the volume]")
+      "head) or ras (x to the right, y to the front, z to the head) [those of the volume]")
     ->check(CLI::IsMember({ "lps", "ras" }))
     ->type_name("SPACE")
     ->group(group);

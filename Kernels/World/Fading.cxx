@@ -101,8 +101,7 @@ std::string FindFaultOfFading(const DisplacementField& field, const IndexBounds&
   {
     return "The " + border + " by up to " + std::to_string(longest) +
       ", and as the fade distance is 0 the volume is stretched or folded there. Set a fade "
-      "distance "
-      "of at least twice that displacement.";
+      "distance of at least twice that displacement.";
   }
   return FindFoldsOfFading(border, longest, fadeDistance);
 }

@@ -10,7 +10,7 @@
 #include "Messages.h"
 #include "OptionChecks.h"
 #include "ProgressBar.h"
-#include "XMLWriting.h"
+#include "VTKWriting.h"
 
 #include <vtkBoundingBox.h>
 #include <vtkImageData.h>

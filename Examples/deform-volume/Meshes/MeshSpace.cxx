@@ -28,10 +28,17 @@ WorldAxes FindSpace(const std::string& text, const std::string& before)
                                                         : WorldAxes::Unknown;
 }
 
-WorldAxes GetSpace(vtkDataObject* object, const std::string& path, Messages& messages)
+/// The field data array SPACE; null if there is none, or if it is empty.
+vtkStringArray* FindSpaceArray(vtkDataObject* object)
 {
   auto* array = vtkStringArray::SafeDownCast(object->GetFieldData()->GetAbstractArray(SpaceName));
-  if (!array || array->GetNumberOfValues() == 0)
+  return array && array->GetNumberOfValues() > 0 ? array : nullptr;
+}
+
+WorldAxes GetSpace(vtkDataObject* object, const std::string& path, Messages& messages)
+{
+  vtkStringArray* array = FindSpaceArray(object);
+  if (!array)
   {
     return WorldAxes::Unknown;
   }
@@ -124,9 +131,8 @@ void KeepSpace(vtkDataObject* object, const char* header)
 
 std::string GetSpaceComment(vtkDataObject* object)
 {
-  auto* array = vtkStringArray::SafeDownCast(object->GetFieldData()->GetAbstractArray(SpaceName));
-  return array && array->GetNumberOfValues() > 0 ? std::string(SpaceName) + "=" + array->GetValue(0)
-                                                 : std::string();
+  vtkStringArray* array = FindSpaceArray(object);
+  return array ? std::string(SpaceName) + "=" + array->GetValue(0) : std::string();
 }
 
 bool TurnIntoWorld(vtkDataObject* object, const std::vector<std::string>& vectors,

@@ -9,8 +9,8 @@
 #include "Messages.h"
 #include "Options.h"
 #include "ProgressBar.h"
+#include "VTKWriting.h"
 #include "Volume.h"
-#include "XMLWriting.h"
 
 #include <vtkCallbackCommand.h>
 #include <vtkCellData.h>

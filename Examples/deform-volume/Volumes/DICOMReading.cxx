@@ -105,9 +105,8 @@ Series::Series(const std::string& folder, Messages& messages)
   {
     throw Failure("cannot read " + folder + ": " + this->Doses.front() +
       " is an RT Dose, which this program does not read. Read it with SimpleITK, multiply its "
-      "values "
-      "by DoseGridScaling (3004,000E), and write a NIfTI or NRRD file. dcm2niix ignores that "
-      "factor");
+      "values by DoseGridScaling (3004,000E), and write a NIfTI or NRRD file. dcm2niix ignores "
+      "that factor");
   }
   if (this->Slices.empty())
   {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef DeformVolumeXMLWriting_h
-#define DeformVolumeXMLWriting_h
+#ifndef DeformVolumeVTKWriting_h
+#define DeformVolumeVTKWriting_h
 
 #include "Messages.h"
 

@@ -6,7 +6,7 @@
 #include "ImageAxes.h"
 #include "Messages.h"
 #include "ProgressBar.h"
-#include "XMLWriting.h"
+#include "VTKWriting.h"
 #ifdef DEFORMVOLUME_HAVE_ITK
 #include "ItkWriting.h"
 #endif
