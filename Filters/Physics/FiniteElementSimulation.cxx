@@ -80,7 +80,9 @@ void FiniteElementSimulation::Warn(const EquilibriumReport& last)
          << " steps: the largest residual force on a node is " << 100.0 * now.RelativeResidual
          << " % of the largest force that is applied to a node or holds it. "
          << (isInteractive ? "Further updates continue from there (Mode INTERACTIVE)."
-                           : "Move handles and loads in smaller steps, or make a better mesh.");
+                           : "Check the units of loads and materials (N and Pa; LengthUnit is the "
+                             "unit of coordinates). Move handles and loads in smaller steps, or "
+                             "make a better mesh.");
     this->Warnings.push_back(text.str());
     text.str("");
     this->HasWarnedOfResidual = true;

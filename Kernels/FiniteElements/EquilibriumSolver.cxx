@@ -9,10 +9,46 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numeric>
 
 namespace deformvolume
 {
+
+namespace
+{
+
+// Counts Newton steps that bring the body no closer to equilibrium while tetrahedra are inverted.
+// With a load that is far too large nearly all steps are such, and each takes thousands of
+// conjugate gradient iterations.
+class StalledSteps
+{
+public:
+  bool AreTooMany(double residual, bool isInverted)
+  {
+    // Bodies that did reach an equilibrium needed up to 13 such steps, with loads that stretched
+    // them to seven times their length.
+    constexpr int tooMany = 15;
+    constexpr double leastGain = 0.9;
+    if (residual < leastGain * this->Least)
+    {
+      this->Least = residual;
+      this->Number = 0;
+    }
+    else if (isInverted)
+    {
+      ++this->Number;
+    }
+    return this->Number >= tooMany;
+  }
+
+private:
+  double Least = std::numeric_limits<double>::infinity();
+  int Number = 0;
+};
+
+} // namespace
+
 EquilibriumSolver::EquilibriumSolver(Watch& watch, const ElasticBody& body)
   : Body(body)
   , Pieces(FindPieces(body, &watch))
@@ -71,6 +107,7 @@ void EquilibriumSolver::SetMaterialModel(MaterialModel model)
 void EquilibriumSolver::SetDisplacements(const std::vector<glm::dvec3>& displacements)
 {
   this->Last.Displacements = displacements;
+  this->HasStalled = false;
   this->Forget();
 }
 
@@ -387,6 +424,11 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
   }
   this->RightHandSide.resize(problem.IsFree.size());
   State state = this->Last;
+  if (this->HasStalled)
+  {
+    // Start at rest: from the tangled body, smaller loads would not reach an equilibrium either.
+    state.Displacements.assign(state.Displacements.size(), glm::dvec3(0.0));
+  }
   if (this->HasForces)
   {
     this->FindPotential(watch, problem, state);
@@ -418,6 +460,8 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
     ? toleranceOfFrames
     : limits.RelativeTolerance;
   double before = 0.0;
+  StalledSteps stalledSteps;
+  bool hasStalled = false;
   for (;;)
   {
     const Residuals residuals = FindResiduals(problem, this->Sliding, state.Forces);
@@ -440,7 +484,9 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
       this->HasTangent = false;
     }
     before = residuals.Largest;
-    if (report.IsConverged || report.NewtonSteps >= limits.NewtonSteps ||
+    hasStalled =
+      !report.IsConverged && stalledSteps.AreTooMany(residuals.Largest, state.Sums.Inverted > 0);
+    if (report.IsConverged || hasStalled || report.NewtonSteps >= limits.NewtonSteps ||
       !this->Step(
         watch, problem, ChooseTolerance(problem, wanted / residuals.Largest), state, report))
     {
@@ -458,6 +504,11 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
   report.NumberOfInvertedTetrahedra = CountInvertedSplits(watch, this->Body, state.Displacements);
   std::swap(this->Last, state);
   this->HasForces = true;
+  this->HasStalled = hasStalled;
+  if (hasStalled)
+  {
+    this->Forget();
+  }
   return report;
 }
 

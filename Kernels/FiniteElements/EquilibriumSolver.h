@@ -100,6 +100,8 @@ private:
   // The state after the last call. Its forces are still valid if HasForces.
   State Last;
   bool HasForces = false;
+  // The last call gave up with inverted tetrahedra. The next one starts at rest.
+  bool HasStalled = false;
 };
 
 } // namespace deformvolume

@@ -786,3 +786,32 @@ TEST(FiniteElements, RandomPlacementsOfABentBody)
     EXPECT_LT(LargestDifference(model.GetDisplacements(), displacements), 1e-5);
   }
 }
+
+// A load that is far too large ends before the 200 steps, which would take minutes, and a smaller
+// load after it has the same result as without it.
+TEST(FiniteElements, LoadsThatAreFarTooLargeEndSoon)
+{
+  const LatticeBody lattice = MakeBlock({ 3, 3, 5 }, 0.45);
+  const auto solve = [&](FiniteElementModel& model, double load)
+  {
+    EquilibriumRequest request;
+    request.Mode = EquilibriumMode::Converged;
+    request.Loads.Forces.assign(lattice.Body.Points.size(), glm::dvec3(0.0));
+    for (const HeldNode& end : PullEnd(lattice, glm::dvec3(0.0)))
+    {
+      request.Loads.Forces[static_cast<std::size_t>(end.Node)].x = load;
+    }
+    return model.Solve(request);
+  };
+  FiniteElementModel fresh;
+  fresh.SetBody(lattice.Body);
+  ASSERT_TRUE(solve(fresh, 0.1).IsConverged);
+  FiniteElementModel model;
+  model.SetBody(lattice.Body);
+  const EquilibriumReport report = solve(model, 100.0);
+  EXPECT_FALSE(report.IsConverged);
+  EXPECT_GT(report.NumberOfInvertedTetrahedra, 0);
+  EXPECT_LT(report.NewtonSteps, 60);
+  EXPECT_TRUE(solve(model, 0.1).IsConverged);
+  EXPECT_EQ(model.GetDisplacements(), fresh.GetDisplacements());
+}
