@@ -42,7 +42,7 @@ void RegisterPublished(const EvaluationSize& size);
 /// Probe/<pose>/<resampler or probe>: the slowest peer.
 void RegisterProbe(const EvaluationSize& size);
 
-/// Table2/<pose>/<resampler>, and Poses/<pose> for the volume of the comparison.
+/// Poses/<pose>: the volume of the comparison.
 void RegisterPoses(const EvaluationSize& size);
 
 /// TightMesh/<nodes>/<boundary or without>: meshes that end within the volume.

@@ -7,12 +7,11 @@
 #   --quick             few rounds and no volume over 30 million voxels: checks that everything works.
 #                       Its times are not reliable
 #   --programs FOLDER   measures with the programs in FOLDER, which were built elsewhere, and installs
-#                       and builds nothing. Without xvfb-run or DeformVolumeRendering the viewports are
-#                       left out, without matplotlib the report
+#                       and builds nothing. Without matplotlib the report is left out
 #   --libraries FOLDER  where these programs find libraries; Python does not look there
 #   --output FOLDER     writes to this folder, which is empty or does not exist, instead of
 #                       build/benchmarks
-#   --parts PART,...    measures only these parts: benchmarks, memory, rendering, gpu-peers
+#   --parts PART,...    measures only these parts: benchmarks, memory, gpu-peers
 #   --filter REGEX      runs only the benchmarks whose names match. Several filters are several runs, in
 #                       this order, each with its own file of results
 #   --seconds NUMBER    starts no further run with a filter after this time; the other parts follow
@@ -26,7 +25,7 @@ fail()
   exit 2
 }
 
-known="benchmarks,memory,rendering,gpu-peers"
+known="benchmarks,memory,gpu-peers"
 quick=()
 programs=""
 libraries=""
@@ -138,17 +137,6 @@ measure_benchmarks()
   done
 }
 
-measure_rendering()
-{
-  if [ ! -x "$programs/DeformVolumeRendering" ] || ! command -v xvfb-run >/dev/null; then
-    echo "run.sh: the viewports are left out: there is no DeformVolumeRendering or no xvfb-run" >&2
-    return
-  fi
-  try xvfb-run -a -s "-noreset -screen 0 1920x1200x24" \
-    "${start[@]}" "$programs/DeformVolumeRendering" "${quick[@]}" "--pictures=$folder" \
-    "--benchmark_out=$folder/rendering.json" --benchmark_out_format=json
-}
-
 measure_gpu_peers()
 {
   local status=0
@@ -182,7 +170,6 @@ for device in "${devices[@]}"; do
       try measure DeformVolumeMemory "memory-${line// /-}" $line
     done
   fi
-  if wants rendering; then measure_rendering; fi
   if wants gpu-peers && grep -q '"device_is_processor": "0"' "$folder/device.json"; then
     measure_gpu_peers
   fi

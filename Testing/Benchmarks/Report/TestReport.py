@@ -21,12 +21,11 @@ import numpy as np
 
 COUNTERS = (
     "kernels mapping resampling transfer preprocessing voxels output_voxels device_bytes_per_voxel mapping_builds "
-    "volume_uploads samples tetrahedra fewest_samples most_samples resident_bytes "
+    "volume_uploads resident_bytes "
     "resident_bytes_per_voxel step moved simulation nodes device_bytes update bytes_per_second").split()
 ROUNDS = 3
 OTHER_NAMES = (
     [f"Memory/189x305x229/ushort/2197/{resampler}" for resampler in ("exact", "mesh-rasterization")]
-    + [f"Render/gpu-ray-cast/700x700/shaded/{what}" for what in ("undeformed", "deformed")]
     + [f"GpuPeer/{pose}/{peer}" for pose in sections.POSES for peer in sections.GPU_PEERS]
     + ["GpuPeer/copy/torch", "GpuPeer/copy/cupy", "Device/copy"]
     # DeformVolumeBenchmarks does not have these with ParaView's VTK.

@@ -3,14 +3,9 @@
 measured, and may draw plots (Pictures)."""
 from plots import STYLES, plot_bars, plot_curves
 
-# Times that the authors of the method measured on a Radeon R9 270X: Rodriguez, Leon, Martin and Otaduy,
-# "A parallel resampling method for interactive deformation of volumetric models". Their ray casting took 500 samples
-# for each ray.
-PAPER_RESAMPLING = {"undeformed": 14.6, "rotated-45": 23.6, "scale-1.5": 51.2}  # ms
-PAPER_RENDERING = {("700x700", "unshaded"): 7.4, ("700x700", "shaded"): 24.1,
-                   ("1920x1080", "unshaded"): 40.3, ("1920x1080", "shaded"): 107.7}  # ms
-
-# Milliseconds of a step of ChainMail, mapping, resampling, and a whole frame. Edits: upper limits.
+# Times in milliseconds that the authors of the method measured on a Radeon R9 270X: Rodriguez, Leon, Martin and
+# Otaduy, "A parallel resampling method for interactive deformation of volumetric models". Frames: a step of ChainMail,
+# mapping, resampling, and a whole frame. Edits: upper limits.
 PAPER_FRAMES = {"150x242x182": (None, None, None, 16.0), "189x305x229": (11.0, 0.5, 23.5, 35.0)}
 # Simulation, mapping and resampling of a mass-spring network of 2.5 million tetrahedra.
 PAPER_SPRINGS = (19.0, 5.3, 21.4)
@@ -215,23 +210,6 @@ def published(results, _pictures, _kind):
 
 
 def poses(results, _pictures, _kind):
-    rows = []
-    for name in results.names("Table2/"):
-        _, pose, resampler = name.split("/")
-        kernels = results.milliseconds(name, "kernels")
-        samples = results.median(name, "samples")
-        if not kernels:
-            continue
-        fewest, most = (results.median(name, key) for key in ("fewest_samples", "most_samples"))
-        per_tetrahedron = samples / results.median(name, "tetrahedra")
-        rows.append([pose, STYLES[resampler][0], kernels, results.median(name),
-                     f"{per_tetrahedron:.2f} ({fewest:.0f}, {most:.0f})",
-                     f"{samples / kernels:.3g}", PAPER_RESAMPLING.get(pose)])
-    if rows:
-        yield "## Table 2: 256 x 256 x 113 voxels of 16 bits, 2,197 nodes\n"
-        yield table(["pose", "resampler", "mapping + resampling, ms", "Update(), ms",
-                     "samples per tetrahedron (fewest, most)", "samples per ms",
-                     "resampling in the paper (Radeon R9 270X), ms"], rows)
     rows = [[name.split("/")[1], results.milliseconds(name, "kernels"), results.median(name),
              results.ratio(name, "Poses/near", "kernels")] for name in results.names("Poses/")]
     if rows:
@@ -533,32 +511,12 @@ def given(results, _pictures, _kind):
                      "Update() minus that with the same grid, ms"], rows)
 
 
-def rendering(results, pictures, kind):
-    rows = []
-    for name in results.names("Render/"):
-        if not name.endswith("/undeformed"):
-            continue
-        _, mapper, viewport, shading, _ = name.split("/")
-        deformed = name.replace("/undeformed", "/deformed")
-        rows.append([mapper, viewport, shading, results.median(name), results.median(deformed),
-                     results.ratio(deformed, name), results.milliseconds(deformed, "update"),
-                     PAPER_RENDERING[viewport, shading]])
-    if not rows:
-        return
-    yield "## Viewports: frames of VTK's mappers, the head of ch2 (181 x 217 x 181 voxels)\n"
-    yield table(["mapper", "viewport", "gradients", "undeformed, ms", "deformed, ms",
-                 "deformed relative to undeformed", "update of the filter before the frame, ms",
-                 "ray casting in the paper (Radeon R9 270X), ms"], rows)
-    for path in sorted((pictures.folder / kind).glob("head-*.png")):
-        yield pictures.show(f"{kind}/{path.name}", path.stem)
-
-
 # Names of the sections, for the list of what was not measured.
 ALL = {
     "the memory bandwidth": device,
     "table 1": comparison,
     "the published method": published,
-    "table 2 and the poses": poses,
+    "poses": poses,
     "nodes": nodes,
     "tight meshes": tight_meshes,
     "figure 7": tetrahedra,
@@ -573,7 +531,6 @@ ALL = {
     "cutting and carving": edits,
     "masks": masks,
     "forms of the deformation": given,
-    "viewports": rendering,
 }
 # Additional sections for GPUs, before those of ALL.
 ON_GPUS = {
