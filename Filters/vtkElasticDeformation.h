@@ -11,8 +11,9 @@
  * @par Port 0, the rest mesh:
  * vtkUnstructuredGrid of vtkTetra cells, and with vtkFiniteElementDeformation of vtkQuadraticTetra
  * cells as well, all of the same orientation: with the fourth point on the same side of the first
- * three. Cells of fewer than three dimensions are ignored. These arrays are used, all of them
- * optional:
+ * three. Cells of fewer than three dimensions are ignored, and so are cells that vtkGhostType marks
+ * as hidden or duplicate, and those with a point that it hides or whose vtkValidPointMask is 0.
+ * These arrays are used, all of them optional:
  * - the point array "Fixed", one component: nodes with a value other than 0 are fixed;
  * - the point array "PrescribedDisplacement", three components, in the units of the mesh:
  *   displacements of the fixed nodes. Values at other nodes are not used;

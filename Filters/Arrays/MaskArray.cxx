@@ -157,4 +157,30 @@ PointGhosts FindPointGhosts(vtkDataSet* data, const std::string& owner)
   return ghosts;
 }
 
+SkippedCells::SkippedCells(vtkDataSet* data, const std::string& owner)
+  : NumberOfPoints(data->GetNumberOfPoints())
+  , Points(FindPointGhosts(data, owner))
+{
+  ByteArray* array = FindMask(data->GetCellData(), vtkDataSetAttributes::GhostArrayName(),
+    data->GetNumberOfCells(), "cell", owner);
+  this->Cells = array ? array->GetPointer(0) : nullptr;
+}
+
+bool SkippedCells::Contain(vtkIdType cell) const
+{
+  constexpr int kinds = vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL;
+  return this->Cells && (this->Cells[cell] & kinds) != 0;
+}
+
+bool SkippedCells::ContainPointOf(const vtkIdType* points, vtkIdType count) const
+{
+  return this->Points.Values &&
+    std::any_of(points, points + count,
+      [this](vtkIdType point)
+      {
+        return point >= 0 && point < this->NumberOfPoints &&
+          (this->Points.Values[point] & vtkDataSetAttributes::HIDDENPOINT) != 0;
+      });
+}
+
 } // namespace deformvolume

@@ -86,6 +86,24 @@ struct PointGhosts
 /// valid point mask does not have one component and one tuple for each point.
 PointGhosts FindPointGhosts(vtkDataSet* data, const std::string& owner);
 
+/// The cells of a dataset that are not part of it: those that vtkGhostType marks as hidden or
+/// duplicate, and those with a hidden point.
+class SkippedCells
+{
+public:
+  /// owner: words for messages. Throws like FindPointGhosts().
+  SkippedCells(vtkDataSet* data, const std::string& owner);
+
+  bool Contain(vtkIdType cell) const;
+  /// Whether a cell has a hidden point. Points that the dataset does not have are ignored.
+  bool ContainPointOf(const vtkIdType* points, vtkIdType count) const;
+
+private:
+  const unsigned char* Cells = nullptr;
+  vtkIdType NumberOfPoints = 0;
+  PointGhosts Points;
+};
+
 } // namespace deformvolume
 
 #endif

@@ -182,9 +182,10 @@ bool Compare(vtkUnstructuredGrid* grid, ComparedPart& part)
   vtkCellArray* cells = grid->GetCells();
   vtkDataArray* offsets = cells ? cells->GetOffsetsArray() : nullptr;
   vtkDataArray* connectivity = cells ? cells->GetConnectivityArray() : nullptr;
-  vtkAbstractArray* ghosts =
-    grid->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName());
-  if (ghosts || !offsets || !connectivity || !connectivity->HasStandardMemoryLayout() ||
+  const auto masks = FindMasks(grid);
+  const bool hasMasks =
+    std::any_of(masks.begin(), masks.end(), [](vtkAbstractArray* mask) { return mask != nullptr; });
+  if (hasMasks || !offsets || !connectivity || !connectivity->HasStandardMemoryLayout() ||
     offsets->GetNumberOfValues() != count + 1 || connectivity->GetNumberOfValues() != 4 * count)
   {
     return false;

@@ -10,7 +10,6 @@
 #include "vtkCellData.h"
 #include "vtkCellType.h"
 #include "vtkDataArray.h"
-#include "vtkDataSetAttributes.h"
 #include "vtkPoints.h"
 #include "vtkUnstructuredGrid.h"
 
@@ -142,17 +141,14 @@ std::array<int, 3> ReadDegrees(vtkDataArray* array, vtkIdType cell)
 void ReadPart(
   vtkUnstructuredGrid* grid, std::int32_t firstNode, vtkIdType named, CellReader& reader)
 {
-  ByteArray* ghosts = FindMask(grid->GetCellData(), vtkDataSetAttributes::GhostArrayName(),
-    grid->GetNumberOfCells(), "cell", "deformation mesh");
-  constexpr unsigned char skipped =
-    vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL;
+  const SkippedCells skipped(grid, "deformation mesh");
   const vtkIdType numberOfCells = grid->GetNumberOfCells();
   const vtkIdType numberOfPoints = grid->GetNumberOfPoints() + named;
   CheckStructure(grid);
   std::vector<std::int32_t> nodes;
   for (vtkIdType cell = 0; cell < numberOfCells; ++cell)
   {
-    if (ghosts && (ghosts->GetValue(cell) & skipped))
+    if (skipped.Contain(cell))
     {
       continue;
     }
@@ -163,6 +159,10 @@ void ReadPart(
     for (vtkIdType i = 0; i < count; ++i)
     {
       CheckCellPoint(points[i], numberOfPoints, cell);
+    }
+    if (skipped.ContainPointOf(points, count))
+    {
+      continue;
     }
     CellReader::CheckSize(cell, type, count);
     if (type == VTK_TETRA)

@@ -73,23 +73,14 @@ void AddArray(Stamp& stamp, vtkAbstractArray* array)
 // Adds all cells of a grid, except those that are hidden or duplicate, or have a hidden point.
 void MakeCells(vtkDataSet* source, vtkUnstructuredGrid* grid)
 {
-  ByteArray* cellArray = FindMask(source->GetCellData(), vtkDataSetAttributes::GhostArrayName(),
-    source->GetNumberOfCells(), "cell", "deformation mesh");
-  const unsigned char* cellGhosts = cellArray ? cellArray->GetPointer(0) : nullptr;
-  const PointGhosts pointGhosts = FindPointGhosts(source, "deformation mesh");
-  const auto isSkipped = [](const unsigned char* ghosts, vtkIdType id, int kinds)
-  { return ghosts && (ghosts[id] & kinds) != 0; };
+  const SkippedCells skipped(source, "deformation mesh");
   vtkNew<vtkUnsignedCharArray> types;
   vtkNew<vtkCellArray> cells;
   vtkNew<vtkIdList> ids;
   for (vtkIdType cell = 0; cell < source->GetNumberOfCells(); ++cell)
   {
     source->GetCellPoints(cell, ids);
-    if (!isSkipped(cellGhosts, cell,
-          vtkDataSetAttributes::HIDDENCELL | vtkDataSetAttributes::DUPLICATECELL) &&
-      std::none_of(ids->begin(), ids->end(),
-        [&](vtkIdType id)
-        { return isSkipped(pointGhosts.Values, id, vtkDataSetAttributes::HIDDENPOINT); }))
+    if (!skipped.Contain(cell) && !skipped.ContainPointOf(ids->begin(), ids->GetNumberOfIds()))
     {
       types->InsertNextValue(static_cast<unsigned char>(source->GetCellType(cell)));
       cells->InsertNextCell(ids);

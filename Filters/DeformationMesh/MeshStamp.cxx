@@ -2,12 +2,14 @@
 #include "MeshStamp.h"
 
 #include "CellTypes.h"
+#include "MaskArray.h"
 #include "PolyhedronFaces.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkUnstructuredGrid.h"
 
@@ -26,12 +28,15 @@ void AddArray(Stamp& stamp, vtkAbstractArray* array)
   stamp.emplace_back(nullptr, array ? static_cast<vtkMTimeType>(array->GetNumberOfValues()) : 0);
 }
 
-vtkAbstractArray* GetGhosts(vtkUnstructuredGrid* grid)
-{
-  return grid->GetCellData()->GetAbstractArray(vtkDataSetAttributes::GhostArrayName());
-}
-
 } // namespace
+
+std::array<vtkAbstractArray*, 3> FindMasks(vtkUnstructuredGrid* grid)
+{
+  const char* ghosts = vtkDataSetAttributes::GhostArrayName();
+  return { { grid->GetCellData()->GetAbstractArray(ghosts),
+    grid->GetPointData()->GetAbstractArray(ghosts),
+    grid->GetPointData()->GetAbstractArray(ValidPointMaskName) } };
+}
 
 Stamp GetCellFormStamp(vtkUnstructuredGrid* grid)
 {
@@ -39,7 +44,10 @@ Stamp GetCellFormStamp(vtkUnstructuredGrid* grid)
   stamp.emplace_back(nullptr, static_cast<vtkMTimeType>(grid->GetNumberOfCells()));
   AddArray(stamp, grid->GetCells() ? grid->GetCells()->GetOffsetsArray() : nullptr);
   AddArray(stamp, GetCellTypes(grid));
-  AddArray(stamp, GetGhosts(grid));
+  for (vtkAbstractArray* mask : FindMasks(grid))
+  {
+    AddArray(stamp, mask);
+  }
   AddArray(stamp, grid->GetCellData()->GetHigherOrderDegrees());
   if (HasPolyhedronFaces(grid))
   {

@@ -4,10 +4,16 @@
 
 #include "DeformationMesh.h"
 
+#include <array>
 #include <vector>
+
+class vtkAbstractArray;
 
 namespace deformvolume
 {
+
+/// The arrays that mark cells as SkippedCells; null for those that do not exist.
+std::array<vtkAbstractArray*, 3> FindMasks(vtkUnstructuredGrid* grid);
 
 /// Stamp of the arrays of a grid's cells without the connectivity: arrays, modification times and
 /// sizes.

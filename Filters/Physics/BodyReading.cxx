@@ -6,6 +6,7 @@
 #include "Error.h"
 #include "HandlePositions.h"
 #include "IndexBounds.h"
+#include "MaskArray.h"
 #include "MeshStamp.h"
 #include "ShapedArray.h"
 #include "VectorArray.h"
@@ -396,8 +397,13 @@ GridTetrahedra ReadTetrahedra(vtkUnstructuredGrid* grid, bool takesQuadratic)
     throw Error(std::string("The cells of the ") + MESH + " are incomplete. Correct the cells.");
   }
   std::map<int, vtkIdType> others;
+  const SkippedCells skipped(grid, MESH);
   for (vtkIdType cell = 0; cell < count; ++cell)
   {
+    if (skipped.Contain(cell))
+    {
+      continue;
+    }
     const int type = grid->GetCellType(cell);
     const bool isQuadratic = type == VTK_QUADRATIC_TETRA && takesQuadratic;
     if (type != VTK_TETRA && !isQuadratic)
@@ -422,6 +428,10 @@ GridTetrahedra ReadTetrahedra(vtkUnstructuredGrid* grid, bool takesQuadratic)
       throw Error("Cell " + std::to_string(cell) + " of the " + MESH + " refers to point " +
         std::to_string(*missing) + ", but the mesh has only " +
         std::to_string(grid->GetNumberOfPoints()) + " points. Correct the cell.");
+    }
+    if (skipped.ContainPointOf(points, size))
+    {
+      continue;
     }
     const auto getPoint = [&](std::size_t i) { return static_cast<std::int32_t>(points[i]); };
     read.Tetrahedra.push_back({ { getPoint(0), getPoint(1), getPoint(2), getPoint(3) } });

@@ -23,6 +23,8 @@ _BOUNDS = ("deformed", "volume")
 _ALL_TETRAHEDRA = 31
 _HIDDEN_BY_EDIT = 128  # of vtkVolumeEditAlgorithm::BlankCells
 _NO_SOURCE = vtkDataSetAttributes.DUPLICATEPOINT | vtkDataSetAttributes.HIDDENPOINT
+_NO_CELL = vtkDataSetAttributes.DUPLICATECELL | vtkDataSetAttributes.HIDDENCELL
+_VALID = "vtkValidPointMask"
 
 
 def _direction(image):
@@ -65,9 +67,34 @@ def _shape_stamp(mesh):
     """Returns a stamp of the points and cells of a mesh, without its arrays."""
     cells = mesh.GetCells()
     parts = (mesh.GetPoints(), cells, cells.GetConnectivityArray(), cells.GetOffsetsArray(), _cell_types(mesh))
+    parts += _find_cell_masks(mesh)
     # Modified() of the mesh stands for all that it has, but GetMTime() is also that of its arrays.
     arrays = max(mesh.GetPointData().GetMTime(), mesh.GetCellData().GetMTime(), mesh.GetFieldData().GetMTime())
     return _stamp(*parts) + (mesh.__this__, mesh.GetMTime() if mesh.GetMTime() > arrays else 0)
+
+
+def _find_cell_masks(mesh):
+    points = mesh.GetPointData()
+    return mesh.GetCellData().GetArray("vtkGhostType"), points.GetArray("vtkGhostType"), points.GetArray(_VALID)
+
+
+def _find_used_cells(mesh, connectivity, offsets):
+    """Returns which cells are neither hidden nor duplicate, and have no hidden point; None: all."""
+    cell_ghosts, ghosts, valid = _find_cell_masks(mesh)
+    hidden = numpy.zeros(mesh.GetNumberOfPoints(), bool)
+    if ghosts is not None:
+        hidden |= (_view(ghosts, hidden.shape) & vtkDataSetAttributes.HIDDENPOINT) != 0
+    if valid is not None:
+        hidden |= _view(valid, hidden.shape) == 0
+    used = numpy.ones(mesh.GetNumberOfCells(), bool)
+    if cell_ghosts is not None:
+        used &= (_view(cell_ghosts, used.shape) & _NO_CELL) == 0
+    if hidden.any():
+        # Indices that do not exist are errors of the engine.
+        exists = (connectivity >= 0) & (connectivity < hidden.size)
+        counts = numpy.concatenate(([0], numpy.cumsum(exists & hidden[numpy.where(exists, connectivity, 0)])))
+        used &= counts[offsets[1:]] == counts[offsets[:-1]]
+    return None if used.all() else used
 
 
 def _cell_types(mesh):
@@ -84,7 +111,8 @@ class DeformVolume(VTKPythonAlgorithmBase):
         0: vtkImageData, the volume. Ghost points, points whose vtkValidPointMask is 0, and tetrahedra that
             vtkCutVolume and vtkCarveVolume have switched off, are left out.
         1, optional: vtkUnstructuredGrid with displacements of its points; or vtkImageData with vectors, a displacement
-            field. Without it the output is the volume itself.
+            field. Without it the output is the volume itself. Cells of a mesh that vtkGhostType marks as hidden or
+            duplicate are left out, and cells with a point that it hides or whose vtkValidPointMask is 0.
             SetInputArrayToProcess(0, 1, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, name) chooses the array of three
             components, in world units. Default: the active vectors, or else the only array of three components.
         2, optional: vtkUnstructuredGrid, the mesh at rest. The points of port 1 are then deformed positions.
@@ -568,7 +596,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
             )
         array = self._find_vectors(data)
         ghosts = data.GetPointData().GetArray("vtkGhostType")
-        valid = data.GetPointData().GetArray("vtkValidPointMask")
+        valid = data.GetPointData().GetArray(_VALID)
         inverse = self._settings["FieldIsInverse"]
 
         def send():
@@ -597,6 +625,11 @@ class DeformVolume(VTKPythonAlgorithmBase):
             cells = mesh.GetCells()
             connectivity = numpy.ascontiguousarray(vtk_to_numpy(cells.GetConnectivityArray()), dtype=numpy.int64)
             offsets = numpy.ascontiguousarray(vtk_to_numpy(cells.GetOffsetsArray()), dtype=numpy.int64)
+            used = _find_used_cells(mesh, connectivity, offsets)
+            if used is not None:
+                sizes = numpy.diff(offsets)
+                types, connectivity = types[used], connectivity[numpy.repeat(used, sizes)]
+                offsets = numpy.concatenate(([0], numpy.cumsum(sizes[used])))
             self._deformer.set_mesh_arrays(points, connectivity, types, offsets)
 
         self._send("deformation", (_shape_stamp(mesh), "mesh"), send_mesh)

@@ -93,6 +93,46 @@ class Pipeline(unittest.TestCase):
         self.filter.Update()
         numpy.testing.assert_array_equal(values(self.filter.GetOutputDataObject(0)), values(self.source.GetOutput()))
 
+    def test_hidden_cells(self):
+        from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+        from vtkmodules.vtkCommonCore import VTK_UNSIGNED_CHAR
+        from vtkmodules.vtkCommonDataModel import VTK_TETRA
+
+        def add_mask(data, name, values):
+            mask = numpy_to_vtk(numpy.array(values, numpy.uint8), deep=True, array_type=VTK_UNSIGNED_CHAR)
+            mask.SetName(name)
+            data.RemoveArray(name)
+            data.AddArray(mask)
+
+        def get_mask():
+            self.filter.Update()
+            return vtk_to_numpy(self.filter.GetOutput().GetPointData().GetArray("vtkValidPointMask")).copy()
+
+        # The hexahedron, and a tetrahedron beside it with a point of its own, which reaches the volume's border.
+        mesh = make_mesh([0.0, 0.0, 0.0])
+        mesh.GetPoints().SetPoint(1, 5.0, -10.0, -10.0)
+        mesh.GetPoints().SetPoint(2, 5.0, 10.0, -10.0)
+        mesh.GetPoints().SetPoint(5, 5.0, -10.0, 10.0)
+        mesh.GetPoints().SetPoint(6, 5.0, 10.0, 10.0)
+        self.filter.SetDeformationData(mesh)
+        hexahedron = get_mask()
+        mesh.GetPoints().InsertNextPoint(10.0, 0.0, 0.0)
+        mesh.InsertNextCell(VTK_TETRA, 4, [1, 2, 5, 8])
+        add_vectors(mesh, numpy.zeros((9, 3)))
+        both = get_mask()
+        self.assertGreater(both.sum(), hexahedron.sum())
+        for hidden in (32, 1):  # HIDDENCELL, DUPLICATECELL
+            add_mask(mesh.GetCellData(), "vtkGhostType", [0, hidden])
+            numpy.testing.assert_array_equal(get_mask(), hexahedron)
+        mesh.GetCellData().Initialize()
+        numpy.testing.assert_array_equal(get_mask(), both)
+        # The displacement of a point that no other cell uses need not be finite.
+        add_vectors(mesh, [[0.0, 0.0, 0.0]] * 8 + [[numpy.nan] * 3])
+        for name, masked, other in (("vtkGhostType", 2, 1), ("vtkValidPointMask", 0, 1)):
+            add_mask(mesh.GetPointData(), name, [other] * 8 + [masked])
+            numpy.testing.assert_array_equal(get_mask(), hexahedron)
+            mesh.GetPointData().RemoveArray(name)
+
     def test_names(self):
         from deformvolume.vtk import DeformVolume
         from vtkmodules.vtkCommonCore import vtkStringArray

@@ -453,6 +453,40 @@ void TestGrid(vtkDataSet* grid)
   VERIFY(AreEqual(expected.Update(), found.Update()));
 }
 
+// Hidden points of an unstructured grid: cells that use them are left out, and their displacements
+// need not be finite.
+void TestHiddenPoints()
+{
+  const auto volume = MakeVolume();
+  const auto grid = MakeRectilinearGrid();
+  SetDisplacements(grid, Bend);
+  const Grid mesh = MakeHexahedra(grid, [](int) { return false; });
+  Deformed found(volume, mesh);
+  const auto all = vtkSmartPointer<vtkImageData>::New();
+  all->DeepCopy(found.Update());
+  vtkNew<vtkDoubleArray> vectors;
+  vectors->DeepCopy(mesh->GetPointData()->GetVectors());
+  vectors->SetComponent(0, 1, std::numeric_limits<double>::quiet_NaN());
+  mesh->GetPointData()->SetVectors(vectors);
+  const auto ghosts = AddGhosts(mesh->GetPointData(), mesh->GetNumberOfPoints());
+  ghosts->Fill(vtkDataSetAttributes::DUPLICATEPOINT); // no reason to leave cells out
+  ghosts->SetValue(0, vtkDataSetAttributes::HIDDENPOINT);
+  Deformed expected(volume, MakeHexahedra(grid, [](int cell) { return cell == 0; }));
+  VERIFY(AreEqual(expected.Update(), found.Update()));
+  mesh->GetPointData()->RemoveArray(ghosts->GetName());
+  const auto valid = AddGhosts(mesh->GetPointData(), mesh->GetNumberOfPoints());
+  valid->SetName("vtkValidPointMask");
+  valid->Fill(1);
+  valid->SetValue(0, 0);
+  VERIFY(AreEqual(expected.Update(), found.Update()));
+  // A change of the mask is noticed.
+  vectors->SetComponent(0, 1, grid->GetPointData()->GetVectors()->GetComponent(0, 1));
+  vectors->Modified();
+  valid->SetValue(0, 1);
+  valid->Modified();
+  VERIFY(AreEqual(all, found.Update()));
+}
+
 // Two blocks of hexahedra meet at a curved face. Each has points of its own there, in another
 // order. apart: the distance of the second block from the first one.
 vtkSmartPointer<vtkMultiBlockDataSet> MakeMeetingBlocks(vtkUnstructuredGrid* whole, double apart)
@@ -739,6 +773,7 @@ int TestDeformMeshes(int, char*[])
   TestUnusedNodesThatChange();
   TestBlocks();
   TestGrids();
+  TestHiddenPoints();
   TestMeetingBlocks();
   TestDeformedPoints();
   TestUnits();

@@ -610,6 +610,55 @@ void TestHeldNodes()
   VERIFY_EQUAL(held[1], 6); // seven nodes are in its range, but the first handle holds one of them
 }
 
+// Hidden and duplicate cells, and cells with a hidden point, are not part of the body.
+template <typename Filter>
+void TestHiddenCells()
+{
+  const auto bar = MakeBar(0.001);
+  const auto simulate = [](vtkUnstructuredGrid* mesh)
+  {
+    Simulated<Filter> simulated(mesh);
+    simulated.Object->SetLengthUnitToMillimetre();
+    simulated.Object->SetGravity(0.0, 0.0, 9.81);
+    VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+    const auto moved = simulated.Copy();
+    const float* values = moved->GetPointer(0);
+    return std::vector<float>(values, values + moved->GetNumberOfValues());
+  };
+  const vtkIdType corner = bar->GetNumberOfPoints() - 1;
+  vtkNew<vtkUnstructuredGrid> cut;
+  cut->SetPoints(bar->GetPoints());
+  cut->GetPointData()->ShallowCopy(bar->GetPointData());
+  vtkNew<vtkUnsignedCharArray> hidden;
+  hidden->SetName(vtkDataSetAttributes::GhostArrayName());
+  for (vtkIdType cell = 0; cell < bar->GetNumberOfCells(); ++cell)
+  {
+    vtkNew<vtkIdList> ids;
+    bar->GetCellPoints(cell, ids);
+    const bool isOfCorner = ids->IsId(corner) >= 0;
+    hidden->InsertNextValue(isOfCorner ? vtkDataSetAttributes::HIDDENCELL : 0);
+    if (!isOfCorner)
+    {
+      cut->InsertNextCell(VTK_TETRA, ids);
+    }
+  }
+  VERIFY(cut->GetNumberOfCells() < bar->GetNumberOfCells());
+  const auto expected = simulate(cut);
+  VERIFY(*std::max_element(expected.begin(), expected.end()) > 0.0F);
+  vtkNew<vtkUnstructuredGrid> masked;
+  masked->ShallowCopy(bar);
+  masked->GetCellData()->AddArray(hidden);
+  VERIFY(simulate(masked) == expected);
+  masked->ShallowCopy(bar);
+  vtkNew<vtkUnsignedCharArray> valid;
+  valid->SetName("vtkValidPointMask");
+  valid->SetNumberOfValues(bar->GetNumberOfPoints());
+  valid->Fill(1);
+  valid->SetValue(corner, 0);
+  masked->GetPointData()->AddArray(valid);
+  VERIFY(simulate(masked) == expected);
+}
+
 } // namespace
 
 int TestElasticDeformation(int, char*[])
@@ -643,6 +692,8 @@ int TestElasticDeformation(int, char*[])
   TestAborted<vtkFiniteElementDeformation>();
   TestHeldNodes<vtkFiniteElementDeformation>();
   TestHeldNodes<vtkMassSpringDeformation>();
+  TestHiddenCells<vtkFiniteElementDeformation>();
+  TestHiddenCells<vtkMassSpringDeformation>();
   TestDeformedVolume();
   return GetExitCode();
 }
