@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The class Deformer, which keeps a volume on a device, and the function deform()."""
 
+import atexit
+import contextlib
 import ctypes
 import math
 import operator
@@ -58,6 +60,8 @@ class Field:
         inverse: False: vectors lead from rest positions to deformed positions, as computed by simulations. True:
             vectors lead from positions of the output to rest positions, as computed by registrations ("resampling
             field").
+
+    A Deformer does not notice changes of these arrays: call set_deformation() again.
     """
 
     vectors: numpy.ndarray
@@ -118,6 +122,54 @@ def _warn(text: str) -> None:
     python_warnings.warn(text, DeformationWarning, stacklevel=level)
 
 
+def _is_in_main_thread() -> bool:
+    return threading.current_thread() is threading.main_thread()
+
+
+class _Calls:
+    """Counts the calls of the library in other threads than the main thread. At exit the main thread waits for those
+    of daemon threads, and lets them begin no others: OpenCL must not be used while its driver is shut down."""
+
+    def __init__(self):
+        self._process = os.getpid()
+        self._condition = threading.Condition()
+        self._running = 0
+        self._has_ended = False
+        self._of_thread = threading.local()
+        atexit.register(self._end)
+
+    def __enter__(self):
+        if _is_in_main_thread():
+            return
+        depth = getattr(self._of_thread, "depth", 0)
+        if depth == 0:
+            with self._condition:
+                while self._has_ended:
+                    self._condition.wait()
+                self._running += 1
+        self._of_thread.depth = depth + 1
+
+    def __exit__(self, *_):
+        if _is_in_main_thread():
+            return
+        self._of_thread.depth -= 1
+        if self._of_thread.depth == 0:
+            with self._condition:
+                self._running -= 1
+                self._condition.notify_all()
+
+    def _end(self):
+        # In a forked process the calls of other threads do not end.
+        if os.getpid() == self._process:
+            with self._condition:
+                self._has_ended = True
+                while self._running > 0:
+                    self._condition.wait()
+
+
+_calls = _Calls()
+
+
 class _Interrupts:
     """Delays the handlers of signals, such as that of Ctrl-C, while the library runs: Python loses exceptions of
     handlers that run when the library calls Python. call() runs the handlers of signals that have come meanwhile."""
@@ -125,20 +177,36 @@ class _Interrupts:
     def __init__(self):
         self._signals = []
         self._handlers = {}
+        self._delays = False
+
+    def _handle(self, number, frame):
+        # A handler that raises an exception can end __enter__() and __exit__() early. This object then stays the
+        # handler of some signals, and passes them on.
+        if self._delays:
+            self._signals.append((number, frame))
+        else:
+            self._handlers[number](number, frame)
 
     def __enter__(self):
         # Python runs handlers in the main thread only.
-        if threading.current_thread() is threading.main_thread():
+        if _is_in_main_thread():
             for number in signal.valid_signals():
                 handler = signal.getsignal(number)
+                other = getattr(handler, "__self__", None)
+                if isinstance(other, _Interrupts) and not other._delays:
+                    handler = other._handlers[number]
                 if callable(handler):
                     self._handlers[number] = handler
-                    signal.signal(number, lambda *arguments: self._signals.append(arguments))
+                    signal.signal(number, self._handle)
+        self._delays = True
         return self
 
     def __exit__(self, *_):
+        self._delays = False
         for number, handler in self._handlers.items():
-            signal.signal(number, handler)
+            # The progress callback may have installed another handler.
+            if signal.getsignal(number) == self._handle:
+                signal.signal(number, handler)
 
     def call(self):
         """Calls the handlers, which may raise exceptions: that of Ctrl-C raises KeyboardInterrupt."""
@@ -206,7 +274,8 @@ class Deformer:
 
     Methods raise Error if the library reports an error, and ValueError or TypeError for arrays of a wrong shape or
     type. The deformer can still be used after an error. If two threads call a deformer, the second call waits for the
-    first one to return. A deformer cannot be used in a process that was forked after the deformer was created.
+    first one to return. A deformer cannot be used in a process that was forked after the deformer was created. It
+    frees its memory when it is destroyed, or at the end of a block "with Deformer() as deformer:".
 
     Args:
         device: a name of devices(), a part of a name, "cpu", "gpu", or "": the best device.
@@ -231,26 +300,42 @@ class Deformer:
         if not isinstance(device, str):
             raise TypeError(f"The device is {device!r}. Give its name, a part of the name, or an empty string.")
         handle = ctypes.c_void_p()
-        _native.check(_native.library.dv_create(ctypes.byref(handle)))
+        with _calls:
+            _native.check(_native.library.dv_create(ctypes.byref(handle)))
         self._handle = handle
         self._finalizer = weakref.finalize(self, _destroy, handle.value, os.getpid())
+        self._finalizer.atexit = False  # functions that are called at exit may still use this deformer
         self._call("dv_set_device", device.encode())
 
-    def _check_use(self) -> None:
-        """Raises an error if the library must not be called now. The lock must be held."""
-        if self._is_running:
-            raise _native.Error("deform() is running. Its progress callback must not call the same deformer.")
+    @contextlib.contextmanager
+    def _locked(self):
+        """Locks the deformer. Raises an error if it must not be used now."""
+        # Check this before the lock is taken: another thread may have held it when the process was forked.
         if os.getpid() != self._process:
             raise _native.Error(
                 "This deformer was created before the process was forked, and OpenCL does not work after a fork. Start "
                 'processes with the start method "spawn" or "forkserver" (multiprocessing.set_start_method), and '
                 "create a deformer in each process."
             )
+        with self._lock:
+            if self._is_running:
+                raise _native.Error("deform() is running. Its progress callback must not call the same deformer.")
+            if not self._finalizer.alive:
+                raise _native.Error("This deformer is closed. Create another one.")
+            yield
 
     def _call(self, name: str, *arguments) -> None:
-        with self._lock:
-            self._check_use()
+        with self._locked(), _calls:
             _native.check(getattr(_native.library, name)(self._handle, *arguments))
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        # Python loses exceptions that handlers of signals raise in finalizers.
+        with self._locked(), _Interrupts() as interrupts:
+            self._finalizer()
+        interrupts.call()
 
     def __reduce_ex__(self, _):
         raise TypeError("A Deformer cannot be copied or pickled. Create another one.")
@@ -290,9 +375,9 @@ class Deformer:
                     "arrays on the same grid."
                 )
         grid = _grid_of(shape, affine, "the affine matrix of the volume")
-        self.set_volume_grid(grid, images, categorical, background)
+        self._set_volume_grid(grid, images, categorical, background)
 
-    def set_volume_grid(
+    def _set_volume_grid(
         self, grid: _structs.Grid, images: List[numpy.ndarray], categorical=False, background=0.0
     ) -> None:
         """Like set_volume(), for a grid of the library and arrays with the axes z, y, x."""
@@ -318,7 +403,7 @@ class Deformer:
             struct.background = float(value)
             if math.isnan(struct.background) and image.dtype.kind in "iu":
                 raise ValueError(f"The background is {value}, which an array of the type {image.dtype} cannot hold.")
-        with self._lock:
+        with self._locked():
             self._call("dv_set_volume", ctypes.byref(grid))
             self._call("dv_set_arrays", len(images), structs)
             self._borrowed["arrays"] = images, [_arrays.pin(image) for image in images]
@@ -356,7 +441,7 @@ class Deformer:
             self._take_mask(cut, cells, numpy.uint8, "cut tetrahedra"),
             self._take_mask(cut_distances, voxels, numpy.float32, "cut distances"),
         )
-        with self._lock:
+        with self._locked():
             self._set_mask("dv_set_blanked", masks[0])
             self._set_mask("dv_set_active_tetrahedra", masks[1])
             self._set_mask("dv_set_boundary_distances", masks[2])
@@ -378,7 +463,7 @@ class Deformer:
         return taken
 
     def _set_mask(self, function: str, *masks) -> None:
-        with self._lock:
+        with self._locked():
             self._call(function, *[None if mask is None else _structs.address(mask) for mask in masks])
             self._borrowed[function] = masks, [_arrays.pin(mask) for mask in masks if mask is not None]
 
@@ -400,12 +485,12 @@ class Deformer:
         displacements = mesh.displacements
         if displacements is not None:
             displacements = _arrays.vectors(displacements, len(points), "The array of displacements")
-        with self._lock:
-            self.set_mesh_arrays(points, *_cells(mesh.cells))
+        with self._locked():
+            self._set_mesh_arrays(points, *_cells(mesh.cells))
             if displacements is not None:
                 self.set_displacements(displacements)
 
-    def set_mesh_arrays(self, points, connectivity, types=None, offsets=None) -> None:
+    def _set_mesh_arrays(self, points, connectivity, types=None, offsets=None) -> None:
         """Sets a mesh in the form of the library: the point indices of all cells, and the offsets of the cells. Types
         and offsets are None if all cells are tetrahedra."""
         points = _arrays.vectors(points, None, "The array of points")
@@ -428,7 +513,7 @@ class Deformer:
             types=types.ctypes.data if types is not None else None,
             offsets=offsets.ctypes.data if offsets is not None else None,
         )
-        with self._lock:
+        with self._locked():
             self._call("dv_set_mesh", ctypes.byref(struct))
             self._points = len(points)
             self._borrowed.pop("field", None)
@@ -444,9 +529,9 @@ class Deformer:
         if vectors.dtype not in (numpy.float32, numpy.float64):
             vectors = vectors.astype(numpy.float64)
         grid = _grid_of(vectors.shape[2::-1], deformation.affine, "the affine matrix of the field")
-        self.set_field_grid(grid, vectors, deformation.inverse)
+        self._set_field_grid(grid, vectors, deformation.inverse)
 
-    def set_field_grid(self, grid: _structs.Grid, vectors: numpy.ndarray, inverse: bool) -> None:
+    def _set_field_grid(self, grid: _structs.Grid, vectors: numpy.ndarray, inverse: bool) -> None:
         """Sets a field with a grid of the library, and vectors with the axes z, y, x and an axis of components."""
         struct = _structs.Field(
             grid=ctypes.pointer(grid),
@@ -454,7 +539,7 @@ class Deformer:
             type=_structs.type_of(vectors),
             inverse=_flag(inverse, "inverse"),
         )
-        with self._lock:
+        with self._locked():
             self._call("dv_set_field", ctypes.byref(struct))
             self._points = 0
             self._borrowed["field"] = vectors, _arrays.pin(vectors)
@@ -472,7 +557,7 @@ class Deformer:
             raise ValueError(f'The fade distance is {fade_distance}, but has no effect with outside="{mode}".')
         self._call("dv_set_outside", _choose(mode, _structs.OUTSIDE, "outside"), float(fade_distance))
 
-    def set_reference(self, reference: Optional[Grid]) -> None:
+    def set_reference(self, reference: Union[Grid, Tuple[Sequence[int], numpy.ndarray], None]) -> None:
         """Sets the grid of the output, such as that of the fixed image of a registration. None: see set_output()."""
         if reference is None:
             self._call("dv_set_reference", None)
@@ -486,15 +571,15 @@ class Deformer:
         shape = tuple(map(operator.index, shape))
         if len(shape) != 3 or min(shape) < 1:
             raise ValueError(f"The shape of the reference is {shape}. Give three numbers of at least 1.")
-        self.set_reference_grid(_grid_of(shape, matrix, "the affine matrix of the reference"))
+        self._set_reference_grid(_grid_of(shape, matrix, "the affine matrix of the reference"))
 
-    def set_reference_grid(self, grid: _structs.Grid) -> None:
+    def _set_reference_grid(self, grid: _structs.Grid) -> None:
         """Like set_reference(), for a grid of the library."""
         self._call("dv_set_reference", ctypes.byref(grid))
 
     def set_output(
         self,
-        bounds: Union[str, Sequence[float]] = "deformed",
+        bounds: Union[str, Sequence[float], numpy.ndarray] = "deformed",
         *,
         padding: int = 0,
         spacing: Optional[Sequence[float]] = None,
@@ -528,7 +613,7 @@ class Deformer:
             struct.spacing[:] = [float(value) for value in spacing]
         self._call("dv_set_output", ctypes.byref(struct))
 
-    def find_output_grid(self) -> _structs.Grid:
+    def _find_output_grid(self) -> _structs.Grid:
         """Returns the grid of the output."""
         grid = _structs.Grid()
         self._call("dv_output_grid", ctypes.byref(grid))
@@ -566,8 +651,8 @@ class Deformer:
             "jacobian": _flag(jacobian, "jacobian"),
             "fold_count": _flag(fold_count, "fold_count"),
         }
-        with self._lock:
-            grid = self.find_output_grid()
+        with self._locked():
+            grid = self._find_output_grid()
             # If the extent is empty, the library says why.
             shape = tuple(max(0, grid.extent[2 * axis + 1] - grid.extent[2 * axis] + 1) for axis in range(3))
             outputs = [
@@ -579,7 +664,7 @@ class Deformer:
                 "jacobian": numpy.empty(shape[::-1], numpy.float32) if wanted["jacobian"] else None,
                 "fold_count": numpy.zeros(shape[::-1], numpy.uint32) if wanted["fold_count"] else None,
             }
-            report = self.run(
+            report = self._run(
                 outputs,
                 coverage,
                 interpolation=interpolation,
@@ -605,7 +690,7 @@ class Deformer:
             **{name: None if array is None else _arrays.from_image(array) for name, array in extra.items()},
         )
 
-    def run(
+    def _run(
         self,
         outputs,
         coverage,
@@ -642,17 +727,16 @@ class Deformer:
         for name, array in extra.items():
             setattr(request, name, array.ctypes.data_as(ctypes.POINTER(kinds[name])))
         report = _structs.Report()
-        with self._lock:
-            self._check_use()
-            with _Interrupts() as interrupts:
-                self._is_running = True
-                try:
-                    status = _native.library.dv_deform(self._handle, ctypes.byref(request), ctypes.byref(report))
-                finally:
-                    self._is_running = False
+        with self._locked(), _calls, _Interrupts() as interrupts:
+            self._is_running = True
+            try:
+                status = _native.library.dv_deform(self._handle, ctypes.byref(request), ctypes.byref(report))
+            finally:
+                self._is_running = False
         interrupts.call()
         if failure:
-            raise failure[0]
+            # An exception that stays in a variable of this function would keep all arrays of its frame alive.
+            raise failure.pop()
         _native.check(status)
         return report
 
@@ -664,7 +748,8 @@ class Deformer:
 def _destroy(handle: int, process: int) -> None:
     # In a forked process, the objects of OpenCL are not valid, and cannot be released.
     if os.getpid() == process:
-        _native.library.dv_destroy(handle)
+        with _calls:
+            _native.library.dv_destroy(handle)
 
 
 def deform(
@@ -672,13 +757,13 @@ def deform(
     deformation: Union[Mesh, Field],
     affine=None,
     *,
-    reference: Optional[Grid] = None,
+    reference: Union[Grid, Tuple[Sequence[int], numpy.ndarray], None] = None,
     categorical: Union[bool, Sequence[bool]] = False,
     background: Union[float, Sequence[float]] = 0.0,
     outside: str = "discard",
     fade_distance: float = 0.0,
     interpolation: str = "linear",
-    bounds: Union[str, Sequence[float]] = "deformed",
+    bounds: Union[str, Sequence[float], numpy.ndarray] = "deformed",
     padding: int = 0,
     spacing: Optional[Sequence[float]] = None,
     rest_positions: bool = False,
@@ -714,24 +799,24 @@ def deform(
     >>> result.array.shape, int(result.array[13, 15, 15])
     ((40, 40, 40), 1000)
     """
-    deformer = Deformer(device)
-    deformer.set_volume(
-        volume, numpy.eye(4) if affine is None else affine, categorical=categorical, background=background
-    )
-    deformer.set_deformation(deformation)
-    deformer.set_outside(outside, fade_distance)
-    deformer.set_reference(reference)
-    if reference is None:
-        deformer.set_output(bounds, padding=padding, spacing=spacing)
-    elif bounds != "deformed" or padding != 0 or spacing is not None:
-        raise ValueError(
-            "The output has the grid of the reference. Do not give bounds, padding or spacing with a reference."
+    with Deformer(device) as deformer:
+        deformer.set_volume(
+            volume, numpy.eye(4) if affine is None else affine, categorical=categorical, background=background
         )
-    return deformer.deform(
-        interpolation=interpolation,
-        rest_positions=rest_positions,
-        jacobian=jacobian,
-        fold_count=fold_count,
-        extra_background=extra_background,
-        progress=progress,
-    )
+        deformer.set_deformation(deformation)
+        deformer.set_outside(outside, fade_distance)
+        deformer.set_reference(reference)
+        if reference is None:
+            deformer.set_output(bounds, padding=padding, spacing=spacing)
+        elif bounds != "deformed" or padding != 0 or spacing is not None:
+            raise ValueError(
+                "The output has the grid of the reference. Do not give bounds, padding or spacing with a reference."
+            )
+        return deformer.deform(
+            interpolation=interpolation,
+            rest_positions=rest_positions,
+            jacobian=jacobian,
+            fold_count=fold_count,
+            extra_background=extra_background,
+            progress=progress,
+        )

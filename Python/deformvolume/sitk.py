@@ -41,8 +41,9 @@ def deform(
 
     Args:
         image: three dimensions, pixels of any number type, scalars or vectors.
-        deformation: a SimpleITK image of vectors of three components, in mm; a DisplacementFieldTransform; or a
-            deformvolume.Mesh or Field, in the world coordinates of the image (LPS).
+        deformation: a SimpleITK image of vectors of three components, in mm; a DisplacementFieldTransform, whose
+            vectors are interpolated linearly, also if it has another interpolator; or a deformvolume.Mesh or Field, in
+            the world coordinates of the image (LPS).
         inverse: the direction of a field of SimpleITK. True (default): from the output to the image, as in
             registrations and SimpleITK.Resample. False: from the image to the deformed image. Outside the field,
             outside="keep" keeps the image as it is; SimpleITK.Resample does so from half a voxel outside the field.
@@ -56,7 +57,7 @@ def deform(
     _check_image(image, "The image")
     deformer = _deformer.Deformer(device)
     pixels = numpy.ascontiguousarray(_arrays.native(SimpleITK.GetArrayViewFromImage(image), "The image"))
-    deformer.set_volume_grid(_grid_of(image, "The image"), [pixels], categorical, background)
+    deformer._set_volume_grid(_grid_of(image, "The image"), [pixels], categorical, background)
     if isinstance(deformation, SimpleITK.Transform):
         try:
             deformation = SimpleITK.DisplacementFieldTransform(deformation).GetDisplacementField()
@@ -78,18 +79,18 @@ def deform(
         if vectors.dtype not in (numpy.float32, numpy.float64):
             vectors = vectors.astype(numpy.float64)
         is_inverse = inverse
-        deformer.set_field_grid(_grid_of(deformation, "The displacement field"), vectors, is_inverse)
+        deformer._set_field_grid(_grid_of(deformation, "The displacement field"), vectors, is_inverse)
     else:
         deformer.set_deformation(deformation)
     deformer.set_outside(outside, fade_distance)
     if reference is not None:
-        deformer.set_reference_grid(_grid_of(reference, "The reference"))
+        deformer._set_reference_grid(_grid_of(reference, "The reference"))
     elif is_inverse:
-        deformer.set_reference_grid(_grid_of(image, "The image"))
+        deformer._set_reference_grid(_grid_of(image, "The image"))
     deformed = deformer.deform(interpolation=interpolation)
     array = deformed.array.transpose((2, 1, 0, 3)[: deformed.array.ndim])
     result = SimpleITK.GetImageFromArray(array, isVector=array.ndim == 4)
-    grid = deformer.find_output_grid()
+    grid = deformer._find_output_grid()
     result.SetOrigin(deformed.affine[:3, 3].tolist())
     result.SetSpacing(grid.spacing[:])
     result.SetDirection(grid.direction[:])

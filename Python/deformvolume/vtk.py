@@ -421,7 +421,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
                 self._update_input(port)
                 sources.append(self.GetInputInformation(port, 0))
         self._prepare()
-        grid = self._deformer.find_output_grid()
+        grid = self._deformer._find_output_grid()
         self._announced = bytes(grid)
         # VTK passes on the times of port 0 only. A filter without times is not executed for another time.
         for key in (vtkStreamingDemandDrivenPipeline.TIME_STEPS(), vtkStreamingDemandDrivenPipeline.TIME_RANGE()):
@@ -464,7 +464,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
                 image = self._input(3)
                 geometry = [image.GetOrigin(), image.GetSpacing(), _direction(image)]
             extent = info.Get(vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT())
-            self._deformer.set_reference_grid(_deformer.make_grid(extent, *geometry))
+            self._deformer._set_reference_grid(_deformer.make_grid(extent, *geometry))
         else:
             self._deformer.set_reference(None)
             self._deformer.set_output(_BOUNDS[settings["OutputBoundsMode"]])
@@ -511,7 +511,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
             views = [numpy.ascontiguousarray(_view(array, shape)) for array in arrays]
             # NaN becomes 0 in integers, as in the C++ class.
             values = [0.0 if view.dtype.kind in "iu" and background != background else background for view in views]
-            self._deformer.set_volume_grid(_grid_of(image), views, labels, values)
+            self._deformer._set_volume_grid(_grid_of(image), views, labels, values)
             self._prepare_masks(shape, *edits)
 
         self._send("volume", (_stamp(image, *arrays, *edits), tuple(labels), background), send)
@@ -609,7 +609,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
             vectors = _view(array, data.GetDimensions()[::-1])
             if vectors.dtype not in (numpy.float32, numpy.float64):
                 vectors = vectors.astype(numpy.float64)
-            self._deformer.set_field_grid(_grid_of(data), numpy.ascontiguousarray(vectors), inverse)
+            self._deformer._set_field_grid(_grid_of(data), numpy.ascontiguousarray(vectors), inverse)
 
         self._send("deformation", (_stamp(data, array, ghosts, valid), inverse), send)
 
@@ -630,7 +630,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
                 sizes = numpy.diff(offsets)
                 types, connectivity = types[used], connectivity[numpy.repeat(used, sizes)]
                 offsets = numpy.concatenate(([0], numpy.cumsum(sizes[used])))
-            self._deformer.set_mesh_arrays(points, connectivity, types, offsets)
+            self._deformer._set_mesh_arrays(points, connectivity, types, offsets)
 
         self._send("deformation", (_shape_stamp(mesh), "mesh"), send_mesh)
         if rest is None:
@@ -654,7 +654,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
     def _deform(self, output):
         self._prepare()
         self._inputs = self._stamp_inputs()
-        grid = self._deformer.find_output_grid()
+        grid = self._deformer._find_output_grid()
         if bytes(grid) != self._announced:
             self.Modified()
             raise ValueError(
@@ -690,7 +690,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
         if self._settings["GenerateFoldCount"]:
             extra["fold_count"] = add("FoldCount", numpy.uint32)
             extra["fold_count"][...] = 0
-        report = self._deformer.run(
+        report = self._deformer._run(
             outputs,
             mask,
             interpolation=_INTERPOLATION[self._settings["Interpolation"]],

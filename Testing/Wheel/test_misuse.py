@@ -2,11 +2,16 @@
 """Misuse: an exception says what is wrong, the process does not end, and the next call works."""
 
 import copy
+import gc
 import os
 import signal
+import subprocess
+import sys
 import threading
 import unittest
 import warnings
+import weakref
+from unittest import mock
 
 import numpy
 
@@ -267,6 +272,47 @@ class Misuse(unittest.TestCase):
             with self.assertRaises(KeyboardInterrupt):
                 deformer.deform(progress=lambda _, stop=stop: stop)
 
+    # A handler that raises an exception while the other handlers are restored.
+    def test_interrupted_interrupts(self):
+        numbers = []
+        for number in (signal.SIGUSR1, signal.SIGUSR2):
+            self.addCleanup(signal.signal, number, signal.signal(number, lambda number, _: numbers.append(number)))
+        before = signal.getsignal(signal.SIGUSR1)
+        interrupts = deformvolume._deformer._Interrupts()
+        patch = mock.patch("signal.signal", side_effect=TimeoutError)
+        with self.assertRaises(TimeoutError), interrupts:
+            patch.start()
+        patch.stop()
+        for number in (signal.SIGUSR1, signal.SIGUSR2):
+            os.kill(os.getpid(), number)
+        self.assertEqual(numbers, [signal.SIGUSR1, signal.SIGUSR2])
+        # The next call restores the handlers.
+        with deformvolume._deformer._Interrupts():
+            pass
+        self.assertIs(signal.getsignal(signal.SIGUSR1), before)
+
+    # Neither the exception nor its traceback keeps the arrays of a call that has failed.
+    def test_failed_calls_free_their_arrays(self):
+        deformer = deformvolume.Deformer()
+        deformer.set_volume(make_volume(), AFFINE)
+        deformer.set_deformation(Mesh(POINTS, CELLS, MOVED))
+        made = []
+
+        def make(*arguments, make=numpy.empty):
+            array = make(*arguments)
+            made.append(weakref.ref(array))
+            return array
+
+        gc.disable()
+        self.addCleanup(gc.enable)
+        with mock.patch("numpy.empty", make):
+            try:
+                deformer.deform(jacobian=True, progress=lambda _: 1 / 0)
+            except ZeroDivisionError:
+                pass
+        self.assertGreaterEqual(len(made), 3)
+        self.assertEqual([array() for array in made], len(made) * [None])
+
     def test_callbacks_and_copies(self):
         deformer = deformvolume.Deformer()
         deformer.set_volume(make_volume(), AFFINE)
@@ -278,7 +324,11 @@ class Misuse(unittest.TestCase):
         for copied in (copy.copy, copy.deepcopy):
             with self.assertRaisesRegex(TypeError, "cannot be copied"):
                 copied(deformer)
-        numpy.testing.assert_array_equal(deformer.deform().array, wanted)
+        with deformer:
+            numpy.testing.assert_array_equal(deformer.deform().array, wanted)
+        for call in (deformer.deform, deformer.release_memory, deformer.__exit__):
+            with self.assertRaisesRegex(deformvolume.Error, "is closed"):
+                call()
 
     def test_threads(self):
         shared = deformvolume.Deformer()
@@ -315,6 +365,69 @@ class Misuse(unittest.TestCase):
                 finally:
                     os._exit(status)
             self.assertEqual(os.waitpid(child, 0)[1], 0, call)
+
+
+    # The lock of a deformer that another thread uses stays locked in the forked process.
+    def test_fork_during_a_call(self):
+        shared = deformvolume.Deformer()
+        shared.set_volume(make_volume(), AFFINE)
+        begun, go_on = threading.Event(), threading.Event()
+
+        def wait(_):
+            begun.set()
+            go_on.wait()
+
+        thread = threading.Thread(target=shared.deform, kwargs={"progress": wait})
+        thread.start()
+        begun.wait()
+        child = os.fork()
+        if child == 0:
+            signal.alarm(60)
+            status = 1
+            try:
+                shared.release_memory()
+            except deformvolume.Error as error:
+                status = 0 if "spawn" in str(error) else 2
+            finally:
+                os._exit(status)
+        go_on.set()
+        thread.join()
+        self.assertEqual(os.waitpid(child, 0)[1], 0)
+
+    # A daemon thread deforms until the process has ended, and a function that is called at exit deforms, too.
+    def test_exit(self):
+        program = """
+import atexit, sys, threading
+atexit.register(lambda: print(deformer.deform().array.sum()))
+sys.path.insert(0, {folder!r})
+import deformvolume, numpy
+from test_misuse import AFFINE, CELLS, MOVED, POINTS, Mesh, make_volume
+deformer, other = deformvolume.Deformer(), deformvolume.Deformer()
+for one in deformer, other:
+    one.set_volume(make_volume(), AFFINE)
+    one.set_deformation(Mesh(POINTS, CELLS, MOVED))
+begun = threading.Event()
+def work():
+    while True:
+        other.deform()
+        deformvolume.deform(make_volume(), Mesh(POINTS, CELLS, MOVED), AFFINE)
+        begun.set()
+threading.Thread(target=work, daemon=True).start()
+begun.wait()
+print(deformer.deform().array.sum())
+"""
+        folder = os.path.dirname(os.path.abspath(__file__))
+        for _ in range(5):
+            done = subprocess.run(
+                [sys.executable, "-c", program.format(folder=folder)],
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                universal_newlines=True,
+                check=False,
+                timeout=100,
+            )
+            lines = done.stdout.splitlines()
+            self.assertEqual((done.returncode, len(lines), len(set(lines))), (0, 2, 1), done.stdout)
 
 
 class Drivers(OwnProcess):

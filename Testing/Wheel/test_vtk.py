@@ -168,7 +168,7 @@ class Pipeline(unittest.TestCase):
         self.filter.SetDeformationData(mesh)
         self.filter.Update()
         deformer = self.filter._deformer
-        for name in ("set_volume_grid", "set_mesh_arrays", "set_displacements"):
+        for name in ("_set_volume_grid", "_set_mesh_arrays", "set_displacements"):
 
             def call(*arguments, name=name, before=getattr(deformer, name)):
                 sent.append(name)
@@ -181,7 +181,7 @@ class Pipeline(unittest.TestCase):
         self.assertEqual(sent, 3 * ["set_displacements"])
         self.source.SetXFreq(50)
         self.filter.Update()
-        self.assertIn("set_volume_grid", sent)
+        self.assertIn("_set_volume_grid", sent)
         self.expect_shift()
 
     # A failed update may have passed on a part of its input.
