@@ -39,11 +39,28 @@ vtkIdType CountEdges(vtkPolyData* surface, bool boundary, bool nonManifold)
 // length.
 bool IsFlat(vtkPolyData* surface)
 {
+  // vtkOBBTree has absolute tolerances, and finds infinite boxes for points that are far apart.
+  if (!(surface->GetLength() > 0.0))
+  {
+    return true;
+  }
+  const double scale = 1.0 / surface->GetLength();
+  const double* const center = surface->GetCenter();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(surface->GetNumberOfPoints());
+  for (vtkIdType id = 0; id < surface->GetNumberOfPoints(); ++id)
+  {
+    double point[3];
+    surface->GetPoint(id, point);
+    points->SetPoint(id, scale * (point[0] - center[0]), scale * (point[1] - center[1]),
+      scale * (point[2] - center[2]));
+  }
   double corner[3];
   double axes[3][3]; // the longest first
   double sizes[3];
   vtkNew<vtkOBBTree> tree;
-  tree->ComputeOBB(surface->GetPoints(), corner, axes[0], axes[1], axes[2], sizes);
+  tree->ComputeOBB(points, corner, axes[0], axes[1], axes[2], sizes);
   return !(vtkMath::Norm(axes[2]) > 1e-6 * vtkMath::Norm(axes[0]));
 }
 

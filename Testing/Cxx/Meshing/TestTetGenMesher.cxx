@@ -256,6 +256,24 @@ void TestSurfaces()
 }
 
 /// Piece 0 is the whole mesh. The other pieces are empty, and need no work.
+// Bodies in nanometers, or in meters, of any size.
+void TestUnits()
+{
+  for (const double unit : { 1e-9, 1.0, 1e9 })
+  {
+    vtkNew<vtkCubeSource> cube;
+    cube->SetXLength(unit);
+    cube->SetYLength(unit);
+    cube->SetZLength(unit);
+    vtkNew<vtkTetGenMesher> mesher;
+    FailureCheck check(mesher);
+    mesher->SetInputConnection(cube->GetOutputPort());
+    mesher->SetTargetEdgeLength(0.4 * unit);
+    check.Succeeds();
+    VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume / (unit * unit * unit), 1.0, 1e-6);
+  }
+}
+
 void TestPieces()
 {
   vtkNew<vtkCubeSource> cube;
@@ -278,6 +296,7 @@ int TestTetGenMesher(int, char*[])
   TestBodies();
   TestLabels();
   TestSurfaces();
+  TestUnits();
   TestPieces();
   vtkNew<vtkTetGenMesher> mesher;
   std::ostringstream text;
