@@ -252,10 +252,7 @@ void CheckValues(vtkImageData* image, const std::string& path)
   }
   if (first == arrays->GetNumberOfArrays())
   {
-    throw Failure("cannot use " + path + ": its voxels have no numeric array" +
-      (image->GetCellData()->GetNumberOfArrays() > 0
-          ? ". Convert its cell arrays with ParaView's filter Cell Data to Point Data"
-          : ""));
+    throw Failure("cannot use " + path + ": its voxels have no numeric array");
   }
   if (!arrays->GetScalars())
   {
@@ -272,6 +269,27 @@ void CheckBackground(const Options& options, vtkDataArray* scalars)
   {
     throw Failure("--background nan needs a volume of real numbers, and the values of " +
       options.Volume + " are of the type " + scalars->GetDataTypeAsString());
+  }
+}
+
+// A few tetrahedra that are inside out are normal, for example at the handles of ChainMail.
+void WarnOfFolds(const Options& options, vtkDeformVolumeFilter* filter, Messages& messages)
+{
+  constexpr vtkIdType few = 1000;
+  const vtkIdType inverted = filter->GetNumberOfInvertedTetrahedra();
+  if (options.FieldIsInverse && inverted > 0)
+  {
+    messages.DisplayWarningText("The field folds: it leads several points of the result to the "
+                                "same point of the volume, which is shown more than once.");
+  }
+  else if (inverted > filter->GetNumberOfCoveredVoxels() / few)
+  {
+    messages.DisplayWarningText(
+      ("The deformation folds the volume: it turns " + std::to_string(inverted) +
+        " of the tetrahedra between its voxels inside out. Where parts of the result overlap, only "
+        "one of them is shown. Check the displacements, and whether they are in the unit of the "
+        "volume.")
+        .c_str());
   }
 }
 
@@ -366,11 +384,7 @@ void DeformVolume(const Options& options, Messages& messages)
 
   const Stopwatch deforming;
   deform(deformation);
-  if (options.FieldIsInverse && filter->GetNumberOfInvertedTetrahedra() > 0)
-  {
-    messages.DisplayWarningText("The field folds: it leads several points of the result to the "
-                                "same point of the volume, which is shown more than once.");
-  }
+  WarnOfFolds(options, filter, messages);
   timings.Add("deform", deforming.GetSeconds());
 
   Volume result = volume;

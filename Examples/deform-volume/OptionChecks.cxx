@@ -193,7 +193,7 @@ void CheckDeformation(const Options& options)
   }
   else if (!options.Field.empty())
   {
-    if (!options.Displacement.empty() && !IsVTKFile(options.Field))
+    if (!options.Displacement.empty() && IsFieldFile(options.Field) && !IsVTKFile(options.Field))
     {
       throw UsageError("--displacement names an array of a .vti file; " + options.Field +
         " has only one set of vectors");

@@ -6,6 +6,7 @@
 
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkUnstructuredGrid.h"
@@ -38,7 +39,9 @@ std::pair<std::size_t, vtkIdType> FindNode(const MeshParts& parts, vtkIdType nod
 {
   const auto [part, number] = FindNode(parts, node);
   throw Error(kind + " " + std::to_string(number) + " of " + DescribePart(parts, part, name) +
-    " is not finite, and cells use it. Remove NaN and infinity from it.");
+    " is not finite, and cells use it. Remove NaN and infinity from it, or mark its point as "
+    "hidden in " +
+    vtkDataSetAttributes::GhostArrayName() + ", so that these cells are left out.");
 }
 
 void MarkMissing(vtkIdType first, vtkIdType count, const VectorTaker& take, NodeFaults& faults)

@@ -46,7 +46,7 @@ bool IsUndefined(const glm::dvec3& vector)
 }
 
 // Returns the finite difference of a function between two positions. An undefined value is replaced
-// by the value in the middle. Returns 0 if there are not two defined values.
+// by the value in the middle. Returns NaN if there are not two defined values.
 template <typename Function>
 glm::dvec3 GetSlope(double low, double middle, double high, const Function& getValue)
 {
@@ -62,8 +62,8 @@ glm::dvec3 GetSlope(double low, double middle, double high, const Function& getV
     high = middle;
     after = getValue(high);
   }
-  return high > low && !IsUndefined(before) && !IsUndefined(after) ? (after - before) / (high - low)
-                                                                   : glm::dvec3(0.0);
+  return high > low ? (after - before) / (high - low)
+                    : glm::dvec3(std::numeric_limits<double>::quiet_NaN());
 }
 
 // The derivatives of a displacement field.
@@ -101,6 +101,7 @@ public:
             moved[axis] = shifted;
             return this->Displace(this->ToField * moved + this->Offset);
           });
+        derivative[axis] = IsUndefined(derivative[axis]) ? glm::dvec3(0.0) : derivative[axis];
       }
       return derivative;
     }
@@ -114,19 +115,51 @@ public:
         std::max({ std::abs(this->ToField[0][axis]), std::abs(this->ToField[1][axis]),
           std::abs(this->ToField[2][axis]) });
       const glm::dvec3 middle = glm::clamp(position, glm::dvec3(0.0), this->Last);
-      alongField[axis] = GetSlope(std::max(middle[axis] - halfStep, 0.0), middle[axis],
-        std::min(middle[axis] + halfStep, this->Last[axis]),
-        [&](double shifted)
-        {
-          glm::dvec3 moved = middle;
-          moved[axis] = shifted;
-          return this->Interpolate(moved);
-        });
+      alongField[axis] = this->GetSlopeAt(middle, axis, halfStep);
+      if (IsUndefined(alongField[axis]))
+      {
+        alongField[axis] = this->GetSlopeBeside(middle, axis, halfStep);
+      }
     }
     return alongField * this->ToField;
   }
 
 private:
+  // The derivative along an axis of the field; NaN if it is undefined on both sides.
+  glm::dvec3 GetSlopeAt(const glm::dvec3& middle, int axis, double halfStep) const
+  {
+    return GetSlope(std::max(middle[axis] - halfStep, 0.0), middle[axis],
+      std::min(middle[axis] + halfStep, this->Last[axis]),
+      [&](double shifted)
+      {
+        glm::dvec3 moved = middle;
+        moved[axis] = shifted;
+        return this->Interpolate(moved);
+      });
+  }
+
+  // The mean of the defined derivatives along an axis of the field at the eight positions one point
+  // aside; 0 if there are none.
+  glm::dvec3 GetSlopeBeside(const glm::dvec3& middle, int axis, double halfStep) const
+  {
+    glm::dvec3 sum(0.0);
+    double count = 0.0;
+    for (int neighbor = 0; neighbor < 9; ++neighbor)
+    {
+      glm::dvec3 moved = middle;
+      moved[(axis + 1) % 3] += neighbor % 3 - 1;
+      moved[(axis + 2) % 3] += neighbor / 3 - 1;
+      moved = glm::clamp(moved, glm::dvec3(0.0), this->Last);
+      const glm::dvec3 slope = this->GetSlopeAt(moved, axis, halfStep);
+      if (!IsUndefined(slope))
+      {
+        sum += slope;
+        count += 1.0;
+      }
+    }
+    return count > 0.0 ? sum / count : sum;
+  }
+
   glm::dvec3 GetPoint(std::int64_t point) const
   {
     if (!this->Undefined.empty() && this->Undefined[static_cast<std::size_t>(point)] != 0)

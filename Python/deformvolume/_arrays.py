@@ -12,7 +12,11 @@ from . import _structs
 def native(array, what: str) -> numpy.ndarray:
     """Returns an array of a type that the library supports. Bool becomes uint8, and other byte orders are converted."""
     if isinstance(array, numpy.ma.MaskedArray):
-        raise TypeError(f"{what} is a masked array. Replace the masked values, for example with array.filled(0).")
+        raise TypeError(
+            f"{what} is a masked array. Give array.filled(value). Voxels of a volume can be left out with "
+            "Deformer.set_blanked(). A field needs a vector at each point: interpolate those that are missing, or make "
+            "a Mesh of the cells that have all of them."
+        )
     if hasattr(array, "dataobj"):  # an image of nibabel
         raise TypeError(f"{what} is a {type(array).__name__}. Give its values, numpy.asarray(image.dataobj).")
     array = numpy.asarray(array)

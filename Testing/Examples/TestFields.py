@@ -187,7 +187,8 @@ inverse_flag = ("--field-is-inverse",)
 for field_name, options, words in (
         ("identity.nii", (), "look like the positions"),
         ("positions.nii", inverse_flag, "look like the positions"),
-        ("folded.nii", inverse_flag, "The field folds"), ("inverse.nii", inverse_flag, ""),
+        ("folded.nii", inverse_flag, "The field folds"), ("folded.nii", (), "The deformation folds the volume"),
+        ("inverse.nii", inverse_flag, ""),
         ("kind.nrrd", (), "needs --field-is-inverse"), ("kind.nrrd", inverse_flag, "")):
     _, errors = call(program, path("volume.nii.gz"), "--field", path(field_name), "-o", path("out.vti"),
                      "--quiet", *options)

@@ -9,6 +9,7 @@ import sys
 
 import numpy
 from Volumes import call, get_values, make_ball, make_folder, read_vti, write_vti
+from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkImageData
 
 program = sys.argv[1]
 folder = make_folder(sys.argv[2], "Formats")
@@ -84,6 +85,24 @@ write_vti(shifted, path("shifted.vti"))
 for name in ("shifted.nii.gz", "shifted.mhd"):
     convert("shifted.vti", name)
     same(convert(name, "e.vti"), values, get_matrix(shifted))
+
+# The values of cells: the cells of this image have the positions of the voxels of the shifted one. One cell is hidden.
+cells = vtkImageData()
+cells.SetExtent(-4, 21, 3, 25, -1, 18)
+cells.SetSpacing(shifted.GetSpacing())
+cells.SetDirectionMatrix(shifted.GetDirectionMatrix())
+corner = [0.0, 0.0, 0.0]
+shifted.TransformContinuousIndexToPhysicalPoint((-0.5, -0.5, -0.5), corner)
+cells.SetOrigin(corner)
+cells.GetCellData().ShallowCopy(volume.GetPointData())
+write_vti(cells, path("cells.vti"))
+same(convert("cells.vti", "e.vti"), values, get_matrix(shifted))
+cells.AllocateCellGhostArray()
+cells.GetCellGhostArray().SetValue(7, vtkDataSetAttributes.HIDDENCELL)
+write_vti(cells, path("cells.vti"))
+coverage = convert("cells.vti", "e.vti").GetPointData().GetArray("vtkValidPointMask")
+covered = [coverage.GetValue(voxel) for voxel in range(coverage.GetNumberOfTuples())]
+assert covered.count(0) == 1 and covered[7] == 0, covered.count(0)
 
 # --file-coordinates: the output has the coordinates that VTK's reader gives for a NIfTI file.
 call(program, path("a.nii.gz"), *still, "-o", path("f.vti"), "--quiet", "--bounds", "volume",

@@ -207,6 +207,7 @@ def check_misuse_of_meshes():
     for name, converter in (
             ("fe.msh", "meshio convert fe.msh fe.vtu"), ("fe.med", "meshio convert fe.med"),
             ("fe.CGNS", "meshio convert fe.CGNS fe.vtu"), ("fe.xdmf", "ParaView"),
+            ("fe.csv", "Table To Structured Grid"),
             ("fe.frd", "ccx2paraview fe.frd vtu"), ("fe.inp", "without results"),
             ("fe.bdf", "without results"), ("fe.feb", "FEBio Studio"),
             ("fe.xplt", "FEBio Studio"), ("fe.odb", "Save Data"), ("fe.stl", "Gmsh"),

@@ -233,8 +233,9 @@ vtkSmartPointer<vtkImageData> ReadField(const std::string& path, const Volume& v
   if (!IsFieldFile(path))
   {
     throw Failure(what +
-      ": a field is a .nii, .nii.gz, .mha, .mhd, .nrrd, .nhdr or .vti file; convert other "
-      "transformations into a displacement field first");
+      ": a field is a .nii, .nii.gz, .mha, .mhd, .nrrd, .nhdr or .vti file. Give meshes with "
+      "--mesh, "
+      "and convert other transformations into a displacement field first");
   }
   ReadingOptions reading;
   reading.Frame = 0; // the shape is checked below

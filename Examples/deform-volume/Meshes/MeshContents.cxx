@@ -137,7 +137,7 @@ void CheckArray(const MeshPart& part, const std::string& name, const std::string
     throw Failure(what + "there is no point array \"" + name + "\" of displacements; " +
       DescribeArrays(part.Data->GetPointData()) +
       (part.Data->GetCellData()->HasArray(name.c_str()) ? ", and a cell array \"" + name +
-            "\", which ParaView's filter Cell Data to Point Data converts"
+            "\", which ParaView's filter Cell Data to Point Data averages at points"
                                                         : ""));
   }
   if (array->GetNumberOfComponents() != 3)
@@ -247,8 +247,10 @@ bool HasVolumeCells(vtkDataSet* data)
 void CheckMesh(vtkDataObject* mesh, const std::string& displacement, const std::string& path)
 {
   bool deforms = false;
+  bool hasImages = false;
   for (const MeshPart& part : FindParts(mesh))
   {
+    hasImages = hasImages || vtkImageData::SafeDownCast(part.Data);
     const bool isField = part.Data == vtkImageData::SafeDownCast(mesh);
     if (HasVolumeCells(part.Data) || (isField && part.Data->GetNumberOfPoints() > 0))
     {
@@ -267,7 +269,10 @@ void CheckMesh(vtkDataObject* mesh, const std::string& displacement, const std::
   if (!deforms)
   {
     throw Failure("cannot use " + path + " as a mesh: it holds " + Describe(mesh) +
-      ". A mesh needs three-dimensional cells, such as tetrahedra and hexahedra");
+      (hasImages
+          ? ", of blocks of image data, which are ignored. Give an image as a displacement field "
+            "(--field), in a file of its own"
+          : ". A mesh needs three-dimensional cells, such as tetrahedra and hexahedra"));
   }
 }
 

@@ -53,6 +53,13 @@ std::string GetMeshConversion(const std::string& path)
   {
     return "Give displacement fields with --field";
   }
+  if (HasSuffix(path, { ".csv", ".tsv", ".txt", ".xlsx" }))
+  {
+    return "It holds a table. Open it in ParaView (.csv), make a mesh of its points with Table To "
+           "Structured Grid if they are those of a grid, otherwise with Table To Points and "
+           "Delaunay "
+           "3D, and save the data as .vts or .vtu (File > Save Data)";
+  }
   if (HasSuffix(path, { ".frd" }))
   {
     return "Convert it with ccx2paraview (pip install ccx2paraview): ccx2paraview " +

@@ -12,7 +12,10 @@
 #include "NRRDReading.h"
 #endif
 
+#include <vtkCellData.h>
 #include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkXMLImageDataReader.h>
 #include <vtksys/SystemTools.hxx>
 
@@ -24,6 +27,54 @@ namespace
 const char* const OtherFiles = HasITK
   ? ". Convert it to one of these, for example with 3D Slicer, or mri_convert for .mgz"
   : ". This program was built without ITK, which reads other formats";
+
+bool HasNumbers(vtkDataSetAttributes* arrays)
+{
+  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+  {
+    if (arrays->GetArray(i))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+// Makes an image of the cells of another one: its points are the centers of the cells.
+vtkSmartPointer<vtkImageData> MakeImageOfCells(vtkImageData* image)
+{
+  auto cells = vtkSmartPointer<vtkImageData>::New();
+  int extent[6];
+  image->GetExtent(extent);
+  double half[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const bool isFlat = extent[2 * axis + 1] == extent[2 * axis];
+    extent[2 * axis + 1] -= isFlat ? 0 : 1;
+    half[axis] = isFlat ? 0.0 : 0.5;
+  }
+  double origin[3];
+  image->TransformContinuousIndexToPhysicalPoint(half, origin);
+  cells->SetExtent(extent);
+  cells->SetOrigin(origin);
+  cells->SetSpacing(image->GetSpacing());
+  cells->SetDirectionMatrix(image->GetDirectionMatrix());
+  cells->GetPointData()->ShallowCopy(image->GetCellData());
+  cells->GetFieldData()->ShallowCopy(image->GetFieldData());
+  if (auto* ghosts = cells->GetPointData()->GetArray(vtkDataSetAttributes::GhostArrayName()))
+  {
+    vtkNew<vtkUnsignedCharArray> hidden;
+    hidden->SetName(ghosts->GetName());
+    for (vtkIdType i = 0; i < ghosts->GetNumberOfTuples(); ++i)
+    {
+      const bool isHidden =
+        (static_cast<int>(ghosts->GetComponent(i, 0)) & vtkDataSetAttributes::HIDDENCELL) != 0;
+      hidden->InsertNextValue(isHidden ? vtkDataSetAttributes::HIDDENPOINT : 0);
+    }
+    cells->GetPointData()->AddArray(hidden);
+  }
+  return cells;
+}
 
 Volume ReadVTI(const std::string& path, Messages& messages, bool showProgress)
 {
@@ -39,6 +90,10 @@ Volume ReadVTI(const std::string& path, Messages& messages, bool showProgress)
   Volume volume;
   volume.Image = vtkSmartPointer<vtkImageData>::New();
   volume.Image->ShallowCopy(reader->GetOutput());
+  if (!HasNumbers(volume.Image->GetPointData()) && HasNumbers(volume.Image->GetCellData()))
+  {
+    volume.Image = MakeImageOfCells(volume.Image);
+  }
   return volume;
 }
 }

@@ -373,8 +373,8 @@ void TestHoles()
       subject.Filter->SetFieldIsInverse(isInverse);
       subject.Expect("");
       const std::int64_t covered = subject.Filter->GetNumberOfCoveredVoxels();
-      // Hide three points, and set their vectors to zero.
-      for (int z = 8; z < 11; ++z)
+      // Hide three points in a row, and both neighbors of another point. Set their vectors to zero.
+      for (const int z : { 8, 9, 10, 12, 14 })
       {
         int hidden[3] = { 10, 9, z };
         const vtkIdType id = field->ComputePointId(hidden);
