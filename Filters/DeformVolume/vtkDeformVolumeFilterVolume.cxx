@@ -54,16 +54,17 @@ deformvolume::MappedVolume vtkDeformVolumeFilter::vtkInternals::GetMappedVolume(
     throw Error("The source of the volume on input port 0 was asked for an extent of it, " +
       deformvolume::DescribeExtent(asked) + ", and gave another one, " +
       deformvolume::DescribeExtent(mapped.Part) +
-      ". Correct the WHOLE_EXTENT that the source announces or what it makes, or read the volume "
-      "into memory first.");
+      ". Give all files of a series the same grid, correct the WHOLE_EXTENT that the source "
+      "announces or what it makes, or read the volume into memory first.");
   }
   deformvolume::CheckTransform(given, "the volume on input port 0");
   if (!deformvolume::AreSamePositions(mapped.Whole, given, mapped.Whole.PointExtent))
   {
     throw Error("The volume on input port 0 has " + deformvolume::DescribeTransform(given) +
       ", but its source announced " + deformvolume::DescribeTransform(mapped.Whole) +
-      ", from which the extent of the output follows. Set ORIGIN(), SPACING() and DIRECTION() of "
-      "vtkDataObject in the source's RequestInformation().");
+      ", from which the extent of the output follows. Give all files of a series the same grid, or "
+      "set ORIGIN(), SPACING() and DIRECTION() of vtkDataObject in the source's "
+      "RequestInformation().");
   }
   deformvolume::CheckVolume(mapped.Whole);
   mapped.Whole = this->GetCoarseGeometry(mapped.Whole);

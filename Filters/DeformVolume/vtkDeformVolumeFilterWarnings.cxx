@@ -168,7 +168,7 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfNothing() const
            "Check ";
     text += this->Reference
       ? "that the reference image overlaps the deformed volume, in the same world coordinates,"
-      : "the output bounds,";
+      : "the output bounds and the output spacing,";
     text += " and that the deformation mesh holds neighboring voxels of the volume.";
   }
   vtkWarningWithObjectMacro(this->Self, << text);

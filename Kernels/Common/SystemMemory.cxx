@@ -4,9 +4,13 @@
 #include "ControlGroups.h"
 
 #include <algorithm>
+#include <fstream>
 #include <limits>
 #include <string>
 #include <vector>
+
+#include <sys/resource.h>
+#include <unistd.h>
 
 namespace deformvolume
 {
@@ -33,6 +37,20 @@ std::int64_t GetAvailable(const std::string& folder, std::int64_t all)
   return limit - std::max<std::int64_t>(0, usage - reclaimable);
 }
 
+// Returns the address space that this process has left (ulimit -v, which many batch systems set).
+std::int64_t GetAddressSpace()
+{
+  rlimit limit{};
+  std::ifstream sizes("/proc/self/statm");
+  std::int64_t pages = 0;
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || !(sizes >> pages))
+  {
+    return NoLimit;
+  }
+  const auto all = std::min(limit.rlim_cur, static_cast<rlim_t>(NoLimit));
+  return static_cast<std::int64_t>(all) - pages * sysconf(_SC_PAGESIZE);
+}
+
 } // namespace
 
 std::uint64_t GetSystemMemory(const std::string& root)
@@ -55,6 +73,7 @@ std::uint64_t GetSystemMemory(const std::string& root)
   {
     left = std::min(left, GetAvailable(folder, all));
   }
+  left = root.empty() ? std::min(left, GetAddressSpace()) : left;
   return left == NoLimit ? 0 : static_cast<std::uint64_t>(std::max<std::int64_t>(1, left));
 }
 

@@ -26,6 +26,8 @@
 #include <vector>
 
 #include <sched.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 using namespace deformvolume;
 
@@ -135,6 +137,22 @@ TEST_F(SystemLimits, MemoryLimitsOfContainers)
   this->Write("/sys/fs/c g/job/memory.max", InBytes(300));
   this->Write("/sys/fs/c g/memory.max", InBytes(400));
   EXPECT_EQ(this->GetMemory(), 300U);
+}
+
+TEST(AddressSpace, LimitsTheMemory)
+{
+  std::ifstream sizes("/proc/self/statm");
+  std::uint64_t pages = 0;
+  ASSERT_TRUE(sizes >> pages);
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
+  rlimit limited = before;
+  limited.rlim_cur = pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + 200 * MiB;
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &limited), 0);
+  const std::uint64_t left = GetSystemMemory();
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &before), 0);
+  EXPECT_GT(left, 150 * MiB);
+  EXPECT_LE(left, 200 * MiB);
 }
 
 TEST_F(SystemLimits, ProcessorQuotaOfACgroup)
