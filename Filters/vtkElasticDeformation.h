@@ -32,8 +32,9 @@
  * @par Port 1, optional, the handles:
  * vtkPointSet. Each point is the current position of a handle. The point array "RestPosition" of
  * three components is the position in the mesh at rest that a handle holds: the nodes within
- * HandleRadius of this position, or the nearest node if HandleRadius is 0. Points that no
- * tetrahedron uses are ignored. If several handles hold a node, the first one is used. Handles do
+ * HandleRadius of this position or, if none of these can move, the nodes of the tetrahedron that
+ * contains it, so that the tissue there follows the handle. If HandleRadius is 0, it is the nearest
+ * node. Points that no tetrahedron uses are ignored. If several handles hold a node, the first one is used. Handles do
  * not move fixed nodes, and move sliding nodes only within their plane or along their line.
  *
  * @par Port 2, optional, the sheet:
@@ -157,7 +158,8 @@ public:
   ///@{
   /**
    * Set/Get the distance from its rest position within which a handle holds nodes, in the units of
-   * the mesh, at least 0. Default: 0, only the nearest node.
+   * the mesh, at least 0. If there are none, it holds the nodes of the tetrahedron at its rest
+   * position. Default: 0, only the nearest node.
    */
   vtkSetClampMacro(HandleRadius, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(HandleRadius, double);

@@ -105,7 +105,7 @@ private:
     glm::dvec3 Rest{ 0.0 };
     glm::dvec3 Now{ 0.0 };
     glm::dvec3 LastPossible{ 0.0 };
-    glm::dvec3 ToNode{ 0.0 }; // from Rest to the nearest node of the mesh that can move
+    glm::dvec3 ToNode{ 0.0 }; // see FindWayToNode()
     bool IsGrabbed = false;
     bool IsHeld = false;
     vtkSmartPointer<vtkPolyData> RestSheet;
@@ -148,6 +148,8 @@ private:
   bool IsUsed(vtkIdType point);
   /// Warns once if a handle lies outside the output.
   void CheckHandles();
+  // Returns the vector to the nearest node of the mesh that can move; 0 if a tetrahedron with such
+  // a node contains the position.
   glm::dvec3 FindWayToNode(const glm::dvec3& rest);
   glm::dvec3 GetShift(const Action& drag);
   void Update(vtkAlgorithm* filter);

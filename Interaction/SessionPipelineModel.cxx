@@ -19,6 +19,7 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkTetra.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 
@@ -272,6 +273,32 @@ glm::dvec3 SessionPipeline::FindWayToNode(const glm::dvec3& rest)
     return position;
   };
   const auto isFixed = [&](vtkIdType id) { return fixed && fixed->GetComponent(id, 0) != 0.0; };
+  vtkNew<vtkIdList> ids;
+  for (vtkIdType cell = 0; cell < this->RestMesh->GetNumberOfCells(); ++cell)
+  {
+    const int type = this->RestMesh->GetCellType(cell);
+    if (type != VTK_TETRA && type != VTK_QUADRATIC_TETRA)
+    {
+      continue;
+    }
+    this->RestMesh->GetCellPoints(cell, ids);
+    glm::dvec3 corners[4];
+    bool isHeld = true;
+    for (int i = 0; i < 4; ++i)
+    {
+      corners[i] = getPosition(ids->GetId(i));
+      isHeld = isHeld && isFixed(ids->GetId(i));
+    }
+    double weights[4];
+    glm::dvec3 position = rest; // VTK 9.1 takes no constants
+    if (!isHeld &&
+      vtkTetra::BarycentricCoords(
+        &position.x, &corners[0].x, &corners[1].x, &corners[2].x, &corners[3].x, weights) != 0 &&
+      *std::min_element(weights, weights + 4) >= 0.0)
+    {
+      return glm::dvec3(0.0);
+    }
+  }
   for (vtkIdType id = 0; id < this->RestMesh->GetNumberOfPoints(); ++id)
   {
     // Points without cells are not nodes.
@@ -281,7 +308,6 @@ glm::dvec3 SessionPipeline::FindWayToNode(const glm::dvec3& rest)
     }
   }
   // The mid-side nodes that finite elements add.
-  vtkNew<vtkIdList> ids;
   for (vtkIdType cell = 0; this->IsMeshOfElements && cell < this->RestMesh->GetNumberOfCells();
        ++cell)
   {
@@ -301,8 +327,8 @@ glm::dvec3 SessionPipeline::FindWayToNode(const glm::dvec3& rest)
   return nearest;
 }
 
-// The vector by which a handle is moved to the nearest node of a mesh, if no node lies within the
-// handle radius. Otherwise handles would hold nothing in a coarse mesh.
+// The vector by which a handle is moved to the nearest node that can move, if no such node lies
+// within the handle radius, and no tetrahedron with such a node contains the handle.
 glm::dvec3 SessionPipeline::GetShift(const Action& drag)
 {
   return this->GetElastic() && glm::length(drag.ToNode) > this->HandleRadius ? drag.ToNode
@@ -336,7 +362,9 @@ void SessionPipeline::UpdateModel(const Actions& held)
   }
   else if (vtkElasticDeformation* elastic = this->GetElastic())
   {
-    elastic->SetHandleRadius(this->HandleRadius);
+    // With a radius of 0 the filter would hold the nearest node, so that the tissue at the handle
+    // would lag behind.
+    elastic->SetHandleRadius(std::max(this->HandleRadius, std::numeric_limits<double>::min()));
     elastic->SetHandlesData(handles);
     elastic->Modified();
     this->Update(elastic);

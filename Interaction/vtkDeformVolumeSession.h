@@ -116,11 +116,11 @@ public:
    * Grab the tissue at a position, move the handle, and end the grab. BeginGrab() returns the
    * number of the handle, or -1 if there is no volume or a number is not finite; other errors, such
    * as a position outside the tissue, are reported by the next update. MASS_SPRING and
-   * FINITE_ELEMENTS hold the nodes within the radius of ChangeHandleRadius() or, if there is none,
-   * the nearest node: the tissue at the position itself follows only in part if no node is near
-   * it. With the model NONE a grab has no effect. Several handles may be grabbed at the same time.
-   * EndGrab() removes the handle. HoldGrab() ends the grab and keeps the handle at its position;
-   * Release() removes such a handle.
+   * FINITE_ELEMENTS hold the nodes within the radius of ChangeHandleRadius() or, if there are none,
+   * those of the tetrahedron at the position, whose fixed nodes do not follow. If none of them can
+   * move, they hold the nearest node that can. With the model NONE a grab has no effect. Several
+   * handles may be grabbed at the same time. EndGrab() removes the handle. HoldGrab() ends the grab
+   * and keeps the handle at its position; Release() removes such a handle.
    */
   int BeginGrab(double x, double y, double z);
   void MoveGrab(int handle, double x, double y, double z);

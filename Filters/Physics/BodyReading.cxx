@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BodyReading.h"
 
+#include "BarycentricMap.h"
 #include "CellNumbers.h"
 #include "CellTypes.h"
 #include "Error.h"
@@ -317,6 +318,18 @@ void AddMidSides(std::vector<MidSideNodes>&& ofCells, BodyMesh& mesh)
   }
 }
 
+bool Contains(const ElasticBody& body, std::size_t tetrahedron, const glm::dvec3& position)
+{
+  constexpr double tolerance = 1e-6;
+  BarycentricMap map;
+  if (!map.SetTetrahedron(body.Tetrahedra[tetrahedron], body.Points))
+  {
+    return false;
+  }
+  const glm::dvec4 weights = map.GetAllWeights(position);
+  return std::min({ weights.x, weights.y, weights.z, weights.w }) >= -tolerance;
+}
+
 // Adds the nodes that a handle at a position holds. isTaken: whether another handle holds a node.
 void Hold(const glm::dvec3& position, double radius, const glm::dvec3& displacement,
   const BodyMesh& mesh, std::vector<unsigned char>& isTaken, std::vector<HeldNode>& held)
@@ -346,6 +359,15 @@ void Hold(const glm::dvec3& position, double radius, const glm::dvec3& displacem
       add(node);
     }
   }
+  // The tissue between the nodes of a coarse mesh: with all nodes of its tetrahedron it follows the
+  // handle.
+  for (std::size_t t = 0; radius > 0.0 && held.size() == before && t < body.Tetrahedra.size(); ++t)
+  {
+    if (Contains(body, t, position))
+    {
+      body.ForNodes(t, [&](std::int32_t node) { add(static_cast<std::size_t>(node)); });
+    }
+  }
   if (radius == 0.0)
   {
     // A handle that far away is in other units or in another world.
@@ -360,8 +382,8 @@ void Hold(const glm::dvec3& position, double radius, const glm::dvec3& displacem
   {
     throw Error(radius > 0.0
         ? "A handle holds no node that could move: no node is within its radius of its rest "
-          "position, or all of these nodes are fixed or held by another handle. Use a larger "
-          "radius, or another rest position."
+          "position, and no tetrahedron contains this position, or all of their nodes are fixed or "
+          "held by another handle. Use a larger radius, or another rest position."
         : "A handle holds no node that could move: the node nearest to its rest position is fixed, "
           "or held by another handle. Use another rest position, or a radius greater than 0.");
   }

@@ -92,9 +92,10 @@ Stamp GetBodyStamp(vtkUnstructuredGrid* grid);
 BodyMesh ReadBody(vtkUnstructuredGrid* grid, const BodySettings& settings);
 
 /// Finds the nodes that handles hold, and their displacements. A handle holds the nodes of
-/// tetrahedra within a radius of its rest position, or the nearest one if the radius is 0. Lengths
-/// are in units of the mesh. If several handles hold a node, the first one is used. Fixed nodes
-/// cannot be held. Throws an Error if a handle holds no node.
+/// tetrahedra within a radius of its rest position. If none of these can move, it holds those of
+/// the tetrahedron that contains the position. If the radius is 0, it holds the nearest node.
+/// Lengths are in units of the mesh. If several handles hold a node, the first one is used. Fixed
+/// nodes cannot be held. Throws an Error if a handle holds no node.
 std::vector<HeldNode> ReadHandles(
   vtkPointSet* handles, double radius, const BodyMesh& mesh, const BodySettings& settings);
 

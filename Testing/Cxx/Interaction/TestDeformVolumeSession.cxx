@@ -853,6 +853,27 @@ void TestTenNodeElements(vtkImageData* volume, const std::string& fileName)
   VERIFY(most > 1.0 && worst < 1e-5); // points and vectors are floats
 }
 
+// Tissue between the nodes of a mesh follows its handle.
+void TestGrabbedTissue(vtkImageData* volume)
+{
+  for (const int model : { Session::MASS_SPRING, Session::FINITE_ELEMENTS })
+  {
+    for (const double radius : { 0.0, 0.5 })
+    {
+      Tested one(volume);
+      one.Object->ChangeModel(model);
+      one.Object->ChangeHandleRadius(radius);
+      const int handle = one.Object->BeginGrab(9.3, 10.1, 12.2);
+      one.Object->MoveGrab(handle, 12.3, 11.1, 12.7);
+      one.Finish();
+      VERIFY(one.Object->Probe(12.3, 11.1, 12.7));
+      glm::dvec3 rest;
+      one.Object->GetProbedRestPosition(&rest.x);
+      VERIFY(glm::distance(rest, glm::dvec3(9.3, 10.1, 12.2)) < 1e-4);
+    }
+  }
+}
+
 // A file of version 0.1, with events of all kinds.
 void TestOldFile(const std::string& data, const std::string& fileName)
 {
@@ -962,6 +983,7 @@ int TestDeformVolumeSession(int argc, char* argv[])
   TestPadding(volume);
   TestFiles(volume, fileName);
   TestOldFile(data, fileName);
+  TestGrabbedTissue(volume);
   TestTenNodeElements(volume, fileName + ".vtu");
   TestThread(volume, fileName);
   TestRandom(volume, events, static_cast<unsigned>(seed), fileName);
