@@ -143,6 +143,44 @@ void TestMemoryLimit()
   VERIFY(filter->GetDeviceMemory() < 100000000);
 }
 
+// A coarse mesh, whose static mapping has runs of voxels; a finer mesh, with a link for each voxel;
+// the coarse mesh again; and other displacements of it.
+void TestChangesOfForm()
+{
+  auto volume = MakeVolume({ { -4, 59, 3, 50, 0, 44 } });
+  auto coarse = MakeMesh(volume, 4);
+  auto fine = MakeMesh(volume, 30);
+  SetDisplacements(coarse, Shift(3.0, 1.0, 0.0));
+  SetDisplacements(fine, Shift(3.0, 1.0, 0.0));
+  Deformed deformed(volume, coarse);
+  deformed.Update();
+  auto expected = vtkSmartPointer<vtkImageData>::New();
+  expected->DeepCopy(deformed.Filter->GetOutput());
+  const vtkIdType byRuns = deformed.Filter->GetDeviceMemory();
+  VERIFY_EQUAL(GetReported(deformed.Filter, "Static mappings made"), 1);
+  deformed.Filter->SetDeformationData(fine);
+  VERIFY(AreEqual(deformed.Update(), expected));
+  const vtkIdType byLinks = deformed.Filter->GetDeviceMemory();
+  VERIFY(byLinks > byRuns + 10 * volume->GetNumberOfPoints());
+  VERIFY_EQUAL(GetReported(deformed.Filter, "Static mappings made"), 2);
+  deformed.Filter->SetDeformationData(coarse);
+  VERIFY(AreEqual(deformed.Update(), expected));
+  VERIFY_EQUAL(GetReported(deformed.Filter, "Static mappings made"), 3);
+  SetDisplacements(coarse, Shift(0.0, 0.0, 0.0));
+  coarse->Modified();
+  deformed.Update();
+  VERIFY(HaveEqualBits(deformed.GetValues(), volume->GetPointData()->GetScalars()));
+  VERIFY_EQUAL(GetReported(deformed.Filter, "Static mappings made"), 3);
+  // The check of the memory limit, before anything is allocated, knows the size of runs.
+  Deformed limited(volume, coarse);
+  limited.Filter->SetMemoryLimit((byRuns + byLinks) / 2);
+  limited.Update();
+  limited.Filter->SetOutsideModeToExtrapolate(); // by links
+  limited.Filter->Update();
+  VERIFY(limited.TakeErrors() >= 1);
+  VERIFY_CONTAINS(limited.LastError, "bytes are needed");
+}
+
 /// Counts how often the progress text changes to that of compilation, and back.
 class CompilationListener
 {
@@ -214,6 +252,7 @@ int TestDeformCaching(int, char*[])
   TestCounters();
   TestReports();
   TestMemoryLimit();
+  TestChangesOfForm();
   TestOutputOnDevice();
   return GetExitCode();
 }
