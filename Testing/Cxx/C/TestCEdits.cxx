@@ -19,7 +19,6 @@
 
 #include <cstring>
 #include <string>
-#include <thread>
 #include <vector>
 
 using namespace filterTesting;
@@ -298,6 +297,8 @@ void TestBase()
   vtkNew<vtkSphere> sphere;
   sphere->SetCenter(center[0] + 3.0, center[1] + 4.0, center[2]);
   sphere->SetRadius(3.3);
+  auto mesh = MakeMesh(volume, 4);
+  SetDisplacements(mesh, Bend);
   for (const bool isSmooth : { false, true })
   {
     vtkNew<vtkCutVolume> cut;
@@ -340,6 +341,9 @@ void TestBase()
         Check(dv_undo_edit(inC.Deformer));
         Check(dv_undo_edit(inC.Deformer));
         Compare(inC, base, 0);
+        Deformed deformed(base, mesh);
+        inC.SetMesh(mesh);
+        inC.Compare(deformed);
         if (!isBaseFirst)
         {
           inC.SetVolume(volume, 0.0);
@@ -349,33 +353,6 @@ void TestBase()
   }
 }
 
-/// dv_last_error() returns the last error of the calling thread.
-void TestErrorsOfThreads()
-{
-  const auto volume = MakeTwoArrays();
-  std::array<InC, 2> inC;
-  std::array<std::string, 2> errors;
-  std::array<std::thread, 2> threads;
-  for (std::size_t i = 0; i < 2; ++i)
-  {
-    inC[i].SetVolume(volume, 0.0);
-    threads[i] = std::thread(
-      [&inC, &errors, i]
-      {
-        const dv_edit edit = MakeEdit(false, i == 0 ? 7 : 8);
-        const double center[3] = { 0.0, 0.0, 0.0 };
-        dv_carve_sphere(inC[i].Deformer, 1, center, 1.0, &edit);
-        errors[i] = dv_last_error();
-      });
-  }
-  for (std::thread& thread : threads)
-  {
-    thread.join();
-  }
-  VERIFY_CONTAINS(errors[0], "is 7");
-  VERIFY_CONTAINS(errors[1], "is 8");
-}
-
 } // namespace
 
 int TestCEdits(int, char*[])
@@ -383,6 +360,5 @@ int TestCEdits(int, char*[])
   TestCuts();
   TestBodies();
   TestBase();
-  TestErrorsOfThreads();
   return GetExitCode();
 }

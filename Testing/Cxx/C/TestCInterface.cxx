@@ -3,18 +3,12 @@
 #include "CTesting.h"
 #include "FilterTesting.h"
 
-#include "vtkCarveVolume.h"
-#include "vtkCutVolume.h"
-
 #include <vtkAlgorithm.h>
 #include <vtkCell.h>
 #include <vtkCellType.h>
 #include <vtkCellTypeSource.h>
 #include <vtkDoubleArray.h>
 #include <vtkIdList.h>
-#include <vtkPlaneSource.h>
-#include <vtkPolyData.h>
-#include <vtkSphere.h>
 
 #include <glm/common.hpp>
 
@@ -474,45 +468,6 @@ void TestAtRest()
   inC.Compare(deformed);
 }
 
-/// The masks of cuts and carvings, with and without smooth boundaries.
-void TestEdits()
-{
-  const auto volume = MakeTwoArrays();
-  double center[3];
-  volume->GetCenter(center);
-  vtkNew<vtkPlaneSource> sheet;
-  sheet->SetOrigin(center[0] - 20.0, center[1] - 20.0, center[2] - 9.0);
-  sheet->SetPoint1(center[0] + 20.0, center[1] - 20.0, center[2] + 9.0);
-  sheet->SetPoint2(center[0] - 20.0, center[1] + 1.0, center[2] - 9.0);
-  sheet->Update();
-  vtkNew<vtkSphere> tool;
-  tool->SetCenter(center[0] + 3.0, center[1] + 4.0, center[2]);
-  tool->SetRadius(3.3);
-  auto mesh = MakeMesh(volume, 4);
-  SetDisplacements(mesh, Bend);
-  for (const bool isSmooth : { false, true })
-  {
-    vtkNew<vtkCutVolume> cut;
-    cut->SetInputData(volume);
-    cut->SetSheetData(sheet->GetOutput());
-    cut->SetSmoothCut(isSmooth);
-    vtkNew<vtkCarveVolume> carve;
-    carve->SetInputConnection(cut->GetOutputPort());
-    carve->SetImplicitFunction(tool);
-    carve->SetSmoothBoundary(isSmooth);
-    carve->Update();
-    vtkImageData* edited = carve->GetOutput();
-    VERIFY(edited->GetCellData()->GetArray("ActiveTetrahedra") != nullptr);
-    VERIFY_EQUAL(edited->GetCellData()->GetArray("CutTetrahedra") != nullptr, isSmooth);
-    VERIFY_EQUAL(edited->GetPointData()->GetArray("BoundaryDistance") != nullptr, isSmooth);
-    Deformed deformed(edited, mesh);
-    InC inC;
-    inC.SetVolume(edited, 0.0);
-    inC.SetMesh(mesh);
-    inC.Compare(deformed);
-  }
-}
-
 /// Two dv_deformers in two threads at the same time.
 void TestTwoThreads()
 {
@@ -566,7 +521,6 @@ int TestCInterface(int, char*[])
   TestDensities();
   TestCells();
   TestAtRest();
-  TestEdits();
   TestTwoThreads();
   return GetExitCode();
 }
