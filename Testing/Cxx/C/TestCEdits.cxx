@@ -90,12 +90,12 @@ void Compare(const InC& inC, vtkImageData* edited, std::int64_t atLeast = 1)
   const dv_masks masks = GetMasks(inC.Deformer);
   vtkCellData* cells = edited->GetCellData();
   vtkPointData* points = edited->GetPointData();
-  VERIFY(AreSame(masks.active, cells->GetArray("ActiveTetrahedra")));
-  VERIFY(AreSame(masks.boundary_distances, points->GetArray("BoundaryDistance")));
-  VERIFY(AreSame(masks.crossed, cells->GetArray("CutTetrahedra")));
-  VERIFY(AreSame(masks.cut_distances, points->GetArray("CutDistance")));
+  EXPECT_TRUE(AreSame(masks.active, cells->GetArray("ActiveTetrahedra")));
+  EXPECT_TRUE(AreSame(masks.boundary_distances, points->GetArray("BoundaryDistance")));
+  EXPECT_TRUE(AreSame(masks.crossed, cells->GetArray("CutTetrahedra")));
+  EXPECT_TRUE(AreSame(masks.cut_distances, points->GetArray("CutDistance")));
   // Make sure that there were edits.
-  VERIFY(masks.number_of_switched_off_tetrahedra + masks.number_of_divided_tetrahedra >= atLeast);
+  EXPECT_GE(masks.number_of_switched_off_tetrahedra + masks.number_of_divided_tetrahedra, atLeast);
 }
 
 vtkSmartPointer<vtkPlaneSource> MakeSheet(vtkImageData* volume, double along)
@@ -119,7 +119,7 @@ vtkSmartPointer<vtkSphereSource> MakeBall(vtkImageData* volume)
   return ball;
 }
 
-void TestCuts()
+TEST(CEdits, Cuts)
 {
   const auto volume = MakeTwoArrays();
   const auto source = MakeSheet(volume, 0.0);
@@ -136,9 +136,9 @@ void TestCuts()
     const dv_edit edit = MakeEdit(isSmooth);
     Check(dv_cut(inC.Deformer, &sheet.InC, &edit));
     Compare(inC, cut->GetOutput(), 100);
-    VERIFY_EQUAL(GetMasks(inC.Deformer).number_of_switched_off_tetrahedra,
+    EXPECT_EQ(GetMasks(inC.Deformer).number_of_switched_off_tetrahedra,
       std::int64_t{ cut->GetNumberOfSwitchedOffTetrahedra() });
-    VERIFY_EQUAL(GetMasks(inC.Deformer).number_of_divided_tetrahedra,
+    EXPECT_EQ(GetMasks(inC.Deformer).number_of_divided_tetrahedra,
       std::int64_t{ cut->GetNumberOfDividedTetrahedra() });
     // Compare the deformed volume.
     auto mesh = MakeMesh(volume, 4);
@@ -188,7 +188,7 @@ void FindGradients(std::int64_t count, const double* points, double* values, voi
   }
 }
 
-void TestBodies()
+TEST(CEdits, Bodies)
 {
   const auto volume = MakeTwoArrays();
   AddLabels(volume);
@@ -283,8 +283,8 @@ void TestBodies()
   }
 }
 
-/// Edits of a volume that has masks of all kinds.
-void TestBase()
+// Edits of a volume that has masks of all kinds.
+TEST(CEdits, Base)
 {
   const auto volume = MakeTwoArrays();
   const auto first = MakeSheet(volume, -3.0);
@@ -354,11 +354,3 @@ void TestBase()
 }
 
 } // namespace
-
-int TestCEdits(int, char*[])
-{
-  TestCuts();
-  TestBodies();
-  TestBase();
-  return GetExitCode();
-}
