@@ -131,7 +131,7 @@ for driver in "${drivers[@]}"; do
 done
 
 echo
-echo '| Driver | Tests passed | Failed | Skipped | Cases skipped in tests that pass | Compilation, first process | Second process | Seconds of all tests |'
+echo '| Driver | Tests passed | Failed | Skipped | Cases of GoogleTest skipped | Compilation, first process | Second process | Seconds of all tests |'
 echo '|---|---|---|---|---|---|---|---|'
 for driver in "${drivers[@]}"; do
   [ -e "$output/$driver/row" ] || continue
@@ -148,7 +148,7 @@ for driver in "${drivers[@]}"; do
 done
 for driver in "${drivers[@]}"; do
   [ -e "$output/$driver/output.log" ] || continue
-  # The reasons for skipping, as GoogleTest and the tests of the VTK classes print them.
+  # The reasons for skipping, as GoogleTest and other tests print them.
   {
     grep -a -A1 ': Skipped$' "$output/$driver/output.log" | grep -a -v ': Skipped$\|^--'
     sed -n 's/^skipped: //p' "$output/$driver/output.log"

@@ -584,7 +584,7 @@ def get_command(test):
         return test, [program]
     if isinstance(test, str):
         name = test.partition(".")[2]
-        command = [program, name, "-T", WORK, "-D", SOURCE / "Testing" / "Data"]
+        command = [program, f"--files={name}", "-T", WORK, "-D", SOURCE / "Testing" / "Data"]
         window = ["xvfb-run", "-a", "-s", "-noreset -screen 0 1280x1024x24"] if name in WITH_WINDOW else []
         return test, [*window, *command]
     files, pattern = test

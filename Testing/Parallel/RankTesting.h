@@ -15,7 +15,8 @@ int RunOnRanks(int argc, char* argv[], Test&& test)
   controller->Initialize(&argc, &argv);
   vtkMultiProcessController::SetGlobalController(controller);
   test(controller.Get());
-  int failures = filterTesting::GetNumberOfFailures();
+  // Checks outside tests of GoogleTest, which does not know MPI, have a result of their own.
+  int failures = testing::UnitTest::GetInstance()->ad_hoc_test_result().total_part_count();
   int all = 0;
   controller->AllReduce(&failures, &all, 1, vtkCommunicator::SUM_OP);
   if (controller->GetLocalProcessId() == 0)
@@ -41,7 +42,7 @@ inline filterTesting::Extent GetPiece(
 
 /// Whether an image is a part of another one, bit by bit. Arrays are compared by name, because
 /// their order changes when images are sent to other ranks.
-inline filterTesting::Equality IsPartOf(vtkImageData* part, vtkImageData* whole)
+inline testing::AssertionResult IsPartOf(vtkImageData* part, vtkImageData* whole)
 {
   using namespace filterTesting;
   vtkNew<vtkImageData> cropped;
@@ -52,23 +53,23 @@ inline filterTesting::Equality IsPartOf(vtkImageData* part, vtkImageData* whole)
     GetPoint(part, part->GetNumberOfPoints() - 1) !=
       GetPoint(cropped, part->GetNumberOfPoints() - 1))
   {
-    return { "the extents or the points differ" };
+    return testing::AssertionFailure() << "the extents or the points differ";
   }
   if (expected->GetNumberOfArrays() < 2)
   {
-    return { "the whole image has less than two arrays" };
+    return testing::AssertionFailure() << "the whole image has less than two arrays";
   }
   for (int i = 0; i < expected->GetNumberOfArrays(); ++i)
   {
     vtkDataArray* array = expected->GetArray(i);
-    const Equality equality =
+    const testing::AssertionResult equality =
       HaveEqualBits(array, part->GetPointData()->GetArray(array->GetName()));
     if (!equality)
     {
       return equality;
     }
   }
-  return {};
+  return testing::AssertionSuccess();
 }
 
 #endif

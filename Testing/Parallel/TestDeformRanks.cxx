@@ -66,7 +66,7 @@ vtkSmartPointer<vtkImageData> MakeWhole(const Case& from)
     vtkMultiProcessController::SetGlobalController(Controller);
   }
   Broadcast(image);
-  VERIFY(image->GetNumberOfPoints() > 0);
+  EXPECT_GT(image->GetNumberOfPoints(), 0);
   return image;
 }
 
@@ -74,11 +74,7 @@ vtkSmartPointer<vtkImageData> MakeWhole(const Case& from)
 void Check(Deformed& deformed, vtkImageData* whole, const std::string& name, int ghosts = 0)
 {
   deformed.Filter->UpdatePiece(GetRank(), GetRanks(), ghosts);
-  VERIFY_EQUAL(deformed.TakeErrors(), 0);
-  if (!deformed.LastError.empty())
-  {
-    std::cerr << deformed.LastError;
-  }
+  EXPECT_EQ(deformed.TakeErrors(), 0) << deformed.LastError;
   vtkImageData* output = deformed.Filter->GetOutput();
   // Counts are sums over all ranks.
   vtkDataArray* mask = output->GetPointData()->GetArray("vtkValidPointMask");
@@ -89,20 +85,15 @@ void Check(Deformed& deformed, vtkImageData* whole, const std::string& name, int
   }
   vtkIdType all = 0;
   Controller->AllReduce(&mine, &all, 1, vtkCommunicator::SUM_OP);
-  VERIFY_EQUAL(deformed.Filter->GetNumberOfCoveredVoxels(), all);
+  EXPECT_EQ(deformed.Filter->GetNumberOfCoveredVoxels(), all);
   const Extent piece = GetPiece(Controller, GetExtent(whole), ghosts);
   if (piece[1] < piece[0])
   {
-    VERIFY_EQUAL(output->GetNumberOfPoints(), vtkIdType{ 0 });
+    EXPECT_EQ(output->GetNumberOfPoints(), 0);
     return;
   }
-  VERIFY_EQUAL(GetExtent(output), piece);
-  const Equality equality = IsPartOf(output, whole);
-  VERIFY(equality);
-  if (!equality)
-  {
-    std::cerr << name << " differs on rank " << GetRank() << " of " << GetRanks() << '\n';
-  }
+  EXPECT_EQ(GetExtent(output), piece);
+  EXPECT_TRUE(IsPartOf(output, whole)) << name << ", rank " << GetRank() << " of " << GetRanks();
 }
 
 enum class Spread
@@ -234,9 +225,9 @@ void TestError(const Case& from, vtkImageData* whole, const std::string& words,
     spoil(parallel);
   }
   parallel.Filter->UpdatePiece(GetRank(), GetRanks(), 0);
-  VERIFY_EQUAL(parallel.TakeErrors(), 1);
-  VERIFY_CONTAINS(parallel.LastError, words);
-  VERIFY_EQUAL(parallel.Filter->GetOutput()->GetNumberOfPoints(), vtkIdType{ 0 });
+  EXPECT_EQ(parallel.TakeErrors(), 1);
+  EXPECT_TRUE(HasPart(parallel.LastError, words));
+  EXPECT_EQ(parallel.Filter->GetOutput()->GetNumberOfPoints(), 0);
   restore(parallel);
   Check(parallel, whole, words);
 }
@@ -288,19 +279,19 @@ void TestNothingCovered(const Case& from)
   parallel.Filter->SetReferenceData(far);
   parallel.Filter->UpdatePiece(GetRank(), GetRanks(), 0);
   const std::string warnings = parallel.Observer->GetWarningMessage();
-  VERIFY_EQUAL(parallel.TakeErrors(), 0);
+  EXPECT_EQ(parallel.TakeErrors(), 0);
   const std::size_t at = warnings.find("covers no voxel of the output");
   const bool hasPiece = parallel.Filter->GetOutput()->GetNumberOfPoints() > 0;
-  VERIFY_EQUAL(at != std::string::npos, hasPiece);
-  VERIFY_EQUAL(warnings.rfind("Warning: "), warnings.find("Warning: "));
+  EXPECT_EQ(at != std::string::npos, hasPiece);
+  EXPECT_EQ(warnings.rfind("Warning: "), warnings.find("Warning: "));
   // A rank whose piece is background only does not warn if another rank covers voxels.
   far->SetOrigin(MakeReference(from.Volume, true)->GetOrigin());
   far->SetExtent(4, 200, -11, 29, -8, 33);
   far->Modified();
   parallel.Filter->UpdatePiece(GetRank(), GetRanks(), 0);
-  VERIFY_EQUAL(parallel.TakeErrors(), 0);
-  VERIFY(parallel.Filter->GetNumberOfCoveredVoxels() > 0);
-  VERIFY(parallel.TakeWarning().empty());
+  EXPECT_EQ(parallel.TakeErrors(), 0);
+  EXPECT_GT(parallel.Filter->GetNumberOfCoveredVoxels(), 0);
+  EXPECT_EQ(parallel.TakeWarning(), "");
 }
 
 void TestErrors(const Case& from, vtkImageData* whole)
@@ -353,8 +344,8 @@ void TestErrors(const Case& from, vtkImageData* whole)
     Parallel parallel(from);
     parallel.Filter->SetDeformationData(vtkSmartPointer<vtkUnstructuredGrid>::New());
     parallel.Filter->UpdatePiece(GetRank(), GetRanks(), 0);
-    VERIFY_EQUAL(parallel.TakeErrors(), 1);
-    VERIFY_CONTAINS(parallel.LastError, "has no points");
+    EXPECT_EQ(parallel.TakeErrors(), 1);
+    EXPECT_TRUE(HasPart(parallel.LastError, "has no points"));
   }
 }
 
@@ -384,9 +375,9 @@ void TestSmallAndMoving(const Case& from)
     Check(moving, MakeWhole(step), "Moving mesh");
   }
   // The part of the volume that was needed before is kept.
-  VERIFY(moving.Source->Made.size() <= 2);
-  VERIFY(GetReported(moving.Filter, "Static mappings made") <= 2);
-  VERIFY(GetReported(moving.Filter, "Volumes sent") <= 2);
+  EXPECT_LE(moving.Source->Made.size(), 2);
+  EXPECT_LE(GetReported(moving.Filter, "Static mappings made"), 2);
+  EXPECT_LE(GetReported(moving.Filter, "Volumes sent"), 2);
 }
 
 /// Tests that all ranks keep the same extent (BoundsGranularity).
@@ -458,7 +449,7 @@ void TestGeometryFilter(vtkUnstructuredGrid* mesh)
     alone->SetDeformationData(mesh);
     alone->Update();
     vtkMultiProcessController::SetGlobalController(Controller);
-    VERIFY(alone->GetNumberOfOutsidePoints() < 60 * (GetRank() + 1));
+    EXPECT_LT(alone->GetNumberOfOutsidePoints(), 60 * (GetRank() + 1));
     for (const Spread spread :
       { Spread::Everywhere, Spread::OnOne, Spread::Pieces, Spread::WithGhosts })
     {
@@ -466,17 +457,17 @@ void TestGeometryFilter(vtkUnstructuredGrid* mesh)
       move(filter, inverse);
       filter->SetDeformationData(Distribute(mesh, spread));
       filter->UpdatePiece(GetRank(), GetRanks(), 0);
-      VERIFY_EQUAL(filter->GetNumberOfOutsidePoints(), alone->GetNumberOfOutsidePoints());
+      EXPECT_EQ(filter->GetNumberOfOutsidePoints(), alone->GetNumberOfOutsidePoints());
       for (int block = 0; block <= GetRank(); ++block)
       {
         vtkPointSet* output = getBlock(filter, block);
-        VERIFY(output != nullptr);
+        EXPECT_NE(output, nullptr);
         for (vtkIdType id = 0; output && id < output->GetNumberOfPoints(); ++id)
         {
           // In a mesh that is divided into pieces, tetrahedra have other ids. So points on a face
           // may follow the tetrahedron on its other side.
           const glm::dvec3 miss = GetPoint(output, id) - GetPoint(getBlock(alone, block), id);
-          VERIFY(std::abs(miss.x) + std::abs(miss.y) + std::abs(miss.z) < 1e-5);
+          EXPECT_LT(std::abs(miss.x) + std::abs(miss.y) + std::abs(miss.z), 1e-5);
         }
       }
       // Invalid points of one rank, or of its piece of the mesh, are an error on all ranks.
@@ -491,13 +482,13 @@ void TestGeometryFilter(vtkUnstructuredGrid* mesh)
       }
       filter->Modified();
       filter->UpdatePiece(GetRank(), GetRanks(), 0);
-      VERIFY_CONTAINS(observer->GetErrorMessage(), "Point 5");
+      EXPECT_TRUE(HasPart(observer->GetErrorMessage(), "Point 5"));
       observer->Clear();
       first->GetPoints()->SetPoint(5, &before.x);
       first->GetPoints()->Modified();
       filter->UpdatePiece(GetRank(), GetRanks(), 0);
-      VERIFY(!observer->GetError());
-      VERIFY_EQUAL(filter->GetNumberOfOutsidePoints(), alone->GetNumberOfOutsidePoints());
+      EXPECT_FALSE(observer->GetError());
+      EXPECT_EQ(filter->GetNumberOfOutsidePoints(), alone->GetNumberOfOutsidePoints());
     }
   }
 }
@@ -614,14 +605,14 @@ void TestColdStart()
   {
     // Request the devices on the first rank before the other ranks do, as a user interface does.
     vtkSmartPointer<vtkStringArray>::Take(vtkDeformVolumeFilter::GetDeviceNames());
-    VERIFY(std::getenv("POCL_MAX_PTHREAD_COUNT") != nullptr);
+    EXPECT_NE(std::getenv("POCL_MAX_PTHREAD_COUNT"), nullptr);
   }
   parallel.Filter->UpdatePiece(GetRank(), GetRanks(), 0);
-  VERIFY_EQUAL(parallel.TakeErrors(), 0);
+  EXPECT_EQ(parallel.TakeErrors(), 0);
   Check(parallel, MakeWhole(from), "Cold start");
   const char* share = std::getenv("POCL_MAX_PTHREAD_COUNT");
   const int processors = static_cast<int>(std::thread::hardware_concurrency());
-  VERIFY(share && std::atoi(share) == std::max(1, processors / GetRanks()));
+  EXPECT_TRUE(share && std::atoi(share) == std::max(1, processors / GetRanks()));
 }
 
 } // namespace

@@ -93,7 +93,7 @@ vtkSmartPointer<vtkImageData> MakeWhole(Pipeline& whole, const Step& step, vtkId
   Controller->Broadcast(image, 0);
   image->SetDirectionMatrix(whole.Volume->GetDirectionMatrix()); // which VTK does not send
   Controller->Broadcast(counts, 2, 0);
-  VERIFY(image->GetNumberOfPoints() > 0);
+  EXPECT_GT(image->GetNumberOfPoints(), 0);
   return image;
 }
 
@@ -146,19 +146,14 @@ void TestSteps()
     folded += counts[1] > 0;
     step.Do(mine);
     mine.Deform->UpdatePiece(rank, ranks, 0);
-    VERIFY_EQUAL(mine.Carve->GetNumberOfSwitchedOffTetrahedra(), counts[0]);
+    EXPECT_EQ(mine.Carve->GetNumberOfSwitchedOffTetrahedra(), counts[0]);
     vtkImageData* output = mine.Deform->GetOutput();
     const Extent piece = GetPiece(Controller, GetExtent(expected), 0);
-    VERIFY_EQUAL(GetExtent(output), piece);
-    const Equality equality = IsPartOf(output, expected);
-    VERIFY(equality);
-    if (!equality)
-    {
-      std::cerr << step.Name << " differs on rank " << rank << " of " << ranks << '\n';
-    }
+    EXPECT_EQ(GetExtent(output), piece);
+    EXPECT_TRUE(IsPartOf(output, expected)) << step.Name << ", rank " << rank << " of " << ranks;
   }
-  VERIFY(off > 1000);
-  VERIFY(folded > 1);
+  EXPECT_GT(off, 1000);
+  EXPECT_GT(folded, 1);
 }
 
 } // namespace

@@ -86,7 +86,7 @@ vtkSmartPointer<vtkImageData> MakeWhole(
   }
   Controller->Broadcast(image, 0);
   image->SetDirectionMatrix(whole.Volume->GetDirectionMatrix()); // which VTK does not send
-  VERIFY(image->GetNumberOfPoints() > 0);
+  EXPECT_GT(image->GetNumberOfPoints(), 0);
   return image;
 }
 
@@ -114,8 +114,8 @@ void TestSteps()
     step(mine);
     mine.Deform->UpdatePiece(rank, ranks, 0);
     vtkImageData* output = mine.Deform->GetOutput();
-    VERIFY_EQUAL(GetExtent(output), GetPiece(Controller, GetExtent(expected), 0));
-    VERIFY(IsPartOf(output, expected));
+    EXPECT_EQ(GetExtent(output), GetPiece(Controller, GetExtent(expected), 0));
+    EXPECT_TRUE(IsPartOf(output, expected));
   }
 }
 

@@ -118,13 +118,13 @@ void TestFailure(Pipeline& pipeline, Source* source, Failure how, vtkMPIControll
     return pipeline.TakeErrors();
   };
   source->Fail(rank == ranks - 1 ? how : Failure::None);
-  VERIFY_EQUAL(update(), 1);
-  VERIFY_CONTAINS(pipeline.LastError, words);
-  VERIFY_EQUAL(pipeline.Filter->GetOutput()->GetNumberOfPoints(), vtkIdType{ 0 });
+  EXPECT_EQ(update(), 1);
+  EXPECT_TRUE(HasPart(pipeline.LastError, words));
+  EXPECT_EQ(pipeline.Filter->GetOutput()->GetNumberOfPoints(), 0);
   source->Fail(Failure::None);
-  VERIFY_EQUAL(update(), 0);
-  VERIFY(pipeline.Filter->GetOutput()->GetNumberOfPoints() > 0);
-  VERIFY(pipeline.Filter->GetNumberOfCoveredVoxels() > 0);
+  EXPECT_EQ(update(), 0);
+  EXPECT_GT(pipeline.Filter->GetOutput()->GetNumberOfPoints(), 0);
+  EXPECT_GT(pipeline.Filter->GetNumberOfCoveredVoxels(), 0);
 }
 
 void TestFailures(vtkMPIController* controller)
@@ -142,7 +142,7 @@ void TestFailures(vtkMPIController* controller)
     Pipeline pipeline(from);
     pipeline.Filter->UpdatePiece(
       controller->GetLocalProcessId(), controller->GetNumberOfProcesses(), 0);
-    VERIFY_EQUAL(pipeline.TakeErrors(), 0);
+    EXPECT_EQ(pipeline.TakeErrors(), 0);
     TestFailure(
       pipeline, pipeline.Mesh.Get(), Failure::Data, controller, "deformation on input port 1");
     TestFailure(

@@ -2,6 +2,7 @@
 // Deforms a volume of 864 MB and writes it to a file in 16 pieces. The process must never need more
 // than 1.5 GB. Argument: the folder for the file.
 #include "FilterTesting.h"
+#include "RunTests.h"
 
 #include <vtkInformation.h>
 #include <vtkRTAnalyticSource.h>
@@ -57,13 +58,9 @@ void Request(vtkAlgorithm* algorithm, const Extent& extent)
 
 } // namespace
 
-int main(int argc, char* argv[])
+TEST(StreamingMemory, FileOfPieces)
 {
-  if (argc != 2)
-  {
-    return EXIT_FAILURE;
-  }
-  const std::string file = std::string(argv[1]) + "/TestStreamingMemory.vti";
+  const std::string file = GetTestArgument("-T") + "/TestStreamingMemory.vti";
   constexpr double inputMegabytes = 600.0 * 600.0 * 600.0 * sizeof(float) / 1e6;
 
   vtkNew<vtkRTAnalyticSource> source;
@@ -84,19 +81,19 @@ int main(int argc, char* argv[])
   writer->SetCompressorTypeToNone();
   // ParaView 5.11 cannot read appended data with recent versions of libexpat.
   writer->SetDataModeToBinary();
-  VERIFY_EQUAL(writer->Write(), 1);
-  VERIFY_EQUAL(deformed.TakeErrors(), 0);
+  EXPECT_EQ(writer->Write(), 1);
+  EXPECT_EQ(deformed.TakeErrors(), 0);
   const double peak = GetPeakMemory();
   std::cout << "peak memory: " << peak << " MB\n";
-  VERIFY(peak > 0.0 && peak < 1500.0);
+  EXPECT_TRUE(peak > 0.0 && peak < 1500.0);
   // Whole input and output would have needed more memory.
-  VERIFY(2.0 * inputMegabytes > 1500.0);
+  EXPECT_GT(2.0 * inputMegabytes, 1500.0);
 
   // The file has the same values as the output for a few planes.
   Extent whole;
   deformed.Filter->GetOutputInformation(0)->Get(
     vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole.data());
-  VERIFY(whole[1] - whole[0] > 590 && whole[5] - whole[4] > 590);
+  EXPECT_TRUE(whole[1] - whole[0] > 590 && whole[5] - whole[4] > 590);
   vtkNew<vtkXMLImageDataReader> reader;
   reader->SetFileName(file.c_str());
   for (const int z : { whole[4], -77, 123, whole[5] - 1 })
@@ -105,14 +102,13 @@ int main(int argc, char* argv[])
     part[4] = z;
     part[5] = z + 1;
     Request(deformed.Filter, part);
-    VERIFY_EQUAL(deformed.TakeErrors(), 0);
+    EXPECT_EQ(deformed.TakeErrors(), 0);
     Request(reader, part);
     vtkImageData* made = deformed.Filter->GetOutput();
-    VERIFY_EQUAL(GetExtent(made), part);
-    VERIFY(HaveEqualBits(
+    EXPECT_EQ(GetExtent(made), part);
+    EXPECT_TRUE(HaveEqualBits(
       made->GetPointData()->GetScalars(), reader->GetOutput()->GetPointData()->GetScalars()));
   }
-  VERIFY(deformed.Filter->GetNumberOfCoveredVoxels() > 0);
+  EXPECT_GT(deformed.Filter->GetNumberOfCoveredVoxels(), 0);
   std::remove(file.c_str());
-  return GetExitCode();
 }

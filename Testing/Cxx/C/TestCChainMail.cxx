@@ -70,20 +70,18 @@ public:
     this->Step(handles, dragged.Filter);
     const float* made = nullptr;
     Check(dv_chainmail_displacements(this->ChainMail, &made));
-    VERIFY_EQUAL(static_cast<std::size_t>(wanted->GetNumberOfTuples()), this->Voxels);
-    VERIFY(std::memcmp(made, wanted->GetPointer(0), 3 * sizeof(float) * this->Voxels) == 0);
-    VERIFY_EQUAL(this->Report.number_of_moved_voxels,
+    EXPECT_EQ(static_cast<std::size_t>(wanted->GetNumberOfTuples()), this->Voxels);
+    EXPECT_EQ(std::memcmp(made, wanted->GetPointer(0), 3 * sizeof(float) * this->Voxels), 0);
+    EXPECT_EQ(this->Report.number_of_moved_voxels,
       std::int64_t{ dragged.Filter->GetNumberOfMovedVoxels() });
-    VERIFY_EQUAL(
-      this->Report.number_of_sweeps, std::int64_t{ dragged.Filter->GetNumberOfSweeps() });
-    VERIFY_EQUAL(this->Report.largest_violation, dragged.Filter->GetLargestViolation());
-    VERIFY_EQUAL(
-      this->Report.number_of_reduced_handles, dragged.Filter->GetNumberOfReducedHandles());
-    VERIFY_EQUAL(
+    EXPECT_EQ(this->Report.number_of_sweeps, std::int64_t{ dragged.Filter->GetNumberOfSweeps() });
+    EXPECT_EQ(this->Report.largest_violation, dragged.Filter->GetLargestViolation());
+    EXPECT_EQ(this->Report.number_of_reduced_handles, dragged.Filter->GetNumberOfReducedHandles());
+    EXPECT_EQ(
       this->Report.number_of_released_handles, dragged.Filter->GetNumberOfReleasedHandles());
-    VERIFY(std::equal(this->Report.changed_extent, this->Report.changed_extent + 6,
+    EXPECT_TRUE(std::equal(this->Report.changed_extent, this->Report.changed_extent + 6,
       dragged.Filter->GetChangedExtent()));
-    VERIFY_EQUAL(std::string(dv_chainmail_device(this->ChainMail)),
+    EXPECT_EQ(std::string(dv_chainmail_device(this->ChainMail)),
       std::string(dragged.Filter->GetDeviceInUse()));
   }
 
@@ -119,8 +117,8 @@ std::vector<Handle> MakeDrag(vtkImageData* volume, double by)
     { other, other + by * glm::dvec3(-0.2, 0.9, 0.6) } };
 }
 
-/// Default materials, labels, ranges and tables of materials, over several steps with relaxation.
-void TestSteps()
+// Default materials, labels, ranges and tables of materials, over several steps with relaxation.
+TEST(CChainMail, Steps)
 {
   const auto volume = MakeManyArrays();
   vtkDataArray* labels = volume->GetPointData()->GetArray("labels"); // 0 to 6
@@ -175,16 +173,16 @@ void TestSteps()
     for (const double by : { 1.0, 2.5, 4.0 })
     {
       inC.Compare(dragged, MakeDrag(volume, by));
-      VERIFY(inC.Report.number_of_moved_voxels > 100);
+      EXPECT_GT(inC.Report.number_of_moved_voxels, 100);
     }
     // Without handles the relaxation continues.
     inC.Compare(dragged, {});
-    VERIFY(inC.Report.number_of_moved_voxels > 100);
+    EXPECT_GT(inC.Report.number_of_moved_voxels, 100);
   }
 }
 
-/// Pinned voxels, and a cut and a smooth cut by the masks of a dv_deformer.
-void TestMasks()
+// Pinned voxels, and a cut and a smooth cut by the masks of a dv_deformer.
+TEST(CChainMail, Masks)
 {
   const auto volume = MakeTwoArrays();
   vtkNew<vtkUnsignedCharArray> pinned;
@@ -234,20 +232,20 @@ void TestMasks()
     dv_masks masks = {};
     masks.struct_size = sizeof(masks);
     Check(dv_get_masks(deformer, &masks));
-    VERIFY(masks.number_of_divided_tetrahedra + masks.number_of_switched_off_tetrahedra > 1000);
+    EXPECT_GT(masks.number_of_divided_tetrahedra + masks.number_of_switched_off_tetrahedra, 1000);
     Check(dv_chainmail_set_active_tetrahedra(inC.ChainMail, masks.active, masks.crossed));
     dv_destroy(deformer);
     for (const double by : { 1.0, 3.0 })
     {
       inC.Compare(dragged, MakeDrag(volume, by));
-      VERIFY(inC.Report.number_of_moved_voxels > 100);
+      EXPECT_GT(inC.Report.number_of_moved_voxels, 100);
     }
   }
 }
 
-/// The displacements as the deformation of a dv_deformer, step by step: incremental and whole, on
-/// the grid of the volume and on another one.
-void TestDeformer()
+// The displacements as the deformation of a dv_deformer, step by step: incremental and whole, on
+// the grid of the volume and on another one.
+TEST(CChainMail, Deformer)
 {
   const auto volume = MakeTwoArrays();
   auto coarse = MakeImage({ { 0, 13, 0, 15, 0, 14 } }, glm::dvec3(2.0), glm::dvec3(0.0));
@@ -300,7 +298,8 @@ void TestDeformer()
       inC.Compare(deformed);
       // Another call without changes.
       inC.Deform();
-      VERIFY(!inC.IsIncremental || inC.Report.changed_extent[0] > inC.Report.changed_extent[1]);
+      EXPECT_TRUE(
+        !inC.IsIncremental || inC.Report.changed_extent[0] > inC.Report.changed_extent[1]);
       // Rest positions, Jacobians and KEEP, which need the displacements on the host.
       deformed.Filter->GenerateJacobianOn();
       deformed.Filter->GenerateRestPositionsOn();
@@ -323,11 +322,3 @@ void TestDeformer()
 }
 
 } // namespace
-
-int TestCChainMail(int, char*[])
-{
-  TestSteps();
-  TestMasks();
-  TestDeformer();
-  return GetExitCode();
-}

@@ -19,7 +19,6 @@
 
 #include <cstring>
 #include <string>
-#include <thread>
 #include <vector>
 
 using namespace filterTesting;
@@ -91,12 +90,12 @@ void Compare(const InC& inC, vtkImageData* edited, std::int64_t atLeast = 1)
   const dv_masks masks = GetMasks(inC.Deformer);
   vtkCellData* cells = edited->GetCellData();
   vtkPointData* points = edited->GetPointData();
-  VERIFY(AreSame(masks.active, cells->GetArray("ActiveTetrahedra")));
-  VERIFY(AreSame(masks.boundary_distances, points->GetArray("BoundaryDistance")));
-  VERIFY(AreSame(masks.crossed, cells->GetArray("CutTetrahedra")));
-  VERIFY(AreSame(masks.cut_distances, points->GetArray("CutDistance")));
+  EXPECT_TRUE(AreSame(masks.active, cells->GetArray("ActiveTetrahedra")));
+  EXPECT_TRUE(AreSame(masks.boundary_distances, points->GetArray("BoundaryDistance")));
+  EXPECT_TRUE(AreSame(masks.crossed, cells->GetArray("CutTetrahedra")));
+  EXPECT_TRUE(AreSame(masks.cut_distances, points->GetArray("CutDistance")));
   // Make sure that there were edits.
-  VERIFY(masks.number_of_switched_off_tetrahedra + masks.number_of_divided_tetrahedra >= atLeast);
+  EXPECT_GE(masks.number_of_switched_off_tetrahedra + masks.number_of_divided_tetrahedra, atLeast);
 }
 
 vtkSmartPointer<vtkPlaneSource> MakeSheet(vtkImageData* volume, double along)
@@ -120,7 +119,7 @@ vtkSmartPointer<vtkSphereSource> MakeBall(vtkImageData* volume)
   return ball;
 }
 
-void TestCuts()
+TEST(CEdits, Cuts)
 {
   const auto volume = MakeTwoArrays();
   const auto source = MakeSheet(volume, 0.0);
@@ -137,9 +136,9 @@ void TestCuts()
     const dv_edit edit = MakeEdit(isSmooth);
     Check(dv_cut(inC.Deformer, &sheet.InC, &edit));
     Compare(inC, cut->GetOutput(), 100);
-    VERIFY_EQUAL(GetMasks(inC.Deformer).number_of_switched_off_tetrahedra,
+    EXPECT_EQ(GetMasks(inC.Deformer).number_of_switched_off_tetrahedra,
       std::int64_t{ cut->GetNumberOfSwitchedOffTetrahedra() });
-    VERIFY_EQUAL(GetMasks(inC.Deformer).number_of_divided_tetrahedra,
+    EXPECT_EQ(GetMasks(inC.Deformer).number_of_divided_tetrahedra,
       std::int64_t{ cut->GetNumberOfDividedTetrahedra() });
     // Compare the deformed volume.
     auto mesh = MakeMesh(volume, 4);
@@ -189,7 +188,7 @@ void FindGradients(std::int64_t count, const double* points, double* values, voi
   }
 }
 
-void TestBodies()
+TEST(CEdits, Bodies)
 {
   const auto volume = MakeTwoArrays();
   AddLabels(volume);
@@ -284,8 +283,8 @@ void TestBodies()
   }
 }
 
-/// Edits of a volume that has masks of all kinds.
-void TestBase()
+// Edits of a volume that has masks of all kinds.
+TEST(CEdits, Base)
 {
   const auto volume = MakeTwoArrays();
   const auto first = MakeSheet(volume, -3.0);
@@ -298,6 +297,8 @@ void TestBase()
   vtkNew<vtkSphere> sphere;
   sphere->SetCenter(center[0] + 3.0, center[1] + 4.0, center[2]);
   sphere->SetRadius(3.3);
+  auto mesh = MakeMesh(volume, 4);
+  SetDisplacements(mesh, Bend);
   for (const bool isSmooth : { false, true })
   {
     vtkNew<vtkCutVolume> cut;
@@ -340,6 +341,9 @@ void TestBase()
         Check(dv_undo_edit(inC.Deformer));
         Check(dv_undo_edit(inC.Deformer));
         Compare(inC, base, 0);
+        Deformed deformed(base, mesh);
+        inC.SetMesh(mesh);
+        inC.Compare(deformed);
         if (!isBaseFirst)
         {
           inC.SetVolume(volume, 0.0);
@@ -349,40 +353,4 @@ void TestBase()
   }
 }
 
-/// dv_last_error() returns the last error of the calling thread.
-void TestErrorsOfThreads()
-{
-  const auto volume = MakeTwoArrays();
-  std::array<InC, 2> inC;
-  std::array<std::string, 2> errors;
-  std::array<std::thread, 2> threads;
-  for (std::size_t i = 0; i < 2; ++i)
-  {
-    inC[i].SetVolume(volume, 0.0);
-    threads[i] = std::thread(
-      [&inC, &errors, i]
-      {
-        const dv_edit edit = MakeEdit(false, i == 0 ? 7 : 8);
-        const double center[3] = { 0.0, 0.0, 0.0 };
-        dv_carve_sphere(inC[i].Deformer, 1, center, 1.0, &edit);
-        errors[i] = dv_last_error();
-      });
-  }
-  for (std::thread& thread : threads)
-  {
-    thread.join();
-  }
-  VERIFY_CONTAINS(errors[0], "is 7");
-  VERIFY_CONTAINS(errors[1], "is 8");
-}
-
 } // namespace
-
-int TestCEdits(int, char*[])
-{
-  TestCuts();
-  TestBodies();
-  TestBase();
-  TestErrorsOfThreads();
-  return GetExitCode();
-}

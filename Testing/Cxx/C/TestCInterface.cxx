@@ -3,18 +3,12 @@
 #include "CTesting.h"
 #include "FilterTesting.h"
 
-#include "vtkCarveVolume.h"
-#include "vtkCutVolume.h"
-
 #include <vtkAlgorithm.h>
 #include <vtkCell.h>
 #include <vtkCellType.h>
 #include <vtkCellTypeSource.h>
 #include <vtkDoubleArray.h>
 #include <vtkIdList.h>
-#include <vtkPlaneSource.h>
-#include <vtkPolyData.h>
-#include <vtkSphere.h>
 
 #include <glm/common.hpp>
 
@@ -79,7 +73,7 @@ vtkSmartPointer<vtkImageData> MakeReference(bool isMirrored)
   return reference;
 }
 
-void TestMeshes()
+TEST(CInterface, Meshes)
 {
   const auto volume = MakeManyArrays();
   for (const bool isIrregular : { false, true })
@@ -124,7 +118,7 @@ void TestMeshes()
   }
 }
 
-void TestGrids()
+TEST(CInterface, Grids)
 {
   const auto volume = MakeTwoArrays();
   auto mesh = MakeIrregularMesh(volume, 1.0);
@@ -176,7 +170,7 @@ void TestGrids()
   inC.Compare(deformed);
 }
 
-void TestFields()
+TEST(CInterface, Fields)
 {
   const auto volume = MakeTwoArrays();
   // A field on another grid, one with a point at each voxel, and one with twice as many points on
@@ -249,7 +243,7 @@ void TestFields()
   }
 }
 
-void TestExtraAndMasks()
+TEST(CInterface, ExtraAndMasks)
 {
   auto volume = MakeTwoArrays();
   vtkNew<vtkUnsignedCharArray> ghosts;
@@ -275,7 +269,7 @@ void TestExtraAndMasks()
   deformed.Filter->GenerateFoldCountOn();
   inC.WithExtra = inC.WithFolds = true;
   inC.Compare(deformed);
-  VERIFY(inC.Report.number_of_inverted_tetrahedra > 0);
+  EXPECT_GT(inC.Report.number_of_inverted_tetrahedra, 0);
   auto field = vtkSmartPointer<vtkImageData>::New();
   field->CopyStructure(volume);
   SetDisplacements(field, Bend);
@@ -289,8 +283,8 @@ void TestExtraAndMasks()
   inC.Compare(deformed);
 }
 
-/// Densities, which are divided by the Jacobian: of all types, with meshes, fields and folds.
-void TestDensities()
+// Densities, which are divided by the Jacobian: of all types, with meshes, fields and folds.
+TEST(CInterface, Densities)
 {
   const auto volume = MakeManyArrays();
   // Labels and one other array are not densities.
@@ -308,7 +302,7 @@ void TestDensities()
   inC.SetVolume(volume, -2.6);
   inC.SetMesh(mesh);
   inC.Compare(deformed);
-  VERIFY(deformed.Update()->GetPointData()->GetArray("uint16")->GetDataType() == VTK_FLOAT);
+  EXPECT_EQ(deformed.Update()->GetPointData()->GetArray("uint16")->GetDataType(), VTK_FLOAT);
   // Request the Jacobian. The second call has no changes.
   deformed.Filter->GenerateJacobianOn();
   deformed.Filter->GenerateRestPositionsOn();
@@ -339,7 +333,7 @@ void TestDensities()
     });
   inC.SetDisplacements(mesh);
   inC.Compare(deformed, "The sums of density arrays lack the ");
-  VERIFY(inC.Report.number_of_inverted_tetrahedra > 0);
+  EXPECT_GT(inC.Report.number_of_inverted_tetrahedra, 0);
   const auto reference = MakeReference(true);
   deformed.Filter->SetReferenceData(reference);
   inC.SetReference(reference);
@@ -386,9 +380,9 @@ vtkSmartPointer<vtkUnstructuredGrid> MakePolyhedra(vtkUnstructuredGrid* hexahedr
   return polyhedra;
 }
 
-/// All types of cells that are split into tetrahedra. In each mesh the cells of one type fill the
-/// volume.
-void TestCells()
+// All types of cells that are split into tetrahedra. In each mesh the cells of one type fill the
+// volume.
+TEST(CInterface, Cells)
 {
   const auto volume = MakeTwoArrays();
   double bounds[6];
@@ -433,12 +427,8 @@ void TestCells()
     InC inC;
     inC.SetVolume(volume, 0.0);
     inC.SetMesh(mesh);
-    const int failures = GetNumberOfFailures();
+    SCOPED_TRACE(testing::Message() << "cells of the type " << type);
     inC.Compare(deformed);
-    if (GetNumberOfFailures() > failures)
-    {
-      std::cerr << "failed with cells of the type " << type << '\n';
-    }
   }
   // Warnings: cells that are ignored, and a mid-side node that is far from the middle of its edge.
   auto mesh = MakeMesh(volume, 3);
@@ -456,8 +446,8 @@ void TestCells()
   }
 }
 
-/// Without a deformation the volume at rest is resampled.
-void TestAtRest()
+// Without a deformation the volume at rest is resampled.
+TEST(CInterface, AtRest)
 {
   const auto volume = MakeTwoArrays();
   Deformed deformed;
@@ -474,47 +464,8 @@ void TestAtRest()
   inC.Compare(deformed);
 }
 
-/// The masks of cuts and carvings, with and without smooth boundaries.
-void TestEdits()
-{
-  const auto volume = MakeTwoArrays();
-  double center[3];
-  volume->GetCenter(center);
-  vtkNew<vtkPlaneSource> sheet;
-  sheet->SetOrigin(center[0] - 20.0, center[1] - 20.0, center[2] - 9.0);
-  sheet->SetPoint1(center[0] + 20.0, center[1] - 20.0, center[2] + 9.0);
-  sheet->SetPoint2(center[0] - 20.0, center[1] + 1.0, center[2] - 9.0);
-  sheet->Update();
-  vtkNew<vtkSphere> tool;
-  tool->SetCenter(center[0] + 3.0, center[1] + 4.0, center[2]);
-  tool->SetRadius(3.3);
-  auto mesh = MakeMesh(volume, 4);
-  SetDisplacements(mesh, Bend);
-  for (const bool isSmooth : { false, true })
-  {
-    vtkNew<vtkCutVolume> cut;
-    cut->SetInputData(volume);
-    cut->SetSheetData(sheet->GetOutput());
-    cut->SetSmoothCut(isSmooth);
-    vtkNew<vtkCarveVolume> carve;
-    carve->SetInputConnection(cut->GetOutputPort());
-    carve->SetImplicitFunction(tool);
-    carve->SetSmoothBoundary(isSmooth);
-    carve->Update();
-    vtkImageData* edited = carve->GetOutput();
-    VERIFY(edited->GetCellData()->GetArray("ActiveTetrahedra") != nullptr);
-    VERIFY_EQUAL(edited->GetCellData()->GetArray("CutTetrahedra") != nullptr, isSmooth);
-    VERIFY_EQUAL(edited->GetPointData()->GetArray("BoundaryDistance") != nullptr, isSmooth);
-    Deformed deformed(edited, mesh);
-    InC inC;
-    inC.SetVolume(edited, 0.0);
-    inC.SetMesh(mesh);
-    inC.Compare(deformed);
-  }
-}
-
-/// Two dv_deformers in two threads at the same time.
-void TestTwoThreads()
+// Two dv_deformers in two threads at the same time.
+TEST(CInterface, TwoThreads)
 {
   const auto volume = MakeTwoArrays();
   auto mesh = MakeMesh(volume, 4);
@@ -547,8 +498,8 @@ void TestTwoThreads()
   {
     thread.join();
   }
-  VERIFY_CONTAINS(errors[0], "is 8");
-  VERIFY_CONTAINS(errors[1], "is 9");
+  EXPECT_TRUE(HasPart(errors[0], "is 8"));
+  EXPECT_TRUE(HasPart(errors[1], "is 9"));
   for (InC& one : inC)
   {
     one.Compare(deformed);
@@ -556,17 +507,3 @@ void TestTwoThreads()
 }
 
 } // namespace
-
-int TestCInterface(int, char*[])
-{
-  TestMeshes();
-  TestGrids();
-  TestFields();
-  TestExtraAndMasks();
-  TestDensities();
-  TestCells();
-  TestAtRest();
-  TestEdits();
-  TestTwoThreads();
-  return GetExitCode();
-}

@@ -9,8 +9,8 @@ using namespace filterTesting;
 namespace
 {
 
-/// Incremental calls after changes of displacements.
-void TestDisplacements()
+// Incremental calls after changes of displacements.
+TEST(CUpdates, Displacements)
 {
   const auto volume = MakeTwoArrays();
   auto mesh = MakeMesh(volume, 5);
@@ -35,8 +35,8 @@ void TestDisplacements()
   }
 }
 
-/// Other values in the same memory, for arrays with and without densities.
-void TestValues()
+// Other values in the same memory, for arrays with and without densities.
+TEST(CUpdates, Values)
 {
   const auto volume = MakeTwoArrays();
   auto mesh = MakeMesh(volume, 5);
@@ -66,10 +66,3 @@ void TestValues()
 }
 
 } // namespace
-
-int TestCUpdates(int, char*[])
-{
-  TestDisplacements();
-  TestValues();
-  return GetExitCode();
-}

@@ -45,7 +45,7 @@ glm::dvec3 GetWorld(vtkImageData* volume, const glm::dvec3& index)
 }
 
 // Displacements decrease by half of the distance in world units along each axis of the volume.
-void TestWorldForm()
+TEST(ChainMailDeformation, WorldForm)
 {
   const auto volume = MakeImage({ { -4, 20, 3, 30, 0, 18 } }, { 0.5, 1.0, 2.0 }, { 10, -5, 2 });
   SetObliqueDirection(volume);
@@ -54,10 +54,10 @@ void TestWorldForm()
   const glm::dvec3 voxels(-3.5, 4, 1.25);
   const glm::dvec3 rest = GetWorld(volume, held);
   vtkFloatArray* found = dragged.Drag({ { rest, GetWorld(volume, held + voxels) } });
-  VERIFY_EQUAL(found->GetNumberOfTuples(), volume->GetNumberOfPoints());
+  EXPECT_EQ(found->GetNumberOfTuples(), volume->GetNumberOfPoints());
   vtkImageData* output = dragged.Filter->GetOutput();
-  VERIFY_EQUAL(GetExtent(output), GetExtent(volume));
-  VERIFY(output->GetPointData()->GetVectors() == dragged.GetArray());
+  EXPECT_EQ(GetExtent(output), GetExtent(volume));
+  EXPECT_EQ(output->GetPointData()->GetVectors(), dragged.GetArray());
   const glm::dvec3 origin = GetWorld(volume, glm::dvec3(0.0));
   double largest = 0.0;
   for (int k = 0; k <= 18; ++k)
@@ -67,7 +67,7 @@ void TestWorldForm()
       for (int i = -4; i <= 20; ++i)
       {
         const vtkIdType id = GetId(volume, i, j, k);
-        VERIFY(GetPoint(output, id) == GetPoint(volume, id));
+        EXPECT_EQ(GetPoint(output, id), GetPoint(volume, id));
         const glm::dvec3 spacing(0.5, 1.0, 2.0);
         const glm::dvec3 steps = glm::abs(glm::dvec3(i, j, k) - held) * spacing;
         const double less = 0.5 * (steps.x + steps.y + steps.z);
@@ -81,14 +81,14 @@ void TestWorldForm()
   }
   // Half a unit, which is 1/65536 of the largest spacing, 2; and rounding of six floats of less
   // than 8.
-  VERIFY(largest <= 2.0 / 131072.0 + 8.0 * 6.0 / 16777216.0);
-  VERIFY_EQUAL(dragged.Filter->GetLargestViolation(), 0.0);
-  VERIFY(dragged.Filter->GetNumberOfSweeps() > 0);
-  VERIFY(!dragged.Filter->GetSummary().empty());
+  EXPECT_LE(largest, 2.0 / 131072.0 + 8.0 * 6.0 / 16777216.0);
+  EXPECT_EQ(dragged.Filter->GetLargestViolation(), 0.0);
+  EXPECT_GT(dragged.Filter->GetNumberOfSweeps(), 0);
+  EXPECT_FALSE(dragged.Filter->GetSummary().empty());
 }
 
 // RequestInformation() announces the arrays of the output, not those of the volume.
-void TestAnnouncement()
+TEST(ChainMailDeformation, Announcement)
 {
   const auto volume = MakeVolume({ { 0, 4, 0, 4, 0, 4 } });
   SetObliqueDirection(volume);
@@ -100,18 +100,18 @@ void TestAnnouncement()
     return vtkDataObject::GetActiveFieldInformation(
       announced, vtkDataObject::FIELD_ASSOCIATION_POINTS, attribute);
   };
-  VERIFY(!find(vtkDataSetAttributes::SCALARS));
+  EXPECT_FALSE(find(vtkDataSetAttributes::SCALARS));
   vtkInformation* vectors = find(vtkDataSetAttributes::VECTORS);
-  VERIFY(vectors && std::string(vectors->Get(vtkDataObject::FIELD_NAME())) == "Displacement");
-  VERIFY(vectors && vectors->Get(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS()) == 3);
-  VERIFY(announced->Has(vtkDataObject::DIRECTION()) &&
+  EXPECT_TRUE(vectors && std::string(vectors->Get(vtkDataObject::FIELD_NAME())) == "Displacement");
+  EXPECT_TRUE(vectors && vectors->Get(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS()) == 3);
+  EXPECT_TRUE(announced->Has(vtkDataObject::DIRECTION()) &&
     announced->Get(vtkDataObject::DIRECTION())[1] ==
       volume->GetDirectionMatrix()->GetElement(0, 1));
   dragged.Filter->Update();
-  VERIFY(!dragged.Filter->GetOutput()->GetPointData()->GetScalars());
+  EXPECT_FALSE(dragged.Filter->GetOutput()->GetPointData()->GetScalars());
 }
 
-void TestKept()
+TEST(ChainMailDeformation, Kept)
 {
   const auto volume = MakeVolume({ { 0, 40, 0, 24, 0, 24 } });
   Dragged dragged(volume);
@@ -122,51 +122,51 @@ void TestKept()
   const float* memory = found->GetPointer(0);
   const vtkMTimeType time = array->GetMTime();
   // The moved voxels are an octahedron whose vertices are 3 voxels from its center.
-  VERIFY_EQUAL(dragged.Filter->GetNumberOfMovedVoxels(), vtkIdType{ 63 });
-  VERIFY_EQUAL(GetExtent(dragged.Filter->GetOutput()), GetExtent(volume));
+  EXPECT_EQ(dragged.Filter->GetNumberOfMovedVoxels(), 63);
+  EXPECT_EQ(GetExtent(dragged.Filter->GetOutput()), GetExtent(volume));
   const auto getChanges = [&]
   {
     Extent extent;
     dragged.Filter->GetChangedExtent(extent.data());
     return extent;
   };
-  VERIFY_EQUAL(getChanges(), (Extent{ { 0, 15, 8, 15, 8, 15 } }));
+  EXPECT_EQ(getChanges(), (Extent{ { 0, 15, 8, 15, 8, 15 } }));
   // Another update without changes.
   dragged.Update();
-  VERIFY(dragged.GetArray() == array && array->GetMTime() == time);
-  VERIFY_EQUAL(dragged.Filter->GetNumberOfMovedVoxels(), vtkIdType{ 0 });
-  VERIFY_EQUAL(getChanges(), (Extent{ { 0, -1, 0, -1, 0, -1 } }));
+  EXPECT_TRUE(dragged.GetArray() == array && array->GetMTime() == time);
+  EXPECT_EQ(dragged.Filter->GetNumberOfMovedVoxels(), 0);
+  EXPECT_EQ(getChanges(), (Extent{ { 0, -1, 0, -1, 0, -1 } }));
   // A drag of other voxels: the voxels of the first drag stay displaced.
   const glm::dvec3 other(34, 12, 12);
   found = dragged.Drag({ { other, other + glm::dvec3(0, -1, 0) } });
-  VERIFY(dragged.GetArray() == array && array->GetMTime() > time);
-  VERIFY(!isOnHost || found->GetPointer(0) == memory);
-  VERIFY(GetTuple(found, GetId(volume, 8, 12, 12)) == glm::dvec3(2, 0, 0));
-  VERIFY(GetTuple(found, GetId(volume, 34, 12, 12)) == glm::dvec3(0, -1, 0));
-  VERIFY_EQUAL(getChanges(), (Extent{ { 32, 39, 8, 15, 8, 15 } }));
+  EXPECT_TRUE(dragged.GetArray() == array && array->GetMTime() > time);
+  EXPECT_TRUE(!isOnHost || found->GetPointer(0) == memory);
+  EXPECT_EQ(GetTuple(found, GetId(volume, 8, 12, 12)), glm::dvec3(2, 0, 0));
+  EXPECT_EQ(GetTuple(found, GetId(volume, 34, 12, 12)), glm::dvec3(0, -1, 0));
+  EXPECT_EQ(getChanges(), (Extent{ { 32, 39, 8, 15, 8, 15 } }));
   // Relaxation moves back the voxels that no handle holds.
   dragged.Filter->SetHandlesData(nullptr);
   dragged.Filter->SetRelaxationSweeps(50);
   dragged.Update();
-  VERIFY(GetTuple(found, GetId(volume, 8, 12, 12)).x < 0.5);
-  VERIFY(dragged.Filter->GetNumberOfMovedVoxels() > 0);
+  EXPECT_LT(GetTuple(found, GetId(volume, 8, 12, 12)).x, 0.5);
+  EXPECT_GT(dragged.Filter->GetNumberOfMovedVoxels(), 0);
   dragged.Filter->SetRelaxationSweeps(0);
   dragged.Filter->Reset();
   dragged.Update();
   double range[2];
   found->GetRange(range, -1);
-  VERIFY_EQUAL(range[1], 0.0);
-  VERIFY_EQUAL(getChanges()[0], 0);
+  EXPECT_EQ(range[1], 0.0);
+  EXPECT_EQ(getChanges()[0], 0);
   // A volume of another extent gets another array.
   const auto larger = MakeVolume({ { 0, 41, 0, 24, 0, 24 } });
   dragged.Filter->SetInputData(larger);
-  VERIFY(dragged.Update() != nullptr);
-  VERIFY_EQUAL(dragged.Filter->GetOutput()->GetNumberOfPoints(), larger->GetNumberOfPoints());
+  EXPECT_NE(dragged.Update(), nullptr);
+  EXPECT_EQ(dragged.Filter->GetOutput()->GetNumberOfPoints(), larger->GetNumberOfPoints());
 }
 
 // A column of stiff voxels moves like a rigid body.
 template <typename Array>
-void TestLabels(bool byRanges)
+void CheckLabels(bool byRanges)
 {
   const auto volume = MakeImage({ { 0, 12, 0, 12, 0, 12 } });
   const vtkSmartPointer<Array> labels = vtkSmartPointer<Array>::New();
@@ -195,13 +195,13 @@ void TestLabels(bool byRanges)
   vtkFloatArray* found = dragged.Drag({ { rest, rest + glm::dvec3(1, -2, 0.5) } });
   for (int k = 0; k <= 12; ++k)
   {
-    VERIFY(GetTuple(found, GetId(volume, 6, 6, k)) == glm::dvec3(1, -2, 0.5));
+    EXPECT_EQ(GetTuple(found, GetId(volume, 6, 6, k)), glm::dvec3(1, -2, 0.5));
   }
   // A link between a stiff and a soft voxel yields half as much as a link between soft voxels.
-  VERIFY(GetTuple(found, GetId(volume, 7, 6, 11)) == glm::dvec3(0.75, -1.75, 0.25));
+  EXPECT_EQ(GetTuple(found, GetId(volume, 7, 6, 11)), glm::dvec3(0.75, -1.75, 0.25));
 }
 
-void TestPinsAndCuts()
+TEST(ChainMailDeformation, PinsAndCuts)
 {
   const auto volume = MakeVolume({ { 0, 20, 0, 10, 0, 10 } });
   vtkNew<vtkLongLongArray> pinned;
@@ -214,10 +214,10 @@ void TestPinsAndCuts()
   const glm::dvec3 rest(6, 5, 5);
   const std::vector<Handle> handles{ { rest, rest + glm::dvec3(5, 0, 0) } };
   vtkFloatArray* found = dragged.Drag(handles);
-  VERIFY_EQUAL(dragged.Filter->GetNumberOfReducedHandles(), 1);
-  VERIFY_EQUAL(dragged.Filter->GetNumberOfReleasedHandles(), 0);
-  VERIFY(GetTuple(found, GetId(volume, 6, 5, 5)) == glm::dvec3(2, 0, 0));
-  VERIFY(GetTuple(found, GetId(volume, 10, 5, 5)) == glm::dvec3(0, 0, 0));
+  EXPECT_EQ(dragged.Filter->GetNumberOfReducedHandles(), 1);
+  EXPECT_EQ(dragged.Filter->GetNumberOfReleasedHandles(), 0);
+  EXPECT_EQ(GetTuple(found, GetId(volume, 6, 5, 5)), glm::dvec3(2, 0, 0));
+  EXPECT_EQ(GetTuple(found, GetId(volume, 10, 5, 5)), glm::dvec3(0, 0, 0));
   // With a cut between handle and pinned voxels the drag is possible, and does not move voxels
   // beyond the cut.
   vtkNew<vtkUnsignedCharArray> active;
@@ -230,11 +230,11 @@ void TestPinsAndCuts()
   volume->GetCellData()->AddArray(active);
   vtkDataArray* const array = dragged.GetArray();
   found = dragged.Update();
-  VERIFY(dragged.GetArray() == array);
-  VERIFY_EQUAL(dragged.Filter->GetNumberOfReducedHandles(), 0);
-  VERIFY(GetTuple(found, GetId(volume, 6, 5, 5)) == glm::dvec3(5, 0, 0));
-  VERIFY(GetTuple(found, GetId(volume, 8, 5, 5)) == glm::dvec3(4, 0, 0));
-  VERIFY(GetTuple(found, GetId(volume, 9, 5, 5)).x < 1.0);
+  EXPECT_EQ(dragged.GetArray(), array);
+  EXPECT_EQ(dragged.Filter->GetNumberOfReducedHandles(), 0);
+  EXPECT_EQ(GetTuple(found, GetId(volume, 6, 5, 5)), glm::dvec3(5, 0, 0));
+  EXPECT_EQ(GetTuple(found, GetId(volume, 8, 5, 5)), glm::dvec3(4, 0, 0));
+  EXPECT_LT(GetTuple(found, GetId(volume, 9, 5, 5)).x, 1.0);
   // When the cut is closed, the displacements violate the limits of links: all voxels return to
   // rest.
   active->Fill(31);
@@ -243,10 +243,10 @@ void TestPinsAndCuts()
   dragged.Update();
   double range[2];
   found->GetRange(range, -1);
-  VERIFY_EQUAL(range[1], 0.0);
+  EXPECT_EQ(range[1], 0.0);
 }
 
-void TestAborted()
+TEST(ChainMailDeformation, Aborted)
 {
   const auto volume = MakeVolume({ { 0, 40, 0, 40, 0, 40 } });
   Dragged dragged(volume);
@@ -266,16 +266,17 @@ void TestAborted()
   const unsigned long tag = dragged.Filter->AddObserver(vtkCommand::ProgressEvent, abort);
   dragged.Filter->SetHandlesData(MakeHandles({ { rest, rest + glm::dvec3(9, 0, 0) } }));
   dragged.Filter->Update();
-  VERIFY(HaveEqualBits(Copy(array), before)); // the array is not in the output of an aborted update
+  EXPECT_TRUE(
+    HaveEqualBits(Copy(array), before)); // the array is not in the output of an aborted update
   dragged.Filter->RemoveObserver(tag);
   dragged.Filter->SetAbortExecute(0);
   dragged.Filter->Update(); // executes again after the abort
   found = dragged.GetFloats();
-  VERIFY(GetTuple(found, GetId(volume, 20, 20, 20)) == glm::dvec3(9, 0, 0));
+  EXPECT_EQ(GetTuple(found, GetId(volume, 20, 20, 20)), glm::dvec3(9, 0, 0));
 }
 
 // A vtkDeformVolumeFilter that deforms the volume by the displacements of each step.
-void TestDeformed(const Extent& extent)
+void CheckDeformed(const Extent& extent)
 {
   const auto volume = MakeVolume(extent);
   Dragged dragged(volume);
@@ -296,7 +297,7 @@ void TestDeformed(const Extent& extent)
       const auto to = glm::ivec3(glm::dvec3(i, 16, 15) + drag);
       const double expected =
         volume->GetPointData()->GetScalars()->GetTuple1(GetId(volume, i, 16, 15));
-      VERIFY_EQUAL(
+      EXPECT_EQ(
         found->GetPointData()->GetScalars()->GetTuple1(GetId(found, to.x, to.y, to.z)), expected);
     }
   }
@@ -309,32 +310,32 @@ bool IsSame(vtkFloatArray* one, vtkFloatArray* other)
 }
 
 // Saved states undo drags, also after a cut.
-void TestStates()
+TEST(ChainMailDeformation, States)
 {
   const auto volume = MakeVolume({ { 0, 30, 0, 20, 0, 20 } });
   Dragged dragged(volume);
-  VERIFY(!dragged.Filter->RestoreState(0) && !dragged.Filter->RemoveState(0));
+  EXPECT_TRUE(!dragged.Filter->RestoreState(0) && !dragged.Filter->RemoveState(0));
   const vtkIdType rest = dragged.Filter->SaveState(); // before the first execution
   const auto first = Copy(dragged.Drag({ { { 10, 10, 10 }, { 15, 10, 10 } } }));
   const vtkIdType one = dragged.Filter->SaveState();
   const auto second = Copy(dragged.Drag({ { { 20, 10, 10 }, { 20, 14, 12 } } }));
-  VERIFY(rest != one && !IsSame(first, second));
+  EXPECT_TRUE(rest != one && !IsSame(first, second));
   dragged.Filter->SetHandlesData(nullptr);
-  VERIFY(dragged.Filter->RestoreState(one));
+  EXPECT_TRUE(dragged.Filter->RestoreState(one));
   const vtkIdType again = dragged.Filter->SaveState(); // of the restored state, before an update
-  VERIFY(IsSame(dragged.Update(), first));
-  VERIFY(dragged.Filter->GetChangedExtent()[0] <= dragged.Filter->GetChangedExtent()[1]);
-  VERIFY(dragged.Filter->RestoreState(rest));
+  EXPECT_TRUE(IsSame(dragged.Update(), first));
+  EXPECT_LE(dragged.Filter->GetChangedExtent()[0], dragged.Filter->GetChangedExtent()[1]);
+  EXPECT_TRUE(dragged.Filter->RestoreState(rest));
   dragged.Update();
-  VERIFY_EQUAL(dragged.Filter->GetOutput()->GetPointData()->GetArray(0)->GetMaxNorm(), 0.0);
-  VERIFY(dragged.Filter->RestoreState(again));
-  VERIFY(IsSame(dragged.Update(), first));
-  VERIFY_EQUAL(dragged.Filter->GetNumberOfStates(), 3);
+  EXPECT_EQ(dragged.Filter->GetOutput()->GetPointData()->GetArray(0)->GetMaxNorm(), 0.0);
+  EXPECT_TRUE(dragged.Filter->RestoreState(again));
+  EXPECT_TRUE(IsSame(dragged.Update(), first));
+  EXPECT_EQ(dragged.Filter->GetNumberOfStates(), 3);
   const vtkTypeInt64 memory = dragged.Filter->GetStateMemory();
-  VERIFY(memory > 6144 && memory < 2 * 60 * 6200); // states share blocks
-  VERIFY(dragged.Filter->RemoveState(again) && !dragged.Filter->RestoreState(again));
-  VERIFY(dragged.Filter->RemoveState(one));
-  VERIFY(dragged.Filter->GetStateMemory() < 100);
+  EXPECT_TRUE(memory > 6144 && memory < 2 * 60 * 6200); // states share blocks
+  EXPECT_TRUE(dragged.Filter->RemoveState(again) && !dragged.Filter->RestoreState(again));
+  EXPECT_TRUE(dragged.Filter->RemoveState(one));
+  EXPECT_LT(dragged.Filter->GetStateMemory(), 100);
 
   const vtkIdType whole = dragged.Filter->SaveState();
   vtkNew<vtkImageData> cut;
@@ -355,35 +356,32 @@ void TestStates()
   // Restore a state from before the cut in the volume without the cut, and a state with the open
   // cut in the cut volume.
   dragged.Filter->SetInputData(volume);
-  VERIFY(dragged.Filter->RestoreState(whole));
-  VERIFY(IsSame(dragged.Update(), first));
+  EXPECT_TRUE(dragged.Filter->RestoreState(whole));
+  EXPECT_TRUE(IsSame(dragged.Update(), first));
   dragged.Filter->SetInputData(cut);
-  VERIFY(dragged.Filter->RestoreState(apart));
-  VERIFY(IsSame(dragged.Update(), parted));
+  EXPECT_TRUE(dragged.Filter->RestoreState(apart));
+  EXPECT_TRUE(IsSame(dragged.Update(), parted));
 
   // In another volume only the state at rest can be restored.
   dragged.Filter->SetInputData(MakeVolume({ { 0, 20, 0, 20, 0, 20 } }));
   dragged.Update();
-  VERIFY(!dragged.Filter->RestoreState(apart));
-  VERIFY(dragged.Filter->RestoreState(rest));
+  EXPECT_FALSE(dragged.Filter->RestoreState(apart));
+  EXPECT_TRUE(dragged.Filter->RestoreState(rest));
 }
 
 } // namespace
 
-int TestChainMailDeformation(int, char*[])
+TEST(ChainMailDeformation, Labels)
 {
-  TestWorldForm();
-  TestAnnouncement();
-  TestKept();
-  TestLabels<vtkUnsignedCharArray>(false);
-  TestLabels<vtkLongLongArray>(false);
-  TestLabels<vtkFloatArray>(false);
-  TestLabels<vtkShortArray>(true);
-  TestLabels<vtkDoubleArray>(true);
-  TestPinsAndCuts();
-  TestAborted();
-  TestStates();
-  TestDeformed({ { 0, 40, 0, 30, 0, 30 } });
-  TestDeformed({ { 0, 70, 0, 70, 0, 70 } }); // displacements are read in place
-  return GetExitCode();
+  CheckLabels<vtkUnsignedCharArray>(false);
+  CheckLabels<vtkLongLongArray>(false);
+  CheckLabels<vtkFloatArray>(false);
+  CheckLabels<vtkShortArray>(true);
+  CheckLabels<vtkDoubleArray>(true);
+}
+
+TEST(ChainMailDeformation, Deformed)
+{
+  CheckDeformed({ { 0, 40, 0, 30, 0, 30 } });
+  CheckDeformed({ { 0, 70, 0, 70, 0, 70 } }); // displacements are read in place
 }

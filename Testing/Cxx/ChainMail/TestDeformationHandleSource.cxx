@@ -14,7 +14,7 @@ using namespace filterTesting;
 namespace
 {
 
-void TestMisuse()
+TEST(DeformationHandleSource, Misuse)
 {
   vtkNew<vtkDeformationHandleSource> source;
   vtkNew<vtkTest::ErrorObserver> observer;
@@ -24,35 +24,35 @@ void TestMisuse()
   source->SetPosition(0.0, std::numeric_limits<double>::quiet_NaN(), 0.0);
   for (int repeat = 0; repeat < 2; ++repeat)
   {
-    VERIFY(!source->GetExecutive()->Update());
-    VERIFY_CONTAINS(observer->GetErrorMessage(), "not finite");
-    VERIFY_EQUAL(source->GetOutput()->GetNumberOfPoints(), 0);
+    EXPECT_FALSE(source->GetExecutive()->Update());
+    EXPECT_TRUE(HasPart(observer->GetErrorMessage(), "not finite"));
+    EXPECT_EQ(source->GetOutput()->GetNumberOfPoints(), 0);
     observer->Clear();
   }
   source->SetPosition(0.0, 1.0, 0.0);
   source->Update();
-  VERIFY(!observer->GetError());
-  VERIFY_EQUAL(source->GetOutput()->GetNumberOfPoints(), 1);
+  EXPECT_FALSE(observer->GetError());
+  EXPECT_EQ(source->GetOutput()->GetNumberOfPoints(), 1);
 }
 
-void TestOutput()
+TEST(DeformationHandleSource, Output)
 {
   vtkNew<vtkDeformationHandleSource> source;
   source->SetRestPosition(0.1, 2.0, -3.0);
   source->SetPosition(4.0, 5.3, 6.0);
   source->Update();
   vtkPolyData* output = source->GetOutput();
-  VERIFY_EQUAL(output->GetNumberOfPoints(), 1);
-  VERIFY_EQUAL(output->GetNumberOfVerts(), 1);
-  VERIFY(GetPoint(output, 0) == glm::dvec3(4.0, 5.3, 6.0));
+  EXPECT_EQ(output->GetNumberOfPoints(), 1);
+  EXPECT_EQ(output->GetNumberOfVerts(), 1);
+  EXPECT_EQ(GetPoint(output, 0), glm::dvec3(4.0, 5.3, 6.0));
   double rest[3];
   output->GetPointData()->GetArray("RestPosition")->GetTuple(0, rest);
-  VERIFY(glm::dvec3(rest[0], rest[1], rest[2]) == glm::dvec3(0.1, 2.0, -3.0));
+  EXPECT_EQ(glm::dvec3(rest[0], rest[1], rest[2]), glm::dvec3(0.1, 2.0, -3.0));
   source->UpdatePiece(1, 2, 0);
-  VERIFY_EQUAL(source->GetOutput()->GetNumberOfPoints(), 0);
+  EXPECT_EQ(source->GetOutput()->GetNumberOfPoints(), 0);
 }
 
-void TestDrag()
+TEST(DeformationHandleSource, Drag)
 {
   const auto volume = MakeVolume({ { 0, 20, 0, 16, 0, 12 } });
   const std::vector<Handle> handles = { { { 5, 6, 4 }, { 7, 6.5, 4 } },
@@ -69,17 +69,9 @@ void TestDrag()
   wanted.Drag(handles);
   Dragged dragged(volume);
   dragged.Filter->SetHandlesConnection(append->GetOutputPort());
-  VERIFY(HaveEqualBits(
+  EXPECT_TRUE(HaveEqualBits(
     dragged.Update(), wanted.Filter->GetOutput()->GetPointData()->GetArray("Displacement")));
-  VERIFY(dragged.Filter->GetNumberOfMovedVoxels() > 20);
+  EXPECT_GT(dragged.Filter->GetNumberOfMovedVoxels(), 20);
 }
 
 } // namespace
-
-int TestDeformationHandleSource(int, char*[])
-{
-  TestMisuse();
-  TestOutput();
-  TestDrag();
-  return GetExitCode();
-}

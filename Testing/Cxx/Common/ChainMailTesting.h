@@ -59,17 +59,18 @@ struct Dragged
     this->Filter->Modified();
     this->Filter->Update();
     std::string errors = this->Observer->GetErrorMessage();
-    VERIFY(errors.find("ERROR: ") == errors.rfind("ERROR: "));
+    EXPECT_EQ(errors.find("ERROR: "), errors.rfind("ERROR: "));
     if (!errors.empty())
     {
       // The next update reports the error again, although nothing has changed.
       this->Observer->Clear();
-      VERIFY(!this->Filter->GetExecutive()->Update());
-      VERIFY(this->Observer->GetError());
+      EXPECT_FALSE(this->Filter->GetExecutive()->Update());
+      EXPECT_TRUE(this->Observer->GetError());
     }
     this->Observer->Clear();
     this->ExecutiveObserver->Clear();
-    VERIFY(errors.empty() || this->Filter->GetOutput()->GetPointData()->GetNumberOfArrays() == 0);
+    EXPECT_TRUE(
+      errors.empty() || this->Filter->GetOutput()->GetPointData()->GetNumberOfArrays() == 0);
     return errors;
   }
   /// The displacements of the output. They may be on a device.
@@ -92,7 +93,7 @@ struct Dragged
   }
   vtkFloatArray* Update()
   {
-    VERIFY_EQUAL(this->TryUpdate(), std::string());
+    EXPECT_EQ(this->TryUpdate(), "");
     return this->GetFloats();
   }
   vtkFloatArray* Drag(const std::vector<Handle>& handles)

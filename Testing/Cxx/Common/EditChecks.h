@@ -100,8 +100,8 @@ struct Edited
   void Update()
   {
     this->Filter->Update();
-    VERIFY_EQUAL(this->Observer->GetErrorMessage(), std::string());
-    VERIFY_EQUAL(this->Observer->GetWarningMessage(), std::string());
+    EXPECT_EQ(this->Observer->GetErrorMessage(), "");
+    EXPECT_EQ(this->Observer->GetWarningMessage(), "");
     this->Observer->Clear();
     this->ExecutiveObserver->Clear();
   }
@@ -113,12 +113,13 @@ struct Edited
     this->Filter->Modified();
     for (int repeat = 0; repeat < 2; ++repeat)
     {
-      VERIFY(!this->Filter->GetExecutive()->Update());
+      EXPECT_FALSE(this->Filter->GetExecutive()->Update());
       const std::string message = this->Observer->GetErrorMessage();
       const std::size_t first = message.find("ERROR: ");
-      VERIFY_CONTAINS(message, words);
-      VERIFY(first != std::string::npos && message.find("ERROR: ", first + 1) == std::string::npos);
-      VERIFY_EQUAL(this->Filter->GetOutput()->GetNumberOfPoints(), 0);
+      EXPECT_TRUE(HasPart(message, words));
+      EXPECT_TRUE(
+        first != std::string::npos && message.find("ERROR: ", first + 1) == std::string::npos);
+      EXPECT_EQ(this->Filter->GetOutput()->GetNumberOfPoints(), 0);
       this->Observer->Clear();
       this->ExecutiveObserver->Clear();
     }
@@ -129,7 +130,7 @@ struct Edited
     this->Update();
     auto* array = vtkUnsignedCharArray::SafeDownCast(
       this->Filter->GetOutput()->GetCellData()->GetArray("ActiveTetrahedra"));
-    VERIFY(array != nullptr);
+    EXPECT_NE(array, nullptr);
     std::vector<unsigned char> mask;
     if (array)
     {
@@ -144,7 +145,7 @@ struct Edited
   {
     const std::vector<unsigned char> mask = this->CopyMask();
     const int off = 5 * static_cast<int>(mask.size()) - CountActive(mask);
-    VERIFY_EQUAL(this->Filter->GetNumberOfSwitchedOffTetrahedra(), off);
+    EXPECT_EQ(this->Filter->GetNumberOfSwitchedOffTetrahedra(), off);
     return off;
   }
 
@@ -163,7 +164,7 @@ void CheckAborts(const std::function<void(FilterT*, vtkImageData*)>& edit)
   whole.Filter->SetInputData(volume);
   edit(whole.Filter, volume);
   const std::vector<unsigned char> expected = whole.CopyMask();
-  VERIFY(CountActive(expected) < 5 * static_cast<int>(expected.size()));
+  EXPECT_LT(CountActive(expected), 5 * static_cast<int>(expected.size()));
   Edited<FilterT> aborted;
   aborted.Filter->SetInputData(volume);
   edit(aborted.Filter, volume);
@@ -172,11 +173,11 @@ void CheckAborts(const std::function<void(FilterT*, vtkImageData*)>& edit)
     { static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1); });
   const unsigned long tag = aborted.Filter->AddObserver(vtkCommand::ProgressEvent, command);
   aborted.Update();
-  VERIFY_EQUAL(aborted.Filter->GetOutput()->GetNumberOfPoints(), vtkIdType{ 0 });
-  VERIFY_EQUAL(aborted.Filter->GetNumberOfSwitchedOffTetrahedra(), vtkIdType{ 0 });
+  EXPECT_EQ(aborted.Filter->GetOutput()->GetNumberOfPoints(), 0);
+  EXPECT_EQ(aborted.Filter->GetNumberOfSwitchedOffTetrahedra(), 0);
   aborted.Filter->RemoveObserver(tag);
   aborted.Filter->SetAbortExecute(0);
-  VERIFY(aborted.CopyMask() == expected);
+  EXPECT_EQ(aborted.CopyMask(), expected);
 }
 
 } // namespace filterTesting

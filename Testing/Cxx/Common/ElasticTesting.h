@@ -92,15 +92,15 @@ struct Simulated
     this->Object->Modified();
     this->Object->Update();
     const std::string errors = this->Observer->GetErrorMessage();
-    VERIFY(errors.find("ERROR: ") == errors.rfind("ERROR: "));
+    EXPECT_EQ(errors.find("ERROR: "), errors.rfind("ERROR: "));
     if (!errors.empty())
     {
       // The next update reports the error again, although nothing has changed.
       this->Observer->Clear();
-      VERIFY(!this->Object->GetExecutive()->Update());
-      VERIFY(this->Observer->GetError());
+      EXPECT_FALSE(this->Object->GetExecutive()->Update());
+      EXPECT_TRUE(this->Observer->GetError());
     }
-    VERIFY(errors.empty() || this->Object->GetOutput()->GetNumberOfPoints() == 0);
+    EXPECT_TRUE(errors.empty() || this->Object->GetOutput()->GetNumberOfPoints() == 0);
     this->Observer->Clear();
     this->ExecutiveObserver->Clear();
     return errors;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // For the tests of vtkDeformVolumeFilter: volumes and meshes that world functions define, and
-// checks that count their failures.
+// checks.
 #ifndef FilterTesting_h
 #define FilterTesting_h
 
-#include "CheckedCondition.h"
+#include "HasPart.h"
 
 #include "../../Reported.h"
 
@@ -33,7 +33,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <functional>
 #include <iomanip>
@@ -44,62 +43,7 @@
 namespace filterTesting
 {
 
-inline int& GetNumberOfFailures()
-{
-  static int failures = 0;
-  return failures;
-}
-
-inline int GetExitCode()
-{
-  std::cout << GetNumberOfFailures() << " checks failed\n";
-  return GetNumberOfFailures() == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
-}
-
-#define VERIFY(condition) CHECK_CONDITION(condition, filterTesting::GetNumberOfFailures())
-
-#define VERIFY_EQUAL(actual, expected)                                                             \
-  do                                                                                               \
-  {                                                                                                \
-    const auto verifiedActual = (actual);                                                          \
-    const auto verifiedExpected = (expected);                                                      \
-    if (!(verifiedActual == verifiedExpected))                                                     \
-    {                                                                                              \
-      ++filterTesting::GetNumberOfFailures();                                                      \
-      std::cerr << __FILE__ << ':' << __LINE__ << ": " << #actual << " is " << verifiedActual      \
-                << " instead of " << verifiedExpected << '\n';                                     \
-    }                                                                                              \
-  } while (false)
-
-/// Checks that a text contains a part.
-#define VERIFY_CONTAINS(text, part)                                                                \
-  filterTesting::VerifyPartOfText(__FILE__, __LINE__, (text), (part), true)
-
-/// Checks that a text does not contain a part.
-#define VERIFY_CONTAINS_NOT(text, part)                                                            \
-  filterTesting::VerifyPartOfText(__FILE__, __LINE__, (text), (part), false)
-
-inline void VerifyPartOfText(
-  const char* file, int line, const std::string& text, const std::string& part, bool isExpected)
-{
-  if ((text.find(part) != std::string::npos) != isExpected)
-  {
-    ++GetNumberOfFailures();
-    std::cerr << file << ':' << line << ": expected a text " << (isExpected ? "with" : "without")
-              << " \"" << part << "\" instead of \"" << text << "\"\n";
-  }
-}
-
 using Extent = std::array<int, 6>;
-
-inline std::ostream& operator<<(std::ostream& stream, const Extent& extent)
-{
-  for (const int bound : extent)
-  {
-    stream << bound << ' ';
-  }
-  return stream;
-}
 
 inline Extent GetExtent(vtkImageData* image)
 {
@@ -254,11 +198,7 @@ struct Deformed
   vtkImageData* Update()
   {
     this->Filter->Update();
-    VERIFY_EQUAL(this->TakeErrors(), 0);
-    if (!this->LastError.empty())
-    {
-      std::cerr << this->LastError.substr(this->LastError.find("):") + 1);
-    }
+    EXPECT_EQ(this->TakeErrors(), 0) << this->LastError;
     return this->Filter->GetOutput();
   }
   /// Updates the filter, which must report a warning that contains these words. Without words it
@@ -268,14 +208,10 @@ struct Deformed
     this->Observer->Clear();
     this->Filter->Update();
     const std::string warning = this->Observer->GetWarningMessage();
-    if (words.empty() ? !warning.empty() : warning.find(words) == std::string::npos)
-    {
-      ++GetNumberOfFailures();
-      std::cerr << "expected "
-                << (words.empty() ? "no warning" : "a warning with \"" + words + "\"")
-                << " instead of \"" << warning << "\"\n";
-    }
-    VERIFY_EQUAL(this->TakeErrors(), 0);
+    EXPECT_TRUE(words.empty() ? warning.empty() : warning.find(words) != std::string::npos)
+      << "expected " << (words.empty() ? "no warning" : "a warning with \"" + words + "\"")
+      << " instead of \"" << warning << "\"";
+    EXPECT_EQ(this->TakeErrors(), 0);
     return this->Filter->GetOutput();
   }
   vtkDataArray* GetValues() { return this->Filter->GetOutput()->GetPointData()->GetScalars(); }
@@ -291,19 +227,6 @@ struct Deformed
   std::string LastError;
 };
 
-/// The result of a comparison: a text that says where two objects differ, or "" if they are equal.
-struct Equality
-{
-  operator bool() const { return this->Difference.empty(); }
-
-  std::string Difference;
-};
-
-inline std::ostream& operator<<(std::ostream& stream, const Equality& equality)
-{
-  return stream << equality.Difference;
-}
-
 inline std::string DescribeArray(vtkDataArray* array)
 {
   if (!array)
@@ -318,13 +241,14 @@ inline std::string DescribeArray(vtkDataArray* array)
 }
 
 /// Whether two arrays have the same type, size and bits.
-inline Equality HaveEqualBits(vtkDataArray* first, vtkDataArray* second)
+inline testing::AssertionResult HaveEqualBits(vtkDataArray* first, vtkDataArray* second)
 {
   if (!first || !second || first->GetDataType() != second->GetDataType() ||
     first->GetNumberOfComponents() != second->GetNumberOfComponents() ||
     first->GetNumberOfTuples() != second->GetNumberOfTuples())
   {
-    return { "first array: " + DescribeArray(first) + "; second array: " + DescribeArray(second) };
+    return testing::AssertionFailure()
+      << "first array: " << DescribeArray(first) << "; second array: " << DescribeArray(second);
   }
   const auto size = static_cast<std::size_t>(first->GetDataTypeSize());
   const auto values = static_cast<std::size_t>(first->GetNumberOfValues());
@@ -332,7 +256,7 @@ inline Equality HaveEqualBits(vtkDataArray* first, vtkDataArray* second)
   const auto* const secondBytes = static_cast<const char*>(second->GetVoidPointer(0));
   if (std::memcmp(firstBytes, secondBytes, values * size) == 0)
   {
-    return {};
+    return testing::AssertionSuccess();
   }
   std::ostringstream text;
   text << DescribeArray(first) << ": " << std::setprecision(17);
@@ -350,7 +274,7 @@ inline Equality HaveEqualBits(vtkDataArray* first, vtkDataArray* second)
     }
   }
   text << differences << " of " << values << " values differ";
-  return { text.str() };
+  return testing::AssertionFailure() << text.str();
 }
 
 /// Adds a mask in which all tetrahedra are active.
@@ -367,7 +291,7 @@ inline vtkSmartPointer<vtkUnsignedCharArray> AddActiveTetrahedra(vtkImageData* v
 /// Checks that all arrays of a part of an output are equal to those of the whole output there.
 inline void VerifyPart(vtkImageData* part, vtkImageData* whole)
 {
-  VERIFY(part->GetNumberOfPoints() == 0 ||
+  EXPECT_TRUE(part->GetNumberOfPoints() == 0 ||
     part->GetPointData()->GetNumberOfArrays() == whole->GetPointData()->GetNumberOfArrays());
   for (vtkIdType id = 0; id < part->GetNumberOfPoints(); ++id)
   {
@@ -379,47 +303,44 @@ inline void VerifyPart(vtkImageData* part, vtkImageData* whole)
       vtkDataArray* ofWhole = whole->GetPointData()->GetArray(array->GetName());
       for (int component = 0; component < array->GetNumberOfComponents(); ++component)
       {
-        VERIFY_EQUAL(array->GetComponent(id, component), ofWhole->GetComponent(other, component));
+        EXPECT_EQ(array->GetComponent(id, component), ofWhole->GetComponent(other, component));
       }
     }
   }
 }
 
 /// Whether two images have equal point arrays, extents, origins, spacings and directions.
-inline Equality AreEqual(vtkImageData* first, vtkImageData* second)
+inline testing::AssertionResult AreEqual(vtkImageData* first, vtkImageData* second)
 {
-  std::ostringstream text;
   if (GetExtent(first) != GetExtent(second))
   {
-    text << "the extents are " << GetExtent(first) << "and " << GetExtent(second);
-    return { text.str() };
+    return testing::AssertionFailure()
+      << "the extents are " << testing::PrintToString(GetExtent(first)) << " and "
+      << testing::PrintToString(GetExtent(second));
   }
-  const glm::dvec3 firstPoint = GetPoint(first, first->GetNumberOfPoints() - 1);
-  const glm::dvec3 secondPoint = GetPoint(second, second->GetNumberOfPoints() - 1);
-  if (firstPoint != secondPoint)
+  const glm::dvec3 a = GetPoint(first, first->GetNumberOfPoints() - 1);
+  const glm::dvec3 b = GetPoint(second, second->GetNumberOfPoints() - 1);
+  if (a != b)
   {
-    text << std::setprecision(17) << "the last points are " << firstPoint.x << ' ' << firstPoint.y
-         << ' ' << firstPoint.z << " and " << secondPoint.x << ' ' << secondPoint.y << ' '
-         << secondPoint.z;
-    return { text.str() };
+    return testing::AssertionFailure() << "the last points are " << a.x << ' ' << a.y << ' ' << a.z
+                                       << " and " << b.x << ' ' << b.y << ' ' << b.z;
   }
   const int arrays = first->GetPointData()->GetNumberOfArrays();
   if (arrays != second->GetPointData()->GetNumberOfArrays())
   {
-    text << "the numbers of point arrays are " << arrays << " and "
-         << second->GetPointData()->GetNumberOfArrays();
-    return { text.str() };
+    return testing::AssertionFailure() << "the numbers of point arrays are " << arrays << " and "
+                                       << second->GetPointData()->GetNumberOfArrays();
   }
   for (int i = 0; i < arrays; ++i)
   {
-    const Equality equality =
+    const testing::AssertionResult equality =
       HaveEqualBits(first->GetPointData()->GetArray(i), second->GetPointData()->GetArray(i));
     if (!equality)
     {
       return equality;
     }
   }
-  return {};
+  return testing::AssertionSuccess();
 }
 
 } // namespace filterTesting

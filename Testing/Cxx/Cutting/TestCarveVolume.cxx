@@ -39,7 +39,7 @@ double GetVolume(const std::vector<unsigned char>& mask)
   return volume;
 }
 
-void TestMisuse()
+TEST(CarveVolume, Misuse)
 {
   Edited<vtkCarveVolume> carve;
   auto volume = MakeVolume(Box);
@@ -51,13 +51,13 @@ void TestMisuse()
   words->SetNumberOfValues(volume->GetNumberOfPoints());
   volume->GetPointData()->AddArray(words);
   carve.Filter->SetInputData(volume);
-  VERIFY_EQUAL(carve.CountOff(), 0); // nothing to carve with
+  EXPECT_EQ(carve.CountOff(), 0); // nothing to carve with
   vtkNew<vtkSphere> sphere;
   sphere->SetCenter(5, 5, 5);
   sphere->SetRadius(3);
   carve.Filter->SetImplicitFunction(sphere);
   const auto before = carve.CopyMask();
-  VERIFY(CountActive(before) < 5 * volume->GetNumberOfCells());
+  EXPECT_LT(CountActive(before), 5 * volume->GetNumberOfCells());
 
   vtkNew<vtkSphereSource> open;
   open->SetEndTheta(200);
@@ -91,20 +91,20 @@ void TestMisuse()
   carve.Filter->SetInputData(wrong);
   carve.Fails("\"ActiveTetrahedra\"");
   carve.Filter->SetInputData(volume);
-  VERIFY(carve.CopyMask() == before);
+  EXPECT_EQ(carve.CopyMask(), before);
 
   // A label that does not occur is reported once, as a warning.
   carve.Filter->SetLabelArrayName("value");
   carve.Filter->SetLabel(-12345);
   carve.Filter->Update();
-  VERIFY_CONTAINS(carve.Observer->GetWarningMessage(), "No voxel has the label");
+  EXPECT_TRUE(HasPart(carve.Observer->GetWarningMessage(), "No voxel has the label"));
   carve.Observer->Clear();
   carve.Filter->Modified();
-  VERIFY(carve.CopyMask() == before);
+  EXPECT_EQ(carve.CopyMask(), before);
 }
 
 // Implicit functions of VTK, with and without known bounds, in volumes of different geometry.
-void TestFunctions()
+TEST(CarveVolume, Functions)
 {
   for (int geometry = 0; geometry < 3; ++geometry)
   {
@@ -132,32 +132,32 @@ void TestFunctions()
     const auto carved = carve.CopyMask();
     const double expected = 4.0 / 3.0 * 3.14159265358979 * radius * radius * radius / voxel;
     // The bound that Documents/cutting.md states for spheres of a radius of 20 voxels.
-    VERIFY(geometry > 0 || std::abs(GetVolume(carved) - expected) < 0.0006 * expected);
-    VERIFY(std::abs(GetVolume(carved) - expected) < 0.01 * expected);
+    EXPECT_TRUE(geometry > 0 || std::abs(GetVolume(carved) - expected) < 0.0006 * expected);
+    EXPECT_LT(std::abs(GetVolume(carved) - expected), 0.01 * expected);
     // The same sphere as a function without known bounds. Such functions are evaluated in one
     // thread.
     vtkNew<vtkImplicitBoolean> wrapped;
     wrapped->AddFunction(sphere);
     carve.Filter->SetImplicitFunction(wrapped);
-    VERIFY(carve.CopyMask() == carved);
+    EXPECT_EQ(carve.CopyMask(), carved);
     carve.Filter->SetImplicitFunction(nullptr);
-    VERIFY_EQUAL(carve.CountOff(), 0);
+    EXPECT_EQ(carve.CountOff(), 0);
     // A tool at one position.
     carve.Filter->SetToolRadius(radius);
     carve.Filter->AddToolPosition(middle[0], middle[1], middle[2]);
-    VERIFY(carve.CopyMask() == carved);
+    EXPECT_EQ(carve.CopyMask(), carved);
     carve.Filter->Undo();
     carve.Filter->SetImplicitFunction(sphere);
     double last = GetVolume(carved);
     carve.Filter->SetRuleToMinimal();
-    VERIFY(GetVolume(carve.CopyMask()) < last);
+    EXPECT_LT(GetVolume(carve.CopyMask()), last);
     carve.Filter->SetRuleToConservative();
-    VERIFY(GetVolume(carve.CopyMask()) > last);
+    EXPECT_GT(GetVolume(carve.CopyMask()), last);
     // A change of the function causes an update.
     carve.Filter->SetRuleToCentroid();
     sphere->SetRadius(0.5 * radius);
     last = GetVolume(carve.CopyMask());
-    VERIFY(std::abs(last - expected / 8) < 0.03 * expected / 8);
+    EXPECT_LT(std::abs(last - expected / 8), 0.03 * expected / 8);
   }
   // A box of whole cells, and a plane.
   auto volume = MakeVolume(Box);
@@ -166,21 +166,21 @@ void TestFunctions()
   vtkNew<vtkBox> box;
   box->SetBounds(0, 4, 2, 5, 3, 10);
   carve.Filter->SetImplicitFunction(box);
-  VERIFY_EQUAL(carve.CountOff(), 5 * 4 * 3 * 7);
+  EXPECT_EQ(carve.CountOff(), 5 * 4 * 3 * 7);
   vtkNew<vtkTransform> shift;
   shift->Translate(-1, 0, 0);
   box->SetTransform(shift);
   const auto moved = carve.CopyMask();
-  VERIFY_EQUAL(5 * volume->GetNumberOfCells() - CountActive(moved), 5 * 4 * 3 * 7);
-  VERIFY_EQUAL(int(moved[static_cast<std::size_t>((2 * 13 + 2) * 16 + 6)]), 0); // x from 4 to 5
+  EXPECT_EQ(5 * volume->GetNumberOfCells() - CountActive(moved), 5 * 4 * 3 * 7);
+  EXPECT_EQ(int(moved[static_cast<std::size_t>((2 * 13 + 2) * 16 + 6)]), 0); // x from 4 to 5
   vtkNew<vtkPlane> plane;
   plane->SetOrigin(6, 0, 0);
   plane->SetNormal(1, 0, 0);
   carve.Filter->SetImplicitFunction(plane);
-  VERIFY_EQUAL(carve.CountOff(), 5 * 8 * 13 * 14);
+  EXPECT_EQ(carve.CountOff(), 5 * 8 * 13 * 14);
 }
 
-void TestSurfaces()
+TEST(CarveVolume, Surfaces)
 {
   auto volume = MakeVolume(Box);
   Edited<vtkCarveVolume> carve;
@@ -189,21 +189,21 @@ void TestSurfaces()
   vtkNew<vtkCubeSource> cube;
   cube->SetBounds(0, 4, 2, 5, 3, 10);
   carve.Filter->SetSurfaceConnection(cube->GetOutputPort());
-  VERIFY_EQUAL(carve.CountOff(), 5 * 4 * 3 * 7);
+  EXPECT_EQ(carve.CountOff(), 5 * 4 * 3 * 7);
   const auto carved = carve.CopyMask();
   cube->SetBounds(4, 9, 2, 5, 3, 10);
-  VERIFY_EQUAL(carve.CountOff(), 5 * 5 * 3 * 7);
+  EXPECT_EQ(carve.CountOff(), 5 * 5 * 3 * 7);
   carve.Filter->AccumulateOn();
   cube->SetBounds(0, 4, 2, 5, 3, 10);
-  VERIFY_EQUAL(carve.CountOff(), 5 * 9 * 3 * 7);
+  EXPECT_EQ(carve.CountOff(), 5 * 9 * 3 * 7);
   carve.Filter->Undo();
   carve.Filter->Undo();
-  VERIFY_EQUAL(carve.CountOff(), 0);
+  EXPECT_EQ(carve.CountOff(), 0);
   carve.Filter->Redo();
   carve.Filter->Redo();
-  VERIFY_EQUAL(carve.CountOff(), 5 * 9 * 3 * 7);
+  EXPECT_EQ(carve.CountOff(), 5 * 9 * 3 * 7);
   carve.Filter->Reset();
-  VERIFY_EQUAL(carve.CountOff(), 0);
+  EXPECT_EQ(carve.CountOff(), 0);
   vtkNew<vtkSphereSource> sphere;
   sphere->SetCenter(6.1, 6.3, 7.9);
   sphere->SetRadius(5);
@@ -211,10 +211,10 @@ void TestSurfaces()
   sphere->SetPhiResolution(80);
   carve.Filter->SetSurfaceConnection(sphere->GetOutputPort());
   const double expected = 4.0 / 3.0 * 3.14159265358979 * 125;
-  VERIFY(std::abs(GetVolume(carve.CopyMask()) - expected) < 0.02 * expected);
+  EXPECT_LT(std::abs(GetVolume(carve.CopyMask()) - expected), 0.02 * expected);
 }
 
-void TestLabels()
+TEST(CarveVolume, Labels)
 {
   auto volume = MakeVolume(Box);
   auto labels = AddLabels(volume);
@@ -223,21 +223,21 @@ void TestLabels()
   carve.Filter->SetLabelArrayName("label");
   carve.Filter->SetLabel(7);
   carve.Filter->SetRuleToMinimal();
-  VERIFY_EQUAL(carve.CountOff(), 5 * 8 * 13 * 14);
+  EXPECT_EQ(carve.CountOff(), 5 * 8 * 13 * 14);
   carve.Filter->SetRuleToConservative();
-  VERIFY_EQUAL(carve.CountOff(), 5 * 9 * 13 * 14);
+  EXPECT_EQ(carve.CountOff(), 5 * 9 * 13 * 14);
   // In each cell of the layer between the labels, two corner tetrahedra have three vertices with
   // the label 7.
   carve.Filter->SetRuleToCentroid();
-  VERIFY_EQUAL(carve.CountOff(), 5 * 8 * 13 * 14 + 2 * 13 * 14);
+  EXPECT_EQ(carve.CountOff(), 5 * 8 * 13 * 14 + 2 * 13 * 14);
   labels->Fill(3);
   labels->SetValue(0, 7);
   labels->Modified();
-  VERIFY_EQUAL(carve.CountOff(), 0);
+  EXPECT_EQ(carve.CountOff(), 0);
 }
 
 // A tool that carves in several updates or in one, and a tool in a deformed volume.
-void TestTool()
+TEST(CarveVolume, Tool)
 {
   auto volume = MakeVolume(Box);
   Edited<vtkCarveVolume> steps;
@@ -257,13 +257,13 @@ void TestTool()
       }
     }
   }
-  VERIFY(once.CopyMask() == masks.back());
+  EXPECT_EQ(once.CopyMask(), masks.back());
   once.Filter->Undo();
-  VERIFY_EQUAL(once.CountOff(), 0);
+  EXPECT_EQ(once.CountOff(), 0);
   for (int i = 3; i > 0; --i)
   {
     steps.Filter->Undo();
-    VERIFY(steps.CopyMask() == masks[static_cast<std::size_t>(i - 1)]);
+    EXPECT_EQ(steps.CopyMask(), masks[static_cast<std::size_t>(i - 1)]);
   }
   // The deformation moves the volume by whole voxels, and the tool by as much.
   auto mesh = MakeMesh(volume);
@@ -273,7 +273,7 @@ void TestTool()
   deformed.Filter->SetDeformationData(mesh);
   deformed.Filter->SetToolRadius(1.7);
   deformed.Filter->AddToolPosition(3, 1, 6);
-  VERIFY(deformed.CopyMask() == masks.front());
+  EXPECT_EQ(deformed.CopyMask(), masks.front());
 
   // The carved tetrahedra are a hole in the deformed volume.
   Deformed filter;
@@ -283,16 +283,16 @@ void TestTool()
   const vtkIdType holed = filter.Filter->GetNumberOfCoveredVoxels();
   deformed.Filter->BlankCellsOn(); // does not change the deformed volume
   filter.Update();
-  VERIFY_EQUAL(filter.Filter->GetNumberOfCoveredVoxels(), holed);
+  EXPECT_EQ(filter.Filter->GetNumberOfCoveredVoxels(), holed);
   deformed.Filter->Reset();
   filter.Update();
-  VERIFY(holed < filter.Filter->GetNumberOfCoveredVoxels());
-  VERIFY_EQUAL(filter.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
+  EXPECT_LT(holed, filter.Filter->GetNumberOfCoveredVoxels());
+  EXPECT_EQ(filter.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
 }
 
 // BlankCells hides cells that are cut or carved, in addition to hidden cells of the volume. The
 // ghost array of the volume is not changed.
-void TestBlankCells()
+TEST(CarveVolume, BlankCells)
 {
   auto volume = MakeVolume(Box);
   auto ghosts = MakeArray<vtkUnsignedCharArray>("vtkGhostType", volume->GetNumberOfCells());
@@ -314,12 +314,12 @@ void TestBlankCells()
       carve.Filter->GetOutput()->GetCellData()->GetArray(name));
   };
   carve.Update();
-  VERIFY(bytes("vtkGhostType") == ghosts);
+  EXPECT_EQ(bytes("vtkGhostType"), ghosts);
   carve.Filter->BlankCellsOn();
   carve.Update();
   const auto *active = bytes("ActiveTetrahedra"), *divided = bytes("CutTetrahedra");
   const auto* hidden = bytes("vtkGhostType");
-  VERIFY(active && divided && hidden && hidden != ghosts);
+  EXPECT_TRUE(active && divided && hidden && hidden != ghosts);
   vtkIdType counts[2] = { 0, 0 };
   for (vtkIdType i = 0; i < volume->GetNumberOfCells(); ++i)
   {
@@ -331,11 +331,11 @@ void TestBlankCells()
       (i == 5                 ? 32
           : isCut || isCarved ? 32 + 128
                               : 0);
-    VERIFY_EQUAL(static_cast<int>(hidden->GetValue(i)), expected);
+    EXPECT_EQ(static_cast<int>(hidden->GetValue(i)), expected);
   }
-  VERIFY_EQUAL(counts[0], 13 * 14); // one layer
-  VERIFY(counts[1] > 100);
-  VERIFY_EQUAL(static_cast<int>(ghosts->GetValue(5)), 32);
+  EXPECT_EQ(counts[0], 13 * 14); // one layer
+  EXPECT_GT(counts[1], 100);
+  EXPECT_EQ(static_cast<int>(ghosts->GetValue(5)), 32);
 
   // Without edits only the cells that the volume hides are hidden.
   carve.Filter->ClearToolPositions();
@@ -344,12 +344,12 @@ void TestBlankCells()
   carve.Update();
   for (vtkIdType i = 0; i < volume->GetNumberOfCells(); ++i)
   {
-    VERIFY_EQUAL(bytes("vtkGhostType")->GetValue(i), ghosts->GetValue(i));
+    EXPECT_EQ(bytes("vtkGhostType")->GetValue(i), ghosts->GetValue(i));
   }
 }
 
 // With BlankCells, too, only a part of the output is resampled after a small edit.
-void TestBlankedUpdates()
+TEST(CarveVolume, BlankedUpdates)
 {
   auto volume = MakeVolume({ { 0, 60, 0, 60, 0, 40 } });
   for (const bool isBlank : { false, true })
@@ -365,22 +365,15 @@ void TestBlankedUpdates()
     carve.Filter->AddToolPosition(10, 9, 9);
     filter.Update();
     const int* changed = filter.Filter->GetChangedExtent();
-    VERIFY(changed[0] <= 10 && changed[1] >= 10);
-    VERIFY(changed[1] < 40);
+    EXPECT_TRUE(changed[0] <= 10 && changed[1] >= 10);
+    EXPECT_LT(changed[1], 40);
   }
 }
 
 } // namespace
 
-int TestCarveVolume(int, char*[])
+TEST(CarveVolume, Aborts)
 {
-  TestMisuse();
-  TestFunctions();
-  TestSurfaces();
-  TestLabels();
-  TestTool();
-  TestBlankCells();
-  TestBlankedUpdates();
   for (const bool isSmooth : { false, true })
   {
     CheckAborts<vtkCarveVolume>(
@@ -391,5 +384,4 @@ int TestCarveVolume(int, char*[])
         carve->AddToolPosition(40, 50, 30);
       });
   }
-  return GetExitCode();
 }

@@ -14,7 +14,7 @@ namespace
 
 const Extent Box{ { 0, 8, 0, 8, 0, 8 } };
 
-void TestChain()
+TEST(CutDeformedVolume, Chain)
 {
   auto volume = MakeVolume(Box);
   Edited<vtkCutVolume> first;
@@ -24,18 +24,18 @@ void TestChain()
   second.Filter->SetInputConnection(first.Filter->GetOutputPort());
   second.Filter->SetSheetData(MakePlaneX(volume, 2.0));
   second.Update();
-  VERIFY_EQUAL(second.Filter->GetNumberOfSwitchedOffTetrahedra(), 320);
+  EXPECT_EQ(second.Filter->GetNumberOfSwitchedOffTetrahedra(), 320);
   second.Filter->SetSheetData(
     MakePlane(volume, glm::dvec3(-5, 4.5, -5), glm::dvec3(30, 0, 0), glm::dvec3(0, 0, 30)));
   std::vector<unsigned char> mask = second.CopyMask();
-  VERIFY_EQUAL(CountActive(mask), 5 * 512 - 320 - 320 + 40);
+  EXPECT_EQ(CountActive(mask), 5 * 512 - 320 - 320 + 40);
   first.Filter->SetSheetData(nullptr);
   mask = second.CopyMask();
-  VERIFY_EQUAL(CountActive(mask), 5 * 512 - 320);
+  EXPECT_EQ(CountActive(mask), 5 * 512 - 320);
 }
 
 // A sheet cuts the deformed volume, and the cut stays in the tissue when the deformation changes.
-void TestDeformed()
+TEST(CutDeformedVolume, Deformed)
 {
   auto volume = MakeVolume(Box);
   const double origin[3] = { 5.0, -3.0, 2.0 };
@@ -83,22 +83,22 @@ void TestDeformed()
       cut.Filter->SetDeformationData(field);
     }
     cut.Filter->SetSheetData(MakePlaneX(volume, 5.5));
-    VERIFY(cut.CopyMask() == expected);
+    EXPECT_EQ(cut.CopyMask(), expected);
     if (kind == 0)
     {
       // The deformation changes: the cut stays in the tissue. A new sheet cuts the volume in its
       // new position.
       cut.Filter->SetDisplacementScale(0.0);
-      VERIFY(cut.CopyMask() == expected);
+      EXPECT_EQ(cut.CopyMask(), expected);
       cut.Filter->SetSheetData(MakePlaneX(volume, 3.5));
-      VERIFY(cut.CopyMask() == expected);
+      EXPECT_EQ(cut.CopyMask(), expected);
     }
   }
 }
 
 // Cuts of a part of a volume are equal to those of the whole volume: at rest, and deformed by
 // links, by runs and by a field.
-void TestParts()
+TEST(CutDeformedVolume, Parts)
 {
   vtkNew<vtkRTAnalyticSource> source;
   source->SetWholeExtent(-12, 19, 3, 30, -5, 22);
@@ -140,16 +140,16 @@ void TestParts()
             kind == 3 ? static_cast<vtkDataObject*>(field.Get()) : mesh.Get());
         }
         cut->UpdateExtent(part.data());
-        VERIFY(cut->GetNumberOfSwitchedOffTetrahedra() > 0);
+        EXPECT_GT(cut->GetNumberOfSwitchedOffTetrahedra(), 0);
         if (!whole)
         {
           whole = cut->GetOutput();
-          VERIFY(cut->GetNumberOfSwitchedOffTetrahedra() > 2000);
+          EXPECT_GT(cut->GetNumberOfSwitchedOffTetrahedra(), 2000);
           continue;
         }
         vtkDataArray* expected = whole->GetCellData()->GetArray("ActiveTetrahedra");
         vtkImageData* output = cut->GetOutput();
-        VERIFY_EQUAL(GetExtent(output), part);
+        EXPECT_EQ(GetExtent(output), part);
         vtkDataArray* found = output->GetCellData()->GetArray("ActiveTetrahedra");
         int wrong = 0;
         vtkIdType cell = 0;
@@ -165,14 +165,14 @@ void TestParts()
             }
           }
         }
-        VERIFY_EQUAL(wrong, 0);
+        EXPECT_EQ(wrong, 0);
       }
     }
   }
 }
 
 // The part of a rank may have no cells or no points.
-void TestPartsWithoutCells()
+TEST(CutDeformedVolume, PartsWithoutCells)
 {
   for (const Extent& part : { Extent{ { 3, 3, 0, 9, 0, 9 } }, Extent{ { 0, -1, 0, -1, 0, -1 } } })
   {
@@ -183,16 +183,16 @@ void TestPartsWithoutCells()
     source->UpdateInformation();
     cut.Filter->SetSheetData(MakePlaneX(MakeVolume(Box), 3.5));
     cut.Filter->UpdateExtent(part.data());
-    VERIFY_EQUAL(cut.Observer->GetErrorMessage(), std::string());
-    VERIFY_EQUAL(cut.ExecutiveObserver->GetErrorMessage(), std::string());
-    VERIFY_EQUAL(cut.Filter->GetOutput()->GetNumberOfCells(), part[1] < 0 ? 0 : 81);
+    EXPECT_EQ(cut.Observer->GetErrorMessage(), "");
+    EXPECT_EQ(cut.ExecutiveObserver->GetErrorMessage(), "");
+    EXPECT_EQ(cut.Filter->GetOutput()->GetNumberOfCells(), part[1] < 0 ? 0 : 81);
     cut.Filter->UpdateWholeExtent();
-    VERIFY_EQUAL(cut.Filter->GetNumberOfSwitchedOffTetrahedra(), 5 * 81);
+    EXPECT_EQ(cut.Filter->GetNumberOfSwitchedOffTetrahedra(), 5 * 81);
   }
 }
 
 // Two sides of a cut that move apart leave an empty gap.
-void TestGap()
+TEST(CutDeformedVolume, Gap)
 {
   const Extent extent{ { 0, 16, 0, 8, 0, 8 } };
   auto volume = MakeVolume(extent);
@@ -223,26 +223,15 @@ void TestGap()
         : 0;
     }
   }
-  VERIFY_EQUAL(GetExtent(output), (Extent{ { 0, 22, 0, 8, 0, 8 } }));
-  VERIFY_EQUAL(wrong, 0);
+  EXPECT_EQ(GetExtent(output), (Extent{ { 0, 22, 0, 8, 0, 8 } }));
+  EXPECT_EQ(wrong, 0);
   // Without the cut the voxels of the gap are covered.
   cut.Filter->Undo();
   deformed.Update();
-  VERIFY_EQUAL(deformed.Filter->GetNumberOfCoveredVoxels(), output->GetNumberOfPoints());
+  EXPECT_EQ(deformed.Filter->GetNumberOfCoveredVoxels(), output->GetNumberOfPoints());
   cut.Filter->Redo();
   deformed.Update();
-  VERIFY_EQUAL(
-    deformed.Filter->GetNumberOfCoveredVoxels(), output->GetNumberOfPoints() - 6 * 9 * 9);
+  EXPECT_EQ(deformed.Filter->GetNumberOfCoveredVoxels(), output->GetNumberOfPoints() - 6 * 9 * 9);
 }
 
 } // namespace
-
-int TestCutDeformedVolume(int, char*[])
-{
-  TestChain();
-  TestDeformed();
-  TestParts();
-  TestPartsWithoutCells();
-  TestGap();
-  return GetExitCode();
-}

@@ -18,7 +18,7 @@ namespace
 
 const Extent Box{ { 0, 8, 0, 8, 0, 8 } };
 
-void TestMisuse()
+TEST(CutVolume, Misuse)
 {
   Edited<vtkCutVolume> cut;
   auto volume = MakeVolume(Box);
@@ -26,7 +26,7 @@ void TestMisuse()
   cut.Fails("two voxels");
   cut.Filter->SetInputData(volume);
   cut.Filter->SetSheetData(MakePlaneX(volume, 4.5));
-  VERIFY_EQUAL(cut.CountOff(), 320);
+  EXPECT_EQ(cut.CountOff(), 320);
   const auto before = cut.CopyMask();
 
   // A failure does not change the edits.
@@ -86,20 +86,20 @@ void TestMisuse()
   cut.Fails("a rest configuration on input port 3, but no deformation on input port 2");
   cut.Filter->SetRestData(nullptr);
   cut.Filter->SetSheetData(MakePlaneX(volume, 4.5));
-  VERIFY_EQUAL(cut.CountOff(), 320);
-  VERIFY(cut.CopyMask() == before);
+  EXPECT_EQ(cut.CountOff(), 320);
+  EXPECT_EQ(cut.CopyMask(), before);
 
   // Sheets that do not cut: one outside the volume, one without points, and none.
   cut.Filter->SetSheetData(MakePlaneX(volume, 44.5));
-  VERIFY_EQUAL(cut.CountOff(), 0);
+  EXPECT_EQ(cut.CountOff(), 0);
   cut.Filter->SetSheetData(vtkSmartPointer<vtkPolyData>::New());
-  VERIFY_EQUAL(cut.CountOff(), 0);
+  EXPECT_EQ(cut.CountOff(), 0);
   cut.Filter->SetSheetData(nullptr);
-  VERIFY_EQUAL(cut.CountOff(), 0);
+  EXPECT_EQ(cut.CountOff(), 0);
 }
 
 // Cuts do not depend on the origin, spacing and direction of the volume.
-void TestGeometry()
+TEST(CutVolume, Geometry)
 {
   for (int geometry = 0; geometry < 4; ++geometry)
   {
@@ -118,12 +118,12 @@ void TestGeometry()
     for (const double x : { 4.5, 4.0 })
     {
       cut.Filter->SetSheetData(MakePlaneX(volume, x));
-      VERIFY_EQUAL(cut.CountOff(), 320);
+      EXPECT_EQ(cut.CountOff(), 320);
     }
     const glm::dvec3 corner(-20, 28, -30);
     cut.Filter->SetSheetData(
       MakePlane(volume, corner, glm::dvec3(50, -50, 0), glm::dvec3(0, 0, 70)));
-    VERIFY_EQUAL(cut.CountOff(), 480);
+    EXPECT_EQ(cut.CountOff(), 480);
   }
   // The parity of cells depends on structured indices: cuts of a part are equal to those of the
   // whole.
@@ -151,12 +151,12 @@ void TestGeometry()
       }
     }
   }
-  VERIFY_EQUAL(different, 0);
-  VERIFY(cutPart.CountOff() > 100);
+  EXPECT_EQ(different, 0);
+  EXPECT_GT(cutPart.CountOff(), 100);
 }
 
 // Polygons, strips and swept lines cut like the triangles that they consist of.
-void TestSheets()
+TEST(CutVolume, Sheets)
 {
   auto volume = MakeVolume(Box);
   Edited<vtkCutVolume> cut;
@@ -167,14 +167,14 @@ void TestSheets()
   plane->SetPoint2(4.5, -2, 11);
   plane->SetResolution(3, 5);
   cut.Filter->SetSheetConnection(plane->GetOutputPort());
-  VERIFY_EQUAL(cut.CountOff(), 320);
+  EXPECT_EQ(cut.CountOff(), 320);
   vtkNew<vtkPolyData> strip;
   strip->SetPoints(MakePlaneX(volume, 4.0)->GetPoints());
   strip->AllocateEstimate(1, 4);
   const vtkIdType ids[4] = { 0, 1, 5, 2 };
   strip->InsertNextCell(VTK_TRIANGLE_STRIP, 4, ids);
   cut.Filter->SetSheetData(strip);
-  VERIFY_EQUAL(cut.CountOff(), 320);
+  EXPECT_EQ(cut.CountOff(), 320);
   vtkNew<vtkPoints> points;
   points->InsertNextPoint(4.5, -2, -2);
   points->InsertNextPoint(4.5, 3.3, -2);
@@ -186,12 +186,12 @@ void TestSheets()
   line->InsertNextCell(VTK_POLY_LINE, 3, order);
   cut.Filter->SetSheetData(line);
   cut.Filter->SetSweepVector(0, 0, 13);
-  VERIFY_EQUAL(cut.CountOff(), 320);
+  EXPECT_EQ(cut.CountOff(), 320);
   cut.Filter->SetSweepVector(0, 0, 6);
-  VERIFY_EQUAL(cut.CountOff(), 160);
+  EXPECT_EQ(cut.CountOff(), 160);
 }
 
-void TestEdits()
+TEST(CutVolume, Edits)
 {
   auto volume = MakeVolume(Box);
   auto base = MakeArray<vtkUnsignedCharArray>("ActiveTetrahedra", 512);
@@ -206,23 +206,23 @@ void TestEdits()
   cut.Filter->Undo();
   cut.Filter->Redo();
   cut.Filter->Reset();
-  VERIFY(cut.CopyMask() == start);
+  EXPECT_EQ(cut.CopyMask(), start);
   for (int i = 0; i < 512; ++i)
   {
-    VERIFY_EQUAL(int(start[static_cast<std::size_t>(i)]), i * 37 % 256);
+    EXPECT_EQ(int(start[static_cast<std::size_t>(i)]), i * 37 % 256);
   }
 
   // Tool positions are added one after another: each update cuts between the last two.
   std::vector<std::vector<unsigned char>> masks{ start };
   cut.Filter->AddToolPosition(1.5, -1, -1, 1.5, -1, 9);
-  VERIFY(cut.CopyMask() == start);
+  EXPECT_EQ(cut.CopyMask(), start);
   for (const double y : { 2.0, 4.0, 9.0 })
   {
     cut.Filter->AddToolPosition(1.5 + 0.1 * y, y, -1, 1.5 + 0.1 * y, y, 9);
     masks.push_back(cut.CopyMask());
-    VERIFY(masks.back() != masks[masks.size() - 2]);
+    EXPECT_NE(masks.back(), masks[masks.size() - 2]);
   }
-  VERIFY_EQUAL(cut.Filter->GetNumberOfToolPositions(), 4);
+  EXPECT_EQ(cut.Filter->GetNumberOfToolPositions(), 4);
   // Clearing and adding the same positions again, as user interfaces do, changes nothing.
   cut.Filter->ClearToolPositions();
   cut.Filter->AddToolPosition(1.5, -1, -1, 1.5, -1, 9);
@@ -230,17 +230,17 @@ void TestEdits()
   {
     cut.Filter->AddToolPosition(1.5 + 0.1 * y, y, -1, 1.5 + 0.1 * y, y, 9);
   }
-  VERIFY(cut.CopyMask() == masks.back());
+  EXPECT_EQ(cut.CopyMask(), masks.back());
   for (std::size_t i = masks.size() - 1; i > 0; --i)
   {
     cut.Filter->Undo();
-    VERIFY(cut.CopyMask() == masks[i - 1]);
+    EXPECT_EQ(cut.CopyMask(), masks[i - 1]);
   }
-  VERIFY_EQUAL(cut.Filter->GetNumberOfSwitchedOffTetrahedra(), 0);
+  EXPECT_EQ(cut.Filter->GetNumberOfSwitchedOffTetrahedra(), 0);
   for (std::size_t i = 1; i < masks.size(); ++i)
   {
     cut.Filter->Redo();
-    VERIFY(cut.CopyMask() == masks[i]);
+    EXPECT_EQ(cut.CopyMask(), masks[i]);
   }
   // All positions in one update make the same cut.
   Edited<vtkCutVolume> once;
@@ -250,7 +250,7 @@ void TestEdits()
   {
     once.Filter->AddToolPosition(1.5 + 0.1 * y, y, -1, 1.5 + 0.1 * y, y, 9);
   }
-  VERIFY(once.CopyMask() == masks.back());
+  EXPECT_EQ(once.CopyMask(), masks.back());
 
   // A sheet after the tool. When it moves, its cut is replaced, or with Accumulate another is
   // added.
@@ -258,27 +258,27 @@ void TestEdits()
   const auto withSheet = cut.CopyMask();
   cut.Filter->SetSheetData(MakePlaneX(volume, 6.5));
   cut.Filter->SetSheetData(MakePlaneX(volume, 4.5));
-  VERIFY(cut.CopyMask() == withSheet);
+  EXPECT_EQ(cut.CopyMask(), withSheet);
   cut.Filter->AccumulateOn();
   cut.Filter->SetSheetData(MakePlaneX(volume, 6.5));
   const auto both = cut.CopyMask();
   for (std::size_t i = 0; i < both.size(); ++i)
   {
-    VERIFY((both[i] & ~withSheet[i]) == 0);
+    EXPECT_EQ(both[i] & ~withSheet[i], 0);
   }
-  VERIFY(both != withSheet);
+  EXPECT_NE(both, withSheet);
   cut.Filter->Undo();
-  VERIFY(cut.CopyMask() == withSheet);
+  EXPECT_EQ(cut.CopyMask(), withSheet);
   cut.Filter->Undo();
-  VERIFY(cut.CopyMask() == masks.back());
+  EXPECT_EQ(cut.CopyMask(), masks.back());
   cut.Filter->Reset();
-  VERIFY(cut.CopyMask() == start);
+  EXPECT_EQ(cut.CopyMask(), start);
   cut.Filter->Redo();
-  VERIFY(cut.CopyMask() == start);
+  EXPECT_EQ(cut.CopyMask(), start);
 }
 
 // The arrays of the output, and edits after changes of the volume.
-void TestOutput()
+TEST(CutVolume, Output)
 {
   auto volume = MakeVolume(Box);
   volume->GetFieldData()->AddArray(MakeArray<vtkShortArray>("kept", 3));
@@ -295,39 +295,34 @@ void TestOutput()
   // Edits are kept when the mask of the volume changes.
   base->Fill(31);
   base->Modified();
-  VERIFY_EQUAL(cut.CountOff(), 320);
+  EXPECT_EQ(cut.CountOff(), 320);
   // Arrays of the volume are shared, and an update without changes does not modify the mask.
   vtkImageData* output = cut.Filter->GetOutput();
-  VERIFY(output->GetPointData()->GetArray("value") == volume->GetPointData()->GetArray("value"));
-  VERIFY(output->GetFieldData()->GetAbstractArray("kept") != nullptr);
+  EXPECT_EQ(output->GetPointData()->GetArray("value"), volume->GetPointData()->GetArray("value"));
+  EXPECT_NE(output->GetFieldData()->GetAbstractArray("kept"), nullptr);
   vtkDataArray* array = output->GetCellData()->GetArray("ActiveTetrahedra");
   const vtkMTimeType time = array->GetMTime();
   cut.Filter->Modified();
   cut.Update();
-  VERIFY(cut.Filter->GetOutput()->GetCellData()->GetArray("ActiveTetrahedra") == array);
-  VERIFY(array->GetMTime() == time);
+  EXPECT_EQ(cut.Filter->GetOutput()->GetCellData()->GetArray("ActiveTetrahedra"), array);
+  EXPECT_EQ(array->GetMTime(), time);
   // An array that a caller holds is not written again.
   const vtkSmartPointer<vtkDataArray> held = array;
   cut.Filter->SetSheetData(nullptr);
-  VERIFY_EQUAL(cut.CountOff(), 0);
-  VERIFY(cut.Filter->GetOutput()->GetCellData()->GetArray("ActiveTetrahedra") != held);
-  VERIFY(held->GetComponent(3, 0) == 0.0);
+  EXPECT_EQ(cut.CountOff(), 0);
+  EXPECT_NE(cut.Filter->GetOutput()->GetCellData()->GetArray("ActiveTetrahedra"), held);
+  EXPECT_EQ(held->GetComponent(3, 0), 0.0);
   // The array of the volume is not changed.
-  VERIFY_EQUAL(int(base->GetValue(3)), 31);
+  EXPECT_EQ(int(base->GetValue(3)), 31);
   // After a change of the geometry the tool positions cut again.
   volume->SetOrigin(1.0, 0.0, 0.0);
-  VERIFY(cut.CountOff() > 50);
+  EXPECT_GT(cut.CountOff(), 50);
 }
 
 } // namespace
 
-int TestCutVolume(int, char*[])
+TEST(CutVolume, Aborts)
 {
-  TestMisuse();
-  TestGeometry();
-  TestSheets();
-  TestEdits();
-  TestOutput();
   for (const bool isSmooth : { false, true })
   {
     CheckAborts<vtkCutVolume>(
@@ -341,5 +336,4 @@ int TestCutVolume(int, char*[])
         cut->AddToolPosition(40.2, 99, -9, 40.2, 99, 99);
       });
   }
-  return GetExitCode();
 }

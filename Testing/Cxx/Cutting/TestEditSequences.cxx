@@ -4,9 +4,6 @@
 // computes displacements from copies without logs, and a second deformation filter resamples the
 // whole volume. At the end all edits are undone, and the output must be equal, bit by bit, to the
 // output without edits.
-//
-// Usage: TestEditSequences [NUMBER OF SEQUENCES] (1) [FIRST SEED] (0)
-// Each sequence has 150 steps.
 #include "ChainMailTesting.h"
 #include "EditChecks.h"
 
@@ -18,7 +15,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <functional>
 #include <random>
 
@@ -182,14 +178,14 @@ public:
     this->Twin.Filter->Reset();
     this->Compare();
     vtkUnsignedCharArray* mask = GetMask(this->Carve->GetOutput());
-    VERIFY(std::all_of(mask->GetPointer(0), mask->GetPointer(0) + mask->GetNumberOfTuples(),
+    EXPECT_TRUE(std::all_of(mask->GetPointer(0), mask->GetPointer(0) + mask->GetNumberOfTuples(),
       [](unsigned char byte) { return byte == 31; }));
-    VERIFY(HaveSameOthers(this->Carve->GetOutput(), this->Volume));
+    EXPECT_TRUE(HaveSameOthers(this->Carve->GetOutput(), this->Volume));
     // The output must be equal to the output of the volume without edits.
     Deformed rest(this->Volume, this->Twin.Filter->GetOutput());
     SetBounds(rest.Filter);
-    VERIFY(AreEqual(this->Output.Filter->GetOutput(), rest.Update()));
-    VERIFY_EQUAL(rest.Filter->GetNumberOfCoveredVoxels(), this->Volume->GetNumberOfPoints());
+    EXPECT_TRUE(AreEqual(this->Output.Filter->GetOutput(), rest.Update()));
+    EXPECT_EQ(rest.Filter->GetNumberOfCoveredVoxels(), this->Volume->GetNumberOfPoints());
   }
 
   int Parts = 0;       // number of outputs that were updated in part
@@ -275,23 +271,23 @@ private:
 
     const auto cut = this->Cuts.Repeat(this->Volume);
     const auto edited = this->Carvings.Repeat(cut);
-    VERIFY(HaveEqualBits(GetMask(this->Cut->GetOutput()), GetMask(cut)));
-    VERIFY(HaveEqualBits(GetMask(this->Carve->GetOutput()), GetMask(edited)));
-    VERIFY(HaveSameOthers(this->Carve->GetOutput(), edited));
+    EXPECT_TRUE(HaveEqualBits(GetMask(this->Cut->GetOutput()), GetMask(cut)));
+    EXPECT_TRUE(HaveEqualBits(GetMask(this->Carve->GetOutput()), GetMask(edited)));
+    EXPECT_TRUE(HaveSameOthers(this->Carve->GetOutput(), edited));
 
     const auto copy = Copy(edited);
     this->Twin.Filter->SetInputData(copy);
     this->Twin.Filter->Update();
     const auto field = Copy(this->Twin.Filter->GetOutput());
-    VERIFY(HaveEqualBits(this->ChainMail.Filter->GetOutput()->GetPointData()->GetVectors(),
+    EXPECT_TRUE(HaveEqualBits(this->ChainMail.Filter->GetOutput()->GetPointData()->GetVectors(),
       field->GetPointData()->GetVectors()));
 
     this->Wanted.Filter->SetInputData(copy);
     this->Wanted.Filter->SetDeformationData(field);
-    VERIFY(AreEqual(output, this->Wanted.Update()));
+    EXPECT_TRUE(AreEqual(output, this->Wanted.Update()));
     const vtkIdType inverted = this->Wanted.Filter->GetNumberOfInvertedTetrahedra();
-    VERIFY_EQUAL(this->Output.Filter->GetNumberOfInvertedTetrahedra(), inverted);
-    VERIFY_EQUAL(this->Output.Filter->GetNumberOfCoveredVoxels(),
+    EXPECT_EQ(this->Output.Filter->GetNumberOfInvertedTetrahedra(), inverted);
+    EXPECT_EQ(this->Output.Filter->GetNumberOfCoveredVoxels(),
       this->Wanted.Filter->GetNumberOfCoveredVoxels());
     this->Parts += isPart;
     this->FoldedParts += isPart && inverted > 0;
@@ -313,31 +309,17 @@ private:
 
 } // namespace
 
-int TestEditSequences(int argc, char* argv[])
+// --gtest_random_seed=N selects other edits.
+TEST(EditSequences, EqualNewFilters)
 {
-  constexpr int steps = 150;
-  // The test driver passes options, which atoi() reads as 0.
-  const int sequences = argc > 1 ? std::max(std::atoi(argv[1]), 1) : 1;
-  const int first = argc > 2 ? std::max(std::atoi(argv[2]), 0) : 0;
-  int parts = 0;
-  int foldedParts = 0;
-  for (int seed = first; seed < first + sequences && GetNumberOfFailures() == 0; ++seed)
+  Sequence sequence(3 + static_cast<unsigned>(GTEST_FLAG_GET(random_seed)));
+  for (int step = 0; step < 150 && !HasFailure(); ++step)
   {
-    Sequence sequence(3 + static_cast<unsigned>(seed));
-    int step = 0;
-    for (; step < steps && GetNumberOfFailures() == 0; ++step)
-    {
-      sequence.Step();
-    }
-    sequence.UndoAll();
-    if (GetNumberOfFailures() > 0)
-    {
-      std::cerr << "failed in sequence " << seed << ", in step " << step << " or before\n";
-    }
-    parts += sequence.Parts;
-    foldedParts += sequence.FoldedParts;
+    SCOPED_TRACE(testing::Message() << "step " << step);
+    sequence.Step();
   }
-  std::cout << parts << " outputs were updated in part, " << foldedParts << " of them folded\n";
-  VERIFY(foldedParts > 10 * sequences);
-  return GetExitCode();
+  sequence.UndoAll();
+  std::cout << sequence.Parts << " outputs were updated in part, " << sequence.FoldedParts
+            << " of them folded\n";
+  EXPECT_GT(sequence.FoldedParts, 10);
 }

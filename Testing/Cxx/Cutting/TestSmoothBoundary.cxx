@@ -62,7 +62,7 @@ struct Fine
   filterTesting::Deformed Deformed;
 };
 
-void TestMisuse()
+TEST(SmoothBoundary, Misuse)
 {
   auto volume = MakeVolume(Box);
   vtkNew<vtkSphere> sphere;
@@ -71,14 +71,14 @@ void TestMisuse()
   Edited<vtkCarveVolume> carve;
   carve.Filter->SetInputData(volume);
   carve.Filter->SetImplicitFunction(sphere);
-  VERIFY(!carve.Filter->GetSmoothBoundary());
+  EXPECT_FALSE(carve.Filter->GetSmoothBoundary());
   carve.CopyMask();
-  VERIFY(GetDistances(carve.Filter->GetOutput()) == nullptr);
+  EXPECT_EQ(GetDistances(carve.Filter->GetOutput()), nullptr);
   carve.Filter->SmoothBoundaryOn();
   const auto mask = carve.CopyMask();
   vtkNew<vtkFloatArray> before;
   before->DeepCopy(GetDistances(carve.Filter->GetOutput()));
-  VERIFY_EQUAL(before->GetNumberOfTuples(), volume->GetNumberOfPoints());
+  EXPECT_EQ(before->GetNumberOfTuples(), volume->GetNumberOfPoints());
 
   auto mesh = MakeMesh(volume);
   SetDisplacements(mesh, Shift(0.25, 0, 0));
@@ -91,23 +91,23 @@ void TestMisuse()
     carve.Fails("\"BoundaryDistance\"");
     filterTesting::Deformed deformed(wrong, mesh);
     deformed.Filter->Update();
-    VERIFY_EQUAL(deformed.TakeErrors(), 1);
-    VERIFY_CONTAINS(deformed.LastError, "\"BoundaryDistance\"");
+    EXPECT_EQ(deformed.TakeErrors(), 1);
+    EXPECT_TRUE(HasPart(deformed.LastError, "\"BoundaryDistance\""));
   }
   carve.Filter->SetInputData(volume);
-  VERIFY(carve.CopyMask() == mask);
-  VERIFY(HaveEqualBits(GetDistances(carve.Filter->GetOutput()), before));
+  EXPECT_EQ(carve.CopyMask(), mask);
+  EXPECT_TRUE(HaveEqualBits(GetDistances(carve.Filter->GetOutput()), before));
 
   filterTesting::Deformed deformed;
   deformed.Filter->SetInputConnection(carve.Filter->GetOutputPort());
   deformed.Filter->SetDeformationData(mesh);
   deformed.Update();
   // The output of the deformation filter has no array of distances.
-  VERIFY(GetDistances(deformed.Filter->GetOutput()) == nullptr);
+  EXPECT_EQ(GetDistances(deformed.Filter->GetOutput()), nullptr);
 }
 
 // BoundaryDistance may have any numeric type. A NaN is not a boundary.
-void TestTypes()
+TEST(SmoothBoundary, Types)
 {
   auto volume = MakeVolume(Box);
   auto mesh = MakeMesh(volume);
@@ -133,20 +133,20 @@ void TestTypes()
   other->GetPointData()->AddArray(doubles);
   filterTesting::Deformed first(volume, mesh);
   filterTesting::Deformed second(other, mesh);
-  VERIFY(AreEqual(first.Update(), second.Update()));
-  VERIFY(first.Filter->GetNumberOfCoveredVoxels() < volume->GetNumberOfPoints());
-  VERIFY(first.Filter->GetNumberOfCoveredVoxels() > 0);
+  EXPECT_TRUE(AreEqual(first.Update(), second.Update()));
+  EXPECT_LT(first.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
+  EXPECT_GT(first.Filter->GetNumberOfCoveredVoxels(), 0);
   // A change with a log and one without a log give the same result.
   floats->SetValue(333, -2.0F);
   floats->Modified();
   doubles->SetValue(333, -2.0);
   doubles->Modified();
-  VERIFY(AreEqual(first.Update(), second.Update()));
+  EXPECT_TRUE(AreEqual(first.Update(), second.Update()));
 }
 
 // The volume of a sphere of a radius of 20 voxels is right to 0.1 %, for any center and any
 // direction of the volume.
-void TestVolumeOfSphere()
+TEST(SmoothBoundary, VolumeOfSphere)
 {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> anywhere(-0.5, 0.5);
@@ -180,14 +180,14 @@ void TestVolumeOfSphere()
     Fine fine(volume, carve.Filter->GetOutputPort(), 3);
     const double byFunction = fine.GetMissing();
     std::cout << "sphere by function: " << byFunction / expected - 1.0 << "\n";
-    VERIFY(std::abs(byFunction - expected) < 0.001 * expected);
+    EXPECT_LT(std::abs(byFunction - expected), 0.001 * expected);
 
     // The same sphere by a tool, and as a surface, whose facets are slightly inside the sphere.
     carve.Filter->SetImplicitFunction(nullptr);
     carve.Filter->SetToolRadius(radius);
     carve.Filter->AddToolPosition(center[0], center[1], center[2]);
     const double byTool = fine.GetMissing();
-    VERIFY(std::abs(byTool - expected) < 0.001 * expected);
+    EXPECT_LT(std::abs(byTool - expected), 0.001 * expected);
     carve.Filter->Undo();
     if (geometry < 2)
     {
@@ -199,13 +199,13 @@ void TestVolumeOfSphere()
       carve.Filter->SetSurfaceConnection(surface->GetOutputPort());
       const double bySurface = fine.GetMissing();
       std::cout << "sphere by surface: " << bySurface / expected - 1.0 << "\n";
-      VERIFY(std::abs(bySurface - expected) < 0.002 * expected);
+      EXPECT_LT(std::abs(bySurface - expected), 0.002 * expected);
     }
   }
 }
 
 // Each sample of the output is covered if it is on the right side of a plane.
-void TestPlane()
+TEST(SmoothBoundary, Plane)
 {
   auto volume = MakeVolume(Box);
   vtkNew<vtkPlane> plane;
@@ -225,7 +225,7 @@ void TestPlane()
       const double side = glm::dot(GetPoint(image, id) - origin, normal);
       wrong += std::abs(side) > 1e-5 && fine.Deformed.IsCovered(id) != (side > 0.0) ? 1 : 0;
     }
-    VERIFY_EQUAL(wrong, 0);
+    EXPECT_EQ(wrong, 0);
   };
   check(glm::dvec3(4.3, 0, 0), glm::dvec3(1, 0, 0));
   plane->SetOrigin(5.1, 4.7, 6.2);
@@ -239,7 +239,7 @@ void TestPlane()
 }
 
 // Labels end halfway between voxels.
-void TestLabels()
+TEST(SmoothBoundary, Labels)
 {
   auto volume = MakeVolume(Box);
   AddLabels(volume);
@@ -248,7 +248,7 @@ void TestLabels()
   carve.Filter->SetLabelArrayName("label");
   carve.Filter->SetLabel(7);
   carve.Filter->SmoothBoundaryOn();
-  VERIFY_EQUAL(carve.CountOff(), 5 * 8 * 13 * 14);
+  EXPECT_EQ(carve.CountOff(), 5 * 8 * 13 * 14);
   Fine fine(volume, carve.Filter->GetOutputPort(), 4);
   vtkImageData* image = fine.Deformed.Update();
   int wrong = 0;
@@ -256,11 +256,11 @@ void TestLabels()
   {
     wrong += fine.Deformed.IsCovered(id) != (GetPoint(image, id).x <= 5.5) ? 1 : 0;
   }
-  VERIFY_EQUAL(wrong, 0);
+  EXPECT_EQ(wrong, 0);
 }
 
 // In a chain of filters each voxel has the least distance.
-void TestChains()
+TEST(SmoothBoundary, Chains)
 {
   auto volume = MakeVolume(Box);
   const auto copy = [&](vtkAlgorithm* filter)
@@ -293,7 +293,7 @@ void TestChains()
   both.Update();
   both.Filter->SetImplicitFunction(second);
   both.Update();
-  VERIFY(AreEqual(copy(next.Filter), both.Filter->GetOutput()));
+  EXPECT_TRUE(AreEqual(copy(next.Filter), both.Filter->GetOutput()));
   const auto joined = copy(next.Filter);
   // A cut between the two filters does not change the distances.
   Edited<vtkCutVolume> cut;
@@ -301,18 +301,18 @@ void TestChains()
   cut.Filter->SetSheetData(MakePlaneX(volume, 12.5));
   next.Filter->SetInputConnection(cut.Filter->GetOutputPort());
   next.Update();
-  VERIFY(GetDistances(cut.Filter->GetOutput()) == GetDistances(carve.Filter->GetOutput()));
-  VERIFY(HaveEqualBits(GetDistances(next.Filter->GetOutput()), GetDistances(joined)));
+  EXPECT_EQ(GetDistances(cut.Filter->GetOutput()), GetDistances(carve.Filter->GetOutput()));
+  EXPECT_TRUE(HaveEqualBits(GetDistances(next.Filter->GetOutput()), GetDistances(joined)));
   // A change of the first body does not change the second one.
   first->SetRadius(2.0);
   next.Update();
   first->SetRadius(3.4);
   next.Update();
-  VERIFY(HaveEqualBits(GetDistances(next.Filter->GetOutput()), GetDistances(joined)));
+  EXPECT_TRUE(HaveEqualBits(GetDistances(next.Filter->GetOutput()), GetDistances(joined)));
 }
 
 // With SamplingFactor, too, the volume has a hole.
-void TestSamplingFactor()
+TEST(SmoothBoundary, SamplingFactor)
 {
   auto volume = MakeVolume({ { 0, 60, 0, 50, 0, 40 } });
   auto mesh = MakeMesh(volume, 4);
@@ -334,19 +334,7 @@ void TestSamplingFactor()
   };
   const vtkIdType covered = count();
   deformed.Filter->SetInputData(volume);
-  VERIFY(covered < count());
+  EXPECT_LT(covered, count());
 }
 
 } // namespace
-
-int TestSmoothBoundary(int, char*[])
-{
-  TestMisuse();
-  TestTypes();
-  TestVolumeOfSphere();
-  TestPlane();
-  TestLabels();
-  TestChains();
-  TestSamplingFactor();
-  return GetExitCode();
-}

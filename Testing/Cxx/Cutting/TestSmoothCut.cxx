@@ -60,7 +60,7 @@ struct Arrays
   }
 };
 
-void SetUp(Edited<vtkCutVolume>& cut, vtkImageData* volume, double planeX)
+void SetUpCut(Edited<vtkCutVolume>& cut, vtkImageData* volume, double planeX)
 {
   cut.Filter->SetInputData(volume);
   cut.Filter->SetSheetData(MakePlaneX(volume, planeX));
@@ -79,16 +79,16 @@ vtkSmartPointer<vtkImageData> MakeField(
   return field;
 }
 
-void TestMisuse()
+TEST(SmoothCut, Misuse)
 {
   auto volume = MakeVolume(Box);
   Edited<vtkCutVolume> cut;
-  VERIFY(!cut.Filter->GetSmoothCut());
-  SetUp(cut, volume, 4.3);
+  EXPECT_FALSE(cut.Filter->GetSmoothCut());
+  SetUpCut(cut, volume, 4.3);
   const Arrays whole(cut);
-  VERIFY_EQUAL(whole.Cells.size(), static_cast<std::size_t>(volume->GetNumberOfCells()));
-  VERIFY_EQUAL(whole.Points.size(), static_cast<std::size_t>(volume->GetNumberOfPoints()));
-  VERIFY_EQUAL(CountActive(whole.Cells), 5 * 10 * 8);
+  EXPECT_EQ(whole.Cells.size(), static_cast<std::size_t>(volume->GetNumberOfCells()));
+  EXPECT_EQ(whole.Points.size(), static_cast<std::size_t>(volume->GetNumberOfPoints()));
+  EXPECT_EQ(CountActive(whole.Cells), 5 * 10 * 8);
   auto field = MakeField(volume, 4.3, glm::dvec3(0.0), glm::dvec3(0.0));
 
   vtkImageData* output = cut.Filter->GetOutput();
@@ -112,10 +112,10 @@ void TestMisuse()
                                         : "\"CutTetrahedra\"";
     filterTesting::Deformed deformed(bad, field);
     deformed.Filter->Update();
-    VERIFY_EQUAL(deformed.TakeErrors(), 1);
-    VERIFY_CONTAINS(deformed.LastError, words);
+    EXPECT_EQ(deformed.TakeErrors(), 1);
+    EXPECT_TRUE(HasPart(deformed.LastError, words));
     Edited<vtkCutVolume> next;
-    SetUp(next, bad, 8.1);
+    SetUpCut(next, bad, 8.1);
     next.Fails(words);
   }
 
@@ -126,27 +126,28 @@ void TestMisuse()
   deformed.Filter->SetDeformationData(mesh);
   deformed.Filter->SetResamplerToMeshRasterization();
   deformed.Filter->Update();
-  VERIFY_EQUAL(deformed.TakeErrors(), 1);
-  VERIFY_CONTAINS(deformed.LastError, "smooth cuts");
+  EXPECT_EQ(deformed.TakeErrors(), 1);
+  EXPECT_TRUE(HasPart(deformed.LastError, "smooth cuts"));
   deformed.Filter->SetResamplerToAutomatic();
   deformed.Filter->SetInterpolationToCubicInterpolation();
   deformed.Update();
-  VERIFY_EQUAL(deformed.Filter->GetResamplerInUse(), vtkDeformVolumeFilter::EXACT);
+  EXPECT_EQ(deformed.Filter->GetResamplerInUse(), vtkDeformVolumeFilter::EXACT);
   deformed.Filter->SetInterpolationToLinearInterpolation();
   deformed.Update();
-  VERIFY_EQUAL(deformed.Filter->GetResamplerInUse(), vtkDeformVolumeFilter::EXACT);
+  EXPECT_EQ(deformed.Filter->GetResamplerInUse(), vtkDeformVolumeFilter::EXACT);
   deformed.Filter->SetResamplerToExact();
   deformed.Update();
-  VERIFY(!GetCells(deformed.Filter->GetOutput()) && !GetDistances(deformed.Filter->GetOutput()));
+  EXPECT_TRUE(
+    !GetCells(deformed.Filter->GetOutput()) && !GetDistances(deformed.Filter->GetOutput()));
 }
 
 // A cut that is not opened does not change the output.
-void TestClosed()
+TEST(SmoothCut, Closed)
 {
   auto volume = MakeVolume(Box);
   Edited<vtkCutVolume> cut;
-  SetUp(cut, volume, 4.3);
-  VERIFY_EQUAL(cut.CountOff(), 0);
+  SetUpCut(cut, volume, 4.3);
+  EXPECT_EQ(cut.CountOff(), 0);
   auto mesh = MakeMesh(volume, 4);
   for (const double amount : { 0.0, 0.3 })
   {
@@ -159,27 +160,27 @@ void TestClosed()
     closed.Filter->SetDeformationData(mesh);
     vtkImageData* expected = whole.Update();
     vtkImageData* found = closed.Update();
-    VERIFY_EQUAL(GetExtent(found), GetExtent(expected));
-    VERIFY_EQUAL(
-      closed.Filter->GetNumberOfCoveredVoxels(), whole.Filter->GetNumberOfCoveredVoxels());
+    EXPECT_EQ(GetExtent(found), GetExtent(expected));
+    EXPECT_EQ(closed.Filter->GetNumberOfCoveredVoxels(), whole.Filter->GetNumberOfCoveredVoxels());
     for (vtkIdType id = 0; id < expected->GetNumberOfPoints(); ++id)
     {
-      VERIFY_EQUAL(closed.IsCovered(id), whole.IsCovered(id));
+      EXPECT_EQ(closed.IsCovered(id), whole.IsCovered(id));
       // Values are interpolated in single or in double precision, then rounded to shorts.
-      VERIFY(std::abs(closed.GetValues()->GetComponent(id, 0) -
-               whole.GetValues()->GetComponent(id, 0)) <= (amount == 0.0 ? 0.0 : 1.0));
+      EXPECT_LE(
+        std::abs(closed.GetValues()->GetComponent(id, 0) - whole.GetValues()->GetComponent(id, 0)),
+        amount == 0.0 ? 0.0 : 1.0);
     }
   }
 }
 
 // The gap between the two moved planes is empty, and all other samples of the volume are covered,
 // at four samples a voxel.
-void TestGap()
+TEST(SmoothCut, Gap)
 {
   auto volume = MakeVolume(Box);
   const double planeX = 4.3;
   Edited<vtkCutVolume> cut;
-  SetUp(cut, volume, planeX);
+  SetUpCut(cut, volume, planeX);
   auto field = MakeField(volume, planeX, { -1.25, 0, 0.5 }, { 2.0, -0.75, 0 });
   filterTesting::Deformed open;
   open.Filter->SetInputConnection(cut.Filter->GetOutputPort());
@@ -201,26 +202,26 @@ void TestGap()
     const glm::dvec3 low = point - glm::dvec3(-1.25, 0, 0.5);
     const glm::dvec3 high = point - glm::dvec3(2.0, -0.75, 0);
     const bool expected = (isIn(low) && low.x < planeX) || (isIn(high) && high.x > planeX);
-    VERIFY_EQUAL(open.IsCovered(id), expected);
+    EXPECT_EQ(open.IsCovered(id), expected);
     covered += expected ? 1 : 0;
   }
   // Without SmoothCut a layer of cells is missing.
   cut.Filter->SmoothCutOff();
   open.Update();
-  VERIFY_EQUAL(cut.CountOff(), 5 * 10 * 8);
-  VERIFY(!GetCells(cut.Filter->GetOutput()) && !GetDistances(cut.Filter->GetOutput()));
-  VERIFY(open.Filter->GetNumberOfCoveredVoxels() < 0.96 * static_cast<double>(covered));
+  EXPECT_EQ(cut.CountOff(), 5 * 10 * 8);
+  EXPECT_TRUE(!GetCells(cut.Filter->GetOutput()) && !GetDistances(cut.Filter->GetOutput()));
+  EXPECT_LT(open.Filter->GetNumberOfCoveredVoxels(), 0.96 * static_cast<double>(covered));
 }
 
 // On both sides of the gap, labels and values are those of the volume at rest. A smooth boundary of
 // a carved body moves with each side.
-void TestLabelsAndBoundary()
+TEST(SmoothCut, LabelsAndBoundary)
 {
   auto volume = MakeVolume(Box);
   AddLabels(volume); // the label changes between x = 5 and x = 6
   const double planeX = 5.5;
   Edited<vtkCutVolume> cut;
-  SetUp(cut, volume, planeX);
+  SetUpCut(cut, volume, planeX);
   vtkNew<vtkSphere> sphere;
   sphere->SetCenter(planeX, 5.0, 5.0);
   const double radius = 2.3;
@@ -255,26 +256,27 @@ void TestLabelsAndBoundary()
     const bool isInSide = isLow ? rest.x < planeX : rest.x > planeX;
     if (rest.x == planeX || std::abs(out) < 0.25 || !isInSide)
     {
-      VERIFY(isInSide || !open.IsCovered(id) || rest.x == planeX);
+      EXPECT_TRUE(isInSide || !open.IsCovered(id) || rest.x == planeX);
       continue;
     }
     const bool isInVolume = rest.x >= Box[0] && rest.x <= Box[1];
-    VERIFY_EQUAL(open.IsCovered(id), isInVolume && out > 0.0);
+    EXPECT_EQ(open.IsCovered(id), isInVolume && out > 0.0);
     if (open.IsCovered(id))
     {
       const vtkIdType there = reference->FindPoint(&rest.x);
-      VERIFY_EQUAL(labels->GetComponent(id, 0), expected->GetComponent(there, 0));
+      EXPECT_EQ(labels->GetComponent(id, 0), expected->GetComponent(there, 0));
       // Values are interpolated in single or in double precision, then rounded to shorts.
-      VERIFY(std::abs(open.GetValues()->GetComponent(id, 0) -
-               still.GetValues()->GetComponent(there, 0)) <= 1.0);
+      EXPECT_LE(
+        std::abs(open.GetValues()->GetComponent(id, 0) - still.GetValues()->GetComponent(there, 0)),
+        1.0);
       ++seen[isLow ? 0 : 1];
     }
   }
-  VERIFY(seen[0] > 1000 && seen[1] > 1000);
+  EXPECT_TRUE(seen[0] > 1000 && seen[1] > 1000);
 }
 
 // Two lattices that meet at the cut and share no nodes.
-void TestSplitMesh()
+TEST(SmoothCut, SplitMesh)
 {
   auto volume = MakeVolume(Box);
   const double planeX = 4.25;
@@ -316,7 +318,7 @@ void TestSplitMesh()
   }
   mesh->GetPointData()->SetVectors(vectors);
   Edited<vtkCutVolume> cut;
-  SetUp(cut, volume, planeX);
+  SetUpCut(cut, volume, planeX);
   for (const bool open : { false, true })
   {
     filterTesting::Deformed deformed;
@@ -329,13 +331,13 @@ void TestSplitMesh()
       const glm::dvec3 p = GetPoint(output, id);
       const bool expected =
         (p.x >= Box[0] - 3 && p.x < planeX - 3) || (p.x > planeX + 3 && p.x <= Box[1] + 3);
-      VERIFY_EQUAL(deformed.IsCovered(id),
+      EXPECT_EQ(deformed.IsCovered(id),
         expected && p.y >= Box[2] && p.y <= Box[3] && p.z >= Box[4] && p.z <= Box[5]);
     }
   }
 }
 
-void TestEdits()
+TEST(SmoothCut, Edits)
 {
   auto volume = MakeVolume(Box);
   Edited<vtkCutVolume> cut;
@@ -343,52 +345,52 @@ void TestEdits()
   cut.Filter->SmoothCutOn();
   cut.Filter->AccumulateOn();
   std::vector<Arrays> states{ Arrays(cut) };
-  VERIFY(states.front().Cells.empty());
+  EXPECT_TRUE(states.front().Cells.empty());
   for (const double planeX : { 4.3, 8.6, 8.75 })
   {
     cut.Filter->SetSheetData(MakePlaneX(volume, planeX));
     states.emplace_back(cut);
   }
-  VERIFY_EQUAL(CountActive(states[1].Cells), 400);
-  VERIFY_EQUAL(CountActive(states[2].Cells), 800);
-  VERIFY_EQUAL(cut.Filter->GetNumberOfDividedTetrahedra(), 400);
+  EXPECT_EQ(CountActive(states[1].Cells), 400);
+  EXPECT_EQ(CountActive(states[2].Cells), 800);
+  EXPECT_EQ(cut.Filter->GetNumberOfDividedTetrahedra(), 400);
   // Two sheets between the same voxels: tetrahedra that both cross are switched off.
-  VERIFY_EQUAL(CountActive(states[3].Cells), 400);
-  VERIFY_EQUAL(cut.CountOff(), 400);
+  EXPECT_EQ(CountActive(states[3].Cells), 400);
+  EXPECT_EQ(cut.CountOff(), 400);
   for (std::size_t i = states.size() - 1; i-- > 0;)
   {
     cut.Filter->Undo();
-    VERIFY(Arrays(cut) == states[i]);
+    EXPECT_EQ(Arrays(cut), states[i]);
   }
   for (std::size_t i = 1; i < states.size(); ++i)
   {
     cut.Filter->Redo();
-    VERIFY(Arrays(cut) == states[i]);
+    EXPECT_EQ(Arrays(cut), states[i]);
   }
   cut.Filter->Reset();
-  VERIFY(Arrays(cut) == states.front());
-  VERIFY_EQUAL(cut.Filter->GetNumberOfDividedTetrahedra(), 0);
+  EXPECT_EQ(Arrays(cut), states.front());
+  EXPECT_EQ(cut.Filter->GetNumberOfDividedTetrahedra(), 0);
 
   // A chain of two filters gives the same result, and both cuts can be undone.
   Edited<vtkCutVolume> first;
   Edited<vtkCutVolume> second;
-  SetUp(first, volume, 4.3);
-  SetUp(second, volume, 8.6);
+  SetUpCut(first, volume, 4.3);
+  SetUpCut(second, volume, 8.6);
   second.Filter->SetInputConnection(first.Filter->GetOutputPort());
-  VERIFY(Arrays(second) == states[2]);
-  VERIFY_EQUAL(second.Filter->GetNumberOfDividedTetrahedra(), 400); // without those of the first
+  EXPECT_EQ(Arrays(second), states[2]);
+  EXPECT_EQ(second.Filter->GetNumberOfDividedTetrahedra(), 400); // without those of the first
   first.Filter->Undo();
   second.Filter->Undo();
-  VERIFY(Arrays(second).Cells.empty());
+  EXPECT_TRUE(Arrays(second).Cells.empty());
   first.Filter->Redo();
-  VERIFY(Arrays(second).Cells == states[1].Cells);
+  EXPECT_EQ(Arrays(second).Cells, states[1].Cells);
   second.Filter->Redo();
-  VERIFY(Arrays(second) == states[2]);
+  EXPECT_EQ(Arrays(second), states[2]);
   // A filter with SmoothCut off passes the smooth cut of the first filter on.
   second.Filter->SmoothCutOff();
   const Arrays mixed(second);
-  VERIFY(mixed.Cells == states[1].Cells);
-  VERIFY_EQUAL(second.CountOff(), 400);
+  EXPECT_EQ(mixed.Cells, states[1].Cells);
+  EXPECT_EQ(second.CountOff(), 400);
 
   // A deformation filter follows the edits.
   filterTesting::Deformed deformed;
@@ -398,18 +400,18 @@ void TestEdits()
   const vtkIdType open = deformed.Filter->GetNumberOfCoveredVoxels();
   first.Filter->Undo();
   deformed.Update();
-  VERIFY(deformed.Filter->GetNumberOfCoveredVoxels() > open);
+  EXPECT_GT(deformed.Filter->GetNumberOfCoveredVoxels(), open);
   first.Filter->Redo();
   deformed.Update();
-  VERIFY_EQUAL(deformed.Filter->GetNumberOfCoveredVoxels(), open);
+  EXPECT_EQ(deformed.Filter->GetNumberOfCoveredVoxels(), open);
 }
 
 // A tool that moves from update to update divides the same tetrahedra as one sheet.
-void TestTool()
+TEST(SmoothCut, Tool)
 {
   auto volume = MakeVolume(Box);
   Edited<vtkCutVolume> sheet;
-  SetUp(sheet, volume, 4.3);
+  SetUpCut(sheet, volume, 4.3);
   const Arrays expected(sheet);
   Edited<vtkCutVolume> tool;
   tool.Filter->SetInputData(volume);
@@ -420,42 +422,42 @@ void TestTool()
     tool.Update();
   }
   const Arrays found(tool);
-  VERIFY(found.Cells == expected.Cells);
-  VERIFY(found.Mask == expected.Mask);
+  EXPECT_EQ(found.Cells, expected.Cells);
+  EXPECT_EQ(found.Mask, expected.Mask);
   for (std::size_t i = 0; i < found.Points.size(); ++i)
   {
-    VERIFY(std::abs(std::abs(found.Points[i]) - std::abs(expected.Points[i])) < 1e-5F);
+    EXPECT_LT(std::abs(std::abs(found.Points[i]) - std::abs(expected.Points[i])), 1e-5F);
   }
   // Without the last two positions the cut ends inside the volume. No tetrahedron is switched off.
   tool.Filter->Undo();
   tool.Filter->Undo();
   const Arrays half(tool);
-  VERIFY(CountActive(half.Cells) > 100 && CountActive(half.Cells) < 200);
-  VERIFY_EQUAL(tool.CountOff(), 0);
+  EXPECT_TRUE(CountActive(half.Cells) > 100 && CountActive(half.Cells) < 200);
+  EXPECT_EQ(tool.CountOff(), 0);
 }
 
 // A sheet cuts the deformed volume, which is moved by 1.5 voxels.
-void TestDeformedVolume()
+TEST(SmoothCut, DeformedVolume)
 {
   auto volume = MakeVolume(Box);
   Edited<vtkCutVolume> rest;
-  SetUp(rest, volume, 4.25);
+  SetUpCut(rest, volume, 4.25);
   const Arrays expected(rest);
   auto mesh = MakeMesh(volume);
   SetDisplacements(mesh, Shift(1.5, 0, 0));
   Edited<vtkCutVolume> seen;
-  SetUp(seen, volume, 5.75);
+  SetUpCut(seen, volume, 5.75);
   seen.Filter->SetDeformationData(mesh);
-  VERIFY(Arrays(seen) == expected);
+  EXPECT_EQ(Arrays(seen), expected);
 }
 
-void TestChainMailAndCoarseVolume()
+TEST(SmoothCut, ChainMailAndCoarseVolume)
 {
   auto volume = MakeVolume(Box);
   Edited<vtkCutVolume> smooth;
-  SetUp(smooth, volume, 4.3);
+  SetUpCut(smooth, volume, 4.3);
   Edited<vtkCutVolume> hard;
-  SetUp(hard, volume, 4.3);
+  SetUpCut(hard, volume, 4.3);
   hard.Filter->SmoothCutOff();
   smooth.Update();
   hard.Update();
@@ -465,7 +467,7 @@ void TestChainMailAndCoarseVolume()
   Dragged byHard(hard.Filter->GetOutput());
   vtkNew<vtkFloatArray> expected;
   expected->DeepCopy(byHard.Drag(handles));
-  VERIFY(HaveEqualBits(bySmooth.Drag(handles), expected));
+  EXPECT_TRUE(HaveEqualBits(bySmooth.Drag(handles), expected));
   // In coarse volumes the cells that a smooth cut crosses are switched off.
   auto mesh = MakeMesh(volume);
   SetDisplacements(mesh, Shift(0.25, 0, 0));
@@ -477,21 +479,7 @@ void TestChainMailAndCoarseVolume()
     coarse.Update();
     covered[isSmooth ? 1 : 0] = coarse.Filter->GetNumberOfCoveredVoxels();
   }
-  VERIFY_EQUAL(covered[0], covered[1]);
+  EXPECT_EQ(covered[0], covered[1]);
 }
 
 } // namespace
-
-int TestSmoothCut(int, char*[])
-{
-  TestMisuse();
-  TestClosed();
-  TestGap();
-  TestLabelsAndBoundary();
-  TestSplitMesh();
-  TestEdits();
-  TestTool();
-  TestDeformedVolume();
-  TestChainMailAndCoarseVolume();
-  return GetExitCode();
-}

@@ -102,7 +102,7 @@ Grid MoveToDeformed(vtkUnstructuredGrid* mesh)
   return moved;
 }
 
-void TestTenNodes()
+TEST(DeformCells, TenNodes)
 {
   const auto volume = MakeVolume({ { 0, 15, 0, 15, 0, 15 } });
   const Grid mesh = MakeCurvedTenNodes(MakeMesh(volume));
@@ -124,10 +124,10 @@ void TestTenNodes()
       set(one->Filter);
     }
     vtkImageData* output = expected.Update();
-    VERIFY(expected.Filter->GetNumberOfCoveredVoxels() > 100);
+    EXPECT_GT(expected.Filter->GetNumberOfCoveredVoxels(), 100);
     for (Deformed* one : { &found, &twoPorts, &deformedPoints, &composite })
     {
-      VERIFY(AreEqual(output, one->Update()));
+      EXPECT_TRUE(AreEqual(output, one->Update()));
     }
   };
   compare([](vtkDeformVolumeFilter*) {});
@@ -157,11 +157,11 @@ void TestTenNodes()
   other->ShallowCopy(mesh);
   other->GetPointData()->SetVectors(array);
   found.Filter->SetDeformationData(other);
-  VERIFY(AreEqual(expected.Update(), found.Update()));
+  EXPECT_TRUE(AreEqual(expected.Update(), found.Update()));
 }
 
 // Updates after changes of displacements, with and without a log, and of the mesh at rest.
-void TestUpdates()
+TEST(DeformCells, Updates)
 {
   const auto volume = MakeVolume({ { 0, 47, 0, 47, 0, 47 } });
   const Grid mesh = MakeCurvedTenNodes(MakeMesh(volume, 5));
@@ -184,7 +184,7 @@ void TestUpdates()
     changes->AddTuples(node, node);
     check("a node that was logged");
   }
-  VERIFY(parts > 2);
+  EXPECT_GT(parts, 2);
   vectors->SetComponent(77, 0, 1.5);
   vectors->Modified();
   check("a node that was not logged");
@@ -234,12 +234,12 @@ void TestUpdates()
   vectors->SetComponent(5, 1, 1e5);
   vectors->Modified();
   tested.Filter->Update();
-  VERIFY_EQUAL(tested.TakeErrors(), 1);
-  VERIFY_CONTAINS(tested.LastError, "16,383");
+  EXPECT_EQ(tested.TakeErrors(), 1);
+  EXPECT_TRUE(HasPart(tested.LastError, "16,383"));
 }
 
 // Cells that share no nodes, and move apart.
-void TestSplits()
+TEST(DeformCells, Splits)
 {
   const auto volume = MakeVolume({ { 0, 15, 0, 15, 0, 15 } });
   const Grid mesh = MakeCurvedTenNodes(MakeMesh(volume), true);
@@ -256,10 +256,10 @@ void TestSplits()
   {
     expected.Filter->SetOpenSplits(open);
     found.Filter->SetOpenSplits(open);
-    VERIFY(AreEqual(expected.Update(), found.Update()));
+    EXPECT_TRUE(AreEqual(expected.Update(), found.Update()));
     covered[open ? 1 : 0] = found.Filter->GetNumberOfCoveredVoxels();
   }
-  VERIFY(covered[1] < covered[0]);
+  EXPECT_LT(covered[1], covered[0]);
 }
 
 // The root mean square of the differences between the displacements of voxels in one cell and those
@@ -302,11 +302,11 @@ double FindError(bool tenNodes, const std::array<glm::dvec3, 4>& corners, int ki
       ++count;
     }
   }
-  VERIFY(count > 200);
+  EXPECT_GT(count, 200);
   return std::sqrt(sum / count);
 }
 
-void TestAccuracy()
+TEST(DeformCells, Accuracy)
 {
   const std::array<glm::dvec3, 4> corners{ { { 4.3, 5.1, 6.2 }, { 35.7, 8.4, 3.3 },
     { 12.6, 36.2, 9.9 }, { 15.4, 12.8, 37.1 } } };
@@ -320,18 +320,18 @@ void TestAccuracy()
   // cell with edges of length 1, the edges of the twelve tetrahedra have the length 1 / 2, or
   // sqrt(1 / 8) if they end at the center. The bound is larger than 1 / 4, since the cells of this
   // test are not regular.
-  VERIFY(worst < 0.35);
+  EXPECT_LT(worst, 0.35);
 }
 
 // Mid-side nodes in another order than VTK's cause a warning.
-void TestMidSides()
+TEST(DeformCells, MidSides)
 {
   const auto volume = MakeVolume();
   const Grid mesh = MakeCurvedTenNodes(MakeMesh(volume));
   const vtkIdType cells = mesh->GetNumberOfCells();
   Deformed deformed(volume, mesh);
   deformed.Filter->Update();
-  VERIFY_EQUAL(deformed.TakeWarning(), std::string());
+  EXPECT_EQ(deformed.TakeWarning(), "");
   for (vtkIdType cell = 0; cell < 7; ++cell)
   {
     vtkNew<vtkIdList> ids;
@@ -343,15 +343,15 @@ void TestMidSides()
   mesh->Modified();
   deformed.Filter->Update();
   const std::string warning = deformed.TakeWarning();
-  VERIFY_CONTAINS(warning, "7 of " + std::to_string(cells) + " quadratic cells");
+  EXPECT_TRUE(HasPart(warning, "7 of " + std::to_string(cells) + " quadratic cells"));
   deformed.Filter->Modified();
   deformed.Filter->Update();
-  VERIFY_EQUAL(deformed.TakeWarning(), std::string());
+  EXPECT_EQ(deformed.TakeWarning(), "");
 }
 
 // A hexahedron with the nodes in the order of a voxel causes a warning. A turned, a mirrored and a
 // flat one do not.
-void TestOrderOfHexahedra()
+TEST(DeformCells, OrderOfHexahedra)
 {
   const auto volume = MakeVolume();
   double bounds[6];
@@ -375,8 +375,8 @@ void TestOrderOfHexahedra()
     Deformed deformed(volume, mesh);
     deformed.Filter->Update();
     const std::string warning = deformed.TakeWarning();
-    VERIFY_EQUAL(warning.find("1 of 1 hexahedra") != std::string::npos, isWrong);
-    VERIFY_EQUAL(warning.empty(), !isWrong);
+    EXPECT_EQ(warning.find("1 of 1 hexahedra") != std::string::npos, isWrong);
+    EXPECT_EQ(warning.empty(), !isWrong);
   }
   // Layers without thickness between two bodies.
   const Grid layers = MakeMesh(volume);
@@ -398,19 +398,8 @@ void TestOrderOfHexahedra()
     layers->InsertNextCell(VTK_HEXAHEDRON, 8, nodes);
   }
   const deformvolume::MeshCells cells = deformvolume::ReadCells({ layers }, { layers });
-  VERIFY_EQUAL(cells.WrongOrder, std::string());
-  VERIFY(cells.Tetrahedra.size() > 1000);
+  EXPECT_EQ(cells.WrongOrder, std::string());
+  EXPECT_GT(cells.Tetrahedra.size(), 1000);
 }
 
 } // namespace
-
-int TestDeformCells(int, char*[])
-{
-  TestTenNodes();
-  TestUpdates();
-  TestSplits();
-  TestAccuracy();
-  TestMidSides();
-  TestOrderOfHexahedra();
-  return GetExitCode();
-}

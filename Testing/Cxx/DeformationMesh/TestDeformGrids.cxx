@@ -92,17 +92,13 @@ public:
   // built this number of static mappings: none if the tetrahedra at rest have not changed.
   void Expect(const char* what, int builds)
   {
-    const int failures = GetNumberOfFailures();
+    SCOPED_TRACE(what);
     Deformed fresh(this->Volume, this->Mesh);
     fresh.Filter->SetRestData(this->Rest);
-    VERIFY(AreEqual(this->Tested.Update(), fresh.Update()));
+    EXPECT_TRUE(AreEqual(this->Tested.Update(), fresh.Update()));
     const vtkIdType built = GetReported(this->Tested.Filter, "Static mappings made");
-    VERIFY_EQUAL(built - this->Builds, builds);
+    EXPECT_EQ(built - this->Builds, builds);
     this->Builds = built;
-    if (GetNumberOfFailures() > failures)
-    {
-      std::cerr << "failed with " << what << '\n';
-    }
   }
 
   vtkSmartPointer<vtkImageData> Volume;
@@ -136,7 +132,7 @@ void SplitNode(vtkUnstructuredGrid* grid, vtkIdType cell)
   grid->Modified();
 }
 
-void TestOtherGrids()
+TEST(DeformGrids, OtherGrids)
 {
   Meshes meshes;
   meshes.Give(ShareArrays(meshes.Mesh));
@@ -181,7 +177,7 @@ void TestOtherGrids()
   meshes.Expect("one cell less, which leaves a hole", 1);
 }
 
-void TestEditsInPlace()
+TEST(DeformGrids, EditsInPlace)
 {
   Meshes meshes;
   meshes.Mesh->Modified();
@@ -213,7 +209,7 @@ void TestEditsInPlace()
   meshes.Expect("a copy without the hidden cell", 1);
 }
 
-void TestPipeline()
+TEST(DeformGrids, Pipeline)
 {
   Meshes meshes;
   vtkNew<Passer> passer;
@@ -263,7 +259,7 @@ void PlaceNodes(vtkUnstructuredGrid* grid, vtkImageData* volume, const std::arra
 }
 
 // A cell with other degrees, which has the same number of nodes.
-void TestDegrees()
+TEST(DeformGrids, Degrees)
 {
   Meshes meshes;
   const auto grid = Grid::New();
@@ -289,7 +285,7 @@ void TestDegrees()
   meshes.Expect("other degrees", 1);
 }
 
-void TestTwoMeshes()
+TEST(DeformGrids, TwoMeshes)
 {
   Meshes meshes;
   meshes.Rest = meshes.Mesh;
@@ -316,22 +312,22 @@ void TestTwoMeshes()
   Exchange(shape, 3);
   shape->Modified();
   meshes.Tested.Filter->Update();
-  VERIFY_EQUAL(meshes.Tested.TakeErrors(), 1);
+  EXPECT_EQ(meshes.Tested.TakeErrors(), 1);
   Exchange(shape, 3);
   shape->Modified();
   meshes.Expect("the cell restored", 0);
   Exchange(meshes.Rest, 5);
   meshes.Rest->Modified();
   meshes.Tested.Filter->Update();
-  VERIFY_EQUAL(meshes.Tested.TakeErrors(), 1);
+  EXPECT_EQ(meshes.Tested.TakeErrors(), 1);
   Exchange(shape, 5);
   shape->Modified();
   meshes.Expect("the same cell replaced in both meshes", 1);
   shape->GetPoints()->GetData()->SetComponent(30, 2, std::nan(""));
   shape->Modified();
   meshes.Tested.Filter->Update();
-  VERIFY_EQUAL(meshes.Tested.TakeErrors(), 1);
-  VERIFY_CONTAINS(meshes.Tested.LastError, "Point 30");
+  EXPECT_EQ(meshes.Tested.TakeErrors(), 1);
+  EXPECT_TRUE(HasPart(meshes.Tested.LastError, "Point 30"));
   shape->GetPoints()->GetData()->SetComponent(30, 2, 5.0);
   shape->Modified();
   meshes.Expect("the point restored", 0);
@@ -345,7 +341,7 @@ void TestTwoMeshes()
 }
 
 // The deformed mesh is one grid, and the mesh at rest has two blocks.
-void TestOtherParts()
+TEST(DeformGrids, OtherParts)
 {
   const auto volume = MakeVolume({ { 0, 30, 0, 25, 2, 27 } });
   vtkNew<vtkMultiBlockDataSet> parts;
@@ -385,12 +381,12 @@ void TestOtherParts()
   inParts.Filter->SetRestData(parts);
   Deformed inOne(volume, shape);
   inOne.Filter->SetRestData(whole);
-  VERIFY(AreEqual(inParts.Update(), inOne.Update()));
+  EXPECT_TRUE(AreEqual(inParts.Update(), inOne.Update()));
 }
 
 // Floats are read by different code: they give the same displacements as equal doubles, and an
 // error in one of them is reported at any position.
-void TestFloats()
+TEST(DeformGrids, Floats)
 {
   for (const bool isOblique : { false, true })
   {
@@ -417,7 +413,7 @@ void TestFloats()
       other->GetPointData()->SetVectors(doubles);
       first.Filter->SetDisplacementScale(scale);
       second.Filter->SetDisplacementScale(scale);
-      VERIFY(AreEqual(first.Update(), second.Update()));
+      EXPECT_TRUE(AreEqual(first.Update(), second.Update()));
     }
     first.Filter->SetDisplacementScale(1.0);
     const float infinity = std::numeric_limits<float>::infinity();
@@ -432,24 +428,24 @@ void TestFloats()
           floats->SetComponent(node, axis, wrong);
           floats->Modified();
           first.Filter->Update();
-          VERIFY_EQUAL(first.TakeErrors(), 1);
+          EXPECT_EQ(first.TakeErrors(), 1);
           const std::string expected = std::isfinite(wrong)
             ? "more than 16,383 output voxels"
             : "Displacement " + std::to_string(node) + " of";
-          VERIFY_CONTAINS(first.LastError, expected);
+          EXPECT_TRUE(HasPart(first.LastError, expected));
           floats->SetComponent(node, axis, right);
           floats->Modified();
         }
       }
     }
     second.Filter->SetDisplacementScale(1.0);
-    VERIFY(AreEqual(first.Update(), second.Update()));
+    EXPECT_TRUE(AreEqual(first.Update(), second.Update()));
   }
 }
 
 // Nodes and cells in random order. With a margin of 0 nodes are at voxels, which thus belong to
 // several tetrahedra.
-void TestRenumbering()
+TEST(DeformGrids, Renumbering)
 {
   const auto volume = MakeVolume({ { 0, 40, 0, 24, 0, 32 } });
   for (const double margin : { 0.0, 0.37 })
@@ -505,8 +501,8 @@ void TestRenumbering()
         };
         SetDisplacements(mesh, map);
         SetDisplacements(other, map);
-        VERIFY(AreEqual(first.Update(), second.Update()));
-        VERIFY_EQUAL(GetReported(first.Filter, "Bricks resampled"),
+        EXPECT_TRUE(AreEqual(first.Update(), second.Update()));
+        EXPECT_EQ(GetReported(first.Filter, "Bricks resampled"),
           GetReported(second.Filter, "Bricks resampled"));
       }
     }
@@ -514,16 +510,3 @@ void TestRenumbering()
 }
 
 } // namespace
-
-int TestDeformGrids(int, char*[])
-{
-  TestOtherGrids();
-  TestEditsInPlace();
-  TestPipeline();
-  TestDegrees();
-  TestTwoMeshes();
-  TestOtherParts();
-  TestFloats();
-  TestRenumbering();
-  return GetExitCode();
-}

@@ -44,8 +44,8 @@ glm::dvec3 Bend(const glm::dvec3& p)
 void Expect(Deformed& deformed, const std::string& words)
 {
   deformed.Filter->Update();
-  VERIFY_EQUAL(deformed.TakeErrors(), 1);
-  VERIFY_CONTAINS(deformed.LastError, words);
+  EXPECT_EQ(deformed.TakeErrors(), 1);
+  EXPECT_TRUE(HasPart(deformed.LastError, words));
 }
 
 // A copy of a mesh, with an additional first and last node that no cell uses.
@@ -107,7 +107,7 @@ Grid MoveToDeformed(vtkUnstructuredGrid* mesh)
   return moved;
 }
 
-void TestUnusedNodes()
+TEST(DeformMeshes, UnusedNodes)
 {
   const auto volume = MakeVolume();
   const Grid mesh = MakeBentMesh(volume);
@@ -135,10 +135,10 @@ void TestUnusedNodes()
         set(one->Filter);
       }
       vtkImageData* output = expected.Update();
-      VERIFY(expected.Filter->GetNumberOfCoveredVoxels() > 300);
-      VERIFY(AreEqual(output, found.Update()));
-      VERIFY(AreEqual(output, composite.Update()));
-      VERIFY(AreEqual(expectedOfTwo.Update(), twoPorts.Update()));
+      EXPECT_GT(expected.Filter->GetNumberOfCoveredVoxels(), 300);
+      EXPECT_TRUE(AreEqual(output, found.Update()));
+      EXPECT_TRUE(AreEqual(output, composite.Update()));
+      EXPECT_TRUE(AreEqual(expectedOfTwo.Update(), twoPorts.Update()));
     };
     compare([](vtkDeformVolumeFilter*) {});
     compare([](vtkDeformVolumeFilter* filter) { filter->SetBoundsGranularity(8); });
@@ -155,7 +155,7 @@ void TestUnusedNodes()
 }
 
 // Partial updates of a mesh with unused nodes, and a cell that begins to use one of these nodes.
-void TestUnusedNodesThatChange()
+TEST(DeformMeshes, UnusedNodesThatChange)
 {
   const auto volume = MakeVolume({ { 0, 40, 0, 40, 0, 40 } });
   const Grid mesh = MakeBentMesh(volume);
@@ -178,7 +178,7 @@ void TestUnusedNodesThatChange()
     fresh.Filter->SetCustomBounds(tested.Filter->GetOutput()->GetBounds());
     CompareWithFresh(tested, fresh, "a step of a mesh with unused nodes", parts);
   }
-  VERIFY(parts > 1);
+  EXPECT_GT(parts, 1);
   // A node of the last cell is replaced by the last node, whose position and displacement are then
   // set to valid values.
   vtkNew<vtkIdList> before;
@@ -223,7 +223,7 @@ Grid MakeShells()
   return shells;
 }
 
-void TestBlocks()
+TEST(DeformMeshes, Blocks)
 {
   const auto volume = MakeVolume();
   const Grid mesh = MakeBentMesh(volume);
@@ -249,8 +249,8 @@ void TestBlocks()
       Deformed found(volume, blocks);
       found.Filter->SetInputArrayToProcess(0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, name);
       found.Filter->Update();
-      VERIFY_CONTAINS(found.TakeWarning(), "1 quad");
-      VERIFY(AreEqual(output, found.Update()));
+      EXPECT_TRUE(HasPart(found.TakeWarning(), "1 quad"));
+      EXPECT_TRUE(AreEqual(output, found.Update()));
       // A block that contains solid cells needs displacements.
       blocks->SetBlock(1 - first, solids);
       Expect(found,
@@ -260,7 +260,7 @@ void TestBlocks()
       blocks->Modified();
       Expect(found, "Block \"liver\" of the deformation mesh has no point array");
       blocks->SetBlock(1 - first, shells);
-      VERIFY(AreEqual(output, found.Update()));
+      EXPECT_TRUE(AreEqual(output, found.Update()));
     }
   }
   vtkNew<vtkPartitionedDataSetCollection> collection;
@@ -394,9 +394,9 @@ void TestGrid(vtkDataSet* grid)
       one->Filter->SetResampler(resampler);
     }
     vtkImageData* output = expected.Update();
-    VERIFY(expected.Filter->GetNumberOfCoveredVoxels() > 500);
-    VERIFY(AreEqual(output, found.Update()));
-    VERIFY(AreEqual(output, composite.Update()));
+    EXPECT_GT(expected.Filter->GetNumberOfCoveredVoxels(), 500);
+    EXPECT_TRUE(AreEqual(output, found.Update()));
+    EXPECT_TRUE(AreEqual(output, composite.Update()));
   }
   for (Deformed* one : { &expected, &found })
   {
@@ -410,8 +410,8 @@ void TestGrid(vtkDataSet* grid)
   const vtkTypeInt64 builds = GetReported(found.Filter, "Static mappings made");
   vectors->SetComponent(17, 0, 0.6);
   changes->AddTuples(17, 17);
-  VERIFY(AreEqual(expected.Update(), found.Update()));
-  VERIFY_EQUAL(GetReported(found.Filter, "Static mappings made"), builds);
+  EXPECT_TRUE(AreEqual(expected.Update(), found.Update()));
+  EXPECT_EQ(GetReported(found.Filter, "Static mappings made"), builds);
   // A deformed mesh and a mesh at rest.
   vtkNew<vtkStructuredGrid> moved;
   moved->SetDimensions(nodes.data());
@@ -427,35 +427,35 @@ void TestGrid(vtkDataSet* grid)
   two.Filter->SetRestData(vtkStructuredGrid::SafeDownCast(grid) ? grid : whole.Get());
   Deformed expectedOfTwo(volume, MakeHexahedra(moved, [](int) { return false; }));
   expectedOfTwo.Filter->SetRestData(whole);
-  VERIFY(AreEqual(expectedOfTwo.Update(), two.Update()));
+  EXPECT_TRUE(AreEqual(expectedOfTwo.Update(), two.Update()));
   // Blanked cells, and cells of blanked points.
   const auto cellGhosts = AddGhosts(grid->GetCellData(), grid->GetNumberOfCells());
   cellGhosts->SetValue(3, vtkDataSetAttributes::HIDDENCELL);
   grid->Modified();
   Deformed expectedWithout(volume, MakeHexahedra(grid, [](int cell) { return cell == 3; }));
-  VERIFY(AreEqual(expectedWithout.Update(), found.Update()));
-  VERIFY(found.Filter->GetNumberOfCoveredVoxels() < expected.Filter->GetNumberOfCoveredVoxels());
+  EXPECT_TRUE(AreEqual(expectedWithout.Update(), found.Update()));
+  EXPECT_LT(found.Filter->GetNumberOfCoveredVoxels(), expected.Filter->GetNumberOfCoveredVoxels());
   cellGhosts->SetValue(3, 0);
   cellGhosts->SetValue(10, vtkDataSetAttributes::DUPLICATECELL);
   cellGhosts->Modified();
   expectedWithout.Filter->SetDeformationData(
     MakeHexahedra(grid, [](int cell) { return cell == 10; }));
-  VERIFY(AreEqual(expectedWithout.Update(), found.Update()));
+  EXPECT_TRUE(AreEqual(expectedWithout.Update(), found.Update()));
   cellGhosts->SetValue(10, 0);
   cellGhosts->Modified();
   const auto pointGhosts = AddGhosts(grid->GetPointData(), grid->GetNumberOfPoints());
   pointGhosts->SetValue(1, vtkDataSetAttributes::HIDDENPOINT);
   expectedWithout.Filter->SetDeformationData(
     MakeHexahedra(grid, [](int cell) { return cell < 2; }));
-  VERIFY(AreEqual(expectedWithout.Update(), found.Update()));
+  EXPECT_TRUE(AreEqual(expectedWithout.Update(), found.Update()));
   pointGhosts->SetValue(1, 0);
   pointGhosts->Modified();
-  VERIFY(AreEqual(expected.Update(), found.Update()));
+  EXPECT_TRUE(AreEqual(expected.Update(), found.Update()));
 }
 
 // Hidden points of an unstructured grid: cells that use them are left out, and their displacements
 // need not be finite.
-void TestHiddenPoints()
+TEST(DeformMeshes, HiddenPoints)
 {
   const auto volume = MakeVolume();
   const auto grid = MakeRectilinearGrid();
@@ -472,19 +472,19 @@ void TestHiddenPoints()
   ghosts->Fill(vtkDataSetAttributes::DUPLICATEPOINT); // no reason to leave cells out
   ghosts->SetValue(0, vtkDataSetAttributes::HIDDENPOINT);
   Deformed expected(volume, MakeHexahedra(grid, [](int cell) { return cell == 0; }));
-  VERIFY(AreEqual(expected.Update(), found.Update()));
+  EXPECT_TRUE(AreEqual(expected.Update(), found.Update()));
   mesh->GetPointData()->RemoveArray(ghosts->GetName());
   const auto valid = AddGhosts(mesh->GetPointData(), mesh->GetNumberOfPoints());
   valid->SetName("vtkValidPointMask");
   valid->Fill(1);
   valid->SetValue(0, 0);
-  VERIFY(AreEqual(expected.Update(), found.Update()));
+  EXPECT_TRUE(AreEqual(expected.Update(), found.Update()));
   // A change of the mask is noticed.
   vectors->SetComponent(0, 1, grid->GetPointData()->GetVectors()->GetComponent(0, 1));
   vectors->Modified();
   valid->SetValue(0, 1);
   valid->Modified();
-  VERIFY(AreEqual(all, found.Update()));
+  EXPECT_TRUE(AreEqual(all, found.Update()));
 }
 
 // Two blocks of hexahedra meet at a curved face. Each has points of its own there, in another
@@ -523,7 +523,7 @@ vtkSmartPointer<vtkMultiBlockDataSet> MakeMeetingBlocks(vtkUnstructuredGrid* who
   return blocks;
 }
 
-void TestMeetingBlocks()
+TEST(DeformMeshes, MeetingBlocks)
 {
   const auto volume = MakeVolume({ { 0, 39, 0, 39, 0, 39 } });
   const auto curved = MakeStructuredGrid();
@@ -542,15 +542,14 @@ void TestMeetingBlocks()
   const auto blocks = MakeMeetingBlocks(whole, 9.0);
   Deformed found(volume, blocks);
   found.Update();
-  VERIFY(found.Filter->GetNumberOfCoveredVoxels() != expected.Filter->GetNumberOfCoveredVoxels());
+  EXPECT_NE(found.Filter->GetNumberOfCoveredVoxels(), expected.Filter->GetNumberOfCoveredVoxels());
   auto* second = vtkUnstructuredGrid::SafeDownCast(blocks->GetBlock(1));
   second->GetPoints()->DeepCopy(
     vtkUnstructuredGrid::SafeDownCast(MakeMeetingBlocks(whole, 0.0)->GetBlock(1))->GetPoints());
   second->GetPoints()->Modified();
   blocks->Modified();
   found.Update();
-  VERIFY_EQUAL(
-    found.Filter->GetNumberOfCoveredVoxels(), expected.Filter->GetNumberOfCoveredVoxels());
+  EXPECT_EQ(found.Filter->GetNumberOfCoveredVoxels(), expected.Filter->GetNumberOfCoveredVoxels());
   // An update that fails, and one that succeeds.
   const vtkIdType used = second->GetCell(0)->GetPointId(0);
   double point[3];
@@ -571,15 +570,15 @@ void TestMeetingBlocks()
   }
   Deformed two(volume, moved);
   two.Filter->SetRestData(blocks);
-  VERIFY(AreEqual(output, two.Update()));
+  EXPECT_TRUE(AreEqual(output, two.Update()));
   Deformed deformedPoints(volume, moved);
   deformedPoints.Filter->PointsAreDeformedOn();
   deformedPoints.Update();
-  VERIFY_EQUAL(
+  EXPECT_EQ(
     deformedPoints.Filter->GetNumberOfCoveredVoxels(), expected.Filter->GetNumberOfCoveredVoxels());
 }
 
-void TestGrids()
+TEST(DeformMeshes, Grids)
 {
   TestGrid(MakeRectilinearGrid());
   TestGrid(MakeStructuredGrid());
@@ -607,7 +606,7 @@ glm::dvec3 BendExactly(const glm::dvec3& p)
   return p + glm::round(64.0 * (Bend(p) - p)) / 64.0;
 }
 
-void TestDeformedPoints()
+TEST(DeformMeshes, DeformedPoints)
 {
   const auto volume = MakeVolume();
   const Grid mesh = MakeMesh(volume);
@@ -628,9 +627,9 @@ void TestDeformedPoints()
       one->Filter->SetDisplacementScale(scale);
     }
     vtkImageData* output = expected.Update();
-    VERIFY(expected.Filter->GetNumberOfCoveredVoxels() > 500);
-    VERIFY(AreEqual(output, found.Update()));
-    VERIFY(AreEqual(output, composite.Update()));
+    EXPECT_GT(expected.Filter->GetNumberOfCoveredVoxels(), 500);
+    EXPECT_TRUE(AreEqual(output, found.Update()));
+    EXPECT_TRUE(AreEqual(output, composite.Update()));
   }
   // Another time step, with the same mesh at rest.
   for (Deformed* one : { &expected, &found })
@@ -645,8 +644,8 @@ void TestDeformedPoints()
   moved->GetPoints()->Modified();
   moved->GetPointData()->GetVectors()->DeepCopy(next->GetPointData()->GetVectors());
   moved->GetPointData()->GetVectors()->Modified();
-  VERIFY(AreEqual(expected.Update(), found.Update()));
-  VERIFY_EQUAL(GetReported(found.Filter, "Static mappings made"), builds);
+  EXPECT_TRUE(AreEqual(expected.Update(), found.Update()));
+  EXPECT_EQ(GetReported(found.Filter, "Static mappings made"), builds);
   const auto structured = MakeStructuredGrid();
   for (vtkIdType id = 0; id < structured->GetNumberOfPoints(); ++id)
   {
@@ -661,7 +660,7 @@ void TestDeformedPoints()
     structured->GetPoints()->SetPoint(id, &p.x);
   }
   found.Filter->SetDeformationData(structured);
-  VERIFY(AreEqual(expected.Update(), found.Update()));
+  EXPECT_TRUE(AreEqual(expected.Update(), found.Update()));
   // A ball is carved out of the deformed volume.
   vtkNew<vtkSphere> ball;
   ball->SetCenter(5.0, 4.0, 6.0);
@@ -677,8 +676,8 @@ void TestDeformedPoints()
     carve->Update();
     gone[areDeformed ? 1 : 0] = carve->GetNumberOfSwitchedOffTetrahedra();
   }
-  VERIFY(gone[0] > 50);
-  VERIFY_EQUAL(gone[0], gone[1]);
+  EXPECT_GT(gone[0], 50);
+  EXPECT_EQ(gone[0], gone[1]);
   found.Filter->SetDeformationData(moved);
   found.Filter->SetRestData(mesh);
   Expect(found, "PointsAreDeformed is on, but there is a rest configuration");
@@ -693,7 +692,7 @@ void TestDeformedPoints()
   Expect(found, "The deformation mesh has no active Vectors");
 }
 
-void TestUnits()
+TEST(DeformMeshes, Units)
 {
   const auto volume = MakeImage({ { 0, 9, 0, 8, 0, 7 } }, glm::dvec3(1.0), glm::dvec3(20, 30, -40));
   AddScalars<short>(volume, "value", [](const glm::dvec3& p) { return p.x; });
@@ -734,7 +733,7 @@ vtkSmartPointer<vtkDoubleArray> MakeConstant(const char* called, int components,
   return array;
 }
 
-void TestDirections()
+TEST(DeformMeshes, Directions)
 {
   const auto volume = MakeVolume();
   const Grid mesh = MakeBentMesh(volume);
@@ -743,40 +742,26 @@ void TestDirections()
   arrays->AddArray(MakeConstant("color", 3, count));
   Deformed deformed(volume, mesh);
   deformed.Filter->Update();
-  VERIFY_EQUAL(deformed.TakeWarning(), std::string());
+  EXPECT_EQ(deformed.TakeWarning(), "");
   arrays->SetVectors(MakeConstant("fibre", 3, count));
   deformed.Filter->Update();
   const std::string first = deformed.TakeWarning();
-  VERIFY_CONTAINS(first, "active vectors \"fibre\"");
-  VERIFY_CONTAINS(first, "not rotated");
+  EXPECT_TRUE(HasPart(first, "active vectors \"fibre\""));
+  EXPECT_TRUE(HasPart(first, "not rotated"));
   deformed.Filter->Modified();
   deformed.Filter->Update();
-  VERIFY_EQUAL(deformed.TakeWarning(), std::string());
+  EXPECT_EQ(deformed.TakeWarning(), "");
   arrays->SetNormals(MakeConstant("gradient", 3, count));
   arrays->SetTensors(MakeConstant("diffusion", 9, count));
   volume->Modified();
   deformed.Filter->Update();
   const std::string second = deformed.TakeWarning();
-  VERIFY_CONTAINS(second, "active normals \"gradient\"");
-  VERIFY_CONTAINS(second, "active tensors \"diffusion\"");
-  VERIFY_CONTAINS_NOT(second, "fibre");
+  EXPECT_TRUE(HasPart(second, "active normals \"gradient\""));
+  EXPECT_TRUE(HasPart(second, "active tensors \"diffusion\""));
+  EXPECT_FALSE(HasPart(second, "fibre"));
   deformed.Filter->SetDisplacementScale(0.5);
   deformed.Filter->Update();
-  VERIFY_EQUAL(deformed.TakeWarning(), std::string());
+  EXPECT_EQ(deformed.TakeWarning(), "");
 }
 
 } // namespace
-
-int TestDeformMeshes(int, char*[])
-{
-  TestUnusedNodes();
-  TestUnusedNodesThatChange();
-  TestBlocks();
-  TestGrids();
-  TestHiddenPoints();
-  TestMeetingBlocks();
-  TestDeformedPoints();
-  TestUnits();
-  TestDirections();
-  return GetExitCode();
-}

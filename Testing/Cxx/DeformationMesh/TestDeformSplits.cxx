@@ -125,7 +125,7 @@ int CountGap(vtkImageData* output)
   return gap;
 }
 
-void TestPulledApart(const std::array<int, 3>& dimensions, double voxelsPerEdge)
+void CheckPulledApart(const std::array<int, 3>& dimensions, double voxelsPerEdge)
 {
   for (const int resampler :
     { vtkDeformVolumeFilter::EXACT, vtkDeformVolumeFilter::MESH_RASTERIZATION })
@@ -135,32 +135,32 @@ void TestPulledApart(const std::array<int, 3>& dimensions, double voxelsPerEdge)
     tested.Filter->SetResampler(resampler);
     tested.Filter->OpenSplitsOn();
     const vtkIdType whole = block.Volume->GetNumberOfPoints();
-    VERIFY_EQUAL(CountGap(tested.Update()), 0);
+    EXPECT_EQ(CountGap(tested.Update()), 0);
     block.Cut();
     // While the two parts touch, all voxels are covered, although the cells between them are not
     // drawn.
-    VERIFY_EQUAL(CountGap(tested.Update()), 0);
-    VERIFY_EQUAL(tested.Filter->GetNumberOfCoveredVoxels(), whole);
+    EXPECT_EQ(CountGap(tested.Update()), 0);
+    EXPECT_EQ(tested.Filter->GetNumberOfCoveredVoxels(), whole);
     block.PullApart();
-    VERIFY_EQUAL(CountGap(tested.Update()), Pull);
-    VERIFY_EQUAL(tested.Filter->GetNumberOfCoveredVoxels(), whole);
+    EXPECT_EQ(CountGap(tested.Update()), Pull);
+    EXPECT_EQ(tested.Filter->GetNumberOfCoveredVoxels(), whole);
     // A split does not change positions at rest, so the static mapping is kept.
-    VERIFY_EQUAL(GetReported(tested.Filter, "Static mappings made"),
+    EXPECT_EQ(GetReported(tested.Filter, "Static mappings made"),
       resampler == vtkDeformVolumeFilter::EXACT ? 1 : 0);
     if (resampler == vtkDeformVolumeFilter::EXACT)
     {
       tested.Filter->OpenSplitsOff();
-      VERIFY_EQUAL(CountGap(tested.Update()), 0);
-      VERIFY_EQUAL(
+      EXPECT_EQ(CountGap(tested.Update()), 0);
+      EXPECT_EQ(
         tested.Filter->GetNumberOfCoveredVoxels(), whole + Pull * dimensions[1] * dimensions[2]);
       tested.Filter->OpenSplitsOn();
-      VERIFY_EQUAL(CountGap(tested.Update()), Pull);
+      EXPECT_EQ(CountGap(tested.Update()), Pull);
     }
   }
 }
 
 // A split that ends inside the volume: beyond its end there is no gap.
-void TestSlit()
+TEST(DeformSplits, Slit)
 {
   Block block({ { 48, 40, 12 } }, 4.0);
   Deformed tested(block.Volume, block.Mesh);
@@ -181,26 +181,23 @@ void TestSlit()
     }
     return empty;
   };
-  VERIFY_EQUAL(countEmpty(4), Pull);
-  VERIFY_EQUAL(countEmpty(38), 0);
+  EXPECT_EQ(countEmpty(4), Pull);
+  EXPECT_EQ(countEmpty(38), 0);
 }
 
-void TestOpenSplitsProperty()
+TEST(DeformSplits, OpenSplitsProperty)
 {
   vtkNew<vtkDeformVolumeFilter> filter;
-  VERIFY(!filter->GetOpenSplits());
+  EXPECT_FALSE(filter->GetOpenSplits());
   const vtkMTimeType time = filter->GetMTime();
   filter->OpenSplitsOn();
-  VERIFY(filter->GetMTime() > time);
+  EXPECT_GT(filter->GetMTime(), time);
 }
 
 } // namespace
 
-int TestDeformSplits(int, char*[])
+TEST(DeformSplits, PulledApart)
 {
-  TestOpenSplitsProperty();
-  TestPulledApart({ { 40, 20, 10 } }, 4.0); // by runs
-  TestPulledApart({ { 40, 20, 10 } }, 1.5); // by links
-  TestSlit();
-  return GetExitCode();
+  CheckPulledApart({ { 40, 20, 10 } }, 4.0); // by runs
+  CheckPulledApart({ { 40, 20, 10 } }, 1.5); // by links
 }

@@ -132,17 +132,11 @@ void CheckFilled(const std::string& what, vtkUnstructuredGrid* grid, double volu
     surface += face.second.Count == 1 ? face.second.Area : 0.0;
   }
   // The tolerance allows for rounding in sums of some thousand numbers of order one.
-  if (std::abs(sum - volume) > 1e-10 * volume || std::abs(surface - area) > 1e-10 * area ||
-    most > 2 || least < 1e-6 * volume / static_cast<double>(tetrahedra.size()) ||
-    used.size() != points.size())
-  {
-    ++GetNumberOfFailures();
-    std::cerr << what << ": " << tetrahedra.size() << " tetrahedra have the volume " << sum
-              << " instead of " << volume << " and the surface area " << surface << " instead of "
-              << area << ". The smallest volume is " << least << ". A face belongs to up to "
-              << most << " tetrahedra, at most 2 are allowed. " << used.size() << " of "
-              << points.size() << " points are used.\n";
-  }
+  EXPECT_NEAR(sum, volume, 1e-10 * volume) << what;
+  EXPECT_NEAR(surface, area, 1e-10 * area) << what;
+  EXPECT_LE(most, 2) << what;
+  EXPECT_GE(least, 1e-6 * volume / static_cast<double>(tetrahedra.size())) << what;
+  EXPECT_EQ(used.size(), points.size()) << what;
 }
 
 // The same mesh with its points in another order: how cells are split depends on the ids of points.
@@ -309,7 +303,7 @@ Grid MakeMixedMesh(const Types& types)
   return mesh.Mesh;
 }
 
-void TestNeighbors()
+TEST(HigherOrderCells, Neighbors)
 {
   // Cells of these types have the same nodes on the faces between them. The surface consists of
   // four faces of the cube, two triangles and two sides of the wedge, three sides of the pyramid,
@@ -412,7 +406,7 @@ const std::vector<Shape>& GetShapes()
   return shapes;
 }
 
-void TestBlocks()
+TEST(HigherOrderCells, Blocks)
 {
   for (const Shape& shape : GetShapes())
   {
@@ -421,7 +415,7 @@ void TestBlocks()
 }
 
 // Lagrange cells with a different degree along each axis. The degrees are a cell array.
-void TestDegrees()
+TEST(HigherOrderCells, Degrees)
 {
   const struct
   {
@@ -462,11 +456,11 @@ void TestDegrees()
     try
     {
       deformvolume::ReadCells({ grid }, { grid });
-      VERIFY(false);
+      ADD_FAILURE();
     }
     catch (const deformvolume::Error& error)
     {
-      VERIFY_CONTAINS(std::string(error.what()), "0 tuples of 3 components for 1 cells");
+      EXPECT_TRUE(HasPart(std::string(error.what()), "0 tuples of 3 components for 1 cells"));
     }
   }
 }
@@ -545,11 +539,11 @@ double FindDifference(const Shape& shape, int blocks)
     }
   }
   // Other samples are between a curved boundary and its triangles, or outside the cell.
-  VERIFY(found > 80);
+  EXPECT_GT(found, 80);
   return std::sqrt(sum / found);
 }
 
-void TestConvergence()
+TEST(HigherOrderCells, Convergence)
 {
   for (const Shape& shape : GetShapes())
   {
@@ -560,13 +554,8 @@ void TestConvergence()
     // The order is less than 2, since terms of higher order matter in cells of this size. Linear
     // cells are exact.
     const bool linear = shape.Type == VTK_LAGRANGE_TETRAHEDRON && shape.Order == 1;
-    if (linear ? fine > 1e-12 : !(std::log2(coarse / fine) > 1.7 && fine < 0.05))
-    {
-      ++GetNumberOfFailures();
-      std::cerr << shape.Name
-                << (linear ? ": expected an error of at most 1e-12\n"
-                           : ": expected an error below 0.05 and an order above 1.7\n");
-    }
+    EXPECT_LT(fine, linear ? 1e-12 : 0.05) << shape.Name;
+    EXPECT_TRUE(linear || std::log2(coarse / fine) > 1.7) << shape.Name;
   }
 }
 
@@ -582,17 +571,16 @@ void ExpectError(int type, vtkIdType count, const std::string& words)
   try
   {
     deformvolume::ReadCells({ grid }, { grid });
-    ++GetNumberOfFailures();
-    std::cerr << "expected the error \"" << words << "\" for a cell of type " << type << " with "
-              << count << " points, but there was none\n";
+    ADD_FAILURE() << "expected the error \"" << words << "\" for a cell of type " << type
+                  << " with " << count << " points, but there was none";
   }
   catch (const deformvolume::Error& error)
   {
-    VERIFY_CONTAINS(error.what(), words);
+    EXPECT_TRUE(HasPart(error.what(), words));
   }
 }
 
-void TestErrors()
+TEST(HigherOrderCells, Errors)
 {
   ExpectError(VTK_QUADRATIC_TETRA, 9, "quadratic tetra with 9 points instead of 10");
   ExpectError(VTK_QUADRATIC_HEXAHEDRON, 8, "quadratic hexahedron with 8 points instead of 20");
@@ -610,7 +598,7 @@ void TestErrors()
 }
 
 // A volume that a cube of twelve tetrahedra bends. The reference is the exact inverse map.
-void TestVolume()
+TEST(HigherOrderCells, Volume)
 {
   auto volume = MakeImage({ { 0, 20, 0, 20, 0, 20 } });
   const auto value = [](const glm::dvec3& p) { return 3.0 * p.x + 5.0 * p.y - 2.0 * p.z; };
@@ -629,7 +617,7 @@ void TestVolume()
     SetDisplacements(grid, [&](const glm::dvec3& p) { return p + bend(p); });
     Deformed deformed(volume, grid);
     vtkImageData* output = deformed.Update();
-    VERIFY(deformed.Filter->GetNumberOfCoveredVoxels() > 8000);
+    EXPECT_GT(deformed.Filter->GetNumberOfCoveredVoxels(), 8000);
     double& most = worst[midsides ? 0 : 1];
     most = 0.0;
     for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
@@ -651,8 +639,8 @@ void TestVolume()
   // Linear interpolation of displacements with second derivatives up to 0.012 over tetrahedra with
   // edges up to 10 sqrt 2 voxels is off by no more than 3 / 16 * 0.012 * 200 voxels, and values
   // change by up to 6.2 a voxel.
-  VERIFY(worst[0] < 3.0 / 16.0 * 0.012 * 200.0 * 6.2);
-  VERIFY(worst[0] < 0.5 * worst[1]);
+  EXPECT_LT(worst[0], 3.0 / 16.0 * 0.012 * 200.0 * 6.2);
+  EXPECT_LT(worst[0], 0.5 * worst[1]);
 }
 
 // Polyhedra, which are defined by their faces. A seed decides the order of the points.
@@ -764,7 +752,7 @@ Polygon MakeStar()
   return star;
 }
 
-void TestConcavePolyhedra()
+TEST(HigherOrderCells, ConcavePolyhedra)
 {
   const Polygon angle{ { { 0, 0 }, { 3, 0 }, { 3, 1 }, { 1, 1 }, { 1, 2 }, { 0, 2 } } };
   const Polygon arrow{ { { 0, 0 }, { 2, 1 }, { 0, 2 }, { 0.6, 1 } } };
@@ -819,12 +807,12 @@ void TestConcavePolyhedra()
     {
       const Grid mesh = MakePrisms(cup, 1, seed);
       deformvolume::ReadCells({ mesh }, { mesh });
-      VERIFY(false);
+      ADD_FAILURE();
     }
     catch (const deformvolume::Error& error)
     {
-      VERIFY_CONTAINS(std::string(error.what()),
-        "Cell 0 of the deformation mesh is a concave polyhedron with 16 points");
+      EXPECT_TRUE(HasPart(std::string(error.what()),
+        "Cell 0 of the deformation mesh is a concave polyhedron with 16 points"));
     }
   }
   // Convex cells are split without derived nodes: all their tetrahedra have the node of lowest id.
@@ -838,14 +826,14 @@ void TestConcavePolyhedra()
   {
     const Grid mesh = MakePrisms(round, 1, seed);
     const deformvolume::MeshCells cells = deformvolume::ReadCells({ mesh }, { mesh });
-    VERIFY_EQUAL(cells.Derived.GetCount(), 0U);
-    VERIFY(std::all_of(cells.Tetrahedra.begin(), cells.Tetrahedra.end(),
+    EXPECT_EQ(cells.Derived.GetCount(), 0U);
+    EXPECT_TRUE(std::all_of(cells.Tetrahedra.begin(), cells.Tetrahedra.end(),
       [](const Tetrahedron& nodes) { return nodes[0] == 0; }));
   }
 }
 
 // A concave cell inside a volume covers all of its voxels, with any order of points.
-void TestConcaveVolume()
+TEST(HigherOrderCells, ConcaveVolume)
 {
   const auto volume = MakeVolume({ { 0, 12, 0, 12, 0, 12 } });
   Polygon angle{ { { 0, 0 }, { 12, 0 }, { 12, 4 }, { 4, 4 }, { 4, 8 }, { 0, 8 } } };
@@ -868,7 +856,7 @@ void TestConcaveVolume()
     Deformed deformed(volume, mesh);
     deformed.Filter->SetResamplerToMeshRasterization();
     deformed.Update();
-    VERIFY_EQUAL(deformed.Filter->GetNumberOfCoveredVoxels(), (12 * 4 + 4 * 4) * 8);
+    EXPECT_EQ(deformed.Filter->GetNumberOfCoveredVoxels(), (12 * 4 + 4 * 4) * 8);
     // When its nodes at rest are moved so that it is convex, the cell is split without a derived
     // node.
     for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
@@ -881,12 +869,12 @@ void TestConcaveVolume()
     mesh->GetPoints()->Modified();
     Deformed fresh(volume, mesh);
     fresh.Filter->SetResamplerToMeshRasterization();
-    VERIFY(AreEqual(deformed.Update(), fresh.Update()));
+    EXPECT_TRUE(AreEqual(deformed.Update(), fresh.Update()));
   }
 }
 
 // The engine's tables of cell types are equal to VTK's.
-void TestTables()
+TEST(HigherOrderCells, Tables)
 {
   const std::set<int> linear{ VTK_HEXAHEDRON, VTK_WEDGE, VTK_PYRAMID, VTK_PENTAGONAL_PRISM,
     VTK_HEXAGONAL_PRISM };
@@ -895,20 +883,20 @@ void TestTables()
   {
     const auto cell = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(type));
     const deformvolume::CellFaces* faces = deformvolume::GetCellFaces(type);
-    VERIFY_EQUAL(faces != nullptr, linear.count(type) > 0);
+    EXPECT_EQ(faces != nullptr, linear.count(type) > 0);
     if (faces)
     {
       auto* solid = vtkCell3D::SafeDownCast(cell);
-      VERIFY_EQUAL(static_cast<int>(faces->size()), solid->GetNumberOfFaces());
+      EXPECT_EQ(static_cast<int>(faces->size()), solid->GetNumberOfFaces());
       for (std::size_t face = 0; face < faces->size(); ++face)
       {
         const vtkIdType* points = nullptr;
         const vtkIdType count = solid->GetFacePoints(static_cast<vtkIdType>(face), points);
-        VERIFY(std::vector<int>(points, points + count) == (*faces)[face]);
+        EXPECT_EQ(std::vector<int>(points, points + count), (*faces)[face]);
       }
     }
     const int size = deformvolume::GetNumberOfCellPoints(type);
-    VERIFY(size == 0 || (cell && size == cell->GetNumberOfPoints()));
+    EXPECT_TRUE(size == 0 || (cell && size == cell->GetNumberOfPoints()));
     found += size > 0 ? 1 : 0;
     std::vector<std::array<int, 3>> edges;
     for (vtkIdType i = 0; size > 0 && i < cell->GetNumberOfPoints(); ++i)
@@ -924,14 +912,14 @@ void TestTables()
           static_cast<int>(ids->GetId(2)) } });
       }
     }
-    VERIFY(edges == deformvolume::HigherOrderCells::GetMidSides(type));
-    VERIFY(!cell || deformvolume::GetCellName(type) != "cell of unknown type");
+    EXPECT_EQ(edges, deformvolume::HigherOrderCells::GetMidSides(type));
+    EXPECT_TRUE(!cell || deformvolume::GetCellName(type) != "cell of unknown type");
   }
-  VERIFY_EQUAL(found, 16);
+  EXPECT_EQ(found, 16);
 }
 
 // The order of the nodes of Lagrange cells is equal to VTK's.
-void TestLattices()
+TEST(HigherOrderCells, Lattices)
 {
   int wrong = 0;
   int nodes = 0;
@@ -990,23 +978,8 @@ void TestLattices()
       }
     }
   }
-  VERIFY_EQUAL(wrong, 0);
-  VERIFY(nodes > 5000);
+  EXPECT_EQ(wrong, 0);
+  EXPECT_GT(nodes, 5000);
 }
 
 } // namespace
-
-int TestHigherOrderCells(int, char*[])
-{
-  TestTables();
-  TestLattices();
-  TestErrors();
-  TestNeighbors();
-  TestBlocks();
-  TestDegrees();
-  TestConvergence();
-  TestVolume();
-  TestConcavePolyhedra();
-  TestConcaveVolume();
-  return GetExitCode();
-}

@@ -23,61 +23,61 @@ std::vector<vtkIdType> GetTuples(vtkArrayChanges* log, vtkMTimeType time)
   vtkNew<vtkIdTypeArray> ranges;
   if (!log->GetTuplesSince(time, ranges))
   {
-    VERIFY_EQUAL(ranges->GetNumberOfTuples(), 0);
+    EXPECT_EQ(ranges->GetNumberOfTuples(), 0);
     return { -1 };
   }
   return std::vector<vtkIdType>(
     ranges->GetPointer(0), ranges->GetPointer(0) + ranges->GetNumberOfValues());
 }
 
-void TestMisuse()
+TEST(ArrayChanges, Misuse)
 {
-  VERIFY(!vtkArrayChanges::FindLog(nullptr));
+  EXPECT_FALSE(vtkArrayChanges::FindLog(nullptr));
   vtkNew<vtkFloatArray> array;
   array->SetNumberOfTuples(10);
-  VERIFY(!vtkArrayChanges::FindLog(array));
-  VERIFY(!array->HasInformation());
+  EXPECT_FALSE(vtkArrayChanges::FindLog(array));
+  EXPECT_FALSE(array->HasInformation());
   vtkNew<vtkArrayChanges> log;
   log->AddTuples(1, 2);
-  VERIFY(!log->GetArray());
-  VERIFY(GetTuples(log, 0) == std::vector<vtkIdType>{ -1 });
+  EXPECT_FALSE(log->GetArray());
+  EXPECT_EQ(GetTuples(log, 0), std::vector<vtkIdType>{ -1 });
 
   log->SetArray(array);
-  VERIFY(vtkArrayChanges::FindLog(array) == log.Get());
-  VERIFY(log->GetArray() == array.Get());
+  EXPECT_EQ(vtkArrayChanges::FindLog(array), log.Get());
+  EXPECT_EQ(log->GetArray(), array.Get());
   const vtkMTimeType begin = array->GetMTime();
   log->AddTuples(5, 4);
-  VERIFY_EQUAL(array->GetMTime(), begin);
-  VERIFY(GetTuples(log, begin).empty());
-  VERIFY(GetTuples(log, begin - 1) == std::vector<vtkIdType>{ -1 });
+  EXPECT_EQ(array->GetMTime(), begin);
+  EXPECT_TRUE(GetTuples(log, begin).empty());
+  EXPECT_EQ(GetTuples(log, begin - 1), std::vector<vtkIdType>{ -1 });
 
   // A copy of an array has no log. An array has at most one log, and a log has one array.
   vtkNew<vtkFloatArray> copy;
   copy->DeepCopy(array);
-  VERIFY(!vtkArrayChanges::FindLog(copy));
+  EXPECT_FALSE(vtkArrayChanges::FindLog(copy));
   vtkNew<vtkArrayChanges> other;
   other->SetArray(array);
-  VERIFY(vtkArrayChanges::FindLog(array) == other.Get());
+  EXPECT_EQ(vtkArrayChanges::FindLog(array), other.Get());
   log->SetArray(copy);
-  VERIFY(vtkArrayChanges::FindLog(array) == other.Get());
-  VERIFY(vtkArrayChanges::FindLog(copy) == log.Get());
+  EXPECT_EQ(vtkArrayChanges::FindLog(array), other.Get());
+  EXPECT_EQ(vtkArrayChanges::FindLog(copy), log.Get());
   other->SetArray(nullptr);
-  VERIFY(!vtkArrayChanges::FindLog(array));
+  EXPECT_FALSE(vtkArrayChanges::FindLog(array));
 
   // The array holds a reference to the log, but the log holds none to the array.
   vtkSmartPointer<vtkFloatArray> shortLived = vtkSmartPointer<vtkFloatArray>::New();
   log->SetArray(shortLived);
   shortLived = nullptr;
-  VERIFY(!log->GetArray());
-  VERIFY(GetTuples(log, 0) == std::vector<vtkIdType>{ -1 });
+  EXPECT_FALSE(log->GetArray());
+  EXPECT_EQ(GetTuples(log, 0), std::vector<vtkIdType>{ -1 });
   {
     vtkNew<vtkArrayChanges> held;
     held->SetArray(array);
   }
-  VERIFY(vtkArrayChanges::FindLog(array) != nullptr);
+  EXPECT_NE(vtkArrayChanges::FindLog(array), nullptr);
 }
 
-void TestLog()
+TEST(ArrayChanges, Log)
 {
   vtkNew<vtkFloatArray> array;
   vtkNew<vtkArrayChanges> log;
@@ -85,21 +85,21 @@ void TestLog()
   const vtkMTimeType first = array->GetMTime();
   log->AddTuples(3, 3);
   const vtkMTimeType second = array->GetMTime();
-  VERIFY(second > first);
+  EXPECT_GT(second, first);
   log->AddTuples(7, 9);
   log->AddTuples(-5, 0);
-  VERIFY((GetTuples(log, first) == std::vector<vtkIdType>{ 3, 3, 7, 9, 0, 0 }));
-  VERIFY((GetTuples(log, second) == std::vector<vtkIdType>{ 7, 9, 0, 0 }));
-  VERIFY(GetTuples(log, array->GetMTime()).empty());
+  EXPECT_EQ(GetTuples(log, first), (std::vector<vtkIdType>{ 3, 3, 7, 9, 0, 0 }));
+  EXPECT_EQ(GetTuples(log, second), (std::vector<vtkIdType>{ 7, 9, 0, 0 }));
+  EXPECT_TRUE(GetTuples(log, array->GetMTime()).empty());
 
   // After a change that is not logged, any tuple may have changed.
   const vtkMTimeType third = array->GetMTime();
   array->Modified();
-  VERIFY(GetTuples(log, third) == std::vector<vtkIdType>{ -1 });
+  EXPECT_EQ(GetTuples(log, third), std::vector<vtkIdType>{ -1 });
   const vtkMTimeType seen = array->GetMTime();
   log->AddTuples(4, 4);
-  VERIFY(GetTuples(log, third) == std::vector<vtkIdType>{ -1 });
-  VERIFY((GetTuples(log, seen) == std::vector<vtkIdType>{ 4, 4 }));
+  EXPECT_EQ(GetTuples(log, third), std::vector<vtkIdType>{ -1 });
+  EXPECT_EQ(GetTuples(log, seen), (std::vector<vtkIdType>{ 4, 4 }));
 
   // Old entries of a long log are dropped.
   constexpr vtkIdType many = 100000;
@@ -108,15 +108,15 @@ void TestLog()
   {
     log->AddTuples(i, i);
   }
-  VERIFY(GetTuples(log, before) == std::vector<vtkIdType>{ -1 });
+  EXPECT_EQ(GetTuples(log, before), std::vector<vtkIdType>{ -1 });
   const vtkMTimeType late = array->GetMTime();
   log->AddTuples(1, 2);
-  VERIFY((GetTuples(log, late) == std::vector<vtkIdType>{ 1, 2 }));
+  EXPECT_EQ(GetTuples(log, late), (std::vector<vtkIdType>{ 1, 2 }));
 }
 
 // The filter does not read changes that are missing in the log. After Modified() without a log it
 // reads all tuples.
-void TestFilter()
+TEST(ArrayChanges, Filter)
 {
   const auto volume = MakeImage({ { 0, 30, 0, 30, 0, 30 } });
   AddScalars<short>(
@@ -153,7 +153,7 @@ void TestFilter()
     return vtkSmartPointer<vtkImageData>(copy);
   };
   const auto start = update();
-  VERIFY(AreEqual(start, fresh()));
+  EXPECT_TRUE(AreEqual(start, fresh()));
 
   // The filter compares blocks of 512 nodes. These two nodes are in different blocks.
   const vtkIdType here = 12 * 12 * 2 + 12 * 5 + 5;
@@ -162,10 +162,10 @@ void TestFilter()
   vectors->SetTuple3(there, 0.75, 0.5, 0.0);
   vectorLog->AddTuples(here, here);
   const auto half = update();
-  VERIFY(!AreEqual(half, start));
-  VERIFY(!AreEqual(half, fresh()));
+  EXPECT_FALSE(AreEqual(half, start));
+  EXPECT_FALSE(AreEqual(half, fresh()));
   vectorLog->AddTuples(there, there);
-  VERIFY(AreEqual(update(), fresh()));
+  EXPECT_TRUE(AreEqual(update(), fresh()));
 
   const auto cutOff = [&](int z)
   {
@@ -178,10 +178,10 @@ void TestFilter()
   cutOff(23);
   maskLog->AddTuples(4 * 900, 7 * 900 - 1);
   const auto masked = update();
-  VERIFY(!AreEqual(masked, start));
-  VERIFY(!AreEqual(masked, fresh()));
+  EXPECT_FALSE(AreEqual(masked, start));
+  EXPECT_FALSE(AreEqual(masked, fresh()));
   active->Modified();
-  VERIFY(AreEqual(update(), fresh()));
+  EXPECT_TRUE(AreEqual(update(), fresh()));
 
   // The log of the mask does not contain cells that the ghost array hides.
   maskLog->AddTuples(0, 0);
@@ -197,18 +197,10 @@ void TestFilter()
   const auto shown = update();
   volume->GetCellData()->AddArray(ghosts);
   const auto hidden = update();
-  VERIFY(!AreEqual(hidden, shown));
-  VERIFY(AreEqual(hidden, fresh()));
+  EXPECT_FALSE(AreEqual(hidden, shown));
+  EXPECT_TRUE(AreEqual(hidden, fresh()));
   volume->GetCellData()->RemoveArray(ghosts->GetName());
-  VERIFY(AreEqual(update(), fresh()));
+  EXPECT_TRUE(AreEqual(update(), fresh()));
 }
 
 } // namespace
-
-int TestArrayChanges(int, char*[])
-{
-  TestMisuse();
-  TestLog();
-  TestFilter();
-  return GetExitCode();
-}

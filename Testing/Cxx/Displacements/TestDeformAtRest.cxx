@@ -49,17 +49,17 @@ vtkSmartPointer<vtkImageData> MakeZeros(vtkImageData* volume)
   return field;
 }
 
-void TestMisuse()
+TEST(DeformAtRest, Misuse)
 {
   const auto volume = MakeVolume();
   const auto mesh = MakeMesh(volume);
   Deformed subject;
   subject.Filter->SetInputData(volume);
   subject.Filter->SetRestData(mesh);
-  VERIFY(!subject.Filter->GetExecutive()->Update());
-  VERIFY_EQUAL(subject.TakeErrors(), 1);
-  VERIFY_CONTAINS(subject.LastError, "no deformation on input port 1");
-  VERIFY_EQUAL(subject.Filter->GetOutput()->GetNumberOfPoints(), 0);
+  EXPECT_FALSE(subject.Filter->GetExecutive()->Update());
+  EXPECT_EQ(subject.TakeErrors(), 1);
+  EXPECT_TRUE(HasPart(subject.LastError, "no deformation on input port 1"));
+  EXPECT_EQ(subject.Filter->GetOutput()->GetNumberOfPoints(), 0);
 
   // A connected deformation must not be empty.
   subject.Filter->SetRestConnection(nullptr);
@@ -68,12 +68,12 @@ void TestMisuse()
   {
     subject.Filter->SetDeformationData(empty);
     empty->Delete();
-    VERIFY(!subject.Filter->GetExecutive()->Update());
-    VERIFY_EQUAL(subject.TakeErrors(), 1);
-    VERIFY_EQUAL(subject.Filter->GetOutput()->GetNumberOfPoints(), 0);
+    EXPECT_FALSE(subject.Filter->GetExecutive()->Update());
+    EXPECT_EQ(subject.TakeErrors(), 1);
+    EXPECT_EQ(subject.Filter->GetOutput()->GetNumberOfPoints(), 0);
   }
   subject.Filter->SetDeformationConnection(nullptr);
-  VERIFY_EQUAL(GetExtent(subject.Update()), GetExtent(volume));
+  EXPECT_EQ(GetExtent(subject.Update()), GetExtent(volume));
 
   // Mesh rasterization cannot do smooth cuts, also without a deformation.
   const auto cut = MakeVolume();
@@ -86,20 +86,20 @@ void TestMisuse()
   AddScalars<float>(cut, "CutDistance", [](const glm::dvec3& p) { return p.x - 4.5; });
   subject.Filter->SetInputData(cut);
   subject.Filter->SetResamplerToMeshRasterization();
-  VERIFY(!subject.Filter->GetExecutive()->Update());
-  VERIFY_EQUAL(subject.TakeErrors(), 1);
-  VERIFY_CONTAINS(subject.LastError, "cannot do smooth cuts");
+  EXPECT_FALSE(subject.Filter->GetExecutive()->Update());
+  EXPECT_EQ(subject.TakeErrors(), 1);
+  EXPECT_TRUE(HasPart(subject.LastError, "cannot do smooth cuts"));
   subject.Filter->SetResamplerToAutomatic();
   subject.Update();
-  VERIFY_EQUAL(subject.Filter->GetNumberOfCoveredVoxels(), cut->GetNumberOfPoints());
+  EXPECT_EQ(subject.Filter->GetNumberOfCoveredVoxels(), cut->GetNumberOfPoints());
 
   // The volume is still required.
   Deformed nothing;
   nothing.Filter->Update();
-  VERIFY_CONTAINS(nothing.ExecutiveObserver->GetErrorMessage(), "not optional");
+  EXPECT_TRUE(HasPart(nothing.ExecutiveObserver->GetErrorMessage(), "not optional"));
 }
 
-void TestVolumeItself()
+TEST(DeformAtRest, VolumeItself)
 {
   const auto volume = MakeVolume({ { -3, 9, 2, 12, 5, 14 } });
   SetObliqueDirection(volume);
@@ -110,15 +110,15 @@ void TestVolumeItself()
     subject.Filter->SetInputData(volume);
     subject.Filter->SetResampler(resampler);
     vtkImageData* output = subject.Update();
-    VERIFY_EQUAL(GetExtent(output), GetExtent(volume));
-    VERIFY(HaveEqualBits(subject.GetValues(), volume->GetPointData()->GetScalars()));
-    VERIFY_EQUAL(subject.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
-    VERIFY_EQUAL(subject.Filter->GetResamplerInUse(), resampler);
+    EXPECT_EQ(GetExtent(output), GetExtent(volume));
+    EXPECT_TRUE(HaveEqualBits(subject.GetValues(), volume->GetPointData()->GetScalars()));
+    EXPECT_EQ(subject.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
+    EXPECT_EQ(subject.Filter->GetResamplerInUse(), resampler);
   }
 }
 
 // Different settings, without a deformation and with a deformation of zeros.
-void TestSettings()
+TEST(DeformAtRest, Settings)
 {
   using Setting = std::pair<const char*, std::function<void(vtkDeformVolumeFilter*)>>;
   const std::vector<Setting> settings{
@@ -165,18 +165,16 @@ void TestSettings()
     subject.Filter->SetInputArrayToProcess(
       0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "nowhere");
     vtkImageData* output = subject.Update();
-    if (!AreEqual(output, expected.Update()) || output->GetNumberOfPoints() == 0)
-    {
-      std::cerr << setting.first << ": the output differs from that of a deformation of zeros\n";
-      VERIFY(false);
-    }
-    VERIFY(subject.Filter->GetNumberOfCoveredVoxels() > 0);
-    VERIFY(subject.Filter->GetNumberOfCoveredVoxels() < output->GetNumberOfPoints());
+    // A deformation of zeros.
+    EXPECT_TRUE(AreEqual(output, expected.Update())) << setting.first;
+    EXPECT_GT(output->GetNumberOfPoints(), 0) << setting.first;
+    EXPECT_GT(subject.Filter->GetNumberOfCoveredVoxels(), 0);
+    EXPECT_LT(subject.Filter->GetNumberOfCoveredVoxels(), output->GetNumberOfPoints());
   }
 }
 
 // A cut volume at rest, and deformations that are connected and disconnected.
-void TestConnecting()
+TEST(DeformAtRest, Connecting)
 {
   const auto volume = MakeCutVolume();
   auto whole = vtkSmartPointer<vtkImageData>::New();
@@ -186,29 +184,20 @@ void TestConnecting()
   subject.Filter->SetInputData(whole);
   vtkNew<vtkImageData> atRest;
   atRest->DeepCopy(subject.Update());
-  VERIFY_EQUAL(subject.Filter->GetNumberOfCoveredVoxels(), whole->GetNumberOfPoints());
+  EXPECT_EQ(subject.Filter->GetNumberOfCoveredVoxels(), whole->GetNumberOfPoints());
   subject.Filter->SetInputData(volume);
   vtkNew<vtkImageData> cut;
   cut->DeepCopy(subject.Update());
-  VERIFY(subject.Filter->GetNumberOfCoveredVoxels() < whole->GetNumberOfPoints());
+  EXPECT_LT(subject.Filter->GetNumberOfCoveredVoxels(), whole->GetNumberOfPoints());
 
   const auto mesh = MakeMesh(volume);
   SetDisplacements(mesh, Shift(3.0, 0.0, 1.0));
   subject.Filter->SetDeformationData(mesh);
-  VERIFY(!AreEqual(subject.Update(), cut));
+  EXPECT_FALSE(AreEqual(subject.Update(), cut));
   subject.Filter->SetDeformationData(nullptr);
-  VERIFY(AreEqual(subject.Update(), cut));
+  EXPECT_TRUE(AreEqual(subject.Update(), cut));
   subject.Filter->SetInputData(whole);
-  VERIFY(AreEqual(subject.Update(), atRest));
+  EXPECT_TRUE(AreEqual(subject.Update(), atRest));
 }
 
 } // namespace
-
-int TestDeformAtRest(int, char*[])
-{
-  TestMisuse();
-  TestVolumeItself();
-  TestSettings();
-  TestConnecting();
-  return GetExitCode();
-}

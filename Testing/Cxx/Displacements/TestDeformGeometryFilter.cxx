@@ -63,11 +63,7 @@ struct Subject
   vtkPointSet* Update()
   {
     this->Filter->Update();
-    if (this->Observer->GetError())
-    {
-      ++GetNumberOfFailures();
-      std::cerr << this->Observer->GetErrorMessage() << '\n';
-    }
+    EXPECT_FALSE(this->Observer->GetError()) << this->Observer->GetErrorMessage();
     this->Warning = this->Observer->GetWarningMessage();
     this->Observer->Clear();
     this->ExecutiveObserver->Clear();
@@ -216,22 +212,18 @@ public:
   {
     for (int repeat = 0; repeat < 2; ++repeat) // nothing changes before the second update
     {
-      VERIFY(!this->Tested.Filter->GetExecutive()->Update());
+      EXPECT_FALSE(this->Tested.Filter->GetExecutive()->Update());
       const std::string message = this->Tested.Observer->GetErrorMessage();
-      const std::size_t first = message.find("ERROR: ");
-      if (first == std::string::npos || message.find("ERROR: ", first + 1) != std::string::npos ||
-        message.find(text) == std::string::npos)
-      {
-        ++GetNumberOfFailures();
-        std::cerr << "expected one error with \"" << text << "\" instead of: " << message << '\n';
-      }
+      EXPECT_TRUE(HasPart(message, text));
+      EXPECT_TRUE(HasPart(message, "ERROR: "));
+      EXPECT_EQ(message.find("ERROR: "), message.rfind("ERROR: "));
       this->Tested.Observer->Clear();
       this->Tested.ExecutiveObserver->Clear();
-      VERIFY_EQUAL(this->Tested.Filter->GetOutput()->GetNumberOfPoints(), 0);
+      EXPECT_EQ(this->Tested.Filter->GetOutput()->GetNumberOfPoints(), 0);
     }
     this->Restore();
     const glm::dvec3 moved = GetPoint(this->Tested.Update(), 3);
-    VERIFY(glm::length(moved - GetPoint(this->Points, 3) - glm::dvec3(1.0, 2.0, 3.0)) < 1e-6);
+    EXPECT_LT(glm::length(moved - GetPoint(this->Points, 3) - glm::dvec3(1.0, 2.0, 3.0)), 1e-6);
   }
 
 private:
@@ -254,7 +246,7 @@ private:
   Subject Tested;
 };
 
-void TestMisuse()
+TEST(DeformGeometryFilter, Misuse)
 {
   Misuse misuse;
   vtkDeformGeometryFilter* filter = misuse.GetFilter();
@@ -339,7 +331,7 @@ void TestMisuse()
   misuse.Expect("Vector 9 of the displacement field is not finite");
 }
 
-void TestMissing()
+TEST(DeformGeometryFilter, Missing)
 {
   // Without a deformation points do not change by a bit.
   auto points = MakePoints(MakePositions(50, glm::dvec3(-5.0), glm::dvec3(5.0), 2), VTK_FLOAT);
@@ -348,18 +340,19 @@ void TestMissing()
   Subject still;
   still.Filter->SetInputData(points);
   vtkPointSet* output = still.Update();
-  VERIFY(still.Warning.empty());
-  VERIFY(HaveEqualBits(output->GetPoints()->GetData(), points->GetPoints()->GetData()));
-  VERIFY(HaveEqualBits(output->GetPointData()->GetNormals(), points->GetPointData()->GetNormals()));
-  VERIFY(still.IsValid(49));
+  EXPECT_TRUE(still.Warning.empty());
+  EXPECT_TRUE(HaveEqualBits(output->GetPoints()->GetData(), points->GetPoints()->GetData()));
+  EXPECT_TRUE(
+    HaveEqualBits(output->GetPointData()->GetNormals(), points->GetPointData()->GetNormals()));
+  EXPECT_TRUE(still.IsValid(49));
 
   // No points.
   vtkNew<vtkPolyData> none;
   auto mesh = MakeLattice(10.0, 3, 0.0);
   SetDisplacements(mesh, Shift(1.0, 0.0, 0.0));
   Subject empty(none, mesh);
-  VERIFY_EQUAL(empty.Update()->GetNumberOfPoints(), 0);
-  VERIFY_CONTAINS(empty.Warning, "no points");
+  EXPECT_EQ(empty.Update()->GetNumberOfPoints(), 0);
+  EXPECT_TRUE(HasPart(empty.Warning, "no points"));
 
   // Displacements of nodes that no cell uses may be NaN.
   vtkNew<vtkUnstructuredGrid> larger;
@@ -367,12 +360,12 @@ void TestMissing()
   const vtkIdType unused = larger->GetPoints()->InsertNextPoint(0.0, 0.0, 0.0);
   larger->GetPointData()->GetVectors()->InsertNextTuple3(
     std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0);
-  VERIFY_EQUAL(larger->GetNumberOfPoints(), unused + 1);
+  EXPECT_EQ(larger->GetNumberOfPoints(), unused + 1);
   Subject moved(MakePoints({ glm::dvec3(5.0) }), larger);
-  VERIFY_EQUAL(moved.GetPositions()[0].x, 6.0);
+  EXPECT_EQ(moved.GetPositions()[0].x, 6.0);
 }
 
-void TestAbort()
+TEST(DeformGeometryFilter, Abort)
 {
   auto points = MakePoints(MakePositions(300000, glm::dvec3(1.0), glm::dvec3(9.0), 3));
   auto mesh = MakeLattice(10.0, 3, 0.0);
@@ -392,12 +385,12 @@ void TestAbort()
   command->SetClientData(&calls);
   command->SetCallback(Calls::Abort);
   const unsigned long tag = aborted.Filter->AddObserver(vtkCommand::ProgressEvent, command);
-  VERIFY_EQUAL(aborted.Update()->GetNumberOfPoints(), 0);
-  VERIFY(calls.Count > 0);
+  EXPECT_EQ(aborted.Update()->GetNumberOfPoints(), 0);
+  EXPECT_GT(calls.Count, 0);
   aborted.Filter->RemoveObserver(tag);
   aborted.Filter->SetAbortExecute(0);
-  VERIFY_EQUAL(aborted.Update()->GetNumberOfPoints(), 300000);
-  VERIFY(aborted.IsValid(299999));
+  EXPECT_EQ(aborted.Update()->GetNumberOfPoints(), 300000);
+  EXPECT_TRUE(aborted.IsValid(299999));
 }
 
 //------------------------------------------------------------------------------
@@ -426,7 +419,7 @@ std::optional<glm::dvec3> MoveByMesh(
   return {};
 }
 
-void TestMesh()
+TEST(DeformGeometryFilter, Mesh)
 {
   auto mesh = MakeLattice(10.0, 5, 0.3);
   SetDisplacements(mesh, Bend);
@@ -445,15 +438,15 @@ void TestMesh()
   for (std::size_t i = 0; i < positions.size(); ++i)
   {
     const std::optional<glm::dvec3> expected = MoveByMesh(mesh, displace, positions[i]);
-    VERIFY_EQUAL(subject.IsValid(static_cast<vtkIdType>(i)), expected.has_value());
+    EXPECT_EQ(subject.IsValid(static_cast<vtkIdType>(i)), expected.has_value());
     outside += expected ? 0 : 1;
     worst = std::max(worst, glm::length(moved[i] - expected.value_or(positions[i])));
   }
-  VERIFY(worst < 1e-12);
-  VERIFY(outside > 500);
-  VERIFY_EQUAL(subject.Filter->GetNumberOfOutsidePoints(), outside);
-  VERIFY_CONTAINS(
-    subject.Warning, std::to_string(outside) + " of " + std::to_string(positions.size()));
+  EXPECT_LT(worst, 1e-12);
+  EXPECT_GT(outside, 500);
+  EXPECT_EQ(subject.Filter->GetNumberOfOutsidePoints(), outside);
+  EXPECT_TRUE(
+    HasPart(subject.Warning, std::to_string(outside) + " of " + std::to_string(positions.size())));
 
   // The same deformation as a deformed mesh on port 1, and as doubled displacements with a scale of
   // 0.5.
@@ -474,7 +467,7 @@ void TestMesh()
     {
       difference = std::max(difference, glm::length(again[i] - moved[i]));
     }
-    VERIFY(difference < tolerance);
+    EXPECT_LT(difference, tolerance);
   };
   subject.Filter->SetDeformationData(deformed);
   subject.Filter->SetRestData(mesh);
@@ -491,8 +484,8 @@ void TestMesh()
   // A point on the boundary of the mesh counts as inside, although floats round its position.
   subject.Filter->SetInputData(MakePoints({ { 10.0 * (1.0 + 1e-7), 3.3, 4.4 } }, VTK_FLOAT));
   subject.Update();
-  VERIFY(subject.IsValid(0));
-  VERIFY_EQUAL(subject.Filter->GetOutput()->GetPoints()->GetDataType(), VTK_FLOAT);
+  EXPECT_TRUE(subject.IsValid(0));
+  EXPECT_EQ(subject.Filter->GetOutput()->GetPoints()->GetDataType(), VTK_FLOAT);
 }
 
 //------------------------------------------------------------------------------
@@ -561,16 +554,13 @@ void TestArraysOf(vtkDataObject* deformation, int mode, bool inverse, bool field
     wrong += glm::length(GetTuple(output->GetArray("more"), id) - across) < 1e-6 ? 0 : 1;
     wrong += glm::length(GetTuple(output->GetNormals(), id) - normal) < 1e-6 ? 0 : 1;
   }
-  if (wrong > 0 || compared < 100)
-  {
-    ++GetNumberOfFailures();
-    std::cerr << "mode " << mode << ", inverse " << inverse << ", field is inverse "
-              << fieldIsInverse << ": " << wrong << " vectors of " << compared
-              << " points are wrong\n";
-  }
+  SCOPED_TRACE(testing::Message() << "mode " << mode << ", inverse " << inverse
+                                  << ", field is inverse " << fieldIsInverse);
+  EXPECT_EQ(wrong, 0);
+  EXPECT_GE(compared, 100);
 }
 
-void TestArrays()
+TEST(DeformGeometryFilter, Arrays)
 {
   auto mesh = MakeLattice(10.0, 4, 0.2);
   SetDisplacements(mesh, Bend);
@@ -604,14 +594,14 @@ void TestArrays()
   const vtkSmartPointer<vtkDoubleArray> vectors = AddArray(points, "v", Shift(1.0, 0.0, 0.0));
   Subject subject(points, mesh);
   vtkPointSet* output = subject.Update();
-  VERIFY(output->GetPointData()->GetArray("ids") == ids);
-  VERIFY(output->GetPointData()->GetArray("v") == vectors); // not active
-  VERIFY_EQUAL(output->GetNumberOfCells(), 1);
-  VERIFY_CONTAINS(subject.Warning, "\"cell normals\"");
+  EXPECT_EQ(output->GetPointData()->GetArray("ids"), ids);
+  EXPECT_EQ(output->GetPointData()->GetArray("v"), vectors); // not active
+  EXPECT_EQ(output->GetNumberOfCells(), 1);
+  EXPECT_TRUE(HasPart(subject.Warning, "\"cell normals\""));
 }
 
 // Outside a translated box the exact result is known in closed form.
-void TestOutside()
+TEST(DeformGeometryFilter, Outside)
 {
   const glm::dvec3 shift(0.5, -0.25, 0.75);
   const double side = 8.0;
@@ -628,7 +618,7 @@ void TestOutside()
       subject.Filter->SetOutsideModeToKeep();
       subject.Filter->SetFadeDistance(distance);
       const std::vector<glm::dvec3> moved = subject.GetPositions();
-      VERIFY(subject.Warning.empty());
+      EXPECT_TRUE(subject.Warning.empty());
       double worst = 0.0;
       int still = 0;
       for (std::size_t i = 0; i < positions.size(); ++i)
@@ -638,30 +628,30 @@ void TestOutside()
         const double weight = away == 0.0 ? 1.0 : distance > 0.0 ? Fade(away / distance) : 0.0;
         worst = std::max(worst, glm::length(moved[i] - positions[i] - weight * shift));
         still += weight == 0.0 && moved[i] == positions[i] ? 1 : 0;
-        VERIFY(weight > 0.0 || moved[i] == positions[i]);
+        EXPECT_TRUE(weight > 0.0 || moved[i] == positions[i]);
       }
-      VERIFY(worst < 1e-12);
-      VERIFY(still > 500);
+      EXPECT_LT(worst, 1e-12);
+      EXPECT_GT(still, 500);
     }
     // The displacement is 0.94, and the limit is 0.87, two thirds of FadeDistance.
     Subject folded(MakePoints({ glm::dvec3(-0.5) }), deformation);
     folded.Filter->SetOutsideModeToKeep();
     folded.Filter->SetFadeDistance(1.3);
     folded.Update();
-    VERIFY_CONTAINS(folded.Warning, "moves by up to 0.935");
+    EXPECT_TRUE(HasPart(folded.Warning, "moves by up to 0.935"));
     folded.Filter->SetInputData(MakePoints({ glm::dvec3(1.0) }));
     folded.Update();
-    VERIFY(folded.Warning.empty()); // no point is outside
+    EXPECT_TRUE(folded.Warning.empty()); // no point is outside
 
     // A point so far away that the square of its distance is infinite.
     for (const int mode : { Extrapolate, Keep })
     {
       Subject far(MakePoints({ glm::dvec3(1e200), glm::dvec3(4.0) }), deformation);
       far.Filter->SetOutsideMode(mode);
-      VERIFY(glm::length(far.GetPositions()[1] - 4.0 - shift) < 1e-12);
-      VERIFY_EQUAL(far.GetPositions()[0].x, 1e200);
+      EXPECT_LT(glm::length(far.GetPositions()[1] - 4.0 - shift), 1e-12);
+      EXPECT_EQ(far.GetPositions()[0].x, 1e200);
       far.Filter->SetInverse(true);
-      VERIFY_EQUAL(far.GetPositions()[0].x, 1e200);
+      EXPECT_EQ(far.GetPositions()[0].x, 1e200);
     }
 
     Subject subject(MakePoints(positions), deformation);
@@ -672,7 +662,7 @@ void TestOutside()
     {
       worst = std::max(worst, glm::length(moved[i] - positions[i] - shift));
     }
-    VERIFY(worst < 1e-12);
+    EXPECT_LT(worst, 1e-12);
   }
 
   // An affine map is extrapolated outside a mesh.
@@ -686,7 +676,7 @@ void TestOutside()
   {
     worst = std::max(worst, glm::length(moved[i] - matrix * positions[i]));
   }
-  VERIFY(worst < 2e-5); // displacements are floats, and are extrapolated over up to 5 tetrahedra
+  EXPECT_LT(worst, 2e-5); // displacements are floats, and are extrapolated over up to 5 tetrahedra
 }
 
 //------------------------------------------------------------------------------
@@ -726,7 +716,7 @@ glm::dvec3 MoveByField(vtkImageData* field, const glm::dvec3& point)
   return moved;
 }
 
-void TestField()
+TEST(DeformGeometryFilter, Field)
 {
   const std::vector<glm::dvec3> positions =
     MakePositions(3000, glm::dvec3(-0.5), glm::dvec3(10.5), 11);
@@ -745,11 +735,11 @@ void TestField()
         continue; // within the tolerance of the field's faces, see below
       }
       const bool isMoved = isInside || mode == Extrapolate;
-      VERIFY_EQUAL(subject.IsValid(static_cast<vtkIdType>(i)), isMoved);
+      EXPECT_EQ(subject.IsValid(static_cast<vtkIdType>(i)), isMoved);
       worst = std::max(
         worst, glm::length(moved[i] - (isMoved ? MoveByField(field, positions[i]) : positions[i])));
     }
-    VERIFY(worst < 1e-12);
+    EXPECT_LT(worst, 1e-12);
   }
 
   // The faces of a field have a tolerance of 1/1000 of a cell, as in vtkDeformVolumeFilter.
@@ -758,8 +748,8 @@ void TestField()
   subject.Filter->SetInputData(
     MakePoints({ { -0.0009 * cell, 5.0, 5.0 }, { -0.0011 * cell, 5.0, 5.0 } }));
   subject.Update();
-  VERIFY(subject.IsValid(0));
-  VERIFY(!subject.IsValid(1));
+  EXPECT_TRUE(subject.IsValid(0));
+  EXPECT_FALSE(subject.IsValid(1));
 
   // Vectors of hidden points are undefined.
   vtkNew<vtkUnsignedCharArray> ghosts;
@@ -774,10 +764,10 @@ void TestField()
     MakePoints({ cell * glm::dvec3(3.5, 4.0, 5.0), cell * glm::dvec3(4.0, 4.0, 5.0),
       cell * glm::dvec3(3.5, 5.0, 5.0), cell * glm::dvec3(4.1, 4.2, 5.1) }));
   subject.Update();
-  VERIFY(!subject.IsValid(0));
-  VERIFY(subject.IsValid(1));
-  VERIFY(subject.IsValid(2));
-  VERIFY(subject.IsValid(3));
+  EXPECT_FALSE(subject.IsValid(0));
+  EXPECT_TRUE(subject.IsValid(1));
+  EXPECT_TRUE(subject.IsValid(2));
+  EXPECT_TRUE(subject.IsValid(3));
 
   // An oblique field of doubles, with an extent that does not begin at 0.
   auto oblique = MakeImage({ { 2, 6, -3, 4, 5, 9 } }, { 1.5, 0.7, 2.0 }, { 3.0, 4.0, -5.0 });
@@ -803,7 +793,7 @@ void TestField()
   {
     worst = std::max(worst, glm::length(moved[i] - matrix * inner[i]));
   }
-  VERIFY(worst < 1e-12);
+  EXPECT_LT(worst, 1e-12);
   affine.Filter->SetInputData(MakePoints(moved));
   affine.Filter->SetInverse(true);
   moved = affine.GetPositions();
@@ -812,12 +802,12 @@ void TestField()
   {
     worst = std::max(worst, glm::length(moved[i] - inner[i]));
   }
-  VERIFY(worst < 1e-9);
+  EXPECT_LT(worst, 1e-9);
 }
 
 //------------------------------------------------------------------------------
 // The deformation of the inverse is the identity, for deformations without folds.
-void TestInverse()
+TEST(DeformGeometryFilter, Inverse)
 {
   auto mesh = MakeLattice(10.0, 5, 0.2);
   SetDisplacements(mesh, Bend);
@@ -860,16 +850,16 @@ void TestInverse()
       std::cout << "inverse and forward, " << (one.Deformation == mesh ? "mesh" : "field")
                 << (one.FieldIsInverse ? " that is inverse" : "") << ", mode " << mode << ": "
                 << compared << " points, largest error " << worst << ", " << lost << " lost\n";
-      VERIFY(worst < 1e-6);
-      VERIFY_EQUAL(lost, 0);
-      VERIFY(compared > (mode == Discard ? 3500 : 4900));
+      EXPECT_LT(worst, 1e-6);
+      EXPECT_EQ(lost, 0);
+      EXPECT_GT(compared, mode == Discard ? 3500 : 4900);
     }
   }
 }
 
 // The inverse of a map that folds along x. It is piecewise linear, so all solutions are known. The
 // first cells are inverted if the amplitude is less than -1.
-void TestFolds(double amplitude)
+void CheckFolds(double amplitude)
 {
   const auto foldAlongX = [amplitude](double x) { return x + amplitude * std::sin(x); };
   constexpr int points = 41;
@@ -909,7 +899,7 @@ void TestFolds(double amplitude)
       }
     }
     const bool isValid = subject.IsValid(static_cast<vtkIdType>(i));
-    VERIFY_EQUAL(isValid, !upright.empty() || !inverted.empty());
+    EXPECT_EQ(isValid, !upright.empty() || !inverted.empty());
     outside += isValid ? 0 : 1;
     folded += upright.size() > 1 ? 1 : 0;
     contested +=
@@ -937,9 +927,9 @@ void TestFolds(double amplitude)
   {
     check(i, true);
   }
-  VERIFY(worst < 1e-9);
-  VERIFY(amplitude > 0.0 ? folded > 300 : contested > 100);
-  VERIFY(amplitude < 0.0 || outside > 20);
+  EXPECT_LT(worst, 1e-9);
+  EXPECT_TRUE(amplitude > 0.0 ? folded > 300 : contested > 100);
+  EXPECT_TRUE(amplitude < 0.0 || outside > 20);
 
   // A mesh with the same fold.
   vtkNew<vtkLatticeTetrahedraSource> source;
@@ -957,13 +947,13 @@ void TestFolds(double amplitude)
   {
     check(i, false);
   }
-  VERIFY(worst < 1e-9);
+  EXPECT_LT(worst, 1e-9);
 }
 
 //------------------------------------------------------------------------------
 // A mesh with a node at each voxel, and the same tetrahedra as the sampling mesh: the deformed
 // volume and the filter use the same piecewise linear map.
-void TestAgainstVolume()
+TEST(DeformGeometryFilter, AgainstVolume)
 {
   const int size = 16;
   auto volume = MakeImage({ { 0, size - 1, 0, size - 1, 0, size - 1 } });
@@ -1028,10 +1018,10 @@ void TestAgainstVolume()
     std::cout << "amplitude " << amplitude << ": " << seen.size() << " voxels, largest error "
               << worst << ", " << onOneSide << " covered by one filter only, " << elsewhere
               << " with another winner\n";
-    VERIFY(worst <= 1.0 / 256.0);
-    VERIFY(seen.size() > 2000);
-    VERIFY(onOneSide <= 8);  // on the surface, since positions are rounded to 1/256
-    VERIFY(elsewhere <= 30); // between the parts of a fold, for the same reason
+    EXPECT_LE(worst, 1.0 / 256.0);
+    EXPECT_GT(seen.size(), 2000);
+    EXPECT_LE(onOneSide, 8);  // on the surface, since positions are rounded to 1/256
+    EXPECT_LE(elsewhere, 30); // between the parts of a fold, for the same reason
   }
 }
 
@@ -1062,7 +1052,7 @@ double GetDistance(vtkPointSet* from, vtkPointSet* to, double min, double max, i
   return worst;
 }
 
-void TestIsosurface()
+TEST(DeformGeometryFilter, Isosurface)
 {
   const int size = 48;
   auto volume = MakeImage({ { 0, size - 1, 0, size - 1, 0, size - 1 } });
@@ -1096,20 +1086,20 @@ void TestIsosurface()
     subject.Filter->SetInputConnection(before->GetOutputPort());
     subject.Filter->SetDeformationData(deformation);
     vtkPointSet* moved = subject.Update();
-    VERIFY(subject.Warning.empty());
+    EXPECT_TRUE(subject.Warning.empty());
     int compared = 0;
     const double there = GetDistance(moved, after->GetOutput(), 4.0, 46.0, compared);
     const double back = GetDistance(after->GetOutput(), moved, 4.0, 46.0, compared);
     std::cout << (deformation == mesh ? "mesh" : "field") << ": isosurfaces of " << compared
               << " points are at most " << there << " and " << back << " voxels apart\n";
-    VERIFY(compared > 5000);
-    VERIFY(there < 0.5);
-    VERIFY(back < 0.5);
+    EXPECT_GT(compared, 5000);
+    EXPECT_LT(there, 0.5);
+    EXPECT_LT(back, 0.5);
   }
 }
 
 //------------------------------------------------------------------------------
-void TestDataTypes()
+TEST(DeformGeometryFilter, DataTypes)
 {
   auto mesh = MakeLattice(10.0, 3, 0.0);
   SetDisplacements(mesh, Shift(1.0, 2.0, 3.0));
@@ -1125,85 +1115,73 @@ void TestDataTypes()
   grid->SetPoints(points);
   Subject structured(grid, mesh);
   auto* moved = vtkStructuredGrid::SafeDownCast(structured.Update());
-  VERIFY(moved != nullptr);
+  EXPECT_NE(moved, nullptr);
   if (moved)
   {
     int extent[6];
     moved->GetExtent(extent);
-    VERIFY_EQUAL(extent[5], 6);
-    VERIFY_EQUAL(GetPoint(moved, 17).z, 5.0);
+    EXPECT_EQ(extent[5], 6);
+    EXPECT_EQ(GetPoint(moved, 17).z, 5.0);
   }
 
   // A mesh that is moved by its own displacements.
   Subject self(mesh, mesh);
-  VERIFY(vtkUnstructuredGrid::SafeDownCast(self.Update()) != nullptr);
-  VERIFY_EQUAL(GetPoint(self.Filter->GetOutput(), 0).y, 2.0);
-  VERIFY_EQUAL(self.Filter->GetOutput()->GetNumberOfCells(), mesh->GetNumberOfCells());
+  EXPECT_NE(vtkUnstructuredGrid::SafeDownCast(self.Update()), nullptr);
+  EXPECT_EQ(GetPoint(self.Filter->GetOutput(), 0).y, 2.0);
+  EXPECT_EQ(self.Filter->GetOutput()->GetNumberOfCells(), mesh->GetNumberOfCells());
 
   // Composite datasets as the mesh, then as the points.
   vtkNew<vtkMultiBlockDataSet> blocks;
   blocks->SetBlock(0, mesh);
   Subject composite(MakePoints({ glm::dvec3(4.0) }), blocks);
-  VERIFY_EQUAL(composite.GetPositions()[0].z, 7.0);
+  EXPECT_EQ(composite.GetPositions()[0].z, 7.0);
   vtkNew<vtkMultiBlockDataSet> surfaces;
   surfaces->SetBlock(0, MakePoints({ glm::dvec3(4.0), glm::dvec3(-1.0) }));
   surfaces->SetBlock(2, MakePoints({ glm::dvec3(5.0), glm::dvec3(20.0) }));
   Subject each(surfaces, mesh);
   each.Filter->Update();
   auto* output = vtkMultiBlockDataSet::SafeDownCast(each.Filter->GetOutputDataObject(0));
-  VERIFY(output != nullptr);
+  EXPECT_NE(output, nullptr);
   if (output)
   {
-    VERIFY_EQUAL(GetPoint(vtkDataSet::SafeDownCast(output->GetBlock(0)), 0).x, 5.0);
-    VERIFY_EQUAL(GetPoint(vtkDataSet::SafeDownCast(output->GetBlock(2)), 0).x, 6.0);
+    EXPECT_EQ(GetPoint(vtkDataSet::SafeDownCast(output->GetBlock(0)), 0).x, 5.0);
+    EXPECT_EQ(GetPoint(vtkDataSet::SafeDownCast(output->GetBlock(2)), 0).x, 6.0);
   }
-  VERIFY_EQUAL(each.Filter->GetNumberOfOutsidePoints(), 2);
-  VERIFY_CONTAINS(std::string(each.Observer->GetWarningMessage()), "2 of 4 points");
+  EXPECT_EQ(each.Filter->GetNumberOfOutsidePoints(), 2);
+  EXPECT_TRUE(HasPart(std::string(each.Observer->GetWarningMessage()), "2 of 4 points"));
   each.Observer->Clear();
   surfaces->SetBlock(1, MakeVolume());
-  VERIFY(!each.Filter->GetExecutive()->Update());
-  VERIFY_CONTAINS(std::string(each.Observer->GetErrorMessage()), "vtkImageData");
+  EXPECT_FALSE(each.Filter->GetExecutive()->Update());
+  EXPECT_TRUE(HasPart(std::string(each.Observer->GetErrorMessage()), "vtkImageData"));
 
   // Changed inputs are read again.
   Subject live(MakePoints({ glm::dvec3(4.0) }), mesh);
   mesh->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), 2.5);
-  VERIFY_EQUAL(live.GetPositions()[0].x, 5.0);
+  EXPECT_EQ(live.GetPositions()[0].x, 5.0);
   vtkInformation* time = live.Filter->GetOutput()->GetInformation();
-  VERIFY(time->Has(vtkDataObject::DATA_TIME_STEP()));
-  VERIFY_EQUAL(time->Get(vtkDataObject::DATA_TIME_STEP()), 2.5);
+  EXPECT_TRUE(time->Has(vtkDataObject::DATA_TIME_STEP()));
+  EXPECT_EQ(time->Get(vtkDataObject::DATA_TIME_STEP()), 2.5);
   SetDisplacements(mesh, Shift(2.0, 0.0, 0.0));
   mesh->Modified();
-  VERIFY_EQUAL(live.GetPositions()[0].x, 6.0);
+  EXPECT_EQ(live.GetPositions()[0].x, 6.0);
   mesh->GetPointData()->GetVectors()->Fill(0.5);
   mesh->GetPointData()->GetVectors()->Modified();
-  VERIFY_EQUAL(live.GetPositions()[0].x, 4.5);
+  EXPECT_EQ(live.GetPositions()[0].x, 4.5);
   live.Filter->SetInverse(true);
-  VERIFY_EQUAL(live.GetPositions()[0].x, 3.5);
+  EXPECT_EQ(live.GetPositions()[0].x, 3.5);
   auto field = MakeField(10.0, 4, Shift(-1.0, 0.0, 0.0));
   live.Filter->SetDeformationData(field);
-  VERIFY(std::abs(live.GetPositions()[0].x - 5.0) < 1e-6);
+  EXPECT_LT(std::abs(live.GetPositions()[0].x - 5.0), 1e-6);
   live.Filter->SetFieldIsInverse(true);
-  VERIFY_EQUAL(live.GetPositions()[0].x, 3.0);
+  EXPECT_EQ(live.GetPositions()[0].x, 3.0);
   live.Filter->SetDeformationData(mesh);
-  VERIFY_EQUAL(live.GetPositions()[0].x, 3.5);
+  EXPECT_EQ(live.GetPositions()[0].x, 3.5);
 }
 
 } // namespace
 
-int TestDeformGeometryFilter(int, char*[])
+TEST(DeformGeometryFilter, Folds)
 {
-  TestMisuse();
-  TestMissing();
-  TestAbort();
-  TestMesh();
-  TestArrays();
-  TestOutside();
-  TestField();
-  TestInverse();
-  TestFolds(2.5);
-  TestFolds(-2.5);
-  TestAgainstVolume();
-  TestIsosurface();
-  TestDataTypes();
-  return GetExitCode();
+  CheckFolds(2.5);
+  CheckFolds(-2.5);
 }

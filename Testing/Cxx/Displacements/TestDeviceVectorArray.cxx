@@ -2,6 +2,7 @@
 // The interfaces of VTK arrays for vtkDeviceVectorArray, with values on the host and with vectors
 // of a device.
 #include "FilterTesting.h"
+#include "RunTests.h"
 #include "vtkArrayChanges.h"
 #include "vtkDeviceVectorArray.h"
 
@@ -78,54 +79,54 @@ Vectors MakeVectors(std::size_t tuples)
 void CheckReading(vtkDeviceVectorArray* array)
 {
   constexpr vtkIdType tuples = 50;
-  VERIFY_EQUAL(array->GetNumberOfTuples(), tuples);
-  VERIFY_EQUAL(array->GetNumberOfComponents(), 3);
-  VERIFY_EQUAL(array->GetDataType(), VTK_FLOAT);
-  VERIFY(Has(array, MakeNumbers(50)));
-  VERIFY_EQUAL(array->GetTuple(7)[1], double{ GetNumber(22) });
-  VERIFY_EQUAL(array->GetValue(149), GetNumber(149));
+  EXPECT_EQ(array->GetNumberOfTuples(), tuples);
+  EXPECT_EQ(array->GetNumberOfComponents(), 3);
+  EXPECT_EQ(array->GetDataType(), VTK_FLOAT);
+  EXPECT_TRUE(Has(array, MakeNumbers(50)));
+  EXPECT_EQ(array->GetTuple(7)[1], double{ GetNumber(22) });
+  EXPECT_EQ(array->GetValue(149), GetNumber(149));
   float tuple[3];
   array->GetTypedTuple(49, tuple);
-  VERIFY_EQUAL(tuple[2], GetNumber(149));
-  VERIFY_EQUAL(array->GetTypedComponent(3, 1), GetNumber(10));
-  VERIFY_EQUAL(array->GetVariantValue(5).ToFloat(), GetNumber(5));
-  VERIFY_EQUAL(array->LookupValue(vtkVariant(GetNumber(77))), 77);
+  EXPECT_EQ(tuple[2], GetNumber(149));
+  EXPECT_EQ(array->GetTypedComponent(3, 1), GetNumber(10));
+  EXPECT_EQ(array->GetVariantValue(5).ToFloat(), GetNumber(5));
+  EXPECT_EQ(array->LookupValue(vtkVariant(GetNumber(77))), 77);
   double range[2];
   array->GetRange(range, 1);
-  VERIFY_EQUAL(range[0], double{ GetNumber(1) });
-  VERIFY_EQUAL(range[1], double{ GetNumber(148) });
+  EXPECT_EQ(range[0], double{ GetNumber(1) });
+  EXPECT_EQ(range[1], double{ GetNumber(148) });
   array->GetRange(range, -1);
-  VERIFY(range[1] > 50.0 && range[1] < 60.0);
+  EXPECT_TRUE(range[1] > 50.0 && range[1] < 60.0);
   // Copies into other arrays, and from them.
   vtkNew<vtkFloatArray> floats;
   floats->DeepCopy(array);
-  VERIFY(Has(floats, MakeNumbers(50)));
+  EXPECT_TRUE(Has(floats, MakeNumbers(50)));
   vtkNew<vtkDeviceVectorArray> copy;
   copy->DeepCopy(floats);
-  VERIFY(Has(copy, MakeNumbers(50)));
+  EXPECT_TRUE(Has(copy, MakeNumbers(50)));
   vtkNew<vtkDeviceVectorArray> again;
   again->DeepCopy(array);
-  VERIFY(Has(again, MakeNumbers(50)));
+  EXPECT_TRUE(Has(again, MakeNumbers(50)));
   vtkNew<vtkIdList> ids;
   ids->InsertNextId(4);
   vtkNew<vtkFloatArray> some;
   some->SetNumberOfComponents(3);
   some->SetNumberOfTuples(1);
   array->GetTuples(ids, some);
-  VERIFY_EQUAL(some->GetValue(1), GetNumber(13));
+  EXPECT_EQ(some->GetValue(1), GetNumber(13));
   // Interfaces of older versions of VTK.
-  VERIFY(array->HasStandardMemoryLayout());
-  VERIFY_EQUAL(static_cast<float*>(array->GetVoidPointer(11))[0], GetNumber(11));
+  EXPECT_TRUE(array->HasStandardMemoryLayout());
+  EXPECT_EQ(static_cast<float*>(array->GetVoidPointer(11))[0], GetNumber(11));
   vtkSmartPointer<vtkArrayIterator> iterator;
   iterator.TakeReference(array->NewIterator());
   auto* typed = static_cast<vtkArrayIteratorTemplate<float>*>(iterator.Get());
-  VERIFY_EQUAL(typed->GetNumberOfValues(), 150);
-  VERIFY_EQUAL(typed->GetValue(100), GetNumber(100));
+  EXPECT_EQ(typed->GetNumberOfValues(), 150);
+  EXPECT_EQ(typed->GetValue(100), GetNumber(100));
   const auto values = vtk::DataArrayValueRange<3>(array);
-  VERIFY_EQUAL(static_cast<float>(values[20]), GetNumber(20));
+  EXPECT_EQ(static_cast<float>(values[20]), GetNumber(20));
   auto other = vtkSmartPointer<vtkDataArray>::Take(array->NewInstance());
-  VERIFY(other->IsA("vtkDeviceVectorArray"));
-  VERIFY_EQUAL(other->GetNumberOfTuples(), 0);
+  EXPECT_TRUE(other->IsA("vtkDeviceVectorArray"));
+  EXPECT_EQ(other->GetNumberOfTuples(), 0);
 }
 
 void CheckWriting(vtkDeviceVectorArray* array)
@@ -140,113 +141,113 @@ void CheckWriting(vtkDeviceVectorArray* array)
   std::copy(tuple, tuple + 3, numbers.begin() + 60);
   array->InsertTuple(50, tuple);
   numbers.insert(numbers.end(), tuple, tuple + 3);
-  VERIFY(Has(array, numbers));
-  VERIFY(!array->IsOnDevice());
+  EXPECT_TRUE(Has(array, numbers));
+  EXPECT_FALSE(array->IsOnDevice());
   array->Resize(51);
   array->RemoveTuple(0);
   numbers.erase(numbers.begin(), numbers.begin() + 3);
-  VERIFY(Has(array, numbers));
+  EXPECT_TRUE(Has(array, numbers));
   static_cast<float*>(array->WriteVoidPointer(150, 3))[1] = 8.0F;
-  VERIFY_EQUAL(array->GetNumberOfTuples(), 51);
-  VERIFY_EQUAL(array->GetComponent(50, 1), 8.0);
+  EXPECT_EQ(array->GetNumberOfTuples(), 51);
+  EXPECT_EQ(array->GetComponent(50, 1), 8.0);
   array->Squeeze();
-  VERIFY_EQUAL(array->GetComponent(49, 0), 5.0);
+  EXPECT_EQ(array->GetComponent(49, 0), 5.0);
   array->SetNumberOfComponents(1);
   array->SetNumberOfTuples(4);
   array->Fill(2.5);
-  VERIFY_EQUAL(array->GetComponent(3, 0), 2.5);
-  VERIFY(!array->GetVectors(deformvolume::ResolveDevice(""))); // has one component
+  EXPECT_EQ(array->GetComponent(3, 0), 2.5);
+  EXPECT_FALSE(array->GetVectors(deformvolume::ResolveDevice(""))); // has one component
   array->Initialize();
-  VERIFY_EQUAL(array->GetNumberOfTuples(), 0);
+  EXPECT_EQ(array->GetNumberOfTuples(), 0);
 }
 
-void TestAsAnyArray()
+TEST(DeviceVectorArray, AsAnyArray)
 {
   vtkNew<vtkDeviceVectorArray> empty;
-  VERIFY_EQUAL(empty->GetNumberOfTuples(), 0);
-  VERIFY(!empty->IsOnDevice());
-  VERIFY(!empty->GetVectors(deformvolume::ResolveDevice("")));
+  EXPECT_EQ(empty->GetNumberOfTuples(), 0);
+  EXPECT_FALSE(empty->IsOnDevice());
+  EXPECT_FALSE(empty->GetVectors(deformvolume::ResolveDevice("")));
   empty->Modified();
   empty->SetVectors(nullptr);
   const auto array = MakeByInserting(50);
   CheckReading(array);
   CheckWriting(array);
   // None of these accesses needed vectors on a device.
-  VERIFY_EQUAL(array->GetNumberOfUploads(), 0);
+  EXPECT_EQ(array->GetNumberOfUploads(), 0);
 }
 
-void TestVectors()
+TEST(DeviceVectorArray, Vectors)
 {
   const Vectors vectors = MakeVectors(50);
   const bool ownMemory = !vectors->AreInHostMemory();
   vtkNew<vtkDeviceVectorArray> array;
   array->SetVectors(vectors);
-  VERIFY(array->IsOf(vectors));
-  VERIFY_EQUAL(array->IsOnDevice(), ownMemory);
-  VERIFY_EQUAL(array->GetNumberOfDownloads(), 0);
+  EXPECT_TRUE(array->IsOf(vectors));
+  EXPECT_EQ(array->IsOnDevice(), ownMemory);
+  EXPECT_EQ(array->GetNumberOfDownloads(), 0);
   CheckReading(array);
-  VERIFY_EQUAL(array->GetNumberOfDownloads(), ownMemory ? 1 : 0);
-  VERIFY_EQUAL(array->GetVectors(vectors->GetDevice()) == vectors, ownMemory);
-  VERIFY(!array->GetVectors("another device"));
+  EXPECT_EQ(array->GetNumberOfDownloads(), ownMemory ? 1 : 0);
+  EXPECT_EQ(array->GetVectors(vectors->GetDevice()) == vectors, ownMemory);
+  EXPECT_FALSE(array->GetVectors("another device"));
   // After Modified() the array has the values that the owner of the vectors has written.
   std::vector<float> numbers = MakeNumbers(50);
   numbers[31] = 100.0F;
   vectors->Write(numbers.data(), { { { 10, 11 } } });
   array->Modified();
-  VERIFY(array->IsOf(vectors));
-  VERIFY(Has(array, numbers));
+  EXPECT_TRUE(array->IsOf(vectors));
+  EXPECT_TRUE(Has(array, numbers));
   double range[2];
   array->GetRange(range, 1);
-  VERIFY_EQUAL(range[1], 100.0);
+  EXPECT_EQ(range[1], 100.0);
   vtkNew<vtkArrayChanges> log;
   log->SetArray(array);
   numbers[31] = 200.0F;
   vectors->Write(numbers.data(), { { { 10, 11 } } });
   log->AddTuples(10, 10);
-  VERIFY(Has(array, numbers));
+  EXPECT_TRUE(Has(array, numbers));
   // Writing to the array makes a copy on the host, and does not change the vectors of the owner.
   vectors->Write(MakeNumbers(50).data());
   array->Modified();
   CheckWriting(array);
-  VERIFY(!array->IsOf(vectors));
+  EXPECT_FALSE(array->IsOf(vectors));
   const std::vector<float> left(vectors->Read(), vectors->Read() + 150);
-  VERIFY(left == MakeNumbers(50));
+  EXPECT_EQ(left, MakeNumbers(50));
   array->SetVectors(vectors);
-  VERIFY(Has(array, left));
+  EXPECT_TRUE(Has(array, left));
   auto* written = static_cast<float*>(array->GetVoidPointer(0));
   written[0] = 77.0F;
-  VERIFY(array->IsOf(vectors)); // before Modified()
+  EXPECT_TRUE(array->IsOf(vectors)); // before Modified()
   array->Modified();
-  VERIFY(!array->IsOf(vectors));
-  VERIFY_EQUAL(array->GetValue(0), 77.0F);
-  VERIFY_EQUAL(array->GetValue(1), GetNumber(1));
-  VERIFY_EQUAL(vectors->Read()[0], GetNumber(0));
+  EXPECT_FALSE(array->IsOf(vectors));
+  EXPECT_EQ(array->GetValue(0), 77.0F);
+  EXPECT_EQ(array->GetValue(1), GetNumber(1));
+  EXPECT_EQ(vectors->Read()[0], GetNumber(0));
 }
 
-void TestWriter(const std::string& folder)
+TEST(DeviceVectorArray, Writer)
 {
   const auto image = MakeImage({ { 0, 4, 0, 4, 0, 1 } });
   vtkNew<vtkDeviceVectorArray> array;
   array->SetName("vectors");
   array->SetVectors(MakeVectors(50));
   image->GetPointData()->SetVectors(array);
-  const std::string name = folder + "/TestDeviceVectorArray.vti";
+  const std::string name = GetTestArgument("-T") + "/TestDeviceVectorArray.vti";
   vtkNew<vtkXMLImageDataWriter> writer;
   writer->SetInputData(image);
   writer->SetFileName(name.c_str());
-  VERIFY(writer->Write() == 1);
+  EXPECT_EQ(writer->Write(), 1);
   vtkNew<vtkXMLImageDataReader> reader;
   reader->SetFileName(name.c_str());
   reader->Update();
   vtkDataArray* read = reader->GetOutput()->GetPointData()->GetArray("vectors");
-  VERIFY(read && Has(read, MakeNumbers(50)));
+  EXPECT_TRUE(read && Has(read, MakeNumbers(50)));
   vtkNew<vtkImageData> copy;
   copy->DeepCopy(image);
-  VERIFY(Has(copy->GetPointData()->GetArray("vectors"), MakeNumbers(50)));
+  EXPECT_TRUE(Has(copy->GetPointData()->GetArray("vectors"), MakeNumbers(50)));
 }
 
 // The same deformation by a vtkFloatArray and by a vtkDeviceVectorArray.
-void TestFilter(bool byField)
+void CheckFilter(bool byField)
 {
   const auto volume = MakeVolume({ { 0, 69, 0, 66, 0, 63 } }); // its field is read in place
   const vtkSmartPointer<vtkDataSet> floats = byField
@@ -268,7 +269,7 @@ void TestFilter(bool byField)
   {
     expected.Filter->SetOutputBoundsMode(mode);
     found.Filter->SetOutputBoundsMode(mode);
-    VERIFY(AreEqual(expected.Update(), found.Update()));
+    EXPECT_TRUE(AreEqual(expected.Update(), found.Update()));
   }
   // The same tuples of both arrays are changed: three times without a log, then three times with
   // one.
@@ -297,12 +298,12 @@ void TestFilter(bool byField)
       log->SetArray(array);
       log->AddTuples(100, 109);
     }
-    VERIFY(AreEqual(expected.Update(), found.Update()));
+    EXPECT_TRUE(AreEqual(expected.Update(), found.Update()));
     // On a device with memory of its own, partial updates need a field with a log. They begin with
     // the second logged change: the first one computes the bounds that later changes are compared
     // with.
     const bool inPart = !ownMemory || (byField && frame > firstLogged);
-    VERIFY_EQUAL(GetReported(found.Filter, "Bricks resampled"),
+    EXPECT_EQ(GetReported(found.Filter, "Bricks resampled"),
       inPart ? GetReported(expected.Filter, "Bricks resampled")
              : GetReported(found.Filter, "Bricks of the volume"));
   }
@@ -311,7 +312,7 @@ void TestFilter(bool byField)
   {
     one->Filter->SetSamplingFactor(2);
   }
-  VERIFY(AreEqual(expected.Update(), found.Update()));
+  EXPECT_TRUE(AreEqual(expected.Update(), found.Update()));
   for (Deformed* one : { &expected, &found })
   {
     one->Filter->SetSamplingFactor(1);
@@ -320,48 +321,39 @@ void TestFilter(bool byField)
   {
     Deformed self(floats, floats);
     Deformed sameSelf(vectors, vectors);
-    VERIFY(AreEqual(self.Update(), sameSelf.Update()));
+    EXPECT_TRUE(AreEqual(self.Update(), sameSelf.Update()));
   }
   // Vectors of a device, written by their owner.
   const auto tuples = static_cast<std::size_t>(array->GetNumberOfTuples());
   const auto shared = std::make_shared<deformvolume::DeviceVectors>("", tuples);
   shared->Write(changed->GetPointer(0));
   array->SetVectors(shared);
-  VERIFY(AreEqual(expected.Update(), found.Update()));
+  EXPECT_TRUE(AreEqual(expected.Update(), found.Update()));
   changed->SetComponent(120, 1, 0.75);
   changed->Modified();
   shared->Write(changed->GetPointer(0), { { { 120, 121 } } });
   array->Modified();
-  VERIFY(AreEqual(expected.Update(), found.Update()));
+  EXPECT_TRUE(AreEqual(expected.Update(), found.Update()));
   array->SetComponent(130, 1, 0.75);
   array->Modified();
   changed->SetComponent(130, 1, 0.75);
   changed->Modified();
-  VERIFY(AreEqual(expected.Update(), found.Update()));
+  EXPECT_TRUE(AreEqual(expected.Update(), found.Update()));
   // The error names the vector that is not finite.
   array->SetComponent(131, 2, std::nan(""));
   array->Modified();
   found.Filter->Update();
-  VERIFY_EQUAL(found.TakeErrors(), 1);
-  VERIFY_CONTAINS(found.LastError, " 131 ");
+  EXPECT_EQ(found.TakeErrors(), 1);
+  EXPECT_TRUE(HasPart(found.LastError, " 131 "));
   array->SetComponent(131, 2, changed->GetComponent(131, 2));
   array->Modified();
-  VERIFY(AreEqual(expected.Update(), found.Update()));
+  EXPECT_TRUE(AreEqual(expected.Update(), found.Update()));
 }
 
 } // namespace
 
-int TestDeviceVectorArray(int argc, char* argv[])
+TEST(DeviceVectorArray, Filter)
 {
-  std::string folder = ".";
-  for (int i = 1; i + 1 < argc; ++i)
-  {
-    folder = std::string(argv[i]) == "-T" ? argv[i + 1] : folder;
-  }
-  TestAsAnyArray();
-  TestVectors();
-  TestWriter(folder);
-  TestFilter(false);
-  TestFilter(true);
-  return GetExitCode();
+  CheckFilter(false);
+  CheckFilter(true);
 }

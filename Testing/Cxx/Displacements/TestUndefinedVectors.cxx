@@ -79,12 +79,12 @@ void CheckForward(vtkImageData* volume, vtkImageData* field, const Choice& isHid
     one->Filter->SetOutsideMode(
       extrapolate ? vtkDeformVolumeFilter::EXTRAPOLATE : vtkDeformVolumeFilter::DISCARD);
     one->Update();
-    VERIFY(one->Filter->GetNumberOfCoveredVoxels() > 100);
+    EXPECT_GT(one->Filter->GetNumberOfCoveredVoxels(), 100);
   }
   vtkPointData* arrays = expected.Filter->GetOutput()->GetPointData();
   for (const char* name : { "value", "vtkValidPointMask" })
   {
-    VERIFY(HaveEqualBits(
+    EXPECT_TRUE(HaveEqualBits(
       arrays->GetArray(name), found.Filter->GetOutput()->GetPointData()->GetArray(name)));
   }
   Deformed whole(volume, field);
@@ -92,10 +92,10 @@ void CheckForward(vtkImageData* volume, vtkImageData* field, const Choice& isHid
   whole.Filter->SetSamplingFactor(factor);
   whole.Filter->SetOutsideMode(found.Filter->GetOutsideMode());
   whole.Update();
-  VERIFY(found.Filter->GetNumberOfCoveredVoxels() < whole.Filter->GetNumberOfCoveredVoxels());
+  EXPECT_LT(found.Filter->GetNumberOfCoveredVoxels(), whole.Filter->GetNumberOfCoveredVoxels());
 }
 
-void TestForward()
+TEST(UndefinedVectors, Forward)
 {
   const auto volume = MakeVolume({ { 0, 12, 0, 12, 0, 12 } });
   // A field whose points are at voxels: each voxel needs only its own point.
@@ -130,7 +130,7 @@ void TestForward()
 }
 
 // When another point is hidden, fewer voxels are covered. Vectors of other points must be finite.
-void TestEdits()
+TEST(UndefinedVectors, Edits)
 {
   const auto volume = MakeVolume({ { 0, 30, 0, 30, 0, 30 } });
   const auto field = MakeImage({ { 0, 30, 0, 30, 0, 30 } });
@@ -143,16 +143,16 @@ void TestEdits()
   ghosts->SetValue(15000, vtkDataSetAttributes::HIDDENPOINT);
   ghosts->Modified();
   tested.Update();
-  VERIFY(tested.Filter->GetNumberOfCoveredVoxels() < covered);
+  EXPECT_LT(tested.Filter->GetNumberOfCoveredVoxels(), covered);
   field->GetPointData()->GetVectors()->SetComponent(16000, 1, nan);
   field->GetPointData()->GetVectors()->Modified();
   tested.Filter->Update();
-  VERIFY_EQUAL(tested.TakeErrors(), 1);
-  VERIFY_CONTAINS(tested.LastError, "Vector 16000 of the displacement field");
+  EXPECT_EQ(tested.TakeErrors(), 1);
+  EXPECT_TRUE(HasPart(tested.LastError, "Vector 16000 of the displacement field"));
 }
 
 // With an inverse field each output voxel has the value of its rest position, or is not covered.
-void TestInverse()
+TEST(UndefinedVectors, Inverse)
 {
   // The spacing 0.7 is not exact in floats, so positions are rounded.
   for (const double spacing : { 1.0, 0.7 })
@@ -190,7 +190,7 @@ void TestInverse()
       Deformed deformed(volume, field);
       deformed.Filter->FieldIsInverseOn();
       const Extent extent{ { 0, 10, 0, 12, 0, 9 } };
-      VERIFY_EQUAL(GetExtent(deformed.Update()), extent);
+      EXPECT_EQ(GetExtent(deformed.Update()), extent);
       deformed.Filter->SetOutputBoundsModeToVolumeBounds();
       vtkImageData* output = deformed.Update();
       int wrong = 0;
@@ -219,17 +219,9 @@ void TestInverse()
           }
         }
       }
-      VERIFY_EQUAL(wrong, 0);
+      EXPECT_EQ(wrong, 0);
     }
   }
 }
 
 } // namespace
-
-int TestUndefinedVectors(int, char*[])
-{
-  TestEdits();
-  TestForward();
-  TestInverse();
-  return GetExitCode();
-}

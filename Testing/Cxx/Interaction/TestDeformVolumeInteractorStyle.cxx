@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vtkDeformVolumeInteractorStyle: misuse, positions of visible points, recorded events compared
 // with the same calls of a session, the thread, random events, and the rendered picture.
-//
-// Usage: TestDeformVolumeInteractorStyle [NUMBER OF RANDOM EVENTS] (300) [SEED] (1)
 #include "FilterTesting.h"
+#include "RunTests.h"
 
 #include "vtkDeformVolumeInteractorStyle.h"
 #include "vtkDeformVolumeSession.h"
@@ -45,6 +44,11 @@ using Style = vtkDeformVolumeInteractorStyle;
 
 namespace
 {
+
+std::string GetFileName()
+{
+  return GetTestArgument("-T") + "/TestDeformVolumeInteractorStyle.xml";
+}
 
 constexpr Extent Box{ { -3, 28, 1, 26, 0, 18 } };
 constexpr int WindowSize = 400;
@@ -90,7 +94,7 @@ struct Viewer
     this->VolumeObject->SetMapper(this->Mapper);
     this->VolumeObject->GetProperty()->SetScalarOpacity(this->Opacity);
     this->Object->SetVolume(this->VolumeObject);
-    VERIFY(this->SessionObject->SetInputs(volume));
+    EXPECT_TRUE(this->SessionObject->SetInputs(volume));
     this->Replay(Timer());
   }
 
@@ -154,7 +158,7 @@ struct Viewer
   vtkNew<vtkTest::ErrorObserver> SessionErrors;
 };
 
-void TestMisuse()
+TEST(DeformVolumeInteractorStyle, Misuse)
 {
   vtkNew<vtkDeformVolumeInteractorStyle> style;
   vtkNew<vtkTest::ErrorObserver> errors;
@@ -162,7 +166,7 @@ void TestMisuse()
   double point[3];
   const auto expect = [&](const char* words)
   {
-    VERIFY_CONTAINS(errors->GetErrorMessage(), words);
+    EXPECT_TRUE(HasPart(errors->GetErrorMessage(), words));
     errors->Clear();
   };
   style->OnLeftButtonDown();
@@ -175,72 +179,72 @@ void TestMisuse()
   expect("no interactor");
   style->StartSession();
   expect("no interactor");
-  VERIFY(!style->FindPosition(0, 0, point));
+  EXPECT_FALSE(style->FindPosition(0, 0, point));
   expect("no interactor");
   style->OnMouseMove();
   style->OnLeftButtonUp();
   style->OnRightButtonUp();
-  VERIFY(!style->Poll());
+  EXPECT_FALSE(style->Poll());
   style->StopSession();
   vtkNew<vtkRenderWindowInteractor> noWindow;
   style->SetInteractor(noWindow);
   style->OnLeftButtonDown();
   expect("no interactor with a window");
-  VERIFY(!style->Poll() && !errors->GetError());
+  EXPECT_TRUE(!style->Poll() && !errors->GetError());
   style->SetInteractor(nullptr);
 
   Viewer viewer;
   viewer.Replay(Viewer::Mouse("LeftButtonPressEvent", 0, 0));
-  VERIFY_CONTAINS(viewer.TakeError(), "no renderer");
+  EXPECT_TRUE(HasPart(viewer.TakeError(), "no renderer"));
   viewer.AddRenderer();
   viewer.Object->SetTool(Style::GRAB);
   viewer.Replay(Viewer::Mouse("LeftButtonPressEvent", 0, 0));
-  VERIFY_CONTAINS(viewer.TakeError(), "Call SetSession() first");
+  EXPECT_TRUE(HasPart(viewer.TakeError(), "Call SetSession() first"));
   viewer.Replay(Viewer::Key('u'));
-  VERIFY_CONTAINS(viewer.TakeError(), "Call SetSession() first");
+  EXPECT_TRUE(HasPart(viewer.TakeError(), "Call SetSession() first"));
   viewer.Object->StartSession();
-  VERIFY_CONTAINS(viewer.TakeError(), "Call SetSession() first");
+  EXPECT_TRUE(HasPart(viewer.TakeError(), "Call SetSession() first"));
   viewer.Replay(Viewer::Key('k') + Viewer::Timer()); // an unused key, and a timer without a session
-  VERIFY(!viewer.Errors->GetError());
+  EXPECT_FALSE(viewer.Errors->GetError());
 
   // Errors of a session without a volume are displayed as messages.
   viewer.Object->SetSession(viewer.SessionObject);
   viewer.Replay(Viewer::Timer() + Viewer::Mouse("LeftButtonPressEvent", 0, 0));
-  VERIFY_CONTAINS(viewer.Object->GetMessage(), "no volume yet");
+  EXPECT_TRUE(HasPart(viewer.Object->GetMessage(), "no volume yet"));
   viewer.Replay(Viewer::Key('2'));
-  VERIFY_CONTAINS(viewer.Object->GetMessage(), "Call SetInputs() first");
+  EXPECT_TRUE(HasPart(viewer.Object->GetMessage(), "Call SetInputs() first"));
   viewer.SessionErrors->Clear();
-  VERIFY(!viewer.Object->FindPosition(200, 200, point));
-  VERIFY(!viewer.Errors->GetError());
+  EXPECT_FALSE(viewer.Object->FindPosition(200, 200, point));
+  EXPECT_FALSE(viewer.Errors->GetError());
 
   viewer.SessionObject->SetInputs(MakeBall());
   vtkNew<vtkVolume> volume;
   viewer.Object->SetVolume(volume);
   viewer.Replay(Viewer::Timer());
-  VERIFY_CONTAINS(viewer.Object->GetMessage(), "no vtkVolumeMapper");
+  EXPECT_TRUE(HasPart(viewer.Object->GetMessage(), "no vtkVolumeMapper"));
   viewer.Object->SetVolume(nullptr);
   for (const char* key : { "g", "v", "m", "p" })
   {
     viewer.Replay(Viewer::Key(*key, -5, -5) + Viewer::Mouse("LeftButtonPressEvent", -5, -5) +
       Viewer::Mouse("LeftButtonReleaseEvent", -5, -5));
-    VERIFY_CONTAINS(viewer.Object->GetMessage(), "nothing here");
+    EXPECT_TRUE(HasPart(viewer.Object->GetMessage(), "nothing here"));
   }
   viewer.Replay(Viewer::Key('c') + Viewer::Mouse("LeftButtonPressEvent", -5, -5) +
     Viewer::Mouse("MouseMoveEvent", -5, 20) + Viewer::Mouse("LeftButtonReleaseEvent", -5, 20));
-  VERIFY_CONTAINS(viewer.Object->GetMessage(), "misses the body");
+  EXPECT_TRUE(HasPart(viewer.Object->GetMessage(), "misses the body"));
   viewer.Replay(Viewer::Mouse("LeftButtonPressEvent", 10, 10) +
     Viewer::Mouse("LeftButtonReleaseEvent", 10, 10));
-  VERIFY_CONTAINS(viewer.Object->GetMessage(), "too short");
+  EXPECT_TRUE(HasPart(viewer.Object->GetMessage(), "too short"));
   viewer.Replay(Viewer::Key('x'));
-  VERIFY_CONTAINS(viewer.Object->GetMessage(), "no handle");
+  EXPECT_TRUE(HasPart(viewer.Object->GetMessage(), "no handle"));
   viewer.Replay(Viewer::Key('g') + Viewer::Mouse("LeftButtonPressEvent", 10, 10) +
     Viewer::Mouse("LeftButtonReleaseEvent", 10, 10));
-  VERIFY_CONTAINS(viewer.Object->GetMessage(), "Press 2, 3 or 4");
+  EXPECT_TRUE(HasPart(viewer.Object->GetMessage(), "Press 2, 3 or 4"));
   viewer.Object->SetTool(99);
-  VERIFY_EQUAL(viewer.Object->GetTool(), int(Style::MEASURE));
+  EXPECT_EQ(viewer.Object->GetTool(), int(Style::MEASURE));
   viewer.Object->SetCutDepth(-1.0);
-  VERIFY_EQUAL(viewer.Object->GetCutDepth(), 0.0);
-  VERIFY(!viewer.Errors->GetError() && !viewer.SessionErrors->GetError());
+  EXPECT_EQ(viewer.Object->GetCutDepth(), 0.0);
+  EXPECT_TRUE(!viewer.Errors->GetError() && !viewer.SessionErrors->GetError());
 }
 
 // The z coordinate of the visible point at x and y, or -1 if nothing is visible.
@@ -254,17 +258,17 @@ double FindHeight(Viewer& viewer, double x, double y)
   {
     return -1.0;
   }
-  VERIFY(std::abs(point[0] - x) < 1e-9 && std::abs(point[1] - y) < 1e-9);
+  EXPECT_TRUE(std::abs(point[0] - x) < 1e-9 && std::abs(point[1] - y) < 1e-9);
   return point[2];
 }
 
-void TestVisible()
+TEST(DeformVolumeInteractorStyle, Visible)
 {
   Viewer viewer(MakeBall());
-  VERIFY_EQUAL(FindHeight(viewer, 3.0, 4.0), 17.0);
+  EXPECT_EQ(FindHeight(viewer, 3.0, 4.0), 17.0);
   viewer.Object->SetVolume(nullptr);
-  VERIFY_EQUAL(FindHeight(viewer, 3.0, 4.0), 18.0);
-  VERIFY_EQUAL(FindHeight(viewer, -5.0, 4.0), -1.0);
+  EXPECT_EQ(FindHeight(viewer, 3.0, 4.0), 18.0);
+  EXPECT_EQ(FindHeight(viewer, -5.0, 4.0), -1.0);
 
   vtkPiecewiseFunction* opacity = viewer.Opacity;
   opacity->RemoveAllPoints();
@@ -272,21 +276,21 @@ void TestVisible()
   opacity->AddPoint(60.0, 1.0);
   viewer.Object->SetVolume(viewer.VolumeObject);
   // The top of the ball is at 9 + sqrt(36 - 2.5^2 - 0.5^2), which is 14.4.
-  VERIFY_EQUAL(FindHeight(viewer, 15.0, 13.0), 14.0);
-  VERIFY_EQUAL(FindHeight(viewer, 3.0, 4.0), -1.0);
+  EXPECT_EQ(FindHeight(viewer, 15.0, 13.0), 14.0);
+  EXPECT_EQ(FindHeight(viewer, 3.0, 4.0), -1.0);
   viewer.Object->SetPickMode(Style::ISOSURFACE);
   viewer.Object->SetIsovalue(100.0);
-  VERIFY_EQUAL(FindHeight(viewer, 15.0, 13.0), 14.0);
-  VERIFY_EQUAL(FindHeight(viewer, 3.0, 4.0), -1.0);
+  EXPECT_EQ(FindHeight(viewer, 15.0, 13.0), 14.0);
+  EXPECT_EQ(FindHeight(viewer, 3.0, 4.0), -1.0);
   viewer.Object->SetPickMode(Style::SLICES);
-  VERIFY_EQUAL(FindHeight(viewer, 3.0, 4.0), -1.0);
+  EXPECT_EQ(FindHeight(viewer, 3.0, 4.0), -1.0);
   viewer.Object->AddSlicePlane(0.0, 0.0, 2.0, 0.0, 0.0, 1.0);
   viewer.Object->AddSlicePlane(0.0, 0.0, 5.25, 0.0, 0.0, -2.0);
   viewer.Object->AddSlicePlane(0.0, 0.0, 40.0, 0.0, 0.0, 1.0); // outside the body
   viewer.Object->AddSlicePlane(3.0, 0.0, 0.0, 1.0, 0.0, 0.0);  // parallel to the view
-  VERIFY_EQUAL(FindHeight(viewer, 3.0, 4.0), 5.0);
+  EXPECT_EQ(FindHeight(viewer, 3.0, 4.0), 5.0);
   viewer.Object->ClearSlicePlanes();
-  VERIFY_EQUAL(FindHeight(viewer, 3.0, 4.0), -1.0);
+  EXPECT_EQ(FindHeight(viewer, 3.0, 4.0), -1.0);
 
   // With low opacity the visible point is where half of the absorption of 19 voxels is reached.
   viewer.Object->SetPickMode(Style::OPACITY);
@@ -298,12 +302,12 @@ void TestVisible()
     viewer.VolumeObject->GetProperty()->SetScalarOpacityUnitDistance(2.0);
     const double all = 1.0 - std::pow(1.0 - part, 19.0 / 2.0);
     const double depth = 2.0 * std::log(1.0 - std::min(0.5, 0.5 * all)) / std::log(1.0 - part);
-    VERIFY(
-      std::abs(FindHeight(viewer, 3.0, 4.0) - (18.5 - depth)) <= 1.0); // one step and one voxel
+    EXPECT_LE(
+      std::abs(FindHeight(viewer, 3.0, 4.0) - (18.5 - depth)), 1.0); // one step and one voxel
   }
   opacity->RemoveAllPoints();
   opacity->AddPoint(0.0, 0.001);
-  VERIFY_EQUAL(FindHeight(viewer, 3.0, 4.0), -1.0);
+  EXPECT_EQ(FindHeight(viewer, 3.0, 4.0), -1.0);
 
   // An oblique volume: the visible point is on the surface of the volume. The mapper's image has no
   // direction, but the volume actor transforms it to the output.
@@ -316,7 +320,7 @@ void TestVisible()
   double visible[3] = { 0.0, 0.0, 0.0 };
   other.Renderer->GetActiveCamera()->SetFocalPoint(middle);
   other.Renderer->GetActiveCamera()->SetPosition(middle[0], middle[1], middle[2] + 100.0);
-  VERIFY(other.Object->FindPosition(WindowSize / 2, WindowSize / 2, visible));
+  EXPECT_TRUE(other.Object->FindPosition(WindowSize / 2, WindowSize / 2, visible));
   double index[3];
   oblique->TransformPhysicalPointToContinuousIndex(visible, index);
   double outside = -10.0;
@@ -324,31 +328,32 @@ void TestVisible()
   {
     outside = std::max({ outside, Box[2 * axis] - index[axis], index[axis] - Box[2 * axis + 1] });
   }
-  VERIFY(std::abs(outside) < 1e-9);
+  EXPECT_LT(std::abs(outside), 1e-9);
   vtkImageData* shown = other.Object->GetShownImage();
-  VERIFY(shown && other.Mapper->GetInput() == shown);
+  EXPECT_TRUE(shown && other.Mapper->GetInput() == shown);
   const vtkIdType last = shown->GetNumberOfPoints() - 1;
   double point[4] = { 0.0, 0.0, 0.0, 1.0 };
   shown->GetPoint(last, point);
   other.VolumeObject->GetUserMatrix()->MultiplyPoint(point, point);
-  VERIFY(glm::length(glm::dvec3(point[0], point[1], point[2]) -
-           GetPoint(other.Object->GetOutput(), last)) < 1e-9);
+  EXPECT_LT(glm::length(
+              glm::dvec3(point[0], point[1], point[2]) - GetPoint(other.Object->GetOutput(), last)),
+    1e-9);
 
   // By default the background value is the least value of the volume.
   auto negative = MakeImage(Box);
   AddScalars<short>(negative, "value", [](const glm::dvec3& p) { return -1000.0 + p.x; });
   Viewer third(negative);
   vtkDataArray* values = third.Object->GetShownImage()->GetPointData()->GetScalars();
-  VERIFY_EQUAL(values->GetComponent(0, 0), -1003.0);
-  VERIFY_EQUAL(values->GetRange(0)[1], -972.0);
-  VERIFY_EQUAL(third.SessionObject->GetBackgroundValue(), -1003.0);
+  EXPECT_EQ(values->GetComponent(0, 0), -1003.0);
+  EXPECT_EQ(values->GetRange(0)[1], -972.0);
+  EXPECT_EQ(third.SessionObject->GetBackgroundValue(), -1003.0);
   third.SessionObject->SetBackgroundValue(-7.0);
   third.SessionObject->ChangeModel(Session::CHAIN_MAIL);
   third.Replay(Viewer::Timer());
   values = third.Object->GetShownImage()->GetPointData()->GetScalars();
-  VERIFY_EQUAL(values->GetComponent(0, 0), -7.0);
-  VERIFY(third.SessionObject->SetInputs(MakeBall()));
-  VERIFY_EQUAL(third.SessionObject->GetBackgroundValue(), 0.0);
+  EXPECT_EQ(values->GetComponent(0, 0), -7.0);
+  EXPECT_TRUE(third.SessionObject->SetInputs(MakeBall()));
+  EXPECT_EQ(third.SessionObject->GetBackgroundValue(), 0.0);
 }
 
 struct Event
@@ -417,7 +422,7 @@ vtkSmartPointer<vtkImageData> MakeDirectly(vtkImageData* volume, const std::vect
     }
     else if (event.Name == "BeginGrab")
     {
-      VERIFY_EQUAL(session->BeginGrab(n[1], n[2], n[3]), static_cast<int>(n[0]));
+      EXPECT_EQ(session->BeginGrab(n[1], n[2], n[3]), static_cast<int>(n[0]));
     }
     else if (event.Name == "MoveGrab")
     {
@@ -486,25 +491,15 @@ bool IsWanted(const Event& event, const Wanted& wanted)
   }
   if (!isEqual)
   {
-    const auto print = [](const auto& name, const std::vector<double>& numbers)
-    {
-      std::cerr << name;
-      for (const double number : numbers)
-      {
-        std::cerr << ' ' << number;
-      }
-    };
-    std::cerr << "the event is ";
-    print(event.Name, event.Numbers);
-    std::cerr << " instead of ";
-    print(wanted.Name, wanted.Numbers);
-    std::cerr << '\n';
+    ADD_FAILURE() << "the event is " << event.Name << ' ' << testing::PrintToString(event.Numbers)
+                  << " instead of " << wanted.Name << ' ' << testing::PrintToString(wanted.Numbers);
   }
   return isEqual;
 }
 
-void TestTools(int model, const std::string& fileName)
+void CheckTools(int model)
 {
+  const std::string fileName = GetFileName();
   constexpr double top = 17.0;
   const auto volume = MakeBall();
   Viewer viewer(volume);
@@ -534,8 +529,8 @@ void TestTools(int model, const std::string& fileName)
   // Reset, redo, and change to no model, so that the body is at rest and positions are known.
   events += Viewer::Key('z') + timer + Viewer::Key('y') + Viewer::Key('1') + timer;
   viewer.Replay(events);
-  VERIFY(!viewer.Errors->GetError() && !viewer.SessionErrors->GetError());
-  VERIFY(viewer.SessionObject->SaveSession(fileName));
+  EXPECT_TRUE(!viewer.Errors->GetError() && !viewer.SessionErrors->GetError());
+  EXPECT_TRUE(viewer.SessionObject->SaveSession(fileName));
   std::vector<Event> made = ReadEvents(fileName);
   const double deep = top - 0.01 * length;
   const std::vector<Wanted> wanted = {
@@ -563,12 +558,12 @@ void TestTools(int model, const std::string& fileName)
       event.Name == "NumberOfNodes" || event.Name == "UndoMemory" || event.Name == "Step";
     if (!isSetting)
     {
-      VERIFY(at < wanted.size() && IsWanted(event, wanted[at]));
+      EXPECT_TRUE(at < wanted.size() && IsWanted(event, wanted[at]));
       ++at;
     }
   }
-  VERIFY_EQUAL(at, wanted.size());
-  VERIFY(AreEqual(viewer.Object->GetOutput(), MakeDirectly(volume, made)));
+  EXPECT_EQ(at, wanted.size());
+  EXPECT_TRUE(AreEqual(viewer.Object->GetOutput(), MakeDirectly(volume, made)));
 
   // At rest: a cut that begins outside the body, and a carving.
   events = Viewer::Key('c') + Viewer::Key('+');
@@ -588,30 +583,30 @@ void TestTools(int model, const std::string& fileName)
   mouse("MouseMoveEvent", 23.0, 22.0); // so near that it is recorded only at the release
   mouse("LeftButtonReleaseEvent", 23.0, 22.0);
   viewer.Replay(events);
-  VERIFY(!viewer.Errors->GetError() && !viewer.SessionErrors->GetError());
-  VERIFY(viewer.SessionObject->SaveSession(fileName));
+  EXPECT_TRUE(!viewer.Errors->GetError() && !viewer.SessionErrors->GetError());
+  EXPECT_TRUE(viewer.SessionObject->SaveSession(fileName));
   const std::size_t before = made.size();
   made = ReadEvents(fileName);
   made.erase(std::remove_if(made.begin() + static_cast<std::ptrdiff_t>(before), made.end(),
                [](const Event& event) { return event.Name == "Step"; }),
     made.end());
-  VERIFY_EQUAL(made.size(), before + 4);
+  EXPECT_EQ(made.size(), before + 4);
   const std::vector<double>& sheet = made[before].Numbers;
-  VERIFY_EQUAL(made[before].Name, std::string("Cut"));
-  VERIFY_EQUAL(sheet[0], 2.0 * 40);
+  EXPECT_EQ(made[before].Name, std::string("Cut"));
+  EXPECT_EQ(sheet[0], 2.0 * 40);
   for (std::size_t i = 0; i < 40; ++i)
   {
     const double x = i == 0 ? -6.0 : -5.0 + 0.5 * static_cast<double>(i - 1);
     const double* upper = &sheet[1 + 6 * i];
-    VERIFY(std::abs(upper[0] - x) < 1e-7 && std::abs(upper[1] - 6.0) < 1e-7);
-    VERIFY(std::abs(upper[3] - x) < 1e-7 && std::abs(upper[4] - 6.0) < 1e-7);
-    VERIFY(std::abs(upper[2] - top - 2.0) < 1e-7);
-    VERIFY(std::abs(upper[5] - (top - 0.11 * length)) < 1e-7);
+    EXPECT_TRUE(std::abs(upper[0] - x) < 1e-7 && std::abs(upper[1] - 6.0) < 1e-7);
+    EXPECT_TRUE(std::abs(upper[3] - x) < 1e-7 && std::abs(upper[4] - 6.0) < 1e-7);
+    EXPECT_LT(std::abs(upper[2] - top - 2.0), 1e-7);
+    EXPECT_LT(std::abs(upper[5] - (top - 0.11 * length)), 1e-7);
   }
   const double radius = 0.025 * length * std::pow(1.1, 10.0);
-  VERIFY(IsWanted(made[before + 1], { "Carve", { 1, 20.0, 20.0, top, radius } }));
-  VERIFY(IsWanted(made[before + 2], { "Carve", { 0, 22.0, 22.0, top, radius } }));
-  VERIFY(IsWanted(made[before + 3], { "Carve", { 0, 23.0, 22.0, top, radius } }));
+  EXPECT_TRUE(IsWanted(made[before + 1], { "Carve", { 1, 20.0, 20.0, top, radius } }));
+  EXPECT_TRUE(IsWanted(made[before + 2], { "Carve", { 0, 22.0, 22.0, top, radius } }));
+  EXPECT_TRUE(IsWanted(made[before + 3], { "Carve", { 0, 23.0, 22.0, top, radius } }));
 
   // The model deforms the cut and carved body. Then undo and redo, until the body is at rest.
   events = Viewer::Key(static_cast<char>('1' + model)) + timer + Viewer::Key('g');
@@ -625,15 +620,22 @@ void TestTools(int model, const std::string& fileName)
     events += timer;
   }
   viewer.Replay(events);
-  VERIFY(!viewer.Errors->GetError() && !viewer.SessionErrors->GetError());
-  VERIFY(viewer.SessionObject->SaveSession(fileName));
-  VERIFY(AreEqual(viewer.Object->GetOutput(), MakeDirectly(volume, ReadEvents(fileName))));
-  VERIFY_EQUAL(viewer.SessionObject->GetModel(), model);
+  EXPECT_TRUE(!viewer.Errors->GetError() && !viewer.SessionErrors->GetError());
+  EXPECT_TRUE(viewer.SessionObject->SaveSession(fileName));
+  EXPECT_TRUE(AreEqual(viewer.Object->GetOutput(), MakeDirectly(volume, ReadEvents(fileName))));
+  EXPECT_EQ(viewer.SessionObject->GetModel(), model);
+}
+
+TEST(DeformVolumeInteractorStyle, Tools)
+{
+  CheckTools(Session::CHAIN_MAIL);
+  CheckTools(Session::FINITE_ELEMENTS);
 }
 
 // The handles after undo, and after failed events.
-void TestHandles(const std::string& fileName)
+TEST(DeformVolumeInteractorStyle, Handles)
 {
+  const std::string fileName = GetFileName();
   Viewer viewer(MakeBall());
   const std::string timer = Viewer::Timer();
   const auto release = [&](double x, double y)
@@ -642,82 +644,82 @@ void TestHandles(const std::string& fileName)
     return viewer.Object->GetMessage().empty();
   };
   viewer.Replay(Viewer::Key('2') + Viewer::Key('p', 5, 5) + Viewer::Key('p', 20, 5) + timer);
-  VERIFY(!release(10, 5));
-  VERIFY(release(21.5, 5.5));
-  VERIFY(!release(20, 5));
+  EXPECT_FALSE(release(10, 5));
+  EXPECT_TRUE(release(21.5, 5.5));
+  EXPECT_FALSE(release(20, 5));
   viewer.Replay(Viewer::Key('u') + timer); // undoes the release
-  VERIFY(release(20, 5));
+  EXPECT_TRUE(release(20, 5));
   viewer.Replay(Viewer::Key('u') + Viewer::Key('u') + timer); // undoes release and pin
-  VERIFY(!release(20, 5));
+  EXPECT_FALSE(release(20, 5));
   viewer.Replay(Viewer::Key('y') + timer);
-  VERIFY(release(20, 5));
-  VERIFY(release(5, 5));
-  VERIFY(!release(5, 5));
+  EXPECT_TRUE(release(20, 5));
+  EXPECT_TRUE(release(5, 5));
+  EXPECT_FALSE(release(5, 5));
   viewer.Replay(Viewer::Key('z') + timer);
-  VERIFY(!release(5, 5) && !release(20, 5));
+  EXPECT_TRUE(!release(5, 5) && !release(20, 5));
 
   // Direct calls of the session are possible, too.
   viewer.SessionObject->CarveSphere(5, 20, 18, -1.0); // fails
   viewer.SessionObject->CarveSphere(5, 20, 18, 1.0);
   viewer.Replay(timer);
-  VERIFY_CONTAINS(viewer.Object->GetMessage(), "radius");
+  EXPECT_TRUE(HasPart(viewer.Object->GetMessage(), "radius"));
   viewer.SessionErrors->Clear();
   viewer.Replay(Viewer::Key('p', 5, 5) + timer + Viewer::Key('u') + timer);
-  VERIFY(!release(5, 5));
-  VERIFY_EQUAL(viewer.SessionObject->GetNumberOfActions(), vtkIdType(1));
+  EXPECT_FALSE(release(5, 5));
+  EXPECT_EQ(viewer.SessionObject->GetNumberOfActions(), 1);
 
   // Undo ends a drag while the button is pressed.
   viewer.Replay(Viewer::Key('2') + timer + Viewer::Key('g') +
     Viewer::Mouse("LeftButtonPressEvent", 8, 8) + Viewer::Mouse("MouseMoveEvent", 9, 8) + timer +
     Viewer::Key('u') + Viewer::Mouse("MouseMoveEvent", 10, 8) +
     Viewer::Mouse("LeftButtonReleaseEvent", 10, 8, true) + timer);
-  VERIFY(!release(9, 8));
+  EXPECT_FALSE(release(9, 8));
 
   // The handles of a loaded session.
   viewer.Replay(Viewer::Key('p', 20, 5) + timer);
-  VERIFY(viewer.SessionObject->SaveSession(fileName));
+  EXPECT_TRUE(viewer.SessionObject->SaveSession(fileName));
   viewer.Replay(Viewer::Key('z') + timer);
-  VERIFY(!release(20, 5));
-  VERIFY(viewer.SessionObject->LoadSession(fileName));
+  EXPECT_FALSE(release(20, 5));
+  EXPECT_TRUE(viewer.SessionObject->LoadSession(fileName));
   viewer.Replay(timer);
-  VERIFY(release(20, 5));
-  VERIFY(!viewer.SessionErrors->GetError() && !viewer.Errors->GetError());
+  EXPECT_TRUE(release(20, 5));
+  EXPECT_TRUE(!viewer.SessionErrors->GetError() && !viewer.Errors->GetError());
 }
 
-void TestProbeAndMeasure()
+TEST(DeformVolumeInteractorStyle, ProbeAndMeasure)
 {
   Viewer viewer(MakeBall());
   const std::string timer = Viewer::Timer();
   viewer.Replay(Viewer::Key('m') + Viewer::Mouse("LeftButtonPressEvent", 5.0, 6.0) +
     Viewer::Mouse("LeftButtonReleaseEvent", 5.0, 6.0));
-  VERIFY_EQUAL(viewer.Object->GetMeasuredDistance(), 0.0);
+  EXPECT_EQ(viewer.Object->GetMeasuredDistance(), 0.0);
   viewer.Replay(Viewer::Mouse("LeftButtonPressEvent", 8.0, 10.0) +
     Viewer::Mouse("LeftButtonReleaseEvent", 8.0, 10.0));
-  VERIFY(std::abs(viewer.Object->GetMeasuredDistance() - 5.0) < 1e-9);
-  VERIFY_EQUAL(viewer.Object->GetMessage(), std::string("distance 5"));
+  EXPECT_LT(std::abs(viewer.Object->GetMeasuredDistance() - 5.0), 1e-9);
+  EXPECT_EQ(viewer.Object->GetMessage(), std::string("distance 5"));
 
   viewer.Replay(Viewer::Key('b') + Viewer::Mouse("MouseMoveEvent", 5.0, 6.0));
-  VERIFY_CONTAINS(viewer.Object->GetMessage(), "value 10 at (5, 6, 17), at rest (5, 6, 17)");
+  EXPECT_TRUE(HasPart(viewer.Object->GetMessage(), "value 10 at (5, 6, 17), at rest (5, 6, 17)"));
   viewer.Replay(Viewer::Mouse("MouseMoveEvent", -6.0, 6.0));
-  VERIFY_EQUAL(viewer.Object->GetMessage(), std::string("There is nothing here."));
+  EXPECT_EQ(viewer.Object->GetMessage(), std::string("There is nothing here."));
   // Probe while events are processed, and afterwards.
   viewer.Replay(Viewer::Key('2') + Viewer::Key('g') +
     Viewer::Mouse("LeftButtonPressEvent", 5.0, 6.0) + timer +
     Viewer::Mouse("MouseMoveEvent", 8.0, 6.0) + timer + Viewer::Key('b') + Viewer::Key('u') +
     Viewer::Mouse("MouseMoveEvent", 8.0, 6.0));
-  VERIFY_CONTAINS(viewer.Object->GetMessage(), "moving");
+  EXPECT_TRUE(HasPart(viewer.Object->GetMessage(), "moving"));
   std::string timers;
   for (int i = 0; i < 300; ++i)
   {
     timers += Viewer::Mouse("TimerEvent", 8.0, 6.0);
   }
   viewer.Replay(timers);
-  VERIFY_CONTAINS(viewer.Object->GetMessage(), "value 10");
-  VERIFY(!viewer.SessionErrors->GetError() && !viewer.Errors->GetError());
+  EXPECT_TRUE(HasPart(viewer.Object->GetMessage(), "value 10"));
+  EXPECT_TRUE(!viewer.SessionErrors->GetError() && !viewer.Errors->GetError());
 }
 
 // The right and middle button and the wheel move the camera, with any tool.
-void TestCamera()
+TEST(DeformVolumeInteractorStyle, Camera)
 {
   Viewer viewer(MakeBall());
   viewer.Object->SetTool(Style::GRAB);
@@ -732,24 +734,24 @@ void TestCamera()
     return glm::length(before -
       glm::dvec3(camera->GetPosition()[0], camera->GetPosition()[1], camera->GetPosition()[2]));
   };
-  VERIFY(press("Right") > 1.0);
-  VERIFY(press("Middle") > 1.0);
-  VERIFY_EQUAL(press("Left"), 0.0);
+  EXPECT_GT(press("Right"), 1.0);
+  EXPECT_GT(press("Middle"), 1.0);
+  EXPECT_EQ(press("Left"), 0.0);
   viewer.Object->SetTool(Style::TURN);
-  VERIFY(press("Left") > 1.0);
+  EXPECT_GT(press("Left"), 1.0);
   const double scale = camera->GetParallelScale();
   viewer.Replay(Viewer::Mouse("MouseWheelForwardEvent", 5, 5));
-  VERIFY(camera->GetParallelScale() < scale);
+  EXPECT_LT(camera->GetParallelScale(), scale);
   viewer.Replay(Viewer::Key('h') + Viewer::Timer());
-  VERIFY(viewer.Object->GetShowHelp());
-  VERIFY_EQUAL(viewer.SessionObject->GetNumberOfActions(), vtkIdType(1)); // a drag without motion
+  EXPECT_TRUE(viewer.Object->GetShowHelp());
+  EXPECT_EQ(viewer.SessionObject->GetNumberOfActions(), 1); // a drag without motion
 }
 
-void TestThread()
+TEST(DeformVolumeInteractorStyle, Thread)
 {
   Viewer viewer(MakeBall());
   viewer.Object->StartSession();
-  VERIFY(viewer.SessionObject->GetIsRunning());
+  EXPECT_TRUE(viewer.SessionObject->GetIsRunning());
   viewer.Replay(
     Viewer::Key('4') + Viewer::Key('g') + Viewer::Mouse("LeftButtonPressEvent", 10.0, 12.0));
   int outputs = 0;
@@ -771,25 +773,25 @@ void TestThread()
   {
     poll();
   }
-  VERIFY(outputs > 1);
-  VERIFY(!viewer.SessionObject->GetIsBusy());
+  EXPECT_GT(outputs, 1);
+  EXPECT_FALSE(viewer.SessionObject->GetIsBusy());
   viewer.Object->StopSession();
-  VERIFY(!viewer.SessionObject->GetIsRunning());
-  VERIFY(!viewer.SessionErrors->GetError() && !viewer.Errors->GetError());
+  EXPECT_FALSE(viewer.SessionObject->GetIsRunning());
+  EXPECT_TRUE(!viewer.SessionErrors->GetError() && !viewer.Errors->GetError());
 }
 
 // Random events in a window whose size changes. The only errors are those of invalid drags, and
-// after a reset the volume is at rest.
-void TestRandom(int events, unsigned seed)
+// after a reset the volume is at rest. --gtest_random_seed=N selects other events.
+TEST(DeformVolumeInteractorStyle, Random)
 {
   Viewer viewer(MakeBall());
   const vtkSmartPointer<vtkImageData> first = viewer.Object->GetOutput();
-  std::mt19937 random(seed);
+  std::mt19937 random(1 + static_cast<unsigned>(GTEST_FLAG_GET(random_seed)));
   const auto pick = [&](double low, double high)
   { return std::uniform_real_distribution<double>(low, high)(random); };
   const std::string keys = "tgcvbmppxx2341uuyzh+-r";
   std::map<std::string, int> words;
-  for (int i = 0; i < events && GetNumberOfFailures() == 0; ++i)
+  for (int i = 0; i < 300 && !HasFailure(); ++i)
   {
     const double x = pick(Box[0] - 4.0, Box[1] + 4.0);
     const double y = pick(Box[2] - 4.0, Box[3] + 4.0);
@@ -824,7 +826,7 @@ void TestRandom(int events, unsigned seed)
     {
       viewer.Replay(Viewer::Timer());
     }
-    VERIFY_EQUAL(viewer.TakeError(), std::string());
+    EXPECT_EQ(viewer.TakeError(), "");
     const std::string error = viewer.SessionErrors->GetErrorMessage();
     viewer.SessionErrors->Clear();
     // Possible errors: two handles hold the same node, the displayed point does not exist any more,
@@ -834,17 +836,17 @@ void TestRandom(int events, unsigned seed)
       error.find("outside the deformed volume") == std::string::npos &&
       error.find("released already") == std::string::npos)
     {
-      VERIFY_EQUAL(error, std::string());
+      EXPECT_EQ(error, "");
     }
     ++words[viewer.Object->GetMessage()];
   }
-  VERIFY(words.size() > 5); // there were different messages
+  EXPECT_GT(words.size(), 5); // there were different messages
   std::string timers = Viewer::Mouse("LeftButtonReleaseEvent", 0.0, 0.0);
   timers += Viewer::Key('z') + Viewer::Timer() + Viewer::Timer();
   viewer.Replay(timers);
-  VERIFY_EQUAL(viewer.SessionObject->GetNumberOfActions(), vtkIdType(0));
-  VERIFY_EQUAL(viewer.SessionObject->GetModel(), static_cast<int>(Session::NONE));
-  VERIFY(AreEqual(viewer.Object->GetOutput(), first));
+  EXPECT_EQ(viewer.SessionObject->GetNumberOfActions(), 0);
+  EXPECT_EQ(viewer.SessionObject->GetModel(), static_cast<int>(Session::NONE));
+  EXPECT_TRUE(AreEqual(viewer.Object->GetOutput(), first));
 }
 
 using Pixel = std::array<int, 3>;
@@ -893,7 +895,7 @@ struct Shown
 
 // The picture of a ball, seen from above: at rest, with handles, dragged and carved. Colors are
 // flat, so that all pixels are known, except at outlines.
-void TestPicture()
+TEST(DeformVolumeInteractorStyle, Picture)
 {
   Viewer viewer(MakeBall());
   viewer.Mapper->SetUseJittering(0);
@@ -917,17 +919,17 @@ void TestPicture()
   // The ball is symmetric about its middle, to one pixel. Its surface is between inner and outer
   // voxels: half a voxel is 17 % of the area of the disc.
   const Shown rest(viewer.Window, body);
-  VERIFY(glm::length(rest.Mean - middle) < 0.1);
-  VERIFY(std::abs(rest.Count / (3.141593 * 3600.0) - 1.0) < 0.17);
-  VERIFY_EQUAL(Shown(viewer.Window, handle).Count, 0);
+  EXPECT_LT(glm::length(rest.Mean - middle), 0.1);
+  EXPECT_LT(std::abs(rest.Count / (3.141593 * 3600.0) - 1.0), 0.17);
+  EXPECT_EQ(Shown(viewer.Window, handle).Count, 0);
 
   // A handle is a square of 9 x 9 pixels in front of all objects. If each side has one pixel more
   // or less, it has 64 to 100 pixels.
   viewer.Replay(Viewer::Key('2') + timer + Viewer::Key('p', 15.0, 14.0) + timer);
   const Shown pinned(viewer.Window, handle);
-  VERIFY(std::abs(pinned.Count - 81) <= 18);
-  VERIFY(glm::length(pinned.Mean - glm::dvec2(15.0, 14.0)) < 0.15);
-  VERIFY(std::abs(Shown(viewer.Window, body).Count + pinned.Count - rest.Count) <= 1);
+  EXPECT_LE(std::abs(pinned.Count - 81), 18);
+  EXPECT_LT(glm::length(pinned.Mean - glm::dvec2(15.0, 14.0)), 0.15);
+  EXPECT_LE(std::abs(Shown(viewer.Window, body).Count + pinned.Count - rest.Count), 1);
   viewer.Replay(Viewer::Key('u') + timer);
 
   // The ball is dragged by three units. The handle is kept, and drawn at its position.
@@ -941,9 +943,9 @@ void TestPicture()
   viewer.Replay(events);
   const Shown held(viewer.Window, handle);
   const Shown dragged(viewer.Window, body);
-  VERIFY(std::abs(held.Count - 81) <= 18);
-  VERIFY(glm::length(held.Mean - glm::dvec2(5.0, 14.0)) < 0.15);
-  VERIFY(dragged.Left < rest.Left - 1.0);
+  EXPECT_LE(std::abs(held.Count - 81), 18);
+  EXPECT_LT(glm::length(held.Mean - glm::dvec2(5.0, 14.0)), 0.15);
+  EXPECT_LT(dragged.Left, rest.Left - 1.0);
 
   // A sphere carves a hole, and other pixels do not change. Within two units of its middle the
   // sphere removes the ball at all depths.
@@ -952,11 +954,11 @@ void TestPicture()
     Viewer::Mouse("LeftButtonPressEvent", 18.0, 13.5) +
     Viewer::Mouse("MouseMoveEvent", 18.0, 13.5) + timer);
   const Shown circle(viewer.Window, stroke);
-  VERIFY(circle.Count > 100); // the outline of the sphere
+  EXPECT_GT(circle.Count, 100); // the outline of the sphere
   for (int i = 0; i < WindowSize * WindowSize; ++i)
   {
     const double distance = glm::length(Shown::GetPosition(i) - glm::dvec2(18.0, 14.0));
-    VERIFY(!circle.IsThere[i] || std::abs(distance - 9.0) < 0.2);
+    EXPECT_TRUE(!circle.IsThere[i] || std::abs(distance - 9.0) < 0.2);
   }
   viewer.Replay(
     Viewer::Mouse("LeftButtonReleaseEvent", 18.0, 13.5) + timer + Viewer::Key('t') + timer);
@@ -969,17 +971,17 @@ void TestPicture()
     remaining += distance < 2.0 && carved.IsThere[i];
     changed += distance > 10.0 && carved.IsThere[i] != rest.IsThere[i];
   }
-  VERIFY_EQUAL(remaining, 0);
-  VERIFY_EQUAL(changed, 0);
-  VERIFY(carved.Count > rest.Count / 4);
+  EXPECT_EQ(remaining, 0);
+  EXPECT_EQ(changed, 0);
+  EXPECT_GT(carved.Count, rest.Count / 4);
 
   // The stroke of a cut is drawn while the button is pressed.
   viewer.Replay(Viewer::Key('u') + timer + Viewer::Key('c') +
     Viewer::Mouse("LeftButtonPressEvent", 6.0, 13.5) + Viewer::Mouse("MouseMoveEvent", 12.0, 13.5) +
     timer);
   const Shown cut(viewer.Window, stroke);
-  VERIFY(cut.Count > 100);
-  VERIFY(glm::length(cut.Mean - glm::dvec2(9.0, 13.5)) < 0.15);
+  EXPECT_GT(cut.Count, 100);
+  EXPECT_LT(glm::length(cut.Mean - glm::dvec2(9.0, 13.5)), 0.15);
   viewer.Replay(Viewer::Mouse("LeftButtonReleaseEvent", 12.0, 13.5) + timer + Viewer::Key('t') +
     Viewer::Key('u') + timer);
 
@@ -989,33 +991,9 @@ void TestPicture()
     Viewer::Mouse("LeftButtonPressEvent", 8.0, 15.0) +
     Viewer::Mouse("LeftButtonReleaseEvent", 8.0, 15.0) + timer);
   const Shown measure(viewer.Window, Pixel{ { 120, 200, 255 } });
-  VERIFY(std::abs(measure.Count - 204) <= 40);
-  VERIFY(glm::length(measure.Mean - glm::dvec2(8.0, 13.5)) < 0.15);
-  VERIFY(!viewer.Errors->GetError() && !viewer.SessionErrors->GetError());
+  EXPECT_LE(std::abs(measure.Count - 204), 40);
+  EXPECT_LT(glm::length(measure.Mean - glm::dvec2(8.0, 13.5)), 0.15);
+  EXPECT_TRUE(!viewer.Errors->GetError() && !viewer.SessionErrors->GetError());
 }
 
 } // namespace
-
-int TestDeformVolumeInteractorStyle(int argc, char* argv[])
-{
-  // The test driver passes options, which atoi() reads as 0.
-  const int events = argc > 1 && std::atoi(argv[1]) > 0 ? std::atoi(argv[1]) : 300;
-  const int seed = argc > 2 ? std::max(std::atoi(argv[2]), 1) : 1;
-  std::string folder = ".";
-  for (int i = 1; i + 1 < argc; ++i)
-  {
-    folder = std::string(argv[i]) == "-T" ? argv[i + 1] : folder;
-  }
-  const std::string fileName = folder + "/TestDeformVolumeInteractorStyle.xml";
-  TestMisuse();
-  TestVisible();
-  TestTools(Session::CHAIN_MAIL, fileName);
-  TestTools(Session::FINITE_ELEMENTS, fileName);
-  TestHandles(fileName);
-  TestProbeAndMeasure();
-  TestCamera();
-  TestThread();
-  TestRandom(events, static_cast<unsigned>(seed));
-  TestPicture();
-  return GetExitCode();
-}

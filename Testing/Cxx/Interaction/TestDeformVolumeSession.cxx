@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vtkDeformVolumeSession: misuse, a drag compared with filters without a session, random sessions
 // that are undone completely, files, and the thread.
-//
-// Usage: TestDeformVolumeSession [NUMBER OF RANDOM EVENTS] (300) [SEED] (1)
 #include "ChainMailTesting.h"
+#include "RunTests.h"
 
 #include "vtkCarveVolume.h"
 #include "vtkCutVolume.h"
@@ -40,6 +39,11 @@ using Session = vtkDeformVolumeSession;
 namespace
 {
 
+std::string GetFileName()
+{
+  return GetTestArgument("-T") + "/TestDeformVolumeSession.xml";
+}
+
 constexpr Extent Box{ { -2, 25, 1, 24, 0, 18 } };
 
 struct Tested
@@ -48,7 +52,7 @@ struct Tested
     : Volume(volume)
   {
     this->Object->AddObserver(vtkCommand::ErrorEvent, this->Observer);
-    VERIFY(this->Object->SetInputs(volume));
+    EXPECT_TRUE(this->Object->SetInputs(volume));
   }
 
   std::string TakeError()
@@ -64,7 +68,7 @@ struct Tested
     for (int i = 0; i < steps && this->Object->Update(); ++i)
     {
     }
-    VERIFY_EQUAL(this->TakeError(), std::string());
+    EXPECT_EQ(this->TakeError(), "");
     return vtkSmartPointer<vtkImageData>::Take(this->Object->TakeOutput());
   }
   vtkSmartPointer<vtkImageData> Step()
@@ -75,7 +79,7 @@ struct Tested
   void ExpectError(const std::string& words)
   {
     this->Object->Update();
-    VERIFY_CONTAINS(this->TakeError(), words);
+    EXPECT_TRUE(HasPart(this->TakeError(), words));
   }
 
   vtkSmartPointer<vtkImageData> Volume;
@@ -105,32 +109,33 @@ std::string ReadText(const std::string& fileName)
   return { std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
 }
 
-void TestMisuse(vtkImageData* volume)
+TEST(DeformVolumeSession, Misuse)
 {
+  const auto volume = MakeVolume(Box);
   Tested empty(volume);
   vtkNew<vtkDeformVolumeSession> none;
   vtkNew<vtkTest::ErrorObserver> observer;
   none->AddObserver(vtkCommand::ErrorEvent, observer);
-  VERIFY_EQUAL(none->BeginGrab(0, 0, 0), -1);
-  VERIFY_CONTAINS(observer->GetErrorMessage(), "Call SetInputs() first");
-  VERIFY(!none->Update() && !none->SaveSession("nothing"));
-  VERIFY(!none->SetInputs(nullptr));
-  VERIFY_CONTAINS(observer->GetErrorMessage(), "The volume is null");
+  EXPECT_EQ(none->BeginGrab(0, 0, 0), -1);
+  EXPECT_TRUE(HasPart(observer->GetErrorMessage(), "Call SetInputs() first"));
+  EXPECT_TRUE(!none->Update() && !none->SaveSession("nothing"));
+  EXPECT_FALSE(none->SetInputs(nullptr));
+  EXPECT_TRUE(HasPart(observer->GetErrorMessage(), "The volume is null"));
   observer->Clear();
-  VERIFY(!none->SetInputs(MakeImage({ { 0, 9, 3, 3, 0, 7 } })));
-  VERIFY_CONTAINS(observer->GetErrorMessage(), "no active point scalars");
+  EXPECT_FALSE(none->SetInputs(MakeImage({ { 0, 9, 3, 3, 0, 7 } })));
+  EXPECT_TRUE(HasPart(observer->GetErrorMessage(), "no active point scalars"));
   observer->Clear();
-  VERIFY(!none->SetInputs(MakeVolume({ { 0, 9, 3, 3, 0, 7 } })));
-  VERIFY_CONTAINS(observer->GetErrorMessage(), "10 x 1 x 8 voxels");
+  EXPECT_FALSE(none->SetInputs(MakeVolume({ { 0, 9, 3, 3, 0, 7 } })));
+  EXPECT_TRUE(HasPart(observer->GetErrorMessage(), "10 x 1 x 8 voxels"));
   none->Start();
-  VERIFY(!none->GetIsRunning());
-  VERIFY(!none->TakeOutput());
+  EXPECT_FALSE(none->GetIsRunning());
+  EXPECT_FALSE(none->TakeOutput());
 
   Tested one(volume);
   one.Finish();
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  VERIFY_EQUAL(one.Object->BeginGrab(nan, 0, 0), -1);
-  VERIFY_CONTAINS(one.TakeError(), "not finite");
+  EXPECT_EQ(one.Object->BeginGrab(nan, 0, 0), -1);
+  EXPECT_TRUE(HasPart(one.TakeError(), "not finite"));
   one.Object->MoveGrab(3, 1, 1, 1);
   one.ExpectError("Handle 3 is not grabbed");
   one.Object->Release(2);
@@ -138,28 +143,28 @@ void TestMisuse(vtkImageData* volume)
   one.Object->BeginGrab(-40, 0, 0);
   one.ExpectError("outside the deformed volume");
   one.Object->Cut(nullptr);
-  VERIFY_CONTAINS(one.TakeError(), "no triangles");
+  EXPECT_TRUE(HasPart(one.TakeError(), "no triangles"));
   one.Object->Cut(MakePlane({ 8, 8, 8 }, { 9, 0, 0 }, { 0, 9, 0 }, false));
-  VERIFY_CONTAINS(one.TakeError(), "is not a triangle");
+  EXPECT_TRUE(HasPart(one.TakeError(), "is not a triangle"));
   const auto sheet = MakePlane({ 8, 8, 8 }, { 9, 0, 0 }, { 0, 9, 0 });
   vtkNew<vtkCellArray> strips;
   strips->InsertNextCell({ 0, 1, 3, 4 });
   sheet->SetStrips(strips);
   one.Object->Cut(sheet);
-  VERIFY_CONTAINS(one.TakeError(), "has 1 triangle strips");
+  EXPECT_TRUE(HasPart(one.TakeError(), "has 1 triangle strips"));
   sheet->SetStrips(nullptr);
   sheet->GetPoints()->SetPoint(4, 8.0, nan, 8.0);
   one.Object->Cut(sheet);
-  VERIFY_CONTAINS(one.TakeError(), "Point 4 of the sheet is not finite");
+  EXPECT_TRUE(HasPart(one.TakeError(), "Point 4 of the sheet is not finite"));
   sheet->GetPoints()->SetNumberOfPoints(3);
   one.Object->Cut(sheet);
-  VERIFY_CONTAINS(one.TakeError(), "refers to point 3, but the sheet has only 3 points");
+  EXPECT_TRUE(HasPart(one.TakeError(), "refers to point 3, but the sheet has only 3 points"));
   sheet->GetPoints()->SetNumberOfPoints(2);
   vtkNew<vtkCellArray> cells;
   cells->InsertNextCell({ 0, 1, 1 });
   sheet->SetPolys(cells);
   one.Object->Cut(sheet);
-  VERIFY_CONTAINS(one.TakeError(), "The sheet has only 2 points");
+  EXPECT_TRUE(HasPart(one.TakeError(), "The sheet has only 2 points"));
   one.Object->CarveSphere(8, 8, 8, 0.0);
   one.ExpectError("The carving radius is 0.");
   one.Object->ChangeModel(9);
@@ -174,16 +179,16 @@ void TestMisuse(vtkImageData* volume)
   one.ExpectError("The handle radius is -1");
   one.Object->SetMovingSamplingFactor(3);
   one.ExpectError("MovingSamplingFactor is 3");
-  VERIFY_EQUAL(one.Object->GetNumberOfActions(), vtkIdType(0));
-  VERIFY_EQUAL(one.Object->GetMovingSamplingFactor(), 1);
-  VERIFY(!one.Object->SaveMesh("nothing.vtu"));
-  VERIFY_CONTAINS(one.TakeError(), "no mesh");
-  VERIFY(!one.Object->SaveMesh("nothing"));
-  VERIFY_CONTAINS(one.TakeError(), "must end in .vtu");
-  VERIFY(!one.Object->SaveVolume("nothing.nii"));
-  VERIFY_CONTAINS(one.TakeError(), "must end in .vti");
+  EXPECT_EQ(one.Object->GetNumberOfActions(), 0);
+  EXPECT_EQ(one.Object->GetMovingSamplingFactor(), 1);
+  EXPECT_FALSE(one.Object->SaveMesh("nothing.vtu"));
+  EXPECT_TRUE(HasPart(one.TakeError(), "no mesh"));
+  EXPECT_FALSE(one.Object->SaveMesh("nothing"));
+  EXPECT_TRUE(HasPart(one.TakeError(), "must end in .vtu"));
+  EXPECT_FALSE(one.Object->SaveVolume("nothing.nii"));
+  EXPECT_TRUE(HasPart(one.TakeError(), "must end in .vti"));
   one.Object->GetHandles(nullptr);
-  VERIFY_CONTAINS(one.TakeError(), "GetHandles() is null");
+  EXPECT_TRUE(HasPart(one.TakeError(), "GetHandles() is null"));
   one.Object->Undo();
   one.Object->Redo();
   one.Finish();
@@ -197,20 +202,20 @@ void TestMisuse(vtkImageData* volume)
   const auto still = one.Step();
   one.Object->MoveGrab(handle, 1e6, 10, 10);
   one.ExpectError("is moved by more than 4095 voxels");
-  VERIFY(!one.Object->GetErrorMessage().empty());
+  EXPECT_FALSE(one.Object->GetErrorMessage().empty());
   const auto after = one.Step();
-  VERIFY(before && still && after && AreEqual(still, after));
+  EXPECT_TRUE(before && still && after && AreEqual(still, after));
 
   one.Object->Start();
-  VERIFY(one.Object->GetIsRunning());
-  VERIFY(!one.Object->Update());
-  VERIFY_CONTAINS(one.TakeError(), "Call Stop()");
+  EXPECT_TRUE(one.Object->GetIsRunning());
+  EXPECT_FALSE(one.Object->Update());
+  EXPECT_TRUE(HasPart(one.TakeError(), "Call Stop()"));
 }
 
 // Checks that the output is the volume at rest, and that no other voxels are covered.
 void VerifyRest(vtkImageData* output, vtkImageData* volume)
 {
-  VERIFY(output);
+  EXPECT_TRUE(output);
   vtkDataArray* mask = output->GetPointData()->GetArray("vtkValidPointMask");
   vtkIdType covered = 0;
   bool isEqual = true;
@@ -226,13 +231,14 @@ void VerifyRest(vtkImageData* output, vtkImageData* volume)
       output->GetPointData()->GetScalars()->GetComponent(at, 0) ==
         volume->GetPointData()->GetScalars()->GetComponent(id, 0);
   }
-  VERIFY(isEqual);
-  VERIFY_EQUAL(covered, volume->GetNumberOfPoints());
+  EXPECT_TRUE(isEqual);
+  EXPECT_EQ(covered, volume->GetNumberOfPoints());
 }
 
 // A drag, compared with filters without a session.
-void TestDrag(vtkImageData* volume)
+TEST(DeformVolumeSession, Drag)
 {
+  const auto volume = MakeVolume(Box);
   Tested one(volume);
   VerifyRest(one.Finish(), volume);
   one.Object->ChangeModel(Session::CHAIN_MAIL);
@@ -248,20 +254,21 @@ void TestDrag(vtkImageData* volume)
   wanted.Filter->SetOutputBoundsModeToVolumeBounds();
   wanted.Filter->SetPadding(8);
   wanted.Filter->SetBackgroundValue(one.Object->GetBackgroundValue());
-  VERIFY(AreEqual(output, wanted.Update()));
+  EXPECT_TRUE(AreEqual(output, wanted.Update()));
 
-  VERIFY(one.Object->Probe(14, 11, 8));
+  EXPECT_TRUE(one.Object->Probe(14, 11, 8));
   const double* rest = one.Object->GetProbedRestPosition();
-  VERIFY(std::abs(rest[0] - 10) < 0.01 && std::abs(rest[1] - 11) < 0.01);
+  EXPECT_TRUE(std::abs(rest[0] - 10) < 0.01 && std::abs(rest[1] - 11) < 0.01);
   vtkDataArray* values = volume->GetPointData()->GetScalars();
-  VERIFY_EQUAL(one.Object->GetProbedValue(), values->GetComponent(volume->FindPoint(10, 11, 9), 0));
-  VERIFY(!one.Object->Probe(-9, 2, 2));
-  VERIFY(one.Object->GetSimulationTime() > 0.0 && one.Object->GetResamplingTime() > 0.0);
+  EXPECT_EQ(one.Object->GetProbedValue(), values->GetComponent(volume->FindPoint(10, 11, 9), 0));
+  EXPECT_FALSE(one.Object->Probe(-9, 2, 2));
+  EXPECT_TRUE(one.Object->GetSimulationTime() > 0.0 && one.Object->GetResamplingTime() > 0.0);
 }
 
 // Smooth cuts and smooth boundaries, compared with filters without a session.
-void TestSmoothTools(vtkImageData* volume)
+TEST(DeformVolumeSession, SmoothTools)
 {
+  const auto volume = MakeVolume(Box);
   const auto compare = [](
                          Tested& one, vtkImageData* output, vtkImageData* edited, vtkDataSet* moved)
   {
@@ -269,7 +276,7 @@ void TestSmoothTools(vtkImageData* volume)
     wanted.Filter->SetOutputBoundsModeToVolumeBounds();
     wanted.Filter->SetPadding(8);
     wanted.Filter->SetBackgroundValue(one.Object->GetBackgroundValue());
-    VERIFY(AreEqual(output, wanted.Update()));
+    EXPECT_TRUE(AreEqual(output, wanted.Update()));
   };
   const auto sheet = MakePlane({ 8.3, 10.4, 8.6 }, { 0, 40, 2 }, { 1, 0, 40 });
   Tested cut(volume);
@@ -332,85 +339,89 @@ bool HasHandles(Session* session, const std::vector<ExpectedHandle>& wanted)
   return isEqual;
 }
 
-void TestHandles(vtkImageData* volume, const std::string& fileName)
+TEST(DeformVolumeSession, Handles)
 {
+  const auto volume = MakeVolume(Box);
+  const std::string fileName = GetFileName();
   Tested one(volume);
   Session* session = one.Object;
-  VERIFY(HasHandles(session, {}));
+  EXPECT_TRUE(HasHandles(session, {}));
   session->ChangeModel(Session::CHAIN_MAIL);
   const int pin = session->Pin(4, 5, 6);
   const int grab = session->BeginGrab(10, 11, 9);
   session->MoveGrab(grab, 12, 11, 9);
-  VERIFY(HasHandles(session, {})); // handles are those of the last update
+  EXPECT_TRUE(HasHandles(session, {})); // handles are those of the last update
   one.Step();
   const ExpectedHandle pinned{ pin, { 4, 5, 6 }, { 4, 5, 6 }, false };
   ExpectedHandle pulled{ grab, { 12, 11, 9 }, { 10, 11, 9 }, true };
-  VERIFY(HasHandles(session, { pinned, pulled }));
+  EXPECT_TRUE(HasHandles(session, { pinned, pulled }));
   // A move that fails does not change the handle.
   session->MoveGrab(grab, 1e30, 11, 9);
   one.Step();
-  VERIFY(!one.TakeError().empty());
-  VERIFY(HasHandles(session, { pinned, pulled }));
+  EXPECT_FALSE(one.TakeError().empty());
+  EXPECT_TRUE(HasHandles(session, { pinned, pulled }));
   session->HoldGrab(grab);
   one.Step();
   pulled.IsGrabbed = false;
-  VERIFY(HasHandles(session, { pinned, pulled }));
-  VERIFY(session->SaveSession(fileName));
+  EXPECT_TRUE(HasHandles(session, { pinned, pulled }));
+  EXPECT_TRUE(session->SaveSession(fileName));
   session->Release(pin);
   one.Step();
-  VERIFY(HasHandles(session, { pulled }));
+  EXPECT_TRUE(HasHandles(session, { pulled }));
   session->Undo();
   one.Step();
-  VERIFY(HasHandles(session, { pinned, pulled }));
+  EXPECT_TRUE(HasHandles(session, { pinned, pulled }));
   // Another session has the handles of a loaded file, and can release them.
   Tested other(volume);
-  VERIFY(other.Object->LoadSession(fileName));
+  EXPECT_TRUE(other.Object->LoadSession(fileName));
   other.Step();
-  VERIFY(HasHandles(other.Object, { pinned, pulled }));
+  EXPECT_TRUE(HasHandles(other.Object, { pinned, pulled }));
   other.Object->Release(grab);
   other.Step();
-  VERIFY(HasHandles(other.Object, { pinned }));
-  VERIFY(other.Object->SetInputs(volume));
-  VERIFY(HasHandles(other.Object, {}));
+  EXPECT_TRUE(HasHandles(other.Object, { pinned }));
+  EXPECT_TRUE(other.Object->SetInputs(volume));
+  EXPECT_TRUE(HasHandles(other.Object, {}));
 }
 
 // A simulation of springs that diverges, and a handle outside the volume: one error each, and the
 // session works afterwards.
-void TestRecovery(vtkImageData* volume)
+TEST(DeformVolumeSession, Recovery)
 {
+  const auto volume = MakeVolume(Box);
   Tested one(volume);
   Session* session = one.Object;
   session->ChangeModel(Session::MASS_SPRING);
   const int handle = session->BeginGrab(10, 10, 17);
   one.Step();
-  VERIFY(HasHandles(session, { { handle, { 10, 10, 17 }, { 10, 10, 17 }, true } }));
+  EXPECT_TRUE(HasHandles(session, { { handle, { 10, 10, 17 }, { 10, 10, 17 }, true } }));
   session->MoveGrab(handle, 1e7, 10, 17);
   one.Step();
-  VERIFY_CONTAINS(one.TakeError(), "diverged");
-  VERIFY(HasHandles(session, { { handle, { 10, 10, 17 }, { 10, 10, 17 }, true } }));
+  EXPECT_TRUE(HasPart(one.TakeError(), "diverged"));
+  EXPECT_TRUE(HasHandles(session, { { handle, { 10, 10, 17 }, { 10, 10, 17 }, true } }));
   session->MoveGrab(handle, 11, 10, 17);
-  VERIFY(one.Step() != nullptr);
-  VERIFY_EQUAL(one.TakeError(), std::string());
+  EXPECT_NE(one.Step(), nullptr);
+  EXPECT_EQ(one.TakeError(), "");
 
   const int nowhere = session->BeginGrab(1000, 10, 17);
   session->MoveGrab(nowhere, 1001, 10, 17);
   session->HoldGrab(nowhere);
   one.Step();
   const std::string error = one.TakeError();
-  VERIFY_CONTAINS(error, "outside the deformed volume");
-  VERIFY_CONTAINS_NOT(error, "not grabbed");
+  EXPECT_TRUE(HasPart(error, "outside the deformed volume"));
+  EXPECT_FALSE(HasPart(error, "not grabbed"));
   session->Reset();
   VerifyRest(one.Finish(), volume);
-  VERIFY_EQUAL(one.TakeError(), std::string());
+  EXPECT_EQ(one.TakeError(), "");
 }
 
-void TestModels(vtkImageData* volume)
+TEST(DeformVolumeSession, Models)
 {
+  const auto volume = MakeVolume(Box);
   Tested one(volume);
   const auto step = [&](int model)
   {
     one.Step();
-    VERIFY_EQUAL(one.Object->GetModel(), model);
+    EXPECT_EQ(one.Object->GetModel(), model);
   };
   one.Object->ChangeModel(Session::MASS_SPRING);
   step(Session::MASS_SPRING);
@@ -425,8 +436,9 @@ void TestModels(vtkImageData* volume)
 }
 
 // Actions that are made twice are undone twice. The body is pulled apart, so that cuts are visible.
-void TestTwice(vtkImageData* volume)
+TEST(DeformVolumeSession, Twice)
 {
+  const auto volume = MakeVolume(Box);
   Tested one(volume);
   one.Object->ChangeModel(Session::CHAIN_MAIL);
   const auto rest = one.Step();
@@ -437,7 +449,7 @@ void TestTwice(vtkImageData* volume)
   one.Object->MoveGrab(handle, 24, 10, 9);
   one.Object->EndGrab(handle);
   const auto whole = one.Step(); // the drag ended before the step
-  VERIFY(AreEqual(whole, rest));
+  EXPECT_TRUE(AreEqual(whole, rest));
   const int other = one.Object->BeginGrab(20, 10, 9);
   one.Object->MoveGrab(other, 24, 10, 9);
   const auto apart = one.Step();
@@ -448,30 +460,30 @@ void TestTwice(vtkImageData* volume)
     one.Object->CarveTo(14, 14, 9, 2.5 + i);
   }
   const auto carved = one.Step();
-  VERIFY(!AreEqual(whole, apart) && !AreEqual(apart, carved));
+  EXPECT_TRUE(!AreEqual(whole, apart) && !AreEqual(apart, carved));
   for (int i = 0; i < 2; ++i)
   {
     one.Object->Undo();
   }
   const auto carvedOnce = one.Step();
-  VERIFY(!AreEqual(carvedOnce, apart) && !AreEqual(carvedOnce, carved));
+  EXPECT_TRUE(!AreEqual(carvedOnce, apart) && !AreEqual(carvedOnce, carved));
   one.Object->Undo();
-  VERIFY(AreEqual(one.Step(), apart));
-  VERIFY_EQUAL(one.Object->GetNumberOfActions(), vtkIdType(5));
+  EXPECT_TRUE(AreEqual(one.Step(), apart));
+  EXPECT_EQ(one.Object->GetNumberOfActions(), 5);
   for (int i = 0; i < 4; ++i)
   {
     one.Object->Undo();
   }
-  VERIFY(AreEqual(one.Step(), rest));
+  EXPECT_TRUE(AreEqual(one.Step(), rest));
   for (int i = 0; i < 5; ++i)
   {
     one.Object->Redo();
   }
-  VERIFY(AreEqual(one.Step(), carvedOnce));
+  EXPECT_TRUE(AreEqual(one.Step(), carvedOnce));
   one.Object->Redo();
   one.Object->Redo();
-  VERIFY(AreEqual(one.Step(), carved));
-  VERIFY_EQUAL(one.TakeError(), std::string());
+  EXPECT_TRUE(AreEqual(one.Step(), carved));
+  EXPECT_EQ(one.TakeError(), "");
 }
 
 class RandomSession
@@ -545,7 +557,7 @@ public:
         error.find("released already") == std::string::npos &&
         error.find("outside the deformed volume") == std::string::npos)
       {
-        VERIFY_EQUAL(error, std::string());
+        EXPECT_EQ(error, "");
       }
     }
   }
@@ -565,35 +577,38 @@ public:
   int Handle = 0;
 };
 
-void TestRandom(vtkImageData* volume, int events, unsigned seed, const std::string& fileName)
+// --gtest_random_seed=N selects other events.
+TEST(DeformVolumeSession, Random)
 {
-  RandomSession random(volume, seed);
+  const auto volume = MakeVolume(Box);
+  const std::string fileName = GetFileName();
+  RandomSession random(volume, 1 + static_cast<unsigned>(GTEST_FLAG_GET(random_seed)));
   Tested& one = random.One;
   const auto first = one.Finish();
   // The memory for undo is less than random actions need, so that some are undone without saved
   // states.
   one.Object->ChangeUndoMemory(4e6);
-  for (int i = 0; i < events && GetNumberOfFailures() == 0; ++i)
+  for (int i = 0; i < 300 && !HasFailure(); ++i)
   {
     random.MakeEvent();
   }
   one.Step();
   one.TakeError();
-  VERIFY(one.Object->GetNumberOfActions() > 0);
+  EXPECT_GT(one.Object->GetNumberOfActions(), 0);
 
   // A session from a file has the same output and the same actions for undo and redo.
-  VERIFY(one.Object->SaveSession(fileName));
+  EXPECT_TRUE(one.Object->SaveSession(fileName));
   Tested other(volume);
   other.Object->Pin(3, 3, 3);
   other.Step();
-  VERIFY(other.Object->LoadSession(fileName));
+  EXPECT_TRUE(other.Object->LoadSession(fileName));
   const auto saved = one.Step();
   const auto loaded = other.Step();
-  VERIFY(AreEqual(saved, loaded));
-  VERIFY_EQUAL(other.TakeError(), std::string());
-  VERIFY_EQUAL(other.Object->GetModel(), one.Object->GetModel());
-  VERIFY_EQUAL(other.Object->GetNumberOfActions(), one.Object->GetNumberOfActions());
-  VERIFY_EQUAL(other.Object->GetNumberOfUndoneActions(), one.Object->GetNumberOfUndoneActions());
+  EXPECT_TRUE(AreEqual(saved, loaded));
+  EXPECT_EQ(other.TakeError(), "");
+  EXPECT_EQ(other.Object->GetModel(), one.Object->GetModel());
+  EXPECT_EQ(other.Object->GetNumberOfActions(), one.Object->GetNumberOfActions());
+  EXPECT_EQ(other.Object->GetNumberOfUndoneActions(), one.Object->GetNumberOfUndoneActions());
 
   // One session undoes all actions, the other one is reset; then both redo all actions.
   const vtkIdType actions = one.Object->GetNumberOfActions();
@@ -602,22 +617,22 @@ void TestRandom(vtkImageData* volume, int events, unsigned seed, const std::stri
     one.Object->Undo();
   }
   const auto undone = one.Step();
-  VERIFY_EQUAL(one.TakeError(), std::string());
-  VERIFY(AreEqual(first, undone));
-  VERIFY_EQUAL(one.Object->GetNumberOfActions(), vtkIdType(0));
+  EXPECT_EQ(one.TakeError(), "");
+  EXPECT_TRUE(AreEqual(first, undone));
+  EXPECT_EQ(one.Object->GetNumberOfActions(), 0);
   other.Object->Reset();
   const auto reset = other.Step();
-  VERIFY(AreEqual(first, reset));
+  EXPECT_TRUE(AreEqual(first, reset));
   VerifyRest(reset, volume);
-  VERIFY_EQUAL(other.Object->GetNumberOfUndoneActions(), one.Object->GetNumberOfUndoneActions());
+  EXPECT_EQ(other.Object->GetNumberOfUndoneActions(), one.Object->GetNumberOfUndoneActions());
   for (vtkIdType i = 0; i < actions; ++i)
   {
     one.Object->Redo();
     other.Object->Redo();
   }
   const auto redone = one.Step();
-  VERIFY(AreEqual(redone, other.Step()));
-  VERIFY_EQUAL(one.Object->GetNumberOfActions(), actions);
+  EXPECT_TRUE(AreEqual(redone, other.Step()));
+  EXPECT_EQ(one.Object->GetNumberOfActions(), actions);
 }
 
 void WriteText(const std::string& fileName, const std::string& text)
@@ -628,13 +643,14 @@ void WriteText(const std::string& fileName, const std::string& text)
 std::string Replace(std::string text, const std::string& from, const std::string& to)
 {
   const std::size_t at = text.find(from);
-  VERIFY_CONTAINS(text, from);
+  EXPECT_TRUE(HasPart(text, from));
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
 // Tissue that is pulled out of the extent of the output causes one warning.
-void TestPadding(vtkImageData* volume)
+TEST(DeformVolumeSession, Padding)
 {
+  const auto volume = MakeVolume(Box);
   for (const int padding : { 8, 30 })
   {
     Tested one(volume);
@@ -645,39 +661,41 @@ void TestPadding(vtkImageData* volume)
     const int handle = one.Object->BeginGrab(10, 10, 17);
     one.Object->MoveGrab(handle, 10, 10, 24);
     one.Finish();
-    VERIFY(!warnings->GetWarning());
+    EXPECT_FALSE(warnings->GetWarning());
     one.Object->MoveGrab(handle, 10, 10, 45);
     one.Finish();
     if (padding == 8)
     {
-      VERIFY_CONTAINS(warnings->GetWarningMessage(), "lies outside the output");
+      EXPECT_TRUE(HasPart(warnings->GetWarningMessage(), "lies outside the output"));
     }
     else
     {
-      VERIFY_CONTAINS_NOT(warnings->GetWarningMessage(), "larger Padding");
+      EXPECT_FALSE(HasPart(warnings->GetWarningMessage(), "larger Padding"));
     }
     warnings->Clear();
     one.Object->MoveGrab(handle, 10, 10, 46);
     one.Finish();
-    VERIFY(!warnings->GetWarning());
+    EXPECT_FALSE(warnings->GetWarning());
   }
 }
 
-void TestFiles(vtkImageData* volume, const std::string& fileName)
+TEST(DeformVolumeSession, Files)
 {
+  const auto volume = MakeVolume(Box);
+  const std::string fileName = GetFileName();
   Tested one(volume);
   one.Object->ChangeModel(Session::FINITE_ELEMENTS);
   const int handle = one.Object->BeginGrab(10, 10, 17);
   one.Object->MoveGrab(handle, 13, 10, 17);
   one.Finish();
   const auto before = one.Step();
-  VERIFY(one.Object->SaveSession(fileName));
-  VERIFY(one.Object->SaveVolume(fileName + ".vti") && one.Object->SaveMesh(fileName + ".vtu"));
+  EXPECT_TRUE(one.Object->SaveSession(fileName));
+  EXPECT_TRUE(one.Object->SaveVolume(fileName + ".vti") && one.Object->SaveMesh(fileName + ".vtu"));
   const std::string text = ReadText(fileName);
   for (const char* const type : { ".vti", ".vtu" })
   {
     // Data is inline, since some versions of ParaView cannot read raw appended data.
-    VERIFY_CONTAINS_NOT(ReadText(fileName + type), "<AppendedData");
+    EXPECT_FALSE(HasPart(ReadText(fileName + type), "<AppendedData"));
   }
 
   const std::string damaged = fileName + ".wrong"; // messages contain the name
@@ -699,12 +717,12 @@ void TestFiles(vtkImageData* volume, const std::string& fileName)
   for (const auto& wrong : cases)
   {
     WriteText(damaged, wrong.Text);
-    VERIFY(!one.Object->LoadSession(damaged));
-    VERIFY_CONTAINS(one.TakeError(), wrong.Words);
+    EXPECT_FALSE(one.Object->LoadSession(damaged));
+    EXPECT_TRUE(HasPart(one.TakeError(), wrong.Words));
   }
-  VERIFY(!one.Object->LoadSession(fileName + ".missing"));
-  VERIFY_CONTAINS(one.TakeError(), "cannot be read");
-  VERIFY(AreEqual(before, one.Step()));
+  EXPECT_FALSE(one.Object->LoadSession(fileName + ".missing"));
+  EXPECT_TRUE(HasPart(one.TakeError(), "cannot be read"));
+  EXPECT_TRUE(AreEqual(before, one.Step()));
 
   // Loading a session removes all previous actions, with any model.
   Tested used(volume);
@@ -716,23 +734,23 @@ void TestFiles(vtkImageData* volume, const std::string& fileName)
   used.Object->Cut(MakePlane({ 12, 10, 10 }, { 0, 12, 2 }, { 1, 0, 12 }));
   used.Object->CarveSphere(6, 6, 6, 3);
   used.Step();
-  VERIFY(used.Object->SaveSession(fileName + ".used"));
+  EXPECT_TRUE(used.Object->SaveSession(fileName + ".used"));
   const auto wanted = used.Step();
   for (int i = 0; i < 2; ++i)
   {
-    VERIFY(used.Object->LoadSession(fileName + ".used"));
-    VERIFY(AreEqual(used.Step(), wanted));
+    EXPECT_TRUE(used.Object->LoadSession(fileName + ".used"));
+    EXPECT_TRUE(AreEqual(used.Step(), wanted));
   }
 
   Tested foreign(MakeVolume({ { 0, 9, 0, 8, 0, 7 } }));
-  VERIFY(!foreign.Object->LoadSession(fileName));
-  VERIFY_CONTAINS(foreign.TakeError(), "another volume");
+  EXPECT_FALSE(foreign.Object->LoadSession(fileName));
+  EXPECT_TRUE(HasPart(foreign.TakeError(), "another volume"));
   vtkNew<vtkImageData> stretched;
   stretched->ShallowCopy(volume);
   stretched->SetSpacing(1.0, 1.0, 1.5 * volume->GetSpacing()[2]);
   Tested other(stretched);
-  VERIFY(!other.Object->LoadSession(fileName));
-  VERIFY_CONTAINS(other.TakeError(), "another volume");
+  EXPECT_FALSE(other.Object->LoadSession(fileName));
+  EXPECT_TRUE(HasPart(other.TakeError(), "another volume"));
 
   // The same mesh with other fixed nodes.
   const auto mesh = MakeMesh(volume, 2, 1.0);
@@ -742,28 +760,31 @@ void TestFiles(vtkImageData* volume, const std::string& fileName)
   fixed->Fill(0);
   fixed->SetValue(0, 1);
   mesh->GetPointData()->AddArray(fixed);
-  VERIFY(other.Object->SetInputs(volume, mesh) && other.Object->SaveSession(fileName + ".mesh"));
-  VERIFY(other.Object->SetInputs(volume, mesh) && other.Object->LoadSession(fileName + ".mesh"));
+  EXPECT_TRUE(
+    other.Object->SetInputs(volume, mesh) && other.Object->SaveSession(fileName + ".mesh"));
+  EXPECT_TRUE(
+    other.Object->SetInputs(volume, mesh) && other.Object->LoadSession(fileName + ".mesh"));
   // A file of version 0.1 has no hash of the arrays.
   std::string old = ReadText(fileName + ".mesh");
   const std::size_t space = old.find(' ', old.find("inputs="));
   old.erase(space, old.find('"', space) - space);
   WriteText(fileName + ".old", old);
-  VERIFY(other.Object->SetInputs(volume, mesh) && other.Object->LoadSession(fileName + ".old"));
+  EXPECT_TRUE(
+    other.Object->SetInputs(volume, mesh) && other.Object->LoadSession(fileName + ".old"));
   fixed->SetValue(1, 1);
-  VERIFY(other.Object->SetInputs(volume, mesh));
-  VERIFY(!other.Object->LoadSession(fileName + ".mesh"));
-  VERIFY_CONTAINS(other.TakeError(), "another volume or mesh");
+  EXPECT_TRUE(other.Object->SetInputs(volume, mesh));
+  EXPECT_FALSE(other.Object->LoadSession(fileName + ".mesh"));
+  EXPECT_TRUE(HasPart(other.TakeError(), "another volume or mesh"));
   mesh->GetPointData()->RemoveArray("Fixed");
-  VERIFY(other.Object->SetInputs(volume, mesh));
-  VERIFY(!other.Object->LoadSession(fileName + ".mesh"));
-  VERIFY_CONTAINS(other.TakeError(), "another volume or mesh");
+  EXPECT_TRUE(other.Object->SetInputs(volume, mesh));
+  EXPECT_FALSE(other.Object->LoadSession(fileName + ".mesh"));
+  EXPECT_TRUE(HasPart(other.TakeError(), "another volume or mesh"));
 
   // A folder that does not exist, and a full disk: the previous file is kept.
-  VERIFY(!one.Object->SaveSession("/dev/null/session"));
-  VERIFY_CONTAINS(one.TakeError(), "cannot be written");
-  VERIFY(!one.Object->SaveVolume("/dev/null/volume.vti"));
-  VERIFY_CONTAINS(one.TakeError(), "cannot be written");
+  EXPECT_FALSE(one.Object->SaveSession("/dev/null/session"));
+  EXPECT_TRUE(HasPart(one.TakeError(), "cannot be written"));
+  EXPECT_FALSE(one.Object->SaveVolume("/dev/null/volume.vti"));
+  EXPECT_TRUE(HasPart(one.TakeError(), "cannot be written"));
   struct rlimit limit;
   getrlimit(RLIMIT_FSIZE, &limit);
   std::signal(SIGXFSZ, SIG_IGN);
@@ -775,24 +796,26 @@ void TestFiles(vtkImageData* volume, const std::string& fileName)
   const bool isSaved = one.Object->SaveSession(fileName);
   const bool isVolumeSaved = one.Object->SaveVolume(fileName + ".vti");
   setrlimit(RLIMIT_FSIZE, &limit);
-  VERIFY(!isSaved && !isVolumeSaved);
-  VERIFY_CONTAINS(one.TakeError(), "cannot be written");
-  VERIFY_EQUAL(ReadText(fileName), text);
-  VERIFY(!vtksys::SystemTools::FileExists(fileName + ".part"));
-  VERIFY(one.Object->LoadSession(fileName));
-  VERIFY(AreEqual(before, one.Step()));
+  EXPECT_TRUE(!isSaved && !isVolumeSaved);
+  EXPECT_TRUE(HasPart(one.TakeError(), "cannot be written"));
+  EXPECT_EQ(ReadText(fileName), text);
+  EXPECT_FALSE(vtksys::SystemTools::FileExists(fileName + ".part"));
+  EXPECT_TRUE(one.Object->LoadSession(fileName));
+  EXPECT_TRUE(AreEqual(before, one.Step()));
 }
 
 // Finite elements use a lattice with half as many cells on each axis and with mid-side nodes.
 // Probed rest positions are inverse to vtkDeformGeometryFilter.
-void TestTenNodeElements(vtkImageData* volume, const std::string& fileName)
+TEST(DeformVolumeSession, TenNodeElements)
 {
+  const auto volume = MakeVolume(Box);
+  const std::string fileName = GetFileName() + ".vtu";
   Tested one(volume);
   one.Object->ChangeModel(Session::FINITE_ELEMENTS);
   const int handle = one.Object->BeginGrab(10, 10, 17);
   one.Object->MoveGrab(handle, 14, 11, 18);
   one.Finish();
-  VERIFY(one.Object->SaveMesh(fileName));
+  EXPECT_TRUE(one.Object->SaveMesh(fileName));
   vtkNew<vtkXMLUnstructuredGridReader> reader;
   reader->SetFileName(fileName.c_str());
   reader->Update();
@@ -820,8 +843,8 @@ void TestTenNodeElements(vtkImageData* volume, const std::string& fileName)
     nodes *= 2 * dimensions[axis] - 1;
     cubes *= dimensions[axis] - 1;
   }
-  VERIFY_EQUAL(mesh->GetNumberOfPoints(), nodes - cubes);
-  VERIFY_EQUAL(mesh->GetCellType(0), static_cast<int>(VTK_QUADRATIC_TETRA));
+  EXPECT_EQ(mesh->GetNumberOfPoints(), nodes - cubes);
+  EXPECT_EQ(mesh->GetCellType(0), static_cast<int>(VTK_QUADRATIC_TETRA));
 
   vtkNew<vtkPoints> points;
   std::mt19937 random(4);
@@ -844,18 +867,19 @@ void TestTenNodeElements(vtkImageData* volume, const std::string& fileName)
     const glm::dvec3 rest = GetPoint(geometry, i);
     const glm::dvec3 now = GetPoint(deform->GetOutput(), i);
     most = std::max(most, glm::distance(rest, now));
-    VERIFY(one.Object->Probe(now.x, now.y, now.z));
+    EXPECT_TRUE(one.Object->Probe(now.x, now.y, now.z));
     double found[3];
     one.Object->GetProbedRestPosition(found);
     worst = std::max(worst, glm::distance(rest, glm::dvec3(found[0], found[1], found[2])));
   }
   std::cout << "displacements of up to " << most << " are inverted within " << worst << "\n";
-  VERIFY(most > 1.0 && worst < 1e-5); // points and vectors are floats
+  EXPECT_TRUE(most > 1.0 && worst < 1e-5); // points and vectors are floats
 }
 
 // Tissue between the nodes of a mesh follows its handle.
-void TestGrabbedTissue(vtkImageData* volume)
+TEST(DeformVolumeSession, GrabbedTissue)
 {
+  const auto volume = MakeVolume(Box);
   for (const int model : { Session::MASS_SPRING, Session::FINITE_ELEMENTS })
   {
     for (const double radius : { 0.0, 0.5 })
@@ -866,17 +890,19 @@ void TestGrabbedTissue(vtkImageData* volume)
       const int handle = one.Object->BeginGrab(9.3, 10.1, 12.2);
       one.Object->MoveGrab(handle, 12.3, 11.1, 12.7);
       one.Finish();
-      VERIFY(one.Object->Probe(12.3, 11.1, 12.7));
+      EXPECT_TRUE(one.Object->Probe(12.3, 11.1, 12.7));
       glm::dvec3 rest;
       one.Object->GetProbedRestPosition(&rest.x);
-      VERIFY(glm::distance(rest, glm::dvec3(9.3, 10.1, 12.2)) < 1e-4);
+      EXPECT_LT(glm::distance(rest, glm::dvec3(9.3, 10.1, 12.2)), 1e-4);
     }
   }
 }
 
 // A file of version 0.1, with events of all kinds.
-void TestOldFile(const std::string& data, const std::string& fileName)
+TEST(DeformVolumeSession, OldFile)
 {
+  const std::string data = GetTestArgument("-D");
+  const std::string fileName = GetFileName();
   auto volume = MakeImage({ { 0, 13, 0, 12, 0, 11 } });
   vtkNew<vtkUnsignedCharArray> values;
   values->SetName("values");
@@ -888,23 +914,25 @@ void TestOldFile(const std::string& data, const std::string& fileName)
   Tested one(volume);
   vtkNew<vtkTest::ErrorObserver> warnings;
   one.Object->AddObserver(vtkCommand::WarningEvent, warnings);
-  VERIFY(one.Object->LoadSession(data + "/Session-0.1.xml"));
+  EXPECT_TRUE(one.Object->LoadSession(data + "/Session-0.1.xml"));
   const auto output = one.Step();
-  VERIFY_EQUAL(one.TakeError(), std::string());
-  VERIFY(!warnings->GetWarning());
-  VERIFY_EQUAL(one.Object->GetModel(), int(Session::CHAIN_MAIL));
-  VERIFY_EQUAL(one.Object->GetNumberOfActions(), 6);
+  EXPECT_EQ(one.TakeError(), "");
+  EXPECT_FALSE(warnings->GetWarning());
+  EXPECT_EQ(one.Object->GetModel(), int(Session::CHAIN_MAIL));
+  EXPECT_EQ(one.Object->GetNumberOfActions(), 6);
   vtkDataArray* mask = output->GetPointData()->GetArray("vtkValidPointMask");
-  VERIFY_EQUAL(mask->GetComponent(output->FindPoint(3, 3, 3), 0), 0.0); // carved
-  VERIFY_EQUAL(mask->GetComponent(output->FindPoint(10, 10, 3), 0), 1.0);
-  VERIFY(one.Object->SaveSession(fileName));
+  EXPECT_EQ(mask->GetComponent(output->FindPoint(3, 3, 3), 0), 0.0); // carved
+  EXPECT_EQ(mask->GetComponent(output->FindPoint(10, 10, 3), 0), 1.0);
+  EXPECT_TRUE(one.Object->SaveSession(fileName));
   const std::string text = ReadText(data + "/Session-0.1.xml");
   const std::size_t events = text.find("  <Event");
-  VERIFY_CONTAINS(ReadText(fileName), text.substr(events, text.rfind("</") - events).c_str());
+  EXPECT_TRUE(HasPart(ReadText(fileName), text.substr(events, text.rfind("</") - events).c_str()));
 }
 
-void TestThread(vtkImageData* volume, const std::string& fileName)
+TEST(DeformVolumeSession, Thread)
 {
+  const auto volume = MakeVolume(Box);
+  const std::string fileName = GetFileName();
   Tested one(volume);
   one.Object->ChangeModel(Session::MASS_SPRING);
   one.Object->Start();
@@ -921,16 +949,16 @@ void TestThread(vtkImageData* volume, const std::string& fileName)
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   one.Object->Stop();
-  VERIFY(!one.Object->GetIsRunning());
-  VERIFY(outputs > 1);
+  EXPECT_FALSE(one.Object->GetIsRunning());
+  EXPECT_GT(outputs, 1);
   const auto stopped = one.Step();
-  VERIFY(one.Object->SaveSession(fileName));
-  VERIFY_EQUAL(one.TakeError(), std::string());
+  EXPECT_TRUE(one.Object->SaveSession(fileName));
+  EXPECT_EQ(one.TakeError(), "");
 
   // The recorded session of the thread gives the same result without a thread.
   Tested other(volume);
-  VERIFY(other.Object->LoadSession(fileName));
-  VERIFY(AreEqual(one.Step(), other.Step()));
+  EXPECT_TRUE(other.Object->LoadSession(fileName));
+  EXPECT_TRUE(AreEqual(one.Step(), other.Step()));
 
   // The thread ends when the session is deleted during a motion.
   for (int i = 0; i < 5; ++i)
@@ -941,7 +969,7 @@ void TestThread(vtkImageData* volume, const std::string& fileName)
     const int held = closed.Object->BeginGrab(10, 10, 17);
     closed.Object->MoveGrab(held, 15, 10, 17);
     std::this_thread::sleep_for(std::chrono::milliseconds(7 * i));
-    VERIFY(closed.Object->GetIsBusy());
+    EXPECT_TRUE(closed.Object->GetIsBusy());
   }
 
   // ChainMail comes to rest without further events.
@@ -953,39 +981,8 @@ void TestThread(vtkImageData* volume, const std::string& fileName)
   {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  VERIFY(!resting.Object->GetIsBusy());
-  VERIFY_EQUAL(resting.TakeError(), std::string());
+  EXPECT_FALSE(resting.Object->GetIsBusy());
+  EXPECT_EQ(resting.TakeError(), "");
 }
 
 } // namespace
-
-int TestDeformVolumeSession(int argc, char* argv[])
-{
-  // The test driver passes options, which atoi() reads as 0.
-  const int events = argc > 1 && std::atoi(argv[1]) > 0 ? std::atoi(argv[1]) : 300;
-  const int seed = argc > 2 ? std::max(std::atoi(argv[2]), 1) : 1;
-  std::string folder = ".";
-  std::string data = ".";
-  for (int i = 1; i + 1 < argc; ++i)
-  {
-    folder = std::string(argv[i]) == "-T" ? argv[i + 1] : folder;
-    data = std::string(argv[i]) == "-D" ? argv[i + 1] : data;
-  }
-  const std::string fileName = folder + "/TestDeformVolumeSession.xml";
-  const auto volume = MakeVolume(Box);
-  TestMisuse(volume);
-  TestDrag(volume);
-  TestSmoothTools(volume);
-  TestHandles(volume, fileName);
-  TestRecovery(volume);
-  TestModels(volume);
-  TestTwice(volume);
-  TestPadding(volume);
-  TestFiles(volume, fileName);
-  TestOldFile(data, fileName);
-  TestGrabbedTissue(volume);
-  TestTenNodeElements(volume, fileName + ".vtu");
-  TestThread(volume, fileName);
-  TestRandom(volume, events, static_cast<unsigned>(seed), fileName);
-  return GetExitCode();
-}

@@ -3,7 +3,7 @@
 #ifndef DeformVolumeMeshChecks_h
 #define DeformVolumeMeshChecks_h
 
-#include "../Common/CheckedCondition.h"
+#include "HasPart.h"
 
 #include <vtkAlgorithm.h>
 #include <vtkCellArray.h>
@@ -27,39 +27,6 @@
 
 namespace meshChecks
 {
-
-inline int& Failures()
-{
-  static int failures = 0;
-  return failures;
-}
-
-#define VERIFY(condition) CHECK_CONDITION(condition, meshChecks::Failures())
-
-#define VERIFY_CONTAINS(text, part)                                                                \
-  do                                                                                               \
-  {                                                                                                \
-    const std::string foundText = (text);                                                          \
-    const std::string expectedPart = (part);                                                       \
-    if (foundText.find(expectedPart) == std::string::npos)                                         \
-    {                                                                                              \
-      ++meshChecks::Failures();                                                                    \
-      std::cerr << __FILE__ << ':' << __LINE__ << ": expected a text with \"" << expectedPart      \
-                << "\" instead of \"" << foundText << "\"\n";                                      \
-    }                                                                                              \
-  } while (false)
-
-#define VERIFY_NEAR(value, expected, tolerance)                                                    \
-  do                                                                                               \
-  {                                                                                                \
-    const double found = (value);                                                                  \
-    if (!(std::abs(found - (expected)) <= (tolerance)))                                            \
-    {                                                                                              \
-      ++meshChecks::Failures();                                                                    \
-      std::cerr << __FILE__ << ':' << __LINE__ << ": " << #value << " is " << found                \
-                << ", expected " << (expected) << " within " << (tolerance) << '\n';               \
-    }                                                                                              \
-  } while (false)
 
 /// Updates an algorithm, and checks that it reports one error that contains a text, and has an
 /// empty output.
@@ -90,39 +57,24 @@ public:
   void IsRefused(const std::string& text)
   {
     this->Update();
-    if (this->ExecutiveErrors->GetErrorMessage().find(text) == std::string::npos)
-    {
-      ++Failures();
-      std::cerr << "Expected the error of the executive \"" << text << "\", got "
-                << this->ExecutiveErrors->GetErrorMessage() << '\n';
-    }
+    EXPECT_TRUE(HasPart(this->ExecutiveErrors->GetErrorMessage(), text));
     this->VerifyEmpty(text);
   }
 
   void Succeeds()
   {
     this->Update();
-    if (this->Errors->GetError() || this->Errors->GetWarning() || this->ExecutiveErrors->GetError())
-    {
-      ++Failures();
-      std::cerr << "Expected no error and no warning, got: " << this->Errors->GetErrorMessage()
-                << this->Errors->GetWarningMessage() << this->ExecutiveErrors->GetErrorMessage()
-                << '\n';
-    }
+    EXPECT_FALSE(this->Errors->GetError()) << this->Errors->GetErrorMessage();
+    EXPECT_FALSE(this->Errors->GetWarning()) << this->Errors->GetWarningMessage();
+    EXPECT_FALSE(this->ExecutiveErrors->GetError()) << this->ExecutiveErrors->GetErrorMessage();
   }
 
   /// There is no error, and a warning that contains the text.
   void Warns(const std::string& text)
   {
     this->Update();
-    if (this->Errors->GetError() ||
-      this->Errors->GetWarningMessage().find(text) == std::string::npos)
-    {
-      ++Failures();
-      std::cerr << "Expected a warning with \"" << text
-                << "\", got: " << this->Errors->GetErrorMessage()
-                << this->Errors->GetWarningMessage() << '\n';
-    }
+    EXPECT_FALSE(this->Errors->GetError()) << this->Errors->GetErrorMessage();
+    EXPECT_TRUE(HasPart(this->Errors->GetWarningMessage(), text));
   }
 
 private:
@@ -137,16 +89,12 @@ private:
   void VerifyFailure(const std::vector<std::string>& texts)
   {
     this->Clear();
-    const bool updated = this->Algorithm->GetExecutive()->Update() != 0;
+    EXPECT_FALSE(this->Algorithm->GetExecutive()->Update());
+    EXPECT_EQ(this->Counter->Count, 1);
     const std::string message = this->Errors->GetErrorMessage();
-    if (updated || this->Counter->Count != 1 ||
-      std::none_of(texts.begin(), texts.end(),
-        [&](const std::string& text) { return message.find(text) != std::string::npos; }))
-    {
-      ++Failures();
-      std::cerr << "Expected one error with \"" << texts.front() << "\", got "
-                << this->Counter->Count << ": " << message << '\n';
-    }
+    EXPECT_TRUE(std::any_of(texts.begin(), texts.end(),
+      [&](const std::string& text) { return message.find(text) != std::string::npos; }))
+      << "expected \"" << texts.front() << "\" instead of \"" << message << "\"";
     this->VerifyEmpty(texts.front());
   }
 
@@ -167,13 +115,8 @@ private:
   void VerifyEmpty(const std::string& text)
   {
     auto* output = vtkUnstructuredGrid::SafeDownCast(this->Algorithm->GetOutputDataObject(0));
-    if (output && (output->GetNumberOfCells() || output->GetNumberOfPoints()))
-    {
-      ++Failures();
-      std::cerr << "Expected an empty output after the error \"" << text << "\", got "
-                << output->GetNumberOfCells() << " cells and " << output->GetNumberOfPoints()
-                << " points\n";
-    }
+    EXPECT_EQ(output ? output->GetNumberOfCells() : 0, 0) << "after the error: " << text;
+    EXPECT_EQ(output ? output->GetNumberOfPoints() : 0, 0) << "after the error: " << text;
   }
 
   vtkAlgorithm* Algorithm;
@@ -208,9 +151,8 @@ inline Summary Summarize(vtkUnstructuredGrid* mesh)
     mesh->GetCellPoints(cell, size, ids);
     if (mesh->GetCellType(cell) != VTK_TETRA || size != 4)
     {
-      ++Failures();
-      std::cerr << "Cell " << cell << " has the type " << mesh->GetCellType(cell) << " and " << size
-                << " points instead of VTK_TETRA and 4\n";
+      ADD_FAILURE() << "Cell " << cell << " has the type " << mesh->GetCellType(cell) << " and "
+                    << size << " points instead of VTK_TETRA and 4";
       return summary;
     }
     glm::dvec3 p[4];

@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <sstream>
 
 using namespace meshChecks;
@@ -36,16 +35,16 @@ void VerifyConforming(vtkUnstructuredGrid* mesh, const int nodes[3])
 {
   const Summary summary = Summarize(mesh);
   const int cells[3] = { nodes[0] - 1, nodes[1] - 1, nodes[2] - 1 };
-  VERIFY(mesh->GetNumberOfPoints() == vtkIdType(nodes[0]) * nodes[1] * nodes[2]);
-  VERIFY(mesh->GetNumberOfCells() == vtkIdType(5) * cells[0] * cells[1] * cells[2]);
-  VERIFY(summary.OverusedFaces == 0);
-  VERIFY(summary.OpenBoundaryEdges == 0);
-  VERIFY(
-    summary.BoundaryFaces == 4 * (cells[0] * cells[1] + cells[1] * cells[2] + cells[2] * cells[0]));
-  VERIFY(summary.SmallestVolume > 0.0);
+  EXPECT_EQ(mesh->GetNumberOfPoints(), vtkIdType(nodes[0]) * nodes[1] * nodes[2]);
+  EXPECT_EQ(mesh->GetNumberOfCells(), vtkIdType(5) * cells[0] * cells[1] * cells[2]);
+  EXPECT_EQ(summary.OverusedFaces, 0);
+  EXPECT_EQ(summary.OpenBoundaryEdges, 0);
+  EXPECT_EQ(
+    summary.BoundaryFaces, 4 * (cells[0] * cells[1] + cells[1] * cells[2] + cells[2] * cells[0]));
+  EXPECT_GT(summary.SmallestVolume, 0.0);
 }
 
-void TestMisuse()
+TEST(LatticeTetrahedraSource, Misuse)
 {
   vtkNew<vtkLatticeTetrahedraSource> source;
   FailureCheck check(source);
@@ -88,22 +87,22 @@ void TestMisuse()
 
   source->SetInputConnection(nullptr);
   check.Succeeds();
-  VERIFY(source->GetOutput()->GetNumberOfCells() == 5);
+  EXPECT_EQ(source->GetOutput()->GetNumberOfCells(), 5);
   source->SetMargin(-3.0);
-  VERIFY(source->GetMargin() == 0.0);
+  EXPECT_EQ(source->GetMargin(), 0.0);
 }
 
-void TestBox()
+TEST(LatticeTetrahedraSource, Box)
 {
   vtkNew<vtkLatticeTetrahedraSource> source;
   int nodes[3];
   source->GetNumberOfNodes(nodes);
-  VERIFY(nodes[0] == 13 && nodes[1] == 13 && nodes[2] == 13);
+  EXPECT_TRUE(nodes[0] == 13 && nodes[1] == 13 && nodes[2] == 13);
   FailureCheck check(source);
   check.Succeeds();
-  VERIFY_NEAR(Summarize(source->GetOutput()).Volume, 1.0, 1e-12);
+  EXPECT_NEAR(Summarize(source->GetOutput()).Volume, 1.0, 1e-12);
   VerifyConforming(source->GetOutput(), nodes);
-  VERIFY(source->GetOutput()->GetPoints()->GetDataType() == VTK_DOUBLE);
+  EXPECT_EQ(source->GetOutput()->GetPoints()->GetDataType(), VTK_DOUBLE);
 
   source->EqualSpacingOff();
   const int uneven[3] = { 4, 2, 7 };
@@ -112,7 +111,7 @@ void TestBox()
   check.Succeeds();
   vtkUnstructuredGrid* mesh = source->GetOutput();
   VerifyConforming(mesh, uneven);
-  VERIFY_NEAR(Summarize(mesh).Volume, 18.0, 1e-11);
+  EXPECT_NEAR(Summarize(mesh).Volume, 18.0, 1e-11);
   // The volume of corner tetrahedra is one sixth of their cell, that of the central one, which is
   // the last one, is one third.
   for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
@@ -121,7 +120,7 @@ void TestBox()
     one->SetPoints(mesh->GetPoints());
     one->Allocate(1);
     one->InsertNextCell(VTK_TETRA, mesh->GetCell(cell)->GetPointIds());
-    VERIFY_NEAR(Summarize(one).Volume, cell % 5 == 4 ? 1.0 / 3 : 1.0 / 6, 1e-12);
+    EXPECT_NEAR(Summarize(one).Volume, cell % 5 == 4 ? 1.0 / 3 : 1.0 / 6, 1e-12);
   }
 
   source->SetMargin(0.5);
@@ -131,11 +130,11 @@ void TestBox()
   const double expected[6] = { -1.5, 5.5, 99.5, 101.5, -8.5, -4.5 };
   for (int i = 0; i < 6; ++i)
   {
-    VERIFY_NEAR(bounds[i], expected[i], 1e-12);
+    EXPECT_NEAR(bounds[i], expected[i], 1e-12);
   }
 }
 
-void TestVolume()
+TEST(LatticeTetrahedraSource, Volume)
 {
   const int nodes[3] = { 5, 6, 3 };
   const int extent[6] = { -7, 12, 4, 9, -3, 20 };
@@ -154,7 +153,7 @@ void TestVolume()
     check.Succeeds();
     vtkUnstructuredGrid* mesh = source->GetOutput();
     VerifyConforming(mesh, nodes);
-    VERIFY_NEAR(Summarize(mesh).Volume, (19 * 0.5) * (5 * 2.0) * (23 * 1.25), 1e-9);
+    EXPECT_NEAR(Summarize(mesh).Volume, (19 * 0.5) * (5 * 2.0) * (23 * 1.25), 1e-9);
     // Compare each node with the transform of the volume.
     for (vtkIdType node = 0; node < mesh->GetNumberOfPoints(); ++node)
     {
@@ -171,25 +170,25 @@ void TestVolume()
       double point[3];
       volume->TransformContinuousIndexToPhysicalPoint(index, expected);
       mesh->GetPoint(node, point);
-      VERIFY_NEAR(
+      EXPECT_NEAR(
         std::hypot(expected[0] - point[0], expected[1] - point[1], expected[2] - point[2]), 0.0,
         1e-12);
     }
     source->SetMargin(2.0);
     check.Succeeds();
-    VERIFY_NEAR(Summarize(source->GetOutput()).Volume,
+    EXPECT_NEAR(Summarize(source->GetOutput()).Volume,
       (19 * 0.5 + 4) * (5 * 2.0 + 4) * (23 * 1.25 + 4), 1e-9);
     // Without a volume the bounds are used again.
     source->SetInputData(nullptr);
     source->SetMargin(0.0);
     check.Succeeds();
-    VERIFY_NEAR(Summarize(source->GetOutput()).Volume, 1.0, 1e-12);
+    EXPECT_NEAR(Summarize(source->GetOutput()).Volume, 1.0, 1e-12);
   }
 }
 
 // A volume with two consumers: the request of the lattice source must not replace that of the
 // consumer of both volume and lattice.
-void TestSharedVolume()
+TEST(LatticeTetrahedraSource, SharedVolume)
 {
   vtkNew<vtkRTAnalyticSource> volume;
   volume->SetWholeExtent(-3, 6, 2, 7, -4, 1);
@@ -202,8 +201,8 @@ void TestSharedVolume()
   for (int repeat = 0; repeat < 2; ++repeat)
   {
     check.Succeeds();
-    VERIFY(volume->GetOutput()->GetNumberOfPoints() == 360);
-    VERIFY(material->GetOutput()->GetNumberOfCells() > 0);
+    EXPECT_EQ(volume->GetOutput()->GetNumberOfPoints(), 360);
+    EXPECT_GT(material->GetOutput()->GetNumberOfCells(), 0);
     source->Modified();
     source->Update();
   }
@@ -211,12 +210,12 @@ void TestSharedVolume()
 
 // With EqualSpacing the cells are cubes. They cover the volume, and extend beyond it by the same
 // distance on both sides.
-void TestEqualSpacing()
+TEST(LatticeTetrahedraSource, EqualSpacing)
 {
   vtkNew<vtkLatticeTetrahedraSource> source;
   FailureCheck check(source);
-  VERIFY(source->GetEqualSpacing());
-  VERIFY(source->GetDimensions()[0] == 0);
+  EXPECT_TRUE(source->GetEqualSpacing());
+  EXPECT_EQ(source->GetDimensions()[0], 0);
   for (double sign : { 1.0, -1.0 })
   {
     vtkNew<vtkImageData> volume;
@@ -231,7 +230,7 @@ void TestEqualSpacing()
     // The volume measures 9.5, 10 and 28.75 mm. Nodes on the axes would have distances of 0.5, 2
     // and 7.1875 mm; the largest is chosen.
     const int nodes[3] = { 3, 3, 5 };
-    VERIFY(std::equal(nodes, nodes + 3, source->GetDimensions()));
+    EXPECT_TRUE(std::equal(nodes, nodes + 3, source->GetDimensions()));
     VerifyConforming(source->GetOutput(), nodes);
     const double edge = 28.75 / 4.0;
     for (vtkIdType node = 0; node < source->GetOutput()->GetNumberOfPoints(); ++node)
@@ -249,15 +248,15 @@ void TestEqualSpacing()
       double point[3];
       volume->TransformContinuousIndexToPhysicalPoint(index, expected);
       source->GetOutput()->GetPoint(node, point);
-      VERIFY_NEAR(
+      EXPECT_NEAR(
         std::hypot(expected[0] - point[0], expected[1] - point[1], expected[2] - point[2]), 0.0,
         1e-12);
     }
     source->SetMargin(3.0);
     check.Succeeds();
     // With the margin the lattice has to cover 15.5, 16 and 34.75 mm.
-    VERIFY(source->GetDimensions()[0] == 3 && source->GetDimensions()[2] == 5);
-    VERIFY_NEAR(
+    EXPECT_TRUE(source->GetDimensions()[0] == 3 && source->GetDimensions()[2] == 5);
+    EXPECT_NEAR(
       Summarize(source->GetOutput()).Volume, 2.0 * 2.0 * 4.0 * std::pow(34.75 / 4.0, 3), 1e-8);
     source->SetMargin(0.0);
   }
@@ -267,10 +266,10 @@ void TestEqualSpacing()
   source->SetNumberOfNodes(2, 4, 4);
   check.Succeeds();
   const int nodes[3] = { 2, 4, 4 };
-  VERIFY(std::equal(nodes, nodes + 3, source->GetDimensions()));
+  EXPECT_TRUE(std::equal(nodes, nodes + 3, source->GetDimensions()));
 }
 
-void TestAbort()
+TEST(LatticeTetrahedraSource, Abort)
 {
   vtkNew<vtkLatticeTetrahedraSource> source;
   vtkNew<vtkCallbackCommand> abort;
@@ -284,15 +283,15 @@ void TestAbort()
     });
   const unsigned long tag = source->AddObserver(vtkCommand::ProgressEvent, abort);
   source->Update();
-  VERIFY(source->GetOutput()->GetNumberOfPoints() == 0);
+  EXPECT_EQ(source->GetOutput()->GetNumberOfPoints(), 0);
   source->RemoveObserver(tag);
   source->SetAbortExecute(0);
   source->Update();
-  VERIFY_NEAR(Summarize(source->GetOutput()).Volume, 1.0, 1e-12);
+  EXPECT_NEAR(Summarize(source->GetOutput()).Volume, 1.0, 1e-12);
 }
 
-/// The pieces together are the whole lattice.
-void TestPieces()
+// The pieces together are the whole lattice.
+TEST(LatticeTetrahedraSource, Pieces)
 {
   vtkNew<vtkLatticeTetrahedraSource> source;
   vtkNew<vtkImageData> volume;
@@ -304,13 +303,13 @@ void TestPieces()
     for (const int piece : { 2, 0, 1 })
     {
       source->UpdatePiece(piece, 3, 0);
-      VERIFY(source->GetOutput()->GetNumberOfCells() == (piece == 0 ? 5 * 12 * 12 * 12 : 0));
-      VERIFY(source->GetOutput()->GetNumberOfPoints() == (piece == 0 ? 13 * 13 * 13 : 0));
+      EXPECT_EQ(source->GetOutput()->GetNumberOfCells(), piece == 0 ? 5 * 12 * 12 * 12 : 0);
+      EXPECT_EQ(source->GetOutput()->GetNumberOfPoints(), piece == 0 ? 13 * 13 * 13 : 0);
     }
   }
 }
 
-void TestLarge()
+TEST(LatticeTetrahedraSource, Large)
 {
   vtkNew<vtkLatticeTetrahedraSource> source;
   source->SetNumberOfNodes(80, 80, 80);
@@ -320,29 +319,20 @@ void TestLarge()
     std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   std::cout << "80 x 80 x 80 nodes: " << seconds << " s\n";
   vtkUnstructuredGrid* mesh = source->GetOutput();
-  VERIFY(mesh->GetNumberOfPoints() == 512000);
-  VERIFY(mesh->GetNumberOfCells() == 2465195);
+  EXPECT_EQ(mesh->GetNumberOfPoints(), 512000);
+  EXPECT_EQ(mesh->GetNumberOfCells(), 2465195);
   vtkIdType size;
   const vtkIdType* ids;
   mesh->GetCellPoints(2465194, size, ids);
-  VERIFY(size == 4 && *std::max_element(ids, ids + 4) < 512000);
+  EXPECT_TRUE(size == 4 && *std::max_element(ids, ids + 4) < 512000);
 }
 
 } // namespace
 
-int TestLatticeTetrahedraSource(int, char*[])
+TEST(LatticeTetrahedraSource, Print)
 {
-  TestMisuse();
-  TestBox();
-  TestVolume();
-  TestSharedVolume();
-  TestEqualSpacing();
-  TestAbort();
-  TestPieces();
-  TestLarge();
   vtkNew<vtkLatticeTetrahedraSource> source;
   std::ostringstream text;
   source->Print(text);
-  VERIFY_CONTAINS(text.str(), "NumberOfNodes: 13 13 13");
-  return Failures() ? EXIT_FAILURE : EXIT_SUCCESS;
+  EXPECT_TRUE(HasPart(text.str(), "NumberOfNodes: 13 13 13"));
 }

@@ -23,7 +23,7 @@ namespace
 
 const char* const GHOSTS = "vtkGhostType";
 
-void TestMeshers()
+TEST(MesherShortArrays, Meshers)
 {
   vtkNew<vtkImageData> volume;
   volume->SetDimensions(13, 13, 13);
@@ -50,7 +50,7 @@ void TestMeshers()
   FailureCheck latticeCheck(lattice);
   lattice->SetInputData(volume);
   latticeCheck.Succeeds();
-  VERIFY(lattice->GetOutput()->GetNumberOfCells() > 0);
+  EXPECT_GT(lattice->GetOutput()->GetNumberOfCells(), 0);
 
   vtkNew<vtkSphereSource> sphere;
   sphere->Update();
@@ -69,9 +69,3 @@ void TestMeshers()
 }
 
 } // namespace
-
-int TestMesherShortArrays(int, char*[])
-{
-  TestMeshers();
-  return Failures() == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
-}

@@ -14,7 +14,6 @@
 #include <vtkTypeInt64Array.h>
 #include <vtkUnsignedCharArray.h>
 
-#include <cstdlib>
 #include <sstream>
 
 using namespace meshChecks;
@@ -28,9 +27,9 @@ const double Pi = 3.14159265358979323846;
 
 void VerifySound(const Summary& summary)
 {
-  VERIFY(summary.OverusedFaces == 0);
-  VERIFY(summary.OpenBoundaryEdges == 0);
-  VERIFY(summary.SmallestVolume > 0.0);
+  EXPECT_EQ(summary.OverusedFaces, 0);
+  EXPECT_EQ(summary.OpenBoundaryEdges, 0);
+  EXPECT_GT(summary.SmallestVolume, 0.0);
 }
 
 // A volume with a rotated direction matrix, uneven spacing and an extent that starts below 0.
@@ -64,7 +63,7 @@ glm::dvec3 CenterOfVolume()
   return glm::dvec3(center[0], center[1], center[2]);
 }
 
-void TestBall()
+TEST(TetGenMesher, Ball)
 {
   const glm::dvec3 center = CenterOfVolume();
   const double radius = 20.0;
@@ -80,12 +79,12 @@ void TestBall()
   check.Succeeds();
   const Summary summary = Summarize(mesher->GetOutput());
   VerifySound(summary);
-  VERIFY_NEAR(summary.Volume / ball, 1.0, 0.03);
-  VERIFY_NEAR(glm::distance(summary.Centroid, center), 0.0, 0.05 * radius);
-  VERIFY_NEAR(summary.MeanEdge, radius / 4, radius / 8);
-  VERIFY_NEAR(summary.PoorShare, 0.0, 0.02);
-  VERIFY(mesher->GetUsedIsovalue() == -radius);
-  VERIFY(mesher->GetUsedTargetEdgeLength() == radius / 4);
+  EXPECT_NEAR(summary.Volume / ball, 1.0, 0.03);
+  EXPECT_NEAR(glm::distance(summary.Centroid, center), 0.0, 0.05 * radius);
+  EXPECT_NEAR(summary.MeanEdge, radius / 4, radius / 8);
+  EXPECT_NEAR(summary.PoorShare, 0.0, 0.02);
+  EXPECT_EQ(mesher->GetUsedIsovalue(), -radius);
+  EXPECT_EQ(mesher->GetUsedTargetEdgeLength(), radius / 4);
   std::cout << "Ball: " << mesher->GetOutput()->GetNumberOfCells() << " tetrahedra, volume "
             << summary.Volume / ball << " of that of the ball, mean edge "
             << summary.MeanEdge / (radius / 4) << " of TargetEdgeLength, poor " << summary.PoorShare
@@ -95,14 +94,14 @@ void TestBall()
   vtkNew<vtkUnstructuredGrid> first;
   first->DeepCopy(mesher->GetOutput());
   check.Succeeds();
-  VERIFY(first->GetNumberOfPoints() == mesher->GetOutput()->GetNumberOfPoints());
-  for (vtkIdType i = 0; i < first->GetNumberOfPoints() && !Failures(); ++i)
+  EXPECT_EQ(first->GetNumberOfPoints(), mesher->GetOutput()->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < first->GetNumberOfPoints() && !HasFailure(); ++i)
   {
     double a[3];
     double b[3];
     first->GetPoint(i, a);
     mesher->GetOutput()->GetPoint(i, b);
-    VERIFY(a[0] == b[0] && a[1] == b[1] && a[2] == b[2]);
+    EXPECT_TRUE(a[0] == b[0] && a[1] == b[1] && a[2] == b[2]);
   }
 
   for (double margin : { 0.5, 1.0 })
@@ -111,12 +110,12 @@ void TestBall()
     check.Succeeds();
     const Summary wide = Summarize(mesher->GetOutput());
     VerifySound(wide);
-    VERIFY_NEAR(
+    EXPECT_NEAR(
       std::cbrt(wide.Volume / (4.0 / 3 * Pi)), radius + margin * radius / 4, 0.03 * radius);
   }
 }
 
-void TestBodies()
+TEST(TetGenMesher, Bodies)
 {
   const glm::dvec3 center = CenterOfVolume();
   const glm::dvec3 aside(13.0, 0.0, 0.0);
@@ -137,11 +136,11 @@ void TestBodies()
         : 40.0;
     }));
   check.Succeeds();
-  VERIFY(mesher->GetUsedIsovalue() > 45.0 && mesher->GetUsedIsovalue() < 85.0);
-  VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume / (large + small), 1.0, 0.06);
+  EXPECT_TRUE(mesher->GetUsedIsovalue() > 45.0 && mesher->GetUsedIsovalue() < 85.0);
+  EXPECT_NEAR(Summarize(mesher->GetOutput()).Volume / (large + small), 1.0, 0.06);
   mesher->SetPieceModeToLargestPiece();
   check.Warns("voxels of the body (18 %) lie outside the mesh. The body has 2 pieces");
-  VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume / large, 1.0, 0.06);
+  EXPECT_NEAR(Summarize(mesher->GetOutput()).Volume / large, 1.0, 0.06);
   mesher->SetPieceModeToAllPieces();
 
   // A cavity is filled.
@@ -152,7 +151,7 @@ void TestBodies()
       return distance < 15.0 && distance > 8.0 ? 90.0 : 40.0;
     }));
   check.Succeeds();
-  VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume / (4.0 / 3 * Pi * 3375.0), 1.0, 0.06);
+  EXPECT_NEAR(Summarize(mesher->GetOutput()).Volume / (4.0 / 3 * Pi * 3375.0), 1.0, 0.06);
 
   // A body that fills the volume is closed half a voxel outside the outermost voxels.
   mesher->AutomaticIsovalueOff();
@@ -162,7 +161,7 @@ void TestBodies()
   check.Succeeds();
   Summary summary = Summarize(mesher->GetOutput());
   VerifySound(summary);
-  VERIFY_NEAR(summary.Volume / (51.0 * 71.0 * 0.75 * 41.0 * 1.25), 1.0, 0.06);
+  EXPECT_NEAR(summary.Volume / (51.0 * 71.0 * 0.75 * 41.0 * 1.25), 1.0, 0.06);
   mesher->SetSmoothingIterations(20);
 
   // Hidden voxels are outside.
@@ -179,10 +178,10 @@ void TestBodies()
   }
   mesher->SetInputData(hidden);
   check.Succeeds();
-  VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume / (2.0 / 3 * Pi * 3375.0), 1.0, 0.1);
+  EXPECT_NEAR(Summarize(mesher->GetOutput()).Volume / (2.0 / 3 * Pi * 3375.0), 1.0, 0.1);
 }
 
-void TestLabels()
+TEST(TetGenMesher, Labels)
 {
   // Two boxes whose labels differ by one, but are equal as doubles.
   const vtkTypeInt64 label = vtkTypeInt64(1) << 53;
@@ -208,20 +207,20 @@ void TestLabels()
   mesher->SetTargetEdgeLength(4.0);
   mesher->SetMargin(0.0);
   check.Succeeds();
-  VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume / (48 * 24 * 24), 1.0, 0.06);
+  EXPECT_NEAR(Summarize(mesher->GetOutput()).Volume / (48 * 24 * 24), 1.0, 0.06);
   mesher->AddLabel(label);
   check.Succeeds();
-  VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume / (18 * 24 * 24), 1.0, 0.06);
-  VERIFY(mesher->GetOutput()->GetBounds()[1] < 25.0);
+  EXPECT_NEAR(Summarize(mesher->GetOutput()).Volume / (18 * 24 * 24), 1.0, 0.06);
+  EXPECT_LT(mesher->GetOutput()->GetBounds()[1], 25.0);
   mesher->ClearLabels();
   mesher->AddLabel(label + 1);
-  VERIFY(mesher->GetNumberOfLabels() == 1 && mesher->GetLabel(0) == label + 1);
+  EXPECT_TRUE(mesher->GetNumberOfLabels() == 1 && mesher->GetLabel(0) == label + 1);
   check.Succeeds();
-  VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume / (30 * 24 * 24), 1.0, 0.06);
-  VERIFY(mesher->GetOutput()->GetBounds()[0] > 22.0);
+  EXPECT_NEAR(Summarize(mesher->GetOutput()).Volume / (30 * 24 * 24), 1.0, 0.06);
+  EXPECT_GT(mesher->GetOutput()->GetBounds()[0], 22.0);
 }
 
-void TestSurfaces()
+TEST(TetGenMesher, Surfaces)
 {
   vtkNew<vtkTetGenMesher> mesher;
   FailureCheck check(mesher);
@@ -232,11 +231,11 @@ void TestSurfaces()
   check.Succeeds();
   Summary summary = Summarize(mesher->GetOutput());
   VerifySound(summary);
-  VERIFY_NEAR(summary.Volume, 1.0, 1e-9);
-  VERIFY_NEAR(summary.MeanEdge, 0.2, 0.1);
+  EXPECT_NEAR(summary.Volume, 1.0, 1e-9);
+  EXPECT_NEAR(summary.MeanEdge, 0.2, 0.1);
   double bounds[6];
   mesher->GetOutput()->GetBounds(bounds);
-  VERIFY(bounds[0] == 1e5 - 0.5 && bounds[3] == 0.5);
+  EXPECT_TRUE(bounds[0] == 1e5 - 0.5 && bounds[3] == 0.5);
 
   vtkNew<vtkSphereSource> sphere; // is too fine, so that the mesher decimates it
   sphere->SetThetaResolution(100);
@@ -247,17 +246,16 @@ void TestSurfaces()
   check.Succeeds();
   summary = Summarize(mesher->GetOutput());
   VerifySound(summary);
-  VERIFY_NEAR(summary.Volume / (4.0 / 3 * Pi), 1.0, 0.03);
-  VERIFY_NEAR(summary.BoundaryFaces / (4.0 * Pi / (std::sqrt(3.0) / 4 * 0.0625)), 1.0, 0.1);
+  EXPECT_NEAR(summary.Volume / (4.0 / 3 * Pi), 1.0, 0.03);
+  EXPECT_NEAR(summary.BoundaryFaces / (4.0 * Pi / (std::sqrt(3.0) / 4 * 0.0625)), 1.0, 0.1);
   mesher->DecimationOff();
   check.Succeeds();
   summary = Summarize(mesher->GetOutput());
-  VERIFY(summary.BoundaryFaces == 2 * 100 * 98);
+  EXPECT_EQ(summary.BoundaryFaces, 2 * 100 * 98);
 }
 
-/// Piece 0 is the whole mesh. The other pieces are empty, and need no work.
 // Bodies in nanometers, or in meters, of any size.
-void TestUnits()
+TEST(TetGenMesher, Units)
 {
   for (const double unit : { 1e-9, 1.0, 1e9 })
   {
@@ -270,11 +268,12 @@ void TestUnits()
     mesher->SetInputConnection(cube->GetOutputPort());
     mesher->SetTargetEdgeLength(0.4 * unit);
     check.Succeeds();
-    VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume / (unit * unit * unit), 1.0, 1e-6);
+    EXPECT_NEAR(Summarize(mesher->GetOutput()).Volume / (unit * unit * unit), 1.0, 1e-6);
   }
 }
 
-void TestPieces()
+// Piece 0 is the whole mesh. The other pieces are empty, and need no work.
+TEST(TetGenMesher, Pieces)
 {
   vtkNew<vtkCubeSource> cube;
   vtkNew<vtkTetGenMesher> mesher;
@@ -283,24 +282,17 @@ void TestPieces()
   for (const int piece : { 1, 0, 2 })
   {
     mesher->UpdatePiece(piece, 3, 0);
-    VERIFY((mesher->GetOutput()->GetNumberOfCells() > 0) == (piece == 0));
-    VERIFY((mesher->GetUsedTargetEdgeLength() > 0.0) == (piece == 0));
+    EXPECT_EQ(mesher->GetOutput()->GetNumberOfCells() > 0, piece == 0);
+    EXPECT_EQ(mesher->GetUsedTargetEdgeLength() > 0.0, piece == 0);
   }
 }
 
 } // namespace
 
-int TestTetGenMesher(int, char*[])
+TEST(TetGenMesher, Print)
 {
-  TestBall();
-  TestBodies();
-  TestLabels();
-  TestSurfaces();
-  TestUnits();
-  TestPieces();
   vtkNew<vtkTetGenMesher> mesher;
   std::ostringstream text;
   mesher->Print(text);
-  VERIFY_CONTAINS(text.str(), "RadiusEdgeRatio: 1.414");
-  return Failures() ? EXIT_FAILURE : EXIT_SUCCESS;
+  EXPECT_TRUE(HasPart(text.str(), "RadiusEdgeRatio: 1.414"));
 }

@@ -96,16 +96,16 @@ Body MakeVessels()
 void VerifyHeld(vtkTetGenMesher* mesher, vtkImageData* volume, vtkIdType specks)
 {
   const bodyChecks::Count count = bodyChecks::CountVoxels(volume, 50.0, mesher->GetOutput());
-  VERIFY(mesher->GetNumberOfSpeckVoxels() == specks);
-  VERIFY(mesher->GetNumberOfBodyVoxels() == count.Body - specks);
-  VERIFY(mesher->GetNumberOfBodyVoxelsOutside() == 0);
-  VERIFY(count.Outside <= specks);
+  EXPECT_EQ(mesher->GetNumberOfSpeckVoxels(), specks);
+  EXPECT_EQ(mesher->GetNumberOfBodyVoxels(), count.Body - specks);
+  EXPECT_EQ(mesher->GetNumberOfBodyVoxelsOutside(), 0);
+  EXPECT_LE(count.Outside, specks);
   const Summary summary = Summarize(mesher->GetOutput());
-  VERIFY(summary.OverusedFaces == 0 && summary.OpenBoundaryEdges == 0);
-  VERIFY(summary.SmallestVolume > 0.0);
+  EXPECT_TRUE(summary.OverusedFaces == 0 && summary.OpenBoundaryEdges == 0);
+  EXPECT_GT(summary.SmallestVolume, 0.0);
 }
 
-void TestThinParts()
+TEST(TetGenMesherBodies, ThinParts)
 {
   const std::pair<const char*, Body> bodies[] = { { "head", IsInHead }, { "sheets", IsInSheets },
     { "vessels", MakeVessels() } };
@@ -123,19 +123,15 @@ void TestThinParts()
         mesher->SetMargin(margin);
         mesher->SetSpeckSize(0);
         check.Succeeds();
-        const int before = Failures();
+        SCOPED_TRACE(
+          testing::Message() << name << ", edges of " << length << ", margin " << margin);
         VerifyHeld(mesher, volume, 0);
-        if (Failures() > before)
-        {
-          std::cerr << "  with " << name << ", edges of " << length << ", margin " << margin << ": "
-                    << mesher->GetNumberOfBodyVoxelsOutside() << " voxels outside\n";
-        }
       }
     }
   }
 }
 
-void TestSpecks()
+TEST(TetGenMesherBodies, Specks)
 {
   // 200 separate specks of 8 voxels.
   const vtkIdType specks = 200 * 8;
@@ -151,15 +147,15 @@ void TestSpecks()
   mesher->SetInputData(volume);
   check.Succeeds();
   VerifyHeld(mesher, volume, specks);
-  VERIFY(mesher->GetNumberOfPieces() == 1);
-  VERIFY_CONTAINS(mesher->GetSummary(), "Voxels of specks: 1,600");
+  EXPECT_EQ(mesher->GetNumberOfPieces(), 1);
+  EXPECT_TRUE(HasPart(mesher->GetSummary(), "Voxels of specks: 1,600"));
   mesher->SetSpeckSize(8);
   check.Succeeds();
   VerifyHeld(mesher, volume, specks);
   mesher->SetSpeckSize(7);
   check.Succeeds();
   VerifyHeld(mesher, volume, 0);
-  VERIFY(mesher->GetNumberOfPieces() == 201);
+  EXPECT_EQ(mesher->GetNumberOfPieces(), 201);
 
   // If a body consists of specks only, they are meshed.
   const vtkSmartPointer<vtkImageData> lonely =
@@ -173,7 +169,7 @@ void TestSpecks()
 
 // Half of a slice is thicker than the margin. The mesh must contain the voxels of the outermost
 // slices nevertheless.
-void TestThickSlices()
+TEST(TetGenMesherBodies, ThickSlices)
 {
   const vtkSmartPointer<vtkImageData> volume =
     MakeVolume([](int x, int y, int z) { return z < 3 && Square(x - 40) + Square(y - 40) < 900; });
@@ -190,7 +186,7 @@ void TestThickSlices()
   }
 }
 
-void TestPieceModes()
+TEST(TetGenMesherBodies, PieceModes)
 {
   // Voxels that share only a corner belong to one piece.
   const vtkSmartPointer<vtkImageData> volume = MakeVolume(
@@ -208,8 +204,8 @@ void TestPieceModes()
   mesher->SetInputData(volume);
   mesher->SetTargetEdgeLength(4.0);
   check.Succeeds();
-  VERIFY(mesher->GetNumberOfPieces() == 2);
-  VERIFY(mesher->GetNumberOfBodyVoxels() == first + second);
+  EXPECT_EQ(mesher->GetNumberOfPieces(), 2);
+  EXPECT_EQ(mesher->GetNumberOfBodyVoxels(), first + second);
   VerifyHeld(mesher, volume, 0);
 
   mesher->SetPieceModeToLargestPiece();
@@ -219,23 +215,14 @@ void TestPieceModes()
     other->AddObserver(vtkCommand::WarningEvent, errors);
     other->SetPieceModeToLargestPiece();
     other->SetPieceMode(1); // the convex hull of previous versions
-    VERIFY(errors->CheckWarningMessage("convex hull") == 0);
-    VERIFY(other->GetPieceMode() == vtkTetGenMesher::ALL_PIECES);
+    EXPECT_EQ(errors->CheckWarningMessage("convex hull"), 0);
+    EXPECT_EQ(other->GetPieceMode(), vtkTetGenMesher::ALL_PIECES);
   }
   check.Warns("1,125 of the 2,853 voxels of the body (39 %) lie outside the mesh. The body has 2 "
               "pieces");
-  VERIFY(mesher->GetNumberOfBodyVoxels() == first + second);
-  VERIFY(mesher->GetNumberOfBodyVoxelsOutside() == first);
-  VERIFY_CONTAINS(mesher->GetSummary(), "Body voxels outside the mesh: 1,125");
+  EXPECT_EQ(mesher->GetNumberOfBodyVoxels(), first + second);
+  EXPECT_EQ(mesher->GetNumberOfBodyVoxelsOutside(), first);
+  EXPECT_TRUE(HasPart(mesher->GetSummary(), "Body voxels outside the mesh: 1,125"));
 }
 
 } // namespace
-
-int TestTetGenMesherBodies(int, char*[])
-{
-  TestThinParts();
-  TestSpecks();
-  TestThickSlices();
-  TestPieceModes();
-  return Failures() ? EXIT_FAILURE : EXIT_SUCCESS;
-}

@@ -3,6 +3,7 @@
 #include "vtkTetGenMesher.h"
 
 #include "MeshChecks.h"
+#include "RunTests.h"
 
 #include <vtkAppendPolyData.h>
 #include <vtkCallbackCommand.h>
@@ -25,6 +26,25 @@ using namespace meshChecks;
 
 namespace
 {
+
+/// Checks that the mesher leaves no temporary files.
+class TetGenMesherErrors : public testing::Test
+{
+protected:
+  void SetUp() override
+  {
+    std::filesystem::remove_all(this->Folder);
+    std::filesystem::create_directories(this->Folder / "temporary");
+    setenv("TMPDIR", (this->Folder / "temporary").c_str(), 1);
+  }
+  void TearDown() override
+  {
+    EXPECT_TRUE(std::filesystem::is_empty(this->Folder / "temporary"));
+    unsetenv("TMPDIR");
+  }
+  const std::filesystem::path Folder =
+    std::filesystem::absolute(GetTestArgument("-T")) / "TestTetGenMesherErrors";
+};
 
 vtkSmartPointer<vtkImageData> MakeVolume(double value)
 {
@@ -51,7 +71,7 @@ double SecondsSince(std::chrono::steady_clock::time_point start)
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void TestMisuseOfVolumes()
+TEST_F(TetGenMesherErrors, MisuseOfVolumes)
 {
   vtkNew<vtkTetGenMesher> mesher;
   FailureCheck check(mesher);
@@ -106,10 +126,10 @@ void TestMisuseOfVolumes()
   mesher->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "values");
   mesher->SetTargetEdgeLength(0.0);
   check.Succeeds();
-  VERIFY(mesher->GetOutput()->GetNumberOfCells() > 0);
+  EXPECT_GT(mesher->GetOutput()->GetNumberOfCells(), 0);
 }
 
-void TestMisuseOfSurfaces()
+TEST_F(TetGenMesherErrors, MisuseOfSurfaces)
 {
   vtkNew<vtkTetGenMesher> mesher;
   FailureCheck check(mesher);
@@ -150,10 +170,10 @@ void TestMisuseOfSurfaces()
   check.Fails("limit is 20 million");
   mesher->SetTargetEdgeLength(0.0);
   check.Succeeds();
-  VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume, 1.0, 1e-12);
+  EXPECT_NEAR(Summarize(mesher->GetOutput()).Volume, 1.0, 1e-12);
 }
 
-void TestMisuseOfTheProgram(const std::filesystem::path& folder)
+TEST_F(TetGenMesherErrors, MisuseOfTheProgram)
 {
   vtkNew<vtkCubeSource> cube;
   vtkNew<vtkTetGenMesher> mesher;
@@ -161,7 +181,7 @@ void TestMisuseOfTheProgram(const std::filesystem::path& folder)
   FailureCheck check(mesher);
   mesher->SetTetGenExecutable("/does/not/exist");
   check.Fails("Cannot run TetGen as \"/does/not/exist\": No such file");
-  mesher->SetTetGenExecutable(folder.string());
+  mesher->SetTetGenExecutable(this->Folder.string());
   check.Fails("Permission denied");
   mesher->SetTetGenExecutable("");
   setenv("DEFORMVOLUME_TETGEN", "no-program-of-this-name", 1);
@@ -169,40 +189,40 @@ void TestMisuseOfTheProgram(const std::filesystem::path& folder)
   unsetenv("DEFORMVOLUME_TETGEN");
 
   mesher->SetTetGenExecutable(
-    WriteScript(folder, "fails", "echo 'Opening x.'; echo 'the moon is wrong'; exit 3"));
+    WriteScript(this->Folder, "fails", "echo 'Opening x.'; echo 'the moon is wrong'; exit 3"));
   check.Fails("TetGen failed (exit status 3). TetGen says: the moon is wrong");
-  mesher->SetTetGenExecutable(WriteScript(folder, "wordless", "kill -ABRT $$"));
+  mesher->SetTetGenExecutable(WriteScript(this->Folder, "wordless", "kill -ABRT $$"));
   check.Fails("TetGen failed (Subprocess aborted).");
   // An output of TetGen that exceeds the capacity of a pipe.
   mesher->SetTetGenExecutable(
-    WriteScript(folder, "talks", "yes 'Opening x.' | head -n 100000; exec tetgen \"$@\""));
+    WriteScript(this->Folder, "talks", "yes 'Opening x.' | head -n 100000; exec tetgen \"$@\""));
   check.Succeeds();
-  VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume, 1.0, 1e-12);
-  mesher->SetTetGenExecutable(WriteScript(folder, "silent", "exit 0"));
+  EXPECT_NEAR(Summarize(mesher->GetOutput()).Volume, 1.0, 1e-12);
+  mesher->SetTetGenExecutable(WriteScript(this->Folder, "silent", "exit 0"));
   check.Fails("result cannot be read");
-  mesher->SetTetGenExecutable(WriteScript(folder, "nothing",
+  mesher->SetTetGenExecutable(WriteScript(this->Folder, "nothing",
     "d=$(dirname $2); printf '1 3 0 0\\n0 0 0 0\\n' > $d/surface.1.node; "
     "printf '0 4 0\\n' > $d/surface.1.ele"));
   check.Fails("no tetrahedra");
-  mesher->SetTetGenExecutable(WriteScript(folder, "outside",
+  mesher->SetTetGenExecutable(WriteScript(this->Folder, "outside",
     "d=$(dirname $2); printf '1 3 0 0\\n0 0 0 0\\n' > $d/surface.1.node; "
     "printf '1 4 0\\n0 0 1 2 3\\n' > $d/surface.1.ele"));
   check.Fails("result cannot be read");
   // TetGen makes flat tetrahedra if points of a surface are in one plane up to rounding. The mesher
   // removes them, since finite elements reject tetrahedra without volume.
-  mesher->SetTetGenExecutable(WriteScript(folder, "flat",
+  mesher->SetTetGenExecutable(WriteScript(this->Folder, "flat",
     "d=$(dirname $2); printf '5 3 0 0\\n0 0 0 0\\n1 1 0 0\\n2 0 1 0\\n3 1 1 1e-15\\n4 0 0 1\\n' > "
     "$d/surface.1.node; printf '2 4 0\\n0 0 1 2 3\\n1 0 1 2 4\\n' > $d/surface.1.ele"));
   check.Succeeds();
-  VERIFY(mesher->GetOutput()->GetNumberOfCells() == 1);
-  VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume, 1.0 / 6.0, 1e-12);
+  EXPECT_EQ(mesher->GetOutput()->GetNumberOfCells(), 1);
+  EXPECT_NEAR(Summarize(mesher->GetOutput()).Volume, 1.0 / 6.0, 1e-12);
 
-  const std::string slow = WriteScript(folder, "slow", "sleep 100; exit 0");
+  const std::string slow = WriteScript(this->Folder, "slow", "sleep 100; exit 0");
   mesher->SetTetGenExecutable(slow);
   mesher->SetTimeLimit(0.3);
   auto start = std::chrono::steady_clock::now();
   check.Fails("did not finish within the time limit of 0.3 s");
-  VERIFY(SecondsSince(start) < 10.0);
+  EXPECT_LT(SecondsSince(start), 10.0);
 
   mesher->SetTimeLimit(60.0);
   vtkNew<vtkCallbackCommand> abort;
@@ -217,42 +237,22 @@ void TestMisuseOfTheProgram(const std::filesystem::path& folder)
   const unsigned long tag = mesher->AddObserver(vtkCommand::ProgressEvent, abort);
   start = std::chrono::steady_clock::now();
   check.Succeeds();
-  VERIFY(SecondsSince(start) < 10.0);
-  VERIFY(mesher->GetOutput()->GetNumberOfPoints() == 0);
+  EXPECT_LT(SecondsSince(start), 10.0);
+  EXPECT_EQ(mesher->GetOutput()->GetNumberOfPoints(), 0);
   mesher->RemoveObserver(tag);
   mesher->SetAbortExecute(0);
   mesher->SetTetGenExecutable("tetgen"); // found on PATH
   mesher->Update();
-  VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume, 1.0, 1e-12);
+  EXPECT_NEAR(Summarize(mesher->GetOutput()).Volume, 1.0, 1e-12);
 }
 
 } // namespace
 
-int TestTetGenMesherErrors(int argc, char* argv[])
+TEST_F(TetGenMesherErrors, NoTemporaryFolder)
 {
-  std::filesystem::path folder = std::filesystem::temp_directory_path();
-  for (int i = 1; i + 1 < argc; ++i)
-  {
-    if (std::string(argv[i]) == "-T")
-    {
-      folder = argv[i + 1];
-    }
-  }
-  folder = std::filesystem::absolute(folder) / "TestTetGenMesherErrors";
-  std::filesystem::remove_all(folder);
-  std::filesystem::create_directories(folder / "temporary");
-  setenv("TMPDIR", (folder / "temporary").c_str(), 1);
-
-  TestMisuseOfVolumes();
-  TestMisuseOfSurfaces();
-  TestMisuseOfTheProgram(folder);
-  VERIFY(std::filesystem::is_empty(folder / "temporary"));
-
-  setenv("TMPDIR", (folder / "absent").c_str(), 1);
+  setenv("TMPDIR", (this->Folder / "absent").c_str(), 1);
   vtkNew<vtkCubeSource> cube;
   vtkNew<vtkTetGenMesher> mesher;
   mesher->SetInputConnection(cube->GetOutputPort());
   FailureCheck(mesher).Fails("Set the environment variable TMPDIR");
-  unsetenv("TMPDIR");
-  return Failures() ? EXIT_FAILURE : EXIT_SUCCESS;
 }

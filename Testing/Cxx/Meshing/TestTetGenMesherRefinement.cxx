@@ -11,7 +11,6 @@
 #include <vtkSphereSource.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <sstream>
 
 using namespace meshChecks;
@@ -79,19 +78,19 @@ Edges Measure(vtkUnstructuredGrid* mesh, const Sphere& sphere)
 void VerifyEdges(vtkTetGenMesher* mesher, const std::vector<Sphere>& spheres)
 {
   const Summary summary = Summarize(mesher->GetOutput());
-  VERIFY(summary.OverusedFaces == 0 && summary.OpenBoundaryEdges == 0);
-  VERIFY(summary.SmallestVolume > 0.0);
+  EXPECT_TRUE(summary.OverusedFaces == 0 && summary.OpenBoundaryEdges == 0);
+  EXPECT_GT(summary.SmallestVolume, 0.0);
   // Tetrahedra with long edges near the spheres have a lower quality than the others.
-  VERIFY_NEAR(summary.PoorShare, 0.0, 0.05);
+  EXPECT_NEAR(summary.PoorShare, 0.0, 0.05);
   for (const Sphere& sphere : spheres)
   {
     const Edges edges = Measure(mesher->GetOutput(), sphere);
     // The tolerance is for the rounding of positions.
-    VERIFY(edges.Inside <= sphere.EdgeLength * (1.0 + 1e-9));
-    VERIFY(edges.Through <= sphere.EdgeLength * (1.0 + 1e-9));
+    EXPECT_LE(edges.Inside, sphere.EdgeLength * (1.0 + 1e-9));
+    EXPECT_LE(edges.Through, sphere.EdgeLength * (1.0 + 1e-9));
     // The edges are not much shorter than requested.
-    VERIFY(edges.Inside > 0.7 * sphere.EdgeLength);
-    VERIFY(edges.Number > 100);
+    EXPECT_GT(edges.Inside, 0.7 * sphere.EdgeLength);
+    EXPECT_GT(edges.Number, 100);
     std::cout << "edges up to " << edges.Inside << " of " << sphere.EdgeLength << ", " << edges.Far
               << " far away, " << mesher->GetOutput()->GetNumberOfCells() << " tetrahedra\n";
   }
@@ -107,7 +106,7 @@ void Add(vtkTetGenMesher* mesher, const std::vector<Sphere>& spheres)
 }
 
 // A ball in a volume that is mirrored and rotated.
-void TestVolume()
+TEST(TetGenMesherRefinement, Volume)
 {
   vtkNew<vtkImageData> volume;
   volume->SetExtent(-30, 29, 0, 59, 10, 69);
@@ -140,7 +139,7 @@ void TestVolume()
 
   // A sphere around a point of the surface, one in the middle of the ball, and two that overlap.
   const Sphere skin{ ball + glm::dvec3(0.0, 50.0, 0.0), 50.0, 50.0 / 6.0 };
-  VERIFY(Measure(mesher->GetOutput(), skin).Inside > 2.0 * skin.EdgeLength);
+  EXPECT_GT(Measure(mesher->GetOutput(), skin).Inside, 2.0 * skin.EdgeLength);
   const Sphere inside{ ball, 15.0, 2.5 };
   const Sphere beside{ ball + glm::dvec3(30.0, 30.0, 0.0), 20.0, 20.0 / 6.0 };
   for (const std::vector<Sphere>& spheres : { std::vector<Sphere>{ skin },
@@ -149,17 +148,17 @@ void TestVolume()
     Add(mesher, spheres);
     check.Succeeds();
     VerifyEdges(mesher, spheres);
-    VERIFY(mesher->GetNumberOfBodyVoxelsOutside() == 0);
-    VERIFY(Measure(mesher->GetOutput(), spheres[0]).Far > 12.0 || spheres[0].Radius > 40.0);
+    EXPECT_EQ(mesher->GetNumberOfBodyVoxelsOutside(), 0);
+    EXPECT_TRUE(Measure(mesher->GetOutput(), spheres[0]).Far > 12.0 || spheres[0].Radius > 40.0);
     mesher->ClearRefinementSpheres();
   }
   // A sphere outside the body does not change the mesh.
   Add(mesher, { { ball + glm::dvec3(500.0, 0.0, 0.0), 50.0, 1.0 } });
   check.Succeeds();
-  VERIFY(mesher->GetOutput()->GetNumberOfCells() == coarse);
+  EXPECT_EQ(mesher->GetOutput()->GetNumberOfCells(), coarse);
 }
 
-void TestSurface()
+TEST(TetGenMesherRefinement, Surface)
 {
   vtkNew<vtkSphereSource> source;
   source->SetRadius(10.0);
@@ -176,24 +175,17 @@ void TestSurface()
   check.Succeeds();
   VerifyEdges(mesher, spheres);
   // The surface has more triangles, but does not change its shape.
-  VERIFY_NEAR(Summarize(mesher->GetOutput()).Volume / volume, 1.0, 1e-9);
+  EXPECT_NEAR(Summarize(mesher->GetOutput()).Volume / volume, 1.0, 1e-9);
 
   double sphere[5];
   mesher->GetRefinementSphere(0, sphere);
-  VERIFY(sphere[0] == 10.0 && sphere[3] == 6.0 && sphere[4] == 1.0);
+  EXPECT_TRUE(sphere[0] == 10.0 && sphere[3] == 6.0 && sphere[4] == 1.0);
   mesher->GetRefinementSphere(1, sphere);
-  VERIFY(sphere[3] == 0.0);
-  VERIFY(mesher->GetNumberOfRefinementSpheres() == 1);
+  EXPECT_EQ(sphere[3], 0.0);
+  EXPECT_EQ(mesher->GetNumberOfRefinementSpheres(), 1);
   std::ostringstream text;
   mesher->Print(text);
-  VERIFY_CONTAINS(text.str(), "Center: 10 0 0, Radius: 6, EdgeLength: 1");
+  EXPECT_TRUE(HasPart(text.str(), "Center: 10 0 0, Radius: 6, EdgeLength: 1"));
 }
 
 } // namespace
-
-int TestTetGenMesherRefinement(int, char*[])
-{
-  TestVolume();
-  TestSurface();
-  return Failures() ? EXIT_FAILURE : EXIT_SUCCESS;
-}

@@ -8,19 +8,16 @@
 #include <vtkNIFTIImageReader.h>
 #include <vtksys/SystemTools.hxx>
 
-#include <cstdlib>
-
 using namespace meshChecks;
 
-int TestTetGenMesherScans(int, char*[])
+TEST(TetGenMesherScans, Heads)
 {
   for (const char* name : { "ch2", "ch2better" })
   {
     const std::string file = std::string("/usr/share/mricron/templates/") + name + ".nii.gz";
     if (!vtksys::SystemTools::FileExists(file))
     {
-      std::cout << "skipped: " << file << " is missing, install the package mricron-data\n";
-      return 125; // VTK_SKIP_RETURN_CODE
+      GTEST_SKIP() << file << " is missing, install the package mricron-data";
     }
     vtkNew<vtkNIFTIImageReader> reader;
     reader->SetFileName(file.c_str());
@@ -36,11 +33,10 @@ int TestTetGenMesherScans(int, char*[])
       std::cout << name << ": " << mesher->GetOutput()->GetNumberOfCells() << " tetrahedra, "
                 << count.Outside << " of " << count.Body << " voxels outside, of specks "
                 << mesher->GetNumberOfSpeckVoxels() << '\n';
-      VERIFY(mesher->GetNumberOfBodyVoxels() + mesher->GetNumberOfSpeckVoxels() == count.Body);
-      VERIFY(mesher->GetNumberOfSpeckVoxels() < 1e-3 * count.Body);
-      VERIFY(mesher->GetNumberOfBodyVoxelsOutside() == 0);
-      VERIFY(count.Outside <= mesher->GetNumberOfSpeckVoxels());
+      EXPECT_EQ(mesher->GetNumberOfBodyVoxels() + mesher->GetNumberOfSpeckVoxels(), count.Body);
+      EXPECT_LT(mesher->GetNumberOfSpeckVoxels(), 1e-3 * count.Body);
+      EXPECT_EQ(mesher->GetNumberOfBodyVoxelsOutside(), 0);
+      EXPECT_LE(count.Outside, mesher->GetNumberOfSpeckVoxels());
     }
   }
-  return Failures() ? EXIT_FAILURE : EXIT_SUCCESS;
 }

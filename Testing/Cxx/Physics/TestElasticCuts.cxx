@@ -29,33 +29,33 @@ vtkSmartPointer<vtkPolyData> MakeSheet(double x, double from)
 
 // A cut from the top to the middle of the bar. Handles pull its sides apart, and the volume opens.
 template <typename Filter>
-void TestCut(const std::function<void(Simulated<Filter>&)>& settle)
+void CheckCut(const std::function<void(Simulated<Filter>&)>& settle)
 {
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1e-3);
   Simulated<Filter> simulated(bar);
   simulated.Object->SetLengthUnitToMillimetre();
   simulated.Object->SetPoissonRatio(0.4);
   settle(simulated);
-  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), 0);
+  EXPECT_EQ(simulated.Object->GetNumberOfCuts(), 0);
   simulated.Object->SetSheetData(MakeSheet(50.0, 0.0)); // does not intersect the bar
   settle(simulated);
-  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), 0);
-  VERIFY_EQUAL(simulated.Object->GetOutput()->GetNumberOfPoints(), NodesOfBar<Filter>);
+  EXPECT_EQ(simulated.Object->GetNumberOfCuts(), 0);
+  EXPECT_EQ(simulated.Object->GetOutput()->GetNumberOfPoints(), NodesOfBar<Filter>);
   simulated.Object->SetSheetData(MakeSheet(5.0, 15.0));
   simulated.Object->SetHandlesData(
     MakeHandles({ { glm::dvec3(0.0, 5.0, 30.0), glm::dvec3(-4.0, 5.0, 30.0) },
       { glm::dvec3(10.0, 5.0, 30.0), glm::dvec3(14.0, 5.0, 30.0) } }));
   simulated.Object->SetHandleRadius(2.6);
   settle(simulated);
-  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), 1);
-  VERIFY_EQUAL(simulated.Object->GetNumberOfSplitFaces(), 48);
+  EXPECT_EQ(simulated.Object->GetNumberOfCuts(), 1);
+  EXPECT_EQ(simulated.Object->GetNumberOfSplitFaces(), 48);
   vtkUnstructuredGrid* output = simulated.Object->GetOutput();
   // The nodes of 4 x 6 squares, each divided by a diagonal, without the five corners and the four
   // edges at the end of the cut.
   const vtkIdType appended = output->GetNumberOfPoints() - NodesOfBar<Filter>;
-  VERIFY_EQUAL(appended, HasMidSides<Filter> ? 5 * 6 + 4 * 6 + 5 * 6 + 4 * 6 : 5 * 6);
-  VERIFY_EQUAL(output->GetNumberOfCells(), bar->GetNumberOfCells());
-  VERIFY_EQUAL(
+  EXPECT_EQ(appended, HasMidSides<Filter> ? 5 * 6 + 4 * 6 + 5 * 6 + 4 * 6 : 5 * 6);
+  EXPECT_EQ(output->GetNumberOfCells(), bar->GetNumberOfCells());
+  EXPECT_EQ(
     output->GetPointData()->GetArray("Fixed")->GetNumberOfTuples(), output->GetNumberOfPoints());
 
   vtkNew<vtkImageData> volume;
@@ -76,33 +76,33 @@ void TestCut(const std::function<void(Simulated<Filter>&)>& settle)
     const vtkIdType voxel = deformed->FindPoint(point);
     return deformed->GetPointData()->GetScalars()->GetComponent(voxel, 0);
   };
-  VERIFY_EQUAL(getValue(5.0, 5.0, 28.0), 0.0);
-  VERIFY_EQUAL(getValue(0.0, 5.0, 28.0), 100.0);
-  VERIFY_EQUAL(getValue(10.0, 5.0, 28.0), 100.0);
-  VERIFY_EQUAL(getValue(5.0, 5.0, 5.0), 100.0);
+  EXPECT_EQ(getValue(5.0, 5.0, 28.0), 0.0);
+  EXPECT_EQ(getValue(0.0, 5.0, 28.0), 100.0);
+  EXPECT_EQ(getValue(10.0, 5.0, 28.0), 100.0);
+  EXPECT_EQ(getValue(5.0, 5.0, 5.0), 100.0);
 
   // The cut is kept when materials change. Then it is undone, and another sheet makes the same cut.
   simulated.Object->SetYoungModulus(2e4);
   settle(simulated);
-  VERIFY_EQUAL(simulated.Object->GetOutput()->GetNumberOfPoints(), NodesOfBar<Filter> + appended);
+  EXPECT_EQ(simulated.Object->GetOutput()->GetNumberOfPoints(), NodesOfBar<Filter> + appended);
   simulated.Object->UndoCut();
   settle(simulated);
-  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), 0);
-  VERIFY_EQUAL(simulated.Object->GetOutput()->GetNumberOfPoints(), NodesOfBar<Filter>);
+  EXPECT_EQ(simulated.Object->GetNumberOfCuts(), 0);
+  EXPECT_EQ(simulated.Object->GetOutput()->GetNumberOfPoints(), NodesOfBar<Filter>);
   simulated.Object->Reset();
   simulated.Object->SetHandlesData(nullptr);
   simulated.Object->SetSheetData(MakeSheet(5.0, 15.5));
   settle(simulated);
-  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), 1);
-  VERIFY(simulated.Copy()->GetRange(-1)[1] < 1e-4);
+  EXPECT_EQ(simulated.Object->GetNumberOfCuts(), 1);
+  EXPECT_LT(simulated.Copy()->GetRange(-1)[1], 1e-4);
   simulated.Object->ClearCuts();
   settle(simulated);
-  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), 0);
+  EXPECT_EQ(simulated.Object->GetNumberOfCuts(), 0);
 }
 
 // A piece that nothing holds after a cut falls in mass-spring dynamics. Finite elements freeze it,
 // with a warning.
-void TestPieces()
+TEST(ElasticCuts, Pieces)
 {
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
   vtkNew<vtkPolyData> sheet;
@@ -120,23 +120,23 @@ void TestPieces()
   springs.Object->SetDamping(0.0);
   const auto fallen = springs.At(0.1);
   const double top = fallen->GetComponent(324, 2);
-  VERIFY(std::abs(top - 0.5 * 9.81 * 0.01) < 0.01 * top);
+  EXPECT_LT(std::abs(top - 0.5 * 9.81 * 0.01), 0.01 * top);
   Simulated<vtkFiniteElementDeformation> elements(bar);
   elements.Object->SetSheetData(sheet);
   elements.Object->SetGravity(0.0, 0.0, 9.81);
   elements.Object->Update();
-  VERIFY_CONTAINS(elements.Observer->GetWarningMessage(), "1 pieces of the mesh are not held");
+  EXPECT_TRUE(HasPart(elements.Observer->GetWarningMessage(), "1 pieces of the mesh are not held"));
   elements.Observer->Clear();
-  VERIFY_EQUAL(elements.Object->GetNumberOfFrozenPieces(), 1);
-  VERIFY_EQUAL(elements.Copy()->GetComponent(324, 2), 0.0F);
-  VERIFY(elements.Copy()->GetRange(-1)[1] > 0.0);
+  EXPECT_EQ(elements.Object->GetNumberOfFrozenPieces(), 1);
+  EXPECT_EQ(elements.Copy()->GetComponent(324, 2), 0.0F);
+  EXPECT_GT(elements.Copy()->GetRange(-1)[1], 0.0);
 }
 
 // Checks that a cut does not change positions at rest of the corners of tetrahedra, and that new
 // nodes have the array values of the nodes that they were split from.
 void VerifyRestMesh(vtkUnstructuredGrid* cut, vtkUnstructuredGrid* whole)
 {
-  VERIFY_EQUAL(cut->GetNumberOfCells(), whole->GetNumberOfCells());
+  EXPECT_EQ(cut->GetNumberOfCells(), whole->GetNumberOfCells());
   vtkDataArray* fixed = cut->GetPointData()->GetArray("Fixed");
   vtkNew<vtkIdList> ids;
   vtkNew<vtkIdList> wholeIds;
@@ -152,19 +152,19 @@ void VerifyRestMesh(vtkUnstructuredGrid* cut, vtkUnstructuredGrid* whole)
         whole->GetPointData()->GetArray("Fixed")->GetComponent(wholeIds->GetId(i), 0);
     }
   }
-  VERIFY_EQUAL(different, 0);
+  EXPECT_EQ(different, 0);
 }
 
 // An update that fails does not cut. The next successful update makes the cut.
 template <typename Filter>
-void TestFailedCuts()
+void CheckFailedCuts()
 {
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1e-3);
   const auto prepare = [](Simulated<Filter>& simulated)
   {
     simulated.Object->SetLengthUnitToMillimetre();
     simulated.Object->SetHandleRadius(3.0);
-    VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+    EXPECT_EQ(simulated.TryUpdate(), "");
   };
   const auto handles =
     MakeHandles({ { glm::dvec3(10.0, 5.0, 30.0), glm::dvec3(11.0, 5.0, 31.0) } });
@@ -173,27 +173,27 @@ void TestFailedCuts()
   prepare(expected);
   expected.Object->SetSheetData(sheet);
   expected.Object->SetHandlesData(handles);
-  VERIFY_EQUAL(expected.TryUpdate(), std::string());
-  VERIFY(expected.Object->GetNumberOfSplitFaces() > 0);
+  EXPECT_EQ(expected.TryUpdate(), "");
+  EXPECT_GT(expected.Object->GetNumberOfSplitFaces(), 0);
 
   Simulated<Filter> simulated(bar);
   prepare(simulated);
   simulated.Object->SetSheetData(sheet);
   simulated.Object->SetHandlesData(MakeHandles({ { glm::dvec3(1e3), glm::dvec3(1e3) } }));
-  VERIFY_CONTAINS(simulated.TryUpdate(), "holds no node that could move");
-  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), vtkIdType{ 0 });
+  EXPECT_TRUE(HasPart(simulated.TryUpdate(), "holds no node that could move"));
+  EXPECT_EQ(simulated.Object->GetNumberOfCuts(), 0);
   simulated.Object->SetHandlesData(handles);
-  VERIFY_EQUAL(simulated.TryUpdate(), std::string());
-  VERIFY_EQUAL(simulated.Object->GetNumberOfSplitFaces(), expected.Object->GetNumberOfSplitFaces());
-  VERIFY_EQUAL(simulated.Copy()->GetNumberOfTuples(), expected.Copy()->GetNumberOfTuples());
+  EXPECT_EQ(simulated.TryUpdate(), "");
+  EXPECT_EQ(simulated.Object->GetNumberOfSplitFaces(), expected.Object->GetNumberOfSplitFaces());
+  EXPECT_EQ(simulated.Copy()->GetNumberOfTuples(), expected.Copy()->GetNumberOfTuples());
   for (vtkIdType i = 0; i < expected.Copy()->GetNumberOfValues(); ++i)
   {
-    VERIFY(simulated.Copy()->GetValue(i) == expected.Copy()->GetValue(i));
+    EXPECT_EQ(simulated.Copy()->GetValue(i), expected.Copy()->GetValue(i));
   }
 }
 
 // A failed update after UndoCut() and Reset(): the next successful update also does both.
-void TestFailedCutAfterOthers()
+TEST(ElasticCuts, FailedCutAfterOthers)
 {
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1e-3);
   Simulated<vtkFiniteElementDeformation> simulated(bar);
@@ -203,23 +203,23 @@ void TestFailedCutAfterOthers()
     MakeHandles({ { glm::dvec3(10.0, 5.0, 30.0), glm::dvec3(14.0, 5.0, 31.0) } });
   simulated.Object->SetHandlesData(handles);
   simulated.Object->SetSheetData(MakeSheet(5.0, 15.0));
-  VERIFY_EQUAL(simulated.TryUpdate(), std::string());
-  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), vtkIdType{ 1 });
+  EXPECT_EQ(simulated.TryUpdate(), "");
+  EXPECT_EQ(simulated.Object->GetNumberOfCuts(), 1);
   simulated.Object->UndoCut();
   simulated.Object->Reset();
   simulated.Object->SetSheetData(MakeSheet(5.0, 20.0));
   simulated.Object->SetHandlesData(MakeHandles({ { glm::dvec3(1e3), glm::dvec3(1e3) } }));
-  VERIFY_CONTAINS(simulated.TryUpdate(), "holds no node that could move");
-  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), vtkIdType{ 0 });
+  EXPECT_TRUE(HasPart(simulated.TryUpdate(), "holds no node that could move"));
+  EXPECT_EQ(simulated.Object->GetNumberOfCuts(), 0);
   simulated.Object->SetHandlesData(nullptr);
-  VERIFY_EQUAL(simulated.TryUpdate(), std::string());
-  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), vtkIdType{ 1 });
-  VERIFY_EQUAL(simulated.Copy()->GetRange(-1)[1], 0.0);
+  EXPECT_EQ(simulated.TryUpdate(), "");
+  EXPECT_EQ(simulated.Object->GetNumberOfCuts(), 1);
+  EXPECT_EQ(simulated.Copy()->GetRange(-1)[1], 0.0);
 }
 
 // Cuts that cross earlier cuts split nodes again. A new cut replaces an undone one.
 template <typename Filter>
-void TestCutsOfCuts()
+void CheckCutsOfCuts()
 {
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1e-3);
   Simulated<Filter> simulated(bar);
@@ -233,45 +233,50 @@ void TestCutsOfCuts()
       sheet->GetPoints()->SetPoint(id, point.y, point.x, point.z);
     }
     simulated.Object->SetSheetData(sheet);
-    VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+    EXPECT_EQ(simulated.TryUpdate(), "");
     VerifyRestMesh(simulated.Object->GetOutput(), bar);
     return simulated.Object->GetOutput()->GetNumberOfPoints();
   };
   const vtkIdType once = cut(5.0, 15.0, false);
   const vtkIdType twice = cut(5.0, 15.0, true);
   const vtkIdType thrice = cut(2.6, 15.0, true);
-  VERIFY(once > NodesOfBar<Filter> && twice > once && thrice > twice);
-  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), 3);
+  EXPECT_TRUE(once > NodesOfBar<Filter> && twice > once && thrice > twice);
+  EXPECT_EQ(simulated.Object->GetNumberOfCuts(), 3);
 
   // The last cut is undone and another one is made in one update: the number of cuts is the same.
   simulated.Object->UndoCut();
   const vtkIdType other = cut(2.6, 22.5, true);
-  VERIFY_EQUAL(simulated.Object->GetNumberOfCuts(), 3);
-  VERIFY(other > twice && other < thrice);
+  EXPECT_EQ(simulated.Object->GetNumberOfCuts(), 3);
+  EXPECT_TRUE(other > twice && other < thrice);
 }
 
 } // namespace
 
-int TestElasticCuts(int, char*[])
+TEST(ElasticCuts, CutsOfCuts)
 {
-  TestCut<vtkMassSpringDeformation>(
+  CheckCutsOfCuts<vtkMassSpringDeformation>();
+  CheckCutsOfCuts<vtkFiniteElementDeformation>();
+}
+
+TEST(ElasticCuts, FailedCuts)
+{
+  CheckFailedCuts<vtkMassSpringDeformation>();
+  CheckFailedCuts<vtkFiniteElementDeformation>();
+}
+
+TEST(ElasticCuts, Cut)
+{
+  CheckCut<vtkMassSpringDeformation>(
     [](Simulated<vtkMassSpringDeformation>& simulated)
     {
       simulated.Object->SetDamping(30.0);
       simulated.Object->SetFrameTime(0.5);
-      VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+      EXPECT_EQ(simulated.TryUpdate(), "");
     });
-  TestCut<vtkFiniteElementDeformation>(
+  CheckCut<vtkFiniteElementDeformation>(
     [](Simulated<vtkFiniteElementDeformation>& simulated)
     {
       simulated.Object->SetModeToConverged();
-      VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+      EXPECT_EQ(simulated.TryUpdate(), "");
     });
-  TestPieces();
-  TestCutsOfCuts<vtkMassSpringDeformation>();
-  TestCutsOfCuts<vtkFiniteElementDeformation>();
-  TestFailedCuts<vtkMassSpringDeformation>();
-  TestFailedCuts<vtkFiniteElementDeformation>();
-  TestFailedCutAfterOthers();
-  return GetExitCode();
 }

@@ -30,12 +30,12 @@ bool AreEqual(vtkFloatArray* a, vtkFloatArray* b)
 }
 
 template <typename Filter>
-void TestMisuse()
+void CheckMisuse()
 {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
   Simulated<Filter> simulated(bar);
-  VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+  EXPECT_EQ(simulated.TryUpdate(), "");
   const auto tryMesh = [&](const auto& change)
   {
     vtkSmartPointer<vtkUnstructuredGrid> mesh = MakeBar(1.0);
@@ -45,34 +45,35 @@ void TestMisuse()
     simulated.Object->SetInputData(bar);
     return errors;
   };
-  VERIFY_CONTAINS(tryMesh([](vtkUnstructuredGrid* mesh) { mesh->Initialize(); }), "no tetrahedra");
-  VERIFY_CONTAINS(
-    tryMesh([&](vtkUnstructuredGrid* mesh) { mesh->GetPoints()->SetPoint(7, nan, 0, 0); }),
-    "Point 7");
-  VERIFY_CONTAINS(tryMesh(
-                    [](vtkUnstructuredGrid* mesh)
-                    {
-                      const vtkIdType points[8] = { 0, 1, 6, 5, 25, 26, 31, 30 };
-                      mesh->InsertNextCell(VTK_HEXAHEDRON, 8, points);
-                    }),
-    "hexahedron");
-  VERIFY_CONTAINS(tryMesh(
-                    [](vtkUnstructuredGrid* mesh)
-                    {
-                      const vtkIdType points[4] = { 0, 1, 25, 5 };
-                      mesh->InsertNextCell(VTK_TETRA, 4, points);
-                    }),
-    "inside out");
-  VERIFY_CONTAINS(tryMesh(
-                    [](vtkUnstructuredGrid* mesh)
-                    {
-                      const vtkIdType points[4] = { 0, 1, 5, 6 };
-                      mesh->InsertNextCell(VTK_TETRA, 4, points);
-                    }),
-    "flat");
-  VERIFY_CONTAINS(tryMesh([](vtkUnstructuredGrid* mesh)
-                    { mesh->GetPointData()->GetArray("Fixed")->SetNumberOfTuples(3); }),
-    "\"Fixed\"");
+  EXPECT_TRUE(
+    HasPart(tryMesh([](vtkUnstructuredGrid* mesh) { mesh->Initialize(); }), "no tetrahedra"));
+  EXPECT_TRUE(
+    HasPart(tryMesh([&](vtkUnstructuredGrid* mesh) { mesh->GetPoints()->SetPoint(7, nan, 0, 0); }),
+      "Point 7"));
+  EXPECT_TRUE(HasPart(tryMesh(
+                        [](vtkUnstructuredGrid* mesh)
+                        {
+                          const vtkIdType points[8] = { 0, 1, 6, 5, 25, 26, 31, 30 };
+                          mesh->InsertNextCell(VTK_HEXAHEDRON, 8, points);
+                        }),
+    "hexahedron"));
+  EXPECT_TRUE(HasPart(tryMesh(
+                        [](vtkUnstructuredGrid* mesh)
+                        {
+                          const vtkIdType points[4] = { 0, 1, 25, 5 };
+                          mesh->InsertNextCell(VTK_TETRA, 4, points);
+                        }),
+    "inside out"));
+  EXPECT_TRUE(HasPart(tryMesh(
+                        [](vtkUnstructuredGrid* mesh)
+                        {
+                          const vtkIdType points[4] = { 0, 1, 5, 6 };
+                          mesh->InsertNextCell(VTK_TETRA, 4, points);
+                        }),
+    "flat"));
+  EXPECT_TRUE(HasPart(tryMesh([](vtkUnstructuredGrid* mesh)
+                        { mesh->GetPointData()->GetArray("Fixed")->SetNumberOfTuples(3); }),
+    "\"Fixed\""));
   for (const char* name : { "YoungModulus", "PoissonRatio", "Density" })
   {
     const auto add = [&](vtkUnstructuredGrid* mesh, double value, int components)
@@ -84,95 +85,96 @@ void TestMisuse()
       array->Fill(value);
       mesh->GetCellData()->AddArray(array);
     };
-    VERIFY_CONTAINS(tryMesh([&](vtkUnstructuredGrid* mesh) { add(mesh, 1.0, 2); }), name);
-    VERIFY_CONTAINS(
-      tryMesh([&](vtkUnstructuredGrid* mesh) { add(mesh, -1.0, 1); }), "tetrahedron 0");
-    VERIFY_CONTAINS(
-      tryMesh([&](vtkUnstructuredGrid* mesh) { add(mesh, nan, 1); }), "tetrahedron 0");
+    EXPECT_TRUE(HasPart(tryMesh([&](vtkUnstructuredGrid* mesh) { add(mesh, 1.0, 2); }), name));
+    EXPECT_TRUE(
+      HasPart(tryMesh([&](vtkUnstructuredGrid* mesh) { add(mesh, -1.0, 1); }), "tetrahedron 0"));
+    EXPECT_TRUE(
+      HasPart(tryMesh([&](vtkUnstructuredGrid* mesh) { add(mesh, nan, 1); }), "tetrahedron 0"));
   }
   simulated.Object->SetYoungModulus(0.0);
-  VERIFY_CONTAINS(simulated.TryUpdate(), "Young modulus");
+  EXPECT_TRUE(HasPart(simulated.TryUpdate(), "Young modulus"));
   simulated.Object->SetYoungModulus(1e4);
   simulated.Object->SetPoissonRatio(0.495);
-  VERIFY_CONTAINS(simulated.TryUpdate(), "Poisson ratio");
+  EXPECT_TRUE(HasPart(simulated.TryUpdate(), "Poisson ratio"));
   simulated.Object->SetPoissonRatio(0.3);
   simulated.Object->SetDensity(0.0);
-  VERIFY_CONTAINS(simulated.TryUpdate(), "density");
+  EXPECT_TRUE(HasPart(simulated.TryUpdate(), "density"));
   simulated.Object->SetDensity(1000.0);
   simulated.Object->SetGravity(0.0, nan, 0.0);
-  VERIFY_CONTAINS(simulated.TryUpdate(), "gravity");
+  EXPECT_TRUE(HasPart(simulated.TryUpdate(), "gravity"));
   simulated.Object->SetGravity(0.0, 0.0, 0.0);
 
   vtkSmartPointer<vtkPolyData> handles =
     MakeHandles({ { glm::dvec3(0.005, 0.005, 0.03), glm::dvec3(0.005, 0.005, 0.031) } });
   simulated.Object->SetHandlesData(handles);
-  VERIFY_EQUAL(simulated.TryUpdate(), std::string());
-  VERIFY_EQUAL(simulated.Object->GetNumberOfHeldNodes(), 1);
+  EXPECT_EQ(simulated.TryUpdate(), "");
+  EXPECT_EQ(simulated.Object->GetNumberOfHeldNodes(), 1);
   handles->GetPointData()->RemoveArray("RestPosition");
-  VERIFY_CONTAINS(simulated.TryUpdate(), "no point array \"RestPosition\"");
+  EXPECT_TRUE(HasPart(simulated.TryUpdate(), "no point array \"RestPosition\""));
   simulated.Object->SetHandlesData(MakeHandles({ { glm::dvec3(0.0), glm::dvec3(0.001) } }));
-  VERIFY_CONTAINS(simulated.TryUpdate(), "holds no node that could move");
+  EXPECT_TRUE(HasPart(simulated.TryUpdate(), "holds no node that could move"));
   simulated.Object->SetHandleRadius(0.001);
   simulated.Object->SetHandlesData(MakeHandles({ { glm::dvec3(1.0), glm::dvec3(1.0) } }));
-  VERIFY_CONTAINS(simulated.TryUpdate(), "holds no node that could move");
+  EXPECT_TRUE(HasPart(simulated.TryUpdate(), "holds no node that could move"));
   simulated.Object->SetHandlesData(
     MakeHandles({ { glm::dvec3(0.01, 0.01, 0.03), glm::dvec3(nan) } }));
-  VERIFY_CONTAINS(simulated.TryUpdate(), "Point 0 of the handles");
+  EXPECT_TRUE(HasPart(simulated.TryUpdate(), "Point 0 of the handles"));
   simulated.Object->SetHandlesData(nullptr);
-  VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+  EXPECT_EQ(simulated.TryUpdate(), "");
 }
 
-void TestErrorsOfSubclasses()
+TEST(ElasticDeformation, ErrorsOfSubclasses)
 {
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
   Simulated<vtkMassSpringDeformation> springs(bar);
-  VERIFY_EQUAL(springs.Object->GetStableTimeStep(), 0.0);
-  VERIFY_EQUAL(springs.TryUpdate(), std::string());
+  EXPECT_EQ(springs.Object->GetStableTimeStep(), 0.0);
+  EXPECT_EQ(springs.TryUpdate(), "");
   const double stable = springs.Object->GetStableTimeStep();
-  VERIFY(stable > 1e-5 && stable < 1e-2);
+  EXPECT_TRUE(stable > 1e-5 && stable < 1e-2);
   springs.Object->SetTimeStep(1.05 * stable);
-  VERIFY_CONTAINS(springs.TryUpdate(), "longer than the stable one");
+  EXPECT_TRUE(HasPart(springs.TryUpdate(), "longer than the stable one"));
   springs.Object->SetTimeStep(0.9 * stable);
-  VERIFY_EQUAL(springs.TryUpdate(), std::string());
-  VERIFY(springs.Object->GetTimeStepInUse() <= 0.9 * stable);
+  EXPECT_EQ(springs.TryUpdate(), "");
+  EXPECT_LE(springs.Object->GetTimeStepInUse(), 0.9 * stable);
   // A handle that moves very far in one frame.
   springs.Object->SetHandlesData(
     MakeHandles({ { glm::dvec3(0.0, 0.0, 0.03), glm::dvec3(1e30, 0.0, 0.0) } }));
-  VERIFY_CONTAINS(springs.TryUpdate(), "diverged");
+  EXPECT_TRUE(HasPart(springs.TryUpdate(), "diverged"));
   // A handle in other units.
   springs.Object->SetHandlesData(
     MakeHandles({ { glm::dvec3(0.0, 0.0, 30.0), glm::dvec3(0.0, 0.0, 31.0) } }));
-  VERIFY_CONTAINS(springs.TryUpdate(), "farther from the body than the body is long");
+  EXPECT_TRUE(HasPart(springs.TryUpdate(), "farther from the body than the body is long"));
   springs.Object->SetHandleRadius(std::numeric_limits<double>::quiet_NaN());
-  VERIFY_CONTAINS(springs.TryUpdate(), "HandleRadius is not a number");
+  EXPECT_TRUE(HasPart(springs.TryUpdate(), "HandleRadius is not a number"));
   springs.Object->SetHandleRadius(0.0);
   springs.Object->SetHandlesData(nullptr);
-  VERIFY_EQUAL(springs.TryUpdate(), std::string());
-  VERIFY_EQUAL(springs.Copy()->GetRange(-1)[1], 0.0);
+  EXPECT_EQ(springs.TryUpdate(), "");
+  EXPECT_EQ(springs.Copy()->GetRange(-1)[1], 0.0);
 
   // Conditions that only finite elements support. Nodes without tetrahedra are not counted.
   bar->GetPoints()->InsertNextPoint(0.0, 0.0, 1.0);
   bar->GetPointData()->GetArray("Fixed")->InsertNextTuple1(1.0);
   const auto pushTop = [](const glm::dvec3& p) { return glm::dvec3(0.0, 0.0, p.z > 0.01); };
   AddPointVectors(bar, "PrescribedDisplacement", pushTop);
-  VERIFY_EQUAL(springs.TryUpdate(), std::string());
+  EXPECT_EQ(springs.TryUpdate(), "");
   AddPointVectors(bar, "PrescribedDisplacement",
     [](const glm::dvec3& p) { return glm::dvec3(0.0, 0.0, p.x == 0.0 && p.z == 0.0); });
-  VERIFY_CONTAINS(
-    springs.TryUpdate(), "5 nodes of the rest mesh on input port 0 are fixed and have");
+  EXPECT_TRUE(
+    HasPart(springs.TryUpdate(), "5 nodes of the rest mesh on input port 0 are fixed and have"));
   bar->GetPointData()->RemoveArray("PrescribedDisplacement");
   bar->GetPointData()->GetArray("Fixed")->SetTuple1(325, 0.0);
   AddPointVectors(bar, "SlidingNormal", [](const glm::dvec3& p) { return glm::dvec3(p.z > 0.03); });
-  VERIFY_EQUAL(springs.TryUpdate(), std::string());
+  EXPECT_EQ(springs.TryUpdate(), "");
   AddPointVectors(
     bar, "SlidingNormal", [](const glm::dvec3& p) { return glm::dvec3(p.z == 0.03, 0.0, 0.0); });
-  VERIFY_CONTAINS(springs.TryUpdate(), "25 nodes of the rest mesh on input port 0 have a sliding");
+  EXPECT_TRUE(
+    HasPart(springs.TryUpdate(), "25 nodes of the rest mesh on input port 0 have a sliding"));
   bar->GetPointData()->RemoveArray("SlidingNormal");
-  VERIFY_EQUAL(springs.TryUpdate(), std::string());
+  EXPECT_EQ(springs.TryUpdate(), "");
 
   Simulated<vtkFiniteElementDeformation> elements(bar);
   bar->GetPointData()->RemoveArray("Fixed");
-  VERIFY_CONTAINS(elements.TryUpdate(), "nothing holds the body");
+  EXPECT_TRUE(HasPart(elements.TryUpdate(), "nothing holds the body"));
 }
 
 // Updates the filter, checks that it reports no error, and returns its warning.
@@ -181,7 +183,7 @@ std::string UpdateAndWarn(Simulated<Filter>& simulated)
 {
   simulated.Object->Modified();
   simulated.Object->Update();
-  VERIFY(!simulated.Observer->GetError());
+  EXPECT_FALSE(simulated.Observer->GetError());
   const std::string warning = simulated.Observer->GetWarningMessage();
   simulated.Observer->Clear();
   return warning;
@@ -189,17 +191,17 @@ std::string UpdateAndWarn(Simulated<Filter>& simulated)
 
 // Warnings about a probably wrong length unit, and about inverted tetrahedra.
 template <typename Filter>
-void TestWarnings(double push)
+void CheckWarnings(double push)
 {
   // A body of 30 m, and one of 30 micrometers.
   for (const double unit : { 1e-3, 1e3 })
   {
     Simulated<Filter> simulated(MakeBar(unit));
-    VERIFY_CONTAINS(UpdateAndWarn(simulated), "unit of length");
-    VERIFY_CONTAINS_NOT(UpdateAndWarn(simulated), "unit of length");
+    EXPECT_TRUE(HasPart(UpdateAndWarn(simulated), "unit of length"));
+    EXPECT_FALSE(HasPart(UpdateAndWarn(simulated), "unit of length"));
   }
   vtkNew<Filter> fresh;
-  VERIFY_EQUAL(fresh->GetLengthUnit(), static_cast<int>(Filter::MILLIMETRE));
+  EXPECT_EQ(fresh->GetLengthUnit(), static_cast<int>(Filter::MILLIMETRE));
 
   // The point that is closest to the handle belongs to no tetrahedron and is ignored. The handle
   // pushes a node through its neighbors.
@@ -213,39 +215,39 @@ void TestWarnings(double push)
   simulated.Object->SetHandlesData(
     MakeHandles({ { top + glm::dvec3(0.0, 0.0, 1e-4), top - glm::dvec3(0.0, 0.0, push) } }));
   const std::string warning = UpdateAndWarn(simulated);
-  VERIFY_CONTAINS(warning, "inside out");
-  VERIFY(simulated.Object->GetNumberOfInvertedTetrahedra() > 0);
-  VERIFY_CONTAINS(simulated.Object->GetSummary(), "inside out");
-  VERIFY(std::abs(simulated.Copy()->GetComponent(node, 2) + push + 1e-4) < 1e-6);
-  VERIFY_EQUAL(simulated.Copy()->GetComponent(bar->GetNumberOfPoints() - 1, 2), 0.0);
+  EXPECT_TRUE(HasPart(warning, "inside out"));
+  EXPECT_GT(simulated.Object->GetNumberOfInvertedTetrahedra(), 0);
+  EXPECT_TRUE(HasPart(simulated.Object->GetSummary(), "inside out"));
+  EXPECT_LT(std::abs(simulated.Copy()->GetComponent(node, 2) + push + 1e-4), 1e-6);
+  EXPECT_EQ(simulated.Copy()->GetComponent(bar->GetNumberOfPoints() - 1, 2), 0.0);
 }
 
-void TestWarningsOfSubclasses()
+TEST(ElasticDeformation, WarningsOfSubclasses)
 {
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
   Simulated<vtkMassSpringDeformation> springs(bar);
   springs.Object->SetPoissonRatio(0.2);
-  VERIFY_CONTAINS(UpdateAndWarn(springs), "Poisson ratio of the body is less than 0.25");
+  EXPECT_TRUE(HasPart(UpdateAndWarn(springs), "Poisson ratio of the body is less than 0.25"));
   springs.Object->SetPoissonRatio(0.25);
-  VERIFY_EQUAL(UpdateAndWarn(springs), std::string());
+  EXPECT_EQ(UpdateAndWarn(springs), std::string());
 
   // By default one execution ends in equilibrium.
   Simulated<vtkFiniteElementDeformation> elements(bar);
   elements.Object->SetGravity(0.0, -60.0, 0.0);
-  VERIFY_EQUAL(elements.TryUpdate(), std::string());
-  VERIFY(elements.Object->GetIsConverged());
-  VERIFY(elements.Object->GetRelativeResidual() <= 1e-6);
+  EXPECT_EQ(elements.TryUpdate(), "");
+  EXPECT_TRUE(elements.Object->GetIsConverged());
+  EXPECT_LE(elements.Object->GetRelativeResidual(), 1e-6);
   Simulated<vtkFiniteElementDeformation> live(bar);
   live.Object->SetModeToInteractive();
   live.Object->SetGravity(0.0, -60.0, 0.0);
-  VERIFY_CONTAINS(UpdateAndWarn(live), "not in equilibrium after 2 steps");
+  EXPECT_TRUE(HasPart(UpdateAndWarn(live), "not in equilibrium after 2 steps"));
   live.Object->Reset();
-  VERIFY_CONTAINS_NOT(UpdateAndWarn(live), "not in equilibrium");
+  EXPECT_FALSE(HasPart(UpdateAndWarn(live), "not in equilibrium"));
 }
 
 // The elongation of a bar that hangs by its own weight is rho g L^2 / (2 E).
 template <typename Filter, typename Settle>
-void TestHangingBar(const Settle& settle)
+void CheckHangingBar(const Settle& settle)
 {
   for (const bool isMillimetre : { false, true })
   {
@@ -260,7 +262,7 @@ void TestHangingBar(const Settle& settle)
     const auto moved = simulated.Copy();
     const double found = moved->GetComponent(12 * 25 + 12, 2);
     // The elongation is smaller, since the fixed end cannot become narrower.
-    VERIFY(found > 0.94 * expected && found < expected);
+    EXPECT_TRUE(found > 0.94 * expected && found < expected);
     vtkCellData* cells = simulated.Object->GetOutput()->GetCellData();
     // The mean stress in the cells at the fixed end is the weight divided by the area.
     double stress = 0.0;
@@ -269,10 +271,10 @@ void TestHangingBar(const Settle& settle)
     {
       const double volume = cell % 5 == 4 ? 1.0 / 3.0 : 1.0 / 6.0;
       stress += volume * cells->GetArray("Stress")->GetComponent(cell, 2) / 16.0;
-      VERIFY(cells->GetArray("DeformationGradientDeterminant")->GetComponent(cell, 0) > 0.99);
+      EXPECT_GT(cells->GetArray("DeformationGradientDeterminant")->GetComponent(cell, 0), 0.99);
     }
     const double weight = 1000.0 * 2.0 * (0.03 - 0.5 * 0.0025);
-    VERIFY(std::abs(stress - weight) < 0.05 * weight);
+    EXPECT_LT(std::abs(stress - weight), 0.05 * weight);
     // The strain energy of all tetrahedra is half of the work of the weight.
     double energy = 0.0;
     double work = 0.0;
@@ -290,79 +292,80 @@ void TestHangingBar(const Settle& settle)
       }
     }
     std::cout << "energy divided by half of the work: " << energy / (0.5 * work) << "\n";
-    VERIFY(std::abs(energy - 0.5 * work) < 0.01 * energy);
+    EXPECT_LT(std::abs(energy - 0.5 * work), 0.01 * energy);
   }
 }
 
-void TestTimes()
+TEST(ElasticDeformation, Times)
 {
   Simulated<vtkMassSpringDeformation> simulated(MakeBar(1.0));
   simulated.Object->SetGravity(3.0, 0.0, 0.0);
   // VTK would ignore the next time.
   simulated.At(0.0);
-  VERIFY_CONTAINS(simulated.Observer->GetWarningMessage(), "EndTime");
+  EXPECT_TRUE(HasPart(simulated.Observer->GetWarningMessage(), "EndTime"));
   simulated.Observer->Clear();
   simulated.Object->SetEndTime(1.0);
   simulated.Object->UpdateInformation();
   const double* range =
     simulated.Object->GetOutputInformation(0)->Get(vtkStreamingDemandDrivenPipeline::TIME_RANGE());
-  VERIFY(range && range[0] == 0.0 && range[1] == 1.0);
+  EXPECT_TRUE(range && range[0] == 0.0 && range[1] == 1.0);
   const auto start = simulated.At(0.0);
-  VERIFY_EQUAL(start->GetRange(-1)[1], 0.0);
+  EXPECT_EQ(start->GetRange(-1)[1], 0.0);
   const auto half = simulated.At(0.05);
-  VERIFY_EQUAL(simulated.Object->GetTime(), 0.05);
-  VERIFY_EQUAL(
+  EXPECT_EQ(simulated.Object->GetTime(), 0.05);
+  EXPECT_EQ(
     simulated.Object->GetOutput()->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()), 0.05);
   const auto whole = simulated.At(0.1);
-  VERIFY(!AreEqual(half, whole));
+  EXPECT_FALSE(AreEqual(half, whole));
   // Earlier times, and the same times again, give the same results to the last bit.
-  VERIFY(AreEqual(simulated.At(0.05), half));
-  VERIFY(AreEqual(simulated.At(0.1), whole));
-  VERIFY_EQUAL(simulated.At(0.0)->GetRange(-1)[1], 0.0);
+  EXPECT_TRUE(AreEqual(simulated.At(0.05), half));
+  EXPECT_TRUE(AreEqual(simulated.At(0.1), whole));
+  EXPECT_EQ(simulated.At(0.0)->GetRange(-1)[1], 0.0);
   // An update over several frames gives the same result as several updates.
-  VERIFY(AreEqual(simulated.At(0.1), whole));
+  EXPECT_TRUE(AreEqual(simulated.At(0.1), whole));
   simulated.Object->Reset();
-  VERIFY_EQUAL(simulated.Object->GetTime(), 0.0);
-  VERIFY(AreEqual(simulated.At(0.05), half));
+  EXPECT_EQ(simulated.Object->GetTime(), 0.0);
+  EXPECT_TRUE(AreEqual(simulated.At(0.05), half));
 
   // Without a requested time an update advances by one frame.
   Simulated<vtkMassSpringDeformation> free(MakeBar(1.0));
   free.Object->SetGravity(3.0, 0.0, 0.0);
   free.Object->SetFrameTime(0.05);
-  VERIFY_EQUAL(free.TryUpdate(), std::string());
-  VERIFY_EQUAL(free.Object->GetTime(), 0.05);
+  EXPECT_EQ(free.TryUpdate(), "");
+  EXPECT_EQ(free.Object->GetTime(), 0.05);
   free.Object->Update();
-  VERIFY_EQUAL(free.Object->GetTime(), 0.05); // nothing has changed
-  VERIFY_EQUAL(free.TryUpdate(), std::string());
-  VERIFY_EQUAL(free.Object->GetTime(), 0.1);
+  EXPECT_EQ(free.Object->GetTime(), 0.05); // nothing has changed
+  EXPECT_EQ(free.TryUpdate(), "");
+  EXPECT_EQ(free.Object->GetTime(), 0.1);
 }
 
 // A simulation continues with other materials, and starts again with another mesh.
 template <typename Filter>
-void TestContinuedSimulation()
+void CheckContinuedSimulation()
 {
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
   Simulated<Filter> simulated(bar);
   simulated.Object->SetGravity(0.0, 0.0, 2.0);
-  VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+  EXPECT_EQ(simulated.TryUpdate(), "");
   vtkDataArray* array = simulated.Object->GetOutput()->GetPointData()->GetVectors();
-  VERIFY_EQUAL(std::string(array->GetName()), std::string("Displacement"));
+  EXPECT_EQ(std::string(array->GetName()), std::string("Displacement"));
   // Points and arrays are shared if no points are appended.
-  VERIFY(HasMidSides<Filter> || simulated.Object->GetOutput()->GetPoints() == bar->GetPoints());
-  VERIFY(HasMidSides<Filter> ||
+  EXPECT_TRUE(
+    HasMidSides<Filter> || simulated.Object->GetOutput()->GetPoints() == bar->GetPoints());
+  EXPECT_TRUE(HasMidSides<Filter> ||
     simulated.Object->GetOutput()->GetPointData()->GetArray("Fixed") ==
       bar->GetPointData()->GetArray("Fixed"));
   const double before = simulated.Copy()->GetRange(-1)[1];
-  VERIFY(before > 0.0);
+  EXPECT_GT(before, 0.0);
   simulated.Object->SetGravity(0.0, 0.0, 0.0);
   simulated.Object->SetYoungModulus(2e4);
-  VERIFY_EQUAL(simulated.TryUpdate(), std::string());
-  VERIFY(simulated.Object->GetOutput()->GetPointData()->GetVectors() == array);
+  EXPECT_EQ(simulated.TryUpdate(), "");
+  EXPECT_EQ(simulated.Object->GetOutput()->GetPointData()->GetVectors(), array);
   // An equal mesh does not start the simulation again.
   vtkNew<vtkUnstructuredGrid> equal;
   equal->DeepCopy(bar);
   simulated.Object->SetInputData(equal);
-  VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+  EXPECT_EQ(simulated.TryUpdate(), "");
   vtkSmartPointer<vtkUnstructuredGrid> other = MakeBar(0.5);
   simulated.Object->SetInputData(other);
   const std::string warning = [&]
@@ -373,10 +376,10 @@ void TestContinuedSimulation()
     simulated.Observer->Clear();
     return words;
   }();
-  VERIFY_CONTAINS(warning, "starts again from rest");
-  VERIFY_EQUAL(simulated.Copy()->GetRange(-1)[1], 0.0);
+  EXPECT_TRUE(HasPart(warning, "starts again from rest"));
+  EXPECT_EQ(simulated.Copy()->GetRange(-1)[1], 0.0);
   // Cells that are written in place are another mesh, too.
-  VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+  EXPECT_EQ(simulated.TryUpdate(), "");
   vtkNew<vtkIdList> nodes;
   other->GetCellPoints(0, nodes);
   const vtkIdType copy = other->GetPoints()->InsertNextPoint(other->GetPoint(nodes->GetId(0)));
@@ -389,15 +392,16 @@ void TestContinuedSimulation()
   other->GetCells()->GetConnectivityArray()->Modified();
   other->Modified();
   simulated.Object->Update();
-  VERIFY_CONTAINS(std::string(simulated.Observer->GetWarningMessage()), "starts again from rest");
+  EXPECT_TRUE(
+    HasPart(std::string(simulated.Observer->GetWarningMessage()), "starts again from rest"));
   simulated.Observer->Clear();
-  VERIFY_EQUAL(simulated.Object->GetOutput()->GetNumberOfPoints(),
+  EXPECT_EQ(simulated.Object->GetOutput()->GetNumberOfPoints(),
     simulated.Object->GetOutput()->GetPointData()->GetVectors()->GetNumberOfTuples());
   simulated.Object->SetInputData(bar);
   simulated.Object->Update();
   simulated.Observer->Clear();
-  VERIFY_CONTAINS(
-    simulated.Object->GetSummary(), "Nodes: " + std::to_string(NodesOfBar<Filter>) + "\n");
+  EXPECT_TRUE(
+    HasPart(simulated.Object->GetSummary(), "Nodes: " + std::to_string(NodesOfBar<Filter>) + "\n"));
 }
 
 // Updates the filter and aborts at a progress event. event: the number of this event. Returns the
@@ -421,14 +425,14 @@ std::string Abort(Simulated<Filter>& simulated, int event)
   const unsigned long tag = simulated.Object->AddObserver(vtkCommand::ProgressEvent, abort);
   simulated.Object->Modified();
   simulated.Object->Update();
-  VERIFY(event <= 0);
-  VERIFY_EQUAL(simulated.Object->GetOutput()->GetNumberOfPoints(), 0);
-  VERIFY_EQUAL(simulated.Observer->GetErrorMessage(), std::string());
+  EXPECT_LE(event, 0);
+  EXPECT_EQ(simulated.Object->GetOutput()->GetNumberOfPoints(), 0);
+  EXPECT_EQ(simulated.Observer->GetErrorMessage(), "");
   simulated.Object->RemoveObserver(tag);
   simulated.Object->SetAbortExecute(0);
   simulated.Observer->Clear();
   simulated.Object->Update();
-  VERIFY_EQUAL(simulated.Observer->GetErrorMessage(), std::string());
+  EXPECT_EQ(simulated.Observer->GetErrorMessage(), "");
   const std::string warning = simulated.Observer->GetWarningMessage();
   simulated.Observer->Clear();
   return warning;
@@ -436,7 +440,7 @@ std::string Abort(Simulated<Filter>& simulated, int event)
 
 // An abort of the update after a change of the material.
 template <typename Filter>
-void TestAborted()
+void CheckAborted()
 {
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
   Simulated<Filter> simulated(bar);
@@ -444,48 +448,48 @@ void TestAborted()
   for (Simulated<Filter>* one : { &simulated, &wanted })
   {
     one->Object->SetGravity(0.0, 0.0, 2.0);
-    VERIFY_EQUAL(one->TryUpdate(), std::string());
+    EXPECT_EQ(one->TryUpdate(), "");
     one->Object->SetYoungModulus(2e4);
   }
-  VERIFY_EQUAL(Abort(simulated, 1), std::string());
-  VERIFY_EQUAL(wanted.TryUpdate(), std::string());
-  VERIFY(AreEqual(simulated.Copy(), wanted.Copy()));
+  EXPECT_EQ(Abort(simulated, 1), std::string());
+  EXPECT_EQ(wanted.TryUpdate(), "");
+  EXPECT_TRUE(AreEqual(simulated.Copy(), wanted.Copy()));
 }
 
-void TestMisuseOfPresets()
+TEST(ElasticDeformation, MisuseOfPresets)
 {
   vtkNew<vtkFiniteElementDeformation> fresh;
-  VERIFY_EQUAL(fresh->GetMaterialPreset(), static_cast<int>(vtkElasticDeformation::CUSTOM));
+  EXPECT_EQ(fresh->GetMaterialPreset(), static_cast<int>(vtkElasticDeformation::CUSTOM));
   fresh->SetMaterialPreset(-1);
-  VERIFY_EQUAL(fresh->GetMaterialPreset(), static_cast<int>(vtkElasticDeformation::CUSTOM));
+  EXPECT_EQ(fresh->GetMaterialPreset(), static_cast<int>(vtkElasticDeformation::CUSTOM));
   fresh->SetMaterialPreset(8);
-  VERIFY_EQUAL(fresh->GetMaterialPreset(), static_cast<int>(vtkElasticDeformation::BONE));
+  EXPECT_EQ(fresh->GetMaterialPreset(), static_cast<int>(vtkElasticDeformation::BONE));
   for (const int preset : { -1, 0, 8, std::numeric_limits<int>::max() })
   {
     double values[3] = { 1.0, 2.0, 3.0 };
-    VERIFY(!vtkElasticDeformation::GetMaterialPresetValues(preset, values));
-    VERIFY(values[0] == 1.0 && values[1] == 2.0 && values[2] == 3.0);
-    VERIFY(!vtkElasticDeformation::GetMaterialPresetSource(preset));
-    VERIFY_EQUAL(vtkElasticDeformation::GetMaterialPresetName(preset) != nullptr, preset == 0);
+    EXPECT_FALSE(vtkElasticDeformation::GetMaterialPresetValues(preset, values));
+    EXPECT_TRUE(values[0] == 1.0 && values[1] == 2.0 && values[2] == 3.0);
+    EXPECT_FALSE(vtkElasticDeformation::GetMaterialPresetSource(preset));
+    EXPECT_EQ(vtkElasticDeformation::GetMaterialPresetName(preset) != nullptr, preset == 0);
   }
-  VERIFY_EQUAL(vtkElasticDeformation::GetMaterialPresetName(vtkElasticDeformation::LIVER),
+  EXPECT_EQ(vtkElasticDeformation::GetMaterialPresetName(vtkElasticDeformation::LIVER),
     std::string("Liver"));
 
   // Values that a preset replaces are not checked, and are used again with CUSTOM.
   Simulated<vtkFiniteElementDeformation> simulated(MakeBar(1.0));
   simulated.Object->SetDensity(-1.0);
-  VERIFY_CONTAINS(simulated.TryUpdate(), "density");
+  EXPECT_TRUE(HasPart(simulated.TryUpdate(), "density"));
   simulated.Object->SetMaterialPresetToLiver();
-  VERIFY_EQUAL(simulated.TryUpdate(), std::string());
-  VERIFY_EQUAL(simulated.Object->GetDensity(), -1.0);
+  EXPECT_EQ(simulated.TryUpdate(), "");
+  EXPECT_EQ(simulated.Object->GetDensity(), -1.0);
   simulated.Object->SetMaterialPresetToCustom();
-  VERIFY_CONTAINS(simulated.TryUpdate(), "density");
+  EXPECT_TRUE(HasPart(simulated.TryUpdate(), "density"));
 }
 
 // A preset gives the same result as its three values, to the last bit. Cell arrays have priority
 // over presets.
 template <typename Filter>
-void TestMaterialPresets()
+void CheckMaterialPresets()
 {
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
   const auto simulate = [&](const auto& change)
@@ -496,8 +500,8 @@ void TestMaterialPresets()
     simulated.Object->SetEndTime(1.0);
     change(simulated.Object.Get());
     simulated.Object->UpdateTimeStep(2e-3);
-    VERIFY(!simulated.Observer->GetError());
-    VERIFY(!simulated.Observer->GetWarning());
+    EXPECT_FALSE(simulated.Observer->GetError());
+    EXPECT_FALSE(simulated.Observer->GetWarning());
     return simulated.Copy();
   };
   const auto byNumbers = [&](double youngModulus, double poissonRatio, double density)
@@ -514,13 +518,13 @@ void TestMaterialPresets()
   for (int preset = Filter::BRAIN; preset <= Filter::BONE; ++preset)
   {
     double values[3];
-    VERIFY(Filter::GetMaterialPresetValues(preset, values));
+    EXPECT_TRUE(Filter::GetMaterialPresetValues(preset, values));
     const auto moved = simulate([&](Filter* filter) { filter->SetMaterialPreset(preset); });
-    VERIFY(moved->GetRange(-1)[1] > 0.0);
-    VERIFY(!AreEqual(moved, plain));
-    VERIFY(AreEqual(moved, byNumbers(values[0], values[1], values[2])));
+    EXPECT_GT(moved->GetRange(-1)[1], 0.0);
+    EXPECT_FALSE(AreEqual(moved, plain));
+    EXPECT_TRUE(AreEqual(moved, byNumbers(values[0], values[1], values[2])));
   }
-  VERIFY(AreEqual(simulate([](Filter* filter) { filter->SetMaterialPresetToLiver(); }),
+  EXPECT_TRUE(AreEqual(simulate([](Filter* filter) { filter->SetMaterialPresetToLiver(); }),
     byNumbers(5500.0, 0.49, 1060.0)));
 
   vtkNew<vtkDoubleArray> stiffness;
@@ -530,11 +534,11 @@ void TestMaterialPresets()
   bar->GetCellData()->AddArray(stiffness);
   const auto moved = simulate([](Filter* filter) { filter->SetMaterialPresetToLiver(); });
   bar->GetCellData()->RemoveArray("YoungModulus");
-  VERIFY(AreEqual(moved, byNumbers(3e4, 0.49, 1060.0)));
+  EXPECT_TRUE(AreEqual(moved, byNumbers(3e4, 0.49, 1060.0)));
 }
 
 // For small deformations both models give similar displacements, which deform a volume.
-void TestDeformedVolume()
+TEST(ElasticDeformation, DeformedVolume)
 {
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1e-3);
   Simulated<vtkFiniteElementDeformation> elements(bar);
@@ -552,8 +556,8 @@ void TestDeformedVolume()
   prepare(springs.Object);
   elements.Object->SetModeToConverged();
   springs.Object->SetDamping(30.0);
-  VERIFY_EQUAL(elements.TryUpdate(), std::string());
-  VERIFY(elements.Object->GetIsConverged());
+  EXPECT_EQ(elements.TryUpdate(), "");
+  EXPECT_TRUE(elements.Object->GetIsConverged());
   const auto settled = springs.At(2.0);
   const auto equilibrium = elements.Copy();
   double largest = 0.0;
@@ -563,7 +567,7 @@ void TestDeformedVolume()
       largest, std::abs(static_cast<double>(settled->GetValue(i) - equilibrium->GetValue(i))));
   }
   std::cout << "springs and elements differ by " << largest << " mm at most\n";
-  VERIFY(largest < 0.15);
+  EXPECT_LT(largest, 0.15);
 
   vtkNew<vtkImageData> volume;
   volume->SetDimensions(11, 11, 31);
@@ -573,13 +577,13 @@ void TestDeformedVolume()
   deform->SetInputData(volume);
   deform->SetDeformationConnection(elements.Object->GetOutputPort());
   deform->Update();
-  VERIFY_EQUAL(deform->GetOutput()->GetDimensions()[2], 33);
+  EXPECT_EQ(deform->GetOutput()->GetDimensions()[2], 33);
 }
 
 // Handles hold the nodes within HandleRadius, in length units of the mesh. A node in the range of
 // two handles is held by the first one.
 template <typename Filter>
-void TestHeldNodes()
+void CheckHeldNodes()
 {
   const auto bar = MakeBar(0.001); // 10 x 10 x 30 mm in cells of 2.5 mm
   Simulated<Filter> simulated(bar);
@@ -588,7 +592,7 @@ void TestHeldNodes()
   const std::vector<Handle> handles = { { { 5.0, 5.0, 30.0 }, { 5.5, 5.0, 30.0 } },
     { { 5.0, 5.0, 25.0 }, { 5.0, 5.5, 25.0 } } };
   simulated.Object->SetHandlesData(MakeHandles(handles));
-  VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+  EXPECT_EQ(simulated.TryUpdate(), "");
   const auto moved = simulated.Copy();
   int held[2] = { 0, 0 };
   for (vtkIdType i = 0; i < bar->GetNumberOfPoints(); ++i)
@@ -602,17 +606,17 @@ void TestHeldNodes()
     {
       isHeld = glm::distance(point, handles[k].Rest) <= 3.0;
       held[k] += isHeld;
-      VERIFY(!isHeld || glm::distance(displacement, handles[k].Now - handles[k].Rest) < 1e-6);
+      EXPECT_TRUE(!isHeld || glm::distance(displacement, handles[k].Now - handles[k].Rest) < 1e-6);
     }
-    VERIFY(isHeld || glm::distance(displacement, glm::dvec3(0.5, 0.0, 0.0)) > 1e-6);
+    EXPECT_TRUE(isHeld || glm::distance(displacement, glm::dvec3(0.5, 0.0, 0.0)) > 1e-6);
   }
-  VERIFY_EQUAL(held[0], 6);
-  VERIFY_EQUAL(held[1], 6); // seven nodes are in its range, but the first handle holds one of them
+  EXPECT_EQ(held[0], 6);
+  EXPECT_EQ(held[1], 6); // seven nodes are in its range, but the first handle holds one of them
 }
 
 // Hidden and duplicate cells, and cells with a hidden point, are not part of the body.
 template <typename Filter>
-void TestHiddenCells()
+void CheckHiddenCells()
 {
   const auto bar = MakeBar(0.001);
   const auto simulate = [](vtkUnstructuredGrid* mesh)
@@ -620,7 +624,7 @@ void TestHiddenCells()
     Simulated<Filter> simulated(mesh);
     simulated.Object->SetLengthUnitToMillimetre();
     simulated.Object->SetGravity(0.0, 0.0, 9.81);
-    VERIFY_EQUAL(simulated.TryUpdate(), std::string());
+    EXPECT_EQ(simulated.TryUpdate(), std::string());
     const auto moved = simulated.Copy();
     const float* values = moved->GetPointer(0);
     return std::vector<float>(values, values + moved->GetNumberOfValues());
@@ -642,13 +646,13 @@ void TestHiddenCells()
       cut->InsertNextCell(VTK_TETRA, ids);
     }
   }
-  VERIFY(cut->GetNumberOfCells() < bar->GetNumberOfCells());
+  EXPECT_LT(cut->GetNumberOfCells(), bar->GetNumberOfCells());
   const auto expected = simulate(cut);
-  VERIFY(*std::max_element(expected.begin(), expected.end()) > 0.0F);
+  EXPECT_GT(*std::max_element(expected.begin(), expected.end()), 0.0F);
   vtkNew<vtkUnstructuredGrid> masked;
   masked->ShallowCopy(bar);
   masked->GetCellData()->AddArray(hidden);
-  VERIFY(simulate(masked) == expected);
+  EXPECT_EQ(simulate(masked), expected);
   masked->ShallowCopy(bar);
   vtkNew<vtkUnsignedCharArray> valid;
   valid->SetName("vtkValidPointMask");
@@ -656,44 +660,66 @@ void TestHiddenCells()
   valid->Fill(1);
   valid->SetValue(corner, 0);
   masked->GetPointData()->AddArray(valid);
-  VERIFY(simulate(masked) == expected);
+  EXPECT_EQ(simulate(masked), expected);
 }
 
 } // namespace
 
-int TestElasticDeformation(int, char*[])
+TEST(ElasticDeformation, Misuse)
 {
-  TestMisuse<vtkMassSpringDeformation>();
-  TestMisuse<vtkFiniteElementDeformation>();
-  TestErrorsOfSubclasses();
-  TestWarnings<vtkMassSpringDeformation>(0.008);
-  TestWarnings<vtkFiniteElementDeformation>(0.02);
-  TestWarningsOfSubclasses();
-  TestMisuseOfPresets();
-  TestMaterialPresets<vtkMassSpringDeformation>();
-  TestMaterialPresets<vtkFiniteElementDeformation>();
-  TestHangingBar<vtkMassSpringDeformation>(
+  CheckMisuse<vtkMassSpringDeformation>();
+  CheckMisuse<vtkFiniteElementDeformation>();
+}
+
+TEST(ElasticDeformation, Warnings)
+{
+  CheckWarnings<vtkMassSpringDeformation>(0.008);
+  CheckWarnings<vtkFiniteElementDeformation>(0.02);
+}
+
+TEST(ElasticDeformation, MaterialPresets)
+{
+  CheckMaterialPresets<vtkMassSpringDeformation>();
+  CheckMaterialPresets<vtkFiniteElementDeformation>();
+}
+
+TEST(ElasticDeformation, ContinuedSimulation)
+{
+  CheckContinuedSimulation<vtkMassSpringDeformation>();
+  CheckContinuedSimulation<vtkFiniteElementDeformation>();
+}
+
+TEST(ElasticDeformation, Aborted)
+{
+  CheckAborted<vtkMassSpringDeformation>();
+  CheckAborted<vtkFiniteElementDeformation>();
+}
+
+TEST(ElasticDeformation, HeldNodes)
+{
+  CheckHeldNodes<vtkFiniteElementDeformation>();
+  CheckHeldNodes<vtkMassSpringDeformation>();
+}
+
+TEST(ElasticDeformation, HiddenCells)
+{
+  CheckHiddenCells<vtkFiniteElementDeformation>();
+  CheckHiddenCells<vtkMassSpringDeformation>();
+}
+
+TEST(ElasticDeformation, HangingBar)
+{
+  CheckHangingBar<vtkMassSpringDeformation>(
     [](Simulated<vtkMassSpringDeformation>& simulated)
     {
       simulated.Object->SetDamping(30.0);
       simulated.Object->SetPoissonRatio(0.4);
       simulated.At(2.0);
     });
-  TestHangingBar<vtkFiniteElementDeformation>(
+  CheckHangingBar<vtkFiniteElementDeformation>(
     [](Simulated<vtkFiniteElementDeformation>& simulated)
     {
       simulated.Object->SetModeToConverged();
       simulated.Object->Update();
     });
-  TestTimes();
-  TestContinuedSimulation<vtkMassSpringDeformation>();
-  TestContinuedSimulation<vtkFiniteElementDeformation>();
-  TestAborted<vtkMassSpringDeformation>();
-  TestAborted<vtkFiniteElementDeformation>();
-  TestHeldNodes<vtkFiniteElementDeformation>();
-  TestHeldNodes<vtkMassSpringDeformation>();
-  TestHiddenCells<vtkFiniteElementDeformation>();
-  TestHiddenCells<vtkMassSpringDeformation>();
-  TestDeformedVolume();
-  return GetExitCode();
 }

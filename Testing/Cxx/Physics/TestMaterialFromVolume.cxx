@@ -92,15 +92,15 @@ struct Tested
     this->Filter->Modified();
     this->Filter->Update();
     const std::string errors = this->Observer->GetErrorMessage();
-    VERIFY(errors.find("ERROR: ") == errors.rfind("ERROR: "));
+    EXPECT_EQ(errors.find("ERROR: "), errors.rfind("ERROR: "));
     if (!errors.empty())
     {
       // The next update reports the error again, although nothing has changed.
       this->Observer->Clear();
-      VERIFY(!this->Filter->GetExecutive()->Update());
-      VERIFY(this->Observer->GetError());
+      EXPECT_FALSE(this->Filter->GetExecutive()->Update());
+      EXPECT_TRUE(this->Observer->GetError());
     }
-    VERIFY(errors.empty() || this->Filter->GetOutput()->GetNumberOfPoints() == 0);
+    EXPECT_TRUE(errors.empty() || this->Filter->GetOutput()->GetNumberOfPoints() == 0);
     this->Observer->Clear();
     this->ExecutiveObserver->Clear();
     return errors;
@@ -115,18 +115,18 @@ struct Tested
   vtkNew<vtkTest::ErrorObserver> ExecutiveObserver;
 };
 
-void TestMisuse()
+TEST(MaterialFromVolume, Misuse)
 {
   vtkSmartPointer<vtkImageData> volume = MakeVolume();
   vtkSmartPointer<vtkUnstructuredGrid> mesh = MakeMesh(volume, 4);
   Tested tested(mesh, volume);
-  VERIFY_EQUAL(tested.TryUpdate(), std::string());
+  EXPECT_EQ(tested.TryUpdate(), "");
 
   tested.Filter->SetMaterialArrayName("none");
-  VERIFY_CONTAINS(tested.TryUpdate(), "no point array \"none\"");
+  EXPECT_TRUE(HasPart(tested.TryUpdate(), "no point array \"none\""));
   tested.Filter->SetMaterialArrayName("");
-  VERIFY_EQUAL(tested.TryUpdate(), std::string()); // all tetrahedra have the default material
-  VERIFY_EQUAL(tested.Get(0, 0), 1e4);
+  EXPECT_EQ(tested.TryUpdate(), ""); // all tetrahedra have the default material
+  EXPECT_EQ(tested.Get(0, 0), 1e4);
   tested.Filter->SetMaterialArrayName("labels");
 
   const auto tryMaterial = [&](double youngModulus, double poissonRatio, double density)
@@ -137,31 +137,31 @@ void TestMisuse()
     return errors;
   };
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  VERIFY_CONTAINS(tryMaterial(0.0, 0.3, 1.0), "Young modulus of material 2");
-  VERIFY_CONTAINS(tryMaterial(nan, 0.3, 1.0), "Young modulus of material 2");
-  VERIFY_CONTAINS(tryMaterial(1.0, 0.495, 1.0), "Poisson ratio of material 2");
-  VERIFY_CONTAINS(tryMaterial(1.0, 0.3, -1.0), "density of material 2");
-  VERIFY_EQUAL(tested.TryUpdate(), std::string());
+  EXPECT_TRUE(HasPart(tryMaterial(0.0, 0.3, 1.0), "Young modulus of material 2"));
+  EXPECT_TRUE(HasPart(tryMaterial(nan, 0.3, 1.0), "Young modulus of material 2"));
+  EXPECT_TRUE(HasPart(tryMaterial(1.0, 0.495, 1.0), "Poisson ratio of material 2"));
+  EXPECT_TRUE(HasPart(tryMaterial(1.0, 0.3, -1.0), "density of material 2"));
+  EXPECT_EQ(tested.TryUpdate(), "");
 
   tested.Filter->SetMaterial(256, 1.0, 0.0, 1.0);
-  VERIFY_CONTAINS(tested.Observer->GetErrorMessage(), "material index 256 is not valid");
+  EXPECT_TRUE(HasPart(tested.Observer->GetErrorMessage(), "material index 256 is not valid"));
   tested.Observer->Clear();
   tested.Filter->SetMaterial(1.5, 1.0, 0.0, 1.0);
-  VERIFY_CONTAINS(tested.Observer->GetErrorMessage(), "material index 1.5 is not valid");
+  EXPECT_TRUE(HasPart(tested.Observer->GetErrorMessage(), "material index 1.5 is not valid"));
   tested.Observer->Clear();
   tested.Filter->AddMaterialRange(0.0, 1.0, -1.0);
-  VERIFY_CONTAINS(tested.Observer->GetErrorMessage(), "material index -1 is not valid");
+  EXPECT_TRUE(HasPart(tested.Observer->GetErrorMessage(), "material index -1 is not valid"));
   tested.Observer->Clear();
-  VERIFY_EQUAL(tested.Filter->GetNumberOfMaterialRanges(), 0);
+  EXPECT_EQ(tested.Filter->GetNumberOfMaterialRanges(), 0);
 
   vtkShortArray::SafeDownCast(volume->GetPointData()->GetScalars())->SetValue(11, 5);
-  VERIFY_CONTAINS(tested.TryUpdate(), "Voxel 11 has the value 5");
+  EXPECT_TRUE(HasPart(tested.TryUpdate(), "Voxel 11 has the value 5"));
   vtkShortArray::SafeDownCast(volume->GetPointData()->GetScalars())->SetValue(11, 1);
   tested.Filter->ClearMaterials();
-  VERIFY_EQUAL(tested.Filter->GetNumberOfMaterials(), 0);
-  VERIFY_CONTAINS(tested.TryUpdate(), "DefaultMaterial 1 is not defined");
+  EXPECT_EQ(tested.Filter->GetNumberOfMaterials(), 0);
+  EXPECT_TRUE(HasPart(tested.TryUpdate(), "DefaultMaterial 1 is not defined"));
   tested.Filter->SetMaterial(1, 1e4, 0.3, 1000.0);
-  VERIFY_CONTAINS(tested.TryUpdate(), "for which there is no material");
+  EXPECT_TRUE(HasPart(tested.TryUpdate(), "for which there is no material"));
 
   // A ghost array that is too short.
   tested.Filter->SetMaterial(0, 100.0, 0.0, 100.0);
@@ -169,35 +169,35 @@ void TestMisuse()
   {
     tested.Filter->SetMaterial(index, 1e4, 0.3, 1000.0);
   }
-  VERIFY_EQUAL(tested.TryUpdate(), std::string());
+  EXPECT_EQ(tested.TryUpdate(), "");
   vtkNew<vtkUnsignedCharArray> ghosts;
   ghosts->SetName("vtkGhostType");
   ghosts->SetNumberOfTuples(7);
   ghosts->Fill(0);
   volume->GetPointData()->AddArray(ghosts);
-  VERIFY_CONTAINS(tested.TryUpdate(), "vtkGhostType");
+  EXPECT_TRUE(HasPart(tested.TryUpdate(), "vtkGhostType"));
   volume->GetPointData()->RemoveArray("vtkGhostType");
 
   vtkNew<vtkImageData> flat;
   flat->SetDimensions(5, 5, 1);
   Tested onFlat(mesh, flat);
-  VERIFY_CONTAINS(onFlat.TryUpdate(), "The volume has one voxel only on axis z");
+  EXPECT_TRUE(HasPart(onFlat.TryUpdate(), "The volume has one voxel only on axis z"));
   vtkNew<vtkUnstructuredGrid> hexahedron;
   vtkNew<vtkPoints> points;
   points->SetNumberOfPoints(8);
   const vtkIdType ids[8] = { 0, 1, 2, 3, 4, 5, 6, 7 };
   hexahedron->SetPoints(points);
   hexahedron->InsertNextCell(VTK_HEXAHEDRON, 8, ids);
-  VERIFY_CONTAINS(Tested(hexahedron, volume).TryUpdate(), "hexahedron");
+  EXPECT_TRUE(HasPart(Tested(hexahedron, volume).TryUpdate(), "hexahedron"));
   mesh->GetPoints()->SetPoint(3, nan, 0.0, 0.0);
-  VERIFY_CONTAINS(Tested(mesh, volume).TryUpdate(), "Point 3");
+  EXPECT_TRUE(HasPart(Tested(mesh, volume).TryUpdate(), "Point 3"));
   vtkNew<vtkUnstructuredGrid> empty;
-  VERIFY_EQUAL(Tested(empty, volume).TryUpdate(), std::string());
+  EXPECT_EQ(Tested(empty, volume).TryUpdate(), "");
 }
 
 // Compares means with a search of all voxels. Since nodes are rounded to 1/256 voxel, tetrahedra
 // with a voxel near one of their faces are skipped.
-void TestMeans(bool hides)
+void CheckMeans(bool hides)
 {
   vtkSmartPointer<vtkImageData> volume = MakeVolume();
   vtkSmartPointer<vtkUnstructuredGrid> mesh = MakeMesh(volume, 12);
@@ -217,10 +217,10 @@ void TestMeans(bool hides)
     volume->GetPointData()->AddArray(ghosts);
   }
   Tested tested(mesh, volume);
-  VERIFY_EQUAL(tested.TryUpdate(), std::string());
+  EXPECT_EQ(tested.TryUpdate(), "");
   vtkUnstructuredGrid* output = tested.Filter->GetOutput();
-  VERIFY(output->GetPoints() == mesh->GetPoints());
-  VERIFY(output->GetCellData()->GetArray("other") == other);
+  EXPECT_EQ(output->GetPoints(), mesh->GetPoints());
+  EXPECT_EQ(output->GetCellData()->GetArray("other"), other);
 
   vtkIdType held = 0;
   vtkIdType nearest = 0;
@@ -246,7 +246,7 @@ void TestMeans(bool hides)
       double values[3];
       const int label =
         static_cast<int>(volume->GetPointData()->GetScalars()->GetComponent(voxel, 0));
-      VERIFY(tested.Filter->GetMaterialValues(label, values));
+      EXPECT_TRUE(tested.Filter->GetMaterialValues(label, values));
       for (int k = 0; k < 3; ++k)
       {
         sums[k] += values[k];
@@ -308,55 +308,54 @@ void TestMeans(bool hides)
   }
   std::cout << held << " tetrahedra contain voxels, " << nearest << " have the nearest, " << outside
             << " none, " << nearBorder << " are skipped; largest relative error " << worst << "\n";
-  VERIFY(worst < 1e-12);
-  VERIFY(held > 1000 && nearest > 100 && outside > 100);
-  VERIFY(nearBorder < mesh->GetNumberOfCells() / 4);
+  EXPECT_LT(worst, 1e-12);
+  EXPECT_TRUE(held > 1000 && nearest > 100 && outside > 100);
+  EXPECT_LT(nearBorder, mesh->GetNumberOfCells() / 4);
   const auto differs = [&](vtkIdType count, vtkIdType wanted)
   { return count < wanted || count > wanted + nearBorder; };
-  VERIFY(!differs(tested.Filter->GetNumberOfTetrahedraWithoutVoxels(), nearest));
-  VERIFY(!differs(tested.Filter->GetNumberOfTetrahedraOutside(), outside));
+  EXPECT_FALSE(differs(tested.Filter->GetNumberOfTetrahedraWithoutVoxels(), nearest));
+  EXPECT_FALSE(differs(tested.Filter->GetNumberOfTetrahedraOutside(), outside));
 
   // The result does not depend on the number of threads.
   vtkNew<vtkUnstructuredGrid> before;
   before->DeepCopy(output);
-  vtkSMPTools::LocalScope(
-    vtkSMPTools::Config{ 1 }, [&] { VERIFY_EQUAL(tested.TryUpdate(), std::string()); });
+  vtkSMPTools::LocalScope(vtkSMPTools::Config{ 1 }, [&] { EXPECT_EQ(tested.TryUpdate(), ""); });
   for (const char* name : Names)
   {
     vtkDataArray* a = before->GetCellData()->GetArray(name);
     vtkDataArray* b = tested.Filter->GetOutput()->GetCellData()->GetArray(name);
-    VERIFY(std::equal(static_cast<double*>(a->GetVoidPointer(0)),
+    EXPECT_TRUE(std::equal(static_cast<double*>(a->GetVoidPointer(0)),
       static_cast<double*>(a->GetVoidPointer(0)) + a->GetNumberOfTuples(),
       static_cast<double*>(b->GetVoidPointer(0))));
   }
 }
 
 // Ranges of values instead of labels. If ranges overlap, the first one is used.
-void TestRanges()
+TEST(MaterialFromVolume, Ranges)
 {
   vtkSmartPointer<vtkImageData> volume = MakeVolume();
   vtkSmartPointer<vtkUnstructuredGrid> mesh = MakeMesh(volume, 3);
   Tested byLabels(mesh, volume);
-  VERIFY_EQUAL(byLabels.TryUpdate(), std::string());
+  EXPECT_EQ(byLabels.TryUpdate(), "");
   Tested byRanges(mesh, volume);
   byRanges.Filter->SetMaterialArrayName("");
   byRanges.Filter->AddMaterialRange(-5.0, 1.0, 0);
   byRanges.Filter->AddMaterialRange(2.0, 3.0, 2);
   byRanges.Filter->AddMaterialRange(3.0, 3.5, 3);
   byRanges.Filter->AddMaterialRange(2.5, 10.0, 4);
-  VERIFY_EQUAL(byRanges.TryUpdate(), std::string());
+  EXPECT_EQ(byRanges.TryUpdate(), "");
   for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
   {
     for (int k = 0; k < 3; ++k)
     {
-      VERIFY_EQUAL(byRanges.Get(k, cell), byLabels.Get(k, cell));
+      EXPECT_EQ(byRanges.Get(k, cell), byLabels.Get(k, cell));
     }
   }
 }
 
 // Presets of tissues: errors do not change the filter, and presets give the same means as their
 // values.
-void TestPresets()
+TEST(MaterialFromVolume, Presets)
 {
   vtkSmartPointer<vtkImageData> volume = MakeVolume();
   vtkSmartPointer<vtkUnstructuredGrid> mesh = MakeMesh(volume, 5);
@@ -368,9 +367,9 @@ void TestPresets()
     filter->SetMaterialPreset(index, preset);
     const std::string errors = tested.Observer->GetErrorMessage();
     tested.Observer->Clear();
-    VERIFY_CONTAINS(errors, words);
-    VERIFY_EQUAL(filter->GetMTime(), time);
-    VERIFY_EQUAL(filter->GetNumberOfMaterialPresets(), 0);
+    EXPECT_TRUE(HasPart(errors, words));
+    EXPECT_EQ(filter->GetMTime(), time);
+    EXPECT_EQ(filter->GetNumberOfMaterialPresets(), 0);
   };
   fail(256, vtkElasticDeformation::LIVER, "material index 256 is not valid");
   fail(-1, vtkElasticDeformation::LIVER, "material index -1 is not valid");
@@ -378,13 +377,13 @@ void TestPresets()
   fail(4, -1, "preset -1 of material 4 is not defined");
   for (const int index : { -1, 0, 256 })
   {
-    VERIFY_EQUAL(filter->GetMaterialPreset(index), static_cast<int>(vtkElasticDeformation::CUSTOM));
+    EXPECT_EQ(filter->GetMaterialPreset(index), static_cast<int>(vtkElasticDeformation::CUSTOM));
   }
 
   using Means = std::vector<double>;
   const auto find = [&](Tested& one)
   {
-    VERIFY_EQUAL(one.TryUpdate(), std::string());
+    EXPECT_EQ(one.TryUpdate(), "");
     Means means;
     for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
     {
@@ -403,21 +402,21 @@ void TestPresets()
   filter->SetMaterialPreset(1, vtkElasticDeformation::BRAIN);
   filter->SetMaterialPreset(4, vtkElasticDeformation::BONE);
   filter->SetMaterial(1, -1.0, 0.3, 1000.0);
-  VERIFY_EQUAL(filter->GetNumberOfMaterialPresets(), 2);
-  VERIFY_EQUAL(filter->GetMaterialPreset(4), static_cast<int>(vtkElasticDeformation::BONE));
+  EXPECT_EQ(filter->GetNumberOfMaterialPresets(), 2);
+  EXPECT_EQ(filter->GetMaterialPreset(4), static_cast<int>(vtkElasticDeformation::BONE));
   const Means means = find(tested);
-  VERIFY(means != before);
-  VERIFY(means == find(wanted));
+  EXPECT_NE(means, before);
+  EXPECT_EQ(means, find(wanted));
   std::ostringstream printed;
   filter->Print(printed);
-  VERIFY_CONTAINS(printed.str(), "4: Bone");
+  EXPECT_TRUE(HasPart(printed.str(), "4: Bone"));
   // With CUSTOM the values of SetMaterial() are used again.
   filter->SetMaterialPreset(1, vtkElasticDeformation::CUSTOM);
-  VERIFY_CONTAINS(tested.TryUpdate(), "Young modulus of material 1");
+  EXPECT_TRUE(HasPart(tested.TryUpdate(), "Young modulus of material 1"));
   filter->SetMaterial(1, 1e4, 0.3, 1000.0);
   filter->ClearMaterialPresets();
-  VERIFY_EQUAL(filter->GetNumberOfMaterialPresets(), 0);
-  VERIFY(find(tested) == before);
+  EXPECT_EQ(filter->GetNumberOfMaterialPresets(), 0);
+  EXPECT_EQ(find(tested), before);
 
   // An index with a preset needs no call of SetMaterial().
   filter->ClearMaterials();
@@ -425,17 +424,17 @@ void TestPresets()
   {
     filter->SetMaterialPreset(index, vtkElasticDeformation::FAT);
   }
-  VERIFY_EQUAL(filter->GetNumberOfMaterials(), 0);
+  EXPECT_EQ(filter->GetNumberOfMaterials(), 0);
   const Means fat = find(tested);
   for (std::size_t i = 0; i < fat.size(); i += 3)
   {
-    VERIFY(std::abs(fat[i] - 3250.0) < 1e-9 * 3250.0);
-    VERIFY(std::abs(fat[i + 1] - 0.49) < 1e-12);
-    VERIFY(std::abs(fat[i + 2] - 950.0) < 1e-9 * 950.0);
+    EXPECT_LT(std::abs(fat[i] - 3250.0), 1e-9 * 3250.0);
+    EXPECT_LT(std::abs(fat[i + 1] - 0.49), 1e-12);
+    EXPECT_LT(std::abs(fat[i + 2] - 950.0), 1e-9 * 950.0);
   }
 }
 
-void TestAbort()
+TEST(MaterialFromVolume, Abort)
 {
   vtkSmartPointer<vtkImageData> volume = MakeVolume();
   Tested tested(MakeMesh(volume, 4), volume);
@@ -443,17 +442,17 @@ void TestAbort()
   abort->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
     { static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1); });
   const unsigned long tag = tested.Filter->AddObserver(vtkCommand::ProgressEvent, abort);
-  VERIFY_EQUAL(tested.TryUpdate(), std::string());
-  VERIFY_EQUAL(tested.Filter->GetOutput()->GetNumberOfPoints(), 0);
+  EXPECT_EQ(tested.TryUpdate(), "");
+  EXPECT_EQ(tested.Filter->GetOutput()->GetNumberOfPoints(), 0);
   tested.Filter->RemoveObserver(tag);
   tested.Filter->SetAbortExecute(0);
   tested.Filter->Update();
-  VERIFY(tested.Filter->GetOutput()->GetNumberOfPoints() > 0);
+  EXPECT_GT(tested.Filter->GetOutput()->GetNumberOfPoints(), 0);
 }
 
 // One half of a bar is a hundred times as stiff as the other one. When the bar is pulled, the soft
 // half is elongated.
-void TestInSimulation()
+TEST(MaterialFromVolume, InSimulation)
 {
   vtkNew<vtkImageData> volume;
   volume->SetDimensions(9, 9, 41);
@@ -511,20 +510,14 @@ void TestInSimulation()
   }
   std::cout << "displacements at 16 and 24: " << moved[0] << " " << moved[1] << "\n";
   constexpr double unit = pull / (20.0 + 100.0 * 20.0);
-  VERIFY(std::abs(moved[0] - 16.0 * unit) < 0.02 * 16.0 * unit);
-  VERIFY(std::abs(moved[1] - 420.0 * unit) < 0.02 * 420.0 * unit);
+  EXPECT_LT(std::abs(moved[0] - 16.0 * unit), 0.02 * 16.0 * unit);
+  EXPECT_LT(std::abs(moved[1] - 420.0 * unit), 0.02 * 420.0 * unit);
 }
 
 } // namespace
 
-int TestMaterialFromVolume(int, char*[])
+TEST(MaterialFromVolume, Means)
 {
-  TestMisuse();
-  TestMeans(false);
-  TestMeans(true);
-  TestRanges();
-  TestPresets();
-  TestAbort();
-  TestInSimulation();
-  return GetExitCode();
+  CheckMeans(false);
+  CheckMeans(true);
 }

@@ -85,30 +85,19 @@ struct Careless
   }
   void IsRight(const char* what)
   {
+    SCOPED_TRACE(what);
     vtkImageData* output = this->Subject.Update();
-    if (GetExtent(output) != Extent{ { 1, 40, 0, 39, 0, 39 } } ||
-      this->Subject.Filter->GetNumberOfCoveredVoxels() != 64000 ||
-      GetPoint(output, 0) != GetPoint(this->Volume, 1))
-    {
-      ++GetNumberOfFailures();
-      std::cerr << what << ": the extent is " << GetExtent(output) << " instead of 1 40 0 39 0 39, "
-                << this->Subject.Filter->GetNumberOfCoveredVoxels()
-                << " voxels are covered instead of 64000, or the first point differs from point 1 "
-                   "of the volume\n";
-    }
+    EXPECT_EQ(GetExtent(output), (Extent{ { 1, 40, 0, 39, 0, 39 } }));
+    EXPECT_EQ(this->Subject.Filter->GetNumberOfCoveredVoxels(), 64000);
+    EXPECT_EQ(GetPoint(output, 0), GetPoint(this->Volume, 1));
   }
   void Fails(const char* what, const std::string& words)
   {
     this->Source->Modified();
     this->Subject.Filter->Update();
-    const int errors = this->Subject.TakeErrors();
-    if (errors != 1 || this->Subject.LastError.find(words) == std::string::npos)
-    {
-      ++GetNumberOfFailures();
-      std::cerr << what << ": " << errors << " errors, expected one with \"" << words << "\"\n"
-                << this->Subject.LastError << '\n';
-    }
-    VERIFY_EQUAL(this->Subject.Filter->GetOutput()->GetNumberOfPoints(), 0);
+    EXPECT_EQ(this->Subject.TakeErrors(), 1) << what;
+    EXPECT_TRUE(HasPart(this->Subject.LastError, words)) << what;
+    EXPECT_EQ(this->Subject.Filter->GetOutput()->GetNumberOfPoints(), 0);
   }
 
   vtkSmartPointer<vtkImageData> Volume;
@@ -117,7 +106,7 @@ struct Careless
   Deformed Subject;
 };
 
-void TestGeometry()
+TEST(DeformAnnouncements, Geometry)
 {
   const glm::dvec3 origin(10.0, -5.0, 3.0);
   const glm::dvec3 spacing(2.0, 1.5, 0.5);
@@ -125,10 +114,10 @@ void TestGeometry()
   // Without announced geometry the filter executes the source, once.
   Careless forgetful;
   forgetful.IsRight("a source that announces nothing");
-  VERIFY_EQUAL(forgetful.Source->Executions, 1);
+  EXPECT_EQ(forgetful.Source->Executions, 1);
   forgetful.Mesh->Modified();
   forgetful.IsRight("once more");
-  VERIFY_EQUAL(forgetful.Source->Executions, 1);
+  EXPECT_EQ(forgetful.Source->Executions, 1);
 
   forgetful.Source->Announced->Set(vtkDataObject::ORIGIN(), &origin.x, 3);
   forgetful.Source->Modified();
@@ -138,8 +127,8 @@ void TestGeometry()
   // The announced geometry of sources in single precision differs by rounding.
   forgetful.Announce(origin + glm::dvec3(1e-6), spacing * (1.0 + 1e-7));
   forgetful.Subject.Update();
-  VERIFY_EQUAL(GetExtent(forgetful.Subject.Filter->GetOutput())[0], 1);
-  VERIFY_EQUAL(GetExtent(forgetful.Subject.Filter->GetOutput())[1], 40);
+  EXPECT_EQ(GetExtent(forgetful.Subject.Filter->GetOutput())[0], 1);
+  EXPECT_EQ(GetExtent(forgetful.Subject.Filter->GetOutput())[1], 40);
 
   // Without a direction the data count, with one what is announced.
   forgetful.Announce(origin, glm::dvec3(1.0));
@@ -163,13 +152,13 @@ void TestGeometry()
   {
     forgetful.Source->Modified();
     vtkImageData* output = forgetful.Subject.Update();
-    VERIFY_EQUAL(GetExtent(output), GetExtent(forgetful.Volume));
-    VERIFY(GetPoint(output, 63999) == GetPoint(forgetful.Volume, 63999));
-    VERIFY_EQUAL(forgetful.Subject.Filter->GetNumberOfCoveredVoxels(), 64000);
+    EXPECT_EQ(GetExtent(output), GetExtent(forgetful.Volume));
+    EXPECT_EQ(GetPoint(output, 63999), GetPoint(forgetful.Volume, 63999));
+    EXPECT_EQ(forgetful.Subject.Filter->GetNumberOfCoveredVoxels(), 64000);
   };
   isOblique();
   forgetful.Source->Announced->Set(vtkDataObject::DIRECTION(), straight, 9);
-  forgetful.Fails("a wrong direction", "Set ORIGIN(), SPACING() and DIRECTION()");
+  forgetful.Fails("a wrong direction", "set ORIGIN(), SPACING() and DIRECTION()");
   forgetful.Source->Announced->Set(
     vtkDataObject::DIRECTION(), forgetful.Volume->GetDirectionMatrix()->GetData(), 9);
   isOblique();
@@ -177,7 +166,7 @@ void TestGeometry()
 
 // The part of the volume from which the filter takes the direction is not what an update of a
 // source by itself makes afterwards.
-void TestRequests()
+TEST(DeformAnnouncements, Requests)
 {
   vtkNew<vtkRTAnalyticSource> source;
   vtkNew<vtkImageShiftScale> shift;
@@ -188,17 +177,17 @@ void TestRequests()
   subject.Filter->SetInputConnection(shift->GetOutputPort());
   subject.Filter->SetDeformationData(mesh);
   subject.Filter->UpdateInformation();
-  VERIFY_EQUAL(GetExtent(shift->GetOutput()), (Extent{ { -10, -9, -10, -9, -10, -9 } }));
+  EXPECT_EQ(GetExtent(shift->GetOutput()), (Extent{ { -10, -9, -10, -9, -10, -9 } }));
   source->Update();
-  VERIFY_EQUAL(GetExtent(source->GetOutput()), (Extent{ { -10, 10, -10, 10, -10, 10 } }));
+  EXPECT_EQ(GetExtent(source->GetOutput()), (Extent{ { -10, 10, -10, 10, -10, 10 } }));
   shift->Update();
-  VERIFY_EQUAL(GetExtent(shift->GetOutput()), (Extent{ { -10, 10, -10, 10, -10, 10 } }));
+  EXPECT_EQ(GetExtent(shift->GetOutput()), (Extent{ { -10, 10, -10, 10, -10, 10 } }));
   subject.Update();
-  VERIFY_EQUAL(subject.Filter->GetNumberOfCoveredVoxels(), 9261);
+  EXPECT_EQ(subject.Filter->GetNumberOfCoveredVoxels(), 9261);
 }
 
 // A reference image of which only the extent is announced.
-void TestReference()
+TEST(DeformAnnouncements, Reference)
 {
   const auto grid =
     MakeImage({ { -2, 17, 3, 22, 0, 9 } }, glm::dvec3(3.0, 2.0, 1.5), glm::dvec3(12.0, -3.0, 4.0));
@@ -212,14 +201,14 @@ void TestReference()
   {
     careless.Mesh->Modified();
     vtkImageData* output = careless.Subject.Update();
-    VERIFY_EQUAL(GetExtent(output), GetExtent(grid));
-    VERIFY(GetPoint(output, 0) == GetPoint(grid, 0));
-    VERIFY(GetPoint(output, 3999) == GetPoint(grid, 3999));
-    VERIFY_EQUAL(source->Executions, 1);
+    EXPECT_EQ(GetExtent(output), GetExtent(grid));
+    EXPECT_EQ(GetPoint(output, 0), GetPoint(grid, 0));
+    EXPECT_EQ(GetPoint(output, 3999), GetPoint(grid, 3999));
+    EXPECT_EQ(source->Executions, 1);
   }
 }
 
-void TestExtents()
+TEST(DeformAnnouncements, Extents)
 {
   Careless careless;
   careless.Announce(glm::dvec3(10.0, -5.0, 3.0), glm::dvec3(2.0, 1.5, 0.5));
@@ -235,15 +224,14 @@ void TestExtents()
   careless.Source->WholeExtent = { { 10, 29, 0, 39, 0, 39 } };
   careless.Source->Modified();
   careless.Subject.Filter->Update();
-  VERIFY_CONTAINS(careless.Subject.TakeWarning(), "more than the whole extent 10, 29");
-  VERIFY_EQUAL(
-    GetExtent(careless.Subject.Filter->GetOutput()), (Extent{ { 11, 30, 0, 39, 0, 39 } }));
-  VERIFY_EQUAL(careless.Subject.Filter->GetNumberOfCoveredVoxels(), 32000);
+  EXPECT_TRUE(HasPart(careless.Subject.TakeWarning(), "more than the whole extent 10, 29"));
+  EXPECT_EQ(GetExtent(careless.Subject.Filter->GetOutput()), (Extent{ { 11, 30, 0, 39, 0, 39 } }));
+  EXPECT_EQ(careless.Subject.Filter->GetNumberOfCoveredVoxels(), 32000);
   const vtkIdType uploads = GetReported(careless.Subject.Filter, "Volumes sent");
   careless.Mesh->Modified();
   careless.Subject.Update();
-  VERIFY_EQUAL(GetReported(careless.Subject.Filter, "Volumes sent"), uploads);
-  VERIFY(careless.Subject.TakeWarning().empty());
+  EXPECT_EQ(GetReported(careless.Subject.Filter, "Volumes sent"), uploads);
+  EXPECT_EQ(careless.Subject.TakeWarning(), "");
   vtkNew<vtkFloatArray> few;
   few->SetName("few");
   few->SetNumberOfTuples(7);
@@ -260,14 +248,13 @@ void TestExtents()
   clip->SetOutputWholeExtent(10, 29, 5, 34, 0, 39);
   careless.Subject.Filter->SetInputConnection(clip->GetOutputPort());
   careless.Subject.Filter->Update();
-  VERIFY_EQUAL(careless.Subject.TakeErrors(), 0);
-  VERIFY_EQUAL(
-    GetExtent(careless.Subject.Filter->GetOutput()), (Extent{ { 11, 30, 5, 34, 0, 39 } }));
-  VERIFY_EQUAL(careless.Subject.Filter->GetNumberOfCoveredVoxels(), 20 * 30 * 40);
+  EXPECT_EQ(careless.Subject.TakeErrors(), 0);
+  EXPECT_EQ(GetExtent(careless.Subject.Filter->GetOutput()), (Extent{ { 11, 30, 5, 34, 0, 39 } }));
+  EXPECT_EQ(careless.Subject.Filter->GetNumberOfCoveredVoxels(), 20 * 30 * 40);
 }
 
 // A filter announces the geometry and the scalars of its output.
-void TestAnnounced(vtkImageAlgorithm* filter)
+void CheckAnnounced(vtkImageAlgorithm* filter)
 {
   const auto volume =
     MakeImage({ { 2, 9, 0, 8, -3, 7 } }, glm::dvec3(2.0, 1.5, 0.5), glm::dvec3(10.0, -5.0, 3.0));
@@ -290,29 +277,25 @@ void TestAnnounced(vtkImageAlgorithm* filter)
     vtkInformation* announced = filter->GetOutputInformation(0);
     Extent extent;
     announced->Get(Pipeline::WHOLE_EXTENT(), extent.data());
-    VERIFY_EQUAL(vtkImageData::GetScalarType(announced), type);
-    VERIFY_EQUAL(vtkImageData::GetNumberOfScalarComponents(announced), 1);
+    EXPECT_EQ(vtkImageData::GetScalarType(announced), type);
+    EXPECT_EQ(vtkImageData::GetNumberOfScalarComponents(announced), 1);
     filter->Update();
     vtkImageData* output = filter->GetOutput();
-    VERIFY_EQUAL(extent, GetExtent(output));
-    VERIFY_EQUAL(output->GetScalarType(), type);
+    EXPECT_EQ(extent, GetExtent(output));
+    EXPECT_EQ(output->GetScalarType(), type);
     const auto isAnnounced = [&](vtkInformationDoubleVectorKey* key, const double* values, int size)
     { return announced->Has(key) && std::equal(values, values + size, announced->Get(key)); };
-    VERIFY(isAnnounced(vtkDataObject::ORIGIN(), output->GetOrigin(), 3));
-    VERIFY(isAnnounced(vtkDataObject::SPACING(), output->GetSpacing(), 3));
-    VERIFY(isAnnounced(vtkDataObject::DIRECTION(), output->GetDirectionMatrix()->GetData(), 9));
+    EXPECT_TRUE(isAnnounced(vtkDataObject::ORIGIN(), output->GetOrigin(), 3));
+    EXPECT_TRUE(isAnnounced(vtkDataObject::SPACING(), output->GetSpacing(), 3));
+    EXPECT_TRUE(
+      isAnnounced(vtkDataObject::DIRECTION(), output->GetDirectionMatrix()->GetData(), 9));
   }
 }
 
 } // namespace
 
-int TestDeformAnnouncements(int, char*[])
+TEST(DeformAnnouncements, Announced)
 {
-  TestGeometry();
-  TestRequests();
-  TestReference();
-  TestAnnounced(vtkNew<vtkDeformVolumeFilter>());
-  TestAnnounced(vtkNew<vtkCutVolume>());
-  TestExtents();
-  return GetExitCode();
+  CheckAnnounced(vtkNew<vtkDeformVolumeFilter>());
+  CheckAnnounced(vtkNew<vtkCutVolume>());
 }

@@ -69,15 +69,15 @@ void CheckTime(Deformed& deformed, vtkImageData* volume, double time, int last)
 {
   deformed.Filter->UpdateTimeStep(time);
   const std::string warning = deformed.TakeWarning();
-  VERIFY_EQUAL(deformed.TakeErrors(), 0);
-  VERIFY(warning.empty());
+  EXPECT_EQ(deformed.TakeErrors(), 0);
+  EXPECT_TRUE(warning.empty());
   const Extent extent{ { 0, last, 0, 8, 0, 7 } };
-  VERIFY_EQUAL(GetExtent(deformed.Filter->GetOutput()), extent);
-  VERIFY_EQUAL(deformed.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
+  EXPECT_EQ(GetExtent(deformed.Filter->GetOutput()), extent);
+  EXPECT_EQ(deformed.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
 }
 
 // A series with time steps, passed through vtkTemporalInterpolator, which announces only a range.
-void TestInterpolatedSeries()
+TEST(DeformContinuousTime, InterpolatedSeries)
 {
   auto volume = MakeVolume();
   vtkNew<TimedLattice> lattice;
@@ -87,7 +87,7 @@ void TestInterpolatedSeries()
   vtkNew<vtkTemporalInterpolator> interpolator;
   interpolator->SetInputConnection(lattice->GetOutputPort());
   interpolator->UpdateInformation();
-  VERIFY(!interpolator->GetOutputInformation(0)->Has(Pipeline::TIME_STEPS()));
+  EXPECT_FALSE(interpolator->GetOutputInformation(0)->Has(Pipeline::TIME_STEPS()));
   Deformed deformed;
   deformed.Filter->SetInputData(volume);
   deformed.Filter->SetDeformationConnection(interpolator->GetOutputPort());
@@ -99,17 +99,17 @@ void TestInterpolatedSeries()
     CheckTime(deformed, volume, time, 20);
   }
   vtkInformation* info = deformed.Filter->GetOutputInformation(0);
-  VERIFY(!info->Has(Pipeline::TIME_STEPS()));
-  VERIFY_EQUAL(info->Get(Pipeline::TIME_RANGE())[1], 4.0);
+  EXPECT_FALSE(info->Has(Pipeline::TIME_STEPS()));
+  EXPECT_EQ(info->Get(Pipeline::TIME_RANGE())[1], 4.0);
 
   // The interpolator can announce time steps of its own.
   interpolator->SetDiscreteTimeStepInterval(0.5);
   deformed.Filter->UpdateTimeStep(2.0);
-  VERIFY_EQUAL(deformed.TakeErrors(), 0);
-  VERIFY(deformed.Filter->GetOutputInformation(0)->Has(Pipeline::TIME_STEPS()));
+  EXPECT_EQ(deformed.TakeErrors(), 0);
+  EXPECT_TRUE(deformed.Filter->GetOutputInformation(0)->Has(Pipeline::TIME_STEPS()));
 }
 
-void TestContinuousSource()
+TEST(DeformContinuousTime, ContinuousSource)
 {
   auto volume = MakeVolume();
   vtkNew<TimedLattice> lattice;
@@ -120,7 +120,7 @@ void TestContinuousSource()
   deformed.Filter->SetDeformationConnection(lattice->GetOutputPort());
   CheckTime(deformed, volume, 3.0, 9);
   // One execution for the extent, at the beginning of the range, and one for the requested time.
-  VERIFY(lattice->Executions <= 2);
+  EXPECT_LE(lattice->Executions, 2);
 
   CheckTime(deformed, volume, 1.0, 19);
   CheckTime(deformed, volume, 1.05, 19);
@@ -131,13 +131,13 @@ void TestContinuousSource()
   lattice->Executions = 0;
   lattice->Modified();
   deformed.Filter->UpdateTimeStep(3.0);
-  VERIFY(deformed.TakeWarning().empty());
-  VERIFY_EQUAL(lattice->Executions, 1);
-  VERIFY_EQUAL(GetExtent(deformed.Filter->GetOutput()), GetExtent(volume));
+  EXPECT_EQ(deformed.TakeWarning(), "");
+  EXPECT_EQ(lattice->Executions, 1);
+  EXPECT_EQ(GetExtent(deformed.Filter->GetOutput()), GetExtent(volume));
 }
 
 // With BoundsGranularity the deformed volume at all times is inside the extent, without warnings.
-void TestKeptExtent()
+TEST(DeformContinuousTime, KeptExtent)
 {
   auto volume = MakeVolume();
   vtkNew<TimedLattice> lattice;
@@ -152,9 +152,9 @@ void TestKeptExtent()
   const auto check = [&](double time, int last)
   {
     deformed.Filter->UpdateTimeStep(time);
-    VERIFY(deformed.TakeWarning().empty());
-    VERIFY_EQUAL(GetExtent(deformed.Filter->GetOutput()), (Extent{ { 0, last, 0, 16, 0, 16 } }));
-    VERIFY_EQUAL(deformed.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
+    EXPECT_EQ(deformed.TakeWarning(), "");
+    EXPECT_EQ(GetExtent(deformed.Filter->GetOutput()), (Extent{ { 0, last, 0, 16, 0, 16 } }));
+    EXPECT_EQ(deformed.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
   };
   check(2.0, 16);
   check(1.0, 16);
@@ -163,7 +163,7 @@ void TestKeptExtent()
 }
 
 // A request between two time steps, at which the source has another displacement than at the steps.
-void TestTimesBetweenSteps()
+TEST(DeformContinuousTime, TimesBetweenSteps)
 {
   auto volume = MakeVolume();
   vtkNew<TimedLattice> lattice;
@@ -178,7 +178,7 @@ void TestTimesBetweenSteps()
 }
 
 // Updates without a requested time: the source may give data of another time than before.
-void TestNoTime()
+TEST(DeformContinuousTime, NoTime)
 {
   auto volume = MakeVolume();
   vtkNew<TimedLattice> lattice;
@@ -189,24 +189,14 @@ void TestNoTime()
   deformed.Filter->SetInputData(volume);
   deformed.Filter->SetDeformationConnection(lattice->GetOutputPort());
   deformed.Update();
-  VERIFY_EQUAL(GetExtent(deformed.Filter->GetOutput()), (Extent{ { 0, 9, 0, 8, 0, 7 } }));
+  EXPECT_EQ(GetExtent(deformed.Filter->GetOutput()), (Extent{ { 0, 9, 0, 8, 0, 7 } }));
   lattice->UpdateTimeStep(4.0);
   deformed.Filter->SetBackgroundValue(1.0);
   deformed.Filter->Update();
-  VERIFY_CONTAINS(deformed.TakeWarning(), "extends beyond the extent");
+  EXPECT_TRUE(HasPart(deformed.TakeWarning(), "extends beyond the extent"));
   deformed.Update();
-  VERIFY_EQUAL(GetExtent(deformed.Filter->GetOutput()), (Extent{ { 0, 14, 0, 8, 0, 7 } }));
-  VERIFY_EQUAL(deformed.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
+  EXPECT_EQ(GetExtent(deformed.Filter->GetOutput()), (Extent{ { 0, 14, 0, 8, 0, 7 } }));
+  EXPECT_EQ(deformed.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
 }
 
 } // namespace
-
-int TestDeformContinuousTime(int, char*[])
-{
-  TestInterpolatedSeries();
-  TestContinuousSource();
-  TestKeptExtent();
-  TestTimesBetweenSteps();
-  TestNoTime();
-  return GetExitCode();
-}

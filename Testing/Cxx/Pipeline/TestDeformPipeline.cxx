@@ -35,7 +35,7 @@ Extent Moved(const Extent& extent, int x)
 }
 
 // Consumers see the right extent in the first update and after each change of the deformation.
-void TestWholeExtentDownstream()
+TEST(DeformPipeline, WholeExtentDownstream)
 {
   auto volume = MakeImage({ { 0, 19, 0, 17, 0, 15 } });
   AddScalars<float>(volume, "value",
@@ -60,29 +60,29 @@ void TestWholeExtentDownstream()
     mesh->Modified();
     surface->Update();
     direct->Update();
-    VERIFY_EQUAL(deformed.TakeErrors(), 0);
+    EXPECT_EQ(deformed.TakeErrors(), 0);
     const Extent expected = Moved(GetExtent(volume), shift);
-    VERIFY_EQUAL(GetWholeExtent(deformed.Filter), expected);
-    VERIFY_EQUAL(GetExtent(deformed.Filter->GetOutput()), expected);
-    VERIFY_EQUAL(GetExtent(smooth->GetOutput()), expected);
+    EXPECT_EQ(GetWholeExtent(deformed.Filter), expected);
+    EXPECT_EQ(GetExtent(deformed.Filter->GetOutput()), expected);
+    EXPECT_EQ(GetExtent(smooth->GetOutput()), expected);
     for (vtkPolyData* sphere : { surface->GetOutput(), direct->GetOutput() })
     {
       double bounds[6];
       sphere->GetBounds(bounds);
-      VERIFY(std::abs(bounds[0] - (9.5 - 5.0 + shift)) < 0.3);
-      VERIFY(std::abs(bounds[1] - (9.5 + 5.0 + shift)) < 0.3);
+      EXPECT_LT(std::abs(bounds[0] - (9.5 - 5.0 + shift)), 0.3);
+      EXPECT_LT(std::abs(bounds[1] - (9.5 + 5.0 + shift)), 0.3);
     }
     points = points == 0 ? direct->GetOutput()->GetNumberOfPoints() : points;
-    VERIFY_EQUAL(direct->GetOutput()->GetNumberOfPoints(), points);
+    EXPECT_EQ(direct->GetOutput()->GetNumberOfPoints(), points);
   }
   // An update without changes does not execute the filter.
   const vtkMTimeType before = deformed.Filter->GetOutput()->GetMTime();
   surface->Update();
-  VERIFY_EQUAL(deformed.Filter->GetOutput()->GetMTime(), before);
+  EXPECT_EQ(deformed.Filter->GetOutput()->GetMTime(), before);
 }
 
 // A deformation from a pipeline, and a change of its source.
-void TestUpstreamPipeline()
+TEST(DeformPipeline, UpstreamPipeline)
 {
   auto volume = MakeVolume();
   vtkNew<vtkTrivialProducer> volumeSource;
@@ -95,14 +95,14 @@ void TestUpstreamPipeline()
   deformed.Filter->SetInputConnection(volumeSource->GetOutputPort());
   deformed.Filter->SetDeformationConnection(lattice->GetOutputPort());
   deformed.Filter->SetRestConnection(lattice->GetOutputPort());
-  VERIFY_EQUAL(GetExtent(deformed.Update()), GetExtent(volume));
+  EXPECT_EQ(GetExtent(deformed.Update()), GetExtent(volume));
   lattice->SetNumberOfNodes(2, 2, 2);
-  VERIFY_EQUAL(GetExtent(deformed.Update()), GetExtent(volume));
-  VERIFY(HaveEqualBits(deformed.GetValues(), volume->GetPointData()->GetScalars()));
-  VERIFY_EQUAL(GetReported(deformed.Filter, "Static mappings made"), 2);
+  EXPECT_EQ(GetExtent(deformed.Update()), GetExtent(volume));
+  EXPECT_TRUE(HaveEqualBits(deformed.GetValues(), volume->GetPointData()->GetScalars()));
+  EXPECT_EQ(GetReported(deformed.Filter, "Static mappings made"), 2);
 }
 
-void TestPieces()
+TEST(DeformPipeline, Pieces)
 {
   auto volume = MakeVolume({ { 0, 20, 0, 18, 0, 16 } });
   auto mesh = MakeMesh(volume);
@@ -120,30 +120,30 @@ void TestPieces()
   streamer->SetInputConnection(pieces.Filter->GetOutputPort());
   streamer->SetNumberOfStreamDivisions(5);
   streamer->Update();
-  VERIFY_EQUAL(pieces.TakeErrors(), 0);
-  VERIFY(GetExtent(pieces.Filter->GetOutput()) != extent);
-  VERIFY_EQUAL(GetExtent(streamer->GetOutput()), extent);
-  VERIFY(HaveEqualBits(
+  EXPECT_EQ(pieces.TakeErrors(), 0);
+  EXPECT_NE(GetExtent(pieces.Filter->GetOutput()), extent);
+  EXPECT_EQ(GetExtent(streamer->GetOutput()), extent);
+  EXPECT_TRUE(HaveEqualBits(
     streamer->GetOutput()->GetPointData()->GetScalars(), whole->GetPointData()->GetScalars()));
-  VERIFY_EQUAL(GetReported(pieces.Filter, "Static mappings made"), 1);
-  VERIFY_EQUAL(GetReported(pieces.Filter, "Volumes sent"), 1);
+  EXPECT_EQ(GetReported(pieces.Filter, "Static mappings made"), 1);
+  EXPECT_EQ(GetReported(pieces.Filter, "Volumes sent"), 1);
 
   // A request for any box.
   const Extent box{ { extent[0] + 3, extent[0] + 8, 4, 4, 5, 11 } };
   pieces.Filter->UpdateExtent(box.data());
   vtkImageData* part = pieces.Filter->GetOutput();
-  VERIFY_EQUAL(GetExtent(part), box);
+  EXPECT_EQ(GetExtent(part), box);
   for (int z = box[4]; z <= box[5]; ++z)
   {
     for (int x = box[0]; x <= box[1]; ++x)
     {
-      VERIFY_EQUAL(part->GetScalarComponentAsDouble(x, 4, z, 0),
+      EXPECT_EQ(part->GetScalarComponentAsDouble(x, 4, z, 0),
         whole->GetScalarComponentAsDouble(x, 4, z, 0));
     }
   }
   pieces.Filter->UpdateWholeExtent();
-  VERIFY(AreEqual(pieces.Filter->GetOutput(), whole));
-  VERIFY_EQUAL(pieces.Filter->GetNumberOfCoveredVoxels(), covered);
+  EXPECT_TRUE(AreEqual(pieces.Filter->GetOutput(), whole));
+  EXPECT_EQ(pieces.Filter->GetNumberOfCoveredVoxels(), covered);
 }
 
 struct ProgressLog
@@ -166,7 +166,7 @@ struct ProgressLog
   }
 };
 
-void TestProgressAndAbort()
+TEST(DeformPipeline, ProgressAndAbort)
 {
   auto volume = MakeVolume({ { 0, 20, 0, 18, 0, 16 } });
   auto mesh = MakeMesh(volume);
@@ -179,9 +179,9 @@ void TestProgressAndAbort()
   deformed.Filter->AddObserver(vtkCommand::ProgressEvent, command);
   vtkNew<vtkImageData> expected;
   expected->DeepCopy(deformed.Update());
-  VERIFY(log.Calls > 2);
-  VERIFY(!log.Backwards);
-  VERIFY_EQUAL(log.Last, 1.0);
+  EXPECT_GT(log.Calls, 2);
+  EXPECT_FALSE(log.Backwards);
+  EXPECT_EQ(log.Last, 1.0);
 
   const int calls = log.Calls;
   for (const int abortAt : { 0, 1, calls / 2 })
@@ -191,22 +191,13 @@ void TestProgressAndAbort()
     log = ProgressLog();
     log.AbortAt = abortAt;
     aborted.Filter->Update();
-    VERIFY_EQUAL(aborted.TakeErrors(), 0);
-    VERIFY_EQUAL(aborted.Filter->GetOutput()->GetNumberOfPoints(), 0);
+    EXPECT_EQ(aborted.TakeErrors(), 0);
+    EXPECT_EQ(aborted.Filter->GetOutput()->GetNumberOfPoints(), 0);
     // The next update gives the whole output.
     log = ProgressLog();
     aborted.Filter->SetAbortExecute(0);
-    VERIFY(AreEqual(aborted.Update(), expected));
+    EXPECT_TRUE(AreEqual(aborted.Update(), expected));
   }
 }
 
 } // namespace
-
-int TestDeformPipeline(int, char*[])
-{
-  TestWholeExtentDownstream();
-  TestUpstreamPipeline();
-  TestPieces();
-  TestProgressAndAbort();
-  return GetExitCode();
-}

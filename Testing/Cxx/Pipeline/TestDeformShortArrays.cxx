@@ -44,26 +44,17 @@ struct Case
   /// Then valid inputs are set, and the output must be the expected one.
   void Fails(const char* what, const std::string& words)
   {
+    SCOPED_TRACE(what);
     this->Subject.Filter->Update();
-    const int errors = this->Subject.TakeErrors();
-    const std::string& message = this->Subject.LastError;
-    if (errors != 1 || message.find(words) == std::string::npos)
-    {
-      ++GetNumberOfFailures();
-      std::cerr << what << ": " << errors << " errors, expected one with \"" << words << "\"\n";
-      std::cerr << (message.empty() ? "" : message.substr(message.find("):") + 2)) << '\n';
-    }
-    VERIFY_EQUAL(this->Subject.Filter->GetOutput()->GetNumberOfPoints(), 0);
+    EXPECT_EQ(this->Subject.TakeErrors(), 1);
+    EXPECT_TRUE(HasPart(this->Subject.LastError, words));
+    EXPECT_EQ(this->Subject.Filter->GetOutput()->GetNumberOfPoints(), 0);
     this->Volume = MakeVolume();
     this->Mesh = MakeOwnMesh(this->Volume);
     this->Subject.Filter->SetInputData(this->Volume);
     this->Subject.Filter->SetDeformationData(this->Mesh);
     this->Subject.Filter->SetInputConnection(2, nullptr);
-    if (!AreEqual(this->Subject.Update(), this->Expected))
-    {
-      ++GetNumberOfFailures();
-      std::cerr << what << ": the filter does not work afterwards\n";
-    }
+    EXPECT_TRUE(AreEqual(this->Subject.Update(), this->Expected));
   }
 
   vtkSmartPointer<vtkImageData> Volume;
@@ -73,7 +64,7 @@ struct Case
 };
 
 // Points are added and removed, while displacements and cells do not change.
-void TestPointsAgainstDisplacements()
+TEST(DeformShortArrays, PointsAgainstDisplacements)
 {
   for (const int resampler :
     { vtkDeformVolumeFilter::EXACT, vtkDeformVolumeFilter::MESH_RASTERIZATION })
@@ -123,7 +114,7 @@ void TestPointsAgainstDisplacements()
   spoilt.Fails("points of one component", "1 components");
 }
 
-void TestCells()
+TEST(DeformShortArrays, Cells)
 {
   Case spoilt;
   vtkCellArray* cells = spoilt.Mesh->GetCells();
@@ -147,7 +138,7 @@ void TestCells()
   spoilt.Fails("more cells than cell types", "41 cells, but 40 cell types");
 }
 
-void TestGhostsOfTheMesh()
+TEST(DeformShortArrays, GhostsOfTheMesh)
 {
   Case spoilt;
   const vtkIdType count = spoilt.Mesh->GetNumberOfCells();
@@ -165,13 +156,13 @@ void TestGhostsOfTheMesh()
   const auto ghosts = MakeArray<vtkUnsignedCharArray>(GHOSTS, count);
   add(ghosts);
   spoilt.Mesh->Modified();
-  VERIFY(AreEqual(spoilt.Subject.Update(), spoilt.Expected));
+  EXPECT_TRUE(AreEqual(spoilt.Subject.Update(), spoilt.Expected));
   ghosts->SetNumberOfTuples(count / 2);
   spoilt.Mesh->GetPoints()->Modified();
   spoilt.Fails("truncated ghosts", std::to_string(count / 2) + " tuples");
 }
 
-void TestArraysOfTheVolume()
+TEST(DeformShortArrays, ArraysOfTheVolume)
 {
   Case spoilt;
   const vtkIdType points = spoilt.Volume->GetNumberOfPoints();
@@ -212,7 +203,7 @@ void TestArraysOfTheVolume()
       mask->Fill(name == GHOSTS ? 0 : 31);
       attributes()->AddArray(mask);
       changed();
-      VERIFY(AreEqual(spoilt.Subject.Update(), spoilt.Expected));
+      EXPECT_TRUE(AreEqual(spoilt.Subject.Update(), spoilt.Expected));
       mask->SetNumberOfTuples(count / 3);
       changed();
       spoilt.Fails("a truncated mask", std::to_string(count / 3) + " tuples");
@@ -220,7 +211,7 @@ void TestArraysOfTheVolume()
   }
 }
 
-void TestRestConfiguration()
+TEST(DeformShortArrays, RestConfiguration)
 {
   Case spoilt;
   const auto connect = [&]
@@ -256,15 +247,14 @@ void TestRestConfiguration()
     grid->GetPoints()->Modified();
   }
   spoilt.Subject.Update();
-  VERIFY_EQUAL(
-    spoilt.Subject.Filter->GetNumberOfCoveredVoxels(), spoilt.Volume->GetNumberOfPoints());
+  EXPECT_EQ(spoilt.Subject.Filter->GetNumberOfCoveredVoxels(), spoilt.Volume->GetNumberOfPoints());
 
   rest->GetCells()->GetConnectivityArray()->SetNumberOfTuples(100);
   rest->Modified();
   spoilt.Fails("a truncated connectivity at rest", "do not fit their connectivity");
 }
 
-void TestDisplacementFields()
+TEST(DeformShortArrays, DisplacementFields)
 {
   Case spoilt;
   const auto connect = [&]
@@ -285,7 +275,7 @@ void TestDisplacementFields()
 }
 
 // Unusual arrays that are valid.
-void TestUnusualArrays()
+TEST(DeformShortArrays, UnusualArrays)
 {
   Case unusual;
   vtkNew<vtkSOADataArrayTemplate<double>> positions;
@@ -295,7 +285,7 @@ void TestUnusualArrays()
   vectors->DeepCopy(unusual.Mesh->GetPointData()->GetVectors());
   unusual.Mesh->GetPoints()->SetData(positions);
   unusual.Mesh->GetPointData()->SetVectors(vectors);
-  VERIFY(AreEqual(unusual.Subject.Update(), unusual.Expected));
+  EXPECT_TRUE(AreEqual(unusual.Subject.Update(), unusual.Expected));
 
   vtkNew<vtkIntArray> whole; // integer displacements, then integer points
   whole->SetName("displacement");
@@ -310,7 +300,7 @@ void TestUnusualArrays()
   }
   unusual.Mesh->SetPoints(points);
   unusual.Subject.Update();
-  VERIFY(unusual.Subject.Filter->GetNumberOfCoveredVoxels() > 500);
+  EXPECT_GT(unusual.Subject.Filter->GetNumberOfCoveredVoxels(), 500);
 
   unusual.Mesh->GetPointData()->GetVectors()->SetName(nullptr);
   unusual.Mesh->Modified();
@@ -318,19 +308,7 @@ void TestUnusualArrays()
   unusual.Volume->GetPointData()->GetScalars()->SetName(nullptr);
   unusual.Volume->Modified();
   unusual.Subject.Update();
-  VERIFY(unusual.Subject.GetValues() != nullptr);
+  EXPECT_NE(unusual.Subject.GetValues(), nullptr);
 }
 
 } // namespace
-
-int TestDeformShortArrays(int, char*[])
-{
-  TestPointsAgainstDisplacements();
-  TestCells();
-  TestGhostsOfTheMesh();
-  TestArraysOfTheVolume();
-  TestRestConfiguration();
-  TestDisplacementFields();
-  TestUnusualArrays();
-  return GetExitCode();
-}

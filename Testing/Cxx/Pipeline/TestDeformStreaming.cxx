@@ -14,6 +14,11 @@ using namespace divisionCases;
 namespace
 {
 
+class DeformStreaming : public testing::Test
+{
+  void SetUp() override { SKIP_WITHOUT_DOUBLE_PRECISION() }
+};
+
 /// A filter with the inputs and settings of a case, and a source that makes parts.
 struct Streamed : Deformed
 {
@@ -41,11 +46,11 @@ vtkSmartPointer<vtkImageData> MakeWhole(const Case& from)
   from.Set(whole.Filter);
   auto image = vtkSmartPointer<vtkImageData>::New();
   image->ShallowCopy(whole.Update());
-  VERIFY(image->GetNumberOfPoints() > 0);
+  EXPECT_GT(image->GetNumberOfPoints(), 0);
   return image;
 }
 
-Equality IsPartOf(vtkImageData* part, vtkImageData* whole)
+testing::AssertionResult IsPartOf(vtkImageData* part, vtkImageData* whole)
 {
   vtkNew<vtkImageData> cropped;
   cropped->ShallowCopy(whole);
@@ -79,97 +84,95 @@ std::string Compare(vtkImageData* part, vtkImageData* whole)
 }
 
 /// Compares all arrays of pieces with those of the whole output.
-void TestPieces(const Case& from, vtkImageData* whole, int pieces, int mode)
+void CheckPieces(const Case& from, vtkImageData* whole, int pieces, int mode)
 {
   Streamed streamed(from);
   Extent extent = streamed.GetWhole();
-  VERIFY_EQUAL(extent, GetExtent(whole));
+  EXPECT_EQ(extent, GetExtent(whole));
   vtkNew<vtkExtentTranslator> translator;
   for (int piece = 0; piece < pieces; ++piece)
   {
     Extent part;
     translator->PieceToExtentThreadSafe(piece, pieces, 0, extent.data(), part.data(), mode, 0);
     streamed.Filter->UpdateExtent(part.data());
-    VERIFY_EQUAL(streamed.TakeErrors(), 0);
-    VERIFY_EQUAL(GetExtent(streamed.Filter->GetOutput()), part);
+    EXPECT_EQ(streamed.TakeErrors(), 0);
+    EXPECT_EQ(GetExtent(streamed.Filter->GetOutput()), part);
     const std::string differences = Compare(streamed.Filter->GetOutput(), whole);
-    if (!differences.empty())
-    {
-      std::cerr << from.Name << ", piece " << piece << " of " << pieces << differences << '\n';
-      VERIFY(false);
-    }
+    EXPECT_EQ(differences, "") << from.Name << ", piece " << piece << " of " << pieces;
   }
 }
 
 /// Compares the scalars that vtkImageDataStreamer assembles from parts.
-void TestStreamer(const Case& from, vtkImageData* whole, int divisions)
+void CheckStreamer(const Case& from, vtkImageData* whole, int divisions)
 {
   Streamed streamed(from);
   vtkNew<vtkImageDataStreamer> streamer;
   streamer->SetInputConnection(streamed.Filter->GetOutputPort());
   streamer->SetNumberOfStreamDivisions(divisions);
   streamer->Update();
-  VERIFY_EQUAL(streamed.TakeErrors(), 0);
-  VERIFY_EQUAL(GetExtent(streamer->GetOutput()), GetExtent(whole));
-  VERIFY(HaveEqualBits(
+  EXPECT_EQ(streamed.TakeErrors(), 0);
+  EXPECT_EQ(GetExtent(streamer->GetOutput()), GetExtent(whole));
+  EXPECT_TRUE(HaveEqualBits(
     streamer->GetOutput()->GetPointData()->GetScalars(), whole->GetPointData()->GetScalars()));
 }
 
 // A source that announces that it can make parts, but makes other parts than requested.
-void TestWrongParts(const Case& from)
+TEST_F(DeformStreaming, WrongParts)
 {
+  const Case from = MakeCases()[2];
   Streamed streamed(from);
   streamed.Source->GivesOtherParts = true;
   Extent part = streamed.GetWhole();
   part[5] = part[4] + 3;
   streamed.Filter->UpdateExtent(part.data());
-  VERIFY_EQUAL(streamed.TakeErrors(), 1);
-  VERIFY_CONTAINS(streamed.LastError, "was asked for an extent");
-  VERIFY_EQUAL(streamed.Filter->GetOutput()->GetNumberOfPoints(), vtkIdType{ 0 });
+  EXPECT_EQ(streamed.TakeErrors(), 1);
+  EXPECT_TRUE(HasPart(streamed.LastError, "was asked for an extent"));
+  EXPECT_EQ(streamed.Filter->GetOutput()->GetNumberOfPoints(), 0);
   // With a correct source the filter works again.
   streamed.Source->GivesOtherParts = false;
   streamed.Source->Modified();
   streamed.Filter->UpdateExtent(part.data());
-  VERIFY_EQUAL(streamed.TakeErrors(), 0);
-  VERIFY(IsPartOf(streamed.Filter->GetOutput(), MakeWhole(from)));
+  EXPECT_EQ(streamed.TakeErrors(), 0);
+  EXPECT_TRUE(IsPartOf(streamed.Filter->GetOutput(), MakeWhole(from)));
 }
 
 // A smooth cut needs the whole volume. If the source has not announced the arrays of the cut, the
 // first update of a part fails.
-void TestCutInParts(const Case& from)
+void CheckCutInParts(const Case& from)
 {
   Streamed streamed(from);
   streamed.Source->AnnouncesArrays = false;
   Extent part = streamed.GetWhole();
   part[5] = part[4] + 3;
   streamed.Filter->UpdateExtent(part.data());
-  VERIFY_EQUAL(streamed.TakeErrors(), 1);
-  VERIFY_CONTAINS(streamed.LastError, "smooth cut");
-  VERIFY_EQUAL(streamed.Filter->GetOutput()->GetNumberOfPoints(), vtkIdType{ 0 });
-  VERIFY(streamed.Source->GetMost() < from.Volume->GetNumberOfPoints());
+  EXPECT_EQ(streamed.TakeErrors(), 1);
+  EXPECT_TRUE(HasPart(streamed.LastError, "smooth cut"));
+  EXPECT_EQ(streamed.Filter->GetOutput()->GetNumberOfPoints(), 0);
+  EXPECT_LT(streamed.Source->GetMost(), from.Volume->GetNumberOfPoints());
   streamed.Source->Modified();
   streamed.Filter->UpdateExtent(part.data());
-  VERIFY_EQUAL(streamed.TakeErrors(), 0);
-  VERIFY_EQUAL(streamed.Source->GetMost(), from.Volume->GetNumberOfPoints());
-  VERIFY(IsPartOf(streamed.Filter->GetOutput(), MakeWhole(from)));
+  EXPECT_EQ(streamed.TakeErrors(), 0);
+  EXPECT_EQ(streamed.Source->GetMost(), from.Volume->GetNumberOfPoints());
+  EXPECT_TRUE(IsPartOf(streamed.Filter->GetOutput(), MakeWhole(from)));
 }
 
 // The extents that are requested from the source.
-void TestRequests(const Case& from)
+TEST_F(DeformStreaming, Requests)
 {
+  const Case from = MakeCases()[2];
   const vtkIdType all = from.Volume->GetNumberOfPoints();
   {
     // For the whole output the whole volume is requested, once.
     Streamed streamed(from);
     streamed.Update();
-    VERIFY_EQUAL(streamed.Source->Made.size(), std::size_t{ 1 });
-    VERIFY_EQUAL(streamed.Source->GetMost(), all);
+    EXPECT_EQ(streamed.Source->Made.size(), 1U);
+    EXPECT_EQ(streamed.Source->GetMost(), all);
     // Then parts of the output need no other request.
     Extent part = streamed.GetWhole();
     part[5] = part[4] + 3;
     streamed.Filter->UpdateExtent(part.data());
-    VERIFY_EQUAL(streamed.Source->Made.size(), std::size_t{ 1 });
-    VERIFY(IsPartOf(streamed.Filter->GetOutput(), MakeWhole(from)));
+    EXPECT_EQ(streamed.Source->Made.size(), 1U);
+    EXPECT_TRUE(IsPartOf(streamed.Filter->GetOutput(), MakeWhole(from)));
   }
   {
     // For one eighth of the output less than one third of the volume is requested.
@@ -187,9 +190,9 @@ void TestRequests(const Case& from)
       part[5] = whole[4] + (whole[5] - whole[4] + 1) * (i + 1) / 8 - 1;
       streamed.Filter->UpdateExtent(part.data());
     }
-    VERIFY_EQUAL(streamed.TakeErrors(), 0);
-    VERIFY(streamed.Source->Made.size() > 1);
-    VERIFY(3 * streamed.Source->GetMost() < all);
+    EXPECT_EQ(streamed.TakeErrors(), 0);
+    EXPECT_GT(streamed.Source->Made.size(), 1);
+    EXPECT_LT(3 * streamed.Source->GetMost(), all);
     // The same with another filter between source and deformation filter.
     vtkNew<vtkImageShiftScale> shift;
     shift->SetInputConnection(streamed.Source->GetOutputPort());
@@ -199,20 +202,20 @@ void TestRequests(const Case& from)
     Extent part = whole;
     part[5] = part[4] + 3;
     streamed.Filter->UpdateExtent(part.data());
-    VERIFY(!streamed.Source->Made.empty() && 3 * streamed.Source->GetMost() < all);
+    EXPECT_TRUE(!streamed.Source->Made.empty() && 3 * streamed.Source->GetMost() < all);
   }
   {
     // A source that cannot make parts is executed once.
     Streamed streamed(from);
     streamed.Source->CanMakeParts = false;
-    TestStreamer(from, MakeWhole(from), 4);
+    CheckStreamer(from, MakeWhole(from), 4);
     vtkNew<vtkImageDataStreamer> streamer;
     streamer->SetInputConnection(streamed.Filter->GetOutputPort());
     streamer->SetNumberOfStreamDivisions(4);
     streamer->Update();
-    VERIFY_EQUAL(streamed.Source->Made.size(), std::size_t{ 1 });
-    VERIFY_EQUAL(GetReported(streamed.Filter, "Volumes sent"), vtkTypeInt64{ 1 });
-    VERIFY_EQUAL(GetReported(streamed.Filter, "Static mappings made"), vtkTypeInt64{ 1 });
+    EXPECT_EQ(streamed.Source->Made.size(), 1U);
+    EXPECT_EQ(GetReported(streamed.Filter, "Volumes sent"), 1);
+    EXPECT_EQ(GetReported(streamed.Filter, "Static mappings made"), 1);
   }
   {
     // Outside the deformed volume the output is background, and little is read.
@@ -221,17 +224,17 @@ void TestRequests(const Case& from)
     streamed.Filter->SetCustomBounds(1000.0, 1010.0, 0.0, 9.0, 0.0, 9.0);
     streamed.Filter->SetBackgroundValue(5.0);
     streamed.Filter->Update();
-    VERIFY_EQUAL(streamed.TakeErrors(), 0);
-    VERIFY(10 * streamed.Source->GetMost() < all);
+    EXPECT_EQ(streamed.TakeErrors(), 0);
+    EXPECT_LT(10 * streamed.Source->GetMost(), all);
     double range[2];
     streamed.GetValues()->GetRange(range);
-    VERIFY(range[0] == 5.0 && range[1] == 5.0);
+    EXPECT_TRUE(range[0] == 5.0 && range[1] == 5.0);
   }
 }
 
 // With a mesh between voxels the output is background. A mesh outside the volume is an error, for
 // any requested part, and after any other part.
-void TestMeshWithoutVoxels(const Case& from, double x, bool isOutside)
+void CheckMeshWithoutVoxels(const Case& from, double x, bool isOutside)
 {
   vtkNew<vtkLatticeTetrahedraSource> mesh;
   mesh->SetNumberOfNodes(2, 2, 2);
@@ -252,48 +255,49 @@ void TestMeshWithoutVoxels(const Case& from, double x, bool isOutside)
     for (Streamed* streamed : { &edited, &fresh })
     {
       streamed->Filter->UpdateExtent(part.data());
-      VERIFY_EQUAL(streamed->TakeErrors(), isOutside ? 1 : 0);
-      VERIFY_EQUAL(streamed->Filter->GetOutput()->GetNumberOfPoints(),
+      EXPECT_EQ(streamed->TakeErrors(), isOutside ? 1 : 0);
+      EXPECT_EQ(streamed->Filter->GetOutput()->GetNumberOfPoints(),
         isOutside ? 0 : vtkIdType{ deformvolume::GetNumberOfPoints(part) });
-      VERIFY_EQUAL(streamed->Filter->GetNumberOfCoveredVoxels(), vtkIdType{ 0 });
+      EXPECT_EQ(streamed->Filter->GetNumberOfCoveredVoxels(), 0);
     }
     if (isOutside)
     {
-      VERIFY_CONTAINS(fresh.LastError, "holds no voxel");
+      EXPECT_TRUE(HasPart(fresh.LastError, "holds no voxel"));
     }
   }
 }
 
 } // namespace
 
-int TestDeformStreaming(int, char*[])
+TEST_F(DeformStreaming, MeshWithoutVoxels)
 {
-  if (!HasDoublePrecision())
-  {
-    std::cout << "skipped: the device has no double precision\n";
-    return 125; // VTK_SKIP_RETURN_CODE
-  }
-  const std::vector<Case> cases = MakeCases();
-  TestWrongParts(cases[2]);
-  TestRequests(cases[2]);
-  TestMeshWithoutVoxels(cases[2], 10.3, false);
-  TestMeshWithoutVoxels(cases[2], 1000.3, true);
-  for (const Case& from : cases)
+  const Case from = MakeCases()[2];
+  CheckMeshWithoutVoxels(from, 10.3, false);
+  CheckMeshWithoutVoxels(from, 1000.3, true);
+}
+
+TEST_F(DeformStreaming, Cases)
+{
+  for (const Case& from : MakeCases())
   {
     const auto whole = MakeWhole(from);
     std::cout << from.Name << '\n';
-    TestPieces(from, whole, 3, vtkExtentTranslator::Y_SLAB_MODE);
-    TestPieces(from, whole, 8, vtkExtentTranslator::BLOCK_MODE);
-    TestStreamer(from, whole, 5);
+    CheckPieces(from, whole, 3, vtkExtentTranslator::Y_SLAB_MODE);
+    CheckPieces(from, whole, 8, vtkExtentTranslator::BLOCK_MODE);
+    CheckStreamer(from, whole, 5);
     if (from.Name == "Smooth cut")
     {
-      TestCutInParts(from);
+      CheckCutInParts(from);
     }
   }
-  const auto whole = MakeWhole(cases[2]);
+}
+
+TEST_F(DeformStreaming, Divisions)
+{
+  const Case from = MakeCases()[2];
+  const auto whole = MakeWhole(from);
   for (const int divisions : { 1, 2, 32 })
   {
-    TestStreamer(cases[2], whole, divisions);
+    CheckStreamer(from, whole, divisions);
   }
-  return GetExitCode();
 }

@@ -76,7 +76,7 @@ int FindCoveredStart(Deformed& deformed)
 
 } // namespace
 
-int TestDeformTime(int, char*[])
+TEST(DeformTime, Series)
 {
   auto volume = MakeVolume();
   vtkNew<MovingLattice> lattice;
@@ -86,22 +86,22 @@ int TestDeformTime(int, char*[])
   deformed.Filter->SetDeformationConnection(lattice->GetOutputPort());
   deformed.Filter->UpdateInformation();
   vtkInformation* info = deformed.Filter->GetOutputInformation(0);
-  VERIFY_EQUAL(info->Length(vtkStreamingDemandDrivenPipeline::TIME_STEPS()), 100);
-  VERIFY_EQUAL(info->Get(vtkStreamingDemandDrivenPipeline::TIME_RANGE())[1], 99.0);
+  EXPECT_EQ(info->Length(vtkStreamingDemandDrivenPipeline::TIME_STEPS()), 100);
+  EXPECT_EQ(info->Get(vtkStreamingDemandDrivenPipeline::TIME_RANGE())[1], 99.0);
   Extent whole;
   info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole.data());
-  VERIFY_EQUAL(whole, (Extent{ { 0, 9, 0, 8, 0, 7 } }));
+  EXPECT_EQ(whole, (Extent{ { 0, 9, 0, 8, 0, 7 } }));
 
   const auto check = [&](double time, int last, int first = 0)
   {
     vtkImageData* output = deformed.Filter->GetOutput();
-    VERIFY_EQUAL(GetExtent(output), (Extent{ { first, last, 0, 8, 0, 7 } }));
-    VERIFY_EQUAL(FindCoveredStart(deformed), static_cast<int>(lattice->Speed * time));
-    VERIFY_EQUAL(deformed.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
-    VERIFY_EQUAL(output->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()), time);
+    EXPECT_EQ(GetExtent(output), (Extent{ { first, last, 0, 8, 0, 7 } }));
+    EXPECT_EQ(FindCoveredStart(deformed), static_cast<int>(lattice->Speed * time));
+    EXPECT_EQ(deformed.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
+    EXPECT_EQ(output->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()), time);
   };
   deformed.Filter->UpdateTimeStep(0.0);
-  VERIFY_EQUAL(lattice->Executions, 1); // for both the extent and the output
+  EXPECT_EQ(lattice->Executions, 1); // for both the extent and the output
   check(0.0, 9);
   // The extent grows in the update that requests another time.
   deformed.Filter->UpdateTimeStep(3.0);
@@ -110,11 +110,11 @@ int TestDeformTime(int, char*[])
   check(1.0, 39);
   deformed.Filter->UpdateTimeStep(4.0);
   check(4.0, 49);
-  VERIFY(deformed.TakeWarning().empty());
-  VERIFY_EQUAL(deformed.TakeErrors(), 0);
-  VERIFY_EQUAL(GetReported(deformed.Filter, "Static mappings made"), 1);
-  VERIFY_EQUAL(GetReported(deformed.Filter, "Volumes sent"), 1);
-  VERIFY_EQUAL(lattice->Executions, 4); // one execution for each change of the time
+  EXPECT_EQ(deformed.TakeWarning(), "");
+  EXPECT_EQ(deformed.TakeErrors(), 0);
+  EXPECT_EQ(GetReported(deformed.Filter, "Static mappings made"), 1);
+  EXPECT_EQ(GetReported(deformed.Filter, "Volumes sent"), 1);
+  EXPECT_EQ(lattice->Executions, 4); // one execution for each change of the time
 
   // For another deformation the extent is computed again, at the requested time.
   lattice->Speed = 2.0;
@@ -127,18 +127,18 @@ int TestDeformTime(int, char*[])
   vtkNew<vtkImageShiftScale> consumer;
   consumer->SetInputConnection(deformed.Filter->GetOutputPort());
   consumer->UpdateTimeStep(4.0);
-  VERIFY(deformed.TakeWarning().empty());
+  EXPECT_EQ(deformed.TakeWarning(), "");
   for (const double time : { 20.0, 40.0 })
   {
     const int last = static_cast<int>(lattice->Speed * time) + 9;
     consumer->UpdateTimeStep(time);
-    VERIFY(GetExtent(consumer->GetOutput())[1] < last);
+    EXPECT_LT(GetExtent(consumer->GetOutput())[1], last);
     const std::string warning = deformed.TakeWarning();
-    VERIFY_CONTAINS(warning, "extends beyond the extent");
-    VERIFY_CONTAINS(warning, "CUSTOM_BOUNDS");
+    EXPECT_TRUE(HasPart(warning, "extends beyond the extent"));
+    EXPECT_TRUE(HasPart(warning, "CUSTOM_BOUNDS"));
     consumer->UpdateTimeStep(time);
-    VERIFY_EQUAL(GetExtent(consumer->GetOutput())[1], last);
-    VERIFY(deformed.TakeWarning().empty());
+    EXPECT_EQ(GetExtent(consumer->GetOutput())[1], last);
+    EXPECT_EQ(deformed.TakeWarning(), "");
     check(time, last, 8);
   }
 
@@ -147,7 +147,6 @@ int TestDeformTime(int, char*[])
   lattice->Modified();
   deformed.Filter->SetOutputBoundsModeToVolumeBounds();
   deformed.Filter->UpdateTimeStep(1.0);
-  VERIFY_EQUAL(GetExtent(deformed.Filter->GetOutput()), GetExtent(volume));
-  VERIFY_EQUAL(lattice->Executions, 1);
-  return GetExitCode();
+  EXPECT_EQ(GetExtent(deformed.Filter->GetOutput()), GetExtent(volume));
+  EXPECT_EQ(lattice->Executions, 1);
 }

@@ -1,67 +1,99 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The filter in an environment without driver, home directory, cache or linker: it reports one
 // error that says what to do, or works without them. The environment cannot change within a
-// process, so each case is a process of its own. The first two arguments are the name of the case,
-// and words that the error must contain, or "none" if there must be no error.
+// process, so CTest runs each test in a process of its own.
 #include "FilterTesting.h"
 
 #include <vtkStringArray.h>
 
 using namespace filterTesting;
 
-int TestEnvironment(int argc, char* argv[])
+namespace
 {
-  if (argc < 3)
-  {
-    std::cerr << "The arguments are missing.\n";
-    return EXIT_FAILURE;
-  }
-  const std::string name = argv[1];
-  const std::string words = argv[2];
 
-  const auto volume = MakeVolume();
-  const auto mesh = MakeMesh(volume);
-  SetDisplacements(mesh, Shift(0, 0, 0));
-  Deformed deformed(volume, mesh);
-  deformed.Filter->SetInputArrayToProcess(
-    0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "displacement");
-
-  if (words == "none")
+class Environment : public testing::Test
+{
+protected:
+  Environment()
   {
-    vtkImageData* output = deformed.Update();
-    VERIFY(
-      HaveEqualBits(output->GetPointData()->GetScalars(), volume->GetPointData()->GetScalars()));
-    return GetExitCode();
+    SetDisplacements(this->Mesh, Shift(0, 0, 0));
+    this->Subject.Filter->SetInputArrayToProcess(
+      0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "displacement");
   }
 
-  // The second update fails in the same way as the first one.
-  for (int i = 0; i < 2; ++i)
+  void Succeeds()
   {
-    deformed.Filter->Modified();
-    deformed.Filter->Update();
-    VERIFY_EQUAL(deformed.TakeErrors(), 1);
-    if (deformed.LastError.find(words) == std::string::npos)
+    this->Subject.Update();
+    EXPECT_TRUE(
+      HaveEqualBits(this->Subject.GetValues(), this->Volume->GetPointData()->GetScalars()));
+  }
+
+  void Fails(const std::string& words)
+  {
+    // The second update fails in the same way as the first one.
+    for (int i = 0; i < 2; ++i)
     {
-      std::cerr << "The error does not contain \"" << words
-                << "\": " << deformed.LastError.substr(deformed.LastError.find("):") + 1);
-      VERIFY(false);
+      this->Subject.Filter->Modified();
+      this->Subject.Filter->Update();
+      EXPECT_EQ(this->Subject.TakeErrors(), 1);
+      EXPECT_TRUE(HasPart(this->Subject.LastError, words));
+      EXPECT_EQ(this->Subject.Filter->GetOutput()->GetPointData()->GetNumberOfArrays(), 0);
     }
-    VERIFY_EQUAL(deformed.Filter->GetOutput()->GetPointData()->GetNumberOfArrays(), 0);
   }
 
-  if (name == "NoPlatform")
-  {
-    const auto names =
-      vtkSmartPointer<vtkStringArray>::Take(vtkDeformVolumeFilter::GetDeviceNames());
-    VERIFY_EQUAL(names->GetNumberOfValues(), 0);
-  }
-  if (name == "UnknownDefaultDevice")
-  {
-    // SetDevice() has priority over the environment variable.
-    deformed.Filter->SetDevice("cpu");
-    vtkImageData* output = deformed.Update();
-    VERIFY(
-      HaveEqualBits(output->GetPointData()->GetScalars(), volume->GetPointData()->GetScalars()));
-  }
-  return GetExitCode();
+  vtkSmartPointer<vtkImageData> Volume = MakeVolume();
+  vtkSmartPointer<vtkUnstructuredGrid> Mesh = MakeMesh(Volume);
+  Deformed Subject{ Volume, Mesh };
+};
+
+} // namespace
+
+TEST_F(Environment, NoPlatform)
+{
+  this->Fails("pocl-opencl-icd");
+  const auto names = vtkSmartPointer<vtkStringArray>::Take(vtkDeformVolumeFilter::GetDeviceNames());
+  EXPECT_EQ(names->GetNumberOfValues(), 0);
+}
+
+TEST_F(Environment, UnknownDefaultDevice)
+{
+  this->Fails("no such device");
+  // SetDevice() has priority over the environment variable.
+  this->Subject.Filter->SetDevice("cpu");
+  this->Succeeds();
+}
+
+TEST_F(Environment, DefaultDevice)
+{
+  this->Succeeds();
+}
+
+TEST_F(Environment, UnusableCache)
+{
+  this->Succeeds();
+}
+
+TEST_F(Environment, NoHome)
+{
+  this->Succeeds();
+}
+
+TEST_F(Environment, NoCache)
+{
+  this->Fails("POCL_CACHE_DIR");
+}
+
+TEST_F(Environment, NoLinker)
+{
+  this->Fails("cannot be run");
+}
+
+TEST_F(Environment, NoPath)
+{
+  this->Fails("PATH is not set");
+}
+
+TEST_F(Environment, NoLibraries)
+{
+  this->Fails("cannot find -lgcc");
 }

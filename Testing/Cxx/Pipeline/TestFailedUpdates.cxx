@@ -57,29 +57,28 @@ private:
 
 // The executive reports required inputs that are not connected.
 template <typename AlgorithmT>
-void TestRequiredInputs(int required)
+void CheckRequiredInputs(int required)
 {
   vtkNew<AlgorithmT> algorithm;
   vtkNew<vtkTest::ErrorObserver> observer;
   algorithm->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, observer);
   for (int repeat = 0; repeat < 2; ++repeat)
   {
-    VERIFY(!algorithm->GetExecutive()->Update());
-    VERIFY_CONTAINS(observer->GetErrorMessage(), "Input port 0");
-    VERIFY_CONTAINS(observer->GetErrorMessage(), "is not optional");
+    EXPECT_FALSE(algorithm->GetExecutive()->Update());
+    EXPECT_TRUE(HasPart(observer->GetErrorMessage(), "Input port 0"));
+    EXPECT_TRUE(HasPart(observer->GetErrorMessage(), "is not optional"));
     observer->Clear();
   }
   for (int port = 0; port < algorithm->GetNumberOfInputPorts(); ++port)
   {
-    VERIFY_EQUAL(
-      algorithm->GetInputPortInformation(port)->Get(vtkAlgorithm::INPUT_IS_OPTIONAL()) == 0,
+    EXPECT_EQ(algorithm->GetInputPortInformation(port)->Get(vtkAlgorithm::INPUT_IS_OPTIONAL()) == 0,
       port < required);
   }
 }
 
 // After an error of the filter there are no errors of its sources: it does not request extents that
 // they do not have.
-void TestSources()
+TEST(FailedUpdates, Sources)
 {
   const auto volume = MakeVolume({ { 5, 12, -9, -2, 3, 9 } });
   const auto field = MakeImage({ { 4, 13, -10, -1, 2, 10 } });
@@ -90,33 +89,36 @@ void TestSources()
   filter->SetDeformationData(field);
   filter->SetDevice("a device that nobody has");
   filter->Update();
-  VERIFY_EQUAL(display.CountErrors(), 1);
+  EXPECT_EQ(display.CountErrors(), 1);
   filter->SetDevice("");
   filter->Update();
-  VERIFY_EQUAL(display.CountErrors(), 1);
-  VERIFY(filter->GetOutput()->GetNumberOfPoints() > 0);
+  EXPECT_EQ(display.CountErrors(), 1);
+  EXPECT_GT(filter->GetOutput()->GetNumberOfPoints(), 0);
 }
 
-void TestMessages(vtkImageData* volume, vtkUnstructuredGrid* mesh)
+TEST(FailedUpdates, Messages)
 {
+  const auto volume = MakeVolume();
+  const auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, Shift(1.0, 0.0, 0.0));
   const Display display;
   vtkNew<vtkDeformVolumeFilter> filter;
   filter->SetInputData(volume);
   filter->SetDeformationData(mesh);
   filter->SetDevice("a device that nobody has");
   filter->UpdateInformation();
-  VERIFY_EQUAL(display.CountErrors(), 0); // the device may still be changed before the update
+  EXPECT_EQ(display.CountErrors(), 0); // the device may still be changed before the update
   for (int errors = 1; errors < 4; ++errors)
   {
-    VERIFY(!filter->GetExecutive()->Update());
-    VERIFY_EQUAL(display.CountErrors(), errors);
+    EXPECT_FALSE(filter->GetExecutive()->Update());
+    EXPECT_EQ(display.CountErrors(), errors);
   }
   filter->UpdateWholeExtent();
-  VERIFY_EQUAL(display.CountErrors(), 4);
+  EXPECT_EQ(display.CountErrors(), 4);
   filter->SetDevice("");
-  VERIFY(filter->GetExecutive()->Update());
-  VERIFY_EQUAL(display.CountErrors(), 4);
-  VERIFY(filter->GetOutput()->GetNumberOfPoints() > 0);
+  EXPECT_TRUE(filter->GetExecutive()->Update());
+  EXPECT_EQ(display.CountErrors(), 4);
+  EXPECT_GT(filter->GetOutput()->GetNumberOfPoints(), 0);
 
   // A failure in RequestUpdateExtent(), when a part of the output is requested.
   filter->SetOutputBoundsModeToVolumeBounds();
@@ -125,53 +127,49 @@ void TestMessages(vtkImageData* volume, vtkUnstructuredGrid* mesh)
   for (int errors = 5; errors < 7; ++errors)
   {
     filter->UpdateExtent(part);
-    VERIFY_EQUAL(display.CountErrors(), errors);
-    VERIFY_EQUAL(filter->GetOutput()->GetNumberOfPoints(), 0);
+    EXPECT_EQ(display.CountErrors(), errors);
+    EXPECT_EQ(filter->GetOutput()->GetNumberOfPoints(), 0);
   }
   filter->SetInputArrayToProcess(
     0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::VECTORS);
   filter->UpdateExtent(part);
-  VERIFY_EQUAL(display.CountErrors(), 6);
-  VERIFY(filter->GetOutput()->GetNumberOfPoints() > 0);
+  EXPECT_EQ(display.CountErrors(), 6);
+  EXPECT_GT(filter->GetOutput()->GetNumberOfPoints(), 0);
 }
 
-void TestDevices(vtkImageData* volume, vtkUnstructuredGrid* mesh)
+TEST(FailedUpdates, Devices)
 {
+  const auto volume = MakeVolume();
+  const auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, Shift(1.0, 0.0, 0.0));
   Deformed deformed(volume, mesh);
   vtkSmartPointer<vtkStringArray> names;
   names.TakeReference(vtkDeformVolumeFilter::GetDeviceNames());
-  VERIFY(names->GetNumberOfValues() > 0);
+  EXPECT_GT(names->GetNumberOfValues(), 0);
   for (vtkIdType i = 0; i < names->GetNumberOfValues(); ++i)
   {
     deformed.Filter->SetDevice(names->GetValue(i));
     deformed.Update();
-    VERIFY_EQUAL(deformed.Filter->GetDeviceInUse(), std::string(names->GetValue(i)));
+    EXPECT_EQ(deformed.Filter->GetDeviceInUse(), std::string(names->GetValue(i)));
   }
   deformed.Filter->SetDevice("");
   deformed.Update();
   const std::string best = deformed.Filter->GetDeviceInUse();
   deformed.Filter->SetDevice("best");
   deformed.Update();
-  VERIFY_EQUAL(deformed.Filter->GetDeviceInUse(), best);
+  EXPECT_EQ(deformed.Filter->GetDeviceInUse(), best);
 }
 
 } // namespace
 
-int TestFailedUpdates(int, char*[])
+TEST(FailedUpdates, RequiredInputs)
 {
-  auto volume = MakeVolume();
-  auto mesh = MakeMesh(volume);
-  SetDisplacements(mesh, Shift(1.0, 0.0, 0.0));
-  TestDevices(volume, mesh);
-  TestRequiredInputs<vtkDeformVolumeFilter>(1);
-  TestRequiredInputs<vtkCutVolume>(1);
-  TestRequiredInputs<vtkCarveVolume>(1);
-  TestRequiredInputs<vtkChainMailDeformation>(1);
-  TestRequiredInputs<vtkMassSpringDeformation>(1);
-  TestRequiredInputs<vtkFiniteElementDeformation>(1);
-  TestRequiredInputs<vtkMaterialFromVolume>(2);
-  TestRequiredInputs<vtkTetGenMesher>(1);
-  TestMessages(volume, mesh);
-  TestSources();
-  return GetExitCode();
+  CheckRequiredInputs<vtkDeformVolumeFilter>(1);
+  CheckRequiredInputs<vtkCutVolume>(1);
+  CheckRequiredInputs<vtkCarveVolume>(1);
+  CheckRequiredInputs<vtkChainMailDeformation>(1);
+  CheckRequiredInputs<vtkMassSpringDeformation>(1);
+  CheckRequiredInputs<vtkFiniteElementDeformation>(1);
+  CheckRequiredInputs<vtkMaterialFromVolume>(2);
+  CheckRequiredInputs<vtkTetGenMesher>(1);
 }

@@ -61,7 +61,7 @@ void SetOutput(Deformed& deformed)
 }
 
 // An image and its segmentation, which has another spacing, with one deformation.
-void TestTwoVolumes()
+TEST(GraphicsPipeline, TwoVolumes)
 {
   const auto image = MakeVolume({ { 0, 40, 0, 40, 0, 40 } });
   const auto labels = MakeImage({ { 0, 27, 0, 27, 0, 27 } }, glm::dvec3(1.5, 1.5, 1.4));
@@ -108,19 +108,19 @@ void TestTwoVolumes()
     {
       one.Update();
     }
-    VERIFY_EQUAL(array->GetNumberOfUploads(), frame + 1);
+    EXPECT_EQ(array->GetNumberOfUploads(), frame + 1);
     if (frame > 0)
     {
-      VERIFY(FakeDriver::Get().BytesWritten >= (isLogged ? 120 : bytes));
-      VERIFY(FakeDriver::Get().BytesWritten < (isLogged ? 120 : bytes) + Few);
-      VERIFY(
-        FakeDriver::Get().BytesRead < GetLargestTransfer(found[0]) + GetLargestTransfer(found[1]));
+      EXPECT_GE(FakeDriver::Get().BytesWritten, isLogged ? 120 : bytes);
+      EXPECT_LT(FakeDriver::Get().BytesWritten, (isLogged ? 120 : bytes) + Few);
+      EXPECT_LT(
+        FakeDriver::Get().BytesRead, GetLargestTransfer(found[0]) + GetLargestTransfer(found[1]));
       std::cout << "Frame " << frame << ": " << FakeDriver::Get().BytesWritten
                 << " bytes written for two volumes, " << bytes << " in all vectors\n";
     }
     for (int i = 0; i < 2; ++i)
     {
-      VERIFY(AreEqual(expected[i].Filter->GetOutput(), found[i].Filter->GetOutput()));
+      EXPECT_TRUE(AreEqual(expected[i].Filter->GetOutput(), found[i].Filter->GetOutput()));
     }
   }
   // With DEFORMED_BOUNDS and with mesh rasterization the host reads the vectors: it has them
@@ -129,39 +129,39 @@ void TestTwoVolumes()
   {
     expected[i].Filter->SetOutputBoundsModeToDeformedBounds();
     found[i].Filter->SetOutputBoundsModeToDeformedBounds();
-    VERIFY(AreEqual(expected[i].Update(), found[i].Update()));
+    EXPECT_TRUE(AreEqual(expected[i].Update(), found[i].Update()));
     expected[i].Filter->SetResamplerToMeshRasterization();
     found[i].Filter->SetResamplerToMeshRasterization();
-    VERIFY(AreEqual(expected[i].Update(), found[i].Update()));
+    EXPECT_TRUE(AreEqual(expected[i].Update(), found[i].Update()));
     expected[i].Filter->SetResamplerToExact();
     found[i].Filter->SetResamplerToExact();
-    VERIFY(AreEqual(expected[i].Update(), found[i].Update()));
+    EXPECT_TRUE(AreEqual(expected[i].Update(), found[i].Update()));
   }
-  VERIFY_EQUAL(array->GetNumberOfDownloads(), 0);
+  EXPECT_EQ(array->GetNumberOfDownloads(), 0);
   // An error names the vector that is not finite, and the filters work again afterwards.
   array->SetTypedComponent(1234, 2, static_cast<float>(std::nan("")));
   array->Modified();
   SetOutput(found[0]);
   SetOutput(expected[0]);
   found[0].Filter->Update();
-  VERIFY_EQUAL(found[0].TakeErrors(), 1);
-  VERIFY_CONTAINS(found[0].LastError, "node 1234 ");
+  EXPECT_EQ(found[0].TakeErrors(), 1);
+  EXPECT_TRUE(HasPart(found[0].LastError, "node 1234 "));
   array->SetTypedComponent(1234, 2, moved->GetTypedComponent(1234, 2));
   array->Modified();
-  VERIFY(AreEqual(expected[0].Update(), found[0].Update()));
+  EXPECT_TRUE(AreEqual(expected[0].Update(), found[0].Update()));
   // A vtkFloatArray replaces the array, then is replaced by it.
   mesh->GetPointData()->SetVectors(moved);
   moved->SetComponent(1234, 2, 0.5);
   moved->Modified();
-  VERIFY(AreEqual(expected[0].Update(), found[0].Update()));
+  EXPECT_TRUE(AreEqual(expected[0].Update(), found[0].Update()));
   mesh->GetPointData()->SetVectors(array);
   array->SetTypedComponent(1234, 2, 0.5F);
   array->Modified();
-  VERIFY(AreEqual(expected[0].Update(), found[0].Update()));
+  EXPECT_TRUE(AreEqual(expected[0].Update(), found[0].Update()));
 }
 
 // A field whose points are at voxels, and one with another spacing.
-void TestFields()
+TEST(GraphicsPipeline, Fields)
 {
   const auto volume = MakeVolume({ { 0, 66, 0, 65, 0, 64 } });
   for (const double spacing : { 1.0, 1.3 })
@@ -182,10 +182,10 @@ void TestFields()
           one->Filter->SetDisplacementScale(scale);
           one->Filter->SetOutputBoundsMode(mode);
         }
-        VERIFY(AreEqual(expected.Update(), found.Update()));
+        EXPECT_TRUE(AreEqual(expected.Update(), found.Update()));
       }
     }
-    VERIFY_EQUAL(array->GetNumberOfUploads(), 1);
+    EXPECT_EQ(array->GetNumberOfUploads(), 1);
     // An error names the vector that is not finite, with each mode of output bounds.
     array->SetTypedComponent(5000, 2, static_cast<float>(std::nan("")));
     array->Modified();
@@ -194,14 +194,14 @@ void TestFields()
     {
       found.Filter->SetOutputBoundsMode(mode);
       found.Filter->Update();
-      VERIFY_EQUAL(found.TakeErrors(), 1);
-      VERIFY_CONTAINS(found.LastError, " 5000 ");
+      EXPECT_EQ(found.TakeErrors(), 1);
+      EXPECT_TRUE(HasPart(found.LastError, " 5000 "));
     }
   }
 }
 
 // ChainMail moves a volume: the bytes that are copied between host and device in a drag.
-void TestChainMail()
+TEST(GraphicsPipeline, ChainMail)
 {
   const auto volume = MakeVolume({ { 0, 47, 0, 47, 0, 47 } });
   vtkNew<vtkChainMailDeformation> chain;
@@ -223,17 +223,17 @@ void TestChainMail()
     array = vtkDeviceVectorArray::SafeDownCast(output);
     if (!array)
     {
-      VERIFY(array != nullptr);
+      EXPECT_NE(array, nullptr);
       return;
     }
-    VERIFY(array->IsOnDevice());
-    VERIFY_EQUAL(array->GetNumberOfUploads(), 0);
+    EXPECT_TRUE(array->IsOnDevice());
+    EXPECT_EQ(array->GetNumberOfUploads(), 0);
     if (step > 1) // the first update sends the volume
     {
-      VERIFY(moved > 4 * GetLargestTransfer(found));
-      VERIFY(FakeDriver::Get().BytesWritten < GetLargestTransfer(found));
-      VERIFY(FakeDriver::Get().BytesRead < GetLargestTransfer(found));
-      VERIFY_EQUAL(array->GetNumberOfDownloads(), 0);
+      EXPECT_GT(moved, 4 * GetLargestTransfer(found));
+      EXPECT_LT(FakeDriver::Get().BytesWritten, GetLargestTransfer(found));
+      EXPECT_LT(FakeDriver::Get().BytesRead, GetLargestTransfer(found));
+      EXPECT_EQ(array->GetNumberOfDownloads(), 0);
       std::cout << "Step " << step << ": " << moved << " bytes of displacements have changed, "
                 << FakeDriver::Get().BytesRead << " were read and "
                 << FakeDriver::Get().BytesWritten << " written\n";
@@ -241,7 +241,7 @@ void TestChainMail()
     // With DEFORMED_BOUNDS the device computes the bounds.
     found.Filter->SetOutputBoundsModeToDeformedBounds();
     found.Update();
-    VERIFY_EQUAL(array->GetNumberOfDownloads(), 0);
+    EXPECT_EQ(array->GetNumberOfDownloads(), 0);
     const Extent extent = GetExtent(found.Filter->GetOutput());
     SetOutput(found);
     found.Update();
@@ -260,9 +260,9 @@ void TestChainMail()
     copied->GetPointData()->SetVectors(floats);
     Deformed expected(volume, copied);
     SetOutput(expected);
-    VERIFY(AreEqual(expected.Update(), found.Filter->GetOutput()));
+    EXPECT_TRUE(AreEqual(expected.Update(), found.Filter->GetOutput()));
     Deformed whole(volume, copied);
-    VERIFY_EQUAL(GetExtent(whole.Update()), extent);
+    EXPECT_EQ(GetExtent(whole.Update()), extent);
     if (step == 4)
     {
       // A tuple of the output is written: the filter uses it, and the next step restores it.
@@ -271,16 +271,16 @@ void TestChainMail()
       array->SetTuple(22 * 48 * 48 + 22 * 48 + 22, tuple);
       floats->Modified();
       array->Modified();
-      VERIFY_EQUAL(array->GetNumberOfDownloads(), 1);
+      EXPECT_EQ(array->GetNumberOfDownloads(), 1);
       Deformed again(volume, chain->GetOutput());
       SetOutput(again);
-      VERIFY(AreEqual(expected.Update(), again.Update()));
-      VERIFY_EQUAL(array->GetNumberOfUploads(), 1);
+      EXPECT_TRUE(AreEqual(expected.Update(), again.Update()));
+      EXPECT_EQ(array->GetNumberOfUploads(), 1);
     }
   }
   // The next step starts from the displacements of the model, without the written tuple.
   chain->SetHandlesData(MakeHandles({ { glm::dvec3(24.0), glm::dvec3(31.5, 24.0, 24.0) } }));
-  VERIFY(found.Update() != nullptr);
+  EXPECT_NE(found.Update(), nullptr);
   vtkNew<vtkChainMailDeformation> other;
   other->SetInputData(volume);
   other->SetRelaxationSweeps(0);
@@ -289,11 +289,11 @@ void TestChainMail()
     other->SetHandlesData(MakeHandles({ { glm::dvec3(24.0), glm::dvec3(x, 24.0, 24.0) } }));
     other->Update();
   }
-  VERIFY(AreEqual(other->GetOutput(), chain->GetOutput()));
+  EXPECT_TRUE(AreEqual(other->GetOutput(), chain->GetOutput()));
 }
 
 // A drag resamples only the parts of the output that move.
-void TestParts()
+TEST(GraphicsPipeline, Parts)
 {
   const auto volume = MakeVolume({ { 0, 95, 0, 79, 0, 79 } });
   vtkNew<vtkChainMailDeformation> chain;
@@ -308,12 +308,12 @@ void TestParts()
     chain->SetHandlesData(
       MakeHandles({ { glm::dvec3(24.0), glm::dvec3(24.0 + 0.7 * step, 24.0, 24.0) } }));
     found.Update();
-    VERIFY_EQUAL(GetReported(found.Filter, "Bricks resampled") <
+    EXPECT_EQ(GetReported(found.Filter, "Bricks resampled") <
         GetReported(found.Filter, "Bricks of the volume"),
       step > 2);
     vtkDataArray* output = chain->GetOutput()->GetPointData()->GetArray("Displacement");
     auto* array = vtkDeviceVectorArray::SafeDownCast(output);
-    VERIFY_EQUAL(array->GetNumberOfDownloads(), 0);
+    EXPECT_EQ(array->GetNumberOfDownloads(), 0);
     vtkNew<vtkImageData> copied;
     copied->CopyStructure(chain->GetOutput());
     vtkNew<vtkFloatArray> floats;
@@ -324,23 +324,8 @@ void TestParts()
     copied->GetPointData()->SetVectors(floats);
     Deformed expected(volume, copied);
     expected.Filter->SetOutputBoundsModeToVolumeBounds();
-    VERIFY(AreEqual(expected.Update(), found.Filter->GetOutput()));
+    EXPECT_TRUE(AreEqual(expected.Update(), found.Filter->GetOutput()));
   }
 }
 
 } // namespace
-
-int main()
-{
-  FakeDriver::Get().IsGraphics = true; // before the first context is created
-  if (!deformvolume::GetDeviceAbilities("").OwnMemory)
-  {
-    std::cerr << "The engine does not call the functions of the fake driver.\n";
-    return EXIT_FAILURE;
-  }
-  TestTwoVolumes();
-  TestFields();
-  TestChainMail();
-  TestParts();
-  return GetExitCode();
-}

@@ -3,6 +3,7 @@
 // they are read.
 #include "FakeDriver.h"
 #include "FilterTesting.h"
+#include "RunTests.h"
 
 #include "Device.h"
 
@@ -109,7 +110,10 @@ struct Both
     return this->Found.Update();
   }
   // Compares an output with the expected one, and thus reads all arrays.
-  void Check(vtkImageData* image) { VERIFY(AreEqual(this->Expected.Filter->GetOutput(), image)); }
+  void Check(vtkImageData* image)
+  {
+    EXPECT_TRUE(AreEqual(this->Expected.Filter->GetOutput(), image));
+  }
   int GetNumberOfUnread() { return GetReported(this->Found.Filter, "Arrays on the device"); }
 
   vtkSmartPointer<vtkImageData> Volume;
@@ -136,8 +140,15 @@ vtkDataArray* GetArray(vtkImageData* image, const char* name)
   return image->GetPointData()->GetArray(name);
 }
 
+TEST(OutputOnDevice, IsOffAtFirst)
+{
+  vtkNew<vtkDeformVolumeFilter> filter;
+  EXPECT_FALSE(filter->GetOutputOnDevice());
+  EXPECT_EQ(GetReported(filter, "Arrays on the device"), 0);
+}
+
 // An array is copied to the host when it is read for the first time, and only once.
-void TestReading()
+TEST(OutputOnDevice, Reading)
 {
   Both both;
   vtkImageData* image = nullptr;
@@ -146,39 +157,39 @@ void TestReading()
   both.Expected.Update();
   const std::uint64_t copied = CountRead([&] { image = both.Found.Update(); });
   const std::uint64_t ids = GetBytes(GetArray(image, "id"));
-  VERIFY(copied - ids < 30000);
-  VERIFY_EQUAL(both.GetNumberOfUnread(), MostUnread);
-  VERIFY_EQUAL(both.Found.Filter->GetNumberOfCoveredVoxels(),
+  EXPECT_LT(copied - ids, 30000);
+  EXPECT_EQ(both.GetNumberOfUnread(), MostUnread);
+  EXPECT_EQ(both.Found.Filter->GetNumberOfCoveredVoxels(),
     both.Expected.Filter->GetNumberOfCoveredVoxels());
   // The description of an array can be read without a copy.
   vtkDataArray* value = GetArray(image, "value");
-  VERIFY_EQUAL(value, image->GetPointData()->GetScalars());
-  VERIFY_EQUAL(value->GetDataType(), VTK_SHORT);
-  VERIFY(vtkIdTypeArray::SafeDownCast(GetArray(image, "id")) != nullptr); // is always on the host
-  VERIFY_EQUAL(value->GetNumberOfTuples(), image->GetNumberOfPoints());
-  VERIFY_EQUAL(GetArray(image, "two")->GetNumberOfComponents(), 2);
-  VERIFY_EQUAL(std::string(GetArray(image, "two")->GetComponentName(1)), "second");
-  VERIFY_EQUAL(image->GetScalarType(), VTK_SHORT);
-  VERIFY(value->HasStandardMemoryLayout());
+  EXPECT_EQ(value, image->GetPointData()->GetScalars());
+  EXPECT_EQ(value->GetDataType(), VTK_SHORT);
+  EXPECT_NE(vtkIdTypeArray::SafeDownCast(GetArray(image, "id")), nullptr); // is always on the host
+  EXPECT_EQ(value->GetNumberOfTuples(), image->GetNumberOfPoints());
+  EXPECT_EQ(GetArray(image, "two")->GetNumberOfComponents(), 2);
+  EXPECT_EQ(std::string(GetArray(image, "two")->GetComponentName(1)), "second");
+  EXPECT_EQ(image->GetScalarType(), VTK_SHORT);
+  EXPECT_TRUE(value->HasStandardMemoryLayout());
   vtkNew<vtkImageData> shallow;
   shallow->ShallowCopy(image);
-  VERIFY_EQUAL(both.GetNumberOfUnread(), MostUnread);
+  EXPECT_EQ(both.GetNumberOfUnread(), MostUnread);
   std::uint64_t read = CountRead([&] { value->GetComponent(100, 0); });
-  VERIFY_EQUAL(read, GetBytes(value));
-  VERIFY_EQUAL(both.GetNumberOfUnread(), MostUnread - 1);
+  EXPECT_EQ(read, GetBytes(value));
+  EXPECT_EQ(both.GetNumberOfUnread(), MostUnread - 1);
   read = CountRead([&] { both.Check(shallow); });
   std::uint64_t others = 0;
   for (int i = 0; i < NumberOfArrays; ++i)
   {
     others += GetBytes(image->GetPointData()->GetArray(i));
   }
-  VERIFY_EQUAL(read, others - GetBytes(value) - ids);
-  VERIFY_EQUAL(CountRead([&] { both.Check(image); }), 0U);
-  VERIFY_EQUAL(both.GetNumberOfUnread(), 0);
+  EXPECT_EQ(read, others - GetBytes(value) - ids);
+  EXPECT_EQ(CountRead([&] { both.Check(image); }), 0U);
+  EXPECT_EQ(both.GetNumberOfUnread(), 0);
 }
 
 // Each interface for reading is tested as the first access to an output.
-void TestInterfaces()
+TEST(OutputOnDevice, Interfaces)
 {
   using Access = std::function<double(vtkDataArray*)>;
   constexpr vtkIdType id = 12345;
@@ -214,7 +225,7 @@ void TestInterfaces()
     [](vtkDataArray* array)
     {
       const auto copy = vtkSmartPointer<vtkDataArray>::Take(array->NewInstance());
-      VERIFY(vtkShortArray::SafeDownCast(copy) != nullptr);
+      EXPECT_NE(vtkShortArray::SafeDownCast(copy), nullptr);
       copy->InsertNextTuple(id, array);
       return copy->GetComponent(0, 0);
     },
@@ -240,7 +251,7 @@ void TestInterfaces()
     {
       const double five = 5.0;
       array->InsertNextTuple(&five);
-      VERIFY_EQUAL(array->GetComponent(array->GetNumberOfTuples() - 1, 0), five);
+      EXPECT_EQ(array->GetComponent(array->GetNumberOfTuples() - 1, 0), five);
       return array->GetComponent(id, 0);
     },
     [](vtkDataArray* array)
@@ -261,16 +272,12 @@ void TestInterfaces()
   {
     both.Move(0.01);
     vtkDataArray* value = GetArray(both.Update(), "value");
-    VERIFY_EQUAL(both.GetNumberOfUnread(), MostUnread);
+    EXPECT_EQ(both.GetNumberOfUnread(), MostUnread);
     const double found = accesses[i](value);
     const double expected =
       GetArray(both.Expected.Filter->GetOutput(), "value")->GetComponent(id, 0);
-    if (found != expected)
-    {
-      std::cerr << "in accesses[" << i << "]: ";
-      VERIFY_EQUAL(found, expected);
-    }
-    VERIFY_EQUAL(both.GetNumberOfUnread(), MostUnread - 1);
+    EXPECT_EQ(found, expected) << "in accesses[" << i << "]";
+    EXPECT_EQ(both.GetNumberOfUnread(), MostUnread - 1);
   }
   // Values that were written to an output are not in the next output.
   both.Move(0.01);
@@ -283,33 +290,33 @@ void TestInterfaces()
     vtkDataArray* two = GetArray(both.Update(), "two");
     two->GetRange(found, component);
     GetArray(both.Expected.Filter->GetOutput(), "two")->GetRange(expected, component);
-    VERIFY(found[0] == expected[0] && found[1] == expected[1]);
+    EXPECT_TRUE(found[0] == expected[0] && found[1] == expected[1]);
     // The range of written values.
     two->SetComponent(100, 0, -5000.0);
     two->SetComponent(200, 1, std::nan(""));
     two->SetComponent(300, 1, vtkMath::Inf());
     two->Modified();
     two->GetRange(found, 0);
-    VERIFY_EQUAL(found[0], -5000.0);
+    EXPECT_EQ(found[0], -5000.0);
     two->GetFiniteRange(found, 1);
-    VERIFY(found[1] < 1000.0);
+    EXPECT_LT(found[1], 1000.0);
     two->GetRange(found, 1);
-    VERIFY_EQUAL(found[1], vtkMath::Inf());
+    EXPECT_EQ(found[1], vtkMath::Inf());
     // The range after the number of tuples has changed.
     two->SetNumberOfTuples(99);
     two->Modified();
     two->GetRange(found, 0);
-    VERIFY(found[0] >= 0.0);
+    EXPECT_GE(found[0], 0.0);
     const double tuple[2] = { 5000.0, 0.0 };
     two->InsertNextTuple(tuple);
     two->Modified();
     two->GetRange(found, 0);
-    VERIFY_EQUAL(found[1], 5000.0);
+    EXPECT_EQ(found[1], 5000.0);
   }
 }
 
 // The device computes ranges of arrays that are on the device.
-void TestRanges()
+TEST(OutputOnDevice, Ranges)
 {
   const auto volume = MakeVolume(VolumeExtent);
   const auto wave = [](double height, double middle)
@@ -352,66 +359,66 @@ void TestRanges()
           double wanted[2];
           array->GetFiniteRange(range, component);
           expected->GetFiniteRange(wanted, component);
-          VERIFY_EQUAL(range[0], wanted[0]);
-          VERIFY_EQUAL(range[1], wanted[1]);
-          VERIFY(range[0] < range[1]);
+          EXPECT_EQ(range[0], wanted[0]);
+          EXPECT_EQ(range[1], wanted[1]);
+          EXPECT_LT(range[0], range[1]);
           if (component == 0) // GetRange() includes infinite values, which other components have
           {
             array->GetRange(range, component);
-            VERIFY_EQUAL(range[0], wanted[0]);
-            VERIFY_EQUAL(range[1], wanted[1]);
+            EXPECT_EQ(range[0], wanted[0]);
+            EXPECT_EQ(range[1], wanted[1]);
           }
         }
       }
     });
-  VERIFY(read < 100000);
-  VERIFY_EQUAL(both.GetNumberOfUnread(), 10);
+  EXPECT_LT(read, 100000);
+  EXPECT_EQ(both.GetNumberOfUnread(), 10);
   // For an array of one component, -1 is the same as 0.
   double range[2];
   GetArray(image, "uint16")->GetFiniteRange(range, -1);
-  VERIFY_EQUAL(both.GetNumberOfUnread(), 10);
+  EXPECT_EQ(both.GetNumberOfUnread(), 10);
   // The device does not compute ranges with infinite values, or of lengths of vectors.
   GetArray(image, "three")->GetRange(range, 2);
-  VERIFY_EQUAL(range[1], vtkMath::Inf());
-  VERIFY_EQUAL(both.GetNumberOfUnread(), 9);
+  EXPECT_EQ(range[1], vtkMath::Inf());
+  EXPECT_EQ(both.GetNumberOfUnread(), 9);
   both.Check(image);
   // Ranges of the next output, and of written values.
   both.Move(0.4);
   image = both.Update();
   GetArray(image, "float")->GetRange(range);
-  VERIFY_EQUAL(range[0], GetArray(both.Expected.Filter->GetOutput(), "float")->GetRange()[0]);
+  EXPECT_EQ(range[0], GetArray(both.Expected.Filter->GetOutput(), "float")->GetRange()[0]);
   GetArray(image, "float")->SetComponent(17, 0, -100.0);
   GetArray(image, "float")->Modified();
-  VERIFY_EQUAL(GetArray(image, "float")->GetRange()[0], -100.0);
+  EXPECT_EQ(GetArray(image, "float")->GetRange()[0], -100.0);
   // Ranges of arrays whose numbers of components or tuples have changed.
   vtkDataArray* const shaped = GetArray(image, "uint16");
   shaped->SetNumberOfComponents(3);
-  VERIFY_EQUAL(shaped->GetNumberOfTuples(), image->GetNumberOfPoints() / 3);
+  EXPECT_EQ(shaped->GetNumberOfTuples(), image->GetNumberOfPoints() / 3);
   shaped->GetRange(range, 2);
   double most = 0.0;
   for (vtkIdType i = 0; i < shaped->GetNumberOfTuples(); ++i)
   {
     most = std::max(most, shaped->GetComponent(i, 2));
   }
-  VERIFY_EQUAL(range[1], most);
+  EXPECT_EQ(range[1], most);
   vtkDataArray* const grown = GetArray(image, "uint8");
   grown->InsertNextTuple1(255.0);
   grown->Modified();
   grown->GetRange(range);
-  VERIFY_EQUAL(range[1], 255.0);
+  EXPECT_EQ(range[1], 255.0);
   grown->GetFiniteRange(range);
-  VERIFY_EQUAL(range[1], 255.0);
+  EXPECT_EQ(range[1], 255.0);
 }
 
 // An array of the output that is emptied and filled again is an ordinary array.
-void TestAsAnyArray()
+TEST(OutputOnDevice, AsAnyArray)
 {
   Both both;
   both.Update();
   vtkDataArray* two = GetArray(both.Found.Filter->GetOutput(), "two");
-  VERIFY_EQUAL(CountRead([&] { two->Initialize(); }), 0U); // the values are not needed
-  VERIFY_EQUAL(two->GetNumberOfTuples(), 0);
-  VERIFY(two->GetVoidPointer(0) == nullptr);
+  EXPECT_EQ(CountRead([&] { two->Initialize(); }), 0U); // the values are not needed
+  EXPECT_EQ(two->GetNumberOfTuples(), 0);
+  EXPECT_EQ(two->GetVoidPointer(0), nullptr);
   two->SetNumberOfComponents(3);
   for (int i = 0; i < 100; ++i)
   {
@@ -419,18 +426,18 @@ void TestAsAnyArray()
     two->InsertNextTuple(tuple);
   }
   two->Squeeze();
-  VERIFY_EQUAL(two->GetNumberOfTuples(), 100);
-  VERIFY_EQUAL(two->GetComponent(99, 2), 297.0);
-  VERIFY_EQUAL(two->GetComponent(3, 1), 6.0);
+  EXPECT_EQ(two->GetNumberOfTuples(), 100);
+  EXPECT_EQ(two->GetComponent(99, 2), 297.0);
+  EXPECT_EQ(two->GetComponent(3, 1), 6.0);
   two->SetNumberOfTuples(2);
   two->Fill(4.5);
-  VERIFY_EQUAL(two->GetComponent(1, 2), 4.5);
+  EXPECT_EQ(two->GetComponent(1, 2), 4.5);
   both.Move(0.2);
   both.Check(both.Update());
 }
 
 // Filters, copies and writers of VTK.
-void TestFilters(const std::string& folder)
+TEST(OutputOnDevice, Filters)
 {
   Both both;
   const auto compare = [&](const std::function<vtkSmartPointer<vtkDataObject>(vtkImageData*)>& run)
@@ -441,13 +448,13 @@ void TestFilters(const std::string& folder)
     const auto expected = run(both.Expected.Filter->GetOutput());
     if (auto* image = vtkImageData::SafeDownCast(found))
     {
-      VERIFY(AreEqual(vtkImageData::SafeDownCast(expected), image));
+      EXPECT_TRUE(AreEqual(vtkImageData::SafeDownCast(expected), image));
       return;
     }
     auto* points = vtkPolyData::SafeDownCast(found);
     auto* others = vtkPolyData::SafeDownCast(expected);
-    VERIFY(points->GetNumberOfPoints() > 100);
-    VERIFY(HaveEqualBits(points->GetPoints()->GetData(), others->GetPoints()->GetData()));
+    EXPECT_GT(points->GetNumberOfPoints(), 100);
+    EXPECT_TRUE(HaveEqualBits(points->GetPoints()->GetData(), others->GetPoints()->GetData()));
   };
   compare(
     [](vtkImageData* image)
@@ -473,8 +480,8 @@ void TestFilters(const std::string& folder)
     {
       vtkNew<vtkImageData> copy;
       copy->DeepCopy(image);
-      VERIFY(vtkShortArray::SafeDownCast(GetArray(copy, "value")) != nullptr);
-      VERIFY(vtkIdTypeArray::SafeDownCast(GetArray(copy, "id")) != nullptr);
+      EXPECT_NE(vtkShortArray::SafeDownCast(GetArray(copy, "value")), nullptr);
+      EXPECT_NE(vtkIdTypeArray::SafeDownCast(GetArray(copy, "id")), nullptr);
       return vtkSmartPointer<vtkDataObject>(copy);
     });
   for (const int mode : { vtkXMLWriter::Ascii, vtkXMLWriter::Binary, vtkXMLWriter::Appended })
@@ -482,12 +489,12 @@ void TestFilters(const std::string& folder)
     compare(
       [&](vtkImageData* image)
       {
-        const std::string name = folder + "/TestOutputOnDevice.vti";
+        const std::string name = GetTestArgument("-T") + "/TestOutputOnDevice.vti";
         vtkNew<vtkXMLImageDataWriter> writer;
         writer->SetInputData(image);
         writer->SetFileName(name.c_str());
         writer->SetDataMode(mode);
-        VERIFY(writer->Write() == 1);
+        EXPECT_EQ(writer->Write(), 1);
         vtkNew<vtkXMLImageDataReader> reader;
         reader->SetFileName(name.c_str());
         reader->Update();
@@ -500,11 +507,11 @@ void TestFilters(const std::string& folder)
   Deformed again(both.Found.Filter->GetOutput(), both.Mesh);
   Deformed expected(both.Expected.Filter->GetOutput(), both.Mesh);
   again.Filter->OutputOnDeviceOn();
-  VERIFY(AreEqual(expected.Update(), again.Update()));
+  EXPECT_TRUE(AreEqual(expected.Update(), again.Update()));
 }
 
 // An output that a caller holds does not change when the filter executes again.
-void TestHeldOutputs()
+TEST(OutputOnDevice, HeldOutputs)
 {
   Both both;
   vtkNew<vtkImageData> held;
@@ -514,12 +521,12 @@ void TestHeldOutputs()
     both.Move(0.3);
     held->ShallowCopy(both.Update());
     wanted->DeepCopy(both.Expected.Filter->GetOutput());
-    VERIFY_EQUAL(both.GetNumberOfUnread(), MostUnread);
+    EXPECT_EQ(both.GetNumberOfUnread(), MostUnread);
   };
   const auto check = [&]
   {
-    VERIFY(AreEqual(wanted, held));
-    VERIFY_EQUAL(CountRead([&] { VERIFY(AreEqual(wanted, held)); }), 0U);
+    EXPECT_TRUE(AreEqual(wanted, held));
+    EXPECT_EQ(CountRead([&] { EXPECT_TRUE(AreEqual(wanted, held)); }), 0U);
   };
   hold();
   for (int i = 0; i < 3; ++i) // another whole output, while the last one is held
@@ -547,7 +554,7 @@ void TestHeldOutputs()
   both.Found.Filter->OutputOnDeviceOff();
   both.Move(0.3);
   both.Check(both.Update());
-  VERIFY_EQUAL(both.GetNumberOfUnread(), 0);
+  EXPECT_EQ(both.GetNumberOfUnread(), 0);
   check();
   both.Found.Filter->OutputOnDeviceOn();
   both.Found.Filter->SetResamplerToExact();
@@ -556,7 +563,7 @@ void TestHeldOutputs()
   // A failed execution.
   both.Found.Filter->SetDisplacementScale(std::nan(""));
   both.Found.Filter->Update();
-  VERIFY_EQUAL(both.Found.TakeErrors(), 1);
+  EXPECT_EQ(both.Found.TakeErrors(), 1);
   both.Found.Filter->SetDisplacementScale(1.0);
   check();
   hold();
@@ -564,19 +571,19 @@ void TestHeldOutputs()
   held->Initialize();
   both.Move(0.3);
   both.Expected.Update();
-  VERIFY(CountRead([&] { both.Found.Update(); }) <
+  EXPECT_LT(CountRead([&] { both.Found.Update(); }),
     GetBytes(GetArray(both.Found.Filter->GetOutput(), "id")) + 30000);
   hold();
   both.Found.Filter->ReleaseDeviceMemory();
-  VERIFY_EQUAL(both.GetNumberOfUnread(), 0);
-  VERIFY_EQUAL(both.Found.Filter->GetDeviceMemory(), 0);
+  EXPECT_EQ(both.GetNumberOfUnread(), 0);
+  EXPECT_EQ(both.Found.Filter->GetDeviceMemory(), 0);
   check();
   // The held output is written: the next output has other memory.
   hold();
   GetArray(held, "value")->Fill(3.0);
   both.Move(0.3, 400);
   both.Check(both.Update());
-  VERIFY_EQUAL(GetArray(held, "value")->GetComponent(77, 0), 3.0);
+  EXPECT_EQ(GetArray(held, "value")->GetComponent(77, 0), 3.0);
   // The output is written and not held: the next output must not be an update of it.
   both.Move(0.3, 400);
   both.Check(both.Update());
@@ -588,7 +595,7 @@ void TestHeldOutputs()
   both.Check(both.Update());
 }
 
-void TestDeletedFilter()
+TEST(OutputOnDevice, DeletedFilter)
 {
   for (const bool isRasterized : { false, true })
   {
@@ -603,9 +610,9 @@ void TestDeletedFilter()
       }
       held->ShallowCopy(both.Update());
       wanted->ShallowCopy(both.Expected.Filter->GetOutput());
-      VERIFY_EQUAL(both.GetNumberOfUnread(), MostUnread);
+      EXPECT_EQ(both.GetNumberOfUnread(), MostUnread);
     }
-    VERIFY(CountRead([&] { VERIFY(AreEqual(wanted, held)); }) > 0);
+    EXPECT_GT(CountRead([&] { EXPECT_TRUE(AreEqual(wanted, held)); }), 0);
     {
       Both both;
       held->ShallowCopy(both.Update());
@@ -615,7 +622,7 @@ void TestDeletedFilter()
 }
 
 // Partial updates of outputs on the device, which were read or not.
-void TestIncremental()
+TEST(OutputOnDevice, Incremental)
 {
   const auto volume = MakeVolume({ { 0, 200, 0, 60, 0, 40 } });
   Both both(volume, 12);
@@ -635,16 +642,16 @@ void TestIncremental()
     both.Update();
     parts += GetReported(both.Found.Filter, "Bricks resampled") <
       GetReported(both.Found.Filter, "Bricks of the volume");
-    VERIFY_EQUAL(both.Found.Filter->GetNumberOfCoveredVoxels(),
+    EXPECT_EQ(both.Found.Filter->GetNumberOfCoveredVoxels(),
       both.Expected.Filter->GetNumberOfCoveredVoxels());
-    VERIFY_EQUAL(both.Found.Filter->GetNumberOfInvertedTetrahedra(),
+    EXPECT_EQ(both.Found.Filter->GetNumberOfInvertedTetrahedra(),
       both.Expected.Filter->GetNumberOfInvertedTetrahedra());
     if (step % 3 != 0)
     {
       both.Check(both.Found.Filter->GetOutput());
     }
   }
-  VERIFY(parts > 4);
+  EXPECT_GT(parts, 4);
   // When each output is read, only changed values are copied, whether the previous output is held
   // or not.
   vtkNew<vtkImageData> held;
@@ -655,7 +662,7 @@ void TestIncremental()
     const std::uint64_t read = CountRead([&] { both.Check(both.Found.Update()); });
     if (step != 0 && step != 3) // in these steps new memory of the host is allocated
     {
-      VERIFY(read < GetBytes(GetArray(both.Found.Filter->GetOutput(), "value")) / 4 + 60000);
+      EXPECT_LT(read, GetBytes(GetArray(both.Found.Filter->GetOutput(), "value")) / 4 + 60000);
     }
     if (step >= 2)
     {
@@ -665,7 +672,7 @@ void TestIncremental()
 }
 
 // Several threads read an output for the first time at once.
-void TestThreads()
+TEST(OutputOnDevice, Threads)
 {
   Both both;
   for (int round = 0; round < 20; ++round)
@@ -693,9 +700,9 @@ void TestThreads()
         {
           thread.join();
         }
-        VERIFY(wrong == std::vector<int>(8));
+        EXPECT_EQ(wrong, std::vector<int>(8));
       });
-    VERIFY_EQUAL(read, GetBytes(value));
+    EXPECT_EQ(read, GetBytes(value));
   }
   // A thread reads an array while the filter copies it to the host.
   for (int round = 0; round < 20; ++round)
@@ -716,7 +723,7 @@ void TestThreads()
       both.Found.Filter->ReleaseDeviceMemory();
     }
     reader.join();
-    VERIFY(AreEqual(wanted, held));
+    EXPECT_TRUE(AreEqual(wanted, held));
   }
 }
 
@@ -758,7 +765,7 @@ bool IsAll(vtkDataArray* array, double value)
 }
 
 // The device is lost before the output is read.
-void TestLostDevice()
+TEST(OutputOnDevice, LostDevice)
 {
   enum
   {
@@ -789,16 +796,16 @@ void TestLostDevice()
         both->Move(0.1);
         both->Found.Update(); // this update copies no array of its own output
       }
-      VERIFY(IsAll(GetArray(held, "two"), 7.0));
-      VERIFY(IsAll(GetArray(held, "vtkValidPointMask"), 0.0));
-      VERIFY(IsAll(GetArray(held, "two"), 7.0));
+      EXPECT_TRUE(IsAll(GetArray(held, "two"), 7.0));
+      EXPECT_TRUE(IsAll(GetArray(held, "vtkValidPointMask"), 0.0));
+      EXPECT_TRUE(IsAll(GetArray(held, "two"), 7.0));
       FakeDriver::Get().ReadError = 0;
       FakeDriver::Get().FailsAtOnce = false;
-      VERIFY_EQUAL(errors[0].Number, 1);
-      VERIFY_EQUAL(errors[1].Number, 1);
-      VERIFY_EQUAL(errors[0].Seen, 7.0);
-      VERIFY_CONTAINS(errors[0].Text, "The OpenCL device was lost");
-      VERIFY_CONTAINS(errors[0].Text, "background");
+      EXPECT_EQ(errors[0].Number, 1);
+      EXPECT_EQ(errors[1].Number, 1);
+      EXPECT_EQ(errors[0].Seen, 7.0);
+      EXPECT_TRUE(HasPart(errors[0].Text, "The OpenCL device was lost"));
+      EXPECT_TRUE(HasPart(errors[0].Text, "background"));
       if (both)
       {
         both->Move(0.1);
@@ -809,31 +816,31 @@ void TestLostDevice()
 }
 
 // The update fails if an array that must be copied to the host cannot be copied.
-void TestFailedUpdate()
+TEST(OutputOnDevice, FailedUpdate)
 {
   Both both;
   both.Update();
   both.Move(0.1);
   FakeDriver::Get().ReadError = -36; // CL_INVALID_COMMAND_QUEUE, when the ids are copied
   both.Found.Filter->Update();
-  VERIFY_EQUAL(both.Found.TakeErrors(), 1);
-  VERIFY_EQUAL(both.Found.Filter->GetOutput()->GetNumberOfPoints(), 0);
-  VERIFY_EQUAL(both.GetNumberOfUnread(), 0);
+  EXPECT_EQ(both.Found.TakeErrors(), 1);
+  EXPECT_EQ(both.Found.Filter->GetOutput()->GetNumberOfPoints(), 0);
+  EXPECT_EQ(both.GetNumberOfUnread(), 0);
   FakeDriver::Get().ReadError = 0;
   both.Found.Filter->Modified();
   both.Check(both.Update());
 }
 
 // The device memory of outputs, and a memory limit that suffices for one output only.
-void TestMemory()
+TEST(OutputOnDevice, Memory)
 {
   Both both;
   both.Update();
   both.Update();
   const vtkTypeInt64 held = both.Found.Filter->GetDeviceMemory();
-  VERIFY_EQUAL(held, both.Expected.Filter->GetDeviceMemory());
+  EXPECT_EQ(held, both.Expected.Filter->GetDeviceMemory());
   both.Check(both.Found.Filter->GetOutput());
-  VERIFY_EQUAL(both.Found.Filter->GetDeviceMemory(), held);
+  EXPECT_EQ(both.Found.Filter->GetDeviceMemory(), held);
   // Mesh rasterization does not keep an output for partial updates.
   for (Deformed* one : { &both.Found, &both.Expected })
   {
@@ -846,10 +853,10 @@ void TestMemory()
     vtkDataArray* array = both.Found.Filter->GetOutput()->GetPointData()->GetArray(i);
     bytes += array->GetDataType() == VTK_ID_TYPE ? 0 : GetBytes(array);
   }
-  VERIFY_EQUAL(both.Found.Filter->GetDeviceMemory(),
+  EXPECT_EQ(both.Found.Filter->GetDeviceMemory(),
     both.Expected.Filter->GetDeviceMemory() + static_cast<vtkTypeInt64>(bytes));
   both.Check(both.Found.Filter->GetOutput());
-  VERIFY_EQUAL(both.Found.Filter->GetDeviceMemory(), both.Expected.Filter->GetDeviceMemory());
+  EXPECT_EQ(both.Found.Filter->GetDeviceMemory(), both.Expected.Filter->GetDeviceMemory());
   // The limit is the memory that an update needs, and an output is held.
   for (Deformed* one : { &both.Found, &both.Expected })
   {
@@ -857,48 +864,22 @@ void TestMemory()
   }
   both.Found.Filter->SetMemoryLimit(1);
   both.Found.Filter->Update();
-  VERIFY_EQUAL(both.Found.TakeErrors(), 1);
+  EXPECT_EQ(both.Found.TakeErrors(), 1);
   const std::string& message = both.Found.LastError;
   const std::size_t needed = message.find("device: ");
-  VERIFY(needed != std::string::npos);
+  EXPECT_NE(needed, std::string::npos);
   both.Found.Filter->SetMemoryLimit(std::stoll(message.substr(needed + 8)));
   vtkNew<vtkImageData> first;
   first->ShallowCopy(both.Update());
   vtkNew<vtkImageData> wanted;
   wanted->DeepCopy(both.Expected.Filter->GetOutput());
-  VERIFY_EQUAL(both.GetNumberOfUnread(), MostUnread);
+  EXPECT_EQ(both.GetNumberOfUnread(), MostUnread);
   for (int i = 0; i < 3; ++i)
   {
     both.Move(0.3);
     both.Check(both.Update());
   }
-  VERIFY(AreEqual(wanted, first));
+  EXPECT_TRUE(AreEqual(wanted, first));
 }
 
 } // namespace
-
-int main(int argc, char* argv[])
-{
-  FakeDriver::Get().IsGraphics = true; // before the first context is created
-  if (!deformvolume::GetDeviceAbilities("").OwnMemory)
-  {
-    std::cerr << "The engine does not call the functions of the fake driver.\n";
-    return EXIT_FAILURE;
-  }
-  vtkNew<vtkDeformVolumeFilter> filter;
-  VERIFY(!filter->GetOutputOnDevice());
-  VERIFY_EQUAL(GetReported(filter, "Arrays on the device"), 0);
-  TestReading();
-  TestInterfaces();
-  TestRanges();
-  TestAsAnyArray();
-  TestFilters(argc > 1 ? argv[1] : ".");
-  TestHeldOutputs();
-  TestDeletedFilter();
-  TestIncremental();
-  TestThreads();
-  TestLostDevice();
-  TestFailedUpdate();
-  TestMemory();
-  return GetExitCode();
-}

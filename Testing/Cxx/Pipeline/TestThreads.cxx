@@ -21,6 +21,56 @@ using namespace filterTesting;
 namespace
 {
 
+/// Restores the usual backend and number of threads after each test.
+class Threads : public testing::Test
+{
+protected:
+  void TearDown() override
+  {
+    vtkSMPTools::SetBackend(this->Usual.c_str());
+    vtkSMPTools::Initialize(0);
+  }
+  const std::string Usual = vtkSMPTools::GetBackend();
+};
+
+// Two filters in two threads, with inputs of their own, have the same results as one filter alone.
+void CheckTwoThreads()
+{
+  constexpr int rounds = 10;
+  const auto run = [](double shift, bool& right)
+  {
+    auto volume = MakeVolume();
+    auto mesh = MakeMesh(volume);
+    for (int round = 0; round < rounds; ++round)
+    {
+      vtkNew<vtkDeformVolumeFilter> filter;
+      filter->SetInputData(volume);
+      filter->SetDeformationData(mesh);
+      SetDisplacements(mesh, Shift(shift + round, 0.0, 0.0));
+      filter->Update();
+      right = right && filter->GetNumberOfCoveredVoxels() == volume->GetNumberOfPoints() &&
+        filter->GetOutput()->GetExtent()[0] == static_cast<int>(shift) + round;
+    }
+  };
+  const std::string backend = vtkSMPTools::GetBackend();
+  bool first = true;
+  bool second = true;
+  std::thread other([&] { run(20.0, second); });
+  run(1.0, first);
+  other.join();
+  EXPECT_TRUE(first);
+  EXPECT_TRUE(second);
+  EXPECT_EQ(std::string(vtkSMPTools::GetBackend()), backend);
+}
+
+// The first test, so that two threads find the devices and build the kernels at the same time.
+TEST_F(Threads, TwoThreads)
+{
+  CheckTwoThreads();
+  vtkSMPTools::SetBackend("Sequential");
+  CheckTwoThreads();
+}
+
 std::size_t CountThreads(vtkIdType parts)
 {
   std::mutex mutex;
@@ -38,7 +88,7 @@ std::size_t CountThreads(vtkIdType parts)
 }
 
 // ParallelFor() processes every item once, with any backend and grain.
-void TestRange()
+void CheckRange()
 {
   for (const vtkIdType grain : { 0, 1, 7, 1000 })
   {
@@ -53,10 +103,10 @@ void TestRange()
       });
     for (int i = 0; i < 150; ++i)
     {
-      VERIFY_EQUAL(seen[static_cast<std::size_t>(i)].load(), i < 20 ? 0 : 1);
+      EXPECT_EQ(seen[static_cast<std::size_t>(i)].load(), i < 20 ? 0 : 1);
     }
   }
-  deformvolume::ParallelFor(5, 5, 0, [](vtkIdType, vtkIdType) { VERIFY(false); });
+  deformvolume::ParallelFor(5, 5, 0, [](vtkIdType, vtkIdType) { ADD_FAILURE(); });
 }
 
 template <typename Exception>
@@ -85,7 +135,7 @@ struct NoMemory : std::bad_alloc
   explicit NoMemory(const char*) {}
 };
 
-void TestBackends()
+TEST_F(Threads, Backends)
 {
   for (const char* backend : { "Sequential", "STDThread", "TBB" })
   {
@@ -94,19 +144,19 @@ void TestBackends()
       continue;
     }
     std::cout << "backend " << backend << '\n';
-    TestRange();
+    CheckRange();
     const std::size_t most = std::string(backend) == "Sequential" ? 1 : 2;
     vtkSMPTools::Initialize(static_cast<int>(most));
-    VERIFY_EQUAL(CountThreads(64), most);
-    VERIFY(IsCarried<std::runtime_error>());
-    VERIFY(IsCarried<NoMemory>());
-    VERIFY_EQUAL(std::string(vtkSMPTools::GetBackend()), std::string(backend));
+    EXPECT_EQ(CountThreads(64), most);
+    EXPECT_TRUE(IsCarried<std::runtime_error>());
+    EXPECT_TRUE(IsCarried<NoMemory>());
+    EXPECT_EQ(std::string(vtkSMPTools::GetBackend()), std::string(backend));
   }
 }
 
 // The filter uses the backend and number of threads that a user has chosen, and does not change
 // them.
-void TestSettings(const std::string& usual)
+TEST_F(Threads, Settings)
 {
   auto volume = MakeVolume();
   auto mesh = MakeMesh(volume);
@@ -123,72 +173,27 @@ void TestSettings(const std::string& usual)
       const int estimated = vtkSMPTools::GetEstimatedNumberOfThreads();
       Deformed deformed(volume, mesh);
       deformed.Update();
-      VERIFY_EQUAL(std::string(vtkSMPTools::GetBackend()), std::string(backend));
-      VERIFY_EQUAL(vtkSMPTools::GetEstimatedNumberOfThreads(), estimated);
+      EXPECT_EQ(std::string(vtkSMPTools::GetBackend()), std::string(backend));
+      EXPECT_EQ(vtkSMPTools::GetEstimatedNumberOfThreads(), estimated);
       if (!VTK_SMP_DEFAULT_IMPLEMENTATION_SEQUENTIAL)
       {
-        VERIFY(CountThreads(50) <= static_cast<std::size_t>(threads));
+        EXPECT_LE(CountThreads(50), static_cast<std::size_t>(threads));
       }
       if (!VTK_SMP_DEFAULT_IMPLEMENTATION_SEQUENTIAL && backend == std::string("Sequential"))
       {
-        VERIFY_EQUAL(CountThreads(50), std::size_t{ 1 }); // VTK has threads, but they are not used
+        EXPECT_EQ(CountThreads(50), 1U); // VTK has threads, but they are not used
       }
-      VERIFY_EQUAL(vtkSMPTools::GetEstimatedNumberOfThreads(), estimated);
+      EXPECT_EQ(vtkSMPTools::GetEstimatedNumberOfThreads(), estimated);
     }
   }
-  vtkSMPTools::SetBackend(usual.c_str());
-  vtkSMPTools::Initialize(0);
 }
 
 // With many processes on one machine each uses one thread.
-void TestShare()
+TEST_F(Threads, Share)
 {
   deformvolume::SetProcessesHere(1000000);
-  VERIFY_EQUAL(CountThreads(50), std::size_t{ 1 });
+  EXPECT_EQ(CountThreads(50), 1U);
   deformvolume::SetProcessesHere(1);
 }
 
-// Two filters in two threads, with inputs of their own, have the same results as one filter alone.
-void TestTwoThreads()
-{
-  constexpr int rounds = 10;
-  const auto run = [](double shift, bool& right)
-  {
-    auto volume = MakeVolume();
-    auto mesh = MakeMesh(volume);
-    for (int round = 0; round < rounds; ++round)
-    {
-      vtkNew<vtkDeformVolumeFilter> filter;
-      filter->SetInputData(volume);
-      filter->SetDeformationData(mesh);
-      SetDisplacements(mesh, Shift(shift + round, 0.0, 0.0));
-      filter->Update();
-      right = right && filter->GetNumberOfCoveredVoxels() == volume->GetNumberOfPoints() &&
-        filter->GetOutput()->GetExtent()[0] == static_cast<int>(shift) + round;
-    }
-  };
-  const std::string backend = vtkSMPTools::GetBackend();
-  bool first = true;
-  bool second = true;
-  std::thread other([&] { run(20.0, second); });
-  run(1.0, first);
-  other.join();
-  VERIFY(first);
-  VERIFY(second);
-  VERIFY_EQUAL(std::string(vtkSMPTools::GetBackend()), backend);
-}
-
 } // namespace
-
-int main()
-{
-  const std::string usual = vtkSMPTools::GetBackend();
-  TestTwoThreads();
-  vtkSMPTools::SetBackend("Sequential");
-  TestTwoThreads();
-  vtkSMPTools::SetBackend(usual.c_str());
-  TestShare();
-  TestBackends();
-  TestSettings(usual);
-  return GetExitCode();
-}

@@ -24,6 +24,11 @@ using namespace filterTesting;
 namespace
 {
 
+class DeformArrays : public testing::Test
+{
+  void SetUp() override { SKIP_WITHOUT_DOUBLE_PRECISION() }
+};
+
 const Extent Box{ { -3, 6, 2, 9, 0, 8 } };
 
 /// Fills an array with random bytes. Thus floating-point arrays also have denormal numbers,
@@ -43,7 +48,7 @@ void FillWithRandomBits(vtkDataArray* array, int components, vtkIdType tuples, u
 
 // Without a deformation, arrays of each numeric type, with 1 to 4 components, do not change by a
 // bit.
-void TestIdentityOfTypes()
+TEST_F(DeformArrays, IdentityOfTypes)
 {
   const int types[] = { VTK_CHAR, VTK_SIGNED_CHAR, VTK_UNSIGNED_CHAR, VTK_SHORT, VTK_UNSIGNED_SHORT,
     VTK_INT, VTK_UNSIGNED_INT, VTK_LONG, VTK_UNSIGNED_LONG, VTK_LONG_LONG, VTK_UNSIGNED_LONG_LONG,
@@ -67,28 +72,22 @@ void TestIdentityOfTypes()
   Deformed deformed(volume, mesh);
   deformed.Filter->AddCategoricalArray("array 4");
   vtkImageData* output = deformed.Update();
-  VERIFY_EQUAL(GetExtent(output), Box);
-  VERIFY_EQUAL(output->GetPointData()->GetNumberOfArrays(), made + 1);
+  EXPECT_EQ(GetExtent(output), Box);
+  EXPECT_EQ(output->GetPointData()->GetNumberOfArrays(), made + 1);
   for (int i = 1; i <= made; ++i)
   {
     const std::string name = "array " + std::to_string(i);
-    if (!HaveEqualBits(volume->GetPointData()->GetArray(name.c_str()),
-          output->GetPointData()->GetArray(name.c_str())))
-    {
-      ++GetNumberOfFailures();
-      std::cerr << "the array \"" << name << "\" of type "
-                << volume->GetPointData()->GetArray(name.c_str())->GetDataTypeAsString()
-                << " has not the same bits as that of the volume\n";
-    }
+    EXPECT_TRUE(HaveEqualBits(volume->GetPointData()->GetArray(name.c_str()),
+      output->GetPointData()->GetArray(name.c_str())));
   }
   vtkDataArray* mask = output->GetPointData()->GetArray("vtkValidPointMask");
-  VERIFY(vtkCharArray::SafeDownCast(mask));
-  VERIFY_EQUAL(mask->GetRange()[0], 1.0);
-  VERIFY_EQUAL(deformed.Filter->GetNumberOfCoveredVoxels(), output->GetNumberOfPoints());
-  VERIFY_EQUAL(deformed.Filter->GetNumberOfInvertedTetrahedra(), 0);
+  EXPECT_TRUE(vtkCharArray::SafeDownCast(mask));
+  EXPECT_EQ(mask->GetRange()[0], 1.0);
+  EXPECT_EQ(deformed.Filter->GetNumberOfCoveredVoxels(), output->GetNumberOfPoints());
+  EXPECT_EQ(deformed.Filter->GetNumberOfInvertedTetrahedra(), 0);
 }
 
-void TestOtherMemoryLayouts()
+TEST_F(DeformArrays, OtherMemoryLayouts)
 {
   auto volume = MakeImage(Box);
   vtkNew<vtkSOADataArrayTemplate<float>> planar;
@@ -107,17 +106,17 @@ void TestOtherMemoryLayouts()
   SetDisplacements(mesh, Shift(2.0, 0.0, -1.0));
   Deformed deformed(volume, mesh);
   vtkDataArray* result = deformed.Update()->GetPointData()->GetArray("planar");
-  VERIFY_EQUAL(result->GetNumberOfComponents(), 3);
+  EXPECT_EQ(result->GetNumberOfComponents(), 3);
   for (vtkIdType id = 0; id < volume->GetNumberOfPoints(); ++id)
   {
     for (int component = 0; component < 3; ++component)
     {
-      VERIFY_EQUAL(result->GetComponent(id, component), 7.0 * id + component);
+      EXPECT_EQ(result->GetComponent(id, component), 7.0 * id + component);
     }
   }
 }
 
-void TestRolesAndFieldData()
+TEST_F(DeformArrays, RolesAndFieldData)
 {
   auto volume = MakeVolume(Box);
   vtkPointData* data = volume->GetPointData();
@@ -157,23 +156,23 @@ void TestRolesAndFieldData()
   Deformed deformed(volume, mesh);
   deformed.Filter->Update();
   const std::string warning = deformed.TakeWarning();
-  VERIFY_CONTAINS(warning, "words");
+  EXPECT_TRUE(HasPart(warning, "words"));
   vtkImageData* output = deformed.Filter->GetOutput();
   vtkPointData* result = output->GetPointData();
-  VERIFY(result->GetScalars() == result->GetArray("value") && result->GetScalars());
-  VERIFY(result->GetVectors() == result->GetArray("velocity") && result->GetVectors());
-  VERIFY(result->GetNormals() == result->GetArray("normal") && result->GetNormals());
-  VERIFY(result->GetTensors() == result->GetArray("stress") && result->GetTensors());
-  VERIFY(result->GetTCoords() == result->GetArray("texture") && result->GetTCoords());
-  VERIFY(result->GetArray("plain"));
-  VERIFY(!result->GetAbstractArray("words"));
-  VERIFY_EQUAL(std::string(result->GetArray("stress")->GetComponentName(8)), "stress8");
+  EXPECT_TRUE(result->GetScalars() == result->GetArray("value") && result->GetScalars());
+  EXPECT_TRUE(result->GetVectors() == result->GetArray("velocity") && result->GetVectors());
+  EXPECT_TRUE(result->GetNormals() == result->GetArray("normal") && result->GetNormals());
+  EXPECT_TRUE(result->GetTensors() == result->GetArray("stress") && result->GetTensors());
+  EXPECT_TRUE(result->GetTCoords() == result->GetArray("texture") && result->GetTCoords());
+  EXPECT_TRUE(result->GetArray("plain"));
+  EXPECT_FALSE(result->GetAbstractArray("words"));
+  EXPECT_EQ(std::string(result->GetArray("stress")->GetComponentName(8)), "stress8");
   auto* passed = vtkStringArray::SafeDownCast(output->GetFieldData()->GetAbstractArray("patient"));
-  VERIFY(passed && passed->GetValue(0) == "somebody");
+  EXPECT_TRUE(passed && passed->GetValue(0) == "somebody");
 }
 
 // Global and pedigree ids are never interpolated, even if no array is categorical.
-void TestIds()
+TEST_F(DeformArrays, Ids)
 {
   auto volume = MakeImage({ { 0, 8, 0, 8, 0, 8 } });
   vtkNew<vtkIdTypeArray> ids[2];
@@ -195,17 +194,17 @@ void TestIds()
     { static_cast<vtkAbstractArray*>(output->GetGlobalIds()), output->GetPedigreeIds() })
   {
     auto* const found = vtkIdTypeArray::SafeDownCast(array);
-    VERIFY(found);
+    EXPECT_TRUE(found);
     int mixed = 0;
     for (vtkIdType id = 0; found && id < found->GetNumberOfTuples(); ++id)
     {
       mixed += deformed.IsCovered(id) && found->GetValue(id) % 1000 != 0;
     }
-    VERIFY_EQUAL(mixed, 0);
+    EXPECT_EQ(mixed, 0);
   }
 }
 
-void TestLabels()
+TEST_F(DeformArrays, Labels)
 {
   auto volume = MakeImage({ { 0, 8, 0, 8, 0, 8 } });
   // Ids that differ in bits which float and double do not have.
@@ -224,27 +223,27 @@ void TestLabels()
     { return glm::dvec3(1.3 * p.x + 0.2 * p.y, 1.1 * p.y - 0.1 * p.z, p.z + 0.15 * p.x); });
   Deformed deformed(volume, mesh);
   deformed.Filter->AddCategoricalArray("label");
-  VERIFY_EQUAL(deformed.Filter->GetNumberOfCategoricalArrays(), 1);
-  VERIFY_EQUAL(std::string(deformed.Filter->GetCategoricalArray(0)), "label");
-  VERIFY(deformed.Filter->GetCategoricalArray(1) == nullptr);
+  EXPECT_EQ(deformed.Filter->GetNumberOfCategoricalArrays(), 1);
+  EXPECT_EQ(std::string(deformed.Filter->GetCategoricalArray(0)), "label");
+  EXPECT_EQ(deformed.Filter->GetCategoricalArray(1), nullptr);
   deformed.Update();
   auto* result = vtkUnsignedLongLongArray::SafeDownCast(deformed.GetValues());
-  VERIFY(result);
+  EXPECT_TRUE(result);
   int counts[3] = { 0, 0, 0 };
   for (vtkIdType id = 0; result && id < result->GetNumberOfTuples(); ++id)
   {
     if (deformed.IsCovered(id))
     {
       const unsigned long long label = result->GetValue(id) - base;
-      VERIFY(label <= 4 && label % 2 == 0);
+      EXPECT_TRUE(label <= 4 && label % 2 == 0);
       ++counts[label % 5 / 2];
     }
     else
     {
-      VERIFY_EQUAL(result->GetValue(id), 0ULL);
+      EXPECT_EQ(result->GetValue(id), 0ULL);
     }
   }
-  VERIFY(counts[0] > 50 && counts[1] > 50 && counts[2] > 50);
+  EXPECT_TRUE(counts[0] > 50 && counts[1] > 50 && counts[2] > 50);
   // Labels that are not categorical are interpolated.
   deformed.Filter->RemoveCategoricalArray("label");
   deformed.Update();
@@ -254,19 +253,19 @@ void TestLabels()
   {
     mixed += deformed.IsCovered(id) && (result->GetValue(id) - base) % 2 != 0 ? 1 : 0;
   }
-  VERIFY(mixed > 0);
+  EXPECT_GT(mixed, 0);
   // A misspelled name is a warning, once.
   deformed.Filter->AddCategoricalArray("Label");
   deformed.Filter->Update();
-  VERIFY_CONTAINS(
-    deformed.TakeWarning(), "no point arrays with these names of categorical arrays: Label");
+  EXPECT_TRUE(HasPart(
+    deformed.TakeWarning(), "no point arrays with these names of categorical arrays: Label"));
   mesh->Modified();
   deformed.Filter->Update();
-  VERIFY(deformed.TakeWarning().empty());
+  EXPECT_EQ(deformed.TakeWarning(), "");
 }
 
 // Nearest interpolation gives the same result as categorical arrays, with both resamplers.
-void TestNearestInterpolation()
+TEST_F(DeformArrays, NearestInterpolation)
 {
   auto volume = MakeImage({ { 0, 8, 0, 8, 0, 8 } });
   AddScalars<float>(
@@ -283,22 +282,22 @@ void TestNearestInterpolation()
     nearest.Update();
     const vtkSmartPointer<vtkDataArray> linear = nearest.GetValues();
     nearest.Filter->SetInterpolationToNearestInterpolation();
-    VERIFY_EQUAL(nearest.Filter->GetInterpolation(), 2);
+    EXPECT_EQ(nearest.Filter->GetInterpolation(), 2);
     nearest.Update();
     Deformed categorical(volume, mesh);
     categorical.Filter->SetResampler(resampler);
     categorical.Filter->AddCategoricalArray("value");
     categorical.Update();
-    VERIFY(HaveEqualBits(nearest.GetValues(), categorical.GetValues()));
-    VERIFY(!HaveEqualBits(nearest.GetValues(), linear));
+    EXPECT_TRUE(HaveEqualBits(nearest.GetValues(), categorical.GetValues()));
+    EXPECT_FALSE(HaveEqualBits(nearest.GetValues(), linear));
     // Back to linear interpolation.
     nearest.Filter->SetInterpolationToLinearInterpolation();
     nearest.Update();
-    VERIFY(HaveEqualBits(nearest.GetValues(), linear));
+    EXPECT_TRUE(HaveEqualBits(nearest.GetValues(), linear));
   }
 }
 
-void TestBackgroundAndRounding()
+TEST_F(DeformArrays, BackgroundAndRounding)
 {
   auto volume = MakeImage({ { 0, 4, 0, 4, 0, 4 } });
   AddScalars<unsigned char>(volume, "value", [](const glm::dvec3& p) { return 10.0 * p.x; });
@@ -316,26 +315,26 @@ void TestBackgroundAndRounding()
   deformed.Filter->SetPadding(1);
   deformed.Filter->SetBackgroundValue(-1000.5);
   vtkImageData* output = deformed.Update();
-  VERIFY_EQUAL(GetExtent(output), (Extent{ { 0, 5, -1, 5, -1, 5 } }));
+  EXPECT_EQ(GetExtent(output), (Extent{ { 0, 5, -1, 5, -1, 5 } }));
   const double expected[6] = { 0, 4, 14, 24, 34, 0 };
   for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
   {
     const glm::dvec3 p = GetPoint(output, id);
     const bool inside =
       p.x > 0.6 && p.x < 4.7 && p.y > -0.1 && p.y < 4.1 && p.z > -0.1 && p.z < 4.1;
-    VERIFY_EQUAL(deformed.IsCovered(id), inside);
-    VERIFY_EQUAL(
+    EXPECT_EQ(deformed.IsCovered(id), inside);
+    EXPECT_EQ(
       deformed.GetValues()->GetComponent(id, 0), inside ? expected[static_cast<int>(p.x)] : 0.0);
     for (int component = 0; component < 2; ++component)
     {
-      VERIFY_EQUAL(output->GetPointData()->GetArray("pair")->GetComponent(id, component),
+      EXPECT_EQ(output->GetPointData()->GetArray("pair")->GetComponent(id, component),
         inside ? 2.0 : -1000.5);
     }
   }
 }
 
 // Programs write the values of an image, and call Modified() of the image only.
-void TestWrittenValues()
+TEST_F(DeformArrays, WrittenValues)
 {
   auto volume = MakeImage({ { 0, 7, 0, 7, 0, 7 } });
   AddScalars<int>(volume, "dose", [](const glm::dvec3&) { return 1.0; });
@@ -357,8 +356,8 @@ void TestWrittenValues()
       }
       volume->Modified();
       vtkPointData* output = deformed.Update()->GetPointData();
-      VERIFY_EQUAL(output->GetArray("value")->GetTuple1(0), value);
-      VERIFY_EQUAL(output->GetArray("dose")->GetTuple1(0), value);
+      EXPECT_EQ(output->GetArray("value")->GetTuple1(0), value);
+      EXPECT_EQ(output->GetArray("dose")->GetTuple1(0), value);
     }
   }
   // An image that has not been modified is not read again.
@@ -367,10 +366,10 @@ void TestWrittenValues()
   const vtkIdType sent = GetReported(deformed.Filter, "Volumes sent");
   mesh->Modified();
   deformed.Update();
-  VERIFY_EQUAL(GetReported(deformed.Filter, "Volumes sent"), sent);
+  EXPECT_EQ(GetReported(deformed.Filter, "Volumes sent"), sent);
 }
 
-void TestNotANumberStaysWithinItsTetrahedra()
+TEST_F(DeformArrays, NotANumberStaysWithinItsTetrahedra)
 {
   auto volume = MakeImage({ { 0, 7, 0, 7, 0, 7 } });
   AddScalars<double>(volume, "value", [](const glm::dvec3& p) { return p.x; });
@@ -389,13 +388,13 @@ void TestNotANumberStaysWithinItsTetrahedra()
       ++spoilt;
       const glm::dvec3 rest = (GetPoint(output, id) - glm::dvec3(0.25, 0.5, 0.125)) / 3.0;
       const glm::dvec3 distance = glm::abs(rest - 4.0);
-      VERIFY(distance.x < 1.01 && distance.y < 1.01 && distance.z < 1.01);
+      EXPECT_TRUE(distance.x < 1.01 && distance.y < 1.01 && distance.z < 1.01);
     }
   }
-  VERIFY(spoilt > 0);
+  EXPECT_GT(spoilt, 0);
 }
 
-void TestCellArraysAreNamedInAWarning()
+TEST_F(DeformArrays, CellArraysAreNamedInAWarning)
 {
   auto volume = MakeVolume();
   vtkNew<vtkFloatArray> pressure;
@@ -408,29 +407,9 @@ void TestCellArraysAreNamedInAWarning()
   Deformed deformed(volume, mesh);
   deformed.Filter->Update();
   const std::string warning = deformed.TakeWarning();
-  VERIFY_CONTAINS(warning, "pressure");
-  VERIFY(deformed.Filter->GetOutput()->GetCellData()->GetNumberOfArrays() == 0);
-  VERIFY_EQUAL(deformed.TakeErrors(), 0);
+  EXPECT_TRUE(HasPart(warning, "pressure"));
+  EXPECT_EQ(deformed.Filter->GetOutput()->GetCellData()->GetNumberOfArrays(), 0);
+  EXPECT_EQ(deformed.TakeErrors(), 0);
 }
 
 } // namespace
-
-int TestDeformArrays(int, char*[])
-{
-  if (!HasDoublePrecision())
-  {
-    std::cout << "skipped: the device has no double precision\n";
-    return 125; // VTK_SKIP_RETURN_CODE
-  }
-  TestIdentityOfTypes();
-  TestOtherMemoryLayouts();
-  TestRolesAndFieldData();
-  TestIds();
-  TestLabels();
-  TestNearestInterpolation();
-  TestBackgroundAndRounding();
-  TestWrittenValues();
-  TestNotANumberStaysWithinItsTetrahedra();
-  TestCellArraysAreNamedInAWarning();
-  return GetExitCode();
-}

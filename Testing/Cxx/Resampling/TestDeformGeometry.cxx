@@ -16,6 +16,11 @@ using namespace filterTesting;
 namespace
 {
 
+class DeformGeometry : public testing::Test
+{
+  void SetUp() override { SKIP_WITHOUT_DOUBLE_PRECISION() }
+};
+
 struct World
 {
   glm::dmat3 Matrix{ 1.0 };
@@ -76,15 +81,11 @@ void CheckValues(Deformed& deformed, vtkImageData* volume, const World& world)
         std::max(worst, std::abs(deformed.GetValues()->GetComponent(id, 0) - world.GetValue(rest)));
     }
   }
-  VERIFY_EQUAL(holes, 0);
-  VERIFY_EQUAL(extra, 0);
-  VERIFY(covered > 100);
-  VERIFY_EQUAL(static_cast<vtkIdType>(covered), deformed.Filter->GetNumberOfCoveredVoxels());
-  if (worst > tolerance)
-  {
-    ++GetNumberOfFailures();
-    std::cerr << "values differ by " << worst << ", allowed is " << tolerance << '\n';
-  }
+  EXPECT_EQ(holes, 0);
+  EXPECT_EQ(extra, 0);
+  EXPECT_GT(covered, 100);
+  EXPECT_EQ(static_cast<vtkIdType>(covered), deformed.Filter->GetNumberOfCoveredVoxels());
+  EXPECT_LE(worst, tolerance);
 }
 
 /// Checks that the extent of the output is the smallest one that contains the deformed volume.
@@ -106,8 +107,8 @@ void CheckTightExtent(vtkImageData* output, vtkImageData* volume, const World& w
   const Extent result = GetExtent(output);
   for (int axis = 0; axis < 3; ++axis)
   {
-    VERIFY(std::abs(result[2 * axis] - std::ceil(low[axis] - 0.01)) <= 0.5);
-    VERIFY(std::abs(result[2 * axis + 1] - std::floor(high[axis] + 0.01)) <= 0.5);
+    EXPECT_LE(std::abs(result[2 * axis] - std::ceil(low[axis] - 0.01)), 0.5);
+    EXPECT_LE(std::abs(result[2 * axis + 1] - std::floor(high[axis] + 0.01)), 0.5);
   }
 }
 
@@ -124,7 +125,7 @@ vtkSmartPointer<vtkImageData> MakeWorldVolume(const World& world, const Extent& 
   return volume;
 }
 
-void TestAffineMaps()
+TEST_F(DeformGeometry, AffineMaps)
 {
   const World maps[] = { Oblique,
     World{ glm::dmat3(0, 1, 0, -1, 0, 0, 0, 0, 1), glm::dvec3(1, 2, 3) },
@@ -141,12 +142,12 @@ void TestAffineMaps()
       vtkImageData* output = deformed.Update();
       CheckValues(deformed, volume, world);
       CheckTightExtent(output, volume, world);
-      VERIFY_EQUAL(deformed.Filter->GetNumberOfInvertedTetrahedra(), 0);
+      EXPECT_EQ(deformed.Filter->GetNumberOfInvertedTetrahedra(), 0);
     }
   }
 }
 
-void TestMirroringIsCounted()
+TEST_F(DeformGeometry, MirroringIsCounted)
 {
   const World mirror{ glm::dmat3(-1, 0, 0, 0, 1, 0, 0, 0, 1), glm::dvec3(0.3, 0.0, 0.0) };
   auto volume =
@@ -156,10 +157,10 @@ void TestMirroringIsCounted()
   Deformed deformed(volume, mesh);
   deformed.Update();
   CheckValues(deformed, volume, mirror);
-  VERIFY_EQUAL(deformed.Filter->GetNumberOfInvertedTetrahedra(), 5 * 216);
+  EXPECT_EQ(deformed.Filter->GetNumberOfInvertedTetrahedra(), 5 * 216);
 }
 
-void TestOutputSpacing()
+TEST_F(DeformGeometry, OutputSpacing)
 {
   auto volume = MakeWorldVolume(Oblique, { { -7, 5, 3, 14, -20, -11 } }, glm::dvec3(0.7, 1.3, 2.1),
     glm::dvec3(100.0, -50.0, 25.0), true);
@@ -173,9 +174,9 @@ void TestOutputSpacing()
     vtkImageData* output = deformed.Update();
     glm::dvec3 result;
     output->GetSpacing(&result.x);
-    VERIFY(result == spacing);
+    EXPECT_EQ(result, spacing);
     output->GetOrigin(&result.x);
-    VERIFY(result == glm::dvec3(100.0, -50.0, 25.0));
+    EXPECT_EQ(result, glm::dvec3(100.0, -50.0, 25.0));
     CheckValues(deformed, volume, Oblique);
     CheckTightExtent(output, volume, Oblique);
   }
@@ -185,7 +186,7 @@ void TestOutputSpacing()
   mesh->Modified();
   deformed.Filter->SetCustomSpacing(0.35, 1.3, 4.2);
   vtkImageData* output = deformed.Update();
-  VERIFY_EQUAL(GetExtent(output), (Extent{ { -14, 10, 3, 14, -10, -6 } }));
+  EXPECT_EQ(GetExtent(output), (Extent{ { -14, 10, 3, 14, -10, -6 } }));
   vtkDataArray* before = volume->GetPointData()->GetScalars();
   vtkDataArray* after = deformed.GetValues();
   for (int z = -10; z <= -6; ++z)
@@ -196,41 +197,41 @@ void TestOutputSpacing()
       {
         int from[3] = { x, y, 2 * z };
         int to[3] = { 2 * x, y, z };
-        VERIFY_EQUAL(after->GetComponent(output->ComputePointId(to), 0),
+        EXPECT_EQ(after->GetComponent(output->ComputePointId(to), 0),
           before->GetComponent(volume->ComputePointId(from), 0));
       }
     }
   }
 }
 
-void TestOutputBounds()
+TEST_F(DeformGeometry, OutputBounds)
 {
   auto volume = MakeWorldVolume(Oblique, { { -7, 5, 3, 14, -20, -11 } }, glm::dvec3(0.7, 1.3, 2.1),
     glm::dvec3(4.0, -5.0, 25.0), false);
   auto mesh = MakeMesh(volume);
   SetDisplacements(mesh, Shift(1.4, 0.0, -4.2));
   Deformed deformed(volume, mesh);
-  VERIFY_EQUAL(GetExtent(deformed.Update()), (Extent{ { -5, 7, 3, 14, -22, -13 } }));
+  EXPECT_EQ(GetExtent(deformed.Update()), (Extent{ { -5, 7, 3, 14, -22, -13 } }));
   deformed.Filter->SetPadding(2);
-  VERIFY_EQUAL(GetExtent(deformed.Update()), (Extent{ { -7, 9, 1, 16, -24, -11 } }));
+  EXPECT_EQ(GetExtent(deformed.Update()), (Extent{ { -7, 9, 1, 16, -24, -11 } }));
   deformed.Filter->SetOutputBoundsModeToVolumeBounds();
-  VERIFY_EQUAL(GetExtent(deformed.Update()), (Extent{ { -9, 7, 1, 16, -22, -9 } }));
+  EXPECT_EQ(GetExtent(deformed.Update()), (Extent{ { -9, 7, 1, 16, -22, -9 } }));
   deformed.Filter->SetPadding(0);
-  VERIFY_EQUAL(GetExtent(deformed.Update()), GetExtent(volume));
+  EXPECT_EQ(GetExtent(deformed.Update()), GetExtent(volume));
   // The volume moved away from the voxels x = -7, -6 and z = -12, -11.
   const vtkIdType expected = 11 * 12 * 8;
-  VERIFY_EQUAL(deformed.Filter->GetNumberOfCoveredVoxels(), expected);
+  EXPECT_EQ(deformed.Filter->GetNumberOfCoveredVoxels(), expected);
   deformed.Filter->SetOutputBoundsModeToCustomBounds();
   deformed.Filter->SetCustomBounds(4.0, 4.1, -5.0, 0.0, 0.0, 0.1);
   const Extent custom = GetExtent(deformed.Update());
   double bounds[6];
   deformed.Filter->GetOutput()->GetBounds(bounds);
-  VERIFY(bounds[0] <= 4.0 && bounds[1] >= 4.1 && bounds[2] <= -5.0 && bounds[3] >= 0.0);
-  VERIFY(bounds[4] <= 0.0 && bounds[5] >= 0.1);
-  VERIFY_EQUAL(custom, (Extent{ { 0, 1, 0, 4, -12, -11 } }));
+  EXPECT_TRUE(bounds[0] <= 4.0 && bounds[1] >= 4.1 && bounds[2] <= -5.0 && bounds[3] >= 0.0);
+  EXPECT_TRUE(bounds[4] <= 0.0 && bounds[5] >= 0.1);
+  EXPECT_EQ(custom, (Extent{ { 0, 1, 0, 4, -12, -11 } }));
 }
 
-void TestOutsideTheMesh()
+TEST_F(DeformGeometry, OutsideTheMesh)
 {
   // A mesh that contains only the middle of the volume.
   const World shift{ glm::dmat3(1.25, 0, 0, 0, 1, 0, 0, 0, 1), glm::dvec3(3.5, 0.0, 1.25) };
@@ -264,18 +265,3 @@ void TestOutsideTheMesh()
 }
 
 } // namespace
-
-int TestDeformGeometry(int, char*[])
-{
-  if (!HasDoublePrecision())
-  {
-    std::cout << "skipped: the device has no double precision\n";
-    return 125; // VTK_SKIP_RETURN_CODE
-  }
-  TestAffineMaps();
-  TestMirroringIsCounted();
-  TestOutputSpacing();
-  TestOutputBounds();
-  TestOutsideTheMesh();
-  return GetExitCode();
-}

@@ -2,6 +2,7 @@
 // Regression image: an MRI of a head, and the same head with a thumb pressed between its eyes. A
 // thumb at another position, three voxels away, must give a different image.
 #include "PictureTesting.h"
+#include "RunTests.h"
 
 #include <vtkAlgorithm.h>
 #include <vtkCamera.h>
@@ -60,19 +61,6 @@ void AddVolume(vtkRenderWindow* window, vtkAlgorithm* source, double left, doubl
 // another position makes a difference of 0.1.
 constexpr double LIMIT = 0.05;
 
-// The argument that follows the option name.
-std::string GetArgument(int argc, char* argv[], const std::string& name)
-{
-  for (int i = 1; i + 1 < argc; ++i)
-  {
-    if (argv[i] == name)
-    {
-      return argv[i + 1];
-    }
-  }
-  return "";
-}
-
 // Sets displacements by a thumb that presses a point of the nose in.
 void Press(vtkUnstructuredGrid* mesh, const glm::dvec3& nose)
 {
@@ -87,13 +75,12 @@ void Press(vtkUnstructuredGrid* mesh, const glm::dvec3& nose)
 
 } // namespace
 
-int TestDeformHead(int argc, char* argv[])
+TEST(DeformHead, Picture)
 {
   const std::string file = "/usr/share/mricron/templates/ch2.nii.gz";
   if (!vtksys::SystemTools::FileExists(file))
   {
-    std::cout << "skipped: " << file << " is missing, install the package mricron-data\n";
-    return 125; // VTK_SKIP_RETURN_CODE
+    GTEST_SKIP() << file << " is missing, install the package mricron-data";
   }
   vtkNew<vtkNIFTIImageReader> reader;
   reader->SetFileName(file.c_str());
@@ -118,20 +105,20 @@ int TestDeformHead(int argc, char* argv[])
   AddVolume(window, reader, 0.0, 0.5);
   AddVolume(window, deformed.Filter, 0.5, 1.0);
   const auto picture = Draw(window);
-  const std::string drawn = GetArgument(argc, argv, "-T") + "/TestDeformHead.png";
+  const std::string drawn = GetTestArgument("-T") + "/TestDeformHead.png";
   vtkNew<vtkPNGWriter> writer;
   writer->SetFileName(drawn.c_str());
   writer->SetInputData(picture);
   writer->Write();
   vtkNew<vtkPNGReader> baseline;
-  baseline->SetFileName(GetArgument(argc, argv, "-V").c_str());
+  baseline->SetFileName(GetTestArgument("-V").c_str());
   baseline->Update();
   const double difference = Compare(picture, baseline->GetOutput()).Difference;
   std::cout << drawn << " differs from the baseline by " << difference << '\n';
-  VERIFY(difference < LIMIT);
-  VERIFY_EQUAL(deformed.TakeErrors(), 0);
-  VERIFY_EQUAL(deformed.Filter->GetNumberOfInvertedTetrahedra(), 0);
-  VERIFY_EQUAL(deformed.Filter->GetOutput()->GetScalarType(), head->GetScalarType());
+  EXPECT_LT(difference, LIMIT);
+  EXPECT_EQ(deformed.TakeErrors(), 0);
+  EXPECT_EQ(deformed.Filter->GetNumberOfInvertedTetrahedra(), 0);
+  EXPECT_EQ(deformed.Filter->GetOutput()->GetScalarType(), head->GetScalarType());
   for (const glm::dvec3& offset :
     { glm::dvec3(3.0, 0.0, 0.0), glm::dvec3(0.0, 3.0, 0.0), glm::dvec3(0.0, 0.0, 3.0) })
   {
@@ -139,7 +126,6 @@ int TestDeformHead(int argc, char* argv[])
     mesh->Modified();
     const double error = Compare(Draw(window), baseline->GetOutput()).Difference;
     std::cout << "a thumb at another position differs by " << error << '\n';
-    VERIFY(error > LIMIT);
+    EXPECT_GT(error, LIMIT);
   }
-  return GetExitCode();
 }

@@ -16,24 +16,24 @@ Extent GetChangedExtent(const Deformed& deformed)
 {
   Extent extent;
   deformed.Filter->GetChangedExtent(extent.data());
-  VERIFY(std::equal(extent.begin(), extent.end(), deformed.Filter->GetChangedExtent()));
+  EXPECT_TRUE(std::equal(extent.begin(), extent.end(), deformed.Filter->GetChangedExtent()));
   return extent;
 }
 
 // The extent is that of the whole output, empty, or that around a moved node. It is empty after an
 // error.
-void TestChangedExtent()
+TEST(DeformIncremental, ChangedExtent)
 {
   const auto volume = MakeVolume({ { -3, 130, 2, 90, 0, 80 } });
   const auto mesh = MakeMesh(volume, 12, 3.0);
   SetDisplacements(mesh, Shift(0.25, 0.0, 0.0));
   Deformed deformed(volume, mesh);
-  VERIFY_EQUAL(GetChangedExtent(deformed), Nothing);
+  EXPECT_EQ(GetChangedExtent(deformed), Nothing);
   deformed.Filter->SetOutputBoundsModeToVolumeBounds();
   const auto expect = [&](const Extent& expected)
   {
     deformed.Update();
-    VERIFY_EQUAL(GetChangedExtent(deformed), expected);
+    EXPECT_EQ(GetChangedExtent(deformed), expected);
   };
   expect(GetExtent(volume));
   expect(GetExtent(volume)); // nothing was executed
@@ -54,16 +54,16 @@ void TestChangedExtent()
     const double middle = (&point.x)[axis];
     // The extent contains the tetrahedra of the node, and is not larger than the sub-bricks that
     // they intersect.
-    VERIFY(changed[2 * axis] < middle && middle < changed[2 * axis + 1]);
-    VERIFY(changed[2 * axis] >= middle - step[axis] - subBrick[axis] - 1.0);
-    VERIFY(changed[2 * axis + 1] <= middle + step[axis] + subBrick[axis] + 2.0);
+    EXPECT_TRUE(changed[2 * axis] < middle && middle < changed[2 * axis + 1]);
+    EXPECT_GE(changed[2 * axis], middle - step[axis] - subBrick[axis] - 1.0);
+    EXPECT_LE(changed[2 * axis + 1], middle + step[axis] + subBrick[axis] + 2.0);
   }
 
   vectors->SetTuple3(node, std::nan(""), 0.0, 0.0);
   vectors->Modified();
   deformed.Filter->Update();
-  VERIFY_EQUAL(deformed.TakeErrors(), 1);
-  VERIFY_EQUAL(GetChangedExtent(deformed), Nothing);
+  EXPECT_EQ(deformed.TakeErrors(), 1);
+  EXPECT_EQ(GetChangedExtent(deformed), Nothing);
   vectors->SetTuple3(node, 0.0, 0.0, 0.0);
   vectors->Modified();
   expect(GetExtent(volume));
@@ -76,22 +76,15 @@ void TestChangedExtent()
 }
 
 // The defaults of the property and of the report, and the modified time.
-void TestIncrementalProperty()
+TEST(DeformIncremental, IncrementalProperty)
 {
   vtkNew<vtkDeformVolumeFilter> filter;
-  VERIFY(filter->GetIncremental());
-  VERIFY_EQUAL(GetReported(filter, "Bricks of the volume"), 0);
-  VERIFY_EQUAL(GetReported(filter, "Bricks resampled"), 0);
+  EXPECT_TRUE(filter->GetIncremental());
+  EXPECT_EQ(GetReported(filter, "Bricks of the volume"), 0);
+  EXPECT_EQ(GetReported(filter, "Bricks resampled"), 0);
   const vtkMTimeType time = filter->GetMTime();
   filter->IncrementalOff();
-  VERIFY(filter->GetMTime() > time);
+  EXPECT_GT(filter->GetMTime(), time);
 }
 
 } // namespace
-
-int TestDeformIncremental(int, char*[])
-{
-  TestIncrementalProperty();
-  TestChangedExtent();
-  return GetExitCode();
-}

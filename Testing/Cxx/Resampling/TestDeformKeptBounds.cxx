@@ -11,16 +11,16 @@ using namespace filterTesting;
 namespace
 {
 
-void TestBoundsGranularityProperty()
+TEST(DeformKeptBounds, BoundsGranularityProperty)
 {
   vtkNew<vtkDeformVolumeFilter> filter;
-  VERIFY_EQUAL(filter->GetBoundsGranularity(), 0);
+  EXPECT_EQ(filter->GetBoundsGranularity(), 0);
   filter->SetBoundsGranularity(-5);
-  VERIFY_EQUAL(filter->GetBoundsGranularity(), 0);
+  EXPECT_EQ(filter->GetBoundsGranularity(), 0);
   const vtkMTimeType time = filter->GetMTime();
   filter->SetBoundsGranularity(1000000);
-  VERIFY_EQUAL(filter->GetBoundsGranularity(), 1000);
-  VERIFY(filter->GetMTime() > time);
+  EXPECT_EQ(filter->GetBoundsGranularity(), 1000);
+  EXPECT_GT(filter->GetMTime(), time);
 }
 
 /// A volume that is translated, and the expected extent of the output.
@@ -43,8 +43,8 @@ public:
   void Expect(double x, const Extent& extent)
   {
     SetDisplacements(this->Mesh, Shift(x, 0.0, 0.0));
-    VERIFY_EQUAL(GetExtent(this->Subject.Update()), extent);
-    VERIFY_EQUAL(this->GetFilter()->GetNumberOfCoveredVoxels(), this->Volume->GetNumberOfPoints());
+    EXPECT_EQ(GetExtent(this->Subject.Update()), extent);
+    EXPECT_EQ(this->GetFilter()->GetNumberOfCoveredVoxels(), this->Volume->GetNumberOfPoints());
   }
   void Expect(double x, int first, int last) { this->Expect(x, { { first, last, 0, 8, 0, 8 } }); }
 
@@ -55,7 +55,7 @@ private:
 };
 
 // The voxels of the moved volume are from x to x + 9.
-void TestExtents()
+TEST(DeformKeptBounds, Extents)
 {
   Moved moved;
   moved.Expect(0.0, 0, 12);
@@ -70,7 +70,7 @@ void TestExtents()
 }
 
 // Other settings, or another volume, reset the extent.
-void TestResets()
+TEST(DeformKeptBounds, Resets)
 {
   Moved moved;
   vtkDeformVolumeFilter* filter = moved.GetFilter();
@@ -114,7 +114,7 @@ void TestResets()
   moved.GetMesh()->GetPointData()->GetVectors()->SetComponent(0, 0, std::nan(""));
   moved.GetMesh()->GetPointData()->GetVectors()->Modified();
   filter->Update();
-  VERIFY_EQUAL(moved.GetSubject().TakeErrors(), 1);
+  EXPECT_EQ(moved.GetSubject().TakeErrors(), 1);
   moved.Expect(0.0, 0, 16);
 
   // An output that is too large because of BoundsGranularity and CustomSpacing is one error.
@@ -122,7 +122,7 @@ void TestResets()
   filter->SetOutputSpacingModeToCustomSpacing();
   filter->SetCustomSpacing(1e-6, 1e-6, 1e-6);
   filter->Update();
-  VERIFY_EQUAL(moved.GetSubject().TakeErrors(), 1);
+  EXPECT_EQ(moved.GetSubject().TakeErrors(), 1);
   filter->SetOutputSpacingModeToVolumeSpacing();
   filter->SetBoundsGranularity(4);
   moved.Expect(0.0, 0, 12);
@@ -138,7 +138,7 @@ bool HaveSameVoxels(vtkImageData* larger, vtkImageData* smaller)
 }
 
 // Nodes on the boundary of the mesh move repeatedly.
-void TestMoves(int resampler)
+void CheckMoves(int resampler)
 {
   const auto volume = MakeVolume({ { -3, 130, 2, 90, 0, 80 } });
   const auto mesh = MakeMesh(volume, 12, 3.0);
@@ -156,8 +156,8 @@ void TestMoves(int resampler)
   std::uniform_real_distribution<double> aside(-1.5, 1.5);
   vtkDataArray* vectors = mesh->GetPointData()->GetVectors();
   const Extent start{ { -16, 144, 0, 96, -16, 96 } };
-  VERIFY_EQUAL(GetExtent(kept.Update()), start);
-  VERIFY(HaveSameVoxels(kept.Filter->GetOutput(), tight.Update()));
+  EXPECT_EQ(GetExtent(kept.Update()), start);
+  EXPECT_TRUE(HaveSameVoxels(kept.Filter->GetOutput(), tight.Update()));
   int parts = 0;
   int extents = 0; // number of changes of the extent without BoundsGranularity
   Extent last = GetExtent(tight.Filter->GetOutput());
@@ -169,9 +169,9 @@ void TestMoves(int resampler)
     const auto z = static_cast<int>(random() % 12);
     vectors->SetTuple3((z * 12 + y) * 12 + 11, out(random), aside(random), aside(random));
     vectors->Modified();
-    VERIFY_EQUAL(GetExtent(kept.Update()), start);
-    VERIFY(HaveSameVoxels(kept.Filter->GetOutput(), tight.Update()));
-    VERIFY_EQUAL(kept.Filter->GetNumberOfCoveredVoxels(), tight.Filter->GetNumberOfCoveredVoxels());
+    EXPECT_EQ(GetExtent(kept.Update()), start);
+    EXPECT_TRUE(HaveSameVoxels(kept.Filter->GetOutput(), tight.Update()));
+    EXPECT_EQ(kept.Filter->GetNumberOfCoveredVoxels(), tight.Filter->GetNumberOfCoveredVoxels());
     parts += GetReported(kept.Filter, "Bricks resampled") <
         GetReported(kept.Filter, "Bricks of the volume")
       ? 1
@@ -182,8 +182,8 @@ void TestMoves(int resampler)
   std::cout << parts << " of " << moves << " moves were partial updates, " << extents
             << " would have changed the extent\n";
   const bool isExact = resampler == vtkDeformVolumeFilter::EXACT;
-  VERIFY_EQUAL(parts, isExact ? moves : 0);
-  VERIFY(extents > 3);
+  EXPECT_EQ(parts, isExact ? moves : 0);
+  EXPECT_GT(extents, 3);
 
   // One side of the mesh moves far away, and back.
   const auto shift = [&](double x)
@@ -194,24 +194,20 @@ void TestMoves(int resampler)
     }
     vectors->Modified();
     const Extent extent = GetExtent(kept.Update());
-    VERIFY(HaveSameVoxels(kept.Filter->GetOutput(), tight.Update()));
+    EXPECT_TRUE(HaveSameVoxels(kept.Filter->GetOutput(), tight.Update()));
     return extent;
   };
   Extent wide = start;
   wide[1] = 176;
-  VERIFY_EQUAL(shift(50.0), wide);
-  VERIFY_EQUAL(shift(30.0), wide); // an end of 160 would suffice
-  VERIFY_EQUAL(shift(0.0), start);
+  EXPECT_EQ(shift(50.0), wide);
+  EXPECT_EQ(shift(30.0), wide); // an end of 160 would suffice
+  EXPECT_EQ(shift(0.0), start);
 }
 
 } // namespace
 
-int TestDeformKeptBounds(int, char*[])
+TEST(DeformKeptBounds, Moves)
 {
-  TestBoundsGranularityProperty();
-  TestExtents();
-  TestResets();
-  TestMoves(vtkDeformVolumeFilter::EXACT);
-  TestMoves(vtkDeformVolumeFilter::MESH_RASTERIZATION);
-  return GetExitCode();
+  CheckMoves(vtkDeformVolumeFilter::EXACT);
+  CheckMoves(vtkDeformVolumeFilter::MESH_RASTERIZATION);
 }

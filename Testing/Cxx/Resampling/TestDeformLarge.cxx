@@ -10,14 +10,13 @@
 
 using namespace filterTesting;
 
-int TestDeformLarge(int, char*[])
+TEST(DeformLarge, MoreThan2To31Voxels)
 {
   vtksys::SystemInformation system;
   system.RunMemoryCheck();
   if (system.GetAvailablePhysicalMemory() < 8192)
   {
-    std::cout << "skipped: this needs 8 GiB of free memory\n";
-    return 125; // VTK_SKIP_RETURN_CODE
+    GTEST_SKIP() << "this needs 8 GiB of free memory";
   }
   const int size = 1300;
   auto volume = MakeImage({ { 0, 12, 0, 11, 0, 10 } });
@@ -31,31 +30,28 @@ int TestDeformLarge(int, char*[])
   deformed.Filter->SetCustomBounds(0.0, size - 1.0, 0.0, size - 1.0, 0.0, size - 1.0);
   vtkImageData* output = deformed.Update();
   const Extent expected{ { 0, size - 1, 0, size - 1, 0, size - 1 } };
-  VERIFY_EQUAL(GetExtent(output), expected);
+  EXPECT_EQ(GetExtent(output), expected);
   const vtkIdType points = static_cast<vtkIdType>(size) * size * size;
-  VERIFY(points > (vtkIdType(1) << 31));
-  VERIFY_EQUAL(output->GetNumberOfPoints(), points);
-  VERIFY_EQUAL(deformed.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
+  EXPECT_GT(points, vtkIdType(1) << 31);
+  EXPECT_EQ(output->GetNumberOfPoints(), points);
+  EXPECT_EQ(deformed.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
   auto* values = vtkUnsignedCharArray::SafeDownCast(deformed.GetValues());
   auto* source = vtkUnsignedCharArray::SafeDownCast(volume->GetPointData()->GetScalars());
-  if (!values || values->GetNumberOfTuples() != points)
-  {
-    return EXIT_FAILURE;
-  }
+  ASSERT_NE(values, nullptr);
+  ASSERT_EQ(values->GetNumberOfTuples(), points);
   for (vtkIdType id = 0; id < volume->GetNumberOfPoints(); ++id)
   {
     const glm::dvec3 p = GetPoint(volume, id);
     int moved[3] = { shift.x + static_cast<int>(p.x), shift.y + static_cast<int>(p.y),
       shift.z + static_cast<int>(p.z) };
     const vtkIdType target = output->ComputePointId(moved);
-    VERIFY_EQUAL(+values->GetValue(target), +source->GetValue(id));
-    VERIFY(deformed.IsCovered(target));
+    EXPECT_EQ(+values->GetValue(target), +source->GetValue(id));
+    EXPECT_TRUE(deformed.IsCovered(target));
   }
   vtkIdType covered = 0;
   for (vtkIdType id = 0; id < points; ++id)
   {
     covered += values->GetValue(id) != 0 ? 1 : 0;
   }
-  VERIFY_EQUAL(covered, volume->GetNumberOfPoints());
-  return GetExitCode();
+  EXPECT_EQ(covered, volume->GetNumberOfPoints());
 }

@@ -50,12 +50,12 @@ vtkIdType CountCovered(Deformed& deformed)
   {
     count += deformed.IsCovered(id) ? 1 : 0;
   }
-  VERIFY_EQUAL(count, deformed.Filter->GetNumberOfCoveredVoxels());
+  EXPECT_EQ(count, deformed.Filter->GetNumberOfCoveredVoxels());
   return count;
 }
 
 // The output is four times as fine, so that the tetrahedra of a cell can be distinguished.
-void TestActiveTetrahedra()
+TEST(DeformMasks, ActiveTetrahedra)
 {
   auto volume = MakeVolume(Box);
   auto active = MakeBytes("ActiveTetrahedra", volume->GetNumberOfCells(), 31);
@@ -65,13 +65,13 @@ void TestActiveTetrahedra()
   deformed.Filter->SetOutputSpacingModeToCustomSpacing();
   deformed.Filter->SetCustomSpacing(0.25, 0.25, 0.25);
   const vtkIdType all = CountCovered(deformed);
-  VERIFY_EQUAL(all, 37 * 33 * 29);
-  VERIFY(deformed.TakeWarning().empty());
+  EXPECT_EQ(all, 37 * 33 * 29);
+  EXPECT_EQ(deformed.TakeWarning(), "");
 
   // Other bits than the lowest five are ignored.
   active->Fill(255);
   active->Modified();
-  VERIFY_EQUAL(CountCovered(deformed), all);
+  EXPECT_EQ(CountCovered(deformed), all);
 
   // Samples inside one cell of even parity, at (2, 4, 6), for each mask of its tetrahedra. Its
   // corner tetrahedra 0 to 3 are at the corners (0,0,1), (1,1,1), (1,0,0), (0,1,0).
@@ -112,13 +112,13 @@ void TestActiveTetrahedra()
         }
       }
     }
-    VERIFY_EQUAL(wrong, 0);
+    EXPECT_EQ(wrong, 0);
   }
   active->Fill(0);
   active->Modified();
-  VERIFY_EQUAL(CountCovered(deformed), 0);
+  EXPECT_EQ(CountCovered(deformed), 0);
   volume->GetCellData()->RemoveArray("ActiveTetrahedra");
-  VERIFY_EQUAL(CountCovered(deformed), all);
+  EXPECT_EQ(CountCovered(deformed), all);
 
   // An array of bytes that is not a vtkUnsignedCharArray: VTK makes such arrays since version 9.6.
   const auto plain = vtkSmartPointer<vtkAOSDataArrayTemplate<unsigned char>>::New();
@@ -126,10 +126,10 @@ void TestActiveTetrahedra()
   plain->SetNumberOfTuples(volume->GetNumberOfCells());
   plain->FillValue(0);
   volume->GetCellData()->AddArray(plain);
-  VERIFY_EQUAL(CountCovered(deformed), 0);
+  EXPECT_EQ(CountCovered(deformed), 0);
 }
 
-void TestHiddenCells()
+TEST(DeformMasks, HiddenCells)
 {
   auto volume = MakeVolume(Box);
   auto mesh = MakeStillMesh(volume);
@@ -142,10 +142,10 @@ void TestHiddenCells()
   volume->GetCellData()->AddArray(ghosts);
   // Only the sample in the middle of the cell is not covered: others belong to neighboring cells,
   // too.
-  VERIFY_EQUAL(CountCovered(deformed), all - 1);
+  EXPECT_EQ(CountCovered(deformed), all - 1);
 }
 
-void TestHiddenAndDuplicatePoints()
+TEST(DeformMasks, HiddenAndDuplicatePoints)
 {
   for (const unsigned char kind :
     { vtkDataSetAttributes::HIDDENPOINT, vtkDataSetAttributes::DUPLICATEPOINT })
@@ -160,19 +160,19 @@ void TestHiddenAndDuplicatePoints()
     ghosts->SetValue(volume->ComputePointId(inside), kind);
     ghosts->SetValue(volume->ComputePointId(corner), kind);
     volume->GetPointData()->AddArray(ghosts);
-    VERIFY_EQUAL(CountCovered(deformed), all - 2);
+    EXPECT_EQ(CountCovered(deformed), all - 2);
     vtkImageData* output = deformed.Filter->GetOutput();
-    VERIFY(!deformed.IsCovered(output->ComputePointId(inside)));
-    VERIFY_EQUAL(deformed.GetValues()->GetComponent(output->ComputePointId(inside), 0), 0.0);
+    EXPECT_FALSE(deformed.IsCovered(output->ComputePointId(inside)));
+    EXPECT_EQ(deformed.GetValues()->GetComponent(output->ComputePointId(inside), 0), 0.0);
     // The output does not get the ghost array of the volume.
-    VERIFY(!output->GetPointData()->GetArray(vtkDataSetAttributes::GhostArrayName()));
+    EXPECT_FALSE(output->GetPointData()->GetArray(vtkDataSetAttributes::GhostArrayName()));
     ghosts->Fill(0);
     ghosts->Modified();
-    VERIFY_EQUAL(CountCovered(deformed), all);
+    EXPECT_EQ(CountCovered(deformed), all);
   }
 }
 
-void TestBlankingByUniformGrid()
+TEST(DeformMasks, BlankingByUniformGrid)
 {
   vtkNew<vtkUniformGrid> volume;
   volume->DeepCopy(MakeVolume(Box));
@@ -182,8 +182,8 @@ void TestBlankingByUniformGrid()
   int inside[3] = { 3, 4, 7 };
   volume->BlankPoint(volume->ComputePointId(inside));
   volume->Modified();
-  VERIFY_EQUAL(CountCovered(deformed), all - 1);
-  VERIFY(!deformed.IsCovered(volume->ComputePointId(inside)));
+  EXPECT_EQ(CountCovered(deformed), all - 1);
+  EXPECT_FALSE(deformed.IsCovered(volume->ComputePointId(inside)));
 }
 
 template <typename Array>
@@ -198,7 +198,7 @@ vtkSmartPointer<Array> MakeValidMask(vtkIdType size)
 
 // Points whose vtkValidPointMask is 0 are hidden, with and without other hidden points.
 template <typename Array>
-void TestValidPoints()
+void CheckValidPoints()
 {
   const auto volume = MakeVolume(Box);
   const auto mesh = MakeStillMesh(volume);
@@ -206,47 +206,47 @@ void TestValidPoints()
   volume->GetPointData()->AddArray(valid);
   Deformed deformed(volume, mesh);
   const vtkIdType all = CountCovered(deformed);
-  VERIFY_EQUAL(all, volume->GetNumberOfPoints());
+  EXPECT_EQ(all, volume->GetNumberOfPoints());
   int inside[3] = { 3, 4, 7 };
   int other[3] = { 5, 2, 5 };
   valid->SetValue(volume->ComputePointId(inside), 0);
   valid->Modified();
-  VERIFY_EQUAL(CountCovered(deformed), all - 1);
-  VERIFY(!deformed.IsCovered(volume->ComputePointId(inside)));
+  EXPECT_EQ(CountCovered(deformed), all - 1);
+  EXPECT_FALSE(deformed.IsCovered(volume->ComputePointId(inside)));
   auto ghosts = MakeBytes(vtkDataSetAttributes::GhostArrayName(), volume->GetNumberOfPoints(), 0);
   ghosts->SetValue(volume->ComputePointId(other), vtkDataSetAttributes::HIDDENPOINT);
   volume->GetPointData()->AddArray(ghosts);
-  VERIFY_EQUAL(CountCovered(deformed), all - 2);
+  EXPECT_EQ(CountCovered(deformed), all - 2);
   valid->Fill(1);
   valid->Modified();
-  VERIFY_EQUAL(CountCovered(deformed), all - 1);
-  VERIFY(deformed.IsCovered(volume->ComputePointId(inside)));
+  EXPECT_EQ(CountCovered(deformed), all - 1);
+  EXPECT_TRUE(deformed.IsCovered(volume->ComputePointId(inside)));
   // A log of the ghosts does not keep points hidden that have become valid.
   vtkNew<vtkArrayChanges> changes;
   changes->SetArray(ghosts);
   CountCovered(deformed);
   valid->SetValue(volume->ComputePointId(inside), 0);
   valid->Modified();
-  VERIFY_EQUAL(CountCovered(deformed), all - 2);
+  EXPECT_EQ(CountCovered(deformed), all - 2);
   valid->Fill(1);
   valid->Modified();
   ghosts->SetValue(volume->ComputePointId(other), 0);
   changes->AddTuples(volume->ComputePointId(other), volume->ComputePointId(other));
-  VERIFY_EQUAL(CountCovered(deformed), all);
+  EXPECT_EQ(CountCovered(deformed), all);
   // With a sampling factor only every other point counts.
   deformed.Filter->SetSamplingFactor(2);
   const vtkIdType coarse = CountCovered(deformed);
   valid->SetValue(volume->ComputePointId(inside), 0); // not sampled
   valid->Modified();
-  VERIFY_EQUAL(CountCovered(deformed), coarse);
+  EXPECT_EQ(CountCovered(deformed), coarse);
   int sampled[3] = { 2, 4, 6 };
   valid->SetValue(volume->ComputePointId(sampled), 0);
   valid->Modified();
-  VERIFY(CountCovered(deformed) < coarse);
+  EXPECT_LT(CountCovered(deformed), coarse);
 }
 
 // The second filter does not take the background of the first one for values of the volume.
-void TestChain()
+TEST(DeformMasks, Chain)
 {
   const auto volume = MakeImage({ { 0, 19, 0, 19, 0, 19 } });
   AddScalars<short>(volume, "value", [](const glm::dvec3&) { return 1000.0; });
@@ -260,19 +260,19 @@ void TestChain()
   second.Filter->SetDeformationData(mesh);
   second.Filter->SetBackgroundValue(-1000.0);
   second.Update();
-  VERIFY(second.Filter->GetNumberOfCoveredVoxels() > 300);
-  VERIFY(second.Filter->GetNumberOfCoveredVoxels() < first.Filter->GetNumberOfCoveredVoxels());
+  EXPECT_GT(second.Filter->GetNumberOfCoveredVoxels(), 300);
+  EXPECT_LT(second.Filter->GetNumberOfCoveredVoxels(), first.Filter->GetNumberOfCoveredVoxels());
   int wrong = 0;
   for (vtkIdType id = 0; id < second.Filter->GetOutput()->GetNumberOfPoints(); ++id)
   {
     wrong += second.GetValues()->GetComponent(id, 0) != (second.IsCovered(id) ? 1000.0 : -1000.0);
   }
-  VERIFY_EQUAL(wrong, 0);
+  EXPECT_EQ(wrong, 0);
 }
 
 // Vectors of a field where the mask is 0 are undefined, as those of hidden points are. fine: the
 // field has twice the resolution of the volume, so that only some of its points are read.
-void TestValidVectors(bool inverse, bool fine)
+void CheckValidVectors(bool inverse, bool fine)
 {
   const auto volume = MakeVolume(Box);
   const Extent extent = fine ? Extent{ { -2, 16, 0, 16, 6, 20 } } : Box;
@@ -287,7 +287,7 @@ void TestValidVectors(bool inverse, bool fine)
   valid->SetValue(point, 0);
   valid->Modified();
   const vtkIdType less = CountCovered(deformed);
-  VERIFY(less < all);
+  EXPECT_LT(less, all);
   vtkNew<vtkDeformGeometryFilter> points;
   vtkNew<vtkPolyData> surface;
   vtkNew<vtkPoints> positions;
@@ -298,20 +298,20 @@ void TestValidVectors(bool inverse, bool fine)
   points->SetFieldIsInverse(inverse);
   points->Update();
   const vtkIdType outside = points->GetNumberOfOutsidePoints();
-  VERIFY(outside == 1 || inverse);
+  EXPECT_TRUE(outside == 1 || inverse);
   valid->SetValue(point, 1);
   valid->Modified();
-  VERIFY_EQUAL(CountCovered(deformed), all);
+  EXPECT_EQ(CountCovered(deformed), all);
   points->Update();
-  VERIFY_EQUAL(points->GetNumberOfOutsidePoints(), vtkIdType{ 0 });
+  EXPECT_EQ(points->GetNumberOfOutsidePoints(), 0);
   auto ghosts = MakeBytes(vtkDataSetAttributes::GhostArrayName(), field->GetNumberOfPoints(), 0);
   ghosts->SetValue(point, vtkDataSetAttributes::HIDDENPOINT);
   field->GetPointData()->AddArray(ghosts);
-  VERIFY_EQUAL(CountCovered(deformed), less);
+  EXPECT_EQ(CountCovered(deformed), less);
 }
 
 // Cells of a rectilinear mesh that have a point whose mask is 0 are left out.
-void TestValidNodes()
+TEST(DeformMasks, ValidNodes)
 {
   const auto volume = MakeVolume(Box);
   vtkNew<vtkRectilinearGrid> mesh;
@@ -335,42 +335,38 @@ void TestValidNodes()
   valid->SetValue(62, 0); // the middle
   mesh->GetPointData()->AddArray(valid);
   const vtkIdType less = CountCovered(deformed);
-  VERIFY(less < all);
+  EXPECT_LT(less, all);
   auto ghosts = MakeBytes(vtkDataSetAttributes::GhostArrayName(), mesh->GetNumberOfPoints(), 0);
   ghosts->SetValue(62, vtkDataSetAttributes::HIDDENPOINT);
   mesh->GetPointData()->RemoveArray("vtkValidPointMask");
   mesh->GetPointData()->AddArray(ghosts);
-  VERIFY_EQUAL(CountCovered(deformed), less);
+  EXPECT_EQ(CountCovered(deformed), less);
 }
 
-void TestValidMisuse()
+TEST(DeformMasks, ValidMisuse)
 {
   const auto volume = MakeVolume(Box);
   const auto mesh = MakeStillMesh(volume);
   volume->GetPointData()->AddArray(MakeValidMask<vtkCharArray>(3));
   Deformed deformed(volume, mesh);
   deformed.Filter->Update();
-  VERIFY_EQUAL(deformed.TakeErrors(), 1);
-  VERIFY_CONTAINS(deformed.LastError, "\"vtkValidPointMask\" of the volume has 3 tuples");
+  EXPECT_EQ(deformed.TakeErrors(), 1);
+  EXPECT_TRUE(HasPart(deformed.LastError, "\"vtkValidPointMask\" of the volume has 3 tuples"));
 }
 
 } // namespace
 
-int TestDeformMasks(int, char*[])
+TEST(DeformMasks, ValidPoints)
 {
-  TestActiveTetrahedra();
-  TestHiddenCells();
-  TestHiddenAndDuplicatePoints();
-  TestBlankingByUniformGrid();
-  TestValidPoints<vtkCharArray>();
-  TestValidPoints<vtkIntArray>();
-  TestChain();
+  CheckValidPoints<vtkCharArray>();
+  CheckValidPoints<vtkIntArray>();
+}
+
+TEST(DeformMasks, ValidVectors)
+{
   for (const bool inverse : { false, true })
   {
-    TestValidVectors(inverse, false);
-    TestValidVectors(inverse, true);
+    CheckValidVectors(inverse, false);
+    CheckValidVectors(inverse, true);
   }
-  TestValidNodes();
-  TestValidMisuse();
-  return GetExitCode();
 }

@@ -14,6 +14,11 @@ using namespace filterTesting;
 namespace
 {
 
+class DeformMemory : public testing::Test
+{
+  void SetUp() override { SKIP_WITHOUT_DOUBLE_PRECISION() }
+};
+
 struct Subject
 {
   Subject()
@@ -44,7 +49,7 @@ struct Subject
 };
 
 // An output that a caller holds is not written again, even if only one of its arrays is held.
-void TestHeldOutputs()
+TEST_F(DeformMemory, HeldOutputs)
 {
   Subject subject;
   vtkNew<vtkImageData> held;
@@ -52,20 +57,20 @@ void TestHeldOutputs()
   vtkNew<vtkImageData> before;
   before->DeepCopy(held);
   subject.Move(1.75);
-  VERIFY(AreEqual(subject.Filtered.Update(), subject.GetFresh()));
-  VERIFY(AreEqual(held, before));
-  VERIFY(!AreEqual(subject.Filtered.Filter->GetOutput(), before));
+  EXPECT_TRUE(AreEqual(subject.Filtered.Update(), subject.GetFresh()));
+  EXPECT_TRUE(AreEqual(held, before));
+  EXPECT_FALSE(AreEqual(subject.Filtered.Filter->GetOutput(), before));
 
   vtkSmartPointer<vtkDataArray> values = subject.Filtered.GetValues();
   vtkNew<vtkImageData> second;
   second->DeepCopy(subject.Filtered.Filter->GetOutput());
   subject.Move(-2.5);
-  VERIFY(AreEqual(subject.Filtered.Update(), subject.GetFresh()));
-  VERIFY(HaveEqualBits(values, second->GetPointData()->GetScalars()));
+  EXPECT_TRUE(AreEqual(subject.Filtered.Update(), subject.GetFresh()));
+  EXPECT_TRUE(HaveEqualBits(values, second->GetPointData()->GetScalars()));
 }
 
 // An output that no caller holds is written again, and downstream filters detect the change.
-void TestReusedOutputs()
+TEST_F(DeformMemory, ReusedOutputs)
 {
   Subject subject;
   vtkNew<vtkImageShiftScale> after;
@@ -83,52 +88,52 @@ void TestReusedOutputs()
     subject.Volume->GetPointData()->GetScalars()->Modified();
     const vtkMTimeType time = subject.Filtered.GetValues()->GetMTime();
     after->Update();
-    VERIFY_EQUAL(subject.Filtered.GetValues()->GetVoidPointer(0), memory);
-    VERIFY(subject.Filtered.GetValues()->GetMTime() > time);
+    EXPECT_EQ(subject.Filtered.GetValues()->GetVoidPointer(0), memory);
+    EXPECT_GT(subject.Filtered.GetValues()->GetMTime(), time);
     const auto fresh = subject.GetFresh();
-    VERIFY(AreEqual(subject.Filtered.Filter->GetOutput(), fresh));
-    VERIFY_EQUAL(subject.Filtered.GetValues()->GetRange()[1],
+    EXPECT_TRUE(AreEqual(subject.Filtered.Filter->GetOutput(), fresh));
+    EXPECT_EQ(subject.Filtered.GetValues()->GetRange()[1],
       fresh->GetPointData()->GetScalars()->GetRange()[1]);
-    VERIFY_EQUAL(after->GetOutput()->GetPointData()->GetScalars()->GetComponent(900, 0),
+    EXPECT_EQ(after->GetOutput()->GetPointData()->GetScalars()->GetComponent(900, 0),
       fresh->GetPointData()->GetScalars()->GetComponent(900, 0) + 3.0);
   }
 }
 
 // Memory is reused for smaller outputs, unless more than half of it would be unused.
-void TestOutputsOfOtherSizes()
+TEST_F(DeformMemory, OutputsOfOtherSizes)
 {
   Subject subject;
   subject.Filtered.Filter->SetOutputBoundsModeToDeformedBounds();
   const auto update = [&](double scale)
   {
     SetDisplacements(subject.Mesh, [&](const glm::dvec3& p) { return scale * p; });
-    VERIFY(AreEqual(subject.Filtered.Update(), subject.GetFresh()));
+    EXPECT_TRUE(AreEqual(subject.Filtered.Update(), subject.GetFresh()));
     return subject.Filtered.GetValues();
   };
   const vtkIdType whole = update(1.0)->GetNumberOfTuples();
   vtkIdType size = update(1.3)->GetSize();
-  VERIFY(subject.Filtered.GetValues()->GetNumberOfTuples() > whole);
+  EXPECT_GT(subject.Filtered.GetValues()->GetNumberOfTuples(), whole);
   const void* memory = subject.Filtered.GetValues()->GetVoidPointer(0);
   for (const double scale : { 1.2, 1.28, 1.15, 1.3 })
   {
     vtkDataArray* values = update(scale);
-    VERIFY_EQUAL(values->GetVoidPointer(0), memory);
-    VERIFY_EQUAL(values->GetSize(), size);
+    EXPECT_EQ(values->GetVoidPointer(0), memory);
+    EXPECT_EQ(values->GetSize(), size);
   }
   // A larger output, one of less than half the size, and one while the last output is held.
-  VERIFY(update(1.33)->GetSize() > size);
+  EXPECT_GT(update(1.33)->GetSize(), size);
   size = subject.Filtered.GetValues()->GetSize();
-  VERIFY(update(0.9)->GetSize() < size / 2);
+  EXPECT_LT(update(0.9)->GetSize(), size / 2);
   vtkNew<vtkImageData> held;
   held->ShallowCopy(subject.Filtered.Filter->GetOutput());
   vtkNew<vtkImageData> before;
   before->DeepCopy(held);
   update(1.2);
-  VERIFY(AreEqual(held, before));
+  EXPECT_TRUE(AreEqual(held, before));
 }
 
 // An array that is reused has the description of a new one.
-void TestDescriptionOfArrays()
+TEST_F(DeformMemory, DescriptionOfArrays)
 {
   Subject subject;
   vtkNew<vtkLookupTable> table;
@@ -139,32 +144,31 @@ void TestDescriptionOfArrays()
   values->SetComponentName(0, "first");
   subject.Volume->Modified();
   subject.Filtered.Update();
-  VERIFY_EQUAL(std::string(subject.Filtered.GetValues()->GetName()), std::string("other"));
-  VERIFY_EQUAL(
-    std::string(subject.Filtered.GetValues()->GetComponentName(0)), std::string("first"));
-  VERIFY(subject.Filtered.GetValues()->GetLookupTable() == table);
+  EXPECT_EQ(std::string(subject.Filtered.GetValues()->GetName()), std::string("other"));
+  EXPECT_EQ(std::string(subject.Filtered.GetValues()->GetComponentName(0)), std::string("first"));
+  EXPECT_EQ(subject.Filtered.GetValues()->GetLookupTable(), table);
   subject.Volume->GetPointData()->SetScalars(nullptr);
   subject.Volume->GetPointData()->RemoveArray("other");
   AddScalars<double>(subject.Volume, "third", [](const glm::dvec3& p) { return p.x - p.z; });
-  VERIFY(AreEqual(subject.Filtered.Update(), subject.GetFresh()));
-  VERIFY_EQUAL(std::string(subject.Filtered.GetValues()->GetName()), std::string("third"));
-  VERIFY(subject.Filtered.GetValues()->GetComponentName(0) == nullptr);
-  VERIFY(subject.Filtered.GetValues()->GetLookupTable() == nullptr);
+  EXPECT_TRUE(AreEqual(subject.Filtered.Update(), subject.GetFresh()));
+  EXPECT_EQ(std::string(subject.Filtered.GetValues()->GetName()), std::string("third"));
+  EXPECT_EQ(subject.Filtered.GetValues()->GetComponentName(0), nullptr);
+  EXPECT_EQ(subject.Filtered.GetValues()->GetLookupTable(), nullptr);
 }
 
 // A CPU device does not copy the arrays of the volume. The filter holds references to them as long
 // as it needs them.
-void TestVolumeInPlace()
+TEST_F(DeformMemory, VolumeInPlace)
 {
   Subject subject;
   vtkDataArray* values = subject.Volume->GetPointData()->GetScalars();
   const int references = values->GetReferenceCount();
   subject.Filtered.Update();
   const vtkTypeInt64 memory = subject.Filtered.Filter->GetDeviceMemory();
-  VERIFY(memory > 0);
+  EXPECT_GT(memory, 0);
   const bool inPlace = values->GetReferenceCount() > references;
   subject.Filtered.Filter->ReleaseDeviceMemory();
-  VERIFY_EQUAL(values->GetReferenceCount(), references);
+  EXPECT_EQ(values->GetReferenceCount(), references);
 
   // An array in another memory layout is copied on any device.
   auto soa = vtkSmartPointer<vtkSOADataArrayTemplate<double>>::New();
@@ -179,12 +183,12 @@ void TestVolumeInPlace()
   subject.Volume->GetPointData()->AddArray(soa);
   const int soaReferences = soa->GetReferenceCount();
   subject.Filtered.Filter->Modified();
-  VERIFY(AreEqual(subject.Filtered.Update(), subject.GetFresh()));
-  VERIFY_EQUAL(soa->GetReferenceCount(), soaReferences);
+  EXPECT_TRUE(AreEqual(subject.Filtered.Update(), subject.GetFresh()));
+  EXPECT_EQ(soa->GetReferenceCount(), soaReferences);
   if (inPlace)
   {
     // Device memory holds the static mapping and the states of vertices, not the values.
-    VERIFY_EQUAL(subject.Filtered.Filter->GetDeviceMemory(), memory);
+    EXPECT_EQ(subject.Filtered.Filter->GetDeviceMemory(), memory);
   }
 
   // Another volume replaces the first one, whose arrays are released.
@@ -192,11 +196,11 @@ void TestVolumeInPlace()
   subject.Filtered.Filter->SetInputData(other);
   subject.Volume->GetPointData()->RemoveArray("pairs");
   subject.Filtered.Update();
-  VERIFY_EQUAL(values->GetReferenceCount(), references);
+  EXPECT_EQ(values->GetReferenceCount(), references);
 }
 
 // When the pipeline releases an output, the filter does not keep its memory.
-void TestReleasedOutputs()
+TEST_F(DeformMemory, ReleasedOutputs)
 {
   for (const bool failing : { false, true })
   {
@@ -209,22 +213,22 @@ void TestReleasedOutputs()
     {
       subject.Filtered.Filter->SetDisplacementScale(vtkMath::Inf());
       subject.Filtered.Filter->Update();
-      VERIFY_EQUAL(subject.Filtered.TakeErrors(), 1);
+      EXPECT_EQ(subject.Filtered.TakeErrors(), 1);
       subject.Filtered.Filter->SetDisplacementScale(1.0);
     }
     else
     {
       subject.Filtered.Filter->GetOutput()->ReleaseData();
     }
-    VERIFY_EQUAL(values->GetReferenceCount(), 1);
+    EXPECT_EQ(values->GetReferenceCount(), 1);
     subject.Filtered.Filter->Modified();
-    VERIFY(AreEqual(subject.Filtered.Update(), subject.GetFresh()));
+    EXPECT_TRUE(AreEqual(subject.Filtered.Update(), subject.GetFresh()));
   }
 }
 
 // When the deformation is replaced, the memory of the previous one is released and does not count
 // toward the memory limit, even if the volume is replaced at the same time.
-void TestOtherDeformations()
+TEST_F(DeformMemory, OtherDeformations)
 {
   for (const bool otherVolume : { false, true })
   {
@@ -239,37 +243,20 @@ void TestOtherDeformations()
     fresh.Filter->SetOutputBoundsModeToVolumeBounds();
     fresh.Update();
     const vtkIdType enough = fresh.Filter->GetDeviceMemory();
-    VERIFY(enough > 0);
+    EXPECT_GT(enough, 0);
     const auto mesh = MakeMesh(subject.Volume, 12);
     SetDisplacements(mesh, Shift(0.5, 0.25, 0.0));
     Deformed tested(subject.Volume, mesh);
     tested.Filter->SetOutputBoundsModeToVolumeBounds();
     tested.Update();
-    VERIFY(tested.Filter->GetDeviceMemory() > enough);
+    EXPECT_GT(tested.Filter->GetDeviceMemory(), enough);
     tested.Filter->SetInputData(volume);
     tested.Filter->SetDeformationData(field);
     tested.Filter->SetMemoryLimit(4 * enough);
-    VERIFY(AreEqual(tested.Update(), fresh.Filter->GetOutput()));
-    VERIFY_EQUAL(tested.TakeErrors(), 0);
-    VERIFY_EQUAL(tested.Filter->GetDeviceMemory(), enough);
+    EXPECT_TRUE(AreEqual(tested.Update(), fresh.Filter->GetOutput()));
+    EXPECT_EQ(tested.TakeErrors(), 0);
+    EXPECT_EQ(tested.Filter->GetDeviceMemory(), enough);
   }
 }
 
 } // namespace
-
-int TestDeformMemory(int, char*[])
-{
-  if (!HasDoublePrecision())
-  {
-    std::cout << "skipped: the device has no double precision\n";
-    return 125; // VTK_SKIP_RETURN_CODE
-  }
-  TestHeldOutputs();
-  TestReusedOutputs();
-  TestOutputsOfOtherSizes();
-  TestDescriptionOfArrays();
-  TestVolumeInPlace();
-  TestReleasedOutputs();
-  TestOtherDeformations();
-  return GetExitCode();
-}

@@ -20,6 +20,11 @@ using namespace filterTesting;
 namespace
 {
 
+class DeformRasterization : public testing::Test
+{
+  void SetUp() override { SKIP_WITHOUT_DOUBLE_PRECISION() }
+};
+
 const Extent Box{ { -3, 16, 2, 17, -8, 10 } };
 
 glm::dvec3 Bend(const glm::dvec3& p)
@@ -31,12 +36,12 @@ std::string GetError(Deformed& deformed)
 {
   deformed.Filter->Modified();
   deformed.Filter->Update();
-  VERIFY_EQUAL(deformed.TakeErrors(), 1);
-  VERIFY_EQUAL(deformed.Filter->GetOutput()->GetNumberOfPoints(), 0);
+  EXPECT_EQ(deformed.TakeErrors(), 1);
+  EXPECT_EQ(deformed.Filter->GetOutput()->GetNumberOfPoints(), 0);
   return deformed.LastError;
 }
 
-void TestMisuse()
+TEST_F(DeformRasterization, Misuse)
 {
   auto volume = MakeVolume(Box);
   auto mesh = MakeMesh(volume);
@@ -46,44 +51,43 @@ void TestMisuse()
 
   Deformed byField(volume, field);
   byField.Filter->SetResamplerToMeshRasterization();
-  VERIFY_CONTAINS(GetError(byField), "displacement fields");
+  EXPECT_TRUE(HasPart(GetError(byField), "displacement fields"));
   byField.Filter->SetResamplerToAutomatic();
   byField.Update();
-  VERIFY_EQUAL(byField.Filter->GetResamplerInUse(), int(vtkDeformVolumeFilter::EXACT));
+  EXPECT_EQ(byField.Filter->GetResamplerInUse(), int(vtkDeformVolumeFilter::EXACT));
   byField.Filter->SetInterpolationToCubicInterpolation();
   byField.Update();
-  VERIFY_EQUAL(byField.Filter->GetResamplerInUse(), int(vtkDeformVolumeFilter::EXACT));
+  EXPECT_EQ(byField.Filter->GetResamplerInUse(), int(vtkDeformVolumeFilter::EXACT));
 
   Deformed deformed(volume, mesh);
-  VERIFY_EQUAL(deformed.Filter->GetResamplerInUse(), int(vtkDeformVolumeFilter::AUTOMATIC));
+  EXPECT_EQ(deformed.Filter->GetResamplerInUse(), int(vtkDeformVolumeFilter::AUTOMATIC));
   deformed.Filter->SetResamplerToMeshRasterization();
   deformed.Filter->SetOutsideModeToExtrapolate();
-  VERIFY_CONTAINS(GetError(deformed), "OutsideMode");
+  EXPECT_TRUE(HasPart(GetError(deformed), "OutsideMode"));
   deformed.Filter->SetOutsideModeToDiscard();
   deformed.Filter->SetInterpolationToCubicInterpolation();
   deformed.Filter->SetResamplerToExact();
   deformed.Filter->SetResampler(1);
-  VERIFY_EQUAL(deformed.TakeErrors(), 1);
-  VERIFY_CONTAINS(deformed.LastError, "AUTOMATIC (3)");
-  VERIFY_EQUAL(deformed.Filter->GetResampler(), int(vtkDeformVolumeFilter::EXACT));
+  EXPECT_EQ(deformed.TakeErrors(), 1);
+  EXPECT_TRUE(HasPart(deformed.LastError, "AUTOMATIC (3)"));
+  EXPECT_EQ(deformed.Filter->GetResampler(), int(vtkDeformVolumeFilter::EXACT));
   deformed.Filter->SetFromState("Resampler", vtkDeformVolumeFilter::MESH_RASTERIZATION);
-  VERIFY_EQUAL(deformed.Filter->GetResampler(), int(vtkDeformVolumeFilter::MESH_RASTERIZATION));
+  EXPECT_EQ(deformed.Filter->GetResampler(), int(vtkDeformVolumeFilter::MESH_RASTERIZATION));
   for (const char* name : { "Padding", "", static_cast<const char*>(nullptr) })
   {
     deformed.Filter->SetFromState(name, 1);
-    VERIFY_EQUAL(deformed.TakeErrors(), 1);
-    VERIFY_CONTAINS(deformed.LastError, "does not know the property");
+    EXPECT_EQ(deformed.TakeErrors(), 1);
+    EXPECT_TRUE(HasPart(deformed.LastError, "does not know the property"));
   }
   deformed.Filter->SetMemoryLimit(1000);
-  VERIFY_CONTAINS(GetError(deformed), "1000");
+  EXPECT_TRUE(HasPart(GetError(deformed), "1000"));
   deformed.Filter->SetMemoryLimit(0);
   deformed.Update();
-  VERIFY_EQUAL(
-    deformed.Filter->GetResamplerInUse(), int(vtkDeformVolumeFilter::MESH_RASTERIZATION));
+  EXPECT_EQ(deformed.Filter->GetResamplerInUse(), int(vtkDeformVolumeFilter::MESH_RASTERIZATION));
 }
 
 // Both resamplers reproduce a volume of any geometry that is at rest, or moved by whole voxels.
-void TestUndeformed()
+TEST_F(DeformRasterization, Undeformed)
 {
   for (const double sign : { 1.0, -1.0 })
   {
@@ -106,15 +110,15 @@ void TestUndeformed()
       vtkNew<vtkImageData> exact;
       exact->DeepCopy(deformed.Update());
       deformed.Filter->SetResamplerToMeshRasterization();
-      VERIFY(AreEqual(deformed.Update(), exact));
-      VERIFY_EQUAL(deformed.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
-      VERIFY(HaveEqualBits(deformed.GetValues(), volume->GetPointData()->GetScalars()));
+      EXPECT_TRUE(AreEqual(deformed.Update(), exact));
+      EXPECT_EQ(deformed.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
+      EXPECT_TRUE(HaveEqualBits(deformed.GetValues(), volume->GetPointData()->GetScalars()));
     }
   }
 }
 
 // A linear function under an affine map of the world.
-void TestAffineMap()
+TEST_F(DeformRasterization, AffineMap)
 {
   auto volume = MakeImage(Box, glm::dvec3(0.8, 1.1, -1.3), glm::dvec3(5.0, 6.0, 7.0));
   const auto function = [](const glm::dvec3& p) { return 3.0 * p.x - 2.0 * p.y + 0.5 * p.z; };
@@ -161,38 +165,38 @@ void TestAffineMap()
         0.5 + 0.4 + 0.5;
     }
   }
-  VERIFY_EQUAL(wrong, 0);
-  VERIFY_EQUAL(covered, deformed.Filter->GetNumberOfCoveredVoxels());
-  VERIFY(covered > 5000);
+  EXPECT_EQ(wrong, 0);
+  EXPECT_EQ(covered, deformed.Filter->GetNumberOfCoveredVoxels());
+  EXPECT_GT(covered, 5000);
 
   // The report: no static mapping is built, and a moved mesh does not upload the volume again.
-  VERIFY_EQUAL(GetReported(deformed.Filter, "Static mappings made"), 0);
-  VERIFY_EQUAL(GetReported(deformed.Filter, "Volumes sent"), 1);
-  VERIFY_EQUAL(GetReportedSeconds(deformed.Filter, "Seconds for the static mapping"), 0.0);
-  VERIFY(GetReportedSeconds(deformed.Filter, "Seconds for mapping") > 0.0);
-  VERIFY(GetReportedSeconds(deformed.Filter, "Seconds for resampling") > 0.0);
-  VERIFY_EQUAL(deformed.Filter->GetNumberOfInvertedTetrahedra(), 0);
-  VERIFY_EQUAL(deformed.Filter->GetNumberOfFlatTetrahedra(), 0);
+  EXPECT_EQ(GetReported(deformed.Filter, "Static mappings made"), 0);
+  EXPECT_EQ(GetReported(deformed.Filter, "Volumes sent"), 1);
+  EXPECT_EQ(GetReportedSeconds(deformed.Filter, "Seconds for the static mapping"), 0.0);
+  EXPECT_GT(GetReportedSeconds(deformed.Filter, "Seconds for mapping"), 0.0);
+  EXPECT_GT(GetReportedSeconds(deformed.Filter, "Seconds for resampling"), 0.0);
+  EXPECT_EQ(deformed.Filter->GetNumberOfInvertedTetrahedra(), 0);
+  EXPECT_EQ(deformed.Filter->GetNumberOfFlatTetrahedra(), 0);
   SetDisplacements(mesh, [](const glm::dvec3& p) { return glm::dvec3(-p.x, p.y, p.z); });
   deformed.Update();
-  VERIFY_EQUAL(GetReported(deformed.Filter, "Static mappings made"), 0);
-  VERIFY_EQUAL(GetReported(deformed.Filter, "Volumes sent"), 1);
-  VERIFY_EQUAL(deformed.Filter->GetNumberOfInvertedTetrahedra(), mesh->GetNumberOfCells());
-  VERIFY(deformed.Filter->GetNumberOfCoveredVoxels() > 5000);
+  EXPECT_EQ(GetReported(deformed.Filter, "Static mappings made"), 0);
+  EXPECT_EQ(GetReported(deformed.Filter, "Volumes sent"), 1);
+  EXPECT_EQ(deformed.Filter->GetNumberOfInvertedTetrahedra(), mesh->GetNumberOfCells());
+  EXPECT_GT(deformed.Filter->GetNumberOfCoveredVoxels(), 5000);
 
   // Change to the other resampler and back.
   deformed.Filter->SetResamplerToExact();
   deformed.Update();
-  VERIFY_EQUAL(GetReported(deformed.Filter, "Static mappings made"), 1);
+  EXPECT_EQ(GetReported(deformed.Filter, "Static mappings made"), 1);
   deformed.Filter->SetResamplerToMeshRasterization();
   SetDisplacements(mesh, Shift(0.0, 0.0, 0.0));
   deformed.Filter->SetOutputSpacingModeToVolumeSpacing();
-  VERIFY(HaveEqualBits(deformed.Update()->GetPointData()->GetArray("value"),
+  EXPECT_TRUE(HaveEqualBits(deformed.Update()->GetPointData()->GetArray("value"),
     volume->GetPointData()->GetArray("value")));
 }
 
 // In an undeformed volume masks hide the same samples with both resamplers.
-void TestMasks()
+TEST_F(DeformRasterization, Masks)
 {
   auto volume = MakeVolume(Box);
   vtkNew<vtkUnsignedCharArray> active;
@@ -213,10 +217,10 @@ void TestMasks()
   exact->DeepCopy(deformed.Update());
   deformed.Filter->SetResamplerToMeshRasterization();
   deformed.Update();
-  VERIFY(HaveEqualBits(exact->GetPointData()->GetArray("vtkValidPointMask"),
+  EXPECT_TRUE(HaveEqualBits(exact->GetPointData()->GetArray("vtkValidPointMask"),
     deformed.Filter->GetOutput()->GetPointData()->GetArray("vtkValidPointMask")));
-  VERIFY(deformed.Filter->GetNumberOfCoveredVoxels() > 1000);
-  VERIFY(deformed.Filter->GetNumberOfCoveredVoxels() < exact->GetNumberOfPoints());
+  EXPECT_GT(deformed.Filter->GetNumberOfCoveredVoxels(), 1000);
+  EXPECT_LT(deformed.Filter->GetNumberOfCoveredVoxels(), exact->GetNumberOfPoints());
 
   // With a blanked point, samples to whose value it contributes are not covered.
   volume->GetCellData()->RemoveArray("ActiveTetrahedra");
@@ -244,13 +248,13 @@ void TestMasks()
       }
       wrong += deformed.IsCovered(id) == weighs;
     }
-    VERIFY_EQUAL(wrong, 0);
+    EXPECT_EQ(wrong, 0);
   }
 }
 
 // Compares cubic interpolation with that of VTK, but for the outermost cells of the volume, where
 // the two differ.
-void TestCubic()
+TEST_F(DeformRasterization, Cubic)
 {
   auto volume = MakeImage(Box);
   AddScalars<double>(volume, "value",
@@ -270,7 +274,7 @@ void TestCubic()
     deformed.Filter->SetResampler(resampler);
     vtkImageData* output = deformed.Update();
     const bool isRasterized = resampler == vtkDeformVolumeFilter::MESH_RASTERIZATION;
-    VERIFY_EQUAL(deformed.Filter->GetResamplerInUse(),
+    EXPECT_EQ(deformed.Filter->GetResamplerInUse(),
       int(isRasterized ? vtkDeformVolumeFilter::MESH_RASTERIZATION : vtkDeformVolumeFilter::EXACT));
     double largest = 0.0;
     vtkIdType compared = 0;
@@ -286,20 +290,20 @@ void TestCubic()
         ++compared;
       }
     }
-    VERIFY(compared > 2000);
-    VERIFY(largest < 1e-9); // rest coordinates are multiples of 1/8, hence exact
+    EXPECT_GT(compared, 2000);
+    EXPECT_LT(largest, 1e-9); // rest coordinates are multiples of 1/8, hence exact
   }
 }
 
 // The memory limit decides which resampler AUTOMATIC chooses, for all parts of an output alike.
-void TestAutomatic()
+TEST_F(DeformRasterization, Automatic)
 {
   auto volume = MakeVolume({ { 0, 63, 0, 63, 0, 63 } });
   auto mesh = MakeMesh(volume);
   SetDisplacements(mesh, Bend);
   Deformed deformed(volume, mesh);
   deformed.Update();
-  VERIFY_EQUAL(deformed.Filter->GetResamplerInUse(), int(vtkDeformVolumeFilter::EXACT));
+  EXPECT_EQ(deformed.Filter->GetResamplerInUse(), int(vtkDeformVolumeFilter::EXACT));
   const vtkIdType voxels = volume->GetNumberOfPoints();
   // The least sufficient memory limit is not enough for EXACT.
   vtkIdType limit = voxels;
@@ -309,18 +313,16 @@ void TestAutomatic()
     deformed.Filter->SetMemoryLimit(limit);
     deformed.Filter->Update();
   } while (deformed.TakeErrors() > 0 && limit < 100 * voxels);
-  VERIFY_EQUAL(
-    deformed.Filter->GetResamplerInUse(), int(vtkDeformVolumeFilter::MESH_RASTERIZATION));
+  EXPECT_EQ(deformed.Filter->GetResamplerInUse(), int(vtkDeformVolumeFilter::MESH_RASTERIZATION));
   deformed.Filter->ReleaseDeviceMemory();
   vtkNew<vtkImageData> whole;
   whole->DeepCopy(deformed.Update());
-  VERIFY(deformed.Filter->GetDeviceMemory() < limit);
+  EXPECT_LT(deformed.Filter->GetDeviceMemory(), limit);
   int part[6] = { 7, 40, 3, 37, 11, 29 };
   deformed.Filter->Modified();
   deformed.Filter->UpdateExtent(part);
-  VERIFY_EQUAL(deformed.TakeErrors(), 0);
-  VERIFY_EQUAL(
-    deformed.Filter->GetResamplerInUse(), int(vtkDeformVolumeFilter::MESH_RASTERIZATION));
+  EXPECT_EQ(deformed.TakeErrors(), 0);
+  EXPECT_EQ(deformed.Filter->GetResamplerInUse(), int(vtkDeformVolumeFilter::MESH_RASTERIZATION));
   int wrong = 0;
   vtkImageData* output = deformed.Filter->GetOutput();
   for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
@@ -329,33 +331,17 @@ void TestAutomatic()
     wrong += deformed.GetValues()->GetComponent(id, 0) !=
       whole->GetPointData()->GetScalars()->GetComponent(other, 0);
   }
-  VERIFY_EQUAL(wrong, 0);
-  VERIFY(output->GetNumberOfPoints() >= 34 * 35 * 19);
+  EXPECT_EQ(wrong, 0);
+  EXPECT_GE(output->GetNumberOfPoints(), 34 * 35 * 19);
 
   // Features that need the exact resampler fail with its error.
   deformed.Filter->SetOutsideModeToExtrapolate();
-  VERIFY_CONTAINS(GetError(deformed), std::to_string(limit));
+  EXPECT_TRUE(HasPart(GetError(deformed), std::to_string(limit)));
   deformed.Filter->SetOutsideModeToDiscard();
   deformed.Filter->AddDensityArray(volume->GetPointData()->GetScalars()->GetName());
-  VERIFY_CONTAINS(GetError(deformed), std::to_string(limit));
+  EXPECT_TRUE(HasPart(GetError(deformed), std::to_string(limit)));
   deformed.Filter->ClearDensityArrays();
   deformed.Update();
 }
 
 } // namespace
-
-int TestDeformRasterization(int, char*[])
-{
-  if (!HasDoublePrecision())
-  {
-    std::cout << "skipped: the device has no double precision\n";
-    return 125; // VTK_SKIP_RETURN_CODE
-  }
-  TestMisuse();
-  TestUndeformed();
-  TestAffineMap();
-  TestMasks();
-  TestCubic();
-  TestAutomatic();
-  return GetExitCode();
-}

@@ -62,8 +62,8 @@ vtkSmartPointer<vtkImageData> Subsample(vtkImageData* volume, int factor)
   // How cells are split into tetrahedra depends on the parity of their indices.
   made->SetExtent(coarse.data());
   made->SetOrigin(volume->GetOrigin());
-  VERIFY(GetPoint(made, 0) == first);
-  VERIFY_EQUAL(made->GetNumberOfPoints(), extract->GetOutput()->GetNumberOfPoints());
+  EXPECT_EQ(GetPoint(made, 0), first);
+  EXPECT_EQ(made->GetNumberOfPoints(), extract->GetOutput()->GetNumberOfPoints());
 
   if (ghosts)
   {
@@ -123,33 +123,33 @@ vtkSmartPointer<vtkImageData> DeformSubsampled(const Case& from, int factor)
   return image;
 }
 
-void TestMisuse()
+TEST(DeformSamplingFactor, Misuse)
 {
   auto volume = divisionCases::MakeVolume({ { 1, 9, 0, 9, -3, 9 } });
   auto mesh = MakeMesh(volume);
   SetDisplacements(mesh, Shift(0.5, 0.0, 0.0));
   Deformed deformed(volume, mesh);
-  VERIFY_EQUAL(deformed.Filter->GetSamplingFactor(), 1);
+  EXPECT_EQ(deformed.Filter->GetSamplingFactor(), 1);
   for (const int factor : { 0, -1, 3, 5, 8, 1 << 30 })
   {
     deformed.Filter->SetSamplingFactor(factor);
-    VERIFY_EQUAL(deformed.Filter->GetSamplingFactor(), factor);
+    EXPECT_EQ(deformed.Filter->GetSamplingFactor(), factor);
     deformed.Filter->Update();
-    VERIFY_EQUAL(deformed.TakeErrors(), 1);
-    VERIFY_CONTAINS(deformed.LastError, "Set 1, 2 or 4.");
-    VERIFY_EQUAL(deformed.Filter->GetOutput()->GetNumberOfPoints(), 0);
+    EXPECT_EQ(deformed.TakeErrors(), 1);
+    EXPECT_TRUE(HasPart(deformed.LastError, "Set 1, 2 or 4."));
+    EXPECT_EQ(deformed.Filter->GetOutput()->GetNumberOfPoints(), 0);
     deformed.Filter->SetSamplingFactor(1);
-    VERIFY(deformed.Update()->GetNumberOfPoints() > 0);
+    EXPECT_GT(deformed.Update()->GetNumberOfPoints(), 0);
   }
   // 4 and 8 on x; 4 only.
   deformed.Filter->SetSamplingFactor(4);
-  VERIFY(deformed.Update()->GetNumberOfPoints() > 0);
+  EXPECT_GT(deformed.Update()->GetNumberOfPoints(), 0);
   deformed.Filter->SetInputData(divisionCases::MakeVolume({ { 1, 7, 0, 9, -3, 9 } }));
   deformed.Filter->Update();
-  VERIFY_EQUAL(deformed.TakeErrors(), 1);
-  VERIFY_CONTAINS(deformed.LastError, "With SamplingFactor 4 fewer than two");
+  EXPECT_EQ(deformed.TakeErrors(), 1);
+  EXPECT_TRUE(HasPart(deformed.LastError, "With SamplingFactor 4 fewer than two"));
   deformed.Filter->SetSamplingFactor(2);
-  VERIFY(deformed.Update()->GetNumberOfPoints() > 0);
+  EXPECT_GT(deformed.Update()->GetNumberOfPoints(), 0);
 }
 
 // Hides some cells and voxels, few enough that most of the coarse cells are active.
@@ -175,7 +175,7 @@ void MaskSome(vtkImageData* volume)
   volume->GetPointData()->AddArray(ghosts);
 }
 
-void TestAgainstSubsampled()
+TEST(DeformSamplingFactor, AgainstSubsampled)
 {
   std::vector<Case> cases = MakeCases();
   {
@@ -228,33 +228,28 @@ void TestAgainstSubsampled()
     from.Set(deformed.Filter);
     for (const int factor : { 2, 4 })
     {
-      const int failures = GetNumberOfFailures();
+      SCOPED_TRACE(from.Name + ", SamplingFactor " + std::to_string(factor));
       deformed.Filter->SetSamplingFactor(factor);
       vtkImageData* output = deformed.Update();
       const auto expected = DeformSubsampled(from, factor);
-      VERIFY(AreEqual(output, expected));
+      EXPECT_TRUE(AreEqual(output, expected));
       for (int axis = 0; axis < 3; ++axis)
       {
-        VERIFY_EQUAL(output->GetSpacing()[axis], expected->GetSpacing()[axis]);
-        VERIFY_EQUAL(output->GetOrigin()[axis], expected->GetOrigin()[axis]);
+        EXPECT_EQ(output->GetSpacing()[axis], expected->GetSpacing()[axis]);
+        EXPECT_EQ(output->GetOrigin()[axis], expected->GetOrigin()[axis]);
       }
       // If masks hide tetrahedra in a quarter of the cells, hardly any coarse cell is active.
       const bool hasMasks = from.Name.find("asks") != std::string::npos;
-      VERIFY(deformed.Filter->GetNumberOfCoveredVoxels() > 0 || hasMasks);
+      EXPECT_TRUE(deformed.Filter->GetNumberOfCoveredVoxels() > 0 || hasMasks);
       vtkDataArray* scalars = output->GetPointData()->GetScalars();
-      VERIFY(scalars && scalars->GetName() == std::string("float"));
-      if (GetNumberOfFailures() > failures)
-      {
-        std::cerr << "failed in the case " << from.Name << " with SamplingFactor " << factor
-                  << '\n';
-      }
+      EXPECT_TRUE(scalars && scalars->GetName() == std::string("float"));
     }
   }
 }
 
 // A field with a vector for each voxel gives the same result as a field with vectors for the coarse
 // voxels only.
-void TestDenseField()
+TEST(DeformSamplingFactor, DenseField)
 {
   const Extent extent{ { -9, 130, 3, 140, -15, 131 } }; // so large that it is read in place
   const auto volume = divisionCases::MakeVolume(extent);
@@ -269,8 +264,8 @@ void TestDenseField()
     {
       Deformed few(volume, Subsample(field, 2));
       few.Filter->SetSamplingFactor(2);
-      VERIFY(AreEqual(deformed.Update(), few.Update()));
-      VERIFY(deformed.Filter->GetNumberOfCoveredVoxels() > 1000);
+      EXPECT_TRUE(AreEqual(deformed.Update(), few.Update()));
+      EXPECT_GT(deformed.Filter->GetNumberOfCoveredVoxels(), 1000);
       const vtkIdType point = FindPoint(field, 43.0, 42.0, 29.0);
       vectors->SetTuple3(point, 1.0, 0.5, 0.0);
       vectors->Modified();
@@ -279,7 +274,7 @@ void TestDenseField()
 }
 
 // An undeformed volume gives the values and positions of the coarse voxels.
-void TestIdentity()
+TEST(DeformSamplingFactor, Identity)
 {
   const auto volume = divisionCases::MakeVolume({ { -9, 62, 3, 29, -15, 18 } }, glm::dvec3(0.7));
   const auto mesh = MakeMesh(volume);
@@ -287,15 +282,15 @@ void TestIdentity()
   Deformed deformed(volume, mesh);
   deformed.Filter->SetSamplingFactor(2);
   vtkImageData* output = deformed.Update();
-  VERIFY_EQUAL(GetExtent(output), (Extent{ { -4, 31, 2, 14, -7, 9 } }));
-  VERIFY_EQUAL(
+  EXPECT_EQ(GetExtent(output), (Extent{ { -4, 31, 2, 14, -7, 9 } }));
+  EXPECT_EQ(
     deformed.Filter->GetNumberOfCoveredVoxels(), deformed.Filter->GetOutput()->GetNumberOfPoints());
   for (vtkIdType id = 0; id < output->GetNumberOfPoints(); id += 13)
   {
     double point[3];
     output->GetPoint(id, point);
     const vtkIdType from = volume->FindPoint(point);
-    VERIFY_EQUAL(output->GetPointData()->GetArray("double")->GetComponent(id, 0),
+    EXPECT_EQ(output->GetPointData()->GetArray("double")->GetComponent(id, 0),
       volume->GetPointData()->GetArray("double")->GetComponent(from, 0));
   }
 }
@@ -319,19 +314,19 @@ public:
   {
     vtkDeformVolumeFilter* filter = this->Tested.Filter;
     this->Update(1);
-    VERIFY_EQUAL(GetReported(filter, "Static mappings made"), 1);
-    VERIFY_EQUAL(GetReported(filter, "Volumes sent"), 1);
+    EXPECT_EQ(GetReported(filter, "Static mappings made"), 1);
+    EXPECT_EQ(GetReported(filter, "Volumes sent"), 1);
     const vtkTypeInt64 bytes = filter->GetDeviceMemory();
     this->Update(2);
-    VERIFY_EQUAL(GetReported(filter, "Static mappings made"), 2);
-    VERIFY_EQUAL(GetReported(filter, "Volumes sent"), 2);
-    VERIFY(filter->GetDeviceMemory() > bytes);
+    EXPECT_EQ(GetReported(filter, "Static mappings made"), 2);
+    EXPECT_EQ(GetReported(filter, "Volumes sent"), 2);
+    EXPECT_GT(filter->GetDeviceMemory(), bytes);
     for (const int factor : { 1, 2, 1, 2 })
     {
       // No static mapping is built, no volume is sent and no brick is resampled, although the
       // output changes.
       this->Update(factor);
-      VERIFY_EQUAL(GetReportedSeconds(filter, "Seconds for the static mapping"), 0.0);
+      EXPECT_EQ(GetReportedSeconds(filter, "Seconds for the static mapping"), 0.0);
       this->ExpectParts(true);
     }
     // A node that moves at one factor has moved at the other, too.
@@ -341,8 +336,8 @@ public:
       this->Update(factor);
       this->ExpectParts(false);
     }
-    VERIFY_EQUAL(GetReported(filter, "Static mappings made"), 2);
-    VERIFY_EQUAL(GetReported(filter, "Volumes sent"), 2);
+    EXPECT_EQ(GetReported(filter, "Static mappings made"), 2);
+    EXPECT_EQ(GetReported(filter, "Volumes sent"), 2);
 
     // Values and masks change in place.
     for (const int factor : { 2, 1, 2, 1 })
@@ -352,7 +347,7 @@ public:
       values->Modified();
       this->Update(factor);
     }
-    VERIFY_EQUAL(GetReported(filter, "Volumes sent"), 6);
+    EXPECT_EQ(GetReported(filter, "Volumes sent"), 6);
     MaskSome(this->Volume);
     for (const int factor : { 1, 2 })
     {
@@ -361,23 +356,23 @@ public:
       active->Modified();
       this->Update(factor);
     }
-    VERIFY_EQUAL(GetReported(filter, "Static mappings made"), 2);
-    VERIFY_EQUAL(GetReported(filter, "Volumes sent"), 7); // the last changed value, for factor 2
+    EXPECT_EQ(GetReported(filter, "Static mappings made"), 2);
+    EXPECT_EQ(GetReported(filter, "Volumes sent"), 7); // the last changed value, for factor 2
 
     // All memory is released, and everything is rebuilt.
     filter->ReleaseDeviceMemory();
-    VERIFY_EQUAL(filter->GetDeviceMemory(), 0);
+    EXPECT_EQ(filter->GetDeviceMemory(), 0);
     filter->Modified();
     this->Update(1);
     this->Update(2);
-    VERIFY_EQUAL(GetReported(filter, "Static mappings made"), 4);
+    EXPECT_EQ(GetReported(filter, "Static mappings made"), 4);
 
     // An error in the displacements affects all factors.
     vtkDataArray* vectors = this->Mesh->GetPointData()->GetVectors();
     vectors->SetComponent(0, 0, std::nan(""));
     vectors->Modified();
     filter->Update();
-    VERIFY_EQUAL(this->Tested.TakeErrors(), 1);
+    EXPECT_EQ(this->Tested.TakeErrors(), 1);
     vectors->SetComponent(0, 0, 0.0);
     vectors->Modified();
     this->Update(1);
@@ -389,7 +384,7 @@ public:
     this->Volume = other;
     filter->SetInputData(other);
     this->Update(2);
-    VERIFY(filter->GetDeviceMemory() < both / 2);
+    EXPECT_LT(filter->GetDeviceMemory(), both / 2);
     this->Update(1);
   }
 
@@ -406,10 +401,10 @@ private:
   {
     this->Tested.Filter->SetSamplingFactor(factor);
     vtkImageData* output = this->Tested.Update();
-    VERIFY(this->Tested.Filter->GetNumberOfCoveredVoxels() > 0);
+    EXPECT_GT(this->Tested.Filter->GetNumberOfCoveredVoxels(), 0);
     Extent changed;
     this->Tested.Filter->GetChangedExtent(changed.data());
-    VERIFY(changed == GetExtent(output) || factor == this->LastFactor);
+    EXPECT_TRUE(changed == GetExtent(output) || factor == this->LastFactor);
     this->LastFactor = factor;
   }
 
@@ -417,7 +412,7 @@ private:
   {
     const vtkIdType made = GetReported(this->Tested.Filter, "Bricks resampled");
     const vtkIdType all = GetReported(this->Tested.Filter, "Bricks of the volume");
-    VERIFY(nothing ? made == 0 : made < all);
+    EXPECT_TRUE(nothing ? made == 0 : made < all);
   }
 
   vtkSmartPointer<vtkImageData> Volume;
@@ -428,7 +423,7 @@ private:
 };
 
 // If the memory limit suffices for one factor only, the data of the other factor is released.
-void TestMemory()
+TEST(DeformSamplingFactor, Memory)
 {
   const auto volume = divisionCases::MakeVolume({ { 0, 99, 0, 99, 0, 99 } });
   const auto mesh = MakeMesh(volume, 40); // so many nodes that the static mapping has links
@@ -452,11 +447,11 @@ void TestMemory()
   for (const int factor : { 2, 1, 2, 1 })
   {
     filter->SetSamplingFactor(factor);
-    VERIFY(deformed.Update()->GetNumberOfPoints() > 0);
-    VERIFY(filter->GetDeviceMemory() <= limit);
+    EXPECT_GT(deformed.Update()->GetNumberOfPoints(), 0);
+    EXPECT_LE(filter->GetDeviceMemory(), limit);
     builds = GetReported(filter, "Static mappings made");
   }
-  VERIFY(builds > 2);
+  EXPECT_GT(builds, 2);
   // If the limit suffices for both factors, their data is kept.
   filter->SetMemoryLimit(2 * limit);
   const auto update = [&](int factor)
@@ -467,11 +462,11 @@ void TestMemory()
   };
   update(2);
   builds = update(1);
-  VERIFY_EQUAL(update(2), builds);
+  EXPECT_EQ(update(2), builds);
 }
 
 // From a source that makes parts, only the extents are requested that the coarse voxels need.
-void TestParts()
+TEST(DeformSamplingFactor, Parts)
 {
   for (const Case& from : MakeCases())
   {
@@ -493,21 +488,21 @@ void TestParts()
     for (int part = 0; part < parts; ++part)
     {
       streamed.Filter->UpdatePiece(part, parts, 0);
-      VERIFY_EQUAL(streamed.TakeErrors(), 0);
+      EXPECT_EQ(streamed.TakeErrors(), 0);
       vtkNew<vtkImageData> cropped;
       cropped->ShallowCopy(whole);
       cropped->Crop(streamed.Filter->GetOutput()->GetExtent());
-      VERIFY(AreEqual(streamed.Filter->GetOutput(), cropped));
+      EXPECT_TRUE(AreEqual(streamed.Filter->GetOutput(), cropped));
     }
     if (from.Name == "Extrapolated mesh") // needs the whole volume
     {
-      VERIFY_EQUAL(source->GetMost(), from.Volume->GetNumberOfPoints());
+      EXPECT_EQ(source->GetMost(), from.Volume->GetNumberOfPoints());
       continue;
     }
-    VERIFY(source->GetMost() < from.Volume->GetNumberOfPoints());
+    EXPECT_LT(source->GetMost(), from.Volume->GetNumberOfPoints());
     for (const Extent& made : source->Made)
     {
-      VERIFY(std::all_of(made.begin(), made.end(), [](int end) { return end % 2 == 0; }));
+      EXPECT_TRUE(std::all_of(made.begin(), made.end(), [](int end) { return end % 2 == 0; }));
     }
   }
   // A source that does not make parts is executed once, for the whole volume.
@@ -521,20 +516,13 @@ void TestParts()
   from.Set(whole.Filter);
   whole.Filter->SetSamplingFactor(2);
   whole.Filter->UpdatePiece(0, 2, 0);
-  VERIFY_EQUAL(whole.TakeErrors(), 0);
-  VERIFY_EQUAL(source->Made.size(), std::size_t{ 1 });
+  EXPECT_EQ(whole.TakeErrors(), 0);
+  EXPECT_EQ(source->Made.size(), 1U);
 }
 
 } // namespace
 
-int TestDeformSamplingFactor(int, char*[])
+TEST(DeformSamplingFactor, Switched)
 {
-  TestMisuse();
-  TestIdentity();
-  TestAgainstSubsampled();
-  TestDenseField();
   Switched().Run();
-  TestMemory();
-  TestParts();
-  return GetExitCode();
 }

@@ -138,7 +138,7 @@ void AddCorners(const VoxelGrid& voxelGrid, const Mesh& mesh, const Tetrahedron&
   }
 }
 
-void TestMesh()
+TEST(DeformedBounds, Mesh)
 {
   std::mt19937 random(11);
   const VoxelGrid voxelGrid = MakeVolume({ { -4, 9, 2, 14, -20, -9 } }, glm::dvec3(1.0, 0.7, 2.5));
@@ -158,7 +158,7 @@ void TestMesh()
       {
         AddCorners(voxelGrid, mesh, nodes, displacements, expected);
       }
-      CHECK(AreClose(
+      EXPECT_TRUE(AreClose(
         ComputeDeformedBounds(voxelGrid, mesh.Points, mesh.Tetrahedra, displacements.data()),
         expected, 1e-6));
     }
@@ -171,20 +171,20 @@ void TestMesh()
   std::vector<float> displacements(3 * mesh.Points.size(), 0.0F);
   const IndexBounds bounds =
     ComputeDeformedBounds(plain, mesh.Points, mesh.Tetrahedra, displacements.data());
-  CHECK(glm::length(bounds.Min - glm::dvec3(-1.0, 2.0, -20.0)) < 1e-12);
-  CHECK(glm::length(bounds.Max - glm::dvec3(9.0, 14.0, -9.0)) < 1e-12);
+  EXPECT_LT(glm::length(bounds.Min - glm::dvec3(-1.0, 2.0, -20.0)), 1e-12);
+  EXPECT_LT(glm::length(bounds.Max - glm::dvec3(9.0, 14.0, -9.0)), 1e-12);
 
   // No mesh, a mesh outside the volume, flat tetrahedra only, and displacements that are not
   // finite.
-  CHECK(ComputeDeformedBounds(plain, std::vector<glm::dvec3>(), {}, nullptr).IsEmpty());
+  EXPECT_TRUE(ComputeDeformedBounds(plain, std::vector<glm::dvec3>(), {}, nullptr).IsEmpty());
   std::vector<glm::dvec3> apart = mesh.Points;
   for (glm::dvec3& point : apart)
   {
     point.x += 11.0;
   }
-  CHECK(ComputeDeformedBounds(plain, apart, mesh.Tetrahedra, displacements.data()).IsEmpty());
+  EXPECT_TRUE(ComputeDeformedBounds(plain, apart, mesh.Tetrahedra, displacements.data()).IsEmpty());
   const std::vector<Tetrahedron> flat = { { { 0, 1, 2, 3 } }, { { 4, 4, 20, 30 } } };
-  CHECK(ComputeDeformedBounds(plain, mesh.Points, flat, displacements.data()).IsEmpty());
+  EXPECT_TRUE(ComputeDeformedBounds(plain, mesh.Points, flat, displacements.data()).IsEmpty());
   displacements[3 * 21 + 1] = NotANumber;
   IndexBounds expected;
   for (const Tetrahedron& nodes : mesh.Tetrahedra)
@@ -194,15 +194,17 @@ void TestMesh()
       AddCorners(plain, mesh, nodes, displacements, expected);
     }
   }
-  CHECK(AreClose(ComputeDeformedBounds(plain, mesh.Points, mesh.Tetrahedra, displacements.data()),
-    expected, 1e-6));
+  EXPECT_TRUE(
+    AreClose(ComputeDeformedBounds(plain, mesh.Points, mesh.Tetrahedra, displacements.data()),
+      expected, 1e-6));
   std::fill(displacements.begin(), displacements.end(), NotANumber);
-  CHECK(ComputeDeformedBounds(plain, mesh.Points, mesh.Tetrahedra, displacements.data()).IsEmpty());
+  EXPECT_TRUE(
+    ComputeDeformedBounds(plain, mesh.Points, mesh.Tetrahedra, displacements.data()).IsEmpty());
 }
 
 // Changes of some displacements, logged as ranges of nodes. The reference is the bounds of all
 // nodes.
-void TestChanges()
+TEST(DeformedBounds, Changes)
 {
   std::mt19937 random(23);
   const VoxelGrid voxelGrid = MakeVolume({ { -4, 9, 2, 14, -20, -9 } }, glm::dvec3(1.0, 0.7, 2.5));
@@ -237,20 +239,20 @@ void TestChanges()
         bounds.Compute(mesh.Points, mesh.Tetrahedra, displacements.data(), &ranges);
       const IndexBounds expected =
         ComputeDeformedBounds(voxelGrid, mesh.Points, mesh.Tetrahedra, displacements.data());
-      CHECK(found.Min == expected.Min && found.Max == expected.Max);
+      EXPECT_TRUE(found.Min == expected.Min && found.Max == expected.Max);
       changes += found.Min != last.Min || found.Max != last.Max ? 1 : 0;
       last = found;
     }
-    CHECK(changes > 30);
+    EXPECT_GT(changes, 30);
     // Displacements that are not logged are not read.
     std::fill(displacements.begin(), displacements.end(), 1000.0F);
-    CHECK(
-      bounds.Compute(mesh.Points, mesh.Tetrahedra, displacements.data(), &none).Max == last.Max);
-    CHECK(bounds.Compute(mesh.Points, mesh.Tetrahedra, displacements.data()).Max.x > 900.0);
+    EXPECT_EQ(
+      bounds.Compute(mesh.Points, mesh.Tetrahedra, displacements.data(), &none).Max, last.Max);
+    EXPECT_GT(bounds.Compute(mesh.Points, mesh.Tetrahedra, displacements.data()).Max.x, 900.0);
   }
 }
 
-void TestLinks()
+TEST(DeformedBounds, Links)
 {
   std::mt19937 random(12);
   const VoxelGrid voxelGrid = MakeVolume({ { -4, 9, 2, 14, -20, -9 } }, glm::dvec3(1.5, 0.7, 2.5));
@@ -285,14 +287,14 @@ void TestLinks()
         }
       }
     }
-    CHECK(AreClose(
+    EXPECT_TRUE(AreClose(
       ComputeDeformedBounds(voxelGrid, mapping.Links, mesh.Tetrahedra, displacements.data()),
       expected, 1e-9));
   }
-  CHECK(ComputeDeformedBounds(voxelGrid,
+  EXPECT_TRUE(ComputeDeformedBounds(voxelGrid,
     std::vector<VertexLink>(static_cast<std::size_t>(GetNumberOfPoints(extent))), mesh.Tetrahedra,
     displacements.data())
-          .IsEmpty());
+                .IsEmpty());
 }
 
 // The bounds of the deformed positions of all points of a lattice over the volume. density: the
@@ -354,7 +356,7 @@ IndexBounds SearchPoints(const VoxelGrid& voxelGrid, const DisplacementField& fi
   return bounds;
 }
 
-void TestField()
+TEST(DeformedBounds, Field)
 {
   std::mt19937 random(13);
   const VoxelGrid voxelGrid = MakeVolume({ { -4, 9, 2, 14, -20, -9 } }, glm::dvec3(1.0, 0.7, 2.5));
@@ -425,8 +427,8 @@ void TestField()
       const int density = endsBetween ? 4 : 1;
       IndexBounds expected = SearchPoints(voxelGrid, field, density);
       IndexBounds found = ComputeDeformedBounds(voxelGrid, field);
-      CHECK(Contains(found, expected, 1e-9));
-      CHECK(
+      EXPECT_TRUE(Contains(found, expected, 1e-9));
+      EXPECT_TRUE(
         !(item.ExactIfConstant || extrapolate) || endsBetween || AreClose(found, expected, 1e-9));
       // The corners of the deformed volume need not be points of the lattice, but are near such
       // points.
@@ -434,10 +436,10 @@ void TestField()
       IndexBounds grown = expected;
       grown.Min -= distance * GetRatio(voxelGrid);
       grown.Max += distance * GetRatio(voxelGrid);
-      CHECK(expected.IsEmpty() || Contains(grown, found, 1e-9));
+      EXPECT_TRUE(expected.IsEmpty() || Contains(grown, found, 1e-9));
       // The bounds are not larger than the shifted volume.
       const glm::dvec3 shift(3.25, -7.5, 100.0);
-      CHECK(found.IsEmpty() ||
+      EXPECT_TRUE(found.IsEmpty() ||
         Contains({ GetRatio(voxelGrid) * glm::dvec3(-4.0, 2.0, -20.0) + shift,
                    GetRatio(voxelGrid) * glm::dvec3(9.0, 14.0, -9.0) + shift },
           found, 1e-9));
@@ -451,8 +453,8 @@ void TestField()
         field.Vectors = vectors.data();
         expected = SearchPoints(voxelGrid, field, density);
         found = ComputeDeformedBounds(voxelGrid, field);
-        CHECK(Contains(found, expected, 1e-4));
-        CHECK(!item.Exact || endsBetween || AreClose(found, expected, 1e-4));
+        EXPECT_TRUE(Contains(found, expected, 1e-4));
+        EXPECT_TRUE(!item.Exact || endsBetween || AreClose(found, expected, 1e-4));
         // The bounds are within those of the volume, extended by the least and largest component of
         // all vectors.
         IndexBounds widest;
@@ -465,16 +467,16 @@ void TestField()
         }
         widest.Min += GetRatio(voxelGrid) * glm::dvec3(-4.0, 2.0, -20.0);
         widest.Max += GetRatio(voxelGrid) * glm::dvec3(9.0, 14.0, -9.0);
-        CHECK(found.IsEmpty() || Contains(widest, found, 1e-9));
+        EXPECT_TRUE(found.IsEmpty() || Contains(widest, found, 1e-9));
       }
     }
   }
 
   DisplacementField empty;
-  CHECK(ComputeDeformedBounds(voxelGrid, empty).IsEmpty());
+  EXPECT_TRUE(ComputeDeformedBounds(voxelGrid, empty).IsEmpty());
 }
 
-void TestThreads()
+TEST(DeformedBounds, Threads)
 {
   std::mt19937 random(14);
   const VoxelGrid voxelGrid = MakeVolume({ { 0, 30, 0, 30, 0, 30 } }, glm::dvec3(1.0));
@@ -486,21 +488,7 @@ void TestThreads()
   IndexBounds two;
   vtkSMPTools::LocalScope(vtkSMPTools::Config{ 1 }, [&]() { one = compute(); });
   vtkSMPTools::LocalScope(vtkSMPTools::Config{ 2 }, [&]() { two = compute(); });
-  CHECK(one.Min == two.Min && one.Max == two.Max && !one.IsEmpty());
+  EXPECT_TRUE(one.Min == two.Min && one.Max == two.Max && !one.IsEmpty());
 }
 
 } // namespace
-
-int TestDeformedBounds(int, char*[])
-{
-  TestMesh();
-  TestChanges();
-  TestLinks();
-  TestField();
-  TestThreads();
-  if (Failures() > 0)
-  {
-    std::cerr << Failures() << " checks failed\n";
-  }
-  return Failures() == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
-}

@@ -155,12 +155,12 @@ std::vector<float> MakeDisplacements(
   return displacements;
 }
 
-void TestSearch()
+TEST(FadedLinks, Search)
 {
   std::mt19937 random(9);
   std::uniform_real_distribution<double> coordinate(-10.0, 10.0);
   std::uniform_real_distribution<double> size(-3.0, 3.0);
-  CHECK(ClosestFace({}).Find(glm::dvec3(1.0)).Face == -1);
+  EXPECT_EQ(ClosestFace({}).Find(glm::dvec3(1.0)).Face, -1);
   for (const int count : { 1, 4, 5, 333 })
   {
     std::vector<ClosestFace::Triangle> triangles;
@@ -187,23 +187,23 @@ void TestSearch()
       {
         least = std::min(least, GetDistance(point, triangle));
       }
-      CHECK(std::abs(std::sqrt(found.SquaredDistance) - least) <= 1e-12 * (1.0 + least));
+      EXPECT_LE(std::abs(std::sqrt(found.SquaredDistance) - least), 1e-12 * (1.0 + least));
       glm::dvec3 closest(0.0);
       for (int k = 0; k < 3; ++k)
       {
         closest += found.Weights[k] * triangles[found.Face][k];
-        CHECK(found.Weights[k] >= 0.0);
+        EXPECT_GE(found.Weights[k], 0.0);
       }
-      CHECK(std::abs(glm::distance(point, closest) - least) <= 1e-11 * (1.0 + least));
+      EXPECT_LE(std::abs(glm::distance(point, closest) - least), 1e-11 * (1.0 + least));
       // The result does not depend on the face at which the search begins.
       const auto nearby = static_cast<std::int32_t>(random() % triangles.size());
       const ClosestFace::Result again = search.Find(point, nearby);
-      CHECK(again.Face == found.Face && again.SquaredDistance == found.SquaredDistance);
+      EXPECT_TRUE(again.Face == found.Face && again.SquaredDistance == found.SquaredDistance);
     }
   }
 }
 
-void TestAgainstAllFaces()
+TEST(FadedLinks, AgainstAllFaces)
 {
   std::mt19937 random(5);
   const Extent voxels{ { -6, 13, 4, 22, -3, 13 } };
@@ -230,17 +230,17 @@ void TestAgainstAllFaces()
       {
         const StaticMapping all = BuildStaticMapping(voxels, spacing, mesh.Points, mesh.Tetrahedra,
           KeepWithin(fadeDistance), StaticMappingForm::Automatic);
-        CHECK(all.NumberOfInnerVoxels == inside.NumberOfInnerVoxels);
-        CHECK(all.Boundary.IsEmpty() && all.Runs.Runs.empty());
-        CHECK(all.Faded.GetNumberOfRecords() == 1 + all.Faded.GetFaces().size());
-        CHECK(fadeDistance > 0.0 || all.Faded.GetFaces().empty());
+        EXPECT_EQ(all.NumberOfInnerVoxels, inside.NumberOfInnerVoxels);
+        EXPECT_TRUE(all.Boundary.IsEmpty() && all.Runs.Runs.empty());
+        EXPECT_EQ(all.Faded.GetNumberOfRecords(), 1 + all.Faded.GetFaces().size());
+        EXPECT_TRUE(fadeDistance > 0.0 || all.Faded.GetFaces().empty());
         std::vector<bool> isUsed(all.Faded.GetFaces().size());
         for (std::int64_t i = 0; i < GetNumberOfPoints(voxels); ++i)
         {
           const VertexLink& link = all.Links[i];
           if (inside.Links[i].Tetrahedron >= 0)
           {
-            CHECK(std::memcmp(&link, &inside.Links[i], sizeof(link)) == 0);
+            EXPECT_EQ(std::memcmp(&link, &inside.Links[i], sizeof(link)), 0);
             continue;
           }
           const glm::dvec3 point = spacing * glm::dvec3(GetVoxel(voxels, i));
@@ -254,40 +254,40 @@ void TestAgainstAllFaces()
           }
           const std::int64_t record =
             link.Tetrahedron - static_cast<std::int64_t>(mesh.Tetrahedra.size());
-          CHECK(record >= 0);
+          EXPECT_GE(record, 0);
           const double weight = fadeDistance > 0.0 ? Fade(least / fadeDistance) : 0.0;
-          CHECK(weight > 0.0 || record == 0);
+          EXPECT_TRUE(weight > 0.0 || record == 0);
           if (record <= 0)
           {
-            CHECK(weight <= 1e-12); // the distance may be FadeDistance, up to rounding
+            EXPECT_LE(weight, 1e-12); // the distance may be FadeDistance, up to rounding
             continue;
           }
           isUsed[record - 1] = true;
           const Tetrahedron nodes = all.Faded.GetRecord(record, mesh.Tetrahedra, 12345);
           std::array<std::int32_t, 3> sorted{ { nodes[0], nodes[1], nodes[2] } };
           std::sort(sorted.begin(), sorted.end());
-          CHECK(std::binary_search(single.begin(), single.end(), sorted));
-          CHECK(nodes[3] == 12345);
+          EXPECT_TRUE(std::binary_search(single.begin(), single.end(), sorted));
+          EXPECT_EQ(nodes[3], 12345);
           double sum = 0.0;
           glm::dvec3 closest(0.0);
           for (int k = 0; k < 3; ++k)
           {
-            CHECK(link.Weights[k] >= 0.0F);
+            EXPECT_GE(link.Weights[k], 0.0F);
             sum += link.Weights[k];
             closest += double{ link.Weights[k] } * spacing * mesh.Points[nodes[k]];
           }
-          CHECK(std::abs(sum - weight) <= 1e-6);
+          EXPECT_LE(std::abs(sum - weight), 1e-6);
           // Weights are floats, with relative errors of 2^-24. Coordinates are up to 60.
-          CHECK(std::abs(glm::distance(closest / sum, point) - least) <= 2e-5);
+          EXPECT_LE(std::abs(glm::distance(closest / sum, point) - least), 2e-5);
         }
-        CHECK(std::all_of(isUsed.begin(), isUsed.end(), [](bool used) { return used; }));
+        EXPECT_TRUE(std::all_of(isUsed.begin(), isUsed.end(), [](bool used) { return used; }));
       }
     }
   }
 }
 
 // A box that is translated: the closest point of the box is the point clamped to its bounds.
-void TestMovedBox()
+TEST(FadedLinks, MovedBox)
 {
   std::mt19937 random(6);
   const Extent voxels{ { 0, 30, 0, 24, 0, 20 } };
@@ -309,16 +309,16 @@ void TestMovedBox()
       const double distance = glm::length(spacing * (point - glm::clamp(point, min, max)));
       const double weight = Fade(distance / fadeDistance);
       const glm::dvec3 displacement = moved.Displace(mapping.Links[i]);
-      CHECK(glm::distance(displacement, weight * shift) <= 1e-6);
-      CHECK(weight > 0.0 || displacement == glm::dvec3(0.0));
+      EXPECT_LE(glm::distance(displacement, weight * shift), 1e-6);
+      EXPECT_TRUE(weight > 0.0 || displacement == glm::dvec3(0.0));
       near += weight > 0.0 && weight < 1.0;
     }
-    CHECK(near > 100);
+    EXPECT_GT(near, 100);
   }
 }
 
 // The bounds contain all voxels with faded links, and are not much larger.
-void TestBounds()
+TEST(FadedLinks, Bounds)
 {
   std::mt19937 random(7);
   const Extent voxels{ { -4, 30, 3, 28, 0, 33 } };
@@ -351,12 +351,12 @@ void TestBounds()
         mapping.Faded.ComputeBounds(grid, mesh.Tetrahedra, displacements.data());
       for (int axis = 0; axis < 3; ++axis)
       {
-        CHECK(found.Min[axis] <= exact.Min[axis] + 1e-9);
-        CHECK(found.Max[axis] >= exact.Max[axis] - 1e-9);
-        CHECK(factor > 0.0 || found.Min[axis] == exact.Min[axis]);
-        CHECK(factor > 0.0 || found.Max[axis] == exact.Max[axis]);
-        CHECK(found.Min[axis] >= exact.Min[axis] - 10.0);
-        CHECK(found.Max[axis] <= exact.Max[axis] + 10.0);
+        EXPECT_LE(found.Min[axis], exact.Min[axis] + 1e-9);
+        EXPECT_GE(found.Max[axis], exact.Max[axis] - 1e-9);
+        EXPECT_TRUE(factor > 0.0 || found.Min[axis] == exact.Min[axis]);
+        EXPECT_TRUE(factor > 0.0 || found.Max[axis] == exact.Max[axis]);
+        EXPECT_GE(found.Min[axis], exact.Min[axis] - 10.0);
+        EXPECT_LE(found.Max[axis], exact.Max[axis] + 10.0);
       }
     }
   }
@@ -401,7 +401,7 @@ std::int64_t CountStretched(const Extent& voxels, const StaticMapping& mapping, 
   return count;
 }
 
-void TestStretched()
+TEST(FadedLinks, Stretched)
 {
   std::mt19937 random(8);
   const Extent voxels{ { 1, 40, -2, 20, 3, 22 } };
@@ -424,14 +424,15 @@ void TestStretched()
     const std::int64_t expected =
       CountStretched(extent, mapping, Moved(mesh, mapping, displacements), mesh.Tetrahedra.size());
     const std::int64_t found = mapping.Faded.CountStretched(mesh.Tetrahedra, displacements.data());
-    CHECK((expected > 0) == isAny);
+    EXPECT_EQ(expected > 0, isAny);
     if (mapping.Faded.IsCountEstimated())
     {
-      CHECK(std::abs(static_cast<double>(found - expected)) < 0.05 * static_cast<double>(expected));
+      EXPECT_LT(
+        std::abs(static_cast<double>(found - expected)), 0.05 * static_cast<double>(expected));
     }
     else
     {
-      CHECK(found == expected);
+      EXPECT_EQ(found, expected);
     }
     return mapping.Faded.IsCountEstimated();
   };
@@ -450,13 +451,13 @@ void TestStretched()
     ring, 20.0, [](const glm::dvec3& p) { return glm::dvec3(0.4 * (p.x - 16.0), 0.0, 0.0); }, true,
     voxels);
   // No fading; the second mesh has so many cells that the count is estimated from some of them.
-  CHECK(!expect(left, 0.0, apart(3.0), true, voxels));
-  CHECK(expect(MakeLattice({ 2, 2, 2 }, glm::dvec3(3.0), glm::dvec3(60.5), 0.0, 0.0, random), 0.0,
-    apart(3.0), true, { { 0, 64, 0, 64, 0, 64 } }));
+  EXPECT_FALSE(expect(left, 0.0, apart(3.0), true, voxels));
+  EXPECT_TRUE(expect(MakeLattice({ 2, 2, 2 }, glm::dvec3(3.0), glm::dvec3(60.5), 0.0, 0.0, random),
+    0.0, apart(3.0), true, { { 0, 64, 0, 64, 0, 64 } }));
 }
 
 // When tetrahedra get other nodes at the same positions, the records of faded links follow.
-void TestSplit()
+TEST(FadedLinks, Split)
 {
   std::mt19937 random(10);
   const Extent voxels{ { 0, 20, 0, 20, 0, 20 } };
@@ -480,24 +481,24 @@ void TestSplit()
   }
   const std::vector<Tetrahedron> before = faded.GetTetrahedra();
   const std::vector<TetrahedronChange> all = faded.Change(mapping.Faded, changes);
-  CHECK(all.size() > changes.size());
+  EXPECT_GT(all.size(), changes.size());
   std::vector<Tetrahedron> followed = before;
   for (const TetrahedronChange& change : all)
   {
-    CHECK(followed[change.Number] == change.Before && change.After != change.Before);
+    EXPECT_TRUE(followed[change.Number] == change.Before && change.After != change.Before);
     followed[change.Number] = change.After;
   }
-  CHECK(followed == faded.GetTetrahedra());
+  EXPECT_EQ(followed, faded.GetTetrahedra());
   for (std::size_t record = 0; record < mapping.Faded.GetNumberOfRecords(); ++record)
   {
-    CHECK(followed[mesh.Tetrahedra.size() + record] ==
+    EXPECT_EQ(followed[mesh.Tetrahedra.size() + record],
       mapping.Faded.GetRecord(record, mesh.Tetrahedra, still));
   }
-  CHECK(faded.HasRoom(mesh.Points.size()));
-  CHECK(!faded.HasRoom(faded.GetNumberOfNodes()));
+  EXPECT_TRUE(faded.HasRoom(mesh.Points.size()));
+  EXPECT_FALSE(faded.HasRoom(faded.GetNumberOfNodes()));
 }
 
-void TestMisuse()
+TEST(FadedLinks, Misuse)
 {
   std::mt19937 random(11);
   const Mesh mesh = MakeLattice({ 2, 2, 2 }, glm::dvec3(1.0), glm::dvec3(3.0), 0.0, 0.0, random);
@@ -511,23 +512,11 @@ void TestMisuse()
   {
     isRefused = std::string(error.what()).find("mesh that are kept") != std::string::npos;
   }
-  CHECK(isRefused);
+  EXPECT_TRUE(isRefused);
   // Without tetrahedra all voxels are kept at rest.
   const StaticMapping nothing = BuildStaticMapping(
     { { 0, 2, 0, 2, 0, 2 } }, glm::dvec3(1.0), {}, {}, KeepWithin(1.0), StaticMappingForm::Links);
-  CHECK(nothing.Links.size() == 27 && nothing.Links[13].Tetrahedron == 0);
+  EXPECT_TRUE(nothing.Links.size() == 27 && nothing.Links[13].Tetrahedron == 0);
 }
 
 } // namespace
-
-int TestFadedLinks(int, char*[])
-{
-  TestMisuse();
-  TestSearch();
-  TestAgainstAllFaces();
-  TestMovedBox();
-  TestBounds();
-  TestStretched();
-  TestSplit();
-  return GetResult();
-}

@@ -5,14 +5,13 @@
 #include "TetrahedralMeshes.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 #include <limits>
 
 using namespace deformvolume;
 using namespace tetrahedralMeshes;
 
-int TestLinkExtrapolation(int, char*[])
+TEST(LinkExtrapolation, NearestTetrahedra)
 {
   std::mt19937 random(5);
   const Extent voxels{ { -6, 12, 4, 20, -3, 13 } };
@@ -30,15 +29,15 @@ int TestLinkExtrapolation(int, char*[])
         voxels, spacing, mesh.Points, mesh.Tetrahedra, false, StaticMappingForm::Links);
       const StaticMapping all = BuildStaticMapping(
         voxels, spacing, mesh.Points, mesh.Tetrahedra, true, StaticMappingForm::Automatic);
-      CHECK(inside.NumberOfInnerVoxels > 0);
-      CHECK(inside.NumberOfInnerVoxels < GetNumberOfPoints(voxels));
-      CHECK(all.NumberOfInnerVoxels == inside.NumberOfInnerVoxels);
+      EXPECT_GT(inside.NumberOfInnerVoxels, 0);
+      EXPECT_LT(inside.NumberOfInnerVoxels, GetNumberOfPoints(voxels));
+      EXPECT_EQ(all.NumberOfInnerVoxels, inside.NumberOfInnerVoxels);
       for (std::int64_t i = 0; i < GetNumberOfPoints(voxels); ++i)
       {
         const VertexLink& link = all.Links[i];
         if (inside.Links[i].Tetrahedron >= 0)
         {
-          CHECK(std::memcmp(&link, &inside.Links[i], sizeof(link)) == 0);
+          EXPECT_EQ(std::memcmp(&link, &inside.Links[i], sizeof(link)), 0);
           continue;
         }
         double nearest = std::numeric_limits<double>::infinity();
@@ -56,7 +55,7 @@ int TestLinkExtrapolation(int, char*[])
             }
           }
         }
-        CHECK(chosen <= nearest * (1.0 + 1e-12));
+        EXPECT_LE(chosen, nearest * (1.0 + 1e-12));
         if (link.Tetrahedron >= 0)
         {
           CheckWeights(mesh, link, glm::dvec3(GetVoxel(voxels, i)));
@@ -64,5 +63,4 @@ int TestLinkExtrapolation(int, char*[])
       }
     }
   }
-  return GetResult();
 }

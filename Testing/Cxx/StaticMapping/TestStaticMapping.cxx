@@ -90,8 +90,8 @@ void CheckExactly(const Mesh& unsorted, const Extent& voxels)
                        mesh.Points[nodes[2]], mesh.Points[nodes[3]]) == 0);
     flat += isFlat.back() ? 1 : 0;
   }
-  CHECK(mapping.NumberOfFlatTetrahedra == flat);
-  CHECK(static_cast<std::int64_t>(mapping.Links.size()) == GetNumberOfPoints(voxels));
+  EXPECT_EQ(mapping.NumberOfFlatTetrahedra, flat);
+  EXPECT_EQ(static_cast<std::int64_t>(mapping.Links.size()), GetNumberOfPoints(voxels));
   std::int64_t inner = 0;
   for (std::int64_t i = 0; i < GetNumberOfPoints(voxels); ++i)
   {
@@ -104,14 +104,14 @@ void CheckExactly(const Mesh& unsorted, const Extent& voxels)
         expected = static_cast<std::int32_t>(id);
       }
     }
-    CHECK(mapping.Links[i].Tetrahedron == expected);
+    EXPECT_EQ(mapping.Links[i].Tetrahedron, expected);
     inner += expected >= 0 ? 1 : 0;
     if (mapping.Links[i].Tetrahedron >= 0)
     {
       CheckWeights(mesh, mapping.Links[i], voxel);
     }
   }
-  CHECK(mapping.NumberOfInnerVoxels == inner);
+  EXPECT_EQ(mapping.NumberOfInnerVoxels, inner);
 }
 
 // The depth of a point in a tetrahedron, negative outside; -infinity for flat ones.
@@ -152,19 +152,19 @@ void CheckRounded(const Mesh& unsorted, const Extent& voxels)
       const double depth = GetDepth(mesh, mesh.Tetrahedra[id], voxel);
       if (depth > tolerance)
       {
-        CHECK(found >= 0 && found <= static_cast<std::int32_t>(id));
+        EXPECT_TRUE(found >= 0 && found <= static_cast<std::int32_t>(id));
         break;
       }
     }
     if (found >= 0)
     {
-      CHECK(GetDepth(mesh, mesh.Tetrahedra[found], voxel) >= -tolerance);
+      EXPECT_GE(GetDepth(mesh, mesh.Tetrahedra[found], voxel), -tolerance);
       CheckWeights(mesh, mapping.Links[i], voxel);
     }
   }
 }
 
-void TestMisuse()
+TEST(StaticMapping, Misuse)
 {
   std::mt19937 random(1);
   const Mesh mesh = MakeLattice({ 3, 3, 3 }, glm::dvec3(0.0), glm::dvec3(4.0), 0.0, 0.0, random);
@@ -172,18 +172,18 @@ void TestMisuse()
 
   const StaticMapping nothing = BuildStaticMapping(Extent{ { 0, -1, 0, 4, 0, 4 } }, UnitSpacing,
     mesh.Points, mesh.Tetrahedra, true, StaticMappingForm::Links);
-  CHECK(nothing.Links.empty() && nothing.NumberOfInnerVoxels == 0);
+  EXPECT_TRUE(nothing.Links.empty() && nothing.NumberOfInnerVoxels == 0);
 
   for (const bool extrapolate : { false, true })
   {
     const StaticMapping empty =
       BuildStaticMapping(voxels, UnitSpacing, {}, {}, extrapolate, StaticMappingForm::Links);
-    CHECK(empty.Links.size() == 125 && empty.NumberOfInnerVoxels == 0);
-    CHECK(std::all_of(empty.Links.begin(), empty.Links.end(),
+    EXPECT_TRUE(empty.Links.size() == 125 && empty.NumberOfInnerVoxels == 0);
+    EXPECT_TRUE(std::all_of(empty.Links.begin(), empty.Links.end(),
       [](const VertexLink& link) { return link.Tetrahedron == -1; }));
     const StaticMapping apart = BuildStaticMapping(Extent{ { 10, 12, 0, 4, 0, 4 } }, UnitSpacing,
       mesh.Points, mesh.Tetrahedra, extrapolate, StaticMappingForm::Links);
-    CHECK(apart.NumberOfInnerVoxels == 0 && apart.Links[0].Tetrahedron == -1);
+    EXPECT_TRUE(apart.NumberOfInnerVoxels == 0 && apart.Links[0].Tetrahedron == -1);
   }
 
   bool refused = false;
@@ -198,7 +198,7 @@ void TestMisuse()
   {
     refused = std::string(error.what()).find("units") != std::string::npos;
   }
-  CHECK(refused);
+  EXPECT_TRUE(refused);
 
   for (const bool extrapolate : { false, true })
   {
@@ -214,7 +214,7 @@ void TestMisuse()
         last = done;
         return true;
       });
-    CHECK(ordered && std::abs(last - 1.0) < 1e-12);
+    EXPECT_TRUE(ordered && std::abs(last - 1.0) < 1e-12);
     for (const double end : { 0.0, 0.3, 0.9 })
     {
       bool aborted = false;
@@ -227,12 +227,12 @@ void TestMisuse()
       {
         aborted = true;
       }
-      CHECK(aborted);
+      EXPECT_TRUE(aborted);
     }
   }
 }
 
-void TestExact()
+TEST(StaticMapping, Exact)
 {
   std::mt19937 random(2);
   const double unit = 1.0 / 256.0;
@@ -247,7 +247,7 @@ void TestExact()
     CheckExactly(mesh, voxels);
     const StaticMapping mapping = BuildStaticMapping(
       voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, StaticMappingForm::Links);
-    CHECK(mapping.NumberOfInnerVoxels == GetNumberOfPoints(voxels));
+    EXPECT_EQ(mapping.NumberOfInnerVoxels, GetNumberOfPoints(voxels));
   }
   // Meshes that are larger than the volume, smaller, and with tetrahedra that are smaller than a
   // voxel.
@@ -270,7 +270,7 @@ void TestExact()
   CheckExactly(MakeSoup(50, 60, -4.0, 36.0, 0.25, random), Extent{ { 0, 33, 0, 34, 7, 8 } });
 }
 
-void TestRounded()
+TEST(StaticMapping, Rounded)
 {
   std::mt19937 random(3);
   const Extent voxels{ { -7, 8, -9, 4, 2, 15 } };
@@ -284,22 +284,24 @@ void TestRounded()
   }
   // Mesh bounds that are inside the volume by 1e-12, as after a transform of coordinates.
   const Mesh mesh = MakeLattice({ 6, 5, 4 }, min + 1e-12, max - 1e-12, 0.3, 0.0, random);
-  CHECK(BuildStaticMapping(
-          voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, StaticMappingForm::Links)
-          .NumberOfInnerVoxels == GetNumberOfPoints(voxels));
+  EXPECT_EQ(BuildStaticMapping(
+              voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, StaticMappingForm::Links)
+              .NumberOfInnerVoxels,
+    GetNumberOfPoints(voxels));
   // Tetrahedra that are much smaller than a voxel. Many of them are flat after rounding.
   const Mesh fine =
     MakeLattice({ 13, 13, 13 }, glm::dvec3(-0.05), glm::dvec3(1.07), 0.3, 0.0, random);
   const Extent corner{ { 0, 1, 0, 1, 0, 1 } };
   CheckRounded(fine, corner);
-  CHECK(BuildStaticMapping(
-          corner, UnitSpacing, fine.Points, fine.Tetrahedra, false, StaticMappingForm::Links)
-          .NumberOfInnerVoxels == 8);
+  EXPECT_EQ(BuildStaticMapping(
+              corner, UnitSpacing, fine.Points, fine.Tetrahedra, false, StaticMappingForm::Links)
+              .NumberOfInnerVoxels,
+    8);
 }
 
 // Two pyramids whose common base is divided along different diagonals, and a flat tetrahedron
 // between them. Rounding opens a gap there, in which no voxel may be lost.
-void TestFlatBetweenOthers()
+TEST(StaticMapping, FlatBetweenOthers)
 {
   std::mt19937 random(4);
   std::normal_distribution<double> normal;
@@ -321,14 +323,14 @@ void TestFlatBetweenOthers()
         { { 0, 1, 3, 5 } }, { { 1, 2, 3, 5 } } };
       const StaticMapping mapping = BuildStaticMapping(
         voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, StaticMappingForm::Links);
-      CHECK(mapping.NumberOfInnerVoxels == GetNumberOfPoints(voxels));
-      CHECK(mapping.NumberOfFlatTetrahedra == (height < 1.0 ? 0 : 1));
+      EXPECT_EQ(mapping.NumberOfInnerVoxels, GetNumberOfPoints(voxels));
+      EXPECT_EQ(mapping.NumberOfFlatTetrahedra, height < 1.0 ? 0 : 1);
       for (std::int64_t i = 0; i < GetNumberOfPoints(voxels); ++i)
       {
         const VertexLink& link = mapping.Links[i];
         const float last = 1.0F - link.Weights[0] - link.Weights[1] - link.Weights[2];
-        CHECK(link.Tetrahedron >= 0);
-        CHECK(std::min({ link.Weights[0], link.Weights[1], link.Weights[2], last }) >= -0.13F);
+        EXPECT_GE(link.Tetrahedron, 0);
+        EXPECT_GE(std::min({ link.Weights[0], link.Weights[1], link.Weights[2], last }), -0.13F);
       }
     }
   }
@@ -343,11 +345,11 @@ void TestFlatBetweenOthers()
   mesh.Tetrahedra = { { { 0, 1, 2, 3 } } };
   const StaticMapping mapping = BuildStaticMapping(
     voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, true, StaticMappingForm::Links);
-  CHECK(mapping.NumberOfInnerVoxels == 0 && mapping.NumberOfFlatTetrahedra == 1);
+  EXPECT_TRUE(mapping.NumberOfInnerVoxels == 0 && mapping.NumberOfFlatTetrahedra == 1);
 }
 
 // The same mesh with nodes and tetrahedra in another order gives the same links, to the last bit.
-void TestNumbering()
+TEST(StaticMapping, Numbering)
 {
   std::mt19937 random(8);
   const Extent voxels{ { 0, 20, -3, 25, 5, 24 } };
@@ -383,30 +385,31 @@ void TestNumbering()
       for (std::size_t i = 0; i < expected.Links.size(); ++i)
       {
         const VertexLink& link = expected.Links[i];
-        CHECK(
-          found.Links[i].Tetrahedron == (link.Tetrahedron < 0 ? -1 : tetrahedra[link.Tetrahedron]));
-        CHECK(std::memcmp(found.Links[i].Weights, link.Weights, sizeof(link.Weights)) == 0);
+        EXPECT_EQ(
+          found.Links[i].Tetrahedron, link.Tetrahedron < 0 ? -1 : tetrahedra[link.Tetrahedron]);
+        EXPECT_EQ(std::memcmp(found.Links[i].Weights, link.Weights, sizeof(link.Weights)), 0);
       }
     }
     const StaticMapping expected = BuildStaticMapping(
       voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, StaticMappingForm::Runs);
     const StaticMapping found = BuildStaticMapping(
       voxels, UnitSpacing, other.Points, other.Tetrahedra, false, StaticMappingForm::Runs);
-    CHECK(found.Runs.RowBegins == expected.Runs.RowBegins);
-    CHECK(std::memcmp(found.Runs.Runs.data(), expected.Runs.Runs.data(),
-            expected.Runs.Runs.size() * sizeof(VertexRun)) == 0);
-    CHECK(found.Runs.Tetrahedra.size() == expected.Runs.Tetrahedra.size());
+    EXPECT_EQ(found.Runs.RowBegins, expected.Runs.RowBegins);
+    EXPECT_EQ(std::memcmp(found.Runs.Runs.data(), expected.Runs.Runs.data(),
+                expected.Runs.Runs.size() * sizeof(VertexRun)),
+      0);
+    EXPECT_EQ(found.Runs.Tetrahedra.size(), expected.Runs.Tetrahedra.size());
     for (std::size_t i = 0; i < expected.Runs.Tetrahedra.size(); ++i)
     {
       const RestTetrahedron& a = expected.Runs.Tetrahedra[i];
       const RestTetrahedron& b = found.Runs.Tetrahedra[i];
-      CHECK(b.Tetrahedron == tetrahedra[a.Tetrahedron] && b.Origin == a.Origin &&
+      EXPECT_TRUE(b.Tetrahedron == tetrahedra[a.Tetrahedron] && b.Origin == a.Origin &&
         b.Weights == a.Weights && b.Gradients == a.Gradients);
     }
   }
 }
 
-void TestThreads()
+TEST(StaticMapping, Threads)
 {
   std::mt19937 random(6);
   const Extent voxels{ { 0, 40, -50, 9, 5, 70 } };
@@ -422,7 +425,7 @@ void TestThreads()
 #endif
   StaticMapping expected;
   vtkSMPTools::LocalScope(vtkSMPTools::Config{ 1 }, [&]() { expected = build(); });
-  CHECK(expected.NumberOfInnerVoxels > 0);
+  EXPECT_GT(expected.NumberOfInnerVoxels, 0);
   for (const char* backend : backends)
   {
     for (const int threads : { 1, 2 })
@@ -435,17 +438,18 @@ void TestThreads()
         {
           const std::string before = vtkSMPTools::GetBackend();
           const StaticMapping mapping = build();
-          CHECK(before == vtkSMPTools::GetBackend());
-          CHECK(mapping.NumberOfInnerVoxels == expected.NumberOfInnerVoxels);
-          CHECK(mapping.NumberOfFlatTetrahedra == expected.NumberOfFlatTetrahedra);
-          CHECK(std::memcmp(mapping.Links.data(), expected.Links.data(),
-                  expected.Links.size() * sizeof(VertexLink)) == 0);
+          EXPECT_EQ(before, vtkSMPTools::GetBackend());
+          EXPECT_EQ(mapping.NumberOfInnerVoxels, expected.NumberOfInnerVoxels);
+          EXPECT_EQ(mapping.NumberOfFlatTetrahedra, expected.NumberOfFlatTetrahedra);
+          EXPECT_EQ(std::memcmp(mapping.Links.data(), expected.Links.data(),
+                      expected.Links.size() * sizeof(VertexLink)),
+            0);
         });
     }
   }
 }
 
-void TestLarge()
+TEST(StaticMapping, Large)
 {
   std::mt19937 random(7);
   const Extent voxels{ { 0, 127, 0, 127, 0, 127 } };
@@ -458,19 +462,7 @@ void TestLarge()
     std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   std::cout << mapping.Links.size() << " voxels, " << mesh.Points.size() << " nodes: " << seconds
             << " s\n";
-  CHECK(mapping.NumberOfInnerVoxels == GetNumberOfPoints(voxels));
+  EXPECT_EQ(mapping.NumberOfInnerVoxels, GetNumberOfPoints(voxels));
 }
 
 } // namespace
-
-int TestStaticMapping(int, char*[])
-{
-  TestMisuse();
-  TestExact();
-  TestRounded();
-  TestFlatBetweenOthers();
-  TestNumbering();
-  TestThreads();
-  TestLarge();
-  return GetResult();
-}

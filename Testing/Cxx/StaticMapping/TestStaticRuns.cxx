@@ -75,15 +75,15 @@ void CheckOrigin(const RestTetrahedron& rest, const Extent& voxels)
     for (int axis = 0; axis < 3; ++axis)
     {
       const double origin = rest.Origin[axis];
-      CHECK(origin == std::floor(origin) && origin >= 0.0 &&
+      EXPECT_TRUE(origin == std::floor(origin) && origin >= 0.0 &&
         origin < static_cast<double>(GetSize(voxels, axis)));
       variation += std::abs(rest.Gradients[k][axis]) / 128.0;
     }
-    CHECK(rest.Weights[k] >= -variation && rest.Weights[k] <= 1.0 + variation);
+    EXPECT_TRUE(rest.Weights[k] >= -variation && rest.Weights[k] <= 1.0 + variation);
     last -= rest.Weights[k];
     lastVariation += variation;
   }
-  CHECK(last >= -lastVariation && last <= 1.0 + lastVariation);
+  EXPECT_TRUE(last >= -lastVariation && last <= 1.0 + lastVariation);
 }
 
 // The record that displaces a voxel, with its origin as structured index: comparable between parts
@@ -130,7 +130,7 @@ std::vector<Displacer> GetDisplacers(const VertexRuns& runs, const Extent& voxel
 }
 
 // The static mapping of a part is equal to that of the whole volume, to the last bit.
-void TestParts()
+TEST(StaticRuns, Parts)
 {
   std::mt19937 random(11);
   const Extent voxels{ { -7, 40, 3, 40, -20, 29 } };
@@ -175,15 +175,15 @@ void TestParts()
             (voxel.x - voxels[0]);
           if (form == StaticMappingForm::Runs)
           {
-            CHECK(displacers[i] == wholeDisplacers[at]);
+            EXPECT_EQ(displacers[i], wholeDisplacers[at]);
           }
           else
           {
-            CHECK(std::memcmp(&mapping.Links[i], &whole.Links[at], sizeof(VertexLink)) == 0);
+            EXPECT_EQ(std::memcmp(&mapping.Links[i], &whole.Links[at], sizeof(VertexLink)), 0);
           }
         }
       }
-      CHECK(inner == whole.NumberOfInnerVoxels && inner > 0);
+      EXPECT_TRUE(inner == whole.NumberOfInnerVoxels && inner > 0);
     }
   }
 }
@@ -193,9 +193,9 @@ void Compare(const Mesh& mesh, const Extent& voxels)
 {
   const StaticMapping byLinks = Build(mesh, voxels, StaticMappingForm::Links);
   const StaticMapping byRuns = Build(mesh, voxels, StaticMappingForm::Runs);
-  CHECK(byLinks.Runs.RowBegins.empty() && byRuns.Links.empty());
-  CHECK(byRuns.NumberOfInnerVoxels == byLinks.NumberOfInnerVoxels);
-  CHECK(byRuns.NumberOfFlatTetrahedra == byLinks.NumberOfFlatTetrahedra);
+  EXPECT_TRUE(byLinks.Runs.RowBegins.empty() && byRuns.Links.empty());
+  EXPECT_EQ(byRuns.NumberOfInnerVoxels, byLinks.NumberOfInnerVoxels);
+  EXPECT_EQ(byRuns.NumberOfFlatTetrahedra, byLinks.NumberOfFlatTetrahedra);
   const VertexRuns& runs = byRuns.Runs;
   VoxelGrid voxelGrid;
   voxelGrid.VertexExtent = voxels;
@@ -214,7 +214,7 @@ void Compare(const Mesh& mesh, const Extent& voxels)
       {
         const std::int64_t voxel = static_cast<std::int64_t>(row) * size + x;
         const VertexLink& link = byLinks.Links[voxel];
-        CHECK(link.Tetrahedron == (record < 0 ? -1 : rest.Tetrahedron));
+        EXPECT_EQ(link.Tetrahedron, record < 0 ? -1 : rest.Tetrahedron);
         const glm::ivec3 local =
           GetVoxel(voxels, voxel) - glm::ivec3(voxels[0], voxels[2], voxels[4]);
         for (int k = 0; k < 3 && record >= 0; ++k)
@@ -228,48 +228,48 @@ void Compare(const Mesh& mesh, const Extent& voxels)
             magnitude += std::abs(term);
           }
           // Rounding to float, and rounding of sums in double precision.
-          CHECK(std::abs(weight - link.Weights[k]) <=
+          EXPECT_LE(std::abs(weight - link.Weights[k]),
             std::ldexp(std::abs(weight), -24) + 1e-12 * magnitude + 1e-9);
         }
       }
       // Neighboring runs have different tetrahedra: otherwise they would be one run.
-      CHECK(last || record < 0 || runs.Runs[i + 1].Tetrahedron < 0 ||
+      EXPECT_TRUE(last || record < 0 || runs.Runs[i + 1].Tetrahedron < 0 ||
         runs.Tetrahedra[runs.Runs[i + 1].Tetrahedron].Tetrahedron != rest.Tetrahedron);
-      CHECK(last || record >= 0 || runs.Runs[i + 1].Tetrahedron >= 0);
+      EXPECT_TRUE(last || record >= 0 || runs.Runs[i + 1].Tetrahedron >= 0);
       if (record >= 0)
       {
         const bool sliver = GetWeightVariation(rest, mesh, voxels) > LargestWeightVariation;
         const bool first = used.insert(record).second;
-        CHECK(!sliver || first);
+        EXPECT_TRUE(!sliver || first);
         // Records are in the order of the voxels. The origin of a sliver's record is in its run.
-        CHECK(!first || record + 1 == static_cast<std::int32_t>(used.size()));
-        CHECK(!sliver || rest.Origin[0] == runs.Runs[i].Begin);
+        EXPECT_TRUE(!first || record + 1 == static_cast<std::int32_t>(used.size()));
+        EXPECT_TRUE(!sliver || rest.Origin[0] == runs.Runs[i].Begin);
         CheckOrigin(rest, voxels);
       }
     }
   }
-  CHECK(used.size() == runs.Tetrahedra.size());
+  EXPECT_EQ(used.size(), runs.Tetrahedra.size());
   std::set<std::int32_t> owners;
   for (const RestTetrahedron& rest : runs.Tetrahedra)
   {
-    CHECK(owners.insert(rest.Tetrahedron).second ||
+    EXPECT_TRUE(owners.insert(rest.Tetrahedron).second ||
       GetWeightVariation(rest, mesh, voxels) > LargestWeightVariation);
   }
 }
 
-void TestMisuse()
+TEST(StaticRuns, Misuse)
 {
   std::mt19937 random(1);
   const Mesh mesh = MakeLattice({ 3, 3, 3 }, glm::dvec3(0.0), glm::dvec3(9.0), 0.0, 0.0, random);
   const Extent voxels{ { 0, 9, 0, 9, 0, 9 } };
-  CHECK(IsRefused(
+  EXPECT_TRUE(IsRefused(
     [&]()
     {
       BuildStaticMapping(
         voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, true, StaticMappingForm::Runs);
     },
     "extrapolated"));
-  CHECK(IsRefused(
+  EXPECT_TRUE(IsRefused(
     [&]()
     {
       Mesh far = mesh;
@@ -280,14 +280,14 @@ void TestMisuse()
   for (const StaticMappingForm form : { StaticMappingForm::Automatic, StaticMappingForm::Runs })
   {
     const StaticMapping nothing = Build(mesh, Extent{ { 0, -1, 0, 4, 0, 4 } }, form);
-    CHECK(nothing.Links.empty() && nothing.Runs.Runs.empty());
+    EXPECT_TRUE(nothing.Links.empty() && nothing.Runs.Runs.empty());
     for (const Mesh& apart :
       { Mesh(), MakeLattice({ 2, 2, 2 }, glm::dvec3(20.0), glm::dvec3(30.0), 0.0, 0.0, random) })
     {
       const StaticMapping outside = Build(apart, voxels, form);
-      CHECK(outside.NumberOfInnerVoxels == 0 && outside.Links.empty());
-      CHECK(outside.Runs.Runs.size() == 100 && outside.Runs.Tetrahedra.empty());
-      CHECK(std::all_of(outside.Runs.Runs.begin(), outside.Runs.Runs.end(),
+      EXPECT_TRUE(outside.NumberOfInnerVoxels == 0 && outside.Links.empty());
+      EXPECT_TRUE(outside.Runs.Runs.size() == 100 && outside.Runs.Tetrahedra.empty());
+      EXPECT_TRUE(std::all_of(outside.Runs.Runs.begin(), outside.Runs.Runs.end(),
         [](const VertexRun& run) { return run.Tetrahedron == -1 && run.Begin == 0; }));
     }
   }
@@ -305,7 +305,7 @@ void TestMisuse()
       last = done;
       return true;
     });
-  CHECK(ordered && std::abs(last - 1.0) < 1e-12);
+  EXPECT_TRUE(ordered && std::abs(last - 1.0) < 1e-12);
   for (const double end : { 0.0, 0.3, 0.9 })
   {
     bool aborted = false;
@@ -317,11 +317,11 @@ void TestMisuse()
     {
       aborted = true;
     }
-    CHECK(aborted);
+    EXPECT_TRUE(aborted);
   }
 }
 
-void TestAgainstLinks()
+TEST(StaticRuns, AgainstLinks)
 {
   std::mt19937 random(2);
   const double unit = 1.0 / 256.0;
@@ -355,7 +355,7 @@ void TestAgainstLinks()
 }
 
 // A layer of slivers between two planes that are close together: each run has its own record.
-void TestSlivers()
+TEST(StaticRuns, Slivers)
 {
   const Extent voxels{ { 0, 40, 0, 30, 0, 20 } };
   for (const double height : { 0.1, 0.03 })
@@ -369,15 +369,15 @@ void TestSlivers()
     }
     Compare(mesh, voxels);
     const StaticMapping mapping = Build(mesh, voxels, StaticMappingForm::Runs);
-    CHECK(mapping.NumberOfInnerVoxels > 0);
-    CHECK(mapping.Runs.Tetrahedra.size() > mesh.Tetrahedra.size());
+    EXPECT_GT(mapping.NumberOfInnerVoxels, 0);
+    EXPECT_GT(mapping.Runs.Tetrahedra.size(), mesh.Tetrahedra.size());
     const auto inner = std::count_if(mapping.Runs.Runs.begin(), mapping.Runs.Runs.end(),
       [](const VertexRun& run) { return run.Tetrahedron >= 0; });
-    CHECK(mapping.Runs.Tetrahedra.size() == static_cast<std::size_t>(inner));
+    EXPECT_EQ(mapping.Runs.Tetrahedra.size(), static_cast<std::size_t>(inner));
   }
 }
 
-void TestChoice()
+TEST(StaticRuns, Choice)
 {
   std::mt19937 random(4);
   const Extent voxels{ { 0, 95, 0, 79, 0, 69 } };
@@ -395,25 +395,25 @@ void TestChoice()
               << static_cast<double>(builder.GetRunBytes()) / GetNumberOfPoints(voxels) << "\n";
     if (std::abs(mean - LeastMeanRunLength) > 0.3)
     {
-      CHECK((builder.GetRunBytes() > 0) == (mean > LeastMeanRunLength));
+      EXPECT_EQ(builder.GetRunBytes() > 0, mean > LeastMeanRunLength);
     }
     const StaticMapping chosen = builder.Build();
-    CHECK(chosen.Links.empty() == (builder.GetRunBytes() > 0));
-    CHECK(chosen.Runs.Runs.empty() == (builder.GetRunBytes() == 0));
+    EXPECT_EQ(chosen.Links.empty(), builder.GetRunBytes() > 0);
+    EXPECT_EQ(chosen.Runs.Runs.empty(), builder.GetRunBytes() == 0);
     if (builder.GetRunBytes() > 0)
     {
       const double ratio = static_cast<double>(builder.GetRunBytes()) / GetBytes(runs.Runs);
-      CHECK(ratio > 0.8 && ratio < 1.25);
-      CHECK(GetBytes(runs.Runs) < 6 * static_cast<std::uint64_t>(GetNumberOfPoints(voxels)));
+      EXPECT_TRUE(ratio > 0.8 && ratio < 1.25);
+      EXPECT_LT(GetBytes(runs.Runs), 6 * static_cast<std::uint64_t>(GetNumberOfPoints(voxels)));
     }
     // With extrapolation, links are chosen for any mesh.
     const StaticMapping extrapolated = BuildStaticMapping(
       voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, true, StaticMappingForm::Automatic);
-    CHECK(extrapolated.Runs.Runs.empty() && !extrapolated.Links.empty());
+    EXPECT_TRUE(extrapolated.Runs.Runs.empty() && !extrapolated.Links.empty());
   }
 }
 
-void TestThreads()
+TEST(StaticRuns, Threads)
 {
   std::mt19937 random(6);
   const Extent voxels{ { 0, 40, -50, 9, 5, 70 } };
@@ -435,31 +435,20 @@ void TestThreads()
         }
         const VertexRuns& a = mapping.Runs;
         const VertexRuns& b = expected.Runs;
-        CHECK(builder.GetRunBytes() == bytes);
-        CHECK(a.RowBegins == b.RowBegins && a.Runs.size() == b.Runs.size());
-        CHECK(std::memcmp(a.Runs.data(), b.Runs.data(), a.Runs.size() * sizeof(VertexRun)) == 0);
-        CHECK(a.Tetrahedra.size() == b.Tetrahedra.size());
+        EXPECT_EQ(builder.GetRunBytes(), bytes);
+        EXPECT_TRUE(a.RowBegins == b.RowBegins && a.Runs.size() == b.Runs.size());
+        EXPECT_EQ(std::memcmp(a.Runs.data(), b.Runs.data(), a.Runs.size() * sizeof(VertexRun)), 0);
+        EXPECT_EQ(a.Tetrahedra.size(), b.Tetrahedra.size());
         for (std::size_t i = 0; i < a.Tetrahedra.size(); ++i)
         {
-          CHECK(a.Tetrahedra[i].Tetrahedron == b.Tetrahedra[i].Tetrahedron &&
+          EXPECT_TRUE(a.Tetrahedra[i].Tetrahedron == b.Tetrahedra[i].Tetrahedron &&
             a.Tetrahedra[i].Origin == b.Tetrahedra[i].Origin &&
             a.Tetrahedra[i].Weights == b.Tetrahedra[i].Weights &&
             a.Tetrahedra[i].Gradients == b.Tetrahedra[i].Gradients);
         }
       });
   }
-  CHECK(expected.NumberOfInnerVoxels > 0);
+  EXPECT_GT(expected.NumberOfInnerVoxels, 0);
 }
 
 } // namespace
-
-int TestStaticRuns(int, char*[])
-{
-  TestParts();
-  TestMisuse();
-  TestAgainstLinks();
-  TestSlivers();
-  TestChoice();
-  TestThreads();
-  return GetResult();
-}

@@ -9,41 +9,15 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
-#include <iostream>
 #include <random>
 #include <vector>
 
-/// Counts a failed check, and prints its file and line. At most twenty are printed.
-#define CHECK(condition)                                                                           \
-  do                                                                                               \
-  {                                                                                                \
-    if (!(condition) && ++tetrahedralMeshes::Failures() <= 20)                                     \
-    {                                                                                              \
-      std::cerr << __FILE__ << ':' << __LINE__ << ": not true: " << #condition << '\n';            \
-    }                                                                                              \
-  } while (false)
-
 namespace tetrahedralMeshes
 {
-
-inline int& Failures()
-{
-  static int failures = 0;
-  return failures;
-}
-
-/// The exit code of a test.
-inline int GetResult()
-{
-  if (Failures() > 0)
-  {
-    std::cerr << Failures() << " checks failed\n";
-  }
-  return Failures() == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
-}
 
 struct Mesh
 {
@@ -153,7 +127,7 @@ inline void CheckWeights(
     // The rounding error of a float is half of its last bit.
     rounding += std::ldexp(std::abs(weight), -24) * glm::length(side);
   }
-  CHECK(glm::length(sum - voxel) <= 1.01 * rounding);
+  EXPECT_LE(glm::length(sum - voxel), 1.01 * rounding);
 }
 
 } // namespace tetrahedralMeshes
