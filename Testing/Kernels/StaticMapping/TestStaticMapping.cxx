@@ -2,9 +2,8 @@
 // The static mapping by links. The reference is a search of every voxel in every tetrahedron.
 #include "StaticMapping.h"
 
+#include "LoopThreads.h"
 #include "TetrahedralMeshes.h"
-
-#include <vtkSMPTools.h>
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -419,34 +418,14 @@ TEST(StaticMapping, Threads)
     return BuildStaticMapping(voxels, glm::dvec3(0.5, 1.0, 2.0), mesh.Points, mesh.Tetrahedra, true,
       StaticMappingForm::Links);
   };
-  std::vector<const char*> backends{ "Sequential", "STDThread" };
-#if VTK_SMP_ENABLE_TBB
-  backends.push_back("TBB");
-#endif
-  StaticMapping expected;
-  vtkSMPTools::LocalScope(vtkSMPTools::Config{ 1 }, [&]() { expected = build(); });
+  const StaticMapping expected = CallOnThreads<1>(build);
   EXPECT_GT(expected.NumberOfInnerVoxels, 0);
-  for (const char* backend : backends)
-  {
-    for (const int threads : { 1, 2 })
-    {
-      vtkSMPTools::Config config;
-      config.MaxNumberOfThreads = threads;
-      config.Backend = backend;
-      vtkSMPTools::LocalScope(config,
-        [&]()
-        {
-          const std::string before = vtkSMPTools::GetBackend();
-          const StaticMapping mapping = build();
-          EXPECT_EQ(before, vtkSMPTools::GetBackend());
-          EXPECT_EQ(mapping.NumberOfInnerVoxels, expected.NumberOfInnerVoxels);
-          EXPECT_EQ(mapping.NumberOfFlatTetrahedra, expected.NumberOfFlatTetrahedra);
-          EXPECT_EQ(std::memcmp(mapping.Links.data(), expected.Links.data(),
-                      expected.Links.size() * sizeof(VertexLink)),
-            0);
-        });
-    }
-  }
+  const StaticMapping mapping = CallOnThreads<2>(build);
+  EXPECT_EQ(mapping.NumberOfInnerVoxels, expected.NumberOfInnerVoxels);
+  EXPECT_EQ(mapping.NumberOfFlatTetrahedra, expected.NumberOfFlatTetrahedra);
+  EXPECT_EQ(std::memcmp(mapping.Links.data(), expected.Links.data(),
+              expected.Links.size() * sizeof(VertexLink)),
+    0);
 }
 
 TEST(StaticMapping, Large)

@@ -2,16 +2,16 @@
 // The static mapping by runs, compared with that by links, and the choice between the two forms.
 #include "StaticMapping.h"
 
+#include "LoopThreads.h"
 #include "TetrahedralMeshes.h"
 #include "VertexRuns.h"
-
-#include <vtkSMPTools.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <set>
 #include <string>
+#include <utility>
 
 using namespace deformvolume;
 using namespace tetrahedralMeshes;
@@ -418,37 +418,30 @@ TEST(StaticRuns, Threads)
   std::mt19937 random(6);
   const Extent voxels{ { 0, 40, -50, 9, 5, 70 } };
   const Mesh mesh = MakeSoup(400, 100, -20.0, 60.0, 0.0, random);
-  StaticMapping expected;
-  std::uint64_t bytes = 0;
-  for (const int threads : { 1, 2, 4 })
+  const auto build = [&]()
   {
-    vtkSMPTools::LocalScope(vtkSMPTools::Config{ threads, "STDThread", false },
-      [&]()
-      {
-        const StaticMapping mapping = Build(mesh, voxels, StaticMappingForm::Runs);
-        const StaticMappingBuilder builder(
-          voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, StaticMappingForm::Runs);
-        if (threads == 1)
-        {
-          expected = mapping;
-          bytes = builder.GetRunBytes();
-        }
-        const VertexRuns& a = mapping.Runs;
-        const VertexRuns& b = expected.Runs;
-        EXPECT_EQ(builder.GetRunBytes(), bytes);
-        EXPECT_TRUE(a.RowBegins == b.RowBegins && a.Runs.size() == b.Runs.size());
-        EXPECT_EQ(std::memcmp(a.Runs.data(), b.Runs.data(), a.Runs.size() * sizeof(VertexRun)), 0);
-        EXPECT_EQ(a.Tetrahedra.size(), b.Tetrahedra.size());
-        for (std::size_t i = 0; i < a.Tetrahedra.size(); ++i)
-        {
-          EXPECT_TRUE(a.Tetrahedra[i].Tetrahedron == b.Tetrahedra[i].Tetrahedron &&
-            a.Tetrahedra[i].Origin == b.Tetrahedra[i].Origin &&
-            a.Tetrahedra[i].Weights == b.Tetrahedra[i].Weights &&
-            a.Tetrahedra[i].Gradients == b.Tetrahedra[i].Gradients);
-        }
-      });
-  }
+    const StaticMappingBuilder builder(
+      voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, StaticMappingForm::Runs);
+    return std::make_pair(Build(mesh, voxels, StaticMappingForm::Runs), builder.GetRunBytes());
+  };
+  const auto [expected, bytes] = CallOnThreads<1>(build);
   EXPECT_GT(expected.NumberOfInnerVoxels, 0);
+  const VertexRuns& b = expected.Runs;
+  for (const auto& [mapping, bytesNow] : { CallOnThreads<2>(build), CallOnThreads<4>(build) })
+  {
+    const VertexRuns& a = mapping.Runs;
+    EXPECT_EQ(bytesNow, bytes);
+    ASSERT_TRUE(a.RowBegins == b.RowBegins && a.Runs.size() == b.Runs.size());
+    EXPECT_EQ(std::memcmp(a.Runs.data(), b.Runs.data(), a.Runs.size() * sizeof(VertexRun)), 0);
+    ASSERT_EQ(a.Tetrahedra.size(), b.Tetrahedra.size());
+    for (std::size_t i = 0; i < a.Tetrahedra.size(); ++i)
+    {
+      EXPECT_TRUE(a.Tetrahedra[i].Tetrahedron == b.Tetrahedra[i].Tetrahedron &&
+        a.Tetrahedra[i].Origin == b.Tetrahedra[i].Origin &&
+        a.Tetrahedra[i].Weights == b.Tetrahedra[i].Weights &&
+        a.Tetrahedra[i].Gradients == b.Tetrahedra[i].Gradients);
+    }
+  }
 }
 
 } // namespace

@@ -5,9 +5,8 @@
 #include "MeshBounds.h"
 #include "StaticMapping.h"
 
+#include "LoopThreads.h"
 #include "TetrahedralMeshes.h"
-
-#include <vtkSMPTools.h>
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -484,10 +483,8 @@ TEST(DeformedBounds, Threads)
   const std::vector<float> displacements = MakeVectors(mesh.Points.size(), 3.0, random);
   const auto compute = [&]()
   { return ComputeDeformedBounds(voxelGrid, mesh.Points, mesh.Tetrahedra, displacements.data()); };
-  IndexBounds one;
-  IndexBounds two;
-  vtkSMPTools::LocalScope(vtkSMPTools::Config{ 1 }, [&]() { one = compute(); });
-  vtkSMPTools::LocalScope(vtkSMPTools::Config{ 2 }, [&]() { two = compute(); });
+  const IndexBounds one = CallOnThreads<1>(compute);
+  const IndexBounds two = CallOnThreads<2>(compute);
   EXPECT_TRUE(one.Min == two.Min && one.Max == two.Max && !one.IsEmpty());
 }
 
