@@ -34,8 +34,9 @@
  * three components is the position in the mesh at rest that a handle holds: the nodes within
  * HandleRadius of this position or, if none of these can move, the nodes of the tetrahedron that
  * contains it, so that the tissue there follows the handle. If HandleRadius is 0, it is the nearest
- * node. Points that no tetrahedron uses are ignored. If several handles hold a node, the first one is used. Handles do
- * not move fixed nodes, and move sliding nodes only within their plane or along their line.
+ * node. Points that no tetrahedron uses are ignored. If several handles hold a node, the first one
+ * is used. Handles do not move fixed nodes, and move sliding nodes only within their plane or along
+ * their line.
  *
  * @par Port 2, optional, the sheet:
  * vtkPolyData in world coordinates: triangles, polygons and triangle strips; also polylines if
