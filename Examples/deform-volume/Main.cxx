@@ -229,6 +229,7 @@ Volume ReadReference(const Options& options, const Volume& volume, Messages& mes
 {
   ReadingOptions reading;
   reading.Frame = 0; // all frames have the same grid
+  reading.CanBeFlat = true;
   Volume reference = ReadVolume(options.Reference, reading, messages, !options.Quiet);
   reference.Image->GetPointData()->Initialize();
   reference.Image->GetCellData()->Initialize();

@@ -104,6 +104,17 @@ coverage = convert("cells.vti", "e.vti").GetPointData().GetArray("vtkValidPointM
 covered = [coverage.GetValue(voxel) for voxel in range(coverage.GetNumberOfTuples())]
 assert covered.count(0) == 1 and covered[7] == 0, covered.count(0)
 
+# A reference image of one slice.
+single = vtkImageData()
+single.SetDimensions(volume.GetDimensions()[0], volume.GetDimensions()[1], 1)
+single.SetSpacing(volume.GetSpacing())
+single.SetDirectionMatrix(volume.GetDirectionMatrix())
+volume.TransformIndexToPhysicalPoint(0, 0, 9, corner)
+single.SetOrigin(corner)
+write_vti(single, path("single.vti"))
+call(program, path("in.vti"), *still, "-o", path("e.vti"), "--reference", path("single.vti"), "--quiet")
+same(read_vti(path("e.vti")), values[9:10], get_matrix(single))
+
 # --file-coordinates: the output has the coordinates that VTK's reader gives for a NIfTI file.
 call(program, path("a.nii.gz"), *still, "-o", path("f.vti"), "--quiet", "--bounds", "volume",
      "--file-coordinates")

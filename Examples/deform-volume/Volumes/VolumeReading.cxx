@@ -164,7 +164,7 @@ Volume ReadVolume(
   }
   int dimensions[3];
   volume.Image->GetDimensions(dimensions);
-  if (std::min({ dimensions[0], dimensions[1], dimensions[2] }) < 2)
+  if (!options.CanBeFlat && std::min({ dimensions[0], dimensions[1], dimensions[2] }) < 2)
   {
     throw Failure("cannot read " + path + ": it has " + std::to_string(dimensions[0]) + " x " +
       std::to_string(dimensions[1]) + " x " + std::to_string(dimensions[2]) +

@@ -18,6 +18,8 @@ struct ReadingOptions
   std::optional<int> Frame;
   /// Whether the user can set Frame by an option. Affects messages only.
   bool CanChooseFrame = true;
+  /// Whether one voxel is enough on an axis, as for a reference image.
+  bool CanBeFlat = false;
 };
 
 /// Whether the program was built with ITK, and reads and writes its formats.
