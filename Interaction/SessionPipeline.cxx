@@ -5,15 +5,19 @@
 #include "StyleText.h"
 #include "vtkDeformVolumeSession.h"
 
+#include "vtkAdaptiveSubdivisionFilter.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCarveVolume.h"
 #include "vtkChainMailDeformation.h"
 #include "vtkCutVolume.h"
+#include "vtkDataArray.h"
+#include "vtkDeformGeometryFilter.h"
 #include "vtkDeformVolumeFilter.h"
 #include "vtkExecutive.h"
 #include "vtkFiniteElementDeformation.h"
 #include "vtkImageData.h"
 #include "vtkMassSpringDeformation.h"
+#include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkUnstructuredGrid.h"
@@ -22,6 +26,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -141,7 +146,12 @@ SessionEvents SessionPipeline::GetSettings() const
 void SessionPipeline::Update(vtkAlgorithm* filter)
 {
   this->Message.clear();
-  filter->Update();
+  const bool isUpdated = filter->GetExecutive()->Update(0) != 0;
+  if (!isUpdated && this->Message.empty())
+  {
+    this->Message = std::string(filter->GetClassName()) +
+      " failed. Call vtkObject::GlobalWarningDisplayOn() before, to see why.";
+  }
   if (!this->Message.empty())
   {
     throw std::runtime_error(this->Message);
@@ -269,24 +279,31 @@ void SessionPipeline::TryBeginGrab(double handle, const glm::dvec3& position)
     }
     drag.Rest[axis] = std::clamp(drag.Rest[axis], low[axis], high[axis]);
   }
-  drag.ToNode = this->FindWayToNode(drag.Rest);
-  // The handle begins at the deformed position of Rest, so that nothing moves before MoveGrab().
-  drag.Now = drag.LastPossible = FindDeformedPosition(this->GetDeformation(), drag.Rest);
-  const Actions undone = this->Undone;
-  this->Do(drag);
   if (this->GetElastic())
   {
-    // Only the filter knows whether the handle holds a node. It fails if there is none.
-    try
+    drag.Nodes = this->FindNodes(drag.Rest);
+    this->CheckNodes(drag);
+  }
+  // The handle begins at the deformed position of Rest, so that nothing moves before MoveGrab().
+  drag.Now = drag.LastPossible = FindDeformedPosition(this->GetDeformation(), drag.Rest);
+  this->Do(drag);
+}
+
+void SessionPipeline::CheckNodes(const Action& drag) const
+{
+  std::set<vtkIdType> taken;
+  for (const Action& action : this->GetHeld())
+  {
+    for (const NodeOfHandle& node : action.Nodes)
     {
-      this->UpdateModel(this->GetHeld());
+      taken.insert(node.Id);
     }
-    catch (...)
-    {
-      this->Done.pop_back();
-      this->Undone = undone;
-      throw;
-    }
+  }
+  if (std::all_of(drag.Nodes.begin(), drag.Nodes.end(),
+        [&](const NodeOfHandle& node) { return taken.count(node.Id) > 0; }))
+  {
+    throw std::runtime_error("The handle holds no node that could move: all nodes at its position "
+                             "are fixed or held by another handle. Grab another position.");
   }
 }
 
@@ -322,22 +339,65 @@ void SessionPipeline::Release(double handle)
   this->Do(release);
 }
 
+namespace
+{
+
+// Moves a sheet with the tissue to its position at rest. Triangles are divided, since a plane is
+// curved there.
+vtkSmartPointer<vtkPolyData> MoveToRest(vtkPolyData* sheet, vtkDataSet* deformation)
+{
+  constexpr double edgesOnDiagonal = 40.0;
+  vtkNew<vtkAdaptiveSubdivisionFilter> fine;
+  fine->SetInputData(sheet);
+  fine->SetMaximumEdgeLength(deformation->GetLength() / edgesOnDiagonal);
+  fine->SetMaximumTriangleArea(VTK_DOUBLE_MAX);
+  fine->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+  fine->Update();
+  const auto rest = vtkSmartPointer<vtkPolyData>::New();
+  rest->DeepCopy(fine->GetOutput());
+  vtkPoints* points = rest->GetPoints();
+  vtkPoints* moved = nullptr;
+  vtkDataArray* isMoved = nullptr;
+  vtkNew<vtkDeformGeometryFilter> inverse; // is faster than estimates in a mesh
+  if (!vtkImageData::SafeDownCast(deformation))
+  {
+    vtkNew<vtkCallbackCommand> nothing; // without it, points outside are a warning
+    inverse->AddObserver(vtkCommand::WarningEvent, nothing);
+    inverse->SetInputData(fine->GetOutput());
+    inverse->SetDeformationData(deformation);
+    inverse->SetOutsideMode(vtkDeformGeometryFilter::EXTRAPOLATE);
+    inverse->InverseOn();
+    inverse->Update();
+    auto* output = vtkPolyData::SafeDownCast(inverse->GetOutput());
+    moved = output && output->GetNumberOfPoints() > 0 ? output->GetPoints() : nullptr;
+    isMoved = moved ? output->GetPointData()->GetArray("vtkValidPointMask") : nullptr;
+  }
+  for (vtkIdType id = 0; id < points->GetNumberOfPoints(); ++id)
+  {
+    glm::dvec3 position;
+    points->GetPoint(id, &position.x);
+    if (isMoved && isMoved->GetComponent(id, 0) != 0.0)
+    {
+      moved->GetPoint(id, &position.x);
+    }
+    else
+    {
+      // Points of a sheet can lie outside the tissue, where an estimate is sufficient.
+      position = EstimateRestPosition(deformation, position);
+    }
+    points->SetPoint(id, &position.x);
+  }
+  return rest;
+}
+
+} // namespace
+
 void SessionPipeline::Cut(const SessionEvent& event)
 {
   const auto sheet = MakeSheet(event);
   Action cut;
   cut.Kind = Action::CUT;
-  cut.RestSheet = MakeSheet(event);
-  vtkPoints* points = cut.RestSheet->GetPoints();
-  for (vtkIdType id = 0; id < points->GetNumberOfPoints(); ++id)
-  {
-    double position[3];
-    points->GetPoint(id, position);
-    // Points of a sheet can lie outside the tissue, where an estimate is sufficient.
-    const glm::dvec3 rest =
-      EstimateRestPosition(this->GetDeformation(), { position[0], position[1], position[2] });
-    points->SetPoint(id, rest.x, rest.y, rest.z);
-  }
+  cut.RestSheet = this->Model == Session::NONE ? sheet : MoveToRest(sheet, this->GetDeformation());
   vtkElasticDeformation* elastic = this->GetElastic();
   if (this->Model == Session::CHAIN_MAIL)
   {
@@ -383,6 +443,7 @@ void SessionPipeline::CutMesh(
   vtkElasticDeformation* elastic, vtkPolyData* sheet, const Actions& held, Action& cut)
 {
   const vtkIdType before = elastic->GetNumberOfCuts();
+  cut.NumberOfNodes = this->GetDeformation()->GetNumberOfPoints();
   elastic->SetSheetData(sheet);
   this->UpdateModel(held);
   cut.HasSplit = elastic->GetNumberOfCuts() > before;

@@ -90,6 +90,13 @@ public:
   SessionEvents GetSettings() const;
 
 private:
+  // A node that a handle holds.
+  struct NodeOfHandle
+  {
+    vtkIdType Id; // of the output of the elastic filter
+    glm::dvec3 Rest;
+    glm::dvec3 Offset; // from the handle to the node
+  };
   struct Action
   {
     enum KindType
@@ -105,12 +112,13 @@ private:
     glm::dvec3 Rest{ 0.0 };
     glm::dvec3 Now{ 0.0 };
     glm::dvec3 LastPossible{ 0.0 };
-    glm::dvec3 ToNode{ 0.0 }; // see FindWayToNode()
+    std::vector<NodeOfHandle> Nodes; // with an elastic model
     bool IsGrabbed = false;
     bool IsHeld = false;
     vtkSmartPointer<vtkPolyData> RestSheet;
     int NumberOfEdits = 1;
-    bool HasSplit = false; // whether a cut has split the mesh
+    bool HasSplit = false;       // whether a cut has split the mesh
+    vtkIdType NumberOfNodes = 0; // of the mesh before the cut
     int Model = 0;
     int FormerModel = 0;
     // States of ChainMail before the action, and when it was undone (SaveState); -1: not saved.
@@ -121,6 +129,8 @@ private:
 
   void BeginGrab(double handle, const glm::dvec3& position);
   void TryBeginGrab(double handle, const glm::dvec3& position);
+  // Throws if a handle holds no node, or only those of other handles.
+  void CheckNodes(const Action& drag) const;
   void StepBack();
   Action& FindHandle(double handle, bool isGrabbed);
   void Release(double handle);
@@ -145,13 +155,12 @@ private:
   void Rebuild();
   Actions GetHeld() const;
   void UpdateModel(const Actions& held);
-  bool IsUsed(vtkIdType point);
   /// Warns once if a handle lies outside the output.
   void CheckHandles();
-  // Returns the vector to the nearest node of the mesh that can move; 0 if a tetrahedron with such
-  // a node contains the position.
-  glm::dvec3 FindWayToNode(const glm::dvec3& rest);
-  glm::dvec3 GetShift(const Action& drag);
+  // Returns the nodes that a handle at a rest position holds, of those that can move: those within
+  // the handle radius, or else those of the tetrahedron that contains the position, or else the
+  // nearest one. Other handles may hold them, too.
+  std::vector<NodeOfHandle> FindNodes(const glm::dvec3& rest);
   void Update(vtkAlgorithm* filter);
   void Connect();
   void MakeStill();

@@ -12,6 +12,7 @@
 #include "vtkPolyData.h"
 #include "vtkUnstructuredGrid.h"
 
+#include <algorithm>
 #include <utility>
 
 using Session = vtkDeformVolumeSession;
@@ -117,8 +118,19 @@ void SessionPipeline::Undo()
       this->UndoEdits(this->CutFilter, 1);
       if (elastic && action.HasSplit && !this->IsToRebuild)
       {
-        elastic->UndoCut();
-        this->UpdateModel(this->GetHeld());
+        const Actions held = this->GetHeld();
+        // After a rebuild, handles may hold nodes that this cut has made.
+        this->IsToRebuild = std::any_of(held.begin(), held.end(),
+          [&](const Action& drag)
+          {
+            return std::any_of(drag.Nodes.begin(), drag.Nodes.end(),
+              [&](const NodeOfHandle& node) { return node.Id >= action.NumberOfNodes; });
+          });
+        if (!this->IsToRebuild)
+        {
+          elastic->UndoCut();
+          this->UpdateModel(held);
+        }
       }
       break;
     case Action::CARVE:

@@ -2,6 +2,7 @@
 // The model of the tissue, and its steps.
 #include "SessionPipeline.h"
 
+#include "SessionPositions.h"
 #include "vtkDeformVolumeSession.h"
 
 #include "vtkCarveVolume.h"
@@ -13,6 +14,7 @@
 #include "vtkFiniteElementDeformation.h"
 #include "vtkFloatArray.h"
 #include "vtkIdList.h"
+#include "vtkIdTypeArray.h"
 #include "vtkImageData.h"
 #include "vtkLatticeTetrahedraSource.h"
 #include "vtkMassSpringDeformation.h"
@@ -27,6 +29,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 
@@ -84,13 +87,6 @@ void SessionPipeline::TakeRestMesh()
         this->IsMeshOfElements ? std::max(2, (this->NumberOfNodes + 1) / 2) : this->NumberOfNodes);
   this->MassSpring->SetInputData(this->RestMesh);
   this->Elements->SetInputData(this->RestMesh);
-  for (Actions* actions : { &this->Done, &this->Undone })
-  {
-    for (Action& action : *actions)
-    {
-      action.ToNode = this->FindWayToNode(action.Rest);
-    }
-  }
 }
 
 vtkElasticDeformation* SessionPipeline::GetElastic()
@@ -236,6 +232,14 @@ void SessionPipeline::Rebuild()
       }
     }
     elastic->Reset();
+    for (Actions* actions : { &this->Done, &this->Undone })
+    {
+      for (Action& action : *actions)
+      {
+        action.Nodes =
+          action.Kind == Action::DRAG ? this->FindNodes(action.Rest) : std::vector<NodeOfHandle>();
+      }
+    }
     this->UpdateModel(this->GetHeld());
   }
   else
@@ -244,95 +248,90 @@ void SessionPipeline::Rebuild()
   }
 }
 
-bool SessionPipeline::IsUsed(vtkIdType point)
+std::vector<SessionPipeline::NodeOfHandle> SessionPipeline::FindNodes(const glm::dvec3& rest)
 {
-  vtkNew<vtkIdList> cells;
-  this->RestMesh->GetPointCells(point, cells); // builds the table of cells at points once
-  return cells->GetNumberOfIds() > 0;
-}
-
-glm::dvec3 SessionPipeline::FindWayToNode(const glm::dvec3& rest)
-{
-  vtkDataArray* fixed = this->RestMesh->GetPointData()->GetArray("Fixed");
-  glm::dvec3 nearest(0.0); // if no node can move
-  double least = std::numeric_limits<double>::infinity();
-  const auto take = [&](const glm::dvec3& position)
-  {
-    const glm::dvec3 way = position - rest;
-    const double square = glm::dot(way, way);
-    if (square < least)
-    {
-      least = square;
-      nearest = way;
-    }
-  };
+  auto* mesh = vtkUnstructuredGrid::SafeDownCast(this->GetDeformation());
+  vtkDataArray* fixed = mesh->GetPointData()->GetArray("Fixed");
+  vtkDataArray* vectors = mesh->GetPointData()->GetVectors();
+  const vtkIdType given = this->RestMesh->GetNumberOfPoints();
   const auto getPosition = [&](vtkIdType id)
   {
     glm::dvec3 position;
-    this->RestMesh->GetPoint(id, &position.x);
+    mesh->GetPoint(id, &position.x);
     return position;
   };
-  const auto isFixed = [&](vtkIdType id) { return fixed && fixed->GetComponent(id, 0) != 0.0; };
+  std::vector<bool> canMove(static_cast<std::size_t>(mesh->GetNumberOfPoints()));
+  std::vector<vtkIdType> ofCell;
   vtkNew<vtkIdList> ids;
-  for (vtkIdType cell = 0; cell < this->RestMesh->GetNumberOfCells(); ++cell)
+  for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
   {
-    const int type = this->RestMesh->GetCellType(cell);
+    const int type = mesh->GetCellType(cell);
     if (type != VTK_TETRA && type != VTK_QUADRATIC_TETRA)
     {
       continue;
     }
-    this->RestMesh->GetCellPoints(cell, ids);
+    mesh->GetCellPoints(cell, ids);
+    const auto mark = [&](vtkIdType i, bool value)
+    { canMove[static_cast<std::size_t>(ids->GetId(i))] = value; };
+    const auto isFree = [&](vtkIdType i)
+    { return !fixed || fixed->GetComponent(ids->GetId(i), 0) == 0.0; };
     glm::dvec3 corners[4];
-    bool isHeld = true;
     for (int i = 0; i < 4; ++i)
     {
       corners[i] = getPosition(ids->GetId(i));
-      isHeld = isHeld && isFixed(ids->GetId(i));
+      mark(i, isFree(i));
+    }
+    constexpr int edges[6][2] = { { 0, 1 }, { 1, 2 }, { 0, 2 }, { 0, 3 }, { 1, 3 }, { 2, 3 } };
+    for (vtkIdType i = 4; i < ids->GetNumberOfIds(); ++i)
+    {
+      // A node that the filter adds is fixed if both ends of its edge are.
+      mark(
+        i, ids->GetId(i) < given ? isFree(i) : isFree(edges[i - 4][0]) || isFree(edges[i - 4][1]));
     }
     double weights[4];
     glm::dvec3 position = rest; // VTK 9.1 takes no constants
-    if (!isHeld &&
+    if (ofCell.empty() &&
       vtkTetra::BarycentricCoords(
         &position.x, &corners[0].x, &corners[1].x, &corners[2].x, &corners[3].x, weights) != 0 &&
       *std::min_element(weights, weights + 4) >= 0.0)
     {
-      return glm::dvec3(0.0);
+      std::copy_if(ids->begin(), ids->end(), std::back_inserter(ofCell),
+        [&](vtkIdType id) { return canMove[static_cast<std::size_t>(id)]; });
     }
   }
-  for (vtkIdType id = 0; id < this->RestMesh->GetNumberOfPoints(); ++id)
+  std::vector<vtkIdType> found;
+  vtkIdType nearest = -1;
+  double least = std::numeric_limits<double>::infinity();
+  for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
   {
-    // Points without cells are not nodes.
-    if (!isFixed(id) && this->IsUsed(id))
+    const double distance = glm::distance(getPosition(id), rest);
+    if (canMove[static_cast<std::size_t>(id)])
     {
-      take(getPosition(id));
-    }
-  }
-  // The mid-side nodes that finite elements add.
-  for (vtkIdType cell = 0; this->IsMeshOfElements && cell < this->RestMesh->GetNumberOfCells();
-       ++cell)
-  {
-    this->RestMesh->GetCellPoints(cell, ids);
-    const vtkIdType corners = this->RestMesh->GetCellType(cell) == VTK_TETRA ? 4 : 0;
-    for (vtkIdType i = 0; i < corners; ++i)
-    {
-      for (vtkIdType k = 0; k < i; ++k)
+      nearest = distance < least ? id : nearest;
+      least = std::min(least, distance);
+      if (distance <= this->HandleRadius)
       {
-        if (!(isFixed(ids->GetId(i)) && isFixed(ids->GetId(k))))
-        {
-          take(0.5 * (getPosition(ids->GetId(i)) + getPosition(ids->GetId(k))));
-        }
+        found.push_back(id);
       }
     }
   }
-  return nearest;
-}
-
-// The vector by which a handle is moved to the nearest node that can move, if no such node lies
-// within the handle radius, and no tetrahedron with such a node contains the handle.
-glm::dvec3 SessionPipeline::GetShift(const Action& drag)
-{
-  return this->GetElastic() && glm::length(drag.ToNode) > this->HandleRadius ? drag.ToNode
-                                                                             : glm::dvec3(0.0);
+  if (found.empty())
+  {
+    found = ofCell;
+  }
+  if (found.empty() && nearest >= 0)
+  {
+    found.push_back(nearest);
+  }
+  const glm::dvec3 handle = FindDeformedPosition(mesh, rest);
+  std::vector<NodeOfHandle> nodes;
+  for (const vtkIdType id : found)
+  {
+    glm::dvec3 displacement;
+    vectors->GetTuple(id, &displacement.x);
+    nodes.push_back({ id, getPosition(id), getPosition(id) + displacement - handle });
+  }
+  return nodes;
 }
 
 void SessionPipeline::UpdateModel(const Actions& held)
@@ -342,16 +341,30 @@ void SessionPipeline::UpdateModel(const Actions& held)
   vtkNew<vtkDoubleArray> rest;
   rest->SetName("RestPosition");
   rest->SetNumberOfComponents(3);
+  vtkNew<vtkIdTypeArray> nodes;
+  nodes->SetName("Node");
+  const auto insert = [&](const glm::dvec3& now, const glm::dvec3& at, vtkIdType node)
+  {
+    points->InsertNextPoint(&now.x);
+    rest->InsertNextTuple(&at.x);
+    nodes->InsertNextValue(node);
+  };
   for (const Action& action : held)
   {
-    const glm::dvec3 shift = this->GetShift(action);
-    points->InsertNextPoint(action.Now.x + shift.x, action.Now.y + shift.y, action.Now.z + shift.z);
-    rest->InsertNextTuple3(
-      action.Rest.x + shift.x, action.Rest.y + shift.y, action.Rest.z + shift.z);
+    if (!this->GetElastic())
+    {
+      insert(action.Now, action.Rest, -1);
+      continue;
+    }
+    for (const NodeOfHandle& node : action.Nodes)
+    {
+      insert(action.Now + node.Offset, node.Rest, node.Id);
+    }
   }
   vtkNew<vtkPolyData> handles;
   handles->SetPoints(points);
   handles->GetPointData()->AddArray(rest);
+  handles->GetPointData()->AddArray(nodes);
   if (this->Model == Session::CHAIN_MAIL)
   {
     this->ChainMail->SetHandleRadius(this->HandleRadius);
@@ -362,9 +375,6 @@ void SessionPipeline::UpdateModel(const Actions& held)
   }
   else if (vtkElasticDeformation* elastic = this->GetElastic())
   {
-    // With a radius of 0 the filter would hold the nearest node, so that the tissue at the handle
-    // would lag behind.
-    elastic->SetHandleRadius(std::max(this->HandleRadius, std::numeric_limits<double>::min()));
     elastic->SetHandlesData(handles);
     elastic->Modified();
     this->Update(elastic);

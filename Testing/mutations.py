@@ -545,7 +545,7 @@ def is_of_plugin(test):
 
 
 def get_program(test):
-    if not isinstance(test, str):
+    if not isinstance(test, str) or test.startswith("Kernels."):
         return "DeformVolumeEngineTests"
     if test.startswith("C."):
         return test.partition(".")[2] + "C"

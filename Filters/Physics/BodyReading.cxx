@@ -389,6 +389,24 @@ void Hold(const glm::dvec3& position, double radius, const glm::dvec3& displacem
   }
 }
 
+// Adds a node that a handle holds, unless another handle holds it.
+void HoldNode(double index, const glm::dvec3& displacement, const BodyMesh& mesh,
+  std::vector<unsigned char>& isTaken, std::vector<HeldNode>& held)
+{
+  const auto node = static_cast<std::size_t>(index < 0x1p31 ? index : 0x1p31);
+  if (node >= isTaken.size() || static_cast<double>(node) != index || mesh.IsUsed[node] == 0 ||
+    mesh.Body.IsFixed(node))
+  {
+    throw Error(std::string("The point array \"") + HeldNodeName + "\" of the handles names node " +
+      std::to_string(index) + ", which is fixed or no node of the mesh.");
+  }
+  if (isTaken[node] == 0)
+  {
+    isTaken[node] = 1;
+    held.push_back({ static_cast<std::int32_t>(node), displacement });
+  }
+}
+
 } // namespace
 
 Stamp GetBodyStamp(vtkUnstructuredGrid* grid)
@@ -519,11 +537,21 @@ std::vector<HeldNode> ReadHandles(
   }
   std::vector<HeldNode> held;
   const HandlePositions positions = ReadHandlePositions(handles, "mesh");
+  vtkDataArray* nodes = positions.Rest.empty()
+    ? nullptr
+    : FindShapedArray(handles->GetPointData(), HeldNodeName, 1, handles->GetNumberOfPoints(),
+        "point array", "the handles on input port 1");
   std::vector<unsigned char> isTaken(mesh.Body.Points.size(), 0);
   for (std::size_t i = 0; i < positions.Rest.size(); ++i)
   {
     const glm::dvec3 rest = positions.Rest[i] * settings.UnitLength;
     const glm::dvec3 now = positions.Now[i] * settings.UnitLength;
+    const double node = nodes ? nodes->GetComponent(static_cast<vtkIdType>(i), 0) : -1.0;
+    if (!(node < 0.0))
+    {
+      HoldNode(node, now - rest, mesh, isTaken, held);
+      continue;
+    }
     Hold(rest, radius * settings.UnitLength, now - rest, mesh, isTaken, held);
   }
   return held;

@@ -91,7 +91,11 @@ Stamp GetBodyStamp(vtkUnstructuredGrid* grid);
 /// lies in this plane, and the other end is fixed or slides in the same plane.
 BodyMesh ReadBody(vtkUnstructuredGrid* grid, const BodySettings& settings);
 
-/// Finds the nodes that handles hold, and their displacements. A handle holds the nodes of
+/// Name of the point array of handles with the node that each one holds.
+constexpr const char* HeldNodeName = "Node";
+
+/// Finds the nodes that handles hold, and their displacements. A handle holds the node that the
+/// array HeldNodeName names. Without the array, or if the number is negative, it holds the nodes of
 /// tetrahedra within a radius of its rest position. If none of these can move, it holds those of
 /// the tetrahedron that contains the position. If the radius is 0, it holds the nearest node.
 /// Lengths are in units of the mesh. If several handles hold a node, the first one is used. Fixed

@@ -898,6 +898,109 @@ TEST(DeformVolumeSession, GrabbedTissue)
   }
 }
 
+// Errors of filters have no events if VTK displays no warnings. They are noticed nevertheless.
+TEST(DeformVolumeSession, FailuresWithoutMessages)
+{
+  for (const int model : { Session::CHAIN_MAIL, Session::MASS_SPRING, Session::FINITE_ELEMENTS })
+  {
+    Tested one(MakeVolume(Box));
+    one.Object->ChangeModel(model);
+    one.Finish();
+    const int handle = one.Object->BeginGrab(10, 10, 17);
+    vtkObject::GlobalWarningDisplayOff();
+    one.Object->MoveGrab(handle, 1e300, 10, 17);
+    one.Object->Update();
+    EXPECT_TRUE(HasPart(one.Object->GetErrorMessage(), "GlobalWarningDisplayOn()"));
+    one.Object->MoveGrab(handle, 11, 10, 17);
+    vtkObject::GlobalWarningDisplayOn();
+    one.Finish();
+    EXPECT_EQ(one.Object->GetModel(), model);
+  }
+}
+
+// A sheet of two triangles cuts deformed tissue at the same place when the cut is made again.
+TEST(DeformVolumeSession, CoarseSheets)
+{
+  for (const int model : { Session::MASS_SPRING, Session::FINITE_ELEMENTS })
+  {
+    Tested one(MakeVolume(Box));
+    one.Object->ChangeModel(model);
+    one.Object->ChangeHandleRadius(6);
+    const int handle = one.Object->BeginGrab(11, 12, 17);
+    one.Object->MoveGrab(handle, 11, 12, 25);
+    one.Object->HoldGrab(handle);
+    one.Finish(1000);
+    vtkNew<vtkPlaneSource> plane;
+    plane->SetOrigin(-19, -18, 12);
+    plane->SetPoint1(41, -18, 12);
+    plane->SetPoint2(-19, 42, 12);
+    vtkNew<vtkTriangleFilter> sheet;
+    sheet->SetInputConnection(plane->GetOutputPort());
+    sheet->Update();
+    one.Object->Cut(sheet->GetOutput());
+    const auto cut = one.Finish(1000);
+    one.Object->Undo();
+    one.Object->Redo();
+    const auto again = one.Finish(1000);
+    const auto probe = [](vtkImageData* image, double z)
+    {
+      double point[3] = { 11, 12, z };
+      const vtkIdType id = image->FindPoint(point);
+      return id < 0 ? -1.0
+                    : image->GetPointData()->GetArray("vtkValidPointMask")->GetComponent(id, 0);
+    };
+    int differences = 0;
+    for (double z = 1.0; z < 24.0; z += 1.0)
+    {
+      differences += probe(cut, z) != probe(again, z);
+    }
+    EXPECT_LE(differences, 1);
+  }
+}
+
+// Another handle that holds deformed tissue moves nothing before it is moved.
+TEST(DeformVolumeSession, GrabsMoveNothing)
+{
+  const std::string fileName = GetFileName() + ".vtu";
+  for (const int model : { Session::MASS_SPRING, Session::FINITE_ELEMENTS })
+  {
+    for (const double radius : { 0.0, 4.0 })
+    {
+      Tested one(MakeVolume(Box));
+      one.Object->ChangeModel(model);
+      const int handle = one.Object->BeginGrab(10, 10, 17);
+      one.Object->MoveGrab(handle, 15, 12, 18);
+      one.Object->HoldGrab(handle);
+      one.Finish(1000);
+      const auto getPoints = [&]()
+      {
+        EXPECT_TRUE(one.Object->SaveMesh(fileName));
+        vtkNew<vtkXMLUnstructuredGridReader> reader;
+        reader->SetFileName(fileName.c_str());
+        reader->Update();
+        std::vector<glm::dvec3> points;
+        for (vtkIdType i = 0; i < reader->GetOutput()->GetNumberOfPoints(); ++i)
+        {
+          points.push_back(GetPoint(reader->GetOutput(), i));
+        }
+        return points;
+      };
+      const std::vector<glm::dvec3> before = getPoints();
+      one.Object->ChangeHandleRadius(radius);
+      one.Object->BeginGrab(9, 10, 11);
+      one.Finish();
+      const std::vector<glm::dvec3> after = getPoints();
+      ASSERT_EQ(after.size(), before.size());
+      double most = 0.0;
+      for (std::size_t i = 0; i < before.size(); ++i)
+      {
+        most = std::max(most, glm::distance(before[i], after[i]));
+      }
+      EXPECT_LT(most, 0.02) << "with the radius " << radius; // of the last residuals
+    }
+  }
+}
+
 // A file of version 0.1, with events of all kinds.
 TEST(DeformVolumeSession, OldFile)
 {

@@ -6,6 +6,7 @@
 #include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>
 #include <vtkInformation.h>
+#include <vtkIntArray.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
@@ -699,6 +700,35 @@ TEST(ElasticDeformation, HeldNodes)
 {
   CheckHeldNodes<vtkFiniteElementDeformation>();
   CheckHeldNodes<vtkMassSpringDeformation>();
+}
+
+// The array "Node" of the handles names nodes.
+TEST(ElasticDeformation, HandlesOfNodes)
+{
+  const auto bar = MakeBar(0.001);
+  Simulated<vtkFiniteElementDeformation> simulated(bar);
+  simulated.Object->SetLengthUnitToMillimetre();
+  simulated.Object->SetHandleRadius(3.0);
+  const vtkIdType corner = bar->GetNumberOfPoints() - 1;
+  const auto handles = MakeHandles({ { { 5.0, 5.0, 30.0 }, { 5.5, 5.0, 30.0 } } });
+  vtkNew<vtkIntArray> nodes;
+  nodes->SetName("Node");
+  nodes->InsertNextValue(static_cast<int>(corner));
+  handles->GetPointData()->AddArray(nodes);
+  simulated.Object->SetHandlesData(handles);
+  EXPECT_EQ(simulated.TryUpdate(), "");
+  EXPECT_EQ(simulated.Object->GetNumberOfHeldNodes(), 1);
+  double moved[3];
+  simulated.Copy()->GetTuple(corner, moved);
+  EXPECT_NEAR(moved[0], 0.5, 1e-6);
+  for (const int wrong : { 0, 1000000 }) // a fixed node, and no node
+  {
+    nodes->SetValue(0, wrong);
+    EXPECT_TRUE(HasPart(simulated.TryUpdate(), "names node " + std::to_string(wrong)));
+  }
+  nodes->SetValue(0, -1);
+  EXPECT_EQ(simulated.TryUpdate(), "");
+  EXPECT_GT(simulated.Object->GetNumberOfHeldNodes(), 1);
 }
 
 TEST(ElasticDeformation, HiddenCells)
