@@ -30,9 +30,10 @@
  * it, and relaxes. MASS_SPRING and FINITE_ELEMENTS are vtkMassSpringDeformation and
  * vtkFiniteElementDeformation on the mesh of SetInputs(), or else on a vtkLatticeTetrahedraSource
  * whose first layer of nodes is fixed, in millimeters. MASS_SPRING refuses meshes whose cells are
- * not equal cubes. A change of the model keeps handles, cuts and carvings. Cuts split meshes along
- * the faces of tetrahedra. Cuts that were made with another model, or that are redone, split the
- * mesh at rest.
+ * not equal cubes. A change of the model ends all grabs, and keeps the handles of HoldGrab(), cuts
+ * and carvings. Cuts split meshes along the faces of tetrahedra. Cuts that were made with another
+ * model, or that are redone, split the mesh at rest. Carving removes voxels; the mesh of
+ * MASS_SPRING and FINITE_ELEMENTS keeps its tetrahedra, and still connects what was carved apart.
  *
  * @par Output:
  * The vtkImageData of vtkDeformVolumeFilter, with the bounds of the volume at rest and Padding.
@@ -50,7 +51,7 @@
  * An event that fails changes nothing; but if the model or the lattice cannot be changed, or if a
  * simulation diverges, the body is rebuilt from rest. MoveGrab(), EndGrab() and HoldGrab() of a
  * handle that could not be grabbed have no effect. Errors of events are reported by Update() and
- * TakeOutput(). Errors are: no inputs; positions that are not finite, or without tissue to grab; a
+ * TakeOutput(). Errors are: no inputs; positions that are not finite, or outside the volume; a
  * handle that is not grabbed, or that cannot be moved so far; a sheet that is empty or not made of
  * triangles; errors of the filters; files that cannot be written or read, are damaged, or belong to
  * another version or volume.
@@ -148,7 +149,7 @@ public:
    * Carve out a sphere, which begins a stroke, and continue the stroke: CarveTo() carves the region
    * that the sphere sweeps from its last position. The surface passes between the voxels
    * (SmoothBoundary of vtkCarveVolume). Any event of another kind ends the stroke. A stroke is one
-   * action.
+   * action. With another radius than before, CarveTo() sweeps with the new one.
    */
   void CarveSphere(double x, double y, double z, double radius);
   void CarveTo(double x, double y, double z, double radius);
@@ -183,7 +184,8 @@ public:
   ///@{
   /**
    * Change settings, by events that cannot be undone:
-   * - the radius within which a handle holds voxels or nodes, in world units (initially 0),
+   * - the radius within which a handle holds voxels or nodes, in world units (initially 0). With a
+   *   mesh it applies to handles that are grabbed later, with CHAIN_MAIL to all handles,
    * - the sweeps of relaxation in a step of ChainMail, 0 to 10000 (initially 5),
    * - the maximum number of nodes of the lattice on an axis, 2 to 100 (initially 7); with
    *   FINITE_ELEMENTS this number includes mid-side nodes, and is at least 3,

@@ -135,7 +135,8 @@ MeshCells ReadCells(const dv_mesh& mesh, const VectorView& points)
   MeshCells made = reader.Finish();
   if (made.Tetrahedra.empty())
   {
-    throw Error("The deformation mesh has no tetrahedra, but " + made.Ignored +
+    throw Error("The deformation mesh has no tetrahedra, but " +
+      (made.Ignored.empty() ? "only cells without volume" : made.Ignored) +
       ". Use a mesh of three-dimensional cells that can be split into tetrahedra.");
   }
   return made;
@@ -425,6 +426,10 @@ std::int32_t dv_output_grid(dv_deformer* deformer, dv_grid* grid)
       WorldDeformer& world = GetDeformer(deformer);
       CheckStruct(grid, "the grid");
       const ImageGeometry output = world.FindOutput();
+      if (GetNumberOfPoints(output.PointExtent) == 0)
+      {
+        throw Error("The extent of the output is empty. Use a greater padding or larger bounds.");
+      }
       dv_grid made = {};
       for (int axis = 0; axis < 3; ++axis)
       {

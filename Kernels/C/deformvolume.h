@@ -10,7 +10,12 @@
  * Texts are UTF-8 and end with a zero.
  *
  * Threads. All functions may be called from several threads at once, but not from two threads at
- * once for the same object (deformer, ChainMail).
+ * once for the same object (deformer, ChainMail). Threads need a stack of 128 KiB.
+ *
+ * Processes. OpenCL does not work in a process that was forked after the first use of a device:
+ * calls may wait forever there. Start another program instead, or fork before.
+ *
+ * Memory. Outputs must not overlap each other, nor data that are borrowed.
  */
 #ifndef deformvolume_h
 #define deformvolume_h
@@ -214,8 +219,8 @@ extern "C"
    * differs from the previous one, arrays and masks are discarded. */
   DV_EXPORT int32_t dv_set_volume(dv_deformer* deformer, const dv_grid* grid);
 
-  /** Sets the arrays of the volume. Their data are borrowed. count may be 0: then dv_deform()
-   * writes only the arrays that dv_request names. */
+  /** Sets the arrays of the volume. Their data are borrowed. count may be 0 if
+   * dv_request names rest_positions or jacobian: then dv_deform() writes only what it names. */
   DV_EXPORT int32_t dv_set_arrays(dv_deformer* deformer, int32_t count, const dv_array* arrays);
 
   /** Sets the blanked voxels. One byte per voxel: not 0 if the voxel is blanked. Null: no voxel is
@@ -437,7 +442,8 @@ extern "C"
     /** The number of cells of the volume that are stretched over more than 4,000 output voxels.
      * Their overstretched tetrahedra are discarded. */
     int64_t number_of_overstretched_cells;
-    /** The number of samples that other parts of a folded volume hide. */
+    /** The number of samples that other parts of a folded volume hide. 0 if an incremental call
+     * has written only what has changed. */
     int64_t number_of_hidden_samples;
     /** An extent that contains all output voxels that may have changed since the last call. Empty
      * (first > last) if no voxel has changed. */

@@ -8,7 +8,7 @@ namespace deformvolume
 
 std::string GetCellName(int type)
 {
-  static const std::map<int, const char*> names{
+  static const auto& names = *new std::map<int, const char*>{
     { 0, "empty cell" },
     { 1, "vertex" },
     { 2, "poly vertex" },

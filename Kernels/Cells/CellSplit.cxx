@@ -8,19 +8,21 @@
 namespace deformvolume
 {
 
+// Tables of this folder are not destroyed, as a program may end with calls from destructors of its
+// own.
 const CellFaces* GetCellFaces(int cellType)
 {
-  static const CellFaces hexahedron{ { 0, 4, 7, 3 }, { 1, 2, 6, 5 }, { 0, 1, 5, 4 }, { 3, 7, 6, 2 },
-    { 0, 3, 2, 1 }, { 4, 5, 6, 7 } };
-  static const CellFaces wedge{ { 0, 1, 2 }, { 3, 5, 4 }, { 0, 3, 4, 1 }, { 1, 4, 5, 2 },
-    { 2, 5, 3, 0 } };
-  static const CellFaces pyramid{ { 0, 3, 2, 1 }, { 0, 1, 4 }, { 1, 2, 4 }, { 2, 3, 4 },
-    { 3, 0, 4 } };
-  static const CellFaces pentagonalPrism{ { 0, 4, 3, 2, 1 }, { 5, 6, 7, 8, 9 }, { 0, 1, 6, 5 },
-    { 1, 2, 7, 6 }, { 2, 3, 8, 7 }, { 3, 4, 9, 8 }, { 4, 0, 5, 9 } };
-  static const CellFaces hexagonalPrism{ { 0, 5, 4, 3, 2, 1 }, { 6, 7, 8, 9, 10, 11 },
-    { 0, 1, 7, 6 }, { 1, 2, 8, 7 }, { 2, 3, 9, 8 }, { 3, 4, 10, 9 }, { 4, 5, 11, 10 },
-    { 5, 0, 6, 11 } };
+  static const CellFaces& hexahedron = *new CellFaces{ { 0, 4, 7, 3 }, { 1, 2, 6, 5 },
+    { 0, 1, 5, 4 }, { 3, 7, 6, 2 }, { 0, 3, 2, 1 }, { 4, 5, 6, 7 } };
+  static const CellFaces& wedge =
+    *new CellFaces{ { 0, 1, 2 }, { 3, 5, 4 }, { 0, 3, 4, 1 }, { 1, 4, 5, 2 }, { 2, 5, 3, 0 } };
+  static const CellFaces& pyramid =
+    *new CellFaces{ { 0, 3, 2, 1 }, { 0, 1, 4 }, { 1, 2, 4 }, { 2, 3, 4 }, { 3, 0, 4 } };
+  static const CellFaces& pentagonalPrism = *new CellFaces{ { 0, 4, 3, 2, 1 }, { 5, 6, 7, 8, 9 },
+    { 0, 1, 6, 5 }, { 1, 2, 7, 6 }, { 2, 3, 8, 7 }, { 3, 4, 9, 8 }, { 4, 0, 5, 9 } };
+  static const CellFaces& hexagonalPrism =
+    *new CellFaces{ { 0, 5, 4, 3, 2, 1 }, { 6, 7, 8, 9, 10, 11 }, { 0, 1, 7, 6 }, { 1, 2, 8, 7 },
+      { 2, 3, 9, 8 }, { 3, 4, 10, 9 }, { 4, 5, 11, 10 }, { 5, 0, 6, 11 } };
   switch (cellType)
   {
     case cellNumbers::Hexahedron:

@@ -16,21 +16,21 @@ namespace
 // order, and the center node of the face if there is one.
 const CellFaces& GetQuadraticFaces(int cellType)
 {
-  static const CellFaces tetrahedron{ { 0, 1, 3, 4, 8, 7 }, { 1, 2, 3, 5, 9, 8 },
+  static const CellFaces& tetrahedron = *new CellFaces{ { 0, 1, 3, 4, 8, 7 }, { 1, 2, 3, 5, 9, 8 },
     { 2, 0, 3, 6, 7, 9 }, { 0, 2, 1, 6, 5, 4 } };
-  static const CellFaces hexahedron{ { 0, 4, 7, 3, 16, 15, 19, 11 }, { 1, 2, 6, 5, 9, 18, 13, 17 },
-    { 0, 1, 5, 4, 8, 17, 12, 16 }, { 3, 7, 6, 2, 19, 14, 18, 10 }, { 0, 3, 2, 1, 11, 10, 9, 8 },
-    { 4, 5, 6, 7, 12, 13, 14, 15 } };
-  static const CellFaces wedge{ { 0, 1, 2, 6, 7, 8 }, { 3, 5, 4, 11, 10, 9 },
+  static const CellFaces& hexahedron = *new CellFaces{ { 0, 4, 7, 3, 16, 15, 19, 11 },
+    { 1, 2, 6, 5, 9, 18, 13, 17 }, { 0, 1, 5, 4, 8, 17, 12, 16 }, { 3, 7, 6, 2, 19, 14, 18, 10 },
+    { 0, 3, 2, 1, 11, 10, 9, 8 }, { 4, 5, 6, 7, 12, 13, 14, 15 } };
+  static const CellFaces& wedge = *new CellFaces{ { 0, 1, 2, 6, 7, 8 }, { 3, 5, 4, 11, 10, 9 },
     { 0, 3, 4, 1, 12, 9, 13, 6 }, { 1, 4, 5, 2, 13, 10, 14, 7 }, { 2, 5, 3, 0, 14, 11, 12, 8 } };
-  static const CellFaces pyramid{ { 0, 3, 2, 1, 8, 7, 6, 5 }, { 0, 1, 4, 5, 10, 9 },
-    { 1, 2, 4, 6, 11, 10 }, { 2, 3, 4, 7, 12, 11 }, { 3, 0, 4, 8, 9, 12 } };
-  static const CellFaces triQuadraticPyramid{ { 0, 3, 2, 1, 8, 7, 6, 5, 13 },
-    { 0, 1, 4, 5, 10, 9, 14 }, { 1, 2, 4, 6, 11, 10, 15 }, { 2, 3, 4, 7, 12, 11, 16 },
-    { 3, 0, 4, 8, 9, 12, 17 } };
+  static const CellFaces& pyramid = *new CellFaces{ { 0, 3, 2, 1, 8, 7, 6, 5 },
+    { 0, 1, 4, 5, 10, 9 }, { 1, 2, 4, 6, 11, 10 }, { 2, 3, 4, 7, 12, 11 }, { 3, 0, 4, 8, 9, 12 } };
+  static const CellFaces& triQuadraticPyramid =
+    *new CellFaces{ { 0, 3, 2, 1, 8, 7, 6, 5, 13 }, { 0, 1, 4, 5, 10, 9, 14 },
+      { 1, 2, 4, 6, 11, 10, 15 }, { 2, 3, 4, 7, 12, 11, 16 }, { 3, 0, 4, 8, 9, 12, 17 } };
   // The quadratic Lagrange tetrahedron of 15 nodes, with center nodes of the faces and of the cell.
-  static const CellFaces tetrahedronOf15{ { 0, 1, 3, 4, 8, 7, 11 }, { 2, 3, 1, 9, 8, 5, 12 },
-    { 0, 3, 2, 7, 9, 6, 13 }, { 0, 2, 1, 6, 5, 4, 10 } };
+  static const CellFaces& tetrahedronOf15 = *new CellFaces{ { 0, 1, 3, 4, 8, 7, 11 },
+    { 2, 3, 1, 9, 8, 5, 12 }, { 0, 3, 2, 7, 9, 6, 13 }, { 0, 2, 1, 6, 5, 4, 10 } };
   switch (cellType)
   {
     case cellNumbers::QuadraticTetrahedron:
@@ -168,17 +168,18 @@ bool HigherOrderCells::Contain(int cellType)
 const std::vector<std::array<int, 3>>& HigherOrderCells::GetMidSides(int cellType)
 {
   using Edges = std::vector<std::array<int, 3>>;
-  static const Edges none;
-  static const Edges tetrahedron{ { { 0, 1, 4 } }, { { 1, 2, 5 } }, { { 2, 0, 6 } },
+  static const Edges& none = *new Edges;
+  static const Edges& tetrahedron = *new Edges{ { { 0, 1, 4 } }, { { 1, 2, 5 } }, { { 2, 0, 6 } },
     { { 0, 3, 7 } }, { { 1, 3, 8 } }, { { 2, 3, 9 } } };
-  static const Edges hexahedron{ { { 0, 1, 8 } }, { { 1, 2, 9 } }, { { 3, 2, 10 } },
+  static const Edges& hexahedron = *new Edges{ { { 0, 1, 8 } }, { { 1, 2, 9 } }, { { 3, 2, 10 } },
     { { 0, 3, 11 } }, { { 4, 5, 12 } }, { { 5, 6, 13 } }, { { 7, 6, 14 } }, { { 4, 7, 15 } },
     { { 0, 4, 16 } }, { { 1, 5, 17 } }, { { 3, 7, 19 } }, { { 2, 6, 18 } } };
-  static const Edges wedge{ { { 0, 1, 6 } }, { { 1, 2, 7 } }, { { 2, 0, 8 } }, { { 3, 4, 9 } },
-    { { 4, 5, 10 } }, { { 5, 3, 11 } }, { { 0, 3, 12 } }, { { 1, 4, 13 } }, { { 2, 5, 14 } } };
-  static const Edges linearWedge(wedge.begin(), wedge.begin() + 6);
-  static const Edges pyramid{ { { 0, 1, 5 } }, { { 1, 2, 6 } }, { { 2, 3, 7 } }, { { 3, 0, 8 } },
-    { { 0, 4, 9 } }, { { 1, 4, 10 } }, { { 2, 4, 11 } }, { { 3, 4, 12 } } };
+  static const Edges& wedge =
+    *new Edges{ { { 0, 1, 6 } }, { { 1, 2, 7 } }, { { 2, 0, 8 } }, { { 3, 4, 9 } },
+      { { 4, 5, 10 } }, { { 5, 3, 11 } }, { { 0, 3, 12 } }, { { 1, 4, 13 } }, { { 2, 5, 14 } } };
+  static const Edges& linearWedge = *new Edges(wedge.begin(), wedge.begin() + 6);
+  static const Edges& pyramid = *new Edges{ { { 0, 1, 5 } }, { { 1, 2, 6 } }, { { 2, 3, 7 } },
+    { { 3, 0, 8 } }, { { 0, 4, 9 } }, { { 1, 4, 10 } }, { { 2, 4, 11 } }, { { 3, 4, 12 } } };
   switch (cellType)
   {
     case cellNumbers::QuadraticTetrahedron:

@@ -67,7 +67,8 @@ std::uint64_t GetSystemMemory(const std::string& root)
   const auto total = root.empty() ? ownTotal : ReadSum(system, { "MemTotal:" });
   const std::int64_t all = total ? *total * kibibyte : NoLimit;
   // Each update calls this function, and a process rarely changes its groups.
-  static const std::vector<std::string> ownGroups = FindControlGroups();
+  // It is not destroyed, as a program may end with calls from destructors of its own.
+  static const auto& ownGroups = *new std::vector<std::string>(FindControlGroups());
   const std::vector<std::string> groups = root.empty() ? ownGroups : FindControlGroups(root);
   for (const std::string& folder : groups)
   {

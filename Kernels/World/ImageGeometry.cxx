@@ -176,7 +176,10 @@ void CheckTransform(const ImageGeometry& geometry, const std::string& what)
     }
   }
   const double determinant = glm::determinant(geometry.Direction);
-  if (!std::isfinite(determinant) || std::abs(determinant) < 1e-12)
+  const double lengths = glm::length(geometry.Direction[0]) * glm::length(geometry.Direction[1]) *
+    glm::length(geometry.Direction[2]);
+  constexpr double least = 1e-12; // of the volume of a box with edges of these lengths
+  if (!std::isfinite(determinant) || !(std::abs(determinant) > least * lengths))
   {
     throw Error("The direction matrix of " + what +
       " has no inverse. Set one of three independent directions.");

@@ -653,8 +653,7 @@ class Deformer:
         }
         with self._locked():
             grid = self._find_output_grid()
-            # If the extent is empty, the library says why.
-            shape = tuple(max(0, grid.extent[2 * axis + 1] - grid.extent[2 * axis] + 1) for axis in range(3))
+            shape = tuple(grid.extent[2 * axis + 1] - grid.extent[2 * axis] + 1 for axis in range(3))
             outputs = [
                 numpy.empty(shape[::-1] + array.shape[3:], array.dtype) for array in self._arrays
             ]

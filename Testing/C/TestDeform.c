@@ -574,10 +574,34 @@ static void TestParts(void)
   dv_destroy(deformer);
 }
 
+/* Runs after the destructors of the library, as it is registered before the library is used. */
+static void DeformAtExit(void)
+{
+  static const int64_t connectivity[8] = { 0, 1, 3, 2, 4, 5, 7, 6 };
+  static const int64_t offsets[2] = { 0, 8 };
+  static const uint8_t types[1] = { 12 };
+  dv_deformer* deformer = MakeDeformer();
+  const dv_request request = MakeRequest();
+  dv_mesh mesh = MakeMesh();
+  mesh.number_of_cells = 1;
+  mesh.connectivity = connectivity;
+  mesh.offsets = offsets;
+  mesh.types = types;
+  CHECK(dv_set_mesh(deformer, &mesh) == DV_OK);
+  CHECK(dv_set_displacements(deformer, DV_FLOAT32, 8, Displacements) == DV_OK);
+  CHECK(dv_deform(deformer, &request, NULL) == DV_OK);
+  dv_destroy(deformer);
+  if (Failures != 0)
+  {
+    abort();
+  }
+}
+
 int main(void)
 {
   int i = 0;
   int axis = 0;
+  atexit(DeformAtExit);
   Outputs[0] = Output;
   for (i = 0; i < VOXELS; ++i)
   {
