@@ -131,12 +131,16 @@ class _Calls:
     of daemon threads, and lets them begin no others: OpenCL must not be used while its driver is shut down."""
 
     def __init__(self):
-        self._process = os.getpid()
+        self._reset()
+        atexit.register(self._end)
+        os.register_at_fork(after_in_child=self._reset)
+
+    def _reset(self):
+        # In a forked process, the calls of other threads do not end.
         self._condition = threading.Condition()
         self._running = 0
         self._has_ended = False
         self._of_thread = threading.local()
-        atexit.register(self._end)
 
     def __enter__(self):
         if _is_in_main_thread():
@@ -159,12 +163,10 @@ class _Calls:
                 self._condition.notify_all()
 
     def _end(self):
-        # In a forked process the calls of other threads do not end.
-        if os.getpid() == self._process:
-            with self._condition:
-                self._has_ended = True
-                while self._running > 0:
-                    self._condition.wait()
+        with self._condition:
+            self._has_ended = True
+            while self._running > 0:
+                self._condition.wait()
 
 
 _calls = _Calls()
