@@ -36,8 +36,8 @@
  * contains it, so that the tissue there follows the handle. If HandleRadius is 0, it is the nearest
  * node. Points that no tetrahedron uses are ignored. If several handles hold a node, the first one
  * is used. Handles do not move fixed nodes, and move sliding nodes only within their plane or along
- * their line. The point array "Node", optional, one component, names a node of the output that a
- * handle holds instead of those at its rest position; -1: none. It moves by the point minus
+ * their line. The point array "HeldNode", optional, one component, names a node of the output that
+ * a handle holds instead of those at its rest position; -1: none. It moves by the point minus
  * "RestPosition".
  *
  * @par Port 2, optional, the sheet:

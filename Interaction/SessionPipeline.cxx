@@ -346,10 +346,12 @@ namespace
 // curved there.
 vtkSmartPointer<vtkPolyData> MoveToRest(vtkPolyData* sheet, vtkDataSet* deformation)
 {
-  constexpr double edgesOnDiagonal = 40.0;
+  constexpr double edgesOnBody = 40.0;
+  constexpr double mostEdges = 300.0; // on the diagonal of a sheet
   vtkNew<vtkAdaptiveSubdivisionFilter> fine;
   fine->SetInputData(sheet);
-  fine->SetMaximumEdgeLength(deformation->GetLength() / edgesOnDiagonal);
+  fine->SetMaximumEdgeLength(
+    std::max(deformation->GetLength() / edgesOnBody, sheet->GetLength() / mostEdges));
   fine->SetMaximumTriangleArea(VTK_DOUBLE_MAX);
   fine->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
   fine->Update();
@@ -363,6 +365,7 @@ vtkSmartPointer<vtkPolyData> MoveToRest(vtkPolyData* sheet, vtkDataSet* deformat
   {
     vtkNew<vtkCallbackCommand> nothing; // without it, points outside are a warning
     inverse->AddObserver(vtkCommand::WarningEvent, nothing);
+    inverse->AddObserver(vtkCommand::ErrorEvent, nothing);
     inverse->SetInputData(fine->GetOutput());
     inverse->SetDeformationData(deformation);
     inverse->SetOutsideMode(vtkDeformGeometryFilter::EXTRAPOLATE);
@@ -435,6 +438,7 @@ void SessionPipeline::Cut(const SessionEvent& event)
     elastic->SetSheetData(nullptr);
     this->Done.pop_back();
     this->UndoEdits(this->CutFilter, 1);
+    this->IsToRebuild = true; // the output of the elastic filter is empty
     throw;
   }
 }

@@ -129,7 +129,9 @@ void SessionPipeline::Undo()
         if (!this->IsToRebuild)
         {
           elastic->UndoCut();
+          this->IsToRebuild = true; // if the update fails
           this->UpdateModel(held);
+          this->IsToRebuild = false;
         }
       }
       break;

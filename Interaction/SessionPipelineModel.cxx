@@ -236,8 +236,8 @@ void SessionPipeline::Rebuild()
     {
       for (Action& action : *actions)
       {
-        action.Nodes =
-          action.Kind == Action::DRAG ? this->FindNodes(action.Rest) : std::vector<NodeOfHandle>();
+        action.Nodes = action.Kind == Action::DRAG && action.IsHeld ? this->FindNodes(action.Rest)
+                                                                    : std::vector<NodeOfHandle>();
       }
     }
     this->UpdateModel(this->GetHeld());
@@ -253,7 +253,6 @@ std::vector<SessionPipeline::NodeOfHandle> SessionPipeline::FindNodes(const glm:
   auto* mesh = vtkUnstructuredGrid::SafeDownCast(this->GetDeformation());
   vtkDataArray* fixed = mesh->GetPointData()->GetArray("Fixed");
   vtkDataArray* vectors = mesh->GetPointData()->GetVectors();
-  const vtkIdType given = this->RestMesh->GetNumberOfPoints();
   const auto getPosition = [&](vtkIdType id)
   {
     glm::dvec3 position;
@@ -271,29 +270,24 @@ std::vector<SessionPipeline::NodeOfHandle> SessionPipeline::FindNodes(const glm:
       continue;
     }
     mesh->GetCellPoints(cell, ids);
-    const auto mark = [&](vtkIdType i, bool value)
-    { canMove[static_cast<std::size_t>(ids->GetId(i))] = value; };
-    const auto isFree = [&](vtkIdType i)
-    { return !fixed || fixed->GetComponent(ids->GetId(i), 0) == 0.0; };
     glm::dvec3 corners[4];
-    for (int i = 0; i < 4; ++i)
+    for (vtkIdType i = 0; i < ids->GetNumberOfIds(); ++i)
     {
-      corners[i] = getPosition(ids->GetId(i));
-      mark(i, isFree(i));
+      const vtkIdType id = ids->GetId(i);
+      canMove[static_cast<std::size_t>(id)] = !fixed || fixed->GetComponent(id, 0) == 0.0;
+      if (i < 4)
+      {
+        corners[i] = getPosition(id);
+      }
     }
-    constexpr int edges[6][2] = { { 0, 1 }, { 1, 2 }, { 0, 2 }, { 0, 3 }, { 1, 3 }, { 2, 3 } };
-    for (vtkIdType i = 4; i < ids->GetNumberOfIds(); ++i)
-    {
-      // A node that the filter adds is fixed if both ends of its edge are.
-      mark(
-        i, ids->GetId(i) < given ? isFree(i) : isFree(edges[i - 4][0]) || isFree(edges[i - 4][1]));
-    }
+    // Positions on the surface, such as those at the border of the volume, are subject to rounding.
+    constexpr double tolerance = 1e-6;
     double weights[4];
     glm::dvec3 position = rest; // VTK 9.1 takes no constants
     if (ofCell.empty() &&
       vtkTetra::BarycentricCoords(
         &position.x, &corners[0].x, &corners[1].x, &corners[2].x, &corners[3].x, weights) != 0 &&
-      *std::min_element(weights, weights + 4) >= 0.0)
+      *std::min_element(weights, weights + 4) >= -tolerance)
     {
       std::copy_if(ids->begin(), ids->end(), std::back_inserter(ofCell),
         [&](vtkIdType id) { return canMove[static_cast<std::size_t>(id)]; });
@@ -342,7 +336,7 @@ void SessionPipeline::UpdateModel(const Actions& held)
   rest->SetName("RestPosition");
   rest->SetNumberOfComponents(3);
   vtkNew<vtkIdTypeArray> nodes;
-  nodes->SetName("Node");
+  nodes->SetName("HeldNode");
   const auto insert = [&](const glm::dvec3& now, const glm::dvec3& at, vtkIdType node)
   {
     points->InsertNextPoint(&now.x);

@@ -4,6 +4,7 @@
 #include "SessionPositions.h"
 #include "vtkDeformVolumeSessionInternals.h"
 
+#include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkImageData.h"
@@ -52,6 +53,34 @@ std::string CheckVolume(vtkImageData* volume)
   return "";
 }
 
+bool HasBits(vtkDataArray* array, int bits)
+{
+  for (vtkIdType i = 0; array && i < array->GetNumberOfTuples(); ++i)
+  {
+    if ((static_cast<int>(array->GetComponent(i, 0)) & bits) != 0)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+// Returns a text if a mesh has cells that the models would leave out.
+std::string CheckMesh(vtkUnstructuredGrid* mesh)
+{
+  const char* ghosts = vtkDataSetAttributes::GhostArrayName();
+  vtkDataArray* valid = mesh->GetPointData()->GetArray("vtkValidPointMask");
+  const bool isInvalid = valid && valid->GetNumberOfTuples() > 0 && valid->GetRange(0)[0] <= 0.0 &&
+    valid->GetRange(0)[1] >= 0.0;
+  return isInvalid ||
+      HasBits(mesh->GetPointData()->GetArray(ghosts), vtkDataSetAttributes::HIDDENPOINT) ||
+      HasBits(mesh->GetCellData()->GetArray(ghosts),
+        vtkDataSetAttributes::HIDDENCELL | vtkDataSetAttributes::DUPLICATECELL)
+    ? "The mesh has hidden points, or hidden or duplicate cells. Remove them, for example with "
+      "vtkThreshold."
+    : "";
+}
+
 } // namespace
 
 vtkStandardNewMacro(vtkDeformVolumeSession);
@@ -93,7 +122,11 @@ void vtkDeformVolumeSession::ReportErrors()
 
 bool vtkDeformVolumeSession::SetInputs(vtkImageData* volume, vtkUnstructuredGrid* mesh)
 {
-  const std::string fault = CheckVolume(volume);
+  std::string fault = CheckVolume(volume);
+  if (fault.empty() && mesh)
+  {
+    fault = CheckMesh(mesh);
+  }
   if (!fault.empty())
   {
     this->Report(fault);

@@ -87,7 +87,8 @@ public:
 
   /**
    * Begin a session with a volume at rest, of at least two voxels on each axis, and optionally a
-   * mesh, the input of vtkMassSpringDeformation or vtkFiniteElementDeformation. Removes all
+   * mesh, the input of vtkMassSpringDeformation or vtkFiniteElementDeformation, without hidden
+   * cells and points. Removes all
    * actions, and sets the model to NONE. Settings do not change. The arrays of the volume are
    * shared, and must not be modified; the mesh is copied. Returns false after an error.
    */

@@ -382,7 +382,7 @@ MUTATIONS = {
     "body-hidden": ("Filters/Physics/BodyReading.cxx", "if (skipped.ContainPointOf(points, size))", "if (false)",
                     ["Cxx.TestElasticDeformation"]),
     "handle-cell": ("Filters/Physics/BodyReading.cxx", "if (Contains(body, t, position))", "if (false)",
-                    ["Cxx.TestDeformVolumeSession"]),
+                    ["Cxx.TestElasticDeformation"]),
     "equilibrium-stalled": ("Kernels/FiniteElements/EquilibriumSolver.cxx", "constexpr int tooMany = 15;",
                             "constexpr int tooMany = 150;", ["Kernels.TestFiniteElements"]),
     "jacobian-beside": ("Kernels/StaticMapping/VoxelJacobians.cxx",

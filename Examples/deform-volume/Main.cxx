@@ -274,7 +274,8 @@ void CheckBackground(const Options& options, vtkDataArray* scalars)
 }
 
 // A few tetrahedra that are inside out are normal, for example at the handles of ChainMail.
-void WarnOfFolds(const Options& options, vtkDeformVolumeFilter* filter, Messages& messages)
+void WarnOfFolds(
+  const Options& options, vtkIdType voxels, vtkDeformVolumeFilter* filter, Messages& messages)
 {
   constexpr vtkIdType few = 1000;
   const vtkIdType inverted = filter->GetNumberOfInvertedTetrahedra();
@@ -283,7 +284,7 @@ void WarnOfFolds(const Options& options, vtkDeformVolumeFilter* filter, Messages
     messages.DisplayWarningText("The field folds: it leads several points of the result to the "
                                 "same point of the volume, which is shown more than once.");
   }
-  else if (inverted > filter->GetNumberOfCoveredVoxels() / few)
+  else if (inverted > voxels / few)
   {
     messages.DisplayWarningText(
       ("The deformation folds the volume: it turns " + std::to_string(inverted) +
@@ -385,7 +386,7 @@ void DeformVolume(const Options& options, Messages& messages)
 
   const Stopwatch deforming;
   deform(deformation);
-  WarnOfFolds(options, filter, messages);
+  WarnOfFolds(options, volume.Image->GetNumberOfPoints(), filter, messages);
   timings.Add("deform", deforming.GetSeconds());
 
   Volume result = volume;

@@ -8,10 +8,8 @@
 #include "WrittenTuples.h"
 
 #include "vtkCellArray.h"
-#include "vtkCellData.h"
 #include "vtkCellType.h"
 #include "vtkDataArray.h"
-#include "vtkDataSetAttributes.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>

@@ -230,7 +230,8 @@ RestMesh::CellReading RestMesh::ReadCells(const MeshParts& shape, const MeshPart
     {
       throw Error("The deformation mesh has no tetrahedra" +
         (cells.Ignored.empty() ? std::string() : ", but " + cells.Ignored) +
-        ". Use a mesh of three-dimensional cells that can be split into tetrahedra.");
+        ". Use a mesh of three-dimensional cells that can be split into tetrahedra, and that are "
+        "not hidden by vtkGhostType or vtkValidPointMask.");
     }
     if (!shared &&
       deformvolume::ReadCells(shape, rest, source.Derived).Tetrahedra != cells.Tetrahedra)

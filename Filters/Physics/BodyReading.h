@@ -92,14 +92,15 @@ Stamp GetBodyStamp(vtkUnstructuredGrid* grid);
 BodyMesh ReadBody(vtkUnstructuredGrid* grid, const BodySettings& settings);
 
 /// Name of the point array of handles with the node that each one holds.
-constexpr const char* HeldNodeName = "Node";
+constexpr const char* HeldNodeName = "HeldNode";
 
 /// Finds the nodes that handles hold, and their displacements. A handle holds the node that the
 /// array HeldNodeName names. Without the array, or if the number is negative, it holds the nodes of
 /// tetrahedra within a radius of its rest position. If none of these can move, it holds those of
 /// the tetrahedron that contains the position. If the radius is 0, it holds the nearest node.
 /// Lengths are in units of the mesh. If several handles hold a node, the first one is used. Fixed
-/// nodes cannot be held. Throws an Error if a handle holds no node.
+/// nodes cannot be held. Throws an Error if the array names a node that cannot be held, or if a
+/// handle without such a number holds no node.
 std::vector<HeldNode> ReadHandles(
   vtkPointSet* handles, double radius, const BodyMesh& mesh, const BodySettings& settings);
 

@@ -136,7 +136,8 @@ MeshCells ReadCells(const dv_mesh& mesh, const VectorView& points)
   if (made.Tetrahedra.empty())
   {
     throw Error("The deformation mesh has no tetrahedra, but " +
-      (made.Ignored.empty() ? "only cells without volume" : made.Ignored) +
+      (made.Ignored.empty() ? std::to_string(mesh.number_of_cells) + " cells without volume"
+                            : made.Ignored) +
       ". Use a mesh of three-dimensional cells that can be split into tetrahedra.");
   }
   return made;

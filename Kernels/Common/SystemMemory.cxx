@@ -41,9 +41,13 @@ std::int64_t GetAvailable(const std::string& folder, std::int64_t all)
 std::int64_t GetAddressSpace()
 {
   rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+  {
+    return NoLimit;
+  }
   std::ifstream sizes("/proc/self/statm");
   std::int64_t pages = 0;
-  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || !(sizes >> pages))
+  if (!(sizes >> pages))
   {
     return NoLimit;
   }

@@ -32,7 +32,8 @@ enum class EquilibriumMode
   /// For a frame of an animation: few Newton steps. The report has the remaining residual, and the
   /// next call continues from there.
   Interactive,
-  /// Iterates until the limits below are met.
+  /// Iterates until the limits below are met, or until several steps with inverted tetrahedra have
+  /// brought the body no closer to equilibrium. Then the next call starts at rest.
   Converged
 };
 

@@ -250,7 +250,7 @@ void CheckBody(const ElasticBody& body, Watch* watch)
   Watch& asked = watch ? *watch : none;
   if (body.Tetrahedra.empty())
   {
-    throw Error("The rest mesh has no tetrahedra.");
+    throw Error("The rest mesh has no tetrahedra, or all of them are hidden.");
   }
   if (!body.Fixed.empty())
   {

@@ -138,13 +138,13 @@ private:
       });
   }
 
-  // The mean of the defined derivatives along an axis of the field at the eight positions one point
+  // The mean of the defined derivatives along an axis of the field at the positions one point
   // aside; 0 if there are none.
   glm::dvec3 GetSlopeBeside(const glm::dvec3& middle, int axis, double halfStep) const
   {
     glm::dvec3 sum(0.0);
     double count = 0.0;
-    for (int neighbor = 0; neighbor < 9; ++neighbor)
+    for (int neighbor = 0; neighbor < 9 && this->Last[axis] > 0.0; ++neighbor)
     {
       glm::dvec3 moved = middle;
       moved[(axis + 1) % 3] += neighbor % 3 - 1;

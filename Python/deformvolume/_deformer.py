@@ -127,8 +127,9 @@ def _is_in_main_thread() -> bool:
 
 
 class _Calls:
-    """Counts the calls of the library in other threads than the main thread. At exit the main thread waits for those
-    of daemon threads, and lets them begin no others: OpenCL must not be used while its driver is shut down."""
+    """Counts the calls of deformers in other threads than the main thread. At exit the main thread waits for those
+    of daemon threads, which then wait for the end of the process: OpenCL must not be used while its driver is shut
+    down."""
 
     def __init__(self):
         self._reset()
@@ -139,7 +140,7 @@ class _Calls:
         # In a forked process, the calls of other threads do not end.
         self._condition = threading.Condition()
         self._running = 0
-        self._has_ended = False
+        self.has_ended = False
         self._of_thread = threading.local()
 
     def __enter__(self):
@@ -148,7 +149,7 @@ class _Calls:
         depth = getattr(self._of_thread, "depth", 0)
         if depth == 0:
             with self._condition:
-                while self._has_ended:
+                while self.has_ended:
                     self._condition.wait()
                 self._running += 1
         self._of_thread.depth = depth + 1
@@ -161,12 +162,14 @@ class _Calls:
             with self._condition:
                 self._running -= 1
                 self._condition.notify_all()
+                while self.has_ended:
+                    self._condition.wait()
 
     def _end(self):
         with self._condition:
-            self._has_ended = True
-            while self._running > 0:
-                self._condition.wait()
+            self.has_ended = True
+            # A progress callback may wait for the main thread.
+            self._condition.wait_for(lambda: self._running == 0, timeout=10.0)
 
 
 _calls = _Calls()
@@ -319,7 +322,7 @@ class Deformer:
                 'processes with the start method "spawn" or "forkserver" (multiprocessing.set_start_method), and '
                 "create a deformer in each process."
             )
-        with self._lock:
+        with _calls, self._lock:
             if self._is_running:
                 raise _native.Error("deform() is running. Its progress callback must not call the same deformer.")
             if not self._finalizer.alive:
@@ -327,7 +330,7 @@ class Deformer:
             yield
 
     def _call(self, name: str, *arguments) -> None:
-        with self._locked(), _calls:
+        with self._locked():
             _native.check(getattr(_native.library, name)(self._handle, *arguments))
 
     def __enter__(self):
@@ -335,8 +338,10 @@ class Deformer:
 
     def __exit__(self, *_):
         # Python loses exceptions that handlers of signals raise in finalizers.
-        with self._locked(), _Interrupts() as interrupts:
-            self._finalizer()
+        with _Interrupts() as interrupts:
+            if self._finalizer.alive and os.getpid() == self._process:
+                with self._locked():
+                    self._finalizer()
         interrupts.call()
 
     def __reduce_ex__(self, _):
@@ -707,6 +712,8 @@ class Deformer:
         failure = []
 
         def report_progress(fraction, _):
+            if _calls.has_ended and not _is_in_main_thread():
+                return 1
             try:
                 interrupts.call()
                 result = None if progress is None else progress(fraction)
@@ -728,7 +735,7 @@ class Deformer:
         for name, array in extra.items():
             setattr(request, name, array.ctypes.data_as(ctypes.POINTER(kinds[name])))
         report = _structs.Report()
-        with self._locked(), _calls, _Interrupts() as interrupts:
+        with self._locked(), _Interrupts() as interrupts:
             self._is_running = True
             try:
                 status = _native.library.dv_deform(self._handle, ctypes.byref(request), ctypes.byref(report))

@@ -55,42 +55,42 @@ def deform(
         SimpleITK.Image: the deformed image, of the same pixel type, without the metadata of the image.
     """
     _check_image(image, "The image")
-    deformer = _deformer.Deformer(device)
-    pixels = numpy.ascontiguousarray(_arrays.native(SimpleITK.GetArrayViewFromImage(image), "The image"))
-    deformer._set_volume_grid(_grid_of(image, "The image"), [pixels], categorical, background)
-    if isinstance(deformation, SimpleITK.Transform):
-        try:
-            deformation = SimpleITK.DisplacementFieldTransform(deformation).GetDisplacementField()
-        except RuntimeError as error:
-            raise TypeError(
-                f"The transform is of the type {deformation.GetName()}. Give a DisplacementFieldTransform, "
-                "or the image that SimpleITK.TransformToDisplacementField() makes of the transform."
-            ) from error
-    is_inverse = isinstance(deformation, _deformer.Field) and deformation.inverse
-    if isinstance(deformation, SimpleITK.Image):
-        _check_image(deformation, "The displacement field")
-        vectors = numpy.ascontiguousarray(SimpleITK.GetArrayViewFromImage(deformation))
-        if vectors.ndim != 4 or vectors.shape[3] != 3:
-            raise ValueError(
-                f"The displacement field has {deformation.GetDimension()} dimensions and pixels of "
-                f"{deformation.GetNumberOfComponentsPerPixel()} components. It must have three dimensions and vectors "
-                "of three components."
-            )
-        if vectors.dtype not in (numpy.float32, numpy.float64):
-            vectors = vectors.astype(numpy.float64)
-        is_inverse = inverse
-        deformer._set_field_grid(_grid_of(deformation, "The displacement field"), vectors, is_inverse)
-    else:
-        deformer.set_deformation(deformation)
-    deformer.set_outside(outside, fade_distance)
-    if reference is not None:
-        deformer._set_reference_grid(_grid_of(reference, "The reference"))
-    elif is_inverse:
-        deformer._set_reference_grid(_grid_of(image, "The image"))
-    deformed = deformer.deform(interpolation=interpolation)
+    with _deformer.Deformer(device) as deformer:
+        pixels = numpy.ascontiguousarray(_arrays.native(SimpleITK.GetArrayViewFromImage(image), "The image"))
+        deformer._set_volume_grid(_grid_of(image, "The image"), [pixels], categorical, background)
+        if isinstance(deformation, SimpleITK.Transform):
+            try:
+                deformation = SimpleITK.DisplacementFieldTransform(deformation).GetDisplacementField()
+            except RuntimeError as error:
+                raise TypeError(
+                    f"The transform is of the type {deformation.GetName()}. Give a DisplacementFieldTransform, "
+                    "or the image that SimpleITK.TransformToDisplacementField() makes of the transform."
+                ) from error
+        is_inverse = isinstance(deformation, _deformer.Field) and deformation.inverse
+        if isinstance(deformation, SimpleITK.Image):
+            _check_image(deformation, "The displacement field")
+            vectors = numpy.ascontiguousarray(SimpleITK.GetArrayViewFromImage(deformation))
+            if vectors.ndim != 4 or vectors.shape[3] != 3:
+                raise ValueError(
+                    f"The displacement field has {deformation.GetDimension()} dimensions and pixels of "
+                    f"{deformation.GetNumberOfComponentsPerPixel()} components. It must have three dimensions and "
+                    "vectors of three components."
+                )
+            if vectors.dtype not in (numpy.float32, numpy.float64):
+                vectors = vectors.astype(numpy.float64)
+            is_inverse = inverse
+            deformer._set_field_grid(_grid_of(deformation, "The displacement field"), vectors, is_inverse)
+        else:
+            deformer.set_deformation(deformation)
+        deformer.set_outside(outside, fade_distance)
+        if reference is not None:
+            deformer._set_reference_grid(_grid_of(reference, "The reference"))
+        elif is_inverse:
+            deformer._set_reference_grid(_grid_of(image, "The image"))
+        deformed = deformer.deform(interpolation=interpolation)
+        grid = deformer._find_output_grid()
     array = deformed.array.transpose((2, 1, 0, 3)[: deformed.array.ndim])
     result = SimpleITK.GetImageFromArray(array, isVector=array.ndim == 4)
-    grid = deformer._find_output_grid()
     result.SetOrigin(deformed.affine[:3, 3].tolist())
     result.SetSpacing(grid.spacing[:])
     result.SetDirection(grid.direction[:])

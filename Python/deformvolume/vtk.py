@@ -627,6 +627,11 @@ class DeformVolume(VTKPythonAlgorithmBase):
             offsets = numpy.ascontiguousarray(vtk_to_numpy(cells.GetOffsetsArray()), dtype=numpy.int64)
             used = _find_used_cells(mesh, connectivity, offsets)
             if used is not None:
+                if not used.any():
+                    raise ValueError(
+                        "All cells of the mesh are hidden, duplicate, or have a hidden point (vtkGhostType, "
+                        "vtkValidPointMask)."
+                    )
                 sizes = numpy.diff(offsets)
                 types, connectivity = types[used], connectivity[numpy.repeat(used, sizes)]
                 offsets = numpy.concatenate(([0], numpy.cumsum(sizes[used])))

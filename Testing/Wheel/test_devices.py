@@ -22,7 +22,7 @@ assert before == (dict(os.environ), open("/proc/self/environ", "rb").read())
 POCL = "(Portable Computing Language)|True|False|True"
 
 
-def _run(**variables):
+def run(**variables):
     """Runs PROGRAM with these environment variables, and returns the lines of its output."""
     environment = {
         name: value

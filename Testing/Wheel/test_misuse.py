@@ -326,7 +326,8 @@ class Misuse(unittest.TestCase):
                 copied(deformer)
         with deformer:
             numpy.testing.assert_array_equal(deformer.deform().array, wanted)
-        for call in (deformer.deform, deformer.release_memory, deformer.__exit__):
+        deformer.__exit__()
+        for call in (deformer.deform, deformer.release_memory):
             with self.assertRaisesRegex(deformvolume.Error, "is closed"):
                 call()
 
@@ -410,6 +411,7 @@ begun = threading.Event()
 def work():
     while True:
         other.deform()
+        deformer.deform()
         deformvolume.deform(make_volume(), Mesh(POINTS, CELLS, MOVED), AFFINE)
         begun.set()
 threading.Thread(target=work, daemon=True).start()

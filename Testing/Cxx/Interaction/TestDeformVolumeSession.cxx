@@ -918,6 +918,49 @@ TEST(DeformVolumeSession, FailuresWithoutMessages)
   }
 }
 
+// A cut that fails, for a handle cannot be moved so far, does not prevent the next one.
+TEST(DeformVolumeSession, CutsAfterFailures)
+{
+  for (const int model : { Session::MASS_SPRING, Session::FINITE_ELEMENTS })
+  {
+    Tested one(MakeVolume(Box));
+    one.Object->ChangeModel(model);
+    const int handle = one.Object->BeginGrab(10, 10, 17);
+    one.Finish();
+    const auto sheet = MakePlane({ 11, 12, 9 }, { 60, 0, 0 }, { 0, 60, 0 });
+    one.Object->MoveGrab(handle, 1e300, 10, 17);
+    one.Object->Cut(sheet);
+    one.Object->Cut(sheet);
+    one.Object->BeginGrab(12, 13, 12);
+    one.Object->Update();
+    EXPECT_FALSE(one.TakeError().empty());
+    one.Object->Reset();
+    one.Finish();
+    one.Object->Cut(sheet);
+    EXPECT_TRUE(one.Finish());
+    EXPECT_EQ(one.Object->GetNumberOfActions(), 1);
+  }
+}
+
+TEST(DeformVolumeSession, HiddenCells)
+{
+  vtkNew<vtkLatticeTetrahedraSource> lattice;
+  const auto volume = MakeVolume(Box);
+  lattice->SetInputData(volume);
+  lattice->Update();
+  vtkUnstructuredGrid* mesh = lattice->GetOutput();
+  vtkNew<vtkDeformVolumeSession> session;
+  EXPECT_TRUE(session->SetInputs(volume, mesh));
+  vtkNew<vtkTest::ErrorObserver> observer;
+  session->AddObserver(vtkCommand::ErrorEvent, observer);
+  mesh->AllocateCellGhostArray();
+  mesh->GetCellGhostArray()->SetValue(3, vtkDataSetAttributes::HIDDENCELL);
+  EXPECT_FALSE(session->SetInputs(volume, mesh));
+  EXPECT_TRUE(HasPart(observer->GetErrorMessage(), "hidden"));
+  mesh->GetCellGhostArray()->SetValue(3, 0);
+  EXPECT_TRUE(session->SetInputs(volume, mesh));
+}
+
 // A sheet of two triangles cuts deformed tissue at the same place when the cut is made again.
 TEST(DeformVolumeSession, CoarseSheets)
 {

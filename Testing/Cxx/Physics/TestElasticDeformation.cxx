@@ -702,7 +702,7 @@ TEST(ElasticDeformation, HeldNodes)
   CheckHeldNodes<vtkMassSpringDeformation>();
 }
 
-// The array "Node" of the handles names nodes.
+// The array "HeldNode" of the handles names nodes.
 TEST(ElasticDeformation, HandlesOfNodes)
 {
   const auto bar = MakeBar(0.001);
@@ -712,7 +712,7 @@ TEST(ElasticDeformation, HandlesOfNodes)
   const vtkIdType corner = bar->GetNumberOfPoints() - 1;
   const auto handles = MakeHandles({ { { 5.0, 5.0, 30.0 }, { 5.5, 5.0, 30.0 } } });
   vtkNew<vtkIntArray> nodes;
-  nodes->SetName("Node");
+  nodes->SetName("HeldNode");
   nodes->InsertNextValue(static_cast<int>(corner));
   handles->GetPointData()->AddArray(nodes);
   simulated.Object->SetHandlesData(handles);
@@ -729,6 +729,20 @@ TEST(ElasticDeformation, HandlesOfNodes)
   nodes->SetValue(0, -1);
   EXPECT_EQ(simulated.TryUpdate(), "");
   EXPECT_GT(simulated.Object->GetNumberOfHeldNodes(), 1);
+}
+
+// A handle with no node within its radius holds the nodes of the tetrahedron that contains it:
+// four, and six in the middle of edges. Outside of the mesh that is an error.
+TEST(ElasticDeformation, HandlesBetweenNodes)
+{
+  Simulated<vtkFiniteElementDeformation> simulated(MakeBar(0.001));
+  simulated.Object->SetLengthUnitToMillimetre();
+  simulated.Object->SetHandleRadius(0.1);
+  simulated.Object->SetHandlesData(MakeHandles({ { { 4.1, 4.3, 21.0 }, { 4.6, 4.3, 21.0 } } }));
+  EXPECT_EQ(simulated.TryUpdate(), "");
+  EXPECT_EQ(simulated.Object->GetNumberOfHeldNodes(), 10);
+  simulated.Object->SetHandlesData(MakeHandles({ { { 4.1, 4.3, 31.0 }, { 4.6, 4.3, 31.0 } } }));
+  EXPECT_TRUE(HasPart(simulated.TryUpdate(), "no tetrahedron contains this position"));
 }
 
 TEST(ElasticDeformation, HiddenCells)
