@@ -751,13 +751,14 @@ class Deformer:
             interpolation=_choose(interpolation, _structs.INTERPOLATION, "interpolation"),
             number_of_outputs=len(outputs),
             outputs=ctypes.cast(addresses, ctypes.POINTER(ctypes.c_void_p)),
-            coverage=coverage.ctypes.data_as(ctypes.POINTER(ctypes.c_int8)),
+            # data_as() makes reference cycles with the array in old versions of Python.
+            coverage=ctypes.cast(coverage.ctypes.data, ctypes.POINTER(ctypes.c_int8)),
             extra_background=float(extra_background),
             progress=_structs.PROGRESS(report_progress),
         )
         kinds = {"rest_positions": ctypes.c_float, "jacobian": ctypes.c_float, "fold_count": ctypes.c_uint32}
         for name, array in extra.items():
-            setattr(request, name, array.ctypes.data_as(ctypes.POINTER(kinds[name])))
+            setattr(request, name, ctypes.cast(array.ctypes.data, ctypes.POINTER(kinds[name])))
         report = _structs.Report()
         with self._locked(), _Interrupts() as interrupts:
             self._is_running = True
