@@ -291,7 +291,9 @@ class Misuse(unittest.TestCase):
             pass
         self.assertIs(signal.getsignal(signal.SIGUSR1), before)
 
-    # Neither the exception nor its traceback keeps the arrays of a call that has failed.
+    # Neither the exception nor its traceback keeps the arrays of a call that has failed. Python 3.9.2 keeps them until
+    # the garbage collection.
+    @unittest.skipIf(sys.version_info < (3, 10), "the first versions of Python 3.9 keep the arrays")
     def test_failed_calls_free_their_arrays(self):
         deformer = deformvolume.Deformer()
         deformer.set_volume(make_volume(), AFFINE)
