@@ -2,6 +2,7 @@
 """The class Deformer, which keeps a volume on a device, and the function deform()."""
 
 import atexit
+import contextlib
 import ctypes
 import math
 import operator
@@ -273,20 +274,6 @@ def _cells(cells):
     return numpy.ascontiguousarray(cells, dtype=numpy.int64), None, None
 
 
-class _Locked:
-    """Locks a deformer for a block. With contextlib.contextmanager, exceptions of the block would keep its frames alive
-    until the garbage collection, before Python 3.12."""
-
-    def __init__(self, deformer: "Deformer"):
-        self._deformer = deformer
-
-    def __enter__(self):
-        self._deformer._lock_for_use()
-
-    def __exit__(self, *_):
-        self._deformer._unlock()
-
-
 class Deformer:
     """Keeps a volume on a device for repeated deformations: only data that have changed are sent and computed again.
 
@@ -325,12 +312,9 @@ class Deformer:
         self._finalizer.atexit = False  # functions that are called at exit may still use this deformer
         self._call("dv_set_device", device.encode())
 
-    def _locked(self) -> "_Locked":
-        """Returns a context manager that locks the deformer."""
-        return _Locked(self)
-
-    def _lock_for_use(self) -> None:
-        """Locks the deformer, or raises an error if it must not be used now."""
+    @contextlib.contextmanager
+    def _locked(self):
+        """Locks the deformer. Raises an error if it must not be used now."""
         # Check this before the lock is taken: another thread may have held it when the process was forked.
         if os.getpid() != self._process:
             raise _native.Error(
@@ -338,20 +322,12 @@ class Deformer:
                 'processes with the start method "spawn" or "forkserver" (multiprocessing.set_start_method), and '
                 "create a deformer in each process."
             )
-        _calls.__enter__()
-        self._lock.acquire()
-        fault = ""
-        if self._is_running:
-            fault = "deform() is running. Its progress callback must not call the same deformer."
-        elif not self._finalizer.alive:
-            fault = "This deformer is closed. Create another one."
-        if fault:
-            self._unlock()
-            raise _native.Error(fault)
-
-    def _unlock(self) -> None:
-        self._lock.release()
-        _calls.__exit__()
+        with _calls, self._lock:
+            if self._is_running:
+                raise _native.Error("deform() is running. Its progress callback must not call the same deformer.")
+            if not self._finalizer.alive:
+                raise _native.Error("This deformer is closed. Create another one.")
+            yield
 
     def _call(self, name: str, *arguments) -> None:
         with self._locked():
@@ -751,14 +727,13 @@ class Deformer:
             interpolation=_choose(interpolation, _structs.INTERPOLATION, "interpolation"),
             number_of_outputs=len(outputs),
             outputs=ctypes.cast(addresses, ctypes.POINTER(ctypes.c_void_p)),
-            # data_as() makes reference cycles with the array in old versions of Python.
-            coverage=ctypes.cast(coverage.ctypes.data, ctypes.POINTER(ctypes.c_int8)),
+            coverage=coverage.ctypes.data_as(ctypes.POINTER(ctypes.c_int8)),
             extra_background=float(extra_background),
             progress=_structs.PROGRESS(report_progress),
         )
         kinds = {"rest_positions": ctypes.c_float, "jacobian": ctypes.c_float, "fold_count": ctypes.c_uint32}
         for name, array in extra.items():
-            setattr(request, name, ctypes.cast(array.ctypes.data, ctypes.POINTER(kinds[name])))
+            setattr(request, name, array.ctypes.data_as(ctypes.POINTER(kinds[name])))
         report = _structs.Report()
         with self._locked(), _Interrupts() as interrupts:
             self._is_running = True
