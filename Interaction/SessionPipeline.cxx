@@ -5,19 +5,15 @@
 #include "StyleText.h"
 #include "vtkDeformVolumeSession.h"
 
-#include "vtkAdaptiveSubdivisionFilter.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCarveVolume.h"
 #include "vtkChainMailDeformation.h"
 #include "vtkCutVolume.h"
-#include "vtkDataArray.h"
-#include "vtkDeformGeometryFilter.h"
 #include "vtkDeformVolumeFilter.h"
 #include "vtkExecutive.h"
 #include "vtkFiniteElementDeformation.h"
 #include "vtkImageData.h"
 #include "vtkMassSpringDeformation.h"
-#include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkUnstructuredGrid.h"
@@ -338,62 +334,6 @@ void SessionPipeline::Release(double handle)
   release.Handle = handle;
   this->Do(release);
 }
-
-namespace
-{
-
-// Moves a sheet with the tissue to its position at rest. Triangles are divided, since a plane is
-// curved there.
-vtkSmartPointer<vtkPolyData> MoveToRest(vtkPolyData* sheet, vtkDataSet* deformation)
-{
-  constexpr double edgesOnBody = 40.0;
-  constexpr double mostEdges = 300.0; // on the diagonal of a sheet
-  vtkNew<vtkAdaptiveSubdivisionFilter> fine;
-  fine->SetInputData(sheet);
-  fine->SetMaximumEdgeLength(
-    std::max(deformation->GetLength() / edgesOnBody, sheet->GetLength() / mostEdges));
-  fine->SetMaximumTriangleArea(VTK_DOUBLE_MAX);
-  fine->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
-  fine->Update();
-  const auto rest = vtkSmartPointer<vtkPolyData>::New();
-  rest->DeepCopy(fine->GetOutput());
-  vtkPoints* points = rest->GetPoints();
-  vtkPoints* moved = nullptr;
-  vtkDataArray* isMoved = nullptr;
-  vtkNew<vtkDeformGeometryFilter> inverse; // is faster than estimates in a mesh
-  if (!vtkImageData::SafeDownCast(deformation))
-  {
-    vtkNew<vtkCallbackCommand> nothing; // without it, points outside are a warning
-    inverse->AddObserver(vtkCommand::WarningEvent, nothing);
-    inverse->AddObserver(vtkCommand::ErrorEvent, nothing);
-    inverse->SetInputData(fine->GetOutput());
-    inverse->SetDeformationData(deformation);
-    inverse->SetOutsideMode(vtkDeformGeometryFilter::EXTRAPOLATE);
-    inverse->InverseOn();
-    inverse->Update();
-    auto* output = vtkPolyData::SafeDownCast(inverse->GetOutput());
-    moved = output && output->GetNumberOfPoints() > 0 ? output->GetPoints() : nullptr;
-    isMoved = moved ? output->GetPointData()->GetArray("vtkValidPointMask") : nullptr;
-  }
-  for (vtkIdType id = 0; id < points->GetNumberOfPoints(); ++id)
-  {
-    glm::dvec3 position;
-    points->GetPoint(id, &position.x);
-    if (isMoved && isMoved->GetComponent(id, 0) != 0.0)
-    {
-      moved->GetPoint(id, &position.x);
-    }
-    else
-    {
-      // Points of a sheet can lie outside the tissue, where an estimate is sufficient.
-      position = EstimateRestPosition(deformation, position);
-    }
-    points->SetPoint(id, &position.x);
-  }
-  return rest;
-}
-
-} // namespace
 
 void SessionPipeline::Cut(const SessionEvent& event)
 {

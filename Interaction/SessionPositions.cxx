@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SessionPositions.h"
 
+#include "vtkAdaptiveSubdivisionFilter.h"
+#include "vtkCallbackCommand.h"
+#include "vtkCommand.h"
 #include "vtkDataArray.h"
+#include "vtkDeformGeometryFilter.h"
 #include "vtkIdList.h"
 #include "vtkImageData.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
 #include "vtkSMPTools.h"
 #include "vtkUnstructuredGrid.h"
 
@@ -228,9 +234,9 @@ glm::dvec3 MapInMesh(vtkDataSet* mesh, const glm::dvec3& position, Positions Cel
   return found;
 }
 
-} // namespace
-
-glm::dvec3 deformvolume::EstimateRestPosition(vtkDataSet* deformation, const glm::dvec3& deformed)
+// As FindRestPosition(), but if a field is folded or torn, it does not search for the nearest
+// voxel.
+glm::dvec3 EstimateRestPosition(vtkDataSet* deformation, const glm::dvec3& deformed)
 {
   if (auto* field = vtkImageData::SafeDownCast(deformation))
   {
@@ -240,6 +246,8 @@ glm::dvec3 deformvolume::EstimateRestPosition(vtkDataSet* deformation, const glm
   }
   return MapInMesh(deformation, deformed, &CellNodes::Deformed, &CellNodes::Rest);
 }
+
+} // namespace
 
 glm::dvec3 deformvolume::FindRestPosition(vtkDataSet* deformation, const glm::dvec3& deformed)
 {
@@ -259,4 +267,53 @@ glm::dvec3 deformvolume::FindDeformedPosition(vtkDataSet* deformation, const glm
     return rest + Interpolate(field, rest);
   }
   return MapInMesh(deformation, rest, &CellNodes::Rest, &CellNodes::Deformed);
+}
+
+vtkSmartPointer<vtkPolyData> deformvolume::MoveToRest(vtkPolyData* sheet, vtkDataSet* deformation)
+{
+  constexpr double edgesOnBody = 40.0;
+  constexpr double mostEdges = 300.0; // on the diagonal of a sheet
+  vtkNew<vtkAdaptiveSubdivisionFilter> fine;
+  fine->SetInputData(sheet);
+  fine->SetMaximumEdgeLength(
+    std::max(deformation->GetLength() / edgesOnBody, sheet->GetLength() / mostEdges));
+  fine->SetMaximumTriangleArea(VTK_DOUBLE_MAX);
+  fine->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+  fine->Update();
+  const auto rest = vtkSmartPointer<vtkPolyData>::New();
+  rest->DeepCopy(fine->GetOutput());
+  vtkPoints* points = rest->GetPoints();
+  vtkPoints* moved = nullptr;
+  vtkDataArray* isMoved = nullptr;
+  vtkNew<vtkDeformGeometryFilter> inverse; // is faster than estimates in a mesh
+  if (!vtkImageData::SafeDownCast(deformation))
+  {
+    vtkNew<vtkCallbackCommand> nothing; // without it, points outside are a warning
+    inverse->AddObserver(vtkCommand::WarningEvent, nothing);
+    inverse->AddObserver(vtkCommand::ErrorEvent, nothing);
+    inverse->SetInputData(fine->GetOutput());
+    inverse->SetDeformationData(deformation);
+    inverse->SetOutsideMode(vtkDeformGeometryFilter::EXTRAPOLATE);
+    inverse->InverseOn();
+    inverse->Update();
+    auto* output = vtkPolyData::SafeDownCast(inverse->GetOutput());
+    moved = output && output->GetNumberOfPoints() > 0 ? output->GetPoints() : nullptr;
+    isMoved = moved ? output->GetPointData()->GetArray("vtkValidPointMask") : nullptr;
+  }
+  for (vtkIdType id = 0; id < points->GetNumberOfPoints(); ++id)
+  {
+    glm::dvec3 position;
+    points->GetPoint(id, &position.x);
+    if (isMoved && isMoved->GetComponent(id, 0) != 0.0)
+    {
+      moved->GetPoint(id, &position.x);
+    }
+    else
+    {
+      // Points of a sheet can lie outside the tissue, where an estimate is sufficient.
+      position = EstimateRestPosition(deformation, position);
+    }
+    points->SetPoint(id, &position.x);
+  }
+  return rest;
 }

@@ -246,18 +246,14 @@ Volume ReadReference(const Options& options, const Volume& volume, Messages& mes
 void CheckValues(vtkImageData* image, const std::string& path)
 {
   vtkPointData* arrays = image->GetPointData();
-  int first = 0;
-  while (first < arrays->GetNumberOfArrays() && !arrays->GetArray(first))
-  {
-    ++first;
-  }
-  if (first == arrays->GetNumberOfArrays())
+  vtkDataArray* first = FindNumbers(arrays);
+  if (!first)
   {
     throw Failure("cannot use " + path + ": its voxels have no numeric array");
   }
   if (!arrays->GetScalars())
   {
-    arrays->SetScalars(arrays->GetArray(first));
+    arrays->SetScalars(first);
   }
 }
 

@@ -234,8 +234,7 @@ vtkSmartPointer<vtkImageData> ReadField(const std::string& path, const Volume& v
   {
     throw Failure(what +
       ": a field is a .nii, .nii.gz, .mha, .mhd, .nrrd, .nhdr or .vti file. Give meshes with "
-      "--mesh, "
-      "and convert other transformations into a displacement field first");
+      "--mesh, and convert other transformations into a displacement field first");
   }
   ReadingOptions reading;
   reading.Frame = 0; // the shape is checked below

@@ -57,8 +57,7 @@ std::string GetMeshConversion(const std::string& path)
   {
     return "It holds a table. Open it in ParaView (.csv), make a mesh of its points with Table To "
            "Structured Grid if they are those of a grid, otherwise with Table To Points and "
-           "Delaunay "
-           "3D, and save the data as .vts or .vtu (File > Save Data)";
+           "Delaunay 3D, and save the data as .vts or .vtu (File > Save Data)";
   }
   if (HasSuffix(path, { ".frd" }))
   {

@@ -22,23 +22,23 @@
 #include <algorithm>
 #include <new>
 
+vtkDataArray* FindNumbers(vtkDataSetAttributes* arrays)
+{
+  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+  {
+    if (vtkDataArray* array = arrays->GetArray(i))
+    {
+      return array;
+    }
+  }
+  return nullptr;
+}
+
 namespace
 {
 const char* const OtherFiles = HasITK
   ? ". Convert it to one of these, for example with 3D Slicer, or mri_convert for .mgz"
   : ". This program was built without ITK, which reads other formats";
-
-bool HasNumbers(vtkDataSetAttributes* arrays)
-{
-  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
-  {
-    if (arrays->GetArray(i))
-    {
-      return true;
-    }
-  }
-  return false;
-}
 
 // Makes an image of the cells of another one: its points are the centers of the cells.
 vtkSmartPointer<vtkImageData> MakeImageOfCells(vtkImageData* image)
@@ -90,7 +90,7 @@ Volume ReadVTI(const std::string& path, Messages& messages, bool showProgress)
   Volume volume;
   volume.Image = vtkSmartPointer<vtkImageData>::New();
   volume.Image->ShallowCopy(reader->GetOutput());
-  if (!HasNumbers(volume.Image->GetPointData()) && HasNumbers(volume.Image->GetCellData()))
+  if (!FindNumbers(volume.Image->GetPointData()) && FindNumbers(volume.Image->GetCellData()))
   {
     volume.Image = MakeImageOfCells(volume.Image);
   }

@@ -8,6 +8,8 @@
 #include <string>
 
 class Messages;
+class vtkDataArray;
+class vtkDataSetAttributes;
 
 struct ReadingOptions
 {
@@ -41,6 +43,9 @@ inline constexpr const char* ReadFormats = HasITK
 /// axes. Throws a Failure if the volume cannot be read, or if vtkImageData cannot hold it.
 Volume ReadVolume(
   const std::string& path, const ReadingOptions& options, Messages& messages, bool showProgress);
+
+/// Returns the first numeric array; null if there is none.
+vtkDataArray* FindNumbers(vtkDataSetAttributes* arrays);
 
 /// Returns the index of the frame to read. frames: number of frames in the file. Throws a Failure
 /// if ReadingOptions::Frame is out of range, or if it is not set and there are several frames.

@@ -3,6 +3,7 @@
 #ifndef DeformVolumeTetrahedralMeshes_h
 #define DeformVolumeTetrahedralMeshes_h
 
+#include "Error.h"
 #include "FiveTetrahedra.h"
 #include "VolumeDeformer.h"
 
@@ -13,7 +14,9 @@
 
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <random>
+#include <thread>
 #include <vector>
 
 namespace tetrahedralMeshes
@@ -128,6 +131,28 @@ inline void CheckWeights(
     rounding += std::ldexp(std::abs(weight), -24) * glm::length(side);
   }
   EXPECT_LE(glm::length(sum - voxel), 1.01 * rounding);
+}
+
+/// Checks that a function reports its progress in order, in the calling thread and up to 1, and
+/// that it can be aborted.
+inline void CheckProgress(
+  const std::function<void(const std::function<bool(double)>& progress)>& build)
+{
+  double last = -1.0;
+  bool ordered = true;
+  const std::thread::id caller = std::this_thread::get_id();
+  build(
+    [&](double done)
+    {
+      ordered = ordered && done >= last && done <= 1.0 && std::this_thread::get_id() == caller;
+      last = done;
+      return true;
+    });
+  EXPECT_TRUE(ordered && std::abs(last - 1.0) < 1e-12);
+  for (const double end : { 0.0, 0.3, 0.9 })
+  {
+    EXPECT_THROW(build([&](double done) { return done < end; }), deformvolume::Aborted);
+  }
 }
 
 } // namespace tetrahedralMeshes
