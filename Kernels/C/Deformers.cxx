@@ -482,6 +482,49 @@ std::int32_t dv_deform(dv_deformer* deformer, const dv_request* given, dv_report
     });
 }
 
+std::int32_t dv_deform_points(
+  dv_deformer* deformer, const dv_points_request* given, dv_points_report* report)
+{
+  return Call(
+    [&]
+    {
+      WorldDeformer& world = GetDeformer(deformer);
+      const dv_points_request points = ReadStruct(given, "the request");
+      if (report)
+      {
+        CheckStruct(report, "the report");
+      }
+      PointsRequest request;
+      GetProduct(points.number_of_points, 3 * sizeof(double), "points");
+      request.Count = static_cast<std::size_t>(points.number_of_points);
+      request.Points = points.points;
+      request.IsInverse = points.inverse != 0;
+      request.Moved = points.moved;
+      request.Valid = reinterpret_cast<signed char*>(points.valid);
+      if (request.Count > 0)
+      {
+        CheckPointer(request.Points, "The list of points");
+        CheckPointer(request.Moved, "The memory for the moved points");
+        CheckPointer(request.Valid, "The memory for the validity of points");
+      }
+      request.Progress = MakeProgress(points.progress, points.user);
+      deformer->Warnings.clear();
+      const PointsReport done = world.DeformPoints(request);
+      deformer->Warnings = done.Warnings;
+      if (request.Progress)
+      {
+        request.Progress(1.0);
+      }
+      if (report)
+      {
+        dv_points_report made = {};
+        made.number_of_outside_points = done.NumberOfOutsidePoints;
+        made.warnings = deformer->Warnings.c_str();
+        WriteStruct(made, report, "the report");
+      }
+    });
+}
+
 std::int32_t dv_device_memory(const dv_deformer* deformer, std::uint64_t* bytes)
 {
   return Call(

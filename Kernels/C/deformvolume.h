@@ -451,12 +451,58 @@ extern "C"
     /** The name of the device. The text belongs to the deformer, and is valid until its next
      * dv_deform() or dv_destroy(). */
     const char* device;
-    /** The warnings; "" if there are none. The text is valid as long as that of device. */
+    /** The warnings; "" if there are none. The text belongs to the deformer, and is valid until its
+     * next dv_deform(), dv_deform_points() or dv_destroy(). */
     const char* warnings;
   } dv_report;
 
   /** Deforms the volume into the memory of the request. report may be null. */
   DV_EXPORT int32_t dv_deform(dv_deformer* deformer, const dv_request* request, dv_report* report);
+
+  /** The input of dv_deform_points(), and the memory that it writes. */
+  typedef struct dv_points_request
+  {
+    /** The size of the structure in bytes, set by the program. */
+    size_t struct_size;
+    /** The number of points, 0 or more. */
+    int64_t number_of_points;
+    /** Three numbers per point, in world coordinates. */
+    const double* points;
+    /** 0: points at rest move to their deformed positions. Not 0: points of the deformed volume
+     * move back to rest. */
+    int32_t inverse;
+    /** Must be 0. */
+    int32_t reserved;
+    /** Memory for three numbers per point: the new positions. May be the memory of points. */
+    double* moved;
+    /** Memory for one byte per point: 1, or 0 for points that lie outside the deformation and do
+     * not move. See dv_set_outside(). */
+    int8_t* valid;
+    /** The progress callback; null: none. */
+    dv_progress progress;
+    /** The argument `user` of the callback. */
+    void* user;
+  } dv_points_request;
+
+  /** The results of dv_deform_points() besides the points. */
+  typedef struct dv_points_report
+  {
+    /** The size of the structure in bytes, set by the program. */
+    size_t struct_size;
+    /** The number of points that lie outside the deformation. */
+    int64_t number_of_outside_points;
+    /** The warnings; "" if there are none. The text belongs to the deformer, and is valid until its
+     * next dv_deform_points(), dv_deform() or dv_destroy(). */
+    const char* warnings;
+  } dv_points_report;
+
+  /** Moves points, such as landmarks or a surface, as dv_deform() moves the volume, or back to
+   * rest. It needs neither a volume nor a device, and computes in double precision as
+   * vtkDeformGeometryFilter does, which documents the map. Where the deformation folds, several
+   * points at rest may belong to one deformed point; one of them is chosen. report may be null.
+   * Fails if a point is not finite, or for the deformations for which dv_deform() fails. */
+  DV_EXPORT int32_t dv_deform_points(
+    dv_deformer* deformer, const dv_points_request* request, dv_points_report* report);
 
   /** Gets the memory that the deformer has allocated on the device, in bytes. */
   DV_EXPORT int32_t dv_device_memory(const dv_deformer* deformer, uint64_t* bytes);

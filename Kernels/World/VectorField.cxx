@@ -8,12 +8,29 @@
 #include "VectorConversion.h"
 
 #include <glm/common.hpp>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include <atomic>
-#include <limits>
 
 namespace deformvolume
 {
+
+namespace
+{
+
+constexpr std::size_t VectorsPerPart = 512;
+
+// notFinite: the first vector that is not finite. count: the number of vectors.
+void CheckFinite(std::size_t notFinite, std::size_t count)
+{
+  if (notFinite < count)
+  {
+    throw Error("Vector " + std::to_string(notFinite) +
+      " of the displacement field is not finite. Remove NaN and infinity from it.");
+  }
+}
+
+} // namespace
 
 void VectorField::Replace(const ImageGeometry& grid, const VectorView& vectors, bool isInverse,
   const std::shared_ptr<DeviceVectors>& shared)
@@ -110,13 +127,12 @@ void VectorField::Convert(const ImageGeometry& volume, const OutputMap& toOutput
   const std::size_t count = taken.empty() ? this->Vectors.Count : taken.size();
   const VectorConversion conversion(GetToDisplacement(volume, toOutput, 1.0));
   this->Displacements.resize(3 * count);
-  constexpr std::size_t some = 512;
-  std::atomic<std::size_t> notFinite{ std::numeric_limits<std::size_t>::max() };
+  std::atomic<std::size_t> notFinite{ this->Vectors.Count };
   std::atomic<bool> tooFar{ false };
-  ParallelForParts(count, some,
+  ParallelForParts(count, VectorsPerPart,
     [&](std::size_t begin, std::size_t end)
     {
-      std::array<glm::dvec3, some> vectors;
+      std::array<glm::dvec3, VectorsPerPart> vectors;
       for (std::size_t i = begin; i < end; ++i)
       {
         const std::size_t point = taken.empty() ? i : taken[i];
@@ -131,15 +147,50 @@ void VectorField::Convert(const ImageGeometry& volume, const OutputMap& toOutput
         tooFar = true;
       }
     });
-  if (notFinite < this->Vectors.Count)
-  {
-    throw Error("Vector " + std::to_string(notFinite) +
-      " of the displacement field is not finite. Remove NaN and infinity from it.");
-  }
+  CheckFinite(notFinite, this->Vectors.Count);
   if (tooFar)
   {
     ThrowTooFar();
   }
+}
+
+WorldField VectorField::GetWorldField()
+{
+  if (this->Shared)
+  {
+    this->Vectors.Data = this->Shared->Read();
+  }
+  std::atomic<std::size_t> notFinite{ this->Vectors.Count };
+  ParallelForParts(this->Vectors.Count, VectorsPerPart,
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        if (!IsFiniteVector(this->Vectors.Get(i)))
+        {
+          Lower(notFinite, i);
+        }
+      }
+    });
+  CheckFinite(notFinite, this->Vectors.Count);
+  const Extent& points = this->Grid.PointExtent;
+  WorldField field;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    field.Dimensions[static_cast<std::size_t>(axis)] = static_cast<int>(GetSize(points, axis));
+  }
+  field.IndexToWorld =
+    glm::translate(this->Grid.GetIndexToWorld(), glm::dvec3(points[0], points[2], points[4]));
+  if (this->Vectors.AreDoubles)
+  {
+    field.Doubles = static_cast<const double*>(this->Vectors.Data);
+  }
+  else
+  {
+    field.Floats = static_cast<const float*>(this->Vectors.Data);
+  }
+  field.Tolerance = FieldTolerance;
+  return field;
 }
 
 std::vector<std::size_t> VectorField::TakeVoxels(const Extent& voxels)

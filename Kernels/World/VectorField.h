@@ -4,6 +4,7 @@
 
 #include "DeviceVectors.h"
 #include "DisplacementField.h"
+#include "FieldPointMap.h"
 #include "FieldScan.h"
 #include "ImageGeometry.h"
 #include "IndexBounds.h"
@@ -37,6 +38,9 @@ public:
   /// Updates the field for a volume and its map to the output. Throws an Error if a vector is not
   /// finite or too long.
   void Update(const ImageGeometry& volume, const OutputMap& toOutput);
+
+  /// Returns the field in world coordinates. Throws an Error if a vector is not finite.
+  WorldField GetWorldField();
 
   bool IsInverse() const { return this->Inverse; }
   const ImageGeometry& GetGrid() const { return this->Grid; }

@@ -200,10 +200,6 @@ void WorldDeformer::Internals::UpdateDeformation()
     this->Field.Update(*this->Volume, this->ToOutput);
     return;
   }
-  if (!this->Mesh.HasVectors())
-  {
-    throw Error("The deformation mesh has no displacements. Set one for each of its points.");
-  }
   this->Mesh.Update(*this->Volume, this->ToOutput);
 }
 

@@ -10,6 +10,7 @@
 #include "VectorView.h"
 #include "VolumeArray.h"
 #include "WorldMesh.h"
+#include "WorldPoints.h"
 
 #include <array>
 #include <cstdint>
@@ -138,6 +139,10 @@ public:
   /// Returns the grid of the output, with its whole extent.
   ImageGeometry FindOutput();
   WorldReport Deform(const WorldRequest& request);
+
+  /// Moves points as the volume is moved, or back to rest, on the host in double precision. Needs
+  /// neither a volume nor a device.
+  PointsReport DeformPoints(const PointsRequest& request);
 
   std::uint64_t GetDeviceMemory() const;
   void ReleaseMemory();

@@ -98,6 +98,37 @@ void WorldMesh::Update(const ImageGeometry& volume, const OutputMap& toOutput)
   }
 }
 
+void WorldMesh::CheckVectors() const
+{
+  if (!this->VectorsAreSet)
+  {
+    throw Error("The deformation mesh has no displacements. Set one for each of its points.");
+  }
+  CheckFaults(this->VectorFaults, this->Cells.Tetrahedra, "Displacement");
+}
+
+std::vector<glm::dvec3> WorldMesh::AddDerived(std::vector<glm::dvec3> vectors) const
+{
+  for (std::size_t i = 0; i < this->Cells.Derived.GetCount(); ++i)
+  {
+    vectors.push_back(this->Cells.Derived.Sum(
+      i, [&](std::int32_t node) { return vectors[static_cast<std::size_t>(node)]; }));
+  }
+  return vectors;
+}
+
+std::vector<glm::dvec3> WorldMesh::GetWorldPoints() const
+{
+  CheckFaults(this->PointFaults, this->Cells.Tetrahedra, "Point");
+  return this->AddDerived(this->WorldPoints);
+}
+
+std::vector<glm::dvec3> WorldMesh::GetWorldDisplacements() const
+{
+  this->CheckVectors();
+  return this->AddDerived(this->WorldVectors);
+}
+
 void WorldMesh::UpdatePoints(const ImageGeometry& volume)
 {
   this->PointsAreOld = true;
@@ -123,6 +154,7 @@ void WorldMesh::UpdatePoints(const ImageGeometry& volume)
 
 void WorldMesh::UpdateDisplacements(const OutputMap& toOutput)
 {
+  this->CheckVectors();
   ++this->VectorsVersion;
   const std::size_t nodes = this->WorldVectors.size();
   const DerivedNodes& derived = this->Cells.Derived;
@@ -144,7 +176,6 @@ void WorldMesh::UpdateDisplacements(const OutputMap& toOutput)
         }
       }
     });
-  CheckFaults(this->VectorFaults, this->Cells.Tetrahedra, "Displacement");
   CheckFaults(faults, this->Cells.Tetrahedra, "Displacement");
   for (std::size_t i = 0; i < derived.GetCount(); ++i)
   {

@@ -36,7 +36,14 @@ public:
   /// long.
   void Update(const ImageGeometry& volume, const OutputMap& toOutput);
 
-  bool HasVectors() const { return this->VectorsAreSet; }
+  ///@{
+  /// Return the positions at rest and the displacements of all nodes in world coordinates, with the
+  /// derived nodes. Throw an Error if a node that a tetrahedron uses is not finite, or if there are
+  /// no displacements.
+  std::vector<glm::dvec3> GetWorldPoints() const;
+  std::vector<glm::dvec3> GetWorldDisplacements() const;
+  ///@}
+
   std::size_t GetNumberOfNodes() const { return this->WorldPoints.size(); }
   const MeshCells& GetCells() const { return this->Cells; }
 
@@ -53,6 +60,8 @@ public:
   ///@}
 
 private:
+  void CheckVectors() const;
+  std::vector<glm::dvec3> AddDerived(std::vector<glm::dvec3> vectors) const;
   void UpdatePoints(const ImageGeometry& volume);
   void UpdateDisplacements(const OutputMap& toOutput);
 

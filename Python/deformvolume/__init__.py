@@ -13,13 +13,24 @@ deformvolume.vtk has a filter for VTK's pipelines, and deformvolume.pyvista and 
 pyvista and SimpleITK. devices() lists the OpenCL devices.
 """
 
-from ._deformer import Deformed, Deformer, DeformationWarning, Field, Grid, Mesh, deform
+from ._deformer import (
+    Deformed,
+    DeformedPoints,
+    Deformer,
+    DeformationWarning,
+    Field,
+    Grid,
+    Mesh,
+    deform,
+    deform_points,
+)
 from ._driver import Device, devices
 from ._native import Error, version as _version
 
 __version__ = _version()
 __all__ = [
     "Deformed",
+    "DeformedPoints",
     "Deformer",
     "DeformationWarning",
     "Device",
@@ -28,5 +39,6 @@ __all__ = [
     "Grid",
     "Mesh",
     "deform",
+    "deform_points",
     "devices",
 ]

@@ -105,6 +105,15 @@ class Deformed:
         return self.arrays[0]
 
 
+class DeformedPoints(NamedTuple):
+    """The result of deform_points()."""
+
+    points: numpy.ndarray
+    """float64, shape (n, 3): the new positions, in world coordinates. Points outside the deformation do not move."""
+    valid: numpy.ndarray
+    """bool, shape (n,): False for points outside the deformation, see Deformer.set_outside()"""
+
+
 def _flag(value, what: str) -> int:
     """Returns 0 or 1. Texts such as "False" are refused."""
     if not isinstance(value, (bool, int, numpy.bool_, numpy.integer)):
@@ -324,7 +333,9 @@ class Deformer:
             )
         with _calls, self._lock:
             if self._is_running:
-                raise _native.Error("deform() is running. Its progress callback must not call the same deformer.")
+                raise _native.Error(
+                    "A call of this deformer is running. Its progress callback must not call the same deformer."
+                )
             if not self._finalizer.alive:
                 raise _native.Error("This deformer is closed. Create another one.")
             yield
@@ -709,6 +720,53 @@ class Deformer:
         """Like deform(), but writes into given arrays with the axes z, y, x. Returns the report of the library, and
         raises no warnings."""
         extra = extra or {}
+        addresses = (ctypes.c_void_p * max(1, len(outputs)))(*[output.ctypes.data for output in outputs])
+        request = _structs.Request(
+            interpolation=_choose(interpolation, _structs.INTERPOLATION, "interpolation"),
+            number_of_outputs=len(outputs),
+            outputs=ctypes.cast(addresses, ctypes.POINTER(ctypes.c_void_p)),
+            coverage=coverage.ctypes.data_as(ctypes.POINTER(ctypes.c_int8)),
+            extra_background=float(extra_background),
+        )
+        kinds = {"rest_positions": ctypes.c_float, "jacobian": ctypes.c_float, "fold_count": ctypes.c_uint32}
+        for name, array in extra.items():
+            setattr(request, name, array.ctypes.data_as(ctypes.POINTER(kinds[name])))
+        report = _structs.Report()
+        self._call_with_progress("dv_deform", request, report, progress)
+        return report
+
+    def deform_points(
+        self, points, *, inverse: bool = False, progress: Optional[Callable[[float], object]] = None
+    ) -> DeformedPoints:
+        """Moves points as the volume is moved, or back to rest. Needs no volume, and computes in double precision.
+
+        Args:
+            points: shape (n, 3), in world coordinates.
+            inverse: False: from rest to deformed positions. True: from deformed positions to rest.
+            progress: see deform().
+
+        Warns:
+            DeformationWarning: points lie outside the deformation, or cells of the mesh are ignored.
+        """
+        given = _arrays.vectors(points, None, "The array of points").astype(numpy.float64, copy=False)
+        moved, valid = numpy.empty_like(given), numpy.empty(len(given), numpy.bool_)
+        request = _structs.PointsRequest(
+            number_of_points=len(given),
+            points=given.ctypes.data,
+            inverse=_flag(inverse, "inverse"),
+            moved=moved.ctypes.data,
+            valid=valid.ctypes.data,
+        )
+        report = _structs.PointsReport()
+        with self._locked():
+            self._call_with_progress("dv_deform_points", request, report, progress)
+            text = report.warnings.decode("utf-8", "replace")
+        if text:
+            _warn(text)
+        return DeformedPoints(moved, valid)
+
+    def _call_with_progress(self, name: str, request, report, progress) -> None:
+        """Calls a function of the library with a request, a report, and a progress callback of Python."""
         failure = []
 
         def report_progress(fraction, _):
@@ -722,23 +780,12 @@ class Deformer:
                 failure.append(error)
                 return 1
 
-        addresses = (ctypes.c_void_p * max(1, len(outputs)))(*[output.ctypes.data for output in outputs])
-        request = _structs.Request(
-            interpolation=_choose(interpolation, _structs.INTERPOLATION, "interpolation"),
-            number_of_outputs=len(outputs),
-            outputs=ctypes.cast(addresses, ctypes.POINTER(ctypes.c_void_p)),
-            coverage=coverage.ctypes.data_as(ctypes.POINTER(ctypes.c_int8)),
-            extra_background=float(extra_background),
-            progress=_structs.PROGRESS(report_progress),
-        )
-        kinds = {"rest_positions": ctypes.c_float, "jacobian": ctypes.c_float, "fold_count": ctypes.c_uint32}
-        for name, array in extra.items():
-            setattr(request, name, array.ctypes.data_as(ctypes.POINTER(kinds[name])))
-        report = _structs.Report()
+        request.progress = _structs.PROGRESS(report_progress)
         with self._locked(), _Interrupts() as interrupts:
             self._is_running = True
             try:
-                status = _native.library.dv_deform(self._handle, ctypes.byref(request), ctypes.byref(report))
+                function = getattr(_native.library, name)
+                status = function(self._handle, ctypes.byref(request), ctypes.byref(report))
             finally:
                 self._is_running = False
         interrupts.call()
@@ -746,7 +793,6 @@ class Deformer:
             # An exception that stays in a variable of this function would keep all arrays of its frame alive.
             raise failure.pop()
         _native.check(status)
-        return report
 
     def release_memory(self) -> None:
         """Frees the memory on the device. The next deform() sends the data again."""
@@ -828,3 +874,37 @@ def deform(
             extra_background=extra_background,
             progress=progress,
         )
+
+
+def deform_points(
+    points,
+    deformation: Union[Mesh, Field],
+    *,
+    inverse: bool = False,
+    outside: str = "discard",
+    fade_distance: float = 0.0,
+    progress: Optional[Callable[[float], object]] = None,
+) -> DeformedPoints:
+    """Moves points, such as landmarks or a surface, as deform() moves a volume, or back to rest.
+
+    Args:
+        points: shape (n, 3), in world coordinates.
+        deformation: a Mesh or a Field.
+        inverse: False: from rest to deformed positions. True: from deformed positions to rest. The inverse field of a
+            registration leads from the fixed to the moving image: landmarks of the moving image move to the fixed
+            image with inverse=False, and those of the fixed image to the moving image with inverse=True.
+        outside, fade_distance: see Deformer.set_outside().
+        progress: see Deformer.deform().
+
+    Returns:
+        DeformedPoints: the new positions, and which points the deformation moves.
+
+    >>> import numpy as np, deformvolume as dv
+    >>> field = dv.Field(np.tile([5.0, 0.0, 0.0], (2, 2, 2, 1)), np.diag([78.0, 78.0, 78.0, 1.0]))
+    >>> dv.deform_points([[10, 20, 30]], field).points
+    array([[15., 20., 30.]])
+    """
+    with Deformer() as deformer:
+        deformer.set_deformation(deformation)
+        deformer.set_outside(outside, fade_distance)
+        return deformer.deform_points(points, inverse=inverse, progress=progress)

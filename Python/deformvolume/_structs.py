@@ -108,6 +108,28 @@ class Report(_Structure):
     ]
 
 
+class PointsRequest(_Structure):
+    _fields_ = [
+        ("struct_size", c_size_t),
+        ("number_of_points", c_int64),
+        ("points", c_void_p),
+        ("inverse", c_int32),
+        ("reserved", c_int32),
+        ("moved", c_void_p),
+        ("valid", c_void_p),
+        ("progress", PROGRESS),
+        ("user", c_void_p),
+    ]
+
+
+class PointsReport(_Structure):
+    _fields_ = [
+        ("struct_size", c_size_t),
+        ("number_of_outside_points", c_int64),
+        ("warnings", c_char_p),
+    ]
+
+
 _status, _deformer = c_int32, c_void_p
 _native.declare(
     {
@@ -128,6 +150,7 @@ _native.declare(
         "dv_set_output": (_status, [_deformer, POINTER(Output)]),
         "dv_output_grid": (_status, [_deformer, POINTER(Grid)]),
         "dv_deform": (_status, [_deformer, POINTER(Request), POINTER(Report)]),
+        "dv_deform_points": (_status, [_deformer, POINTER(PointsRequest), POINTER(PointsReport)]),
         "dv_release_memory": (_status, [_deformer]),
     }
 )

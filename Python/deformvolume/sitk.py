@@ -24,6 +24,43 @@ def _grid_of(image, what: str) -> "_deformer._structs.Grid":
     return _deformer.make_grid(extent, image.GetOrigin(), image.GetSpacing(), image.GetDirection())
 
 
+def _read_field(field):
+    """Returns an image of displacements, and its vectors with the axes z, y, x and an axis of components."""
+    if isinstance(field, SimpleITK.Transform):
+        try:
+            field = SimpleITK.DisplacementFieldTransform(field).GetDisplacementField()
+        except RuntimeError as error:
+            raise TypeError(
+                f"The transform is of the type {field.GetName()}. Give a DisplacementFieldTransform, "
+                "or the image that SimpleITK.TransformToDisplacementField() makes of the transform."
+            ) from error
+    _check_image(field, "The displacement field")
+    vectors = numpy.ascontiguousarray(SimpleITK.GetArrayViewFromImage(field))
+    if vectors.ndim != 4 or vectors.shape[3] != 3:
+        raise ValueError(
+            f"The displacement field has {field.GetDimension()} dimensions and pixels of "
+            f"{field.GetNumberOfComponentsPerPixel()} components. It must have three dimensions and "
+            "vectors of three components."
+        )
+    if vectors.dtype not in (numpy.float32, numpy.float64):
+        vectors = vectors.astype(numpy.float64)
+    return field, vectors
+
+
+def make_field(field, inverse: bool = True) -> "_deformer.Field":
+    """Returns a displacement field of SimpleITK as a deformvolume.Field, for instance for deform_points().
+
+    Args:
+        field: an image of vectors of three components, in mm, or a DisplacementFieldTransform.
+        inverse: see deform().
+
+    Landmarks of SimpleITK and the result are in the same world coordinates (LPS).
+    """
+    image, vectors = _read_field(field)
+    affine = _arrays.join_affine(image.GetOrigin(), image.GetSpacing(), image.GetDirection())
+    return _deformer.Field(_arrays.from_image(vectors), affine, inverse)
+
+
 def deform(
     image: "SimpleITK.Image",
     deformation,
@@ -58,29 +95,12 @@ def deform(
     with _deformer.Deformer(device) as deformer:
         pixels = numpy.ascontiguousarray(_arrays.native(SimpleITK.GetArrayViewFromImage(image), "The image"))
         deformer._set_volume_grid(_grid_of(image, "The image"), [pixels], categorical, background)
-        if isinstance(deformation, SimpleITK.Transform):
-            try:
-                deformation = SimpleITK.DisplacementFieldTransform(deformation).GetDisplacementField()
-            except RuntimeError as error:
-                raise TypeError(
-                    f"The transform is of the type {deformation.GetName()}. Give a DisplacementFieldTransform, "
-                    "or the image that SimpleITK.TransformToDisplacementField() makes of the transform."
-                ) from error
-        is_inverse = isinstance(deformation, _deformer.Field) and deformation.inverse
-        if isinstance(deformation, SimpleITK.Image):
-            _check_image(deformation, "The displacement field")
-            vectors = numpy.ascontiguousarray(SimpleITK.GetArrayViewFromImage(deformation))
-            if vectors.ndim != 4 or vectors.shape[3] != 3:
-                raise ValueError(
-                    f"The displacement field has {deformation.GetDimension()} dimensions and pixels of "
-                    f"{deformation.GetNumberOfComponentsPerPixel()} components. It must have three dimensions and "
-                    "vectors of three components."
-                )
-            if vectors.dtype not in (numpy.float32, numpy.float64):
-                vectors = vectors.astype(numpy.float64)
+        if isinstance(deformation, (SimpleITK.Image, SimpleITK.Transform)):
+            field, vectors = _read_field(deformation)
             is_inverse = inverse
-            deformer._set_field_grid(_grid_of(deformation, "The displacement field"), vectors, is_inverse)
+            deformer._set_field_grid(_grid_of(field, "The displacement field"), vectors, is_inverse)
         else:
+            is_inverse = isinstance(deformation, _deformer.Field) and deformation.inverse
             deformer.set_deformation(deformation)
         deformer.set_outside(outside, fade_distance)
         if reference is not None:

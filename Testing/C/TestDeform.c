@@ -120,6 +120,7 @@ static void TestNull(void)
   REFUSED(dv_set_output(NULL, NULL), "deformer is null");
   REFUSED(dv_output_grid(NULL, &grid), "deformer is null");
   REFUSED(dv_deform(NULL, &request, NULL), "deformer is null");
+  REFUSED(dv_deform_points(NULL, NULL, NULL), "deformer is null");
   REFUSED(dv_device_memory(NULL, &bytes), "deformer is null");
   REFUSED(dv_release_memory(NULL), "deformer is null");
   dv_destroy(NULL);
@@ -131,6 +132,7 @@ static void TestNull(void)
   REFUSED(dv_set_field(deformer, NULL), "the field is null");
   REFUSED(dv_output_grid(deformer, NULL), "the grid is null");
   REFUSED(dv_deform(deformer, NULL, NULL), "the request is null");
+  REFUSED(dv_deform_points(deformer, NULL, NULL), "the request is null");
   REFUSED(dv_device_memory(deformer, NULL), "null");
   REFUSED(dv_set_device(deformer, "no such device"), "no such device");
   dv_destroy(deformer);
@@ -452,6 +454,68 @@ static void TestProgress(void)
   dv_destroy(deformer);
 }
 
+/* Points need no volume. The mesh shears: x grows with z. Without a deformation, points stay. */
+static void TestPoints(void)
+{
+  static const double points[3][3] = { { 1.0, 2.0, 11.0 }, { 4.0, 5.0, 22.0 }, { 1.0, 2.0, 23.0 } };
+  double moved[3][3];
+  int8_t valid[3] = { -1, -1, -1 };
+  const dv_mesh mesh = MakeMesh();
+  struct Progress progress = { 0, 0, 0.0 };
+  dv_deformer* deformer = NULL;
+  dv_points_request request;
+  dv_points_report report;
+  int i = 0;
+  memset(&request, 0, sizeof(request));
+  request.struct_size = sizeof(request);
+  memset(&report, 0, sizeof(report));
+  report.struct_size = sizeof(report);
+  CHECK(dv_create(&deformer) == DV_OK);
+  CHECK(dv_deform_points(deformer, &request, &report) == DV_OK);
+  request.number_of_points = -1;
+  REFUSED(dv_deform_points(deformer, &request, &report), "number of points is -1");
+  request.number_of_points = 3;
+  REFUSED(dv_deform_points(deformer, &request, &report), "The list of points is null");
+  request.points = points[0];
+  REFUSED(dv_deform_points(deformer, &request, &report), "memory for the moved points is null");
+  request.moved = moved[0];
+  REFUSED(dv_deform_points(deformer, &request, &report), "memory for the validity");
+  request.valid = valid;
+  CHECK(dv_deform_points(deformer, &request, NULL) == DV_OK);
+  CHECK(memcmp(moved, points, sizeof(moved)) == 0 && valid[2] == 1);
+
+  CHECK(dv_set_mesh(deformer, &mesh) == DV_OK);
+  REFUSED(dv_deform_points(deformer, &request, &report), "no displacements");
+  CHECK(dv_set_displacements(deformer, DV_FLOAT32, 8, Displacements) == DV_OK);
+  CHECK(dv_deform_points(deformer, &request, &report) == DV_OK);
+  CHECK(fabs(moved[0][0] - 3.5) < 1e-12 && fabs(moved[1][0] - 9.0) < 1e-12);
+  CHECK(fabs(moved[0][1] - 2.0) < 1e-12 && fabs(moved[1][2] - 22.0) < 1e-12);
+  CHECK(valid[0] == 1 && valid[1] == 1 && valid[2] == 0);
+  CHECK(moved[2][0] == 1.0 && report.number_of_outside_points == 1);
+  CHECK(strstr(report.warnings, "1 of 3 points lie outside the mesh") != NULL);
+  CHECK(dv_set_outside(deformer, DV_OUTSIDE_EXTRAPOLATE, 0.0) == DV_OK);
+  CHECK(dv_deform_points(deformer, &request, &report) == DV_OK);
+  CHECK(fabs(moved[2][0] - 1.0 - 5.0 * 23.0 / 22.0) < 1e-12 && valid[2] == 1);
+  CHECK(report.warnings[0] == '\0');
+  /* Back to rest, in place. */
+  request.points = moved[0];
+  request.inverse = 1;
+  CHECK(dv_deform_points(deformer, &request, &report) == DV_OK);
+  for (i = 0; i < 9; ++i)
+  {
+    CHECK(fabs(moved[i / 3][i % 3] - points[i / 3][i % 3]) < 1e-9);
+  }
+
+  request.progress = TakeProgress;
+  request.user = &progress;
+  CHECK(dv_deform_points(deformer, &request, &report) == DV_ABORTED);
+  progress.AbortAt = -1;
+  CHECK(dv_deform_points(deformer, &request, &report) == DV_OK && progress.Last == 1.0);
+  moved[1][2] = HUGE_VAL;
+  REFUSED(dv_deform_points(deformer, &request, &report), "Point 1 is not finite");
+  dv_destroy(deformer);
+}
+
 /* When the volume becomes larger, densities become smaller. Inverted tetrahedra have no density. */
 static void TestDensity(void)
 {
@@ -619,6 +683,7 @@ int main(void)
   TestMissing();
   TestWrong();
   TestProgress();
+  TestPoints();
   TestDensity();
   TestParts();
   printf("%d failures\n", Failures);

@@ -82,4 +82,15 @@ x = moved.TransformPhysicalPointToIndex((12.0, 10.0, 10.0))
 assert moved[x] == 200 and moved.GetPixelID() == sitk.sitkUInt8
 colors = sitk.Compose(box, box, box)
 assert ds.deform(colors, dv.Field(shift, np.diag([19.0, 19.0, 19.0, 1.0])))[x] == (200, 200, 200)
+
+# Landmarks of the fixed image move as SimpleITK's transform moves them, and back.
+landmarks = random.uniform((0, 20, 10), (20, 40, 40), (50, 3))
+transform = sitk.DisplacementFieldTransform(sitk.Image(field))
+theirs = [transform.TransformPoint(point) for point in landmarks.tolist()]
+converted = ds.make_field(transform)
+ours = dv.deform_points(landmarks, converted, inverse=True).points
+assert abs(ours - landmarks).max() > 0.5 and np.allclose(ours, theirs, rtol=0, atol=1e-9), abs(ours - theirs).max()
+assert np.allclose(dv.deform_points(ours, converted).points, landmarks, rtol=0, atol=1e-6)
+assert not ds.make_field(field, inverse=False).inverse
+expect(ValueError, "three components", lambda: ds.make_field(image))
 print("all tests passed")

@@ -207,6 +207,32 @@ class Misuse(unittest.TestCase):
         self.assertEqual(caught.filename, __file__)
 
     # The origin of the world is a voxel of many scans, so that a mesh in meters holds a voxel.
+    def test_points(self):
+        field = deformvolume.Field(numpy.tile([5.0, 0.0, 0.0], (2, 2, 2, 1)), numpy.diag([10.0, 10.0, 10.0, 1.0]))
+        for kind, words, points in (
+            (ValueError, r"shape \(3,\)", [1, 2, 3]),
+            (TypeError, "Give integers", [["a", "b", "c"]]),
+            (deformvolume.Error, "Point 1 is not finite", [[1, 2, 3], [1, numpy.nan, 3]]),
+        ):
+            with self.assertRaisesRegex(kind, words):
+                deformvolume.deform_points(points, field)
+        with self.assertRaisesRegex(TypeError, "inverse"):
+            deformvolume.deform_points([[1, 2, 3]], field, inverse="False")
+        with self.assertRaises(ZeroDivisionError):
+            deformvolume.deform_points([[1, 2, 3]], field, progress=lambda _: 1 / 0)
+        with self.assertRaisesRegex(deformvolume.Error, "no displacements"):
+            deformvolume.deform_points([[1, 2, 3]], Mesh(POINTS, CELLS))
+        points = numpy.array([[1, 2, 3], [-1, 2, 3]], "i2")
+        with self.assertWarnsRegex(deformvolume.DeformationWarning, "1 of 2 points lie outside"):
+            moved, valid = deformvolume.deform_points(points, field)
+        numpy.testing.assert_array_equal(moved, [[6, 2, 3], [-1, 2, 3]])
+        numpy.testing.assert_array_equal(valid, [True, False])
+        field.inverse = True
+        moved, valid = deformvolume.deform_points(points, field, outside="extrapolate")
+        numpy.testing.assert_allclose(moved, points - [5, 0, 0], atol=1e-9)
+        self.assertTrue(valid.all())
+        self.assertEqual(deformvolume.deform_points(numpy.zeros((0, 3)), field).points.shape, (0, 3))
+
     def test_units(self):
         affine = numpy.eye(4)
         affine[:3, 3] = -4.0

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Moves single points as a WorldDeformer moves its volume.
+#include "WorldPoints.h"
+
+#include "Error.h"
+#include "Fading.h"
+#include "FieldPointMap.h"
+#include "MeshPointMap.h"
+#include "ParallelFor.h"
+#include "WorldDeformer.h"
+#include "WorldDeformerInternals.h"
+
+#include <algorithm>
+#include <atomic>
+#include <memory>
+#include <vector>
+
+namespace deformvolume
+{
+
+namespace
+{
+
+constexpr std::size_t PointsPerPart = 512;
+constexpr std::size_t PointsPerReport = 64 * PointsPerPart;
+
+void CheckPoints(const PointsRequest& request)
+{
+  const VectorView points{ request.Points, true, request.Count };
+  for (std::size_t i = 0; i < request.Count; ++i)
+  {
+    if (!IsFiniteVector(points.Get(i)))
+    {
+      throw Error("Point " + std::to_string(i) + " is not finite. Remove NaN and infinity.");
+    }
+  }
+}
+
+} // namespace
+
+PointsReport WorldDeformer::DeformPoints(const PointsRequest& request)
+{
+  CheckPoints(request);
+  Internals& internals = *this->Impl;
+  const bool isMesh = internals.Deformation == Internals::Deformations::Mesh;
+  const bool isField = internals.Deformation == Internals::Deformations::Field;
+  const bool isInverted = request.IsInverse != (isField && internals.Field.IsInverse());
+  std::vector<glm::dvec3> nodes;
+  std::unique_ptr<PointMap> map; // null: the volume is at rest
+  if (isMesh)
+  {
+    nodes = internals.Mesh.GetWorldPoints();
+    auto made = std::make_unique<MeshPointMap>(nodes, internals.Mesh.GetCells().Tetrahedra);
+    made->Set(internals.Mesh.GetWorldDisplacements(), internals.Outside, isInverted);
+    map = std::move(made);
+  }
+  else if (isField)
+  {
+    map = std::make_unique<FieldPointMap>(
+      internals.Field.GetWorldField(), internals.Outside, isInverted);
+  }
+  std::atomic<std::int64_t> outside{ 0 };
+  std::atomic<double> leastFading{ 0.0 }; // the negated largest displacement
+  for (std::size_t begin = 0; begin < request.Count; begin += PointsPerReport)
+  {
+    if (request.Progress &&
+      !request.Progress(static_cast<double>(begin) / static_cast<double>(request.Count)))
+    {
+      throw Aborted();
+    }
+    ParallelForParts(std::min(PointsPerReport, request.Count - begin), PointsPerPart,
+      [&](std::size_t from, std::size_t to)
+      {
+        for (std::size_t i = begin + from; i < begin + to; ++i)
+        {
+          const double* given = request.Points + 3 * i;
+          const glm::dvec3 point(given[0], given[1], given[2]);
+          PointMap::Image image;
+          const bool isValid =
+            !map || (isInverted ? map->Invert(point, image) : map->Map(point, image));
+          const glm::dvec3 moved = map && isValid ? image.Point : point;
+          for (int axis = 0; axis < 3; ++axis)
+          {
+            request.Moved[3 * i + static_cast<std::size_t>(axis)] = moved[axis];
+          }
+          request.Valid[i] = isValid ? 1 : 0;
+          outside += isValid ? 0 : 1;
+          if (image.FadingDisplacement > 0.0)
+          {
+            Lower(leastFading, -image.FadingDisplacement);
+          }
+        }
+      });
+  }
+  PointsReport report;
+  report.NumberOfOutsidePoints = outside;
+  const auto warn = [&](const std::string& warning)
+  { report.Warnings += (report.Warnings.empty() || warning.empty() ? "" : " ") + warning; };
+  if (outside > 0)
+  {
+    warn(std::to_string(outside) + " of " + std::to_string(request.Count) +
+      " points lie outside the " + (isInverted ? "deformed " : "") +
+      (isField ? "displacement field" : "mesh") + ", and do not move." +
+      (internals.Outside.AreExtrapolated() || internals.Outside.AreKept()
+          ? ""
+          : " To move points outside, extrapolate the deformation, or let it fade."));
+  }
+  if (isMesh)
+  {
+    const MeshCells& cells = internals.Mesh.GetCells();
+    for (const std::string& warning : GetCellWarnings(cells.Ignored, cells.WrongOrder))
+    {
+      warn(warning);
+    }
+  }
+  warn(FindFoldsOfFading(
+    "border of the deformation moves", -leastFading.load(), internals.Outside.FadeDistance));
+  return report;
+}
+
+} // namespace deformvolume
