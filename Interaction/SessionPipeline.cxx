@@ -3,6 +3,7 @@
 
 #include "SessionPositions.h"
 #include "StyleText.h"
+#include "VoxelSize.h"
 #include "vtkDeformVolumeSession.h"
 
 #include "vtkCallbackCommand.h"
@@ -70,6 +71,34 @@ int GetWhole(const SessionEvent& event, int least, int most, const char* name)
     throw std::runtime_error(text.str());
   }
   return static_cast<int>(number);
+}
+
+// Moves a rest position that is a little outside the volume to its border. Returns false if the
+// position is farther outside.
+bool MoveIntoVolume(vtkImageData* volume, glm::dvec3& rest)
+{
+  const int* extent = volume->GetExtent();
+  // A visible position at the border can be outside by a fraction of a voxel.
+  const glm::dvec3 margin = // in voxels
+    deformvolume::GetLargestVoxelSize(volume) / deformvolume::GetVoxelSize(volume);
+  glm::dvec3 index;
+  volume->TransformPhysicalPointToContinuousIndex(&rest.x, &index.x);
+  glm::dvec3 inside = index;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double first = extent[2 * axis];
+    const double last = extent[2 * axis + 1];
+    if (!(index[axis] >= first - margin[axis] && index[axis] <= last + margin[axis]))
+    {
+      return false;
+    }
+    inside[axis] = std::clamp(index[axis], first, last);
+  }
+  if (inside != index) // positions inside are not rounded
+  {
+    volume->TransformContinuousIndexToPhysicalPoint(&inside.x, &rest.x);
+  }
+  return true;
 }
 
 } // namespace
@@ -257,23 +286,10 @@ void SessionPipeline::TryBeginGrab(double handle, const glm::dvec3& position)
   drag.Handle = handle;
   drag.Rest = FindRestPosition(this->GetDeformation(), position);
   drag.IsGrabbed = drag.IsHeld = true;
-  double bounds[6];
-  this->Volume->GetBounds(bounds);
-  const glm::dvec3 low(bounds[0], bounds[2], bounds[4]);
-  const glm::dvec3 high(bounds[1], bounds[3], bounds[5]);
-  // A visible position at the border can be outside by a fraction of a voxel. The axes of the
-  // volume may be rotated, so the largest spacing counts.
-  const double* const spacing = this->Volume->GetSpacing();
-  const double most =
-    std::max({ std::abs(spacing[0]), std::abs(spacing[1]), std::abs(spacing[2]) });
-  for (int axis = 0; axis < 3; ++axis)
+  if (!MoveIntoVolume(this->Volume, drag.Rest))
   {
-    if (!(drag.Rest[axis] >= low[axis] - most && drag.Rest[axis] <= high[axis] + most))
-    {
-      throw std::runtime_error("The grabbed position " + Format(&position.x) +
-        " is outside the deformed volume. Grab a position within it.");
-    }
-    drag.Rest[axis] = std::clamp(drag.Rest[axis], low[axis], high[axis]);
+    throw std::runtime_error("The grabbed position " + Format(&position.x) +
+      " is outside the deformed volume. Grab a position within it.");
   }
   if (this->GetElastic())
   {

@@ -3,6 +3,7 @@
 #include "SessionPipeline.h"
 
 #include "SessionPositions.h"
+#include "VoxelSize.h"
 #include "vtkDeformVolumeSession.h"
 
 #include "vtkCarveVolume.h"
@@ -448,8 +449,7 @@ bool SessionPipeline::FindMotion()
   {
     vectors->GetTuple(id, &now[3 * static_cast<std::size_t>(id)]);
   }
-  const double* spacing = this->Volume->GetSpacing();
-  const double most = 1e-3 * std::min({ spacing[0], spacing[1], spacing[2] });
+  const double most = 1e-3 * GetSmallestVoxelSize(this->Volume);
   const bool isQuiet = now.size() == this->LastVectors.size() &&
     std::equal(now.begin(), now.end(), this->LastVectors.begin(),
       [=](double one, double other) { return std::abs(one - other) <= most; });

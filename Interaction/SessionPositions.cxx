@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SessionPositions.h"
 
+#include "VoxelSize.h"
+
 #include "vtkAdaptiveSubdivisionFilter.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCommand.h"
@@ -131,8 +133,7 @@ glm::dvec3 FindNearestVoxel(vtkImageData* field, const glm::dvec3& deformed)
 // Returns whether the iteration has converged. It may not if the field is folded or torn.
 bool SearchField(vtkImageData* field, const glm::dvec3& deformed, glm::dvec3& rest)
 {
-  const double* spacing = field->GetSpacing();
-  const double tolerance = 1e-3 * std::min({ spacing[0], spacing[1], spacing[2] });
+  const double tolerance = 1e-3 * deformvolume::GetSmallestVoxelSize(field);
   rest = deformed;
   // Damped by one half, because the displacement may change as much as the position.
   for (int i = 0; i < 60; ++i)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "VisiblePositions.h"
 
+#include "VoxelSize.h"
+
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInteractorObserver.h"
@@ -33,9 +35,8 @@ public:
     {
       this->Clip(axis, extent[2 * axis] - 0.5, extent[2 * axis + 1] + 0.5);
     }
-    const double* spacing = image->GetSpacing();
     const double length = (this->Last - this->First) * glm::length(line.Far - line.Near);
-    const double step = 0.5 * std::min({ spacing[0], spacing[1], spacing[2] });
+    const double step = 0.5 * deformvolume::GetSmallestVoxelSize(image);
     this->NumberOfSteps = length > 0.0 ? static_cast<vtkIdType>(std::ceil(length / step)) : 0;
     this->Step = this->NumberOfSteps > 0 ? length / static_cast<double>(this->NumberOfSteps) : 0.0;
   }

@@ -2,6 +2,7 @@
 #include "vtkDeformVolumeInteractorStyleInternals.h"
 
 #include "StyleText.h"
+#include "VoxelSize.h"
 
 #include "vtkCamera.h"
 #include "vtkDataArray.h"
@@ -54,18 +55,21 @@ constexpr const char* KeyHelp =
   "1 2 3 4 the model   u undo   y redo   z undo all   + - like the wheel\n"
   "r reset the camera   h this help   q quit";
 
-// The matrix from the image that is shown, which has no direction and no origin, to the world.
+// The matrix from the image that is shown, which has no direction, no origin and no negative
+// spacing, to the world.
 vtkSmartPointer<vtkMatrix4x4> MakeAxes(vtkImageData* image)
 {
   auto axes = vtkSmartPointer<vtkMatrix4x4>::New();
   const int* extent = image->GetExtent();
   double first[3];
   image->TransformIndexToPhysicalPoint(extent[0], extent[2], extent[4], first);
+  const double* spacing = image->GetSpacing();
   for (int row = 0; row < 3; ++row)
   {
     for (int column = 0; column < 3; ++column)
     {
-      axes->SetElement(row, column, image->GetDirectionMatrix()->GetElement(row, column));
+      const double direction = image->GetDirectionMatrix()->GetElement(row, column);
+      axes->SetElement(row, column, spacing[column] < 0.0 ? -direction : direction);
     }
     axes->SetElement(row, 3, first[row]);
   }
@@ -423,7 +427,9 @@ void vtkDeformVolumeInteractorStyle::ShowOutput()
   int dimensions[3];
   internals.Output->GetDimensions(dimensions);
   internals.Shown->SetDimensions(dimensions);
-  internals.Shown->SetSpacing(internals.Output->GetSpacing());
+  // VTK's mapper shades volumes with a negative spacing wrongly.
+  const glm::dvec3 voxel = deformvolume::GetVoxelSize(internals.Output);
+  internals.Shown->SetSpacing(voxel.x, voxel.y, voxel.z);
   internals.Shown->GetPointData()->SetScalars(internals.Output->GetPointData()->GetScalars());
   if (!internals.Volume)
   {

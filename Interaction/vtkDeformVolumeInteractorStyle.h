@@ -82,7 +82,8 @@ public:
   ///@{
   /**
    * Set/Get the vtkVolume that shows the outputs. Its mapper, a vtkVolumeMapper, gets each new
-   * output, and its user matrix gets direction and origin of the output. Default null.
+   * output, and its user matrix gets direction and origin of the output, and the signs of its
+   * spacing. Default null.
    */
   virtual void SetVolume(vtkVolume* volume);
   vtkVolume* GetVolume();
@@ -181,7 +182,7 @@ public:
   ///@{
   /**
    * Get the last output of the session, and the image that the mapper shows: the same scalars
-   * without direction and origin. Null before the first output.
+   * without direction and origin, and with a positive spacing. Null before the first output.
    */
   vtkImageData* GetOutput();
   vtkImageData* GetShownImage();

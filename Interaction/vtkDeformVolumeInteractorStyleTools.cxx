@@ -3,6 +3,7 @@
 #include "vtkDeformVolumeInteractorStyleInternals.h"
 
 #include "StyleText.h"
+#include "VoxelSize.h"
 
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
@@ -230,8 +231,7 @@ void vtkDeformVolumeInteractorStyle::FinishCut()
   // Points of the stroke beside the body get the depth of the nearest point on the body.
   std::vector<glm::dvec3> upper;
   std::vector<glm::dvec3> lower;
-  const double* spacing = internals.Output->GetSpacing();
-  const double above = 2.0 * std::max({ spacing[0], spacing[1], spacing[2] });
+  const double above = 2.0 * deformvolume::GetLargestVoxelSize(internals.Output);
   for (std::size_t i = 0; i < count; ++i)
   {
     std::size_t way = 0;

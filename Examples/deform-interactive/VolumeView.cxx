@@ -16,6 +16,7 @@
 #include <vtkProperty.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
+#include <vtkReverseSense.h>
 #include <vtkVolume.h>
 #include <vtkVolumeProperty.h>
 
@@ -31,10 +32,9 @@ VolumeView::VolumeView(vtkDeformVolumeInteractorStyle* style)
   this->Mapper->SetAutoAdjustSampleDistances(0);
   this->Volume->SetMapper(this->Mapper);
   this->Style->SetVolume(this->Volume);
-  vtkNew<vtkPolyDataMapper> mapper;
-  mapper->SetInputConnection(this->Surface->GetOutputPort());
-  mapper->ScalarVisibilityOff();
-  this->SurfaceActor->SetMapper(mapper);
+  this->ReversedSurface->SetInputConnection(this->Surface->GetOutputPort());
+  this->SurfaceMapper->ScalarVisibilityOff();
+  this->SurfaceActor->SetMapper(this->SurfaceMapper);
   this->SurfaceActor->GetProperty()->SetColor(0.93, 0.80, 0.68);
   this->SurfaceActor->GetProperty()->SetSpecular(0.15);
   this->Surface->ComputeScalarsOff();
@@ -106,6 +106,10 @@ double VolumeView::Update(vtkRenderer* renderer)
   if (this->Chosen == SURFACE)
   {
     this->Surface->SetInputData(image);
+    // The fronts of mirrored triangles are inside, where VTK draws them black.
+    this->SurfaceMapper->SetInputConnection(axes->Determinant() < 0.0
+        ? this->ReversedSurface->GetOutputPort()
+        : this->Surface->GetOutputPort());
     this->SurfaceActor->SetUserMatrix(axes);
   }
   this->Style->ClearSlicePlanes();

@@ -15,7 +15,9 @@ class vtkImageData;
 class vtkImageSlice;
 class vtkImageSliceMapper;
 class vtkOpenGLGPUVolumeRayCastMapper;
+class vtkPolyDataMapper;
 class vtkRenderer;
+class vtkReverseSense;
 class vtkVolume;
 
 /// Shows the output of a style as a volume, as an isosurface, or on three slice planes.
@@ -62,6 +64,8 @@ private:
   vtkNew<vtkVolume> Volume;
   vtkNew<vtkOpenGLGPUVolumeRayCastMapper> Mapper;
   vtkNew<vtkFlyingEdges3D> Surface;
+  vtkNew<vtkReverseSense> ReversedSurface;
+  vtkNew<vtkPolyDataMapper> SurfaceMapper;
   vtkNew<vtkActor> SurfaceActor;
   std::array<vtkNew<vtkImageSlice>, 3> Slices;
   std::array<vtkNew<vtkImageSliceMapper>, 3> SliceMappers;

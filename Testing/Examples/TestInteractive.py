@@ -116,3 +116,15 @@ call(sys.executable, script, path("ball.nii"), path("python.log"), path("python.
 counts = count_events("python.xml")
 for name in ("Model", "BeginGrab", "Hold", "Cut"):
     assert counts[name] == 1, counts
+
+# The isosurface of a volume whose axes are left-handed is lit.
+WindowEvents().keys("id").wait(2).write(path("surface.log"))
+lit = []
+for name, spacing in (("plain", 1.0), ("mirrored", -1.0)):
+    ball.SetSpacing(1.0, 1.0, spacing)
+    write_vti(ball, path(name + ".vti"))
+    call(program, path(name + ".vti"), "--size", "200,200", "--replay", path("surface.log"),
+         "--screenshot", path(name + ".png"))
+    picture = read_picture(path(name + ".png")).astype(int)
+    lit.append((picture[..., 0] > picture[..., 2] + 15).mean())
+assert lit[0] > 0.1 and abs(lit[1] - lit[0]) < 0.02, lit

@@ -632,6 +632,50 @@ TEST(DeformVolumeInteractorStyle, Tools)
   CheckTools(Session::FINITE_ELEMENTS);
 }
 
+// With negative spacings, the same tissue is visible at the same positions, and is cut by the same
+// sheet. The mapper gets positive spacings, and the user matrix has the signs.
+TEST(DeformVolumeInteractorStyle, NegativeSpacing)
+{
+  const auto reversed = MakeBall(); // the ball is symmetric
+  reversed->SetSpacing(-1.0, -1.0, -1.0);
+  reversed->SetOrigin(Box[0] + Box[1], Box[2] + Box[3], Box[4] + Box[5]);
+  std::vector<std::vector<double>> sheets;
+  for (const auto& volume : { MakeBall(), reversed })
+  {
+    Viewer viewer(volume);
+    EXPECT_EQ(FindHeight(viewer, 3.0, 4.0), 17.0);
+    vtkImageData* shown = viewer.Object->GetShownImage();
+    for (const vtkIdType id : { vtkIdType(0), vtkIdType(123), shown->GetNumberOfPoints() - 1 })
+    {
+      double point[4] = { 0.0, 0.0, 0.0, 1.0 };
+      shown->GetPoint(id, point);
+      viewer.VolumeObject->GetUserMatrix()->MultiplyPoint(point, point);
+      EXPECT_LT(glm::length(glm::dvec3(point[0], point[1], point[2]) -
+                  GetPoint(viewer.Object->GetOutput(), id)),
+        1e-9);
+    }
+    EXPECT_EQ(*std::min_element(shown->GetSpacing(), shown->GetSpacing() + 3), 1.0);
+    viewer.Replay(Viewer::Key('c') + Viewer::Mouse("LeftButtonPressEvent", 11.0, 12.0) +
+      Viewer::Mouse("MouseMoveEvent", 14.0, 15.0) +
+      Viewer::Mouse("LeftButtonReleaseEvent", 14.0, 15.0) + Viewer::Timer());
+    EXPECT_TRUE(viewer.SessionObject->SaveSession(GetFileName()));
+    for (const Event& event : ReadEvents(GetFileName()))
+    {
+      if (event.Name == "Cut")
+      {
+        sheets.push_back(event.Numbers);
+      }
+    }
+    EXPECT_TRUE(!viewer.Errors->GetError() && !viewer.SessionErrors->GetError());
+  }
+  ASSERT_EQ(sheets.size(), 2U);
+  ASSERT_EQ(sheets[0].size(), sheets[1].size());
+  for (std::size_t i = 0; i < sheets[0].size(); ++i)
+  {
+    EXPECT_LT(std::abs(sheets[0][i] - sheets[1][i]), 1e-7);
+  }
+}
+
 // The handles after undo, and after failed events.
 TEST(DeformVolumeInteractorStyle, Handles)
 {

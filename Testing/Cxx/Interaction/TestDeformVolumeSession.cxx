@@ -414,6 +414,62 @@ TEST(DeformVolumeSession, Recovery)
   EXPECT_EQ(one.TakeError(), "");
 }
 
+// A position outside a rotated volume, but within its bounds, cannot be grabbed, and the other
+// handles stay. A position a little outside holds the tissue at the border.
+TEST(DeformVolumeSession, ObliqueVolume)
+{
+  const auto volume = MakeVolume(Box);
+  SetObliqueDirection(volume);
+  const auto getWorld = [&](const glm::dvec3& index)
+  {
+    glm::dvec3 position;
+    volume->TransformContinuousIndexToPhysicalPoint(&index.x, &position.x);
+    return position;
+  };
+  Tested one(volume);
+  Session* session = one.Object;
+  session->ChangeModel(Session::CHAIN_MAIL);
+  const glm::dvec3 outside = getWorld({ Box[0] - 0.4, 10, 18.7 });
+  const glm::dvec3 border = getWorld({ Box[0], 10, 18 });
+  const int pin = session->Pin(outside.x, outside.y, outside.z);
+  const glm::dvec3 rest = getWorld({ 15, 11, 9 });
+  const glm::dvec3 now = getWorld({ 17, 11, 9 });
+  const int grab = session->BeginGrab(rest.x, rest.y, rest.z);
+  session->MoveGrab(grab, now.x, now.y, now.z);
+  session->HoldGrab(grab);
+  one.Step();
+  const std::vector<ExpectedHandle> wanted = { { pin, border, border, false },
+    { grab, now, rest, false } };
+  EXPECT_EQ(one.TakeError(), "");
+  EXPECT_TRUE(HasHandles(session, wanted));
+
+  const double* bounds = volume->GetBounds();
+  session->BeginGrab(bounds[0] + 1.0, bounds[2] + 1.0, bounds[4] + 1.0);
+  one.ExpectError("outside the deformed volume");
+  EXPECT_TRUE(HasHandles(session, wanted));
+  EXPECT_EQ(session->GetNumberOfActions(), 3);
+}
+
+// Positions between voxels are grabbed exactly, and the body comes to rest.
+TEST(DeformVolumeSession, NegativeSpacing)
+{
+  auto volume = MakeImage(Box, { 1.0, 1.0, -1.0 });
+  AddScalars<short>(volume, "value", [](const glm::dvec3& p) { return p.x + 9.0 * p.z; });
+  for (const int model : { Session::CHAIN_MAIL, Session::FINITE_ELEMENTS })
+  {
+    Tested one(volume);
+    Session* session = one.Object;
+    session->ChangeModel(model);
+    const glm::dvec3 rest(10.3, 11.2, -8.6);
+    const int handle = session->BeginGrab(rest.x, rest.y, rest.z);
+    one.Step();
+    EXPECT_TRUE(HasHandles(session, { { handle, rest, rest, true } }));
+    session->MoveGrab(handle, 12.3, 11.2, -8.6);
+    one.Finish();
+    EXPECT_FALSE(session->GetIsBusy());
+  }
+}
+
 TEST(DeformVolumeSession, Models)
 {
   const auto volume = MakeVolume(Box);
