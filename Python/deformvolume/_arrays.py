@@ -10,7 +10,7 @@ from . import _structs
 
 
 def native(array, what: str) -> numpy.ndarray:
-    """Returns an array of a type that the library supports. Bool becomes uint8, and other byte orders are converted."""
+    """Returns an array of a type that the library supports, or of bool. Other byte orders are converted."""
     if isinstance(array, numpy.ma.MaskedArray):
         raise TypeError(
             f"{what} is a masked array. Give array.filled(value). Voxels of a volume can be left out with "
@@ -20,11 +20,9 @@ def native(array, what: str) -> numpy.ndarray:
     if hasattr(array, "dataobj"):  # an image of nibabel
         raise TypeError(f"{what} is a {type(array).__name__}. Give its values, numpy.asarray(image.dataobj).")
     array = numpy.asarray(array)
-    if array.dtype == numpy.bool_:
-        array = array.view(numpy.uint8)
     if not array.dtype.isnative:
         array = array.astype(array.dtype.newbyteorder("="))
-    if array.dtype.name not in _structs.TYPES:
+    if array.dtype != numpy.bool_ and array.dtype.name not in _structs.TYPES:
         raise TypeError(f"{what} has the type {array.dtype}. Give integers of 8 to 64 bits, float32, float64 or bool.")
     return array
 

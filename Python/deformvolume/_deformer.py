@@ -69,13 +69,13 @@ class Field:
     inverse: bool = False
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class Deformed:
     """The result of deform().
 
     Attributes:
-        arrays: the deformed arrays of the volume. Axes: x, y, z and, if there is one, the axis of components; in
-            Fortran order.
+        arrays: the deformed arrays of the volume, of the same types. Axes: x, y, z and, if there is one, the axis of
+            components; in Fortran order.
         affine: 4 x 4 matrix from an index of the output to world coordinates.
         coverage: bool, axes x, y, z: whether the deformed volume covers the voxel.
         rest_positions: float32, shape (nx, ny, nz, 3): rest position of the tissue at the voxel, in world coordinates.
@@ -104,6 +104,10 @@ class Deformed:
         """The first array."""
         return self.arrays[0]
 
+    def __repr__(self):
+        arrays = ", ".join(f"{array.dtype} {array.shape}" for array in self.arrays)
+        return f"<Deformed: {arrays}; counts={self.counts}, device={self.device!r}>"
+
 
 class DeformedPoints(NamedTuple):
     """The result of deform_points()."""
@@ -122,10 +126,11 @@ def _flag(value, what: str) -> int:
 
 
 def _warn(text: str) -> None:
-    """Warns about the line that has called this package."""
+    """Warns about the line that has called this package, or VTK or pyvista, which call the filter DeformVolume."""
     level = 2
     caller = sys._getframe(1)  # pylint: disable=protected-access
-    while caller is not None and os.path.dirname(caller.f_code.co_filename) == os.path.dirname(__file__):
+    packages = (__name__.partition(".")[0], "vtkmodules", "pyvista")
+    while caller is not None and str(caller.f_globals.get("__name__")).partition(".")[0] in packages:
         caller = caller.f_back
         level += 1
     python_warnings.warn(text, DeformationWarning, stacklevel=level)
@@ -370,9 +375,9 @@ class Deformer:
 
         Args:
             arrays: one or several arrays on the same grid. Axes: x, y, z and, optionally, an axis of components. Types:
-                all integer types, float32, float64 and bool, which becomes uint8. Arrays in Fortran order are not
-                copied, and must not change until other arrays are set. For arrays with the axes z, y, x, such as
-                SimpleITK's, give array.T.
+                all integer types, float32, float64 and bool, whose result is also bool: interpolated as 0 and 1, and
+                rounded. Arrays in Fortran order are not copied, and must not change until other arrays are set. For
+                arrays with the axes z, y, x, such as SimpleITK's, give array.T.
             affine: 4 x 4 matrix from the index (i, j, k, 1) of a voxel to world coordinates.
             categorical: whether arrays hold labels, which are not interpolated; one value for all arrays, or one for
                 each.
@@ -419,7 +424,7 @@ class Deformer:
             struct.components = image.shape[3] if image.ndim == 4 else 1
             struct.categorical = _flag(is_label, "categorical")
             struct.background = float(value)
-            if math.isnan(struct.background) and image.dtype.kind in "iu":
+            if math.isnan(struct.background) and image.dtype.kind in "iub":
                 raise ValueError(f"The background is {value}, which an array of the type {image.dtype} cannot hold.")
         with self._locked():
             self._call("dv_set_volume", ctypes.byref(grid))
@@ -693,6 +698,10 @@ class Deformer:
             device = report.device.decode("utf-8", "replace") if report.device else ""
         if text:
             _warn(text)
+        for output in outputs:
+            if output.dtype == numpy.bool_:
+                # Cubic interpolation and the background give other numbers than 0 and 1.
+                numpy.not_equal(output.view(numpy.uint8), 0, out=output)
         origin = numpy.asarray(grid.origin[:])
         direction = numpy.asarray(grid.direction[:]).reshape(3, 3)
         first = numpy.asarray(grid.spacing[:]) * numpy.asarray(grid.extent[0::2])
@@ -700,9 +709,7 @@ class Deformer:
             arrays=[_arrays.from_image(output) for output in outputs],
             affine=_arrays.join_affine(origin + direction @ first, grid.spacing[:], direction),
             coverage=_arrays.from_image(coverage).view(numpy.bool_),
-            counts={
-                name: getattr(report, name) for name, _ in _structs.Report._fields_ if name.startswith("number_of_")
-            },
+            counts=report.counts(),
             device=device,
             **{name: None if array is None else _arrays.from_image(array) for name, array in extra.items()},
         )
@@ -748,12 +755,14 @@ class Deformer:
         Warns:
             DeformationWarning: points lie outside the deformation, or cells of the mesh are ignored.
         """
-        given = _arrays.vectors(points, None, "The array of points").astype(numpy.float64, copy=False)
+        vectors = _arrays.vectors(points, None, "The array of points")
+        given = vectors.astype(numpy.float64, copy=False)
         moved, valid = numpy.empty_like(given), numpy.empty(len(given), numpy.bool_)
         request = _structs.PointsRequest(
             number_of_points=len(given),
             points=given.ctypes.data,
             inverse=_flag(inverse, "inverse"),
+            were_floats=int(vectors.dtype == numpy.float32),
             moved=moved.ctypes.data,
             valid=valid.ctypes.data,
         )

@@ -107,6 +107,10 @@ class Report(_Structure):
         ("warnings", c_char_p),
     ]
 
+    def counts(self):
+        """Returns the numbers of the report as a dictionary."""
+        return {name: getattr(self, name) for name, _ in self._fields_ if name.startswith("number_of_")}
+
 
 class PointsRequest(_Structure):
     _fields_ = [
@@ -114,7 +118,7 @@ class PointsRequest(_Structure):
         ("number_of_points", c_int64),
         ("points", c_void_p),
         ("inverse", c_int32),
-        ("reserved", c_int32),
+        ("were_floats", c_int32),
         ("moved", c_void_p),
         ("valid", c_void_p),
         ("progress", PROGRESS),
@@ -157,8 +161,8 @@ _native.declare(
 
 
 def type_of(array) -> int:
-    """Returns the number of an array's element type (DV_INT8 and so on)."""
-    return TYPES.index(array.dtype.name)
+    """Returns the number of an array's element type (DV_INT8 and so on); that of uint8 for bool."""
+    return TYPES.index("uint8" if array.dtype.kind == "b" else array.dtype.name)
 
 
 def address(array):

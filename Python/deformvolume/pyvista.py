@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""`image.deformvolume.deform(mesh)` for pyvista's images. Importing this module registers it."""
+"""`image.deformvolume.deform(mesh)` for pyvista's images, which this module registers, and deform_points()."""
 
 from collections.abc import Iterable
 
+import numpy
 import pyvista
-from vtkmodules.vtkCommonDataModel import vtkDataObject
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPointSet
 
 from .vtk import DeformVolume
 
@@ -22,15 +23,22 @@ class DeformVolumeAccessor:
         """Deforms the image by a mesh or a displacement field.
 
         Args:
-            deformation: pyvista.UnstructuredGrid with displacements of its points, or pyvista.ImageData with vectors.
-            vectors: the name of the array; None: the active vectors, or the only array of three components.
+            deformation: a mesh (pyvista.UnstructuredGrid, StructuredGrid or RectilinearGrid) with displacements of its
+                points, or pyvista.ImageData with vectors.
+            vectors: the name of the array; None: the active vectors, or the only array of three components that is
+                neither normals nor of unsigned char.
             rest: the mesh at rest. The points of the deformation are then deformed positions.
             reference: an image with the grid of the output.
             categorical: names of arrays of labels, which are not interpolated.
             properties: properties of DeformVolume, such as OutsideMode=DeformVolume.KEEP.
 
         Returns:
-            pyvista.ImageData.
+            pyvista.ImageData: its extent begins at 0. Point arrays are deformed; those of bool become uint8, as VTK
+            has no bool. Cell arrays are left out, with a warning.
+
+        Warns:
+            deformvolume.DeformationWarning: as deformvolume.deform(), and if arrays are left out. Folds cause no
+                warning: use a filter DeformVolume, and see its GetNumberOfInvertedTetrahedra().
         """
         return deform(
             self._image,
@@ -43,29 +51,93 @@ class DeformVolumeAccessor:
         )
 
 
+def _check(**data):
+    """Raises a TypeError if an argument is not a data set."""
+    for what, given in data.items():
+        if not isinstance(given, vtkDataObject):
+            raise TypeError(f"{what} is a {type(given).__name__}. Give a data set of pyvista or VTK.")
+
+
+def _make_filter(deformation, vectors, rest):
+    """Returns a filter with this deformation."""
+    _check(deformation=deformation)
+    deformer = DeformVolume()
+    deformer.SetDeformationData(deformation)
+    if vectors is not None:
+        deformer.SetInputArrayToProcess(0, 1, 0, 0, vectors)
+    if rest is not None:
+        _check(rest=rest)
+        deformer.SetRestData(rest)
+    return deformer
+
+
 def deform(image, deformation, *, vectors=None, rest=None, reference=None, categorical=(), **properties):
     """Does the same as DeformVolumeAccessor.deform(), for versions of pyvista without accessors."""
-    for what, given in (("image", image), ("deformation", deformation), ("rest", rest), ("reference", reference)):
-        if given is not None and not isinstance(given, vtkDataObject):
-            raise TypeError(f"{what} is a {type(given).__name__}. Give a data set of pyvista or VTK.")
+    _check(image=image)
     if isinstance(categorical, str) or not isinstance(categorical, Iterable):
         raise TypeError(f"categorical is {categorical!r}. Give a list of names of arrays.")
     categorical = list(categorical)
     unknown = [name for name in categorical if name not in image.point_data]
     if unknown:
-        raise ValueError(f"The image has no point arrays {unknown}, which categorical names.")
-    deformer = DeformVolume()
+        of_cells = [name for name in unknown if name in image.cell_data]
+        advice = f" {of_cells} are cell arrays: image.cells_to_points() makes them point arrays." if of_cells else ""
+        raise ValueError(f"The image has no point arrays {unknown}, which categorical names.{advice}")
+    deformer = _make_filter(deformation, vectors, rest)
     deformer.SetInputDataObject(0, image)
-    deformer.SetDeformationData(deformation)
-    if vectors is not None:
-        deformer.SetInputArrayToProcess(0, 1, 0, 0, vectors)
-    if rest is not None:
-        deformer.SetRestData(rest)
     if reference is not None:
+        _check(reference=reference)
         deformer.SetReferenceData(reference)
     for name in categorical:
         deformer.AddCategoricalArray(name)
     for name, value in properties.items():
+        if not hasattr(deformer, f"Set{name}"):
+            raise TypeError(
+                f"DeformVolume has no property {name}. Properties have the names of the C++ class, such as "
+                "OutsideMode=DeformVolume.KEEP: see help(deformvolume.vtk.DeformVolume)."
+            )
         getattr(deformer, f"Set{name}")(value)
     deformer.Update()
-    return pyvista.wrap(deformer.GetOutputDataObject(0))
+    result = pyvista.wrap(deformer.GetOutputDataObject(0))
+    # Many functions of pyvista, and files of other formats, have no extent.
+    result.SetOrigin(result.GetPoint(0))
+    result.SetDimensions(result.GetDimensions())
+    return result
+
+
+def deform_points(
+    points,
+    deformation,
+    *,
+    vectors=None,
+    rest=None,
+    FieldIsInverse=False,
+    inverse=False,
+    outside="discard",
+    fade_distance=0.0,
+):
+    """Moves the points of a surface or another data set as deform() moves a volume, or back to rest.
+
+    Args:
+        points: pyvista.PolyData or another data set with points.
+        deformation, vectors, rest: see DeformVolumeAccessor.deform().
+        FieldIsInverse: the property of DeformVolume.
+        inverse, outside, fade_distance: see deformvolume.deform_points(). OutsideMode=DeformVolume.KEEP of deform() is
+            outside="keep" here.
+
+    Returns:
+        A copy of the data set with moved points. Active normals, which would no longer fit, are removed.
+
+    Warns:
+        deformvolume.DeformationWarning: points lie outside the deformation, and do not move.
+    """
+    if not isinstance(points, vtkPointSet):
+        raise TypeError(f"points is a {type(points).__name__}. Give a data set with points, such as pyvista.PolyData.")
+    deformer = _make_filter(deformation, vectors, rest)
+    deformer.SetFieldIsInverse(FieldIsInverse)
+    result = pyvista.wrap(points).copy()
+    moved = deformer._deform_points(result.points, inverse, outside, fade_distance).points
+    result.points = moved.astype(numpy.float32) if result.points.dtype == numpy.float32 else moved
+    for data in (result.GetPointData(), result.GetCellData()):
+        if data.GetNormals() is not None:
+            data.RemoveArray(data.GetNormals().GetName())
+    return result

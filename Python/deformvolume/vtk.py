@@ -7,13 +7,22 @@ DeformVolume: methods of other properties raise AttributeError.
 """
 
 import numbers
+import sys
 
 import numpy
 from vtkmodules.util.numpy_support import get_vtk_array_type, vtk_to_numpy
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
-from vtkmodules.vtkCommonCore import VTK_BIT, VTK_CHAR, vtkDataArray, vtkOutputWindow
-from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSetAttributes, vtkImageData, vtkUnstructuredGrid
+from vtkmodules.vtkCommonCore import VTK_BIT, VTK_CHAR, VTK_UNSIGNED_CHAR, vtkDataArray, vtkOutputWindow
+from vtkmodules.vtkCommonDataModel import (
+    vtkDataObject,
+    vtkDataSetAttributes,
+    vtkImageData,
+    vtkRectilinearGrid,
+    vtkStructuredGrid,
+    vtkUnstructuredGrid,
+)
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm, vtkStreamingDemandDrivenPipeline
+from vtkmodules.vtkFiltersCore import vtkAppendFilter
 
 from . import _deformer, _native
 
@@ -25,6 +34,9 @@ _HIDDEN_BY_EDIT = 128  # of vtkVolumeEditAlgorithm::BlankCells
 _NO_SOURCE = vtkDataSetAttributes.DUPLICATEPOINT | vtkDataSetAttributes.HIDDENPOINT
 _NO_CELL = vtkDataSetAttributes.DUPLICATECELL | vtkDataSetAttributes.HIDDENCELL
 _VALID = "vtkValidPointMask"
+# Arrays of ghosts and of edits are masks of the volume, and are not resampled.
+_POINT_MASKS = ("vtkGhostType", _VALID, "BoundaryDistance", "CutDistance")
+_CELL_MASKS = ("ActiveTetrahedra", "CutTetrahedra", "vtkGhostType")
 
 
 def _direction(image):
@@ -104,18 +116,36 @@ def _cell_types(mesh):
         return mesh.GetCellTypesArray()
 
 
+def _label_arrays(data, masks):
+    """Returns pairs of an array and its name in messages: all arrays of point or cell data but these masks."""
+    arrays = [data.GetAbstractArray(number) for number in range(data.GetNumberOfArrays())]
+    return [
+        (array, f'"{array.GetName()}"' if array.GetName() else f"number {number}")
+        for number, array in enumerate(arrays)
+        if array.GetName() not in masks
+    ]
+
+
+def _is_numeric(array):
+    # numpy_support copies arrays of bits, so that the library could not write their output.
+    return isinstance(array, vtkDataArray) and array.GetDataType() != VTK_BIT
+
+
 class DeformVolume(VTKPythonAlgorithmBase):
     """Deforms a volume by a tetrahedral mesh or a displacement field.
 
     Ports:
         0: vtkImageData, the volume. Ghost points, points whose vtkValidPointMask is 0, and tetrahedra that
             vtkCutVolume and vtkCarveVolume have switched off, are left out.
-        1, optional: vtkUnstructuredGrid with displacements of its points; or vtkImageData with vectors, a displacement
-            field. Without it the output is the volume itself. Cells of a mesh that vtkGhostType marks as hidden or
-            duplicate are left out, and cells with a point that it hides or whose vtkValidPointMask is 0.
+        1, optional: a mesh (vtkUnstructuredGrid, vtkStructuredGrid or vtkRectilinearGrid) with displacements of its
+            points; or vtkImageData with vectors, a displacement field. Without it the output is the volume itself.
+            Cells of a mesh that vtkGhostType marks as hidden or duplicate are left out, and cells with a point that it
+            hides or whose vtkValidPointMask is 0. If only displacements change between updates, a vtkUnstructuredGrid
+            is faster than the other meshes.
             SetInputArrayToProcess(0, 1, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, name) chooses the array of three
-            components, in world units. Default: the active vectors, or else the only array of three components.
-        2, optional: vtkUnstructuredGrid, the mesh at rest. The points of port 1 are then deformed positions.
+            components, in world units. Default: the active vectors, or else the only array of three components that
+            is neither normals nor of unsigned char, as colors are.
+        2, optional: the mesh at rest. The points of port 1 are then deformed positions.
         3, optional: vtkImageData with the grid of the output.
 
     Properties, each with Set and Get:
@@ -131,6 +161,9 @@ class DeformVolume(VTKPythonAlgorithmBase):
             Jacobian and FoldCount; off by default.
         Device: a name of deformvolume.devices(), a part of a name, "cpu", "gpu", or "" (default): the best device.
     AddCategoricalArray(name) and ClearCategoricalArrays() choose arrays of labels.
+
+    Folds cause no warning: see GetNumberOfInvertedTetrahedra(). Warnings are displayed as VTK's are. If pyvista is
+    imported, which hides those, they are Python warnings (deformvolume.DeformationWarning).
 
     The output is vtkImageData with the arrays of the volume and "vtkValidPointMask": 1 for voxels that the deformed
     volume covers. Updates read the whole inputs. If they have several time steps, the grid of the output must be the
@@ -158,6 +191,10 @@ class DeformVolume(VTKPythonAlgorithmBase):
             "Device": "",
         }
         self._categorical = set()
+        self._counts = {}
+        self._device = ""
+        self._warned = set()
+        self._converters = {}
         self._deformer = None
         self._stamps = {}
         self._error = None
@@ -189,8 +226,9 @@ class DeformVolume(VTKPythonAlgorithmBase):
             if name.endswith(ending) and isinstance(settings.get(stem), bool):
                 return lambda: self._set(stem, value)
         raise AttributeError(
-            f"DeformVolume has no {name}. The C++ class vtkDeformVolumeFilter may have it. That class is in the Python "
-            "package deformvolume_vtk, which must be built from source."
+            f"DeformVolume has no {name}. help(DeformVolume) lists its properties, such as OutsideMode. The C++ class "
+            "vtkDeformVolumeFilter may have it. That class is in the Python package deformvolume_vtk, which must be "
+            "built from source."
         )
 
     def _set(self, name, value):
@@ -198,7 +236,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
         accepted, wanted = {
             str: (str, "a text"),
             float: (numbers.Real, "a number"),
-            int: (numbers.Integral, "an integer"),
+            int: (numbers.Integral, "one of the constants of DeformVolume, such as DeformVolume.KEEP"),
             bool: ((numbers.Integral, numpy.bool_), "True or False"),
         }[type(before)]
         if not isinstance(value, accepted):
@@ -258,6 +296,22 @@ class DeformVolume(VTKPythonAlgorithmBase):
     def SetReferenceData(self, data):
         """Sets the data of port 3."""
         self.SetInputDataObject(3, data)
+
+    def GetNumberOfCoveredVoxels(self):
+        """Returns the number of voxels of the output that the deformed volume covers; 0 before the first update."""
+        return self._counts.get("number_of_covered_voxels", 0)
+
+    def GetNumberOfInvertedTetrahedra(self):
+        """Returns a number that is more than 0 if the deformation folds, so that parts of the volume are seen twice."""
+        return self._counts.get("number_of_inverted_tetrahedra", 0)
+
+    def GetNumberOfFlatTetrahedra(self):
+        """Returns the number of tetrahedra of the deformation mesh without volume, which are left out."""
+        return self._counts.get("number_of_flat_tetrahedra", 0)
+
+    def GetDeviceInUse(self):
+        """Returns the name of the device of the last update; "" before the first one."""
+        return self._device
 
     # ---- Pipeline
 
@@ -332,7 +386,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
 
     def FillInputPortInformation(self, port, info):
         """Sets the data type of each port."""
-        types = ("vtkImageData", "vtkDataSet", "vtkUnstructuredGrid", "vtkImageData")
+        types = ("vtkImageData", "vtkDataSet", "vtkDataSet", "vtkImageData")
         info.Set(vtkAlgorithm.INPUT_REQUIRED_DATA_TYPE(), types[port])
         if port > 0:
             info.Set(vtkAlgorithm.INPUT_IS_OPTIONAL(), 1)
@@ -379,6 +433,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
             output = self.GetOutputDataObject(0)
             if output is not None:
                 output.Initialize()
+            self._counts = {}
             self._error = error if self._is_updating else None
             return 0
         return 1
@@ -485,12 +540,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
         if image is None:
             raise ValueError("There is no volume on port 0. Set it with SetInputConnection().")
         data = image.GetPointData()
-        arrays = [data.GetArray(number) for number in range(data.GetNumberOfArrays())]
-        # Arrays of ghosts and of edits are masks of the volume, and are not resampled.
-        masks = ("vtkGhostType", "vtkValidPointMask", "BoundaryDistance", "CutDistance")
-        arrays = [array for array in arrays if array is not None and array.GetName() not in masks]
-        # numpy_support copies arrays of bits, so that the library could not write their output.
-        arrays = [array for array in arrays if array.GetDataType() != VTK_BIT]
+        arrays = [array for array, _ in _label_arrays(data, _POINT_MASKS) if _is_numeric(array)]
         if not arrays:
             raise ValueError(
                 "The volume on port 0 has no numeric point array. Connect a vtkImageData with point scalars."
@@ -498,9 +548,8 @@ class DeformVolume(VTKPythonAlgorithmBase):
         for number, array in enumerate(arrays):
             if array.GetName() and any(other.GetName() == array.GetName() for other in arrays[:number]):
                 raise ValueError(f'Two arrays of the volume are named "{array.GetName()}". Rename one of them.')
-        edits = [data.GetArray(name) for name in masks]
-        cells = image.GetCellData()
-        edits += [cells.GetArray(name) for name in ("ActiveTetrahedra", "CutTetrahedra", "vtkGhostType")]
+        edits = [data.GetArray(name) for name in _POINT_MASKS]
+        edits += [image.GetCellData().GetArray(name) for name in _CELL_MASKS]
         labels = [array.GetName() in self._categorical for array in arrays]
         background = self._settings["BackgroundValue"]
         self._arrays = arrays
@@ -563,12 +612,21 @@ class DeformVolume(VTKPythonAlgorithmBase):
             array = points.GetVectors()
             found = [points.GetArray(i) for i in range(points.GetNumberOfArrays())]
             found = [one for one in found if one is not None and one.GetNumberOfComponents() == 3]
-            if array is None and len(found) == 1:
-                array = found[0]
+            normals = points.GetNormals()
+            usable = [
+                one
+                for one in found
+                if one is not normals and one.GetName() != "Normals" and one.GetDataType() != VTK_UNSIGNED_CHAR
+            ]
+            if array is None and len(usable) == 1:
+                array = usable[0]
             if array is None:
+                names = ", ".join(f'"{one.GetName()}"' for one in found) or "none"
                 raise ValueError(
-                    f"The deformation on port 1 has no active vectors, and {len(found)} point arrays of three "
-                    "components. Set active vectors, or choose an array with SetInputArrayToProcess()."
+                    "The deformation on port 1 has no active vectors. Its point arrays of three components are: "
+                    f"{names}. Normals, and colors of unsigned char, are only used if they are chosen. Set active "
+                    "vectors, or choose an array with SetInputArrayToProcess(), or with vectors=NAME of "
+                    "deformvolume.pyvista."
                 )
         if array.GetNumberOfComponents() != 3:
             raise ValueError(
@@ -582,12 +640,16 @@ class DeformVolume(VTKPythonAlgorithmBase):
             return
         if isinstance(data, vtkImageData):
             self._prepare_field(data, rest)
-        elif isinstance(data, vtkUnstructuredGrid):
-            self._prepare_mesh(data, rest)
         else:
-            raise TypeError(
-                f"The deformation on port 1 is a {data.GetClassName()}. Give vtkUnstructuredGrid or vtkImageData."
-            )
+            self._prepare_mesh(data, rest)
+
+    def _deform_points(self, points, inverse, outside, fade_distance):
+        """Does the same as deformvolume.deform_points(), with the deformation on ports 1 and 2."""
+        self._deformer = _deformer.Deformer()
+        self._stamps = {}
+        self._prepare_deformation(self._input(1), self._input(2))
+        self._deformer.set_outside(outside, fade_distance)
+        return self._deformer.deform_points(points, inverse=inverse)
 
     def _prepare_field(self, data, rest):
         if rest is not None:
@@ -613,8 +675,24 @@ class DeformVolume(VTKPythonAlgorithmBase):
 
         self._send("deformation", (_stamp(data, array, ghosts, valid), inverse), send)
 
+    def _convert(self, grid, port):
+        """Returns a structured or rectilinear grid as vtkUnstructuredGrid, and a vtkUnstructuredGrid as it is."""
+        if isinstance(grid, vtkUnstructuredGrid):
+            return grid
+        if not isinstance(grid, (vtkStructuredGrid, vtkRectilinearGrid)):
+            raise TypeError(
+                f"Port {port} has a {grid.GetClassName()}. Give vtkUnstructuredGrid, vtkStructuredGrid, "
+                "vtkRectilinearGrid or, on port 1, vtkImageData."
+            )
+        converter = self._converters.setdefault(port, vtkAppendFilter())
+        converter.SetOutputPointsPrecision(vtkAlgorithm.DOUBLE_PRECISION)
+        converter.SetInputDataObject(grid)
+        converter.Update()
+        return converter.GetOutput()
+
     def _prepare_mesh(self, data, rest):
-        mesh = data if rest is None else rest
+        deformed = self._convert(data, 1)
+        mesh = deformed if rest is None else self._convert(rest, 2)
         if mesh.GetPoints() is None or mesh.GetNumberOfCells() == 0:
             raise ValueError(f"The mesh on port {1 if rest is None else 2} has no cells.")
         points = vtk_to_numpy(mesh.GetPoints().GetData())
@@ -651,10 +729,54 @@ class DeformVolume(VTKPythonAlgorithmBase):
             )
 
         def send_difference():
-            moved = vtk_to_numpy(data.GetPoints().GetData()).astype(numpy.float64)
+            moved = vtk_to_numpy(deformed.GetPoints().GetData()).astype(numpy.float64)
             self._deformer.set_displacements(moved - points)
 
-        self._send("displacements", _stamp(data.GetPoints(), data, mesh.GetPoints(), mesh), send_difference)
+        stamp = _stamp(deformed.GetPoints(), deformed, mesh.GetPoints(), mesh)
+        self._send("displacements", stamp, send_difference)
+
+    def _find_warnings(self, volume):
+        """Returns the warnings of arrays of the volume, as those of the C++ class."""
+        points, cells = volume.GetPointData(), volume.GetCellData()
+        warnings = set()
+
+        def warn(text, names, advice=""):
+            if names:
+                warnings.add(f"{text}: {', '.join(names)}.{advice}")
+
+        warn(
+            "Cell arrays of the volume are not resampled",
+            [label for _, label in _label_arrays(cells, _CELL_MASKS)],
+            " Convert them to point arrays to resample them.",
+        )
+        warn(
+            "These point arrays of the volume are left out, because their types cannot be resampled",
+            [
+                f"{label} ({array.GetDataTypeAsString()})"
+                for array, label in _label_arrays(points, _POINT_MASKS)
+                if not _is_numeric(array)
+            ],
+        )
+        warn(
+            "The volume has no point arrays with these names of categorical arrays",
+            sorted(self._categorical - {array.GetName() for array in self._arrays}),
+        )
+        for kind in ("vectors", "normals", "tensors"):
+            array = getattr(points, f"Get{kind.capitalize()}")()
+            if array is not None:
+                warnings.add(
+                    f'The active {kind} "{array.GetName() or ""}" of the volume are interpolated component by '
+                    "component, and not rotated with the deformation. If their directions matter, rotate them "
+                    "afterwards."
+                )
+        return warnings
+
+    def _warn(self, text):
+        if "pyvista" in sys.modules:
+            # pyvista replaces VTK's window by one that shows errors only.
+            _deformer._warn(text)
+        else:
+            vtkOutputWindow.GetInstance().DisplayWarningText(f"Warning: DeformVolume: {text}\n")
 
     def _deform(self, output):
         self._prepare()
@@ -709,13 +831,14 @@ class DeformVolume(VTKPythonAlgorithmBase):
                 if one is array:
                     output.GetPointData().SetActiveAttribute(number, role)
         output.GetFieldData().PassData(volume.GetFieldData())
+        self._counts = report.counts()
+        self._device = report.device.decode("utf-8", "replace")
         texts = [report.warnings.decode("utf-8", "replace")] if report.warnings else []
-        unknown = sorted(self._categorical - {array.GetName() for array in self._arrays})
-        if unknown:
-            names = ", ".join(unknown)
-            texts.append(f"The volume has no point arrays with these names of categorical arrays: {names}.")
+        warnings = self._find_warnings(volume)
+        texts += sorted(warnings - self._warned)
+        self._warned = warnings
         for text in texts:
-            vtkOutputWindow.GetInstance().DisplayWarningText(f"Warning: DeformVolume: {text}\n")
+            self._warn(text)
 
     def _report_progress(self, fraction):
         self.UpdateProgress(fraction)

@@ -20,8 +20,13 @@ import deformvolume as dv  # noqa: E402
 from deformvolume.vtk import DeformVolume  # noqa: E402
 import deformvolume_vtk  # noqa: E402
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy  # noqa: E402
-from vtkmodules.vtkCommonCore import vtkCharArray  # noqa: E402
-from vtkmodules.vtkCommonDataModel import vtkImageData, vtkUnstructuredGrid  # noqa: E402
+from vtkmodules.vtkCommonCore import vtkCharArray, vtkPoints  # noqa: E402
+from vtkmodules.vtkCommonDataModel import (  # noqa: E402
+    vtkImageData,
+    vtkRectilinearGrid,
+    vtkStructuredGrid,
+    vtkUnstructuredGrid,
+)
 from vtkmodules.vtkFiltersSources import vtkPlaneSource, vtkSphereSource  # noqa: E402
 
 from lattice import make_mesh  # noqa: E402
@@ -186,6 +191,26 @@ def test_pipelines():
     places = vtk_to_numpy(moved.GetPoints().GetData())
     places += vtk_to_numpy(mesh.GetPointData().GetVectors())
     compare("rest", image, moved, rest=mesh)
+    straight = vtkRectilinearGrid()
+    straight.SetDimensions(4, 5, 6)
+    for axis, number in zip(range(3), straight.GetDimensions()):
+        low, high = mesh.GetBounds()[2 * axis : 2 * axis + 2]
+        positions = numpy_to_vtk(np.linspace(low, high, number), deep=True)
+        getattr(straight, f"Set{'XYZ'[axis]}Coordinates")(positions)
+    vectors = numpy_to_vtk(random.normal(size=(straight.GetNumberOfPoints(), 3)), deep=True)
+    straight.GetPointData().SetVectors(vectors)
+    compare("rectilinear grid", image, straight)
+    curved = vtkStructuredGrid()
+    curved.SetDimensions(straight.GetDimensions())
+    points = np.array([straight.GetPoint(i) for i in range(straight.GetNumberOfPoints())], np.float32)
+    made = vtkPoints()
+    made.SetData(numpy_to_vtk(points + 0.1 * np.sin(points), deep=True))
+    curved.SetPoints(made)
+    curved.GetPointData().SetVectors(vectors)
+    compare("structured grid", image, curved)
+    curved.BlankCell(7)
+    curved.BlankPoint(3)
+    compare("structured grid with hidden cells", image, curved)
     compare("field", image, make_field(image, 6))
     compare("field, keep", image, make_field(image, 6), OutsideMode=2, FadeDistance=8.0)
     compare("inverse", image, make_field(image, 6), reference=make_reference(), FieldIsInverse=True)
@@ -301,7 +326,7 @@ def test_arrays():
         again = dv.deform(other, deformation, affine)
         assert again.array.tobytes() == result.arrays[0].tobytes()
     mask = arrays[1] > 2
-    assert dv.deform(mask, deformation, affine, categorical=True).array.dtype == np.uint8
+    assert dv.deform(mask, deformation, affine, categorical=True).array.dtype == bool
     # Points and cells of other types.
     for points, cells in ((deformation.points.astype(float), deformation.cells.astype(np.int32)),):
         again = dv.deform(first, dv.Mesh(points, cells, deformation.displacements.astype(float)), affine)

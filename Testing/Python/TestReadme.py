@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Checks the documents: targets of links exist, options in commands exist, and their Python code runs.
 TestReadme.py SOURCE PACKAGE, where PACKAGE is the folder that contains the package deformvolume."""
+import importlib.util
 import pathlib
 import re
 import sys
@@ -80,8 +81,14 @@ assert array is result.array and array.dtype == numpy.uint8
 # The front has moved back by 20 voxels in the middle, and not at the sides.
 front = result.coverage[90, :, 90].nonzero()[0].max(), result.coverage[1, :, 1].nonzero()[0].max()
 assert front[0] in range(195, 198) and front[1] in range(214, 217), front
-(of_readme,) = read_blocks("Python/README.md", "python")
+of_readme, of_pyvista = read_blocks("Python/README.md", "python")
 assert run(of_readme)["result"].coverage.sum() > 60**3
+if importlib.util.find_spec("pyvista"):
+    names = run(of_pyvista)
+    names["move"](0.2)
+    assert names["kept"].GetNumberOfCoveredVoxels() > 65**3
+else:
+    compile(of_pyvista, "README", "exec")
 
 # The C++ classes.
 (of_classes,) = (block for block in read_blocks("Documents/deformation.md", "python") if "import " in block)

@@ -258,6 +258,24 @@ class Misuse(unittest.TestCase):
         deformer.set_masks()
         self.assertLess(some, deformer.deform().coverage.sum())
 
+    # The result of bool can be an index, also with cubic interpolation, which overshoots, and any background.
+    def test_bool(self):
+        mask = numpy.random.RandomState(3).rand(10, 11, 12) > 0.5
+        field = deformvolume.Field(numpy.full((2, 2, 2, 3), 0.7), numpy.diag([30.0, 30.0, 30.0, 1.0]))
+        for options in ({}, {"categorical": True}, {"interpolation": "cubic", "background": 7.0}):
+            result = deformvolume.deform([mask, mask.view(numpy.uint8)], field, AFFINE, bounds="volume", **options)
+            self.assertEqual([array.dtype for array in result.arrays], [bool, numpy.uint8])
+            self.assertTrue(result.array.any() and not result.array.all())
+            numpy.testing.assert_array_equal(result.array.view(numpy.uint8), result.arrays[1] != 0)
+        self.assertEqual(result.arrays[1].max(), 7)
+        self.refuse(ValueError, "bool cannot hold", mask, background=numpy.nan)
+
+    def test_repr(self):
+        text = repr(deformvolume.deform(make_volume(), Mesh(POINTS, CELLS, MOVED), AFFINE, bounds="volume"))
+        self.assertIn("float32 (10, 11, 12)", text)
+        self.assertIn("'number_of_inverted_tetrahedra': 0", text)
+        self.assertLess(len(text), 500)
+
     # Any value other than 0 blanks a voxel.
     def test_blanked(self):
         deformer = deformvolume.Deformer()

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The filter for VTK pipelines. The tests are skipped without VTK."""
 
+import sys
 import unittest
+from unittest import mock
 
 import numpy
 
@@ -160,6 +162,8 @@ class Pipeline(unittest.TestCase):
         for name, value in {"FieldIsInverse": "False", "OutsideMode": "keep", "Device": None}.items():
             with self.assertRaisesRegex(TypeError, f"{name} is "):
                 getattr(other, "Set" + name)(value)
+        with self.assertRaisesRegex(TypeError, "such as DeformVolume.KEEP"):
+            other.SetOutsideMode("keep")
 
     # The volume and the mesh are sent once, and displacements in each update.
     def test_only_changes_are_sent(self):
@@ -393,6 +397,118 @@ class Pipeline(unittest.TestCase):
         for number in (0, 5, 215):
             numpy.testing.assert_allclose(output.GetPoint(number), grid.GetPoint(number), atol=1e-12)
 
+    def test_grids(self):
+        from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+        from vtkmodules.vtkCommonDataModel import vtkRectilinearGrid, vtkStructuredGrid
+        from vtkmodules.vtkFiltersCore import vtkAppendFilter
+
+        # Positions that float does not represent.
+        positions = numpy.array([-10.1, -3.3, 2.7, 10.1])
+        straight = vtkRectilinearGrid()
+        straight.SetDimensions(4, 4, 4)
+        for axis in "XYZ":
+            getattr(straight, f"Set{axis}Coordinates")(numpy_to_vtk(positions, deep=True))
+        append = vtkAppendFilter()
+        append.SetOutputPointsPrecision(1)
+        append.SetInputData(straight)
+        append.Update()
+        mesh = append.GetOutput()
+        curved = vtkStructuredGrid()
+        curved.SetDimensions(4, 4, 4)
+        curved.SetPoints(mesh.GetPoints())
+        moved = vtkStructuredGrid()
+        moved.DeepCopy(curved)
+        vectors = numpy.random.RandomState(1).normal(size=(64, 3))
+        vtk_to_numpy(moved.GetPoints().GetData())[:] += vectors
+        results = []
+        for grid in (mesh, straight, curved):
+            self.filter.SetDeformationData(add_vectors(grid, vectors))
+            self.filter.Update()
+            results.append(values(self.filter.GetOutput()).copy())
+        self.assertTrue(results[0].any())
+        numpy.testing.assert_array_equal(results[1], results[0])
+        numpy.testing.assert_array_equal(results[2], results[0])
+        self.filter.SetDeformationData(moved)
+        for rest in (curved, straight):
+            self.filter.SetRestData(rest)
+            self.filter.Update()
+            numpy.testing.assert_allclose(values(self.filter.GetOutput()), results[0], rtol=1e-4)
+        self.filter.SetRestData(None)
+        add_vectors(straight, 2 * vectors)
+        self.filter.SetDeformationData(straight)
+        self.filter.Update()
+        self.assertTrue((values(self.filter.GetOutput()) != results[0]).any())
+
+    def test_counts(self):
+        self.assertEqual(self.filter.GetNumberOfCoveredVoxels(), 0)
+        self.assertEqual(self.filter.GetDeviceInUse(), "")
+        mesh = make_mesh([0.0, 0.0, 0.0])
+        self.filter.SetDeformationData(mesh)
+        self.filter.Update()
+        self.assertEqual(self.filter.GetNumberOfCoveredVoxels(), 21**3)
+        self.assertEqual(self.filter.GetNumberOfInvertedTetrahedra(), 0)
+        self.assertEqual(self.filter.GetNumberOfFlatTetrahedra(), 0)
+        self.assertNotEqual(self.filter.GetDeviceInUse(), "")
+        vectors = numpy.zeros((8, 3))
+        vectors[0] = 30.0
+        add_vectors(mesh, vectors)
+        self.filter.Update()
+        self.assertGreater(self.filter.GetNumberOfInvertedTetrahedra(), 0)
+        self.expect_error("is not finite", make_mesh([numpy.nan, 0.0, 0.0]))
+        self.assertEqual(self.filter.GetNumberOfInvertedTetrahedra(), 0)
+        self.assertEqual(self.filter.GetNumberOfCoveredVoxels(), 0)
+        self.filter.SetDeformationData(make_field(self.SHIFT))
+        self.filter.Update()
+        self.assertEqual(self.filter.GetNumberOfInvertedTetrahedra(), 0)
+
+    # Each warning is displayed until the arrays change.
+    def test_warnings(self):
+        from vtkmodules.vtkCommonCore import vtkFloatArray, vtkOutputWindow, vtkStringArray, vtkStringOutputWindow
+
+        self.source.Update()
+        volume = self.source.GetOutput()
+        self.filter.SetInputData(volume)
+        mesh = make_mesh(self.SHIFT)
+        self.filter.SetDeformationData(mesh)
+
+        def make_array(kind, name, number):
+            array = kind()
+            array.SetName(name)
+            array.SetNumberOfTuples(number)
+            return array
+
+        def expect(*words):
+            window = vtkStringOutputWindow()
+            before = vtkOutputWindow.GetInstance()
+            vtkOutputWindow.SetInstance(window)
+            # With pyvista, warnings are not displayed by VTK.
+            with mock.patch.dict(sys.modules):
+                sys.modules.pop("pyvista", None)
+                self.filter.Modified()
+                self.filter.Update()
+            vtkOutputWindow.SetInstance(before)
+            lines = [line for line in window.GetOutput().splitlines() if line]
+            self.assertEqual(len(lines), len(words), lines)
+            for line, word in zip(lines, words):
+                self.assertIn(word, line)
+
+        expect()
+        volume.GetCellData().AddArray(make_array(vtkFloatArray, "c", volume.GetNumberOfCells()))
+        volume.GetPointData().AddArray(make_array(vtkStringArray, "s", volume.GetNumberOfPoints()))
+        volume.GetPointData().SetVectors(add_vectors(volume, numpy.ones((21**3, 3))).GetPointData().GetVectors())
+        self.filter.AddCategoricalArray("labels")
+        expect(
+            'Cell arrays of the volume are not resampled: "c". ',
+            'The active vectors "vectors" of the volume are interpolated',
+            "no point arrays with these names of categorical arrays: labels.",
+            'left out, because their types cannot be resampled: "s" (string).',
+        )
+        expect()
+        volume.GetCellData().AddArray(make_array(vtkFloatArray, "d", volume.GetNumberOfCells()))
+        expect('are not resampled: "c", "d". ')
+        volume.GetCellData().Initialize()
+        expect()
+
     # As in the C++ filter, arrays of bits are left out.
     def test_bits(self):
         from vtkmodules.vtkCommonCore import vtkBitArray
@@ -447,6 +563,22 @@ class Pipeline(unittest.TestCase):
         mesh = make_mesh(self.SHIFT)
         mesh.GetPointData().Initialize()
         self.expect_error("no active vectors", mesh)
+        # Colors and normals are not displacements, unless they are chosen.
+        for name, kind, are_normals in (("rgb", numpy.uint8, False), ("N", float, True), ("Normals", float, False)):
+            array = numpy_to_vtk(numpy.ones((8, 3), kind), deep=True)
+            array.SetName(name)
+            mesh = make_mesh(self.SHIFT)
+            mesh.GetPointData().AddArray(array)
+            mesh.GetPointData().SetActiveNormals(name if are_normals else None)
+            mesh.GetPointData().SetActiveVectors(None)
+            self.filter.SetDeformationData(mesh)
+            self.filter.Update()
+            self.expect_shift()
+            mesh.GetPointData().RemoveArray("vectors")
+            self.expect_error(f'three components are: "{name}"', mesh)
+            self.filter.SetInputArrayToProcess(0, 1, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, name)
+            self.filter.Update()
+            self.filter.SetInputArrayToProcess(0, 1, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, "")
         # The filter works again with a valid deformation.
         self.filter.SetDeformationData(make_mesh(self.SHIFT))
         self.filter.Update()

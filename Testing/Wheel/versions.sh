@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Tests the wheel in build/wheel, which Python/wheel.sh has built, with each installed version of Python,
-# with several versions of VTK, and with pyopencl. pip installs the packages from PyPI into a virtual
+# with several versions of VTK, and with pyvista and pyopencl. pip installs the packages from PyPI into a virtual
 # environment, which is removed if its tests pass. The wheel is also tested by pristine.sh with the Python
 # of later releases of Debian and the newest VTK. These systems are removed if their tests pass, too.
 # Prints a table.
@@ -49,7 +49,7 @@ try() # python, additional packages: the table says if they are not available fo
   else
     result=passed
     local test
-    for test in Testing/Wheel/test_{devices,deform,misuse,vtk}.py; do
+    for test in Testing/Wheel/test_{devices,deform,misuse,vtk,pyvista}.py; do
       # Drivers of this system are not used.
       env -u OCL_ICD_VENDORS -u OCL_ICD_FILENAMES OPENCL_VENDOR_PATH=/nowhere \
         "$venv/bin/python" "$test" >>"$venv.log" 2>&1 || result=failed
@@ -65,7 +65,7 @@ try() # python, additional packages: the table says if they are not available fo
 }
 
 for python in "${pythons[@]}"; do
-  for packages in "" "vtk==9.3.1" "vtk==9.6.2" "vtk==9.7.2" "pyopencl"; do
+  for packages in "" "vtk==9.3.1" "vtk==9.6.2" "vtk==9.7.2" "pyvista" "pyopencl"; do
     # shellcheck disable=SC2086 # none or one
     try "$python" $packages
   done
