@@ -4,6 +4,7 @@ Usage: TestFormats.py PROGRAM FOLDER"""
 import gzip
 import math
 import os
+import re
 import struct
 import sys
 
@@ -76,6 +77,34 @@ convert("mirrored.vti", "mirrored.mhd")
 same(convert("mirrored.mhd", "e.vti"), get_values(mirrored), get_matrix(mirrored))
 convert("mirrored.vti", "mirrored.nii.gz")
 same(convert("mirrored.nii.gz", "e.vti"), get_values(mirrored), get_matrix(mirrored))
+
+# Only .vti files have negative spacings. In the other formats, the direction of the axis is negated instead.
+negative = make_ball(spacing=(1.0, 1.5, -2.0), direction=turned)
+write_vti(negative, path("negative.vti"))
+for name in ("negative.mhd", "negative.nrrd", "negative.nii"):
+    convert("negative.vti", name)
+    same(convert(name, "e.vti"), get_values(negative), get_matrix(negative))
+with open(path("negative.nii"), "rb") as file:
+    assert struct.unpack_from("<3f", file.read(), 80) == (1.0, 1.5, 2.0), "the q-form needs positive spacings"
+
+# UTM coordinates: a warning states how far the single precision of a NIfTI file shifts voxels, here by 0.044 in y.
+far = make_ball(spacing=(0.2, 0.3, 0.4), origin=(500000.123, 5000000.456, 7.0), direction=turned)
+write_vti(far, path("far.vti"))
+small = ("--lattice", "3,3,3", "--push", "500000,5000000,7,0.00001,0,0,1000", "--bounds", "volume", "--quiet")
+_, errors = call(program, path("far.vti"), *small, "-o", path("far.nii"))
+with open(path("far.nii"), "rb") as file:
+    stored = numpy.reshape(struct.unpack_from("<12f", file.read(), 280), (3, 4))
+corners = numpy.array([[x, y, z, 1] for x in (0, 24) for y in (0, 21) for z in (0, 18)])
+shift = numpy.linalg.norm(corners @ (stored - get_matrix(far)).T, axis=1).max()
+found = re.findall(r"shifts voxels of \S+/far\.nii by up to (\S+), (\S+) times the smallest spacing", errors)
+# The numbers have three digits.
+assert found and numpy.allclose(numpy.array(found, float), [[shift, shift / 0.2]], rtol=5e-3), (errors, shift)
+for source, name in (("far.vti", "far.mhd"), ("far.vti", "far.nrrd"), ("in.vti", "near.nii")):
+    _, errors = call(program, path(source), *small, "-o", path(name))
+    assert "shifts voxels" not in errors, errors
+for name in ("far.mhd", "far.nrrd"):
+    wrong = numpy.abs(get_matrix(convert(name, "e.vti")) - get_matrix(far)).max()
+    assert wrong < 1e-8, wrong  # double precision
 
 # A volume whose extent does not start at 0 keeps its position in the world, also in formats whose indices start at 0.
 shifted = make_ball(direction=turned)

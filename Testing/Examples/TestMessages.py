@@ -125,6 +125,10 @@ def check_volumes():
         for arguments in ((*lattice, *push), ("--tetgen", *push), cut, field,
                           ("--model", "fem", *lattice, "--pull", "9,20,25,1,0,0")):
             fails(1, [path(name), expected], *arguments, volume=name)
+    for name in ("grid.vtr", "grid.vts", "mesh.vtu"):
+        with open(path(name), "ab"):
+            pass
+        fails(1, [path(name), "a volume is a", "Resample To Image"], *mesh, volume=name)
     # Without active scalars the first array is used.
     image = make_ball()
     image.GetPointData().SetActiveScalars(None)
@@ -145,6 +149,14 @@ def check_fields():
               "--displacement", "W")
         fails(1, ['no point array "U"', "no point arrays"], option, path("empty-field.vti"),
               "--displacement", "U")
+    parts = make_field()
+    for name in ("TX", "DISPX", "DISPY", "DISPZ"):
+        parts.GetPointData().AddArray(to_vtk(name, numpy.ones(27)))
+    write_vti(parts, path("parts.vti"))
+    for option, *displacement in (("--field",), ("--field", "--displacement", "DISP"),
+                                  ("--mesh", "--displacement", "DISPX")):
+        fails(1, ['"DISPX", "DISPY" and "DISPZ"', "Merge Vector Components"], option, path("parts.vti"),
+              *displacement)
     fails(1, "--points-are-deformed", "--mesh", path("field.vti"), "--displacement", "U",
           "--points-are-deformed")
     fails(1, "--rest", "--mesh", path("field.vti"), "--rest", path("mesh.vtu"))

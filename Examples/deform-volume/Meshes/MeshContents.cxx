@@ -121,6 +121,36 @@ std::string DescribeArrays(vtkPointData* arrays)
   return text.empty() ? "there are no point arrays" : "there are " + text;
 }
 
+bool IsScalar(vtkPointData* arrays, const std::string& name)
+{
+  vtkDataArray* const array = arrays->GetArray(name.c_str());
+  return array && array->GetNumberOfComponents() == 1;
+}
+
+// Returns how to join three arrays such as DISPX, DISPY and DISPZ to vectors; "" if there are none.
+std::string GetAdvice(vtkPointData* arrays)
+{
+  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+  {
+    const std::string x = arrays->GetArrayName(i) ? arrays->GetArrayName(i) : "";
+    for (std::size_t at = x.find_first_of("xX"); at != std::string::npos;
+         at = x.find_first_of("xX", at + 1))
+    {
+      std::string y = x;
+      std::string z = x;
+      y[at] = static_cast<char>(x[at] + 1);
+      z[at] = static_cast<char>(x[at] + 2);
+      if (IsScalar(arrays, x) && IsScalar(arrays, y) && IsScalar(arrays, z))
+      {
+        return ". If \"" + x + "\", \"" + y + "\" and \"" + z +
+          "\" are the displacements, join them to one array of three components, for example with "
+          "ParaView's filter Merge Vector Components or with numpy.column_stack";
+      }
+    }
+  }
+  return "";
+}
+
 // The beginning of a message about a part of a mesh.
 std::string MakeBeginning(const MeshPart& part, const std::string& path)
 {
@@ -138,13 +168,15 @@ void CheckArray(const MeshPart& part, const std::string& name, const std::string
       DescribeArrays(part.Data->GetPointData()) +
       (part.Data->GetCellData()->HasArray(name.c_str()) ? ", and a cell array \"" + name +
             "\", which ParaView's filter Cell Data to Point Data averages at points"
-                                                        : ""));
+                                                        : "") +
+      GetAdvice(part.Data->GetPointData()));
   }
   if (array->GetNumberOfComponents() != 3)
   {
     throw Failure(what + "the point array \"" + name + "\" has " +
       Count(array->GetNumberOfComponents(), "component", "components") +
-      ", but displacements have 3; " + DescribeArrays(part.Data->GetPointData()));
+      ", but displacements have 3; " + DescribeArrays(part.Data->GetPointData()) +
+      GetAdvice(part.Data->GetPointData()));
   }
 }
 
@@ -295,7 +327,7 @@ void CheckField(vtkImageData* field, const std::string& displacement, const std:
     throw Failure("cannot use " + path + ": " +
       (vectors == 0 ? "it has no point array with 3 components for the displacements"
                     : "name the array of displacements with --displacement") +
-      "; " + DescribeArrays(arrays));
+      "; " + DescribeArrays(arrays) + (vectors == 0 ? GetAdvice(arrays) : ""));
   }
 }
 

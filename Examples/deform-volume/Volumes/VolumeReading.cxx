@@ -36,9 +36,17 @@ vtkDataArray* FindNumbers(vtkDataSetAttributes* arrays)
 
 namespace
 {
-const char* const OtherFiles = HasITK
-  ? ". Convert it to one of these, for example with 3D Slicer, or mri_convert for .mgz"
-  : ". This program was built without ITK, which reads other formats";
+// Returns how to convert a file of another format.
+std::string GetConversion(const std::string& path)
+{
+  if (HasSuffix(path, { ".vtr", ".vts", ".vtu" }))
+  {
+    return "ParaView's filter Resample To Image makes an image of a grid; save that as .vti "
+           "(File > Save Data)";
+  }
+  return HasITK ? "Convert it to one of these, for example with 3D Slicer, or mri_convert for .mgz"
+                : "This program was built without ITK, which reads other formats";
+}
 
 // Makes an image of the cells of another one: its points are the centers of the cells.
 vtkSmartPointer<vtkImageData> MakeImageOfCells(vtkImageData* image)
@@ -146,7 +154,8 @@ Volume ReadFile(
     return ReadNRRD(path, options, messages);
   }
 #endif
-  throw Failure("cannot read " + path + ": a volume is " + ReadFormats + OtherFiles);
+  throw Failure(
+    "cannot read " + path + ": a volume is " + ReadFormats + ". " + GetConversion(path));
 }
 }
 

@@ -12,6 +12,7 @@
 #endif
 
 #include <vtkDataArray.h>
+#include <vtkMath.h>
 #include <vtkNIFTIImageWriter.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
@@ -19,8 +20,11 @@
 #include <vtk_zlib.h>
 #include <vtksys/SystemTools.hxx>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <sstream>
 #include <vector>
 
 namespace
@@ -39,9 +43,18 @@ bool IsOfITK([[maybe_unused]] const std::string& path)
 #endif
 }
 
+// Returns the axes for all formats but .vti. Only .vti files have negative spacings: in the other
+// formats, the directions are negated instead.
 vtkSmartPointer<vtkMatrix4x4> GetAxesIn(const Volume& volume, WorldAxes axes)
 {
   vtkSmartPointer<vtkMatrix4x4> matrix = GetAxes(volume.Image);
+  for (int i = 0; i < 9; ++i)
+  {
+    if (volume.Image->GetSpacing()[i % 3] < 0.0)
+    {
+      matrix->SetElement(i / 3, i % 3, 0.0 - matrix->GetElement(i / 3, i % 3));
+    }
+  }
   if (volume.Axes != WorldAxes::Unknown && volume.Axes != axes)
   {
     FlipWorldAxes(matrix);
@@ -49,20 +62,68 @@ vtkSmartPointer<vtkMatrix4x4> GetAxesIn(const Volume& volume, WorldAxes axes)
   return matrix;
 }
 
-// Returns the same voxels with an extent that starts at 0, for formats without extents.
+// Returns the same voxels with an extent that starts at 0 and positive spacings, for the axes of
+// GetAxesIn.
 vtkSmartPointer<vtkImageData> MoveExtentToZero(vtkImageData* image)
 {
   auto moved = vtkSmartPointer<vtkImageData>::New();
   int dimensions[3];
   image->GetDimensions(dimensions);
   moved->SetDimensions(dimensions);
-  moved->SetSpacing(image->GetSpacing());
+  const double* const spacing = image->GetSpacing();
+  moved->SetSpacing(std::abs(spacing[0]), std::abs(spacing[1]), std::abs(spacing[2]));
   moved->GetPointData()->ShallowCopy(image->GetPointData());
   if (!moved->GetPointData()->GetScalars() && moved->GetPointData()->GetArray(0))
   {
     moved->GetPointData()->SetActiveScalars(moved->GetPointData()->GetArrayName(0));
   }
   return moved;
+}
+
+double FindRounding(double value)
+{
+  return static_cast<float>(value) - value;
+}
+
+// Returns how far from its position a corner voxel is at most, in a NIfTI file. Its header holds
+// the axes, times the spacing, in single precision.
+double FindRounding(vtkImageData* image, vtkMatrix4x4* axes)
+{
+  double farthest = 0.0;
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    double shift[3];
+    for (int row = 0; row < 3; ++row)
+    {
+      shift[row] = FindRounding(axes->GetElement(row, 3));
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const int index = (corner >> axis & 1) * (image->GetDimensions()[axis] - 1);
+        shift[row] += index * FindRounding(axes->GetElement(row, axis) * image->GetSpacing()[axis]);
+      }
+    }
+    farthest = std::max(farthest, vtkMath::Norm(shift));
+  }
+  return farthest;
+}
+
+void WarnOfRounding(
+  vtkImageData* image, vtkMatrix4x4* axes, const std::string& path, Messages& messages)
+{
+  constexpr double precisionOfResampling = 1.0 / 256.0; // in voxels
+  const double* const spacing = image->GetSpacing();
+  const double smallest = *std::min_element(spacing, spacing + 3);
+  const double rounding = FindRounding(image, axes);
+  if (rounding > precisionOfResampling * smallest)
+  {
+    std::ostringstream text;
+    text.precision(3);
+    text << "NIfTI files hold positions in single precision, which shifts voxels of " << path
+         << " by up to " << rounding << ", " << rounding / smallest
+         << " times the smallest spacing. Write " << (HasITK ? ".nrrd or .mhd" : ".vti")
+         << ", or subtract an offset from all coordinates.";
+    messages.DisplayWarningText(text.str().c_str());
+  }
 }
 
 template <typename Integer, typename Real>
@@ -160,6 +221,7 @@ void WriteNIfTI(
   const bool isCompressed = HasSuffix(path, { ".gz" });
   const std::string plain = isCompressed ? path + ".part.nii" : path;
   const auto axes = GetAxesIn(volume, WorldAxes::RightAnteriorSuperior);
+  WarnOfRounding(image, axes, path, messages);
   const NIfTIForms& forms = volume.Forms;
   const bool keepsForms = forms.SFormCode != 0 || forms.QFormCode != 0;
   vtkNew<vtkNIFTIImageHeader> header;
