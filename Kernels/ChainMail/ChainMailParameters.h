@@ -31,11 +31,7 @@
 // The result of a visit of a block: bits of the faces with changed voxels (-x, +x, -y, +y, -z, +z),
 // then bits of the systems that changed voxels, then the following flags.
 #define DEFORMVOLUME_CHANGED_SYSTEMS 6
-#define DEFORMVOLUME_UNFINISHED (1 << 12) // the block must be visited again
-#define DEFORMVOLUME_SAVED (1 << 13)      // the state of the block before the step is saved
-
-// The largest number of sweeps over a block in a visit.
-#define DEFORMVOLUME_MOST_SWEEPS 24
+#define DEFORMVOLUME_SAVED (1 << 12) // the state of the block before the step is saved
 
 // Indices in the array `shared`, which all blocks use. Its first six numbers are, for each system,
 // the largest distance by which voxels that do not yield would have to move.

@@ -137,11 +137,12 @@ INLINE int SweepRow(__local int8* bounds, __local int8* forward, __local int8* b
   return IsAny(bound < before);
 }
 
-// Sweeps over the rows until nothing changes. Returns false if that takes too many sweeps.
-INLINE int SweepBlock(__local int8* bounds, __local int8* forward, __local int8* backward,
+// Sweeps over the rows until nothing changes. Limits are not negative, so no shortest path visits a voxel twice, and the
+// sweeps end: at the latest after as many as the block has voxels.
+INLINE void SweepBlock(__local int8* bounds, __local int8* forward, __local int8* backward,
   int backwardAxis, __local int* changed)
 {
-  for (int sweep = 0; sweep < DEFORMVOLUME_MOST_SWEEPS; ++sweep)
+  for (int sweep = 0; sweep <= VOXELS; ++sweep)
   {
 #if SERIAL
     int isChanged = 0;
@@ -173,10 +174,9 @@ INLINE int SweepBlock(__local int8* bounds, __local int8* forward, __local int8*
 #endif
     if (!isChanged)
     {
-      return 1;
+      return;
     }
   }
-  return 0;
 }
 
 // Finds the limits of the links inside a block. Links of the last rows lead to other blocks and are not included.
@@ -290,11 +290,10 @@ __kernel void Propagate(__global int* displacements, __global uchar* flags,
       FindLimits(forward, backward, links, materials, limits, block, r, system);
     }
     BARRIER();
-    const int isFinished = SweepBlock(bounds, forward, backward, c, &changed);
+    SweepBlock(bounds, forward, backward, c, &changed);
     if (get_local_id(0) == 0)
     {
       changed = 0;
-      result |= isFinished ? 0 : DEFORMVOLUME_UNFINISHED | 1u << (DEFORMVOLUME_CHANGED_SYSTEMS + system);
     }
     BARRIER();
     FOR_ROWS(r)

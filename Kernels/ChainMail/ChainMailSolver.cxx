@@ -223,10 +223,6 @@ void ChainMailSolver::Propagate(ChainMailReport& report)
       {
         this->MarkSaved(tasks[i].Block);
       }
-      if (results[i] & DEFORMVOLUME_UNFINISHED)
-      {
-        this->Active.Add(tasks[i].Block, systems);
-      }
       this->Active.AddNeighbors(tasks[i].Block, results[i], systems);
     }
     this->State.Continue();

@@ -199,8 +199,8 @@ TEST(ChainMail, SeparatedBodiesNeverInteract)
   EXPECT_GT(still, 1000U);
 }
 
-// A rigid path that turns at each voxel. A sweep over a block advances along the path by one voxel
-// only, so the path takes more sweeps than one visit of the block has.
+// A path that turns at each voxel. A sweep over a block advances along the path by one voxel only.
+// If the path is rigid, all of it moves, and if it is soft, nothing but the handle does.
 TEST(ChainMail, LongPathsWithinABlock)
 {
   const Extent extent{ { 0, 8, 0, 8, 0, 8 } };
@@ -226,14 +226,23 @@ TEST(ChainMail, LongPathsWithinABlock)
     add(i + 1, i % 4 == 0 ? 7 : 0, i % 4 == 0 ? 0 : 7);
   }
   const std::vector<ChainMailHandle> handles{ MakeHandle({ { 0, 0, 7 } }, { { 0.25, 0, 0 } }) };
-  reference.Step(handles);
-  for (const std::size_t workGroupSize : { 0, 16 })
+  for (const bool isRigid : { true, false })
   {
-    Subject subject(extent, { { 1, 1, 1 } }, workGroupSize);
-    subject.Set(reference);
-    // Voxels that are not rigid yield by half a voxel or more, so only the path moves.
-    EXPECT_EQ(subject.Step(handles).NumberOfMovedVoxels, static_cast<std::int64_t>(length));
-    subject.ExpectEqual(reference);
+    if (!isRigid)
+    {
+      reference.Table[1] = { 0.5, 1.5, 0.5 };
+      reference.Reset();
+    }
+    reference.Step(handles);
+    for (const std::size_t workGroupSize : { 0, 16 })
+    {
+      Subject subject(extent, { { 1, 1, 1 } }, workGroupSize);
+      subject.Set(reference);
+      // Voxels that are not rigid yield by half a voxel or more, so only the path moves.
+      EXPECT_EQ(
+        subject.Step(handles).NumberOfMovedVoxels, isRigid ? static_cast<std::int64_t>(length) : 1);
+      subject.ExpectEqual(reference);
+    }
   }
 }
 
