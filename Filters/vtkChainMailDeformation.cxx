@@ -2,6 +2,7 @@
 #include "vtkChainMailDeformation.h"
 
 #include "ChainMailSession.h"
+#include "InputUpdate.h"
 #include "PieceRequest.h"
 #include "PipelineExecution.h"
 #include "ProgressReport.h"
@@ -159,6 +160,7 @@ int vtkChainMailDeformation::RequestInformation(
   constexpr int components = 3;
   vtkInformation* info = output->GetInformationObject(0);
   info->CopyEntry(input[0]->GetInformationObject(0), vtkDataObject::DIRECTION());
+  deformvolume::MergeTimes(this, 2, info);
   info->Remove(vtkDataObject::POINT_DATA_VECTOR());
   vtkDataObject::SetActiveAttributeInfo(info, vtkDataObject::FIELD_ASSOCIATION_POINTS,
     vtkDataSetAttributes::VECTORS, "Displacement", VTK_FLOAT, components, -1);
@@ -212,7 +214,8 @@ int vtkChainMailDeformation::RequestData(
     [&]
     {
       const deformvolume::ChainMailReport report = this->Internals->Session.Step(
-        vtkImageData::GetData(input[0]), vtkPointSet::GetData(input[1]), settings, request);
+        vtkImageData::GetData(input[0]), deformvolume::GetWrittenStamp(this, 0),
+        vtkPointSet::GetData(input[1]), settings, request);
       this->DeviceInUse = this->Internals->Session.GetDevice();
       this->LargestViolation = report.LargestViolation;
       this->NumberOfSweeps = report.NumberOfSweeps;

@@ -237,6 +237,11 @@ vtkSmartPointer<vtkPointSet> vtkDeformGeometryFilter::vtkInternals::Move(vtkPoin
     [&](vtkIdType first, const glm::dvec3* points, vtkIdType number)
     { std::copy_n(points, number, positions.begin() + first); },
     "Point", "point set on input port 0");
+  if (this->Map && this->MapIsOfMesh)
+  {
+    static_cast<deformvolume::MeshPointMap*>(this->Map.get())
+      ->SetPointsAreFloats(inputPoints->GetDataType() == VTK_FLOAT);
+  }
   const vtkSmartPointer<vtkDataArray> moved = deformvolume::MakeVectors(inputPoints, count);
   const std::vector<TransformedArray> arrays =
     deformvolume::FindTransformed(input, this->Self->TransformAllInputVectors);

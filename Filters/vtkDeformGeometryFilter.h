@@ -42,8 +42,8 @@
  *
  * @par The map:
  * - Mesh: a point follows the tetrahedron that contains it, of several the one with the lowest
- *   index. Points nearer to the mesh than 1e-6 of its size (the diagonal of its bounds plus its
- *   largest coordinate) are treated as inside.
+ *   index. Points nearer to the mesh than 1e-6 of the diagonal of its bounds are treated as inside.
+ *   For points of type float, their rounding is added: 2^-23 of the largest coordinate of the mesh.
  * - Field: trilinear between the points of the field. Points outside it by at most 1/1000 of a cell
  *   are treated as on its border. Points whose interpolation needs a hidden point are outside.
  * - With Inverse (or without, if FieldIsInverse is on), several points at rest may belong to one

@@ -287,9 +287,10 @@ public:
 
   ///@{
   /**
-   * Set/Get whether the output has a point array "RestPosition" (float, three components): the
-   * world coordinates at rest of the tissue at a voxel. They are the exact inverse of the
-   * deformation. Default: off.
+   * Set/Get whether the output has a point array "RestPosition" (three components): the world
+   * coordinates at rest of the tissue at a voxel. They are the exact inverse of the deformation.
+   * Their type is float, or double if a coordinate of the volume is over 16,384 times the spacing.
+   * Default: off.
    */
   vtkSetMacro(GenerateRestPositions, bool);
   vtkGetMacro(GenerateRestPositions, bool);

@@ -5,6 +5,7 @@
 #include "ElasticSession.h"
 #include "ElasticSimulation.h"
 #include "Error.h"
+#include "InputUpdate.h"
 #include "MaterialPresets.h"
 #include "PieceRequest.h"
 #include "PipelineExecution.h"
@@ -183,28 +184,15 @@ int vtkElasticDeformation::FillInputPortInformation(int port, vtkInformation* in
 }
 
 int vtkElasticDeformation::RequestInformation(
-  vtkInformation*, vtkInformationVector** input, vtkInformationVector* outputVector)
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
   vtkInformation* output = outputVector->GetInformationObject(0);
   output->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
-  if (HasTimes(input[0]->GetInformationObject(0)))
-  {
-    return 1; // the executive has copied them to the output
-  }
-  vtkInformation* handles = input[1]->GetInformationObject(0);
-  if (HasTimes(handles))
-  {
-    output->CopyEntry(handles, Pipeline::TIME_STEPS());
-    output->CopyEntry(handles, Pipeline::TIME_RANGE());
-  }
-  else if (this->EndTime > 0.0)
+  deformvolume::MergeTimes(this, 3, output);
+  if (!HasTimes(output) && this->EndTime > 0.0)
   {
     const double range[2] = { 0.0, this->EndTime };
     output->Set(Pipeline::TIME_RANGE(), range, 2);
-  }
-  else
-  {
-    output->Remove(Pipeline::TIME_RANGE());
   }
   return 1;
 }
@@ -262,7 +250,8 @@ void vtkElasticDeformation::Execute(
   ElasticSimulation& simulation = this->PrepareSimulation();
   settings.IsQuadratic = simulation.IsQuadratic();
   deformvolume::ProgressReport progress(this);
-  if (session.Update(simulation, grid, settings, [&] { return progress.Report(0.0); }))
+  if (session.Update(simulation, grid, deformvolume::GetWrittenStamp(this, 0), settings,
+        [&] { return progress.Report(0.0); }))
   {
     vtkWarningMacro(
       "The simulation starts again from rest, because the points, the cells or the unit of length "

@@ -4,6 +4,7 @@
 #include "BodyReading.h"
 #include "DeformationMesh.h"
 #include "Error.h"
+#include "InputUpdate.h"
 #include "MaskArray.h"
 #include "MaterialPresets.h"
 #include "MaterialTable.h"
@@ -167,6 +168,13 @@ int vtkMaterialFromVolume::FillInputPortInformation(int port, vtkInformation* in
 {
   info->Set(
     vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkUnstructuredGrid" : "vtkImageData");
+  return 1;
+}
+
+int vtkMaterialFromVolume::RequestInformation(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* output)
+{
+  deformvolume::MergeTimes(this, 2, output->GetInformationObject(0));
   return 1;
 }
 

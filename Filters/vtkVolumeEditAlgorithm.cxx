@@ -4,6 +4,7 @@
 #include "vtkVolumeEditAlgorithmInternals.h"
 
 #include "FiveTetrahedra.h"
+#include "InputUpdate.h"
 #include "MaskArray.h"
 #include "OutsideMode.h"
 #include "PieceRequest.h"
@@ -79,8 +80,8 @@ void HideEditedCells(vtkImageData* image)
 //------------------------------------------------------------------------------
 bool vtkVolumeEditAlgorithm::vtkEdits::SetVolume(vtkInformationVector** input)
 {
-  const bool isNew =
-    this->Editor.SetVolume(vtkImageData::GetData(input[0]), input[0]->GetInformationObject(0));
+  const bool isNew = this->Editor.SetVolume(vtkImageData::GetData(input[0]),
+    input[0]->GetInformationObject(0), deformvolume::GetWrittenStamp(this->Self, 0));
   if (isNew)
   {
     this->Tool.Restart();
@@ -213,6 +214,7 @@ int vtkVolumeEditAlgorithm::RequestInformation(
   // and no deformation is connected.
   output->GetInformationObject(0)->CopyEntry(
     input[0]->GetInformationObject(0), vtkDataObject::DIRECTION());
+  deformvolume::MergeTimes(this, 4, output->GetInformationObject(0));
   return 1;
 }
 

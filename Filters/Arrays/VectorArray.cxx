@@ -219,7 +219,9 @@ vtkDataArray* FindVectors(vtkDataSet* dataSet)
   for (int i = 0; i < pointData->GetNumberOfArrays(); ++i)
   {
     vtkDataArray* array = pointData->GetArray(i);
-    if (array && array->GetNumberOfComponents() == 3)
+    // Colors and normals are no displacements.
+    if (array && array->GetNumberOfComponents() == 3 && array != pointData->GetNormals() &&
+      array->GetDataType() != VTK_UNSIGNED_CHAR)
     {
       if (found)
       {

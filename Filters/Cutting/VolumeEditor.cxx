@@ -93,22 +93,24 @@ Stamp GetCutStamp(vtkImageData* volume)
 
 } // namespace
 
-bool VolumeEditor::SetVolume(vtkImageData* volume, vtkInformation* info)
+bool VolumeEditor::SetVolume(
+  vtkImageData* volume, vtkInformation* info, const Stamp::value_type& written)
 {
   const ImageGeometry geometry = deformvolume::GetGeometry(volume);
   CheckVolume(geometry);
   ByteArray* base = FindMask(
     volume->GetCellData(), ActiveTetrahedraName, volume->GetNumberOfCells(), "cell", "volume");
   const unsigned char* bytes = base ? base->GetPointer(0) : nullptr;
-  const Stamp stamp{ { base, base ? base->GetMTime() : 0 }, { bytes, 0 } };
+  const Stamp stamp{ { base, base ? base->GetMTime() : 0 }, { bytes, 0 }, written };
   vtkAbstractArray* distances = volume->GetPointData()->GetAbstractArray(BoundaryDistanceName);
-  const Stamp distancesStamp{ { distances, distances ? distances->GetMTime() : 0 } };
+  const Stamp distancesStamp{ { distances, distances ? distances->GetMTime() : 0 }, written };
   const bool isNew = !this->Mask || geometry != this->Geometry;
   if (distancesStamp != this->DistancesStamp)
   {
     FindBoundaryDistances(volume); // throws if they cannot be used
   }
-  const Stamp cutStamp = GetCutStamp(volume);
+  Stamp cutStamp = GetCutStamp(volume);
+  cutStamp.push_back(written);
   if (cutStamp != this->CutStamp)
   {
     FindCut(volume); // throws if it cannot be used
@@ -134,7 +136,8 @@ bool VolumeEditor::SetVolume(vtkImageData* volume, vtkInformation* info)
   if (isNew || stamp != this->BaseStamp)
   {
     std::optional<PointRanges> changes;
-    if (base && this->BaseStamp.size() == stamp.size() && this->BaseStamp[1] == stamp[1])
+    if (base && this->BaseStamp.size() == stamp.size() &&
+      std::equal(stamp.begin() + 1, stamp.end(), this->BaseStamp.begin() + 1))
     {
       changes = FindWritten(base, this->BaseStamp[0].first, this->BaseStamp[0].second);
     }

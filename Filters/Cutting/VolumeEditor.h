@@ -9,6 +9,7 @@
 #include "MappingCache.h"
 #include "MaskEditor.h"
 #include "MeshGrids.h"
+#include "Stamp.h"
 #include "VertexPositions.h"
 #include "VolumeEdit.h"
 
@@ -34,9 +35,10 @@ class VolumeEditor
 public:
   /// Sets the volume. Edits switch off some of its active tetrahedra, and reduce its boundary
   /// distances. info: pipeline information of the volume, with the whole extent, of which the
-  /// volume may be a part. Returns whether the voxel grid has changed, in which case all edits are
-  /// removed. Throws Error, and changes nothing, if there is no volume or it cannot be used.
-  bool SetVolume(vtkImageData* volume, vtkInformation* info);
+  /// volume may be a part. written: see GetWrittenStamp(). Returns whether the voxel grid has
+  /// changed, in which case all edits are removed. Throws Error, and changes nothing, if there is
+  /// no volume or it cannot be used.
+  bool SetVolume(vtkImageData* volume, vtkInformation* info, const Stamp::value_type& written);
   const ImageGeometry& GetGeometry() const { return this->Geometry; }
 
   /// The positions of the vertices of the volume: at rest, or, if the source has a Shape, deformed.

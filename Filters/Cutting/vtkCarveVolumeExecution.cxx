@@ -4,6 +4,7 @@
 
 #include "Error.h"
 #include "ImplicitTool.h"
+#include "InputUpdate.h"
 #include "PipelineGeometry.h"
 
 #include "vtkDataArray.h"
@@ -122,8 +123,10 @@ void vtkCarveVolume::vtkInternals::Execute(vtkInformationVector** input)
   const deformvolume::LabelReader readLabels = MakeLabelReader(labels);
   this->Find(
     this->Label,
-    labels ? Body::Key{ { { labels, labels->GetMTime() } }, { rule, this->Self->Label } }
-           : Body::Key(),
+    labels
+      ? Body::Key{ { { labels, labels->GetMTime() }, deformvolume::GetWrittenStamp(this->Self, 0) },
+          { rule, this->Self->Label } }
+      : Body::Key(),
     [&] { return finder.CarveLabel(readLabels, this->Self->Label); }, changes);
   std::vector<glm::dvec3> stroke;
   for (const deformvolume::ToolPath::Position& position : edits.Tool.GetStroke())

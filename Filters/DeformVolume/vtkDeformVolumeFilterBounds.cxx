@@ -10,9 +10,12 @@
 #include "VectorBounds.h"
 #include "WorldBoxes.h"
 
+#include "vtkElasticDeformation.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationDoubleKey.h"
+#include "vtkInformationDoubleVectorKey.h"
+#include "vtkInformationKeyLookup.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
@@ -158,24 +161,54 @@ void vtkDeformVolumeFilter::vtkInternals::UpdateBoundsOfMesh(
 //------------------------------------------------------------------------------
 std::optional<double> vtkDeformVolumeFilter::vtkInternals::FindTime(vtkInformation* output) const
 {
-  if (output->Has(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP()))
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  if (output->Has(Pipeline::UPDATE_TIME_STEP()))
   {
-    return output->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP());
+    return output->Get(Pipeline::UPDATE_TIME_STEP());
   }
   std::optional<double> first;
   for (int port = 1; port < 3; ++port)
   {
-    if (this->Self->GetNumberOfInputConnections(port) > 0)
+    if (this->Self->GetNumberOfInputConnections(port) == 0)
     {
-      const std::vector<double> times =
-        deformvolume::GetTimes(this->Self->GetInputInformation(port, 0));
-      if (!times.empty())
-      {
-        first = std::min(first.value_or(times.front()), times.front());
-      }
+      continue;
+    }
+    vtkInformation* input = this->Self->GetInputInformation(port, 0);
+    vtkAlgorithm* source = this->Self->GetInputAlgorithm(port, 0);
+    // A source of continuous times, such as vtkTemporalInterpolator, may fail without a time. A
+    // reader has a current step, which a program may have chosen, and a simulation advances.
+    if (!input->Has(Pipeline::TIME_STEPS()) && input->Has(Pipeline::TIME_RANGE()) &&
+      !input->Has(Pipeline::UPDATE_TIME_STEP()) && !vtkElasticDeformation::SafeDownCast(source))
+    {
+      const double begin = input->Get(Pipeline::TIME_RANGE())[0];
+      first = std::min(first.value_or(begin), begin);
     }
   }
   return first;
+}
+
+//------------------------------------------------------------------------------
+std::optional<double> vtkDeformVolumeFilter::vtkInternals::FindTimeOfData() const
+{
+  auto* previous = vtkInformationDoubleKey::SafeDownCast(vtkInformationKeyLookup::Find(
+    "PREVIOUS_UPDATE_TIME_STEP", "vtkStreamingDemandDrivenPipeline"));
+  std::optional<double> time;
+  for (int port = 1; port < 3; ++port)
+  {
+    vtkDataObject* data = this->Self->GetNumberOfInputConnections(port) > 0
+      ? this->Self->GetInputDataObject(port, 0)
+      : nullptr;
+    if (data && data->GetInformation()->Has(vtkDataObject::DATA_TIME_STEP()))
+    {
+      time = data->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP());
+      vtkInformation* input = this->Self->GetInputInformation(port, 0);
+      if (previous && !input->Has(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP()))
+      {
+        input->Set(previous, *time); // a request of this time need not read the step again
+      }
+    }
+  }
+  return time;
 }
 
 //------------------------------------------------------------------------------
@@ -214,9 +247,9 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::GetDeformedBounds(
   this->State->KeyOfBounds = key;
   this->State->Bounds = bounds;
   this->State->TimesInBounds.clear();
-  if (time)
+  if (const std::optional<double> inBounds = time ? time : this->FindTimeOfData())
   {
-    this->State->TimesInBounds.insert(*time);
+    this->State->TimesInBounds.insert(*inBounds);
   }
   return bounds;
 }

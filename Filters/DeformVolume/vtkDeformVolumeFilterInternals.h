@@ -161,6 +161,8 @@ public:
       this->Self->GenerateFoldCount, this->DensityArrays };
   }
   /// Warns if density arrays lack a part of the volume, unless the last warning was the same.
+  /// Announces the type of the active scalars of the output if they are a density of integers.
+  void AnnounceScalars(vtkInformation* output) const;
   void WarnOfLoss(const deformvolume::ExtraArrays::Loss& loss);
 
   /// Warns if kept voxels are certainly torn or folded, if the deformation has changed. output: the
@@ -215,9 +217,11 @@ public:
 private:
   /// Returns false if there was nothing to free.
   bool ReleaseOtherStates();
-  /// The time for which bounds are computed first: the requested time, or the first time that the
-  /// inputs announce. Empty if there are no times.
+  /// The time for which bounds are computed first: the requested time, or the first time of inputs
+  /// that need a requested one. Empty: the inputs have no times, or choose one.
   std::optional<double> FindTime(vtkInformation* output) const;
+  /// The time of inputs that have chosen one. Empty if they have no times.
+  std::optional<double> FindTimeOfData() const;
   /// The bounds of the deformed volume, united over the times seen so far. Collective.
   deformvolume::IndexBounds GetDeformedBounds(const deformvolume::Ranks& ranks,
     const deformvolume::ImageGeometry& volume, vtkInformation* output);

@@ -11,12 +11,17 @@
 #include "VolumeArrays.h"
 #include "WorldBoxes.h"
 
+#include "vtkDataArray.h"
 #include "vtkDataObject.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkDemandDrivenPipeline.h"
 #include "vtkExecutive.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkInformationInformationVectorKey.h"
+#include "vtkInformationIntegerKey.h"
+#include "vtkInformationStringKey.h"
 #include "vtkInformationVector.h"
 #include "vtkLogger.h"
 #include "vtkNew.h"
@@ -170,6 +175,7 @@ int vtkDeformVolumeFilter::RequestInformation(
       deformvolume::DeviceSession::CheckDevice(this->Device);
     });
   deformvolume::MergeTimes(this, vtkInternals::ReferencePort, outInfo);
+  this->Internals->AnnounceScalars(outInfo);
 
   Extent whole;
   if (this->Internals->Reference)
@@ -199,6 +205,35 @@ int vtkDeformVolumeFilter::RequestInformation(
   // The requested time is known only after this pass.
   outInfo->Set(vtkStreamingDemandDrivenPipeline::TIME_DEPENDENT_INFORMATION(), 1);
   return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::AnnounceScalars(vtkInformation* output) const
+{
+  // The executive has copied this information from the volume.
+  vtkInformation* scalars = vtkDataObject::GetActiveFieldInformation(
+    output, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
+  if (!scalars || this->DensityArrays.empty())
+  {
+    return;
+  }
+  const char* name = scalars->Get(vtkDataObject::FIELD_NAME());
+  const auto volume = vtkImageData::SafeDownCast(this->Self->GetInputDataObject(0, 0));
+  vtkDataArray* array = volume ? volume->GetPointData()->GetScalars() : nullptr;
+  name = !name && array ? array->GetName() : name;
+  if (!name || this->DensityArrays.count(name) == 0 ||
+    scalars->Get(vtkDataObject::FIELD_ARRAY_TYPE()) == VTK_DOUBLE)
+  {
+    return;
+  }
+  const int components = scalars->Has(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS())
+    ? scalars->Get(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS())
+    : 1;
+  // The output shares the information with the volume.
+  vtkNew<vtkInformation> copy;
+  copy->CopyEntry(output, vtkDataObject::POINT_DATA_VECTOR(), 1);
+  output->CopyEntry(copy, vtkDataObject::POINT_DATA_VECTOR());
+  vtkDataObject::SetPointDataActiveScalarInfo(output, VTK_FLOAT, components);
 }
 
 //------------------------------------------------------------------------------
@@ -240,12 +275,6 @@ int vtkDeformVolumeFilter::RequestData(
 {
   vtkInformation* outInfo = output->GetInformationObject(0);
   vtkImageData* image = vtkImageData::GetData(outInfo);
-  if (this->Internals->Execution.HasFailed())
-  {
-    return 0; // RequestUpdateExtent() has failed, which the executive ignores
-  }
-  this->Internals->SelectState();
-  deformvolume::ExecutionState& state = *this->Internals->State;
   // If this execution fails, no results of an earlier one may remain.
   image->Initialize();
   const bool hasLast = this->Internals->FactorOfOutput == this->SamplingFactor;
@@ -255,6 +284,12 @@ int vtkDeformVolumeFilter::RequestData(
   this->NumberOfInvertedTetrahedra = this->NumberOfFlatTetrahedra = this->NumberOfCoveredVoxels = 0;
   const Extent nothing{ { 0, -1, 0, -1, 0, -1 } };
   std::copy(nothing.begin(), nothing.end(), this->ChangedExtent);
+  if (this->Internals->Execution.HasFailed())
+  {
+    return 0; // RequestUpdateExtent() has failed, which the executive ignores
+  }
+  this->Internals->SelectState();
+  deformvolume::ExecutionState& state = *this->Internals->State;
   const deformvolume::Ranks ranks;
   vtkImageData* volume = vtkImageData::GetData(input[0]);
   deformvolume::MappedVolume mapped;
@@ -293,9 +328,8 @@ int vtkDeformVolumeFilter::RequestData(
                   : deformvolume::DescribeSmallness(deformation.GetMeshAtRest(), geometry));
       this->Internals->ReleaseOldVolumes(arrays);
       worked = state.Volume.Update(volume, this->SamplingFactor, arrays);
-      ImageGeometry part = mapped.Whole;
-      part.PointExtent = mapped.Part;
-      state.Extra.Select(this->Internals->GetExtraArrays(), part, deformation, arrays);
+      state.Extra.Select(
+        this->Internals->GetExtraArrays(), mapped.Whole, mapped.Part, deformation, arrays);
       this->Internals->HadCut = deformvolume::HasCut(worked);
       if (this->Internals->HadCut && !mapped.IsWhole())
       {

@@ -25,9 +25,9 @@ namespace
 
 const char* const PINNED = "Pinned";
 
-Stamp GetStampOf(vtkDataArray* array)
+Stamp GetStampOf(vtkDataArray* array, const Stamp::value_type& written)
 {
-  return { { array, array ? array->GetMTime() : 0 } };
+  return { { array, array ? array->GetMTime() : 0 }, written };
 }
 
 // Null if there is no array of this name.
@@ -154,8 +154,8 @@ void ChainMailSession::MakeOutput(vtkIdType voxels)
   log->SetArray(this->Output.GetArray());
 }
 
-ChainMailReport ChainMailSession::Step(vtkImageData* volume, vtkPointSet* handles,
-  const ChainMailSettings& settings, ChainMailRequest request)
+ChainMailReport ChainMailSession::Step(vtkImageData* volume, const Stamp::value_type& written,
+  vtkPointSet* handles, const ChainMailSettings& settings, ChainMailRequest request)
 {
   // Check all inputs before anything is changed.
   const ImageGeometry geometry = GetGeometry(volume);
@@ -164,14 +164,15 @@ ChainMailReport ChainMailSession::Step(vtkImageData* volume, vtkPointSet* handle
     FindMaterialArray(volume, settings.ArrayName, !settings.Table.Ranges.empty());
   vtkDataArray* pins = FindVolumeArray(volume, PINNED);
   const bool isNew = !this->HasVolume || this->Geometry != geometry;
-  const Stamp maskStamp = GetMasksStamp(volume);
+  Stamp maskStamp = GetMasksStamp(volume);
+  maskStamp.push_back(written);
   std::optional<VolumeMasks> masks;
   if (isNew || maskStamp != this->StampOfMasks)
   {
     masks = ReadLinkMasks(volume);
   }
   request.Handles = ReadHandles(handles, geometry, settings.HandleRadius);
-  MaterialsKey key{ GetStampOf(materialArray), { 1.0 * settings.DefaultMaterial } };
+  MaterialsKey key{ GetStampOf(materialArray, written), { 1.0 * settings.DefaultMaterial } };
   std::vector<ChainMailMaterial> table;
   for (std::size_t i = 0; i < settings.Table.Exists.size(); ++i)
   {
@@ -206,7 +207,7 @@ ChainMailReport ChainMailSession::Step(vtkImageData* volume, vtkPointSet* handle
     materials = readMaterials();
   }
   ChainMailModel::CheckRequest(geometry.PointExtent, request);
-  const Stamp pinStamp = GetStampOf(pins);
+  const Stamp pinStamp = GetStampOf(pins, written);
   try
   {
     this->SetVolume(geometry, settings);

@@ -36,9 +36,10 @@ struct ChainMailSettings
 class ChainMailSession
 {
 public:
-  /// Executes a step. handles: null if there are none. Throws Error and Aborted. The displacements
-  /// do not change then, unless the device has failed.
-  ChainMailReport Step(vtkImageData* volume, vtkPointSet* handles,
+  /// Executes a step. written: stamp of the volume, see GetWrittenStamp(). handles: null if there
+  /// are none. Throws Error and Aborted. The displacements do not change then, unless the device
+  /// has failed.
+  ChainMailReport Step(vtkImageData* volume, const Stamp::value_type& written, vtkPointSet* handles,
     const ChainMailSettings& settings, ChainMailRequest request);
 
   /// Sets the geometry and the displacements of the last step in an image.

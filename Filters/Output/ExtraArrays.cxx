@@ -51,8 +51,8 @@ const signed char* GetCoverage(vtkImageData* output)
 
 } // namespace
 
-void ExtraArrays::Select(const ExtraArraysWish& wish, const ImageGeometry& volume,
-  const Deformation& deformation, std::vector<SourceArray>& arrays)
+void ExtraArrays::Select(const ExtraArraysWish& wish, const ImageGeometry& whole,
+  const Extent& part, const Deformation& deformation, std::vector<SourceArray>& arrays)
 {
   this->Wish = wish;
   this->Copies.erase(
@@ -92,7 +92,7 @@ void ExtraArrays::Select(const ExtraArraysWish& wish, const ImageGeometry& volum
   {
     checkName(POSITIONS);
     std::for_each(POSITION_AXES.begin(), POSITION_AXES.end(), checkName);
-    this->UpdateRestPositions(volume);
+    this->UpdateRestPositions(whole, part);
     for (const auto& positions : this->Positions)
     {
       arrays.push_back({ positions, NoIndex, false });
@@ -110,7 +110,7 @@ void ExtraArrays::Select(const ExtraArraysWish& wish, const ImageGeometry& volum
   {
     checkName(FOLD_COUNT);
   }
-  const vtkIdType voxels = GetNumberOfPoints(volume.PointExtent);
+  const vtkIdType voxels = GetNumberOfPoints(part);
   if (!wish.NeedsJacobian() || deformation.IsInverseField())
   {
     this->Jacobians = nullptr;
@@ -128,21 +128,24 @@ void ExtraArrays::Select(const ExtraArraysWish& wish, const ImageGeometry& volum
   }
 }
 
-void ExtraArrays::UpdateRestPositions(const ImageGeometry& volume)
+void ExtraArrays::UpdateRestPositions(const ImageGeometry& whole, const Extent& part)
 {
-  if (this->Positions[0] && this->PositionsGeometry == volume)
+  ImageGeometry volume = whole;
+  volume.PointExtent = part;
+  const glm::dvec3 origin = GetPositionsOrigin(whole);
+  if (this->Positions[0] && this->PositionsGeometry == volume && this->PositionsOrigin == origin)
   {
     return;
   }
-  const Extent& extent = volume.PointExtent;
   std::array<float*, 3> positions;
   for (std::size_t axis = 0; axis < 3; ++axis)
   {
-    this->Positions[axis] = MakeArray(POSITION_AXES[axis], 1, GetNumberOfPoints(extent));
+    this->Positions[axis] = MakeArray(POSITION_AXES[axis], 1, GetNumberOfPoints(part));
     positions[axis] = this->Positions[axis]->GetPointer(0);
   }
-  ComputeWorldPositions(volume, positions);
+  ComputeWorldPositions(volume, origin, positions);
   this->PositionsGeometry = volume;
+  this->PositionsOrigin = origin;
 }
 
 vtkDataArray* ExtraArrays::FindFloats(vtkDataArray* density)
@@ -208,7 +211,7 @@ ExtraArrays::Loss ExtraArrays::Finish(const Deformation& deformation, const Outs
 {
   if (this->Wish.RestPositions)
   {
-    this->FinishRestPositions(output);
+    this->FinishRestPositions(background, output);
   }
   if (this->Wish.FoldCount)
   {
@@ -245,23 +248,43 @@ void ExtraArrays::FinishFoldCounts(vtkImageData* output)
   this->FoldCounts = nullptr;
 }
 
-void ExtraArrays::FinishRestPositions(vtkImageData* output) const
+void ExtraArrays::FinishRestPositions(double background, vtkImageData* output) const
 {
   const vtkIdType voxels = output->GetNumberOfPoints();
-  auto positions = MakeArray(POSITIONS, 3, voxels);
-  float* joined = positions->GetPointer(0);
-  for (std::size_t axis = 0; axis < 3; ++axis)
+  const signed char* valid = GetCoverage(output);
+  const auto join = [&](auto* joined, const auto& convert)
   {
-    const auto* values = static_cast<const float*>(
-      output->GetPointData()->GetArray(POSITION_AXES[axis])->GetVoidPointer(0));
-    ParallelForParts(static_cast<std::size_t>(voxels), 1 << 16,
-      [&](std::size_t begin, std::size_t end)
-      {
-        for (std::size_t i = begin; i < end; ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      const auto* values = static_cast<const float*>(
+        output->GetPointData()->GetArray(POSITION_AXES[axis])->GetVoidPointer(0));
+      ParallelForParts(static_cast<std::size_t>(voxels), 1 << 16,
+        [&](std::size_t begin, std::size_t end)
         {
-          joined[3 * i + axis] = values[i];
-        }
-      });
+          for (std::size_t i = begin; i < end; ++i)
+          {
+            joined[3 * i + axis] = convert(values[i], i, static_cast<int>(axis));
+          }
+        });
+    }
+  };
+  vtkSmartPointer<vtkDataArray> positions;
+  if (this->PositionsOrigin == glm::dvec3(0.0))
+  {
+    const auto floats = MakeArray(POSITIONS, 3, voxels);
+    join(floats->GetPointer(0), [](float value, std::size_t, int) { return value; });
+    positions = floats;
+  }
+  else
+  {
+    const auto doubles = vtkSmartPointer<vtkDoubleArray>::New();
+    doubles->SetName(POSITIONS);
+    doubles->SetNumberOfComponents(3);
+    doubles->SetNumberOfTuples(voxels);
+    join(doubles->GetPointer(0),
+      [&](float value, std::size_t i, int axis)
+      { return valid[i] ? this->PositionsOrigin[axis] + static_cast<double>(value) : background; });
+    positions = doubles;
   }
   for (const char* name : POSITION_AXES)
   {

@@ -11,6 +11,8 @@
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
+#include <glm/vec3.hpp>
+
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -46,10 +48,10 @@ class ExtraArrays
 {
 public:
   /// Adds arrays to those that are resampled, and replaces densities of integers by arrays of
-  /// floats. volume: the geometry of the voxels of the arrays. Throws an Error if a density array
-  /// does not exist or is categorical, or if an array of the volume has the name of an array that
-  /// is made here.
-  void Select(const ExtraArraysWish& wish, const ImageGeometry& volume,
+  /// floats. whole: the geometry of the volume. part: its voxels that the arrays have. Throws an
+  /// Error if a density array does not exist or is categorical, or if an array of the volume has
+  /// the name of an array that is made here.
+  void Select(const ExtraArraysWish& wish, const ImageGeometry& whole, const Extent& part,
     const Deformation& deformation, std::vector<SourceArray>& arrays);
 
   /// Computes the Jacobians of the voxels if they were selected. mapping: is updated if it is
@@ -72,8 +74,8 @@ public:
   void Forget();
 
 private:
-  void UpdateRestPositions(const ImageGeometry& volume);
-  void FinishRestPositions(vtkImageData* output) const;
+  void UpdateRestPositions(const ImageGeometry& whole, const Extent& part);
+  void FinishRestPositions(double background, vtkImageData* output) const;
   void FinishFoldCounts(vtkImageData* output);
   Loss FinishDensities(const Deformation& deformation, const OutsideVoxels& outside,
     double background, vtkImageData* output);
@@ -81,6 +83,7 @@ private:
 
   ExtraArraysWish Wish;
   ImageGeometry PositionsGeometry;
+  glm::dvec3 PositionsOrigin{ 0.0 }; // see GetPositionsOrigin()
   // One array for each axis: kernels are faster with arrays of one component.
   std::array<vtkSmartPointer<vtkFloatArray>, 3> Positions;
   VoxelJacobians OfMesh;

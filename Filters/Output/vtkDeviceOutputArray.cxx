@@ -65,51 +65,8 @@ void vtkDeviceOutputArray<T>::SetOutput(
   this->Host = host;
   this->Output = output;
   this->Values = nullptr;
-  this->Ranges.clear();
   this->DataChanged();
   this->Modified();
-}
-
-//------------------------------------------------------------------------------
-template <typename T>
-std::shared_ptr<deformvolume::DeviceOutput> vtkDeviceOutputArray<T>::GetDeviceOutput() const
-{
-  const bool isThere = !this->Values && this->Output && this->Output->IsOnDevice();
-  return isThere && this->IsLikeHost() ? this->Output : nullptr;
-}
-
-//------------------------------------------------------------------------------
-template <typename T>
-bool vtkDeviceOutputArray<T>::FindRangeOnDevice(double range[2], int component, bool finite) const
-{
-  const std::shared_ptr<deformvolume::DeviceOutput> output = this->GetDeviceOutput();
-  const int wanted = this->NumberOfComponents == 1 ? 0 : component;
-  if (!output || wanted < 0 || wanted >= this->NumberOfComponents)
-  {
-    return false;
-  }
-  const std::lock_guard<std::mutex> lock(this->RangesMutex);
-  this->Ranges.resize(static_cast<std::size_t>(this->NumberOfComponents));
-  std::optional<deformvolume::DeviceOutput::Range>& found =
-    this->Ranges[static_cast<std::size_t>(wanted)];
-  try
-  {
-    if (!found)
-    {
-      found = output->FindRange(wanted);
-    }
-  }
-  catch (const std::exception&)
-  {
-    return false; // an access to the values reports the error
-  }
-  if (!found || (!finite && !found->AllFinite))
-  {
-    return false;
-  }
-  range[0] = found->Least;
-  range[1] = found->Largest;
-  return true;
 }
 
 //------------------------------------------------------------------------------
@@ -191,10 +148,6 @@ template <typename T>
 void vtkDeviceOutputArray<T>::ComputeRange(
   double range[2], int component, const unsigned char* ghosts, unsigned char ghostsToSkip)
 {
-  if (!ghosts && this->FindRangeOnDevice(range, component, false))
-  {
-    return;
-  }
   if (vtkDataArray* const host = this->GetHost())
   {
     host->GetRange(range, component, ghosts, ghostsToSkip);
@@ -210,10 +163,6 @@ template <typename T>
 void vtkDeviceOutputArray<T>::ComputeFiniteRange(
   double range[2], int component, const unsigned char* ghosts, unsigned char ghostsToSkip)
 {
-  if (!ghosts && this->FindRangeOnDevice(range, component, true))
-  {
-    return;
-  }
   if (vtkDataArray* const host = this->GetHost())
   {
     host->GetFiniteRange(range, component, ghosts, ghostsToSkip);
@@ -228,10 +177,6 @@ void vtkDeviceOutputArray<T>::ComputeFiniteRange(
 template <typename T>
 void vtkDeviceOutputArray<T>::ComputeRange(double range[2], int component)
 {
-  if (this->FindRangeOnDevice(range, component, false))
-  {
-    return;
-  }
   if (vtkDataArray* const host = this->GetHost())
   {
     host->GetRange(range, component);
@@ -246,10 +191,6 @@ void vtkDeviceOutputArray<T>::ComputeRange(double range[2], int component)
 template <typename T>
 void vtkDeviceOutputArray<T>::ComputeFiniteRange(double range[2], int component)
 {
-  if (this->FindRangeOnDevice(range, component, true))
-  {
-    return;
-  }
   if (vtkDataArray* const host = this->GetHost())
   {
     host->GetFiniteRange(range, component);

@@ -13,8 +13,6 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
-#include <optional>
-#include <vector>
 
 namespace deformvolume
 {
@@ -92,8 +90,7 @@ public:
 
 protected:
   ///@{
-  /// Mappers request ranges of each new output. Ranges of components are computed on the device.
-  /// Other ranges are computed by Host, which does not read the values as doubles.
+  /// Ranges are computed by Host, which does not read the values as doubles.
 #ifdef DEFORMVOLUME_RANGES_OF_GHOSTS
   // VTK calls these also for ranges without ghosts.
   void ComputeRange(double range[2], int component, const unsigned char* ghosts,
@@ -119,13 +116,8 @@ private:
   void operator=(const vtkDeviceOutputArray&) = delete;
 
   T* BringToHost() const;
-  /// The output on the device; null if the values are on the host.
-  std::shared_ptr<deformvolume::DeviceOutput> GetDeviceOutput() const;
   /// Whether Host has the size of this array.
   bool IsLikeHost() const;
-  /// Finds the range of a component on the device. Returns false if the range has to be computed on
-  /// the host.
-  bool FindRangeOnDevice(double range[2], int component, bool finite) const;
   /// Releases the output on the device.
   void Drop();
   /// Host with the values of this array; null if Host has another size.
@@ -138,9 +130,6 @@ private:
   mutable std::mutex Mutex;                  // locked at the first access
   mutable std::atomic<T*> Values{ nullptr }; // null: not yet downloaded
   std::shared_ptr<deformvolume::DeviceOutput> Output;
-  mutable std::mutex RangesMutex;
-  mutable std::vector<std::optional<deformvolume::DeviceOutput::Range>>
-    Ranges; // one for each component
 };
 
 #endif

@@ -91,9 +91,11 @@ void InterpolateInMiddle(
 } // namespace
 
 bool ElasticSession::Update(ElasticSimulation& simulation, vtkUnstructuredGrid* grid,
-  const BodySettings& settings, const std::function<bool()>& progress)
+  const Stamp::value_type& written, const BodySettings& settings,
+  const std::function<bool()>& progress)
 {
-  const Stamp stamp = GetBodyStamp(grid);
+  Stamp stamp = GetBodyStamp(grid);
+  stamp.push_back(written);
   this->Exists = this->Exists && &simulation == this->Simulation && simulation.HasBody();
   if (this->Exists && stamp == this->BodyStamp &&
     IsSame(settings.Material, this->Settings.Material) &&

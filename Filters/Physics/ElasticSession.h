@@ -24,9 +24,11 @@ class ElasticSession
 {
 public:
   /// Updates the body. Returns whether a simulated state is lost, by this call or by earlier ones
-  /// that failed or were aborted. progress: see ElasticSimulation::SetBody().
+  /// that failed or were aborted. written: stamp of the grid, see GetWrittenStamp(). progress: see
+  /// ElasticSimulation::SetBody().
   bool Update(ElasticSimulation& simulation, vtkUnstructuredGrid* grid,
-    const BodySettings& settings, const std::function<bool()>& progress);
+    const Stamp::value_type& written, const BodySettings& settings,
+    const std::function<bool()>& progress);
 
   /// Cuts the deformed body along a sheet, which is in units of the mesh. Does nothing if the sheet
   /// is the same as in the last call.

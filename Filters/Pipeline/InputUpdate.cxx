@@ -18,6 +18,7 @@
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTrivialProducer.h"
+#include "vtkVolumeEditAlgorithm.h"
 
 #include <array>
 #include <map>
@@ -89,6 +90,10 @@ vtkDataObject* Update(vtkAlgorithm* filter, int port, vtkInformation* request, c
 bool CanProduceParts(vtkAlgorithm* producer, int index, int depth)
 {
   constexpr int deepest = 1000;
+  if (vtkVolumeEditAlgorithm::SafeDownCast(producer))
+  {
+    return false; // edits belong to an extent, and are removed if another one is requested
+  }
   vtkInformation* information = producer->GetOutputInformation(index);
   if ((information && information->Has(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT())) ||
     vtkTrivialProducer::SafeDownCast(producer))
@@ -273,6 +278,16 @@ bool IsInMemory(vtkAlgorithm* filter, int port)
   vtkAlgorithmOutput* source =
     filter->GetNumberOfInputConnections(port) > 0 ? filter->GetInputConnection(port, 0) : nullptr;
   return source && vtkTrivialProducer::SafeDownCast(source->GetProducer());
+}
+
+std::pair<const void*, vtkMTimeType> GetWrittenStamp(vtkAlgorithm* filter, int port)
+{
+  if (!IsInMemory(filter, port))
+  {
+    return { nullptr, 0 };
+  }
+  vtkDataObject* data = filter->GetInputDataObject(port, 0);
+  return { data, data ? data->vtkObject::GetMTime() : 0 };
 }
 
 std::pair<const void*, vtkMTimeType> GetInputStamp(vtkAlgorithm* filter, int port)

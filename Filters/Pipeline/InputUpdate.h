@@ -50,11 +50,16 @@ Extent GetRequestedPart(vtkInformation* output);
 
 /// Whether all producers upstream of an image port can produce a part of the image. A source has to
 /// announce this with CAN_PRODUCE_SUB_EXTENT. Filters from images to images are assumed to be able
-/// to.
+/// to, except for cuts and carvings.
 bool CanProduceParts(vtkAlgorithm* filter, int port);
 
 /// Whether the data of a port were set directly, so that the whole data are in memory.
 bool IsInMemory(vtkAlgorithm* filter, int port);
+
+/// The data of a port, and the last modification time of the data object itself, if the data were
+/// set directly. A program that has written values of an array may have called Modified() of the
+/// data object only. Data that a source makes have the time 0: the source marks what it writes.
+std::pair<const void*, vtkMTimeType> GetWrittenStamp(vtkAlgorithm* filter, int port);
 
 /// The connection of an input, and the last modification time of the pipeline upstream of it.
 std::pair<const void*, vtkMTimeType> GetInputStamp(vtkAlgorithm* filter, int port);

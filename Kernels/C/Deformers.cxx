@@ -499,6 +499,7 @@ std::int32_t dv_deform_points(
       request.Count = static_cast<std::size_t>(points.number_of_points);
       request.Points = points.points;
       request.IsInverse = points.inverse != 0;
+      request.AreFloats = points.were_floats != 0;
       request.Moved = points.moved;
       request.Valid = reinterpret_cast<signed char*>(points.valid);
       if (request.Count > 0)

@@ -471,8 +471,9 @@ extern "C"
     /** 0: points at rest move to their deformed positions. Not 0: points of the deformed volume
      * move back to rest. */
     int32_t inverse;
-    /** Must be 0. */
-    int32_t reserved;
+    /** Not 0: the points were rounded to floats before. Points outside a mesh by no more than that
+     * rounding count as inside. */
+    int32_t were_floats;
     /** Memory for three numbers per point: the new positions. May be the memory of points. */
     double* moved;
     /** Memory for one byte per point: 1, or 0 for points that lie outside the deformation and do

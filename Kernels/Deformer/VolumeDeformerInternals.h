@@ -43,6 +43,7 @@ public:
     void SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
       std::size_t numberOfNodes, const Mapping& mapping, const MeshBoundary* boundary)
     {
+      this->Source.CheckMapping(mapping, numberOfTetrahedra); // before anything is changed
       this->SetBoundary({}, nullptr);
       this->Source.SetMesh(tetrahedra, numberOfTetrahedra, numberOfNodes, mapping);
       if (boundary)

@@ -68,11 +68,20 @@ DisplacementSource::DisplacementSource(
 {
 }
 
-void DisplacementSource::SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
-  std::size_t numberOfNodes, const VertexLink* links)
+void DisplacementSource::CheckMapping(const VertexLink* links, std::size_t numberOfTetrahedra) const
 {
   CheckLinks(
     links, GetNumberOfPoints(this->Volume.GetVoxelGrid().VertexExtent), numberOfTetrahedra);
+}
+
+void DisplacementSource::CheckMapping(const VertexRuns& runs, std::size_t numberOfTetrahedra) const
+{
+  CheckRuns(runs, this->Volume.GetVoxelGrid(), numberOfTetrahedra);
+}
+
+void DisplacementSource::SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
+  std::size_t numberOfNodes, const VertexLink* links)
+{
   this->Volume.SetLinks(links);
   this->SendTetrahedra(tetrahedra, numberOfTetrahedra, numberOfNodes);
 }
@@ -80,7 +89,6 @@ void DisplacementSource::SetMesh(const Tetrahedron* tetrahedra, std::size_t numb
 void DisplacementSource::SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
   std::size_t numberOfNodes, const VertexRuns& runs)
 {
-  CheckRuns(runs, this->Volume.GetVoxelGrid(), numberOfTetrahedra);
   this->Volume.SetRuns(runs);
   this->SendTetrahedra(tetrahedra, numberOfTetrahedra, numberOfNodes);
 }

@@ -39,8 +39,14 @@ public:
   DisplacementSource(WorkDevice& device, DeviceVolume& volume, DisplacementObserver& observer);
 
   ///@{
+  /// Throw an Error if links or runs do not fit the volume or the number of tetrahedra.
+  void CheckMapping(const VertexLink* links, std::size_t numberOfTetrahedra) const;
+  void CheckMapping(const VertexRuns& runs, std::size_t numberOfTetrahedra) const;
+  ///@}
+  ///@{
   /// Set a deformation mesh with a link for each voxel or with runs. The mesh must have been
-  /// checked (CheckMesh()). Its nodes have no displacements until SetNodeDisplacements() is called.
+  /// checked (CheckMesh(), CheckMapping()). Its nodes have no displacements until
+  /// SetNodeDisplacements() is called.
   void SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     std::size_t numberOfNodes, const VertexLink* links);
   void SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,

@@ -121,14 +121,17 @@ __kernel void CountInverted(__global const INTS* tetrahedra, __global const floa
     rest[i] = GetVectors(restPoints, tetrahedra[4 * packet + i]);
     now[i] = Plus(rest[i], GetVectors(displacements, tetrahedra[4 * packet + i]));
   }
-  const FLOATS product =
-    Determinant(Minus(now[1], now[0]), Minus(now[2], now[0]), Minus(now[3], now[0])) *
+  const FLOATS volume =
+    Determinant(Minus(now[1], now[0]), Minus(now[2], now[0]), Minus(now[3], now[0]));
+  const FLOATS volumeAtRest =
     Determinant(Minus(rest[1], rest[0]), Minus(rest[2], rest[0]), Minus(rest[3], rest[0]));
-  const float* const each = (const float*)&product;
+  const float* const each = (const float*)&volume;
+  const float* const eachAtRest = (const float*)&volumeAtRest;
   int inverted = 0;
   for (int lane = 0; lane < LANES; ++lane)
   {
-    inverted += each[lane] < 0.0f;
+    // The product of the two underflows for edges of less than a micrometer.
+    inverted += each[lane] < 0.0f && eachAtRest[lane] > 0.0f || each[lane] > 0.0f && eachAtRest[lane] < 0.0f;
   }
   if (inverted > 0)
   {

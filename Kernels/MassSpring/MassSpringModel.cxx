@@ -111,10 +111,13 @@ void MassSpringModel::Internals::Make(Watch& watch, const ElasticBody& body, dou
   auto network = std::make_unique<MassSpringNetwork>(
     watch, body, MassSpringState::GetLanes(this->Device), cubeEdge);
   watch.Ask();
-  // From here on the body is set without an abort. If memory is short, there is no body afterwards.
-  this->Forget(); // frees the memory of the previous body first
-  this->Budget.CheckRoomFor(
-    MassSpringState::GetNeededMemory(body.Points.size(), body.Tetrahedra.size()), "on the device");
+  // From here on the body is set without an abort. The previous body is deleted first, so its
+  // memory is available.
+  const std::uint64_t needed =
+    MassSpringState::GetNeededMemory(body.Points.size(), body.Tetrahedra.size());
+  const std::uint64_t held = this->State ? this->State->GetMemory() : 0;
+  this->Budget.CheckRoomFor(needed - std::min(held, needed), "on the device");
+  this->Forget();
   this->Body = body;
   this->CubeEdge = cubeEdge;
   this->Network = std::move(network);

@@ -4,7 +4,6 @@
 #include "DeviceOutputInternals.h"
 #include "GuardedCall.h"
 #include "HostMemory.h"
-#include "OutputRange.h"
 
 #include <cstring>
 #include <exception>
@@ -98,28 +97,6 @@ void DeviceOutput::Internals::Drop() noexcept
   }
 }
 
-std::optional<DeviceOutput::Range> DeviceOutput::Internals::FindRange(int component)
-{
-  const std::lock_guard<std::mutex> lock(this->Mutex);
-  const Voxels& values = this->Values;
-  const std::size_t element = GetElementSize(values.Type);
-  const bool isWide = element == sizeof(std::int64_t) && values.Type != ElementType::Float64;
-  const bool isThere =
-    component >= 0 && static_cast<std::size_t>(component) < values.Bytes / element;
-  if (!this->IsOnDevice() || isWide || !isThere)
-  {
-    return std::nullopt;
-  }
-  const Range range = CallGuarded(
-    [&]
-    {
-      return deformvolume::FindRange(this->Queue, this->Buffer, values.Type,
-        static_cast<std::uint64_t>(GetNumberOfPoints(values.Whole)), values.Bytes / element,
-        static_cast<std::size_t>(component));
-    });
-  return range.Least <= range.Largest ? std::optional<Range>(range) : std::nullopt;
-}
-
 std::uint64_t DeviceOutput::Internals::GetMemory()
 {
   const std::lock_guard<std::mutex> lock(this->Mutex);
@@ -182,11 +159,6 @@ bool DeviceOutput::IsRead() const
 void DeviceOutput::Drop()
 {
   this->Impl->Drop();
-}
-
-std::optional<DeviceOutput::Range> DeviceOutput::FindRange(int component)
-{
-  return this->Impl->FindRange(component);
 }
 
 void DeviceOutput::Read()

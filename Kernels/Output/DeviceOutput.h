@@ -6,7 +6,6 @@
 #include "Error.h"
 
 #include <memory>
-#include <optional>
 
 namespace deformvolume
 {
@@ -32,21 +31,6 @@ public:
   /// first thread copies, other threads wait. Throws Error if the copy failed in this or an earlier
   /// call; the memory then holds the background.
   void Read();
-
-  /// The range of the finite values of a component.
-  struct Range
-  {
-    /// The least finite value.
-    double Least = 0.0;
-    /// The largest finite value.
-    double Largest = 0.0;
-    /// Whether no value is infinite or not-a-number.
-    bool AllFinite = false;
-  };
-  /// Finds the range on the device, without copying the values. Returns nothing if the values are
-  /// not on the device, if the component does not exist, if no value is finite, or for 64-bit
-  /// integers, which a double cannot represent exactly. Throws Error if the device fails.
-  std::optional<Range> FindRange(int component);
 
   /// Discards the values, and allows the memory of the request to be freed. Waits for a copy in
   /// progress. The destructor does the same.

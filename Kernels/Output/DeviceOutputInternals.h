@@ -3,7 +3,6 @@
 #define DeformVolumeDeviceOutputInternals_h
 
 #include "DeviceOutput.h"
-#include "ElementType.h"
 #include "Extent.h"
 #include "OpenCLContext.h"
 #include "OutputFilling.h"
@@ -13,7 +12,6 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,7 +28,6 @@ public:
   {
     Extent Whole;
     Extent Part;
-    ElementType Type;
     std::size_t Bytes;
   };
 
@@ -49,9 +46,6 @@ public:
   std::string GetMessage();
   /// See DeviceOutput::Drop().
   void Drop() noexcept;
-
-  /// See DeviceOutput.
-  std::optional<Range> FindRange(int component);
 
   /// The memory on the device, in bytes.
   std::uint64_t GetMemory();

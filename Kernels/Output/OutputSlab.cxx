@@ -337,20 +337,19 @@ std::vector<std::shared_ptr<DeviceOutput>> OutputSlab::KeepOnDevice(const cl::Co
   const std::vector<Extent>& parts) const
 {
   std::vector<std::shared_ptr<DeviceOutput>> outputs;
-  const auto leave = [&](const cl::Buffer& buffer, ElementType type, std::size_t tupleSize,
-                       void* memory, const ElementBytes& background)
+  const auto leave = [&](const cl::Buffer& buffer, std::size_t tupleSize, void* memory,
+                       const ElementBytes& background)
   {
-    const DeviceOutput::Internals::Voxels voxels{ this->SlabExtent, parts[outputs.size()], type,
+    const DeviceOutput::Internals::Voxels voxels{ this->SlabExtent, parts[outputs.size()],
       tupleSize };
     outputs.push_back(std::make_shared<DeviceOutput>(
       std::make_shared<DeviceOutput::Internals>(queue, buffer, voxels, memory, background)));
   };
   for (std::size_t i = 0; i < this->Arrays.size(); ++i)
   {
-    leave(this->Arrays[i], arrays[i].Type, this->TupleSizes[i], request.Outputs[i],
-      GetBackground(arrays[i]));
+    leave(this->Arrays[i], this->TupleSizes[i], request.Outputs[i], GetBackground(arrays[i]));
   }
-  leave(this->Coverage, ElementType::Int8, 1, request.Coverage, ElementBytes::Of(cl_uchar{ 0 }));
+  leave(this->Coverage, 1, request.Coverage, ElementBytes::Of(cl_uchar{ 0 }));
   return outputs;
 }
 

@@ -26,6 +26,8 @@ constexpr double LastCellStep = 1e-12;
 constexpr double CellFaceTolerance = 1e-9;
 // Largest distance from the solution, in cells, at which Newton's method counts as converged.
 constexpr double CellSolutionTolerance = 1e-8;
+// The same relative to the largest coordinate: rounding of world coordinates.
+constexpr double RoundingOfPositions = 1e-14;
 // Points of the field with a smaller weight are ignored: the weight may be a rounding error.
 constexpr double LeastWeight = 1e-5;
 
@@ -60,8 +62,9 @@ class FieldPointMap::Internals
 public:
   explicit Internals(const WorldField& field)
     : Field(field)
+    , Origin(field.IndexToWorld[3])
     , ToWorld(field.IndexToWorld)
-    , ToIndex(glm::inverse(field.IndexToWorld))
+    , ToIndex(glm::inverse(this->ToWorld))
   {
     std::int64_t stride = 1;
     for (int axis = 0; axis < 3; ++axis)
@@ -98,19 +101,17 @@ public:
     return corners;
   }
 
-  glm::dvec3 GetWorld(const glm::dvec3& index) const
-  {
-    return glm::dvec3(this->Field.IndexToWorld * glm::dvec4(index, 1.0));
-  }
+  /// Returns a position relative to Origin.
+  glm::dvec3 GetPosition(const glm::dvec3& index) const { return this->ToWorld * index; }
 
-  /// Returns the deformed positions of the corners of a cell.
+  /// Returns the deformed positions of the corners of a cell, relative to Origin.
   Corners GetMoved(const glm::ivec3& cell) const
   {
     Corners corners = this->GetVectors(cell);
     for (int corner = 0; corner < 8; ++corner)
     {
       const glm::ivec3 offset(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
-      corners[static_cast<std::size_t>(corner)] += this->GetWorld(glm::dvec3(cell + offset));
+      corners[static_cast<std::size_t>(corner)] += this->GetPosition(glm::dvec3(cell + offset));
     }
     return corners;
   }
@@ -305,8 +306,11 @@ public:
   }
 
   const WorldField Field;
+  // The first point of the field. Positions of cells are relative to it, as large coordinates would
+  // have large rounding errors.
+  const glm::dvec3 Origin;
   const glm::dmat3 ToWorld;
-  const glm::dmat4 ToIndex;
+  const glm::dmat3 ToIndex;
   glm::ivec3 Last{ 0 };  // index of the last point on each axis
   glm::ivec3 Cells{ 1 }; // cells on each axis; 1 on an axis with one point
   glm::i64vec3 Strides{ 1 };
@@ -318,8 +322,13 @@ FieldPointMap::FieldPointMap(const WorldField& field, const OutsideVoxels& outsi
 {
   this->Outside = outside;
   const glm::dmat3& axes = this->Inside->ToWorld;
-  this->SolutionTolerance = CellSolutionTolerance *
-    std::min({ glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2]) });
+  const glm::dvec3 largest = glm::abs(this->Inside->Origin) +
+    glm::abs(axes[0]) * static_cast<double>(field.Dimensions[0]) +
+    glm::abs(axes[1]) * static_cast<double>(field.Dimensions[1]) +
+    glm::abs(axes[2]) * static_cast<double>(field.Dimensions[2]);
+  this->SolutionTolerance = std::max(CellSolutionTolerance *
+      std::min({ glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2]) }),
+    RoundingOfPositions * std::max({ largest.x, largest.y, largest.z }));
   if (isInverse)
   {
     this->Inside->MakeBoxes();
@@ -331,7 +340,7 @@ FieldPointMap::~FieldPointMap() = default;
 bool FieldPointMap::Map(const glm::dvec3& point, Image& image) const
 {
   const Internals& inside = *this->Inside;
-  const glm::dvec3 index(inside.ToIndex * glm::dvec4(point, 1.0));
+  const glm::dvec3 index = inside.ToIndex * (point - inside.Origin);
   const glm::dvec3 nearest = glm::clamp(index, glm::dvec3(0.0), glm::dvec3(inside.Last));
   bool isOutside = false;
   glm::dmat3 clamped(1.0);
@@ -370,20 +379,21 @@ bool FieldPointMap::Map(const glm::dvec3& point, Image& image) const
   const glm::dvec3 displacement = Interpolate(inside.GetVectors(cell), position, gradient);
   image.FadingDisplacement = weight < 1.0 ? glm::length(displacement) : 0.0;
   image.Point += weight * displacement;
-  image.Gradient += weight * gradient * clamped * glm::dmat3(inside.ToIndex) +
-    glm::outerProduct(displacement, slope);
+  image.Gradient +=
+    weight * gradient * clamped * inside.ToIndex + glm::outerProduct(displacement, slope);
   return true;
 }
 
 bool FieldPointMap::InvertInside(const glm::dvec3& point, Image& image) const
 {
   const Internals& inside = *this->Inside;
-  const Internals::Solution found = inside.FindInCells(point);
+  const Internals::Solution found = inside.FindInCells(point - inside.Origin);
   if (found.Number < 0)
   {
     return false;
   }
-  const glm::dvec3 position = inside.GetWorld(glm::dvec3(found.Cell) + found.Position);
+  const glm::dvec3 position =
+    inside.Origin + inside.GetPosition(glm::dvec3(found.Cell) + found.Position);
   if (found.IsBeside)
   {
     // Outside the cell, points follow the border of the field.

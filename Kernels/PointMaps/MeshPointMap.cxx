@@ -22,13 +22,17 @@ namespace deformvolume
 namespace
 {
 
-// The tolerances are relative to Configuration::Size.
-// Points within this distance from the mesh count as inside, since points are often stored as
-// floats.
+// Points within this distance from the mesh, relative to its diagonal, count as inside. Surfaces of
+// meshes are often computed in single precision.
 constexpr double MeshBorderTolerance = 1e-6;
-// Tolerance at the faces of a tetrahedron: rounding must not lose points between two tetrahedra.
+// The following are added, relative to the largest coordinate: rounding of points.
+constexpr double FloatRounding = 1.0 / (1 << 23);
+constexpr double DoubleRounding = 1e-14;
+// Tolerance at the faces of a tetrahedron, relative to Configuration::Size: rounding must not lose
+// points between two tetrahedra.
 constexpr double MeshFaceTolerance = 1e-13;
-// Largest distance from the solution at which Newton's method counts as converged.
+// Largest distance from the solution at which Newton's method counts as converged, relative to the
+// diagonal. DoubleRounding is added.
 constexpr double MeshSolutionTolerance = 1e-11;
 
 using Points = std::vector<glm::dvec3>;
@@ -60,8 +64,16 @@ public:
   struct Configuration
   {
     const Points* Positions = nullptr;
-    double Size = 0.0;          // diagonal of the bounding box plus largest coordinate
-    BoxTree<IndexBounds> Boxes; // enlarged by the tolerance; empty boxes for flat tetrahedra
+    double Diagonal = 0.0;      // of the bounding box
+    double Largest = 0.0;       // absolute coordinate
+    double Size = 0.0;          // the sum of both
+    BoxTree<IndexBounds> Boxes; // empty boxes for flat tetrahedra
+
+    double GetBorderTolerance(bool areFloats) const
+    {
+      return this->Diagonal * MeshBorderTolerance +
+        this->Largest * (areFloats ? FloatRounding : DoubleRounding);
+    }
   };
 
   Configuration Search(const Points& positions) const
@@ -79,17 +91,13 @@ public:
       all.Add(boxes[i]);
     }
     const glm::dvec3 largest = glm::max(glm::abs(all.Min), glm::abs(all.Max));
-    configuration.Size =
-      glm::length(all.Max - all.Min) + std::max({ largest.x, largest.y, largest.z });
+    configuration.Diagonal = glm::length(all.Max - all.Min);
+    configuration.Largest = std::max({ largest.x, largest.y, largest.z });
+    configuration.Size = configuration.Diagonal + configuration.Largest;
     for (std::size_t i = 0; i < boxes.size(); ++i)
     {
-      if (std::isfinite(configuration.Size) &&
-        BarycentricMap().SetTetrahedron(this->Tetrahedra[i], positions))
-      {
-        boxes[i].Min -= configuration.Size * MeshBorderTolerance;
-        boxes[i].Max += configuration.Size * MeshBorderTolerance;
-      }
-      else
+      if (!std::isfinite(configuration.Size) ||
+        !BarycentricMap().SetTetrahedron(this->Tetrahedra[i], positions))
       {
         boxes[i] = IndexBounds();
       }
@@ -126,11 +134,11 @@ public:
   {
     const bool isAtRest = &configuration == &this->Rest;
     const Points& positions = *configuration.Positions;
-    const double tolerance = configuration.Size * MeshBorderTolerance;
+    const double tolerance = configuration.GetBorderTolerance(this->PointsAreFloats);
     const double touching = configuration.Size * MeshFaceTolerance;
     Holder best;
     bool isBestNear = true; // `best` is within the tolerance but does not contain the point
-    configuration.Boxes.Visit({ point, point },
+    configuration.Boxes.Visit({ point - tolerance, point + tolerance },
       [&](std::size_t i)
       {
         const auto number = static_cast<std::int32_t>(i);
@@ -264,6 +272,7 @@ public:
 
   const std::vector<Tetrahedron>& Tetrahedra;
   const Configuration Rest;
+  bool PointsAreFloats = false;
   std::vector<TetrahedronFace> Faces;
   std::unique_ptr<ClosestFace> Boundary;
   Points Displacements;
@@ -278,6 +287,11 @@ MeshPointMap::MeshPointMap(
 }
 
 MeshPointMap::~MeshPointMap() = default;
+
+void MeshPointMap::SetPointsAreFloats(bool areFloats)
+{
+  this->Inside->PointsAreFloats = areFloats;
+}
 
 void MeshPointMap::Set(
   std::vector<glm::dvec3> displacements, const OutsideVoxels& outside, bool isInverse)
@@ -299,7 +313,9 @@ void MeshPointMap::Set(
       inside.MovedPoints[i] += inside.Displacements[i];
     }
     inside.Moved = inside.Search(inside.MovedPoints);
-    this->SolutionTolerance = std::max(inside.Rest.Size, inside.Moved.Size) * MeshSolutionTolerance;
+    this->SolutionTolerance =
+      std::max(inside.Rest.Diagonal, inside.Moved.Diagonal) * MeshSolutionTolerance +
+      std::max(inside.Rest.Largest, inside.Moved.Largest) * DoubleRounding;
   }
 }
 

@@ -26,6 +26,10 @@ public:
   /// call only Map().
   void Set(std::vector<glm::dvec3> displacements, const OutsideVoxels& outside, bool isInverse);
 
+  /// Set whether the points to map were rounded to single precision. Points outside the mesh by no
+  /// more than this rounding then count as inside. Default: false.
+  void SetPointsAreFloats(bool areFloats);
+
   /// Maps a point. Outside the mesh, OutsideVoxels applies. With Extrapolate, the point follows the
   /// affine map of the tetrahedron with the closest boundary face.
   bool Map(const glm::dvec3& point, Image& image) const override;

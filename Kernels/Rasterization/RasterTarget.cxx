@@ -21,23 +21,21 @@ RasterTarget::RasterTarget(OpenCLContext& context, const std::vector<VolumeArray
   {
     const ElementBytes background = GetBackground(arrays[i]);
     std::memcpy(&backgrounds[i], background.Bytes.data(), background.Size);
-    this->AddMemory(
-      context, request.Outputs[i], GetTupleSize(arrays[i]), arrays[i].Type, background);
+    this->AddMemory(context, request.Outputs[i], GetTupleSize(arrays[i]), background);
   }
-  this->AddMemory(context, request.Coverage, 1, ElementType::Int8, ElementBytes::Of(cl_uchar{ 0 }));
+  this->AddMemory(context, request.Coverage, 1, ElementBytes::Of(cl_uchar{ 0 }));
   this->Backgrounds = cl::Buffer(context.GetContext(), CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR,
     backgrounds.size() * sizeof(cl_ulong), backgrounds.data());
 }
 
-void RasterTarget::AddMemory(OpenCLContext& context, void* output, std::uint64_t tuple,
-  ElementType type, const ElementBytes& background)
+void RasterTarget::AddMemory(
+  OpenCLContext& context, void* output, std::uint64_t tuple, const ElementBytes& background)
 {
   Memory memory;
-  memory.Type = type;
   memory.Background = background;
   memory.Host = static_cast<char*>(output) + this->FirstVoxel * tuple;
   memory.Tuple = tuple;
-  Bind(context, memory.Buffer, memory.Host, GetElementSize(type), this->NumberOfVoxels * tuple);
+  Bind(context, memory.Buffer, memory.Host, background.Size, this->NumberOfVoxels * tuple);
   this->Memories.push_back(memory);
 }
 
@@ -57,7 +55,7 @@ std::vector<std::shared_ptr<DeviceOutput>> RasterTarget::KeepOnDevice(
   std::vector<std::shared_ptr<DeviceOutput>> outputs;
   for (const Memory& memory : this->Memories)
   {
-    const DeviceOutput::Internals::Voxels voxels{ this->SlabExtent, this->SlabExtent, memory.Type,
+    const DeviceOutput::Internals::Voxels voxels{ this->SlabExtent, this->SlabExtent,
       memory.Tuple };
     outputs.push_back(std::make_shared<DeviceOutput>(std::make_shared<DeviceOutput::Internals>(
       queue, memory.Buffer, voxels, memory.Host, memory.Background)));

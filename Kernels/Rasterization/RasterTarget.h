@@ -46,12 +46,11 @@ private:
   {
     cl::Buffer Buffer;
     char* Host;
-    ElementType Type;
     std::uint64_t Tuple; // bytes of a voxel
     ElementBytes Background;
   };
-  void AddMemory(OpenCLContext& context, void* output, std::uint64_t tuple, ElementType type,
-    const ElementBytes& background);
+  void AddMemory(
+    OpenCLContext& context, void* output, std::uint64_t tuple, const ElementBytes& background);
 
   Extent SlabExtent;
   std::uint64_t FirstVoxel; // index of the slab's first voxel in the output

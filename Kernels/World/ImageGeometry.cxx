@@ -102,7 +102,32 @@ OutputMap GetOutputMap(const ImageGeometry& image, const ImageGeometry& output)
   return map;
 }
 
-void ComputeWorldPositions(const ImageGeometry& image, const std::array<float*, 3>& positions)
+glm::dvec3 GetPositionsOrigin(const ImageGeometry& volume)
+{
+  const Extent& extent = volume.PointExtent;
+  const glm::dmat4 toWorld = volume.GetIndexToWorld();
+  double largest = 0.0;
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    const glm::dvec4 index(
+      extent[corner & 1], extent[2 + (corner >> 1 & 1)], extent[4 + (corner >> 2 & 1)], 1.0);
+    const glm::dvec3 position = glm::abs(glm::dvec3(toWorld * index));
+    largest = std::max({ largest, position.x, position.y, position.z });
+  }
+  // Positions are rounded to floats, and interpolated in single precision.
+  const double error = largest / static_cast<double>(1 << 22);
+  const glm::dvec3 spacing = glm::abs(volume.Spacing);
+  if (error <= std::min({ spacing.x, spacing.y, spacing.z }) / 256.0)
+  {
+    return glm::dvec3(0.0);
+  }
+  const glm::dvec4 middle(0.5 * (extent[0] * 1.0 + extent[1]), 0.5 * (extent[2] * 1.0 + extent[3]),
+    0.5 * (extent[4] * 1.0 + extent[5]), 1.0);
+  return glm::dvec3(toWorld * middle);
+}
+
+void ComputeWorldPositions(
+  const ImageGeometry& image, const glm::dvec3& origin, const std::array<float*, 3>& positions)
 {
   const Extent& extent = image.PointExtent;
   const glm::dmat4 toWorld = image.GetIndexToWorld();
@@ -117,7 +142,7 @@ void ComputeWorldPositions(const ImageGeometry& image, const std::array<float*, 
         for (std::int64_t x = 0; x < width; ++x)
         {
           index.x = static_cast<double>(extent[0] + x);
-          const glm::dvec4 position = toWorld * index;
+          const glm::dvec3 position = glm::dvec3(toWorld * index) - origin;
           for (std::size_t axis = 0; axis < 3; ++axis)
           {
             positions[axis][row * width + x] = static_cast<float>(position[static_cast<int>(axis)]);

@@ -54,10 +54,15 @@ DEFORMVOLUME_EXPORT bool AreSamePositions(
 /// the points of the grids coincide.
 DEFORMVOLUME_EXPORT OutputMap GetOutputMap(const ImageGeometry& image, const ImageGeometry& output);
 
-/// Computes the world positions of the points, x varying fastest. positions: for each axis an array
-/// of one float per point.
+/// Returns the point to which single-precision positions in a volume are relative: the origin of
+/// the world, or the middle of the volume if positions relative to the origin would be less exact
+/// than 1/256 voxel.
+DEFORMVOLUME_EXPORT glm::dvec3 GetPositionsOrigin(const ImageGeometry& volume);
+
+/// Computes the world positions of the points relative to `origin`, x varying fastest. positions:
+/// for each axis an array of one float per point.
 DEFORMVOLUME_EXPORT void ComputeWorldPositions(
-  const ImageGeometry& image, const std::array<float*, 3>& positions);
+  const ImageGeometry& image, const glm::dvec3& origin, const std::array<float*, 3>& positions);
 
 /// Returns origin, spacing and direction as text for an error.
 DEFORMVOLUME_EXPORT std::string DescribeTransform(const ImageGeometry& geometry);

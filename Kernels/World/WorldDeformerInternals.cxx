@@ -12,7 +12,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <memory>
+#include <sstream>
 #include <thread>
 #include <type_traits>
 
@@ -89,7 +91,7 @@ void WorldDeformer::Internals::UpdateRestPositions()
       static_cast<std::size_t>(GetNumberOfPoints(this->Volume->PointExtent)));
     positions[axis] = this->Positions[axis].data();
   }
-  ComputeWorldPositions(*this->Volume, positions);
+  ComputeWorldPositions(*this->Volume, GetPositionsOrigin(*this->Volume), positions);
   this->PositionsVolume = this->Volume;
 }
 
@@ -492,12 +494,17 @@ WorldReport WorldDeformer::Internals::Deform(const WorldRequest& request)
 void WorldDeformer::Internals::Finish(const WorldRequest& request, const Extent& extent)
 {
   const auto voxels = static_cast<std::size_t>(GetNumberOfPoints(extent));
+  const glm::dvec3 origin =
+    request.RestPositions ? GetPositionsOrigin(*this->Volume) : glm::dvec3(0.0);
   for (std::size_t axis = 0; axis < 3 && request.RestPositions; ++axis)
   {
     std::vector<float>& values = this->PositionsOutput[axis];
+    const double first = origin[static_cast<int>(axis)];
     for (std::size_t i = 0; i < voxels; ++i)
     {
-      request.RestPositions[3 * i + axis] = values[i];
+      request.RestPositions[3 * i + axis] = first == 0.0 || !request.Coverage[i]
+        ? values[i]
+        : static_cast<float>(first + static_cast<double>(values[i]));
     }
     std::vector<float>().swap(values);
   }
@@ -547,6 +554,31 @@ void WorldDeformer::Internals::DivideDensities(
   }
 }
 
+namespace
+{
+
+// Returns a warning if positions far from the origin of the world cannot be exact floats, or "".
+// middle: of the volume, or 0.
+std::string DescribeRounding(const glm::dvec3& middle, const glm::dvec3& spacing)
+{
+  const double largest = std::max({ std::abs(middle.x), std::abs(middle.y), std::abs(middle.z) });
+  const double error = largest / static_cast<double>(1 << 24);
+  const double smallest =
+    std::min({ std::abs(spacing.x), std::abs(spacing.y), std::abs(spacing.z) });
+  if (error <= smallest / 256.0)
+  {
+    return "";
+  }
+  std::ostringstream text;
+  text << "Rest positions are floats, which round coordinates of " << largest << " by up to "
+       << error << ", " << error / smallest
+       << " times the spacing. Subtract one offset from the coordinates of the volume, the "
+          "deformation and the reference.";
+  return text.str();
+}
+
+} // namespace
+
 void WorldDeformer::Internals::Describe(
   const WorldRequest& request, const Extent& whole, WorldReport& report)
 {
@@ -572,6 +604,10 @@ void WorldDeformer::Internals::Describe(
       " cells of the volume have a tetrahedron that is stretched over more than 4,000 output "
       "voxels; these tetrahedra are skipped. Check the deformation, or set a greater output "
       "spacing.");
+  }
+  if (request.RestPositions)
+  {
+    warn(DescribeRounding(GetPositionsOrigin(*this->Volume), this->Volume->Spacing));
   }
   if (this->Deformation != Deformations::None && !this->Outside.AreExtrapolated())
   {

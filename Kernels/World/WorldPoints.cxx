@@ -51,6 +51,7 @@ PointsReport WorldDeformer::DeformPoints(const PointsRequest& request)
   {
     nodes = internals.Mesh.GetWorldPoints();
     auto made = std::make_unique<MeshPointMap>(nodes, internals.Mesh.GetCells().Tetrahedra);
+    made->SetPointsAreFloats(request.AreFloats);
     made->Set(internals.Mesh.GetWorldDisplacements(), internals.Outside, isInverted);
     map = std::move(made);
   }

@@ -16,6 +16,8 @@ struct PointsRequest
   std::size_t Count = 0;
   /// Three numbers per point, in world coordinates.
   const double* Points = nullptr;
+  /// Whether the points were rounded to single precision; see MeshPointMap::SetPointsAreFloats().
+  bool AreFloats = false;
   /// Whether the points lie in the deformed volume and are moved back to rest.
   bool IsInverse = false;
   /// Memory for three numbers per point: its new position. May be that of Points.

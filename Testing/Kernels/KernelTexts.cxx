@@ -175,10 +175,7 @@ void Deform(VolumeDeformer& deformer, const DeformerCase& deformerCase,
   std::vector<signed char> coverage(voxels);
   request.Coverage = coverage.data();
   request.MayStayOnDevice = true;
-  for (const auto& output : deformer.Deform(request).DeviceOutputs)
-  {
-    output->FindRange(0);
-  }
+  deformer.Deform(request);
 }
 
 /// Values for arrays of all types: their bits are irrelevant here.

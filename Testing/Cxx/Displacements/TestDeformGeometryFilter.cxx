@@ -1052,6 +1052,95 @@ double GetDistance(vtkPointSet* from, vtkPointSet* to, double min, double max, i
   return worst;
 }
 
+// A deformation that is far from the origin moves points as one at the origin does.
+TEST(DeformGeometryFilter, FarFromTheOrigin)
+{
+  const glm::dvec3 far(5e5, 5.2e6, -2e3);
+  const std::vector<glm::dvec3> positions =
+    MakePositions(3000, glm::dvec3(-3.0), glm::dvec3(13.0), 5);
+  const auto displacement = [](const glm::dvec3& p)
+  { return p + glm::dvec3(0.6 * std::sin(0.4 * p.y), 0.3 * std::cos(0.5 * p.z), 0.05 * p.x); };
+  const auto make = [&](bool isMesh, const glm::dvec3& offset)
+  {
+    const auto image =
+      MakeImage({ { 0, 5, 0, 5, 0, 5 } }, glm::dvec3(1.9, 2.0, 2.1), glm::dvec3(0.0));
+    vtkSmartPointer<vtkDataSet> made;
+    if (!isMesh)
+    {
+      const double turned[9] = { 0.96, 0.28, 0.0, -0.28, 0.96, 0.0, 0.0, 0.0, 1.0 };
+      image->SetDirectionMatrix(turned);
+      SetDisplacements(image, displacement);
+      image->SetOrigin(offset.x, offset.y, offset.z);
+      return vtkSmartPointer<vtkDataSet>(image);
+    }
+    auto mesh = MakeMesh(image, 4);
+    SetDisplacements(mesh, displacement);
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
+    {
+      const glm::dvec3 point = GetPoint(mesh, id) + offset;
+      points->InsertNextPoint(&point.x);
+    }
+    mesh->SetPoints(points);
+    return vtkSmartPointer<vtkDataSet>(mesh);
+  };
+  const auto move = [&](const std::vector<glm::dvec3>& points, const glm::dvec3& offset)
+  {
+    std::vector<glm::dvec3> moved = points;
+    for (glm::dvec3& point : moved)
+    {
+      point += offset;
+    }
+    return moved;
+  };
+  for (const bool isMesh : { true, false })
+  {
+    for (const int mode : { Discard, Extrapolate, Keep })
+    {
+      for (const bool isInverse : { false, true })
+      {
+        SCOPED_TRACE(testing::Message()
+          << "mesh " << isMesh << ", mode " << mode << ", inverse " << isInverse);
+        Subject near(MakePoints(positions), make(isMesh, glm::dvec3(0.0)));
+        Subject away(MakePoints(move(positions, far)), make(isMesh, far));
+        for (Subject* subject : { &near, &away })
+        {
+          subject->Filter->SetOutsideMode(mode);
+          subject->Filter->SetFadeDistance(2.0);
+          subject->Filter->SetInverse(isInverse);
+        }
+        const std::vector<glm::dvec3> wanted = near.GetPositions();
+        const std::vector<glm::dvec3> found = move(away.GetPositions(), -far);
+        EXPECT_GT(near.Filter->GetNumberOfOutsidePoints(), mode == Discard ? 1000 : -1);
+        EXPECT_LT(near.Filter->GetNumberOfOutsidePoints(), 2900);
+        int different = 0;
+        for (std::size_t i = 0; i < positions.size(); ++i)
+        {
+          different +=
+            near.IsValid(static_cast<vtkIdType>(i)) != away.IsValid(static_cast<vtkIdType>(i)) ||
+            !(glm::length(found[i] - wanted[i]) < 1e-5);
+        }
+        // Outside, the closest face jumps, and a point may lie there.
+        EXPECT_LE(different, mode == Discard ? 0 : 3);
+      }
+    }
+  }
+  // Points on the boundary of a mesh that were rounded to floats are inside.
+  std::vector<glm::dvec3> border = MakePositions(500, glm::dvec3(0.0), glm::dvec3(9.5), 6);
+  const auto mesh = make(true, far);
+  for (glm::dvec3& point : border)
+  {
+    point.x = mesh->GetBounds()[0] - far.x;
+  }
+  Subject floats(MakePoints(move(border, far), VTK_FLOAT), mesh);
+  floats.Update();
+  EXPECT_EQ(floats.Filter->GetNumberOfOutsidePoints(), 0);
+  Subject doubles(MakePoints(move(border, far - glm::dvec3(0.1, 0.0, 0.0))), mesh);
+  doubles.Update();
+  EXPECT_EQ(doubles.Filter->GetNumberOfOutsidePoints(), 500);
+}
+
 TEST(DeformGeometryFilter, Isosurface)
 {
   const int size = 48;

@@ -242,6 +242,23 @@ TEST_P(TightMeshes, MovedAndTurned)
   }
 }
 
+TEST_P(TightMeshes, RefusedMeshChangesNothing)
+{
+  TightMesh mesh = MakeBall(2.3);
+  mesh.Move([](const glm::dvec3&) { return glm::dvec3(0.5, -0.25, 0.3); });
+  VolumeDeformer deformer;
+  Load(deformer, mesh);
+  const TightOutput wanted = DeformTight(deformer, mesh, this->GetParam());
+  std::vector<VertexLink> links(static_cast<std::size_t>(mesh.GetNumberOfVoxels()));
+  links.back().Tetrahedron = 1 << 28;
+  EXPECT_THROW(deformer.SetMesh(
+                 mesh.Tetrahedra.data(), mesh.Tetrahedra.size(), mesh.Points.size(), links.data()),
+    Error);
+  const TightOutput output = DeformTight(deformer, mesh, this->GetParam());
+  EXPECT_EQ(output.Coverage, wanted.Coverage);
+  EXPECT_EQ(output.Values, wanted.Values);
+}
+
 TEST_P(TightMeshes, FinerOutput)
 {
   TightMesh mesh = MakeBall(2.3);

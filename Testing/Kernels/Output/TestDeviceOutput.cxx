@@ -126,42 +126,6 @@ TEST_P(OutputOnDevice, IsReadOnce)
   EXPECT_TRUE(this->Outputs == this->MakeExpected());
 }
 
-TEST_P(OutputOnDevice, RangesNeedNoReading)
-{
-  const auto check = [this](const DeviceOutputs& outputs)
-  {
-    FakeDriver::Get().BytesRead = 0;
-    std::vector<std::optional<DeviceOutput::Range>> found;
-    for (const std::shared_ptr<DeviceOutput>& output : outputs)
-    {
-      found.push_back(output->FindRange(0));
-    }
-    found.push_back(outputs[1]->FindRange(1));
-    EXPECT_LT(FakeDriver::Get().BytesRead, this->GetBytes() / 20);
-    Read(outputs);
-    std::array<std::vector<double>, 4> values;
-    values[0].assign(this->Outputs.First.begin(), this->Outputs.First.end());
-    values[2].assign(this->Outputs.Coverage.begin(), this->Outputs.Coverage.end());
-    for (std::size_t i = 0; i < this->Outputs.Second.size(); ++i)
-    {
-      values[i % 2 ? 3 : 1].push_back(this->Outputs.Second[i]);
-    }
-    for (std::size_t i = 0; i < values.size(); ++i)
-    {
-      const auto range = std::minmax_element(values[i].begin(), values[i].end());
-      ASSERT_TRUE(found[i]);
-      EXPECT_EQ(found[i]->Least, *range.first);
-      EXPECT_EQ(found[i]->Largest, *range.second);
-      EXPECT_TRUE(found[i]->Least < found[i]->Largest || i == 2); // all voxels may be covered
-      EXPECT_TRUE(found[i]->AllFinite);
-    }
-    EXPECT_FALSE(outputs[0]->FindRange(0)); // no longer on the device
-  };
-  check(this->Update().DeviceOutputs);
-  this->At(5, 3, 2)[0] = 0.75F; // a partial update
-  check(this->Update().DeviceOutputs);
-}
-
 // Outputs on the device when the deformer overwrites or releases its memory, or is deleted.
 TEST_P(OutputOnDevice, OutlivesLaterUpdates)
 {
