@@ -12,6 +12,7 @@
 #include "MeshBounds.h"
 #include "OutputArrays.h"
 #include "RestRegions.h"
+#include "SplitNodes.h"
 
 #include <cstdint>
 #include <memory>
@@ -102,6 +103,8 @@ struct ExecutionState
   Share LastShare;
   Extent LastNeeded{ { 0, -1, 0, -1, 0, -1 } };
 
+  deformvolume::SplitNodes Splits;
+  bool HasWarnedOfSplits = false;
   // Versions of the mapping and of the vectors for which WarnOfFading() was called last.
   std::pair<std::uint64_t, std::uint64_t> VersionsOfFading;
   // The last warning about the fading of a field.

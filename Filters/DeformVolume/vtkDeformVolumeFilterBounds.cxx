@@ -190,8 +190,8 @@ std::optional<double> vtkDeformVolumeFilter::vtkInternals::FindTime(vtkInformati
 //------------------------------------------------------------------------------
 std::optional<double> vtkDeformVolumeFilter::vtkInternals::FindTimeOfData() const
 {
-  auto* previous = vtkInformationDoubleKey::SafeDownCast(vtkInformationKeyLookup::Find(
-    "PREVIOUS_UPDATE_TIME_STEP", "vtkStreamingDemandDrivenPipeline"));
+  auto* previous = vtkInformationDoubleKey::SafeDownCast(
+    vtkInformationKeyLookup::Find("PREVIOUS_UPDATE_TIME_STEP", "vtkStreamingDemandDrivenPipeline"));
   std::optional<double> time;
   for (int port = 1; port < 3; ++port)
   {

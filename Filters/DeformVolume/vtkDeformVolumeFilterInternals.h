@@ -149,10 +149,10 @@ public:
   /// Sums the counters over all ranks. Collective.
   void AddUpCounts(const deformvolume::Ranks& ranks);
 
-  /// Warns of inputs that are ignored or dubious, if they were not in the last call. smallness: the
-  /// text of DescribeSmallness().
-  void WarnOfInputs(
-    vtkImageData* volume, const std::vector<std::string>& leftOut, const std::string& smallness);
+  /// Warns of inputs that are ignored or dubious, if they were not in the last call. others:
+  /// further warnings, which may be empty.
+  void WarnOfInputs(vtkImageData* volume, const std::vector<std::string>& leftOut,
+    const std::vector<std::string>& others);
 
   /// The requested arrays besides those of the volume.
   deformvolume::ExtraArraysWish GetExtraArrays() const
@@ -167,6 +167,8 @@ public:
 
   /// Warns if kept voxels are certainly torn or folded, if the deformation has changed. output: the
   /// whole extent of the output.
+  /// Warns if the volume is stretched over the gap of a split mesh. volume: with its masks.
+  void WarnOfSplits(vtkImageData* volume);
   void WarnOfFading(const deformvolume::MappedVolume& mapped, const deformvolume::Extent& output);
   void WarnOfFadingField(
     const deformvolume::MappedVolume& mapped, const deformvolume::Extent& output);

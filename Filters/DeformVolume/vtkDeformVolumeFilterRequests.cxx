@@ -26,7 +26,9 @@
 #include "vtkLogger.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkPoints.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkUnstructuredGrid.h"
 
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
@@ -38,6 +40,19 @@ using deformvolume::DeformationSource;
 using deformvolume::Error;
 using deformvolume::Extent;
 using deformvolume::ImageGeometry;
+
+namespace
+{
+
+// Whether a part of a mesh has points in single precision.
+bool HasFloats(const deformvolume::MeshParts& parts)
+{
+  return std::any_of(parts.begin(), parts.end(),
+    [](vtkUnstructuredGrid* part)
+    { return part->GetPoints() && part->GetPoints()->GetDataType() == VTK_FLOAT; });
+}
+
+} // namespace
 
 //------------------------------------------------------------------------------
 vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
@@ -322,10 +337,25 @@ int vtkDeformVolumeFilter::RequestData(
         array.Categorical |= this->Interpolation == NEAREST_INTERPOLATION;
       }
       auto* const field = vtkImageData::SafeDownCast(source.Shape);
-      this->Internals->WarnOfInputs(volume, leftOut,
-        mapped.Outside.AreExtrapolated() ? ""
-          : field ? deformvolume::DescribeSmallness(deformvolume::GetGeometry(field), geometry)
-                  : deformvolume::DescribeSmallness(deformation.GetMeshAtRest(), geometry));
+      std::vector<std::string> warnings;
+      if (!mapped.Outside.AreExtrapolated())
+      {
+        warnings.push_back(field
+            ? deformvolume::DescribeSmallness(deformvolume::GetGeometry(field), geometry)
+            : deformvolume::DescribeSmallness(deformation.GetMeshAtRest(), geometry));
+      }
+      if (HasFloats(source.GetRestParts()))
+      {
+        warnings.push_back(deformvolume::DescribeRounding(
+          deformvolume::FloatPoints, deformvolume::LostVoxels, geometry));
+      }
+      if (!source.ShapeParts.Ignored.empty())
+      {
+        warnings.push_back(
+          "These blocks on input port 1 are image data, and not part of the mesh: " +
+          source.ShapeParts.Ignored + ". Convert them to unstructured grids (vtkAppendFilter).");
+      }
+      this->Internals->WarnOfInputs(volume, leftOut, warnings);
       this->Internals->ReleaseOldVolumes(arrays);
       worked = state.Volume.Update(volume, this->SamplingFactor, arrays);
       state.Extra.Select(
@@ -452,6 +482,7 @@ int vtkDeformVolumeFilter::RequestData(
   if (numberOfPoints > 0)
   {
     this->Internals->TakeReport(report, request.Method);
+    this->Internals->WarnOfSplits(worked);
     this->Internals->WarnOfFading(mapped, whole);
     this->Internals->WarnOfLoss(loss);
   }

@@ -5,9 +5,11 @@
 #include "Densities.h"
 #include "Fading.h"
 #include "IndexBounds.h"
+#include "MaskArray.h"
 #include "NewWarnings.h"
 #include "VolumeArrays.h"
 
+#include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
@@ -22,8 +24,8 @@
 #include <vector>
 
 //------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::vtkInternals::WarnOfInputs(
-  vtkImageData* volume, const std::vector<std::string>& leftOut, const std::string& smallness)
+void vtkDeformVolumeFilter::vtkInternals::WarnOfInputs(vtkImageData* volume,
+  const std::vector<std::string>& leftOut, const std::vector<std::string>& others)
 {
   const auto list = [](const std::vector<std::string>& names)
   {
@@ -58,9 +60,12 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfInputs(
       ". Labels in other arrays are interpolated like intensities. Correct the names with "
       "AddCategoricalArray() and RemoveCategoricalArray().");
   }
-  if (!smallness.empty())
+  for (const std::string& warning : others)
   {
-    warnings.insert(smallness);
+    if (!warning.empty())
+    {
+      warnings.insert(warning);
+    }
   }
   using Attributes = vtkDataSetAttributes;
   for (const auto& [role, kind] : { std::pair(Attributes::VECTORS, "vectors"),
@@ -97,6 +102,27 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfLoss(const deformvolume::ExtraAr
     vtkWarningWithObjectMacro(this->Self, << text);
   }
   this->WarnedOfLoss = text;
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::WarnOfSplits(vtkImageData* volume)
+{
+  const deformvolume::Deformation& mesh = this->State->Deformation;
+  if (mesh.IsField() || mesh.GetDeviceVectors() || this->Self->OpenSplits ||
+    this->Self->ResamplerInUse == MESH_RASTERIZATION || deformvolume::HasCut(volume) ||
+    volume->GetCellData()->HasArray(deformvolume::ActiveTetrahedraName))
+  {
+    this->State->HasWarnedOfSplits = false;
+    return;
+  }
+  this->State->Splits.Update(mesh.GetMeshAtRest(), mesh.GetRestMesh().GetConnectivityVersion());
+  const std::string text = this->State->Splits.Describe(mesh.GetNodeDisplacements());
+  if (!text.empty() && !this->State->HasWarnedOfSplits)
+  {
+    vtkWarningWithObjectMacro(this->Self,
+      << text << " Set OpenSplits, or cut the volume along the split with vtkCutVolume.");
+  }
+  this->State->HasWarnedOfSplits = !text.empty();
 }
 
 //------------------------------------------------------------------------------

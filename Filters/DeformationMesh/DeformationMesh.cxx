@@ -68,13 +68,14 @@ std::string DescribePart(const MeshParts& parts, std::size_t part, const std::st
 
 void CheckParts(const MeshParts& parts, vtkDataObject* object, const std::string& name)
 {
-  constexpr const char* connect = ". Connect a vtkUnstructuredGrid with tetrahedra, or a "
-                                  "vtkStructuredGrid or vtkRectilinearGrid.";
+  constexpr const char* connect =
+    ". Connect a vtkUnstructuredGrid with tetrahedra, or a "
+    "vtkStructuredGrid, vtkExplicitStructuredGrid or vtkRectilinearGrid.";
   if (parts.empty() && vtkCompositeDataSet::SafeDownCast(object))
   {
     throw Error("The composite dataset that is the " + name +
-      " holds no vtkUnstructuredGrid, vtkStructuredGrid or vtkRectilinearGrid. Connect one with "
-      "three-dimensional cells.");
+      " holds no vtkUnstructuredGrid, vtkStructuredGrid, vtkExplicitStructuredGrid or "
+      "vtkRectilinearGrid. Connect one with three-dimensional cells.");
   }
   if (parts.empty())
   {

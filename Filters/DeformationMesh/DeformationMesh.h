@@ -34,6 +34,8 @@ struct MeshParts : std::vector<vtkUnstructuredGrid*>
   using std::vector<vtkUnstructuredGrid*>::vector;
   /// The name or number of each block of a composite dataset; empty for a single grid.
   std::vector<std::string> Blocks;
+  /// The blocks that are image data, separated by commas. They are not part of the mesh.
+  std::string Ignored;
 };
 
 /// The name of a part of a mesh in messages. name: the name of the mesh.

@@ -12,11 +12,14 @@
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
+#include "vtkExplicitStructuredGrid.h"
+#include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkNew.h"
 #include "vtkPartitionedDataSet.h"
 #include "vtkPartitionedDataSetCollection.h"
 #include "vtkPointData.h"
+#include "vtkPointSet.h"
 #include "vtkPoints.h"
 #include "vtkRectilinearGrid.h"
 #include "vtkStructuredGrid.h"
@@ -61,7 +64,7 @@ std::string FindBlock(vtkCompositeDataSet* composite, vtkCompositeDataIterator* 
 bool IsGrid(vtkDataObject* object)
 {
   return vtkUnstructuredGrid::SafeDownCast(object) || vtkStructuredGrid::SafeDownCast(object) ||
-    vtkRectilinearGrid::SafeDownCast(object);
+    vtkRectilinearGrid::SafeDownCast(object) || vtkExplicitStructuredGrid::SafeDownCast(object);
 }
 
 void AddArray(Stamp& stamp, vtkAbstractArray* array)
@@ -171,14 +174,25 @@ void MeshGrids::Update(Conversion& conversion, vtkDataSet* source, bool made)
     conversion.Grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
   }
   vtkUnstructuredGrid* grid = conversion.Grid;
-  auto* curved = vtkStructuredGrid::SafeDownCast(source);
+  auto* curved = vtkPointSet::SafeDownCast(source); // structured or explicit structured
   auto* straight = vtkRectilinearGrid::SafeDownCast(source);
   // If a grid that no filter has made is modified, its owner may have written to its arrays.
   const vtkMTimeType time = made ? 0 : source->vtkObject::GetMTime();
   Stamp cells{ { nullptr, time } };
   Stamp points{ { nullptr, time } };
-  int dimensions[3];
-  curved ? curved->GetDimensions(dimensions) : straight->GetDimensions(dimensions);
+  int dimensions[3] = { 0, 0, 0 };
+  if (auto* structured = vtkStructuredGrid::SafeDownCast(source))
+  {
+    structured->GetDimensions(dimensions);
+  }
+  else if (straight)
+  {
+    straight->GetDimensions(dimensions);
+  }
+  else if (vtkCellArray* ids = vtkExplicitStructuredGrid::SafeDownCast(source)->GetCells())
+  {
+    cells.emplace_back(ids, ids->GetMTime());
+  }
   for (const int size : dimensions)
   {
     cells.emplace_back(nullptr, static_cast<vtkMTimeType>(size));
@@ -238,6 +252,11 @@ MeshParts MeshGrids::Find(vtkDataObject* object, bool made, const ArraySelector*
       {
         grids.push_back(static_cast<vtkDataSet*>(leaves->GetCurrentDataObject()));
         parts.Blocks.push_back(FindBlock(composite, leaves));
+      }
+      else if (const auto image = vtkImageData::SafeDownCast(leaves->GetCurrentDataObject());
+               image && image->GetNumberOfCells() > 0)
+      {
+        parts.Ignored += (parts.Ignored.empty() ? "" : ", ") + FindBlock(composite, leaves);
       }
     }
   }

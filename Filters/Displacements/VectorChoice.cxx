@@ -83,7 +83,8 @@ void FillDeformationPort(bool isRest, vtkInformation* info)
   info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   // vtkCompositeDataSet has to be first. Otherwise the executive would iterate over the leaves.
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
-  for (const char* grid : { "vtkUnstructuredGrid", "vtkStructuredGrid", "vtkRectilinearGrid" })
+  for (const char* grid : { "vtkUnstructuredGrid", "vtkStructuredGrid", "vtkExplicitStructuredGrid",
+         "vtkRectilinearGrid" })
   {
     info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), grid);
   }

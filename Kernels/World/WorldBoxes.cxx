@@ -9,6 +9,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vector_relational.hpp>
 
+#include <algorithm>
 #include <limits>
 #include <sstream>
 
@@ -119,6 +120,26 @@ std::string DescribeSmallness(const char* what, const Box& box, const ImageGeome
 }
 
 } // namespace
+
+std::string DescribeRounding(const char* what, const char* consequence, const ImageGeometry& volume)
+{
+  const Box box = GetWorldBox(volume);
+  const glm::dvec3 far = glm::max(glm::abs(box.Least), glm::abs(box.Most));
+  const double largest = std::max({ far.x, far.y, far.z });
+  const double error = largest / static_cast<double>(1 << 24);
+  const glm::dvec3 spacing = glm::abs(volume.Spacing);
+  const double smallest = std::min({ spacing.x, spacing.y, spacing.z });
+  if (error <= smallest / 256.0)
+  {
+    return "";
+  }
+  std::ostringstream text;
+  text.precision(3);
+  text << what << " are floats, which round coordinates of " << largest << " by up to " << error
+       << ", " << error / smallest << " times the spacing of the volume. " << consequence
+       << "subtract one offset from all coordinates.";
+  return text.str();
+}
 
 std::string DescribeSmallness(const ImageGeometry& field, const ImageGeometry& volume)
 {

@@ -28,6 +28,18 @@ DEFORMVOLUME_EXPORT std::string DescribeSmallness(
 DEFORMVOLUME_EXPORT std::string DescribeSmallness(
   const MeshAtRest& mesh, const ImageGeometry& volume);
 
+/// Returns a warning if single precision rounds world coordinates of a volume by more than 1/256
+/// voxel, because it is far from the origin; otherwise "". what: what is rounded. consequence: the
+/// beginning of the sentence with the advice.
+DEFORMVOLUME_EXPORT std::string DescribeRounding(
+  const char* what, const char* consequence, const ImageGeometry& volume);
+///@{
+/// The arguments for meshes with points in single precision.
+constexpr const char* FloatPoints = "The points of the deformation mesh";
+constexpr const char* LostVoxels =
+  "Voxels at its boundary may be lost: use points in double precision, or ";
+///@}
+
 /// Returns the text of the error that a mesh at rest contains no voxel.
 DEFORMVOLUME_EXPORT std::string DescribeMiss(const MeshAtRest& mesh, const ImageGeometry& volume);
 

@@ -12,9 +12,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <memory>
-#include <sstream>
 #include <thread>
 #include <type_traits>
 
@@ -554,31 +552,6 @@ void WorldDeformer::Internals::DivideDensities(
   }
 }
 
-namespace
-{
-
-// Returns a warning if positions far from the origin of the world cannot be exact floats, or "".
-// middle: of the volume, or 0.
-std::string DescribeRounding(const glm::dvec3& middle, const glm::dvec3& spacing)
-{
-  const double largest = std::max({ std::abs(middle.x), std::abs(middle.y), std::abs(middle.z) });
-  const double error = largest / static_cast<double>(1 << 24);
-  const double smallest =
-    std::min({ std::abs(spacing.x), std::abs(spacing.y), std::abs(spacing.z) });
-  if (error <= smallest / 256.0)
-  {
-    return "";
-  }
-  std::ostringstream text;
-  text << "Rest positions are floats, which round coordinates of " << largest << " by up to "
-       << error << ", " << error / smallest
-       << " times the spacing. Subtract one offset from the coordinates of the volume, the "
-          "deformation and the reference.";
-  return text.str();
-}
-
-} // namespace
-
 void WorldDeformer::Internals::Describe(
   const WorldRequest& request, const Extent& whole, WorldReport& report)
 {
@@ -607,7 +580,7 @@ void WorldDeformer::Internals::Describe(
   }
   if (request.RestPositions)
   {
-    warn(DescribeRounding(GetPositionsOrigin(*this->Volume), this->Volume->Spacing));
+    warn(DescribeRounding("Rest positions", "To avoid that, ", *this->Volume));
   }
   if (this->Deformation != Deformations::None && !this->Outside.AreExtrapolated())
   {
@@ -621,7 +594,17 @@ void WorldDeformer::Internals::Describe(
     {
       warn(warning);
     }
+    if (this->Mesh.ArePointsFloats())
+    {
+      warn(DescribeRounding(FloatPoints, LostVoxels, *this->Volume));
+    }
     const MeshAtRest mesh = this->Mesh.GetAtRest();
+    if (!isRasterized && !this->Masks.ActiveTetrahedra && !this->Masks.CutTetrahedra)
+    {
+      this->Splits.Update(mesh, mesh.ShapeVersion);
+      const std::string split = this->Splits.Describe(this->Mesh.GetDisplacements().data());
+      warn(split.empty() ? "" : split + " Cut the volume along the split, or merge these nodes.");
+    }
     const FadedLinks& links = this->Mapping.GetMapping().Faded;
     if (links.AreThere() && this->Mapping.IsCurrent(mesh, this->GetMapped()))
     {

@@ -4,6 +4,7 @@
 
 #include "FadedMesh.h"
 #include "MappingCache.h"
+#include "SplitNodes.h"
 #include "VectorField.h"
 #include "VolumeDeformer.h"
 #include "VoxelJacobians.h"
@@ -109,6 +110,8 @@ private:
   void Finish(const WorldRequest& request, const Extent& extent);
   void DivideDensities(const WorldRequest& request, const float* jacobians, std::int64_t voxels);
   void Describe(const WorldRequest& request, const Extent& whole, WorldReport& report);
+
+  SplitNodes Splits;
 
   // Additional arrays, and the data for which they were made.
   std::array<std::vector<float>, 3> Positions;

@@ -60,6 +60,7 @@ void CheckFaults(
 void WorldMesh::Set(const VectorView& points, MeshCells&& cells)
 {
   CopyVectors(points, this->WorldPoints, this->PointFaults);
+  this->PointsAreFloats = !points.AreDoubles;
   this->Cells = std::move(cells);
   this->WorldVectors.clear();
   this->VectorsAreSet = false;

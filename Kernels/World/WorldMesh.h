@@ -45,6 +45,8 @@ public:
   ///@}
 
   std::size_t GetNumberOfNodes() const { return this->WorldPoints.size(); }
+  /// Whether the points were given in single precision.
+  bool ArePointsFloats() const { return this->PointsAreFloats; }
   const MeshCells& GetCells() const { return this->Cells; }
 
   ///@{
@@ -68,6 +70,7 @@ private:
   MeshCells Cells;
   std::vector<glm::dvec3> WorldPoints;
   std::vector<glm::dvec3> WorldVectors;
+  bool PointsAreFloats = false;
   bool VectorsAreSet = false;
   NodeFaults PointFaults;
   NodeFaults VectorFaults;

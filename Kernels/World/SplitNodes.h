@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef DeformVolumeSplitNodes_h
+#define DeformVolumeSplitNodes_h
+
+#include "DeformVolumeExport.h"
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace deformvolume
+{
+
+struct MeshAtRest;
+
+/// The nodes of a mesh that share their position at rest with other nodes.
+class DEFORMVOLUME_EXPORT SplitNodes
+{
+public:
+  /// Finds the nodes, unless this is the mesh of the last call. connectivity: a number that changes
+  /// with the tetrahedra.
+  void Update(const MeshAtRest& mesh, std::uint64_t connectivity);
+  /// Returns the beginning of a warning if such nodes move apart by more than an output voxel, so
+  /// that the volume is stretched over a gap; otherwise "". displacements: three floats per node,
+  /// in output voxels.
+  std::string Describe(const float* displacements) const;
+
+private:
+  std::vector<std::pair<std::int32_t, std::int32_t>> Pairs; // of used nodes with one position
+  const void* Owner = nullptr;
+  std::uint64_t ShapeVersion = 0;
+  std::uint64_t Connectivity = 0;
+};
+
+} // namespace deformvolume
+
+#endif
