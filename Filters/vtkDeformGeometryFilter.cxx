@@ -107,6 +107,7 @@ private:
   vtkIdType NumberDone = 0;
   double LongestFading = 0.0; // see PointMap::Image
 
+  std::string IgnoredBlocks; // a warning, or ""
   std::set<std::string> WarnedOf;
 };
 
@@ -135,6 +136,7 @@ void vtkDeformGeometryFilter::vtkInternals::ReadDeformation(
       source.ShapeIsMade = !deformvolume::IsInMemory(this->Self, 1);
       source.RestIsMade = !deformvolume::IsInMemory(this->Self, 2);
       this->Grids.Find(source);
+      this->IgnoredBlocks = deformvolume::DescribeIgnored(source.ShapeParts);
     });
   source = this->Gathering.Gather(ranks, source);
   ranks.Attempt(
@@ -412,6 +414,10 @@ void vtkDeformGeometryFilter::vtkInternals::WarnOfIgnored(const std::vector<vtkP
   if (points == 0 && !deformvolume::Ranks().AreMany())
   {
     warnings.insert("The input on port 0 has no points, so the output has no points.");
+  }
+  if (!this->IgnoredBlocks.empty())
+  {
+    warnings.insert(this->IgnoredBlocks);
   }
   if (this->Map && !this->Deformation.IsField())
   {

@@ -29,10 +29,10 @@
  * Without a deformation the volume stays at rest, and only its masks and cuts are applied. The
  * deformation is one of:
  * - a mesh: vtkUnstructuredGrid, vtkStructuredGrid, vtkExplicitStructuredGrid, vtkRectilinearGrid,
- *   or a composite dataset of these. Cells other than tetrahedra are split. Cells that vtkGhostType marks as hidden or
- *   duplicate are left out, and cells with a point that it hides or whose vtkValidPointMask is 0.
- *   The points are at rest, and their displacements are a point array of three components in world
- *   units; or they are deformed, see port 2 and PointsAreDeformed.
+ *   or a composite dataset of these. Cells other than tetrahedra are split. Cells that vtkGhostType
+ *   marks as hidden or duplicate are left out, and cells with a point that it hides or whose
+ *   vtkValidPointMask is 0. The points are at rest, and their displacements are a point array of
+ *   three components in world units; or they are deformed, see port 2 and PointsAreDeformed.
  * - a displacement field: vtkImageData with a point array of three components in world units. It
  *   may have another grid than the volume. Points that vtkGhostType hides, or whose
  *   vtkValidPointMask is 0, are undefined: voxels whose interpolation needs one are not covered.

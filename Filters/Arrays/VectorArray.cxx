@@ -220,8 +220,10 @@ vtkDataArray* FindVectors(vtkDataSet* dataSet)
   {
     vtkDataArray* array = pointData->GetArray(i);
     // Colors and normals are no displacements.
-    if (array && array->GetNumberOfComponents() == 3 && array != pointData->GetNormals() &&
-      array->GetDataType() != VTK_UNSIGNED_CHAR)
+    const bool isOther = array &&
+      (array == pointData->GetNormals() || array->GetDataType() == VTK_UNSIGNED_CHAR ||
+        (array->GetName() && std::string(array->GetName()) == "Normals"));
+    if (array && array->GetNumberOfComponents() == 3 && !isOther)
     {
       if (found)
       {

@@ -104,7 +104,7 @@ struct ExecutionState
   Extent LastNeeded{ { 0, -1, 0, -1, 0, -1 } };
 
   deformvolume::SplitNodes Splits;
-  bool HasWarnedOfSplits = false;
+  std::uint64_t WarnedOfSplitsOf = 0; // the version of the shape; 0: not warned
   // Versions of the mapping and of the vectors for which WarnOfFading() was called last.
   std::pair<std::uint64_t, std::uint64_t> VersionsOfFading;
   // The last warning about the fading of a field.

@@ -26,6 +26,32 @@ using deformvolume::Error;
 using deformvolume::ImageGeometry;
 using deformvolume::IndexBounds;
 
+namespace
+{
+
+// Whether a simulation is upstream of an algorithm, or is the algorithm itself.
+bool IsSimulated(vtkAlgorithm* algorithm, int depth)
+{
+  constexpr int deepest = 1000;
+  if (vtkElasticDeformation::SafeDownCast(algorithm))
+  {
+    return true;
+  }
+  for (int port = 0; port < algorithm->GetNumberOfInputPorts() && depth < deepest; ++port)
+  {
+    for (int i = 0; i < algorithm->GetNumberOfInputConnections(port); ++i)
+    {
+      if (IsSimulated(algorithm->GetInputAlgorithm(port, i), depth + 1))
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+} // namespace
+
 //------------------------------------------------------------------------------
 IndexBounds vtkDeformVolumeFilter::vtkInternals::ReadBounds(const deformvolume::Ranks& ranks,
   const ImageGeometry& volume, vtkInformation* output, const double* time)
@@ -159,6 +185,19 @@ void vtkDeformVolumeFilter::vtkInternals::UpdateBoundsOfMesh(
 }
 
 //------------------------------------------------------------------------------
+bool vtkDeformVolumeFilter::vtkInternals::DeformationHasTimes() const
+{
+  bool has = false;
+  for (int port = 1; port < 3; ++port)
+  {
+    has = has ||
+      (this->Self->GetNumberOfInputConnections(port) > 0 &&
+        !deformvolume::GetTimes(this->Self->GetInputInformation(port, 0)).empty());
+  }
+  return has;
+}
+
+//------------------------------------------------------------------------------
 std::optional<double> vtkDeformVolumeFilter::vtkInternals::FindTime(vtkInformation* output) const
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -174,11 +213,11 @@ std::optional<double> vtkDeformVolumeFilter::vtkInternals::FindTime(vtkInformati
       continue;
     }
     vtkInformation* input = this->Self->GetInputInformation(port, 0);
-    vtkAlgorithm* source = this->Self->GetInputAlgorithm(port, 0);
     // A source of continuous times, such as vtkTemporalInterpolator, may fail without a time. A
     // reader has a current step, which a program may have chosen, and a simulation advances.
     if (!input->Has(Pipeline::TIME_STEPS()) && input->Has(Pipeline::TIME_RANGE()) &&
-      !input->Has(Pipeline::UPDATE_TIME_STEP()) && !vtkElasticDeformation::SafeDownCast(source))
+      !input->Has(Pipeline::UPDATE_TIME_STEP()) &&
+      !IsSimulated(this->Self->GetInputAlgorithm(port, 0), 0))
     {
       const double begin = input->Get(Pipeline::TIME_RANGE())[0];
       first = std::min(first.value_or(begin), begin);
@@ -193,22 +232,29 @@ std::optional<double> vtkDeformVolumeFilter::vtkInternals::FindTimeOfData() cons
   auto* previous = vtkInformationDoubleKey::SafeDownCast(
     vtkInformationKeyLookup::Find("PREVIOUS_UPDATE_TIME_STEP", "vtkStreamingDemandDrivenPipeline"));
   std::optional<double> time;
+  bool isOne = true;
   for (int port = 1; port < 3; ++port)
   {
-    vtkDataObject* data = this->Self->GetNumberOfInputConnections(port) > 0
-      ? this->Self->GetInputDataObject(port, 0)
-      : nullptr;
-    if (data && data->GetInformation()->Has(vtkDataObject::DATA_TIME_STEP()))
+    if (this->Self->GetNumberOfInputConnections(port) == 0 ||
+      deformvolume::GetTimes(this->Self->GetInputInformation(port, 0)).empty())
     {
-      time = data->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP());
-      vtkInformation* input = this->Self->GetInputInformation(port, 0);
-      if (previous && !input->Has(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP()))
-      {
-        input->Set(previous, *time); // a request of this time need not read the step again
-      }
+      continue;
+    }
+    vtkDataObject* data = this->Self->GetInputDataObject(port, 0);
+    if (!data || !data->GetInformation()->Has(vtkDataObject::DATA_TIME_STEP()))
+    {
+      return std::nullopt;
+    }
+    const double now = data->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP());
+    isOne = isOne && (!time || *time == now);
+    time = now;
+    vtkInformation* input = this->Self->GetInputInformation(port, 0);
+    if (previous && !input->Has(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP()))
+    {
+      input->Set(previous, now); // a request of this time need not read the step again
     }
   }
-  return time;
+  return isOne ? time : std::nullopt;
 }
 
 //------------------------------------------------------------------------------
@@ -304,7 +350,7 @@ void vtkDeformVolumeFilter::vtkInternals::HoldTime(vtkInformation* output)
   const bool isNew = !this->InformationFailure && this->EndsWithVolume() &&
     output->Has(Pipeline::UPDATE_TIME_STEP()) &&
     this->State->TimesInBounds.count(output->Get(Pipeline::UPDATE_TIME_STEP())) == 0 &&
-    !this->State->TimesInBounds.empty();
+    this->DeformationHasTimes();
   if (!ranks.IsAny(isNew))
   {
     return;

@@ -160,15 +160,17 @@ public:
     return { this->Self->GenerateRestPositions, this->Self->GenerateJacobian,
       this->Self->GenerateFoldCount, this->DensityArrays };
   }
-  /// Warns if density arrays lack a part of the volume, unless the last warning was the same.
   /// Announces the type of the active scalars of the output if they are a density of integers.
   void AnnounceScalars(vtkInformation* output) const;
+
+  /// Warns if density arrays lack a part of the volume, unless the last warning was the same.
   void WarnOfLoss(const deformvolume::ExtraArrays::Loss& loss);
 
+  /// Warns if the volume is stretched over the gap of a split mesh, once for a shape of the mesh.
+  /// volume: with its masks.
+  void WarnOfSplits(vtkImageData* volume);
   /// Warns if kept voxels are certainly torn or folded, if the deformation has changed. output: the
   /// whole extent of the output.
-  /// Warns if the volume is stretched over the gap of a split mesh. volume: with its masks.
-  void WarnOfSplits(vtkImageData* volume);
   void WarnOfFading(const deformvolume::MappedVolume& mapped, const deformvolume::Extent& output);
   void WarnOfFadingField(
     const deformvolume::MappedVolume& mapped, const deformvolume::Extent& output);
@@ -222,7 +224,9 @@ private:
   /// The time for which bounds are computed first: the requested time, or the first time of inputs
   /// that need a requested one. Empty: the inputs have no times, or choose one.
   std::optional<double> FindTime(vtkInformation* output) const;
-  /// The time of inputs that have chosen one. Empty if they have no times.
+  /// Whether the deformation announces times.
+  bool DeformationHasTimes() const;
+  /// The time of inputs that have chosen one. Empty if they have none, or different ones.
   std::optional<double> FindTimeOfData() const;
   /// The bounds of the deformed volume, united over the times seen so far. Collective.
   deformvolume::IndexBounds GetDeformedBounds(const deformvolume::Ranks& ranks,

@@ -344,17 +344,11 @@ int vtkDeformVolumeFilter::RequestData(
             ? deformvolume::DescribeSmallness(deformvolume::GetGeometry(field), geometry)
             : deformvolume::DescribeSmallness(deformation.GetMeshAtRest(), geometry));
       }
-      if (HasFloats(source.GetRestParts()))
+      if (!mapped.Outside.AreExtrapolated() && HasFloats(source.GetRestParts()))
       {
-        warnings.push_back(deformvolume::DescribeRounding(
-          deformvolume::FloatPoints, deformvolume::LostVoxels, geometry));
+        warnings.push_back(deformvolume::DescribeRounding(deformation.GetMeshAtRest(), geometry));
       }
-      if (!source.ShapeParts.Ignored.empty())
-      {
-        warnings.push_back(
-          "These blocks on input port 1 are image data, and not part of the mesh: " +
-          source.ShapeParts.Ignored + ". Convert them to unstructured grids (vtkAppendFilter).");
-      }
+      warnings.push_back(deformvolume::DescribeIgnored(source.ShapeParts));
       this->Internals->WarnOfInputs(volume, leftOut, warnings);
       this->Internals->ReleaseOldVolumes(arrays);
       worked = state.Volume.Update(volume, this->SamplingFactor, arrays);

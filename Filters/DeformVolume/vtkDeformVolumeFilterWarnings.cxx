@@ -108,21 +108,29 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfLoss(const deformvolume::ExtraAr
 void vtkDeformVolumeFilter::vtkInternals::WarnOfSplits(vtkImageData* volume)
 {
   const deformvolume::Deformation& mesh = this->State->Deformation;
+  const std::uint64_t shape = mesh.GetRestMesh().GetShapeVersion();
   if (mesh.IsField() || mesh.GetDeviceVectors() || this->Self->OpenSplits ||
     this->Self->ResamplerInUse == MESH_RASTERIZATION || deformvolume::HasCut(volume) ||
-    volume->GetCellData()->HasArray(deformvolume::ActiveTetrahedraName))
+    volume->GetCellData()->HasArray(deformvolume::ActiveTetrahedraName) ||
+    volume->HasAnyBlankPoints() || volume->HasAnyBlankCells())
   {
-    this->State->HasWarnedOfSplits = false;
+    this->State->WarnedOfSplitsOf = 0;
     return;
   }
+  if (this->State->WarnedOfSplitsOf == shape)
+  {
+    return;
+  }
+  deformvolume::Extent voxels;
+  volume->GetExtent(voxels.data());
   this->State->Splits.Update(mesh.GetMeshAtRest(), mesh.GetRestMesh().GetConnectivityVersion());
-  const std::string text = this->State->Splits.Describe(mesh.GetNodeDisplacements());
-  if (!text.empty() && !this->State->HasWarnedOfSplits)
+  const std::string text = this->State->Splits.Describe(mesh.GetNodeDisplacements(), voxels);
+  this->State->WarnedOfSplitsOf = text.empty() ? 0 : shape;
+  if (!text.empty())
   {
     vtkWarningWithObjectMacro(this->Self,
       << text << " Set OpenSplits, or cut the volume along the split with vtkCutVolume.");
   }
-  this->State->HasWarnedOfSplits = !text.empty();
 }
 
 //------------------------------------------------------------------------------

@@ -61,6 +61,14 @@ void MarkMissing(vtkIdType first, vtkIdType count, const VectorTaker& take, Node
 
 } // namespace
 
+std::string DescribeIgnored(const MeshParts& parts)
+{
+  return parts.Ignored.empty() ? ""
+                               : "These blocks of the deformation are image data, and not part of "
+                                 "the mesh: " +
+      parts.Ignored + ". Convert them to unstructured grids (vtkAppendFilter).";
+}
+
 std::string DescribePart(const MeshParts& parts, std::size_t part, const std::string& name)
 {
   return (parts.Blocks.empty() ? "" : parts.Blocks[part] + " of ") + "the " + name;

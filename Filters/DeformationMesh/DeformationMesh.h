@@ -38,6 +38,9 @@ struct MeshParts : std::vector<vtkUnstructuredGrid*>
   std::string Ignored;
 };
 
+/// Returns a warning that names the ignored blocks; "" if there are none.
+std::string DescribeIgnored(const MeshParts& parts);
+
 /// The name of a part of a mesh in messages. name: the name of the mesh.
 std::string DescribePart(const MeshParts& parts, std::size_t part, const std::string& name);
 

@@ -251,7 +251,6 @@ void ExtraArrays::FinishFoldCounts(vtkImageData* output)
 void ExtraArrays::FinishRestPositions(double background, vtkImageData* output) const
 {
   const vtkIdType voxels = output->GetNumberOfPoints();
-  const signed char* valid = GetCoverage(output);
   const auto join = [&](auto* joined, const auto& convert)
   {
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -281,6 +280,7 @@ void ExtraArrays::FinishRestPositions(double background, vtkImageData* output) c
     doubles->SetName(POSITIONS);
     doubles->SetNumberOfComponents(3);
     doubles->SetNumberOfTuples(voxels);
+    const signed char* valid = GetCoverage(output);
     join(doubles->GetPointer(0),
       [&](float value, std::size_t i, int axis)
       { return valid[i] ? this->PositionsOrigin[axis] + static_cast<double>(value) : background; });

@@ -78,7 +78,7 @@ std::string FindFaultOfFading(const FadedLinks& links, const std::vector<Tetrahe
       ? "where the closest point of the mesh jumps, as between two bodies that move apart. Add "
         "cells to the mesh between them, or set a smaller fade distance."
       : "as the fade distance is 0 and the boundary of the mesh moves. Set a fade distance of at "
-        "least twice its displacement.";
+        "least twice its displacement, unless the volume is cut there.";
   }
   const double longest = links.GetLongestDisplacement(tetrahedra, displacements, spacing);
   const std::string folds =

@@ -2,14 +2,13 @@
 #include "SplitNodes.h"
 
 #include "CoincidentPoints.h"
+#include "IndexBounds.h"
 #include "MeshAtRest.h"
 
 #include <glm/geometric.hpp>
-#include <glm/vec3.hpp>
+#include <glm/vector_relational.hpp>
 
-#include <algorithm>
 #include <cstddef>
-#include <sstream>
 
 namespace deformvolume
 {
@@ -38,34 +37,35 @@ void SplitNodes::Update(const MeshAtRest& mesh, std::uint64_t connectivity)
       unsigned char& known = isKnown[static_cast<std::size_t>(node)];
       if (first != node && known == 0)
       {
-        this->Pairs.emplace_back(first, node);
+        this->Pairs.push_back({ first, node, mesh.Points[static_cast<std::size_t>(node)] });
       }
       known = 1;
     }
   }
 }
 
-std::string SplitNodes::Describe(const float* displacements) const
+std::string SplitNodes::Describe(const float* displacements, const Extent& voxels) const
 {
   const auto get = [displacements](std::int32_t node)
   {
     const float* vector = displacements + 3 * static_cast<std::size_t>(node);
     return glm::dvec3(vector[0], vector[1], vector[2]);
   };
-  double farthest = 0.0;
-  for (const auto& [first, second] : this->Pairs)
+  IndexBounds torn;
+  for (const Pair& pair : this->Pairs)
   {
-    farthest = std::max(farthest, glm::distance(get(first), get(second)));
+    if (glm::distance(get(pair.First), get(pair.Second)) > 1.0)
+    {
+      torn.Add(pair.Position);
+    }
   }
-  if (!(farthest > 1.0))
-  {
-    return "";
-  }
-  std::ostringstream text;
-  text.precision(3);
-  text << "The deformation mesh is split: nodes with one position at rest move up to " << farthest
-       << " output voxels apart, and the volume is stretched over the gap.";
-  return text.str();
+  const glm::dvec3 first(voxels[0], voxels[2], voxels[4]);
+  const glm::dvec3 last(voxels[1], voxels[3], voxels[5]);
+  const bool isBetween = !torn.IsEmpty() && glm::all(glm::lessThan(torn.Min, last)) &&
+    glm::all(glm::greaterThan(torn.Max, first));
+  return isBetween ? "The deformation mesh is split: nodes with one position at rest move more "
+                     "than an output voxel apart, and the volume is stretched over the gap."
+                   : "";
 }
 
 } // namespace deformvolume

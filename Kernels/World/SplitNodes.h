@@ -3,10 +3,12 @@
 #define DeformVolumeSplitNodes_h
 
 #include "DeformVolumeExport.h"
+#include "Extent.h"
+
+#include <glm/vec3.hpp>
 
 #include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace deformvolume
@@ -23,11 +25,18 @@ public:
   void Update(const MeshAtRest& mesh, std::uint64_t connectivity);
   /// Returns the beginning of a warning if such nodes move apart by more than an output voxel, so
   /// that the volume is stretched over a gap; otherwise "". displacements: three floats per node,
-  /// in output voxels.
-  std::string Describe(const float* displacements) const;
+  /// in output voxels. voxels: those of the volume. Splits beside them do not count.
+  std::string Describe(const float* displacements, const Extent& voxels) const;
 
 private:
-  std::vector<std::pair<std::int32_t, std::int32_t>> Pairs; // of used nodes with one position
+  /// Two nodes that tetrahedra use.
+  struct Pair
+  {
+    std::int32_t First;
+    std::int32_t Second;
+    glm::dvec3 Position; // of both
+  };
+  std::vector<Pair> Pairs;
   const void* Owner = nullptr;
   std::uint64_t ShapeVersion = 0;
   std::uint64_t Connectivity = 0;

@@ -121,24 +121,68 @@ std::string DescribeSmallness(const char* what, const Box& box, const ImageGeome
 
 } // namespace
 
-std::string DescribeRounding(const char* what, const char* consequence, const ImageGeometry& volume)
+namespace
 {
-  const Box box = GetWorldBox(volume);
-  const glm::dvec3 far = glm::max(glm::abs(box.Least), glm::abs(box.Most));
-  const double largest = std::max({ far.x, far.y, far.z });
-  const double error = largest / static_cast<double>(1 << 24);
-  const glm::dvec3 spacing = glm::abs(volume.Spacing);
-  const double smallest = std::min({ spacing.x, spacing.y, spacing.z });
-  if (error <= smallest / 256.0)
+
+// The rounding of world coordinates of a volume in single precision.
+struct Rounding
+{
+  double Largest = 0.0; // coordinate
+  double Error = 0.0;
+  double Voxels = 0.0; // the error in voxels
+
+  explicit Rounding(const ImageGeometry& volume)
+  {
+    const Box box = GetWorldBox(volume);
+    const glm::dvec3 far = glm::max(glm::abs(box.Least), glm::abs(box.Most));
+    this->Largest = std::max({ far.x, far.y, far.z });
+    this->Error = this->Largest / static_cast<double>(1 << 24);
+    const glm::dvec3 spacing = glm::abs(volume.Spacing);
+    this->Voxels = this->Error / std::min({ spacing.x, spacing.y, spacing.z });
+  }
+  bool IsSmall() const { return this->Voxels <= 1.0 / 256.0; }
+  std::string Describe(const char* what) const
+  {
+    std::ostringstream text;
+    text.precision(3);
+    text << what << " are floats, which round coordinates of " << this->Largest << " by up to "
+         << this->Error << ", " << this->Voxels << " times the spacing of the volume";
+    return text.str();
+  }
+};
+
+} // namespace
+
+std::string DescribeRounding(const ImageGeometry& volume)
+{
+  const Rounding rounding(volume);
+  return rounding.IsSmall() ? ""
+                            : rounding.Describe("Rest positions") +
+      ". To avoid that, subtract one offset from all coordinates.";
+}
+
+std::string DescribeRounding(const MeshAtRest& mesh, const ImageGeometry& volume)
+{
+  const Rounding rounding(volume);
+  if (rounding.IsSmall())
   {
     return "";
   }
-  std::ostringstream text;
-  text.precision(3);
-  text << what << " are floats, which round coordinates of " << largest << " by up to " << error
-       << ", " << error / smallest << " times the spacing of the volume. " << consequence
-       << "subtract one offset from all coordinates.";
-  return text.str();
+  const Box box = FindBox(mesh, [](const glm::dvec3& point) { return point; });
+  const Box voxels = GetIndexBox(volume.PointExtent);
+  const glm::dvec3 gaps[2] = { box.Least - voxels.Least, voxels.Most - box.Most };
+  bool isLost = false;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    for (const glm::dvec3& gap : gaps)
+    {
+      isLost = isLost || (gap[axis] > 0.0 && gap[axis] <= rounding.Voxels);
+    }
+  }
+  return isLost ? rounding.Describe("The points of the deformation mesh") +
+      ". So the mesh ends before the outermost voxels, which are lost: use points in double "
+      "precision, or subtract one offset from all coordinates."
+                : "";
 }
 
 std::string DescribeSmallness(const ImageGeometry& field, const ImageGeometry& volume)

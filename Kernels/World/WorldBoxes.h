@@ -28,17 +28,13 @@ DEFORMVOLUME_EXPORT std::string DescribeSmallness(
 DEFORMVOLUME_EXPORT std::string DescribeSmallness(
   const MeshAtRest& mesh, const ImageGeometry& volume);
 
-/// Returns a warning if single precision rounds world coordinates of a volume by more than 1/256
-/// voxel, because it is far from the origin; otherwise "". what: what is rounded. consequence: the
-/// beginning of the sentence with the advice.
+/// Returns a warning if single precision rounds rest positions in a volume by more than 1/256
+/// voxel, because it is far from the origin; otherwise "".
+DEFORMVOLUME_EXPORT std::string DescribeRounding(const ImageGeometry& volume);
+/// Returns a warning if the points of a mesh, which are floats, are rounded by more than that, and
+/// the mesh ends by less than the rounding before the outermost voxels; otherwise "".
 DEFORMVOLUME_EXPORT std::string DescribeRounding(
-  const char* what, const char* consequence, const ImageGeometry& volume);
-///@{
-/// The arguments for meshes with points in single precision.
-constexpr const char* FloatPoints = "The points of the deformation mesh";
-constexpr const char* LostVoxels =
-  "Voxels at its boundary may be lost: use points in double precision, or ";
-///@}
+  const MeshAtRest& mesh, const ImageGeometry& volume);
 
 /// Returns the text of the error that a mesh at rest contains no voxel.
 DEFORMVOLUME_EXPORT std::string DescribeMiss(const MeshAtRest& mesh, const ImageGeometry& volume);

@@ -580,7 +580,7 @@ void WorldDeformer::Internals::Describe(
   }
   if (request.RestPositions)
   {
-    warn(DescribeRounding("Rest positions", "To avoid that, ", *this->Volume));
+    warn(DescribeRounding(*this->Volume));
   }
   if (this->Deformation != Deformations::None && !this->Outside.AreExtrapolated())
   {
@@ -594,15 +594,17 @@ void WorldDeformer::Internals::Describe(
     {
       warn(warning);
     }
-    if (this->Mesh.ArePointsFloats())
-    {
-      warn(DescribeRounding(FloatPoints, LostVoxels, *this->Volume));
-    }
     const MeshAtRest mesh = this->Mesh.GetAtRest();
-    if (!isRasterized && !this->Masks.ActiveTetrahedra && !this->Masks.CutTetrahedra)
+    if (this->Mesh.ArePointsFloats() && !this->Outside.AreExtrapolated())
+    {
+      warn(DescribeRounding(mesh, *this->Volume));
+    }
+    const WorldMasks& masks = this->Masks;
+    if (!isRasterized && !masks.Blanked && !masks.ActiveTetrahedra && !masks.CutTetrahedra)
     {
       this->Splits.Update(mesh, mesh.ShapeVersion);
-      const std::string split = this->Splits.Describe(this->Mesh.GetDisplacements().data());
+      const std::string split =
+        this->Splits.Describe(this->Mesh.GetDisplacements().data(), this->Volume->PointExtent);
       warn(split.empty() ? "" : split + " Cut the volume along the split, or merge these nodes.");
     }
     const FadedLinks& links = this->Mapping.GetMapping().Faded;

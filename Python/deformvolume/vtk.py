@@ -833,9 +833,10 @@ class DeformVolume(VTKPythonAlgorithmBase):
         output.GetFieldData().PassData(volume.GetFieldData())
         self._counts = report.counts()
         self._device = report.device.decode("utf-8", "replace")
-        texts = [report.warnings.decode("utf-8", "replace")] if report.warnings else []
         warnings = self._find_warnings(volume)
-        texts += sorted(warnings - self._warned)
+        if report.warnings:
+            warnings.add(report.warnings.decode("utf-8", "replace"))
+        texts = sorted(warnings - self._warned)
         self._warned = warnings
         for text in texts:
             self._warn(text)

@@ -10,17 +10,19 @@ from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData, vtkUnstructuredGrid
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline as Pipeline
+from vtkmodules.vtkCommonTransforms import vtkTransform
+from vtkmodules.vtkFiltersGeneral import vtkTransformFilter
 from vtkmodules.vtkFiltersSources import vtkPlaneSource
 from vtkmodules.vtkImagingCore import vtkImageShiftScale, vtkRTAnalyticSource
 from vtkmodules.vtkImagingGeneral import vtkImageGaussianSmooth
 
 
 class Series(VTKPythonAlgorithmBase):
-    """A source with the time steps 0 to 3. make(time) returns its data."""
+    """A source with the time steps 0 to 3. make(time) returns its data. tells: whether its data always have a time."""
 
-    def __init__(self, kind, make):
+    def __init__(self, kind, make, tells=True):
         super().__init__(nInputPorts=0, nOutputPorts=1, outputType=kind)
-        self.make = make
+        self.make, self.tells = make, tells
 
     def RequestInformation(self, request, inputs, outputs):
         info = outputs.GetInformationObject(0)
@@ -34,7 +36,8 @@ class Series(VTKPythonAlgorithmBase):
         made = self.make(time)
         output = type(made).GetData(outputs)
         output.ShallowCopy(made)
-        output.GetInformation().Set(output.DATA_TIME_STEP(), time)
+        if self.tells:
+            output.GetInformation().Set(output.DATA_TIME_STEP(), time)
         return 1
 
 
@@ -86,6 +89,14 @@ def move_lattice(time):
     return mesh
 
 
+def warp_lattice(time):
+    mesh, points = make_lattice(size=16.0)
+    made = vtkPoints()
+    made.SetData(numpy_to_vtk(points + [time, 0, 0], deep=True))
+    mesh.SetPoints(made)
+    return mesh
+
+
 def test_times():
     handles, sheet = Series("vtkPolyData", make_handle), Series("vtkPolyData", make_sheet)
     source = make_source()
@@ -121,7 +132,25 @@ def test_chosen_time():
     assert deform.GetOutput().GetExtent() == (2, 18, 0, 16, 0, 16), deform.GetOutput().GetExtent()
     deform.UpdateTimeStep(3.0)
     assert deform.GetOutput().GetExtent() == (2, 19, 0, 16, 0, 16), deform.GetOutput().GetExtent()
-    # A simulation advances with each update.
+    # A source whose data have a time only if one is requested.
+    lattice = Series("vtkUnstructuredGrid", move_lattice, tells=False)
+    deform.SetDeformationConnection(lattice.GetOutputPort())
+    deform.Update()
+    deform.UpdateTimeStep(3.0)
+    assert deform.GetOutput().GetExtent()[1] == 19, deform.GetOutput().GetExtent()
+    # The deformed mesh and the rest mesh are at different times.
+    moved = Series("vtkUnstructuredGrid", warp_lattice)
+    rest = Series("vtkUnstructuredGrid", warp_lattice)
+    moved.UpdateTimeStep(2.0)
+    deform = dv.vtkDeformVolumeFilter()
+    deform.SetInputConnection(source.GetOutputPort())
+    deform.SetDeformationConnection(moved.GetOutputPort())
+    deform.SetRestConnection(rest.GetOutputPort())
+    deform.Update()
+    assert deform.GetOutput().GetExtent()[:2] == (2, 18), deform.GetOutput().GetExtent()
+    deform.UpdateTimeStep(0.0)
+    assert deform.GetOutput().GetExtent()[:2] == (0, 18), deform.GetOutput().GetExtent()
+    # A simulation advances with each update, also behind another filter.
     mesh, points = make_lattice(size=16.0)
     add(mesh.GetPointData(), "Fixed", (points[:, 2] == 0).astype(np.uint8))
     springs = dv.vtkMassSpringDeformation()
@@ -130,7 +159,10 @@ def test_chosen_time():
     springs.SetEndTime(1.0)
     deform = dv.vtkDeformVolumeFilter()
     deform.SetInputConnection(source.GetOutputPort())
-    deform.SetDeformationConnection(springs.GetOutputPort())
+    same = vtkTransformFilter()
+    same.SetInputConnection(springs.GetOutputPort())
+    same.SetTransform(vtkTransform())
+    deform.SetDeformationConnection(same.GetOutputPort())
     times = []
     for _ in range(3):
         springs.Modified()

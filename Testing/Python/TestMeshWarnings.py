@@ -70,7 +70,7 @@ class Deform:
 def test_splits():
     mesh = make_mesh(((0, 9.5), (9.5, 20)), (0, 6))
     deform = Deform(make_volume(), mesh)
-    assert "move up to 6 output voxels apart" in deform.update()
+    assert "move more than an output voxel apart" in deform.update()
     gap = deform.filter.GetNumberOfCoveredVoxels()
     assert deform.update() == ""
     deform.filter.OpenSplitsOn()
@@ -89,6 +89,14 @@ def test_splits():
     deform.filter.SetInputConnection(cut.GetOutputPort())
     assert deform.update() == ""
     assert deform.filter.GetNumberOfCoveredVoxels() == gap - 6 * 21 * 21
+    # Voxels are on one side only, or hidden on the other side.
+    for split in (20.5, 20):
+        assert Deform(make_volume(), make_mesh(((0, split), (split, 40)), (0, 6))).update() == ""
+    hidden = make_volume()
+    ghosts = numpy_to_vtk(np.where(np.arange(9261) % 21 >= 10, 2, 0).astype(np.uint8), deep=True)
+    ghosts.SetName("vtkGhostType")
+    hidden.GetPointData().AddArray(ghosts)
+    assert Deform(hidden, mesh).update() == ""
     # Parts that were never merged, but move together.
     assert Deform(make_volume(), make_mesh(((0, 9.5), (9.5, 20)), (2, 2.5))).update() == ""
 
@@ -101,6 +109,8 @@ def test_rounding():
     floats = Deform(make_volume(far), make_mesh(boxes, displacements, far, np.float32))
     assert "points of the deformation mesh are floats" in floats.update()
     assert Deform(make_volume(), make_mesh(boxes, displacements, kind=np.float32)).update() == ""
+    exact = (500000, 4000000, 0)
+    assert Deform(make_volume(exact), make_mesh(boxes, displacements, exact, np.float32)).update() == ""
     # Rest positions have double precision there.
     doubles.filter.GenerateRestPositionsOn()
     output = doubles.update() or doubles.filter.GetOutput()
