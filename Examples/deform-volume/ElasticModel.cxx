@@ -16,10 +16,14 @@
 #include <vtkMaterialFromVolume.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkStaticCellLocator.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
 #include <sstream>
 
 namespace
@@ -45,7 +49,8 @@ bool Fixes(const Fixation& fixation, const double point[3], vtkImageData* volume
     volume->GetPointData()->GetScalars()->GetComponent(voxel, 0) == fixation.Value;
 }
 
-void AddFixedNodes(const Options& options, vtkImageData* volume, vtkUnstructuredGrid* mesh)
+void AddFixedNodes(
+  const Options& options, vtkImageData* volume, vtkUnstructuredGrid* mesh, Messages& messages)
 {
   vtkNew<vtkUnsignedCharArray> fixed;
   fixed->SetName("Fixed");
@@ -71,6 +76,35 @@ void AddFixedNodes(const Options& options, vtkImageData* volume, vtkUnstructured
     }
   }
   mesh->GetPointData()->AddArray(fixed);
+  // With --pull this is an error of the model.
+  if (options.Pulls.empty() && fixed->GetRange()[0] > 0.0)
+  {
+    messages.DisplayWarningText(
+      "--fix fixes all nodes of the mesh, so nothing moves. Positions are "
+      "world coordinates of the volume.");
+  }
+}
+
+void WarnOfUnusedMaterials(const Options& options, vtkDataArray* values, Messages& messages)
+{
+  for (const MaterialOfValues& material : options.Materials)
+  {
+    bool isUsed = false;
+    for (vtkIdType voxel = 0; voxel < values->GetNumberOfTuples() && !isUsed; ++voxel)
+    {
+      const double value = values->GetComponent(voxel, 0);
+      isUsed = value >= material.Minimum && value < material.Maximum;
+    }
+    if (!isUsed)
+    {
+      double range[2];
+      values->GetFiniteRange(range, 0);
+      std::ostringstream text;
+      text << "No voxel has a value of the range " << material.Minimum << ":" << material.Maximum
+           << " of --material. Values of the volume are " << range[0] << " to " << range[1] << ".";
+      messages.DisplayWarningText(text.str().c_str());
+    }
+  }
 }
 
 // Gives the tetrahedra the materials of their voxels, by --material.
@@ -81,6 +115,7 @@ void AddMaterials(
   {
     return;
   }
+  WarnOfUnusedMaterials(options, volume->GetPointData()->GetScalars(), messages);
   constexpr int defaultMaterial = 255;
   vtkNew<vtkMaterialFromVolume> filter;
   filter->SetInputData(mesh);
@@ -105,21 +140,62 @@ void AddMaterials(
   mesh->ShallowCopy(filter->GetOutput());
 }
 
-// Gives the model one surface of all sheets of --cut, which cuts the mesh at rest.
-void AddSheets(
-  const Options& options, const Volume& volume, vtkElasticDeformation* model, Messages& messages)
+// Returns one surface of all sheets of --cut.
+vtkSmartPointer<vtkPolyData> ReadSheets(
+  const Options& options, const Volume& volume, Messages& messages)
 {
-  if (options.Cuts.empty())
-  {
-    return;
-  }
   vtkNew<vtkAppendPolyData> sheets;
   for (const std::string& path : options.Cuts)
   {
     sheets->AddInputData(ReadSheet(path, options, volume, messages));
   }
   sheets->Update();
-  model->SetSheetData(sheets->GetOutput());
+  return sheets->GetOutput();
+}
+
+// Returns how far split faces of a mesh at rest are from the sheet at most. Their nodes have copies
+// at the same position.
+double FindDistance(vtkPointSet* mesh, vtkPolyData* sheet)
+{
+  vtkNew<vtkStaticCellLocator> locator;
+  locator->SetDataSet(sheet);
+  locator->BuildLocator();
+  std::set<std::array<double, 3>> positions;
+  double farthest = 0.0;
+  for (vtkIdType node = 0; node < mesh->GetNumberOfPoints(); ++node)
+  {
+    std::array<double, 3> position;
+    mesh->GetPoint(node, position.data());
+    if (!positions.insert(position).second)
+    {
+      double closest[3];
+      vtkIdType cell = -1;
+      int part = 0;
+      double square = 0.0;
+      locator->FindClosestPoint(position.data(), closest, cell, part, square);
+      farthest = std::max(farthest, square);
+    }
+  }
+  return std::sqrt(farthest);
+}
+
+// Describes the cuts in the mesh of a model.
+std::string DescribeCut(vtkElasticDeformation* model, vtkPolyData* sheet, Messages& messages)
+{
+  const vtkIdType faces = model->GetNumberOfSplitFaces();
+  if (faces == 0)
+  {
+    messages.DisplayWarningText(
+      "No sheet of --cut crosses the mesh. Are they in the world coordinates of the volume?");
+  }
+  std::ostringstream text;
+  text.precision(3);
+  text << faces << " faces of tetrahedra of the mesh split";
+  if (faces > 0)
+  {
+    text << ", at most " << FindDistance(model->GetOutput(), sheet) << " mm from the sheet";
+  }
+  return text.str();
 }
 
 void SetUp(vtkElasticDeformation* model, const Options& options, vtkUnstructuredGrid* mesh)
@@ -137,14 +213,16 @@ void SetUp(vtkElasticDeformation* model, const Options& options, vtkUnstructured
 void DeformByElasticModel(const Options& options, const Volume& volume, vtkUnstructuredGrid* mesh,
   Messages& messages, Deformation& deformation, const FrameTaker& takeFrame)
 {
-  AddFixedNodes(options, volume.Image, mesh);
+  AddFixedNodes(options, volume.Image, mesh, messages);
   AddMaterials(options, volume.Image, mesh, messages);
   // update(part): moves the handles by this fraction of their displacements, or simulates this
   // fraction of --duration.
   const auto run = [&](vtkElasticDeformation* model, const auto& update)
   {
     SetUp(model, options, mesh);
-    AddSheets(options, volume, model, messages);
+    const bool cuts = !options.Cuts.empty();
+    const auto sheet = cuts ? ReadSheets(options, volume, messages) : nullptr;
+    model->SetSheetData(sheet);
     const int frames = std::max(options.Frames, 1);
     for (int frame = 1; frame <= frames; ++frame)
     {
@@ -157,15 +235,9 @@ void DeformByElasticModel(const Options& options, const Volume& volume, vtkUnstr
       deformation.Displacement = "Displacement";
       takeFrame(deformation);
     }
-    if (!options.Cuts.empty())
+    if (cuts)
     {
-      deformation.Cut =
-        std::to_string(model->GetNumberOfSplitFaces()) + " faces of tetrahedra of the mesh split";
-      if (model->GetNumberOfSplitFaces() == 0)
-      {
-        messages.DisplayWarningText(
-          "No sheet of --cut crosses the mesh. Are they in the world coordinates of the volume?");
-      }
+      deformation.Cut = DescribeCut(model, sheet, messages);
     }
   };
   std::ostringstream text;
@@ -179,9 +251,13 @@ void DeformByElasticModel(const Options& options, const Volume& volume, vtkUnstr
         model->SetHandlesData(MakeHandles(options.Pulls, part));
         model->Update();
       });
-    text << model->GetNumberOfNewtonSteps() << " steps to "
-         << (model->GetIsConverged() ? "equilibrium" : "a state that is not yet in equilibrium")
-         << ", strain energy " << model->GetStrainEnergy() << " J";
+    if (!model->GetIsConverged())
+    {
+      throw Failure("cannot simulate the body: no equilibrium was found. Reduce --gravity or the "
+                    "displacements of --pull, or increase --young");
+    }
+    text << model->GetNumberOfNewtonSteps() << " steps to equilibrium, strain energy "
+         << model->GetStrainEnergy() << " J";
   }
   else
   {

@@ -41,7 +41,7 @@ struct MaterialOfValues
 
 /// Deforms a mesh by --pull, --fix and --gravity: finite elements compute the equilibrium,
 /// mass-spring dynamics simulate --duration. The sheets of --cut cut the mesh at rest before that.
-/// Calls takeFrame with the deformation of each frame.
+/// Calls takeFrame with the deformation of each frame. Throws a Failure if no equilibrium is found.
 void DeformByElasticModel(const Options& options, const Volume& volume, vtkUnstructuredGrid* mesh,
   Messages& messages, Deformation& deformation, const FrameTaker& takeFrame);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // deform-volume: deforms a volume from the command line.
+#include "Coverage.h"
 #include "Failure.h"
 #include "ImageAxes.h"
 #include "LabelVolume.h"
@@ -122,7 +123,7 @@ void SetUp(vtkDeformVolumeFilter* filter, const Options& options, vtkImageData* 
   filter->SetInputData(labels.AddTo(volume, filter));
   filter->SetReferenceData(reference);
   SetDeformation(filter, options, deformation);
-  filter->SetOpenSplits(options.CutsMesh());
+  filter->SetOpenSplits(options.OpenSplits || options.CutsMesh());
   // With a reference, the mode has no effect, and the filter would warn of it.
   filter->SetOutputBoundsMode(options.VolumeBounds && !reference
       ? vtkDeformVolumeFilter::VOLUME_BOUNDS
@@ -269,6 +270,15 @@ void CheckBackground(const Options& options, vtkDataArray* scalars)
   }
 }
 
+void CheckCoverage(vtkImageData* result)
+{
+  const char* covered = GetCoverage(result);
+  if (std::all_of(covered, covered + result->GetNumberOfPoints(), [](char is) { return is == 0; }))
+  {
+    throw Failure("nothing is written, because the deformed volume covers no voxel of the result");
+  }
+}
+
 // A few tetrahedra that are inside out are normal, for example at the handles of ChainMail.
 void WarnOfFolds(
   const Options& options, vtkIdType voxels, vtkDeformVolumeFilter* filter, Messages& messages)
@@ -382,6 +392,7 @@ void DeformVolume(const Options& options, Messages& messages)
 
   const Stopwatch deforming;
   deform(deformation);
+  CheckCoverage(filter->GetOutput());
   WarnOfFolds(options, volume.Image->GetNumberOfPoints(), filter, messages);
   timings.Add("deform", deforming.GetSeconds());
 

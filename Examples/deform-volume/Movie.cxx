@@ -61,15 +61,19 @@ std::string GetFramePath(const std::string& path, int frame)
 Movie::Movie(vtkImageData* before, const PictureOptions& options, const std::string& path)
   : Frames(before, options)
   , Path(path)
-  , Writer(IsVideo(path) ? MakeWriter(path) : nullptr)
 {
+  if (IsVideo(path))
+  {
+    this->Video.emplace(path);
+    this->Writer = MakeWriter(this->Video->GetPath());
+  }
 }
 
 void Movie::Add(vtkImageData* after, Messages& messages)
 {
   vtkImageData* frame = this->Frames.Draw(after, Picture::Aim::Fixed, messages);
   ++this->Number;
-  if (!this->Writer)
+  if (!this->Video)
   {
     WritePNG(frame, GetFramePath(this->Path, this->Number), messages);
     return;
@@ -85,9 +89,9 @@ void Movie::Add(vtkImageData* after, Messages& messages)
 
 void Movie::Finish(Messages& messages)
 {
-  if (this->Writer && this->Number > 0)
+  if (this->Video && this->Number > 0)
   {
     this->Writer->End();
-    messages.Check("cannot write " + this->Path, this->Writer->GetError() == 0);
+    this->Video->Finish(messages, this->Writer->GetError() == 0);
   }
 }

@@ -2,11 +2,13 @@
 #ifndef DeformVolumeMovie_h
 #define DeformVolumeMovie_h
 
+#include "OutputFile.h"
 #include "Picture.h"
 
 #include <vtkGenericMovieWriter.h>
 #include <vtkSmartPointer.h>
 
+#include <optional>
 #include <string>
 
 class Messages;
@@ -30,7 +32,8 @@ public:
 private:
   Picture Frames;
   std::string Path;
-  vtkSmartPointer<vtkGenericMovieWriter> Writer; // null: one PNG file for each frame
+  std::optional<OutputFile> Video; // empty: one PNG file for each frame
+  vtkSmartPointer<vtkGenericMovieWriter> Writer;
   int Number = 0;
 };
 

@@ -128,10 +128,10 @@ void CheckModel(const Options& options)
       throw UsageError("--push cannot be used with --model " + options.Model + ". Use --pull");
     }
   }
-  if (options.CutsMesh() && options.SmoothCut)
+  if (options.CutsMesh() && (options.SmoothCut || options.KeepDistance))
   {
-    throw UsageError("--smooth-cut cannot be used with --model " + options.Model +
-      ", where --cut splits the mesh");
+    throw UsageError(std::string(options.SmoothCut ? "--smooth-cut" : "--keep") +
+      " cannot be used with --model " + options.Model + ", where --cut splits the mesh");
   }
   if (options.Model == "chainmail" && !options.MeshOutput.empty())
   {

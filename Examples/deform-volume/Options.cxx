@@ -78,6 +78,10 @@ void CheckModelOptions(const CLI::App& program, const Options& options)
   {
     throw UsageError("--duration requires --model mass-spring");
   }
+  if (!(options.Duration > 0.0))
+  {
+    throw UsageError("--duration must be greater than 0");
+  }
 }
 
 void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
@@ -267,6 +271,13 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
       "rest to these points")
     ->group(group);
   program
+    .add_flag("--open-splits", options.OpenSplits,
+      "A gap opens where the --mesh is split: where neighboring cells have nodes of their own, as "
+      "in a mesh that --write-mesh has written after a --cut. Otherwise tissue is stretched over "
+      "the "
+      "gap")
+    ->group(group);
+  program
     .add_option("--scale", options.Scale,
       "Factor by which the displacements of --mesh or --field are multiplied")
     ->capture_default_str()
@@ -316,8 +327,9 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
   program
     .add_option("--cut", options.Cuts,
       "Cut the volume along a sheet of triangles (" + GetSheetSuffixes() +
-        ", world coordinates). With --model fem or mass-spring, the sheet cuts the mesh at rest, "
-        "and the volume opens there. May be given several times")
+        ", world coordinates). With --model fem or mass-spring, the sheet cuts the mesh at rest "
+        "along the nearest faces of its tetrahedra, and the volume opens there. May be given "
+        "several times")
     ->type_name("FILE")
     ->take_all()
     ->expected(1)
@@ -384,7 +396,7 @@ void AddDependencies(CLI::App& program)
       program.get_option(option)->needs(program.get_option(needed));
     }
   };
-  needs("--mesh", { "--rest", "--points-are-deformed" });
+  needs("--mesh", { "--rest", "--points-are-deformed", "--open-splits" });
   needs("--field", { "--field-is-inverse", "--field-space" });
   needs("--tetgen",
     { "--isovalue", "--pieces", "--edge-length", "--radius-edge-ratio", "--tetgen-executable" });
@@ -407,6 +419,7 @@ void AddDependencies(CLI::App& program)
     program.get_option("--reference")->excludes(program.get_option(option));
   }
   program.get_option("--keep")->excludes(program.get_option("--outside"));
+  program.get_option("--keep")->excludes(program.get_option("--open-splits"));
   program.get_option("--isovalue")->excludes(program.get_option("--labels"));
   for (const char* option : { "--mesh", "--field", "--transform" })
   {

@@ -33,6 +33,7 @@ struct Options
   std::string Field;
   std::vector<TransformFile> Transforms;
   bool PointsAreDeformed = false;
+  bool OpenSplits = false;
   bool FieldIsInverse = false;
   std::string FieldSpace;
 

@@ -4,11 +4,13 @@
 #include "Failure.h"
 #include "ImageAxes.h"
 #include "Messages.h"
+#include "OutputFile.h"
 
 #include <vtkArrayDispatch.h>
 #include <vtkCamera.h>
 #include <vtkColorTransferFunction.h>
 #include <vtkDataArrayRange.h>
+#include <vtkErrorCode.h>
 #include <vtkImageData.h>
 #include <vtkImageExtractComponents.h>
 #include <vtkImageShiftScale.h>
@@ -330,9 +332,10 @@ vtkImageData* Picture::Draw(vtkImageData* after, Aim aim, Messages& messages)
 
 void WritePNG(vtkImageData* image, const std::string& path, Messages& messages)
 {
+  OutputFile file(path);
   vtkNew<vtkPNGWriter> writer;
   writer->SetInputData(image);
-  writer->SetFileName(path.c_str());
+  writer->SetFileName(file.GetPath().c_str());
   writer->Write();
-  messages.Check("cannot write " + path);
+  file.Finish(messages, writer->GetErrorCode() == vtkErrorCode::NoError);
 }

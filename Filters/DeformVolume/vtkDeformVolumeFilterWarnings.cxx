@@ -128,8 +128,8 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfSplits(vtkImageData* volume)
   this->State->WarnedOfSplitsOf = text.empty() ? 0 : shape;
   if (!text.empty())
   {
-    vtkWarningWithObjectMacro(this->Self,
-      << text << " Set OpenSplits, or cut the volume along the split with vtkCutVolume.");
+    vtkWarningWithObjectMacro(
+      this->Self, << text << " Cut the volume along the split, or let the filter open splits.");
   }
 }
 

@@ -79,10 +79,11 @@ void FiniteElementSimulation::Warn(const EquilibriumReport& last)
     text << "The body is not in equilibrium after " << now.NewtonSteps
          << " steps: the largest residual force on a node is " << 100.0 * now.RelativeResidual
          << " % of the largest force that is applied to a node or holds it. "
-         << (isInteractive ? "Further updates continue from there (Mode INTERACTIVE)."
-                           : "Check the units of loads and materials (N and Pa; LengthUnit is the "
-                             "unit of coordinates). Move handles and loads in smaller steps, or "
-                             "make a better mesh.");
+         << (isInteractive
+                ? "Further updates continue from there (Mode INTERACTIVE)."
+                : "Check the units of loads and materials (N, Pa, and the unit "
+                  "of length of the coordinates). Move handles and loads in smaller steps, or "
+                  "make a better mesh.");
     this->Warnings.push_back(text.str());
     text.str("");
     this->HasWarnedOfResidual = true;

@@ -51,21 +51,22 @@ std::string SplitNodes::Describe(const float* displacements, const Extent& voxel
     const float* vector = displacements + 3 * static_cast<std::size_t>(node);
     return glm::dvec3(vector[0], vector[1], vector[2]);
   };
-  IndexBounds torn;
+  // The nodes at the ends of a gap may not have moved, and lie between the voxels.
+  IndexBounds split;
+  bool isTorn = false;
   for (const Pair& pair : this->Pairs)
   {
-    if (glm::distance(get(pair.First), get(pair.Second)) > 1.0)
-    {
-      torn.Add(pair.Position);
-    }
+    split.Add(pair.Position);
+    isTorn = isTorn || glm::distance(get(pair.First), get(pair.Second)) > 1.0;
   }
   const glm::dvec3 first(voxels[0], voxels[2], voxels[4]);
   const glm::dvec3 last(voxels[1], voxels[3], voxels[5]);
-  const bool isBetween = !torn.IsEmpty() && glm::all(glm::lessThan(torn.Min, last)) &&
-    glm::all(glm::greaterThan(torn.Max, first));
-  return isBetween ? "The deformation mesh is split: nodes with one position at rest move more "
-                     "than an output voxel apart, and the volume is stretched over the gap."
-                   : "";
+  const bool isBetween =
+    glm::all(glm::lessThan(split.Min, last)) && glm::all(glm::greaterThan(split.Max, first));
+  return isTorn && isBetween
+    ? "The deformation mesh is split: nodes with one position at rest move more "
+      "than an output voxel apart, and the volume is stretched over the gap."
+    : "";
 }
 
 } // namespace deformvolume

@@ -202,7 +202,7 @@ def write_sheets():
 
 def check_misuse_of_meshes():
     fails(1, ["no such file"], *as_mesh("none.vtu"))
-    fails(1, ["no such file"], *as_mesh("series"))
+    fails(1, ["it is a folder"], *as_mesh("series"))
     # Formats that VTK does not read, and a name without a suffix.
     for name, converter in (
             ("fe.msh", "meshio convert fe.msh fe.vtu"), ("fe.med", "meshio convert fe.med"),

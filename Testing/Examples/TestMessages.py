@@ -159,6 +159,7 @@ def check_fields():
               *displacement)
     fails(1, "--points-are-deformed", "--mesh", path("field.vti"), "--displacement", "U",
           "--points-are-deformed")
+    fails(1, "--open-splits", "--mesh", path("field.vti"), "--displacement", "U", "--open-splits")
     fails(1, "--rest", "--mesh", path("field.vti"), "--rest", path("mesh.vtu"))
     fails(1, "--rest", "--mesh", path("mesh.vtu"), "--rest", path("field.vti"))
     far = make_field("U")
@@ -269,6 +270,31 @@ def check_models():
     fails(1, "OpenCL", *mesh, "--device", "no-such-device")
 
 
+def check_coverage():
+    Messages.fails(program, 1, "covers no voxel of the result", path("in.vti"), "--carve", "sphere:9,20,25,90", "-o",
+                   path("o.vti"), warnings=1)
+    assert not os.path.exists(path("o.vti"))
+
+
+def check_permission():
+    """Checks files that the user cannot read. The superuser reads them, so another user starts the program."""
+    user = ("setpriv", "--reuid", "65534", "--clear-groups") if os.geteuid() == 0 else ("env",)
+    os.chmod(folder, 0o777)
+    if call(*user, program, "--help", code=None, quiet=True)[1]:
+        print("files without permission are not tested: another user cannot start the program")
+        return
+    for name, *arguments in (("secret.vti", *lattice, *push), ("in.vti", "--field", path("secret.vti")),
+                             ("in.vti", "--mesh", path("secret.vtu"), "--displacement", "Displacement"),
+                             ("in.vti", "--cut", path("secret.vtp")),
+                             ("in.vti", *mesh, "--points", path("secret.csv"), "--points-output", path("p.csv"))):
+        secret = [argument for argument in (path(name), *arguments) if "secret" in argument][0]
+        with open(secret, "ab"):
+            os.chmod(secret, 0)
+        Messages.fails(user[0], 1, f"{secret}: there is no permission to read it", *user[1:], program, path(name),
+                       *arguments, "-o", path("o.vti"))
+    os.chmod(folder, 0o755)
+
+
 check_resamplers()
 check_volumes()
 check_fields()
@@ -276,3 +302,5 @@ check_meshes()
 check_sheets()
 check_meshers()
 check_models()
+check_coverage()
+check_permission()

@@ -2,9 +2,11 @@
 """Tests that deform-volume moves meshes by finite elements and by springs as the filters do, and reports wrong options.
 Usage: TestModels.py PROGRAM FOLDER"""
 import os
+import re
 import sys
 
 import deformvolume_vtk
+import Messages
 import numpy
 from Volumes import call, get_values, make_ball, make_folder, read_vti, write_vti
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -59,6 +61,9 @@ fails(2, "--fix requires", "--model", "chainmail", *fix, *pull)
 for option, value in (("--gravity", "0,0,1"), ("--young", "5"), ("--poisson", "0.2"), ("--density", "900")):
     fails(2, option + " requires --model fem", "--model", "chainmail", "--pull", "9,20,25,3,0,0,15", option, value)
 fails(2, "--duration requires --model mass-spring", "--model", "fem", *lattice, *fix, "--duration", "2")
+for duration in ("0", "-1"):
+    fails(2, "--duration must be greater than 0", "--model", "mass-spring", *lattice, *fix, *gravity, "--duration",
+          duration)
 fails(2, "--young requires --model", *lattice, "--push", "9,20,25,3,0,0,15", "--young", "5")
 for text in ("5=1", "1:2", "1:2=", "1:2=3,", "1:2=3,0.3,1,4", "2:1=3", "a:2=3"):
     fails(2, f"--material {text}" if text[0] in "25" else "--material", "--model", "fem", *lattice, *fix,
@@ -76,6 +81,9 @@ fails(2, "--material requires", "--model", "chainmail", *pull, "--material", "0:
 fails(1, "no such file", "--model", "fem", *lattice, *fix, *gravity, "--cut", path("none.vtp"))
 fails(2, "--smooth-cut cannot be used with --model fem", "--model", "fem", *lattice, *fix, "--cut", "x.vtp",
       "--smooth-cut")
+fails(2, "--keep cannot be used with --model fem", "--model", "fem", *lattice, *fix, "--cut", "x.vtp", "--keep", "3")
+fails(2, "--open-splits requires --mesh", "--model", "fem", *lattice, *fix, *pull, "--open-splits")
+fails(2, "excludes", "--mesh", "x.vtu", "--displacement", "D", "--open-splits", "--keep", "3")
 fails(2, "--movie requires --frames", "--model", "fem", *lattice, *fix, "--movie", "x.png")
 fails(2, "--frames requires --movie", "--model", "fem", *lattice, *fix, "--frames", "3")
 fails(2, "must end in .png", "--model", "fem", *lattice, *fix, "--movie", "x.mp4", "--frames", "3")
@@ -188,14 +196,42 @@ def check_materials_and_cut():
     deform.Update()
     output, _ = call(program, path("in.vti"), "--model", "fem", *lattice, *fix, *pull, "--young",
                      "5000", "--poisson", "0.4", "--material", f"{limit}:1e9=2e4,0.2,900", "--cut",
-                     path("sheet.vtp"), "-o", path("cut.vti"))
+                     path("sheet.vtp"), "-o", path("cut.vti"), "--write-mesh", path("cut.vtu"))
     assert f"{model.GetNumberOfSplitFaces()} faces of tetrahedra of the mesh split" in output, output
     assert model.GetNumberOfSplitFaces() > 20, model.GetNumberOfSplitFaces()
-    numpy.testing.assert_array_equal(get_values(read_vti(path("cut.vti"))),
-                                     get_values(deform.GetOutput()))
+    expected = get_values(deform.GetOutput())
+    numpy.testing.assert_array_equal(get_values(read_vti(path("cut.vti"))), expected)
+
+    # The nodes of split faces have copies.
+    positions, counts = numpy.unique(vtk_to_numpy(model.GetOutput().GetPoints().GetData()), axis=0,
+                                     return_counts=True)
+    distance = numpy.abs(positions[counts > 1][:, 0] - middle[0] - 0.3).max()
+    assert distance > 0.1, distance
+    found = re.search(r"split, at most (\S+) mm from the sheet", output)
+    assert found and abs(float(found.group(1)) - distance) <= 5e-3 * distance, (output, distance)  # three digits
+
+    # The mesh that was written is split, too.
+    arguments = ("--mesh", path("cut.vtu"), "--displacement", "Displacement", "-o", path("again.vti"))
+    call(program, path("in.vti"), *arguments, "--open-splits")
+    numpy.testing.assert_array_equal(get_values(read_vti(path("again.vti"))), expected)
+    Messages.warns(program, "let the filter open splits", path("in.vti"), *arguments)
+    again = get_values(read_vti(path("again.vti")))
+    assert again.shape != expected.shape or (again != expected).any()
+
+
+def check_results_without_use():
+    """Checks simulations without an equilibrium, without motion, and with materials that no voxel has."""
+    arguments = (path("in.vti"), "--model", "fem", *lattice, "--gravity", "0,0,-9.81", "-o", path("useless.vti"))
+    Messages.fails(program, 1, "no equilibrium was found", *arguments, *fix, "--young", "100", "--write-mesh",
+                   path("useless.vtu"), warnings=2)
+    assert not os.path.exists(path("useless.vti")) and not os.path.exists(path("useless.vtu"))
+    Messages.warns(program, "fixes all nodes", *arguments, "--fix", "below:1000")
+    Messages.warns(program, ["3000:4000 of --material", "0 to 849"], *arguments, *fix, "--material",
+                   "0:700=liver", "--material", "3000:4000=bone")
 
 
 check_materials_and_cut()
+check_results_without_use()
 check_tissues()
 check("fem", deformvolume_vtk.vtkFiniteElementDeformation(), "to equilibrium, strain energy")
 check("mass-spring", deformvolume_vtk.vtkMassSpringDeformation(), "0.1 s, in steps of", "--duration",

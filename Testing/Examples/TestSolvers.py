@@ -162,9 +162,10 @@ def check_units():
     """Tests a mesh in meters around the origin, where it contains some voxels of a volume in millimeters."""
     write_febio(path("metres.vtk"), 1e-3 * places, 1e-3 * moves, cells, 1.0)
     words = "metres.vtk is 0.036 long, and the volume 36. If one of them is in metres and the other in millimetres"
-    none = "covers no voxel of the output"
+    none = "nothing is written, because the deformed volume covers no voxel of the result"
     small = "smaller than two voxels"
-    deform(*mesh("metres.vtk"), *displacement, warnings=[words, small, none])
+    whole = ("--bounds", "volume")
+    fails([words, small, none], *mesh("metres.vtk"), *displacement, *whole, warnings=3)
     deform(*mesh("metres.vtk"), *displacement, "--keep", "1", warnings=[words, small])
     # A point that no cell uses does not count.
     write_febio(path("stray.vtk"), numpy.vstack([places, [[1e5, 0, 0]]]), numpy.vstack([moves, [[0, 0, 0]]]), cells,
@@ -176,7 +177,8 @@ def check_units():
           *mesh("aside.vtk"), *displacement, warnings=1)
     write_sofa(path("metres0.vtu"), 1e-3 * places, cells, edges=False)
     write_sofa(path("metres1.vtu"), 1e-3 * (places + moves), cells, edges=False)
-    deform(*mesh("metres1.vtu"), "--rest", path("metres0.vtu"), warnings=["metres0.vtu is 0.036 long", small, none])
+    fails(["metres0.vtu is 0.036 long", small, none], *mesh("metres1.vtu"), "--rest", path("metres0.vtu"), *whole,
+          warnings=3)
     # A mesh of a small part of the volume is not an error, and there is no warning.
     write_febio(path("part.vtk"), 0.1 * places, 0.1 * moves, cells, 1.0)
     _, covered = deform(*mesh("part.vtk"), *displacement)

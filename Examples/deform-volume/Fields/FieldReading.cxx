@@ -2,6 +2,7 @@
 #include "FieldReading.h"
 
 #include "Failure.h"
+#include "FileAccess.h"
 #include "FileSuffix.h"
 #include "ImageAxes.h"
 #include "Messages.h"
@@ -13,7 +14,6 @@
 #include <vtkMatrix3x3.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
-#include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
 #include <cmath>
@@ -226,9 +226,10 @@ vtkSmartPointer<vtkImageData> ReadField(const std::string& path, const Volume& v
   const FieldOptions& options, Messages& messages, bool showProgress)
 {
   const std::string what = "cannot use the displacement field " + path;
-  if (!vtksys::SystemTools::FileExists(path, true))
+  const std::string fault = FindReadingFault(path);
+  if (!fault.empty())
   {
-    throw Failure(what + ": there is no such file");
+    throw Failure(what + ": " + fault);
   }
   if (!IsFieldFile(path))
   {

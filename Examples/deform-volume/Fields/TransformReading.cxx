@@ -3,6 +3,7 @@
 
 #include "Failure.h"
 #include "FieldReading.h"
+#include "FileAccess.h"
 #include "FileSuffix.h"
 #include "ImageAxes.h"
 #include "Messages.h"
@@ -26,7 +27,6 @@
 #include <vtkPointData.h>
 #include <vtkSMPTools.h>
 #include <vtkTrivialProducer.h>
-#include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
 #include <cmath>
@@ -284,9 +284,10 @@ std::unique_ptr<PointMap> ReadMap(
   const TransformFile& file, const Volume& world, Messages& messages, bool showProgress)
 {
   const std::string what = "cannot use the transform " + file.Path;
-  if (!vtksys::SystemTools::FileExists(file.Path, true))
+  const std::string fault = FindReadingFault(file.Path);
+  if (!fault.empty())
   {
-    throw Failure(what + ": there is no such file" +
+    throw Failure(what + ": " + fault +
       (file.Path == "0" || file.Path == "1"
           ? ". In place of [FILE,1] of ANTs write FILE,invert, and in place of [FILE,0] only FILE"
           : ""));

@@ -2,6 +2,7 @@
 #include "LandmarkFile.h"
 
 #include "Failure.h"
+#include "FileAccess.h"
 #include "FileSuffix.h"
 #include "MeshSpace.h"
 #include "Messages.h"
@@ -327,13 +328,12 @@ bool IsLandmarkFile(const std::string& path)
 
 LandmarkFile ReadLandmarks(const std::string& path, [[maybe_unused]] Messages& messages)
 {
-  std::ifstream stream(path, std::ios::binary);
-  if (!vtksys::SystemTools::FileExists(path, true) || !stream)
+  const std::string fault = FindReadingFault(path);
+  if (!fault.empty())
   {
-    Fail(path,
-      vtksys::SystemTools::FileExists(path, true) ? "there is no permission to read the file"
-                                                  : "there is no such file");
+    Fail(path, fault);
   }
+  std::ifstream stream(path, std::ios::binary);
   LandmarkFile file;
   file.Text.assign(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
   file.Points = vtkSmartPointer<vtkPolyData>::New();
@@ -351,7 +351,7 @@ LandmarkFile ReadLandmarks(const std::string& path, [[maybe_unused]] Messages& m
   return file;
 }
 
-void WriteLandmarks(const LandmarkFile& file, vtkPointSet* moved, const std::string& path)
+bool WriteLandmarks(const LandmarkFile& file, vtkPointSet* moved, const std::string& path)
 {
   vtkDataArray* mask = moved->GetPointData()->GetArray("vtkValidPointMask");
   std::string text;
@@ -369,9 +369,5 @@ void WriteLandmarks(const LandmarkFile& file, vtkPointSet* moved, const std::str
   text.append(file.Text, copied, std::string::npos);
   std::ofstream stream(path, std::ios::binary);
   stream << text << std::flush;
-  if (!stream)
-  {
-    throw Failure(
-      "cannot write " + path + ": no reason was reported. Is there enough free disk space?");
-  }
+  return stream.good();
 }

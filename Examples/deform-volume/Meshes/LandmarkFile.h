@@ -43,7 +43,8 @@ inline constexpr bool HasJson = false;
 LandmarkFile ReadLandmarks(const std::string& path, Messages& messages);
 
 /// Writes the text with the coordinates of the moved points, in the world coordinates of the file.
-/// The text of points whose "vtkValidPointMask" is 0 does not change.
-void WriteLandmarks(const LandmarkFile& file, vtkPointSet* moved, const std::string& path);
+/// The text of points whose "vtkValidPointMask" is 0 does not change. Returns false if the file
+/// cannot be written.
+bool WriteLandmarks(const LandmarkFile& file, vtkPointSet* moved, const std::string& path);
 
 #endif

@@ -9,6 +9,7 @@
 #include "MeshReading.h"
 #include "Messages.h"
 #include "OptionChecks.h"
+#include "OutputFile.h"
 #include "ProgressBar.h"
 #include "VTKWriting.h"
 
@@ -159,6 +160,11 @@ void PushNodes(const Options& options, const vtkSmartPointer<vtkUnstructuredGrid
 void CheckMeshOptions(const Options& options, const Deformation& deformation)
 {
   const bool isField = vtkImageData::SafeDownCast(deformation.Data);
+  if (isField && options.OpenSplits)
+  {
+    throw Failure(
+      "--open-splits requires a mesh, but " + options.Mesh + " is a displacement field");
+  }
   if (isField || vtkImageData::SafeDownCast(deformation.Rest))
   {
     if (deformation.Rest || options.PointsAreDeformed)
@@ -255,8 +261,9 @@ Deformation MakeDeformation(const Options& options, const Volume& volume,
     }
     if (!options.MeshOutput.empty())
     {
-      WriteXML(vtkNew<vtkXMLUnstructuredGridWriter>().Get(), deformation.Data, options.MeshOutput,
-        messages);
+      vtkNew<vtkXMLUnstructuredGridWriter> writer;
+      OutputFile file(options.MeshOutput);
+      file.Finish(messages, WriteXML(writer.Get(), deformation.Data, file.GetPath()));
     }
   }
   deformation.NumberOfNodes = deformation.Data->GetNumberOfElements(vtkDataObject::POINT);

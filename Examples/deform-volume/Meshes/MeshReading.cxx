@@ -2,6 +2,7 @@
 #include "MeshReading.h"
 
 #include "Failure.h"
+#include "FileAccess.h"
 #include "FileSuffix.h"
 #include "MeshContents.h"
 #include "MeshFormats.h"
@@ -312,9 +313,10 @@ vtkSmartPointer<vtkDataObject> ReadCollection(const Source& source)
 
 void CheckFile(const std::string& path)
 {
-  if (!vtksys::SystemTools::FileExists(path, true))
+  const std::string fault = FindReadingFault(path);
+  if (!fault.empty())
   {
-    throw Failure("cannot read " + path + ": there is no such file");
+    throw Failure("cannot read " + path + ": " + fault);
   }
 }
 

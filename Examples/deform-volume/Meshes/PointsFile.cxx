@@ -8,6 +8,7 @@
 #include "MeshSpace.h"
 #include "Messages.h"
 #include "Options.h"
+#include "OutputFile.h"
 #include "ProgressBar.h"
 #include "VTKWriting.h"
 #include "Volume.h"
@@ -24,6 +25,7 @@
 #include <vtkXMLUnstructuredGridWriter.h>
 
 #include <cmath>
+#include <fstream>
 #include <sstream>
 
 namespace
@@ -101,15 +103,15 @@ vtkSmartPointer<vtkPointSet> Deform(const PointsFile& file, const Options& optio
   return filter->GetOutput();
 }
 
-void WriteSTL(vtkPointSet* surface, const std::string& path, Messages& messages)
+bool WriteSTL(vtkPointSet* surface, const std::string& path)
 {
   vtkNew<vtkSTLWriter> writer;
   writer->SetFileTypeToBinary();
   writer->SetHeader(("deform-volume. " + GetSpaceComment(surface)).c_str());
-  Write(writer.Get(), surface, path, messages);
+  return Write(writer.Get(), surface, path);
 }
 
-void WritePLY(vtkPointSet* surface, const std::string& path, Messages& messages)
+bool WritePLY(vtkPointSet* surface, const std::string& path)
 {
   vtkNew<vtkPLYWriter> writer;
   const std::string space = GetSpaceComment(surface);
@@ -125,9 +127,39 @@ void WritePLY(vtkPointSet* surface, const std::string& path, Messages& messages)
       writer->SetEnableAlpha(std::string(colors) == "RGBA");
     }
   }
-  Write(writer.Get(), surface, path, messages);
+  return Write(writer.Get(), surface, path);
 }
 
+bool WriteVTP(vtkPointSet* surface, const std::string& path)
+{
+  // If the disk is full, VTK 9.1 crashes while it writes polygons to a file, but not to a string.
+  vtkNew<vtkXMLPolyDataWriter> writer;
+  writer->WriteToOutputStringOn();
+  const bool succeeded = WriteXML(writer.Get(), surface, path);
+  std::ofstream stream(path, std::ios::binary);
+  stream << writer->GetOutputString() << std::flush;
+  return succeeded && stream.good();
+}
+
+// Writes the moved points of a file, in its format.
+bool WritePoints(const PointsFile& file, vtkPointSet* moved, const std::string& path)
+{
+  if (IsLandmarkFile(path))
+  {
+    return WriteLandmarks(file.Landmarks, moved, path);
+  }
+  if (HasSuffix(path, { ".stl" }))
+  {
+    return WriteSTL(moved, path);
+  }
+  if (HasSuffix(path, { ".ply" }))
+  {
+    return WritePLY(moved, path);
+  }
+  return HasSuffix(path, { ".vtp" })
+    ? WriteVTP(moved, path)
+    : WriteXML(vtkNew<vtkXMLUnstructuredGridWriter>().Get(), moved, path);
+}
 }
 
 std::string GetPointFormat(const std::string& path)
@@ -173,31 +205,12 @@ void WriteDeformedPoints(const std::vector<PointsFile>& files, const Options& op
 {
   for (std::size_t i = 0; i < files.size(); ++i)
   {
-    const std::string& output = options.PointsOutputs[i];
     const vtkSmartPointer<vtkPointSet> moved = Deform(files[i], options, deformation, messages);
     if (files[i].IsTurned)
     {
       ExchangeWorlds(moved, GetTurnedArrays(moved));
     }
-    if (IsLandmarkFile(output))
-    {
-      WriteLandmarks(files[i].Landmarks, moved, output);
-    }
-    else if (HasSuffix(output, { ".stl" }))
-    {
-      WriteSTL(moved, output, messages);
-    }
-    else if (HasSuffix(output, { ".ply" }))
-    {
-      WritePLY(moved, output, messages);
-    }
-    else if (HasSuffix(output, { ".vtp" }))
-    {
-      WriteXML(vtkNew<vtkXMLPolyDataWriter>().Get(), moved, output, messages);
-    }
-    else
-    {
-      WriteXML(vtkNew<vtkXMLUnstructuredGridWriter>().Get(), moved, output, messages);
-    }
+    OutputFile output(options.PointsOutputs[i]);
+    output.Finish(messages, WritePoints(files[i], moved, output.GetPath()));
   }
 }

@@ -181,14 +181,18 @@ itk::IOComponentEnum GetComponentType(vtkDataArray* values)
   throw Failure(std::string("cannot write values of the type ") + values->GetDataTypeAsString());
 }
 
-void WriteValues(itk::ImageIOBase* io, const void* values)
+std::string WriteValues(itk::ImageIOBase* io, const void* values)
 {
+  const ErrorStream errors;
   try
   {
     io->Write(values);
   }
   catch (const std::exception& error)
   {
-    throw Failure(std::string("cannot write ") + io->GetFileName() + ": " + GetReason(error));
+    return GetReason(error);
   }
+  // MetaImage files that are not complete are no error of ITK.
+  return errors.GetText().empty() ? ""
+                                  : "its values are not complete. Is there enough free disk space?";
 }

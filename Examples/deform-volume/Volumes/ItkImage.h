@@ -25,7 +25,7 @@ vtkSmartPointer<vtkDataArray> ReadValues(itk::ImageIOBase* io, std::string& comp
 /// The ITK type of the values of an array. Throws a Failure if ITK has no such type.
 itk::IOComponentEnum GetComponentType(vtkDataArray* values);
 
-/// Writes a file. The header must have been set.
-void WriteValues(itk::ImageIOBase* io, const void* values);
+/// Writes a file. The header must have been set. Returns what went wrong, or "".
+std::string WriteValues(itk::ImageIOBase* io, const void* values);
 
 #endif

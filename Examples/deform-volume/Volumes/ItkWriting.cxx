@@ -13,7 +13,7 @@
 
 #include <vector>
 
-void WriteByITK(vtkImageData* image, vtkMatrix4x4* axes, const std::string& path)
+std::string WriteByITK(vtkImageData* image, vtkMatrix4x4* axes, const std::string& path)
 {
   itk::ImageIOBase::Pointer io;
   if (HasSuffix(path, { ".nrrd", ".nhdr" }))
@@ -44,5 +44,5 @@ void WriteByITK(vtkImageData* image, vtkMatrix4x4* axes, const std::string& path
   io->SetNumberOfComponents(values->GetNumberOfComponents());
   io->SetPixelType(
     values->GetNumberOfComponents() == 1 ? itk::IOPixelEnum::SCALAR : itk::IOPixelEnum::VECTOR);
-  WriteValues(io, values->GetVoidPointer(0));
+  return WriteValues(io, values->GetVoidPointer(0));
 }

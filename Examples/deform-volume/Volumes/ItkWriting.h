@@ -10,7 +10,8 @@ class vtkImageData;
 
 /// Writes the scalars of an image as MetaImage (.mha, .mhd) or NRRD (.nrrd, .nhdr). axes:
 /// directions and the position of the first voxel, as GetAxes returns them, in the world
-/// coordinates left, posterior, superior. Throws a Failure if the file cannot be written.
-void WriteByITK(vtkImageData* image, vtkMatrix4x4* axes, const std::string& path);
+/// coordinates left, posterior, superior. Returns what went wrong, or "". Throws a Failure if ITK
+/// does not have the type of the values.
+std::string WriteByITK(vtkImageData* image, vtkMatrix4x4* axes, const std::string& path);
 
 #endif

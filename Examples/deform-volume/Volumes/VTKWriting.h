@@ -2,29 +2,26 @@
 #ifndef DeformVolumeVTKWriting_h
 #define DeformVolumeVTKWriting_h
 
-#include "Messages.h"
-
 #include <vtkDataObject.h>
 
 #include <string>
 
-/// Writes a file with one of VTK's writers. Throws a Failure if it cannot be written.
+/// Writes a file with one of VTK's writers. Returns false if it cannot be written.
 template <typename Writer>
-void Write(Writer* writer, vtkDataObject* data, const std::string& path, Messages& messages)
+bool Write(Writer* writer, vtkDataObject* data, const std::string& path)
 {
   writer->SetInputDataObject(data);
   writer->SetFileName(path.c_str());
-  const bool written = writer->Write() != 0;
-  messages.Check("cannot write " + path, written);
+  return writer->Write() != 0;
 }
 
-/// Writes a file with one of VTK's XML writers. Throws a Failure if it cannot be written.
+/// Writes a file with one of VTK's XML writers. Returns false if it cannot be written.
 template <typename Writer>
-void WriteXML(Writer* writer, vtkDataObject* data, const std::string& path, Messages& messages)
+bool WriteXML(Writer* writer, vtkDataObject* data, const std::string& path)
 {
   // Not appended: with recent versions of libexpat, ParaView 5.11 cannot read appended data.
   writer->SetDataModeToBinary();
-  Write(writer, data, path, messages);
+  return Write(writer, data, path);
 }
 
 #endif

@@ -2,6 +2,7 @@
 #include "VolumeReading.h"
 
 #include "Failure.h"
+#include "FileAccess.h"
 #include "FileSuffix.h"
 #include "Messages.h"
 #include "NIfTIReading.h"
@@ -125,9 +126,10 @@ namespace
 Volume ReadFile(
   const std::string& path, const ReadingOptions& options, Messages& messages, bool showProgress)
 {
-  if (!vtksys::SystemTools::FileExists(path))
+  const std::string fault = FindReadingFault(path, true);
+  if (!fault.empty())
   {
-    throw Failure("cannot read " + path + ": there is no such file or folder");
+    throw Failure("cannot read " + path + ": " + fault);
   }
   const bool isFolder = vtksys::SystemTools::FileIsDirectory(path);
   if (!isFolder && HasSuffix(path, { ".nii", ".nii.gz" }))

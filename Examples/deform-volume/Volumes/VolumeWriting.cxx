@@ -5,6 +5,7 @@
 #include "FileSuffix.h"
 #include "ImageAxes.h"
 #include "Messages.h"
+#include "OutputFile.h"
 #include "ProgressBar.h"
 #include "VTKWriting.h"
 #ifdef DEFORMVOLUME_HAVE_ITK
@@ -21,8 +22,10 @@
 #include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <fstream>
 #include <sstream>
 #include <vector>
@@ -219,7 +222,8 @@ void WriteNIfTI(
       ".mha");
   }
   const bool isCompressed = HasSuffix(path, { ".gz" });
-  const std::string plain = isCompressed ? path + ".part.nii" : path;
+  OutputFile file(path);
+  const std::string plain = file.GetPath() + (isCompressed ? ".part.nii" : "");
   const auto axes = GetAxesIn(volume, WorldAxes::RightAnteriorSuperior);
   WarnOfRounding(image, axes, path, messages);
   const NIfTIForms& forms = volume.Forms;
@@ -260,17 +264,17 @@ void WriteNIfTI(
     const ProgressBar bar(writer, "writing", showProgress);
     writer->Write();
   }
-  messages.Check("cannot write " + path);
-  if (keepsForms)
-  {
-    messages.Check("cannot write " + path, SetForms(plain, forms));
-  }
+  bool written = !keepsForms || SetForms(plain, forms);
   if (isCompressed)
   {
-    const bool written = Compress(plain, path);
+    written = written && Compress(plain, file.GetPath());
+    if (!written)
+    {
+      messages.DisplayErrorText(std::strerror(errno));
+    }
     vtksys::SystemTools::RemoveFile(plain);
-    messages.Check("cannot write " + path, written);
   }
+  file.Finish(messages, written);
 }
 
 void WriteVTI(const Volume& volume, const std::string& path, Messages& messages, bool showProgress)
@@ -281,7 +285,8 @@ void WriteVTI(const Volume& volume, const std::string& path, Messages& messages,
   writer->SetCompressionLevel(1);
   writer->SetHeaderTypeToUInt64();
   const ProgressBar bar(writer, "writing", showProgress);
-  WriteXML(writer.Get(), volume.Image, path, messages);
+  OutputFile file(path);
+  file.Finish(messages, WriteXML(writer.Get(), volume.Image, file.GetPath()));
 }
 }
 
@@ -305,7 +310,13 @@ void WriteVolume(
   else
   {
     const auto axes = GetAxesIn(volume, WorldAxes::LeftPosteriorSuperior);
-    WriteByITK(MoveExtentToZero(volume.Image), axes, path);
+    OutputFile file(path);
+    const std::string fault = WriteByITK(MoveExtentToZero(volume.Image), axes, file.GetPath());
+    if (!fault.empty())
+    {
+      messages.DisplayErrorText(fault.c_str());
+    }
+    file.Finish(messages, fault.empty());
   }
 #endif
 }
