@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests that deform-volume replaces an older file only by a complete one: a full disk and signals leave the older file as
-it was, and no temporary files. Usage: TestOutputFiles.py PROGRAM FOLDER"""
+"""Tests that deform-volume replaces an older file only by a complete one: a full disk and signals leave the older file
+as it was, and no temporary files. Usage: TestOutputFiles.py PROGRAM FOLDER"""
 import os
 import shutil
 import signal
@@ -72,8 +72,8 @@ def is_old(names):
 
 def check_full_disk(common_arguments, *writing):
     """Checks outputs if their files cannot be as large as they must be. The limit of the size of files takes the place
-    of a full disk. As only the last byte is missing, most writers notice nothing. writing: the arguments of each output,
-    with the file as the last one."""
+    of a full disk. As only the last byte is missing, most writers notice nothing. writing: the arguments of each
+    output, with the file as the last one."""
     write_old(())
     call(program, *common_arguments, *(argument for each in writing for argument in each))
     sizes = {name: os.path.getsize(output(name)) for name in os.listdir(outputs)}
