@@ -86,8 +86,6 @@ private:
   /// Calls body(begin, end) for parts of a range, in parallel. Throws Aborted.
   template <typename Body>
   void RunInParts(std::size_t size, Body&& body);
-  /// Returns false if the point is outside.
-  bool MovePoint(const glm::dvec3& point, PointMap::Image& image) const;
 
   vtkDeformGeometryFilter* Self;
   deformvolume::DeformationGrids Grids;
@@ -186,20 +184,6 @@ void vtkDeformGeometryFilter::vtkInternals::MakeMap(const deformvolume::OutsideV
 }
 
 //------------------------------------------------------------------------------
-bool vtkDeformGeometryFilter::vtkInternals::MovePoint(
-  const glm::dvec3& point, PointMap::Image& image) const
-{
-  if (this->Map &&
-    (this->IsInverted ? this->Map->Invert(point, image) : this->Map->Map(point, image)))
-  {
-    return true;
-  }
-  image.Point = point;
-  image.Gradient = glm::dmat3(1.0);
-  return !this->Map;
-}
-
-//------------------------------------------------------------------------------
 template <typename Body>
 void vtkDeformGeometryFilter::vtkInternals::RunInParts(std::size_t size, Body&& body)
 {
@@ -261,7 +245,8 @@ vtkSmartPointer<vtkPointSet> vtkDeformGeometryFilter::vtkInternals::Move(vtkPoin
       {
         PointMap::Image& image = images[i - begin];
         const auto point = static_cast<vtkIdType>(i);
-        const bool isValid = this->MovePoint(positions[i], image);
+        const bool isValid =
+          deformvolume::MovePoint(this->Map.get(), this->IsInverted, positions[i], image);
         outsideHere += isValid ? 0 : 1;
         fadingHere = std::max(fadingHere, image.FadingDisplacement);
         const glm::dvec3 size = glm::abs(image.Point);
@@ -415,12 +400,12 @@ void vtkDeformGeometryFilter::vtkInternals::WarnOfIgnored(const std::vector<vtkP
   {
     warnings.insert("The input on port 0 has no points, so the output has no points.");
   }
-  if (!this->IgnoredBlocks.empty())
-  {
-    warnings.insert(this->IgnoredBlocks);
-  }
   if (this->Map && !this->Deformation.IsField())
   {
+    if (!this->IgnoredBlocks.empty())
+    {
+      warnings.insert(this->IgnoredBlocks);
+    }
     deformvolume::AddCellWarnings(this->Deformation.GetRestMesh(), this->Gathering, warnings);
   }
   const std::string news = deformvolume::ReplaceWarnings(this->WarnedOf, std::move(warnings));

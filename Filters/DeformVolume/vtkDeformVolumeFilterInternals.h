@@ -209,7 +209,7 @@ public:
   std::optional<deformvolume::ImageGeometry> Reference;
   /// Makes the filter read an image in memory again that has been modified. Programs write the
   /// values of an image, and call Modified() of the image only.
-  void FollowImage(vtkImageData* volume);
+  void FollowImage();
   /// The exception that the last request for information has thrown.
   std::exception_ptr InformationFailure;
   /// Whether the extent of the output was too small, so that the next update has to execute the

@@ -312,7 +312,7 @@ int vtkDeformVolumeFilter::RequestData(
     [&]
     {
       vtkInformation* volumeInfo = input[0]->GetInformationObject(0);
-      this->Internals->FollowImage(volume);
+      this->Internals->FollowImage();
       volume = this->Internals->CutToWhole(volume, volumeInfo);
       mapped = this->Internals->GetMappedVolume(volume, volumeInfo);
     });

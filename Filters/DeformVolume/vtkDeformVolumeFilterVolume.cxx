@@ -73,13 +73,13 @@ deformvolume::MappedVolume vtkDeformVolumeFilter::vtkInternals::GetMappedVolume(
 }
 
 //------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::vtkInternals::FollowImage(vtkImageData* volume)
+void vtkDeformVolumeFilter::vtkInternals::FollowImage()
 {
-  if (!deformvolume::IsInMemory(this->Self, 0))
+  const std::pair<const void*, vtkMTimeType> now = deformvolume::GetWrittenStamp(this->Self, 0);
+  if (!now.first)
   {
     return;
   }
-  const std::pair<const void*, vtkMTimeType> now(volume, volume->vtkObject::GetMTime());
   if (this->ImageInMemory.first == now.first && this->ImageInMemory.second != now.second)
   {
     for (auto& state : this->States)

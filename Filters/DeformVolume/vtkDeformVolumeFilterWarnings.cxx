@@ -111,8 +111,7 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfSplits(vtkImageData* volume)
   const std::uint64_t shape = mesh.GetRestMesh().GetShapeVersion();
   if (mesh.IsField() || mesh.GetDeviceVectors() || this->Self->OpenSplits ||
     this->Self->ResamplerInUse == MESH_RASTERIZATION || deformvolume::HasCut(volume) ||
-    volume->GetCellData()->HasArray(deformvolume::ActiveTetrahedraName) ||
-    volume->HasAnyBlankPoints() || volume->HasAnyBlankCells())
+    volume->GetCellData()->HasArray(deformvolume::ActiveTetrahedraName))
   {
     this->State->WarnedOfSplitsOf = 0;
     return;
@@ -125,8 +124,10 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfSplits(vtkImageData* volume)
   volume->GetExtent(voxels.data());
   this->State->Splits.Update(mesh.GetMeshAtRest(), mesh.GetRestMesh().GetConnectivityVersion());
   const std::string text = this->State->Splits.Describe(mesh.GetNodeDisplacements(), voxels);
-  this->State->WarnedOfSplitsOf = text.empty() ? 0 : shape;
-  if (!text.empty())
+  // The search for hidden voxels takes long.
+  const bool warns = !text.empty() && !volume->HasAnyBlankPoints() && !volume->HasAnyBlankCells();
+  this->State->WarnedOfSplitsOf = warns ? shape : 0;
+  if (warns)
   {
     vtkWarningWithObjectMacro(
       this->Self, << text << " Cut the volume along the split, or let the filter open splits.");

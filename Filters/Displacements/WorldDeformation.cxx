@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "WorldDeformation.h"
 
+#include "FieldGeometry.h"
 #include "FieldReading.h"
 #include "NodeFaults.h"
 #include "PipelineGeometry.h"
@@ -10,8 +11,6 @@
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkPointData.h"
-
-#include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
 
@@ -120,15 +119,10 @@ void WorldDeformation::ReadField(vtkImageData* image, const DeformationSource& s
         }
       }
     });
-  const ImageGeometry geometry = GetGeometry(image);
-  this->Vectors = WorldField();
-  image->GetDimensions(this->Vectors.Dimensions.data());
-  const glm::dvec3 first(geometry.PointExtent[0], geometry.PointExtent[2], geometry.PointExtent[4]);
-  this->Vectors.IndexToWorld = glm::translate(geometry.GetIndexToWorld(), first);
+  this->Vectors = MakeWorldField(GetGeometry(image));
   this->Vectors.Floats = floats;
   this->Vectors.Doubles = this->Converted.data();
   this->Vectors.Scale = source.DisplacementScale;
-  this->Vectors.Tolerance = FieldTolerance;
   this->Vectors.Undefined = this->Undefined.empty() ? nullptr : this->Undefined.data();
   this->Remember(stamp, source);
 }

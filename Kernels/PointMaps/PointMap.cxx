@@ -89,4 +89,14 @@ bool PointMap::Invert(const glm::dvec3& point, Image& image) const
   return isFound || isSolved;
 }
 
+bool MovePoint(const PointMap* map, bool isInverse, const glm::dvec3& point, PointMap::Image& image)
+{
+  if (map && (isInverse ? map->Invert(point, image) : map->Map(point, image)))
+  {
+    return true;
+  }
+  image = { point };
+  return !map;
+}
+
 } // namespace deformvolume

@@ -51,6 +51,11 @@ protected:
   double SolutionTolerance = 0.0; // largest distance at which Newton's method counts as converged
 };
 
+/// Moves a point by a map, or by its inverse. Without a map, and outside, the image is the point
+/// itself. Returns false if the point is outside.
+DEFORMVOLUME_EXPORT bool MovePoint(
+  const PointMap* map, bool isInverse, const glm::dvec3& point, PointMap::Image& image);
+
 } // namespace deformvolume
 
 #endif

@@ -3,6 +3,7 @@
 
 #include "IndexBounds.h" // for OutputTransform
 
+#include <glm/gtc/matrix_transform.hpp>
 #include <glm/mat4x4.hpp>
 
 #include <algorithm>
@@ -96,6 +97,20 @@ ImageGeometry GetGridAtRest(const ImageGeometry& volume)
   geometry.Origin = glm::dvec3(volume.GetIndexToWorld() * glm::dvec4(before, 1.0));
   geometry.PointExtent = { { 0, 1, 0, 1, 0, 1 } };
   return geometry;
+}
+
+WorldField MakeWorldField(const ImageGeometry& grid)
+{
+  const Extent& points = grid.PointExtent;
+  WorldField field;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    field.Dimensions[static_cast<std::size_t>(axis)] = static_cast<int>(GetSize(points, axis));
+  }
+  field.IndexToWorld =
+    glm::translate(grid.GetIndexToWorld(), glm::dvec3(points[0], points[2], points[4]));
+  field.Tolerance = FieldTolerance;
+  return field;
 }
 
 void SetOutside(const OutsideVoxels& outside, const glm::dvec3& spacing, DisplacementField& field)

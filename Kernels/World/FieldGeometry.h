@@ -5,6 +5,7 @@
 #include "DeformVolumeExport.h"
 #include "DisplacementField.h"
 #include "Extent.h"
+#include "FieldPointMap.h"
 #include "ImageGeometry.h"
 #include "OutsideVoxels.h"
 #include "VoxelGrid.h"
@@ -30,6 +31,9 @@ DEFORMVOLUME_EXPORT int GetStep(const Extent& voxels, const std::array<double, 1
 /// Returns a grid of 2 x 2 x 2 points that contains a volume. A field of zeros on this grid is used
 /// if there is no deformation.
 DEFORMVOLUME_EXPORT ImageGeometry GetGridAtRest(const ImageGeometry& volume);
+
+/// Returns a field of points in world coordinates, which needs vectors.
+DEFORMVOLUME_EXPORT WorldField MakeWorldField(const ImageGeometry& grid);
 
 /// Sets how a field treats voxels outside it. spacing: the spacing of the field, in world units.
 DEFORMVOLUME_EXPORT void SetOutside(

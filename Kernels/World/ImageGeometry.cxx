@@ -102,10 +102,10 @@ OutputMap GetOutputMap(const ImageGeometry& image, const ImageGeometry& output)
   return map;
 }
 
-glm::dvec3 GetPositionsOrigin(const ImageGeometry& volume)
+double GetLargestCoordinate(const ImageGeometry& image)
 {
-  const Extent& extent = volume.PointExtent;
-  const glm::dmat4 toWorld = volume.GetIndexToWorld();
+  const Extent& extent = image.PointExtent;
+  const glm::dmat4 toWorld = image.GetIndexToWorld();
   double largest = 0.0;
   for (int corner = 0; corner < 8; ++corner)
   {
@@ -114,16 +114,27 @@ glm::dvec3 GetPositionsOrigin(const ImageGeometry& volume)
     const glm::dvec3 position = glm::abs(glm::dvec3(toWorld * index));
     largest = std::max({ largest, position.x, position.y, position.z });
   }
+  return largest;
+}
+
+double GetSmallestSpacing(const ImageGeometry& image)
+{
+  const glm::dvec3 spacing = glm::abs(image.Spacing);
+  return std::min({ spacing.x, spacing.y, spacing.z });
+}
+
+glm::dvec3 GetPositionsOrigin(const ImageGeometry& volume)
+{
   // Positions are rounded to floats, and interpolated in single precision.
-  const double error = largest / static_cast<double>(1 << 22);
-  const glm::dvec3 spacing = glm::abs(volume.Spacing);
-  if (error <= std::min({ spacing.x, spacing.y, spacing.z }) / 256.0)
+  const double error = GetLargestCoordinate(volume) / static_cast<double>(1 << 22);
+  if (error <= GetSmallestSpacing(volume) / 256.0)
   {
     return glm::dvec3(0.0);
   }
+  const Extent& extent = volume.PointExtent;
   const glm::dvec4 middle(0.5 * (extent[0] * 1.0 + extent[1]), 0.5 * (extent[2] * 1.0 + extent[3]),
     0.5 * (extent[4] * 1.0 + extent[5]), 1.0);
-  return glm::dvec3(toWorld * middle);
+  return glm::dvec3(volume.GetIndexToWorld() * middle);
 }
 
 void ComputeWorldPositions(

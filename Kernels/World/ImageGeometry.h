@@ -54,6 +54,11 @@ DEFORMVOLUME_EXPORT bool AreSamePositions(
 /// the points of the grids coincide.
 DEFORMVOLUME_EXPORT OutputMap GetOutputMap(const ImageGeometry& image, const ImageGeometry& output);
 
+/// Returns the largest absolute world coordinate of the points of an image.
+DEFORMVOLUME_EXPORT double GetLargestCoordinate(const ImageGeometry& image);
+/// Returns the smallest distance of neighboring points of an image, in world units.
+DEFORMVOLUME_EXPORT double GetSmallestSpacing(const ImageGeometry& image);
+
 /// Returns the point to which single-precision positions in a volume are relative: the origin of
 /// the world, or the middle of the volume if positions relative to the origin would be less exact
 /// than 1/256 voxel.

@@ -8,7 +8,6 @@
 #include "VectorConversion.h"
 
 #include <glm/common.hpp>
-#include <glm/gtc/matrix_transform.hpp>
 
 #include <atomic>
 
@@ -173,14 +172,7 @@ WorldField VectorField::GetWorldField()
       }
     });
   CheckFinite(notFinite, this->Vectors.Count);
-  const Extent& points = this->Grid.PointExtent;
-  WorldField field;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    field.Dimensions[static_cast<std::size_t>(axis)] = static_cast<int>(GetSize(points, axis));
-  }
-  field.IndexToWorld =
-    glm::translate(this->Grid.GetIndexToWorld(), glm::dvec3(points[0], points[2], points[4]));
+  WorldField field = MakeWorldField(this->Grid);
   if (this->Vectors.AreDoubles)
   {
     field.Doubles = static_cast<const double*>(this->Vectors.Data);
@@ -189,7 +181,6 @@ WorldField VectorField::GetWorldField()
   {
     field.Floats = static_cast<const float*>(this->Vectors.Data);
   }
-  field.Tolerance = FieldTolerance;
   return field;
 }
 

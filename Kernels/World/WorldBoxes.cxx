@@ -9,7 +9,6 @@
 #include <glm/vec3.hpp>
 #include <glm/vector_relational.hpp>
 
-#include <algorithm>
 #include <limits>
 #include <sstream>
 
@@ -119,11 +118,6 @@ std::string DescribeSmallness(const char* what, const Box& box, const ImageGeome
     Describe(what, box, volume);
 }
 
-} // namespace
-
-namespace
-{
-
 // The rounding of world coordinates of a volume in single precision.
 struct Rounding
 {
@@ -133,12 +127,9 @@ struct Rounding
 
   explicit Rounding(const ImageGeometry& volume)
   {
-    const Box box = GetWorldBox(volume);
-    const glm::dvec3 far = glm::max(glm::abs(box.Least), glm::abs(box.Most));
-    this->Largest = std::max({ far.x, far.y, far.z });
+    this->Largest = GetLargestCoordinate(volume);
     this->Error = this->Largest / static_cast<double>(1 << 24);
-    const glm::dvec3 spacing = glm::abs(volume.Spacing);
-    this->Voxels = this->Error / std::min({ spacing.x, spacing.y, spacing.z });
+    this->Voxels = this->Error / GetSmallestSpacing(volume);
   }
   bool IsSmall() const { return this->Voxels <= 1.0 / 256.0; }
   std::string Describe(const char* what) const

@@ -24,10 +24,9 @@ namespace
 constexpr std::size_t PointsPerPart = 512;
 constexpr std::size_t PointsPerReport = 64 * PointsPerPart;
 
-void CheckPoints(const PointsRequest& request)
+void CheckPoints(const VectorView& points)
 {
-  const VectorView points{ request.Points, true, request.Count };
-  for (std::size_t i = 0; i < request.Count; ++i)
+  for (std::size_t i = 0; i < points.Count; ++i)
   {
     if (!IsFiniteVector(points.Get(i)))
     {
@@ -40,7 +39,8 @@ void CheckPoints(const PointsRequest& request)
 
 PointsReport WorldDeformer::DeformPoints(const PointsRequest& request)
 {
-  CheckPoints(request);
+  const VectorView points{ request.Points, true, request.Count };
+  CheckPoints(points);
   Internals& internals = *this->Impl;
   const bool isMesh = internals.Deformation == Internals::Deformations::Mesh;
   const bool isField = internals.Deformation == Internals::Deformations::Field;
@@ -72,25 +72,19 @@ PointsReport WorldDeformer::DeformPoints(const PointsRequest& request)
     ParallelForParts(std::min(PointsPerReport, request.Count - begin), PointsPerPart,
       [&](std::size_t from, std::size_t to)
       {
+        std::int64_t outsideHere = 0;
+        double fadingHere = 0.0;
         for (std::size_t i = begin + from; i < begin + to; ++i)
         {
-          const double* given = request.Points + 3 * i;
-          const glm::dvec3 point(given[0], given[1], given[2]);
           PointMap::Image image;
-          const bool isValid =
-            !map || (isInverted ? map->Invert(point, image) : map->Map(point, image));
-          const glm::dvec3 moved = map && isValid ? image.Point : point;
-          for (int axis = 0; axis < 3; ++axis)
-          {
-            request.Moved[3 * i + static_cast<std::size_t>(axis)] = moved[axis];
-          }
+          const bool isValid = MovePoint(map.get(), isInverted, points.Get(i), image);
+          std::copy_n(&image.Point.x, 3, request.Moved + 3 * i);
           request.Valid[i] = isValid ? 1 : 0;
-          outside += isValid ? 0 : 1;
-          if (image.FadingDisplacement > 0.0)
-          {
-            Lower(leastFading, -image.FadingDisplacement);
-          }
+          outsideHere += isValid ? 0 : 1;
+          fadingHere = std::max(fadingHere, image.FadingDisplacement);
         }
+        outside += outsideHere;
+        Lower(leastFading, -fadingHere);
       });
   }
   PointsReport report;

@@ -18,11 +18,11 @@ from vtkmodules.vtkImagingGeneral import vtkImageGaussianSmooth
 
 
 class Series(VTKPythonAlgorithmBase):
-    """A source with the time steps 0 to 3. make(time) returns its data. tells: whether its data always have a time."""
+    """A source with the time steps 0 to 3. make(time) returns its data. has_time: whether these always have a time."""
 
-    def __init__(self, kind, make, tells=True):
+    def __init__(self, kind, make, has_time=True):
         super().__init__(nInputPorts=0, nOutputPorts=1, outputType=kind)
-        self.make, self.tells = make, tells
+        self.make, self.has_time = make, has_time
 
     def RequestInformation(self, request, inputs, outputs):
         info = outputs.GetInformationObject(0)
@@ -36,7 +36,7 @@ class Series(VTKPythonAlgorithmBase):
         made = self.make(time)
         output = type(made).GetData(outputs)
         output.ShallowCopy(made)
-        if self.tells:
+        if self.has_time:
             output.GetInformation().Set(output.DATA_TIME_STEP(), time)
         return 1
 
@@ -133,7 +133,7 @@ def test_chosen_time():
     deform.UpdateTimeStep(3.0)
     assert deform.GetOutput().GetExtent() == (2, 19, 0, 16, 0, 16), deform.GetOutput().GetExtent()
     # A source whose data have a time only if one is requested.
-    lattice = Series("vtkUnstructuredGrid", move_lattice, tells=False)
+    lattice = Series("vtkUnstructuredGrid", move_lattice, has_time=False)
     deform.SetDeformationConnection(lattice.GetOutputPort())
     deform.Update()
     deform.UpdateTimeStep(3.0)
