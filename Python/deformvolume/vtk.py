@@ -550,7 +550,11 @@ class DeformVolume(VTKPythonAlgorithmBase):
                 raise ValueError(f'Two arrays of the volume are named "{array.GetName()}". Rename one of them.')
         edits = [data.GetArray(name) for name in _POINT_MASKS]
         edits += [image.GetCellData().GetArray(name) for name in _CELL_MASKS]
-        labels = [array.GetName() in self._categorical for array in arrays]
+        ids = (data.GetGlobalIds(), data.GetPedigreeIds())
+        labels = [
+            array.GetName() in self._categorical or any(array is other for other in ids)
+            for array in arrays
+        ]
         background = self._settings["BackgroundValue"]
         self._arrays = arrays
 

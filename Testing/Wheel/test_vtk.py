@@ -509,6 +509,28 @@ class Pipeline(unittest.TestCase):
         volume.GetCellData().Initialize()
         expect()
 
+    # As in the C++ filter, global and pedigree ids are not interpolated.
+    def test_ids(self):
+        from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+
+        self.source.Update()
+        volume = self.source.GetOutput()
+        for name, activate in (
+            ("global", volume.GetPointData().SetGlobalIds),
+            ("pedigree", volume.GetPointData().SetPedigreeIds),
+        ):
+            ids = numpy_to_vtk(1000 * numpy.arange(volume.GetNumberOfPoints()), deep=True)
+            ids.SetName(name)
+            activate(ids)
+        self.filter.SetInputDataObject(0, volume)
+        self.filter.SetDeformationData(make_field((0.3, 0, 0)))
+        self.filter.Update()
+        data = self.filter.GetOutputDataObject(0).GetPointData()
+        for array in (data.GetGlobalIds(), data.GetPedigreeIds()):
+            values = vtk_to_numpy(array)
+            self.assertTrue(numpy.any(values > 0))
+            self.assertFalse(numpy.any(values % 1000))
+
     # As in the C++ filter, arrays of bits are left out.
     def test_bits(self):
         from vtkmodules.vtkCommonCore import vtkBitArray
