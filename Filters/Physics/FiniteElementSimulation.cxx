@@ -60,8 +60,10 @@ void FiniteElementSimulation::Warn(const EquilibriumReport& last)
   std::ostringstream text;
   if (now.NumberOfFrozenPieces != last.NumberOfFrozenPieces && now.NumberOfFrozenPieces > 0)
   {
-    text << now.NumberOfFrozenPieces << " pieces of the mesh are not held. Tetrahedron "
-         << now.FirstFrozenTetrahedron
+    text << now.NumberOfFrozenPieces
+         << " pieces of the mesh are not held. The tetrahedron with the "
+            "points "
+         << ListNodes(now.FrozenNodes)
          << " is in one of these pieces. A piece consists of tetrahedra that are connected by "
             "their faces. It is held by three nodes that do not lie on one line and are fixed, "
             "held by handles, or shared with a piece that is held, or by nodes that slide in "

@@ -419,8 +419,9 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
   if (report.NumberOfFrozenPieces > 0)
   {
     const auto first = std::find(isHeld.begin(), isHeld.end(), false) - isHeld.begin();
-    report.FirstFrozenTetrahedron =
+    const std::int32_t tetrahedron =
       this->Pieces.Tetrahedra[this->Pieces.Begins[static_cast<std::size_t>(first)]];
+    report.FrozenNodes = this->Body.Tetrahedra[static_cast<std::size_t>(tetrahedron)];
   }
   this->RightHandSide.resize(problem.IsFree.size());
   State state = this->Last;

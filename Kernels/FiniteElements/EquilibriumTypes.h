@@ -92,8 +92,8 @@ struct EquilibriumReport
   /// The number of pieces of the body (BodyPieces) that are not held (PieceSupports). Such frozen
   /// pieces bear no loads and exert no forces.
   std::int32_t NumberOfFrozenPieces = 0;
-  /// A tetrahedron of the first frozen piece, for messages; -1 if no piece is frozen.
-  std::int32_t FirstFrozenTetrahedron = -1;
+  /// The nodes of a tetrahedron of the first frozen piece, for messages; -1 if no piece is frozen.
+  Tetrahedron FrozenNodes{ { -1, -1, -1, -1 } };
   /// The number of frozen pieces that moved like rigid bodies with their supporting nodes. The
   /// other frozen pieces did not move.
   std::int32_t NumberOfFollowingPieces = 0;

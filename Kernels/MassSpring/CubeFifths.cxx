@@ -79,8 +79,8 @@ double FindCubeEdge(Watch& watch, const ElasticBody& body)
     {
       if (!IsFifth(GetCorners(body, body.Tetrahedra[t]), edge))
       {
-        throw Error("Tetrahedron " + std::to_string(t) +
-          " of the rest mesh is not a fifth of a cube" +
+        throw Error("The tetrahedron with the points " + ListNodes(body.Tetrahedra[t]) +
+          " is not a fifth of a cube" +
           (t == 0 ? std::string() : " of the same size as those before it") +
           ". Springs simulate an elastic material only on lattices of equal cubes with five "
           "tetrahedra each: use "

@@ -70,12 +70,13 @@ struct Counted
     this->First = this->Number == 0 ? number : this->First;
     ++this->Number;
   }
-  // Such as "3 of 20 tetrahedra of the rest mesh are flat, the first one being number 7. ".
+  // Such as "3 of 20 tetrahedra of the rest mesh are flat, the first one with the points 3, 4, 5
+  // and 9. ".
   void Throw(const ElasticBody& body, const std::string& what, const std::string& advice) const
   {
     throw Error(std::to_string(this->Number) + " of " + std::to_string(body.Tetrahedra.size()) +
-      " tetrahedra of the rest mesh " + what + ", the first one being number " +
-      std::to_string(this->First) + ". " + advice);
+      " tetrahedra of the rest mesh " + what + ", the first one with the points " +
+      ListNodes(body.Tetrahedra[this->First]) + ". " + advice);
   }
 };
 
@@ -288,6 +289,12 @@ void CheckMaterial(const ElasticMaterial& material, const std::string& where)
   }
 }
 
+std::string ListNodes(const Tetrahedron& tetrahedron)
+{
+  const auto name = [&](std::size_t i) { return std::to_string(tetrahedron[i]); };
+  return name(0) + ", " + name(1) + ", " + name(2) + " and " + name(3);
+}
+
 void CheckMaterials(const ElasticBody& body, const std::vector<ElasticMaterial>& materials)
 {
   if (materials.size() == 1)
@@ -298,7 +305,8 @@ void CheckMaterials(const ElasticBody& body, const std::vector<ElasticMaterial>&
   CheckLength(materials.size(), body.Tetrahedra.size(), "materials");
   for (std::size_t t = 0; t < materials.size(); ++t)
   {
-    CheckMaterial(materials[t], " of tetrahedron " + std::to_string(t));
+    CheckMaterial(
+      materials[t], " of the tetrahedron with the points " + ListNodes(body.Tetrahedra[t]));
   }
 }
 

@@ -137,8 +137,12 @@ DEFORMVOLUME_EXPORT bool IsFlat(const std::array<glm::dvec3, 4>& points);
 /// polled for cancellation.
 DEFORMVOLUME_EXPORT void CheckBody(const ElasticBody& body, Watch* watch = nullptr);
 
+/// The nodes of a tetrahedron for messages, such as "3, 4, 5 and 9". They are numbered as the
+/// points of the user's mesh, whose cells may have other numbers than the tetrahedra.
+DEFORMVOLUME_EXPORT std::string ListNodes(const Tetrahedron& tetrahedron);
+
 /// Throws an Error if a property of a material is out of range. where: names the material in the
-/// message, such as " of tetrahedron 7".
+/// message, such as " of the tetrahedron with the points 3, 4, 5 and 9".
 DEFORMVOLUME_EXPORT void CheckMaterial(const ElasticMaterial& material, const std::string& where);
 
 /// Throws an Error if the number of materials does not fit the body, or one of them is out of

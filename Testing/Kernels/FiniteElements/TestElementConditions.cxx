@@ -328,6 +328,6 @@ TEST(ElementConditions, PiecesThatSlide)
   const EquilibriumReport report = model.Solve(request);
   EXPECT_TRUE(report.IsConverged);
   EXPECT_EQ(report.NumberOfFrozenPieces, 1);
-  EXPECT_EQ(report.FirstFrozenTetrahedron, static_cast<std::int32_t>(tetrahedra));
+  EXPECT_EQ(report.FrozenNodes, body.Tetrahedra[tetrahedra]);
   EXPECT_GT(LargestOf(model.GetDisplacements()), 0.01);
 }

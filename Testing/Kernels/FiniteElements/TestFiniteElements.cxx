@@ -260,7 +260,7 @@ TEST(FiniteElements, PiecesOnANodeOrAnEdge)
     EXPECT_TRUE(report.IsConverged);
     EXPECT_EQ(report.NumberOfFrozenPieces, 2);
     EXPECT_EQ(report.NumberOfFollowingPieces, 2);
-    EXPECT_EQ(report.FirstFrozenTetrahedron, static_cast<std::int32_t>(first));
+    EXPECT_EQ(report.FrozenNodes, lattice.Body.Tetrahedra[first]);
     EXPECT_EQ(report.NumberOfInvertedTetrahedra, 0);
     for (std::size_t node = 0; node < nodes; ++node)
     {

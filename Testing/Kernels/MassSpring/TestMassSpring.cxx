@@ -160,8 +160,8 @@ TEST(MassSpring, TetrahedraOfOtherShapesAreAnError)
   const auto refuses = [&](const ElasticBody& body, std::size_t tetrahedron)
   {
     const std::string text = getError(body);
-    const std::string wanted =
-      "Tetrahedron " + std::to_string(tetrahedron) + " of the rest mesh is not a fifth of a cube";
+    const std::string wanted = "The tetrahedron with the points " +
+      ListNodes(body.Tetrahedra[tetrahedron]) + " is not a fifth of a cube";
     EXPECT_EQ(text.substr(0, wanted.size()), wanted);
     EXPECT_NE(text.find("vtkFiniteElementDeformation"), std::string::npos) << text;
   };

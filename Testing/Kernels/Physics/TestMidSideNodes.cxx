@@ -124,7 +124,7 @@ TEST(MidSideNodes, Misuse)
 {
   const QuadraticLattice lattice({ 3, 3, 3 }, 0.5, MakeMaterial(1e4, 0.3));
   const auto getError = [](const ElasticBody& body) { return GetError([&] { CheckBody(body); }); };
-  const auto expectFound = [](const std::string& error, const char* text)
+  const auto expectFound = [](const std::string& error, const std::string& text)
   { EXPECT_NE(error.find(text), std::string::npos) << error; };
   EXPECT_EQ(getError(lattice.Body), "");
 
@@ -142,7 +142,8 @@ TEST(MidSideNodes, Misuse)
   }
   expectFound(getError(body),
     "40 of 40 tetrahedra of the rest mesh overlap themselves, as mid-side "
-    "nodes are misplaced, the first one being number 0.");
+    "nodes are misplaced, the first one with the points " +
+      ListNodes(body.Tetrahedra[0]) + ".");
   body = lattice.Body;
   body.MidSides.pop_back();
   expectFound(getError(body), "39 tetrahedra with mid-side nodes, but 40 are needed");
@@ -162,8 +163,10 @@ TEST(MidSideNodes, Misuse)
     body.Points.push_back(body.Points[static_cast<std::size_t>(nodes[0])]);
     body.Tetrahedra[t][3] = static_cast<std::int32_t>(body.Points.size() - 1);
   }
-  expectFound(
-    getError(body), "2 of 40 tetrahedra of the rest mesh are flat, the first one being number 4.");
+  expectFound(getError(body),
+    "2 of 40 tetrahedra of the rest mesh are flat, the first one with the points " +
+      ListNodes(body.Tetrahedra[4]) + ".");
+  EXPECT_EQ(ListNodes({ { 3, 14, 5, 9 } }), "3, 14, 5 and 9");
 }
 
 // A ten-node tetrahedron is divided into linear tetrahedra. One of them is inverted, although the
