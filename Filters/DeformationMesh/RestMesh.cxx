@@ -7,7 +7,6 @@
 #include "MeshCells.h"
 #include "ParallelFor.h"
 
-#include "vtkPoints.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
@@ -181,28 +180,19 @@ bool RestMesh::HavePointsChanged(const MeshParts& rest, const DeformationSource&
   }
   const glm::dmat4 transform = source.Volume.GetWorldToIndex();
   std::atomic<bool> have{ false };
-  const glm::dvec3* last = this->Points.data();
-  for (vtkUnstructuredGrid* grid : rest)
-  {
-    if (grid->GetNumberOfPoints() == 0)
+  NodeFaults faults; // a point that is not finite was read as zeros
+  faults.Resize(GetNumberOfNodes(rest));
+  ReadPointVectors(rest, SelectPoints, faults,
+    [&](vtkIdType first, const glm::dvec3* points, vtkIdType count)
     {
-      continue;
-    }
-    ReadVectors(
-      grid->GetPoints()->GetData(),
-      [&](vtkIdType begin, const glm::dvec3* points, vtkIdType count)
+      for (vtkIdType i = 0; i < count; ++i)
       {
-        for (vtkIdType i = 0; i < count; ++i)
+        if (glm::dvec3(transform * glm::dvec4(points[i], 1.0)) != this->Points[first + i])
         {
-          if (glm::dvec3(transform * glm::dvec4(points[i], 1.0)) != last[begin + i])
-          {
-            have.store(true, std::memory_order_relaxed);
-          }
+          have.store(true, std::memory_order_relaxed);
         }
-      },
-      "Point", "", nullptr, [](vtkIdType) {}); // a point that is not finite was read as zeros
-    last += grid->GetNumberOfPoints();
-  }
+      }
+    });
   return have;
 }
 
@@ -280,9 +270,26 @@ bool RestMesh::ReadPoints(
   this->Points.resize(std::max(sizeBefore, GetNumberOfNodes(rest)));
   this->PointFaults.Resize(GetNumberOfNodes(rest));
   std::atomic<bool> kept{ true };
+  const glm::dmat4 transform = source.Volume.GetWorldToIndex();
   try
   {
-    this->ReadMovedPoints(rest, source, before, kept);
+    ReadPointVectors(
+      rest, SelectPoints, this->PointFaults,
+      [&](vtkIdType first, const glm::dvec3* points, vtkIdType count)
+      {
+        this->PointFaults.Clear(first, count);
+        for (vtkIdType i = 0; i < count; ++i)
+        {
+          const auto node = static_cast<std::size_t>(first + i);
+          const glm::dvec3 point(transform * glm::dvec4(points[i], 1.0));
+          if (node < before && point != this->Points[node])
+          {
+            kept.store(false, std::memory_order_relaxed);
+          }
+          this->Points[node] = point;
+        }
+      },
+      &this->PointMemories);
   }
   catch (...)
   {
@@ -295,46 +302,6 @@ bool RestMesh::ReadPoints(
   this->PointsStamp = stamp;
   this->Volume = source.Volume;
   return true;
-}
-
-void RestMesh::ReadMovedPoints(const MeshParts& rest, const DeformationSource& source,
-  std::size_t before, std::atomic<bool>& kept)
-{
-  const glm::dmat4 transform = source.Volume.GetWorldToIndex();
-  this->PointMemories.resize(rest.size());
-  vtkIdType first = 0;
-  for (std::size_t part = 0; part < rest.size(); ++part)
-  {
-    VectorMemory& memory = this->PointMemories[part];
-    const vtkIdType count = rest[part]->GetNumberOfPoints();
-    if (count == 0 || memory.FirstNumber != first)
-    {
-      memory = VectorMemory();
-      memory.FirstNumber = first;
-    }
-    if (count > 0)
-    {
-      ReadVectors(
-        rest[part]->GetPoints()->GetData(),
-        [&](vtkIdType begin, const glm::dvec3* points, vtkIdType some)
-        {
-          this->PointFaults.Clear(first + begin, some);
-          for (vtkIdType i = 0; i < some; ++i)
-          {
-            const auto node = static_cast<std::size_t>(first + begin + i);
-            const glm::dvec3 point(transform * glm::dvec4(points[i], 1.0));
-            if (node < before && point != this->Points[node])
-            {
-              kept.store(false, std::memory_order_relaxed);
-            }
-            this->Points[node] = point;
-          }
-        },
-        "Point", "", &memory,
-        [&](vtkIdType point) { this->PointFaults.Mark(first + point, NodeFaults::NotFinite); });
-    }
-    first += count;
-  }
 }
 
 bool RestMesh::HaveSameShape(const CellReading& cells) const

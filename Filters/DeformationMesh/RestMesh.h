@@ -12,7 +12,6 @@
 
 #include <glm/vec3.hpp>
 
-#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -88,9 +87,6 @@ private:
   bool HaveSameShape(const CellReading& cells) const;
   /// before: number of nodes before. Returns false if nothing had to be read.
   bool ReadPoints(const MeshParts& rest, const DeformationSource& source, std::size_t before);
-  /// before: number of nodes before. kept: set to false if one of these nodes has moved.
-  void ReadMovedPoints(const MeshParts& rest, const DeformationSource& source, std::size_t before,
-    std::atomic<bool>& kept);
   /// nodes: number of nodes of the grids.
   void UpdateDerivedPoints(std::size_t nodes);
   void SetConnectivity(Changes&& changes);

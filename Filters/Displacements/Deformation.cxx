@@ -3,7 +3,6 @@
 
 #include "Error.h"
 #include "ParallelFor.h"
-#include "PointDifferences.h"
 #include "VectorArray.h"
 #include "VectorConversion.h"
 
@@ -88,7 +87,7 @@ void Deformation::ReadMesh(const DeformationSource& source)
     {
       if (ofPoints)
       {
-        ReadPointDifferences(shape, rest, take, this->Memories, this->Faults);
+        ReadPointDifferences(shape, rest, this->Faults, take, &this->Memories);
       }
       else
       {

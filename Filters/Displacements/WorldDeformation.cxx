@@ -5,7 +5,6 @@
 #include "FieldReading.h"
 #include "NodeFaults.h"
 #include "PipelineGeometry.h"
-#include "PointDifferences.h"
 #include "VectorArray.h"
 
 #include "vtkDataArray.h"
@@ -74,8 +73,7 @@ void WorldDeformation::ReadMesh(const DeformationSource& source)
   const std::vector<Tetrahedron>& tetrahedra = this->Mesh.GetTetrahedra();
   if (source.Rest)
   {
-    std::vector<VectorMemory> memories;
-    ReadPointDifferences(shape, rest, take, memories, faults);
+    ReadPointDifferences(shape, rest, faults, take);
     CheckPoints(shape, MESH_NAME, faults, tetrahedra);
   }
   else
