@@ -11,15 +11,12 @@
 
 #include <algorithm>
 #include <atomic>
-#include <map>
 
 namespace deformvolume
 {
 
 namespace
 {
-
-constexpr std::size_t MostInLog = 8; // log at most one change for this number of tetrahedra
 
 // Without a rest configuration, the points of the deformation mesh are at rest.
 bool IsRestMade(const DeformationSource& source)
@@ -332,56 +329,24 @@ void RestMesh::SetShape(CellReading&& cells)
   this->IgnoredCells = cells.Ignored;
   this->WrongOrder = cells.WrongOrder;
   ++this->ShapeVersion;
-  this->LogBegin = ++this->ConnectivityVersion;
-  this->Log.clear();
+  ++this->ConnectivityVersion;
+  this->LastChanges.reset();
 }
 
 void RestMesh::SetConnectivity(Changes&& changes)
 {
   Apply(changes, this->Tetrahedra);
-  this->Log.emplace_back(++this->ConnectivityVersion, std::move(changes));
-  std::size_t size = 0;
-  for (const auto& entry : this->Log)
-  {
-    size += entry.second.size();
-  }
-  while (this->Log.size() > 1 && size > this->Tetrahedra.size() / MostInLog)
-  {
-    size -= this->Log.front().second.size();
-    this->LogBegin = this->Log.front().first;
-    this->Log.pop_front();
-  }
+  ++this->ConnectivityVersion;
+  this->LastChanges = std::move(changes);
 }
 
 std::optional<std::vector<TetrahedronChange>> RestMesh::GetChanges(std::uint64_t version) const
 {
-  if (version < this->LogBegin)
+  if (version == this->ConnectivityVersion)
   {
-    return {};
+    return Changes();
   }
-  if (!this->Log.empty() &&
-    (this->Log.size() == 1 ? this->LogBegin : this->Log[this->Log.size() - 2].first) <= version)
-  {
-    return version < this->Log.back().first ? this->Log.back().second : Changes();
-  }
-  std::map<std::int32_t, TetrahedronChange> joined;
-  for (const auto& [led, changes] : this->Log)
-  {
-    if (led <= version)
-    {
-      continue;
-    }
-    for (const TetrahedronChange& change : changes)
-    {
-      joined.emplace(change.Number, change).first->second.After = change.After;
-    }
-  }
-  Changes all;
-  for (const auto& entry : joined)
-  {
-    all.push_back(entry.second);
-  }
-  return all;
+  return version + 1 == this->ConnectivityVersion ? this->LastChanges : std::nullopt;
 }
 
 } // namespace deformvolume

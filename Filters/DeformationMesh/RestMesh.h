@@ -13,10 +13,8 @@
 #include <glm/vec3.hpp>
 
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace deformvolume
@@ -48,8 +46,8 @@ public:
   std::uint64_t GetShapeVersion() const { return this->ShapeVersion; }
   /// Changes if the shape, the nodes of a tetrahedron or the number of nodes changes.
   std::uint64_t GetConnectivityVersion() const { return this->ConnectivityVersion; }
-  /// The tetrahedra that have other nodes than at a version of the connectivity with the same
-  /// shape, each once. Returns nothing if the log no longer has this version.
+  /// The tetrahedra that have other nodes than at a version of the connectivity, each once. Returns
+  /// nothing unless this is the current version, or the one before and the shape is the same.
   std::optional<std::vector<TetrahedronChange>> GetChanges(std::uint64_t version) const;
 
   /// Whether the last call of Read() did not move any node that existed before.
@@ -104,10 +102,8 @@ private:
   bool KeptPoints = false;
   bool CellsDependOnPoints = false; // see MeshCells
 
-  // Log: the last changes of the connectivity, each with the version after it. LogBegin: the
-  // version before the first change.
-  std::deque<std::pair<std::uint64_t, Changes>> Log;
-  std::uint64_t LogBegin = 0;
+  // The changes from the last version of the connectivity to this one; nothing: the shape changed.
+  std::optional<Changes> LastChanges;
 
   // Stamps of the inputs that the members above were read from.
   MeshStamp RestCells;
