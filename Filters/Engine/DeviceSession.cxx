@@ -24,22 +24,6 @@ std::string GetKernelKey(const std::string& device, const DeformRequest& request
   return kind;
 }
 
-// Marks the contents of the device as unknown until End() is called. If a transfer throws, they
-// stay unknown.
-class DeviceSession::Transfer
-{
-public:
-  explicit Transfer(DeviceSession* session)
-    : Session(session)
-  {
-    session->Known = false;
-  }
-  void End() { this->Session->Known = true; }
-
-private:
-  DeviceSession* Session;
-};
-
 namespace
 {
 
@@ -105,7 +89,7 @@ void DeviceSession::SetVolume(const VoxelGrid& voxelGrid, vtkImageData* volume,
   {
     this->Forget();
   }
-  Transfer transfer(this);
+  this->Known = false;
   const bool links = method != Resampling::MeshRasterization;
   std::size_t widest = 0;
   const std::vector<VolumeArray> described = MakeVolumeArrays(arrays, background);
@@ -172,7 +156,7 @@ void DeviceSession::SetVolume(const VoxelGrid& voxelGrid, vtkImageData* volume,
     this->SentMasks = masksStamp;
     this->MasksAreSet = true;
   }
-  transfer.End();
+  this->Known = true;
 }
 
 void DeviceSession::SetDeformation(const Deformation& deformation, MappingCache& mapping,
@@ -181,10 +165,11 @@ void DeviceSession::SetDeformation(const Deformation& deformation, MappingCache&
   const std::uint64_t vectors = deformation.GetVectorsVersion();
   if (deformation.IsField())
   {
-    if (!this->HasField || this->SentVectors != vectors || !(this->SentOutside == volume.Outside))
+    if (this->Sent != Contents::Field || this->SentVectors != vectors ||
+      !(this->SentOutside == volume.Outside))
     {
       const PointRanges changes = deformation.GetChanges(this->SentVectors);
-      Transfer transfer(this);
+      this->Known = false;
       DisplacementField field = deformation.GetField(volume.Outside);
       if (deformation.GetDeviceVectors())
       {
@@ -193,18 +178,17 @@ void DeviceSession::SetDeformation(const Deformation& deformation, MappingCache&
       }
       else
       {
-        this->Deformer.SetDisplacementField(field, this->HasField ? &changes : nullptr);
+        this->Deformer.SetDisplacementField(
+          field, this->Sent == Contents::Field ? &changes : nullptr);
       }
-      transfer.End();
+      this->Known = true;
     }
-    this->HasField = true;
-    this->HasMesh = this->HasRestMesh = this->HasInverseField = false;
+    this->Sent = Contents::Field;
   }
   else
   {
     this->SetMesh(deformation, mapping, volume, openSplits, progress);
-    this->HasMesh = true;
-    this->HasField = this->HasRestMesh = this->HasInverseField = false;
+    this->Sent = Contents::Mesh;
   }
   this->SentVectors = vectors;
   this->SentOutside = volume.Outside;
@@ -282,23 +266,24 @@ void DeviceSession::SetMesh(const Deformation& deformation, MappingCache& mappin
 {
   const RestMesh& mesh = deformation.GetRestMesh();
   const std::uint64_t connectivity = mesh.GetConnectivityVersion();
-  const bool isCurrent = this->HasMesh && this->SentMapping == mapping.GetVersion() &&
+  const bool isCurrent = this->Sent == Contents::Mesh &&
+    this->SentMapping == mapping.GetVersion() &&
     mapping.IsCurrent(deformation.GetMeshAtRest(), volume) && this->CanFollow(mesh);
   const bool hasSplit = isCurrent && this->SentConnectivity != connectivity;
   if (!isCurrent)
   {
     mapping.Update(deformation.GetMeshAtRest(), volume, progress);
-    Transfer transfer(this);
+    this->Known = false;
     this->SendMesh(mesh, mapping.GetMapping(), mapping.IsByRuns());
-    transfer.End();
+    this->Known = true;
     this->SentMapping = mapping.GetVersion();
     this->CoincidentNodesAreSent = false;
   }
   else if (hasSplit)
   {
-    Transfer transfer(this);
+    this->Known = false;
     this->SendConnectivity(mesh, mapping.GetMapping());
-    transfer.End();
+    this->Known = true;
   }
   this->SentConnectivity = connectivity;
   if (!volume.Outside.AreExtrapolated())
@@ -312,18 +297,18 @@ void DeviceSession::SetMesh(const Deformation& deformation, MappingCache& mappin
     {
       this->Coincident.Update(mesh);
     }
-    Transfer transfer(this);
+    this->Known = false;
     this->Deformer.SetCoincidentNodes(
       openSplits && !this->Coincident.Get().empty() ? this->Coincident.Get().data() : nullptr);
-    transfer.End();
+    this->Known = true;
     this->CoincidentNodesAreSent = openSplits;
   }
   if (!isCurrent || this->SentVectors != deformation.GetVectorsVersion())
   {
     const PointRanges changes = deformation.GetChanges(this->SentVectors);
-    Transfer transfer(this);
+    this->Known = false;
     this->SetNodes(deformation, isCurrent ? &changes : nullptr);
-    transfer.End();
+    this->Known = true;
   }
 }
 
@@ -333,23 +318,24 @@ void DeviceSession::SetRestMesh(const Deformation& deformation, const OutsideVox
   if (deformation.IsInverseField())
   {
     const std::uint64_t version = deformation.GetVectorsVersion();
-    if (!this->HasInverseField || this->SentVectors != version || !(this->SentOutside == outside))
+    if (this->Sent != Contents::InverseField || this->SentVectors != version ||
+      !(this->SentOutside == outside))
     {
-      Transfer transfer(this);
+      this->Known = false;
       this->Deformer.SetInverseField(deformation.GetField(outside));
-      transfer.End();
+      this->Known = true;
     }
-    this->HasInverseField = true;
-    this->HasMesh = this->HasField = this->HasRestMesh = false;
+    this->Sent = Contents::InverseField;
     this->SentVectors = version;
     this->SentOutside = outside;
     return;
   }
   // The version of the connectivity changes with the shape, too.
   const std::uint64_t connectivity = deformation.GetRestMesh().GetConnectivityVersion();
-  const bool meshIsSent = this->HasRestMesh && this->SentConnectivity == connectivity;
+  const bool meshIsSent =
+    this->Sent == Contents::RestMesh && this->SentConnectivity == connectivity;
   const std::uint64_t vectors = deformation.GetVectorsVersion();
-  Transfer transfer(this);
+  this->Known = false;
   if (!meshIsSent)
   {
     const std::vector<Tetrahedron>& tetrahedra = deformation.GetTetrahedra();
@@ -360,9 +346,8 @@ void DeviceSession::SetRestMesh(const Deformation& deformation, const OutsideVox
   {
     this->SetNodes(deformation, nullptr);
   }
-  transfer.End();
-  this->HasRestMesh = true;
-  this->HasMesh = this->HasField = this->HasInverseField = false;
+  this->Known = true;
+  this->Sent = Contents::RestMesh;
   this->SentConnectivity = connectivity;
   this->SentVectors = vectors;
 }
@@ -402,10 +387,7 @@ void DeviceSession::Forget()
   this->SentGrid = VoxelGrid();
   this->SentWidth = 0;
   this->ForgetValues();
-  this->HasMesh = false;
-  this->HasField = false;
-  this->HasInverseField = false;
-  this->HasRestMesh = false;
+  this->Sent = Contents::None;
 }
 
 } // namespace deformvolume

@@ -71,8 +71,6 @@ public:
   void ForgetValues();
 
 private:
-  class Transfer;
-
   void Forget();
   /// Sends the displacements of nodes. changes: the nodes whose displacements have changed; null:
   /// all.
@@ -90,8 +88,8 @@ private:
   std::string Device;
   FadedMesh Faded; // the mesh on the device, if voxels outside the deformation mesh are kept
 
-  // Contents of the device. After a call that throws, they are unknown, and everything is sent
-  // again.
+  // Contents of the device. Known is false while something is sent: after a call that throws, the
+  // contents are unknown, and everything is sent again.
   bool Known = false;
   VoxelGrid SentGrid;
   // Bytes of a voxel in the widest array that the voxel grid was prepared for.
@@ -101,11 +99,16 @@ private:
   Stamp SentMasks;
   std::pair<std::uint64_t, OutsideVoxels> SentUndefined{ 0, OutsideVoxels() };
   bool MasksAreSet = false;
-  bool HasMesh = false;
+  enum class Contents
+  {
+    None,
+    Mesh,
+    Field,
+    RestMesh,
+    InverseField
+  };
+  Contents Sent = Contents::None;
   bool HasFadedMesh = false;
-  bool HasField = false;
-  bool HasInverseField = false;
-  bool HasRestMesh = false;
   std::uint64_t SentConnectivity = 0;
   CoincidentNodes Coincident;
   bool CoincidentNodesAreSent = false;
