@@ -19,6 +19,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <tuple>
 
 class vtkFloatArray;
 class vtkImageData;
@@ -104,18 +105,9 @@ private:
   MappingCache Mapping;
   FadedMesh Faded; // the mesh of the mapping, if voxels outside the deformation mesh are kept
   std::unique_ptr<DeformedPositions> Deformed;
-  // What Deformed was computed from.
-  struct PositionsKey
-  {
-    std::uint64_t Mapping = 0; // a version
-    bool IsField = false;
-    OutsideVoxels Outside;
-    bool operator==(const PositionsKey& other) const
-    {
-      return this->Mapping == other.Mapping && this->IsField == other.IsField &&
-        this->Outside == other.Outside;
-    }
-  };
+  // What Deformed was computed from: the version of the mapping, whether the deformation is a
+  // field, and the voxels outside.
+  using PositionsKey = std::tuple<std::uint64_t, bool, OutsideVoxels>;
   PositionsKey DeformedMapping;
   std::uint64_t DeformedVectors = 0; // a version
 };

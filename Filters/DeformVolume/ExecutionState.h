@@ -18,6 +18,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 
 namespace deformvolume
@@ -35,35 +36,35 @@ struct ExecutionState
   ExtraArrays Extra;
 
   /// Frees the memory on the device, and all host memory with the size of a volume.
-  void Release();
+  void Release()
+  {
+    this->Device.ReleaseMemory();
+    this->Outputs.Forget();
+    this->Extra.Forget();
+    this->Mapping.ReleaseVoxels();
+    this->Volume.Forget();
+    this->ArraysInUse.clear();
+  }
   /// The values of the volume may have changed, although its arrays have not been modified.
-  void ForgetValues();
+  void ForgetValues()
+  {
+    this->Device.ForgetValues();
+    this->Extra.Forget();
+    this->Volume.Forget();
+  }
   bool HoldsMemory() const { return !this->ArraysInUse.empty(); }
 
-  // What the member Bounds was computed for.
-  struct BoundsKey
-  {
-    Stamp Inputs;
-    ImageGeometry Volume;
-    OutputMap ToOutput;
-    double DisplacementScale = 0.0;
-    std::string Choice;
-    int OutsideMode = -1;
-    double FadeDistance = 0.0;
-    bool operator==(const BoundsKey& other) const;
-  };
+  // What the member Bounds was computed for: the stamps of the inputs; and the volume, the output,
+  // DisplacementScale, the choice of the vectors, OutsideMode and FadeDistance.
+  using BoundsSettings = std::tuple<ImageGeometry, OutputMap, double, std::string, int, double>;
+  using BoundsKey = std::pair<Stamp, BoundsSettings>;
   BoundsKey KeyOfBounds;
   IndexBounds Bounds;
   std::set<double> TimesInBounds;
 
-  // The last extent that was computed from Bounds, and what it depends on besides Bounds.
-  struct ExtentKey
-  {
-    BoundsKey Settings; // without Inputs
-    int Padding = 0;
-    int Granularity = 0; // 0: LastExtent is not valid
-    bool operator==(const ExtentKey& other) const;
-  };
+  // The last extent that was computed from Bounds, and what it depends on besides Bounds: also on
+  // Padding and on BoundsGranularity. If the latter is 0, LastExtent is not valid.
+  using ExtentKey = std::tuple<BoundsSettings, int, int>;
   ExtentKey KeyOfExtent;
   Extent LastExtent{ { 0, -1, 0, -1, 0, -1 } };
 
@@ -77,29 +78,17 @@ struct ExecutionState
   std::uint64_t BoundsVectorsVersion = 0;
   VoxelGrid BoundsGrid;
 
-  // The regions of the volume with their deformed bounds, and what they were computed for.
-  struct RegionsKey
-  {
-    std::uint64_t ShapeVersion = 0;
-    std::uint64_t VectorsVersion = 0;
-    ImageGeometry Volume;
-    OutputMap ToOutput;
-    OutsideVoxels Outside;
-    bool operator==(const RegionsKey& other) const;
-  };
+  // The regions of the volume with their deformed bounds, and what they were computed for: the
+  // versions of the shape and of the vectors, the volume, the output, and the voxels outside.
+  using RegionsKey =
+    std::tuple<std::uint64_t, std::uint64_t, ImageGeometry, OutputMap, OutsideVoxels>;
   RegionsKey KeyOfRegions;
   std::unique_ptr<RestRegions> Regions;
 
   // The extent of the volume that was needed last. A Share identifies the part of the output and
-  // the volume that the extent belongs to.
-  struct Share
-  {
-    Extent Asked{ { 0, -1, 0, -1, 0, -1 } }; // empty: all
-    int Piece = 0;
-    int Pieces = 0;
-    ImageGeometry Volume;
-    bool operator==(const Share& other) const;
-  };
+  // the volume that the extent belongs to: the extent of the output (empty: all), the piece, the
+  // number of pieces, and the volume.
+  using Share = std::tuple<Extent, int, int, ImageGeometry>;
   Share LastShare;
   Extent LastNeeded{ { 0, -1, 0, -1, 0, -1 } };
 

@@ -261,19 +261,12 @@ std::optional<double> vtkDeformVolumeFilter::vtkInternals::FindTimeOfData() cons
 IndexBounds vtkDeformVolumeFilter::vtkInternals::GetDeformedBounds(
   const deformvolume::Ranks& ranks, const ImageGeometry& volume, vtkInformation* output)
 {
-  deformvolume::ExecutionState::BoundsKey key;
-  for (int port = 1; port < 3; ++port)
-  {
-    key.Inputs.push_back(deformvolume::GetInputStamp(this->Self, port));
-  }
-  key.Volume = volume;
   const DeformationSource source = this->MakeSource(volume, nullptr, nullptr);
-  key.ToOutput = source.ToOutput;
-  key.DisplacementScale = source.DisplacementScale;
-  key.Choice = source.Choice;
-  key.OutsideMode = this->Self->OutsideMode;
-  key.FadeDistance = this->GetOutside().FadeDistance;
-  if (!ranks.IsAny(!(key == this->State->KeyOfBounds)))
+  const deformvolume::ExecutionState::BoundsKey key{ { deformvolume::GetInputStamp(this->Self, 1),
+                                                       deformvolume::GetInputStamp(this->Self, 2) },
+    { volume, source.ToOutput, source.DisplacementScale, source.Choice, this->Self->OutsideMode,
+      this->GetOutside().FadeDistance } };
+  if (!ranks.IsAny(key != this->State->KeyOfBounds))
   {
     return this->State->Bounds;
   }
@@ -321,11 +314,10 @@ deformvolume::Extent vtkDeformVolumeFilter::vtkInternals::GetDeformedExtent(
     this->ForgetDeformedExtent();
     return this->FindExtent(bounds);
   }
-  deformvolume::ExecutionState::ExtentKey key{ this->State->KeyOfBounds, this->Self->Padding,
-    this->Self->BoundsGranularity };
-  key.Settings.Inputs.clear();
+  const deformvolume::ExecutionState::ExtentKey key{ this->State->KeyOfBounds.second,
+    this->Self->Padding, this->Self->BoundsGranularity };
   // The last extent is kept only if all ranks have the same one.
-  bool keep = !ranks.IsAny(!(key == this->State->KeyOfExtent));
+  bool keep = !ranks.IsAny(key != this->State->KeyOfExtent);
   for (const int end : this->State->LastExtent)
   {
     keep = ranks.AreEqual(static_cast<std::uint32_t>(end)) && keep;

@@ -91,16 +91,17 @@ bool vtkDeformVolumeFilter::vtkInternals::CanTakePart(vtkInformation* volumeInfo
 const RestRegions& vtkDeformVolumeFilter::vtkInternals::GetRegions(
   const ImageGeometry& volume, const DeformationSource& source)
 {
+  const deformvolume::OutsideVoxels outside = this->GetOutside();
   const deformvolume::ExecutionState::RegionsKey key{
     this->State->Deformation.GetRestMesh().GetShapeVersion(),
-    this->State->Deformation.GetVectorsVersion(), volume, source.ToOutput, this->GetOutside()
+    this->State->Deformation.GetVectorsVersion(), volume, source.ToOutput, outside
   };
-  if (!this->State->Regions || !(this->State->KeyOfRegions == key))
+  if (!this->State->Regions || this->State->KeyOfRegions != key)
   {
     this->State->Deformation.BringToHost();
     const deformvolume::VoxelGrid voxelGrid{ volume.PointExtent, source.ToOutput, {} };
     this->State->Regions = this->State->Deformation.IsField()
-      ? std::make_unique<RestRegions>(voxelGrid, this->State->Deformation.GetField(key.Outside))
+      ? std::make_unique<RestRegions>(voxelGrid, this->State->Deformation.GetField(outside))
       : std::make_unique<RestRegions>(voxelGrid, this->State->Deformation.GetRestPoints(),
           this->State->Deformation.GetTetrahedra(),
           this->State->Deformation.GetNodeDisplacements());
@@ -114,20 +115,19 @@ Extent vtkDeformVolumeFilter::vtkInternals::KeepNeeded(
   const Extent& needed, const ImageGeometry& volume, vtkInformation* output)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
-  deformvolume::ExecutionState::Share share;
-  share.Volume = volume;
-  share.Piece = output->Get(Pipeline::UPDATE_PIECE_NUMBER());
-  share.Pieces = output->Get(Pipeline::UPDATE_NUMBER_OF_PIECES());
   Extent asked;
   Extent whole;
   output->Get(Pipeline::UPDATE_EXTENT(), asked.data());
   output->Get(Pipeline::WHOLE_EXTENT(), whole.data());
   // Other custom bounds or another reference image need other voxels, and no longer the previous
   // ones.
-  if (asked != whole || this->Self->OutputBoundsMode == CUSTOM_BOUNDS || this->Reference)
+  if (asked == whole && this->Self->OutputBoundsMode != CUSTOM_BOUNDS && !this->Reference)
   {
-    share.Asked = asked;
+    asked = { { 0, -1, 0, -1, 0, -1 } };
   }
+  const deformvolume::ExecutionState::Share share{ asked,
+    output->Get(Pipeline::UPDATE_PIECE_NUMBER()), output->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()),
+    volume };
   Extent kept = needed;
   if (share == this->State->LastShare)
   {

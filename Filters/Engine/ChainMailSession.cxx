@@ -172,25 +172,26 @@ ChainMailReport ChainMailSession::Step(vtkImageData* volume, const Stamp::value_
     masks = ReadLinkMasks(volume);
   }
   request.Handles = ReadHandles(handles, geometry, settings.HandleRadius);
-  MaterialsKey key{ GetStampOf(materialArray, written), { 1.0 * settings.DefaultMaterial } };
+  std::vector<double> numbers{ 1.0 * settings.DefaultMaterial };
   std::vector<ChainMailMaterial> table;
   for (std::size_t i = 0; i < settings.Table.Exists.size(); ++i)
   {
-    key.Numbers.push_back(settings.Table.Exists[i] ? 1.0 : 0.0);
+    numbers.push_back(settings.Table.Exists[i] ? 1.0 : 0.0);
     if (settings.Table.Exists[i])
     {
       const ChainMailMaterial& material = settings.Table.Materials[i];
       table.resize(i + 1);
       table[i] = material;
-      key.Numbers.insert(
-        key.Numbers.end(), { material.MinimumStretch, material.MaximumStretch, material.Shear });
+      numbers.insert(
+        numbers.end(), { material.MinimumStretch, material.MaximumStretch, material.Shear });
     }
   }
   for (const MaterialRange& range : settings.Table.Ranges)
   {
     settings.Table.Get(range.Index, "The range's material");
-    key.Numbers.insert(key.Numbers.end(), { range.Minimum, range.Maximum, 1.0 * range.Index });
+    numbers.insert(numbers.end(), { range.Minimum, range.Maximum, 1.0 * range.Index });
   }
+  const MaterialsKey key(GetStampOf(materialArray, written), numbers);
   if (!materialArray || !settings.Table.Ranges.empty())
   {
     settings.Table.Get(settings.DefaultMaterial, "DefaultMaterial");
@@ -201,7 +202,7 @@ ChainMailReport ChainMailSession::Step(vtkImageData* volume, const Stamp::value_
       settings.DefaultMaterial, settings.Table.Exists);
   };
   std::vector<unsigned char> materials;
-  if (isNew || !(key == this->KeyOfMaterials))
+  if (isNew || key != this->KeyOfMaterials)
   {
     ChainMailModel::CheckMaterials(table);
     materials = readMaterials();
@@ -211,7 +212,7 @@ ChainMailReport ChainMailSession::Step(vtkImageData* volume, const Stamp::value_
   try
   {
     this->SetVolume(geometry, settings);
-    if (!(key == this->KeyOfMaterials))
+    if (key != this->KeyOfMaterials)
     {
       if (materials.empty()) // the device has changed
       {

@@ -13,6 +13,7 @@
 #include <memory>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 class vtkImageData;
@@ -68,15 +69,7 @@ public:
 
 private:
   /// Identifies the array and the settings that the materials were read from.
-  struct MaterialsKey
-  {
-    Stamp Array;
-    std::vector<double> Numbers;
-    bool operator==(const MaterialsKey& other) const
-    {
-      return this->Array == other.Array && this->Numbers == other.Numbers;
-    }
-  };
+  using MaterialsKey = std::pair<Stamp, std::vector<double>>;
 
   void SetVolume(const ImageGeometry& geometry, const ChainMailSettings& settings);
   void Forget();

@@ -18,6 +18,7 @@
 #include <functional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -90,21 +91,10 @@ private:
   std::uint64_t MappingVersion = 0;
   vtkSmartPointer<vtkFloatArray>
     Jacobians; // null for inverse fields, or if Jacobians are not needed
-  struct JacobiansKey
-  {
-    std::uint64_t Mapping = 0;
-    std::uint64_t Vectors = 0;
-    std::uint64_t Undefined = 0;
-    ImageGeometry Volume;
-    OutputMap ToOutput;
-    OutsideVoxels Outside;
-    bool operator==(const JacobiansKey& other) const
-    {
-      return this->Mapping == other.Mapping && this->Vectors == other.Vectors &&
-        this->Undefined == other.Undefined && this->Volume == other.Volume &&
-        this->ToOutput == other.ToOutput && this->Outside == other.Outside;
-    }
-  };
+  // What Jacobians were computed for: the versions of the mapping, of the vectors and of the
+  // undefined points, the volume, the output, and the voxels outside.
+  using JacobiansKey = std::tuple<std::uint64_t, std::uint64_t, std::uint64_t, ImageGeometry,
+    OutputMap, OutsideVoxels>;
   JacobiansKey KeyOfJacobians;
   vtkSmartPointer<vtkUnsignedIntArray> FoldCounts;
   // Copies of densities of integers, and the stamps of the original arrays.
