@@ -9,7 +9,6 @@
 #include "MeshGrids.h"
 #include "MeshPointMap.h"
 #include "NewWarnings.h"
-#include "OutsideMode.h"
 #include "ParallelFor.h"
 #include "PipelineExecution.h"
 #include "ProgressReport.h"

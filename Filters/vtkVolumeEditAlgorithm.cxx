@@ -6,7 +6,6 @@
 #include "FiveTetrahedra.h"
 #include "InputUpdate.h"
 #include "MaskArray.h"
-#include "OutsideMode.h"
 #include "PieceRequest.h"
 #include "PipelineGeometry.h"
 #include "ProgressReport.h"

@@ -2,20 +2,22 @@
 #include "vtkDeformVolumeFilterInternals.h"
 
 #include "AbortCheck.h"
-#include "FieldAtRest.h"
 #include "FieldFolds.h"
+#include "FieldGeometry.h"
 #include "InputUpdate.h"
 #include "MaskArray.h"
 #include "OutputExtent.h"
-#include "OutsideMode.h"
+#include "PipelineGeometry.h"
 #include "ResamplerChoice.h"
 #include "VectorChoice.h"
 #include "VolumeArrays.h"
 
 #include "vtkDataObject.h"
 #include "vtkDataSet.h"
+#include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkNew.h"
 #include "vtkPointData.h"
 
 #include <algorithm>
@@ -24,6 +26,27 @@
 using deformvolume::DeformationSource;
 using deformvolume::Error;
 using deformvolume::ImageGeometry;
+
+namespace
+{
+
+// Makes a displacement field of zeros that contains the whole volume, for use if no deformation is
+// connected. The zeros are its active vectors.
+vtkSmartPointer<vtkImageData> MakeFieldAtRest(const ImageGeometry& volume)
+{
+  auto field = vtkSmartPointer<vtkImageData>::New();
+  field->SetDimensions(2, 2, 2);
+  deformvolume::SetTransform(field, deformvolume::GetGridAtRest(volume));
+  vtkNew<vtkFloatArray> vectors;
+  vectors->SetName("Displacement");
+  vectors->SetNumberOfComponents(3);
+  vectors->SetNumberOfTuples(field->GetNumberOfPoints());
+  vectors->Fill(0.0);
+  field->GetPointData()->SetVectors(vectors);
+  return field;
+}
+
+} // namespace
 
 //------------------------------------------------------------------------------
 void vtkDeformVolumeFilter::vtkInternals::SelectState()
@@ -181,7 +204,7 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::MakeSourceAtRest(const Im
   }
   if (!this->FieldAtRest || !(this->VolumeAtRest == volume))
   {
-    this->FieldAtRest = deformvolume::MakeFieldAtRest(volume);
+    this->FieldAtRest = MakeFieldAtRest(volume);
     this->VolumeAtRest = volume;
   }
   DeformationSource source = this->MakeSource(volume, this->FieldAtRest, nullptr);

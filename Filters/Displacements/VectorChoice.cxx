@@ -8,6 +8,7 @@
 #include "vtkDataObject.h"
 #include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkDeformVolumeFilter.h"
 #include "vtkInformation.h"
 
 #include <cmath>
@@ -76,6 +77,15 @@ void CheckDisplacementScale(double scale)
   {
     throw Error("DisplacementScale is not finite. Set a finite factor.");
   }
+}
+
+OutsideVoxels MakeOutsideVoxels(int outsideMode, double fadeDistance)
+{
+  if (outsideMode != vtkDeformVolumeFilter::KEEP)
+  {
+    return outsideMode == vtkDeformVolumeFilter::EXTRAPOLATE;
+  }
+  return MakeKeptVoxels(fadeDistance);
 }
 
 void FillDeformationPort(bool isRest, vtkInformation* info)

@@ -3,6 +3,7 @@
 #define DeformVolumeVectorChoice_h
 
 #include "DeformationSource.h"
+#include "Fading.h"
 
 #include <functional>
 
@@ -32,6 +33,10 @@ DeformationSource ChooseDeformation(vtkDataObject* shape, vtkDataObject* rest,
 
 /// Throws an Error if the scale is not finite.
 void CheckDisplacementScale(double scale);
+
+/// Converts the properties OutsideMode and FadeDistance of the filters. Throws an Error if
+/// OutsideMode is KEEP and FadeDistance is negative or not finite.
+OutsideVoxels MakeOutsideVoxels(int outsideMode, double fadeDistance);
 
 /// Sets the data types of the port for the deformation, or of the port for the rest configuration.
 void FillDeformationPort(bool isRest, vtkInformation* info);
