@@ -31,18 +31,6 @@ vtkMTimeType vtkCarveVolume::GetMTime()
 }
 
 //------------------------------------------------------------------------------
-void vtkCarveVolume::SetSurfaceConnection(vtkAlgorithmOutput* output)
-{
-  this->SetInputConnection(1, output);
-}
-
-//------------------------------------------------------------------------------
-void vtkCarveVolume::SetSurfaceData(vtkDataObject* data)
-{
-  this->SetInputDataInternal(1, data);
-}
-
-//------------------------------------------------------------------------------
 void vtkCarveVolume::AddToolPosition(double x, double y, double z)
 {
   const glm::dvec3 center(x, y, z);

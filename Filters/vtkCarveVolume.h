@@ -82,8 +82,8 @@ public:
   /**
    * Connect the closed surface (port 1).
    */
-  void SetSurfaceConnection(vtkAlgorithmOutput* output);
-  void SetSurfaceData(vtkDataObject* data);
+  void SetSurfaceConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
+  void SetSurfaceData(vtkDataObject* data) { this->SetInputDataInternal(1, data); }
   ///@}
 
   ///@{

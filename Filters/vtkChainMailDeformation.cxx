@@ -47,16 +47,6 @@ vtkChainMailDeformation::vtkChainMailDeformation()
 
 vtkChainMailDeformation::~vtkChainMailDeformation() = default;
 
-void vtkChainMailDeformation::SetHandlesConnection(vtkAlgorithmOutput* output)
-{
-  this->SetInputConnection(1, output);
-}
-
-void vtkChainMailDeformation::SetHandlesData(vtkDataObject* data)
-{
-  this->SetInputDataObject(1, data);
-}
-
 void vtkChainMailDeformation::SetMaterial(
   double index, double minimumStretch, double maximumStretch, double shear)
 {

@@ -89,8 +89,8 @@ public:
   /**
    * Connect the handles (port 1, optional).
    */
-  void SetHandlesConnection(vtkAlgorithmOutput* output);
-  void SetHandlesData(vtkDataObject* data);
+  void SetHandlesConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
+  void SetHandlesData(vtkDataObject* data) { this->SetInputDataObject(1, data); }
   ///@}
 
   ///@{

@@ -37,18 +37,6 @@ vtkCutVolume::vtkCutVolume()
 vtkCutVolume::~vtkCutVolume() = default;
 
 //------------------------------------------------------------------------------
-void vtkCutVolume::SetSheetConnection(vtkAlgorithmOutput* output)
-{
-  this->SetInputConnection(1, output);
-}
-
-//------------------------------------------------------------------------------
-void vtkCutVolume::SetSheetData(vtkDataObject* data)
-{
-  this->SetInputDataInternal(1, data);
-}
-
-//------------------------------------------------------------------------------
 void vtkCutVolume::AddToolPosition(double x0, double y0, double z0, double x1, double y1, double z1)
 {
   this->Edits->Tool.Add({ { glm::dvec3(x0, y0, z0), glm::dvec3(x1, y1, z1) } });

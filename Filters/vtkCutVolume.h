@@ -65,8 +65,8 @@ public:
   /**
    * Connect the sheet (port 1).
    */
-  void SetSheetConnection(vtkAlgorithmOutput* output);
-  void SetSheetData(vtkDataObject* data);
+  void SetSheetConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
+  void SetSheetData(vtkDataObject* data) { this->SetInputDataInternal(1, data); }
   ///@}
 
   ///@{

@@ -428,30 +428,6 @@ vtkDeformGeometryFilter::vtkDeformGeometryFilter()
 vtkDeformGeometryFilter::~vtkDeformGeometryFilter() = default;
 
 //------------------------------------------------------------------------------
-void vtkDeformGeometryFilter::SetDeformationConnection(vtkAlgorithmOutput* output)
-{
-  this->SetInputConnection(1, output);
-}
-
-//------------------------------------------------------------------------------
-void vtkDeformGeometryFilter::SetDeformationData(vtkDataObject* data)
-{
-  this->SetInputDataInternal(1, data);
-}
-
-//------------------------------------------------------------------------------
-void vtkDeformGeometryFilter::SetRestConnection(vtkAlgorithmOutput* output)
-{
-  this->SetInputConnection(2, output);
-}
-
-//------------------------------------------------------------------------------
-void vtkDeformGeometryFilter::SetRestData(vtkDataObject* data)
-{
-  this->SetInputDataInternal(2, data);
-}
-
-//------------------------------------------------------------------------------
 int vtkDeformGeometryFilter::FillInputPortInformation(int port, vtkInformation* info)
 {
   if (port == 0)

@@ -94,16 +94,16 @@ public:
   /**
    * Connect the deformation (port 1, optional): a tetrahedral mesh or a displacement field.
    */
-  void SetDeformationConnection(vtkAlgorithmOutput* output);
-  void SetDeformationData(vtkDataObject* data);
+  void SetDeformationConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
+  void SetDeformationData(vtkDataObject* data) { this->SetInputDataInternal(1, data); }
   ///@}
 
   ///@{
   /**
    * Connect the rest configuration of the deformation mesh (port 2, optional).
    */
-  void SetRestConnection(vtkAlgorithmOutput* output);
-  void SetRestData(vtkDataObject* data);
+  void SetRestConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(2, output); }
+  void SetRestData(vtkDataObject* data) { this->SetInputDataInternal(2, data); }
   ///@}
 
   ///@{

@@ -34,42 +34,6 @@ vtkDeformVolumeFilter::vtkDeformVolumeFilter()
 vtkDeformVolumeFilter::~vtkDeformVolumeFilter() = default;
 
 //------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::SetDeformationConnection(vtkAlgorithmOutput* output)
-{
-  this->SetInputConnection(1, output);
-}
-
-//------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::SetDeformationData(vtkDataObject* data)
-{
-  this->SetInputDataInternal(1, data);
-}
-
-//------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::SetRestConnection(vtkAlgorithmOutput* output)
-{
-  this->SetInputConnection(2, output);
-}
-
-//------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::SetRestData(vtkDataObject* data)
-{
-  this->SetInputDataInternal(2, data);
-}
-
-//------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::SetReferenceConnection(vtkAlgorithmOutput* output)
-{
-  this->SetInputConnection(3, output);
-}
-
-//------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::SetReferenceData(vtkDataObject* data)
-{
-  this->SetInputDataInternal(3, data);
-}
-
-//------------------------------------------------------------------------------
 void vtkDeformVolumeFilter::AddCategoricalArray(const char* name)
 {
   if (name && this->Internals->CategoricalArrays.insert(name).second)

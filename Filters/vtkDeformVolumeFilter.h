@@ -97,12 +97,12 @@ public:
    * Connect the deformation (port 1), the rest configuration of its mesh (port 2) and the reference
    * image (port 3). All are optional.
    */
-  void SetDeformationConnection(vtkAlgorithmOutput* output);
-  void SetDeformationData(vtkDataObject* data);
-  void SetRestConnection(vtkAlgorithmOutput* output);
-  void SetRestData(vtkDataObject* data);
-  void SetReferenceConnection(vtkAlgorithmOutput* output);
-  void SetReferenceData(vtkDataObject* data);
+  void SetDeformationConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
+  void SetDeformationData(vtkDataObject* data) { this->SetInputDataInternal(1, data); }
+  void SetRestConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(2, output); }
+  void SetRestData(vtkDataObject* data) { this->SetInputDataInternal(2, data); }
+  void SetReferenceConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(3, output); }
+  void SetReferenceData(vtkDataObject* data) { this->SetInputDataInternal(3, data); }
   ///@}
 
   ///@{

@@ -93,26 +93,6 @@ vtkElasticDeformation::vtkElasticDeformation()
 
 vtkElasticDeformation::~vtkElasticDeformation() = default;
 
-void vtkElasticDeformation::SetHandlesConnection(vtkAlgorithmOutput* output)
-{
-  this->SetInputConnection(1, output);
-}
-
-void vtkElasticDeformation::SetHandlesData(vtkDataObject* data)
-{
-  this->SetInputDataObject(1, data);
-}
-
-void vtkElasticDeformation::SetSheetConnection(vtkAlgorithmOutput* output)
-{
-  this->SetInputConnection(2, output);
-}
-
-void vtkElasticDeformation::SetSheetData(vtkDataObject* data)
-{
-  this->SetInputDataObject(2, data);
-}
-
 void vtkElasticDeformation::UndoCut()
 {
   std::size_t& cuts = this->Internals->CutsToUndo;

@@ -118,16 +118,16 @@ public:
   /**
    * Connect the handles (port 1, optional).
    */
-  void SetHandlesConnection(vtkAlgorithmOutput* output);
-  void SetHandlesData(vtkDataObject* data);
+  void SetHandlesConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
+  void SetHandlesData(vtkDataObject* data) { this->SetInputDataObject(1, data); }
   ///@}
 
   ///@{
   /**
    * Connect the sheet that cuts (port 2, optional).
    */
-  void SetSheetConnection(vtkAlgorithmOutput* output);
-  void SetSheetData(vtkDataObject* data);
+  void SetSheetConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(2, output); }
+  void SetSheetData(vtkDataObject* data) { this->SetInputDataObject(2, data); }
   ///@}
 
   ///@{

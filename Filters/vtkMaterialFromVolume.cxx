@@ -72,16 +72,6 @@ vtkMaterialFromVolume::vtkMaterialFromVolume()
 
 vtkMaterialFromVolume::~vtkMaterialFromVolume() = default;
 
-void vtkMaterialFromVolume::SetVolumeConnection(vtkAlgorithmOutput* output)
-{
-  this->SetInputConnection(1, output);
-}
-
-void vtkMaterialFromVolume::SetVolumeData(vtkDataObject* data)
-{
-  this->SetInputDataObject(1, data);
-}
-
 void vtkMaterialFromVolume::SetMaterial(
   double index, double youngModulus, double poissonRatio, double density)
 {

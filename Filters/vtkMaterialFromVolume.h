@@ -62,8 +62,8 @@ public:
   /**
    * Connect the volume (port 1).
    */
-  void SetVolumeConnection(vtkAlgorithmOutput* output);
-  void SetVolumeData(vtkDataObject* data);
+  void SetVolumeConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
+  void SetVolumeData(vtkDataObject* data) { this->SetInputDataObject(1, data); }
   ///@}
 
   ///@{

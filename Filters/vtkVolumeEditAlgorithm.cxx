@@ -132,30 +132,6 @@ vtkVolumeEditAlgorithm::vtkVolumeEditAlgorithm()
 vtkVolumeEditAlgorithm::~vtkVolumeEditAlgorithm() = default;
 
 //------------------------------------------------------------------------------
-void vtkVolumeEditAlgorithm::SetDeformationConnection(vtkAlgorithmOutput* output)
-{
-  this->SetInputConnection(2, output);
-}
-
-//------------------------------------------------------------------------------
-void vtkVolumeEditAlgorithm::SetDeformationData(vtkDataObject* data)
-{
-  this->SetInputDataInternal(2, data);
-}
-
-//------------------------------------------------------------------------------
-void vtkVolumeEditAlgorithm::SetRestConnection(vtkAlgorithmOutput* output)
-{
-  this->SetInputConnection(3, output);
-}
-
-//------------------------------------------------------------------------------
-void vtkVolumeEditAlgorithm::SetRestData(vtkDataObject* data)
-{
-  this->SetInputDataInternal(3, data);
-}
-
-//------------------------------------------------------------------------------
 void vtkVolumeEditAlgorithm::ClearToolPositions()
 {
   if (this->Edits->Tool.GetNumberOfPositions() > 0)

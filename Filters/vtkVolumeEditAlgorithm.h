@@ -72,10 +72,10 @@ public:
   /**
    * Connect the deformation (port 2) and its rest configuration (port 3).
    */
-  void SetDeformationConnection(vtkAlgorithmOutput* output);
-  void SetDeformationData(vtkDataObject* data);
-  void SetRestConnection(vtkAlgorithmOutput* output);
-  void SetRestData(vtkDataObject* data);
+  void SetDeformationConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(2, output); }
+  void SetDeformationData(vtkDataObject* data) { this->SetInputDataInternal(2, data); }
+  void SetRestConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(3, output); }
+  void SetRestData(vtkDataObject* data) { this->SetInputDataInternal(3, data); }
   ///@}
 
   ///@{
