@@ -2,12 +2,9 @@
 #include "StyleOverlay.h"
 
 #include "vtkActor2D.h"
-#include "vtkCallbackCommand.h"
 #include "vtkCellArray.h"
-#include "vtkCellData.h"
-#include "vtkCommand.h"
 #include "vtkCoordinate.h"
-#include "vtkInteractorObserver.h"
+#include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkPolyDataMapper2D.h"
@@ -62,17 +59,16 @@ namespace deformvolume
 
 StyleOverlay::StyleOverlay()
 {
-  // Project marks before each frame, because the camera may have moved.
-  this->Observer->SetClientData(this);
-  this->Observer->SetCallback([](vtkObject*, unsigned long, void* overlay, void*)
-    { static_cast<StyleOverlay*>(overlay)->PutMarks(); });
+  vtkNew<vtkCoordinate> world;
+  world->SetCoordinateSystemToWorld();
   vtkNew<vtkPolyDataMapper2D> mapper;
-  mapper->SetInputData(this->Drawn);
-  mapper->SetScalarModeToUseCellData();
+  mapper->SetInputData(this->Marks);
+  mapper->SetTransformCoordinate(world); // projects the marks when the camera has moved
+  mapper->TransformCoordinateUseDoubleOn();
   this->MarkActor->SetMapper(mapper);
   this->MarkActor->GetProperty()->SetPointSize(9.0F);
   this->MarkActor->GetProperty()->SetLineWidth(2.0F);
-  this->PutMarks();
+  this->ClearMarks();
 }
 
 StyleOverlay::~StyleOverlay()
@@ -104,32 +100,45 @@ void StyleOverlay::SetRenderer(vtkRenderer* renderer)
       renderer->AddViewProp(actor);
     }
   }
-  if (this->Renderer)
-  {
-    this->Renderer->RemoveObserver(this->ObserverTag);
-  }
   this->Renderer = renderer;
-  if (renderer)
-  {
-    this->ObserverTag = renderer->AddObserver(vtkCommand::StartEvent, this->Observer);
-  }
 }
 
 void StyleOverlay::ClearMarks()
 {
-  this->Marks.clear();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkUnsignedCharArray> colors;
+  colors->SetNumberOfComponents(3);
+  this->Marks->Initialize();
+  this->Marks->SetPoints(points);
+  this->Marks->SetVerts(vtkNew<vtkCellArray>());
+  this->Marks->SetLines(vtkNew<vtkCellArray>());
+  this->Marks->GetPointData()->SetScalars(colors);
+}
+
+void StyleOverlay::AddMark(
+  const std::vector<glm::dvec3>& positions, const Color& color, vtkCellArray* cells)
+{
+  auto* colors = vtkUnsignedCharArray::SafeDownCast(this->Marks->GetPointData()->GetScalars());
+  cells->InsertNextCell(static_cast<int>(positions.size()));
+  for (const glm::dvec3& position : positions)
+  {
+    cells->InsertCellPoint(this->Marks->GetPoints()->InsertNextPoint(&position.x));
+    colors->InsertNextTypedTuple(color.data());
+  }
+  this->Marks->Modified();
 }
 
 void StyleOverlay::AddPoint(const glm::dvec3& position, const Color& color)
 {
-  this->Marks.push_back({ { position }, color });
+  this->AddMark({ position }, color, this->Marks->GetVerts());
 }
 
 void StyleOverlay::AddLine(const std::vector<glm::dvec3>& positions, const Color& color)
 {
   if (positions.size() > 1)
   {
-    this->Marks.push_back({ positions, color });
+    this->AddMark(positions, color, this->Marks->GetLines());
   }
 }
 
@@ -141,51 +150,6 @@ bool StyleOverlay::SetStatus(const std::string& text)
 bool StyleOverlay::SetHelp(const std::string& text)
 {
   return SetText(this->Help, text);
-}
-
-void StyleOverlay::PutMarks()
-{
-  vtkNew<vtkPoints> points;
-  vtkNew<vtkCellArray> vertices;
-  vtkNew<vtkCellArray> lines;
-  vtkNew<vtkUnsignedCharArray> colors;
-  colors->SetNumberOfComponents(3);
-  const auto put = [&](const Mark& mark, vtkCellArray* cells)
-  {
-    cells->InsertNextCell(static_cast<int>(mark.Positions.size()));
-    const int* origin = this->Renderer->GetOrigin();
-    for (const glm::dvec3& position : mark.Positions)
-    {
-      double at[3];
-      vtkInteractorObserver::ComputeWorldToDisplay(
-        this->Renderer, position.x, position.y, position.z, at);
-      cells->InsertCellPoint(points->InsertNextPoint(at[0] - origin[0], at[1] - origin[1], 0.0));
-    }
-    colors->InsertNextTypedTuple(mark.Paint.data());
-  };
-  if (this->Renderer)
-  {
-    // Cell data are in VTK's order of cells: vertices before lines.
-    for (const Mark& mark : this->Marks)
-    {
-      if (mark.Positions.size() == 1)
-      {
-        put(mark, vertices);
-      }
-    }
-    for (const Mark& mark : this->Marks)
-    {
-      if (mark.Positions.size() > 1)
-      {
-        put(mark, lines);
-      }
-    }
-  }
-  this->Drawn->Initialize();
-  this->Drawn->SetPoints(points);
-  this->Drawn->SetVerts(vertices);
-  this->Drawn->SetLines(lines);
-  this->Drawn->GetCellData()->SetScalars(colors);
 }
 
 } // namespace deformvolume

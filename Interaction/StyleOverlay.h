@@ -13,7 +13,7 @@
 #include <vector>
 
 class vtkActor2D;
-class vtkCallbackCommand;
+class vtkCellArray;
 class vtkPolyData;
 class vtkRenderer;
 class vtkTextActor;
@@ -49,19 +49,10 @@ public:
   ///@}
 
 private:
-  struct Mark
-  {
-    std::vector<glm::dvec3> Positions; // one for a point
-    Color Paint;
-  };
-
-  void PutMarks();
+  void AddMark(const std::vector<glm::dvec3>& positions, const Color& color, vtkCellArray* cells);
 
   vtkWeakPointer<vtkRenderer> Renderer;
-  unsigned long ObserverTag = 0;
-  vtkNew<vtkCallbackCommand> Observer;
-  std::vector<Mark> Marks;
-  vtkNew<vtkPolyData> Drawn;
+  vtkNew<vtkPolyData> Marks; // at world positions
   vtkNew<vtkActor2D> MarkActor;
   // Created with the first renderer, because they need VTK's module RenderingFreeType.
   vtkSmartPointer<vtkTextActor> Status;
