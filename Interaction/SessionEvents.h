@@ -4,6 +4,7 @@
 
 #include "vtkSmartPointer.h"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -39,11 +40,6 @@ struct SessionEvent
   };
   KindType Kind = STEP;
   std::vector<double> Numbers;
-
-  bool operator==(const SessionEvent& other) const
-  {
-    return this->Kind == other.Kind && this->Numbers == other.Numbers;
-  }
 };
 
 using SessionEvents = std::vector<SessionEvent>;
@@ -76,26 +72,8 @@ SessionEvents ReadEvents(const std::string& fileName, const std::string& inputHa
 
 /// Calls `write` with the name of a temporary file in the same folder, and then renames this file
 /// to fileName. If something is thrown, removes the temporary file.
-template <typename WriterT>
-void WriteAndRename(const std::string& fileName, const WriterT& write);
-void RenameFile(const std::string& from, const std::string& to);
-void RemoveFile(const std::string& fileName);
-
-template <typename WriterT>
-void WriteAndRename(const std::string& fileName, const WriterT& write)
-{
-  const std::string part = fileName + ".part";
-  try
-  {
-    write(part);
-    RenameFile(part, fileName);
-  }
-  catch (...)
-  {
-    RemoveFile(part);
-    throw;
-  }
-}
+void WriteAndRename(
+  const std::string& fileName, const std::function<void(const std::string& name)>& write);
 
 } // namespace deformvolume
 

@@ -222,16 +222,22 @@ deformvolume::SessionEvents deformvolume::ReadEvents(
   return events;
 }
 
-void deformvolume::RenameFile(const std::string& from, const std::string& to)
+void deformvolume::WriteAndRename(
+  const std::string& fileName, const std::function<void(const std::string& name)>& write)
 {
-  errno = 0;
-  if (std::rename(from.c_str(), to.c_str()) != 0)
+  const std::string part = fileName + ".part";
+  try
   {
-    throw std::runtime_error("The file " + to + " cannot be written" + GetReason() + ".");
+    write(part);
+    errno = 0;
+    if (std::rename(part.c_str(), fileName.c_str()) != 0)
+    {
+      throw std::runtime_error("The file " + fileName + " cannot be written" + GetReason() + ".");
+    }
   }
-}
-
-void deformvolume::RemoveFile(const std::string& fileName)
-{
-  vtksys::SystemTools::RemoveFile(fileName);
+  catch (...)
+  {
+    vtksys::SystemTools::RemoveFile(part);
+    throw;
+  }
 }

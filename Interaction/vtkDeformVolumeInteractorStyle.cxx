@@ -276,24 +276,6 @@ void vtkDeformVolumeInteractorStyle::SetTool(int tool)
   }
 }
 
-void vtkDeformVolumeInteractorStyle::SetShowStatus(bool show)
-{
-  if (show != this->ShowStatus)
-  {
-    this->ShowStatus = show;
-    this->Modified();
-  }
-}
-
-void vtkDeformVolumeInteractorStyle::SetShowHelp(bool show)
-{
-  if (show != this->ShowHelp)
-  {
-    this->ShowHelp = show;
-    this->Modified();
-  }
-}
-
 void vtkDeformVolumeInteractorStyle::AddSlicePlane(
   double x, double y, double z, double nx, double ny, double nz)
 {

@@ -197,7 +197,7 @@ public:
   /**
    * Set/Get whether tools, models and messages are shown as text. Default on.
    */
-  virtual void SetShowStatus(bool show);
+  vtkSetMacro(ShowStatus, bool);
   vtkGetMacro(ShowStatus, bool);
   vtkBooleanMacro(ShowStatus, bool);
   ///@}
@@ -207,7 +207,7 @@ public:
    * Set/Get whether the list of keys is shown (also toggled by the key h), and additional text
    * below it. Default off, and "".
    */
-  virtual void SetShowHelp(bool show);
+  vtkSetMacro(ShowHelp, bool);
   vtkGetMacro(ShowHelp, bool);
   vtkBooleanMacro(ShowHelp, bool);
   vtkSetMacro(AdditionalHelp, std::string);
