@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdio>
 #include <string>
 
 namespace deformvolume
@@ -55,8 +56,16 @@ int FindChoice(const std::array<Choice, Count>& choices, char key)
 
 ///@{
 /// Return numbers with up to four significant digits. The numbers of a position are in parentheses.
-std::string Format(double number);
-std::string Format(const double position[3]);
+inline std::string Format(double number)
+{
+  char digits[32];
+  std::snprintf(digits, sizeof(digits), "%.4g", number);
+  return digits;
+}
+inline std::string Format(const double position[3])
+{
+  return "(" + Format(position[0]) + ", " + Format(position[1]) + ", " + Format(position[2]) + ")";
+}
 ///@}
 
 } // namespace deformvolume

@@ -3,10 +3,11 @@
 #include "vtkCarveVolumeInternals.h"
 
 #include "Error.h"
-#include "ImplicitTool.h"
 #include "InputUpdate.h"
 #include "PipelineGeometry.h"
+#include "WorldTool.h"
 
+#include "vtkBox.h"
 #include "vtkDataArray.h"
 #include "vtkDataArrayRange.h"
 #include "vtkImageData.h"
@@ -14,9 +15,15 @@
 #include "vtkInformationVector.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+#include "vtkSphere.h"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <memory>
+#include <mutex>
+#include <string>
 #include <utility>
 
 using deformvolume::Error;
@@ -24,6 +31,81 @@ using deformvolume::VolumeEdit;
 
 namespace
 {
+
+// Whether several threads may evaluate the function at the same time. Functions of other classes
+// may cache results, such as the last cell.
+bool IsThreadSafe(vtkImplicitFunction* function)
+{
+  const char* const classes[] = { "vtkBox", "vtkCone", "vtkCylinder", "vtkPlane", "vtkQuadric",
+    "vtkSphere", "vtkSuperquadric" };
+  return std::any_of(std::begin(classes), std::end(classes),
+    [&](const char* name) { return function->IsA(name) != 0; });
+}
+
+// Only the planes of VTK and of ParaView: other subclasses of vtkPlane may be nonlinear.
+bool IsLinear(vtkImplicitFunction* function)
+{
+  const std::string name = function->GetClassName();
+  return (name == "vtkPlane" || name == "vtkPVPlane") && !function->GetTransform();
+}
+
+deformvolume::IndexBounds FindBounds(vtkImplicitFunction* function)
+{
+  deformvolume::IndexBounds bounds = deformvolume::GetUnlimitedBounds();
+  if (function->GetTransform())
+  {
+    return bounds;
+  }
+  const std::string name = function->GetClassName();
+  if (name == "vtkSphere")
+  {
+    auto* sphere = vtkSphere::SafeDownCast(function);
+    glm::dvec3 center;
+    sphere->GetCenter(&center.x);
+    const glm::dvec3 radius(std::abs(sphere->GetRadius()));
+    bounds.Min = center - radius;
+    bounds.Max = center + radius;
+  }
+  else if (name == "vtkBox")
+  {
+    vtkBox::SafeDownCast(function)->GetXMin(&bounds.Min.x);
+    vtkBox::SafeDownCast(function)->GetXMax(&bounds.Max.x);
+  }
+  return bounds;
+}
+
+// Makes a tool that carves where a function of world coordinates is negative. The tool holds a
+// reference to the function. Unless the class of the function is known to be thread-safe, only one
+// thread evaluates it at a time. Spheres and boxes without a transform have bounds. The distance
+// from the boundary is a first-order approximation.
+deformvolume::CarvingTool MakeImplicitTool(vtkImplicitFunction* function)
+{
+  deformvolume::CarvingTool tool;
+  tool.Bounds = FindBounds(function);
+  tool.IsLinear = IsLinear(function);
+  const vtkSmartPointer<vtkImplicitFunction> held = function;
+  const auto mutex = IsThreadSafe(function) ? nullptr : std::make_shared<std::mutex>();
+  tool.Function = [held, mutex](const glm::dvec3* points, std::size_t count, double* values)
+  {
+    const auto lock = mutex ? std::unique_lock<std::mutex>(*mutex) : std::unique_lock<std::mutex>();
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      values[i] = held->FunctionValue(&points[i].x);
+    }
+  };
+  tool.Distance = deformvolume::MakeFirstOrderDistance(tool.Function,
+    [held, mutex](const glm::dvec3* points, std::size_t count, glm::dvec3* gradients)
+    {
+      const auto lock =
+        mutex ? std::unique_lock<std::mutex>(*mutex) : std::unique_lock<std::mutex>();
+      for (std::size_t i = 0; i < count; ++i)
+      {
+        glm::dvec3 point = points[i];
+        held->FunctionGradient(&point.x, &gradients[i].x);
+      }
+    });
+  return tool;
+}
 
 deformvolume::LabelReader MakeLabelReader(vtkDataArray* labels)
 {
@@ -115,7 +197,7 @@ void vtkCarveVolume::vtkInternals::Execute(vtkInformationVector** input)
   this->Find(
     this->Function,
     function ? Body::Key{ { { function, function->GetMTime() } }, { rule } } : Body::Key(),
-    [&] { return finder.Carve(deformvolume::MakeImplicitTool(function)); }, changes);
+    [&] { return finder.Carve(MakeImplicitTool(function)); }, changes);
   this->Find(
     this->Surface, sheet.IsEmpty() ? Body::Key() : Body::Key{ {}, { rule, sheetVersion } },
     [&] { return finder.CarveSurface(sheet); }, changes);
