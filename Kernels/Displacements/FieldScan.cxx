@@ -97,24 +97,9 @@ DEFORMVOLUME_ALWAYS_INLINE void AddRowInline(
   result = all;
 }
 
-#if DEFORMVOLUME_HAS_AVX2_CODE
-DEFORMVOLUME_FOR_AVX2 void AddRowWide(
-  const DisplacementFactors& factors, const RowPoints& row, ScanResult& result)
-{
-  AddRowInline(factors, row, result);
-}
-#endif
-
 void AddRow(const DisplacementFactors& factors, const RowPoints& row, ScanResult& result)
 {
-#if DEFORMVOLUME_HAS_AVX2_CODE
-  if (HasWideLanes())
-  {
-    AddRowWide(factors, row, result);
-    return;
-  }
-#endif
-  AddRowInline(factors, row, result);
+  RunOnLanes([&]() __attribute__((always_inline)) { AddRowInline(factors, row, result); });
 }
 
 // Checks blocks of a field and computes the bounds of their deformed voxels.

@@ -17,7 +17,6 @@
 #define DEFORMVOLUME_ALWAYS_INLINE inline __attribute__((always_inline))
 #if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
 #define DEFORMVOLUME_HAS_AVX2_CODE 1
-#define DEFORMVOLUME_FOR_AVX2 __attribute__((target("avx2")))
 #else
 #define DEFORMVOLUME_HAS_AVX2_CODE 0
 #endif
@@ -39,6 +38,30 @@ bool HasWideLanes();
 
 /// Sets whether AVX2 code is used where the processor has it. Default: true. For tests.
 void UseWideLanes(bool areUsed);
+
+#if DEFORMVOLUME_HAS_AVX2_CODE
+/// Calls a function that is compiled for AVX2. See RunOnLanes().
+template <typename Function>
+__attribute__((target("avx2"))) void RunOnWideLanes(const Function& function)
+{
+  function();
+}
+#endif
+
+/// Calls a function that uses lanes, compiled for AVX2 if HasWideLanes(). The function must be a
+/// lambda expression with the attribute always_inline.
+template <typename Function>
+void RunOnLanes(const Function& function)
+{
+#if DEFORMVOLUME_HAS_AVX2_CODE
+  if (HasWideLanes())
+  {
+    RunOnWideLanes(function);
+    return;
+  }
+#endif
+  function();
+}
 
 DEFORMVOLUME_ALWAYS_INLINE Lanes MakeLanes(double value)
 {

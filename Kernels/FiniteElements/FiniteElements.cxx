@@ -190,43 +190,6 @@ DEFORMVOLUME_ALWAYS_INLINE void AddTangentsOfChunk(const TangentArguments& argum
   }
 }
 
-template <MaterialModel Model>
-void RunPlain(const ForceArguments& arguments)
-{
-  FindForcesOfChunk<Model>(arguments);
-}
-template <MaterialModel Model>
-void RunPlain(const TangentArguments& arguments)
-{
-  AddTangentsOfChunk<Model>(arguments);
-}
-
-#if DEFORMVOLUME_HAS_AVX2_CODE
-template <MaterialModel Model>
-DEFORMVOLUME_FOR_AVX2 void RunWide(const ForceArguments& arguments)
-{
-  FindForcesOfChunk<Model>(arguments);
-}
-template <MaterialModel Model>
-DEFORMVOLUME_FOR_AVX2 void RunWide(const TangentArguments& arguments)
-{
-  AddTangentsOfChunk<Model>(arguments);
-}
-#endif
-
-template <MaterialModel Model, typename Arguments>
-void RunChunkOf(const Arguments& arguments)
-{
-#if DEFORMVOLUME_HAS_AVX2_CODE
-  if (HasWideLanes())
-  {
-    RunWide<Model>(arguments);
-    return;
-  }
-#endif
-  RunPlain<Model>(arguments);
-}
-
 // Calls call(model) with the material model as a compile-time constant, decltype(model)::value.
 template <typename Call>
 void WithModel(MaterialModel model, Call&& call)
@@ -239,12 +202,6 @@ void WithModel(MaterialModel model, Call&& call)
   {
     call(std::integral_constant<MaterialModel, MaterialModel::StableNeoHookean>());
   }
-}
-
-template <typename Arguments>
-void RunChunk(MaterialModel model, const Arguments& arguments)
-{
-  WithModel(model, [&](auto known) { RunChunkOf<decltype(known)::value>(arguments); });
 }
 
 ChunkRange GetRange(const ElementBatches& batches, std::size_t chunk)
@@ -369,9 +326,15 @@ FiniteElements::Sums FiniteElements::FindForces(
   ForChunks(watch, this->Batches,
     [&](std::size_t chunk)
     {
-      RunChunk(this->Model,
-        ForceArguments{ this->Batches.Batches.data(), GetRange(this->Batches, chunk),
-          &displacements.front().x, &forces.front().x, &sums[chunk] });
+      const ForceArguments arguments{ this->Batches.Batches.data(), GetRange(this->Batches, chunk),
+        &displacements.front().x, &forces.front().x, &sums[chunk] };
+      WithModel(this->Model,
+        [&](auto model)
+        {
+          RunOnLanes([&]() __attribute__((always_inline)) {
+            FindForcesOfChunk<decltype(model)::value>(arguments);
+          });
+        });
     });
   Sums total;
   for (const Sums& sum : sums)
@@ -415,10 +378,16 @@ void FiniteElements::AssembleTangent(Watch& watch, const std::vector<glm::dvec3>
   ForChunks(watch, this->Batches,
     [&](std::size_t chunk)
     {
-      RunChunk(this->Model,
-        TangentArguments{ this->Batches.Batches.data(), this->Positions.data(),
-          matrix.GetPattern().Diagonal.data(), GetRange(this->Batches, chunk),
-          &displacements.front().x, isClamped, &matrix });
+      const TangentArguments arguments{ this->Batches.Batches.data(), this->Positions.data(),
+        matrix.GetPattern().Diagonal.data(), GetRange(this->Batches, chunk),
+        &displacements.front().x, isClamped, &matrix };
+      WithModel(this->Model,
+        [&](auto model)
+        {
+          RunOnLanes([&]() __attribute__((always_inline)) {
+            AddTangentsOfChunk<decltype(model)::value>(arguments);
+          });
+        });
     });
   matrix.Mirror(watch);
 }

@@ -54,14 +54,6 @@ DEFORMVOLUME_ALWAYS_INLINE void MultiplyRows(
   }
 }
 
-#if DEFORMVOLUME_HAS_AVX2_CODE
-DEFORMVOLUME_FOR_AVX2 void MultiplyRowsWide(
-  const ProductArguments& arguments, std::size_t begin, std::size_t end)
-{
-  MultiplyRows(arguments, begin, end);
-}
-#endif
-
 } // namespace
 
 BlockPattern MakeNodePattern(Watch& watch, const ElasticBody& body)
@@ -211,14 +203,7 @@ void BlockMatrix::Multiply(std::size_t begin, std::size_t end, const unsigned ch
 {
   const ProductArguments arguments = { this->Pattern.Rows.data(), this->Pattern.Columns.data(),
     this->Values.data(), isFree, &vector->x, &product->x };
-#if DEFORMVOLUME_HAS_AVX2_CODE
-  if (HasWideLanes())
-  {
-    MultiplyRowsWide(arguments, begin, end);
-    return;
-  }
-#endif
-  MultiplyRows(arguments, begin, end);
+  RunOnLanes([&]() __attribute__((always_inline)) { MultiplyRows(arguments, begin, end); });
 }
 
 } // namespace deformvolume

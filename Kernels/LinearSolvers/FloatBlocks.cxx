@@ -90,25 +90,11 @@ DEFORMVOLUME_ALWAYS_INLINE void MultiplyRows(const FloatProduct& arguments)
   }
 }
 
-#if DEFORMVOLUME_HAS_AVX2_CODE
-template <int Rows, int Columns, Product Kind>
-DEFORMVOLUME_FOR_AVX2 void MultiplyRowsWide(const FloatProduct& arguments)
-{
-  MultiplyRows<Rows, Columns, Kind>(arguments);
-}
-#endif
-
 template <int Rows, int Columns, Product Kind>
 void Run(const FloatProduct& arguments)
 {
-#if DEFORMVOLUME_HAS_AVX2_CODE
-  if (HasWideLanes())
-  {
-    MultiplyRowsWide<Rows, Columns, Kind>(arguments);
-    return;
-  }
-#endif
-  MultiplyRows<Rows, Columns, Kind>(arguments);
+  RunOnLanes([&]()
+      __attribute__((always_inline)) { MultiplyRows<Rows, Columns, Kind>(arguments); });
 }
 
 } // namespace

@@ -81,13 +81,6 @@ DEFORMVOLUME_ALWAYS_INLINE void FindRotations(const RotationArguments& arguments
   }
 }
 
-#if DEFORMVOLUME_HAS_AVX2_CODE
-DEFORMVOLUME_FOR_AVX2 void FindRotationsWide(const RotationArguments& arguments)
-{
-  FindRotations(arguments);
-}
-#endif
-
 } // namespace
 
 void FindNodeRotations(Watch& watch, const BlockPattern& pattern,
@@ -100,14 +93,7 @@ void FindNodeRotations(Watch& watch, const BlockPattern& pattern,
     {
       const RotationArguments arguments = { &pattern, nodes.data(), begin, end, before.data(),
         now.data(), rotations.data() };
-#if DEFORMVOLUME_HAS_AVX2_CODE
-      if (HasWideLanes())
-      {
-        FindRotationsWide(arguments);
-        return;
-      }
-#endif
-      FindRotations(arguments);
+      RunOnLanes([&]() __attribute__((always_inline)) { FindRotations(arguments); });
     });
 }
 
