@@ -106,19 +106,6 @@ MeshSteps FindSteps(
   return MeshSteps(all.Low, all.High);
 }
 
-// About as many cells on each axis as a lattice of this number of tetrahedra has. A finer grid was
-// hardly faster.
-int GetDepth(std::size_t numberOfTetrahedra)
-{
-  constexpr int greatest = 6;
-  int depth = 2;
-  while (depth < greatest && std::size_t{ 5 } << 3 * depth < numberOfTetrahedra)
-  {
-    ++depth;
-  }
-  return depth;
-}
-
 enum SplitState : unsigned char
 {
   Whole = 0,
@@ -146,15 +133,13 @@ std::vector<unsigned char> FindSplitFaces(const SplitRegion& region, const FaceN
   ParallelForParts(states.size(), FacesOfPart,
     [&](std::size_t begin, std::size_t end)
     {
-      std::vector<std::size_t> scratch;
       for (std::size_t face = begin; face < end; ++face)
       {
         // Handle each pair of faces once, so that no two threads write to the same state.
         const std::size_t next = neighbors.GetNext(face);
         if (next > face && neighbors.IsShared(face) && states[face] == Whole &&
           (region.IsNear(face / 4) || region.IsNear(next / 4)) &&
-          crossings.IsCrossedOddly(
-            region.GetCentroid(face / 4), region.GetCentroid(next / 4), scratch))
+          crossings.IsCrossedOddly(region.GetCentroid(face / 4), region.GetCentroid(next / 4)))
         {
           states[face] = states[next] = SplitNow;
         }
@@ -291,7 +276,7 @@ MeshSplit SplitMesh(const std::vector<glm::dvec3>& positions,
   split.Unparted = unparted;
   if (steps.IsValid())
   {
-    const SheetCrossings crossings(steps, sheetPoints, sheetTriangles, GetDepth(tetrahedra.size()));
+    const SheetCrossings crossings(steps, sheetPoints, sheetTriangles);
     if (!crossings.IsEmpty())
     {
       const SplitRegion region(positions, tetrahedra, steps, crossings);

@@ -45,22 +45,19 @@ SnappedBox GetEnlargedBox(
   return box;
 }
 
-// Returns the tetrahedra that a predicate chooses, in ascending order. start() returns the
-// predicate for one thread.
-template <typename Start>
-std::vector<std::size_t> Choose(std::size_t count, Start&& start)
+// Returns the tetrahedra for which isChosen(t) is true, in ascending order.
+template <typename IsChosen>
+std::vector<std::size_t> Choose(std::size_t count, IsChosen&& isChosen)
 {
   std::vector<std::vector<std::size_t>> parts((count + TetrahedraAtOnce - 1) / TetrahedraAtOnce);
   ParallelForParts(count, TetrahedraAtOnce,
     [&](std::size_t begin, std::size_t end)
     {
-      auto isChosen = start();
-      std::vector<std::size_t>& chosen = parts[begin / TetrahedraAtOnce];
       for (std::size_t t = begin; t < end; ++t)
       {
         if (isChosen(t))
         {
-          chosen.push_back(t);
+          parts[begin / TetrahedraAtOnce].push_back(t);
         }
       }
     });
@@ -79,11 +76,8 @@ SplitRegion::SplitRegion(const std::vector<glm::dvec3>& positions,
   const SheetCrossings& crossings)
 {
   const std::vector<std::size_t> near = Choose(tetrahedra.size(),
-    [&]
-    {
-      return [&, scratch = std::vector<std::size_t>()](std::size_t t) mutable
-      { return crossings.MayIntersect(GetEnlargedBox(positions, tetrahedra[t], steps), scratch); };
-    });
+    [&](std::size_t t)
+    { return crossings.MayIntersect(GetEnlargedBox(positions, tetrahedra[t], steps)); });
   std::vector<unsigned char> isNodeOfNear(positions.size(), 0);
   for (const std::size_t t : near)
   {
@@ -97,14 +91,10 @@ SplitRegion::SplitRegion(const std::vector<glm::dvec3>& positions,
     const auto hasNode = [&](std::int32_t node)
     { return isNodeOfNear[static_cast<std::size_t>(node)]; };
     this->Numbers = Choose(tetrahedra.size(),
-      [&]
+      [&](std::size_t t)
       {
-        return [&](std::size_t t)
-        {
-          const Tetrahedron& nodes = tetrahedra[t];
-          return (hasNode(nodes[0]) | hasNode(nodes[1]) | hasNode(nodes[2]) | hasNode(nodes[3])) !=
-            0;
-        };
+        const Tetrahedron& nodes = tetrahedra[t];
+        return (hasNode(nodes[0]) | hasNode(nodes[1]) | hasNode(nodes[2]) | hasNode(nodes[3])) != 0;
       });
   }
   this->NumberNodes(tetrahedra, positions.size());
