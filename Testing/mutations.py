@@ -401,7 +401,7 @@ MUTATIONS = {
     "keep-field-parts": ("Kernels/DeformationMesh/RestRegions.cxx", "displacement.Add(glm::dvec3(0.0));", "",
                          ["Cxx.TestDeformKeepField"]),
     "keep-far": ("Kernels/StaticMapping/FadedLinks.cxx", "farUntil = x +", "farUntil = x + 2 +", ["Kernels.TestFadedLinks"]),
-    "keep-closest": ("Kernels/DeformationMesh/ClosestFace.cxx", "if (!isTooFar(far.SquaredDistance))", "if (false)",
+    "keep-closest": ("Kernels/Common/BoxTree.h", "if (!isTooFar(far.Distance))", "if (false)",
                      ["Kernels.TestFadedLinks"]),
     "keep-jump": ("Kernels/StaticMapping/StretchedTetrahedra.cxx", "const bool isJump = ", "const bool isJump = false && ",
                   ["Kernels.TestFadedLinks"]),

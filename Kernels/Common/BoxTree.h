@@ -72,6 +72,58 @@ public:
     }
   }
 
+  /// Calls visitor(number) for the boxes that may be nearest, near ones first. getDistance(box)
+  /// returns the distance of a box, and isTooFar(distance) whether the visitor need not see the
+  /// boxes at this distance or beyond.
+  template <typename GetDistance, typename IsTooFar, typename Visitor>
+  void VisitNearest(
+    const GetDistance& getDistance, const IsTooFar& isTooFar, Visitor&& visitor) const
+  {
+    struct Entry
+    {
+      std::size_t Node;
+      double Distance;
+    };
+    std::array<Entry, 128> rest; // as in Visit()
+    std::size_t count = 0;
+    if (!this->Nodes.empty())
+    {
+      rest[count++] = { 0, 0.0 };
+    }
+    while (count > 0)
+    {
+      const Entry entry = rest[--count];
+      const Node& node = this->Nodes[entry.Node];
+      if (isTooFar(entry.Distance))
+      {
+        continue;
+      }
+      if (node.Upper == 0)
+      {
+        std::for_each(this->Order.begin() + static_cast<std::ptrdiff_t>(node.Begin),
+          this->Order.begin() + static_cast<std::ptrdiff_t>(node.End), visitor);
+        continue;
+      }
+      const auto enter = [&](std::size_t child) {
+        return Entry{ child, getDistance(this->Nodes[child].Bounds) };
+      };
+      Entry near = enter(entry.Node + 1);
+      Entry far = enter(node.Upper);
+      if (far.Distance < near.Distance)
+      {
+        std::swap(near, far);
+      }
+      if (!isTooFar(far.Distance))
+      {
+        rest[count++] = far;
+      }
+      if (!isTooFar(near.Distance))
+      {
+        rest[count++] = near;
+      }
+    }
+  }
+
   /// Appends the indices of the boxes that overlap `box`, in unspecified order.
   void Find(const Box& box, std::vector<std::size_t>& numbers) const
   {

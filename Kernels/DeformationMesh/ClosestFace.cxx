@@ -4,7 +4,6 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include <algorithm>
 #include <cstddef>
 #include <utility>
 
@@ -14,16 +13,9 @@ namespace deformvolume
 namespace
 {
 
-constexpr std::int32_t LargestLeaf = 4;
 // Relative rounding error by which the squared distance to a triangle may be less than the squared
 // distance to its bounding box.
 constexpr double RoundingMargin = 1e-9;
-
-double GetSquaredDistance(const glm::dvec3& point, const glm::dvec3& min, const glm::dvec3& max)
-{
-  const glm::dvec3 offset = point - glm::clamp(point, min, max);
-  return glm::dot(offset, offset);
-}
 
 // Returns the barycentric weights of the point of a triangle that is closest to another point. The
 // signs of dot products decide whether the closest point is a corner, on an edge or inside.
@@ -80,60 +72,17 @@ glm::dvec3 FindWeights(const glm::dvec3& point, const ClosestFace::Triangle& tri
 
 ClosestFace::ClosestFace(std::vector<Triangle> triangles)
   : Triangles(std::move(triangles))
+  , Tree(this->Triangles,
+      [](const Triangle& triangle)
+      {
+        IndexBounds box;
+        for (const glm::dvec3& corner : triangle)
+        {
+          box.Add(corner);
+        }
+        return box;
+      })
 {
-  std::vector<glm::dvec3> centers;
-  centers.reserve(this->Triangles.size());
-  for (const Triangle& triangle : this->Triangles)
-  {
-    this->Order.push_back(static_cast<std::int32_t>(centers.size()));
-    centers.push_back(triangle[0] + triangle[1] + triangle[2]);
-  }
-  if (!this->Order.empty())
-  {
-    this->Build(0, static_cast<std::int32_t>(this->Order.size()), centers);
-  }
-}
-
-void ClosestFace::Build(
-  std::int32_t begin, std::int32_t end, const std::vector<glm::dvec3>& centers)
-{
-  const std::size_t index = this->Nodes.size();
-  Node& node = this->Nodes.emplace_back();
-  node.Begin = begin;
-  node.End = end;
-  node.Min = node.Max = this->Triangles[static_cast<std::size_t>(this->Order[begin])][0];
-  glm::dvec3 low = centers[static_cast<std::size_t>(this->Order[begin])];
-  glm::dvec3 high = low;
-  for (std::int32_t i = begin; i < end; ++i)
-  {
-    const auto face = static_cast<std::size_t>(this->Order[i]);
-    for (const glm::dvec3& corner : this->Triangles[face])
-    {
-      node.Min = glm::min(node.Min, corner);
-      node.Max = glm::max(node.Max, corner);
-    }
-    low = glm::min(low, centers[face]);
-    high = glm::max(high, centers[face]);
-  }
-  if (end - begin <= LargestLeaf)
-  {
-    return;
-  }
-  node.End = 0;
-  const glm::dvec3 size = high - low;
-  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  const std::int32_t middle = begin + (end - begin) / 2;
-  std::nth_element(this->Order.begin() + begin, this->Order.begin() + middle,
-    this->Order.begin() + end,
-    [&](std::int32_t a, std::int32_t b)
-    {
-      const double atA = centers[static_cast<std::size_t>(a)][axis];
-      const double atB = centers[static_cast<std::size_t>(b)][axis];
-      return atA != atB ? atA < atB : a < b;
-    });
-  this->Build(begin, middle, centers);
-  this->Nodes[index].Upper = static_cast<std::int32_t>(this->Nodes.size());
-  this->Build(middle, end, centers);
 }
 
 void ClosestFace::Look(const glm::dvec3& point, std::int32_t face, Result& best) const
@@ -155,61 +104,18 @@ void ClosestFace::Look(const glm::dvec3& point, std::int32_t face, Result& best)
 ClosestFace::Result ClosestFace::Find(const glm::dvec3& point, std::int32_t nearby) const
 {
   Result best;
-  if (this->Nodes.empty())
-  {
-    return best;
-  }
   if (nearby >= 0)
   {
     this->Look(point, nearby, best);
   }
-  struct Entry
-  {
-    std::int32_t Node;
-    double SquaredDistance;
-  };
-  // The depth of the tree is at most 31.
-  Entry stack[64];
-  int depth = 0;
-  stack[depth++] = { 0, 0.0 };
-  while (depth > 0)
-  {
-    const Entry entry = stack[--depth];
-    const auto isTooFar = [&](double squared)
-    { return squared > best.SquaredDistance * (1.0 + RoundingMargin); };
-    if (isTooFar(entry.SquaredDistance))
+  this->Tree.VisitNearest(
+    [&](const IndexBounds& box)
     {
-      continue;
-    }
-    const Node& node = this->Nodes[static_cast<std::size_t>(entry.Node)];
-    if (node.End > 0)
-    {
-      for (std::int32_t i = node.Begin; i < node.End; ++i)
-      {
-        this->Look(point, this->Order[static_cast<std::size_t>(i)], best);
-      }
-      continue;
-    }
-    const auto enter = [&](std::int32_t child)
-    {
-      const Node& box = this->Nodes[static_cast<std::size_t>(child)];
-      return Entry{ child, GetSquaredDistance(point, box.Min, box.Max) };
-    };
-    Entry near = enter(entry.Node + 1);
-    Entry far = enter(node.Upper);
-    if (far.SquaredDistance < near.SquaredDistance)
-    {
-      std::swap(near, far);
-    }
-    if (!isTooFar(far.SquaredDistance))
-    {
-      stack[depth++] = far;
-    }
-    if (!isTooFar(near.SquaredDistance))
-    {
-      stack[depth++] = near;
-    }
-  }
+      const glm::dvec3 offset = point - glm::clamp(point, box.Min, box.Max);
+      return glm::dot(offset, offset);
+    },
+    [&](double squared) { return squared > best.SquaredDistance * (1.0 + RoundingMargin); },
+    [&](std::size_t face) { this->Look(point, static_cast<std::int32_t>(face), best); });
   return best;
 }
 

@@ -2,6 +2,9 @@
 #ifndef DeformVolumeClosestFace_h
 #define DeformVolumeClosestFace_h
 
+#include "BoxTree.h"
+#include "IndexBounds.h"
+
 #include <glm/vec3.hpp>
 
 #include <array>
@@ -12,7 +15,7 @@
 namespace deformvolume
 {
 
-/// Finds the triangle that is closest to a point, with a bounding volume hierarchy. Find() is
+/// Finds the triangle that is closest to a point. Find() is
 /// thread-safe.
 class ClosestFace
 {
@@ -35,21 +38,10 @@ public:
   Result Find(const glm::dvec3& point, std::int32_t nearby = -1) const;
 
 private:
-  struct Node
-  {
-    glm::dvec3 Min;
-    glm::dvec3 Max;
-    std::int32_t Begin; // first triangle in Order
-    std::int32_t End;   // leaf: one past the last triangle in Order; inner node: 0
-    std::int32_t Upper; // inner node: its second child; the first child is the next node
-  };
-
-  void Build(std::int32_t begin, std::int32_t end, const std::vector<glm::dvec3>& centers);
   void Look(const glm::dvec3& point, std::int32_t face, Result& best) const;
 
   std::vector<Triangle> Triangles;
-  std::vector<std::int32_t> Order;
-  std::vector<Node> Nodes;
+  BoxTree<IndexBounds> Tree;
 };
 
 } // namespace deformvolume
