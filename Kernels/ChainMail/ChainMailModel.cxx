@@ -93,7 +93,6 @@ public:
 
   WorkDevice Device;
   MemoryBudget Budget;
-  std::size_t WorkGroupSize = 0;
   unsigned int Order = 0;
   std::array<double, 3> Spacing{ { 1, 1, 1 } };
   std::optional<ChainMailBlocks> Blocks;
@@ -156,7 +155,7 @@ void ChainMailModel::SetMemoryLimit(std::uint64_t bytes)
 
 void ChainMailModel::SetWorkGroupSize(std::size_t size)
 {
-  this->Impl->WorkGroupSize = size;
+  this->Impl->Device.SetWorkGroupSize(size);
 }
 
 void ChainMailModel::SetBlockOrder(unsigned int order)
@@ -194,8 +193,7 @@ void ChainMailModel::SetVoxelGrid(const Extent& extent, const std::array<double,
       impl.CheckMemory(blocks);
       impl.Blocks = blocks;
       impl.Spacing = spacing;
-      impl.State =
-        std::make_unique<ChainMailState>(impl.Device, blocks, indexToWorld, impl.WorkGroupSize);
+      impl.State = std::make_unique<ChainMailState>(impl.Device, blocks, indexToWorld);
       impl.Solver = std::make_unique<ChainMailSolver>(*impl.State, blocks);
       impl.Solver->SetOrder(impl.Order);
       impl.State->SetLimits(ChainMailLimits({ ChainMailMaterial() }, spacing));

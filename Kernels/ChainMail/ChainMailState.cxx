@@ -30,12 +30,11 @@ std::uint64_t CountVoxels(const ChainMailBlocks& blocks)
 
 } // namespace
 
-ChainMailState::ChainMailState(WorkDevice& device, const ChainMailBlocks& blocks,
-  const std::array<double, 9>& indexToWorld, std::size_t workGroupSize)
+ChainMailState::ChainMailState(
+  WorkDevice& device, const ChainMailBlocks& blocks, const std::array<double, 9>& indexToWorld)
   : Device(device)
   , Blocks(blocks)
-  , WorkGroupSize(std::min(workGroupSize, MostItems))
-  , Serial(device.GetDevice().HasVectors && workGroupSize == 0)
+  , Serial(device.HasSerialGroups())
 {
   for (std::size_t axis = 0; axis < 3; ++axis)
   {
@@ -178,13 +177,8 @@ void ChainMailState::ReadOutput(const std::vector<Extent>& changes)
 
 void ChainMailState::Launch(const cl::Kernel& kernel, std::size_t groups)
 {
-  std::size_t items = 1;
-  if (!this->Serial)
-  {
-    const auto largest =
-      kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(this->Device.GetDevice().Device);
-    items = std::min<std::size_t>(this->WorkGroupSize ? this->WorkGroupSize : MostItems, largest);
-  }
+  const std::size_t items =
+    this->Serial ? 1 : std::min(this->Device.GetGroupSize(kernel, MostItems), MostItems);
   this->Device.GetContext().Launch(
     this->Device.GetQueue(), kernel, cl::NDRange(groups * items), cl::NDRange(items));
 }
@@ -373,12 +367,7 @@ void ChainMailState::Hold(const std::vector<HeldVoxel>& voxels,
   writes.Add(BeginToWrite(queue, found, 0, bytes, counts.data()));
   const cl::Kernel kernel = MakeKernel(this->Program, "Hold", this->Displacements, this->Flags,
     this->Links, list, targets, this->Shared, found, static_cast<cl_uint>(voxels.size()));
-  const std::size_t items = 64;
-  const auto largest =
-    kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(this->Device.GetDevice().Device);
-  const std::size_t group = std::min(items, largest);
-  context.Launch(
-    queue, kernel, cl::NDRange((voxels.size() + group - 1) / group * group), cl::NDRange(group));
+  this->Device.Launch(kernel, voxels.size());
   queue.enqueueReadBuffer(found, CL_TRUE, 0, bytes, counts.data());
   writes.Check();
 }

@@ -40,9 +40,9 @@ using SharedNumbers = std::array<std::uint32_t, DEFORMVOLUME_SHARED>;
 class ChainMailState
 {
 public:
-  /// device: must outlive this object. workGroupSize: 0 to choose it for the device.
-  ChainMailState(WorkDevice& device, const ChainMailBlocks& blocks,
-    const std::array<double, 9>& indexToWorld, std::size_t workGroupSize);
+  /// device: must outlive this object.
+  ChainMailState(
+    WorkDevice& device, const ChainMailBlocks& blocks, const std::array<double, 9>& indexToWorld);
 
   /// Returns the memory that such a volume needs on the device, in bytes, including the output.
   static std::uint64_t GetNeededMemory(const ChainMailBlocks& blocks);
@@ -122,7 +122,6 @@ private:
   WorkDevice& Device;
   ChainMailBlocks Blocks;
   ChainMailGrid Grid;
-  std::size_t WorkGroupSize;
   bool Serial;
   cl::Program Program;
   std::function<bool()> Progress;

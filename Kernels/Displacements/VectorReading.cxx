@@ -46,9 +46,7 @@ public:
     this->Kernel.setArg(0, vectors);
     this->Kernel.setArg(2, cl_ulong{ first });
     this->Kernel.setArg(3, cl_ulong{ count });
-    const std::size_t group = this->Device.GetGroupSize(this->Kernel);
-    this->Device.GetContext().Launch(this->Device.GetQueue(), this->Kernel,
-      cl::NDRange((count + group - 1) / group * group), cl::NDRange(group));
+    this->Device.Launch(this->Kernel, count);
   }
 
   // Waits for the launches. Throws Error if a displacement is too large or not finite.

@@ -82,7 +82,6 @@ public:
 
   WorkDevice Device;
   MemoryBudget Budget;
-  std::size_t WorkGroupSize = 0;
   ElasticBody Body;
   double CubeEdge = 0.0; // in m
   std::unique_ptr<MassSpringNetwork> Network;
@@ -121,8 +120,7 @@ void MassSpringModel::Internals::Make(Watch& watch, const ElasticBody& body, dou
   this->Body = body;
   this->CubeEdge = cubeEdge;
   this->Network = std::move(network);
-  this->State =
-    std::make_unique<MassSpringState>(this->Device, *this->Network, this->WorkGroupSize);
+  this->State = std::make_unique<MassSpringState>(this->Device, *this->Network);
   this->HeldBefore.clear();
 }
 
@@ -219,7 +217,7 @@ void MassSpringModel::SetMemoryLimit(std::uint64_t bytes)
 
 void MassSpringModel::SetWorkGroupSize(std::size_t size)
 {
-  this->Impl->WorkGroupSize = size;
+  this->Impl->Device.SetWorkGroupSize(size);
 }
 
 void MassSpringModel::SetBody(const ElasticBody& body, const std::function<bool()>& progress)

@@ -79,8 +79,7 @@ public:
   /// Set the memory that may be used on the device, in bytes. Default 0: all that is available.
   void SetMemoryLimit(std::uint64_t bytes);
 
-  /// Set the number of work-items in a work-group. Default 0: chosen for the device. Call it before
-  /// SetBody.
+  /// Set the number of work-items in a work-group. Default 0: chosen for the device.
   void SetWorkGroupSize(std::size_t size);
 
   /// Sets the body at rest. Its tetrahedra must be the five tetrahedra of equal cubes (see

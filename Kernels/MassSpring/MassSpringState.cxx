@@ -15,7 +15,6 @@ namespace deformvolume
 namespace
 {
 
-constexpr std::size_t ItemsOfGroup = 64;
 constexpr std::uint64_t BytesOfNode = 10 * sizeof(float) + sizeof(cl_uint);
 constexpr std::uint64_t BytesOfNodeSaved = 9 * sizeof(float); // saved state and sums of forces
 constexpr std::uint64_t BytesOfTetrahedron = (4 + 4) * sizeof(cl_int) + (2 + 4 * 3) * sizeof(float);
@@ -45,12 +44,10 @@ std::uint64_t MassSpringState::GetMemory() const
   return bytes;
 }
 
-MassSpringState::MassSpringState(
-  WorkDevice& device, const MassSpringNetwork& network, std::size_t workGroupSize)
+MassSpringState::MassSpringState(WorkDevice& device, const MassSpringNetwork& network)
   : Device(device)
   , NumberOfNodes(network.Masses.size())
   , NumberOfPackets(network.NumberOfPackets)
-  , WorkGroupSize(workGroupSize ? workGroupSize : ItemsOfGroup)
 {
   OpenCLContext& context = device.GetContext();
   ProgramText text = "#define LANES " + std::to_string(network.Lanes) + "\n";
@@ -161,39 +158,25 @@ void MassSpringState::SetVelocities(const std::vector<float>& values)
   this->Write(this->Velocities, values.data(), values.size() * sizeof(float));
 }
 
-void MassSpringState::Launch(const cl::Kernel& kernel, std::size_t items)
-{
-  const auto largest =
-    kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(this->Device.GetDevice().Device);
-  const std::size_t group = std::min(this->WorkGroupSize, largest);
-  this->Device.GetContext().Launch(this->Device.GetQueue(), kernel,
-    cl::NDRange((items + group - 1) / group * group), cl::NDRange(group));
-}
-
-void MassSpringState::EnqueueForces()
-{
-  this->Launch(this->ComputeForcesKernel, this->NumberOfPackets);
-}
-
 std::vector<float> MassSpringState::ComputeForces()
 {
   Reserve(this->Device.GetContext(), this->Sums, this->NumberOfNodes * 3 * sizeof(float));
   this->AddForcesKernel.setArg(3, this->Sums);
-  this->EnqueueForces();
-  this->Launch(this->AddForcesKernel, this->NumberOfNodes);
+  this->Device.Launch(this->ComputeForcesKernel, this->NumberOfPackets);
+  this->Device.Launch(this->AddForcesKernel, this->NumberOfNodes);
   return this->Read(this->Sums);
 }
 
 void MassSpringState::EnqueueStep(const MassSpringStep& step, float fraction, float rate)
 {
-  this->EnqueueForces();
+  this->Device.Launch(this->ComputeForcesKernel, this->NumberOfPackets);
   this->MoveNodesKernel.setArg(8, step);
-  this->Launch(this->MoveNodesKernel, this->NumberOfNodes);
+  this->Device.Launch(this->MoveNodesKernel, this->NumberOfNodes);
   if (this->NumberOfHandles > 0)
   {
     this->MoveHandlesKernel.setArg(3, fraction);
     this->MoveHandlesKernel.setArg(4, rate);
-    this->Launch(this->MoveHandlesKernel, this->NumberOfHandles);
+    this->Device.Launch(this->MoveHandlesKernel, this->NumberOfHandles);
   }
 }
 
@@ -214,7 +197,7 @@ std::int64_t MassSpringState::CountInverted()
 {
   cl_int count = 0;
   this->Write(this->Inverted, &count, sizeof(count));
-  this->Launch(this->CountInvertedKernel, this->NumberOfPackets);
+  this->Device.Launch(this->CountInvertedKernel, this->NumberOfPackets);
   this->Device.GetQueue().enqueueReadBuffer(this->Inverted, CL_TRUE, 0, sizeof(count), &count);
   return count;
 }
@@ -256,7 +239,7 @@ void MassSpringState::WriteOutput()
   const cl::CommandQueue& queue = this->Device.GetQueue();
   this->WriteOutputKernel.setArg(1, this->Output.GetBuffer());
   this->WriteOutputKernel.setArg(2, this->Factor);
-  this->Launch(this->WriteOutputKernel, this->NumberOfNodes * 3);
+  this->Device.Launch(this->WriteOutputKernel, this->NumberOfNodes * 3);
   if (float* const memory = this->Output.GetHostMemory())
   {
     PendingCopies reads;

@@ -20,8 +20,8 @@ namespace deformvolume
 class MassSpringState
 {
 public:
-  /// device: must outlive this object. workGroupSize: 0 to choose it for the device.
-  MassSpringState(WorkDevice& device, const MassSpringNetwork& network, std::size_t workGroupSize);
+  /// device: must outlive this object.
+  MassSpringState(WorkDevice& device, const MassSpringNetwork& network);
 
   /// The number of tetrahedra that a work-item of a device handles.
   static int GetLanes(WorkDevice& device);
@@ -73,13 +73,10 @@ private:
   std::vector<float> Read(const cl::Buffer& buffer);
   void Write(const cl::Buffer& buffer, const void* data, std::size_t bytes);
   cl::Buffer Fill(const void* data, std::size_t bytes);
-  void Launch(const cl::Kernel& kernel, std::size_t items);
-  void EnqueueForces();
 
   WorkDevice& Device;
   std::size_t NumberOfNodes;
   std::size_t NumberOfPackets;
-  std::size_t WorkGroupSize;
   cl::Program Program;
   cl::Kernel ComputeForcesKernel, AddForcesKernel, MoveNodesKernel, MoveHandlesKernel,
     WriteOutputKernel, CountInvertedKernel;

@@ -59,6 +59,13 @@ std::size_t WorkDevice::GetBusyGroupSize(const cl::Kernel& kernel, std::size_t w
   return this->HasSerialGroups() ? 1 : this->GetGroupSize(kernel, wanted);
 }
 
+cl::Event WorkDevice::Launch(const cl::Kernel& kernel, std::size_t items)
+{
+  const std::size_t group = this->GetGroupSize(kernel);
+  return this->GetContext().Launch(
+    this->GetQueue(), kernel, cl::NDRange((items + group - 1) / group * group), cl::NDRange(group));
+}
+
 cl::Buffer WorkDevice::Send(const void* data, std::size_t bytes, const cl::Buffer& previous)
 {
   cl::Buffer buffer = previous;

@@ -44,6 +44,10 @@ public:
   /// HasSerialGroups(), otherwise GetGroupSize().
   std::size_t GetBusyGroupSize(const cl::Kernel& kernel, std::size_t wanted = 64);
 
+  /// Enqueues a kernel for at least `items` work-items, in work-groups of GetGroupSize(). The
+  /// kernel must ignore the work-items beyond `items`.
+  cl::Event Launch(const cl::Kernel& kernel, std::size_t items);
+
   /// Copies data to a buffer on the device, and returns when the copy is complete. Uses the
   /// previous buffer if it has the size of the data, otherwise a new buffer.
   cl::Buffer Send(const void* data, std::size_t bytes, const cl::Buffer& previous);

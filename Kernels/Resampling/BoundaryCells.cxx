@@ -164,9 +164,7 @@ void BoundaryCells::MoveCorners()
   kernel.setArg(i++, this->Positions);
   kernel.setArg(i++, this->Displacements);
   kernel.setArg(i++, count);
-  const std::size_t group = this->Device.GetGroupSize(kernel);
-  this->Launched.GetMappingEvents().push_back(context.Launch(this->Device.GetQueue(), kernel,
-    cl::NDRange((count + group - 1) / group * group), cl::NDRange(group)));
+  this->Launched.GetMappingEvents().push_back(this->Device.Launch(kernel, count));
 }
 
 std::vector<cl_uint> BoundaryCells::ListTiles(
