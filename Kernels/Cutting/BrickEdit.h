@@ -82,6 +82,24 @@ public:
     this->HasHits = true;
   }
 
+  /// Hits the tetrahedra whose vertices have positions, and for which isToHit(vertices) returns
+  /// true. It is called for all tetrahedra of the brick, in the order of ForEachCell().
+  template <typename IsToHit>
+  void HitIf(IsToHit&& isToHit)
+  {
+    this->ForEachCell(
+      [&](int x, int y, int z, std::size_t index)
+      {
+        const CellTetrahedra tetrahedra = this->GetTetrahedra(x, y, z);
+        for (std::size_t t = 0; t < tetrahedra.size(); ++t)
+        {
+          if (isToHit(tetrahedra[t]) && this->HasPosition(tetrahedra[t]))
+          {
+            this->Hit(index, static_cast<int>(t));
+          }
+        }
+      });
+  }
   /// Calls a function for the bricks 0 to `bricks` - 1 in parallel, and returns the tetrahedra that
   /// it hits. Throws Aborted if `progress` returns false.
   static TetrahedronSet ForEachBrick(std::size_t bricks,

@@ -35,19 +35,8 @@ bool IsHit(const double* values, const std::array<std::size_t, 4>& v, CarvingRul
 
 void CarveByVertices(BrickEdit& edit, const double* values, CarvingRule rule)
 {
-  edit.ForEachCell(
-    [&](int x, int y, int z, std::size_t index)
-    {
-      const BrickEdit::CellTetrahedra tetrahedra = edit.GetTetrahedra(x, y, z);
-      for (int t = 0; t < 5; ++t)
-      {
-        const std::array<std::size_t, 4>& vertices = tetrahedra[static_cast<std::size_t>(t)];
-        if (edit.HasPosition(vertices) && IsHit(values, vertices, rule))
-        {
-          edit.Hit(index, t);
-        }
-      }
-    });
+  edit.HitIf(
+    [&](const std::array<std::size_t, 4>& vertices) { return IsHit(values, vertices, rule); });
 }
 
 void CarveByCentroids(BrickEdit& edit, const CarvingTool& tool)
@@ -68,34 +57,7 @@ void CarveByCentroids(BrickEdit& edit, const CarvingTool& tool)
   std::vector<double> values(centroids.size());
   tool.Function(centroids.data(), centroids.size(), values.data());
   const double* value = values.data();
-  edit.ForEachCell(
-    [&](int x, int y, int z, std::size_t index)
-    {
-      const BrickEdit::CellTetrahedra tetrahedra = edit.GetTetrahedra(x, y, z);
-      for (int t = 0; t < 5; ++t)
-      {
-        if (*value++ < 0.0 && edit.HasPosition(tetrahedra[static_cast<std::size_t>(t)]))
-        {
-          edit.Hit(index, t);
-        }
-      }
-    });
-}
-
-void CarveAll(BrickEdit& edit)
-{
-  edit.ForEachCell(
-    [&](int x, int y, int z, std::size_t index)
-    {
-      const BrickEdit::CellTetrahedra tetrahedra = edit.GetTetrahedra(x, y, z);
-      for (int t = 0; t < 5; ++t)
-      {
-        if (edit.HasPosition(tetrahedra[static_cast<std::size_t>(t)]))
-        {
-          edit.Hit(index, t);
-        }
-      }
-    });
+  edit.HitIf([&](const auto&) { return *value++ < 0.0; });
 }
 
 double GetSquaredDistance(const glm::dvec3& point, const glm::dvec3& from, const glm::dvec3& to)
@@ -184,7 +146,7 @@ TetrahedronSet FindCarvedTetrahedra(const VertexPositions& positions, const Carv
       edit.Set(positions, brick);
       if (containment == CarvingContainment::All)
       {
-        CarveAll(edit);
+        edit.HitIf([](const auto&) { return true; });
         return;
       }
       if (rule == CarvingRule::Centroid)
