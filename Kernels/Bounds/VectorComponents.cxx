@@ -10,27 +10,36 @@
 namespace deformvolume
 {
 
-VectorComponents FindComponents(const float* values, std::size_t count)
+namespace
 {
-  // Process 8 vectors at a time, so that compilers vectorize the loop.
-  constexpr std::size_t width = 24;
-  constexpr float largest = std::numeric_limits<float>::max();
-  std::array<float, width> least;
-  std::array<float, width> greatest;
-  std::array<int, width> areFinite;
-  least.fill(largest);
-  greatest.fill(-largest);
-  areFinite.fill(1);
+
+constexpr float Largest = std::numeric_limits<float>::max();
+
+} // namespace
+
+ComponentFinder::ComponentFinder()
+{
+  this->Least.fill(Largest);
+  this->Greatest.fill(-Largest);
+  this->AreFinite.fill(1);
+}
+
+void ComponentFinder::Add(const float* values, std::size_t count)
+{
+  // Local copies allow vectorization: the members may alias the values.
+  std::array<float, Width> least = this->Least;
+  std::array<float, Width> greatest = this->Greatest;
+  std::array<int, Width> areFinite = this->AreFinite;
   const auto add = [&](std::size_t k, float value)
   {
     least[k] = std::min(least[k], value);
     greatest[k] = std::max(greatest[k], value);
-    areFinite[k] &= std::abs(value) <= largest ? 1 : 0;
+    areFinite[k] &= std::abs(value) <= Largest ? 1 : 0;
   };
   std::size_t i = 0;
-  for (; i + width <= count; i += width)
+  for (; i + Width <= count; i += Width)
   {
-    for (std::size_t k = 0; k < width; ++k)
+    for (std::size_t k = 0; k < Width; ++k)
     {
       add(k, values[i + k]);
     }
@@ -39,17 +48,31 @@ VectorComponents FindComponents(const float* values, std::size_t count)
   {
     add(k, values[i + k]);
   }
+  this->Least = least;
+  this->Greatest = greatest;
+  this->AreFinite = areFinite;
+}
+
+VectorComponents ComponentFinder::Get() const
+{
   VectorComponents found;
-  found.Least.fill(largest);
-  found.Greatest.fill(-largest);
+  found.Least.fill(Largest);
+  found.Greatest.fill(-Largest);
   found.AreFinite = true;
-  for (std::size_t k = 0; k < width; ++k)
+  for (std::size_t k = 0; k < Width; ++k)
   {
-    found.Least[k % 3] = std::min(found.Least[k % 3], least[k]);
-    found.Greatest[k % 3] = std::max(found.Greatest[k % 3], greatest[k]);
-    found.AreFinite = found.AreFinite && areFinite[k] != 0;
+    found.Least[k % 3] = std::min(found.Least[k % 3], this->Least[k]);
+    found.Greatest[k % 3] = std::max(found.Greatest[k % 3], this->Greatest[k]);
+    found.AreFinite = found.AreFinite && this->AreFinite[k] != 0;
   }
   return found;
+}
+
+VectorComponents FindComponents(const float* values, std::size_t count)
+{
+  ComponentFinder finder;
+  finder.Add(values, count);
+  return finder.Get();
 }
 
 DisplacementFactors GetFactors(const DisplacementField& field)

@@ -23,6 +23,24 @@ struct VectorComponents
   bool AreFinite = false;
 };
 
+/// Computes the ranges of the components of vectors that are added part by part.
+class DEFORMVOLUME_EXPORT ComponentFinder
+{
+public:
+  /// No vectors have been added yet.
+  ComponentFinder();
+  /// Adds vectors. values: `count` numbers, three per vector.
+  void Add(const float* values, std::size_t count);
+  /// Returns the ranges of all added vectors.
+  VectorComponents Get() const;
+
+private:
+  // 8 vectors are processed at a time, so that compilers vectorize the loop.
+  static constexpr std::size_t Width = 24;
+  std::array<float, Width> Least;
+  std::array<float, Width> Greatest;
+  std::array<int, Width> AreFinite;
+};
 /// Computes the ranges of the components. values: `count` numbers, three per vector.
 DEFORMVOLUME_EXPORT VectorComponents FindComponents(const float* values, std::size_t count);
 

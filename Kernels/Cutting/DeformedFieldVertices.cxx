@@ -9,68 +9,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <utility>
 
 namespace deformvolume
 {
-namespace
-{
-
-// The limits of the components of vectors. Vectors are compared in groups of nine, and each
-// component in a group has its own limits, so that compilers can vectorize the comparisons.
-class ComponentsOfRows
-{
-public:
-  void Add(const float* values, std::size_t count)
-  {
-    for (std::size_t begin = 0; begin < count; begin += Most)
-    {
-      const std::size_t some = std::min(Most, count - begin);
-      const float* next = values + begin;
-      for (std::size_t i = 0; i < some; ++i)
-      {
-        // Comparisons with not-a-number are false.
-        this->Least[i] = next[i] < this->Least[i] ? next[i] : this->Least[i];
-        this->Greatest[i] = next[i] > this->Greatest[i] ? next[i] : this->Greatest[i];
-        this->Nothing[i] += 0.0F * next[i]; // stays 0 if all values are finite
-      }
-    }
-  }
-
-  VectorComponents Get() const
-  {
-    VectorComponents all;
-    all.AreFinite = true;
-    all.Least.fill(Largest);
-    all.Greatest.fill(-Largest);
-    for (std::size_t i = 0; i < Most; ++i)
-    {
-      all.Least[i % 3] = std::min(all.Least[i % 3], this->Least[i]);
-      all.Greatest[i % 3] = std::max(all.Greatest[i % 3], this->Greatest[i]);
-      all.AreFinite = all.AreFinite && this->Nothing[i] == 0.0F;
-    }
-    return all;
-  }
-
-private:
-  static constexpr std::size_t Most = 27; // the components of a row of nine vertices
-  static constexpr float Largest = std::numeric_limits<float>::max();
-
-  static std::array<float, Most> Fill(float value)
-  {
-    std::array<float, Most> filled;
-    filled.fill(value);
-    return filled;
-  }
-
-  std::array<float, Most> Least = Fill(Largest);
-  std::array<float, Most> Greatest = Fill(-Largest);
-  std::array<float, Most> Nothing = Fill(0.0F);
-};
-
-} // namespace
-
 bool DeformedFieldVertices::Find(const glm::dvec3& vertex, glm::dvec3& displacement) const
 {
   glm::dvec3 position;
@@ -133,7 +75,7 @@ DisplacementLimits DeformedFieldVertices::GetLimits(std::size_t brick) const
     points[2 * axis] = static_cast<std::int64_t>(std::clamp(low, 0.0, last));
     points[2 * axis + 1] = static_cast<std::int64_t>(std::ceil(std::clamp(high, 0.0, last)));
   }
-  ComponentsOfRows rows;
+  ComponentFinder rows;
   const auto count = static_cast<std::size_t>(3 * (points[1] - points[0] + 1));
   for (std::int64_t z = points[4]; z <= points[5]; ++z)
   {
