@@ -15,40 +15,29 @@ using BoundsOfAxes = std::array<cl_float, 6>;
 
 } // namespace
 
-void BoxBounds::Clear()
-{
-  this->Boxes.clear();
-  this->BoxesThere = cl::Buffer();
-}
-
-std::vector<DisplacementBounds> BoxBounds::Find(
-  const cl::Buffer& displacements, const std::array<int, 3>& size, const std::vector<Extent>& boxes)
+std::vector<DisplacementBounds> FindBoxBounds(WorkDevice& device, const cl::Buffer& displacements,
+  const std::array<int, 3>& size, const std::vector<Extent>& boxes)
 {
   static_assert(sizeof(Extent) == 6 * sizeof(cl_int), "The kernel reads an Extent as six ints.");
   if (boxes.empty())
   {
     return {};
   }
-  if (boxes != this->Boxes)
-  {
-    this->Boxes.clear();
-    this->BoxesThere =
-      this->Device.Send(boxes.data(), boxes.size() * sizeof(Extent), this->BoxesThere);
-    this->Boxes = boxes;
-  }
-  OpenCLContext& context = this->Device.GetContext();
-  const cl::CommandQueue& queue = this->Device.GetQueue();
+  const cl::Buffer boxesThere =
+    device.Send(boxes.data(), boxes.size() * sizeof(Extent), cl::Buffer());
+  OpenCLContext& context = device.GetContext();
+  const cl::CommandQueue& queue = device.GetQueue();
   const std::size_t bytes = boxes.size() * sizeof(BoundsOfAxes);
   std::vector<BoundsOfAxes> found(boxes.size());
   const cl::Buffer bounds(context.GetContext(), CL_MEM_READ_WRITE, bytes);
   const QueueGuard guard(queue);
   cl::Kernel kernel(GetConversionProgram(context), "FindBoxBounds");
-  const std::size_t group = this->Device.GetGroupSize(kernel);
+  const std::size_t group = device.GetGroupSize(kernel);
   cl_uint i = 0;
   kernel.setArg(i++, displacements);
   kernel.setArg(i++, cl_int{ size[0] });
   kernel.setArg(i++, cl_int{ size[1] });
-  kernel.setArg(i++, this->BoxesThere);
+  kernel.setArg(i++, boxesThere);
   kernel.setArg(i++, cl::Local(group * sizeof(BoundsOfAxes)));
   kernel.setArg(i++, bounds);
   context.Launch(queue, kernel, cl::NDRange(boxes.size() * group), cl::NDRange(group));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DisplacementSource.h"
 
+#include "BoxBounds.h"
 #include "BrickPoints.h"
 #include "DeviceVolume.h"
 #include "DisplacementObserver.h"
@@ -64,7 +65,6 @@ DisplacementSource::DisplacementSource(
   , Nodes(device, observer)
   , FieldVectors(device, observer)
   , Reading(device)
-  , Bounds(device)
 {
 }
 
@@ -270,8 +270,8 @@ const std::vector<DisplacementBounds>& DisplacementSource::FindBoundsOfSubBricks
   {
     const std::array<int, 3> size{ { this->Field.Dimensions[0], this->Field.Dimensions[1],
       this->Field.Dimensions[2] } };
-    this->BoundsOfSubBricks =
-      this->Bounds.Find(this->FieldVectors.Get(), size, this->MakeBrickPoints().GetBoxes());
+    this->BoundsOfSubBricks = FindBoxBounds(
+      this->Device, this->FieldVectors.Get(), size, this->MakeBrickPoints().GetBoxes());
   }
   return this->BoundsOfSubBricks;
 }
@@ -462,7 +462,6 @@ void DisplacementSource::ForgetField()
 {
   this->FieldVectors.Clear();
   this->IsConverted = false;
-  this->Bounds.Clear();
   this->BoundsOfSubBricks.clear();
   this->VectorsInPlace = cl::Buffer();
   this->FieldInPlace = DisplacementField();

@@ -2,7 +2,6 @@
 #ifndef DeformVolumeDisplacementSource_h
 #define DeformVolumeDisplacementSource_h
 
-#include "BoxBounds.h"
 #include "DisplacementBuffer.h"
 #include "DisplacementField.h"
 #include "HostMemory.h"
@@ -178,7 +177,6 @@ private:
 
   VectorReading Reading;
   bool IsConverted = false; // whether a kernel has written the displacements of the field
-  mutable BoxBounds Bounds;
   mutable std::vector<DisplacementBounds> BoundsOfSubBricks; // if converted; empty: not known
   bool LastSent = false; // whether the device has the displacements of the last call
 };

@@ -564,33 +564,29 @@ TEST(DeviceVectors, TinyBoxes)
   const cl::Buffer there = device.Send(vectors.data(), 60 * 4 * sizeof(float), cl::Buffer());
   const std::vector<Extent> boxes{ { { 0, 4, 0, 3, 0, 2 } }, { { 4, 4, 3, 3, 2, 2 } },
     { { 1, 3, 0, 1, 1, 2 } } };
-  BoxBounds finder(device);
-  EXPECT_TRUE(finder.Find(there, size, {}).empty());
-  for (int turn = 0; turn < 2; ++turn)
+  EXPECT_TRUE(FindBoxBounds(device, there, size, {}).empty());
+  const std::vector<DisplacementBounds> found = FindBoxBounds(device, there, size, boxes);
+  ASSERT_EQ(found.size(), boxes.size());
+  for (std::size_t box = 0; box < boxes.size(); ++box)
   {
-    const std::vector<DisplacementBounds> found = finder.Find(there, size, boxes);
-    ASSERT_EQ(found.size(), boxes.size());
-    for (std::size_t box = 0; box < boxes.size(); ++box)
+    for (std::size_t axis = 0; axis < 3; ++axis)
     {
-      for (std::size_t axis = 0; axis < 3; ++axis)
+      float least = 1.0F;
+      float greatest = -1.0F;
+      for (int z = boxes[box][4]; z <= boxes[box][5]; ++z)
       {
-        float least = 1.0F;
-        float greatest = -1.0F;
-        for (int z = boxes[box][4]; z <= boxes[box][5]; ++z)
+        for (int y = boxes[box][2]; y <= boxes[box][3]; ++y)
         {
-          for (int y = boxes[box][2]; y <= boxes[box][3]; ++y)
+          for (int x = boxes[box][0]; x <= boxes[box][1]; ++x)
           {
-            for (int x = boxes[box][0]; x <= boxes[box][1]; ++x)
-            {
-              const float next = vectors[4 * static_cast<std::size_t>((z * 4 + y) * 5 + x) + axis];
-              least = std::min(least, next);
-              greatest = std::max(greatest, next);
-            }
+            const float next = vectors[4 * static_cast<std::size_t>((z * 4 + y) * 5 + x) + axis];
+            least = std::min(least, next);
+            greatest = std::max(greatest, next);
           }
         }
-        EXPECT_EQ(found[box].Least[axis], least);
-        EXPECT_EQ(found[box].Greatest[axis], greatest);
       }
+      EXPECT_EQ(found[box].Least[axis], least);
+      EXPECT_EQ(found[box].Greatest[axis], greatest);
     }
   }
 }
