@@ -313,9 +313,9 @@ MUTATIONS = {
                      "hasStress = true;", [SPRINGS_AT_REST]),
     "springs-given-up": ("Kernels/MassSpring/MassSpringModel.cxx",
                          "  watch.Ask();\n  auto network", "  watch.Ask();\n  this->Forget();\n  auto network", [ABORTS]),
-    "box-overshoot": ("Kernels/Cutting/DeformedMeshVertices.cxx", "(most * (1.0 + rounding) + rounding)", "(rounding)",
+    "box-overshoot": ("Kernels/Cutting/DeformedMeshPositions.cxx", "(most * (1.0 + rounding) + rounding)", "(rounding)",
                       [DEFORMED_CUTTING]),
-    "box-changes": ("Kernels/Cutting/DeformedFieldVertices.cxx", " - first - 1, 0)", " - first, 0)",
+    "box-changes": ("Kernels/Cutting/DeformedFieldPositions.cxx", " - first - 1, 0)", " - first, 0)",
                     [DEFORMED_CUTTING]),
     # The VTK classes.
     "extent-snap": ("Kernels/World/OutputExtent.cxx", "std::round(index * 256.0) / 256.0", "index",

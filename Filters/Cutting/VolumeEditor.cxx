@@ -186,23 +186,24 @@ const VertexPositions& VolumeEditor::GetPositions(
   }
   if (this->Deformed && mapping == this->DeformedMapping && !isField)
   {
-    this->Deformed->SetDisplacements(displacements);
+    static_cast<DeformedMeshPositions&>(*this->Deformed).SetDisplacements(displacements);
   }
   else if (this->Deformed && mapping == this->DeformedMapping)
   {
     const PointRanges changes = this->Deformation.GetChanges(this->DeformedVectors);
-    this->Deformed->SetField(this->Deformation.GetField(outside), &changes);
+    static_cast<DeformedFieldPositions&>(*this->Deformed)
+      .SetField(this->Deformation.GetField(outside), &changes);
   }
   else if (isField)
   {
-    this->Deformed = std::make_unique<DeformedPositions>(
+    this->Deformed = std::make_unique<DeformedFieldPositions>(
       this->Geometry.PointExtent, this->Deformation.GetField(outside));
   }
   else
   {
     this->Deformed.reset();
-    this->Deformed = std::make_unique<DeformedPositions>(this->Geometry.PointExtent, mapped.Part,
-      this->Mapping.GetMapping(), *tetrahedra, displacements);
+    this->Deformed = std::make_unique<DeformedMeshPositions>(this->Geometry.PointExtent,
+      mapped.Part, this->Mapping.GetMapping(), *tetrahedra, displacements);
   }
   this->DeformedMapping = mapping;
   this->DeformedVectors = vectors;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DeformedPositions.h"
 
-#include "DeformedVertices.h"
 #include "ParallelFor.h"
 #include "TriangleCrossing.h"
 
@@ -9,44 +8,11 @@
 
 #include <array>
 #include <cmath>
-#include <utility>
 
 namespace deformvolume
 {
 
-DeformedPositions::DeformedPositions(const Extent& vertices, const Extent& mapped,
-  const StaticMapping& mapping, const std::vector<Tetrahedron>& tetrahedra,
-  const float* displacements)
-  : VertexPositions(vertices)
-{
-  auto ofMesh =
-    std::make_unique<DeformedMeshVertices>(this->GetBricks(), mapped, mapping, tetrahedra);
-  this->OfMesh = ofMesh.get();
-  this->Vertices = std::move(ofMesh);
-  this->SetDisplacements(displacements);
-}
-
-DeformedPositions::DeformedPositions(const Extent& vertices, const DisplacementField& field)
-  : VertexPositions(vertices)
-{
-  auto ofField = std::make_unique<DeformedFieldVertices>(this->GetBricks(), field);
-  this->OfField = ofField.get();
-  this->Vertices = std::move(ofField);
-  this->FindBoxes({});
-}
-
 DeformedPositions::~DeformedPositions() = default;
-
-void DeformedPositions::SetDisplacements(const float* displacements)
-{
-  this->OfMesh->SetDisplacements(displacements);
-  this->FindBoxes({});
-}
-
-void DeformedPositions::SetField(const DisplacementField& field, const PointRanges* changed)
-{
-  this->FindBoxes(this->OfField->SetField(field, changed));
-}
 
 void DeformedPositions::Find(
   const Extent& vertices, SnappedPoint* positions, bool* hasPosition) const
@@ -57,7 +23,7 @@ void DeformedPositions::Find(
   {
     for (int y = vertices[2]; y <= vertices[3]; ++y)
     {
-      this->Vertices->FindRow(vertices[0], y, z, count, displacements.data(), hasPosition);
+      this->FindRow(vertices[0], y, z, count, displacements.data(), hasPosition);
       for (int i = 0; i < count; ++i)
       {
         const glm::dvec3& move = displacements[static_cast<std::size_t>(i)];
@@ -99,7 +65,7 @@ void DeformedPositions::FindBoxes(const std::vector<unsigned char>& marked)
 
 SnappedBox DeformedPositions::FindBox(std::size_t brick) const
 {
-  const DisplacementLimits limits = this->Vertices->GetLimits(brick);
+  const DisplacementLimits limits = this->GetLimits(brick);
   if (!limits.AreKnown)
   {
     return this->FindExactBox(brick);

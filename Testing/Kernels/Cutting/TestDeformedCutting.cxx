@@ -119,11 +119,11 @@ TEST(DeformedCutting, FollowsTheDeformation)
     vertices, glm::dvec3(1.0), nodes, tetrahedra, false, StaticMappingForm::Links);
   const StaticMapping runs = BuildStaticMapping(
     vertices, glm::dvec3(1.0), nodes, tetrahedra, false, StaticMappingForm::Runs);
-  const DeformedPositions byLinks(vertices, vertices, links, tetrahedra, displacements.data());
-  const DeformedPositions byRuns(vertices, vertices, runs, tetrahedra, displacements.data());
-  const DeformedPositions byField(vertices, field);
-  EXPECT_THROW(
-    DeformedPositions({ { 0, 8, 0, 8, 0, 8 } }, vertices, links, tetrahedra, displacements.data()),
+  const DeformedMeshPositions byLinks(vertices, vertices, links, tetrahedra, displacements.data());
+  const DeformedMeshPositions byRuns(vertices, vertices, runs, tetrahedra, displacements.data());
+  const DeformedFieldPositions byField(vertices, field);
+  EXPECT_THROW(DeformedMeshPositions(
+                 { { 0, 8, 0, 8, 0, 8 } }, vertices, links, tetrahedra, displacements.data()),
     Error);
   int count = 0;
   for (unsigned int round = 0; round < 50; ++round)
@@ -131,7 +131,8 @@ TEST(DeformedCutting, FollowsTheDeformation)
     const Sheet moved = MakeSheet(round, move);
     const reference::Mask expected = Cut(rest, MakeSheet(round, glm::dvec3(0.0)));
     count += reference::Count(expected);
-    for (const DeformedPositions* positions : { &byLinks, &byRuns, &byField })
+    for (const VertexPositions* positions :
+      std::initializer_list<const VertexPositions*>{ &byLinks, &byRuns, &byField })
     {
       ASSERT_EQ(Cut(*positions, moved), expected);
     }
@@ -142,7 +143,7 @@ TEST(DeformedCutting, FollowsTheDeformation)
     glm::dvec3(5, 170, 5), glm::dvec3(5, 5, 165) };
   const StaticMapping part = BuildStaticMapping(
     vertices, glm::dvec3(1.0), half, tetrahedra, false, StaticMappingForm::Links);
-  const DeformedPositions inPart(vertices, vertices, part, tetrahedra, displacements.data());
+  const DeformedMeshPositions inPart(vertices, vertices, part, tetrahedra, displacements.data());
   const Sheet below({ glm::dvec3(-50, -50, 6.5), glm::dvec3(90, -50, 6.5), glm::dvec3(0, 90, 6.5) },
     { { { 0, 1, 2 } } });
   EXPECT_EQ(reference::Count(Cut(inPart, below)), 0);
@@ -178,10 +179,16 @@ TEST(DeformedCutting, FindsDeformedPositions)
   {
     const StaticMapping mapping = BuildStaticMapping(vertices, glm::dvec3(1.0), nodes, tetrahedra,
       false, form == 1 ? StaticMappingForm::Runs : StaticMappingForm::Links);
-    const std::unique_ptr<DeformedPositions> positions = form == 2
-      ? std::make_unique<DeformedPositions>(vertices, field)
-      : std::make_unique<DeformedPositions>(
-          vertices, vertices, mapping, tetrahedra, displacements.data());
+    std::unique_ptr<DeformedPositions> positions;
+    if (form == 2)
+    {
+      positions = std::make_unique<DeformedFieldPositions>(vertices, field);
+    }
+    else
+    {
+      positions = std::make_unique<DeformedMeshPositions>(
+        vertices, vertices, mapping, tetrahedra, displacements.data());
+    }
     for (std::size_t brick = 0; brick < positions->GetBricks().GetNumberOfBricks(); ++brick)
     {
       const Extent box = positions->GetBricks().GetVertices(brick);
@@ -233,7 +240,7 @@ TEST(DeformedCutting, BoxesHoldTheirVertices)
     const bool extrapolate = round % 3 == 0;
     const StaticMapping mapping = BuildStaticMapping(vertices, glm::dvec3(1.0), nodes, tetrahedra,
       extrapolate, round % 3 == 1 ? StaticMappingForm::Runs : StaticMappingForm::Links);
-    DeformedPositions positions(vertices, vertices, mapping, tetrahedra, displacements.data());
+    DeformedMeshPositions positions(vertices, vertices, mapping, tetrahedra, displacements.data());
     CheckBoxes(positions);
 
     // After new displacements, the positions equal those of a new object.
@@ -244,7 +251,7 @@ TEST(DeformedCutting, BoxesHoldTheirVertices)
     }
     positions.SetDisplacements(others.data());
     CheckBoxes(positions);
-    const DeformedPositions anew(vertices, vertices, mapping, tetrahedra, others.data());
+    const DeformedMeshPositions anew(vertices, vertices, mapping, tetrahedra, others.data());
     for (std::size_t brick = 0; brick < anew.GetBricks().GetNumberOfBricks(); ++brick)
     {
       EXPECT_EQ(FindPositions(positions, brick).Points, FindPositions(anew, brick).Points);
@@ -289,7 +296,7 @@ TEST(DeformedCutting, BoxesOfFieldsHoldTheirVertices)
     field.IndexToField = matrices[static_cast<std::size_t>(round % 3)];
     field.ToDisplacement = { { 0.5, 0.25, 0, -0.125, 1, 0, 0, 0, 2 } };
     field.Extrapolate = round % 2 == 0;
-    CheckBoxes(DeformedPositions(vertices, field));
+    CheckBoxes(DeformedFieldPositions(vertices, field));
   }
 }
 
@@ -305,7 +312,7 @@ TEST(DeformedCutting, BoxesAreTight)
     vectors[3 * (33 * (33 * 4 + 4) + 4) + i] = 7.0F;
   }
   field.Vectors = vectors.data();
-  const DeformedPositions positions(vertices, field);
+  const DeformedFieldPositions positions(vertices, field);
   const RestPositions rest(vertices);
   EXPECT_LE(CheckBoxes(positions), 256 * 7);
   EXPECT_GE(positions.GetBox(0).Max.x, 256 * 11);
@@ -328,7 +335,7 @@ TEST(DeformedCutting, BoxesFollowChanges)
   field.IndexToField = { { 1, 0, 0, -2, 0, 1, 0, 1, 0, 0, 1, 5 } };
   std::vector<float> vectors(static_cast<std::size_t>(3 * GetNumberOfPoints(field)), 0.0F);
   field.Vectors = vectors.data();
-  DeformedPositions positions(vertices, field);
+  DeformedFieldPositions positions(vertices, field);
   for (int round = 0; round < 60; ++round)
   {
     PointRanges changes;
@@ -345,7 +352,7 @@ TEST(DeformedCutting, BoxesFollowChanges)
       begin = end + random() % 5000;
     }
     positions.SetField(field, round % 20 == 19 ? nullptr : &changes);
-    const DeformedPositions anew(vertices, field);
+    const DeformedFieldPositions anew(vertices, field);
     for (std::size_t brick = 0; brick < anew.GetBricks().GetNumberOfBricks(); ++brick)
     {
       ASSERT_EQ(positions.GetBox(brick).Min, anew.GetBox(brick).Min);

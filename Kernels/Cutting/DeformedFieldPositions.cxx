@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DeformedVertices.h"
+#include "DeformedPositions.h"
 
-#include "FieldScan.h"   // for AreVoxelsPoints
-#include "IndexBounds.h" // for GetVector and Interpolate
+#include "FieldScan.h" // for AreVoxelsPoints
 #include "VectorComponents.h"
 
 #include <algorithm>
@@ -13,7 +12,16 @@
 
 namespace deformvolume
 {
-bool DeformedFieldVertices::Find(const glm::dvec3& vertex, glm::dvec3& displacement) const
+DeformedFieldPositions::DeformedFieldPositions(
+  const Extent& vertices, const DisplacementField& field)
+  : DeformedPositions(vertices)
+  , Field(field)
+{
+  this->FindBoxes({});
+}
+
+bool DeformedFieldPositions::FindDisplacement(
+  const glm::dvec3& vertex, glm::dvec3& displacement) const
 {
   glm::dvec3 position;
   glm::dvec3 inside;
@@ -36,21 +44,21 @@ bool DeformedFieldVertices::Find(const glm::dvec3& vertex, glm::dvec3& displacem
   return true;
 }
 
-void DeformedFieldVertices::FindRow(
+void DeformedFieldPositions::FindRow(
   int x, int y, int z, int count, glm::dvec3* displacements, bool* hasPosition) const
 {
   for (int i = 0; i < count; ++i)
   {
-    hasPosition[i] = this->Find(glm::dvec3(x + i, y, z), displacements[i]);
+    hasPosition[i] = this->FindDisplacement(glm::dvec3(x + i, y, z), displacements[i]);
   }
 }
 
 // Returns the limits of the displacements at all points of the field that affect a vertex.
 // Displacements of vertices lie within these limits, because weights are between 0 and 1 and add up
 // to 1. Rounding errors can omit a point whose weight is almost 0.
-DisplacementLimits DeformedFieldVertices::GetLimits(std::size_t brick) const
+DisplacementLimits DeformedFieldPositions::GetLimits(std::size_t brick) const
 {
-  const Extent vertices = this->Bricks.GetVertices(brick);
+  const Extent vertices = this->GetBricks().GetVertices(brick);
   DisplacementLimits limits;
   bool mayFade = false;
   std::array<std::int64_t, 6> points;
@@ -102,19 +110,25 @@ DisplacementLimits DeformedFieldVertices::GetLimits(std::size_t brick) const
   return limits;
 }
 
-std::vector<unsigned char> DeformedFieldVertices::SetField(
-  const DisplacementField& field, const PointRanges* changed)
+void DeformedFieldPositions::SetField(const DisplacementField& field, const PointRanges* changed)
 {
   const DisplacementField last = std::exchange(this->Field, field);
+  this->FindBoxes(this->FindChanged(last, changed));
+}
+
+std::vector<unsigned char> DeformedFieldPositions::FindChanged(
+  const DisplacementField& last, const PointRanges* changed) const
+{
+  const DisplacementField& field = this->Field;
   // Changed vertices are only found in the simple case that points of the field are voxels.
-  const VoxelGrid vertices{ this->Bricks.GetVertices(), {}, {} };
+  const VoxelGrid vertices{ this->GetBricks().GetVertices(), {}, {} };
   if (!changed || last.Dimensions != field.Dimensions || last.IndexToField != field.IndexToField ||
     last.ToDisplacement != field.ToDisplacement || last.Extrapolate != field.Extrapolate ||
     last.Fading != field.Fading || !AreVoxelsPoints(vertices, field))
   {
     return {};
   }
-  std::vector<unsigned char> marked(this->Bricks.GetNumberOfBricks(), 0);
+  std::vector<unsigned char> marked(this->GetBricks().GetNumberOfBricks(), 0);
   const std::int64_t width = field.Dimensions[0];
   for (const auto& [begin, end] : *changed)
   {
@@ -135,15 +149,16 @@ std::vector<unsigned char> DeformedFieldVertices::SetField(
 
 // Marks the bricks of the vertices at the given points of the field. A vertex on the common face of
 // two bricks belongs to both bricks.
-void DeformedFieldVertices::MarkRow(const Extent& points, std::vector<unsigned char>& bricks) const
+void DeformedFieldPositions::MarkRow(const Extent& points, std::vector<unsigned char>& bricks) const
 {
   Extent cells;
   for (std::size_t axis = 0; axis < 3; ++axis)
   {
-    const int first = this->Bricks.GetVertices()[2 * axis] +
+    const int first = this->GetBricks().GetVertices()[2 * axis] +
       static_cast<int>(this->Field.IndexToField[4 * axis + 3]); // the point at the first vertex
     cells[2 * axis] = std::max(points[2 * axis] - first - 1, 0);
-    cells[2 * axis + 1] = std::min(points[2 * axis + 1] - first, this->Bricks.GetSize()[axis] - 1);
+    cells[2 * axis + 1] =
+      std::min(points[2 * axis + 1] - first, this->GetBricks().GetSize()[axis] - 1);
     if (cells[2 * axis] > cells[2 * axis + 1])
     {
       return;
@@ -156,7 +171,7 @@ void DeformedFieldVertices::MarkRow(const Extent& points, std::vector<unsigned c
     {
       for (int x = cells[0] / length; x <= cells[1] / length; ++x)
       {
-        bricks[this->Bricks.FindBrick({ { x * length, y * length, z * length } })] = 1;
+        bricks[this->GetBricks().FindBrick({ { x * length, y * length, z * length } })] = 1;
       }
     }
   }

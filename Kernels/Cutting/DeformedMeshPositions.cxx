@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DeformedVertices.h"
+#include "DeformedPositions.h"
 
 #include "Error.h"
-#include "IndexBounds.h" // for GetVector
 #include "ParallelFor.h"
 
 #include <glm/common.hpp>
@@ -20,22 +19,15 @@ constexpr std::size_t BricksPerPart = 32;
 
 } // namespace
 
-void DisplacementLimits::Add(const glm::dvec3& displacement)
-{
-  const bool isEmpty = this->IsEmpty();
-  this->Min = isEmpty ? displacement : glm::min(this->Min, displacement);
-  this->Max = isEmpty ? displacement : glm::max(this->Max, displacement);
-}
-
-DeformedVertices::~DeformedVertices() = default;
-
-DeformedMeshVertices::DeformedMeshVertices(const CellBricks& bricks, const Extent& mapped,
-  const StaticMapping& mapping, const std::vector<Tetrahedron>& tetrahedra)
-  : Mapped(mapped)
+DeformedMeshPositions::DeformedMeshPositions(const Extent& vertices, const Extent& mapped,
+  const StaticMapping& mapping, const std::vector<Tetrahedron>& tetrahedra,
+  const float* displacements)
+  : DeformedPositions(vertices)
+  , Mapped(mapped)
   , Mapping(mapping)
   , Tetrahedra(tetrahedra)
 {
-  const Extent& vertices = bricks.GetVertices();
+  const CellBricks& bricks = this->GetBricks();
   const auto voxels = static_cast<std::size_t>(GetNumberOfPoints(mapped));
   const auto rows = static_cast<std::size_t>(GetSize(mapped, 1) * GetSize(mapped, 2));
   bool isContained = true;
@@ -74,13 +66,14 @@ DeformedMeshVertices::DeformedMeshVertices(const CellBricks& bricks, const Exten
   {
     this->OfBricks.insert(this->OfBricks.end(), part.begin(), part.end());
   }
+  this->SetDisplacements(displacements);
 }
 
 // Calls function(i, tetrahedron, weights) for the vertices of a row that lie in a tetrahedron.
 // ends: if the mapping has runs, only calls the function for the first and the last vertex of each
 // run, because all other vertices of the run lie between these two.
 template <typename Function>
-void DeformedMeshVertices::FollowRow(
+void DeformedMeshPositions::FollowRow(
   int x, int y, int z, int count, bool ends, Function&& function) const
 {
   const int first = x - this->Mapped[0];
@@ -131,7 +124,7 @@ void DeformedMeshVertices::FollowRow(
   }
 }
 
-void DeformedMeshVertices::FindTetrahedra(
+void DeformedMeshPositions::FindTetrahedra(
   const Extent& vertices, std::vector<std::int32_t>& tetrahedra, float& overshoot) const
 {
   tetrahedra.clear();
@@ -159,7 +152,7 @@ void DeformedMeshVertices::FindTetrahedra(
   overshoot = static_cast<float>(most * (1.0 + rounding) + rounding);
 }
 
-void DeformedMeshVertices::SetDisplacements(const float* displacements)
+void DeformedMeshPositions::SetDisplacements(const float* displacements)
 {
   this->Displacements = displacements;
   this->Limits.resize(this->Tetrahedra.size());
@@ -169,7 +162,7 @@ void DeformedMeshVertices::SetDisplacements(const float* displacements)
     {
       for (std::size_t tetrahedron = begin; tetrahedron < end; ++tetrahedron)
       {
-        Box& box = this->Limits[tetrahedron];
+        NodeLimits& box = this->Limits[tetrahedron];
         for (std::size_t k = 0; k < 4; ++k)
         {
           const float* node = this->Displacements + 3 * this->Tetrahedra[tetrahedron][k];
@@ -181,9 +174,10 @@ void DeformedMeshVertices::SetDisplacements(const float* displacements)
         }
       }
     });
+  this->FindBoxes({});
 }
 
-void DeformedMeshVertices::FindRow(
+void DeformedMeshPositions::FindRow(
   int x, int y, int z, int count, glm::dvec3* displacements, bool* hasPosition) const
 {
   std::fill_n(hasPosition, count, false);
@@ -202,12 +196,12 @@ void DeformedMeshVertices::FindRow(
     });
 }
 
-DisplacementLimits DeformedMeshVertices::GetLimits(std::size_t brick) const
+DisplacementLimits DeformedMeshPositions::GetLimits(std::size_t brick) const
 {
   DisplacementLimits limits;
   for (std::size_t i = this->Begins[brick]; i < this->Begins[brick + 1]; ++i)
   {
-    const Box& box = this->Limits[static_cast<std::size_t>(this->OfBricks[i])];
+    const NodeLimits& box = this->Limits[static_cast<std::size_t>(this->OfBricks[i])];
     limits.Add(glm::dvec3(box.Least[0], box.Least[1], box.Least[2]));
     limits.Add(glm::dvec3(box.Greatest[0], box.Greatest[1], box.Greatest[2]));
   }
