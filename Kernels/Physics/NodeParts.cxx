@@ -14,61 +14,6 @@ namespace
 
 constexpr std::size_t NodesOfPart = 1024;
 
-class PartFinder
-{
-public:
-  PartFinder(const std::vector<Tetrahedron>& tetrahedra, const FaceNeighbors& neighbors,
-    const std::vector<unsigned char>& isSplit)
-    : Tetrahedra(tetrahedra)
-    , Neighbors(neighbors)
-    , IsSplit(isSplit)
-  {
-  }
-
-  // Sets partOfCorner for the corners [begin, end), which are all corners at one node, in ascending
-  // order. Returns the number of parts.
-  std::int32_t Find(const std::size_t* begin, const std::size_t* end, std::int32_t* partOfCorner)
-  {
-    const auto count = static_cast<std::size_t>(end - begin);
-    this->Sets.Reset(count);
-    for (std::size_t i = 0; i < count; ++i)
-    {
-      this->JoinNeighbors(begin, end, i);
-    }
-    // The root of a set is its lowest corner.
-    std::int32_t parts = 0;
-    for (std::size_t i = 0; i < count; ++i)
-    {
-      const std::size_t root = this->Sets.Find(i);
-      partOfCorner[begin[i]] = root == i ? parts++ : partOfCorner[begin[root]];
-    }
-    return parts;
-  }
-
-private:
-  void JoinNeighbors(const std::size_t* begin, const std::size_t* end, std::size_t i)
-  {
-    const std::size_t t = begin[i] / 4;
-    const std::int32_t node = this->Tetrahedra[t][begin[i] % 4];
-    for (std::size_t k = 0; k < 4; ++k)
-    {
-      const std::size_t face = 4 * t + k;
-      const std::size_t next = this->Neighbors.GetNext(face);
-      if (this->Tetrahedra[t][k] == node || next == face || this->IsSplit[face] != 0)
-      {
-        continue;
-      }
-      const std::size_t* other = std::lower_bound(begin, end, next / 4 * 4);
-      this->Sets.Unite(i, static_cast<std::size_t>(other - begin));
-    }
-  }
-
-  const std::vector<Tetrahedron>& Tetrahedra;
-  const FaceNeighbors& Neighbors;
-  const std::vector<unsigned char>& IsSplit;
-  DisjointSets<std::size_t> Sets;
-};
-
 } // namespace
 
 NodeParts FindNodeParts(const std::vector<Tetrahedron>& tetrahedra, const FaceNeighbors& neighbors,
@@ -97,16 +42,39 @@ NodeParts FindNodeParts(const std::vector<Tetrahedron>& tetrahedra, const FaceNe
   ParallelForParts(isWanted.size(), NodesOfPart,
     [&](std::size_t first, std::size_t last)
     {
-      PartFinder finder(tetrahedra, neighbors, isSplit);
+      DisjointSets<std::size_t> sets;
       for (std::size_t node = first; node < last; ++node)
       {
-        if (isWanted[node] != 0)
+        if (isWanted[node] == 0)
         {
-          parts.NumberOfCopies[node] =
-            finder.Find(corners.data() + begins[node], corners.data() + begins[node + 1],
-              parts.PartOfCorner.data()) -
-            1;
+          continue;
         }
+        const std::size_t* const begin = corners.data() + begins[node];
+        const std::size_t* const end = corners.data() + begins[node + 1];
+        const auto count = static_cast<std::size_t>(end - begin);
+        sets.Reset(count);
+        for (std::size_t i = 0; i < count; ++i)
+        {
+          const std::size_t t = begin[i] / 4;
+          for (std::size_t face = 4 * t; face < 4 * t + 4; ++face)
+          {
+            const std::size_t next = neighbors.GetNext(face);
+            const bool isAtNode = tetrahedra[t][face % 4] != static_cast<std::int32_t>(node);
+            if (isAtNode && next != face && isSplit[face] == 0)
+            {
+              sets.Unite(
+                i, static_cast<std::size_t>(std::lower_bound(begin, end, next / 4 * 4) - begin));
+            }
+          }
+        }
+        // The root of a set is its lowest corner.
+        std::int32_t number = 0;
+        for (std::size_t i = 0; i < count; ++i)
+        {
+          const std::size_t root = sets.Find(i);
+          parts.PartOfCorner[begin[i]] = root == i ? number++ : parts.PartOfCorner[begin[root]];
+        }
+        parts.NumberOfCopies[node] = number - 1;
       }
     });
   return parts;
