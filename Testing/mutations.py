@@ -307,7 +307,7 @@ MUTATIONS = {
     "springs-restored": ("Kernels/MassSpring/MassSpringModel.cxx", "impl.State->Restore();", "", [SPRINGS]),
     "springs-limit": ("Kernels/MassSpring/MassSpringNetwork.cxx", "fastest = std::max(fastest, 24.0",
                       "fastest = std::max(0.0, 24.0", [SPRINGS]),
-    "springs-corner": ("Kernels/MassSpring/CubeFifths.cxx", "i == corner || j == corner ?",
+    "springs-corner": ("Kernels/MassSpring/MassSpringNetwork.cxx", "i == corner || j == corner ?",
                        "glm::distance(corners[i], corners[j]) < 1.2 * from ?", [SPRINGS]),
     "springs-flat": ("Kernels/MassSpring/MassSpringResults.cxx", "hasStress = !IsFlat(results.Determinant);",
                      "hasStress = true;", [SPRINGS_AT_REST]),

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MassSpringModel.h"
 
-#include "CubeFifths.h"
 #include "DeviceVectorsInternals.h"
 #include "GuardedCall.h"
 #include "HostMemory.h"
