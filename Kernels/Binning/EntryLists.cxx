@@ -3,6 +3,7 @@
 
 #include "BinningProgram.h"
 #include "HostMemory.h"
+#include "KernelMaking.h"
 #include "WorkDevice.h"
 
 #include <algorithm>
@@ -36,8 +37,7 @@ public:
   template <typename... Arguments>
   void Launch(WorkDevice& device, const Arguments&... arguments)
   {
-    cl_uint i = 0;
-    (this->Kernel.setArg(i++, arguments), ...);
+    SetArguments(this->Kernel, 0, arguments...);
     device.GetContext().Launch(device.GetQueue(), this->Kernel,
       cl::NDRange(this->Groups * this->GroupSize), cl::NDRange(this->GroupSize));
   }

@@ -3,6 +3,7 @@
 
 #include "BinningProgram.h"
 #include "HostMemory.h"
+#include "KernelMaking.h"
 #include "WorkDevice.h"
 
 #include <algorithm>
@@ -37,13 +38,8 @@ std::uint64_t RangeLists::Count(WorkDevice& device, const cl::Buffer& tetrahedra
   const std::size_t ranges = CountRanges(device, static_cast<std::size_t>(p.Tetrahedra), tiles);
   ReserveLists(device, this->RangeBegins, CountBeginBytes(ranges, tiles));
   ReserveLists(device, buffers.Begins, (tiles + 1) * sizeof(cl_uint));
-  cl::Kernel count(GetRangeListsProgram(device.GetContext()), "CountTetrahedra");
-  count.setArg(0, tetrahedra);
-  count.setArg(1, positions);
-  count.setArg(2, buffers.Boxes);
-  count.setArg(3, buffers.Counters);
-  count.setArg(4, this->RangeBegins);
-  count.setArg(5, p);
+  const cl::Kernel count = MakeKernel(GetRangeListsProgram(device.GetContext()), "CountTetrahedra",
+    tetrahedra, positions, buffers.Boxes, buffers.Counters, this->RangeBegins, p);
   device.GetContext().Launch(device.GetQueue(), count, cl::NDRange(ranges), cl::NDRange(1));
   return this->FindRangeBegins(device, ranges, static_cast<std::size_t>(tiles), buffers);
 }
@@ -78,11 +74,8 @@ std::uint64_t RangeLists::FindRangeBegins(
 
 void RangeLists::Fill(WorkDevice& device, const RasterParameters& p, const ListBuffers& buffers)
 {
-  cl::Kernel list(GetRangeListsProgram(device.GetContext()), "ListTetrahedra");
-  list.setArg(0, buffers.Boxes);
-  list.setArg(1, this->RangeBegins);
-  list.setArg(2, buffers.Lists);
-  list.setArg(3, p);
+  const cl::Kernel list = MakeKernel(GetRangeListsProgram(device.GetContext()), "ListTetrahedra",
+    buffers.Boxes, this->RangeBegins, buffers.Lists, p);
   const std::size_t ranges =
     CountRanges(device, static_cast<std::size_t>(p.Tetrahedra), CountTiles(p));
   device.GetContext().Launch(device.GetQueue(), list, cl::NDRange(ranges), cl::NDRange(1));

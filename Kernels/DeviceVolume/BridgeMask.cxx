@@ -3,6 +3,7 @@
 
 #include "FiveTetrahedra.h"
 #include "HostMemory.h"
+#include "KernelMaking.h"
 #include "VertexCuboids.h"
 
 #include <algorithm>
@@ -94,21 +95,12 @@ void BridgeMask::Update(OpenCLContext& context, const cl::CommandQueue& queue,
   const cl::Buffer changed(context.GetContext(), CL_MEM_READ_WRITE, atOnce * sizeof(cl_uint));
   const QueueGuard guard(queue);
   cl::Kernel kernel(source.Program, "ExcludeBridges");
-  cl_uint i = source.SetMapping(kernel);
-  kernel.setArg(i++, source.Owners);
-  kernel.setArg(i++, source.Tetrahedra() ? source.Tetrahedra : source.Other);
-  kernel.setArg(i++, this->HasCoincidentNodes() ? this->CoincidentNodes : source.Other);
-  kernel.setArg(i++, cl_int{ this->HasCoincidentNodes() });
-  kernel.setArg(i++, this->WithBoundary ? chunk.Boundary : source.Other);
-  kernel.setArg(i++, cl_int{ this->WithBoundary });
-  kernel.setArg(i++, source.Active);
-  kernel.setArg(i++, cl_int{ source.HasActive });
-  kernel.setArg(i++, source.CutRows);
-  kernel.setArg(i++, source.CutVertices);
-  kernel.setArg(i++, chunk.Joined);
-  kernel.setArg(i++, changed);
-  kernel.setArg(i++, list);
-  kernel.setArg(i++, p);
+  SetArguments(kernel, source.SetMapping(kernel), source.Owners,
+    source.Tetrahedra() ? source.Tetrahedra : source.Other,
+    this->HasCoincidentNodes() ? this->CoincidentNodes : source.Other,
+    cl_int{ this->HasCoincidentNodes() }, this->WithBoundary ? chunk.Boundary : source.Other,
+    cl_int{ this->WithBoundary }, source.Active, cl_int{ source.HasActive }, source.CutRows,
+    source.CutVertices, chunk.Joined, changed, list, p);
   std::vector<cl_uint> flags;
   VertexCuboids::ForAll(context, queue, cuboids, list,
     [&](const VertexCuboids::Launch& launch, std::size_t begin, std::size_t count)

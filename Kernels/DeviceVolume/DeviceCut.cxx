@@ -3,6 +3,7 @@
 
 #include "FiveTetrahedra.h"
 #include "HostMemory.h"
+#include "KernelMaking.h"
 #include "MaskChanges.h"
 
 #include <algorithm>
@@ -263,16 +264,10 @@ void DeviceCut::Update(OpenCLContext& context, const cl::CommandQueue& queue,
   const cl::NDRange items((end - begin + group - 1) / group * group);
   if (!this->StencilsCurrent)
   {
-    cl::Kernel find(source.Program, "FindCutStencils");
-    find.setArg(0, source.State);
-    find.setArg(1, source.Active);
-    find.setArg(2, this->Rows);
-    find.setArg(3, this->Vertices);
-    find.setArg(4, this->Stencils);
-    find.setArg(5, begin);
-    find.setArg(6, end);
-    find.setArg(7, p);
-    context.Launch(queue, find, items, cl::NDRange(group));
+    context.Launch(queue,
+      MakeKernel(source.Program, "FindCutStencils", source.State, source.Active, this->Rows,
+        this->Vertices, this->Stencils, begin, end, p),
+      items, cl::NDRange(group));
   }
   const bool some = this->StencilsCurrent && !wanted.empty();
   if (some)
@@ -281,26 +276,16 @@ void DeviceCut::Update(OpenCLContext& context, const cl::CommandQueue& queue,
     queue.enqueueWriteBuffer(this->Wanted, CL_TRUE, 0, wanted.size(), wanted.data());
   }
   cl::Kernel kernel(source.Program, "FindCutPositions");
-  cl_uint i = source.SetMapping(kernel);
-  kernel.setArg(i++, source.State);
-  kernel.setArg(i++, this->Vertices);
-  kernel.setArg(i++, this->Stencils);
-  kernel.setArg(i++, this->Positions);
   // Any buffer may replace a missing buffer.
-  kernel.setArg(i++, some ? this->Wanted : this->Stencils);
-  kernel.setArg(i++, cl_int{ some });
-  kernel.setArg(i++, begin);
-  kernel.setArg(i++, end);
-  kernel.setArg(i++, p);
+  deformvolume::SetArguments(kernel, source.SetMapping(kernel), source.State, this->Vertices,
+    this->Stencils, this->Positions, some ? this->Wanted : this->Stencils, cl_int{ some }, begin,
+    end, p);
   context.Launch(queue, kernel, items, cl::NDRange(group));
 }
 
 cl_uint DeviceCut::SetArguments(cl::Kernel& kernel, cl_uint argument) const
 {
-  kernel.setArg(argument++, this->Rows);
-  kernel.setArg(argument++, this->Vertices);
-  kernel.setArg(argument++, this->Positions);
-  return argument;
+  return deformvolume::SetArguments(kernel, argument, this->Rows, this->Vertices, this->Positions);
 }
 
 std::uint64_t DeviceCut::GetMemory() const

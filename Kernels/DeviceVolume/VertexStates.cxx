@@ -2,6 +2,7 @@
 #include "VertexStates.h"
 
 #include "HostMemory.h"
+#include "KernelMaking.h"
 #include "VertexCuboids.h"
 
 #include <algorithm>
@@ -69,28 +70,13 @@ void VertexStates::Update(OpenCLContext& context, const cl::CommandQueue& queue,
     context.GetContext(), CL_MEM_READ_WRITE, atOnce * VertexCuboids::NumberOfVertices);
   const QueueGuard guard(queue);
   cl::Kernel mark(source.Mapping, "MarkSources");
-  cl_uint i = source.SetMapping(mark);
-  mark.setArg(i++, source.Blanked);
-  mark.setArg(i++, cl_int{ source.HasBlanked });
-  mark.setArg(i++, source.Distances);
-  mark.setArg(i++, chunk.State);
-  mark.setArg(i++, list);
-  mark.setArg(i++, p);
+  SetArguments(mark, source.SetMapping(mark), source.Blanked, cl_int{ source.HasBlanked },
+    source.Distances, chunk.State, list, p);
   VertexCuboids::ForAll(context, queue, sources, list,
     [&](const VertexCuboids::Launch& launch, std::size_t, std::size_t) { launch(mark); });
-  cl::Kernel find(source.Mapping, "MarkVertices");
-  find.setArg(0, chunk.State);
-  find.setArg(1, source.Active);
-  find.setArg(2, source.CutRows);
-  find.setArg(3, source.CutVertices);
-  find.setArg(4, marked);
-  find.setArg(5, list);
-  find.setArg(6, p);
-  cl::Kernel store(source.Mapping, "StoreStates");
-  store.setArg(0, marked);
-  store.setArg(1, chunk.State);
-  store.setArg(2, list);
-  store.setArg(3, p);
+  const cl::Kernel find = MakeKernel(source.Mapping, "MarkVertices", chunk.State, source.Active,
+    source.CutRows, source.CutVertices, marked, list, p);
+  const cl::Kernel store = MakeKernel(source.Mapping, "StoreStates", marked, chunk.State, list, p);
   VertexCuboids::ForAll(context, queue, vertices, list,
     [&](const VertexCuboids::Launch& launch, std::size_t, std::size_t)
     {

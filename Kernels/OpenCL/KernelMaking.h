@@ -7,13 +7,21 @@
 namespace deformvolume
 {
 
+/// Sets consecutive arguments of a kernel. first: index of the first of them. Returns the index of
+/// the next argument.
+template <typename... Arguments>
+cl_uint SetArguments(cl::Kernel& kernel, cl_uint first, const Arguments&... arguments)
+{
+  (kernel.setArg(first++, arguments), ...);
+  return first;
+}
+
 /// Makes a kernel of a program and sets all of its arguments.
 template <typename... Arguments>
 cl::Kernel MakeKernel(const cl::Program& program, const char* name, const Arguments&... arguments)
 {
   cl::Kernel kernel(program, name);
-  cl_uint i = 0;
-  (kernel.setArg(i++, arguments), ...);
+  SetArguments(kernel, 0, arguments...);
   return kernel;
 }
 

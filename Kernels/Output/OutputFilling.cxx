@@ -2,6 +2,7 @@
 #include "OutputFilling.h"
 
 #include "Background.h"
+#include "KernelMaking.h"
 #include "ResamplingProgram.h"
 
 #include <algorithm>
@@ -12,9 +13,12 @@ namespace deformvolume
 namespace
 {
 
+// Makes a kernel for elements of the size of a value, which is its third argument.
 cl::Kernel MakeKernel(OpenCLContext& context, const std::string& name, const ElementBytes& value)
 {
-  return cl::Kernel(GetOutputProgram(context), (name + std::to_string(value.Size)).c_str());
+  cl::Kernel kernel(GetOutputProgram(context), (name + std::to_string(value.Size)).c_str());
+  kernel.setArg(2, value.Size, value.Bytes.data());
+  return kernel;
 }
 
 /// Launches a work-group for each listed patch, with a work-item for each row of the patch.
@@ -92,17 +96,14 @@ void Fill(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffe
     {
       bytes[i] = value.Bytes[i % value.Size];
     }
-    cl::Kernel kernel(GetOutputProgram(context), "FillWide");
-    kernel.setArg(0, buffer);
-    kernel.setArg(1, cl_ulong{ size * value.Size });
-    kernel.setArg(2, pattern);
-    LaunchSteps(context, queue, kernel, size * value.Size, sizeof(pattern), events);
+    LaunchSteps(context, queue,
+      MakeKernel(
+        GetOutputProgram(context), "FillWide", buffer, cl_ulong{ size * value.Size }, pattern),
+      size * value.Size, sizeof(pattern), events);
     return;
   }
   cl::Kernel kernel = MakeKernel(context, "Fill", value);
-  kernel.setArg(0, buffer);
-  kernel.setArg(1, cl_ulong{ size });
-  kernel.setArg(2, value.Size, value.Bytes.data());
+  SetArguments(kernel, 0, buffer, cl_ulong{ size });
   const std::uint64_t step = DEFORMVOLUME_FILLED_BYTES / value.Size;
   LaunchBusyItems(
     context, queue, kernel, static_cast<std::size_t>((size + step - 1) / step), events);
@@ -113,11 +114,8 @@ void FillPatches(OpenCLContext& context, const cl::CommandQueue& queue, const cl
   const KernelParameters& parameters, std::vector<cl::Event>& events)
 {
   cl::Kernel kernel = MakeKernel(context, "FillPatches", value);
-  kernel.setArg(0, buffer);
-  kernel.setArg(1, static_cast<cl_uint>(elements));
-  kernel.setArg(2, value.Size, value.Bytes.data());
-  kernel.setArg(3, patches);
-  kernel.setArg(4, parameters);
+  SetArguments(kernel, 0, buffer, static_cast<cl_uint>(elements));
+  SetArguments(kernel, 3, patches, parameters);
   LaunchPatches(context, queue, kernel, count, events);
 }
 
@@ -125,46 +123,36 @@ void CountCoveredInPatches(OpenCLContext& context, const cl::CommandQueue& queue
   const cl::Buffer& coverage, const cl::Buffer& patches, std::size_t count,
   const KernelParameters& parameters, const cl::Buffer& sums, std::vector<cl::Event>& events)
 {
-  cl::Kernel kernel(GetOutputProgram(context), "CountCoveredInPatches");
-  kernel.setArg(0, coverage);
-  kernel.setArg(1, patches);
-  kernel.setArg(2, static_cast<cl_uint>(count));
-  kernel.setArg(3, sums);
-  kernel.setArg(4, parameters);
-  LaunchBusyItems(context, queue, kernel, count, events);
+  LaunchBusyItems(context, queue,
+    MakeKernel(GetOutputProgram(context), "CountCoveredInPatches", coverage, patches,
+      static_cast<cl_uint>(count), sums, parameters),
+    count, events);
 }
 
 void ExpandCoverage(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& bits,
   const cl::Buffer& coverage, std::uint64_t voxels, std::vector<cl::Event>& events)
 {
-  cl::Kernel kernel(GetOutputProgram(context), "ExpandCoverage");
-  kernel.setArg(0, bits);
-  kernel.setArg(1, coverage);
-  kernel.setArg(2, cl_ulong{ voxels });
-  LaunchSteps(context, queue, kernel, voxels, DEFORMVOLUME_EXPANDED, events);
+  LaunchSteps(context, queue,
+    MakeKernel(GetOutputProgram(context), "ExpandCoverage", bits, coverage, cl_ulong{ voxels }),
+    voxels, DEFORMVOLUME_EXPANDED, events);
 }
 
 void ExpandPatches(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& bits,
   const cl::Buffer& coverage, const cl::Buffer& patches, std::size_t count,
   const KernelParameters& parameters, std::vector<cl::Event>& events)
 {
-  cl::Kernel kernel(GetOutputProgram(context), "ExpandPatches");
-  kernel.setArg(0, bits);
-  kernel.setArg(1, coverage);
-  kernel.setArg(2, patches);
-  kernel.setArg(3, parameters);
-  LaunchPatches(context, queue, kernel, count, events);
+  LaunchPatches(context, queue,
+    MakeKernel(GetOutputProgram(context), "ExpandPatches", bits, coverage, patches, parameters),
+    count, events);
 }
 
 void ClearPatchBits(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& bits,
   const cl::Buffer& patches, std::size_t count, const KernelParameters& parameters,
   std::vector<cl::Event>& events)
 {
-  cl::Kernel kernel(GetOutputProgram(context), "ClearPatchBits");
-  kernel.setArg(0, bits);
-  kernel.setArg(1, patches);
-  kernel.setArg(2, parameters);
-  LaunchPatches(context, queue, kernel, count, events);
+  LaunchPatches(context, queue,
+    MakeKernel(GetOutputProgram(context), "ClearPatchBits", bits, patches, parameters), count,
+    events);
 }
 
 void FillUncovered(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& buffer,
@@ -172,11 +160,8 @@ void FillUncovered(OpenCLContext& context, const cl::CommandQueue& queue, const 
   std::vector<cl::Event>& events)
 {
   cl::Kernel kernel = MakeKernel(context, "FillUncovered", value);
-  kernel.setArg(0, buffer);
-  kernel.setArg(1, cl_ulong{ voxels });
-  kernel.setArg(2, value.Size, value.Bytes.data());
-  kernel.setArg(3, bits);
-  kernel.setArg(4, static_cast<cl_uint>(elements));
+  SetArguments(kernel, 0, buffer, cl_ulong{ voxels });
+  SetArguments(kernel, 3, bits, static_cast<cl_uint>(elements));
   LaunchSteps(context, queue, kernel, voxels, 1, events);
 }
 

@@ -2,6 +2,7 @@
 #include "OutputSlab.h"
 
 #include "DeviceOutputInternals.h"
+#include "KernelMaking.h"
 #include "OutputFilling.h"
 #include "OutputPatches.h"
 #include "ResamplingProgram.h"
@@ -236,11 +237,8 @@ std::uint64_t OutputSlab::CountCovered(WorkDevice& device, std::vector<cl::Event
   const cl_uint voxelsOfItem = GetCountedVoxels(context);
   const std::uint64_t items = (this->NumberOfVoxels + voxelsOfItem - 1) / voxelsOfItem;
   const cl::Buffer sums(context.GetContext(), CL_MEM_WRITE_ONLY, items * sizeof(cl_uint));
-  cl::Kernel kernel(GetOutputProgram(context), "CountCovered");
-  kernel.setArg(0, this->Coverage);
-  kernel.setArg(1, cl_ulong{ this->NumberOfVoxels });
-  kernel.setArg(2, voxelsOfItem);
-  kernel.setArg(3, sums);
+  const cl::Kernel kernel = MakeKernel(GetOutputProgram(context), "CountCovered", this->Coverage,
+    cl_ulong{ this->NumberOfVoxels }, voxelsOfItem, sums);
   LaunchBusyItems(context, this->Queue, kernel, static_cast<std::size_t>(items), events);
   return ReadSum(this->Queue, sums, static_cast<std::size_t>(items));
 }

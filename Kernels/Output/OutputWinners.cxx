@@ -2,6 +2,7 @@
 #include "OutputWinners.h"
 
 #include "HostMemory.h"
+#include "KernelMaking.h"
 #include "OutputFilling.h"
 #include "ResamplingProgram.h"
 
@@ -127,15 +128,9 @@ void OutputWinners::Settle(OpenCLContext& context, bool claimed, const cl::Buffe
   }
   // If a work-item has a thread of its own, it processes many neighboring patches.
   const cl_uint patchesOfItem = context.GetDevice().HasVectors ? 32 : 1;
-  cl::Kernel kernel(GetOutputProgram(context), "Settle");
-  kernel.setArg(0, coverage);
-  kernel.setArg(1, this->Keys);
-  kernel.setArg(2, static_cast<cl_uint>(this->KeySize / sizeof(cl_uint)));
-  kernel.setArg(3, cl_int{ claimed });
-  kernel.setArg(4, this->Patches);
-  kernel.setArg(5, counters);
-  kernel.setArg(6, patchesOfItem);
-  kernel.setArg(7, parameters);
+  const cl::Kernel kernel = MakeKernel(GetOutputProgram(context), "Settle", coverage, this->Keys,
+    static_cast<cl_uint>(this->KeySize / sizeof(cl_uint)), cl_int{ claimed }, this->Patches,
+    counters, patchesOfItem, parameters);
   const std::uint64_t patchesOfRow =
     static_cast<std::uint64_t>(DEFORMVOLUME_PATCHES(GetSize(this->Output, 0)));
   const std::uint64_t items =

@@ -3,6 +3,7 @@
 
 #include "BrickGrid.h"
 #include "HostMemory.h"
+#include "KernelMaking.h"
 #include "KernelParameters.h"
 #include "OutputFilling.h"
 #include "ResamplingProgram.h"
@@ -44,14 +45,12 @@ void SectionCounters::Clear(OpenCLContext& context, std::vector<cl::Event>& even
 void SectionCounters::ClearSections(OpenCLContext& context, std::size_t bricks,
   const cl::Buffer& brickList, bool withWinners, std::vector<cl::Event>& events)
 {
-  const auto launch = [&](const char* name, std::size_t sections, auto... arguments)
+  const auto launch = [&](const char* name, std::size_t sections, const auto&... arguments)
   {
-    cl::Kernel kernel(GetOutputProgram(context), name);
-    cl_uint i = 0;
-    kernel.setArg(i++, this->Counters);
-    (kernel.setArg(i++, arguments), ...);
-    kernel.setArg(i++, static_cast<cl_uint>(sections));
-    LaunchSmallItems(context, this->Queue, kernel, sections, events);
+    LaunchSmallItems(context, this->Queue,
+      MakeKernel(GetOutputProgram(context), name, this->Counters, arguments...,
+        static_cast<cl_uint>(sections)),
+      sections, events);
   };
   launch("ClearSections", DEFORMVOLUME_SECTIONS * bricks, brickList);
   if (withWinners)
@@ -71,9 +70,8 @@ SlabCounts SectionCounters::Read(WorkDevice& device, const cl::Buffer& coverageB
   {
     cl::Kernel kernel(GetOutputProgram(context), name);
     const std::size_t group = device.GetBusyGroupSize(kernel, 256);
-    cl_uint i = 0;
-    (kernel.setArg(i++, arguments), ...);
-    kernel.setArg(i, cl::Local(DEFORMVOLUME_SUMMED * group * sizeof(cl_ulong)));
+    SetArguments(
+      kernel, 0, arguments..., cl::Local(DEFORMVOLUME_SUMMED * group * sizeof(cl_ulong)));
     events.push_back(
       context.Launch(this->Queue, kernel, cl::NDRange(group * groups), cl::NDRange(group)));
   };

@@ -4,6 +4,7 @@
 
 #include "DeviceVolume.h"
 #include "HostMemory.h"
+#include "KernelMaking.h"
 #include "RasterizationProgram.h"
 #include "WorkDevice.h"
 
@@ -58,19 +59,9 @@ cl::Kernel MeshRasterizer::MakeKernel(Interpolation interpolation) const
 
 cl_uint MeshRasterizer::SetDeformationArguments(cl::Kernel& kernel) const
 {
-  cl_uint i = 0;
-  if (this->HasField())
-  {
-    kernel.setArg(i++, this->FieldVectors);
-    kernel.setArg(i++, this->Field);
-    return i;
-  }
-  for (const cl::Buffer* buffer : { &this->Tetrahedra, &this->Positions, &this->Displacements,
-         &this->Lists.GetBegins(), &this->Lists.GetLists() })
-  {
-    kernel.setArg(i++, *buffer);
-  }
-  return i;
+  return this->HasField() ? deformvolume::SetArguments(kernel, 0, this->FieldVectors, this->Field)
+                          : deformvolume::SetArguments(kernel, 0, this->Tetrahedra, this->Positions,
+                              this->Displacements, this->Lists.GetBegins(), this->Lists.GetLists());
 }
 
 } // namespace deformvolume

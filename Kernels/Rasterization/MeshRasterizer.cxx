@@ -6,6 +6,7 @@
 #include "Error.h"
 #include "HostMemory.h"
 #include "IndexBounds.h" // for GetOutputTransform
+#include "KernelMaking.h"
 #include "RasterTarget.h"
 #include "WorkDevice.h"
 
@@ -176,20 +177,17 @@ cl_uint MeshRasterizer::SetArguments(
   const RasterParameters& p, const RasterTarget& target, const cl::Buffer& counters)
 {
   const VolumeChunk& chunk = this->Volume->GetChunks().front();
-  cl_uint i = this->SetDeformationArguments(this->Kernel);
+  const DeviceMasks& masks = this->Volume->GetMasks();
   // Some drivers do not accept a null buffer, so pass another buffer instead of a missing one.
-  this->Kernel.setArg(i++, p.HasActive ? chunk.Active : target.GetCoverage());
-  this->Kernel.setArg(i++, p.HasBlanked ? chunk.Blanked : target.GetCoverage());
-  this->Kernel.setArg(
-    i++, this->Volume->GetMasks().GetDistances(chunk, this->Volume->GetRestPositions()));
-  this->Kernel.setArg(i++, target.GetBackgrounds());
-  this->Kernel.setArg(i++, target.GetCoverage());
-  this->Kernel.setArg(i++, counters);
-  const cl_uint parameters = i++;
+  const cl::Buffer& other = this->Volume->GetRestPositions();
+  const cl_uint parameters =
+    deformvolume::SetArguments(this->Kernel, this->SetDeformationArguments(this->Kernel),
+      p.HasActive ? chunk.Active : other, masks.GetBlanked(chunk, other),
+      masks.GetDistances(chunk, other), target.GetBackgrounds(), target.GetCoverage(), counters);
+  cl_uint i = parameters + 1;
   for (std::size_t a = 0; a < chunk.Arrays.size(); ++a)
   {
-    this->Kernel.setArg(i++, chunk.Arrays[a]);
-    this->Kernel.setArg(i++, target.GetArray(a));
+    i = deformvolume::SetArguments(this->Kernel, i, chunk.Arrays[a], target.GetArray(a));
   }
   return parameters;
 }

@@ -7,6 +7,7 @@
 #include "DisplacementSource.h"
 #include "HostMemory.h"
 #include "IndexBounds.h" // for GetOutputTransform
+#include "KernelMaking.h"
 #include "KernelSources.h"
 #include "KernelText.h"
 #include "Launches.h"
@@ -158,12 +159,9 @@ void BoundaryCells::MoveCorners()
   OpenCLContext& context = this->Device.GetContext();
   cl::Kernel kernel(GetCornerProgram(context), "MoveCorners");
   const auto count = static_cast<cl_uint>(this->NumberOfCorners);
-  cl_uint i = 0;
-  kernel.setArg(i++, this->Corners);
-  i = this->Source.SetPointArguments(kernel, i, this->Pieces);
-  kernel.setArg(i++, this->Positions);
-  kernel.setArg(i++, this->Displacements);
-  kernel.setArg(i++, count);
+  const cl_uint i =
+    this->Source.SetPointArguments(kernel, SetArguments(kernel, 0, this->Corners), this->Pieces);
+  SetArguments(kernel, i, this->Positions, this->Displacements, count);
   this->Launched.GetMappingEvents().push_back(this->Device.Launch(kernel, count));
 }
 
@@ -278,6 +276,8 @@ void BoundaryCells::RunTiles(const DeformRequest& request, const OutputSlab& out
   const std::size_t group = this->Device.GetBusyGroupSize(kernel);
   const Extent& whole = GetWholeExtent(this->Volume.GetVoxelGrid());
   const std::vector<VolumeChunk>& chunks = this->Volume.GetChunks();
+  const DeviceMasks& masks = this->Volume.GetMasks();
+  const cl::Buffer& other = this->Volume.GetRestPositions();
   // With several chunks, all upright pieces must come before any inverted one.
   for (const int orientation : chunks.size() > 1 ? std::vector<int>{ 1, 2 } : std::vector<int>{ 3 })
   {
@@ -285,31 +285,16 @@ void BoundaryCells::RunTiles(const DeformRequest& request, const OutputSlab& out
     {
       KernelParameters p = this->Volume.GetParameters(chunk);
       output.SetParameters(p);
-      const cl::Buffer& other = this->Volume.GetRestPositions();
-      cl_uint i = 0;
-      kernel.setArg(i++, this->Pieces);
-      kernel.setArg(i++, this->Positions);
-      kernel.setArg(i++, this->Displacements);
-      kernel.setArg(i++, this->Lists.GetBegins());
-      kernel.setArg(i++, this->Lists.GetLists());
-      kernel.setArg(i++, this->Tiles);
-      kernel.setArg(i++, this->Volume.GetMasks().GetActive(chunk, this->Volume.GetRestPositions()));
-      kernel.setArg(i++, r.HasActive ? chunk.Active : other);
-      kernel.setArg(i++, r.HasBlanked ? chunk.Blanked : other);
-      kernel.setArg(
-        i++, this->Volume.GetMasks().GetDistances(chunk, this->Volume.GetRestPositions()));
-      kernel.setArg(i++, output.GetCoverageTarget());
-      kernel.setArg(i++, this->PatchCounts);
-      kernel.setArg(i++, MakeInt4(whole[0], whole[2], whole[4]));
-      kernel.setArg(i++, MakeInt4(whole[1], whole[3], whole[5]));
-      kernel.setArg(i++, cl_int{ orientation });
-      kernel.setArg(i++, r);
-      kernel.setArg(i++, p);
+      cl_uint i = SetArguments(kernel, 0, this->Pieces, this->Positions, this->Displacements,
+        this->Lists.GetBegins(), this->Lists.GetLists(), this->Tiles, masks.GetActive(chunk, other),
+        masks.GetGivenActive(chunk, other), masks.GetBlanked(chunk, other),
+        masks.GetDistances(chunk, other), output.GetCoverageTarget(), this->PatchCounts,
+        MakeInt4(whole[0], whole[2], whole[4]), MakeInt4(whole[1], whole[3], whole[5]),
+        cl_int{ orientation }, r, p);
       const std::vector<cl::Buffer>& sources = this->Volume.GetArrays().GetBuffers(chunk);
       for (std::size_t a = 0; a < sources.size(); ++a)
       {
-        kernel.setArg(i++, sources[a]);
-        kernel.setArg(i++, output.GetArray(a));
+        i = SetArguments(kernel, i, sources[a], output.GetArray(a));
       }
       this->Launched.Run(request, kernel, cl::NDRange(numberOfTiles * group), cl::NDRange(group));
     }

@@ -6,6 +6,7 @@
 #include "DisplacementSource.h"
 #include "Error.h"
 #include "HostMemory.h"
+#include "KernelMaking.h"
 #include "Launches.h"
 #include "OutputSlab.h"
 #include "WorkDevice.h"
@@ -154,33 +155,33 @@ cl::Kernel ExactPasses::MakeKernel(
 void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
   const OutputSlab& output, ResamplingForm form, const KernelParameters& p)
 {
-  cl_uint i = this->Source.SetMappingArguments(kernel, chunk);
-  kernel.setArg(i++, this->Volume.GetState(chunk));
-  kernel.setArg(i++, this->Volume.GetMasks().GetActive(chunk, this->Volume.GetRestPositions()));
-  kernel.setArg(i++, this->Volume.GetMasks().GetDistances(chunk, this->Volume.GetRestPositions()));
-  kernel.setArg(i++, output.GetCoverageTarget());
-  // Some drivers do not accept a null buffer, so pass another buffer instead of a missing one.
+  const DeviceMasks& masks = this->Volume.GetMasks();
+  const cl::Buffer& other = this->Volume.GetRestPositions();
   const OutputWinners& winners = output.GetWinners();
-  kernel.setArg(i++, winners.GetKeys()() ? winners.GetKeys() : output.GetCoverageTarget());
-  kernel.setArg(i++, winners.GetPatches()() ? winners.GetPatches() : output.GetCoverageTarget());
-  kernel.setArg(i++, output.GetLargeCells().GetBuffer());
-  kernel.setArg(i++, output.GetCounters().GetBuffer());
-  if (this->Volume.GetMasks().HasCut())
+  const cl::Buffer& target = output.GetCoverageTarget();
+  // Some drivers do not accept a null buffer, so pass another buffer instead of a missing one.
+  cl_uint i = deformvolume::SetArguments(kernel, this->Source.SetMappingArguments(kernel, chunk),
+    this->Volume.GetState(chunk), masks.GetActive(chunk, other), masks.GetDistances(chunk, other),
+    target, winners.GetKeys()() ? winners.GetKeys() : target,
+    winners.GetPatches()() ? winners.GetPatches() : target, output.GetLargeCells().GetBuffer(),
+    output.GetCounters().GetBuffer());
+  if (masks.HasCut())
   {
-    i = this->Volume.GetMasks().GetCut().SetArguments(kernel, i);
+    i = masks.GetCut().SetArguments(kernel, i);
   }
   if (form != ResamplingForm::LargeCells)
   {
     kernel.setArg(i++, this->Bricks);
   }
+  OpenCLContext& context = this->Device.GetContext();
+  const std::vector<VolumeArray>& types = this->Volume.GetArrays().Get();
+  const bool turned = this->Volume.HasTurnedAxes();
   if (form == ResamplingForm::Lanes)
   {
     kernel.setArg(i++, this->TakenBricks);
-    if (HasLocalBricks(this->Device.GetContext(), this->Volume.HasTurnedAxes()))
+    if (HasLocalBricks(context, turned))
     {
-      kernel.setArg(i++,
-        cl::Local(GetBrickMemory(this->Device.GetContext(), this->Volume.HasTurnedAxes(),
-          this->Volume.GetArrays().Get())));
+      kernel.setArg(i++, cl::Local(GetBrickMemory(context, turned, types)));
     }
     else
     {
@@ -189,9 +190,8 @@ void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
   }
   else if (IsByColumns(form))
   {
-    kernel.setArg(i++, this->Deferred.GetBuffer());
-    kernel.setArg(i++,
-      cl::Local(GetColumnMemory(this->Device.GetContext(), this->Volume.GetArrays().Get(), form)));
+    i = deformvolume::SetArguments(
+      kernel, i, this->Deferred.GetBuffer(), cl::Local(GetColumnMemory(context, types, form)));
   }
   else if (form == ResamplingForm::Cells)
   {
@@ -205,8 +205,7 @@ void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
   const std::vector<cl::Buffer>& arrays = this->Volume.GetArrays().GetBuffers(chunk);
   for (std::size_t a = 0; a < arrays.size(); ++a)
   {
-    kernel.setArg(i++, arrays[a]);
-    kernel.setArg(i++, output.GetArray(a));
+    i = deformvolume::SetArguments(kernel, i, arrays[a], output.GetArray(a));
   }
 }
 

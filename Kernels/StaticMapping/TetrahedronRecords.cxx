@@ -2,6 +2,7 @@
 #include "TetrahedronRecords.h"
 
 #include "HostMemory.h"
+#include "KernelMaking.h"
 #include "KernelParameters.h"
 #include "KernelText.h"
 
@@ -94,13 +95,8 @@ void TetrahedronRecords::Set(const std::vector<RestTetrahedron>& tetrahedra)
 cl::Event TetrahedronRecords::Evaluate(
   const cl::Program& mapping, const cl::Buffer& tetrahedra, const cl::Buffer& nodes)
 {
-  cl::Kernel kernel(mapping, "EvaluateTetrahedra");
-  kernel.setArg(0, this->Rest);
-  kernel.setArg(1, this->Owners);
-  kernel.setArg(2, tetrahedra);
-  kernel.setArg(3, nodes);
-  kernel.setArg(4, this->Records);
-  kernel.setArg(5, static_cast<cl_uint>(this->Count));
+  const cl::Kernel kernel = MakeKernel(mapping, "EvaluateTetrahedra", this->Rest, this->Owners,
+    tetrahedra, nodes, this->Records, static_cast<cl_uint>(this->Count));
   constexpr std::size_t group = 64;
   const std::size_t items = (this->Count + group) / group * group;
   this->Current = true;
