@@ -4,14 +4,12 @@
 #include "BarycentricMap.h"
 #include "ParallelFor.h"
 #include "TetrahedronClipping.h"
-#include "VectorComponents.h"
 
 #include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <limits>
 
 namespace deformvolume
 {
@@ -37,21 +35,6 @@ bool IsInside(
       return glm::all(glm::greaterThanEqual(restPoints[node], box.Min)) &&
         glm::all(glm::lessThanEqual(restPoints[node], box.Max));
     });
-}
-
-// Returns a box that contains all points of `box` after displacements within the bounds
-// `components`.
-IndexBounds AddDisplacements(const IndexBounds& box, const VectorComponents& components)
-{
-  IndexBounds moved = box;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    // If a value is not finite, the box is infinite, so that exact bounds are computed.
-    constexpr double anywhere = std::numeric_limits<double>::infinity();
-    moved.Min[axis] += components.AreFinite ? double{ components.Least[axis] } : -anywhere;
-    moved.Max[axis] += components.AreFinite ? double{ components.Greatest[axis] } : anywhere;
-  }
-  return moved;
 }
 
 bool IsFlat(const Tetrahedron& nodes, const std::vector<glm::dvec3>& restPoints)
@@ -98,11 +81,10 @@ void MeshBounds::SetMesh(const VoxelGrid& voxelGrid, const std::vector<glm::dvec
     }
   }
   this->Wanted.assign(wanted.begin(), wanted.end());
-  this->NodeBounds.Resize(CountBlocks(restPoints.size(), NodeBlock));
+  this->NodeBounds.resize(CountBlocks(restPoints.size(), NodeBlock));
   this->ClippedBounds.resize(CountBlocks(this->ClippedTetrahedra.size(), ClippedBlock));
-  this->StaleNodes.resize(this->NodeBounds.GetNumberOfBlocks(), 1);
+  this->StaleNodes.resize(this->NodeBounds.size(), 1);
   this->StaleClipped.resize(this->ClippedBounds.size());
-  this->RestBounds.resize(this->NodeBounds.GetNumberOfBlocks());
 }
 
 void MeshBounds::CountUses(
@@ -133,9 +115,8 @@ void MeshBounds::Resize(std::size_t numberOfNodes)
   const std::size_t least = std::min(this->Wanted.size(), numberOfNodes);
   this->Uses.resize(std::max(this->Uses.size(), numberOfNodes));
   this->Wanted.resize(std::max(this->Wanted.size(), numberOfNodes));
-  this->NodeBounds.Resize(CountBlocks(numberOfNodes, NodeBlock));
-  this->StaleNodes.resize(this->NodeBounds.GetNumberOfBlocks());
-  this->RestBounds.resize(this->NodeBounds.GetNumberOfBlocks());
+  this->NodeBounds.resize(CountBlocks(numberOfNodes, NodeBlock));
+  this->StaleNodes.resize(this->NodeBounds.size());
   for (std::size_t block = least / NodeBlock; block < this->StaleNodes.size(); ++block)
   {
     this->StaleNodes[block] = 1;
@@ -188,59 +169,6 @@ void MeshBounds::ChangeConnectivity(const std::vector<glm::dvec3>& restPoints,
   }
   this->Uses.resize(nodes);
   this->Wanted.resize(nodes);
-}
-
-void MeshBounds::FindRestBounds(const std::vector<glm::dvec3>& restPoints, std::size_t block)
-{
-  const OutputTransform transform = GetOutputTransform(this->Shape);
-  IndexBounds bounds;
-  const std::size_t end = std::min((block + 1) * NodeBlock, this->Wanted.size());
-  for (std::size_t node = block * NodeBlock; node < end; ++node)
-  {
-    if (this->Wanted[node])
-    {
-      bounds.Add(transform.ToOutput(restPoints[node]));
-    }
-  }
-  this->RestBounds[block] = bounds;
-}
-
-IndexBounds MeshBounds::ComputeNodes(const std::vector<glm::dvec3>& restPoints,
-  const float* displacements, const std::vector<unsigned char>& changed)
-{
-  const auto getEnd = [&](std::size_t block)
-  { return std::min((block + 1) * NodeBlock, this->Wanted.size()); };
-  const OutputTransform transform = GetOutputTransform(this->Shape);
-  return this->NodeBounds.Compute(
-    changed,
-    [&](std::size_t block)
-    {
-      if (this->StaleNodes[block])
-      {
-        this->FindRestBounds(restPoints, block);
-      }
-      if (this->RestBounds[block].IsEmpty())
-      {
-        return this->RestBounds[block];
-      }
-      const std::size_t begin = block * NodeBlock;
-      return AddDisplacements(this->RestBounds[block],
-        FindComponents(displacements + 3 * begin, 3 * (getEnd(block) - begin)));
-    },
-    [&](std::size_t block)
-    {
-      IndexBounds bounds;
-      for (std::size_t node = block * NodeBlock; node < getEnd(block); ++node)
-      {
-        const glm::dvec3 moved = transform.ToOutput(restPoints[node]) +
-          GetVector(displacements, static_cast<std::int64_t>(node));
-        if (this->Wanted[node] && IsFinite(moved))
-        {
-          bounds.Add(moved);
-        }
-      }
-      return bounds;
-    });
 }
 
 IndexBounds MeshBounds::Compute(const std::vector<glm::dvec3>& restPoints,
@@ -301,15 +229,36 @@ IndexBounds MeshBounds::Compute(const std::vector<glm::dvec3>& restPoints,
     }
     this->ClippedBounds[block] = bounds;
   };
-  IndexBounds all = this->ComputeNodes(restPoints, displacements, changed);
+  const auto addNodes = [&](std::size_t block)
+  {
+    if (!changed[block])
+    {
+      return;
+    }
+    IndexBounds bounds;
+    const std::size_t end = std::min((block + 1) * NodeBlock, this->Wanted.size());
+    for (std::size_t node = block * NodeBlock; node < end; ++node)
+    {
+      const glm::dvec3 moved = move(static_cast<std::int32_t>(node));
+      if (this->Wanted[node] && IsFinite(moved))
+      {
+        bounds.Add(moved);
+      }
+    }
+    this->NodeBounds[block] = bounds;
+  };
   ParallelForParts(
-    this->ClippedBounds.size(), 1, [&](std::size_t begin, std::size_t) { clip(begin); });
+    this->NodeBounds.size(), 1, [&](std::size_t block, std::size_t) { addNodes(block); });
+  ParallelForParts(
+    this->ClippedBounds.size(), 1, [&](std::size_t block, std::size_t) { clip(block); });
   this->IsComputed = true;
   this->StaleNodes.assign(this->StaleNodes.size(), 0);
   this->StaleClipped.assign(this->StaleClipped.size(), 0);
-  for (const IndexBounds& bounds : this->ClippedBounds)
+  IndexBounds all;
+  for (const std::vector<IndexBounds>* bounds : { &this->NodeBounds, &this->ClippedBounds })
   {
-    all.Add(bounds);
+    std::for_each(
+      bounds->begin(), bounds->end(), [&](const IndexBounds& block) { all.Add(block); });
   }
   return all;
 }

@@ -2,7 +2,6 @@
 #ifndef DeformVolumeMeshBounds_h
 #define DeformVolumeMeshBounds_h
 
-#include "BlockBounds.h"
 #include "DeformVolumeExport.h"
 #include "IndexBounds.h"
 #include "Tetrahedron.h"
@@ -48,9 +47,6 @@ public:
     const PointRanges* changes = nullptr);
 
 private:
-  void FindRestBounds(const std::vector<glm::dvec3>& restPoints, std::size_t block);
-  IndexBounds ComputeNodes(const std::vector<glm::dvec3>& restPoints, const float* displacements,
-    const std::vector<unsigned char>& changed);
   /// Resizes the data of nodes. Counts of removed nodes are kept for Use().
   void Resize(std::size_t numberOfNodes);
   /// Adds `uses` to the number of uses of the nodes of a tetrahedron inside the volume. -1 (as an
@@ -63,8 +59,7 @@ private:
   std::vector<unsigned char> Wanted;           // nonzero: node of a tetrahedron inside the volume
   std::vector<std::uint32_t> Uses;             // tetrahedra inside per node; empty until a change
   std::vector<std::int32_t> ClippedTetrahedra; // in ascending order
-  std::vector<IndexBounds> RestBounds;         // wanted nodes of each block, in output indices
-  BlockBounds NodeBounds;                      // of each block of nodes
+  std::vector<IndexBounds> NodeBounds;         // of each block of nodes
   std::vector<IndexBounds> ClippedBounds;      // of each block of clipped tetrahedra
   ///@{
   /// Nonzero for blocks whose tetrahedra have changed since their bounds were computed.
