@@ -34,13 +34,14 @@ void MakeSlabs(SlabResampler& resampler, WorkDevice& device, const DeviceVolume&
   for (std::size_t slab = 0; slab < plan.Slabs.size(); ++slab)
   {
     resampler.Make(request, plan, slab, report);
+    OutputMemory& target = resampler.GetTarget(plan.GetTarget(slab));
     if (stays)
     {
-      report.DeviceOutputs = resampler.KeepOnDevice(request, plan.GetTarget(slab));
+      report.DeviceOutputs = target.KeepOnDevice(device.GetReadQueue());
       continue;
     }
     const Clock::time_point begin = Clock::now();
-    resampler.Read(request, plan.GetTarget(slab));
+    target.Read(device.GetReadQueue(), target.GetExtent());
     if (!plan.Overlapped || slab + 1 == plan.Slabs.size())
     {
       resampler.FinishReading();

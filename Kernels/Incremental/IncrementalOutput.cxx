@@ -188,14 +188,14 @@ Extent IncrementalOutput::GetMissing(std::uint64_t held) const
 }
 
 std::vector<std::shared_ptr<DeviceOutput>> IncrementalOutput::KeepOnDevice(
-  const DeformRequest& request, ExactResampler& resampler) const
+  const DeformRequest& request, const OutputMemory& output) const
 {
   std::vector<Extent> parts;
   for (std::size_t i = 0; i <= request.Outputs.size(); ++i)
   {
     parts.push_back(this->GetMissing(request.HeldRevisions.empty() ? 0 : request.HeldRevisions[i]));
   }
-  return resampler.KeepPartsOnDevice(request, parts);
+  return output.KeepOnDevice(this->Device.GetReadQueue(), parts);
 }
 
 bool IncrementalOutput::Update(const DeformRequest& request, const DisplacementSource& source,
@@ -269,7 +269,7 @@ bool IncrementalOutput::TryUpdate(const DeformRequest& request, const Displaceme
   const Extent changed = this->Changes.GetChangedExtent();
   if (!stays)
   {
-    resampler.ReadPart(request, changed);
+    resampler.GetTarget(0).Read(this->Device.GetReadQueue(), changed);
     resampler.FinishReading();
   }
   report.TransferTime += GetSecondsSince(done);
@@ -290,7 +290,7 @@ bool IncrementalOutput::TryUpdate(const DeformRequest& request, const Displaceme
   }
   if (stays)
   {
-    report.DeviceOutputs = this->KeepOnDevice(request, resampler);
+    report.DeviceOutputs = this->KeepOnDevice(request, resampler.GetTarget(0));
   }
   this->LastCovered = covered;
   report.ChangedExtent = changed;

@@ -17,6 +17,7 @@ namespace deformvolume
 class DeviceVolume;
 class DisplacementSource;
 class ExactResampler;
+class OutputMemory;
 class WorkDevice;
 
 /// The last output, and its incremental update after a change of the deformation or the masks.
@@ -57,7 +58,7 @@ private:
   Extent GetMissing(std::uint64_t held) const;
   /// Leaves the updated output on the device.
   std::vector<std::shared_ptr<DeviceOutput>> KeepOnDevice(
-    const DeformRequest& request, ExactResampler& resampler) const;
+    const DeformRequest& request, const OutputMemory& output) const;
   /// See IncrementalUpdate::IsInside.
   bool IsChangeInside() const;
   /// Passes the vertices of the current smooth cut to Changes, once the last output includes that

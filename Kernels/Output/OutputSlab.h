@@ -4,16 +4,15 @@
 
 #include "DeformRequest.h"
 #include "Extent.h"
-#include "HostMemory.h"
 #include "KernelParameters.h"
 #include "LargeCellList.h"
 #include "OpenCLContext.h"
+#include "OutputMemory.h"
 #include "OutputWinners.h"
 #include "SectionCounters.h"
 #include "VolumeArray.h"
 #include "VoxelGrid.h"
 
-#include <memory>
 #include <vector>
 
 namespace deformvolume
@@ -21,29 +20,22 @@ namespace deformvolume
 
 class WorkDevice;
 
-/// A slab of the output on the device: a range of planes of all arrays, their coverage, the winners
-/// of overlaps, and the counters of the bricks of cells.
-class OutputSlab
+/// A slab of the output of exact resampling: besides its arrays and their coverage, the winners of
+/// overlaps and the counters of the bricks of cells.
+class OutputSlab : public OutputMemory
 {
 public:
-  /// Allocates memory for a slab of the request's output, reuses existing buffers, or uses the
-  /// memory of the request in place. Adds events of launches to a list.
+  /// Prepares the memory for a slab (OutputMemory::Bind()). Adds events of launches to a list.
   void Bind(OpenCLContext& context, const cl::CommandQueue& queue, const Extent& extent,
     const DeformRequest& request, const std::vector<VolumeArray>& arrays,
     const VoxelGrid& voxelGrid, std::size_t numberOfBricks, std::vector<cl::Event>& events);
   /// Sets the coverage to 0, and fills the arrays with the background. If coverage is stored as
   /// bits, Complete() fills the arrays instead. Call this after Bind().
-  void Clear(OpenCLContext& context, const std::vector<VolumeArray>& arrays, bool coverageBits,
-    std::vector<cl::Event>& events);
+  void Clear(OpenCLContext& context, bool coverageBits, std::vector<cl::Event>& events);
   /// If coverage is stored as bits: expands the bits to bytes, and fills voxels that are not
   /// covered with the background. isUpdate: only patches that PrepareUpdate() cleared have changed.
-  void Complete(OpenCLContext& context, const std::vector<VolumeArray>& arrays, bool isUpdate,
-    std::vector<cl::Event>& events);
+  void Complete(OpenCLContext& context, bool isUpdate, std::vector<cl::Event>& events);
 
-  /// Whether the last output, for the same extent, is available: in the memory of this request for
-  /// arrays that are written in place, otherwise on the device.
-  bool HoldsLastOutput(const OpenCLContext& context, const DeformRequest& request,
-    const std::vector<VolumeArray>& arrays) const;
   /// The parts of an output that an incremental update computes (see IncrementalUpdate).
   struct PartToUpdate
   {
@@ -79,30 +71,16 @@ public:
   /// Sets the output extent in the parameters of a launch.
   void SetParameters(KernelParameters& parameters) const;
 
-  const Extent& GetExtent() const { return this->SlabExtent; }
-  const cl::Buffer& GetArray(std::size_t index) const { return this->Arrays[index]; }
-  const cl::Buffer& GetCoverage() const { return this->Coverage; }
   bool HasCoverageBits() const { return this->BitsUsed; }
   /// The buffer that resampling kernels write: bits or bytes.
   const cl::Buffer& GetCoverageTarget() const
   {
-    return this->BitsUsed ? this->CoverageBits : this->Coverage;
+    return this->BitsUsed ? this->CoverageBits : this->GetCoverage();
   }
   const LargeCellList& GetLargeCells() const { return this->LargeCells; }
   const SectionCounters& GetCounters() const { return this->Counters; }
   SectionCounters& GetCounters() { return this->Counters; }
 
-  /// Begins to copy a part of the finished slab to the memory of the request, in a separate queue.
-  void Read(const cl::CommandQueue& queue, const DeformRequest& request, const Extent& part);
-  /// Leaves the finished slab, which must be the whole output, on the device. The returned outputs
-  /// must be copied to the host before Bind() or PrepareUpdate() is called. queue: for these
-  /// copies. parts: for each array, then for the coverage, the extent in which the memory of the
-  /// request does not have the current values.
-  std::vector<std::shared_ptr<DeviceOutput>> KeepOnDevice(const cl::CommandQueue& queue,
-    const DeformRequest& request, const std::vector<VolumeArray>& arrays,
-    const std::vector<Extent>& parts) const;
-  /// Waits until the slab is in the memory of the request. Throws cl::Error if a copy failed.
-  void FinishReading() { this->Reads.Check(); }
   /// Waits for all commands, also after a failure, and releases the memory of the request. Does not
   /// throw.
   void Finish();
@@ -110,18 +88,11 @@ public:
   std::uint64_t GetMemory() const;
 
 private:
-  void BindArrays(
-    OpenCLContext& context, const DeformRequest& request, const std::vector<VolumeArray>& arrays);
   void SendPatches(OpenCLContext& context, const std::vector<std::uint32_t>& patches);
   void ExpandCoverage(OpenCLContext& context, bool isUpdate, std::vector<cl::Event>& events);
-  std::uint64_t GetOffset(const DeformRequest& request) const;
 
   cl::CommandQueue Queue;
-  Extent SlabExtent{ { 0, -1, 0, -1, 0, -1 } };
   Extent WholeExtent{ { 0, -1, 0, -1, 0, -1 } }; // of the output
-  std::vector<cl::Buffer> Arrays;
-  std::vector<std::size_t> TupleSizes;
-  cl::Buffer Coverage;
   cl::Buffer CoverageBits;
   bool BitsUsed = false;
   OutputWinners Winners;
@@ -129,8 +100,6 @@ private:
   std::size_t NumberOfListedPatches = 0;
   SectionCounters Counters;
   LargeCellList LargeCells; // at most 1 MB; GetMemory() does not count it
-  std::uint64_t NumberOfVoxels = 0;
-  PendingCopies Reads; // last member: copies end before buffers are deleted
 };
 
 } // namespace deformvolume

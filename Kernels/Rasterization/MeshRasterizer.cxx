@@ -7,16 +7,15 @@
 #include "HostMemory.h"
 #include "IndexBounds.h" // for GetOutputTransform
 #include "KernelMaking.h"
-#include "RasterTarget.h"
 #include "WorkDevice.h"
 
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <limits>
-#include <memory>
 
 namespace deformvolume
 {
@@ -174,7 +173,7 @@ void MeshRasterizer::CheckPositions() const
 }
 
 cl_uint MeshRasterizer::SetArguments(
-  const RasterParameters& p, const RasterTarget& target, const cl::Buffer& counters)
+  const RasterParameters& p, const OutputMemory& target, const cl::Buffer& counters)
 {
   const VolumeChunk& chunk = this->Volume->GetChunks().front();
   const DeviceMasks& masks = this->Volume->GetMasks();
@@ -183,7 +182,7 @@ cl_uint MeshRasterizer::SetArguments(
   const cl_uint parameters =
     deformvolume::SetArguments(this->Kernel, this->SetDeformationArguments(this->Kernel),
       p.HasActive ? chunk.Active : other, masks.GetBlanked(chunk, other),
-      masks.GetDistances(chunk, other), target.GetBackgrounds(), target.GetCoverage(), counters);
+      masks.GetDistances(chunk, other), this->Backgrounds, target.GetCoverage(), counters);
   cl_uint i = parameters + 1;
   for (std::size_t a = 0; a < chunk.Arrays.size(); ++a)
   {
@@ -192,7 +191,7 @@ cl_uint MeshRasterizer::SetArguments(
   return parameters;
 }
 
-void MeshRasterizer::RunTiles(RasterParameters p, const RasterTarget& target,
+void MeshRasterizer::RunTiles(RasterParameters p, const OutputMemory& target,
   const std::function<bool(double)>& progress, DeformReport& report)
 {
   const std::size_t tiles = static_cast<std::size_t>(p.TileCount[0]) *
@@ -244,6 +243,15 @@ void MeshRasterizer::Begin(const DeformRequest& request, const SlabPlan&, Deform
                 "allow that many bytes. Use the exact resampler or another device.");
   }
   this->Kernel = this->MakeKernel(request.Interpolation);
+  std::vector<cl_ulong> backgrounds;
+  for (const VolumeArray& array : this->Volume->GetArrays().Get())
+  {
+    const ElementBytes background = GetBackground(array);
+    std::memcpy(&backgrounds.emplace_back(), background.Bytes.data(), background.Size);
+  }
+  this->Backgrounds =
+    cl::Buffer(this->Device->GetContext().GetContext(), CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR,
+      backgrounds.size() * sizeof(cl_ulong), backgrounds.data());
   report.NumberOfFlatTetrahedra = this->NumberOfFlatTetrahedra;
 }
 
@@ -269,51 +277,30 @@ void MeshRasterizer::Make(
   report.MappingTime += watch.GetSeconds();
 
   watch = Stopwatch();
-  std::unique_ptr<RasterTarget>& target = this->Targets[plan.GetTarget(slab)];
-  if (target)
-  {
-    target->FinishReading();
-    target.reset();
-  }
+  OutputMemory& target = this->Targets[plan.GetTarget(slab)];
+  target.FinishReading();
   report.TransferTime += watch.GetSeconds();
 
   watch = Stopwatch();
-  target = std::make_unique<RasterTarget>(
-    this->Device->GetContext(), this->Volume->GetArrays().Get(), request, plan.Slabs[slab]);
+  target.Bind(
+    this->Device->GetContext(), request, this->Volume->GetArrays().Get(), plan.Slabs[slab]);
   const auto slabs = static_cast<double>(plan.Slabs.size());
   this->RunTiles(
-    p, *target,
+    p, target,
     [&](double done)
     { return !request.Progress || request.Progress((static_cast<double>(slab) + done) / slabs); },
     report);
   report.ResamplingTime += watch.GetSeconds();
 }
 
-void MeshRasterizer::Read(const DeformRequest&, std::size_t target)
-{
-  this->Targets[target]->Read(this->Device->GetReadQueue());
-}
-
-std::vector<std::shared_ptr<DeviceOutput>> MeshRasterizer::KeepOnDevice(
-  const DeformRequest&, std::size_t target)
-{
-  return this->Targets[target]->KeepOnDevice(this->Device->GetReadQueue());
-}
-
-void MeshRasterizer::FinishReading()
-{
-  for (const std::unique_ptr<RasterTarget>& target : this->Targets)
-  {
-    if (target)
-    {
-      target->FinishReading();
-    }
-  }
-}
-
 void MeshRasterizer::Finish() noexcept
 {
-  this->Targets = {};
+  for (OutputMemory& target : this->Targets)
+  {
+    target.Release();
+    target = OutputMemory();
+  }
+  this->Backgrounds = cl::Buffer();
   this->Kernel = cl::Kernel();
 }
 

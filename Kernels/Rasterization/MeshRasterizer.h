@@ -5,8 +5,8 @@
 #include "DeformRequest.h"
 #include "DisplacementField.h"
 #include "OpenCLContext.h"
+#include "OutputMemory.h"
 #include "RasterParameters.h"
-#include "RasterTarget.h"
 #include "SlabResampler.h"
 #include "Tetrahedron.h"
 #include "TetrahedronLists.h"
@@ -15,7 +15,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <vector>
 
 namespace deformvolume
@@ -64,10 +63,7 @@ public:
   void Begin(const DeformRequest& request, const SlabPlan& plan, DeformReport& report) override;
   void Make(const DeformRequest& request, const SlabPlan& plan, std::size_t slab,
     DeformReport& report) override;
-  void Read(const DeformRequest& request, std::size_t target) override;
-  std::vector<std::shared_ptr<DeviceOutput>> KeepOnDevice(
-    const DeformRequest& request, std::size_t target) override;
-  void FinishReading() override;
+  OutputMemory& GetTarget(std::size_t target) override { return this->Targets[target]; }
   void Finish() noexcept override;
 
   /// Returns the memory on the device, in bytes. GetMemoryNeeded estimates the memory of a
@@ -80,13 +76,13 @@ private:
   void CheckPositions() const;
   /// Makes a slab tile by tile from the lists. progress: called with the completed fraction; throws
   /// Aborted if it returns false.
-  void RunTiles(RasterParameters parameters, const RasterTarget& target,
+  void RunTiles(RasterParameters parameters, const OutputMemory& target,
     const std::function<bool(double)>& progress, DeformReport& report);
 
   cl::Kernel MakeKernel(Interpolation interpolation) const;
   /// Sets all arguments of the kernel except the parameters. Returns the index of the parameters.
   cl_uint SetArguments(
-    const RasterParameters& p, const RasterTarget& target, const cl::Buffer& counters);
+    const RasterParameters& p, const OutputMemory& target, const cl::Buffer& counters);
   /// Sets the first arguments. Returns their number.
   cl_uint SetDeformationArguments(cl::Kernel& kernel) const;
 
@@ -107,8 +103,11 @@ private:
   cl::Buffer FieldVectors;
   LookupParameters Field = {};
   cl::Kernel Kernel; // for the current output
+  /// Eight bytes for each array. The first of these bytes are the background value in the type of
+  /// the array.
+  cl::Buffer Backgrounds;
   /// With two targets, one slab is made while the other is copied to the caller.
-  std::array<std::unique_ptr<RasterTarget>, 2> Targets;
+  std::array<OutputMemory, 2> Targets;
 };
 
 } // namespace deformvolume

@@ -42,7 +42,7 @@ void ExactResampler::Make(
   target.Bind(this->Device.GetContext(), this->Device.GetQueue(), plan.Slabs[slab], request,
     this->Volume.GetArrays().Get(), this->Volume.GetVoxelGrid(),
     this->Volume.GetBricks().GetNumberOfBricks(), this->Launched.GetResamplingEvents());
-  target.Clear(this->Device.GetContext(), this->Volume.GetArrays().Get(),
+  target.Clear(this->Device.GetContext(),
     this->Exact.ChooseForm(request, target) == ResamplingForm::Columns,
     this->Launched.GetResamplingEvents());
   this->MakeExact(request, target, slab == 0, report);
@@ -126,8 +126,7 @@ void ExactResampler::MakeExact(
   {
     this->CountFolds(request, output);
   }
-  output.Complete(this->Device.GetContext(), this->Volume.GetArrays().Get(), false,
-    this->Launched.GetResamplingEvents());
+  output.Complete(this->Device.GetContext(), false, this->Launched.GetResamplingEvents());
   report.NumberOfCoveredVoxels +=
     static_cast<std::int64_t>(covered + this->Boundary.GetNumberOfCovered());
   if (isFirst)
@@ -201,44 +200,10 @@ void ExactResampler::CountFolds(const DeformRequest& request, OutputSlab& output
   this->Last = LastOutput::Unknown;
 }
 
-void ExactResampler::Read(const DeformRequest& request, std::size_t target)
-{
-  this->Targets[target].Read(
-    this->Device.GetReadQueue(), request, this->Targets[target].GetExtent());
-}
-
-std::vector<std::shared_ptr<DeviceOutput>> ExactResampler::KeepOnDevice(
-  const DeformRequest& request, std::size_t target)
-{
-  const OutputSlab& output = this->Targets[target];
-  return output.KeepOnDevice(this->Device.GetReadQueue(), request, this->Volume.GetArrays().Get(),
-    std::vector<Extent>(request.Outputs.size() + 1, output.GetExtent()));
-}
-
-std::vector<std::shared_ptr<DeviceOutput>> ExactResampler::KeepPartsOnDevice(
-  const DeformRequest& request, const std::vector<Extent>& parts)
-{
-  return this->Targets[0].KeepOnDevice(
-    this->Device.GetReadQueue(), request, this->Volume.GetArrays().Get(), parts);
-}
-
 std::uint64_t ExactResampler::CountCovered(const std::vector<std::uint32_t>& patches)
 {
   return this->Targets[0].CountCovered(
     this->Device.GetContext(), patches, this->Launched.GetResamplingEvents());
-}
-
-void ExactResampler::ReadPart(const DeformRequest& request, const Extent& part)
-{
-  this->Targets[0].Read(this->Device.GetReadQueue(), request, part);
-}
-
-void ExactResampler::FinishReading()
-{
-  for (OutputSlab& target : this->Targets)
-  {
-    target.FinishReading();
-  }
 }
 
 void ExactResampler::Finish() noexcept
@@ -252,8 +217,7 @@ void ExactResampler::Finish() noexcept
 bool ExactResampler::HoldsLastOutput(const DeformRequest& request)
 {
   return this->CanUpdateOutput() &&
-    this->Targets[0].HoldsLastOutput(
-      this->Device.GetContext(), request, this->Volume.GetArrays().Get());
+    this->Targets[0].HoldsLastOutput(this->Device.GetContext(), request);
 }
 
 std::optional<ExactResampler::UpdatedOutput> ExactResampler::UpdateOutput(
@@ -283,8 +247,7 @@ std::optional<ExactResampler::UpdatedOutput> ExactResampler::UpdateOutput(
     {
       this->Boundary.Run(request, output, &patches);
     }
-    output.Complete(this->Device.GetContext(), this->Volume.GetArrays().Get(), true,
-      this->Launched.GetResamplingEvents());
+    output.Complete(this->Device.GetContext(), true, this->Launched.GetResamplingEvents());
     this->Device.GetQueue().finish(); // the output is read in another queue
   };
   if (!won)

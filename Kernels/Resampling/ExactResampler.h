@@ -39,10 +39,7 @@ public:
   void Begin(const DeformRequest& request, const SlabPlan& plan, DeformReport& report) override;
   void Make(const DeformRequest& request, const SlabPlan& plan, std::size_t slab,
     DeformReport& report) override;
-  void Read(const DeformRequest& request, std::size_t target) override;
-  std::vector<std::shared_ptr<DeviceOutput>> KeepOnDevice(
-    const DeformRequest& request, std::size_t target) override;
-  void FinishReading() override;
+  OutputMemory& GetTarget(std::size_t target) override { return this->Targets[target]; }
   void Finish() noexcept override;
 
   /// Whether the last output was made in one slab from one chunk, so that UpdateOutput() can update
@@ -67,13 +64,6 @@ public:
     const std::vector<cl_uint>& bricks, const std::vector<std::uint32_t>& patches);
   /// Counts the covered voxels of some patches of the last output, on the device.
   std::uint64_t CountCovered(const std::vector<std::uint32_t>& patches);
-  /// Like KeepOnDevice(), but only a part of each array and of the coverage must be copied when it
-  /// is read.
-  std::vector<std::shared_ptr<DeviceOutput>> KeepPartsOnDevice(
-    const DeformRequest& request, const std::vector<Extent>& parts);
-  /// Begins to copy a part of the output to the memory of the request, like Read().
-  void ReadPart(const DeformRequest& request, const Extent& part);
-
   /// Returns the resampling at the boundary of the deformation mesh inside the volume.
   BoundaryCells& GetBoundary() { return this->Boundary; }
   const BoundaryCells& GetBoundary() const { return this->Boundary; }

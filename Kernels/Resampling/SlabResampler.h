@@ -4,9 +4,9 @@
 
 #include "DeformRequest.h"
 #include "Extent.h"
+#include "OutputMemory.h"
 
 #include <cstddef>
-#include <memory>
 #include <vector>
 
 namespace deformvolume
@@ -36,14 +36,14 @@ public:
   /// request.
   virtual void Make(
     const DeformRequest& request, const SlabPlan& plan, std::size_t slab, DeformReport& report) = 0;
-  /// Begins to copy a target to the memory of the request, in a separate queue. FinishReading() may
-  /// have to do the copy.
-  virtual void Read(const DeformRequest& request, std::size_t target) = 0;
-  /// Leaves a target, which must be the whole output, on the device.
-  virtual std::vector<std::shared_ptr<DeviceOutput>> KeepOnDevice(
-    const DeformRequest& request, std::size_t target) = 0;
-  /// Waits until all copies are finished. Throws cl::Error if a copy failed.
-  virtual void FinishReading() = 0;
+  /// Returns target 0 or 1.
+  virtual OutputMemory& GetTarget(std::size_t target) = 0;
+  /// Waits until all copies of targets are finished. Throws cl::Error if a copy failed.
+  void FinishReading()
+  {
+    this->GetTarget(0).FinishReading();
+    this->GetTarget(1).FinishReading();
+  }
   /// Waits in any case, also after a failure, and releases the memory of the request. Does not
   /// throw.
   virtual void Finish() noexcept = 0;
