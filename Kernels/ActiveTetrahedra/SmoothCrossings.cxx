@@ -172,27 +172,23 @@ void SmoothCrossings::SetBase(
 std::vector<std::size_t> SmoothCrossings::FindNeighbors(
   const std::vector<std::size_t>& bricks) const
 {
-  std::array<std::size_t, 3> count;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    count[axis] = static_cast<std::size_t>(
-      (this->Bricks.GetSize()[axis] + CellBricks::Length - 1) / CellBricks::Length);
-  }
   std::vector<std::size_t> found;
   for (const std::size_t brick : bricks)
   {
-    const std::array<std::size_t, 3> at{ { brick % count[0], brick / count[0] % count[1],
-      brick / count[0] / count[1] } };
-    for (std::size_t z = at[2] > 0 ? at[2] - 1 : 0; z <= std::min(at[2] + 1, count[2] - 1); ++z)
+    const Extent cells = this->Bricks.GetCells(brick);
+    Extent near; // the bricks on each axis
+    for (int axis = 0; axis < 3; ++axis)
     {
-      for (std::size_t y = at[1] > 0 ? at[1] - 1 : 0; y <= std::min(at[1] + 1, count[1] - 1); ++y)
-      {
-        for (std::size_t x = at[0] > 0 ? at[0] - 1 : 0; x <= std::min(at[0] + 1, count[0] - 1); ++x)
-        {
-          found.push_back((z * count[1] + y) * count[0] + x);
-        }
-      }
+      const int last = this->Bricks.GetSize()[axis] - 1;
+      near[2 * axis] = std::max(cells[2 * axis] - 1, 0) / CellBricks::Length;
+      near[2 * axis + 1] = std::min(cells[2 * axis + 1] + 1, last) / CellBricks::Length;
     }
+    ForEachPoint(near,
+      [&](int x, int y, int z)
+      {
+        constexpr int length = CellBricks::Length;
+        found.push_back(this->Bricks.FindBrick({ { x * length, y * length, z * length } }));
+      });
   }
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());

@@ -47,6 +47,22 @@ inline void Include(Extent& extent, const Extent& other)
   }
 }
 
+/// Calls body(x, y, z) for the points of an extent, x varying fastest.
+template <typename Body>
+void ForEachPoint(const Extent& extent, Body&& body)
+{
+  for (int z = extent[4]; z <= extent[5]; ++z)
+  {
+    for (int y = extent[2]; y <= extent[3]; ++y)
+    {
+      for (int x = extent[0]; x <= extent[1]; ++x)
+      {
+        body(x, y, z);
+      }
+    }
+  }
+}
+
 } // namespace deformvolume
 
 #endif

@@ -22,18 +22,11 @@ BoundaryDependencies FindBoundaryDependencies(
         subBricks.Cells[axis],
       0, subBricks.Count[axis] - 1);
   };
-  const auto getNumber = [&](int x, int y, int z)
-  {
-    return (static_cast<std::size_t>(z) * static_cast<std::size_t>(subBricks.Count[1]) +
-             static_cast<std::size_t>(y)) *
-      static_cast<std::size_t>(subBricks.Count[0]) +
-      static_cast<std::size_t>(x);
-  };
   std::vector<unsigned char> isNear(subBricks.GetNumberOfBricks());
   for (const std::int64_t cell : boundary.Near)
   {
     const std::int64_t size[2] = { GetSize(vertices, 0) - 1, GetSize(vertices, 1) - 1 };
-    isNear[getNumber(getIndex(0, static_cast<double>(cell % size[0])),
+    isNear[subBricks.GetNumber(getIndex(0, static_cast<double>(cell % size[0])),
       getIndex(1, static_cast<double>(cell / size[0] % size[1])),
       getIndex(2, static_cast<double>(cell / size[0] / size[1])))] = 1;
   }
@@ -41,8 +34,7 @@ BoundaryDependencies FindBoundaryDependencies(
   found.FieldPoints.resize(isField ? isNear.size() : 0, { { 0, -1, 0, -1, 0, -1 } });
   for (const MeshBoundary::Piece& piece : boundary.Pieces)
   {
-    int first[3];
-    int last[3];
+    Extent near;
     Extent points;
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
@@ -54,36 +46,31 @@ BoundaryDependencies FindBoundaryDependencies(
       // The margin of one cell covers the rounding of nodes. It also includes the crossed neighbor
       // of a cell that the piece moves, so that IncrementalUpdate::IsInside() is false if a piece
       // changes.
-      first[axis] = getIndex(static_cast<int>(axis), std::floor(rest.first - begin) - 1.0);
-      last[axis] = getIndex(static_cast<int>(axis), std::floor(rest.second - begin) + 1.0);
+      near[2 * axis] = getIndex(static_cast<int>(axis), std::floor(rest.first - begin) - 1.0);
+      near[2 * axis + 1] = getIndex(static_cast<int>(axis), std::floor(rest.second - begin) + 1.0);
       const auto indices = getEnds(piece.Weights, axis);
       points[2 * axis] = static_cast<int>(std::floor(indices.first));
       points[2 * axis + 1] = static_cast<int>(std::ceil(indices.second));
     }
-    for (int z = first[2]; z <= last[2]; ++z)
-    {
-      for (int y = first[1]; y <= last[1]; ++y)
+    ForEachPoint(near,
+      [&](int x, int y, int z)
       {
-        for (int x = first[0]; x <= last[0]; ++x)
+        const std::size_t subBrick = subBricks.GetNumber(x, y, z);
+        if (!isNear[subBrick])
         {
-          const std::size_t subBrick = getNumber(x, y, z);
-          if (!isNear[subBrick])
-          {
-            continue;
-          }
-          if (isField)
-          {
-            Include(found.FieldPoints[subBrick], points);
-            continue;
-          }
-          std::vector<std::int32_t>& list = found.Tetrahedra[subBrick];
-          if (list.empty() || list.back() != piece.Tetrahedron)
-          {
-            list.push_back(piece.Tetrahedron);
-          }
+          return;
         }
-      }
-    }
+        if (isField)
+        {
+          Include(found.FieldPoints[subBrick], points);
+          return;
+        }
+        std::vector<std::int32_t>& list = found.Tetrahedra[subBrick];
+        if (list.empty() || list.back() != piece.Tetrahedron)
+        {
+          list.push_back(piece.Tetrahedron);
+        }
+      });
   }
   return found;
 }

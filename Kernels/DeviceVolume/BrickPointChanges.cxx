@@ -141,14 +141,7 @@ BrickPoints BrickPoints::Join(const std::vector<std::vector<std::size_t>>& sets)
       Extent all{ { 0, -1, 0, -1, 0, -1 } };
       for (const std::size_t brick : bricks)
       {
-        const Extent& box = this->Boxes[brick];
-        const bool first = all[0] > all[1];
-        for (int axis = 0; axis < 3; ++axis)
-        {
-          all[2 * axis] = first ? box[2 * axis] : std::min(all[2 * axis], box[2 * axis]);
-          all[2 * axis + 1] =
-            first ? box[2 * axis + 1] : std::max(all[2 * axis + 1], box[2 * axis + 1]);
-        }
+        Include(all, this->Boxes[brick]);
       }
       joined.Boxes.push_back(all);
     }

@@ -32,24 +32,16 @@ std::vector<std::vector<CrossedCell>> FindCells(
   const MaskValues wanted{ crossed, DEFORMVOLUME_ALL_TETRAHEDRA, 0 };
   for (const Extent& box : FindMaskChanges(size, {}, wanted))
   {
-    for (int z = box[4]; z <= box[5]; ++z)
-    {
-      for (int y = box[2]; y <= box[3]; ++y)
+    ForEachPoint(box,
+      [&](int x, int y, int z)
       {
-        for (int x = box[0]; x <= box[1]; ++x)
+        const std::int64_t cell = (std::int64_t{ z } * size[1] + y) * size[0] + x;
+        const unsigned int crossedHere = wanted.Get(static_cast<std::size_t>(cell));
+        if (crossedHere != 0)
         {
-          const std::size_t cell =
-            (static_cast<std::size_t>(z) * static_cast<std::size_t>(size[1]) +
-              static_cast<std::size_t>(y)) *
-              static_cast<std::size_t>(size[0]) +
-            static_cast<std::size_t>(x);
-          if (wanted.Get(cell) != 0)
-          {
-            layers[static_cast<std::size_t>(z)].push_back({ x, y, wanted.Get(cell) });
-          }
+          layers[static_cast<std::size_t>(z)].push_back({ x, y, crossedHere });
         }
-      }
-    }
+      });
   }
   return layers;
 }

@@ -39,7 +39,7 @@ std::vector<cl_uint> VertexCuboids::Find(const std::vector<Extent>& boxes, int h
   std::vector<cl_uint> cuboids;
   for (const Extent& box : boxes)
   {
-    std::array<std::int64_t, 6> touched; // first and last cuboid on each axis
+    Extent touched; // first and last cuboid on each axis
     for (int axis = 0; axis < 3; ++axis)
     {
       const int first = std::max(box[2 * axis] - halo, this->First[axis]) - this->First[axis];
@@ -47,16 +47,9 @@ std::vector<cl_uint> VertexCuboids::Find(const std::vector<Extent>& boxes, int h
       touched[2 * axis] = first / Sizes[axis];
       touched[2 * axis + 1] = last < first ? touched[2 * axis] - 1 : last / Sizes[axis];
     }
-    for (std::int64_t z = touched[4]; z <= touched[5]; ++z)
-    {
-      for (std::int64_t y = touched[2]; y <= touched[3]; ++y)
-      {
-        for (std::int64_t x = touched[0]; x <= touched[1]; ++x)
-        {
-          cuboids.push_back(static_cast<cl_uint>((z * this->Count[1] + y) * this->Count[0] + x));
-        }
-      }
-    }
+    ForEachPoint(touched,
+      [&](int x, int y, int z)
+      { cuboids.push_back(static_cast<cl_uint>((z * this->Count[1] + y) * this->Count[0] + x)); });
   }
   std::sort(cuboids.begin(), cuboids.end());
   cuboids.erase(std::unique(cuboids.begin(), cuboids.end()), cuboids.end());

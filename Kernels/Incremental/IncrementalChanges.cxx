@@ -171,7 +171,7 @@ void IncrementalUpdate::AddMoved(const DisplacementBounds& after)
 template <typename Body>
 void IncrementalUpdate::ForSubBricks(const Extent& box, int more, int halo, Body&& body) const
 {
-  std::array<int, 6> subBricks; // first and last on each axis that may touch the box
+  Extent subBricks; // first and last on each axis that may touch the box
   for (int axis = 0; axis < 3; ++axis)
   {
     const auto find = [&](int vertex)
@@ -182,31 +182,22 @@ void IncrementalUpdate::ForSubBricks(const Extent& box, int more, int halo, Body
     subBricks[2 * axis] = find(box[2 * axis] - halo - 1);
     subBricks[2 * axis + 1] = find(box[2 * axis + 1] + more + halo);
   }
-  for (int z = subBricks[4]; z <= subBricks[5]; ++z)
-  {
-    for (int y = subBricks[2]; y <= subBricks[3]; ++y)
+  ForEachPoint(subBricks,
+    [&](int x, int y, int z)
     {
-      for (int x = subBricks[0]; x <= subBricks[1]; ++x)
+      const std::size_t subBrick = this->Grid.GetNumber(x, y, z);
+      const Extent region = this->Grid.GetVertices(subBrick, halo);
+      bool touches = true;
+      for (int axis = 0; axis < 3; ++axis)
       {
-        const std::size_t subBrick =
-          (static_cast<std::size_t>(z) * static_cast<std::size_t>(this->Grid.Count[1]) +
-            static_cast<std::size_t>(y)) *
-            static_cast<std::size_t>(this->Grid.Count[0]) +
-          static_cast<std::size_t>(x);
-        const Extent region = this->Grid.GetVertices(subBrick, halo);
-        bool touches = true;
-        for (int axis = 0; axis < 3; ++axis)
-        {
-          touches &=
-            box[2 * axis] <= region[2 * axis + 1] - more && box[2 * axis + 1] >= region[2 * axis];
-        }
-        if (touches)
-        {
-          body(subBrick);
-        }
+        touches &=
+          box[2 * axis] <= region[2 * axis + 1] - more && box[2 * axis + 1] >= region[2 * axis];
       }
-    }
-  }
+      if (touches)
+      {
+        body(subBrick);
+      }
+    });
 }
 
 void IncrementalUpdate::ChangeMask(const std::vector<Extent>& changes, bool ofCells)

@@ -148,17 +148,8 @@ public:
       glm::ivec3(number % blocks.x, number / blocks.x % blocks.y,
         number / (std::int64_t{ blocks.x } * blocks.y));
     const glm::ivec3 end = glm::min(first + BlockSize, this->Cells);
-    glm::ivec3 cell;
-    for (cell.z = first.z; cell.z < end.z; ++cell.z)
-    {
-      for (cell.y = first.y; cell.y < end.y; ++cell.y)
-      {
-        for (cell.x = first.x; cell.x < end.x; ++cell.x)
-        {
-          body(cell);
-        }
-      }
-    }
+    ForEachPoint({ { first.x, end.x - 1, first.y, end.y - 1, first.z, end.z - 1 } },
+      [&](int x, int y, int z) { body(glm::ivec3(x, y, z)); });
   }
 
   /// Returns the bounding box of a deformed cell, enlarged by a tolerance.

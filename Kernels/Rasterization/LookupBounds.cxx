@@ -77,20 +77,15 @@ public:
       return IndexBounds();
     }
     IndexBounds vectors;
-    for (int z = first.z; z <= last.z; ++z)
-    {
-      for (int y = first.y; y <= last.y; ++y)
+    ForEachPoint({ { first.x, last.x, first.y, last.y, first.z, last.z } },
+      [&](int x, int y, int z)
       {
-        for (int x = first.x; x <= last.x; ++x)
+        const glm::dvec3 vector = this->GetPoint(x, y, z);
+        if (IsFinite(vector)) // otherwise the point is undefined
         {
-          const glm::dvec3 vector = this->GetPoint(x, y, z);
-          if (IsFinite(vector)) // otherwise the point is undefined
-          {
-            vectors.Add(vector);
-          }
+          vectors.Add(vector);
         }
-      }
-    }
+      });
     if (hasBorder && IsFading(this->Field))
     {
       vectors.Add(glm::dvec3(0.0));

@@ -183,8 +183,7 @@ std::vector<cl_uint> BoundaryCells::ListTiles(
   {
     const int scaled[3] = { static_cast<int>(patch % across),
       static_cast<int>(patch / across % down), static_cast<int>(patch / across / down) };
-    int first[3];
-    int last[3];
+    Extent touched;
     for (int axis = 0; axis < 3; ++axis)
     {
       // Patches are numbered from the first voxel, tiles from index 0.
@@ -192,19 +191,12 @@ std::vector<cl_uint> BoundaryCells::ListTiles(
         r.TileFirst[axis] * TileSize[axis];
       const int size =
         std::min(DEFORMVOLUME_PATCH, r.OutputSize[axis] - scaled[axis] * DEFORMVOLUME_PATCH);
-      first[axis] = low / TileSize[axis];
-      last[axis] = (low + size - 1) / TileSize[axis];
+      touched[2 * axis] = low / TileSize[axis];
+      touched[2 * axis + 1] = (low + size - 1) / TileSize[axis];
     }
-    for (int z = first[2]; z <= last[2]; ++z)
-    {
-      for (int y = first[1]; y <= last[1]; ++y)
-      {
-        for (int x = first[0]; x <= last[0]; ++x)
-        {
-          wanted[static_cast<std::size_t>((z * r.TileCount[1] + y) * r.TileCount[0] + x)] = 1;
-        }
-      }
-    }
+    ForEachPoint(touched,
+      [&](int x, int y, int z)
+      { wanted[static_cast<std::size_t>((z * r.TileCount[1] + y) * r.TileCount[0] + x)] = 1; });
   }
   for (std::size_t tile = 0; tile < count; ++tile)
   {

@@ -48,6 +48,15 @@ struct BrickGrid
       static_cast<std::size_t>(this->Count[2]);
   }
 
+  /// Returns the number of a brick. x, y, z: its index on each axis.
+  std::size_t GetNumber(int x, int y, int z) const
+  {
+    return (static_cast<std::size_t>(z) * static_cast<std::size_t>(this->Count[1]) +
+             static_cast<std::size_t>(y)) *
+      static_cast<std::size_t>(this->Count[0]) +
+      static_cast<std::size_t>(x);
+  }
+
   /// Number of bricks above one another that AppendBricks() lists in succession. A work-item that
   /// processes them in succession computes the positions of the vertices between them only once.
   static constexpr int BricksInTurn = 2;

@@ -43,17 +43,6 @@ bool AreDifferent(
   return differences != 0;
 }
 
-void Add(Extent& box, int x, int y, int z)
-{
-  if (box[0] > box[1])
-  {
-    box = { { x, x, y, y, z, z } };
-    return;
-  }
-  box = { { std::min(box[0], x), std::max(box[1], x), std::min(box[2], y), std::max(box[3], y),
-    std::min(box[4], z), std::max(box[5], z) } };
-}
-
 // The row of cuboids along x at one y and z.
 class CuboidRow
 {
@@ -122,8 +111,7 @@ private:
       {
         --end;
       }
-      Add(this->Boxes[cuboid], first, y, z);
-      Add(this->Boxes[cuboid], end - 1, y, z);
+      Include(this->Boxes[cuboid], { { first, end - 1, y, y, z, z } });
     }
   }
 

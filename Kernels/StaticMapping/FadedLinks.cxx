@@ -199,48 +199,47 @@ void FadedLinks::FindBlocks(
     std::vector<std::int32_t> Faces;
     Extent Still{ { 0, -1, 0, -1, 0, -1 } };
   };
-  const auto count = [&](int axis) { return (GetSize(voxels, axis) + BlockSize - 1) / BlockSize; };
+  const auto count = [&](int axis)
+  { return static_cast<int>((GetSize(voxels, axis) + BlockSize - 1) / BlockSize); };
   std::vector<Layer> layers(static_cast<std::size_t>(count(2)));
-  const auto findBlock = [&](std::int64_t i, std::int64_t j, std::int64_t k, Layer& layer)
+  const auto findBlock = [&](const std::array<int, 3>& index, Layer& layer)
   {
     Block block;
     block.Voxels = Extent{ { 0, -1, 0, -1, 0, -1 } };
     block.GreatestWeight = 0.0;
     const std::size_t first = layer.Faces.size();
     std::int32_t last = -1;
-    const auto end = [&](std::int64_t blockIndex, int axis)
-    { return std::min((blockIndex + 1) * BlockSize, GetSize(voxels, axis)); };
-    for (std::int64_t z = k * BlockSize; z < end(k, 2); ++z)
+    Extent all;
+    for (int axis = 0; axis < 3; ++axis)
     {
-      for (std::int64_t y = j * BlockSize; y < end(j, 1); ++y)
-      {
-        for (std::int64_t x = i * BlockSize; x < end(i, 0); ++x)
-        {
-          const VertexLink& link = links[static_cast<std::size_t>(z * plane + y * size + x)];
-          if (link.Tetrahedron < still)
-          {
-            continue;
-          }
-          const int at[3] = { static_cast<int>(voxels[0] + x), static_cast<int>(voxels[2] + y),
-            static_cast<int>(voxels[4] + z) };
-          const Extent voxel{ { at[0], at[0], at[1], at[1], at[2], at[2] } };
-          if (link.Tetrahedron == still)
-          {
-            Include(layer.Still, voxel);
-            continue;
-          }
-          Include(block.Voxels, voxel);
-          const double weight =
-            double{ link.Weights[0] } + double{ link.Weights[1] } + double{ link.Weights[2] };
-          block.GreatestWeight = std::max(block.GreatestWeight, weight);
-          if (link.Tetrahedron != last)
-          {
-            last = link.Tetrahedron;
-            layer.Faces.push_back(last - still - 1);
-          }
-        }
-      }
+      all[2 * axis] = voxels[2 * axis] + index[axis] * BlockSize;
+      all[2 * axis + 1] = std::min(all[2 * axis] + BlockSize - 1, voxels[2 * axis + 1]);
     }
+    ForEachPoint(all,
+      [&](int x, int y, int z)
+      {
+        const VertexLink& link = links[static_cast<std::size_t>(
+          (z - voxels[4]) * plane + (y - voxels[2]) * size + x - voxels[0])];
+        if (link.Tetrahedron < still)
+        {
+          return;
+        }
+        const Extent voxel{ { x, x, y, y, z, z } };
+        if (link.Tetrahedron == still)
+        {
+          Include(layer.Still, voxel);
+          return;
+        }
+        Include(block.Voxels, voxel);
+        const double weight =
+          double{ link.Weights[0] } + double{ link.Weights[1] } + double{ link.Weights[2] };
+        block.GreatestWeight = std::max(block.GreatestWeight, weight);
+        if (link.Tetrahedron != last)
+        {
+          last = link.Tetrahedron;
+          layer.Faces.push_back(last - still - 1);
+        }
+      });
     if (layer.Faces.size() > first)
     {
       const auto begin = layer.Faces.begin() + static_cast<std::ptrdiff_t>(first);
@@ -253,16 +252,11 @@ void FadedLinks::FindBlocks(
   ParallelFor(0, count(2), 1,
     [&](std::int64_t begin, std::int64_t end)
     {
-      for (std::int64_t k = begin; k < end; ++k)
-      {
-        for (std::int64_t j = 0; j < count(1); ++j)
-        {
-          for (std::int64_t i = 0; i < count(0); ++i)
-          {
-            findBlock(i, j, k, layers[static_cast<std::size_t>(k)]);
-          }
-        }
-      }
+      ForEachPoint({ { 0, count(0) - 1, 0, count(1) - 1, static_cast<int>(begin),
+                     static_cast<int>(end) - 1 } },
+        [&](int i, int j, int k) {
+          findBlock({ { i, j, k } }, layers[static_cast<std::size_t>(k)]);
+        });
     });
   for (const Layer& layer : layers)
   {
