@@ -9,6 +9,7 @@
 
 #include <glm/common.hpp>
 #include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vector_relational.hpp>
@@ -51,6 +52,12 @@ struct IndexBounds
       this->Add(other.Max);
     }
   }
+  /// Whether the box contains another box. False if it is empty.
+  bool Contains(const IndexBounds& other) const
+  {
+    return !this->IsEmpty() && glm::all(glm::lessThanEqual(this->Min, other.Min)) &&
+      glm::all(glm::greaterThanEqual(this->Max, other.Max));
+  }
   /// Whether the boxes overlap. False if one of them is empty.
   bool Overlaps(const IndexBounds& other) const
   {
@@ -64,14 +71,30 @@ struct IndexBounds
 /// voxel, and their differences, then fit into 32 bits.
 inline constexpr double MostOutputIndex = 1 << 21;
 
+/// Returns the bounding box of the points of an extent, in continuous indices.
+inline IndexBounds GetBox(const Extent& extent)
+{
+  return { glm::dvec3(extent[0], extent[2], extent[4]),
+    glm::dvec3(extent[1], extent[3], extent[5]) };
+}
+
 /// Returns the bounding box of the volume, in continuous indices of the volume.
 inline IndexBounds GetBox(const VoxelGrid& voxelGrid)
 {
-  const Extent& extent = voxelGrid.VertexExtent;
-  IndexBounds box;
-  box.Min = glm::dvec3(extent[0], extent[2], extent[4]);
-  box.Max = glm::dvec3(extent[1], extent[3], extent[5]);
-  return box;
+  return GetBox(voxelGrid.VertexExtent);
+}
+
+/// Returns the bounding box of the eight transformed corners of a box.
+inline IndexBounds TransformBox(const glm::dmat4& transform, const IndexBounds& box)
+{
+  IndexBounds bounds;
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    const glm::dvec4 point((corner & 1) != 0 ? box.Max.x : box.Min.x,
+      (corner & 2) != 0 ? box.Max.y : box.Min.y, (corner & 4) != 0 ? box.Max.z : box.Min.z, 1.0);
+    bounds.Add(glm::dvec3(transform * point));
+  }
+  return bounds;
 }
 
 /// The transform VoxelGrid::ToOutput and its inverse, for points and boxes.

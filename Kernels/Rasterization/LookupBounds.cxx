@@ -23,12 +23,6 @@ constexpr int BlockSize = 8;
 /// A margin that is larger than any output, in steps between points of the field.
 constexpr double Infinity = 1e9;
 
-bool IsInside(const IndexBounds& bounds, const IndexBounds& box)
-{
-  return !bounds.IsEmpty() && glm::all(glm::greaterThanEqual(box.Min, bounds.Min)) &&
-    glm::all(glm::lessThanEqual(box.Max, bounds.Max));
-}
-
 /// Returns the voxels in a box.
 IndexBounds RoundToVoxels(const IndexBounds& box)
 {
@@ -72,7 +66,7 @@ public:
     bool hasBorder = false;
     IndexBounds box = this->GetBlock(first, last, hasBorder);
     // Most blocks are skipped before their vectors are read.
-    if (IsInside(known, RoundToVoxels(box)))
+    if (known.Contains(RoundToVoxels(box)))
     {
       return IndexBounds();
     }
@@ -175,7 +169,7 @@ void AddCovered(const Lookup& lookup, const IndexBounds& box, IndexBounds& bound
       const auto isKnown = [&](double x)
       {
         const glm::dvec3 voxel(x, y, z);
-        return IsInside(bounds, { voxel, voxel });
+        return bounds.Contains({ voxel, voxel });
       };
       double low = box.Min.x;
       while (low <= box.Max.x && !isKnown(low) && !lookup.IsCovered({ low, y, z }))
@@ -220,7 +214,7 @@ IndexBounds ComputeLookupBounds(const VoxelGrid& voxelGrid, const DisplacementFi
           const IndexBounds candidates = lookup.GetCandidates(
             { x, static_cast<int>(row % blocks.y), static_cast<int>(row / blocks.y) }, known);
           if (glm::all(glm::lessThanEqual(candidates.Min, candidates.Max)) &&
-            !IsInside(known, candidates))
+            !known.Contains(candidates))
           {
             AddCovered(lookup, candidates, known);
           }

@@ -279,8 +279,7 @@ IndexBounds FadedLinks::ComputeBounds(const VoxelGrid& voxelGrid,
   const OutputTransform transform = GetOutputTransform(voxelGrid);
   const auto move = [&](const Extent& voxels, double weight, const IndexBounds& displacement)
   {
-    IndexBounds moved = transform.ToOutput(IndexBounds{
-      glm::dvec3(voxels[0], voxels[2], voxels[4]), glm::dvec3(voxels[1], voxels[3], voxels[5]) });
+    IndexBounds moved = transform.ToOutput(GetBox(voxels));
     moved.Min += weight * displacement.Min;
     moved.Max += weight * displacement.Max;
     return moved;
@@ -314,9 +313,7 @@ IndexBounds FadedLinks::ComputeBounds(const VoxelGrid& voxelGrid,
   {
     // Most blocks do not enlarge the bounds, even with the largest displacements of all faces.
     const IndexBounds widest = move(block.Voxels, block.GreatestWeight, most);
-    const bool isInside = !bounds.IsEmpty() &&
-      glm::all(glm::greaterThanEqual(widest.Min, bounds.Min)) &&
-      glm::all(glm::lessThanEqual(widest.Max, bounds.Max));
+    const bool isInside = bounds.Contains(widest);
     IndexBounds displacement = none;
     for (std::size_t face = begin; face < block.FacesEnd && !isInside; ++face)
     {

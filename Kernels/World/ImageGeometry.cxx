@@ -2,6 +2,7 @@
 #include "ImageGeometry.h"
 
 #include "Error.h"
+#include "IndexBounds.h"
 #include "ParallelFor.h"
 
 #include <glm/common.hpp>
@@ -104,17 +105,9 @@ OutputMap GetOutputMap(const ImageGeometry& image, const ImageGeometry& output)
 
 double GetLargestCoordinate(const ImageGeometry& image)
 {
-  const Extent& extent = image.PointExtent;
-  const glm::dmat4 toWorld = image.GetIndexToWorld();
-  double largest = 0.0;
-  for (int corner = 0; corner < 8; ++corner)
-  {
-    const glm::dvec4 index(
-      extent[corner & 1], extent[2 + (corner >> 1 & 1)], extent[4 + (corner >> 2 & 1)], 1.0);
-    const glm::dvec3 position = glm::abs(glm::dvec3(toWorld * index));
-    largest = std::max({ largest, position.x, position.y, position.z });
-  }
-  return largest;
+  const IndexBounds box = TransformBox(image.GetIndexToWorld(), GetBox(image.PointExtent));
+  const glm::dvec3 largest = glm::max(glm::abs(box.Min), glm::abs(box.Max));
+  return std::max({ largest.x, largest.y, largest.z });
 }
 
 double GetSmallestSpacing(const ImageGeometry& image)
@@ -131,10 +124,8 @@ glm::dvec3 GetPositionsOrigin(const ImageGeometry& volume)
   {
     return glm::dvec3(0.0);
   }
-  const Extent& extent = volume.PointExtent;
-  const glm::dvec4 middle(0.5 * (extent[0] * 1.0 + extent[1]), 0.5 * (extent[2] * 1.0 + extent[3]),
-    0.5 * (extent[4] * 1.0 + extent[5]), 1.0);
-  return glm::dvec3(volume.GetIndexToWorld() * middle);
+  const IndexBounds box = GetBox(volume.PointExtent);
+  return glm::dvec3(volume.GetIndexToWorld() * glm::dvec4(0.5 * (box.Min + box.Max), 1.0));
 }
 
 void ComputeWorldPositions(

@@ -65,19 +65,15 @@ Extent GetExtentAround(const IndexBounds& bounds)
 
 IndexBounds GetVolumeBounds(const ImageGeometry& volume, const glm::dvec3& scale)
 {
+  const IndexBounds voxels = GetBox(volume.PointExtent);
   IndexBounds bounds;
-  for (int end = 0; end < 2; ++end)
-  {
-    bounds.Add(scale *
-      glm::dvec3(
-        volume.PointExtent[end], volume.PointExtent[2 + end], volume.PointExtent[4 + end]));
-  }
+  bounds.Add(scale * voxels.Min);
+  bounds.Add(scale * voxels.Max);
   return bounds;
 }
 
 IndexBounds GetWorldBoxBounds(const double* box, const ImageGeometry& image)
 {
-  const glm::dmat4 transform = image.GetWorldToIndex();
   IndexBounds bounds;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -89,14 +85,10 @@ IndexBounds GetWorldBoxBounds(const double* box, const ImageGeometry& image)
         std::to_string(box[2 * axis]) + " to " + std::to_string(box[2 * axis + 1]) +
         ". Set a minimum no greater than the maximum.");
     }
+    bounds.Min[axis] = box[2 * axis];
+    bounds.Max[axis] = box[2 * axis + 1];
   }
-  for (int corner = 0; corner < 8; ++corner)
-  {
-    const glm::dvec4 point(
-      box[corner & 1], box[2 + (corner >> 1 & 1)], box[4 + (corner >> 2 & 1)], 1.0);
-    bounds.Add(glm::dvec3(transform * point));
-  }
-  return bounds;
+  return TransformBox(image.GetWorldToIndex(), bounds);
 }
 
 Extent GetKept(const Extent& last, const Extent& needed, int granularity)

@@ -59,10 +59,9 @@ std::string SplitNodes::Describe(const float* displacements, const Extent& voxel
     split.Add(pair.Position);
     isTorn = isTorn || glm::distance(get(pair.First), get(pair.Second)) > 1.0;
   }
-  const glm::dvec3 first(voxels[0], voxels[2], voxels[4]);
-  const glm::dvec3 last(voxels[1], voxels[3], voxels[5]);
+  const IndexBounds box = GetBox(voxels);
   const bool isBetween =
-    glm::all(glm::lessThan(split.Min, last)) && glm::all(glm::greaterThan(split.Max, first));
+    glm::all(glm::lessThan(split.Min, box.Max)) && glm::all(glm::greaterThan(split.Max, box.Min));
   return isTorn && isBetween
     ? "The deformation mesh is split: nodes with one position at rest move more "
       "than an output voxel apart, and the volume is stretched over the gap."

@@ -3,13 +3,14 @@
 
 #include "Error.h"
 #include "ImageGeometry.h"
+#include "IndexBounds.h"
 #include "MeshAtRest.h"
 
 #include <glm/common.hpp>
+#include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vector_relational.hpp>
 
-#include <limits>
 #include <sstream>
 
 namespace deformvolume
@@ -18,84 +19,39 @@ namespace deformvolume
 namespace
 {
 
-struct Box
+IndexBounds GetWorldBox(const ImageGeometry& geometry)
 {
-  glm::dvec3 Least{ std::numeric_limits<double>::infinity() };
-  glm::dvec3 Most{ -std::numeric_limits<double>::infinity() };
-
-  void Add(const glm::dvec3& point)
-  {
-    this->Least = glm::min(this->Least, point);
-    this->Most = glm::max(this->Most, point);
-  }
-};
-
-Box GetIndexBox(const Extent& extent)
-{
-  Box box;
-  box.Add({ extent[0], extent[2], extent[4] });
-  box.Add({ extent[1], extent[3], extent[5] });
-  return box;
-}
-
-// transform: applied to the indices of the points.
-Box FindBox(const ImageGeometry& geometry, const glm::dmat4& transform)
-{
-  const Box indices = GetIndexBox(geometry.PointExtent);
-  Box box;
-  for (int corner = 0; corner < 8; ++corner)
-  {
-    glm::dvec3 index = indices.Least;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      index[axis] = (corner >> axis) % 2 == 0 ? indices.Least[axis] : indices.Most[axis];
-    }
-    box.Add(glm::dvec3(transform * glm::dvec4(index, 1.0)));
-  }
-  return box;
-}
-
-Box GetWorldBox(const ImageGeometry& geometry)
-{
-  return FindBox(geometry, geometry.GetIndexToWorld());
+  return TransformBox(geometry.GetIndexToWorld(), GetBox(geometry.PointExtent));
 }
 
 // Returns the box of the nodes that tetrahedra use. transform: applied to each node, in indices of
 // a volume.
-template <typename Function>
-Box FindBox(const MeshAtRest& mesh, const Function& transform)
+IndexBounds FindBox(const MeshAtRest& mesh, const glm::dmat4& transform = glm::dmat4(1.0))
 {
-  Box box;
+  IndexBounds box;
   for (const Tetrahedron& tetrahedron : mesh.Tetrahedra)
   {
     for (const std::int32_t node : tetrahedron)
     {
-      box.Add(transform(mesh.Points[static_cast<std::size_t>(node)]));
+      const glm::dvec4 point(mesh.Points[static_cast<std::size_t>(node)], 1.0);
+      box.Add(glm::dvec3(transform * point));
     }
   }
   return box;
 }
 
-// volume: that whose indices are the coordinates of the mesh.
-Box GetWorldBox(const MeshAtRest& mesh, const ImageGeometry& volume)
-{
-  const glm::dmat4 toWorld = volume.GetIndexToWorld();
-  return FindBox(
-    mesh, [&](const glm::dvec3& point) { return glm::dvec3(toWorld * glm::dvec4(point, 1.0)); });
-}
-
-std::string Describe(const Box& box)
+std::string Describe(const IndexBounds& box)
 {
   std::ostringstream text;
   for (int axis = 0; axis < 3; ++axis)
   {
-    text << (axis == 0 ? "" : ", ") << "xyz"[axis] << " from " << box.Least[axis] << " to "
-         << box.Most[axis];
+    text << (axis == 0 ? "" : ", ") << "xyz"[axis] << " from " << box.Min[axis] << " to "
+         << box.Max[axis];
   }
   return text.str();
 }
 
-std::string Describe(const char* what, const Box& box, const ImageGeometry& volume)
+std::string Describe(const char* what, const IndexBounds& box, const ImageGeometry& volume)
 {
   return std::string("The box of the ") + what + " is " + Describe(box) +
     ", and that of the volume " + Describe(GetWorldBox(volume)) +
@@ -105,14 +61,14 @@ std::string Describe(const char* what, const Box& box, const ImageGeometry& volu
 
 // Whether a box in indices of a volume is smaller than two voxels, and than a fourth of the volume,
 // on each axis.
-bool IsSmall(const Box& box, const ImageGeometry& volume)
+bool IsSmall(const IndexBounds& box, const ImageGeometry& volume)
 {
-  const Box voxels = GetIndexBox(volume.PointExtent);
-  const glm::dvec3 most = glm::min(glm::dvec3(2.0), 0.25 * (voxels.Most - voxels.Least));
-  return glm::all(glm::lessThan(box.Most - box.Least, most));
+  const IndexBounds voxels = GetBox(volume.PointExtent);
+  const glm::dvec3 most = glm::min(glm::dvec3(2.0), 0.25 * (voxels.Max - voxels.Min));
+  return glm::all(glm::lessThan(box.Max - box.Min, most));
 }
 
-std::string DescribeSmallness(const char* what, const Box& box, const ImageGeometry& volume)
+std::string DescribeSmallness(const char* what, const IndexBounds& box, const ImageGeometry& volume)
 {
   return std::string("The ") + what + " is smaller than two voxels of the volume on each axis. " +
     Describe(what, box, volume);
@@ -159,9 +115,9 @@ std::string DescribeRounding(const MeshAtRest& mesh, const ImageGeometry& volume
   {
     return "";
   }
-  const Box box = FindBox(mesh, [](const glm::dvec3& point) { return point; });
-  const Box voxels = GetIndexBox(volume.PointExtent);
-  const glm::dvec3 gaps[2] = { box.Least - voxels.Least, voxels.Most - box.Most };
+  const IndexBounds box = FindBox(mesh);
+  const IndexBounds voxels = GetBox(volume.PointExtent);
+  const glm::dvec3 gaps[2] = { box.Min - voxels.Min, voxels.Max - box.Max };
   bool isLost = false;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -178,13 +134,14 @@ std::string DescribeRounding(const MeshAtRest& mesh, const ImageGeometry& volume
 
 std::string DescribeSmallness(const ImageGeometry& field, const ImageGeometry& volume)
 {
-  const Box box = FindBox(field, volume.GetWorldToIndex() * field.GetIndexToWorld());
+  const IndexBounds box =
+    TransformBox(volume.GetWorldToIndex() * field.GetIndexToWorld(), GetBox(field.PointExtent));
   return IsSmall(box, volume) ? DescribeSmallness("field", GetWorldBox(field), volume) : "";
 }
 
 std::string DescribeSmallness(const MeshAtRest& mesh, const ImageGeometry& volume)
 {
-  Box box;
+  IndexBounds box;
   for (const Tetrahedron& tetrahedron : mesh.Tetrahedra)
   {
     for (const std::int32_t node : tetrahedron)
@@ -196,8 +153,8 @@ std::string DescribeSmallness(const MeshAtRest& mesh, const ImageGeometry& volum
       return ""; // mostly after a few tetrahedra
     }
   }
-  return box.Least.x <= box.Most.x ? DescribeSmallness("mesh", GetWorldBox(mesh, volume), volume)
-                                   : "";
+  return !box.IsEmpty() ? DescribeSmallness("mesh", FindBox(mesh, volume.GetIndexToWorld()), volume)
+                        : "";
 }
 
 std::string DescribeBoxes(const ImageGeometry& field, const ImageGeometry& volume)
@@ -207,20 +164,15 @@ std::string DescribeBoxes(const ImageGeometry& field, const ImageGeometry& volum
 
 void CheckBoxes(const MeshAtRest& mesh, const ImageGeometry& volume)
 {
-  const Box box = FindBox(mesh, [](const glm::dvec3& point) { return point; });
-  const Box voxels = GetIndexBox(volume.PointExtent);
-  for (int axis = 0; axis < 3; ++axis)
+  if (!FindBox(mesh).Overlaps(GetBox(volume.PointExtent)))
   {
-    if (box.Least[axis] > voxels.Most[axis] || box.Most[axis] < voxels.Least[axis])
-    {
-      throw Error(DescribeMiss(mesh, volume));
-    }
+    throw Error(DescribeMiss(mesh, volume));
   }
 }
 
 std::string DescribeMiss(const MeshAtRest& mesh, const ImageGeometry& volume)
 {
-  const Box box = GetWorldBox(mesh, volume);
+  const IndexBounds box = FindBox(mesh, volume.GetIndexToWorld());
   return "The deformation mesh at rest holds no voxel of the volume. " +
     Describe("mesh", box, volume) +
     " Check also that the deformation mesh or, where one is given, the rest configuration is "

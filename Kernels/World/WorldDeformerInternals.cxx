@@ -617,7 +617,7 @@ void WorldDeformer::Internals::Describe(
   else if (this->Outside.AreKept())
   {
     const Extent& moved = this->Field.IsInverse() ? whole : this->Volume->PointExtent;
-    warn(FindFaultOfFading(this->Field.Get(this->Outside), GetBox({ moved, {}, {} }),
+    warn(FindFaultOfFading(this->Field.Get(this->Outside), GetBox(moved),
       glm::abs(this->GetOutputGrid().Spacing), this->Outside.FadeDistance));
   }
   if (this->HasDensities())

@@ -83,17 +83,7 @@ CarvingTool GetInIndices(const CarvingTool& tool, const ImageGeometry& volume)
   moved.Bounds = GetUnlimitedBounds();
   if (IsFinite(tool.Bounds.Min) && IsFinite(tool.Bounds.Max))
   {
-    const glm::dmat4 toIndex = volume.GetWorldToIndex();
-    moved.Bounds = IndexBounds();
-    for (int corner = 0; corner < 8; ++corner)
-    {
-      glm::dvec4 point(0.0, 0.0, 0.0, 1.0);
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        point[axis] = corner >> axis & 1 ? tool.Bounds.Max[axis] : tool.Bounds.Min[axis];
-      }
-      moved.Bounds.Add(glm::dvec3(toIndex * point));
-    }
+    moved.Bounds = TransformBox(volume.GetWorldToIndex(), tool.Bounds);
     // Rounding must not exclude points on the bounds.
     constexpr double margin = 1e-3; // voxels
     moved.Bounds.Min -= glm::dvec3(margin);
