@@ -147,8 +147,9 @@ RestTetrahedron RunBuilder::MakeRest(std::int32_t tetrahedron, const glm::i64vec
   return rest;
 }
 
-std::vector<std::int64_t> RunBuilder::ChooseTiles(const TileGrid& tiles)
+std::vector<std::int64_t> RunBuilder::ChooseTiles() const
 {
+  const TetrahedronTiles& tiles = this->Linker.GetTiles();
   constexpr std::int64_t most = 16;
   const std::int64_t count[2] = { tiles.GetNumberOfTiles(0), tiles.GetNumberOfTiles(1) };
   const std::int64_t samples = std::min(most, tiles.GetNumberOfTiles());
@@ -169,24 +170,30 @@ std::vector<std::int64_t> RunBuilder::ChooseTiles(const TileGrid& tiles)
   return chosen;
 }
 
-std::vector<TileSample> RunBuilder::SampleTiles(const std::vector<std::int64_t>& tiles) const
+RunBuilder::Sample RunBuilder::SampleTiles() const
 {
-  std::vector<TileSample> samples(tiles.size());
-  ParallelFor(0, static_cast<std::int64_t>(tiles.size()), 1,
-    [&](std::int64_t begin, std::int64_t end)
+  const std::vector<std::int64_t> tiles = this->ChooseTiles();
+  std::vector<Sample> samples(tiles.size());
+  ParallelForParts(tiles.size(), 1,
+    [&](std::size_t i, std::size_t)
     {
-      for (std::int64_t i = begin; i < end; ++i)
-      {
-        const TileRuns made =
-          this->MakeTileRuns(tiles[i], this->Linker.GetTiles().GetVoxels(tiles[i]));
-        samples[i].Runs = static_cast<std::int64_t>(made.Runs.size());
-        samples[i].Rows = static_cast<std::int64_t>(made.RunsOfRow.size());
-        samples[i].RunsOfSlivers = std::count_if(made.Runs.begin(), made.Runs.end(),
+      const TileRuns made =
+        this->MakeTileRuns(tiles[i], this->Linker.GetTiles().GetVoxels(tiles[i]));
+      samples[i].Runs = static_cast<double>(made.Runs.size());
+      samples[i].Rows = static_cast<double>(made.RunsOfRow.size());
+      samples[i].RunsOfSlivers =
+        static_cast<double>(std::count_if(made.Runs.begin(), made.Runs.end(),
           [&](const VertexRun& run)
-          { return run.Tetrahedron >= 0 && this->IsSliver(run.Tetrahedron); });
-      }
+          { return run.Tetrahedron >= 0 && this->IsSliver(run.Tetrahedron); }));
     });
-  return samples;
+  Sample sum;
+  for (const Sample& sample : samples)
+  {
+    sum.Rows += sample.Rows;
+    sum.Runs += sample.Runs;
+    sum.RunsOfSlivers += sample.RunsOfSlivers;
+  }
+  return sum;
 }
 
 void RunBuilder::Append(const std::vector<TileRuns>& tiles, const VoxelBox& firstBox,

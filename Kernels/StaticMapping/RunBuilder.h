@@ -3,7 +3,6 @@
 #define DeformVolumeRunBuilder_h
 
 #include "Extent.h"
-#include "MappingSurvey.h"
 #include "Tetrahedron.h"
 #include "VertexRuns.h"
 #include "VoxelLinker.h"
@@ -27,10 +26,17 @@ public:
   RunBuilder(const VoxelLinker& linker, const Extent& voxels,
     const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra);
 
-  /// Chooses tiles for an estimate of the number of runs. The choice is deterministic.
-  static std::vector<std::int64_t> ChooseTiles(const TileGrid& tiles);
-  /// Counts the rows and runs of some tiles. Voxels outside the mesh form runs, too.
-  std::vector<TileSample> SampleTiles(const std::vector<std::int64_t>& tiles) const;
+  /// Counts of some tiles: their rows of voxels, the runs in these rows, and those of the runs that
+  /// are in slivers (LargestWeightVariation).
+  struct Sample
+  {
+    double Rows = 0.0;
+    double Runs = 0.0;
+    double RunsOfSlivers = 0.0;
+  };
+  /// Counts the rows and runs of a deterministic sample of tiles, for an estimate of the number of
+  /// runs. Voxels outside the mesh form runs, too.
+  Sample SampleTiles() const;
 
   /// Builds the runs of a part of the volume, which must have complete rows. numberOfInnerVoxels:
   /// returns the number of voxels with a tetrahedron. progress: called with the fraction done; it
@@ -48,6 +54,7 @@ private:
   };
   class Numbering;
 
+  std::vector<std::int64_t> ChooseTiles() const;
   /// box: the voxels of the tile.
   TileRuns MakeTileRuns(std::int64_t tile, const VoxelBox& box) const;
   void Append(const std::vector<TileRuns>& tiles, const VoxelBox& firstBox, Numbering& numbering,

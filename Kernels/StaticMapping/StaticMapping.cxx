@@ -45,26 +45,37 @@ StaticMappingBuilder::StaticMappingBuilder(const Extent& voxels, const glm::dvec
       (outside.AreKept() ? "kept" : "extrapolated") +
       ". Use StaticMappingForm::Links or StaticMappingForm::Automatic.");
   }
-  const std::int64_t size = GetNumberOfPoints(voxels);
-  if (size == 0)
+  if (GetNumberOfPoints(voxels) > 0)
   {
-    return;
+    this->Linker = std::make_unique<VoxelLinker>(this->Voxels, restPoints, tetrahedra);
+    this->RunBytes = this->EstimateRunBytes(form);
   }
-  this->Linker = std::make_unique<VoxelLinker>(this->Voxels, restPoints, tetrahedra);
-  const TetrahedronTiles& tiles = this->Linker->GetTiles();
-  this->Survey.Form = form;
-  this->Survey.NumberOfTetrahedra = static_cast<std::int64_t>(tetrahedra.size());
-  this->Survey.NumberOfFlatTetrahedra = tiles.GetNumberOfFlatTetrahedra();
-  this->Survey.NumberOfEntries = tiles.GetNumberOfEntries();
-  if (form != StaticMappingForm::Links && outside.AreDiscarded() && FitsRuns(voxels))
-  {
-    this->Survey.Samples = RunBuilder(*this->Linker, this->Voxels, restPoints, tetrahedra)
-                             .SampleTiles(RunBuilder::ChooseTiles(tiles));
-  }
-  this->RunBytes = this->Survey.GetRunBytes(voxels);
 }
 
 StaticMappingBuilder::~StaticMappingBuilder() = default;
+
+std::uint64_t StaticMappingBuilder::EstimateRunBytes(StaticMappingForm form) const
+{
+  if (form == StaticMappingForm::Links || !this->Outside.AreDiscarded() || !FitsRuns(this->Voxels))
+  {
+    return 0;
+  }
+  const RunBuilder::Sample sample =
+    RunBuilder(*this->Linker, this->Voxels, this->RestPoints, this->Tetrahedra).SampleTiles();
+  const std::int64_t allRows = GetSize(this->Voxels, 1) * GetSize(this->Voxels, 2);
+  const double factor = static_cast<double>(allRows) / sample.Rows;
+  const std::int64_t records = std::min(static_cast<std::int64_t>(this->Tetrahedra.size()),
+    this->Linker->GetTiles().GetNumberOfEntries());
+  const double meanLength =
+    sample.Rows * static_cast<double>(GetSize(this->Voxels, 0)) / sample.Runs;
+  const std::uint64_t bytes = deformvolume::GetRunBytes(
+    static_cast<std::uint64_t>(factor * sample.Runs), static_cast<std::uint64_t>(allRows),
+    static_cast<std::uint64_t>(records) +
+      static_cast<std::uint64_t>(factor * sample.RunsOfSlivers));
+  const bool worthwhile = meanLength >= LeastMeanRunLength &&
+    bytes < static_cast<std::uint64_t>(GetNumberOfPoints(this->Voxels)) * sizeof(VertexLink);
+  return worthwhile || form == StaticMappingForm::Runs ? bytes : 0;
+}
 
 bool StaticMappingBuilder::HoldsVoxels() const
 {
@@ -115,7 +126,7 @@ StaticMapping StaticMappingBuilder::Build(
   {
     mapping.Boundary = FindMeshBoundary(part, this->Voxels, this->RestPoints, this->Tetrahedra);
   }
-  mapping.NumberOfFlatTetrahedra = this->Survey.NumberOfFlatTetrahedra;
+  mapping.NumberOfFlatTetrahedra = this->Linker->GetTiles().GetNumberOfFlatTetrahedra();
   return mapping;
 }
 

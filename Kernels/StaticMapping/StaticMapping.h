@@ -5,7 +5,6 @@
 #include "DeformVolumeExport.h"
 #include "Extent.h"
 #include "FadedLinks.h"
-#include "MappingSurvey.h"
 #include "MeshBoundary.h"
 #include "OutsideVoxels.h"
 #include "Tetrahedron.h"
@@ -23,6 +22,24 @@ namespace deformvolume
 {
 
 class VoxelLinker;
+
+/// The form of a static mapping: a link for each voxel, or runs of voxels.
+enum class StaticMappingForm
+{
+  /// Runs if voxels outside the mesh are discarded, and if runs are long enough
+  /// (LeastMeanRunLength) and need less memory than links. Otherwise links. The lengths are
+  /// estimated from a deterministic sample of the volume.
+  Automatic,
+  /// A link for each voxel.
+  Links,
+  /// Runs. Only possible if voxels outside the mesh are discarded.
+  Runs
+};
+
+/// Least mean length of runs, in voxels, for which StaticMappingForm::Automatic chooses runs. With
+/// shorter runs, the search for the run of a voxel takes the time that is saved by less memory
+/// access.
+constexpr double LeastMeanRunLength = 3.0;
 
 /// The static part of the deformation mapping: the tetrahedron of the deformation mesh at rest that
 /// contains each voxel. It has one of two forms: links or runs.
@@ -89,6 +106,8 @@ public:
   StaticMapping Build(const Extent& part, const std::function<bool(double)>& progress = {}) const;
 
 private:
+  /// Estimates the bytes of the runs. 0 if links are chosen.
+  std::uint64_t EstimateRunBytes(StaticMappingForm form) const;
   void BuildLinks(
     const Extent& part, const std::function<void(double)>& report, StaticMapping& mapping) const;
 
@@ -97,7 +116,6 @@ private:
   const OutsideVoxels Outside;
   const std::vector<glm::dvec3>& RestPoints;
   const std::vector<Tetrahedron>& Tetrahedra;
-  MappingSurvey Survey;
   std::uint64_t RunBytes = 0;
   std::unique_ptr<VoxelLinker> Linker; // null for a volume without voxels
 };

@@ -2,11 +2,15 @@
 #include "TetrahedronTiles.h"
 
 #include "BarycentricMap.h"
+#include "CountedLists.h"
 #include "Error.h"
 #include "ParallelFor.h"
 
+#include <glm/common.hpp>
+
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 
 namespace deformvolume
 {
@@ -14,54 +18,39 @@ namespace deformvolume
 namespace
 {
 
-// Number of blocks into which `size` tetrahedra are divided. A thread processes one block at a
-// time.
-std::int64_t CountBlocks(std::int64_t size)
-{
-  return std::min<std::int64_t>(64, size);
-}
-
-// Calls body(block, begin, end) in parallel for the blocks of `size` tetrahedra.
-template <typename Body>
-void ForEachBlock(std::int64_t size, Body&& body)
-{
-  const std::int64_t blocks = CountBlocks(size);
-  ParallelFor(0, blocks, 1,
-    [&](std::int64_t begin, std::int64_t end)
-    {
-      for (std::int64_t block = begin; block < end; ++block)
-      {
-        body(block, size * block / blocks, size * (block + 1) / blocks);
-      }
-    });
-}
+// In voxels. Nodes farther away would overflow WideInteger, and their weights in single precision
+// would be meaningless.
+constexpr double LargestIndex = 2147483648.0;
 
 } // namespace
 
 TetrahedronTiles::TetrahedronTiles(const Extent& voxels, const std::vector<glm::dvec3>& restPoints,
   const std::vector<Tetrahedron>& tetrahedra, double margin)
-  : TileGrid(voxels)
+  : Voxels(voxels)
 {
+  this->ChooseSize();
   std::vector<Range> ranges(tetrahedra.size());
   std::atomic<std::int64_t> flat{ 0 };
   std::atomic<bool> beyondLimit{ false };
-  ForEachBlock(static_cast<std::int64_t>(tetrahedra.size()),
-    [&](std::int64_t, std::int64_t begin, std::int64_t end)
+  ParallelForParts(tetrahedra.size(), 4096,
+    [&](std::size_t begin, std::size_t end)
     {
-      std::int64_t flatInBlock = 0;
-      for (std::int64_t id = begin; id < end; ++id)
+      std::int64_t flatHere = 0;
+      for (std::size_t id = begin; id < end; ++id)
       {
-        const Positions positions = GetPositions(tetrahedra[id], restPoints);
+        const Tetrahedron& nodes = tetrahedra[id];
+        const Positions positions{ { restPoints[nodes[0]], restPoints[nodes[1]],
+          restPoints[nodes[2]], restPoints[nodes[3]] } };
         if (!IsWithinLimit(positions))
         {
           beyondLimit = true;
           continue;
         }
         BarycentricMap map;
-        flatInBlock += map.SetTetrahedron(tetrahedra[id], restPoints) ? 0 : 1;
+        flatHere += map.SetTetrahedron(nodes, restPoints) ? 0 : 1;
         ranges[id] = this->FindRange(positions, margin);
       }
-      flat += flatInBlock;
+      flat += flatHere;
     });
   if (beyondLimit)
   {
@@ -70,43 +59,105 @@ TetrahedronTiles::TetrahedronTiles(const Extent& voxels, const std::vector<glm::
       "volume. Check the units of the mesh and the spacing of the volume.");
   }
   this->FlatTetrahedra = flat;
-  this->MakeLists(ranges);
+  MakeLists(
+    static_cast<std::size_t>(this->GetNumberOfTiles()),
+    [&](const auto& take)
+    {
+      for (std::size_t id = 0; id < ranges.size(); ++id)
+      {
+        this->ForEachTile(ranges[id],
+          [&](std::int64_t tile)
+          { take(static_cast<std::size_t>(tile), static_cast<std::int32_t>(id)); });
+      }
+    },
+    this->Offsets, this->Bins);
 }
 
-void TetrahedronTiles::MakeLists(const std::vector<Range>& ranges)
+// The default size of tiles fits into the caches of a CPU. Large volumes have larger tiles, since
+// each tile needs memory.
+void TetrahedronTiles::ChooseSize()
 {
-  const std::int64_t tiles = this->GetNumberOfTiles();
-  const auto size = static_cast<std::int64_t>(ranges.size());
-  const auto forEachEntry = [&](auto&& body)
+  constexpr std::int64_t most = 16384;
+  const std::int64_t points[2] = { deformvolume::GetSize(this->Voxels, 1),
+    deformvolume::GetSize(this->Voxels, 2) };
+  while (true)
   {
-    ForEachBlock(size,
-      [&](std::int64_t block, std::int64_t begin, std::int64_t end)
-      {
-        for (std::int64_t i = begin; i < end; ++i)
-        {
-          this->ForEachTile(ranges[i], [&](std::int64_t tile) { body(block, i, tile); });
-        }
-      });
-  };
-  std::vector<std::vector<std::int64_t>> counts(
-    CountBlocks(size), std::vector<std::int64_t>(tiles, 0));
-  forEachEntry([&](std::int64_t block, std::int64_t, std::int64_t tile) { ++counts[block][tile]; });
-  this->Offsets.assign(tiles + 1, 0);
-  std::int64_t offset = 0;
-  for (std::int64_t tile = 0; tile < tiles; ++tile)
-  {
-    this->Offsets[tile] = offset;
-    for (auto& count : counts)
+    for (int axis = 0; axis < 2; ++axis)
     {
-      const std::int64_t number = count[tile];
-      count[tile] = offset;
-      offset += number;
+      this->Count[axis] = (points[axis] + this->Size[axis] - 1) / this->Size[axis];
+    }
+    if (this->GetNumberOfTiles() <= most)
+    {
+      return;
+    }
+    this->Size[this->Count[0] > this->Count[1] ? 0 : 1] *= 2;
+  }
+}
+
+bool TetrahedronTiles::IsWithinLimit(const Positions& nodes)
+{
+  return std::all_of(nodes.begin(), nodes.end(),
+    [](const glm::dvec3& point)
+    {
+      return std::abs(point.x) <= LargestIndex && std::abs(point.y) <= LargestIndex &&
+        std::abs(point.z) <= LargestIndex;
+    });
+}
+
+VoxelBox TetrahedronTiles::FindBox(const Positions& nodes, double margin) const
+{
+  const glm::dvec3 min =
+    glm::min(glm::min(nodes[0], nodes[1]), glm::min(nodes[2], nodes[3])) - margin;
+  const glm::dvec3 max =
+    glm::max(glm::max(nodes[0], nodes[1]), glm::max(nodes[2], nodes[3])) + margin;
+  VoxelBox box;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double first = static_cast<double>(this->Voxels[2 * axis]);
+    const double last = static_cast<double>(this->Voxels[2 * axis + 1]);
+    // Relative to the first voxel, so not negative: the conversion to an integer rounds down.
+    const double low = std::max(min[axis], first) - first;
+    const double high = std::min(max[axis], last) - first;
+    if (!(low <= high))
+    {
+      return VoxelBox();
+    }
+    const auto begin = static_cast<std::int64_t>(low);
+    box.Min[axis] = this->Voxels[2 * axis] + begin + (static_cast<double>(begin) < low ? 1 : 0);
+    box.Max[axis] = this->Voxels[2 * axis] + static_cast<std::int64_t>(high);
+  }
+  return box;
+}
+
+TetrahedronTiles::Range TetrahedronTiles::FindRange(const Positions& nodes, double margin) const
+{
+  Range range;
+  const VoxelBox box = this->FindBox(nodes, margin);
+  if (!box.IsEmpty())
+  {
+    const Rectangle tiles = this->GetTiles(box);
+    for (int axis = 0; axis < 2; ++axis)
+    {
+      range.Min[axis] = static_cast<std::int16_t>(tiles.Begin[axis]);
+      range.Max[axis] = static_cast<std::int16_t>(tiles.End[axis] - 1);
     }
   }
-  this->Offsets[tiles] = offset;
-  this->Bins.resize(offset);
-  forEachEntry([&](std::int64_t block, std::int64_t i, std::int64_t tile)
-    { this->Bins[counts[block][tile]++] = static_cast<std::int32_t>(i); });
+  return range;
+}
+
+VoxelBox TetrahedronTiles::GetVoxels(std::int64_t tile) const
+{
+  VoxelBox box;
+  box.Min[0] = this->Voxels[0];
+  box.Max[0] = this->Voxels[1];
+  const std::int64_t index[2] = { tile % this->Count[0], tile / this->Count[0] };
+  for (int axis = 0; axis < 2; ++axis)
+  {
+    box.Min[axis + 1] = this->Voxels[2 * axis + 2] + index[axis] * this->Size[axis];
+    box.Max[axis + 1] =
+      std::min<std::int64_t>(box.Min[axis + 1] + this->Size[axis] - 1, this->Voxels[2 * axis + 3]);
+  }
+  return box;
 }
 
 } // namespace deformvolume

@@ -4,19 +4,21 @@
 
 #include "Extent.h"
 #include "Tetrahedron.h"
-#include "TileGrid.h"
+#include "TetrahedronRaster.h" // for VoxelBox
 
 #include <glm/vec3.hpp>
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 namespace deformvolume
 {
 
-/// Lists of the tetrahedra in each tile of a volume. One thread links all voxels of a tile, so no
-/// locks are needed.
-class TetrahedronTiles : public TileGrid
+/// The division of a volume into tiles, and lists of the tetrahedra in each tile. A tile is a
+/// rectangle in y and z with complete rows of voxels along x. One thread links all voxels of a
+/// tile, so no locks are needed.
+class TetrahedronTiles
 {
 public:
   /// Sorts tetrahedra into tiles. A tetrahedron belongs to each tile with a voxel in its bounding
@@ -24,6 +26,31 @@ public:
   /// is more than 2^31 voxels away from index 0.
   TetrahedronTiles(const Extent& voxels, const std::vector<glm::dvec3>& restPoints,
     const std::vector<Tetrahedron>& tetrahedra, double margin);
+
+  std::int64_t GetNumberOfTiles() const { return this->Count[0] * this->Count[1]; }
+  /// Number of tiles on y (axis 0) and z (axis 1). Tile (y, z) has the number z * (tiles on y) + y.
+  std::int64_t GetNumberOfTiles(int axis) const { return this->Count[axis]; }
+  VoxelBox GetVoxels(std::int64_t tile) const;
+
+  /// A range of tiles on y (0) and z (1), from Begin to End - 1.
+  struct Rectangle
+  {
+    std::int64_t Begin[2];
+    std::int64_t End[2];
+  };
+  /// Returns the tiles that contain the voxels of a box. The box must lie within the volume.
+  Rectangle GetTiles(const VoxelBox& box) const
+  {
+    Rectangle tiles;
+    for (int axis = 0; axis < 2; ++axis)
+    {
+      const std::int64_t first = this->Voxels[2 * axis + 2];
+      tiles.Begin[axis] = (box.Min[axis + 1] - first) / this->Size[axis];
+      tiles.End[axis] = (box.Max[axis + 1] - first) / this->Size[axis] + 1;
+    }
+    return tiles;
+  }
+
   /// The tetrahedra of a tile, in ascending order.
   struct List
   {
@@ -45,9 +72,38 @@ public:
   std::int64_t GetNumberOfFlatTetrahedra() const { return this->FlatTetrahedra; }
 
 private:
-  /// ranges: the tiles of each tetrahedron.
-  void MakeLists(const std::vector<Range>& ranges);
+  using Positions = std::array<glm::dvec3, 4>;
+  /// Whether the nodes of a tetrahedron are at most 2^31 voxels away from index 0.
+  static bool IsWithinLimit(const Positions& nodes);
+  /// Returns the voxels of the volume in the bounding box of a tetrahedron, enlarged by a margin in
+  /// voxels. The nodes must be within the limit.
+  VoxelBox FindBox(const Positions& nodes, double margin) const;
 
+  /// A range of tiles on y (0) and z (1), from Min to Max. By default empty.
+  struct Range
+  {
+    std::int16_t Min[2] = { 0, 0 };
+    std::int16_t Max[2] = { -1, -1 };
+  };
+  /// Returns the tiles with voxels in the bounding box of a tetrahedron, enlarged by a margin.
+  Range FindRange(const Positions& nodes, double margin) const;
+  template <typename Body>
+  void ForEachTile(const Range& range, Body&& body) const
+  {
+    for (std::int64_t z = range.Min[1]; z <= range.Max[1]; ++z)
+    {
+      for (std::int64_t y = range.Min[0]; y <= range.Max[0]; ++y)
+      {
+        body(z * this->Count[0] + y);
+      }
+    }
+  }
+
+  void ChooseSize();
+
+  const Extent Voxels;
+  std::int64_t Size[2] = { 16, 16 };
+  std::int64_t Count[2] = { 0, 0 };
   // The tetrahedra of tile i are Bins[Offsets[i]] to Bins[Offsets[i + 1]].
   std::vector<std::int64_t> Offsets;
   std::vector<std::int32_t> Bins;
