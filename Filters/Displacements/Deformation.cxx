@@ -236,7 +236,7 @@ void Deformation::ReplaceVectors(std::size_t count, const VectorSource& read, do
   }
   this->ResizeVectors(all, blocks);
   this->VectorsAreWhole = false;
-  const VectorConversion conversion(GetToDisplacement(source, factor));
+  const glm::dmat3 toDisplacement = GetToDisplacement(source, factor);
   std::vector<std::atomic<bool>> changed(blocks);
   this->Faults.Resize(count);
   read(
@@ -250,10 +250,10 @@ void Deformation::ReplaceVectors(std::size_t count, const VectorSource& read, do
       {
         const std::size_t block = point / PointsPerBlock;
         const std::size_t some = std::min(end, (block + 1) * PointsPerBlock) - point;
-        const bool areNear = conversion.Convert(vectors, some, displacements.data());
+        const bool areNear = ConvertVectors(toDisplacement, vectors, some, displacements.data());
         for (std::size_t i = 0; i < some && !areNear; ++i)
         {
-          if (!conversion.Convert(vectors + i, 1, &displacements[3 * i]))
+          if (!ConvertVectors(toDisplacement, vectors + i, 1, &displacements[3 * i]))
           {
             std::fill_n(&displacements[3 * i], 3, 0.0F);
             this->Faults.Mark(static_cast<vtkIdType>(point + i), NodeFaults::TooFar);

@@ -23,22 +23,11 @@ DEFORMVOLUME_EXPORT glm::dmat3 GetToDisplacement(
 /// Throws an Error that says that a displacement is over LargestDisplacement.
 [[noreturn]] DEFORMVOLUME_EXPORT void ThrowTooFar();
 
-/// Converts vectors to displacements by a matrix.
-class DEFORMVOLUME_EXPORT VectorConversion
-{
-public:
-  /// toDisplacement: GetToDisplacement() of the volume.
-  explicit VectorConversion(const glm::dmat3& toDisplacement);
-
-  /// Converts `count` vectors to displacements of three floats each. Returns false if a
-  /// displacement is not finite or exceeds LargestDisplacement.
-  bool Convert(const glm::dvec3* vectors, std::size_t count, float* displacements) const;
-
-private:
-  glm::dmat3 Matrix;
-  glm::dvec3 Scaling;
-  bool IsScaling; // the matrix is diagonal
-};
+/// Converts `count` vectors to displacements of three floats each. toDisplacement:
+/// GetToDisplacement() of the volume. Returns false if a displacement is not finite or exceeds
+/// LargestDisplacement.
+DEFORMVOLUME_EXPORT bool ConvertVectors(const glm::dmat3& toDisplacement, const glm::dvec3* vectors,
+  std::size_t count, float* displacements);
 
 } // namespace deformvolume
 

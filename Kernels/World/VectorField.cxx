@@ -124,7 +124,7 @@ void VectorField::Convert(const ImageGeometry& volume, const OutputMap& toOutput
     taken = this->TakeVoxels(volume.PointExtent);
   }
   const std::size_t count = taken.empty() ? this->Vectors.Count : taken.size();
-  const VectorConversion conversion(GetToDisplacement(volume, toOutput, 1.0));
+  const glm::dmat3 toDisplacement = GetToDisplacement(volume, toOutput, 1.0);
   this->Displacements.resize(3 * count);
   std::atomic<std::size_t> notFinite{ this->Vectors.Count };
   std::atomic<bool> tooFar{ false };
@@ -141,7 +141,8 @@ void VectorField::Convert(const ImageGeometry& volume, const OutputMap& toOutput
           Lower(notFinite, point);
         }
       }
-      if (!conversion.Convert(vectors.data(), end - begin, &this->Displacements[3 * begin]))
+      if (!ConvertVectors(
+            toDisplacement, vectors.data(), end - begin, &this->Displacements[3 * begin]))
       {
         tooFar = true;
       }

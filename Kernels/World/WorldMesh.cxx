@@ -162,15 +162,16 @@ void WorldMesh::UpdateDisplacements(const OutputMap& toOutput)
   this->Displacements.resize(3 * (nodes + derived.GetCount()));
   NodeFaults faults = NodeFaults();
   faults.Resize(nodes);
-  const VectorConversion conversion(GetToDisplacement(this->Volume, toOutput, 1.0));
+  const glm::dmat3 toDisplacement = GetToDisplacement(this->Volume, toOutput, 1.0);
   ParallelForParts(nodes, NodesAtATime,
     [&](std::size_t begin, std::size_t end)
     {
       float* to = this->Displacements.data() + 3 * begin;
-      const bool areNear = conversion.Convert(&this->WorldVectors[begin], end - begin, to);
+      const bool areNear =
+        ConvertVectors(toDisplacement, &this->WorldVectors[begin], end - begin, to);
       for (std::size_t i = begin; i < end && !areNear; ++i)
       {
-        if (!conversion.Convert(&this->WorldVectors[i], 1, &this->Displacements[3 * i]))
+        if (!ConvertVectors(toDisplacement, &this->WorldVectors[i], 1, &this->Displacements[3 * i]))
         {
           std::fill_n(&this->Displacements[3 * i], 3, 0.0F);
           faults.Mark(static_cast<std::int64_t>(i), NodeFaults::TooFar);
