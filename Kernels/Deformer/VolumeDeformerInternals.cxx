@@ -2,13 +2,59 @@
 #include "VolumeDeformerInternals.h"
 
 #include "FieldParameters.h"
-#include "SlabLoop.h"
+#include "HostMemory.h"
 #include "SlabSizes.h"
 
 #include <algorithm>
 
 namespace deformvolume
 {
+
+namespace
+{
+
+// Makes the whole output of a request, in slabs that the device can allocate. Copies them to the
+// memory of the request, unless the output may stay on the device and has a single slab. spare:
+// device memory, in bytes, that may be used in addition to one slab.
+void MakeSlabs(SlabResampler& resampler, WorkDevice& device, const DeviceVolume& volume,
+  const DeformRequest& request, std::uint64_t spare, DeformReport& report)
+{
+  using Clock = std::chrono::steady_clock;
+  const std::vector<VolumeArray>& arrays = volume.GetArrays().Get();
+  SlabPlan plan;
+  plan.Slabs = SplitIntoSlabs(
+    request.OutputExtent, arrays, volume.GetVoxelGrid(), device.GetAllocationLimit());
+  const std::uint64_t bytes = GetOutputBytesPerVoxel(device.GetContext(), arrays, request) *
+    static_cast<std::uint64_t>(GetNumberOfPoints(plan.Slabs.front()));
+  const bool stays =
+    request.MayStayOnDevice && !device.GetDevice().IsProcessor && plan.Slabs.size() == 1;
+  // Staged copies are finished by the host, so they cannot overlap with the next slab.
+  plan.Overlapped =
+    bytes > 0 && plan.Slabs.size() > 1 && spare >= bytes && !device.GetContext().GetStagedCopies();
+  // Also after an exception, nothing may write to the memory of the request any more.
+  const SlabResampler::FinishGuard finish(resampler);
+  const QueueGuard reads(device.GetReadQueue());
+  resampler.Begin(request, plan, report);
+  for (std::size_t slab = 0; slab < plan.Slabs.size(); ++slab)
+  {
+    resampler.Make(request, plan, slab, report);
+    OutputMemory& target = resampler.GetTarget(plan.GetTarget(slab));
+    if (stays)
+    {
+      report.DeviceOutputs = target.KeepOnDevice(device.GetReadQueue());
+      continue;
+    }
+    const Clock::time_point begin = Clock::now();
+    target.Read(device.GetReadQueue(), target.GetExtent());
+    if (!plan.Overlapped || slab + 1 == plan.Slabs.size())
+    {
+      resampler.FinishReading();
+    }
+    report.TransferTime += std::chrono::duration<double>(Clock::now() - begin).count();
+  }
+}
+
+} // namespace
 
 VolumeDeformer::Internals::Parts::Parts(WorkDevice& device, MemoryBudget& budget,
   const VoxelGrid& voxelGrid, std::size_t bytesPerVoxel, bool withLinks)
