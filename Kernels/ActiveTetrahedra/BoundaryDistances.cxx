@@ -88,9 +88,4 @@ std::vector<std::size_t> BoundaryDistances::TakeChangedBricks()
   return this->Values.empty() ? std::vector<std::size_t>() : TakeMarked(this->Changed);
 }
 
-std::uint64_t BoundaryDistances::GetMemory() const
-{
-  return (this->Base.size() + this->Values.size()) * sizeof(float);
-}
-
 } // namespace deformvolume

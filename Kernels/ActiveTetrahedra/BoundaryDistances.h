@@ -46,9 +46,6 @@ public:
   /// call after a boundary was added returns all bricks.
   std::vector<std::size_t> TakeChangedBricks();
 
-  /// Returns the memory, in bytes.
-  std::uint64_t GetMemory() const;
-
 private:
   void UpdateBrick(std::size_t brick, const std::vector<const DistanceSet*>& sets);
 

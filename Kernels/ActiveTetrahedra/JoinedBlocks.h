@@ -80,11 +80,6 @@ public:
 
   /// Returns the number of blocks that were joined, a measure of the work for edits.
   std::uint64_t GetNumberOfJoins() const { return this->NumberOfJoins; }
-  /// Returns the memory of the blocks, in bytes.
-  std::uint64_t GetMemory() const
-  {
-    return this->Blocks.size() * (sizeof(Block) + sizeof(std::size_t));
-  }
 
 private:
   Join JoinValues;

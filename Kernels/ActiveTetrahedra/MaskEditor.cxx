@@ -209,23 +209,6 @@ std::vector<std::size_t> MaskEditor::TakeChangedBricks()
   return TakeMarked(this->Changed);
 }
 
-std::uint64_t MaskEditor::GetMemory() const
-{
-  std::uint64_t bytes = this->Mask.size() + this->Base.size() + this->Distances.GetMemory() +
-    this->Crossings.GetMemory() + this->Hits.GetMemory();
-  for (const std::list<Edit>* edits : { &this->Edits, &this->Undone })
-  {
-    for (const Edit& edit : *edits)
-    {
-      bytes += edit.Set.Bricks.size() * (sizeof(std::size_t) + sizeof(TetrahedronSet::Block)) +
-        edit.Distances.Bricks.size() * (sizeof(std::size_t) + sizeof(DistanceSet::Block)) +
-        edit.Crossings.Bricks.size() * (sizeof(std::size_t) + sizeof(CrossingSet::Block)) +
-        edit.Crossings.Distances.Bricks.size() * (sizeof(std::size_t) + sizeof(DistanceSet::Block));
-    }
-  }
-  return bytes;
-}
-
 bool MaskEditor::HasDistanceEdits() const
 {
   return std::any_of(this->Edits.begin(), this->Edits.end(),

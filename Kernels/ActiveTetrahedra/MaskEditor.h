@@ -105,9 +105,6 @@ public:
     return this->Hits.GetNumberOfJoins() + this->Crossings.GetNumberOfJoins();
   }
 
-  /// Returns the memory of the mask, the base and the edits, in bytes.
-  std::uint64_t GetMemory() const;
-
 private:
   struct Edit
   {

@@ -304,12 +304,4 @@ std::vector<std::size_t> SmoothCrossings::TakeChangedVertexBricks()
   return this->Crossed.empty() ? std::vector<std::size_t>() : TakeMarked(this->ChangedVertices);
 }
 
-std::uint64_t SmoothCrossings::GetMemory() const
-{
-  return this->Crossed.size() + this->SwitchedOff.size() + this->Distances.size() * sizeof(float) +
-    this->Base.Bricks.size() * sizeof(CrossingSet::Block) + this->Cells.GetMemory() +
-    this->VertexDistances.GetMemory() +
-    this->Base.Distances.Bricks.size() * sizeof(DistanceSet::Block);
-}
-
 } // namespace deformvolume

@@ -72,9 +72,6 @@ public:
   std::vector<std::size_t> TakeChangedVertexBricks();
   ///@}
 
-  /// Returns the memory, in bytes.
-  std::uint64_t GetMemory() const;
-
 private:
   void Allocate();
   std::vector<std::size_t> FindNeighbors(const std::vector<std::size_t>& bricks) const;

@@ -87,12 +87,6 @@ void CheckRuns(const VertexRuns& runs, const VoxelGrid& voxelGrid, std::size_t n
         " voxels on an axis cannot be mapped by runs: at most 16777216 are possible. Use links.");
     }
   }
-  CheckRuns(runs, rows, GetSize(extent, 0), numberOfTetrahedra);
-}
-
-void CheckRuns(
-  const VertexRuns& runs, std::size_t rows, std::int64_t rowSize, std::size_t numberOfTetrahedra)
-{
   if (runs.RowBegins.size() != rows + 1 || runs.RowBegins.front() != 0 ||
     runs.RowBegins.back() != runs.Runs.size())
   {
@@ -103,7 +97,7 @@ void CheckRuns(
   CheckRecords(runs, numberOfTetrahedra);
   for (std::size_t row = 0; row < rows; ++row)
   {
-    CheckRow(runs, row, rowSize);
+    CheckRow(runs, row, GetSize(extent, 0));
   }
 }
 

@@ -83,9 +83,6 @@ DEFORMVOLUME_EXPORT std::uint64_t GetBytes(const VertexRuns& runs);
 /// runs and records refer to records and tetrahedra that exist.
 DEFORMVOLUME_EXPORT void CheckRuns(
   const VertexRuns& runs, const VoxelGrid& voxelGrid, std::size_t numberOfTetrahedra);
-/// The overload for `rows` rows of `rowSize` voxels.
-void CheckRuns(
-  const VertexRuns& runs, std::size_t rows, std::int64_t rowSize, std::size_t numberOfTetrahedra);
 
 } // namespace deformvolume
 
