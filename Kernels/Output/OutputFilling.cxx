@@ -21,7 +21,8 @@ cl::Kernel MakeKernel(OpenCLContext& context, const std::string& name, const Ele
   return kernel;
 }
 
-/// Launches a work-group for each listed patch, with a work-item for each row of the patch.
+} // namespace
+
 void LaunchPatches(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Kernel& kernel,
   std::size_t count, std::vector<cl::Event>& events)
 {
@@ -29,8 +30,6 @@ void LaunchPatches(OpenCLContext& context, const cl::CommandQueue& queue, const 
   events.push_back(context.Launch(queue, kernel, cl::NDRange(group * count), cl::NDRange(group)));
 }
 
-/// Launches a kernel whose work-items process memory in steps of `step` elements. There are no more
-/// work-items than a device executes at once: starting a work-item takes longer than a step.
 void LaunchSteps(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Kernel& kernel,
   std::uint64_t size, std::uint64_t step, std::vector<cl::Event>& events)
 {
@@ -39,8 +38,6 @@ void LaunchSteps(OpenCLContext& context, const cl::CommandQueue& queue, const cl
   LaunchBusyItems(context, queue, kernel,
     static_cast<std::size_t>(std::min(steps, context.GetNumberOfUnits() * itemsOfUnit)), events);
 }
-
-} // namespace
 
 ElementBytes GetBackground(const VolumeArray& array)
 {
@@ -61,11 +58,6 @@ void LaunchBusyItems(OpenCLContext& context, const cl::CommandQueue& queue,
   const std::size_t group = context.GetDevice().HasVectors ? 1 : 64;
   events.push_back(context.Launch(
     queue, kernel, cl::NDRange((items + group - 1) / group * group), cl::NDRange(group)));
-}
-
-cl_uint GetCountedVoxels(const OpenCLContext& context)
-{
-  return context.GetDevice().HasVectors ? 4096 : 128;
 }
 
 void LaunchSmallItems(OpenCLContext& context, const cl::CommandQueue& queue,
@@ -117,42 +109,6 @@ void FillPatches(OpenCLContext& context, const cl::CommandQueue& queue, const cl
   SetArguments(kernel, 0, buffer, static_cast<cl_uint>(elements));
   SetArguments(kernel, 3, patches, parameters);
   LaunchPatches(context, queue, kernel, count, events);
-}
-
-void CountCoveredInPatches(OpenCLContext& context, const cl::CommandQueue& queue,
-  const cl::Buffer& coverage, const cl::Buffer& patches, std::size_t count,
-  const KernelParameters& parameters, const cl::Buffer& sums, std::vector<cl::Event>& events)
-{
-  LaunchBusyItems(context, queue,
-    MakeKernel(GetOutputProgram(context), "CountCoveredInPatches", coverage, patches,
-      static_cast<cl_uint>(count), sums, parameters),
-    count, events);
-}
-
-void ExpandCoverage(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& bits,
-  const cl::Buffer& coverage, std::uint64_t voxels, std::vector<cl::Event>& events)
-{
-  LaunchSteps(context, queue,
-    MakeKernel(GetOutputProgram(context), "ExpandCoverage", bits, coverage, cl_ulong{ voxels }),
-    voxels, DEFORMVOLUME_EXPANDED, events);
-}
-
-void ExpandPatches(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& bits,
-  const cl::Buffer& coverage, const cl::Buffer& patches, std::size_t count,
-  const KernelParameters& parameters, std::vector<cl::Event>& events)
-{
-  LaunchPatches(context, queue,
-    MakeKernel(GetOutputProgram(context), "ExpandPatches", bits, coverage, patches, parameters),
-    count, events);
-}
-
-void ClearPatchBits(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& bits,
-  const cl::Buffer& patches, std::size_t count, const KernelParameters& parameters,
-  std::vector<cl::Event>& events)
-{
-  LaunchPatches(context, queue,
-    MakeKernel(GetOutputProgram(context), "ClearPatchBits", bits, patches, parameters), count,
-    events);
 }
 
 void FillUncovered(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& buffer,

@@ -43,9 +43,15 @@ void LaunchBusyItems(OpenCLContext& context, const cl::CommandQueue& queue,
 void LaunchSmallItems(OpenCLContext& context, const cl::CommandQueue& queue,
   const cl::Kernel& kernel, std::uint64_t items, std::vector<cl::Event>& events);
 
-/// Returns the number of voxels for each work-item of the kernel CountCovered: many if a work-item
-/// has a thread of its own, fewer if the device executes thousands of work-items at once.
-cl_uint GetCountedVoxels(const OpenCLContext& context);
+/// Launches a work-group for each of `count` listed patches (see IncrementalUpdate::Plan), with a
+/// work-item for each row of the patch.
+void LaunchPatches(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Kernel& kernel,
+  std::size_t count, std::vector<cl::Event>& events);
+
+/// Launches a kernel whose work-items process memory in steps of `step` elements. There are no more
+/// work-items than a device executes at once: starting a work-item takes longer than a step.
+void LaunchSteps(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Kernel& kernel,
+  std::uint64_t size, std::uint64_t step, std::vector<cl::Event>& events);
 
 /// Fills a buffer of `size` elements by a kernel (see OutputClearing.cl).
 void Fill(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& buffer,
@@ -57,26 +63,10 @@ void FillPatches(OpenCLContext& context, const cl::CommandQueue& queue, const cl
   const ElementBytes& value, std::size_t elements, const cl::Buffer& patches, std::size_t count,
   const KernelParameters& parameters, std::vector<cl::Event>& events);
 
-/// Writes the number of covered voxels of each of `count` patches to `sums`, as uints.
-void CountCoveredInPatches(OpenCLContext& context, const cl::CommandQueue& queue,
-  const cl::Buffer& coverage, const cl::Buffer& patches, std::size_t count,
-  const KernelParameters& parameters, const cl::Buffer& sums, std::vector<cl::Event>& events);
-
-///@{
-/// For coverage stored as bits: expands the bits of all voxels or of patches to bytes, clears the
-/// bits of patches, or fills the voxels of an array that are not covered.
-void ExpandCoverage(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& bits,
-  const cl::Buffer& coverage, std::uint64_t voxels, std::vector<cl::Event>& events);
-void ExpandPatches(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& bits,
-  const cl::Buffer& coverage, const cl::Buffer& patches, std::size_t count,
-  const KernelParameters& parameters, std::vector<cl::Event>& events);
-void ClearPatchBits(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& bits,
-  const cl::Buffer& patches, std::size_t count, const KernelParameters& parameters,
-  std::vector<cl::Event>& events);
+/// For coverage stored as bits: fills the voxels of an array that are not covered.
 void FillUncovered(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& buffer,
   const ElementBytes& value, std::uint64_t voxels, std::size_t elements, const cl::Buffer& bits,
   std::vector<cl::Event>& events);
-///@}
 
 } // namespace deformvolume
 

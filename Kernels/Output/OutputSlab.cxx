@@ -65,8 +65,10 @@ void OutputSlab::PrepareUpdate(OpenCLContext& context, const cl::CommandQueue& q
   }
   if (this->BitsUsed && !part.Patches.empty())
   {
-    ClearPatchBits(
-      context, queue, this->CoverageBits, this->PatchList, part.Patches.size(), p, events);
+    LaunchPatches(context, queue,
+      MakeKernel(
+        GetOutputProgram(context), "ClearPatchBits", this->CoverageBits, this->PatchList, p),
+      part.Patches.size(), events);
   }
   if (withWinners)
   {
@@ -127,15 +129,19 @@ void OutputSlab::ExpandCoverage(
 {
   if (!isUpdate)
   {
-    deformvolume::ExpandCoverage(context, this->Queue, this->CoverageBits, this->GetCoverage(),
-      this->GetNumberOfVoxels(), events);
+    LaunchSteps(context, this->Queue,
+      MakeKernel(GetOutputProgram(context), "ExpandCoverage", this->CoverageBits,
+        this->GetCoverage(), cl_ulong{ this->GetNumberOfVoxels() }),
+      this->GetNumberOfVoxels(), DEFORMVOLUME_EXPANDED, events);
   }
   else if (this->NumberOfListedPatches > 0)
   {
     KernelParameters p = {};
     this->SetParameters(p);
-    ExpandPatches(context, this->Queue, this->CoverageBits, this->GetCoverage(), this->PatchList,
-      this->NumberOfListedPatches, p, events);
+    LaunchPatches(context, this->Queue,
+      MakeKernel(GetOutputProgram(context), "ExpandPatches", this->CoverageBits,
+        this->GetCoverage(), this->PatchList, p),
+      this->NumberOfListedPatches, events);
   }
 }
 
@@ -175,7 +181,8 @@ std::uint64_t OutputSlab::CountCovered(WorkDevice& device, std::vector<cl::Event
     return this->ReadCounts(device, true, events).Covered;
   }
   OpenCLContext& context = device.GetContext();
-  const cl_uint voxelsOfItem = GetCountedVoxels(context);
+  // Many if a work-item has a thread of its own, fewer if the device executes thousands at once.
+  const cl_uint voxelsOfItem = context.GetDevice().HasVectors ? 4096 : 128;
   const std::uint64_t items = (this->GetNumberOfVoxels() + voxelsOfItem - 1) / voxelsOfItem;
   const cl::Buffer sums(context.GetContext(), CL_MEM_WRITE_ONLY, items * sizeof(cl_uint));
   const cl::Kernel kernel = MakeKernel(GetOutputProgram(context), "CountCovered",
@@ -195,8 +202,10 @@ std::uint64_t OutputSlab::CountCovered(
   const cl::Buffer sums(context.GetContext(), CL_MEM_WRITE_ONLY, patches.size() * sizeof(cl_uint));
   KernelParameters p = {};
   this->SetParameters(p);
-  CountCoveredInPatches(
-    context, this->Queue, this->GetCoverage(), this->PatchList, patches.size(), p, sums, events);
+  LaunchBusyItems(context, this->Queue,
+    MakeKernel(GetOutputProgram(context), "CountCoveredInPatches", this->GetCoverage(),
+      this->PatchList, static_cast<cl_uint>(patches.size()), sums, p),
+    patches.size(), events);
   return ReadSum(this->Queue, sums, patches.size());
 }
 
