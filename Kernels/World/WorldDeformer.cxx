@@ -8,7 +8,6 @@
 #include "MeshBounds.h"
 #include "OutputExtent.h"
 #include "WorldBoxes.h"
-#include "WorldDeformerInternals.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,32 +15,28 @@
 namespace deformvolume
 {
 
-WorldDeformer::WorldDeformer()
-  : Impl(std::make_unique<Internals>())
-{
-}
-
+WorldDeformer::WorldDeformer() = default;
 WorldDeformer::~WorldDeformer() = default;
 
 std::string WorldDeformer::SetDevice(const std::string& request)
 {
-  const std::string name = this->Impl->Deformer.SetDevice(request);
-  this->Impl->DeviceRequest = request;
+  const std::string name = this->Deformer.SetDevice(request);
+  this->DeviceRequest = request;
   return name;
 }
 
 void WorldDeformer::SetMemoryLimit(std::uint64_t bytes)
 {
-  this->Impl->Deformer.SetMemoryLimit(bytes);
+  this->Deformer.SetMemoryLimit(bytes);
 }
 
 void WorldDeformer::SetVolume(const ImageGeometry& volume)
 {
   CheckVolume(volume);
   GetPadded(volume.PointExtent, 0); // checks the size
-  if (this->Impl->Volume != volume)
+  if (this->Volume != volume)
   {
-    this->Impl->Volume = volume;
+    this->Volume = volume;
     this->SetArrays({});
     this->SetMasks({});
   }
@@ -58,48 +53,48 @@ void WorldDeformer::SetArrays(const std::vector<WorldArray>& arrays)
         "one of both.");
     }
   }
-  this->Impl->Arrays = arrays;
-  this->Impl->DensityCopies.clear();
-  ++this->Impl->ArraysVersion;
+  this->Arrays = arrays;
+  this->DensityCopies.clear();
+  ++this->ArraysVersion;
 }
 
 void WorldDeformer::SetMasks(const WorldMasks& masks)
 {
-  this->Impl->Masks = masks;
-  ++this->Impl->MasksVersion;
+  this->Masks = masks;
+  ++this->MasksVersion;
 }
 
 void WorldDeformer::SetMesh(const VectorView& points, MeshCells&& cells)
 {
-  this->Impl->Mesh.Set(points, std::move(cells));
-  this->Impl->Deformation = Internals::Deformations::Mesh;
+  this->Mesh.Set(points, std::move(cells));
+  this->Deformation = Deformations::Mesh;
 }
 
 void WorldDeformer::SetNodeVectors(const VectorView& vectors)
 {
-  if (this->Impl->Deformation != Internals::Deformations::Mesh)
+  if (this->Deformation != Deformations::Mesh)
   {
     throw Error("There is no deformation mesh. Set one before its displacements.");
   }
-  this->Impl->Mesh.SetVectors(vectors);
+  this->Mesh.SetVectors(vectors);
 }
 
 void WorldDeformer::SetField(const ImageGeometry& grid, const VectorView& vectors, bool isInverse)
 {
-  this->Impl->Field.Set(grid, vectors, isInverse);
-  this->Impl->Deformation = Internals::Deformations::Field;
+  this->Field.Set(grid, vectors, isInverse);
+  this->Deformation = Deformations::Field;
 }
 
 void WorldDeformer::SetField(
   const ImageGeometry& grid, const std::shared_ptr<DeviceVectors>& vectors)
 {
-  this->Impl->Field.Set(grid, vectors);
-  this->Impl->Deformation = Internals::Deformations::Field;
+  this->Field.Set(grid, vectors);
+  this->Deformation = Deformations::Field;
 }
 
 void WorldDeformer::SetOutside(const OutsideVoxels& outside)
 {
-  this->Impl->Outside = outside;
+  this->Outside = outside;
 }
 
 void WorldDeformer::SetReference(const std::optional<ImageGeometry>& reference)
@@ -114,7 +109,7 @@ void WorldDeformer::SetReference(const std::optional<ImageGeometry>& reference)
     CheckTransform(*reference, "the reference grid");
     GetPadded(reference->PointExtent, 0); // checks the size
   }
-  this->Impl->Reference = reference;
+  this->Reference = reference;
 }
 
 void WorldDeformer::SetOutput(const OutputSettings& settings)
@@ -134,34 +129,29 @@ void WorldDeformer::SetOutput(const OutputSettings& settings)
     throw Error("The padding is " + std::to_string(settings.Padding) +
       " voxels. Set one between -2^20 and 2^20.");
   }
-  this->Impl->Settings = settings;
+  this->Settings = settings;
 }
 
 ImageGeometry WorldDeformer::FindOutput()
 {
-  this->Impl->UpdateDeformation();
-  ImageGeometry output = this->Impl->GetOutputGrid();
-  output.PointExtent = this->Impl->FindWholeExtent();
+  this->UpdateDeformation();
+  ImageGeometry output = this->GetOutputGrid();
+  output.PointExtent = this->FindWholeExtent();
   return output;
-}
-
-WorldReport WorldDeformer::Deform(const WorldRequest& request)
-{
-  return this->Impl->Deform(request);
 }
 
 std::uint64_t WorldDeformer::GetDeviceMemory() const
 {
-  return this->Impl->Deformer.GetDeviceMemory();
+  return this->Deformer.GetDeviceMemory();
 }
 
 void WorldDeformer::ReleaseMemory()
 {
-  this->Impl->Deformer.ReleaseMemory();
-  this->Impl->Forget();
+  this->Deformer.ReleaseMemory();
+  this->Forget();
 }
 
-ImageGeometry WorldDeformer::Internals::GetOutputGrid() const
+ImageGeometry WorldDeformer::GetOutputGrid() const
 {
   if (this->Reference)
   {
@@ -178,7 +168,7 @@ ImageGeometry WorldDeformer::Internals::GetOutputGrid() const
   return output;
 }
 
-void WorldDeformer::Internals::UpdateDeformation()
+void WorldDeformer::UpdateDeformation()
 {
   if (!this->Volume)
   {
@@ -203,7 +193,7 @@ void WorldDeformer::Internals::UpdateDeformation()
   this->Mesh.Update(*this->Volume, this->ToOutput);
 }
 
-IndexBounds WorldDeformer::Internals::FindBounds()
+IndexBounds WorldDeformer::FindBounds()
 {
   const VoxelGrid voxelGrid{ this->Volume->PointExtent, this->ToOutput, {} };
   if (!this->IsMesh())
@@ -251,7 +241,7 @@ IndexBounds WorldDeformer::Internals::FindBounds()
   return bounds;
 }
 
-Extent WorldDeformer::Internals::FindWholeExtent()
+Extent WorldDeformer::FindWholeExtent()
 {
   if (this->Reference)
   {

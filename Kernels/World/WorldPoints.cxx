@@ -8,7 +8,6 @@
 #include "MeshPointMap.h"
 #include "ParallelFor.h"
 #include "WorldDeformer.h"
-#include "WorldDeformerInternals.h"
 
 #include <algorithm>
 #include <atomic>
@@ -41,24 +40,22 @@ PointsReport WorldDeformer::DeformPoints(const PointsRequest& request)
 {
   const VectorView points{ request.Points, true, request.Count };
   CheckPoints(points);
-  Internals& internals = *this->Impl;
-  const bool isMesh = internals.Deformation == Internals::Deformations::Mesh;
-  const bool isField = internals.Deformation == Internals::Deformations::Field;
-  const bool isInverted = request.IsInverse != (isField && internals.Field.IsInverse());
+  const bool isMesh = this->IsMesh();
+  const bool isField = this->Deformation == Deformations::Field;
+  const bool isInverted = request.IsInverse != this->IsInverse();
   std::vector<glm::dvec3> nodes;
   std::unique_ptr<PointMap> map; // null: the volume is at rest
   if (isMesh)
   {
-    nodes = internals.Mesh.GetWorldPoints();
-    auto made = std::make_unique<MeshPointMap>(nodes, internals.Mesh.GetCells().Tetrahedra);
+    nodes = this->Mesh.GetWorldPoints();
+    auto made = std::make_unique<MeshPointMap>(nodes, this->Mesh.GetCells().Tetrahedra);
     made->SetPointsAreFloats(request.AreFloats);
-    made->Set(internals.Mesh.GetWorldDisplacements(), internals.Outside, isInverted);
+    made->Set(this->Mesh.GetWorldDisplacements(), this->Outside, isInverted);
     map = std::move(made);
   }
   else if (isField)
   {
-    map = std::make_unique<FieldPointMap>(
-      internals.Field.GetWorldField(), internals.Outside, isInverted);
+    map = std::make_unique<FieldPointMap>(this->Field.GetWorldField(), this->Outside, isInverted);
   }
   std::atomic<std::int64_t> outside{ 0 };
   std::atomic<double> leastFading{ 0.0 }; // the negated largest displacement
@@ -96,20 +93,20 @@ PointsReport WorldDeformer::DeformPoints(const PointsRequest& request)
     warn(std::to_string(outside) + " of " + std::to_string(request.Count) +
       " points lie outside the " + (isInverted ? "deformed " : "") +
       (isField ? "displacement field" : "mesh") + ", and do not move." +
-      (internals.Outside.AreExtrapolated() || internals.Outside.AreKept()
+      (this->Outside.AreExtrapolated() || this->Outside.AreKept()
           ? ""
           : " To move points outside, extrapolate the deformation, or let it fade."));
   }
   if (isMesh)
   {
-    const MeshCells& cells = internals.Mesh.GetCells();
+    const MeshCells& cells = this->Mesh.GetCells();
     for (const std::string& warning : GetCellWarnings(cells.Ignored, cells.WrongOrder))
     {
       warn(warning);
     }
   }
   warn(FindFoldsOfFading(
-    "border of the deformation moves", -leastFading.load(), internals.Outside.FadeDistance));
+    "border of the deformation moves", -leastFading.load(), this->Outside.FadeDistance));
   return report;
 }
 

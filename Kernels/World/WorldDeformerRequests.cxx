@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "WorldDeformerInternals.h"
+// WorldDeformer: deforms the volume for a request.
+#include "WorldDeformer.h"
 
 #include "Background.h"
 #include "Densities.h"
@@ -64,7 +65,7 @@ VolumeArray MakeFloatArray(const std::vector<float>& values, double background)
 
 } // namespace
 
-void WorldDeformer::Internals::Forget()
+void WorldDeformer::Forget()
 {
   this->SentGrid = VoxelGrid();
   this->SentWidth = 0;
@@ -76,7 +77,7 @@ void WorldDeformer::Internals::Forget()
   this->LastCoverage = nullptr;
 }
 
-void WorldDeformer::Internals::UpdateRestPositions()
+void WorldDeformer::UpdateRestPositions()
 {
   if (this->PositionsVolume == this->Volume)
   {
@@ -93,7 +94,7 @@ void WorldDeformer::Internals::UpdateRestPositions()
   this->PositionsVolume = this->Volume;
 }
 
-void WorldDeformer::Internals::UpdateJacobians(const std::function<bool(double)>& progress)
+void WorldDeformer::UpdateJacobians(const std::function<bool(double)>& progress)
 {
   this->Jacobians.resize(static_cast<std::size_t>(GetNumberOfPoints(this->Volume->PointExtent)));
   if (!this->IsMesh())
@@ -115,13 +116,13 @@ void WorldDeformer::Internals::UpdateJacobians(const std::function<bool(double)>
     this->Mesh.GetDisplacements().data(), this->Jacobians.data());
 }
 
-bool WorldDeformer::Internals::HasDensities() const
+bool WorldDeformer::HasDensities() const
 {
   return std::any_of(this->Arrays.begin(), this->Arrays.end(),
     [](const WorldArray& array) { return array.IsDensity; });
 }
 
-VolumeArray WorldDeformer::Internals::GetSource(std::size_t array)
+VolumeArray WorldDeformer::GetSource(std::size_t array)
 {
   VolumeArray source = this->Arrays[array];
   if (!this->Arrays[array].IsDensity || source.Type == ElementType::Float32 ||
@@ -153,7 +154,7 @@ VolumeArray WorldDeformer::Internals::GetSource(std::size_t array)
   return floats;
 }
 
-std::vector<VolumeArray> WorldDeformer::Internals::MakeArrays(
+std::vector<VolumeArray> WorldDeformer::MakeArrays(
   const WorldRequest& request, const std::function<bool(double)>& progress)
 {
   std::vector<VolumeArray> arrays;
@@ -184,7 +185,7 @@ std::vector<VolumeArray> WorldDeformer::Internals::MakeArrays(
   return arrays;
 }
 
-void WorldDeformer::Internals::CheckMemory(
+void WorldDeformer::CheckMemory(
   const std::vector<VolumeArray>& arrays, const Extent& extent, Resampling method)
 {
   const VoxelGrid voxelGrid = this->GetVoxelGrid();
@@ -212,7 +213,7 @@ void WorldDeformer::Internals::CheckMemory(
     voxelGrid, arrays, extent, nodes, tetrahedra, !isMesh, runBytes, heldBytes);
 }
 
-Resampling WorldDeformer::Internals::ChooseMethod(
+Resampling WorldDeformer::ChooseMethod(
   const WorldRequest& request, const std::vector<VolumeArray>& arrays, const Extent& whole)
 {
   ResamplerWish wish;
@@ -239,7 +240,7 @@ Resampling WorldDeformer::Internals::ChooseMethod(
     });
 }
 
-void WorldDeformer::Internals::SendVolume(const std::vector<VolumeArray>& arrays, Resampling method)
+void WorldDeformer::SendVolume(const std::vector<VolumeArray>& arrays, Resampling method)
 {
   const bool links = method != Resampling::MeshRasterization;
   std::size_t widest = 0;
@@ -276,7 +277,7 @@ void WorldDeformer::Internals::SendVolume(const std::vector<VolumeArray>& arrays
   }
 }
 
-void WorldDeformer::Internals::SendMesh(const std::function<bool(double)>& progress)
+void WorldDeformer::SendMesh(const std::function<bool(double)>& progress)
 {
   const MeshAtRest mesh = this->Mesh.GetAtRest();
   const MappedVolume mapped = this->GetMapped();
@@ -327,7 +328,7 @@ void WorldDeformer::Internals::SendMesh(const std::function<bool(double)>& progr
   this->SentForRasterization = false;
 }
 
-void WorldDeformer::Internals::SendRestMesh()
+void WorldDeformer::SendRestMesh()
 {
   const MeshAtRest mesh = this->Mesh.GetAtRest();
   CheckBoxes(mesh, *this->Volume);
@@ -348,7 +349,7 @@ void WorldDeformer::Internals::SendRestMesh()
   this->SentForRasterization = true;
 }
 
-void WorldDeformer::Internals::SendField()
+void WorldDeformer::SendField()
 {
   if (this->SentDeformation == Deformations::Field &&
     this->SentVectors == this->Field.GetVersion() && this->SentOutside == this->Outside)
@@ -373,7 +374,7 @@ void WorldDeformer::Internals::SendField()
   this->SentOutside = this->Outside;
 }
 
-DeformRequest WorldDeformer::Internals::MakeRequest(
+DeformRequest WorldDeformer::MakeRequest(
   const WorldRequest& request, const Extent& whole, Resampling method)
 {
   DeformRequest made;
@@ -418,7 +419,7 @@ DeformRequest WorldDeformer::Internals::MakeRequest(
   return made;
 }
 
-WorldReport WorldDeformer::Internals::Deform(const WorldRequest& request)
+WorldReport WorldDeformer::Deform(const WorldRequest& request)
 {
   if (this->Arrays.empty() && !request.RestPositions && !request.Jacobians)
   {
@@ -489,7 +490,7 @@ WorldReport WorldDeformer::Internals::Deform(const WorldRequest& request)
   return report;
 }
 
-void WorldDeformer::Internals::Finish(const WorldRequest& request, const Extent& extent)
+void WorldDeformer::Finish(const WorldRequest& request, const Extent& extent)
 {
   const auto voxels = static_cast<std::size_t>(GetNumberOfPoints(extent));
   const glm::dvec3 origin =
@@ -529,7 +530,7 @@ void WorldDeformer::Internals::Finish(const WorldRequest& request, const Extent&
   }
 }
 
-void WorldDeformer::Internals::DivideDensities(
+void WorldDeformer::DivideDensities(
   const WorldRequest& request, const float* jacobians, std::int64_t voxels)
 {
   for (std::size_t i = 0; i < this->Arrays.size(); ++i)
@@ -552,8 +553,7 @@ void WorldDeformer::Internals::DivideDensities(
   }
 }
 
-void WorldDeformer::Internals::Describe(
-  const WorldRequest& request, const Extent& whole, WorldReport& report)
+void WorldDeformer::Describe(const WorldRequest& request, const Extent& whole, WorldReport& report)
 {
   const bool isRasterized = report.Method == Resampling::MeshRasterization;
   if (this->IsInverse())
