@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace deformvolume
 {
@@ -71,18 +70,14 @@ IncrementalUpdate::Box IncrementalUpdate::MakeBox(
 {
   const Extent vertices = this->Grid.GetVertices(subBrick, 0);
   const double excess = this->Points.GetExcess(subBrick);
-  constexpr Box nothing = { { { 1.0, 1.0, 1.0 } }, { { 0.0, 0.0, 0.0 } } };
   if (GetNumberOfCells(vertices) == 0)
   {
-    return nothing;
+    return Box();
   }
-  IndexBounds voxels;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const double first = this->Shape.VertexExtent[2 * axis];
-    voxels.Min[axis] = first + vertices[2 * axis];
-    voxels.Max[axis] = first + vertices[2 * axis + 1];
-  }
+  IndexBounds voxels = GetBox(vertices);
+  const glm::dvec3 first = GetBox(this->Shape).Min;
+  voxels.Min += first;
+  voxels.Max += first;
   const IndexBounds rest = GetOutputTransform(this->Shape).ToOutput(voxels);
   Box box;
   for (int axis = 0; axis < 3; ++axis)
@@ -91,7 +86,7 @@ IncrementalUpdate::Box IncrementalUpdate::MakeBox(
     const float greatest = bounds.Greatest[axis];
     if (!(least <= greatest)) // no vertex has a position
     {
-      return nothing;
+      return Box();
     }
     const double widening = excess * (double(greatest) - double(least)) + Margin;
     double low = std::min(least - widening, LargestMove);
@@ -122,26 +117,22 @@ IncrementalUpdate::Box IncrementalUpdate::MakeBox(
 
 IncrementalUpdate::Box IncrementalUpdate::GetDirtyBox() const
 {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  Box dirtyBox{ { { infinity, infinity, infinity } }, { { -infinity, -infinity, -infinity } } };
-  const auto add = [&](const Box& box)
-  {
-    for (int axis = 0; axis < 3 && box.Min[0] <= box.Max[0]; ++axis)
-    {
-      dirtyBox.Min[axis] = std::min(dirtyBox.Min[axis], box.Min[axis] - DEFORMVOLUME_PATCH);
-      dirtyBox.Max[axis] = std::max(dirtyBox.Max[axis], box.Max[axis] + DEFORMVOLUME_PATCH);
-    }
-  };
+  Box dirtyBox;
   for (std::size_t subBrick = 0; subBrick < this->Moved.size(); ++subBrick)
   {
     if (this->IsChanged(subBrick))
     {
-      add(this->Boxes[subBrick]);
+      dirtyBox.Add(this->Boxes[subBrick]);
       if (this->Moved[subBrick])
       {
-        add(this->LastBoxes[subBrick]);
+        dirtyBox.Add(this->LastBoxes[subBrick]);
       }
     }
+  }
+  if (!dirtyBox.IsEmpty())
+  {
+    dirtyBox.Min -= double{ DEFORMVOLUME_PATCH };
+    dirtyBox.Max += double{ DEFORMVOLUME_PATCH };
   }
   return dirtyBox;
 }
@@ -208,19 +199,9 @@ void IncrementalUpdate::FindBoxes(const Displacements& displacements, std::size_
   this->FindChangedBoxes(displacements);
   const Box dirtyBox = this->GetDirtyBox();
   this->FindBoxesOf([&](std::size_t subBrick)
-    { return !IsApart(this->MakeBox(subBrick, *this->AllBounds), dirtyBox); },
+    { return this->MakeBox(subBrick, *this->AllBounds).Overlaps(dirtyBox); },
     displacements);
   this->BoxesKnown = true;
-}
-
-bool IncrementalUpdate::IsApart(const Box& a, const Box& b)
-{
-  bool apart = false;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    apart |= a.Min[axis] > b.Max[axis] || a.Max[axis] < b.Min[axis];
-  }
-  return apart;
 }
 
 } // namespace deformvolume

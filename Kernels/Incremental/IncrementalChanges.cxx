@@ -29,8 +29,7 @@ void IncrementalUpdate::SetHalo(int halo)
   }
 }
 
-std::vector<unsigned char> IncrementalUpdate::FindCutBricks(
-  const std::vector<CutVertex>& vertices) const
+std::vector<unsigned char> IncrementalUpdate::AddCut(const std::vector<CutVertex>& vertices)
 {
   std::vector<unsigned char> found(vertices.empty() ? 0 : this->Grid.GetNumberOfBricks());
   for (const CutVertex& v : vertices)
@@ -38,12 +37,6 @@ std::vector<unsigned char> IncrementalUpdate::FindCutBricks(
     this->ForSubBricks({ { v.X, v.X, v.Y, v.Y, v.Z, v.Z } }, 0, 0,
       [&](std::size_t subBrick) { found[subBrick] = 1; });
   }
-  return found;
-}
-
-std::vector<unsigned char> IncrementalUpdate::AddCut(const std::vector<CutVertex>& vertices)
-{
-  std::vector<unsigned char> found = this->FindCutBricks(vertices);
   this->IsCut.resize(this->Grid.GetNumberOfBricks());
   for (std::size_t subBrick = 0; subBrick < found.size(); ++subBrick)
   {

@@ -178,7 +178,7 @@ void IncrementalUpdate::PlanPatches(const std::vector<std::size_t>& changed,
   for (std::size_t subBrick = 0; subBrick < this->Sections.size(); ++subBrick)
   {
     const auto [brick, bits] = this->Sections[subBrick];
-    if (this->Known[subBrick] && !IsApart(this->Boxes[subBrick], dirtyBox) &&
+    if (this->Known[subBrick] && this->Boxes[subBrick].Overlaps(dirtyBox) &&
       (toResample[brick] & bits) != bits && this->TouchesPatches(this->Boxes[subBrick], dirty))
     {
       toResample[brick] |= bits;

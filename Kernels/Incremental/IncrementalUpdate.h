@@ -6,6 +6,7 @@
 #include "DisplacementBounds.h"
 #include "DisplacementObserver.h"
 #include "Extent.h"
+#include "IndexBounds.h"
 #include "PointSet.h"
 #include "VoxelGrid.h"
 
@@ -107,12 +108,7 @@ public:
   const Extent& GetOutputExtent() const { return this->OutputExtent; }
 
 private:
-  /// A box in output voxels, relative to the first one; empty if Min > Max.
-  struct Box
-  {
-    std::array<double, 3> Min;
-    std::array<double, 3> Max;
-  };
+  using Box = IndexBounds;                     // in output voxels, relative to the first one
   using Patches = std::array<int, 6>;          // first and last patch on each axis
   static constexpr std::size_t StepSize = 256; // sub-bricks for each task of a thread
 
@@ -131,8 +127,6 @@ private:
   void FindBoxesOf(const IsWanted& isWanted, const Displacements& displacements);
   /// Returns the voxels of the output in a box, relative to the first one; false if there are none.
   bool GetVoxels(const Box& box, Extent& voxels) const;
-  /// Returns for each sub-brick whether it has vertices of a cut; empty if none has.
-  std::vector<unsigned char> FindCutBricks(const std::vector<CutVertex>& vertices) const;
   /// False for sub-bricks entirely outside the volume: the last bricks can extend beyond it.
   bool HasCells(std::size_t subBrick) const
   {
@@ -145,7 +139,6 @@ private:
   /// Returns a box of all patches that intersect boxes of changed sub-bricks, before or after the
   /// change.
   Box GetDirtyBox() const;
-  static bool IsApart(const Box& a, const Box& b);
   bool HasOnlyInterior(std::size_t subBrick, const unsigned char* state, const Extent& box) const;
   Patches GetPatches(const Box& box) const;
   void MarkPatches(const Box& box, std::vector<unsigned char>& dirty) const;
