@@ -139,26 +139,8 @@ void SetMaterials(dv_chainmail& chainmail, const dv_chainmail_materials& given)
     chainmail.Model.SetMaterials(table, materials.data());
     return;
   }
-  const VolumeArray array =
-    MakeArray(ReadStruct(given.values, "the values"), "The array of values");
-  if (array.Components != 1)
-  {
-    throw Error(
-      "The array of values has " + std::to_string(array.Components) + " components. Give 1.");
-  }
+  const VolumeArray array = MakeScalars(given.values, "values");
   chainmail.Model.SetMaterials(table, ReadMaterials(array, voxels, rule).data());
-}
-
-std::vector<glm::dvec3> ReadPositions(
-  const double* coordinates, std::int64_t count, const char* what)
-{
-  const VectorView view = MakeView(coordinates, DV_FLOAT64, count, what);
-  std::vector<glm::dvec3> read;
-  for (std::size_t i = 0; i < view.Count; ++i)
-  {
-    read.push_back(view.Get(i));
-  }
-  return read;
 }
 
 } // namespace
@@ -244,8 +226,9 @@ std::int32_t dv_chainmail_step(
       }
       ChainMailRequest request;
       request.Handles = MakeHandles(chainmail->Volume,
-        ReadPositions(wanted.rest_positions, wanted.number_of_handles, "rest positions of handles"),
-        ReadPositions(wanted.positions, wanted.number_of_handles, "positions of handles"),
+        ReadPoints(
+          wanted.rest_positions, DV_FLOAT64, wanted.number_of_handles, "rest positions of handles"),
+        ReadPoints(wanted.positions, DV_FLOAT64, wanted.number_of_handles, "positions of handles"),
         wanted.handle_radius);
       request.RelaxationSweeps = wanted.relaxation_sweeps;
       request.Elasticity = wanted.elasticity;

@@ -69,6 +69,19 @@ VectorView MakeView(const void* data, std::int32_t type, std::int64_t count, con
   return view;
 }
 
+std::vector<glm::dvec3> ReadPoints(
+  const void* data, std::int32_t type, std::int64_t count, const char* what)
+{
+  const VectorView view = MakeView(data, type, count, what);
+  std::vector<glm::dvec3> points;
+  points.reserve(view.Count);
+  for (std::size_t i = 0; i < view.Count; ++i)
+  {
+    points.push_back(view.Get(i));
+  }
+  return points;
+}
+
 VolumeArray MakeArray(const dv_array& given, const std::string& name)
 {
   if (!given.data)
@@ -92,6 +105,17 @@ VolumeArray MakeArray(const dv_array& given, const std::string& name)
   array.Components = given.components;
   array.Categorical = given.categorical != 0;
   array.Background = given.background;
+  return array;
+}
+
+VolumeArray MakeScalars(const dv_array* given, const char* what)
+{
+  const std::string name = std::string("The array of ") + what;
+  VolumeArray array = MakeArray(ReadStruct(given, (std::string("the ") + what).c_str()), name);
+  if (array.Components != 1)
+  {
+    throw Error(name + " has " + std::to_string(array.Components) + " components. Give 1.");
+  }
   return array;
 }
 

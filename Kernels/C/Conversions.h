@@ -7,10 +7,13 @@
 #include "VolumeArray.h"
 #include "deformvolume.h"
 
+#include <glm/vec3.hpp>
+
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace deformvolume
 {
@@ -27,8 +30,14 @@ ImageGeometry MakeGeometry(const dv_grid* given, const char* name);
 /// Returns a view of `count` vectors of three floats or doubles.
 VectorView MakeView(const void* data, std::int32_t type, std::int64_t count, const char* what);
 
+/// Returns `count` points of three floats or doubles.
+std::vector<glm::dvec3> ReadPoints(
+  const void* data, std::int32_t type, std::int64_t count, const char* what);
+
 /// Returns an array that borrows the data.
 VolumeArray MakeArray(const dv_array& given, const std::string& name);
+/// The same for an array that must have one component.
+VolumeArray MakeScalars(const dv_array* given, const char* what);
 
 /// Converts a progress callback. Null: no callback.
 std::function<bool(double)> MakeProgress(dv_progress progress, void* user);

@@ -33,7 +33,8 @@ void CheckVolumeIsSet(const dv_deformer& deformer)
 WorldSheet ReadSurface(const dv_surface* given, const char* name)
 {
   const dv_surface surface = ReadStruct(given, name);
-  const VectorView points = MakeView(surface.points, surface.point_type, surface.number_of_points,
+  WorldSheet sheet;
+  sheet.Points = ReadPoints(surface.points, surface.point_type, surface.number_of_points,
     (std::string("points of ") + name).c_str());
   const std::size_t triangles = GetProduct(surface.number_of_triangles, sizeof(Sheet::Triangle),
     (std::string("triangles of ") + name).c_str());
@@ -42,12 +43,6 @@ WorldSheet ReadSurface(const dv_surface* given, const char* name)
     throw Error("There are no triangles in " + std::string(name) + ". Give one or more.");
   }
   CheckPointer(surface.triangles, ("The list of triangles of " + std::string(name)).c_str());
-  WorldSheet sheet;
-  sheet.Points.reserve(points.Count);
-  for (std::size_t i = 0; i < points.Count; ++i)
-  {
-    sheet.Points.push_back(points.Get(i));
-  }
   sheet.Triangles.resize(triangles);
   for (std::size_t i = 0; i < triangles; ++i)
   {
@@ -201,13 +196,8 @@ std::int32_t dv_carve_sphere(dv_deformer* deformer, std::int64_t count, const do
   return Edit(deformer, edit,
     [&](const EditFinder& finder)
     {
-      const VectorView view = MakeView(centers, DV_FLOAT64, count, "centers of the sphere");
-      std::vector<glm::dvec3> path;
-      for (std::size_t i = 0; i < view.Count; ++i)
-      {
-        path.push_back(view.Get(i));
-      }
-      return finder.CarveSweptSphere(path, radius);
+      return finder.CarveSweptSphere(
+        ReadPoints(centers, DV_FLOAT64, count, "centers of the sphere"), radius);
     });
 }
 
@@ -217,12 +207,7 @@ std::int32_t dv_carve_label(
   return Edit(deformer, edit,
     [&](const EditFinder& finder)
     {
-      const VolumeArray array = MakeArray(ReadStruct(labels, "the labels"), "The array of labels");
-      if (array.Components != 1)
-      {
-        throw Error(
-          "The array of labels has " + std::to_string(array.Components) + " components. Give 1.");
-      }
+      const VolumeArray array = MakeScalars(labels, "labels");
       const LabelReader reader = MakeLabelReader(array);
       if (!HasLabel(finder.Volume.PointExtent, reader, label))
       {
