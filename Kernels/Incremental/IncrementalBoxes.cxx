@@ -118,42 +118,13 @@ IncrementalUpdate::Box IncrementalUpdate::MakeBox(
 IncrementalUpdate::Box IncrementalUpdate::GetDirtyBox() const
 {
   Box dirtyBox;
-  for (std::size_t subBrick = 0; subBrick < this->Moved.size(); ++subBrick)
-  {
-    if (this->IsChanged(subBrick))
-    {
-      dirtyBox.Add(this->Boxes[subBrick]);
-      if (this->Moved[subBrick])
-      {
-        dirtyBox.Add(this->LastBoxes[subBrick]);
-      }
-    }
-  }
+  this->ForChangedBoxes([&](const Box& box) { dirtyBox.Add(box); });
   if (!dirtyBox.IsEmpty())
   {
     dirtyBox.Min -= double{ DEFORMVOLUME_PATCH };
     dirtyBox.Max += double{ DEFORMVOLUME_PATCH };
   }
   return dirtyBox;
-}
-
-bool IncrementalUpdate::TouchesPatches(
-  const Box& box, const std::vector<unsigned char>& dirty) const
-{
-  const Patches patches = this->GetPatches(box);
-  for (int z = patches[4]; z <= patches[5]; ++z)
-  {
-    for (int y = patches[2]; y <= patches[3]; ++y)
-    {
-      const auto row = dirty.begin() +
-        (static_cast<std::ptrdiff_t>(z) * this->PatchCount[1] + y) * this->PatchCount[0];
-      if (std::find(row + patches[0], row + patches[1] + 1, 1) != row + patches[1] + 1)
-      {
-        return true;
-      }
-    }
-  }
-  return false;
 }
 
 template <typename IsWanted>

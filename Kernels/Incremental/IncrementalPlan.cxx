@@ -36,6 +36,20 @@ std::size_t CountSections(std::uint32_t bits)
   return count(JoinSpans(bits) & AllSpans) * count(halves & 3) * count(halves >> 2);
 }
 
+// Returns the numbers of the marked patches.
+std::vector<std::uint32_t> ListPatches(const std::vector<unsigned char>& dirty)
+{
+  std::vector<std::uint32_t> patches;
+  for (std::size_t patch = 0; patch < dirty.size(); ++patch)
+  {
+    if (dirty[patch])
+    {
+      patches.push_back(static_cast<std::uint32_t>(patch));
+    }
+  }
+  return patches;
+}
+
 // Returns the largest number of points, sections or patches to update. If more change, a full
 // update is faster.
 std::size_t GetMost(std::size_t all)
@@ -68,118 +82,82 @@ bool IncrementalUpdate::GetVoxels(const Box& box, Extent& voxels) const
   return true;
 }
 
-IncrementalUpdate::Patches IncrementalUpdate::GetPatches(const Box& box) const
+Extent IncrementalUpdate::GetChangedExtent() const
+{
+  Extent changed{ { 0, -1, 0, -1, 0, -1 } };
+  this->ForChangedBoxes(
+    [&](const Box& box)
+    {
+      Extent voxels;
+      if (this->GetVoxels(box, voxels))
+      {
+        for (int end = 0; end < 6; ++end)
+        {
+          voxels[end] += this->OutputExtent[end / 2 * 2];
+        }
+        Include(changed, voxels);
+      }
+    });
+  return changed;
+}
+
+template <typename Body>
+bool IncrementalUpdate::AnyRowOfPatches(const Box& box, Body&& body) const
 {
   Extent voxels;
   if (!this->GetVoxels(box, voxels))
   {
-    return { { 0, -1, 0, -1, 0, -1 } };
+    return false;
   }
-  Patches patches;
-  std::transform(voxels.begin(), voxels.end(), patches.begin(),
-    [](int voxel) { return voxel / DEFORMVOLUME_PATCH; });
-  return patches;
-}
-
-Extent IncrementalUpdate::GetChangedExtent() const
-{
-  Extent changed{ { 0, -1, 0, -1, 0, -1 } };
-  const auto add = [&](const Box& box)
+  const auto get = [&](int end) { return voxels[end] / DEFORMVOLUME_PATCH; };
+  for (int z = get(4); z <= get(5); ++z)
   {
-    Extent voxels;
-    if (!this->GetVoxels(box, voxels))
+    for (int y = get(2); y <= get(3); ++y)
     {
-      return;
-    }
-    for (int end = 0; end < 6; ++end)
-    {
-      voxels[end] += this->OutputExtent[end / 2 * 2];
-    }
-    Include(changed, voxels);
-  };
-  for (std::size_t subBrick = 0; subBrick < this->Sections.size(); ++subBrick)
-  {
-    if (this->IsChanged(subBrick))
-    {
-      add(this->Boxes[subBrick]);
-      if (this->Moved[subBrick])
+      const std::ptrdiff_t row =
+        (static_cast<std::ptrdiff_t>(z) * this->PatchCount[1] + y) * this->PatchCount[0];
+      if (body(row + get(0), row + get(1) + 1))
       {
-        add(this->LastBoxes[subBrick]);
+        return true;
       }
     }
   }
-  return changed;
+  return false;
 }
 
-void IncrementalUpdate::MarkPatches(const Box& box, std::vector<unsigned char>& dirty) const
+std::vector<unsigned char> IncrementalUpdate::FindDirtyPatches() const
 {
-  const Patches patches = this->GetPatches(box);
-  for (int z = patches[4]; z <= patches[5]; ++z)
-  {
-    for (int y = patches[2]; y <= patches[3]; ++y)
-    {
-      const auto row = dirty.begin() +
-        (static_cast<std::ptrdiff_t>(z) * this->PatchCount[1] + y) * this->PatchCount[0];
-      std::fill(row + patches[0], row + patches[1] + 1, 1);
-    }
-  }
-}
-
-void IncrementalUpdate::MarkChangedPatches(
-  std::size_t subBrick, std::vector<unsigned char>& dirty) const
-{
-  this->MarkPatches(this->Boxes[subBrick], dirty);
-  if (this->Moved[subBrick])
-  {
-    this->MarkPatches(this->LastBoxes[subBrick], dirty);
-  }
-}
-
-std::vector<unsigned char> IncrementalUpdate::MakeFlagsOfPatches() const
-{
-  return std::vector<unsigned char>(static_cast<std::size_t>(this->PatchCount[0]) *
+  std::vector<unsigned char> dirty(static_cast<std::size_t>(this->PatchCount[0]) *
     static_cast<std::size_t>(this->PatchCount[1]) * static_cast<std::size_t>(this->PatchCount[2]));
-}
-
-std::vector<std::uint32_t> IncrementalUpdate::ListPatches(const std::vector<unsigned char>& dirty)
-{
-  std::vector<std::uint32_t> patches;
-  for (std::size_t patch = 0; patch < dirty.size(); ++patch)
-  {
-    if (dirty[patch])
+  this->ForChangedBoxes(
+    [&](const Box& box)
     {
-      patches.push_back(static_cast<std::uint32_t>(patch));
-    }
-  }
-  return patches;
+      this->AnyRowOfPatches(box,
+        [&](std::ptrdiff_t first, std::ptrdiff_t end)
+        {
+          std::fill(dirty.begin() + first, dirty.begin() + end, 1);
+          return false;
+        });
+    });
+  return dirty;
 }
 
 std::vector<std::uint32_t> IncrementalUpdate::GetChangedPatches() const
 {
-  std::vector<unsigned char> dirty = this->MakeFlagsOfPatches();
-  for (std::size_t subBrick = 0; subBrick < this->Sections.size(); ++subBrick)
-  {
-    if (this->IsChanged(subBrick))
-    {
-      this->MarkChangedPatches(subBrick, dirty);
-    }
-  }
-  return ListPatches(dirty);
+  return ListPatches(this->FindDirtyPatches());
 }
 
-void IncrementalUpdate::PlanPatches(const std::vector<std::size_t>& changed,
-  std::vector<std::uint32_t>& toResample, std::vector<unsigned char>& dirty) const
+void IncrementalUpdate::AddSections(
+  const std::vector<unsigned char>& dirty, std::vector<std::uint32_t>& toResample) const
 {
-  for (const std::size_t subBrick : changed)
-  {
-    this->MarkChangedPatches(subBrick, dirty);
-  }
+  const auto isDirty = [&](std::ptrdiff_t first, std::ptrdiff_t end)
+  { return std::find(dirty.begin() + first, dirty.begin() + end, 1) != dirty.begin() + end; };
   const Box dirtyBox = this->GetDirtyBox();
   for (std::size_t subBrick = 0; subBrick < this->Sections.size(); ++subBrick)
   {
     const auto [brick, bits] = this->Sections[subBrick];
     if (this->Known[subBrick] && this->Boxes[subBrick].Overlaps(dirtyBox) &&
-      (toResample[brick] & bits) != bits && this->TouchesPatches(this->Boxes[subBrick], dirty))
+      (toResample[brick] & bits) != bits && this->AnyRowOfPatches(this->Boxes[subBrick], isDirty))
     {
       toResample[brick] |= bits;
     }
@@ -189,16 +167,16 @@ void IncrementalUpdate::PlanPatches(const std::vector<std::size_t>& changed,
 bool IncrementalUpdate::MakePlan(bool inside, Plan& plan)
 {
   std::vector<std::uint32_t> toResample(this->Bricks.GetNumberOfBricks()); // sections of bricks
-  std::vector<std::size_t> changed;
+  bool isChanged = false;
   for (std::size_t subBrick = 0; subBrick < this->Sections.size(); ++subBrick)
   {
     if (this->IsChanged(subBrick))
     {
-      changed.push_back(subBrick);
+      isChanged = true;
       toResample[this->Sections[subBrick].first] |= this->Sections[subBrick].second;
     }
   }
-  if (changed.empty())
+  if (!isChanged)
   {
     return true;
   }
@@ -215,8 +193,8 @@ bool IncrementalUpdate::MakePlan(bool inside, Plan& plan)
   }
   if (!inside)
   {
-    std::vector<unsigned char> dirty = this->MakeFlagsOfPatches();
-    this->PlanPatches(changed, toResample, dirty);
+    const std::vector<unsigned char> dirty = this->FindDirtyPatches();
+    this->AddSections(dirty, toResample);
     plan.Patches = ListPatches(dirty);
     if (plan.Patches.size() > GetMost(dirty.size()) || isTooMuch())
     {

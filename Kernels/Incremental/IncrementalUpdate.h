@@ -109,7 +109,6 @@ public:
 
 private:
   using Box = IndexBounds;                     // in output voxels, relative to the first one
-  using Patches = std::array<int, 6>;          // first and last patch on each axis
   static constexpr std::size_t StepSize = 256; // sub-bricks for each task of a thread
 
   /// Calls body(sub-brick) for all sub-bricks with vertices in a box, enlarged by `halo` voxels.
@@ -136,20 +135,36 @@ private:
   {
     return this->Moved[subBrick] || this->Masked[subBrick];
   }
+  /// Calls body(box) for the boxes of all changed sub-bricks, before and after the change.
+  template <typename Body>
+  void ForChangedBoxes(Body&& body) const
+  {
+    for (std::size_t subBrick = 0; subBrick < this->Moved.size(); ++subBrick)
+    {
+      if (this->IsChanged(subBrick))
+      {
+        body(this->Boxes[subBrick]);
+        if (this->Moved[subBrick])
+        {
+          body(this->LastBoxes[subBrick]);
+        }
+      }
+    }
+  }
   /// Returns a box of all patches that intersect boxes of changed sub-bricks, before or after the
   /// change.
   Box GetDirtyBox() const;
   bool HasOnlyInterior(std::size_t subBrick, const unsigned char* state, const Extent& box) const;
-  Patches GetPatches(const Box& box) const;
-  void MarkPatches(const Box& box, std::vector<unsigned char>& dirty) const;
-  std::vector<unsigned char> MakeFlagsOfPatches() const;
-  static std::vector<std::uint32_t> ListPatches(const std::vector<unsigned char>& dirty);
-  /// Marks the patches that a changed sub-brick intersects, before or after the change.
-  void MarkChangedPatches(std::size_t subBrick, std::vector<unsigned char>& dirty) const;
-  /// Finds the patches to clear, and adds the sections of sub-bricks that intersect them.
-  void PlanPatches(const std::vector<std::size_t>& changed, std::vector<std::uint32_t>& toResample,
-    std::vector<unsigned char>& dirty) const;
-  bool TouchesPatches(const Box& box, const std::vector<unsigned char>& dirty) const;
+  /// Calls body(first, end) for the rows of the patches that a box intersects, until it returns
+  /// true. Returns whether it did.
+  template <typename Body>
+  bool AnyRowOfPatches(const Box& box, Body&& body) const;
+  /// Returns for each patch whether it intersects the box of a changed sub-brick, before or after
+  /// the change.
+  std::vector<unsigned char> FindDirtyPatches() const;
+  /// Adds the sections of sub-bricks that intersect dirty patches.
+  void AddSections(
+    const std::vector<unsigned char>& dirty, std::vector<std::uint32_t>& toResample) const;
 
   bool Tracking = false;
   BrickGrid Bricks;
