@@ -477,7 +477,7 @@ MUTATIONS = {
                     "inPlace &= this->Points[change.Before[k]] == this->Points[change.After[k]];",
                     "inPlace &= change.Before[k] >= 0;", [PIPELINES]),
     "split-bounds": ("Filters/DeformVolume/vtkDeformVolumeFilterBounds.cxx",
-                     "this->State->BoundsOfMesh.ChangeConnectivity(mesh.GetPoints(), mesh.GetTetrahedra(), *changes);",
+                     "this->State->BoundsOfMesh.ChangeConnectivity(mesh.GetPoints(), *changes);",
                      "static_cast<void>(changes);", [PIPELINES]),
     "mask-by-edit": ("Filters/Arrays/VolumeArrays.cxx", "(value & (Hidden | HiddenByEdit)) == Hidden", "(value & Hidden) != 0",
                      ["Cxx.TestCarveVolume"]),

@@ -173,7 +173,7 @@ void vtkDeformVolumeFilter::vtkInternals::UpdateBoundsOfMesh(
   this->State->BoundsShapeVersion = 0; // not valid if a call below throws
   if (changes)
   {
-    this->State->BoundsOfMesh.ChangeConnectivity(mesh.GetPoints(), mesh.GetTetrahedra(), *changes);
+    this->State->BoundsOfMesh.ChangeConnectivity(mesh.GetPoints(), *changes);
   }
   else
   {

@@ -51,7 +51,7 @@ void MeshBounds::SetMesh(const VoxelGrid& voxelGrid, const std::vector<glm::dvec
   const IndexBounds box = GetBox(voxelGrid);
   // Bytes, not bits, so that several threads can set neighboring elements.
   std::vector<unsigned char> clipped(tetrahedra.size(), 0);
-  std::vector<std::atomic<unsigned char>> wanted(restPoints.size());
+  std::vector<std::atomic<std::uint32_t>> uses(restPoints.size());
   ParallelFor(0, static_cast<std::int64_t>(tetrahedra.size()), 0,
     [&](std::int64_t begin, std::int64_t end)
     {
@@ -66,7 +66,7 @@ void MeshBounds::SetMesh(const VoxelGrid& voxelGrid, const std::vector<glm::dvec
         {
           for (const std::int32_t node : nodes)
           {
-            wanted[node].store(1, std::memory_order_relaxed);
+            uses[node].fetch_add(1, std::memory_order_relaxed);
           }
         }
       }
@@ -80,41 +80,17 @@ void MeshBounds::SetMesh(const VoxelGrid& voxelGrid, const std::vector<glm::dvec
       this->ClippedTetrahedra.push_back(static_cast<std::int32_t>(id));
     }
   }
-  this->Wanted.assign(wanted.begin(), wanted.end());
+  this->Uses.assign(uses.begin(), uses.end());
   this->NodeBounds.resize(CountBlocks(restPoints.size(), NodeBlock));
   this->ClippedBounds.resize(CountBlocks(this->ClippedTetrahedra.size(), ClippedBlock));
   this->StaleNodes.resize(this->NodeBounds.size(), 1);
   this->StaleClipped.resize(this->ClippedBounds.size());
 }
 
-void MeshBounds::CountUses(
-  const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra)
-{
-  const IndexBounds box = GetBox(this->Shape);
-  std::vector<std::atomic<std::uint32_t>> uses(restPoints.size());
-  ParallelFor(0, static_cast<std::int64_t>(tetrahedra.size()), 0,
-    [&](std::int64_t begin, std::int64_t end)
-    {
-      for (std::int64_t id = begin; id < end; ++id)
-      {
-        const Tetrahedron& nodes = tetrahedra[id];
-        if (IsInside(nodes, restPoints, box) && !IsFlat(nodes, restPoints))
-        {
-          for (const std::int32_t node : nodes)
-          {
-            uses[node].fetch_add(1, std::memory_order_relaxed);
-          }
-        }
-      }
-    });
-  this->Uses.assign(uses.begin(), uses.end());
-}
-
 void MeshBounds::Resize(std::size_t numberOfNodes)
 {
-  const std::size_t least = std::min(this->Wanted.size(), numberOfNodes);
+  const std::size_t least = std::min(this->Uses.size(), numberOfNodes);
   this->Uses.resize(std::max(this->Uses.size(), numberOfNodes));
-  this->Wanted.resize(std::max(this->Wanted.size(), numberOfNodes));
   this->NodeBounds.resize(CountBlocks(numberOfNodes, NodeBlock));
   this->StaleNodes.resize(this->NodeBounds.size());
   for (std::size_t block = least / NodeBlock; block < this->StaleNodes.size(); ++block)
@@ -133,7 +109,6 @@ void MeshBounds::Use(const Tetrahedron& tetrahedron, std::uint32_t uses)
       continue;
     }
     this->Uses[index] += uses;
-    this->Wanted[index] = this->Uses[index] > 0;
     if (index / NodeBlock < this->StaleNodes.size())
     {
       this->StaleNodes[index / NodeBlock] = 1;
@@ -141,15 +116,10 @@ void MeshBounds::Use(const Tetrahedron& tetrahedron, std::uint32_t uses)
   }
 }
 
-void MeshBounds::ChangeConnectivity(const std::vector<glm::dvec3>& restPoints,
-  const std::vector<Tetrahedron>& tetrahedra, const std::vector<TetrahedronChange>& changes)
+void MeshBounds::ChangeConnectivity(
+  const std::vector<glm::dvec3>& restPoints, const std::vector<TetrahedronChange>& changes)
 {
   const std::size_t nodes = restPoints.size();
-  const bool isCounted = !this->Uses.empty();
-  if (!isCounted)
-  {
-    this->CountUses(restPoints, tetrahedra);
-  }
   const IndexBounds box = GetBox(this->Shape);
   this->Resize(nodes);
   for (const TetrahedronChange& change : changes)
@@ -163,12 +133,11 @@ void MeshBounds::ChangeConnectivity(const std::vector<glm::dvec3>& restPoints,
     }
     else if (IsInside(change.After, restPoints, box) && !IsFlat(change.After, restPoints))
     {
-      this->Use(change.Before, isCounted ? ~std::uint32_t{ 0 } : 0);
-      this->Use(change.After, isCounted ? 1 : 0);
+      this->Use(change.Before, ~std::uint32_t{ 0 });
+      this->Use(change.After, 1);
     }
   }
   this->Uses.resize(nodes);
-  this->Wanted.resize(nodes);
 }
 
 IndexBounds MeshBounds::Compute(const std::vector<glm::dvec3>& restPoints,
@@ -236,11 +205,11 @@ IndexBounds MeshBounds::Compute(const std::vector<glm::dvec3>& restPoints,
       return;
     }
     IndexBounds bounds;
-    const std::size_t end = std::min((block + 1) * NodeBlock, this->Wanted.size());
+    const std::size_t end = std::min((block + 1) * NodeBlock, this->Uses.size());
     for (std::size_t node = block * NodeBlock; node < end; ++node)
     {
       const glm::dvec3 moved = move(static_cast<std::int32_t>(node));
-      if (this->Wanted[node] && IsFinite(moved))
+      if (this->Uses[node] > 0 && IsFinite(moved))
       {
         bounds.Add(moved);
       }

@@ -34,10 +34,9 @@ public:
     const std::vector<Tetrahedron>& tetrahedra);
 
   /// Applies changes of the nodes of tetrahedra. The positions at rest must not change; the number
-  /// of nodes may. restPoints and tetrahedra: the current nodes and tetrahedra, with all changes
-  /// since the last call.
-  void ChangeConnectivity(const std::vector<glm::dvec3>& restPoints,
-    const std::vector<Tetrahedron>& tetrahedra, const std::vector<TetrahedronChange>& changes);
+  /// of nodes may. restPoints: the current nodes. changes: all changes since the last call.
+  void ChangeConnectivity(
+    const std::vector<glm::dvec3>& restPoints, const std::vector<TetrahedronChange>& changes);
 
   /// Computes the bounds. restPoints and tetrahedra: the current nodes and tetrahedra. changes: the
   /// nodes whose displacements have changed since the last call for this mesh; null: any
@@ -52,12 +51,9 @@ private:
   /// Adds `uses` to the number of uses of the nodes of a tetrahedron inside the volume. -1 (as an
   /// unsigned number): the tetrahedron is removed; 1: it is added.
   void Use(const Tetrahedron& tetrahedron, std::uint32_t uses);
-  void CountUses(
-    const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra);
 
   VoxelGrid Shape;
-  std::vector<unsigned char> Wanted;           // nonzero: node of a tetrahedron inside the volume
-  std::vector<std::uint32_t> Uses;             // tetrahedra inside per node; empty until a change
+  std::vector<std::uint32_t> Uses;             // tetrahedra inside the volume per node
   std::vector<std::int32_t> ClippedTetrahedra; // in ascending order
   std::vector<IndexBounds> NodeBounds;         // of each block of nodes
   std::vector<IndexBounds> ClippedBounds;      // of each block of clipped tetrahedra
