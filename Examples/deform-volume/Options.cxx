@@ -11,9 +11,11 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cstdlib>
 #include <initializer_list>
 #include <iostream>
+#include <iterator>
 
 namespace
 {
@@ -37,6 +39,46 @@ struct RawOptions
 const CLI::Validator NotNegative([](std::string& text)
   { return std::strtod(text.c_str(), nullptr) < 0.0 ? text + " is negative" : std::string(); },
   "");
+
+/// Adds options under a heading of --help.
+class OptionGroup
+{
+public:
+  explicit OptionGroup(CLI::App& program, const std::string& heading = "Options")
+    : Program(program)
+    , Heading(heading)
+  {
+  }
+
+  template <typename Value>
+  CLI::Option* Add(
+    const std::string& name, Value& value, const std::string& type, const std::string& help)
+  {
+    return this->Program.add_option(name, value, help)->type_name(type)->group(this->Heading);
+  }
+
+  /// An option that may be given several times.
+  void AddList(const std::string& name, std::vector<std::string>& values, const std::string& type,
+    const std::string& help)
+  {
+    this->Add(name, values, type, help)->take_all()->expected(1);
+  }
+
+  void AddChoice(const std::string& name, std::string& value, const std::string& type,
+    const std::vector<std::string>& choices, const std::string& help)
+  {
+    this->Add(name, value, type, help)->capture_default_str()->check(CLI::IsMember(choices));
+  }
+
+  void AddFlag(const std::string& name, bool& value, const std::string& help)
+  {
+    this->Program.add_flag(name, value, help)->group(this->Heading);
+  }
+
+private:
+  CLI::App& Program;
+  std::string Heading;
+};
 
 /// Sets the tissue of voxels that are in no range of --material.
 void SetTissue(const CLI::App& program, const std::string& tissue, Options& options)
@@ -84,6 +126,13 @@ void CheckModelOptions(const CLI::App& program, const Options& options)
   }
 }
 
+template <typename Value>
+void ParseAll(const std::vector<std::string>& texts, Value (*parse)(const std::string&),
+  std::vector<Value>& values)
+{
+  std::transform(texts.begin(), texts.end(), std::back_inserter(values), parse);
+}
+
 void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
 {
   if (!raw.Lattice.empty())
@@ -98,18 +147,9 @@ void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
       }
     }
   }
-  for (const std::string& text : raw.Pushes)
-  {
-    options.Pushes.push_back(ParsePush(text));
-  }
-  for (const std::string& text : raw.Pulls)
-  {
-    options.Pulls.push_back(ParsePull(text));
-  }
-  for (const std::string& text : raw.Fixations)
-  {
-    options.Fixations.push_back(ParseFixation(text));
-  }
+  ParseAll(raw.Pushes, ParsePush, options.Pushes);
+  ParseAll(raw.Pulls, ParsePull, options.Pulls);
+  ParseAll(raw.Fixations, ParseFixation, options.Fixations);
   for (const std::string& text : raw.Materials)
   {
     if (FindTissue(text))
@@ -123,20 +163,14 @@ void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
   }
   options.Gravity = ParseNumbers<double, 3>(
     "--gravity", raw.Gravity, "three numbers X,Y,Z with commas between them");
-  for (const std::string& text : raw.Carvings)
-  {
-    options.Carvings.push_back(ParseCarving(text));
-  }
+  ParseAll(raw.Carvings, ParseCarving, options.Carvings);
 #ifndef DEFORMVOLUME_HAVE_ITK
   if (!raw.Transforms.empty())
   {
     throw UsageError("--transform: this program was built without ITK, which reads transforms");
   }
 #endif
-  for (const std::string& text : raw.Transforms)
-  {
-    options.Transforms.push_back(ParseTransform(text));
-  }
+  ParseAll(raw.Transforms, ParseTransform, options.Transforms);
   if (!raw.View.empty())
   {
     options.View = ParseNumbers<double, 3>("--view", raw.View, "three numbers X,Y,Z");
@@ -162,35 +196,22 @@ void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
 
 void AddElasticModel(CLI::App& program, Options& options, RawOptions& raw)
 {
-  const char* group = "With --model fem or mass-spring";
-  program
-    .add_option("--fix", raw.Fixations,
-      "Fixed nodes: nodes in a box, nodes with a z coordinate of at most Z, or nodes in voxels of "
-      "the value N. May be given several times")
-    ->type_name("box:X0,X1,Y0,Y1,Z0,Z1|below:Z|label:N")
-    ->take_all()
-    ->expected(1)
-    ->group(group);
-  program.add_option("--gravity", raw.Gravity, "Acceleration of gravity, in m/s^2")
-    ->capture_default_str()
-    ->type_name("X,Y,Z")
-    ->group(group);
+  OptionGroup group(program, "With --model fem or mass-spring");
+  group.AddList("--fix", raw.Fixations, "box:X0,X1,Y0,Y1,Z0,Z1|below:Z|label:N",
+    "Fixed nodes: nodes in a box, nodes with a z coordinate of at most Z, or nodes in voxels of "
+    "the value N. May be given several times");
+  group.Add("--gravity", raw.Gravity, "X,Y,Z", "Acceleration of gravity, in m/s^2")
+    ->capture_default_str();
   const auto addNumber = [&](const char* name, double& value, const char* help)
-  {
-    program.add_option(name, value, help)->capture_default_str()->type_name("NUMBER")->group(group);
-  };
-  program
-    .add_option("--material", raw.Materials,
-      "Material of voxels whose value is at least MINIMUM and less than MAXIMUM: Young modulus E "
-      "(Pa), Poisson ratio NU and DENSITY (kg/m^3), or the values of a TISSUE. Each tetrahedron "
-      "gets the mean of its voxels. If ranges overlap, the first one is used. Voxels in no range "
-      "get the TISSUE that is given without a range, or else --young, --poisson and --density. "
-      "Tissues: " +
-        GetTissues() + ". May be given several times")
-    ->type_name("TISSUE|MINIMUM:MAXIMUM=TISSUE|MINIMUM:MAXIMUM=E[,NU[,DENSITY]]")
-    ->take_all()
-    ->expected(1)
-    ->group(group);
+  { group.Add(name, value, "NUMBER", help)->capture_default_str(); };
+  group.AddList("--material", raw.Materials,
+    "TISSUE|MINIMUM:MAXIMUM=TISSUE|MINIMUM:MAXIMUM=E[,NU[,DENSITY]]",
+    "Material of voxels whose value is at least MINIMUM and less than MAXIMUM: Young modulus E "
+    "(Pa), Poisson ratio NU and DENSITY (kg/m^3), or the values of a TISSUE. Each tetrahedron "
+    "gets the mean of its voxels. If ranges overlap, the first one is used. Voxels in no range "
+    "get the TISSUE that is given without a range, or else --young, --poisson and --density. "
+    "Tissues: " +
+      GetTissues() + ". May be given several times");
   addNumber("--young", options.YoungModulus, "Young modulus, in Pa");
   addNumber("--poisson", options.PoissonRatio, "Poisson ratio, from 0 to less than 0.495");
   addNumber("--density", options.Density, "Density, in kg/m^3");
@@ -199,191 +220,112 @@ void AddElasticModel(CLI::App& program, Options& options, RawOptions& raw)
 
 void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
 {
-  const char* group =
-    "Deformation (one of --mesh, --field, --transform, --tetgen, --lattice, --model)";
-  program
-    .add_option("--mesh", options.Mesh,
-      "Mesh (" + GetMeshSuffixes() +
-        "; cells are split into tetrahedra), or displacement field (.vti). Of a time series, the "
-        "last time step is read")
-    ->type_name("FILE")
-    ->group(group);
-  program
-    .add_option("--field", options.Field,
-      "Displacement field: .nii or .nii.gz of the shape (X,Y,Z,1,3) with the intent 1006 (vectors "
-      "right, anterior, superior) or 1007 (left, posterior, superior, as written by ITK and "
-      "ANTs), " +
-        std::string(HasITK ? ".mha, .mhd, .nrrd, .nhdr " : "") +
-        "or .vti. Without --field-is-inverse, it leads from each point of the volume to the "
-        "deformed position of that point")
-    ->type_name("FILE")
-    ->group(group);
-  program
-    .add_flag("--field-is-inverse", options.FieldIsInverse,
-      "The --field leads from each point of the result to the point of the volume that is shown "
-      "there, as written by registration programs (from the fixed to the moving image)")
-    ->group(group);
-  program
-    .add_option("--field-space", options.FieldSpace,
-      "World coordinates of a --field whose file does not state them: lps (x to the left, y to the "
-      "back, z to the head) or ras (x to the right, y to the front, z to the head) [those of the "
-      "volume]")
-    ->check(CLI::IsMember({ "lps", "ras" }))
-    ->type_name("SPACE")
-    ->group(group);
-  program
-    .add_option("--transform", raw.Transforms,
-      HasITK ? "Transform of a registration, from the result (the fixed image) to the volume (the "
-               "moving image), as written by ITK, SimpleITK, ANTs and 3D Slicer: .h5, .tfm, .txt "
-               "or .mat with a matrix, a B-spline, a displacement field or a composition, or a "
-               "displacement field as for --field. With ,invert after the file name, a matrix is "
-               "inverted. May be given several times: the last transform is applied first, as in "
-               "antsApplyTransforms"
-             : "Transform of a registration. Not available: this program was built without ITK")
-    ->type_name("FILE[,invert]")
-    ->take_all()
-    ->expected(1)
-    ->group(group);
-  program
-    .add_option("--displacement", options.Displacement,
-      "Name of the point array that holds the displacements, in world units, from rest to deformed "
-      "positions: an array of --mesh, or of a --field in a .vti file. The points of --mesh are "
-      "then at rest")
-    ->type_name("NAME")
-    ->group(group);
-  program
-    .add_option("--rest", options.Rest,
-      "Mesh at rest, with the same cells as --mesh. The points of --mesh are then the deformed "
-      "positions")
-    ->type_name("FILE")
-    ->group(group);
-  program
-    .add_option("--mesh-space", options.MeshSpace,
-      "World coordinates of files of --mesh, --rest, --cut and --points (.vtp, .vtu, .stl, .ply) "
-      "that do not state them (files of 3D Slicer do): lps (x to the left, y to the back, z to the "
-      "head) or ras (x to the right, y to the front, z to the head) [those of the volume]")
-    ->check(CLI::IsMember({ "lps", "ras" }))
-    ->type_name("SPACE")
-    ->group(group);
-  program
-    .add_flag("--points-are-deformed", options.PointsAreDeformed,
-      "The points of --mesh are already deformed. The displacements lead from the positions at "
-      "rest to these points")
-    ->group(group);
-  program
-    .add_flag("--open-splits", options.OpenSplits,
-      "A gap opens where the --mesh is split: where neighboring cells have nodes of their own, as "
-      "in a mesh that --write-mesh has written after a --cut. Otherwise tissue is stretched over "
-      "the "
-      "gap")
-    ->group(group);
-  program
-    .add_option("--scale", options.Scale,
+  OptionGroup group(
+    program, "Deformation (one of --mesh, --field, --transform, --tetgen, --lattice, --model)");
+  group.Add("--mesh", options.Mesh, "FILE",
+    "Mesh (" + GetMeshSuffixes() +
+      "; cells are split into tetrahedra), or displacement field (.vti). Of a time series, the "
+      "last time step is read");
+  group.Add("--field", options.Field, "FILE",
+    "Displacement field: .nii or .nii.gz of the shape (X,Y,Z,1,3) with the intent 1006 (vectors "
+    "right, anterior, superior) or 1007 (left, posterior, superior, as written by ITK and "
+    "ANTs), " +
+      std::string(HasITK ? ".mha, .mhd, .nrrd, .nhdr " : "") +
+      "or .vti. Without --field-is-inverse, it leads from each point of the volume to the "
+      "deformed position of that point");
+  group.AddFlag("--field-is-inverse", options.FieldIsInverse,
+    "The --field leads from each point of the result to the point of the volume that is shown "
+    "there, as written by registration programs (from the fixed to the moving image)");
+  group.AddChoice("--field-space", options.FieldSpace, "SPACE", { "lps", "ras" },
+    "World coordinates of a --field whose file does not state them: lps (x to the left, y to the "
+    "back, z to the head) or ras (x to the right, y to the front, z to the head) [those of the "
+    "volume]");
+  group.AddList("--transform", raw.Transforms, "FILE[,invert]",
+    HasITK ? "Transform of a registration, from the result (the fixed image) to the volume (the "
+             "moving image), as written by ITK, SimpleITK, ANTs and 3D Slicer: .h5, .tfm, .txt "
+             "or .mat with a matrix, a B-spline, a displacement field or a composition, or a "
+             "displacement field as for --field. With ,invert after the file name, a matrix is "
+             "inverted. May be given several times: the last transform is applied first, as in "
+             "antsApplyTransforms"
+           : "Transform of a registration. Not available: this program was built without ITK");
+  group.Add("--displacement", options.Displacement, "NAME",
+    "Name of the point array that holds the displacements, in world units, from rest to deformed "
+    "positions: an array of --mesh, or of a --field in a .vti file. The points of --mesh are "
+    "then at rest");
+  group.Add("--rest", options.Rest, "FILE",
+    "Mesh at rest, with the same cells as --mesh. The points of --mesh are then the deformed "
+    "positions");
+  group.AddChoice("--mesh-space", options.MeshSpace, "SPACE", { "lps", "ras" },
+    "World coordinates of files of --mesh, --rest, --cut and --points (.vtp, .vtu, .stl, .ply) "
+    "that do not state them (files of 3D Slicer do): lps (x to the left, y to the back, z to the "
+    "head) or ras (x to the right, y to the front, z to the head) [those of the volume]");
+  group.AddFlag("--points-are-deformed", options.PointsAreDeformed,
+    "The points of --mesh are already deformed. The displacements lead from the positions at "
+    "rest to these points");
+  group.AddFlag("--open-splits", options.OpenSplits,
+    "A gap opens where the --mesh is split: where neighboring cells have nodes of their own, as "
+    "in a mesh that --write-mesh has written after a --cut. Otherwise tissue is stretched over "
+    "the gap");
+  group
+    .Add("--scale", options.Scale, "NUMBER",
       "Factor by which the displacements of --mesh or --field are multiplied")
-    ->capture_default_str()
-    ->type_name("NUMBER")
-    ->group(group);
-  program
-    .add_flag("--tetgen", options.TetGen,
-      "Make a mesh of the body in the volume with TetGen. Use with --push or --model")
-    ->group(group);
-  program
-    .add_option("--lattice", raw.Lattice,
-      "Make a mesh of cubes that covers the whole volume, with at most NX, NY and NZ nodes on the "
-      "axes. Each cube has five tetrahedra. Use with --push or --model")
-    ->type_name("NX,NY,NZ")
-    ->group(group);
-  program
-    .add_option("--push", raw.Pushes,
-      "Move the nodes around X,Y,Z (world coordinates) by DX,DY,DZ (world units). The displacement "
-      "decreases smoothly to 0 at the distance RADIUS (world units). May be given several times: "
-      "displacements are added")
-    ->type_name("X,Y,Z,DX,DY,DZ,RADIUS")
-    ->take_all()
-    ->expected(1)
-    ->group(group);
+    ->capture_default_str();
+  group.AddFlag("--tetgen", options.TetGen,
+    "Make a mesh of the body in the volume with TetGen. Use with --push or --model");
+  group.Add("--lattice", raw.Lattice, "NX,NY,NZ",
+    "Make a mesh of cubes that covers the whole volume, with at most NX, NY and NZ nodes on the "
+    "axes. Each cube has five tetrahedra. Use with --push or --model");
+  group.AddList("--push", raw.Pushes, "X,Y,Z,DX,DY,DZ,RADIUS",
+    "Move the nodes around X,Y,Z (world coordinates) by DX,DY,DZ (world units). The displacement "
+    "decreases smoothly to 0 at the distance RADIUS (world units). May be given several times: "
+    "displacements are added");
 
-  program
-    .add_option("--model", options.Model,
-      "chainmail: voxels are linked to their neighbors, and follow a --pull as far as the limits "
-      "of their links require. fem, with --tetgen or --lattice: the equilibrium of the mesh, by "
-      "finite elements. mass-spring, with --lattice: a simulation of the mesh for --duration. "
-      "Units of length are mm")
-    ->check(CLI::IsMember({ "chainmail", "fem", "mass-spring" }))
-    ->type_name("NAME")
-    ->group(group);
-  program
-    .add_option("--pull", raw.Pulls,
-      "With --model: move the voxels or nodes within RADIUS of X,Y,Z (world coordinates) by "
-      "DX,DY,DZ (world units). Without RADIUS, only the nearest voxel or node is moved. May be "
-      "given several times")
-    ->type_name("X,Y,Z,DX,DY,DZ[,RADIUS]")
-    ->take_all()
-    ->expected(1)
-    ->group(group);
+  group.AddChoice("--model", options.Model, "NAME", { "chainmail", "fem", "mass-spring" },
+    "chainmail: voxels are linked to their neighbors, and follow a --pull as far as the limits "
+    "of their links require. fem, with --tetgen or --lattice: the equilibrium of the mesh, by "
+    "finite elements. mass-spring, with --lattice: a simulation of the mesh for --duration. "
+    "Units of length are mm");
+  group.AddList("--pull", raw.Pulls, "X,Y,Z,DX,DY,DZ[,RADIUS]",
+    "With --model: move the voxels or nodes within RADIUS of X,Y,Z (world coordinates) by "
+    "DX,DY,DZ (world units). Without RADIUS, only the nearest voxel or node is moved. May be "
+    "given several times");
   AddElasticModel(program, options, raw);
 
-  const char* tools = "Cuts and carvings of the volume at rest (alone, or with a deformation)";
-  program
-    .add_option("--cut", options.Cuts,
-      "Cut the volume along a sheet of triangles (" + GetSheetSuffixes() +
-        ", world coordinates). With --model fem or mass-spring, the sheet cuts the mesh at rest "
-        "along the nearest faces of its tetrahedra, and the volume opens there. May be given "
-        "several times")
-    ->type_name("FILE")
-    ->take_all()
-    ->expected(1)
-    ->group(tools);
-  program
-    .add_flag("--smooth-cut", options.SmoothCut,
-      "With --cut: divide tetrahedra that a sheet crosses between its two sides, instead of "
-      "leaving them out. Requires --resampler exact or automatic")
-    ->group(tools);
-  program
-    .add_option("--carve", raw.Carvings,
-      "Carve a sphere out of the volume (world coordinates and units). Voxels within about one "
-      "voxel of its surface may stay. May be given several times")
-    ->type_name("sphere:X,Y,Z,RADIUS")
-    ->take_all()
-    ->expected(1)
-    ->group(tools);
+  OptionGroup tools(
+    program, "Cuts and carvings of the volume at rest (alone, or with a deformation)");
+  tools.AddList("--cut", options.Cuts, "FILE",
+    "Cut the volume along a sheet of triangles (" + GetSheetSuffixes() +
+      ", world coordinates). With --model fem or mass-spring, the sheet cuts the mesh at rest "
+      "along the nearest faces of its tetrahedra, and the volume opens there. May be given "
+      "several times");
+  tools.AddFlag("--smooth-cut", options.SmoothCut,
+    "With --cut: divide tetrahedra that a sheet crosses between its two sides, instead of "
+    "leaving them out. Requires --resampler exact or automatic");
+  tools.AddList("--carve", raw.Carvings, "sphere:X,Y,Z,RADIUS",
+    "Carve a sphere out of the volume (world coordinates and units). Voxels within about one "
+    "voxel of its surface may stay. May be given several times");
 
-  const char* tetgen = "Mesh made by --tetgen";
-  program
-    .add_option("--isovalue", options.Isovalue,
-      "Minimum value of voxels of the body [computed from the histogram]")
-    ->type_name("NUMBER")
-    ->group(tetgen);
-  program
-    .add_option("--pieces", options.Pieces,
-      "Which pieces of the body are meshed: all, or only the largest one. Pieces of at most 26 "
-      "voxels are left out")
-    ->capture_default_str()
-    ->check(CLI::IsMember({ "all", "largest" }))
-    ->type_name("MODE")
-    ->group(tetgen);
-  program
-    .add_option("--edge-length", options.EdgeLength,
+  OptionGroup tetgen(program, "Mesh made by --tetgen");
+  tetgen.Add("--isovalue", options.Isovalue, "NUMBER",
+    "Minimum value of voxels of the body [computed from the histogram]");
+  tetgen.AddChoice("--pieces", options.Pieces, "MODE", { "all", "largest" },
+    "Which pieces of the body are meshed: all, or only the largest one. Pieces of at most 26 "
+    "voxels are left out");
+  tetgen
+    .Add("--edge-length", options.EdgeLength, "NUMBER",
       "Target length of the edges of the tetrahedra, in world units. 0: a twentieth of the "
       "diagonal of the volume, or with --model fem a tenth, because fem adds nodes in the middle "
       "of edges. Within a --push, edges are not longer than a sixth of its radius")
     ->capture_default_str()
-    ->check(NotNegative)
-    ->type_name("NUMBER")
-    ->group(tetgen);
-  program
-    .add_option("--radius-edge-ratio", options.RadiusEdgeRatio,
+    ->check(NotNegative);
+  tetgen
+    .Add("--radius-edge-ratio", options.RadiusEdgeRatio, "NUMBER",
       "Quality of the tetrahedra: maximum ratio of the radius of the circumscribed sphere to the "
       "shortest edge, 1 to 100")
     ->capture_default_str()
-    ->check(CLI::Range(1.0, 100.0))
-    ->type_name("NUMBER")
-    ->group(tetgen);
-  program
-    .add_option("--tetgen-executable", options.TetGenExecutable,
-      "TetGen program [the program that was found when deform-volume was built]")
-    ->type_name("FILE")
-    ->group(tetgen);
+    ->check(CLI::Range(1.0, 100.0));
+  tetgen.Add("--tetgen-executable", options.TetGenExecutable, "FILE",
+    "TetGen program [the program that was found when deform-volume was built]");
 }
 
 /// Makes options that have no effect without another option an error.
@@ -429,184 +371,100 @@ void AddDependencies(CLI::App& program)
 
 void AddResampling(CLI::App& program, Options& options, RawOptions& raw)
 {
-  const char* group = "Resampling";
-  program
-    .add_option("--outside", raw.Outside,
-      "What happens to voxels outside the mesh or field: discard leaves them out, extrapolate "
-      "moves them with the nearest tetrahedron")
-    ->capture_default_str()
-    ->check(CLI::IsMember({ "discard", "extrapolate" }))
-    ->type_name("MODE")
-    ->group(group);
-  program
-    .add_option("--keep", options.KeepDistance,
+  OptionGroup group(program, "Resampling");
+  group.AddChoice("--outside", raw.Outside, "MODE", { "discard", "extrapolate" },
+    "What happens to voxels outside the mesh or field: discard leaves them out, extrapolate "
+    "moves them with the nearest tetrahedron");
+  group
+    .Add("--keep", options.KeepDistance, "DISTANCE",
       "Tissue outside the mesh or field stays where it is. The displacement of the boundary fades "
       "to zero over DISTANCE, the fade distance (world units). With 0, nothing outside moves")
-    ->check(NotNegative)
-    ->type_name("DISTANCE")
-    ->group(group);
-  program
-    .add_option("--reference", options.Reference,
-      "Image, in a format of VOLUME, whose grid the result gets: size, spacing, direction and "
-      "origin. Its values are not used. With --transform, give the fixed image")
-    ->type_name("FILE")
-    ->group(group);
-  program
-    .add_option("--bounds", raw.Bounds,
-      "Bounds of the result: those of the deformed volume, or those of the volume at rest")
+    ->check(NotNegative);
+  group.Add("--reference", options.Reference, "FILE",
+    "Image, in a format of VOLUME, whose grid the result gets: size, spacing, direction and "
+    "origin. Its values are not used. With --transform, give the fixed image");
+  group.AddChoice("--bounds", raw.Bounds, "MODE", { "deformed", "volume" },
+    "Bounds of the result: those of the deformed volume, or those of the volume at rest");
+  group
+    .Add("--padding", options.Padding, "VOXELS",
+      "Width of a border on each side of the result, in voxels")
     ->capture_default_str()
-    ->check(CLI::IsMember({ "deformed", "volume" }))
-    ->type_name("MODE")
-    ->group(group);
-  program
-    .add_option(
-      "--padding", options.Padding, "Width of a border on each side of the result, in voxels")
-    ->capture_default_str()
-    ->check(CLI::Range(0, 1000))
-    ->type_name("VOXELS")
-    ->group(group);
-  program
-    .add_option("--background", options.Background,
-      "Value of voxels outside the deformed volume; arrays of --density-array are 0 there [0 with "
-      "--labels or if the type of the volume has no negative values, otherwise the minimum of the "
-      "volume, such as air in CT]")
-    ->type_name("NUMBER")
-    ->group(group);
-  program
-    .add_option("--categorical", options.CategoricalArrays,
-      "Name of an array of labels, which is not interpolated. May be given several times")
-    ->type_name("NAME")
-    ->take_all()
-    ->expected(1)
-    ->group(group);
-  program.add_flag("--labels", options.Labels, "All arrays hold labels")->group(group);
-  program
-    .add_option("--density-array", options.DensityArrays,
-      "Name of an array that holds an amount per unit of volume, such as a dose or an activity. "
-      "Its values are divided by the Jacobian determinant, so that the deformation preserves the "
-      "total amount. The result is float, or double for an array of doubles. May be given several "
-      "times")
-    ->type_name("NAME")
-    ->take_all()
-    ->expected(1)
-    ->group(group);
-  program
-    .add_option("--resampler", options.Resampler,
-      "exact: resamples over tetrahedra whose vertices are the voxels; mesh-rasterization: over "
-      "the tetrahedra of the deformation mesh, with less memory; automatic: exact if the memory is "
-      "sufficient")
-    ->capture_default_str()
-    ->check(CLI::IsMember({ "automatic", "exact", "mesh-rasterization" }))
-    ->type_name("NAME")
-    ->group(group);
-  program
-    .add_option("--interpolation", options.Interpolation,
-      "linear; nearest, which takes the value of the nearest voxel, as --labels does; or cubic, "
-      "which uses 64 voxels. Where some of them are missing or cut off it is linear; with an "
-      "inverse field or mesh-rasterization, voxels beyond the border are extrapolated linearly")
-    ->capture_default_str()
-    ->check(CLI::IsMember({ "nearest", "linear", "cubic" }))
-    ->type_name("NAME")
-    ->group(group);
-  program
-    .add_option("--device", options.Device,
-      "OpenCL device: cpu, gpu, or a part of a name that --list-devices prints [the environment "
-      "variable DEFORMVOLUME_DEVICE, or else the best device]")
-    ->type_name("NAME")
-    ->group(group);
+    ->check(CLI::Range(0, 1000));
+  group.Add("--background", options.Background, "NUMBER",
+    "Value of voxels outside the deformed volume; arrays of --density-array are 0 there [0 with "
+    "--labels or if the type of the volume has no negative values, otherwise the minimum of the "
+    "volume, such as air in CT]");
+  group.AddList("--categorical", options.CategoricalArrays, "NAME",
+    "Name of an array of labels, which is not interpolated. May be given several times");
+  group.AddFlag("--labels", options.Labels, "All arrays hold labels");
+  group.AddList("--density-array", options.DensityArrays, "NAME",
+    "Name of an array that holds an amount per unit of volume, such as a dose or an activity. "
+    "Its values are divided by the Jacobian determinant, so that the deformation preserves the "
+    "total amount. The result is float, or double for an array of doubles. May be given several "
+    "times");
+  group.AddChoice("--resampler", options.Resampler, "NAME",
+    { "automatic", "exact", "mesh-rasterization" },
+    "exact: resamples over tetrahedra whose vertices are the voxels; mesh-rasterization: over "
+    "the tetrahedra of the deformation mesh, with less memory; automatic: exact if the memory is "
+    "sufficient");
+  group.AddChoice("--interpolation", options.Interpolation, "NAME",
+    { "nearest", "linear", "cubic" },
+    "linear; nearest, which takes the value of the nearest voxel, as --labels does; or cubic, "
+    "which uses 64 voxels. Where some of them are missing or cut off it is linear; with an "
+    "inverse field or mesh-rasterization, voxels beyond the border are extrapolated linearly");
+  group.Add("--device", options.Device, "NAME",
+    "OpenCL device: cpu, gpu, or a part of a name that --list-devices prints [the environment "
+    "variable DEFORMVOLUME_DEVICE, or else the best device]");
 }
 
 void AddOutput(CLI::App& program, Options& options, RawOptions& raw)
 {
-  const char* group = "Output";
-  program
-    .add_option("-o,--output", options.Outputs,
-      std::string("The deformed volume: .vti (all arrays), ") + FormatsOfOneArray +
-        " (the scalars). May be given several times")
-    ->type_name("FILE")
-    ->take_all()
-    ->expected(1)
-    ->group(group);
-  program
-    .add_option("--label-output", options.LabelOutputs,
-      std::string("The deformed labels of --label-volume: .vti (all arrays), ") +
-        FormatsOfOneArray +
-        " (only if there is one array). Labels are 0 outside the deformed volume. May be given "
-        "several times")
-    ->type_name("FILE")
-    ->take_all()
-    ->expected(1)
-    ->group(group);
-  program
-    .add_option("--jacobian", options.Jacobians,
-      std::string("The Jacobian determinant of the deformation (deformed by undeformed volume) at "
-                  "each voxel of the result: .vti, ") +
-        FormatsOfOneArray +
-        ". It is negative where the deformation turns tissue inside out, and 0 outside the "
-        "deformed volume. May be given several times")
-    ->type_name("FILE")
-    ->take_all()
-    ->expected(1)
-    ->group(group);
-  program
-    .add_option("--inverse-field", options.InverseFields,
-      std::string(
-        "The displacement field from each voxel of the result to the point of the volume that is "
-        "shown there, as read by ITK, ANTs and 3D Slicer (left, posterior, superior; mm): ") +
-        FormatsOfOneArray +
-        "; or .vti, in the world coordinates of the volume. May be given several times")
-    ->type_name("FILE")
-    ->take_all()
-    ->expected(1)
-    ->group(group);
-  program
-    .add_option("--points-output", options.PointsOutputs,
-      "The moved points of --points, in the format and the world coordinates of that file. Give "
-      "one for each --points, in the same order. Points outside the deformation stay where they "
-      "are")
-    ->type_name("FILE")
-    ->take_all()
-    ->expected(1)
-    ->group(group);
-  program
-    .add_option("--write-mesh", options.MeshOutput,
-      "The mesh of --tetgen or --lattice at rest, in the world coordinates of the volume, with the "
-      "point array \"Displacement\" (.vtu). If it is the only output, --push is not needed: the "
-      "mesh can be the input of another solver")
-    ->type_name("FILE")
-    ->group(group);
-  program
-    .add_option("--image", options.Image,
-      "Picture of the volume before and after the deformation, side by side, 700 x 700 pixels each "
-      "(.png)")
-    ->type_name("FILE")
-    ->group(group);
-  program
-    .add_option("--movie", options.Movie,
-      "Pictures like that of --image for each of the --frames steps of --model: one file for each "
-      "frame (.png: movie.png makes movie0001.png), or a video in Ogg Theora (.ogv)")
-    ->type_name("FILE")
-    ->group(group);
-  program
-    .add_option("--frames", options.Frames,
+  OptionGroup group(program, "Output");
+  group.AddList("-o,--output", options.Outputs, "FILE",
+    std::string("The deformed volume: .vti (all arrays), ") + FormatsOfOneArray +
+      " (the scalars). May be given several times");
+  group.AddList("--label-output", options.LabelOutputs, "FILE",
+    std::string("The deformed labels of --label-volume: .vti (all arrays), ") + FormatsOfOneArray +
+      " (only if there is one array). Labels are 0 outside the deformed volume. May be given "
+      "several times");
+  group.AddList("--jacobian", options.Jacobians, "FILE",
+    std::string("The Jacobian determinant of the deformation (deformed by undeformed volume) at "
+                "each voxel of the result: .vti, ") +
+      FormatsOfOneArray +
+      ". It is negative where the deformation turns tissue inside out, and 0 outside the "
+      "deformed volume. May be given several times");
+  group.AddList("--inverse-field", options.InverseFields, "FILE",
+    std::string(
+      "The displacement field from each voxel of the result to the point of the volume that is "
+      "shown there, as read by ITK, ANTs and 3D Slicer (left, posterior, superior; mm): ") +
+      FormatsOfOneArray +
+      "; or .vti, in the world coordinates of the volume. May be given several times");
+  group.AddList("--points-output", options.PointsOutputs, "FILE",
+    "The moved points of --points, in the format and the world coordinates of that file. Give "
+    "one for each --points, in the same order. Points outside the deformation stay where they "
+    "are");
+  group.Add("--write-mesh", options.MeshOutput, "FILE",
+    "The mesh of --tetgen or --lattice at rest, in the world coordinates of the volume, with the "
+    "point array \"Displacement\" (.vtu). If it is the only output, --push is not needed: the "
+    "mesh can be the input of another solver");
+  group.Add("--image", options.Image, "FILE",
+    "Picture of the volume before and after the deformation, side by side, 700 x 700 pixels each "
+    "(.png)");
+  group.Add("--movie", options.Movie, "FILE",
+    "Pictures like that of --image for each of the --frames steps of --model: one file for each "
+    "frame (.png: movie.png makes movie0001.png), or a video in Ogg Theora (.ogv)");
+  group
+    .Add("--frames", options.Frames, "NUMBER",
       "Number of frames of --movie: the number of steps in which handles move, and into which "
       "mass-spring divides --duration")
-    ->check(CLI::Range(1, 9999))
-    ->type_name("NUMBER")
-    ->group(group);
-  program
-    .add_option("--threshold", options.Threshold,
-      "Minimum value that the picture shows, approximately [the isovalue of --tetgen, or a fifth "
-      "of the range of values]")
-    ->type_name("NUMBER")
-    ->group(group);
-  program
-    .add_option("--view", raw.View,
-      "Direction from the volume to the viewer of the picture [from in front of a head, slightly "
-      "to its side]")
-    ->type_name("X,Y,Z")
-    ->group(group);
-  program.add_flag("-q,--quiet", options.Quiet, "Print only warnings and errors")->group(group);
+    ->check(CLI::Range(1, 9999));
+  group.Add("--threshold", options.Threshold, "NUMBER",
+    "Minimum value that the picture shows, approximately [the isovalue of --tetgen, or a fifth "
+    "of the range of values]");
+  group.Add("--view", raw.View, "X,Y,Z",
+    "Direction from the volume to the viewer of the picture [from in front of a head, slightly "
+    "to its side]");
+  group.AddFlag("-q,--quiet", options.Quiet, "Print only warnings and errors");
 }
 }
 
@@ -633,41 +491,31 @@ std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)
     "  deform-volume head.nii.gz --tetgen --push 0,88,-50,0,-15,0,30 -o dented.nii.gz");
   options.RadiusEdgeRatio = 1.414;
   RawOptions raw;
-  program.add_option("VOLUME", options.Volume, std::string("The volume: ") + ReadFormats)
-    ->type_name("FILE");
-  program
-    .add_option("--frame", options.Frame,
+  OptionGroup general(program);
+  general.Add("VOLUME", options.Volume, "FILE", std::string("The volume: ") + ReadFormats);
+  general
+    .Add("--frame", options.Frame, "NUMBER",
       std::string(
         "Index of the volume to read from a file with several time steps, counted from 0 (NIfTI") +
         (HasITK ? ", MetaImage, NRRD)" : ")"))
-    ->check(NotNegative)
-    ->type_name("NUMBER");
-  program
-    .add_option("--volume-space", options.VolumeSpace,
-      std::string("World coordinates of a volume whose file does not state them (.vti") +
-        (HasITK ? ", some .nrrd" : "") + "): lps or ras, see --field-space")
-    ->check(CLI::IsMember({ "lps", "ras" }))
-    ->type_name("SPACE");
-  program
-    .add_option("--label-volume", options.LabelVolume,
-      "Labels of the voxels of VOLUME, on the same grid, in one of the formats of VOLUME. Labels "
-      "must be integers. They are deformed with VOLUME, and not interpolated")
-    ->type_name("FILE");
-  program
-    .add_option("--points", options.Points,
-      std::string("Points, surfaces or landmarks that belong to VOLUME: ") + PointFormats +
-        ". They move with the tissue, from VOLUME (the moving image) to the result (the fixed "
-        "image). With the same transforms, antsApplyTransformsToPoints moves points in the "
-        "opposite direction. The first line of a .csv file must name its columns, starting with "
-        "x,y,z; its world coordinates are lps. May be given several times")
-    ->type_name("FILE")
-    ->take_all()
-    ->expected(1);
-  program.add_flag("--file-coordinates", options.FileCoordinates,
+    ->check(NotNegative);
+  general.AddChoice("--volume-space", options.VolumeSpace, "SPACE", { "lps", "ras" },
+    std::string("World coordinates of a volume whose file does not state them (.vti") +
+      (HasITK ? ", some .nrrd" : "") + "): lps or ras, see --field-space");
+  general.Add("--label-volume", options.LabelVolume, "FILE",
+    "Labels of the voxels of VOLUME, on the same grid, in one of the formats of VOLUME. Labels "
+    "must be integers. They are deformed with VOLUME, and not interpolated");
+  general.AddList("--points", options.Points, "FILE",
+    std::string("Points, surfaces or landmarks that belong to VOLUME: ") + PointFormats +
+      ". They move with the tissue, from VOLUME (the moving image) to the result (the fixed "
+      "image). With the same transforms, antsApplyTransformsToPoints moves points in the "
+      "opposite direction. The first line of a .csv file must name its columns, starting with "
+      "x,y,z; its world coordinates are lps. May be given several times");
+  general.AddFlag("--file-coordinates", options.FileCoordinates,
     std::string("Use the coordinates of VTK's and ParaView's readers: no direction, and the origin "
                 "0 for NIfTI files") +
       (HasITK ? " and DICOM series" : ""));
-  program.add_flag(
+  general.AddFlag(
     "--list-devices", options.ListDevices, "List the OpenCL devices, the best first, and exit");
   AddDeformation(program, options, raw);
   AddResampling(program, options, raw);
