@@ -27,47 +27,12 @@ using namespace divisionCases;
 namespace
 {
 
-vtkMPIController* Controller = nullptr;
-
-int GetRank()
-{
-  return Controller->GetLocalProcessId();
-}
-int GetRanks()
-{
-  return Controller->GetNumberOfProcesses();
-}
-
-/// Sends the image of the first rank to all ranks.
-void Broadcast(vtkImageData* image)
-{
-  Controller->Broadcast(image, 0);
-  // VTK writes origin and spacing as rounded decimals, and leaves the direction out.
-  std::array<double, 15> grid;
-  std::copy_n(image->GetOrigin(), 3, grid.data());
-  std::copy_n(image->GetSpacing(), 3, grid.data() + 3);
-  std::copy_n(image->GetDirectionMatrix()->GetData(), 9, grid.data() + 6);
-  Controller->Broadcast(grid.data(), 15, 0);
-  image->SetOrigin(grid.data());
-  image->SetSpacing(grid.data() + 3);
-  image->SetDirectionMatrix(grid.data() + 6);
-}
-
 /// Returns the output of one process, on all ranks.
 vtkSmartPointer<vtkImageData> MakeWhole(const Case& from)
 {
-  auto image = vtkSmartPointer<vtkImageData>::New();
-  if (GetRank() == 0)
-  {
-    vtkMultiProcessController::SetGlobalController(nullptr);
-    Deformed whole(from.Volume, from.Deformation);
-    from.Set(whole.Filter);
-    image->ShallowCopy(whole.Update());
-    vtkMultiProcessController::SetGlobalController(Controller);
-  }
-  Broadcast(image);
-  EXPECT_GT(image->GetNumberOfPoints(), 0);
-  return image;
+  Deformed whole(from.Volume, from.Deformation);
+  from.Set(whole.Filter);
+  return MakeOnFirstRank([&] { return whole.Update(); });
 }
 
 /// Compares the piece of this rank with the whole output.
@@ -86,7 +51,7 @@ void Check(Deformed& deformed, vtkImageData* whole, const std::string& name, int
   vtkIdType all = 0;
   Controller->AllReduce(&mine, &all, 1, vtkCommunicator::SUM_OP);
   EXPECT_EQ(deformed.Filter->GetNumberOfCoveredVoxels(), all);
-  const Extent piece = GetPiece(Controller, GetExtent(whole), ghosts);
+  const Extent piece = GetPiece(GetExtent(whole), ghosts);
   if (piece[1] < piece[0])
   {
     EXPECT_EQ(output->GetNumberOfPoints(), 0);
@@ -398,15 +363,12 @@ void TestKeptExtent(const Case& from)
     mesh->ShallowCopy(from.Deformation);
     SetDisplacements(mesh, Bend(from.Volume, amount));
     moving.Filter->SetDeformationData(Distribute(mesh, Spread::Pieces));
-    auto image = vtkSmartPointer<vtkImageData>::New();
-    if (GetRank() == 0)
-    {
-      vtkMultiProcessController::SetGlobalController(nullptr);
-      whole.Filter->SetDeformationData(mesh);
-      image->ShallowCopy(whole.Update());
-      vtkMultiProcessController::SetGlobalController(Controller);
-    }
-    Broadcast(image);
+    const auto image = MakeOnFirstRank(
+      [&]
+      {
+        whole.Filter->SetDeformationData(mesh);
+        return whole.Update();
+      });
     Check(moving, image, "Kept extent");
   }
 }
@@ -620,17 +582,5 @@ void TestColdStart()
 int main(int argc, char* argv[])
 {
   const bool cold = argc == 2 && std::string(argv[1]) == "cold";
-  return RunOnRanks(argc, argv,
-    [=](vtkMPIController* controller)
-    {
-      Controller = controller;
-      if (cold)
-      {
-        TestColdStart();
-      }
-      else
-      {
-        TestAll();
-      }
-    });
+  return RunOnRanks(argc, argv, cold ? TestColdStart : TestAll);
 }

@@ -67,15 +67,12 @@ namespace
 class ShortMemory
 {
 public:
-  explicit ShortMemory(vtkMPIController* controller)
-    : Controller(controller)
-    , Rank(controller->GetLocalProcessId())
-    , Count(controller->GetNumberOfProcesses())
-    , Volume(MakeImage({ { 0, 30, 0, 20, 0, 20 } }))
+  ShortMemory()
+    : Volume(MakeImage({ { 0, 30, 0, 20, 0, 20 } }))
   {
     AddScalars<short>(this->Volume, "value", [](const glm::dvec3& p) { return p.x + p.y * p.z; });
     // Each rank has a mesh of its own, beside that of the previous rank.
-    auto part = MakeImage({ { 10 * this->Rank, 10 * this->Rank + 10, 0, 20, 0, 20 } });
+    auto part = MakeImage({ { 10 * GetRank(), 10 * GetRank() + 10, 0, 20, 0, 20 } });
     this->Mesh = MakeMesh(part, 9, 0.0);
     SetDisplacements(this->Mesh, Shift(1.0, 0.0, 0.0));
     this->Tested.Filter->SetInputData(this->Volume);
@@ -89,14 +86,14 @@ public:
     this->Mesh->GetPointData()->GetVectors()->Modified();
     this->Volume->GetPointData()->GetScalars()->Modified();
     this->Volume->Modified();
-    const bool chosen = this->Rank == this->Count - 1;
+    const bool chosen = GetRank() == GetRanks() - 1;
     Left = chosen ? allocations : -1;
     Failed = false;
-    this->Tested.Filter->UpdatePiece(this->Rank, this->Count, 0);
+    this->Tested.Filter->UpdatePiece(GetRank(), GetRanks(), 0);
     Left = -1;
     int failed = Failed ? 1 : 0;
     int any = 0;
-    this->Controller->AllReduce(&failed, &any, 1, vtkCommunicator::MAX_OP);
+    Controller->AllReduce(&failed, &any, 1, vtkCommunicator::MAX_OP);
     return any != 0;
   }
 
@@ -120,7 +117,7 @@ public:
       ++allocations;
     }
     EXPECT_EQ(this->Tested.TakeErrors(), 0);
-    if (this->Rank == 0)
+    if (GetRank() == 0)
     {
       std::cout << allocations << " large allocations failed in turn\n";
     }
@@ -128,9 +125,6 @@ public:
   }
 
 private:
-  vtkMPIController* Controller;
-  int Rank;
-  int Count;
   vtkSmartPointer<vtkImageData> Volume;
   vtkSmartPointer<vtkUnstructuredGrid> Mesh;
   Deformed Tested;
@@ -140,6 +134,5 @@ private:
 
 int main(int argc, char* argv[])
 {
-  return RunOnRanks(
-    argc, argv, [](vtkMPIController* controller) { ShortMemory(controller).Run(); });
+  return RunOnRanks(argc, argv, [] { ShortMemory().Run(); });
 }

@@ -12,37 +12,25 @@ using namespace divisionCases;
 namespace
 {
 
-enum class Failure
-{
-  None,
-  Data,
-  Information
-};
-
 /// A source that fails on request, without an event for its observers.
 template <typename Base>
 class FailingSource : public Base
 {
 public:
-  void Fail(Failure how)
+  void SetFails(bool fails)
   {
-    this->How = how;
+    this->Fails = fails;
     this->Modified();
   }
   vtkTypeBool ProcessRequest(
     vtkInformation* request, vtkInformationVector** input, vtkInformationVector* output) override
   {
-    const bool data = request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()) != 0;
-    const bool information = request->Has(vtkDemandDrivenPipeline::REQUEST_INFORMATION()) != 0;
-    if ((data && this->How == Failure::Data) || (information && this->How == Failure::Information))
-    {
-      return 0;
-    }
-    return this->Base::ProcessRequest(request, input, output);
+    const bool isOfData = request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()) != 0;
+    return isOfData && this->Fails ? 0 : this->Base::ProcessRequest(request, input, output);
   }
 
 private:
-  Failure How = Failure::None;
+  bool Fails = false;
 };
 
 class MeshSource : public vtkUnstructuredGridAlgorithm
@@ -107,58 +95,47 @@ struct Pipeline : Deformed
 };
 
 template <typename Source>
-void TestFailure(Pipeline& pipeline, Source* source, Failure how, vtkMPIController* controller,
-  const std::string& words)
+void TestFailure(Pipeline& pipeline, Source* source, const std::string& words)
 {
-  const int rank = controller->GetLocalProcessId();
-  const int ranks = controller->GetNumberOfProcesses();
   const auto update = [&]
   {
-    pipeline.Filter->UpdatePiece(rank, ranks, 0);
+    pipeline.Filter->UpdatePiece(GetRank(), GetRanks(), 0);
     return pipeline.TakeErrors();
   };
-  source->Fail(rank == ranks - 1 ? how : Failure::None);
+  source->SetFails(GetRank() == GetRanks() - 1);
   EXPECT_EQ(update(), 1);
   EXPECT_TRUE(HasPart(pipeline.LastError, words));
   EXPECT_EQ(pipeline.Filter->GetOutput()->GetNumberOfPoints(), 0);
-  source->Fail(Failure::None);
+  source->SetFails(false);
   EXPECT_EQ(update(), 0);
   EXPECT_GT(pipeline.Filter->GetOutput()->GetNumberOfPoints(), 0);
   EXPECT_GT(pipeline.Filter->GetNumberOfCoveredVoxels(), 0);
 }
 
-void TestFailures(vtkMPIController* controller)
+void TestFailures()
 {
   const Case from = MakeCases()[2];
   {
     Pipeline pipeline(from);
-    TestFailure(
-      pipeline, pipeline.Volume.Get(), Failure::Data, controller, "volume on input port 0");
-    TestFailure(
-      pipeline, pipeline.Mesh.Get(), Failure::Data, controller, "deformation on input port 1");
+    TestFailure(pipeline, pipeline.Volume.Get(), "volume on input port 0");
+    TestFailure(pipeline, pipeline.Mesh.Get(), "deformation on input port 1");
   }
   {
     // The source fails after an update that succeeded.
     Pipeline pipeline(from);
-    pipeline.Filter->UpdatePiece(
-      controller->GetLocalProcessId(), controller->GetNumberOfProcesses(), 0);
+    pipeline.Filter->UpdatePiece(GetRank(), GetRanks(), 0);
     EXPECT_EQ(pipeline.TakeErrors(), 0);
-    TestFailure(
-      pipeline, pipeline.Mesh.Get(), Failure::Data, controller, "deformation on input port 1");
-    TestFailure(
-      pipeline, pipeline.Volume.Get(), Failure::Data, controller, "volume on input port 0");
+    TestFailure(pipeline, pipeline.Mesh.Get(), "deformation on input port 1");
+    TestFailure(pipeline, pipeline.Volume.Get(), "volume on input port 0");
   }
   {
     Pipeline pipeline(from);
     pipeline.Filter->SetRestConnection(pipeline.Rest->GetOutputPort());
-    TestFailure(pipeline, pipeline.Rest.Get(), Failure::Data, controller,
-      "rest configuration on input port 2");
+    TestFailure(pipeline, pipeline.Rest.Get(), "rest configuration on input port 2");
     // With these bounds, the filter does not need the mesh before RequestData().
     pipeline.Filter->SetOutputBoundsModeToVolumeBounds();
-    TestFailure(pipeline, pipeline.Rest.Get(), Failure::Data, controller,
-      "rest configuration on input port 2");
-    TestFailure(
-      pipeline, pipeline.Volume.Get(), Failure::Data, controller, "volume on input port 0");
+    TestFailure(pipeline, pipeline.Rest.Get(), "rest configuration on input port 2");
+    TestFailure(pipeline, pipeline.Volume.Get(), "volume on input port 0");
   }
 }
 
