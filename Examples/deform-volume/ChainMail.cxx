@@ -14,7 +14,6 @@
 #include <vtkPoints.h>
 
 #include <algorithm>
-#include <sstream>
 
 vtkSmartPointer<vtkPolyData> MakeHandles(const std::vector<Pull>& pulls, double part)
 {
@@ -54,8 +53,6 @@ void PullByChainMail(const Options& options, const Volume& volume, Messages& mes
     deformation.Displacement = "Displacement";
     takeFrame(deformation);
   }
-  std::ostringstream text;
-  text << chainMail->GetNumberOfMovedVoxels() << " voxels moved in "
-       << chainMail->GetNumberOfSweeps() << " sweeps";
-  deformation.Motion = text.str();
+  deformation.Motion = MakeText(chainMail->GetNumberOfMovedVoxels(), " voxels moved in ",
+    chainMail->GetNumberOfSweeps(), " sweeps");
 }

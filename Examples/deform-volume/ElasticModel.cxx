@@ -23,8 +23,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iomanip>
 #include <set>
-#include <sstream>
 
 namespace
 {
@@ -79,9 +79,8 @@ void AddFixedNodes(
   // With --pull this is an error of the model.
   if (options.Pulls.empty() && fixed->GetRange()[0] > 0.0)
   {
-    messages.DisplayWarningText(
-      "--fix fixes all nodes of the mesh, so nothing moves. Positions are "
-      "world coordinates of the volume.");
+    messages.Warn("--fix fixes all nodes of the mesh, so nothing moves. Positions are "
+                  "world coordinates of the volume.");
   }
 }
 
@@ -99,10 +98,9 @@ void WarnOfUnusedMaterials(const Options& options, vtkDataArray* values, Message
     {
       double range[2];
       values->GetFiniteRange(range, 0);
-      std::ostringstream text;
-      text << "No voxel has a value of the range " << material.Minimum << ":" << material.Maximum
-           << " of --material. Values of the volume are " << range[0] << " to " << range[1] << ".";
-      messages.DisplayWarningText(text.str().c_str());
+      messages.Warn(
+        MakeText("No voxel has a value of the range ", material.Minimum, ":", material.Maximum,
+          " of --material. Values of the volume are ", range[0], " to ", range[1], "."));
     }
   }
 }
@@ -185,17 +183,13 @@ std::string DescribeCut(vtkElasticDeformation* model, vtkPolyData* sheet, Messag
   const vtkIdType faces = model->GetNumberOfSplitFaces();
   if (faces == 0)
   {
-    messages.DisplayWarningText(
+    messages.Warn(
       "No sheet of --cut crosses the mesh. Are they in the world coordinates of the volume?");
   }
-  std::ostringstream text;
-  text.precision(3);
-  text << faces << " faces of tetrahedra of the mesh split";
-  if (faces > 0)
-  {
-    text << ", at most " << FindDistance(model->GetOutput(), sheet) << " mm from the sheet";
-  }
-  return text.str();
+  const std::string split = MakeText(faces, " faces of tetrahedra of the mesh split");
+  return faces == 0 ? split
+                    : MakeText(split, std::setprecision(3), ", at most ",
+                        FindDistance(model->GetOutput(), sheet), " mm from the sheet");
 }
 
 void SetUp(vtkElasticDeformation* model, const Options& options, vtkUnstructuredGrid* mesh)
@@ -240,7 +234,6 @@ void DeformByElasticModel(const Options& options, const Volume& volume, vtkUnstr
       deformation.Cut = DescribeCut(model, sheet, messages);
     }
   };
-  std::ostringstream text;
   if (options.Model == "fem")
   {
     vtkNew<vtkFiniteElementDeformation> model;
@@ -256,8 +249,8 @@ void DeformByElasticModel(const Options& options, const Volume& volume, vtkUnstr
       throw Failure("cannot simulate the body: no equilibrium was found. Reduce --gravity or the "
                     "displacements of --pull, or increase --young");
     }
-    text << model->GetNumberOfNewtonSteps() << " steps to equilibrium, strain energy "
-         << model->GetStrainEnergy() << " J";
+    deformation.Motion = MakeText(model->GetNumberOfNewtonSteps(),
+      " steps to equilibrium, strain energy ", model->GetStrainEnergy(), " J");
   }
   else
   {
@@ -266,7 +259,7 @@ void DeformByElasticModel(const Options& options, const Volume& volume, vtkUnstr
     model->SetEndTime(options.Duration); // without a time range, VTK ignores all but the first time
     model->SetHandlesData(MakeHandles(options.Pulls));
     run(model, [&](double part) { model->UpdateTimeStep(part * options.Duration); });
-    text << options.Duration << " s, in steps of " << 1e3 * model->GetTimeStepInUse() << " ms";
+    deformation.Motion =
+      MakeText(options.Duration, " s, in steps of ", 1e3 * model->GetTimeStepInUse(), " ms");
   }
-  deformation.Motion = text.str();
 }

@@ -31,7 +31,6 @@
 #include <iostream>
 #include <map>
 #include <optional>
-#include <sstream>
 #include <unistd.h>
 
 namespace
@@ -40,9 +39,7 @@ std::string GetDimensionsText(vtkImageData* image)
 {
   int dimensions[3];
   image->GetDimensions(dimensions);
-  std::ostringstream text;
-  text << dimensions[0] << " x " << dimensions[1] << " x " << dimensions[2];
-  return text.str();
+  return MakeText(dimensions[0], " x ", dimensions[1], " x ", dimensions[2]);
 }
 
 void ListDevices()
@@ -184,37 +181,32 @@ PictureOptions GetPictureOptions(
 void PrintInputs(const Volume& volume, const LabelVolume& labels, const Deformation& deformation,
   const std::vector<std::string>& tools)
 {
-  vtkDataArray* scalars = volume.Image->GetPointData()->GetScalars();
-  std::cout << "volume     " << GetDimensionsText(volume.Image) << " voxels, "
-            << scalars->GetDataTypeAsString() << "\n";
-  if (labels.AreThere())
+  const auto print = [](const char* title, const std::string& text)
   {
-    std::cout << "labels     " << labels.Describe() << "\n";
-  }
+    if (!text.empty())
+    {
+      std::cout << title << text << "\n";
+    }
+  };
+  vtkDataArray* scalars = volume.Image->GetPointData()->GetScalars();
+  print(
+    "volume     ", GetDimensionsText(volume.Image) + " voxels, " + scalars->GetDataTypeAsString());
+  print("labels     ", labels.Describe());
   if (deformation.Data)
   {
-    std::cout << (vtkImageData::SafeDownCast(deformation.Data) ? "field      " : "mesh       ")
-              << deformation.NumberOfNodes << " nodes, " << deformation.NumberOfCells << " cells\n";
+    print(vtkImageData::SafeDownCast(deformation.Data) ? "field      " : "mesh       ",
+      MakeText(deformation.NumberOfNodes, " nodes, ", deformation.NumberOfCells, " cells"));
   }
   for (const std::string& edges : deformation.Edges)
   {
-    std::cout << "edges      " << edges << "\n";
+    print("edges      ", edges);
   }
-  if (!deformation.Body.empty())
-  {
-    std::cout << "body       " << deformation.Body << "\n";
-  }
-  if (!deformation.Motion.empty())
-  {
-    std::cout << "moved      " << deformation.Motion << "\n";
-  }
-  if (!deformation.Cut.empty())
-  {
-    std::cout << "cut        " << deformation.Cut << "\n";
-  }
+  print("body       ", deformation.Body);
+  print("moved      ", deformation.Motion);
+  print("cut        ", deformation.Cut);
   for (const std::string& tool : tools)
   {
-    std::cout << "cut        " << tool << "\n";
+    print("cut        ", tool);
   }
 }
 
@@ -287,17 +279,15 @@ void WarnOfFolds(
   const vtkIdType inverted = filter->GetNumberOfInvertedTetrahedra();
   if (options.FieldIsInverse && inverted > 0)
   {
-    messages.DisplayWarningText("The field folds: it leads several points of the result to the "
-                                "same point of the volume, which is shown more than once.");
+    messages.Warn("The field folds: it leads several points of the result to the "
+                  "same point of the volume, which is shown more than once.");
   }
   else if (inverted > voxels / few)
   {
-    messages.DisplayWarningText(
-      ("The deformation folds the volume: it turns " + std::to_string(inverted) +
-        " of the tetrahedra between its voxels inside out. Where parts of the result overlap, only "
-        "one of them is shown. Check the displacements, and whether they are in the unit of the "
-        "volume.")
-        .c_str());
+    messages.Warn("The deformation folds the volume: it turns " + std::to_string(inverted) +
+      " of the tetrahedra between its voxels inside out. Where parts of the result overlap, only "
+      "one of them is shown. Check the displacements, and whether they are in the unit of the "
+      "volume.");
   }
 }
 

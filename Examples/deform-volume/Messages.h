@@ -5,8 +5,18 @@
 #include <vtkOutputWindow.h>
 
 #include <mutex>
+#include <sstream>
 #include <string>
 #include <vector>
+
+/// Joins texts, numbers and manipulators of streams such as std::setprecision(3).
+template <typename... Parts>
+std::string MakeText(const Parts&... parts)
+{
+  std::ostringstream text;
+  (text << ... << parts);
+  return text.str();
+}
 
 /// Replaces VTK's output window. Prints each warning in one line, and keeps the first error until
 /// Check() or TakeError(). Removes file names and line numbers of source code from both.
@@ -18,6 +28,9 @@ public:
 
   /// Set the name of the program, with which warnings begin. Default: deform-volume.
   void SetProgram(const std::string& name) { this->Program = name; }
+
+  /// Prints a warning.
+  void Warn(const std::string& text) { this->DisplayWarningText(text.c_str()); }
 
   void DisplayText(const char* text) override;
   void DisplayErrorText(const char* text) override;

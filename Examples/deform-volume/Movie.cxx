@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Movie.h"
 
-#include "FileSuffix.h"
+#include "Files.h"
 
 #include "Messages.h"
 
@@ -10,7 +10,6 @@
 #endif
 
 #include <iomanip>
-#include <sstream>
 
 namespace
 {
@@ -52,10 +51,8 @@ bool CanWriteMovie(const std::string& path)
 std::string GetFramePath(const std::string& path, int frame)
 {
   const std::size_t suffix = path.size() - std::string(".png").size();
-  std::ostringstream text;
-  text << path.substr(0, suffix) << std::setw(4) << std::setfill('0') << frame
-       << path.substr(suffix);
-  return text.str();
+  return MakeText(
+    path.substr(0, suffix), std::setw(4), std::setfill('0'), frame, path.substr(suffix));
 }
 
 Movie::Movie(vtkImageData* before, const PictureOptions& options, const std::string& path)

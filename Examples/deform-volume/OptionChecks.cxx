@@ -3,7 +3,8 @@
 
 #include "Failure.h"
 #include "FieldReading.h"
-#include "FileSuffix.h"
+#include "Files.h"
+#include "Messages.h"
 #include "Movie.h"
 #include "Options.h"
 #include "PointsFile.h"
@@ -14,7 +15,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -145,10 +145,8 @@ void CheckModel(const Options& options)
   {
     if (pull.Radius != options.Pulls.front().Radius)
     {
-      std::ostringstream text;
-      text << "all --pull must have the same radius, but the radii " << options.Pulls.front().Radius
-           << " and " << pull.Radius << " are given";
-      throw UsageError(text.str());
+      throw UsageError(MakeText("all --pull must have the same radius, but the radii ",
+        options.Pulls.front().Radius, " and ", pull.Radius, " are given"));
     }
   }
 }

@@ -12,19 +12,12 @@
 #include <vtkNew.h>
 #include <vtkSphere.h>
 
-#include <sstream>
-
 namespace
 {
 std::string Describe(const std::string& tool, vtkIdType switchedOff, vtkIdType divided = 0)
 {
-  std::ostringstream text;
-  text << tool << ": " << switchedOff << " tetrahedra of the volume are off";
-  if (divided > 0)
-  {
-    text << ", " << divided << " divided";
-  }
-  return text.str();
+  return MakeText(tool, ": ", switchedOff, " tetrahedra of the volume are off",
+    divided > 0 ? MakeText(", ", divided, " divided") : "");
 }
 }
 
@@ -45,10 +38,9 @@ std::vector<std::string> CutAndCarve(const Options& options, Volume& volume, Mes
     const vtkIdType divided = cut->GetNumberOfDividedTetrahedra();
     if (off == 0 && divided == 0)
     {
-      messages.DisplayWarningText(("The sheet " + path +
+      messages.Warn("The sheet " + path +
         " changes nothing: it does not cross the volume, or crosses only what is cut or carved "
-        "already. Is it in the world coordinates of the volume?")
-                                    .c_str());
+        "already. Is it in the world coordinates of the volume?");
     }
     done.push_back(Describe(path, off, divided));
   }
@@ -67,12 +59,10 @@ std::vector<std::string> CutAndCarve(const Options& options, Volume& volume, Mes
     const vtkIdType off = carve->GetNumberOfSwitchedOffTetrahedra();
     if (off == 0)
     {
-      std::ostringstream text;
-      text << "The sphere of --carve at " << carving.Center[0] << ", " << carving.Center[1] << ", "
-           << carving.Center[2] << " with the radius " << carving.Radius
-           << " changes nothing: it contains no part of the volume, or only what is cut or carved "
-              "already. Is it in the world coordinates of the volume?";
-      messages.DisplayWarningText(text.str().c_str());
+      messages.Warn(MakeText("The sphere of --carve at ", carving.Center[0], ", ",
+        carving.Center[1], ", ", carving.Center[2], " with the radius ", carving.Radius,
+        " changes nothing: it contains no part of the volume, or only what is cut or carved "
+        "already. Is it in the world coordinates of the volume?"));
     }
     done.push_back(Describe("sphere", off));
   }

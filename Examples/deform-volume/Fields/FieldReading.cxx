@@ -2,8 +2,7 @@
 #include "FieldReading.h"
 
 #include "Failure.h"
-#include "FileAccess.h"
-#include "FileSuffix.h"
+#include "Files.h"
 #include "ImageAxes.h"
 #include "Messages.h"
 #include "VolumeReading.h"
@@ -109,11 +108,10 @@ void CheckKind(const Volume& field, const std::string& path, bool isInverse, Mes
   const std::string kind = found == field.Fields.end() ? "" : found->second;
   if ((kind == "resampling" && !isInverse) || (kind == "modeling" && isInverse))
   {
-    messages.DisplayWarningText(("The displacement field type of " + path + " is \"" + kind +
+    messages.Warn("The displacement field type of " + path + " is \"" + kind +
       (isInverse ? "\": it is a forward field. Remove --field-is-inverse."
                  : "\": it leads from the deformed volume to the volume at rest, and needs "
-                   "--field-is-inverse."))
-                                  .c_str());
+                   "--field-is-inverse."));
   }
 }
 
@@ -204,10 +202,9 @@ void CheckPositions(vtkImageData* image, const std::string& path, Messages& mess
   if (size > 0.0 && std::abs(both / squares - 1.0) < tolerance &&
     vtkMath::Norm(mean) / static_cast<double>(count) < tolerance * size)
   {
-    messages.DisplayWarningText(("The vectors of " + path +
+    messages.Warn("The vectors of " + path +
       " look like the positions of its voxels, which some programs call a deformation field. A "
-      "displacement field holds how far each point moves: subtract the position of each voxel.")
-                                  .c_str());
+      "displacement field holds how far each point moves: subtract the position of each voxel.");
   }
 }
 }
@@ -262,10 +259,9 @@ vtkSmartPointer<vtkImageData> ReadField(const std::string& path, const Volume& v
       FlipWorldAxes(matrix);
       if (options.Space == "ras")
       {
-        messages.DisplayWarningText(("The vectors of " + path +
+        messages.Warn("The vectors of " + path +
           " are lps, as its intent 1007 says; --field-space does not change this. If they are ras, "
-          "set the intent to 1006.")
-                                      .c_str());
+          "set the intent to 1006.");
       }
     }
   }

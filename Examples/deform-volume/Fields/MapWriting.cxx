@@ -2,7 +2,7 @@
 #include "MapWriting.h"
 
 #include "Coverage.h"
-#include "FileSuffix.h"
+#include "Files.h"
 #include "Messages.h"
 #include "Options.h"
 #include "VolumeWriting.h"
@@ -69,9 +69,8 @@ void WriteInverseField(const Options& options, const Volume& deformed, Messages&
     std::count(covered, covered + deformed.Image->GetNumberOfPoints(), static_cast<char>(0));
   if (uncovered > 0)
   {
-    messages.DisplayWarningText(("The inverse field is 0 at " + std::to_string(uncovered) + " of " +
-      std::to_string(deformed.Image->GetNumberOfPoints()) + " voxels outside the deformed volume.")
-                                  .c_str());
+    messages.Warn("The inverse field is 0 at " + std::to_string(uncovered) + " of " +
+      std::to_string(deformed.Image->GetNumberOfPoints()) + " voxels outside the deformed volume.");
   }
   for (const std::string& path : options.InverseFields)
   {

@@ -3,8 +3,7 @@
 
 #include "Failure.h"
 #include "FieldReading.h"
-#include "FileAccess.h"
-#include "FileSuffix.h"
+#include "Files.h"
 #include "ImageAxes.h"
 #include "Messages.h"
 #include "ProgressBar.h"

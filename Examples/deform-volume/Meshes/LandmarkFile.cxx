@@ -2,8 +2,7 @@
 #include "LandmarkFile.h"
 
 #include "Failure.h"
-#include "FileAccess.h"
-#include "FileSuffix.h"
+#include "Files.h"
 #include "MeshSpace.h"
 #include "Messages.h"
 
@@ -300,9 +299,8 @@ void ReadMarkups(const std::string& path, LandmarkFile& file, Messages& messages
     const Json::Value& type = markup["type"];
     if (type.isString() && (type.asString() == "ROI" || type.asString() == "Plane"))
     {
-      messages.DisplayWarningText((path + " holds a markup of the type " + type.asString() +
-        ": its control points are deformed, but its size, orientation and center are not.")
-                                    .c_str());
+      messages.Warn(path + " holds a markup of the type " + type.asString() +
+        ": its control points are deformed, but its size, orientation and center are not.");
     }
     const Json::Value& controlPoints = markup["controlPoints"];
     if (!controlPoints.isNull() && !controlPoints.isArray())
@@ -328,11 +326,7 @@ bool IsLandmarkFile(const std::string& path)
 
 LandmarkFile ReadLandmarks(const std::string& path, [[maybe_unused]] Messages& messages)
 {
-  const std::string fault = FindReadingFault(path);
-  if (!fault.empty())
-  {
-    Fail(path, fault);
-  }
+  CheckReadable(path);
   std::ifstream stream(path, std::ios::binary);
   LandmarkFile file;
   file.Text.assign(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshFormats.h"
 
-#include "FileSuffix.h"
+#include "Files.h"
 
 #include <vtksys/SystemTools.hxx>
 

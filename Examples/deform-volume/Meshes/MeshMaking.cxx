@@ -24,7 +24,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
+#include <iomanip>
 
 namespace
 {
@@ -93,16 +93,11 @@ vtkSmartPointer<vtkUnstructuredGrid> Mesh(
   const ProgressBar bar(mesher, "meshing", !options.Quiet);
   mesher->Update();
   messages.Check("cannot mesh the body");
-  std::ostringstream body;
-  body << mesher->GetNumberOfBodyVoxels() << " voxels in " << mesher->GetNumberOfPieces()
-       << " pieces, " << mesher->GetNumberOfBodyVoxelsOutside() << " voxels outside the mesh; "
-       << mesher->GetNumberOfSpeckVoxels() << " voxels in specks left out";
-  deformation.Body = body.str();
-  std::ostringstream edges;
-  edges.precision(3);
-  edges << "about " << mesher->GetUsedTargetEdgeLength()
-        << (options.Pushes.empty() ? "" : " away from pushes");
-  deformation.Edges.push_back(edges.str());
+  deformation.Body = MakeText(mesher->GetNumberOfBodyVoxels(), " voxels in ",
+    mesher->GetNumberOfPieces(), " pieces, ", mesher->GetNumberOfBodyVoxelsOutside(),
+    " voxels outside the mesh; ", mesher->GetNumberOfSpeckVoxels(), " voxels in specks left out");
+  deformation.Edges.push_back(MakeText(std::setprecision(3), "about ",
+    mesher->GetUsedTargetEdgeLength(), options.Pushes.empty() ? "" : " away from pushes"));
   if (!options.Labels)
   {
     deformation.Isovalue = mesher->GetUsedIsovalue();
@@ -115,19 +110,14 @@ void CheckEdges(
   const Push& push, vtkUnstructuredGrid* mesh, Messages& messages, Deformation& deformation)
 {
   const double longest = GetLongestEdge(push, mesh);
-  std::ostringstream text;
-  text.precision(3);
-  text << "up to " << longest << " within the push of radius " << push.Radius;
-  deformation.Edges.push_back(text.str());
+  deformation.Edges.push_back(
+    MakeText(std::setprecision(3), "up to ", longest, " within the push of radius ", push.Radius));
   if (longest > push.GetEdgeLength() * (1.0 + 1e-9))
   {
-    std::ostringstream warning;
-    warning.precision(3);
-    warning << "Edges of tetrahedra are up to " << longest << " long within a push of radius "
-            << push.Radius
-            << ". Edges longer than a sixth of the radius can be visible as facets. Give "
-            << "--lattice more nodes, or use --tetgen.";
-    messages.DisplayWarningText(warning.str().c_str());
+    messages.Warn(MakeText(std::setprecision(3), "Edges of tetrahedra are up to ", longest,
+      " long within a push of radius ", push.Radius,
+      ". Edges longer than a sixth of the radius can be visible as facets. Give --lattice more "
+      "nodes, or use --tetgen."));
   }
 }
 
@@ -139,18 +129,16 @@ void PushNodes(const Options& options, const vtkSmartPointer<vtkUnstructuredGrid
   {
     if (push.Folds())
     {
-      std::ostringstream text;
-      text << "The displacement of a --push is " << vtkMath::Norm(push.Displacement.data())
-           << " long, which is too large for its radius " << push.Radius
-           << ": the volume folds over itself.";
-      messages.DisplayWarningText(text.str().c_str());
+      messages.Warn(MakeText("The displacement of a --push is ",
+        vtkMath::Norm(push.Displacement.data()), " long, which is too large for its radius ",
+        push.Radius, ": the volume folds over itself."));
     }
     CheckEdges(push, mesh, messages, deformation);
   }
   if (ApplyPushes(options.Pushes, mesh) == 0 && !options.Pushes.empty())
   {
-    messages.DisplayWarningText("No node of the mesh is within the radius of a push, so nothing "
-                                "moves. Are X,Y,Z of --push world coordinates of the volume?");
+    messages.Warn("No node of the mesh is within the radius of a push, so nothing "
+                  "moves. Are X,Y,Z of --push world coordinates of the volume?");
   }
   deformation.Data = mesh;
   deformation.Displacement = PushArrayName;
@@ -197,12 +185,10 @@ void WarnOfUnits(
   const double image = vtkBoundingBox(volume.Image->GetBounds()).GetMaxLength();
   if (mesh > 100.0 * image || 100.0 * mesh < image)
   {
-    std::ostringstream text;
-    text.precision(3);
-    text << (options.Rest.empty() ? options.Mesh : options.Rest) << " is " << mesh
-         << " long, and the volume " << image << ". If one of them is in metres and the other in "
-         << "millimetres, scale the points and the displacements of the mesh.";
-    messages.DisplayWarningText(text.str().c_str());
+    messages.Warn(MakeText(std::setprecision(3), options.Rest.empty() ? options.Mesh : options.Rest,
+      " is ", mesh, " long, and the volume ", image,
+      ". If one of them is in metres and the other in millimetres, scale the points and the "
+      "displacements of the mesh."));
   }
 }
 

@@ -2,8 +2,7 @@
 #include "MeshReading.h"
 
 #include "Failure.h"
-#include "FileAccess.h"
-#include "FileSuffix.h"
+#include "Files.h"
 #include "MeshContents.h"
 #include "MeshFormats.h"
 #include "MeshSpace.h"
@@ -43,7 +42,6 @@
 #include <fstream>
 #include <limits>
 #include <map>
-#include <sstream>
 
 namespace
 {
@@ -92,9 +90,7 @@ private:
 
 std::string GetTimeText(std::size_t steps, double last)
 {
-  std::ostringstream text;
-  text << " holds " << steps << " time steps; the last one, of the time " << last << ", is read.";
-  return text.str();
+  return MakeText(" holds ", steps, " time steps; the last one, of the time ", last, ", is read.");
 }
 
 void Update(vtkAlgorithm* reader, const Source& source, const std::string& format)
@@ -108,7 +104,7 @@ void Update(vtkAlgorithm* reader, const Source& source, const std::string& forma
   if (steps > 1)
   {
     const double last = information->Get(vtkStreamingDemandDrivenPipeline::TIME_STEPS(), steps - 1);
-    source.Log.DisplayWarningText((source.Path + GetTimeText(steps, last)).c_str());
+    source.Log.Warn(source.Path + GetTimeText(steps, last));
     reader->UpdateTimeStep(last);
   }
   else
@@ -149,10 +145,9 @@ vtkSmartPointer<vtkDataObject> ReadLegacy(const Source& source)
   // FEBio Studio writes this header. FEBio writes "time 0.5" and points at rest.
   if (source.PointsAreAtRest && header.rfind("vtk output at time", 0) == 0)
   {
-    source.Log.DisplayWarningText((source.Path +
+    source.Log.Warn(source.Path +
       " is an export of FEBio Studio, which writes deformed points. Give --points-are-deformed; "
-      "without that option, the displacements are added twice.")
-                                    .c_str());
+      "without that option, the displacements are added twice.");
   }
   return data;
 }
@@ -279,9 +274,8 @@ std::map<double, std::vector<std::string>> FindFiles(const Source& source)
   }
   if (withoutTime > 1)
   {
-    source.Log.DisplayWarningText((source.Path + " names " + std::to_string(withoutTime) +
-      " files without the attribute timestep. They are read as parts of one mesh.")
-                                    .c_str());
+    source.Log.Warn(source.Path + " names " + std::to_string(withoutTime) +
+      " files without the attribute timestep. They are read as parts of one mesh.");
   }
   return files;
 }
@@ -292,7 +286,7 @@ vtkSmartPointer<vtkDataObject> ReadCollection(const Source& source)
   const auto& [time, parts] = *files.rbegin();
   if (files.size() > 1)
   {
-    source.Log.DisplayWarningText((source.Path + GetTimeText(files.size(), time)).c_str());
+    source.Log.Warn(source.Path + GetTimeText(files.size(), time));
   }
   vtkNew<vtkMultiBlockDataSet> blocks;
   for (const std::string& part : parts)
@@ -311,46 +305,46 @@ vtkSmartPointer<vtkDataObject> ReadCollection(const Source& source)
   return parts.size() == 1 ? vtkSmartPointer<vtkDataObject>(blocks->GetBlock(0)) : blocks;
 }
 
-void CheckFile(const std::string& path)
+/// A function that reads files with one of some suffixes.
+struct Format
 {
-  const std::string fault = FindReadingFault(path);
-  if (!fault.empty())
+  std::vector<const char*> Suffixes;
+  vtkSmartPointer<vtkDataObject> (*Read)(const Source& source);
+};
+
+/// advice: the message for a file in none of the formats.
+vtkSmartPointer<vtkDataObject> ReadInFormat(
+  const Source& source, const std::vector<Format>& formats, const std::string& advice)
+{
+  CheckReadable(source.Path);
+  for (const Format& format : formats)
   {
-    throw Failure("cannot read " + path + ": " + fault);
+    if (HasSuffix(source.Path, format.Suffixes))
+    {
+      return format.Read(source);
+    }
   }
+  throw Failure("cannot read " + source.Path + advice);
 }
 
 vtkSmartPointer<vtkDataObject> ReadMeshFile(const Source& source)
 {
-  CheckFile(source.Path);
-  if (HasSuffix(source.Path,
-        { ".vtu", ".pvtu", ".vtm", ".vtmb", ".vts", ".pvts", ".vtr", ".pvtr", ".vti", ".pvti",
-          ".vtpd", ".vtpc", ".vtp", ".pvtp" }))
-  {
-    return ReadXML(source);
-  }
-  if (HasSuffix(source.Path, { ".vtk" }))
-  {
-    return ReadLegacy(source);
-  }
-  if (HasSuffix(source.Path, { ".pvd" }))
-  {
-    return ReadCollection(source);
-  }
+  const std::vector<Format> formats{
+    { { ".vtu", ".pvtu", ".vtm", ".vtmb", ".vts", ".pvts", ".vtr", ".pvtr", ".vti", ".pvti",
+        ".vtpd", ".vtpc", ".vtp", ".pvtp" },
+      ReadXML },
+    { { ".vtk" }, ReadLegacy },
+    { { ".pvd" }, ReadCollection },
 #ifdef DEFORMVOLUME_HAVE_EXODUS
-  if (HasSuffix(source.Path, { ".e", ".exo", ".ex2" }))
-  {
-    return ReadExodus(source);
-  }
+    { { ".e", ".exo", ".ex2" }, ReadExodus },
 #endif
 #ifdef DEFORMVOLUME_HAVE_VTKHDF
-  if (HasSuffix(source.Path, { ".vtkhdf" }))
-  {
-    return ReadHDF(source);
-  }
+    { { ".vtkhdf" }, ReadHDF },
 #endif
-  throw Failure("cannot read " + source.Path + " as a mesh: a mesh is a file of the types " +
-    GetMeshSuffixes() + ", or a displacement field (.vti). " + GetMeshConversion(source.Path));
+  };
+  return ReadInFormat(source, formats,
+    " as a mesh: a mesh is a file of the types " + GetMeshSuffixes() +
+      ", or a displacement field (.vti). " + GetMeshConversion(source.Path));
 }
 
 vtkSmartPointer<vtkDataObject> ReadSTL(const Source& source)
@@ -394,29 +388,11 @@ vtkSmartPointer<vtkDataObject> ReadOBJ(const Source& source)
 
 vtkSmartPointer<vtkDataObject> ReadSheetFile(const Source& source)
 {
-  CheckFile(source.Path);
-  if (HasSuffix(source.Path, { ".vtp", ".pvtp" }))
-  {
-    return ReadXML(source);
-  }
-  if (HasSuffix(source.Path, { ".vtk" }))
-  {
-    return ReadLegacy(source);
-  }
-  if (HasSuffix(source.Path, { ".stl" }))
-  {
-    return ReadSTL(source);
-  }
-  if (HasSuffix(source.Path, { ".ply" }))
-  {
-    return ReadPLY(source);
-  }
-  if (HasSuffix(source.Path, { ".obj" }))
-  {
-    return ReadOBJ(source);
-  }
-  throw Failure("cannot read " + source.Path + " as a sheet: a sheet is a file of the types " +
-    GetSheetSuffixes() + ". " + GetSheetConversion(source.Path));
+  const std::vector<Format> formats{ { { ".vtp", ".pvtp" }, ReadXML }, { { ".vtk" }, ReadLegacy },
+    { { ".stl" }, ReadSTL }, { { ".ply" }, ReadPLY }, { { ".obj" }, ReadOBJ } };
+  return ReadInFormat(source, formats,
+    " as a sheet: a sheet is a file of the types " + GetSheetSuffixes() + ". " +
+      GetSheetConversion(source.Path));
 }
 }
 
@@ -443,7 +419,7 @@ vtkSmartPointer<vtkPolyData> ReadSheet(
 vtkSmartPointer<vtkPointSet> ReadGeometry(
   const std::string& path, const Options& options, Messages& messages)
 {
-  CheckFile(path);
+  CheckReadable(path);
   const Source source{ path, "reading points", messages, !options.Quiet };
   const vtkSmartPointer<vtkDataObject> object = HasSuffix(path, { ".stl" }) ? ReadSTL(source)
     : HasSuffix(path, { ".ply" })                                           ? ReadPLY(source)

@@ -45,9 +45,8 @@ WorldAxes GetSpace(vtkDataObject* object, const std::string& path, Messages& mes
   const WorldAxes space = FindSpace(array->GetValue(0), "");
   if (space == WorldAxes::Unknown)
   {
-    messages.DisplayWarningText(("The space of " + path + " is \"" + array->GetValue(0) +
-      "\", which is neither LPS nor RAS. It is not used.")
-                                  .c_str());
+    messages.Warn("The space of " + path + " is \"" + array->GetValue(0) +
+      "\", which is neither LPS nor RAS. It is not used.");
   }
   return space;
 }
@@ -58,11 +57,9 @@ WorldAxes Choose(const std::string& ofOption, const std::string& path, WorldAxes
 {
   if (ofOption.empty() && ofVolume == WorldAxes::Unknown && ofFile != ofVolume)
   {
-    messages.DisplayWarningText(
-      (path + " is " + (ofFile == WorldAxes::RightAnteriorSuperior ? "ras" : "lps") +
-        ". This is not used, because the file of the volume does not state whether its world "
-        "coordinates are lps or ras. Give --volume-space.")
-        .c_str());
+    messages.Warn(path + " is " + (ofFile == WorldAxes::RightAnteriorSuperior ? "ras" : "lps") +
+      ". This is not used, because the file of the volume does not state whether its world "
+      "coordinates are lps or ras. Give --volume-space.");
     return ofVolume;
   }
   return ChooseSpace("--mesh-space", ofOption, path, ofFile, ofVolume, messages);

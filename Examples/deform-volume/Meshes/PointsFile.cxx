@@ -2,7 +2,7 @@
 #include "PointsFile.h"
 
 #include "Failure.h"
-#include "FileSuffix.h"
+#include "Files.h"
 #include "MeshMaking.h"
 #include "MeshReading.h"
 #include "MeshSpace.h"
@@ -26,7 +26,6 @@
 
 #include <cmath>
 #include <fstream>
-#include <sstream>
 
 namespace
 {
@@ -56,10 +55,8 @@ void CheckPoints(vtkPointSet* points, const std::string& path)
     const double* point = points->GetPoint(i);
     if (!std::isfinite(point[0]) || !std::isfinite(point[1]) || !std::isfinite(point[2]))
     {
-      std::ostringstream text;
-      text << "cannot use " << path << ": its point " << i << ", counted from 0, is " << point[0]
-           << ", " << point[1] << ", " << point[2] << ", and points must be finite";
-      throw Failure(text.str());
+      throw Failure(MakeText("cannot use ", path, ": its point ", i, ", counted from 0, is ",
+        point[0], ", ", point[1], ", ", point[2], ", and points must be finite"));
     }
   }
 }
@@ -71,10 +68,9 @@ void WarnOfCellArrays(vtkPointSet* points, const std::string& path, Messages& me
   {
     if (array)
     {
-      messages.DisplayWarningText(("The array \"" +
-        std::string(array->GetName() ? array->GetName() : "") + "\" of the cells of " + path +
-        " is not transformed: only normals and vectors of points are transformed.")
-                                    .c_str());
+      messages.Warn("The array \"" + std::string(array->GetName() ? array->GetName() : "") +
+        "\" of the cells of " + path +
+        " is not transformed: only normals and vectors of points are transformed.");
     }
   }
 }
@@ -95,10 +91,9 @@ vtkSmartPointer<vtkPointSet> Deform(const PointsFile& file, const Options& optio
   messages.Check("cannot move the points of " + file.Path);
   if (filter->GetNumberOfOutsidePoints() > 0)
   {
-    messages.DisplayWarningText((std::to_string(filter->GetNumberOfOutsidePoints()) + " of " +
+    messages.Warn(std::to_string(filter->GetNumberOfOutsidePoints()) + " of " +
       std::to_string(file.Points->GetNumberOfPoints()) + " points of " + file.Path +
-      " lie outside the deformation. They stay where they are.")
-                                  .c_str());
+      " lie outside the deformation. They stay where they are.");
   }
   return filter->GetOutput();
 }

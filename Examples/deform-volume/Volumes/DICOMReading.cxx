@@ -21,7 +21,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
+#include <iomanip>
 #include <vector>
 
 namespace
@@ -215,9 +215,8 @@ void Series::WarnOfLeftOut(Messages& messages) const
   {
     if (!which.empty())
     {
-      messages.DisplayWarningText(("Files of " + this->Folder + " that hold " + what +
-        " are left out: " + std::to_string(which.size()) + ", such as " + which.front() + ".")
-                                    .c_str());
+      messages.Warn("Files of " + this->Folder + " that hold " + what +
+        " are left out: " + std::to_string(which.size()) + ", such as " + which.front() + ".");
     }
   };
   warn("no DICOM image", names);
@@ -264,12 +263,9 @@ void Series::CheckShapes() const
       if (std::abs(slice.Spacing[axis] - this->First().Spacing[axis]) >
         rounding * slice.Spacing[axis])
       {
-        std::ostringstream text;
-        text.precision(9);
-        text << "the slices " << both
-             << " differ in the spacing of pixels: " << this->First().Spacing[axis] << " and "
-             << slice.Spacing[axis] << " mm";
-        this->Fail(text.str());
+        this->Fail(MakeText(std::setprecision(9), "the slices ", both,
+          " differ in the spacing of pixels: ", this->First().Spacing[axis], " and ",
+          slice.Spacing[axis], " mm"));
       }
     }
     if (differs(slice.Row, this->First().Row) || differs(slice.Column, this->First().Column))
@@ -309,11 +305,8 @@ void Series::CheckSteps() const
     constexpr double missing = 1.5;
     if (steps[i] > missing * usual)
     {
-      std::ostringstream text;
-      text << "between the slices " << both << " about " << std::lround(steps[i] / usual) - 1
-           << " are missing: they are " << steps[i] << " mm apart, and other slices " << usual
-           << " mm";
-      this->Fail(text.str());
+      this->Fail(MakeText("between the slices ", both, " about ", std::lround(steps[i] / usual) - 1,
+        " are missing: they are ", steps[i], " mm apart, and other slices ", usual, " mm"));
     }
   }
 }
@@ -342,19 +335,17 @@ void Series::CheckPlaces(Messages& messages) const
   // Positions are often rounded to 0.01 mm or 0.1 mm.
   constexpr double rounding = 0.01;
   constexpr double most = 0.1;
-  std::ostringstream text;
-  text << name << " lies " << farthest
-       << " mm from where it would lie in evenly spaced slices, which are " << vtkMath::Norm(step)
-       << " mm apart";
+  const std::string text = MakeText(name, " lies ", farthest,
+    " mm from where it would lie in evenly spaced slices, which are ", vtkMath::Norm(step),
+    " mm apart");
   if (farthest > most * vtkMath::Norm(step))
   {
-    this->Fail("its slices are unevenly spaced: " + text.str());
+    this->Fail("its slices are unevenly spaced: " + text);
   }
   if (farthest > rounding * vtkMath::Norm(step))
   {
-    messages.DisplayWarningText(("The slices in " + this->Folder +
-      " are not quite evenly spaced, but are read as if they were: " + text.str() + ".")
-                                  .c_str());
+    messages.Warn("The slices in " + this->Folder +
+      " are not quite evenly spaced, but are read as if they were: " + text + ".");
   }
 }
 
@@ -377,9 +368,8 @@ void Series::Sort(Messages& messages)
   this->CheckPlaces(messages);
   if (this->First().Photometric == "MONOCHROME1")
   {
-    messages.DisplayWarningText(("The values of the slices in " + this->Folder +
-      " are inverted, because large values are dark in these files (MONOCHROME1).")
-                                  .c_str());
+    messages.Warn("The values of the slices in " + this->Folder +
+      " are inverted, because large values are dark in these files (MONOCHROME1).");
   }
 }
 

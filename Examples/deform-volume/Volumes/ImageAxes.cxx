@@ -12,7 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
+#include <iomanip>
 
 namespace
 {
@@ -115,27 +115,22 @@ void SetAxes(vtkImageData* image, vtkMatrix4x4* axes, const std::string& path, M
     const bool hasSize = spacing[column] > 0.0 && std::isfinite(spacing[column]);
     if (!hasSize || !std::isfinite(axes->GetElement(column, 3)))
     {
-      std::ostringstream text;
-      text << "cannot read " << path << ": by its header "
-           << (hasSize ? "the position of its first voxel on axis "
-                       : "the distance between its voxels on axis ")
-           << column << " is " << (hasSize ? axes->GetElement(column, 3) : spacing[column]);
-      throw Failure(text.str() + advice);
+      throw Failure(MakeText("cannot read ", path, ": by its header ",
+        hasSize ? "the position of its first voxel on axis "
+                : "the distance between its voxels on axis ",
+        column, " is ", hasSize ? axes->GetElement(column, 3) : spacing[column], advice));
     }
   }
   double origin[3] = { axes->GetElement(0, 3), axes->GetElement(1, 3), axes->GetElement(2, 3) };
   const double shear = FindShear(columns);
   if (shear > MaximumShear)
   {
-    std::ostringstream text;
-    text.precision(4);
-    text << "cannot read " << path << ": its axes are sheared by "
-         << vtkMath::DegreesFromRadians(std::asin(std::min(shear, 1.0)))
-         << " degrees, and a volume of VTK has perpendicular axes. Resample it on perpendicular "
-            "axes first, for example with 3D Slicer; a series with gantry tilt is converted and "
-            "straightened by dcm2niix"
-         << advice;
-    throw Failure(text.str());
+    throw Failure(MakeText(std::setprecision(4), "cannot read ", path, ": its axes are sheared by ",
+      vtkMath::DegreesFromRadians(std::asin(std::min(shear, 1.0))),
+      " degrees, and a volume of VTK has perpendicular axes. Resample it on perpendicular axes "
+      "first, for example with 3D Slicer; a series with gantry tilt is converted and straightened "
+      "by dcm2niix",
+      advice));
   }
   constexpr double roundingOfSinglePrecision = 1e-7;
   if (shear > roundingOfSinglePrecision)
@@ -145,13 +140,10 @@ void SetAxes(vtkImageData* image, vtkMatrix4x4* axes, const std::string& path, M
     vtkMath::Add(origin, shift, origin);
     if (shear > RoundedShear)
     {
-      std::ostringstream text;
-      text.precision(4);
-      text << "The axes of " << path << " are sheared by " << shear
-           << ". A volume of VTK has perpendicular axes: the nearest ones are used, which moves "
-              "voxels by up to "
-           << farthest << ".";
-      messages.DisplayWarningText(text.str().c_str());
+      messages.Warn(MakeText(std::setprecision(4), "The axes of ", path, " are sheared by ", shear,
+        ". A volume of VTK has perpendicular axes: the nearest ones are used, which moves voxels "
+        "by up to ",
+        farthest, "."));
     }
   }
   image->SetSpacing(spacing);

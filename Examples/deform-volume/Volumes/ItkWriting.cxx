@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ItkWriting.h"
 
-#include "FileSuffix.h"
+#include "Files.h"
 #include "ItkImage.h"
 
 #include <itkMetaImageIO.h>

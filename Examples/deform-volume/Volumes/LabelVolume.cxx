@@ -3,7 +3,7 @@
 
 #include "Coverage.h"
 #include "Failure.h"
-#include "FileSuffix.h"
+#include "Files.h"
 #include "ImageAxes.h"
 #include "Messages.h"
 #include "Options.h"
@@ -20,7 +20,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
+#include <iomanip>
 
 namespace
 {
@@ -49,10 +49,8 @@ void CheckWhole(Array* array, const std::string& name, const std::string& path)
     [](double value) { return !(std::isfinite(value) && value == std::round(value)); });
   if (fraction != values.end())
   {
-    std::ostringstream text;
-    text << "cannot use the labels " << path << ": its array \"" << name << "\" holds " << *fraction
-         << ", but labels are integers. Deform an image with other values as VOLUME";
-    throw Failure(text.str());
+    throw Failure(MakeText("cannot use the labels ", path, ": its array \"", name, "\" holds ",
+      *fraction, ", but labels are integers. Deform an image with other values as VOLUME"));
   }
 }
 
@@ -127,11 +125,8 @@ void CheckGrid(vtkImageData* volume, vtkImageData* labels, const std::string& pa
   const GridDifference difference = FindLargestDifference(volume, labels);
   if (!(difference.Voxels <= tolerance))
   {
-    std::ostringstream text;
-    text.precision(9);
-    text << "Their " << difference.Name << " is " << difference.OfLabels
-         << ", and that of the volume is " << difference.OfVolume;
-    fail(text.str());
+    fail(MakeText("Their ", difference.Name, " is ", std::setprecision(9), difference.OfLabels,
+      ", and that of the volume is ", difference.OfVolume));
   }
 }
 
@@ -176,9 +171,8 @@ LabelVolume::LabelVolume(const Options& options, const Volume& volume, Messages&
     }
     if (!array)
     {
-      messages.DisplayWarningText(
-        ("The array \"" + name + "\" of the labels " + path + " holds no numbers. It is left out.")
-          .c_str());
+      messages.Warn(
+        "The array \"" + name + "\" of the labels " + path + " holds no numbers. It is left out.");
       continue;
     }
     CheckWhole(vtkFloatArray::FastDownCast(array), name, path);

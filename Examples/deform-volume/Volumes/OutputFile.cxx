@@ -2,7 +2,7 @@
 #include "OutputFile.h"
 
 #include "Failure.h"
-#include "FileSuffix.h"
+#include "Files.h"
 #include "Messages.h"
 
 #include <algorithm>

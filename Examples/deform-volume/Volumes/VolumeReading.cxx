@@ -2,8 +2,7 @@
 #include "VolumeReading.h"
 
 #include "Failure.h"
-#include "FileAccess.h"
-#include "FileSuffix.h"
+#include "Files.h"
 #include "Messages.h"
 #include "NIfTIReading.h"
 #include "ProgressBar.h"
@@ -126,11 +125,7 @@ namespace
 Volume ReadFile(
   const std::string& path, const ReadingOptions& options, Messages& messages, bool showProgress)
 {
-  const std::string fault = FindReadingFault(path, true);
-  if (!fault.empty())
-  {
-    throw Failure("cannot read " + path + ": " + fault);
-  }
+  CheckReadable(path, true);
   const bool isFolder = vtksys::SystemTools::FileIsDirectory(path);
   if (!isFolder && HasSuffix(path, { ".nii", ".nii.gz" }))
   {

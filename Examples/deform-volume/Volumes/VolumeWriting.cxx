@@ -2,7 +2,7 @@
 #include "VolumeWriting.h"
 
 #include "Failure.h"
-#include "FileSuffix.h"
+#include "Files.h"
 #include "ImageAxes.h"
 #include "Messages.h"
 #include "OutputFile.h"
@@ -27,7 +27,7 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
-#include <sstream>
+#include <iomanip>
 #include <vector>
 
 namespace
@@ -119,13 +119,10 @@ void WarnOfRounding(
   const double rounding = FindRounding(image, axes);
   if (rounding > precisionOfResampling * smallest)
   {
-    std::ostringstream text;
-    text.precision(3);
-    text << "NIfTI files hold positions in single precision, which shifts voxels of " << path
-         << " by up to " << rounding << ", " << rounding / smallest
-         << " times the smallest spacing. Write " << (HasITK ? ".nrrd or .mhd" : ".vti")
-         << ", or subtract an offset from all coordinates.";
-    messages.DisplayWarningText(text.str().c_str());
+    messages.Warn(MakeText(std::setprecision(3),
+      "NIfTI files hold positions in single precision, which shifts voxels of ", path, " by up to ",
+      rounding, ", ", rounding / smallest, " times the smallest spacing. Write ",
+      HasITK ? ".nrrd or .mhd" : ".vti", ", or subtract an offset from all coordinates."));
   }
 }
 

@@ -15,9 +15,8 @@ WorldAxes HeedSpace(const std::string& option, const std::string& ofOption, cons
     ofOption == "ras" ? WorldAxes::RightAnteriorSuperior : WorldAxes::LeftPosteriorSuperior;
   if (ofFile != WorldAxes::Unknown && ofFile != axes)
   {
-    messages.DisplayWarningText((option + " " + ofOption + " is not used: " + path +
-      " states that it is " + (ofOption == "ras" ? "lps." : "ras."))
-                                  .c_str());
+    messages.Warn(option + " " + ofOption + " is not used: " + path + " states that it is " +
+      (ofOption == "ras" ? "lps." : "ras."));
     return ofFile;
   }
   return axes;
