@@ -6,10 +6,9 @@
 #include "Messages.h"
 #include "OutputFile.h"
 
-#include <vtkArrayDispatch.h>
 #include <vtkCamera.h>
 #include <vtkColorTransferFunction.h>
-#include <vtkDataArrayRange.h>
+#include <vtkDataArray.h>
 #include <vtkErrorCode.h>
 #include <vtkImageData.h>
 #include <vtkImageExtractComponents.h>
@@ -47,70 +46,45 @@ vtkDataArray* GetShownArray(vtkImageData* image)
   return scalars ? scalars : image->GetPointData()->GetArray(0);
 }
 
-// A sample of the visible voxels, which is sufficient to aim a camera.
-struct ShownVoxels
+// Adds the world positions of a sample of the visible voxels, which is sufficient to aim a camera,
+// or of the corners of the image if no voxel is visible.
+void AddShownPoints(
+  vtkImageData* image, double threshold, std::vector<std::array<double, 3>>& points)
 {
-  double Threshold;
-  int Dimensions[3];
-  std::vector<std::array<int, 3>> Indices;
-
-  template <typename ArrayT>
-  void operator()(ArrayT* array)
+  int extent[6];
+  image->GetExtent(extent);
+  int steps[3];
+  for (int axis = 0; axis < 3; ++axis)
   {
-    const auto tuples = vtk::DataArrayTupleRange(array);
-    int steps[3];
-    for (int axis = 0; axis < 3; ++axis)
+    constexpr int samplesPerAxis = 64;
+    steps[axis] = 1 + (extent[2 * axis + 1] - extent[2 * axis]) / samplesPerAxis;
+  }
+  const auto add = [&](int x, int y, int z)
+  {
+    std::array<double, 3> point;
+    image->TransformIndexToPhysicalPoint(x, y, z, point.data());
+    points.push_back(point);
+  };
+  vtkDataArray* values = GetShownArray(image);
+  const std::size_t before = points.size();
+  for (int z = extent[4]; z <= extent[5]; z += steps[2])
+  {
+    for (int y = extent[2]; y <= extent[3]; y += steps[1])
     {
-      constexpr int samplesPerAxis = 64;
-      steps[axis] = 1 + (this->Dimensions[axis] - 1) / samplesPerAxis;
-    }
-    for (int z = 0; z < this->Dimensions[2]; z += steps[2])
-    {
-      for (int y = 0; y < this->Dimensions[1]; y += steps[1])
+      for (int x = extent[0]; x <= extent[1]; x += steps[0])
       {
-        for (int x = 0; x < this->Dimensions[0]; x += steps[0])
+        int index[3] = { x, y, z };
+        if (values->GetComponent(image->ComputePointId(index), 0) >= threshold)
         {
-          const vtkIdType row = y + static_cast<vtkIdType>(this->Dimensions[1]) * z;
-          if (static_cast<double>(tuples[x + this->Dimensions[0] * row][0]) >= this->Threshold)
-          {
-            this->Indices.push_back({ { x, y, z } });
-          }
+          add(x, y, z);
         }
       }
     }
   }
-};
-
-// Adds the world positions of visible voxels, or of the corners of the image if no voxel is
-// visible.
-void AddShownPoints(
-  vtkImageData* image, double threshold, std::vector<std::array<double, 3>>& points)
-{
-  ShownVoxels voxels;
-  voxels.Threshold = threshold;
-  image->GetDimensions(voxels.Dimensions);
-  vtkDataArray* array = GetShownArray(image);
-  if (!vtkArrayDispatch::Dispatch::Execute(array, voxels))
+  const bool isAny = points.size() > before;
+  for (int corner = 0; corner < 8 && !isAny; ++corner)
   {
-    voxels(array);
-  }
-  if (voxels.Indices.empty())
-  {
-    for (int corner = 0; corner < 8; ++corner)
-    {
-      voxels.Indices.push_back({ { (corner & 1) * (voxels.Dimensions[0] - 1),
-        (corner >> 1 & 1) * (voxels.Dimensions[1] - 1),
-        (corner >> 2 & 1) * (voxels.Dimensions[2] - 1) } });
-    }
-  }
-  int extent[6];
-  image->GetExtent(extent);
-  for (const auto& index : voxels.Indices)
-  {
-    std::array<double, 3> point;
-    image->TransformIndexToPhysicalPoint(
-      extent[0] + index[0], extent[2] + index[1], extent[4] + index[2], point.data());
-    points.push_back(point);
+    add(extent[corner & 1], extent[2 + (corner >> 1 & 1)], extent[4 + (corner >> 2)]);
   }
 }
 
